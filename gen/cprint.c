@@ -1,0 +1,227 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Expressions of a spec as C. A coordinate x is the local x, its velocity x_dot; an acceleration counts as 0, since
+ * NAME_rhs prints what the equations leave when accelerations are taken out. */
+#include "plgen.h"
+
+#include <string.h>
+
+struct naming {                     /* the identifiers given away so far */
+	int count;
+	const char **taken;
+};
+
+/* What the generated functions use themselves. */
+static const char *const own_names[] = { "s", "y", "t", "u", "n", "k", "tau", "out", "dydt", "power", "work", "x", "z", "wave", "load", "unused" };
+
+/* Macros of the headers that generated code may include, and of compilers in their GNU modes. */
+static bool may_be_macro(const char *name)
+{
+	static const char *const macros[] = { "NULL", "NAN", "INFINITY", "I", "unix", "linux", "i386", "vax", "sun", "OVERFLOW", "UNDERFLOW",
+					      "DOMAIN", "SING", "PLOSS", "TLOSS", "EOF", "BUFSIZ", "WCHAR_MAX", "WCHAR_MIN" };
+	for (size_t i = 0; i < sizeof macros / sizeof *macros; i++)
+		if (strcmp(name, macros[i]) == 0)
+			return true;
+	size_t length = strlen(name);
+	return name[0] == '_' || strncmp(name, "M_", 2) == 0 || strncmp(name, "FP_", 3) == 0 || strncmp(name, "HUGE", 4) == 0 ||
+	       strncmp(name, "MATH_", 5) == 0 || strncmp(name, "INT", 3) == 0 || strncmp(name, "UINT", 4) == 0 || strncmp(name, "PL", 2) == 0 ||
+	       strncmp(name, "pl_", 3) == 0 || strncmp(name, "SIZE_", 5) == 0 || (length > 4 && strcmp(name + length - 4, "_MAX") == 0) ||
+	       (length > 4 && strcmp(name + length - 4, "_MIN") == 0);
+}
+
+static bool is_taken(const struct naming *naming, const char *name)
+{
+	for (size_t i = 0; i < sizeof own_names / sizeof *own_names; i++)
+		if (strcmp(name, own_names[i]) == 0)
+			return true;
+	for (int i = 0; i < naming->count; i++)
+		if (strcmp(name, naming->taken[i]) == 0)
+			return true;
+	return false;
+}
+
+static const char *claim(struct naming *naming, const char *wish)
+{
+	const char *name = may_be_macro(wish) ? format("v%s", wish) : wish;
+	while (is_taken(naming, name) || may_be_macro(name))
+		name = format("%s_", name);
+	ENLARGE(naming->taken, (size_t)naming->count + 1);
+	naming->taken[naming->count++] = name;
+	return name;
+}
+
+void name_for_c(const struct spec *spec)
+{
+	struct naming all = { 0 }, *naming = &all;
+	for (struct symbol *s = spec->first; s; s = s->next)
+		if (s->kind != SYMBOL_OUTPUT)
+			s->c_name = claim(naming, s->name);
+	for (struct symbol *s = spec->first; s; s = s->next)
+		if (s->kind == SYMBOL_COORD)
+			s->c_dot = claim(naming, format("%s_dot", s->name));
+}
+
+bool vanishes(const struct node *node)
+{
+	bool all = node->children > 0, any = false;
+	for (int i = 0; i < node->children; i++) {
+		bool gone = vanishes(node->child[i]);
+		all = all && gone;
+		any = any || gone;
+	}
+	switch (node->kind) {
+	case NODE_NAME:    return node->primes == 2;
+	case NODE_SUM:     return all;
+	case NODE_PRODUCT: return any;
+	case NODE_POWER:   return vanishes(node->child[0]);
+	default:           return false;
+	}
+}
+
+/* The integer exponent of a power, 0 where it is none from 2 to 4. */
+static int small_exponent(const struct node *exponent)
+{
+	if (exponent->kind != NODE_NUMBER || mpz_cmp_ui(mpq_denref(exponent->number), 1) != 0)
+		return 0;
+	return mpz_cmp_ui(mpq_numref(exponent->number), 2) >= 0 && mpz_cmp_ui(mpq_numref(exponent->number), 4) <= 0
+		       ? (int)mpz_get_ui(mpq_numref(exponent->number)) : 0;
+}
+
+static bool is_plain(const struct node *node)
+{
+	return node->kind == NODE_NAME || node->kind == NODE_TIME || node->kind == NODE_NUMBER;
+}
+
+void mark_used(const struct node *node, bool *math)
+{
+	if (vanishes(node))
+		return;
+	if (node->kind == NODE_NAME && !node->symbol->used) {
+		node->symbol->used = true;
+		if (node->symbol->kind == SYMBOL_LET)
+			mark_used(node->symbol->value, math);
+	}
+	if (node->kind == NODE_CALL)
+		*math = true;
+	if (node->kind == NODE_POWER && !(small_exponent(node->child[1]) && is_plain(node->child[0])))
+		*math = true;
+	for (int i = 0; i < node->children; i++)
+		mark_used(node->child[i], math);
+}
+
+/* ---- text; `tight` is the precedence that the surroundings need: 0 choice, 1 comparison, 2 sum, 3 product, 4 unary, 5 primary ---- */
+
+static const char *text_of(const struct node *node, int tight);
+
+static const char *enclose(bool needed, const char *text)
+{
+	return needed ? format("(%s)", text) : text;
+}
+
+static const char *sum_text(const struct node *node, int tight)
+{
+	const char *text = "";
+	int shown = 0;
+	bool leading_sign = false;
+	for (int i = 0; i < node->children; i++) {
+		if (vanishes(node->child[i]))
+			continue;
+		const char *term = text_of(node->child[i], 3);
+		const char *sign = node->inverse[i] ? (shown ? " - " : "-") : shown ? " + " : "";
+		if (*term == '-' && *sign)
+			term = format("(%s)", term);
+		leading_sign = leading_sign || (!shown && node->inverse[i]);
+		text = format("%s%s%s", text, sign, term);
+		shown++;
+	}
+	return enclose(shown > 1 ? tight > 2 : leading_sign && tight > 3, text);
+}
+
+static const char *product_text(const struct node *node, int tight)
+{
+	const char *text = text_of(node->child[0], 3);
+	for (int i = 1; i < node->children; i++)
+		text = format("%s%s%s", text, node->inverse[i] ? "/" : "*", text_of(node->child[i], 4));
+	return enclose(tight > 3, text);
+}
+
+static const char *power_text(const struct node *node)
+{
+	int exponent = small_exponent(node->child[1]);
+	const char *base = text_of(node->child[0], exponent && is_plain(node->child[0]) ? 5 : 0);
+	if (!exponent || !is_plain(node->child[0]))
+		return format("pow(%s, %s)", base, text_of(node->child[1], 0));
+	const char *text = base;
+	for (int i = 1; i < exponent; i++)
+		text = format("%s*%s", text, base);
+	return format("(%s)", text);
+}
+
+/* min, max: two by two */
+static const char *fold_text(const char *function, const struct node *node)
+{
+	const char *text = text_of(node->child[0], 0);
+	for (int i = 1; i < node->children; i++)
+		text = format("%s(%s, %s)", function, text, text_of(node->child[i], 0));
+	return text;
+}
+
+/* Tables are of constants so far: their value stands for them. */
+static const char *table_text(const struct node *node)
+{
+	struct collector collector = { .scheme = "exact" };
+	mpq_t value;
+	mpq_init(value);
+	collect_constant(&collector, (struct node *)node, value);
+	const char *text = shortest(round_rational(value));
+	mpq_clear(value);
+	return format("(%s)", text);
+}
+
+static const char *call_text(const struct node *node)
+{
+	if (node->function == FN_TABLE)
+		return table_text(node);
+	const char *x = text_of(node->child[0], 0);
+	switch (node->function) {
+	case FN_ABS: return format("fabs(%s)", x);
+	case FN_SGN: return format("(double)((%s > 0) - (%s < 0))", text_of(node->child[0], 2), text_of(node->child[0], 2));
+	case FN_MIN: return fold_text("fmin", node);
+	case FN_MAX: return fold_text("fmax", node);
+	case FN_ATAN2: return format("atan2(%s, %s)", x, text_of(node->child[1], 0));
+	case FN_CLIP:
+		return format("fmin(fmax(%s, %s), %s)", x, text_of(node->child[1], 0), text_of(node->child[2], 0));
+	case FN_DEADZONE:
+		return format("(%s - fmin(fmax(%s, %s), %s))", text_of(node->child[0], 2), x, text_of(node->child[1], 0), text_of(node->child[2], 0));
+	default: return format("%s(%s)", function_name(node->function), x);
+	}
+}
+
+static const char *choice_text(const struct node *node, int tight)
+{
+	return enclose(tight > 0, format("%s ? %s : %s", text_of(node->child[0], 1), text_of(node->child[1], 1), text_of(node->child[2], 0)));
+}
+
+static const char *text_of(const struct node *node, int tight)
+{
+	static const char *const comparisons[] = { "<", "<=", ">", ">=", "==", "!=" };
+	if (vanishes(node))
+		return "0.0";
+	switch (node->kind) {
+	case NODE_NUMBER:  return shortest(round_rational(node->number));
+	case NODE_PI:      return "3.141592653589793";
+	case NODE_TIME:    return "t";
+	case NODE_NAME:    return node->primes == 1 ? node->symbol->c_dot : node->symbol->c_name;
+	case NODE_SUM:     return sum_text(node, tight);
+	case NODE_PRODUCT: return product_text(node, tight);
+	case NODE_POWER:   return power_text(node);
+	case NODE_CALL:    return call_text(node);
+	case NODE_CHOOSE:  return choice_text(node, tight);
+	default:
+		return enclose(tight > 1, format("%s %s %s", text_of(node->child[0], 2), comparisons[node->comparison], text_of(node->child[1], 2)));
+	}
+}
+
+const char *c_expression(const struct node *node)
+{
+	return text_of(node, 2);
+}

@@ -1,0 +1,240 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What was derived: for a person, and as JSON for a program. */
+#include "plgen.h"
+
+#include <string.h>
+
+/* ---- for a person ---- */
+
+static void person_matrix(FILE *to, const char *name, int n, const mpq_t *A)
+{
+	int width = 1;
+	for (int i = 0; i < n * n; i++) {
+		int length = (int)strlen(readable_text(A[i]));
+		width = length > width ? length : width;
+	}
+	for (int i = 0; i < n; i++) {
+		fprintf(to, "    %s [", i == 0 ? format("%s =", name) : "   ");
+		for (int j = 0; j < n; j++)
+			fprintf(to, " %*s", width, readable_text(A[i * n + j]));
+		fputs(" ]\n", to);
+	}
+}
+
+static void person_loads(FILE *to, const struct linear *system)
+{
+	for (int l = 0; l < system->loads; l++)
+		for (int k = 0; k < system->load[l].columns; k++) {
+			const struct wave *wave = system->load[l].wave;
+			fprintf(to, "    load %s on the equations: [", wave ? wave_text(wave, k) : "1");
+			for (int i = 0; i < system->n; i++)
+				fprintf(to, " %s", readable_text(system->load[l].force[k][i]));
+			fputs(" ]\n", to);
+		}
+}
+
+static void person_poles(FILE *to, const struct step *step)
+{
+	int length = resolvent_determinant(step->written)->length;
+	mpq_t *B = rationals((size_t)length);
+	characteristic_polynomial(step->written, B);
+	fprintf(to, "\n    B(s) = %s\n\n", polynomial_text(length, (const mpq_t *)B));
+	struct pole_report *pole;
+	int count = poles_of(step->written, &pole);
+	fprintf(to, "    %-36s %-16s damping ratio\n", "pole [1/s]", "frequency [Hz]");
+	for (int i = 0; i < count; i++)
+		fprintf(to, "    %-36s %-16.8g %.8g\n", pole_text(&pole[i]), mpfr_get_d(pole[i].hertz, MPFR_RNDN),
+			mpfr_get_d(pole[i].damping_ratio, MPFR_RNDN));
+}
+
+static void person_held(FILE *to, const struct step *step)
+{
+	const struct linear *system = &step->system;
+	int n = system->n;
+	fputs("Scheme pl holds these accelerations at their value at the start of each step:\n", to);
+	for (int i = 0; i < n; i++)
+		for (int k = 0; k < 2; k++)
+			for (int j = 0; j < n; j++) {
+				mpq_t factor;
+				mpq_init(factor);
+				mpq_neg(factor, (k ? system->heldC : system->heldK)[i * n + j]);
+				if (mpq_sgn(factor) != 0)
+					fprintf(to, "    in %s'': %s * %s%s\n", step->model->coord[i]->name, readable_text(factor), step->model->coord[j]->name,
+						k ? "'" : "");
+				mpq_clear(factor);
+			}
+	fprintf(to, "It is of first order in h. Its modified equation y' = L y - (h/2) R L y (R: the held terms) has growth rate\n"
+		    "%.6g 1/s, the largest real part of its poles, at h = %s s.\n", mpfr_get_d(step->growth, MPFR_RNDN), readable_text(step->model->h));
+}
+
+static void person_step(FILE *to, const struct step *step)
+{
+	const struct model *model = step->model;
+	const struct program *program = step->program;
+	fprintf(to, "Step: form direct, h = %s s; %d multiplications, %d additions", readable_text(model->h), program->multiplications,
+		program->additions);
+	if (program->oscillators)
+		fprintf(to, " (%d and %d of them for cos and sin of the loads)", program->oscillators * PL_COSSIN_MUL,
+			program->oscillators * PL_COSSIN_ADD);
+	fputs(".\nPhi, each entry correctly rounded:\n", to);
+	for (int i = 0; i < model->states; i++) {
+		fprintf(to, "    %-8s", model->state_name[i]);
+		for (int j = 0; j < model->states; j++)
+			fprintf(to, " %24s", shortest(step->table->Phi[i * model->states + j].value));
+		fputc('\n', to);
+	}
+	if (step->series.emitted)
+		fprintf(to, "%s_at: Taylor series of degree %d on %d part%s of the time.\n", model->name, step->series.degree, 1 << step->series.halvings,
+			step->series.halvings ? "s" : "");
+	else
+		fprintf(to, "%s_at is not emitted: the largest |pole| times h is above 8.\n", model->name);
+}
+
+void explain_person(FILE *to, const struct step *step)
+{
+	const struct model *model = step->model;
+	const struct spec *spec = model->spec;
+	fprintf(to, "Model %s: %d coordinate%s, %d states, scheme %s\n\n", model->name, model->n, model->n == 1 ? "" : "s", model->states,
+		scheme_name(model->scheme));
+	for (int i = 0; i < spec->equations; i++)
+		fprintf(to, "    %s\n", text_between(spec->equation[i].at, spec->equation[i].end));
+	fputs("\nP(s) = M s^2 + C s + K with\n", to);
+	person_matrix(to, "M", model->n, (const mpq_t *)model->system.M);
+	person_matrix(to, "C", model->n, (const mpq_t *)model->system.C);
+	person_matrix(to, "K", model->n, (const mpq_t *)model->system.K);
+	person_loads(to, &model->system);
+	person_poles(to, step);
+	const char *irrational = irrationals_text(&model->irrationals);
+	if (*irrational)
+		fprintf(to, "\nIrrational constants (%s) were taken as rationals of %d bits.\n", irrational, IRRATIONAL_BITS);
+	fputc('\n', to);
+	if (model->scheme == SCHEME_PL)
+		person_held(to, step);
+	else
+		fputs("Nothing is approximated: every constant is its closed form, correctly rounded.\n", to);
+	person_step(to, step);
+}
+
+/* ---- JSON ---- */
+
+static void json_name(FILE *to, const char *name)
+{
+	fprintf(to, "\"%s\"", name);       /* names are identifiers with primes: nothing to escape */
+}
+
+static void json_names(FILE *to, const char *key, int count, const char *const *name)
+{
+	fprintf(to, "  \"%s\": [", key);
+	for (int i = 0; i < count; i++) {
+		fputs(i ? ", " : "", to);
+		json_name(to, name[i]);
+	}
+	fputs("],\n", to);
+}
+
+static void json_matrix(FILE *to, const char *key, int rows, int columns, const double *value)
+{
+	fprintf(to, "  \"%s\": [", key);
+	for (int i = 0; i < rows; i++) {
+		fputs(i ? ",\n    [" : "\n    [", to);
+		for (int j = 0; j < columns; j++)
+			fprintf(to, "%s%.17g", j ? ", " : "", value[i * columns + j]);
+		fputc(']', to);
+	}
+	fputs("],\n", to);
+}
+
+static void json_rational_matrix(FILE *to, const char *key, int n, const mpq_t *A)
+{
+	double *value = ARRAY(double, (size_t)(n * n));
+	for (int i = 0; i < n * n; i++)
+		value[i] = round_rational(A[i]);
+	json_matrix(to, key, n, n, value);
+}
+
+static void json_pole(FILE *to, const struct pole_report *pole, bool conjugate, bool first)
+{
+	double im = mpfr_get_d(pole->im, MPFR_RNDN);
+	fprintf(to, "%s\n    {\"re\": %.17g, \"im\": %.17g, \"multiplicity\": %d}", first ? "" : ",", mpfr_get_d(pole->re, MPFR_RNDN),
+		conjugate ? -im : im, pole->multiplicity);
+}
+
+/* One mode for each pair of poles, for each real pole, and for each two poles at 0 (a rigid body). */
+static void json_modes(FILE *to, int count, const struct pole_report *pole)
+{
+	fputs("  \"modes\": [", to);
+	bool first = true;
+	for (int i = 0; i < count; i++) {
+		int modes = mpfr_zero_p(pole[i].hertz) ? (pole[i].multiplicity + 1) / 2 : pole[i].multiplicity;
+		for (int k = 0; k < modes; k++, first = false)
+			fprintf(to, "%s\n    {\"frequency_hz\": %.17g, \"damping_ratio\": %.17g}", first ? "" : ",", mpfr_get_d(pole[i].hertz, MPFR_RNDN),
+				mpfr_get_d(pole[i].damping_ratio, MPFR_RNDN));
+	}
+	fputs("],\n", to);
+}
+
+static void json_poles(FILE *to, const struct step *step)
+{
+	int length = resolvent_determinant(step->written)->length;
+	mpq_t *B = rationals((size_t)length);
+	characteristic_polynomial(step->written, B);
+	fputs("  \"B\": [", to);
+	for (int k = 0; k < length; k++)
+		fprintf(to, "%s\"%s\"", k ? ", " : "", exact_text(B[k]));
+	fputs("],\n  \"poles\": [", to);
+	struct pole_report *pole;
+	int count = poles_of(step->written, &pole);
+	for (int i = 0; i < count; i++) {
+		json_pole(to, &pole[i], false, i == 0);
+		if (pole[i].pair)
+			json_pole(to, &pole[i], true, false);
+	}
+	fputs("],\n", to);
+	json_modes(to, count, pole);
+}
+
+/* Columns as the step applies them: to 1, or to cos and sin of the load at the start of the step. */
+static void json_loads(FILE *to, const struct step *step)
+{
+	const struct table *table = step->table;
+	fputs("  \"loads\": [", to);
+	for (int l = 0, column = 0; l < step->system.loads; l++) {
+		const struct wave *wave = step->system.load[l].wave;
+		fprintf(to, "%s\n    {\"term\": \"%s\", \"columns\": [", l ? "," : "", wave ? wave_text(wave, false) : "1");
+		for (int k = 0; k < step->system.load[l].columns; k++, column++) {
+			fputs(k ? ", [" : "[", to);
+			for (int i = 0; i < table->states; i++)
+				fprintf(to, "%s%.17g", i ? ", " : "", table->load[i * table->columns + column].value);
+			fputc(']', to);
+		}
+		fputs("]}", to);
+	}
+	fputs("],\n", to);
+}
+
+void explain_json(FILE *to, const struct step *step)
+{
+	const struct model *model = step->model;
+	const char **output = ARRAY(const char *, (size_t)model->outputs);
+	double *Phi = ARRAY(double, (size_t)(model->states * model->states));
+	for (int i = 0; i < model->outputs; i++)
+		output[i] = model->output[i].name;
+	for (int i = 0; i < model->states * model->states; i++)
+		Phi[i] = step->table->Phi[i].value;
+	fprintf(to, "{\n  \"model\": \"%s\",\n  \"scheme\": \"%s\",\n  \"form\": \"direct\",\n  \"step\": %.17g,\n", model->name,
+		scheme_name(model->scheme), round_rational(model->h));
+	json_names(to, "states", model->states, model->state_name);
+	json_names(to, "outputs", model->outputs, output);
+	json_names(to, "inputs", 0, NULL);
+	json_names(to, "dropped", 0, NULL);
+	json_rational_matrix(to, "M", model->n, (const mpq_t *)model->system.M);
+	json_rational_matrix(to, "C", model->n, (const mpq_t *)model->system.C);
+	json_rational_matrix(to, "K", model->n, (const mpq_t *)model->system.K);
+	json_poles(to, step);
+	json_matrix(to, "Phi", model->states, model->states, Phi);
+	json_loads(to, step);
+	fputs("  \"Gamma\": [],\n", to);
+	if (model->scheme == SCHEME_PL)
+		fprintf(to, "  \"growth_rate\": %.17g,\n", mpfr_get_d(step->growth, MPFR_RNDN));
+	fprintf(to, "  \"cost\": {\"multiplications\": %d, \"additions\": %d}\n}\n", step->program->multiplications, step->program->additions);
+}

@@ -1,0 +1,368 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* plgen: the command line, then the pipeline as one column of calls. Text is written to memory and published only when
+ * all went well. */
+#define _GNU_SOURCE     /* getopt_long, open_memstream, realpath */
+#include "plgen.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <getopt.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+enum print { PRINT_C, PRINT_HEADER, PRINT_EXPLAIN, PRINT_JSON, PRINT_SOLUTION };
+
+struct options {
+	const char *spec, *output, *depfile, *solution;
+	enum print print;
+	bool rhs;
+	struct overrides overrides;
+	const char *banner;             /* what of them belongs in a banner */
+};
+
+static const char usage[] =
+	"usage: plgen [options] MODEL.spec      ('-' reads standard input)\n"
+	"\n"
+	"Reads the equations of a vibration model and writes C that steps it to standard output.\n"
+	"\n"
+	"  -o FILE.c           write FILE.c and the header FILE.h beside it\n"
+	"  --header            print the header instead of the C\n"
+	"  --explain[=json]    print what was derived: matrices, B(s), poles, Phi, cost\n"
+	"  --solution T        print the closed-form solution at every step up to T as CSV\n"
+	"  --rhs               also emit NAME_rhs: the equations as written\n"
+	"  --step EXPR         instead of the spec's step\n"
+	"  --scheme NAME       instead of the spec's scheme: exact, pl\n"
+	"  -D NAME=EXPR        another value for a param; EXPR may use the spec's params\n"
+	"  --prefix NAME       instead of the model's name for everything generated\n"
+	"  --depfile FILE      also write a make/ninja dependency file\n"
+	"  --help, --version\n"
+	"\n"
+	"Exit status: 0 done; 1 the spec is wrong or a file cannot be read or written; 2 the command line is wrong.\n";
+
+static _Noreturn void wrong_usage(const char *message)
+{
+	fprintf(stderr, "plgen: error: %s\nnote: plgen --help lists the options\n", message);
+	exit(2);
+}
+
+static void need_print(struct options *options, enum print print)
+{
+	if (options->print != PRINT_C)
+		wrong_usage("--header, --explain and --solution exclude each other");
+	options->print = print;
+}
+
+static void add_definition(struct overrides *overrides, const char *text)
+{
+	const char *equals = strchr(text, '=');
+	if (!equals || equals == text || equals[1] == 0)
+		wrong_usage(format("-D takes NAME=EXPR, found '%s'", text));
+	ENLARGE(overrides->definition, (size_t)overrides->definitions + 1);
+	overrides->definition[overrides->definitions++] = text;
+}
+
+static void note_in_banner(struct options *options, const char *option)
+{
+	options->banner = format("%s%s%s", options->banner, *options->banner ? " " : "", option);
+}
+
+enum { OPT_HEADER = 256, OPT_EXPLAIN, OPT_SOLUTION, OPT_RHS, OPT_STEP, OPT_SCHEME, OPT_PREFIX, OPT_DEPFILE, OPT_HELP, OPT_VERSION, OPT_LATER };
+
+static const struct option long_options[] = {
+	{ "header", no_argument, NULL, OPT_HEADER }, { "explain", optional_argument, NULL, OPT_EXPLAIN },
+	{ "solution", required_argument, NULL, OPT_SOLUTION }, { "rhs", no_argument, NULL, OPT_RHS },
+	{ "step", required_argument, NULL, OPT_STEP }, { "scheme", required_argument, NULL, OPT_SCHEME },
+	{ "prefix", required_argument, NULL, OPT_PREFIX }, { "depfile", required_argument, NULL, OPT_DEPFILE },
+	{ "help", no_argument, NULL, OPT_HELP }, { "version", no_argument, NULL, OPT_VERSION },
+	{ "real", required_argument, NULL, OPT_LATER }, { "form", required_argument, NULL, OPT_LATER },
+	{ "accuracy", required_argument, NULL, OPT_LATER }, { "loads", required_argument, NULL, OPT_LATER },
+	{ "reduce", no_argument, NULL, OPT_LATER }, { "selftest", no_argument, NULL, OPT_LATER }, { 0 }
+};
+
+static void finish(void)
+{
+	memory_close();
+	if (fflush(stdout) != 0 || ferror(stdout)) {
+		fprintf(stderr, "plgen: error: cannot write to standard output: %s\n", strerror(errno));
+		_exit(1);
+	}
+}
+
+static _Noreturn void say_and_stop(const char *text)
+{
+	fputs(text, stdout);
+	exit(0);
+}
+
+static void take_option(struct options *options, int option, int index)
+{
+	switch (option) {
+	case 'o': options->output = optarg; break;
+	case 'D':
+		add_definition(&options->overrides, optarg);
+		note_in_banner(options, format("-D %s", optarg));
+		break;
+	case OPT_HEADER: need_print(options, PRINT_HEADER); break;
+	case OPT_EXPLAIN:
+		if (optarg && strcmp(optarg, "json") != 0)
+			wrong_usage(format("--explain takes nothing or =json, found '%s'", optarg));
+		need_print(options, optarg ? PRINT_JSON : PRINT_EXPLAIN);
+		break;
+	case OPT_SOLUTION:
+		need_print(options, PRINT_SOLUTION);
+		options->solution = optarg;
+		break;
+	case OPT_RHS: options->rhs = true; break;
+	case OPT_STEP: options->overrides.step = optarg; break;
+	case OPT_SCHEME: options->overrides.scheme = optarg; break;
+	case OPT_PREFIX: options->overrides.prefix = optarg; break;
+	case OPT_DEPFILE: options->depfile = optarg; break;
+	case OPT_HELP: say_and_stop(usage);
+	case OPT_VERSION: say_and_stop("plgen " PLGEN_VERSION "\n");
+	case OPT_LATER: wrong_usage(format("option --%s is not built yet", long_options[index].name));
+	case ':': wrong_usage(format("option %s needs a value", optopt > 0 && optopt < 256 ? format("-%c", optopt) : "above"));
+	default: wrong_usage(format("unknown option '%s'", optopt > 0 && optopt < 256 ? format("-%c", optopt) : "above"));
+	}
+}
+
+static void read_options(int argc, char **argv, struct options *options)
+{
+	int option, index = 0;
+	options->banner = "";
+	opterr = 0;
+	for (int before = optind; (option = getopt_long(argc, argv, ":o:D:", long_options, &index)) != -1; before = optind) {
+		if ((option == '?' || option == ':') && (optopt == 0 || optopt >= 256))
+			wrong_usage(format(option == ':' ? "option '%s' needs a value" : "unknown option or surplus value: '%s'", argv[before]));
+		take_option(options, option, index);
+	}
+	if (optind == argc)
+		wrong_usage("no spec is given");
+	if (optind + 1 < argc)
+		wrong_usage(format("one spec at a time: surplus argument '%s'", argv[optind + 1]));
+	options->spec = argv[optind];
+	if (options->overrides.scheme)
+		note_in_banner(options, format("--scheme %s", options->overrides.scheme));
+	if (options->overrides.step)
+		note_in_banner(options, format("--step %s", options->overrides.step));
+	if (options->overrides.prefix)
+		note_in_banner(options, format("--prefix %s", options->overrides.prefix));
+	if (options->rhs)
+		note_in_banner(options, "--rhs");
+	size_t length = options->output ? strlen(options->output) : 0;
+	if (options->output && options->print == PRINT_C && (length < 3 || strcmp(options->output + length - 2, ".c") != 0))
+		wrong_usage(format("-o takes the name of a C file, FILE.c, found '%s'", options->output));
+}
+
+/* ---- publishing: all files are written beside their places first, then moved in ---- */
+
+struct file {
+	const char *path, *temporary;
+	char *text;
+	size_t length;
+};
+
+static _Noreturn void cannot_write(const struct file *file)
+{
+	fprintf(stderr, "%s: error: cannot write: %s\n", file->path, strerror(errno));
+	if (file->temporary)
+		unlink(file->temporary);
+	exit(1);
+}
+
+static void write_all(const struct file *file, int descriptor)
+{
+	for (size_t done = 0; done < file->length;) {
+		ssize_t written = write(descriptor, file->text + done, file->length - done);
+		if (written < 0 && errno == EINTR)
+			continue;
+		if (written < 0)
+			cannot_write(file);
+		done += (size_t)written;
+	}
+	if (close(descriptor) != 0)
+		cannot_write(file);
+}
+
+/* A device or pipe is written where it is; a file gets its new content whole, with the mode it had. */
+static void write_beside(struct file *file)
+{
+	struct stat status;
+	bool exists = stat(file->path, &status) == 0;
+	if (exists && !S_ISREG(status.st_mode)) {
+		int descriptor = open(file->path, O_WRONLY);
+		if (descriptor < 0)
+			cannot_write(file);
+		write_all(file, descriptor);
+		return;
+	}
+	char *real = exists ? realpath(file->path, NULL) : NULL;
+	if (real)
+		file->path = format("%s", real);
+	free(real);
+	mode_t mask = umask(0);
+	umask(mask);
+	char *temporary = format("%s.XXXXXX", file->path);
+	int descriptor = mkstemp(temporary);
+	if (descriptor < 0)
+		cannot_write(file);
+	file->temporary = temporary;
+	if (fchmod(descriptor, exists ? status.st_mode & 07777 : 0666 & ~mask) != 0)
+		cannot_write(file);
+	write_all(file, descriptor);
+}
+
+static void publish(int count, struct file *file)
+{
+	for (int i = 0; i < count; i++)
+		if (file[i].path)
+			write_beside(&file[i]);
+	for (int i = 0; i < count; i++) {
+		if (!file[i].path) {
+			errno = 0;
+			if (fwrite(file[i].text, 1, file[i].length, stdout) != file[i].length || fflush(stdout) != 0) {
+				file[i].path = "standard output";
+				cannot_write(&file[i]);
+			}
+		} else if (file[i].temporary && rename(file[i].temporary, file[i].path) != 0) {
+			cannot_write(&file[i]);
+		}
+		free(file[i].text);
+	}
+}
+
+static FILE *open_file(struct file *file, const char *path)
+{
+	file->path = path;
+	FILE *stream = open_memstream(&file->text, &file->length);
+	if (!stream) {
+		fputs("plgen: error: out of memory\n", stderr);
+		exit(1);
+	}
+	return stream;
+}
+
+static void close_file(FILE *stream)
+{
+	if (fclose(stream) != 0) {
+		fputs("plgen: error: out of memory\n", stderr);
+		exit(1);
+	}
+}
+
+/* ---- the pipeline ---- */
+
+static const char *header_path(const char *path)
+{
+	return format("%.*s.h", (int)strlen(path) - 2, path);
+}
+
+static const char *base_name(const char *path)
+{
+	const char *slash = strrchr(path, '/');
+	return slash ? slash + 1 : path;
+}
+
+/* A name in a make rule. */
+static const char *escaped(const char *path)
+{
+	const char *text = "";
+	for (; *path; path++)
+		text = format("%s%s%c", text, *path == ' ' || *path == '#' ? "\\" : *path == '$' ? "$" : "", *path);
+	return text;
+}
+
+static void print_depfile(FILE *to, const struct options *options, const struct model *model)
+{
+	if (!options->output)
+		fprintf(to, "%s_pl.c:", model->name);
+	else if (options->print == PRINT_C)
+		fprintf(to, "%s %s:", escaped(options->output), escaped(header_path(options->output)));
+	else
+		fprintf(to, "%s:", escaped(options->output));
+	if (strcmp(options->spec, "-") != 0)
+		fprintf(to, " %s", escaped(options->spec));
+	fputc('\n', to);
+}
+
+struct printing {
+	const struct options *options;
+	struct model *model;
+	struct step *step;
+	FILE *to;
+};
+
+static void print_main_text(void *context)
+{
+	const struct printing *p = context;
+	const struct options *options = p->options;
+	mpq_t end;
+	switch (options->print) {
+	case PRINT_C:
+		emit_code(p->to, p->step, options->banner, options->output ? base_name(header_path(options->output)) : NULL, options->rhs);
+		break;
+	case PRINT_HEADER:
+		emit_header(p->to, p->step, options->banner, options->rhs);
+		break;
+	case PRINT_EXPLAIN:
+		explain_person(p->to, p->step);
+		break;
+	case PRINT_JSON:
+		explain_json(p->to, p->step);
+		break;
+	case PRINT_SOLUTION:
+		mpq_init(end);
+		argument_value(p->model, options->solution, end);
+		print_solution(p->to, p->model, resolvent_of(&p->model->system), end);
+		break;
+	}
+}
+
+static int fail(void)
+{
+	diagnostics_print(stderr);
+	return 1;
+}
+
+int main(int argc, char **argv)
+{
+	struct options options = { 0 };
+	struct file file[3] = { { 0 } };
+	int files = 0;
+	memory_open();
+	atexit(finish);
+	read_options(argc, argv, &options);
+
+	const struct source *source = source_read(options.spec);
+	if (!source)
+		return fail();
+	struct spec *spec = parse_spec(source);
+	struct model *model = model_build(spec, &options.overrides);
+	if (!model)
+		return fail();
+	struct step *step = options.print == PRINT_SOLUTION ? NULL : step_build(model);
+	if (!step && options.print != PRINT_SOLUTION)
+		return fail();
+
+	FILE *to = open_file(&file[files++], options.output);
+	bool printed = statement_guard(print_main_text, &(struct printing){ &options, model, step, to });
+	close_file(to);
+	if (!printed) {
+		free(file[0].text);
+		return fail();
+	}
+	if (options.output && options.print == PRINT_C) {
+		to = open_file(&file[files++], header_path(options.output));
+		emit_header(to, step, options.banner, options.rhs);
+		close_file(to);
+	}
+	if (options.depfile) {
+		to = open_file(&file[files++], options.depfile);
+		print_depfile(to, &options, model);
+		close_file(to);
+	}
+	publish(files, file);
+	diagnostics_print(stderr);
+	return 0;
+}

@@ -1,0 +1,96 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The border: exact and enclosed numbers become doubles here, and doubles and rationals become text. */
+#include "plgen.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+double round_rational(mpq_srcptr q)
+{
+	mpfr_exp_t emin = mpfr_get_emin(), emax = mpfr_get_emax();
+	mpfr_t x;
+	mpfr_init2(x, 53);
+	mpfr_set_emin(-1073);           /* the range of double, so that subnormals round once */
+	mpfr_set_emax(1024);
+	int inexact = mpfr_set_q(x, q, MPFR_RNDN);
+	mpfr_subnormalize(x, inexact, MPFR_RNDN);
+	double d = mpfr_get_d(x, MPFR_RNDN);
+	mpfr_set_emin(emin);
+	mpfr_set_emax(emax);
+	mpfr_clear(x);
+	return d == 0 ? 0 : d;          /* no negative zero */
+}
+
+bool round_enclosure(mpfi_srcptr x, double *d)
+{
+	double left = mpfr_get_d(&x->left, MPFR_RNDN), right = mpfr_get_d(&x->right, MPFR_RNDN);
+	*d = left == 0 ? 0 : left;
+	return left == right;
+}
+
+const char *shortest(double d)
+{
+	char text[64];
+	for (int digits = 1; digits <= 17; digits++) {
+		snprintf(text, sizeof text, "%.*g", digits, d);
+		if (strtod(text, NULL) == d)
+			break;
+	}
+	char *exponent = strchr(text, 'e');
+	if (!exponent)
+		return strchr(text, '.') ? format("%s", text) : format("%s.0", text);
+	long power = strtol(exponent + 1, NULL, 10);    /* 1e-05 as 1e-5 */
+	*exponent = 0;
+	if (power >= 0 && power < 16)                   /* %g writes 100 as 1e+02 when one digit is enough */
+		return format("%.0f.0", d);
+	return format("%se%ld", text, power);
+}
+
+/* q = digits / 10^places if its denominator allows */
+static bool decimal_places(mpq_srcptr q, unsigned long *places)
+{
+	mpz_t rest, five;
+	mpz_init(rest);
+	mpz_init_set_ui(five, 5);
+	unsigned long twos = mpz_scan1(mpq_denref(q), 0);
+	mpz_fdiv_q_2exp(rest, mpq_denref(q), twos);
+	unsigned long fives = mpz_remove(rest, rest, five);
+	bool decimal = mpz_cmp_ui(rest, 1) == 0;
+	*places = twos > fives ? twos : fives;
+	mpz_clears(rest, five, NULL);
+	return decimal;
+}
+
+const char *exact_text(mpq_srcptr q)
+{
+	enum { LONGEST_DECIMAL = 40 };
+	unsigned long places;
+	if (!decimal_places(q, &places) || places > LONGEST_DECIMAL) {
+		char *text = ARRAY(char, mpz_sizeinbase(mpq_numref(q), 10) + mpz_sizeinbase(mpq_denref(q), 10) + 3);
+		return mpq_get_str(text, 10, q);
+	}
+	mpz_t digits;
+	mpz_init(digits);
+	mpz_ui_pow_ui(digits, 10, places);
+	mpz_mul(digits, digits, mpq_numref(q));
+	mpz_divexact(digits, digits, mpq_denref(q));
+	mpz_abs(digits, digits);
+	char *all = ARRAY(char, mpz_sizeinbase(digits, 10) + 2);
+	mpz_get_str(all, 10, digits);
+	mpz_clear(digits);
+	const char *sign = mpq_sgn(q) < 0 ? "-" : "";
+	if (places == 0)
+		return format("%s%s", sign, all);
+	while (strlen(all) <= places)
+		all = format("0%s", all);
+	size_t whole = strlen(all) - places;
+	return format("%s%.*s.%s", sign, (int)whole, all, all + whole);
+}
+
+const char *readable_text(mpq_srcptr q)
+{
+	enum { LONGEST_READABLE = 18 };
+	const char *exact = exact_text(q);
+	return strlen(exact) <= LONGEST_READABLE ? exact : format("%.12g", round_rational(q));
+}

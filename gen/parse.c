@@ -1,0 +1,703 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Tokens to nodes and declarations. The production stands above each function that reads it; names are resolved as
+ * they are read, since they are declared before use. */
+#include "plgen.h"
+
+#include <string.h>
+
+struct parser {
+	struct spec *spec;
+	struct lexer lexer;
+	struct token token;         /* the next one, not yet taken */
+	struct place end;           /* just after the last one taken */
+	size_t statement;           /* offset where it starts */
+	int nesting;
+};
+
+static struct node *read_expression(struct parser *p);
+
+/* ---- tokens ---- */
+
+static struct token take(struct parser *p)
+{
+	struct token token = p->token;
+	p->end = token.at;
+	p->end.offset += token.length;
+	p->token = lex_next(&p->lexer);
+	return token;
+}
+
+static bool is_op(const struct parser *p, const char *op)
+{
+	return p->token.kind == TOKEN_OPERATOR && strcmp(p->token.op, op) == 0;
+}
+
+static bool take_op(struct parser *p, const char *op)
+{
+	if (!is_op(p, op))
+		return false;
+	take(p);
+	return true;
+}
+
+/* What usually stands behind a token that fits nowhere. */
+static const char *stray_note(const struct parser *p)
+{
+	if (p->token.kind == TOKEN_NAME || p->token.kind == TOKEN_NUMBER || is_op(p, "("))
+		return "multiplication is written with *";
+	if (is_op(p, "=="))
+		return "an equation has a single =";
+	return NULL;
+}
+
+static _Noreturn void unexpected(const struct parser *p, const char *expected)
+{
+	error(p->token.at, stray_note(p), "expected %s, found %s", expected, token_text(p->token));
+}
+
+static void expect_op(struct parser *p, const char *op, const char *expected)
+{
+	if (!take_op(p, op))
+		unexpected(p, expected);
+}
+
+static void expect_end(struct parser *p)
+{
+	if (p->token.kind != TOKEN_END)
+		unexpected(p, "the end of the statement");
+}
+
+static void nest(struct parser *p, struct place at)
+{
+	if (++p->nesting > LIMIT_NESTING)
+		error(at, NULL, "nesting over the limit of %d", LIMIT_NESTING);
+}
+
+/* ---- nodes ---- */
+
+static struct node *node_new(enum node_kind kind, struct place at)
+{
+	struct node *node = NEW(struct node);
+	node->kind = kind;
+	node->at = node->start = node->end = at;
+	mpq_init(node->number);
+	return node;
+}
+
+static void add_child(struct node *node, struct node *child, bool inverse, struct place operator)
+{
+	size_t count = (size_t)node->children;
+	if ((count & (count - 1)) == 0) {       /* room grows by doubling */
+		size_t room = count ? 2 * count : 1;
+		ENLARGE(node->child, room);
+		ENLARGE(node->inverse, room);
+		ENLARGE(node->operator, room);
+	}
+	node->child[count] = child;
+	node->inverse[count] = inverse;
+	node->operator[count] = operator;
+	node->children++;
+	node->end = child->end;
+}
+
+char *text_between(struct place start, struct place end)
+{
+	const char *text = start.source->text;
+	char *folded = ARRAY(char, end.offset - start.offset + 1);
+	size_t length = 0;
+	for (size_t i = start.offset; i < end.offset; i++) {
+		if (text[i] == '#')
+			while (i < end.offset && text[i] != '\n')
+				i++;
+		bool space = i >= end.offset || strchr(" \t\r\n\f\v", text[i]);
+		if (!space)
+			folded[length++] = text[i];
+		else if (length > 0 && folded[length - 1] != ' ')
+			folded[length++] = ' ';
+	}
+	while (length > 0 && folded[length - 1] == ' ')
+		length--;
+	folded[length] = 0;
+	return folded;
+}
+
+struct symbol *spec_find(const struct spec *spec, const char *name)
+{
+	for (struct symbol *s = spec->first; s; s = s->next)
+		if (strcmp(s->name, name) == 0)
+			return s;
+	return NULL;
+}
+
+static _Noreturn void unknown_name(const struct parser *p, struct token token)
+{
+	error(token.at, spec_suggestion(p->spec, token.name), "unknown name '%s'", token.name);
+}
+
+static const char *kind_text(const struct symbol *symbol)
+{
+	static const char *const text[] = { "param", "coordinate", "let", "output" };
+	return text[symbol->kind];
+}
+
+/* name: NAME { ' } */
+static struct node *resolve_name(struct parser *p, struct token token)
+{
+	struct symbol *symbol = spec_find(p->spec, token.name);
+	if (!symbol)
+		unknown_name(p, token);
+	if (symbol->broken)
+		abandon();
+	if (symbol->kind == SYMBOL_OUTPUT)
+		error(token.at, "a shorthand for use in expressions is a let", "output '%s' cannot be used in an expression", token.name);
+	if (token.primes > 0 && symbol->kind != SYMBOL_COORD)
+		error(token.at, "only coordinates have derivatives", "%s '%s' has no derivative", kind_text(symbol), token.name);
+	struct node *node = node_new(NODE_NAME, token.at);
+	node->symbol = symbol;
+	node->primes = token.primes;
+	node->end = p->end;
+	return node;
+}
+
+static void check_arguments(const struct node *call)
+{
+	int wanted = call->function == FN_ATAN2 ? 2 : call->function == FN_DEADZONE || call->function == FN_CLIP ? 3 : 1;
+	bool open_ended = call->function == FN_MIN || call->function == FN_MAX || call->function == FN_TABLE;
+	if (call->function == FN_TABLE && call->children < 5)
+		error(call->at, "table(x; x0, y0; x1, y1; ...)", "a table needs at least two points");
+	if (open_ended ? call->children < 2 : call->children != wanted)
+		error(call->at, NULL, "%s takes %s%d argument%s, found %d", function_name(call->function), open_ended ? "at least " : "",
+		      open_ended ? 2 : wanted, wanted == 1 && !open_ended ? "" : "s", call->children);
+}
+
+/* call: FUNCTION ( expression { , expression } )   |   table ( expression { ; expression , expression } ) */
+static struct node *read_call(struct parser *p, struct token name, enum function function)
+{
+	struct node *call = node_new(NODE_CALL, name.at);
+	call->function = function;
+	if (name.primes > 0)
+		error(name.at, NULL, "a function has no derivative here: '%s'", name.name);
+	if (!is_op(p, "("))
+		error(name.at, NULL, "'%s' is a function: expected '(' after it, found %s", name.name, token_text(p->token));
+	nest(p, name.at);
+	struct place separator = take(p).at;
+	add_child(call, read_expression(p), false, separator);
+	while (is_op(p, ",") || is_op(p, ";")) {
+		bool semicolon = is_op(p, ";");
+		if (semicolon != (function == FN_TABLE && call->children % 2 == 1))
+			unexpected(p, function == FN_TABLE ? "the points of a table as x; x0, y0; x1, y1" : "',' or ')'");
+		separator = take(p).at;
+		add_child(call, read_expression(p), false, separator);
+	}
+	expect_op(p, ")", "',' or ')'");
+	p->nesting--;
+	call->end = p->end;
+	if (function == FN_TABLE && call->children % 2 == 0)
+		error(call->at, "table(x; x0, y0; x1, y1; ...)", "the last point of the table has no y");
+	check_arguments(call);
+	return call;
+}
+
+static struct node *read_bracket(struct parser *p)
+{
+	struct place opening = take(p).at;
+	nest(p, opening);
+	struct node *inner = read_expression(p);
+	expect_op(p, ")", "')' or an operator");
+	p->nesting--;
+	if (p->token.kind == TOKEN_OPERATOR && p->token.op[0] == '\'')
+		unexpected(p, "an operator");
+	inner->start = opening;
+	inner->end = p->end;
+	return inner;
+}
+
+/* primary: NUMBER | pi | t | name | call | ( expression ) */
+static struct node *read_primary(struct parser *p)
+{
+	if (is_op(p, "("))
+		return read_bracket(p);
+	if (is_op(p, "["))
+		error(p->token.at, NULL, "matrices are not built yet");
+	if (p->token.kind == TOKEN_NUMBER) {
+		struct token token = take(p);
+		struct node *node = node_new(NODE_NUMBER, token.at);
+		lex_number(token, node->number);
+		node->end = p->end;
+		return node;
+	}
+	if (p->token.kind != TOKEN_NAME)
+		unexpected(p, "a number, a name or '('");
+	struct token name = take(p);
+	enum function function = function_of(name.name);
+	if (function != FN_NONE)
+		return read_call(p, name, function);
+	bool time = strcmp(name.name, "t") == 0;
+	if (time || strcmp(name.name, "pi") == 0) {
+		if (name.primes > 0)
+			error(name.at, NULL, "'%s' has no derivative", name.name);
+		struct node *node = node_new(time ? NODE_TIME : NODE_PI, name.at);
+		node->end = p->end;
+		return node;
+	}
+	if (is_reserved(name.name))
+		error(name.at, NULL, "'%s' is a reserved word", name.name);
+	if (is_op(p, "[") && p->token.at.offset == p->end.offset)
+		error(p->token.at, NULL, "components of vectors are not built yet");
+	return resolve_name(p, name);
+}
+
+static struct node *read_unary(struct parser *p);
+
+/* power: primary [ ^ ( power | sign power ) ] */
+static struct node *read_power(struct parser *p)
+{
+	struct node *base = read_primary(p);
+	if (!is_op(p, "^")) {
+		if (is_op(p, "*") && p->lexer.source->text[p->token.at.offset + 1] == '*')
+			error(p->token.at, "a power is written with ^", "unexpected '**'");
+		return base;
+	}
+	struct node *power = node_new(NODE_POWER, p->token.at);
+	struct place caret = take(p).at;
+	nest(p, caret);
+	struct node *exponent = is_op(p, "+") || is_op(p, "-") ? read_unary(p) : read_power(p);
+	p->nesting--;
+	add_child(power, base, false, caret);
+	add_child(power, exponent, false, caret);
+	power->start = base->start;
+	return power;
+}
+
+/* unary: ( + | - ) unary | power */
+static struct node *read_unary(struct parser *p)
+{
+	if (!is_op(p, "+") && !is_op(p, "-"))
+		return read_power(p);
+	struct token sign = take(p);
+	nest(p, sign.at);
+	struct node *operand = read_unary(p);
+	p->nesting--;
+	struct node *node = node_new(NODE_SUM, sign.at);
+	add_child(node, operand, sign.op[0] == '-', sign.at);
+	return node;
+}
+
+/* One level of left-associative operators, as one node with many children: long sums stay flat. */
+static struct node *read_chain(struct parser *p, enum node_kind kind, const char *plain, const char *inverse, struct node *(*read)(struct parser *))
+{
+	struct node *first = read(p);
+	if (!is_op(p, plain) && !is_op(p, inverse))
+		return first;
+	struct node *chain = node_new(kind, p->token.at);
+	chain->start = first->start;
+	add_child(chain, first, false, first->start);
+	while (is_op(p, plain) || is_op(p, inverse)) {
+		struct token operator = take(p);
+		add_child(chain, read(p), strcmp(operator.op, inverse) == 0, operator.at);
+	}
+	return chain;
+}
+
+/* product: unary { ( * | / ) unary } */
+static struct node *read_product(struct parser *p)
+{
+	return read_chain(p, NODE_PRODUCT, "*", "/", read_unary);
+}
+
+/* sum: product { ( + | - ) product } */
+static struct node *read_sum(struct parser *p)
+{
+	return read_chain(p, NODE_SUM, "+", "-", read_product);
+}
+
+static bool comparison_of(const struct parser *p, enum comparison *comparison)
+{
+	static const char *const text[] = { "<", "<=", ">", ">=", "==", "!=" };
+	for (int i = 0; i < 6; i++)
+		if (is_op(p, text[i])) {
+			*comparison = (enum comparison)i;
+			return true;
+		}
+	return false;
+}
+
+/* comparison: sum [ ( < | <= | > | >= | == | != ) sum ] */
+static struct node *read_comparison(struct parser *p)
+{
+	struct node *left = read_sum(p);
+	enum comparison comparison;
+	if (!comparison_of(p, &comparison))
+		return left;
+	struct node *node = node_new(NODE_COMPARE, p->token.at);
+	struct place operator = take(p).at;
+	node->comparison = comparison;
+	node->start = left->start;
+	add_child(node, left, false, operator);
+	add_child(node, read_sum(p), false, operator);
+	if (comparison_of(p, &comparison))
+		unexpected(p, "a single comparison");
+	return node;
+}
+
+/* expression: comparison [ ? expression : expression ] */
+static struct node *read_expression(struct parser *p)
+{
+	struct node *condition = read_comparison(p);
+	if (!is_op(p, "?"))
+		return condition;
+	struct node *node = node_new(NODE_CHOOSE, p->token.at);
+	struct place mark = take(p).at;
+	nest(p, mark);
+	node->start = condition->start;
+	add_child(node, condition, false, mark);
+	add_child(node, read_expression(p), false, mark);
+	expect_op(p, ":", "':' of the condition");
+	add_child(node, read_expression(p), false, mark);
+	p->nesting--;
+	return node;
+}
+
+/* ---- statements ---- */
+
+static struct token expect_new_name(struct parser *p, const char *what)
+{
+	if (p->token.kind != TOKEN_NAME)
+		unexpected(p, what);
+	if (p->token.primes > 0)
+		error(p->token.at, NULL, "a name is declared without primes: '%s'", p->token.name);
+	if (is_reserved(p->token.name))
+		error(p->token.at, NULL, "'%s' is a reserved word", p->token.name);
+	return take(p);
+}
+
+static struct place last_token(const struct parser *p, size_t length)
+{
+	return (struct place){ p->end.source, p->end.offset - length };
+}
+
+static struct symbol *declare(struct parser *p, struct token name, enum symbol_kind kind, bool broken)
+{
+	struct spec *spec = p->spec;
+	struct symbol *known = spec_find(spec, name.name);
+	if (known && known->broken)
+		abandon();
+	if (known)
+		error(name.at, NULL, "'%s' is declared already, as a %s", name.name, kind_text(known));
+	int *counts[] = { &spec->params, &spec->coords, &spec->lets, &spec->outputs };
+	struct symbol *symbol = NEW(struct symbol);
+	*symbol = (struct symbol){ .kind = kind, .name = name.name, .at = name.at, .statement = p->statement, .broken = broken };
+	symbol->index = broken ? -1 : (*counts[kind])++;
+	*spec->last = symbol;
+	spec->last = &symbol->next;
+	return symbol;
+}
+
+/* param: param NAME = expression { , NAME = expression };   let: let NAME = expression */
+static void read_definitions(struct parser *p, enum symbol_kind kind)
+{
+	do {
+		struct token name = expect_new_name(p, "a name");
+		expect_op(p, "=", "'='");
+		struct node *value = read_expression(p);
+		declare(p, name, kind, false)->value = value;
+	} while (take_op(p, ","));
+	expect_end(p);
+}
+
+static void read_param(struct parser *p)
+{
+	read_definitions(p, SYMBOL_PARAM);
+}
+
+static void read_let(struct parser *p)
+{
+	read_definitions(p, SYMBOL_LET);
+}
+
+/* model: model NAME */
+static void read_model(struct parser *p)
+{
+	if (p->spec->name)
+		error(last_token(p, 5), NULL, "the model is named already: '%s'", p->spec->name);
+	if (p->token.kind != TOKEN_NAME || p->token.primes > 0)
+		unexpected(p, "the model's name");
+	struct token name = take(p);
+	expect_end(p);
+	p->spec->name = name.name;
+	p->spec->name_at = name.at;
+}
+
+/* coord: coord NAME { , NAME } */
+static void read_coord(struct parser *p)
+{
+	do {
+		struct token name = expect_new_name(p, "the name of a coordinate");
+		if (is_op(p, "["))
+			error(p->token.at, NULL, "vector coordinates are not built yet");
+		declare(p, name, SYMBOL_COORD, false);
+	} while (take_op(p, ","));
+	expect_end(p);
+}
+
+static void add_initial(struct parser *p, struct token name, struct symbol *coord, struct node *value)
+{
+	struct spec *spec = p->spec;
+	for (int i = 0; i < spec->initials; i++)
+		if (spec->initial[i].coord == coord && spec->initial[i].primes == name.primes)
+			error(name.at, NULL, "the initial value of %s is given already", token_text(name));
+	ENLARGE(spec->initial, (size_t)spec->initials + 1);
+	spec->initial[spec->initials++] = (struct initial){ name.at, p->statement, coord, name.primes, value };
+}
+
+/* init: init NAME [ ' ] = expression { , ... } */
+static void read_init(struct parser *p)
+{
+	do {
+		if (p->token.kind != TOKEN_NAME)
+			unexpected(p, "a coordinate");
+		struct token name = take(p);
+		name.length = strlen(name.name) + (size_t)name.primes;
+		struct symbol *coord = spec_find(p->spec, name.name);
+		if (coord && coord->broken)
+			abandon();
+		if (!coord && !is_reserved(name.name))
+			unknown_name(p, name);
+		if (!coord || coord->kind != SYMBOL_COORD)
+			error(name.at, "initial values are for coordinates and their velocities", "'%s' is not a coordinate", name.name);
+		if (name.primes > 1)
+			error(name.at, NULL, "an acceleration has no initial value: it follows from the equations");
+		expect_op(p, "=", "'='");
+		add_initial(p, name, coord, read_expression(p));
+	} while (take_op(p, ","));
+	expect_end(p);
+}
+
+/* An output that only names something: x1, x2', x1'', a let. */
+static struct symbol *read_plain_output(struct parser *p, struct token name)
+{
+	const char *shown = format("%s%.*s", name.name, name.primes, "''");
+	for (struct symbol *s = p->spec->first; s; s = s->next)
+		if (s->kind == SYMBOL_OUTPUT && strcmp(s->name, shown) == 0)
+			error(name.at, NULL, "output '%s' is declared already", shown);
+	struct node *value = strcmp(name.name, "t") == 0 ? node_new(NODE_TIME, name.at) : resolve_name(p, name);
+	struct symbol *symbol = NEW(struct symbol);
+	*symbol = (struct symbol){ .kind = SYMBOL_OUTPUT, .name = shown, .at = name.at, .statement = p->statement, .value = value };
+	symbol->index = p->spec->outputs++;
+	value->end = p->end;
+	*p->spec->last = symbol;
+	p->spec->last = &symbol->next;
+	return symbol;
+}
+
+/* output: output ( NAME = expression | name ) { , ... } */
+static void read_output(struct parser *p)
+{
+	do {
+		if (p->token.kind != TOKEN_NAME)
+			unexpected(p, "the name of an output");
+		struct token name = take(p);
+		if (!is_op(p, "=")) {
+			if (p->token.kind != TOKEN_END && !is_op(p, ","))
+				unexpected(p, "'=' or ','");
+			read_plain_output(p, name);
+			continue;
+		}
+		if (name.primes > 0 || is_reserved(name.name))
+			error(name.at, NULL, "'%s' cannot be the name of an output", name.name);
+		take(p);
+		struct node *value = read_expression(p);
+		declare(p, name, SYMBOL_OUTPUT, false)->value = value;
+	} while (take_op(p, ","));
+	expect_end(p);
+}
+
+/* step: step expression */
+static void read_step(struct parser *p)
+{
+	struct place at = last_token(p, 4);
+	if (p->spec->step)
+		error(at, NULL, "the step is given already");
+	p->spec->step_at = p->token.at;
+	p->spec->step = read_expression(p);
+	expect_end(p);
+}
+
+/* scheme: scheme NAME */
+static void read_scheme(struct parser *p)
+{
+	struct place at = last_token(p, 6);
+	if (p->spec->scheme)
+		error(at, NULL, "the scheme is given already");
+	if (p->token.kind != TOKEN_NAME || p->token.primes > 0)
+		unexpected(p, "the name of a scheme");
+	struct token name = take(p);
+	p->spec->scheme_at = name.at;
+	expect_end(p);
+	p->spec->scheme = name.name;
+}
+
+static const struct statement {
+	const char *word;
+	void (*read)(struct parser *);  /* NULL: refused by name */
+} statements[] = {
+	{ "model", read_model }, { "param", read_param }, { "coord", read_coord }, { "init", read_init }, { "let", read_let },
+	{ "output", read_output }, { "step", read_step }, { "scheme", read_scheme },
+	{ "input", NULL }, { "matrix", NULL }, { "mass", NULL }, { "spring", NULL }, { "damper", NULL }, { "force", NULL }, { "operator", NULL },
+	{ "tunable", NULL }
+};
+
+static const struct statement *statement_of(struct token token)
+{
+	for (size_t i = 0; token.kind == TOKEN_NAME && token.primes == 0 && i < sizeof statements / sizeof *statements; i++)
+		if (strcmp(token.name, statements[i].word) == 0)
+			return &statements[i];
+	return NULL;
+}
+
+/* A line such as `parm m = 1` is meant as a statement: say so rather than that its first word is unknown. */
+static void check_statement_word(const struct parser *p)
+{
+	struct lexer ahead = p->lexer;
+	struct token token = p->token;
+	if (token.kind != TOKEN_NAME || token.primes > 0 || spec_find(p->spec, token.name) || is_reserved(token.name) || ahead.position >= ahead.end)
+		return;
+	if (lex_next(&ahead).kind != TOKEN_NAME)
+		return;
+	const char *known[sizeof statements / sizeof *statements];
+	for (size_t i = 0; i < sizeof statements / sizeof *statements; i++)
+		known[i] = statements[i].word;
+	const char *nearest = nearest_name(token.name, (int)(sizeof statements / sizeof *statements), known);
+	error(token.at, nearest ? format("did you mean '%s'?", nearest) : NULL, "unknown statement '%s'", token.name);
+}
+
+/* equation: expression = expression */
+static void read_equation(struct parser *p)
+{
+	check_statement_word(p);
+	struct spec *spec = p->spec;
+	struct equation equation = { .at = p->token.at };
+	spec->equations++;                      /* counted even if broken: its absence is not to be told as well */
+	ENLARGE(spec->equation, (size_t)spec->equations);
+	spec->equation[spec->equations - 1] = equation;
+	equation.left = read_expression(p);
+	if (!is_op(p, "="))
+		unexpected(p, "an operator or the '=' of the equation");
+	take(p);
+	equation.right = read_expression(p);
+	equation.end = p->end;
+	if (is_op(p, "="))
+		error(p->token.at, NULL, "an equation has a single =");
+	expect_end(p);
+	spec->equation[spec->equations - 1] = equation;
+}
+
+static void read_statement(void *context)
+{
+	struct parser *p = context;
+	p->token = lex_next(&p->lexer);
+	p->end = p->token.at;
+	const struct statement *statement = statement_of(p->token);
+	if (!p->spec->name && !(statement && statement->read == read_model)) {
+		p->spec->name = "";             /* told once */
+		error(p->token.at, "a spec begins with its name: model NAME", "expected the statement 'model', found %s", token_text(p->token));
+	}
+	if (!statement) {
+		read_equation(p);
+	} else if (!statement->read) {
+		error(p->token.at, NULL, "statement '%s' is not built yet", statement->word);
+	} else {
+		take(p);
+		statement->read(p);
+	}
+}
+
+/* ---- after an error ---- */
+
+static void declare_broken(void *context)
+{
+	struct parser *p = context;
+	struct token token = p->token;
+	if (!spec_find(p->spec, token.name) && !is_reserved(token.name))
+		declare(p, token, SYMBOL_PARAM, true);
+}
+
+/* The names that a failed statement would have declared are known but broken, so that their use is not told as well. */
+static void declare_what_failed(struct parser *p, size_t from)
+{
+	const char *text = p->lexer.source->text;
+	struct lexer word = { p->lexer.source, from, p->lexer.end };
+	const struct statement *statement = statement_of(lex_next(&word));
+	bool all = statement && (statement->read == read_coord || !statement->read);
+	if (!statement || (!all && statement->read != read_param && statement->read != read_let && statement->read != read_output))
+		return;
+	for (size_t i = word.position; i < p->lexer.end; i++) {
+		if (text[i] == '#')
+			break;
+		size_t length = strspn(text + i, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ_0123456789");
+		if (length == 0)
+			continue;
+		size_t after = i + length + strspn(text + i + length, " \t");
+		bool defined = text[after] == '=' && text[after + 1] != '=';
+		if ((all || defined) && !strchr("0123456789", text[i])) {
+			p->token = (struct token){ TOKEN_NAME, { p->lexer.source, i }, length, "", format("%.*s", (int)length, text + i), 0 };
+			statement_guard(declare_broken, p);
+		}
+		i += length - 1;
+	}
+}
+
+/* spec: { statement line-end } */
+struct spec *parse_spec(const struct source *source)
+{
+	struct spec *spec = NEW(struct spec);
+	spec->source = source;
+	spec->last = &spec->first;
+	spec->end = place_end(source);
+	size_t position = strncmp(source->text, "\xef\xbb\xbf", 3) == 0 ? 3 : 0;
+	while (position < source->length) {
+		size_t unclosed, from = position;
+		struct parser p = { .spec = spec };
+		p.lexer = (struct lexer){ source, from, lex_statement_end(source, from, &unclosed) };
+		position = p.lexer.end + 1;
+		for (size_t i = from; strchr(" \t\r\f\v", source->text[i]) && i < p.lexer.end;)
+			from = ++i;
+		if (from >= p.lexer.end || source->text[from] == '#')
+			continue;
+		p.statement = from;
+		bool good = false;
+		if (unclosed != SIZE_MAX)
+			say_error((struct place){ source, unclosed }, NULL, "'%c' is not closed", source->text[unclosed]);
+		else
+			good = statement_guard(read_statement, &p);
+		if (!good)
+			declare_what_failed(&p, from);
+	}
+	if (!spec->name)
+		say_error(spec->end.offset ? spec->end : (struct place){ source, 0 }, "a spec begins with its name: model NAME",
+			  source->length ? "there is no statement in this file" : "the file is empty");
+	return spec;
+}
+
+struct argument {
+	struct parser parser;
+	struct node *value;
+};
+
+static void read_argument(void *context)
+{
+	struct argument *argument = context;
+	struct parser *p = &argument->parser;
+	p->token = lex_next(&p->lexer);
+	p->end = p->token.at;
+	struct node *value = read_expression(p);
+	expect_end(p);
+	argument->value = value;
+}
+
+struct node *parse_argument(struct spec *spec, const struct source *source, size_t from)
+{
+	struct argument argument = { .parser = { .spec = spec, .lexer = { source, from, source->length } } };
+	statement_guard(read_argument, &argument);
+	return argument.value;
+}

@@ -1,0 +1,146 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Determinant and adjugate of a matrix of polynomials, by evaluation at integers and interpolation: exact, and free of
+ * the growth that elimination over polynomials has. */
+#include "plgen.h"
+
+struct samples {
+	int n, count, degree;       /* count = degree + 1 points */
+	long *point;
+	mpz_t *det;                 /* per point */
+	mpz_t **adj;                /* per point n x n, or NULL */
+};
+
+static int degree_bound(struct polymat P)
+{
+	int bound = 0;
+	for (int i = 0; i < P.n; i++) {
+		int row = 0;
+		for (int j = 0; j < P.n; j++)
+			row = P.cell[i * P.n + j].length - 1 > row ? P.cell[i * P.n + j].length - 1 : row;
+		bound += row;
+	}
+	return bound;
+}
+
+static void evaluate(struct poly p, long point, mpz_ptr value)
+{
+	mpz_set_ui(value, 0);
+	for (int k = p.length - 1; k >= 0; k--) {
+		mpz_mul_si(value, value, point);
+		mpz_add(value, value, p.c[k]);
+	}
+}
+
+/* Fraction-free Gauss and Jordan (Bareiss) on [W | I]: leaves det and adj. False at a singular matrix. */
+static bool bareiss(int n, mpz_t *W, mpz_ptr det)
+{
+	int width = 2 * n, sign = 1;
+	mpz_t previous, keep;
+	mpz_init_set_ui(previous, 1);
+	mpz_init(keep);
+	bool regular = true;
+	for (int k = 0; k < n && regular; k++) {
+		int row = k;
+		while (row < n && mpz_sgn(W[row * width + k]) == 0)
+			row++;
+		regular = row < n;
+		if (!regular)
+			break;
+		if (row != k) {
+			sign = -sign;
+			for (int j = 0; j < width; j++)
+				mpz_swap(W[row * width + j], W[k * width + j]);
+		}
+		for (int i = 0; i < n; i++) {
+			if (i == k)
+				continue;
+			mpz_set(keep, W[i * width + k]);
+			for (int j = 0; j < width; j++) {
+				mpz_mul(W[i * width + j], W[i * width + j], W[k * width + k]);
+				mpz_submul(W[i * width + j], keep, W[k * width + j]);
+				mpz_divexact(W[i * width + j], W[i * width + j], previous);
+			}
+		}
+		mpz_set(previous, W[k * width + k]);
+	}
+	(sign < 0 ? mpz_neg : mpz_set)(det, previous);
+	if (sign < 0)
+		for (int i = 0; i < n * width; i++)
+			mpz_neg(W[i], W[i]);
+	mpz_clears(previous, keep, NULL);
+	return regular;
+}
+
+/* det and adj of P at one point; false if P is singular there */
+static bool sample(struct polymat P, long point, mpz_ptr det, mpz_t *adj)
+{
+	int n = P.n, width = 2 * n;
+	mpz_t *W = ARRAY(mpz_t, (size_t)(n * width));
+	for (int i = 0; i < n; i++)
+		for (int j = 0; j < width; j++) {
+			mpz_init(W[i * width + j]);
+			if (j < n)
+				evaluate(P.cell[i * n + j], point, W[i * width + j]);
+			else
+				mpz_set_ui(W[i * width + j], j - n == i);
+		}
+	bool regular = bareiss(n, W, det);
+	for (int i = 0; i < n && regular && adj; i++)
+		for (int j = 0; j < n; j++) {
+			mpz_init_set(adj[i * n + j], W[i * width + n + j]);
+		}
+	for (int i = 0; i < n * width; i++)
+		mpz_clear(W[i]);
+	return regular;
+}
+
+/* Newton's divided differences, over Q, then the powers of s; the result is integral. */
+static struct poly interpolate(int count, const long *point, const mpz_t *value)
+{
+	mpq_t *difference = rationals((size_t)count), *c = rationals((size_t)count), factor;
+	mpq_init(factor);
+	for (int i = 0; i < count; i++)
+		mpq_set_z(difference[i], value[i]);
+	for (int k = 1; k < count; k++)
+		for (int i = count - 1; i >= k; i--) {
+			mpq_sub(difference[i], difference[i], difference[i - 1]);
+			mpq_set_si(factor, point[i] - point[i - k], 1);
+			mpq_div(difference[i], difference[i], factor);
+		}
+	for (int k = count - 1; k >= 0; k--) {          /* c <- c (s - point_k) + difference_k */
+		mpq_set_si(factor, -point[k], 1);
+		for (int i = count - 1; i >= 0; i--) {
+			mpq_mul(c[i], c[i], factor);
+			if (i > 0)
+				mpq_add(c[i], c[i], c[i - 1]);
+		}
+		mpq_add(c[0], c[0], difference[k]);
+	}
+	struct poly p = poly_new(count);
+	for (int i = 0; i < count; i++) {
+		mpz_set(p.c[i], mpq_numref(c[i]));
+		mpq_clears(c[i], difference[i], NULL);
+	}
+	mpq_clear(factor);
+	poly_trim(&p);
+	return p;
+}
+
+void polymat_adjugate(struct polymat P, struct poly *det, struct polymat *adj)
+{
+	int n = P.n, count = degree_bound(P) + 1, cells = adj ? n * n : 0;
+	long *point = ARRAY(long, (size_t)count);
+	mpz_t *dets = ARRAY(mpz_t, (size_t)count), *column = ARRAY(mpz_t, (size_t)count), **adjs = ARRAY(mpz_t *, (size_t)count);
+	for (int found = 0, tried = 0; found < count; tried++) {        /* 0, 1, -1, 2, -2, ... where P is regular */
+		point[found] = tried % 2 ? (tried + 1) / 2 : -(tried / 2);
+		adjs[found] = ARRAY(mpz_t, (size_t)cells);
+		mpz_init(dets[found]);
+		found += sample(P, point[found], dets[found], adj ? adjs[found] : NULL);
+	}
+	*det = interpolate(count, point, (const mpz_t *)dets);
+	for (int cell = 0; cell < cells; cell++) {
+		for (int k = 0; k < count; k++)
+			column[k][0] = adjs[k][cell][0];        /* borrowed, not copied */
+		adj->cell[cell] = interpolate(count, point, (const mpz_t *)column);
+	}
+}

@@ -1,0 +1,220 @@
+/* SPDX-License-Identifier: MIT-0 */
+/* A driver for hosts: runs one model and writes its outputs as CSV.
+ *
+ *     cc -Iruntime runtime/host/plmain.c model_pl.c runtime/turns.c ... -DMODEL=scs -o m
+ *     ./m 30 < inputs.csv > out.csv
+ *
+ * One row at every step k*h <= T, from t = 0 on.  A model with inputs reads one row of samples per step from standard
+ * input: as many numbers as inputs, separated by commas; a first line that gives the inputs' names may precede them. */
+#include "plrt.h"
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#ifndef MODEL
+#error "say which model to drive: -DMODEL=NAME, with the name that the generated code bears"
+#endif
+#define JOIN(a, b) a##b
+#define DESCRIPTOR(name) JOIN(name, _model)
+
+extern const pl_model DESCRIPTOR(MODEL);
+
+static const pl_model *const model = &DESCRIPTOR(MODEL);
+
+static void fail(const char *what)
+{
+    fprintf(stderr, "%s: error: %s\n", model->name, what);
+    exit(1);
+}
+
+static void *need(void *memory)
+{
+    if (memory == NULL)
+        fail("out of memory");
+    return memory;
+}
+
+/* ---- the samples on standard input ---- */
+
+typedef struct samples {
+    char *line; /* without its end, NUL-terminated; `room` bytes */
+    size_t room, length;
+    unsigned long number; /* of the line, from 1 */
+    int again;            /* this line was read ahead and is to be read once more */
+} samples;
+
+static void bad_input(const samples *in, size_t column, const char *what)
+{
+    fprintf(stderr, "<stdin>:%lu:%lu: error: %s\n", in->number, (unsigned long)column + 1, what);
+    if (in->length != 0)
+        fprintf(stderr, "%s\n%*s^\n", in->line, column < 10000 ? (int)column : 0, "");
+    exit(1);
+}
+
+static int next_line(samples *in)
+{
+    int c;
+    if (in->again) {
+        in->again = 0;
+        return 1;
+    }
+    in->length = 0;
+    in->number++;
+    while ((c = getchar()) != EOF && c != '\n') {
+        if (in->length + 2 > in->room) {
+            in->room *= 2;
+            in->line = (char *)need(realloc(in->line, in->room));
+        }
+        in->line[in->length++] = (char)c;
+    }
+    if (ferror(stdin))
+        fail("cannot read standard input");
+    if (in->length != 0 && in->line[in->length - 1] == '\r')
+        in->length--;
+    in->line[in->length] = '\0';
+    return c != EOF || in->length != 0;
+}
+
+static const char *skip_blanks(const char *p)
+{
+    while (*p == ' ' || *p == '\t')
+        p++;
+    return p;
+}
+
+/* What must follow column i. */
+static char separator(int i)
+{
+    return i + 1 < model->inputs ? ',' : '\0';
+}
+
+/* A first line that starts as a name does gives the names, in the model's order; else it is the first sample. */
+static void read_header(samples *in)
+{
+    const char *p;
+    int i;
+    if (!next_line(in))
+        bad_input(in, 0, "expected samples of the inputs, found the end of the file");
+    p = skip_blanks(in->line);
+    if (*p != '_' && !(*p >= 'A' && *p <= 'Z') && !(*p >= 'a' && *p <= 'z')) {
+        in->again = 1;
+        return;
+    }
+    for (i = 0; i < model->inputs; i++) {
+        const char *const name = skip_blanks(p), *const expected = model->input_names[i];
+        p = skip_blanks(name + strcspn(name, " \t,"));
+        if (strncmp(name, expected, strlen(expected)) != 0 || strcspn(name, " \t,") != strlen(expected)
+            || *p != separator(i)) {
+            fprintf(stderr, "<stdin>:%lu:%lu: error: expected the input '%s'%s\n%s\n", in->number,
+                    (unsigned long)(name - in->line) + 1, expected, separator(i) ? " and a ','" : " and the end of the line",
+                    in->line);
+            exit(1);
+        }
+        p += *p == ',';
+    }
+}
+
+static void read_sample(samples *in, double *u)
+{
+    const char *p;
+    char *end;
+    int i;
+    if (!next_line(in))
+        bad_input(in, 0, "too few samples: expected a row for every step, found the end of the file");
+    p = in->line;
+    for (i = 0; i < model->inputs; i++) {
+        p = skip_blanks(p);
+        u[i] = strtod(p, &end);
+        if (end == p)
+            bad_input(in, (size_t)(p - in->line), "expected a number");
+        if (u[i] - u[i] != 0.0)
+            bad_input(in, (size_t)(p - in->line), "expected a finite number");
+        p = skip_blanks(end);
+        if (*p != separator(i))
+            bad_input(in, (size_t)(p - in->line),
+                      separator(i) ? "expected ',': one column for each input" : "expected the end of the line");
+        p += *p == ',';
+    }
+}
+
+/* ---- the run ---- */
+
+static void print_header(void)
+{
+    int i;
+    printf("t");
+    for (i = 0; i < model->outputs; i++)
+        printf(",%s", model->output_names[i]);
+    printf("\n");
+}
+
+static void print_row(const void *state, double *out)
+{
+    int i;
+    model->out(state, out);
+    printf("%.17g", model->time(state));
+    for (i = 0; i < model->outputs; i++)
+        printf(",%.17g", out[i]);
+    printf("\n");
+    if (ferror(stdout))
+        fail("cannot write to standard output");
+}
+
+/* The last k with k h <= end.  Since h and the quotient are rounded, what is a whole number but for that counts as whole. */
+static uint64_t steps_until(double end)
+{
+    const double steps = end / model->h;
+    if (!(steps < 9007199254740992.0)) {
+        fprintf(stderr, "%s: error: T is more than 2^53 steps\n", model->name);
+        exit(2);
+    }
+    return (uint64_t)(steps + 1e-9 + steps * 0x1p-52);
+}
+
+static double end_of_run(int argc, char **argv)
+{
+    char *rest = NULL;
+    double end = argc == 2 ? strtod(argv[1], &rest) : 0.0;
+    if (argc != 2 || rest == argv[1] || *rest != '\0' || end - end != 0.0 || end < 0.0) {
+        if (argc == 2)
+            fprintf(stderr, "%s: error: expected a time, finite and not negative, found '%s'\n", model->name, argv[1]);
+        fprintf(stderr, "usage: %s T %s> out.csv\n    T: time of the end [s]; the step is %.17g s\n",
+                argc > 0 ? argv[0] : model->name, model->inputs > 0 ? "< inputs.csv " : "", model->h);
+        exit(2);
+    }
+    return end;
+}
+
+static void run(uint64_t steps)
+{
+    void *state = need(malloc(model->size));
+    double *out = (double *)need(malloc(sizeof *out * (size_t)(model->outputs + 1)));
+    double *u = (double *)need(malloc(sizeof *u * (size_t)(model->inputs + 1)));
+    samples in = {NULL, 256, 0, 0, 0};
+    uint64_t k;
+
+    in.line = (char *)need(malloc(in.room));
+    model->init(state);
+    if (model->inputs > 0 && steps > 0)
+        read_header(&in);
+    print_header();
+    print_row(state, out);
+    for (k = 0; k < steps; k++) {
+        if (model->inputs > 0)
+            read_sample(&in, u);
+        model->step(state, model->inputs > 0 ? u : NULL);
+        print_row(state, out);
+    }
+    free(in.line);
+    free(u);
+    free(out);
+    free(state);
+}
+
+int main(int argc, char **argv)
+{
+    run(steps_until(end_of_run(argc, argv)));
+    if (fclose(stdout) != 0)
+        fail("cannot write to standard output");
+    return 0;
+}

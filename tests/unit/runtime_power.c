@@ -1,0 +1,258 @@
+/* SPDX-License-Identifier: MIT-0 */
+/* runtime/power.c against closed forms in MPFR. */
+#include <stdarg.h>
+#include <stddef.h>
+#include <setjmp.h>
+#include <stdint.h>
+#include <cmocka.h>
+#include <inttypes.h>
+#include <math.h>
+#include <mpfr.h>
+#include "plrt.h"
+
+enum { BITS = 400 };
+
+static pl_two two_of(mpfr_t v)
+{
+    mpfr_t rest;
+    pl_two t;
+    mpfr_init2(rest, BITS);
+    t.hi = mpfr_get_d(v, MPFR_RNDN);
+    mpfr_sub_d(rest, v, t.hi, MPFR_RNDN);
+    t.lo = mpfr_get_d(rest, MPFR_RNDN);
+    mpfr_clear(rest);
+    return t;
+}
+
+static pl_two one_word(double v)
+{
+    pl_two t;
+    t.hi = v;
+    t.lo = 0.0;
+    return t;
+}
+
+static void set_two(mpfr_t v, pl_two t)
+{
+    mpfr_set_d(v, t.hi, MPFR_RNDN);
+    mpfr_add_d(v, v, t.lo, MPFR_RNDN);
+}
+
+static void assert_within(pl_two found, mpfr_t expected, double tolerance, const char *what, uint64_t k)
+{
+    mpfr_t error;
+    double off;
+    mpfr_init2(error, BITS);
+    set_two(error, found);
+    mpfr_sub(error, error, expected, MPFR_RNDN);
+    off = mpfr_get_d(error, MPFR_RNDN);
+    mpfr_clear(error);
+    if (!(fabs(off) <= tolerance)) {
+        pl_two e = two_of(expected);
+        fail_msg("%s, k = %" PRIu64 ": found %.17g + %.17g, expected %.17g + %.17g; off by %.17g, tolerance %.17g", what, k,
+                 found.hi, found.lo, e.hi, e.lo, off, tolerance);
+    }
+}
+
+static void assert_double(double found, double expected, const char *what)
+{
+    if (found != expected)
+        fail_msg("%s: found %.17g, expected %.17g, exactly", what, found, expected);
+}
+
+static const uint64_t counts[] = {1, 2, 3, 1000, 123456789, 1000000000, 1000000000000};
+enum { COUNTS = sizeof counts / sizeof counts[0] };
+
+/* A rotation by 0.05 a step, from (1, 0).  What its two-word entries are off by is 2^-107 each, k times; so is what the
+ * powers lose. */
+static void rotation(void **state)
+{
+    mpfr_t angle, c, s;
+    size_t i;
+    (void)state;
+    mpfr_inits2(BITS, angle, c, s, (mpfr_ptr)0);
+    for (i = 0; i < COUNTS; i++) {
+        pl_two P[4], W[4], x[2], w[2];
+        const double tolerance = (double)counts[i] * 0x1p-104;
+        mpfr_set_d(angle, 0.05, MPFR_RNDN);
+        mpfr_sin_cos(s, c, angle, MPFR_RNDN);
+        P[0] = P[3] = two_of(c);
+        P[2] = two_of(s);
+        P[1].hi = -P[2].hi;
+        P[1].lo = -P[2].lo;
+        x[0] = one_word(1.0);
+        x[1] = one_word(0.0);
+        pl_power_apply(2, P, W, x, w, counts[i]);
+        mpfr_mul_ui(angle, angle, (unsigned long)counts[i], MPFR_RNDN);
+        mpfr_sin_cos(s, c, angle, MPFR_RNDN);
+        assert_within(x[0], c, tolerance, "cosine", counts[i]);
+        assert_within(x[1], s, tolerance, "sine", counts[i]);
+    }
+    mpfr_clears(angle, c, s, (mpfr_ptr)0);
+}
+
+/* Entries as the doubles they are, powered in MPFR by repeated squaring: a 3 x 3 matrix, coupled and of all signs. */
+static void coupled(void **state)
+{
+    const double entries[9] = {0.5, -0.75, 0.1, 0.7, 0.4, -0.3, 0.2, 0.3, 0.6};
+    mpfr_t P[9], Q[9], x[3], y[3], t;
+    int i, j, k, bit;
+    const uint64_t count = 1001;
+    pl_two p[9], W[9], v[3], w[3];
+    (void)state;
+    mpfr_init2(t, BITS);
+    for (i = 0; i < 9; i++) {
+        mpfr_init2(P[i], BITS);
+        mpfr_init2(Q[i], BITS);
+        mpfr_set_d(P[i], entries[i], MPFR_RNDN);
+        p[i] = one_word(entries[i]);
+    }
+    for (i = 0; i < 3; i++) {
+        mpfr_init2(x[i], BITS);
+        mpfr_init2(y[i], BITS);
+        mpfr_set_d(x[i], 1.0 + 0.3 * i, MPFR_RNDN);
+        v[i] = one_word(1.0 + 0.3 * i);
+    }
+    for (bit = 0; count >> bit != 0; bit++) {
+        if (count >> bit & 1) {
+            for (i = 0; i < 3; i++) {
+                mpfr_set_zero(y[i], 1);
+                for (j = 0; j < 3; j++) {
+                    mpfr_mul(t, P[3 * i + j], x[j], MPFR_RNDN);
+                    mpfr_add(y[i], y[i], t, MPFR_RNDN);
+                }
+            }
+            for (i = 0; i < 3; i++)
+                mpfr_set(x[i], y[i], MPFR_RNDN);
+        }
+        for (i = 0; i < 3; i++)
+            for (j = 0; j < 3; j++) {
+                mpfr_set_zero(Q[3 * i + j], 1);
+                for (k = 0; k < 3; k++) {
+                    mpfr_mul(t, P[3 * i + k], P[3 * k + j], MPFR_RNDN);
+                    mpfr_add(Q[3 * i + j], Q[3 * i + j], t, MPFR_RNDN);
+                }
+            }
+        for (i = 0; i < 9; i++)
+            mpfr_set(P[i], Q[i], MPFR_RNDN);
+    }
+    pl_power_apply(3, p, W, v, w, count);
+    for (i = 0; i < 3; i++)
+        assert_within(v[i], x[i], (double)count * 0x1p-104 * fmax(fabs(v[0].hi), fmax(fabs(v[1].hi), fabs(v[2].hi))), "coupled",
+                      count);
+    for (i = 0; i < 9; i++)
+        mpfr_clears(P[i], Q[i], (mpfr_ptr)0);
+    for (i = 0; i < 3; i++)
+        mpfr_clears(x[i], y[i], (mpfr_ptr)0);
+    mpfr_clear(t);
+}
+
+/* Integers stay exact: Fibonacci numbers up to 2^104. */
+static void fibonacci(void **state)
+{
+    uint64_t k;
+    mpz_t f;
+    mpfr_t v;
+    (void)state;
+    mpz_init(f);
+    mpfr_init2(v, BITS);
+    for (k = 1; k <= 150; k++) {
+        pl_two P[4], W[4], x[2], w[2];
+        P[0] = P[1] = P[2] = one_word(1.0);
+        P[3] = one_word(0.0);
+        x[0] = one_word(1.0);
+        x[1] = one_word(0.0);
+        pl_power_apply(2, P, W, x, w, k);
+        mpz_fib_ui(f, (unsigned long)k);
+        mpfr_set_z(v, f, MPFR_RNDN);
+        assert_within(x[1], v, 0.0, "Fibonacci number", k);
+    }
+    mpz_clear(f);
+    mpfr_clear(v);
+}
+
+static void no_steps(void **state)
+{
+    pl_two P[4], W[4], x[2], w[2];
+    int i;
+    (void)state;
+    for (i = 0; i < 4; i++)
+        P[i] = one_word(3.0);
+    x[0].hi = 0.1;
+    x[0].lo = 1e-18;
+    x[1].hi = -INFINITY;
+    x[1].lo = 0.0;
+    pl_power_apply(2, P, W, x, w, 0);
+    assert_double(x[0].hi, 0.1, "high word");
+    assert_double(x[0].lo, 1e-18, "low word");
+    assert_double(x[1].hi, -(double)INFINITY, "high word");
+}
+
+/* diag(growing block, decaying entry): the block overflows, the other is as if alone. */
+static void overflow_is_infinite_and_stays_where_it_is(void **state)
+{
+    pl_two P[9], W[9], x[3], w[3];
+    int i, sign;
+    (void)state;
+    for (sign = -1; sign <= 1; sign += 2) {
+        for (i = 0; i < 9; i++)
+            P[i] = one_word(0.0);
+        P[0] = P[4] = one_word(1.5); /* growing, turning the other way round */
+        P[1] = one_word(-0.75);
+        P[3] = one_word(0.75);
+        P[8] = one_word(0.5);
+        x[0] = one_word(sign);
+        x[1] = one_word(-0.25);
+        x[2] = one_word(3.0);
+        pl_power_apply(3, P, W, x, w, 1000000);
+        for (i = 0; i < 2; i++)
+            if (!isinf(x[i].hi) || x[i].lo != 0.0)
+                fail_msg("entry %d: found %.17g + %.17g, expected an infinity", i, x[i].hi, x[i].lo);
+        assert_double(x[2].hi, 0.0, "decoupled entry");
+    }
+    for (i = 0; i < 9; i++)
+        P[i] = one_word(0.0);
+    P[0] = P[1] = P[3] = P[4] = one_word(1.5);
+    P[8] = one_word(-1.0);
+    x[0] = x[1] = one_word(1.0);
+    x[2] = one_word(5.0);
+    pl_power_apply(3, P, W, x, w, UINT64_MAX);
+    assert_double(x[0].hi, (double)INFINITY, "growing entry");
+    assert_double(x[2].hi, -5.0, "decoupled entry");
+}
+
+/* Large terms of both signs meet before the sum is known to fit, or not to. */
+static void overflow_has_the_sign_of_the_sum(void **state)
+{
+    pl_two P[9], W[9], x[3], w[3];
+    int i;
+    (void)state;
+    for (i = 0; i < 9; i++)
+        P[i] = one_word(0.0);
+    P[0] = one_word(0x1p600);
+    P[1] = one_word(-0x1p600);
+    P[2] = one_word(-0x1p600);
+    P[3] = one_word(0x1p600);
+    P[4] = one_word(-0x1p600);
+    P[5] = one_word(0x1p420);
+    x[0] = x[1] = x[2] = one_word(0x1p600);
+    pl_power_apply(3, P, W, x, w, 1);
+    assert_double(x[0].hi, -(double)INFINITY, "+inf - inf - inf");
+    assert_double(x[1].hi, 0x1p1020, "+inf - inf + 2^1020");
+    assert_double(x[2].hi, 0.0, "no terms");
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(rotation),
+        cmocka_unit_test(coupled),
+        cmocka_unit_test(fibonacci),
+        cmocka_unit_test(no_steps),
+        cmocka_unit_test(overflow_is_infinite_and_stays_where_it_is),
+        cmocka_unit_test(overflow_has_the_sign_of_the_sum),
+    };
+    const int status = cmocka_run_group_tests(tests, NULL, NULL);
+    mpfr_free_cache();
+    return status;
+}
