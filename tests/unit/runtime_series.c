@@ -245,7 +245,7 @@ static void chains_within_a_step(void **state)
     for (i = 0; i < sizeof chains / sizeof chains[0]; i++)
         for (j = 0; j < sizeof reach / sizeof reach[0]; j++)
             check_chain(&chains[i], reach[j]);
-    print_message("largest error of pl_series_advance: %.2f DBL_EPSILON sum_j max|Phi_ij| |x_j|\n", worst_ratio);
+    print_message("# largest error of pl_series_advance: %.2f DBL_EPSILON sum_j max|Phi_ij| |x_j|\n", worst_ratio);
 }
 
 static void assert_exactly(double found, double expected, const char *what)

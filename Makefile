@@ -1,0 +1,49 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Thin: packages through apt, everything else through Meson.
+
+BUILD = build
+PACKAGES = gcc g++ clang make meson ninja-build pkgconf \
+	libgmp-dev libmpfr-dev libmpfi-dev libmpc-dev libgsl-dev \
+	libsundials-dev libcmocka-dev valgrind gnuplot-nox
+
+.PHONY: all deps demo check bench fuzz accuracy install clean
+
+all: deps
+	@test -f $(BUILD)/build.ninja || meson setup $(BUILD) >$(BUILD).log || { cat $(BUILD).log; exit 1; }
+	@rm -f $(BUILD).log
+	ninja -C $(BUILD)
+
+# Asks apt only for what is not there.
+deps:
+	@missing=; for p in $(PACKAGES); do \
+		dpkg-query -W -f='$${Status}' $$p 2>/dev/null | grep -q 'ok installed' || missing="$$missing $$p"; \
+	done; \
+	if [ -n "$$missing" ]; then \
+		echo "installing:$$missing"; \
+		root=; [ "$$(id -u)" = 0 ] || root=sudo; \
+		$$root apt-get update -q && \
+		$$root env DEBIAN_FRONTEND=noninteractive apt-get install -q -y --no-install-recommends $$missing; \
+	fi
+
+demo: all
+	sh bench/demo/demo.sh $(BUILD)
+
+check: all
+	sh tests/check.sh $(BUILD)
+
+# Benchmarks: never part of a test.
+bench: all
+	sh bench/generate.sh $(BUILD)
+
+# The long forms of what `make check` runs briefly.
+accuracy: all
+	$(BUILD)/tests/accuracy/bitwise tests/accuracy/exponentials.txt models 2000
+fuzz: all
+	ninja -C $(BUILD) plgen_sanitized tests/fuzz/mutate
+	sh tests/fuzz/run.sh $(BUILD)/plgen_sanitized $(BUILD)/tests/fuzz/mutate 20000
+
+install: all
+	meson install -C $(BUILD)
+
+clean:
+	rm -rf $(BUILD)
