@@ -37,7 +37,7 @@ bench: all
 
 # The long forms of what `make check` runs briefly.
 accuracy: all
-	$(BUILD)/tests/accuracy/bitwise tests/accuracy/exponentials.txt models 2000
+	$(BUILD)/tests/accuracy/bitwise -n 2000 tests/accuracy/exponentials.txt models/*.spec
 fuzz: all
 	ninja -C $(BUILD) plgen_sanitized tests/fuzz/mutate
 	sh tests/fuzz/run.sh $(BUILD)/plgen_sanitized $(BUILD)/tests/fuzz/mutate 20000

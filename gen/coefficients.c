@@ -23,10 +23,10 @@ static const char *dominant_pole(const struct response *response)
 	return im == 0 ? format("%.6g 1/s", re) : format("%.6g +- %.6g i 1/s", re, im);
 }
 
-static _Noreturn void undecided(struct place at, const char *what)
+static _Noreturn void undecided(struct place at, const char *what, bool isolated)
 {
-	error(at, "poles this close cannot be told apart; do two parameters differ by less than their rounding?",
-	      "%s is not decided with %d bits", what, LIMIT_PRECISION);
+	const char *note = isolated ? NULL : "two poles cannot be told apart; do two parameters differ by less than their rounding?";
+	error(at, note, "%s is not decided with %d bits", what, LIMIT_PRECISION);
 }
 
 /* value - subtract, rounded */
@@ -35,16 +35,17 @@ static double rounded_difference(struct response *response, mpq_srcptr tau, doub
 	mpfi_t enclosure;
 	mpfi_init2(enclosure, FIRST_PRECISION);
 	double value = 0;
-	bool decided = false;
+	bool decided = false, isolated = true;
 	for (int precision = FIRST_PRECISION; precision <= LIMIT_PRECISION && !decided; precision *= 2) {
-		if (!response_enclose(response, tau, precision, enclosure))
+		isolated = response_enclose(response, tau, precision, enclosure);
+		if (!isolated)
 			break;
 		mpfi_sub_d(enclosure, enclosure, subtract);
 		decided = round_enclosure(enclosure, &value);
 	}
 	mpfi_clear(enclosure);
 	if (!decided)
-		undecided(at, what);
+		undecided(at, what, isolated);
 	return value;
 }
 

@@ -10,7 +10,7 @@
 #include <math.h>
 #include <mpc.h>
 
-enum { START_BITS = 64, GUARD_BITS = 32, SWEEPS = 40, LIMIT_ITERATION_BITS = 1 << 20 };
+enum { START_BITS = 64, GUARD_BITS = 32, SWEEPS = 40, LIMIT_ITERATION_BITS = 1 << 16 };
 
 struct iteration {                  /* of one factor */
 	int degree, bits;

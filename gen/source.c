@@ -151,13 +151,17 @@ static void print_one(FILE *to, const struct diagnostic *d)
 static int by_place(const void *left, const void *right)
 {
 	const struct diagnostic *a = left, *b = right;
-	if (a->at.source == b->at.source && a->at.offset != b->at.offset)
+	if (a->at.source != b->at.source)
+		return strcmp(a->at.source->name, b->at.source->name);
+	if (a->at.offset != b->at.offset)
 		return a->at.offset < b->at.offset ? -1 : 1;
 	return a->number - b->number;
 }
 
 void diagnostics_print(FILE *to)
 {
+	if (said_count == 0)
+		return;
 	qsort(said, (size_t)said_count, sizeof *said, by_place);
 	for (int i = 0; i < said_count; i++)
 		print_one(to, &said[i]);

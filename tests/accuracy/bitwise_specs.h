@@ -1,0 +1,16 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef BITWISE_SPECS_H
+#define BITWISE_SPECS_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+/* Models in which naive closed forms break down: resonance, repeated and nearly repeated poles, pole 0, growth, stiffness. */
+struct bitwise_spec {
+    const char *name, *text;
+    bool critical;              /* one coordinate with Phi_22 = 0 at the step as written */
+};
+extern const struct bitwise_spec bitwise_specs[];
+extern const size_t bitwise_spec_count;
+
+#endif
