@@ -39,8 +39,7 @@ bench: all
 accuracy: all
 	$(BUILD)/tests/accuracy/bitwise -n 2000 tests/accuracy/exponentials.txt models/*.spec
 fuzz: all
-	ninja -C $(BUILD) plgen_sanitized tests/fuzz/mutate
-	sh tests/fuzz/run.sh $(BUILD)/plgen_sanitized $(BUILD)/tests/fuzz/mutate 20000
+	ninja -C $(BUILD) fuzz_long
 
 install: all
 	meson install -C $(BUILD)

@@ -7,6 +7,22 @@
 
 enum { FIRST_PRECISION = 128 };
 
+/* log2 |p| of the largest pole is at least the largest log2 |c_i/c_d| / (d-i), less log2 d (Cauchy's bound, reversed).
+ * An angle |p| h of more bits than an enclosure may have could never be reduced to a turn. */
+void check_pole_size(const struct model *model, const struct resolvent *resolvent)
+{
+	struct poly B = *resolvent_determinant(resolvent);
+	long lead = (long)mpz_sizeinbase(B.c[B.length - 1], 2), largest = 0;
+	for (int i = 0; i < B.length - 1; i++) {
+		long bits = (long)mpz_sizeinbase(B.c[i], 2) - lead - B.length;
+		if (mpz_sgn(B.c[i]) != 0 && bits / (B.length - 1 - i) > largest)
+			largest = bits / (B.length - 1 - i);
+	}
+	long step = (long)mpz_sizeinbase(mpq_numref(model->h), 2) - (long)mpz_sizeinbase(mpq_denref(model->h), 2);
+	if (largest + step > LIMIT_PRECISION)
+		error(model->step_at, NULL, "the largest pole, about 2^%ld 1/s, times the step is beyond the limit of 2^%d", largest, LIMIT_PRECISION);
+}
+
 /* The pole that grows fastest: what an overflow comes from. */
 static const char *dominant_pole(const struct response *response)
 {

@@ -7,9 +7,9 @@ enum { GUARD_BITS = 128, LIMIT_ARGUMENT = 1 << 16 };    /* bits before the point
 static void set_irrational(mpq_ptr value, struct place at, mpfr_srcptr wide)
 {
 	mpfr_t rounded;
-	if (!mpfr_number_p(wide))
-		error(at, NULL, "the value is not a finite number");
-	if (!mpfr_zero_p(wide) && (mpfr_get_exp(wide) > LIMIT_BITS || mpfr_get_exp(wide) < -LIMIT_BITS))
+	if (mpfr_nan_p(wide))
+		error(at, NULL, "the value is not a number");
+	if (!mpfr_regular_p(wide) || (mpfr_get_exp(wide) > LIMIT_BITS || mpfr_get_exp(wide) < -LIMIT_BITS))  /* infinite or 0: beyond even the range of MPFR */
 		error(at, NULL, "exact value over the limit of %d bits", LIMIT_BITS);
 	mpfr_init2(rounded, IRRATIONAL_BITS);
 	mpfr_set(rounded, wide, MPFR_RNDN);

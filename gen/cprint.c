@@ -8,13 +8,31 @@
 struct naming {                     /* the identifiers given away so far */
 	int count;
 	const char **taken;
+	const char *name, *upper;   /* the model's: what begins with one of these and _ is generated */
 };
 
 /* What the generated functions use themselves. */
-static const char *const own_names[] = { "s", "y", "t", "u", "n", "k", "tau", "out", "dydt", "power", "work", "x", "z", "wave", "load", "unused" };
+static const char *const own_names[] = {
+	"s", "y", "t", "u", "out", "dydt", "residual", "growth",
+	"fabs", "fmin", "fmax", "pow"   /* of <math.h>, which no function of a spec is named after */
+};
+
+static bool begins_with(const char *name, const char *prefix)
+{
+	size_t length = strlen(prefix);
+	return strncmp(name, prefix, length) == 0 && name[length] == '_';
+}
+
+/* wave1, load2, ...: the locals of loads */
+static bool is_load_local(const char *name)
+{
+	if (strncmp(name, "wave", 4) != 0 && strncmp(name, "load", 4) != 0)
+		return false;
+	return name[4] && strspn(name + 4, "0123456789") == strlen(name + 4);
+}
 
 /* Macros of the headers that generated code may include, and of compilers in their GNU modes. */
-static bool may_be_macro(const char *name)
+bool may_be_macro(const char *name)
 {
 	static const char *const macros[] = { "NULL", "NAN", "INFINITY", "I", "unix", "linux", "i386", "vax", "sun", "OVERFLOW", "UNDERFLOW",
 					      "DOMAIN", "SING", "PLOSS", "TLOSS", "EOF", "BUFSIZ", "WCHAR_MAX", "WCHAR_MIN" };
@@ -33,25 +51,32 @@ static bool is_taken(const struct naming *naming, const char *name)
 	for (size_t i = 0; i < sizeof own_names / sizeof *own_names; i++)
 		if (strcmp(name, own_names[i]) == 0)
 			return true;
+	if (is_load_local(name))
+		return true;
 	for (int i = 0; i < naming->count; i++)
 		if (strcmp(name, naming->taken[i]) == 0)
 			return true;
 	return false;
 }
 
+static bool is_generated(const struct naming *naming, const char *name)
+{
+	return begins_with(name, naming->name) || begins_with(name, naming->upper);
+}
+
 static const char *claim(struct naming *naming, const char *wish)
 {
 	const char *name = may_be_macro(wish) ? format("v%s", wish) : wish;
-	while (is_taken(naming, name) || may_be_macro(name))
-		name = format("%s_", name);
+	while (is_generated(naming, name) || is_taken(naming, name) || may_be_macro(name))
+		name = is_generated(naming, name) ? format("v%s", name) : format("%s_", name);
 	ENLARGE(naming->taken, (size_t)naming->count + 1);
 	naming->taken[naming->count++] = name;
 	return name;
 }
 
-void name_for_c(const struct spec *spec)
+void name_for_c(const struct spec *spec, const char *name, const char *upper)
 {
-	struct naming all = { 0 }, *naming = &all;
+	struct naming all = { .name = name, .upper = upper }, *naming = &all;
 	for (struct symbol *s = spec->first; s; s = s->next)
 		if (s->kind != SYMBOL_OUTPUT)
 			s->c_name = claim(naming, s->name);
@@ -172,7 +197,7 @@ static const char *table_text(const struct node *node)
 	mpq_t value;
 	mpq_init(value);
 	collect_constant(&collector, (struct node *)node, value);
-	const char *text = shortest(round_rational(value));
+	const char *text = finite_text(node->at, value);
 	mpq_clear(value);
 	return format("(%s)", text);
 }
@@ -207,7 +232,7 @@ static const char *text_of(const struct node *node, int tight)
 	if (vanishes(node))
 		return "0.0";
 	switch (node->kind) {
-	case NODE_NUMBER:  return shortest(round_rational(node->number));
+	case NODE_NUMBER:  return finite_text(node->at, node->number);
 	case NODE_PI:      return "3.141592653589793";
 	case NODE_TIME:    return "t";
 	case NODE_NAME:    return node->primes == 1 ? node->symbol->c_dot : node->symbol->c_name;

@@ -32,7 +32,7 @@ static struct emitter emitter_new(FILE *to, const struct step *step, const char 
 	e.phase = ARRAY(int, (size_t)e.system->loads);
 	for (int l = 0; l < e.system->loads; l++)
 		e.phase[l] = e.system->load[l].wave ? e.waves++ : -1;
-	name_for_c(step->model->spec);
+	name_for_c(step->model->spec, e.name, e.upper);
 	return e;
 }
 
@@ -42,8 +42,8 @@ static const char *printable(const char *text)
 {
 	char *clean = format("%s", text);
 	for (char *c = clean; *c; c++)
-		if ((unsigned char)*c < ' ' || *c == 127)
-			*c = '?';
+		if ((unsigned char)*c < ' ' || *c == 127 || (c > clean && ((c[-1] == '*' && *c == '/') || (c[-1] == '/' && *c == '*'))))
+			*c = '?';               /* a comment in an option neither ends nor opens ours */
 	return clean;
 }
 
@@ -255,7 +255,7 @@ static void emit_step(const struct emitter *e)
 	for (int i = 0; i < program->assignments; i++)
 		emit_assignment(e, &program->assignment[i]);
 	for (int i = 0; i < e->waves; i++)
-		fprintf(e->to, "    s->phase[%d] = pl_turn_add(s->phase[%d], phase_step[%d]);\n", i, i, i);
+		fprintf(e->to, "    s->phase[%d] = pl_turn_add(s->phase[%d], %s_phase_step[%d]);\n", i, i, e->name, i);
 	fputs("    s->k++;\n}\n", e->to);
 }
 
@@ -284,7 +284,7 @@ static void turns(mpq_srcptr q, uint64_t word[2])
 
 static void emit_turns(const struct emitter *e, const char *name, const char *what, bool per_step)
 {
-	fprintf(e->to, "\nstatic const pl_turn %s[%d] = {  /* %s */\n", name, e->waves, what);
+	fprintf(e->to, "\nstatic const pl_turn %s_%s[%d] = {  /* %s */\n", e->name, name, e->waves, what);
 	mpq_t angle;
 	mpq_init(angle);
 	for (int l = 0; l < e->system->loads; l++) {
@@ -305,7 +305,7 @@ static void emit_turns(const struct emitter *e, const char *name, const char *wh
 
 static void emit_rates(const struct emitter *e)
 {
-	fprintf(e->to, "\nstatic const pl_rate phase_rate[%d] = {  /* turns per second */\n", e->waves);
+	fprintf(e->to, "\nstatic const pl_rate %s_phase_rate[%d] = {  /* turns per second */\n", e->name, e->waves);
 	for (int l = 0; l < e->system->loads; l++) {
 		const struct wave *wave = e->system->load[l].wave;
 		if (!wave)
@@ -348,7 +348,7 @@ static void emit_access(const struct emitter *e)
 	fprintf(to, "\nvoid %s_set(%s *s, double t, const double y[%s_STATES])\n{\n    int i;\n", n, n, N);
 	fprintf(to, "    for (i = 0; i < %s_STATES; i++)\n        s->y[i] = y[i];\n    s->t0 = t;\n    s->k = 0;\n", N);
 	if (e->waves)
-		fprintf(to, "    for (i = 0; i < %d; i++)\n        s->phase[i] = pl_turn_add(phase_start[i], pl_turn_at(&phase_rate[i], t));\n", e->waves);
+		fprintf(to, "    for (i = 0; i < %d; i++)\n        s->phase[i] = pl_turn_add(%s_phase_start[i], pl_turn_at(&%s_phase_rate[i], t));\n", e->waves, n, n);
 	fprintf(to, "}\n\nvoid %s_get(const %s *s, double y[%s_STATES])\n{\n    int i;\n", n, n, N);
 	fprintf(to, "    for (i = 0; i < %s_STATES; i++)\n        y[i] = s->y[i];\n}\n", N);
 	mpz_srcptr p = mpq_numref(e->model->h), q = mpq_denref(e->model->h);
@@ -374,21 +374,28 @@ static void mark_output(const struct emitter *e, const struct output *output, st
 	needs->time = needs->time || (output->form && mpq_sgn(output->time) != 0);
 }
 
+static double output_factor(const struct output *output, mpq_srcptr factor)
+{
+	if (beyond_double(factor))
+		error(output->value->start, NULL, "a factor of output '%s' is beyond the range of double", output->name);
+	return round_rational(factor);
+}
+
 static const char *linear_output(const struct emitter *e, const struct output *output)
 {
 	const char **term = ARRAY(const char *, (size_t)(e->model->states + 2 * e->system->loads + 2));
 	int terms = 0;
 	for (int i = 0; i < e->model->states; i++)
 		if (mpq_sgn(output->state[i]) != 0)
-			term[terms++] = scaled(round_rational(output->state[i]), state_local(e, i));
+			term[terms++] = scaled(output_factor(output, output->state[i]), state_local(e, i));
 	for (int l = 0; l < e->system->loads; l++)
 		for (int k = 0; k < 2; k++)
 			if (mpq_sgn(output->load[k][l]) != 0)
-				term[terms++] = scaled(round_rational(output->load[k][l]), format("wave%d[%d]", e->phase[l] + 1, k));
+				term[terms++] = scaled(output_factor(output, output->load[k][l]), format("wave%d[%d]", e->phase[l] + 1, k));
 	if (mpq_sgn(output->time) != 0)
-		term[terms++] = scaled(round_rational(output->time), "t");
+		term[terms++] = scaled(output_factor(output, output->time), "t");
 	if (mpq_sgn(output->constant) != 0)
-		term[terms++] = scaled(round_rational(output->constant), NULL);
+		term[terms++] = scaled(output_factor(output, output->constant), NULL);
 	return terms ? tree(terms, term, 13) : "0.0";
 }
 
@@ -402,7 +409,7 @@ static void emit_used_constants(const struct emitter *e, bool lets)
 			mpq_t value;
 			mpq_init(value);
 			constant_value(&collector, s->form, value);
-			fprintf(e->to, "    const double %s = %s;\n", s->c_name, shortest(round_rational(value)));
+			fprintf(e->to, "    const double %s = %s;\n", s->c_name, finite_text(s->at, value));
 			mpq_clear(value);
 		} else if (lets) {
 			fprintf(e->to, "    const double %s = %s;\n", s->c_name, c_expression(s->value));
@@ -561,12 +568,12 @@ static void emit_at(const struct emitter *e)
 	double *A = ARRAY(double, cells);
 	for (size_t i = 0; i < cells; i++)
 		A[i] = round_rational(series->A[i]);
-	fprintf(to, "\n/* x' = A x; x = y%s */\nstatic const double slope[%d][%d] = {\n", series->size > e->model->states ? ", then what acts on it" : "",
-		series->size, series->size);
+	fprintf(to, "\n/* x' = A x; x = y%s */\nstatic const double %s_slope[%d][%d] = {\n", series->size > e->model->states ? ", then what acts on it" : "",
+		e->name, series->size, series->size);
 	emit_number_rows(e, series->size, series->size, A, series_names(e, true));
 	fprintf(to, "};\n\nvoid %s_at(const %s *s, double tau, double y[%s_STATES])\n{\n", e->name, e->name, e->upper);
-	fprintf(to, "    static const pl_series series = {%d, %s_STATES, %d, %d, slope[0]};  /* size, states, degree, halvings */\n", series->size,
-		e->upper, series->degree, series->halvings);
+	fprintf(to, "    static const pl_series series = {%d, %s_STATES, %d, %d, %s_slope[0]};  /* size, states, degree, halvings */\n", series->size,
+		e->upper, series->degree, series->halvings, e->name);
 	fprintf(to, "    double x[%d], work[%d]%s;\n    int i;\n", series->size, 2 * series->size, any_wave(e, series->load) ? ", z[2]" : "");
 	fprintf(to, "    for (i = 0; i < %s_STATES; i++)\n        x[i] = s->y[i];\n", e->upper);
 	emit_held(e);
@@ -624,13 +631,13 @@ static void emit_jump(const struct emitter *e)
 	struct power p = power_matrix(e);
 	int n = e->model->states, size = p.size;
 	fprintf(to, "\n/* One step in two words, y%s; not named: 0 */\n", size > n ? ", then what acts on it" : "");
-	fprintf(to, "static const struct { int row, column; pl_two value; } power_entry[] = {\n");
+	fprintf(to, "static const struct { int row, column; pl_two value; } %s_power_entry[] = {\n", e->name);
 	int entries = 0;
 	for (int i = 0; i < size; i++)
 		for (int j = 0; j < size; j++) {
 			const struct coefficient *c = &p.cell[i * size + j];
-			if (c->value == 0 && c->low == 0)
-				continue;
+			if (c->value == 0 && c->low == 0 && (entries > 0 || i < size - 1 || j < size - 1))
+				continue;       /* but an array has at least one entry */
 			fprintf(to, "    {%d, %d, {%s, %s}},\n", i, j, shortest(c->value), shortest(c->low));
 			entries++;
 		}
@@ -639,13 +646,14 @@ static void emit_jump(const struct emitter *e)
 	if (any_wave(e, p.load))
 		fputs("    double z[2];\n", to);
 	fprintf(to, "    int i;\n    for (i = 0; i < %d; i++)\n        power[i].hi = power[i].lo = 0.0;\n", size * size);
-	fprintf(to, "    for (i = 0; i < %d; i++)\n        power[%d * power_entry[i].row + power_entry[i].column] = power_entry[i].value;\n", entries, size);
+	fprintf(to, "    for (i = 0; i < %d; i++)\n        power[%d * %s_power_entry[i].row + %s_power_entry[i].column] = %s_power_entry[i].value;\n", entries, size,
+		e->name, e->name, e->name);
 	fprintf(to, "    for (i = 0; i < %d; i++)\n        x[i].lo = 0.0;\n", size);
 	fprintf(to, "    for (i = 0; i < %s_STATES; i++)\n        x[i].hi = s->y[i];\n", e->upper);
 	emit_load_states(e, p.load, "x", ".hi");
 	fprintf(to, "    pl_power_apply(%d, power, work, x, w, n);\n    for (i = 0; i < %s_STATES; i++)\n        s->y[i] = x[i].hi;\n", size, e->upper);
 	if (e->waves)
-		fprintf(to, "    for (i = 0; i < %d; i++)\n        s->phase[i] = pl_turn_add(s->phase[i], pl_turn_times(phase_step[i], n));\n", e->waves);
+		fprintf(to, "    for (i = 0; i < %d; i++)\n        s->phase[i] = pl_turn_add(s->phase[i], pl_turn_times(%s_phase_step[i], n));\n", e->waves, e->name);
 	fputs("    s->k += n;\n}\n", to);
 }
 
@@ -719,7 +727,7 @@ static void emit_phi(const struct emitter *e)
 
 static void emit_name_list(const struct emitter *e, const char *array, int count, const char *const *name)
 {
-	fprintf(e->to, "static const char *const %s[] = {", array);
+	fprintf(e->to, "static const char *const %s_%s[] = {", e->name, array);
 	for (int i = 0; i < count; i++)
 		fprintf(e->to, "%s\"%s\"", i == 0 ? "" : i % 10 ? ", " : ",\n    ", name[i]);
 	fputs("};\n", e->to);
@@ -736,19 +744,21 @@ static void emit_descriptor(const struct emitter *e)
 	fputs("\n/* The same functions for programs that drive any model. */\n\n", to);
 	emit_name_list(e, "state_names", e->model->states, e->model->state_name);
 	emit_name_list(e, "output_names", e->model->outputs, output);
-	fprintf(to, "\nstatic void any_init(void *s) { %s_init((%s *)s); }\n", n, n);
-	fprintf(to, "static void any_set(void *s, double t, const double *y) { %s_set((%s *)s, t, y); }\n", n, n);
-	fprintf(to, "static void any_get(const void *s, double *y) { %s_get((const %s *)s, y); }\n", n, n);
-	fprintf(to, "static double any_time(const void *s) { return %s_time((const %s *)s); }\n", n, n);
-	fprintf(to, "static void any_step(void *s, const double *u) { (void)u; %s_step((%s *)s); }\n", n, n);
-	fprintf(to, "static void any_out(const void *s, double *out) { %s_out((const %s *)s, out); }\n", n, n);
-	fprintf(to, "static void any_run(void *s, size_t n, const double *u, double *out) { (void)u; %s_run((%s *)s, n, out); }\n", n, n);
-	if (at)
-		fprintf(to, "static void any_at(const void *s, const double *u, double tau, double *y) { (void)u; %s_at((const %s *)s, tau, y); }\n", n, n);
-	fprintf(to, "static void any_jump(void *s, uint64_t n) { %s_jump((%s *)s, n); }\n\n", n, n);
-	fprintf(to, "const pl_model %s_model = {\n    \"%s\", sizeof(%s), %s_STATES, %s_INPUTS, %s_OUTPUTS, %s_H,\n", n, n, n, N, N, N, N);
-	fputs("    state_names, NULL, output_names,\n    any_init, any_set, any_get, any_time, any_step, any_out, any_run, ", to);
-	fprintf(to, "%s, any_jump\n};\n", at ? "any_at" : "NULL");
+	static const char *const wrapper[][5] = {       /* result, name, parameters, body before the name, arguments */
+		{ "void", "init", "void *s", "", "" }, { "void", "set", "void *s, double t, const double *y", "", ", t, y" },
+		{ "void", "get", "const void *s, double *y", "", ", y" }, { "double", "time", "const void *s", "return ", "" },
+		{ "void", "step", "void *s, const double *u", "(void)u; ", "" }, { "void", "out", "const void *s, double *out", "", ", out" },
+		{ "void", "run", "void *s, size_t n, const double *u, double *out", "(void)u; ", ", n, out" },
+		{ "void", "at", "const void *s, const double *u, double tau, double *y", "(void)u; ", ", tau, y" },
+		{ "void", "jump", "void *s, uint64_t n", "", ", n" } };
+	fputc('\n', to);
+	for (size_t i = 0; i < sizeof wrapper / sizeof *wrapper; i++)   /* the tag: a parameter may bear the type's name */
+		if (at || strcmp(wrapper[i][1], "at") != 0)
+			fprintf(to, "static %s %s_any_%s(%s) { %s%s_%s((%sstruct %s *)s%s); }\n", wrapper[i][0], n, wrapper[i][1], wrapper[i][2],
+				wrapper[i][3], n, wrapper[i][1], wrapper[i][2][0] == 'c' ? "const " : "", n, wrapper[i][4]);
+	fprintf(to, "\nconst pl_model %s_model = {\n    \"%s\", sizeof(struct %s), %s_STATES, %s_INPUTS, %s_OUTPUTS, %s_H,\n", n, n, n, N, N, N, N);
+	fprintf(to, "    %s_state_names, NULL, %s_output_names,\n    %s_any_init, %s_any_set, %s_any_get, %s_any_time, %s_any_step,\n", n, n, n, n, n, n, n);
+	fprintf(to, "    %s_any_out, %s_any_run, %s, %s_any_jump\n};\n", n, n, at ? format("%s_any_at", n) : "NULL", n);
 }
 
 /* ---- the two texts ---- */

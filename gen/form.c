@@ -148,11 +148,24 @@ static void check_form(struct place at, const struct form *form)
 
 /* ---- what cannot be treated ---- */
 
+static bool holds_acceleration(const struct node *node)
+{
+	if (node->kind == NODE_NAME)
+		return node->primes == 2 || (node->symbol->kind == SYMBOL_LET && holds_acceleration(node->symbol->value));
+	for (int i = 0; i < node->children; i++)
+		if (holds_acceleration(node->child[i]))
+			return true;
+	return false;
+}
+
 static _Noreturn void not_linear(const struct collector *c, const struct node *node, const char *why)
 {
 	if (c->tolerant)
 		abandon();
 	const struct node *term = c->term ? c->term : node;
+	if (holds_acceleration(term))
+		error(term->start, "accelerations stand in every equation with constant factors: no scheme treats this",
+		      "term '%s' %s", text_between(term->start, term->end), why);
 	error(term->start, "etd1, etdrk2, etdrk4, nc2, nc3, dq4 and bm3 are the schemes that could; they are not built yet",
 	      "term '%s' %s: scheme %s cannot treat it", text_between(term->start, term->end), why, c->scheme);
 }
@@ -161,6 +174,8 @@ static _Noreturn void not_built(const struct collector *c, struct place at, cons
 {
 	if (c->tolerant)
 		abandon();
+	if (c->argument)                        /* not even then */
+		not_linear(c, c->argument, "is not linear");
 	error(at, NULL, "%s not built yet", what);
 }
 
@@ -248,12 +263,31 @@ static bool niven(bool sine, const struct form *x, mpq_ptr value)
 	return true;
 }
 
+/* tan of q pi is rational at multiples of pi/4 only. */
+static bool tangent(const struct node *node, const struct form *x, mpq_ptr value)
+{
+	mpq_srcptr pi = factor_of(x, BASIS_PI);
+	if (x->terms != 1 || !pi || mpz_cmp_ui(mpq_denref(pi), 4) > 0 || 4 % mpz_get_ui(mpq_denref(pi)) != 0)
+		return false;
+	mpz_t k;
+	mpz_init(k);
+	mpz_mul_ui(k, mpq_numref(pi), 4);
+	mpz_divexact(k, k, mpq_denref(pi));
+	unsigned long eighth = mpz_fdiv_ui(k, 4);
+	mpz_clear(k);
+	if (eighth == 2)
+		error(node->at, NULL, "tan of an odd number of quarter turns");
+	mpq_set_si(value, eighth == 0 ? 0 : eighth == 1 ? 1 : -1, 1);
+	return true;
+}
+
 static struct form *constant_call(struct collector *c, const struct node *node, const struct form *x)
 {
 	mpq_t value;
 	mpq_init(value);
 	bool trigonometric = node->function == FN_SIN || node->function == FN_COS;
-	if (!trigonometric || !niven(node->function == FN_SIN, x, value)) {
+	bool rational = node->function == FN_TAN ? tangent(node, x, value) : trigonometric && niven(node->function == FN_SIN, x, value);
+	if (!rational) {
 		constant_value(c, x, value);
 		if (!constant_function(node->at, node->function, value, value))
 			c->irrationals.used[node->function] = true;
@@ -264,9 +298,20 @@ static struct form *constant_call(struct collector *c, const struct node *node, 
 	return form;
 }
 
+/* The argument of a function that no exact scheme will take apart. */
+static struct form *collect_argument(struct collector *c, const struct node *node)
+{
+	const struct node *outer = c->argument, *term = c->term;
+	c->argument = node;
+	struct form *x = collect_node(c, node->child[0]);
+	c->argument = outer;
+	c->term = term;
+	return x;
+}
+
 static struct form *collect_sine(struct collector *c, struct node *node)
 {
-	struct form *x = collect_node(c, node->child[0]);
+	struct form *x = collect_argument(c, node);
 	if (is_constant(x))
 		return constant_call(c, node, x);
 	mpq_srcptr w = factor_of(x, BASIS_TIME);
@@ -364,7 +409,7 @@ static struct form *collect_call(struct collector *c, struct node *node)
 		return collect_sine(c, node);
 	if (node->function >= FN_MIN || node->function == FN_ABS || node->function == FN_SGN || node->function == FN_ATAN2)
 		return collect_piecewise(c, node);
-	struct form *x = collect_node(c, node->child[0]);
+	struct form *x = collect_argument(c, node);
 	if (is_constant(x))
 		return constant_call(c, node, x);
 	if (node->function == FN_EXP && x->terms <= 3 && x->term[x->terms - 1].basis.kind == BASIS_TIME)

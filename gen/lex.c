@@ -94,7 +94,9 @@ static void check_number(struct token token)
 	if (good == token.length)
 		return;
 	const char *note = "a number is written 12, 0.5, .5, 1. or 2e-3";
-	if (good > 0 && is_letter(text[good]) && text[good] != 'e' && text[good] != 'E')
+	bool exponent = (text[good] == 'e' || text[good] == 'E') && !is_letter(text[good + 1]);
+	bool hexadecimal = text[0] == '0' && (text[good] == 'x' || text[good] == 'X');
+	if (good > 0 && is_letter(text[good]) && text[good] != '_' && !exponent && !hexadecimal)
 		note = format("multiplication is written with *: %.*s*%.*s", (int)good, text, (int)(token.length - good), text + good);
 	error(token.at, note, "malformed number '%.*s'", token.length > 60 ? 60 : (int)token.length, text);
 }
@@ -117,7 +119,8 @@ static void lex_string(struct token *token, const char *text)
 {
 	const char *end = strpbrk(text + 1, "\"\n");
 	if (!end || *end == '\n')
-		error(token->at, NULL, "string without its closing quote");
+		error(token->at, token->at.offset > 0 && (is_letter(text[-1]) || is_digit(text[-1])) ? "derivatives are written with single quotes: x', x''" : NULL,
+		      "string without its closing quote");
 	token->kind = TOKEN_STRING;
 	token->length = (size_t)(end - text) + 1;
 }
@@ -126,6 +129,12 @@ static const char *character_note(const char *text)
 {
 	if (strncmp(text, "\xe2\x80\x99", 3) == 0 || strncmp(text, "\xe2\x80\xb2", 3) == 0)
 		return "the derivative is written with the plain quote: x'";
+	if (strncmp(text, "\xe2\x80\x9d", 3) == 0 || strncmp(text, "\xe2\x80\xb3", 3) == 0)
+		return "the second derivative is written with two plain quotes: x''";
+	if (strncmp(text, "\xc2\xb2", 2) == 0 || strncmp(text, "\xc2\xb3", 2) == 0)
+		return "a power is written with ^: x^2";
+	if (strncmp(text, "\xc2\xa0", 2) == 0 || strncmp(text, "\xe2\x80\xaf", 3) == 0)
+		return "this is a no-break space; a plain one is needed";
 	if (strncmp(text, "\xe2\x88\x92", 3) == 0 || strncmp(text, "\xe2\x80\x93", 3) == 0)
 		return "the minus sign is the plain -";
 	if (strncmp(text, "\xc2\xb7", 2) == 0 || strncmp(text, "\xc3\x97", 2) == 0)

@@ -81,10 +81,12 @@ static const struct option long_options[] = {
 	{ "reduce", no_argument, NULL, OPT_LATER }, { "selftest", no_argument, NULL, OPT_LATER }, { 0 }
 };
 
+static bool told;               /* that standard output cannot be written */
+
 static void finish(void)
 {
 	memory_close();
-	if (fflush(stdout) != 0 || ferror(stdout)) {
+	if (!told && (fflush(stdout) != 0 || ferror(stdout))) {
 		fprintf(stderr, "plgen: error: cannot write to standard output: %s\n", strerror(errno));
 		_exit(1);
 	}
@@ -153,6 +155,12 @@ static void read_options(int argc, char **argv, struct options *options)
 	size_t length = options->output ? strlen(options->output) : 0;
 	if (options->output && options->print == PRINT_C && (length < 3 || strcmp(options->output + length - 2, ".c") != 0))
 		wrong_usage(format("-o takes the name of a C file, FILE.c, found '%s'", options->output));
+	const char *header = options->output && options->print == PRINT_C ? format("%.*s.h", (int)length - 2, options->output) : NULL;
+	const char *path[] = { options->spec, options->output, header, options->depfile };
+	for (int i = 0; i < 4; i++)
+		for (int j = i + 1; j < 4; j++)
+			if (path[i] && path[j] && strcmp(path[i], path[j]) == 0 && strncmp(path[i], "/dev/", 5) != 0)
+				wrong_usage(format("'%s' would be written over: each file needs a name of its own", path[i]));
 }
 
 /* ---- publishing: all files are written beside their places first, then moved in ---- */
@@ -163,79 +171,85 @@ struct file {
 	size_t length;
 };
 
-static _Noreturn void cannot_write(const struct file *file)
+enum { FILES = 3 };              /* C, header, depfile */
+static struct file file[FILES];
+static int files;
+
+static _Noreturn void cannot_write(const struct file *failed)
 {
-	fprintf(stderr, "%s: error: cannot write: %s\n", file->path, strerror(errno));
-	if (file->temporary)
-		unlink(file->temporary);
+	fprintf(stderr, "%s: error: cannot write: %s\n", failed->path ? failed->path : "standard output", strerror(errno));
+	told = told || !failed->path;
+	for (int i = 0; i < files; i++)
+		if (file[i].temporary)
+			unlink(file[i].temporary);
 	exit(1);
 }
 
-static void write_all(const struct file *file, int descriptor)
+static void write_all(const struct file *f, int descriptor)
 {
-	for (size_t done = 0; done < file->length;) {
-		ssize_t written = write(descriptor, file->text + done, file->length - done);
+	for (size_t done = 0; done < f->length;) {
+		ssize_t written = write(descriptor, f->text + done, f->length - done);
 		if (written < 0 && errno == EINTR)
 			continue;
 		if (written < 0)
-			cannot_write(file);
+			cannot_write(f);
 		done += (size_t)written;
 	}
 	if (close(descriptor) != 0)
-		cannot_write(file);
+		cannot_write(f);
 }
 
-/* A device or pipe is written where it is; a file gets its new content whole, with the mode it had. */
-static void write_beside(struct file *file)
+/* A device or pipe, or what a link to nowhere names, is written where it is; a file gets its new content whole, with
+ * the mode it had. */
+static void write_beside(struct file *f)
 {
-	struct stat status;
-	bool exists = stat(file->path, &status) == 0;
-	if (exists && !S_ISREG(status.st_mode)) {
-		int descriptor = open(file->path, O_WRONLY);
+	struct stat status, link;
+	bool exists = stat(f->path, &status) == 0;
+	bool dangling = !exists && lstat(f->path, &link) == 0 && S_ISLNK(link.st_mode);
+	if (dangling || (exists && !S_ISREG(status.st_mode))) {
+		int descriptor = open(f->path, O_WRONLY | (dangling ? O_CREAT : 0), 0666);
 		if (descriptor < 0)
-			cannot_write(file);
-		write_all(file, descriptor);
+			cannot_write(f);
+		write_all(f, descriptor);
 		return;
 	}
-	char *real = exists ? realpath(file->path, NULL) : NULL;
+	char *real = exists ? realpath(f->path, NULL) : NULL;
 	if (real)
-		file->path = format("%s", real);
+		f->path = format("%s", real);
 	free(real);
 	mode_t mask = umask(0);
 	umask(mask);
-	char *temporary = format("%s.XXXXXX", file->path);
+	char *temporary = format("%s.XXXXXX", f->path);
 	int descriptor = mkstemp(temporary);
 	if (descriptor < 0)
-		cannot_write(file);
-	file->temporary = temporary;
+		cannot_write(f);
+	f->temporary = temporary;
 	if (fchmod(descriptor, exists ? status.st_mode & 07777 : 0666 & ~mask) != 0)
-		cannot_write(file);
-	write_all(file, descriptor);
+		cannot_write(f);
+	write_all(f, descriptor);
 }
 
-static void publish(int count, struct file *file)
+static void publish(void)
 {
-	for (int i = 0; i < count; i++)
+	for (int i = 0; i < files; i++)
 		if (file[i].path)
 			write_beside(&file[i]);
-	for (int i = 0; i < count; i++) {
-		if (!file[i].path) {
-			errno = 0;
-			if (fwrite(file[i].text, 1, file[i].length, stdout) != file[i].length || fflush(stdout) != 0) {
-				file[i].path = "standard output";
-				cannot_write(&file[i]);
-			}
-		} else if (file[i].temporary && rename(file[i].temporary, file[i].path) != 0) {
+	for (int i = 0; i < files; i++) {
+		errno = 0;
+		if (!file[i].path && (fwrite(file[i].text, 1, file[i].length, stdout) != file[i].length || fflush(stdout) != 0))
 			cannot_write(&file[i]);
-		}
+		if (file[i].temporary && rename(file[i].temporary, file[i].path) != 0)
+			cannot_write(&file[i]);
+		file[i].temporary = NULL;
 		free(file[i].text);
 	}
 }
 
-static FILE *open_file(struct file *file, const char *path)
+static FILE *open_file(const char *path)
 {
-	file->path = path;
-	FILE *stream = open_memstream(&file->text, &file->length);
+	struct file *f = &file[files++];
+	f->path = path;
+	FILE *stream = open_memstream(&f->text, &f->length);
 	if (!stream) {
 		fputs("plgen: error: out of memory\n", stderr);
 		exit(1);
@@ -328,8 +342,6 @@ static int fail(void)
 int main(int argc, char **argv)
 {
 	struct options options = { 0 };
-	struct file file[3] = { { 0 } };
-	int files = 0;
 	memory_open();
 	atexit(finish);
 	read_options(argc, argv, &options);
@@ -345,7 +357,7 @@ int main(int argc, char **argv)
 	if (!step && options.print != PRINT_SOLUTION)
 		return fail();
 
-	FILE *to = open_file(&file[files++], options.output);
+	FILE *to = open_file(options.output);
 	bool printed = statement_guard(print_main_text, &(struct printing){ &options, model, step, to });
 	close_file(to);
 	if (!printed) {
@@ -353,16 +365,16 @@ int main(int argc, char **argv)
 		return fail();
 	}
 	if (options.output && options.print == PRINT_C) {
-		to = open_file(&file[files++], header_path(options.output));
+		to = open_file(header_path(options.output));
 		emit_header(to, step, options.banner, options.rhs);
 		close_file(to);
 	}
 	if (options.depfile) {
-		to = open_file(&file[files++], options.depfile);
+		to = open_file(options.depfile);
 		print_depfile(to, &options, model);
 		close_file(to);
 	}
-	publish(files, file);
+	publish();
 	diagnostics_print(stderr);
 	return 0;
 }

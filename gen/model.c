@@ -186,10 +186,12 @@ static void evaluate_step(void *context)
 		if (!node)
 			abandon();
 	}
-	b->model->step_at = at;
+	b->model->step_at = b->model->end_at = at;
 	collect_constant(&b->collector, node, b->model->h);
 	if (mpq_sgn(b->model->h) <= 0)
 		error(at, NULL, "the step must be above 0");
+	if (beyond_double(b->model->h) || round_rational(b->model->h) == 0)
+		error(at, NULL, "the step is beyond the range of double");
 }
 
 /* ---- equations ---- */
@@ -199,11 +201,13 @@ struct equation_work {
 	int index;
 };
 
-/* `t` outside of a function; NULL if a let holds it */
+/* `t` outside of a function, also in a let */
 static const struct node *find_time(const struct node *node)
 {
 	if (node->kind == NODE_TIME)
 		return node;
+	if (node->kind == NODE_NAME && node->symbol->kind == SYMBOL_LET)
+		return find_time(node->symbol->value);
 	for (int i = 0; i < node->children && node->kind != NODE_CALL; i++) {
 		const struct node *found = find_time(node->child[i]);
 		if (found)
@@ -415,7 +419,10 @@ static void evaluate_initial(void *context)
 	struct initial_work *work = context;
 	const struct initial *initial = &work->b->spec->initial[work->index];
 	int state = initial->coord->index + initial->primes * work->b->model->n;
-	collect_constant(&work->b->collector, initial->value, work->b->model->initial[state]);
+	mpq_ptr value = work->b->model->initial[state];
+	collect_constant(&work->b->collector, initial->value, value);
+	if (beyond_double(value))
+		error(initial->value->start, NULL, "the initial value is beyond the range of double");
 }
 
 static void evaluate_initials(struct building *b)
@@ -573,7 +580,7 @@ static void check_prefix(const struct building *b)
 	const char *prefix = b->model->name, *why = prefix_objection(prefix);
 	bool given = b->overrides->prefix != NULL;
 	struct place at = given ? (struct place){ source_argument(prefix), 0 } : b->spec->name_at;
-	bool identifier = prefix[strspn(prefix, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ_0123456789")] == 0 && !strchr("0123456789", prefix[0]);
+	bool identifier = *prefix && prefix[strspn(prefix, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ_0123456789")] == 0 && !strchr("0123456789", prefix[0]);
 	if (given && !identifier)
 		say_error(at, NULL, "'%s' is not a C identifier", prefix);
 	else if (why)
@@ -589,6 +596,8 @@ static void check_parts(const struct building *b)
 		say_error(spec->end, "step 0.01, or --step 0.01 on the command line", "missing step");
 	if (2 * spec->coords > LIMIT_STATES)
 		say_error(b->model->coord[LIMIT_STATES / 2]->at, NULL, "more states than the limit of %d", LIMIT_STATES);
+	else if (spec->coords > 0)
+		check_count(b);
 }
 
 struct model *model_build(struct spec *spec, const struct overrides *overrides)
@@ -601,7 +610,7 @@ struct model *model_build(struct spec *spec, const struct overrides *overrides)
 	for (int i = 0; i < overrides->definitions; i++)
 		define_override(&b, overrides->definition[i]);
 	name_states(&b);
-	if (model->name && *model->name)
+	if (overrides->prefix || (model->name && *model->name))
 		check_prefix(&b);
 	evaluate_params(&b);
 	statement_guard(choose_scheme, &b);
@@ -613,8 +622,6 @@ struct model *model_build(struct spec *spec, const struct overrides *overrides)
 		statement_guard(evaluate_step, &b);
 	if (diagnostics_errors() == 0)
 		check_parts(&b);
-	if (diagnostics_errors() == 0)
-		check_count(&b);
 	if (diagnostics_errors())
 		return NULL;
 	model->system.n = model->n;
@@ -637,8 +644,12 @@ struct model *model_build(struct spec *spec, const struct overrides *overrides)
 void argument_value(struct model *model, const char *text, mpq_ptr value)
 {
 	struct collector collector = { .scheme = "exact" };
-	struct node *node = parse_argument((struct spec *)model->spec, source_argument(text), 0);
+	struct place at = { source_argument(text), 0 };
+	struct node *node = parse_argument((struct spec *)model->spec, at.source, 0);
 	if (!node)
 		abandon();
 	collect_constant(&collector, node, value);
+	if (mpq_sgn(value) < 0)
+		error(at, NULL, "--solution takes a time that is not below 0");
+	model->end_at = at;
 }

@@ -3,6 +3,8 @@
 #include "plgen.h"
 
 #include <string.h>
+#include <strings.h>
+#include <strings.h>
 
 static const char *const function_names[] = {
 	"", "sin", "cos", "tan", "exp", "log", "sqrt", "abs", "sgn", "sinh", "cosh", "tanh",
@@ -79,14 +81,16 @@ bool is_reserved(const char *name)
 
 const char *prefix_objection(const char *name)
 {
-	if (strcmp(name, "pl") == 0 || strncmp(name, "pl_", 3) == 0)
+	if (strcmp(name, "pl") == 0 || strncmp(name, "pl_", 3) == 0 || strcasecmp(name, "plrt") == 0)
 		return "is kept for the runtime";
 	if (LISTED(name, library))
 		return "is a name of the C library";
 	if (is_reserved(name))
 		return "is a reserved word";
 	if (name[0] == '_')
-		return "starts with _, which C keeps for itself";
+		return "starts with _, which C keeps for itself,";
+	if (may_be_macro(name))
+		return "is or may be a macro of C";
 	return NULL;
 }
 
@@ -123,6 +127,8 @@ const char *nearest_name(const char *name, int count, const char *const *known)
 	int distance = (int)strlen(name) <= 2 ? 2 : 3;
 	for (int i = 0; i < count; i++) {
 		int d = edit_distance(name, known[i]);
+		if (d > 0 && strcasecmp(name, known[i]) == 0)
+			return known[i];
 		if (d > 0 && d < distance && d < (int)strlen(name)) {
 			best = known[i];
 			distance = d;

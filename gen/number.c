@@ -22,6 +22,18 @@ double round_rational(mpq_srcptr q)
 	return d == 0 ? 0 : d;          /* no negative zero */
 }
 
+bool beyond_double(mpq_srcptr q)
+{
+	return isinf(round_rational(q));
+}
+
+const char *finite_text(struct place at, mpq_srcptr q)
+{
+	if (beyond_double(q))
+		error(at, NULL, "the value is beyond the range of double");
+	return shortest(round_rational(q));
+}
+
 bool round_enclosure(mpfi_srcptr x, double *d)
 {
 	double left = mpfr_get_d(&x->left, MPFR_RNDN), right = mpfr_get_d(&x->right, MPFR_RNDN);

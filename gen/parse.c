@@ -10,9 +10,12 @@ struct parser {
 	struct lexer lexer;
 	struct token token;         /* the next one, not yet taken */
 	struct place end;           /* just after the last one taken */
+	size_t operand_end;         /* just after the last operand: there an operator may be missing */
 	size_t statement;           /* offset where it starts */
 	int nesting;
 };
+
+static const char WORD[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ_0123456789";
 
 static struct node *read_expression(struct parser *p);
 
@@ -40,10 +43,34 @@ static bool take_op(struct parser *p, const char *op)
 	return true;
 }
 
+/* 1,5 */
+static bool decimal_comma(const struct parser *p)
+{
+	const char *text = p->lexer.source->text + p->token.at.offset;
+	size_t before = p->token.at.offset;
+	bool number = p->token.kind == TOKEN_NUMBER && before > 1 && text[-1] == ',' && text[-2] >= '0' && text[-2] <= '9';
+	return number || (is_op(p, ",") && before > 0 && text[-1] >= '0' && text[-1] <= '9' && text[1] >= '0' && text[1] <= '9');
+}
+
+/* A name before a single =: the next definition of a list, its comma forgotten. */
+static bool starts_definition(const struct parser *p)
+{
+	const char *text = p->lexer.source->text + p->token.at.offset + p->token.length;
+	text += strspn(text, " \t");
+	return p->token.kind == TOKEN_NAME && text[0] == '=' && text[1] != '=';
+}
+
 /* What usually stands behind a token that fits nowhere. */
 static const char *stray_note(const struct parser *p)
 {
-	if (p->token.kind == TOKEN_NAME || p->token.kind == TOKEN_NUMBER || is_op(p, "("))
+	bool after_operand = p->operand_end > 0 && p->operand_end == p->end.offset;
+	if (decimal_comma(p))
+		return "the decimal mark is the point: 1.5";
+	if (is_op(p, ";") && p->nesting == 0)
+		return "each statement has its own line; the parts of one are separated by commas";
+	if (starts_definition(p))
+		return "definitions are separated by commas";
+	if (after_operand && (p->token.kind == TOKEN_NAME || p->token.kind == TOKEN_NUMBER || is_op(p, "(")))
 		return "multiplication is written with *";
 	if (is_op(p, "=="))
 		return "an equation has a single =";
@@ -129,8 +156,37 @@ struct symbol *spec_find(const struct spec *spec, const char *name)
 	return NULL;
 }
 
+static bool begins(const char *line, const char *word)
+{
+	size_t length = strlen(word);
+	return strncmp(line, word, length) == 0 && (line[length] == ' ' || line[length] == '\t');
+}
+
+/* Whether the rest of this statement or a later one declares it: then the order is what is wrong. */
+static bool declared_later(const struct parser *p, const char *name)
+{
+	size_t length = strlen(name);
+	const char *rest = p->lexer.source->text + p->lexer.position;
+	for (const char *line = p->lexer.source->text + p->statement; line; line = strchr(line, '\n'), line = line ? line + 1 : NULL) {
+		line += strspn(line, " \t");
+		bool coord = begins(line, "coord");
+		if (!coord && !begins(line, "param") && !begins(line, "let"))
+			continue;
+		for (const char *at = line + 3; *at && !strchr("\n#", *at); at++) {
+			size_t word = strspn(at, WORD);
+			const char *after = at + word + strspn(at + word, " \t");
+			if (word == length && at >= rest && strncmp(at, name, word) == 0 && (coord || (after[0] == '=' && after[1] != '=')))
+				return true;
+			at += word > 0 ? word - 1 : 0;
+		}
+	}
+	return false;
+}
+
 static _Noreturn void unknown_name(const struct parser *p, struct token token)
 {
+	if (declared_later(p, token.name))
+		error(token.at, "names are declared before use; this one is declared further down", "unknown name '%s'", token.name);
 	error(token.at, spec_suggestion(p->spec, token.name), "unknown name '%s'", token.name);
 }
 
@@ -212,8 +268,7 @@ static struct node *read_bracket(struct parser *p)
 	return inner;
 }
 
-/* primary: NUMBER | pi | t | name | call | ( expression ) */
-static struct node *read_primary(struct parser *p)
+static struct node *read_operand(struct parser *p)
 {
 	if (is_op(p, "("))
 		return read_bracket(p);
@@ -240,11 +295,19 @@ static struct node *read_primary(struct parser *p)
 		node->end = p->end;
 		return node;
 	}
-	if (is_reserved(name.name))
+	if (is_reserved(name.name) && !spec_find(p->spec, name.name))   /* else broken: told where it is declared */
 		error(name.at, NULL, "'%s' is a reserved word", name.name);
 	if (is_op(p, "[") && p->token.at.offset == p->end.offset)
 		error(p->token.at, NULL, "components of vectors are not built yet");
 	return resolve_name(p, name);
+}
+
+/* primary: NUMBER | pi | t | name | call | ( expression ) */
+static struct node *read_primary(struct parser *p)
+{
+	struct node *operand = read_operand(p);
+	p->operand_end = p->end.offset;
+	return operand;
 }
 
 static struct node *read_unary(struct parser *p);
@@ -383,7 +446,7 @@ static struct symbol *declare(struct parser *p, struct token name, enum symbol_k
 	if (known && known->broken)
 		abandon();
 	if (known)
-		error(name.at, NULL, "'%s' is declared already, as a %s", name.name, kind_text(known));
+		error(name.at, NULL, "'%s' is declared already, as %s %s", name.name, known->kind == SYMBOL_OUTPUT ? "an" : "a", kind_text(known));
 	int *counts[] = { &spec->params, &spec->coords, &spec->lets, &spec->outputs };
 	struct symbol *symbol = NEW(struct symbol);
 	*symbol = (struct symbol){ .kind = kind, .name = name.name, .at = name.at, .statement = p->statement, .broken = broken };
@@ -418,7 +481,7 @@ static void read_let(struct parser *p)
 /* model: model NAME */
 static void read_model(struct parser *p)
 {
-	if (p->spec->name)
+	if (p->spec->name && *p->spec->name)
 		error(last_token(p, 5), NULL, "the model is named already: '%s'", p->spec->name);
 	if (p->token.kind != TOKEN_NAME || p->token.primes > 0)
 		unexpected(p, "the model's name");
@@ -555,19 +618,30 @@ static const struct statement *statement_of(struct token token)
 	return NULL;
 }
 
-/* A line such as `parm m = 1` is meant as a statement: say so rather than that its first word is unknown. */
-static void check_statement_word(const struct parser *p)
+static const char *nearest_statement(const char *word)
 {
-	struct lexer ahead = p->lexer;
-	struct token token = p->token;
-	if (token.kind != TOKEN_NAME || token.primes > 0 || spec_find(p->spec, token.name) || is_reserved(token.name) || ahead.position >= ahead.end)
-		return;
-	if (lex_next(&ahead).kind != TOKEN_NAME)
-		return;
 	const char *known[sizeof statements / sizeof *statements];
 	for (size_t i = 0; i < sizeof statements / sizeof *statements; i++)
 		known[i] = statements[i].word;
-	const char *nearest = nearest_name(token.name, (int)(sizeof statements / sizeof *statements), known);
+	return nearest_name(word, (int)(sizeof statements / sizeof *statements), known);
+}
+
+/* A line such as `parm m = 1` or `stpe 0.01`: no expression starts with a name and a name or number. */
+static bool resembles_statement(const struct spec *spec, struct token token)
+{
+	const char *text = token.at.source->text + token.at.offset + token.length;
+	size_t space = strspn(text, " \t");
+	return token.kind == TOKEN_NAME && token.primes == 0 && space > 0 && strspn(text + space, WORD) > 0 &&
+	       !spec_find(spec, token.name) && !is_reserved(token.name);
+}
+
+/* It is meant as a statement: say so rather than that its first word is unknown. */
+static void check_statement_word(const struct parser *p)
+{
+	struct token token = p->token;
+	if (!resembles_statement(p->spec, token))
+		return;
+	const char *nearest = nearest_statement(token.name);
 	error(token.at, nearest ? format("did you mean '%s'?", nearest) : NULL, "unknown statement '%s'", token.name);
 }
 
@@ -581,6 +655,8 @@ static void read_equation(struct parser *p)
 	ENLARGE(spec->equation, (size_t)spec->equations);
 	spec->equation[spec->equations - 1] = equation;
 	equation.left = read_expression(p);
+	if (p->token.kind == TOKEN_END && equation.left->kind == NODE_COMPARE && equation.left->comparison == CMP_EQ)
+		error(equation.left->at, "an equation has a single =", "expected an operator or the '=' of the equation, found '=='");
 	if (!is_op(p, "="))
 		unexpected(p, "an operator or the '=' of the equation");
 	take(p);
@@ -602,6 +678,8 @@ static void read_statement(void *context)
 		p->spec->name = "";             /* told once */
 		error(p->token.at, "a spec begins with its name: model NAME", "expected the statement 'model', found %s", token_text(p->token));
 	}
+	if (!p->spec->name)
+		p->spec->name = "";             /* should its statement fail, that is told */
 	if (!statement) {
 		read_equation(p);
 	} else if (!statement->read) {
@@ -618,27 +696,51 @@ static void declare_broken(void *context)
 {
 	struct parser *p = context;
 	struct token token = p->token;
-	if (!spec_find(p->spec, token.name) && !is_reserved(token.name))
+	if (!spec_find(p->spec, token.name))
 		declare(p, token, SYMBOL_PARAM, true);
+}
+
+/* The statement that starts at `from`, or that its misspelt first word is meant for. Nothing is lexed: what cannot be
+ * has been told, and no guard stands around this. */
+static const struct statement *failed_statement(const struct parser *p, size_t from, size_t *after)
+{
+	const char *text = p->lexer.source->text + from;
+	size_t length = strspn(text, WORD);
+	struct token token = { TOKEN_NAME, { p->lexer.source, from }, length, "", format("%.*s", (int)length, text), text[length] == '\'' };
+	const struct statement *statement = statement_of(token);
+	*after = from + length;
+	if (statement || !resembles_statement(p->spec, token))
+		return statement;
+	const char *nearest = nearest_statement(token.name);
+	for (size_t i = 0; nearest && i < sizeof statements / sizeof *statements; i++)
+		if (strcmp(nearest, statements[i].word) == 0)
+			return &statements[i];
+	return NULL;
 }
 
 /* The names that a failed statement would have declared are known but broken, so that their use is not told as well. */
 static void declare_what_failed(struct parser *p, size_t from)
 {
 	const char *text = p->lexer.source->text;
-	struct lexer word = { p->lexer.source, from, p->lexer.end };
-	const struct statement *statement = statement_of(lex_next(&word));
+	size_t after;
+	const struct statement *statement = failed_statement(p, from, &after);
 	bool all = statement && (statement->read == read_coord || !statement->read);
 	if (!statement || (!all && statement->read != read_param && statement->read != read_let && statement->read != read_output))
 		return;
-	for (size_t i = word.position; i < p->lexer.end; i++) {
+	bool listed = true;                     /* here a definition starts, even one without its = */
+	int depth = 0;
+	for (size_t i = after; i < p->lexer.end; i++) {
 		if (text[i] == '#')
 			break;
-		size_t length = strspn(text + i, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ_0123456789");
-		if (length == 0)
+		size_t length = strspn(text + i, WORD);
+		if (length == 0) {
+			depth += strchr("([{", text[i]) ? 1 : strchr(")]}", text[i]) ? -1 : 0;
+			listed = depth == 0 && (text[i] == ',' || (listed && strchr(" \t", text[i])));
 			continue;
-		size_t after = i + length + strspn(text + i + length, " \t");
-		bool defined = text[after] == '=' && text[after + 1] != '=';
+		}
+		const char *next = text + i + length + strspn(text + i + length, " \t");
+		bool defined = listed || (next[0] == '=' && next[1] != '=');
+		listed = false;
 		if ((all || defined) && !strchr("0123456789", text[i])) {
 			p->token = (struct token){ TOKEN_NAME, { p->lexer.source, i }, length, "", format("%.*s", (int)length, text + i), 0 };
 			statement_guard(declare_broken, p);

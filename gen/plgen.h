@@ -63,6 +63,7 @@ struct source {
 	const char *base;           /* without folders: what generated text shows */
 	const char *text;           /* ends with a 0 byte that does not count */
 	size_t length;
+	int order;                  /* in which they were opened: the spec first */
 };
 struct place {
 	const struct source *source;
@@ -221,6 +222,7 @@ struct collector {
 	struct irrationals irrationals;
 	const char *scheme;         /* for the message about a term that it cannot treat */
 	const struct node *term;    /* the innermost additive term being collected */
+	const struct node *argument; /* the innermost function of which an argument is being collected that must be linear */
 	bool constant_only;         /* a param, a step, an initial value */
 	bool tolerant;              /* give up in silence on what is not linear: an output may be */
 };
@@ -269,6 +271,7 @@ struct model {
 	mpq_t *initial;             /* one per state */
 	mpq_t h;
 	struct place step_at;       /* where h is given */
+	struct place end_at;         /* where the end of --solution is given, else h */
 	enum scheme scheme;
 	int outputs;
 	struct output *output;
@@ -386,6 +389,8 @@ const struct poly *resolvent_determinant(const struct resolvent *r);           /
 /* ---- number.c: the border to rounded numbers ---- */
 
 double round_rational(mpq_srcptr q);                        /* nearest double; +-HUGE_VAL beyond the range */
+bool   beyond_double(mpq_srcptr q);
+const char *finite_text(struct place at, mpq_srcptr q);     /* shortest; leaves the statement at a value beyond the range */
 bool   round_enclosure(mpfi_srcptr x, double *d);           /* false: both ends do not round to one double */
 const char *shortest(double d);                             /* fewest digits that read back; a C literal of type double */
 const char *exact_text(mpq_srcptr q);                       /* a decimal if there is one, else p/q */
@@ -402,6 +407,7 @@ struct table {                      /* of one step: y+ = Phi y + sum of columns 
 	struct coefficient *Phi;    /* states x states */
 	struct coefficient *load;   /* states x columns: of the loads in order, cos before sin */
 };
+void check_pole_size(const struct model *model, const struct resolvent *resolvent); /* leaves the statement where |p| h is hopeless */
 struct coefficient coefficient_of_rational(mpq_srcptr q);
 /* Rounded, infinite beyond the range; `at` and `what` name it where it cannot be decided. */
 struct coefficient response_value(struct response *response, mpq_srcptr tau, bool two_words, struct place at, const char *what);
@@ -473,7 +479,8 @@ const char *irrationals_text(const struct irrationals *used);
 
 /* ---- cprint.c: expressions as C ---- */
 
-void name_for_c(const struct spec *spec);                   /* gives every symbol its C identifiers, clear of each other */
+bool may_be_macro(const char *name);
+void name_for_c(const struct spec *spec, const char *name, const char *upper); /* gives every symbol its C identifiers, clear of each other */
 const char *c_expression(const struct node *node);          /* fit for a term of a sum; accelerations count as 0 */
 bool vanishes(const struct node *node);                     /* nothing is left when accelerations are 0 */
 void mark_used(const struct node *node, bool *math);        /* flags the symbols that it needs; *math: it needs <math.h> */

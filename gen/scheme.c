@@ -172,6 +172,7 @@ static void build(void *context)
 	const struct model *model = step->model;
 	step->written = resolvent_of(&model->system);
 	step->solved = step->written;
+	check_pole_size(model, step->written);
 	step->system = model->system;
 	if (model->scheme == SCHEME_PL) {
 		step->system = piecewise_laplace(&model->system);

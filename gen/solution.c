@@ -21,7 +21,7 @@ static unsigned long last_step(const struct model *model, mpq_srcptr end)
 	mpq_div(steps, end, model->h);
 	mpz_fdiv_q(last, mpq_numref(steps), mpq_denref(steps));
 	if (mpz_cmp_ui(last, LIMIT_ROWS) >= 0)
-		error(model->step_at, NULL, "--solution would print more rows than the limit of %d", LIMIT_ROWS);
+		error(model->end_at, NULL, "--solution would print more rows than the limit of %d", LIMIT_ROWS);
 	unsigned long rows = mpz_get_ui(last);
 	mpq_clear(steps);
 	mpz_clear(last);
@@ -31,6 +31,7 @@ static unsigned long last_step(const struct model *model, mpq_srcptr end)
 void print_solution(FILE *to, const struct model *model, struct resolvent *written, mpq_srcptr end)
 {
 	check_outputs(model);
+	check_pole_size(model, written);
 	unsigned long last = last_step(model, end);
 	struct response **response = ARRAY(struct response *, (size_t)model->outputs);
 	fputc('t', to);
@@ -46,7 +47,7 @@ void print_solution(FILE *to, const struct model *model, struct resolvent *writt
 		for (int j = 0; j < model->outputs; j++) {
 			struct coefficient value = response_value(response[j], t, false, model->step_at, model->output[j].name);
 			if (!isfinite(value.value))
-				error(model->step_at, NULL, "output '%s' leaves the range of double at t = %s s", model->output[j].name, readable_text(t));
+				error(model->end_at, NULL, "output '%s' leaves the range of double at t = %s s", model->output[j].name, readable_text(t));
 			fprintf(to, ",%.17g", value.value);
 		}
 		fputc('\n', to);

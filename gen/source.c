@@ -90,9 +90,10 @@ int diagnostics_errors(void)
 
 static size_t line_start(const struct source *source, size_t offset)
 {
+	size_t from = offset;
 	while (offset > 0 && source->text[offset - 1] != '\n')
 		offset--;
-	return offset;
+	return offset == 0 && from >= 3 && strncmp(source->text, "\xef\xbb\xbf", 3) == 0 ? 3 : offset;   /* the mark is no column */
 }
 
 static bool is_continuation(char c)
@@ -106,6 +107,18 @@ static size_t count_characters(const char *text, size_t length)
 	for (size_t i = 0; i < length; i++)
 		count += !is_continuation(text[i]);
 	return count;
+}
+
+/* Length of the well-formed UTF-8 character at `s`, 0 if there is none (s ends with a 0 byte). */
+static size_t character_length(const unsigned char *s)
+{
+	size_t length = s[0] < 0x80 ? 1 : s[0] >= 0xc2 && s[0] < 0xe0 ? 2 : (s[0] & 0xf0) == 0xe0 ? 3 : s[0] >= 0xf0 && s[0] < 0xf5 ? 4 : 0;
+	for (size_t i = 1; i < length; i++)
+		if ((s[i] & 0xc0) != 0x80)
+			return 0;
+	bool overlong = (s[0] == 0xe0 && s[1] < 0xa0) || (s[0] == 0xf0 && s[1] < 0x90);
+	bool no_character = (s[0] == 0xed && s[1] > 0x9f) || (s[0] == 0xf4 && s[1] > 0x8f);
+	return overlong || no_character ? 0 : length;
 }
 
 /* The source line and a caret under the place; of a very long line the surroundings of the place. */
@@ -124,9 +137,13 @@ static void print_line(FILE *to, struct place at)
 		until++;
 	while (until > from && (source->text[until - 1] == '\r' || (until < source->length && is_continuation(source->text[until]))))
 		until--;
-	for (size_t i = from; i < until; i++) {
+	for (size_t i = from, length; i < until; i += length) {
 		unsigned char c = (unsigned char)source->text[i];
-		putc((c < ' ' && c != '\t') || c == 127 ? '?' : c, to);
+		length = character_length((const unsigned char *)source->text + i);
+		if (length == 0 || (c < ' ' && c != '\t') || c == 127)
+			length = (size_t)fprintf(to, "?");
+		else
+			fwrite(source->text + i, 1, length, to);
 	}
 	putc('\n', to);
 	for (size_t i = from; i < at.offset && i < until; i++)
@@ -135,14 +152,22 @@ static void print_line(FILE *to, struct place at)
 	fputs("^\n", to);
 }
 
-static void print_one(FILE *to, const struct diagnostic *d)
+/* Where the counting of lines stands: places come in order. */
+struct count {
+	const struct source *source;
+	size_t offset, line;
+};
+
+static void print_one(FILE *to, const struct diagnostic *d, struct count *count)
 {
 	const struct source *source = d->at.source;
-	size_t line = 1, start = line_start(source, d->at.offset);
-	for (size_t i = 0; i < start; i++)
-		line += source->text[i] == '\n';
+	size_t start = line_start(source, d->at.offset);
+	if (count->source != source)
+		*count = (struct count){ source, 0, 1 };
+	for (; count->offset < start; count->offset++)
+		count->line += source->text[count->offset] == '\n';
 	size_t column = 1 + count_characters(source->text + start, d->at.offset - start);
-	fprintf(to, "%s:%zu:%zu: %s: %s\n", source->name, line, column, d->severity, d->message);
+	fprintf(to, "%s:%zu:%zu: %s: %s\n", source->name, count->line, column, d->severity, d->message);
 	print_line(to, d->at);
 	if (d->note)
 		fprintf(to, "note: %s\n", d->note);
@@ -152,7 +177,7 @@ static int by_place(const void *left, const void *right)
 {
 	const struct diagnostic *a = left, *b = right;
 	if (a->at.source != b->at.source)
-		return strcmp(a->at.source->name, b->at.source->name);
+		return a->at.source->order - b->at.source->order;
 	if (a->at.offset != b->at.offset)
 		return a->at.offset < b->at.offset ? -1 : 1;
 	return a->number - b->number;
@@ -162,34 +187,26 @@ void diagnostics_print(FILE *to)
 {
 	if (said_count == 0)
 		return;
+	struct count count = { NULL, 0, 1 };
 	qsort(said, (size_t)said_count, sizeof *said, by_place);
 	for (int i = 0; i < said_count; i++)
-		print_one(to, &said[i]);
+		if (i == 0 || said[i].at.source != said[i - 1].at.source || said[i].at.offset != said[i - 1].at.offset ||
+		    strcmp(said[i].message, said[i - 1].message) != 0)
+			print_one(to, &said[i], &count);        /* a let that two equations use is told once */
 	said_count = 0;
 }
 
 static struct source *source_new(const char *name, const char *base, char *text, size_t length)
 {
 	struct source *source = NEW(struct source);
-	*source = (struct source){ name, base, text, length };
+	static int sources;
+	*source = (struct source){ name, base, text, length, sources++ };
 	return source;
 }
 
 struct source *source_argument(const char *text)
 {
 	return source_new("<command line>", "command line", format("%s", text), strlen(text));
-}
-
-/* Length of the well-formed UTF-8 character at `s`, 0 if there is none (s ends with a 0 byte). */
-static size_t character_length(const unsigned char *s)
-{
-	size_t length = s[0] < 0x80 ? 1 : s[0] >= 0xc2 && s[0] < 0xe0 ? 2 : (s[0] & 0xf0) == 0xe0 ? 3 : s[0] >= 0xf0 && s[0] < 0xf5 ? 4 : 0;
-	for (size_t i = 1; i < length; i++)
-		if ((s[i] & 0xc0) != 0x80)
-			return 0;
-	bool overlong = (s[0] == 0xe0 && s[1] < 0xa0) || (s[0] == 0xf0 && s[1] < 0x90);
-	bool no_character = (s[0] == 0xed && s[1] > 0x9f) || (s[0] == 0xf4 && s[1] > 0x8f);
-	return overlong || no_character ? 0 : length;
 }
 
 /* Text that is no text is told at its first bad byte, before any statement is looked at. */

@@ -1,0 +1,353 @@
+#!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
+#
+# publish.sh PLGEN SPEC: what reaches files and standard output, and what is left when it cannot. SPEC is a good model.
+set -u
+plgen=$1
+spec=$2
+case $plgen in /*) ;; *) plgen=$PWD/$plgen ;; esac
+case $spec in /*) ;; *) spec=$PWD/$spec ;; esac
+LC_ALL=C
+export LC_ALL
+work=$(mktemp -d) || exit 1
+trap 'chmod -R u+w "$work"; rm -rf "$work"' EXIT
+trap 'exit 1' HUP INT TERM
+cd "$work" || exit 1
+cp "$spec" model.spec
+umask 022
+
+number=0
+failed=0
+why=
+
+result()        # NAME: `why` holds what is wrong
+{
+	number=$((number + 1))
+	if [ -z "$why" ]; then
+		echo "ok $number - $1"
+	else
+		failed=$((failed + 1))
+		echo "not ok $number - $1"
+		echo "$why" | tr '\001-\010\013-\037\177-\377' '?' | sed '/^$/d; s/^/# /'
+	fi
+	why=
+}
+
+skip()          # NAME REASON
+{
+	number=$((number + 1))
+	echo "ok $number - $1 # SKIP $2"
+}
+
+wrong()
+{
+	why="$why
+$1"
+}
+
+run()           # the command's output goes to out and err
+{
+	"$@" > "$work/out" 2> "$work/err" < /dev/null
+	status=$?
+}
+
+need_status()
+{
+	[ "$status" -eq "$1" ] || wrong "exit status $status, expected $1; standard error: $(head -n 3 "$work/err")"
+}
+
+need_message()  # TEXT: a part of standard error, at the head of a line
+{
+	grep -q "^$1" "$work/err" || wrong "standard error has no '$1': $(head -n 3 "$work/err")"
+}
+
+need_silence()
+{
+	[ -s "$work/err" ] && wrong "standard error is not empty: $(head -n 3 "$work/err")"
+}
+
+need_text()     # FILE TEXT
+{
+	[ "$(cat "$1" 2>&1)" = "$2" ] || wrong "$1 is not as it was: $(head -n 2 "$1" 2>&1)"
+}
+
+need_same()     # A B
+{
+	cmp "$1" "$2" > "$work/cmp" 2>&1 || wrong "$1 and $2 differ: $(cat "$work/cmp")"
+}
+
+need_files()    # FOLDER LIST: nothing half-written, no temporaries
+{
+	found=$(ls -A "$1" | tr '\n' ' ')
+	[ "$found" = "$2${2:+ }" ] || wrong "files in $1: $found, expected $2"
+}
+
+echo "1..35"
+
+# ---- a full disk ----
+
+full()          # NAME OPTIONS...
+{
+	name=$1
+	shift
+	if ! [ -c /dev/full ]; then
+		skip "$name" "no /dev/full"
+		return
+	fi
+	"$plgen" "$@" > /dev/full 2> "$work/err" < /dev/null
+	status=$?
+	need_status 1
+	need_message 'standard output: error: cannot write: \|plgen: error: cannot write to standard output: '
+	[ "$(wc -l < "$work/err")" -eq 1 ] || wrong "not told once: $(cat "$work/err")"
+	result "$name"
+}
+
+full 'full disk: C' model.spec
+full 'full disk: --header' --header model.spec
+full 'full disk: --explain' --explain model.spec
+full 'full disk: --explain=json' --explain=json model.spec
+full 'full disk: --solution' --solution 1 model.spec
+full 'full disk: --help' --help
+full 'full disk: --version' --version
+
+if [ -c /dev/full ]; then
+	run "$plgen" --header -o /dev/full model.spec
+	need_status 1
+	need_message '/dev/full: error: cannot write: '
+	result 'full disk: -o on a device'
+	mkdir depfile
+	echo before > depfile/m.c
+	run "$plgen" -o depfile/m.c --depfile /dev/full model.spec
+	need_status 1
+	need_text depfile/m.c before
+	need_files depfile m.c
+	result 'full disk: --depfile; -o is left as it was'
+else
+	skip 'full disk: -o on a device' 'no /dev/full'
+	skip 'full disk: --depfile; -o is left as it was' 'no /dev/full'
+fi
+
+# ---- files that cannot be written ----
+
+run "$plgen" -o missing/m.c model.spec
+need_status 1
+need_message 'missing/m\.c: error: cannot write: '
+[ -s out ] && wrong 'standard output is not empty'
+[ -e missing ] && wrong 'a folder was made'
+result '-o into a folder that is missing'
+
+mkdir folder folder/m.c
+run "$plgen" -o folder/m.c model.spec
+need_status 1
+need_message 'folder/m\.c: error: cannot write: '
+need_files folder m.c
+result '-o onto a folder'
+
+touch file
+run "$plgen" -o file/m.c model.spec
+need_status 1
+need_message 'file/m\.c: error: cannot write: '
+result '-o into a file as if it were a folder'
+
+mkdir blocked blocked/m.h
+echo before > blocked/m.c
+run "$plgen" -o blocked/m.c model.spec
+need_status 1
+need_message 'blocked/m\.h: error: cannot write: '
+need_text blocked/m.c before
+need_files blocked 'm.c m.h'
+need_files blocked/m.h ''
+result 'FILE.h cannot be written: FILE.c is left as it was'
+
+mkdir fresh fresh/m.h
+run "$plgen" -o fresh/m.c model.spec
+need_status 1
+need_files fresh m.h
+result 'FILE.h cannot be written: no FILE.c is made'
+
+mkdir dep
+echo before > dep/m.c
+run "$plgen" -o dep/m.c --depfile dep/missing/m.d model.spec
+need_status 1
+need_message 'dep/missing/m\.d: error: cannot write: '
+need_text dep/m.c before
+need_files dep m.c
+result 'the depfile cannot be written: FILE.c is left as it was'
+
+run "$plgen" --depfile missing/m.d model.spec
+need_status 1
+[ -s out ] && wrong 'standard output is not empty'
+result 'the depfile cannot be written: standard output stays empty'
+
+mkdir readonly
+echo before > readonly/m.c
+chmod a-w readonly
+if touch readonly/probe 2> /dev/null; then
+	rm -f readonly/probe
+	skip '-o into a read-only folder' 'this user may write anywhere'
+else
+	run "$plgen" -o readonly/m.c model.spec
+	need_status 1
+	need_message 'readonly/m\.c: error: cannot write: '
+	need_text readonly/m.c before
+	result '-o into a read-only folder'
+fi
+
+# ---- files that can ----
+
+mkdir plain
+run "$plgen" -o plain/m.c model.spec
+need_status 0
+need_silence
+[ -s out ] && wrong 'standard output is not empty'
+need_files plain 'm.c m.h'
+grep -q '^#include "m.h"' plain/m.c || wrong 'm.c does not include m.h'
+result '-o writes FILE.c and FILE.h'
+
+[ "$(ls -l plain/m.c | cut -c 1-10)" = -rw-r--r-- ] || wrong "m.c: $(ls -l plain/m.c | cut -c 1-10), expected -rw-r--r--"
+[ "$(ls -l plain/m.h | cut -c 1-10)" = -rw-r--r-- ] || wrong "m.h: $(ls -l plain/m.h | cut -c 1-10), expected -rw-r--r--"
+result 'a new file has the mode that umask leaves'
+
+mkdir mode
+echo before > mode/m.c
+echo before > mode/m.h
+chmod 640 mode/m.c
+chmod 600 mode/m.h
+run "$plgen" -o mode/m.c model.spec
+need_status 0
+[ "$(ls -l mode/m.c | cut -c 1-10)" = -rw-r----- ] || wrong "m.c: $(ls -l mode/m.c | cut -c 1-10), expected -rw-r-----"
+[ "$(ls -l mode/m.h | cut -c 1-10)" = -rw------- ] || wrong "m.h: $(ls -l mode/m.h | cut -c 1-10), expected -rw-------"
+need_same plain/m.c mode/m.c
+result 'an existing file keeps its mode'
+
+mkdir link link/real
+echo before > link/real/m.c
+ln -s real/m.c link/m.c
+run "$plgen" -o link/m.c model.spec
+need_status 0
+[ -L link/m.c ] || wrong 'the link was replaced'
+need_same plain/m.c link/real/m.c
+result '-o through a link writes the file behind it'
+
+mkdir dangling
+ln -s target.c dangling/m.c
+run "$plgen" -o dangling/m.c model.spec
+need_status 0
+[ -L dangling/m.c ] || wrong 'the link was replaced'
+need_same plain/m.c dangling/m.c
+result '-o through a link whose file is not there yet'
+
+run "$plgen" -o /dev/null model.spec
+need_status 2
+run "$plgen" --header -o /dev/null model.spec
+need_status 0
+[ -c /dev/null ] || wrong '/dev/null was replaced'
+result 'a device is written where it is'
+
+mkfifo pipe
+cat pipe > piped &
+"$plgen" --header -o pipe model.spec 2> err < /dev/null
+status=$?
+wait
+need_status 0
+need_same plain/m.h piped
+[ -p pipe ] || wrong 'the pipe was replaced'
+result 'a pipe is written where it is'
+
+mkdir 'a b'
+cp model.spec 'a b/my #1 $model.spec'
+run "$plgen" -o 'a b/m.c' 'a b/my #1 $model.spec'
+need_status 0
+need_files 'a b' 'm.c m.h my #1 $model.spec'
+grep -q 'a b/' 'a b/m.c' && wrong 'the folder stands in the C'
+result 'names with blanks'
+
+run "$plgen" model.spec
+need_status 0
+mv out first
+cp model.spec plain/model.spec
+run "$plgen" plain/model.spec
+need_status 0
+need_same first out
+result 'same bytes twice, and from another folder'
+
+"$plgen" - < model.spec > out 2> err
+status=$?
+need_status 0
+need_silence
+sed 's/model\.spec/<stdin>/' first > renamed
+need_same renamed out
+result 'standard input with -'
+
+printf 'model m\ncoord x\nx = q\nstep 1\n' | "$plgen" - > out 2> err
+status=$?
+need_status 1
+need_message '<stdin>:3:5: error: '
+[ -s out ] && wrong 'standard output is not empty'
+result 'an error in standard input'
+
+"$plgen" - < /dev/null > out 2> err
+status=$?
+need_status 1
+need_message '<stdin>:1:1: error: '
+result 'standard input that is empty'
+
+# ---- depfiles ----
+
+if command -v make > make.path 2>&1; then
+	cat > dep.mk <<'MAKE'
+all: made/m.c
+made/m.c:
+	@echo made >> made/log
+	@"$(PLGEN)" -o made/m.c --depfile made/m.d model.spec
+-include made/m.d
+MAKE
+	mkdir made
+	make -f dep.mk "PLGEN=$plgen" > make.out 2>&1 || wrong "first make: $(head -n 3 make.out)"
+	make -f dep.mk "PLGEN=$plgen" > make.out 2>&1 || wrong "second make: $(head -n 3 make.out)"
+	[ "$(wc -l < made/log)" -eq 1 ] || wrong 'made again without a change'
+	sleep 1
+	touch model.spec
+	make -f dep.mk "PLGEN=$plgen" > make.out 2>&1 || wrong "third make: $(head -n 3 make.out)"
+	[ "$(wc -l < made/log)" -eq 2 ] || wrong 'not made again after a change of the spec'
+	result 'make follows the depfile'
+
+	run "$plgen" -o 'a b/m.c' --depfile odd.d 'a b/my #1 $model.spec'
+	need_status 0
+	make -n -d -f odd.d 'a b/m.c' > make.out 2>&1
+	grep -q "Considering target file 'a b/my #1 \$model.spec'" make.out || wrong "make reads other names: $(cat odd.d)"
+	result 'blanks, # and $ in a depfile'
+else
+	skip 'make follows the depfile' 'no make'
+	skip 'blanks, # and $ in a depfile' 'no make'
+fi
+
+run "$plgen" --depfile stdout.d model.spec
+need_status 0
+need_same first out
+grep -q '^[^ ]*: model\.spec$' stdout.d || wrong "depfile: $(cat stdout.d)"
+result '--depfile with C on standard output'
+
+mkdir same
+run "$plgen" -o same/m.c --depfile same/m.c model.spec
+need_status 2
+need_files same ''
+run "$plgen" -o same/m.c --depfile same/m.h model.spec
+need_status 2
+need_files same ''
+result '-o and --depfile onto one file are refused'
+
+cp model.spec same/m.c
+run "$plgen" -o same/m.c same/m.c
+need_status 2
+need_same model.spec same/m.c
+result 'the spec is not written over'
+
+# ---- a reader that goes away ----
+
+{ "$plgen" model.spec 2> err; echo $? > pipe.status; } | head -c 10 > first.bytes
+[ "$(wc -c < first.bytes | tr -d ' ')" = 10 ] || wrong 'no output'
+grep -q 'Sanitizer\|runtime error' err && wrong "$(head -n 3 err)"
+result 'a reader that goes away'
+
+[ "$failed" -eq 0 ]

@@ -1,0 +1,231 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* mutate SEED GOOD... -- BAD...: a spec made by accident from good and bad ones, mostly good; the same for the same seed
+ * and files. */
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { ROOM = 1 << 20 };
+
+struct text {
+	char *byte;
+	size_t length;
+};
+
+static uint64_t state;
+
+/* splitmix64 (Steele, Lea, Flood 2014) */
+static uint64_t next(void)
+{
+	uint64_t z = state += UINT64_C(0x9e3779b97f4a7c15);
+	z = (z ^ (z >> 30)) * UINT64_C(0xbf58476d1ce4e5b9);
+	z = (z ^ (z >> 27)) * UINT64_C(0x94d049bb133111eb);
+	return z ^ (z >> 31);
+}
+
+static size_t below(size_t n)
+{
+	return n ? (size_t)(next() % n) : 0;
+}
+
+static struct text read_text(const char *path)
+{
+	struct text text = { malloc(ROOM), 0 };
+	FILE *file = fopen(path, "rb");
+	if (!file || !text.byte) {
+		perror(path);
+		exit(1);
+	}
+	text.length = fread(text.byte, 1, ROOM / 4, file);
+	fclose(file);
+	return text;
+}
+
+/* The bytes from `at` on, `removed` of them, give way to others. */
+static void replace(struct text *text, size_t at, size_t removed, const char *byte, size_t length)
+{
+	if (text->length - removed + length > ROOM / 2)
+		return;
+	memmove(text->byte + at + length, text->byte + at + removed, text->length - at - removed);
+	memcpy(text->byte + at, byte, length);
+	text->length += length - removed;
+}
+
+static int is_word(char c)
+{
+	return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '.';
+}
+
+/* A token around a random place: a word with its primes, or one other byte. */
+static size_t token(const struct text *text, size_t *at)
+{
+	size_t from = *at = below(text->length), until;
+	if (text->length == 0)
+		return 0;
+	while (from > 0 && is_word(text->byte[from]) && is_word(text->byte[from - 1]))
+		from--;
+	for (until = from; until < text->length && is_word(text->byte[until]);)
+		until++;
+	while (until > from && until < text->length && text->byte[until] == '\'')
+		until++;
+	*at = from;
+	return until > from ? until - from : 1;
+}
+
+/* The line around a random place, its end included. */
+static size_t line(const struct text *text, size_t *at)
+{
+	size_t from = *at = below(text->length), until;
+	while (from > 0 && text->byte[from - 1] != '\n')
+		from--;
+	for (until = from; until < text->length && text->byte[until] != '\n';)
+		until++;
+	*at = from;
+	return until + (until < text->length) - from;
+}
+
+static void flip_byte(struct text *text)
+{
+	if (text->length)
+		text->byte[below(text->length)] ^= (char)(1 << below(8));
+}
+
+static void set_byte(struct text *text)
+{
+	static const char likely[] = "()[]{};,=+-*/^<>?:'\"#.\n\t 0123456789etx_!\\\r\0\xff\xc3";
+	char byte = likely[below(sizeof likely)];
+	size_t at = below(text->length + 1);
+	replace(text, at, at < text->length && below(2), &byte, 1);
+}
+
+static void remove_token(struct text *text)
+{
+	size_t at, length = token(text, &at);
+	replace(text, at, length, "", 0);
+}
+
+static void double_token(struct text *text)
+{
+	size_t at, length = token(text, &at);
+	char *copy = malloc(length + 2);
+	copy[0] = ' ';
+	memcpy(copy + 1, text->byte + at, length);
+	replace(text, at + length, 0, copy, length + 1);
+	free(copy);
+}
+
+/* A token of this or another spec in the place of a token of this one. */
+static void splice_token(struct text *text, const struct text *other)
+{
+	const struct text *from = below(2) ? other : text;
+	size_t at, there, length = token(text, &at), taken = token(from, &there);
+	char *copy = malloc(taken + 1);
+	memcpy(copy, from->byte + there, taken);
+	replace(text, at, length, copy, taken);
+	free(copy);
+}
+
+static void insert_word(struct text *text)
+{
+	static const char *const word[] = {
+		"model", "param ", "coord ", "init ", "let ", "output ", "step ", "scheme pl\n", "input u\n", "sin(", "cos(", "exp(", "log(", "sqrt(", "abs(",
+		"atan2(", "min(", "clip(", "deadzone(", "table(", "pi", "t", "x''", "x1'", "1/0", "0^0", "^-1", "^0.5", "^2^3", "''", "(", ")", "((((((((", "))))))))",
+		"?", "? 1 : 0", "==", "<= ", "1e9999", "1e-9999", "1e308", "-", "- - - -", "# ", "\"", ",", ";", "= 0", "0*", "*t", "\n", "\r\n", "\xef\xbb\xbf", "\xcf\x89"
+	};
+	size_t at, choice = below(sizeof word / sizeof *word);
+	token(text, &at);
+	replace(text, at, 0, word[choice], strlen(word[choice]));
+}
+
+static void remove_line(struct text *text)
+{
+	size_t at, length = line(text, &at);
+	replace(text, at, length, "", 0);
+}
+
+/* A line of this or another spec at the start of a line of this one. */
+static void splice_line(struct text *text, const struct text *other)
+{
+	const struct text *from = below(2) ? other : text;
+	size_t at, there, taken = line(from, &there);
+	char *copy = malloc(taken + 1);
+	memcpy(copy, from->byte + there, taken);
+	line(text, &at);
+	replace(text, at, 0, copy, taken);
+	free(copy);
+}
+
+/* A number becomes another: huge, tiny, 0, negative, malformed. */
+static void blow_number(struct text *text)
+{
+	static const char *const number[] = {
+		"0", "-1", "1e300", "1e-300", "1e9999", "1e-9999", "1e99999", "99999999999999999999999999", "0.1000000000000000000000000000000001", "1.2.3", "1e",
+		"2^1000", "2^-1000", "2^2000000", "pi", "sqrt(2)", "exp(50)", "1/3", "(1/7)^30", "0.0", "-0", "1e5", "1e-5", "4503599627370497", "2147483648", "18446744073709551616"
+	};
+	size_t choice = below(sizeof number / sizeof *number);
+	for (int tries = 0; tries < 50; tries++) {
+		size_t at, length = token(text, &at);
+		if (length && text->byte[at] >= '0' && text->byte[at] <= '9') {
+			replace(text, at, length, number[choice], strlen(number[choice]));
+			return;
+		}
+	}
+}
+
+static void cut(struct text *text)
+{
+	text->length = below(text->length + 1);
+}
+
+/* One byte many times. */
+static void repeat_byte(struct text *text)
+{
+	static const char likely[] = "(-[)^1x \n'?";
+	char many[2000];
+	size_t length = below(6) ? below(40) : below(sizeof many);
+	memset(many, likely[below(sizeof likely - 1)], sizeof many);
+	replace(text, below(text->length + 1), 0, many, length);
+}
+
+static void mutate(struct text *text, const struct text *other)
+{
+	switch (below(16)) {
+	case 0: flip_byte(text); break;
+	case 1: set_byte(text); break;
+	case 2: remove_token(text); break;
+	case 3: double_token(text); break;
+	case 4: case 5: case 6: splice_token(text, other); break;
+	case 7: case 8: insert_word(text); break;
+	case 9: remove_line(text); break;
+	case 10: case 11: splice_line(text, other); break;
+	case 12: case 13: case 14: blow_number(text); break;
+	default:
+		if (below(4))
+			repeat_byte(text);
+		else
+			cut(text);
+	}
+}
+
+int main(int argc, char **argv)
+{
+	int split = 2;
+	while (split < argc && strcmp(argv[split], "--") != 0)
+		split++;
+	if (split < 3 || split + 1 >= argc) {
+		fputs("usage: mutate SEED GOOD... -- BAD...\n", stderr);
+		return 2;
+	}
+	size_t good = (size_t)split - 2, bad = (size_t)(argc - split) - 1;
+	state = strtoull(argv[1], NULL, 10) * UINT64_C(0x2545f4914f6cdd1d);
+	struct text text = read_text(below(4) ? argv[2 + below(good)] : argv[split + 1 + below(bad)]);
+	struct text other = read_text(below(2) ? argv[2 + below(good)] : argv[split + 1 + below(bad)]);
+	for (size_t count = 1 + below(5); count > 0; count--)
+		mutate(&text, &other);
+	size_t written = fwrite(text.byte, 1, text.length, stdout);
+	free(other.byte);
+	int failed = written != text.length;
+	free(text.byte);
+	return fflush(stdout) != 0 || failed;
+}
