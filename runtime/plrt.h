@@ -6,6 +6,7 @@
  * takes only what a model uses:
  *
  *     turns.c     phases as 128-bit fractions of a turn, and their cosine and sine
+ *     growth.c    exponents of growing and decaying loads as 128-bit numbers, and their powers
  *     series.c    x(tau) for 0 <= tau <= h: NAME_at
  *     power.c     the state n steps on in log n time: NAME_jump
  *
@@ -60,6 +61,48 @@ void pl_cossin(pl_turn a, double z[2]);
 /* What one pl_cossin costs: 19 multiplications of doubles and four products of 64-bit integers; 15 additions of
  * doubles and two of those integers. */
 enum { PL_COSSIN_MUL = 23, PL_COSSIN_ADD = 17 };
+
+/* ---- growth.c: exponential loads -------------------------------------------------------------------------- */
+
+/* An exponent of 2, a t / ln 2 for e^{a t}: (hi 2^64 + lo) 2^-112, from -2^15 to just below 2^15.  What is beyond stays at the
+ * end of this range, where the power has long been 0 or infinite.  Adding a step's exponent n times is as good as
+ * multiplying it by n: the power is off by a factor of 1 + n 2^-113, 1 + 2^-83 after 10^9 steps. */
+typedef struct pl_growth {
+    int64_t hi;
+    uint64_t lo;
+} pl_growth;
+
+/* The number that has these bits in two's complement. */
+static inline int64_t pl_growth_signed(uint64_t bits)
+{
+    return bits >> 63 ? -(int64_t)~bits - 1 : (int64_t)bits;
+}
+
+/* a + b. */
+static inline pl_growth pl_growth_add(pl_growth a, pl_growth b)
+{
+    const uint64_t x = (uint64_t)a.hi, y = (uint64_t)b.hi, lo = a.lo + b.lo, hi = x + y + (lo < a.lo);
+    const int beyond = (int)((~(x ^ y) & (x ^ hi)) >> 63); /* equal signs, but not that of the sum */
+    pl_growth sum;
+    sum.hi = !beyond ? pl_growth_signed(hi) : a.hi < 0 ? INT64_MIN : INT64_MAX;
+    sum.lo = !beyond ? lo : a.hi < 0 ? 0 : UINT64_MAX;
+    return sum;
+}
+
+/* n a. */
+pl_growth pl_growth_times(pl_growth a, uint64_t n);
+
+/* rate t, or -rate t where `negative` is not 0; rate in powers of 2 per second, t in seconds, any sign: the product is exact,
+ * then rounded once to 2^-112.  An infinite t counts as the largest finite one, and not a number as 0. */
+pl_growth pl_growth_at(const pl_rate *rate, int negative, double t);
+
+/* 2^a, off by less than 0.53 units in the last place (0.526 measured over 2 10^7 arguments; 0.508 where the result is
+ * subnormal); exactly 2^k at an integer k; 0 from 2^-1075 down, infinite from 2^1024 up. */
+double pl_growth_value(pl_growth a);
+
+/* What one pl_growth_value costs: 14 multiplications of doubles and two products of 64-bit integers; nine additions of doubles
+ * and three of those integers. */
+enum { PL_GROWTH_MUL = 16, PL_GROWTH_ADD = 12 };
 
 /* ---- series.c: between two steps ------------------------------------------------------------------------- */
 

@@ -1,115 +1,32 @@
 /* SPDX-License-Identifier: MIT-0 */
 /* Phases as 128-bit fractions of a turn.  An unsigned integer wraps where a phase does, so a phase that is counted in
  * turns does not lose accuracy with time, as w*t in radians does. */
-#include "plrt.h"
+#include "words.h"
 
 #ifdef __FAST_MATH__
 #error "turns.c needs its sums in the order written: compile it without -ffast-math"
 #endif
 
-/* a b in full, by 32-bit halves: what a Cortex-M0 multiplies, and no 128-bit type. */
-static pl_turn product(uint64_t a, uint64_t b)
-{
-    const uint64_t half = 0xFFFFFFFFu;
-    const uint64_t al = a & half, ah = a >> 32, bl = b & half, bh = b >> 32;
-    const uint64_t low = al * bl;
-    const uint64_t middle = ah * bl + (low >> 32); /* at most (2^32 - 1) 2^32: no carry */
-    const uint64_t cross = al * bh + (middle & half);
-    pl_turn p;
-    p.lo = (cross << 32) | (low & half);
-    p.hi = ah * bh + (middle >> 32) + (cross >> 32);
-    return p;
-}
-
 pl_turn pl_turn_times(pl_turn a, uint64_t n)
 {
-    pl_turn p = product(a.lo, n);
-    p.hi += a.hi * n;
-    return p;
-}
-
-static pl_turn negative(pl_turn a)
-{
-    pl_turn n;
-    n.lo = 0u - a.lo;
-    n.hi = 0u - a.hi - (a.lo != 0);
-    return n;
-}
-
-/* A 256-bit integer, least significant word first. */
-typedef struct wide {
-    uint64_t word[4];
-} wide;
-
-/* rate's 192-bit integer times m. */
-static wide rate_times(const pl_rate *rate, uint64_t m)
-{
-    wide w;
-    uint64_t carry = 0;
-    int i;
-    for (i = 0; i < 3; i++) {
-        pl_turn p = product(rate->word[2 - i], m);
-        p.lo += carry;
-        p.hi += p.lo < carry;
-        w.word[i] = p.lo;
-        carry = p.hi;
-    }
-    w.word[3] = carry;
-    return w;
-}
-
-/* The 64 bits of w from bit `from` upwards; bits outside w are 0. */
-static uint64_t bits_from(const wide *w, int from)
-{
-    uint64_t bits = 0;
-    int i;
-    for (i = 0; i < 4; i++) {
-        const int shift = 64 * i - from; /* where word i comes to lie */
-        if (shift >= 0 && shift < 64)
-            bits |= w->word[i] << shift;
-        else if (shift < 0 && shift > -64)
-            bits |= w->word[i] >> -shift;
-    }
-    return bits;
+    const words_pair p = words_product(a.lo, n);
+    pl_turn m;
+    m.lo = p.lo;
+    m.hi = p.hi + a.hi * n;
+    return m;
 }
 
 pl_turn pl_turn_at(const pl_rate *rate, double t)
 {
-    union {
-        double value;
-        uint64_t bits;
-    } time;
-    const uint64_t leading = (uint64_t)1 << 52;
-    pl_turn a = {0, 0};
-    uint64_t significand;
-    wide turns;
-    int exponent, unit;
-
-    time.value = t;
-    significand = time.bits & (leading - 1);
-    exponent = (int)(time.bits >> 52) & 0x7FF;
-    if (exponent == 0x7FF)
-        return a;
-    if (exponent != 0)
-        significand |= leading;
-    else
-        exponent = 1; /* subnormal: the same unit, no leading bit */
-    turns = rate_times(rate, significand); /* |rate t| = turns 2^(exponent - 1075 - rate->exponent) */
-
-    unit = rate->exponent - (exponent - 1075) - 128; /* the bit of `turns` that is worth 2^-128 turn */
-    a.lo = bits_from(&turns, unit);
-    a.hi = bits_from(&turns, unit + 64);
-    if (bits_from(&turns, unit - 1) & 1) { /* half a unit or more is dropped */
-        a.lo++;
-        a.hi += a.lo == 0;
-    }
-    return time.bits >> 63 ? negative(a) : a;
-}
-
-/* a b 2^-64, rounded down: the product of two fractions in units of 2^-64. */
-static uint64_t times(uint64_t a, uint64_t b)
-{
-    return product(a, b).hi;
+    int point;
+    const words_wide turns = words_rate_times(rate, t, &point);
+    words_pair p = words_rounded(&turns, point - 128); /* bit `point` is worth a turn */
+    pl_turn a;
+    if (t < 0.0)
+        p = words_negative(p);
+    a.hi = p.hi;
+    a.lo = p.lo;
+    return a;
 }
 
 enum { TERMS = 7 };
@@ -157,8 +74,10 @@ void pl_cossin(pl_turn a, double z[2])
 
     a.hi -= (uint64_t)quarter << 62; /* now -1/8 <= a < 1/8 turn */
     below = (int)(a.hi >> 63);
-    if (below)
-        a = negative(a);
+    if (below) {
+        a.lo = 0u - a.lo;
+        a.hi = 0u - a.hi - (a.lo != 0);
+    }
     a.hi = a.hi << 2 | a.lo >> 62; /* at most 2^63, in units of 2^-66 turn */
     a.lo <<= 2;
     while (a.hi >> 59 == 0 && shift < 128) { /* so that small angles keep their relative accuracy */
@@ -167,14 +86,14 @@ void pl_cossin(pl_turn a, double z[2])
         unit *= 0x1p-4;
         shift += 4;
     }
-    x = times(a.hi, half_pi); /* radians, in `unit`: less than 2^63 */
-    xx = shift < 32 ? times(2 * x, 2 * x) >> 2 * shift : 0;
+    x = words_times(a.hi, half_pi); /* radians, in `unit`: less than 2^63 */
+    xx = shift < 32 ? words_times(2 * x, 2 * x) >> 2 * shift : 0;
 
     r = (double)(int64_t)x * unit;
     rr = r * r;
     r4 = rr * rr;
     c = sum(((uint64_t)1 << 62) - (xx >> 3), 0x1p-62, r4 * cosine_rest(rr));
-    s = sum(x - times(x, times(xx, sixth)), unit, r4 * r * sine_rest(rr));
+    s = sum(x - words_times(x, words_times(xx, sixth)), unit, r4 * r * sine_rest(rr));
     s = below ? -s : s;
 
     odd = quarter & 1;
