@@ -5,7 +5,7 @@
 
 #include <math.h>
 
-enum { FIRST_PRECISION = 128 };
+enum { FIRST_PRECISION = 128, GUARD_BITS = 32 };
 
 /* log2 |p| of the largest pole is at least the largest log2 |c_i/c_d| / (d-i), less log2 d (Cauchy's bound, reversed).
  * An angle |p| h of more bits than an enclosure may have could never be reduced to a turn. */
@@ -45,45 +45,144 @@ static _Noreturn void undecided(struct place at, const char *what, bool isolated
 	error(at, note, "%s is not decided with %d bits", what, LIMIT_PRECISION);
 }
 
-/* value - subtract, rounded */
-static double rounded_difference(struct response *response, mpq_srcptr tau, double subtract, struct place at, const char *what)
+/* ---- numbers: sums of responses at a time, or combinations of entries of e^{A tau} ---- */
+
+struct number {
+	int count;
+	const struct started *list; /* responses, each from its own start to t */
+	mpq_srcptr t;
+	struct taylor *taylor;      /* or, if not NULL: sum of weight e^{A tau}[row][column] */
+	int row;
+	const int *column;
+	const mpq_t *weight;
+};
+
+/* One term; false: it is beyond the method's limits. *absent: it has not started. */
+static bool enclose_term(const struct number *n, int i, int precision, mpfi_ptr value, bool *absent)
+{
+	*absent = false;
+	if (n->taylor) {
+		taylor_entry(n->taylor, n->row, n->column[i], value);
+		mpfi_mul_q(value, value, n->weight[i]);
+		return true;
+	}
+	mpq_t tau;
+	mpq_init(tau);
+	mpq_sub(tau, n->t, n->list[i].start);
+	*absent = mpq_sgn(tau) < 0;
+	bool good = *absent || response_enclose(n->list[i].response, tau, precision, value);
+	mpq_clear(tau);
+	return good;
+}
+
+static bool enclose_number(const struct number *n, int precision, mpfi_ptr sum)
+{
+	mpfi_t value;
+	bool good = !n->taylor || taylor_enclose(n->taylor, precision), absent;
+	mpfi_init2(value, precision);
+	mpfi_set_prec(sum, precision + GUARD_BITS);
+	mpfi_set_ui(sum, 0);
+	for (int i = 0; i < n->count && good; i++) {
+		good = enclose_term(n, i, precision, value, &absent);
+		if (good && !absent)
+			mpfi_add(sum, sum, value);
+	}
+	mpfi_clear(value);
+	return good;
+}
+
+static bool exact_term(const struct number *n, int i, mpq_ptr value)
+{
+	if (n->taylor) {
+		bool exact = taylor_exact(n->taylor, n->row, n->column[i], value);
+		mpq_mul(value, value, n->weight[i]);
+		return exact;
+	}
+	mpq_t tau;
+	mpq_init(tau);
+	mpq_sub(tau, n->t, n->list[i].start);
+	mpq_set_ui(value, 0, 1);
+	bool exact = mpq_sgn(tau) < 0 || response_exact(n->list[i].response, tau, value);
+	mpq_clear(tau);
+	return exact;
+}
+
+static bool exact_number(const struct number *n, mpq_ptr sum)
+{
+	mpq_t value;
+	bool exact = true;
+	mpq_init(value);
+	mpq_set_ui(sum, 0, 1);
+	for (int i = 0; i < n->count && exact; i++) {
+		exact = exact_term(n, i, value);
+		mpq_add(sum, sum, value);
+	}
+	mpq_clear(value);
+	return exact;
+}
+
+/* number - subtract, rounded; false: not decided, *isolated says whether the poles were */
+static bool round_difference(const struct number *n, double subtract, int limit, double *value, bool *isolated)
 {
 	mpfi_t enclosure;
 	mpfi_init2(enclosure, FIRST_PRECISION);
-	double value = 0;
-	bool decided = false, isolated = true;
-	for (int precision = FIRST_PRECISION; precision <= LIMIT_PRECISION && !decided; precision *= 2) {
-		isolated = response_enclose(response, tau, precision, enclosure);
-		if (!isolated)
+	bool decided = false;
+	*isolated = true;
+	for (int precision = FIRST_PRECISION; precision <= limit && !decided && *isolated; precision *= 2) {
+		*isolated = enclose_number(n, precision, enclosure);
+		if (!*isolated)
 			break;
 		mpfi_sub_d(enclosure, enclosure, subtract);
-		decided = round_enclosure(enclosure, &value);
+		decided = round_enclosure(enclosure, value);
 	}
 	mpfi_clear(enclosure);
-	if (!decided)
+	return decided;
+}
+
+static bool round_number(const struct number *n, bool two_words, int limit, struct coefficient *c, bool *isolated)
+{
+	mpq_t exact, low;
+	bool decided = true;
+	mpq_inits(exact, low, NULL);
+	*isolated = true;
+	*c = (struct coefficient){ 0 };
+	if (exact_number(n, exact)) {
+		c->zero = mpq_sgn(exact) == 0;
+		c->value = round_rational(exact);
+		if (two_words && isfinite(c->value)) {
+			mpq_set_d(low, c->value);
+			mpq_sub(low, exact, low);
+			c->low = round_rational(low);
+		}
+	} else {
+		decided = round_difference(n, 0, limit, &c->value, isolated);
+		if (decided && two_words && isfinite(c->value))
+			decided = round_difference(n, c->value, limit, &c->low, isolated);
+	}
+	mpq_clears(exact, low, NULL);
+	return decided;
+}
+
+struct coefficient started_value(int count, const struct started *list, mpq_srcptr t, struct place at, const char *what)
+{
+	struct number number = { .count = count, .list = list, .t = t };
+	struct coefficient c;
+	bool isolated;
+	if (!round_number(&number, false, LIMIT_PRECISION, &c, &isolated))
 		undecided(at, what, isolated);
-	return value;
+	return c;
 }
 
 struct coefficient response_value(struct response *response, mpq_srcptr tau, bool two_words, struct place at, const char *what)
 {
-	struct coefficient c = { 0 };
-	mpq_t exact, low;
-	mpq_inits(exact, low, NULL);
-	if (response_exact(response, tau, exact)) {
-		c.zero = mpq_sgn(exact) == 0;
-		c.value = round_rational(exact);
-		if (two_words && isfinite(c.value)) {
-			mpq_set_d(low, c.value);
-			mpq_sub(low, exact, low);
-			c.low = round_rational(low);
-		}
-	} else {
-		c.value = rounded_difference(response, tau, 0, at, what);
-		if (two_words && isfinite(c.value))
-			c.low = rounded_difference(response, tau, c.value, at, what);
-	}
-	mpq_clears(exact, low, NULL);
+	struct started alone = { .response = response };
+	mpq_init(alone.start);
+	struct number number = { .count = 1, .list = &alone, .t = tau };
+	struct coefficient c;
+	bool isolated;
+	if (!round_number(&number, two_words, LIMIT_PRECISION, &c, &isolated))
+		undecided(at, what, isolated);
+	mpq_clear(alone.start);
 	return c;
 }
 
@@ -99,31 +198,141 @@ static void check_range(const struct model *model, const struct coefficient *c, 
 		      dominant_pole(response), readable_text(model->h));
 }
 
-struct table *table_of(const struct model *model, struct resolvent *resolvent, const struct linear *system, bool two_words)
+/* ---- a table ---- */
+
+struct filling {
+	const struct model *model;
+	const struct linear *system;
+	struct resolvent *resolvent;
+	const struct series *series;
+	struct taylor **taylor;     /* per segment of time; NULL: residues */
+	bool two_words;
+	int *column;                /* room for one combination */
+	mpq_t *weight;
+};
+
+/* By Taylor series if the filling has them and they decide it; what vanishes at this very step only residues decide. */
+static struct coefficient entry(const struct filling *f, int segment, int terms, struct response *(*respond)(const struct filling *, int, int, int, int),
+				int row, int a, int b, const char *of)
 {
-	int n = 2 * system->n, columns = load_columns(system);
-	struct table *table = NEW(struct table);
-	*table = (struct table){ n, columns, ARRAY(struct coefficient, (size_t)(n * n)), ARRAY(struct coefficient, (size_t)(n * columns)) };
-	for (int i = 0; i < n; i++) {
-		for (int j = 0; j < n; j++) {
-			const char *what = format("the factor of %s in the step of %s", model->state_name[j], model->state_name[i]);
-			struct response *response = image_of_state(resolvent, i, j);
-			table->Phi[i * n + j] = response_value(response, model->h, two_words, model->step_at, what);
-			check_range(model, &table->Phi[i * n + j], response, what);
-		}
-		for (int l = 0, column = 0; l < system->loads; l++)
-			for (int k = 0; k < system->load[l].columns; k++, column++) {
-				const char *what = format("the factor of a load in the step of %s", model->state_name[i]);
-				struct response *response = image_of_load(resolvent, i, l, k);
-				table->load[i * columns + column] = response_value(response, model->h, two_words, model->step_at, what);
-				check_range(model, &table->load[i * columns + column], response, what);
-			}
+	enum { TAYLOR_PRECISION = 2048 };
+	const char *what = format("the factor of %s in the step of %s", of, f->model->state_name[row]);
+	struct coefficient c;
+	bool isolated;
+	if (f->taylor) {
+		struct number number = { .count = terms, .taylor = f->taylor[segment], .row = row, .column = f->column, .weight = (const mpq_t *)f->weight };
+		if (round_number(&number, f->two_words, TAYLOR_PRECISION, &c, &isolated) && isfinite(c.value))
+			return c;
 	}
-	return table;
+	struct response *response = respond(f, segment, row, a, b);
+	c = response_value(response, f->model->h, f->two_words, f->model->step_at, what);
+	check_range(f->model, &c, response, what);
+	return c;
 }
 
-void rotation_of(const struct model *model, const struct wave *wave, struct coefficient *cosine, struct coefficient *sine)
+static struct response *respond_state(const struct filling *f, int segment, int row, int state, int unused)
 {
-	cosine[0] = response_value(image_of_wave(wave, false), model->h, true, model->step_at, "cos(w h)");
-	sine[0] = response_value(image_of_wave(wave, true), model->h, true, model->step_at, "sin(w h)");
+	(void)segment;
+	(void)unused;
+	return response_of_state(f->resolvent, f->system, row, state);
+}
+
+static struct response *respond_load(const struct filling *f, int segment, int row, int load, int column)
+{
+	return response_of_load(f->resolvent, f->system, segment, row, load, column);
+}
+
+static struct response *respond_input(const struct filling *f, int segment, int row, int input, int column)
+{
+	(void)segment;
+	return response_of_input(f->resolvent, f->system, row, input, column, f->model->h);
+}
+
+static int add_column(const struct filling *f, int terms, int column, mpq_srcptr weight)
+{
+	f->column[terms] = column;
+	mpq_set(f->weight[terms], weight);
+	return terms + 1;
+}
+
+/* The state itself, and what a scheme holds of it: -heldK q or -heldC v in the held terms */
+static int combine_state(const struct filling *f, int state)
+{
+	const struct linear *system = f->system;
+	const mpq_t *held = state < system->n ? system->heldK : system->heldC;
+	mpq_t weight;
+	mpq_init(weight);
+	mpq_set_ui(weight, 1, 1);
+	int terms = add_column(f, 0, state, weight);
+	for (int i = 0; i < system->n && held; i++) {
+		mpq_neg(weight, held[i * system->n + system->coord[state]]);
+		if (mpq_sgn(weight) != 0)
+			terms = add_column(f, terms, f->series->held + i, weight);
+	}
+	mpq_clear(weight);
+	return terms;
+}
+
+/* A ramp from u0 to u1: u0 (u - u'/h) + u1 u'/h */
+static int combine_input(const struct filling *f, int input, int column)
+{
+	mpq_t weight;
+	mpq_init(weight);
+	mpq_set_ui(weight, 1, 1);
+	int at = f->series->input[input], terms = column == 0 ? add_column(f, 0, at, weight) : 0;
+	if (f->system->input[input].first_order) {
+		mpq_inv(weight, f->model->h);
+		if (column == 0)
+			mpq_neg(weight, weight);
+		terms = add_column(f, terms, at + 1, weight);
+	}
+	mpq_clear(weight);
+	return terms;
+}
+
+static int combine_load(const struct filling *f, int load, int column)
+{
+	mpq_t one;
+	mpq_init(one);
+	mpq_set_ui(one, 1, 1);
+	int at = f->series->load[load], terms = at < 0 ? 0 : add_column(f, 0, at + column, one);
+	mpq_clear(one);
+	return terms;
+}
+
+static void fill_row(const struct filling *f, struct table *table, int i)
+{
+	const struct linear *system = f->system;
+	int n = table->states, columns = table->columns;
+	for (int j = 0; j < n; j++)
+		table->Phi[i * n + j] = entry(f, 0, combine_state(f, j), respond_state, i, j, 0, f->model->state_name[j]);
+	for (int s = 0; s < system->segments; s++)
+		for (int l = 0, column = 0; l < system->loads; l++)
+			for (int k = 0; k < system->load[l].columns; k++, column++)
+				table->load[(s * n + i) * columns + column] =
+					entry(f, s, combine_load(f, l, k), respond_load, i, l, k, column_text(&system->load[l], k));
+	for (int j = 0, column = 0; j < system->inputs; j++)
+		for (int k = 0; k <= system->input[j].first_order; k++, column++)
+			table->input[i * table->inputs + column] = entry(f, 0, combine_input(f, j, k), respond_input, i, j, k, system->input[j].name);
+}
+
+struct table *table_of(const struct model *model, struct resolvent *resolvent, const struct linear *system, const struct series *series, bool two_words)
+{
+	struct filling filling = { model, system, resolvent, series, NULL, two_words, ARRAY(int, (size_t)system->n + 2), rationals((size_t)system->n + 2) };
+	struct table *table = NEW(struct table);
+	size_t n = (size_t)system->states;
+	if (system->states > LIMIT_RESIDUE_STATES) {
+		filling.taylor = ARRAY(struct taylor *, (size_t)system->segments);
+		for (int s = 0; s < system->segments; s++)
+			filling.taylor[s] = taylor_of(series->size, (const mpq_t *)series_matrix(series, system, s), model->h);
+	}
+	table->states = system->states;
+	table->columns = load_columns(system);
+	table->inputs = input_columns(system);
+	table->Phi = ARRAY(struct coefficient, n * n);
+	table->load = ARRAY(struct coefficient, (size_t)system->segments * n * (size_t)table->columns);
+	table->input = ARRAY(struct coefficient, n * (size_t)table->inputs);
+	for (int i = 0; i < table->states; i++)
+		fill_row(&filling, table, i);
+	return table;
 }

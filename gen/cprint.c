@@ -74,15 +74,51 @@ static const char *claim(struct naming *naming, const char *wish)
 	return name;
 }
 
-void name_for_c(const struct spec *spec, const char *name, const char *upper)
+/* C's name of a written state */
+const char *written_local(const struct model *written, int state)
 {
-	struct naming all = { .name = name, .upper = upper }, *naming = &all;
+	int coord = written->system.coord[state];
+	const struct symbol *s = written->coord[coord];
+	bool velocity = state >= written->n;
+	if (s->length)
+		return (velocity ? s->c_component_dot : s->c_component)[coord - s->index];
+	return velocity ? s->c_dot : s->c_name;
+}
+
+/* s'' as s_dot_dot, q[1] as q1 */
+static const char *identifier(const char *name)
+{
+	const char *text = "";
+	for (; *name; name++)
+		text = *name == '\'' ? format("%s_dot", text) : *name == '[' || *name == ']' ? text : format("%s%c", text, *name);
+	return text;
+}
+
+void name_for_c(const struct model *model, const char *upper, const char **local)
+{
+	const struct spec *spec = model->spec;
+	struct naming all = { .name = model->name, .upper = upper }, *naming = &all;
 	for (struct symbol *s = spec->first; s; s = s->next)
 		if (s->kind != SYMBOL_OUTPUT)
 			s->c_name = claim(naming, s->name);
-	for (struct symbol *s = spec->first; s; s = s->next)
-		if (s->kind == SYMBOL_COORD)
+	for (struct symbol *s = spec->first; s; s = s->next) {
+		if (s->kind == SYMBOL_COORD || s->kind == SYMBOL_INPUT)
 			s->c_dot = claim(naming, format("%s_dot", s->name));
+		s->c_component = ARRAY(const char *, (size_t)s->length);
+		s->c_component_dot = ARRAY(const char *, (size_t)s->length);
+		for (int i = 0; i < s->length; i++) {
+			s->c_component[i] = claim(naming, format("%s%d", s->name, i + 1));
+			s->c_component_dot[i] = claim(naming, format("%s%d_dot", s->name, i + 1));
+		}
+	}
+	for (int i = 0; i < model->written->system.states; i++) {
+		int place = model->place ? model->place[i] : i;
+		if (place >= 0)
+			local[place] = written_local(model->written, i);
+	}
+	for (int i = 0; i < model->system.states; i++)
+		if (!local[i])
+			local[i] = claim(naming, identifier(model->state_name[i]));
 }
 
 bool vanishes(const struct node *node)
@@ -94,7 +130,7 @@ bool vanishes(const struct node *node)
 		any = any || gone;
 	}
 	switch (node->kind) {
-	case NODE_NAME:    return node->primes == 2;
+	case NODE_NAME:    return node->symbol->kind == SYMBOL_COORD && node->primes == node->symbol->highest;
 	case NODE_SUM:     return all;
 	case NODE_PRODUCT: return any;
 	case NODE_POWER:   return vanishes(node->child[0]);
@@ -120,6 +156,8 @@ void mark_used(const struct node *node, bool *math)
 {
 	if (vanishes(node))
 		return;
+	if (node->kind == NODE_NAME && node->symbol->kind == SYMBOL_INPUT && node->primes)
+		node->symbol->slope_used = true;
 	if (node->kind == NODE_NAME && !node->symbol->used) {
 		node->symbol->used = true;
 		if (node->symbol->kind == SYMBOL_LET)
@@ -190,15 +228,31 @@ static const char *fold_text(const char *function, const struct node *node)
 	return text;
 }
 
-/* Tables are of constants so far: their value stands for them. */
-static const char *table_text(const struct node *node)
+static void point(const struct node *node, int index, mpq_ptr value)
 {
 	struct collector collector = { .scheme = "exact" };
-	mpq_t value;
-	mpq_init(value);
-	collect_constant(&collector, (struct node *)node, value);
-	const char *text = finite_text(node->at, value);
-	mpq_clear(value);
+	collect_constant(&collector, node->child[index], value);
+}
+
+/* (x < x1 ? y0 + slope*(x - x0) : x < x2 ? ... ): one piece between each two points, the end ones extended */
+static const char *table_text(const struct node *node)
+{
+	const char *x = text_of(node->child[0], 5), *text = "";
+	mpq_t x0, y0, x1, y1;
+	mpq_inits(x0, y0, x1, y1, NULL);
+	for (int k = 1; k + 3 < node->children; k += 2) {
+		point(node, k, x0);
+		point(node, k + 1, y0);
+		point(node, k + 2, x1);
+		point(node, k + 3, y1);
+		const char *condition = k + 5 < node->children ? format("%s < %s ? ", x, finite_text(node->at, x1)) : "";
+		mpq_sub(y1, y1, y0);
+		mpq_sub(x1, x1, x0);
+		mpq_div(y1, y1, x1);
+		text = format("%s%s%s%s + %s*(%s - %s)", text, *text ? " : " : "", condition, finite_text(node->at, y0), finite_text(node->at, y1), x,
+			      finite_text(node->at, x0));
+	}
+	mpq_clears(x0, y0, x1, y1, NULL);
 	return format("(%s)", text);
 }
 
@@ -226,6 +280,16 @@ static const char *choice_text(const struct node *node, int tight)
 	return enclose(tight > 0, format("%s ? %s : %s", text_of(node->child[0], 1), text_of(node->child[1], 1), text_of(node->child[2], 0)));
 }
 
+static const char *name_text(const struct node *node)
+{
+	const struct symbol *s = node->symbol;
+	if (node->component)
+		return (node->primes ? s->c_component_dot : s->c_component)[node->component - 1];
+	if (s->length || s->kind == SYMBOL_MATRIX)
+		error(node->at, NULL, "vectors and matrices in outputs that are not linear are not built yet");
+	return node->primes ? s->c_dot : s->c_name;
+}
+
 static const char *text_of(const struct node *node, int tight)
 {
 	static const char *const comparisons[] = { "<", "<=", ">", ">=", "==", "!=" };
@@ -235,12 +299,14 @@ static const char *text_of(const struct node *node, int tight)
 	case NODE_NUMBER:  return finite_text(node->at, node->number);
 	case NODE_PI:      return "3.141592653589793";
 	case NODE_TIME:    return "t";
-	case NODE_NAME:    return node->primes == 1 ? node->symbol->c_dot : node->symbol->c_name;
+	case NODE_NAME:    return name_text(node);
 	case NODE_SUM:     return sum_text(node, tight);
 	case NODE_PRODUCT: return product_text(node, tight);
 	case NODE_POWER:   return power_text(node);
 	case NODE_CALL:    return call_text(node);
 	case NODE_CHOOSE:  return choice_text(node, tight);
+	case NODE_MATRIX: case NODE_FILE:
+		error(node->at, NULL, "vectors and matrices in outputs that are not linear are not built yet");
 	default:
 		return enclose(tight > 1, format("%s %s %s", text_of(node->child[0], 2), comparisons[node->comparison], text_of(node->child[1], 2)));
 	}

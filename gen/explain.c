@@ -21,16 +21,27 @@ static void person_matrix(FILE *to, const char *name, int n, const mpq_t *A)
 	}
 }
 
+static void person_force(FILE *to, const char *what, int n, const mpq_t *force)
+{
+	bool any = false;
+	for (int i = 0; i < n; i++)
+		any = any || mpq_sgn(force[i]) != 0;
+	if (!any)
+		return;
+	fprintf(to, "    %s on the equations: [", what);
+	for (int i = 0; i < n; i++)
+		fprintf(to, " %s", readable_text(force[i]));
+	fputs(" ]\n", to);
+}
+
 static void person_loads(FILE *to, const struct linear *system)
 {
 	for (int l = 0; l < system->loads; l++)
-		for (int k = 0; k < system->load[l].columns; k++) {
-			const struct wave *wave = system->load[l].wave;
-			fprintf(to, "    load %s on the equations: [", wave ? wave_text(wave, k) : "1");
-			for (int i = 0; i < system->n; i++)
-				fprintf(to, " %s", readable_text(system->load[l].force[k][i]));
-			fputs(" ]\n", to);
-		}
+		for (int k = 0; k < system->load[l].columns; k++)
+			person_force(to, format("load %s", column_text(&system->load[l], k)), system->n, (const mpq_t *)system->load[l].force[k]);
+	for (int i = 0; i < system->inputs; i++)
+		for (int k = 0; k < 2; k++)
+			person_force(to, format("input %s%s", system->input[i].name, k ? "'" : ""), system->n, (const mpq_t *)system->input[i].force[k]);
 }
 
 static void person_poles(FILE *to, const struct step *step)
@@ -59,7 +70,7 @@ static void person_held(FILE *to, const struct step *step)
 				mpq_init(factor);
 				mpq_neg(factor, (k ? system->heldC : system->heldK)[i * n + j]);
 				if (mpq_sgn(factor) != 0)
-					fprintf(to, "    in %s'': %s * %s%s\n", step->model->coord[i]->name, readable_text(factor), step->model->coord[j]->name,
+					fprintf(to, "    in %s'': %s * %s%s\n", step->model->coord_name[i], readable_text(factor), step->model->coord_name[j],
 						k ? "'" : "");
 				mpq_clear(factor);
 			}
@@ -77,10 +88,10 @@ static void person_step(FILE *to, const struct step *step)
 		fprintf(to, " (%d and %d of them for cos and sin of the loads)", program->oscillators * PL_COSSIN_MUL,
 			program->oscillators * PL_COSSIN_ADD);
 	fputs(".\nPhi, each entry correctly rounded:\n", to);
-	for (int i = 0; i < model->states; i++) {
+	for (int i = 0; i < model->system.states; i++) {
 		fprintf(to, "    %-8s", model->state_name[i]);
-		for (int j = 0; j < model->states; j++)
-			fprintf(to, " %24s", shortest(step->table->Phi[i * model->states + j].value));
+		for (int j = 0; j < model->system.states; j++)
+			fprintf(to, " %24s", shortest(step->table->Phi[i * model->system.states + j].value));
 		fputc('\n', to);
 	}
 	if (step->series.emitted)
@@ -90,19 +101,44 @@ static void person_step(FILE *to, const struct step *step)
 		fprintf(to, "%s_at is not emitted: the largest |pole| times h is above 8.\n", model->name);
 }
 
+/* What went: states that no output sees, and with them the poles that cancel in every N/B. */
+static void person_reduction(FILE *to, const struct step *step)
+{
+	const struct model *model = step->model;
+	fprintf(to, "Reduced to what the outputs can see: %d of %d states.\n", model->system.states, model->written->system.states);
+	for (int i = 0; i < model->system.states; i++)
+		fprintf(to, "    state %s\n", model->state_name[i]);
+	fputs("Gone:", to);
+	for (int i = 0; i < model->dropped; i++)
+		fprintf(to, "%s %s", i ? "," : "", model->dropped_name[i]);
+	fputs(model->dropped ? " (no output sees them, nor a combination of the states that are left).\n" : " nothing.\n", to);
+	struct pole_report *pole;
+	int count = poles_of(step->solved, &pole);
+	fputs("Poles that are left:\n", to);
+	for (int i = 0; i < count; i++)
+		fprintf(to, "    %s\n", pole_text(&pole[i]));
+}
+
 void explain_person(FILE *to, const struct step *step)
 {
 	const struct model *model = step->model;
 	const struct spec *spec = model->spec;
-	fprintf(to, "Model %s: %d coordinate%s, %d states, scheme %s\n\n", model->name, model->n, model->n == 1 ? "" : "s", model->states,
+	fprintf(to, "Model %s: %d coordinate%s, %d states, scheme %s\n\n", model->name, model->written->n, model->written->n == 1 ? "" : "s", model->written->system.states,
 		scheme_name(model->scheme));
 	for (int i = 0; i < spec->equations; i++)
 		fprintf(to, "    %s\n", text_between(spec->equation[i].at, spec->equation[i].end));
+	for (int i = 0; i < spec->elements; i++)
+		fprintf(to, "    %s\n", text_between(spec->element[i].at, spec->element[i].end));
+	if (spec->elements) {
+		fputs("\nEquations of the sketch:\n\n", to);
+		for (int i = 0; i < model->written->n; i++)
+			fprintf(to, "    %s\n", equation_text(model->written, model->residual[i].form));
+	}
 	fputs("\nP(s) = M s^2 + C s + K with\n", to);
-	person_matrix(to, "M", model->n, (const mpq_t *)model->system.M);
-	person_matrix(to, "C", model->n, (const mpq_t *)model->system.C);
-	person_matrix(to, "K", model->n, (const mpq_t *)model->system.K);
-	person_loads(to, &model->system);
+	person_matrix(to, "M", model->written->n, (const mpq_t *)model->written->system.M);
+	person_matrix(to, "C", model->written->n, (const mpq_t *)model->written->system.C);
+	person_matrix(to, "K", model->written->n, (const mpq_t *)model->written->system.K);
+	person_loads(to, &model->written->system);
 	person_poles(to, step);
 	const char *irrational = irrationals_text(&model->irrationals);
 	if (*irrational)
@@ -112,6 +148,8 @@ void explain_person(FILE *to, const struct step *step)
 		person_held(to, step);
 	else
 		fputs("Nothing is approximated: every constant is its closed form, correctly rounded.\n", to);
+	if (model->written != model)
+		person_reduction(to, step);
 	person_step(to, step);
 }
 
@@ -193,19 +231,37 @@ static void json_poles(FILE *to, const struct step *step)
 	json_modes(to, count, pole);
 }
 
-/* Columns as the step applies them: to 1, or to cos and sin of the load at the start of the step. */
+static void json_column(FILE *to, int rows, int columns, int column, const struct coefficient *value)
+{
+	fputc('[', to);
+	for (int i = 0; i < rows; i++)
+		fprintf(to, "%s%.17g", i ? ", " : "", value[i * columns + column].value);
+	fputc(']', to);
+}
+
+/* Columns as the step applies them: to the load states at the start of the step, t^k times cos before sin. */
 static void json_loads(FILE *to, const struct step *step)
 {
 	const struct table *table = step->table;
 	fputs("  \"loads\": [", to);
 	for (int l = 0, column = 0; l < step->system.loads; l++) {
-		const struct wave *wave = step->system.load[l].wave;
-		fprintf(to, "%s\n    {\"term\": \"%s\", \"columns\": [", l ? "," : "", wave ? wave_text(wave, false) : "1");
-		for (int k = 0; k < step->system.load[l].columns; k++, column++) {
-			fputs(k ? ", [" : "[", to);
-			for (int i = 0; i < table->states; i++)
-				fprintf(to, "%s%.17g", i ? ", " : "", table->load[i * table->columns + column].value);
-			fputc(']', to);
+		const struct load *load = &step->system.load[l];
+		int trig = oscillates(load->wave) ? 2 : 1;
+		for (int k = 0; k < load->columns; k += trig) {
+			fprintf(to, "%s\n    {\"term\": \"%s\", \"columns\": [", column ? "," : "", column_text(load, k));
+			for (int i = 0; i < trig; i++, column++) {
+				fputs(i ? ", " : "", to);
+				json_column(to, table->states, table->columns, column, table->load);
+			}
+			fputs("]}", to);
+		}
+	}
+	fputs("],\n  \"Gamma\": [", to);
+	for (int i = 0, column = 0; i < step->system.inputs; i++) {
+		fprintf(to, "%s\n    {\"input\": \"%s\", \"columns\": [", i ? "," : "", step->system.input[i].name);
+		for (int k = 0; k <= step->system.input[i].first_order; k++, column++) {
+			fputs(k ? ", " : "", to);
+			json_column(to, table->states, table->inputs, column, table->input);
 		}
 		fputs("]}", to);
 	}
@@ -216,24 +272,26 @@ void explain_json(FILE *to, const struct step *step)
 {
 	const struct model *model = step->model;
 	const char **output = ARRAY(const char *, (size_t)model->outputs);
-	double *Phi = ARRAY(double, (size_t)(model->states * model->states));
+	double *Phi = ARRAY(double, (size_t)(model->system.states * model->system.states));
+	const char **input = ARRAY(const char *, (size_t)model->system.inputs);
+	for (int i = 0; i < model->system.inputs; i++)
+		input[i] = model->system.input[i].name;
 	for (int i = 0; i < model->outputs; i++)
 		output[i] = model->output[i].name;
-	for (int i = 0; i < model->states * model->states; i++)
+	for (int i = 0; i < model->system.states * model->system.states; i++)
 		Phi[i] = step->table->Phi[i].value;
 	fprintf(to, "{\n  \"model\": \"%s\",\n  \"scheme\": \"%s\",\n  \"form\": \"direct\",\n  \"step\": %.17g,\n", model->name,
 		scheme_name(model->scheme), round_rational(model->h));
-	json_names(to, "states", model->states, model->state_name);
+	json_names(to, "states", model->system.states, model->state_name);
 	json_names(to, "outputs", model->outputs, output);
-	json_names(to, "inputs", 0, NULL);
-	json_names(to, "dropped", 0, NULL);
-	json_rational_matrix(to, "M", model->n, (const mpq_t *)model->system.M);
-	json_rational_matrix(to, "C", model->n, (const mpq_t *)model->system.C);
-	json_rational_matrix(to, "K", model->n, (const mpq_t *)model->system.K);
+	json_names(to, "inputs", model->system.inputs, input);
+	json_names(to, "dropped", model->dropped, model->dropped_name);
+	json_rational_matrix(to, "M", model->written->n, (const mpq_t *)model->written->system.M);
+	json_rational_matrix(to, "C", model->written->n, (const mpq_t *)model->written->system.C);
+	json_rational_matrix(to, "K", model->written->n, (const mpq_t *)model->written->system.K);
 	json_poles(to, step);
-	json_matrix(to, "Phi", model->states, model->states, Phi);
+	json_matrix(to, "Phi", model->system.states, model->system.states, Phi);
 	json_loads(to, step);
-	fputs("  \"Gamma\": [],\n", to);
 	if (model->scheme == SCHEME_PL)
 		fprintf(to, "  \"growth_rate\": %.17g,\n", mpfr_get_d(step->growth, MPFR_RNDN));
 	fprintf(to, "  \"cost\": {\"multiplications\": %d, \"additions\": %d}\n}\n", step->program->multiplications, step->program->additions);

@@ -156,6 +156,12 @@ static void lex_operator(struct token *token, const char *text)
 			memcpy(token->op, operators[i], token->length + 1);
 			return;
 		}
+	if (text[0] == '\'' && token->at.offset > 0 && text[-1] == ']') {     /* q[3]' and q[3]'' */
+		token->kind = TOKEN_OPERATOR;
+		token->length = text[1] == '\'' ? 2 : 1;
+		memcpy(token->op, text, token->length);
+		return;
+	}
 	int bytes = 1;
 	while (((unsigned char)text[bytes] & 0xc0) == 0x80)
 		bytes++;

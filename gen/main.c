@@ -36,6 +36,7 @@ static const char usage[] =
 	"  --scheme NAME       instead of the spec's scheme: exact, pl\n"
 	"  -D NAME=EXPR        another value for a param; EXPR may use the spec's params\n"
 	"  --prefix NAME       instead of the model's name for everything generated\n"
+	"  --reduce            leave out what the outputs cannot see\n"
 	"  --depfile FILE      also write a make/ninja dependency file\n"
 	"  --help, --version\n"
 	"\n"
@@ -68,7 +69,7 @@ static void note_in_banner(struct options *options, const char *option)
 	options->banner = format("%s%s%s", options->banner, *options->banner ? " " : "", option);
 }
 
-enum { OPT_HEADER = 256, OPT_EXPLAIN, OPT_SOLUTION, OPT_RHS, OPT_STEP, OPT_SCHEME, OPT_PREFIX, OPT_DEPFILE, OPT_HELP, OPT_VERSION, OPT_LATER };
+enum { OPT_HEADER = 256, OPT_EXPLAIN, OPT_SOLUTION, OPT_RHS, OPT_STEP, OPT_SCHEME, OPT_PREFIX, OPT_REDUCE, OPT_DEPFILE, OPT_HELP, OPT_VERSION, OPT_LATER };
 
 static const struct option long_options[] = {
 	{ "header", no_argument, NULL, OPT_HEADER }, { "explain", optional_argument, NULL, OPT_EXPLAIN },
@@ -78,7 +79,7 @@ static const struct option long_options[] = {
 	{ "help", no_argument, NULL, OPT_HELP }, { "version", no_argument, NULL, OPT_VERSION },
 	{ "real", required_argument, NULL, OPT_LATER }, { "form", required_argument, NULL, OPT_LATER },
 	{ "accuracy", required_argument, NULL, OPT_LATER }, { "loads", required_argument, NULL, OPT_LATER },
-	{ "reduce", no_argument, NULL, OPT_LATER }, { "selftest", no_argument, NULL, OPT_LATER }, { 0 }
+	{ "reduce", no_argument, NULL, OPT_REDUCE }, { "selftest", no_argument, NULL, OPT_LATER }, { 0 }
 };
 
 static bool told;               /* that standard output cannot be written */
@@ -120,6 +121,10 @@ static void take_option(struct options *options, int option, int index)
 	case OPT_STEP: options->overrides.step = optarg; break;
 	case OPT_SCHEME: options->overrides.scheme = optarg; break;
 	case OPT_PREFIX: options->overrides.prefix = optarg; break;
+	case OPT_REDUCE:
+		options->overrides.reduce = true;
+		note_in_banner(options, "--reduce");
+		break;
 	case OPT_DEPFILE: options->depfile = optarg; break;
 	case OPT_HELP: say_and_stop(usage);
 	case OPT_VERSION: say_and_stop("plgen " PLGEN_VERSION "\n");
@@ -297,6 +302,8 @@ static void print_depfile(FILE *to, const struct options *options, const struct 
 		fprintf(to, "%s:", escaped(options->output));
 	if (strcmp(options->spec, "-") != 0)
 		fprintf(to, " %s", escaped(options->spec));
+	for (int i = 0; i < model->spec->files; i++)
+		fprintf(to, " %s", escaped(model->spec->file[i]));
 	fputc('\n', to);
 }
 
@@ -353,6 +360,8 @@ int main(int argc, char **argv)
 	struct model *model = model_build(spec, &options.overrides);
 	if (!model)
 		return fail();
+	if (options.overrides.reduce)
+		model = model_reduce(model);
 	struct step *step = options.print == PRINT_SOLUTION ? NULL : step_build(model);
 	if (!step && options.print != PRINT_SOLUTION)
 		return fail();

@@ -13,6 +13,7 @@ struct parser {
 	size_t operand_end;         /* just after the last operand: there an operator may be missing */
 	size_t statement;           /* offset where it starts */
 	int nesting;
+	bool no_acceleration;       /* in a let */
 };
 
 static const char WORD[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ_0123456789";
@@ -192,13 +193,48 @@ static _Noreturn void unknown_name(const struct parser *p, struct token token)
 
 static const char *kind_text(const struct symbol *symbol)
 {
-	static const char *const text[] = { "param", "coordinate", "let", "output" };
+	static const char *const text[] = { "param", "coordinate", "let", "output", "input", "matrix" };
 	return text[symbol->kind];
 }
 
-/* name: NAME { ' } */
+/* component: [ NUMBER ] { ' }; *primes grows by those behind the bracket */
+static int read_component(struct parser *p, int *primes)
+{
+	if (!is_op(p, "[") || p->token.at.offset != p->end.offset)
+		return 0;
+	struct place opening = take(p).at;
+	if (*primes > 0)
+		error(opening, "q[1]' is the velocity of a component", "a component stands before the primes");
+	if (p->token.kind != TOKEN_NUMBER)
+		unexpected(p, "the number of a component");
+	mpq_t number;
+	mpq_init(number);
+	struct token token = take(p);
+	lex_number(token, number);
+	if (mpz_cmp_ui(mpq_denref(number), 1) != 0 || mpq_sgn(number) <= 0 || mpq_cmp_ui(number, LIMIT_STATES, 1) > 0)
+		error(token.at, NULL, "components are numbered from 1");
+	int component = (int)mpz_get_ui(mpq_numref(number));
+	mpq_clear(number);
+	expect_op(p, "]", "']'");
+	if (p->token.kind == TOKEN_OPERATOR && p->token.op[0] == '\'')
+		*primes = (int)take(p).length;
+	return component;
+}
+
+static void check_component(const struct symbol *symbol, int component, struct place at)
+{
+	if (component == 0)
+		return;
+	if (symbol->kind != SYMBOL_COORD || symbol->length == 0)
+		error(at, "only vector coordinates have components", "'%s' is not a vector", symbol->name);
+	if (component > symbol->length)
+		error(at, NULL, "'%s' has %d components", symbol->name, symbol->length);
+}
+
+/* name: NAME { ' } | NAME [ NUMBER ] { ' } */
 static struct node *resolve_name(struct parser *p, struct token token)
 {
+	int component = read_component(p, &token.primes);
 	struct symbol *symbol = spec_find(p->spec, token.name);
 	if (!symbol)
 		unknown_name(p, token);
@@ -206,11 +242,20 @@ static struct node *resolve_name(struct parser *p, struct token token)
 		abandon();
 	if (symbol->kind == SYMBOL_OUTPUT)
 		error(token.at, "a shorthand for use in expressions is a let", "output '%s' cannot be used in an expression", token.name);
-	if (token.primes > 0 && symbol->kind != SYMBOL_COORD)
+	if (token.primes > 0 && symbol->kind != SYMBOL_COORD && symbol->kind != SYMBOL_INPUT)
 		error(token.at, "only coordinates have derivatives", "%s '%s' has no derivative", kind_text(symbol), token.name);
+	if (token.primes > 0 && symbol->kind == SYMBOL_INPUT && !symbol->first_order)
+		error(token.at, format("input %s hold first ramps between samples and has one", token.name), "input '%s' is held over a step: it has no slope",
+		      token.name);
+	if (token.primes > 1 && symbol->kind == SYMBOL_INPUT)
+		error(token.at, NULL, "input '%s' has no second derivative", token.name);
+	check_component(symbol, component, token.at);
+	if (p->no_acceleration && symbol->kind == SYMBOL_COORD && token.primes > 1)
+		error(token.at, "a let may use coordinates and their first derivatives", "an acceleration in a let");
 	struct node *node = node_new(NODE_NAME, token.at);
 	node->symbol = symbol;
 	node->primes = token.primes;
+	node->component = component;
 	node->end = p->end;
 	return node;
 }
@@ -268,12 +313,40 @@ static struct node *read_bracket(struct parser *p)
 	return inner;
 }
 
+/* matrix: [ expression { , expression } { ; expression { , expression } } ] */
+static struct node *read_matrix(struct parser *p)
+{
+	struct place separator = p->token.at;
+	struct node *node = node_new(NODE_MATRIX, separator);
+	nest(p, separator);
+	for (int column = 0;;) {
+		take(p);
+		add_child(node, read_expression(p), false, separator);
+		column++;
+		separator = p->token.at;
+		if (is_op(p, ","))
+			continue;
+		if (node->columns == 0)
+			node->columns = column;
+		if (column != node->columns)
+			error(separator, NULL, "row of %d in a matrix with rows of %d", column, node->columns);
+		column = 0;
+		if (!is_op(p, ";"))
+			break;
+	}
+	expect_op(p, "]", "',', ';' or ']'");
+	p->nesting--;
+	node->end = p->end;
+	return node;
+}
+
+/* operand: NUMBER | pi | t | name | call | ( expression ) | matrix */
 static struct node *read_operand(struct parser *p)
 {
 	if (is_op(p, "("))
 		return read_bracket(p);
 	if (is_op(p, "["))
-		error(p->token.at, NULL, "matrices are not built yet");
+		return read_matrix(p);
 	if (p->token.kind == TOKEN_NUMBER) {
 		struct token token = take(p);
 		struct node *node = node_new(NODE_NUMBER, token.at);
@@ -297,8 +370,6 @@ static struct node *read_operand(struct parser *p)
 	}
 	if (is_reserved(name.name) && !spec_find(p->spec, name.name))   /* else broken: told where it is declared */
 		error(name.at, NULL, "'%s' is a reserved word", name.name);
-	if (is_op(p, "[") && p->token.at.offset == p->end.offset)
-		error(p->token.at, NULL, "components of vectors are not built yet");
 	return resolve_name(p, name);
 }
 
@@ -447,7 +518,7 @@ static struct symbol *declare(struct parser *p, struct token name, enum symbol_k
 		abandon();
 	if (known)
 		error(name.at, NULL, "'%s' is declared already, as %s %s", name.name, known->kind == SYMBOL_OUTPUT ? "an" : "a", kind_text(known));
-	int *counts[] = { &spec->params, &spec->coords, &spec->lets, &spec->outputs };
+	int *counts[] = { &spec->params, &spec->coords, &spec->lets, &spec->outputs, &spec->inputs, &spec->matrices };
 	struct symbol *symbol = NEW(struct symbol);
 	*symbol = (struct symbol){ .kind = kind, .name = name.name, .at = name.at, .statement = p->statement, .broken = broken };
 	symbol->index = broken ? -1 : (*counts[kind])++;
@@ -475,7 +546,39 @@ static void read_param(struct parser *p)
 
 static void read_let(struct parser *p)
 {
+	p->no_acceleration = true;
 	read_definitions(p, SYMBOL_LET);
+}
+
+static void add_file(struct spec *spec, const char *path)
+{
+	ENLARGE(spec->file, (size_t)spec->files + 1);
+	spec->file[spec->files++] = path;
+}
+
+/* A data file stands beside the spec unless its path is absolute. */
+static struct node *read_file_name(struct parser *p)
+{
+	struct token token = take(p);
+	const char *name = format("%.*s", (int)token.length - 2, token.at.source->text + token.at.offset + 1);
+	const char *spec = p->spec->source->name, *slash = strrchr(spec, '/');
+	struct node *node = node_new(NODE_FILE, token.at);
+	node->end = p->end;
+	node->path = name[0] == '/' || !slash ? name : format("%.*s/%s", (int)(slash - spec), spec, name);
+	add_file(p->spec, node->path);
+	return node;
+}
+
+/* matrix: matrix NAME = ( STRING | expression ) { , ... } */
+static void read_matrix_statement(struct parser *p)
+{
+	do {
+		struct token name = expect_new_name(p, "the name of a matrix");
+		expect_op(p, "=", "'='");
+		struct node *value = p->token.kind == TOKEN_STRING ? read_file_name(p) : read_expression(p);
+		declare(p, name, SYMBOL_MATRIX, false)->value = value;
+	} while (take_op(p, ","));
+	expect_end(p);
 }
 
 /* model: model NAME */
@@ -491,26 +594,53 @@ static void read_model(struct parser *p)
 	p->spec->name_at = name.at;
 }
 
-/* coord: coord NAME { , NAME } */
+/* coord: coord NAME [ '[' NUMBER ']' ] { , ... } */
 static void read_coord(struct parser *p)
 {
 	do {
 		struct token name = expect_new_name(p, "the name of a coordinate");
-		if (is_op(p, "["))
-			error(p->token.at, NULL, "vector coordinates are not built yet");
-		declare(p, name, SYMBOL_COORD, false);
+		int primes = 0, length = read_component(p, &primes);
+		if (primes)
+			error(name.at, NULL, "a coordinate is declared without primes");
+		struct symbol *symbol = declare(p, name, SYMBOL_COORD, false);
+		symbol->length = length;
+		symbol->index = p->spec->components;
+		p->spec->components += length ? length : 1;
 	} while (take_op(p, ","));
 	expect_end(p);
 }
 
-static void add_initial(struct parser *p, struct token name, struct symbol *coord, struct node *value)
+static bool take_word(struct parser *p, const char *word)
+{
+	if (p->token.kind != TOKEN_NAME || p->token.primes > 0 || strcmp(p->token.name, word) != 0)
+		return false;
+	take(p);
+	return true;
+}
+
+/* input: input NAME [ hold first ] { , NAME [ hold first ] } */
+static void read_input(struct parser *p)
+{
+	do {
+		struct symbol *input = declare(p, expect_new_name(p, "the name of an input"), SYMBOL_INPUT, false);
+		if (!take_word(p, "hold"))
+			continue;
+		input->first_order = take_word(p, "first");
+		if (!input->first_order)
+			error(p->token.at, "without 'hold first' an input is held from sample to sample", "expected 'first', found %s", token_text(p->token));
+	} while (take_op(p, ","));
+	expect_end(p);
+}
+
+static void add_initial(struct parser *p, struct token name, struct symbol *coord, int component, struct node *value)
 {
 	struct spec *spec = p->spec;
 	for (int i = 0; i < spec->initials; i++)
-		if (spec->initial[i].coord == coord && spec->initial[i].primes == name.primes)
+		if (spec->initial[i].coord == coord && spec->initial[i].primes == name.primes &&
+		    (!component || !spec->initial[i].component || spec->initial[i].component == component))
 			error(name.at, NULL, "the initial value of %s is given already", token_text(name));
 	ENLARGE(spec->initial, (size_t)spec->initials + 1);
-	spec->initial[spec->initials++] = (struct initial){ name.at, p->statement, coord, name.primes, value };
+	spec->initial[spec->initials++] = (struct initial){ name.at, p->statement, coord, name.primes, component, value };
 }
 
 /* init: init NAME [ ' ] = expression { , ... } */
@@ -520,7 +650,8 @@ static void read_init(struct parser *p)
 		if (p->token.kind != TOKEN_NAME)
 			unexpected(p, "a coordinate");
 		struct token name = take(p);
-		name.length = strlen(name.name) + (size_t)name.primes;
+		int component = read_component(p, &name.primes);
+		name.length = p->end.offset - name.at.offset;
 		struct symbol *coord = spec_find(p->spec, name.name);
 		if (coord && coord->broken)
 			abandon();
@@ -528,10 +659,11 @@ static void read_init(struct parser *p)
 			unknown_name(p, name);
 		if (!coord || coord->kind != SYMBOL_COORD)
 			error(name.at, "initial values are for coordinates and their velocities", "'%s' is not a coordinate", name.name);
+		check_component(coord, component, name.at);
 		if (name.primes > 1)
 			error(name.at, NULL, "an acceleration has no initial value: it follows from the equations");
 		expect_op(p, "=", "'='");
-		add_initial(p, name, coord, read_expression(p));
+		add_initial(p, name, coord, component, read_expression(p));
 	} while (take_op(p, ","));
 	expect_end(p);
 }
@@ -539,11 +671,14 @@ static void read_init(struct parser *p)
 /* An output that only names something: x1, x2', x1'', a let. */
 static struct symbol *read_plain_output(struct parser *p, struct token name)
 {
-	const char *shown = format("%s%.*s", name.name, name.primes, "''");
+	struct node *value = strcmp(name.name, "t") == 0 ? node_new(NODE_TIME, name.at) : resolve_name(p, name);
+	const char *shown = value->component ? format("%s[%d]%.*s", name.name, value->component, value->primes, "''")
+					     : format("%s%.*s", name.name, value->primes, "''");
+	if (p->token.kind != TOKEN_END && !is_op(p, ","))
+		unexpected(p, "'=' or ','");
 	for (struct symbol *s = p->spec->first; s; s = s->next)
 		if (s->kind == SYMBOL_OUTPUT && strcmp(s->name, shown) == 0)
 			error(name.at, NULL, "output '%s' is declared already", shown);
-	struct node *value = strcmp(name.name, "t") == 0 ? node_new(NODE_TIME, name.at) : resolve_name(p, name);
 	struct symbol *symbol = NEW(struct symbol);
 	*symbol = (struct symbol){ .kind = SYMBOL_OUTPUT, .name = shown, .at = name.at, .statement = p->statement, .value = value };
 	symbol->index = p->spec->outputs++;
@@ -561,8 +696,6 @@ static void read_output(struct parser *p)
 			unexpected(p, "the name of an output");
 		struct token name = take(p);
 		if (!is_op(p, "=")) {
-			if (p->token.kind != TOKEN_END && !is_op(p, ","))
-				unexpected(p, "'=' or ','");
 			read_plain_output(p, name);
 			continue;
 		}
@@ -600,13 +733,66 @@ static void read_scheme(struct parser *p)
 	p->spec->scheme = name.name;
 }
 
+/* ---- sketches ---- */
+
+static struct node *read_coordinate(struct parser *p, bool ground)
+{
+	if (ground && take_word(p, "ground"))
+		return NULL;
+	if (p->token.kind != TOKEN_NAME || is_reserved(p->token.name))
+		unexpected(p, ground ? "a coordinate or ground" : "a coordinate");
+	struct node *node = resolve_name(p, take(p));
+	if (node->symbol->kind != SYMBOL_COORD || node->primes > 0 || (node->symbol->length && !node->component))
+		error(node->at, NULL, "expected a scalar coordinate or a component, found '%s'", text_between(node->start, node->end));
+	return node;
+}
+
+static void expect_word(struct parser *p, const char *word)
+{
+	if (!take_word(p, word))
+		unexpected(p, format("'%s'", word));
+}
+
+/* mass: mass expression at coordinate;  spring, damper: ... expression between coordinate , coordinate;
+ * force: force expression on coordinate */
+static void read_element(struct parser *p, int kind)
+{
+	struct spec *spec = p->spec;
+	struct element element = { .kind = kind, .at = (struct place){ p->lexer.source, p->statement } };
+	element.value = read_expression(p);
+	expect_word(p, kind == ELEMENT_MASS ? "at" : kind == ELEMENT_FORCE ? "on" : "between");
+	bool two = kind == ELEMENT_SPRING || kind == ELEMENT_DAMPER;
+	struct token first = p->token;
+	element.from = read_coordinate(p, two);
+	if (two) {
+		expect_op(p, ",", "','");
+		element.to = read_coordinate(p, true);
+	}
+	if (two && !element.from) {
+		element.from = element.to;
+		element.to = NULL;
+	}
+	if (!element.from || (element.to && element.from->symbol == element.to->symbol && element.from->component == element.to->component))
+		error(first.at, NULL, "it acts between a coordinate and itself");
+	expect_end(p);
+	element.end = p->end;
+	ENLARGE(spec->element, (size_t)spec->elements + 1);
+	spec->element[spec->elements++] = element;
+}
+
+static void read_mass(struct parser *p) { read_element(p, ELEMENT_MASS); }
+static void read_spring(struct parser *p) { read_element(p, ELEMENT_SPRING); }
+static void read_damper(struct parser *p) { read_element(p, ELEMENT_DAMPER); }
+static void read_force(struct parser *p) { read_element(p, ELEMENT_FORCE); }
+
 static const struct statement {
 	const char *word;
 	void (*read)(struct parser *);  /* NULL: refused by name */
 } statements[] = {
 	{ "model", read_model }, { "param", read_param }, { "coord", read_coord }, { "init", read_init }, { "let", read_let },
 	{ "output", read_output }, { "step", read_step }, { "scheme", read_scheme },
-	{ "input", NULL }, { "matrix", NULL }, { "mass", NULL }, { "spring", NULL }, { "damper", NULL }, { "force", NULL }, { "operator", NULL },
+	{ "input", read_input }, { "matrix", read_matrix_statement }, { "mass", read_mass }, { "spring", read_spring },
+	{ "damper", read_damper }, { "force", read_force }, { "operator", NULL },
 	{ "tunable", NULL }
 };
 
@@ -724,8 +910,9 @@ static void declare_what_failed(struct parser *p, size_t from)
 	const char *text = p->lexer.source->text;
 	size_t after;
 	const struct statement *statement = failed_statement(p, from, &after);
-	bool all = statement && (statement->read == read_coord || !statement->read);
-	if (!statement || (!all && statement->read != read_param && statement->read != read_let && statement->read != read_output))
+	bool all = statement && (statement->read == read_coord || statement->read == read_input || !statement->read);
+	if (!statement || (!all && statement->read != read_param && statement->read != read_let && statement->read != read_output &&
+	     statement->read != read_matrix_statement))
 		return;
 	bool listed = true;                     /* here a definition starts, even one without its = */
 	int depth = 0;

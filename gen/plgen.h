@@ -39,6 +39,9 @@ enum {
 	LIMIT_EXPONENT = 9999,      /* of a literal such as 1e9999 */
 	LIMIT_BITS = 1000000,       /* of an exact value */
 	LIMIT_STATES = 512,
+	LIMIT_CHANGES = 1000,       /* of formula in time */
+	LIMIT_LOAD_POWER = 32,      /* exponent of a load, as in t^3 */
+	LIMIT_RESIDUE_STATES = 12,  /* beyond, a Taylor series gives the numbers: residues get slow */
 	LIMIT_ROWS = 10000000,      /* of --solution */
 	LIMIT_PRECISION = 16384,    /* bits of an enclosure before a coefficient is given up */
 	IRRATIONAL_BITS = 256       /* pi, sqrt(2), ... become rationals of this many bits */
@@ -121,7 +124,9 @@ enum node_kind {
 	NODE_POWER,                 /* two children */
 	NODE_CALL,
 	NODE_COMPARE,               /* two children */
-	NODE_CHOOSE                 /* condition, then, else */
+	NODE_CHOOSE,                /* condition, then, else */
+	NODE_MATRIX,                /* children row by row */
+	NODE_FILE                   /* a matrix in a file */
 };
 struct node {
 	enum node_kind kind;
@@ -129,7 +134,9 @@ struct node {
 	struct place start, end;    /* its text, brackets included */
 	mpq_t number;
 	struct symbol *symbol;      /* of NODE_NAME */
-	int primes;
+	int primes, component;      /* of NODE_NAME; component 0: the whole */
+	int columns;                /* of NODE_MATRIX */
+	const char *path;           /* of NODE_FILE */
 	enum function function;
 	enum comparison comparison;
 	int children;
@@ -137,18 +144,22 @@ struct node {
 	bool *inverse;              /* of SUM and PRODUCT, one per child */
 	struct place *operator;     /* of SUM and PRODUCT: the sign before each child */
 };
-enum symbol_kind { SYMBOL_PARAM, SYMBOL_COORD, SYMBOL_LET, SYMBOL_OUTPUT };
+enum symbol_kind { SYMBOL_PARAM, SYMBOL_COORD, SYMBOL_LET, SYMBOL_OUTPUT, SYMBOL_INPUT, SYMBOL_MATRIX };
 struct symbol {
 	enum symbol_kind kind;
-	bool used;                  /* by the expressions now being printed */
-	const char *c_name, *c_dot; /* C identifiers of it and, for a coordinate, of its velocity */
+	bool used, slope_used;      /* by the expressions now being printed */
+	const char *c_name, *c_dot; /* C identifiers of it and of its first derivative */
+	const char **c_component, **c_component_dot; /* of a vector coordinate */
 	const char *name;
 	struct place at;
 	size_t statement;           /* offset of the statement that declares it */
-	int index;                  /* among its kind, in the order of declaration */
+	int index;                  /* among its kind, in the order of declaration; of a coordinate: of its first component */
+	int length;                 /* of a vector coordinate; 0: scalar */
 	bool broken;                /* its own statement failed: what uses it is passed over in silence */
+	bool first_order;           /* of an input: hold first */
+	int highest;                /* of a coordinate: its order, 1 or 2 */
 	struct node *value;         /* of param, let, output */
-	struct form *form;          /* value collected, when `collected` */
+	struct value *collected;    /* value, when COLLECTED */
 	enum { FRESH, COLLECTING, COLLECTED } progress;
 	struct symbol *next;
 };
@@ -156,11 +167,16 @@ struct equation {
 	struct place at, end;       /* first token; just after the last */
 	struct node *left, *right;
 };
+struct element {                    /* of a sketch */
+	enum { ELEMENT_MASS, ELEMENT_SPRING, ELEMENT_DAMPER, ELEMENT_FORCE } kind;
+	struct place at, end;
+	struct node *value, *from, *to; /* coordinates, or components; `to` NULL: the ground, or none */
+};
 struct initial {
 	struct place at;
 	size_t statement;
 	struct symbol *coord;
-	int primes;
+	int primes, component;
 	struct node *value;
 };
 struct spec {                       /* what the text says, names resolved, nothing evaluated */
@@ -168,9 +184,14 @@ struct spec {                       /* what the text says, names resolved, nothi
 	const char *name;
 	struct place name_at;
 	struct symbol *first, **last;   /* all symbols in the order of declaration */
-	int params, coords, lets, outputs;
+	int components;                 /* of all coordinates together */
+	int params, coords, lets, outputs, inputs, matrices;
 	int equations;
 	struct equation *equation;
+	int elements;
+	struct element *element;
+	int files;                      /* data files, for the dependency file */
+	const char **file;
 	int initials;
 	struct initial *initial;
 	struct node *step;
@@ -195,15 +216,16 @@ const char *spec_suggestion(const struct spec *spec, const char *name); /* a not
 
 /* ---- form.c: symbolic collection; a form is linear in what the linear core can carry ---- */
 
-enum basis_kind { BASIS_ONE, BASIS_PI, BASIS_TIME, BASIS_WAVE, BASIS_COORD };
+enum basis_kind { BASIS_ONE, BASIS_PI, BASIS_WAVE, BASIS_INPUT, BASIS_COORD };
 struct basis {
 	enum basis_kind kind;
-	int coord, order;           /* of BASIS_COORD: which, and how often differentiated */
-	struct wave *wave;          /* of BASIS_WAVE */
+	int index, order;           /* of BASIS_COORD and BASIS_INPUT: which, and how often differentiated */
+	struct wave *wave;          /* of BASIS_WAVE: t^power times its cos or sin */
+	int power;
 	bool sine;
 };
-struct wave {                       /* cos and sin of w t + p; w > 0 */
-	mpq_t w, p;
+struct wave {                       /* e^{a t} cos(w t + p) and sin, w > 0; or e^{a t} alone, w = p = 0 */
+	mpq_t a, w, p;
 	int index;                  /* in the order of first appearance */
 	struct wave *next;
 };
@@ -222,13 +244,59 @@ struct collector {
 	struct irrationals irrationals;
 	const char *scheme;         /* for the message about a term that it cannot treat */
 	const struct node *term;    /* the innermost additive term being collected */
+	int changes;                /* of formula in time: breakpoints found so far, rising */
+	mpq_t *change;
+	int interval;               /* between them, which is being collected: 0 .. changes */
 	const struct node *argument; /* the innermost function of which an argument is being collected that must be linear */
 	bool constant_only;         /* a param, a step, an initial value */
 	bool tolerant;              /* give up in silence on what is not linear: an output may be */
 };
-struct form *collect(struct collector *collector, struct node *node);   /* leaves the statement at what is not linear */
-void collect_constant(struct collector *collector, struct node *node, mpq_ptr value);
+struct form *form_single(struct basis basis, mpq_srcptr factor);
+struct form *form_unit(struct basis basis);                 /* factor 1 */
+struct form *form_constant(mpq_srcptr value);
+struct form *form_sum(const struct form *a, const struct form *b, bool subtract);
+struct form *form_scale(const struct form *a, mpq_srcptr factor);
+struct form *form_product(struct collector *collector, const struct form *a, const struct form *b); /* one of them constant */
+bool is_constant(const struct form *form);                  /* 1 and pi only */
+mpq_srcptr factor_of(const struct form *form, enum basis_kind kind); /* NULL: it does not occur */
+bool same_in_states(const struct form *a, const struct form *b); /* they differ in loads only */
+void check_form(struct place at, const struct form *form);  /* the limit on exact values */
 void constant_value(struct collector *collector, const struct form *form, mpq_ptr value); /* form of 1 and pi only */
+
+/* ---- wave.c: loads in time ---- */
+
+struct wave *wave_of(struct collector *collector, mpq_srcptr a, mpq_srcptr w, mpq_srcptr p);
+struct form *plain_wave(struct collector *collector, int power, mpq_srcptr a); /* t^power e^{a t}; a NULL: 0 */
+struct form *collect_wave(struct collector *collector, bool sine, mpq_srcptr frequency, const struct form *phase);
+struct form *load_product(struct collector *collector, const struct form *a, const struct form *b); /* of loads and constants */
+bool linear_in_time(const struct form *x, mpq_srcptr *factor, struct form *phase); /* x = factor t + phase, factor not 0 */
+
+/* ---- collect.c: nodes to values ---- */
+
+struct value {                      /* a scalar is 1 x 1 */
+	int rows, columns;
+	struct form **cell;         /* row-major */
+};
+struct value *collect(struct collector *collector, struct node *node);   /* leaves the statement at what is not linear */
+struct value *collect_constants(struct collector *collector, struct node *node);
+void collect_constant(struct collector *collector, struct node *node, mpq_ptr number);
+
+_Noreturn void not_linear(const struct collector *c, const struct node *node, const char *why);
+_Noreturn void not_built(const struct collector *c, struct place at, const char *what);
+
+/* ---- piecewise.c: functions and conditions that divide time ---- */
+
+/* Sign of a - b, constant or linear in t, in the collector's interval of time; breakpoints met are added. */
+int order_now(struct collector *c, const struct node *node, const struct form *a, const struct form *b);
+struct form *piecewise(struct collector *c, const struct node *node, struct form *const *x); /* the function of its arguments' forms */
+
+/* ---- mtx.c: Matrix Market files ---- */
+
+struct mtx {
+	int rows, columns;
+	mpq_t *cell;                /* row-major */
+};
+struct mtx *mtx_read(const char *path, struct place at);    /* `at`: what names the file */
 
 /* ---- constant.c: functions of constants; true where the value is exact, else it is the nearest of 256 bits ---- */
 
@@ -239,34 +307,50 @@ bool constant_power(struct place at, mpq_srcptr base, mpq_srcptr exponent, mpq_p
 
 /* ---- model.c: the equations of motion, exact ---- */
 
-struct load {                       /* force on the equations: constant, or cos and sin of one wave */
-	const struct wave *wave;    /* NULL: constant */
-	int columns;                /* 1 or 2 */
-	mpq_t *force[2];            /* per column: one rational per equation */
+struct load {                       /* force on the equations: t^k times one wave */
+	const struct wave *wave;
+	int powers;                 /* k = 0 .. powers-1 */
+	int columns;                /* t^k, or t^k cos and t^k sin: the load states z */
+	mpq_t **force;              /* per column: [segment][equation] */
+};
+struct input {                      /* a sampled input u */
+	const char *name;
+	bool first_order;           /* ramp between samples; else held */
+	mpq_t *force[2];            /* of u and of u': one rational per equation */
 };
 struct linear {                     /* M q'' + C q' + K q = force - heldC q'(t_n) - heldK q(t_n) */
-	int n;
-	mpq_t *M, *C, *K;           /* n x n, row-major */
+	int n, states;              /* states: the coordinates, then the velocities of those of second order */
+	int *velocity;              /* per coordinate: the state that is its velocity; -1: of first order */
+	int *coord;                 /* per state: its coordinate */
+	mpq_t *M, *C, *K;           /* n x n, row-major; a coordinate of first order has no column in M */
 	mpq_t *heldC, *heldK;       /* n x n, or NULL where nothing is held */
+	int segments;               /* of time, in which the loads have one formula each */
+	mpq_t *change;              /* segments - 1 times, rising */
 	int loads;
 	struct load *load;
+	int inputs;
+	struct input *input;
 };
 struct output {
 	const char *name;
 	struct node *value;         /* as written */
-	struct form *form;          /* NULL where it is not linear in states and loads */
+	int statement, cell;        /* which output statement, and which cell of its value */
+	struct form *form;          /* in the first segment of time; NULL where it is not linear in states and loads */
 	mpq_t *state;               /* factors of y, one per state, accelerations replaced */
-	mpq_t *load[2];             /* factors of cos and sin, one per load; those of a constant load are 0 */
-	mpq_t constant, time;       /* and of 1 and t */
+	mpq_t **load;               /* per load: factors of its columns, [column][segment] */
+	mpq_t *input[2];            /* per input: factors of u and u' */
 };
 enum scheme { SCHEME_EXACT, SCHEME_PL };
 struct model {
 	const struct spec *spec;
 	const char *name;           /* prefix of everything generated */
-	int n, states;
+	int n;                      /* coordinates */
+	const char **coord_name;
 	const char **state_name;    /* x1, x2, x1', x2' */
 	struct symbol **coord;
 	struct linear system;       /* as written */
+	struct residual *residual;  /* per row of the system, in the first segment of time */
+	struct snapshot *snapshot;  /* per segment */
 	struct irrationals irrationals;
 	mpq_t *initial;             /* one per state */
 	mpq_t h;
@@ -276,17 +360,65 @@ struct model {
 	int outputs;
 	struct output *output;
 	bool declared_outputs;
+	const struct model *written; /* itself; of a reduced model: the one that it was made of */
+	int *place;                 /* of a reduced model, per written state: the state that is it, or -1 */
+	int dropped;                /* written states that are no combination of the reduced ones */
+	const char **dropped_name;
 };
 struct overrides {                  /* from the command line */
 	const char *step, *scheme, *prefix;
+	bool reduce;
 	int definitions;
 	const char **definition;    /* NAME=EXPR */
+};
+struct residual {                   /* left side minus right side of one scalar equation */
+	struct form *form;
+	struct place at, end;
+};
+struct building {                   /* what the builders share */
+	struct spec *spec;
+	struct model *model;
+	struct collector collector;
+	const struct overrides *overrides;
+	const struct wave *polynomial; /* the wave of t^k alone */
+	struct snapshot *snapshot;  /* per interval between changes of formula in time */
+	int *owner;                 /* per coordinate: its residual */
+};
+struct snapshot {                   /* the equations and outputs in one interval of time */
+	int residuals, written;     /* all; those of written equations come first */
+	struct residual *residual;
+	struct form **element;      /* per element of the sketch: its force */
+	struct value **output;      /* per output statement; NULL: not linear */
 };
 struct model *model_build(struct spec *spec, const struct overrides *overrides);
 void argument_value(struct model *model, const char *text, mpq_ptr value); /* of --solution; may use params */
 const char *scheme_name(enum scheme scheme);
+
+/* ---- equations.c, outputs.c: the builders of a model ---- */
+
+void collect_equations(struct building *b, struct snapshot *snapshot);
+void collect_outputs(struct building *b, struct snapshot *snapshot);
+int  find_order(const struct spec *spec, int coord);
+void build_system(struct building *b);                      /* M, C, K, loads, inputs */
+void place_loads(struct building *b, const struct form *form); /* every load of the form gets load states */
+void spread_loads(struct building *b, const struct form *form, void (*spread)(void *context, int load, int column, mpq_srcptr factor), void *context);
+void build_outputs(struct building *b);
+
+/* ---- reduce.c: the smallest model with the same outputs ---- */
+
+struct model *model_reduce(struct model *model);             /* itself where nothing can go */
+
+/* ---- linear.c: rational matrices, and linear systems over them ---- */
+
 bool rational_inverse(int n, const mpq_t *A, mpq_t *inverse, int *column); /* false: singular, *column free */
 void rational_product(int rows, int inner, int columns, const mpq_t *A, const mpq_t *B, mpq_t *AB);
+struct linear linear_like(const struct linear *shape);      /* the same coordinates and states, matrices 0, no loads */
+struct linear first_order_system(int n, const mpq_t *A);    /* x' = A x */
+/* W^-1, n x n; W has the columns of M, and those of C where a coordinate is of first order. False: singular. */
+bool leading_inverse(const struct linear *system, mpq_t *inverse, int *column);
+/* Highest derivatives of the coordinates, -W^-1 (C v + K q), n x states; `held`: of the held terms alone */
+void highest_derivatives(const struct linear *system, const mpq_t *inverse, bool held, mpq_t *row);
+mpq_t *state_matrix(const struct linear *system, bool held); /* A of y' = A y, states x states */
 
 /* ---- poly.c: polynomials over Z, constant term first ---- */
 
@@ -377,14 +509,54 @@ bool response_enclose(struct response *response, mpq_srcptr tau, int precision, 
 
 /* ---- resolvent.c: the Laplace images of what a step needs ---- */
 
+struct excitation {                 /* acts from tau = 0 on: sum over m of tau^m e^{a tau} times cos(w tau) and sin(w tau) */
+	mpq_srcptr a, w;
+	int powers;                 /* m = 0 .. powers-1; where w = 0 there is no sine */
+	mpq_t *force;               /* [m][cos, sin][equation]: on the equations */
+	mpq_t *direct;              /* [m][cos, sin]: added to the result itself */
+};
+struct excitation excitation_new(int n, mpq_srcptr a, mpq_srcptr w, int powers); /* all 0; a, w NULL: 0 */
+struct question {                   /* row . y(tau) */
+	const mpq_t *initial;       /* y(0), one per state; NULL: 0 */
+	int excitations;
+	struct excitation *excitation;
+	const mpq_t *row;           /* one per state */
+};
 struct resolvent;                   /* adj P and B of one system */
 struct resolvent *resolvent_of(const struct linear *system);
-struct response *image_of_state(struct resolvent *r, int i, int j);            /* Phi_ij: state i from state j */
-struct response *image_of_load(struct resolvent *r, int i, int load, int column); /* state i from cos or sin at the start */
-struct response *image_of_solution(struct resolvent *r, const mpq_t *initial, const struct output *output); /* output(t) from the start */
-void characteristic_polynomial(const struct resolvent *r, mpq_t *coefficient); /* B(s) = det P, 2n+1 of them */
-struct response *image_of_wave(const struct wave *wave, bool sine);            /* cos or sin of w t, without its phase */
+struct response *image_of(struct resolvent *r, const struct question *question);
+void characteristic_polynomial(const struct resolvent *r, mpq_t *coefficient); /* B(s) = det P, as many as its degree + 1 */
 const struct poly *resolvent_determinant(const struct resolvent *r);           /* B(s) times the scales of the rows */
+
+/* ---- loads.c: loads, inputs and held terms as excitations of a step ---- */
+
+struct response *response_of_state(struct resolvent *r, const struct linear *system, int i, int j); /* Phi_ij, held terms included */
+struct response *response_of_load(struct resolvent *r, const struct linear *system, int segment, int i, int load, int column);
+struct response *response_of_input(struct resolvent *r, const struct linear *system, int i, int input, int column, mpq_srcptr h);
+struct response *response_of_load_state(const struct load *load, int to, int from); /* of one load: z_to(t+tau) from z_from(t) */
+struct started {                    /* a response that starts at a time of its own */
+	struct response *response;
+	mpq_t start;
+};
+/* output(t) from t = 0 as a sum of responses; returns how many */
+int responses_of_output(struct resolvent *r, const struct linear *system, const mpq_t *initial, const struct output *output, struct started **list);
+int load_columns(const struct linear *system);
+int input_columns(const struct linear *system);
+bool load_acts(const struct linear *system, const struct load *load);
+bool is_polynomial(const struct wave *wave);                /* t^k alone */
+bool oscillates(const struct wave *wave);
+
+/* ---- taylor.c: e^{A tau} as a whole, enclosed by a Taylor series and squarings ---- */
+
+struct taylor;                      /* one rational A (n x n, row-major) and one tau */
+struct taylor *taylor_of(int n, const mpq_t *A, mpq_srcptr tau);
+/* Every entry to an absolute error below 2^-precision times the largest entry's size (of the real e^{A tau} or its
+ * enclosure); small entries of short paths come out to nearly that many bits of their own. Cached: asking for less than
+ * is known costs nothing. False: |A tau| above 2^512, an entry beyond 2^(2^50), or errors that outgrow 64 kbit. */
+bool taylor_enclose(struct taylor *t, int precision);
+void taylor_entry(const struct taylor *t, int i, int j, mpfi_ptr value);    /* sets value's precision; after taylor_enclose */
+/* True if the entry is a polynomial in tau, zero included, for every tau: then `exact` is its value at this one. */
+bool taylor_exact(struct taylor *t, int i, int j, mpq_ptr exact);
 
 /* ---- number.c: the border to rounded numbers ---- */
 
@@ -396,6 +568,20 @@ const char *shortest(double d);                             /* fewest digits tha
 const char *exact_text(mpq_srcptr q);                       /* a decimal if there is one, else p/q */
 const char *readable_text(mpq_srcptr q);                    /* the same while it is short, else 12 digits */
 
+/* ---- series.c: the Taylor series behind NAME_at ---- */
+
+struct step;
+struct series {                     /* x' = A x; x = state, held terms, constant load, cos and sin of each wave */
+	bool emitted;               /* max|pole| h <= 8 */
+	int size, degree, halvings;
+	int held;                   /* index of the first held term, one per coordinate; -1: none */
+	int *load;                  /* index of the first state of each load; -1: it acts on nothing */
+	int *input;                 /* index of each input (then of its slope, if of first order) */
+};
+void series_place(struct series *series, const struct linear *system); /* which entry of x is what */
+void series_plan(struct step *step);                        /* degree, halvings */
+mpq_t *series_matrix(const struct series *series, const struct linear *system, int segment); /* A in one segment of time */
+
 /* ---- coefficients.c: numbers of the step, each rounded once ---- */
 
 struct coefficient {
@@ -403,38 +589,28 @@ struct coefficient {
 	bool zero;                  /* exactly: no trace in the code */
 };
 struct table {                      /* of one step: y+ = Phi y + sum of columns */
-	int states, columns;
+	int states, columns, inputs;
 	struct coefficient *Phi;    /* states x states */
-	struct coefficient *load;   /* states x columns: of the loads in order, cos before sin */
+	struct coefficient *load;   /* [segment of time][states x columns]: of the loads in order */
+	struct coefficient *input;  /* states x inputs: u held; or its value before the step and after it */
 };
 void check_pole_size(const struct model *model, const struct resolvent *resolvent); /* leaves the statement where |p| h is hopeless */
 struct coefficient coefficient_of_rational(mpq_srcptr q);
 /* Rounded, infinite beyond the range; `at` and `what` name it where it cannot be decided. */
+struct coefficient started_value(int count, const struct started *list, mpq_srcptr t, struct place at, const char *what); /* their sum */
 struct coefficient response_value(struct response *response, mpq_srcptr tau, bool two_words, struct place at, const char *what);
-struct table *table_of(const struct model *model, struct resolvent *resolvent, const struct linear *system, bool two_words);
-void rotation_of(const struct model *model, const struct wave *wave, struct coefficient *cosine, struct coefficient *sine); /* over h */
-
-/* ---- series.c: the Taylor series behind NAME_at ---- */
-
-struct step;
-struct series {                     /* x' = A x; x = state, held terms, constant load, cos and sin of each wave */
-	bool emitted;               /* max|pole| h <= 8 */
-	int size, degree, halvings;
-	mpq_t *A;                   /* size x size */
-	int held;                   /* index of the first held term, one per coordinate; -1: none */
-	int *load;                  /* index of the first state of each load; -1: it acts on nothing */
-};
-void series_plan(struct step *step);
+/* By residues; beyond LIMIT_RESIDUE_STATES states by Taylor series, of which `series` says the matrix. */
+struct table *table_of(const struct model *model, struct resolvent *resolvent, const struct linear *system, const struct series *series, bool two_words);
 
 /* ---- scheme.c: what a scheme steps with, as a program over tables ---- */
 
-enum operand_kind { OPERAND_STATE, OPERAND_LOAD };
+enum operand_kind { OPERAND_STATE, OPERAND_LOAD, OPERAND_INPUT };
 struct operand {
 	enum operand_kind kind;
-	int index;                  /* state; or column of the loads */
+	int index;                  /* state; or column of the loads, of the inputs */
 };
 struct product {
-	const struct coefficient *factor;
+	const struct coefficient *factor; /* of a load: in the first segment of time */
 	struct operand operand;
 };
 struct assignment {                 /* target <- sum of products */
@@ -447,7 +623,7 @@ struct program {
 	struct assignment *assignment;
 	bool *reads;                /* per state: whether its old value is read */
 	bool *uses;                 /* per column of the loads */
-	int oscillators;            /* cos/sin pairs evaluated per step */
+	int oscillators, growths;   /* cos/sin pairs and exponentials evaluated per step */
 	int multiplications, additions;
 };
 struct step {                       /* everything that is emitted for one model */
@@ -461,7 +637,6 @@ struct step {                       /* everything that is emitted for one model 
 	struct series series;
 };
 struct step *step_build(const struct model *model);         /* NULL: it was said why */
-int load_columns(const struct linear *system);
 
 /* ---- report.c: poles and polynomials for a reader ---- */
 
@@ -474,21 +649,62 @@ struct pole_report {                /* sorted by |p|, then by real part */
 int poles_of(const struct resolvent *resolvent, struct pole_report **report);
 const char *pole_text(const struct pole_report *report);
 const char *polynomial_text(int length, const mpq_t *c);    /* in s */
-const char *wave_text(const struct wave *wave, bool sine);
+const char *column_text(const struct load *load, int column); /* t*exp(-2*t)*cos(5*t) */
+const char *equation_text(const struct model *model, const struct form *residual); /* coordinates = loads */
 const char *irrationals_text(const struct irrationals *used);
 
 /* ---- cprint.c: expressions as C ---- */
 
 bool may_be_macro(const char *name);
-void name_for_c(const struct spec *spec, const char *name, const char *upper); /* gives every symbol its C identifiers, clear of each other */
+void name_for_c(const struct model *model, const char *upper, const char **local); /* gives every symbol and every state its C identifier */
+const char *written_local(const struct model *written, int state); /* after that: of a written state */
 const char *c_expression(const struct node *node);          /* fit for a term of a sum; accelerations count as 0 */
 bool vanishes(const struct node *node);                     /* nothing is left when accelerations are 0 */
 void mark_used(const struct node *node, bool *math);        /* flags the symbols that it needs; *math: it needs <math.h> */
 
-/* ---- the printers ---- */
+/* ---- emit.c, emit_loads.c, emit_time.c, emit_rhs.c: a step as C ---- */
 
+struct emitter {
+	FILE *to;
+	const struct step *step;
+	const struct model *model;
+	const struct linear *system;
+	const char *name, *upper;   /* scs, SCS */
+	const char *options;
+	const char **local;         /* per state: the C local that holds it */
+	int phases, growths;        /* in the state */
+	int *phase, *growth;        /* per load: index of its phase and of its growth; -1: none */
+	bool ramps;                 /* some input is of first order */
+};
 void emit_header(FILE *to, const struct step *step, const char *options, bool rhs);
 void emit_code(FILE *to, const struct step *step, const char *options, const char *header_name, bool rhs); /* header_name NULL: all in one */
+
+const char *tree(int terms, const char *const *term, int indent); /* a balanced sum */
+const char *scaled(double factor, const char *operand);           /* operand NULL: 1 */
+void emit_number_rows(const struct emitter *e, int rows, int columns, const double *value, const char *const *row_note);
+void emit_used_constants(const struct emitter *e, bool lets);
+void clear_used(const struct spec *spec);
+bool uses_time(const struct node *node);
+void mark_states(const struct model *written, const struct node *node, bool *reads);
+
+void emit_load_tables(const struct emitter *e);                   /* phases and growths: start, step, rate */
+void emit_load_members(const struct emitter *e);
+void emit_load_set(const struct emitter *e);
+void emit_load_advance(const struct emitter *e, const char *steps); /* `steps` NULL: one */
+void emit_load_states(const struct emitter *e, const bool *loads, bool time_is_there); /* declares load1[...] for the loads wanted */
+const char *load_operand(const struct emitter *e, int load, int column); /* NULL: the constant 1 */
+const char *column_operand(const struct emitter *e, int column);
+
+void emit_changes(const struct emitter *e);                       /* loads that change their formula: when */
+void emit_passing(const struct emitter *e);                       /* ... and pass(), across a change */
+bool has_jump(const struct emitter *e);
+void emit_at(const struct emitter *e);
+void emit_jump(const struct emitter *e);
+void emit_rhs(const struct emitter *e);
+bool rhs_needs_math(const struct model *model);
+
+/* ---- explain.c, solution.c ---- */
+
 void explain_person(FILE *to, const struct step *step);
 void explain_json(FILE *to, const struct step *step);
 void print_solution(FILE *to, const struct model *model, struct resolvent *written, mpq_srcptr end);

@@ -31,10 +31,11 @@ static void evaluate(struct poly p, long point, mpz_ptr value)
 	}
 }
 
-/* Fraction-free Gauss and Jordan (Bareiss) on [W | I]: leaves det and adj. False at a singular matrix. */
-static bool bareiss(int n, mpz_t *W, mpz_ptr det)
+/* Fraction-free elimination (Bareiss): on W of width n the determinant; on [W | I], after Jordan, also adj W in the place
+ * of I. False at a singular matrix. */
+static bool bareiss(int n, int width, mpz_t *W, mpz_ptr det)
 {
-	int width = 2 * n, sign = 1;
+	int sign = 1;
 	mpz_t previous, keep;
 	mpz_init_set_ui(previous, 1);
 	mpz_init(keep);
@@ -51,11 +52,11 @@ static bool bareiss(int n, mpz_t *W, mpz_ptr det)
 			for (int j = 0; j < width; j++)
 				mpz_swap(W[row * width + j], W[k * width + j]);
 		}
-		for (int i = 0; i < n; i++) {
+		for (int i = width > n ? 0 : k + 1; i < n; i++) {     /* for the determinant alone, Gauss will do */
 			if (i == k)
 				continue;
 			mpz_set(keep, W[i * width + k]);
-			for (int j = 0; j < width; j++) {
+			for (int j = width > n ? 0 : k; j < width; j++) {
 				mpz_mul(W[i * width + j], W[i * width + j], W[k * width + k]);
 				mpz_submul(W[i * width + j], keep, W[k * width + j]);
 				mpz_divexact(W[i * width + j], W[i * width + j], previous);
@@ -74,7 +75,7 @@ static bool bareiss(int n, mpz_t *W, mpz_ptr det)
 /* det and adj of P at one point; false if P is singular there */
 static bool sample(struct polymat P, long point, mpz_ptr det, mpz_t *adj)
 {
-	int n = P.n, width = 2 * n;
+	int n = P.n, width = adj ? 2 * n : n;
 	mpz_t *W = ARRAY(mpz_t, (size_t)(n * width));
 	for (int i = 0; i < n; i++)
 		for (int j = 0; j < width; j++) {
@@ -84,7 +85,7 @@ static bool sample(struct polymat P, long point, mpz_ptr det, mpz_t *adj)
 			else
 				mpz_set_ui(W[i * width + j], j - n == i);
 		}
-	bool regular = bareiss(n, W, det);
+	bool regular = bareiss(n, width, W, det);
 	for (int i = 0; i < n && regular && adj; i++)
 		for (int j = 0; j < n; j++) {
 			mpz_init_set(adj[i * n + j], W[i * width + n + j]);

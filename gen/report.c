@@ -92,17 +92,74 @@ const char *polynomial_text(int length, const mpq_t *c)
 	return text;
 }
 
-const char *wave_text(const struct wave *wave, bool sine)
+static const char *times_t(mpq_srcptr factor)
 {
-	const char *w = mpq_cmp_ui(wave->w, 1, 1) == 0 ? "t" : format("%s*t", readable_text(wave->w));
+	if (mpq_cmp_ui(factor, 1, 1) == 0)
+		return "t";
+	return mpq_cmp_si(factor, -1, 1) == 0 ? "-t" : format("%s*t", readable_text(factor));
+}
+
+static const char *joined(const char *left, const char *right)
+{
+	return *left && *right ? format("%s*%s", left, right) : *left ? left : right;
+}
+
+const char *column_text(const struct load *load, int column)
+{
+	const struct wave *wave = load->wave;
+	bool turns = oscillates(wave);
+	int power = turns ? column / 2 : column;
+	const char *text = power == 0 ? "" : power == 1 ? "t" : format("t^%d", power);
+	if (mpq_sgn(wave->a) != 0)
+		text = joined(text, format("exp(%s)", times_t(wave->a)));
+	if (turns) {
+		mpq_t size;
+		mpq_init(size);
+		mpq_abs(size, wave->p);
+		const char *phase = mpq_sgn(size) == 0 ? "" : format(" %c %s", mpq_sgn(wave->p) < 0 ? '-' : '+', readable_text(size));
+		text = joined(text, format("%s(%s%s)", column % 2 ? "sin" : "cos", times_t(wave->w), phase));
+		mpq_clear(size);
+	}
+	return *text ? text : "1";
+}
+
+static const char *basis_text(const struct model *model, const struct basis *basis)
+{
+	switch (basis->kind) {
+	case BASIS_ONE:   return "";
+	case BASIS_PI:    return "pi";
+	case BASIS_INPUT: return format("%s%s", model->system.input[basis->index].name, basis->order ? "'" : "");
+	case BASIS_COORD: return format("%s%.*s", model->coord_name[basis->index], basis->order, "''");
+	default:          break;
+	}
+	struct load load = { .wave = basis->wave };
+	return column_text(&load, oscillates(basis->wave) ? 2 * basis->power + basis->sine : basis->power);
+}
+
+static const char *add_term(const struct model *model, const char *text, const struct form_term *term, bool negate)
+{
 	mpq_t size;
 	mpq_init(size);
-	mpq_abs(size, wave->p);
-	const char *text = format("%s(%s", sine ? "sin" : "cos", w);
-	if (mpq_sgn(wave->p) != 0)
-		text = format("%s %c %s", text, mpq_sgn(wave->p) < 0 ? '-' : '+', readable_text(size));
+	mpq_abs(size, term->factor);
+	bool minus = (mpq_sgn(term->factor) < 0) != negate;
+	const char *what = basis_text(model, &term->basis);
+	const char *factor = *what && mpq_cmp_ui(size, 1, 1) == 0 ? "" : readable_text(size);
 	mpq_clear(size);
-	return format("%s)", text);
+	return format("%s%s%s%s%s", text, *text ? (minus ? " - " : " + ") : minus ? "-" : "", factor, *factor && *what ? "*" : "", what);
+}
+
+/* Coordinates on the left, accelerations first; loads and inputs on the right. */
+const char *equation_text(const struct model *model, const struct form *residual)
+{
+	const char *left = "", *right = "";
+	for (int order = 2; order >= 0; order--)
+		for (int i = 0; i < residual->terms; i++)
+			if (residual->term[i].basis.kind == BASIS_COORD && residual->term[i].basis.order == order)
+				left = add_term(model, left, &residual->term[i], false);
+	for (int i = 0; i < residual->terms; i++)
+		if (residual->term[i].basis.kind != BASIS_COORD)
+			right = add_term(model, right, &residual->term[i], true);
+	return format("%s = %s", *left ? left : "0", *right ? right : "0");
 }
 
 const char *irrationals_text(const struct irrationals *used)

@@ -3,84 +3,75 @@
  * a program over the tables of the exact part. */
 #include "plgen.h"
 
-int load_columns(const struct linear *system)
-{
-	int columns = 0;
-	for (int l = 0; l < system->loads; l++)
-		columns += system->load[l].columns;
-	return columns;
-}
-
 /* ---- pl ---- */
 
-/* A = diagonal part, held = the rest */
-static void split_diagonal(int n, mpq_t *A, mpq_t *held)
+static mpq_t *normalized(int n, int segments, const mpq_t *inverse, const mpq_t *force)
 {
-	for (int i = 0; i < n * n; i++)
-		if (i / n != i % n)
-			mpq_swap(A[i], held[i]);
+	mpq_t *acceleration = rationals((size_t)segments * (size_t)n);
+	for (int s = 0; s < segments; s++)
+		rational_product(n, n, 1, inverse, force + s * n, acceleration + s * n);
+	return acceleration;
 }
 
-static struct load normalized_load(int n, const mpq_t *inverse, const struct load *load)
+static void normalize_loads(const struct linear *written, const mpq_t *inverse, struct linear *split)
 {
-	struct load normalized = { load->wave, load->columns, { NULL, NULL } };
-	for (int k = 0; k < load->columns; k++) {
-		normalized.force[k] = rationals((size_t)n);
-		rational_product(n, n, 1, inverse, (const mpq_t *)load->force[k], normalized.force[k]);
+	int n = written->n;
+	split->loads = written->loads;
+	split->load = ARRAY(struct load, (size_t)written->loads);
+	for (int l = 0; l < written->loads; l++) {
+		const struct load *load = &written->load[l];
+		split->load[l] = *load;
+		split->load[l].force = ARRAY(mpq_t *, (size_t)load->columns);
+		for (int k = 0; k < load->columns; k++)
+			split->load[l].force[k] = normalized(n, written->segments, inverse, (const mpq_t *)load->force[k]);
 	}
-	return normalized;
+	split->inputs = written->inputs;
+	split->input = ARRAY(struct input, (size_t)written->inputs);
+	for (int i = 0; i < written->inputs; i++) {
+		split->input[i] = written->input[i];
+		for (int k = 0; k < 2; k++)
+			split->input[i].force[k] = normalized(n, 1, inverse, (const mpq_t *)written->input[i].force[k]);
+	}
 }
 
 /* Fang, Wang, Dai, Zhang 2020: after division by the mass matrix the other coordinates and their velocities are held
- * at their value at the step's start; a coordinate's own terms and the loads stay exact. */
+ * at their value at the step's start; a coordinate's own terms, loads and inputs stay exact. */
 static struct linear piecewise_laplace(const struct linear *written)
 {
-	int n = written->n, column;
-	size_t cells = (size_t)(n * n);
-	struct linear split = { .n = n, .loads = written->loads };
-	split.M = rationals(cells);
-	split.C = rationals(cells);
-	split.K = rationals(cells);
-	split.heldC = rationals(cells);
-	split.heldK = rationals(cells);
-	mpq_t *inverse = rationals(cells);
-	rational_inverse(n, (const mpq_t *)written->M, inverse, &column);
-	rational_product(n, n, n, (const mpq_t *)inverse, (const mpq_t *)written->C, split.C);
-	rational_product(n, n, n, (const mpq_t *)inverse, (const mpq_t *)written->K, split.K);
-	for (int i = 0; i < n; i++)
-		mpq_set_ui(split.M[i * n + i], 1, 1);
-	split_diagonal(n, split.C, split.heldC);
-	split_diagonal(n, split.K, split.heldK);
-	split.load = ARRAY(struct load, (size_t)written->loads);
-	for (int l = 0; l < written->loads; l++)
-		split.load[l] = normalized_load(n, (const mpq_t *)inverse, &written->load[l]);
+	int n = written->n, states = written->states, column;
+	struct linear split = linear_like(written);
+	mpq_t *inverse = rationals((size_t)(n * n)), *highest = rationals((size_t)(n * states));
+	leading_inverse(written, inverse, &column);
+	highest_derivatives(written, (const mpq_t *)inverse, false, highest);
+	split.heldC = rationals((size_t)(n * n));
+	split.heldK = rationals((size_t)(n * n));
+	for (int i = 0; i < n; i++) {
+		mpq_set_ui((written->velocity[i] >= 0 ? split.M : split.C)[i * n + i], 1, 1);
+		for (int j = 0; j < states; j++) {
+			bool own = written->coord[j] == i;
+			mpq_t *matrix = j < n ? (own ? split.K : split.heldK) : own ? split.C : split.heldC;
+			mpq_neg(matrix[i * n + written->coord[j]], highest[i * states + j]);
+		}
+	}
+	normalize_loads(written, (const mpq_t *)inverse, &split);
 	return split;
 }
 
 /* The modified equation of y+ = E y + h phi1 R y is y' = L y - (h/2) R L y + O(h^2), L = A + R: what is held lags by
- * half a step. With M = 1: C' = C - (h/2)(heldK - heldC C), K' = K + (h/2) heldC K, C and K with the held terms in. */
-static struct linear modified_equation(const struct linear *split, mpq_srcptr h)
+ * half a step. */
+static struct linear modified_equation(const struct linear *written, const struct linear *split, mpq_srcptr h)
 {
-	int n = split->n;
-	size_t cells = (size_t)(n * n);
-	mpq_t *C = rationals(cells), *K = rationals(cells), *CC = rationals(cells), *CK = rationals(cells), half;
+	int states = split->states;
+	mpq_t *L = state_matrix(written, false), *R = state_matrix(split, true), *RL = rationals((size_t)(states * states)), half;
+	rational_product(states, states, states, (const mpq_t *)R, (const mpq_t *)L, RL);
 	mpq_init(half);
 	mpq_div_2exp(half, h, 1);
-	for (size_t i = 0; i < cells; i++) {
-		mpq_add(C[i], split->C[i], split->heldC[i]);
-		mpq_add(K[i], split->K[i], split->heldK[i]);
-	}
-	rational_product(n, n, n, (const mpq_t *)split->heldC, (const mpq_t *)C, CC);
-	rational_product(n, n, n, (const mpq_t *)split->heldC, (const mpq_t *)K, CK);
-	for (size_t i = 0; i < cells; i++) {
-		mpq_sub(CC[i], CC[i], split->heldK[i]);
-		mpq_mul(CC[i], CC[i], half);
-		mpq_add(C[i], C[i], CC[i]);
-		mpq_mul(CK[i], CK[i], half);
-		mpq_add(K[i], K[i], CK[i]);
+	for (int i = 0; i < states * states; i++) {
+		mpq_mul(RL[i], RL[i], half);
+		mpq_sub(L[i], L[i], RL[i]);
 	}
 	mpq_clear(half);
-	return (struct linear){ .n = n, .M = split->M, .C = C, .K = K };
+	return first_order_system(states, (const mpq_t *)L);
 }
 
 /* ---- the program of a linear step ---- */
@@ -90,6 +81,16 @@ static void add_term(struct assignment *a, const struct coefficient *factor, enu
 	if (factor->zero)
 		return;
 	a->term[a->terms++] = (struct product){ factor, { kind, index } };
+}
+
+/* A load that acts in some segment of time */
+static void add_load_term(struct assignment *a, const struct table *table, int segments, int row, int column)
+{
+	bool any = false;
+	for (int s = 0; s < segments; s++)
+		any = any || !table->load[(s * table->states + row) * table->columns + column].zero;
+	if (any)
+		a->term[a->terms++] = (struct product){ &table->load[row * table->columns + column], { OPERAND_LOAD, column } };
 }
 
 static bool is_identity(const struct assignment *a)
@@ -103,10 +104,10 @@ static bool is_unit(const struct product *p, const struct linear *system)
 	int column = p->operand.index;
 	if (value == 1 || value == -1)
 		return true;
-	if (p->operand.kind == OPERAND_STATE)
+	if (p->operand.kind != OPERAND_LOAD)
 		return false;
 	for (int l = 0; l < system->loads && column >= 0; column -= system->load[l++].columns)
-		if (column == 0 && !system->load[l].wave)
+		if (column == 0 && is_polynomial(system->load[l].wave))
 			return true;            /* a constant load is added as it is */
 	return false;
 }
@@ -120,15 +121,22 @@ static void count(struct program *program, const struct linear *system)
 			program->multiplications += !is_unit(&a->term[k], system);
 			if (a->term[k].operand.kind == OPERAND_STATE)
 				program->reads[a->term[k].operand.index] = true;
-			else
+			else if (a->term[k].operand.kind == OPERAND_LOAD)
 				program->uses[a->term[k].operand.index] = true;
 		}
 	}
-	for (int l = 0, column = 0; l < system->loads; column += system->load[l++].columns)
-		if (system->load[l].wave && (program->uses[column] || program->uses[column + 1]))
-			program->oscillators++;
-	program->multiplications += program->oscillators * PL_COSSIN_MUL;
-	program->additions += program->oscillators * PL_COSSIN_ADD;
+	for (int l = 0, column = 0; l < system->loads; column += system->load[l++].columns) {
+		const struct load *load = &system->load[l];
+		bool used = false;
+		for (int k = 0; k < load->columns; k++)
+			used = used || program->uses[column + k];
+		bool grows = used && mpq_sgn(load->wave->a) != 0, turns = used && oscillates(load->wave);
+		program->oscillators += turns;
+		program->growths += grows;
+		program->multiplications += !used ? 0 : turns ? 2 * (load->powers - 1) + 2 * grows : load->powers > 1 ? load->powers - 2 + grows : 0;
+	}
+	program->multiplications += program->oscillators * PL_COSSIN_MUL + program->growths * PL_GROWTH_MUL;
+	program->additions += program->oscillators * PL_COSSIN_ADD + program->growths * PL_GROWTH_ADD;
 }
 
 static struct program *linear_program(const struct table *table, const struct linear *system)
@@ -142,11 +150,13 @@ static struct program *linear_program(const struct table *table, const struct li
 		struct assignment *a = &program->assignment[program->assignments];
 		a->target = i;
 		a->terms = 0;
-		a->term = ARRAY(struct product, (size_t)(n + table->columns));
+		a->term = ARRAY(struct product, (size_t)(n + table->columns + table->inputs));
 		for (int j = 0; j < n; j++)
 			add_term(a, &table->Phi[i * n + j], OPERAND_STATE, j);
 		for (int k = 0; k < table->columns; k++)
-			add_term(a, &table->load[i * table->columns + k], OPERAND_LOAD, k);
+			add_load_term(a, table, system->segments, i, k);
+		for (int k = 0; k < table->inputs; k++)
+			add_term(a, &table->input[i * table->inputs + k], OPERAND_INPUT, k);
 		program->assignments += !is_identity(a);
 	}
 	count(program, system);
@@ -157,7 +167,7 @@ static struct program *linear_program(const struct table *table, const struct li
 
 static void find_growth(struct step *step)
 {
-	struct linear modified = modified_equation(&step->system, step->model->h);
+	struct linear modified = modified_equation(&step->model->system, &step->system, step->model->h);
 	struct pole_report *pole;
 	int poles = poles_of(resolvent_of(&modified), &pole);
 	mpfr_init2(step->growth, 53);
@@ -170,8 +180,8 @@ static void build(void *context)
 {
 	struct step *step = context;
 	const struct model *model = step->model;
-	step->written = resolvent_of(&model->system);
-	step->solved = step->written;
+	step->written = resolvent_of(&model->written->system);
+	step->solved = model->written == model ? step->written : resolvent_of(&model->system);
 	check_pole_size(model, step->written);
 	step->system = model->system;
 	if (model->scheme == SCHEME_PL) {
@@ -179,7 +189,8 @@ static void build(void *context)
 		step->solved = resolvent_of(&step->system);
 		find_growth(step);
 	}
-	step->table = table_of(model, step->solved, &step->system, true);
+	series_place(&step->series, &step->system);
+	step->table = table_of(model, step->solved, &step->system, &step->series, true);
 	step->program = linear_program(step->table, &step->system);
 	series_plan(step);
 }

@@ -1,24 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The Taylor series behind NAME_at: its matrix, and how many terms and halvings of the time it takes.
- * x holds the states, then what a scheme holds, then 1 for a constant load and cos and sin of each wave. */
+ * x holds the states, then what a scheme holds, then the load states, then the inputs (with their slopes). */
 #include "plgen.h"
 
-enum { LIMIT_RADIANS = 8, LIMIT_DEGREE = 80, BITS = 64 };
-
-static bool acts(const struct linear *system, const struct load *load)
-{
-	for (int k = 0; k < load->columns; k++)
-		for (int i = 0; i < system->n; i++)
-			if (mpq_sgn(load->force[k][i]) != 0)
-				return true;
-	return false;
-}
+enum { LIMIT_RADIANS = 8, LIMIT_PARTS = 1 << 20, LIMIT_DEGREE = 80, BITS = 64 };
 
 /* ---- the matrix ---- */
 
-static void place_extras(struct series *series, const struct linear *system)
+void series_place(struct series *series, const struct linear *system)
 {
-	series->size = 2 * system->n;
+	series->size = system->states;
 	series->held = -1;
 	if (system->heldK) {
 		series->held = series->size;
@@ -26,44 +17,75 @@ static void place_extras(struct series *series, const struct linear *system)
 	}
 	series->load = ARRAY(int, (size_t)system->loads);
 	for (int l = 0; l < system->loads; l++) {
-		bool active = acts(system, &system->load[l]);
+		bool active = load_acts(system, &system->load[l]);
 		series->load[l] = active ? series->size : -1;
 		series->size += active ? system->load[l].columns : 0;
 	}
+	series->input = ARRAY(int, (size_t)system->inputs);
+	for (int i = 0; i < system->inputs; i++) {
+		series->input[i] = series->size;
+		series->size += system->input[i].first_order ? 2 : 1;
+	}
 }
 
-static void fill_matrix(struct series *series, const struct linear *system)
+/* (t^k e^{at} cos)' = k t^{k-1} e^{at} cos + a t^k e^{at} cos - w t^k e^{at} sin, and so for sin */
+static void fill_load_rows(mpq_t *A, int size, int at, const struct load *load)
 {
-	int n = system->n, size = series->size, column;
-	mpq_t *A = series->A = rationals((size_t)size * (size_t)size), *inverse = rationals((size_t)(n * n)), *product = rationals((size_t)(n * n));
-	rational_inverse(n, (const mpq_t *)system->M, inverse, &column);
-	const mpq_t *parts[] = { system->K, system->C };
-	for (int k = 0; k < 2; k++) {
-		rational_product(n, n, n, (const mpq_t *)inverse, parts[k], product);
-		for (int i = 0; i < n; i++)
-			for (int j = 0; j < n; j++)
-				mpq_neg(A[(n + i) * size + k * n + j], product[i * n + j]);
+	int trig = oscillates(load->wave) ? 2 : 1;
+	for (int column = 0; column < load->columns; column++) {
+		mpq_t *row = A + (at + column) * size + at;
+		mpq_set(row[column], load->wave->a);
+		if (column >= trig)
+			mpq_set_si(row[column - trig], column / trig, 1);
+		if (trig == 2 && column % 2 == 0)
+			mpq_neg(row[column + 1], load->wave->w);
+		if (trig == 2 && column % 2 == 1)
+			mpq_set(row[column - 1], load->wave->w);
 	}
+}
+
+/* column `at` of the rows of the highest derivatives = W^-1 force */
+static void fill_force(mpq_t *A, int size, int at, const struct linear *system, const mpq_t *inverse, const mpq_t *force)
+{
+	int n = system->n;
+	mpq_t *product = rationals((size_t)n);
+	rational_product(n, n, 1, inverse, force, product);
 	for (int i = 0; i < n; i++) {
-		mpq_set_ui(A[i * size + n + i], 1, 1);
-		if (series->held >= 0)
-			mpq_set_ui(A[(n + i) * size + series->held + i], 1, 1);
+		int state = system->velocity[i] >= 0 ? system->velocity[i] : i;
+		mpq_set(A[state * size + at], product[i]);
+	}
+}
+
+mpq_t *series_matrix(const struct series *series, const struct linear *system, int segment)
+{
+	int n = system->n, size = series->size, states = system->states, column;
+	mpq_t *A = rationals((size_t)size * (size_t)size), *inverse = rationals((size_t)(n * n)), *unit = rationals((size_t)n);
+	mpq_t *own = state_matrix(system, false);
+	leading_inverse(system, inverse, &column);
+	for (int i = 0; i < states; i++)
+		for (int j = 0; j < states; j++)
+			mpq_set(A[i * size + j], own[i * states + j]);
+	for (int i = 0; i < n && series->held >= 0; i++) {
+		mpq_set_ui(unit[i], 1, 1);
+		fill_force(A, size, series->held + i, system, (const mpq_t *)inverse, (const mpq_t *)unit);
+		mpq_set_ui(unit[i], 0, 1);
 	}
 	for (int l = 0; l < system->loads; l++) {
-		const struct load *load = &system->load[l];
-		int at = series->load[l];
-		if (at < 0)
+		if (series->load[l] < 0)
 			continue;
-		for (int k = 0; k < load->columns; k++) {
-			rational_product(n, n, 1, (const mpq_t *)inverse, (const mpq_t *)load->force[k], product);
-			for (int i = 0; i < n; i++)
-				mpq_set(A[(n + i) * size + at + k], product[i]);
-		}
-		if (load->wave) {               /* cos' = -w sin, sin' = w cos */
-			mpq_neg(A[at * size + at + 1], load->wave->w);
-			mpq_set(A[(at + 1) * size + at], load->wave->w);
-		}
+		for (int k = 0; k < system->load[l].columns; k++)
+			fill_force(A, size, series->load[l] + k, system, (const mpq_t *)inverse, (const mpq_t *)system->load[l].force[k] + segment * n);
+		fill_load_rows(A, size, series->load[l], &system->load[l]);
 	}
+	for (int i = 0; i < system->inputs; i++) {
+		int at = series->input[i];
+		fill_force(A, size, at, system, (const mpq_t *)inverse, (const mpq_t *)system->input[i].force[0]);
+		if (!system->input[i].first_order)
+			continue;
+		fill_force(A, size, at + 1, system, (const mpq_t *)inverse, (const mpq_t *)system->input[i].force[1]);
+		mpq_set_ui(A[at * size + at + 1], 1, 1);
+	}
+	return A;
 }
 
 /* ---- its length ---- */
@@ -79,6 +101,17 @@ static void larger_pole(mpfr_ptr largest, const struct rectangle *at)
 	mpfr_max(largest, largest, right, MPFR_RNDU);
 	mpfi_clear(size);
 	mpfr_clear(right);
+}
+
+static void larger_wave(mpfr_ptr largest, const struct wave *wave)
+{
+	mpfr_t a, w;
+	mpfr_inits2(BITS, a, w, NULL);
+	mpfr_set_q(a, wave->a, MPFR_RNDA);
+	mpfr_set_q(w, wave->w, MPFR_RNDA);
+	mpfr_hypot(a, a, w, MPFR_RNDU);
+	mpfr_max(largest, largest, a, MPFR_RNDU);
+	mpfr_clears(a, w, NULL);
 }
 
 /* max|p| h over the poles of the system and of its loads */
@@ -98,8 +131,8 @@ static void largest_angle(const struct step *step, mpfr_ptr angle)
 		for (int i = 0; i < spectrum->poles[f]; i++)
 			larger_pole(angle, &spectrum->pole[f][i].at);
 	for (int l = 0; l < step->system.loads; l++)
-		if (step->series.load[l] >= 0 && step->system.load[l].wave && mpfr_cmp_q(angle, step->system.load[l].wave->w) < 0)
-			mpfr_set_q(angle, step->system.load[l].wave->w, MPFR_RNDU);
+		if (step->series.load[l] >= 0)
+			larger_wave(angle, step->system.load[l].wave);
 	mpfr_mul_q(angle, angle, step->model->h, MPFR_RNDU);
 }
 
@@ -153,16 +186,29 @@ static bool negligible(int cells, const mpfr_t *term, mpfr_t *first)
 	return small;
 }
 
+/* The largest size that each entry has in any segment of time */
+static void add_envelope(mpfr_t *A, int cells, const mpq_t *segment)
+{
+	mpfr_t size;
+	mpfr_init2(size, BITS);
+	for (int i = 0; i < cells; i++) {
+		mpfr_set_q(size, segment[i], MPFR_RNDU);
+		mpfr_abs(size, size, MPFR_RNDU);
+		mpfr_max(A[i], A[i], size, MPFR_RNDU);
+	}
+	mpfr_clear(size);
+}
+
 /* The first degree after which two terms in a row are negligible. */
-static int series_degree(const struct series *series, mpq_srcptr h)
+static int series_degree(const struct series *series, const struct linear *system, mpq_srcptr h)
 {
 	int size = series->size, cells = size * size, quiet = 0, k = 0;
 	mpfr_t *A = positive_numbers(cells), *term = positive_numbers(cells), *next = positive_numbers(cells), *first = positive_numbers(cells);
+	for (int s = 0; s < system->segments; s++)
+		add_envelope(A, cells, (const mpq_t *)series_matrix(series, system, s));
 	for (int i = 0; i < cells; i++) {
-		mpfr_set_q(A[i], series->A[i], MPFR_RNDN);
 		mpfr_mul_q(A[i], A[i], h, MPFR_RNDN);
 		mpfr_div_2ui(A[i], A[i], (unsigned long)series->halvings, MPFR_RNDN);
-		mpfr_abs(A[i], A[i], MPFR_RNDU);
 		mpfr_set_ui(term[i], i % size == i / size, MPFR_RNDN);
 		mpfr_set(first[i], term[i], MPFR_RNDN);
 	}
@@ -180,14 +226,12 @@ void series_plan(struct step *step)
 {
 	struct series *series = &step->series;
 	mpfr_t angle;
-	place_extras(series, &step->system);
 	largest_angle(step, angle);
 	series->emitted = mpfr_cmp_ui(angle, LIMIT_RADIANS) <= 0;
-	if (series->emitted) {
-		fill_matrix(series, &step->system);
+	if (series->emitted || (step->system.segments > 1 && mpfr_cmp_ui(angle, LIMIT_PARTS) <= 0)) {
 		for (series->halvings = 0; mpfr_cmp_ui(angle, 1) > 0; series->halvings++)
 			mpfr_div_2ui(angle, angle, 1, MPFR_RNDU);
-		series->degree = series_degree(series, step->model->h);
+		series->degree = series_degree(series, &step->system, step->model->h);
 	}
 	mpfr_clear(angle);
 }

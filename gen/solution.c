@@ -6,6 +6,8 @@
 
 static void check_outputs(const struct model *model)
 {
+	if (model->system.inputs)
+		error(model->step_at, NULL, "--solution needs a model without inputs: their samples are not known");
 	for (int j = 0; j < model->outputs; j++)
 		if (!model->output[j].form && model->output[j].value)
 			error(model->output[j].value->start, "--solution prints outputs that are linear in states and loads",
@@ -28,15 +30,20 @@ static unsigned long last_step(const struct model *model, mpq_srcptr end)
 	return rows;
 }
 
+struct closed_form {                /* of one output */
+	int count;
+	struct started *list;
+};
+
 void print_solution(FILE *to, const struct model *model, struct resolvent *written, mpq_srcptr end)
 {
 	check_outputs(model);
 	check_pole_size(model, written);
 	unsigned long last = last_step(model, end);
-	struct response **response = ARRAY(struct response *, (size_t)model->outputs);
+	struct closed_form *form = ARRAY(struct closed_form, (size_t)model->outputs);
 	fputc('t', to);
 	for (int j = 0; j < model->outputs; j++) {
-		response[j] = image_of_solution(written, (const mpq_t *)model->initial, &model->output[j]);
+		form[j].count = responses_of_output(written, &model->system, (const mpq_t *)model->initial, &model->output[j], &form[j].list);
 		fprintf(to, ",%s", model->output[j].name);
 	}
 	fputc('\n', to);
@@ -45,7 +52,7 @@ void print_solution(FILE *to, const struct model *model, struct resolvent *writt
 	for (unsigned long k = 0; k <= last; k++) {
 		fprintf(to, "%.17g", round_rational(t));
 		for (int j = 0; j < model->outputs; j++) {
-			struct coefficient value = response_value(response[j], t, false, model->step_at, model->output[j].name);
+			struct coefficient value = started_value(form[j].count, form[j].list, t, model->step_at, model->output[j].name);
 			if (!isfinite(value.value))
 				error(model->end_at, NULL, "output '%s' leaves the range of double at t = %s s", model->output[j].name, readable_text(t));
 			fprintf(to, ",%.17g", value.value);

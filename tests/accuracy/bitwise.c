@@ -122,6 +122,22 @@ static mpq_t *accelerations(const struct linear *system, size_t columns)
     return R;
 }
 
+/* z = t^k e^{at} cos(wt+p) and sin, or t^k e^{at} alone: z' = a z + k (z of k - 1) -+ w (its partner) */
+static void fill_load_states(const struct load *load, size_t size, mpq_t *A)
+{
+    const bool turns = mpq_sgn(load->wave->w) != 0;
+    const size_t trig = turns ? 2 : 1;
+    for (size_t c = 0; c < (size_t)load->columns; c++) {
+        mpq_set(A[c * size + c], load->wave->a);
+        if (c >= trig)
+            mpq_set_ui(A[c * size + c - trig], c / trig, 1);
+        if (turns && c % 2 == 0)
+            mpq_neg(A[c * size + c + 1], load->wave->w);
+        if (turns && c % 2 == 1)
+            mpq_set(A[c * size + c - 1], load->wave->w);
+    }
+}
+
 /* Scheme pl: after division by the masses, the terms of other coordinates act through a constant copy of the state. */
 static struct augmented augment(const struct linear *system, bool pl)
 {
@@ -141,10 +157,7 @@ static struct augmented augment(const struct linear *system, bool pl)
             mpq_set(a.A[(n + i) * size + first_load + j], R[i * a.columns + 2 * n + j]);
     }
     for (size_t at = first_load, l = 0; l < (size_t)system->loads; at += (size_t)system->load[l++].columns)
-        if (system->load[l].wave) {
-            mpq_neg(a.A[at * size + at + 1], system->load[l].wave->w);
-            mpq_set(a.A[(at + 1) * size + at], system->load[l].wave->w);
-        }
+        fill_load_states(&system->load[l], size, a.A + at * size + at);
     for (size_t j = 0; j < a.columns; j++) {
         mpq_set_ui(a.X[(j < 2 * n ? j : j + copies) * a.columns + j], 1, 1);
         if (j < copies)
@@ -263,9 +276,9 @@ static void compare_low(const char *what, struct enclosures *e, size_t i, size_t
 
 static const char *entry_name(const struct model *model, size_t i, size_t j)
 {
-    if (j < (size_t)model->states)
+    if (j < (size_t)model->system.states)
         return format("factor of %s in %s", model->state_name[j], model->state_name[i]);
-    return format("factor of load column %zu in %s", j - (size_t)model->states, model->state_name[i]);
+    return format("factor of load column %zu in %s", j - (size_t)model->system.states, model->state_name[i]);
 }
 
 /* A flag says 0 at this tau: either 0 at every tau, or the judge finds nothing there with 4096 bits. */
@@ -369,19 +382,17 @@ static void set_phase(mpq_ptr value, const struct wave *wave, int (*function)(mp
 static struct solution solution_of(const struct model *model, const struct augmented *a)
 {
     const struct linear *system = &model->system;
-    const size_t one = a->size, time = one + 1, first = one + 2, outputs = (size_t)model->outputs, size = first + outputs;
+    const size_t first = a->size, outputs = (size_t)model->outputs, size = first + outputs;
     struct solution s = { size, outputs, rationals(size * size), rationals(size) };
     mpq_t *factors = rationals(first);
     for (size_t i = 0; i < a->size; i++)
         for (size_t j = 0; j < a->size; j++)
             mpq_set(s.A[i * size + j], a->A[i * a->size + j]);
-    mpq_set_ui(s.A[time * size + one], 1, 1);
-    mpq_set_ui(s.start[one], 1, 1);
     for (size_t i = 0; i < a->states; i++)
         mpq_set(s.start[i], model->initial[i]);
     for (size_t at = a->states, l = 0; l < (size_t)system->loads; at += (size_t)system->load[l++].columns) {
         mpq_set_ui(s.start[at], 1, 1);
-        if (system->load[l].wave) {
+        if (mpq_sgn(system->load[l].wave->w) != 0) {
             set_phase(s.start[at], system->load[l].wave, mpfr_cos);
             set_phase(s.start[at + 1], system->load[l].wave, mpfr_sin);
         }
@@ -392,9 +403,7 @@ static struct solution solution_of(const struct model *model, const struct augme
             mpq_set(factors[i], output->state[i]);
         for (size_t at = a->states, l = 0; l < (size_t)system->loads; l++)
             for (int k = 0; k < system->load[l].columns; k++, at++)
-                mpq_set(factors[at], output->load[k][l]);
-        mpq_set(factors[one], output->constant);
-        mpq_set(factors[time], output->time);
+                mpq_set(factors[at], output->load[l][k]);
         for (size_t i = 0; i < first; i++) {
             add_product(s.start[first + o], factors[i], s.start[i], false);
             for (size_t j = 0; j < first; j++)
@@ -439,8 +448,9 @@ static void compare_solution_values(void *context)
         if (!expected_outputs(work->solution, t, work->expected))
             continue;
         for (int o = 0; o < model->outputs; o++) {
-            struct response *response = image_of_solution(resolvent, (const mpq_t *)model->initial, &model->output[o]);
-            const struct coefficient c = response_value(response, t, false, model->step_at, model->output[o].name);
+            struct started *list;
+            const int count = responses_of_output(resolvent, &model->system, (const mpq_t *)model->initial, &model->output[o], &list);
+            const struct coefficient c = started_value(count, list, t, model->step_at, model->output[o].name);
             compare(model->output[o].name, c.value, work->expected[first + (size_t)o]);
         }
     }

@@ -1,0 +1,500 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Symbolic collection: nodes to values whose cells are forms, linear in what the linear core can carry. */
+#include "plgen.h"
+
+static struct value *collect_node(struct collector *c, struct node *node);
+
+/* ---- values: matrices of forms; a scalar is 1 x 1 ---- */
+
+static struct value *value_new(int rows, int columns)
+{
+	struct value *value = NEW(struct value);
+	*value = (struct value){ rows, columns, ARRAY(struct form *, (size_t)rows * (size_t)columns) };
+	for (int i = 0; i < rows * columns; i++)
+		value->cell[i] = NEW(struct form);
+	return value;
+}
+
+static struct value *scalar(struct form *form)
+{
+	struct value *value = NEW(struct value);
+	*value = (struct value){ 1, 1, ARRAY(struct form *, 1) };
+	value->cell[0] = form;
+	return value;
+}
+
+static struct form *collect_scalar(struct collector *c, struct node *node)
+{
+	struct value *value = collect_node(c, node);
+	if (value->rows != 1 || value->columns != 1)
+		error(node->start, NULL, "expected a scalar, found a %d x %d matrix", value->rows, value->columns);
+	return value->cell[0];
+}
+
+/* ---- what cannot be treated ---- */
+
+static bool holds_acceleration(const struct node *node)
+{
+	if (node->kind == NODE_NAME)
+		return node->primes == 2 || (node->symbol->kind == SYMBOL_LET && holds_acceleration(node->symbol->value));
+	for (int i = 0; i < node->children; i++)
+		if (holds_acceleration(node->child[i]))
+			return true;
+	return false;
+}
+
+_Noreturn void not_linear(const struct collector *c, const struct node *node, const char *why)
+{
+	if (c->tolerant)
+		abandon();
+	const struct node *term = c->term ? c->term : node;
+	if (holds_acceleration(term))
+		error(term->start, "accelerations stand in every equation with constant factors: no scheme treats this",
+		      "term '%s' %s", text_between(term->start, term->end), why);
+	error(term->start, "etd1, etdrk2, etdrk4, nc2, nc3, dq4 and bm3 are the schemes that could; they are not built yet",
+	      "term '%s' %s: scheme %s cannot treat it", text_between(term->start, term->end), why, c->scheme);
+}
+
+_Noreturn void not_built(const struct collector *c, struct place at, const char *what)
+{
+	if (c->tolerant)
+		abandon();
+	if (c->argument)                        /* not even then */
+		not_linear(c, c->argument, "is not linear");
+	error(at, NULL, "%s not built yet", what);
+}
+
+static void need_constant(const struct collector *c, const struct node *node, const char *what)
+{
+	if (c->constant_only)
+		error(node->at, NULL, "%s is not a constant", what);
+}
+
+/* ---- functions ---- */
+
+/* sin, cos of q pi are rational at multiples of pi/6 only where it shows here: 0, +-1/2, +-1 (Niven). */
+static bool niven(bool sine, const struct form *x, mpq_ptr value)
+{
+	static const int halves[12] = { 2, 99, 1, 0, -1, 99, -2, 99, -1, 0, 1, 99 };   /* 2 cos(k pi/6); 99: irrational */
+	mpq_srcptr pi = factor_of(x, BASIS_PI);
+	if (x->terms != 1 || !pi || mpz_cmp_ui(mpq_denref(pi), 6) > 0 || 6 % mpz_get_ui(mpq_denref(pi)) != 0)
+		return false;
+	mpz_t k;
+	mpz_init(k);
+	mpz_mul_ui(k, mpq_numref(pi), 6);
+	mpz_divexact(k, k, mpq_denref(pi));
+	unsigned long sixth = (mpz_fdiv_ui(k, 12) + (sine ? 9 : 0)) % 12;
+	mpz_clear(k);
+	if (halves[sixth] == 99)
+		return false;
+	mpq_set_si(value, halves[sixth], 2);
+	mpq_canonicalize(value);
+	return true;
+}
+
+/* tan of q pi is rational at multiples of pi/4 only. */
+static bool tangent(const struct node *node, const struct form *x, mpq_ptr value)
+{
+	mpq_srcptr pi = factor_of(x, BASIS_PI);
+	if (x->terms != 1 || !pi || mpz_cmp_ui(mpq_denref(pi), 4) > 0 || 4 % mpz_get_ui(mpq_denref(pi)) != 0)
+		return false;
+	mpz_t k;
+	mpz_init(k);
+	mpz_mul_ui(k, mpq_numref(pi), 4);
+	mpz_divexact(k, k, mpq_denref(pi));
+	unsigned long eighth = mpz_fdiv_ui(k, 4);
+	mpz_clear(k);
+	if (eighth == 2)
+		error(node->at, NULL, "tan of an odd number of quarter turns");
+	mpq_set_si(value, eighth == 0 ? 0 : eighth == 1 ? 1 : -1, 1);
+	return true;
+}
+
+static struct form *constant_call(struct collector *c, const struct node *node, const struct form *x)
+{
+	mpq_t value;
+	mpq_init(value);
+	bool trigonometric = node->function == FN_SIN || node->function == FN_COS;
+	bool rational = node->function == FN_TAN ? tangent(node, x, value) : trigonometric && niven(node->function == FN_SIN, x, value);
+	if (!rational) {
+		constant_value(c, x, value);
+		if (!constant_function(node->at, node->function, value, value))
+			c->irrationals.used[node->function] = true;
+	}
+	check_bits(node->at, value);
+	struct form *form = form_constant(value);
+	mpq_clear(value);
+	return form;
+}
+
+static struct form *sine_of(struct collector *c, struct node *node, const struct form *x)
+{
+	struct form phase;
+	mpq_srcptr w;
+	if (is_constant(x))
+		return constant_call(c, node, x);
+	if (!linear_in_time(x, &w, &phase))
+		not_linear(c, node, "is not linear");
+	return collect_wave(c, node->function == FN_SIN, w, &phase);
+}
+
+/* e^{a t + b} = e^b e^{a t} */
+static struct form *exponential_of(struct collector *c, struct node *node, const struct form *x)
+{
+	struct form phase;
+	mpq_srcptr a;
+	if (is_constant(x))
+		return constant_call(c, node, x);
+	if (!linear_in_time(x, &a, &phase))
+		not_linear(c, node, "is not linear");
+	struct form *wave = plain_wave(c, 0, a);
+	return phase.terms ? form_product(c, constant_call(c, node, &phase), wave) : wave;
+}
+
+static struct form *function_of_form(struct collector *c, struct node *node, const struct form *x)
+{
+	if (node->function == FN_SIN || node->function == FN_COS)
+		return sine_of(c, node, x);
+	if (node->function == FN_EXP)
+		return exponential_of(c, node, x);
+	if (!is_constant(x))
+		not_linear(c, node, "is not linear");
+	return constant_call(c, node, x);
+}
+
+/* The argument of a function that no exact scheme will take apart. */
+static struct value *collect_argument(struct collector *c, const struct node *node)
+{
+	const struct node *outer = c->argument, *term = c->term;
+	c->argument = node;
+	struct value *x = collect_node(c, node->child[0]);
+	c->argument = outer;
+	c->term = term;
+	return x;
+}
+
+/* Functions of one argument apply to each cell. */
+static struct value *collect_call(struct collector *c, struct node *node)
+{
+	if (node->function >= FN_MIN || node->function == FN_ABS || node->function == FN_SGN || node->function == FN_ATAN2) {
+		struct form **x = ARRAY(struct form *, (size_t)node->children);
+		for (int i = 0; i < node->children; i++)
+			x[i] = collect_scalar(c, node->child[i]);
+		return scalar(piecewise(c, node, x));
+	}
+	struct value *x = collect_argument(c, node), *y = value_new(x->rows, x->columns);
+	for (int i = 0; i < x->rows * x->columns; i++)
+		y->cell[i] = function_of_form(c, node, x->cell[i]);
+	return y;
+}
+
+/* ---- operators ---- */
+
+static const char *shape_text(const struct value *value)
+{
+	return format("%d x %d", value->rows, value->columns);
+}
+
+static struct value *collect_sum(struct collector *c, struct node *node)
+{
+	struct value *sum = NULL;
+	const struct node *outer = c->term;
+	for (int i = 0; i < node->children; i++) {
+		if (node->children > 1)
+			c->term = node->child[i];
+		struct value *term = collect_node(c, node->child[i]);
+		if (!sum)
+			sum = value_new(term->rows, term->columns);
+		if (sum->rows != term->rows || sum->columns != term->columns)
+			error(node->operator[i], NULL, "sizes do not fit: %s and %s", shape_text(sum), shape_text(term));
+		for (int k = 0; k < sum->rows * sum->columns; k++) {
+			sum->cell[k] = form_sum(sum->cell[k], term->cell[k], node->inverse[i]);
+			check_form(node->operator[i], sum->cell[k]);
+		}
+	}
+	c->term = outer;
+	return sum;
+}
+
+static struct form *collect_division(struct collector *c, const struct form *a, const struct form *b, struct place at)
+{
+	mpq_t value;
+	mpq_init(value);
+	mpq_srcptr one = factor_of(a, BASIS_PI), pi = factor_of(b, BASIS_PI);
+	if (one && pi && a->terms == 1 && b->terms == 1) {      /* pi/pi */
+		mpq_div(value, one, pi);
+		struct form *ratio = form_constant(value);
+		mpq_clear(value);
+		return ratio;
+	}
+	constant_value(c, b, value);
+	if (mpq_sgn(value) == 0)
+		error(at, NULL, "division by zero");
+	mpq_inv(value, value);
+	struct form *quotient = form_scale(a, value);
+	mpq_clear(value);
+	return quotient;
+}
+
+static bool has_coordinate(const struct form *form)
+{
+	return form->terms > 0 && form->term[form->terms - 1].basis.kind == BASIS_COORD;
+}
+
+static bool has_input(const struct form *form)
+{
+	for (int i = 0; i < form->terms; i++)
+		if (form->term[i].basis.kind == BASIS_INPUT)
+			return true;
+	return false;
+}
+
+static struct form *times(struct collector *c, const struct node *node, const struct form *a, const struct form *b)
+{
+	if (is_constant(a) || is_constant(b))
+		return form_product(c, a, b);
+	if (has_coordinate(a) && has_coordinate(b))
+		not_linear(c, node, "is not linear");
+	if (has_coordinate(a) || has_coordinate(b))
+		not_linear(c, node, "has a factor that changes in time");
+	if (has_input(a) || has_input(b))
+		not_linear(c, node, "multiplies an input by what changes in time");
+	return load_product(c, a, b);
+}
+
+static struct form *dot(struct collector *c, const struct node *node, const struct value *a, int row, const struct value *b, int column)
+{
+	struct form *sum = NEW(struct form);
+	for (int k = 0; k < a->columns; k++) {
+		const struct form *x = a->cell[row * a->columns + k], *y = b->cell[k * b->columns + column];
+		if (x->terms > 0 && y->terms > 0)
+			sum = form_sum(sum, times(c, node, x, y), false);
+	}
+	return sum;
+}
+
+static bool is_scalar(const struct value *value)
+{
+	return value->rows == 1 && value->columns == 1;
+}
+
+static struct value *multiply(struct collector *c, const struct node *node, const struct value *a, const struct value *b, struct place at)
+{
+	if (!is_scalar(a) && !is_scalar(b) && a->columns != b->rows)
+		error(at, NULL, "sizes do not fit: %s times %s", shape_text(a), shape_text(b));
+	if (!is_scalar(a) && !is_scalar(b)) {
+		struct value *product = value_new(a->rows, b->columns);
+		for (int i = 0; i < a->rows; i++)
+			for (int j = 0; j < b->columns; j++)
+				product->cell[i * b->columns + j] = dot(c, node, a, i, b, j);
+		return product;
+	}
+	const struct value *shape = is_scalar(a) ? b : a;
+	struct value *product = value_new(shape->rows, shape->columns);
+	for (int i = 0; i < shape->rows * shape->columns; i++)
+		product->cell[i] = times(c, node, a->cell[is_scalar(a) ? 0 : i], b->cell[is_scalar(b) ? 0 : i]);
+	return product;
+}
+
+static struct value *divide(struct collector *c, const struct node *node, const struct value *a, const struct value *b, struct place at)
+{
+	if (!is_scalar(b))
+		error(at, NULL, "division by a %s matrix", shape_text(b));
+	if (!is_constant(b->cell[0]))
+		not_linear(c, node, "divides by what moves");
+	struct value *quotient = value_new(a->rows, a->columns);
+	for (int i = 0; i < a->rows * a->columns; i++)
+		quotient->cell[i] = collect_division(c, a->cell[i], b->cell[0], at);
+	return quotient;
+}
+
+static struct value *collect_product(struct collector *c, struct node *node)
+{
+	struct value *product = collect_node(c, node->child[0]);
+	for (int i = 1; i < node->children; i++) {
+		struct value *factor = collect_node(c, node->child[i]);
+		product = (node->inverse[i] ? divide : multiply)(c, node, product, factor, node->operator[i]);
+		for (int k = 0; k < product->rows * product->columns; k++)
+			check_form(node->operator[i], product->cell[k]);
+	}
+	return product;
+}
+
+static struct form *collect_power(struct collector *c, struct node *node)
+{
+	struct form *base = collect_scalar(c, node->child[0]), *exponent = collect_scalar(c, node->child[1]);
+	if (!is_constant(exponent))
+		not_linear(c, node, "is not linear");
+	mpq_t b, e;
+	mpq_inits(b, e, NULL);
+	constant_value(c, exponent, e);
+	struct form *power = NULL;
+	if (is_constant(base)) {
+		constant_value(c, base, b);
+		if (!constant_power(node->at, b, e, b))
+			c->irrationals.root = true;
+		power = form_constant(b);
+		check_form(node->at, power);
+	} else if (mpq_cmp_ui(e, 1, 1) == 0) {
+		power = base;
+	} else if (mpq_sgn(e) == 0) {
+		mpq_set_ui(b, 1, 1);
+		power = form_constant(b);
+	} else if (!has_coordinate(base) && !has_input(base) && mpz_cmp_ui(mpq_denref(e), 1) == 0 && mpq_sgn(e) > 0) {
+		if (mpq_cmp_ui(e, LIMIT_LOAD_POWER, 1) > 0)
+			error(node->at, NULL, "power of a load beyond the limit of %d", LIMIT_LOAD_POWER);
+		power = base;
+		for (unsigned long k = mpz_get_ui(mpq_numref(e)); k > 1; k--)
+			power = load_product(c, power, base);
+	}
+	mpq_clears(b, e, NULL);
+	if (!power)
+		not_linear(c, node, "is not linear");
+	check_form(node->at, power);
+	return power;
+}
+
+static bool compare_values(enum comparison comparison, int order)
+{
+	switch (comparison) {
+	case CMP_LT: return order < 0;
+	case CMP_LE: return order <= 0;
+	case CMP_GT: return order > 0;
+	case CMP_GE: return order >= 0;
+	case CMP_EQ: return order == 0;
+	default:     return order != 0;
+	}
+}
+
+/* A condition on constants or on time; true is 1, false is 0. */
+static struct form *collect_comparison(struct collector *c, struct node *node)
+{
+	struct form *left = collect_scalar(c, node->child[0]), *right = collect_scalar(c, node->child[1]);
+	mpq_t truth;
+	mpq_init(truth);
+	mpq_set_ui(truth, compare_values(node->comparison, order_now(c, node, left, right)), 1);
+	struct form *form = form_constant(truth);
+	mpq_clear(truth);
+	return form;
+}
+
+static struct value *collect_choice(struct collector *c, struct node *node)
+{
+	struct form *condition = collect_scalar(c, node->child[0]), *zero = NEW(struct form);
+	return collect_node(c, node->child[order_now(c, node, condition, zero) != 0 ? 1 : 2]);
+}
+
+/* ---- names, matrices ---- */
+
+static void collect_value(struct collector *c, struct symbol *symbol)
+{
+	struct collector inner = *c;
+	inner.term = symbol->value;
+	if (symbol->kind == SYMBOL_PARAM || symbol->kind == SYMBOL_MATRIX)
+		inner.constant_only = true;
+	symbol->progress = COLLECTING;
+	symbol->collected = NULL;
+	struct value *value = collect_node(&inner, symbol->value);
+	if (symbol->kind == SYMBOL_PARAM && !is_scalar(value))
+		error(symbol->value->start, "matrix NAME = ...", "a param is a number, found a %s matrix", shape_text(value));
+	c->waves = inner.waves;
+	c->wave_count = inner.wave_count;
+	c->irrationals = inner.irrationals;
+	c->changes = inner.changes;
+	c->change = inner.change;
+	symbol->collected = value;
+	symbol->progress = COLLECTED;
+}
+
+/* A coordinate, whole or one component. */
+static struct value *collect_coordinate(struct collector *c, struct node *node)
+{
+	const struct symbol *symbol = node->symbol;
+	need_constant(c, node, format("coordinate '%s'", symbol->name));
+	int first = symbol->index + (node->component ? node->component - 1 : 0), rows = node->component || !symbol->length ? 1 : symbol->length;
+	struct value *value = value_new(rows, 1);
+	for (int i = 0; i < rows; i++)
+		value->cell[i] = form_unit((struct basis){ .kind = BASIS_COORD, .index = first + i, .order = node->primes });
+	return value;
+}
+
+static struct value *collect_name(struct collector *c, struct node *node)
+{
+	struct symbol *symbol = node->symbol;
+	if (symbol->broken)
+		abandon();
+	if (symbol->kind == SYMBOL_COORD)
+		return collect_coordinate(c, node);
+	if (symbol->kind == SYMBOL_INPUT) {
+		need_constant(c, node, format("input '%s'", symbol->name));
+		return scalar(form_unit((struct basis){ .kind = BASIS_INPUT, .index = symbol->index, .order = node->primes }));
+	}
+	if (symbol->kind == SYMBOL_LET)
+		need_constant(c, node, format("let '%s'", symbol->name));
+	if (symbol->progress == COLLECTING && symbol->kind == SYMBOL_PARAM)
+		error(node->at, NULL, "param '%s' is defined by itself", symbol->name);
+	if (symbol->progress != COLLECTED)
+		collect_value(c, symbol);
+	return symbol->collected;
+}
+
+static struct value *collect_matrix(struct collector *c, struct node *node)
+{
+	struct value *value = value_new(node->children / node->columns, node->columns);
+	for (int i = 0; i < node->children; i++)
+		value->cell[i] = collect_scalar(c, node->child[i]);
+	return value;
+}
+
+static struct value *collect_file(struct collector *c, struct node *node)
+{
+	(void)c;
+	const struct mtx *file = mtx_read(node->path, node->at);
+	struct value *value = value_new(file->rows, file->columns);
+	for (int i = 0; i < file->rows * file->columns; i++)
+		value->cell[i] = form_constant(file->cell[i]);
+	return value;
+}
+
+static struct value *collect_node(struct collector *c, struct node *node)
+{
+	switch (node->kind) {
+	case NODE_NUMBER:  return scalar(form_constant(node->number));
+	case NODE_PI:      return scalar(form_unit((struct basis){ .kind = BASIS_PI }));
+	case NODE_TIME:
+		need_constant(c, node, "'t'");
+		return scalar(plain_wave(c, 1, NULL));
+	case NODE_NAME:    return collect_name(c, node);
+	case NODE_SUM:     return collect_sum(c, node);
+	case NODE_PRODUCT: return collect_product(c, node);
+	case NODE_POWER:   return scalar(collect_power(c, node));
+	case NODE_CALL:    return collect_call(c, node);
+	case NODE_COMPARE: return scalar(collect_comparison(c, node));
+	case NODE_MATRIX:  return collect_matrix(c, node);
+	case NODE_FILE:    return collect_file(c, node);
+	default:           return collect_choice(c, node);
+	}
+}
+
+struct value *collect(struct collector *c, struct node *node)
+{
+	c->term = node;
+	return collect_node(c, node);
+}
+
+struct value *collect_constants(struct collector *c, struct node *node)
+{
+	bool outer = c->constant_only;
+	c->constant_only = true;
+	struct value *value = collect(c, node);
+	c->constant_only = outer;
+	return value;
+}
+
+void collect_constant(struct collector *c, struct node *node, mpq_ptr number)
+{
+	struct value *value = collect_constants(c, node);
+	if (!is_scalar(value))
+		error(node->start, NULL, "expected a number, found a %s matrix", shape_text(value));
+	constant_value(c, value->cell[0], number);
+}

@@ -1,0 +1,245 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Loads on the target: phases as turns, growths as exponents of 2, and the load states made of them at a step's start. */
+#include "plgen.h"
+
+/* x turns as 128 bits, wrapped; x a multiple of 1/2 pi of the rational q */
+static void turns(mpq_srcptr q, uint64_t word[2])
+{
+	mpfr_t x, pi;
+	mpz_t fraction, half;
+	mpfr_inits2(2048, x, pi, NULL);
+	mpz_inits(fraction, half, NULL);
+	mpfr_const_pi(pi, MPFR_RNDN);
+	mpfr_set_q(x, q, MPFR_RNDN);
+	mpfr_div(x, x, pi, MPFR_RNDN);
+	mpfr_mul_2si(x, x, 127, MPFR_RNDN);
+	mpfr_get_z(fraction, x, MPFR_RNDN);
+	mpz_fdiv_r_2exp(fraction, fraction, 128);
+	mpz_fdiv_r_2exp(half, fraction, 64);
+	word[1] = mpz_get_ui(half);
+	mpz_fdiv_q_2exp(half, fraction, 64);
+	word[0] = mpz_get_ui(half);
+	mpz_clears(fraction, half, NULL);
+	mpfr_clears(x, pi, NULL);
+}
+
+/* e^{x}: x / ln 2 as a signed fixed-point number with 112 bits after the point */
+static void exponent(mpq_srcptr q, uint64_t word[2])
+{
+	mpfr_t x, ln2;
+	mpz_t fixed, part;
+	mpfr_inits2(2048, x, ln2, NULL);
+	mpz_inits(fixed, part, NULL);
+	mpfr_const_log2(ln2, MPFR_RNDN);
+	mpfr_set_q(x, q, MPFR_RNDN);
+	mpfr_div(x, x, ln2, MPFR_RNDN);
+	mpfr_mul_2si(x, x, 112, MPFR_RNDN);
+	mpz_ui_pow_ui(part, 2, 127);
+	mpz_sub_ui(part, part, 1);
+	mpfr_get_z(fixed, x, MPFR_RNDN);
+	if (mpz_cmpabs(fixed, part) > 0)        /* beyond any double: saturated */
+		mpz_mul_si(fixed, part, mpz_sgn(fixed));
+	mpz_fdiv_r_2exp(fixed, fixed, 128);
+	mpz_fdiv_r_2exp(part, fixed, 64);
+	word[1] = mpz_get_ui(part);
+	mpz_fdiv_q_2exp(part, fixed, 64);
+	word[0] = mpz_get_ui(part);
+	mpz_clears(fixed, part, NULL);
+	mpfr_clears(x, ln2, NULL);
+}
+
+/* |q| / unit as three words and a power of two; unit is 2 pi or ln 2 */
+static void print_rate(const struct emitter *e, mpq_srcptr q, bool turns, const char *note)
+{
+	mpfr_t rate, unit, wide;
+	mpz_t word, digits;
+	mpfr_init2(rate, 192);
+	mpfr_inits2(512, unit, wide, NULL);
+	mpz_inits(word, digits, NULL);
+	if (turns)
+		mpfr_const_pi(unit, MPFR_RNDN);
+	else
+		mpfr_const_log2(unit, MPFR_RNDN);
+	mpfr_mul_ui(unit, unit, turns ? 2 : 1, MPFR_RNDN);
+	mpfr_set_q(wide, q, MPFR_RNDN);
+	mpfr_abs(wide, wide, MPFR_RNDN);
+	mpfr_div(rate, wide, unit, MPFR_RNDN);
+	long binary = mpfr_get_z_2exp(digits, rate);
+	fputs("    {{", e->to);
+	for (int k = 2; k >= 0; k--) {
+		mpz_fdiv_q_2exp(word, digits, (mp_bitcnt_t)k * 64);
+		mpz_fdiv_r_2exp(word, word, 64);
+		fprintf(e->to, "UINT64_C(0x%016llx)%s", (unsigned long long)mpz_get_ui(word), k ? ", " : "");
+	}
+	fprintf(e->to, "}, %ld},  /* %s */\n", -binary, note);
+	mpz_clears(word, digits, NULL);
+	mpfr_clears(rate, unit, wide, NULL);
+}
+
+/* ---- tables ---- */
+
+static void print_turns(const struct emitter *e, const char *name, const char *what, bool per_step)
+{
+	fprintf(e->to, "\nstatic const pl_turn %s_%s[%d] = {  /* %s */\n", e->name, name, e->phases, what);
+	mpq_t angle;
+	mpq_init(angle);
+	for (int l = 0; l < e->system->loads; l++) {
+		const struct wave *wave = e->system->load[l].wave;
+		if (e->phase[l] < 0)
+			continue;
+		mpq_set(angle, wave->p);
+		if (per_step)
+			mpq_mul(angle, wave->w, e->model->h);
+		uint64_t word[2];
+		turns(angle, word);
+		fprintf(e->to, "    {UINT64_C(0x%016llx), UINT64_C(0x%016llx)},  /* %s */\n", (unsigned long long)word[0],
+			(unsigned long long)word[1], column_text(&e->system->load[l], 0));
+	}
+	mpq_clear(angle);
+	fputs("};\n", e->to);
+}
+
+static void print_growths(const struct emitter *e)
+{
+	fprintf(e->to, "\nstatic const pl_growth %s_growth_step[%d] = {  /* a h / ln 2, in units of 2^-112 */\n", e->name, e->growths);
+	mpq_t product;
+	mpq_init(product);
+	for (int l = 0; l < e->system->loads; l++) {
+		if (e->growth[l] < 0)
+			continue;
+		uint64_t word[2];
+		mpq_mul(product, e->system->load[l].wave->a, e->model->h);
+		exponent(product, word);
+		bool negative = word[0] >> 63;
+		uint64_t high = negative ? ~word[0] : word[0];
+		fprintf(e->to, negative ? "    {-INT64_C(0x%llx) - 1, UINT64_C(0x%016llx)},  /* %s */\n" : "    {INT64_C(0x%llx), UINT64_C(0x%016llx)},  /* %s */\n",
+			(unsigned long long)high, (unsigned long long)word[1], column_text(&e->system->load[l], 0));
+	}
+	mpq_clear(product);
+	fputs("};\n", e->to);
+}
+
+static void print_rates(const struct emitter *e, bool turns, const char *name, int count, const char *what)
+{
+	fprintf(e->to, "\nstatic const pl_rate %s_%s[%d] = {  /* %s */\n", e->name, name, count, what);
+	for (int l = 0; l < e->system->loads; l++) {
+		const struct wave *wave = e->system->load[l].wave;
+		if ((turns ? e->phase : e->growth)[l] >= 0)
+			print_rate(e, turns ? wave->w : wave->a, turns, column_text(&e->system->load[l], 0));
+	}
+	fputs("};\n", e->to);
+}
+
+void emit_load_tables(const struct emitter *e)
+{
+	if (e->phases) {
+		print_turns(e, "phase_start", "at t = 0, in turns of 2^-128", false);
+		print_turns(e, "phase_step", "in one step", true);
+		print_rates(e, true, "phase_rate", e->phases, "turns per second");
+	}
+	if (e->growths) {
+		print_growths(e);
+		print_rates(e, false, "growth_rate", e->growths, "|a| / ln 2 [1/s]");
+	}
+}
+
+/* ---- in the state ---- */
+
+void emit_load_members(const struct emitter *e)
+{
+	if (e->phases)
+		fprintf(e->to, "    pl_turn phase[%d];    /* of the loads */\n", e->phases);
+	if (e->growths)
+		fprintf(e->to, "    pl_growth growth[%d]; /* of the loads */\n", e->growths);
+}
+
+void emit_load_set(const struct emitter *e)
+{
+	if (e->phases)
+		fprintf(e->to, "    for (i = 0; i < %d; i++)\n        s->phase[i] = pl_turn_add(%s_phase_start[i], pl_turn_at(&%s_phase_rate[i], t));\n", e->phases,
+			e->name, e->name);
+	for (int l = 0; l < e->system->loads; l++)
+		if (e->growth[l] >= 0)
+			fprintf(e->to, "    s->growth[%d] = pl_growth_at(&%s_growth_rate[%d], %d, t);\n", e->growth[l], e->name, e->growth[l],
+				mpq_sgn(e->system->load[l].wave->a) < 0);
+}
+
+void emit_load_advance(const struct emitter *e, const char *steps)
+{
+	const char *turn = steps ? "pl_turn_times(%s_phase_step[%d], %s)" : "%s_phase_step[%d]";
+	const char *growth = steps ? "pl_growth_times(%s_growth_step[%d], %s)" : "%s_growth_step[%d]";
+	for (int i = 0; i < e->phases; i++) {
+		fprintf(e->to, "    s->phase[%d] = pl_turn_add(s->phase[%d], ", i, i);
+		fprintf(e->to, turn, e->name, i, steps);
+		fputs(");\n", e->to);
+	}
+	for (int i = 0; i < e->growths; i++) {
+		fprintf(e->to, "    s->growth[%d] = pl_growth_add(s->growth[%d], ", i, i);
+		fprintf(e->to, growth, e->name, i, steps);
+		fputs(");\n", e->to);
+	}
+}
+
+/* ---- load states ---- */
+
+static bool is_plain_constant(const struct load *load)
+{
+	return is_polynomial(load->wave) && load->powers == 1;
+}
+
+const char *load_operand(const struct emitter *e, int load, int column)
+{
+	if (is_polynomial(e->system->load[load].wave) && column < 2)
+		return column ? "t" : NULL;
+	return format("load%d[%d]", load + 1, column);
+}
+
+const char *column_operand(const struct emitter *e, int column)
+{
+	int l = 0;
+	for (; column >= e->system->load[l].columns; l++)
+		column -= e->system->load[l].columns;
+	return load_operand(e, l, column);
+}
+
+/* t^k and e^{at} and cos, sin from their parts: load[0] (and [1]), then each power from the one before */
+static void emit_one_load(const struct emitter *e, int l)
+{
+	const struct load *load = &e->system->load[l];
+	int trig = oscillates(load->wave) ? 2 : 1;
+	FILE *to = e->to;
+	if (is_polynomial(load->wave) && load->powers <= 2)
+		return;                         /* 1 and t need no array */
+	fprintf(to, "    double load%d[%d];  /* %s", l + 1, load->columns, column_text(load, 0));
+	for (int k = 1; k < load->columns; k++)
+		fprintf(to, ", %s", column_text(load, k));
+	fputs(" */\n", to);
+	if (trig == 2)
+		fprintf(to, "    pl_cossin(s->phase[%d], load%d);\n", e->phase[l], l + 1);
+	if (trig == 2 && e->growth[l] >= 0) {
+		fprintf(to, "    growth = pl_growth_value(s->growth[%d]);\n", e->growth[l]);
+		fprintf(to, "    load%d[0] *= growth;\n    load%d[1] *= growth;\n", l + 1, l + 1);
+	} else if (trig == 1 && e->growth[l] >= 0) {
+		fprintf(to, "    load%d[0] = pl_growth_value(s->growth[%d]);\n", l + 1, e->growth[l]);
+	} else if (trig == 1) {
+		fprintf(to, "    load%d[0] = 1.0;\n", l + 1);
+	}
+	for (int k = trig; k < load->columns; k++)
+		fprintf(to, "    load%d[%d] = t * load%d[%d];\n", l + 1, k, l + 1, k - trig);
+}
+
+void emit_load_states(const struct emitter *e, const bool *loads, bool time_is_there)
+{
+	bool time = false, growth = false;
+	for (int l = 0; l < e->system->loads; l++) {
+		time = time || (loads[l] && e->system->load[l].powers > 1);
+		growth = growth || (loads[l] && e->growth[l] >= 0 && e->phase[l] >= 0);
+	}
+	if (time && !time_is_there)
+		fprintf(e->to, "    const double t = %s_time(s);\n", e->name);
+	if (growth)
+		fputs("    double growth;\n", e->to);
+	for (int l = 0; l < e->system->loads; l++)
+		if (loads[l] && !is_plain_constant(&e->system->load[l]))
+			emit_one_load(e, l);
+}

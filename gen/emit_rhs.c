@@ -1,0 +1,196 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* NAME_rhs: the equations as written, for any ODE solver. */
+#include "plgen.h"
+
+#include <string.h>
+
+static const char *residual_text(const struct equation *equation)
+{
+	const char *left = c_expression(equation->left), *right = c_expression(equation->right);
+	if (vanishes(equation->left))
+		return format("-(%s)", right);
+	return vanishes(equation->right) || strcmp(right, "0.0") == 0 ? left : format("%s - (%s)", left, right);
+}
+
+/* ---- vectors and sketches: the collected equations ---- */
+
+static const char *join(const char *left, const char *right)
+{
+	return *left ? format("%s*%s", left, right) : right;
+}
+
+static const char *wave_expression(const struct basis *basis)
+{
+	const struct wave *wave = basis->wave;
+	const char *text = "", *phase = mpq_sgn(wave->p) ? format(" + %s", shortest(round_rational(wave->p))) : "";
+	for (int k = 0; k < basis->power; k++)
+		text = join(text, "t");
+	if (mpq_sgn(wave->a) != 0)
+		text = join(text, format("exp(%s*t)", shortest(round_rational(wave->a))));
+	if (oscillates(wave))
+		text = join(text, format("%s(%s*t%s)", basis->sine ? "sin" : "cos", shortest(round_rational(wave->w)), phase));
+	return text;
+}
+
+static bool is_highest(const struct emitter *e, const struct basis *basis)
+{
+	return basis->kind == BASIS_COORD && basis->order == e->model->written->coord[basis->index]->highest;
+}
+
+static const char *basis_expression(const struct emitter *e, const struct basis *basis)
+{
+	switch (basis->kind) {
+	case BASIS_ONE:   return NULL;
+	case BASIS_PI:    return "3.141592653589793";
+	case BASIS_WAVE:  return wave_expression(basis);
+	case BASIS_INPUT: return format("u[%d]", basis->index + basis->order * e->system->inputs);
+	default:          return format("y[%d]", basis->order ? e->model->written->system.velocity[basis->index] : basis->index);
+	}
+}
+
+static const char *collected_residual(const struct emitter *e, const struct form *form)
+{
+	const char **term = ARRAY(const char *, (size_t)form->terms + 1);
+	int terms = 0;
+	for (int i = 0; i < form->terms; i++)
+		if (!is_highest(e, &form->term[i].basis))
+			term[terms++] = scaled(round_rational(form->term[i].factor), basis_expression(e, &form->term[i].basis));
+	return terms ? tree(terms, term, 18) : "0.0";
+}
+
+/* As text the equations are scalar; vectors and sketches exist only collected. */
+static bool is_scalar_text(const struct model *model)
+{
+	for (const struct symbol *s = model->spec->first; s; s = s->next)
+		if (s->kind == SYMBOL_MATRIX || (s->kind == SYMBOL_COORD && s->length))
+			return false;
+	for (int i = 0; i < model->spec->equations; i++)
+		if (model->spec->equation[i].left->kind == NODE_MATRIX || model->spec->equation[i].right->kind == NODE_MATRIX)
+			return false;
+	return model->spec->elements == 0 && model->spec->equations == model->n;
+}
+
+static bool any_wave(const struct model *model, bool *math)
+{
+	bool any = false;
+	for (int i = 0; i < model->n * model->system.segments; i++) {
+		const struct form *form = model->snapshot[i / model->n].residual[i % model->n].form;
+		for (int k = 0; k < form->terms; k++) {
+			const struct basis *basis = &form->term[k].basis;
+			any = any || basis->kind == BASIS_WAVE;
+			*math = *math || (basis->kind == BASIS_WAVE && !is_polynomial(basis->wave));
+		}
+	}
+	return any;
+}
+
+bool rhs_needs_math(const struct model *any)
+{
+	const struct model *model = any->written;
+	bool math = false;
+	if (!is_scalar_text(model)) {
+		any_wave(model, &math);
+		return math;
+	}
+	clear_used(model->spec);
+	for (int i = 0; i < model->spec->equations; i++) {
+		mark_used(model->spec->equation[i].left, &math);
+		mark_used(model->spec->equation[i].right, &math);
+	}
+	return math;
+}
+
+static void emit_collected_residuals(const struct emitter *e)
+{
+	bool math = false;
+	fprintf(e->to, "    double residual[%d];  /* left side minus right side, without the highest derivatives */\n", e->model->written->n);
+	for (int segment = 0; segment < e->system->segments; segment++) {
+		if (e->system->segments > 1 && segment + 1 < e->system->segments)
+			fprintf(e->to, "    %sif (t < %s_change[%d]) {\n", segment ? "} else " : "", e->name, segment);
+		else if (e->system->segments > 1)
+			fputs("    } else {\n", e->to);
+		for (int i = 0; i < e->model->written->n; i++)
+			fprintf(e->to, "    %sresidual[%d] = %s;\n", e->system->segments > 1 ? "    " : "", i,
+				collected_residual(e, e->model->snapshot[segment].residual[i].form));
+	}
+	if (e->system->segments > 1)
+		fputs("    }\n", e->to);
+	if (!any_wave(e->model->written, &math) && e->system->segments == 1)
+		fputs("    (void)t;\n", e->to);
+	if (e->system->inputs)
+		fputs("    (void)u;\n", e->to);
+}
+
+/* ---- scalar equations: their own text ---- */
+
+static void emit_rhs_locals(const struct emitter *e, const bool *reads)
+{
+	const struct spec *spec = e->model->spec;
+	emit_used_constants(e, false);
+	for (int i = 0; i < e->model->written->system.states; i++)
+		if (reads[i])
+			fprintf(e->to, "    const double %s = y[%d];\n", written_local(e->model->written, i), i);
+	for (const struct symbol *s = spec->first; s; s = s->next) {
+		if (s->used && s->kind == SYMBOL_INPUT)
+			fprintf(e->to, "    const double %s = u[%d];\n", s->c_name, s->index);
+		if (s->used && s->kind == SYMBOL_INPUT && s->slope_used)
+			fprintf(e->to, "    const double %s = u[%d];\n", s->c_dot, e->system->inputs + s->index);
+		if (s->used && s->kind == SYMBOL_INPUT)
+			fprintf(e->to, "    (void)%s;\n", s->c_name);
+	}
+	for (const struct symbol *s = spec->first; s; s = s->next)
+		if (s->used && s->kind == SYMBOL_LET)
+			fprintf(e->to, "    const double %s = %s;\n", s->c_name, c_expression(s->value));
+}
+
+/* Highest derivatives: minus the residuals through W^-1, W what multiplies the highest derivatives. */
+static void emit_derivatives(const struct emitter *e)
+{
+	const struct linear *written = &e->model->written->system;
+	int n = written->n, column;
+	mpq_t *inverse = rationals((size_t)(n * n));
+	leading_inverse(written, inverse, &column);
+	for (int i = 0; i < n; i++)
+		if (written->velocity[i] >= 0)
+			fprintf(e->to, "    dydt[%d] = y[%d];\n", i, written->velocity[i]);
+	for (int i = 0; i < n; i++) {
+		const char **term = ARRAY(const char *, (size_t)n);
+		int terms = 0, state = written->velocity[i] >= 0 ? written->velocity[i] : i;
+		for (int j = 0; j < n; j++)
+			if (mpq_sgn(inverse[i * n + j]) != 0)
+				term[terms++] = scaled(-round_rational(inverse[i * n + j]), format("residual[%d]", j));
+		fprintf(e->to, "    dydt[%d] = %s;  /* the inverse mass matrix times them */\n", state, tree(terms, term, 12));
+	}
+}
+
+static void emit_written_residuals(const struct emitter *e)
+{
+	const struct spec *spec = e->model->spec;
+	bool math = false, *reads = ARRAY(bool, (size_t)e->model->written->system.states), time = false;
+	clear_used(spec);
+	for (int i = 0; i < spec->equations; i++)
+		for (int side = 0; side < 2; side++) {
+			const struct node *node = side ? spec->equation[i].right : spec->equation[i].left;
+			mark_used(node, &math);
+			mark_states(e->model->written, node, reads);
+			time = time || uses_time(node);
+		}
+	emit_rhs_locals(e, reads);
+	fprintf(e->to, "    double residual[%d];  /* left side minus right side, without the highest derivatives */\n", spec->equations);
+	for (int i = 0; i < spec->equations; i++)
+		fprintf(e->to, "    residual[%d] = %s;\n", i, residual_text(&spec->equation[i]));
+	if (!time)
+		fputs("    (void)t;\n", e->to);
+}
+
+void emit_rhs(const struct emitter *e)
+{
+	fputs("\n/* The equations as written, for checking against any ODE solver. */\n", e->to);
+	fprintf(e->to, "void %s_rhs(double t, const double y[], %sdouble dydt[])\n{\n", e->name, e->system->inputs ? "const double u[], " : "");
+	if (is_scalar_text(e->model->written))
+		emit_written_residuals(e);
+	else
+		emit_collected_residuals(e);
+	emit_derivatives(e);
+	fputs("}\n", e->to);
+}

@@ -1,0 +1,283 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Any time: NAME_at inside a step by a Taylor series, NAME_jump over many steps by powers of the step. */
+#include "plgen.h"
+
+/* ---- at ---- */
+
+/* Names of the entries of the series' vector; `slopes`: of the states' rows. */
+static const char **series_names(const struct emitter *e)
+{
+	const struct series *series = &e->step->series;
+	const char **name = ARRAY(const char *, (size_t)series->size);
+	for (int i = 0; i < e->system->states; i++)
+		name[i] = format("%s'", e->model->state_name[i]);
+	for (int i = 0; i < e->model->n && series->held >= 0; i++)
+		name[series->held + i] = format("held for %s", e->model->coord_name[i]);
+	for (int l = 0; l < e->system->loads; l++)
+		for (int k = 0; k < e->system->load[l].columns && series->load[l] >= 0; k++)
+			name[series->load[l] + k] = column_text(&e->system->load[l], k);
+	for (int i = 0; i < e->system->inputs; i++) {
+		name[series->input[i]] = e->system->input[i].name;
+		if (e->system->input[i].first_order)
+			name[series->input[i] + 1] = format("%s'", e->system->input[i].name);
+	}
+	return name;
+}
+
+static void emit_held(const struct emitter *e)
+{
+	const struct series *series = &e->step->series;
+	int n = e->model->n;
+	for (int i = 0; i < n && series->held >= 0; i++) {
+		const char **term = ARRAY(const char *, (size_t)e->system->states);
+		int terms = 0;
+		for (int j = 0; j < e->system->states; j++) {
+			const mpq_t *held = j < n ? e->system->heldK : e->system->heldC;
+			int cell = i * n + e->system->coord[j];
+			if (mpq_sgn(held[cell]) != 0)
+				term[terms++] = scaled(-round_rational(held[cell]), format("s->y[%d]", j));
+		}
+		fprintf(e->to, "    x[%d] = %s;  /* held for %s */\n", series->held + i, terms ? tree(terms, term, 12) : "0.0", e->model->coord_name[i]);
+	}
+}
+
+/* x[...] = the load states, from index[l] on */
+static void store_loads(const struct emitter *e, const int *index, const char *member)
+{
+	for (int l = 0; l < e->system->loads; l++)
+		for (int k = 0; k < e->system->load[l].columns && index[l] >= 0; k++) {
+			const char *value = load_operand(e, l, k);
+			fprintf(e->to, "    x[%d]%s = %s;\n", index[l] + k, member, value ? value : "1.0");
+		}
+}
+
+static bool *wanted_loads(const struct emitter *e, const int *index)
+{
+	bool *wanted = ARRAY(bool, (size_t)e->system->loads);
+	for (int l = 0; l < e->system->loads; l++)
+		wanted[l] = index[l] >= 0;
+	return wanted;
+}
+
+static void store_inputs(const struct emitter *e, const int *index)
+{
+	for (int i = 0; i < e->system->inputs; i++) {
+		bool ramp = e->system->input[i].first_order;
+		fprintf(e->to, ramp ? "    x[%d] = s->u[%d];\n" : "    x[%d] = u[%d];\n", index[i], i);
+		if (ramp)
+			fprintf(e->to, "    x[%d] = (u[%d] - s->u[%d]) / %s_H;\n", index[i] + 1, i, i, e->upper);
+	}
+}
+
+static void emit_slopes(const struct emitter *e)
+{
+	const struct series *series = &e->step->series;
+	size_t cells = (size_t)series->size * (size_t)series->size;
+	mpq_t *exact = series_matrix(series, e->system, 0);
+	double *A = ARRAY(double, cells);
+	for (size_t i = 0; i < cells; i++)
+		A[i] = round_rational(exact[i]);
+	fprintf(e->to, "\n/* x' = A x; x = y%s */\nstatic const double %s_slope[%d][%d] = {\n",
+		series->size > e->system->states ? ", then what acts on it" : "", e->name, series->size, series->size);
+	emit_number_rows(e, series->size, series->size, A, series_names(e));
+	fputs("};\n", e->to);
+}
+
+/* ---- loads that change their formula: A's columns of the loads, for each segment of time ---- */
+
+static int first_load_state(const struct emitter *e, int *columns)
+{
+	int first = -1;
+	*columns = 0;
+	for (int l = 0; l < e->system->loads; l++) {
+		int at = e->step->series.load[l];
+		if (at < 0)
+			continue;
+		first = first < 0 ? at : first;
+		*columns += e->system->load[l].columns;
+	}
+	return first;
+}
+
+static void emit_segment_slopes(const struct emitter *e, int first, int columns)
+{
+	const struct series *series = &e->step->series;
+	int states = e->system->states;
+	fprintf(e->to, "\n/* The columns of A from %d on, in each segment of time */\nstatic const double %s_load_slope[%d][%s_STATES][%d] = {\n", first,
+		e->name, e->system->segments, e->upper, columns);
+	for (int s = 0; s < e->system->segments; s++) {
+		mpq_t *exact = series_matrix(series, e->system, s);
+		fputs("  {\n", e->to);
+		double *value = ARRAY(double, (size_t)(states * columns));
+		for (int i = 0; i < states; i++)
+			for (int j = 0; j < columns; j++)
+				value[i * columns + j] = round_rational(exact[i * series->size + first + j]);
+		emit_number_rows(e, states, columns, value, series_names(e));
+		fputs("  },\n", e->to);
+	}
+	fputs("};\n", e->to);
+}
+
+static void emit_use_segment(const struct emitter *e, int first, int columns)
+{
+	fprintf(e->to, "\nstatic void %s_use_segment(double A[][%d], int segment)\n{\n    int i, j;\n", e->name, e->step->series.size);
+	fprintf(e->to, "    for (i = 0; i < %s_STATES; i++)\n        for (j = 0; j < %d; j++)\n            A[i][%d + j] = %s_load_slope[segment][i][j];\n}\n",
+		e->upper, columns, first, e->name);
+}
+
+static const char *input_parameter(const struct emitter *e)
+{
+	return e->system->inputs ? format("const double u[%s_INPUTS], ", e->upper) : "";
+}
+
+static void emit_start_of_series(const struct emitter *e)
+{
+	const struct series *series = &e->step->series;
+	fprintf(e->to, "    double x[%d], work[%d];\n", series->size, 2 * series->size);
+	emit_load_states(e, wanted_loads(e, series->load), e->system->segments > 1);
+	fprintf(e->to, "    int i;\n    for (i = 0; i < %s_STATES; i++)\n        x[i] = s->y[i];\n", e->upper);
+	emit_held(e);
+	store_loads(e, series->load, "");
+	store_inputs(e, series->input);
+}
+
+/* y at tau after now, from change to change */
+static void emit_pass(const struct emitter *e)
+{
+	const struct series *series = &e->step->series;
+	FILE *to = e->to;
+	int columns, first = first_load_state(e, &columns), size = series->size;
+	if (first >= 0) {
+		emit_segment_slopes(e, first, columns);
+		emit_use_segment(e, first, columns);
+	}
+	fprintf(to, "\n/* The state tau after now, from change to change of the loads on the way. */\n");
+	fprintf(to, "static void %s_pass(const %s *s, %sdouble tau, double y[%s_STATES])\n{\n", e->name, e->name, input_parameter(e), e->upper);
+	fprintf(to, "    const double t = %s_time(s);\n    double A[%d][%d], done = 0.0;\n    int j, segment = s->segment;\n    pl_series series;\n", e->name, size, size);
+	emit_start_of_series(e);
+	fprintf(to, "    for (i = 0; i < %d; i++)\n        for (j = 0; j < %d; j++)\n            A[i][j] = %s_slope[i][j];\n", size, size, e->name);
+	fprintf(to, "    series.size = %d;\n    series.states = %s_STATES;\n    series.degree = %d;\n    series.halvings = %d;\n    series.A = A[0];\n", size,
+		e->upper, series->degree, series->halvings);
+	fprintf(to, "    for (; segment < %d && %s_change[segment] < t + tau; segment++) {\n", e->system->segments - 1, e->name);
+	if (first >= 0)
+		fprintf(to, "        %s_use_segment(A, segment);\n", e->name);
+	fprintf(to, "        if (%s_change[segment] - t > done) {\n            pl_series_advance(&series, %s_change[segment] - t - done, x, work);\n"
+		    "            done = %s_change[segment] - t;\n        }\n    }\n", e->name, e->name, e->name);
+	if (first >= 0)
+		fprintf(to, "    %s_use_segment(A, segment);\n", e->name);
+	fprintf(to, "    pl_series_advance(&series, tau - done, x, work);\n    for (i = 0; i < %s_STATES; i++)\n        y[i] = x[i];\n}\n", e->upper);
+}
+
+void emit_changes(const struct emitter *e)
+{
+	fprintf(e->to, "\nstatic const double %s_change[%d] = {  /* [s]: where loads change their formula */\n", e->name, e->system->segments - 1);
+	for (int i = 0; i < e->system->segments - 1; i++)
+		fprintf(e->to, "    %s,\n", shortest(round_rational(e->system->change[i])));
+	fputs("};\n", e->to);
+}
+
+void emit_passing(const struct emitter *e)
+{
+	emit_slopes(e);
+	emit_pass(e);
+}
+
+void emit_at(const struct emitter *e)
+{
+	const struct series *series = &e->step->series;
+	FILE *to = e->to;
+	bool changes = e->system->segments > 1;
+	if (!changes)
+		emit_slopes(e);
+	fprintf(to, "\nvoid %s_at(const %s *s, %sdouble tau, double y[%s_STATES])\n{\n", e->name, e->name, input_parameter(e), e->upper);
+	if (changes) {
+		fprintf(to, "    %s_pass(s, %stau, y);\n}\n", e->name, e->system->inputs ? "u, " : "");
+		return;
+	}
+	fprintf(to, "    static const pl_series series = {%d, %s_STATES, %d, %d, %s_slope[0]};  /* size, states, degree, halvings */\n", series->size,
+		e->upper, series->degree, series->halvings, e->name);
+	emit_start_of_series(e);
+	fprintf(to, "    pl_series_advance(&series, tau, x, work);\n    for (i = 0; i < %s_STATES; i++)\n        y[i] = x[i];\n}\n", e->upper);
+}
+
+/* ---- jump ---- */
+
+struct power {                      /* the one-step matrix of y, then of the load states */
+	int size;
+	int *load;                  /* index of the first entry of each load; -1: no effect */
+	struct coefficient *cell;
+};
+
+static void place_load_states(const struct emitter *e, struct power *p)
+{
+	p->size = e->system->states;
+	p->load = ARRAY(int, (size_t)e->system->loads);
+	for (int l = 0, column = 0; l < e->system->loads; column += e->system->load[l++].columns) {
+		bool used = false;
+		for (int k = 0; k < e->system->load[l].columns; k++)
+			used = used || e->step->program->uses[column + k];
+		p->load[l] = used ? p->size : -1;
+		p->size += used ? e->system->load[l].columns : 0;
+	}
+}
+
+static struct power power_matrix(const struct emitter *e)
+{
+	const struct table *table = e->step->table;
+	const struct model *model = e->model;
+	int n = table->states;
+	struct power p;
+	place_load_states(e, &p);
+	p.cell = ARRAY(struct coefficient, (size_t)p.size * (size_t)p.size);
+	for (int i = 0; i < n; i++)
+		for (int j = 0; j < n; j++)
+			p.cell[i * p.size + j] = table->Phi[i * n + j];
+	for (int l = 0, column = 0; l < e->system->loads; column += e->system->load[l++].columns) {
+		const struct load *load = &e->system->load[l];
+		for (int k = 0; k < load->columns && p.load[l] >= 0; k++) {
+			for (int i = 0; i < n; i++)
+				p.cell[i * p.size + p.load[l] + k] = table->load[i * table->columns + column + k];
+			for (int from = 0; from < load->columns; from++)
+				p.cell[(p.load[l] + k) * p.size + p.load[l] + from] =
+					response_value(response_of_load_state(load, k, from), model->h, true, model->step_at, column_text(load, k));
+		}
+	}
+	return p;
+}
+
+static int emit_power_entries(const struct emitter *e, const struct power *p)
+{
+	int entries = 0;
+	fprintf(e->to, "\n/* One step in two words, y%s; not named: 0 */\n", p->size > e->system->states ? ", then what acts on it" : "");
+	fputs("static const struct { int row, column; pl_two value; } ", e->to);
+	fprintf(e->to, "%s_power_entry[] = {\n", e->name);
+	for (int i = 0; i < p->size; i++)
+		for (int j = 0; j < p->size; j++) {
+			const struct coefficient *c = &p->cell[i * p->size + j];
+			if (c->value == 0 && c->low == 0 && (entries > 0 || i < p->size - 1 || j < p->size - 1))
+				continue;       /* but an array has at least one entry */
+			fprintf(e->to, "    {%d, %d, {%s, %s}},\n", i, j, shortest(c->value), shortest(c->low));
+			entries++;
+		}
+	fputs("};\n", e->to);
+	return entries;
+}
+
+void emit_jump(const struct emitter *e)
+{
+	FILE *to = e->to;
+	struct power p = power_matrix(e);
+	int size = p.size, entries = emit_power_entries(e, &p);
+	fprintf(to, "\nvoid %s_jump(%s *s, uint64_t n)\n{\n", e->name, e->name);
+	fprintf(to, "    pl_two power[%d], work[%d], x[%d], w[%d];\n", size * size, size * size, size, size);
+	emit_load_states(e, wanted_loads(e, p.load), false);
+	fprintf(to, "    int i;\n    for (i = 0; i < %d; i++)\n        power[i].hi = power[i].lo = 0.0;\n", size * size);
+	fprintf(to, "    for (i = 0; i < %d; i++)\n        power[%d * %s_power_entry[i].row + %s_power_entry[i].column] = %s_power_entry[i].value;\n", entries, size,
+		e->name, e->name, e->name);
+	fprintf(to, "    for (i = 0; i < %d; i++)\n        x[i].lo = 0.0;\n", size);
+	fprintf(to, "    for (i = 0; i < %s_STATES; i++)\n        x[i].hi = s->y[i];\n", e->upper);
+	store_loads(e, p.load, ".hi");
+	fprintf(to, "    pl_power_apply(%d, power, work, x, w, n);\n    for (i = 0; i < %s_STATES; i++)\n        s->y[i] = x[i].hi;\n", size, e->upper);
+	emit_load_advance(e, "n");
+	fputs("    s->k += n;\n}\n", to);
+}

@@ -1,0 +1,217 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Outputs as rows over states, load states and inputs. */
+#include "plgen.h"
+
+#include <string.h>
+
+/* output += factor * (the highest derivative of a coordinate: its row over the states, and W^-1 force) */
+static void add_highest(const struct model *model, const mpq_t *inverse, const mpq_t *highest, int coord, mpq_srcptr factor, struct output *output)
+{
+	const struct linear *system = &model->system;
+	mpq_t weight, product;
+	mpq_inits(weight, product, NULL);
+	for (int j = 0; j < system->states; j++) {
+		mpq_mul(product, factor, highest[coord * system->states + j]);
+		mpq_add(output->state[j], output->state[j], product);
+	}
+	for (int i = 0; i < model->n; i++) {
+		mpq_mul(weight, inverse[coord * model->n + i], factor);
+		for (int l = 0; l < system->loads; l++)
+			for (int k = 0; k < system->load[l].columns; k++)
+				for (int s = 0; s < system->segments; s++) {
+					mpq_ptr sum = output->load[l][k * system->segments + s];
+					mpq_mul(product, weight, system->load[l].force[k][s * model->n + i]);
+					mpq_add(sum, sum, product);
+				}
+		for (int j = 0; j < system->inputs; j++)
+			for (int k = 0; k < 2; k++) {
+				mpq_mul(product, weight, system->input[j].force[k][i]);
+				mpq_add(output->input[k][j], output->input[k][j], product);
+			}
+	}
+	mpq_clears(weight, product, NULL);
+}
+
+/* The state that is the `order`-th derivative of a coordinate; -1: it is the highest derivative, and no state. */
+static int state_of(const struct model *model, const struct basis *basis)
+{
+	return basis->order == 0 ? basis->index : basis->order == 1 ? model->system.velocity[basis->index] : -1;
+}
+
+/* Its form in one segment of time */
+static const struct form *output_form(const struct building *b, const struct output *output, int segment)
+{
+	return b->snapshot[segment].output[output->statement]->cell[output->cell];
+}
+
+struct direct_row {
+	struct output *output;
+	int segments, segment;
+};
+
+static void add_direct(void *context, int load, int column, mpq_srcptr factor)
+{
+	const struct direct_row *row = context;
+	mpq_ptr sum = row->output->load[load][column * row->segments + row->segment];
+	mpq_add(sum, sum, factor);
+}
+
+static void spread_output(struct building *b, const mpq_t *inverse, const mpq_t *highest, struct output *output)
+{
+	struct model *model = b->model;
+	for (int s = 0; s < model->system.segments; s++)
+		spread_loads(b, output_form(b, output, s), add_direct, &(struct direct_row){ output, model->system.segments, s });
+	for (int i = 0; i < output->form->terms; i++) {
+		const struct form_term *term = &output->form->term[i];
+		const struct basis *basis = &term->basis;
+		if (basis->kind == BASIS_INPUT)
+			mpq_add(output->input[basis->order][basis->index], output->input[basis->order][basis->index], term->factor);
+		else if (basis->kind == BASIS_COORD && state_of(model, basis) < 0)
+			add_highest(model, inverse, highest, basis->index, term->factor, output);
+		else if (basis->kind == BASIS_COORD)
+			mpq_add(output->state[state_of(model, basis)], output->state[state_of(model, basis)], term->factor);
+	}
+}
+
+static bool is_too_high(const struct model *model, const struct basis *basis)
+{
+	return basis->kind == BASIS_COORD && basis->order > model->coord[basis->index]->highest;
+}
+
+static const struct node *find_acceleration(const struct node *node)
+{
+	if (node->kind == NODE_NAME && node->symbol->kind == SYMBOL_COORD && node->primes >= node->symbol->highest)
+		return node;
+	for (int i = 0; i < node->children; i++) {
+		const struct node *found = find_acceleration(node->child[i]);
+		if (found)
+			return found;
+	}
+	return NULL;
+}
+
+/* ---- one output statement may name a vector: one output per component ---- */
+
+struct output_work {
+	struct building *b;
+	const struct symbol *symbol;
+	struct value *value;
+};
+
+static void collect_output(void *context)
+{
+	struct output_work *work = context;
+	work->value = collect(&work->b->collector, work->symbol->value);
+}
+
+static void add_output(struct model *model, const char *name, struct node *value, struct form *form)
+{
+	ENLARGE(model->output, (size_t)model->outputs + 1);
+	model->output[model->outputs++] = (struct output){ .name = name, .value = value, .form = form };
+}
+
+/* q, q' as q[1], q[1]'; another vector v as v[1] */
+static const char *component_name(const char *name, int component)
+{
+	const char *prime = strchr(name, '\'');
+	int length = prime ? (int)(prime - name) : (int)strlen(name);
+	return format("%.*s[%d]%s", length, name, component, name + length);
+}
+
+/* What is not linear stays an expression, printed as C. */
+void collect_outputs(struct building *b, struct snapshot *snapshot)
+{
+	int index = 0;
+	snapshot->output = ARRAY(struct value *, (size_t)b->spec->outputs);
+	b->collector.tolerant = true;
+	for (const struct symbol *s = b->spec->first; s; s = s->next) {
+		struct output_work work = { b, s, NULL };
+		if (s->kind != SYMBOL_OUTPUT)
+			continue;
+		statement_guard(collect_output, &work);
+		snapshot->output[index++] = work.value;
+	}
+	b->collector.tolerant = false;
+}
+
+/* An output is a row over states and loads if it is so in all segments of time, with the same states. */
+static bool is_row(const struct building *b, int index)
+{
+	const struct value *first = b->snapshot->output[index];
+	for (int s = 0; s < b->model->system.segments; s++) {
+		const struct value *value = b->snapshot[s].output[index];
+		if (!value || value->rows != first->rows || value->columns != first->columns)
+			return false;
+		for (int i = 0; i < value->rows * value->columns; i++)
+			if (!same_in_states(value->cell[i], first->cell[i]))
+				return false;
+	}
+	return true;
+}
+
+static void name_outputs(struct building *b)
+{
+	struct model *model = b->model;
+	int index = 0;
+	for (const struct symbol *s = b->spec->first; s; s = s->next) {
+		if (s->kind != SYMBOL_OUTPUT)
+			continue;
+		bool row = is_row(b, index);
+		const struct value *value = row ? b->snapshot->output[index] : NULL;
+		int count = row ? value->rows * value->columns : 1;
+		for (int i = 0; i < count; i++) {
+			add_output(model, count == 1 ? s->name : component_name(s->name, i + 1), s->value, row ? value->cell[i] : NULL);
+			model->output[model->outputs - 1].statement = index;
+			model->output[model->outputs - 1].cell = i;
+		}
+		index++;
+	}
+	model->declared_outputs = b->spec->outputs > 0;
+	for (int i = 0; i < model->system.states && !model->declared_outputs; i++)
+		add_output(model, model->state_name[i], NULL, NULL);
+}
+
+static void check_output(const struct model *model, const struct output *output)
+{
+	const struct node *acceleration = output->value && !output->form ? find_acceleration(output->value) : NULL;
+	if (acceleration)
+		say_error(acceleration->at, NULL, "accelerations in outputs that are not linear are not built yet");
+	for (int k = 0; output->form && k < output->form->terms; k++)
+		if (is_too_high(model, &output->form->term[k].basis))
+			say_error(output->value->start, NULL, "%s is of first order and has no second derivative",
+				  model->coord_name[output->form->term[k].basis.index]);
+}
+
+static void make_rows(const struct linear *system, struct output *output)
+{
+	output->state = rationals((size_t)system->states);
+	output->load = ARRAY(mpq_t *, (size_t)system->loads);
+	for (int l = 0; l < system->loads; l++)
+		output->load[l] = rationals((size_t)system->load[l].columns * (size_t)system->segments);
+	for (int k = 0; k < 2; k++)
+		output->input[k] = rationals((size_t)system->inputs);
+}
+
+/* Loads that only outputs use get their load states too, so all are placed before any is spread. */
+void build_outputs(struct building *b)
+{
+	struct model *model = b->model;
+	struct linear *system = &model->system;
+	int column;
+	mpq_t *inverse = rationals((size_t)(model->n * model->n)), *highest = rationals((size_t)(model->n * system->states));
+	leading_inverse(system, inverse, &column);
+	highest_derivatives(system, (const mpq_t *)inverse, false, highest);
+	name_outputs(b);
+	for (int i = 0; i < model->outputs; i++)
+		for (int s = 0; s < system->segments && model->output[i].form; s++)
+			place_loads(b, output_form(b, &model->output[i], s));
+	for (int i = 0; i < model->outputs; i++) {
+		struct output *output = &model->output[i];
+		check_output(model, output);
+		make_rows(system, output);
+		if (!output->value)
+			mpq_set_ui(output->state[i], 1, 1);
+		else if (output->form && !diagnostics_errors())
+			spread_output(b, (const mpq_t *)inverse, (const mpq_t *)highest, output);
+	}
+}

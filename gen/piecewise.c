@@ -1,0 +1,172 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Piecewise-linear functions and conditions of constants and of time. Time is divided at the breakpoints found so far; a
+ * collection looks at one interval between them, in which every condition has one outcome. A breakpoint that is met for
+ * the first time is added, and the collection is done again. */
+#include "plgen.h"
+
+/* ---- time ---- */
+
+static void add_change(struct collector *c, mpq_srcptr t)
+{
+	int at = 0;
+	while (at < c->changes && mpq_cmp(c->change[at], t) < 0)
+		at++;
+	if (at < c->changes && mpq_equal(c->change[at], t))
+		return;
+	if (c->changes == LIMIT_CHANGES)
+		error(c->term->start, NULL, "more changes of formula than the limit of %d", LIMIT_CHANGES);
+	mpq_t *change = rationals((size_t)c->changes + 1);
+	for (int i = 0; i < c->changes; i++)
+		mpq_set(change[i < at ? i : i + 1], c->change[i]);
+	mpq_set(change[at], t);
+	c->change = change;
+	c->changes++;
+}
+
+/* A time inside interval `index` of those that the breakpoints leave. */
+static void sample_time(const struct collector *c, int index, mpq_ptr t)
+{
+	mpq_t one;
+	mpq_init(one);
+	mpq_set_ui(one, 1, 1);
+	if (c->changes == 0) {
+		mpq_set_ui(t, 0, 1);
+	} else if (index == 0) {
+		mpq_sub(t, c->change[0], one);
+	} else if (index == c->changes) {
+		mpq_add(t, c->change[c->changes - 1], one);
+	} else {
+		mpq_add(t, c->change[index - 1], c->change[index]);
+		mpq_div_2exp(t, t, 1);
+	}
+	mpq_clear(one);
+}
+
+/* The sign of factor t + phase in the collector's interval; where it is 0 there is a breakpoint. */
+static int sign_in_time(struct collector *c, mpq_srcptr factor, mpq_srcptr phase)
+{
+	mpq_t t, root;
+	mpq_inits(t, root, NULL);
+	mpq_div(root, phase, factor);
+	mpq_neg(root, root);
+	sample_time(c, c->interval, t);
+	int sign = mpq_cmp(t, root) * mpq_sgn(factor);
+	add_change(c, root);
+	mpq_clears(t, root, NULL);
+	return sign;
+}
+
+int order_now(struct collector *c, const struct node *node, const struct form *a, const struct form *b)
+{
+	struct form *difference = form_sum(a, b, true), phase;
+	mpq_srcptr factor;
+	mpq_t value;
+	mpq_init(value);
+	int sign;
+	if (is_constant(difference)) {
+		constant_value(c, difference, value);
+		sign = mpq_sgn(value);
+	} else if (linear_in_time(difference, &factor, &phase)) {
+		constant_value(c, &phase, value);
+		sign = sign_in_time(c, factor, value);
+	} else {
+		not_built(c, node->at, node->kind == NODE_CALL ? format("'%s' of what moves is", function_name(node->function))
+							       : "conditions on what moves are");
+	}
+	mpq_clear(value);
+	return sign;
+}
+
+/* ---- functions ---- */
+
+static struct form *negated(const struct form *x)
+{
+	return form_sum(NEW(struct form), x, true);
+}
+
+static struct form *sign_form(int sign)
+{
+	mpq_t value;
+	mpq_init(value);
+	mpq_set_si(value, sign, 1);
+	struct form *form = form_constant(value);
+	mpq_clear(value);
+	return form;
+}
+
+static struct form *extreme(struct collector *c, const struct node *node, struct form *const *x)
+{
+	struct form *best = x[0];
+	for (int i = 1; i < node->children; i++)
+		if ((order_now(c, node, x[i], best) < 0) == (node->function == FN_MIN))
+			best = x[i];
+	return best;
+}
+
+static struct form *clipped(struct collector *c, const struct node *node, struct form *const *x)
+{
+	if (order_now(c, node, x[1], x[2]) > 0)
+		error(node->child[1]->start, NULL, "the lower breakpoint is above the upper one");
+	int side = order_now(c, node, x[0], x[1]) < 0 ? 1 : order_now(c, node, x[0], x[2]) > 0 ? 2 : 0;
+	if (node->function == FN_CLIP)
+		return x[side];
+	return side ? form_sum(x[0], x[side], true) : NEW(struct form);
+}
+
+static void constant_point(struct collector *c, const struct node *node, const struct form *x, mpq_ptr value)
+{
+	if (!is_constant(x))
+		error(node->start, NULL, "the points of a table are constants");
+	constant_value(c, x, value);
+}
+
+/* y0 + slope (x - x0) on the piece that holds x; extended by the end slopes */
+static struct form *tabulated(struct collector *c, const struct node *node, struct form *const *x)
+{
+	int points = (node->children - 1) / 2, left = 0;
+	mpq_t *v = rationals((size_t)node->children), slope, width;
+	mpq_inits(slope, width, NULL);
+	for (int i = 1; i < node->children; i++)
+		constant_point(c, node->child[i], x[i], v[i]);
+	for (int i = 1; i < points; i++)
+		if (mpq_cmp(v[2 * i - 1], v[2 * i + 1]) >= 0)
+			error(node->child[2 * i + 1]->start, NULL, "the breakpoints of a table rise");
+	while (left + 2 < points && order_now(c, node, x[0], x[2 * left + 3]) > 0)
+		left++;
+	const mpq_t *p = (const mpq_t *)v + 2 * left + 1;       /* x0, y0, x1, y1 */
+	mpq_sub(slope, p[3], p[1]);
+	mpq_sub(width, p[2], p[0]);
+	mpq_div(slope, slope, width);
+	struct form *value = form_sum(x[2 * left + 2], form_scale(form_sum(x[0], x[2 * left + 1], true), slope), false);
+	mpq_clears(slope, width, NULL);
+	return value;
+}
+
+static struct form *angle(struct collector *c, const struct node *node, struct form *const *x)
+{
+	mpq_t a, b;
+	mpq_inits(a, b, NULL);
+	if (!is_constant(x[0]) || !is_constant(x[1]))
+		not_linear(c, node, "is not linear");
+	constant_value(c, x[0], a);
+	constant_value(c, x[1], b);
+	if (!constant_atan2(node->at, a, b, a))
+		c->irrationals.used[FN_ATAN2] = true;
+	struct form *form = form_constant(a);
+	mpq_clears(a, b, NULL);
+	return form;
+}
+
+struct form *piecewise(struct collector *c, const struct node *node, struct form *const *x)
+{
+	struct form *zero = NEW(struct form);
+	switch (node->function) {
+	case FN_ABS:   return order_now(c, node, x[0], zero) < 0 ? negated(x[0]) : x[0];
+	case FN_SGN:   return sign_form(order_now(c, node, x[0], zero));
+	case FN_MIN:
+	case FN_MAX:   return extreme(c, node, x);
+	case FN_TABLE: return tabulated(c, node, x);
+	case FN_ATAN2: return angle(c, node, x);
+	default:       return clipped(c, node, x);
+	}
+}
