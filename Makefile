@@ -34,6 +34,7 @@ check: all
 # Benchmarks: never part of a test.
 bench: all
 	sh bench/generate.sh $(BUILD)
+	sh bench/growth.sh $(BUILD)
 
 # The long forms of what `make check` runs briefly.
 accuracy: all

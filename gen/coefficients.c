@@ -332,7 +332,10 @@ struct table *table_of(const struct model *model, struct resolvent *resolvent, c
 	table->Phi = ARRAY(struct coefficient, n * n);
 	table->load = ARRAY(struct coefficient, (size_t)system->segments * n * (size_t)table->columns);
 	table->input = ARRAY(struct coefficient, n * (size_t)table->inputs);
-	for (int i = 0; i < table->states; i++)
+	for (int i = 0; i < table->states; i++) {
+		progress("factors of the step, state", i, table->states);
 		fill_row(&filling, table, i);
+	}
+	progress_end();
 	return table;
 }

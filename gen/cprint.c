@@ -13,7 +13,7 @@ struct naming {                     /* the identifiers given away so far */
 
 /* What the generated functions use themselves. */
 static const char *const own_names[] = {
-	"s", "y", "t", "u", "out", "dydt", "residual", "growth",
+	"s", "y", "t", "u", "out", "dydt", "residual", "growth", "factor",
 	"fabs", "fmin", "fmax", "pow"   /* of <math.h>, which no function of a spec is named after */
 };
 

@@ -119,6 +119,8 @@ static void banner_cost(const struct emitter *e)
 			e->system->segments - 1, e->system->segments > 2 ? "s" : "");
 	if (e->model->dropped)
 		fprintf(e->to, " * Reduced to what the outputs can see: %d of %d states.\n", e->system->states, e->model->written->system.states);
+	if (has_jump(e) && e->system->states > 12)
+		fprintf(e->to, " * %s_jump needs some %d KB of stack.\n", e->name, 1 + 32 * e->system->states * e->system->states / 1024);
 	if (!has_jump(e))
 		fprintf(e->to, " * There is no %s_jump: %s.\n", e->name,
 			e->system->inputs ? "the samples to come are not known" : "the loads change their formula");
@@ -336,10 +338,46 @@ static void emit_load_factors(const struct emitter *e)
 	fputs("};\n", e->to);
 }
 
+/* vector[...] = the operands of the columns of a table; then y[i] += table[i][...] vector[...] */
+static void emit_columns(const struct emitter *e, const char *table, const char *vector, enum operand_kind kind, int columns)
+{
+	if (columns == 0)
+		return;
+	fprintf(e->to, "    const double %s[%d] = {", vector, columns);
+	for (int k = 0; k < columns; k++) {
+		const char *operand = operand_text(e, &(struct operand){ kind, k });
+		fprintf(e->to, "%s%s", k ? ", " : "", operand ? operand : "1.0");
+	}
+	fprintf(e->to, "};\n    for (i = 0; i < %s_STATES; i++)\n        for (j = 0; j < %d; j++)\n            y[i] += %s[i][j] * %s[j];\n", e->upper, columns,
+		table, vector);
+}
+
+/* A large model steps by loops over its tables: text that nobody would read is of no use. */
+static void emit_looped_step(const struct emitter *e)
+{
+	FILE *to = e->to;
+	const char *n = e->name, *N = e->upper;
+	const struct table *table = e->step->table;
+	bool *loads = ARRAY(bool, (size_t)e->system->loads);
+	for (int l = 0; l < e->system->loads; l++)
+		loads[l] = true;
+	fprintf(to, "    double y[%s_STATES];\n    int i, j;\n", N);
+	emit_load_states(e, loads, false);
+	fprintf(to, "    for (i = 0; i < %s_STATES; i++) {\n        y[i] = 0.0;\n        for (j = 0; j < %s_STATES; j++)\n", N, N);
+	fprintf(to, "            y[i] += %s_Phi[i][j] * s->y[j];\n    }\n", n);
+	emit_columns(e, format("%s_load_factor[%s]", n, e->system->segments > 1 ? "s->segment" : "0"), "load", OPERAND_LOAD, table->columns);
+	emit_columns(e, format("%s_Gamma", n), "input", OPERAND_INPUT, table->inputs);
+	fprintf(to, "    for (i = 0; i < %s_STATES; i++)\n        s->y[i] = y[i];\n", N);
+}
+
 /* A step that no change of the loads interrupts */
 static void emit_plain_step(const struct emitter *e)
 {
 	const struct program *program = e->step->program;
+	if (program->loops) {
+		emit_looped_step(e);
+		return;
+	}
 	emit_locals(e, program->reads);
 	emit_load_states(e, loads_of_step(e), false);
 	if (e->system->segments > 1 && any_load_term(program))
@@ -364,7 +402,7 @@ static void emit_changing_step(const struct emitter *e)
 {
 	const char *n = e->name, *u = e->system->inputs ? "u, " : "";
 	int changes = e->system->segments - 1;
-	if (any_load_term(e->step->program))
+	if (any_load_term(e->step->program) && !e->step->program->loops)
 		emit_load_factors(e);
 	fprintf(e->to, "\nstatic void %s_plain_step(%s)\n{\n", e->name, step_parameters(e));
 	emit_plain_step(e);
@@ -381,6 +419,8 @@ static void emit_changing_step(const struct emitter *e)
 
 static void emit_step(const struct emitter *e)
 {
+	if (e->step->program->loops && e->step->table->columns)
+		emit_load_factors(e);
 	if (e->system->segments > 1) {
 		emit_changing_step(e);
 		return;

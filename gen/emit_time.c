@@ -245,35 +245,60 @@ static struct power power_matrix(const struct emitter *e)
 	return p;
 }
 
+/* The second words of Phi: NAME_Phi has the first */
+static void emit_second_words(const struct emitter *e)
+{
+	int n = e->system->states;
+	double *low = ARRAY(double, (size_t)n * (size_t)n);
+	for (int i = 0; i < n * n; i++)
+		low[i] = e->step->table->Phi[i].low;
+	fprintf(e->to, "\n/* %s_Phi + %s_Phi_low is the transfer matrix in two words */\n", e->name, e->name);
+	fprintf(e->to, "static const double %s_Phi_low[%s_STATES][%s_STATES] = {\n", e->name, e->upper, e->upper);
+	emit_number_rows(e, n, n, low, e->model->state_name);
+	fputs("};\n", e->to);
+}
+
+/* What the load states add to the one-step matrix, in two words: the columns beyond Phi */
 static int emit_power_entries(const struct emitter *e, const struct power *p)
 {
 	int entries = 0;
-	fprintf(e->to, "\n/* One step in two words, y%s; not named: 0 */\n", p->size > e->system->states ? ", then what acts on it" : "");
-	fputs("static const struct { int row, column; pl_two value; } ", e->to);
-	fprintf(e->to, "%s_power_entry[] = {\n", e->name);
 	for (int i = 0; i < p->size; i++)
-		for (int j = 0; j < p->size; j++) {
+		for (int j = e->system->states; j < p->size; j++) {
 			const struct coefficient *c = &p->cell[i * p->size + j];
-			if (c->value == 0 && c->low == 0 && (entries > 0 || i < p->size - 1 || j < p->size - 1))
-				continue;       /* but an array has at least one entry */
+			if (c->value == 0 && c->low == 0)
+				continue;
+			if (entries++ == 0)
+				fprintf(e->to, "\n/* ... and what the load states add, from column %d on */\n"
+					       "static const struct { int row, column; pl_two value; } %s_power_entry[] = {\n", e->system->states, e->name);
 			fprintf(e->to, "    {%d, %d, {%s, %s}},\n", i, j, shortest(c->value), shortest(c->low));
-			entries++;
 		}
-	fputs("};\n", e->to);
+	if (entries)
+		fputs("};\n", e->to);
 	return entries;
+}
+
+static void emit_fill_power(const struct emitter *e, int size, int entries)
+{
+	const char *n = e->name, *N = e->upper;
+	fprintf(e->to, "    for (i = 0; i < %d; i++)\n        power[i].hi = power[i].lo = 0.0;\n", size * size);
+	fprintf(e->to, "    for (i = 0; i < %s_STATES; i++)\n        for (j = 0; j < %s_STATES; j++) {\n", N, N);
+	fprintf(e->to, "            power[%d * i + j].hi = %s_Phi[i][j];\n            power[%d * i + j].lo = %s_Phi_low[i][j];\n        }\n", size, n, size, n);
+	if (entries)
+		fprintf(e->to, "    for (i = 0; i < %d; i++)\n        power[%d * %s_power_entry[i].row + %s_power_entry[i].column] = %s_power_entry[i].value;\n",
+			entries, size, n, n, n);
 }
 
 void emit_jump(const struct emitter *e)
 {
 	FILE *to = e->to;
 	struct power p = power_matrix(e);
+	emit_second_words(e);
 	int size = p.size, entries = emit_power_entries(e, &p);
 	fprintf(to, "\nvoid %s_jump(%s *s, uint64_t n)\n{\n", e->name, e->name);
 	fprintf(to, "    pl_two power[%d], work[%d], x[%d], w[%d];\n", size * size, size * size, size, size);
 	emit_load_states(e, wanted_loads(e, p.load), false);
-	fprintf(to, "    int i;\n    for (i = 0; i < %d; i++)\n        power[i].hi = power[i].lo = 0.0;\n", size * size);
-	fprintf(to, "    for (i = 0; i < %d; i++)\n        power[%d * %s_power_entry[i].row + %s_power_entry[i].column] = %s_power_entry[i].value;\n", entries, size,
-		e->name, e->name, e->name);
+	fputs("    int i, j;\n", to);
+	emit_fill_power(e, size, entries);
 	fprintf(to, "    for (i = 0; i < %d; i++)\n        x[i].lo = 0.0;\n", size);
 	fprintf(to, "    for (i = 0; i < %s_STATES; i++)\n        x[i].hi = s->y[i];\n", e->upper);
 	store_loads(e, p.load, ".hi");

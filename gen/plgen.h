@@ -41,6 +41,7 @@ enum {
 	LIMIT_STATES = 512,
 	LIMIT_CHANGES = 1000,       /* of formula in time */
 	LIMIT_LOAD_POWER = 32,      /* exponent of a load, as in t^3 */
+	LIMIT_UNROLLED_STATES = 16, /* beyond, a step loops over its tables */
 	LIMIT_RESIDUE_STATES = 12,  /* beyond, a Taylor series gives the numbers: residues get slow */
 	LIMIT_ROWS = 10000000,      /* of --solution */
 	LIMIT_PRECISION = 16384,    /* bits of an enclosure before a coefficient is given up */
@@ -58,6 +59,11 @@ mpq_t *rationals(size_t count);                            /* initialised to 0 *
 #define NEW(type) ((type *)allocate(1, sizeof(type)))
 #define ARRAY(type, count) ((type *)allocate(count, sizeof(type)))
 #define ENLARGE(array, count) ((array) = enlarge(array, count, sizeof *(array)))
+
+/* ---- progress.c: a line on a terminal for what takes longer than a second ---- */
+
+void progress(const char *what, int done, int all);         /* done = 0 starts the clock */
+void progress_end(void);                                    /* the line goes */
 
 /* ---- source.c: texts, places in them, and what is said about a place ---- */
 
@@ -625,6 +631,7 @@ struct program {
 	bool *uses;                 /* per column of the loads */
 	int oscillators, growths;   /* cos/sin pairs and exponentials evaluated per step */
 	int multiplications, additions;
+	bool loops;                 /* over the tables, zeros included: a large model */
 };
 struct step {                       /* everything that is emitted for one model */
 	const struct model *model;

@@ -134,10 +134,12 @@ void polymat_adjugate(struct polymat P, struct poly *det, struct polymat *adj)
 	mpz_t *dets = ARRAY(mpz_t, (size_t)count), *column = ARRAY(mpz_t, (size_t)count), **adjs = ARRAY(mpz_t *, (size_t)count);
 	for (int found = 0, tried = 0; found < count; tried++) {        /* 0, 1, -1, 2, -2, ... where P is regular */
 		point[found] = tried % 2 ? (tried + 1) / 2 : -(tried / 2);
+		progress("B(s), point", found, count);
 		adjs[found] = ARRAY(mpz_t, (size_t)cells);
 		mpz_init(dets[found]);
 		found += sample(P, point[found], dets[found], adj ? adjs[found] : NULL);
 	}
+	progress_end();
 	*det = interpolate(count, point, (const mpz_t *)dets);
 	for (int cell = 0; cell < cells; cell++) {
 		for (int k = 0; k < count; k++)

@@ -160,6 +160,12 @@ static struct program *linear_program(const struct table *table, const struct li
 		program->assignments += !is_identity(a);
 	}
 	count(program, system);
+	program->loops = n > LIMIT_UNROLLED_STATES;
+	if (program->loops) {
+		int row = n + table->columns + table->inputs;
+		program->multiplications = n * row + program->oscillators * PL_COSSIN_MUL + program->growths * PL_GROWTH_MUL;
+		program->additions = n * row + program->oscillators * PL_COSSIN_ADD + program->growths * PL_GROWTH_ADD;
+	}
 	return program;
 }
 

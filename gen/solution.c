@@ -50,6 +50,7 @@ void print_solution(FILE *to, const struct model *model, struct resolvent *writt
 	mpq_t t;
 	mpq_init(t);
 	for (unsigned long k = 0; k <= last; k++) {
+		progress("row", (int)k, (int)last);
 		fprintf(to, "%.17g", round_rational(t));
 		for (int j = 0; j < model->outputs; j++) {
 			struct coefficient value = started_value(form[j].count, form[j].list, t, model->step_at, model->output[j].name);
@@ -60,5 +61,6 @@ void print_solution(FILE *to, const struct model *model, struct resolvent *writt
 		fputc('\n', to);
 		mpq_add(t, t, model->h);
 	}
+	progress_end();
 	mpq_clear(t);
 }

@@ -185,6 +185,7 @@ static int by_place(const void *left, const void *right)
 
 void diagnostics_print(FILE *to)
 {
+	progress_end();
 	if (said_count == 0)
 		return;
 	struct count count = { NULL, 0, 1 };
