@@ -23,20 +23,29 @@ void check_pole_size(const struct model *model, const struct resolvent *resolven
 		error(model->step_at, NULL, "the largest pole, about 2^%ld 1/s, times the step is beyond the limit of 2^%d", largest, LIMIT_PRECISION);
 }
 
-/* The pole that grows fastest: what an overflow comes from. */
-static const char *dominant_pole(const struct response *response)
+struct culprit {                    /* what an overflow comes from */
+	double re, im, size;
+	bool grows;                 /* by more than e in a step */
+};
+
+/* The pole that grows fastest; if none grows in a step, the largest one, since then its units are to blame. */
+static struct culprit find_culprit(const struct response *response, double h)
 {
 	const struct spectrum *spectrum = response->spectrum;
-	double re = spectrum->zero ? 0 : -INFINITY, im = 0;
+	struct culprit fastest = { spectrum->zero ? 0 : -INFINITY, 0, 0, false }, largest = { 0 };
 	for (int f = 0; f < spectrum->factors; f++)
 		for (int i = 0; i < spectrum->poles[f]; i++) {
-			double real = mpfi_get_d(spectrum->pole[f][i].at.re);
-			if (real > re) {
-				re = real;
-				im = mpfi_get_d(spectrum->pole[f][i].at.im);
-			}
+			double re = mpfi_get_d(spectrum->pole[f][i].at.re), im = mpfi_get_d(spectrum->pole[f][i].at.im);
+			struct culprit pole = { re, im, hypot(re, im), re * h > 1 };
+			fastest = pole.re > fastest.re ? pole : fastest;
+			largest = pole.size > largest.size ? pole : largest;
 		}
-	return im == 0 ? format("%.6g 1/s", re) : format("%.6g +- %.6g i 1/s", re, im);
+	return fastest.grows ? fastest : largest;
+}
+
+static const char *pole_of(const struct culprit *pole)
+{
+	return pole->im == 0 ? format("%.6g 1/s", pole->re) : format("%.6g +- %.6g i 1/s", pole->re, pole->im);
 }
 
 static _Noreturn void undecided(struct place at, const char *what, bool isolated)
@@ -193,9 +202,11 @@ struct coefficient coefficient_of_rational(mpq_srcptr q)
 
 static void check_range(const struct model *model, const struct coefficient *c, const struct response *response, const char *what)
 {
-	if (!isfinite(c->value))
-		error(model->step_at, "a smaller step would do", "%s is beyond the range of double: pole %s, h = %s s", what,
-		      dominant_pole(response), readable_text(model->h));
+	if (isfinite(c->value))
+		return;
+	struct culprit pole = find_culprit(response, round_rational(model->h));
+	error(model->step_at, pole.grows ? "a smaller step would do" : NULL, "%s is beyond the range of double: pole %s, h = %s s", what,
+	      pole_of(&pole), readable_text(model->h));
 }
 
 /* ---- a table ---- */

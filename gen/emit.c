@@ -3,6 +3,7 @@
 #include "plgen.h"
 
 #include <ctype.h>
+#include <math.h>
 #include <string.h>
 
 static const char *upper_case(const char *name)
@@ -224,6 +225,13 @@ const char *tree(int terms, const char *const *term, int indent)
 	right += subtract;
 	bool wide = (int)(strlen(left) + strlen(right)) + indent > WIDTH;
 	return wide ? format("%s\n%*s%s %s", left, indent, "", sign, right) : format("%s %s %s", left, sign, right);
+}
+
+double finite_number(const struct emitter *e, mpq_srcptr q)
+{
+	if (beyond_double(q))
+		error(e->model->step_at, NULL, "a number of the equations is beyond the range of double");
+	return round_rational(q);
 }
 
 const char *scaled(double factor, const char *operand)
@@ -708,8 +716,11 @@ void emit_number_rows(const struct emitter *e, int rows, int columns, const doub
 {
 	for (int i = 0; i < rows; i++) {
 		fputs("    {", e->to);
-		for (int j = 0; j < columns; j++)
+		for (int j = 0; j < columns; j++) {
+			if (!isfinite(value[i * columns + j]))
+				error(e->model->step_at, NULL, "a number in the row of %s is beyond the range of double", row_note[i]);
 			fprintf(e->to, "%s%s", j ? ", " : "", shortest(value[i * columns + j]));
+		}
 		fprintf(e->to, "},  /* %s */\n", row_note[i]);
 	}
 }

@@ -2,42 +2,26 @@
 /* Loads on the target: phases as turns, growths as exponents of 2, and the load states made of them at a step's start. */
 #include "plgen.h"
 
-/* x turns as 128 bits, wrapped; x a multiple of 1/2 pi of the rational q */
-static void turns(mpq_srcptr q, uint64_t word[2])
+/* q / unit as 128 bits with `fraction` of them behind the point, wrapped; the unit is 2 pi for turns, else ln 2 */
+static void fixed_point(mpq_srcptr q, bool turns, int fraction, uint64_t word[2])
 {
-	mpfr_t x, pi;
-	mpz_t fraction, half;
-	mpfr_inits2(2048, x, pi, NULL);
-	mpz_inits(fraction, half, NULL);
-	mpfr_const_pi(pi, MPFR_RNDN);
-	mpfr_set_q(x, q, MPFR_RNDN);
-	mpfr_div(x, x, pi, MPFR_RNDN);
-	mpfr_mul_2si(x, x, 127, MPFR_RNDN);
-	mpfr_get_z(fraction, x, MPFR_RNDN);
-	mpz_fdiv_r_2exp(fraction, fraction, 128);
-	mpz_fdiv_r_2exp(half, fraction, 64);
-	word[1] = mpz_get_ui(half);
-	mpz_fdiv_q_2exp(half, fraction, 64);
-	word[0] = mpz_get_ui(half);
-	mpz_clears(fraction, half, NULL);
-	mpfr_clears(x, pi, NULL);
-}
-
-/* e^{x}: x / ln 2 as a signed fixed-point number with 112 bits after the point */
-static void exponent(mpq_srcptr q, uint64_t word[2])
-{
-	mpfr_t x, ln2;
+	long above = (long)mpz_sizeinbase(mpq_numref(q), 2) - (long)mpz_sizeinbase(mpq_denref(q), 2);
+	mpfr_t x, unit;
 	mpz_t fixed, part;
-	mpfr_inits2(2048, x, ln2, NULL);
+	mpfr_inits2(512 + (above > 0 ? above : 0), x, unit, NULL);
 	mpz_inits(fixed, part, NULL);
-	mpfr_const_log2(ln2, MPFR_RNDN);
+	if (turns)
+		mpfr_const_pi(unit, MPFR_RNDN);
+	else
+		mpfr_const_log2(unit, MPFR_RNDN);
+	mpfr_mul_2ui(unit, unit, turns ? 1 : 0, MPFR_RNDN);
 	mpfr_set_q(x, q, MPFR_RNDN);
-	mpfr_div(x, x, ln2, MPFR_RNDN);
-	mpfr_mul_2si(x, x, 112, MPFR_RNDN);
+	mpfr_div(x, x, unit, MPFR_RNDN);
+	mpfr_mul_2si(x, x, fraction, MPFR_RNDN);
+	mpfr_get_z(fixed, x, MPFR_RNDN);
 	mpz_ui_pow_ui(part, 2, 127);
 	mpz_sub_ui(part, part, 1);
-	mpfr_get_z(fixed, x, MPFR_RNDN);
-	if (mpz_cmpabs(fixed, part) > 0)        /* beyond any double: saturated */
+	if (!turns && mpz_cmpabs(fixed, part) > 0)      /* an exponent beyond any double is saturated, not wrapped */
 		mpz_mul_si(fixed, part, mpz_sgn(fixed));
 	mpz_fdiv_r_2exp(fixed, fixed, 128);
 	mpz_fdiv_r_2exp(part, fixed, 64);
@@ -45,7 +29,19 @@ static void exponent(mpq_srcptr q, uint64_t word[2])
 	mpz_fdiv_q_2exp(part, fixed, 64);
 	word[0] = mpz_get_ui(part);
 	mpz_clears(fixed, part, NULL);
-	mpfr_clears(x, ln2, NULL);
+	mpfr_clears(x, unit, NULL);
+}
+
+/* An angle in turns, unit 2^-128 */
+static void turns(mpq_srcptr angle, uint64_t word[2])
+{
+	fixed_point(angle, true, 128, word);
+}
+
+/* e^x as an exponent of 2, unit 2^-112 */
+static void exponent(mpq_srcptr x, uint64_t word[2])
+{
+	fixed_point(x, false, 112, word);
 }
 
 /* |q| / unit as three words and a power of two; unit is 2 pi or ln 2 */

@@ -54,7 +54,7 @@ static const char *collected_residual(const struct emitter *e, const struct form
 	int terms = 0;
 	for (int i = 0; i < form->terms; i++)
 		if (!is_highest(e, &form->term[i].basis))
-			term[terms++] = scaled(round_rational(form->term[i].factor), basis_expression(e, &form->term[i].basis));
+			term[terms++] = scaled(finite_number(e, form->term[i].factor), basis_expression(e, &form->term[i].basis));
 	return terms ? tree(terms, term, 18) : "0.0";
 }
 
@@ -158,7 +158,7 @@ static void emit_derivatives(const struct emitter *e)
 		int terms = 0, state = written->velocity[i] >= 0 ? written->velocity[i] : i;
 		for (int j = 0; j < n; j++)
 			if (mpq_sgn(inverse[i * n + j]) != 0)
-				term[terms++] = scaled(-round_rational(inverse[i * n + j]), format("residual[%d]", j));
+				term[terms++] = scaled(-finite_number(e, inverse[i * n + j]), format("residual[%d]", j));
 		fprintf(e->to, "    dydt[%d] = %s;  /* the inverse mass matrix times them */\n", state, tree(terms, term, 12));
 	}
 }

@@ -35,7 +35,7 @@ static void emit_held(const struct emitter *e)
 			const mpq_t *held = j < n ? e->system->heldK : e->system->heldC;
 			int cell = i * n + e->system->coord[j];
 			if (mpq_sgn(held[cell]) != 0)
-				term[terms++] = scaled(-round_rational(held[cell]), format("s->y[%d]", j));
+				term[terms++] = scaled(-finite_number(e, held[cell]), format("s->y[%d]", j));
 		}
 		fprintf(e->to, "    x[%d] = %s;  /* held for %s */\n", series->held + i, terms ? tree(terms, term, 12) : "0.0", e->model->coord_name[i]);
 	}

@@ -687,6 +687,7 @@ void emit_header(FILE *to, const struct step *step, const char *options, bool rh
 void emit_code(FILE *to, const struct step *step, const char *options, const char *header_name, bool rhs); /* header_name NULL: all in one */
 
 const char *tree(int terms, const char *const *term, int indent); /* a balanced sum */
+double finite_number(const struct emitter *e, mpq_srcptr q);       /* rounded; an error at the step where it overflows */
 const char *scaled(double factor, const char *operand);           /* operand NULL: 1 */
 void emit_number_rows(const struct emitter *e, int rows, int columns, const double *value, const char *const *row_note);
 void emit_used_constants(const struct emitter *e, bool lets);
