@@ -36,7 +36,7 @@ static struct emitter emitter_new(FILE *to, const struct step *step, const char 
 
 bool has_jump(const struct emitter *e)
 {
-	return e->system->inputs == 0 && e->system->segments == 1;
+	return e->system->inputs == 0;
 }
 
 /* ---- banner ---- */
@@ -123,8 +123,7 @@ static void banner_cost(const struct emitter *e)
 	if (has_jump(e) && e->system->states > 12)
 		fprintf(e->to, " * %s_jump needs some %d KB of stack.\n", e->name, 1 + 32 * e->system->states * e->system->states / 1024);
 	if (!has_jump(e))
-		fprintf(e->to, " * There is no %s_jump: %s.\n", e->name,
-			e->system->inputs ? "the samples to come are not known" : "the loads change their formula");
+		fprintf(e->to, " * There is no %s_jump: the samples to come are not known.\n", e->name);
 	if (!e->step->series.emitted)
 		fprintf(e->to, " * There is no %s_at: the largest |pole| times h is above 8.\n", e->name);
 }

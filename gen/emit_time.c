@@ -221,7 +221,7 @@ static void place_load_states(const struct emitter *e, struct power *p)
 	}
 }
 
-static struct power power_matrix(const struct emitter *e)
+static struct power power_matrix(const struct emitter *e, int segment)
 {
 	const struct table *table = e->step->table;
 	const struct model *model = e->model;
@@ -236,7 +236,7 @@ static struct power power_matrix(const struct emitter *e)
 		const struct load *load = &e->system->load[l];
 		for (int k = 0; k < load->columns && p.load[l] >= 0; k++) {
 			for (int i = 0; i < n; i++)
-				p.cell[i * p.size + p.load[l] + k] = table->load[i * table->columns + column + k];
+				p.cell[i * p.size + p.load[l] + k] = table->load[(segment * n + i) * table->columns + column + k];
 			for (int from = 0; from < load->columns; from++)
 				p.cell[(p.load[l] + k) * p.size + p.load[l] + from] =
 					response_value(response_of_load_state(load, k, from), model->h, true, model->step_at, column_text(load, k));
@@ -258,20 +258,26 @@ static void emit_second_words(const struct emitter *e)
 	fputs("};\n", e->to);
 }
 
-/* What the load states add to the one-step matrix, in two words: the columns beyond Phi */
-static int emit_power_entries(const struct emitter *e, const struct power *p)
+/* What the load states add to the one-step matrix, in two words: the columns beyond Phi, in each segment of time */
+static int emit_power_entries(const struct emitter *e)
 {
-	int entries = 0;
-	for (int i = 0; i < p->size; i++)
-		for (int j = e->system->states; j < p->size; j++) {
-			const struct coefficient *c = &p->cell[i * p->size + j];
-			if (c->value == 0 && c->low == 0)
-				continue;
-			if (entries++ == 0)
-				fprintf(e->to, "\n/* ... and what the load states add, from column %d on */\n"
-					       "static const struct { int row, column; pl_two value; } %s_power_entry[] = {\n", e->system->states, e->name);
-			fprintf(e->to, "    {%d, %d, {%s, %s}},\n", i, j, shortest(c->value), shortest(c->low));
-		}
+	int entries = 0, states = e->system->states;
+	for (int segment = 0; segment < e->system->segments; segment++) {
+		struct power p = power_matrix(e, segment);
+		for (int i = 0; i < p.size; i++)
+			for (int j = states; j < p.size; j++) {
+				const struct coefficient *c = &p.cell[i * p.size + j];
+				if (c->value == 0 && c->low == 0)
+					continue;
+				if (entries++ == 0)
+					fprintf(e->to, "\n/* ... and what the load states add, from column %d on */\nstatic const struct {%s int row, column; "
+						       "pl_two value; } %s_power_entry[] = {\n", states, e->system->segments > 1 ? " int segment;" : "", e->name);
+				fputs("    {", e->to);
+				if (e->system->segments > 1)
+					fprintf(e->to, "%d, ", segment);
+				fprintf(e->to, "%d, %d, {%s, %s}},\n", i, j, shortest(c->value), shortest(c->low));
+			}
+	}
 	if (entries)
 		fputs("};\n", e->to);
 	return entries;
@@ -283,18 +289,22 @@ static void emit_fill_power(const struct emitter *e, int size, int entries)
 	fprintf(e->to, "    for (i = 0; i < %d; i++)\n        power[i].hi = power[i].lo = 0.0;\n", size * size);
 	fprintf(e->to, "    for (i = 0; i < %s_STATES; i++)\n        for (j = 0; j < %s_STATES; j++) {\n", N, N);
 	fprintf(e->to, "            power[%d * i + j].hi = %s_Phi[i][j];\n            power[%d * i + j].lo = %s_Phi_low[i][j];\n        }\n", size, n, size, n);
-	if (entries)
+	if (entries && e->system->segments > 1)
+		fprintf(e->to, "    for (i = 0; i < %d; i++)\n        if (%s_power_entry[i].segment == s->segment)\n"
+			       "            power[%d * %s_power_entry[i].row + %s_power_entry[i].column] = %s_power_entry[i].value;\n", entries, n, size, n, n, n);
+	else if (entries)
 		fprintf(e->to, "    for (i = 0; i < %d; i++)\n        power[%d * %s_power_entry[i].row + %s_power_entry[i].column] = %s_power_entry[i].value;\n",
 			entries, size, n, n, n);
 }
 
-void emit_jump(const struct emitter *e)
+/* n steps without a change of the loads: by powers of the one-step matrix */
+static void emit_leap(const struct emitter *e, const char *declaration)
 {
 	FILE *to = e->to;
-	struct power p = power_matrix(e);
-	emit_second_words(e);
-	int size = p.size, entries = emit_power_entries(e, &p);
-	fprintf(to, "\nvoid %s_jump(%s *s, uint64_t n)\n{\n", e->name, e->name);
+	struct power p;
+	place_load_states(e, &p);
+	int size = p.size, entries = emit_power_entries(e);
+	fprintf(to, "\n%s(%s *s, uint64_t n)\n{\n", declaration, e->name);
 	fprintf(to, "    pl_two power[%d], work[%d], x[%d], w[%d];\n", size * size, size * size, size, size);
 	emit_load_states(e, wanted_loads(e, p.load), false);
 	fputs("    int i, j;\n", to);
@@ -305,4 +315,22 @@ void emit_jump(const struct emitter *e)
 	fprintf(to, "    pl_power_apply(%d, power, work, x, w, n);\n    for (i = 0; i < %s_STATES; i++)\n        s->y[i] = x[i].hi;\n", size, e->upper);
 	emit_load_advance(e, "n");
 	fputs("    s->k += n;\n}\n", to);
+}
+
+void emit_jump(const struct emitter *e)
+{
+	const char *n = e->name;
+	int changes = e->system->segments - 1;
+	emit_second_words(e);
+	if (changes == 0) {
+		emit_leap(e, format("void %s_jump", n));
+		return;
+	}
+	emit_leap(e, format("static void %s_leap", n));
+	fprintf(e->to, "\n/* Leaps up to one step before each change of the loads, and steps across it. */\nvoid %s_jump(%s *s, uint64_t n)\n{\n", n, n);
+	fprintf(e->to, "    while (n > 0 && s->segment < %d) {\n", changes);
+	fprintf(e->to, "        const double ahead = (%s_change[s->segment] - %s_time(s)) / %s_H - 1.0;\n", n, n, e->upper);
+	fprintf(e->to, "        const uint64_t free = ahead < 1.0 ? 0 : ahead < (double)n ? (uint64_t)ahead : n;\n        if (free > 0) {\n");
+	fprintf(e->to, "            %s_leap(s, free);\n            n -= free;\n        } else {\n            %s_step(s);\n            n--;\n        }\n    }\n", n, n);
+	fprintf(e->to, "    if (n > 0)\n        %s_leap(s, n);\n}\n", n);
 }
