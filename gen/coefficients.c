@@ -215,7 +215,8 @@ struct filling {
 	const struct model *model;
 	const struct linear *system;
 	struct resolvent *resolvent;
-	const struct series *series;
+	const char **state_name;
+	struct series series;
 	struct taylor **taylor;     /* per segment of time; NULL: residues */
 	bool two_words;
 	int *column;                /* room for one combination */
@@ -227,7 +228,7 @@ static struct coefficient entry(const struct filling *f, int segment, int terms,
 				int row, int a, int b, const char *of)
 {
 	enum { TAYLOR_PRECISION = 2048 };
-	const char *what = format("the factor of %s in the step of %s", of, f->model->state_name[row]);
+	const char *what = format("the factor of %s in the step of %s", of, f->state_name[row]);
 	struct coefficient c;
 	bool isolated;
 	if (f->taylor) {
@@ -278,7 +279,7 @@ static int combine_state(const struct filling *f, int state)
 	for (int i = 0; i < system->n && held; i++) {
 		mpq_neg(weight, held[i * system->n + system->coord[state]]);
 		if (mpq_sgn(weight) != 0)
-			terms = add_column(f, terms, f->series->held + i, weight);
+			terms = add_column(f, terms, f->series.held + i, weight);
 	}
 	mpq_clear(weight);
 	return terms;
@@ -290,7 +291,7 @@ static int combine_input(const struct filling *f, int input, int column)
 	mpq_t weight;
 	mpq_init(weight);
 	mpq_set_ui(weight, 1, 1);
-	int at = f->series->input[input], terms = column == 0 ? add_column(f, 0, at, weight) : 0;
+	int at = f->series.input[input], terms = column == 0 ? add_column(f, 0, at, weight) : 0;
 	if (f->system->input[input].first_order) {
 		mpq_inv(weight, f->model->h);
 		if (column == 0)
@@ -306,7 +307,7 @@ static int combine_load(const struct filling *f, int load, int column)
 	mpq_t one;
 	mpq_init(one);
 	mpq_set_ui(one, 1, 1);
-	int at = f->series->load[load], terms = at < 0 ? 0 : add_column(f, 0, at + column, one);
+	int at = f->series.load[load], terms = at < 0 ? 0 : add_column(f, 0, at + column, one);
 	mpq_clear(one);
 	return terms;
 }
@@ -316,7 +317,7 @@ static void fill_row(const struct filling *f, struct table *table, int i)
 	const struct linear *system = f->system;
 	int n = table->states, columns = table->columns;
 	for (int j = 0; j < n; j++)
-		table->Phi[i * n + j] = entry(f, 0, combine_state(f, j), respond_state, i, j, 0, f->model->state_name[j]);
+		table->Phi[i * n + j] = entry(f, 0, combine_state(f, j), respond_state, i, j, 0, f->state_name[j]);
 	for (int s = 0; s < system->segments; s++)
 		for (int l = 0, column = 0; l < system->loads; l++)
 			for (int k = 0; k < system->load[l].columns; k++, column++)
@@ -327,26 +328,75 @@ static void fill_row(const struct filling *f, struct table *table, int i)
 			table->input[i * table->inputs + column] = entry(f, 0, combine_input(f, j, k), respond_input, i, j, k, system->input[j].name);
 }
 
-struct table *table_of(const struct model *model, struct resolvent *resolvent, const struct linear *system, const struct series *series, bool two_words)
+static struct table *table_new(const struct linear *system)
 {
-	struct filling filling = { model, system, resolvent, series, NULL, two_words, ARRAY(int, (size_t)system->n + 2), rationals((size_t)system->n + 2) };
 	struct table *table = NEW(struct table);
 	size_t n = (size_t)system->states;
-	if (system->states > LIMIT_RESIDUE_STATES) {
-		filling.taylor = ARRAY(struct taylor *, (size_t)system->segments);
-		for (int s = 0; s < system->segments; s++)
-			filling.taylor[s] = taylor_of(series->size, (const mpq_t *)series_matrix(series, system, s), model->h);
-	}
 	table->states = system->states;
 	table->columns = load_columns(system);
 	table->inputs = input_columns(system);
 	table->Phi = ARRAY(struct coefficient, n * n);
 	table->load = ARRAY(struct coefficient, (size_t)system->segments * n * (size_t)table->columns);
 	table->input = ARRAY(struct coefficient, n * (size_t)table->inputs);
+	return table;
+}
+
+static struct table *table_of_block(struct filling *f)
+{
+	const struct linear *system = f->system;
+	struct table *table = table_new(system);
+	f->column = ARRAY(int, (size_t)system->n + 2);
+	f->weight = rationals((size_t)system->n + 2);
+	series_place(&f->series, system);
+	if (system->states > LIMIT_RESIDUE_STATES) {
+		f->taylor = ARRAY(struct taylor *, (size_t)system->segments);
+		for (int s = 0; s < system->segments; s++)
+			f->taylor[s] = taylor_of(f->series.size, (const mpq_t *)series_matrix(&f->series, system, s), f->model->h);
+	}
 	for (int i = 0; i < table->states; i++) {
 		progress("factors of the step, state", i, table->states);
-		fill_row(&filling, table, i);
+		fill_row(f, table, i);
 	}
 	progress_end();
+	return table;
+}
+
+static void mark_zero(struct coefficient *c, size_t count)
+{
+	for (size_t i = 0; i < count; i++)
+		c[i].zero = true;
+}
+
+/* The block's rows and columns to their places in the whole; between blocks everything stays exactly 0. */
+static void scatter(const struct block *block, const struct table *part, int segments, struct table *table)
+{
+	for (int i = 0; i < part->states; i++) {
+		int row = block->state[i];
+		for (int j = 0; j < part->states; j++)
+			table->Phi[row * table->states + block->state[j]] = part->Phi[i * part->states + j];
+		for (int s = 0; s < segments; s++)
+			for (int k = 0; k < table->columns; k++)
+				table->load[(s * table->states + row) * table->columns + k] = part->load[(s * part->states + i) * part->columns + k];
+		for (int k = 0; k < table->inputs; k++)
+			table->input[row * table->inputs + k] = part->input[i * part->inputs + k];
+	}
+}
+
+struct table *table_of(const struct model *model, struct resolvent *resolvent, const struct linear *system, bool two_words)
+{
+	struct block *block;
+	int count = blocks_of(system, &block);
+	struct filling whole = { .model = model, .system = system, .resolvent = resolvent, .state_name = model->state_name, .two_words = two_words };
+	if (count == 1)
+		return table_of_block(&whole);
+	struct table *table = table_new(system);
+	mark_zero(table->Phi, (size_t)table->states * (size_t)table->states);
+	for (int b = 0; b < count; b++) {
+		struct filling part = { .model = model, .system = &block[b].system, .resolvent = resolvent_of(&block[b].system), .two_words = two_words };
+		part.state_name = ARRAY(const char *, (size_t)block[b].system.states);
+		for (int i = 0; i < block[b].system.states; i++)
+			part.state_name[i] = model->state_name[block[b].state[i]];
+		scatter(&block[b], table_of_block(&part), system->segments, table);
+	}
 	return table;
 }

@@ -126,6 +126,7 @@ static void emit_collected_residuals(const struct emitter *e)
 static void emit_rhs_locals(const struct emitter *e, const bool *reads)
 {
 	const struct spec *spec = e->model->spec;
+	bool inputs = false;
 	emit_used_constants(e, false);
 	for (int i = 0; i < e->model->written->system.states; i++)
 		if (reads[i])
@@ -137,7 +138,10 @@ static void emit_rhs_locals(const struct emitter *e, const bool *reads)
 			fprintf(e->to, "    const double %s = u[%d];\n", s->c_dot, e->system->inputs + s->index);
 		if (s->used && s->kind == SYMBOL_INPUT)
 			fprintf(e->to, "    (void)%s;\n", s->c_name);
+		inputs = inputs || (s->used && s->kind == SYMBOL_INPUT);
 	}
+	if (e->system->inputs && !inputs)
+		fputs("    (void)u;\n", e->to);
 	for (const struct symbol *s = spec->first; s; s = s->next)
 		if (s->used && s->kind == SYMBOL_LET)
 			fprintf(e->to, "    const double %s = %s;\n", s->c_name, c_expression(s->value));

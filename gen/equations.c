@@ -147,34 +147,39 @@ static bool has_coordinate_of_order(const struct form *form, int coord, int orde
 	return false;
 }
 
-/* A written equation can be the coordinate's own if it has its highest derivative, or if a mass statement gives that. */
-static bool can_own(const struct building *b, int row, int coord)
-{
-	int order = find_mass(b->spec, coord) ? -1 : order_of(b->model, coord);
-	return has_coordinate_of_order(b->snapshot->residual[row].form, coord, order);
-}
-
-/* An augmenting path of the bipartite matching from equation `row`. */
-static bool augment(const struct building *b, int row, bool *visited)
-{
-	for (int j = 0; j < b->model->n; j++) {
-		if (visited[j] || !can_own(b, row, j))
-			continue;
-		visited[j] = true;
-		if (b->owner[j] < 0 || augment(b, b->owner[j], visited)) {
-			b->owner[j] = row;
-			return true;
-		}
-	}
-	return false;
-}
-
 static bool is_sketched(const struct building *b, int coord)
 {
 	for (int i = 0; i < b->spec->elements; i++) {
 		const struct element *element = &b->spec->element[i];
 		if (component_of(element->from) == coord || (element->to && component_of(element->to) == coord))
 			return true;
+	}
+	return false;
+}
+
+/* A written equation can be the coordinate's own if it has its highest derivative or, at last, if a mass statement gives
+ * that. Coordinates that no sketch touches have only written ones and choose first. */
+enum choice { UNTOUCHED, HIGHEST, ANY };
+
+static bool can_own(const struct building *b, int row, int coord, enum choice choice)
+{
+	if (choice == UNTOUCHED && is_sketched(b, coord))
+		return false;
+	int order = choice == ANY && find_mass(b->spec, coord) ? -1 : order_of(b->model, coord);
+	return has_coordinate_of_order(b->snapshot->residual[row].form, coord, order);
+}
+
+/* An augmenting path of the bipartite matching from equation `row`. */
+static bool augment(const struct building *b, int row, enum choice choice, bool *visited)
+{
+	for (int j = 0; j < b->model->n; j++) {
+		if (visited[j] || !can_own(b, row, j, choice))
+			continue;
+		visited[j] = true;
+		if (b->owner[j] < 0 || augment(b, b->owner[j], choice, visited)) {
+			b->owner[j] = row;
+			return true;
+		}
 	}
 	return false;
 }
@@ -197,9 +202,12 @@ static bool assign_equations(struct building *b)
 	b->owner = ARRAY(int, (size_t)n);
 	for (int j = 0; j < n; j++)
 		b->owner[j] = -1;
-	for (int i = 0; i < written; i++)
-		if (!augment(b, i, ARRAY(bool, (size_t)n)) && surplus < 0)
-			surplus = i;
+	bool *owns = ARRAY(bool, (size_t)written);
+	for (enum choice choice = UNTOUCHED; choice <= ANY; choice++)
+		for (int i = 0; i < written; i++)
+			owns[i] = owns[i] || augment(b, i, choice, ARRAY(bool, (size_t)n));
+	for (int i = written - 1; i >= 0; i--)
+		surplus = owns[i] ? surplus : i;
 	for (int j = 0; j < n; j++) {
 		if (b->owner[j] < 0 && is_sketched(b, j))
 			b->owner[j] = all++;
@@ -382,17 +390,82 @@ static void name_inputs(struct building *b)
 
 /* ---- the whole ---- */
 
+static bool same_cells(const struct value *a, const struct value *b)
+{
+	if (a->rows != b->rows || a->columns != b->columns)
+		return false;
+	for (int i = 0; i < a->rows * a->columns; i++)
+		if (!same_in_states(a->cell[i], b->cell[i]))
+			return false;
+	return true;
+}
+
+static struct value *collect_in(struct building *b, struct node *node, int segment)
+{
+	b->collector.interval = segment;
+	forget_lets(b->spec);
+	return collect(&b->collector, node);
+}
+
+/* The first term of sums whose coordinates or inputs are not those of the first segment. */
+static const struct node *changing_term(struct building *b, struct node *node, int segment)
+{
+	const struct node *found = NULL;
+	if (node->kind != NODE_SUM)
+		return same_cells(collect_in(b, node, 0), collect_in(b, node, segment)) ? NULL : node;
+	for (int i = 0; i < node->children && !found; i++)
+		found = changing_term(b, node->child[i], segment);
+	return found;
+}
+
+static void tell_change(void *context)
+{
+	struct indexed *work = context;
+	struct building *b = work->b;
+	const struct spec *spec = b->spec;
+	const struct node *term = NULL;
+	for (int i = 0; i < spec->elements; i++)
+		if (spec->element[i].kind != ELEMENT_FORCE && !same_in_states(b->snapshot[0].element[i], work->snapshot->element[i]))
+			error(spec->element[i].value->start, "what moves belongs in an equation, or in a force", "a mass, spring or damper needs a constant");
+	for (int i = 0; i < spec->equations && !term; i++) {
+		term = changing_term(b, spec->equation[i].left, work->index);
+		term = term ? term : changing_term(b, spec->equation[i].right, work->index);
+	}
+	for (int i = 0; i < spec->elements && !term; i++)
+		term = changing_term(b, spec->element[i].value, work->index);
+	b->collector.term = term;
+	not_linear(&b->collector, term, format("has a factor that changes at t = %s", readable_text(b->model->system.change[work->index - 1])));
+}
+
+static bool same_equations(const struct building *b, const struct snapshot *s)
+{
+	for (int i = 0; i < b->model->n; i++)
+		if (!same_in_states(b->snapshot->residual[i].form, s->residual[i].form))
+			return false;
+	return true;
+}
+
 /* Only loads may change their formula in time. */
-static void check_changes(const struct building *b)
+static bool check_changes(struct building *b)
 {
 	for (int s = 1; s < b->model->system.segments; s++)
-		for (int i = 0; i < b->model->n; i++)
-			if (!same_in_states(b->snapshot[0].residual[i].form, b->snapshot[s].residual[i].form)) {
-				say_error(b->snapshot[s].residual[i].at, "loads may change their formula in time; what multiplies a coordinate or an input may not",
-					  "the equation changes at t = %s: scheme %s cannot treat it", readable_text(b->model->system.change[s - 1]),
-					  b->collector.scheme);
-				return;
+		if (!same_equations(b, &b->snapshot[s]))
+			return statement_guard(tell_change, &(struct indexed){ b, &b->snapshot[s], s });
+	return true;
+}
+
+/* An equation is as many scalar ones at all times. */
+static bool check_sizes(const struct building *b)
+{
+	const struct snapshot *first = b->snapshot;
+	for (int s = 1; s < b->model->system.segments; s++)
+		for (int i = 0; i < first->written || i < first[s].written; i++)
+			if (i >= first->written || i >= first[s].written || first->residual[i].at.offset != first[s].residual[i].at.offset) {
+				say_error((i < first->written ? first : first + s)->residual[i].at, NULL, "the size of the equation changes at t = %s",
+					  readable_text(b->model->system.change[s - 1]));
+				return false;
 			}
+	return true;
 }
 
 void build_system(struct building *b)
@@ -400,11 +473,12 @@ void build_system(struct building *b)
 	struct model *model = b->model;
 	struct linear *system = &model->system;
 	size_t cells = (size_t)model->n * (size_t)model->n;
-	if (!assign_equations(b))
+	if (!check_sizes(b) || !assign_equations(b))
 		return;
 	for (int s = 0; s < system->segments; s++)
 		add_elements(b, &b->snapshot[s]);
-	check_changes(b);
+	if (!check_changes(b))
+		return;
 	system->M = rationals(cells);
 	system->C = rationals(cells);
 	system->K = rationals(cells);

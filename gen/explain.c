@@ -2,6 +2,7 @@
 /* What was derived: for a person, and as JSON for a program. */
 #include "plgen.h"
 
+#include <math.h>
 #include <string.h>
 
 /* ---- for a person ---- */
@@ -170,13 +171,19 @@ static void json_names(FILE *to, const char *key, int count, const char *const *
 	fputs("],\n", to);
 }
 
+/* JSON has no infinity: what is beyond the range of double is null. */
+static const char *json_number(double value)
+{
+	return isfinite(value) ? format("%.17g", value) : "null";
+}
+
 static void json_matrix(FILE *to, const char *key, int rows, int columns, const double *value)
 {
 	fprintf(to, "  \"%s\": [", key);
 	for (int i = 0; i < rows; i++) {
 		fputs(i ? ",\n    [" : "\n    [", to);
 		for (int j = 0; j < columns; j++)
-			fprintf(to, "%s%.17g", j ? ", " : "", value[i * columns + j]);
+			fprintf(to, "%s%s", j ? ", " : "", json_number(value[i * columns + j]));
 		fputc(']', to);
 	}
 	fputs("],\n", to);
@@ -193,8 +200,8 @@ static void json_rational_matrix(FILE *to, const char *key, int n, const mpq_t *
 static void json_pole(FILE *to, const struct pole_report *pole, bool conjugate, bool first)
 {
 	double im = mpfr_get_d(pole->im, MPFR_RNDN);
-	fprintf(to, "%s\n    {\"re\": %.17g, \"im\": %.17g, \"multiplicity\": %d}", first ? "" : ",", mpfr_get_d(pole->re, MPFR_RNDN),
-		conjugate ? -im : im, pole->multiplicity);
+	fprintf(to, "%s\n    {\"re\": %s, \"im\": %s, \"multiplicity\": %d}", first ? "" : ",", json_number(mpfr_get_d(pole->re, MPFR_RNDN)),
+		json_number(conjugate ? -im : im), pole->multiplicity);
 }
 
 /* One mode for each pair of poles, for each real pole, and for each two poles at 0 (a rigid body). */
@@ -205,8 +212,8 @@ static void json_modes(FILE *to, int count, const struct pole_report *pole)
 	for (int i = 0; i < count; i++) {
 		int modes = mpfr_zero_p(pole[i].hertz) ? (pole[i].multiplicity + 1) / 2 : pole[i].multiplicity;
 		for (int k = 0; k < modes; k++, first = false)
-			fprintf(to, "%s\n    {\"frequency_hz\": %.17g, \"damping_ratio\": %.17g}", first ? "" : ",", mpfr_get_d(pole[i].hertz, MPFR_RNDN),
-				mpfr_get_d(pole[i].damping_ratio, MPFR_RNDN));
+			fprintf(to, "%s\n    {\"frequency_hz\": %s, \"damping_ratio\": %s}", first ? "" : ",",
+				json_number(mpfr_get_d(pole[i].hertz, MPFR_RNDN)), json_number(mpfr_get_d(pole[i].damping_ratio, MPFR_RNDN)));
 	}
 	fputs("],\n", to);
 }

@@ -158,7 +158,9 @@ static void lex_operator(struct token *token, const char *text)
 		}
 	if (text[0] == '\'' && token->at.offset > 0 && text[-1] == ']') {     /* q[3]' and q[3]'' */
 		token->kind = TOKEN_OPERATOR;
-		token->length = text[1] == '\'' ? 2 : 1;
+		token->length = strspn(text, "'");
+		if (token->length > 2)
+			error(token->at, NULL, "%zu primes; at most two, the acceleration", token->length);
 		memcpy(token->op, text, token->length);
 		return;
 	}

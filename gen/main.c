@@ -362,6 +362,8 @@ int main(int argc, char **argv)
 		return fail();
 	if (options.overrides.reduce)
 		model = model_reduce(model);
+	if (!model)
+		return fail();
 	struct step *step = options.print == PRINT_SOLUTION ? NULL : step_build(model);
 	if (!step && options.print != PRINT_SOLUTION)
 		return fail();

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Every block is kept in one ring and given back when the program ends. GMP, MPFR and MPFI free as they go; the
+/* Every chunk is kept in one ring and given back when the program ends. GMP, MPFR and MPFI free as they go; the
  * generator's own structures do not, so no stage needs to know who else still looks at them. */
 #include "plgen.h"
 
@@ -7,25 +7,25 @@
 #include <stdlib.h>
 #include <string.h>
 
-union block {
-	struct { union block *before, *after; } ring;
+union chunk {
+	struct { union chunk *before, *after; } ring;
 	max_align_t align;
 };
 
-static union block ring;
+static union chunk ring;
 
-static void link_block(union block *block)
+static void link_block(union chunk *chunk)
 {
-	block->ring.before = &ring;
-	block->ring.after = ring.ring.after;
-	block->ring.after->ring.before = block;
-	ring.ring.after = block;
+	chunk->ring.before = &ring;
+	chunk->ring.after = ring.ring.after;
+	chunk->ring.after->ring.before = chunk;
+	ring.ring.after = chunk;
 }
 
-static void unlink_block(union block *block)
+static void unlink_block(union chunk *chunk)
 {
-	block->ring.before->ring.after = block->ring.after;
-	block->ring.after->ring.before = block->ring.before;
+	chunk->ring.before->ring.after = chunk->ring.after;
+	chunk->ring.after->ring.before = chunk->ring.before;
 }
 
 static _Noreturn void out_of_memory(void)
@@ -36,24 +36,24 @@ static _Noreturn void out_of_memory(void)
 
 static void *ring_new(size_t size)
 {
-	union block *block = size > SIZE_MAX - sizeof *block ? NULL : malloc(sizeof *block + size);
-	if (!block)
+	union chunk *chunk = size > SIZE_MAX - sizeof *chunk ? NULL : malloc(sizeof *chunk + size);
+	if (!chunk)
 		out_of_memory();
-	link_block(block);
-	return block + 1;
+	link_block(chunk);
+	return chunk + 1;
 }
 
 static void *ring_resize(void *old, size_t size)
 {
 	if (!old)
 		return ring_new(size);
-	union block *block = (union block *)old - 1;
-	unlink_block(block);
-	block = size > SIZE_MAX - sizeof *block ? NULL : realloc(block, sizeof *block + size);
-	if (!block)
+	union chunk *chunk = (union chunk *)old - 1;
+	unlink_block(chunk);
+	chunk = size > SIZE_MAX - sizeof *chunk ? NULL : realloc(chunk, sizeof *chunk + size);
+	if (!chunk)
 		out_of_memory();
-	link_block(block);
-	return block + 1;
+	link_block(chunk);
+	return chunk + 1;
 }
 
 static void *gmp_resize(void *old, size_t old_size, size_t size)
@@ -65,8 +65,8 @@ static void *gmp_resize(void *old, size_t old_size, size_t size)
 static void gmp_free(void *old, size_t size)
 {
 	(void)size;
-	unlink_block((union block *)old - 1);
-	free((union block *)old - 1);
+	unlink_block((union chunk *)old - 1);
+	free((union chunk *)old - 1);
 }
 
 void memory_open(void)
@@ -78,9 +78,9 @@ void memory_open(void)
 void memory_close(void)
 {
 	mpfr_free_cache();
-	for (union block *block = ring.ring.after, *after; block != &ring; block = after) {
-		after = block->ring.after;
-		free(block);
+	for (union chunk *chunk = ring.ring.after, *after; chunk != &ring; chunk = after) {
+		after = chunk->ring.after;
+		free(chunk);
 	}
 	ring.ring.before = ring.ring.after = &ring;
 }
@@ -92,11 +92,11 @@ void *allocate(size_t count, size_t size)
 	return memset(ring_new(count * size), 0, count * size);
 }
 
-void *enlarge(void *block, size_t count, size_t size)
+void *enlarge(void *chunk, size_t count, size_t size)
 {
 	if (size && count > SIZE_MAX / size)
 		out_of_memory();
-	return ring_resize(block, count * size);
+	return ring_resize(chunk, count * size);
 }
 
 char *format(const char *fmt, ...)

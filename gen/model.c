@@ -224,7 +224,7 @@ static void check_parts(const struct building *b)
 		say_error(b->model->coord[b->model->n - 1]->at, NULL, "more states than the limit of %d", LIMIT_STATES);
 }
 
-static void forget_lets(const struct spec *spec)
+void forget_lets(const struct spec *spec)
 {
 	for (struct symbol *s = spec->first; s; s = s->next)
 		if (s->kind == SYMBOL_LET)

@@ -78,12 +78,13 @@ static bool is_too_high(const struct model *model, const struct basis *basis)
 	return basis->kind == BASIS_COORD && basis->order > model->coord[basis->index]->highest;
 }
 
-static const struct node *find_acceleration(const struct node *node)
+/* A coordinate whose highest derivative, or `above` it, stands there. */
+static const struct node *find_acceleration(const struct node *node, int above)
 {
-	if (node->kind == NODE_NAME && node->symbol->kind == SYMBOL_COORD && node->primes >= node->symbol->highest)
+	if (node->kind == NODE_NAME && node->symbol->kind == SYMBOL_COORD && node->primes >= node->symbol->highest + above)
 		return node;
 	for (int i = 0; i < node->children; i++) {
-		const struct node *found = find_acceleration(node->child[i]);
+		const struct node *found = find_acceleration(node->child[i], above);
 		if (found)
 			return found;
 	}
@@ -171,15 +172,19 @@ static void name_outputs(struct building *b)
 		add_output(model, model->state_name[i], NULL, NULL);
 }
 
-static void check_output(const struct model *model, const struct output *output)
+/* Whether it is good; else it has been told. */
+static bool check_output(const struct model *model, const struct output *output)
 {
-	const struct node *acceleration = output->value && !output->form ? find_acceleration(output->value) : NULL;
+	const struct node *acceleration = output->value && !output->form ? find_acceleration(output->value, 0) : NULL;
 	if (acceleration)
 		say_error(acceleration->at, NULL, "accelerations in outputs that are not linear are not built yet");
 	for (int k = 0; output->form && k < output->form->terms; k++)
-		if (is_too_high(model, &output->form->term[k].basis))
-			say_error(output->value->start, NULL, "%s is of first order and has no second derivative",
-				  model->coord_name[output->form->term[k].basis.index]);
+		if (is_too_high(model, &output->form->term[k].basis)) {
+			say_error(find_acceleration(output->value, 1)->at, NULL, "%s is of first order and has no second derivative",
+				  model->coord[output->form->term[k].basis.index]->name);
+			return false;
+		}
+	return !acceleration;
 }
 
 static void make_rows(const struct linear *system, struct output *output)
@@ -202,12 +207,14 @@ void build_outputs(struct building *b)
 	leading_inverse(system, inverse, &column);
 	highest_derivatives(system, (const mpq_t *)inverse, false, highest);
 	name_outputs(b);
+	int told = -1;                          /* the statement last told: once is enough */
 	for (int i = 0; i < model->outputs; i++)
 		for (int s = 0; s < system->segments && model->output[i].form; s++)
 			place_loads(b, output_form(b, &model->output[i], s));
 	for (int i = 0; i < model->outputs; i++) {
 		struct output *output = &model->output[i];
-		check_output(model, output);
+		if (output->statement != told && !check_output(model, output))
+			told = output->statement;
 		make_rows(system, output);
 		if (!output->value)
 			mpq_set_ui(output->state[i], 1, 1);

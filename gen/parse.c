@@ -61,6 +61,16 @@ static bool starts_definition(const struct parser *p)
 	return p->token.kind == TOKEN_NAME && text[0] == '=' && text[1] != '=';
 }
 
+/* A word between the parts of an element of a sketch. */
+static bool is_place(struct token token)
+{
+	static const char *const word[] = { "at", "between", "on", "ground" };
+	for (int i = 0; i < 4; i++)
+		if (strcmp(token.name, word[i]) == 0)
+			return true;
+	return false;
+}
+
 /* What usually stands behind a token that fits nowhere. */
 static const char *stray_note(const struct parser *p)
 {
@@ -71,7 +81,7 @@ static const char *stray_note(const struct parser *p)
 		return "each statement has its own line; the parts of one are separated by commas";
 	if (starts_definition(p))
 		return "definitions are separated by commas";
-	if (after_operand && (p->token.kind == TOKEN_NAME || p->token.kind == TOKEN_NUMBER || is_op(p, "(")))
+	if (after_operand && ((p->token.kind == TOKEN_NAME && !is_place(p->token)) || p->token.kind == TOKEN_NUMBER || is_op(p, "(")))
 		return "multiplication is written with *";
 	if (is_op(p, "=="))
 		return "an equation has a single =";
@@ -170,8 +180,8 @@ static bool declared_later(const struct parser *p, const char *name)
 	const char *rest = p->lexer.source->text + p->lexer.position;
 	for (const char *line = p->lexer.source->text + p->statement; line; line = strchr(line, '\n'), line = line ? line + 1 : NULL) {
 		line += strspn(line, " \t");
-		bool coord = begins(line, "coord");
-		if (!coord && !begins(line, "param") && !begins(line, "let"))
+		bool coord = begins(line, "coord") || begins(line, "input");
+		if (!coord && !begins(line, "param") && !begins(line, "let") && !begins(line, "matrix"))
 			continue;
 		for (const char *at = line + 3; *at && !strchr("\n#", *at); at++) {
 			size_t word = strspn(at, WORD);
@@ -198,7 +208,7 @@ static const char *kind_text(const struct symbol *symbol)
 }
 
 /* component: [ NUMBER ] { ' }; *primes grows by those behind the bracket */
-static int read_component(struct parser *p, int *primes)
+static int read_component(struct parser *p, int *primes, bool declared)
 {
 	if (!is_op(p, "[") || p->token.at.offset != p->end.offset)
 		return 0;
@@ -206,14 +216,16 @@ static int read_component(struct parser *p, int *primes)
 	if (*primes > 0)
 		error(opening, "q[1]' is the velocity of a component", "a component stands before the primes");
 	if (p->token.kind != TOKEN_NUMBER)
-		unexpected(p, "the number of a component");
+		unexpected(p, declared ? "the number of components" : "the number of a component");
 	mpq_t number;
 	mpq_init(number);
 	struct token token = take(p);
 	lex_number(token, number);
-	if (mpz_cmp_ui(mpq_denref(number), 1) != 0 || mpq_sgn(number) <= 0 || mpq_cmp_ui(number, LIMIT_STATES, 1) > 0)
-		error(token.at, NULL, "components are numbered from 1");
-	int component = (int)mpz_get_ui(mpq_numref(number));
+	if (mpz_cmp_ui(mpq_denref(number), 1) != 0 || mpq_sgn(number) <= 0)
+		error(token.at, NULL, declared ? "a vector has a whole number of components, at least 1" : "components are numbered from 1");
+	if (declared && mpq_cmp_ui(number, LIMIT_STATES, 1) > 0)
+		error(token.at, NULL, "more states than the limit of %d", LIMIT_STATES);
+	int component = mpq_cmp_ui(number, LIMIT_STATES, 1) > 0 ? LIMIT_STATES + 1 : (int)mpz_get_ui(mpq_numref(number));
 	mpq_clear(number);
 	expect_op(p, "]", "']'");
 	if (p->token.kind == TOKEN_OPERATOR && p->token.op[0] == '\'')
@@ -234,7 +246,7 @@ static void check_component(const struct symbol *symbol, int component, struct p
 /* name: NAME { ' } | NAME [ NUMBER ] { ' } */
 static struct node *resolve_name(struct parser *p, struct token token)
 {
-	int component = read_component(p, &token.primes);
+	int component = read_component(p, &token.primes, false);
 	struct symbol *symbol = spec_find(p->spec, token.name);
 	if (!symbol)
 		unknown_name(p, token);
@@ -517,7 +529,7 @@ static struct symbol *declare(struct parser *p, struct token name, enum symbol_k
 	if (known && known->broken)
 		abandon();
 	if (known)
-		error(name.at, NULL, "'%s' is declared already, as %s %s", name.name, known->kind == SYMBOL_OUTPUT ? "an" : "a", kind_text(known));
+		error(name.at, NULL, "'%s' is declared already, as %s %s", name.name, known->kind == SYMBOL_OUTPUT || known->kind == SYMBOL_INPUT ? "an" : "a", kind_text(known));
 	int *counts[] = { &spec->params, &spec->coords, &spec->lets, &spec->outputs, &spec->inputs, &spec->matrices };
 	struct symbol *symbol = NEW(struct symbol);
 	*symbol = (struct symbol){ .kind = kind, .name = name.name, .at = name.at, .statement = p->statement, .broken = broken };
@@ -599,7 +611,7 @@ static void read_coord(struct parser *p)
 {
 	do {
 		struct token name = expect_new_name(p, "the name of a coordinate");
-		int primes = 0, length = read_component(p, &primes);
+		int primes = 0, length = read_component(p, &primes, true);
 		if (primes)
 			error(name.at, NULL, "a coordinate is declared without primes");
 		struct symbol *symbol = declare(p, name, SYMBOL_COORD, false);
@@ -650,7 +662,7 @@ static void read_init(struct parser *p)
 		if (p->token.kind != TOKEN_NAME)
 			unexpected(p, "a coordinate");
 		struct token name = take(p);
-		int component = read_component(p, &name.primes);
+		int component = read_component(p, &name.primes, false);
 		name.length = p->end.offset - name.at.offset;
 		struct symbol *coord = spec_find(p->spec, name.name);
 		if (coord && coord->broken)
@@ -910,6 +922,9 @@ static void declare_what_failed(struct parser *p, size_t from)
 	const char *text = p->lexer.source->text;
 	size_t after;
 	const struct statement *statement = failed_statement(p, from, &after);
+	for (struct symbol *s = p->spec->first; s; s = s->next)
+		if (s->statement == p->statement && (s->kind == SYMBOL_PARAM || s->kind == SYMBOL_MATRIX))
+			s->broken = true;
 	bool all = statement && (statement->read == read_coord || statement->read == read_input || !statement->read);
 	if (!statement || (!all && statement->read != read_param && statement->read != read_let && statement->read != read_output &&
 	     statement->read != read_matrix_statement))

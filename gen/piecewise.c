@@ -131,8 +131,8 @@ static struct form *tabulated(struct collector *c, const struct node *node, stru
 	for (int i = 1; i < points; i++)
 		if (mpq_cmp(v[2 * i - 1], v[2 * i + 1]) >= 0)
 			error(node->child[2 * i + 1]->start, NULL, "the breakpoints of a table rise");
-	while (left + 2 < points && order_now(c, node, x[0], x[2 * left + 3]) > 0)
-		left++;
+	for (int i = 1; i + 1 < points && (left == i - 1 || c->interval == 0); i++)     /* all breakpoints at the first sight */
+		left = order_now(c, node, x[0], x[2 * i + 1]) > 0 ? i : left;
 	const mpq_t *p = (const mpq_t *)v + 2 * left + 1;       /* x0, y0, x1, y1 */
 	mpq_sub(slope, p[3], p[1]);
 	mpq_sub(width, p[2], p[0]);

@@ -40,6 +40,7 @@ enum {
 	LIMIT_BITS = 1000000,       /* of an exact value */
 	LIMIT_STATES = 512,
 	LIMIT_CHANGES = 1000,       /* of formula in time */
+	LIMIT_WAVES = 500,          /* frequencies, phases and growths of loads */
 	LIMIT_LOAD_POWER = 32,      /* exponent of a load, as in t^3 */
 	LIMIT_UNROLLED_STATES = 16, /* beyond, a step loops over its tables */
 	LIMIT_RESIDUE_STATES = 12,  /* beyond, a Taylor series gives the numbers: residues get slow */
@@ -288,6 +289,7 @@ struct value *collect_constants(struct collector *collector, struct node *node);
 void collect_constant(struct collector *collector, struct node *node, mpq_ptr number);
 
 _Noreturn void not_linear(const struct collector *c, const struct node *node, const char *why);
+void forget_lets(const struct spec *spec);
 _Noreturn void not_built(const struct collector *c, struct place at, const char *what);
 
 /* ---- piecewise.c: functions and conditions that divide time ---- */
@@ -399,6 +401,15 @@ struct snapshot {                   /* the equations and outputs in one interval
 struct model *model_build(struct spec *spec, const struct overrides *overrides);
 void argument_value(struct model *model, const char *text, mpq_ptr value); /* of --solution; may use params */
 const char *scheme_name(enum scheme scheme);
+
+/* ---- blocks.c: coordinates that do not influence each other ---- */
+
+struct block {
+	struct linear system;
+	int *equation, *coord;      /* of the whole system, per equation and coordinate of the block */
+	int *state;                 /* likewise per state */
+};
+int blocks_of(const struct linear *system, struct block **blocks); /* M regular, so that a block has as many equations as coordinates */
 
 /* ---- equations.c, outputs.c: the builders of a model ---- */
 
@@ -605,8 +616,8 @@ struct coefficient coefficient_of_rational(mpq_srcptr q);
 /* Rounded, infinite beyond the range; `at` and `what` name it where it cannot be decided. */
 struct coefficient started_value(int count, const struct started *list, mpq_srcptr t, struct place at, const char *what); /* their sum */
 struct coefficient response_value(struct response *response, mpq_srcptr tau, bool two_words, struct place at, const char *what);
-/* By residues; beyond LIMIT_RESIDUE_STATES states by Taylor series, of which `series` says the matrix. */
-struct table *table_of(const struct model *model, struct resolvent *resolvent, const struct linear *system, const struct series *series, bool two_words);
+/* Block by block; by residues, beyond LIMIT_RESIDUE_STATES states by Taylor series. `resolvent` is that of the whole. */
+struct table *table_of(const struct model *model, struct resolvent *resolvent, const struct linear *system, bool two_words);
 
 /* ---- scheme.c: what a scheme steps with, as a program over tables ---- */
 

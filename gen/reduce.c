@@ -318,6 +318,10 @@ struct model *model_reduce(struct model *model)
 	struct observable all = observe(model);
 	if (all.rank == model->system.states)
 		return model;
+	if (all.rank == 0) {
+		say_error(model->output[0].value->start, "without --reduce all states are kept", "--reduce would leave no state: no output depends on one");
+		return NULL;
+	}
 	struct observable o = with_written_states(&all, model);
 	struct model *reduced = NEW(struct model);
 	*reduced = *model;

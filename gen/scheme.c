@@ -196,7 +196,7 @@ static void build(void *context)
 		find_growth(step);
 	}
 	series_place(&step->series, &step->system);
-	step->table = table_of(model, step->solved, &step->system, &step->series, true);
+	step->table = table_of(model, step->solved, &step->system, true);
 	step->program = linear_program(step->table, &step->system);
 	series_plan(step);
 }

@@ -7,7 +7,7 @@
 static void check_outputs(const struct model *model)
 {
 	if (model->system.inputs)
-		error(model->step_at, NULL, "--solution needs a model without inputs: their samples are not known");
+		error(model->end_at, NULL, "--solution needs a model without inputs: their samples are not known");
 	for (int j = 0; j < model->outputs; j++)
 		if (!model->output[j].form && model->output[j].value)
 			error(model->output[j].value->start, "--solution prints outputs that are linear in states and loads",

@@ -8,6 +8,8 @@ struct wave *wave_of(struct collector *c, mpq_srcptr a, mpq_srcptr w, mpq_srcptr
 	for (; *link; link = &(*link)->next)
 		if (mpq_equal((*link)->a, a) && mpq_equal((*link)->w, w) && mpq_equal((*link)->p, p))
 			return *link;
+	if (c->wave_count == LIMIT_WAVES)
+		error(c->term->start, NULL, "more loads of different frequency, phase or growth than the limit of %d", LIMIT_WAVES);
 	struct wave *wave = *link = NEW(struct wave);
 	mpq_inits(wave->a, wave->w, wave->p, NULL);
 	mpq_set(wave->a, a);
@@ -93,6 +95,8 @@ static struct form *wave_product(struct collector *c, const struct basis *x, con
 {
 	if (!x->sine && y->sine)
 		return wave_product(c, y, x, factor);
+	if (x->power + y->power > LIMIT_LOAD_POWER)
+		error(c->term->start, NULL, "power of a load beyond the limit of %d", LIMIT_LOAD_POWER);
 	mpq_t a, w, p, half;
 	mpq_inits(a, w, p, half, NULL);
 	mpq_add(a, x->wave->a, y->wave->a);

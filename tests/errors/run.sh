@@ -5,6 +5,7 @@
 #   NAME.expect   standard error, in full (empty: nothing may be said)
 #   NAME.spec     the spec, or
 #   NAME.sh       what prints it, where bytes matter or it would be long; without both, NAME.args says all
+#   NAME.mtx      a data file, copied beside the spec
 #   NAME.args     options, one a line; the spec comes last
 #   NAME.status   exit status, where it is not 1
 # Each is run twice: to standard output, which must stay empty; and with -o, where an existing file must stay as it was.
@@ -18,6 +19,10 @@ export LC_ALL
 work=$(mktemp -d) || exit 1
 trap 'rm -rf "$work"' EXIT
 trap 'exit 1' HUP INT TERM
+limit=''                # seconds for what should take a fraction of one
+if command -v timeout > "$work/path" 2>&1; then
+	limit='timeout 20'
+fi
 mkdir "$work/in" && cd "$work/in" || exit 1
 
 count=0
@@ -54,6 +59,9 @@ check_case()
 	elif [ -f "$folder/$name.spec" ]; then
 		cp "$folder/$name.spec" .
 	fi
+	if [ -f "$folder/$name.mtx" ]; then
+		cp "$folder/$name.mtx" .
+	fi
 	set --
 	if [ -f "$folder/$name.args" ]; then
 		while IFS= read -r argument; do
@@ -64,7 +72,7 @@ check_case()
 		set -- "$@" "$name.spec"
 	fi
 
-	"$plgen" "$@" > "$work/stdout" 2> "$work/stderr" < /dev/null
+	$limit "$plgen" "$@" > "$work/stdout" 2> "$work/stderr" < /dev/null
 	status=$?
 	[ "$status" -eq "$wanted" ] || complain "exit status $status, expected $wanted"
 	if [ "$wanted" -ne 0 ] && [ -s "$work/stdout" ]; then
@@ -83,7 +91,7 @@ check_case()
 	if [ "$wanted" -eq 1 ]; then
 		mkdir "$work/out"
 		echo "left as it was" | tee "$work/out/kept.c" > "$work/out/kept.h"
-		"$plgen" -o "$work/out/kept.c" "$@" > "$work/stdout" 2> "$work/again" < /dev/null
+		$limit "$plgen" -o "$work/out/kept.c" "$@" > "$work/stdout" 2> "$work/again" < /dev/null
 		status=$?
 		[ "$status" -eq 1 ] || complain "with -o: exit status $status, expected 1"
 		[ -s "$work/stdout" ] && complain "with -o: standard output is not empty"

@@ -49,18 +49,26 @@ check()         # STATUS: prints what is wrong
 options()       # SEED: sets the arguments, printed
 {
 	printed=C
-	case $(($1 % 8)) in
+	case $(($1 % 11)) in
 	0) set -- --explain=json; printed=json ;;
 	1) set -- --solution 0.05; printed=csv ;;
 	2) set -- --scheme pl ;;
 	3) set -- --rhs ;;
 	4) set -- --step 0.01 --rhs ;;
 	5) set -- --explain; printed=text ;;
+	6) set -- --reduce ;;
+	7) set -- --reduce --explain=json; printed=json ;;
+	8) set -- --reduce --solution 0.03; printed=csv ;;
 	*) set -- ;;
 	esac
 	arguments=$*
 }
 
+for data in "$bad"/*.mtx; do    # beside the spec
+	if [ -f "$data" ]; then
+		cp "$data" "$work"
+	fi
+done
 seed=$first
 number=0
 broken=0

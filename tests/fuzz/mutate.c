@@ -131,11 +131,33 @@ static void insert_word(struct text *text)
 	static const char *const word[] = {
 		"model", "param ", "coord ", "init ", "let ", "output ", "step ", "scheme pl\n", "input u\n", "sin(", "cos(", "exp(", "log(", "sqrt(", "abs(",
 		"atan2(", "min(", "clip(", "deadzone(", "table(", "pi", "t", "x''", "x1'", "1/0", "0^0", "^-1", "^0.5", "^2^3", "''", "(", ")", "((((((((", "))))))))",
-		"?", "? 1 : 0", "==", "<= ", "1e9999", "1e-9999", "1e308", "-", "- - - -", "# ", "\"", ",", ";", "= 0", "0*", "*t", "\n", "\r\n", "\xef\xbb\xbf", "\xcf\x89"
+		"?", "? 1 : 0", "==", "<= ", "1e9999", "1e-9999", "1e308", "-", "- - - -", "# ", "\"", ",", ";", "= 0", "0*", "*t",
+		"matrix ", "input u hold first\n", "hold first", "mass 1 at ", "spring 3 between ", "damper 0.1 between ", "force ", ", ground", " on ", "u", "u'", "q[2]", "q[2]'", "[2]", "[1",
+		"[2, -1; -1, 2]", "[1; 2]", "*[", "]", "t < 1 ? ", " : 0", "t^3", "t^33", "t*", "exp(-2*t)", "exp(t)*cos(3*t)", "table(t; 0, 0; 1, 2; 3, 1)", "abs(t - 1)", "max(t, 0.005)", "\"mtx_good.mtx\"", "\n", "\r\n", "\xef\xbb\xbf", "\xcf\x89"
 	};
 	size_t at, choice = below(sizeof word / sizeof *word);
 	token(text, &at);
 	replace(text, at, 0, word[choice], strlen(word[choice]));
+}
+
+/* A whole statement, at the start of a line. Most name what they need, so that a spec stays good more often than by splicing. */
+static void insert_statement(struct text *text)
+{
+	static const char *const statement[] = {
+		"coord q[2]\n", "coord q[3], z\n", "q'' + q = 0\n", "q' + q = 0\n", "M*q'' + C*q' + K*q = f*cos(w*t)\n", "q' = K*q + f*u\n", "z' + z = x\n", "z'' + z = q[1]\n",
+		"coord z\n", "coord z\nz' = -z\n", "coord z\nz' + 2*z = x1\n", "coord q[2]\nmatrix K = [2, -1; -1, 2]\nq'' + K*q = 0\n", "coord q[2]\nmatrix K = [2, -1; -1, 2], f = [1; t]\nq' + K*q = f\n",
+		"coord q[2]\nmatrix K = \"mtx_good.mtx\", M = 3*K + K*K\nM*q'' + 0.1*K*q' + K*q = [1; 0]*(t < 0.005 ? sin(t) : 0)\n", "matrix K = \"mtx_good.mtx\"\n",
+		"matrix M = [1, 0; 0, 2]\n", "matrix f = [1; 0]\n", "matrix C = 0.1*M + 0.01*K\n", "init q[2] = 1, q[1]' = 2\n", "init q = [1; 2]\n", "output q, q'\n", "output s = [1, 1]*q\n",
+		"output q''\n", "output x1''\n", "output a = 2*x1'' - u + t\n", "output x1, s = x1 + x2\n", "output e = x1^2 + sin(x2)\n", "output d = t < 0.015 ? x1 : x2\n",
+		"input u\n", "input u hold first\n", "input u hold first, v\n", "input u\ncoord z\nz'' + 4*z = u\noutput z''\n", "input u hold first\ncoord z\nz'' + 4*z = 3*u + u'\n",
+		"mass 1 at x\n", "mass m1 at x1\n", "mass 2 at q[2]\n", "spring k1 between x1, ground\n", "spring 3 between x, y\n", "damper 0.2 between x1, x2\n", "force cos(3*t) on x1\n",
+		"force u on x1\n", "coord z\nmass 1 at z\nspring 100 between z, ground\nforce exp(-t) on z\n", "coord z\ndamper 1 between z, x1\nspring 2 between z, ground\n",
+		"let s = t < 0.015 ? 10*sin(pi*t/0.6) : 0\n", "let s = table(t; 0, 0; 0.013, 2; 0.025, 1)\n", "let s = t^3*exp(-2*t)*cos(3*t)\n", "coord z\nz'' = s\n", "coord z\nz'' + 25*z = t*cos(5*t)\n",
+		"coord z\nz'' + 25*z = clip(t, 0.002, 0.0133) + max(0, t - 0.01)\n", "scheme pl\n", "scheme exact\n"
+	};
+	size_t at, choice = below(sizeof statement / sizeof *statement);
+	line(text, &at);
+	replace(text, at, 0, statement[choice], strlen(statement[choice]));
 }
 
 static void remove_line(struct text *text)
@@ -190,7 +212,7 @@ static void repeat_byte(struct text *text)
 
 static void mutate(struct text *text, const struct text *other)
 {
-	switch (below(16)) {
+	switch (below(20)) {
 	case 0: flip_byte(text); break;
 	case 1: set_byte(text); break;
 	case 2: remove_token(text); break;
@@ -200,6 +222,7 @@ static void mutate(struct text *text, const struct text *other)
 	case 9: remove_line(text); break;
 	case 10: case 11: splice_line(text, other); break;
 	case 12: case 13: case 14: blow_number(text); break;
+	case 15: case 16: case 17: case 18: insert_statement(text); break;
 	default:
 		if (below(4))
 			repeat_byte(text);

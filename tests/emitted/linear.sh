@@ -1,0 +1,277 @@
+#!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
+# The models of linear/: what plgen emits compiles without a warning, as C99 and as C++17, needs nothing but the runtime, and runs,
+# with samples on standard input too; names that the emitted C might use itself.
+#
+#     linear.sh specs|names PLGEN LINEAR_INPUTS SOURCE_ROOT
+#
+# The compilers are those of GCCS and CLANGS (default: gcc g++, clang clang++); what is not installed is skipped.
+set -u
+part=$1
+shift
+absolute() {
+    case $1 in
+        /*) echo "$1" ;;
+        *) echo "$PWD/$1" ;;
+    esac
+}
+plgen=$(absolute "$1")
+inputs=$(absolute "$2")
+root=$(absolute "$3")
+warnings='-Wall -Wextra -Wpedantic -Wconversion -Wdouble-promotion -Werror'
+LC_ALL=C
+export LC_ALL
+
+work=$(mktemp -d "${TMPDIR:-/tmp}/linear.XXXXXX") || exit 99
+trap 'rm -rf "$work"' EXIT
+trap 'exit 99' HUP INT TERM
+cd "$work" || exit 99
+
+count=0
+failed=0
+: >log
+
+# result STATUS NAME: a line of TAP; what the commands said is in log
+result() {
+    count=$((count + 1))
+    if [ "$1" -eq 0 ]; then
+        echo "ok $count - $2"
+    else
+        echo "not ok $count - $2"
+        failed=1
+        sed 's/^/# /' log | head -n 12
+    fi
+}
+
+# todo STATUS NAME REASON: like result, but what fails is known
+todo() {
+    count=$((count + 1))
+    if [ "$1" -eq 0 ]; then
+        echo "ok $count - $2"
+    else
+        echo "not ok $count - $2 # TODO $3"
+        sed 's/^/# /' log | head -n 12
+    fi
+}
+
+for pair in "${GCCS:-gcc g++}" "${CLANGS:-clang clang++}"; do
+    command -v "${pair% *}" >/dev/null 2>&1 && echo "${pair% *} -std=c99"
+    command -v "${pair#* }" >/dev/null 2>&1 && echo "${pair#* } -std=c++17 -x c++"
+done >compilers
+
+# compiles FILE.c NAME [OPTIONS]: with every compiler, as one result
+compiles() {
+    status=0
+    : >log
+    while read -r compiler options; do
+        # shellcheck disable=SC2086
+        $compiler $warnings -I"$root/runtime" ${3--fsyntax-only} $options "$1" >>log 2>&1 || status=1
+    done <compilers
+    result $status "$2"
+}
+
+only_runtime() {    # only_runtime OBJECT: does it name anything but pl_*, memcpy, memset?
+    nm -u "$1" | awk '{ print $NF }' | grep -v -E '^(pl_[a-z_]*|memcpy|memset)$' >>log
+    [ ! -s log ]
+}
+
+# same_columns FOUND.csv EXPECTED.csv: same header, same number of rows, every value within 1e-11 of its column's largest
+same_columns() {
+    awk -F, '
+        FNR == NR { expected[FNR] = $0; rows = FNR
+                    for (i = 1; i <= NF && FNR > 1; i++) { v = $i < 0 ? -$i : +$i; if (v > most[i]) most[i] = v }
+                    next }
+        FNR == 1 { if ($0 != expected[1]) { print "header: found " $0 ", expected " expected[1]; bad = 1 }; next }
+        { n = split(expected[FNR], e)
+          if (n != NF) { print "row " FNR ": found " NF " columns, expected " n; bad = 1; exit }
+          for (i = 1; i <= NF; i++) {
+              d = $i - e[i]; if (d < 0) d = -d
+              if (!(d <= 1e-11 * most[i]) && ++bad < 10)
+                  print "row " FNR " column " i ": found " $i ", expected " e[i] ", tolerance " 1e-11 * most[i] } }
+        END { if (FNR != rows) { print "rows: found " FNR ", expected " rows; bad = 1 }; exit bad ? 1 : 0 }' "$2" "$1" >>log 2>&1
+}
+
+for f in "$root"/runtime/*.c; do
+    ${CC:-cc} -O1 -I"$root/runtime" -c "$f" -o "runtime_$(basename "$f" .c).o" || exit 99
+done
+
+driver() {          # driver FILE.c NAME PROGRAM [LIBRARIES]
+    # shellcheck disable=SC2086
+    ${CC:-cc} -I"$root/runtime" "$root/runtime/host/plmain.c" "$1" runtime_*.o "-DMODEL=$2" ${4-} -o "$3" >>log 2>&1
+}
+
+# ---- every spec ----
+
+every_spec() {
+for spec in "$root"/tests/emitted/linear/*.spec; do
+    m=$(basename "$spec" .spec)
+    inputs_of=$(sed -n 's/^input //p' "$spec")
+    for kind in plain rhs reduce; do
+        # without outputs there is nothing to reduce
+        [ $kind = reduce ] && ! grep -q '^output' "$spec" && continue
+        case $kind in
+            plain) options= ;;
+            *) options=--$kind ;;
+        esac
+        mkdir -p "$kind"
+        "$plgen" $options "$spec" >"$kind/$m.std.c" 2>log && "$plgen" $options -o "$kind/$m.c" "$spec" 2>>log && [ ! -s log ] &&
+            "$plgen" $options --header "$spec" | cmp - "$kind/$m.h" >>log 2>&1
+        status=$?
+        result $status "$m, $kind: plgen writes it to standard output and to files, and says nothing"
+        [ $status -eq 0 ] || continue
+        if [ $kind = rhs ]; then
+            compiles "$kind/$m.std.c" "$m, $kind: standard output compiles"
+            continue
+        fi
+        compiles "$kind/$m.c" "$m, $kind: FILE.c with FILE.h compiles"
+        printf '#include "%s.h"\n#include "%s.h"\n%s *unused;\n' "$m" "$m" "$m" >"$kind/twice.c"
+        [ $kind = reduce ] || compiles "$kind/twice.c" "$m, $kind: the header stands alone, twice"
+        status=0
+        : >log
+        while read -r compiler options; do
+            # shellcheck disable=SC2086
+            $compiler $warnings -O1 -ffreestanding -I"$root/runtime" $options -c "$kind/$m.std.c" -o nm.o >>log 2>&1 && only_runtime nm.o || status=1
+        done <compilers
+        result $status "$m, $kind: standard output compiles, freestanding, needs the runtime, memcpy and memset at most"
+        if [ -z "$inputs_of" ]; then
+            : >log
+            driver "$kind/$m.std.c" "$m" one && ./one 10 >found.csv 2>>log && "$plgen" --solution 10 "$spec" >expected.csv 2>>log &&
+                same_columns found.csv expected.csv
+            result $? "$m, $kind: the driver's 10 s agree with --solution of the whole model"
+        else
+            : >log
+            driver "$kind/$m.std.c" "$m" one && "$inputs" samples 500 >samples.csv && ./one 10 <samples.csv >found.csv 2>>log &&
+                "$inputs" expected "$m" 500 >expected.csv
+            status=$?
+            if [ $status -eq 0 ] && [ $kind = plain ]; then
+                cmp found.csv expected.csv >>log 2>&1
+                status=$?
+            elif [ $status -eq 0 ]; then
+                same_columns found.csv expected.csv
+                status=$?
+            fi
+            result $status "$m, $kind: the driver reads samples and writes what step gives"
+            sed 1d samples.csv | ./one 10 2>>log | cmp - found.csv >>log 2>&1
+            result $? "$m, $kind: the same without the line of names"
+            head -n 300 samples.csv | ./one 10 >/dev/null 2>log
+            [ $? -eq 1 ] && grep -q 'too few samples' log
+            result $? "$m, $kind: too few samples are refused"
+        fi
+    done
+done
+
+# What --reduce leaves.
+grep -q 'REDUCED_STATES = 2,' reduce/reduced.h && grep -q 'REDUCED_STATES = 4,' plain/reduced.h
+result $? "--reduce leaves 2 of the 4 states of equal masses, seen through their sum"
+}
+
+# ---- names ----
+
+
+# right FILE.spec NAME TITLE: it compiles everywhere, and what its driver says is what --solution says
+right() {
+    : >log
+    "$plgen" --rhs "$1" >collide.c 2>log
+    status=$?
+    result $status "$3: plgen takes it"
+    [ $status -eq 0 ] || return
+    compiles collide.c "$3: compiles"
+    : >log
+    "$plgen" --solution 1 "$1" >expected.csv 2>>log && driver collide.c "$2" m -lm && ./m 1 >found.csv 2>>log && same_columns found.csv expected.csv
+    result $? "$3: runs right, in the compiler's own dialect"
+}
+
+every_name() {
+# six at a time as coordinates, and as inputs
+while read -r a b c d e f; do
+    names="$a $b $c $d $e $f"
+    cat >names.spec <<EOF
+model any
+coord x1, $a, $b, $c, $d, $e, $f
+init x1 = 1, $a = 0.5, $b = 0.25, $c' = 1
+x1'' + 0.1*x1' + 4*x1 - $a = (t < 0.305 ? 1 : cos(2*t))*exp(-t/5) + t^2
+$a'' + 5*$a - x1 = sin(3*t)*t
+$b' + $b = $a'
+$c'' + 3*$c + $c' = exp(0.1*t)
+$d'' + 7*$d - $c = t < 0.6 ? 1 : 2
+$e' + 2*$e = $d
+$f'' + $f = $e'
+output a_ = x1 + (t < 0.305 ? t : 0), b_ = $a'', c_ = $b + $c', d_ = $d + $e, e_ = $f''
+step 0.01
+EOF
+    right names.spec any "coordinates $names"
+    cat >names.spec <<EOF
+model any
+coord x1, zz
+init x1 = 1
+input $a, $b, $c
+input $d hold first, $e hold first, $f hold first
+let sum_of = 2*$a
+x1'' + 0.1*x1' + 4*x1 - zz = sum_of + $b + $d' + $e + (t < 0.305 ? 1 : cos(2*t))*exp(-t/5)
+zz'' + 5*zz - x1 = $a - $c + $f + $e'
+output a_ = x1'' + $a, b_ = zz'' + $d
+step 0.01
+EOF
+    "$plgen" --rhs names.spec >collide.c 2>log
+    status=$?
+    result $status "inputs $names: plgen takes them"
+    [ $status -eq 0 ] && compiles collide.c "inputs $names: compiles"
+    sed "s/\\b$a\\b/n1/g; s/\\b$b\\b/n2/g; s/\\b$c\\b/n3/g; s/\\b$d\\b/n4/g; s/\\b$e\\b/n5/g; s/\\b$f\\b/n6/g" names.spec >neutral.spec
+    "$inputs" samples 300 | sed 1d | paste -d, - - - >samples.csv
+    : >log
+    "$plgen" neutral.spec >neutral.c 2>>log && driver collide.c any m -lm && driver neutral.c any n && ./m 1 <samples.csv >found.csv 2>>log &&
+        ./n 1 <samples.csv >expected.csv 2>>log && cmp found.csv expected.csv >>log 2>&1
+    result $? "inputs $names: runs as with other names"
+done <<'EOF'
+load0 load1 load2 load3 load4 growth
+growth_step growth_rate factor segment change x1_dot
+direct done series A y t0
+k u pass plain_step use_segment phase
+pl_growth load_slope load_factor s tau out
+n i j h z dydt
+Gamma slope hold_u before load residual
+EOF
+
+for name in s u t0; do
+    printf "model any\ncoord x\ninput %s, w hold first\nx'' + 4*x = %s + w\noutput x, b = x'' + %s\nstep 0.01\n" $name $name $name >names.spec
+    "$plgen" --rhs names.spec >collide.c 2>log
+    result $? "input $name: plgen takes it"
+    compiles collide.c "input $name: compiles"
+done
+
+cat >names.spec <<'EOF'
+model any
+matrix M = [2, 0.5; 0.5, 1], K = [30, -10; -10, 20]
+coord q[2], q1, q_1, q2, q1_dot
+init q[1] = 1, q1 = 0.5
+M*q'' + K*q = [1; 0]*cos(2*t)
+q1'' + 9*q1 = q[1]
+q_1'' + 8*q_1 = q[2]'
+q2'' + 7*q2 = q1
+q1_dot' + q1_dot = q1'
+step 0.01
+EOF
+right names.spec any 'a vector q beside q1, q_1, q2 and q1_dot'
+
+cat >names.spec <<'EOF'
+model mixed
+coord a, b, c
+init a = 0.2, c' = 1
+mass 2 at a
+mass 1.5 at b
+spring 40 between a, b
+spring 25 between a, ground
+c'' + 0.2*c' + 30*c - 30*b = 0
+step 0.01
+EOF
+"$plgen" names.spec >mixed.c 2>log
+todo $? 'a sketch beside an equation that names a sketched coordinate' 'the equation is taken for that of the sketched coordinate'
+}
+
+case $part in
+    specs) every_spec ;;
+    names) every_name ;;
+    *) exit 99 ;;
+esac
+echo "1..$count"
+exit $failed
