@@ -186,7 +186,8 @@ static void emit_functions(const struct emitter *e, bool rhs)
 		declare(e, format("void   %s_jump(%s *s, uint64_t n);", n, n), "as n steps would, in log n time");
 	if (rhs)
 		declare(e, format("void   %s_rhs(double t, const double y[], %sdouble dydt[]);", n, inputs ? "const double u[], " : ""),
-			e->ramps ? "as written; u: inputs, then their slopes" : "the equations as written");
+			e->model->written != e->model ? format("as written; y: all %d written states", e->model->written->system.states)
+			: e->ramps ? "as written; u: inputs, then their slopes" : "the equations as written");
 	declare(e, format("extern const double %s_Phi[%s_STATES][%s_STATES];", n, N, N), "y(t+h) = Phi y(t) + ...");
 	if (inputs)
 		declare(e, format("extern const double %s_Gamma[%s_STATES][%d];", n, N, input_columns(e->system)),
@@ -416,12 +417,12 @@ static void emit_changing_step(const struct emitter *e)
 	if (e->system->inputs)
 		fputs("    (void)u;\n", e->to);
 	fprintf(e->to, "}\n\nvoid %s_step(%s)\n{\n", n, step_parameters(e));
-	fprintf(e->to, "    if (s->segment < %d && %s_change[s->segment] < %s_time(s) + %s_H) {\n", changes, n, n, e->upper);
+	fprintf(e->to, "    if (s->segment < %d && %s_until(s, s->segment) < %s_H) {\n", changes, n, e->upper);
 	fprintf(e->to, "        double y[%s_STATES];\n        int i;\n        %s_pass(s, %s%s_H, y);\n", e->upper, n, u, e->upper);
 	fprintf(e->to, "        for (i = 0; i < %s_STATES; i++)\n            s->y[i] = y[i];\n    } else {\n        %s_plain_step(s%s);\n    }\n", e->upper, n,
 		*u ? ", u" : "");
 	emit_step_end(e);
-	fprintf(e->to, "    while (s->segment < %d && %s_change[s->segment] <= %s_time(s))\n        s->segment++;\n}\n", changes, n, n);
+	fprintf(e->to, "    while (s->segment < %d && %s_until(s, s->segment) <= 1e-18 * %s_H)\n        s->segment++;\n}\n", changes, n, e->upper);
 }
 
 static void emit_step(const struct emitter *e)
@@ -474,7 +475,8 @@ static void emit_access(const struct emitter *e)
 	fprintf(to, "    for (i = 0; i < %s_STATES; i++)\n        s->y[i] = y[i];\n    s->t0 = t;\n    s->k = 0;\n", N);
 	emit_load_set(e);
 	if (e->system->segments > 1)
-		fprintf(to, "    for (s->segment = 0; s->segment < %d && %s_change[s->segment] <= t;)\n        s->segment++;\n", e->system->segments - 1, n);
+		fprintf(to, "    for (s->segment = 0; s->segment < %d && %s_until(s, s->segment) <= 1e-18 * %s_H;)\n        s->segment++;\n",
+			e->system->segments - 1, n, N);
 	fprintf(to, "}\n\nvoid %s_get(const %s *s, double y[%s_STATES])\n{\n    int i;\n", n, n, N);
 	fprintf(to, "    for (i = 0; i < %s_STATES; i++)\n        y[i] = s->y[i];\n}\n", N);
 	emit_time(e);

@@ -106,7 +106,7 @@ static void emit_collected_residuals(const struct emitter *e)
 	fprintf(e->to, "    double residual[%d];  /* left side minus right side, without the highest derivatives */\n", e->model->written->n);
 	for (int segment = 0; segment < e->system->segments; segment++) {
 		if (e->system->segments > 1 && segment + 1 < e->system->segments)
-			fprintf(e->to, "    %sif (t < %s_change[%d]) {\n", segment ? "} else " : "", e->name, segment);
+			fprintf(e->to, "    %sif (t < %s_change[%d].hi) {\n", segment ? "} else " : "", e->name, segment);
 		else if (e->system->segments > 1)
 			fputs("    } else {\n", e->to);
 		for (int i = 0; i < e->model->written->n; i++)

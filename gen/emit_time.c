@@ -141,6 +141,14 @@ static void emit_start_of_series(const struct emitter *e)
 	store_inputs(e, series->input);
 }
 
+static bool needs_time(const struct emitter *e, const int *index)
+{
+	for (int l = 0; l < e->system->loads; l++)
+		if (index[l] >= 0 && e->system->load[l].powers > 1)
+			return true;
+	return false;
+}
+
 /* y at tau after now, from change to change */
 static void emit_pass(const struct emitter *e)
 {
@@ -153,27 +161,46 @@ static void emit_pass(const struct emitter *e)
 	}
 	fprintf(to, "\n/* The state tau after now, from change to change of the loads on the way. */\n");
 	fprintf(to, "static void %s_pass(const %s *s, %sdouble tau, double y[%s_STATES])\n{\n", e->name, e->name, input_parameter(e), e->upper);
-	fprintf(to, "    const double t = %s_time(s);\n    double A[%d][%d], done = 0.0;\n    int j, segment = s->segment;\n    pl_series series;\n", e->name, size, size);
+	fprintf(to, "%s    double A[%d][%d], done = 0.0;\n    int j, segment = s->segment;\n    pl_series series;\n",
+		needs_time(e, series->load) ? format("    const double t = %s_time(s);\n", e->name) : "", size, size);
 	emit_start_of_series(e);
 	fprintf(to, "    for (i = 0; i < %d; i++)\n        for (j = 0; j < %d; j++)\n            A[i][j] = %s_slope[i][j];\n", size, size, e->name);
 	fprintf(to, "    series.size = %d;\n    series.states = %s_STATES;\n    series.degree = %d;\n    series.halvings = %d;\n    series.A = A[0];\n", size,
 		e->upper, series->degree, series->halvings);
-	fprintf(to, "    for (; segment < %d && %s_change[segment] < t + tau; segment++) {\n", e->system->segments - 1, e->name);
+	fprintf(to, "    for (; segment < %d && %s_until(s, segment) < tau; segment++) {\n        const double ahead = %s_until(s, segment);\n",
+		e->system->segments - 1, e->name, e->name);
 	if (first >= 0)
 		fprintf(to, "        %s_use_segment(A, segment);\n", e->name);
-	fprintf(to, "        if (%s_change[segment] - t > done) {\n            pl_series_advance(&series, %s_change[segment] - t - done, x, work);\n"
-		    "            done = %s_change[segment] - t;\n        }\n    }\n", e->name, e->name, e->name);
+	fputs("        if (ahead > done) {\n            pl_series_advance(&series, ahead - done, x, work);\n            done = ahead;\n        }\n    }\n", to);
 	if (first >= 0)
 		fprintf(to, "    %s_use_segment(A, segment);\n", e->name);
 	fprintf(to, "    pl_series_advance(&series, tau - done, x, work);\n    for (i = 0; i < %s_STATES; i++)\n        y[i] = x[i];\n}\n", e->upper);
 }
 
+static void print_two(FILE *to, mpq_srcptr q)
+{
+	mpq_t rest;
+	mpq_init(rest);
+	mpq_set_d(rest, round_rational(q));
+	mpq_sub(rest, q, rest);
+	fprintf(to, "{%s, %s}", shortest(round_rational(q)), shortest(round_rational(rest)));
+	mpq_clear(rest);
+}
+
 void emit_changes(const struct emitter *e)
 {
-	fprintf(e->to, "\nstatic const double %s_change[%d] = {  /* [s]: where loads change their formula */\n", e->name, e->system->segments - 1);
-	for (int i = 0; i < e->system->segments - 1; i++)
-		fprintf(e->to, "    %s,\n", shortest(round_rational(e->system->change[i])));
-	fputs("};\n", e->to);
+	FILE *to = e->to;
+	const char *n = e->name;
+	fprintf(to, "\nstatic const pl_two %s_change[%d] = {  /* [s]: where loads change their formula */\n", n, e->system->segments - 1);
+	for (int i = 0; i < e->system->segments - 1; i++) {
+		finite_number(e, e->system->change[i]);
+		fputs("    ", to);
+		print_two(to, e->system->change[i]);
+		fputs(",\n", to);
+	}
+	fprintf(to, "};\n\n/* Time from now to a change */\nstatic double %s_until(const %s *s, int change)\n{\n    static const pl_two h = ", n, n);
+	print_two(to, e->model->h);
+	fprintf(to, ";\n    return pl_until(s->t0, s->k, h, %s_change[change]);\n}\n", n);
 }
 
 void emit_passing(const struct emitter *e)
@@ -329,7 +356,7 @@ void emit_jump(const struct emitter *e)
 	emit_leap(e, format("static void %s_leap", n));
 	fprintf(e->to, "\n/* Leaps up to one step before each change of the loads, and steps across it. */\nvoid %s_jump(%s *s, uint64_t n)\n{\n", n, n);
 	fprintf(e->to, "    while (n > 0 && s->segment < %d) {\n", changes);
-	fprintf(e->to, "        const double ahead = (%s_change[s->segment] - %s_time(s)) / %s_H - 1.0;\n", n, n, e->upper);
+	fprintf(e->to, "        const double ahead = %s_until(s, s->segment) / %s_H - 1.0;\n", n, e->upper);
 	fprintf(e->to, "        const uint64_t free = ahead < 1.0 ? 0 : ahead < (double)n ? (uint64_t)ahead : n;\n        if (free > 0) {\n");
 	fprintf(e->to, "            %s_leap(s, free);\n            n -= free;\n        } else {\n            %s_step(s);\n            n--;\n        }\n    }\n", n, n);
 	fprintf(e->to, "    if (n > 0)\n        %s_leap(s, n);\n}\n", n);

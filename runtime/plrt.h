@@ -9,6 +9,7 @@
  *     growth.c    exponents of growing and decaying loads as 128-bit numbers, and their powers
  *     series.c    x(tau) for 0 <= tau <= h: NAME_at
  *     power.c     the state n steps on in log n time: NAME_jump
+ *     until.c     the time to a change of the loads
  *
  * Compile it as the compiler comes: contraction to fused multiply-adds does no harm, -ffast-math is refused. */
 #ifndef PLRT_H
@@ -136,6 +137,12 @@ typedef struct pl_two {
  * A result beyond the range of double is an infinity with lo = 0; no NaN comes out of finite arguments.  Once an entry of
  * a power of P has itself overflowed, what it reaches is infinite, and its sign means nothing. */
 void pl_power_apply(int n, pl_two *P, pl_two *W, pl_two *x, pl_two *w, uint64_t k);
+
+/* ---- until.c: when a load changes ------------------------------------------------------------------------- */
+
+/* change - (t0 + k h) [s], off by less than 2^-100 of the largest of them: so a change inside a step is met where it is, however
+ * late the step. */
+double pl_until(double t0, uint64_t k, pl_two h, pl_two change);
 
 /* ---- a model, seen from outside -------------------------------------------------------------------------- */
 
