@@ -20,21 +20,6 @@ bool ok(bool good, const char *name, ...)
     return good;
 }
 
-bool todo(bool good, const char *reason, const char *name, ...)
-{
-    va_list arguments;
-    va_start(arguments, name);
-    printf("%s %d - ", good ? "ok" : "not ok", ++results);
-    vprintf(name, arguments);
-    if (good)
-        putchar('\n');
-    else
-        printf(" # TODO %s\n", reason);
-    va_end(arguments);
-    complaints = 0;
-    return good;
-}
-
 void note(const char *text, ...)
 {
     va_list arguments;

@@ -12,7 +12,6 @@
 #endif
 
 bool ok(bool good, const char *name, ...) TAP_PRINTF(2, 3);    /* one result; returns good */
-bool todo(bool good, const char *reason, const char *name, ...) TAP_PRINTF(3, 4);  /* like ok, but what fails is known */
 void note(const char *text, ...) TAP_PRINTF(1, 2);              /* a line "# ..." */
 
 /* |found - expected| <= tolerance; if not, says both with 17 digits. */
