@@ -14,6 +14,16 @@ static const char *upper_case(const char *name)
 	return upper;
 }
 
+/* A load leaves no trace where it acts on nothing and no output shows it. */
+static bool load_is_needed(const struct model *model, const struct linear *system, int load)
+{
+	bool needed = load_acts(system, &system->load[load]);
+	for (int o = 0; o < model->outputs; o++)
+		for (int k = 0; k < system->load[load].columns * system->segments; k++)
+			needed = needed || mpq_sgn(model->output[o].load[load][k]) != 0;
+	return needed;
+}
+
 static struct emitter emitter_new(FILE *to, const struct step *step, const char *options)
 {
 	struct emitter e = { .to = to, .step = step, .model = step->model, .system = &step->system, .options = options };
@@ -24,8 +34,9 @@ static struct emitter emitter_new(FILE *to, const struct step *step, const char 
 	e.growth = ARRAY(int, loads);
 	for (size_t l = 0; l < loads; l++) {
 		const struct wave *wave = e.system->load[l].wave;
-		e.phase[l] = oscillates(wave) ? e.phases++ : -1;
-		e.growth[l] = mpq_sgn(wave->a) != 0 ? e.growths++ : -1;
+		bool needed = load_is_needed(e.model, e.system, (int)l);
+		e.phase[l] = needed && oscillates(wave) ? e.phases++ : -1;
+		e.growth[l] = needed && mpq_sgn(wave->a) != 0 ? e.growths++ : -1;
 	}
 	for (int i = 0; i < e.system->inputs; i++)
 		e.ramps = e.ramps || e.system->input[i].first_order;
@@ -243,7 +254,7 @@ const char *scaled(double factor, const char *operand)
 	return factor == -1 ? format("-%s", operand) : format("%s * %s", shortest(factor), operand);
 }
 
-static void emit_locals(const struct emitter *e, const bool *reads)
+void emit_locals(const struct emitter *e, const bool *reads)
 {
 	const char *list = "";
 	for (int i = 0; i < e->system->states; i++)
@@ -259,184 +270,6 @@ static void emit_locals(const struct emitter *e, const bool *reads)
 		if (!list[1])
 			fputs(";\n", e->to);
 	}
-}
-
-/* ---- the step ---- */
-
-/* Held: the sample that the step is given. A ramp: the previous sample, then the one given. */
-static const char *input_operand(const struct emitter *e, int column)
-{
-	for (int i = 0; i < e->system->inputs; i++) {
-		int columns = e->system->input[i].first_order ? 2 : 1;
-		if (column < columns)
-			return format(columns == 2 && column == 0 ? "s->u[%d]" : "u[%d]", i);
-		column -= columns;
-	}
-	return NULL;
-}
-
-static const char *operand_text(const struct emitter *e, const struct operand *operand)
-{
-	switch (operand->kind) {
-	case OPERAND_STATE: return e->local[operand->index];
-	case OPERAND_LOAD:  return column_operand(e, operand->index);
-	default:            return input_operand(e, operand->index);
-	}
-}
-
-/* A load that changes has its factors in a table, one row for each segment of time. */
-static const char *term_text(const struct emitter *e, const struct assignment *a, const struct product *p)
-{
-	const char *operand = operand_text(e, &p->operand);
-	if (p->operand.kind != OPERAND_LOAD || e->system->segments == 1)
-		return scaled(p->factor->value, operand);
-	const char *factor = format("factor[%d][%d]", a->target, p->operand.index);
-	return operand ? format("%s * %s", factor, operand) : factor;
-}
-
-static void emit_assignment(const struct emitter *e, const struct assignment *a)
-{
-	const char **term = ARRAY(const char *, (size_t)a->terms + 1);
-	for (int k = 0; k < a->terms; k++)
-		term[k] = term_text(e, a, &a->term[k]);
-	const char *sum = a->terms ? tree(a->terms, term, 14) : "0.0";
-	fprintf(e->to, "    s->y[%d] = %s;  /* %s */\n", a->target, sum, e->model->state_name[a->target]);
-}
-
-static bool *loads_of_step(const struct emitter *e)
-{
-	bool *wanted = ARRAY(bool, (size_t)e->system->loads);
-	for (int l = 0, column = 0; l < e->system->loads; l++)
-		for (int k = 0; k < e->system->load[l].columns; k++, column++)
-			wanted[l] = wanted[l] || e->step->program->uses[column];
-	return wanted;
-}
-
-static void emit_keep_inputs(const struct emitter *e)
-{
-	for (int i = 0; i < e->system->inputs; i++) {
-		if (e->system->input[i].first_order)
-			fprintf(e->to, "    s->slope[%d] = (u[%d] - s->u[%d]) / %s_H;\n", i, i, i, e->upper);
-		fprintf(e->to, "    s->u[%d] = u[%d];\n", i, i);
-	}
-}
-
-static bool any_load_term(const struct program *program)
-{
-	for (int i = 0; i < program->assignments; i++)
-		for (int k = 0; k < program->assignment[i].terms; k++)
-			if (program->assignment[i].term[k].operand.kind == OPERAND_LOAD)
-				return true;
-	return false;
-}
-
-static void emit_load_factors(const struct emitter *e)
-{
-	const struct table *table = e->step->table;
-	double *value = ARRAY(double, (size_t)(table->states * table->columns));
-	fprintf(e->to, "\n/* Factors of the load states in each segment of time */\nstatic const double %s_load_factor[%d][%s_STATES][%d] = {\n",
-		e->name, e->system->segments, e->upper, table->columns);
-	for (int s = 0; s < e->system->segments; s++) {
-		for (int i = 0; i < table->states * table->columns; i++)
-			value[i] = table->load[s * table->states * table->columns + i].value;
-		fputs("  {\n", e->to);
-		emit_number_rows(e, table->states, table->columns, value, e->model->state_name);
-		fputs("  },\n", e->to);
-	}
-	fputs("};\n", e->to);
-}
-
-/* vector[...] = the operands of the columns of a table; then y[i] += table[i][...] vector[...] */
-static void emit_columns(const struct emitter *e, const char *table, const char *vector, enum operand_kind kind, int columns)
-{
-	if (columns == 0)
-		return;
-	fprintf(e->to, "    const double %s[%d] = {", vector, columns);
-	for (int k = 0; k < columns; k++) {
-		const char *operand = operand_text(e, &(struct operand){ kind, k });
-		fprintf(e->to, "%s%s", k ? ", " : "", operand ? operand : "1.0");
-	}
-	fprintf(e->to, "};\n    for (i = 0; i < %s_STATES; i++)\n        for (j = 0; j < %d; j++)\n            y[i] += %s[i][j] * %s[j];\n", e->upper, columns,
-		table, vector);
-}
-
-/* A large model steps by loops over its tables: text that nobody would read is of no use. */
-static void emit_looped_step(const struct emitter *e)
-{
-	FILE *to = e->to;
-	const char *n = e->name, *N = e->upper;
-	const struct table *table = e->step->table;
-	bool *loads = ARRAY(bool, (size_t)e->system->loads);
-	for (int l = 0; l < e->system->loads; l++)
-		loads[l] = true;
-	fprintf(to, "    double y[%s_STATES];\n    int i, j;\n", N);
-	emit_load_states(e, loads, false);
-	fprintf(to, "    for (i = 0; i < %s_STATES; i++) {\n        y[i] = 0.0;\n        for (j = 0; j < %s_STATES; j++)\n", N, N);
-	fprintf(to, "            y[i] += %s_Phi[i][j] * s->y[j];\n    }\n", n);
-	emit_columns(e, format("%s_load_factor[%s]", n, e->system->segments > 1 ? "s->segment" : "0"), "load", OPERAND_LOAD, table->columns);
-	emit_columns(e, format("%s_Gamma", n), "input", OPERAND_INPUT, table->inputs);
-	fprintf(to, "    for (i = 0; i < %s_STATES; i++)\n        s->y[i] = y[i];\n", N);
-}
-
-/* A step that no change of the loads interrupts */
-static void emit_plain_step(const struct emitter *e)
-{
-	const struct program *program = e->step->program;
-	if (program->loops) {
-		emit_looped_step(e);
-		return;
-	}
-	emit_locals(e, program->reads);
-	emit_load_states(e, loads_of_step(e), false);
-	if (e->system->segments > 1 && any_load_term(program))
-		fprintf(e->to, "    const double (*const factor)[%d] = %s_load_factor[s->segment];\n", e->step->table->columns, e->name);
-	for (int i = 0; i < program->assignments; i++)
-		emit_assignment(e, &program->assignment[i]);
-}
-
-static void emit_step_end(const struct emitter *e)
-{
-	emit_keep_inputs(e);
-	emit_load_advance(e, NULL);
-	fputs("    s->k++;\n", e->to);
-}
-
-static const char *step_parameters(const struct emitter *e)
-{
-	return format("%s *s%s", e->name, e->system->inputs ? format(", const double u[%s_INPUTS]", e->upper) : "");
-}
-
-static void emit_changing_step(const struct emitter *e)
-{
-	const char *n = e->name, *u = e->system->inputs ? "u, " : "";
-	int changes = e->system->segments - 1;
-	if (any_load_term(e->step->program) && !e->step->program->loops)
-		emit_load_factors(e);
-	fprintf(e->to, "\nstatic void %s_plain_step(%s)\n{\n", e->name, step_parameters(e));
-	emit_plain_step(e);
-	if (e->system->inputs)
-		fputs("    (void)u;\n", e->to);
-	fprintf(e->to, "}\n\nvoid %s_step(%s)\n{\n", n, step_parameters(e));
-	fprintf(e->to, "    if (s->segment < %d && %s_until(s, s->segment) < %s_H) {\n", changes, n, e->upper);
-	fprintf(e->to, "        double y[%s_STATES];\n        int i;\n        %s_pass(s, %s%s_H, y);\n", e->upper, n, u, e->upper);
-	fprintf(e->to, "        for (i = 0; i < %s_STATES; i++)\n            s->y[i] = y[i];\n    } else {\n        %s_plain_step(s%s);\n    }\n", e->upper, n,
-		*u ? ", u" : "");
-	emit_step_end(e);
-	fprintf(e->to, "    while (s->segment < %d && %s_until(s, s->segment) <= 1e-18 * %s_H)\n        s->segment++;\n}\n", changes, n, e->upper);
-}
-
-static void emit_step(const struct emitter *e)
-{
-	if (e->step->program->loops && e->step->table->columns)
-		emit_load_factors(e);
-	if (e->system->segments > 1) {
-		emit_changing_step(e);
-		return;
-	}
-	fprintf(e->to, "\nvoid %s_step(%s)\n{\n", e->name, step_parameters(e));
-	emit_plain_step(e);
-	emit_step_end(e);
-	fputs("}\n", e->to);
 }
 
 /* ---- init, set, get, time ---- */
@@ -485,220 +318,7 @@ static void emit_access(const struct emitter *e)
 			n, n, N, N);
 }
 
-/* ---- out, run ---- */
-
-void emit_used_constants(const struct emitter *e, bool lets)
-{
-	for (const struct symbol *s = e->model->spec->first; s; s = s->next) {
-		if (!s->used || (s->kind != SYMBOL_PARAM && s->kind != SYMBOL_LET))
-			continue;
-		if (s->kind == SYMBOL_PARAM) {
-			struct collector collector = { .scheme = "exact" };
-			mpq_t value;
-			mpq_init(value);
-			constant_value(&collector, s->collected->cell[0], value);
-			fprintf(e->to, "    const double %s = %s;\n", s->c_name, finite_text(s->at, value));
-			mpq_clear(value);
-		} else if (lets) {
-			fprintf(e->to, "    const double %s = %s;\n", s->c_name, c_expression(s->value));
-		}
-	}
-}
-
-void clear_used(const struct spec *spec)
-{
-	for (struct symbol *s = spec->first; s; s = s->next)
-		s->used = s->slope_used = false;
-}
-
-bool uses_time(const struct node *node)
-{
-	bool found = node->kind == NODE_TIME || (node->kind == NODE_NAME && node->symbol->kind == SYMBOL_LET && uses_time(node->symbol->value));
-	for (int i = 0; i < node->children && !found; i++)
-		found = uses_time(node->child[i]);
-	return found;
-}
-
-static int state_of_node(const struct model *written, const struct node *node)
-{
-	int coord = node->symbol->index + (node->component ? node->component - 1 : 0);
-	return node->primes ? written->system.velocity[coord] : coord;
-}
-
-/* Flags the written states that an expression reads. */
-void mark_states(const struct model *written, const struct node *node, bool *reads)
-{
-	if (vanishes(node))
-		return;
-	if (node->kind == NODE_NAME && node->symbol->kind == SYMBOL_COORD && node->primes < node->symbol->highest)
-		reads[state_of_node(written, node)] = true;
-	if (node->kind == NODE_NAME && node->symbol->kind == SYMBOL_LET)
-		mark_states(written, node->symbol->value, reads);
-	for (int i = 0; i < node->children; i++)
-		mark_states(written, node->child[i], reads);
-}
-
-static bool changes(const mpq_t *factor, int segments)
-{
-	for (int s = 1; s < segments; s++)
-		if (!mpq_equal(factor[0], factor[s]))
-			return true;
-	return false;
-}
-
-static bool any_factor(const struct emitter *e, const struct output *output, int load, int column)
-{
-	for (int s = 0; s < e->system->segments; s++)
-		if (mpq_sgn(output->load[load][column * e->system->segments + s]) != 0)
-			return true;
-	return false;
-}
-
-/* A load in an output: its factor, or where that changes its place in the table direct[segment][output] */
-static const char *direct_term(const struct emitter *e, const struct output *output, int load, int k, int column)
-{
-	const mpq_t *factor = (const mpq_t *)output->load[load] + k * e->system->segments;
-	const char *operand = load_operand(e, load, k);
-	if (!changes(factor, e->system->segments))
-		return scaled(round_rational(factor[0]), operand);
-	const char *text = format("%s_direct[s->segment][%d][%d]", e->name, (int)(output - e->model->output), column);
-	return operand ? format("%s * %s", text, operand) : text;
-}
-
-/* Factors of the load states in the outputs, where one changes its formula */
-static void emit_direct_factors(const struct emitter *e)
-{
-	const struct linear *system = e->system;
-	int columns = load_columns(system);
-	bool any = false;
-	for (int o = 0; o < e->model->outputs; o++)
-		for (int l = 0; l < system->loads; l++)
-			for (int k = 0; k < system->load[l].columns; k++)
-				any = any || changes((const mpq_t *)e->model->output[o].load[l] + k * system->segments, system->segments);
-	if (!any)
-		return;
-	fprintf(e->to, "\nstatic const double %s_direct[%d][%s_OUTPUTS][%d] = {  /* factors of the load states in each segment of time */\n",
-		e->name, system->segments, e->upper, columns);
-	for (int s = 0; s < system->segments; s++) {
-		fputs("  {\n", e->to);
-		for (int o = 0; o < e->model->outputs; o++) {
-			const char *row = "";
-			for (int l = 0; l < system->loads; l++)
-				for (int k = 0; k < system->load[l].columns; k++)
-					row = format("%s%s%s", row, *row ? ", " : "", shortest(round_rational(e->model->output[o].load[l][k * system->segments + s])));
-			fprintf(e->to, "    {%s},  /* %s */\n", row, e->model->output[o].name);
-		}
-		fputs("  },\n", e->to);
-	}
-	fputs("};\n", e->to);
-}
-
-static double output_factor(const struct output *output, mpq_srcptr factor)
-{
-	if (beyond_double(factor))
-		error(output->value->start, NULL, "a factor of output '%s' is beyond the range of double", output->name);
-	return round_rational(factor);
-}
-
-static const char *linear_output(const struct emitter *e, const struct output *output)
-{
-	const struct linear *system = e->system;
-	const char **term = ARRAY(const char *, (size_t)(system->states + load_columns(system) + 2 * system->inputs + 1));
-	int terms = 0;
-	for (int i = 0; i < system->states; i++)
-		if (mpq_sgn(output->state[i]) != 0)
-			term[terms++] = scaled(output_factor(output, output->state[i]), e->local[i]);
-	for (int l = 0, column = 0; l < system->loads; l++)
-		for (int k = 0; k < system->load[l].columns; k++, column++)
-			if (any_factor(e, output, l, k))
-				term[terms++] = direct_term(e, output, l, k, column);
-	for (int k = 0; k < 2; k++)
-		for (int i = 0; i < system->inputs; i++)
-			if (mpq_sgn(output->input[k][i]) != 0)
-				term[terms++] = scaled(output_factor(output, output->input[k][i]), format(k ? "s->slope[%d]" : "s->u[%d]", i));
-	return terms ? tree(terms, term, 13) : "0.0";
-}
-
-struct output_needs {
-	bool *reads, *loads, *inputs, time, state;
-};
-
-static void mark_inputs(const struct node *node, bool *inputs, int count)
-{
-	if (node->kind == NODE_NAME && node->symbol->kind == SYMBOL_INPUT)
-		inputs[node->symbol->index + node->primes * count] = true;
-	if (node->kind == NODE_NAME && node->symbol->kind == SYMBOL_LET)
-		mark_inputs(node->symbol->value, inputs, count);
-	for (int i = 0; i < node->children; i++)
-		mark_inputs(node->child[i], inputs, count);
-}
-
-static void mark_output_states(const struct emitter *e, const struct node *value, bool *reads)
-{
-	const struct model *written = e->model->written;
-	bool *seen = ARRAY(bool, (size_t)written->system.states);
-	mark_states(written, value, seen);
-	for (int i = 0; i < written->system.states; i++)
-		if (seen[i])
-			reads[e->model->place ? e->model->place[i] : i] = true;
-}
-
-static void mark_output(const struct emitter *e, const struct output *output, struct output_needs *needs)
-{
-	bool math = false;
-	if (!output->form && output->value) {
-		mark_used(output->value, &math);
-		mark_output_states(e, output->value, needs->reads);
-		mark_inputs(output->value, needs->inputs, e->system->inputs);
-		needs->time = needs->time || uses_time(output->value);
-		return;
-	}
-	for (int i = 0; i < e->system->states; i++)
-		needs->reads[i] = needs->reads[i] || mpq_sgn(output->state[i]) != 0;
-	for (int l = 0; l < e->system->loads; l++)
-		for (int k = 0; k < e->system->load[l].columns; k++)
-			needs->loads[l] = needs->loads[l] || any_factor(e, output, l, k);
-	for (int i = 0; i < 2 * e->system->inputs; i++)
-		needs->state = needs->state || mpq_sgn(output->input[i / e->system->inputs][i % e->system->inputs]) != 0;
-}
-
-static void emit_input_locals(const struct emitter *e, const bool *wanted)
-{
-	for (const struct symbol *s = e->model->spec->first; s; s = s->next)
-		for (int k = 0; k < 2 && s->kind == SYMBOL_INPUT; k++)
-			if (wanted[s->index + k * e->system->inputs])
-				fprintf(e->to, "    const double %s = s->%s[%d];\n", k ? s->c_dot : s->c_name, k ? "slope" : "u", s->index);
-}
-
-static void emit_out(const struct emitter *e)
-{
-	FILE *to = e->to;
-	const struct model *model = e->model;
-	if (model->declared_outputs)
-		emit_direct_factors(e);
-	fprintf(to, "\nvoid %s_out(const %s *s, double out[%s_OUTPUTS])\n{\n", e->name, e->name, e->upper);
-	if (!model->declared_outputs) {
-		fprintf(to, "    %s_get(s, out);\n}\n", e->name);
-		return;
-	}
-	struct output_needs needs = { ARRAY(bool, (size_t)e->system->states), ARRAY(bool, (size_t)e->system->loads),
-				      ARRAY(bool, 2 * (size_t)e->system->inputs), false, false };
-	clear_used(model->spec);
-	for (int i = 0; i < model->outputs; i++)
-		mark_output(e, &model->output[i], &needs);
-	emit_locals(e, needs.reads);
-	emit_input_locals(e, needs.inputs);
-	if (needs.time)
-		fprintf(to, "    const double t = %s_time(s);\n", e->name);
-	emit_used_constants(e, true);
-	emit_load_states(e, needs.loads, needs.time);
-	for (int i = 0; i < model->outputs; i++) {
-		const struct output *output = &model->output[i];
-		bool linear = output->form || !output->value;
-		fprintf(to, "    out[%d] = %s;  /* %s */\n", i, linear ? linear_output(e, output) : c_expression(output->value), output->name);
-	}
-	fputs("    (void)s;\n}\n", to);
-}
+/* ---- run ---- */
 
 static void emit_run(const struct emitter *e)
 {

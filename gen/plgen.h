@@ -680,7 +680,7 @@ const char *c_expression(const struct node *node);          /* fit for a term of
 bool vanishes(const struct node *node);                     /* nothing is left when accelerations are 0 */
 void mark_used(const struct node *node, bool *math);        /* flags the symbols that it needs; *math: it needs <math.h> */
 
-/* ---- emit.c, emit_loads.c, emit_time.c, emit_rhs.c: a step as C ---- */
+/* ---- emit.c, emit_step.c, emit_out.c, emit_loads.c, emit_time.c, emit_rhs.c: a step as C ---- */
 
 struct emitter {
 	FILE *to;
@@ -717,6 +717,9 @@ const char *column_operand(const struct emitter *e, int column);
 void emit_changes(const struct emitter *e);                       /* loads that change their formula: when */
 void emit_passing(const struct emitter *e);                       /* ... and pass(), across a change */
 bool has_jump(const struct emitter *e);
+void emit_locals(const struct emitter *e, const bool *reads);     /* the states wanted, under their names */
+void emit_step(const struct emitter *e);
+void emit_out(const struct emitter *e);
 void emit_at(const struct emitter *e);
 void emit_jump(const struct emitter *e);
 void emit_rhs(const struct emitter *e);

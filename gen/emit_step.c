@@ -1,0 +1,179 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A step program as C: sums over the old state, or for a large model loops over its tables. */
+#include "plgen.h"
+
+/* Held: the sample that the step is given. A ramp: the previous sample, then the one given. */
+static const char *input_operand(const struct emitter *e, int column)
+{
+	for (int i = 0; i < e->system->inputs; i++) {
+		int columns = e->system->input[i].first_order ? 2 : 1;
+		if (column < columns)
+			return format(columns == 2 && column == 0 ? "s->u[%d]" : "u[%d]", i);
+		column -= columns;
+	}
+	return NULL;
+}
+
+static const char *operand_text(const struct emitter *e, const struct operand *operand)
+{
+	switch (operand->kind) {
+	case OPERAND_STATE: return e->local[operand->index];
+	case OPERAND_LOAD:  return column_operand(e, operand->index);
+	default:            return input_operand(e, operand->index);
+	}
+}
+
+/* A load that changes has its factors in a table, one row for each segment of time. */
+static const char *term_text(const struct emitter *e, const struct assignment *a, const struct product *p)
+{
+	const char *operand = operand_text(e, &p->operand);
+	if (p->operand.kind != OPERAND_LOAD || e->system->segments == 1)
+		return scaled(p->factor->value, operand);
+	const char *factor = format("factor[%d][%d]", a->target, p->operand.index);
+	return operand ? format("%s * %s", factor, operand) : factor;
+}
+
+static void emit_assignment(const struct emitter *e, const struct assignment *a)
+{
+	const char **term = ARRAY(const char *, (size_t)a->terms + 1);
+	for (int k = 0; k < a->terms; k++)
+		term[k] = term_text(e, a, &a->term[k]);
+	const char *sum = a->terms ? tree(a->terms, term, 14) : "0.0";
+	fprintf(e->to, "    s->y[%d] = %s;  /* %s */\n", a->target, sum, e->model->state_name[a->target]);
+}
+
+static bool *loads_of_step(const struct emitter *e)
+{
+	bool *wanted = ARRAY(bool, (size_t)e->system->loads);
+	for (int l = 0, column = 0; l < e->system->loads; l++)
+		for (int k = 0; k < e->system->load[l].columns; k++, column++)
+			wanted[l] = wanted[l] || e->step->program->uses[column];
+	return wanted;
+}
+
+static void emit_keep_inputs(const struct emitter *e)
+{
+	for (int i = 0; i < e->system->inputs; i++) {
+		if (e->system->input[i].first_order)
+			fprintf(e->to, "    s->slope[%d] = (u[%d] - s->u[%d]) / %s_H;\n", i, i, i, e->upper);
+		fprintf(e->to, "    s->u[%d] = u[%d];\n", i, i);
+	}
+}
+
+static bool any_load_term(const struct program *program)
+{
+	for (int i = 0; i < program->assignments; i++)
+		for (int k = 0; k < program->assignment[i].terms; k++)
+			if (program->assignment[i].term[k].operand.kind == OPERAND_LOAD)
+				return true;
+	return false;
+}
+
+static void emit_load_factors(const struct emitter *e)
+{
+	const struct table *table = e->step->table;
+	double *value = ARRAY(double, (size_t)(table->states * table->columns));
+	fprintf(e->to, "\n/* Factors of the load states in each segment of time */\nstatic const double %s_load_factor[%d][%s_STATES][%d] = {\n",
+		e->name, e->system->segments, e->upper, table->columns);
+	for (int s = 0; s < e->system->segments; s++) {
+		for (int i = 0; i < table->states * table->columns; i++)
+			value[i] = table->load[s * table->states * table->columns + i].value;
+		fputs("  {\n", e->to);
+		emit_number_rows(e, table->states, table->columns, value, e->model->state_name);
+		fputs("  },\n", e->to);
+	}
+	fputs("};\n", e->to);
+}
+
+/* vector[...] = the operands of the columns of a table; then y[i] += table[i][...] vector[...] */
+static void emit_columns(const struct emitter *e, const char *table, const char *vector, enum operand_kind kind, int columns)
+{
+	if (columns == 0)
+		return;
+	fprintf(e->to, "    const double %s[%d] = {", vector, columns);
+	for (int k = 0; k < columns; k++) {
+		const char *operand = operand_text(e, &(struct operand){ kind, k });
+		fprintf(e->to, "%s%s", k ? ", " : "", operand ? operand : "1.0");
+	}
+	fprintf(e->to, "};\n    for (i = 0; i < %s_STATES; i++)\n        for (j = 0; j < %d; j++)\n            y[i] += %s[i][j] * %s[j];\n", e->upper, columns,
+		table, vector);
+}
+
+/* A large model steps by loops over its tables: text that nobody would read is of no use. */
+static void emit_looped_step(const struct emitter *e)
+{
+	FILE *to = e->to;
+	const char *n = e->name, *N = e->upper;
+	const struct table *table = e->step->table;
+	bool *loads = ARRAY(bool, (size_t)e->system->loads);
+	for (int l = 0; l < e->system->loads; l++)
+		loads[l] = true;
+	fprintf(to, "    double y[%s_STATES];\n    int i, j;\n", N);
+	emit_load_states(e, loads, false);
+	fprintf(to, "    for (i = 0; i < %s_STATES; i++) {\n        y[i] = 0.0;\n        for (j = 0; j < %s_STATES; j++)\n", N, N);
+	fprintf(to, "            y[i] += %s_Phi[i][j] * s->y[j];\n    }\n", n);
+	emit_columns(e, format("%s_load_factor[%s]", n, e->system->segments > 1 ? "s->segment" : "0"), "load", OPERAND_LOAD, table->columns);
+	emit_columns(e, format("%s_Gamma", n), "input", OPERAND_INPUT, table->inputs);
+	fprintf(to, "    for (i = 0; i < %s_STATES; i++)\n        s->y[i] = y[i];\n", N);
+}
+
+/* A step that no change of the loads interrupts */
+static void emit_plain_step(const struct emitter *e)
+{
+	const struct program *program = e->step->program;
+	if (program->loops) {
+		emit_looped_step(e);
+		return;
+	}
+	emit_locals(e, program->reads);
+	emit_load_states(e, loads_of_step(e), false);
+	if (e->system->segments > 1 && any_load_term(program))
+		fprintf(e->to, "    const double (*const factor)[%d] = %s_load_factor[s->segment];\n", e->step->table->columns, e->name);
+	for (int i = 0; i < program->assignments; i++)
+		emit_assignment(e, &program->assignment[i]);
+}
+
+static void emit_step_end(const struct emitter *e)
+{
+	emit_keep_inputs(e);
+	emit_load_advance(e, NULL);
+	fputs("    s->k++;\n", e->to);
+}
+
+static const char *step_parameters(const struct emitter *e)
+{
+	return format("%s *s%s", e->name, e->system->inputs ? format(", const double u[%s_INPUTS]", e->upper) : "");
+}
+
+static void emit_changing_step(const struct emitter *e)
+{
+	const char *n = e->name, *u = e->system->inputs ? "u, " : "";
+	int changes = e->system->segments - 1;
+	if (any_load_term(e->step->program) && !e->step->program->loops)
+		emit_load_factors(e);
+	fprintf(e->to, "\nstatic void %s_plain_step(%s)\n{\n", e->name, step_parameters(e));
+	emit_plain_step(e);
+	if (e->system->inputs)
+		fputs("    (void)u;\n", e->to);
+	fprintf(e->to, "}\n\nvoid %s_step(%s)\n{\n", n, step_parameters(e));
+	fprintf(e->to, "    if (s->segment < %d && %s_until(s, s->segment) < %s_H) {\n", changes, n, e->upper);
+	fprintf(e->to, "        double y[%s_STATES];\n        int i;\n        %s_pass(s, %s%s_H, y);\n", e->upper, n, u, e->upper);
+	fprintf(e->to, "        for (i = 0; i < %s_STATES; i++)\n            s->y[i] = y[i];\n    } else {\n        %s_plain_step(s%s);\n    }\n", e->upper, n,
+		*u ? ", u" : "");
+	emit_step_end(e);
+	fprintf(e->to, "    while (s->segment < %d && %s_until(s, s->segment) <= 1e-18 * %s_H)\n        s->segment++;\n}\n", changes, n, e->upper);
+}
+
+void emit_step(const struct emitter *e)
+{
+	if (e->step->program->loops && e->step->table->columns)
+		emit_load_factors(e);
+	if (e->system->segments > 1) {
+		emit_changing_step(e);
+		return;
+	}
+	fprintf(e->to, "\nvoid %s_step(%s)\n{\n", e->name, step_parameters(e));
+	emit_plain_step(e);
+	emit_step_end(e);
+	fputs("}\n", e->to);
+}
