@@ -195,11 +195,6 @@ struct coefficient response_value(struct response *response, mpq_srcptr tau, boo
 	return c;
 }
 
-struct coefficient coefficient_of_rational(mpq_srcptr q)
-{
-	return (struct coefficient){ .value = round_rational(q), .zero = mpq_sgn(q) == 0 };
-}
-
 static void check_range(const struct model *model, const struct coefficient *c, const struct response *response, const char *what)
 {
 	if (isfinite(c->value))

@@ -86,7 +86,6 @@ struct place place_end(const struct source *source);       /* just after the las
 /* An error is kept until diagnostics_print, which sorts by place. `error` does not return: it leaves the statement
  * through the innermost `statement_guard`. */
 void say_error(struct place at, const char *note, const char *fmt, ...) __attribute__((format(printf, 3, 4)));
-void say_warning(struct place at, const char *note, const char *fmt, ...) __attribute__((format(printf, 3, 4)));
 _Noreturn void error(struct place at, const char *note, const char *fmt, ...) __attribute__((format(printf, 3, 4)));
 _Noreturn void abandon(void);                              /* leave the statement; its error has been said before */
 bool statement_guard(void (*work)(void *), void *context); /* true if the work ran to its end */
@@ -612,7 +611,6 @@ struct table {                      /* of one step: y+ = Phi y + sum of columns 
 	struct coefficient *input;  /* states x inputs: u held; or its value before the step and after it */
 };
 void check_pole_size(const struct model *model, const struct resolvent *resolvent); /* leaves the statement where |p| h is hopeless */
-struct coefficient coefficient_of_rational(mpq_srcptr q);
 /* Rounded, infinite beyond the range; `at` and `what` name it where it cannot be decided. */
 struct coefficient started_value(int count, const struct started *list, mpq_srcptr t, struct place at, const char *what); /* their sum */
 struct coefficient response_value(struct response *response, mpq_srcptr tau, bool two_words, struct place at, const char *what);

@@ -43,14 +43,6 @@ void say_error(struct place at, const char *note, const char *fmt, ...)
 	error_count++;
 }
 
-void say_warning(struct place at, const char *note, const char *fmt, ...)
-{
-	va_list args;
-	va_start(args, fmt);
-	say(at, "warning", note, fmt, args);
-	va_end(args);
-}
-
 void error(struct place at, const char *note, const char *fmt, ...)
 {
 	va_list args;
