@@ -2,6 +2,16 @@
 /* Loads on the target: phases as turns, growths as exponents of 2, and the load states made of them at a step's start. */
 #include "plgen.h"
 
+/* What an angle is measured in, 2 pi, or what an exponent is, ln 2 */
+static void set_unit(mpfr_ptr unit, bool turns)
+{
+	if (turns)
+		mpfr_const_pi(unit, MPFR_RNDN);
+	else
+		mpfr_const_log2(unit, MPFR_RNDN);
+	mpfr_mul_2ui(unit, unit, turns ? 1 : 0, MPFR_RNDN);
+}
+
 /* q / unit as 128 bits with `fraction` of them behind the point, wrapped; the unit is 2 pi for turns, else ln 2 */
 static void fixed_point(mpq_srcptr q, bool turns, int fraction, uint64_t word[2])
 {
@@ -10,11 +20,7 @@ static void fixed_point(mpq_srcptr q, bool turns, int fraction, uint64_t word[2]
 	mpz_t fixed, part;
 	mpfr_inits2(512 + (above > 0 ? above : 0), x, unit, NULL);
 	mpz_inits(fixed, part, NULL);
-	if (turns)
-		mpfr_const_pi(unit, MPFR_RNDN);
-	else
-		mpfr_const_log2(unit, MPFR_RNDN);
-	mpfr_mul_2ui(unit, unit, turns ? 1 : 0, MPFR_RNDN);
+	set_unit(unit, turns);
 	mpfr_set_q(x, q, MPFR_RNDN);
 	mpfr_div(x, x, unit, MPFR_RNDN);
 	mpfr_mul_2si(x, x, fraction, MPFR_RNDN);
@@ -52,11 +58,7 @@ static void print_rate(const struct emitter *e, mpq_srcptr q, bool turns, const 
 	mpfr_init2(rate, 192);
 	mpfr_inits2(512, unit, wide, NULL);
 	mpz_inits(word, digits, NULL);
-	if (turns)
-		mpfr_const_pi(unit, MPFR_RNDN);
-	else
-		mpfr_const_log2(unit, MPFR_RNDN);
-	mpfr_mul_ui(unit, unit, turns ? 2 : 1, MPFR_RNDN);
+	set_unit(unit, turns);
 	mpfr_set_q(wide, q, MPFR_RNDN);
 	mpfr_abs(wide, wide, MPFR_RNDN);
 	mpfr_div(rate, wide, unit, MPFR_RNDN);
