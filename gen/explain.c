@@ -151,6 +151,8 @@ void explain_person(FILE *to, const struct step *step)
 		fputs("Nothing is approximated: every constant is its closed form, correctly rounded.\n", to);
 	if (model->written != model)
 		person_reduction(to, step);
+	if (model->irreducible)
+		fputs("Nothing to reduce: every state is seen by an output.\n", to);
 	person_step(to, step);
 }
 

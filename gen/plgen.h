@@ -369,6 +369,7 @@ struct model {
 	bool declared_outputs;
 	const struct model *written; /* itself; of a reduced model: the one that it was made of */
 	int *place;                 /* of a reduced model, per written state: the state that is it, or -1 */
+	bool irreducible;           /* --reduce was asked for, and every state is seen */
 	int dropped;                /* written states that are no combination of the reduced ones */
 	const char **dropped_name;
 };

@@ -316,7 +316,8 @@ static void place_states(const struct observable *o, struct model *reduced)
 struct model *model_reduce(struct model *model)
 {
 	struct observable all = observe(model);
-	if (all.rank == model->system.states)
+	model->irreducible = all.rank == model->system.states;
+	if (model->irreducible)
 		return model;
 	if (all.rank == 0) {
 		say_error(model->output[0].value->start, "without --reduce all states are kept", "--reduce would leave no state: no output depends on one");
