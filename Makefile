@@ -35,6 +35,8 @@ check: all
 bench: all
 	sh bench/generate.sh $(BUILD)
 	sh bench/growth.sh $(BUILD)
+	$(BUILD)/bench/apply
+	sh bench/beam.sh $(BUILD)
 
 # The long forms of what `make check` runs briefly.
 accuracy: all

@@ -87,6 +87,9 @@ static void restrict_system(const struct linear *whole, struct block *b)
 		for (int k = 0; k < 2; k++)
 			system->input[i].force[k] = subvector((const mpq_t *)whole->input[i].force[k], 1, n, b);
 	}
+	system->channel = ARRAY(mpq_t *, (size_t)whole->channels);
+	for (int e = 0; e < whole->channels; e++)
+		system->channel[e] = subvector((const mpq_t *)whole->channel[e], 1, n, b);
 }
 
 int blocks_of(const struct linear *system, struct block **blocks)

@@ -56,23 +56,29 @@ static _Noreturn void undecided(struct place at, const char *what, bool isolated
 
 /* ---- numbers: sums of responses at a time, or combinations of entries of e^{A tau} ---- */
 
+struct entry {                      /* weight e^{A tau}[row][column] */
+	struct taylor *taylor;
+	int column;
+	mpq_t weight;
+};
 struct number {
 	int count;
 	const struct started *list; /* responses, each from its own start to t */
 	mpq_srcptr t;
-	struct taylor *taylor;      /* or, if not NULL: sum of weight e^{A tau}[row][column] */
+	const struct entry *entry;  /* or, if not NULL, entries of one row */
 	int row;
-	const int *column;
-	const mpq_t *weight;
 };
 
 /* One term; false: it is beyond the method's limits. *absent: it has not started. */
 static bool enclose_term(const struct number *n, int i, int precision, mpfi_ptr value, bool *absent)
 {
 	*absent = false;
-	if (n->taylor) {
-		taylor_entry(n->taylor, n->row, n->column[i], value);
-		mpfi_mul_q(value, value, n->weight[i]);
+	if (n->entry) {
+		const struct entry *entry = &n->entry[i];
+		if (!taylor_enclose(entry->taylor, precision))
+			return false;
+		taylor_entry(entry->taylor, n->row, entry->column, value);
+		mpfi_mul_q(value, value, entry->weight);
 		return true;
 	}
 	mpq_t tau;
@@ -87,7 +93,7 @@ static bool enclose_term(const struct number *n, int i, int precision, mpfi_ptr 
 static bool enclose_number(const struct number *n, int precision, mpfi_ptr sum)
 {
 	mpfi_t value;
-	bool good = !n->taylor || taylor_enclose(n->taylor, precision), absent;
+	bool good = true, absent;
 	mpfi_init2(value, precision);
 	mpfi_set_prec(sum, precision + GUARD_BITS);
 	mpfi_set_ui(sum, 0);
@@ -102,9 +108,9 @@ static bool enclose_number(const struct number *n, int precision, mpfi_ptr sum)
 
 static bool exact_term(const struct number *n, int i, mpq_ptr value)
 {
-	if (n->taylor) {
-		bool exact = taylor_exact(n->taylor, n->row, n->column[i], value);
-		mpq_mul(value, value, n->weight[i]);
+	if (n->entry) {
+		bool exact = taylor_exact(n->entry[i].taylor, n->row, n->entry[i].column, value);
+		mpq_mul(value, value, n->entry[i].weight);
 		return exact;
 	}
 	mpq_t tau;
@@ -195,162 +201,324 @@ struct coefficient response_value(struct response *response, mpq_srcptr tau, boo
 	return c;
 }
 
-static void check_range(const struct model *model, const struct coefficient *c, const struct response *response, const char *what)
+static void check_range(const struct model *model, const struct coefficient *c, int count, const struct started *list, const char *what)
 {
-	if (isfinite(c->value))
+	if (isfinite(c->value) || count == 0)
 		return;
-	struct culprit pole = find_culprit(response, round_rational(model->h));
+	struct culprit pole = find_culprit(list[0].response, round_rational(model->h));
 	error(model->step_at, pole.grows ? "a smaller step would do" : NULL, "%s is beyond the range of double: pole %s, h = %s s", what,
 	      pole_of(&pole), readable_text(model->h));
 }
 
-/* ---- a table ---- */
+/* ---- tables ---- */
 
+struct exponential {                /* e^{A tau} of one system by Taylor series */
+	mpq_srcptr tau;
+	struct taylor **segment;    /* of time: loads may change; NULL: not made yet */
+};
 struct filling {
 	const struct model *model;
 	const struct linear *system;
 	struct resolvent *resolvent;
 	const char **state_name;
 	struct series series;
-	struct taylor **taylor;     /* per segment of time; NULL: residues */
-	bool two_words;
-	int *column;                /* room for one combination */
-	mpq_t *weight;
+	int exponentials;           /* 0: residues */
+	struct exponential *exponential;
+	const struct wanted *wanted; /* the table being filled */
+	int segment, row;
+	mpq_t tau;                  /* its time */
+	int entries;                /* room for one combination */
+	struct entry *entry;
+	int responses;
+	struct started *response;
+	mpq_t **impulse;            /* per channel, once asked for */
 };
 
-/* By Taylor series if the filling has them and they decide it; what vanishes at this very step only residues decide. */
-static struct coefficient entry(const struct filling *f, int segment, int terms, struct response *(*respond)(const struct filling *, int, int, int, int),
-				int row, int a, int b, const char *of)
+static const mpq_t *impulse_of(struct filling *f, int channel)
+{
+	if (!f->impulse)
+		f->impulse = ARRAY(mpq_t *, (size_t)f->system->channels);
+	if (!f->impulse[channel])
+		f->impulse[channel] = impulse_of_channel(f->system, channel);
+	return (const mpq_t *)f->impulse[channel];
+}
+
+static struct taylor *taylor_at(const struct filling *f, mpq_srcptr tau)
+{
+	for (int i = 0; i < f->exponentials; i++) {
+		struct taylor **made = &f->exponential[i].segment[f->segment];
+		if (!mpq_equal(f->exponential[i].tau, tau))
+			continue;
+		if (!*made)
+			*made = taylor_of(f->series.size, (const mpq_t *)series_matrix(&f->series, f->system, f->segment), tau);
+		return *made;
+	}
+	return NULL;
+}
+
+static void add_entry(struct filling *f, mpq_srcptr tau, int column, mpq_srcptr weight)
+{
+	struct entry *entry = &f->entry[f->entries++];
+	entry->taylor = taylor_at(f, tau);
+	entry->column = column;
+	mpq_set(entry->weight, weight);
+}
+
+static void add_response(struct filling *f, struct response *response, mpq_srcptr start)
+{
+	f->response[f->responses].response = response;
+	mpq_set(f->response[f->responses++].start, start);
+}
+
+/* Rounds what `combine` adds: entries of e^{A tau} if the filling has them and they decide it; what vanishes at this very
+ * step only residues decide. */
+static struct coefficient number_of(struct filling *f, bool two_words, void (*combine)(struct filling *f, int a, int b), int a, int b, const char *of)
 {
 	enum { TAYLOR_PRECISION = 2048 };
-	const char *what = format("the factor of %s in the step of %s", of, f->state_name[row]);
+	const char *what = format("the factor of %s in the step of %s", of, f->state_name[f->row]);
 	struct coefficient c;
-	bool isolated;
-	if (f->taylor) {
-		struct number number = { .count = terms, .taylor = f->taylor[segment], .row = row, .column = f->column, .weight = (const mpq_t *)f->weight };
-		if (round_number(&number, f->two_words, TAYLOR_PRECISION, &c, &isolated) && isfinite(c.value))
+	bool isolated, by_series = f->exponentials > 0;
+	f->entries = f->responses = 0;
+	combine(f, a, b);
+	if (by_series) {
+		struct number number = { .count = f->entries, .entry = f->entry, .row = f->row };
+		if (round_number(&number, two_words, TAYLOR_PRECISION, &c, &isolated) && isfinite(c.value))
 			return c;
+		int kept = f->exponentials;
+		f->exponentials = 0;
+		combine(f, a, b);
+		f->exponentials = kept;
 	}
-	struct response *response = respond(f, segment, row, a, b);
-	c = response_value(response, f->model->h, f->two_words, f->model->step_at, what);
-	check_range(f->model, &c, response, what);
+	struct number number = { .count = f->responses, .list = f->response, .t = f->tau };
+	if (!round_number(&number, two_words, LIMIT_PRECISION, &c, &isolated))
+		undecided(f->model->step_at, what, isolated);
+	check_range(f->model, &c, f->responses, f->response, what);
 	return c;
 }
 
-static struct response *respond_state(const struct filling *f, int segment, int row, int state, int unused)
-{
-	(void)segment;
-	(void)unused;
-	return response_of_state(f->resolvent, f->system, row, state);
-}
-
-static struct response *respond_load(const struct filling *f, int segment, int row, int load, int column)
-{
-	return response_of_load(f->resolvent, f->system, segment, row, load, column);
-}
-
-static struct response *respond_input(const struct filling *f, int segment, int row, int input, int column)
-{
-	(void)segment;
-	return response_of_input(f->resolvent, f->system, row, input, column, f->model->h);
-}
-
-static int add_column(const struct filling *f, int terms, int column, mpq_srcptr weight)
-{
-	f->column[terms] = column;
-	mpq_set(f->weight[terms], weight);
-	return terms + 1;
-}
-
 /* The state itself, and what a scheme holds of it: -heldK q or -heldC v in the held terms */
-static int combine_state(const struct filling *f, int state)
+static void combine_state(struct filling *f, int state, int unused)
 {
+	(void)unused;
 	const struct linear *system = f->system;
 	const mpq_t *held = state < system->n ? system->heldK : system->heldC;
 	mpq_t weight;
 	mpq_init(weight);
+	if (!f->exponentials) {
+		add_response(f, response_of_state(f->resolvent, system, f->row, state), weight);
+		mpq_clear(weight);
+		return;
+	}
 	mpq_set_ui(weight, 1, 1);
-	int terms = add_column(f, 0, state, weight);
+	add_entry(f, f->tau, state, weight);
 	for (int i = 0; i < system->n && held; i++) {
 		mpq_neg(weight, held[i * system->n + system->coord[state]]);
 		if (mpq_sgn(weight) != 0)
-			terms = add_column(f, terms, f->series.held + i, weight);
+			add_entry(f, f->tau, f->series.held + i, weight);
 	}
 	mpq_clear(weight);
-	return terms;
 }
 
-/* A ramp from u0 to u1: u0 (u - u'/h) + u1 u'/h */
-static int combine_input(const struct filling *f, int input, int column)
+/* A ramp from u0 to u1 over h: u0 (u - u'/h) + u1 u'/h */
+static void combine_input(struct filling *f, int input, int column)
 {
 	mpq_t weight;
 	mpq_init(weight);
+	if (!f->exponentials) {
+		add_response(f, response_of_input(f->resolvent, f->system, f->row, input, column, f->model->h), weight);
+		mpq_clear(weight);
+		return;
+	}
+	int at = f->series.input[input];
 	mpq_set_ui(weight, 1, 1);
-	int at = f->series.input[input], terms = column == 0 ? add_column(f, 0, at, weight) : 0;
+	if (column == 0)
+		add_entry(f, f->tau, at, weight);
 	if (f->system->input[input].first_order) {
 		mpq_inv(weight, f->model->h);
 		if (column == 0)
 			mpq_neg(weight, weight);
-		terms = add_column(f, terms, at + 1, weight);
+		add_entry(f, f->tau, at + 1, weight);
 	}
 	mpq_clear(weight);
-	return terms;
 }
 
-static int combine_load(const struct filling *f, int load, int column)
+static void combine_load(struct filling *f, int load, int column)
 {
 	mpq_t one;
 	mpq_init(one);
+	if (!f->exponentials)
+		add_response(f, response_of_load(f->resolvent, f->system, f->segment, f->row, load, column), one);
 	mpq_set_ui(one, 1, 1);
-	int at = f->series.load[load], terms = at < 0 ? 0 : add_column(f, 0, at + column, one);
+	if (f->exponentials && f->series.load[load] >= 0)
+		add_entry(f, f->tau, f->series.load[load] + column, one);
 	mpq_clear(one);
-	return terms;
 }
 
-static void fill_row(const struct filling *f, struct table *table, int i)
+/* (s/h)^m from u_m of a chain u_0' = u_1, u_1' = u_2 ..., u_0 the force: s^m/m! */
+static void add_powers(struct filling *f, const struct kernel_part *part, mpq_srcptr tau, int channel)
+{
+	mpq_t weight, scale;
+	mpq_inits(weight, scale, NULL);
+	mpq_set_ui(scale, 1, 1);
+	for (int m = 0; m < part->powers; m++) {
+		if (m > 0) {
+			mpq_set_ui(weight, (unsigned long)m, 1);
+			mpq_mul(scale, scale, weight);
+			mpq_div(scale, scale, f->model->h);
+		}
+		mpq_mul(weight, part->power[m], scale);
+		if (mpq_sgn(weight) != 0)
+			add_entry(f, tau, f->series.channel + channel * f->series.powers + m, weight);
+	}
+	mpq_clears(weight, scale, NULL);
+}
+
+/* impulse e^{A tau} B: B are the highest derivatives that the force gives */
+static void add_impulse(struct filling *f, const struct kernel_part *part, mpq_srcptr tau, int channel)
 {
 	const struct linear *system = f->system;
-	int n = table->states, columns = table->columns;
-	for (int j = 0; j < n; j++)
-		table->Phi[i * n + j] = entry(f, 0, combine_state(f, j), respond_state, i, j, 0, f->state_name[j]);
-	for (int s = 0; s < system->segments; s++)
-		for (int l = 0, column = 0; l < system->loads; l++)
-			for (int k = 0; k < system->load[l].columns; k++, column++)
-				table->load[(s * n + i) * columns + column] =
-					entry(f, s, combine_load(f, l, k), respond_load, i, l, k, column_text(&system->load[l], k));
-	for (int j = 0, column = 0; j < system->inputs; j++)
-		for (int k = 0; k <= system->input[j].first_order; k++, column++)
-			table->input[i * table->inputs + column] = entry(f, 0, combine_input(f, j, k), respond_input, i, j, k, system->input[j].name);
+	const mpq_t *B = impulse_of(f, channel);
+	mpq_t weight;
+	mpq_init(weight);
+	for (int i = 0; i < system->states; i++) {
+		mpq_mul(weight, B[i], part->impulse);
+		if (mpq_sgn(weight) != 0)
+			add_entry(f, tau, i, weight);
+	}
+	mpq_clear(weight);
 }
 
-static struct table *table_new(const struct linear *system)
+static void combine_kernel(struct filling *f, int index, int channel)
+{
+	const struct kernel *kernel = &f->wanted->kernel[index];
+	mpq_t tau, start;
+	mpq_inits(tau, start, NULL);
+	for (int k = 0; k < kernel->parts; k++) {
+		const struct kernel_part *part = &kernel->part[k];
+		mpq_mul(tau, part->fraction, f->model->h);
+		mpq_sub(start, f->tau, tau);
+		if (!f->exponentials) {
+			add_response(f, response_of_kernel(f->resolvent, f->system, f->row, channel, part, f->model->h), start);
+			continue;
+		}
+		add_powers(f, part, tau, channel);
+		if (mpq_sgn(part->impulse) != 0)
+			add_impulse(f, part, tau, channel);
+	}
+	mpq_clears(tau, start, NULL);
+}
+
+/* At tau = 0 an impulse is what it is. */
+static bool is_immediate(const struct kernel *kernel)
+{
+	return kernel->parts == 1 && mpq_sgn(kernel->part[0].fraction) == 0;
+}
+
+static struct coefficient immediate(struct filling *f, const struct kernel *kernel, int channel)
+{
+	mpq_t value;
+	mpq_init(value);
+	mpq_mul(value, impulse_of(f, channel)[f->row], kernel->part[0].impulse);
+	struct coefficient c = { .value = round_rational(value), .zero = mpq_sgn(value) == 0 };
+	check_range(f->model, &c, 0, NULL, "a factor of the leftover");
+	mpq_clear(value);
+	return c;
+}
+
+static void fill_row(struct filling *f, struct table *table)
+{
+	const struct linear *system = f->system;
+	const struct wanted *wanted = f->wanted;
+	int n = table->states, columns = table->columns, i = f->row;
+	f->segment = 0;
+	for (int j = 0; j < n && wanted->Phi; j++)
+		table->Phi[i * n + j] = number_of(f, wanted->two_words, combine_state, j, 0, f->state_name[j]);
+	for (int j = 0, column = 0; j < system->inputs; j++)
+		for (int k = 0; k <= system->input[j].first_order; k++, column++)
+			table->input[i * table->inputs + column] = number_of(f, wanted->two_words, combine_input, j, k, system->input[j].name);
+	for (int j = 0; j < wanted->kernels; j++)
+		for (int e = 0; e < system->channels; e++)
+			table->kernel[j][i * system->channels + e] = is_immediate(&wanted->kernel[j]) ? immediate(f, &wanted->kernel[j], e)
+				: number_of(f, false, combine_kernel, j, e, format("leftover %d", e + 1));
+	for (f->segment = 0; f->segment < system->segments; f->segment++)
+		for (int l = 0, column = 0; l < system->loads; l++)
+			for (int k = 0; k < system->load[l].columns; k++, column++)
+				table->load[(f->segment * n + i) * columns + column] =
+					number_of(f, wanted->two_words, combine_load, l, k, column_text(&system->load[l], k));
+}
+
+static struct table *table_new(const struct linear *system, const struct wanted *wanted)
 {
 	struct table *table = NEW(struct table);
 	size_t n = (size_t)system->states;
 	table->states = system->states;
 	table->columns = load_columns(system);
 	table->inputs = input_columns(system);
-	table->Phi = ARRAY(struct coefficient, n * n);
+	table->channels = system->channels;
+	table->wanted = wanted;
+	table->Phi = wanted->Phi ? ARRAY(struct coefficient, n * n) : NULL;
 	table->load = ARRAY(struct coefficient, (size_t)system->segments * n * (size_t)table->columns);
 	table->input = ARRAY(struct coefficient, n * (size_t)table->inputs);
+	table->kernel = ARRAY(struct coefficient *, (size_t)wanted->kernels);
+	for (int k = 0; k < wanted->kernels; k++)
+		table->kernel[k] = ARRAY(struct coefficient, n * (size_t)system->channels);
 	return table;
 }
 
-static struct table *table_of_block(struct filling *f)
+static void add_exponential(struct filling *f, mpq_srcptr fraction)
+{
+	mpq_ptr tau = rationals(1)[0];
+	mpq_mul(tau, fraction, f->model->h);
+	for (int i = 0; i < f->exponentials; i++)
+		if (mpq_equal(f->exponential[i].tau, tau))
+			return;
+	ENLARGE(f->exponential, (size_t)f->exponentials + 1);
+	f->exponential[f->exponentials++] = (struct exponential){ tau, ARRAY(struct taylor *, (size_t)f->system->segments) };
+}
+
+static void plan_exponentials(struct filling *f, int count, const struct wanted *wanted)
+{
+	for (int t = 0; t < count; t++) {
+		add_exponential(f, wanted[t].fraction);
+		for (int k = 0; k < wanted[t].kernels; k++)
+			for (int j = 0; j < wanted[t].kernel[k].parts; j++)
+				add_exponential(f, wanted[t].kernel[k].part[j].fraction);
+	}
+}
+
+static int longest_chain(int count, const struct wanted *wanted)
+{
+	int powers = 0;
+	for (int t = 0; t < count; t++)
+		for (int k = 0; k < wanted[t].kernels; k++)
+			for (int j = 0; j < wanted[t].kernel[k].parts; j++)
+				powers = wanted[t].kernel[k].part[j].powers > powers ? wanted[t].kernel[k].part[j].powers : powers;
+	return powers;
+}
+
+static struct table **tables_of_block(struct filling *f, int count, const struct wanted *wanted)
 {
 	const struct linear *system = f->system;
-	struct table *table = table_new(system);
-	f->column = ARRAY(int, (size_t)system->n + 2);
-	f->weight = rationals((size_t)system->n + 2);
-	series_place(&f->series, system);
-	if (system->states > LIMIT_RESIDUE_STATES) {
-		f->taylor = ARRAY(struct taylor *, (size_t)system->segments);
-		for (int s = 0; s < system->segments; s++)
-			f->taylor[s] = taylor_of(f->series.size, (const mpq_t *)series_matrix(&f->series, system, s), f->model->h);
-	}
-	for (int i = 0; i < table->states; i++) {
-		progress("factors of the step, state", i, table->states);
-		fill_row(f, table, i);
+	struct table **table = ARRAY(struct table *, (size_t)count);
+	size_t room = (size_t)system->states + (size_t)system->n + 8;
+	f->entry = ARRAY(struct entry, room);
+	f->response = ARRAY(struct started, 4);
+	for (size_t i = 0; i < room; i++)
+		mpq_init(f->entry[i].weight);
+	for (size_t i = 0; i < 4; i++)
+		mpq_init(f->response[i].start);
+	mpq_init(f->tau);
+	series_place(&f->series, system, longest_chain(count, wanted));
+	if (system->states > LIMIT_RESIDUE_STATES)
+		plan_exponentials(f, count, wanted);
+	for (int t = 0; t < count; t++) {
+		f->wanted = &wanted[t];
+		table[t] = table_new(system, f->wanted);
+		mpq_mul(f->tau, f->wanted->fraction, f->model->h);
+		for (f->row = 0; f->row < system->states; f->row++) {
+			progress("factors of the step, row", t * system->states + f->row, count * system->states);
+			fill_row(f, table[t]);
+		}
 	}
 	progress_end();
 	return table;
@@ -358,7 +526,7 @@ static struct table *table_of_block(struct filling *f)
 
 static void mark_zero(struct coefficient *c, size_t count)
 {
-	for (size_t i = 0; i < count; i++)
+	for (size_t i = 0; c && i < count; i++)
 		c[i].zero = true;
 }
 
@@ -367,31 +535,39 @@ static void scatter(const struct block *block, const struct table *part, int seg
 {
 	for (int i = 0; i < part->states; i++) {
 		int row = block->state[i];
-		for (int j = 0; j < part->states; j++)
+		for (int j = 0; part->Phi && j < part->states; j++)
 			table->Phi[row * table->states + block->state[j]] = part->Phi[i * part->states + j];
 		for (int s = 0; s < segments; s++)
 			for (int k = 0; k < table->columns; k++)
 				table->load[(s * table->states + row) * table->columns + k] = part->load[(s * part->states + i) * part->columns + k];
 		for (int k = 0; k < table->inputs; k++)
 			table->input[row * table->inputs + k] = part->input[i * part->inputs + k];
+		for (int k = 0; k < table->wanted->kernels; k++)
+			for (int e = 0; e < table->channels; e++)
+				table->kernel[k][row * table->channels + e] = part->kernel[k][i * part->channels + e];
 	}
 }
 
-struct table *table_of(const struct model *model, struct resolvent *resolvent, const struct linear *system, bool two_words)
+struct table **tables_of(const struct model *model, struct resolvent *resolvent, const struct linear *system, int count, const struct wanted *wanted)
 {
 	struct block *block;
-	int count = blocks_of(system, &block);
-	struct filling whole = { .model = model, .system = system, .resolvent = resolvent, .state_name = model->state_name, .two_words = two_words };
-	if (count == 1)
-		return table_of_block(&whole);
-	struct table *table = table_new(system);
-	mark_zero(table->Phi, (size_t)table->states * (size_t)table->states);
-	for (int b = 0; b < count; b++) {
-		struct filling part = { .model = model, .system = &block[b].system, .resolvent = resolvent_of(&block[b].system), .two_words = two_words };
+	int blocks = blocks_of(system, &block);
+	struct filling whole = { .model = model, .system = system, .resolvent = resolvent, .state_name = model->state_name };
+	if (blocks == 1)
+		return tables_of_block(&whole, count, wanted);
+	struct table **table = ARRAY(struct table *, (size_t)count);
+	for (int t = 0; t < count; t++) {
+		table[t] = table_new(system, &wanted[t]);
+		mark_zero(table[t]->Phi, (size_t)system->states * (size_t)system->states);
+	}
+	for (int b = 0; b < blocks; b++) {
+		struct filling part = { .model = model, .system = &block[b].system, .resolvent = resolvent_of(&block[b].system) };
 		part.state_name = ARRAY(const char *, (size_t)block[b].system.states);
 		for (int i = 0; i < block[b].system.states; i++)
 			part.state_name[i] = model->state_name[block[b].state[i]];
-		scatter(&block[b], table_of_block(&part), system->segments, table);
+		struct table **made = tables_of_block(&part, count, wanted);
+		for (int t = 0; t < count; t++)
+			scatter(&block[b], made[t], system->segments, table[t]);
 	}
 	return table;
 }

@@ -23,6 +23,16 @@ static struct value *scalar(struct form *form)
 	return value;
 }
 
+static const char *shape_text(const struct value *value)
+{
+	return format("%d x %d", value->rows, value->columns);
+}
+
+static bool is_scalar(const struct value *value)
+{
+	return value->rows == 1 && value->columns == 1;
+}
+
 static struct form *collect_scalar(struct collector *c, struct node *node)
 {
 	struct value *value = collect_node(c, node);
@@ -33,10 +43,17 @@ static struct form *collect_scalar(struct collector *c, struct node *node)
 
 /* ---- what cannot be treated ---- */
 
-static bool holds_acceleration(const struct node *node)
+static bool holds_acceleration(struct node *node)
 {
+	if (node->kind == NODE_NAME && node->symbol->kind == SYMBOL_COORD)
+		return node->primes > 0 && node->primes >= node->symbol->highest;
+	if (node->kind == NODE_NAME && node->symbol->kind == SYMBOL_LET) {
+		if (node->symbol->highest == 0)         /* not known yet; a let has no order of its own */
+			node->symbol->highest = holds_acceleration(node->symbol->value) ? 1 : -1;
+		return node->symbol->highest > 0;
+	}
 	if (node->kind == NODE_NAME)
-		return node->primes == 2 || (node->symbol->kind == SYMBOL_LET && holds_acceleration(node->symbol->value));
+		return false;
 	for (int i = 0; i < node->children; i++)
 		if (holds_acceleration(node->child[i]))
 			return true;
@@ -47,12 +64,19 @@ _Noreturn void not_linear(const struct collector *c, const struct node *node, co
 {
 	if (c->tolerant)
 		abandon();
-	const struct node *term = c->term ? c->term : node;
+	struct node *term = (struct node *)(c->term ? c->term : node);
 	if (holds_acceleration(term))
-		error(term->start, "accelerations stand in every equation with constant factors: no scheme treats this",
+		error(term->start, "highest derivatives stand in every equation with constant factors: no scheme treats this",
 		      "term '%s' %s", text_between(term->start, term->end), why);
-	error(term->start, "etd1, etdrk2, etdrk4, nc2, nc3, dq4 and bm3 are the schemes that could; they are not built yet",
+	if (c->closed)
+		error(term->start, NULL, "term '%s' %s: there is no closed form", text_between(term->start, term->end), why);
+	error(term->start, "etd1, etdrk2, etdrk4, nc2, nc3, dq4, bm3 and pl are the schemes that could",
 	      "term '%s' %s: scheme %s cannot treat it", text_between(term->start, term->end), why, c->scheme);
+}
+
+static bool keeps(const struct collector *c)
+{
+	return c->keep && !c->tolerant;
 }
 
 _Noreturn void not_built(const struct collector *c, struct place at, const char *what)
@@ -110,16 +134,16 @@ static bool tangent(const struct node *node, const struct form *x, mpq_ptr value
 	return true;
 }
 
-static struct form *constant_call(struct collector *c, const struct node *node, const struct form *x)
+struct form *constant_call(struct collector *c, const struct node *node, enum function function, const struct form *x)
 {
 	mpq_t value;
 	mpq_init(value);
-	bool trigonometric = node->function == FN_SIN || node->function == FN_COS;
-	bool rational = node->function == FN_TAN ? tangent(node, x, value) : trigonometric && niven(node->function == FN_SIN, x, value);
+	bool trigonometric = function == FN_SIN || function == FN_COS;
+	bool rational = function == FN_TAN ? tangent(node, x, value) : trigonometric && niven(function == FN_SIN, x, value);
 	if (!rational) {
 		constant_value(c, x, value);
-		if (!constant_function(node->at, node->function, value, value))
-			c->irrationals.used[node->function] = true;
+		if (!constant_function(node->at, function, value, value))
+			c->irrationals.used[function] = true;
 	}
 	check_bits(node->at, value);
 	struct form *form = form_constant(value);
@@ -127,39 +151,44 @@ static struct form *constant_call(struct collector *c, const struct node *node, 
 	return form;
 }
 
-static struct form *sine_of(struct collector *c, struct node *node, const struct form *x)
+static struct form *not_a_load(struct collector *c, const struct node *node, struct form *x)
+{
+	if (!keeps(c))
+		not_linear(c, node, "is not linear");
+	return kept_call(c, node, node->function, 1, &x);
+}
+
+static struct form *sine_of(struct collector *c, struct node *node, struct form *x)
 {
 	struct form phase;
 	mpq_srcptr w;
 	if (is_constant(x))
-		return constant_call(c, node, x);
+		return constant_call(c, node, node->function, x);
 	if (!linear_in_time(x, &w, &phase))
-		not_linear(c, node, "is not linear");
+		return not_a_load(c, node, x);
 	return collect_wave(c, node->function == FN_SIN, w, &phase);
 }
 
 /* e^{a t + b} = e^b e^{a t} */
-static struct form *exponential_of(struct collector *c, struct node *node, const struct form *x)
+static struct form *exponential_of(struct collector *c, struct node *node, struct form *x)
 {
 	struct form phase;
 	mpq_srcptr a;
 	if (is_constant(x))
-		return constant_call(c, node, x);
+		return constant_call(c, node, FN_EXP, x);
 	if (!linear_in_time(x, &a, &phase))
-		not_linear(c, node, "is not linear");
+		return not_a_load(c, node, x);
 	struct form *wave = plain_wave(c, 0, a);
-	return phase.terms ? form_product(c, constant_call(c, node, &phase), wave) : wave;
+	return phase.terms ? form_product(c, constant_call(c, node, FN_EXP, &phase), wave) : wave;
 }
 
-static struct form *function_of_form(struct collector *c, struct node *node, const struct form *x)
+static struct form *function_of_form(struct collector *c, struct node *node, struct form *x)
 {
 	if (node->function == FN_SIN || node->function == FN_COS)
 		return sine_of(c, node, x);
 	if (node->function == FN_EXP)
 		return exponential_of(c, node, x);
-	if (!is_constant(x))
-		not_linear(c, node, "is not linear");
-	return constant_call(c, node, x);
+	return is_constant(x) ? constant_call(c, node, node->function, x) : not_a_load(c, node, x);
 }
 
 /* The argument of a function that no exact scheme will take apart. */
@@ -173,15 +202,39 @@ static struct value *collect_argument(struct collector *c, const struct node *no
 	return x;
 }
 
-/* Functions of one argument apply to each cell. */
+/* A function that divides its arguments' range, of one cell of each */
+static struct form *piecewise_cell(struct collector *c, struct node *node, struct form *const *x)
+{
+	bool kept = keeps(c) && !is_decided(c, node->children, x);
+	return kept ? kept_call(c, node, node->function, node->children, x) : piecewise(c, node, x);
+}
+
+/* Cell by cell; a scalar goes with every cell of the others */
+static struct value *collect_piecewise(struct collector *c, struct node *node)
+{
+	struct value **argument = ARRAY(struct value *, (size_t)node->children), *shape = NULL;
+	for (int i = 0; i < node->children; i++) {
+		argument[i] = collect_node(c, node->child[i]);
+		bool single = is_scalar(argument[i]);
+		if (!single && shape && (shape->rows != argument[i]->rows || shape->columns != argument[i]->columns))
+			error(node->child[i]->start, NULL, "sizes do not fit: %s and %s", shape_text(shape), shape_text(argument[i]));
+		shape = single ? shape : argument[i];
+	}
+	struct value *result = shape ? value_new(shape->rows, shape->columns) : value_new(1, 1);
+	struct form **x = ARRAY(struct form *, (size_t)node->children);
+	for (int k = 0; k < result->rows * result->columns; k++) {
+		for (int i = 0; i < node->children; i++)
+			x[i] = argument[i]->cell[is_scalar(argument[i]) ? 0 : k];
+		result->cell[k] = piecewise_cell(c, node, x);
+	}
+	return result;
+}
+
+/* Functions apply to each cell. */
 static struct value *collect_call(struct collector *c, struct node *node)
 {
-	if (node->function >= FN_MIN || node->function == FN_ABS || node->function == FN_SGN || node->function == FN_ATAN2) {
-		struct form **x = ARRAY(struct form *, (size_t)node->children);
-		for (int i = 0; i < node->children; i++)
-			x[i] = collect_scalar(c, node->child[i]);
-		return scalar(piecewise(c, node, x));
-	}
+	if (node->function >= FN_MIN || node->function == FN_ABS || node->function == FN_SGN || node->function == FN_ATAN2)
+		return collect_piecewise(c, node);
 	struct value *x = collect_argument(c, node), *y = value_new(x->rows, x->columns);
 	for (int i = 0; i < x->rows * x->columns; i++)
 		y->cell[i] = function_of_form(c, node, x->cell[i]);
@@ -189,11 +242,6 @@ static struct value *collect_call(struct collector *c, struct node *node)
 }
 
 /* ---- operators ---- */
-
-static const char *shape_text(const struct value *value)
-{
-	return format("%d x %d", value->rows, value->columns);
-}
 
 static struct value *collect_sum(struct collector *c, struct node *node)
 {
@@ -238,7 +286,7 @@ static struct form *collect_division(struct collector *c, const struct form *a, 
 
 static bool has_coordinate(const struct form *form)
 {
-	return form->terms > 0 && form->term[form->terms - 1].basis.kind == BASIS_COORD;
+	return form->terms > 0 && form->term[form->terms - 1].basis.kind >= BASIS_COORD;
 }
 
 static bool has_input(const struct form *form)
@@ -253,6 +301,8 @@ static struct form *times(struct collector *c, const struct node *node, const st
 {
 	if (is_constant(a) || is_constant(b))
 		return form_product(c, a, b);
+	if (keeps(c))
+		return kept_product(c, node, a, b);
 	if (has_coordinate(a) && has_coordinate(b))
 		not_linear(c, node, "is not linear");
 	if (has_coordinate(a) || has_coordinate(b))
@@ -271,11 +321,6 @@ static struct form *dot(struct collector *c, const struct node *node, const stru
 			sum = form_sum(sum, times(c, node, x, y), false);
 	}
 	return sum;
-}
-
-static bool is_scalar(const struct value *value)
-{
-	return value->rows == 1 && value->columns == 1;
 }
 
 static struct value *multiply(struct collector *c, const struct node *node, const struct value *a, const struct value *b, struct place at)
@@ -300,11 +345,13 @@ static struct value *divide(struct collector *c, const struct node *node, const 
 {
 	if (!is_scalar(b))
 		error(at, NULL, "division by a %s matrix", shape_text(b));
-	if (!is_constant(b->cell[0]))
+	bool kept = !is_constant(b->cell[0]);
+	if (kept && !keeps(c))
 		not_linear(c, node, "divides by what moves");
 	struct value *quotient = value_new(a->rows, a->columns);
+	const struct form *inverse = kept ? kept_reciprocal(c, node, b->cell[0]) : NULL;
 	for (int i = 0; i < a->rows * a->columns; i++)
-		quotient->cell[i] = collect_division(c, a->cell[i], b->cell[0], at);
+		quotient->cell[i] = kept ? kept_product(c, node, a->cell[i], inverse) : collect_division(c, a->cell[i], b->cell[0], at);
 	return quotient;
 }
 
@@ -323,6 +370,8 @@ static struct value *collect_product(struct collector *c, struct node *node)
 static struct form *collect_power(struct collector *c, struct node *node)
 {
 	struct form *base = collect_scalar(c, node->child[0]), *exponent = collect_scalar(c, node->child[1]);
+	if (!is_constant(exponent) && keeps(c))
+		return kept_power(c, node, base, exponent);
 	if (!is_constant(exponent))
 		not_linear(c, node, "is not linear");
 	mpq_t b, e;
@@ -340,7 +389,7 @@ static struct form *collect_power(struct collector *c, struct node *node)
 	} else if (mpq_sgn(e) == 0) {
 		mpq_set_ui(b, 1, 1);
 		power = form_constant(b);
-	} else if (!has_coordinate(base) && !has_input(base) && mpz_cmp_ui(mpq_denref(e), 1) == 0 && mpq_sgn(e) > 0) {
+	} else if (!c->whole_time && !has_coordinate(base) && !has_input(base) && mpz_cmp_ui(mpq_denref(e), 1) == 0 && mpq_sgn(e) > 0) {
 		if (mpq_cmp_ui(e, LIMIT_LOAD_POWER, 1) > 0)
 			error(node->at, NULL, "power of a load beyond the limit of %d", LIMIT_LOAD_POWER);
 		power = base;
@@ -348,13 +397,15 @@ static struct form *collect_power(struct collector *c, struct node *node)
 			power = load_product(c, power, base);
 	}
 	mpq_clears(b, e, NULL);
+	if (!power && keeps(c))
+		return kept_power(c, node, base, exponent);
 	if (!power)
 		not_linear(c, node, "is not linear");
 	check_form(node->at, power);
 	return power;
 }
 
-static bool compare_values(enum comparison comparison, int order)
+bool compare_values(enum comparison comparison, int order)
 {
 	switch (comparison) {
 	case CMP_LT: return order < 0;
@@ -369,8 +420,10 @@ static bool compare_values(enum comparison comparison, int order)
 /* A condition on constants or on time; true is 1, false is 0. */
 static struct form *collect_comparison(struct collector *c, struct node *node)
 {
-	struct form *left = collect_scalar(c, node->child[0]), *right = collect_scalar(c, node->child[1]);
+	struct form *left = collect_scalar(c, node->child[0]), *right = collect_scalar(c, node->child[1]), *difference = form_sum(left, right, true);
 	mpq_t truth;
+	if (keeps(c) && !is_decided(c, 1, &difference))
+		return kept_comparison(c, node, node->comparison, left, right);
 	mpq_init(truth);
 	mpq_set_ui(truth, compare_values(node->comparison, order_now(c, node, left, right)), 1);
 	struct form *form = form_constant(truth);
@@ -378,9 +431,21 @@ static struct form *collect_comparison(struct collector *c, struct node *node)
 	return form;
 }
 
+static struct value *kept_choices(struct collector *c, struct node *node, const struct form *condition)
+{
+	struct value *a = collect_node(c, node->child[1]), *b = collect_node(c, node->child[2]), *choice = value_new(a->rows, a->columns);
+	if (a->rows != b->rows || a->columns != b->columns)
+		error(node->at, NULL, "sizes do not fit: %s and %s", shape_text(a), shape_text(b));
+	for (int i = 0; i < a->rows * a->columns; i++)
+		choice->cell[i] = kept_choice(c, node, condition, a->cell[i], b->cell[i]);
+	return choice;
+}
+
 static struct value *collect_choice(struct collector *c, struct node *node)
 {
 	struct form *condition = collect_scalar(c, node->child[0]), *zero = NEW(struct form);
+	if (keeps(c) && !is_decided(c, 1, &condition))
+		return kept_choices(c, node, condition);
 	return collect_node(c, node->child[order_now(c, node, condition, zero) != 0 ? 1 : 2]);
 }
 
@@ -431,6 +496,9 @@ static struct value *collect_name(struct collector *c, struct node *node)
 	}
 	if (symbol->kind == SYMBOL_LET)
 		need_constant(c, node, format("let '%s'", symbol->name));
+	for (int i = 0; i < c->fixings; i++)
+		if (c->fixing[i].symbol == symbol)
+			return scalar(form_constant(c->fixing[i].value));
 	if (symbol->progress == COLLECTING && symbol->kind == SYMBOL_PARAM)
 		error(node->at, NULL, "param '%s' is defined by itself", symbol->name);
 	if (symbol->progress != COLLECTED)

@@ -13,7 +13,7 @@ struct naming {                     /* the identifiers given away so far */
 
 /* What the generated functions use themselves. */
 static const char *const own_names[] = {
-	"s", "y", "t", "u", "out", "dydt", "residual", "growth", "factor",
+	"s", "y", "t", "u", "out", "dydt", "residual", "growth", "factor", "left", "node", "which", "start", "slope", "excess", "now", "first",
 	"fabs", "fmin", "fmax", "pow"   /* of <math.h>, which no function of a spec is named after */
 };
 
@@ -23,12 +23,16 @@ static bool begins_with(const char *name, const char *prefix)
 	return strncmp(name, prefix, length) == 0 && name[length] == '_';
 }
 
-/* wave1, load2, ...: the locals of loads */
+/* load2, part3, ...: the locals of generated functions */
 static bool is_load_local(const char *name)
 {
-	if (strncmp(name, "wave", 4) != 0 && strncmp(name, "load", 4) != 0)
-		return false;
-	return name[4] && strspn(name + 4, "0123456789") == strlen(name + 4);
+	static const char *const stem[] = { "wave", "load", "part", "left", "flow", "stage", "driven", "accel" };
+	for (size_t i = 0; i < sizeof stem / sizeof *stem; i++) {
+		size_t length = strlen(stem[i]);
+		if (strncmp(name, stem[i], length) == 0 && name[length] && strspn(name + length, "0123456789") == strlen(name + length))
+			return true;
+	}
+	return false;
 }
 
 /* Macros of the headers that generated code may include, and of compilers in their GNU modes. */
@@ -285,8 +289,6 @@ static const char *name_text(const struct node *node)
 	const struct symbol *s = node->symbol;
 	if (node->component)
 		return (node->primes ? s->c_component_dot : s->c_component)[node->component - 1];
-	if (s->length || s->kind == SYMBOL_MATRIX)
-		error(node->at, NULL, "vectors and matrices in outputs that are not linear are not built yet");
 	return node->primes ? s->c_dot : s->c_name;
 }
 
@@ -305,8 +307,6 @@ static const char *text_of(const struct node *node, int tight)
 	case NODE_POWER:   return power_text(node);
 	case NODE_CALL:    return call_text(node);
 	case NODE_CHOOSE:  return choice_text(node, tight);
-	case NODE_MATRIX: case NODE_FILE:
-		error(node->at, NULL, "vectors and matrices in outputs that are not linear are not built yet");
 	default:
 		return enclose(tight > 1, format("%s %s %s", text_of(node->child[0], 2), comparisons[node->comparison], text_of(node->child[1], 2)));
 	}

@@ -15,9 +15,30 @@ static const char *upper_case(const char *name)
 }
 
 /* A load leaves no trace where it acts on nothing and no output shows it. */
+struct wave_search {
+	const struct wave *wave;
+	bool found;
+};
+
+static void look_for_wave(void *context, const struct form *form)
+{
+	struct wave_search *search = context;
+	for (int i = 0; i < form->terms; i++)
+		search->found = search->found || (form->term[i].basis.kind == BASIS_WAVE && form->term[i].basis.wave == search->wave);
+}
+
 static bool load_is_needed(const struct model *model, const struct linear *system, int load)
 {
-	bool needed = load_acts(system, &system->load[load]);
+	struct wave_search search = { system->load[load].wave, false };
+	visit_leftovers(model, look_for_wave, &search);
+	bool needed = search.found || load_acts(system, &system->load[load]);
+	for (int o = 0; o < model->outputs; o++) {
+		const struct form *left = model->output[o].left;
+		needed = needed || (left && reads_of(model->written, 1, &left).load[load]);
+	}
+	for (int o = 0; o < model->n; o++)
+		for (int k = 0; model->highest && model->highest[o] && k < system->load[load].columns * system->segments; k++)
+			needed = needed || mpq_sgn(model->highest[o]->load[load][k]) != 0;
 	for (int o = 0; o < model->outputs; o++)
 		for (int k = 0; k < system->load[load].columns * system->segments; k++)
 			needed = needed || mpq_sgn(model->output[o].load[load][k]) != 0;
@@ -47,7 +68,23 @@ static struct emitter emitter_new(FILE *to, const struct step *step, const char 
 
 bool has_jump(const struct emitter *e)
 {
-	return e->system->inputs == 0;
+	return e->system->inputs == 0 && !has_leftover(e->step);
+}
+
+const char *input_name(const struct emitter *e, int input, int order)
+{
+	for (const struct symbol *s = e->model->spec->first; s; s = s->next)
+		if (s->kind == SYMBOL_INPUT && s->index == input)
+			return order ? s->c_dot : s->c_name;
+	return NULL;
+}
+
+int coordinate_of_row(const struct model *model, int row)
+{
+	int coord = 0;
+	while (model->owner[coord] != row)
+		coord++;
+	return coord;
 }
 
 /* ---- banner ---- */
@@ -84,18 +121,52 @@ static void banner_poles(const struct emitter *e)
 			mpfr_get_d(pole[i].damping_ratio, MPFR_RNDN));
 }
 
+static const char *const scheme_notes[SCHEMES] = {
+	[SCHEME_PL] = "Scheme pl, of first order in h: the coupling terms (the other coordinates and their velocities, after\n"
+		      " * division by the mass matrix) are held at their value at the start of the step; a coordinate's own terms and\n"
+		      " * the loads are exact.",
+	[SCHEME_ETD1] = "Scheme etd1, of first order in h: exponential time differencing (Cox and Matthews).",
+	[SCHEME_ETDRK2] = "Scheme etdrk2, of second order in h: exponential time differencing (Cox and Matthews).",
+	[SCHEME_ETDRK4] = "Scheme etdrk4, of fourth order in h: exponential time differencing (Cox and Matthews).",
+	[SCHEME_NC2] = "Scheme nc2, of fourth order in h: precise integration, Simpson's rule on nodes that RK4 predicts.",
+	[SCHEME_NC3] = "Scheme nc3, of fourth order in h: precise integration, the 3/8 rule on nodes that RK4 predicts.",
+	[SCHEME_DQ4] = "Scheme dq4, of fourth order in h: precise integration, differential quadrature on nodes that RK4 predicts.",
+	[SCHEME_BM3] = "Scheme bm3, of fourth order in h: precise integration, a block method on nodes that RK4 predicts."
+};
+
+/* One line for each equation that has a leftover, as far as they are few and short */
+static void banner_leftover(const struct emitter *e)
+{
+	enum { SHOWN = 6, WIDTH = 90 };
+	const struct model *model = e->model;
+	const char *at = model->operator[0].text;
+	fprintf(e->to, " * y' = A y + loads + inputs + r(t, y). A: the %s%s%s.\n", *at ? "equations' Jacobian at " : "linear terms with constant coefficients",
+		at, e->step->operators > 1 ? format(", and so on: %d operators", e->step->operators) : "");
+	fprintf(e->to, " * Exact: A%s; approximated: r, which is\n", model->loads_left ? " and the inputs, each constant correctly rounded" :
+		", the loads and the inputs, each constant correctly rounded");
+	for (int c = 0; c < model->channels && c < SHOWN; c++) {
+		const char *text = form_text(model, model->operator[0].left[c]);
+		fprintf(e->to, " *     %.*s%s  in the equation of %s\n", WIDTH, printable(text), strlen(text) > WIDTH ? " ..." : "",
+			model->coord_name[coordinate_of_row(model, model->channel_row[c])]);
+	}
+	if (model->channels > SHOWN)
+		fprintf(e->to, " *     and so in %d more equations\n", model->channels - SHOWN);
+}
+
 static void banner_scheme(const struct emitter *e)
 {
 	FILE *to = e->to;
-	if (e->model->scheme == SCHEME_EXACT) {
-		fputs(" * Scheme exact: nothing is approximated; each constant is its closed form, correctly rounded.\n", to);
-		return;
-	}
-	fputs(" * Scheme pl, of first order in h: the coupling terms (the other coordinates and their velocities, after\n"
-	      " * division by the mass matrix) are held at their value at the start of the step; a coordinate's own terms and\n"
-	      " * the loads are exact. Each constant is its closed form, correctly rounded.\n", to);
-	fprintf(to, " * Its modified equation grows at %.3g 1/s (largest real part of its poles; the poles above are exact).\n",
-		mpfr_get_d(e->step->growth, MPFR_RNDN));
+	if (e->model->scheme != SCHEME_EXACT)
+		fprintf(to, " * %s\n", scheme_notes[e->model->scheme]);
+	if (has_leftover(e->step))
+		banner_leftover(e);
+	else if (e->model->scheme != SCHEME_PL)
+		fprintf(to, " * %sothing is approximated; each constant is its closed form, correctly rounded.\n",
+			e->model->scheme == SCHEME_EXACT ? "Scheme exact: n" : "Nothing is left over: n");
+	if (e->model->scheme == SCHEME_PL)
+		fprintf(to, " * Each constant is its closed form, correctly rounded.\n"
+			    " * The modified equation of its linear part grows at %.3g 1/s (largest real part of its poles; the poles above are exact).\n",
+			mpfr_get_d(e->step->growth, MPFR_RNDN));
 }
 
 static void banner_irrationals(const struct emitter *e)
@@ -122,6 +193,8 @@ static void banner_cost(const struct emitter *e)
 	if (multiplications)
 		fprintf(e->to, ", %d of them and %d for the functions of the loads", multiplications,
 			program->oscillators * PL_COSSIN_ADD + program->growths * PL_GROWTH_ADD);
+	if (program->calls)
+		fprintf(e->to, ", %d calls of the model's own functions", program->calls);
 	fprintf(e->to, ".\n * State y = %s.\n", state_list(e->model));
 	for (int i = 0; i < e->system->inputs; i++)
 		fprintf(e->to, " * Input %s: %s.\n", e->system->input[i].name, e->system->input[i].first_order
@@ -134,8 +207,11 @@ static void banner_cost(const struct emitter *e)
 	if (has_jump(e) && e->system->states > 12)
 		fprintf(e->to, " * %s_jump needs some %d KB of stack.\n", e->name, 1 + 32 * e->system->states * e->system->states / 1024);
 	if (!has_jump(e))
-		fprintf(e->to, " * There is no %s_jump: the samples to come are not known.\n", e->name);
-	if (!e->step->series.emitted)
+		fprintf(e->to, " * There is no %s_jump: %s.\n", e->name, has_leftover(e->step) ? "what is left over is not linear in the state"
+									  : "the samples to come are not known");
+	if (has_leftover(e->step) && !e->step->series.powers)
+		fprintf(e->to, " * There is no %s_at: between its steps the scheme has no values of its order.\n", e->name);
+	else if (!e->step->series.emitted)
 		fprintf(e->to, " * There is no %s_at: the largest |pole| times h is above 8.\n", e->name);
 }
 
@@ -173,7 +249,10 @@ static void emit_state_struct(const struct emitter *e)
 	emit_load_members(e);
 	if (e->system->segments > 1)
 		fputs("    int segment;          /* of time: how many changes of the loads are past */\n", to);
-	fputs("    double t0;            /* [s]; time is t0 + k h */\n    uint64_t k;           /* steps since then */\n};\n\n", to);
+	fputs("    double t0;            /* [s]; time is t0 + k h */\n    uint64_t k;           /* steps since then */\n", to);
+	if (has_leftover(e->step))
+		fputs("    int status;           /* sticky: 0, or PL_NOT_FINITE */\n", to);
+	fputs("};\n\n", to);
 }
 
 static void emit_functions(const struct emitter *e, bool rhs)
@@ -185,6 +264,8 @@ static void emit_functions(const struct emitter *e, bool rhs)
 	declare(e, format("void   %s_set(%s *s, double t, const double y[%s_STATES]);", n, n, N), "any state at any time [s]");
 	declare(e, format("void   %s_get(const %s *s, double y[%s_STATES]);", n, n, N), "");
 	declare(e, format("double %s_time(const %s *s);", n, n), "[s]");
+	if (has_leftover(e->step))
+		declare(e, format("int    %s_status(const %s *s);", n, n), "0, or PL_NOT_FINITE once a step has left the finite numbers");
 	if (e->ramps)
 		declare(e, format("void   %s_hold(%s *s, const double u[%s_INPUTS]);", n, n, N), "the previous sample");
 	declare(e, format("void   %s_step(%s *s%s);", n, n, u), !inputs ? "one step of h" : e->ramps ? "one step of h; a ramp ends at u" : "one step of h with u held");
@@ -256,10 +337,15 @@ const char *scaled(double factor, const char *operand)
 
 void emit_locals(const struct emitter *e, const bool *reads)
 {
+	emit_locals_of(e, reads, "s->y");
+}
+
+void emit_locals_of(const struct emitter *e, const bool *reads, const char *vector)
+{
 	const char *list = "";
 	for (int i = 0; i < e->system->states; i++)
 		if (reads[i])
-			list = format("%s%s%s = s->y[%d]", list, *list ? ", " : "    const double ", e->local[i], i);
+			list = format("%s%s%s = %s[%d]", list, *list ? ", " : "    const double ", e->local[i], vector, i);
 	for (int width = 0; *list; list++) {            /* a line break instead of the blank that would pass column 110 */
 		putc(*list == ' ' && width > 100 && list[-1] == ',' ? '\n' : *list, e->to);
 		if (*list == ' ' && width > 100 && list[-1] == ',') {
@@ -306,6 +392,8 @@ static void emit_access(const struct emitter *e)
 	emit_init(e);
 	fprintf(to, "\nvoid %s_set(%s *s, double t, const double y[%s_STATES])\n{\n    int i;\n", n, n, N);
 	fprintf(to, "    for (i = 0; i < %s_STATES; i++)\n        s->y[i] = y[i];\n    s->t0 = t;\n    s->k = 0;\n", N);
+	if (has_leftover(e->step))
+		fputs("    s->status = 0;\n", to);
 	emit_load_set(e);
 	if (e->system->segments > 1)
 		fprintf(to, "    for (s->segment = 0; s->segment < %d && %s_until(s, s->segment) <= 1e-18 * %s_H;)\n        s->segment++;\n",
@@ -313,6 +401,8 @@ static void emit_access(const struct emitter *e)
 	fprintf(to, "}\n\nvoid %s_get(const %s *s, double y[%s_STATES])\n{\n    int i;\n", n, n, N);
 	fprintf(to, "    for (i = 0; i < %s_STATES; i++)\n        y[i] = s->y[i];\n}\n", N);
 	emit_time(e);
+	if (has_leftover(e->step))
+		fprintf(to, "\nint %s_status(const %s *s)\n{\n    return s->status;\n}\n", n, n);
 	if (e->ramps)
 		fprintf(to, "\nvoid %s_hold(%s *s, const double u[%s_INPUTS])\n{\n    int i;\n    for (i = 0; i < %s_INPUTS; i++)\n        s->u[i] = u[i];\n}\n",
 			n, n, N, N);
@@ -380,7 +470,7 @@ static void emit_wrapper(const struct emitter *e, const char *result, const char
 {
 	const char *state = format(is_const ? "const struct %s" : "struct %s", e->name); /* the tag: a parameter may bear the name */
 	fprintf(e->to, "static %s %s_any_%s(%svoid *s%s) { %s%s_%s((%s *)s%s); }\n", result, e->name, function, is_const ? "const " : "", parameters,
-		*result == 'd' ? "return " : !e->system->inputs && strstr(parameters, "*u") ? "(void)u; " : "", e->name, function, state, arguments);
+		*result != 'v' ? "return " : !e->system->inputs && strstr(parameters, "*u") ? "(void)u; " : "", e->name, function, state, arguments);
 }
 
 static void emit_descriptor(const struct emitter *e)
@@ -410,10 +500,12 @@ static void emit_descriptor(const struct emitter *e)
 		emit_wrapper(e, "void", "at", ", const double *u, double tau, double *y", inputs ? ", u, tau, y" : ", tau, y", true);
 	if (has_jump(e))
 		emit_wrapper(e, "void", "jump", ", uint64_t n", ", n", false);
+	if (has_leftover(e->step))
+		emit_wrapper(e, "int", "status", "", "", true);
 	fprintf(to, "\nconst pl_model %s_model = {\n    \"%s\", sizeof(struct %s), %s_STATES, %s_INPUTS, %s_OUTPUTS, %s_H,\n", n, n, n, N, N, N, N);
 	fprintf(to, "    %s_state_names, %s, %s_output_names,\n", n, inputs ? format("%s_input_names", n) : "NULL", n);
-	fprintf(to, "    %s_any_init, %s_any_set, %s_any_get, %s_any_time, %s_any_step,\n    %s_any_out, %s_any_run, %s, %s\n};\n", n, n, n, n, n, n, n,
-		at ? format("%s_any_at", n) : "NULL", has_jump(e) ? format("%s_any_jump", n) : "NULL");
+	fprintf(to, "    %s_any_init, %s_any_set, %s_any_get, %s_any_time, %s_any_step,\n    %s_any_out, %s_any_run, %s, %s, %s\n};\n", n, n, n, n, n, n, n,
+		at ? format("%s_any_at", n) : "NULL", has_jump(e) ? format("%s_any_jump", n) : "NULL", has_leftover(e->step) ? format("%s_any_status", n) : "NULL");
 }
 
 /* ---- the two texts ---- */
@@ -428,10 +520,14 @@ void emit_header(FILE *to, const struct step *step, const char *options, bool rh
 static bool needs_math(const struct emitter *e, bool rhs)
 {
 	bool math = false;
-	clear_used(e->model->spec);
-	for (int i = 0; i < e->model->outputs; i++)
-		if (e->model->output[i].value && !e->model->output[i].form)
-			mark_used(e->model->output[i].value, &math);
+	for (int i = 0; i < e->model->outputs; i++) {
+		const struct form *left = e->model->output[i].left;
+		math = math || (left && reads_of(e->model->written, 1, &left).math);
+	}
+	for (int k = 0; k < e->model->operators; k++)
+		math = math || reads_of(e->model, e->model->channels, (const struct form *const *)e->model->operator[k].left).math;
+	if (e->model->selector)
+		math = math || reads_of(e->model, 1, &e->model->selector).math;
 	return math || (rhs && rhs_needs_math(e->model));
 }
 
@@ -454,7 +550,12 @@ void emit_code(FILE *to, const struct step *step, const char *options, const cha
 	emit_access(&e);
 	if (e.system->segments > 1)
 		emit_passing(&e);
-	emit_step(&e);
+	if (has_leftover(step)) {
+		emit_leftover_functions(&e);
+		emit_leftover_step(&e);
+	} else {
+		emit_step(&e);
+	}
 	emit_out(&e);
 	emit_run(&e);
 	if (step->series.emitted)

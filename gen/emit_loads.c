@@ -76,45 +76,89 @@ static void print_rate(const struct emitter *e, mpq_srcptr q, bool turns, const 
 
 /* ---- tables ---- */
 
+/* What the exponent of a load's growth gains in so many seconds */
+static const char *growth_text(const struct load *load, mpq_srcptr seconds)
+{
+	mpq_t product;
+	uint64_t word[2];
+	mpq_init(product);
+	mpq_mul(product, load->wave->a, seconds);
+	exponent(product, word);
+	mpq_clear(product);
+	bool negative = word[0] >> 63;
+	uint64_t high = negative ? ~word[0] : word[0];
+	return format(negative ? "{-INT64_C(0x%llx) - 1, UINT64_C(0x%016llx)}" : "{INT64_C(0x%llx), UINT64_C(0x%016llx)}", (unsigned long long)high,
+		      (unsigned long long)word[1]);
+}
+
+static const char *turn_text(mpq_srcptr angle)
+{
+	uint64_t word[2];
+	turns(angle, word);
+	return format("{UINT64_C(0x%016llx), UINT64_C(0x%016llx)}", (unsigned long long)word[0], (unsigned long long)word[1]);
+}
+
+static const char *phase_text(const struct load *load, mpq_srcptr seconds)
+{
+	mpq_t angle;
+	mpq_init(angle);
+	mpq_mul(angle, load->wave->w, seconds);
+	const char *text = turn_text(angle);
+	mpq_clear(angle);
+	return text;
+}
+
 static void print_turns(const struct emitter *e, const char *name, const char *what, bool per_step)
 {
 	fprintf(e->to, "\nstatic const pl_turn %s_%s[%d] = {  /* %s */\n", e->name, name, e->phases, what);
-	mpq_t angle;
-	mpq_init(angle);
 	for (int l = 0; l < e->system->loads; l++) {
-		const struct wave *wave = e->system->load[l].wave;
-		if (e->phase[l] < 0)
-			continue;
-		mpq_set(angle, wave->p);
-		if (per_step)
-			mpq_mul(angle, wave->w, e->model->h);
-		uint64_t word[2];
-		turns(angle, word);
-		fprintf(e->to, "    {UINT64_C(0x%016llx), UINT64_C(0x%016llx)},  /* %s */\n", (unsigned long long)word[0],
-			(unsigned long long)word[1], column_text(&e->system->load[l], 0));
+		const struct load *load = &e->system->load[l];
+		if (e->phase[l] >= 0)
+			fprintf(e->to, "    %s,  /* %s */\n", per_step ? phase_text(load, e->model->h) : turn_text(load->wave->p), column_text(load, 0));
 	}
-	mpq_clear(angle);
 	fputs("};\n", e->to);
 }
 
 static void print_growths(const struct emitter *e)
 {
 	fprintf(e->to, "\nstatic const pl_growth %s_growth_step[%d] = {  /* a h / ln 2, in units of 2^-112 */\n", e->name, e->growths);
-	mpq_t product;
-	mpq_init(product);
-	for (int l = 0; l < e->system->loads; l++) {
-		if (e->growth[l] < 0)
-			continue;
-		uint64_t word[2];
-		mpq_mul(product, e->system->load[l].wave->a, e->model->h);
-		exponent(product, word);
-		bool negative = word[0] >> 63;
-		uint64_t high = negative ? ~word[0] : word[0];
-		fprintf(e->to, negative ? "    {-INT64_C(0x%llx) - 1, UINT64_C(0x%016llx)},  /* %s */\n" : "    {INT64_C(0x%llx), UINT64_C(0x%016llx)},  /* %s */\n",
-			(unsigned long long)high, (unsigned long long)word[1], column_text(&e->system->load[l], 0));
-	}
-	mpq_clear(product);
+	for (int l = 0; l < e->system->loads; l++)
+		if (e->growth[l] >= 0)
+			fprintf(e->to, "    %s,  /* %s */\n", growth_text(&e->system->load[l], e->model->h), column_text(&e->system->load[l], 0));
 	fputs("};\n", e->to);
+}
+
+/* One row for each node; loads that are not read there keep their place. */
+static void print_node_rows(const struct emitter *e, const char *type, const char *name, const int *index, int count,
+			    const char *(*text)(const struct load *, mpq_srcptr))
+{
+	const struct program *program = e->step->program;
+	mpq_t seconds;
+	mpq_init(seconds);
+	fprintf(e->to, "\nstatic const %s %s_%s[%d][%d] = {  /* from the start of a step to each node */\n", type, e->name, name, program->nodes, count);
+	for (int i = 0; i < program->nodes; i++) {
+		const char *row = "";
+		mpq_mul(seconds, program->node[i], e->model->h);
+		for (int l = 0; l < e->system->loads; l++)
+			if (index[l] >= 0)
+				row = format("%s%s%s", row, *row ? ",\n     " : "", text(&e->system->load[l], seconds));
+		fprintf(e->to, "    {%s},  /* %s h */\n", row, exact_text(program->node[i]));
+	}
+	fputs("};\n", e->to);
+	mpq_clear(seconds);
+}
+
+void emit_node_phases(const struct emitter *e, const bool *loads)
+{
+	bool turning = false, growing = false;
+	for (int l = 0; l < e->system->loads; l++) {
+		turning = turning || (loads[l] && e->phase[l] >= 0);
+		growing = growing || (loads[l] && e->growth[l] >= 0);
+	}
+	if (turning)
+		print_node_rows(e, "pl_turn", "node_phase", e->phase, e->phases, phase_text);
+	if (growing)
+		print_node_rows(e, "pl_growth", "node_growth", e->growth, e->growths, growth_text);
 }
 
 static void print_rates(const struct emitter *e, bool turns, const char *name, int count, const char *what)
@@ -200,6 +244,16 @@ const char *column_operand(const struct emitter *e, int column)
 	return load_operand(e, l, column);
 }
 
+static const char *phase_now(const struct emitter *e, int i)
+{
+	return e->at_node ? format("pl_turn_add(s->phase[%d], %s_node_phase[node][%d])", i, e->name, i) : format("s->phase[%d]", i);
+}
+
+static const char *growth_now(const struct emitter *e, int i)
+{
+	return e->at_node ? format("pl_growth_add(s->growth[%d], %s_node_growth[node][%d])", i, e->name, i) : format("s->growth[%d]", i);
+}
+
 /* t^k and e^{at} and cos, sin from their parts: load[0] (and [1]), then each power from the one before */
 static void emit_one_load(const struct emitter *e, int l)
 {
@@ -213,12 +267,12 @@ static void emit_one_load(const struct emitter *e, int l)
 		fprintf(to, ", %s", column_text(load, k));
 	fputs(" */\n", to);
 	if (trig == 2)
-		fprintf(to, "    pl_cossin(s->phase[%d], load%d);\n", e->phase[l], l + 1);
+		fprintf(to, "    pl_cossin(%s, load%d);\n", phase_now(e, e->phase[l]), l + 1);
 	if (trig == 2 && e->growth[l] >= 0) {
-		fprintf(to, "    growth = pl_growth_value(s->growth[%d]);\n", e->growth[l]);
+		fprintf(to, "    growth = pl_growth_value(%s);\n", growth_now(e, e->growth[l]));
 		fprintf(to, "    load%d[0] *= growth;\n    load%d[1] *= growth;\n", l + 1, l + 1);
 	} else if (trig == 1 && e->growth[l] >= 0) {
-		fprintf(to, "    load%d[0] = pl_growth_value(s->growth[%d]);\n", l + 1, e->growth[l]);
+		fprintf(to, "    load%d[0] = pl_growth_value(%s);\n", l + 1, growth_now(e, e->growth[l]));
 	} else if (trig == 1) {
 		fprintf(to, "    load%d[0] = 1.0;\n", l + 1);
 	}

@@ -2,57 +2,6 @@
 /* Outputs as C: rows over states, load states and inputs, or what is not linear as its own expression. */
 #include "plgen.h"
 
-void emit_used_constants(const struct emitter *e, bool lets)
-{
-	for (const struct symbol *s = e->model->spec->first; s; s = s->next) {
-		if (!s->used || (s->kind != SYMBOL_PARAM && s->kind != SYMBOL_LET))
-			continue;
-		if (s->kind == SYMBOL_PARAM) {
-			struct collector collector = { .scheme = "exact" };
-			mpq_t value;
-			mpq_init(value);
-			constant_value(&collector, s->collected->cell[0], value);
-			fprintf(e->to, "    const double %s = %s;\n", s->c_name, finite_text(s->at, value));
-			mpq_clear(value);
-		} else if (lets) {
-			fprintf(e->to, "    const double %s = %s;\n", s->c_name, c_expression(s->value));
-		}
-	}
-}
-
-void clear_used(const struct spec *spec)
-{
-	for (struct symbol *s = spec->first; s; s = s->next)
-		s->used = s->slope_used = false;
-}
-
-bool uses_time(const struct node *node)
-{
-	bool found = node->kind == NODE_TIME || (node->kind == NODE_NAME && node->symbol->kind == SYMBOL_LET && uses_time(node->symbol->value));
-	for (int i = 0; i < node->children && !found; i++)
-		found = uses_time(node->child[i]);
-	return found;
-}
-
-static int state_of_node(const struct model *written, const struct node *node)
-{
-	int coord = node->symbol->index + (node->component ? node->component - 1 : 0);
-	return node->primes ? written->system.velocity[coord] : coord;
-}
-
-/* Flags the written states that an expression reads. */
-void mark_states(const struct model *written, const struct node *node, bool *reads)
-{
-	if (vanishes(node))
-		return;
-	if (node->kind == NODE_NAME && node->symbol->kind == SYMBOL_COORD && node->primes < node->symbol->highest)
-		reads[state_of_node(written, node)] = true;
-	if (node->kind == NODE_NAME && node->symbol->kind == SYMBOL_LET)
-		mark_states(written, node->symbol->value, reads);
-	for (int i = 0; i < node->children; i++)
-		mark_states(written, node->child[i], reads);
-}
-
 static bool changes(const mpq_t *factor, int segments)
 {
 	for (int s = 1; s < segments; s++)
@@ -118,7 +67,7 @@ static double output_factor(const struct output *output, mpq_srcptr factor)
 static const char *linear_output(const struct emitter *e, const struct output *output)
 {
 	const struct linear *system = e->system;
-	const char **term = ARRAY(const char *, (size_t)(system->states + load_columns(system) + 2 * system->inputs + 1));
+	const char **term = ARRAY(const char *, (size_t)(system->states + load_columns(system) + 2 * system->inputs + e->model->channels + 1));
 	int terms = 0;
 	for (int i = 0; i < system->states; i++)
 		if (mpq_sgn(output->state[i]) != 0)
@@ -131,50 +80,51 @@ static const char *linear_output(const struct emitter *e, const struct output *o
 		for (int i = 0; i < system->inputs; i++)
 			if (mpq_sgn(output->input[k][i]) != 0)
 				term[terms++] = scaled(output_factor(output, output->input[k][i]), format(k ? "s->slope[%d]" : "s->u[%d]", i));
+	for (int c = 0; c < e->model->channels; c++)
+		if (mpq_sgn(output->channel[c]) != 0)
+			term[terms++] = scaled(output_factor(output, output->channel[c]), format("left[%d]", c));
 	return terms ? tree(terms, term, 13) : "0.0";
 }
 
 struct output_needs {
-	bool *reads, *loads, *inputs, time, state;
+	bool *reads, *loads, *inputs, *highest, time, left;
 };
 
-static void mark_inputs(const struct node *node, bool *inputs, int count)
+static void mark_row(const struct emitter *e, const struct output *output, struct output_needs *needs)
 {
-	if (node->kind == NODE_NAME && node->symbol->kind == SYMBOL_INPUT)
-		inputs[node->symbol->index + node->primes * count] = true;
-	if (node->kind == NODE_NAME && node->symbol->kind == SYMBOL_LET)
-		mark_inputs(node->symbol->value, inputs, count);
-	for (int i = 0; i < node->children; i++)
-		mark_inputs(node->child[i], inputs, count);
-}
-
-static void mark_output_states(const struct emitter *e, const struct node *value, bool *reads)
-{
-	const struct model *written = e->model->written;
-	bool *seen = ARRAY(bool, (size_t)written->system.states);
-	mark_states(written, value, seen);
-	for (int i = 0; i < written->system.states; i++)
-		if (seen[i])
-			reads[e->model->place ? e->model->place[i] : i] = true;
-}
-
-static void mark_output(const struct emitter *e, const struct output *output, struct output_needs *needs)
-{
-	bool math = false;
-	if (!output->form && output->value) {
-		mark_used(output->value, &math);
-		mark_output_states(e, output->value, needs->reads);
-		mark_inputs(output->value, needs->inputs, e->system->inputs);
-		needs->time = needs->time || uses_time(output->value);
-		return;
-	}
 	for (int i = 0; i < e->system->states; i++)
 		needs->reads[i] = needs->reads[i] || mpq_sgn(output->state[i]) != 0;
 	for (int l = 0; l < e->system->loads; l++)
 		for (int k = 0; k < e->system->load[l].columns; k++)
 			needs->loads[l] = needs->loads[l] || any_factor(e, output, l, k);
+	for (int c = 0; c < e->model->channels; c++)
+		needs->left = needs->left || mpq_sgn(output->channel[c]) != 0;
+}
+
+/* What an output that is not linear reads: written states, inputs, loads, highest derivatives */
+static void mark_form(const struct emitter *e, const struct output *output, struct output_needs *needs)
+{
+	const struct model *written = e->model->written;
+	const struct form *form = output->left;
+	struct reads reads = reads_of(written, 1, &form);
+	for (int i = 0; i < written->system.states; i++)
+		if (reads.state[i])
+			needs->reads[e->model->place ? e->model->place[i] : i] = true;
 	for (int i = 0; i < 2 * e->system->inputs; i++)
-		needs->state = needs->state || mpq_sgn(output->input[i / e->system->inputs][i % e->system->inputs]) != 0;
+		needs->inputs[i] = needs->inputs[i] || reads.input[i];
+	for (int l = 0; l < e->system->loads; l++)
+		needs->loads[l] = needs->loads[l] || reads.load[l];
+	for (int k = 0; k < e->model->n; k++) {
+		needs->highest[k] = needs->highest[k] || reads.highest[k];
+		if (reads.highest[k])
+			mark_row(e, e->model->highest[k], needs);
+	}
+	needs->time = needs->time || reads.time;
+}
+
+static void mark_output(const struct emitter *e, const struct output *output, struct output_needs *needs)
+{
+	(output->left ? mark_form : mark_row)(e, output, needs);
 }
 
 static void emit_input_locals(const struct emitter *e, const bool *wanted)
@@ -197,20 +147,30 @@ void emit_out(const struct emitter *e)
 		return;
 	}
 	struct output_needs needs = { ARRAY(bool, (size_t)e->system->states), ARRAY(bool, (size_t)e->system->loads),
-				      ARRAY(bool, 2 * (size_t)e->system->inputs), false, false };
-	clear_used(model->spec);
-	for (int i = 0; i < model->outputs; i++)
+				      ARRAY(bool, 2 * (size_t)e->system->inputs), ARRAY(bool, (size_t)e->model->n), false, false };
+	const struct form **form = ARRAY(const struct form *, (size_t)model->outputs + 1);
+	int forms = 0;
+	for (int i = 0; i < model->outputs; i++) {
 		mark_output(e, &model->output[i], &needs);
+		if (model->output[i].left)
+			form[forms++] = model->output[i].left;
+	}
 	emit_locals(e, needs.reads);
 	emit_input_locals(e, needs.inputs);
 	if (needs.time)
 		fprintf(to, "    const double t = %s_time(s);\n", e->name);
-	emit_used_constants(e, true);
 	emit_load_states(e, needs.loads, needs.time);
+	if (needs.left)
+		fprintf(to, "    double left[%d];\n    %s\n", model->channels, leftover_of_outputs(e));
+	for (int k = 0; k < model->n; k++)
+		if (needs.highest[k])
+			fprintf(to, "    const double accel%d = %s;  /* %s%.*s */\n", k + 1, linear_output(e, model->highest[k]), model->coord_name[k],
+				model->coord[k]->highest, "''");
+	struct writer *writer = writer_new(e, basis_now, forms, form);
 	for (int i = 0; i < model->outputs; i++) {
 		const struct output *output = &model->output[i];
-		bool linear = output->form || !output->value;
-		fprintf(to, "    out[%d] = %s;  /* %s */\n", i, linear ? linear_output(e, output) : c_expression(output->value), output->name);
+		const char *text = output->left ? write_form(writer, output->left, 13) : linear_output(e, output);
+		fprintf(to, "    out[%d] = %s;  /* %s */\n", i, text, output->name);
 	}
 	fputs("    (void)s;\n}\n", to);
 }

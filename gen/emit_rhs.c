@@ -4,6 +4,65 @@
 
 #include <string.h>
 
+/* Params that the equations name */
+static void emit_used_constants(const struct emitter *e)
+{
+	struct collector collector = { .scheme = "exact" };
+	mpq_t value;
+	mpq_init(value);
+	for (const struct symbol *s = e->model->spec->first; s; s = s->next) {
+		if (!s->used || s->kind != SYMBOL_PARAM)
+			continue;
+		constant_value(&collector, s->collected->cell[0], value);
+		fprintf(e->to, "    const double %s = %s;\n", s->c_name, finite_text(s->at, value));
+	}
+	mpq_clear(value);
+}
+
+static void clear_used(const struct spec *spec)
+{
+	for (struct symbol *s = spec->first; s; s = s->next)
+		s->used = s->slope_used = false;
+}
+
+static bool uses_time(const struct node *node);
+
+static bool let_uses_time(struct symbol *let)
+{
+	if (let->time == TIME_UNKNOWN)
+		let->time = uses_time(let->value) ? TIME_READ : TIME_NOT_READ;
+	return let->time == TIME_READ;
+}
+
+static bool uses_time(const struct node *node)
+{
+	bool found = node->kind == NODE_TIME || (node->kind == NODE_NAME && node->symbol->kind == SYMBOL_LET && let_uses_time(node->symbol));
+	for (int i = 0; i < node->children && !found; i++)
+		found = uses_time(node->child[i]);
+	return found;
+}
+
+static int state_of_node(const struct model *written, const struct node *node)
+{
+	int coord = node->symbol->index + (node->component ? node->component - 1 : 0);
+	return node->primes ? written->system.velocity[coord] : coord;
+}
+
+/* Flags the written states that an expression reads. */
+static void mark_states(const struct model *written, const struct node *node, bool *reads)
+{
+	if (vanishes(node))
+		return;
+	if (node->kind == NODE_NAME && node->symbol->kind == SYMBOL_COORD && node->primes < node->symbol->highest)
+		reads[state_of_node(written, node)] = true;
+	if (node->kind == NODE_NAME && node->symbol->kind == SYMBOL_LET && !node->symbol->marked) {
+		node->symbol->marked = true;
+		mark_states(written, node->symbol->value, reads);
+	}
+	for (int i = 0; i < node->children; i++)
+		mark_states(written, node->child[i], reads);
+}
+
 static const char *residual_text(const struct equation *equation)
 {
 	const char *left = c_expression(equation->left), *right = c_expression(equation->right);
@@ -84,10 +143,76 @@ static bool any_wave(const struct model *model, bool *math)
 	return any;
 }
 
+/* ---- the same with atoms: for all time ---- */
+
+static const struct form *without_highest(const struct emitter *e, const struct form *form)
+{
+	struct form *rest = NEW(struct form);
+	for (int i = 0; i < form->terms; i++)
+		if (!is_highest(e, &form->term[i].basis))
+			rest = form_sum(rest, form_single(form->term[i].basis, form->term[i].factor), false);
+	return rest;
+}
+
+struct rhs_reading { bool time, math; };
+
+static void read_waves(struct rhs_reading *reading, bool *seen, const struct form *form)
+{
+	for (int i = 0; i < form->terms; i++) {
+		const struct basis *basis = &form->term[i].basis;
+		reading->time = reading->time || basis->kind == BASIS_WAVE;
+		reading->math = reading->math || (basis->kind == BASIS_WAVE && !is_polynomial(basis->wave));
+		if (!basis->atom || seen[basis->atom->index])
+			continue;
+		seen[basis->atom->index] = true;
+		for (int k = 0; k < basis->atom->operands; k++)
+			read_waves(reading, seen, basis->atom->operand[k]);
+	}
+}
+
+static const struct form **whole_forms(const struct model *model)
+{
+	const struct form **form = ARRAY(const struct form *, (size_t)model->n);
+	for (int i = 0; i < model->n; i++)
+		form[i] = model->whole->residual[i].form;
+	return form;
+}
+
+static struct rhs_reading reading_of_rhs(const struct model *model)
+{
+	struct rhs_reading reading = { false, false };
+	bool *seen = ARRAY(bool, (size_t)atoms_count(model->atoms));
+	const struct form **form = whole_forms(model);
+	for (int i = 0; i < model->n; i++)
+		read_waves(&reading, seen, form[i]);
+	reading.math = reading.math || reads_of(model, model->n, form).math;
+	return reading;
+}
+
+static void emit_whole_residuals(const struct emitter *e)
+{
+	const struct model *model = e->model;
+	const struct form **form = whole_forms(model);
+	for (int i = 0; i < model->n; i++)
+		form[i] = without_highest(e, form[i]);
+	struct writer *writer = writer_new(e, basis_expression, model->n, form);
+	fprintf(e->to, "    double residual[%d];  /* left side minus right side, without the highest derivatives */\n", model->n);
+	for (int i = 0; i < model->n; i++) {
+		const char *text = write_form(writer, form[i], 18);
+		fprintf(e->to, "    residual[%d] = %s;\n", i, text);
+	}
+	if (!reading_of_rhs(model).time)
+		fputs("    (void)t;\n", e->to);
+	if (e->system->inputs)
+		fputs("    (void)u;\n", e->to);
+}
+
 bool rhs_needs_math(const struct model *any)
 {
 	const struct model *model = any->written;
 	bool math = false;
+	if (!is_scalar_text(model) && model->whole)
+		return reading_of_rhs(model).math;
 	if (!is_scalar_text(model)) {
 		any_wave(model, &math);
 		return math;
@@ -127,7 +252,7 @@ static void emit_rhs_locals(const struct emitter *e, const bool *reads)
 {
 	const struct spec *spec = e->model->spec;
 	bool inputs = false;
-	emit_used_constants(e, false);
+	emit_used_constants(e);
 	for (int i = 0; i < e->model->written->system.states; i++)
 		if (reads[i])
 			fprintf(e->to, "    const double %s = y[%d];\n", written_local(e->model->written, i), i);
@@ -193,6 +318,8 @@ void emit_rhs(const struct emitter *e)
 	fprintf(e->to, "void %s_rhs(double t, const double y[], %sdouble dydt[])\n{\n", e->name, e->system->inputs ? "const double u[], " : "");
 	if (is_scalar_text(e->model->written))
 		emit_written_residuals(e);
+	else if (e->model->whole)
+		emit_whole_residuals(e);
 	else
 		emit_collected_residuals(e);
 	emit_derivatives(e);

@@ -3,7 +3,7 @@
 #include "plgen.h"
 
 /* Held: the sample that the step is given. A ramp: the previous sample, then the one given. */
-static const char *input_operand(const struct emitter *e, int column)
+const char *input_operand(const struct emitter *e, int column)
 {
 	for (int i = 0; i < e->system->inputs; i++) {
 		int columns = e->system->input[i].first_order ? 2 : 1;
@@ -133,14 +133,14 @@ static void emit_plain_step(const struct emitter *e)
 		emit_assignment(e, &program->assignment[i]);
 }
 
-static void emit_step_end(const struct emitter *e)
+void emit_step_end(const struct emitter *e)
 {
 	emit_keep_inputs(e);
 	emit_load_advance(e, NULL);
 	fputs("    s->k++;\n", e->to);
 }
 
-static const char *step_parameters(const struct emitter *e)
+const char *step_parameters(const struct emitter *e)
 {
 	return format("%s *s%s", e->name, e->system->inputs ? format(", const double u[%s_INPUTS]", e->upper) : "");
 }

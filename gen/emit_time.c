@@ -21,6 +21,8 @@ static const char **series_names(const struct emitter *e)
 		if (e->system->input[i].first_order)
 			name[series->input[i] + 1] = format("%s'", e->system->input[i].name);
 	}
+	for (int c = 0; c < e->system->channels * series->powers; c++)
+		name[series->channel + c] = format("leftover %d", c + 1);
 	return name;
 }
 
@@ -69,18 +71,30 @@ static void store_inputs(const struct emitter *e, const int *index)
 	}
 }
 
+/* Of a bank: one matrix for each operator */
 static void emit_slopes(const struct emitter *e)
 {
 	const struct series *series = &e->step->series;
 	size_t cells = (size_t)series->size * (size_t)series->size;
-	mpq_t *exact = series_matrix(series, e->system, 0);
 	double *A = ARRAY(double, cells);
-	for (size_t i = 0; i < cells; i++)
-		A[i] = round_rational(exact[i]);
-	fprintf(e->to, "\n/* x' = A x; x = y%s */\nstatic const double %s_slope[%d][%d] = {\n",
-		series->size > e->system->states ? ", then what acts on it" : "", e->name, series->size, series->size);
-	emit_number_rows(e, series->size, series->size, A, series_names(e));
+	bool bank = e->step->operators > 1;
+	fprintf(e->to, "\n/* x' = A x; x = y%s%s */\nstatic const double %s_slope%s[%d][%d] = {\n",
+		series->size > e->system->states ? ", then what acts on it" : "", bank ? "; for each operator" : "", e->name,
+		bank ? format("[%d]", e->step->operators) : "", series->size, series->size);
+	for (int o = 0; o < e->step->operators; o++) {
+		mpq_t *exact = series_matrix(series, &e->step->operator[o], 0);
+		for (size_t i = 0; i < cells; i++)
+			A[i] = round_rational(exact[i]);
+		fputs(bank ? "  {\n" : "", e->to);
+		emit_number_rows(e, series->size, series->size, A, series_names(e));
+		fputs(bank ? "  },\n" : "", e->to);
+	}
 	fputs("};\n", e->to);
+}
+
+static const char *slope_text(const struct emitter *e)
+{
+	return e->step->operators > 1 ? format("%s_slope[which]", e->name) : format("%s_slope", e->name);
 }
 
 /* ---- loads that change their formula: A's columns of the loads, for each segment of time ---- */
@@ -130,15 +144,27 @@ static const char *input_parameter(const struct emitter *e)
 	return e->system->inputs ? format("const double u[%s_INPUTS], ", e->upper) : "";
 }
 
+static void emit_leftover_now(const struct emitter *e)
+{
+	if (e->step->series.powers)
+		fprintf(e->to, "    %s\n", leftover_of_step(e));
+}
+
 static void emit_start_of_series(const struct emitter *e)
 {
 	const struct series *series = &e->step->series;
 	fprintf(e->to, "    double x[%d], work[%d];\n", series->size, 2 * series->size);
 	emit_load_states(e, wanted_loads(e, series->load), e->system->segments > 1);
-	fprintf(e->to, "    int i;\n    for (i = 0; i < %s_STATES; i++)\n        x[i] = s->y[i];\n", e->upper);
+	fprintf(e->to, "    int i;\n");
+	if (e->system->segments == 1)
+		emit_leftover_now(e);
+	fprintf(e->to, "    for (i = 0; i < %s_STATES; i++)\n        x[i] = s->y[i];\n", e->upper);
 	emit_held(e);
 	store_loads(e, series->load, "");
 	store_inputs(e, series->input);
+	if (series->powers)
+		fprintf(e->to, "    for (i = 0; i < %d; i++)\n        x[%d + i] = %s;\n", e->system->channels, series->channel,
+			e->system->segments > 1 ? "left ? left[i] : 0.0" : "left[i]");
 }
 
 static bool needs_time(const struct emitter *e, const int *index)
@@ -160,11 +186,12 @@ static void emit_pass(const struct emitter *e)
 		emit_use_segment(e, first, columns);
 	}
 	fprintf(to, "\n/* The state tau after now, from change to change of the loads on the way. */\n");
-	fprintf(to, "static void %s_pass(const %s *s, %sdouble tau, double y[%s_STATES])\n{\n", e->name, e->name, input_parameter(e), e->upper);
+	fprintf(to, "static void %s_pass(const %s *s, %s%s%sdouble tau, double y[%s_STATES])\n{\n", e->name, e->name, e->step->operators > 1 ? "int which, " : "",
+		input_parameter(e), series->powers ? "const double *left, " : "", e->upper);
 	fprintf(to, "%s    double A[%d][%d], done = 0.0;\n    int j, segment = s->segment;\n    pl_series series;\n",
 		needs_time(e, series->load) ? format("    const double t = %s_time(s);\n", e->name) : "", size, size);
 	emit_start_of_series(e);
-	fprintf(to, "    for (i = 0; i < %d; i++)\n        for (j = 0; j < %d; j++)\n            A[i][j] = %s_slope[i][j];\n", size, size, e->name);
+	fprintf(to, "    for (i = 0; i < %d; i++)\n        for (j = 0; j < %d; j++)\n            A[i][j] = %s[i][j];\n", size, size, slope_text(e));
 	fprintf(to, "    series.size = %d;\n    series.states = %s_STATES;\n    series.degree = %d;\n    series.halvings = %d;\n    series.A = A[0];\n", size,
 		e->upper, series->degree, series->halvings);
 	fprintf(to, "    for (; segment < %d && %s_until(s, segment) < tau; segment++) {\n        const double ahead = %s_until(s, segment);\n",
@@ -209,6 +236,17 @@ void emit_passing(const struct emitter *e)
 	emit_pass(e);
 }
 
+/* What is held over the step: which operator, and what is left over now */
+static void emit_held_leftover(const struct emitter *e)
+{
+	if (!has_leftover(e->step))
+		return;
+	emit_samples(e);
+	if (e->step->operators > 1)
+		fprintf(e->to, "    const int which = %s;\n", selection_call(e));
+	fprintf(e->to, "    double left[%d];\n", e->system->channels);
+}
+
 void emit_at(const struct emitter *e)
 {
 	const struct series *series = &e->step->series;
@@ -217,12 +255,15 @@ void emit_at(const struct emitter *e)
 	if (!changes)
 		emit_slopes(e);
 	fprintf(to, "\nvoid %s_at(const %s *s, %sdouble tau, double y[%s_STATES])\n{\n", e->name, e->name, input_parameter(e), e->upper);
+	emit_held_leftover(e);
 	if (changes) {
-		fprintf(to, "    %s_pass(s, %stau, y);\n}\n", e->name, e->system->inputs ? "u, " : "");
+		emit_leftover_now(e);
+		fprintf(to, "    %s_pass(s, %s%s%stau, y);\n}\n", e->name, e->step->operators > 1 ? "which, " : "", e->system->inputs ? "u, " : "",
+			series->powers ? "left, " : "");
 		return;
 	}
-	fprintf(to, "    static const pl_series series = {%d, %s_STATES, %d, %d, %s_slope[0]};  /* size, states, degree, halvings */\n", series->size,
-		e->upper, series->degree, series->halvings, e->name);
+	fprintf(to, "    %sconst pl_series series = {%d, %s_STATES, %d, %d, %s[0]};  /* size, states, degree, halvings */\n",
+		e->step->operators > 1 ? "" : "static ", series->size, e->upper, series->degree, series->halvings, slope_text(e));
 	emit_start_of_series(e);
 	fprintf(to, "    pl_series_advance(&series, tau, x, work);\n    for (i = 0; i < %s_STATES; i++)\n        y[i] = x[i];\n}\n", e->upper);
 }

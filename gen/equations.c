@@ -172,7 +172,8 @@ static bool can_own(const struct building *b, int row, int coord, enum choice ch
 /* An augmenting path of the bipartite matching from equation `row`. */
 static bool augment(const struct building *b, int row, enum choice choice, bool *visited)
 {
-	for (int j = 0; j < b->model->n; j++) {
+	for (int k = 0; k < b->model->n; k++) {
+		int j = (row + k) % b->model->n;        /* that of the same number first: the rows of a vector equation */
 		if (visited[j] || !can_own(b, row, j, choice))
 			continue;
 		visited[j] = true;
@@ -363,10 +364,8 @@ static void add_force(void *context, int load, int column, mpq_srcptr factor)
 	mpq_sub(force, force, factor);          /* the residual has the load on the left side */
 }
 
-static void fill_forces(struct building *b, int segment, int row, const struct form *form)
+static void fill_inputs(struct linear *system, int row, const struct form *form)
 {
-	struct linear *system = &b->model->system;
-	spread_loads(b, form, add_force, &(struct force_row){ system, segment, row });
 	for (int i = 0; i < form->terms; i++) {
 		const struct basis *basis = &form->term[i].basis;
 		if (basis->kind == BASIS_INPUT)
@@ -388,7 +387,7 @@ static void name_inputs(struct building *b)
 		}
 }
 
-/* ---- the whole ---- */
+/* ---- changes of formula in time ---- */
 
 static bool same_cells(const struct value *a, const struct value *b)
 {
@@ -468,6 +467,93 @@ static bool check_sizes(const struct building *b)
 	return true;
 }
 
+/* ---- what is left over ---- */
+
+static bool holds_atom(const struct form *form)
+{
+	return form->terms > 0 && form->term[form->terms - 1].basis.kind == BASIS_ATOM;
+}
+
+bool is_linear(const struct building *b)
+{
+	for (int s = 0; s < b->model->system.segments; s++)
+		for (int i = 0; i < b->model->n; i++)
+			if (holds_atom(b->snapshot[s].residual[i].form) || !same_equations(b, &b->snapshot[s]))
+				return false;
+	return true;
+}
+
+/* The equations for all time, in which nothing is taken apart that a state multiplies. */
+void collect_whole(struct building *b)
+{
+	b->whole = NEW(struct snapshot);
+	b->collector.whole_time = true;
+	forget_lets(b->spec);
+	collect_equations(b, b->whole);
+	b->collector.whole_time = false;
+	if (!diagnostics_errors())
+		add_elements(b, b->whole);
+	for (struct symbol *s = b->spec->first; s && !b->collector.fixings; s = s->next)
+		if (s->kind == SYMBOL_LET && s->progress == COLLECTED && s->collected->rows * s->collected->columns == 1)
+			s->whole = s->collected->cell[0];
+}
+
+/* What depends on time alone, in each interval of time: t < 1 ? ... has one formula there. What is then still no load, such as
+ * sqrt(t), is left over if it is the same in all intervals; if it is not, all that is no plain load for all time is. */
+static void part_loads(void *context)
+{
+	struct building *b = context;
+	struct collector *c = &b->collector;
+	int n = b->model->n, segments = b->model->system.segments;
+	b->load = ARRAY(struct form *, (size_t)(segments * n));
+	b->time_left = ARRAY(struct form *, (size_t)n);
+	for (int i = 0; i < n; i++) {
+		const struct form *whole = time_part(b->whole->residual[i].form, false);
+		bool same = true;
+		for (c->interval = 0; c->interval < segments; c->interval++) {
+			struct form *here = form_at(point_new(c, 0, NULL), whole), *left = time_part(here, true);
+			b->load[c->interval * n + i] = form_sum(here, left, true);
+			b->time_left[i] = c->interval == 0 ? left : b->time_left[i];
+			same = same && same_form(left, b->time_left[i]);
+		}
+		if (!same)
+			b->time_left[i] = time_part(whole, true);
+		for (int s = 0; s < segments && !same; s++)
+			b->load[s * n + i] = form_sum(whole, b->time_left[i], true);
+	}
+	c->interval = 0;
+}
+
+static const struct form *load_form(const struct building *b, int segment, int row)
+{
+	return b->whole ? b->load[segment * b->model->n + row] : b->snapshot[segment].residual[row].form;
+}
+
+/* ---- the whole ---- */
+
+/* Exact where nothing is left over and no scheme was asked for; the equations for all time where something is. */
+static bool settle_scheme(struct building *b)
+{
+	struct model *model = b->model;
+	bool linear = is_linear(b);
+	if (!linear && !model->scheme_at.source && !b->overrides->solution)
+		model->scheme = SCHEME_ETDRK4;
+	b->collector.scheme = scheme_name(model->scheme);
+	if (model->scheme == SCHEME_EXACT && b->overrides->loads_left) {
+		say_error(model->scheme_at.source ? model->scheme_at : b->spec->name_at, "etd1, etdrk2, etdrk4, nc2, nc3, dq4 and bm3 have; pl holds loads over a step",
+			  "--loads leftover needs a scheme with a quadrature: exact has none");
+		return false;
+	}
+	if (model->scheme == SCHEME_EXACT)
+		return check_changes(b);
+	if (!linear || b->overrides->loads_left || b->spec->has_operator)
+		collect_whole(b);
+	model->loads_left = b->whole && b->overrides->loads_left;
+	if (b->whole && !diagnostics_errors())
+		statement_guard(part_loads, b);
+	return !diagnostics_errors();
+}
+
 void build_system(struct building *b)
 {
 	struct model *model = b->model;
@@ -477,21 +563,25 @@ void build_system(struct building *b)
 		return;
 	for (int s = 0; s < system->segments; s++)
 		add_elements(b, &b->snapshot[s]);
-	if (!check_changes(b))
+	if (!settle_scheme(b))
 		return;
+	const struct snapshot *rows = b->whole ? b->whole : b->snapshot;
 	system->M = rationals(cells);
 	system->C = rationals(cells);
 	system->K = rationals(cells);
 	for (int i = 0; i < model->n; i++)
-		fill_row(model, i, b->snapshot->residual[i].form);
+		fill_row(model, i, rows->residual[i].form);
 	check_mass(b);
 	name_inputs(b);
-	for (int s = 0; s < system->segments; s++)
+	for (int i = 0; i < model->n; i++)
+		fill_inputs(system, i, rows->residual[i].form);
+	for (int s = 0; s < system->segments && !model->loads_left; s++)
 		for (int i = 0; i < model->n; i++)
-			place_loads(b, b->snapshot[s].residual[i].form);
-	for (int s = 0; s < system->segments; s++)
+			place_loads(b, load_form(b, s, i));
+	for (int s = 0; s < system->segments && !model->loads_left; s++)
 		for (int i = 0; i < model->n; i++)
-			fill_forces(b, s, i, b->snapshot[s].residual[i].form);
-	model->residual = b->snapshot->residual;
+			spread_loads(b, load_form(b, s, i), add_force, &(struct force_row){ system, s, i });
+	model->residual = rows->residual;
 	model->snapshot = b->snapshot;
+	model->whole = b->whole;
 }

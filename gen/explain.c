@@ -45,14 +45,14 @@ static void person_loads(FILE *to, const struct linear *system)
 			person_force(to, format("input %s%s", system->input[i].name, k ? "'" : ""), system->n, (const mpq_t *)system->input[i].force[k]);
 }
 
-static void person_poles(FILE *to, const struct step *step)
+static void person_poles(FILE *to, const struct resolvent *resolvent)
 {
-	int length = resolvent_determinant(step->written)->length;
+	int length = resolvent_determinant(resolvent)->length;
 	mpq_t *B = rationals((size_t)length);
-	characteristic_polynomial(step->written, B);
+	characteristic_polynomial(resolvent, B);
 	fprintf(to, "\n    B(s) = %s\n\n", polynomial_text(length, (const mpq_t *)B));
 	struct pole_report *pole;
-	int count = poles_of(step->written, &pole);
+	int count = poles_of(resolvent, &pole);
 	fprintf(to, "    %-36s %-16s damping ratio\n", "pole [1/s]", "frequency [Hz]");
 	for (int i = 0; i < count; i++)
 		fprintf(to, "    %-36s %-16.8g %.8g\n", pole_text(&pole[i]), mpfr_get_d(pole[i].hertz, MPFR_RNDN),
@@ -88,7 +88,9 @@ static void person_step(FILE *to, const struct step *step)
 	if (program->oscillators)
 		fprintf(to, " (%d and %d of them for cos and sin of the loads)", program->oscillators * PL_COSSIN_MUL,
 			program->oscillators * PL_COSSIN_ADD);
-	fputs(".\nPhi, each entry correctly rounded:\n", to);
+	if (program->calls)
+		fprintf(to, ", %d calls of the model's own functions", program->calls);
+	fprintf(to, ".\nPhi%s, each entry correctly rounded:\n", !has_leftover(step) ? "" : step->operators > 1 ? " = e^{A h} of the first operator" : " = e^{A h}");
 	for (int i = 0; i < model->system.states; i++) {
 		fprintf(to, "    %-8s", model->state_name[i]);
 		for (int j = 0; j < model->system.states; j++)
@@ -99,7 +101,34 @@ static void person_step(FILE *to, const struct step *step)
 		fprintf(to, "%s_at: Taylor series of degree %d on %d part%s of the time.\n", model->name, step->series.degree, 1 << step->series.halvings,
 			step->series.halvings ? "s" : "");
 	else
-		fprintf(to, "%s_at is not emitted: the largest |pole| times h is above 8.\n", model->name);
+		fprintf(to, "%s_at is not emitted: %s.\n", model->name, has_leftover(step) && !step->series.powers
+			? "between its steps the scheme has no values of its order" : "the largest |pole| times h is above 8");
+}
+
+/* What went where: the operators, then the leftover of the first; those of the others differ in linear terms only. */
+static void person_split(FILE *to, const struct step *step)
+{
+	const struct model *model = step->model;
+	fprintf(to, "Split: y' = A y + loads%s + r(t, y). A, the loads%s are exact, each constant correctly rounded.\n",
+		step->system.inputs ? " + inputs" : "", model->loads_left ? " excepted" : step->system.inputs ? " and the inputs" : "");
+	for (int k = 0; k < model->operators; k++) {
+		const struct operator *operator = &model->operator[k];
+		if (!*operator->text) {
+			fputs("A: the linear terms with constant coefficients, as above.\n", to);
+			continue;
+		}
+		fprintf(to, "A: the Jacobian of the equations at %s (of an entry that still moves there, the constant part):\n", operator->text);
+		person_matrix(to, "C", model->n, (const mpq_t *)operator->C);
+		person_matrix(to, "K", model->n, (const mpq_t *)operator->K);
+		if (model->scheme != SCHEME_PL)
+			person_poles(to, step->resolvent[k]);
+	}
+	if (step->operators > 1)
+		fputs("A step uses the first operator whose value is not below the current one, else the last.\n", to);
+	fprintf(to, "r, left to scheme %s, is a force on each of these equations%s:\n", scheme_name(model->scheme),
+		step->operators > 1 ? " (with the first operator; with the others its linear terms differ)" : "");
+	for (int c = 0; c < model->channels; c++)
+		fprintf(to, "    %s: %s\n", model->coord_name[coordinate_of_row(model, model->channel_row[c])], form_text(model, model->operator[0].left[c]));
 }
 
 /* What went: states that no output sees, and with them the poles that cancel in every N/B. */
@@ -140,14 +169,16 @@ void explain_person(FILE *to, const struct step *step)
 	person_matrix(to, "C", model->written->n, (const mpq_t *)model->written->system.C);
 	person_matrix(to, "K", model->written->n, (const mpq_t *)model->written->system.K);
 	person_loads(to, &model->written->system);
-	person_poles(to, step);
+	person_poles(to, step->written);
 	const char *irrational = irrationals_text(&model->irrationals);
 	if (*irrational)
 		fprintf(to, "\nIrrational constants (%s) were taken as rationals of %d bits.\n", irrational, IRRATIONAL_BITS);
 	fputc('\n', to);
 	if (model->scheme == SCHEME_PL)
 		person_held(to, step);
-	else
+	if (has_leftover(step))
+		person_split(to, step);
+	else if (model->scheme != SCHEME_PL)
 		fputs("Nothing is approximated: every constant is its closed form, correctly rounded.\n", to);
 	if (model->written != model)
 		person_reduction(to, step);
@@ -220,6 +251,17 @@ static void json_modes(FILE *to, int count, const struct pole_report *pole)
 	fputs("],\n", to);
 }
 
+static void json_pole_list(FILE *to, int count, const struct pole_report *pole)
+{
+	fputs("  \"poles\": [", to);
+	for (int i = 0; i < count; i++) {
+		json_pole(to, &pole[i], false, i == 0);
+		if (pole[i].pair)
+			json_pole(to, &pole[i], true, false);
+	}
+	fputs("]", to);
+}
+
 static void json_poles(FILE *to, const struct step *step)
 {
 	int length = resolvent_determinant(step->written)->length;
@@ -228,15 +270,11 @@ static void json_poles(FILE *to, const struct step *step)
 	fputs("  \"B\": [", to);
 	for (int k = 0; k < length; k++)
 		fprintf(to, "%s\"%s\"", k ? ", " : "", exact_text(B[k]));
-	fputs("],\n  \"poles\": [", to);
+	fputs("],\n", to);
 	struct pole_report *pole;
 	int count = poles_of(step->written, &pole);
-	for (int i = 0; i < count; i++) {
-		json_pole(to, &pole[i], false, i == 0);
-		if (pole[i].pair)
-			json_pole(to, &pole[i], true, false);
-	}
-	fputs("],\n", to);
+	json_pole_list(to, count, pole);
+	fputs(",\n", to);
 	json_modes(to, count, pole);
 }
 
@@ -277,6 +315,27 @@ static void json_loads(FILE *to, const struct step *step)
 	fputs("],\n", to);
 }
 
+/* Operators as what multiplies q' and q, and their poles; the leftover of the first, as text */
+static void json_split(FILE *to, const struct step *step)
+{
+	const struct model *model = step->model;
+	fputs("  \"operators\": [", to);
+	for (int k = 0; k < model->operators; k++) {
+		struct pole_report *pole;
+		int count = poles_of(step->resolvent[k], &pole);
+		fprintf(to, "%s{\n  \"at\": \"%s\",\n", k ? ", " : "", model->operator[k].text);
+		json_rational_matrix(to, "C", model->n, (const mpq_t *)model->operator[k].C);
+		json_rational_matrix(to, "K", model->n, (const mpq_t *)model->operator[k].K);
+		json_pole_list(to, count, pole);
+		fputs("}", to);
+	}
+	fputs("],\n  \"leftover\": [", to);
+	for (int c = 0; c < model->channels; c++)
+		fprintf(to, "%s\n    {\"equation\": \"%s\", \"force\": \"%s\"}", c ? "," : "",
+			model->coord_name[coordinate_of_row(model, model->channel_row[c])], form_text(model, model->operator[0].left[c]));
+	fputs("],\n", to);
+}
+
 void explain_json(FILE *to, const struct step *step)
 {
 	const struct model *model = step->model;
@@ -303,5 +362,8 @@ void explain_json(FILE *to, const struct step *step)
 	json_loads(to, step);
 	if (model->scheme == SCHEME_PL)
 		fprintf(to, "  \"growth_rate\": %.17g,\n", mpfr_get_d(step->growth, MPFR_RNDN));
-	fprintf(to, "  \"cost\": {\"multiplications\": %d, \"additions\": %d}\n}\n", step->program->multiplications, step->program->additions);
+	if (has_leftover(step))
+		json_split(to, step);
+	fprintf(to, "  \"cost\": {\"multiplications\": %d, \"additions\": %d", step->program->multiplications, step->program->additions);
+	fprintf(to, step->program->calls ? ", \"calls\": %d}\n}\n" : "}\n}\n", step->program->calls);
 }

@@ -3,7 +3,7 @@
  * their derivatives. pi stays a basis element until it meets another factor, so that quarter turns are decided exactly. */
 #include "plgen.h"
 
-static int basis_order(const struct basis *a, const struct basis *b)
+int basis_order(const struct basis *a, const struct basis *b)
 {
 	if (a->kind != b->kind)
 		return (int)a->kind - (int)b->kind;
@@ -144,7 +144,7 @@ bool same_in_states(const struct form *a, const struct form *b)
 {
 	const struct form *difference = form_sum(a, b, true);
 	for (int i = 0; i < difference->terms; i++)
-		if (difference->term[i].basis.kind == BASIS_COORD || difference->term[i].basis.kind == BASIS_INPUT)
+		if (difference->term[i].basis.kind >= BASIS_INPUT)
 			return false;
 	return true;
 }

@@ -83,6 +83,7 @@ struct linear linear_like(const struct linear *shape)
 	system.loads = 0;
 	system.inputs = 0;
 	system.load = NULL;
+	system.channels = 0;
 	return system;
 }
 

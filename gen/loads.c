@@ -148,6 +148,37 @@ struct response *response_of_input(struct resolvent *r, const struct linear *sys
 	return image_of(r, &(struct question){ NULL, 1, &e, unit(system->states, i) });
 }
 
+mpq_t *impulse_of_channel(const struct linear *system, int channel)
+{
+	int n = system->n, column;
+	mpq_t *inverse = rationals((size_t)(n * n)), *highest = rationals((size_t)n), *B = rationals((size_t)system->states);
+	leading_inverse(system, inverse, &column);
+	rational_product(n, n, 1, (const mpq_t *)inverse, (const mpq_t *)system->channel[channel], highest);
+	for (int i = 0; i < n; i++)
+		mpq_set(B[system->velocity[i] >= 0 ? system->velocity[i] : i], highest[i]);
+	return B;
+}
+
+/* sum power[m] (s/h)^m as a force, and an impulse at the start */
+struct response *response_of_kernel(struct resolvent *r, const struct linear *system, int i, int channel, const struct kernel_part *part, mpq_srcptr h)
+{
+	int n = system->n;
+	struct excitation e = excitation_new(n, NULL, NULL, part->powers);
+	mpq_t scale, *start = impulse_of_channel(system, channel);
+	mpq_init(scale);
+	for (int m = 0; m < part->powers; m++) {
+		mpq_set(scale, part->power[m]);
+		for (int k = 0; k < m; k++)
+			mpq_div(scale, scale, h);
+		for (int k = 0; k < n; k++)
+			mpq_mul(e.force[2 * m * n + k], system->channel[channel][k], scale);
+	}
+	for (int k = 0; k < system->states; k++)
+		mpq_mul(start[k], start[k], part->impulse);
+	mpq_clear(scale);
+	return image_of(r, &(struct question){ (const mpq_t *)start, part->powers > 0, &e, unit(system->states, i) });
+}
+
 struct response *response_of_load_state(const struct load *load, int to, int from)
 {
 	struct linear scalar = first_order_system(1, (const mpq_t *)rationals(1));

@@ -33,7 +33,8 @@ static const char usage[] =
 	"  --solution T        print the closed-form solution at every step up to T as CSV\n"
 	"  --rhs               also emit NAME_rhs: the equations as written\n"
 	"  --step EXPR         instead of the spec's step\n"
-	"  --scheme NAME       instead of the spec's scheme: exact, pl\n"
+	"  --scheme NAME       instead of the spec's: exact pl etd1 etdrk2 etdrk4 nc2 nc3 dq4 bm3\n"
+	"  --loads leftover    leave known loads to the scheme's quadrature (default: exact)\n"
 	"  -D NAME=EXPR        another value for a param; EXPR may use the spec's params\n"
 	"  --prefix NAME       instead of the model's name for everything generated\n"
 	"  --reduce            leave out what the outputs cannot see\n"
@@ -69,7 +70,7 @@ static void note_in_banner(struct options *options, const char *option)
 	options->banner = format("%s%s%s", options->banner, *options->banner ? " " : "", option);
 }
 
-enum { OPT_HEADER = 256, OPT_EXPLAIN, OPT_SOLUTION, OPT_RHS, OPT_STEP, OPT_SCHEME, OPT_PREFIX, OPT_REDUCE, OPT_DEPFILE, OPT_HELP, OPT_VERSION, OPT_LATER };
+enum { OPT_HEADER = 256, OPT_EXPLAIN, OPT_SOLUTION, OPT_RHS, OPT_STEP, OPT_SCHEME, OPT_PREFIX, OPT_REDUCE, OPT_DEPFILE, OPT_LOADS, OPT_HELP, OPT_VERSION, OPT_LATER };
 
 static const struct option long_options[] = {
 	{ "header", no_argument, NULL, OPT_HEADER }, { "explain", optional_argument, NULL, OPT_EXPLAIN },
@@ -78,7 +79,7 @@ static const struct option long_options[] = {
 	{ "prefix", required_argument, NULL, OPT_PREFIX }, { "depfile", required_argument, NULL, OPT_DEPFILE },
 	{ "help", no_argument, NULL, OPT_HELP }, { "version", no_argument, NULL, OPT_VERSION },
 	{ "real", required_argument, NULL, OPT_LATER }, { "form", required_argument, NULL, OPT_LATER },
-	{ "accuracy", required_argument, NULL, OPT_LATER }, { "loads", required_argument, NULL, OPT_LATER },
+	{ "accuracy", required_argument, NULL, OPT_LATER }, { "loads", required_argument, NULL, OPT_LOADS },
 	{ "reduce", no_argument, NULL, OPT_REDUCE }, { "selftest", no_argument, NULL, OPT_LATER }, { 0 }
 };
 
@@ -116,6 +117,7 @@ static void take_option(struct options *options, int option, int index)
 	case OPT_SOLUTION:
 		need_print(options, PRINT_SOLUTION);
 		options->solution = optarg;
+		options->overrides.solution = true;
 		break;
 	case OPT_RHS: options->rhs = true; break;
 	case OPT_STEP: options->overrides.step = optarg; break;
@@ -124,6 +126,11 @@ static void take_option(struct options *options, int option, int index)
 	case OPT_REDUCE:
 		options->overrides.reduce = true;
 		note_in_banner(options, "--reduce");
+		break;
+	case OPT_LOADS:
+		if (strcmp(optarg, "leftover") != 0 && strcmp(optarg, "exact") != 0)
+			wrong_usage(format("--loads takes exact or leftover, found '%s'", optarg));
+		options->overrides.loads_left = strcmp(optarg, "leftover") == 0;
 		break;
 	case OPT_DEPFILE: options->depfile = optarg; break;
 	case OPT_HELP: say_and_stop(usage);
@@ -155,6 +162,8 @@ static void read_options(int argc, char **argv, struct options *options)
 		note_in_banner(options, format("--step %s", options->overrides.step));
 	if (options->overrides.prefix)
 		note_in_banner(options, format("--prefix %s", options->overrides.prefix));
+	if (options->overrides.loads_left)
+		note_in_banner(options, "--loads leftover");
 	if (options->rhs)
 		note_in_banner(options, "--rhs");
 	size_t length = options->output ? strlen(options->output) : 0;

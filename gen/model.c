@@ -71,29 +71,34 @@ static void evaluate_lets(struct building *b)
 
 /* ---- scheme and step ---- */
 
+static const char *const schemes[SCHEMES] = { "exact", "pl", "etd1", "etdrk2", "etdrk4", "nc2", "nc3", "dq4", "bm3" };
+
 const char *scheme_name(enum scheme scheme)
 {
-	return scheme == SCHEME_PL ? "pl" : "exact";
+	return schemes[scheme];
 }
 
+/* Without a scheme: exact where the model allows it, which the equations tell. */
 static void choose_scheme(void *context)
 {
-	static const char *const known[] = { "exact", "pl", "etd1", "etdrk2", "etdrk4", "nc2", "nc3", "dq4", "bm3" };
 	struct building *b = context;
 	const char *wanted = b->overrides->scheme ? b->overrides->scheme : b->spec->scheme;
 	b->collector.scheme = "exact";
+	b->collector.closed = b->overrides->solution;
+	b->collector.keep = !wanted && !b->overrides->solution;
 	if (!wanted)
 		return;
 	struct place at = b->overrides->scheme ? (struct place){ source_argument(wanted), 0 } : b->spec->scheme_at;
-	for (int i = 0; i < 9; i++)
-		if (strcmp(wanted, known[i]) == 0) {
-			if (i > 1)
-				error(at, "exact and pl are", "scheme '%s' is not built yet", wanted);
-			b->model->scheme = i == 1 ? SCHEME_PL : SCHEME_EXACT;
-			b->collector.scheme = known[i];
+	for (int i = 0; i < SCHEMES; i++)
+		if (strcmp(wanted, schemes[i]) == 0) {
+			b->model->scheme = b->overrides->solution ? SCHEME_EXACT : (enum scheme)i;
+			b->model->scheme_at = at;
+			b->collector.scheme = scheme_name(b->model->scheme);
+			b->collector.keep = b->model->scheme != SCHEME_EXACT;
 			return;
 		}
-	const char *nearest = nearest_name(wanted, 9, known);
+	const char *nearest = nearest_name(wanted, SCHEMES, schemes);
+	b->collector.keep = true;               /* whatever was meant: one message is enough */
 	error(at, nearest ? format("did you mean '%s'?", nearest) : "the schemes are exact, pl, etd1, etdrk2, etdrk4, nc2, nc3, dq4, bm3",
 	      "unknown scheme '%s'", wanted);
 }
@@ -242,6 +247,7 @@ static void collect_intervals(struct building *b)
 		for (c->interval = 0; c->interval <= known && c->changes == known && !(c->interval && diagnostics_errors()); c->interval++) {
 			forget_lets(b->spec);
 			collect_equations(b, &b->snapshot[c->interval]);
+			forget_lets(b->spec);       /* collected anew: in an output no atom is kept */
 			collect_outputs(b, &b->snapshot[c->interval]);
 		}
 	} while (c->changes != known && !diagnostics_errors());
@@ -257,6 +263,8 @@ struct model *model_build(struct spec *spec, const struct overrides *overrides)
 	mpq_srcptr zero = rationals(1)[0];
 	model->spec = spec;
 	model->written = model;
+	b.collector.model = model;
+	model->atoms = b.collector.atoms = atoms_new();
 	model->name = overrides->prefix ? overrides->prefix : spec->name;
 	mpq_init(model->h);
 	b.polynomial = wave_of(&b.collector, zero, zero, zero);
@@ -280,11 +288,15 @@ struct model *model_build(struct spec *spec, const struct overrides *overrides)
 	if (clean && model->n > 0 && model->system.states <= LIMIT_STATES)
 		build_system(&b);
 	if (!diagnostics_errors())
+		build_operators(&b);
+	if (!diagnostics_errors())
 		build_outputs(&b);
 	if (!diagnostics_errors() && overrides->reduce && model->scheme != SCHEME_EXACT)
-		say_error(overrides->scheme ? (struct place){ source_argument(overrides->scheme), 0 } : spec->scheme_at, NULL,
-			  "--reduce needs scheme exact: what %s holds depends on the coordinates", scheme_name(model->scheme));
+		say_error(model->scheme_at.source ? model->scheme_at : spec->name_at, NULL,
+			  "--reduce needs scheme exact: what %s leaves over depends on the coordinates", scheme_name(model->scheme));
 	model->irrationals = b.collector.irrationals;
+	if (!diagnostics_errors() && !overrides->solution)
+		warn(&b);
 	return diagnostics_errors() ? NULL : model;
 }
 

@@ -16,6 +16,9 @@ static void add_highest(const struct model *model, const mpq_t *inverse, const m
 	}
 	for (int i = 0; i < model->n; i++) {
 		mpq_mul(weight, inverse[coord * model->n + i], factor);
+		for (int c = 0; c < model->channels; c++)
+			if (model->channel_row[c] == i)
+				mpq_add(output->channel[c], output->channel[c], weight);
 		for (int l = 0; l < system->loads; l++)
 			for (int k = 0; k < system->load[l].columns; k++)
 				for (int s = 0; s < system->segments; s++) {
@@ -119,7 +122,7 @@ static const char *component_name(const char *name, int component)
 	return format("%.*s[%d]%s", length, name, component, name + length);
 }
 
-/* What is not linear stays an expression, printed as C. */
+/* What is not linear becomes forms with atoms, printed as C. */
 void collect_outputs(struct building *b, struct snapshot *snapshot)
 {
 	int index = 0;
@@ -150,6 +153,21 @@ static bool is_row(const struct building *b, int index)
 	return true;
 }
 
+static void collect_left(void *context)
+{
+	struct output_work *work = context;
+	struct collector *c = &work->b->collector;
+	bool keep = c->keep;
+	c->keep = c->whole_time = c->output = true;
+	forget_lets(work->b->spec);
+	collect_output(work);
+	c->keep = keep;
+	c->whole_time = c->output = false;
+	for (struct symbol *s = work->b->spec->first; s; s = s->next)
+		if (s->kind == SYMBOL_LET && !s->whole && s->progress == COLLECTED && s->collected->rows * s->collected->columns == 1)
+			s->whole = s->collected->cell[0];
+}
+
 static void name_outputs(struct building *b)
 {
 	struct model *model = b->model;
@@ -158,10 +176,13 @@ static void name_outputs(struct building *b)
 		if (s->kind != SYMBOL_OUTPUT)
 			continue;
 		bool row = is_row(b, index);
-		const struct value *value = row ? b->snapshot->output[index] : NULL;
-		int count = row ? value->rows * value->columns : 1;
+		struct output_work work = { b, s, row ? b->snapshot->output[index] : NULL };
+		if (!row)
+			statement_guard(collect_left, &work);
+		int count = work.value ? work.value->rows * work.value->columns : 0;
 		for (int i = 0; i < count; i++) {
-			add_output(model, count == 1 ? s->name : component_name(s->name, i + 1), s->value, row ? value->cell[i] : NULL);
+			add_output(model, count == 1 ? s->name : component_name(s->name, i + 1), s->value, row ? work.value->cell[i] : NULL);
+			model->output[model->outputs - 1].left = row ? NULL : work.value->cell[i];
 			model->output[model->outputs - 1].statement = index;
 			model->output[model->outputs - 1].cell = i;
 		}
@@ -172,22 +193,34 @@ static void name_outputs(struct building *b)
 		add_output(model, model->state_name[i], NULL, NULL);
 }
 
+static bool reads_too_high(const struct model *model, bool *seen, const struct form *form)
+{
+	for (int i = 0; form && i < form->terms; i++) {
+		const struct basis *basis = &form->term[i].basis;
+		if (is_too_high(model, basis))
+			return true;
+		if (!basis->atom || seen[basis->atom->index])
+			continue;
+		seen[basis->atom->index] = true;
+		for (int k = 0; k < basis->atom->operands; k++)
+			if (reads_too_high(model, seen, basis->atom->operand[k]))
+				return true;
+	}
+	return false;
+}
+
 /* Whether it is good; else it has been told. */
 static bool check_output(const struct model *model, const struct output *output)
 {
-	const struct node *acceleration = output->value && !output->form ? find_acceleration(output->value, 0) : NULL;
-	if (acceleration)
-		say_error(acceleration->at, NULL, "accelerations in outputs that are not linear are not built yet");
-	for (int k = 0; output->form && k < output->form->terms; k++)
-		if (is_too_high(model, &output->form->term[k].basis)) {
-			say_error(find_acceleration(output->value, 1)->at, NULL, "%s is of first order and has no second derivative",
-				  model->coord[output->form->term[k].basis.index]->name);
-			return false;
-		}
-	return !acceleration;
+	bool *seen = ARRAY(bool, (size_t)atoms_count(model->atoms));
+	if (!reads_too_high(model, seen, output->form ? output->form : output->left))
+		return true;
+	const struct node *name = find_acceleration(output->value, 1);
+	say_error(name->at, NULL, "%s is of first order and has no second derivative", name->symbol->name);
+	return false;
 }
 
-static void make_rows(const struct linear *system, struct output *output)
+static void make_rows(const struct linear *system, int channels, struct output *output)
 {
 	output->state = rationals((size_t)system->states);
 	output->load = ARRAY(mpq_t *, (size_t)system->loads);
@@ -195,6 +228,50 @@ static void make_rows(const struct linear *system, struct output *output)
 		output->load[l] = rationals((size_t)system->load[l].columns * (size_t)system->segments);
 	for (int k = 0; k < 2; k++)
 		output->input[k] = rationals((size_t)system->inputs);
+	output->channel = rationals((size_t)channels);
+}
+
+/* ---- outputs that are not linear ---- */
+
+static void place_output_waves(struct building *b, bool *seen, const struct form *form)
+{
+	for (int i = 0; form && i < form->terms; i++) {
+		const struct basis *basis = &form->term[i].basis;
+		if (basis->kind == BASIS_WAVE && !is_polynomial(basis->wave))
+			place_loads(b, form_single(*basis, form->term[i].factor));
+		if (!basis->atom || seen[basis->atom->index])
+			continue;
+		seen[basis->atom->index] = true;
+		for (int k = 0; k < basis->atom->operands; k++)
+			place_output_waves(b, seen, basis->atom->operand[k]);
+	}
+}
+
+/* The highest derivatives that they read, each as a row of its own */
+static void build_highest(struct building *b, const mpq_t *inverse, const mpq_t *highest)
+{
+	struct model *model = b->model;
+	mpq_t one;
+	mpq_init(one);
+	mpq_set_ui(one, 1, 1);
+	model->highest = ARRAY(struct output *, (size_t)model->n);
+	for (int i = 0; i < model->outputs; i++) {
+		const struct form *left = model->output[i].left;
+		struct reads reads = reads_of(model, left != NULL, &left);
+		for (int k = 0; k < model->n; k++) {
+			if (!reads.highest[k] || model->highest[k])
+				continue;
+			if (b->overrides->reduce)
+				say_error(find_acceleration(model->output[i].value, 0)->at, "without --reduce it can",
+					  "an output that is not linear cannot read an acceleration under --reduce");
+			model->highest[k] = NEW(struct output);
+			model->highest[k]->value = model->output[i].value;
+			model->highest[k]->name = model->output[i].name;
+			make_rows(&model->system, model->channels, model->highest[k]);
+			add_highest(model, inverse, highest, k, one, model->highest[k]);
+		}
+	}
+	mpq_clear(one);
 }
 
 /* Loads that only outputs use get their load states too, so all are placed before any is spread. */
@@ -204,21 +281,26 @@ void build_outputs(struct building *b)
 	struct linear *system = &model->system;
 	int column;
 	mpq_t *inverse = rationals((size_t)(model->n * model->n)), *highest = rationals((size_t)(model->n * system->states));
+	struct linear first = model->operators ? operator_system(model, 0) : *system;   /* what is left over is left by this one */
 	leading_inverse(system, inverse, &column);
-	highest_derivatives(system, (const mpq_t *)inverse, false, highest);
+	highest_derivatives(&first, (const mpq_t *)inverse, false, highest);
 	name_outputs(b);
 	int told = -1;                          /* the statement last told: once is enough */
 	for (int i = 0; i < model->outputs; i++)
 		for (int s = 0; s < system->segments && model->output[i].form; s++)
 			place_loads(b, output_form(b, &model->output[i], s));
+	for (int i = 0; i < model->outputs; i++)
+		place_output_waves(b, ARRAY(bool, (size_t)atoms_count(model->atoms)), model->output[i].left);
 	for (int i = 0; i < model->outputs; i++) {
 		struct output *output = &model->output[i];
 		if (output->statement != told && !check_output(model, output))
 			told = output->statement;
-		make_rows(system, output);
+		make_rows(system, model->channels, output);
 		if (!output->value)
 			mpq_set_ui(output->state[i], 1, 1);
 		else if (output->form && !diagnostics_errors())
 			spread_output(b, (const mpq_t *)inverse, (const mpq_t *)highest, output);
 	}
+	if (!diagnostics_errors())
+		build_highest(b, (const mpq_t *)inverse, (const mpq_t *)highest);
 }

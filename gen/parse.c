@@ -745,6 +745,73 @@ static void read_scheme(struct parser *p)
 	p->spec->scheme = name.name;
 }
 
+static void expect_word(struct parser *p, const char *word)
+{
+	if (!take_word(p, word))
+		unexpected(p, format("'%s'", word));
+}
+
+/* NAME = or q[3]' =: the next name of a list of definitions */
+static bool names_definition(const struct parser *p)
+{
+	const char *text = p->lexer.source->text + p->token.at.offset + p->token.length;
+	if (p->token.kind == TOKEN_NAME && *text == '[')
+		text += strcspn(text, "]\n") + (text[strcspn(text, "]\n")] == ']');
+	text += strspn(text, "' \t");
+	return p->token.kind == TOKEN_NAME && text[0] == '=' && text[1] != '=';
+}
+
+/* What an operator can fix: t, a coordinate, its first derivative, a let */
+static struct fixed *read_fixed_name(struct parser *p)
+{
+	struct spec *spec = p->spec;
+	if (p->token.kind != TOKEN_NAME)
+		unexpected(p, "a name to fix");
+	struct token token = take(p);
+	bool time = strcmp(token.name, "t") == 0 && token.primes == 0;
+	struct node *name = time ? NULL : resolve_name(p, token);
+	const struct symbol *symbol = time ? NULL : name->symbol;
+	if (symbol && symbol->kind != SYMBOL_COORD && symbol->kind != SYMBOL_LET)
+		error(token.at, "an operator fixes t, coordinates, their first derivatives and lets", "%s '%s' cannot be fixed", kind_text(symbol), symbol->name);
+	if (token.primes > 1 || (name && name->primes > 1))
+		error(token.at, "an operator fixes t, coordinates, their first derivatives and lets", "an acceleration cannot be fixed");
+	for (int i = 0; i < spec->fixeds; i++) {
+		const struct fixed *other = &spec->fixed[i];
+		bool same = other->symbol == symbol && (!name || (other->primes == name->primes &&
+			    (!other->component || !name->component || other->component == name->component)));
+		if (same)
+			error(token.at, NULL, "%s is fixed already", text_between(token.at, p->end));
+	}
+	ENLARGE(spec->fixed, (size_t)spec->fixeds + 1);
+	struct fixed *fixed = &spec->fixed[spec->fixeds++];
+	*fixed = (struct fixed){ .at = token.at, .end = p->end, .symbol = symbol };
+	fixed->primes = name ? name->primes : 0;
+	fixed->component = name ? name->component : 0;
+	return fixed;
+}
+
+/* operator: operator at NAME = expression { , ( NAME = expression | expression ) } */
+static void read_operator(struct parser *p)
+{
+	struct spec *spec = p->spec;
+	struct place at = last_token(p, 8);
+	struct fixed *fixed = NULL;
+	if (spec->has_operator)
+		error(at, NULL, "the operator is given already");
+	spec->has_operator = true;
+	spec->operator_at = at;
+	expect_word(p, "at");
+	do {
+		if (!fixed || names_definition(p)) {
+			fixed = read_fixed_name(p);
+			expect_op(p, "=", "'='");
+		}
+		ENLARGE(fixed->value, (size_t)fixed->values + 1);
+		fixed->value[fixed->values++] = read_expression(p);
+	} while (take_op(p, ","));
+	expect_end(p);
+}
+
 /* ---- sketches ---- */
 
 static struct node *read_coordinate(struct parser *p, bool ground)
@@ -757,12 +824,6 @@ static struct node *read_coordinate(struct parser *p, bool ground)
 	if (node->symbol->kind != SYMBOL_COORD || node->primes > 0 || (node->symbol->length && !node->component))
 		error(node->at, NULL, "expected a scalar coordinate or a component, found '%s'", text_between(node->start, node->end));
 	return node;
-}
-
-static void expect_word(struct parser *p, const char *word)
-{
-	if (!take_word(p, word))
-		unexpected(p, format("'%s'", word));
 }
 
 /* mass: mass expression at coordinate;  spring, damper: ... expression between coordinate , coordinate;
@@ -804,7 +865,7 @@ static const struct statement {
 	{ "model", read_model }, { "param", read_param }, { "coord", read_coord }, { "init", read_init }, { "let", read_let },
 	{ "output", read_output }, { "step", read_step }, { "scheme", read_scheme },
 	{ "input", read_input }, { "matrix", read_matrix_statement }, { "mass", read_mass }, { "spring", read_spring },
-	{ "damper", read_damper }, { "force", read_force }, { "operator", NULL },
+	{ "damper", read_damper }, { "force", read_force }, { "operator", read_operator },
 	{ "tunable", NULL }
 };
 

@@ -77,6 +77,16 @@ int order_now(struct collector *c, const struct node *node, const struct form *a
 	return sign;
 }
 
+bool is_decided(const struct collector *c, int count, struct form *const *x)
+{
+	struct form phase;
+	mpq_srcptr factor;
+	for (int i = 0; i < count; i++)
+		if (!is_constant(x[i]) && (c->whole_time || !linear_in_time(x[i], &factor, &phase)))
+			return false;
+	return true;
+}
+
 /* ---- functions ---- */
 
 static struct form *negated(const struct form *x)
@@ -120,17 +130,32 @@ static void constant_point(struct collector *c, const struct node *node, const s
 	constant_value(c, x, value);
 }
 
+/* The numbers of a table at their arguments' places; its breakpoints rise. */
+static mpq_t *table_points(struct collector *c, const struct node *node, struct form *const *x)
+{
+	mpq_t *v = rationals((size_t)node->children);
+	for (int i = 1; i < node->children; i++)
+		constant_point(c, node->child[i], x[i], v[i]);
+	for (int i = 3; i < node->children; i += 2)
+		if (mpq_cmp(v[i - 2], v[i]) >= 0)
+			error(node->child[i]->start, NULL, "the breakpoints of a table rise");
+	return v;
+}
+
+void check_breakpoints(struct collector *c, const struct node *node, struct form *const *x)
+{
+	if (node->function == FN_TABLE)
+		table_points(c, node, x);
+	else if (is_constant(x[1]) && is_constant(x[2]) && order_now(c, node, x[1], x[2]) > 0)
+		error(node->child[1]->start, NULL, "the lower breakpoint is above the upper one");
+}
+
 /* y0 + slope (x - x0) on the piece that holds x; extended by the end slopes */
 static struct form *tabulated(struct collector *c, const struct node *node, struct form *const *x)
 {
 	int points = (node->children - 1) / 2, left = 0;
-	mpq_t *v = rationals((size_t)node->children), slope, width;
+	mpq_t *v = table_points(c, node, x), slope, width;
 	mpq_inits(slope, width, NULL);
-	for (int i = 1; i < node->children; i++)
-		constant_point(c, node->child[i], x[i], v[i]);
-	for (int i = 1; i < points; i++)
-		if (mpq_cmp(v[2 * i - 1], v[2 * i + 1]) >= 0)
-			error(node->child[2 * i + 1]->start, NULL, "the breakpoints of a table rise");
 	for (int i = 1; i + 1 < points && (left == i - 1 || c->interval == 0); i++)     /* all breakpoints at the first sight */
 		left = order_now(c, node, x[0], x[2 * i + 1]) > 0 ? i : left;
 	const mpq_t *p = (const mpq_t *)v + 2 * left + 1;       /* x0, y0, x1, y1 */

@@ -88,7 +88,10 @@ struct place place_end(const struct source *source);       /* just after the las
 void say_error(struct place at, const char *note, const char *fmt, ...) __attribute__((format(printf, 3, 4)));
 _Noreturn void error(struct place at, const char *note, const char *fmt, ...) __attribute__((format(printf, 3, 4)));
 _Noreturn void abandon(void);                              /* leave the statement; its error has been said before */
+void say_warning(struct place at, const char *note, const char *fmt, ...) __attribute__((format(printf, 3, 4)));
 bool statement_guard(void (*work)(void *), void *context); /* true if the work ran to its end */
+bool silent_guard(void (*work)(void *), void *context);    /* the same; what it says when it fails is forgotten */
+void diagnostics_context(const char *note);                /* the note of what has none from now on; NULL: none */
 int  diagnostics_errors(void);
 void diagnostics_print(FILE *to);
 void check_bits(struct place at, mpq_srcptr value);        /* the limit on exact values */
@@ -163,9 +166,12 @@ struct symbol {
 	int length;                 /* of a vector coordinate; 0: scalar */
 	bool broken;                /* its own statement failed: what uses it is passed over in silence */
 	bool first_order;           /* of an input: hold first */
-	int highest;                /* of a coordinate: its order, 1 or 2 */
+	int highest;                /* of a coordinate: its order, 1 or 2; of a let: 1 if it reads a highest derivative, else -1, 0 unknown */
+	enum { TIME_UNKNOWN, TIME_READ, TIME_NOT_READ } time; /* of a let */
+	bool marked;                /* of a let: its states are marked */
 	struct node *value;         /* of param, let, output */
 	struct value *collected;    /* value, when COLLECTED */
+	const struct form *whole;   /* of a scalar let: its value for all time, where something is left over */
 	enum { FRESH, COLLECTING, COLLECTED } progress;
 	struct symbol *next;
 };
@@ -184,6 +190,13 @@ struct initial {
 	struct symbol *coord;
 	int primes, component;
 	struct node *value;
+};
+struct fixed {                      /* of `operator at NAME = value, value, ...` */
+	struct place at, end;
+	const struct symbol *symbol; /* a coordinate or a let; NULL: t */
+	int primes, component;
+	int values;
+	struct node **value;
 };
 struct spec {                       /* what the text says, names resolved, nothing evaluated */
 	const struct source *source;
@@ -204,6 +217,10 @@ struct spec {                       /* what the text says, names resolved, nothi
 	struct place step_at;
 	const char *scheme;
 	struct place scheme_at;
+	bool has_operator;
+	struct place operator_at;
+	int fixeds;
+	struct fixed *fixed;
 	struct place end;
 };
 struct spec *parse_spec(const struct source *source);
@@ -222,13 +239,14 @@ const char *spec_suggestion(const struct spec *spec, const char *name); /* a not
 
 /* ---- form.c: symbolic collection; a form is linear in what the linear core can carry ---- */
 
-enum basis_kind { BASIS_ONE, BASIS_PI, BASIS_WAVE, BASIS_INPUT, BASIS_COORD };
+enum basis_kind { BASIS_ONE, BASIS_PI, BASIS_WAVE, BASIS_INPUT, BASIS_COORD, BASIS_ATOM };
 struct basis {
 	enum basis_kind kind;
-	int index, order;           /* of BASIS_COORD and BASIS_INPUT: which, and how often differentiated */
+	int index, order;           /* of BASIS_COORD and BASIS_INPUT: which, and how often differentiated; of BASIS_ATOM: its index */
 	struct wave *wave;          /* of BASIS_WAVE: t^power times its cos or sin */
 	int power;
 	bool sine;
+	const struct atom *atom;    /* of BASIS_ATOM: an expression that the linear core cannot carry */
 };
 struct wave {                       /* e^{a t} cos(w t + p) and sin, w > 0; or e^{a t} alone, w = p = 0 */
 	mpq_t a, w, p;
@@ -256,7 +274,16 @@ struct collector {
 	const struct node *argument; /* the innermost function of which an argument is being collected that must be linear */
 	bool constant_only;         /* a param, a step, an initial value */
 	bool tolerant;              /* give up in silence on what is not linear: an output may be */
+	bool keep;                  /* what is not linear becomes an atom: a scheme with a leftover can treat it */
+	bool whole_time;            /* with `keep`: conditions and products of time become atoms too, and time is not divided */
+	bool closed;                /* for --solution */
+	bool output;                /* an output is being collected: highest derivatives may stand anywhere */
+	struct atoms *atoms;
+	const struct model *model;  /* for the orders of its coordinates; NULL: there are none */
+	int fixings;                /* lets that an operator fixes */
+	const struct fixing *fixing;
 };
+int basis_order(const struct basis *a, const struct basis *b); /* by which terms are sorted; 0: the same */
 struct form *form_single(struct basis basis, mpq_srcptr factor);
 struct form *form_unit(struct basis basis);                 /* factor 1 */
 struct form *form_constant(mpq_srcptr value);
@@ -268,6 +295,51 @@ mpq_srcptr factor_of(const struct form *form, enum basis_kind kind); /* NULL: it
 bool same_in_states(const struct form *a, const struct form *b); /* they differ in loads only */
 void check_form(struct place at, const struct form *form);  /* the limit on exact values */
 void constant_value(struct collector *collector, const struct form *form, mpq_ptr value); /* form of 1 and pi only */
+
+/* ---- atom.c: what is not linear, as expressions that are shared wherever they are the same ---- */
+
+enum atom_kind { ATOM_PRODUCT, ATOM_RECIPROCAL, ATOM_POWER, ATOM_CALL, ATOM_COMPARE, ATOM_CHOOSE };
+struct atom {
+	enum atom_kind kind;
+	enum function function;     /* of ATOM_CALL */
+	enum comparison comparison; /* of ATOM_COMPARE: two operands */
+	int operands;               /* POWER: base, exponent; CHOOSE: condition, then, else; equal forms are one object */
+	const struct form **operand;
+	unsigned *exponent;         /* of ATOM_PRODUCT, one per factor */
+	bool time, input, state;    /* what it depends on */
+	const struct node *node;    /* where it comes from */
+	int index;                  /* in the order of first appearance */
+	struct atom *next;
+};
+struct atoms *atoms_new(void);
+int  atoms_count(const struct atoms *atoms);
+/* Each result is a form, folded where the operands are constant; sums of constants, times and states are multiplied out so
+ * far that every constant times a state shows as a linear term, and every term of time alone stands alone. */
+struct form *kept_product(struct collector *c, const struct node *node, const struct form *a, const struct form *b);
+struct form *kept_reciprocal(struct collector *c, const struct node *node, const struct form *x);
+struct form *kept_power(struct collector *c, const struct node *node, const struct form *base, const struct form *exponent);
+struct form *kept_whole_power(struct collector *c, const struct node *node, const struct form *x, unsigned n);
+struct form *kept_call(struct collector *c, const struct node *node, enum function function, int count, struct form *const *x);
+struct form *kept_comparison(struct collector *c, const struct node *node, enum comparison comparison, const struct form *a, const struct form *b);
+struct form *kept_choice(struct collector *c, const struct node *node, const struct form *condition, const struct form *a, const struct form *b);
+bool depends_on_time_only(const struct basis *basis);       /* or on nothing */
+struct form *time_part(const struct form *form, bool atoms); /* its terms of time alone; or of them the atoms only */
+bool same_form(const struct form *a, const struct form *b);
+
+/* ---- calculus.c: derivatives of forms, and forms at a point ---- */
+
+struct fixing {                     /* a name that `operator at` fixes */
+	struct place at;
+	const struct symbol *symbol; /* a let or a coordinate; NULL: t */
+	int coord, order;           /* of a coordinate, one component */
+	const struct form *form;    /* constant: pi stays pi */
+	mpq_t value;
+};
+/* With respect to one state: a coordinate, or its velocity */
+struct form **form_derivatives(struct collector *c, int count, const struct form *const *form, int coord, int order);
+struct point;                       /* t and coordinates fixed; lets are not looked at */
+struct point *point_new(struct collector *c, int fixings, const struct fixing *fixing);
+struct form *form_at(struct point *point, const struct form *form); /* leaves the statement where the form is not defined there */
 
 /* ---- wave.c: loads in time ---- */
 
@@ -288,6 +360,8 @@ struct value *collect_constants(struct collector *collector, struct node *node);
 void collect_constant(struct collector *collector, struct node *node, mpq_ptr number);
 
 _Noreturn void not_linear(const struct collector *c, const struct node *node, const char *why);
+struct form *constant_call(struct collector *c, const struct node *node, enum function function, const struct form *x);
+bool compare_values(enum comparison comparison, int order);
 void forget_lets(const struct spec *spec);
 _Noreturn void not_built(const struct collector *c, struct place at, const char *what);
 
@@ -296,6 +370,8 @@ _Noreturn void not_built(const struct collector *c, struct place at, const char 
 /* Sign of a - b, constant or linear in t, in the collector's interval of time; breakpoints met are added. */
 int order_now(struct collector *c, const struct node *node, const struct form *a, const struct form *b);
 struct form *piecewise(struct collector *c, const struct node *node, struct form *const *x); /* the function of its arguments' forms */
+void check_breakpoints(struct collector *c, const struct node *node, struct form *const *x);  /* of a function that is not taken apart */
+bool is_decided(const struct collector *c, int count, struct form *const *x); /* constants and times: conditions on them have an outcome */
 
 /* ---- mtx.c: Matrix Market files ---- */
 
@@ -337,17 +413,27 @@ struct linear {                     /* M q'' + C q' + K q = force - heldC q'(t_n
 	struct load *load;
 	int inputs;
 	struct input *input;
+	int channels;               /* of what is left over: one for each equation that has some */
+	mpq_t **channel;            /* its force on the equations */
 };
 struct output {
 	const char *name;
 	struct node *value;         /* as written */
 	int statement, cell;        /* which output statement, and which cell of its value */
 	struct form *form;          /* in the first segment of time; NULL where it is not linear in states and loads */
+	struct form *left;          /* then: for all time, with atoms; highest derivatives stand for themselves */
 	mpq_t *state;               /* factors of y, one per state, accelerations replaced */
 	mpq_t **load;               /* per load: factors of its columns, [column][segment] */
 	mpq_t *input[2];            /* per input: factors of u and u' */
+	mpq_t *channel;             /* factors of what is left over, where an acceleration is read */
 };
-enum scheme { SCHEME_EXACT, SCHEME_PL };
+struct operator {                   /* A of y' = A y + loads + inputs + r(t, y); its M is that of the equations */
+	mpq_t *C, *K;
+	struct form **left;         /* per channel: the leftover, a force on its equation */
+	mpq_t at;                   /* of a bank: the value up to which it serves */
+	const char *text;           /* x = 2, x' = 0 */
+};
+enum scheme { SCHEME_EXACT, SCHEME_PL, SCHEME_ETD1, SCHEME_ETDRK2, SCHEME_ETDRK4, SCHEME_NC2, SCHEME_NC3, SCHEME_DQ4, SCHEME_BM3, SCHEMES };
 struct model {
 	const struct spec *spec;
 	const char *name;           /* prefix of everything generated */
@@ -358,15 +444,26 @@ struct model {
 	struct linear system;       /* as written */
 	struct residual *residual;  /* per row of the system, in the first segment of time */
 	struct snapshot *snapshot;  /* per segment */
+	struct snapshot *whole;     /* for all time, conditions and products of time kept; NULL: nothing is left over */
 	struct irrationals irrationals;
 	mpq_t *initial;             /* one per state */
 	mpq_t h;
 	struct place step_at;       /* where h is given */
 	struct place end_at;         /* where the end of --solution is given, else h */
 	enum scheme scheme;
+	struct place scheme_at;     /* source NULL: it was not given */
+	bool loads_left;            /* known loads are left to the scheme */
+	int operators;              /* 0: exact, or nothing is left over */
+	struct operator *operator;
+	int *owner;                 /* per coordinate: the row of its equation */
+	int channels;               /* of what is left over, of each operator: one for each equation that has some */
+	int *channel_row;           /* its equation */
+	const struct atoms *atoms;
+	const struct form *selector; /* of a bank: what is compared with `at`; NULL: one operator */
 	int outputs;
 	struct output *output;
 	bool declared_outputs;
+	struct output **highest;    /* per coordinate: its highest derivative as a row, where an output that is not linear reads it */
 	const struct model *written; /* itself; of a reduced model: the one that it was made of */
 	int *place;                 /* of a reduced model, per written state: the state that is it, or -1 */
 	bool irreducible;           /* --reduce was asked for, and every state is seen */
@@ -375,7 +472,8 @@ struct model {
 };
 struct overrides {                  /* from the command line */
 	const char *step, *scheme, *prefix;
-	bool reduce;
+	bool reduce, loads_left;
+	bool solution;              /* the closed form is wanted, whatever the scheme */
 	int definitions;
 	const char **definition;    /* NAME=EXPR */
 };
@@ -390,6 +488,9 @@ struct building {                   /* what the builders share */
 	const struct overrides *overrides;
 	const struct wave *polynomial; /* the wave of t^k alone */
 	struct snapshot *snapshot;  /* per interval between changes of formula in time */
+	struct snapshot *whole;     /* the same for all time, with atoms; NULL: there is no leftover */
+	struct form **load;         /* [segment][row]: the residual's part that depends on time alone, as the linear core carries it */
+	struct form **time_left;    /* per row: what depends on time alone and it cannot carry */
 	int *owner;                 /* per coordinate: its residual */
 };
 struct snapshot {                   /* the equations and outputs in one interval of time */
@@ -417,9 +518,22 @@ void collect_equations(struct building *b, struct snapshot *snapshot);
 void collect_outputs(struct building *b, struct snapshot *snapshot);
 int  find_order(const struct spec *spec, int coord);
 void build_system(struct building *b);                      /* M, C, K, loads, inputs */
+bool is_linear(const struct building *b);                   /* with constant coefficients, loads in time excepted */
+void collect_whole(struct building *b);                     /* the equations for all time, atoms kept: b->whole */
 void place_loads(struct building *b, const struct form *form); /* every load of the form gets load states */
 void spread_loads(struct building *b, const struct form *form, void (*spread)(void *context, int load, int column, mpq_srcptr factor), void *context);
 void build_outputs(struct building *b);
+
+/* ---- operator.c: the linear operator of a scheme, and what it leaves over ---- */
+
+void build_operators(struct building *b);
+struct linear operator_system(const struct model *model, int k); /* the model's, with the operator's C and K and the channels */
+/* Every form that the leftovers and the selector are made of, once, operands before what they make. */
+void visit_leftovers(const struct model *model, void (*visit)(void *context, const struct form *form), void *context);
+
+/* ---- warnings.c: what a spec may say but is better told about ---- */
+
+void warn(struct building *b);
 
 /* ---- reduce.c: the smallest model with the same outputs ---- */
 
@@ -551,6 +665,9 @@ struct response *response_of_state(struct resolvent *r, const struct linear *sys
 struct response *response_of_load(struct resolvent *r, const struct linear *system, int segment, int i, int load, int column);
 struct response *response_of_input(struct resolvent *r, const struct linear *system, int i, int input, int column, mpq_srcptr h);
 struct response *response_of_load_state(const struct load *load, int to, int from); /* of one load: z_to(t+tau) from z_from(t) */
+struct kernel_part;
+struct response *response_of_kernel(struct resolvent *r, const struct linear *system, int i, int channel, const struct kernel_part *part, mpq_srcptr h);
+mpq_t *impulse_of_channel(const struct linear *system, int channel);         /* what its unit force gives the states' derivatives */
 struct started {                    /* a response that starts at a time of its own */
 	struct response *response;
 	mpq_t start;
@@ -594,8 +711,9 @@ struct series {                     /* x' = A x; x = state, held terms, constant
 	int held;                   /* index of the first held term, one per coordinate; -1: none */
 	int *load;                  /* index of the first state of each load; -1: it acts on nothing */
 	int *input;                 /* index of each input (then of its slope, if of first order) */
+	int channel, powers;        /* index of the first leftover; each is a chain of so many integrators, its force the first */
 };
-void series_place(struct series *series, const struct linear *system); /* which entry of x is what */
+void series_place(struct series *series, const struct linear *system, int powers); /* which entry of x is what */
 void series_plan(struct step *step);                        /* degree, halvings */
 mpq_t *series_matrix(const struct series *series, const struct linear *system, int segment); /* A in one segment of time */
 
@@ -605,18 +723,39 @@ struct coefficient {
 	double value, low;          /* value + low is the number in two words (low only where asked for) */
 	bool zero;                  /* exactly: no trace in the code */
 };
-struct table {                      /* of one step: y+ = Phi y + sum of columns */
-	int states, columns, inputs;
-	struct coefficient *Phi;    /* states x states */
+/* What multiplies a leftover, as a sum of parts: at tau = fraction h, B the force of its channel,
+ *     impulse e^{A tau} B + integral over 0..tau of e^{A (tau - s)} B (power[0] + power[1] s/h + power[2] (s/h)^2) ds
+ * so h phi_k(A h) B is power k-1 over (k-1)!. The sum is rounded once. */
+struct kernel_part {
+	mpq_t fraction, impulse, power[3];
+	int powers;
+};
+struct kernel {
+	const char *name;           /* b1 */
+	int parts;
+	struct kernel_part part[2];
+};
+struct wanted {                     /* of one table */
+	mpq_t fraction;             /* its time, as a part of h */
+	bool Phi, two_words;
+	const char *name;           /* full, half */
+	int kernels;
+	struct kernel kernel[4];
+};
+struct table {                      /* of one time: y(tau) = Phi y + sum of columns */
+	const struct wanted *wanted;
+	int states, columns, inputs, channels;
+	struct coefficient *Phi;    /* states x states, or NULL */
 	struct coefficient *load;   /* [segment of time][states x columns]: of the loads in order */
 	struct coefficient *input;  /* states x inputs: u held; or its value before the step and after it */
+	struct coefficient **kernel; /* per kernel: states x channels */
 };
 void check_pole_size(const struct model *model, const struct resolvent *resolvent); /* leaves the statement where |p| h is hopeless */
 /* Rounded, infinite beyond the range; `at` and `what` name it where it cannot be decided. */
 struct coefficient started_value(int count, const struct started *list, mpq_srcptr t, struct place at, const char *what); /* their sum */
 struct coefficient response_value(struct response *response, mpq_srcptr tau, bool two_words, struct place at, const char *what);
 /* Block by block; by residues, beyond LIMIT_RESIDUE_STATES states by Taylor series. `resolvent` is that of the whole. */
-struct table *table_of(const struct model *model, struct resolvent *resolvent, const struct linear *system, bool two_words);
+struct table **tables_of(const struct model *model, struct resolvent *resolvent, const struct linear *system, int count, const struct wanted *wanted);
 
 /* ---- scheme.c: what a scheme steps with, as a program over tables ---- */
 
@@ -634,26 +773,70 @@ struct assignment {                 /* target <- sum of products */
 	int terms;
 	struct product *term;
 };
+/* A step of a scheme that leaves something over is a list of actions on vectors: stages are states (0: the state itself),
+ * lefts are leftovers. */
+enum { STAGE_STATE = 0, NONE = -1 };
+struct action {
+	enum { ACTION_LEFTOVER, ACTION_COMBINE, ACTION_SUM, ACTION_PREDICT } kind;
+	int target;                 /* LEFTOVER, COMBINE: a left; SUM, PREDICT: a stage */
+	int node, from;             /* LEFTOVER: when, and of which stage; PREDICT: when it ends */
+	int half;                   /* PREDICT: the node in the middle */
+	int plus, minus;            /* COMBINE: lefts; minus NONE: twice `plus`; `added` adds instead */
+	bool added;
+	int flow;                   /* SUM: table whose Phi, loads and inputs act on the state, or NONE */
+	int plain;                  /* SUM: stage added as it is, or NONE */
+	int kernels;                /* SUM: kernel of table times left, added */
+	struct { int table, kernel, left; } kernel[4];
+	const char *note;           /* a = F y + q1 r0 */
+};
 struct program {
-	int assignments;
+	int assignments;            /* of a scheme that leaves nothing over */
 	struct assignment *assignment;
 	bool *reads;                /* per state: whether its old value is read */
 	bool *uses;                 /* per column of the loads */
 	int oscillators, growths;   /* cos/sin pairs and exponentials evaluated per step */
-	int multiplications, additions;
+	int multiplications, additions, calls; /* calls: of the model's own functions */
 	bool loops;                 /* over the tables, zeros included: a large model */
+	int actions;                /* 0: assignments */
+	struct action *action;
+	int stages, lefts;          /* vectors, the state not counted */
+	int nodes;                  /* times at which leftovers are evaluated, as parts of h; the first is 0 */
+	mpq_t *node;
+	int *node_table;            /* per node: the table of loads and inputs that a predictor adds, or NONE */
+	bool predicts;
 };
 struct step {                       /* everything that is emitted for one model */
 	const struct model *model;
-	struct linear system;       /* with what the scheme holds taken out of C and K */
+	struct linear system;       /* of the first operator: with what the scheme holds taken out of C and K */
 	struct resolvent *written;  /* of the model as written: the report's poles, the closed form */
 	struct resolvent *solved;   /* of `system` */
-	struct table *table;
+	struct table *table;        /* of the whole step, of the first operator */
+	int operators, tables;      /* 1 and 1 where nothing is left over */
+	struct linear *operator;    /* the system of each */
+	struct resolvent **resolvent;
+	struct table ***all;        /* [operator][table] */
 	struct program *program;
 	mpfr_t growth;              /* pl: 1/s, largest real part of the modified equation's poles (report only) */
 	struct series series;
 };
 struct step *step_build(const struct model *model);         /* NULL: it was said why */
+bool has_leftover(const struct step *step);                 /* or nothing is left over, and a step is assignments */
+
+/* ---- left.c: forms with atoms as C ---- */
+
+struct emitter;
+struct cost { int multiplications, additions, calls; };
+struct cost leftover_cost(const struct step *step);         /* of one evaluation */
+struct reads {                    /* what forms read */
+	bool *state, *input, *load; /* inputs, then their slopes */
+	bool *highest;              /* per coordinate: its highest derivative */
+	bool time, math;            /* t itself; <math.h> */
+};
+struct reads reads_of(const struct model *model, int count, const struct form *const *form);
+struct writer;                      /* declares locals for what several places use as it goes */
+struct writer *writer_new(const struct emitter *e, const char *(*basis_text)(const struct emitter *, const struct basis *), int count,
+			  const struct form *const *form);
+const char *write_form(struct writer *w, const struct form *form, int indent);
 
 /* ---- report.c: poles and polynomials for a reader ---- */
 
@@ -668,6 +851,7 @@ const char *pole_text(const struct pole_report *report);
 const char *polynomial_text(int length, const mpq_t *c);    /* in s */
 const char *column_text(const struct load *load, int column); /* t*exp(-2*t)*cos(5*t) */
 const char *equation_text(const struct model *model, const struct form *residual); /* coordinates = loads */
+const char *form_text(const struct model *model, const struct form *form);          /* atoms spelled out, long ones cut short */
 const char *irrationals_text(const struct irrationals *used);
 
 /* ---- cprint.c: expressions as C ---- */
@@ -679,7 +863,7 @@ const char *c_expression(const struct node *node);          /* fit for a term of
 bool vanishes(const struct node *node);                     /* nothing is left when accelerations are 0 */
 void mark_used(const struct node *node, bool *math);        /* flags the symbols that it needs; *math: it needs <math.h> */
 
-/* ---- emit.c, emit_step.c, emit_out.c, emit_loads.c, emit_time.c, emit_rhs.c: a step as C ---- */
+/* ---- emit.c, emit_step.c, emit_left.c, emit_out.c, emit_loads.c, emit_time.c, emit_rhs.c: a step as C ---- */
 
 struct emitter {
 	FILE *to;
@@ -692,6 +876,7 @@ struct emitter {
 	int phases, growths;        /* in the state */
 	int *phase, *growth;        /* per load: index of its phase and of its growth; -1: none */
 	bool ramps;                 /* some input is of first order */
+	bool at_node;               /* load states are those at `node` of the step, not at its start */
 };
 void emit_header(FILE *to, const struct step *step, const char *options, bool rhs);
 void emit_code(FILE *to, const struct step *step, const char *options, const char *header_name, bool rhs); /* header_name NULL: all in one */
@@ -700,10 +885,6 @@ const char *tree(int terms, const char *const *term, int indent); /* a balanced 
 double finite_number(const struct emitter *e, mpq_srcptr q);       /* rounded; an error at the step where it overflows */
 const char *scaled(double factor, const char *operand);           /* operand NULL: 1 */
 void emit_number_rows(const struct emitter *e, int rows, int columns, const double *value, const char *const *row_note);
-void emit_used_constants(const struct emitter *e, bool lets);
-void clear_used(const struct spec *spec);
-bool uses_time(const struct node *node);
-void mark_states(const struct model *written, const struct node *node, bool *reads);
 
 void emit_load_tables(const struct emitter *e);                   /* phases and growths: start, step, rate */
 void emit_load_members(const struct emitter *e);
@@ -717,7 +898,21 @@ void emit_changes(const struct emitter *e);                       /* loads that 
 void emit_passing(const struct emitter *e);                       /* ... and pass(), across a change */
 bool has_jump(const struct emitter *e);
 void emit_locals(const struct emitter *e, const bool *reads);     /* the states wanted, under their names */
+void emit_locals_of(const struct emitter *e, const bool *reads, const char *vector);
 void emit_step(const struct emitter *e);
+void emit_step_end(const struct emitter *e);                      /* samples, phases and time move on */
+const char *step_parameters(const struct emitter *e);
+const char *input_operand(const struct emitter *e, int column);
+const char *input_name(const struct emitter *e, int input, int order); /* the C name of an input, of its slope */
+void emit_leftover_functions(const struct emitter *e);            /* what is left over; which operator serves */
+void emit_leftover_step(const struct emitter *e);
+const char *basis_now(const struct emitter *e, const struct basis *basis); /* in terms of locals: states, inputs, load states, t */
+const char *leftover_of_step(const struct emitter *e);            /* its call at the start of a step, into `left` */
+const char *leftover_of_outputs(const struct emitter *e);
+void emit_samples(const struct emitter *e);                       /* start, slope: what leftovers read of ramps */
+const char *selection_call(const struct emitter *e);              /* which operator of a bank serves now */
+void emit_node_phases(const struct emitter *e, const bool *loads); /* phases and growths from the start of the step to each node */
+int  coordinate_of_row(const struct model *model, int row);       /* whose equation it is */
 void emit_out(const struct emitter *e);
 void emit_at(const struct emitter *e);
 void emit_jump(const struct emitter *e);

@@ -92,16 +92,12 @@ static void see_state(struct observable *o, const struct model *model, int state
 }
 
 /* Of an output that is not linear: every state that its expression names */
-static void see_expression(struct observable *o, const struct model *model, const struct node *node)
+static void see_expression(struct observable *o, const struct model *model, const struct form *form)
 {
-	if (node->kind == NODE_NAME && node->symbol->kind == SYMBOL_COORD && node->primes < node->symbol->highest) {
-		int coord = node->symbol->index + (node->component ? node->component - 1 : 0);
-		see_state(o, model, node->primes ? model->system.velocity[coord] : coord);
-	}
-	if (node->kind == NODE_NAME && node->symbol->kind == SYMBOL_LET)
-		see_expression(o, model, node->symbol->value);
-	for (int i = 0; i < node->children; i++)
-		see_expression(o, model, node->child[i]);
+	struct reads reads = reads_of(model, 1, &form);
+	for (int i = 0; i < model->system.states; i++)
+		if (reads.state[i])
+			see_state(o, model, i);
 }
 
 /* W^-1 force as a column over the states */
@@ -199,8 +195,8 @@ static struct observable observe(const struct model *model)
 	o.combination = rationals(n * n);
 	o.pivot = ARRAY(int, n);
 	for (int i = 0; i < model->outputs; i++)
-		if (model->output[i].value && !model->output[i].form)
-			see_expression(&o, model, model->output[i].value);
+		if (model->output[i].left)
+			see_expression(&o, model, model->output[i].left);
 	for (int r = o.rank - 1; r >= 0; r--) {
 		mpq_t *derivative = rationals(n);
 		rational_product(1, o.states, o.states, (const mpq_t *)o.basis[r].row, o.A, derivative);

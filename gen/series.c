@@ -7,7 +7,7 @@ enum { LIMIT_RADIANS = 8, LIMIT_PARTS = 1 << 20, LIMIT_DEGREE = 80, BITS = 64 };
 
 /* ---- the matrix ---- */
 
-void series_place(struct series *series, const struct linear *system)
+void series_place(struct series *series, const struct linear *system, int powers)
 {
 	series->size = system->states;
 	series->held = -1;
@@ -26,6 +26,9 @@ void series_place(struct series *series, const struct linear *system)
 		series->input[i] = series->size;
 		series->size += system->input[i].first_order ? 2 : 1;
 	}
+	series->channel = series->size;
+	series->powers = powers;
+	series->size += system->channels * powers;
 }
 
 /* (t^k e^{at} cos)' = k t^{k-1} e^{at} cos + a t^k e^{at} cos - w t^k e^{at} sin, and so for sin */
@@ -85,6 +88,12 @@ mpq_t *series_matrix(const struct series *series, const struct linear *system, i
 		fill_force(A, size, at + 1, system, (const mpq_t *)inverse, (const mpq_t *)system->input[i].force[1]);
 		mpq_set_ui(A[at * size + at + 1], 1, 1);
 	}
+	for (int e = 0; e < system->channels && series->powers > 0; e++) {
+		int at = series->channel + e * series->powers;
+		fill_force(A, size, at, system, (const mpq_t *)inverse, (const mpq_t *)system->channel[e]);
+		for (int m = 1; m < series->powers; m++)
+			mpq_set_ui(A[(at + m - 1) * size + at + m], 1, 1);
+	}
 	return A;
 }
 
@@ -114,22 +123,28 @@ static void larger_wave(mpfr_ptr largest, const struct wave *wave)
 	mpfr_clears(a, w, NULL);
 }
 
-/* max|p| h over the poles of the system and of its loads */
-static void largest_angle(const struct step *step, mpfr_ptr angle)
+static void larger_poles(mpfr_ptr largest, const struct resolvent *resolvent)
 {
 	mpz_t content;
 	mpz_init(content);
-	struct spectrum *spectrum = spectrum_of(poly_primitive(*resolvent_determinant(step->solved), content));
+	struct spectrum *spectrum = spectrum_of(poly_primitive(*resolvent_determinant(resolvent), content));
 	mpz_clear(content);
-	mpfr_init2(angle, BITS);
-	mpfr_set_zero(angle, 1);
 	if (!spectrum_refine(spectrum, BITS)) {
-		mpfr_set_inf(angle, 1);
+		mpfr_set_inf(largest, 1);
 		return;
 	}
 	for (int f = 0; f < spectrum->factors; f++)
 		for (int i = 0; i < spectrum->poles[f]; i++)
-			larger_pole(angle, &spectrum->pole[f][i].at);
+			larger_pole(largest, &spectrum->pole[f][i].at);
+}
+
+/* max|p| h over the poles of the operators and of the loads */
+static void largest_angle(const struct step *step, mpfr_ptr angle)
+{
+	mpfr_init2(angle, BITS);
+	mpfr_set_zero(angle, 1);
+	for (int k = 0; k < step->operators; k++)
+		larger_poles(angle, step->resolvent[k]);
 	for (int l = 0; l < step->system.loads; l++)
 		if (step->series.load[l] >= 0)
 			larger_wave(angle, step->system.load[l].wave);
@@ -200,14 +215,16 @@ static void add_envelope(mpfr_t *A, int cells, const mpq_t *segment)
 }
 
 /* The first degree after which two terms in a row are negligible. */
-static int series_degree(const struct series *series, const struct linear *system, mpq_srcptr h)
+static int series_degree(const struct step *step)
 {
+	const struct series *series = &step->series;
 	int size = series->size, cells = size * size, quiet = 0, k = 0;
 	mpfr_t *A = positive_numbers(cells), *term = positive_numbers(cells), *next = positive_numbers(cells), *first = positive_numbers(cells);
-	for (int s = 0; s < system->segments; s++)
-		add_envelope(A, cells, (const mpq_t *)series_matrix(series, system, s));
+	for (int o = 0; o < step->operators; o++)
+		for (int s = 0; s < step->system.segments; s++)
+			add_envelope(A, cells, (const mpq_t *)series_matrix(series, &step->operator[o], s));
 	for (int i = 0; i < cells; i++) {
-		mpfr_mul_q(A[i], A[i], h, MPFR_RNDN);
+		mpfr_mul_q(A[i], A[i], step->model->h, MPFR_RNDN);
 		mpfr_div_2ui(A[i], A[i], (unsigned long)series->halvings, MPFR_RNDN);
 		mpfr_set_ui(term[i], i % size == i / size, MPFR_RNDN);
 		mpfr_set(first[i], term[i], MPFR_RNDN);
@@ -227,11 +244,12 @@ void series_plan(struct step *step)
 	struct series *series = &step->series;
 	mpfr_t angle;
 	largest_angle(step, angle);
-	series->emitted = mpfr_cmp_ui(angle, LIMIT_RADIANS) <= 0;
+	bool held = !has_leftover(step) || series->powers > 0;  /* what is left over is held over the step, or there is none */
+	series->emitted = held && mpfr_cmp_ui(angle, LIMIT_RADIANS) <= 0;
 	if (series->emitted || (step->system.segments > 1 && mpfr_cmp_ui(angle, LIMIT_PARTS) <= 0)) {
 		for (series->halvings = 0; mpfr_cmp_ui(angle, 1) > 0; series->halvings++)
 			mpfr_div_2ui(angle, angle, 1, MPFR_RNDU);
-		series->degree = series_degree(series, &step->system, step->model->h);
+		series->degree = series_degree(step);
 	}
 	mpfr_clear(angle);
 }

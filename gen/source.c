@@ -19,6 +19,7 @@ struct diagnostic {
 
 static struct diagnostic *said;
 static int said_count, error_count;
+static const char *context_note;
 static jmp_buf *guard;
 
 static void say(struct place at, const char *severity, const char *note, const char *fmt, va_list args)
@@ -30,7 +31,7 @@ static void say(struct place at, const char *severity, const char *note, const c
 	vsnprintf(message, (size_t)length + 1, fmt, again);
 	va_end(again);
 	ENLARGE(said, (size_t)said_count + 1);
-	said[said_count] = (struct diagnostic){ at, severity, message, note, said_count };
+	said[said_count] = (struct diagnostic){ at, severity, message, note ? note : context_note, said_count };
 	said_count++;
 }
 
@@ -53,6 +54,14 @@ void error(struct place at, const char *note, const char *fmt, ...)
 	abandon();
 }
 
+void say_warning(struct place at, const char *note, const char *fmt, ...)
+{
+	va_list args;
+	va_start(args, fmt);
+	say(at, "warning", note, fmt, args);
+	va_end(args);
+}
+
 void abandon(void)
 {
 	if (guard)
@@ -73,6 +82,22 @@ bool statement_guard(void (*work)(void *), void *context)
 	}
 	guard = outer;
 	return done;
+}
+
+bool silent_guard(void (*work)(void *), void *context)
+{
+	int known = said_count, errors = error_count;
+	bool done = statement_guard(work, context);
+	if (!done) {
+		said_count = known;
+		error_count = errors;
+	}
+	return done;
+}
+
+void diagnostics_context(const char *note)
+{
+	context_note = note;
 }
 
 int diagnostics_errors(void)

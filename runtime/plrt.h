@@ -10,6 +10,7 @@
  *     series.c    x(tau) for 0 <= tau <= h: NAME_at
  *     power.c     the state n steps on in log n time: NAME_jump
  *     until.c     the time to a change of the loads
+ *     apply.c     matrices times vectors, and whether all is finite: schemes with a leftover
  *
  * Compile it as the compiler comes: contraction to fused multiply-adds does no harm, -ffast-math is refused. */
 #ifndef PLRT_H
@@ -144,6 +145,24 @@ void pl_power_apply(int n, pl_two *P, pl_two *W, pl_two *x, pl_two *w, uint64_t 
  * late the step. */
 double pl_until(double t0, uint64_t k, pl_two h, pl_two change);
 
+/* ---- apply.c: matrices times vectors ----------------------------------------------------------------------- */
+
+/* y = table x; table is rows x columns, row-major; x has `columns` entries, y `rows`.  y overlaps neither x nor table.  Without
+ * columns y is 0.  Each row is summed in one order, whatever the sizes and the row's place: four sums, of the columns m, m + 4,
+ * m + 8, ... upwards from 0 for m = 0 .. 3, then (s_0 + s_2) + (s_1 + s_3).  Off by less than
+ * (columns/4 + 4) DBL_EPSILON/2 sum_j |a_j x_j| where nothing overflows or underflows. */
+void pl_multiply(int rows, int columns, const double *table, const double *x, double *y);
+
+/* y += table x: that sum of each row first, then y and it. */
+void pl_multiply_add(int rows, int columns, const double *table, const double *x, double *y);
+
+/* What the status of a model says: 0, or */
+enum { PL_NOT_FINITE = 1 }; /* a step has left the finite numbers */
+
+/* PL_NOT_FINITE if an entry of y is infinite or not a number, else 0; n entries.  By their bits: no compiler that takes all numbers
+ * for finite can leave it out, and it raises no exception. */
+int pl_not_finite(const double *y, int n);
+
 /* ---- a model, seen from outside -------------------------------------------------------------------------- */
 
 /* What a program needs to drive a model that it was not written for.  s points to the model's state, `size` bytes,
@@ -164,6 +183,7 @@ typedef struct pl_model {
     void (*run)(void *s, size_t n, const double *u, double *out); /* n steps; n rows of u; n rows of out, or NULL */
     void (*at)(const void *s, const double *u, double tau, double *y); /* 0 <= tau <= h; NULL where the model has none */
     void (*jump)(void *s, uint64_t n);                                 /* n steps at once; NULL where it has none */
+    int (*status)(const void *s); /* sticky until init or set: 0, or PL_NOT_FINITE; NULL where the model has none */
 } pl_model;
 
 #ifdef __cplusplus

@@ -5,7 +5,8 @@
  *     ./m 30 < inputs.csv > out.csv
  *
  * One row at every step k*h <= T, from t = 0 on.  A model with inputs reads one row of samples per step from standard
- * input: as many numbers as inputs, separated by commas; a first line that gives the inputs' names may precede them. */
+ * input: as many numbers as inputs, separated by commas; a first line that gives the inputs' names may precede them.
+ * A run that leaves the finite numbers ends there, with exit status 1 and the rows before it written. */
 #include "plrt.h"
 #include <stdio.h>
 #include <stdlib.h>
@@ -160,6 +161,22 @@ static void print_row(const void *state, double *out)
         fail("cannot write to standard output");
 }
 
+/* After a step: what a model has a status for ends the run, at the time that the step led to. */
+static void check_status(const void *state)
+{
+    const int status = model->status != NULL ? model->status(state) : 0;
+    if (status == 0)
+        return;
+    if (fflush(stdout) != 0)
+        fail("cannot write to standard output");
+    fprintf(stderr, "%s: error: t = %.17g: ", model->name, model->time(state));
+    if (status == PL_NOT_FINITE)
+        fprintf(stderr, "the step has left the finite numbers\n");
+    else
+        fprintf(stderr, "status %d\n", status);
+    exit(1);
+}
+
 /* The last k with k h <= end.  Since h and the quotient are rounded, what is a whole number but for that counts as whole. */
 static uint64_t steps_until(double end)
 {
@@ -203,6 +220,7 @@ static void run(uint64_t steps)
         if (model->inputs > 0)
             read_sample(&in, u);
         model->step(state, model->inputs > 0 ? u : NULL);
+        check_status(state);
         print_row(state, out);
     }
     free(in.line);

@@ -35,7 +35,7 @@ check()         # STATUS: prints what is wrong
 	   grep -q ': error: ' "$work/err" || echo 'status 1 without a message' ;;
 	2) [ -s "$work/out" ] && echo 'output with status 2'
 	   grep -q '^plgen: error: ' "$work/err" || echo 'status 2 without a message' ;;
-	124) echo 'takes over 10 s' ;;
+	124) echo 'takes over 30 s' ;;
 	*) echo "exit status $1" ;;
 	esac
 	grep -q 'Sanitizer\|runtime error' "$work/err" && echo 'the sanitizer complains'
@@ -49,7 +49,8 @@ check()         # STATUS: prints what is wrong
 options()       # SEED: sets the arguments, printed
 {
 	printed=C
-	case $(($1 % 11)) in
+	scheme=$(echo etd1 etdrk2 etdrk4 nc2 nc3 dq4 bm3 exact | cut -d ' ' -f $(($1 / 17 % 8 + 1)))
+	case $(($1 % 17)) in
 	0) set -- --explain=json; printed=json ;;
 	1) set -- --solution 0.05; printed=csv ;;
 	2) set -- --scheme pl ;;
@@ -59,14 +60,22 @@ options()       # SEED: sets the arguments, printed
 	6) set -- --reduce ;;
 	7) set -- --reduce --explain=json; printed=json ;;
 	8) set -- --reduce --solution 0.03; printed=csv ;;
+	9) set -- --loads leftover ;;
+	10) set -- --scheme "$scheme" ;;
+	11) set -- --scheme "$scheme" --rhs --loads leftover ;;
+	12) set -- --scheme "$scheme" --explain=json --loads leftover; printed=json ;;
+	13) set -- --scheme "$scheme" --explain; printed=text ;;
 	*) set -- ;;
 	esac
 	arguments=$*
 }
 
-for data in "$bad"/*.mtx; do    # beside the spec
+for data in "$bad"/*.mtx "$good"/*/*.mtx; do    # beside the spec, as the specs name them
 	if [ -f "$data" ]; then
-		cp "$data" "$work"
+		folder=$work/$(basename "$(dirname "$data")")
+		[ "${data%/*}" = "$bad" ] && folder=$work
+		mkdir -p "$folder"
+		cp "$data" "$folder"
 	fi
 done
 seed=$first
@@ -82,7 +91,7 @@ while [ "$seed" -lt $((first + count)) ]; do
 	while [ "$seed" -lt "$end" ]; do
 		"$mutate" "$seed" "$good"/*.spec -- "$bad"/*.spec > "$work/in.spec" || exit 1
 		options "$seed"
-		timeout 10 "$plgen" $arguments "$work/in.spec" > "$work/out" 2> "$work/err" < /dev/null
+		timeout 30 "$plgen" $arguments "$work/in.spec" > "$work/out" 2> "$work/err" < /dev/null
 		why=$(check $?)
 		if [ -n "$why" ]; then
 			failed=$((failed + 1))

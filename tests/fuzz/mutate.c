@@ -133,7 +133,10 @@ static void insert_word(struct text *text)
 		"atan2(", "min(", "clip(", "deadzone(", "table(", "pi", "t", "x''", "x1'", "1/0", "0^0", "^-1", "^0.5", "^2^3", "''", "(", ")", "((((((((", "))))))))",
 		"?", "? 1 : 0", "==", "<= ", "1e9999", "1e-9999", "1e308", "-", "- - - -", "# ", "\"", ",", ";", "= 0", "0*", "*t",
 		"matrix ", "input u hold first\n", "hold first", "mass 1 at ", "spring 3 between ", "damper 0.1 between ", "force ", ", ground", " on ", "u", "u'", "q[2]", "q[2]'", "[2]", "[1",
-		"[2, -1; -1, 2]", "[1; 2]", "*[", "]", "t < 1 ? ", " : 0", "t^3", "t^33", "t*", "exp(-2*t)", "exp(t)*cos(3*t)", "table(t; 0, 0; 1, 2; 3, 1)", "abs(t - 1)", "max(t, 0.005)", "\"mtx_good.mtx\"", "\n", "\r\n", "\xef\xbb\xbf", "\xcf\x89"
+		"[2, -1; -1, 2]", "[1; 2]", "*[", "]", "t < 1 ? ", " : 0", "t^3", "t^33", "t*", "exp(-2*t)", "exp(t)*cos(3*t)", "table(t; 0, 0; 1, 2; 3, 1)", "abs(t - 1)", "max(t, 0.005)", "\"mtx_good.mtx\"",
+		"operator at ", "at x = 0", ", x' = 1", ", t = 2", ", 0, 4, 8", "scheme etdrk4\n", "scheme nc3\n", "scheme bm3\n", "etd1", "etdrk2", "nc2", "dq4", "x^3", "*x^2", "*x1*x2", "*x'", "*u",
+		"tan(", "sgn(", "sinh(", "cosh(", "tanh(", "asin(", "acos(", "atan(", "max(", "table(x; -1, 2; 0, 0; 1, 3)", "clip(x1, -0.1, 0.1)", "deadzone(x', -1, 1)", "1/x", "x^-1", "x^x", "x^1.5",
+		"x > 0 ? x : 0", "x' < t ? 1 : ", "sqrt(x^2 + 1)", "atan2(x, x')", "min(x, t)", "cos(t)*x", "x*x''", "sin(x'')", "\n", "\r\n", "\xef\xbb\xbf", "\xcf\x89"
 	};
 	size_t at, choice = below(sizeof word / sizeof *word);
 	token(text, &at);
@@ -153,7 +156,16 @@ static void insert_statement(struct text *text)
 		"mass 1 at x\n", "mass m1 at x1\n", "mass 2 at q[2]\n", "spring k1 between x1, ground\n", "spring 3 between x, y\n", "damper 0.2 between x1, x2\n", "force cos(3*t) on x1\n",
 		"force u on x1\n", "coord z\nmass 1 at z\nspring 100 between z, ground\nforce exp(-t) on z\n", "coord z\ndamper 1 between z, x1\nspring 2 between z, ground\n",
 		"let s = t < 0.015 ? 10*sin(pi*t/0.6) : 0\n", "let s = table(t; 0, 0; 0.013, 2; 0.025, 1)\n", "let s = t^3*exp(-2*t)*cos(3*t)\n", "coord z\nz'' = s\n", "coord z\nz'' + 25*z = t*cos(5*t)\n",
-		"coord z\nz'' + 25*z = clip(t, 0.002, 0.0133) + max(0, t - 0.01)\n", "scheme pl\n", "scheme exact\n"
+		"coord z\nz'' + 25*z = clip(t, 0.002, 0.0133) + max(0, t - 0.01)\n", "scheme pl\n", "scheme exact\n",
+		"scheme etd1\n", "scheme etdrk2\n", "scheme etdrk4\n", "scheme nc2\n", "scheme nc3\n", "scheme dq4\n", "scheme bm3\n",
+		"operator at x = 0\n", "operator at x = 2, x' = 0\n", "operator at t = pi/2\n", "operator at x = 0, y = 1, t = 3\n", "operator at x1 = 0, x2' = 1\n", "operator at q = 0\n",
+		"operator at q[1] = 1, q[2] = 2\n", "operator at w = 0, 4, 8, 15\n", "operator at t = 0, 0.01, 0.02\n", "operator at x = -1, 0, 1, x' = 2\n",
+		"let w = 3*t\noperator at w = 0, 0.01, 0.02\n", "let w = x^2 + t\noperator at w = 1\n", "let w = t < 0.01 ? t : 0.01\noperator at w = 0.005, 0.01\n",
+		"coord z\nz'' + z + z^3 = cos(2*t)\n", "coord z\nz'' + sin(z) = 0\n", "coord z\nz'' - 5*(1 - z^2)*z' + z = 0\n", "coord z\nz' = -z^2 + x\n", "coord z\nz'' + (1 - cos(2*t))*z = 0\n",
+		"input u\ncoord z\nz'' + z + z^3 = u\n", "input u hold first\ncoord z\nz'' + z*u + abs(z) = u'\n", "coord z\nz'' + tanh(20*z') + 4*z = exp(-t)\noutput z''\n",
+		"coord q[2]\nmatrix K = [2, -1; -1, 2]\nq'' + K*q + 0.1*q^3 = [1; 0]*cos(t)\n", "coord q[2], z\nmatrix K = [2, -1; -1, 2]\nlet w = sin(t)\nq'' + (K + w^2*K)*q + sin(q) = 0\nz'' + z = abs(z) + q[1]*q[2]\n",
+		"coord z\nz'' + z = min(z, 0.1) + table(z; 0, 0; 1, 2) + clip(z', -1, 1)*deadzone(z, -0.1, 0.1)\n", "coord z\ninit z = 1\nz'' + 1/z + log(z) + sqrt(z) + z^1.5 = 0\n",
+		"coord z\nmass 1 at z\nspring 2 between z, ground\nforce -z^3 - sgn(z') on z\n", "coord z\nz'' = z > t ? -z^2 : z*t\n", "let p = x^2\nlet r = p^2 + sin(p)\n", "force -x1^3 on x1\n"
 	};
 	size_t at, choice = below(sizeof statement / sizeof *statement);
 	line(text, &at);

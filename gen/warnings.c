@@ -1,0 +1,289 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What a spec may say but is better told about. Nothing here reaches the generated code, so eigenvalues in double will do. */
+#include "plgen.h"
+
+#include <gsl/gsl_eigen.h>
+#include <gsl/gsl_errno.h>
+#include <math.h>
+#include <stdlib.h>
+
+enum { SAMPLES = 32 };
+
+/* ---- the Jacobian in time ---- */
+
+struct jacobian {
+	struct building *b;
+	struct form ***C, ***K;     /* [coordinate][row]: of the equations for all time, by velocity and by coordinate */
+	struct linear at;           /* evaluated */
+	bool damped;                /* C too */
+	const mpq_t *state;         /* where the states are fixed */
+	mpq_t t;
+};
+
+static struct form **columns(struct building *b, int coord, int order)
+{
+	const struct form **row = ARRAY(const struct form *, (size_t)b->model->n);
+	for (int i = 0; i < b->model->n; i++)
+		row[i] = b->whole->residual[i].form;
+	return form_derivatives(&b->collector, b->model->n, row, coord, order);
+}
+
+static void differentiate(void *context)
+{
+	struct jacobian *j = context;
+	const struct model *model = j->b->model;
+	j->C = ARRAY(struct form **, (size_t)model->n);
+	j->K = ARRAY(struct form **, (size_t)model->n);
+	for (int k = 0; k < model->n; k++) {
+		j->C[k] = columns(j->b, k, 1);
+		j->K[k] = columns(j->b, k, 0);
+	}
+	j->at = linear_like(&model->system);
+	j->at.M = model->system.M;
+}
+
+static int fix_states(const struct jacobian *j, struct fixing *fixing)
+{
+	const struct model *model = j->b->model;
+	for (int i = 0; i < model->system.states; i++) {
+		int coord = model->system.coord[i];
+		fixing[i] = (struct fixing){ .symbol = model->coord[coord], .coord = coord, .order = i >= model->n };
+		mpq_init(fixing[i].value);
+		mpq_set(fixing[i].value, j->state[i]);
+	}
+	struct fixing *time = &fixing[model->system.states];
+	*time = (struct fixing){ .at = model->spec->name_at };
+	time->form = form_constant(j->t);
+	return model->system.states + 1;
+}
+
+static void constant_of(struct collector *c, const struct form *form, mpq_ptr value)
+{
+	mpq_set_ui(value, 0, 1);
+	if (is_constant(form))                  /* what still depends on inputs is left out */
+		constant_value(c, form, value);
+}
+
+/* K, and C where it is wanted, at j->t and j->state; leaves the statement where they are not defined */
+static void evaluate(void *context)
+{
+	struct jacobian *j = context;
+	const struct model *model = j->b->model;
+	struct collector *c = &j->b->collector;
+	int n = model->n;
+	struct fixing *fixing = ARRAY(struct fixing, (size_t)model->system.states + 1);
+	struct point *point = point_new(c, fix_states(j, fixing), fixing);
+	for (int k = 0; k < n; k++)
+		for (int i = 0; i < n; i++) {
+			if (j->damped || model->system.velocity[k] < 0)   /* of first order: what multiplies the highest derivative */
+				constant_of(c, form_at(point, j->C[k][i]), j->at.C[i * n + k]);
+			constant_of(c, form_at(point, j->K[k][i]), j->at.K[i * n + k]);
+		}
+}
+
+/* ---- eigenvalues ---- */
+
+static int ascending(const void *left, const void *right)
+{
+	const double *a = left, *b = right;
+	return (*a > *b) - (*a < *b);
+}
+
+/* Sizes of the eigenvalues, or their real parts; false: not found. `value` receives n, sorted. */
+static bool eigenvalues(int n, const mpq_t *A, bool sizes, double *value)
+{
+	gsl_matrix *m = gsl_matrix_alloc((size_t)n, (size_t)n);
+	gsl_vector_complex *eigen = gsl_vector_complex_alloc((size_t)n);
+	gsl_eigen_nonsymm_workspace *work = gsl_eigen_nonsymm_alloc((size_t)n);
+	gsl_error_handler_t *handler = gsl_set_error_handler_off();
+	bool finite = true;
+	for (int i = 0; i < n * n; i++) {
+		double entry = round_rational(A[i]);
+		finite = finite && isfinite(entry);
+		gsl_matrix_set(m, (size_t)(i / n), (size_t)(i % n), entry);
+	}
+	gsl_eigen_nonsymm_params(0, 1, work);
+	bool found = finite && gsl_eigen_nonsymm(m, eigen, work) == GSL_SUCCESS;
+	for (int i = 0; i < n && found; i++) {
+		gsl_complex z = gsl_vector_complex_get(eigen, (size_t)i);
+		value[i] = sizes ? hypot(GSL_REAL(z), GSL_IMAG(z)) : GSL_REAL(z);
+	}
+	qsort(value, (size_t)n, sizeof *value, ascending);
+	gsl_set_error_handler(handler);
+	gsl_eigen_nonsymm_free(work);
+	gsl_vector_complex_free(eigen);
+	gsl_matrix_free(m);
+	return found;
+}
+
+/* Squared frequencies [1/s^2] of the coordinates' stiffness alone: eigenvalues of W^-1 K */
+static bool stiffness(const struct linear *system, double *value)
+{
+	int n = system->n, column;
+	mpq_t *inverse = rationals((size_t)(n * n)), *product = rationals((size_t)(n * n));
+	if (!leading_inverse(system, inverse, &column))
+		return false;
+	rational_product(n, n, n, (const mpq_t *)inverse, (const mpq_t *)system->K, product);
+	return eigenvalues(n, (const mpq_t *)product, false, value);
+}
+
+static double fastest_pole(const struct linear *system)
+{
+	double *value = ARRAY(double, (size_t)system->states);
+	bool found = eigenvalues(system->states, (const mpq_t *)state_matrix(system, false), true, value);
+	return found ? value[system->states - 1] : 0;
+}
+
+/* ---- explicit predictors ---- */
+
+static struct place scheme_place(const struct building *b)
+{
+	return b->model->scheme_at.source ? b->model->scheme_at : b->spec->name_at;
+}
+
+static void check_predictor(struct jacobian *j)
+{
+	static const double limit = 2.5;        /* RK4's own is 2.8; with a good operator the schemes last to 3 to 7 */
+	struct building *b = j->b;
+	const struct model *model = b->model;
+	double fastest = 0;
+	j->state = (const mpq_t *)model->initial;
+	j->damped = true;
+	if (silent_guard(evaluate, j))
+		fastest = fastest_pole(&j->at);
+	for (int k = 0; k < model->operators; k++) {
+		struct linear system = operator_system(model, k);
+		fastest = fmax(fastest, fastest_pole(&system));
+	}
+	double h = round_rational(model->h);
+	if (fastest * h > limit)
+		say_warning(scheme_place(b), format("a step up to %.3g s, or a scheme of the etd family, whose operator bears the stiffness", limit / fastest),
+			    "%s predicts its nodes explicitly, up to |lambda| h of about %.1f: here |lambda| = %.4g 1/s, times h = %s s that is %.3g",
+			    scheme_name(model->scheme), limit, fastest, readable_text(model->h), fastest * h);
+}
+
+/* ---- operators that are too soft ---- */
+
+/* Of a bank: that which serves at this point */
+struct choice_work {
+	struct jacobian *j;
+	int which;
+};
+
+static void choose_operator(void *context)
+{
+	struct choice_work *work = context;
+	const struct model *model = work->j->b->model;
+	struct collector *c = &work->j->b->collector;
+	struct fixing *fixing = ARRAY(struct fixing, (size_t)model->system.states + 1);
+	const struct form *now = form_at(point_new(c, fix_states(work->j, fixing), fixing), model->selector);
+	if (!is_constant(now))
+		abandon();
+	mpq_t value;
+	mpq_init(value);
+	constant_value(c, now, value);
+	while (work->which + 1 < model->operators && mpq_cmp(value, model->operator[work->which].at) > 0)
+		work->which++;
+	mpq_clear(value);
+}
+
+struct softness {
+	double here, operator;      /* squared frequencies, of the mode that exceeds the operator's most for its size */
+	double t;
+};
+
+static void compare(struct jacobian *j, struct softness *worst)
+{
+	const struct model *model = j->b->model;
+	struct choice_work choice = { j, 0 };
+	double *here = ARRAY(double, (size_t)model->n), *there = ARRAY(double, (size_t)model->n);
+	if (!silent_guard(evaluate, j) || (model->selector && !silent_guard(choose_operator, &choice)))
+		return;
+	struct linear system = operator_system(model, choice.which);
+	if (!stiffness(&j->at, here) || !stiffness(&system, there))
+		return;
+	for (int i = 0; i < model->n; i++)
+		if (here[i] - there[i] > 1e-2 * fabs(here[i]) && (here[i] - there[i]) * worst->here >= (worst->here - worst->operator) * here[i])
+			*worst = (struct softness){ here[i], there[i], mpq_get_d(j->t) };
+}
+
+static bool stiffness_moves(const struct jacobian *j)
+{
+	const struct model *model = j->b->model;
+	for (int k = 0; k < model->n; k++) {
+		struct reads reads = reads_of(model, model->n, (const struct form *const *)j->K[k]);
+		for (int l = 0; l < model->system.loads; l++)
+			reads.time = reads.time || reads.load[l];
+		if (reads.time)
+			return true;
+	}
+	return false;
+}
+
+/* Over the time in which loads change their formula, else over a thousand steps */
+static void check_softness(struct jacobian *j)
+{
+	struct building *b = j->b;
+	const struct model *model = b->model;
+	struct softness worst = { 0, 0, 0 };
+	mpq_t end;
+	mpq_init(end);
+	int changes = model->system.segments - 1;
+	if (changes > 0 && mpq_sgn(model->system.change[changes - 1]) > 0)
+		mpq_set(end, model->system.change[changes - 1]);
+	else
+		mpq_set_ui(end, 1000, 1);
+	if (changes == 0 || mpq_sgn(model->system.change[changes - 1]) <= 0)
+		mpq_mul(end, end, model->h);
+	j->state = (const mpq_t *)rationals((size_t)model->system.states);      /* at rest; where that is not defined, at the start */
+	if (!silent_guard(evaluate, j))
+		j->state = (const mpq_t *)model->initial;
+	bool moves = stiffness_moves(j);
+	for (int k = 0; k <= (moves ? SAMPLES : 0); k++) {
+		mpq_set_ui(j->t, (unsigned long)k, SAMPLES);
+		mpq_canonicalize(j->t);
+		mpq_mul(j->t, j->t, end);
+		compare(j, &worst);
+	}
+	mpq_clear(end);
+	if (worst.here <= worst.operator)
+		return;
+	double growth = round_rational(model->h) / 4 * (worst.here - worst.operator);
+	const char *rate = model->scheme == SCHEME_ETD1 ? format(", growing at up to %.3g 1/s in etd1 (h/4 times the difference)", growth) : "";
+	say_warning(b->spec->has_operator ? b->spec->operator_at : scheme_place(b), format("what is left over then drives the motion%s; fix the operator where the model is stiffest", rate),
+		    "the linear operator is softer than the model gets: %sa squared frequency is %.4g 1/s^2, the operator's %.4g",
+		    moves ? format("at t = %.4g s ", worst.t) : "", worst.here, worst.operator);
+}
+
+/* ---- the whole ---- */
+
+static void check_need(const struct building *b, bool left)
+{
+	const struct model *model = b->model;
+	if (b->spec->has_operator && (model->scheme <= SCHEME_PL || !left))
+		say_warning(b->spec->operator_at, NULL, model->scheme == SCHEME_PL ? "the operator has no effect: that of scheme pl is each coordinate's own terms"
+			: "the operator has no effect: nothing is left over");
+	if (left && !model->loads_left)
+		return;
+	if (model->scheme == SCHEME_PL && !model->loads_left)
+		say_warning(scheme_place(b), NULL, "scheme pl is of first order in h: this model is linear, and exact has no error");
+	else if (model->scheme > SCHEME_PL && is_linear(b))
+		say_warning(scheme_place(b), NULL, left ? "scheme %s approximates the loads: this model is linear, and exact has no error"
+			: "scheme %s has nothing to do: this model is linear, and exact covers it", scheme_name(model->scheme));
+}
+
+void warn(struct building *b)
+{
+	const struct model *model = b->model;
+	bool left = model->channels > 0;
+	struct jacobian j = { .b = b };
+	check_need(b, left);
+	if (!left || model->scheme <= SCHEME_PL || is_linear(b) || !silent_guard(differentiate, &j))
+		return;
+	mpq_init(j.t);
+	if (model->scheme >= SCHEME_NC2)
+		check_predictor(&j);
+	else
+		check_softness(&j);
+	mpq_clear(j.t);
+}

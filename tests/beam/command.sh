@@ -1,0 +1,70 @@
+#!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
+# beam_matrices as a command: what it refuses, and that it never leaves half a file.
+#
+#     command.sh BEAM_MATRICES
+set -u
+case $1 in
+    /*) program=$1 ;;
+    *) program=$PWD/$1 ;;
+esac
+work=$(mktemp -d "${TMPDIR:-/tmp}/beam.XXXXXX") || exit 99
+trap 'rm -rf "$work"' EXIT
+trap 'exit 99' HUP INT TERM
+cd "$work" || exit 99
+count=0
+failed=0
+
+# result STATUS NAME
+result() {
+    count=$((count + 1))
+    if [ "$1" -eq 0 ]; then
+        echo "ok $count - $2"
+    else
+        echo "not ok $count - $2"
+        failed=1
+        sed 's/^/# /' said
+    fi
+}
+
+# refuses STATUS WORD OPTIONS...: with this status, a message that has the word, and no file
+refuses() {
+    status=$1
+    word=$2
+    shift 2
+    "$program" "$@" >said 2>&1
+    found=$?
+    [ $found -eq "$status" ] && grep -q -e "$word" said && [ -z "$(find . -name '*.mtx')" ]
+    result $? "status $status and '$word': $*"
+}
+
+refuses 2 'whole number' -n 0
+refuses 2 'whole number' -n 5x
+refuses 2 'whole number' -n 99999999999999999999
+refuses 2 'positive number' -L -1
+refuses 2 'positive number' -S nan
+refuses 2 'positive number' -I inf
+refuses 2 'positive number' -r ''
+refuses 2 'positive number' -E 1e999
+refuses 2 'missing after -n' -n
+refuses 2 'unknown option -q' -q 1
+refuses 2 'unknown option -nn' -nn 1
+refuses 2 'there is also b' a b
+refuses 1 'range of double in M' -L 1e300
+refuses 1 'range of double in K' -E 1e-200 -I 1e-200
+refuses 1 'cannot write' nowhere/
+
+# A full disk is seen.
+if [ -w /dev/full ]; then
+    ln -s /dev/full fullM.mtx
+    "$program" full >said 2>&1
+    [ $? -eq 1 ] && grep -q 'cannot write' said
+    result $? 'a full disk'
+    rm -f full*.mtx
+fi
+
+"$program" -n 1 one_ >said 2>&1 && [ "$(find . -name 'one_*.mtx' | wc -l)" -eq 6 ] && [ ! -s said ]
+result $? 'one element: six files, nothing said'
+
+echo "1..$count"
+exit $failed

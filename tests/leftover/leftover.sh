@@ -1,0 +1,179 @@
+#!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
+# The emitted C of models with a leftover: no warning in any compiler, the same bytes twice, nothing from <math.h> that the model does not
+# call; and what plgen says while it makes them.
+#
+#     leftover.sh PLGEN SOURCE_ROOT NAME_variants.c ...
+set -u
+plgen=$1
+root=$2
+shift 2
+case $plgen in
+    /*) ;;
+    *) plgen=$PWD/$plgen ;;
+esac
+files=
+for file; do
+    case $file in
+        /*) files="$files $file" ;;
+        *) files="$files $PWD/$file" ;;
+    esac
+done
+here=$root/tests/leftover
+warnings='-Wall -Wextra -Wpedantic -Wconversion -Wdouble-promotion -Werror'
+LC_ALL=C
+export LC_ALL
+
+work=$(mktemp -d "${TMPDIR:-/tmp}/leftover.XXXXXX") || exit 99
+trap 'rm -rf "$work"' EXIT
+trap 'exit 99' HUP INT TERM
+cd "$work" || exit 99
+
+count=0
+failed=0
+
+# result STATUS NAME: a line of TAP; what the commands said is in log
+result() {
+    count=$((count + 1))
+    if [ "$1" -eq 0 ]; then
+        echo "ok $count - $2"
+    else
+        echo "not ok $count - $2"
+        failed=1
+        sed 's/^/# /' log | head -n 12
+    fi
+}
+
+# ---- compilers ----
+
+for file in $files; do
+    name=${file##*/}
+    for compiler in 'gcc -std=c99 -O1 -c -o object.o' 'clang -std=c99 -fsyntax-only' 'g++ -std=c++17 -fsyntax-only -x c++' \
+        'clang++ -std=c++17 -fsyntax-only -x c++'; do
+        if ! command -v "${compiler%% *}" >/dev/null 2>&1; then
+            count=$((count + 1))
+            echo "ok $count - $name, ${compiler%% *} # SKIP ${compiler%% *} is not installed"
+            continue
+        fi
+        # shellcheck disable=SC2086
+        ${compiler%% *} $warnings -I"$root/runtime" -I"$here" -I"${file%/*}" ${compiler#* } "$file" >log 2>&1
+        result $? "$name, $compiler: not a warning"
+    done
+done
+
+# Each line a model: what its leftover needs (inputs, slopes, times, loads, banks) differs.
+cat >kinds <<'END'
+coord x; input u hold first; x'' + x + x^3 + u*x = 0
+coord x; input u hold first; x'' + x + x^3 + u'*x = 0
+coord x; input u; x'' + x + x^3 + u*x = 0
+coord x; input u hold first; x'' + x + x^3 = u
+coord x; input u hold first; x'' + x + u*u = u'
+coord x; x'' + x + t*x = 0
+coord x; x'' + x + sin(t^2) = 0
+coord x; x'' + x + x^3 = exp(-t)*sin(2*t) + t
+coord x; x'' + x + x^3 = (t < 0.3 ? 1 : 0)
+coord x; x'' + x + t*x^3 = (t < 0.3 ? 1 : 0); operator at x = 0, 1
+coord x; let p = 1 + sin(t); x'' + x + p*x = 0; operator at p = 0.5, 1, 2
+coord x; let p = 1 + sin(t); x'' + x + p*p = cos(2*t); operator at p = 0.5, 1, 2
+coord x; input u; let p = 1 + sin(t); x'' + x + p*x*u = u; operator at p = 0.5, 1, 2
+coord x; input u hold first; let p = 1 + sin(t); x'' + x + p*x*u' = u; operator at p = 0.5, 1, 2
+coord x; x' + x^2 = 1
+coord x; x' = sin(x)
+coord x, y; x'' + y = 0; y' + y*x = 0
+coord x; x'' = -x^2
+coord x; x'' + abs(x')*x' + sgn(x) = t; output x, a = x'', e = x^2 + t
+END
+while read -r kind; do
+    { echo 'model kind'; printf '%s\n' "$kind; step 0.01" | tr ';' '\n' | sed 's/^ *//'; } >kind.spec
+    status=0
+    : >all.c
+    : >said
+    for scheme in etd1 etdrk2 etdrk4 nc2 dq4 bm3; do
+        "$plgen" --rhs --prefix "kind_$scheme" --scheme "$scheme" kind.spec 2>log >>all.c || { status=1; cat log >>said; }
+    done
+    for compiler in 'gcc -std=c99' 'clang -std=c99' 'g++ -std=c++17 -x c++'; do
+        command -v "${compiler%% *}" >/dev/null 2>&1 || continue
+        # shellcheck disable=SC2086
+        ${compiler%% *} $warnings -fsyntax-only -I"$root/runtime" ${compiler#* } all.c >>said 2>&1 || status=1
+    done
+    cp said log
+    result $status "$kind"
+done <kinds
+
+# ---- the same bytes twice ----
+
+for file in $files; do
+    name=${file##*/}
+    list=${name%_variants.c}
+    "$here/variants.sh" "$plgen" "$here/$list.list" "$work/$name" "$work/${name%.c}.h" "$here" "$root/models" "$root/tests/emitted/linear" >log 2>&1 &&
+        cmp "$file" "$work/$name" >>log 2>&1 && cmp "${file%.c}.h" "$work/${name%.c}.h" >>log 2>&1
+    result $? "$list: the same bytes twice"
+done
+
+# ---- <math.h> ----
+
+# only SPEC SCHEME FUNCTION ...: what the object may ask for beside the runtime
+only() {
+    spec=$1
+    scheme=$2
+    shift 2
+    if ! "$plgen" --scheme "$scheme" -o model.c "$spec" 2>log ||
+        ! gcc -std=c99 -O0 -fno-builtin -I"$root/runtime" -c model.c -o model.o >log 2>&1; then
+        result 1 "$(basename "$spec"), $scheme: compiled"
+        return
+    fi
+    nm -u model.o | awk '{ print $NF }' | grep -v -E '^(pl_[a-z_]*|memcpy|memset)$' | sort >found
+    : >expected
+    [ $# -eq 0 ] || printf '%s\n' "$@" | sort >expected
+    comm -23 found expected >log               # what the runtime does in its stead (cos(w*t), exp(a*t)) may be missing
+    status=0
+    [ ! -s log ] || status=1
+    if [ $# -eq 0 ] && grep -q '<math\.h>' model.c model.h; then
+        echo 'includes <math.h>' >>log
+        status=1
+    fi
+    result $status "$(basename "$spec" .spec), $scheme: calls no function but ${*:-those of the runtime}"
+}
+
+for scheme in etd1 etdrk4 bm3; do
+    only "$root/models/pendulum.spec" "$scheme" sin
+    only "$root/models/vanderpol.spec" "$scheme"
+    only "$root/models/quad2dof.spec" "$scheme"
+    only "$root/models/duffing.spec" "$scheme"
+    only "$root/models/mathieu.spec" "$scheme" cos
+    only "$here/held.spec" "$scheme"
+    only "$here/rotor.spec" "$scheme" exp
+done
+
+# ---- what plgen says ----
+
+# says SPEC PATTERN [OPTION ...]: a warning on standard error that matches, and the C all the same
+says() {
+    spec=$1
+    pattern=$2
+    shift 2
+    "$plgen" "$@" "$spec" >out.c 2>log && [ -s out.c ] && grep -q -i "warning:.*$pattern" log
+    result $? "$(basename "$spec" .spec) $*: warns of $pattern"
+}
+
+silent() {
+    spec=$1
+    shift
+    "$plgen" "$@" "$spec" >out.c 2>log && [ -s out.c ] && [ ! -s log ]
+    result $? "$(basename "$spec" .spec) $*: says nothing"
+}
+
+for scheme in nc2 nc3 dq4 bm3; do
+    says "$root/models/vanderpol_stiff.spec" explicit --scheme "$scheme" --step 0.05
+    silent "$root/models/vanderpol_stiff.spec" --scheme "$scheme" --step 0.001
+done
+for scheme in etd1 etdrk2 etdrk4; do
+    says "$root/models/scs.spec" exact --scheme "$scheme"
+    silent "$root/models/vanderpol_stiff.spec" --scheme "$scheme" --step 0.05
+done
+for name in pendulum vanderpol quad2dof duffing; do
+    silent "$root/models/$name.spec"
+done
+
+echo "1..$count"
+exit $failed

@@ -1,0 +1,89 @@
+#!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Many variants of models as one C file, one header and a table NAME of them.
+#
+#     variants.sh PLGEN LIST NAME_variants.c NAME_variants.h FOLDER ...
+#
+# A line of LIST is `NAME SCHEMES STEPS [OPTION ...]`: NAME.spec is looked for in the folders, in their order, and becomes the models
+# NAME_SCHEME_0, NAME_SCHEME_1, ... for each of its steps ('-': the spec's own scheme, the spec's own step).  Options:
+#     as=PREFIX       PREFIX instead of NAME in the names
+#     at=TEXT         `operator at TEXT` instead of the spec's own operator ('_' is a blank); at=none: no such statement
+#     anything else   for plgen
+set -eu
+LC_ALL=C
+export LC_ALL
+case $1 in
+    /*) plgen=$1 ;;
+    *) plgen=$PWD/$1 ;;
+esac
+list=$2
+code=$3
+header=$4
+shift 4
+table=$(basename "$header" _variants.h)
+work=$(mktemp -d "${TMPDIR:-/tmp}/variants.XXXXXX")
+trap 'rm -rf "$work"' EXIT
+trap 'exit 99' HUP INT TERM
+
+# What the variants are made from: the specs and their data files, later folders do not hide earlier ones.
+for folder; do
+    for file in "$folder"/*; do
+        [ -e "$work/${file##*/}" ] || cp -r "$file" "$work/${file##*/}"
+    done
+done
+
+: >"$work/headers"
+: >"$work/bodies"
+: >"$work/names"
+grep -v -e '^#' -e '^$' "$list" | while read -r name schemes steps options; do
+    as=$name
+    spec=$work/$name.spec
+    given=
+    for option in $options; do
+        case $option in
+            as=*) as=${option#as=} ;;
+            at=*)
+                operator=$(printf '%s' "${option#at=}" | tr '_' ' ')
+                {
+                    grep -v '^operator' "$work/$name.spec"
+                    [ "$operator" = none ] || echo "operator at $operator"
+                } >"$work/${name}_at.spec"
+                spec=$work/${name}_at.spec ;;
+            *) given="$given $option" ;;
+        esac
+    done
+    for scheme in $(echo "$schemes" | tr , ' '); do
+        i=0
+        for step in $(echo "$steps" | tr , ' '); do
+            prefix=${as}_${scheme}_$i
+            choice="--prefix $prefix"
+            if [ "$scheme" = - ]; then
+                choice="--prefix ${as}_$i"
+                prefix=${as}_$i
+            else
+                choice="$choice --scheme $scheme"
+            fi
+            [ "$step" = - ] || choice="$choice --step $step"
+            # shellcheck disable=SC2086
+            "$plgen" --rhs $choice $given -o "$work/$prefix.c" "$spec" 2>"$work/said" || { cat "$work/said" >&2; exit 1; }
+            cat "$work/$prefix.h" >>"$work/headers"
+            grep -v '^#include "'"$prefix"'.h"$' "$work/$prefix.c" >>"$work/bodies"
+            echo "$prefix" >>"$work/names"
+            i=$((i + 1))
+        done
+    done
+done
+
+{
+    echo "/* Made by variants.sh from $(basename "$list"). */"
+    echo '#include "variant.h"'
+    cat "$work/headers"
+    echo "extern const struct variant ${table}[];  /* up to one without a model */"
+} >"$header"
+{
+    echo "#include \"$(basename "$header")\""
+    cat "$work/bodies"
+    echo "const struct variant ${table}[] = {"
+    sed 's/.*/    {\&&_model, \&&_Phi[0][0]},/' "$work/names"
+    echo '    {NULL, NULL}};'
+} >"$code"
