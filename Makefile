@@ -37,6 +37,9 @@ bench: all
 	sh bench/growth.sh $(BUILD)
 	$(BUILD)/bench/apply
 	sh bench/beam.sh $(BUILD)
+	sh bench/switching.sh $(BUILD)
+	$(BUILD)/bench/crossings
+	sh bench/sweep.sh $(BUILD)
 
 # The long forms of what `make check` runs briefly.
 accuracy: all

@@ -13,24 +13,9 @@ struct differentiation {
 
 static struct form *derive(struct differentiation *d, const struct form *form);
 
-static struct form *number(long value)
-{
-	mpq_t q;
-	mpq_init(q);
-	mpq_set_si(q, value, 1);
-	struct form *form = form_constant(q);
-	mpq_clear(q);
-	return form;
-}
-
 static struct form *sum(const struct form *a, const struct form *b)
 {
 	return form_sum(a, b, false);
-}
-
-static struct form *difference(const struct form *a, const struct form *b)
-{
-	return form_sum(a, b, true);
 }
 
 /* sum over the factors: e f^{e-1} f' times the others */
@@ -44,7 +29,7 @@ static struct form *derive_product(struct differentiation *d, const struct atom 
 			continue;
 		for (int j = 0; j < a->operands; j++)
 			term = kept_product(c, a->node, term, kept_whole_power(c, a->node, a->operand[j], a->exponent[j] - (j == i)));
-		total = sum(total, kept_product(c, a->node, number((long)a->exponent[i]), term));
+		total = sum(total, kept_product(c, a->node, form_number((long)a->exponent[i]), term));
 	}
 	return total;
 }
@@ -56,11 +41,11 @@ static struct form *derive_power(struct differentiation *d, const struct atom *a
 	const struct form *base = a->operand[0], *exponent = a->operand[1];
 	struct form *outer = derive(d, base), *inner = derive(d, exponent), *total = NEW(struct form);
 	if (outer->terms) {
-		struct form *lower = kept_power(c, a->node, base, difference(exponent, number(1)));
+		struct form *lower = kept_power(c, a->node, base, form_difference(exponent, form_number(1)));
 		total = kept_product(c, a->node, kept_product(c, a->node, exponent, lower), outer);
 	}
 	if (inner->terms) {
-		struct form *log = kept_call(c, a->node, FN_LOG, 1, (struct form *[]){ sum(base, number(0)) });
+		struct form *log = kept_call(c, a->node, FN_LOG, 1, (struct form *[]){ sum(base, form_number(0)) });
 		total = sum(total, kept_product(c, a->node, kept_product(c, a->node, itself, log), inner));
 	}
 	return total;
@@ -70,23 +55,23 @@ static struct form *derive_power(struct differentiation *d, const struct atom *a
 static struct form *slope_of_function(struct collector *c, const struct atom *a, struct form *x, const struct form *y)
 {
 	const struct node *node = a->node;
-	struct form *one = number(1), *square;
+	struct form *one = form_number(1), *square;
 	switch (a->function) {
 	case FN_SIN:  return kept_call(c, node, FN_COS, 1, &x);
-	case FN_COS:  return difference(number(0), kept_call(c, node, FN_SIN, 1, &x));
+	case FN_COS:  return form_difference(form_number(0), kept_call(c, node, FN_SIN, 1, &x));
 	case FN_TAN:  return sum(one, kept_product(c, node, y, y));
-	case FN_EXP:  return sum(y, number(0));
+	case FN_EXP:  return sum(y, form_number(0));
 	case FN_LOG:  return kept_reciprocal(c, node, x);
-	case FN_SQRT: return kept_reciprocal(c, node, kept_product(c, node, number(2), y));
+	case FN_SQRT: return kept_reciprocal(c, node, kept_product(c, node, form_number(2), y));
 	case FN_ABS:  return kept_call(c, node, FN_SGN, 1, &x);
 	case FN_SINH: return kept_call(c, node, FN_COSH, 1, &x);
 	case FN_COSH: return kept_call(c, node, FN_SINH, 1, &x);
-	case FN_TANH: return difference(one, kept_product(c, node, y, y));
+	case FN_TANH: return form_difference(one, kept_product(c, node, y, y));
 	case FN_ASIN:
 	case FN_ACOS:
-		square = difference(one, kept_product(c, node, x, x));
+		square = form_difference(one, kept_product(c, node, x, x));
 		square = kept_reciprocal(c, node, kept_call(c, node, FN_SQRT, 1, &square));
-		return a->function == FN_ASIN ? square : difference(number(0), square);
+		return a->function == FN_ASIN ? square : form_difference(form_number(0), square);
 	case FN_ATAN: return kept_reciprocal(c, node, sum(one, kept_product(c, node, x, x)));
 	default:      return NEW(struct form);      /* sgn */
 	}
@@ -97,7 +82,7 @@ static struct form *derive_angle(struct differentiation *d, const struct atom *a
 {
 	struct collector *c = d->c;
 	const struct form *y = a->operand[0], *x = a->operand[1];
-	struct form *turning = difference(kept_product(c, a->node, derive(d, y), x), kept_product(c, a->node, derive(d, x), y));
+	struct form *turning = form_difference(kept_product(c, a->node, derive(d, y), x), kept_product(c, a->node, derive(d, x), y));
 	struct form *square = sum(kept_product(c, a->node, x, x), kept_product(c, a->node, y, y));
 	return kept_product(c, a->node, turning, kept_reciprocal(c, a->node, square));
 }
@@ -122,8 +107,8 @@ static struct form *derive_clipped(struct differentiation *d, const struct atom 
 	const struct form *x = a->operand[0], *low = a->operand[1], *high = a->operand[2];
 	struct form *inside = derive(d, x), *below = derive(d, low), *above = derive(d, high);
 	if (a->function == FN_DEADZONE) {
-		below = difference(inside, below);
-		above = difference(inside, above);
+		below = form_difference(inside, below);
+		above = form_difference(inside, above);
 		inside = NEW(struct form);
 	}
 	struct form *rest = kept_choice(c, a->node, kept_comparison(c, a->node, CMP_GT, x, high), above, inside);
@@ -136,7 +121,7 @@ static struct form *derive_table(struct differentiation *d, const struct atom *a
 	struct collector *c = d->c;
 	struct form *slope = NULL;
 	for (int k = a->operands - 4; k >= 1; k -= 2) {
-		struct form *width = difference(a->operand[k + 2], a->operand[k]), *rise = difference(a->operand[k + 3], a->operand[k + 1]);
+		struct form *width = form_difference(a->operand[k + 2], a->operand[k]), *rise = form_difference(a->operand[k + 3], a->operand[k + 1]);
 		struct form *here = kept_product(c, a->node, rise, kept_reciprocal(c, a->node, width));
 		slope = !slope ? here : kept_choice(c, a->node, kept_comparison(c, a->node, CMP_LT, a->operand[0], a->operand[k + 2]), here, slope);
 	}
@@ -145,7 +130,7 @@ static struct form *derive_table(struct differentiation *d, const struct atom *a
 
 static struct form *derive_call(struct differentiation *d, const struct atom *a, const struct form *itself)
 {
-	struct form *x = sum(a->operand[0], number(0));
+	struct form *x = sum(a->operand[0], form_number(0));
 	switch (a->function) {
 	case FN_ATAN2:    return derive_angle(d, a);
 	case FN_MIN:
@@ -160,7 +145,7 @@ static struct form *derive_call(struct differentiation *d, const struct atom *a,
 static struct form *derive_reciprocal(struct differentiation *d, const struct atom *a, const struct form *itself)
 {
 	struct form *slope = derive(d, a->operand[0]), *square = kept_product(d->c, a->node, itself, itself);
-	return difference(number(0), kept_product(d->c, a->node, square, slope));
+	return form_difference(form_number(0), kept_product(d->c, a->node, square, slope));
 }
 
 static struct form *derive_atom(struct differentiation *d, const struct atom *a)
@@ -260,7 +245,7 @@ enum { EXPANDED = 8 };
 
 static struct form *place_product(struct point *p, const struct atom *a, struct form *const *x)
 {
-	struct form *product = number(1);
+	struct form *product = form_number(1);
 	for (int i = 0; i < a->operands; i++) {
 		bool expand = a->exponent[i] <= EXPANDED && !is_constant(x[i]);
 		for (unsigned k = 0; k < a->exponent[i] && expand; k++)

@@ -486,6 +486,19 @@ static void plan_exponentials(struct filling *f, int count, const struct wanted 
 	}
 }
 
+/* A series of a wave that turns so often in a step would not end, and residues are slow beyond a few states. */
+static void check_waves(const struct filling *f)
+{
+	long step = (long)mpz_sizeinbase(mpq_numref(f->model->h), 2) - (long)mpz_sizeinbase(mpq_denref(f->model->h), 2);
+	for (int l = 0; l < f->system->loads; l++) {
+		mpq_srcptr w = f->system->load[l].wave->w;
+		long bits = (long)mpz_sizeinbase(mpq_numref(w), 2) - (long)mpz_sizeinbase(mpq_denref(w), 2);
+		if (bits + step > LIMIT_TURNS && load_acts(f->system, &f->system->load[l]))
+			error(f->model->step_at, NULL, "the frequency of %s times the step is beyond the limit of 2^%d for models of more than %d states",
+			      column_text(&f->system->load[l], 0), LIMIT_TURNS, LIMIT_RESIDUE_STATES);
+	}
+}
+
 static int longest_chain(int count, const struct wanted *wanted)
 {
 	int powers = 0;
@@ -509,8 +522,10 @@ static struct table **tables_of_block(struct filling *f, int count, const struct
 		mpq_init(f->response[i].start);
 	mpq_init(f->tau);
 	series_place(&f->series, system, longest_chain(count, wanted));
-	if (system->states > LIMIT_RESIDUE_STATES)
+	if (system->states > LIMIT_RESIDUE_STATES) {
+		check_waves(f);
 		plan_exponentials(f, count, wanted);
+	}
 	for (int t = 0; t < count; t++) {
 		f->wanted = &wanted[t];
 		table[t] = table_new(system, f->wanted);

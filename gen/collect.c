@@ -76,7 +76,12 @@ _Noreturn void not_linear(const struct collector *c, const struct node *node, co
 
 static bool keeps(const struct collector *c)
 {
-	return c->keep && !c->tolerant;
+	return c->keep == KEEP_ALL && !c->tolerant;
+}
+
+static bool keeps_piecewise(const struct collector *c)
+{
+	return c->keep != KEEP_NOTHING && !c->tolerant;
 }
 
 _Noreturn void not_built(const struct collector *c, struct place at, const char *what)
@@ -85,6 +90,8 @@ _Noreturn void not_built(const struct collector *c, struct place at, const char 
 		abandon();
 	if (c->argument)                        /* not even then */
 		not_linear(c, c->argument, "is not linear");
+	if (c->closed)
+		error(at, NULL, "%s not linear: there is no closed form", what);
 	error(at, NULL, "%s not built yet", what);
 }
 
@@ -205,7 +212,7 @@ static struct value *collect_argument(struct collector *c, const struct node *no
 /* A function that divides its arguments' range, of one cell of each */
 static struct form *piecewise_cell(struct collector *c, struct node *node, struct form *const *x)
 {
-	bool kept = keeps(c) && !is_decided(c, node->children, x);
+	bool kept = (node->function == FN_ATAN2 ? keeps : keeps_piecewise)(c) && !is_decided(c, node->children, x);
 	return kept ? kept_call(c, node, node->function, node->children, x) : piecewise(c, node, x);
 }
 
@@ -422,7 +429,7 @@ static struct form *collect_comparison(struct collector *c, struct node *node)
 {
 	struct form *left = collect_scalar(c, node->child[0]), *right = collect_scalar(c, node->child[1]), *difference = form_sum(left, right, true);
 	mpq_t truth;
-	if (keeps(c) && !is_decided(c, 1, &difference))
+	if (keeps_piecewise(c) && !is_decided(c, 1, &difference))
 		return kept_comparison(c, node, node->comparison, left, right);
 	mpq_init(truth);
 	mpq_set_ui(truth, compare_values(node->comparison, order_now(c, node, left, right)), 1);
@@ -444,7 +451,7 @@ static struct value *kept_choices(struct collector *c, struct node *node, const 
 static struct value *collect_choice(struct collector *c, struct node *node)
 {
 	struct form *condition = collect_scalar(c, node->child[0]), *zero = NEW(struct form);
-	if (keeps(c) && !is_decided(c, 1, &condition))
+	if (keeps_piecewise(c) && !is_decided(c, 1, &condition))
 		return kept_choices(c, node, condition);
 	return collect_node(c, node->child[order_now(c, node, condition, zero) != 0 ? 1 : 2]);
 }

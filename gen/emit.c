@@ -36,6 +36,11 @@ static bool load_is_needed(const struct model *model, const struct linear *syste
 		const struct form *left = model->output[o].left;
 		needed = needed || (left && reads_of(model->written, 1, &left).load[load]);
 	}
+	for (int x = 0; model->switching && x < model->switching->expressions; x++)
+		for (int k = 0; k < system->load[load].columns; k++)
+			needed = needed || mpq_sgn(model->switching->expression[x].row->load[load][k]) != 0;
+	for (int x = 0; model->switching && x < model->switching->systems; x++)
+		needed = needed || load_acts(&model->switching->system[x], &model->switching->system[x].load[load]);
 	for (int o = 0; o < model->n; o++)
 		for (int k = 0; model->highest && model->highest[o] && k < system->load[load].columns * system->segments; k++)
 			needed = needed || mpq_sgn(model->highest[o]->load[load][k]) != 0;
@@ -68,7 +73,12 @@ static struct emitter emitter_new(FILE *to, const struct step *step, const char 
 
 bool has_jump(const struct emitter *e)
 {
-	return e->system->inputs == 0 && !has_leftover(e->step);
+	return e->system->inputs == 0 && !has_leftover(e->step) && !e->model->switching;
+}
+
+static bool has_status(const struct emitter *e)
+{
+	return has_leftover(e->step) || e->model->switching;
 }
 
 const char *input_name(const struct emitter *e, int input, int order)
@@ -153,9 +163,30 @@ static void banner_leftover(const struct emitter *e)
 		fprintf(e->to, " *     and so in %d more equations\n", model->channels - SHOWN);
 }
 
+/* Regions, and what each expression is compared with */
+static void banner_regions(const struct emitter *e)
+{
+	const struct switching *s = e->model->switching;
+	fprintf(e->to, " * Scheme exact: nothing is approximated. The equations are piecewise linear: %d regions, %d different, in each of which\n"
+		       " * every constant is its closed form, correctly rounded; crossings inside a step are found in order, to rounding.\n",
+		possible_regions(s), s->systems);
+	for (int i = 0; i < s->expressions; i++) {
+		const char *at = "";
+		for (int k = 0; k < s->expression[i].breaks; k++)
+			at = format("%s%s%s", at, k ? ", " : "", readable_text(s->expression[i].at[k]));
+		fprintf(e->to, " *     expression %d: %s, at %s\n", i, printable(form_text(e->model, s->expression[i].form)), at);
+	}
+	fputs(" * The poles above are those of the terms that are linear everywhere.\n", e->to);
+	fputs(" * A region's number is the sum of its intervals, each times the product of the numbers of intervals before it.\n", e->to);
+}
+
 static void banner_scheme(const struct emitter *e)
 {
 	FILE *to = e->to;
+	if (e->model->switching) {
+		banner_regions(e);
+		return;
+	}
 	if (e->model->scheme != SCHEME_EXACT)
 		fprintf(to, " * %s\n", scheme_notes[e->model->scheme]);
 	if (has_leftover(e->step))
@@ -187,6 +218,8 @@ static const char *state_list(const struct model *model)
 static void banner_cost(const struct emitter *e)
 {
 	const struct program *program = e->step->program;
+	if (e->model->switching)
+		fprintf(e->to, " * A step that stays clear of every breakpoint, in a region whose piece is the step:\n");
 	fprintf(e->to, " * One step of h = %s s, form direct: %d multiplications, %d additions", readable_text(e->model->h),
 		program->multiplications, program->additions);
 	int multiplications = program->oscillators * PL_COSSIN_MUL + program->growths * PL_GROWTH_MUL;
@@ -207,7 +240,7 @@ static void banner_cost(const struct emitter *e)
 	if (has_jump(e) && e->system->states > 12)
 		fprintf(e->to, " * %s_jump needs some %d KB of stack.\n", e->name, 1 + 32 * e->system->states * e->system->states / 1024);
 	if (!has_jump(e))
-		fprintf(e->to, " * There is no %s_jump: %s.\n", e->name, has_leftover(e->step) ? "what is left over is not linear in the state"
+		fprintf(e->to, " * There is no %s_jump: %s.\n", e->name, e->model->switching ? "crossings are found step by step" : has_leftover(e->step) ? "what is left over is not linear in the state"
 									  : "the samples to come are not known");
 	if (has_leftover(e->step) && !e->step->series.powers)
 		fprintf(e->to, " * There is no %s_at: between its steps the scheme has no values of its order.\n", e->name);
@@ -250,8 +283,10 @@ static void emit_state_struct(const struct emitter *e)
 	if (e->system->segments > 1)
 		fputs("    int segment;          /* of time: how many changes of the loads are past */\n", to);
 	fputs("    double t0;            /* [s]; time is t0 + k h */\n    uint64_t k;           /* steps since then */\n", to);
-	if (has_leftover(e->step))
-		fputs("    int status;           /* sticky: 0, or PL_NOT_FINITE */\n", to);
+	if (e->model->switching)
+		emit_region_members(e);
+	if (has_status(e))
+		fputs("    int status;           /* sticky: 0, or what pl_status names */\n", to);
 	fputs("};\n\n", to);
 }
 
@@ -264,8 +299,11 @@ static void emit_functions(const struct emitter *e, bool rhs)
 	declare(e, format("void   %s_set(%s *s, double t, const double y[%s_STATES]);", n, n, N), "any state at any time [s]");
 	declare(e, format("void   %s_get(const %s *s, double y[%s_STATES]);", n, n, N), "");
 	declare(e, format("double %s_time(const %s *s);", n, n), "[s]");
-	if (has_leftover(e->step))
-		declare(e, format("int    %s_status(const %s *s);", n, n), "0, or PL_NOT_FINITE once a step has left the finite numbers");
+	if (has_status(e))
+		declare(e, format("int    %s_status(const %s *s);", n, n), e->model->switching ? "0, or bits: PL_NOT_FINITE, PL_TOO_MANY_EVENTS"
+			: "0, or PL_NOT_FINITE once a step has left the finite numbers");
+	if (e->model->switching)
+		emit_region_declarations(e);
 	if (e->ramps)
 		declare(e, format("void   %s_hold(%s *s, const double u[%s_INPUTS]);", n, n, N), "the previous sample");
 	declare(e, format("void   %s_step(%s *s%s);", n, n, u), !inputs ? "one step of h" : e->ramps ? "one step of h; a ramp ends at u" : "one step of h with u held");
@@ -293,6 +331,8 @@ static void emit_declarations(const struct emitter *e, bool rhs)
 	const char *N = e->upper;
 	fprintf(to, "#ifndef %s_DECLARED\n#define %s_DECLARED\n\n#include \"plrt.h\"\n\n#ifdef __cplusplus\nextern \"C\" {\n#endif\n\n", N, N);
 	fprintf(to, "enum { %s_STATES = %d, %s_INPUTS = %d, %s_OUTPUTS = %d };\n", N, e->system->states, N, e->system->inputs, N, e->model->outputs);
+	if (e->model->switching)
+		fprintf(to, "enum { %s_MAX_EVENTS = %d };  /* crossings in a step */\n", N, MAX_EVENTS);
 	fprintf(to, "#define %s_H %s  /* step [s] */\n\n", N, shortest(round_rational(e->model->h)));
 	emit_state_struct(e);
 	emit_functions(e, rhs);
@@ -392,16 +432,18 @@ static void emit_access(const struct emitter *e)
 	emit_init(e);
 	fprintf(to, "\nvoid %s_set(%s *s, double t, const double y[%s_STATES])\n{\n    int i;\n", n, n, N);
 	fprintf(to, "    for (i = 0; i < %s_STATES; i++)\n        s->y[i] = y[i];\n    s->t0 = t;\n    s->k = 0;\n", N);
-	if (has_leftover(e->step))
+	if (has_status(e))
 		fputs("    s->status = 0;\n", to);
 	emit_load_set(e);
 	if (e->system->segments > 1)
 		fprintf(to, "    for (s->segment = 0; s->segment < %d && %s_until(s, s->segment) <= 1e-18 * %s_H;)\n        s->segment++;\n",
 			e->system->segments - 1, n, N);
+	if (e->model->switching)
+		fprintf(to, "    %s_place(s);\n", n);
 	fprintf(to, "}\n\nvoid %s_get(const %s *s, double y[%s_STATES])\n{\n    int i;\n", n, n, N);
 	fprintf(to, "    for (i = 0; i < %s_STATES; i++)\n        y[i] = s->y[i];\n}\n", N);
 	emit_time(e);
-	if (has_leftover(e->step))
+	if (has_status(e))
 		fprintf(to, "\nint %s_status(const %s *s)\n{\n    return s->status;\n}\n", n, n);
 	if (e->ramps)
 		fprintf(to, "\nvoid %s_hold(%s *s, const double u[%s_INPUTS])\n{\n    int i;\n    for (i = 0; i < %s_INPUTS; i++)\n        s->u[i] = u[i];\n}\n",
@@ -500,12 +542,24 @@ static void emit_descriptor(const struct emitter *e)
 		emit_wrapper(e, "void", "at", ", const double *u, double tau, double *y", inputs ? ", u, tau, y" : ", tau, y", true);
 	if (has_jump(e))
 		emit_wrapper(e, "void", "jump", ", uint64_t n", ", n", false);
-	if (has_leftover(e->step))
+	if (has_status(e))
 		emit_wrapper(e, "int", "status", "", "", true);
 	fprintf(to, "\nconst pl_model %s_model = {\n    \"%s\", sizeof(struct %s), %s_STATES, %s_INPUTS, %s_OUTPUTS, %s_H,\n", n, n, n, N, N, N, N);
 	fprintf(to, "    %s_state_names, %s, %s_output_names,\n", n, inputs ? format("%s_input_names", n) : "NULL", n);
 	fprintf(to, "    %s_any_init, %s_any_set, %s_any_get, %s_any_time, %s_any_step,\n    %s_any_out, %s_any_run, %s, %s, %s\n};\n", n, n, n, n, n, n, n,
-		at ? format("%s_any_at", n) : "NULL", has_jump(e) ? format("%s_any_jump", n) : "NULL", has_leftover(e->step) ? format("%s_any_status", n) : "NULL");
+		at ? format("%s_any_at", n) : "NULL", has_jump(e) ? format("%s_any_jump", n) : "NULL", has_status(e) ? format("%s_any_status", n) : "NULL");
+}
+
+/* Does an output read an acceleration that something left over acts on? */
+static bool reads_channels(const struct model *model)
+{
+	bool any = false;
+	for (int i = 0; i < model->outputs + model->n; i++) {
+		const struct output *output = i < model->outputs ? &model->output[i] : model->highest[i - model->outputs];
+		for (int c = 0; output && c < model->channels; c++)
+			any = any || mpq_sgn(output->channel[c]) != 0;
+	}
+	return any;
 }
 
 /* ---- the two texts ---- */
@@ -547,10 +601,18 @@ void emit_code(FILE *to, const struct step *step, const char *options, const cha
 	emit_load_tables(&e);
 	if (e.system->segments > 1)
 		emit_changes(&e);
+	if (step->model->switching) {
+		emit_regions(&e);
+		emit_region_start(&e);
+	}
 	emit_access(&e);
 	if (e.system->segments > 1)
 		emit_passing(&e);
-	if (has_leftover(step)) {
+	if (step->model->switching && reads_channels(step->model))
+		emit_leftover_functions(&e);
+	if (step->model->switching) {
+		emit_region_step(&e);
+	} else if (has_leftover(step)) {
 		emit_leftover_functions(&e);
 		emit_leftover_step(&e);
 	} else {
@@ -558,7 +620,9 @@ void emit_code(FILE *to, const struct step *step, const char *options, const cha
 	}
 	emit_out(&e);
 	emit_run(&e);
-	if (step->series.emitted)
+	if (step->model->switching)
+		emit_region_at(&e);
+	else if (step->series.emitted)
 		emit_at(&e);
 	if (has_jump(&e))
 		emit_jump(&e);

@@ -14,7 +14,7 @@ static const struct form *const *leftovers(const struct emitter *e, int operator
 
 static bool many_operators(const struct emitter *e)
 {
-	return e->step->operators > 1;
+	return e->model->operators > 1;
 }
 
 static bool any(const bool *flag, int count)
@@ -46,9 +46,9 @@ static bool takes_slope(const struct emitter *e, const struct reads *r)
 
 static struct reads reads_of_leftover(const struct emitter *e)
 {
-	int channels = e->model->channels, all = channels * e->step->operators;
+	int channels = e->model->channels, all = channels * e->model->operators;
 	const struct form **form = ARRAY(const struct form *, (size_t)all + 1);
-	for (int k = 0; k < e->step->operators; k++)
+	for (int k = 0; k < e->model->operators; k++)
 		for (int c = 0; c < channels; c++)
 			form[k * channels + c] = leftovers(e, k)[c];
 	return reads_of(e->model, all, form);
@@ -165,7 +165,7 @@ static mpq_srcptr linear_factor(const struct form *form, int coord, int order)
 static bool differs(const struct emitter *e, int channel, int coord, int order)
 {
 	mpq_srcptr first = linear_factor(leftovers(e, 0)[channel], coord, order);
-	for (int k = 1; k < e->step->operators; k++) {
+	for (int k = 1; k < e->model->operators; k++) {
 		mpq_srcptr other = linear_factor(leftovers(e, k)[channel], coord, order);
 		if (!first != !other || (first && !mpq_equal(first, other)))
 			return true;
@@ -187,8 +187,8 @@ static int find_excess(const struct emitter *e, struct excess **list)
 static void emit_excess(const struct emitter *e, int count, const struct excess *list)
 {
 	fprintf(e->to, "\n/* What the linear terms of the equations exceed those of each operator by */\nstatic const double %s_excess[%d][%d] = {\n", e->name,
-		e->step->operators, count);
-	for (int k = 0; k < e->step->operators; k++) {
+		e->model->operators, count);
+	for (int k = 0; k < e->model->operators; k++) {
 		const char *row = "";
 		for (int i = 0; i < count; i++) {
 			mpq_srcptr factor = linear_factor(leftovers(e, k)[list[i].channel], list[i].coord, list[i].order);
@@ -323,9 +323,9 @@ static void emit_selection(const struct emitter *e)
 	emit_load_states(e, r.load, true);
 	const char *text = write_form(writer_new(e, basis_now, 1, &selector), selector, 8);
 	fprintf(e->to, "    const double now = %s;\n    (void)s;\n    return ", text);
-	for (int k = 0; k + 1 < e->step->operators; k++)
+	for (int k = 0; k + 1 < e->model->operators; k++)
 		fprintf(e->to, "now <= %s ? %d : ", shortest(finite_number(e, e->model->operator[k].at)), k);
-	fprintf(e->to, "%d;\n}\n", e->step->operators - 1);
+	fprintf(e->to, "%d;\n}\n", e->model->operators - 1);
 }
 
 /* ---- tables of a step that loops ---- */
@@ -379,10 +379,10 @@ static double *picked_matrix(const struct picked *p, const struct emitter *e, in
 static void emit_table(const struct emitter *e, const char *name, const char *note, int first, struct picked picked)
 {
 	int segments = picked.kind == PICK_LOAD ? e->system->segments : 1, rows = e->system->states;
-	fprintf(e->to, "\nstatic const double %s_%s[%d][%d][%d] = {  /* %s */\n", e->name, name, segments * (e->step->operators - first), rows, picked.columns,
+	fprintf(e->to, "\nstatic const double %s_%s[%d][%d][%d] = {  /* %s */\n", e->name, name, segments * (e->model->operators - first), rows, picked.columns,
 		note);
 	for (int s = 0; s < segments; s++)
-		for (int k = first; k < e->step->operators; k++) {
+		for (int k = first; k < e->model->operators; k++) {
 			fputs("  {\n", e->to);
 			emit_number_rows(e, rows, picked.columns, picked_matrix(&picked, e, k, s), e->model->state_name);
 			fputs("  },\n", e->to);
@@ -440,7 +440,7 @@ static const char *load_text(const struct emitter *e, int t)
 	const char *name = format("%s_%s_load", e->name, e->step->table->wanted[t].name);
 	if (e->system->segments == 1)
 		return format("%s[%s][0]", name, operator_index(e));
-	return many_operators(e) ? format("%s[%d * s->segment + which][0]", name, e->step->operators) : format("%s[s->segment][0]", name);
+	return many_operators(e) ? format("%s[%d * s->segment + which][0]", name, e->model->operators) : format("%s[s->segment][0]", name);
 }
 
 /* ---- predictors ---- */

@@ -280,10 +280,10 @@ static void check_mass(const struct building *b)
 	tell_singular(b, column);
 }
 
-static void fill_row(struct model *model, int row, const struct form *form)
+static void fill_row(struct linear *system, int row, const struct form *form)
 {
-	int n = model->n;
-	mpq_t *matrix[] = { model->system.K, model->system.C, model->system.M };
+	int n = system->n;
+	mpq_t *matrix[] = { system->K, system->C, system->M };
 	for (int i = 0; i < form->terms; i++)
 		if (form->term[i].basis.kind == BASIS_COORD)
 			mpq_set(matrix[form->term[i].basis.order][row * n + form->term[i].basis.index], form->term[i].factor);
@@ -373,18 +373,22 @@ static void fill_inputs(struct linear *system, int row, const struct form *form)
 	}
 }
 
+static void make_input_forces(struct linear *system)
+{
+	for (int i = 0; i < system->inputs; i++)
+		for (int k = 0; k < 2; k++)
+			system->input[i].force[k] = rationals((size_t)system->n);
+}
+
 static void name_inputs(struct building *b)
 {
 	struct linear *system = &b->model->system;
 	system->inputs = b->spec->inputs;
 	system->input = ARRAY(struct input, (size_t)system->inputs);
 	for (const struct symbol *s = b->spec->first; s; s = s->next)
-		if (s->kind == SYMBOL_INPUT) {
-			struct input *input = &system->input[s->index];
-			*input = (struct input){ .name = s->name, .first_order = s->first_order };
-			for (int k = 0; k < 2; k++)
-				input->force[k] = rationals((size_t)b->model->n);
-		}
+		if (s->kind == SYMBOL_INPUT)
+			system->input[s->index] = (struct input){ .name = s->name, .first_order = s->first_order };
+	make_input_forces(system);
 }
 
 /* ---- changes of formula in time ---- */
@@ -486,11 +490,14 @@ bool is_linear(const struct building *b)
 /* The equations for all time, in which nothing is taken apart that a state multiplies. */
 void collect_whole(struct building *b)
 {
+	int keep = (int)b->collector.keep;
+	b->collector.keep = KEEP_ALL;
 	b->whole = NEW(struct snapshot);
 	b->collector.whole_time = true;
 	forget_lets(b->spec);
 	collect_equations(b, b->whole);
 	b->collector.whole_time = false;
+	b->collector.keep = (unsigned)keep;
 	if (!diagnostics_errors())
 		add_elements(b, b->whole);
 	for (struct symbol *s = b->spec->first; s && !b->collector.fixings; s = s->next)
@@ -531,12 +538,37 @@ static const struct form *load_form(const struct building *b, int segment, int r
 
 /* ---- the whole ---- */
 
+static const struct atom *first_atom(const struct building *b)
+{
+	for (int s = 0; s < b->model->system.segments; s++)
+		for (int i = 0; i < b->model->n; i++)
+			if (holds_atom(b->snapshot[s].residual[i].form))
+				return b->snapshot[s].residual[i].form->term[b->snapshot[s].residual[i].form->terms - 1].basis.atom;
+	return NULL;
+}
+
+static bool keeps_atoms(const struct building *b)
+{
+	return first_atom(b) != NULL;
+}
+
+/* Scheme exact was asked for, and what it would have to switch on it cannot */
+static void tell_atom(void *context)
+{
+	const struct building *b = context;
+	const struct atom *atom = first_atom(b);
+	bool changes = b->model->system.segments > 1;
+	error(atom->node->start, "etd1, etdrk2, etdrk4, nc2, nc3, dq4, bm3 and pl are the schemes that could",
+	      changes ? "switching beside loads that change their formula in time is not built yet: scheme exact cannot treat '%s'"
+		      : "'%s' is not piecewise linear: scheme exact cannot treat it", text_between(atom->node->start, atom->node->end));
+}
+
 /* Exact where nothing is left over and no scheme was asked for; the equations for all time where something is. */
 static bool settle_scheme(struct building *b)
 {
 	struct model *model = b->model;
 	bool linear = is_linear(b);
-	if (!linear && !model->scheme_at.source && !b->overrides->solution)
+	if (!linear && !model->scheme_at.source && !b->overrides->solution && !is_piecewise_linear(b))
 		model->scheme = SCHEME_ETDRK4;
 	b->collector.scheme = scheme_name(model->scheme);
 	if (model->scheme == SCHEME_EXACT && b->overrides->loads_left) {
@@ -544,6 +576,15 @@ static bool settle_scheme(struct building *b)
 			  "--loads leftover needs a scheme with a quadrature: exact has none");
 		return false;
 	}
+	if (model->scheme == SCHEME_EXACT && !linear && is_piecewise_linear(b)) {
+		find_regions(b);
+		collect_whole(b);               /* for outputs and NAME_rhs */
+		if (!diagnostics_errors())
+			statement_guard(part_loads, b);
+		return !diagnostics_errors();
+	}
+	if (model->scheme == SCHEME_EXACT && keeps_atoms(b))
+		return statement_guard(tell_atom, b);
 	if (model->scheme == SCHEME_EXACT)
 		return check_changes(b);
 	if (!linear || b->overrides->loads_left || b->spec->has_operator)
@@ -552,6 +593,33 @@ static bool settle_scheme(struct building *b)
 	if (b->whole && !diagnostics_errors())
 		statement_guard(part_loads, b);
 	return !diagnostics_errors();
+}
+
+/* The same coordinates, loads and inputs, nothing acting yet */
+struct linear empty_system(const struct model *model)
+{
+	struct linear system = linear_like(&model->system);
+	system.loads = model->system.loads;
+	system.load = ARRAY(struct load, (size_t)system.loads);
+	for (int l = 0; l < system.loads; l++) {
+		system.load[l] = model->system.load[l];
+		system.load[l].force = ARRAY(mpq_t *, (size_t)system.load[l].columns);
+		for (int k = 0; k < system.load[l].columns; k++)
+			system.load[l].force[k] = rationals((size_t)system.segments * (size_t)system.n);
+	}
+	system.inputs = model->system.inputs;
+	system.input = ARRAY(struct input, (size_t)system.inputs);
+	for (int i = 0; i < system.inputs; i++)
+		system.input[i] = model->system.input[i];
+	make_input_forces(&system);
+	return system;
+}
+
+void fill_system(struct building *b, struct linear *system, int segment, int row, const struct form *residual)
+{
+	fill_row(system, row, residual);
+	fill_inputs(system, row, residual);
+	spread_loads(b, residual, add_force, &(struct force_row){ system, segment, row });
 }
 
 void build_system(struct building *b)
@@ -570,7 +638,7 @@ void build_system(struct building *b)
 	system->C = rationals(cells);
 	system->K = rationals(cells);
 	for (int i = 0; i < model->n; i++)
-		fill_row(model, i, rows->residual[i].form);
+		fill_row(system, i, rows->residual[i].form);
 	check_mass(b);
 	name_inputs(b);
 	for (int i = 0; i < model->n; i++)
@@ -578,6 +646,8 @@ void build_system(struct building *b)
 	for (int s = 0; s < system->segments && !model->loads_left; s++)
 		for (int i = 0; i < model->n; i++)
 			place_loads(b, load_form(b, s, i));
+	if (model->switching)
+		place_region_loads(b);
 	for (int s = 0; s < system->segments && !model->loads_left; s++)
 		for (int i = 0; i < model->n; i++)
 			spread_loads(b, load_form(b, s, i), add_force, &(struct force_row){ system, s, i });

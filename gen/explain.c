@@ -97,12 +97,44 @@ static void person_step(FILE *to, const struct step *step)
 			fprintf(to, " %24s", shortest(step->table->Phi[i * model->system.states + j].value));
 		fputc('\n', to);
 	}
-	if (step->series.emitted)
+	if (model->switching)
+		fprintf(to, "%s_at: like a step, with every crossing on the way.\n", model->name);
+	else if (step->series.emitted)
 		fprintf(to, "%s_at: Taylor series of degree %d on %d part%s of the time.\n", model->name, step->series.degree, 1 << step->series.halvings,
 			step->series.halvings ? "s" : "");
 	else
 		fprintf(to, "%s_at is not emitted: %s.\n", model->name, has_leftover(step) && !step->series.powers
 			? "between its steps the scheme has no values of its order" : "the largest |pole| times h is above 8");
+}
+
+/* Bytes of tables, and the most that a step can take: every piece of it by a Taylor polynomial, all events and splits used */
+static void person_regions(FILE *to, const struct step *step)
+{
+	const struct switching *s = step->model->switching;
+	long size = step->series.size, matrices = s->systems, degree = step->series.degree, pieces = 1;
+	long bytes = 8 * (s->expressions * size + matrices * (2 * size * size + 3 * s->expressions * size)) + 4 * (s->regions + s->expressions + matrices);
+	for (int k = 0; k < step->operators; k++)
+		pieces = 1l << step->halvings[k] > pieces ? 1l << step->halvings[k] : pieces;
+	pieces += MAX_EVENTS + 1;
+	fprintf(to, "Piecewise linear: %d regions, %d of them different; in each nothing is approximated, every constant is correctly rounded.\n",
+		possible_regions(s), s->systems);
+	for (int i = 0; i < s->expressions; i++) {
+		fprintf(to, "    expression %d: %s, breakpoints", i, form_text(step->model, s->expression[i].form));
+		for (int k = 0; k < s->expression[i].breaks; k++)
+			fprintf(to, "%s %s", k ? "," : "", readable_text(s->expression[i].at[k]));
+		fputc('\n', to);
+	}
+	for (int r = 0; r < s->regions; r++) {
+		if (!s->region[r].possible)
+			continue;
+		fprintf(to, "    region %d (intervals", r);
+		for (int i = 0; i < s->expressions; i++)
+			fprintf(to, " %d", interval_of(s, r, i));
+		fprintf(to, "): matrix %d\n", s->region[r].system);
+	}
+	fprintf(to, "Tables: %ld bytes. Per step at most %d crossings and %d splits; at most %ld multiplications.\n", bytes, MAX_EVENTS, MAX_SPLITS,
+		pieces * (degree * (size * size + 2 * size) + (degree + 1) * s->expressions * (size + 6)) +
+		4 * (degree + 1) * (2 * MAX_SPLITS + 4 * s->expressions * pieces + 64 * MAX_EVENTS));
 }
 
 /* What went where: the operators, then the leftover of the first; those of the others differ in linear terms only. */
@@ -176,7 +208,9 @@ void explain_person(FILE *to, const struct step *step)
 	fputc('\n', to);
 	if (model->scheme == SCHEME_PL)
 		person_held(to, step);
-	if (has_leftover(step))
+	if (model->switching)
+		person_regions(to, step);
+	else if (has_leftover(step))
 		person_split(to, step);
 	else if (model->scheme != SCHEME_PL)
 		fputs("Nothing is approximated: every constant is its closed form, correctly rounded.\n", to);
@@ -336,6 +370,27 @@ static void json_split(FILE *to, const struct step *step)
 	fputs("],\n", to);
 }
 
+static void json_regions(FILE *to, const struct step *step)
+{
+	const struct switching *s = step->model->switching;
+	bool first = true;
+	fputs("  \"expressions\": [", to);
+	for (int i = 0; i < s->expressions; i++) {
+		fprintf(to, "%s\n    {\"expression\": \"%s\", \"breakpoints\": [", i ? "," : "", form_text(step->model, s->expression[i].form));
+		for (int k = 0; k < s->expression[i].breaks; k++)
+			fprintf(to, "%s%.17g", k ? ", " : "", round_rational(s->expression[i].at[k]));
+		fputs("]}", to);
+	}
+	fputs("],\n  \"regions\": [", to);
+	for (int r = 0; r < s->regions; r++) {
+		if (!s->region[r].possible)
+			continue;
+		fprintf(to, "%s\n    {\"number\": %d, \"matrix\": %d}", first ? "" : ",", r, s->region[r].system);
+		first = false;
+	}
+	fputs("],\n", to);
+}
+
 void explain_json(FILE *to, const struct step *step)
 {
 	const struct model *model = step->model;
@@ -362,6 +417,8 @@ void explain_json(FILE *to, const struct step *step)
 	json_loads(to, step);
 	if (model->scheme == SCHEME_PL)
 		fprintf(to, "  \"growth_rate\": %.17g,\n", mpfr_get_d(step->growth, MPFR_RNDN));
+	if (step->model->switching)
+		json_regions(to, step);
 	if (has_leftover(step))
 		json_split(to, step);
 	fprintf(to, "  \"cost\": {\"multiplications\": %d, \"additions\": %d", step->program->multiplications, step->program->additions);

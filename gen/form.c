@@ -32,6 +32,16 @@ struct form *form_constant(mpq_srcptr value)
 	return form_single((struct basis){ .kind = BASIS_ONE }, value);
 }
 
+struct form *form_number(long value)
+{
+	mpq_t q;
+	mpq_init(q);
+	mpq_set_si(q, value, 1);
+	struct form *form = form_constant(q);
+	mpq_clear(q);
+	return form;
+}
+
 struct form *form_unit(struct basis basis)
 {
 	mpq_t one;
@@ -74,6 +84,11 @@ struct form *form_sum(const struct form *a, const struct form *b, bool subtract)
 	struct form *sum = form_add(a, b, sign);
 	mpq_clear(sign);
 	return sum;
+}
+
+struct form *form_difference(const struct form *a, const struct form *b)
+{
+	return form_sum(a, b, true);
 }
 
 struct form *form_scale(const struct form *a, mpq_srcptr factor)

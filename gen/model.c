@@ -85,7 +85,7 @@ static void choose_scheme(void *context)
 	const char *wanted = b->overrides->scheme ? b->overrides->scheme : b->spec->scheme;
 	b->collector.scheme = "exact";
 	b->collector.closed = b->overrides->solution;
-	b->collector.keep = !wanted && !b->overrides->solution;
+	b->collector.keep = b->overrides->solution ? KEEP_NOTHING : wanted ? KEEP_PIECEWISE : KEEP_ALL;
 	if (!wanted)
 		return;
 	struct place at = b->overrides->scheme ? (struct place){ source_argument(wanted), 0 } : b->spec->scheme_at;
@@ -94,11 +94,11 @@ static void choose_scheme(void *context)
 			b->model->scheme = b->overrides->solution ? SCHEME_EXACT : (enum scheme)i;
 			b->model->scheme_at = at;
 			b->collector.scheme = scheme_name(b->model->scheme);
-			b->collector.keep = b->model->scheme != SCHEME_EXACT;
+			b->collector.keep = b->overrides->solution ? KEEP_NOTHING : i == SCHEME_EXACT ? KEEP_PIECEWISE : KEEP_ALL;
 			return;
 		}
 	const char *nearest = nearest_name(wanted, SCHEMES, schemes);
-	b->collector.keep = true;               /* whatever was meant: one message is enough */
+	b->collector.keep = KEEP_ALL;           /* whatever was meant: one message is enough */
 	error(at, nearest ? format("did you mean '%s'?", nearest) : "the schemes are exact, pl, etd1, etdrk2, etdrk4, nc2, nc3, dq4, bm3",
 	      "unknown scheme '%s'", wanted);
 }
@@ -291,6 +291,10 @@ struct model *model_build(struct spec *spec, const struct overrides *overrides)
 		build_operators(&b);
 	if (!diagnostics_errors())
 		build_outputs(&b);
+	if (!diagnostics_errors() && model->switching)
+		build_regions(&b);
+	if (!diagnostics_errors() && overrides->reduce && model->switching)
+		say_error(spec->name_at, NULL, "--reduce needs a linear model: what regions hold depends on the coordinates");
 	if (!diagnostics_errors() && overrides->reduce && model->scheme != SCHEME_EXACT)
 		say_error(model->scheme_at.source ? model->scheme_at : spec->name_at, NULL,
 			  "--reduce needs scheme exact: what %s leaves over depends on the coordinates", scheme_name(model->scheme));

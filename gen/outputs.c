@@ -157,11 +157,12 @@ static void collect_left(void *context)
 {
 	struct output_work *work = context;
 	struct collector *c = &work->b->collector;
-	bool keep = c->keep;
-	c->keep = c->whole_time = c->output = true;
+	int keep = (int)c->keep;
+	c->keep = KEEP_ALL;
+	c->whole_time = c->output = true;
 	forget_lets(work->b->spec);
 	collect_output(work);
-	c->keep = keep;
+	c->keep = (unsigned)keep;
 	c->whole_time = c->output = false;
 	for (struct symbol *s = work->b->spec->first; s; s = s->next)
 		if (s->kind == SYMBOL_LET && !s->whole && s->progress == COLLECTED && s->collected->rows * s->collected->columns == 1)
@@ -229,6 +230,25 @@ static void make_rows(const struct linear *system, int channels, struct output *
 	for (int k = 0; k < 2; k++)
 		output->input[k] = rationals((size_t)system->inputs);
 	output->channel = rationals((size_t)channels);
+}
+
+/* ---- an expression as a row ---- */
+
+struct output *row_of_form(struct building *b, struct form *form)
+{
+	struct output *row = NEW(struct output);
+	int segments = b->model->system.segments;
+	make_rows(&b->model->system, b->model->channels, row);
+	for (int s = 0; s < segments; s++)
+		spread_loads(b, form, add_direct, &(struct direct_row){ row, segments, s });
+	for (int i = 0; i < form->terms; i++) {
+		const struct basis *basis = &form->term[i].basis;
+		if (basis->kind == BASIS_INPUT)
+			mpq_set(row->input[basis->order][basis->index], form->term[i].factor);
+		else if (basis->kind == BASIS_COORD)
+			mpq_set(row->state[state_of(b->model, basis)], form->term[i].factor);
+	}
+	return row;
 }
 
 /* ---- outputs that are not linear ---- */

@@ -94,16 +94,6 @@ static struct form *negated(const struct form *x)
 	return form_sum(NEW(struct form), x, true);
 }
 
-static struct form *sign_form(int sign)
-{
-	mpq_t value;
-	mpq_init(value);
-	mpq_set_si(value, sign, 1);
-	struct form *form = form_constant(value);
-	mpq_clear(value);
-	return form;
-}
-
 static struct form *extreme(struct collector *c, const struct node *node, struct form *const *x)
 {
 	struct form *best = x[0];
@@ -187,7 +177,7 @@ struct form *piecewise(struct collector *c, const struct node *node, struct form
 	struct form *zero = NEW(struct form);
 	switch (node->function) {
 	case FN_ABS:   return order_now(c, node, x[0], zero) < 0 ? negated(x[0]) : x[0];
-	case FN_SGN:   return sign_form(order_now(c, node, x[0], zero));
+	case FN_SGN:   return form_number(order_now(c, node, x[0], zero));
 	case FN_MIN:
 	case FN_MAX:   return extreme(c, node, x);
 	case FN_TABLE: return tabulated(c, node, x);

@@ -40,10 +40,15 @@ enum {
 	LIMIT_BITS = 1000000,       /* of an exact value */
 	LIMIT_STATES = 512,
 	LIMIT_CHANGES = 1000,       /* of formula in time */
+	LIMIT_REGIONS = 243,        /* of a piecewise-linear model */
+	MAX_EVENTS = 32,            /* crossings in a step of generated code */
+	LIMIT_PIECES = 16,          /* halvings of a step in which crossings are looked for */
+	MAX_SPLITS = 500,           /* of intervals in search of them, in a step */
 	LIMIT_WAVES = 500,          /* frequencies, phases and growths of loads */
 	LIMIT_LOAD_POWER = 32,      /* exponent of a load, as in t^3 */
 	LIMIT_UNROLLED_STATES = 16, /* beyond, a step loops over its tables */
 	LIMIT_RESIDUE_STATES = 12,  /* beyond, a Taylor series gives the numbers: residues get slow */
+	LIMIT_TURNS = 256,          /* log2 of a load's angle in a step, for models of more states than that */
 	LIMIT_ROWS = 10000000,      /* of --solution */
 	LIMIT_PRECISION = 16384,    /* bits of an enclosure before a coefficient is given up */
 	IRRATIONAL_BITS = 256       /* pi, sqrt(2), ... become rationals of this many bits */
@@ -274,8 +279,8 @@ struct collector {
 	const struct node *argument; /* the innermost function of which an argument is being collected that must be linear */
 	bool constant_only;         /* a param, a step, an initial value */
 	bool tolerant;              /* give up in silence on what is not linear: an output may be */
-	bool keep;                  /* what is not linear becomes an atom: a scheme with a leftover can treat it */
-	bool whole_time;            /* with `keep`: conditions and products of time become atoms too, and time is not divided */
+	enum { KEEP_NOTHING, KEEP_PIECEWISE, KEEP_ALL } keep; /* as atoms: what is piecewise linear; whatever is not linear */
+	bool whole_time;            /* with KEEP_ALL: conditions and products of time become atoms too, and time is not divided */
 	bool closed;                /* for --solution */
 	bool output;                /* an output is being collected: highest derivatives may stand anywhere */
 	struct atoms *atoms;
@@ -287,7 +292,9 @@ int basis_order(const struct basis *a, const struct basis *b); /* by which terms
 struct form *form_single(struct basis basis, mpq_srcptr factor);
 struct form *form_unit(struct basis basis);                 /* factor 1 */
 struct form *form_constant(mpq_srcptr value);
+struct form *form_number(long value);
 struct form *form_sum(const struct form *a, const struct form *b, bool subtract);
+struct form *form_difference(const struct form *a, const struct form *b);
 struct form *form_scale(const struct form *a, mpq_srcptr factor);
 struct form *form_product(struct collector *collector, const struct form *a, const struct form *b); /* one of them constant */
 bool is_constant(const struct form *form);                  /* 1 and pi only */
@@ -459,6 +466,7 @@ struct model {
 	int channels;               /* of what is left over, of each operator: one for each equation that has some */
 	int *channel_row;           /* its equation */
 	const struct atoms *atoms;
+	struct switching *switching; /* exact: the regions of a piecewise-linear model; NULL: it has one */
 	const struct form *selector; /* of a bank: what is compared with `at`; NULL: one operator */
 	int outputs;
 	struct output *output;
@@ -469,6 +477,27 @@ struct model {
 	bool irreducible;           /* --reduce was asked for, and every state is seen */
 	int dropped;                /* written states that are no combination of the reduced ones */
 	const char **dropped_name;
+};
+struct expression {                 /* what is compared with breakpoints: linear in states, loads and inputs */
+	struct form *form;          /* without constant; its first factor is 1 */
+	struct output *row;         /* the same as a row */
+	int breaks;
+	mpq_t *at;                  /* rising */
+	const struct node *node;    /* where it comes from */
+	int stride;                 /* of its interval in the index of a region */
+};
+struct region {                     /* one interval for each expression */
+	bool possible;              /* its inequalities can hold together */
+	int system;                 /* index of its equations; equal ones are one */
+	struct form **residual;     /* per row: linear */
+};
+struct switching {
+	int expressions;
+	struct expression *expression;
+	int regions;                /* all, possible or not: products of the expressions' intervals */
+	struct region *region;
+	int systems;
+	struct linear *system;
 };
 struct overrides {                  /* from the command line */
 	const char *step, *scheme, *prefix;
@@ -523,6 +552,18 @@ void collect_whole(struct building *b);                     /* the equations for
 void place_loads(struct building *b, const struct form *form); /* every load of the form gets load states */
 void spread_loads(struct building *b, const struct form *form, void (*spread)(void *context, int load, int column, mpq_srcptr factor), void *context);
 void build_outputs(struct building *b);
+struct output *row_of_form(struct building *b, struct form *form); /* of states, loads and inputs; no highest derivatives */
+void fill_system(struct building *b, struct linear *system, int segment, int row, const struct form *residual); /* one row of everything */
+struct linear empty_system(const struct model *model);      /* the model's coordinates, loads and inputs; no factors yet */
+
+/* ---- regions.c: piecewise-linear equations as regions with linear ones ---- */
+
+bool is_piecewise_linear(const struct building *b);         /* linear but for functions and conditions of linear expressions */
+void find_regions(struct building *b);                      /* says what cannot be treated */
+void place_region_loads(struct building *b);
+void build_regions(struct building *b);                     /* their systems; after the loads of all have their places */
+int  interval_of(const struct switching *s, int region, int expression);
+int  possible_regions(const struct switching *s);
 
 /* ---- operator.c: the linear operator of a scheme, and what it leaves over ---- */
 
@@ -714,7 +755,10 @@ struct series {                     /* x' = A x; x = state, held terms, constant
 	int channel, powers;        /* index of the first leftover; each is a chain of so many integrators, its force the first */
 };
 void series_place(struct series *series, const struct linear *system, int powers); /* which entry of x is what */
+void series_place_loads(struct series *series, const struct linear *system, int powers, const bool *needed); /* of loads those needed */
 void series_plan(struct step *step);                        /* degree, halvings */
+int  series_halvings(const struct step *step, int operator); /* of the time h, so that |pole| tau <= 1 */
+int  series_degree(const struct step *step, int first, int last, int halvings); /* for these operators, over h 2^-halvings */
 mpq_t *series_matrix(const struct series *series, const struct linear *system, int segment); /* A in one segment of time */
 
 /* ---- coefficients.c: numbers of the step, each rounded once ---- */
@@ -818,6 +862,7 @@ struct step {                       /* everything that is emitted for one model 
 	struct program *program;
 	mpfr_t growth;              /* pl: 1/s, largest real part of the modified equation's poles (report only) */
 	struct series series;
+	int *halvings;              /* of a piecewise-linear model, per operator */
 };
 struct step *step_build(const struct model *model);         /* NULL: it was said why */
 bool has_leftover(const struct step *step);                 /* or nothing is left over, and a step is assignments */
@@ -904,6 +949,12 @@ void emit_step_end(const struct emitter *e);                      /* samples, ph
 const char *step_parameters(const struct emitter *e);
 const char *input_operand(const struct emitter *e, int column);
 const char *input_name(const struct emitter *e, int input, int order); /* the C name of an input, of its slope */
+void emit_regions(const struct emitter *e);                       /* tables of a piecewise-linear model */
+void emit_region_declarations(const struct emitter *e);
+void emit_region_members(const struct emitter *e);
+void emit_region_start(const struct emitter *e);                  /* in set */
+void emit_region_step(const struct emitter *e);
+void emit_region_at(const struct emitter *e);
 void emit_leftover_functions(const struct emitter *e);            /* what is left over; which operator serves */
 void emit_leftover_step(const struct emitter *e);
 const char *basis_now(const struct emitter *e, const struct basis *basis); /* in terms of locals: states, inputs, load states, t */

@@ -530,17 +530,29 @@ bool has_leftover(const struct step *step)
 	return step->program->actions > 0;
 }
 
+/* The ramps of inputs as channels: u', held and as the slope of u */
+static struct linear driven_system(const struct linear *region)
+{
+	struct linear system = *region;
+	system.channels = 2 * region->inputs;
+	system.channel = ARRAY(mpq_t *, (size_t)system.channels);
+	for (int i = 0; i < system.channels; i++)
+		system.channel[i] = region->input[i / 2].force[i % 2];
+	return system;
+}
+
 /* The linear system of each operator, and what of it a step takes */
 static void take_operators(struct step *step)
 {
 	const struct model *model = step->model;
-	step->operators = model->operators ? model->operators : 1;
+	const struct switching *regions = model->switching;
+	step->operators = regions ? regions->systems : model->operators ? model->operators : 1;
 	step->operator = ARRAY(struct linear, (size_t)step->operators);
 	step->resolvent = ARRAY(struct resolvent *, (size_t)step->operators);
 	step->all = ARRAY(struct table **, (size_t)step->operators);
 	for (int k = 0; k < step->operators; k++) {
-		struct linear system = model->operators ? operator_system(model, k) : model->system;
-		bool as_written = !model->operators && model->written == model && model->scheme != SCHEME_PL;
+		struct linear system = regions ? driven_system(&regions->system[k]) : model->operators ? operator_system(model, k) : model->system;
+		bool as_written = !regions && !model->operators && model->written == model && model->scheme != SCHEME_PL;
 		step->operator[k] = model->scheme == SCHEME_PL ? piecewise_laplace(&system) : system;
 		step->resolvent[k] = as_written ? step->written : resolvent_of(&step->operator[k]);
 		check_pole_size(model, step->resolvent[k]);
@@ -567,6 +579,63 @@ static void build_exact(struct step *step)
 	step->program = linear_program(step->table, &step->system);
 }
 
+static bool *loads_of_regions(const struct step *step)
+{
+	const struct switching *s = step->model->switching;
+	bool *needed = ARRAY(bool, (size_t)step->system.loads);
+	for (int l = 0; l < step->system.loads; l++) {
+		for (int k = 0; k < s->systems; k++)
+			needed[l] = needed[l] || load_acts(&s->system[k], &s->system[k].load[l]);
+		for (int e = 0; e < s->expressions; e++)
+			for (int k = 0; k < step->system.load[l].columns; k++)
+				needed[l] = needed[l] || mpq_sgn(s->expression[e].row->load[l][k]) != 0;
+	}
+	return needed;
+}
+
+/* Phi over a part of the step, and what inputs add: u held, and u' as the slope of u */
+static struct wanted *wanted_piece(const struct step *step, int halvings)
+{
+	struct recipe *r = NEW(struct recipe);
+	int piece = add_table(r, "piece", 1, 1ul << halvings, true);
+	add_phi(r, piece, "held", 1, 1ul << halvings, 1, (long[]){ 1 });
+	int ramp = add_phi(r, piece, "ramp", 1, 1ul << halvings, 2, (long[]){ 0, 1 });
+	mpq_set(r->table[piece].kernel[ramp].part[0].power[1], step->model->h);
+	return r->table;
+}
+
+static void plan_region(struct step *step, int k)
+{
+	step->halvings[k] = series_halvings(step, k);
+	if (step->halvings[k] > LIMIT_PIECES)
+		error(step->model->step_at, "a smaller step would do", "the largest pole times h is above 2^%d: too many pieces of a step to look for crossings in",
+		      LIMIT_PIECES);
+	struct linear *system = &step->operator[k];
+	step->all[k] = tables_of(step->model, step->resolvent[k], system, 1, wanted_piece(step, step->halvings[k]));
+	system->channels = 0;
+	int degree = series_degree(step, k, k + 1, step->halvings[k]);
+	step->series.degree = degree > step->series.degree ? degree : step->series.degree;
+}
+
+/* A piecewise-linear model: e^{A d} of each region for pieces d of the step, and the series that finds crossings */
+static void build_regions_step(struct step *step)
+{
+	struct linear first = step->system;
+	first.channels = 0;
+	series_place_loads(&step->series, &first, 0, loads_of_regions(step));
+	step->tables = 1;
+	step->table = tables_of(step->model, step->resolvent[0], &step->operator[0], 1, wanted_piece(step, 0))[0];
+	step->program = linear_program(step->table, &first);
+	step->program->multiplications = step->series.size * step->series.size + 6 * step->model->switching->expressions * step->series.size;
+	step->program->additions = step->program->multiplications;
+	step->halvings = ARRAY(int, (size_t)step->operators);
+	step->series.degree = 3;
+	step->series.emitted = true;
+	for (int k = 0; k < step->operators; k++)
+		plan_region(step, k);
+	step->system = first;
+}
+
 static void build_with_leftover(struct step *step)
 {
 	struct recipe *recipe = NEW(struct recipe);
@@ -586,12 +655,16 @@ static void build(void *context)
 {
 	struct step *step = context;
 	const struct model *model = step->model;
-	bool left = model->channels > 0;
+	bool left = model->channels > 0 && !model->switching;
 	step->written = resolvent_of(&model->written->system);
 	check_pole_size(model, step->written);
 	take_operators(step);
 	if (model->scheme == SCHEME_PL)
 		find_growth(step);
+	if (model->switching) {
+		build_regions_step(step);
+		return;
+	}
 	series_place(&step->series, &step->system, left && model->scheme <= SCHEME_ETD1);
 	if (left)
 		build_with_leftover(step);

@@ -9,6 +9,14 @@ enum { LIMIT_RADIANS = 8, LIMIT_PARTS = 1 << 20, LIMIT_DEGREE = 80, BITS = 64 };
 
 void series_place(struct series *series, const struct linear *system, int powers)
 {
+	bool *acting = ARRAY(bool, (size_t)system->loads);
+	for (int l = 0; l < system->loads; l++)
+		acting[l] = load_acts(system, &system->load[l]);
+	series_place_loads(series, system, powers, acting);
+}
+
+void series_place_loads(struct series *series, const struct linear *system, int powers, const bool *needed)
+{
 	series->size = system->states;
 	series->held = -1;
 	if (system->heldK) {
@@ -17,9 +25,8 @@ void series_place(struct series *series, const struct linear *system, int powers
 	}
 	series->load = ARRAY(int, (size_t)system->loads);
 	for (int l = 0; l < system->loads; l++) {
-		bool active = load_acts(system, &system->load[l]);
-		series->load[l] = active ? series->size : -1;
-		series->size += active ? system->load[l].columns : 0;
+		series->load[l] = needed[l] ? series->size : -1;
+		series->size += needed[l] ? system->load[l].columns : 0;
 	}
 	series->input = ARRAY(int, (size_t)system->inputs);
 	for (int i = 0; i < system->inputs; i++) {
@@ -214,18 +221,18 @@ static void add_envelope(mpfr_t *A, int cells, const mpq_t *segment)
 	mpfr_clear(size);
 }
 
-/* The first degree after which two terms in a row are negligible. */
-static int series_degree(const struct step *step)
+/* The first degree after which two terms in a row are negligible, for any of the operators from `first` to before `last`. */
+int series_degree(const struct step *step, int from, int to, int halvings)
 {
 	const struct series *series = &step->series;
 	int size = series->size, cells = size * size, quiet = 0, k = 0;
 	mpfr_t *A = positive_numbers(cells), *term = positive_numbers(cells), *next = positive_numbers(cells), *first = positive_numbers(cells);
-	for (int o = 0; o < step->operators; o++)
+	for (int o = from; o < to; o++)
 		for (int s = 0; s < step->system.segments; s++)
 			add_envelope(A, cells, (const mpq_t *)series_matrix(series, &step->operator[o], s));
 	for (int i = 0; i < cells; i++) {
 		mpfr_mul_q(A[i], A[i], step->model->h, MPFR_RNDN);
-		mpfr_div_2ui(A[i], A[i], (unsigned long)series->halvings, MPFR_RNDN);
+		mpfr_div_2ui(A[i], A[i], (unsigned long)halvings, MPFR_RNDN);
 		mpfr_set_ui(term[i], i % size == i / size, MPFR_RNDN);
 		mpfr_set(first[i], term[i], MPFR_RNDN);
 	}
@@ -239,6 +246,23 @@ static int series_degree(const struct step *step)
 	return k - quiet > 0 ? k - quiet : 1;
 }
 
+int series_halvings(const struct step *step, int operator)
+{
+	mpfr_t angle;
+	int halvings = 0;
+	mpfr_init2(angle, BITS);
+	mpfr_set_zero(angle, 1);
+	larger_poles(angle, step->resolvent[operator]);
+	for (int l = 0; l < step->system.loads; l++)
+		if (step->series.load[l] >= 0)
+			larger_wave(angle, step->system.load[l].wave);
+	mpfr_mul_q(angle, angle, step->model->h, MPFR_RNDU);
+	for (; mpfr_cmp_ui(angle, 1) > 0 && halvings <= 30; halvings++)
+		mpfr_div_2ui(angle, angle, 1, MPFR_RNDU);
+	mpfr_clear(angle);
+	return halvings;
+}
+
 void series_plan(struct step *step)
 {
 	struct series *series = &step->series;
@@ -249,7 +273,7 @@ void series_plan(struct step *step)
 	if (series->emitted || (step->system.segments > 1 && mpfr_cmp_ui(angle, LIMIT_PARTS) <= 0)) {
 		for (series->halvings = 0; mpfr_cmp_ui(angle, 1) > 0; series->halvings++)
 			mpfr_div_2ui(angle, angle, 1, MPFR_RNDU);
-		series->degree = series_degree(step);
+		series->degree = series_degree(step, 0, step->operators, series->halvings);
 	}
 	mpfr_clear(angle);
 }

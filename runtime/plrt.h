@@ -11,6 +11,7 @@
  *     power.c     the state n steps on in log n time: NAME_jump
  *     until.c     the time to a change of the loads
  *     apply.c     matrices times vectors, and whether all is finite: schemes with a leftover
+ *     crossings.c steps of piecewise-linear models, with every crossing of a breakpoint found
  *
  * Compile it as the compiler comes: contraction to fused multiply-adds does no harm, -ffast-math is refused. */
 #ifndef PLRT_H
@@ -162,6 +163,70 @@ enum { PL_NOT_FINITE = 1 }; /* a step has left the finite numbers */
 /* PL_NOT_FINITE if an entry of y is infinite or not a number, else 0; n entries.  By their bits: no compiler that takes all numbers
  * for finite can leave it out, and it raises no exception. */
 int pl_not_finite(const double *y, int n);
+
+/* ---- crossings.c: piecewise-linear models ------------------------------------------------------------------- */
+
+/* x' = A x with another constant A in each region.  x holds the model's own states, then what carries its loads (1, t, cos w t,
+ * ...) and inputs, so that between two crossings nothing is approximated.  Switching expressions e_i = row_i . x, each with
+ * breakpoints b_i0 < b_i1 < ..., are in interval 0 below b_i0, in 1 between b_i0 and b_i1, ...; a region is one interval for
+ * each expression, its number interval_0 + (breaks_0 + 1) (interval_1 + (breaks_1 + 1) (interval_2 + ...)).
+ *
+ * A rounding error of e against a breakpoint b is taken to be 8 DBL_EPSILON (sum_j |row_j x_j| + |b| + how far e moves in the
+ * time looked at).  What passes b by less is no crossing; what passes by more is found, whatever the step. */
+typedef struct pl_switching {
+    int size;           /* entries of x */
+    double h;           /* step [s] */
+    int switches;       /* expressions */
+    const double *row;  /* switches x size: e = row . x */
+    const int *breaks;  /* of each switch: how many breakpoints, >= 1 */
+    const double *at;   /* the breakpoints: those of switch 0, rising; those of switch 1; ... */
+    const int *matrix;  /* of each region: the number of its A; -1: cannot occur, and passed through in no time */
+    /* Of each matrix: its steps go by pieces of length d = h / 2^halvings.  Tables for switches are switches x size. */
+    const int *halvings; /* 0 .. 30: |pole| d is about 1 or below */
+    const double *A;     /* size x size, row-major [1/s] */
+    const double *Phi;   /* e^{A d}: the piece where nothing is crossed */
+    const double *lean;  /* d/3 row . A, so that lean . x = d/3 e' */
+    const double *sag;   /* on 0 .. d, e is off the chord through its ends by at most sag . |x(0)|: d^2/8 max|e''| */
+    const double *sway;  /* on 0 .. d, e is off the cubic through its ends with its slopes there by at most sway . |x(0)|:
+                          * d^4/384 max|e''''| */
+    int degree;          /* of Taylor polynomials of e^{A tau} on 0 .. d, >= 3: as for pl_series, less where |pole| d is small */
+    int max_events, max_splits; /* per step: crossings, and halvings of an interval in search of them */
+} pl_switching;
+
+typedef struct pl_crossing {
+    double time;                       /* after the start of the step [s] */
+    int expression, breakpoint, upward; /* upward: e rises through it */
+} pl_crossing;
+
+/* What a model's state keeps. */
+typedef struct pl_contact {
+    uint64_t total; /* crossings since the start */
+    int crossings;  /* in the last step; the first max_events of them are listed */
+    int region;
+    int matrix;     /* in use: that of the region, or where it cannot occur that of the one before */
+    int status;     /* 0 or PL_TOO_MANY_EVENTS, sticky until the next start */
+} pl_contact;
+
+enum { PL_TOO_MANY_EVENTS = 2 }; /* a step has met more crossings, or needed more splits, than its bound: chatter, as a rule */
+
+/* How many doubles of work the functions below need; contents of no meaning. */
+#define PL_SWITCHING_WORK(size, switches, degree) (((degree) + 1) * ((size) + 2) + 2 * (size) + 5 * (switches))
+
+/* The region of x, no crossings, status 0.  Exactly on a breakpoint the sign of e' decides, then of e'', then of e'''; what
+ * rests there counts as below. */
+void pl_switching_start(const pl_switching *m, const double *x, pl_contact *c, double *work);
+
+/* x over h, with every crossing on the way, in order.  A whole piece without one is Phi x, to the last bit.
+ *     x         `size` entries, in and out.  Loads may be set anew before each step, and inputs may jump: an expression that
+ *               has left its interval by that passes its breakpoints at time 0
+ *     crossing  max_events entries
+ *     work      PL_SWITCHING_WORK(size, switches, degree)
+ * Beyond max_events or max_splits: PL_TOO_MANY_EVENTS, and the step ends in the region where it then is; the next one
+ * starts in that of x. */
+void pl_switching_step(const pl_switching *m, double *x, pl_contact *c, pl_crossing *crossing, double *work);
+
+/* The same over tau, 0 <= tau <= h. */
+void pl_switching_advance(const pl_switching *m, double tau, double *x, pl_contact *c, pl_crossing *crossing, double *work);
 
 /* ---- a model, seen from outside -------------------------------------------------------------------------- */
 

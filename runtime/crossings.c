@@ -1,0 +1,505 @@
+/* SPDX-License-Identifier: MIT-0 */
+/* Steps of piecewise-linear models, in pieces in which the fastest pole does not turn far.  Most pieces stay clear of every
+ * breakpoint, and a bound shows it; the others go by Taylor polynomials, on which the first crossing is isolated before it
+ * is computed, so none is stepped over. */
+#include "plrt.h"
+
+#include <float.h>
+
+#ifdef __FAST_MATH__
+#error "crossings.c compares what rounding left: compile it without -ffast-math"
+#endif
+
+static double magnitude(double a)
+{
+    return a < 0.0 ? -a : a;
+}
+
+static double larger(double a, double b)
+{
+    return a > b ? a : b;
+}
+
+static double smaller(double a, double b)
+{
+    return a < b ? a : b;
+}
+
+/* sum |a_j b_j| */
+static double sizes(int n, const double *a, const double *b)
+{
+    double sum = 0.0;
+    int j;
+    for (j = 0; j < n; j++)
+        sum += magnitude(a[j] * b[j]);
+    return sum;
+}
+
+/* What rounding may have done to a sum of terms of this size */
+static double noise_of(double terms)
+{
+    return 8.0 * DBL_EPSILON * terms;
+}
+
+static const double *matrix_of(const double *all, const pl_switching *m, const pl_contact *c)
+{
+    return all + (ptrdiff_t)c->matrix * m->size * m->size;
+}
+
+static const double *rows_of(const double *all, const pl_switching *m, const pl_contact *c)
+{
+    return all + (ptrdiff_t)c->matrix * m->switches * m->size;
+}
+
+/* ---- regions ---- */
+
+/* One switch after the other, and where a region has it:
+ *     for (w = first_switch(m); arrive(m, region, &w); leave(&w)) */
+typedef struct walk {
+    int i, breaks, interval;
+    int stride;       /* between the numbers of regions one interval of this switch apart */
+    const double *at; /* its breakpoints */
+} walk;
+
+static walk first_switch(const pl_switching *m)
+{
+    walk w;
+    w.i = w.breaks = w.interval = 0;
+    w.stride = 1;
+    w.at = m->at;
+    return w;
+}
+
+static int arrive(const pl_switching *m, int region, walk *w)
+{
+    if (w->i == m->switches)
+        return 0;
+    w->breaks = m->breaks[w->i];
+    w->interval = region / w->stride % (w->breaks + 1);
+    return 1;
+}
+
+static void leave(walk *w)
+{
+    w->stride *= w->breaks + 1;
+    w->at += w->breaks;
+    w->i++;
+}
+
+static void enter(const pl_switching *m, pl_contact *c, int region)
+{
+    c->region = region;
+    if (m->matrix[region] >= 0)
+        c->matrix = m->matrix[region];
+}
+
+/* Lists a crossing, or says that there is no more room. */
+static int list(const pl_switching *m, pl_contact *c, pl_crossing *crossing, double time, int expression, int breakpoint,
+                int upward)
+{
+    if (c->crossings == m->max_events) {
+        c->status = PL_TOO_MANY_EVENTS;
+        return 0;
+    }
+    crossing += c->crossings++;
+    crossing->time = time;
+    crossing->expression = expression;
+    crossing->breakpoint = breakpoint;
+    crossing->upward = upward;
+    c->total++;
+    return 1;
+}
+
+/* e - b, and what rounding may have done to it.  The rows of lean are a third of a piece's e'. */
+static double excess(const pl_switching *m, const pl_contact *c, const walk *w, int breakpoint, const double *x, double *noise)
+{
+    const double *row = m->row + w->i * m->size, *lean = rows_of(m->lean, m, c) + w->i * m->size, b = w->at[breakpoint];
+    double e;
+    pl_multiply(1, m->size, row, x, &e);
+    *noise = noise_of(sizes(m->size, row, x) + 3.0 * sizes(m->size, lean, x) + magnitude(b));
+    return e - b;
+}
+
+/* 1 or -1 where e is above or below its interval by more than rounding, else 0 */
+static int outside(const pl_switching *m, const pl_contact *c, const walk *w, const double *x)
+{
+    double noise;
+    if (w->interval < w->breaks && excess(m, c, w, w->interval, x, &noise) > noise)
+        return 1;
+    if (w->interval > 0 && -excess(m, c, w, w->interval - 1, x, &noise) > noise)
+        return -1;
+    return 0;
+}
+
+/* ---- the start ---- */
+
+/* 1, -1 or 0: the sign of the first of e', e'', e''' that is not zero but for rounding.  work: 4 size */
+static int heading(const pl_switching *m, const pl_contact *c, const double *row, const double *x, double *work)
+{
+    const int n = m->size;
+    const double *A = matrix_of(m->A, m, c);
+    double *y = work, *next = work + n, *terms = work + 2 * n, *next_terms = work + 3 * n, e, noise;
+    int order, i;
+    for (i = 0; i < n; i++)
+        y[i] = terms[i] = x[i];
+    for (order = 1; order <= 3; order++) {
+        pl_multiply(n, n, A, y, next);
+        for (i = 0; i < n; i++)
+            next_terms[i] = sizes(n, A + i * n, terms);
+        for (i = 0; i < n; i++) {
+            y[i] = next[i];
+            terms[i] = next_terms[i];
+        }
+        pl_multiply(1, n, row, y, &e);
+        noise = noise_of(sizes(n, row, terms));
+        if (e > noise || e < -noise)
+            return e > 0.0 ? 1 : -1;
+    }
+    return 0;
+}
+
+/* Puts what is on its upper breakpoint in region `below` above or below that: where it is heading or, with `possible`, so that the
+ * region can occur. */
+static void decide(const pl_switching *m, const double *x, pl_contact *c, int below, int possible, double *work)
+{
+    double noise;
+    walk w;
+    for (w = first_switch(m); arrive(m, below, &w); leave(&w)) {
+        const int above = c->region / w.stride % (w.breaks + 1) - w.interval;
+        int sign;
+        if (w.interval == w.breaks || -excess(m, c, &w, w.interval, x, &noise) > noise)
+            continue;
+        if (!possible) {
+            sign = heading(m, c, m->row + w.i * m->size, x, work);
+            if (sign != 0)
+                enter(m, c, c->region + ((sign > 0) - above) * w.stride);
+        } else if (m->matrix[c->region] < 0 && !above && m->matrix[c->region + w.stride] >= 0)
+            enter(m, c, c->region + w.stride);
+    }
+}
+
+void pl_switching_start(const pl_switching *m, const double *x, pl_contact *c, double *work)
+{
+    int i, below;
+    walk w;
+    c->total = 0;
+    c->crossings = c->status = c->matrix = 0;
+    enter(m, c, 0);
+    for (w = first_switch(m); arrive(m, c->region, &w); leave(&w))
+        for (; outside(m, c, &w, x) > 0; w.interval++)
+            enter(m, c, c->region + w.stride);
+    below = c->region;
+    for (i = 0; i < m->switches; i++) /* again: where one goes may change where another one is heading */
+        decide(m, x, c, below, 0, work);
+    decide(m, x, c, below, 1, work);
+}
+
+/* ---- a piece that stays clear ---- */
+
+/* Whether every expression, known to be within low .. high, is clear of the breakpoints beside it */
+static int clear(const pl_switching *m, int region, const double *low, const double *high)
+{
+    walk w;
+    for (w = first_switch(m); arrive(m, region, &w); leave(&w)) {
+        if (w.interval > 0 && !(low[w.i] > w.at[w.interval - 1]))
+            return 0;
+        if (w.interval < w.breaks && !(high[w.i] < w.at[w.interval]))
+            return 0;
+    }
+    return 1;
+}
+
+/* Whether it is certain that nothing is crossed between x and y = Phi x, a piece on.  work: size + 5 switches */
+static int stays_clear(const pl_switching *m, const pl_contact *c, const double *x, const double *y, double *work)
+{
+    const int n = m->size, s = m->switches;
+    double *size = work, *from = size + n, *to = from + s, *off = to + s, *low = off + s, *high = low + s;
+    const double *lean = rows_of(m->lean, m, c);
+    int i;
+    for (i = 0; i < n; i++)
+        size[i] = magnitude(x[i]);
+    pl_multiply(s, n, m->row, x, from);
+    pl_multiply(s, n, m->row, y, to);
+    pl_multiply(s, n, rows_of(m->sag, m, c), size, off);
+    for (i = 0; i < s; i++) {
+        low[i] = smaller(from[i], to[i]) - off[i];
+        high[i] = larger(from[i], to[i]) + off[i];
+    }
+    if (clear(m, c->region, low, high))
+        return 1;
+    pl_multiply(s, n, rows_of(m->sway, m, c), size, off);
+    for (i = 0; i < s; i++, lean += n) { /* a cubic lies within its Bezier points */
+        double leaving, arriving;
+        pl_multiply(1, n, lean, x, &leaving);
+        pl_multiply(1, n, lean, y, &arriving);
+        leaving = from[i] + leaving;
+        arriving = to[i] - arriving;
+        low[i] = smaller(smaller(from[i], to[i]), smaller(leaving, arriving)) - off[i];
+        high[i] = larger(larger(from[i], to[i]), larger(leaving, arriving)) + off[i];
+    }
+    return clear(m, c->region, low, high);
+}
+
+/* ---- the first crossing in a piece of a step ---- */
+
+/* How far an expression is beyond a breakpoint: g(s), 0 <= s <= 1 over the piece, negative inside the interval */
+typedef struct beyond {
+    int degree;
+    double *coefficient;
+    double noise;                /* of g */
+    double reach, fourth, fifth; /* bounds of |g - g(0)| and of the fourth and fifth derivative */
+} beyond;
+
+typedef struct point {
+    double s, g, slope, second, third; /* g and its derivatives */
+} point;
+
+static point point_of(const beyond *f, double s)
+{
+    point p;
+    int k;
+    p.s = s;
+    p.g = p.slope = p.second = p.third = 0.0;
+    for (k = f->degree; k >= 0; k--) { /* four chains side by side take no longer than one */
+        p.third = p.third * s + p.second;
+        p.second = p.second * s + p.slope;
+        p.slope = p.slope * s + p.g;
+        p.g = p.g * s + f->coefficient[k];
+    }
+    p.second *= 2.0;
+    p.third *= 6.0;
+    return p;
+}
+
+/* g = sign (e - b) from the coefficients of e, whose terms have this size at s = 0 */
+static void look_beyond(beyond *f, const double *e, double sign, double b, double terms)
+{
+    int k;
+    f->coefficient[0] = sign * (e[0] - b);
+    f->reach = f->fourth = f->fifth = 0.0;
+    for (k = 1; k <= f->degree; k++) {
+        const double a = magnitude(e[k]), fourths = (double)(k * (k - 1) * (k - 2) * (k - 3));
+        f->coefficient[k] = sign * e[k];
+        f->fourth += fourths * a;
+        f->fifth += fourths * (double)(k - 4) * a;
+        f->reach += a;
+    }
+    f->noise = noise_of(terms + magnitude(b) + f->reach);
+}
+
+/* The root between a, where g < 0, and z, where g > 0; g rises all the way.  Newton's method, safeguarded by halving. */
+static double root_between(const beyond *f, point a, point z)
+{
+    const double enough = 1.0 / 1099511627776.0; /* 2^-40: the step after that would be below rounding */
+    double s = a.s + (z.s - a.s) * (a.g / (a.g - z.g));
+    int i;
+    for (i = 0; i < 64; i++) {
+        const point p = point_of(f, s);
+        const double newton = s - p.g / p.slope;
+        if (p.g > 0.0)
+            z = p;
+        else
+            a = p;
+        if (magnitude(newton - s) <= enough && newton >= a.s && newton <= z.s)
+            return newton;
+        s = newton > a.s && newton < z.s ? newton : 0.5 * (a.s + z.s);
+    }
+    return s;
+}
+
+enum { NO_CROSSING, RISES, UNKNOWN }; /* what is known of g between two points */
+
+static int between(const beyond *f, point a, point z)
+{
+    const double w = (z.s - a.s) * (z.s - a.s) / 8.0; /* a chord is off by at most w times the second derivative */
+    const double second = larger(magnitude(a.second), magnitude(z.second)) + w * f->fourth;
+    const double third = larger(magnitude(a.third), magnitude(z.third)) + w * f->fifth;
+    if (larger(a.g, z.g) + w * second <= f->noise)
+        return NO_CROSSING;
+    if (larger(a.slope, z.slope) + w * third < 0.0)
+        return NO_CROSSING;
+    return smaller(a.slope, z.slope) - w * third > 0.0 ? RISES : UNKNOWN;
+}
+
+/* Where g first rises through 0 before `end`, or -1.  Walks from the left, by intervals that are halved until it is known what g
+ * does in them, and doubled again after that. */
+static double first_root(const beyond *f, double end, int *splits)
+{
+    const double shortest = 1.0 / 1099511627776.0; /* 2^-40: what g does in less is below its noise */
+    double width = end;
+    point a, inside; /* inside: the last point where g < 0, so that what noise hides loses no time */
+    if (f->coefficient[0] + f->reach <= f->noise)
+        return -1.0;
+    a.s = 0.0;
+    a.g = f->coefficient[0];
+    a.slope = f->coefficient[1];
+    a.second = 2.0 * f->coefficient[2];
+    a.third = 6.0 * f->coefficient[3];
+    inside = a;
+    while (a.s < end) {
+        const point z = point_of(f, a.s + width < end ? a.s + width : end);
+        const int known = between(f, a, z);
+        if (known == UNKNOWN && width > shortest) {
+            if (--*splits < 0)
+                return -1.0;
+            width *= 0.5;
+            continue;
+        }
+        if (known != NO_CROSSING && z.g > f->noise)
+            return inside.g < 0.0 ? root_between(f, inside, z) : inside.s;
+        if (z.g < 0.0 || inside.g >= 0.0)
+            inside = z;
+        a = z;
+        width *= 2.0;
+    }
+    return -1.0;
+}
+
+typedef struct found {
+    double s; /* 1 without a crossing */
+    int expression, breakpoint, upward;
+    int stride; /* of the expression, between regions */
+} found;
+
+static const found nothing = {1.0, -1, 0, 0, 0};
+
+/* coefficients: (degree + 1) x size, of x(s); after them 2 (degree + 1) for work */
+static found first_crossing(const pl_switching *m, int region, double *coefficients, int *splits)
+{
+    const int terms = m->degree + 1;
+    double *e = coefficients + terms * m->size;
+    found first = nothing;
+    beyond f;
+    walk w;
+    f.degree = m->degree;
+    f.coefficient = e + terms;
+    for (w = first_switch(m); arrive(m, region, &w); leave(&w)) {
+        const double *row = m->row + w.i * m->size;
+        const double size = sizes(m->size, row, coefficients);
+        int upward;
+        pl_multiply(terms, m->size, coefficients, row, e);
+        for (upward = 0; upward < 2; upward++) {
+            const int breakpoint = w.interval - !upward;
+            double s;
+            if (breakpoint < 0 || breakpoint == w.breaks)
+                continue;
+            look_beyond(&f, e, upward ? 1.0 : -1.0, w.at[breakpoint], size);
+            s = first_root(&f, first.s, splits);
+            if (s < 0.0)
+                continue;
+            first.s = s;
+            first.expression = w.i;
+            first.breakpoint = breakpoint;
+            first.upward = upward;
+            first.stride = w.stride;
+        }
+    }
+    return first;
+}
+
+/* ---- a step, piece by piece ---- */
+
+/* The coefficients of x(s) = e^{A dt s} x */
+static void expand(const pl_switching *m, const pl_contact *c, double dt, const double *x, double *coefficients)
+{
+    const int n = m->size;
+    const double *A = matrix_of(m->A, m, c);
+    int i, k;
+    for (i = 0; i < n; i++)
+        coefficients[i] = x[i];
+    for (k = 1; k <= m->degree; k++, coefficients += n) {
+        const double factor = dt / (double)k;
+        pl_multiply(n, n, A, coefficients, coefficients + n);
+        for (i = 0; i < n; i++)
+            coefficients[n + i] *= factor;
+    }
+}
+
+static void sum_up(const pl_switching *m, const double *coefficients, double s, double *x)
+{
+    const int n = m->size;
+    const double *row = coefficients + m->degree * n;
+    int i, k;
+    for (i = 0; i < n; i++)
+        x[i] = row[i];
+    for (k = m->degree; k > 0; k--) {
+        row -= n;
+        for (i = 0; i < n; i++)
+            x[i] = x[i] * s + row[i];
+    }
+}
+
+/* An expression that has left its interval, other than by a crossing, goes into that where it is. */
+static void follow_jumps(const pl_switching *m, const double *x, pl_contact *c, pl_crossing *crossing)
+{
+    walk w;
+    int way;
+    for (w = first_switch(m); arrive(m, c->region, &w); leave(&w))
+        for (; (way = outside(m, c, &w, x)) != 0; w.interval += way) {
+            list(m, c, crossing, 0.0, w.i, w.interval - (way < 0), way > 0);
+            enter(m, c, c->region + way * w.stride);
+        }
+}
+
+/* Moves x on over a piece of length dt, or to the first crossing in it; splits < 0: without looking for one.  y: x at the end
+ * of a whole piece, NULL for others */
+static found move(const pl_switching *m, pl_contact *c, double dt, const double *y, int *splits, double *x, double *work)
+{
+    found first = nothing;
+    int i;
+    expand(m, c, dt, x, work);
+    if (*splits >= 0)
+        first = first_crossing(m, c->region, work, splits);
+    if (*splits < 0) {
+        c->status = PL_TOO_MANY_EVENTS;
+        first = nothing;
+    }
+    if (y && first.expression < 0)
+        for (i = 0; i < m->size; i++)
+            x[i] = y[i];
+    else
+        sum_up(m, work, first.s, x);
+    return first;
+}
+
+void pl_switching_advance(const pl_switching *m, double tau, double *x, pl_contact *c, pl_crossing *crossing, double *work)
+{
+    const int n = m->size;
+    double left = tau, *y = work, *rest = work + n;
+    int splits = m->max_splits, fresh = 1, i;
+    c->crossings = 0;
+    while (left > 1e-14 * m->h) { /* nothing for what rounding leaves */
+        const double longest = m->h / (double)((uint32_t)1 << m->halvings[c->matrix]);
+        const int whole = left > longest * (1.0 - 1e-14);
+        const double dt = whole ? longest : left;
+        found first;
+        if (whole) {
+            pl_multiply(n, n, matrix_of(m->Phi, m, c), x, y);
+            if (stays_clear(m, c, x, y, rest)) {
+                for (i = 0; i < n; i++)
+                    x[i] = y[i];
+                left -= dt;
+                fresh = 0;
+                continue;
+            }
+        }
+        if (fresh) { /* the region may be another one now */
+            fresh = 0;
+            follow_jumps(m, x, c, crossing);
+            continue;
+        }
+        first = move(m, c, dt, whole ? y : NULL, &splits, x, rest);
+        left -= first.s * dt;
+        if (first.expression < 0)
+            continue;
+        if (list(m, c, crossing, tau - left, first.expression, first.breakpoint, first.upward))
+            enter(m, c, c->region + (first.upward ? first.stride : -first.stride));
+        else
+            splits = -1; /* no further search */
+    }
+}
+
+void pl_switching_step(const pl_switching *m, double *x, pl_contact *c, pl_crossing *crossing, double *work)
+{
+    pl_switching_advance(m, m->h, x, c, crossing, work);
+}

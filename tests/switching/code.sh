@@ -1,0 +1,132 @@
+#!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
+# The emitted C of piecewise-linear models: no warning in any compiler, the same bytes twice, nothing from <math.h>.
+#
+#     code.sh PLGEN SOURCE_ROOT NAME_variants.c ...
+set -u
+plgen=$1
+root=$2
+shift 2
+case $plgen in
+    /*) ;;
+    *) plgen=$PWD/$plgen ;;
+esac
+files=
+for file; do
+    case $file in
+        /*) files="$files $file" ;;
+        *) files="$files $PWD/$file" ;;
+    esac
+done
+here=$root/tests/switching
+warnings='-Wall -Wextra -Wpedantic -Wconversion -Wdouble-promotion -Werror'
+LC_ALL=C
+export LC_ALL
+
+work=$(mktemp -d "${TMPDIR:-/tmp}/switching.XXXXXX") || exit 99
+trap 'rm -rf "$work"' EXIT
+trap 'exit 99' HUP INT TERM
+cd "$work" || exit 99
+
+count=0
+failed=0
+
+# result STATUS NAME: a line of TAP; what the commands said is in log
+result() {
+    count=$((count + 1))
+    if [ "$1" -eq 0 ]; then
+        echo "ok $count - $2"
+    else
+        echo "not ok $count - $2"
+        failed=1
+        sed 's/^/# /' log | head -n 12
+    fi
+}
+
+# compiled NAME FILE [OPTION ...]: by all compilers that there are
+compiled() {
+    name=$1
+    file=$2
+    shift 2
+    for compiler in 'gcc -std=c99 -O2 -c -o object.o' 'clang -std=c99 -fsyntax-only' 'g++ -std=c++17 -fsyntax-only -x c++' \
+        'clang++ -std=c++17 -fsyntax-only -x c++'; do
+        if ! command -v "${compiler%% *}" >/dev/null 2>&1; then
+            count=$((count + 1))
+            echo "ok $count - $name, ${compiler%% *} # SKIP ${compiler%% *} is not installed"
+            continue
+        fi
+        # shellcheck disable=SC2086
+        ${compiler%% *} $warnings -I"$root/runtime" "$@" ${compiler#* } "$file" >log 2>&1
+        result $? "$name, $compiler: not a warning"
+    done
+}
+
+for file in $files; do
+    compiled "${file##*/}" "$file" -I"$here" -I"${file%/*}"
+    name=${file##*/}
+    list=${name%_variants.c}
+    "$here/variants.sh" "$plgen" "$here/$list.list" "$work/$name" "$work/${name%.c}.h" "$here" "$root/models" >log 2>&1 &&
+        cmp "$file" "$work/$name" >>log 2>&1 && cmp "${file%.c}.h" "$work/${name%.c}.h" >>log 2>&1
+    result $? "$list: the same bytes twice"
+done
+
+# Each line a model: what its step needs (inputs, slopes, times, loads) differs.
+cat >kinds <<'END'
+coord x; x'' + x + max(x, 0) = 0
+coord x; x'' + x + max(x, 0) = t
+coord x; x'' + x + max(x - t, 0) = 0
+coord x; x'' + x + max(x, 0) = exp(-t)*sin(2*t) + t^2
+coord x; x'' + x + abs(x - cos(t)) = 1
+coord x; input u; x'' + x + max(x, 0) = u
+coord x; input u; x'' + x + max(x - u, 0) = 0
+coord x; input u hold first; x'' + x + max(x - u, 0) = u'
+coord x; input u hold first; x'' + x + max(x' - u', 0) = 0
+coord x; input u, v; x'' + x + max(u - v, 0) = 0
+coord x; x'' + x = max(sin(t) - 0.5, 0)
+coord x; x' + max(x, 0) = sin(t)
+coord x, y; x'' + x + max(x - y, 0) = 0; y' + y - max(x' - 1, 0) = 0
+coord q[3]; q'' + [2, -1, 0; -1, 2, -1; 0, -1, 1]*q + deadzone(q, -1, 1) = [1; 0; 0]*cos(t)
+coord x; mass 1 at x; spring 2 between x, ground; force -10*max(x - 1, 0) on x
+coord x; x'' + x + 3*max(x - 1, 0) = 0; output x, e = max(x - 1, 0), a = x''
+coord x; x'' + abs(x) = 0
+coord x; x'' = -max(x, 0)
+coord x; x'' + 0.1*x' + max(min(x, 1), -1) + clip(x, -2, 2) + table(2*x; 0, 0; 1, 1; 3, 2) = 0
+END
+number=0
+while read -r kind; do
+    number=$((number + 1))
+    { echo 'model kind'; printf '%s\n' "$kind; step 0.01; scheme exact" | tr ';' '\n' | sed 's/^ *//'; } >kind.spec
+    # ';' divides the points of a table and rows of a matrix too: those lines are joined again
+    awk '{ line = line $0; open = gsub(/[([]/, "&", line) - gsub(/[])]/, "&", line); if (open > 0) { line = line "; "; next } print line; line = "" }' \
+        kind.spec >joined.spec
+    : >log
+    status=0
+    "$plgen" --rhs joined.spec >kind.c 2>log || status=1
+    "$plgen" --rhs joined.spec >again.c 2>>log
+    cmp kind.c again.c >>log 2>&1 || status=1
+    for compiler in 'gcc -std=c99' 'clang -std=c99' 'g++ -std=c++17 -x c++' 'clang++ -std=c++17 -x c++'; do
+        command -v "${compiler%% *}" >/dev/null 2>&1 || continue
+        # shellcheck disable=SC2086
+        ${compiler%% *} $warnings -fsyntax-only -I"$root/runtime" ${compiler#* } kind.c >>log 2>&1 || status=1
+    done
+    result $status "$kind"
+done <kinds
+
+# ---- <math.h>, and what stands alone ----
+
+for name in gear1 gear2 gear3 bilinear stop two_masses quarter_car_bumps; do
+    status=1
+    if "$plgen" -o model.c "$root/models/$name.spec" >log 2>&1 && gcc -std=c99 -O1 -fno-builtin -I"$root/runtime" -c model.c -o model.o >>log 2>&1; then
+        nm -u model.o | awk '{ print $NF }' | grep -v -E '^(pl_[a-z_]*|memcpy|memset|_GLOBAL_OFFSET_TABLE_)$' >>log
+        ! grep -q '<math\.h>' model.c model.h && [ ! -s log ]
+        status=$?
+    fi
+    result $status "$name: calls nothing but the runtime"
+done
+gcc -std=c99 -O2 -ffreestanding -fno-builtin -I"$root/runtime" -c "$root/runtime/crossings.c" -o part.o >log 2>&1 &&
+    nm -u part.o | awk '{ print $NF }' | grep -v -E '^(pl_[a-z_]*|memcpy|memset|_GLOBAL_OFFSET_TABLE_)$' >>log
+[ ! -s log ]
+result $? "crossings.c: freestanding"
+
+echo "1..$count"
+exit $failed

@@ -1,0 +1,39 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Masses, springs and stops by hand, in long double: x'' = -K x - C x' + f0 + fa cos(w t) - stops, stepped by Taylor series between
+ * crossings that are sought the way others do it, by signs at the ends of steps, which shows what that test misses. With short steps,
+ * cut where a stop is nearest, nothing is missed: the reference. */
+#ifndef HAND_H
+#define HAND_H
+
+typedef long double real;
+
+enum { HAND_MASSES = 3, HAND_STOPS = 4 };
+
+/* While d = row . x - gap - a sin(w t) > 0 the accelerations have -push (k d + c row . x') */
+struct hand_stop {
+	real row[HAND_MASSES], push[HAND_MASSES];
+	real k, c, gap, a, w;
+};
+
+struct hand_system {
+	int n, stops;
+	real K[HAND_MASSES][HAND_MASSES], C[HAND_MASSES][HAND_MASSES];
+	real f0[HAND_MASSES], fa[HAND_MASSES], w;
+	real start[2 * HAND_MASSES];
+	struct hand_stop stop[HAND_STOPS];
+};
+
+struct hand_state {
+	real t, y[2 * HAND_MASSES];
+	int touches[HAND_STOPS];
+	long crossings;
+	real last;                  /* time of the last crossing */
+};
+
+void hand_start(const struct hand_system *s, struct hand_state *now);
+void hand_step(const struct hand_system *s, struct hand_state *now, real h);
+void hand_until(const struct hand_system *s, struct hand_state *now, real t, real h);    /* equal steps of at most h */
+void hand_reference(const struct hand_system *s, struct hand_state *now, real t);        /* short steps, cut where a stop is nearest */
+real hand_distance(const struct hand_system *s, int stop, const real *y, real t);
+
+#endif
