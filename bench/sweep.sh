@@ -1,0 +1,31 @@
+#!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
+# sweep.sh BUILD: the gear pair of models/gear1.spec over the frequency of its force, up and down: gear1_sweep.csv and gear1_sweep.svg
+# in BUILD/bench. Parameters as in the spec; they are chosen, the source's did not survive.
+set -e
+build=$1
+out=$build/bench
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+: >"$work/all.c"
+models='' etas='' count=0
+for eta in $(awk 'BEGIN { for (k = 25; k <= 110; k++) print k / 100 }'); do
+	name=gear_$count
+	"$build/plgen" --prefix "$name" --step 0.05 -D eta="$eta" -D zeta=0.02 -D fa=0.06 models/gear1.spec >>"$work/all.c"
+	models="$models&${name}_model, " etas="$etas$eta, " count=$((count + 1))
+done
+echo "const pl_model *const sweep_models[] = {$models}; const double sweep_eta[] = {$etas}; const int sweep_count = $count;" >>"$work/all.c"
+gcc -O1 -Iruntime bench/sweep.c "$work/all.c" runtime/*.c -o "$work/sweep"
+"$work/sweep" >"$out/gear1_sweep.csv"
+gnuplot <<PLOT
+set terminal svg size 800,500 font 'sans,12' background 'white'
+set output '$out/gear1_sweep.svg'
+set xlabel 'frequency of the force, eta [rad/s]'
+set ylabel 'half the range of q'
+set title 'gear1, zeta 0.02, force 0.1 + 0.06 cos(eta t) (chosen), swept up and down'
+set grid
+set key top right
+plot '$out/gear1_sweep.csv' index 0 using 1:2 with linespoints pt 8 lc rgb '#c03020' title 'up', \
+     '' index 1 using 1:2 with linespoints pt 11 lc rgb '#2050a0' title 'down'
+PLOT
+echo "$out/gear1_sweep.svg"
