@@ -489,6 +489,72 @@ static int add_system(struct switching *s, const struct linear *system)
 	return s->systems++;
 }
 
+/* ---- breakpoints on which nothing changes ---- */
+
+/* Whether all regions below it have the equations of those above it */
+static bool changes_nothing(const struct switching *s, int expression, int at)
+{
+	for (int r = 0; r < s->regions; r++) {
+		const struct region *low = &s->region[r], *high = low + s->expression[expression].stride;
+		if (interval_of(s, r, expression) == at && low->possible && high->possible && low->system != high->system)
+			return false;
+	}
+	return true;
+}
+
+/* Without breakpoint `at` of one expression: each region above it falls to the one below. The last breakpoint of all stays. */
+static void remove_break(struct switching *s, int expression, int at)
+{
+	struct switching old = *s;
+	struct expression *e = &s->expression[expression];
+	old.expression = ARRAY(struct expression, (size_t)s->expressions);
+	for (int i = 0; i < s->expressions; i++)
+		old.expression[i] = s->expression[i];
+	e->at = rationals((size_t)e->breaks);
+	for (int i = 0, k = 0; i < e->breaks; i++)
+		if (i != at)
+			mpq_set(e->at[k++], old.expression[expression].at[i]);
+	e->breaks--;
+	s->regions = count_candidates(s);
+	s->region = ARRAY(struct region, (size_t)s->regions);
+	for (int r = 0; r < old.regions; r++) {
+		int merged = 0;
+		for (int i = 0; i < s->expressions; i++) {
+			int interval = interval_of(&old, r, i);
+			merged += (interval - (i == expression && interval > at)) * s->expression[i].stride;
+		}
+		if (old.region[r].possible)
+			s->region[merged] = old.region[r];
+	}
+}
+
+static int breaks_of_all(const struct switching *s)
+{
+	int count = 0;
+	for (int e = 0; e < s->expressions; e++)
+		count += s->expression[e].breaks;
+	return count;
+}
+
+static void drop_expression(struct switching *s, int expression)
+{
+	for (int e = expression; e + 1 < s->expressions; e++)
+		s->expression[e] = s->expression[e + 1];
+	s->expressions--;
+	count_candidates(s);
+}
+
+static void remove_idle_breaks(struct switching *s)
+{
+	for (int e = s->expressions - 1; e >= 0; e--) {
+		for (int at = s->expression[e].breaks - 1; at >= 0; at--)
+			if (breaks_of_all(s) > 1 && changes_nothing(s, e, at))
+				remove_break(s, e, at);
+		if (s->expression[e].breaks == 0)
+			drop_expression(s, e);
+	}
+}
+
 void place_region_loads(struct building *b)
 {
 	const struct switching *s = b->model->switching;
@@ -512,6 +578,7 @@ void build_regions(struct building *b)
 			fill_system(b, &system, 0, i, region->residual[i]);
 		region->system = add_system(s, &system);
 	}
+	remove_idle_breaks(s);
 	for (int e = 0; e < s->expressions; e++)
 		s->expression[e].row = row_of_form(b, s->expression[e].form);
 }

@@ -13,7 +13,7 @@ enum { MOST = 4000 };
 
 static void same_forms(void)
 {
-	static const char *const forms[] = { "deadzone", "clip", "abs", "minmax", "choice", "nested" };
+	static const char *const forms[] = { "deadzone", "clip", "abs", "minmax", "choice", "nested", "idle" };
 	for (int step = 0; step < 3; step++) {
 		struct run plain = run_new(variant_of(forms_table, "form_table_%d", step));
 		double expected[4], found[4];
