@@ -6,12 +6,14 @@ PACKAGES = gcc g++ clang make meson ninja-build pkgconf \
 	libgmp-dev libmpfr-dev libmpfi-dev libmpc-dev libgsl-dev \
 	libsundials-dev libcmocka-dev valgrind gnuplot-nox
 
-.PHONY: all deps demo check bench fuzz accuracy install clean
+.PHONY: all setup deps demo check bench fuzz accuracy install clean
 
-all: deps
+all: setup
+	ninja -C $(BUILD)
+
+setup: deps
 	@test -f $(BUILD)/build.ninja || meson setup $(BUILD) >$(BUILD).log || { cat $(BUILD).log; exit 1; }
 	@rm -f $(BUILD).log
-	ninja -C $(BUILD)
 
 # Asks apt only for what is not there.
 deps:
@@ -25,7 +27,9 @@ deps:
 		$$root env DEBIAN_FRONTEND=noninteractive apt-get install -q -y --no-install-recommends $$missing; \
 	fi
 
-demo: all
+# Only what it shows: the tests are built by `make check`.
+demo: setup
+	ninja -C $(BUILD) plgen bench/demo_cvode
 	sh bench/demo/demo.sh $(BUILD)
 
 check: all
