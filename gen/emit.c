@@ -71,7 +71,7 @@ static struct emitter emitter_new(FILE *to, const struct step *step, const char 
 	return e;
 }
 
-bool has_jump(const struct emitter *e)
+static bool has_jump(const struct emitter *e)
 {
 	return e->system->inputs == 0 && !has_leftover(e->step) && !e->model->switching;
 }
@@ -150,7 +150,7 @@ static void banner_leftover(const struct emitter *e)
 	enum { SHOWN = 6, WIDTH = 90 };
 	const struct model *model = e->model;
 	const char *at = model->operator[0].text;
-	fprintf(e->to, " * y' = A y + loads + inputs + r(t, y). A: the %s%s%s.\n", *at ? "equations' Jacobian at " : "linear terms with constant coefficients",
+	fprintf(e->to, " * y' = A y + loads + inputs + r(t, y). A: the %s%s%s.\n", *at ? "equations' Jacobian at " : model->scheme == SCHEME_PL ? "own terms of each coordinate" : "linear terms with constant coefficients",
 		at, e->step->operators > 1 ? format(", and so on: %d operators", e->step->operators) : "");
 	fprintf(e->to, " * Exact: A%s; approximated: r, which is\n", model->loads_left ? " and the inputs, each constant correctly rounded" :
 		", the loads and the inputs, each constant correctly rounded");

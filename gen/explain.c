@@ -146,7 +146,7 @@ static void person_split(FILE *to, const struct step *step)
 	for (int k = 0; k < model->operators; k++) {
 		const struct operator *operator = &model->operator[k];
 		if (!*operator->text) {
-			fputs("A: the linear terms with constant coefficients, as above.\n", to);
+			fputs(model->scheme == SCHEME_PL ? "A: each coordinate's own terms.\n" : "A: the linear terms with constant coefficients, as above.\n", to);
 			continue;
 		}
 		fprintf(to, "A: the Jacobian of the equations at %s (of an entry that still moves there, the constant part):\n", operator->text);

@@ -297,6 +297,13 @@ static const char *atom_text(struct writer *w, const struct atom *a)
 
 /* ---- which states, inputs and functions a leftover reads ---- */
 
+/* The piecewise-linear functions are comparisons in C. */
+static bool calls_libm(const struct atom *a)
+{
+	bool piecewise = a->function == FN_ABS || a->function == FN_SGN || (a->function >= FN_MIN && a->function != FN_ATAN2);
+	return a->kind == ATOM_POWER || (a->kind == ATOM_CALL && !piecewise);
+}
+
 static void look_at_form(struct reads *reading, const struct model *model, bool *seen, const struct form *form)
 {
 	for (int i = 0; i < form->terms; i++) {
@@ -319,9 +326,7 @@ static void look_at_form(struct reads *reading, const struct model *model, bool 
 		if (!atom || seen[atom->index])
 			continue;
 		seen[atom->index] = true;
-		reading->math = reading->math || atom->kind == ATOM_POWER ||
-				(atom->kind == ATOM_CALL && (atom->function == FN_ATAN2 || (atom->function < FN_ATAN2 && atom->function != FN_ABS &&
-							     atom->function != FN_SGN)));
+		reading->math = reading->math || calls_libm(atom);
 		for (int k = 0; k < atom->operands; k++)
 			look_at_form(reading, model, seen, atom->operand[k]);
 	}
@@ -369,7 +374,7 @@ static void cost_atom(struct counting *c, const struct atom *a)
 		cost_operand(c, a->operand[k]);
 	}
 	c->cost.multiplications += a->kind == ATOM_PRODUCT ? factors - 1 : a->kind == ATOM_RECIPROCAL;
-	c->cost.calls += a->kind == ATOM_POWER || a->kind == ATOM_CALL;
+	c->cost.calls += calls_libm(a);
 }
 
 static void cost_form(struct counting *c, const struct form *form)

@@ -941,7 +941,6 @@ const char *column_operand(const struct emitter *e, int column);
 
 void emit_changes(const struct emitter *e);                       /* loads that change their formula: when */
 void emit_passing(const struct emitter *e);                       /* ... and pass(), across a change */
-bool has_jump(const struct emitter *e);
 void emit_locals(const struct emitter *e, const bool *reads);     /* the states wanted, under their names */
 void emit_locals_of(const struct emitter *e, const bool *reads, const char *vector);
 void emit_step(const struct emitter *e);
