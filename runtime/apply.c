@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT-0 */
 /* Matrices times vectors: what the steps of the schemes with a leftover are made of. */
-#include "plrt.h"
+#include "real.h"
 
 #ifdef __FAST_MATH__
 #error "apply.c sums in the order that it says: compile it without -ffast-math"
@@ -8,10 +8,10 @@
 
 /* Four sums, so that an addition need not wait for the one before it: as fast as several rows at a time, in one order for all.
  * Inline: a call for each row costs a fifth of the time. */
-static inline double row_times(int columns, const double *row, const double *x)
+static inline real row_times(int columns, const real *row, const real *x)
 {
     const int whole = columns - columns % 4;
-    double s0 = 0.0, s1 = 0.0, s2 = 0.0, s3 = 0.0;
+    real s0 = 0, s1 = 0, s2 = 0, s3 = 0;
     int j;
     for (j = 0; j < whole; j += 4) {
         s0 += row[j] * x[j];
@@ -28,29 +28,26 @@ static inline double row_times(int columns, const double *row, const double *x)
     return (s0 + s2) + (s1 + s3);
 }
 
-void pl_multiply(int rows, int columns, const double *table, const double *x, double *y)
+void pl_multiply(int rows, int columns, const real *table, const real *x, real *y)
 {
     int i;
     for (i = 0; i < rows; i++, table += columns)
         y[i] = row_times(columns, table, x);
 }
 
-void pl_multiply_add(int rows, int columns, const double *table, const double *x, double *y)
+void pl_multiply_add(int rows, int columns, const real *table, const real *x, real *y)
 {
     int i;
     for (i = 0; i < rows; i++, table += columns)
         y[i] += row_times(columns, table, x);
 }
 
-int pl_not_finite(const double *y, int n)
+int pl_not_finite(const real *y, int n)
 {
-    const uint64_t exponent = (uint64_t)0x7FF << 52;
+    const real_bits exponent = ~(real_bits)0 >> 1 & ~REAL_FRACTION;
     int i, found = 0;
     for (i = 0; i < n; i++) {
-        union {
-            double value;
-            uint64_t bits;
-        } u;
+        real_parts u;
         u.value = y[i];
         found |= (u.bits & exponent) == exponent;
     }

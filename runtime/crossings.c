@@ -2,33 +2,40 @@
 /* Steps of piecewise-linear models, in pieces in which the fastest pole does not turn far.  Most pieces stay clear of every
  * breakpoint, and a bound shows it; the others go by Taylor polynomials, on which the first crossing is isolated before it
  * is computed, so none is stepped over. */
-#include "plrt.h"
-
-#include <float.h>
+#include "real.h"
 
 #ifdef __FAST_MATH__
 #error "crossings.c compares what rounding left: compile it without -ffast-math"
 #endif
 
-static double magnitude(double a)
+/* SHORT: a length of s, which goes from 0 to 1 over a piece.  REST: what rounding may leave of a step, in parts of it. */
+#ifdef REAL_IS_FLOAT
+#define SHORT 0x1p-18f
+#define REST 5e-6f
+#else
+#define SHORT 0x1p-40
+#define REST 1e-14
+#endif
+
+static real magnitude(real a)
 {
-    return a < 0.0 ? -a : a;
+    return a < 0 ? -a : a;
 }
 
-static double larger(double a, double b)
+static real larger(real a, real b)
 {
     return a > b ? a : b;
 }
 
-static double smaller(double a, double b)
+static real smaller(real a, real b)
 {
     return a < b ? a : b;
 }
 
 /* sum |a_j b_j| */
-static double sizes(int n, const double *a, const double *b)
+static real sizes(int n, const real *a, const real *b)
 {
-    double sum = 0.0;
+    real sum = 0;
     int j;
     for (j = 0; j < n; j++)
         sum += magnitude(a[j] * b[j]);
@@ -36,17 +43,17 @@ static double sizes(int n, const double *a, const double *b)
 }
 
 /* What rounding may have done to a sum of terms of this size */
-static double noise_of(double terms)
+static real noise_of(real terms)
 {
-    return 8.0 * DBL_EPSILON * terms;
+    return 8 * REAL_EPSILON * terms;
 }
 
-static const double *matrix_of(const double *all, const pl_switching *m, const pl_contact *c)
+static const real *matrix_of(const real *all, const pl_switching *m, const pl_contact *c)
 {
     return all + (ptrdiff_t)c->matrix * m->size * m->size;
 }
 
-static const double *rows_of(const double *all, const pl_switching *m, const pl_contact *c)
+static const real *rows_of(const real *all, const pl_switching *m, const pl_contact *c)
 {
     return all + (ptrdiff_t)c->matrix * m->switches * m->size;
 }
@@ -58,7 +65,7 @@ static const double *rows_of(const double *all, const pl_switching *m, const pl_
 typedef struct walk {
     int i, breaks, interval;
     int stride;       /* between the numbers of regions one interval of this switch apart */
-    const double *at; /* its breakpoints */
+    const real *at; /* its breakpoints */
 } walk;
 
 static walk first_switch(const pl_switching *m)
@@ -94,7 +101,7 @@ static void enter(const pl_switching *m, pl_contact *c, int region)
 }
 
 /* Lists a crossing, or says that there is no more room. */
-static int list(const pl_switching *m, pl_contact *c, pl_crossing *crossing, double time, int expression, int breakpoint,
+static int list(const pl_switching *m, pl_contact *c, pl_crossing *crossing, real time, int expression, int breakpoint,
                 int upward)
 {
     if (c->crossings == m->max_events) {
@@ -111,19 +118,19 @@ static int list(const pl_switching *m, pl_contact *c, pl_crossing *crossing, dou
 }
 
 /* e - b, and what rounding may have done to it.  The rows of lean are a third of a piece's e'. */
-static double excess(const pl_switching *m, const pl_contact *c, const walk *w, int breakpoint, const double *x, double *noise)
+static real excess(const pl_switching *m, const pl_contact *c, const walk *w, int breakpoint, const real *x, real *noise)
 {
-    const double *row = m->row + w->i * m->size, *lean = rows_of(m->lean, m, c) + w->i * m->size, b = w->at[breakpoint];
-    double e;
+    const real *row = m->row + w->i * m->size, *lean = rows_of(m->lean, m, c) + w->i * m->size, b = w->at[breakpoint];
+    real e;
     pl_multiply(1, m->size, row, x, &e);
-    *noise = noise_of(sizes(m->size, row, x) + 3.0 * sizes(m->size, lean, x) + magnitude(b));
+    *noise = noise_of(sizes(m->size, row, x) + 3 * sizes(m->size, lean, x) + magnitude(b));
     return e - b;
 }
 
 /* 1 or -1 where e is above or below its interval by more than rounding, else 0 */
-static int outside(const pl_switching *m, const pl_contact *c, const walk *w, const double *x)
+static int outside(const pl_switching *m, const pl_contact *c, const walk *w, const real *x)
 {
-    double noise;
+    real noise;
     if (w->interval < w->breaks && excess(m, c, w, w->interval, x, &noise) > noise)
         return 1;
     if (w->interval > 0 && -excess(m, c, w, w->interval - 1, x, &noise) > noise)
@@ -134,11 +141,11 @@ static int outside(const pl_switching *m, const pl_contact *c, const walk *w, co
 /* ---- the start ---- */
 
 /* 1, -1 or 0: the sign of the first of e', e'', e''' that is not zero but for rounding.  work: 4 size */
-static int heading(const pl_switching *m, const pl_contact *c, const double *row, const double *x, double *work)
+static int heading(const pl_switching *m, const pl_contact *c, const real *row, const real *x, real *work)
 {
     const int n = m->size;
-    const double *A = matrix_of(m->A, m, c);
-    double *y = work, *next = work + n, *terms = work + 2 * n, *next_terms = work + 3 * n, e, noise;
+    const real *A = matrix_of(m->A, m, c);
+    real *y = work, *next = work + n, *terms = work + 2 * n, *next_terms = work + 3 * n, e, noise;
     int order, i;
     for (i = 0; i < n; i++)
         y[i] = terms[i] = x[i];
@@ -153,16 +160,16 @@ static int heading(const pl_switching *m, const pl_contact *c, const double *row
         pl_multiply(1, n, row, y, &e);
         noise = noise_of(sizes(n, row, terms));
         if (e > noise || e < -noise)
-            return e > 0.0 ? 1 : -1;
+            return e > 0 ? 1 : -1;
     }
     return 0;
 }
 
 /* Puts what is on its upper breakpoint in region `below` above or below that: where it is heading or, with `possible`, so that the
  * region can occur. */
-static void decide(const pl_switching *m, const double *x, pl_contact *c, int below, int possible, double *work)
+static void decide(const pl_switching *m, const real *x, pl_contact *c, int below, int possible, real *work)
 {
-    double noise;
+    real noise;
     walk w;
     for (w = first_switch(m); arrive(m, below, &w); leave(&w)) {
         const int above = c->region / w.stride % (w.breaks + 1) - w.interval;
@@ -178,7 +185,7 @@ static void decide(const pl_switching *m, const double *x, pl_contact *c, int be
     }
 }
 
-void pl_switching_start(const pl_switching *m, const double *x, pl_contact *c, double *work)
+void pl_switching_start(const pl_switching *m, const real *x, pl_contact *c, real *work)
 {
     int i, below;
     walk w;
@@ -197,7 +204,7 @@ void pl_switching_start(const pl_switching *m, const double *x, pl_contact *c, d
 /* ---- a piece that stays clear ---- */
 
 /* Whether every expression, known to be within low .. high, is clear of the breakpoints beside it */
-static int clear(const pl_switching *m, int region, const double *low, const double *high)
+static int clear(const pl_switching *m, int region, const real *low, const real *high)
 {
     walk w;
     for (w = first_switch(m); arrive(m, region, &w); leave(&w)) {
@@ -210,11 +217,11 @@ static int clear(const pl_switching *m, int region, const double *low, const dou
 }
 
 /* Whether it is certain that nothing is crossed between x and y = Phi x, a piece on.  work: size + 5 switches */
-static int stays_clear(const pl_switching *m, const pl_contact *c, const double *x, const double *y, double *work)
+static int stays_clear(const pl_switching *m, const pl_contact *c, const real *x, const real *y, real *work)
 {
     const int n = m->size, s = m->switches;
-    double *size = work, *from = size + n, *to = from + s, *off = to + s, *low = off + s, *high = low + s;
-    const double *lean = rows_of(m->lean, m, c);
+    real *size = work, *from = size + n, *to = from + s, *off = to + s, *low = off + s, *high = low + s;
+    const real *lean = rows_of(m->lean, m, c);
     int i;
     for (i = 0; i < n; i++)
         size[i] = magnitude(x[i]);
@@ -229,7 +236,7 @@ static int stays_clear(const pl_switching *m, const pl_contact *c, const double 
         return 1;
     pl_multiply(s, n, rows_of(m->sway, m, c), size, off);
     for (i = 0; i < s; i++, lean += n) { /* a cubic lies within its Bezier points */
-        double leaving, arriving;
+        real leaving, arriving;
         pl_multiply(1, n, lean, x, &leaving);
         pl_multiply(1, n, lean, y, &arriving);
         leaving = from[i] + leaving;
@@ -245,64 +252,64 @@ static int stays_clear(const pl_switching *m, const pl_contact *c, const double 
 /* How far an expression is beyond a breakpoint: g(s), 0 <= s <= 1 over the piece, negative inside the interval */
 typedef struct beyond {
     int degree;
-    double *coefficient;
-    double noise;                /* of g */
-    double reach, fourth, fifth; /* bounds of |g - g(0)| and of the fourth and fifth derivative */
+    real *coefficient;
+    real noise;                /* of g */
+    real reach, fourth, fifth; /* bounds of |g - g(0)| and of the fourth and fifth derivative */
 } beyond;
 
 typedef struct point {
-    double s, g, slope, second, third; /* g and its derivatives */
+    real s, g, slope, second, third; /* g and its derivatives */
 } point;
 
-static point point_of(const beyond *f, double s)
+static point point_of(const beyond *f, real s)
 {
     point p;
     int k;
     p.s = s;
-    p.g = p.slope = p.second = p.third = 0.0;
+    p.g = p.slope = p.second = p.third = 0;
     for (k = f->degree; k >= 0; k--) { /* four chains side by side take no longer than one */
         p.third = p.third * s + p.second;
         p.second = p.second * s + p.slope;
         p.slope = p.slope * s + p.g;
         p.g = p.g * s + f->coefficient[k];
     }
-    p.second *= 2.0;
-    p.third *= 6.0;
+    p.second *= 2;
+    p.third *= 6;
     return p;
 }
 
 /* g = sign (e - b) from the coefficients of e, whose terms have this size at s = 0 */
-static void look_beyond(beyond *f, const double *e, double sign, double b, double terms)
+static void look_beyond(beyond *f, const real *e, real sign, real b, real terms)
 {
     int k;
     f->coefficient[0] = sign * (e[0] - b);
-    f->reach = f->fourth = f->fifth = 0.0;
+    f->reach = f->fourth = f->fifth = 0;
     for (k = 1; k <= f->degree; k++) {
-        const double a = magnitude(e[k]), fourths = (double)(k * (k - 1) * (k - 2) * (k - 3));
+        const real a = magnitude(e[k]), fourths = (real)(k * (k - 1) * (k - 2) * (k - 3));
         f->coefficient[k] = sign * e[k];
         f->fourth += fourths * a;
-        f->fifth += fourths * (double)(k - 4) * a;
+        f->fifth += fourths * (real)(k - 4) * a;
         f->reach += a;
     }
     f->noise = noise_of(terms + magnitude(b) + f->reach);
 }
 
 /* The root between a, where g < 0, and z, where g > 0; g rises all the way.  Newton's method, safeguarded by halving. */
-static double root_between(const beyond *f, point a, point z)
+static real root_between(const beyond *f, point a, point z)
 {
-    const double enough = 1.0 / 1099511627776.0; /* 2^-40: the step after that would be below rounding */
-    double s = a.s + (z.s - a.s) * (a.g / (a.g - z.g));
+    const real enough = SHORT; /* the step after that would be below rounding */
+    real s = a.s + (z.s - a.s) * (a.g / (a.g - z.g));
     int i;
     for (i = 0; i < 64; i++) {
         const point p = point_of(f, s);
-        const double newton = s - p.g / p.slope;
-        if (p.g > 0.0)
+        const real newton = s - p.g / p.slope;
+        if (p.g > 0)
             z = p;
         else
             a = p;
         if (magnitude(newton - s) <= enough && newton >= a.s && newton <= z.s)
             return newton;
-        s = newton > a.s && newton < z.s ? newton : 0.5 * (a.s + z.s);
+        s = newton > a.s && newton < z.s ? newton : (a.s + z.s) / 2;
     }
     return s;
 }
@@ -311,81 +318,81 @@ enum { NO_CROSSING, RISES, UNKNOWN }; /* what is known of g between two points *
 
 static int between(const beyond *f, point a, point z)
 {
-    const double w = (z.s - a.s) * (z.s - a.s) / 8.0; /* a chord is off by at most w times the second derivative */
-    const double second = larger(magnitude(a.second), magnitude(z.second)) + w * f->fourth;
-    const double third = larger(magnitude(a.third), magnitude(z.third)) + w * f->fifth;
+    const real w = (z.s - a.s) * (z.s - a.s) / 8; /* a chord is off by at most w times the second derivative */
+    const real second = larger(magnitude(a.second), magnitude(z.second)) + w * f->fourth;
+    const real third = larger(magnitude(a.third), magnitude(z.third)) + w * f->fifth;
     if (larger(a.g, z.g) + w * second <= f->noise)
         return NO_CROSSING;
-    if (larger(a.slope, z.slope) + w * third < 0.0)
+    if (larger(a.slope, z.slope) + w * third < 0)
         return NO_CROSSING;
-    return smaller(a.slope, z.slope) - w * third > 0.0 ? RISES : UNKNOWN;
+    return smaller(a.slope, z.slope) - w * third > 0 ? RISES : UNKNOWN;
 }
 
 /* Where g first rises through 0 before `end`, or -1.  Walks from the left, by intervals that are halved until it is known what g
  * does in them, and doubled again after that. */
-static double first_root(const beyond *f, double end, int *splits)
+static real first_root(const beyond *f, real end, int *splits)
 {
-    const double shortest = 1.0 / 1099511627776.0; /* 2^-40: what g does in less is below its noise */
-    double width = end;
+    const real shortest = SHORT; /* what g does in less is below its noise */
+    real width = end;
     point a, inside; /* inside: the last point where g < 0, so that what noise hides loses no time */
     if (f->coefficient[0] + f->reach <= f->noise)
-        return -1.0;
-    a.s = 0.0;
+        return -1;
+    a.s = 0;
     a.g = f->coefficient[0];
     a.slope = f->coefficient[1];
-    a.second = 2.0 * f->coefficient[2];
-    a.third = 6.0 * f->coefficient[3];
+    a.second = 2 * f->coefficient[2];
+    a.third = 6 * f->coefficient[3];
     inside = a;
     while (a.s < end) {
         const point z = point_of(f, a.s + width < end ? a.s + width : end);
         const int known = between(f, a, z);
         if (known == UNKNOWN && width > shortest) {
             if (--*splits < 0)
-                return -1.0;
-            width *= 0.5;
+                return -1;
+            width /= 2;
             continue;
         }
         if (known != NO_CROSSING && z.g > f->noise)
-            return inside.g < 0.0 ? root_between(f, inside, z) : inside.s;
-        if (z.g < 0.0 || inside.g >= 0.0)
+            return inside.g < 0 ? root_between(f, inside, z) : inside.s;
+        if (z.g < 0 || inside.g >= 0)
             inside = z;
         a = z;
-        width *= 2.0;
+        width *= 2;
     }
-    return -1.0;
+    return -1;
 }
 
 typedef struct found {
-    double s; /* 1 without a crossing */
+    real s; /* 1 without a crossing */
     int expression, breakpoint, upward;
     int stride; /* of the expression, between regions */
 } found;
 
-static const found nothing = {1.0, -1, 0, 0, 0};
+static const found nothing = {1, -1, 0, 0, 0};
 
 /* coefficients: (degree + 1) x size, of x(s); after them 2 (degree + 1) for work */
-static found first_crossing(const pl_switching *m, int region, double *coefficients, int *splits)
+static found first_crossing(const pl_switching *m, int region, real *coefficients, int *splits)
 {
     const int terms = m->degree + 1;
-    double *e = coefficients + terms * m->size;
+    real *e = coefficients + terms * m->size;
     found first = nothing;
     beyond f;
     walk w;
     f.degree = m->degree;
     f.coefficient = e + terms;
     for (w = first_switch(m); arrive(m, region, &w); leave(&w)) {
-        const double *row = m->row + w.i * m->size;
-        const double size = sizes(m->size, row, coefficients);
+        const real *row = m->row + w.i * m->size;
+        const real size = sizes(m->size, row, coefficients);
         int upward;
         pl_multiply(terms, m->size, coefficients, row, e);
         for (upward = 0; upward < 2; upward++) {
             const int breakpoint = w.interval - !upward;
-            double s;
+            real s;
             if (breakpoint < 0 || breakpoint == w.breaks)
                 continue;
-            look_beyond(&f, e, upward ? 1.0 : -1.0, w.at[breakpoint], size);
+            look_beyond(&f, e, upward ? 1 : -1, w.at[breakpoint], size);
             s = first_root(&f, first.s, splits);
-            if (s < 0.0)
+            if (s < 0)
                 continue;
             first.s = s;
             first.expression = w.i;
@@ -400,25 +407,25 @@ static found first_crossing(const pl_switching *m, int region, double *coefficie
 /* ---- a step, piece by piece ---- */
 
 /* The coefficients of x(s) = e^{A dt s} x */
-static void expand(const pl_switching *m, const pl_contact *c, double dt, const double *x, double *coefficients)
+static void expand(const pl_switching *m, const pl_contact *c, real dt, const real *x, real *coefficients)
 {
     const int n = m->size;
-    const double *A = matrix_of(m->A, m, c);
+    const real *A = matrix_of(m->A, m, c);
     int i, k;
     for (i = 0; i < n; i++)
         coefficients[i] = x[i];
     for (k = 1; k <= m->degree; k++, coefficients += n) {
-        const double factor = dt / (double)k;
+        const real factor = dt / (real)k;
         pl_multiply(n, n, A, coefficients, coefficients + n);
         for (i = 0; i < n; i++)
             coefficients[n + i] *= factor;
     }
 }
 
-static void sum_up(const pl_switching *m, const double *coefficients, double s, double *x)
+static void sum_up(const pl_switching *m, const real *coefficients, real s, real *x)
 {
     const int n = m->size;
-    const double *row = coefficients + m->degree * n;
+    const real *row = coefficients + m->degree * n;
     int i, k;
     for (i = 0; i < n; i++)
         x[i] = row[i];
@@ -430,20 +437,20 @@ static void sum_up(const pl_switching *m, const double *coefficients, double s, 
 }
 
 /* An expression that has left its interval, other than by a crossing, goes into that where it is. */
-static void follow_jumps(const pl_switching *m, const double *x, pl_contact *c, pl_crossing *crossing)
+static void follow_jumps(const pl_switching *m, const real *x, pl_contact *c, pl_crossing *crossing)
 {
     walk w;
     int way;
     for (w = first_switch(m); arrive(m, c->region, &w); leave(&w))
         for (; (way = outside(m, c, &w, x)) != 0; w.interval += way) {
-            list(m, c, crossing, 0.0, w.i, w.interval - (way < 0), way > 0);
+            list(m, c, crossing, 0, w.i, w.interval - (way < 0), way > 0);
             enter(m, c, c->region + way * w.stride);
         }
 }
 
 /* Moves x on over a piece of length dt, or to the first crossing in it; splits < 0: without looking for one.  y: x at the end
  * of a whole piece, NULL for others */
-static found move(const pl_switching *m, pl_contact *c, double dt, const double *y, int *splits, double *x, double *work)
+static found move(const pl_switching *m, pl_contact *c, real dt, const real *y, int *splits, real *x, real *work)
 {
     found first = nothing;
     int i;
@@ -462,16 +469,16 @@ static found move(const pl_switching *m, pl_contact *c, double dt, const double 
     return first;
 }
 
-void pl_switching_advance(const pl_switching *m, double tau, double *x, pl_contact *c, pl_crossing *crossing, double *work)
+void pl_switching_advance(const pl_switching *m, real tau, real *x, pl_contact *c, pl_crossing *crossing, real *work)
 {
     const int n = m->size;
-    double left = tau, *y = work, *rest = work + n;
+    real left = tau, *y = work, *rest = work + n;
     int splits = m->max_splits, fresh = 1, i;
     c->crossings = 0;
-    while (left > 1e-14 * m->h) { /* nothing for what rounding leaves */
-        const double longest = m->h / (double)((uint32_t)1 << m->halvings[c->matrix]);
-        const int whole = left > longest * (1.0 - 1e-14);
-        const double dt = whole ? longest : left;
+    while (left > REST * m->h) { /* nothing for what rounding leaves */
+        const real longest = m->h / (real)((uint32_t)1 << m->halvings[c->matrix]);
+        const int whole = left > longest * (1 - REST);
+        const real dt = whole ? longest : left;
         found first;
         if (whole) {
             pl_multiply(n, n, matrix_of(m->Phi, m, c), x, y);
@@ -499,7 +506,7 @@ void pl_switching_advance(const pl_switching *m, double tau, double *x, pl_conta
     }
 }
 
-void pl_switching_step(const pl_switching *m, double *x, pl_contact *c, pl_crossing *crossing, double *work)
+void pl_switching_step(const pl_switching *m, real *x, pl_contact *c, pl_crossing *crossing, real *work)
 {
     pl_switching_advance(m, m->h, x, c, crossing, work);
 }

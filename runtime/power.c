@@ -6,16 +6,16 @@
 #error "power.c needs rounding errors as they are: compile it without -ffast-math"
 #endif
 
-static pl_two scaled(pl_two a, double power_of_2)
+static pl_two scaled(pl_two a, real power_of_2)
 {
-    const double hi = a.hi * power_of_2;
-    return two(hi, is_finite(hi) ? a.lo * power_of_2 : 0.0);
+    const real hi = a.hi * power_of_2;
+    return two(hi, is_finite(hi) ? a.lo * power_of_2 : 0);
 }
 
 /* sum of a_j b_j scale^2; a is a row, b a column whose entries lie `stride` apart. */
-static pl_two dot(int n, const pl_two *a, const pl_two *b, int stride, double scale)
+static pl_two dot(int n, const pl_two *a, const pl_two *b, int stride, real scale)
 {
-    pl_two sum = two(0.0, 0.0);
+    pl_two sum = two(0, 0);
     int j;
     for (j = 0; j < n; j++)
         sum = add(sum, multiply(scaled(a[j], scale), scaled(b[j * stride], scale)));
@@ -25,9 +25,9 @@ static pl_two dot(int n, const pl_two *a, const pl_two *b, int stride, double sc
 /* The same, with overflow only where the sum overflows, and with its sign: large terms of both signs may have met. */
 static pl_two dot_any(int n, const pl_two *a, const pl_two *b, int stride)
 {
-    pl_two sum = dot(n, a, b, stride, 1.0);
+    pl_two sum = dot(n, a, b, stride, 1);
     if (!is_finite(sum.hi))
-        sum = scaled(scaled(dot(n, a, b, stride, 0x1p-520), 0x1p520), 0x1p520);
+        sum = scaled(scaled(dot(n, a, b, stride, 1 / REAL_LARGE), REAL_LARGE), REAL_LARGE);
     return sum;
 }
 

@@ -4,7 +4,7 @@
 #ifndef PLRT_WORDS_H
 #define PLRT_WORDS_H
 
-#include "plrt.h"
+#include "real.h"
 
 /* A 128-bit integer. */
 typedef struct words_pair {
@@ -36,6 +36,12 @@ static inline uint64_t words_times(uint64_t a, uint64_t b)
     return words_product(a, b).hi;
 }
 
+/* The same in units of 2^-32: one instruction of a Cortex-M4. */
+static inline uint32_t words_times32(uint32_t a, uint32_t b)
+{
+    return (uint32_t)((uint64_t)a * b >> 32);
+}
+
 static inline words_pair words_negative(words_pair a)
 {
     words_pair n;
@@ -45,35 +51,32 @@ static inline words_pair words_negative(words_pair a)
 }
 
 /* rate |t| = result 2^-*point, exactly.  An infinite t, or not a number, gives 0. */
-static inline words_wide words_rate_times(const pl_rate *rate, double t, int *point)
+static inline words_wide words_rate_times(const pl_rate *rate, real t, int *point)
 {
-    union {
-        double value;
-        uint64_t bits;
-    } time;
-    const uint64_t leading = (uint64_t)1 << 52;
+    enum { WORDS = sizeof rate->word / sizeof rate->word[0], OF_NO_NUMBER = 2 * REAL_EXPONENTS - 1 };
+    real_parts time;
     uint64_t significand, carry = 0;
-    words_wide w;
+    words_wide w = {{0, 0, 0, 0}};
     int exponent, i;
 
     time.value = t;
-    significand = time.bits & (leading - 1);
-    exponent = (int)(time.bits >> 52) & 0x7FF;
-    if (exponent == 0x7FF)
+    significand = time.bits & REAL_FRACTION;
+    exponent = (int)(time.bits >> (REAL_DIGITS - 1)) & OF_NO_NUMBER;
+    if (exponent == OF_NO_NUMBER)
         significand = 0;
     else if (exponent != 0)
-        significand |= leading;
+        significand |= REAL_FRACTION + 1;
     else
         exponent = 1; /* subnormal: the same unit, no leading bit */
-    for (i = 0; i < 3; i++) {
-        words_pair p = words_product(rate->word[2 - i], significand);
+    for (i = 0; i < WORDS; i++) {
+        words_pair p = words_product(rate->word[WORDS - 1 - i], significand);
         p.lo += carry;
         p.hi += p.lo < carry;
         w.word[i] = p.lo;
         carry = p.hi;
     }
-    w.word[3] = carry;
-    *point = rate->exponent - (exponent - 1075);
+    w.word[WORDS] = carry;
+    *point = rate->exponent - (exponent - (REAL_EXPONENTS + REAL_DIGITS - 2));
     return w;
 }
 

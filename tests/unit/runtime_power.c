@@ -8,18 +8,33 @@
 #include <inttypes.h>
 #include <math.h>
 #include <mpfr.h>
-#include "plrt.h"
+#include "real.h"
 
 enum { BITS = 400 };
+
+/* UNIT: what a step loses, of the whole.  NUMBERS: how many Fibonacci numbers fit two words.  2^(MANY + FEW) is within the range,
+ * 2^(2 MANY) beyond it. */
+#ifdef REAL_IS_FLOAT
+#define UNIT 0x1p-46
+#define real_of(v) mpfr_get_flt(v, MPFR_RNDN)
+enum { NUMBERS = 66, MANY = 75, FEW = 45, COUPLED = 101 };
+static const uint64_t counts[] = {1, 2, 3, 1000, 123456789, 1000000000};
+#else
+#define UNIT 0x1p-104
+#define real_of(v) mpfr_get_d(v, MPFR_RNDN)
+enum { NUMBERS = 150, MANY = 600, FEW = 420, COUPLED = 1001 };
+static const uint64_t counts[] = {1, 2, 3, 1000, 123456789, 1000000000, 1000000000000};
+#endif
+enum { COUNTS = sizeof counts / sizeof counts[0] };
 
 static pl_two two_of(mpfr_t v)
 {
     mpfr_t rest;
     pl_two t;
     mpfr_init2(rest, BITS);
-    t.hi = mpfr_get_d(v, MPFR_RNDN);
+    t.hi = real_of(v);
     mpfr_sub_d(rest, v, t.hi, MPFR_RNDN);
-    t.lo = mpfr_get_d(rest, MPFR_RNDN);
+    t.lo = real_of(rest);
     mpfr_clear(rest);
     return t;
 }
@@ -27,8 +42,8 @@ static pl_two two_of(mpfr_t v)
 static pl_two one_word(double v)
 {
     pl_two t;
-    t.hi = v;
-    t.lo = 0.0;
+    t.hi = (real)v;
+    t.lo = 0;
     return t;
 }
 
@@ -37,6 +52,8 @@ static void set_two(mpfr_t v, pl_two t)
     mpfr_set_d(v, t.hi, MPFR_RNDN);
     mpfr_add_d(v, v, t.lo, MPFR_RNDN);
 }
+
+static double worst; /* error, in tolerances */
 
 static void assert_within(pl_two found, mpfr_t expected, double tolerance, const char *what, uint64_t k)
 {
@@ -47,6 +64,8 @@ static void assert_within(pl_two found, mpfr_t expected, double tolerance, const
     mpfr_sub(error, error, expected, MPFR_RNDN);
     off = mpfr_get_d(error, MPFR_RNDN);
     mpfr_clear(error);
+    if (fabs(off) > worst * tolerance)
+        worst = fabs(off) / tolerance;
     if (!(fabs(off) <= tolerance)) {
         pl_two e = two_of(expected);
         fail_msg("%s, k = %" PRIu64 ": found %.17g + %.17g, expected %.17g + %.17g; off by %.17g, tolerance %.17g", what, k,
@@ -60,10 +79,7 @@ static void assert_double(double found, double expected, const char *what)
         fail_msg("%s: found %.17g, expected %.17g, exactly", what, found, expected);
 }
 
-static const uint64_t counts[] = {1, 2, 3, 1000, 123456789, 1000000000, 1000000000000};
-enum { COUNTS = sizeof counts / sizeof counts[0] };
-
-/* A rotation by 0.05 a step, from (1, 0).  What its two-word entries are off by is 2^-107 each, k times; so is what the
+/* A rotation by 0.05 a step, from (1, 0).  What its two-word entries are off by is 2^-107 each, or 2^-49, k times; so is what the
  * powers lose. */
 static void rotation(void **state)
 {
@@ -73,7 +89,7 @@ static void rotation(void **state)
     mpfr_inits2(BITS, angle, c, s, (mpfr_ptr)0);
     for (i = 0; i < COUNTS; i++) {
         pl_two P[4], W[4], x[2], w[2];
-        const double tolerance = (double)counts[i] * 0x1p-104;
+        const double tolerance = (double)counts[i] * UNIT;
         mpfr_set_d(angle, 0.05, MPFR_RNDN);
         mpfr_sin_cos(s, c, angle, MPFR_RNDN);
         P[0] = P[3] = two_of(c);
@@ -91,13 +107,14 @@ static void rotation(void **state)
     mpfr_clears(angle, c, s, (mpfr_ptr)0);
 }
 
-/* Entries as the doubles they are, powered in MPFR by repeated squaring: a 3 x 3 matrix, coupled and of all signs. */
+/* Entries as the numbers they are, powered in MPFR by repeated squaring: a 3 x 3 matrix, coupled and of all signs. */
 static void coupled(void **state)
 {
-    const double entries[9] = {0.5, -0.75, 0.1, 0.7, 0.4, -0.3, 0.2, 0.3, 0.6};
+    const real entries[9] = {0.5, -0.75, (real)0.1, (real)0.7, (real)0.4, (real)-0.3,
+                             (real)0.2, (real)0.3, (real)0.6};
     mpfr_t P[9], Q[9], x[3], y[3], t;
     int i, j, k, bit;
-    const uint64_t count = 1001;
+    const uint64_t count = COUPLED;
     pl_two p[9], W[9], v[3], w[3];
     (void)state;
     mpfr_init2(t, BITS);
@@ -110,8 +127,8 @@ static void coupled(void **state)
     for (i = 0; i < 3; i++) {
         mpfr_init2(x[i], BITS);
         mpfr_init2(y[i], BITS);
-        mpfr_set_d(x[i], 1.0 + 0.3 * i, MPFR_RNDN);
         v[i] = one_word(1.0 + 0.3 * i);
+        set_two(x[i], v[i]);
     }
     for (bit = 0; count >> bit != 0; bit++) {
         if (count >> bit & 1) {
@@ -138,8 +155,8 @@ static void coupled(void **state)
     }
     pl_power_apply(3, p, W, v, w, count);
     for (i = 0; i < 3; i++)
-        assert_within(v[i], x[i], (double)count * 0x1p-104 * fmax(fabs(v[0].hi), fmax(fabs(v[1].hi), fabs(v[2].hi))), "coupled",
-                      count);
+        assert_within(v[i], x[i], (double)count * UNIT * fmax(fabs((double)v[0].hi), fmax(fabs((double)v[1].hi), fabs((double)v[2].hi))),
+                      "coupled", count);
     for (i = 0; i < 9; i++)
         mpfr_clears(P[i], Q[i], (mpfr_ptr)0);
     for (i = 0; i < 3; i++)
@@ -147,7 +164,7 @@ static void coupled(void **state)
     mpfr_clear(t);
 }
 
-/* Integers stay exact: Fibonacci numbers up to 2^104. */
+/* Integers stay exact: Fibonacci numbers up to 2^104, or 2^46. */
 static void fibonacci(void **state)
 {
     uint64_t k;
@@ -156,7 +173,7 @@ static void fibonacci(void **state)
     (void)state;
     mpz_init(f);
     mpfr_init2(v, BITS);
-    for (k = 1; k <= 150; k++) {
+    for (k = 1; k <= NUMBERS; k++) {
         pl_two P[4], W[4], x[2], w[2];
         P[0] = P[1] = P[2] = one_word(1.0);
         P[3] = one_word(0.0);
@@ -178,13 +195,13 @@ static void no_steps(void **state)
     (void)state;
     for (i = 0; i < 4; i++)
         P[i] = one_word(3.0);
-    x[0].hi = 0.1;
-    x[0].lo = 1e-18;
+    x[0].hi = (real)0.1;
+    x[0].lo = (real)1e-18;
     x[1].hi = -INFINITY;
-    x[1].lo = 0.0;
+    x[1].lo = 0;
     pl_power_apply(2, P, W, x, w, 0);
-    assert_double(x[0].hi, 0.1, "high word");
-    assert_double(x[0].lo, 1e-18, "low word");
+    assert_double(x[0].hi, (double)(real)0.1, "high word");
+    assert_double(x[0].lo, (double)(real)1e-18, "low word");
     assert_double(x[1].hi, -(double)INFINITY, "high word");
 }
 
@@ -206,7 +223,7 @@ static void overflow_is_infinite_and_stays_where_it_is(void **state)
         x[2] = one_word(3.0);
         pl_power_apply(3, P, W, x, w, 1000000);
         for (i = 0; i < 2; i++)
-            if (!isinf(x[i].hi) || x[i].lo != 0.0)
+            if (!isinf(x[i].hi) || x[i].lo != 0)
                 fail_msg("entry %d: found %.17g + %.17g, expected an infinity", i, x[i].hi, x[i].lo);
         assert_double(x[2].hi, 0.0, "decoupled entry");
     }
@@ -229,16 +246,16 @@ static void overflow_has_the_sign_of_the_sum(void **state)
     (void)state;
     for (i = 0; i < 9; i++)
         P[i] = one_word(0.0);
-    P[0] = one_word(0x1p600);
-    P[1] = one_word(-0x1p600);
-    P[2] = one_word(-0x1p600);
-    P[3] = one_word(0x1p600);
-    P[4] = one_word(-0x1p600);
-    P[5] = one_word(0x1p420);
-    x[0] = x[1] = x[2] = one_word(0x1p600);
+    P[0] = one_word(ldexp(1.0, MANY));
+    P[1] = one_word(-ldexp(1.0, MANY));
+    P[2] = one_word(-ldexp(1.0, MANY));
+    P[3] = one_word(ldexp(1.0, MANY));
+    P[4] = one_word(-ldexp(1.0, MANY));
+    P[5] = one_word(ldexp(1.0, FEW));
+    x[0] = x[1] = x[2] = one_word(ldexp(1.0, MANY));
     pl_power_apply(3, P, W, x, w, 1);
     assert_double(x[0].hi, -(double)INFINITY, "+inf - inf - inf");
-    assert_double(x[1].hi, 0x1p1020, "+inf - inf + 2^1020");
+    assert_double(x[1].hi, ldexp(1.0, MANY + FEW), "+inf - inf + a power of 2");
     assert_double(x[2].hi, 0.0, "no terms");
 }
 
@@ -253,6 +270,7 @@ int main(void)
         cmocka_unit_test(overflow_has_the_sign_of_the_sum),
     };
     const int status = cmocka_run_group_tests(tests, NULL, NULL);
+    print_message("# largest error of pl_power_apply: %.2g k 2^%d\n", worst, ilogb(UNIT));
     mpfr_free_cache();
     return status;
 }

@@ -1,0 +1,53 @@
+/* SPDX-License-Identifier: MIT-0 */
+/* real.h: one text for doubles and floats, for the runtime's own use.  series.c, power.c, until.c, apply.c and crossings.c are
+ * written over `real`, a double with the names of plrt.h; seriesf.c and so on define REAL_IS_FLOAT and include them, and then the
+ * same names stand for those that end in f.  Constants are integers there, which are of either type: no float is promoted. */
+#ifndef PLRT_REAL_H
+#define PLRT_REAL_H
+
+#include "plrt.h"
+
+#include <float.h>
+
+#ifdef REAL_IS_FLOAT
+
+typedef float real;
+typedef uint32_t real_bits;
+enum { REAL_DIGITS = FLT_MANT_DIG, REAL_EXPONENTS = FLT_MAX_EXP };
+#define REAL_EPSILON FLT_EPSILON
+#define REAL_LARGE 0x1p72f /* products of any two numbers, divided by its square, can be summed */
+
+#define pl_rate pl_ratef
+#define pl_series pl_seriesf
+#define pl_series_advance pl_seriesf_advance
+#define pl_two pl_twof
+#define pl_power_apply pl_powerf_apply
+#define pl_until pl_untilf
+#define pl_multiply pl_multiplyf
+#define pl_multiply_add pl_multiplyf_add
+#define pl_not_finite pl_not_finitef
+#define pl_switching pl_switchingf
+#define pl_crossing pl_crossingf
+#define pl_switching_start pl_switchingf_start
+#define pl_switching_step pl_switchingf_step
+#define pl_switching_advance pl_switchingf_advance
+
+#else
+
+typedef double real;
+typedef uint64_t real_bits;
+enum { REAL_DIGITS = DBL_MANT_DIG, REAL_EXPONENTS = DBL_MAX_EXP };
+#define REAL_EPSILON DBL_EPSILON
+#define REAL_LARGE 0x1p520
+
+#endif
+
+/* A number and its bits, IEEE 754: sign, exponent + REAL_EXPONENTS - 1, then REAL_DIGITS - 1 bits of the fraction */
+typedef union real_parts {
+    real value;
+    real_bits bits;
+} real_parts;
+
+#define REAL_FRACTION (((real_bits)1 << (REAL_DIGITS - 1)) - 1)
+
+#endif

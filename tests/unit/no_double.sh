@@ -1,0 +1,58 @@
+#!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
+# The runtime for models in float uses no double: no instruction for one in what compilers make of it for x86-64.
+#
+#     no_double.sh RUNTIME COMPILER ...
+#
+# A compiler that is not installed, or is for another machine, is skipped.
+set -u
+runtime=$1
+shift
+
+work=$(mktemp -d "${TMPDIR:-/tmp}/no_double.XXXXXX") || exit 99
+trap 'rm -rf "$work"' EXIT
+trap 'exit 99' HUP INT TERM
+
+count=0
+failed=0
+
+# result STATUS NAME: a line of TAP; what was found is in $work/found
+result() {
+    count=$((count + 1))
+    if [ "$1" -eq 0 ]; then
+        echo "ok $count - $2"
+    else
+        echo "not ok $count - $2"
+        failed=1
+        sed 's/^/# /' "$work/found" | head -n 12
+    fi
+}
+
+# doubles COMPILER LEVEL PIECE: are there instructions for doubles in runtime/PIECE.c?  They are in $work/found.
+doubles() {
+    "$1" -std=c99 "$2" -c "$runtime/$3.c" -o "$work/piece.o" 2>"$work/found" || return 0
+    objdump -d "$work/piece.o" |
+        grep -w -E 'v?((add|sub|mul|div|max|min|sqrt|u?comi|and|andn|xor|f?n?m(add|sub)[0-9]*|cmp[a-z]*)[sp]d|cvt[a-z0-9]*[sp]d[a-z0-9]*)|f(ld|ild|st|stp|add|mul|div|sub)[a-z]*' \
+            >"$work/found"
+}
+
+for compiler; do
+    case $(command -v "$compiler" >/dev/null 2>&1 && command -v objdump >/dev/null 2>&1 && "$compiler" -dumpmachine) in
+        x86_64*) ;;
+        *)
+            count=$((count + 1))
+            echo "ok $count - $compiler # SKIP not installed, or not for x86-64"
+            continue
+            ;;
+    esac
+    for level in -O0 -O2 -Os; do
+        for piece in turns growth series power until apply crossings; do
+            ! doubles "$compiler" "$level" "${piece}f"
+            result $? "${piece}f.c, $compiler $level"
+        done
+    done
+    doubles "$compiler" -O2 series
+    result $? "series.c, $compiler: those of doubles are found"
+done
+echo "1..$count"
+exit $failed
