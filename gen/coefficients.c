@@ -67,6 +67,8 @@ struct number {
 	mpq_srcptr t;
 	const struct entry *entry;  /* or, if not NULL, entries of one row */
 	int row;
+	mpq_srcptr scale;           /* of the sum, then */
+	mpq_srcptr less;            /* is subtracted; NULL: 1 and 0 */
 };
 
 /* One term; false: it is beyond the method's limits. *absent: it has not started. */
@@ -102,6 +104,10 @@ static bool enclose_number(const struct number *n, int precision, mpfi_ptr sum)
 		if (good && !absent)
 			mpfi_add(sum, sum, value);
 	}
+	if (n->scale)
+		mpfi_mul_q(sum, sum, n->scale);
+	if (n->less)
+		mpfi_sub_q(sum, sum, n->less);
 	mpfi_clear(value);
 	return good;
 }
@@ -132,6 +138,10 @@ static bool exact_number(const struct number *n, mpq_ptr sum)
 		exact = exact_term(n, i, value);
 		mpq_add(sum, sum, value);
 	}
+	if (n->scale)
+		mpq_mul(sum, sum, n->scale);
+	if (n->less)
+		mpq_sub(sum, sum, n->less);
 	mpq_clear(value);
 	return exact;
 }
@@ -205,9 +215,9 @@ static void check_range(const struct model *model, const struct coefficient *c, 
 {
 	if (isfinite(c->value) || count == 0)
 		return;
-	struct culprit pole = find_culprit(list[0].response, round_rational(model->h));
-	error(model->step_at, pole.grows ? "a smaller step would do" : NULL, "%s is beyond the range of double: pole %s, h = %s s", what,
-	      pole_of(&pole), readable_text(model->h));
+	struct culprit pole = find_culprit(list[0].response, nearest_double(model->h));
+	error(model->step_at, pole.grows ? "a smaller step would do" : NULL, "%s is beyond the range of %s: pole %s, h = %s s", what,
+	      target_name(), pole_of(&pole), readable_text(model->h));
 }
 
 /* ---- tables ---- */
@@ -232,6 +242,8 @@ struct filling {
 	int responses;
 	struct started *response;
 	mpq_t **impulse;            /* per channel, once asked for */
+	mpq_srcptr scale, less;     /* of the number being rounded; NULL: 1 and 0 */
+	const int *coord;           /* of a block, per coordinate: of the whole; NULL: it is the whole */
 };
 
 static const mpq_t *impulse_of(struct filling *f, int channel)
@@ -281,7 +293,7 @@ static struct coefficient number_of(struct filling *f, bool two_words, void (*co
 	f->entries = f->responses = 0;
 	combine(f, a, b);
 	if (by_series) {
-		struct number number = { .count = f->entries, .entry = f->entry, .row = f->row };
+		struct number number = { .count = f->entries, .entry = f->entry, .row = f->row, .scale = f->scale, .less = f->less };
 		if (round_number(&number, two_words, TAYLOR_PRECISION, &c, &isolated) && isfinite(c.value))
 			return c;
 		int kept = f->exponentials;
@@ -289,7 +301,7 @@ static struct coefficient number_of(struct filling *f, bool two_words, void (*co
 		combine(f, a, b);
 		f->exponentials = kept;
 	}
-	struct number number = { .count = f->responses, .list = f->response, .t = f->tau };
+	struct number number = { .count = f->responses, .list = f->response, .t = f->tau, .scale = f->scale, .less = f->less };
 	if (!round_number(&number, two_words, LIMIT_PRECISION, &c, &isolated))
 		undecided(f->model->step_at, what, isolated);
 	check_range(f->model, &c, f->responses, f->response, what);
@@ -317,6 +329,134 @@ static void combine_state(struct filling *f, int state, int unused)
 			add_entry(f, f->tau, f->series.held + i, weight);
 	}
 	mpq_clear(weight);
+}
+
+/* ---- forms other than direct ---- */
+
+/* Phi - I, rounded as it is and not as Phi */
+static struct coefficient increment_entry(struct filling *f, int j, bool two_words)
+{
+	mpq_t one;
+	mpq_init(one);
+	mpq_set_ui(one, 1, 1);
+	f->less = f->row == j ? one : NULL;
+	struct coefficient c = number_of(f, two_words, combine_state, j, 0, f->state_name[j]);
+	f->less = NULL;
+	mpq_clear(one);
+	return c;
+}
+
+static mpq_srcptr mass_of(const struct filling *f, int coord)
+{
+	return f->wanted->mass[f->coord ? f->coord[coord] : coord];
+}
+
+/* S = Phi_12 M^-1 */
+static struct coefficient drift_entry(struct filling *f, int j, bool two_words)
+{
+	mpq_t inverse;
+	mpq_init(inverse);
+	mpq_inv(inverse, mass_of(f, j));
+	f->scale = inverse;
+	struct coefficient c = number_of(f, two_words, combine_state, f->system->velocity[j], 0, f->state_name[f->system->velocity[j]]);
+	f->scale = NULL;
+	mpq_clear(inverse);
+	return c;
+}
+
+static bool enclose_state(struct filling *f, int i, int j, int precision, mpfi_ptr value)
+{
+	f->entries = f->responses = 0;
+	f->row = i;
+	combine_state(f, j, 0);
+	struct number number = { .count = f->exponentials ? f->entries : f->responses, .list = f->response, .t = f->tau, .row = i };
+	number.entry = f->exponentials ? f->entry : NULL;
+	return enclose_number(&number, precision, value);
+}
+
+/* X <- S^-1 R, all n x n, in intervals, by elimination; S is symmetric and positive definite, S and R are destroyed. */
+static bool solve_enclosed(int n, mpfi_t *S, mpfi_t *R, int precision)
+{
+	mpfi_t factor, product;
+	bool regular = true;
+	mpfi_init2(factor, precision);
+	mpfi_init2(product, precision);
+	for (int k = 0; k < n && regular; k++) {
+		regular = !mpfi_has_zero(S[k * n + k]);
+		for (int i = 0; i < n && regular; i++) {
+			if (i == k)
+				continue;
+			mpfi_div(factor, S[i * n + k], S[k * n + k]);
+			for (int j = 0; j < n; j++) {
+				mpfi_mul(product, factor, S[k * n + j]);
+				mpfi_sub(S[i * n + j], S[i * n + j], product);
+				mpfi_mul(product, factor, R[k * n + j]);
+				mpfi_sub(R[i * n + j], R[i * n + j], product);
+			}
+		}
+	}
+	for (int i = 0; i < n && regular; i++)
+		for (int j = 0; j < n; j++)
+			mpfi_div(R[i * n + j], R[i * n + j], S[i * n + i]);
+	mpfi_clear(factor);
+	mpfi_clear(product);
+	return regular;
+}
+
+static bool round_words(mpfi_ptr x, struct coefficient *c)
+{
+	if (!round_enclosure(x, &c->value))
+		return false;
+	mpfi_sub_d(x, x, c->value);
+	return round_enclosure(x, &c->low);
+}
+
+/* X = S^-1 (Phi_11 - I) with so many bits; false: they do not decide every entry */
+static bool round_kicks(struct filling *f, struct table *table, int precision)
+{
+	const struct linear *system = f->system;
+	int n = system->n;
+	mpfi_t *S = ARRAY(mpfi_t, (size_t)(n * n)), *R = ARRAY(mpfi_t, (size_t)(n * n));
+	bool decided = true;
+	for (int i = 0; i < n; i++)
+		for (int j = 0; j < n; j++) {
+			mpfi_init2(S[i * n + j], precision);
+			mpfi_init2(R[i * n + j], precision);
+			decided = decided && enclose_state(f, i, system->velocity[j], precision, S[i * n + j]);
+			decided = decided && enclose_state(f, i, j, precision, R[i * n + j]);
+			mpfi_div_q(S[i * n + j], S[i * n + j], mass_of(f, j));
+			mpfi_sub_ui(R[i * n + j], R[i * n + j], i == j);
+		}
+	decided = decided && solve_enclosed(n, S, R, precision);
+	for (int i = 0; i < n; i++)
+		for (int j = i; j < n && decided; j++) {
+			decided = round_words(R[i * n + j], &table->kick[i * n + j]);
+			table->kick[j * n + i] = table->kick[i * n + j];
+		}
+	for (int i = 0; i < n * n; i++) {
+		mpfi_clear(S[i]);
+		mpfi_clear(R[i]);
+	}
+	return decided;
+}
+
+static void fill_kicks(struct filling *f, struct table *table)
+{
+	const struct linear *system = f->system;
+	int precision = FIRST_PRECISION;
+	f->segment = 0;
+	if (system->n == 1 && mpq_sgn(system->K[0]) == 0) {
+		table->kick[0].zero = true;
+		return;
+	}
+	while (!round_kicks(f, table, precision)) {
+		precision *= 2;
+		if (precision > LIMIT_PRECISION)
+			undecided(f->model->step_at, "a kick of the form kick-drift-kick", true);
+	}
+	for (int i = 0; i < system->n * system->n; i++)
+		if (!isfinite(table->kick[i].value) || !isfinite(table->drift[i].value))
+			error(f->model->step_at, "--form delta or --form direct may do", "a factor of the form kick-drift-kick is beyond the range of %s", target_name());
 }
 
 /* A ramp from u0 to u1 over h: u0 (u - u'/h) + u1 u'/h */
@@ -433,6 +573,10 @@ static void fill_row(struct filling *f, struct table *table)
 	f->segment = 0;
 	for (int j = 0; j < n && wanted->Phi; j++)
 		table->Phi[i * n + j] = number_of(f, wanted->two_words, combine_state, j, 0, f->state_name[j]);
+	for (int j = 0; j < n && wanted->increments; j++)
+		table->increment[i * n + j] = i == j ? increment_entry(f, j, wanted->two_words) : table->Phi[i * n + j];
+	for (int j = 0; j < system->n && wanted->mass && i < system->n; j++)
+		table->drift[i * system->n + j] = drift_entry(f, j, wanted->two_words);
 	for (int j = 0, column = 0; j < system->inputs; j++)
 		for (int k = 0; k <= system->input[j].first_order; k++, column++)
 			table->input[i * table->inputs + column] = number_of(f, wanted->two_words, combine_input, j, k, system->input[j].name);
@@ -456,7 +600,11 @@ static struct table *table_new(const struct linear *system, const struct wanted 
 	table->inputs = input_columns(system);
 	table->channels = system->channels;
 	table->wanted = wanted;
+	size_t coordinates = (size_t)system->n;
 	table->Phi = wanted->Phi ? ARRAY(struct coefficient, n * n) : NULL;
+	table->increment = wanted->increments ? ARRAY(struct coefficient, n * n) : NULL;
+	table->drift = wanted->mass ? ARRAY(struct coefficient, coordinates * coordinates) : NULL;
+	table->kick = wanted->mass ? ARRAY(struct coefficient, coordinates * coordinates) : NULL;
 	table->load = ARRAY(struct coefficient, (size_t)system->segments * n * (size_t)table->columns);
 	table->input = ARRAY(struct coefficient, n * (size_t)table->inputs);
 	table->kernel = ARRAY(struct coefficient *, (size_t)wanted->kernels);
@@ -534,6 +682,8 @@ static struct table **tables_of_block(struct filling *f, int count, const struct
 			progress("factors of the step, row", t * system->states + f->row, count * system->states);
 			fill_row(f, table[t]);
 		}
+		if (f->wanted->mass)
+			fill_kicks(f, table[t]);
 	}
 	progress_end();
 	return table;
@@ -545,6 +695,14 @@ static void mark_zero(struct coefficient *c, size_t count)
 		c[i].zero = true;
 }
 
+static void scatter_square(const struct block *block, int n, const struct coefficient *part, struct coefficient *whole)
+{
+	int m = block->system.n;
+	for (int i = 0; part && i < m; i++)
+		for (int j = 0; j < m; j++)
+			whole[block->coord[i] * n + block->coord[j]] = part[i * m + j];
+}
+
 /* The block's rows and columns to their places in the whole; between blocks everything stays exactly 0. */
 static void scatter(const struct block *block, const struct table *part, int segments, struct table *table)
 {
@@ -552,6 +710,8 @@ static void scatter(const struct block *block, const struct table *part, int seg
 		int row = block->state[i];
 		for (int j = 0; part->Phi && j < part->states; j++)
 			table->Phi[row * table->states + block->state[j]] = part->Phi[i * part->states + j];
+		for (int j = 0; part->increment && j < part->states; j++)
+			table->increment[row * table->states + block->state[j]] = part->increment[i * part->states + j];
 		for (int s = 0; s < segments; s++)
 			for (int k = 0; k < table->columns; k++)
 				table->load[(s * table->states + row) * table->columns + k] = part->load[(s * part->states + i) * part->columns + k];
@@ -574,15 +734,22 @@ struct table **tables_of(const struct model *model, struct resolvent *resolvent,
 	for (int t = 0; t < count; t++) {
 		table[t] = table_new(system, &wanted[t]);
 		mark_zero(table[t]->Phi, (size_t)system->states * (size_t)system->states);
+		mark_zero(table[t]->increment, (size_t)system->states * (size_t)system->states);
+		mark_zero(table[t]->kick, (size_t)system->n * (size_t)system->n);
+		mark_zero(table[t]->drift, (size_t)system->n * (size_t)system->n);
 	}
 	for (int b = 0; b < blocks; b++) {
 		struct filling part = { .model = model, .system = &block[b].system, .resolvent = resolvent_of(&block[b].system) };
 		part.state_name = ARRAY(const char *, (size_t)block[b].system.states);
+		part.coord = block[b].coord;
 		for (int i = 0; i < block[b].system.states; i++)
 			part.state_name[i] = model->state_name[block[b].state[i]];
 		struct table **made = tables_of_block(&part, count, wanted);
-		for (int t = 0; t < count; t++)
+		for (int t = 0; t < count; t++) {
 			scatter(&block[b], made[t], system->segments, table[t]);
+			scatter_square(&block[b], system->n, made[t]->kick, table[t]->kick);
+			scatter_square(&block[b], system->n, made[t]->drift, table[t]->drift);
+		}
 	}
 	return table;
 }

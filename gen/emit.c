@@ -215,20 +215,38 @@ static const char *state_list(const struct model *model)
 	return list;
 }
 
+/* What the form does to rounding, and what rounding has done to its constants */
+static void banner_form(const struct emitter *e)
+{
+	static const char *const kept[STEP_FORMS] = {
+		[FORM_DELTA] = "Delta: y += (Phi - I) y, Phi - I rounded relative to itself",
+		[FORM_KICK_DRIFT_KICK] = "Kick, drift, kick: p += X q; q += S p; p += X q, S and X symmetric: symplectic whatever their rounding"
+	};
+	struct drift drift = drift_of(e->step);
+	if (kept[e->step->form])
+		fprintf(e->to, " * %s%s.\n", kept[e->step->form],
+			e->step->program->compensated ? "; factors in two words,\n * and what rounding takes from the state is kept in rest" : "");
+	if (drift.known)
+		fprintf(e->to, " * %s.\n", drift_text(&drift));
+	if (e->model->single)
+		fputs(" * Numbers and arithmetic are float; each constant is rounded to it once.\n", e->to);
+}
+
 static void banner_cost(const struct emitter *e)
 {
 	const struct program *program = e->step->program;
 	if (e->model->switching)
 		fprintf(e->to, " * A step that stays clear of every breakpoint, in a region whose piece is the step:\n");
-	fprintf(e->to, " * One step of h = %s s, form direct: %d multiplications, %d additions", readable_text(e->model->h),
+	fprintf(e->to, " * One step of h = %s s, form %s: %d multiplications, %d additions", readable_text(e->model->h), form_text_of(e->step),
 		program->multiplications, program->additions);
-	int multiplications = program->oscillators * PL_COSSIN_MUL + program->growths * PL_GROWTH_MUL;
-	if (multiplications)
-		fprintf(e->to, ", %d of them and %d for the functions of the loads", multiplications,
-			program->oscillators * PL_COSSIN_ADD + program->growths * PL_GROWTH_ADD);
+	if (program->wave_multiplications)
+		fprintf(e->to, ", %d of them and %d for the functions of the loads", program->wave_multiplications,
+			program->wave_additions);
 	if (program->calls)
 		fprintf(e->to, ", %d calls of the model's own functions", program->calls);
-	fprintf(e->to, ".\n * State y = %s.\n", state_list(e->model));
+	fputs(".\n", e->to);
+	banner_form(e);
+	fprintf(e->to, " * State y = %s.\n", state_list(e->model));
 	for (int i = 0; i < e->system->inputs; i++)
 		fprintf(e->to, " * Input %s: %s.\n", e->system->input[i].name, e->system->input[i].first_order
 			? "a ramp from sample to sample; u is its value at the end of the step" : "held over the step");
@@ -274,7 +292,10 @@ static void emit_state_struct(const struct emitter *e)
 {
 	FILE *to = e->to;
 	fprintf(to, "typedef struct %s %s;  /* copy it to save, assign it to restore */\n", e->name, e->name);
-	fprintf(to, "struct %s {\n    double y[%s_STATES];  /* %s */\n", e->name, e->upper, state_list(e->model));
+	fprintf(to, "struct %s {\n    double y[%s_STATES];  /* %s%s */\n", e->name, e->upper, state_list(e->model),
+		e->step->momenta ? format("; velocities times mass / mass of %s", e->model->coord_name[0]) : "");
+	if (e->step->program->compensated)
+		fprintf(to, "    double rest[%s_STATES];  /* what rounding took from y so far */\n", e->upper);
 	if (e->system->inputs)
 		fprintf(to, "    double u[%s_INPUTS];  /* the last sample */\n", e->upper);
 	if (e->ramps)
@@ -318,6 +339,8 @@ static void emit_functions(const struct emitter *e, bool rhs)
 		declare(e, format("void   %s_rhs(double t, const double y[], %sdouble dydt[]);", n, inputs ? "const double u[], " : ""),
 			e->model->written != e->model ? format("as written; y: all %d written states", e->model->written->system.states)
 			: e->ramps ? "as written; u: inputs, then their slopes" : "the equations as written");
+	if (e->model->selftest)
+		declare(e, format("double %s_selftest(void);", n), "largest deviation from the closed form, in units in the last place");
 	declare(e, format("extern const double %s_Phi[%s_STATES][%s_STATES];", n, N, N), "y(t+h) = Phi y(t) + ...");
 	if (inputs)
 		declare(e, format("extern const double %s_Gamma[%s_STATES][%d];", n, N, input_columns(e->system)),
@@ -361,8 +384,8 @@ const char *tree(int terms, const char *const *term, int indent)
 
 double finite_number(const struct emitter *e, mpq_srcptr q)
 {
-	if (beyond_double(q))
-		error(e->model->step_at, NULL, "a number of the equations is beyond the range of double");
+	if (beyond_range(q))
+		error(e->model->step_at, NULL, "a number of the equations is beyond the range of %s", target_name());
 	return round_rational(q);
 }
 
@@ -375,17 +398,22 @@ const char *scaled(double factor, const char *operand)
 	return factor == -1 ? format("-%s", operand) : format("%s * %s", shortest(factor), operand);
 }
 
-void emit_locals(const struct emitter *e, const bool *reads)
+/* The mass that a kept velocity is multiplied with; NULL: 1 */
+static const char *factor_of_momentum(const struct emitter *e, int state)
 {
-	emit_locals_of(e, reads, "s->y");
+	if (!e->step->momenta || state < e->model->n || mpq_cmp_ui(e->step->mass[e->system->coord[state]], 1, 1) == 0)
+		return NULL;
+	return shortest(finite_number(e, e->step->mass[e->system->coord[state]]));
 }
 
-void emit_locals_of(const struct emitter *e, const bool *reads, const char *vector)
+static void write_locals(const struct emitter *e, const bool *reads, const char *type, const char *vector, bool velocities)
 {
 	const char *list = "";
-	for (int i = 0; i < e->system->states; i++)
+	for (int i = 0; i < e->system->states; i++) {
+		const char *mass = velocities ? factor_of_momentum(e, i) : NULL;
 		if (reads[i])
-			list = format("%s%s%s = %s[%d]", list, *list ? ", " : "    const double ", e->local[i], vector, i);
+			list = format("%s%s%s = %s[%d]%s", list, *list ? ", " : format("    %s ", type), e->local[i], vector, i, mass ? format(" / %s", mass) : "");
+	}
 	for (int width = 0; *list; list++) {            /* a line break instead of the blank that would pass column 110 */
 		putc(*list == ' ' && width > 100 && list[-1] == ',' ? '\n' : *list, e->to);
 		if (*list == ' ' && width > 100 && list[-1] == ',') {
@@ -396,6 +424,21 @@ void emit_locals_of(const struct emitter *e, const bool *reads, const char *vect
 		if (!list[1])
 			fputs(";\n", e->to);
 	}
+}
+
+void emit_locals(const struct emitter *e, const bool *reads)
+{
+	write_locals(e, reads, "const double", "s->y", true);
+}
+
+void emit_raw_locals(const struct emitter *e, const bool *reads, bool changing)
+{
+	write_locals(e, reads, changing ? "double" : "const double", "s->y", false);
+}
+
+void emit_locals_of(const struct emitter *e, const bool *reads, const char *vector)
+{
+	write_locals(e, reads, "const double", vector, false);
 }
 
 /* ---- init, set, get, time ---- */
@@ -418,11 +461,33 @@ static void emit_init(const struct emitter *e)
 static void emit_time(const struct emitter *e)
 {
 	mpz_srcptr p = mpq_numref(e->model->h), q = mpq_denref(e->model->h);
-	bool short_fraction = mpz_sizeinbase(p, 2) <= 40 && mpz_sizeinbase(q, 2) <= 53;
+	bool short_fraction = e->model->single ? mpz_sizeinbase(p, 2) <= 12 && mpz_sizeinbase(q, 2) <= 24 : mpz_sizeinbase(p, 2) <= 40 && mpz_sizeinbase(q, 2) <= 53;
 	const char *factor = mpz_cmp_ui(p, 1) == 0 ? "" : format(" * %s", shortest(mpz_get_d(p)));
 	const char *divisor = mpz_cmp_ui(q, 1) == 0 ? "" : format(" / %s", shortest(mpz_get_d(q)));
 	fprintf(e->to, "\ndouble %s_time(const %s *s)\n{\n    return s->t0 + (double)s->k%s%s;\n}\n", e->name, e->name,
 		short_fraction ? factor : format(" * %s_H", e->upper), short_fraction ? divisor : "");
+}
+
+/* s->y from a vector of states, nothing left of earlier rounding */
+void emit_store(const struct emitter *e, const char *vector, const char *indent)
+{
+	FILE *to = e->to;
+	bool rest = e->step->program->compensated;
+	fprintf(to, "%sfor (i = 0; i < %s_STATES; i++)%s\n%s    s->y[i] = %s[i];\n", indent, e->upper, rest ? " {" : "", indent, vector);
+	if (rest)
+		fprintf(to, "%s    s->rest[i] = 0.0;\n%s}\n", indent, indent);
+	for (int i = 0; i < e->system->states; i++)
+		if (factor_of_momentum(e, i))
+			fprintf(to, "%ss->y[%d] = %s * %s[%d];\n", indent, i, factor_of_momentum(e, i), vector, i);
+}
+
+/* A vector of states from s->y */
+void emit_load_state(const struct emitter *e, const char *vector)
+{
+	fprintf(e->to, "    for (i = 0; i < %s_STATES; i++)\n        %s[i] = s->y[i];\n", e->upper, vector);
+	for (int i = 0; i < e->system->states; i++)
+		if (factor_of_momentum(e, i))
+			fprintf(e->to, "    %s[%d] = s->y[%d] / %s;\n", vector, i, i, factor_of_momentum(e, i));
 }
 
 static void emit_access(const struct emitter *e)
@@ -431,7 +496,8 @@ static void emit_access(const struct emitter *e)
 	const char *n = e->name, *N = e->upper;
 	emit_init(e);
 	fprintf(to, "\nvoid %s_set(%s *s, double t, const double y[%s_STATES])\n{\n    int i;\n", n, n, N);
-	fprintf(to, "    for (i = 0; i < %s_STATES; i++)\n        s->y[i] = y[i];\n    s->t0 = t;\n    s->k = 0;\n", N);
+	emit_store(e, "y", "    ");
+	fputs("    s->t0 = t;\n    s->k = 0;\n", to);
 	if (has_status(e))
 		fputs("    s->status = 0;\n", to);
 	emit_load_set(e);
@@ -441,7 +507,8 @@ static void emit_access(const struct emitter *e)
 	if (e->model->switching)
 		fprintf(to, "    %s_place(s);\n", n);
 	fprintf(to, "}\n\nvoid %s_get(const %s *s, double y[%s_STATES])\n{\n    int i;\n", n, n, N);
-	fprintf(to, "    for (i = 0; i < %s_STATES; i++)\n        y[i] = s->y[i];\n}\n", N);
+	emit_load_state(e, "y");
+	fputs("}\n", to);
 	emit_time(e);
 	if (has_status(e))
 		fprintf(to, "\nint %s_status(const %s *s)\n{\n    return s->status;\n}\n", n, n);
@@ -471,7 +538,7 @@ void emit_number_rows(const struct emitter *e, int rows, int columns, const doub
 		fputs("    {", e->to);
 		for (int j = 0; j < columns; j++) {
 			if (!isfinite(value[i * columns + j]))
-				error(e->model->step_at, NULL, "a number in the row of %s is beyond the range of double", row_note[i]);
+				error(e->model->step_at, NULL, "a number in the row of %s is beyond the range of %s", row_note[i], target_name());
 			fprintf(e->to, "%s%s", j ? ", " : "", shortest(value[i * columns + j]));
 		}
 		fprintf(e->to, "},  /* %s */\n", row_note[i]);
@@ -595,6 +662,8 @@ void emit_code(FILE *to, const struct step *step, const char *options, const cha
 		emit_declarations(&e, rhs);
 	if (needs_math(&e, rhs))
 		fputs("\n#include <math.h>\n", to);
+	if (step->program->compensated)
+		fputs("\n#ifdef __FAST_MATH__\n#error \"two-word arithmetic needs rounding errors as they are: compile it without -ffast-math\"\n#endif\n", to);
 	emit_phi(&e);
 	if (e.system->inputs)
 		emit_gamma(&e);
@@ -626,6 +695,8 @@ void emit_code(FILE *to, const struct step *step, const char *options, const cha
 		emit_at(&e);
 	if (has_jump(&e))
 		emit_jump(&e);
+	if (e.model->selftest)
+		emit_selftest(&e, has_jump(&e));
 	if (rhs)
 		emit_rhs(&e);
 	emit_descriptor(&e);

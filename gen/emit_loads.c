@@ -12,8 +12,14 @@ static void set_unit(mpfr_ptr unit, bool turns)
 	mpfr_mul_2ui(unit, unit, turns ? 1 : 0, MPFR_RNDN);
 }
 
-/* q / unit as 128 bits with `fraction` of them behind the point, wrapped; the unit is 2 pi for turns, else ln 2 */
-static void fixed_point(mpq_srcptr q, bool turns, int fraction, uint64_t word[2])
+/* Bits of a phase or an exponent on the target */
+static int load_bits(const struct emitter *e)
+{
+	return e->model->single ? 64 : 128;
+}
+
+/* q / unit as so many bits with `fraction` of them behind the point, wrapped; the unit is 2 pi for turns, else ln 2 */
+static void fixed_point(mpq_srcptr q, bool turns, int bits, int fraction, uint64_t word[2])
 {
 	long above = (long)mpz_sizeinbase(mpq_numref(q), 2) - (long)mpz_sizeinbase(mpq_denref(q), 2);
 	mpfr_t x, unit;
@@ -25,11 +31,11 @@ static void fixed_point(mpq_srcptr q, bool turns, int fraction, uint64_t word[2]
 	mpfr_div(x, x, unit, MPFR_RNDN);
 	mpfr_mul_2si(x, x, fraction, MPFR_RNDN);
 	mpfr_get_z(fixed, x, MPFR_RNDN);
-	mpz_ui_pow_ui(part, 2, 127);
+	mpz_ui_pow_ui(part, 2, (unsigned long)bits - 1);
 	mpz_sub_ui(part, part, 1);
 	if (!turns && mpz_cmpabs(fixed, part) > 0)      /* an exponent beyond any double is saturated, not wrapped */
 		mpz_mul_si(fixed, part, mpz_sgn(fixed));
-	mpz_fdiv_r_2exp(fixed, fixed, 128);
+	mpz_fdiv_r_2exp(fixed, fixed, (mp_bitcnt_t)bits);
 	mpz_fdiv_r_2exp(part, fixed, 64);
 	word[1] = mpz_get_ui(part);
 	mpz_fdiv_q_2exp(part, fixed, 64);
@@ -38,24 +44,13 @@ static void fixed_point(mpq_srcptr q, bool turns, int fraction, uint64_t word[2]
 	mpfr_clears(x, unit, NULL);
 }
 
-/* An angle in turns, unit 2^-128 */
-static void turns(mpq_srcptr angle, uint64_t word[2])
-{
-	fixed_point(angle, true, 128, word);
-}
-
-/* e^x as an exponent of 2, unit 2^-112 */
-static void exponent(mpq_srcptr x, uint64_t word[2])
-{
-	fixed_point(x, false, 112, word);
-}
-
-/* |q| / unit as three words and a power of two; unit is 2 pi or ln 2 */
+/* |q| / unit as three words, for float two, and a power of two; unit is 2 pi or ln 2 */
 static void print_rate(const struct emitter *e, mpq_srcptr q, bool turns, const char *note)
 {
 	mpfr_t rate, unit, wide;
 	mpz_t word, digits;
-	mpfr_init2(rate, 192);
+	int words = e->model->single ? 2 : 3;
+	mpfr_init2(rate, 64 * words);
 	mpfr_inits2(512, unit, wide, NULL);
 	mpz_inits(word, digits, NULL);
 	set_unit(unit, turns);
@@ -64,7 +59,7 @@ static void print_rate(const struct emitter *e, mpq_srcptr q, bool turns, const 
 	mpfr_div(rate, wide, unit, MPFR_RNDN);
 	long binary = mpfr_get_z_2exp(digits, rate);
 	fputs("    {{", e->to);
-	for (int k = 2; k >= 0; k--) {
+	for (int k = words - 1; k >= 0; k--) {
 		mpz_fdiv_q_2exp(word, digits, (mp_bitcnt_t)k * 64);
 		mpz_fdiv_r_2exp(word, word, 64);
 		fprintf(e->to, "UINT64_C(0x%016llx)%s", (unsigned long long)mpz_get_ui(word), k ? ", " : "");
@@ -76,34 +71,38 @@ static void print_rate(const struct emitter *e, mpq_srcptr q, bool turns, const 
 
 /* ---- tables ---- */
 
-/* What the exponent of a load's growth gains in so many seconds */
-static const char *growth_text(const struct load *load, mpq_srcptr seconds)
+/* What the exponent of a load's growth gains in so many seconds: units of 2^-112, for float of 2^-48 */
+static const char *growth_text(const struct emitter *e, const struct load *load, mpq_srcptr seconds)
 {
 	mpq_t product;
 	uint64_t word[2];
+	int bits = load_bits(e);
 	mpq_init(product);
 	mpq_mul(product, load->wave->a, seconds);
-	exponent(product, word);
+	fixed_point(product, false, bits, bits - 16, word);
 	mpq_clear(product);
-	bool negative = word[0] >> 63;
-	uint64_t high = negative ? ~word[0] : word[0];
-	return format(negative ? "{-INT64_C(0x%llx) - 1, UINT64_C(0x%016llx)}" : "{INT64_C(0x%llx), UINT64_C(0x%016llx)}", (unsigned long long)high,
-		      (unsigned long long)word[1]);
+	bool negative = word[bits == 64] >> 63;
+	uint64_t high = word[bits == 64];
+	const char *text = format(negative ? "-INT64_C(0x%llx) - 1" : "INT64_C(0x%llx)", (unsigned long long)(negative ? ~high : high));
+	return bits == 64 ? text : format("{%s, UINT64_C(0x%016llx)}", text, (unsigned long long)word[1]);
 }
 
-static const char *turn_text(mpq_srcptr angle)
+/* An angle in units of 2^-128 turn, for float of 2^-64 */
+static const char *turn_text(const struct emitter *e, mpq_srcptr angle)
 {
 	uint64_t word[2];
-	turns(angle, word);
-	return format("{UINT64_C(0x%016llx), UINT64_C(0x%016llx)}", (unsigned long long)word[0], (unsigned long long)word[1]);
+	int bits = load_bits(e);
+	fixed_point(angle, true, bits, bits, word);
+	const char *low = format("UINT64_C(0x%016llx)", (unsigned long long)word[1]);
+	return bits == 64 ? low : format("{UINT64_C(0x%016llx), %s}", (unsigned long long)word[0], low);
 }
 
-static const char *phase_text(const struct load *load, mpq_srcptr seconds)
+static const char *phase_text(const struct emitter *e, const struct load *load, mpq_srcptr seconds)
 {
 	mpq_t angle;
 	mpq_init(angle);
 	mpq_mul(angle, load->wave->w, seconds);
-	const char *text = turn_text(angle);
+	const char *text = turn_text(e, angle);
 	mpq_clear(angle);
 	return text;
 }
@@ -114,23 +113,23 @@ static void print_turns(const struct emitter *e, const char *name, const char *w
 	for (int l = 0; l < e->system->loads; l++) {
 		const struct load *load = &e->system->load[l];
 		if (e->phase[l] >= 0)
-			fprintf(e->to, "    %s,  /* %s */\n", per_step ? phase_text(load, e->model->h) : turn_text(load->wave->p), column_text(load, 0));
+			fprintf(e->to, "    %s,  /* %s */\n", per_step ? phase_text(e, load, e->model->h) : turn_text(e, load->wave->p), column_text(load, 0));
 	}
 	fputs("};\n", e->to);
 }
 
 static void print_growths(const struct emitter *e)
 {
-	fprintf(e->to, "\nstatic const pl_growth %s_growth_step[%d] = {  /* a h / ln 2, in units of 2^-112 */\n", e->name, e->growths);
+	fprintf(e->to, "\nstatic const pl_growth %s_growth_step[%d] = {  /* a h / ln 2, in units of 2^-%d */\n", e->name, e->growths, load_bits(e) - 16);
 	for (int l = 0; l < e->system->loads; l++)
 		if (e->growth[l] >= 0)
-			fprintf(e->to, "    %s,  /* %s */\n", growth_text(&e->system->load[l], e->model->h), column_text(&e->system->load[l], 0));
+			fprintf(e->to, "    %s,  /* %s */\n", growth_text(e, &e->system->load[l], e->model->h), column_text(&e->system->load[l], 0));
 	fputs("};\n", e->to);
 }
 
 /* One row for each node; loads that are not read there keep their place. */
 static void print_node_rows(const struct emitter *e, const char *type, const char *name, const int *index, int count,
-			    const char *(*text)(const struct load *, mpq_srcptr))
+			    const char *(*text)(const struct emitter *, const struct load *, mpq_srcptr))
 {
 	const struct program *program = e->step->program;
 	mpq_t seconds;
@@ -141,7 +140,7 @@ static void print_node_rows(const struct emitter *e, const char *type, const cha
 		mpq_mul(seconds, program->node[i], e->model->h);
 		for (int l = 0; l < e->system->loads; l++)
 			if (index[l] >= 0)
-				row = format("%s%s%s", row, *row ? ",\n     " : "", text(&e->system->load[l], seconds));
+				row = format("%s%s%s", row, *row ? ",\n     " : "", text(e, &e->system->load[l], seconds));
 		fprintf(e->to, "    {%s},  /* %s h */\n", row, exact_text(program->node[i]));
 	}
 	fputs("};\n", e->to);
@@ -175,7 +174,7 @@ static void print_rates(const struct emitter *e, bool turns, const char *name, i
 void emit_load_tables(const struct emitter *e)
 {
 	if (e->phases) {
-		print_turns(e, "phase_start", "at t = 0, in turns of 2^-128", false);
+		print_turns(e, "phase_start", format("at t = 0, in turns of 2^-%d", load_bits(e)), false);
 		print_turns(e, "phase_step", "in one step", true);
 		print_rates(e, true, "phase_rate", e->phases, "turns per second");
 	}

@@ -59,8 +59,8 @@ static void emit_direct_factors(const struct emitter *e)
 
 static double output_factor(const struct output *output, mpq_srcptr factor)
 {
-	if (beyond_double(factor))
-		error(output->value->start, NULL, "a factor of output '%s' is beyond the range of double", output->name);
+	if (beyond_range(factor))
+		error(output->value->start, NULL, "a factor of output '%s' is beyond the range of %s", output->name, target_name());
 	return round_rational(factor);
 }
 

@@ -238,6 +238,8 @@ static double *bound_of(const struct emitter *e, int k, const double *A, int exp
 	double *row = row_of(e, &regions_of(e)->expression[expression]), *bound = ARRAY(double, (size_t)size);
 	if (order > 1) {
 		bound_derivative(e, A, row, order, d, factor, bound);
+		for (int j = 0; j < size && e->model->single; j++)
+			bound[j] *= 1 + ldexp(1, -22);  /* still a bound when it is printed as a float */
 		return bound;
 	}
 	times_matrix(size, row, A);

@@ -18,6 +18,7 @@ static const char *operand_text(const struct emitter *e, const struct operand *o
 {
 	switch (operand->kind) {
 	case OPERAND_STATE: return e->local[operand->index];
+	case OPERAND_DIFFERENCE: return format("(%s - %s)", e->local[operand->index], e->local[operand->minus]);
 	case OPERAND_LOAD:  return column_operand(e, operand->index);
 	default:            return input_operand(e, operand->index);
 	}
@@ -33,13 +34,45 @@ static const char *term_text(const struct emitter *e, const struct assignment *a
 	return operand ? format("%s * %s", factor, operand) : factor;
 }
 
-static void emit_assignment(const struct emitter *e, const struct assignment *a)
+static const char *sum_text(const struct emitter *e, const struct assignment *a, int indent)
 {
 	const char **term = ARRAY(const char *, (size_t)a->terms + 1);
 	for (int k = 0; k < a->terms; k++)
 		term[k] = term_text(e, a, &a->term[k]);
-	const char *sum = a->terms ? tree(a->terms, term, 14) : "0.0";
-	fprintf(e->to, "    s->y[%d] = %s;  /* %s */\n", a->target, sum, e->model->state_name[a->target]);
+	return a->terms ? tree(a->terms, term, indent) : "0.0";
+}
+
+/* The factors' second words; NULL: there are none */
+static const char *second_sum_text(const struct emitter *e, const struct assignment *a)
+{
+	const char **term = ARRAY(const char *, (size_t)a->terms + 1);
+	int terms = 0;
+	for (int k = 0; k < a->terms; k++)
+		if (has_second_word(&a->term[k], e->system))
+			term[terms++] = scaled(a->term[k].factor->low, operand_text(e, &a->term[k].operand));
+	return terms ? tree(terms, term, 14) : NULL;
+}
+
+/* target = target + (sum), what its rounding takes kept in s->rest */
+static void emit_compensated(const struct emitter *e, const struct assignment *a, const char *target)
+{
+	const char *second = second_sum_text(e, a), *sum = sum_text(e, a, 14);
+	fprintf(e->to, "    %s = pl_accumulate(%s,  /* %s */\n              %s,\n              %s, &s->rest[%d]);\n", target, e->local[a->target],
+		e->model->state_name[a->target], sum, second ? second : "0.0", a->target);
+}
+
+static void emit_assignment(const struct emitter *e, const struct assignment *a)
+{
+	const struct program *program = e->step->program;
+	const char *target = program->in_order ? e->local[a->target] : format("s->y[%d]", a->target), *name = e->model->state_name[a->target];
+	if (program->compensated)
+		emit_compensated(e, a, target);
+	else if (program->in_order)
+		fprintf(e->to, "    %s += %s;\n", target, sum_text(e, a, 10));
+	else if (a->added)
+		fprintf(e->to, a->terms > 1 ? "    %s = %s + (%s);  /* %s */\n" : "    %s = %s + %s;  /* %s */\n", target, e->local[a->target], sum_text(e, a, 14), name);
+	else
+		fprintf(e->to, "    %s = %s;  /* %s */\n", target, sum_text(e, a, 14), name);
 }
 
 static bool *loads_of_step(const struct emitter *e)
@@ -92,7 +125,7 @@ static void emit_columns(const struct emitter *e, const char *table, const char 
 		return;
 	fprintf(e->to, "    const double %s[%d] = {", vector, columns);
 	for (int k = 0; k < columns; k++) {
-		const char *operand = operand_text(e, &(struct operand){ kind, k });
+		const char *operand = operand_text(e, &(struct operand){ kind, k, 0 });
 		fprintf(e->to, "%s%s", k ? ", " : "", operand ? operand : "1.0");
 	}
 	fprintf(e->to, "};\n    for (i = 0; i < %s_STATES; i++)\n        for (j = 0; j < %d; j++)\n            y[i] += %s[i][j] * %s[j];\n", e->upper, columns,
@@ -111,10 +144,10 @@ static void emit_looped_step(const struct emitter *e)
 	fprintf(to, "    double y[%s_STATES];\n    int i, j;\n", N);
 	emit_load_states(e, loads, false);
 	fprintf(to, "    for (i = 0; i < %s_STATES; i++) {\n        y[i] = 0.0;\n        for (j = 0; j < %s_STATES; j++)\n", N, N);
-	fprintf(to, "            y[i] += %s_Phi[i][j] * s->y[j];\n    }\n", n);
+	fprintf(to, "            y[i] += %s_%s[i][j] * s->y[j];\n    }\n", n, e->step->form == FORM_DELTA ? "increment" : "Phi");
 	emit_columns(e, format("%s_load_factor[%s]", n, e->system->segments > 1 ? "s->segment" : "0"), "load", OPERAND_LOAD, table->columns);
 	emit_columns(e, format("%s_Gamma", n), "input", OPERAND_INPUT, table->inputs);
-	fprintf(to, "    for (i = 0; i < %s_STATES; i++)\n        s->y[i] = y[i];\n", N);
+	fprintf(to, "    for (i = 0; i < %s_STATES; i++)\n        s->y[i] %s y[i];\n", N, e->step->form == FORM_DELTA ? "+=" : "=");
 }
 
 /* A step that no change of the loads interrupts */
@@ -125,12 +158,15 @@ static void emit_plain_step(const struct emitter *e)
 		emit_looped_step(e);
 		return;
 	}
-	emit_locals(e, program->reads);
+	emit_raw_locals(e, program->reads, program->in_order);
 	emit_load_states(e, loads_of_step(e), false);
 	if (e->system->segments > 1 && any_load_term(program))
 		fprintf(e->to, "    const double (*const factor)[%d] = %s_load_factor[s->segment];\n", e->step->table->columns, e->name);
 	for (int i = 0; i < program->assignments; i++)
 		emit_assignment(e, &program->assignment[i]);
+	for (int i = 0; i < e->system->states && program->in_order; i++)
+		if (program->reads[i])
+			fprintf(e->to, "    s->y[%d] = %s;\n", i, e->local[i]);
 }
 
 void emit_step_end(const struct emitter *e)
@@ -158,14 +194,29 @@ static void emit_changing_step(const struct emitter *e)
 	fprintf(e->to, "}\n\nvoid %s_step(%s)\n{\n", n, step_parameters(e));
 	fprintf(e->to, "    if (s->segment < %d && %s_until(s, s->segment) < %s_H) {\n", changes, n, e->upper);
 	fprintf(e->to, "        double y[%s_STATES];\n        int i;\n        %s_pass(s, %s%s_H, y);\n", e->upper, n, u, e->upper);
-	fprintf(e->to, "        for (i = 0; i < %s_STATES; i++)\n            s->y[i] = y[i];\n    } else {\n        %s_plain_step(s%s);\n    }\n", e->upper, n,
+	fprintf(e->to, "        for (i = 0; i < %s_STATES; i++)%s\n", e->upper, e->step->program->compensated ? " {\n            s->rest[i] = 0.0;" : "");
+	fprintf(e->to, "            s->y[i] = y[i];\n%s    } else {\n        %s_plain_step(s%s);\n    }\n", e->step->program->compensated ? "        }\n" : "", n,
 		*u ? ", u" : "");
 	emit_step_end(e);
 	fprintf(e->to, "    while (s->segment < %d && %s_until(s, s->segment) <= 1e-18 * %s_H)\n        s->segment++;\n}\n", changes, n, e->upper);
 }
 
+/* Phi - I, for a step that loops */
+static void emit_increments(const struct emitter *e)
+{
+	int n = e->system->states;
+	double *value = ARRAY(double, (size_t)(n * n));
+	for (int i = 0; i < n * n; i++)
+		value[i] = e->step->table->increment[i].value;
+	fprintf(e->to, "\nstatic const double %s_increment[%s_STATES][%s_STATES] = {  /* Phi - I, rounded as it is */\n", e->name, e->upper, e->upper);
+	emit_number_rows(e, n, n, value, e->model->state_name);
+	fputs("};\n", e->to);
+}
+
 void emit_step(const struct emitter *e)
 {
+	if (e->step->program->loops && e->step->form == FORM_DELTA)
+		emit_increments(e);
 	if (e->step->program->loops && e->step->table->columns)
 		emit_load_factors(e);
 	if (e->system->segments > 1) {

@@ -158,7 +158,7 @@ static void emit_start_of_series(const struct emitter *e)
 	fprintf(e->to, "    int i;\n");
 	if (e->system->segments == 1)
 		emit_leftover_now(e);
-	fprintf(e->to, "    for (i = 0; i < %s_STATES; i++)\n        x[i] = s->y[i];\n", e->upper);
+	emit_load_state(e, "x");
 	emit_held(e);
 	store_loads(e, series->load, "");
 	store_inputs(e, series->input);
@@ -365,6 +365,31 @@ static void emit_fill_power(const struct emitter *e, int size, int entries)
 			entries, size, n, n, n);
 }
 
+static void emit_leap_start(const struct emitter *e)
+{
+	if (e->step->momenta) {
+		fprintf(e->to, "    %s_get(s, y);\n    for (i = 0; i < %s_STATES; i++)\n        x[i].hi = y[i];\n", e->name, e->upper);
+		return;
+	}
+	bool rest = e->step->program->compensated;
+	fprintf(e->to, "    for (i = 0; i < %s_STATES; i++)%s\n        x[i].hi = s->y[i];\n", e->upper, rest ? " {" : "");
+	if (rest)
+		fputs("        x[i].lo = s->rest[i];\n    }\n", e->to);
+}
+
+static void emit_leap_end(const struct emitter *e)
+{
+	if (e->step->momenta) {
+		fprintf(e->to, "    for (i = 0; i < %s_STATES; i++)\n        y[i] = x[i].hi;\n", e->upper);
+		emit_store(e, "y", "    ");
+		return;
+	}
+	bool rest = e->step->program->compensated;
+	fprintf(e->to, "    for (i = 0; i < %s_STATES; i++)%s\n        s->y[i] = x[i].hi;\n", e->upper, rest ? " {" : "");
+	if (rest)
+		fputs("        s->rest[i] = x[i].lo;\n    }\n", e->to);
+}
+
 /* n steps without a change of the loads: by powers of the one-step matrix */
 static void emit_leap(const struct emitter *e, const char *declaration)
 {
@@ -374,13 +399,16 @@ static void emit_leap(const struct emitter *e, const char *declaration)
 	int size = p.size, entries = emit_power_entries(e);
 	fprintf(to, "\n%s(%s *s, uint64_t n)\n{\n", declaration, e->name);
 	fprintf(to, "    pl_two power[%d], work[%d], x[%d], w[%d];\n", size * size, size * size, size, size);
+	if (e->step->momenta)
+		fprintf(to, "    double y[%s_STATES];\n", e->upper);
 	emit_load_states(e, wanted_loads(e, p.load), false);
 	fputs("    int i, j;\n", to);
 	emit_fill_power(e, size, entries);
 	fprintf(to, "    for (i = 0; i < %d; i++)\n        x[i].lo = 0.0;\n", size);
-	fprintf(to, "    for (i = 0; i < %s_STATES; i++)\n        x[i].hi = s->y[i];\n", e->upper);
+	emit_leap_start(e);
 	store_loads(e, p.load, ".hi");
-	fprintf(to, "    pl_power_apply(%d, power, work, x, w, n);\n    for (i = 0; i < %s_STATES; i++)\n        s->y[i] = x[i].hi;\n", size, e->upper);
+	fprintf(to, "    pl_power_apply(%d, power, work, x, w, n);\n", size);
+	emit_leap_end(e);
 	emit_load_advance(e, "n");
 	fputs("    s->k += n;\n}\n", to);
 }

@@ -83,13 +83,15 @@ static void person_step(FILE *to, const struct step *step)
 {
 	const struct model *model = step->model;
 	const struct program *program = step->program;
-	fprintf(to, "Step: form direct, h = %s s; %d multiplications, %d additions", readable_text(model->h), program->multiplications,
+	fprintf(to, "Step: form %s, h = %s s; %d multiplications, %d additions", form_text_of(step), readable_text(model->h), program->multiplications,
 		program->additions);
-	if (program->oscillators)
-		fprintf(to, " (%d and %d of them for cos and sin of the loads)", program->oscillators * PL_COSSIN_MUL,
-			program->oscillators * PL_COSSIN_ADD);
+	if (program->wave_multiplications)
+		fprintf(to, " (%d and %d of them for the functions of the loads)", program->wave_multiplications, program->wave_additions);
 	if (program->calls)
 		fprintf(to, ", %d calls of the model's own functions", program->calls);
+	struct drift drift = drift_of(step);
+	if (drift.known)
+		fprintf(to, ".\n%s", drift_text(&drift));
 	fprintf(to, ".\nPhi%s, each entry correctly rounded:\n", !has_leftover(step) ? "" : step->operators > 1 ? " = e^{A h} of the first operator" : " = e^{A h}");
 	for (int i = 0; i < model->system.states; i++) {
 		fprintf(to, "    %-8s", model->state_name[i]);
@@ -260,7 +262,7 @@ static void json_rational_matrix(FILE *to, const char *key, int n, const mpq_t *
 {
 	double *value = ARRAY(double, (size_t)(n * n));
 	for (int i = 0; i < n * n; i++)
-		value[i] = round_rational(A[i]);
+		value[i] = nearest_double(A[i]);
 	json_matrix(to, key, n, n, value);
 }
 
@@ -378,7 +380,7 @@ static void json_regions(FILE *to, const struct step *step)
 	for (int i = 0; i < s->expressions; i++) {
 		fprintf(to, "%s\n    {\"expression\": \"%s\", \"breakpoints\": [", i ? "," : "", form_text(step->model, s->expression[i].form));
 		for (int k = 0; k < s->expression[i].breaks; k++)
-			fprintf(to, "%s%.17g", k ? ", " : "", round_rational(s->expression[i].at[k]));
+			fprintf(to, "%s%.17g", k ? ", " : "", nearest_double(s->expression[i].at[k]));
 		fputs("]}", to);
 	}
 	fputs("],\n  \"regions\": [", to);
@@ -403,8 +405,8 @@ void explain_json(FILE *to, const struct step *step)
 		output[i] = model->output[i].name;
 	for (int i = 0; i < model->system.states * model->system.states; i++)
 		Phi[i] = step->table->Phi[i].value;
-	fprintf(to, "{\n  \"model\": \"%s\",\n  \"scheme\": \"%s\",\n  \"form\": \"direct\",\n  \"step\": %.17g,\n", model->name,
-		scheme_name(model->scheme), round_rational(model->h));
+	fprintf(to, "{\n  \"model\": \"%s\",\n  \"scheme\": \"%s\",\n  \"form\": \"%s\",\n  \"accuracy\": \"%s\",\n  \"real\": \"%s\",\n  \"step\": %.17g,\n", model->name,
+		scheme_name(model->scheme), step_form_name(step->form), model->compensated ? "compensated" : "plain", target_name(), nearest_double(model->h));
 	json_names(to, "states", model->system.states, model->state_name);
 	json_names(to, "outputs", model->outputs, output);
 	json_names(to, "inputs", model->system.inputs, input);
@@ -421,6 +423,9 @@ void explain_json(FILE *to, const struct step *step)
 		json_regions(to, step);
 	if (has_leftover(step))
 		json_split(to, step);
+	struct drift drift = drift_of(step);
+	if (drift.known)
+		fprintf(to, "  \"drift_per_step\": {\"amplitude\": %.17g, \"phase\": %.17g},\n", drift.amplitude, drift.phase);
 	fprintf(to, "  \"cost\": {\"multiplications\": %d, \"additions\": %d", step->program->multiplications, step->program->additions);
 	fprintf(to, step->program->calls ? ", \"calls\": %d}\n}\n" : "}\n}\n", step->program->calls);
 }

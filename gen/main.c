@@ -34,11 +34,15 @@ static const char usage[] =
 	"  --rhs               also emit NAME_rhs: the equations as written\n"
 	"  --step EXPR         instead of the spec's step\n"
 	"  --scheme NAME       instead of the spec's: exact pl etd1 etdrk2 etdrk4 nc2 nc3 dq4 bm3\n"
+	"  --real float        numbers and arithmetic of type float (default: double)\n"
+	"  --form NAME         of a linear step: auto direct delta kick-drift-kick\n"
+	"  --accuracy compensated   two-word factors, and what rounding takes from the state is kept\n"
 	"  --loads leftover    leave known loads to the scheme's quadrature (default: exact)\n"
 	"  -D NAME=EXPR        another value for a param; EXPR may use the spec's params\n"
 	"  --prefix NAME       instead of the model's name for everything generated\n"
 	"  --reduce            leave out what the outputs cannot see\n"
 	"  --depfile FILE      also write a make/ninja dependency file\n"
+	"  --selftest          also emit NAME_selftest: steps against the closed form\n"
 	"  --help, --version\n"
 	"\n"
 	"Exit status: 0 done; 1 the spec is wrong or a file cannot be read or written; 2 the command line is wrong.\n";
@@ -70,7 +74,7 @@ static void note_in_banner(struct options *options, const char *option)
 	options->banner = format("%s%s%s", options->banner, *options->banner ? " " : "", option);
 }
 
-enum { OPT_HEADER = 256, OPT_EXPLAIN, OPT_SOLUTION, OPT_RHS, OPT_STEP, OPT_SCHEME, OPT_PREFIX, OPT_REDUCE, OPT_DEPFILE, OPT_LOADS, OPT_HELP, OPT_VERSION, OPT_LATER };
+enum { OPT_HEADER = 256, OPT_EXPLAIN, OPT_SOLUTION, OPT_RHS, OPT_STEP, OPT_SCHEME, OPT_PREFIX, OPT_REDUCE, OPT_DEPFILE, OPT_LOADS, OPT_REAL, OPT_FORM, OPT_ACCURACY, OPT_SELFTEST, OPT_HELP, OPT_VERSION };
 
 static const struct option long_options[] = {
 	{ "header", no_argument, NULL, OPT_HEADER }, { "explain", optional_argument, NULL, OPT_EXPLAIN },
@@ -78,9 +82,9 @@ static const struct option long_options[] = {
 	{ "step", required_argument, NULL, OPT_STEP }, { "scheme", required_argument, NULL, OPT_SCHEME },
 	{ "prefix", required_argument, NULL, OPT_PREFIX }, { "depfile", required_argument, NULL, OPT_DEPFILE },
 	{ "help", no_argument, NULL, OPT_HELP }, { "version", no_argument, NULL, OPT_VERSION },
-	{ "real", required_argument, NULL, OPT_LATER }, { "form", required_argument, NULL, OPT_LATER },
-	{ "accuracy", required_argument, NULL, OPT_LATER }, { "loads", required_argument, NULL, OPT_LOADS },
-	{ "reduce", no_argument, NULL, OPT_REDUCE }, { "selftest", no_argument, NULL, OPT_LATER }, { 0 }
+	{ "real", required_argument, NULL, OPT_REAL }, { "form", required_argument, NULL, OPT_FORM },
+	{ "accuracy", required_argument, NULL, OPT_ACCURACY }, { "loads", required_argument, NULL, OPT_LOADS },
+	{ "reduce", no_argument, NULL, OPT_REDUCE }, { "selftest", no_argument, NULL, OPT_SELFTEST }, { 0 }
 };
 
 static bool told;               /* that standard output cannot be written */
@@ -100,7 +104,7 @@ static _Noreturn void say_and_stop(const char *text)
 	exit(0);
 }
 
-static void take_option(struct options *options, int option, int index)
+static void take_option(struct options *options, int option)
 {
 	switch (option) {
 	case 'o': options->output = optarg; break;
@@ -132,10 +136,24 @@ static void take_option(struct options *options, int option, int index)
 			wrong_usage(format("--loads takes exact or leftover, found '%s'", optarg));
 		options->overrides.loads_left = strcmp(optarg, "leftover") == 0;
 		break;
+	case OPT_REAL:
+		if (strcmp(optarg, "double") != 0 && strcmp(optarg, "float") != 0)
+			wrong_usage(format("--real takes double or float, found '%s'", optarg));
+		options->overrides.single = strcmp(optarg, "float") == 0;
+		break;
+	case OPT_FORM:
+		if (!step_form_of(optarg, &options->overrides.form))
+			wrong_usage(format("--form takes auto, direct, delta or kick-drift-kick, found '%s'", optarg));
+		break;
+	case OPT_ACCURACY:
+		if (strcmp(optarg, "compensated") != 0)
+			wrong_usage(format("--accuracy takes compensated, found '%s'", optarg));
+		options->overrides.compensated = true;
+		break;
+	case OPT_SELFTEST: options->overrides.selftest = true; break;
 	case OPT_DEPFILE: options->depfile = optarg; break;
 	case OPT_HELP: say_and_stop(usage);
 	case OPT_VERSION: say_and_stop("plgen " PLGEN_VERSION "\n");
-	case OPT_LATER: wrong_usage(format("option --%s is not built yet", long_options[index].name));
 	case ':': wrong_usage(format("option %s needs a value", optopt > 0 && optopt < 256 ? format("-%c", optopt) : "above"));
 	default: wrong_usage(format("unknown option '%s'", optopt > 0 && optopt < 256 ? format("-%c", optopt) : "above"));
 	}
@@ -143,13 +161,13 @@ static void take_option(struct options *options, int option, int index)
 
 static void read_options(int argc, char **argv, struct options *options)
 {
-	int option, index = 0;
+	int option;
 	options->banner = "";
 	opterr = 0;
-	for (int before = optind; (option = getopt_long(argc, argv, ":o:D:", long_options, &index)) != -1; before = optind) {
+	for (int before = optind; (option = getopt_long(argc, argv, ":o:D:", long_options, NULL)) != -1; before = optind) {
 		if ((option == '?' || option == ':') && (optopt == 0 || optopt >= 256))
 			wrong_usage(format(option == ':' ? "option '%s' needs a value" : "unknown option or surplus value: '%s'", argv[before]));
-		take_option(options, option, index);
+		take_option(options, option);
 	}
 	if (optind == argc)
 		wrong_usage("no spec is given");
@@ -164,6 +182,14 @@ static void read_options(int argc, char **argv, struct options *options)
 		note_in_banner(options, format("--prefix %s", options->overrides.prefix));
 	if (options->overrides.loads_left)
 		note_in_banner(options, "--loads leftover");
+	if (options->overrides.single)
+		note_in_banner(options, "--real float");
+	if (options->overrides.form != FORM_AUTO)
+		note_in_banner(options, format("--form %s", step_form_name(options->overrides.form)));
+	if (options->overrides.compensated)
+		note_in_banner(options, "--accuracy compensated");
+	if (options->overrides.selftest)
+		note_in_banner(options, "--selftest");
 	if (options->rhs)
 		note_in_banner(options, "--rhs");
 	size_t length = options->output ? strlen(options->output) : 0;
@@ -349,6 +375,21 @@ static void print_main_text(void *context)
 	}
 }
 
+/* C for the target double becomes C for float. */
+static void make_single(struct file *f)
+{
+	struct file single = *f;
+	FILE *stream = open_memstream(&single.text, &single.length);
+	if (stream)
+		print_single(stream, f->text);
+	if (!stream || fclose(stream) != 0) {
+		fputs("plgen: error: out of memory\n", stderr);
+		exit(1);
+	}
+	free(f->text);
+	*f = single;
+}
+
 static int fail(void)
 {
 	diagnostics_print(stderr);
@@ -362,6 +403,8 @@ int main(int argc, char **argv)
 	atexit(finish);
 	read_options(argc, argv, &options);
 
+	if (options.overrides.single && options.print != PRINT_SOLUTION)
+		target_float();
 	const struct source *source = source_read(options.spec);
 	if (!source)
 		return fail();
@@ -389,6 +432,8 @@ int main(int argc, char **argv)
 		emit_header(to, step, options.banner, options.rhs);
 		close_file(to);
 	}
+	for (int i = 0; i < files && options.overrides.single && options.print <= PRINT_HEADER; i++)
+		make_single(&file[i]);
 	if (options.depfile) {
 		to = open_file(options.depfile);
 		print_depfile(to, &options, model);

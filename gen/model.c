@@ -119,8 +119,8 @@ static void evaluate_step(void *context)
 	collect_constant(&b->collector, node, b->model->h);
 	if (mpq_sgn(b->model->h) <= 0)
 		error(at, NULL, "the step must be above 0");
-	if (beyond_double(b->model->h) || round_rational(b->model->h) == 0)
-		error(at, NULL, "the step is beyond the range of double");
+	if (beyond_range(b->model->h) || round_rational(b->model->h) == 0)
+		error(at, NULL, "the step is beyond the range of %s", target_name());
 }
 
 /* ---- initial values ---- */
@@ -147,8 +147,8 @@ static void evaluate_initial(void *context)
 	for (int i = 0; i < count; i++) {
 		int state = initial->primes ? model->system.velocity[first + i] : first + i;
 		constant_value(&work->b->collector, value->cell[single ? 0 : i], model->initial[state]);
-		if (beyond_double(model->initial[state]))
-			error(initial->value->start, NULL, "the initial value is beyond the range of double");
+		if (beyond_range(model->initial[state]))
+			error(initial->value->start, NULL, "the initial value is beyond the range of %s", target_name());
 	}
 }
 
@@ -265,6 +265,12 @@ struct model *model_build(struct spec *spec, const struct overrides *overrides)
 	model->written = model;
 	b.collector.model = model;
 	model->atoms = b.collector.atoms = atoms_new();
+	model->form = overrides->form;
+	model->form_at = (struct place){ source_argument(step_form_name(overrides->form)), 0 };
+	model->compensated_at = (struct place){ source_argument("compensated"), 0 };
+	model->compensated = overrides->compensated;
+	model->single = overrides->single;
+	model->selftest = overrides->selftest;
 	model->name = overrides->prefix ? overrides->prefix : spec->name;
 	mpq_init(model->h);
 	b.polynomial = wave_of(&b.collector, zero, zero, zero);

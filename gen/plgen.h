@@ -440,6 +440,7 @@ struct operator {                   /* A of y' = A y + loads + inputs + r(t, y);
 	mpq_t at;                   /* of a bank: the value up to which it serves */
 	const char *text;           /* x = 2, x' = 0 */
 };
+enum step_form { FORM_AUTO, FORM_DIRECT, FORM_DELTA, FORM_KICK_DRIFT_KICK, STEP_FORMS };
 enum scheme { SCHEME_EXACT, SCHEME_PL, SCHEME_ETD1, SCHEME_ETDRK2, SCHEME_ETDRK4, SCHEME_NC2, SCHEME_NC3, SCHEME_DQ4, SCHEME_BM3, SCHEMES };
 struct model {
 	const struct spec *spec;
@@ -460,6 +461,12 @@ struct model {
 	enum scheme scheme;
 	struct place scheme_at;     /* source NULL: it was not given */
 	bool loads_left;            /* known loads are left to the scheme */
+	enum step_form form;        /* as asked for */
+	struct place form_at;       /* on the command line */
+	bool compensated;           /* two-word arithmetic is asked for */
+	struct place compensated_at;
+	bool single;                /* the target's numbers are floats */
+	bool selftest;              /* NAME_selftest is asked for */
 	int operators;              /* 0: exact, or nothing is left over */
 	struct operator *operator;
 	int *owner;                 /* per coordinate: the row of its equation */
@@ -501,7 +508,8 @@ struct switching {
 };
 struct overrides {                  /* from the command line */
 	const char *step, *scheme, *prefix;
-	bool reduce, loads_left;
+	bool reduce, loads_left, compensated, single, selftest;
+	enum step_form form;
 	bool solution;              /* the closed form is wanted, whatever the scheme */
 	int definitions;
 	const char **definition;    /* NAME=EXPR */
@@ -735,11 +743,15 @@ bool taylor_exact(struct taylor *t, int i, int j, mpq_ptr exact);
 
 /* ---- number.c: the border to rounded numbers ---- */
 
-double round_rational(mpq_srcptr q);                        /* nearest double; +-HUGE_VAL beyond the range */
-bool   beyond_double(mpq_srcptr q);
+/* The target's type is double, or float after target_float; a double holds its numbers. */
+void   target_float(void);
+const char *target_name(void);
+double round_rational(mpq_srcptr q);                        /* nearest of the target's numbers; +-HUGE_VAL beyond the range */
+double nearest_double(mpq_srcptr q);                        /* whatever the target */
+bool   beyond_range(mpq_srcptr q);
 const char *finite_text(struct place at, mpq_srcptr q);     /* shortest; leaves the statement at a value beyond the range */
-bool   round_enclosure(mpfi_srcptr x, double *d);           /* false: both ends do not round to one double */
-const char *shortest(double d);                             /* fewest digits that read back; a C literal of type double */
+bool   round_enclosure(mpfi_srcptr x, double *d);           /* false: both ends do not round to one number */
+const char *shortest(double d);                             /* fewest digits that read back; a C literal, of type double */
 const char *exact_text(mpq_srcptr q);                       /* a decimal if there is one, else p/q */
 const char *readable_text(mpq_srcptr q);                    /* the same while it is short, else 12 digits */
 
@@ -757,6 +769,7 @@ struct series {                     /* x' = A x; x = state, held terms, constant
 void series_place(struct series *series, const struct linear *system, int powers); /* which entry of x is what */
 void series_place_loads(struct series *series, const struct linear *system, int powers, const bool *needed); /* of loads those needed */
 void series_plan(struct step *step);                        /* degree, halvings */
+double largest_pole_angle(const struct step *step);         /* max|pole| h, rounded up */
 int  series_halvings(const struct step *step, int operator); /* of the time h, so that |pole| tau <= 1 */
 int  series_degree(const struct step *step, int first, int last, int halvings); /* for these operators, over h 2^-halvings */
 mpq_t *series_matrix(const struct series *series, const struct linear *system, int segment); /* A in one segment of time */
@@ -764,7 +777,7 @@ mpq_t *series_matrix(const struct series *series, const struct linear *system, i
 /* ---- coefficients.c: numbers of the step, each rounded once ---- */
 
 struct coefficient {
-	double value, low;          /* value + low is the number in two words (low only where asked for) */
+	double value, low;          /* of the target's type; value + low is the number in two words (low only where asked for) */
 	bool zero;                  /* exactly: no trace in the code */
 };
 /* What multiplies a leftover, as a sum of parts: at tau = fraction h, B the force of its channel,
@@ -782,6 +795,8 @@ struct kernel {
 struct wanted {                     /* of one table */
 	mpq_t fraction;             /* its time, as a part of h */
 	bool Phi, two_words;
+	bool increments;            /* Phi - I */
+	const mpq_t *mass;          /* kicks and drifts; one per coordinate, in units of the first; NULL: not wanted */
 	const char *name;           /* full, half */
 	int kernels;
 	struct kernel kernel[4];
@@ -790,6 +805,8 @@ struct table {                      /* of one time: y(tau) = Phi y + sum of colu
 	const struct wanted *wanted;
 	int states, columns, inputs, channels;
 	struct coefficient *Phi;    /* states x states, or NULL */
+	struct coefficient *increment; /* Phi - I, each entry rounded as it is; or NULL */
+	struct coefficient *drift, *kick; /* coordinates x coordinates, symmetric: S = Phi_12 M^-1 and X = S^-1 (Phi_11 - I); or NULL */
 	struct coefficient *load;   /* [segment of time][states x columns]: of the loads in order */
 	struct coefficient *input;  /* states x inputs: u held; or its value before the step and after it */
 	struct coefficient **kernel; /* per kernel: states x channels */
@@ -803,10 +820,11 @@ struct table **tables_of(const struct model *model, struct resolvent *resolvent,
 
 /* ---- scheme.c: what a scheme steps with, as a program over tables ---- */
 
-enum operand_kind { OPERAND_STATE, OPERAND_LOAD, OPERAND_INPUT };
+enum operand_kind { OPERAND_STATE, OPERAND_DIFFERENCE, OPERAND_LOAD, OPERAND_INPUT };
 struct operand {
 	enum operand_kind kind;
 	int index;                  /* state; or column of the loads, of the inputs */
+	int minus;                  /* of a difference: the state that is subtracted */
 };
 struct product {
 	const struct coefficient *factor; /* of a load: in the first segment of time */
@@ -814,6 +832,7 @@ struct product {
 };
 struct assignment {                 /* target <- sum of products */
 	int target;                 /* state */
+	bool added;                 /* target <- target + sum of products */
 	int terms;
 	struct product *term;
 };
@@ -836,9 +855,12 @@ struct action {
 struct program {
 	int assignments;            /* of a scheme that leaves nothing over */
 	struct assignment *assignment;
+	bool in_order;              /* each assignment reads what those before it have left; else all read the old state */
+	bool compensated;           /* factors in two words, and what rounding takes from a state is kept */
 	bool *reads;                /* per state: whether its old value is read */
 	bool *uses;                 /* per column of the loads */
 	int oscillators, growths;   /* cos/sin pairs and exponentials evaluated per step */
+	int wave_multiplications, wave_additions; /* for them, counted below too */
 	int multiplications, additions, calls; /* calls: of the model's own functions */
 	bool loops;                 /* over the tables, zeros included: a large model */
 	int actions;                /* 0: assignments */
@@ -860,12 +882,36 @@ struct step {                       /* everything that is emitted for one model 
 	struct resolvent **resolvent;
 	struct table ***all;        /* [operator][table] */
 	struct program *program;
+	enum step_form form;        /* FORM_DIRECT, FORM_DELTA or FORM_KICK_DRIFT_KICK */
+	const mpq_t *mass;          /* of kick-drift-kick, per coordinate; in units of the first */
+	bool momenta;               /* NAME keeps mass times velocity, since not all masses are equal */
 	mpfr_t growth;              /* pl: 1/s, largest real part of the modified equation's poles (report only) */
 	struct series series;
 	int *halvings;              /* of a piecewise-linear model, per operator */
 };
 struct step *step_build(const struct model *model);         /* NULL: it was said why */
 bool has_leftover(const struct step *step);                 /* or nothing is left over, and a step is assignments */
+
+/* ---- stepform.c: a linear step as direct, delta or kick-drift-kick ---- */
+
+const char *step_form_name(enum step_form form);
+const char *form_text_of(const struct step *step);          /* delta, compensated */
+bool step_form_of(const char *name, enum step_form *form);  /* false: there is none of this name */
+void choose_form(struct step *step);                        /* leaves the statement where the one asked for cannot be */
+void need_direct(const struct step *step);                  /* the same where another than direct is asked for */
+struct program *linear_program(const struct step *step);    /* from its table */
+bool has_second_word(const struct product *p, const struct linear *system); /* in the code: loads that change have none */
+void count_loads(struct program *program, const struct linear *system, bool single); /* what the load states of the columns in use cost */
+
+/* ---- drift.c: what the rounding of its constants does to a linear step ---- */
+
+struct drift {                      /* per step, of the mode where it is largest */
+	double amplitude;           /* ln|z| - Re p h */
+	double phase;               /* |arg z - Im p h| [rad] */
+	bool known;                 /* nothing is left over, and the step does not loop over tables */
+};
+struct drift drift_of(const struct step *step);
+const char *drift_text(const struct drift *drift);          /* over 1e9 steps */
 
 /* ---- left.c: forms with atoms as C ---- */
 
@@ -942,6 +988,9 @@ const char *column_operand(const struct emitter *e, int column);
 void emit_changes(const struct emitter *e);                       /* loads that change their formula: when */
 void emit_passing(const struct emitter *e);                       /* ... and pass(), across a change */
 void emit_locals(const struct emitter *e, const bool *reads);     /* the states wanted, under their names */
+void emit_raw_locals(const struct emitter *e, const bool *reads, bool changing); /* as kept: of kick-drift-kick, momenta */
+void emit_store(const struct emitter *e, const char *vector, const char *indent); /* s->y from states */
+void emit_load_state(const struct emitter *e, const char *vector);  /* states from s->y */
 void emit_locals_of(const struct emitter *e, const bool *reads, const char *vector);
 void emit_step(const struct emitter *e);
 void emit_step_end(const struct emitter *e);                      /* samples, phases and time move on */
@@ -968,6 +1017,15 @@ void emit_at(const struct emitter *e);
 void emit_jump(const struct emitter *e);
 void emit_rhs(const struct emitter *e);
 bool rhs_needs_math(const struct model *model);
+
+/* ---- selftest.c: reference states in closed form, for the target to step to ---- */
+
+void need_closed_form(const struct step *step);              /* leaves the statement where there is none */
+void emit_selftest(const struct emitter *e, bool jumps);
+
+/* ---- single.c: the target float ---- */
+
+void print_single(FILE *to, const char *text);               /* C for double as C for float */
 
 /* ---- explain.c, solution.c ---- */
 

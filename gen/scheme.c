@@ -78,107 +78,6 @@ static struct linear modified_equation(const struct linear *written, const struc
 	return first_order_system(states, (const mpq_t *)L);
 }
 
-/* ---- the program of a linear step ---- */
-
-static void add_term(struct assignment *a, const struct coefficient *factor, enum operand_kind kind, int index)
-{
-	if (factor->zero)
-		return;
-	a->term[a->terms++] = (struct product){ factor, { kind, index } };
-}
-
-/* A load that acts in some segment of time */
-static void add_load_term(struct assignment *a, const struct table *table, int segments, int row, int column)
-{
-	bool any = false;
-	for (int s = 0; s < segments; s++)
-		any = any || !table->load[(s * table->states + row) * table->columns + column].zero;
-	if (any)
-		a->term[a->terms++] = (struct product){ &table->load[row * table->columns + column], { OPERAND_LOAD, column } };
-}
-
-static bool is_identity(const struct assignment *a)
-{
-	return a->terms == 1 && a->term[0].operand.kind == OPERAND_STATE && a->term[0].operand.index == a->target && a->term[0].factor->value == 1;
-}
-
-static bool is_unit(const struct product *p, const struct linear *system)
-{
-	double value = p->factor->value;
-	int column = p->operand.index;
-	if (value == 1 || value == -1)
-		return true;
-	if (p->operand.kind != OPERAND_LOAD)
-		return false;
-	for (int l = 0; l < system->loads && column >= 0; column -= system->load[l++].columns)
-		if (column == 0 && is_polynomial(system->load[l].wave))
-			return true;            /* a constant load is added as it is */
-	return false;
-}
-
-/* What the load states of the columns in use cost */
-static void count_loads(struct program *program, const struct linear *system)
-{
-	for (int l = 0, column = 0; l < system->loads; column += system->load[l++].columns) {
-		const struct load *load = &system->load[l];
-		bool used = false;
-		for (int k = 0; k < load->columns; k++)
-			used = used || program->uses[column + k];
-		bool grows = used && mpq_sgn(load->wave->a) != 0, turns = used && oscillates(load->wave);
-		program->oscillators += turns;
-		program->growths += grows;
-		program->multiplications += !used ? 0 : turns ? 2 * (load->powers - 1) + 2 * grows : load->powers > 1 ? load->powers - 2 + grows : 0;
-	}
-	program->multiplications += program->oscillators * PL_COSSIN_MUL + program->growths * PL_GROWTH_MUL;
-	program->additions += program->oscillators * PL_COSSIN_ADD + program->growths * PL_GROWTH_ADD;
-}
-
-static void count(struct program *program, const struct linear *system)
-{
-	for (int i = 0; i < program->assignments; i++) {
-		const struct assignment *a = &program->assignment[i];
-		program->additions += a->terms > 0 ? a->terms - 1 : 0;
-		for (int k = 0; k < a->terms; k++) {
-			program->multiplications += !is_unit(&a->term[k], system);
-			if (a->term[k].operand.kind == OPERAND_STATE)
-				program->reads[a->term[k].operand.index] = true;
-			else if (a->term[k].operand.kind == OPERAND_LOAD)
-				program->uses[a->term[k].operand.index] = true;
-		}
-	}
-	count_loads(program, system);
-}
-
-static struct program *linear_program(const struct table *table, const struct linear *system)
-{
-	int n = table->states;
-	struct program *program = NEW(struct program);
-	program->assignment = ARRAY(struct assignment, (size_t)n);
-	program->reads = ARRAY(bool, (size_t)n);
-	program->uses = ARRAY(bool, (size_t)table->columns);
-	for (int i = 0; i < n; i++) {
-		struct assignment *a = &program->assignment[program->assignments];
-		a->target = i;
-		a->terms = 0;
-		a->term = ARRAY(struct product, (size_t)(n + table->columns + table->inputs));
-		for (int j = 0; j < n; j++)
-			add_term(a, &table->Phi[i * n + j], OPERAND_STATE, j);
-		for (int k = 0; k < table->columns; k++)
-			add_load_term(a, table, system->segments, i, k);
-		for (int k = 0; k < table->inputs; k++)
-			add_term(a, &table->input[i * table->inputs + k], OPERAND_INPUT, k);
-		program->assignments += !is_identity(a);
-	}
-	count(program, system);
-	program->loops = n > LIMIT_UNROLLED_STATES;
-	if (program->loops) {
-		int row = n + table->columns + table->inputs;
-		program->multiplications = n * row + program->oscillators * PL_COSSIN_MUL + program->growths * PL_GROWTH_MUL;
-		program->additions = n * row + program->oscillators * PL_COSSIN_ADD + program->growths * PL_GROWTH_ADD;
-	}
-	return program;
-}
-
 /* ---- schemes with a leftover: which numbers they take, and what they do with them ---- */
 
 struct recipe {                     /* of one scheme, being written */
@@ -569,14 +468,28 @@ static void make_tables(struct step *step, int count, const struct wanted *wante
 	step->table = step->all[0][0];
 }
 
-static void build_exact(struct step *step)
+static void make_whole(void *context)
 {
+	struct step *step = context;
 	struct wanted *whole = NEW(struct wanted);
-	*whole = (struct wanted){ .Phi = true, .two_words = true, .name = "full" };
+	*whole = (struct wanted){ .Phi = true, .two_words = true, .name = "full", .increments = step->form == FORM_DELTA, .mass = step->mass };
 	mpq_init(whole->fraction);
 	mpq_set_ui(whole->fraction, 1, 1);
 	make_tables(step, 1, whole);
-	step->program = linear_program(step->table, &step->system);
+}
+
+static void build_exact(struct step *step)
+{
+	choose_form(step);
+	bool chosen = step->model->form == FORM_AUTO && step->form == FORM_KICK_DRIFT_KICK;
+	if (chosen && !silent_guard(make_whole, step)) {        /* kicks may leave the range where Phi does not */
+		step->form = FORM_DELTA;
+		step->mass = NULL;
+		step->momenta = chosen = false;
+	}
+	if (!chosen)
+		make_whole(step);
+	step->program = linear_program(step);
 }
 
 static bool *loads_of_regions(const struct step *step)
@@ -625,7 +538,8 @@ static void build_regions_step(struct step *step)
 	series_place_loads(&step->series, &first, 0, loads_of_regions(step));
 	step->tables = 1;
 	step->table = tables_of(step->model, step->resolvent[0], &step->operator[0], 1, wanted_piece(step, 0))[0];
-	step->program = linear_program(step->table, &first);
+	step->system = first;
+	step->program = linear_program(step);
 	step->program->multiplications = step->series.size * step->series.size + 6 * step->model->switching->expressions * step->series.size;
 	step->program->additions = step->program->multiplications;
 	step->halvings = ARRAY(int, (size_t)step->operators);
@@ -633,7 +547,6 @@ static void build_regions_step(struct step *step)
 	step->series.emitted = true;
 	for (int k = 0; k < step->operators; k++)
 		plan_region(step, k);
-	step->system = first;
 }
 
 static void build_with_leftover(struct step *step)
@@ -648,7 +561,7 @@ static void build_with_leftover(struct step *step)
 	step->program->loops = !is_page(step);
 	mark_loads(step, step->program);
 	tally_program(step, step->program);
-	count_loads(step->program, &step->system);
+	count_loads(step->program, &step->system, step->model->single);
 }
 
 static void build(void *context)
@@ -656,21 +569,29 @@ static void build(void *context)
 	struct step *step = context;
 	const struct model *model = step->model;
 	bool left = model->channels > 0 && !model->switching;
+	step->form = FORM_DIRECT;
 	step->written = resolvent_of(&model->written->system);
 	check_pole_size(model, step->written);
 	take_operators(step);
 	if (model->scheme == SCHEME_PL)
 		find_growth(step);
 	if (model->switching) {
+		need_direct(step);
 		build_regions_step(step);
+		if (model->selftest)
+			need_closed_form(step);
 		return;
 	}
+	if (left)
+		need_direct(step);
 	series_place(&step->series, &step->system, left && model->scheme <= SCHEME_ETD1);
 	if (left)
 		build_with_leftover(step);
 	else
 		build_exact(step);
 	series_plan(step);
+	if (model->selftest)
+		need_closed_form(step);
 }
 
 struct step *step_build(const struct model *model)

@@ -3,7 +3,7 @@
  * x holds the states, then what a scheme holds, then the load states, then the inputs (with their slopes). */
 #include "plgen.h"
 
-enum { LIMIT_RADIANS = 8, LIMIT_PARTS = 1 << 20, LIMIT_DEGREE = 80, BITS = 64 };
+enum { LIMIT_RADIANS = 8, LIMIT_PARTS = 1 << 20, LIMIT_DEGREE = 80, BITS = 64, POLE_BITS = 128 };
 
 /* ---- the matrix ---- */
 
@@ -136,7 +136,7 @@ static void larger_poles(mpfr_ptr largest, const struct resolvent *resolvent)
 	mpz_init(content);
 	struct spectrum *spectrum = spectrum_of(poly_primitive(*resolvent_determinant(resolvent), content));
 	mpz_clear(content);
-	if (!spectrum_refine(spectrum, BITS)) {
+	if (!spectrum_refine(spectrum, POLE_BITS)) {      /* as the residues begin: fewer bits may bring two iterates of a cluster together for good */
 		mpfr_set_inf(largest, 1);
 		return;
 	}
@@ -156,6 +156,18 @@ static void largest_angle(const struct step *step, mpfr_ptr angle)
 		if (step->series.load[l] >= 0)
 			larger_wave(angle, step->system.load[l].wave);
 	mpfr_mul_q(angle, angle, step->model->h, MPFR_RNDU);
+}
+
+double largest_pole_angle(const struct step *step)
+{
+	mpfr_t angle;
+	mpfr_init2(angle, BITS);
+	mpfr_set_zero(angle, 1);
+	larger_poles(angle, step->solved);
+	mpfr_mul_q(angle, angle, step->model->h, MPFR_RNDU);
+	double bound = mpfr_get_d(angle, MPFR_RNDU);
+	mpfr_clear(angle);
+	return bound;
 }
 
 static mpfr_t *positive_numbers(int count)

@@ -51,7 +51,7 @@ void print_solution(FILE *to, const struct model *model, struct resolvent *writt
 	mpq_init(t);
 	for (unsigned long k = 0; k <= last; k++) {
 		progress("row", (int)k, (int)last);
-		fprintf(to, "%.17g", round_rational(t));
+		fprintf(to, "%.17g", nearest_double(t));
 		for (int j = 0; j < model->outputs; j++) {
 			struct coefficient value = started_value(form[j].count, form[j].list, t, model->step_at, model->output[j].name);
 			if (!isfinite(value.value))

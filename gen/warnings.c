@@ -98,7 +98,7 @@ static bool eigenvalues(int n, const mpq_t *A, bool sizes, double *value)
 	gsl_error_handler_t *handler = gsl_set_error_handler_off();
 	bool finite = true;
 	for (int i = 0; i < n * n; i++) {
-		double entry = round_rational(A[i]);
+		double entry = nearest_double(A[i]);
 		finite = finite && isfinite(entry);
 		gsl_matrix_set(m, (size_t)(i / n), (size_t)(i % n), entry);
 	}
@@ -155,7 +155,7 @@ static void check_predictor(struct jacobian *j)
 		struct linear system = operator_system(model, k);
 		fastest = fmax(fastest, fastest_pole(&system));
 	}
-	double h = round_rational(model->h);
+	double h = nearest_double(model->h);
 	if (fastest * h > limit)
 		say_warning(scheme_place(b), format("a step up to %.3g s, or a scheme of the etd family, whose operator bears the stiffness", limit / fastest),
 			    "%s predicts its nodes explicitly, up to |lambda| h of about %.1f: here |lambda| = %.4g 1/s, times h = %s s that is %.3g",
@@ -248,7 +248,7 @@ static void check_softness(struct jacobian *j)
 	mpq_clear(end);
 	if (worst.here <= worst.operator)
 		return;
-	double growth = round_rational(model->h) / 4 * (worst.here - worst.operator);
+	double growth = nearest_double(model->h) / 4 * (worst.here - worst.operator);
 	const char *rate = model->scheme == SCHEME_ETD1 ? format(", growing at up to %.3g 1/s in etd1 (h/4 times the difference)", growth) : "";
 	say_warning(b->spec->has_operator ? b->spec->operator_at : scheme_place(b), format("what is left over then drives the motion%s; fix the operator where the model is stiffest", rate),
 		    "the linear operator is softer than the model gets: %sa squared frequency is %.4g 1/s^2, the operator's %.4g",

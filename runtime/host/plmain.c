@@ -4,6 +4,8 @@
  *     cc -Iruntime runtime/host/plmain.c model_pl.c runtime/turns.c ... -DMODEL=scs -o m
  *     ./m 30 < inputs.csv > out.csv
  *
+ * A model made with --real float is compiled with -DFLOAT too.
+ *
  * One row at every step k*h <= T, from t = 0 on.  A model with inputs reads one row of samples per step from standard
  * input: as many numbers as inputs, separated by commas; a first line that gives the inputs' names may precede them.
  * A run that leaves the finite numbers ends there, with exit status 1 and the rows before it written. */
@@ -18,9 +20,19 @@
 #define JOIN(a, b) a##b
 #define DESCRIPTOR(name) JOIN(name, _model)
 
-extern const pl_model DESCRIPTOR(MODEL);
+#ifdef FLOAT
+typedef float real;
+typedef pl_modelf descriptor;
+enum { DIGITS = 9, BITS = 24 };
+#else
+typedef double real;
+typedef pl_model descriptor;
+enum { DIGITS = 17, BITS = 53 };
+#endif
 
-static const pl_model *const model = &DESCRIPTOR(MODEL);
+extern const descriptor DESCRIPTOR(MODEL);
+
+static const descriptor *const model = &DESCRIPTOR(MODEL);
 
 static void fail(const char *what)
 {
@@ -115,7 +127,7 @@ static void read_header(samples *in)
     }
 }
 
-static void read_sample(samples *in, double *u)
+static void read_sample(samples *in, real *u)
 {
     const char *p;
     char *end;
@@ -125,10 +137,10 @@ static void read_sample(samples *in, double *u)
     p = in->line;
     for (i = 0; i < model->inputs; i++) {
         p = skip_blanks(p);
-        u[i] = strtod(p, &end);
+        u[i] = (real)strtod(p, &end);
         if (end == p)
             bad_input(in, (size_t)(p - in->line), "expected a number");
-        if (u[i] - u[i] != 0.0)
+        if (u[i] - u[i] != 0)
             bad_input(in, (size_t)(p - in->line), "expected a finite number");
         p = skip_blanks(end);
         if (*p != separator(i))
@@ -149,13 +161,13 @@ static void print_header(void)
     printf("\n");
 }
 
-static void print_row(const void *state, double *out)
+static void print_row(const void *state, real *out)
 {
     int i;
     model->out(state, out);
-    printf("%.17g", model->time(state));
+    printf("%.*g", DIGITS, (double)model->time(state));
     for (i = 0; i < model->outputs; i++)
-        printf(",%.17g", out[i]);
+        printf(",%.*g", DIGITS, (double)out[i]);
     printf("\n");
     if (ferror(stdout))
         fail("cannot write to standard output");
@@ -169,7 +181,7 @@ static void check_status(const void *state)
         return;
     if (fflush(stdout) != 0)
         fail("cannot write to standard output");
-    fprintf(stderr, "%s: error: t = %.17g: ", model->name, model->time(state));
+    fprintf(stderr, "%s: error: t = %.*g: ", model->name, DIGITS, (double)model->time(state));
     if (status == PL_NOT_FINITE)
         fprintf(stderr, "the step has left the finite numbers\n");
     else
@@ -180,12 +192,14 @@ static void check_status(const void *state)
 /* The last k with k h <= end.  Since h and the quotient are rounded, what is a whole number but for that counts as whole. */
 static uint64_t steps_until(double end)
 {
-    const double steps = end / model->h;
+    const double steps = end / (double)model->h;
     if (!(steps < 9007199254740992.0)) {
         fprintf(stderr, "%s: error: T is more than 2^53 steps\n", model->name);
+        if (!((double)model->h > 1e-300)) /* as the other type's descriptor reads */
+            fprintf(stderr, "note: -DFLOAT is for models made with --real float, and for no others\n");
         exit(2);
     }
-    return (uint64_t)(steps + 1e-9 + steps * 0x1p-52);
+    return (uint64_t)(steps + 1e-9 + steps * (BITS == 24 ? 0x1p-23 : 0x1p-52));
 }
 
 static double end_of_run(int argc, char **argv)
@@ -195,8 +209,8 @@ static double end_of_run(int argc, char **argv)
     if (argc != 2 || rest == argv[1] || *rest != '\0' || end - end != 0.0 || end < 0.0) {
         if (argc == 2)
             fprintf(stderr, "%s: error: expected a time, finite and not negative, found '%s'\n", model->name, argv[1]);
-        fprintf(stderr, "usage: %s T %s> out.csv\n    T: time of the end [s]; the step is %.17g s\n",
-                argc > 0 ? argv[0] : model->name, model->inputs > 0 ? "< inputs.csv " : "", model->h);
+        fprintf(stderr, "usage: %s T %s> out.csv\n    T: time of the end [s]; the step is %.*g s\n",
+                argc > 0 ? argv[0] : model->name, model->inputs > 0 ? "< inputs.csv " : "", DIGITS, (double)model->h);
         exit(2);
     }
     return end;
@@ -205,8 +219,8 @@ static double end_of_run(int argc, char **argv)
 static void run(uint64_t steps)
 {
     void *state = need(malloc(model->size));
-    double *out = (double *)need(malloc(sizeof *out * (size_t)(model->outputs + 1)));
-    double *u = (double *)need(malloc(sizeof *u * (size_t)(model->inputs + 1)));
+    real *out = (real *)need(malloc(sizeof *out * (size_t)(model->outputs + 1)));
+    real *u = (real *)need(malloc(sizeof *u * (size_t)(model->inputs + 1)));
     samples in = {NULL, 256, 0, 0, 0};
     uint64_t k;
 

@@ -168,7 +168,7 @@ done
 # ---- force code only where there is a force ----
 
 for m in $models; do
-    grep -E 'pl_cossin|phase|pl_turn|pl_rate|wave' "$m/stdout.c" >log
+    sed '1,/^ \*\/$/d' "$m/stdout.c" | grep -E 'pl_cossin|phase|pl_turn|pl_rate|wave' >log     # the banner may speak of phases
     found=$?
     sed 's/#.*//' "$root/models/$m.spec" | grep -q -E '(cos|sin)\('
     forced=$?

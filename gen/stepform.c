@@ -1,0 +1,390 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A step that leaves nothing over, y+ = Phi y + loads + inputs, as a program in one of several forms. In exact arithmetic all
+ * are the same map; what differs is what rounding does to them over many steps.
+ *
+ *   direct            y = Phi y. Where |pole| h is small, Phi - I loses the digits that the 1 takes.
+ *   delta             y += (Phi - I) y, Phi - I rounded relative to itself
+ *   kick-drift-kick   p += X q; q += S p; p += X q; of undamped systems, S and X symmetric: symplectic whatever their rounding
+ *
+ * p is velocity times mass, masses in units of the first, so that equal masses leave velocities as they are. */
+#include "plgen.h"
+
+#include <string.h>
+
+static const char *const names[STEP_FORMS] = { "auto", "direct", "delta", "kick-drift-kick" };
+
+const char *step_form_name(enum step_form form)
+{
+	return names[form];
+}
+
+const char *form_text_of(const struct step *step)
+{
+	return format("%s%s", names[step->form], step->program->compensated ? ", compensated" : "");
+}
+
+bool step_form_of(const char *name, enum step_form *form)
+{
+	for (int i = 0; i < STEP_FORMS; i++)
+		if (strcmp(name, names[i]) == 0) {
+			*form = (enum step_form)i;
+			return true;
+		}
+	return false;
+}
+
+/* ---- which form ---- */
+
+static bool all_zero(int count, const mpq_t *x)
+{
+	for (int i = 0; i < count; i++)
+		if (mpq_sgn(x[i]) != 0)
+			return false;
+	return true;
+}
+
+static bool is_symmetric(int n, const mpq_t *A)
+{
+	for (int i = 0; i < n; i++)
+		for (int j = 0; j < i; j++)
+			if (!mpq_equal(A[i * n + j], A[j * n + i]))
+				return false;
+	return true;
+}
+
+static bool is_positive_diagonal(int n, const mpq_t *M)
+{
+	for (int i = 0; i < n; i++)
+		for (int j = 0; j < n; j++)
+			if (i == j ? mpq_sgn(M[i * n + j]) <= 0 : mpq_sgn(M[i * n + j]) != 0)
+				return false;
+	return true;
+}
+
+/* Masses in units of the first; they divide between blocks too, since only what is coupled has to agree. */
+static const mpq_t *relative_masses(const struct linear *system, bool *equal)
+{
+	int n = system->n;
+	mpq_t *mass = rationals((size_t)n);
+	*equal = true;
+	for (int i = 0; i < n; i++) {
+		mpq_div(mass[i], system->M[i * n + i], system->M[0]);
+		*equal = *equal && mpq_cmp_ui(mass[i], 1, 1) == 0;
+	}
+	return (const mpq_t *)mass;
+}
+
+/* What stands against kick-drift-kick; NULL: nothing */
+static const char *kick_objection(struct step *step)
+{
+	const struct linear *system = &step->system;
+	int n = system->n;
+	bool equal = true;
+	if (system->heldK)
+		return "the scheme holds terms over the step";
+	if (system->states != 2 * n)
+		return "a coordinate has no velocity";
+	if (!all_zero(n * n, (const mpq_t *)system->C))
+		return "there is damping, or a term that depends on velocities";
+	if (!is_positive_diagonal(n, (const mpq_t *)system->M))
+		return "the equations do not give one mass to each coordinate";
+	if (!is_symmetric(n, (const mpq_t *)system->K))
+		return "the stiffness matrix is not symmetric";
+	if (largest_pole_angle(step) > 2.5)
+		return "the largest |pole| times h is above 2.5";
+	if (system->states > LIMIT_UNROLLED_STATES)
+		return format("it is built for up to %d states", LIMIT_UNROLLED_STATES);
+	step->mass = relative_masses(system, &equal);
+	for (int i = 0; i < n; i++)
+		if (beyond_range(step->mass[i]) || round_rational(step->mass[i]) == 0)
+			return format("a mass, in units of the first, is beyond the range of %s", target_name());
+	if (!equal && (load_columns(system) || input_columns(system)))
+		return "masses are unequal and there are loads or inputs"; /* they would have to be multiplied by the masses */
+	step->momenta = !equal;
+	return NULL;
+}
+
+void need_direct(const struct step *step)
+{
+	const struct model *model = step->model;
+	const char *what = model->switching ? "a piecewise-linear step" : "a step with a leftover";
+	if (model->form != FORM_AUTO && model->form != FORM_DIRECT)
+		error(model->form_at, NULL, "the form %s is of a linear step: %s has the form direct", names[model->form], what);
+	if (model->compensated)
+		error(model->compensated_at, NULL, "--accuracy compensated is of a linear step: %s has the form direct", what);
+}
+
+/* Kick-drift-kick where it can be; delta where I is most of Phi. */
+static enum step_form best_form(struct step *step)
+{
+	const struct model *model = step->model;
+	if (step->system.heldK)
+		return model->compensated ? FORM_DELTA : FORM_DIRECT;
+	if (!kick_objection(step))
+		return FORM_KICK_DRIFT_KICK;
+	return model->compensated || largest_pole_angle(step) <= 1 ? FORM_DELTA : FORM_DIRECT;
+}
+
+void choose_form(struct step *step)
+{
+	const struct model *model = step->model;
+	step->form = model->form == FORM_AUTO ? best_form(step) : model->form;
+	if (model->form == FORM_KICK_DRIFT_KICK) {
+		const char *objection = kick_objection(step);
+		if (objection)
+			error(model->form_at, "forms: direct, delta, kick-drift-kick", "the form kick-drift-kick cannot step this model: %s", objection);
+	}
+	if (step->form != FORM_KICK_DRIFT_KICK) {
+		step->mass = NULL;
+		step->momenta = false;
+	}
+	if (model->compensated && step->form == FORM_DIRECT)
+		error(model->compensated_at, NULL, "--accuracy compensated takes the form delta or kick-drift-kick");
+	if (model->compensated && step->system.states > LIMIT_UNROLLED_STATES)
+		error(model->compensated_at, NULL, "--accuracy compensated is built for up to %d states", LIMIT_UNROLLED_STATES);
+}
+
+/* ---- the program ---- */
+
+static void add_term(struct assignment *a, const struct coefficient *factor, enum operand_kind kind, int index)
+{
+	if (factor->zero)
+		return;
+	a->term[a->terms++] = (struct product){ factor, { kind, index, 0 } };
+}
+
+/* A load that acts in some segment of time */
+static void add_load_term(struct assignment *a, const struct table *table, int segments, int row, int column)
+{
+	bool any = false;
+	for (int s = 0; s < segments; s++)
+		any = any || !table->load[(s * table->states + row) * table->columns + column].zero;
+	if (any)
+		a->term[a->terms++] = (struct product){ &table->load[row * table->columns + column], { OPERAND_LOAD, column, 0 } };
+}
+
+static bool is_identity(const struct assignment *a)
+{
+	if (a->added)
+		return a->terms == 0;
+	return a->terms == 1 && a->term[0].operand.kind == OPERAND_STATE && a->term[0].operand.index == a->target && a->term[0].factor->value == 1;
+}
+
+static bool is_unit(const struct product *p, const struct linear *system)
+{
+	double value = p->factor->value;
+	int column = p->operand.index;
+	if (value == 1 || value == -1)
+		return true;
+	if (p->operand.kind != OPERAND_LOAD)
+		return false;
+	for (int l = 0; l < system->loads && column >= 0; column -= system->load[l++].columns)
+		if (column == 0 && is_polynomial(system->load[l].wave))
+			return true;            /* a constant load is added as it is */
+	return false;
+}
+
+/* What the load states of the columns in use cost */
+void count_loads(struct program *program, const struct linear *system, bool single)
+{
+	for (int l = 0, column = 0; l < system->loads; column += system->load[l++].columns) {
+		const struct load *load = &system->load[l];
+		bool used = false;
+		for (int k = 0; k < load->columns; k++)
+			used = used || program->uses[column + k];
+		bool grows = used && mpq_sgn(load->wave->a) != 0, turns = used && oscillates(load->wave);
+		program->oscillators += turns;
+		program->growths += grows;
+		program->multiplications += !used ? 0 : turns ? 2 * (load->powers - 1) + 2 * grows : load->powers > 1 ? load->powers - 2 + grows : 0;
+	}
+	program->wave_multiplications = program->oscillators * (single ? PL_COSSINF_MUL : PL_COSSIN_MUL) + program->growths * (single ? PL_GROWTHF_MUL : PL_GROWTH_MUL);
+	program->wave_additions = program->oscillators * (single ? PL_COSSINF_ADD : PL_COSSIN_ADD) + program->growths * (single ? PL_GROWTHF_ADD : PL_GROWTH_ADD);
+	program->multiplications += program->wave_multiplications;
+	program->additions += program->wave_additions;
+}
+
+static void count_term(struct program *program, const struct product *p, const struct linear *system)
+{
+	program->multiplications += !is_unit(p, system);
+	program->additions += p->operand.kind == OPERAND_DIFFERENCE;
+	if (p->operand.kind == OPERAND_STATE || p->operand.kind == OPERAND_DIFFERENCE)
+		program->reads[p->operand.index] = true;
+	if (p->operand.kind == OPERAND_DIFFERENCE)
+		program->reads[p->operand.minus] = true;
+	if (p->operand.kind == OPERAND_LOAD)
+		program->uses[p->operand.index] = true;
+}
+
+bool has_second_word(const struct product *p, const struct linear *system)
+{
+	return p->factor->low != 0 && (p->operand.kind != OPERAND_LOAD || system->segments == 1);
+}
+
+/* pl_accumulate in place of the last addition, and the sum of the factors' second words */
+static void count_compensation(struct program *program, const struct assignment *a, const struct linear *system)
+{
+	int seconds = 0;
+	for (int k = 0; k < a->terms; k++)
+		seconds += has_second_word(&a->term[k], system);
+	program->multiplications += seconds;
+	program->additions += PL_ACCUMULATE_ADD - 1 + (seconds > 0 ? seconds - 1 : 0);
+}
+
+static void count(struct program *program, const struct linear *system, bool single)
+{
+	for (int i = 0; i < program->assignments; i++) {
+		const struct assignment *a = &program->assignment[i];
+		program->additions += a->terms > 0 ? a->terms - !a->added : 0;
+		if (a->added)
+			program->reads[a->target] = true;
+		for (int k = 0; k < a->terms; k++)
+			count_term(program, &a->term[k], system);
+		if (program->compensated)
+			count_compensation(program, a, system);
+	}
+	count_loads(program, system, single);
+}
+
+static struct assignment *new_assignment(struct program *program, const struct step *step, int target, bool added)
+{
+	ENLARGE(program->assignment, (size_t)program->assignments + 1);
+	struct assignment *a = &program->assignment[program->assignments++];
+	*a = (struct assignment){ .target = target, .added = added };
+	a->term = ARRAY(struct product, (size_t)(step->table->states + step->table->columns + step->table->inputs));
+	return a;
+}
+
+static void drop_identity(struct program *program)
+{
+	program->assignments -= is_identity(&program->assignment[program->assignments - 1]);
+}
+
+static void add_loads_and_inputs(struct assignment *a, const struct step *step, int row)
+{
+	const struct table *table = step->table;
+	for (int k = 0; k < table->columns; k++)
+		add_load_term(a, table, step->system.segments, row, k);
+	for (int k = 0; k < table->inputs; k++)
+		add_term(a, &table->input[row * table->inputs + k], OPERAND_INPUT, k);
+}
+
+static void write_direct(struct program *program, const struct step *step)
+{
+	int n = step->table->states;
+	for (int i = 0; i < n; i++) {
+		struct assignment *a = new_assignment(program, step, i, false);
+		for (int j = 0; j < n; j++)
+			add_term(a, &step->table->Phi[i * n + j], OPERAND_STATE, j);
+		add_loads_and_inputs(a, step, i);
+		drop_identity(program);
+	}
+}
+
+/* Per coordinate, a state whose place is subtracted from its own in every row: where the whole block can be moved without a force
+ * (the rows of its stiffness sum to 0), differences keep that whatever the rounding of the factors. -1: it cannot. */
+static int *anchors(const struct linear *system)
+{
+	struct block *block;
+	int blocks = blocks_of(system, &block), *anchor = ARRAY(int, (size_t)system->n);
+	mpq_t sum;
+	mpq_init(sum);
+	for (int b = 0; b < blocks; b++) {
+		const struct linear *part = &block[b].system;
+		bool movable = part->n > 1 && part->states == 2 * part->n && !part->heldK;
+		for (int i = 0; i < part->n && movable; i++) {
+			mpq_set_ui(sum, 0, 1);
+			for (int j = 0; j < part->n; j++)
+				mpq_add(sum, sum, part->K[i * part->n + j]);
+			movable = mpq_sgn(sum) == 0;
+		}
+		for (int j = 0; j < part->n; j++)
+			anchor[block[b].coord[j]] = movable ? b : -1;
+	}
+	mpq_clear(sum);
+	return anchor;
+}
+
+/* sum of factor[j] q_j over coordinates; `own` is the coordinate whose place is the anchor of its block */
+static void add_places(struct assignment *a, const struct linear *system, const int *anchor, int own, const struct coefficient *factor)
+{
+	for (int j = 0; j < system->n; j++) {
+		if (factor[j].zero)
+			continue;
+		if (anchor[own] < 0 || anchor[j] != anchor[own])
+			add_term(a, &factor[j], OPERAND_STATE, j);
+		else if (j != own)
+			a->term[a->terms++] = (struct product){ &factor[j], { OPERAND_DIFFERENCE, j, own } };
+	}
+}
+
+static void write_delta(struct program *program, const struct step *step)
+{
+	const struct table *table = step->table;
+	int n = table->states, *anchor = anchors(&step->system);
+	for (int i = 0; i < n; i++) {
+		struct assignment *a = new_assignment(program, step, i, true);
+		const struct coefficient *row = &table->increment[i * n];
+		add_places(a, &step->system, anchor, step->system.coord[i], row);
+		for (int j = step->system.n; j < n; j++)
+			add_term(a, &row[j], OPERAND_STATE, j);
+		add_loads_and_inputs(a, step, i);
+		drop_identity(program);
+	}
+}
+
+static void write_kicks(struct program *program, const struct step *step, const int *anchor)
+{
+	const struct linear *system = &step->system;
+	for (int i = 0; i < system->n; i++) {
+		struct assignment *a = new_assignment(program, step, system->velocity[i], true);
+		add_places(a, system, anchor, i, &step->table->kick[i * system->n]);
+		drop_identity(program);
+	}
+}
+
+static void write_kick_drift_kick(struct program *program, const struct step *step)
+{
+	const struct linear *system = &step->system;
+	int n = system->n, *anchor = anchors(system);
+	program->in_order = true;
+	write_kicks(program, step, anchor);
+	for (int i = 0; i < n; i++) {
+		struct assignment *a = new_assignment(program, step, i, true);
+		for (int j = 0; j < n; j++)
+			add_term(a, &step->table->drift[i * n + j], OPERAND_STATE, system->velocity[j]);
+		drop_identity(program);
+	}
+	write_kicks(program, step, anchor);
+	for (int i = 0; i < system->states; i++) {
+		add_loads_and_inputs(new_assignment(program, step, i, true), step, i);
+		drop_identity(program);
+	}
+}
+
+/* A large model loops over its tables, zeros included. */
+static void count_loops(struct program *program, const struct table *table)
+{
+	int n = table->states, row = n + table->columns + table->inputs;
+	program->loops = true;
+	program->multiplications = n * row + program->wave_multiplications;
+	program->additions = n * row + program->wave_additions;
+}
+
+struct program *linear_program(const struct step *step)
+{
+	const struct table *table = step->table;
+	struct program *program = NEW(struct program);
+	program->compensated = step->model->compensated;
+	program->reads = ARRAY(bool, (size_t)table->states);
+	program->uses = ARRAY(bool, (size_t)table->columns);
+	if (step->form == FORM_DIRECT)
+		write_direct(program, step);
+	else if (step->form == FORM_DELTA)
+		write_delta(program, step);
+	else
+		write_kick_drift_kick(program, step);
+	count(program, &step->system, step->model->single);
+	if (table->states > LIMIT_UNROLLED_STATES)
+		count_loops(program, table);
+	return program;
+}

@@ -1,0 +1,199 @@
+#!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
+# What plgen emits in every form, for double and for float: it compiles without a warning, as C99 and as C++17; float code names no double
+# and does nothing with one; two-word arithmetic refuses -ffast-math.
+#
+#     compile.sh PLGEN SOURCE_ROOT VARIANTS_double.c VARIANTS_float.c
+#
+# The last two are what variants.sh makes, beside their headers: every linear model in every form.  The compilers are those of GCCS and
+# CLANGS (default: gcc g++, clang clang++); what is not installed is skipped.
+set -u
+plgen=$1
+root=$2
+double=$3
+float=$4
+case $plgen in /*) ;; *) plgen=$PWD/$plgen ;; esac
+case $double in /*) ;; *) double=$PWD/$double ;; esac
+case $float in /*) ;; *) float=$PWD/$float ;; esac
+warnings='-Wall -Wextra -Wpedantic -Wconversion -Wdouble-promotion -Werror'
+leftover='pendulum duffing vanderpol beam4'
+switching='gear1 two_masses quarter_car_bumps'
+LC_ALL=C
+export LC_ALL
+work=$(mktemp -d "${TMPDIR:-/tmp}/forms.XXXXXX") || exit 99
+trap 'rm -rf "$work"' EXIT
+trap 'exit 99' HUP INT TERM
+cd "$work" || exit 99
+count=0
+failed=0
+
+# result STATUS NAME: a line of TAP; what the commands said is in `log`
+result() {
+    count=$((count + 1))
+    if [ "$1" -eq 0 ]; then
+        echo "ok $count - $2"
+    else
+        echo "not ok $count - $2"
+        failed=1
+        head -n 12 log | cut -c 1-200 | sed 's/^/# /'
+    fi
+}
+
+skip() {
+    count=$((count + 1))
+    echo "ok $count - $1 # SKIP $2"
+}
+
+{
+    for pair in "${GCCS:-gcc g++}" "${CLANGS:-clang clang++}"; do
+        echo "${pair% *} -std=c99 -O1"
+        echo "${pair#* } -std=c++17 -x c++ -fsyntax-only"
+    done
+} >compilers
+
+# compiles FILE.c NAME [OPTIONS]: one result for each compiler and language
+compiles() {
+    while read -r compiler options; do
+        if ! command -v "$compiler" >/dev/null 2>&1; then
+            skip "$2, $compiler" "$compiler is not installed"
+            continue
+        fi
+        # shellcheck disable=SC2086
+        "$compiler" $warnings -I"$root/runtime" -I"$root/tests/forms" -I"${1%/*}" ${3-} $options -c "$1" -o out.o >log 2>&1
+        result $? "$2, $compiler ${options%% *}"
+    done <compilers
+}
+
+without_comments() {
+    awk '{ text = text $0 "\n" }
+         END { while ((i = index(text, "/*")) > 0) {
+                   printf "%s", substr(text, 1, i - 1); text = substr(text, i + 2); text = substr(text, index(text, "*/") + 2) }
+               printf "%s", text }' "$1"
+}
+
+# no_double FILE.c NAME: no word double, no literal or function of that type
+no_double() {
+    without_comments "$1" | sed 's/"[^"]*"//g' >text
+    {
+        grep -n -w double text
+        grep -n -E '(^|[^A-Za-z0-9_.])([0-9]+\.[0-9]*|\.[0-9]+)(e[-+]?[0-9]+)?([^0-9.ef]|$)' text
+        grep -n -E '(^|[^A-Za-z0-9_.])[0-9]+e[-+]?[0-9]+([^0-9f]|$)' text
+        grep -n -E '(^|[^A-Za-z0-9_])(sin|cos|tan|exp|log|sqrt|fabs|sinh|cosh|tanh|asin|acos|atan|atan2|pow|fmin|fmax|copysign) *\(' text
+    } >log
+    [ ! -s log ]
+    result $? "$2: no double in the text"
+}
+
+# no_double_instruction FILE.c NAME [OPTIONS]
+no_double_instruction() {
+    for compiler in "${GCCS:-gcc}" "${CLANGS:-clang}"; do
+        compiler=${compiler% *}
+        if ! command -v "$compiler" >/dev/null 2>&1 || ! command -v objdump >/dev/null 2>&1 || [ "$(uname -m)" != x86_64 ]; then
+            skip "$2, $compiler" 'no such compiler, no objdump, or another processor'
+            continue
+        fi
+        # shellcheck disable=SC2086
+        "$compiler" -std=c99 -O2 -I"$root/runtime" -I"$root/tests/forms" -I"${1%/*}" ${3-} -c "$1" -o out.o >log 2>&1 && objdump -d out.o >code
+        status=$?
+        grep -E '[[:space:]]v?((add|sub|mul|div|sqrt|min|max|u?comi|round|cmp[a-z]*)[sp]d|cvt[a-z0-9]*[sp]d[a-z0-9]*|f(ld|st|add|sub|mul|div|ild)[a-z]*)[[:space:]]' code >>log
+        grep -q -E '[[:space:]]v?[a-z]*[sp]s[[:space:]]' code || echo 'nothing of float either' >>log
+        [ $status -eq 0 ] && [ ! -s log ]
+        result $? "$2: no instruction of double, $compiler"
+    done
+}
+
+# ---- linear models in every form ----
+
+compiles "$double" 'linear models in double'
+compiles "$float" 'linear models in float' -DREAL_FLOAT
+no_double "$float" 'linear models in float'
+no_double "${float%.c}.h" 'their declarations'
+no_double_instruction "$float" 'linear models in float' -DREAL_FLOAT
+
+# ---- what is complete in itself ----
+
+for m in $leftover $switching; do
+    "$plgen" --real float --rhs "$root/models/$m.spec" >"$m.c" 2>log
+    result $? "$m: plgen takes it for float"
+    compiles "$work/$m.c" "$m in float"
+    no_double "$m.c" "$m in float"
+    no_double_instruction "$work/$m.c" "$m in float"
+    # shellcheck disable=SC2086
+    "$plgen" --real float --rhs -o "apart_$m.c" "$root/models/$m.spec" >log 2>&1 && "$plgen" --real float --rhs --header "$root/models/$m.spec" >"header.h" 2>>log &&
+        cmp "apart_$m.h" header.h >>log 2>&1 && grep -q "^#include \"apart_$m.h\"\$" "apart_$m.c" &&
+        "${CC:-cc}" -std=c99 $warnings -I"$root/runtime" -I. -fsyntax-only "apart_$m.c" >>log 2>&1
+    result $? "$m in float: -o writes C and header, --header the same header"
+done
+for m in scs quarter_car; do
+    for accuracy in '' '--accuracy compensated'; do
+        # shellcheck disable=SC2086
+        "$plgen" --real float $accuracy --rhs "$root/models/$m.spec" >"$m.c" 2>log
+        compiles "$work/$m.c" "$m in float, standard output ${accuracy#* }" -ffreestanding
+        no_double "$m.c" "$m in float, standard output ${accuracy#* }"
+    done
+done
+
+# ---- the runtime for float ----
+
+for f in "$root"/runtime/*f.c; do
+    case ${f##*/} in turnsf.c | seriesf.c | powerf.c | untilf.c | growthf.c | applyf.c | crossingsf.c) no_double_instruction "$f" "runtime ${f##*/}" ;; esac
+done
+
+# ---- -ffast-math ----
+
+for real in double float; do
+    for form in delta kick-drift-kick; do
+        "$plgen" --real $real --form $form --accuracy compensated "$root/models/scs.spec" >fast.c 2>log
+        while read -r compiler options; do
+            command -v "$compiler" >/dev/null 2>&1 || continue
+            # shellcheck disable=SC2086
+            if "$compiler" -ffast-math -I"$root/runtime" $options -c fast.c -o out.o >log 2>&1; then
+                echo 'it compiled' >log
+                result 1 "$real, $form, compensated: refuses -ffast-math, $compiler"
+            else
+                grep -q 'error.*fast-math' log
+                result $? "$real, $form, compensated: refuses -ffast-math, $compiler"
+            fi
+        done <compilers
+        "$plgen" --real $real --form $form "$root/models/scs.spec" >fast.c 2>log && "${CC:-cc}" -std=c99 -ffast-math -I"$root/runtime" -c fast.c -o out.o >>log 2>&1
+        result $? "$real, $form: compiles with -ffast-math"
+    done
+done
+
+# ---- --explain=json ----
+
+# explained SPEC FORM ACCURACY REAL OPTION ...
+explained() {
+    spec=$1
+    wanted="\"form\": \"$2\",\"accuracy\": \"$3\",\"real\": \"$4\","
+    shift 4
+    "$plgen" --explain=json "$@" "$root/models/$spec.spec" 2>log | sed -n 's/^  \("\(form\|accuracy\|real\)": .*\)/\1/p' | tr -d '\n' >found
+    [ "$(cat found)" = "$wanted" ]
+    status=$?
+    echo "found $(cat found), expected $wanted" >log
+    result $status "--explain=json of $spec $*: $wanted"
+}
+explained scs kick-drift-kick plain double
+explained scs kick-drift-kick plain float --real float
+explained scs kick-drift-kick compensated double --accuracy compensated
+explained scs kick-drift-kick compensated float --accuracy compensated --real float
+explained scs delta plain double --form delta
+explained scs delta compensated double --form delta --accuracy compensated
+explained scs direct plain float --form direct --real float
+explained scs direct plain double --form auto --step 1                   # |p| h = 17
+explained scs kick-drift-kick plain double --step 0.1443                 # 2.4994
+explained scs direct plain double --step 0.1444                          # 2.5011
+explained scs delta compensated double --step 0.1444 --accuracy compensated
+explained sdcs delta plain double
+explained sdcs delta plain double --step 0.0577                          # 0.9994
+explained sdcs direct plain double --step 0.0578                         # 1.0011
+explained sdcs delta compensated float --accuracy compensated --real float
+explained sdcsf delta plain double
+explained linear2dof delta plain double                                  # undamped, unequal masses, a load
+explained scs direct plain double --scheme pl
+explained scs delta plain double --scheme pl --form delta
+explained duffing direct plain float --real float
+explained gear1 direct plain float --real float
+
+echo "1..$count"
+exit $failed

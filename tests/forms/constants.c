@@ -1,0 +1,669 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/*
+ * Every constant in the code of a linear step, in each form, for double and for float, plain and in two words, bit for bit:
+ *
+ *     constants [-n RANDOM] [-u UNDAMPED] [-s SEED] [-v] MODEL.spec ...
+ *
+ * The numbers are read from the C that is emitted: those of the step's own sums in the order in which they stand there, and the tables
+ * Phi, Gamma, increment and load_factor.  What they ought to be says the judge (judge.h).  Each variant runs in a process of its own.
+ */
+#include "judge.h"
+#include "random_spec.h"
+
+#include <ctype.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+enum { LONGEST_CASE = 200, MISMATCHES_SHOWN = 10 };     /* seconds; lines */
+
+static struct {
+    const char *variant;
+    int compared, failed;
+    bool verbose;
+} trial = { .variant = "" };
+
+static void complain(const char *what)
+{
+    if (trial.failed++ < MISMATCHES_SHOWN)
+        printf("# %s: %s\n", trial.variant, what);
+}
+
+/* ---- a variant ---- */
+
+struct variant {
+    enum step_form form;
+    bool compensated, single;
+};
+
+static const char *variant_name(const struct variant *v)
+{
+    return format("%s, form %s%s", v->single ? "float" : "double", step_form_name(v->form), v->compensated ? ", compensated" : "");
+}
+
+static struct model *model_of(const char *text, const struct variant *v)
+{
+    struct overrides *overrides = NEW(struct overrides);
+    struct source *source = NEW(struct source);
+    *overrides = (struct overrides){ .form = v->form, .compensated = v->compensated, .single = v->single };
+    *source = (struct source){ .name = "spec", .base = "spec", .text = text, .length = strlen(text) };
+    return model_build(parse_spec(source), overrides);
+}
+
+/* The first line of what was said */
+static const char *diagnostics(void)
+{
+    char *text = NULL;
+    size_t length = 0;
+    FILE *to = open_memstream(&text, &length);
+    diagnostics_print(to);
+    fclose(to);
+    text[strcspn(text, "\n")] = 0;
+    return text;
+}
+
+/* ---- what should stand there ---- */
+
+struct list {
+    int count, room;
+    double *value;
+    const char **what;
+};
+
+static void append(struct list *list, double value, const char *what)
+{
+    if (list->count == list->room) {
+        list->room = 2 * list->room + 64;
+        ENLARGE(list->value, (size_t)list->room);
+        ENLARGE(list->what, (size_t)list->room);
+    }
+    list->value[list->count] = value;
+    list->what[list->count++] = what;
+}
+
+struct wanting {
+    const struct judge *judge;
+    const struct model *model;
+    const struct variant *variant;
+    struct list *list, low;         /* second words wait for the end of their sum */
+};
+
+static void want(struct wanting *w, const struct judged *number, bool alone, bool second, const char *what)
+{
+    double value, low;
+    if (number->zero)
+        return;
+    if (!judge_words(number, w->variant->single, &value, &low))
+        complain(format("%s: the judge cannot decide it", what));
+    if (alone || fabs(value) != 1)
+        append(w->list, value, what);   /* a factor 1 is not written */
+    if (second && low != 0 && (alone || fabs(low) != 1))
+        append(&w->low, low, format("second word of %s", what));
+}
+
+/* After a sum */
+static void want_second_words(struct wanting *w)
+{
+    for (int i = 0; i < w->low.count; i++)
+        append(w->list, w->low.value[i], w->low.what[i]);
+    w->low.count = 0;
+}
+
+static const char *state_name(const struct wanting *w, int state)
+{
+    return w->model->state_name[state];
+}
+
+/* Factors of coordinates in a sum of which `own` is the coordinate: where its block is movable, the place of `own` is subtracted
+ * from the others', and has no factor itself. */
+static void want_places(struct wanting *w, int own, const struct judged *row, const char *what, const char *target)
+{
+    for (int k = 0; k < w->judge->system->n; k++)
+        if (!(k == own && w->judge->movable[own]))
+            want(w, &row[k], false, w->variant->compensated, format("%s of %s in %s", what, state_name(w, k), target));
+}
+
+static void want_loads_and_inputs(struct wanting *w, int i)
+{
+    const struct judge *j = w->judge;
+    const struct linear *system = j->system;
+    const bool changes = system->segments > 1;
+    for (int l = 0, column = 0; l < system->loads; l++)
+        for (int k = 0; k < system->load[l].columns; k++, column++) {
+            const struct wave *wave = system->load[l].wave;
+            const bool constant = k == 0 && !mpq_sgn(wave->a) && !mpq_sgn(wave->w);
+            const struct judged *number = &j->step[i * j->columns + j->states + column];
+            if (!changes)
+                want(w, number, constant, w->variant->compensated, format("load column %d in %s", column, state_name(w, i)));
+        }
+    for (int k = 0; k < j->inputs; k++)
+        want(w, &j->step[i * j->columns + j->states + j->loads + k], false, w->variant->compensated,
+             format("input column %d in %s", k, state_name(w, i)));
+    want_second_words(w);
+}
+
+static void want_rows(struct wanting *w)
+{
+    const struct judge *j = w->judge;
+    const struct linear *system = j->system;
+    for (int i = 0; i < j->states; i++) {
+        const struct judged *row = w->variant->form == FORM_DIRECT ? &j->step[i * j->columns] : &j->increment[i * j->states];
+        if (w->variant->form == FORM_DIRECT) {
+            for (int k = 0; k < system->n; k++)
+                want(w, &row[k], false, false, format("factor of %s in %s", state_name(w, k), state_name(w, i)));
+        } else {
+            want_places(w, system->coord[i], row, "increment", state_name(w, i));
+        }
+        for (int k = system->n; k < j->states; k++)
+            want(w, &row[k], false, w->variant->compensated, format("factor of %s in %s", state_name(w, k), state_name(w, i)));
+        want_loads_and_inputs(w, i);
+    }
+}
+
+static void want_kicks(struct wanting *w)
+{
+    const struct linear *system = w->judge->system;
+    for (int i = 0; i < system->n; i++) {
+        want_places(w, i, &w->judge->kick[i * system->n], "kick", state_name(w, system->velocity[i]));
+        want_second_words(w);
+    }
+}
+
+static void want_kick_drift_kick(struct wanting *w)
+{
+    const struct judge *j = w->judge;
+    const struct linear *system = j->system;
+    want_kicks(w);
+    for (int i = 0; i < system->n; i++) {
+        for (int k = 0; k < system->n; k++)
+            want(w, &j->drift[i * system->n + k], false, w->variant->compensated,
+                 format("drift of %s in %s", state_name(w, system->velocity[k]), state_name(w, i)));
+        want_second_words(w);
+    }
+    want_kicks(w);
+    for (int i = 0; i < j->states; i++)
+        want_loads_and_inputs(w, i);
+}
+
+/* ---- what stands there ---- */
+
+/* Numbers with a point or an exponent from `text` to `end`, in their order; not those in comments.  A minus before one is its sign,
+ * whether it subtracts or not: no sum here is subtracted as a whole. */
+static void read_numbers(const char *text, const char *end, bool single, struct list *list)
+{
+    for (bool minus = false; text < end;) {
+        if (strncmp(text, "/*", 2) == 0) {
+            text = strstr(text, "*/") + 2;
+        } else if (isalpha((unsigned char)*text) || *text == '_') {
+            while (isalnum((unsigned char)*text) || *text == '_')
+                text++;
+            minus = false;
+        } else if (isdigit((unsigned char)*text)) {
+            char *after;
+            const double value = single ? (double)strtof(text, &after) : strtod(text, &after);
+            const bool real = strcspn(text, ".e") < (size_t)(after - text);
+            if (real && single != (*after == 'f'))
+                complain(format("%.*s %s suffix f", (int)(after - text), text, single ? "lacks a" : "has a"));
+            if (real)
+                append(list, minus && value != 0 ? -value : value, "");
+            text = after + (*after == 'f');
+            minus = false;
+        } else {
+            if (!isspace((unsigned char)*text))
+                minus = *text == '-';
+            text++;
+        }
+    }
+}
+
+static bool starts_with(const char *text, const char *start)
+{
+    return strncmp(text, start, strlen(start)) == 0;
+}
+
+/* Is this statement one of the step's sums?  The others compute loads and time, or store. */
+static bool is_sum(const char *text, const char *end)
+{
+    if (starts_with(text, "s->y["))
+        return true;
+    while (isalnum((unsigned char)*text) || *text == '_')
+        text++;
+    return text < end && (starts_with(text, " += ") || starts_with(text, " = pl_accumulate"));
+}
+
+static void read_step(const char *code, const char *name, bool single, struct list *list)
+{
+    const char *body = strstr(code, format("\nstatic void %s_plain_step(%s *s", name, name));
+    for (const char *next = code; !body && (next = strstr(next, format("\nvoid %s_step(%s *s", name, name))); next++)
+        if (strchr(next, '{') < strchr(next, ';'))
+            body = next;
+    if (!body) {
+        complain("no step function");
+        return;
+    }
+    const char *end = strstr(body, "\n}");
+    for (const char *at = strchr(body, '{') + 1; at < end;) {
+        while (isspace((unsigned char)*at))
+            at++;
+        if (strncmp(at, "/*", 2) == 0) {
+            at = strstr(at, "*/") + 2;
+            continue;
+        }
+        const char *stop = strchr(at, ';');
+        if (!stop || stop > end)
+            break;
+        if (is_sum(at, stop))
+            read_numbers(at, stop, single, list);
+        at = stop + 1;
+    }
+}
+
+/* NAME_table[...]... = { ... }; */
+static void read_table(const char *code, const char *name, const char *table, bool single, struct list *list)
+{
+    const char *at = strstr(code, format(" %s_%s[", name, table));
+    while (at && strchr(at, ';') < strchr(at, '='))
+        at = strstr(at + 1, format(" %s_%s[", name, table));
+    if (!at) {
+        complain(format("no table %s", table));
+        return;
+    }
+    read_numbers(strchr(at, '='), strstr(at, "\n};"), single, list);
+}
+
+/* ---- both ---- */
+
+static void compare_lists(const char *where, const struct list *found, const struct list *expected)
+{
+    if (found->count != expected->count)
+        complain(format("%s: found %d numbers, expected %d", where, found->count, expected->count));
+    for (int i = 0; i < found->count && i < expected->count; i++) {
+        trial.compared++;
+        if (memcmp(&found->value[i], &expected->value[i], sizeof(double)) == 0)
+            continue;
+        complain(format("%s, number %d, %s: found %a = %.17g, expected %a = %.17g, tolerance 0", where, i, expected->what[i], found->value[i],
+                        found->value[i], expected->value[i], expected->value[i]));
+        if (found->count != expected->count)
+            return;                     /* all that follows is shifted */
+    }
+}
+
+/* A factor 0 adds nothing, be it written (e^{-1e9}, a second word that is none) or not. */
+static void drop_zeros(struct list *list)
+{
+    int kept = 0;
+    for (int i = 0; i < list->count; i++)
+        if (list->value[i] != 0) {
+            list->value[kept] = list->value[i];
+            list->what[kept++] = list->what[i];
+        }
+    list->count = kept;
+}
+
+static void want_table_entry(struct wanting *w, const struct judged *number, const char *what)
+{
+    double value, low;
+    if (!judge_words(number, w->variant->single, &value, &low))
+        complain(format("%s: the judge cannot decide it", what));
+    append(w->list, value, what);
+}
+
+static void compare_table(const char *code, struct wanting *w, const char *table, int segment, int from, int to, const struct judged *numbers, int width)
+{
+    struct list found = { 0 }, expected = { 0 };
+    w->list = &expected;
+    const int segments = segment < 0 ? w->judge->system->segments : 1;
+    for (int s = 0; s < segments; s++)
+        for (int i = 0; i < w->judge->states; i++)
+            for (int k = from; k < to; k++)
+                want_table_entry(w, &numbers[(s * w->judge->states + i) * width + k], format("entry %d, %d of segment %d", i, k - from, s));
+    read_table(code, w->model->name, table, w->variant->single, &found);
+    compare_lists(table, &found, &expected);
+}
+
+static void compare_code(const char *code, const struct step *step, const struct judge *j, const struct variant *v)
+{
+    struct list found = { 0 }, expected = { 0 };
+    struct wanting w = { .judge = j, .model = step->model, .variant = v, .list = &expected };
+    if (j->states > LIMIT_UNROLLED_STATES) {
+        if (v->form == FORM_DELTA)
+            compare_table(code, &w, "increment", 0, 0, j->states, j->increment, j->states);
+    } else {
+        if (v->form == FORM_KICK_DRIFT_KICK)
+            want_kick_drift_kick(&w);
+        else
+            want_rows(&w);
+        read_step(code, step->model->name, v->single, &found);
+        drop_zeros(&found);
+        drop_zeros(&expected);
+        compare_lists("step", &found, &expected);
+    }
+    compare_table(code, &w, "Phi", 0, 0, j->states, j->step, j->columns);
+    if (j->inputs)
+        compare_table(code, &w, "Gamma", 0, j->states + j->loads, j->columns, j->step, j->columns);
+    if (j->loads && (j->system->segments > 1 || j->states > LIMIT_UNROLLED_STATES))
+        compare_table(code, &w, "load_factor", -1, j->states, j->states + j->loads, j->step, j->columns);
+}
+
+/* Numbers that stand twice are the same twice, whoever is right about their value. */
+static void compare_symmetry(const struct step *step)
+{
+    const int n = step->system.n;
+    for (int i = 0; i < n; i++)
+        for (int k = 0; k < i; k++) {
+            const struct coefficient *pair[2][2] = { { &step->table->kick[i * n + k], &step->table->kick[k * n + i] },
+                                                     { &step->table->drift[i * n + k], &step->table->drift[k * n + i] } };
+            for (int p = 0; p < 2; p++) {
+                trial.compared++;
+                if (pair[p][0]->value != pair[p][1]->value || pair[p][0]->low != pair[p][1]->low)
+                    complain(format("%s %d, %d: %a + %a, its mirror image %a + %a", p ? "drift" : "kick", i, k, pair[p][0]->value, pair[p][0]->low,
+                                    pair[p][1]->value, pair[p][1]->low));
+            }
+        }
+}
+
+/* Is some factor beyond the type's range? */
+static bool overflows(const struct judge *j, bool single)
+{
+    for (int i = 0; i < j->system->segments * j->states * j->columns; i++) {
+        double value, low;
+        if (judge_words(&j->step[i], single, &value, &low) && isinf(value))
+            return true;
+    }
+    return false;
+}
+
+/* Equal masses, or nothing but the state acts */
+static bool may_kick(const struct judge *j)
+{
+    bool equal = true;
+    for (int i = 0; i < j->system->n && j->undamped; i++)
+        equal = equal && mpq_equal(j->system->M[i * (j->system->n + 1)], j->system->M[0]);
+    return j->undamped && j->states <= LIMIT_UNROLLED_STATES && (equal || j->loads + j->inputs == 0);
+}
+
+struct emitting {
+    FILE *to;
+    const struct step *step;
+};
+
+static void emit(void *context)
+{
+    const struct emitting *e = context;
+    emit_code(e->to, e->step, "", NULL, false);
+}
+
+static void try_variant(const char *text, const struct judge *j, const struct variant *v)
+{
+    trial.variant = variant_name(v);
+    const struct model *model = model_of(text, v);
+    if (!model) {
+        if (!v->single)
+            complain(format("not accepted: %s", diagnostics()));
+        return;                         /* beyond the range of float, say */
+    }
+    if (v->compensated && j->states > LIMIT_UNROLLED_STATES)
+        return;
+    const bool may = v->form != FORM_KICK_DRIFT_KICK || may_kick(j);
+    const struct step *step = step_build(model);
+    if (!step) {
+        const char *said = diagnostics();
+        const bool beyond = strstr(said, "beyond the range of") && overflows(j, v->single);
+        trial.compared += beyond;
+        if (may && !strstr(said, "times h is above 2.5") && !beyond)
+            complain(format("refused: %s", said));
+        return;
+    }
+    if (!may) {
+        complain("accepted, though it cannot be");
+        return;
+    }
+    char *code = NULL;
+    size_t length = 0;
+    struct emitting e = { open_memstream(&code, &length), step };
+    const bool emitted = statement_guard(emit, &e);
+    fclose(e.to);
+    if (!emitted) {
+        const char *said = diagnostics();
+        if (!v->single || !strstr(said, "beyond the range of float"))
+            complain(format("not emitted: %s", said));
+        return;
+    }
+    compare_code(code, step, j, v);
+    if (v->form == FORM_KICK_DRIFT_KICK)
+        compare_symmetry(step);
+}
+
+/* What is refused stays refused for the rest of a process, and a target stays what it is: each variant has its own. */
+static int try_in_process(const char *text, const struct judge *judge, const struct variant *v)
+{
+    int status;
+    fflush(stdout);
+    const pid_t child = fork();
+    if (child == 0) {
+        alarm(LONGEST_CASE);
+        if (v->single)
+            target_float();
+        try_variant(text, judge, v);
+        if (trial.failed > MISMATCHES_SHOWN)
+            printf("# %s: %d failures in all\n", trial.variant, trial.failed);
+        if (trial.verbose)
+            printf("# %s: %d numbers compared\n", trial.variant, trial.compared);
+        fflush(stdout);
+        _exit(trial.failed ? 1 : trial.compared ? 0 : 2);
+    }
+    if (child < 0 || waitpid(child, &status, 0) != child) {
+        puts("Bail out! cannot start a process");
+        exit(1);
+    }
+    if (WIFSIGNALED(status))
+        printf("# %s: ended by signal %d\n", variant_name(v), WTERMSIG(status));
+    return WIFEXITED(status) ? WEXITSTATUS(status) : 1;
+}
+
+static bool try_spec(const char *text)
+{
+    static const struct variant variants[] = {
+        { FORM_DIRECT, false, false }, { FORM_DELTA, false, false }, { FORM_DELTA, true, false },
+        { FORM_KICK_DRIFT_KICK, false, false }, { FORM_KICK_DRIFT_KICK, true, false },
+        { FORM_DIRECT, false, true }, { FORM_DELTA, false, true }, { FORM_DELTA, true, true },
+        { FORM_KICK_DRIFT_KICK, false, true }, { FORM_KICK_DRIFT_KICK, true, true }
+    };
+    bool good = true, compared = false;
+    const struct model *model = model_of(text, &variants[0]);
+    if (!model) {
+        printf("# not accepted: %s\n", diagnostics());
+        return false;
+    }
+    const struct judge *judge = judge_of(&model->system, model->h);
+    for (size_t i = 0; i < sizeof variants / sizeof *variants; i++) {
+        const int result = try_in_process(text, judge, &variants[i]);
+        good = good && result != 1;
+        compared = compared || result == 0;
+    }
+    if (!compared)
+        printf("# nothing was compared\n");
+    return good && compared;
+}
+
+/* ---- undamped systems ---- */
+
+static uint64_t state;
+
+static uint64_t below(uint64_t n)
+{
+    state = state * UINT64_C(6364136223846793005) + UINT64_C(1442695040888963407);
+    return (state >> 33) % n;
+}
+
+/* A decimal with few or many digits and its value */
+static double decimal(int least, int most, const char **text)
+{
+    const int exponent = least + (int)below((uint64_t)(most - least + 1));
+    *text = below(2) ? format("%.*fe%d", (int)below(3), 1 + (double)below(9000) / 1000, exponent)
+                     : format("%.15ge%d", 1 + (double)below(1u << 30) / (double)(1u << 27), exponent);
+    return strtod(*text, NULL);
+}
+
+/* Masses in a row, further springs between any two of them, some rows without a ground; masses equal or not; in some, loads and
+ * inputs where masses are equal.  |pole| h is between 1e-6 and 2.4 by Gershgorin's bound. */
+static const char *undamped_spec(uint64_t seed)
+{
+    state = seed * UINT64_C(0x9e3779b97f4a7c15) + 7;
+    below(2);
+    const int n = seed % 15 == 0 ? 7 + (int)below(2) : 1 + (int)below(4);
+    const bool equal = below(2), grounded = below(3) > 0, loaded = equal && below(3) == 0, sampled = equal && below(4) == 0;
+    double *mass = ARRAY(double, (size_t)n), *row = ARRAY(double, (size_t)n), bound = 1e-6;
+    const char *text = "model any\ncoord x1", *value;
+    for (int i = 1; i < n; i++)
+        text = format("%s, x%d", text, i + 1);
+    text = format("%s\n%s", text, sampled ? "input u, v hold first\n" : "");
+    for (int i = 0; i < n; i++) {
+        if (i == 0 || !equal)
+            mass[i] = decimal(-1, 1, &value);
+        else
+            mass[i] = mass[0];
+        text = format("%smass %s at x%d\n", text, value, i + 1);
+    }
+    for (int i = 0; i < n; i++)
+        for (int k = i; k < n; k++)
+            if (k == i ? grounded && (i == 0 || below(3) == 0) : k == i + 1 ? below(12) > 0 : below(5) == 0) {
+                const double stiffness = decimal(0, 3, &value);
+                row[i] += 2 * stiffness;
+                row[k] += 2 * stiffness;
+                text = format("%sspring %s between x%d, %s\n", text, value, i + 1, k == i ? "ground" : format("x%d", k + 1));
+            }
+    for (int i = 0; i < n; i++) {
+        bound = fmax(bound, row[i] / mass[i]);
+        if (row[i] == 0)
+            text = format("%sforce 0*x%d on x%d\n", text, i + 1, i + 1);
+    }
+    if (loaded)
+        text = format("%sforce 3*cos(2.5*t) + 0.7*t on x1\nforce 1.25 on x%d\n", text, n);
+    if (loaded && below(2))
+        text = format("%sforce t < 0.4 ? 1 : exp(-t) on x1\n", text);
+    if (sampled)
+        text = format("%sforce 2*u - v on x1\nforce 0.5*v' on x%d\n", text, n);
+    const double largest = 2.4 / sqrt(bound);
+    return format("%sstep %.6g\n", text, largest * pow(10, -(double)below(7)) * (1 - 0.6 * (double)below(1000) / 1000));
+}
+
+/* ---- where rounding to double first would give another float ---- */
+
+/* h such that an entry is just beyond the middle of two floats, closer to it than doubles are: T = (1/2 + 2^-25)(1 + 2^-60) */
+struct twice {
+    const char *name, *equation;
+    int (*angle)(mpfr_ptr, mpfr_srcptr, mpfr_rnd_t);    /* h from T */
+    int times;
+};
+static int identity(mpfr_ptr y, mpfr_srcptr x, mpfr_rnd_t round)
+{
+    return mpfr_set(y, x, round);
+}
+static int cosine_increment(mpfr_ptr h, mpfr_srcptr T, mpfr_rnd_t round)        /* 1 - cos h = T */
+{
+    mpfr_ui_sub(h, 1, T, round);
+    return mpfr_acos(h, h, round);
+}
+static const struct twice twice[] = {
+    { "h as an entry of Phi, a drift", "x'' = 0", identity, 1 },
+    { "sin h", "x'' + x = 0", mpfr_asin, 1 },
+    { "cos h - 1", "x'' + x = 0", cosine_increment, 1 },
+    { "cos h", "x'' + x = 0", mpfr_acos, 1 },
+    { "-tan(h/2), a kick", "x'' + x = 0", mpfr_atan, 2 },
+    { "1 - cos h, a load", "x'' + x = 1", cosine_increment, 1 },
+    { "1 - cos h, an input", "x'' + x = u", cosine_increment, 1 }
+};
+enum { TWICE = sizeof twice / sizeof *twice };
+
+static const char *twice_spec(const struct twice *t)
+{
+    mpfr_t T, h, shown;
+    mpfr_inits2(400, T, h, shown, NULL);
+    mpfr_set_ui_2exp(T, 1, -60, MPFR_RNDN);
+    mpfr_add_ui(T, T, 1, MPFR_RNDN);
+    mpfr_set_d(shown, 0.5 + 0x1p-25, MPFR_RNDN);
+    mpfr_mul(T, T, shown, MPFR_RNDN);
+    if ((float)mpfr_get_d(T, MPFR_RNDN) == mpfr_get_flt(T, MPFR_RNDN))
+        complain("this number does not tell one rounding from two");
+    t->angle(h, T, MPFR_RNDN);
+    mpfr_mul_ui(h, h, (unsigned long)t->times, MPFR_RNDN);
+    char *digits = NULL;
+    if (mpfr_asprintf(&digits, "%.80Rf", h) < 0)
+        exit(1);
+    return format("model any\ncoord x\n%s%s\nstep %s\n", strchr(t->equation, 'u') ? "input u\n" : "", t->equation, digits);
+}
+
+/* ---- the whole ---- */
+
+static const char *read_text(const char *path)
+{
+    size_t length = 0, got;
+    FILE *f = fopen(path, "r");
+    if (!f) {
+        printf("Bail out! cannot read %s\n", path);
+        exit(1);
+    }
+    char *text = ARRAY(char, 4096);
+    while ((got = fread(text + length, 1, 4095, f)) > 0) {
+        length += got;
+        ENLARGE(text, length + 4096);
+    }
+    text[length] = 0;
+    fclose(f);
+    return text;
+}
+
+static int number, failures;
+
+static void show_spec(const char *line)
+{
+    while (*line) {
+        const size_t length = strcspn(line, "\n");
+        printf("# | %.*s\n", (int)length, line);
+        line += length + (line[length] == '\n');
+    }
+}
+
+static void run(const char *name, const char *text)
+{
+    const bool good = try_spec(text);
+    failures += !good;
+    if (!good)
+        show_spec(text);
+    printf("%sok %d - %s\n", good ? "" : "not ", ++number, name);
+    fflush(stdout);
+}
+
+int main(int argc, char **argv)
+{
+    unsigned long random_count = 60, undamped_count = 60, seed = 1;
+    for (int option; (option = getopt(argc, argv, "n:u:s:v")) != -1;) {
+        if (option == 'n')
+            random_count = strtoul(optarg, NULL, 10);
+        else if (option == 'u')
+            undamped_count = strtoul(optarg, NULL, 10);
+        else if (option == 's')
+            seed = strtoul(optarg, NULL, 10);
+        else if (option == 'v')
+            trial.verbose = true;
+        else
+            return 2;
+    }
+    memory_open();
+    printf("1..%lu\n", (unsigned long)(argc - optind) + TWICE + random_count + undamped_count);
+    for (int i = optind; i < argc; i++) {
+        const char *slash = strrchr(argv[i], '/');
+        run(slash ? slash + 1 : argv[i], read_text(argv[i]));
+    }
+    for (int i = 0; i < TWICE; i++)
+        run(format("rounded once: %s", twice[i].name), twice_spec(&twice[i]));
+    for (unsigned long i = 0; i < undamped_count; i++)
+        run(format("undamped model %lu", seed + i), undamped_spec(seed + i));
+    for (unsigned long i = 0; i < random_count; i++)
+        run(format("random model %lu", seed + i), random_spec(seed + i));
+    memory_close();
+    return failures > 0;
+}

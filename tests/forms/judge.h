@@ -1,0 +1,30 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What the constants of a step ought to be, form by form, from M, C, K and the forces alone: e^{A h} by the evaluator of
+ * ../accuracy, in intervals.  Kicks come from half a step, X = M Phi_11(h/2)^-1 Phi_21(h/2), which no other program here uses. */
+#ifndef JUDGE_H
+#define JUDGE_H
+
+#include "plgen.h"
+
+/* A number in intervals, and whether it is 0: no path leads from its column to its row, or 4096 bits show nothing there. */
+struct judged {
+    mpfi_t x;
+    bool zero;
+};
+struct judge {
+    const struct linear *system;
+    mpq_srcptr h;
+    int states, loads, inputs, columns;     /* columns = states + loads + inputs */
+    bool undamped;                          /* kick-drift-kick may be asked for */
+    int *block;                             /* per coordinate */
+    bool *movable;                          /* per coordinate: its block has rows of stiffness that sum to 0 */
+    struct judged *step;                    /* [segment][states x columns] */
+    struct judged *increment;               /* states x states */
+    struct judged *drift, *kick;            /* coordinates x coordinates, where undamped */
+};
+struct judge *judge_of(const struct linear *system, mpq_srcptr h);
+
+/* Correctly rounded, and what is left of it correctly rounded; a double holds both.  false: the judge cannot decide. */
+bool judge_words(const struct judged *number, bool single, double *value, double *low);
+
+#endif
