@@ -35,43 +35,85 @@ bool step_form_of(const char *name, enum step_form *form)
 
 /* ---- which form ---- */
 
-static bool all_zero(int count, const mpq_t *x)
-{
-	for (int i = 0; i < count; i++)
-		if (mpq_sgn(x[i]) != 0)
-			return false;
-	return true;
-}
-
-static bool is_symmetric(int n, const mpq_t *A)
-{
-	for (int i = 0; i < n; i++)
-		for (int j = 0; j < i; j++)
-			if (!mpq_equal(A[i * n + j], A[j * n + i]))
-				return false;
-	return true;
-}
-
-static bool is_positive_diagonal(int n, const mpq_t *M)
-{
-	for (int i = 0; i < n; i++)
-		for (int j = 0; j < n; j++)
-			if (i == j ? mpq_sgn(M[i * n + j]) <= 0 : mpq_sgn(M[i * n + j]) != 0)
-				return false;
-	return true;
-}
-
-/* Masses in units of the first; they divide between blocks too, since only what is coupled has to agree. */
-static const mpq_t *relative_masses(const struct linear *system, bool *equal)
+static bool has_mass_matrix(const struct linear *system)
 {
 	int n = system->n;
+	for (int i = 0; i < n; i++)
+		for (int j = 0; j < n; j++)
+			if (i == j ? mpq_sgn(system->M[i * n + j]) <= 0 : mpq_sgn(system->M[i * n + j]) != 0)
+				return false;
+	return true;
+}
+
+/* m_j from m_i a_ij = m_j a_ji, and so on along the entries of a that are not 0; false: no positive masses do. */
+static bool spread_masses(int n, const mpq_t *a, int from, mpq_t *mass)
+{
+	bool good = true;
+	mpq_t other;
+	mpq_init(other);
+	for (int j = 0; j < n && good; j++) {
+		if (j == from || (mpq_sgn(a[from * n + j]) == 0 && mpq_sgn(a[j * n + from]) == 0))
+			continue;
+		good = mpq_sgn(a[from * n + j]) == mpq_sgn(a[j * n + from]);
+		if (!good)
+			break;
+		mpq_mul(other, mass[from], a[from * n + j]);
+		mpq_div(other, other, a[j * n + from]);
+		if (mpq_sgn(mass[j]) != 0) {
+			good = mpq_equal(mass[j], other);
+			continue;
+		}
+		mpq_set(mass[j], other);
+		good = spread_masses(n, a, j, mass);
+	}
+	mpq_clear(other);
+	return good;
+}
+
+/* Masses in units of the first that make mass times acceleration symmetric in the coordinates, accelerations being a q: found, not
+ * read, since an equation may have been divided by its mass, have its sign turned, or stand in another place. Blocks that
+ * nothing couples keep the masses that were written, if they were. NULL: there are none. */
+static const mpq_t *relative_masses(const struct linear *system, const mpq_t *a)
+{
+	int n = system->n;
+	bool written = has_mass_matrix(system);
 	mpq_t *mass = rationals((size_t)n);
-	*equal = true;
 	for (int i = 0; i < n; i++) {
-		mpq_div(mass[i], system->M[i * n + i], system->M[0]);
-		*equal = *equal && mpq_cmp_ui(mass[i], 1, 1) == 0;
+		if (mpq_sgn(mass[i]) != 0)
+			continue;
+		mpq_set_ui(mass[i], 1, 1);
+		if (written)
+			mpq_div(mass[i], system->M[i * n + i], system->M[0]);
+		if (!spread_masses(n, a, i, mass))
+			return NULL;
 	}
 	return (const mpq_t *)mass;
+}
+
+/* Accelerations over the coordinates, n x n; false: velocities act too, or a coordinate has none */
+static bool accelerations(const struct linear *system, mpq_t *a)
+{
+	int n = system->n, states = system->states, column;
+	mpq_t *inverse = rationals((size_t)(n * n)), *row = rationals((size_t)(n * states));
+	if (states != 2 * n)
+		return false;
+	leading_inverse(system, inverse, &column);
+	highest_derivatives(system, (const mpq_t *)inverse, false, row);
+	for (int i = 0; i < n; i++)
+		for (int j = 0; j < n; j++) {
+			mpq_set(a[i * n + j], row[i * states + j]);
+			if (mpq_sgn(row[i * states + n + j]) != 0)
+				return false;
+		}
+	return true;
+}
+
+static bool all_equal(int n, const mpq_t *mass)
+{
+	for (int i = 1; i < n; i++)
+		if (!mpq_equal(mass[0], mass[i]))
+			return false;
+	return true;
 }
 
 /* What stands against kick-drift-kick; NULL: nothing */
@@ -79,28 +121,24 @@ static const char *kick_objection(struct step *step)
 {
 	const struct linear *system = &step->system;
 	int n = system->n;
-	bool equal = true;
+	mpq_t *a = rationals((size_t)(n * n));
 	if (system->heldK)
 		return "the scheme holds terms over the step";
-	if (system->states != 2 * n)
-		return "a coordinate has no velocity";
-	if (!all_zero(n * n, (const mpq_t *)system->C))
-		return "there is damping, or a term that depends on velocities";
-	if (!is_positive_diagonal(n, (const mpq_t *)system->M))
-		return "the equations do not give one mass to each coordinate";
-	if (!is_symmetric(n, (const mpq_t *)system->K))
-		return "the stiffness matrix is not symmetric";
-	if (largest_pole_angle(step) > 2.5)
-		return "the largest |pole| times h is above 2.5";
 	if (system->states > LIMIT_UNROLLED_STATES)
 		return format("it is built for up to %d states", LIMIT_UNROLLED_STATES);
-	step->mass = relative_masses(system, &equal);
+	if (!accelerations(system, a))
+		return system->states == 2 * n ? "there is damping, or a term that depends on velocities" : "a coordinate has no velocity";
+	step->mass = relative_masses(system, (const mpq_t *)a);
+	if (!step->mass)
+		return "its stiffness is not symmetric, whatever the masses";
+	if (largest_pole_angle(step) > 2.5)
+		return "the largest |pole| times h is above 2.5";
 	for (int i = 0; i < n; i++)
 		if (beyond_range(step->mass[i]) || round_rational(step->mass[i]) == 0)
 			return format("a mass, in units of the first, is beyond the range of %s", target_name());
-	if (!equal && (load_columns(system) || input_columns(system)))
+	step->momenta = !all_equal(n, step->mass);
+	if (step->momenta && (load_columns(system) || input_columns(system)))
 		return "masses are unequal and there are loads or inputs"; /* they would have to be multiplied by the masses */
-	step->momenta = !equal;
 	return NULL;
 }
 
