@@ -6,7 +6,7 @@ PACKAGES = gcc g++ clang make meson ninja-build pkgconf \
 	libgmp-dev libmpfr-dev libmpfi-dev libmpc-dev libgsl-dev \
 	libsundials-dev libcmocka-dev valgrind gnuplot-nox
 
-.PHONY: all setup deps demo check bench fuzz accuracy install clean
+.PHONY: all setup deps demo check bench charts charts-quick fuzz accuracy install clean
 
 all: setup
 	ninja -C $(BUILD)
@@ -44,6 +44,11 @@ bench: all
 	sh bench/switching.sh $(BUILD)
 	$(BUILD)/bench/crossings
 	sh bench/sweep.sh $(BUILD)
+
+# Speed against accuracy, and stability where methods fail: one page with its pictures and tables. 15 minutes; quick: 2.
+charts charts-quick: setup
+	ninja -C $(BUILD) charts
+	sh bench/charts/charts.sh $(BUILD) $(BUILD)/$@ $(if $(findstring quick,$@),--quick)
 
 # The long forms of what `make check` runs briefly.
 accuracy: all

@@ -68,13 +68,21 @@ struct run {
 	void (*get)(const struct run *run, double *y);             /* now */
 	long (*evaluations)(const struct run *run);                 /* of the right-hand side since the start; -1: it has none */
 	void (*close)(struct run *run);
+	bool (*timed)(struct run *run, int units);                  /* NULL; or of a float run: advance with rows of floats, as its user has
+	                                                             * them; what is timed then */
 };
 extern const struct method *const fixed_methods[];      /* classic.c; NULL at the end */
 extern const struct method *const adaptive_methods[];   /* adaptive.c */
 extern const struct method *const propagator_methods[]; /* propagator.c: linear problems */
 const struct method *method_find(const char *name);     /* among these three */
-/* Our own: generated.c. `file` is a shared object of that variant (scheme, form, type, step); setting: its step. */
+/* Our own: generated.c. `file` is a shared object of that variant (scheme, form, type, step), made by variant.sh, which keeps
+ * in it the options it was made with: by these generated_open knows a float, and the leftover evaluations of a scheme.
+ * Setting: its step, which must divide the unit; NULL where it does not, or where there is no such file. */
 struct run *generated_open(const struct method *method, const struct problem *problem, const char *file);
+const char *generated_between(const struct run *run);   /* how it finds what is inside a step, for its settings */
+int leftover_evaluations(const char *scheme);   /* in a step; -1: it has none (exact) */
+/* Where plgen refused a variant, variant.sh leaves its message in FILE.refused: its first line, or NULL. The caller frees it. */
+char *variant_refused(const char *file);
 
 /* ---- truth.c: what is compared with ---- */
 
@@ -88,15 +96,18 @@ struct truth {                      /* at each end of a unit and at TRUTH_BETWEE
 };
 #define TRUTH_BETWEEN 0.375
 struct truth *truth_of(const struct problem *problem);
+void truth_free(struct truth *truth);
 struct error { double q_end, q_between, v_end, v_between, largest; bool failed; }; /* relative to the scales; failed: not finite or it gave up */
 struct error error_of(struct run *run, const struct truth *truth);   /* restarts the run and goes through the whole history */
 
 /* ---- samples.c: time ---- */
 
 struct samples { double min, median, max; int count; };            /* nanoseconds per unit */
-/* Interleaved: sample k of every run is taken before sample k+1 of any; each is `units` of its run after a restart, short
- * against the machine's disturbances; `seconds` is the budget for all. */
+/* Interleaved: sample k of every run is taken before sample k+1 of any; each is `units` of its run after a restart, repeated where that
+ * is too short to time; `seconds` is the budget for all. The time is the process's own (CPU). */
 void sample_runs(int runs, struct run *const *run, int units, double seconds, struct samples *result);
+/* The same, each run with its own number of units. */
+void sample_runs_of(int runs, struct run *const *run, const int *units, double seconds, struct samples *result);
 struct samples sample_summary(int count, double *ns);               /* sorts */
 double now_ns(void);
 void say_progress(const char *format, ...) __attribute__((format(printf, 1, 2))); /* standard error, one line */

@@ -1,0 +1,363 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "amplification.h"
+
+#include <gsl/gsl_eigen.h>
+#include <gsl/gsl_linalg.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- a free motion as a problem ---- */
+
+static void slope(const void *of, double t, const double y[], double dydt[])
+{
+	const struct free_motion *m = of;
+	const int n = m->problem.n, size = 2 * n;
+	for (int i = 0; i < size; i++) {
+		double sum = 0;
+		for (int j = 0; j < size; j++)
+			sum += m->A[i * size + j] * y[j];
+		dydt[i] = sum;
+	}
+	if (m->blow >= 0 && t <= 0)
+		dydt[n + m->blow] += 1;
+}
+
+void free_motion_of(struct free_motion *m, const char *name, int n, const double *A)
+{
+	memset(m, 0, sizeof *m);
+	memcpy(m->A, A, sizeof *A * (size_t)(4 * n * n));
+	m->blow = -1;
+	m->problem = (struct problem){.name = name, .n = n, .rhs_of = slope, .of = m, .start = m->start, .units = 1, .linear = true,
+	                              .A = m->A, .b0 = m->none, .b1 = m->none, .b2 = m->none};
+}
+
+void free_oscillator(struct free_motion *m, double w, double zeta)
+{
+	const double A[] = {0, 1, -w * w, -2 * zeta * w};
+	free_motion_of(m, "oscillator", 1, A);
+}
+
+static real zeta_by_hand;
+
+static void oscillator(real t, const real *y, const real *u, real *dydt)
+{
+	(void)t, (void)u;
+	dydt[0] = y[1];
+	dydt[1] = -y[0] - 2 * zeta_by_hand * y[1];
+}
+
+static void all_of_it(const struct system *s, int which, real *A)
+{
+	(void)s, (void)which;
+	A[1] = 1;
+	A[2] = -1;
+	A[3] = -2 * zeta_by_hand;
+}
+
+const struct system *oscillator_by_hand(double zeta)
+{
+	static const struct system system = {.name = "oscillator", .states = 2, .equations = oscillator, .linear = all_of_it};
+	zeta_by_hand = (real)zeta;
+	return &system;
+}
+
+static real ratio_by_hand;
+
+static void free_of_damping(real t, const real *y, const real *u, real *dydt)
+{
+	(void)t, (void)u;
+	dydt[0] = y[1];
+	dydt[1] = -y[0];
+}
+
+static void another_frequency(const struct system *s, int which, real *A)
+{
+	(void)s, (void)which;
+	A[1] = 1;
+	A[2] = -ratio_by_hand * ratio_by_hand;
+}
+
+const struct system *mismatched_by_hand(double ratio)
+{
+	static const struct system system = {.name = "mismatched", .states = 2, .equations = free_of_damping, .linear = another_frequency};
+	ratio_by_hand = (real)ratio;
+	return &system;
+}
+
+/* ---- eigenvalues ---- */
+
+static int by_modulus(const void *a, const void *b)
+{
+	const double x = cabs(*(const double complex *)a), y = cabs(*(const double complex *)b);
+	return (x < y) - (x > y);
+}
+
+/* Of a 2 x 2 matrix without losing the smaller of two real ones, or the modulus of a pair */
+static void of_two(const double *a, double complex *eigenvalue)
+{
+	const double half = (a[0] + a[3]) / 2, apart = (a[0] - a[3]) / 2;
+	const double determinant = a[0] * a[3] - a[1] * a[2], below = apart * apart + a[1] * a[2];
+	if (below < 0) {
+		eigenvalue[0] = half + sqrt(-below) * I;
+		eigenvalue[0] *= sqrt(determinant) / cabs(eigenvalue[0]);
+		eigenvalue[1] = conj(eigenvalue[0]);
+		return;
+	}
+	eigenvalue[0] = half + copysign(sqrt(below), half);
+	eigenvalue[1] = eigenvalue[0] == 0 ? 0 : determinant / eigenvalue[0];
+}
+
+static void of_many(int size, const double *matrix, double complex *eigenvalue)
+{
+	const size_t n = (size_t)size;
+	gsl_matrix *a = gsl_matrix_alloc(n, n);
+	gsl_vector_complex *values = gsl_vector_complex_alloc(n);
+	gsl_eigen_nonsymm_workspace *work = gsl_eigen_nonsymm_alloc(n);
+	memcpy(a->data, matrix, n * n * sizeof *matrix);
+	gsl_eigen_nonsymm_params(0, 1, work);           /* balanced: coordinates and velocities are of different sizes */
+	const bool good = gsl_eigen_nonsymm(a, values, work) == 0;
+	for (size_t i = 0; i < n; i++) {
+		const gsl_complex z = gsl_vector_complex_get(values, i);
+		eigenvalue[i] = good ? GSL_REAL(z) + GSL_IMAG(z) * I : NAN;
+	}
+	gsl_eigen_nonsymm_free(work);
+	gsl_vector_complex_free(values);
+	gsl_matrix_free(a);
+}
+
+int eigenvalues_of(int size, const double *matrix, double complex *eigenvalue)
+{
+	for (int i = 0; i < size * size; i++)
+		if (!isfinite(matrix[i]))
+			return 0;
+	if (size == 2)
+		of_two(matrix, eigenvalue);
+	else
+		of_many(size, matrix, eigenvalue);
+	for (int i = 0; i < size; i++)
+		if (!isfinite(cabs(eigenvalue[i])))
+			return 0;
+	qsort(eigenvalue, (size_t)size, sizeof *eigenvalue, by_modulus);
+	return size;
+}
+
+double largest(int count, const double complex *eigenvalue)
+{
+	return count > 0 ? cabs(eigenvalue[0]) : NAN;
+}
+
+/* ---- of a method ---- */
+
+enum { ASKED = 3, MOST_STARTS = MOST_EIGENVALUES };
+
+struct answers {
+	int size, starts;
+	double y[ASKED + 1][MOST_STATES * MOST_STARTS];  /* after 0 .. 3 steps: size x starts */
+};
+
+/* From each unit state; then from rest with each unit blow, which a method that keeps accelerations starts with */
+static bool ask(struct free_motion *m, const struct method *method, double h, bool blows, struct answers *a)
+{
+	const int n = m->problem.n, size = 2 * n, starts = blows ? 3 * n : size;
+	bool good = true;
+	m->problem.unit = h;
+	struct run *run = method->open(method, &m->problem, h);
+	*a = (struct answers){.size = size, .starts = starts};
+	for (int j = 0; j < starts && run && good; j++) {
+		double rows[ASKED * MOST_STATES];
+		memset(m->start, 0, sizeof m->start);
+		m->blow = j < size ? -1 : j - size;
+		if (j < size)
+			m->start[j] = 1;
+		run->restart(run);
+		good = run->advance(run, ASKED, rows);
+		for (int i = 0; i < size; i++) {
+			a->y[0][i * starts + j] = m->start[i];
+			for (int k = 0; k < ASKED; k++)
+				a->y[k + 1][i * starts + j] = rows[k * size + i];
+		}
+	}
+	m->blow = -1;
+	if (run)
+		run->close(run);
+	return run && good;
+}
+
+/* Is the state all that goes from one step to the next?  Then two steps are the square of one. */
+static bool is_all(const struct answers *a)
+{
+	const int size = a->size;
+	double most = 0, off = 0;
+	for (int i = 0; i < size; i++)
+		for (int j = 0; j < size; j++) {
+			double sum = 0, sizes = 0;
+			for (int k = 0; k < size; k++) {
+				const double term = a->y[1][i * size + k] * a->y[1][k * size + j];
+				sum += term;
+				sizes += fabs(term);
+			}
+			off = fmax(off, fabs(sum - a->y[2][i * size + j]));
+			most = fmax(most, sizes);
+		}
+	return off <= 1e-11 * most;
+}
+
+/* What goes on is the state and accelerations, z, of which only the states are seen: Y_k = (I 0) P^k Z.  H0 = (Y_0; Y_1) and
+ * H1 = (Y_1; Y_2) are one matrix of observation times Z and P Z, so P is similar to the least squares solution of H0 P = H1
+ * (the realization of Ho and Kalman, 1966). */
+static int with_accelerations(const struct answers *a, double complex *eigenvalue)
+{
+	const size_t rows = 2 * (size_t)a->size, columns = (size_t)a->starts, half = (size_t)a->size * columns;
+	double P[MOST_EIGENVALUES * MOST_EIGENVALUES];
+	gsl_matrix *H0 = gsl_matrix_alloc(rows, columns);
+	gsl_vector *tau = gsl_vector_alloc(columns), *x = gsl_vector_alloc(columns), *b = gsl_vector_alloc(rows), *rest = gsl_vector_alloc(rows);
+	memcpy(H0->data, a->y[0], half * sizeof *H0->data);
+	memcpy(H0->data + half, a->y[1], half * sizeof *H0->data);
+	gsl_linalg_QR_decomp(H0, tau);
+	for (size_t j = 0; j < columns; j++) {
+		for (size_t i = 0; i < rows; i++)
+			gsl_vector_set(b, i, i < rows / 2 ? a->y[1][i * columns + j] : a->y[2][(i - rows / 2) * columns + j]);
+		gsl_linalg_QR_lssolve(H0, tau, b, x, rest);
+		for (size_t i = 0; i < columns; i++)
+			P[i * columns + j] = gsl_vector_get(x, i);
+	}
+	gsl_vector_free(rest);
+	gsl_vector_free(b);
+	gsl_vector_free(x);
+	gsl_vector_free(tau);
+	gsl_matrix_free(H0);
+	return eigenvalues_of(a->starts, P, eigenvalue);
+}
+
+int amplification(struct free_motion *m, const struct method *method, double h, double complex *eigenvalue)
+{
+	struct answers a;
+	if (!ask(m, method, h, false, &a))
+		return 0;
+	if (is_all(&a))
+		return eigenvalues_of(a.size, a.y[1], eigenvalue);
+	return ask(m, method, h, true, &a) ? with_accelerations(&a, eigenvalue) : 0;
+}
+
+/* ---- of ours ---- */
+
+int amplification_by_hand(const struct system *s, const char *scheme, double h, double complex *eigenvalue)
+{
+	const int size = s->states;
+	const bool flow = strcmp(scheme, "flow") == 0;
+	double matrix[MOST_STATES * MOST_STATES];
+	struct hand *hand = hand_new(s, flow ? "etd1" : scheme, (real)h);
+	for (int j = 0; j < size; j++) {
+		real y[HAND_MOST] = {0};
+		y[j] = 1;
+		if (!flow)
+			hand_step(hand, 0, NULL, y);
+		for (int i = 0; i < size; i++)
+			matrix[i * size + j] = (double)(flow ? hand_flow(hand, 0)[i * size_of(s) + j] : y[i]);
+	}
+	hand_free(hand);
+	return eigenvalues_of(size, matrix, eigenvalue);
+}
+
+int amplification_of_model(const pl_model *model, double size, double complex *eigenvalue)
+{
+	const int states = model->states;
+	double matrix[MOST_STATES * MOST_STATES], at_rest[MOST_STATES], y[MOST_STATES];
+	void *state = calloc(1, model->size);
+	if (!state || states > MOST_STATES)
+		abort();
+	for (int j = -1; j < states; j++) {                     /* -1: what loads do alone */
+		for (int i = 0; i < states; i++)
+			y[i] = i == j ? size : 0;
+		model->set(state, 0, y);
+		model->step(state, NULL);
+		model->get(state, j < 0 ? at_rest : y);
+		for (int i = 0; i < states && j >= 0; i++)
+			matrix[i * states + j] = (y[i] - at_rest[i]) / size;
+	}
+	free(state);
+	return eigenvalues_of(states, matrix, eigenvalue);
+}
+
+/* ---- where stability ends ---- */
+
+double boundary_between(growth_function *growth, const void *of, double from, double to, double limit)
+{
+	const bool stable = growth(of, from) <= limit;
+	for (int i = 0; i < 60 && to - from > 1e-9 * from; i++) {
+		const double middle = sqrt(from * to);
+		if ((growth(of, middle) <= limit) == stable)
+			from = middle;
+		else
+			to = middle;
+	}
+	return stable ? from : to;
+}
+
+/* ---- what is charted ---- */
+
+const struct method *charted_method(int i)
+{
+	static const char *const names[] = {"explicit Euler", "explicit trapezoid", "RK4", "central difference", "implicit trapezoid", "Newmark",
+	                                    "generalized-alpha"};
+	enum { NAMES = sizeof names / sizeof *names };
+	if (i >= NAMES)
+		return i == NAMES ? &dormand_prince_fixed : i == NAMES + 1 ? &rk8pd_fixed : NULL;
+	for (int k = 0; fixed_methods[k]; k++)
+		if (strcmp(fixed_methods[k]->name, names[i]) == 0)
+			return fixed_methods[k];
+	fprintf(stderr, "no method %s\n", names[i]);
+	exit(1);
+}
+
+/* ---- tables and checks ---- */
+
+FILE *table_open(const char *folder, const char *name, const char *header)
+{
+	char path[4096];
+	snprintf(path, sizeof path, "%s/%s", folder, name);
+	FILE *csv = fopen(path, "w");
+	if (!csv) {
+		perror(path);
+		exit(1);
+	}
+	fprintf(csv, "%s\n", header);
+	return csv;
+}
+
+void table_close(FILE *csv, const char *name)
+{
+	const bool bad = ferror(csv);
+	if (fclose(csv) != 0 || bad) {
+		perror(name);
+		exit(1);
+	}
+}
+
+void checks_open(struct checks *c, const char *folder, const char *name)
+{
+	c->csv = table_open(folder, name, "what,known,measured,tolerance,result");
+	c->off = 0;
+}
+
+void check(struct checks *c, double known, double measured, double tolerance, const char *format, ...)
+{
+	char what[200];
+	va_list arguments;
+	va_start(arguments, format);
+	vsnprintf(what, sizeof what, format, arguments);
+	va_end(arguments);
+	const bool good = known == measured || fabs(measured - known) <= tolerance * (known == 0 ? 1 : fabs(known));
+	c->off += !good;
+	fprintf(c->csv, "\"%s\",%.9g,%.9g,%.2g,%s\n", what, known, measured, tolerance, good ? "ok" : "off");
+	if (!good)
+		say_progress("off: %s: known %.17g, measured %.17g, tolerance %.2g", what, known, measured, tolerance);
+}
+
+int checks_close(struct checks *c)
+{
+	table_close(c->csv, "checks");
+	return c->off > 0;
+}

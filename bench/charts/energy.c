@@ -1,0 +1,297 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* energy [--quick] VARIANTS FOLDER: what must stay constant, over 1e8 steps (--quick: 1e6), in FOLDER/energy.csv and FOLDER/decay.csv.
+ *
+ *     undamped   scs: the energy, relative to that at the start
+ *     moving     free_pair with v2 = 0: the momentum, relative to sum m |v| at the start
+ *     resting    free_pair with v2 = -0.5: the same, where the momentum is 0
+ *     damped     sdcs with c = 1e-6: how fast the energy of each mode falls, beside -2 Re(pole)
+ *
+ * VARIANTS/energy.list has a line for each piece of generated code: `case TAB method TAB real TAB h TAB file`; file is a shared object of variant.sh, or what it
+ * was refused with is in FILE.refused.  The method `problem` gives the equations (and is ours no further): the peers are measured on
+ * each of them that is `double`, a matrix exponential rounded to float on each that is `float`. */
+#include <gsl/gsl_linalg.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "charts.h"
+
+enum { PER_DECADE = 5, STATES = 4 };    /* every case has two coordinates */
+
+struct code {
+	char test[32], method[64], real[16], file[1024];
+	double h;
+};
+
+/* ---- what must stay ---- */
+
+/* Equal masses of 1 kg and three springs of 100 N/m, as in models/scs.spec. */
+static long double energy_of_chain(const double *y)
+{
+	const long double x1 = y[0], x2 = y[1], v1 = y[2], v2 = y[3], stretch = x2 - x1;
+	return (v1 * v1 + v2 * v2) / 2 + 100 * (x1 * x1 + x2 * x2 + stretch * stretch) / 2;
+}
+
+/* Of the mode that moves both masses alike (sign 1, w^2 = 100) or apart (sign -1, w^2 = 300). */
+static long double energy_of_mode(const double *y, int sign)
+{
+	const long double x = y[0] + sign * (long double)y[1], v = y[2] + sign * (long double)y[3];
+	return (v * v + (sign > 0 ? 100 : 300) * x * x) / 4;
+}
+
+/* Masses 1 and 2, as in specs/free_pair.spec. */
+static long double momentum_of_pair(const double *y)
+{
+	return y[2] + 2 * (long double)y[3];
+}
+
+static double change_since(const char *test, const double *start, const double *y)
+{
+	if (strcmp(test, "undamped") == 0)
+		return (double)((energy_of_chain(y) - energy_of_chain(start)) / energy_of_chain(start));
+	return (double)((momentum_of_pair(y) - momentum_of_pair(start)) / (fabsl(start[2]) + 2 * fabsl(start[3])));
+}
+
+/* ---- a matrix exponential of GSL, each entry rounded to float, applied by a plain loop in float ---- */
+
+struct float_loop {
+	struct run run;
+	float Phi[STATES][STATES], y[STATES];
+};
+
+static void loop_restart(struct run *run)
+{
+	struct float_loop *l = (struct float_loop *)run;
+	for (int i = 0; i < STATES; i++)
+		l->y[i] = (float)run->problem->start[i];
+}
+
+static bool loop_advance(struct run *run, int units, double *rows)
+{
+	struct float_loop *l = (struct float_loop *)run;
+	float next[STATES];
+	(void)rows;
+	for (int k = 0; k < units; k++) {
+		for (int i = 0; i < STATES; i++) {
+			next[i] = 0;
+			for (int j = 0; j < STATES; j++)
+				next[i] += l->Phi[i][j] * l->y[j];
+		}
+		memcpy(l->y, next, sizeof next);
+	}
+	return true;
+}
+
+static void loop_get(const struct run *run, double *y)
+{
+	const struct float_loop *l = (const struct float_loop *)run;
+	for (int i = 0; i < STATES; i++)
+		y[i] = l->y[i];
+}
+
+static void loop_close(struct run *run)
+{
+	free(run);
+}
+
+static struct run *loop_open(const struct method *method, const struct problem *p, double h)
+{
+	struct float_loop *l = calloc(1, sizeof *l);
+	gsl_matrix *A = gsl_matrix_alloc(STATES, STATES), *Phi = gsl_matrix_alloc(STATES, STATES);
+	if (!l || !A || !Phi)
+		return NULL;
+	for (size_t i = 0; i < STATES; i++)
+		for (size_t j = 0; j < STATES; j++)
+			gsl_matrix_set(A, i, j, h * p->A[i * STATES + j]);
+	gsl_linalg_exponential_ss(A, Phi, GSL_PREC_DOUBLE);
+	for (size_t i = 0; i < STATES; i++)
+		for (size_t j = 0; j < STATES; j++)
+			l->Phi[i][j] = (float)gsl_matrix_get(Phi, i, j);
+	gsl_matrix_free(A);
+	gsl_matrix_free(Phi);
+	l->run = (struct run){ .method = method, .problem = p, .setting = h, .restart = loop_restart, .advance = loop_advance,
+	                       .get = loop_get, .close = loop_close };
+	return &l->run;
+}
+
+static const struct method float_loop = { "exp(A h), loop, float", PROPAGATOR, false, true, 0,
+	"gsl_linalg_exponential_ss once, entries rounded to float", loop_open };
+
+/* ---- the list ---- */
+
+static FILE *open_in(const char *folder, const char *name, const char *mode)
+{
+	char path[4096];
+	snprintf(path, sizeof path, "%s/%s", folder, name);
+	FILE *f = fopen(path, mode);
+	if (!f) {
+		perror(path);
+		exit(1);
+	}
+	return f;
+}
+
+static struct code *codes_read(const char *folder, int *count)
+{
+	char line[2048];
+	FILE *in = open_in(folder, "energy.list", "r");
+	struct code *all = NULL;
+	for (*count = 0; fgets(line, sizeof line, in); ++*count) {
+		all = realloc(all, ((size_t)*count + 1) * sizeof *all);
+		struct code *v = all + *count;
+		if (!all || sscanf(line, "%31[^\t]\t%63[^\t]\t%15[^\t]\t%lf\t%1023[^\n]", v->test, v->method, v->real, &v->h, v->file) != 5) {
+			fprintf(stderr, "energy: in the list: %s", line);
+			exit(1);
+		}
+	}
+	fclose(in);
+	return all;
+}
+
+static const char *const family_names[] = { "ours", "fixed", "adaptive", "propagator" };
+
+/* A quoted field; what plgen says may have quotes of its own. */
+static void print_quoted(FILE *out, const char *text)
+{
+	putc('"', out);
+	for (; *text; text++)
+		putc(*text == '"' ? '\'' : *text, out);
+	putc('"', out);
+}
+
+/* ---- one method over all steps ---- */
+
+static void print_change(FILE *out, const struct code *v, const char *method, enum family family, double steps, double change, double largest)
+{
+	fprintf(out, "%s,\"%s\",%s,%s,%g,%.0f,", v->test, method, family_names[family], v->real, v->h, steps);
+	if (isfinite(change))
+		fprintf(out, "%.6g,%.6g,\n", change, largest);
+	else
+		fputs("failed,failed,nan\n", out);
+}
+
+/* Samples at 1, 2, 3, 4, 6, 10, ... steps.  `largest`: of the samples so far, since a change passes through 0 now and then. */
+static void follow(struct run *run, const struct code *v, double steps, FILE *out)
+{
+	double start[STATES], y[STATES], largest = 0;
+	long done = 0;
+	run->restart(run);
+	run->get(run, start);
+	for (int k = 0; ; k++) {
+		const long next = lround(pow(10, (double)k / PER_DECADE));
+		if ((double)next > steps)
+			break;
+		const bool good = run->advance(run, (int)(next - done), NULL);
+		done = next;
+		run->get(run, y);
+		const double change = good ? change_since(v->test, start, y) : NAN;
+		largest = fmax(largest, fabs(change));
+		print_change(out, v, run->method->name, run->method->family, (double)done, change, largest);
+		if (!isfinite(change))
+			break;
+	}
+}
+
+/* The energy of a mode falls as e^{-c t}, of the other as e^{-3 c t}: C = c [2, -1; -1, 2], and that is -2 Re(pole) to 1e-14 of it. */
+static void decay(struct run *run, const struct code *v, double steps, FILE *out)
+{
+	const double c = 1e-6, time = v->h * steps;
+	double start[STATES], y[STATES];
+	run->restart(run);
+	run->get(run, start);
+	const bool good = run->advance(run, (int)steps, NULL);
+	run->get(run, y);
+	for (int sign = 1; sign >= -1; sign -= 2) {
+		const double rate = sign > 0 ? c : 3 * c;
+		const double measured = good ? -(double)logl(energy_of_mode(y, sign) / energy_of_mode(start, sign)) / time : NAN;
+		fprintf(out, "\"%s\",%s,%s,%g,%.0f,%g,%.6g,", run->method->name, family_names[run->method->family], v->real, v->h, steps,
+			sign > 0 ? 10 : sqrt(300), rate);
+		if (isfinite(measured))
+			fprintf(out, "%.6g,%.4g,\n", measured, 100 * (measured - rate) / rate);
+		else
+			fputs("failed,failed,nan\n", out);
+	}
+}
+
+static void enter_refusal(const struct code *v, const char *why, FILE *changes, FILE *decays)
+{
+	if (strcmp(v->test, "damped") == 0)
+		fprintf(decays, "\"%s\",ours,%s,%g,0,0,0,refused,refused,", v->method, v->real, v->h);
+	else
+		fprintf(changes, "%s,\"%s\",ours,%s,%g,0,refused,refused,", v->test, v->method, v->real, v->h);
+	FILE *out = strcmp(v->test, "damped") == 0 ? decays : changes;
+	print_quoted(out, why);
+	putc('\n', out);
+}
+
+static void measure(struct run *run, const struct code *v, double steps, FILE *changes, FILE *decays)
+{
+	if (!run)
+		return;
+	say_progress("%s %s h = %g: %s", v->test, v->real, v->h, run->method->name);
+	if (strcmp(v->test, "damped") == 0)
+		decay(run, v, steps, decays);
+	else
+		follow(run, v, steps, changes);
+	run->close(run);
+}
+
+static void measure_peers(const struct problem *p, const struct code *v, double steps, FILE *changes, FILE *decays)
+{
+	static const char *const peers[] = { "RK4", "Newmark", "central difference", "exp(A h), loop" };
+	if (strcmp(v->real, "float") == 0)
+		measure(loop_open(&float_loop, p, v->h), v, steps, changes, decays);
+	else
+		for (size_t k = 0; k < sizeof peers / sizeof *peers; k++) {
+			const struct method *m = method_find(peers[k]);
+			if (!m) {
+				fprintf(stderr, "energy: no method is called %s\n", peers[k]);
+				exit(1);
+			}
+			measure(m->open(m, p, v->h), v, steps, changes, decays);
+		}
+}
+
+static void measure_ours(const struct problem *p, const struct code *v, double steps, FILE *changes, FILE *decays)
+{
+	const struct method ours = { v->method, OURS, false, true, 0, "", NULL };
+	struct run *run = p ? generated_open(&ours, p, v->file) : NULL;
+	if (!run) {
+		fprintf(stderr, "energy: %s cannot be opened%s\n", v->file, p ? "" : ": no problem before it");
+		exit(1);
+	}
+	measure(run, v, steps, changes, decays);
+}
+
+int main(int argc, char **argv)
+{
+	const bool quick = argc > 1 && strcmp(argv[1], "--quick") == 0;
+	if (argc - quick != 3) {
+		fputs("usage: energy [--quick] VARIANTS FOLDER\n", stderr);
+		return 2;
+	}
+	const double steps = quick ? 1e6 : 1e8;
+	int count;
+	const struct code *all = codes_read(argv[1 + quick], &count);
+	FILE *changes = open_in(argv[2 + quick], "energy.csv", "w"), *decays = open_in(argv[2 + quick], "decay.csv", "w");
+	fputs("case,method,family,real,step_s,steps,change,largest,word\n", changes);
+	fputs("method,family,real,step_s,steps,mode_rad_per_s,rate_per_s,measured_per_s,error_percent,word\n", decays);
+	struct problem *p = NULL;               /* the latest given */
+	for (const struct code *v = all; v < all + count; v++) {
+		char *refusal = variant_refused(v->file);
+		if (refusal) {
+			enter_refusal(v, refusal, changes, decays);
+		} else if (strcmp(v->method, "problem") == 0) {
+			p = problem_load(v->file, v->test, v->h, (int)steps, true, 0);
+			measure_peers(p, v, steps, changes, decays);
+		} else {
+			measure_ours(p, v, steps, changes, decays);
+		}
+		free(refusal);
+	}
+	if (ferror(changes) | ferror(decays) | fclose(changes) | fclose(decays)) {
+		perror("energy");
+		return 1;
+	}
+	return 0;
+}

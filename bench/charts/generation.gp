@@ -1,0 +1,22 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# generation.gp break_even.csv OUTDIR
+here = system("dirname '".ARG0."'"); csv = ARG1; out = ARG2
+load here.'/style.gp'
+names = system("awk -F, 'NR > 1 && !seen[$1]++ { printf \"%s \", $1 }' '".csv."'")
+# Each model's number in place of its name
+numbered = "< awk -F, 'NR == 1 { print; next } !($1 in n) { n[$1] = ++count } { sub(/^[^,]*/, n[$1]); print }' '".csv."' | awk -f '".here."/series.awk' -v by=rival -v x=model -v y=break_even_steps | sed 's/with linespoints/with points/g; s/ dt [^ ]* lw/ lw/g'"
+name = 'break_even'
+set title "Steps after which generating and compiling is won back, at an error of 1e-6"
+set ylabel 'steps of the generated code [1]'
+unset logscale x
+unset xlabel
+set format x '%g'
+set xrange [0.5:words(names) + 0.5]
+set xtics rotate by -40 left ()
+do for [k=1:words(names)] { set xtics add (system("echo '".word(names, k)."' | sed 's/_/\\\\_/g'") k) }
+set bmargin 10
+set label 2 "No mark: the rival is as fast, or one of the two does not come to 1e-6; the table says which." at screen 0.01,0.05 left font ',9' textcolor rgb '#505050'
+eval note." 'Parameters of most models chosen. Each at its cheapest setting; gcc -O2 for all. What a rival computes before it starts is not counted.'"
+load numbered
+eval "plot ".clauses
+eval write

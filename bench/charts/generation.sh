@@ -1,0 +1,43 @@
+#!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
+# generation.sh [--quick] BUILD FOLDER: what generating costs, and when it pays. Run at the top of the source tree, after precision.
+#
+# FOLDER/generation.csv: for each model of FOLDER/precision.csv the time of plgen and of cc -O2 -c on what it wrote, whole processes in
+# turn with an empty one (bench/clock.c); minimum, median and maximum in milliseconds, as measured: the empty one's stand beside them.
+#
+# FOLDER/break_even.csv: on each model, against each rival, from precision.csv: its cheapest setting whose largest error is at most 1e-6
+# (ns per unit of output, median), ours likewise, and after how many steps of ours the time to generate and compile is won back:
+#     steps = (generate + compile - 2 empty) / (rival's ns per step of ours - ours)
+# never: the rival is as fast; not reached: no setting of it comes to 1e-6, so there is nothing to win back against.
+set -e
+runs=15
+if [ "$1" = --quick ]; then
+	runs=3
+	shift
+fi
+build=$1 folder=$2
+compiler=$(command -v "${CC:-cc}")
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+echo 'int main(void) { return 0; }' >"$work/empty.c"
+"$compiler" -O2 "$work/empty.c" -o "$work/empty"
+
+# measure COMMAND...: minimum,median,maximum,median of the empty program
+measure() {
+	"$build/bench/clock" $runs "$work/empty" -- "$@" 2>/dev/null |
+		sed 's/.* min *\([0-9.]*\) *median *\([0-9.]*\) *max *\([0-9.]*\) ms/\1,\2,\3/' |
+		awk -F, 'NR == 1 { printf "%s,", $0 } NR == 2 { print $2 }'
+}
+
+echo 'model,bytes_of_C,generate_ms_min,generate_ms_median,generate_ms_max,compile_ms_min,compile_ms_median,compile_ms_max,empty_ms_median,samples' >"$folder/generation.csv"
+awk -F, 'NR > 1 && !seen[$1]++ { print $1 }' "$folder/precision.csv" >"$work/models"
+while read -r model; do
+	echo "generation: $model" >&2
+	spec=models/$model.spec
+	"$build/plgen" "$spec" 2>/dev/null >"$work/$model.c"
+	generate=$(measure "$build/plgen" "$spec")
+	compile=$(measure "$compiler" -O2 -Iruntime -c "$work/$model.c" -o "$work/$model.o")
+	echo "$model,$(wc -c <"$work/$model.c"),${generate%,*},$compile,$runs" >>"$folder/generation.csv"
+done <"$work/models"
+
+awk -f bench/charts/csv.awk -f bench/charts/break_even.awk "$folder/generation.csv" "$folder/precision.csv" >"$folder/break_even.csv"

@@ -1,0 +1,411 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* hard [--quick] VARIANTS FOLDER: where methods fail. Every method on every hard case, in FOLDER/hard.csv: the largest error of any
+ * displacement and velocity at the ends of units, relative to the largest displacement and velocity of the history, or why there is none:
+ *
+ *     ok            the error is below a thousandth
+ *     poor          it is not, but below a tenth
+ *     wrong         nor that
+ *     diverged      it passes 10, or left the finite numbers
+ *     gave up       the method said so, or wanted more right-hand sides than most_evaluations
+ *     refused       it cannot be set up for this model; of ours: plgen says so
+ *     linear only   it is for linear models
+ *     as exact      nothing is left over for this scheme: it is the exact step
+ *
+ * VARIANTS/hard.list has a line for each piece of generated code: `case TAB method TAB step TAB file`, file a shared object of
+ * variant.sh, or `-` for what is as exact. The method `problem` comes first in each case and gives the equations.
+ * Steps are powers of two except in van der Pol's case, so that a double holds them and time itself is no error.
+ * What is true: closed forms in quadruple precision, below; for van der Pol truth_of. */
+#include <gsl/gsl_errno.h>
+#include <math.h>
+#include <quadmath.h>
+#include <setjmp.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "charts.h"
+#include "residues_naive.h"
+
+typedef __float128 quad;
+enum { MOST_STATES = 4 };
+
+/* ---- what is true: q, then their velocities ---- */
+
+static void add_wave(quad *y, int n, const quad *shape, quad w, quad t)
+{
+	for (int i = 0; i < n; i++) {
+		y[i] += shape[i] * cosq(w * t);
+		y[n + i] -= w * shape[i] * sinq(w * t);
+	}
+}
+
+/* From rest at a: x'' + (1 + S) x1 - S x2 = 0, x2'' + S (x2 - x1) = 0, S = 1e8; the slow root as product over fast root */
+static void stiff_spring(quad t, quad *y)
+{
+	const quad S = 1e8Q, fast = (1 + 2 * S + sqrtq(1 + 4 * S * S)) / 2, slow = S / fast;
+	const quad roots[] = { slow, fast };
+	for (int k = 0; k < 2; k++) {
+		const quad u1 = S, u2 = 1 + S - roots[k], part = (u1 + u2) / (u1 * u1 + u2 * u2);
+		add_wave(y, 2, (quad[]){ part * u1, part * u2 }, sqrtq(roots[k]), t);
+	}
+}
+
+/* x'' + w^2 x = cos(u t) from rest: (cos ut - cos wt)/(w^2 - u^2), and its limit t sin(wt)/(2w) */
+static void driven(quad w, quad u, quad t, quad *x, quad *v)
+{
+	const quad sum = (u + w) / 2, half = (w - u) / 2, s = half == 0 ? t / 2 : sinq(half * t) / (2 * half);
+	*x = s * sinq(sum * t) / sum;
+	*v = (half == 0 ? 0.5Q : cosq(half * t) / 2) * sinq(sum * t) / sum + s * cosq(sum * t);
+}
+
+static void resonance(quad t, quad *y)
+{
+	driven(10, 10, t, y, y + 1);
+}
+
+static void resonance_near(quad t, quad *y)
+{
+	driven(10, 10 + 1e-9Q, t, y, y + 1);
+}
+
+static void confluent_pair(quad w2, quad t, quad *y)
+{
+	driven(w2, 10, t, y + 1, y + 3);
+	y[0] = 0.01Q * cosq(10 * t);
+	y[1] *= 0.01Q;
+	y[2] = -0.1Q * sinq(10 * t);
+	y[3] *= 0.01Q;
+}
+
+static void confluent(quad t, quad *y)
+{
+	confluent_pair(10, t, y);
+}
+
+static void confluent_near(quad t, quad *y)
+{
+	confluent_pair(10 + 1e-10Q, t, y);
+}
+
+static void critical(quad t, quad *y)
+{
+	y[0] = (1 + 10 * t) * expq(-10 * t);
+	y[1] = -100 * t * expq(-10 * t);
+}
+
+/* Masses 1 and 2, spring 100, force 1 on the first: their centre, and the stretch r = x1 - x2, r'' + 150 r = 1 */
+static void rigid(quad t, quad *y)
+{
+	const quad W = sqrtq(150), r = (1 - cosq(W * t)) / 150, u = sinq(W * t) / W, x = t * t / 6, v = t / 3;
+	y[0] = x + 2 * r / 3;
+	y[1] = x - r / 3;
+	y[2] = v + 2 * u / 3;
+	y[3] = v - u / 3;
+}
+
+static void long_run(quad t, quad *y)
+{
+	add_wave(y, 2, (quad[]){ 0.005Q, 0.005Q }, 10, t);
+	add_wave(y, 2, (quad[]){ 0.005Q, -0.005Q }, sqrtq(300), t);
+}
+
+/* Poles a = -1e8 and b = -1e-3, x(0) = 1 */
+static void fast_slow(quad t, quad *y)
+{
+	const quad a = -1e8Q, b = -1e-3Q;
+	y[0] = (a * expq(b * t) - b * expq(a * t)) / (a - b);
+	y[1] = a * b * (expq(b * t) - expq(a * t)) / (a - b);
+}
+
+/* x'' + x = 0 up to the stop at b = 1 - 1e-6, reached with speed v; inside, e = x - b: e'' + (1 + K) e + b = 0. A period is from -1 to -1,
+ * symmetric about the deepest point, where tan(W t) = v W / b. */
+static void graze(quad t, quad *y)
+{
+	const quad b = 1 - 1e-6Q, W = sqrtq(1 + 1e8Q), v = sqrtq((1 - b) * (1 + b));
+	const quad reach = acosq(-b), touch = atanq(v * W / b) / W, period = 2 * (reach + touch);
+	quad s = t - floorq(t / period) * period;
+	const bool back = s > period / 2;
+	if (back)
+		s = period - s;
+	if (s <= reach) {
+		y[0] = -cosq(s);
+		y[1] = sinq(s);
+	} else {
+		s -= reach;
+		y[0] = b + v / W * sinq(W * s) - b / (W * W) * (1 - cosq(W * s));
+		y[1] = v * cosq(W * s) - b / W * sinq(W * s);
+	}
+	if (back)
+		y[1] = -y[1];
+}
+
+/* ---- the cases ---- */
+
+static const struct hard_case {
+	const char *name;
+	double unit;                            /* [s] */
+	int units, quick_units;
+	double frequency;                       /* of its load */
+	bool linear;
+	void (*exact)(quad t, quad *y);         /* NULL: truth_of models/vanderpol_stiff.spec; y comes as zeros */
+	double least_v;                         /* scale of velocities where ends of units have no larger: van der Pol's jump, 4/3 mu, falls
+	                                         * between them */
+	double steps[3];                        /* to take, 0 at the end */
+	double tolerance;                       /* of adaptive methods */
+	long most_evaluations;
+} cases[] = {
+	{ "stiff van der Pol", 0.1, 1000, 1000, 0, false, NULL, 133, { 0.1, 0.01 }, 1e-10, 5000000 },
+	{ "stiff spring", 0.125, 800, 80, 0, true, stiff_spring, 0, { 0.125, 1.0 / 128 }, 1e-10, 20000000 },
+	{ "resonance", 0.125, 8000, 800, 10, true, resonance, 0, { 1.0 / 128 }, 1e-10, 5000000 },
+	{ "resonance, 1e-9 off", 0.125, 8000, 800, 10 + 1e-9, true, resonance_near, 0, { 1.0 / 128 }, 1e-10, 5000000 },
+	{ "equal poles", 0.125, 8000, 800, 0, true, confluent, 0, { 1.0 / 128 }, 1e-10, 5000000 },
+	{ "poles 1e-10 apart", 0.125, 8000, 800, 0, true, confluent_near, 0, { 1.0 / 128 }, 1e-10, 5000000 },
+	{ "critical damping", 0.125, 80, 80, 0, true, critical, 0, { 1.0 / 128 }, 1e-10, 5000000 },
+	{ "rigid body", 0.125, 8000, 800, 0, true, rigid, 0, { 1.0 / 128 }, 1e-10, 5000000 },
+	{ "long run", 1, 9766, 98, 0, true, long_run, 0, { 1.0 / 1024 }, 1e-10, 200000000 },
+	{ "grazing contact", 0.125, 800, 800, 0, false, graze, 0, { 1.0 / 128 }, 1e-10, 5000000 },
+	{ "poles -1e8 and -1e-3", 1024, 8, 8, 0, true, fast_slow, 1e-3, { 1024 }, 1e-10, 5000000 },
+	{ "the same, long step", 1048576, 8, 8, 0, true, fast_slow, 1e-3, { 1048576 }, 1e-10, 5000000 },
+};
+
+static const struct hard_case *case_find(const char *name)
+{
+	for (size_t k = 0; k < sizeof cases / sizeof *cases; k++)
+		if (strcmp(cases[k].name, name) == 0)
+			return &cases[k];
+	fprintf(stderr, "hard: no case is called %s\n", name);
+	exit(1);
+}
+
+/* ---- histories ---- */
+
+struct history {
+	int states, units;
+	double *y;                              /* [units][states], at the ends of units */
+	double scale[2];                        /* of displacements and velocities */
+};
+
+static void set_scales(struct history *h, const struct problem *p, double least_v)
+{
+	h->scale[0] = 0;
+	h->scale[1] = least_v;
+	for (int i = 0; i < p->n; i++) {
+		h->scale[0] = fmax(h->scale[0], fabs(p->start[i]));
+		h->scale[1] = fmax(h->scale[1], fabs(p->start[p->n + i]));
+	}
+	for (int k = 0; k < h->units * h->states; k++) {
+		double *scale = &h->scale[k % h->states >= p->n];
+		*scale = fmax(*scale, fabs(h->y[k]));
+	}
+}
+
+static struct history history_of(const struct hard_case *c, const struct problem *p)
+{
+	struct history h = { 2 * p->n, p->units, calloc((size_t)p->units * 2 * (size_t)p->n, sizeof(double)), { 0 } };
+	if (!h.y)
+		exit(1);
+	if (c->exact) {
+		for (int k = 0; k < h.units; k++) {
+			quad y[MOST_STATES] = { 0 };
+			c->exact((k + 1) * (quad)c->unit, y);
+			for (int i = 0; i < h.states; i++)
+				h.y[k * h.states + i] = (double)y[i];
+		}
+	} else {
+		struct truth *truth = truth_of(p);
+		say_progress("hard: %s: two roads to what is true agree to %.2g", c->name, truth->agreement);
+		memcpy(h.y, truth->at_end, (size_t)(h.units * h.states) * sizeof *h.y);
+		memcpy(h.scale, (double[]){ truth->scale_q, fmax(truth->scale_v, c->least_v) }, sizeof h.scale);
+		return h;
+	}
+	set_scales(&h, p, c->least_v);
+	return h;
+}
+
+static double error_of_row(const struct history *h, int unit, const double *y)
+{
+	double largest = 0;
+	for (int i = 0; i < h->states; i++) {
+		const double e = fabs(y[i] - h->y[unit * h->states + i]) / h->scale[i >= h->states / 2];
+		if (!(e <= largest))            /* and what is not a number */
+			largest = e;
+	}
+	return largest;
+}
+
+/* ---- right-hand sides, counted: some methods on some cases would go on for days ---- */
+
+static struct {
+	const struct problem *problem;
+	long left;
+	jmp_buf out;
+} budget;
+
+static void counted(const void *of, double t, const double *y, double *dydt)
+{
+	(void)of;
+	if (budget.left-- <= 0)
+		longjmp(budget.out, 1);
+	budget.problem->rhs(t, y, dydt);
+}
+
+/* ---- a cell of the table ---- */
+
+struct cell {
+	double error;
+	const char *word;
+};
+
+static struct cell cell_of_error(double error)
+{
+	if (!isfinite(error) || error > 10)
+		return (struct cell){ error, "diverged" };
+	return (struct cell){ error, error < 1e-3 ? "ok" : error < 0.1 ? "poor" : "wrong" };
+}
+
+/* Until the end, or to where it is hopeless */
+static struct cell follow(struct run *run, const struct history *h)
+{
+	double y[MOST_STATES], largest = 0;
+	run->restart(run);
+	for (int k = 0; k < h->units; k++) {
+		const bool good = run->advance(run, 1, NULL);
+		run->get(run, y);
+		const double e = error_of_row(h, k, y);
+		if (!good && isfinite(e))
+			return (struct cell){ NAN, "gave up" };
+		if (!(e <= largest))
+			largest = e;
+		if (!isfinite(largest))
+			break;
+	}
+	return cell_of_error(largest);
+}
+
+static struct cell try_method(const struct method *m, const struct problem *p, const struct history *h, double setting, const char *file,
+                              long most_evaluations)
+{
+	struct problem asked = *p;
+	if (m->linear_only && !p->linear)
+		return (struct cell){ NAN, "linear only" };
+	asked.rhs_of = counted;
+	asked.rhs = NULL;
+	budget.problem = p;
+	budget.left = most_evaluations;
+	if (setjmp(budget.out) != 0)            /* what the run held is lost */
+		return (struct cell){ NAN, "gave up" };
+	struct run *run = file ? generated_open(m, p, file) : m->open(m, &asked, setting);
+	if (!run)
+		return (struct cell){ NAN, "refused" };
+	const struct cell cell = follow(run, h);
+	run->close(run);
+	return cell;
+}
+
+/* ---- the table ---- */
+
+static void print_quoted(FILE *out, const char *text)
+{
+	putc('"', out);
+	for (; *text; text++)
+		putc(*text == '"' ? '\'' : *text, out);
+	putc('"', out);
+}
+
+static void print_cell(FILE *out, const struct hard_case *c, const struct method *m, double setting, struct cell cell, const char *settings)
+{
+	static const char *const families[] = { "ours", "fixed", "adaptive", "propagator" };
+	fprintf(out, "\"%s\",\"%s\",%s,%s,%.8g,", c->name, m->name, families[m->family], m->tolerance ? "tolerance" : "step", setting);
+	if (isfinite(cell.error) && strcmp(cell.word, "diverged") != 0)
+		fprintf(out, "%.3g,%s,", cell.error, cell.word);
+	else
+		fprintf(out, "failed,%s,", cell.word);
+	print_quoted(out, settings ? settings : "");
+	putc('\n', out);
+	say_progress("hard: %s: %s %g: %s", c->name, m->name, setting, cell.word);
+}
+
+static void try_peer(FILE *out, const struct hard_case *c, const struct problem *p, const struct history *h, const struct method *m)
+{
+	if (m->tolerance) {
+		print_cell(out, c, m, c->tolerance, try_method(m, p, h, c->tolerance, NULL, c->most_evaluations), m->settings);
+		return;
+	}
+	for (const double *step = c->steps; *step > 0; step++)
+		print_cell(out, c, m, *step, try_method(m, p, h, *step, NULL, c->most_evaluations), m->settings);
+}
+
+static void try_peers(FILE *out, const struct hard_case *c, const struct problem *p, const struct history *h)
+{
+	const struct method *const *const lists[] = { fixed_methods, adaptive_methods, propagator_methods };
+	for (int k = 0; k < 3; k++)
+		for (const struct method *const *m = lists[k]; *m; m++)
+			try_peer(out, c, p, h, *m);
+	try_peer(out, c, p, h, &residues_naive);
+}
+
+static void try_ours(FILE *out, const struct hard_case *c, const struct problem *p, const struct history *h, const char *name, double step,
+                     const char *file)
+{
+	const struct method m = { .name = name, .family = OURS };
+	if (strcmp(file, "-") == 0) {
+		print_cell(out, c, &m, step, (struct cell){ NAN, "as exact" }, "");
+		return;
+	}
+	char *refusal = variant_refused(file);
+	const struct cell cell = refusal ? (struct cell){ NAN, "refused" } : try_method(&m, p, h, step, file, c->most_evaluations);
+	print_cell(out, c, &m, step, cell, refusal);
+	free(refusal);
+}
+
+static struct problem *problem_of(const struct hard_case *c, const char *file, bool quick)
+{
+	return problem_load(file, c->exact ? c->name : "vanderpol_stiff", c->unit, quick ? c->quick_units : c->units, c->linear, c->frequency);
+}
+
+static FILE *open_in(const char *folder, const char *name, const char *mode)
+{
+	char path[4096];
+	snprintf(path, sizeof path, "%s/%s", folder, name);
+	FILE *f = fopen(path, mode);
+	if (!f) {
+		perror(path);
+		exit(1);
+	}
+	return f;
+}
+
+int main(int argc, char **argv)
+{
+	const bool quick = argc > 1 && strcmp(argv[1], "--quick") == 0;
+	char name[64], method[64], file[1024], line[2048];
+	double step;
+	if (argc - quick != 3) {
+		fputs("usage: hard [--quick] VARIANTS FOLDER\n", stderr);
+		return 2;
+	}
+	gsl_set_error_handler_off();            /* its statuses say it too */
+	FILE *list = open_in(argv[1 + quick], "hard.list", "r"), *out = open_in(argv[2 + quick], "hard.csv", "w");
+	fputs("case,method,family,setting_kind,setting,error,word,settings\n", out);
+	struct problem *p = NULL;
+	struct history h = { 0 };
+	while (fgets(line, sizeof line, list)) {
+		if (sscanf(line, "%63[^\t]\t%63[^\t]\t%lf\t%1023[^\n]", name, method, &step, file) != 4) {
+			fprintf(stderr, "hard: in the list: %s", line);
+			return 1;
+		}
+		const struct hard_case *c = case_find(name);
+		if (strcmp(method, "problem") == 0) {
+			p = problem_of(c, file, quick);
+			h = history_of(c, p);
+			try_peers(out, c, p, &h);
+		} else if (p) {
+			try_ours(out, c, p, &h, method, step, file);
+		}
+	}
+	fclose(list);
+	if (ferror(out) | fclose(out)) {
+		perror("hard.csv");
+		return 1;
+	}
+	return 0;
+}

@@ -1,0 +1,22 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The methods that are not ours, by name. */
+#include <string.h>
+
+#include "charts.h"
+
+static const struct method *find_among(const struct method *const *methods, const char *name)
+{
+	for (; *methods; methods++)
+		if (strcmp((*methods)->name, name) == 0)
+			return *methods;
+	return NULL;
+}
+
+const struct method *method_find(const char *name)
+{
+	const struct method *const *const lists[] = {fixed_methods, adaptive_methods, propagator_methods};
+	const struct method *found = NULL;
+	for (int i = 0; i < 3 && !found; i++)
+		found = find_among(lists[i], name);
+	return found;
+}

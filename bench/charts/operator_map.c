@@ -1,0 +1,182 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ *
+ * operator_map [--quick] OUTDIR VARIANTS
+ *
+ * What happens when the exact part of a step is not the whole motion?
+ *   etd1 ... bm3: x'' + w^2 x = 0 under an operator of frequency wA, the difference left to the scheme, over (w h, wA/w): operator_map.csv
+ *   pl: two equal masses, each on a spring k1 and with k2 between them; each one's own (k1 + k2) x is exact, k2 times the other one is
+ *   held over the step, over (w h, k2/k1), w = sqrt((k1 + k2)/m): pl_map.csv
+ * rho: growth per step; growth: of the amplitude within one true period 2 pi/w, 0: none.  Both by the schemes of tests/leftover/hand.c in
+ * long double; generated code at a few points beside it: operator_check.csv.  Where stability ends: operator_boundary.csv.
+ */
+#include "amplification.h"
+
+#include <dlfcn.h>
+#include <math.h>
+#include <string.h>
+
+/* ---- the two masses ---- */
+
+static struct { real k1, k2; } masses;
+
+static void two_masses(real t, const real *y, const real *u, real *dydt)
+{
+	(void)t, (void)u;
+	for (int i = 0; i < 2; i++) {
+		dydt[i] = y[2 + i];
+		dydt[2 + i] = -(masses.k1 + masses.k2) * y[i] + masses.k2 * y[1 - i];
+	}
+}
+
+static void own_terms(const struct system *s, int which, real *A)
+{
+	(void)s, (void)which;
+	for (int i = 0; i < 2; i++) {
+		A[i * 4 + 2 + i] = 1;
+		A[(2 + i) * 4 + i] = -(masses.k1 + masses.k2);
+	}
+}
+
+static const struct system pair = {.name = "pair", .states = 4, .equations = two_masses, .linear = own_terms};
+
+/* w = 1 */
+static double growth_of_pl(double coupling, double wh)
+{
+	double complex eigenvalue[MOST_EIGENVALUES];
+	masses.k1 = 1 / (1 + (real)coupling);
+	masses.k2 = 1 - masses.k1;
+	return largest(amplification_by_hand(&pair, "etd1", wh, eigenvalue), eigenvalue);
+}
+
+/* ---- maps ---- */
+
+struct subject {
+	const char *scheme;             /* pl: over the coupling */
+	double across;                  /* wA/w, or k2/k1 */
+};
+
+static double growth(const void *of, double wh)
+{
+	const struct subject *s = of;
+	double complex eigenvalue[MOST_EIGENVALUES];
+	if (strcmp(s->scheme, "pl") == 0)
+		return growth_of_pl(s->across, wh);
+	return largest(amplification_by_hand(mismatched_by_hand(s->across), s->scheme, wh, eigenvalue), eigenvalue);
+}
+
+/* From what rho to what within a period */
+static double per_period(double rho, double wh)
+{
+	return fabs(rho - 1) <= NOT_GROWING ? 0 : expm1(2 * M_PI / wh * log(rho));
+}
+
+struct grid {
+	int steps, rows;
+	double least, most;             /* of the second variable, its logarithm */
+};
+
+static double step_at(struct grid g, int i)
+{
+	return pow(10, -2 + 3.5 * i / (g.steps - 1));
+}
+
+static void chart(FILE *map, FILE *ends, const char *scheme, struct grid g)
+{
+	const double limit = 1 + NOT_GROWING;
+	say_progress("operator_map: %s", scheme);
+	for (int j = 0; j < g.rows; j++) {
+		const struct subject s = {scheme, pow(10, g.least + (g.most - g.least) * j / (g.rows - 1))};
+		double before = 0;
+		for (int i = 0; i < g.steps; i++) {
+			const double wh = step_at(g, i), rho = growth(&s, wh);
+			if (isfinite(rho))
+				fprintf(map, "%s,%.6g,%.6g,%.6g,%.4g\n", scheme, wh, s.across, rho, per_period(rho, wh));
+			else
+				fprintf(map, "%s,%.6g,%.6g,failed,failed\n", scheme, wh, s.across);
+			/* Else weak growth has only come in sight */
+			const bool real_one = fmin(before, rho) < 1 - NOT_GROWING;
+			if (i > 0 && real_one && (before <= limit) != (rho <= limit))
+				fprintf(ends, "%s,%.6g,%.6g\n", scheme, boundary_between(growth, &s, step_at(g, i - 1), wh, limit), s.across);
+			before = rho;
+		}
+	}
+}
+
+static void charts(const char *folder, bool quick)
+{
+	static const char *const schemes[] = {"etd1", "etdrk2", "etdrk4", "nc2", "nc3", "dq4", "bm3"};
+	FILE *ends = table_open(folder, "operator_boundary.csv", "method,wh,across");
+	FILE *map = table_open(folder, "operator_map.csv", "method,wh,ratio,rho,growth");
+	for (int k = 0; k < 7; k++)
+		chart(map, ends, schemes[k], quick ? (struct grid){22, 13, -1, 1} : (struct grid){71, 41, -1, 1});
+	table_close(map, "operator_map.csv");
+	map = table_open(folder, "pl_map.csv", "method,wh,coupling,rho,growth");
+	chart(map, ends, "pl", quick ? (struct grid){29, 17, -3, 1} : (struct grid){71, 49, -3, 1});
+	table_close(map, "pl_map.csv");
+	table_close(ends, "operator_boundary.csv");
+}
+
+/* ---- what is known, and generated code ---- */
+
+static double rate(const char *scheme, double across, double wh)
+{
+	const struct subject s = {scheme, across};
+	return log(growth(&s, wh)) / wh;
+}
+
+static void check_rates(struct checks *c)
+{
+	const double h = 0.01;
+	check(c, h / 4 * (1 - 0.25), rate("etd1", 0.5, h), 0.01, "etd1 wA/w 0.5: growth rate (h/4)(w^2 - wA^2)");
+	check(c, h / 4 * (1 - 4), rate("etd1", 2, h), 0.01, "etd1 wA/w 2: growth rate (h/4)(w^2 - wA^2)");
+	for (int k = 0; k < 2; k++) {
+		const double coupling = k == 0 ? 0.01 : 1, k2 = coupling / (1 + coupling), in_phase = 1 - k2, out_of_phase = 1 + k2;
+		const struct subject soft = {"etd1", sqrt(1 / out_of_phase)}, stiff = {"etd1", sqrt(1 / in_phase)};
+		const double wh = 0.5, modes = fmax(growth(&soft, wh * sqrt(out_of_phase)), growth(&stiff, wh * sqrt(in_phase)));
+		check(c, k2 * h / 4, rate("pl", coupling, h), 0.01, "pl k2/k1 %g: growth rate kappa h/4, kappa = k2/m", coupling);
+		check(c, modes, growth_of_pl(coupling, wh), 1e-13, "pl k2/k1 %g w h 0.5: as etd1 of its modes, whose operators are too soft and too stiff", coupling);
+	}
+	const struct subject free = {"etd1", 1e-8};
+	check(c, sqrt(1 + 0.125), growth(&free, 0.5), 1e-12, "etd1 wA 0 w h 0.5: the force held over a step, rho = sqrt(1 + (w h)^2/2)");
+}
+
+/* Of the generated code of a spring whose operator is fixed away from rest, at motions so small that its cubic term is below rounding */
+static void check_generated(struct checks *c, const char *variants)
+{
+	static const struct { const char *file, *scheme; double across, wh; } points[] = {
+		{"operator_etd1.so", "etd1", 0.5, 0.1}, {"operator_etdrk2.so", "etdrk2", 2, 0.5}, {"operator_etdrk4.so", "etdrk4", 0.5, 1},
+		{"operator_nc2.so", "nc2", 2, 1}, {"operator_nc3.so", "nc3", 2, 1}, {"operator_dq4.so", "dq4", 2, 1}, {"operator_bm3.so", "bm3", 0.5, 2},
+		{"pl_weak.so", "pl", 0.01, 0.5}, {"pl_equal.so", "pl", 1, 1}, {"pl_strong.so", "pl", 4, 3}};
+	for (size_t i = 0; i < sizeof points / sizeof *points; i++) {
+		const struct subject s = {points[i].scheme, points[i].across};
+		char path[4096];
+		snprintf(path, sizeof path, "%s/%s", variants, points[i].file);
+		void *handle = dlopen(path, RTLD_NOW | RTLD_LOCAL);
+		const pl_model *model = handle ? dlsym(handle, "subject_model") : NULL;
+		const double *Phi = handle ? dlsym(handle, "subject_Phi") : NULL;
+		double complex eigenvalue[MOST_EIGENVALUES];
+		double measured = NAN;
+		if (model && Phi && strcmp(points[i].scheme, "pl") == 0)
+			measured = largest(eigenvalues_of(4, Phi, eigenvalue), eigenvalue);
+		else if (model)
+			measured = largest(amplification_of_model(model, 1e-12, eigenvalue), eigenvalue);
+		check(c, growth(&s, points[i].wh), measured, 1e-13, "%s %s %g w h %g: rho of generated code", points[i].scheme,
+		      strcmp(points[i].scheme, "pl") == 0 ? "k2/k1" : "wA/w", points[i].across, points[i].wh);
+	}
+}
+
+int main(int argc, char **argv)
+{
+	const bool quick = argc > 1 && strcmp(argv[1], "--quick") == 0;
+	struct checks c;
+	if (argc != 3 + quick) {
+		fprintf(stderr, "usage: operator_map [--quick] OUTDIR VARIANTS\n");
+		return 2;
+	}
+	const char *folder = argv[1 + quick], *variants = argv[2 + quick];
+	charts(folder, quick);
+	checks_open(&c, folder, "operator_check.csv");
+	check_rates(&c);
+	check_generated(&c, variants);
+	return checks_close(&c);
+}

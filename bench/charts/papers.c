@@ -1,0 +1,137 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* papers [--quick] VARIANTS FOLDER: the findings of the four sources beside what is measured: FOLDER/papers_000.csv (coupled
+ * systems), papers_001.csv (precise integration), papers_002.csv (clearances), papers_004.csv (rotating beam), and all times in
+ * papers_times.csv. VARIANTS holds what papers.sh made. The sources' parameter values did not survive: those of the models are chosen. */
+#include <math.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "papers.h"
+
+const char *text(const char *format, ...)
+{
+	enum { KEPT = 16, LENGTH = 512 };
+	static char kept[KEPT][LENGTH];
+	static int turn;
+	va_list arguments;
+	turn = (turn + 1) % KEPT;
+	va_start(arguments, format);
+	vsnprintf(kept[turn], LENGTH, format, arguments);
+	va_end(arguments);
+	return kept[turn];
+}
+
+const char *percent(double part)
+{
+	if (!isfinite(part))
+		return "diverged";
+	return part < 10 ? text("%.3g %%", 100 * part) : text("%.3g times x1(0)", part);
+}
+
+FILE *file_begin(const struct papers *papers, const char *name, const char *head)
+{
+	char file[4096];
+	snprintf(file, sizeof file, "%s/%s", papers->folder, name);
+	FILE *f = fopen(file, "w");
+	if (!f) {
+		perror(file);
+		exit(1);
+	}
+	fprintf(f, "%s\n", head);
+	return f;
+}
+
+/* Quoted where a comma is */
+static void print_fields(FILE *f, int count, const char *const *field)
+{
+	for (int i = 0; i < count; i++) {
+		const char *quote = field[i] && strchr(field[i], ',') ? "\"" : "";
+		fprintf(f, "%s%s%s%s", i > 0 ? "," : "", quote, field[i] ? field[i] : "", quote);
+	}
+}
+
+FILE *table_begin(const struct papers *papers, const char *name)
+{
+	return file_begin(papers, name, "source,model,method,quantity,reported,recovered,measured,settings");
+}
+
+void table_row(FILE *table, const struct row *row)
+{
+	const char *const field[] = { row->source, row->model, row->method, row->quantity, row->reported, row->recovered, row->measured, row->settings };
+	print_fields(table, sizeof field / sizeof *field, field);
+	fputc('\n', table);
+}
+
+void table_end(FILE *table)
+{
+	if (ferror(table) || fclose(table) != 0) {
+		perror("papers");
+		exit(1);
+	}
+}
+
+void timing_row(const struct papers *papers, const struct timing *t)
+{
+	const char *const field[] = { t->source, t->model, t->method, t->quantity, t->reported, t->measured };
+	print_fields(papers->times, sizeof field / sizeof *field, field);
+	fprintf(papers->times, ",%.6g,%.6g,%.6g,", t->ns.min, t->ns.median, t->ns.max);
+	print_fields(papers->times, 1, &t->settings);
+	fputc('\n', papers->times);
+}
+
+struct problem *papers_problem(const struct papers *papers, const char *variant, const char *name, double unit, int units, double frequency)
+{
+	char file[4096];
+	snprintf(file, sizeof file, "%s/papers_%s.so", papers->variants, variant);
+	return problem_load(file, name, unit, units, frequency >= 0, frequency >= 0 ? frequency : 0);
+}
+
+struct run *papers_run(const struct papers *papers, const struct method *method, const struct problem *p, const char *variant)
+{
+	char file[4096];
+	snprintf(file, sizeof file, "%s/papers_%s.so", papers->variants, variant);
+	struct run *run = generated_open(method, p, file);
+	if (!run) {
+		fprintf(stderr, "papers: %s: %s\n", file, variant_refused(file) ? variant_refused(file) : "cannot be used");
+		exit(1);
+	}
+	return run;
+}
+
+static int by_error(const void *a, const void *b)
+{
+	const double x = ((const struct placing *)a)->error, y = ((const struct placing *)b)->error;
+	return (x > y) - (x < y);
+}
+
+const char *ordering(int count, struct placing *placing)
+{
+	char all[400] = "";
+	for (int i = 0; i < count; i++)
+		if (!isfinite(placing[i].error))
+			placing[i].error = INFINITY;
+	qsort(placing, (size_t)count, sizeof *placing, by_error);
+	for (int i = 0; i < count; i++) {
+		const size_t length = strlen(all);
+		snprintf(all + length, sizeof all - length, "%s%s", i > 0 ? " < " : "", placing[i].method);
+	}
+	return text("%s", all);
+}
+
+int main(int argc, char **argv)
+{
+	const bool quick = argc > 1 && strcmp(argv[1], "--quick") == 0;
+	if (argc != 3 + quick) {
+		fputs("usage: papers [--quick] VARIANTS FOLDER\n", stderr);
+		return 2;
+	}
+	struct papers papers = { .variants = argv[1 + quick], .folder = argv[2 + quick], .quick = quick };
+	papers.times = file_begin(&papers, "papers_times.csv", "source,model,method,quantity,reported,measured,ns_min,ns_median,ns_max,settings");
+	coupled_systems(&papers);
+	precise_integration(&papers);
+	clearances(&papers);
+	rotating_beam(&papers);
+	table_end(papers.times);
+	return 0;
+}

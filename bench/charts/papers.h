@@ -1,0 +1,47 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ *
+ * What the four sources report, and what is measured here: one function and one table a source.
+ *     reported   by the source itself; empty where its figures did not survive
+ *     recovered  by an independent computation when its lost formulas were deduced
+ *     measured   now
+ */
+#ifndef PAPERS_H
+#define PAPERS_H
+
+#include "charts.h"
+
+struct papers {
+	const char *variants, *folder; /* what papers.sh made; where the tables go */
+	FILE *times;                /* of all sources: the only figures that change from run to run */
+	bool quick;
+};
+void coupled_systems(struct papers *papers);        /* 000, papers_coupled.c */
+void precise_integration(struct papers *papers);    /* 001, papers_integration.c */
+void clearances(struct papers *papers);             /* 002, papers_clearance.c */
+void rotating_beam(struct papers *papers);          /* 004, papers_beam.c */
+
+/* ---- papers.c ---- */
+
+struct row {
+	const char *source, *model, *method, *quantity, *reported, *recovered, *measured, *settings; /* NULL: empty */
+};
+FILE *file_begin(const struct papers *papers, const char *name, const char *head);
+FILE *table_begin(const struct papers *papers, const char *name);
+void table_row(FILE *table, const struct row *row);
+void table_end(FILE *table);
+struct timing {
+	const char *source, *model, *method, *quantity, *reported, *measured, *settings;
+	struct samples ns;
+};
+void timing_row(const struct papers *papers, const struct timing *timing);
+const char *text(const char *format, ...) __attribute__((format(printf, 1, 2))); /* good until 16 more of them */
+const char *percent(double part);
+/* frequency: of a linear model's load, 0 where it has none; below 0: the model is not linear */
+struct problem *papers_problem(const struct papers *papers, const char *variant, const char *name, double unit, int units, double frequency);
+struct run *papers_run(const struct papers *papers, const struct method *method, const struct problem *p, const char *variant);
+
+/* Errors of several methods, from the smallest up: "A < B < C" */
+struct placing { const char *method; double error; };
+const char *ordering(int count, struct placing *placing);   /* sorts */
+
+#endif

@@ -1,0 +1,400 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* precision: what accuracy costs. Each method on each model with several steps or tolerances: its largest error over the whole
+ * history against the time it takes for a unit of output, and against its evaluations of the right-hand side.
+ *
+ *     precision --list [--quick] [MODEL...]              the variants wanted: one line each, FILE SPEC and plgen's options
+ *     precision [--quick] VARIANTS FILE.csv [MODEL...]   VARIANTS: the folder with those files
+ */
+#include "charts.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- what is measured ---- */
+
+enum kind { ORDINARY, STIFF, LARGE };   /* stiff: steps from coarse to fine; large: fewer settings, each of which takes long */
+
+struct charted {
+	const char *name;
+	const char *unit;               /* of output [s], as a fraction */
+	int units, quick_units;
+	bool linear;
+	double w;                       /* of its load [rad/s] */
+	enum kind kind;
+	bool quick;                     /* part of a quick run */
+};
+
+static const struct charted models[] = {
+	{ "pendulum", "1/10", 100, 100, false, 0, ORDINARY, true },
+	{ "vanderpol", "1/10", 200, 200, false, 0, ORDINARY, false },
+	{ "vanderpol_stiff", "1/10", 2000, 200, false, 0, STIFF, false },
+	{ "quad2dof", "1/10", 300, 100, false, 0, ORDINARY, false },
+	{ "duffing", "1/10", 300, 100, false, 0, ORDINARY, false },
+	{ "mathieu", "1/10", 300, 100, false, 0, ORDINARY, false },
+	{ "beam4", "1/100", 2000, 100, false, 0, LARGE, true },
+	{ "beam15", "1/100", 2000, 100, false, 0, LARGE, false },
+	{ "gear1", "1/10", 500, 200, false, 0, ORDINARY, true },
+	{ "gear2", "1/10", 200, 200, false, 0, ORDINARY, false },
+	{ "gear3", "1/100", 2000, 500, false, 0, ORDINARY, false },
+	{ "scs", "1/100", 3000, 1000, true, 0, ORDINARY, true },
+	{ "sdcs", "1/100", 3000, 1000, true, 0, ORDINARY, false },
+	{ "sdcsf", "1/100", 3000, 1000, true, 5, ORDINARY, false },
+	{ "scs_weak", "1/100", 3000, 1000, true, 0, ORDINARY, false },
+	{ "linear2dof", "1/5", 50, 50, true, 0, ORDINARY, false },
+	{ "tuned_floor", "1/100", 3000, 1000, true, 4 * M_PI, ORDINARY, false },
+};
+enum { MODELS = sizeof models / sizeof *models };
+
+/* Steps, as the unit over these, and tolerances, as 10 to the minus these; 0 ends. A step of the beams must be below 2.7e-4 s for RK4;
+ * their implicit methods, which solve for 30 unknowns, and their schemes stay at the first. */
+static const int parts_fixed[][8] = { { 1, 2, 4, 8, 16, 32, 64, 0 }, { 4, 16, 64, 256, 1024, 0 }, { 1, 4, 16, 40, 80, 0 } };
+static const int parts_fixed_quick[][8] = { { 1, 8, 64, 0 }, { 16, 256, 0 }, { 1, 16, 40, 0 } };
+static const int parts_scheme[][8] = { { 1, 2, 4, 8, 16, 32, 0 }, { 1, 4, 16, 64, 256, 1024, 0 }, { 1, 4, 16, 0 } };
+static const int parts_scheme_quick[][8] = { { 1, 8, 0 }, { 4, 64, 0 }, { 1, 8, 0 } };
+static const int parts_implicit_large[] = { 1, 2, 4, 16, 0 }, parts_exact[] = { 1, 4, 0 }, parts_exact_quick[] = { 1, 0 };
+static const int digits[][8] = { { 3, 4, 6, 8, 10, 12, 13, 0 }, { 3, 4, 6, 8, 10, 12, 13, 0 }, { 4, 8, 12, 0 } }, digits_quick[] = { 3, 8, 12, 0 };
+
+struct ours {
+	const char *name, *options;
+	bool exact;                     /* else with a leftover */
+};
+
+static const struct ours ours[] = {
+	{ "exact", "", true },
+	{ "exact, direct", "--form direct", true },
+	{ "exact, delta", "--form delta", true },
+	{ "exact, kick-drift-kick", "--form kick-drift-kick", true },
+	{ "exact, compensated", "--accuracy compensated", true },
+	{ "exact, float", "--real float", true },
+	{ "exact, float, delta", "--real float --form delta", true },
+	{ "exact, float, kick-drift-kick", "--real float --form kick-drift-kick", true },
+	{ "exact, float, compensated", "--real float --accuracy compensated", true },
+	{ "pl", "--scheme pl", false },
+	{ "etd1", "--scheme etd1", false },
+	{ "etdrk2", "--scheme etdrk2", false },
+	{ "etdrk4", "--scheme etdrk4", false },
+	{ "nc2", "--scheme nc2", false },
+	{ "nc3", "--scheme nc3", false },
+	{ "dq4", "--scheme dq4", false },
+	{ "bm3", "--scheme bm3", false },
+};
+enum { OURS_COUNT = sizeof ours / sizeof *ours };
+
+/* Linear models leave nothing over but to pl; clearances are exact in every region, or else a leftover. */
+static bool applies(const struct charted *m, const struct ours *o)
+{
+	const bool piecewise = strncmp(m->name, "gear", 4) == 0;
+	return o->exact ? m->linear || piecewise : !m->linear || strcmp(o->name, "pl") == 0;
+}
+
+static const char *options_of(const struct ours *o)
+{
+	return *o->options ? o->options : "--scheme exact";
+}
+
+static const int *parts_of_ours(const struct charted *m, const struct ours *o, bool quick)
+{
+	if (o->exact)
+		return quick ? parts_exact_quick : parts_exact;
+	return quick ? parts_scheme_quick[m->kind] : parts_scheme[m->kind];
+}
+
+static const struct charted *model_named(const char *name)
+{
+	for (int i = 0; i < MODELS; i++)
+		if (strcmp(models[i].name, name) == 0)
+			return &models[i];
+	fprintf(stderr, "precision: no model %s\n", name);
+	exit(2);
+}
+
+static double value_of(const char *fraction)
+{
+	const char *bar = strchr(fraction, '/');
+	return bar ? atof(fraction) / atof(bar + 1) : atof(fraction);
+}
+
+/* ---- the list ---- */
+
+/* scs, exact, delta, 4: scs-exact-delta-4.so */
+static void file_of(const struct charted *m, const struct ours *o, int parts, char *name, size_t room)
+{
+	size_t length = 0;
+	snprintf(name, room, "%s-%s-%d.so", m->name, o->name, parts);
+	for (const char *c = name; *c; c++)
+		if (*c != ' ')
+			name[length++] = *c == ',' ? '-' : *c;
+	name[length] = '\0';
+}
+
+static void list_model(const struct charted *m, bool quick)
+{
+	char name[200];
+	printf("%s.so models/%s.spec\n", m->name, m->name);
+	for (const struct ours *o = ours; o < ours + OURS_COUNT; o++)
+		for (const int *parts = parts_of_ours(m, o, quick); applies(m, o) && *parts; parts++) {
+			file_of(m, o, *parts, name, sizeof name);
+			printf("%s models/%s.spec --step %s/%d %s\n", name, m->name, m->unit, *parts, options_of(o));
+		}
+}
+
+/* ---- the runs of one model ---- */
+
+struct line {                       /* one row of the CSV */
+	struct method ours;             /* of ours */
+	const struct method *method;
+	double setting;
+	struct run *run;                /* NULL: refused or failed to open */
+	char file[200];                 /* of ours, in the folder of variants */
+	char *refused;
+	struct error error;
+	double evaluations;             /* per unit; below 0: none */
+	double cost;                    /* ns per unit, as the pass over the errors took it: decides how much is sampled */
+	int sampled;                    /* units of a sample */
+	struct samples samples;
+};
+
+struct lines { struct line *line; int count; };
+
+static struct line *add_line(struct lines *lines)
+{
+	struct line *line = realloc(lines->line, (size_t)(lines->count + 1) * sizeof *line);
+	if (!line) {
+		fputs("precision: out of memory\n", stderr);
+		exit(1);
+	}
+	lines->line = line;
+	line += lines->count++;
+	memset(line, 0, sizeof *line);
+	return line;
+}
+
+static void add_peer(struct lines *lines, const struct problem *p, const struct method *method, double setting)
+{
+	struct line *line = add_line(lines);
+	line->method = method;
+	line->setting = setting;
+	line->run = method->open(method, p, setting);
+}
+
+static bool is_implicit(const struct method *method)
+{
+	return strcmp(method->name, "implicit trapezoid") == 0 || strcmp(method->name, "Newmark") == 0 || strcmp(method->name, "generalized-alpha") == 0;
+}
+
+static const int *parts_of_peer(const struct charted *m, const struct method *method, bool quick)
+{
+	if (method->family == PROPAGATOR)
+		return quick ? parts_exact_quick : parts_exact;
+	if (m->kind == LARGE && !quick && is_implicit(method))
+		return parts_implicit_large;
+	return quick ? parts_fixed_quick[m->kind] : parts_fixed[m->kind];
+}
+
+static void add_peers(struct lines *lines, const struct charted *m, const struct problem *p, const struct method *const *methods, bool quick)
+{
+	for (; *methods; methods++) {
+		const struct method *method = *methods;
+		if (method->linear_only && !p->linear)
+			continue;
+		if (method->tolerance)
+			for (const int *d = quick ? digits_quick : digits[m->kind]; *d; d++)
+				add_peer(lines, p, method, pow(10, -*d));
+		else
+			for (const int *parts = parts_of_peer(m, method, quick); *parts; parts++)
+				add_peer(lines, p, method, p->unit / *parts);
+	}
+}
+
+static void add_ours(struct lines *lines, const struct charted *m, const struct problem *p, bool quick)
+{
+	for (const struct ours *o = ours; o < ours + OURS_COUNT; o++)
+		for (const int *parts = parts_of_ours(m, o, quick); applies(m, o) && *parts; parts++) {
+			struct line *line = add_line(lines);
+			line->ours = (struct method){ .name = o->name, .family = OURS, .settings = options_of(o) };
+			line->setting = p->unit / *parts;
+			file_of(m, o, *parts, line->file, sizeof line->file);
+		}
+}
+
+/* Once no line moves any more: a run keeps where its method is. */
+static void open_ours(struct lines *lines, const struct problem *p, const char *folder)
+{
+	char path[4096];
+	for (struct line *line = lines->line; line < lines->line + lines->count; line++) {
+		if (line->method)
+			continue;
+		snprintf(path, sizeof path, "%s/%s", folder, line->file);
+		line->refused = variant_refused(path);
+		line->run = line->refused ? NULL : generated_open(&line->ours, p, path);
+	}
+}
+
+static const struct method *method_of(const struct line *line)
+{
+	return line->method ? line->method : &line->ours;
+}
+
+static void find_error(struct line *line, const struct problem *p, const struct truth *t)
+{
+	double start = now_ns();
+	line->error = error_of(line->run, t);
+	line->cost = (now_ns() - start) / p->units;
+	long evaluations = line->run->evaluations(line->run);
+	line->evaluations = evaluations < 0 ? -1 : (double)evaluations / p->units;
+}
+
+/* A whole history, or of a long one as much as takes 20 ms: some of its first units */
+static int units_sampled(const struct line *line, const struct problem *p)
+{
+	double most = 20e6 / line->cost;
+	return most >= p->units ? p->units : most < 1 ? 1 : (int)most;
+}
+
+static void find_times(struct lines *lines, const struct problem *p, double seconds)
+{
+	struct run **run = calloc((size_t)lines->count + 1, sizeof *run);
+	struct samples *samples = calloc((size_t)lines->count + 1, sizeof *samples);
+	int *units = calloc((size_t)lines->count + 1, sizeof *units), count = 0;
+	if (!run || !samples || !units)
+		exit(1);
+	for (int i = 0; i < lines->count; i++) {
+		struct line *line = &lines->line[i];
+		if (!line->run || line->error.failed)
+			continue;
+		line->sampled = units[count] = units_sampled(line, p);
+		run[count++] = line->run;
+	}
+	sample_runs_of(count, run, units, seconds, samples);
+	for (int i = 0, k = 0; i < lines->count; i++)
+		if (lines->line[i].run && !lines->line[i].error.failed)
+			lines->line[i].samples = samples[k++];
+	free(run);
+	free(samples);
+	free(units);
+}
+
+/* ---- the table ---- */
+
+static const char *const families[] = { "ours", "fixed", "adaptive", "propagator" };
+
+static void put_quoted(FILE *out, const char *text)
+{
+	putc('"', out);
+	for (; *text; text++)
+		putc(*text == '"' ? '\'' : *text, out);
+	putc('"', out);
+}
+
+static void put_word(FILE *out, const char *word, int columns)
+{
+	for (int i = 0; i < columns; i++)
+		fprintf(out, ",%s", word);
+}
+
+static void put_settings(FILE *out, const struct line *line)
+{
+	const struct method *method = method_of(line);
+	char text[400];
+	snprintf(text, sizeof text, "%s; %s", method->settings, line->run && !line->method ? generated_between(line->run) : "");
+	put_quoted(out, line->refused ? line->refused : line->method ? method->settings : text);
+}
+
+static void put_line(FILE *out, const struct line *line, const struct problem *p, const struct truth *t)
+{
+	const struct method *method = method_of(line);
+	const struct error *e = &line->error;
+	fprintf(out, "%s,", p->name);
+	put_quoted(out, method->name);
+	fprintf(out, ",%s,%s,%.6g", families[method->family], method->tolerance ? "tolerance" : "step", line->setting);
+	if (line->refused)
+		put_word(out, "refused", 6);
+	else if (!line->run)
+		put_word(out, "cannot", 6);
+	else if (e->failed)
+		put_word(out, "failed", 5), fputs(",1", out);
+	else
+		fprintf(out, ",%.4g,%.4g,%.4g,%.4g,%.4g,0", e->q_end, e->q_between, e->v_end, e->v_between, e->largest);
+	if (line->run && !e->failed && line->evaluations >= 0)
+		fprintf(out, ",%.6g", line->evaluations);
+	else
+		fputs(",none", out);
+	if (line->samples.count > 0)
+		fprintf(out, ",%.5g,%.5g,%.5g,%d,%d,", line->samples.min, line->samples.median, line->samples.max, line->samples.count, line->sampled);
+	else
+		put_word(out, "none", 5), putc(',', out);
+	put_settings(out, line);
+	fprintf(out, ",%.2g,%g,%g\n", t->agreement, p->unit, p->unit * p->units);
+}
+
+static void measure(FILE *out, const struct charted *m, const char *folder, bool quick, double seconds)
+{
+	char path[4096];
+	snprintf(path, sizeof path, "%s/%s.so", folder, m->name);
+	struct problem *p = problem_load(path, m->name, value_of(m->unit), quick ? m->quick_units : m->units, m->linear, m->w);
+	struct truth *t = truth_of(p);
+	struct lines lines = { NULL, 0 };
+	add_peers(&lines, m, p, fixed_methods, quick);
+	add_peers(&lines, m, p, adaptive_methods, quick);
+	add_peers(&lines, m, p, propagator_methods, quick);
+	add_ours(&lines, m, p, quick);
+	open_ours(&lines, p, folder);
+	for (int i = 0; i < lines.count; i++) {
+		struct line *line = &lines.line[i];
+		say_progress("%s: error of %s, %g", m->name, method_of(line)->name, line->setting);
+		if (line->run)
+			find_error(line, p, t);
+	}
+	say_progress("%s: time", m->name);
+	find_times(&lines, p, seconds);
+	for (int i = 0; i < lines.count; i++) {
+		put_line(out, &lines.line[i], p, t);
+		if (lines.line[i].run)
+			lines.line[i].run->close(lines.line[i].run);
+		free(lines.line[i].refused);
+	}
+	free(lines.line);
+	truth_free(t);
+	problem_free(p);
+}
+
+/* ---- */
+
+int main(int argc, char **argv)
+{
+	bool list = false, quick = false;
+	int at = 1;
+	for (; at < argc && argv[at][0] == '-'; at++) {
+		list = list || strcmp(argv[at], "--list") == 0;
+		quick = quick || strcmp(argv[at], "--quick") == 0;
+	}
+	const int files = list ? 0 : 2;
+	if (argc - at < files) {
+		fputs("usage: precision --list [--quick] [MODEL...]\n       precision [--quick] VARIANTS FILE.csv [MODEL...]\n", stderr);
+		return 2;
+	}
+	FILE *out = list ? stdout : fopen(argv[at + 1], "w");
+	if (!out) {
+		perror(argv[at + 1]);
+		return 1;
+	}
+	if (!list)
+		fputs("model,method,family,setting_kind,setting,q_end,q_between,v_end,v_between,largest,failed,evaluations_per_unit,"
+		      "ns_min,ns_median,ns_max,ns_samples,ns_units,settings,truth_agreement,unit_s,history_s\n", out);
+	for (int i = 0; i < (argc > at + files ? argc - at - files : MODELS); i++) {
+		const struct charted *m = argc > at + files ? model_named(argv[at + files + i]) : &models[i];
+		if (argc == at + files && quick && !m->quick)
+			continue;
+		if (list)
+			list_model(m, quick);
+		else
+			measure(out, m, argv[at], quick, quick ? 0.5 : 10);
+		fflush(out);
+	}
+	if (ferror(out) || fclose(out) != 0) {
+		fputs("precision: cannot write the table\n", stderr);
+		return 1;
+	}
+	return 0;
+}

@@ -1,0 +1,186 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A problem is what a model's own C says of itself: its equations as written (NAME_rhs), its start; and for a linear one the
+ * matrices, found by asking the equations. */
+#include "charts.h"
+
+#include <dlfcn.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static void leave(const char *file, const char *why)
+{
+	fprintf(stderr, "%s: %s\n", file, why);
+	exit(1);
+}
+
+static double *numbers(int count)
+{
+	double *x = calloc((size_t)count, sizeof *x);
+	if (!x)
+		leave("problem", "out of memory");
+	return x;
+}
+
+static void *open_object(const char *file)
+{
+	char path[4096];                /* without a slash dlopen would look in the system's places */
+	snprintf(path, sizeof path, "%s%s", strchr(file, '/') ? "" : "./", file);
+	void *handle = dlopen(path, RTLD_NOW | RTLD_LOCAL);
+	if (!handle)
+		leave(file, dlerror());
+	return handle;
+}
+
+/* C has no conversion from an object pointer to a function's; POSIX has, through memory. */
+static void find_function(void *handle, const char *file, const char *name, void (**function)(double, const double *, double *))
+{
+	void *symbol = dlsym(handle, name);
+	if (!symbol)
+		leave(file, "no subject_rhs");
+	memcpy(function, &symbol, sizeof symbol);
+}
+
+/* y = n coordinates, then their velocities, in the same order */
+static bool second_order(const pl_model *model)
+{
+	int n = model->states / 2;
+	for (int i = 0; i < n; i++) {
+		const char *q = model->state_names[i], *v = model->state_names[n + i];
+		if (strncmp(q, v, strlen(q)) != 0 || strcmp(v + strlen(q), "'") != 0)
+			return false;
+	}
+	return model->states == 2 * n;
+}
+
+static double *start_of(const pl_model *model)
+{
+	double *y = numbers(model->states);
+	void *state = calloc(1, model->size);
+	if (!state)
+		leave(model->name, "out of memory");
+	model->init(state);
+	model->get(state, y);
+	free(state);
+	return y;
+}
+
+struct problem *problem_load(const char *file, const char *name, double unit, int units, bool linear, double frequency)
+{
+	struct problem *p = calloc(1, sizeof *p);
+	if (!p)
+		leave(file, "out of memory");
+	p->handle = open_object(file);
+	p->model = dlsym(p->handle, "subject_model");
+	if (!p->model)
+		leave(file, "no subject_model");
+	if (!second_order(p->model) || p->model->inputs > 0)
+		leave(file, "its states are not coordinates and their velocities, or it has inputs");
+	find_function(p->handle, file, "subject_rhs", &p->rhs);
+	p->name = name;
+	p->n = p->model->states / 2;
+	p->start = start_of(p->model);
+	p->unit = unit;
+	p->units = units;
+	p->w = frequency;
+	if (linear)
+		problem_linear(p);
+	return p;
+}
+
+void problem_slope(const struct problem *p, double t, const double *y, double *dydt)
+{
+	if (p->rhs_of)
+		p->rhs_of(p->of, t, y, dydt);
+	else
+		p->rhs(t, y, dydt);
+}
+
+/* The loads: at rest the slope is b0 + b1 cos(w t) + b2 sin(w t). */
+static void ask_loads(struct problem *p, const double *y)
+{
+	const double turn = p->w > 0 ? 2 * M_PI / p->w : 0;
+	int size = 2 * p->n;
+	double *at_start = numbers(size), *at_half = numbers(size), *at_quarter = numbers(size);
+	problem_slope(p, 0, y, at_start);
+	problem_slope(p, turn / 2, y, at_half);
+	problem_slope(p, turn / 4, y, at_quarter);
+	for (int i = 0; i < size; i++) {
+		p->b0[i] = (at_start[i] + at_half[i]) / 2;
+		p->b1[i] = (at_start[i] - at_half[i]) / 2;
+		p->b2[i] = at_quarter[i] - p->b0[i];
+	}
+	free(at_start);
+	free(at_half);
+	free(at_quarter);
+}
+
+/* What the cosine of a rounded quarter turn leaves where there is no load */
+static void drop_dust(int size, const double *large, double *b)
+{
+	double most = 0;
+	for (int i = 0; i < size; i++)
+		most = fmax(most, fabs(large[i]));
+	for (int i = 0; i < size; i++)
+		if (fabs(b[i]) < 1e-14 * most)
+			b[i] = 0;
+}
+
+static void clean_loads(struct problem *p)
+{
+	int size = 2 * p->n;
+	double *large = numbers(size);
+	for (int i = 0; i < size; i++)
+		large[i] = fmax(fabs(p->b0[i]), fmax(fabs(p->b1[i]), fabs(p->b2[i])));
+	drop_dust(size, large, p->b0);
+	drop_dust(size, large, p->b1);
+	drop_dust(size, large, p->b2);
+	free(large);
+}
+
+/* A column: the slope at a unit state, less that at rest. */
+static void ask_matrix(struct problem *p, double *y)
+{
+	int size = 2 * p->n;
+	double *at_rest = numbers(size), *slope = numbers(size);
+	problem_slope(p, 0, y, at_rest);
+	for (int j = 0; j < size; j++) {
+		y[j] = 1;
+		problem_slope(p, 0, y, slope);
+		for (int i = 0; i < size; i++)
+			p->A[i * size + j] = slope[i] - at_rest[i];
+		y[j] = 0;
+	}
+	free(at_rest);
+	free(slope);
+}
+
+void problem_linear(struct problem *p)
+{
+	int size = 2 * p->n;
+	if (p->A)
+		return;
+	double *y = numbers(size);
+	p->linear = true;
+	p->A = numbers(size * size);
+	p->b0 = numbers(size);
+	p->b1 = numbers(size);
+	p->b2 = numbers(size);
+	ask_loads(p, y);
+	clean_loads(p);
+	ask_matrix(p, y);
+	free(y);
+}
+
+void problem_free(struct problem *p)
+{
+	if (p->handle) {
+		dlclose(p->handle);
+		free((double *)p->start);
+	}
+	free(p->A);
+	free(p->b0);
+	free(p->b1);
+	free(p->b2);
+	free(p);
+}

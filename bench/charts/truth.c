@@ -1,0 +1,589 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What the charts compare with, by two roads.
+ *
+ *   linear         e^{A t} in quadruple precision (33 digits), loads carried as states: no error that a double could see.
+ *   nonlinear      the equations by hand, by extrapolation (Gragg, Bulirsch, Stoer) in long double (19 digits).
+ *   the beams      the same on matrices found by quadrature of their definition (tests/leftover/cantilever.c).
+ *   clearances     the equations by hand, by Taylor series between crossings in long double (tests/switching/hand.c).
+ *   what has none of these: NAME_rhs, in double, by extrapolation in long double.
+ *
+ * The second road is another method on NAME_rhs in double; how far the two are apart is the truth's `agreement`, and says how good
+ * that method is as much as how good the truth is. */
+#include "charts.h"
+
+#include "../../tests/leftover/elliptic.h"
+#include "../../tests/switching/hand.h"
+
+#include <math.h>
+#include <quadmath.h>
+#include <stdlib.h>
+#include <string.h>
+
+typedef __float128 quad;
+enum { MOST = 64 };                 /* entries of a state, load states included */
+
+static void leave(const char *name, const char *why)
+{
+	fprintf(stderr, "truth of %s: %s\n", name, why);
+	exit(1);
+}
+
+static void *allot(size_t count, size_t size)
+{
+	void *room = calloc(count + 1, size);
+	if (!room)
+		leave("a problem", "out of memory");
+	return room;
+}
+
+/* 0.01 means 1/100, not the double next to it: a decimal of at most 13 digits is taken as such. */
+static quad exactly(double x)
+{
+	char text[40];
+	snprintf(text, sizeof text, "%.12e", x);
+	return strtod(text, NULL) == x ? strtoflt128(text, NULL) : (quad)x;
+}
+
+/* ---- linear: closed form ---- */
+
+struct flow { int size; quad A[MOST * MOST]; };
+
+static void product(int n, const quad *a, const quad *b, quad *c)
+{
+	for (int i = 0; i < n; i++)
+		for (int j = 0; j < n; j++) {
+			quad sum = 0;
+			for (int k = 0; k < n; k++)
+				sum += a[i * n + k] * b[k * n + j];
+			c[i * n + j] = sum;
+		}
+}
+
+static quad norm_of(int n, const quad *a)
+{
+	quad most = 0;
+	for (int i = 0; i < n; i++) {
+		quad sum = 0;
+		for (int j = 0; j < n; j++)
+			sum += fabsq(a[i * n + j]);
+		most = sum > most ? sum : most;
+	}
+	return most;
+}
+
+/* e^{A tau} by scaling and squaring; Taylor terms until they no longer matter */
+static void exponential(const struct flow *f, quad tau, quad *E)
+{
+	enum { TERMS = 36 };
+	const int n = f->size;
+	static quad x[MOST * MOST], term[MOST * MOST], next[MOST * MOST];
+	int halvings = 0;
+	for (quad size = norm_of(n, f->A) * fabsq(tau); size > 0.25Q; size /= 2)
+		halvings++;
+	for (int i = 0; i < n * n; i++) {
+		x[i] = ldexpq(f->A[i] * tau, -halvings);
+		E[i] = term[i] = i % (n + 1) == 0;
+	}
+	for (int k = 1; k <= TERMS; k++) {
+		product(n, term, x, next);
+		for (int i = 0; i < n * n; i++)
+			E[i] += term[i] = next[i] / k;
+	}
+	for (int k = 0; k < halvings; k++) {
+		product(n, E, E, next);
+		memcpy(E, next, (size_t)(n * n) * sizeof *E);
+	}
+}
+
+/* y' = A y + b0 z0 + b1 z1 + b2 z2, z = 1, cos w t, sin w t */
+static void flow_of_asked(const struct problem *p, struct flow *f, quad w)
+{
+	const int size = 2 * p->n, n = f->size = size + 3;
+	memset(f->A, 0, sizeof f->A);
+	for (int i = 0; i < size; i++) {
+		for (int j = 0; j < size; j++)
+			f->A[i * n + j] = exactly(p->A[i * size + j]);
+		f->A[i * n + size] = exactly(p->b0[i]);
+		f->A[i * n + size + 1] = exactly(p->b1[i]);
+		f->A[i * n + size + 2] = exactly(p->b2[i]);
+	}
+	f->A[(size + 1) * n + size + 2] = -w;
+	f->A[(size + 2) * n + size + 1] = w;
+}
+
+/* models/tuned_floor.spec: its numbers are irrational, so no decimal that was asked for will do. */
+static quad floor_by_hand(struct flow *f)
+{
+	const quad m = 20000, mu = 0.02Q, w0 = 4 * M_PIq, md = mu * m, wd = w0 / (1 + mu);
+	const quad k = m * w0 * w0, c = 2 * 0.01Q * w0 * m, kd = md * wd * wd, cd = 2 * md * wd * sqrtq(3 * mu / (8 * (1 + mu) * (1 + mu) * (1 + mu)));
+	const int n = f->size;
+	quad *a = f->A + 2 * n, *b = f->A + 3 * n;
+	a[0] = -(k + kd) / m, a[1] = kd / m, a[2] = -(c + cd) / m, a[3] = cd / m, a[6] = 400 / m;
+	b[0] = kd / md, b[1] = -kd / md, b[2] = cd / md, b[3] = -cd / md;
+	return w0;
+}
+
+/* What was asked must be it, rounded. */
+static void compare_asked(const struct problem *p, const struct flow *f)
+{
+	const int size = 2 * p->n;
+	for (int i = 0; i < size; i++) {
+		quad most = 0;
+		for (int j = 0; j < size; j++)
+			most = fmaxq(most, fabsq(f->A[i * f->size + j]));
+		for (int j = 0; j < size; j++)
+			if (fabsq(f->A[i * f->size + j] - (quad)p->A[i * size + j]) > 1e-15Q * most)
+				leave(p->name, "its right-hand side has another matrix");
+	}
+}
+
+static void apply(int n, const quad *E, const quad *x, quad *y)
+{
+	for (int i = 0; i < n; i++) {
+		y[i] = 0;
+		for (int j = 0; j < n; j++)
+			y[i] += E[i * n + j] * x[j];
+	}
+}
+
+static void closed_form(const struct problem *p, struct truth *t)
+{
+	static struct flow f;
+	static quad whole[MOST * MOST], part[MOST * MOST];
+	const int size = 2 * p->n;
+	quad x[MOST] = { 0 }, y[MOST];
+	flow_of_asked(p, &f, exactly(p->w));
+	if (strcmp(p->name, "tuned_floor") == 0) {
+		const quad w = floor_by_hand(&f);
+		f.A[(size + 1) * f.size + size + 2] = -w;
+		f.A[(size + 2) * f.size + size + 1] = w;
+	}
+	compare_asked(p, &f);
+	exponential(&f, exactly(p->unit), whole);
+	exponential(&f, exactly(p->unit) * TRUTH_BETWEEN, part);
+	for (int i = 0; i < size; i++)
+		x[i] = exactly(p->start[i]);
+	x[size] = x[size + 1] = 1;
+	for (int k = 0; k < p->units; k++) {
+		apply(f.size, part, x, y);
+		for (int i = 0; i < size; i++)
+			t->between[k * size + i] = (double)y[i];
+		apply(f.size, whole, x, y);
+		memcpy(x, y, sizeof x);
+		for (int i = 0; i < size; i++)
+			t->at_end[k * size + i] = (double)x[i];
+	}
+}
+
+/* ---- nonlinear: extrapolation in long double ---- */
+
+struct equations {
+	const char *name;
+	void (*slopes)(const struct problem *p, real t, const real *y, real *dydt);
+	real tolerance;                 /* relative to the scales; the beams' stiffness (1e8 /s^2) leaves no more to long double */
+	int parts;                      /* second road: GSL rk8pd with this many fixed steps a unit (the beams: where steps end on stability, not on
+	                                 * accuracy, its control lets errors of 1e-9 pass); 0: by tolerances */
+};
+
+static void pendulum(const struct problem *p, real t, const real *y, real *dydt)
+{
+	(void)p, (void)t;
+	dydt[0] = y[1];
+	dydt[1] = -sinl(y[0]);
+}
+
+static void vanderpol(const struct problem *p, real t, const real *y, real *dydt)
+{
+	(void)t;
+	dydt[0] = y[1];
+	dydt[1] = (strcmp(p->name, "vanderpol") == 0 ? 1 : 100) * (1 - y[0] * y[0]) * y[1] - y[0];
+}
+
+static void quad2dof(const struct problem *p, real t, const real *y, real *dydt)
+{
+	(void)p, (void)t;
+	dydt[0] = y[2];
+	dydt[1] = y[3];
+	dydt[2] = -y[0] - 2 * y[0] * y[1];
+	dydt[3] = -y[1] - y[0] * y[0] + y[1] * y[1];
+}
+
+static void duffing(const struct problem *p, real t, const real *y, real *dydt)
+{
+	(void)p;
+	dydt[0] = y[1];
+	dydt[1] = 0.5L * cosl(1.4L * t) - 0.2L * y[1] - y[0] - y[0] * y[0] * y[0];
+}
+
+static void mathieu(const struct problem *p, real t, const real *y, real *dydt)
+{
+	(void)p;
+	dydt[0] = y[1];
+	dydt[1] = -0.1L * y[1] - (1 - 0.4L * cosl(2 * t)) * y[0];
+}
+
+/* tests/leftover/cantilever.h, whose folder has a hand.h of its own */
+real cantilever_speed(real Om, real t, real *slope);
+void cantilever_slopes(real w, real dw, const real *y, real *dydt);
+
+static void beam(const struct problem *p, real t, const real *y, real *dydt)
+{
+	real dw, w = cantilever_speed(strcmp(p->name, "beam4") == 0 ? 4 : 15, t, &dw);
+	cantilever_slopes(w, dw, y, dydt);
+}
+
+static void as_emitted(const struct problem *p, real t, const real *y, real *dydt)
+{
+	double narrow[MOST], slope[MOST];
+	for (int i = 0; i < 2 * p->n; i++)
+		narrow[i] = (double)y[i];
+	problem_slope(p, (double)t, narrow, slope);
+	for (int i = 0; i < 2 * p->n; i++)
+		dydt[i] = slope[i];
+}
+
+static const struct equations by_hand[] = {
+	{ "pendulum", pendulum, 1e-16L, 0 },
+	{ "vanderpol", vanderpol, 1e-16L, 0 },
+	{ "vanderpol_stiff", vanderpol, 1e-16L, 0 },
+	{ "quad2dof", quad2dof, 1e-16L, 0 },
+	{ "duffing", duffing, 1e-16L, 0 },
+	{ "mathieu", mathieu, 1e-16L, 0 },
+	{ "beam4", beam, 1e-13L, 40 },
+	{ "beam15", beam, 1e-13L, 40 },
+	{ NULL, as_emitted, 1e-16L, 0 }
+};
+
+enum { COLUMNS = 9 };               /* of the extrapolation: order 18 */
+
+struct extrapolation {
+	const struct problem *p;
+	const struct equations *e;
+	int size;
+	real step;                      /* proposed [s] */
+	real scale_q, scale_v;          /* over the history so far */
+};
+
+/* Gragg 1965: the modified midpoint rule with `parts` substeps; its error has even powers only. */
+static void midpoint(const struct extrapolation *x, real t, real H, int parts, const real *y, const real *slope, real *result)
+{
+	real before[MOST], now[MOST], f[MOST], h = H / parts;
+	for (int i = 0; i < x->size; i++) {
+		before[i] = y[i];
+		now[i] = y[i] + h * slope[i];
+	}
+	for (int k = 1; k < parts; k++) {
+		x->e->slopes(x->p, t + k * h, now, f);
+		for (int i = 0; i < x->size; i++) {
+			const real next = before[i] + 2 * h * f[i];
+			before[i] = now[i];
+			now[i] = next;
+		}
+	}
+	memcpy(result, now, sizeof now);
+}
+
+/* y(t + H) into `result`; returns how far the last two columns are apart, relative to the scales. */
+static real extrapolate(const struct extrapolation *x, real t, real H, const real *y, real *result)
+{
+	real table[COLUMNS][MOST], slope[MOST], error = 0;
+	x->e->slopes(x->p, t, y, slope);
+	for (int k = 0; k < COLUMNS; k++) {
+		real last[MOST];
+		memcpy(last, table[0], sizeof last);
+		midpoint(x, t, H, 2 * (k + 1), y, slope, table[k]);
+		for (int m = k - 1; m >= 0; m--) {
+			const real ratio = (real)(k + 1) / (m + 1), factor = 1 / (ratio * ratio - 1);
+			for (int i = 0; i < x->size; i++)
+				table[m][i] = table[m + 1][i] + (table[m + 1][i] - table[m][i]) * factor;
+		}
+		if (k == COLUMNS - 1)
+			for (int i = 0; i < x->size; i++)
+				error = fmaxl(error, fabsl(table[0][i] - last[i]) / (i < x->p->n ? x->scale_q : x->scale_v));
+	}
+	memcpy(result, table[0], sizeof table[0]);
+	return error;
+}
+
+static void keep_scales(struct extrapolation *x, const real *y)
+{
+	for (int i = 0; i < x->p->n; i++) {
+		x->scale_q = fmaxl(x->scale_q, fabsl(y[i]));
+		x->scale_v = fmaxl(x->scale_v, fabsl(y[x->p->n + i]));
+	}
+}
+
+/* The error is that of order 16; what is kept is of order 18. */
+static void follow(struct extrapolation *x, real from, real to, real *y)
+{
+	const real tolerance = x->e->tolerance;
+	real result[MOST];
+	for (real t = from; t < to;) {
+		const bool last = t + 1.01L * x->step >= to;
+		const real H = last ? to - t : x->step, error = extrapolate(x, t, H, y, result);
+		const real factor = error > 0 ? 0.9L * powl(tolerance / error, 1.0L / (2 * COLUMNS - 1)) : 4;
+		if (!(error <= tolerance)) {
+			x->step = H * (factor > 0.2L && factor < 0.9L ? factor : 0.2L);
+			if (x->step < 1e-12L)
+				leave(x->p->name, "the extrapolation gives up");
+			continue;
+		}
+		memcpy(y, result, sizeof result);
+		keep_scales(x, y);
+		t = last ? to : t + H;
+		if (!last || factor * H > x->step)
+			x->step = H * fminl(factor, 4);
+	}
+}
+
+static void extrapolated(const struct problem *p, const struct equations *e, struct truth *t)
+{
+	struct extrapolation x = { .p = p, .e = e, .size = 2 * p->n, .step = (real)p->unit / 10, .scale_q = 1e-3L, .scale_v = 1e-3L };
+	const real unit = (real)exactly(p->unit);
+	real y[MOST] = { 0 };
+	for (int i = 0; i < x.size; i++)
+		y[i] = (real)exactly(p->start[i]);
+	keep_scales(&x, y);
+	for (int k = 0; k < p->units; k++) {
+		const real inside = (k + (real)TRUTH_BETWEEN) * unit;
+		follow(&x, k * unit, inside, y);
+		for (int i = 0; i < x.size; i++)
+			t->between[k * x.size + i] = (double)y[i];
+		follow(&x, inside, (k + 1) * unit, y);
+		for (int i = 0; i < x.size; i++)
+			t->at_end[k * x.size + i] = (double)y[i];
+	}
+	t->scale_q = (double)x.scale_q;                 /* over all steps: a jump's peak lies between the ends of units */
+	t->scale_v = (double)x.scale_v;
+}
+
+/* ---- clearances: Taylor series between crossings, in long double ---- */
+
+/* Both sides of a gap: while row . x is beyond gap, the accelerations have -push k times by how much */
+static void add_gap(struct hand_system *s, const real *row, const real *push, real k, real gap)
+{
+	for (int side = 1; side >= -1; side -= 2) {
+		struct hand_stop *stop = &s->stop[s->stops++];
+		*stop = (struct hand_stop){ .k = k, .gap = gap };
+		for (int i = 0; i < s->n; i++) {
+			stop->row[i] = side * row[i];
+			stop->push[i] = side * push[i];
+		}
+	}
+}
+
+/* models/gear1.spec */
+static void gear1(struct hand_system *s)
+{
+	*s = (struct hand_system){ .n = 1, .C = { { 0.1L } }, .f0 = { 0.1L }, .fa = { 0.05L }, .w = 0.8L, .start = { 1.1L } };
+	add_gap(s, (real[]){ 1 }, (real[]){ 1 }, 1, 1);
+}
+
+/* models/gear2.spec */
+static void gear2(struct hand_system *s)
+{
+	*s = (struct hand_system){ .n = 2, .K = { { 0, -0.5L }, { 0, 1 } }, .C = { { 0.1L, -0.05L }, { -0.05L, 0.1L } }, .f0 = { 0.1L, 0.05L },
+	                           .fa = { 0.05L }, .w = 0.8L, .start = { 1.2L, 0.1L } };
+	add_gap(s, (real[]){ 1, 0 }, (real[]){ 1, -0.5L }, 1, 1);
+}
+
+/* models/gear3.spec: masses 1, 0.5, 2 divided out */
+static void gear3(struct hand_system *s)
+{
+	*s = (struct hand_system){ .n = 3, .C = { { 0.4L, -0.4L, 0 }, { -0.8L, 1.4L, -0.6L }, { 0, -0.15L, 0.15L } }, .f0 = { 1, 0, -0.5L },
+	                           .fa = { 0.8L }, .w = 7, .start = { 0.03L, 0, -0.03L } };
+	add_gap(s, (real[]){ 1, -1, 0 }, (real[]){ 1, -2, 0 }, 100, 0.01L);
+	add_gap(s, (real[]){ 0, 1, -1 }, (real[]){ 0, 2, -0.5L }, 80, 0.02L);
+}
+
+/* models/stop.spec and bilinear.spec are not charted */
+static const struct { const char *name; void (*make)(struct hand_system *s); } gears[] = { { "gear1", gear1 }, { "gear2", gear2 }, { "gear3", gear3 } };
+
+static void between_crossings(const struct problem *p, void (*make)(struct hand_system *s), struct truth *t)
+{
+	const int size = 2 * p->n;
+	const real unit = (real)exactly(p->unit);
+	struct hand_system s;
+	struct hand_state now;
+	make(&s);
+	hand_start(&s, &now);
+	for (int k = 0; k < p->units; k++) {
+		hand_reference(&s, &now, (k + (real)TRUTH_BETWEEN) * unit);
+		for (int i = 0; i < size; i++)
+			t->between[k * size + i] = (double)now.y[i];
+		hand_reference(&s, &now, (k + 1) * unit);
+		for (int i = 0; i < size; i++)
+			t->at_end[k * size + i] = (double)now.y[i];
+	}
+}
+
+/* ---- the two roads ---- */
+
+static struct truth *new_truth(const struct problem *p)
+{
+	const size_t size = (size_t)p->units * 2 * (size_t)p->n;
+	struct truth *t = allot(1, sizeof *t);
+	t->n = p->n;
+	t->units = p->units;
+	t->at_end = allot(size, sizeof *t->at_end);
+	t->between = allot(size, sizeof *t->between);
+	return t;
+}
+
+static void find_scales(const struct problem *p, struct truth *t)
+{
+	for (int k = -1; k < p->units; k++)
+		for (int i = 0; i < 2 * p->n; i++) {
+			const double now = fabs(k < 0 ? p->start[i] : t->at_end[k * 2 * p->n + i]);
+			double *scale = i < p->n ? &t->scale_q : &t->scale_v;
+			*scale = fmax(*scale, now);
+		}
+}
+
+/* The largest of `most` and how far y is from the truth at the end of unit k; what is not a number stays */
+static double farther(double most, const struct truth *t, int k, const double *y)
+{
+	for (int i = 0; i < 2 * t->n; i++) {
+		const double off = fabs(y[i] - t->at_end[k * 2 * t->n + i]) / (i < t->n ? t->scale_q : t->scale_v);
+		most = off <= most ? most : off;
+	}
+	return most;
+}
+
+static double elliptic_difference(const struct problem *p, const struct truth *t)
+{
+	double most = 0, y[2];
+	for (int k = 0; k < p->units; k++) {
+		pendulum_swing(p->start[0], (k + 1) * p->unit, y);
+		most = farther(most, t, k, y);
+	}
+	return most;
+}
+
+static double difference_at(const struct problem *p, const struct truth *t, const struct method *method, double tolerance)
+{
+	struct run *run = method->open(method, p, tolerance);
+	double row[MOST], most = 0;
+	bool good = run;
+	for (int k = 0; k < p->units && good; k++) {
+		good = run->advance(run, 1, row);
+		most = farther(most, t, k, row);
+	}
+	if (run)
+		run->close(run);
+	return good ? most : NAN;
+}
+
+/* Another integrator in double: where tolerances are that tight, rounding decides which of them is best, and the best is taken. */
+static double solver_difference(const struct problem *p, const struct truth *t, int parts)
+{
+	const struct method *method = method_find(parts > 0 ? "GSL rk8pd (fixed step)" : "GSL rk8pd");
+	double least = NAN;
+	if (method && parts > 0)
+		return difference_at(p, t, method, p->unit / parts);
+	for (int digits = 12; method && digits <= 15; digits++)
+		least = fmin(least, difference_at(p, t, method, pow(10, -digits)));
+	return least;
+}
+
+/* NAME_rhs in double, its sums and times in long double: for what was solved in closed form */
+static double extrapolation_difference(const struct problem *p, const struct truth *t)
+{
+	static const struct equations emitted = { NULL, as_emitted, 1e-15L, 0 };
+	struct truth *other = new_truth(p);
+	double most = 0;
+	extrapolated(p, &emitted, other);
+	for (int k = 0; k < p->units; k++)
+		most = farther(most, t, k, other->at_end + k * 2 * p->n);
+	truth_free(other);
+	return most;
+}
+
+static const struct equations *equations_of(const struct problem *p)
+{
+	const struct equations *e = by_hand;
+	while (e->name && strcmp(e->name, p->name) != 0)
+		e++;
+	return e;
+}
+
+static void (*gears_of(const char *name))(struct hand_system *)
+{
+	for (size_t i = 0; i < sizeof gears / sizeof *gears; i++)
+		if (strcmp(gears[i].name, name) == 0)
+			return gears[i].make;
+	return NULL;
+}
+
+static void solve(const struct problem *p, struct truth *t)
+{
+	const struct equations *e = equations_of(p);
+	if (p->linear) {
+		t->roads = "closed form in quadruple precision; NAME_rhs by extrapolation in long double";
+		closed_form(p, t);
+		find_scales(p, t);
+		t->agreement = extrapolation_difference(p, t);
+		return;
+	}
+	if (gears_of(p->name)) {
+		t->roads = "by hand: Taylor series between crossings in long double; NAME_rhs by GSL rk8pd";
+		between_crossings(p, gears_of(p->name), t);
+	} else {
+		t->roads = e->name ? "by hand: extrapolation in long double; NAME_rhs by GSL rk8pd" : "NAME_rhs: extrapolation in long double; GSL rk8pd";
+		extrapolated(p, e, t);
+	}
+	find_scales(p, t);
+	t->agreement = solver_difference(p, t, gears_of(p->name) ? 0 : e->parts);
+	if (strcmp(p->name, "pendulum") == 0) {
+		t->roads = "by hand: extrapolation in long double; NAME_rhs by GSL rk8pd; elliptic function";
+		t->agreement = fmax(t->agreement, elliptic_difference(p, t));
+	}
+}
+
+struct truth *truth_of(const struct problem *p)
+{
+	if (2 * p->n + 3 > MOST)
+		leave(p->name, "too many coordinates");
+	struct truth *t = new_truth(p);
+	say_progress("%s: truth", p->name);
+	solve(p, t);
+	return t;
+}
+
+void truth_free(struct truth *t)
+{
+	free(t->at_end);
+	free(t->between);
+	free(t);
+}
+
+/* ---- errors ---- */
+
+static void compare(const struct truth *t, const double *y, const double *with, double *q, double *v, bool *failed)
+{
+	for (int i = 0; i < 2 * t->n; i++) {
+		const double off = fabs(y[i] - with[i]) / (i < t->n ? t->scale_q : t->scale_v);
+		double *most = i < t->n ? q : v;
+		if (!isfinite(off))
+			*failed = true;
+		else
+			*most = fmax(*most, off);
+	}
+}
+
+struct error error_of(struct run *run, const struct truth *t)
+{
+	struct error e = { 0 };
+	const int size = 2 * t->n;
+	double y[MOST];
+	run->restart(run);
+	for (int k = 0; k < t->units && !e.failed; k++) {
+		run->between(run, TRUTH_BETWEEN, y);
+		compare(t, y, t->between + k * size, &e.q_between, &e.v_between, &e.failed);
+		if (!run->advance(run, 1, y))
+			e.failed = true;
+		compare(t, y, t->at_end + k * size, &e.q_end, &e.v_end, &e.failed);
+	}
+	e.largest = fmax(fmax(e.q_end, e.q_between), fmax(e.v_end, e.v_between));
+	return e;
+}

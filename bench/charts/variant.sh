@@ -1,0 +1,35 @@
+#!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
+# variant.sh PLGEN OUT.so SPEC [plgen options]: a model's C as a shared object whose names begin with `subject`, compiled as its user
+# would. Run at the top of the source tree. It keeps the options it was made with: subject_options.
+# What plgen refuses is a result too: its message goes to OUT.so.refused, no object is left, and the exit status is 0.
+#     -fno-semantic-interposition  gcc may inline subject_step into subject_run, as it does in a program
+#     no -march=native, no -ffast-math: for the peers neither
+set -e
+plgen=$1 out=$2 spec=$3
+shift 3
+cc=${CC:-cc}
+flags='-std=gnu11 -O2 -fPIC -fno-semantic-interposition'
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+
+# The runtime once for all variants of a folder; where two make it at the same time, they make the same
+runtime=$(dirname "$out")/runtime.a
+if ! [ -f "$runtime" ]; then
+	for part in runtime/*.c; do
+		$cc $flags -Iruntime -c "$part" -o "$work/$(basename "$part" .c).o"
+	done
+	ar rcD "$work/runtime.a" "$work"/*.o
+	mv "$work/runtime.a" "$runtime.$$"
+	mv "$runtime.$$" "$runtime"
+fi
+
+rm -f "$out" "$out.refused"
+if ! "$plgen" --prefix subject --rhs "$@" "$spec" >"$work/subject_pl.c" 2>"$work/messages"; then
+	sed -n '/error:/{p;q;}' "$work/messages" >"$out.refused"
+	[ -s "$out.refused" ] || sed -n '1p' "$work/messages" >"$out.refused"
+	exit 0
+fi
+printf '\nextern const char subject_options[];\nconst char subject_options[] = "%s";\n' "$*" >>"$work/subject_pl.c"
+$cc $flags -shared -Wl,-Bsymbolic -Iruntime "$work/subject_pl.c" "$runtime" -o "$work/subject.so"
+mv "$work/subject.so" "$out"

@@ -1,0 +1,107 @@
+#!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
+# charts.sh BUILD ROOT: a quick run of all charts; its tables, orders and failures, its pictures and its page. Times are never looked at.
+set -u
+build=$1 root=$2
+here=$root/tests/charts
+csv=$root/bench/charts/csv.awk
+work=$(mktemp -d "${TMPDIR:-/tmp}/charts.XXXXXX") || exit 99
+trap 'rm -rf "$work"' EXIT
+trap 'exit 99' HUP INT TERM
+cd "$root" || exit 99
+LC_ALL=C
+export LC_ALL
+out=$work/out
+log=$work/log
+count=0
+failed=0
+
+# result STATUS NAME: a line of TAP; what there is to say is in log
+result() {
+    count=$((count + 1))
+    if [ "$1" -eq 0 ]; then
+        echo "ok $count - $2"
+    else
+        echo "not ok $count - $2"
+        failed=1
+        sed 's/^/# /' "$log" | tail -n 20
+    fi
+}
+
+sh bench/charts/charts.sh "$build" "$out" --quick >"$log" 2>&1
+result $? "charts.sh --quick"
+
+# ---- the tables ----
+
+while read -r name head; do
+    sed -n 1p "$out/$name.csv" >"$work/head" 2>&1
+    { printf 'found    '; cat "$work/head"; echo "expected $head"; } >"$log"
+    [ "$(cat "$work/head")" = "$head" ] && [ "$(wc -l <"$out/$name.csv")" -gt 1 ]
+    result $? "$name.csv: its columns, and rows"
+done <"$here/tables.list"
+
+awk -v list="$here/methods.list" -f "$csv" -f "$here/methods.awk" "$out/precision.csv" >"$log" 2>&1
+result $? "precision.csv: every model and method, each with its errors or a word"
+awk -f "$csv" -f "$here/exact.awk" "$out/precision.csv" >"$log" 2>&1
+result $? "precision.csv: exact forms in double are below 1e-11 on linear models"
+awk -v list="$here/methods.list" -f "$csv" -f "$here/hard.awk" "$out/hard.csv" >"$log" 2>&1
+result $? "hard.csv: every method on every case, each failure with its word"
+awk -f "$csv" -f "$here/orders.awk" "$out/convergence_orders.csv" >"$log" 2>&1
+result $? "convergence_orders.csv: orders within 0.15"
+for name in stability_check quality_check operator_check; do
+    grep -v ',ok$' "$out/$name.csv" | sed 1d >"$log"
+    [ ! -s "$log" ]
+    result $? "$name.csv: what is known of the boundaries"
+done
+
+# ---- pictures and page ----
+
+for file in "$out"/*.svg; do
+    name=$(basename "$file" .svg)
+    {
+        grep -q '</svg>' "$file" || echo "$name.svg is not whole"
+        [ "$(dd if="$out/$name.png" bs=1 skip=1 count=3 2>/dev/null)" = PNG ] || echo "$name.png is none"
+        grep -q "src=\"$name.svg\"" "$out/index.html" || echo "the page does not show $name.svg"
+        # Of what is drawn at least one line or mark
+        grep -q -e '<path stroke' -e '<use ' -e "<path.*stroke='" -e '<polygon' -e '<circle' "$file" || echo "$name.svg is empty"
+    } >"$log" 2>&1
+    [ ! -s "$log" ]
+    result $? "$name: a picture in both forms, on the page"
+done
+while read -r name; do
+    [ -f "$out/$name.svg" ] || echo "no $name.svg"
+done <"$here/pictures.list" >"$log"
+[ ! -s "$log" ]
+result $? "every picture is there"
+{
+    sed -n 's/.*src="\([^"]*\)".*/\1/p' "$out/index.html" | while read -r name; do
+        [ -s "$out/$name" ] || echo "the page shows $name, which is not there"
+    done
+    grep -n -e 'is missing' -e 'has no rows' "$out/index.html"
+    for file in "$out"/*.csv; do
+        grep -q "href=\"$(basename "$file")\"" "$out/index.html" || echo "the page has no table $(basename "$file")"
+    done
+    grep -n -e '<script' -e 'https\{0,1\}:' "$out/index.html"
+} >"$log"
+[ ! -s "$log" ]
+result $? "index.html: every picture and table, nothing from elsewhere"
+
+# ---- the same again ----
+
+mkdir "$work/again"
+for name in quality convergence hard; do
+    case $name in
+        quality) "$build/bench/charts/quality" --quick "$work/again" >"$log" 2>&1 ;;
+        *) "$build/bench/charts/$name" --quick "$out/variants" "$work/again" >"$log" 2>&1 ;;
+    esac
+    cmp "$out/$name.csv" "$work/again/$name.csv" >>"$log" 2>&1
+    result $? "$name.csv: the same bytes twice"
+done
+"$build/bench/charts/precision" --quick "$out/variants" "$work/again/precision.csv" pendulum scs >"$log" 2>&1 &&
+    awk -v without="^ns_" -f "$csv" -f "$here/columns.awk" "$work/again/precision.csv" >"$work/second" &&
+    awk -v without="^ns_" -f "$csv" -f "$here/columns.awk" "$out/precision.csv" | grep -e '^model' -e '^pendulum,' -e '^scs,' >"$work/first" &&
+    cmp "$work/first" "$work/second" >>"$log" 2>&1
+result $? "precision.csv: the same but for times"
+
+echo "1..$count"
+exit $failed
