@@ -60,7 +60,7 @@ csv = folder.'/headline_confluence.csv'
 set xlabel 'relative gap between the two frequencies'
 set ylabel 'largest error over 100 s, relative to the largest value'
 set xrange [3e-4:3e-13] reverse
-set yrange [1e-14:10]
+set yrange [1e-17:10]
 set xtics ('10^{-4}' 1e-4, '10^{-6}' 1e-6, '10^{-8}' 1e-8, '10^{-10}' 1e-10, '0' 1e-12)
 set title "One mass drives the next and feels nothing of it: the two modes become one"
 eval small(1, 0.02, "Frequencies 10 and 10 (1 + gap) rad/s, step 0.01 s (chosen). At gap 0 the matrix is defective: it has no second mode.")

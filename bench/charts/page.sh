@@ -36,7 +36,8 @@ picture() {
 	[ -f "$folder/$1.svg" ] || { printf '<p class="bad">The picture %s is missing.</p>\n' "$1"; return; }
 	echo "$1.svg" >>"$shown"
 	printf '<figure id="%s"><a href="%s.svg"><img src="%s.svg" alt="%s" loading="lazy"></a>\n' "$1" "$1" "$1" "$1"
-	printf '<div class="as"><a href="%s.png">PNG</a></div></figure>\n' "$1"
+	[ ! -f "$folder/$1.png" ] || printf '<div class="as"><a href="%s.png">PNG</a></div>\n' "$1"
+	echo '</figure>'
 	caption "$1"
 }
 
