@@ -431,6 +431,13 @@ static void try_variant(const char *text, const struct judge *j, const struct va
             complain(format("not emitted: %s", said));
         return;
     }
+    if (v->single) {
+        char *draft = code;
+        e.to = open_memstream(&code, &length);
+        print_single(e.to, draft);
+        fclose(e.to);
+        free(draft);
+    }
     compare_code(code, step, j, v);
     if (v->form == FORM_KICK_DRIFT_KICK)
         compare_symmetry(step);
