@@ -8,33 +8,16 @@ case $1 in
     /*) program=$1 ;;
     *) program=$PWD/$1 ;;
 esac
-work=$(mktemp -d "${TMPDIR:-/tmp}/beam.XXXXXX") || exit 99
-trap 'rm -rf "$work"' EXIT
-trap 'exit 99' HUP INT TERM
-cd "$work" || exit 99
-count=0
-failed=0
-
-# result STATUS NAME
-result() {
-    count=$((count + 1))
-    if [ "$1" -eq 0 ]; then
-        echo "ok $count - $2"
-    else
-        echo "not ok $count - $2"
-        failed=1
-        sed 's/^/# /' said
-    fi
-}
+. "${0%/*}/../tap.sh"
 
 # refuses STATUS WORD OPTIONS...: with this status, a message that has the word, and no file
 refuses() {
     status=$1
     word=$2
     shift 2
-    "$program" "$@" >said 2>&1
+    "$program" "$@" >log 2>&1
     found=$?
-    [ $found -eq "$status" ] && grep -q -e "$word" said && [ -z "$(find . -name '*.mtx')" ]
+    [ $found -eq "$status" ] && grep -q -e "$word" log && [ -z "$(find . -name '*.mtx')" ]
     result $? "status $status and '$word': $*"
 }
 
@@ -57,14 +40,13 @@ refuses 1 'cannot write' nowhere/
 # A full disk is seen.
 if [ -w /dev/full ]; then
     ln -s /dev/full fullM.mtx
-    "$program" full >said 2>&1
-    [ $? -eq 1 ] && grep -q 'cannot write' said
+    "$program" full >log 2>&1
+    [ $? -eq 1 ] && grep -q 'cannot write' log
     result $? 'a full disk'
     rm -f full*.mtx
 fi
 
-"$program" -n 1 one_ >said 2>&1 && [ "$(find . -name 'one_*.mtx' | wc -l)" -eq 6 ] && [ ! -s said ]
+"$program" -n 1 one_ >log 2>&1 && [ "$(find . -name 'one_*.mtx' | wc -l)" -eq 6 ] && [ ! -s log ]
 result $? 'one element: six files, nothing said'
 
-echo "1..$count"
-exit $failed
+tap_end

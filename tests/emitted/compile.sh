@@ -15,33 +15,7 @@ case $plgen in
     *) plgen=$PWD/$plgen ;;
 esac
 warnings='-Wall -Wextra -Wpedantic -Wconversion -Wdouble-promotion -Werror'
-LC_ALL=C
-export LC_ALL
-
-work=$(mktemp -d "${TMPDIR:-/tmp}/emitted.XXXXXX") || exit 99
-trap 'rm -rf "$work"' EXIT
-trap 'exit 99' HUP INT TERM
-cd "$work" || exit 99
-
-count=0
-failed=0
-
-# result STATUS NAME: a line of TAP; what the commands said is in $work/log
-result() {
-    count=$((count + 1))
-    if [ "$1" -eq 0 ]; then
-        echo "ok $count - $2"
-    else
-        echo "not ok $count - $2"
-        failed=1
-        sed 's/^/# /' log | head -n 12
-    fi
-}
-
-skip() {
-    count=$((count + 1))
-    echo "ok $count - $1 # SKIP $2"
-}
+. "${0%/*}/../tap.sh"
 
 installed() {
     command -v "$1" >/dev/null 2>&1
@@ -507,5 +481,4 @@ right wide.spec wide 'very small and very large constants'
 } >chain.spec
 right chain.spec chain 'twelve masses with long names'
 
-echo "1..$count"
-exit $failed
+tap_end

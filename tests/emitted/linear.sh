@@ -19,29 +19,7 @@ plgen=$(absolute "$1")
 inputs=$(absolute "$2")
 root=$(absolute "$3")
 warnings='-Wall -Wextra -Wpedantic -Wconversion -Wdouble-promotion -Werror'
-LC_ALL=C
-export LC_ALL
-
-work=$(mktemp -d "${TMPDIR:-/tmp}/linear.XXXXXX") || exit 99
-trap 'rm -rf "$work"' EXIT
-trap 'exit 99' HUP INT TERM
-cd "$work" || exit 99
-
-count=0
-failed=0
-: >log
-
-# result STATUS NAME: a line of TAP; what the commands said is in log
-result() {
-    count=$((count + 1))
-    if [ "$1" -eq 0 ]; then
-        echo "ok $count - $2"
-    else
-        echo "not ok $count - $2"
-        failed=1
-        sed 's/^/# /' log | head -n 12
-    fi
-}
+. "${0%/*}/../tap.sh"
 
 for pair in "${GCCS:-gcc g++}" "${CLANGS:-clang clang++}"; do
     command -v "${pair% *}" >/dev/null 2>&1 && echo "${pair% *} -std=c99"
@@ -262,5 +240,5 @@ case $part in
     names) every_name ;;
     *) exit 99 ;;
 esac
-echo "1..$count"
-exit $failed
+
+tap_end

@@ -18,31 +18,7 @@ case $float in /*) ;; *) float=$PWD/$float ;; esac
 warnings='-Wall -Wextra -Wpedantic -Wconversion -Wdouble-promotion -Werror'
 leftover='pendulum duffing vanderpol beam4'
 switching='gear1 two_masses quarter_car_bumps'
-LC_ALL=C
-export LC_ALL
-work=$(mktemp -d "${TMPDIR:-/tmp}/forms.XXXXXX") || exit 99
-trap 'rm -rf "$work"' EXIT
-trap 'exit 99' HUP INT TERM
-cd "$work" || exit 99
-count=0
-failed=0
-
-# result STATUS NAME: a line of TAP; what the commands said is in `log`
-result() {
-    count=$((count + 1))
-    if [ "$1" -eq 0 ]; then
-        echo "ok $count - $2"
-    else
-        echo "not ok $count - $2"
-        failed=1
-        head -n 12 log | cut -c 1-200 | sed 's/^/# /'
-    fi
-}
-
-skip() {
-    count=$((count + 1))
-    echo "ok $count - $1 # SKIP $2"
-}
+. "${0%/*}/../tap.sh"
 
 {
     for pair in "${GCCS:-gcc g++}" "${CLANGS:-clang clang++}"; do
@@ -195,5 +171,4 @@ explained scs delta plain double --scheme pl --form delta
 explained duffing direct plain float --real float
 explained gear1 direct plain float --real float
 
-echo "1..$count"
-exit $failed
+tap_end

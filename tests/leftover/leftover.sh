@@ -21,28 +21,7 @@ for file; do
 done
 here=$root/tests/leftover
 warnings='-Wall -Wextra -Wpedantic -Wconversion -Wdouble-promotion -Werror'
-LC_ALL=C
-export LC_ALL
-
-work=$(mktemp -d "${TMPDIR:-/tmp}/leftover.XXXXXX") || exit 99
-trap 'rm -rf "$work"' EXIT
-trap 'exit 99' HUP INT TERM
-cd "$work" || exit 99
-
-count=0
-failed=0
-
-# result STATUS NAME: a line of TAP; what the commands said is in log
-result() {
-    count=$((count + 1))
-    if [ "$1" -eq 0 ]; then
-        echo "ok $count - $2"
-    else
-        echo "not ok $count - $2"
-        failed=1
-        sed 's/^/# /' log | head -n 12
-    fi
-}
+. "${0%/*}/../tap.sh"
 
 # ---- compilers ----
 
@@ -175,5 +154,4 @@ for name in pendulum vanderpol quad2dof duffing; do
     silent "$root/models/$name.spec"
 done
 
-echo "1..$count"
-exit $failed
+tap_end

@@ -20,28 +20,7 @@ for file; do
 done
 here=$root/tests/switching
 warnings='-Wall -Wextra -Wpedantic -Wconversion -Wdouble-promotion -Werror'
-LC_ALL=C
-export LC_ALL
-
-work=$(mktemp -d "${TMPDIR:-/tmp}/switching.XXXXXX") || exit 99
-trap 'rm -rf "$work"' EXIT
-trap 'exit 99' HUP INT TERM
-cd "$work" || exit 99
-
-count=0
-failed=0
-
-# result STATUS NAME: a line of TAP; what the commands said is in log
-result() {
-    count=$((count + 1))
-    if [ "$1" -eq 0 ]; then
-        echo "ok $count - $2"
-    else
-        echo "not ok $count - $2"
-        failed=1
-        sed 's/^/# /' log | head -n 12
-    fi
-}
+. "${0%/*}/../tap.sh"
 
 # compiled NAME FILE [OPTION ...]: by all compilers that there are
 compiled() {
@@ -128,5 +107,4 @@ gcc -std=c99 -O2 -ffreestanding -fno-builtin -I"$root/runtime" -c "$root/runtime
 [ ! -s log ]
 result $? "crossings.c: freestanding"
 
-echo "1..$count"
-exit $failed
+tap_end
