@@ -12,7 +12,7 @@ set bmargin 0
 # At the right end of a curve: its order between the last two N
 ends(model, horizon) = "< awk -F, '$1 == \"".model."\" && $2 == ".horizon." && FNR > 1 { if (NR == FNR) { n[$5] = $3; e[$5] = $6 } else if ($6 ~ /^[0-9]/) print n[$3], e[$3], $6 }' OFS=, '".csv."' '".orders."'"
 # As in series.awk, but above the edge at the edge
-clipped(model, horizon) = "< awk -F, 'NR == 1 || ($1 == \"".model."\" && $2 == ".horizon.") { if (NR > 1 && ($6 == \"diverged\" || $6 > 5e2)) $6 = 5e2; print }' OFS=, '".csv."' | awk -f '".here."/series.awk' -v x=intervals_in_30_s -v y=error_over_initial_displacement"
+clipped(model, horizon) = "< awk -F, 'NR == 1 || ($1 == \"".model."\" && $2 == ".horizon.") { if (NR > 1 && ($6 == \"diverged\" || $6 > 5e2)) $6 = 5e2; print }' OFS=, '".csv."' | awk -f '".here."/csv.awk' -f '".here."/series.awk' -v x=intervals_in_30_s -v y=error_over_initial_displacement"
 panel(model, horizon) = "load clipped('".model."', '".horizon."'); eval 'plot '.clauses.', ends(\"".model."\", \"".horizon."\") using 1:2:(sprintf(\"  %.2f\", $3)) with labels left font \",9\" notitle'"
 
 frame = "set multiplot title 'Convergence: '.model.', '.what font ',13'; ".\

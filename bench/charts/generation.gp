@@ -4,7 +4,7 @@ here = system("dirname '".ARG0."'"); csv = ARG1; out = ARG2
 load here.'/style.gp'
 names = system("awk -F, 'NR > 1 && !seen[$1]++ { printf \"%s \", $1 }' '".csv."'")
 # Each model's number in place of its name
-numbered = "< awk -F, 'NR == 1 { print; next } !($1 in n) { n[$1] = ++count } { sub(/^[^,]*/, n[$1]); print }' '".csv."' | awk -f '".here."/series.awk' -v by=rival -v x=model -v y=break_even_steps | sed 's/with linespoints/with points/g; s/ dt [^ ]* lw/ lw/g'"
+numbered = "< awk -F, 'NR == 1 { print; next } !($1 in n) { n[$1] = ++count } { sub(/^[^,]*/, n[$1]); print }' '".csv."' | awk -f '".here."/csv.awk' -f '".here."/series.awk' -v by=rival -v x=model -v y=break_even_steps | sed 's/with linespoints/with points/g; s/ dt [^ ]* lw/ lw/g'"
 name = 'break_even'
 set title "Steps after which generating and compiling is won back, at an error of 1e-6"
 set ylabel 'steps of the generated code [1]'

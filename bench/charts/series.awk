@@ -1,23 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # awk -v where='model=scs;quantity=largest' -v x=ns_median -v y=largest [-v by=method] [-v xfactor=1e-3] [-v yfactor=1] [-v skip=REGEX]
-#     [-v with=lines|points] [-v abs=1] [-v xzero=1e-12] -f series.awk FILE.csv
+#     [-v with=lines|points] [-v abs=1] [-v xzero=1e-12] -f csv.awk -f series.awk FILE.csv
 # prints gnuplot: a data block for each method that has rows with numbers above 0 in both columns (above or below, with -v any=1), and
 # `clauses`, what to plot of them; abs: of absolute values of y; xzero: where 0 stands on a log axis. A method looks alike in every chart: ours filled marks and thick unbroken lines, peers open marks and
 # thin lines, dashed by family, so they stay apart in black and white too. What is not in the table below gets a look by its turn.
 
 function look(pattern, mark, colour, dash) { looks++; pattern_of[looks] = pattern; mark_of[looks] = mark; colour_of[looks] = colour; dash_of[looks] = dash }
-function split_row(line, field,    n, c, i, quoted, text) {
-	n = 0; text = ""; quoted = 0
-	for (i = 1; i <= length(line); i++) {
-		c = substr(line, i, 1)
-		if (c == "\"") quoted = !quoted
-		else if (c == "," && !quoted) { field[++n] = text; text = "" }
-		else text = text c
-	}
-	field[++n] = text
-	return n
-}
-function is_number(text) { return text ~ /^[-+]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][-+]?[0-9]+)?$/ }
 function wanted(field,    i) {
 	for (i = 1; i <= conditions; i++)
 		if (field[condition_column[i]] != condition_value[i]) return 0

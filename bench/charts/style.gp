@@ -15,7 +15,7 @@ set output '/dev/null'
 set datafile separator ','
 set encoding utf8
 
-series(file, options) = "< awk -f '".here."/series.awk' ".options." '".file."'"
+series(file, options) = "< awk -f '".here."/csv.awk' -f '".here."/series.awk' ".options." '".file."'"
 
 if (!exists('size')) size = '900,600'           # pixels; a script may set it before
 svg = "set terminal svg size ".size." dynamic enhanced font 'DejaVu Sans,Helvetica,sans-serif,13' background rgb 'white'; set output out.'/'.name.'.svg'; replot; unset output;"
