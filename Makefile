@@ -4,9 +4,10 @@
 BUILD = build
 PACKAGES = gcc g++ clang make meson ninja-build pkgconf \
 	libgmp-dev libmpfr-dev libmpfi-dev libmpc-dev libgsl-dev \
-	libsundials-dev libcmocka-dev valgrind gnuplot-nox
+	libsundials-dev libcmocka-dev valgrind gnuplot-nox \
+	gcc-arm-none-eabi libnewlib-arm-none-eabi qemu-system-arm
 
-.PHONY: all setup deps demo check bench charts charts-quick fuzz accuracy install clean
+.PHONY: all setup deps demo check bench charts charts-quick firmware-report fuzz accuracy install clean
 
 all: setup
 	ninja -C $(BUILD)
@@ -49,6 +50,10 @@ bench: all
 charts charts-quick: setup
 	ninja -C $(BUILD) charts
 	sh bench/charts/charts.sh $(BUILD) $(BUILD)/$@ $(if $(findstring quick,$@),--quick)
+
+# Bytes, stack and instructions on emulated boards: doc/firmware.md
+firmware-report: setup
+	ninja -C $(BUILD) firmware_report
 
 # The long forms of what `make check` runs briefly.
 accuracy: all

@@ -1,0 +1,64 @@
+#!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
+# The same bits on an emulated board as on this host, from the same sources.
+#
+#     bits.sh BOARD VARIANTS_double.c VARIANTS_float.c HOST_PROGRAM SOURCE_ROOT STEPS
+set -u
+name=$1
+double=$2
+float=$3
+host=$4
+root=$5
+firmware=$root/tests/firmware
+. "$firmware/boards.sh"
+if ! boards_installed; then
+    echo "1..0 # SKIP no $arm-gcc or no qemu-system-arm"
+    exit 0
+fi
+board "$name"
+work=$(mktemp -d "${TMPDIR:-/tmp}/firmware.XXXXXX") || exit 99
+trap 'rm -rf "$work"' EXIT
+trap 'exit 99' HUP INT TERM
+
+compile() {         # compile SOURCE OBJECT [OPTION ...]
+    source=$1
+    object=$work/$2.o
+    shift 2
+    # shellcheck disable=SC2086
+    $arm-gcc $optimize $cpu -I"$root/runtime" -I"$firmware" "$@" -c "$source" -o "$object" || exit 99
+}
+compile "$double" double
+compile "$float" float -DREAL_FLOAT
+compile "$firmware/steps.c" steps_double
+compile "$firmware/steps.c" steps_float -DREAL_FLOAT
+compile "$firmware/steps_main.c" main "-DSTEPS=$6"
+for f in start semihosting digits; do compile "$firmware/$f.c" $f; done
+for f in "$root"/runtime/*.c; do compile "$f" "runtime_$(basename "$f" .c)"; done
+link "$work/image.elf" "$work"/*.o || exit 99
+
+"$host" "$6" >"$work/expected" || exit 99
+# Many times what the slowest takes
+emulate "${FIRMWARE_TIMEOUT:-240}" "$work/image.elf" >"$work/found"
+status=$?
+
+# A result for each variant and one for the end.
+awk -v board="$name" -v steps="$6" -v status=$status '
+    FNR == NR { if (!($1 in lines)) order[++n] = $1
+                expected[$1 " " $2] = $0; lines[$1] = lines[$1] "|" $1 " " $2; next }
+    { found[$1 " " $2] = $0; last = $0 }
+    END {
+        for (i = 1; i <= n; i++) {
+            m = split(lines[order[i]], key, "|")
+            bad = 0
+            for (j = 2; j <= m; j++)
+                if (found[key[j]] != expected[key[j]] && bad++ == 0)
+                    said = "# found    " found[key[j]] "\n# expected " expected[key[j]]
+            print (bad ? "not ok " : "ok ") i " - " board ", " order[i] ": the bits of this host, " m - 1 " lines, up to " steps " steps"
+            if (bad) print said "\n# " bad " of " m - 1 " lines differ"
+            failed += bad != 0
+        }
+        good = status == 0 && last == "end"
+        print (good ? "ok " : "not ok ") n + 1 " - " board ": the image runs to its end"
+        if (!good) { print "# status " status " (124: timeout), last line " last; failed++ }
+        print "1.." n + 1
+        exit failed != 0 }' "$work/expected" "$work/found"
