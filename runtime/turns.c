@@ -69,7 +69,11 @@ void pl_cossin(pl_turn a, double z[2])
     const uint64_t sixth = 0x2AAAAAAAAAAAAAAB;   /* 2^64/6 */
     const int quarter = (int)((a.hi + ((uint64_t)1 << 61)) >> 62); /* the nearest; 4 wraps to 0 */
     uint64_t x, xx;
-    double unit = 0x1p-63, r, rr, r4, c, s;
+    double r, rr, r4, c, s;
+    union {
+        uint64_t bits;
+        double value;
+    } unit;
     int shift = 0, below, odd;
 
     a.hi -= (uint64_t)quarter << 62; /* now -1/8 <= a < 1/8 turn */
@@ -83,17 +87,17 @@ void pl_cossin(pl_turn a, double z[2])
     while (a.hi >> 59 == 0 && shift < 128) { /* so that small angles keep their relative accuracy */
         a.hi = a.hi << 4 | a.lo >> 60;
         a.lo <<= 4;
-        unit *= 0x1p-4;
         shift += 4;
     }
+    unit.bits = (uint64_t)(1023 - 63 - shift) << 52; /* 2^-(63 + shift): made at once, since a target may multiply in software */
     x = words_times(a.hi, half_pi); /* radians, in `unit`: less than 2^63 */
     xx = shift < 32 ? words_times(2 * x, 2 * x) >> 2 * shift : 0;
 
-    r = (double)(int64_t)x * unit;
+    r = (double)(int64_t)x * unit.value;
     rr = r * r;
     r4 = rr * rr;
     c = sum(((uint64_t)1 << 62) - (xx >> 3), 0x1p-62, r4 * cosine_rest(rr));
-    s = sum(x - words_times(x, words_times(xx, sixth)), unit, r4 * r * sine_rest(rr));
+    s = sum(x - words_times(x, words_times(xx, sixth)), unit.value, r4 * r * sine_rest(rr));
     s = below ? -s : s;
 
     odd = quarter & 1;
