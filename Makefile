@@ -46,10 +46,10 @@ bench: all
 	$(BUILD)/bench/crossings
 	sh bench/sweep.sh $(BUILD)
 
-# Speed against accuracy, and stability where methods fail: one page with its pictures and tables. 15 minutes; quick: 2.
+# Speed against accuracy, and stability where methods fail: charts/index.html with its pictures and tables. 15 minutes; quick: 2.
 charts charts-quick: setup
 	ninja -C $(BUILD) charts
-	sh bench/charts/charts.sh $(BUILD) $(BUILD)/$@ $(if $(findstring quick,$@),--quick)
+	sh bench/charts/charts.sh $(BUILD) charts $(if $(findstring quick,$@),--quick)
 
 # Bytes, stack and instructions on emulated boards: doc/firmware.md
 firmware-report: setup
@@ -65,4 +65,4 @@ install: all
 	meson install -C $(BUILD)
 
 clean:
-	rm -rf $(BUILD)
+	rm -rf $(BUILD) charts
