@@ -60,7 +60,7 @@ static struct emitter emitter_new(FILE *to, const struct step *step, const char 
 	e.growth = ARRAY(int, loads);
 	for (size_t l = 0; l < loads; l++) {
 		const struct wave *wave = e.system->load[l].wave;
-		bool needed = load_is_needed(e.model, e.system, (int)l);
+		bool needed = e.model->tuning || load_is_needed(e.model, e.system, (int)l);
 		e.phase[l] = needed && oscillates(wave) ? e.phases++ : -1;
 		e.growth[l] = needed && mpq_sgn(wave->a) != 0 ? e.growths++ : -1;
 	}
@@ -73,7 +73,7 @@ static struct emitter emitter_new(FILE *to, const struct step *step, const char 
 
 static bool has_jump(const struct emitter *e)
 {
-	return e->system->inputs == 0 && !has_leftover(e->step) && !e->model->switching;
+	return e->system->inputs == 0 && !has_leftover(e->step) && !e->model->switching && !e->model->tuning;
 }
 
 static bool has_status(const struct emitter *e)
@@ -246,6 +246,8 @@ static void banner_cost(const struct emitter *e)
 		fprintf(e->to, ", %d calls of the model's own functions", program->calls);
 	fputs(".\n", e->to);
 	banner_form(e);
+	if (e->model->tuning)
+		banner_tuning(e);
 	fprintf(e->to, " * State y = %s.\n", state_list(e->model));
 	for (int i = 0; i < e->system->inputs; i++)
 		fprintf(e->to, " * Input %s: %s.\n", e->system->input[i].name, e->system->input[i].first_order
@@ -258,7 +260,7 @@ static void banner_cost(const struct emitter *e)
 	if (has_jump(e) && e->system->states > 12)
 		fprintf(e->to, " * %s_jump needs some %d KB of stack.\n", e->name, 1 + 32 * e->system->states * e->system->states / 1024);
 	if (!has_jump(e))
-		fprintf(e->to, " * There is no %s_jump: %s.\n", e->name, e->model->switching ? "crossings are found step by step" : has_leftover(e->step) ? "what is left over is not linear in the state"
+		fprintf(e->to, " * There is no %s_jump: %s.\n", e->name, e->model->switching ? "crossings are found step by step" : e->model->tuning ? "retuned coefficients have one word" : has_leftover(e->step) ? "what is left over is not linear in the state"
 									  : "the samples to come are not known");
 	if (has_leftover(e->step) && !e->step->series.powers)
 		fprintf(e->to, " * There is no %s_at: between its steps the scheme has no values of its order.\n", e->name);
@@ -291,11 +293,15 @@ static void declare(const struct emitter *e, const char *text, const char *comme
 static void emit_state_struct(const struct emitter *e)
 {
 	FILE *to = e->to;
+	if (e->model->tuning)
+		emit_coefficient_struct(e);
 	fprintf(to, "typedef struct %s %s;  /* copy it to save, assign it to restore */\n", e->name, e->name);
 	fprintf(to, "struct %s {\n    double y[%s_STATES];  /* %s%s */\n", e->name, e->upper, state_list(e->model),
 		e->step->momenta ? format("; velocities times mass / mass of %s", e->model->coord_name[0]) : "");
 	if (e->step->program->compensated)
 		fprintf(to, "    double rest[%s_STATES];  /* what rounding took from y so far */\n", e->upper);
+	if (e->model->tuning)
+		fprintf(to, "    %s_coeffs coeffs;    /* its own */\n", e->name);
 	if (e->system->inputs)
 		fprintf(to, "    double u[%s_INPUTS];  /* the last sample */\n", e->upper);
 	if (e->ramps)
@@ -335,6 +341,8 @@ static void emit_functions(const struct emitter *e, bool rhs)
 		declare(e, format("void   %s_at(const %s *s%s, double tau, double y[%s_STATES]);", n, n, u, N), "tau after now, 0 <= tau <= h");
 	if (has_jump(e))
 		declare(e, format("void   %s_jump(%s *s, uint64_t n);", n, n), "as n steps would, in log n time");
+	if (e->model->tuning)
+		emit_tuning_declarations(e);
 	if (rhs)
 		declare(e, format("void   %s_rhs(double t, const double y[], %sdouble dydt[]);", n, inputs ? "const double u[], " : ""),
 			e->model->written != e->model ? format("as written; y: all %d written states", e->model->written->system.states)
@@ -449,6 +457,8 @@ static void emit_init(const struct emitter *e)
 	for (int i = 0; i < e->system->states; i++)
 		fprintf(e->to, "%s%s", i ? ", " : "", shortest(round_rational(e->model->initial[i])));
 	fputs("};\n", e->to);
+	if (e->model->tuning)
+		fprintf(e->to, "    s->coeffs = %s_nominal;\n", e->name);
 	for (int i = 0; i < e->system->inputs; i++) {
 		fprintf(e->to, "    s->u[%d] = 0.0;\n", i);
 		if (e->ramps)
@@ -457,9 +467,18 @@ static void emit_init(const struct emitter *e)
 	fprintf(e->to, "    %s_set(s, 0.0, start);\n}\n", e->name);
 }
 
+const char *step_length(const struct emitter *e)
+{
+	return e->model->tuning ? "s->coeffs.h" : format("%s_H", e->upper);
+}
+
 /* t0 + k p/q with p and q exact is one rounding away from the exact time while k p < 2^53. */
 static void emit_time(const struct emitter *e)
 {
+	if (e->model->tuning) {
+		fprintf(e->to, "\ndouble %s_time(const %s *s)\n{\n    return s->t0 + (double)s->k * s->coeffs.h;\n}\n", e->name, e->name);
+		return;
+	}
 	mpz_srcptr p = mpq_numref(e->model->h), q = mpq_denref(e->model->h);
 	bool short_fraction = e->model->single ? mpz_sizeinbase(p, 2) <= 12 && mpz_sizeinbase(q, 2) <= 24 : mpz_sizeinbase(p, 2) <= 40 && mpz_sizeinbase(q, 2) <= 53;
 	const char *factor = mpz_cmp_ui(p, 1) == 0 ? "" : format(" * %s", shortest(mpz_get_d(p)));
@@ -502,8 +521,8 @@ static void emit_access(const struct emitter *e)
 		fputs("    s->status = 0;\n", to);
 	emit_load_set(e);
 	if (e->system->segments > 1)
-		fprintf(to, "    for (s->segment = 0; s->segment < %d && %s_until(s, s->segment) <= 1e-18 * %s_H;)\n        s->segment++;\n",
-			e->system->segments - 1, n, N);
+		fprintf(to, "    for (s->segment = 0; s->segment < %d && %s_until(s, s->segment) <= 1e-18 * %s;)\n        s->segment++;\n",
+			e->system->segments - 1, n, step_length(e));
 	if (e->model->switching)
 		fprintf(to, "    %s_place(s);\n", n);
 	fprintf(to, "}\n\nvoid %s_get(const %s *s, double y[%s_STATES])\n{\n    int i;\n", n, n, N);
@@ -567,7 +586,7 @@ static void emit_gamma(const struct emitter *e)
 	fputs("};\n", e->to);
 }
 
-static void emit_name_list(const struct emitter *e, const char *array, int count, const char *const *name)
+void emit_name_list(const struct emitter *e, const char *array, int count, const char *const *name)
 {
 	fprintf(e->to, "static const char *const %s_%s[] = {", e->name, array);
 	for (int i = 0; i < count; i++)
@@ -611,10 +630,13 @@ static void emit_descriptor(const struct emitter *e)
 		emit_wrapper(e, "void", "jump", ", uint64_t n", ", n", false);
 	if (has_status(e))
 		emit_wrapper(e, "int", "status", "", "", true);
+	if (e->model->tuning)
+		emit_tuning_wrapper(e);
 	fprintf(to, "\nconst pl_model %s_model = {\n    \"%s\", sizeof(struct %s), %s_STATES, %s_INPUTS, %s_OUTPUTS, %s_H,\n", n, n, n, N, N, N, N);
 	fprintf(to, "    %s_state_names, %s, %s_output_names,\n", n, inputs ? format("%s_input_names", n) : "NULL", n);
-	fprintf(to, "    %s_any_init, %s_any_set, %s_any_get, %s_any_time, %s_any_step,\n    %s_any_out, %s_any_run, %s, %s, %s\n};\n", n, n, n, n, n, n, n,
+	fprintf(to, "    %s_any_init, %s_any_set, %s_any_get, %s_any_time, %s_any_step,\n    %s_any_out, %s_any_run, %s, %s, %s,\n", n, n, n, n, n, n, n,
 		at ? format("%s_any_at", n) : "NULL", has_jump(e) ? format("%s_any_jump", n) : "NULL", has_status(e) ? format("%s_any_status", n) : "NULL");
+	fprintf(to, "    %s\n};\n", e->model->tuning ? format("%s_PARAMS, %s_param_names, %s_nominal.params, %s_any_retune", N, n, n, n) : "0, NULL, NULL, NULL");
 }
 
 /* Does an output read an acceleration that something left over acts on? */
@@ -668,6 +690,8 @@ void emit_code(FILE *to, const struct step *step, const char *options, const cha
 	if (e.system->inputs)
 		emit_gamma(&e);
 	emit_load_tables(&e);
+	if (step->model->tuning)
+		emit_nominal(&e);
 	if (e.system->segments > 1)
 		emit_changes(&e);
 	if (step->model->switching) {
@@ -675,7 +699,9 @@ void emit_code(FILE *to, const struct step *step, const char *options, const cha
 		emit_region_start(&e);
 	}
 	emit_access(&e);
-	if (e.system->segments > 1)
+	if (step->model->tuning)
+		emit_retune(&e);
+	else if (e.system->segments > 1)
 		emit_passing(&e);
 	if (step->model->switching && reads_channels(step->model))
 		emit_leftover_functions(&e);
@@ -691,6 +717,8 @@ void emit_code(FILE *to, const struct step *step, const char *options, const cha
 	emit_run(&e);
 	if (step->model->switching)
 		emit_region_at(&e);
+	else if (step->model->tuning)
+		emit_tuned_at(&e);
 	else if (step->series.emitted)
 		emit_at(&e);
 	if (has_jump(&e))

@@ -107,13 +107,23 @@ static const char *phase_text(const struct emitter *e, const struct load *load, 
 	return text;
 }
 
+const char *phase_step_text(const struct emitter *e, int load)
+{
+	return phase_text(e, &e->system->load[load], e->model->h);
+}
+
+const char *growth_step_text(const struct emitter *e, int load)
+{
+	return growth_text(e, &e->system->load[load], e->model->h);
+}
+
 static void print_turns(const struct emitter *e, const char *name, const char *what, bool per_step)
 {
 	fprintf(e->to, "\nstatic const pl_turn %s_%s[%d] = {  /* %s */\n", e->name, name, e->phases, what);
 	for (int l = 0; l < e->system->loads; l++) {
 		const struct load *load = &e->system->load[l];
 		if (e->phase[l] >= 0)
-			fprintf(e->to, "    %s,  /* %s */\n", per_step ? phase_text(e, load, e->model->h) : turn_text(e, load->wave->p), column_text(load, 0));
+			fprintf(e->to, "    %s,  /* %s */\n", per_step ? phase_step_text(e, l) : turn_text(e, load->wave->p), column_text(load, 0));
 	}
 	fputs("};\n", e->to);
 }
@@ -123,7 +133,7 @@ static void print_growths(const struct emitter *e)
 	fprintf(e->to, "\nstatic const pl_growth %s_growth_step[%d] = {  /* a h / ln 2, in units of 2^-%d */\n", e->name, e->growths, load_bits(e) - 16);
 	for (int l = 0; l < e->system->loads; l++)
 		if (e->growth[l] >= 0)
-			fprintf(e->to, "    %s,  /* %s */\n", growth_text(e, &e->system->load[l], e->model->h), column_text(&e->system->load[l], 0));
+			fprintf(e->to, "    %s,  /* %s */\n", growth_step_text(e, l), column_text(&e->system->load[l], 0));
 	fputs("};\n", e->to);
 }
 
@@ -175,11 +185,13 @@ void emit_load_tables(const struct emitter *e)
 {
 	if (e->phases) {
 		print_turns(e, "phase_start", format("at t = 0, in turns of 2^-%d", load_bits(e)), false);
-		print_turns(e, "phase_step", "in one step", true);
+		if (!e->model->tuning)
+			print_turns(e, "phase_step", "in one step", true);
 		print_rates(e, true, "phase_rate", e->phases, "turns per second");
 	}
 	if (e->growths) {
-		print_growths(e);
+		if (!e->model->tuning)
+			print_growths(e);
 		print_rates(e, false, "growth_rate", e->growths, "|a| / ln 2 [1/s]");
 	}
 }
@@ -207,16 +219,17 @@ void emit_load_set(const struct emitter *e)
 
 void emit_load_advance(const struct emitter *e, const char *steps)
 {
-	const char *turn = steps ? "pl_turn_times(%s_phase_step[%d], %s)" : "%s_phase_step[%d]";
-	const char *growth = steps ? "pl_growth_times(%s_growth_step[%d], %s)" : "%s_growth_step[%d]";
+	const char *owner = e->model->tuning ? "s->coeffs." : format("%s_", e->name);
+	const char *turn = steps ? "pl_turn_times(%sphase_step[%d], %s)" : "%sphase_step[%d]";
+	const char *growth = steps ? "pl_growth_times(%sgrowth_step[%d], %s)" : "%sgrowth_step[%d]";
 	for (int i = 0; i < e->phases; i++) {
 		fprintf(e->to, "    s->phase[%d] = pl_turn_add(s->phase[%d], ", i, i);
-		fprintf(e->to, turn, e->name, i, steps);
+		fprintf(e->to, turn, owner, i, steps);
 		fputs(");\n", e->to);
 	}
 	for (int i = 0; i < e->growths; i++) {
 		fprintf(e->to, "    s->growth[%d] = pl_growth_add(s->growth[%d], ", i, i);
-		fprintf(e->to, growth, e->name, i, steps);
+		fprintf(e->to, growth, owner, i, steps);
 		fputs(");\n", e->to);
 	}
 }

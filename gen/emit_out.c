@@ -29,6 +29,11 @@ static const char *direct_term(const struct emitter *e, const struct output *out
 	return operand ? format("%s * %s", text, operand) : text;
 }
 
+static bool is_tuned(const struct emitter *e, const struct output *output)
+{
+	return e->model->tuning && e->model->tuning->output[output - e->model->output] >= 0;
+}
+
 /* Factors of the load states in the outputs, where one changes its formula */
 static void emit_direct_factors(const struct emitter *e)
 {
@@ -36,7 +41,7 @@ static void emit_direct_factors(const struct emitter *e)
 	int columns = load_columns(system);
 	bool any = false;
 	for (int o = 0; o < e->model->outputs; o++)
-		for (int l = 0; l < system->loads; l++)
+		for (int l = 0; l < system->loads && !is_tuned(e, &e->model->output[o]); l++)
 			for (int k = 0; k < system->load[l].columns; k++)
 				any = any || changes((const mpq_t *)e->model->output[o].load[l] + k * system->segments, system->segments);
 	if (!any)
@@ -67,6 +72,9 @@ static double output_factor(const struct output *output, mpq_srcptr factor)
 static const char *linear_output(const struct emitter *e, const struct output *output)
 {
 	const struct linear *system = e->system;
+	const char *tuned = tuned_output(e, output);
+	if (tuned)
+		return tuned;
 	const char **term = ARRAY(const char *, (size_t)(system->states + load_columns(system) + 2 * system->inputs + e->model->channels + 1));
 	int terms = 0;
 	for (int i = 0; i < system->states; i++)
@@ -90,8 +98,22 @@ struct output_needs {
 	bool *reads, *loads, *inputs, *highest, time, left;
 };
 
+static void mark_tuned_row(const struct emitter *e, const struct output *output, struct output_needs *needs)
+{
+	int column = e->system->states;
+	for (int i = 0; i < e->system->states; i++)
+		needs->reads[i] = needs->reads[i] || tuned_output_reads(e, output, i);
+	for (int l = 0; l < e->system->loads; l++)
+		for (int k = 0; k < e->system->load[l].columns; k++)
+			needs->loads[l] = needs->loads[l] || tuned_output_reads(e, output, column++);
+}
+
 static void mark_row(const struct emitter *e, const struct output *output, struct output_needs *needs)
 {
+	if (is_tuned(e, output)) {
+		mark_tuned_row(e, output, needs);
+		return;
+	}
 	for (int i = 0; i < e->system->states; i++)
 		needs->reads[i] = needs->reads[i] || mpq_sgn(output->state[i]) != 0;
 	for (int l = 0; l < e->system->loads; l++)

@@ -28,6 +28,8 @@ static const char *operand_text(const struct emitter *e, const struct operand *o
 static const char *term_text(const struct emitter *e, const struct assignment *a, const struct product *p)
 {
 	const char *operand = operand_text(e, &p->operand);
+	if (e->step->program->tuned)
+		return operand ? format("%s * %s", tuned_factor(e, a->target, &p->operand), operand) : tuned_factor(e, a->target, &p->operand);
 	if (p->operand.kind != OPERAND_LOAD || e->system->segments == 1)
 		return scaled(p->factor->value, operand);
 	const char *factor = format("factor[%d][%d]", a->target, p->operand.index);
@@ -88,7 +90,7 @@ static void emit_keep_inputs(const struct emitter *e)
 {
 	for (int i = 0; i < e->system->inputs; i++) {
 		if (e->system->input[i].first_order)
-			fprintf(e->to, "    s->slope[%d] = (u[%d] - s->u[%d]) / %s_H;\n", i, i, i, e->upper);
+			fprintf(e->to, "    s->slope[%d] = (u[%d] - s->u[%d]) / %s;\n", i, i, i, step_length(e));
 		fprintf(e->to, "    s->u[%d] = u[%d];\n", i, i);
 	}
 }
@@ -160,7 +162,7 @@ static void emit_plain_step(const struct emitter *e)
 	}
 	emit_raw_locals(e, program->reads, program->in_order);
 	emit_load_states(e, loads_of_step(e), false);
-	if (e->system->segments > 1 && any_load_term(program))
+	if (e->system->segments > 1 && any_load_term(program) && !program->tuned)
 		fprintf(e->to, "    const double (*const factor)[%d] = %s_load_factor[s->segment];\n", e->step->table->columns, e->name);
 	for (int i = 0; i < program->assignments; i++)
 		emit_assignment(e, &program->assignment[i]);
@@ -185,20 +187,20 @@ static void emit_changing_step(const struct emitter *e)
 {
 	const char *n = e->name, *u = e->system->inputs ? "u, " : "";
 	int changes = e->system->segments - 1;
-	if (any_load_term(e->step->program) && !e->step->program->loops)
+	if (any_load_term(e->step->program) && !e->step->program->loops && !e->step->program->tuned)
 		emit_load_factors(e);
 	fprintf(e->to, "\nstatic void %s_plain_step(%s)\n{\n", e->name, step_parameters(e));
 	emit_plain_step(e);
 	if (e->system->inputs)
 		fputs("    (void)u;\n", e->to);
 	fprintf(e->to, "}\n\nvoid %s_step(%s)\n{\n", n, step_parameters(e));
-	fprintf(e->to, "    if (s->segment < %d && %s_until(s, s->segment) < %s_H) {\n", changes, n, e->upper);
-	fprintf(e->to, "        double y[%s_STATES];\n        int i;\n        %s_pass(s, %s%s_H, y);\n", e->upper, n, u, e->upper);
+	fprintf(e->to, "    if (s->segment < %d && %s_until(s, s->segment) < %s) {\n", changes, n, step_length(e));
+	fprintf(e->to, "        double y[%s_STATES];\n        int i;\n        %s_pass(s, %s%s, y);\n", e->upper, n, u, step_length(e));
 	fprintf(e->to, "        for (i = 0; i < %s_STATES; i++)%s\n", e->upper, e->step->program->compensated ? " {\n            s->rest[i] = 0.0;" : "");
 	fprintf(e->to, "            s->y[i] = y[i];\n%s    } else {\n        %s_plain_step(s%s);\n    }\n", e->step->program->compensated ? "        }\n" : "", n,
 		*u ? ", u" : "");
 	emit_step_end(e);
-	fprintf(e->to, "    while (s->segment < %d && %s_until(s, s->segment) <= 1e-18 * %s_H)\n        s->segment++;\n}\n", changes, n, e->upper);
+	fprintf(e->to, "    while (s->segment < %d && %s_until(s, s->segment) <= 1e-18 * %s)\n        s->segment++;\n}\n", changes, n, step_length(e));
 }
 
 /* Phi - I, for a step that loops */

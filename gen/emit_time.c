@@ -67,7 +67,7 @@ static void store_inputs(const struct emitter *e, const int *index)
 		bool ramp = e->system->input[i].first_order;
 		fprintf(e->to, ramp ? "    x[%d] = s->u[%d];\n" : "    x[%d] = u[%d];\n", index[i], i);
 		if (ramp)
-			fprintf(e->to, "    x[%d] = (u[%d] - s->u[%d]) / %s_H;\n", index[i] + 1, i, i, e->upper);
+			fprintf(e->to, "    x[%d] = (u[%d] - s->u[%d]) / %s;\n", index[i] + 1, i, i, step_length(e));
 	}
 }
 
@@ -150,11 +150,10 @@ static void emit_leftover_now(const struct emitter *e)
 		fprintf(e->to, "    %s\n", leftover_of_step(e));
 }
 
-static void emit_start_of_series(const struct emitter *e)
+void emit_series_vector(const struct emitter *e)
 {
 	const struct series *series = &e->step->series;
-	fprintf(e->to, "    double x[%d], work[%d];\n", series->size, 2 * series->size);
-	emit_load_states(e, wanted_loads(e, series->load), e->system->segments > 1);
+	emit_load_states(e, wanted_loads(e, series->load), false);
 	fprintf(e->to, "    int i;\n");
 	if (e->system->segments == 1)
 		emit_leftover_now(e);
@@ -165,14 +164,6 @@ static void emit_start_of_series(const struct emitter *e)
 	if (series->powers)
 		fprintf(e->to, "    for (i = 0; i < %d; i++)\n        x[%d + i] = %s;\n", e->system->channels, series->channel,
 			e->system->segments > 1 ? "left ? left[i] : 0.0" : "left[i]");
-}
-
-static bool needs_time(const struct emitter *e, const int *index)
-{
-	for (int l = 0; l < e->system->loads; l++)
-		if (index[l] >= 0 && e->system->load[l].powers > 1)
-			return true;
-	return false;
 }
 
 /* y at tau after now, from change to change */
@@ -188,9 +179,8 @@ static void emit_pass(const struct emitter *e)
 	fprintf(to, "\n/* The state tau after now, from change to change of the loads on the way. */\n");
 	fprintf(to, "static void %s_pass(const %s *s, %s%s%sdouble tau, double y[%s_STATES])\n{\n", e->name, e->name, e->step->operators > 1 ? "int which, " : "",
 		input_parameter(e), series->powers ? "const double *left, " : "", e->upper);
-	fprintf(to, "%s    double A[%d][%d], done = 0.0;\n    int j, segment = s->segment;\n    pl_series series;\n",
-		needs_time(e, series->load) ? format("    const double t = %s_time(s);\n", e->name) : "", size, size);
-	emit_start_of_series(e);
+	fprintf(to, "    double A[%d][%d], done = 0.0, x[%d], work[%d];\n    int j, segment = s->segment;\n    pl_series series;\n", size, size, size, 2 * size);
+	emit_series_vector(e);
 	fprintf(to, "    for (i = 0; i < %d; i++)\n        for (j = 0; j < %d; j++)\n            A[i][j] = %s[i][j];\n", size, size, slope_text(e));
 	fprintf(to, "    series.size = %d;\n    series.states = %s_STATES;\n    series.degree = %d;\n    series.halvings = %d;\n    series.A = A[0];\n", size,
 		e->upper, series->degree, series->halvings);
@@ -204,14 +194,20 @@ static void emit_pass(const struct emitter *e)
 	fprintf(to, "    pl_series_advance(&series, tau - done, x, work);\n    for (i = 0; i < %s_STATES; i++)\n        y[i] = x[i];\n}\n", e->upper);
 }
 
-static void print_two(FILE *to, mpq_srcptr q)
+const char *low_text(mpq_srcptr q)
 {
 	mpq_t rest;
 	mpq_init(rest);
 	mpq_set_d(rest, round_rational(q));
 	mpq_sub(rest, q, rest);
-	fprintf(to, "{%s, %s}", shortest(round_rational(q)), shortest(round_rational(rest)));
+	const char *text = shortest(round_rational(rest));
 	mpq_clear(rest);
+	return text;
+}
+
+const char *two_text(mpq_srcptr q)
+{
+	return format("{%s, %s}", shortest(round_rational(q)), low_text(q));
 }
 
 void emit_changes(const struct emitter *e)
@@ -221,13 +217,14 @@ void emit_changes(const struct emitter *e)
 	fprintf(to, "\nstatic const pl_two %s_change[%d] = {  /* [s]: where loads change their formula */\n", n, e->system->segments - 1);
 	for (int i = 0; i < e->system->segments - 1; i++) {
 		finite_number(e, e->system->change[i]);
-		fputs("    ", to);
-		print_two(to, e->system->change[i]);
-		fputs(",\n", to);
+		fprintf(to, "    %s,\n", two_text(e->system->change[i]));
 	}
-	fprintf(to, "};\n\n/* Time from now to a change */\nstatic double %s_until(const %s *s, int change)\n{\n    static const pl_two h = ", n, n);
-	print_two(to, e->model->h);
-	fprintf(to, ";\n    return pl_until(s->t0, s->k, h, %s_change[change]);\n}\n", n);
+	fprintf(to, "};\n\n/* Time from now to a change */\nstatic double %s_until(const %s *s, int change)\n{\n", n, n);
+	if (e->model->tuning)
+		fputs("    pl_two h;\n    h.hi = s->coeffs.h;\n    h.lo = s->coeffs.h_low;\n", to);
+	else
+		fprintf(to, "    static const pl_two h = %s;\n", two_text(e->model->h));
+	fprintf(to, "    return pl_until(s->t0, s->k, h, %s_change[change]);\n}\n", n);
 }
 
 void emit_passing(const struct emitter *e)
@@ -264,7 +261,8 @@ void emit_at(const struct emitter *e)
 	}
 	fprintf(to, "    %sconst pl_series series = {%d, %s_STATES, %d, %d, %s[0]};  /* size, states, degree, halvings */\n",
 		e->step->operators > 1 ? "" : "static ", series->size, e->upper, series->degree, series->halvings, slope_text(e));
-	emit_start_of_series(e);
+	fprintf(to, "    double x[%d], work[%d];\n", series->size, 2 * series->size);
+	emit_series_vector(e);
 	fprintf(to, "    pl_series_advance(&series, tau, x, work);\n    for (i = 0; i < %s_STATES; i++)\n        y[i] = x[i];\n}\n", e->upper);
 }
 

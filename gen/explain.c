@@ -79,6 +79,14 @@ static void person_held(FILE *to, const struct step *step)
 		    "%.6g 1/s, the largest real part of its poles, at h = %s s.\n", mpfr_get_d(step->growth, MPFR_RNDN), readable_text(step->model->h));
 }
 
+static void person_tuning(FILE *to, const struct tuning *t)
+{
+	fputs("Tunable on the target:", to);
+	for (int k = 0; k < t->params; k++)
+		fprintf(to, "%s %s = %s", k ? "," : "", t->param[k].symbol->name, readable_text(t->nominal[k]));
+	fprintf(to, "; the equations there have %d term%s%s.\n", t->terms, t->terms == 1 ? "" : "s", t->solves ? ", and are solved for the highest derivatives" : "");
+}
+
 static void person_step(FILE *to, const struct step *step)
 {
 	const struct model *model = step->model;
@@ -99,8 +107,12 @@ static void person_step(FILE *to, const struct step *step)
 			fprintf(to, " %24s", shortest(step->table->Phi[i * model->system.states + j].value));
 		fputc('\n', to);
 	}
+	if (model->tuning)
+		person_tuning(to, model->tuning);
 	if (model->switching)
 		fprintf(to, "%s_at: like a step, with every crossing on the way.\n", model->name);
+	else if (model->tuning)
+		fprintf(to, "%s_at: e^{A tau} of the instance's own params, as %s_retune computes it.\n", model->name, model->name);
 	else if (step->series.emitted)
 		fprintf(to, "%s_at: Taylor series of degree %d on %d part%s of the time.\n", model->name, step->series.degree, 1 << step->series.halvings,
 			step->series.halvings ? "s" : "");
@@ -393,6 +405,14 @@ static void json_regions(FILE *to, const struct step *step)
 	fputs("],\n", to);
 }
 
+static void json_tuning(FILE *to, const struct tuning *t)
+{
+	fputs("  \"tunable\": [", to);
+	for (int k = 0; k < t->params; k++)
+		fprintf(to, "%s{\"name\": \"%s\", \"value\": %.17g}", k ? ", " : "", t->param[k].symbol->name, nearest_double(t->nominal[k]));
+	fputs("],\n", to);
+}
+
 void explain_json(FILE *to, const struct step *step)
 {
 	const struct model *model = step->model;
@@ -411,6 +431,8 @@ void explain_json(FILE *to, const struct step *step)
 	json_names(to, "outputs", model->outputs, output);
 	json_names(to, "inputs", model->system.inputs, input);
 	json_names(to, "dropped", model->dropped, model->dropped_name);
+	if (model->tuning)
+		json_tuning(to, model->tuning);
 	json_rational_matrix(to, "M", model->written->n, (const mpq_t *)model->written->system.M);
 	json_rational_matrix(to, "C", model->written->n, (const mpq_t *)model->written->system.C);
 	json_rational_matrix(to, "K", model->written->n, (const mpq_t *)model->written->system.K);

@@ -410,7 +410,7 @@ int main(int argc, char **argv)
 		return fail();
 	struct spec *spec = parse_spec(source);
 	struct model *model = model_build(spec, &options.overrides);
-	if (!model)
+	if (!model || (options.print != PRINT_SOLUTION && !find_tuning(model, &options.overrides)))
 		return fail();
 	if (options.overrides.reduce)
 		model = model_reduce(model);

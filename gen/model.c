@@ -26,6 +26,18 @@ static void define_override(struct building *b, const char *text)
 		symbol->broken = true;
 }
 
+static void set_tunables(struct building *b)
+{
+	for (int i = 0; b->overrides->tunable && i < b->spec->tunables; i++) {
+		const struct tunable *tunable = &b->spec->tunable[i];
+		struct node *value = NEW(struct node);
+		*value = (struct node){ .kind = NODE_NUMBER, .at = tunable->at, .start = tunable->at, .end = tunable->at };
+		mpq_init(value->number);
+		mpq_set(value->number, b->overrides->tunable[i]);
+		tunable->symbol->value = value;
+	}
+}
+
 static bool statement_failed(const struct spec *spec, size_t statement)
 {
 	for (const struct symbol *s = spec->first; s; s = s->next)
@@ -276,17 +288,21 @@ struct model *model_build(struct spec *spec, const struct overrides *overrides)
 	b.polynomial = wave_of(&b.collector, zero, zero, zero);
 	for (int i = 0; i < overrides->definitions; i++)
 		define_override(&b, overrides->definition[i]);
+	set_tunables(&b);
 	if (overrides->prefix || (model->name && *model->name))
 		check_prefix(&b);
 	name_coordinates(&b);
 	name_states(&b);
-	evaluate_params(&b);
+	if (!overrides->tunable)                /* else what nothing reads may not be defined there */
+		evaluate_params(&b);
 	statement_guard(choose_scheme, &b);
 	collect_intervals(&b);
-	evaluate_lets(&b);
+	if (!overrides->tunable)
+		evaluate_lets(&b);
 	model->initial = rationals((size_t)model->system.states);
-	evaluate_initials(&b);
-	if (spec->step || overrides->step)
+	if (!overrides->tunable)
+		evaluate_initials(&b);
+	if (!overrides->tunable && (spec->step || overrides->step))
 		statement_guard(evaluate_step, &b);
 	bool clean = !diagnostics_errors();
 	if (clean)
@@ -305,7 +321,7 @@ struct model *model_build(struct spec *spec, const struct overrides *overrides)
 		say_error(model->scheme_at.source ? model->scheme_at : spec->name_at, NULL,
 			  "--reduce needs scheme exact: what %s leaves over depends on the coordinates", scheme_name(model->scheme));
 	model->irrationals = b.collector.irrationals;
-	if (!diagnostics_errors() && !overrides->solution)
+	if (!diagnostics_errors() && !overrides->solution && !overrides->tunable)
 		warn(&b);
 	return diagnostics_errors() ? NULL : model;
 }

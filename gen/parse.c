@@ -812,6 +812,32 @@ static void read_operator(struct parser *p)
 	expect_end(p);
 }
 
+/* ---- params that the target may change ---- */
+
+/* tunable: tunable NAME { , NAME } */
+static void read_tunable(struct parser *p)
+{
+	struct spec *spec = p->spec;
+	do {
+		if (p->token.kind != TOKEN_NAME || is_reserved(p->token.name))
+			unexpected(p, "a param");
+		struct token token = take(p);
+		struct symbol *symbol = spec_find(spec, token.name);
+		if (!symbol || symbol->broken || symbol->kind == SYMBOL_PARAM)
+			symbol = resolve_name(p, token)->symbol;
+		if (symbol->kind != SYMBOL_PARAM)
+			error(token.at, "a param is tunable, and nothing else", "%s '%s' is not a param", kind_text(symbol), symbol->name);
+		if (symbol->tuned)
+			error(token.at, NULL, "'%s' is tunable already", symbol->name);
+		if (spec->tunables == LIMIT_TUNABLES)
+			error(token.at, NULL, "more tunable params than the limit of %d", LIMIT_TUNABLES);
+		symbol->tuned = true;
+		ENLARGE(spec->tunable, (size_t)spec->tunables + 1);
+		spec->tunable[spec->tunables++] = (struct tunable){ token.at, symbol };
+	} while (take_op(p, ","));
+	expect_end(p);
+}
+
 /* ---- sketches ---- */
 
 static struct node *read_coordinate(struct parser *p, bool ground)
@@ -860,13 +886,13 @@ static void read_force(struct parser *p) { read_element(p, ELEMENT_FORCE); }
 
 static const struct statement {
 	const char *word;
-	void (*read)(struct parser *);  /* NULL: refused by name */
+	void (*read)(struct parser *);
 } statements[] = {
 	{ "model", read_model }, { "param", read_param }, { "coord", read_coord }, { "init", read_init }, { "let", read_let },
 	{ "output", read_output }, { "step", read_step }, { "scheme", read_scheme },
 	{ "input", read_input }, { "matrix", read_matrix_statement }, { "mass", read_mass }, { "spring", read_spring },
 	{ "damper", read_damper }, { "force", read_force }, { "operator", read_operator },
-	{ "tunable", NULL }
+	{ "tunable", read_tunable }
 };
 
 static const struct statement *statement_of(struct token token)
@@ -941,8 +967,6 @@ static void read_statement(void *context)
 		p->spec->name = "";             /* should its statement fail, that is told */
 	if (!statement) {
 		read_equation(p);
-	} else if (!statement->read) {
-		error(p->token.at, NULL, "statement '%s' is not built yet", statement->word);
 	} else {
 		take(p);
 		statement->read(p);
@@ -986,7 +1010,7 @@ static void declare_what_failed(struct parser *p, size_t from)
 	for (struct symbol *s = p->spec->first; s; s = s->next)
 		if (s->statement == p->statement && (s->kind == SYMBOL_PARAM || s->kind == SYMBOL_MATRIX))
 			s->broken = true;
-	bool all = statement && (statement->read == read_coord || statement->read == read_input || !statement->read);
+	bool all = statement && (statement->read == read_coord || statement->read == read_input);
 	if (!statement || (!all && statement->read != read_param && statement->read != read_let && statement->read != read_output &&
 	     statement->read != read_matrix_statement))
 		return;

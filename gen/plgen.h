@@ -40,6 +40,8 @@ enum {
 	LIMIT_BITS = 1000000,       /* of an exact value */
 	LIMIT_STATES = 512,
 	LIMIT_CHANGES = 1000,       /* of formula in time */
+	LIMIT_TUNABLES = 16,        /* params that the target may change */
+	LIMIT_MONOMIALS = 64,       /* products of them in one factor of a state */
 	LIMIT_REGIONS = 243,        /* of a piecewise-linear model */
 	MAX_EVENTS = 32,            /* crossings in a step of generated code */
 	LIMIT_PIECES = 16,          /* halvings of a step in which crossings are looked for */
@@ -170,6 +172,7 @@ struct symbol {
 	int index;                  /* among its kind, in the order of declaration; of a coordinate: of its first component */
 	int length;                 /* of a vector coordinate; 0: scalar */
 	bool broken;                /* its own statement failed: what uses it is passed over in silence */
+	bool tuned, tuning_checked; /* it is tunable, or made of something that is; of that: tune.c has looked through its value */
 	bool first_order;           /* of an input: hold first */
 	int highest;                /* of a coordinate: its order, 1 or 2; of a let: 1 if it reads a highest derivative, else -1, 0 unknown */
 	enum { TIME_UNKNOWN, TIME_READ, TIME_NOT_READ } time; /* of a let */
@@ -203,6 +206,10 @@ struct fixed {                      /* of `operator at NAME = value, value, ...`
 	int values;
 	struct node **value;
 };
+struct tunable {                    /* a param that the target may change */
+	struct place at;
+	struct symbol *symbol;
+};
 struct spec {                       /* what the text says, names resolved, nothing evaluated */
 	const struct source *source;
 	const char *name;
@@ -226,6 +233,8 @@ struct spec {                       /* what the text says, names resolved, nothi
 	struct place operator_at;
 	int fixeds;
 	struct fixed *fixed;
+	int tunables;
+	struct tunable *tunable;
 	struct place end;
 };
 struct spec *parse_spec(const struct source *source);
@@ -475,6 +484,7 @@ struct model {
 	const struct atoms *atoms;
 	struct switching *switching; /* exact: the regions of a piecewise-linear model; NULL: it has one */
 	const struct form *selector; /* of a bank: what is compared with `at`; NULL: one operator */
+	const struct tuning *tuning; /* tunable params, and how the equations follow from them; NULL: there are none */
 	int outputs;
 	struct output *output;
 	bool declared_outputs;
@@ -511,6 +521,7 @@ struct overrides {                  /* from the command line */
 	bool reduce, loads_left, compensated, single, selftest;
 	enum step_form form;
 	bool solution;              /* the closed form is wanted, whatever the scheme */
+	const mpq_t *tunable;       /* values of the tunable params in place of the spec's, to see what the equations become: no step, no initial values, no warnings */
 	int definitions;
 	const char **definition;    /* NAME=EXPR */
 };
@@ -583,6 +594,33 @@ void visit_leftovers(const struct model *model, void (*visit)(void *context, con
 /* ---- warnings.c: what a spec may say but is better told about ---- */
 
 void warn(struct building *b);
+
+/* ---- tune.c: how the equations follow from tunable params ---- */
+
+struct tuned_monomial { int from, param; bool divides; };  /* an earlier one times a param, or divided by it; number 0 is 1, these are 1, 2, ... */
+struct tuned_term {
+	int row, column, monomial;
+	mpq_t factor;
+};
+/* W a = R x, exactly, for all values of the params: a holds the highest derivatives of the coordinates, then the outputs that
+ * depend on params; x is the states, the load states in each segment of time, the inputs (of ramps: u, u'). */
+struct tuning {
+	int params;
+	const struct tunable *param;
+	mpq_t *nominal;             /* the spec's values */
+	int columns, loads;         /* of x; of the load states in one segment */
+	int rows, *output;          /* per output: its row, or -1: no param changes it */
+	bool solves;                /* there is a W, columns behind those of R; else it is the unit matrix */
+	int monomials;
+	struct tuned_monomial *monomial;
+	int terms;
+	struct tuned_term *term;    /* by rows, then by columns */
+	bool *acts;                 /* rows x columns: of W^-1 R, whether it is anything but 0 for some values */
+	const struct model *other;  /* the model at values that are related by nothing: what holds there holds for all */
+};
+bool find_tuning(struct model *model, const struct overrides *overrides); /* model->tuning, where something is tunable; false: it was said why not */
+struct step;
+void mark_tuned_zeros(struct step *step);                    /* in its table: what vanishes at these values only is no zero */
 
 /* ---- reduce.c: the smallest model with the same outputs ---- */
 
@@ -863,6 +901,7 @@ struct program {
 	int wave_multiplications, wave_additions; /* for them, counted below too */
 	int multiplications, additions, calls; /* calls: of the model's own functions */
 	bool loops;                 /* over the tables, zeros included: a large model */
+	bool tuned;                 /* factors are read from the instance's coefficients */
 	int actions;                /* 0: assignments */
 	struct action *action;
 	int stages, lefts;          /* vectors, the state not counted */
@@ -954,7 +993,7 @@ const char *c_expression(const struct node *node);          /* fit for a term of
 bool vanishes(const struct node *node);                     /* nothing is left when accelerations are 0 */
 void mark_used(const struct node *node, bool *math);        /* flags the symbols that it needs; *math: it needs <math.h> */
 
-/* ---- emit.c, emit_step.c, emit_left.c, emit_out.c, emit_loads.c, emit_time.c, emit_rhs.c: a step as C ---- */
+/* ---- emit.c, emit_step.c, emit_left.c, emit_out.c, emit_loads.c, emit_time.c, emit_tune.c, emit_rhs.c: a step as C ---- */
 
 struct emitter {
 	FILE *to;
@@ -985,8 +1024,14 @@ void emit_load_states(const struct emitter *e, const bool *loads, bool time_is_t
 const char *load_operand(const struct emitter *e, int load, int column); /* NULL: the constant 1 */
 const char *column_operand(const struct emitter *e, int column);
 
+const char *phase_step_text(const struct emitter *e, int load);   /* in one step: a turn, as an initialiser */
+const char *growth_step_text(const struct emitter *e, int load);
+const char *low_text(mpq_srcptr q);                               /* what its rounding leaves out, rounded */
+const char *two_text(mpq_srcptr q);                               /* {hi, lo} */
+const char *step_length(const struct emitter *e);                 /* NAME_H; of tunable models that of the instance s */
 void emit_changes(const struct emitter *e);                       /* loads that change their formula: when */
 void emit_passing(const struct emitter *e);                       /* ... and pass(), across a change */
+void emit_series_vector(const struct emitter *e);                 /* declares i and load states; x[...] = what the series advances */
 void emit_locals(const struct emitter *e, const bool *reads);     /* the states wanted, under their names */
 void emit_raw_locals(const struct emitter *e, const bool *reads, bool changing); /* as kept: of kick-drift-kick, momenta */
 void emit_store(const struct emitter *e, const char *vector, const char *indent); /* s->y from states */
@@ -1009,6 +1054,18 @@ const char *basis_now(const struct emitter *e, const struct basis *basis); /* in
 const char *leftover_of_step(const struct emitter *e);            /* its call at the start of a step, into `left` */
 const char *leftover_of_outputs(const struct emitter *e);
 void emit_samples(const struct emitter *e);                       /* start, slope: what leftovers read of ramps */
+/* Of models with tunable params: */
+void emit_coefficient_struct(const struct emitter *e);
+void emit_tuning_declarations(const struct emitter *e);
+void emit_tuning_wrapper(const struct emitter *e);                /* of the descriptor */
+void emit_name_list(const struct emitter *e, const char *array, int count, const char *const *name);
+void banner_tuning(const struct emitter *e);
+void emit_nominal(const struct emitter *e);                       /* the generator's own coefficients, of the spec's values */
+void emit_retune(const struct emitter *e);                        /* the equations, retune, use */
+void emit_tuned_at(const struct emitter *e);                      /* pass, from change to change of the loads; at */
+const char *tuned_factor(const struct emitter *e, int row, const struct operand *operand);
+const char *tuned_output(const struct emitter *e, const struct output *output); /* its sum; NULL: no param changes it */
+bool tuned_output_reads(const struct emitter *e, const struct output *output, int column); /* columns of x as in struct tuning */
 const char *selection_call(const struct emitter *e);              /* which operator of a bank serves now */
 void emit_node_phases(const struct emitter *e, const bool *loads); /* phases and growths from the start of the step to each node */
 int  coordinate_of_row(const struct model *model, int row);       /* whose equation it is */

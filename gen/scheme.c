@@ -489,6 +489,8 @@ static void build_exact(struct step *step)
 	}
 	if (!chosen)
 		make_whole(step);
+	if (step->model->tuning)
+		mark_tuned_zeros(step);
 	step->program = linear_program(step);
 }
 
@@ -564,6 +566,16 @@ static void build_with_leftover(struct step *step)
 	count_loads(step->program, &step->system, step->model->single);
 }
 
+/* Of tunable models: no Taylor series in the step's own time, but e^{A tau} at any, of every load */
+static void place_all_loads(struct step *step)
+{
+	bool *all = ARRAY(bool, (size_t)step->system.loads);
+	for (int l = 0; l < step->system.loads; l++)
+		all[l] = true;
+	series_place_loads(&step->series, &step->system, 0, all);
+	step->series.emitted = true;
+}
+
 static void build(void *context)
 {
 	struct step *step = context;
@@ -584,12 +596,16 @@ static void build(void *context)
 	}
 	if (left)
 		need_direct(step);
-	series_place(&step->series, &step->system, left && model->scheme <= SCHEME_ETD1);
+	if (model->tuning)
+		place_all_loads(step);
+	else
+		series_place(&step->series, &step->system, left && model->scheme <= SCHEME_ETD1);
 	if (left)
 		build_with_leftover(step);
 	else
 		build_exact(step);
-	series_plan(step);
+	if (!model->tuning)
+		series_plan(step);
 	if (model->selftest)
 		need_closed_form(step);
 }

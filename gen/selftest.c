@@ -116,6 +116,8 @@ static void emit_sample(const struct emitter *e, const char *indent, const char 
 
 static void emit_begin(const struct emitter *e)
 {
+	if (e->model->tuning)
+		fprintf(e->to, "    s.coeffs = %s_nominal;\n", e->name);
 	fprintf(e->to, "    %s_set(&s, 0.0, start);\n", e->name);
 	if (e->ramps) {
 		emit_sample(e, "    ", "1.0");

@@ -126,6 +126,8 @@ static const char *kick_objection(struct step *step)
 		return "the scheme holds terms over the step";
 	if (system->states > LIMIT_UNROLLED_STATES)
 		return format("it is built for up to %d states", LIMIT_UNROLLED_STATES);
+	if (step->model->tuning)
+		return "there are tunable params: the target computes e^{A h}, and not what kicks and drifts are made of";
 	if (!accelerations(system, a))
 		return system->states == 2 * n ? "there is damping, or a term that depends on velocities" : "a coordinate has no velocity";
 	step->mass = relative_masses(system, (const mpq_t *)a);
@@ -160,6 +162,8 @@ static enum step_form best_form(struct step *step)
 		return model->compensated ? FORM_DELTA : FORM_DIRECT;
 	if (!kick_objection(step))
 		return FORM_KICK_DRIFT_KICK;
+	if (model->tuning)
+		return FORM_DELTA;      /* good at any step that the target may be told */
 	return model->compensated || largest_pole_angle(step) <= 1 ? FORM_DELTA : FORM_DIRECT;
 }
 
@@ -178,6 +182,8 @@ void choose_form(struct step *step)
 	}
 	if (model->compensated && step->form == FORM_DIRECT)
 		error(model->compensated_at, NULL, "--accuracy compensated takes the form delta or kick-drift-kick");
+	if (model->compensated && model->tuning)
+		error(model->compensated_at, NULL, "--accuracy compensated needs factors in two words: those of tunable params have one");
 	if (model->compensated && step->system.states > LIMIT_UNROLLED_STATES)
 		error(model->compensated_at, NULL, "--accuracy compensated is built for up to %d states", LIMIT_UNROLLED_STATES);
 }
@@ -208,18 +214,22 @@ static bool is_identity(const struct assignment *a)
 	return a->terms == 1 && a->term[0].operand.kind == OPERAND_STATE && a->term[0].operand.index == a->target && a->term[0].factor->value == 1;
 }
 
-static bool is_unit(const struct product *p, const struct linear *system)
+/* A load that is added as it is */
+static bool is_constant_load(const struct product *p, const struct linear *system)
 {
-	double value = p->factor->value;
 	int column = p->operand.index;
-	if (value == 1 || value == -1)
-		return true;
 	if (p->operand.kind != OPERAND_LOAD)
 		return false;
 	for (int l = 0; l < system->loads && column >= 0; column -= system->load[l++].columns)
 		if (column == 0 && is_polynomial(system->load[l].wave))
-			return true;            /* a constant load is added as it is */
+			return true;
 	return false;
+}
+
+static bool is_unit(const struct product *p, const struct linear *system)
+{
+	double value = p->factor->value;
+	return value == 1 || value == -1 || is_constant_load(p, system);
 }
 
 /* What the load states of the columns in use cost */
@@ -243,7 +253,7 @@ void count_loads(struct program *program, const struct linear *system, bool sing
 
 static void count_term(struct program *program, const struct product *p, const struct linear *system)
 {
-	program->multiplications += !is_unit(p, system);
+	program->multiplications += program->tuned ? !is_constant_load(p, system) : !is_unit(p, system);
 	program->additions += p->operand.kind == OPERAND_DIFFERENCE;
 	if (p->operand.kind == OPERAND_STATE || p->operand.kind == OPERAND_DIFFERENCE)
 		program->reads[p->operand.index] = true;
@@ -294,7 +304,8 @@ static struct assignment *new_assignment(struct program *program, const struct s
 
 static void drop_identity(struct program *program)
 {
-	program->assignments -= is_identity(&program->assignment[program->assignments - 1]);
+	const struct assignment *a = &program->assignment[program->assignments - 1];
+	program->assignments -= is_identity(a) && (a->added || !program->tuned);
 }
 
 static void add_loads_and_inputs(struct assignment *a, const struct step *step, int row)
@@ -358,7 +369,8 @@ static void add_places(struct assignment *a, const struct linear *system, const 
 static void write_delta(struct program *program, const struct step *step)
 {
 	const struct table *table = step->table;
-	int n = table->states, *anchor = anchors(&step->system);
+	const struct tuning *tuning = step->model->tuning;
+	int n = table->states, *anchor = anchors(tuning ? &tuning->other->system : &step->system);
 	for (int i = 0; i < n; i++) {
 		struct assignment *a = new_assignment(program, step, i, true);
 		const struct coefficient *row = &table->increment[i * n];
@@ -413,6 +425,7 @@ struct program *linear_program(const struct step *step)
 	const struct table *table = step->table;
 	struct program *program = NEW(struct program);
 	program->compensated = step->model->compensated;
+	program->tuned = step->model->tuning != NULL;
 	program->reads = ARRAY(bool, (size_t)table->states);
 	program->uses = ARRAY(bool, (size_t)table->columns);
 	if (step->form == FORM_DIRECT)

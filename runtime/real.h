@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT-0 */
-/* real.h: one text for doubles and floats, for the runtime's own use.  series.c, power.c, until.c, apply.c and crossings.c are
- * written over `real`, a double with the names of plrt.h; seriesf.c and so on define REAL_IS_FLOAT and include them, and then the
- * same names stand for those that end in f.  Constants are integers there, which are of either type: no float is promoted. */
+/* real.h: one text for doubles and floats, for the runtime's own use.  series.c, power.c, until.c, apply.c, crossings.c and
+ * retune.c are written over `real`, a double with the names of plrt.h; seriesf.c and so on define REAL_IS_FLOAT and include them,
+ * and then the same names stand for those that end in f.  Constants are integers there, which are of either type: no float is
+ * promoted. */
 #ifndef PLRT_REAL_H
 #define PLRT_REAL_H
 
@@ -31,6 +32,12 @@ enum { REAL_DIGITS = FLT_MANT_DIG, REAL_EXPONENTS = FLT_MAX_EXP };
 #define pl_switching_start pl_switchingf_start
 #define pl_switching_step pl_switchingf_step
 #define pl_switching_advance pl_switchingf_advance
+#define pl_term pl_termf
+#define pl_equations pl_equationsf
+#define pl_equations_at pl_equationsf_at
+#define pl_increment pl_incrementf
+#define pl_ramp_before pl_rampf_before
+#define pl_ramp_cancels pl_rampf_cancels
 
 #else
 

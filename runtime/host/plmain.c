@@ -4,7 +4,8 @@
  *     cc -Iruntime runtime/host/plmain.c model_pl.c runtime/turns.c ... -DMODEL=scs -o m
  *     ./m 30 < inputs.csv > out.csv
  *
- * A model made with --real float is compiled with -DFLOAT too.
+ * A model made with --real float is compiled with -DFLOAT too.  Tunable params, and the step, take other values on the command
+ * line: ./m 30 k2=60 step=0.005.
  *
  * One row at every step k*h <= T, from t = 0 on.  A model with inputs reads one row of samples per step from standard
  * input: as many numbers as inputs, separated by commas; a first line that gives the inputs' names may precede them.
@@ -190,9 +191,9 @@ static void check_status(const void *state)
 }
 
 /* The last k with k h <= end.  Since h and the quotient are rounded, what is a whole number but for that counts as whole. */
-static uint64_t steps_until(double end)
+static uint64_t steps_until(double end, double h)
 {
-    const double steps = end / (double)model->h;
+    const double steps = end / h;
     if (!(steps < 9007199254740992.0)) {
         fprintf(stderr, "%s: error: T is more than 2^53 steps\n", model->name);
         if (!((double)model->h > 1e-300)) /* as the other type's descriptor reads */
@@ -202,30 +203,91 @@ static uint64_t steps_until(double end)
     return (uint64_t)(steps + 1e-9 + steps * (BITS == 24 ? 0x1p-23 : 0x1p-52));
 }
 
+static void usage(const char *program)
+{
+    int i;
+    fprintf(stderr, "usage: %s T%s %s> out.csv\n    T: time of the end [s]; the step is %.*g s\n", program,
+            model->retune != NULL ? " [NAME=VALUE ...]" : "", model->inputs > 0 ? "< inputs.csv " : "", DIGITS, (double)model->h);
+    for (i = 0; i < model->params; i++)
+        fprintf(stderr, "    %s=%.*g\n", model->param_names[i], DIGITS, (double)model->param_values[i]);
+    if (model->retune != NULL)
+        fprintf(stderr, "    step=%.*g\n", DIGITS, (double)model->h);
+    exit(2);
+}
+
 static double end_of_run(int argc, char **argv)
 {
     char *rest = NULL;
-    double end = argc == 2 ? strtod(argv[1], &rest) : 0.0;
-    if (argc != 2 || rest == argv[1] || *rest != '\0' || end - end != 0.0 || end < 0.0) {
-        if (argc == 2)
+    double end = argc >= 2 ? strtod(argv[1], &rest) : 0.0;
+    if (argc < 2 || rest == argv[1] || *rest != '\0' || end - end != 0.0 || end < 0.0) {
+        if (argc >= 2)
             fprintf(stderr, "%s: error: expected a time, finite and not negative, found '%s'\n", model->name, argv[1]);
-        fprintf(stderr, "usage: %s T %s> out.csv\n    T: time of the end [s]; the step is %.*g s\n",
-                argc > 0 ? argv[0] : model->name, model->inputs > 0 ? "< inputs.csv " : "", DIGITS, (double)model->h);
-        exit(2);
+        usage(argc > 0 ? argv[0] : model->name);
     }
     return end;
 }
 
-static void run(uint64_t steps)
+/* ---- other values of the params ---- */
+
+/* The place for the value of a param, or of the step; NULL: there is none of this name */
+static real *place_of(const char *text, size_t length, real *params, real *h)
+{
+    int i;
+    for (i = 0; i < model->params; i++)
+        if (strlen(model->param_names[i]) == length && strncmp(model->param_names[i], text, length) == 0)
+            return &params[i];
+    return length == 4 && strncmp(text, "step", 4) == 0 ? h : NULL;
+}
+
+/* NAME=VALUE ...: params and h, as the model has them where they are not named */
+static void read_values(int count, char **text, const char *program, real *params, real *h)
+{
+    int i;
+    *h = model->h;
+    for (i = 0; i < model->params; i++)
+        params[i] = model->param_values[i];
+    for (i = 0; i < count; i++) {
+        const size_t length = strcspn(text[i], "=");
+        char *rest = NULL;
+        real *place = model->retune != NULL && text[i][length] == '=' ? place_of(text[i], length, params, h) : NULL;
+        const double value = place != NULL ? strtod(text[i] + length + 1, &rest) : 0.0;
+        if (place == NULL || rest == text[i] + length + 1 || *rest != '\0') {
+            fprintf(stderr, "%s: error: expected %s, found '%s'\n", model->name,
+                    model->retune != NULL ? "NAME=VALUE, a tunable param or step, and a number" : "nothing after the time: the model has no tunable params",
+                    text[i]);
+            usage(program);
+        }
+        *place = (real)value;
+    }
+}
+
+static void retune(void *state, const real *params, real h)
+{
+    const int status = model->retune(state, params, h);
+    if (status == PL_NO_STEP)
+        fail("the step is not above 0");
+    if (status == PL_SINGULAR)
+        fail("with these values the mass matrix has no inverse");
+    if (status != 0)
+        fail("with these values the numbers of the step are not finite");
+}
+
+static void run(double end, int count, char **text, const char *program)
 {
     void *state = need(malloc(model->size));
     real *out = (real *)need(malloc(sizeof *out * (size_t)(model->outputs + 1)));
     real *u = (real *)need(malloc(sizeof *u * (size_t)(model->inputs + 1)));
+    real *params = (real *)need(malloc(sizeof *params * (size_t)(model->params + 1)));
     samples in = {NULL, 256, 0, 0, 0};
-    uint64_t k;
+    real h;
+    uint64_t k, steps;
 
     in.line = (char *)need(malloc(in.room));
+    read_values(count, text, program, params, &h);
     model->init(state);
+    if (count > 0)
+        retune(state, params, h);
+    steps = steps_until(end, (double)h);
     if (model->inputs > 0 && steps > 0)
         read_header(&in);
     print_header();
@@ -238,6 +300,7 @@ static void run(uint64_t steps)
         print_row(state, out);
     }
     free(in.line);
+    free(params);
     free(u);
     free(out);
     free(state);
@@ -245,7 +308,8 @@ static void run(uint64_t steps)
 
 int main(int argc, char **argv)
 {
-    run(steps_until(end_of_run(argc, argv)));
+    const double end = end_of_run(argc, argv);
+    run(end, argc - 2, argv + 2, argv[0]);
     if (fclose(stdout) != 0)
         fail("cannot write to standard output");
     return 0;

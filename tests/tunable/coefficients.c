@@ -1,0 +1,674 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/*
+ * What NAME_retune computes against the generator's own coefficients for the same values:
+ *
+ *     coefficients [-n SETS] [-m SETS] [-s SEED] [-v] MODEL.spec ...
+ *
+ * n sets of params for each family of pair.spec, m for each other model.  The generator builds each model anew from the spec without its
+ * statement `tunable`, with the values as -D and --step, all exact.  Bounds, in units in the last place (ulp):
+ *     states x states    16 ulp of the largest entry of Phi
+ *     a load, an input   16 ulp of the largest entry of its column, in each segment of time
+ *     outputs            16 ulp of the largest factor of the row
+ *     phases, growths    bit for bit
+ * NAME_nominal is what the generator has for the spec's values, bit for bit.
+ * The largest met is printed for each family; for states also in ulp of the largest entry of Phi - I, for ramps in ulp of the largest entry
+ * of both columns.
+ */
+#include "plgen.h"
+#include "tuned.h"
+
+#include <ctype.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+enum { MISMATCHES_SHOWN = 10 };
+
+#ifdef REAL_FLOAT
+enum { BITS = 24 };
+#else
+enum { BITS = 53 };
+#endif
+
+/* ---- random values ---- */
+
+static uint64_t state;
+
+static uint64_t below(uint64_t n)
+{
+    state = state * UINT64_C(6364136223846793005) + UINT64_C(1442695040888963407);
+    return (state >> 33) % n;
+}
+
+static double uniform(void)
+{
+    return ((double)below(UINT64_C(1) << 30) + 0.5) / 0x1p30;
+}
+
+/* 10^a to 10^b, evenly in its logarithm; now and then with few bits, as one would write it */
+static real spread(double a, double b)
+{
+    const double x = pow(10, a + (b - a) * uniform());
+    int exponent;
+    const double fraction = frexp(x, &exponent);
+    return below(3) ? (real)x : (real)ldexp(ceil(fraction * 16) / 16, exponent);
+}
+
+/* ---- families of pair.spec: m1, m2, k1, k2, k3, c1, c2, c3, F ---- */
+
+enum { M1, M2, K1, K2, K3, C1, C2, C3, F };
+
+static void any_pair(real *p)
+{
+    for (int i = M1; i <= M2; i++)
+        p[i] = spread(-2, 2);
+    for (int i = K1; i <= K3; i++)
+        p[i] = spread(-1, 4);
+    for (int i = C1; i <= C3; i++)
+        p[i] = spread(-3, 1);
+    p[F] = spread(-2, 3) * (below(2) ? 1 : -1);
+}
+
+/* Largest frequency, roughly */
+static double frequency(const real *p)
+{
+    return sqrt(fmax(((double)p[K1] + (double)p[K2]) / (double)p[M1], ((double)p[K2] + (double)p[K3]) / (double)p[M2]));
+}
+
+/* Largest decay */
+static double decay(const real *p)
+{
+    return fmax(((double)p[C1] + (double)p[C2]) / (double)p[M1], ((double)p[C2] + (double)p[C3]) / (double)p[M2]);
+}
+
+/* |p| h from 10^a to 10^b */
+static real step_for(const real *p, double a, double b)
+{
+    const double rate = fmax(frequency(p), decay(p));
+    return (real)((double)spread(a, b) / (rate > 0 ? rate : 1));
+}
+
+static real family_general(real *p)
+{
+    any_pair(p);
+    return step_for(p, -4, 1.8);
+}
+
+static real family_undamped(real *p)
+{
+    any_pair(p);
+    p[C1] = p[C2] = p[C3] = 0;
+    return step_for(p, -4, 1.8);
+}
+
+static real family_overdamped(real *p)
+{
+    any_pair(p);
+    for (int i = C1; i <= C3; i++)
+        p[i] = (real)(2 * frequency(p) * (double)p[M1 + i % 2] * (double)spread(0, 2));
+    return step_for(p, -4, 1.5);
+}
+
+/* 2^-n with n such that it is between about 1e-8 and 1e-15, for floats 1e-3 and 1e-7; now and then 0; either sign */
+static real little(void)
+{
+    const int n = BITS == 53 ? 26 + (int)below(26) : 10 + (int)below(13);
+    return below(8) == 0 ? 0 : (real)(below(2) ? ldexp(1, -n) : -ldexp(1, -n));
+}
+
+/* Masses that are equal and hardly coupled, each mode damped nearly critically: c^2 = 4 k m (1 + little)^2 */
+static real family_critical(real *p)
+{
+    const double w = (double)(1 + below(64)) / 4;
+    any_pair(p);
+    p[M1] = (real)(1 + below(32)) / 8;
+    p[M2] = below(2) ? p[M1] : (real)(1 + below(32)) / 8;
+    p[K1] = (real)((double)p[M1] * w * w);
+    p[K3] = (real)((double)p[M2] * w * w);
+    p[C1] = (real)(2 * (double)p[M1] * w) * (1 + little());
+    p[C3] = (real)(2 * (double)p[M2] * w) * (1 + little());
+    p[K2] = below(2) ? 0 : (real)fabs((double)little()) * p[K1];
+    p[C2] = below(2) ? 0 : (real)fabs((double)little()) * p[C1];
+    return (real)((double)spread(-4, 1.7) / w);
+}
+
+/* Equal modes, light damping */
+static real family_equal(real *p)
+{
+    any_pair(p);
+    p[M2] = p[M1] * (1 + little());
+    p[K3] = p[K1] * (1 + little());
+    p[C3] = p[C1];
+    p[K2] = p[K1] * (real)fabs((double)little());
+    p[C2] = 0;
+    return step_for(p, -4, 1.8);
+}
+
+/* No spring and no damper to the ground */
+static real family_rigid(real *p)
+{
+    any_pair(p);
+    p[K1] = p[K3] = p[C1] = p[C3] = 0;
+    if (below(3) == 0)
+        p[C2] = 0;
+    return step_for(p, -4, 1.8);
+}
+
+/* No spring at all */
+static real family_free(real *p)
+{
+    any_pair(p);
+    p[K1] = p[K2] = p[K3] = 0;
+    for (int i = C1; i <= C3; i++)
+        if (below(3) == 0)
+            p[i] = 0;
+    return step_for(p, -4, 1.5);
+}
+
+static real family_long_steps(real *p)
+{
+    any_pair(p);
+    return step_for(p, 1, 2);
+}
+
+static real family_short_steps(real *p)
+{
+    any_pair(p);
+    return step_for(p, -6, -2);
+}
+
+/* Very different springs and masses */
+static real family_stiff(real *p)
+{
+    any_pair(p);
+    p[K1 + below(3)] = spread(6, 9);
+    p[M1 + below(2)] = spread(-4, 3);
+    return step_for(p, -2, 1.7);
+}
+
+/* Other units of mass and of time */
+static real family_units(real *p)
+{
+    const int mass = (int)below(2 * BITS) - BITS, rate = (int)below(BITS) - BITS / 2;
+    any_pair(p);
+    const real h = step_for(p, -4, 1.8);
+    for (int i = M1; i <= C3; i++)
+        p[i] = (real)ldexp((double)p[i], mass + (i < K1 ? 0 : i < C1 ? 2 * rate : rate));
+    return (real)ldexp((double)h, -rate);
+}
+
+static const struct family {
+    const char *name;
+    real (*draw)(real *p);              /* returns h */
+} families[] = {
+    {"general", family_general}, {"undamped", family_undamped}, {"overdamped", family_overdamped}, {"near critical damping", family_critical},
+    {"nearly equal modes", family_equal}, {"a rigid body", family_rigid}, {"without springs", family_free}, {"|p| h 10 to 100", family_long_steps},
+    {"|p| h below 0.01", family_short_steps}, {"stiff", family_stiff},
+    {"other units", family_units}
+};
+enum { FAMILIES = sizeof families / sizeof *families };
+
+/* Of any model: each param within a factor of 8 of the spec's value; h up to 40 times the spec's, or up to that and some signs changed */
+static real draw_near(const struct tuned *m, real *p)
+{
+    const bool odd = below(4) == 0;
+    for (int k = 0; k < m->model->params; k++)
+        p[k] = m->model->param_values[k] * spread(-0.9, 0.9) * (odd && below(3) == 0 ? -1 : 1);
+    return m->model->h * spread(-3, odd ? 0 : below(4) ? 1 : 1.6);
+}
+
+/* What was off by most in some 10^4 sets */
+static const struct known {
+    const char *name;
+    double h, value[LIMIT_TUNABLES];
+} known[] = {
+    /* ramps whose value before the step has what is left of two larger numbers: in one word, 28 and 256 ulp, in floats 19 and 206 */
+    {"held", 0x1.bbae5cp-6, {0x1.955db4p+2, 0x1.30045p+4, 0x1.08p+1, 0x1.9p+5, 0x1.6p-1}},
+    {"held", 0x1.bbae5b0a1cd08p-6, {0x1.955db4811cc5p+2, 0x1.300450ac6c6f3p+4, 0x1.08p+1, 0x1.9p+5, 0x1.6p-1}},
+    {"sketch", 0x1.aa943ap-6, {0x1.068p+11, 0x1.65cc4cp+4, 0x1.4b4c34p+14, 0x1.c2443ep+11, 0x1.1c4efep+16}}
+};
+enum { KNOWN = sizeof known / sizeof *known };
+
+/* ---- the generator's own ---- */
+
+static const char *exact(real x)
+{
+    mpq_t q;
+    mpq_init(q);
+    mpq_set_d(q, (double)x);
+    return mpq_get_str(NULL, 10, q);
+}
+
+static const char *diagnostics(void)
+{
+    char *text = NULL;
+    size_t length = 0;
+    FILE *to = open_memstream(&text, &length);
+    diagnostics_print(to);
+    fclose(to);
+    text[strcspn(text, "\n")] = 0;
+    return text;
+}
+
+/* p NULL: the spec's values and step */
+static const struct step *generator(const struct tuned *m, const char *text, const real *p, real h)
+{
+    struct overrides *overrides = NEW(struct overrides);
+    struct source *source = NEW(struct source);
+    *overrides = (struct overrides){ .form = m->direct ? FORM_DIRECT : FORM_DELTA, .single = BITS == 24, .step = p ? exact(h) : NULL };
+    overrides->definition = ARRAY(const char *, (size_t)m->model->params);
+    for (int k = 0; k < m->model->params && p; k++)
+        overrides->definition[overrides->definitions++] = format("%s=%s", m->model->param_names[k], exact(p[k]));
+    *source = (struct source){ .name = "spec", .base = "spec", .text = text, .length = strlen(text) };
+    struct spec *spec = parse_spec(source);
+    struct model *model = spec ? model_build(spec, overrides) : NULL;
+    return model ? step_build(model) : NULL;
+}
+
+/* ---- comparing ---- */
+
+static struct {
+    double states, increment, loads, inputs, ramps, outputs; /* largest, in ulp */
+    double least_angle, most_angle;                   /* |p| h */
+    int compared, failed;
+} met;
+
+static const struct tuned *model_now;
+static const real *params_now;
+static real h_now;
+
+static void show_case(void)
+{
+    printf("#     %s, h=%a", model_now->name, (double)h_now);
+    for (int k = 0; k < model_now->model->params; k++)
+        printf(" %s=%a", model_now->model->param_names[k], (double)params_now[k]);
+    putchar('\n');
+}
+
+static void complain(const char *what)
+{
+    if (met.failed++ >= MISMATCHES_SHOWN)
+        return;
+    printf("# %s\n", what);
+    show_case();
+}
+
+static double ulp(double x)
+{
+    int exponent;
+    if (x == 0)
+        return 0;
+    frexp(x, &exponent);
+    return ldexp(1, exponent - BITS);
+}
+
+static double bound = 16;               /* ulp */
+
+/* Raises *most; complains where found is off by more than the bound, or not finite. */
+static void compare(double *most, double found, double expected, double largest, const char *what, int i, int j)
+{
+    const double difference = fabs(found - expected), error = difference == 0 ? 0 : difference / ulp(largest);
+    met.compared++;
+    if (!(error <= *most))
+        *most = error;
+    if (!(error <= bound))
+        complain(format("%s [%d][%d]: found %.17g, expected %.17g, off by %.3g ulp of %.17g", what, i, j, found, expected, error, largest));
+}
+
+static const real *row_of(const struct tuned *m, const char *coeffs, size_t member, int row)
+{
+    return (const real *)(const void *)(coeffs + member) + row * m->columns;
+}
+
+static void compare_states(const struct tuned *m, const char *coeffs, const struct table *table)
+{
+    const int n = table->states;
+    const struct coefficient *square = m->direct ? table->Phi : table->increment;
+    double Phi = 0, increment = 0, off = 0;
+    for (int i = 0; i < n; i++)
+        for (int j = 0; j < n; j++) {
+            const double value = square[i * n + j].value, one = i == j;
+            Phi = fmax(Phi, fabs(m->direct ? value : value + one));
+            increment = fmax(increment, fabs(m->direct ? value - one : value));
+        }
+    for (int i = 0; i < n; i++)
+        for (int j = 0; j < n; j++) {
+            const double found = (double)row_of(m, coeffs, m->step, i)[j], expected = square[i * n + j].value;
+            compare(&met.states, found, expected, Phi, "states", i, j);
+            off = fmax(off, fabs(found - expected));
+        }
+    if (off > 0 && !m->direct)
+        met.increment = fmax(met.increment, off / ulp(increment));
+}
+
+/* A column of factors: one row for each state */
+static void compare_column(const struct tuned *m, const char *coeffs, double *most, const struct coefficient *from, int stride, int column, const char *what)
+{
+    double largest = 0;
+    for (int i = 0; i < m->step_entries; i++)
+        largest = fmax(largest, fabs(from[i * stride].value));
+    for (int i = 0; i < m->step_entries; i++)
+        compare(most, (double)row_of(m, coeffs, m->step, i)[column], from[i * stride].value, largest, what, i, column);
+}
+
+/* Both columns of a ramp against the largest of both: not judged, only printed */
+static void measure_ramp(const struct tuned *m, const char *coeffs, const struct coefficient *from, int stride, int column)
+{
+    double largest = 0, off = 0;
+    for (int i = 0; i < m->step_entries; i++)
+        for (int k = 0; k < 2; k++) {
+            largest = fmax(largest, fabs(from[i * stride + k].value));
+            off = fmax(off, fabs((double)row_of(m, coeffs, m->step, i)[column + k] - from[i * stride + k].value));
+        }
+    if (off > 0)
+        met.ramps = fmax(met.ramps, off / ulp(largest));
+}
+
+static void compare_columns(const struct tuned *m, const char *coeffs, const struct table *table, const struct linear *system)
+{
+    int column = table->states;
+    for (int s = 0; s < system->segments; s++)
+        for (int k = 0; k < table->columns; k++)
+            compare_column(m, coeffs, &met.loads, table->load + s * table->states * table->columns + k, table->columns, column++, "load");
+    for (int i = 0, k = 0; i < system->inputs; i++) {
+        if (system->input[i].first_order)
+            measure_ramp(m, coeffs, table->input + k, table->inputs, column);
+        for (int end = k + (system->input[i].first_order ? 2 : 1); k < end; k++)
+            compare_column(m, coeffs, &met.inputs, table->input + k, table->inputs, column++, "input");
+    }
+    if (column != m->columns)
+        complain(format("%d columns, the generator has %d", m->columns, column));
+}
+
+static double rounded(mpq_srcptr q)
+{
+    mpfr_t x;
+    mpfr_init2(x, BITS);
+    mpfr_set_q(x, q, MPFR_RNDN);
+    const double value = mpfr_get_d(x, MPFR_RNDN);
+    mpfr_clear(x);
+    return value;
+}
+
+/* The row of an output over the columns */
+static void output_row(const struct linear *system, const struct output *output, double *row)
+{
+    int column = 0;
+    for (int j = 0; j < system->states; j++)
+        row[column++] = rounded(output->state[j]);
+    for (int s = 0; s < system->segments; s++)
+        for (int l = 0; l < system->loads; l++)
+            for (int k = 0; k < system->load[l].columns; k++)
+                row[column++] = rounded(output->load[l][k * system->segments + s]);
+    for (int i = 0; i < system->inputs; i++)
+        for (int k = 0; k < (system->input[i].first_order ? 2 : 1); k++)
+            row[column++] = rounded(output->input[k][i]);
+}
+
+/* Only outputs that some param changes are held. */
+static void compare_outputs(const struct tuned *m, const char *coeffs, const struct step *step, const bool *varies)
+{
+    double *row = ARRAY(double, (size_t)m->columns);
+    int at = 0;
+    for (int o = 0; o < step->model->outputs; o++) {
+        double largest = 0;
+        if (!varies[o])
+            continue;
+        output_row(&step->system, &step->model->output[o], row);
+        for (int j = 0; j < m->columns; j++)
+            largest = fmax(largest, fabs(row[j]));
+        for (int j = 0; j < m->columns && at < m->out_entries; j++)
+            compare(&met.outputs, (double)row_of(m, coeffs, m->out, at)[j], row[j], largest, step->model->output[o].name, at, j);
+        at++;
+    }
+    if (at != m->out_entries)
+        complain(format("%d rows of outputs, expected %d", m->out_entries, at));
+}
+
+/* The integers of an initialiser, as bits: UINT64_C(0x...), INT64_C(0x...), -INT64_C(0x...) - 1 */
+static int integers_of(const char *text, uint64_t *word)
+{
+    int count = 0;
+    for (const char *at = text; (at = strstr(at, "INT64_C(")) != NULL; at += 8) {
+        const uint64_t value = strtoull(at + 8, NULL, 16);
+        word[count++] = at > text && at[-1] == '-' ? ~value : value;
+    }
+    return count;
+}
+
+static void compare_words(const char *coeffs, size_t place, int index, const char *text, const char *what)
+{
+    uint64_t word[2], found[2];
+    const int words = integers_of(text, word), expected = BITS == 53 ? 2 : 1;
+    if (words != expected) {
+        complain(format("%s: cannot read %s", what, text));
+        return;
+    }
+    memcpy(found, coeffs + place + (size_t)(index * words) * sizeof *word, (size_t)words * sizeof *word);
+    met.compared++;
+    if (memcmp(found, word, (size_t)words * sizeof *word) != 0)
+        complain(format("%s %d: found %016llx %016llx, expected %s", what, index, (unsigned long long)found[0], (unsigned long long)found[words - 1], text));
+}
+
+static void compare_loads(const struct tuned *m, const char *coeffs, const struct step *step)
+{
+    const struct emitter e = { .step = step, .model = step->model, .system = &step->system };
+    int phases = 0, growths = 0;
+    for (int l = 0; l < step->system.loads; l++) {
+        const struct wave *wave = step->system.load[l].wave;
+        if (mpq_sgn(wave->w) != 0)
+            compare_words(coeffs, m->phase_step, phases++, phase_step_text(&e, l), "phase");
+        if (mpq_sgn(wave->a) != 0)
+            compare_words(coeffs, m->growth_step, growths++, growth_step_text(&e, l), "growth");
+    }
+    if (phases != m->phase_step_entries || growths != m->growth_step_entries)
+        complain(format("%d phases and %d growths, expected %d and %d", m->phase_step_entries, m->growth_step_entries, phases, growths));
+}
+
+/* Whether any param changes the row of an output: from the spec and from values that are all different */
+static bool *output_varies(const struct tuned *m, const char *text)
+{
+    real *p = ARRAY(real, (size_t)m->model->params);
+    for (int k = 0; k < m->model->params; k++)
+        p[k] = m->model->param_values[k];
+    const struct step *one = generator(m, text, p, m->model->h);
+    for (int k = 0; k < m->model->params; k++)
+        p[k] += (real)(1 + k) / 4;
+    const struct step *two = generator(m, text, p, m->model->h);
+    bool *varies = ARRAY(bool, (size_t)one->model->outputs);
+    double *row = ARRAY(double, 2 * (size_t)m->columns);
+    for (int o = 0; o < one->model->outputs; o++) {
+        output_row(&one->system, &one->model->output[o], row);
+        output_row(&two->system, &two->model->output[o], row + m->columns);
+        varies[o] = memcmp(row, row + m->columns, (size_t)m->columns * sizeof *row) != 0;
+    }
+    return varies;
+}
+
+static void try_values(const struct tuned *m, const char *text, const bool *varies, const real *p, real h)
+{
+    char *coeffs = ARRAY(char, m->size);
+    model_now = m;
+    params_now = p;
+    h_now = h;
+    const struct step *step = generator(m, text, p, h);
+    if (!step) {
+        complain(format("the generator refuses it: %s", diagnostics()));
+        return;
+    }
+    const int status = m->retune(coeffs, p, h);
+    if (status != 0) {
+        complain(format("retune: status %d", status));
+        return;
+    }
+    const double angle = largest_pole_angle(step);
+    met.least_angle = met.compared == 0 ? angle : fmin(met.least_angle, angle);
+    met.most_angle = fmax(met.most_angle, angle);
+    compare_states(m, coeffs, step->table);
+    compare_columns(m, coeffs, step->table, &step->system);
+    if (m->out_entries > 0)
+        compare_outputs(m, coeffs, step, varies);
+    compare_loads(m, coeffs, step);
+    if (memcmp(coeffs + m->params, p, (size_t)m->model->params * sizeof *p) != 0 || memcmp(coeffs + m->h, &h, sizeof h) != 0)
+        complain("params and h are not those given");
+}
+
+/* ---- the whole ---- */
+
+static bool verbose;
+
+static void finish(const char *name, unsigned long sets, int number)
+{
+    const bool good = met.failed == 0 && met.compared > 0;
+    printf("# %s: states %.2f ulp of Phi, %.2f of Phi - I; loads %.2f, inputs %.2f (a ramp's two as one: %.2f), outputs %.2f; |p| h %.2g to %.3g; %d numbers\n", name, met.states,
+           met.increment, met.loads, met.inputs, met.ramps, met.outputs, met.least_angle, met.most_angle, met.compared);
+    if (met.failed > MISMATCHES_SHOWN)
+        printf("# %s: %d failures in all\n", name, met.failed);
+    printf("%sok %d - " TYPE ", %s: %s\n", good ? "" : "not ", number, name, sets ? format("%lu sets of params", sets) : "nominal coefficients, bit for bit");
+}
+
+static char *text_of(const char *path)
+{
+    static char text[1 << 14];
+    char line[1 << 10];
+    FILE *f = fopen(path, "r");
+    text[0] = 0;
+    if (!f) {
+        printf("Bail out! cannot read %s\n", path);
+        exit(1);
+    }
+    while (fgets(line, sizeof line, f))
+        if (strncmp(line, "tunable", 7) != 0 && strlen(text) + strlen(line) < sizeof text)
+            strcat(text, line);
+    fclose(f);
+    return text;
+}
+
+static const struct tuned *tuned_of(const char *path, bool direct)
+{
+    const char *base = strrchr(path, '/') ? strrchr(path, '/') + 1 : path;
+    for (const struct tuned *m = tuned; m->name; m++) {
+        const char *name = m->name + (m->direct ? strlen("direct_") : 0);
+        if (!m->direct == !direct && strlen(base) == strlen(name) + strlen(".spec") && strncmp(base, name, strlen(name)) == 0)
+            return m;
+    }
+    printf("Bail out! %s is not in the table\n", path);
+    exit(1);
+}
+
+struct batch {
+    const struct tuned *m;
+    const char *text;
+    const bool *varies;                 /* per output */
+    uint64_t seed;
+    unsigned long sets;                 /* 0: the nominal coefficients */
+    const struct family *family;        /* NULL: draw_near */
+};
+
+static void try_batch(const struct batch *b)
+{
+    real p[LIMIT_TUNABLES];
+    for (unsigned long k = 0; k < b->sets; k++) {
+        state = (b->seed + k) * UINT64_C(0x9e3779b97f4a7c15) + 7;
+        below(2);
+        const real h = b->family ? b->family->draw(p) : draw_near(b->m, p);
+        const int before = met.failed;
+        try_values(b->m, b->text, b->varies, p, h);
+        if (verbose && met.failed == before)
+            show_case();
+    }
+    for (int i = 0; i < KNOWN && !b->family; i++)
+        if (strcmp(known[i].name, b->m->name) == 0) {
+            for (int k = 0; k < b->m->model->params; k++)
+                p[k] = (real)known[i].value[k];
+            try_values(b->m, b->text, b->varies, p, (real)known[i].h);
+        }
+}
+
+/* The coefficients that an instance starts with */
+static void try_nominal(const struct batch *b)
+{
+    const struct tuned *m = b->m;
+    const struct step *step = generator(m, b->text, NULL, 0);
+    model_now = m;
+    params_now = m->model->param_values;
+    h_now = m->model->h;
+    bound = 0;
+    compare_states(m, m->nominal, step->table);
+    compare_columns(m, m->nominal, step->table, &step->system);
+    if (m->out_entries > 0)
+        compare_outputs(m, m->nominal, step, b->varies);
+    compare_loads(m, m->nominal, step);
+}
+
+static int number, failures;
+
+/* In a process of its own: the generator gives nothing back before it ends, and what it refuses once stays refused. */
+static void run(const struct batch *b)
+{
+    const char *name = b->family ? format("%s, %s", b->m->name, b->family->name) : b->m->name;
+    int status;
+    fflush(stdout);
+    const pid_t child = fork();
+    number++;
+    if (child == 0) {
+        (b->sets ? try_batch : try_nominal)(b);
+        finish(name, b->sets, number);
+        fflush(stdout);
+        _exit(met.failed > 0 || met.compared == 0);
+    }
+    if (child < 0 || waitpid(child, &status, 0) != child) {
+        puts("Bail out! cannot start a process");
+        exit(1);
+    }
+    if (!WIFEXITED(status))
+        printf("not ok %d - " TYPE ", %s: ended by signal %d\n", number, name, WTERMSIG(status));
+    failures += !WIFEXITED(status) || WEXITSTATUS(status) != 0;
+}
+
+int main(int argc, char **argv)
+{
+    unsigned long pairs = 50, others = 40, seed = 1;
+    for (int option; (option = getopt(argc, argv, "n:m:s:v")) != -1;) {
+        if (option == 'n')
+            pairs = strtoul(optarg, NULL, 10);
+        else if (option == 'm')
+            others = strtoul(optarg, NULL, 10);
+        else if (option == 's')
+            seed = strtoul(optarg, NULL, 10);
+        else if (option == 'v')
+            verbose = true;
+        else
+            return 2;
+    }
+    memory_open();
+    if (BITS == 24)
+        target_float();
+    for (int i = optind; i < argc; i++) {
+        struct batch b = { .m = tuned_of(argv[i], false), .text = text_of(argv[i]) };
+        b.varies = output_varies(b.m, b.text);
+        for (int f = 0; f < FAMILIES && strcmp(b.m->name, "pair") == 0; f++) {
+            b.family = &families[f];
+            b.seed = seed * 1000000 + (uint64_t)f * 10000;
+            b.sets = pairs;
+            run(&b);
+        }
+        b.family = NULL;
+        b.sets = 0;
+        run(&b);
+        b.seed = seed * 1000000 + 500000;
+        b.sets = others;
+        run(&b);
+        b.m = tuned_of(argv[i], true);
+        b.sets = 0;
+        run(&b);
+        b.seed += 100000;
+        b.sets = others / 4;
+        run(&b);
+    }
+    memory_close();
+    printf("1..%d\n", number);
+    return failures > 0;
+}
