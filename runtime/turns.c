@@ -54,11 +54,11 @@ static double cosine_rest(double rr)
 }
 
 /* m unit + rest, the first product exact and the sum rounded once but for `rest`.  m < 2^63: signed conversions
- * are the cheaper ones, and with 52 and 11 bits nothing is lost in them. */
+ * are the cheaper ones, those of an int the cheapest, and with 52 and 11 bits nothing is lost in them. */
 static double sum(uint64_t m, double unit, double rest)
 {
     const uint64_t low = 0x7FF;
-    return (double)(int64_t)(m & ~low) * unit + ((double)(int64_t)(m & low) * unit + rest);
+    return (double)(int64_t)(m & ~low) * unit + ((double)(int)(m & low) * unit + rest);
 }
 
 /* The large terms, r - r^3/6 and 1 - r^2/2, in integers of 63 bits; the small rest in doubles, where no rounding of
