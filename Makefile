@@ -44,6 +44,7 @@ bench: all
 	sh bench/beam.sh $(BUILD)
 	sh bench/switching.sh $(BUILD)
 	$(BUILD)/bench/crossings
+	sh bench/retune.sh $(BUILD)
 	sh bench/sweep.sh $(BUILD)
 
 # Speed against accuracy, and stability where methods fail: charts/index.html with its pictures and tables. 15 minutes; quick: 2.

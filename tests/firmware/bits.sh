@@ -41,11 +41,12 @@ link "$work/image.elf" "$work"/*.o || exit 99
 emulate "${FIRMWARE_TIMEOUT:-240}" "$work/image.elf" >"$work/found"
 status=$?
 
-# A result for each variant and one for the end.
+# A result for each variant, one for the stack, which on a small board must not reach the variables, and one for the end.
 awk -v board="$name" -v steps="$6" -v status=$status '
     FNR == NR { if (!($1 in lines)) order[++n] = $1
                 expected[$1 " " $2] = $0; lines[$1] = lines[$1] "|" $1 " " $2; next }
     { found[$1 " " $2] = $0; last = $0 }
+    $1 == "stack" { used = $2; room = $4 }
     END {
         for (i = 1; i <= n; i++) {
             m = split(lines[order[i]], key, "|")
@@ -57,8 +58,11 @@ awk -v board="$name" -v steps="$6" -v status=$status '
             if (bad) print said "\n# " bad " of " m - 1 " lines differ"
             failed += bad != 0
         }
+        good = used > 0 && used < room
+        print (good ? "ok " : "not ok ") n + 1 " - " board ": stack " used + 0 " bytes, of at least " room + 0 " that are there"
+        failed += !good
         good = status == 0 && last == "end"
-        print (good ? "ok " : "not ok ") n + 1 " - " board ": the image runs to its end"
+        print (good ? "ok " : "not ok ") n + 2 " - " board ": the image runs to its end"
         if (!good) { print "# status " status " (124: timeout), last line " last; failed++ }
-        print "1.." n + 1
+        print "1.." n + 2
         exit failed != 0 }' "$work/expected" "$work/found"

@@ -1,6 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Measures every form of every linear model on an emulated Cortex-M0 and M4F, and writes what doc/firmware.md shows of it.
+# Measures every form of every linear model on an emulated Cortex-M0 and M4F, and retuning where params are tunable, and writes what
+# doc/firmware.md shows of it.
 #
 #     report.sh SOURCE_ROOT DOC_FOLDER ALL_double.c ALL_float.c MODEL_double.c MODEL_float.c ...
 #
@@ -50,6 +51,7 @@ for name in m0 m4f; do
         tail -n 1 "$of/out" | grep -q '^end' || { echo "report.sh: $name, $real: no end" >&2; exit 1; }
         # Bytes of the step itself, and of a program that has nothing but init, step and get
         while read -r variant rest; do
+            case $variant in *_retune) continue ;; esac
             function=${variant}_step
             [ "$variant" != matvec ] || function=matvec_$real
             case $variant in draw | multiply | add | end) continue ;; esac
@@ -60,6 +62,13 @@ for name in m0 m4f; do
             link "$of/one.elf" -Wl,-e,"$function" $keep "$of/models.o" "$of/matvec.o" "$of"/runtime_*.o
             echo "$variant $((0x$bytes)) $($arm-size "$of/one.elf" | awk 'NR == 2 { print $1 + $2 }')"
         done <"$of/out" >"$of/bytes"
+        # Bytes of a retune itself, and of a program that has it beside init, step and get
+        sed -n 's/_retune .*//p' "$of/out" | uniq | while read -r variant; do
+            bytes=$($arm-nm -S "$of/image.elf" | awk -v f="${variant}_retune" '$4 == f { print $2 }')
+            link "$of/one.elf" -Wl,-e,"${variant}_step" -Wl,-u,"${variant}_init" -Wl,-u,"${variant}_get" -Wl,-u,"${variant}_retune" -Wl,-u,"${variant}_use" \
+                "$of/models.o" "$of"/runtime_*.o
+            echo "$variant $((0x$bytes)) $($arm-size "$of/one.elf" | awk 'NR == 2 { print $1 + $2 }')"
+        done >"$of/retune_bytes"
     done
 done
 
@@ -122,6 +131,52 @@ done
     done
 } >"$doc/firmware/figures.csv"
 
+# ---- retune.csv ----
+
+{
+    echo model,form,real,coefficients,pole_h,m0_retune_bytes,m0_flash,m0_flash_more,m0_stack,m0_instructions,m0_most,m4f_retune_bytes,m4f_flash,m4f_flash_more,m4f_stack,m4f_instructions,m4f_most
+    for real in double float; do
+        [ $real = double ] && models=$double || models=$float
+        awk -v real=$real -v folder="$work" '
+            function read_board(board, ticks,    file, line, field, variant) {
+                file = folder "/" board "." real
+                while ((getline line <(file "/bytes")) > 0) {
+                    split(line, field, " ")
+                    step_flash[field[1]] = field[3]
+                }
+                while ((getline line <(file "/retune_bytes")) > 0) {
+                    split(line, field, " ")
+                    bytes[field[1]] = field[2] "," field[3] "," field[3] - step_flash[field[1]]
+                }
+                while ((getline line <(file "/out")) > 0)
+                    if (split(line, field, " ") == 6) {
+                        variant = field[1]
+                        sub("_retune", "", variant)
+                        if (board == "m0")
+                            times[variant, ++many[variant]] = field[6]
+                        size[variant] = field[2]
+                        figures[board, variant, field[6]] = bytes[variant] "," field[5] "," int(field[3] / 4 / ticks + 0.5) "," int(field[4] / ticks + 0.5)
+                    }
+            }
+            BEGIN { read_board("m0", 16.384); read_board("m4f", 25.6) }
+            /^\/\* [a-z0-9_]*: made by plgen/ {
+                variant = $2
+                sub(":", "", variant)
+                match($0, /from [a-z0-9_]*/)
+                model = substr($0, RSTART + 5, RLENGTH - 5)
+                pole = 0
+            }
+            /^ \* .* \+- .* i  / && $(NF - 1) > pole { pole = $(NF - 1) } # Hz
+            /^ \* One step of h/ {
+                match($0, /form [a-z-]*/)
+                form = substr($0, RSTART + 5, RLENGTH - 5)
+                for (i = 1; i <= many[variant]; i++)
+                    printf "%s,%s,%s,%d,%.2g,%s,%s\n", model, form, real, size[variant], 6.283185307 * pole * $7 * times[variant, i],
+                        figures["m0", variant, times[variant, i]], figures["m4f", variant, times[variant, i]]
+            }' "$models"
+    done
+} >"$doc/firmware/retune.csv"
+
 # ---- stack.csv ----
 
 {
@@ -147,16 +202,21 @@ done
     awk -F, '$1 ~ /^pl_/ { print "| `" $1 "` | " $2 " | " $3 " | " $4 " | " $5 " |" }' "$doc/firmware/stack.csv"
 } >"$work/runtime_stack"
 {
-    echo '| | M0: step | at | jump | selftest | M4F: step | at | jump | selftest |'
-    echo '| --- | --- | --- | --- | --- | --- | --- | --- | --- |'
+    echo '| | M0: step | at | jump | retune | selftest | M4F: step | at | jump | retune | selftest |'
+    echo '| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |'
     awk -F, '$1 ~ /_step$/ && $1 !~ /^pl_|_(direct|delta|delta_two|kick_two)_(double|float)_step$/ { model = $1; sub(/_step$/, "", model); order[++n] = model }
              { m0[$1] = $3; m4f[$1] = $5 }
              function of(table, f) { return f in table ? table[f] : "" }
              END { for (i = 1; i <= n; i++) {
                        m = order[i]
-                       print "| " m " | " of(m0, m "_step") " | " of(m0, m "_at") " | " of(m0, m "_jump") " | " of(m0, m "_selftest") " | " \
-                           of(m4f, m "_step") " | " of(m4f, m "_at") " | " of(m4f, m "_jump") " | " of(m4f, m "_selftest") " |" } }' "$doc/firmware/stack.csv"
+                       print "| " m " | " of(m0, m "_step") " | " of(m0, m "_at") " | " of(m0, m "_jump") " | " of(m0, m "_retune") " | " of(m0, m "_selftest") " | " \
+                           of(m4f, m "_step") " | " of(m4f, m "_at") " | " of(m4f, m "_jump") " | " of(m4f, m "_retune") " | " of(m4f, m "_selftest") " |" } }' "$doc/firmware/stack.csv"
 } >"$work/model_stack"
+{
+    echo '| model | form | | coefficients | largest \|pole\| h | M0: retune | flash | stack | instructions | M4F: retune | flash | stack | instructions |'
+    echo '| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |'
+    awk -F, 'NR > 1 { print "| " $1 " | " $2 " | " $3 " | " $4 " | " $5 " | " $6 " | +" $8 " | " $9 " | " $10 " | " $12 " | +" $14 " | " $15 " | " $16 " |" }' "$doc/firmware/retune.csv"
+} >"$work/retune"
 # One multiplication and one addition of soft float, calls included
 for name in m0 m4f; do
     ticks=16.384

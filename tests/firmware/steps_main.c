@@ -3,11 +3,28 @@
 
 #ifdef STEPS /* a board */
 
+extern uint32_t bss_end[], stack_top[]; /* from the linker script */
+
+enum { PAINTED = 16384 };
+
+/* Words between the variables and the stack pointer get a pattern, as many as fit or the highest PAINTED bytes; those that lose it
+ * have been used. */
 int main(void)
 {
+    volatile uint32_t *from, *top, *p;
+    __asm__ volatile("mov %0, sp" : "=r"(top));
+    from = top - bss_end > PAINTED / 4 ? top - PAINTED / 4 : bss_end;
+    for (p = from; p < top; p++)
+        *p = 0xA5A5A5A5;
     steps_double(STEPS);
     steps_float(STEPS);
-    put("end\n");
+    for (p = from; p < top && *p == 0xA5A5A5A5; p++)
+        ;
+    put("stack ");
+    put_count((uint32_t)(stack_top - p) * 4);
+    put(" of ");
+    put_count((uint32_t)(stack_top - from) * 4);
+    put("\nend\n");
     return 0;
 }
 

@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # variants.sh PLGEN MODELS_FOLDER REAL OUT.c LIST ...: every variant of the lists as one C file, with a table of them at its end.
 #
-# A line of a list is `NAME MODEL [OPTION ...]`, with options for plgen; as the first of them `untested` for what can have no selftest.
+# A line of a list is `NAME MODEL [OPTION ...]`, with options for plgen; as the first of them `untested` for what can have no selftest, or
+# `tunable` for what has tunable params and outputs that depend on them.  A model that is not in the folder is in this one.
 set -eu
 plgen=$1
 folder=$2
@@ -14,13 +15,15 @@ echo '#include "variant.h"' >"$out.part"
 while read -r name model options; do
     selftest=--selftest
     case $options in untested*) selftest= options=${options#untested} ;; esac
+    spec=$folder/$model.spec
+    [ -f "$spec" ] || spec=${0%/*}/$model.spec
     # shellcheck disable=SC2086
-    "$plgen" $selftest --real "$real" --prefix "${name}_$real" $options "$folder/$model.spec" >>"$out.part"
+    "$plgen" $selftest --real "$real" --prefix "${name}_$real" ${options#tunable} "$spec" >>"$out.part"
 done <"$out.lines"
 {
     echo 'const struct variant variants_'"$real"'[] = {'
-    sed "s/\([^ ]*\) [^ ]* untested.*/    UNTESTED(\1_$real),/; t; s/ .*//; s/.*/    VARIANT(&_$real),/" "$out.lines"
-    echo '    {0, 0, 0}};'
+    sed "s/\([^ ]*\) [^ ]* untested.*/    UNTESTED(\1_$real),/; t; s/\([^ ]*\) [^ ]* tunable.*/    TUNABLE(\1_$real),/; t; s/ .*//; s/.*/    VARIANT(&_$real),/" "$out.lines"
+    echo '    {0, 0, 0, 0}};'
 } >>"$out.part"
 rm "$out.lines"
 mv "$out.part" "$out"
