@@ -23,18 +23,37 @@ static void add_product(mpq_ptr sum, const struct product *p, bool second_word, 
 	mpq_clears(factor, value, NULL);
 }
 
+/* What is left of a sum that is kept: of `whole` */
+static void take_parts(const struct step *step, const struct keeper *keeper, mpq_srcptr whole, mpq_t *state)
+{
+	mpq_t sum;
+	mpq_init(sum);
+	for (int k = 0; k < keeper->parts; k++)
+		add_product(sum, &keeper->part[k], step->program->compensated, (const mpq_t *)state);
+	mpq_sub(state[keeper->state], whole, sum);
+	mpq_clear(sum);
+}
+
 /* One step from `state`, loads and inputs left out */
 static void run_program(const struct step *step, mpq_t *state)
 {
 	const struct program *program = step->program;
 	int n = step->system.states;
-	mpq_t *old = rationals((size_t)n), sum;
+	mpq_t *old = rationals((size_t)n), *whole = rationals((size_t)n), sum;
 	mpq_init(sum);
+	for (int i = 0; i < n; i++)
+		mpq_set(whole[i], state[i]);
+	for (int k = 0; k < step->keepers; k++)
+		take_parts(step, &step->keeper[k], whole[step->keeper[k].state], state);
 	for (int i = 0; i < n; i++)
 		mpq_set(old[i], state[i]);
 	for (int i = 0; i < program->assignments; i++) {
 		const struct assignment *a = &program->assignment[i];
 		const mpq_t *from = (const mpq_t *)(program->in_order ? state : old);
+		if (a->keeper) {
+			take_parts(step, a->keeper, whole[a->target], state);
+			continue;
+		}
 		mpq_set_ui(sum, 0, 1);
 		for (int k = 0; k < a->terms; k++)
 			if (a->term[k].operand.kind <= OPERAND_DIFFERENCE)
@@ -43,6 +62,8 @@ static void run_program(const struct step *step, mpq_t *state)
 			mpq_add(sum, sum, from[a->target]);
 		mpq_set(state[a->target], sum);
 	}
+	for (int k = 0; k < step->keepers; k++)
+		mpq_set(state[step->keeper[k].state], whole[step->keeper[k].state]);
 	mpq_clear(sum);
 }
 

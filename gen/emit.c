@@ -97,6 +97,33 @@ int coordinate_of_row(const struct model *model, int row)
 	return coord;
 }
 
+/* ---- sums of velocities that are kept ---- */
+
+static int parts_kept(const struct emitter *e)
+{
+	int parts = 0;
+	for (int k = 0; k < e->step->keepers; k++)
+		parts += e->step->keeper[k].parts;
+	return parts;
+}
+
+static const char *keepers_text(const struct emitter *e)
+{
+	const char *text = "";
+	for (int k = 0; k < e->step->keepers; k++)
+		text = format("%s%s%s", text, k ? ", " : "", e->model->state_name[e->step->keeper[k].state]);
+	return text;
+}
+
+static const char *others_text(const struct emitter *e)
+{
+	const char *text = "";
+	for (int k = 0; k < e->step->keepers; k++)
+		for (int i = 0; i < e->step->keeper[k].parts; i++)
+			text = format("%s%s%s", text, *text ? ", " : "", e->model->state_name[e->step->keeper[k].part[i].operand.index]);
+	return text;
+}
+
 /* ---- banner ---- */
 
 static const char *printable(const char *text)
@@ -226,6 +253,8 @@ static void banner_form(const struct emitter *e)
 	if (kept[e->step->form])
 		fprintf(e->to, " * %s%s.\n", kept[e->step->form],
 			e->step->program->compensated ? "; factors in two words,\n * and what rounding takes from the state is kept in rest" : "");
+	if (e->step->keepers)
+		fprintf(e->to, " * No force from outside acts: what %s gained since the last set, %s lost; so momentum stays as it is.\n", others_text(e), keepers_text(e));
 	if (drift.known)
 		fprintf(e->to, " * %s.\n", drift_text(&drift));
 	if (e->model->single)
@@ -296,10 +325,13 @@ static void emit_state_struct(const struct emitter *e)
 	if (e->model->tuning)
 		emit_coefficient_struct(e);
 	fprintf(to, "typedef struct %s %s;  /* copy it to save, assign it to restore */\n", e->name, e->name);
-	fprintf(to, "struct %s {\n    double y[%s_STATES];  /* %s%s */\n", e->name, e->upper, state_list(e->model),
-		e->step->momenta ? format("; velocities times mass / mass of %s", e->model->coord_name[0]) : "");
+	fprintf(to, "struct %s {\n    double y[%s_STATES];  /* %s%s%s */\n", e->name, e->upper, state_list(e->model),
+		e->step->momenta ? format("; velocities times mass / mass of %s", e->model->coord_name[0]) : "",
+		e->step->keepers ? format("; %s at the last set", keepers_text(e)) : "");
 	if (e->step->program->compensated)
 		fprintf(to, "    double rest[%s_STATES];  /* what rounding took from y so far */\n", e->upper);
+	if (e->step->keepers)
+		fprintf(to, "    double base[%d];      /* %s at the last set; what was gained since, %s lost */\n", parts_kept(e), others_text(e), keepers_text(e));
 	if (e->model->tuning)
 		fprintf(to, "    %s_coeffs coeffs;    /* its own */\n", e->name);
 	if (e->system->inputs)
@@ -414,13 +446,38 @@ static const char *factor_of_momentum(const struct emitter *e, int state)
 	return shortest(finite_number(e, e->step->mass[e->system->coord[state]]));
 }
 
+/* What another velocity has gained since the last set: from locals, or from s->y */
+static const char *gain(const struct emitter *e, const struct keeper *keeper, int part, bool locals)
+{
+	int state = keeper->part[part].operand.index, at = keeper->first + part;
+	const char *now = locals ? e->local[state] : format("s->y[%d]", state);
+	return e->step->program->compensated ? format("((%s - s->base[%d]) + s->rest[%d])", now, at, state) : format("(%s - s->base[%d])", now, at);
+}
+
+const char *keeper_text(const struct emitter *e, const struct keeper *keeper, bool locals)
+{
+	const char **term = ARRAY(const char *, 2 * (size_t)keeper->parts + 1);
+	int terms = 0;
+	for (int k = 0; k < keeper->parts; k++) {
+		const struct coefficient *weight = keeper->part[k].factor;
+		term[terms++] = scaled(weight->value, gain(e, keeper, k, locals));
+		if (e->step->program->compensated && weight->low != 0)
+			term[terms++] = scaled(weight->low, gain(e, keeper, k, locals));
+	}
+	bool plain = terms == 1 && term[0][0] != '-';
+	return format(plain ? "s->y[%d] - %s" : "s->y[%d] - (%s)", keeper->state, tree(terms, term, 22));
+}
+
+/* The states wanted as they are kept; `velocities`: without masses. In place of a sum that is kept stands what is left of it. */
 static void write_locals(const struct emitter *e, const bool *reads, const char *type, const char *vector, bool velocities)
 {
 	const char *list = "";
 	for (int i = 0; i < e->system->states; i++) {
 		const char *mass = velocities ? factor_of_momentum(e, i) : NULL;
-		if (reads[i])
-			list = format("%s%s%s = %s[%d]%s", list, *list ? ", " : format("    %s ", type), e->local[i], vector, i, mass ? format(" / %s", mass) : "");
+		const struct keeper *keeper = velocities ? keeper_of(e->step, i) : NULL;
+		const char *value = keeper ? format(mass ? "(%s)" : "%s", keeper_text(e, keeper, false)) : format("%s[%d]", vector, i);
+		if (reads[i] && (velocities || !keeper_of(e->step, i)))
+			list = format("%s%s%s = %s%s", list, *list ? ", " : format("    %s ", type), e->local[i], value, mass ? format(" / %s", mass) : "");
 	}
 	for (int width = 0; *list; list++) {            /* a line break instead of the blank that would pass column 110 */
 		putc(*list == ' ' && width > 100 && list[-1] == ',' ? '\n' : *list, e->to);
@@ -498,6 +555,9 @@ void emit_store(const struct emitter *e, const char *vector, const char *indent)
 	for (int i = 0; i < e->system->states; i++)
 		if (factor_of_momentum(e, i))
 			fprintf(to, "%ss->y[%d] = %s * %s[%d];\n", indent, i, factor_of_momentum(e, i), vector, i);
+	for (int k = 0; k < e->step->keepers; k++)
+		for (int i = 0; i < e->step->keeper[k].parts; i++)
+			fprintf(to, "%ss->base[%d] = s->y[%d];\n", indent, e->step->keeper[k].first + i, e->step->keeper[k].part[i].operand.index);
 }
 
 /* A vector of states from s->y */
@@ -505,8 +565,13 @@ void emit_load_state(const struct emitter *e, const char *vector)
 {
 	fprintf(e->to, "    for (i = 0; i < %s_STATES; i++)\n        %s[i] = s->y[i];\n", e->upper, vector);
 	for (int i = 0; i < e->system->states; i++)
-		if (factor_of_momentum(e, i))
+		if (factor_of_momentum(e, i) && !keeper_of(e->step, i))
 			fprintf(e->to, "    %s[%d] = s->y[%d] / %s;\n", vector, i, i, factor_of_momentum(e, i));
+	for (int k = 0; k < e->step->keepers; k++) {
+		const struct keeper *keeper = &e->step->keeper[k];
+		const char *mass = factor_of_momentum(e, keeper->state), *value = keeper_text(e, keeper, false);
+		fprintf(e->to, mass ? "    %s[%d] = (%s) / %s;\n" : "    %s[%d] = %s;\n", vector, keeper->state, value, mass);
+	}
 }
 
 static void emit_access(const struct emitter *e)

@@ -66,6 +66,10 @@ static void emit_compensated(const struct emitter *e, const struct assignment *a
 static void emit_assignment(const struct emitter *e, const struct assignment *a)
 {
 	const struct program *program = e->step->program;
+	if (a->keeper) {
+		fprintf(e->to, "    %s%s = %s;\n", program->in_order ? "" : "const double ", e->local[a->target], keeper_text(e, a->keeper, true));
+		return;
+	}
 	const char *target = program->in_order ? e->local[a->target] : format("s->y[%d]", a->target), *name = e->model->state_name[a->target];
 	if (program->compensated)
 		emit_compensated(e, a, target);
@@ -164,10 +168,12 @@ static void emit_plain_step(const struct emitter *e)
 	emit_load_states(e, loads_of_step(e), false);
 	if (e->system->segments > 1 && any_load_term(program) && !program->tuned)
 		fprintf(e->to, "    const double (*const factor)[%d] = %s_load_factor[s->segment];\n", e->step->table->columns, e->name);
+	for (int k = 0; k < e->step->keepers && program->in_order; k++)
+		fprintf(e->to, "    double %s;\n", e->local[e->step->keeper[k].state]);
 	for (int i = 0; i < program->assignments; i++)
 		emit_assignment(e, &program->assignment[i]);
 	for (int i = 0; i < e->system->states && program->in_order; i++)
-		if (program->reads[i])
+		if (program->reads[i] && !keeper_of(e->step, i))
 			fprintf(e->to, "    s->y[%d] = %s;\n", i, e->local[i]);
 }
 
@@ -196,9 +202,8 @@ static void emit_changing_step(const struct emitter *e)
 	fprintf(e->to, "}\n\nvoid %s_step(%s)\n{\n", n, step_parameters(e));
 	fprintf(e->to, "    if (s->segment < %d && %s_until(s, s->segment) < %s) {\n", changes, n, step_length(e));
 	fprintf(e->to, "        double y[%s_STATES];\n        int i;\n        %s_pass(s, %s%s, y);\n", e->upper, n, u, step_length(e));
-	fprintf(e->to, "        for (i = 0; i < %s_STATES; i++)%s\n", e->upper, e->step->program->compensated ? " {\n            s->rest[i] = 0.0;" : "");
-	fprintf(e->to, "            s->y[i] = y[i];\n%s    } else {\n        %s_plain_step(s%s);\n    }\n", e->step->program->compensated ? "        }\n" : "", n,
-		*u ? ", u" : "");
+	emit_store(e, "y", "        ");
+	fprintf(e->to, "    } else {\n        %s_plain_step(s%s);\n    }\n", n, *u ? ", u" : "");
 	emit_step_end(e);
 	fprintf(e->to, "    while (s->segment < %d && %s_until(s, s->segment) <= 1e-18 * %s)\n        s->segment++;\n}\n", changes, n, step_length(e));
 }

@@ -365,7 +365,7 @@ static void emit_fill_power(const struct emitter *e, int size, int entries)
 
 static void emit_leap_start(const struct emitter *e)
 {
-	if (e->step->momenta) {
+	if (e->step->momenta || e->step->keepers) {
 		fprintf(e->to, "    %s_get(s, y);\n    for (i = 0; i < %s_STATES; i++)\n        x[i].hi = y[i];\n", e->name, e->upper);
 		return;
 	}
@@ -377,7 +377,7 @@ static void emit_leap_start(const struct emitter *e)
 
 static void emit_leap_end(const struct emitter *e)
 {
-	if (e->step->momenta) {
+	if (e->step->momenta || e->step->keepers) {
 		fprintf(e->to, "    for (i = 0; i < %s_STATES; i++)\n        y[i] = x[i].hi;\n", e->upper);
 		emit_store(e, "y", "    ");
 		return;
@@ -397,7 +397,7 @@ static void emit_leap(const struct emitter *e, const char *declaration)
 	int size = p.size, entries = emit_power_entries(e);
 	fprintf(to, "\n%s(%s *s, uint64_t n)\n{\n", declaration, e->name);
 	fprintf(to, "    pl_two power[%d], work[%d], x[%d], w[%d];\n", size * size, size * size, size, size);
-	if (e->step->momenta)
+	if (e->step->momenta || e->step->keepers)
 		fprintf(to, "    double y[%s_STATES];\n", e->upper);
 	emit_load_states(e, wanted_loads(e, p.load), false);
 	fputs("    int i, j;\n", to);

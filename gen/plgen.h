@@ -868,9 +868,17 @@ struct product {
 	const struct coefficient *factor; /* of a load: in the first segment of time */
 	struct operand operand;
 };
+/* Where nothing outside acts on a block of masses, a sum of its velocities (of kick-drift-kick: of its momenta) stays. One velocity is
+ * then not stepped: it has lost what the others have gained since the last set, base, times their weights. */
+struct keeper {
+	int state, first;           /* its velocity; index of the first part in base */
+	int parts;
+	struct product *part;       /* weights times other velocities */
+};
 struct assignment {                 /* target <- sum of products */
 	int target;                 /* state */
 	bool added;                 /* target <- target + sum of products */
+	const struct keeper *keeper; /* target <- what the others leave for it now; no terms; before all others where nothing is in order */
 	int terms;
 	struct product *term;
 };
@@ -924,6 +932,8 @@ struct step {                       /* everything that is emitted for one model 
 	enum step_form form;        /* FORM_DIRECT, FORM_DELTA or FORM_KICK_DRIFT_KICK */
 	const mpq_t *mass;          /* of kick-drift-kick, per coordinate; in units of the first */
 	bool momenta;               /* NAME keeps mass times velocity, since not all masses are equal */
+	int keepers;
+	struct keeper *keeper;
 	mpfr_t growth;              /* pl: 1/s, largest real part of the modified equation's poles (report only) */
 	struct series series;
 	int *halvings;              /* of a piecewise-linear model, per operator */
@@ -941,6 +951,11 @@ void need_direct(const struct step *step);                  /* the same where an
 struct program *linear_program(const struct step *step);    /* from its table */
 bool has_second_word(const struct product *p, const struct linear *system); /* in the code: loads that change have none */
 void count_loads(struct program *program, const struct linear *system, bool single); /* what the load states of the columns in use cost */
+
+/* ---- momentum.c: sums of velocities that nothing changes ---- */
+
+void find_keepers(struct step *step);                        /* of a step of form delta or kick-drift-kick */
+const struct keeper *keeper_of(const struct step *step, int state); /* of the sum that gives this velocity; NULL: none does */
 
 /* ---- drift.c: what the rounding of its constants does to a linear step ---- */
 
@@ -1032,6 +1047,7 @@ const char *step_length(const struct emitter *e);                 /* NAME_H; of 
 void emit_changes(const struct emitter *e);                       /* loads that change their formula: when */
 void emit_passing(const struct emitter *e);                       /* ... and pass(), across a change */
 void emit_series_vector(const struct emitter *e);                 /* declares i and load states; x[...] = what the series advances */
+const char *keeper_text(const struct emitter *e, const struct keeper *keeper, bool locals); /* its velocity, from locals or from s->y */
 void emit_locals(const struct emitter *e, const bool *reads);     /* the states wanted, under their names */
 void emit_raw_locals(const struct emitter *e, const bool *reads, bool changing); /* as kept: of kick-drift-kick, momenta */
 void emit_store(const struct emitter *e, const char *vector, const char *indent); /* s->y from states */

@@ -489,6 +489,7 @@ static void build_exact(struct step *step)
 	}
 	if (!chosen)
 		make_whole(step);
+	find_keepers(step);
 	if (step->model->tuning)
 		mark_tuned_zeros(step);
 	step->program = linear_program(step);

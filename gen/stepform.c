@@ -278,10 +278,27 @@ static void count_compensation(struct program *program, const struct assignment 
 	program->additions += PL_ACCUMULATE_ADD - 1 + (seconds > 0 ? seconds - 1 : 0);
 }
 
+/* y[state] - sum of weight (velocity - base) */
+static void count_keeper(struct program *program, const struct keeper *keeper)
+{
+	program->reads[keeper->state] = true;
+	for (int k = 0; k < keeper->parts; k++) {
+		const struct coefficient *weight = keeper->part[k].factor;
+		bool unit = weight->value == 1 || weight->value == -1, second = program->compensated && weight->low != 0;
+		program->reads[keeper->part[k].operand.index] = true;
+		program->multiplications += !unit + second;
+		program->additions += 2 + program->compensated + second;
+	}
+}
+
 static void count(struct program *program, const struct linear *system, bool single)
 {
 	for (int i = 0; i < program->assignments; i++) {
 		const struct assignment *a = &program->assignment[i];
+		if (a->keeper) {
+			count_keeper(program, a->keeper);
+			continue;
+		}
 		program->additions += a->terms > 0 ? a->terms - !a->added : 0;
 		if (a->added)
 			program->reads[a->target] = true;
@@ -371,7 +388,11 @@ static void write_delta(struct program *program, const struct step *step)
 	const struct table *table = step->table;
 	const struct tuning *tuning = step->model->tuning;
 	int n = table->states, *anchor = anchors(tuning ? &tuning->other->system : &step->system);
+	for (int k = 0; k < step->keepers; k++)
+		new_assignment(program, step, step->keeper[k].state, false)->keeper = &step->keeper[k];
 	for (int i = 0; i < n; i++) {
+		if (keeper_of(step, i))
+			continue;
 		struct assignment *a = new_assignment(program, step, i, true);
 		const struct coefficient *row = &table->increment[i * n];
 		add_places(a, &step->system, anchor, step->system.coord[i], row);
@@ -386,6 +407,8 @@ static void write_kicks(struct program *program, const struct step *step, const 
 {
 	const struct linear *system = &step->system;
 	for (int i = 0; i < system->n; i++) {
+		if (keeper_of(step, system->velocity[i]))
+			continue;
 		struct assignment *a = new_assignment(program, step, system->velocity[i], true);
 		add_places(a, system, anchor, i, &step->table->kick[i * system->n]);
 		drop_identity(program);
@@ -398,6 +421,8 @@ static void write_kick_drift_kick(struct program *program, const struct step *st
 	int n = system->n, *anchor = anchors(system);
 	program->in_order = true;
 	write_kicks(program, step, anchor);
+	for (int k = 0; k < step->keepers; k++)
+		new_assignment(program, step, step->keeper[k].state, false)->keeper = &step->keeper[k];
 	for (int i = 0; i < n; i++) {
 		struct assignment *a = new_assignment(program, step, i, true);
 		for (int j = 0; j < n; j++)
@@ -406,6 +431,8 @@ static void write_kick_drift_kick(struct program *program, const struct step *st
 	}
 	write_kicks(program, step, anchor);
 	for (int i = 0; i < system->states; i++) {
+		if (keeper_of(step, i))
+			continue;
 		add_loads_and_inputs(new_assignment(program, step, i, true), step, i);
 		drop_identity(program);
 	}

@@ -149,6 +149,8 @@ static void want_rows(struct wanting *w)
     const struct judge *j = w->judge;
     const struct linear *system = j->system;
     for (int i = 0; i < j->states; i++) {
+        if (w->variant->form != FORM_DIRECT && j->kept[i])
+            continue;
         const struct judged *row = w->variant->form == FORM_DIRECT ? &j->step[i * j->columns] : &j->increment[i * j->states];
         if (w->variant->form == FORM_DIRECT) {
             for (int k = 0; k < system->n; k++)
@@ -166,6 +168,8 @@ static void want_kicks(struct wanting *w)
 {
     const struct linear *system = w->judge->system;
     for (int i = 0; i < system->n; i++) {
+        if (w->judge->kept[system->velocity[i]])
+            continue;
         want_places(w, i, &w->judge->kick[i * system->n], "kick", state_name(w, system->velocity[i]));
         want_second_words(w);
     }
@@ -184,7 +188,8 @@ static void want_kick_drift_kick(struct wanting *w)
     }
     want_kicks(w);
     for (int i = 0; i < j->states; i++)
-        want_loads_and_inputs(w, i);
+        if (!j->kept[i])
+            want_loads_and_inputs(w, i);
 }
 
 /* ---- what stands there ---- */

@@ -316,7 +316,7 @@ int main(int argc, char **argv)
         m = v->model;
         direct = f == 0;
         compensated = strstr(forms[f], "compensated") != NULL;
-        momenta = strstr(forms[f], "kick") && (strcmp(name, "masses") == 0 || strcmp(name, "loose") == 0);
+        momenta = !direct && (strcmp(name, "loose") == 0 || (strstr(forms[f], "kick") && strcmp(name, "masses") == 0)); /* or a sum of velocities */
         try_history();
         try_at();
         try_run();

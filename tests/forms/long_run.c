@@ -119,8 +119,7 @@ static double momentum_of(const real_model *m, const union object *s)
     return 1.5 * (double)y[2] + 0.7 * (double)y[3];
 }
 
-/* Each step rounds both momenta, at random, so 6 standard deviations of that.  Compensated, the form delta rounds increments, |pole| h
- * of that; kicks are opposite to the last bit, and nothing at all is lost. */
+/* The sum of both momenta is kept as it is, so all that is seen is how the two that are read round. */
 static void try_momentum(int form)
 {
     const struct variant *v = variant_of(VARIANTS, "pair", forms[form]);
@@ -137,8 +136,7 @@ static void try_momentum(int form)
         note("%s, %g steps of %g s: momentum within %.2g (the form without a bound)", m->name, n, (double)m->h, worst);
         return;
     }
-    const double angle = sqrt(120 / 1.5 + 120 / 0.7) * (double)m->h, each = !in_two_words[form] ? 1 : form == COMPENSATED ? angle : 0;
-    const double bound = EPSILON / 2 * (8 + 6 * sqrt(n) * each);
+    const double bound = 2 * EPSILON;
     ok(close_to(worst, 0, bound, "relative momentum"), "%s, %g steps of %g s: momentum within %.2g, bound %.2g", m->name, n, (double)m->h, worst,
        bound);
 }
