@@ -170,15 +170,30 @@ void emit_node_phases(const struct emitter *e, const bool *loads)
 		print_node_rows(e, "pl_growth", "node_growth", e->growth, e->growths, growth_text);
 }
 
-static void print_rates(const struct emitter *e, bool turns, const char *name, int count, const char *what)
+static void print_rate_rows(const struct emitter *e, bool turns)
 {
-	fprintf(e->to, "\nstatic const pl_rate %s_%s[%d] = {  /* %s */\n", e->name, name, count, what);
 	for (int l = 0; l < e->system->loads; l++) {
 		const struct wave *wave = e->system->load[l].wave;
 		if ((turns ? e->phase : e->growth)[l] >= 0)
 			print_rate(e, turns ? wave->w : wave->a, turns, column_text(&e->system->load[l], 0));
 	}
+}
+
+static void print_rates(const struct emitter *e, bool turns, const char *name, int count, const char *what)
+{
+	fprintf(e->to, "\nstatic const pl_rate %s_%s[%d] = {  /* %s */\n", e->name, name, count, what);
+	print_rate_rows(e, turns);
 	fputs("};\n", e->to);
+}
+
+void emit_phase_rates(const struct emitter *e)
+{
+	print_rate_rows(e, true);
+}
+
+static bool has_tuned_rates(const struct emitter *e)
+{
+	return e->model->tuning && e->model->tuning->frequencies > 0;
 }
 
 void emit_load_tables(const struct emitter *e)
@@ -187,7 +202,8 @@ void emit_load_tables(const struct emitter *e)
 		print_turns(e, "phase_start", format("at t = 0, in turns of 2^-%d", load_bits(e)), false);
 		if (!e->model->tuning)
 			print_turns(e, "phase_step", "in one step", true);
-		print_rates(e, true, "phase_rate", e->phases, "turns per second");
+		if (!has_tuned_rates(e))
+			print_rates(e, true, "phase_rate", e->phases, "turns per second");
 	}
 	if (e->growths) {
 		if (!e->model->tuning)
@@ -209,8 +225,8 @@ void emit_load_members(const struct emitter *e)
 void emit_load_set(const struct emitter *e)
 {
 	if (e->phases)
-		fprintf(e->to, "    for (i = 0; i < %d; i++)\n        s->phase[i] = pl_turn_add(%s_phase_start[i], pl_turn_at(&%s_phase_rate[i], t));\n", e->phases,
-			e->name, e->name);
+		fprintf(e->to, "    for (i = 0; i < %d; i++)\n        s->phase[i] = pl_turn_add(%s_phase_start[i], pl_turn_at(&%sphase_rate[i], t));\n", e->phases,
+			e->name, has_tuned_rates(e) ? "s->coeffs." : format("%s_", e->name));
 	for (int l = 0; l < e->system->loads; l++)
 		if (e->growth[l] >= 0)
 			fprintf(e->to, "    s->growth[%d] = pl_growth_at(&%s_growth_rate[%d], %d, t);\n", e->growth[l], e->name, e->growth[l],

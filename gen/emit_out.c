@@ -104,8 +104,8 @@ static void mark_tuned_row(const struct emitter *e, const struct output *output,
 	for (int i = 0; i < e->system->states; i++)
 		needs->reads[i] = needs->reads[i] || tuned_output_reads(e, output, i);
 	for (int l = 0; l < e->system->loads; l++)
-		for (int k = 0; k < e->system->load[l].columns; k++)
-			needs->loads[l] = needs->loads[l] || tuned_output_reads(e, output, column++);
+		for (int k = 0; k < e->system->load[l].columns; k++, column++)
+			needs->loads[l] = needs->loads[l] || tuned_output_reads(e, output, column);
 }
 
 static void mark_row(const struct emitter *e, const struct output *output, struct output_needs *needs)

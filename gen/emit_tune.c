@@ -10,7 +10,7 @@ static int step_columns(const struct emitter *e)
 
 static int tuned_outputs(const struct emitter *e)
 {
-	return e->model->tuning->rows - e->model->n;
+	return e->model->tuning->outputs;
 }
 
 static const char *param_list(const struct emitter *e)
@@ -114,6 +114,8 @@ void emit_coefficient_struct(const struct emitter *e)
 		       format("out = out x, where outputs depend on params%s", ramp_note(e, "its value and its slope")));
 	if (e->phases)
 		member(e, format("pl_turn phase_step[%d];", e->phases), "of the loads, in one step");
+	if (e->model->tuning->frequencies)
+		member(e, format("pl_rate phase_rate[%d];", e->phases), "in turns per second");
 	if (e->growths)
 		member(e, format("pl_growth growth_step[%d];", e->growths), e->phases ? "" : "of the loads, in one step");
 	fputs("};\n\n", to);
@@ -124,8 +126,9 @@ void emit_tuning_declarations(const struct emitter *e)
 	FILE *to = e->to;
 	const char *n = e->name, *N = e->upper;
 	fprintf(to, "\n/* %s_retune computes c anew from params (%s) and h [s]. 0, or c is as it was: PL_NOT_FINITE, a number of it is infinite or not a\n"
-		    " * number; PL_SINGULAR, a mass matrix without inverse, or a divisor 0; PL_NO_STEP, h is not above 0. c may be that of an instance as long as h\n"
-		    " * stays; another h belongs to the time from then on: %s_use keeps state and time and takes c over.\n */\n", n, param_list(e), n);
+		    " * number; PL_SINGULAR, a mass matrix without inverse, or a divisor 0; %sPL_NO_STEP, h is not above 0. c may be that of an instance as long as h\n"
+		    " * stays; another h belongs to the time from then on: %s_use keeps state and time and takes c over%s.\n */\n", n, param_list(e), e->model->tuning->frequencies ? "PL_NO_RATE, a frequency below 0; " : "", n,
+		e->phases ? "; phases of loads go on from where they are" : "");
 	fprintf(to, "int    %s_retune(%s_coeffs *c, const double params[%s_PARAMS], double h);\n", n, n, N);
 	fprintf(to, "void   %s_use(%s *s, const %s_coeffs *c);\n", n, n, n);
 	fprintf(to, "extern const %s_coeffs %s_nominal;  /* of the spec's values: correctly rounded; what %s_init starts with; no\n                                   * other function gives an instance its first coefficients */\n\n", n, n, n);
@@ -221,6 +224,11 @@ void emit_nominal(const struct emitter *e)
 			if ((turns ? e->phase : e->growth)[l] >= 0)
 				fprintf(to, "    %s,  /* %s */\n", (turns ? phase_step_text : growth_step_text)(e, l), column_text(&e->system->load[l], 0));
 		fputs("    },\n", to);
+		if (turns && t->frequencies) {
+			fputs("    {\n", to);
+			emit_phase_rates(e);
+			fputs("    },\n", to);
+		}
 	}
 	fputs("};\n", to);
 }
@@ -253,6 +261,9 @@ static const char *row_name(const struct emitter *e, int row)
 	for (int o = 0; o < e->model->outputs; o++)
 		if (e->model->tuning->output[o] == row)
 			return e->model->output[o].name;
+	for (int l = 0; l < e->system->loads; l++)
+		if (e->model->tuning->frequency[l] == row)
+			return format("frequency of %s", column_text(&e->system->load[l], 0));
 	return format("%s%.*s", e->model->coord_name[row], e->system->velocity[row] >= 0 ? 2 : 1, "''");
 }
 
@@ -270,6 +281,8 @@ static const char *term_note(const struct emitter *e, const struct tuned_term *t
 {
 	const struct tuning *t = e->model->tuning;
 	bool left = term->column >= t->columns;
+	if (term->row >= t->rows - t->frequencies)
+		return format("%s: %s", row_name(e, term->row), product_text(t, term));
 	const char *of = left ? row_name(e, term->column - t->columns) : column_names(e)[term->column];
 	const char *where = t->solves ? format("equation %d, %s", term->row + 1, left ? "left" : "right") : row_name(e, term->row);
 	return format("%s: %s %s", where, product_text(t, term), of);
@@ -287,9 +300,30 @@ static void emit_equations(const struct emitter *e)
 		fprintf(to, "    {%d, %d, %d, %s},  /* %s */\n", t->term[i].row, t->term[i].column, t->term[i].monomial, two_text(t->term[i].factor),
 			term_note(e, &t->term[i]));
 	}
-	fprintf(to, "};\n\n/* The highest derivatives%s, over x */\n", tuned_outputs(e) ? " and outputs" : "");
+	fprintf(to, "};\n\n/* The highest derivatives%s, over x%s */\n", tuned_outputs(e) ? " and outputs" : "", t->frequencies ? "; frequencies of loads, in column 0" : "");
 	fprintf(to, "static const pl_equations %s_equations = {%d, %d, %d, %s_PARAMS, %d, %d, %s, %s_term};\n", n, t->rows, t->columns, t->solves, e->upper,
 		t->monomials, t->terms, t->monomials ? format("%s_monomial", n) : "NULL", n);
+}
+
+/* Is this entry of A w or -w of a load whose frequency depends on params? */
+static bool is_tuned_frequency(const struct emitter *e, int row, int column)
+{
+	for (int l = 0; l < e->system->loads; l++) {
+		int from = e->step->series.load[l];
+		if (e->model->tuning->frequency[l] >= 0 && row >= from && row < from + e->system->load[l].columns && row != column && (row - from) / 2 == (column - from) / 2)
+			return true;
+	}
+	return false;
+}
+
+static void emit_tuned_frequencies(const struct emitter *e)
+{
+	for (int l = 0; l < e->system->loads; l++) {
+		int row = e->model->tuning->frequency[l], from = e->step->series.load[l];
+		for (int k = from; row >= 0 && k < from + e->system->load[l].columns; k += 2)
+			fprintf(e->to, "    A[%d][%d].hi = -value[%d][0].hi;\n    A[%d][%d].lo = -value[%d][0].lo;\n    A[%d][%d] = value[%d][0];\n", k, k + 1, row, k, k + 1,
+				row, k + 1, k, row);
+	}
 }
 
 /* What no param changes: velocities, and how loads and ramps go on. Returns how many. */
@@ -301,7 +335,7 @@ static int emit_fixed_entries(const struct emitter *e)
 	for (int i = 0; i < size; i++)
 		for (int j = 0; j < size; j++) {
 			bool derivative = i < system->states && (i >= system->n || system->velocity[i] < 0);
-			if (derivative || mpq_sgn(A[i * size + j]) == 0)
+			if (derivative || mpq_sgn(A[i * size + j]) == 0 || is_tuned_frequency(e, i, j))
 				continue;
 			finite_number(e, A[i * size + j]);
 			fprintf(e->to, "%s{%d, %d, %s}", count++ ? ", " : "    static const struct {\n        int row, column;\n        pl_two value;\n    } fixed[] = {", i, j,
@@ -329,6 +363,7 @@ static void emit_slopes(const struct emitter *e)
 		size, size);
 	if (fixed)
 		fprintf(to, "    for (i = 0; i < %d; i++)\n        A[fixed[i].row][fixed[i].column] = fixed[i].value;\n", fixed);
+	emit_tuned_frequencies(e);
 	fprintf(to, "    for (i = 0; i < %d; i++)%s\n        for (j = 0; j < %d; j++)\n            A[row[i]][j] = value[i][j];\n", system->n, segments ? " {" : "",
 		segments ? system->states : size);
 	if (!segments)
@@ -390,8 +425,15 @@ static void emit_take_factors(const struct emitter *e)
 
 static void emit_take_loads(const struct emitter *e)
 {
+	const struct tuning *t = e->model->tuning;
+	for (int l = 0; l < e->system->loads && t->frequencies; l++) {
+		int phase = e->phase[l], row = t->frequency[l];
+		if (phase >= 0)
+			fprintf(e->to, "    c->phase_rate[%d] = %s;\n", phase, row >= 0 ? format("pl_rate_of(value[%d][0])", row) : format("%s_nominal.phase_rate[%d]", e->name, phase));
+	}
 	if (e->phases)
-		fprintf(e->to, "    for (i = 0; i < %d; i++)\n        c->phase_step[i] = pl_turn_at(&%s_phase_rate[i], h);\n", e->phases, e->name);
+		fprintf(e->to, "    for (i = 0; i < %d; i++)\n        c->phase_step[i] = pl_turn_at(&%sphase_rate[i], h);\n", e->phases,
+			t->frequencies ? "c->" : format("%s_", e->name));
 	for (int l = 0; l < e->system->loads; l++)
 		if (e->growth[l] >= 0)
 			fprintf(e->to, "    c->growth_step[%d] = pl_growth_at(&%s_growth_rate[%d], %d, h);\n", e->growth[l], e->name, e->growth[l],
@@ -411,6 +453,17 @@ static void emit_increment(const struct emitter *e, const char *D)
 		fprintf(e->to, "        if (status == 0 && (%s))\n            status = pl_increment(%d, %s_STATES, A[0], h, 2, %s, work);\n", cancels, size, e->upper, D);
 }
 
+/* A frequency below 0 has no rate. */
+static void emit_frequency_check(const struct emitter *e)
+{
+	const char *below = "";
+	for (int l = 0; l < e->system->loads; l++)
+		if (e->model->tuning->frequency[l] >= 0)
+			below = format("%s%svalue[%d][0].hi < 0.0", below, *below ? " || " : "", e->model->tuning->frequency[l]);
+	if (*below)
+		fprintf(e->to, "    if (status == 0 && (%s))\n        return PL_NO_RATE;\n", below);
+}
+
 static void emit_retune_function(const struct emitter *e)
 {
 	FILE *to = e->to;
@@ -420,6 +473,7 @@ static void emit_retune_function(const struct emitter *e)
 	emit_work(e);
 	fprintf(to, "    pl_two D%s[%s_STATES][%d];  /* e^{A h} - I */\n    int i, j, status;\n", segments > 1 ? format("[%d]", segments) : "", N, size);
 	fprintf(to, "    if (!(h > 0.0))\n        return PL_NO_STEP;\n    status = pl_equations_at(&%s_equations, params, value[0], work);\n", n);
+	emit_frequency_check(e);
 	if (segments > 1) {
 		fprintf(to, "    for (i = 0; i < %d && status == 0; i++) {\n        %s_slopes(value, i, A);\n", segments, n);
 		emit_increment(e, "D[i][0]");

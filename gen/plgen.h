@@ -603,13 +603,14 @@ struct tuned_term {
 	mpq_t factor;
 };
 /* W a = R x, exactly, for all values of the params: a holds the highest derivatives of the coordinates, then the outputs that
- * depend on params; x is the states, the load states in each segment of time, the inputs (of ramps: u, u'). */
+ * depend on params, then the frequencies of loads that do (in column 0); x is the states, the load states in each segment of time, the inputs (of ramps: u, u'). */
 struct tuning {
 	int params;
 	const struct tunable *param;
 	mpq_t *nominal;             /* the spec's values */
 	int columns, loads;         /* of x; of the load states in one segment */
-	int rows, *output;          /* per output: its row, or -1: no param changes it */
+	int rows, outputs, frequencies; /* rows: of coordinates, such outputs, such frequencies */
+	int *output, *frequency;    /* per output, per load: its row, or -1: no param changes it */
 	bool solves;                /* there is a W, columns behind those of R; else it is the unit matrix */
 	int monomials;
 	struct tuned_monomial *monomial;
@@ -1039,6 +1040,7 @@ void emit_load_states(const struct emitter *e, const bool *loads, bool time_is_t
 const char *load_operand(const struct emitter *e, int load, int column); /* NULL: the constant 1 */
 const char *column_operand(const struct emitter *e, int column);
 
+void emit_phase_rates(const struct emitter *e);                   /* rows of initialisers */
 const char *phase_step_text(const struct emitter *e, int load);   /* in one step: a turn, as an initialiser */
 const char *growth_step_text(const struct emitter *e, int load);
 const char *low_text(mpq_srcptr q);                               /* what its rounding leaves out, rounded */

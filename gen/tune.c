@@ -49,6 +49,16 @@ static void refuse_within(const struct node *node, const char *inside, const cha
 		error(name->at, note, "'%s' is tunable, or made of what is, and stands inside %s", name->symbol->name, inside);
 }
 
+static bool reads_time(const struct node *node)
+{
+	if (node->kind == NODE_TIME || (node->kind == NODE_NAME && node->symbol->value && reads_time(node->symbol->value)))
+		return true;
+	for (int i = 0; i < node->children; i++)
+		if (reads_time(node->child[i]))
+			return true;
+	return false;
+}
+
 static void check_node(const struct node *node)
 {
 	if (node->kind == NODE_NAME && node->symbol->tuned && node->symbol->value && !node->symbol->tuning_checked) {
@@ -56,7 +66,8 @@ static void check_node(const struct node *node)
 		check_node(node->symbol->value);
 	}
 	for (int i = 0; i < node->children; i++) {
-		if (node->kind == NODE_CALL)
+		bool wave = (node->function == FN_SIN || node->function == FN_COS) && reads_time(node->child[i]);
+		if (node->kind == NODE_CALL && !wave)   /* a load's frequency may be tunable; its phase is looked at with the model */
 			refuse_within(node->child[i], format("%s()", function_name(node->function)), refused_note);
 		if (node->kind == NODE_COMPARE)
 			refuse_within(node->child[i], "a comparison", decided_note);
@@ -142,7 +153,8 @@ static void build_there(void *context)
 
 static bool same_load(const struct load *a, const struct load *b)
 {
-	return a->powers == b->powers && mpq_equal(a->wave->a, b->wave->a) && mpq_equal(a->wave->w, b->wave->w) && mpq_equal(a->wave->p, b->wave->p);
+	return a->powers == b->powers && mpq_equal(a->wave->a, b->wave->a) && mpq_equal(a->wave->p, b->wave->p) &&
+	       (mpq_sgn(a->wave->w) != 0) == (mpq_sgn(b->wave->w) != 0);
 }
 
 static bool same_shape(const struct linear *a, const struct linear *b)
@@ -161,7 +173,7 @@ static bool same_shape(const struct linear *a, const struct linear *b)
 	return true;
 }
 
-/* Entries of one point: W^-1 R of all rows, then [R | W]. Rows: the coordinates, then the outputs. */
+/* Entries of one point: W^-1 R of all rows, then [R | W], then the frequencies of the loads. Rows: the coordinates, then the outputs. */
 static int all_rows(const struct search *s)
 {
 	return s->model->n + s->model->outputs;
@@ -180,6 +192,11 @@ static mpq_t *solved_entry(const struct search *s, mpq_t *entry, int row, int co
 static mpq_t *raw_entry(const struct search *s, mpq_t *entry, int row, int column)
 {
 	return &entry[all_rows(s) * s->tuning->columns + row * all_columns(s) + column];
+}
+
+static mpq_t *frequency_entry(const struct search *s, mpq_t *entry, int load)
+{
+	return &entry[all_rows(s) * (s->tuning->columns + all_columns(s)) + load];
 }
 
 /* Calls take(context, column, force) for what acts on the equations, in the order of the columns behind the states */
@@ -282,6 +299,8 @@ static mpq_t *read_entries(const struct search *s, const struct model *model)
 		read_output_row(&r, model->n + o, &model->output[o]);
 		part_output_row(&r, model->n + o, &model->output[o]);
 	}
+	for (int l = 0; l < model->system.loads; l++)
+		mpq_set(*frequency_entry(s, r.entry, l), model->system.load[l].wave->w);
 	return r.entry;
 }
 
@@ -318,7 +337,7 @@ static const mpq_t *look(struct search *s, const mpq_t *values)
 		error(t->param[0].at, NULL, "with other values of the tunable params this is no model");
 	if (!same_shape(&s->found->system, &s->model->system)) {
 		const struct tunable *why = suspect(s);
-		error(why->at, "a load is there only where its factor is not 0", "with another value of '%s' the model has other loads", why->symbol->name);
+		error(why->at, "a load is there only where its factor is not 0; its phase, growth and changes in time are fixed", "with another value of '%s' the model has other loads", why->symbol->name);
 	}
 	ENLARGE(s->point, (size_t)s->points + 1);
 	ENLARGE(s->seen, (size_t)s->points + 1);
@@ -522,6 +541,20 @@ static int monomial_of(struct tuning *t, signed char *power)
 	return ++t->monomials;
 }
 
+static struct tuned_term *add_term(struct tuning *t, int row, int column, int monomial)
+{
+	ENLARGE(t->term, (size_t)t->terms + 1);
+	struct tuned_term *term = &t->term[t->terms++];
+	*term = (struct tuned_term){ .row = row, .column = column, .monomial = monomial };
+	mpq_init(term->factor);
+	return term;
+}
+
+static void add_unit(struct tuning *t, int row, int column)
+{
+	mpq_set_ui(add_term(t, row, column, 0)->factor, 1, 1);
+}
+
 static void add_terms(struct tuning *t, const struct fit *f, int row, int column)
 {
 	for (int i = 0; i < f->products; i++) {
@@ -530,18 +563,16 @@ static void add_terms(struct tuning *t, const struct fit *f, int row, int column
 			continue;
 		for (int k = 0; k < t->params; k++)
 			power[k] = f->power[i][k];
-		ENLARGE(t->term, (size_t)t->terms + 1);
-		struct tuned_term *term = &t->term[t->terms++];
-		*term = (struct tuned_term){ .row = row, .column = column, .monomial = monomial_of(t, power) };
-		mpq_init(term->factor);
-		mpq_set(term->factor, f->factor[i]);
+		int monomial = monomial_of(t, power);
+		mpq_set(add_term(t, row, column, monomial)->factor, f->factor[i]);
 	}
 }
 
-/* An output that no param changes stays as it is. */
+/* An output or a frequency that no param changes stays as it is. */
 static void number_rows(struct search *s)
 {
 	struct tuning *t = s->tuning;
+	const struct linear *system = &s->model->system;
 	t->rows = s->model->n;
 	t->output = ARRAY(int, (size_t)s->model->outputs);
 	for (int o = 0; o < s->model->outputs; o++) {
@@ -550,6 +581,15 @@ static void number_rows(struct search *s)
 			for (int j = 0; j < t->columns; j++)
 				changes = changes || !mpq_equal(*solved_entry(s, s->seen[i], s->model->n + o, j), *solved_entry(s, s->seen[0], s->model->n + o, j));
 		t->output[o] = changes ? t->rows++ : -1;
+		t->outputs += changes;
+	}
+	t->frequency = ARRAY(int, (size_t)system->loads);
+	for (int l = 0; l < system->loads; l++) {
+		bool changes = false;
+		for (int i = 1; i < s->points; i++)
+			changes = changes || !mpq_equal(*frequency_entry(s, s->seen[i], l), *frequency_entry(s, s->seen[0], l));
+		t->frequency[l] = changes ? t->rows++ : -1;
+		t->frequencies += changes;
 	}
 }
 
@@ -568,24 +608,47 @@ static int entry_column(const struct search *s, int column)
 	return column < s->tuning->columns ? column : s->tuning->columns + entry_row(s, column - s->tuning->columns);
 }
 
+static bool fit_into(struct search *s, const mpq_t *entry, int row, int column, int *culprit)
+{
+	struct fit *f = NEW(struct fit);
+	f->search = s;
+	f->entry = (int)(entry - (const mpq_t *)s->seen[0]);
+	if (!fit_entry(f)) {
+		*culprit = f->culprit;
+		return false;
+	}
+	add_terms(s->tuning, f, row, column);
+	return true;
+}
+
+/* A frequency is its own row: w = w. */
+static bool fit_frequencies(struct search *s, int *culprit)
+{
+	struct tuning *t = s->tuning;
+	for (int l = 0; l < s->model->system.loads; l++) {
+		int row = t->frequency[l];
+		if (row >= 0 && !fit_into(s, (const mpq_t *)frequency_entry(s, s->seen[0], l), row, 0, culprit))
+			return false;
+		if (row >= 0 && t->solves)
+			add_unit(t, row, t->columns + row);
+	}
+	return true;
+}
+
 static bool fit_all(struct search *s, bool solved, int *culprit)
 {
 	struct tuning *t = s->tuning;
+	int rows = t->rows - t->frequencies;
 	t->solves = !solved;
 	t->terms = t->monomials = 0;
 	mpq_t *first = s->seen[0];
-	for (int i = 0; i < t->rows; i++)
-		for (int j = 0; j < t->columns + (solved ? 0 : t->rows); j++) {
-			struct fit *f = NEW(struct fit);
-			f->search = s;
-			f->entry = (int)((solved ? solved_entry(s, first, entry_row(s, i), j) : raw_entry(s, first, entry_row(s, i), entry_column(s, j))) - first);
-			if (!fit_entry(f)) {
-				*culprit = f->culprit;
+	for (int i = 0; i < rows; i++)
+		for (int j = 0; j < t->columns + (solved ? 0 : rows); j++) {
+			mpq_t *entry = solved ? solved_entry(s, first, entry_row(s, i), j) : raw_entry(s, first, entry_row(s, i), entry_column(s, j));
+			if (!fit_into(s, (const mpq_t *)entry, i, j, culprit))
 				return false;
-			}
-			add_terms(t, f, i, j);
 		}
-	return true;
+	return fit_frequencies(s, culprit);
 }
 
 static void mark_acting(struct search *s)
@@ -593,7 +656,7 @@ static void mark_acting(struct search *s)
 	struct tuning *t = s->tuning;
 	t->acts = ARRAY(bool, (size_t)(t->rows * t->columns));
 	for (int p = 0; p < s->points; p++)
-		for (int i = 0; i < t->rows; i++)
+		for (int i = 0; i < t->rows - t->frequencies; i++)
 			for (int j = 0; j < t->columns; j++)
 				t->acts[i * t->columns + j] = t->acts[i * t->columns + j] || mpq_sgn(*solved_entry(s, s->seen[p], entry_row(s, i), j)) != 0;
 }
@@ -645,7 +708,7 @@ bool find_tuning(struct model *model, const struct overrides *overrides)
 	t->nominal = rationals((size_t)t->params);
 	t->loads = load_columns(system);
 	t->columns = system->states + system->segments * t->loads + input_columns(system);
-	s.entries = all_rows(&s) * (t->columns + all_columns(&s));
+	s.entries = all_rows(&s) * (t->columns + all_columns(&s)) + system->loads;
 	model->tuning = t;
 	return statement_guard(find, &s);
 }

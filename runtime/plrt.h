@@ -13,6 +13,7 @@
  *     apply.c     matrices times vectors, and whether all is finite: schemes with a leftover
  *     crossings.c steps of piecewise-linear models, with every crossing of a breakpoint found
  *     retune.c    coefficients of a step from other params: NAME_retune
+ *     rate.c      the rate of a load's phase from another frequency
  *
  * turnsf.c, growthf.c, ... are the same for models in float, which never touch a double.  Their names end in f where the others
  * have pl_turn, pl_growth, ...: pl_turnf_at is to pl_turn_at as sinf is to sin.
@@ -434,7 +435,8 @@ int pl_ramp_cancels(int size, int states, const pl_two *D, int column, double h)
 double pl_ramp_before(pl_two whole, pl_two slope, double h);
 
 /* What NAME_retune says, beside PL_NOT_FINITE; the coefficients are then as they were */
-enum { PL_SINGULAR = 4, /* the mass matrix has no inverse, or a param that something is divided by is 0 */ PL_NO_STEP = 8 /* the step is not above 0 */ };
+enum { PL_SINGULAR = 4, /* the mass matrix has no inverse, or a param that something is divided by is 0 */ PL_NO_STEP = 8, /* the step is not above 0 */
+       PL_NO_RATE = 16 /* a load's frequency is below 0 */ };
 
 /* The same in floats. */
 typedef struct pl_termf {
@@ -453,6 +455,12 @@ int pl_equationsf_at(const pl_equationsf *e, const float *params, pl_twof *value
 int pl_incrementf(int size, int states, const pl_twof *A, float tau, int words, pl_twof *D, pl_twof *work);
 int pl_rampf_cancels(int size, int states, const pl_twof *D, int column, float h);
 float pl_rampf_before(pl_twof whole, pl_twof slope, float h);
+
+/* ---- rate.c: frequencies from other params -------------------------------------------------------------------- */
+
+/* w / (2 pi), w >= 0 an angular frequency [rad/s]: off by less than 2^-115 of itself, beside what two words leave of w. */
+pl_rate pl_rate_of(pl_two w);
+pl_ratef pl_ratef_of(pl_twof w); /* 2^-86 */
 
 /* ---- a model, seen from outside -------------------------------------------------------------------------- */
 

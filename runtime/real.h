@@ -19,6 +19,7 @@ enum { REAL_DIGITS = FLT_MANT_DIG, REAL_EXPONENTS = FLT_MAX_EXP };
 #define REAL_LARGE 0x1p72f /* products of any two numbers, divided by its square, can be summed */
 
 #define pl_rate pl_ratef
+#define pl_rate_of pl_ratef_of
 #define pl_series pl_seriesf
 #define pl_series_advance pl_seriesf_advance
 #define pl_two pl_twof

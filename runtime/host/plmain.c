@@ -266,6 +266,8 @@ static void retune(void *state, const real *params, real h)
     const int status = model->retune(state, params, h);
     if (status == PL_NO_STEP)
         fail("the step is not above 0");
+    if (status == PL_NO_RATE)
+        fail("with these values a load's frequency is below 0");
     if (status == PL_SINGULAR)
         fail("with these values the mass matrix has no inverse");
     if (status != 0)

@@ -46,7 +46,7 @@ for compiler; do
             ;;
     esac
     for level in -O0 -O2 -Os; do
-        for piece in turns growth series power until apply crossings retune; do
+        for piece in turns growth series power until apply crossings retune rate; do
             ! doubles "$compiler" "$level" "${piece}f"
             result $? "${piece}f.c, $compiler $level"
         done
