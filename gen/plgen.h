@@ -595,6 +595,23 @@ void visit_leftovers(const struct model *model, void (*visit)(void *context, con
 
 void warn(struct building *b);
 
+/* ---- fit.c: functions of params from their values ---- */
+
+enum { FIT_DEGREE = 3, FIT_POINTS = 3 };    /* powers up to it, and down to its negative; points that tell what is constant */
+struct fit {
+	int params;
+	mpq_srcptr (*value)(void *context, const mpq_t *params);    /* of the function */
+	void *context;
+	int products;               /* found: factors, some 0, times powers of params */
+	signed char power[LIMIT_MONOMIALS + 1][LIMIT_TUNABLES];
+	mpq_t *factor;
+	int culprit;                /* the param of which no power fits; -1: too many products, or there is none */
+	bool exponent[LIMIT_TUNABLES][2 * FIT_DEGREE + 1]; /* on the way: which powers of each occur, from the lowest on; */
+	bool depends[LIMIT_TUNABLES], together[LIMIT_TUNABLES][LIMIT_TUNABLES]; /* whether any does; whether a product holds both */
+};
+bool fit_value(struct fit *fit);                            /* params, value and context given; false: it is no such sum */
+mpq_t *scattered_values(int params, int number);            /* values that are related by nothing */
+
 /* ---- tune.c: how the equations follow from tunable params ---- */
 
 struct tuned_monomial { int from, param; bool divides; };  /* an earlier one times a param, or divided by it; number 0 is 1, these are 1, 2, ... */

@@ -1,12 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* How the equations follow from tunable params. Params stand in a spec wherever a number may: in equations, sketches, matrices, other
- * params. So nothing is derived from its text: the model is built anew at a few exact values, and every entry of it is found
- * from its values there, exactly, as a polynomial in the params and their reciprocals. Values at which it was not fitted then
- * have to agree. What could only seem to be one, a function or a condition, is refused before. */
+ * params. So nothing is derived from its text: the model is built anew at a few exact values, and every entry of it is found from its
+ * values there (fit.c). What could only seem to be a sum of products, a function or a condition, is refused before. */
 #include "plgen.h"
-
-enum { DEGREE = 3, EXPONENTS = 2 * DEGREE + 1, LINE = EXPONENTS + 1, FIRST = 3 };
-/* exponents -3 .. 3; points to find and to check them; points that tell what does not depend on params */
 
 /* ---- what cannot be recomputed ---- */
 
@@ -116,17 +112,6 @@ static void check_kind(const struct model *model, const struct overrides *overri
 }
 
 /* ---- the model at other values ---- */
-
-/* A value like no other */
-static void set_value(mpq_ptr value, int index)
-{
-	uint32_t bits = (uint32_t)index * 2654435761u + 12345u;
-	bits ^= bits >> 15;
-	bits *= 2246822519u;
-	bits ^= bits >> 13;
-	mpq_set_ui(value, 1 + bits % 65521, 1 + (bits >> 16) % 251);
-	mpq_canonicalize(value);
-}
 
 struct search {
 	struct tuning *tuning;
@@ -312,7 +297,7 @@ static const struct tunable *suspect(struct search *s)
 		s->values = rationals((size_t)t->params);
 		for (int i = 0; i < t->params; i++)
 			mpq_set(s->values[i], t->nominal[i]);
-		set_value(s->values[k], k);
+		mpq_set(s->values[k], scattered_values(t->params, 0)[k]);
 		if (silent_guard(build_there, s) && !same_shape(&s->found->system, &s->model->system))
 			return &t->param[k];
 	}
@@ -344,180 +329,6 @@ static const mpq_t *look(struct search *s, const mpq_t *values)
 	s->point[s->points] = s->values;
 	s->seen[s->points] = read_entries(s, s->found);
 	return (const mpq_t *)s->seen[s->points++];
-}
-
-/* ---- values that are related by nothing ---- */
-
-/* Point 0 is the base of the lines and pairs; the others are for fitting and checking. */
-static mpq_t *scattered(const struct tuning *t, int number)
-{
-	mpq_t *values = rationals((size_t)t->params);
-	for (int k = 0; k < t->params; k++)
-		set_value(values[k], number * LIMIT_TUNABLES + k);
-	return values;
-}
-
-/* The base with `up` added to param k and `other` to param j */
-static mpq_t *near_base(const struct tuning *t, int k, int up, int j, int other)
-{
-	mpq_t *values = scattered(t, 0), shift;
-	mpq_init(shift);
-	mpq_set_si(shift, up, 1);
-	mpq_add(values[k], values[k], shift);
-	mpq_set_si(shift, other, 1);
-	mpq_add(values[j], values[j], shift);
-	mpq_clear(shift);
-	return values;
-}
-
-/* ---- one entry as a sum of products of powers ---- */
-
-struct fit {
-	struct search *search;
-	int entry;
-	bool exponent[LIMIT_TUNABLES][EXPONENTS];    /* which occur, from -3 on */
-	bool depends[LIMIT_TUNABLES], together[LIMIT_TUNABLES][LIMIT_TUNABLES]; /* whether a product holds both */
-	int products;
-	signed char power[LIMIT_MONOMIALS + 1][LIMIT_TUNABLES];
-	mpq_t *factor;
-	int culprit;                /* what no power fits; -1: products, or there is none */
-};
-
-static mpq_srcptr value_at(const struct fit *f, const mpq_t *values)
-{
-	return look(f->search, values)[f->entry];
-}
-
-static void power_of(mpq_srcptr x, int exponent, mpq_ptr result)
-{
-	mpq_set_ui(result, 1, 1);
-	for (int i = exponent < 0 ? -exponent : exponent; i > 0; i--)
-		mpq_mul(result, result, x);
-	if (exponent < 0)
-		mpq_inv(result, result);
-}
-
-/* f(x) x^3 through seven points as a polynomial of degree 6: which of its coefficients are not 0. The eighth point checks. */
-static bool find_exponents(struct fit *f, int k)
-{
-	int unused;
-	mpq_t *V = rationals(EXPONENTS * EXPONENTS), *inverse = rationals(EXPONENTS * EXPONENTS), *y = rationals(LINE), *c = rationals(EXPONENTS);
-	mpq_t *sum = rationals(2);
-	for (int i = 0; i < LINE; i++) {
-		mpq_t *at = near_base(f->search->tuning, k, i, k, 0);
-		mpq_set(y[i], value_at(f, (const mpq_t *)at));
-		for (int j = 0; j < EXPONENTS && i < EXPONENTS; j++)
-			power_of(at[k], j - DEGREE, V[i * EXPONENTS + j]);
-	}
-	for (int i = 1; i < LINE; i++)
-		f->depends[k] = f->depends[k] || !mpq_equal(y[i], y[0]);
-	if (!f->depends[k])
-		return true;
-	rational_inverse(EXPONENTS, (const mpq_t *)V, inverse, &unused);
-	rational_product(EXPONENTS, EXPONENTS, 1, (const mpq_t *)inverse, (const mpq_t *)y, c);
-	mpq_t *at = near_base(f->search->tuning, k, EXPONENTS, k, 0);
-	for (int j = 0; j < EXPONENTS; j++) {
-		f->exponent[k][j] = mpq_sgn(c[j]) != 0;
-		power_of(at[k], j - DEGREE, sum[0]);
-		mpq_mul(sum[0], sum[0], c[j]);
-		mpq_add(sum[1], sum[1], sum[0]);
-	}
-	return mpq_equal(sum[1], y[EXPONENTS]) != 0;
-}
-
-/* f(a, b) - f(a', b) - f(a, b') + f(a', b') is 0 where no product holds both */
-static void find_pairs(struct fit *f)
-{
-	const struct tuning *t = f->search->tuning;
-	mpq_t *sum = rationals(1);
-	for (int i = 0; i < t->params; i++)
-		for (int j = 0; j < i; j++) {
-			if (!f->depends[i] || !f->depends[j])
-				continue;
-			mpq_sub(sum[0], value_at(f, (const mpq_t *)near_base(t, i, 0, j, 0)), value_at(f, (const mpq_t *)near_base(t, i, 1, j, 0)));
-			mpq_sub(sum[0], sum[0], value_at(f, (const mpq_t *)near_base(t, i, 0, j, 1)));
-			mpq_add(sum[0], sum[0], value_at(f, (const mpq_t *)near_base(t, i, 1, j, 1)));
-			f->together[i][j] = f->together[j][i] = mpq_sgn(sum[0]) != 0;
-		}
-}
-
-/* Every product of powers that may occur, from param k on; false: too many */
-static bool list_products(struct fit *f, signed char *power, int k)
-{
-	if (k == f->search->tuning->params) {
-		if (f->products == LIMIT_MONOMIALS)
-			return false;
-		for (int i = 0; i < k; i++)
-			f->power[f->products][i] = power[i];
-		f->products++;
-		return true;
-	}
-	for (int j = 0; j < EXPONENTS; j++) {
-		bool possible = j == DEGREE || (f->depends[k] && f->exponent[k][j]);
-		for (int i = 0; i < k && possible && j != DEGREE; i++)
-			possible = power[i] == 0 || f->together[k][i];
-		power[k] = (signed char)(j - DEGREE);
-		if (possible && !list_products(f, power, k + 1))
-			return false;
-	}
-	return true;
-}
-
-static void product_at(const struct fit *f, int product, const mpq_t *values, mpq_ptr result)
-{
-	mpq_t power;
-	mpq_init(power);
-	mpq_set_ui(result, 1, 1);
-	for (int k = 0; k < f->search->tuning->params; k++) {
-		power_of(values[k], f->power[product][k], power);
-		mpq_mul(result, result, power);
-	}
-	mpq_clear(power);
-}
-
-/* Factors from as many points as there are products; two more points check them. */
-static bool fit_products(struct fit *f)
-{
-	int count = f->products, unused;
-	mpq_t *V = rationals((size_t)(count * count)), *inverse = rationals((size_t)(count * count)), *y = rationals((size_t)count), *sum = rationals(2);
-	f->factor = rationals((size_t)count);
-	for (int i = 0; i < count; i++) {
-		const mpq_t *at = (const mpq_t *)scattered(f->search->tuning, i + 1);
-		mpq_set(y[i], value_at(f, at));
-		for (int j = 0; j < count; j++)
-			product_at(f, j, at, V[i * count + j]);
-	}
-	if (!rational_inverse(count, (const mpq_t *)V, inverse, &unused))
-		return false;
-	rational_product(count, count, 1, (const mpq_t *)inverse, (const mpq_t *)y, f->factor);
-	for (int i = count + 1; i <= count + 2; i++) {
-		const mpq_t *at = (const mpq_t *)scattered(f->search->tuning, i);
-		mpq_set_ui(sum[0], 0, 1);
-		for (int j = 0; j < count; j++) {
-			product_at(f, j, at, sum[1]);
-			mpq_mul(sum[1], sum[1], f->factor[j]);
-			mpq_add(sum[0], sum[0], sum[1]);
-		}
-		if (!mpq_equal(sum[0], value_at(f, at)))
-			return false;
-	}
-	return true;
-}
-
-static bool fit_entry(struct fit *f)
-{
-	signed char power[LIMIT_TUNABLES] = { 0 };
-	bool constant = true;
-	f->culprit = -1;
-	for (int i = 1; i < FIRST; i++)
-		constant = constant && mpq_equal(f->search->seen[i][f->entry], f->search->seen[0][f->entry]);
-	for (int k = 0; k < f->search->tuning->params && !constant; k++)
-		if (!find_exponents(f, k)) {
-			f->culprit = k;
-			return false;
-		}
-	find_pairs(f);
-	return list_products(f, power, 0) && fit_products(f);
 }
 
 /* ---- all of them ---- */
@@ -608,12 +419,24 @@ static int entry_column(const struct search *s, int column)
 	return column < s->tuning->columns ? column : s->tuning->columns + entry_row(s, column - s->tuning->columns);
 }
 
+struct entry {
+	struct search *search;
+	ptrdiff_t index;
+};
+
+static mpq_srcptr entry_at(void *context, const mpq_t *values)
+{
+	const struct entry *entry = context;
+	return look(entry->search, values)[entry->index];
+}
+
 static bool fit_into(struct search *s, const mpq_t *entry, int row, int column, int *culprit)
 {
 	struct fit *f = NEW(struct fit);
-	f->search = s;
-	f->entry = (int)(entry - (const mpq_t *)s->seen[0]);
-	if (!fit_entry(f)) {
+	f->params = s->tuning->params;
+	f->value = entry_at;
+	f->context = &(struct entry){ s, entry - (const mpq_t *)s->seen[0] };
+	if (!fit_value(f)) {
 		*culprit = f->culprit;
 		return false;
 	}
@@ -682,14 +505,14 @@ static void find(void *context)
 	check_model(s->model);
 	for (int k = 0; k < t->params; k++)
 		constant_value(&(struct collector){ .scheme = "exact" }, t->param[k].symbol->collected->cell[0], t->nominal[k]);
-	for (int i = 0; i < FIRST; i++)
-		look(s, (const mpq_t *)scattered(t, i));
+	for (int i = 0; i < FIT_POINTS; i++)
+		look(s, (const mpq_t *)scattered_values(t->params, i));
 	t->other = s->found;
 	number_rows(s);
 	if (!fit_all(s, true, &culprit) && !fit_all(s, false, &culprit)) {
 		const struct tunable *why = &t->param[culprit < 0 ? 0 : culprit];
 		error(why->at, format("sums and products, and quotients by single terms, up to the power %d of each and %d of them in an entry, are recomputed on the target; multiply an equation by what divides it",
-				      DEGREE, LIMIT_MONOMIALS), "the equations depend on '%s' in a way that cannot be recomputed on the target", why->symbol->name);
+				      FIT_DEGREE, LIMIT_MONOMIALS), "the equations depend on '%s' in a way that cannot be recomputed on the target", why->symbol->name);
 	}
 	mark_acting(s);
 	warn_of_idle(t);
