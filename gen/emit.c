@@ -354,7 +354,7 @@ static void emit_functions(const struct emitter *e, bool rhs)
 	const char *n = e->name, *N = e->upper;
 	const char *u = e->system->inputs ? format(", const double u[%s_INPUTS]", N) : "";
 	bool inputs = e->system->inputs > 0;
-	declare(e, format("void   %s_init(%s *s);", n, n), "t = 0, the spec's initial values");
+	declare(e, format("void   %s_init(%s *s);", n, n), e->model->tuning ? "first: t = 0, the spec's initial values and coefficients" : "t = 0, the spec's initial values");
 	declare(e, format("void   %s_set(%s *s, double t, const double y[%s_STATES]);", n, n, N), "any state at any time [s]");
 	declare(e, format("void   %s_get(const %s *s, double y[%s_STATES]);", n, n, N), "");
 	declare(e, format("double %s_time(const %s *s);", n, n), "[s]");

@@ -2,6 +2,8 @@
 /* Models with tunable params: an instance holds its own coefficients, and NAME_retune computes them anew on the target. */
 #include "plgen.h"
 
+#include <string.h>
+
 /* Columns of a step's factors: states, load states in each segment of time, inputs */
 static int step_columns(const struct emitter *e)
 {
@@ -41,16 +43,20 @@ static const char **column_names(const struct emitter *e)
 	return name;
 }
 
-/* The same as a comment says it: the load states once */
+/* The same as a comment says it: the load states once, lines broken */
 static const char *column_list(const struct emitter *e)
 {
-	const char **name = column_names(e), *list = "";
+	enum { WIDTH = 110 };
+	const char **name = column_names(e), *list = "", *line = "";
 	int states = e->system->states, loads = e->model->tuning->loads, segments = e->system->segments;
 	for (int i = 0; i < step_columns(e); i++) {
 		if (i >= states + loads && i < states + segments * loads)
 			continue;
 		bool first = segments > 1 && loads && i == states, last = segments > 1 && loads && i == states + loads - 1;
-		list = format("%s%s%s%s%s", list, i ? ", " : "", first ? "(" : "", name[i], last ? format(") in each of %d segments of time", segments) : "");
+		const char *text = format("%s%s%s", first ? "(" : "", name[i], last ? format(") in each of %d segments of time", segments) : "");
+		bool wide = strlen(line) + strlen(text) > WIDTH;
+		list = format("%s%s%s%s", list, i ? "," : "", wide ? "\n *     " : i ? " " : "", text);
+		line = wide ? text : format("%s, %s", line, text);
 	}
 	return list;
 }
@@ -102,16 +108,16 @@ void emit_coefficient_struct(const struct emitter *e)
 	const char *n = e->name, *N = e->upper;
 	fprintf(to, "enum { %s_PARAMS = %d };  /* tunable: %s */\n", N, e->model->tuning->params, param_list(e));
 	fprintf(to, "typedef struct %s_coeffs %s_coeffs;  /* what a step multiplies with, at one set of params and one h */\n", n, n);
-	fprintf(to, "/* x = %s%s */\n", column_list(e), ramp_note(e, "its value before the step, then after it"));
+	fprintf(to, "/* z = %s%s */\n", column_list(e), ramp_note(e, "its value before the step, then after it"));
 	fprintf(to, "struct %s_coeffs {\n", n);
 	member(e, "double h;", "[s]");
 	if (e->system->segments > 1)
 		member(e, "double h_low;", "of the spec's step: what h leaves out; else 0");
 	member(e, format("double params[%s_PARAMS];", N), param_list(e));
-	member(e, format("double step[%s_STATES][%d];", N, step_columns(e)), e->step->form == FORM_DELTA ? "y += step x" : "y = step x");
+	member(e, format("double step[%s_STATES][%d];", N, step_columns(e)), e->step->form == FORM_DELTA ? "y += step z" : "y = step z");
 	if (tuned_outputs(e))
 		member(e, format("double out[%d][%d];", tuned_outputs(e), step_columns(e)),
-		       format("out = out x, where outputs depend on params%s", ramp_note(e, "its value and its slope")));
+		       format("out z, where outputs depend on params%s", ramp_note(e, "its value and its slope")));
 	if (e->phases)
 		member(e, format("pl_turn phase_step[%d];", e->phases), "of the loads, in one step");
 	if (e->model->tuning->frequencies)
@@ -124,14 +130,18 @@ void emit_coefficient_struct(const struct emitter *e)
 void emit_tuning_declarations(const struct emitter *e)
 {
 	FILE *to = e->to;
-	const char *n = e->name, *N = e->upper;
-	fprintf(to, "\n/* %s_retune computes c anew from params (%s) and h [s]. 0, or c is as it was: PL_NOT_FINITE, a number of it is infinite or not a\n"
-		    " * number; PL_SINGULAR, a mass matrix without inverse, or a divisor 0; %sPL_NO_STEP, h is not above 0. c may be that of an instance as long as h\n"
-		    " * stays; another h belongs to the time from then on: %s_use keeps state and time and takes c over%s.\n */\n", n, param_list(e), e->model->tuning->frequencies ? "PL_NO_RATE, a frequency below 0; " : "", n,
-		e->phases ? "; phases of loads go on from where they are" : "");
-	fprintf(to, "int    %s_retune(%s_coeffs *c, const double params[%s_PARAMS], double h);\n", n, n, N);
-	fprintf(to, "void   %s_use(%s *s, const %s_coeffs *c);\n", n, n, n);
-	fprintf(to, "extern const %s_coeffs %s_nominal;  /* of the spec's values: correctly rounded; what %s_init starts with; no\n                                   * other function gives an instance its first coefficients */\n\n", n, n, n);
+	const char *n = e->name;
+	fprintf(to, "\n/* Computes c anew from params (%s) and h [s]. 0, or c is as it was and\n", param_list(e));
+	fputs(" *     PL_NO_STEP     h is not above 0\n"
+	      " *     PL_SINGULAR    the mass matrix has no inverse, or a divisor is 0\n", to);
+	if (e->model->tuning->frequencies)
+		fputs(" *     PL_NO_RATE     a frequency of a load is below 0\n", to);
+	fputs(" *     PL_NOT_FINITE  a number of it is infinite, or not a number\n"
+	      " * c may be that of an instance as long as h stays. */\n", to);
+	fprintf(to, "int    %s_retune(%s_coeffs *c, const double params[%s_PARAMS], double h);\n\n", n, n, e->upper);
+	fprintf(to, "/* From now on with c. State and time stay%s. */\n", e->phases ? "; phases of loads go on from where they are" : "");
+	fprintf(to, "void   %s_use(%s *s, const %s_coeffs *c);\n\n", n, n, n);
+	fprintf(to, "/* Of the spec's values, correctly rounded: what %s_init starts with */\nextern const %s_coeffs %s_nominal;\n\n", n, n, n);
 }
 
 void emit_tuning_wrapper(const struct emitter *e)
