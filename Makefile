@@ -59,6 +59,8 @@ firmware-report: setup
 # The long forms of what `make check` runs briefly.
 accuracy: all
 	$(BUILD)/tests/accuracy/bitwise -n 2000 tests/accuracy/exponentials.txt models/*.spec
+	ninja -C $(BUILD) long
+
 fuzz: all
 	ninja -C $(BUILD) fuzz_long
 

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # check.sh BUILD: runs every test and ends with one line that counts all cases.
 build=$1
-meson test -C "$build" --print-errorlogs --no-suite long
+meson test -C "$build" --print-errorlogs
 status=$?
 junit=$build/meson-logs/testlog.junit.xml
 sed -n '2s/.*<testsuites tests="\([0-9]*\)" errors="\([0-9]*\)" failures="\([0-9]*\)".*/\1 \2 \3/p' "$junit" >"$build/counts"
