@@ -23,7 +23,7 @@ static void add_product(mpq_ptr sum, const struct product *p, bool second_word, 
 	mpq_clears(factor, value, NULL);
 }
 
-/* What is left of a sum that is kept: of `whole` */
+/* The velocity that is not stepped, from the sum that is kept: that of a set in which the others are 0, their base then */
 static void take_parts(const struct step *step, const struct keeper *keeper, mpq_srcptr whole, mpq_t *state)
 {
 	mpq_t sum;

@@ -468,7 +468,7 @@ const char *keeper_text(const struct emitter *e, const struct keeper *keeper, bo
 	return format(plain ? "s->y[%d] - %s" : "s->y[%d] - (%s)", keeper->state, tree(terms, term, 22));
 }
 
-/* The states wanted as they are kept; `velocities`: without masses. In place of a sum that is kept stands what is left of it. */
+/* The states wanted. `velocities`: without masses, and with those that are not stepped; else as the struct has them, those left out. */
 static void write_locals(const struct emitter *e, const bool *reads, const char *type, const char *vector, bool velocities)
 {
 	const char *list = "";

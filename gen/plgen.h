@@ -973,7 +973,7 @@ void count_loads(struct program *program, const struct linear *system, bool sing
 /* ---- momentum.c: sums of velocities that nothing changes ---- */
 
 void find_keepers(struct step *step);                        /* of a step of form delta or kick-drift-kick */
-const struct keeper *keeper_of(const struct step *step, int state); /* of the sum that gives this velocity; NULL: none does */
+const struct keeper *keeper_of(const struct step *step, int state); /* which gives this velocity; NULL: it is stepped */
 
 /* ---- drift.c: what the rounding of its constants does to a linear step ---- */
 
