@@ -486,7 +486,7 @@ static struct value *collect_coordinate(struct collector *c, struct node *node)
 	int first = symbol->index + (node->component ? node->component - 1 : 0), rows = node->component || !symbol->length ? 1 : symbol->length;
 	struct value *value = value_new(rows, 1);
 	for (int i = 0; i < rows; i++)
-		value->cell[i] = form_unit((struct basis){ .kind = BASIS_COORD, .index = first + i, .order = node->primes });
+		value->cell[i] = coordinate_form(c->model, first + i, node->primes);
 	return value;
 }
 

@@ -89,12 +89,23 @@ const char *written_local(const struct model *written, int state)
 	return velocity ? s->c_dot : s->c_name;
 }
 
-/* s'' as s_dot_dot, q[1] as q1 */
+/* s'' as s_dot_dot, q[1] as q1, (a - b)' as a_from_b_dot; a factor in front goes */
 static const char *identifier(const char *name)
 {
 	const char *text = "";
-	for (; *name; name++)
-		text = *name == '\'' ? format("%s_dot", text) : *name == '[' || *name == ']' ? text : format("%s%c", text, *name);
+	for (; *name; name++) {
+		const char *times = strchr(name, '*');
+		if (times && strspn(name, "0123456789./-e") == (size_t)(times - name))
+			name = times + 1;
+		if (strncmp(name, " - ", 3) == 0) {
+			text = format("%s_from_", text);
+			name += 2;
+		} else if (*name == '\'') {
+			text = format("%s_dot", text);
+		} else if (!strchr("[]()", *name)) {
+			text = format("%s%c", text, *name);
+		}
+	}
 	return text;
 }
 
@@ -116,7 +127,7 @@ void name_for_c(const struct model *model, const char *upper, const char **local
 		}
 	}
 	for (int i = 0; i < model->written->system.states; i++) {
-		int place = model->place ? model->place[i] : i;
+		int place = model->place ? model->place[i] : model->relative ? relative_place(model, i) : i;
 		if (place >= 0)
 			local[place] = written_local(model->written, i);
 	}

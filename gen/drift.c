@@ -16,22 +16,9 @@ static void add_product(mpq_ptr sum, const struct product *p, bool second_word, 
 		mpq_add(factor, factor, value);
 	}
 	mpq_set(value, state[p->operand.index]);
-	if (p->operand.kind == OPERAND_DIFFERENCE)
-		mpq_sub(value, value, state[p->operand.minus]);
 	mpq_mul(value, value, factor);
 	mpq_add(sum, sum, value);
 	mpq_clears(factor, value, NULL);
-}
-
-/* The velocity that is not stepped, from the sum that is kept: that of a set in which the others are 0, their base then */
-static void take_parts(const struct step *step, const struct keeper *keeper, mpq_srcptr whole, mpq_t *state)
-{
-	mpq_t sum;
-	mpq_init(sum);
-	for (int k = 0; k < keeper->parts; k++)
-		add_product(sum, &keeper->part[k], step->program->compensated, (const mpq_t *)state);
-	mpq_sub(state[keeper->state], whole, sum);
-	mpq_clear(sum);
 }
 
 /* One step from `state`, loads and inputs left out */
@@ -39,31 +26,21 @@ static void run_program(const struct step *step, mpq_t *state)
 {
 	const struct program *program = step->program;
 	int n = step->system.states;
-	mpq_t *old = rationals((size_t)n), *whole = rationals((size_t)n), sum;
+	mpq_t *old = rationals((size_t)n), sum;
 	mpq_init(sum);
-	for (int i = 0; i < n; i++)
-		mpq_set(whole[i], state[i]);
-	for (int k = 0; k < step->keepers; k++)
-		take_parts(step, &step->keeper[k], whole[step->keeper[k].state], state);
 	for (int i = 0; i < n; i++)
 		mpq_set(old[i], state[i]);
 	for (int i = 0; i < program->assignments; i++) {
 		const struct assignment *a = &program->assignment[i];
 		const mpq_t *from = (const mpq_t *)(program->in_order ? state : old);
-		if (a->keeper) {
-			take_parts(step, a->keeper, whole[a->target], state);
-			continue;
-		}
 		mpq_set_ui(sum, 0, 1);
 		for (int k = 0; k < a->terms; k++)
-			if (a->term[k].operand.kind <= OPERAND_DIFFERENCE)
+			if (a->term[k].operand.kind == OPERAND_STATE)
 				add_product(sum, &a->term[k], program->compensated, from);
 		if (a->added)
 			mpq_add(sum, sum, from[a->target]);
 		mpq_set(state[a->target], sum);
 	}
-	for (int k = 0; k < step->keepers; k++)
-		mpq_set(state[step->keeper[k].state], whole[step->keeper[k].state]);
 	mpq_clear(sum);
 }
 

@@ -34,7 +34,7 @@ static bool load_is_needed(const struct model *model, const struct linear *syste
 	bool needed = search.found || load_acts(system, &system->load[load]);
 	for (int o = 0; o < model->outputs; o++) {
 		const struct form *left = model->output[o].left;
-		needed = needed || (left && reads_of(model->written, 1, &left).load[load]);
+		needed = needed || (left && reads_of(speaker(model), 1, &left).load[load]);
 	}
 	for (int x = 0; model->switching && x < model->switching->expressions; x++)
 		for (int k = 0; k < system->load[load].columns; k++)
@@ -48,6 +48,11 @@ static bool load_is_needed(const struct model *model, const struct linear *syste
 		for (int k = 0; k < system->load[load].columns * system->segments; k++)
 			needed = needed || mpq_sgn(model->output[o].load[load][k]) != 0;
 	return needed;
+}
+
+const struct model *speaker(const struct model *model)
+{
+	return model->relative ? model : model->written;
 }
 
 static struct emitter emitter_new(FILE *to, const struct step *step, const char *options)
@@ -95,33 +100,6 @@ int coordinate_of_row(const struct model *model, int row)
 	while (model->owner[coord] != row)
 		coord++;
 	return coord;
-}
-
-/* ---- sums of velocities that are kept ---- */
-
-static int parts_kept(const struct emitter *e)
-{
-	int parts = 0;
-	for (int k = 0; k < e->step->keepers; k++)
-		parts += e->step->keeper[k].parts;
-	return parts;
-}
-
-static const char *keepers_text(const struct emitter *e)
-{
-	const char *text = "";
-	for (int k = 0; k < e->step->keepers; k++)
-		text = format("%s%s%s", text, k ? ", " : "", e->model->state_name[e->step->keeper[k].state]);
-	return text;
-}
-
-static const char *others_text(const struct emitter *e)
-{
-	const char *text = "";
-	for (int k = 0; k < e->step->keepers; k++)
-		for (int i = 0; i < e->step->keeper[k].parts; i++)
-			text = format("%s%s%s", text, *text ? ", " : "", e->model->state_name[e->step->keeper[k].part[i].operand.index]);
-	return text;
 }
 
 /* ---- banner ---- */
@@ -175,7 +153,7 @@ static const char *const scheme_notes[SCHEMES] = {
 static void banner_leftover(const struct emitter *e)
 {
 	enum { SHOWN = 6, WIDTH = 90 };
-	const struct model *model = e->model;
+	const struct model *model = e->step->shown->model;
 	const char *at = model->operator[0].text;
 	fprintf(e->to, " * y' = A y + loads + inputs + r(t, y). A: the %s%s%s.\n", *at ? "equations' Jacobian at " : model->scheme == SCHEME_PL ? "own terms of each coordinate" : "linear terms with constant coefficients",
 		at, e->step->operators > 1 ? format(", and so on: %d operators", e->step->operators) : "");
@@ -193,7 +171,8 @@ static void banner_leftover(const struct emitter *e)
 /* Regions, and what each expression is compared with */
 static void banner_regions(const struct emitter *e)
 {
-	const struct switching *s = e->model->switching;
+	const struct model *model = e->step->shown->model;
+	const struct switching *s = model->switching;
 	fprintf(e->to, " * Scheme exact: nothing is approximated. The equations are piecewise linear: %d regions, %d different, in each of which\n"
 		       " * every constant is its closed form, correctly rounded; crossings inside a step are found in order, to rounding.\n",
 		possible_regions(s), s->systems);
@@ -201,7 +180,7 @@ static void banner_regions(const struct emitter *e)
 		const char *at = "";
 		for (int k = 0; k < s->expression[i].breaks; k++)
 			at = format("%s%s%s", at, k ? ", " : "", readable_text(s->expression[i].at[k]));
-		fprintf(e->to, " *     expression %d: %s, at %s\n", i, printable(form_text(e->model, s->expression[i].form)), at);
+		fprintf(e->to, " *     expression %d: %s, at %s\n", i, printable(form_text(model, s->expression[i].form)), at);
 	}
 	fputs(" * The poles above are those of the terms that are linear everywhere.\n", e->to);
 	fputs(" * A region's number is the sum of its intervals, each times the product of the numbers of intervals before it.\n", e->to);
@@ -242,6 +221,24 @@ static const char *state_list(const struct model *model)
 	return list;
 }
 
+/* What is kept in the place of positions that only differences of matter */
+static void banner_relative(const struct emitter *e)
+{
+	const struct relative *r = e->model->relative;
+	const char *list = "", *centre = "";
+	for (int j = 0; j < r->written->n; j++)
+		if (r->link[j].kind != LINK_NONE)
+			list = format("%s%s%s", list, *list ? ", " : "", r->name[j]);
+	for (int j = 0; j < r->written->n; j++)
+		for (int k = 0; r->link[j].kind == LINK_CENTRE && k < r->written->n; k++)
+			if (mpq_sgn(r->link[j].weight[k]) != 0)
+				centre = format("%s%s%s*%s", centre, *centre ? " + " : format("; %s = ", r->name[j]), readable_text(r->link[j].weight[k]),
+						r->written->coord_name[k]);
+	fprintf(e->to, " * What may move as a whole is kept apart from what moves in it: %s%s.\n", list, centre);
+	if (*centre)
+		fputs(" * Only loads and inputs act on a centre; nothing that rounds inside changes its velocity.\n", e->to);
+}
+
 /* What the form does to rounding, and what rounding has done to its constants */
 static void banner_form(const struct emitter *e)
 {
@@ -253,8 +250,8 @@ static void banner_form(const struct emitter *e)
 	if (kept[e->step->form])
 		fprintf(e->to, " * %s%s.\n", kept[e->step->form],
 			e->step->program->compensated ? "; factors in two words,\n * and what rounding takes from the state is kept in rest" : "");
-	if (e->step->keepers)
-		fprintf(e->to, " * No force from outside acts: what %s gained since the last set, %s lost; so momentum stays as it is.\n", others_text(e), keepers_text(e));
+	if (e->model->relative)
+		banner_relative(e);
 	if (drift.known)
 		fprintf(e->to, " * %s.\n", drift_text(&drift));
 	if (e->model->single)
@@ -277,7 +274,7 @@ static void banner_cost(const struct emitter *e)
 	banner_form(e);
 	if (e->model->tuning)
 		banner_tuning(e);
-	fprintf(e->to, " * State y = %s.\n", state_list(e->model));
+	fprintf(e->to, " * State y = %s.\n", state_list(e->step->shown->model));
 	for (int i = 0; i < e->system->inputs; i++)
 		fprintf(e->to, " * Input %s: %s.\n", e->system->input[i].name, e->system->input[i].first_order
 			? "a ramp from sample to sample; u is its value at the end of the step" : "held over the step");
@@ -325,13 +322,10 @@ static void emit_state_struct(const struct emitter *e)
 	if (e->model->tuning)
 		emit_coefficient_struct(e);
 	fprintf(to, "typedef struct %s %s;  /* copy it to save, assign it to restore */\n", e->name, e->name);
-	fprintf(to, "struct %s {\n    double y[%s_STATES];  /* %s%s%s */\n", e->name, e->upper, state_list(e->model),
-		e->step->momenta ? format("; velocities times mass / mass of %s", e->model->coord_name[0]) : "",
-		e->step->keepers ? format("; %s at the last set", keepers_text(e)) : "");
+	fprintf(to, "struct %s {\n    double y[%s_STATES];  /* %s%s */\n", e->name, e->upper, state_list(e->model),
+		e->step->momenta ? format("; velocities times mass / mass of %s", e->model->coord_name[0]) : "");
 	if (e->step->program->compensated)
 		fprintf(to, "    double rest[%s_STATES];  /* what rounding took from y so far */\n", e->upper);
-	if (e->step->keepers)
-		fprintf(to, "    double base[%d];      /* %s at the last set; what was gained since, %s lost */\n", parts_kept(e), others_text(e), keepers_text(e));
 	if (e->model->tuning)
 		fprintf(to, "    %s_coeffs coeffs;    /* its own */\n", e->name);
 	if (e->system->inputs)
@@ -377,7 +371,7 @@ static void emit_functions(const struct emitter *e, bool rhs)
 		emit_tuning_declarations(e);
 	if (rhs)
 		declare(e, format("void   %s_rhs(double t, const double y[], %sdouble dydt[]);", n, inputs ? "const double u[], " : ""),
-			e->model->written != e->model ? format("as written; y: all %d written states", e->model->written->system.states)
+			e->model->place ? format("as written; y: all %d written states", e->model->written->system.states)
 			: e->ramps ? "as written; u: inputs, then their slopes" : "the equations as written");
 	if (e->model->selftest)
 		declare(e, format("double %s_selftest(void);", n), "largest deviation from the closed form, in units in the last place");
@@ -446,38 +440,14 @@ static const char *factor_of_momentum(const struct emitter *e, int state)
 	return shortest(finite_number(e, e->step->mass[e->system->coord[state]]));
 }
 
-/* What another velocity has gained since the last set: from locals, or from s->y */
-static const char *gain(const struct emitter *e, const struct keeper *keeper, int part, bool locals)
-{
-	int state = keeper->part[part].operand.index, at = keeper->first + part;
-	const char *now = locals ? e->local[state] : format("s->y[%d]", state);
-	return e->step->program->compensated ? format("((%s - s->base[%d]) + s->rest[%d])", now, at, state) : format("(%s - s->base[%d])", now, at);
-}
-
-const char *keeper_text(const struct emitter *e, const struct keeper *keeper, bool locals)
-{
-	const char **term = ARRAY(const char *, 2 * (size_t)keeper->parts + 1);
-	int terms = 0;
-	for (int k = 0; k < keeper->parts; k++) {
-		const struct coefficient *weight = keeper->part[k].factor;
-		term[terms++] = scaled(weight->value, gain(e, keeper, k, locals));
-		if (e->step->program->compensated && weight->low != 0)
-			term[terms++] = scaled(weight->low, gain(e, keeper, k, locals));
-	}
-	bool plain = terms == 1 && term[0][0] != '-';
-	return format(plain ? "s->y[%d] - %s" : "s->y[%d] - (%s)", keeper->state, tree(terms, term, 22));
-}
-
-/* The states wanted. `velocities`: without masses, and with those that are not stepped; else as the struct has them, those left out. */
+/* The states wanted. `velocities`: without masses; else as the struct has them. */
 static void write_locals(const struct emitter *e, const bool *reads, const char *type, const char *vector, bool velocities)
 {
 	const char *list = "";
 	for (int i = 0; i < e->system->states; i++) {
 		const char *mass = velocities ? factor_of_momentum(e, i) : NULL;
-		const struct keeper *keeper = velocities ? keeper_of(e->step, i) : NULL;
-		const char *value = keeper ? format(mass ? "(%s)" : "%s", keeper_text(e, keeper, false)) : format("%s[%d]", vector, i);
-		if (reads[i] && (velocities || !keeper_of(e->step, i)))
-			list = format("%s%s%s = %s%s", list, *list ? ", " : format("    %s ", type), e->local[i], value, mass ? format(" / %s", mass) : "");
+		if (reads[i])
+			list = format("%s%s%s = %s[%d]%s", list, *list ? ", " : format("    %s ", type), e->local[i], vector, i, mass ? format(" / %s", mass) : "");
 	}
 	for (int width = 0; *list; list++) {            /* a line break instead of the blank that would pass column 110 */
 		putc(*list == ' ' && width > 100 && list[-1] == ',' ? '\n' : *list, e->to);
@@ -513,7 +483,7 @@ static void emit_init(const struct emitter *e)
 	fprintf(e->to, "\nvoid %s_init(%s *s)\n{\n    static const double start[%s_STATES] = {", e->name, e->name, e->upper);
 	for (int i = 0; i < e->system->states; i++)
 		fprintf(e->to, "%s%s", i ? ", " : "", shortest(round_rational(e->model->initial[i])));
-	fputs("};\n", e->to);
+	fprintf(e->to, e->model->relative ? "};  /* %s */\n" : "};\n", state_list(e->model));
 	if (e->model->tuning)
 		fprintf(e->to, "    s->coeffs = %s_nominal;\n", e->name);
 	for (int i = 0; i < e->system->inputs; i++) {
@@ -521,7 +491,7 @@ static void emit_init(const struct emitter *e)
 		if (e->ramps)
 			fprintf(e->to, "    s->slope[%d] = 0.0;\n", i);
 	}
-	fprintf(e->to, "    %s_set(s, 0.0, start);\n}\n", e->name);
+	fprintf(e->to, "    %s_%s(s, 0.0, start);\n}\n", e->name, e->model->relative ? "begin" : "set");
 }
 
 const char *step_length(const struct emitter *e)
@@ -555,9 +525,6 @@ void emit_store(const struct emitter *e, const char *vector, const char *indent)
 	for (int i = 0; i < e->system->states; i++)
 		if (factor_of_momentum(e, i))
 			fprintf(to, "%ss->y[%d] = %s * %s[%d];\n", indent, i, factor_of_momentum(e, i), vector, i);
-	for (int k = 0; k < e->step->keepers; k++)
-		for (int i = 0; i < e->step->keeper[k].parts; i++)
-			fprintf(to, "%ss->base[%d] = s->y[%d];\n", indent, e->step->keeper[k].first + i, e->step->keeper[k].part[i].operand.index);
 }
 
 /* A vector of states from s->y */
@@ -565,21 +532,94 @@ void emit_load_state(const struct emitter *e, const char *vector)
 {
 	fprintf(e->to, "    for (i = 0; i < %s_STATES; i++)\n        %s[i] = s->y[i];\n", e->upper, vector);
 	for (int i = 0; i < e->system->states; i++)
-		if (factor_of_momentum(e, i) && !keeper_of(e->step, i))
+		if (factor_of_momentum(e, i))
 			fprintf(e->to, "    %s[%d] = s->y[%d] / %s;\n", vector, i, i, factor_of_momentum(e, i));
-	for (int k = 0; k < e->step->keepers; k++) {
-		const struct keeper *keeper = &e->step->keeper[k];
-		const char *mass = factor_of_momentum(e, keeper->state), *value = keeper_text(e, keeper, false);
-		fprintf(e->to, mass ? "    %s[%d] = (%s) / %s;\n" : "    %s[%d] = %s;\n", vector, keeper->state, value, mass);
+}
+
+/* ---- states as written, and as they are kept ---- */
+
+/* What is kept at a coordinate, over the written ones or their velocities, which stand `shift` behind */
+static const char *kept_text(const struct emitter *e, const struct link *link, int coord, const int *at)
+{
+	const struct relative *r = e->model->relative;
+	const char **term = ARRAY(const char *, (size_t)r->written->n + 1), *own = format("y[%d]", at[coord]);
+	int terms = 0;
+	if (link->kind == LINK_PARENT) {
+		const char *from = scaled(finite_number(e, link->ratio), format("y[%d]", at[link->from]));
+		return link->turned ? format("%s - %s", from, own) : format(*from == '-' ? "%s - (%s)" : "%s - %s", own, from);
 	}
+	for (int k = 0; k < r->written->n && link->kind == LINK_CENTRE; k++)
+		if (mpq_sgn(link->weight[k]) != 0)
+			term[terms++] = scaled(finite_number(e, link->weight[k]), format("y[%d]", at[k]));
+	return link->kind == LINK_CENTRE ? tree(terms, term, 12) : own;
+}
+
+/* The written one: x is what is kept, y what has been found of the others */
+static const char *written_text(const struct emitter *e, const struct link *link, int coord, const int *at, const int *kept)
+{
+	const struct relative *r = e->model->relative;
+	const char **term = ARRAY(const char *, (size_t)r->written->n + 1);
+	int terms = 0;
+	if (link->kind == LINK_PARENT)
+		return format("%s %c x[%d]", scaled(finite_number(e, link->ratio), format("y[%d]", at[link->from])), link->turned ? '-' : '+', kept[coord]);
+	term[terms++] = format("x[%d]", kept[coord]);
+	for (int k = 0; k < r->written->n && link->kind == LINK_CENTRE; k++)
+		if (mpq_sgn(link->shift[k]) != 0)
+			term[terms++] = scaled(finite_number(e, link->shift[k]), format("x[%d]", kept[k]));
+	return tree(terms, term, 12);
+}
+
+/* Places of positions (order 0) and velocities in the vector of states, -1: there is none; of velocities that stand alone in `kept` too */
+static void find_places(const struct emitter *e, int order, int *at, int *kept)
+{
+	const struct relative *r = e->model->relative;
+	for (int j = 0; j < r->written->n; j++) {
+		at[j] = order ? r->written->system.velocity[j] : j;
+		kept[j] = !order ? j : r->link[j].velocity >= 0 ? r->link[j].velocity : e->system->velocity[j];
+	}
+}
+
+static void emit_conversion(const struct emitter *e, bool keep)
+{
+	const struct relative *r = e->model->relative;
+	const struct model *written = r->written;
+	int *at = ARRAY(int, (size_t)written->n), *kept = ARRAY(int, (size_t)written->n);
+	fprintf(e->to, "\nstatic void %s_%s(const double %s[%s_STATES], double %s[%s_STATES])\n{\n", e->name, keep ? "keep" : "written", keep ? "y" : "x", e->upper,
+		keep ? "x" : "y", e->upper);
+	for (int order = 0; order < 2; order++) {
+		find_places(e, order, at, kept);
+		for (int i = 0; i < written->n + r->links; i++) {
+			int j = i < written->n ? i : r->sequence[i - written->n];
+			const struct link plain = { .kind = LINK_NONE }, *link = order && r->link[j].velocity >= 0 ? &plain : &r->link[j];
+			if (at[j] < 0 || (!keep && (link->kind == LINK_PARENT) != (i >= written->n)) || (keep && i >= written->n))
+				continue;
+			if (keep)
+				fprintf(e->to, "    x[%d] = %s;  /* %s */\n", kept[j], kept_text(e, link, j, at), e->model->state_name[kept[j]]);
+			else
+				fprintf(e->to, "    y[%d] = %s;  /* %s */\n", at[j], written_text(e, link, j, at, kept), written->state_name[at[j]]);
+		}
+	}
+	fputs("}\n", e->to);
+}
+
+/* NAME_keep, NAME_written */
+static void emit_conversions(const struct emitter *e)
+{
+	fputs("\n/* What may move as a whole is kept apart from what moves in it: x, from the states y as written; and back. */", e->to);
+	emit_conversion(e, true);
+	emit_conversion(e, false);
 }
 
 static void emit_access(const struct emitter *e)
 {
 	FILE *to = e->to;
 	const char *n = e->name, *N = e->upper;
-	emit_init(e);
-	fprintf(to, "\nvoid %s_set(%s *s, double t, const double y[%s_STATES])\n{\n    int i;\n", n, n, N);
+	if (e->model->relative)
+		emit_conversions(e);
+	else
+		emit_init(e);
+	fprintf(to, e->model->relative ? "\n/* From the states as they are kept */\nstatic void %s_begin(%s *s, double t, const double y[%s_STATES])\n{\n    int i;\n"
+				       : "\nvoid %s_set(%s *s, double t, const double y[%s_STATES])\n{\n    int i;\n", n, n, N);
 	emit_store(e, "y", "    ");
 	fputs("    s->t0 = t;\n    s->k = 0;\n", to);
 	if (has_status(e))
@@ -590,8 +630,18 @@ static void emit_access(const struct emitter *e)
 			e->system->segments - 1, n, step_length(e));
 	if (e->model->switching)
 		fprintf(to, "    %s_place(s);\n", n);
-	fprintf(to, "}\n\nvoid %s_get(const %s *s, double y[%s_STATES])\n{\n    int i;\n", n, n, N);
-	emit_load_state(e, "y");
+	fputs("}\n", to);
+	if (e->model->relative) {
+		emit_init(e);
+		fprintf(to, "\nvoid %s_set(%s *s, double t, const double y[%s_STATES])\n{\n    double x[%s_STATES];\n    %s_keep(y, x);\n    %s_begin(s, t, x);\n}\n",
+			n, n, N, N, n, n);
+	}
+	fprintf(to, "\nvoid %s_get(const %s *s, double y[%s_STATES])\n{\n    int i;\n", n, n, N);
+	if (e->model->relative)
+		fprintf(to, "    double x[%s_STATES];\n", N);
+	emit_load_state(e, e->model->relative ? "x" : "y");
+	if (e->model->relative)
+		fprintf(to, "    %s_written(x, y);\n", n);
 	fputs("}\n", to);
 	emit_time(e);
 	if (has_status(e))
@@ -629,25 +679,38 @@ void emit_number_rows(const struct emitter *e, int rows, int columns, const doub
 	}
 }
 
-static void emit_phi(const struct emitter *e)
+static void emit_matrix(const struct emitter *e, const struct step *step, const char *declaration)
 {
 	int n = e->system->states;
 	double *value = ARRAY(double, (size_t)(n * n));
 	for (int i = 0; i < n * n; i++)
-		value[i] = e->step->table->Phi[i].value;
-	fprintf(e->to, "\nconst double %s_Phi[%s_STATES][%s_STATES] = {  /* columns: %s */\n", e->name, e->upper, e->upper, state_list(e->model));
-	emit_number_rows(e, n, n, value, e->model->state_name);
+		value[i] = step->table->Phi[i].value;
+	fprintf(e->to, "\n%s[%s_STATES][%s_STATES] = {  /* columns: %s */\n", declaration, e->upper, e->upper, state_list(step->model));
+	emit_number_rows(e, n, n, value, step->model->state_name);
 	fputs("};\n", e->to);
+}
+
+const char *stepped_phi(const struct emitter *e)
+{
+	return format(e->model->relative ? "%s_Phi_kept" : "%s_Phi", e->name);
+}
+
+/* Of the states as written; of those that are kept where a function reads it */
+static void emit_phi(const struct emitter *e)
+{
+	emit_matrix(e, e->step->shown, format("const double %s_Phi", e->name));
+	if (e->model->relative && (has_jump(e) || (e->step->program->loops && e->step->form == FORM_DIRECT && !has_leftover(e->step))))
+		emit_matrix(e, e->step, format("static const double %s", stepped_phi(e)));
 }
 
 static void emit_gamma(const struct emitter *e)
 {
-	const struct table *table = e->step->table;
+	const struct table *table = e->step->shown->table;
 	double *value = ARRAY(double, (size_t)(table->states * table->inputs));
 	for (int i = 0; i < table->states * table->inputs; i++)
 		value[i] = table->input[i].value;
 	fprintf(e->to, "\nconst double %s_Gamma[%s_STATES][%d] = {\n", e->name, e->upper, table->inputs);
-	emit_number_rows(e, table->states, table->inputs, value, e->model->state_name);
+	emit_number_rows(e, table->states, table->inputs, value, e->step->shown->model->state_name);
 	fputs("};\n", e->to);
 }
 
@@ -677,7 +740,7 @@ static void emit_descriptor(const struct emitter *e)
 	for (int i = 0; i < e->system->inputs; i++)
 		input[i] = e->system->input[i].name;
 	fputs("\n/* The same functions for programs that drive any model. */\n\n", to);
-	emit_name_list(e, "state_names", e->system->states, e->model->state_name);
+	emit_name_list(e, "state_names", e->system->states, e->step->shown->model->state_name);
 	if (inputs)
 		emit_name_list(e, "input_names", e->system->inputs, input);
 	emit_name_list(e, "output_names", e->model->outputs, output);
@@ -730,7 +793,7 @@ static bool needs_math(const struct emitter *e, bool rhs)
 	bool math = false;
 	for (int i = 0; i < e->model->outputs; i++) {
 		const struct form *left = e->model->output[i].left;
-		math = math || (left && reads_of(e->model->written, 1, &left).math);
+		math = math || (left && reads_of(speaker(e->model), 1, &left).math);
 	}
 	for (int k = 0; k < e->model->operators; k++)
 		math = math || reads_of(e->model, e->model->channels, (const struct form *const *)e->model->operator[k].left).math;

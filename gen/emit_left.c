@@ -121,7 +121,7 @@ static int load_of_wave(const struct emitter *e, const struct wave *wave)
 
 static const char *coordinate_now(const struct emitter *e, const struct basis *basis)
 {
-	const struct model *written = e->model->written;
+	const struct model *written = speaker(e->model);
 	if (basis->order > 0 && basis->order >= written->coord[basis->index]->highest)
 		return format("accel%d", basis->index + 1);
 	int state = basis->order ? written->system.velocity[basis->index] : basis->index;
@@ -267,7 +267,8 @@ static void emit_leftover_locals(const struct emitter *e, const struct reads *r,
 
 static const char *row_name(const struct emitter *e, int channel)
 {
-	return e->model->coord_name[coordinate_of_row(e->model, e->model->channel_row[channel])];
+	const struct model *shown = e->step->shown->model;
+	return shown->coord_name[coordinate_of_row(shown, e->model->channel_row[channel])];
 }
 
 static void emit_leftover(const struct emitter *e)

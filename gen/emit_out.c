@@ -126,7 +126,7 @@ static void mark_row(const struct emitter *e, const struct output *output, struc
 /* What an output that is not linear reads: written states, inputs, loads, highest derivatives */
 static void mark_form(const struct emitter *e, const struct output *output, struct output_needs *needs)
 {
-	const struct model *written = e->model->written;
+	const struct model *written = speaker(e->model);
 	const struct form *form = output->left;
 	struct reads reads = reads_of(written, 1, &form);
 	for (int i = 0; i < written->system.states; i++)

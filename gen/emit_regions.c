@@ -182,7 +182,7 @@ static const char **expression_names(const struct emitter *e)
 	const struct switching *s = regions_of(e);
 	const char **name = ARRAY(const char *, (size_t)s->expressions);
 	for (int i = 0; i < s->expressions; i++)
-		name[i] = form_text(e->model, s->expression[i].form);
+		name[i] = form_text(e->step->shown->model, e->step->shown->model->switching->expression[i].form);
 	return name;
 }
 
@@ -367,5 +367,6 @@ void emit_region_at(const struct emitter *e)
 	emit_load_states(e, needed_loads(e), false);
 	emit_x(e, "s->y", true);
 	fprintf(e->to, "    pl_switching_advance(&%s_switching, tau, x, &contact, crossing, work);\n", e->name);
-	fprintf(e->to, "    for (i = 0; i < %s_STATES; i++)\n        y[i] = x[i];\n}\n", e->upper);
+	emit_hand_over(e);
+	fputs("}\n", e->to);
 }

@@ -312,8 +312,13 @@ static void emit_written_residuals(const struct emitter *e)
 		fputs("    (void)t;\n", e->to);
 }
 
-void emit_rhs(const struct emitter *e)
+void emit_rhs(const struct emitter *stepped)
 {
+	struct emitter written = *stepped, *e = &written;
+	if (e->model->relative) {
+		e->model = e->model->written;
+		e->system = &e->model->system;
+	}
 	fputs("\n/* The equations as written, for checking against any ODE solver. */\n", e->to);
 	fprintf(e->to, "void %s_rhs(double t, const double y[], %sdouble dydt[])\n{\n", e->name, e->system->inputs ? "const double u[], " : "");
 	if (is_scalar_text(e->model->written))

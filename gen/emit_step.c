@@ -18,7 +18,6 @@ static const char *operand_text(const struct emitter *e, const struct operand *o
 {
 	switch (operand->kind) {
 	case OPERAND_STATE: return e->local[operand->index];
-	case OPERAND_DIFFERENCE: return format("(%s - %s)", e->local[operand->index], e->local[operand->minus]);
 	case OPERAND_LOAD:  return column_operand(e, operand->index);
 	default:            return input_operand(e, operand->index);
 	}
@@ -66,10 +65,6 @@ static void emit_compensated(const struct emitter *e, const struct assignment *a
 static void emit_assignment(const struct emitter *e, const struct assignment *a)
 {
 	const struct program *program = e->step->program;
-	if (a->keeper) {
-		fprintf(e->to, "    %s%s = %s;\n", program->in_order ? "" : "const double ", e->local[a->target], keeper_text(e, a->keeper, true));
-		return;
-	}
 	const char *target = program->in_order ? e->local[a->target] : format("s->y[%d]", a->target), *name = e->model->state_name[a->target];
 	if (program->compensated)
 		emit_compensated(e, a, target);
@@ -131,7 +126,7 @@ static void emit_columns(const struct emitter *e, const char *table, const char 
 		return;
 	fprintf(e->to, "    const double %s[%d] = {", vector, columns);
 	for (int k = 0; k < columns; k++) {
-		const char *operand = operand_text(e, &(struct operand){ kind, k, 0 });
+		const char *operand = operand_text(e, &(struct operand){ kind, k });
 		fprintf(e->to, "%s%s", k ? ", " : "", operand ? operand : "1.0");
 	}
 	fprintf(e->to, "};\n    for (i = 0; i < %s_STATES; i++)\n        for (j = 0; j < %d; j++)\n            y[i] += %s[i][j] * %s[j];\n", e->upper, columns,
@@ -150,7 +145,7 @@ static void emit_looped_step(const struct emitter *e)
 	fprintf(to, "    double y[%s_STATES];\n    int i, j;\n", N);
 	emit_load_states(e, loads, false);
 	fprintf(to, "    for (i = 0; i < %s_STATES; i++) {\n        y[i] = 0.0;\n        for (j = 0; j < %s_STATES; j++)\n", N, N);
-	fprintf(to, "            y[i] += %s_%s[i][j] * s->y[j];\n    }\n", n, e->step->form == FORM_DELTA ? "increment" : "Phi");
+	fprintf(to, "            y[i] += %s[i][j] * s->y[j];\n    }\n", e->step->form == FORM_DELTA ? format("%s_increment", n) : stepped_phi(e));
 	emit_columns(e, format("%s_load_factor[%s]", n, e->system->segments > 1 ? "s->segment" : "0"), "load", OPERAND_LOAD, table->columns);
 	emit_columns(e, format("%s_Gamma", n), "input", OPERAND_INPUT, table->inputs);
 	fprintf(to, "    for (i = 0; i < %s_STATES; i++)\n        s->y[i] %s y[i];\n", N, e->step->form == FORM_DELTA ? "+=" : "=");
@@ -168,12 +163,10 @@ static void emit_plain_step(const struct emitter *e)
 	emit_load_states(e, loads_of_step(e), false);
 	if (e->system->segments > 1 && any_load_term(program) && !program->tuned)
 		fprintf(e->to, "    const double (*const factor)[%d] = %s_load_factor[s->segment];\n", e->step->table->columns, e->name);
-	for (int k = 0; k < e->step->keepers && program->in_order; k++)
-		fprintf(e->to, "    double %s;\n", e->local[e->step->keeper[k].state]);
 	for (int i = 0; i < program->assignments; i++)
 		emit_assignment(e, &program->assignment[i]);
 	for (int i = 0; i < e->system->states && program->in_order; i++)
-		if (program->reads[i] && !keeper_of(e->step, i))
+		if (program->reads[i])
 			fprintf(e->to, "    s->y[%d] = %s;\n", i, e->local[i]);
 }
 

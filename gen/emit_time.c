@@ -244,6 +244,15 @@ static void emit_held_leftover(const struct emitter *e)
 	fprintf(e->to, "    double left[%d];\n", e->system->channels);
 }
 
+/* y, for the user, from the head of x */
+void emit_hand_over(const struct emitter *e)
+{
+	if (e->model->relative)
+		fprintf(e->to, "    %s_written(x, y);\n", e->name);
+	else
+		fprintf(e->to, "    for (i = 0; i < %s_STATES; i++)\n        y[i] = x[i];\n", e->upper);
+}
+
 void emit_at(const struct emitter *e)
 {
 	const struct series *series = &e->step->series;
@@ -255,15 +264,22 @@ void emit_at(const struct emitter *e)
 	emit_held_leftover(e);
 	if (changes) {
 		emit_leftover_now(e);
-		fprintf(to, "    %s_pass(s, %s%s%stau, y);\n}\n", e->name, e->step->operators > 1 ? "which, " : "", e->system->inputs ? "u, " : "",
-			series->powers ? "left, " : "");
+		if (e->model->relative)
+			fprintf(to, "    double x[%s_STATES];\n", e->upper);
+		fprintf(to, "    %s_pass(s, %s%s%stau, %s);\n", e->name, e->step->operators > 1 ? "which, " : "", e->system->inputs ? "u, " : "",
+			series->powers ? "left, " : "", e->model->relative ? "x" : "y");
+		if (e->model->relative)
+			fprintf(to, "    %s_written(x, y);\n", e->name);
+		fputs("}\n", to);
 		return;
 	}
 	fprintf(to, "    %sconst pl_series series = {%d, %s_STATES, %d, %d, %s[0]};  /* size, states, degree, halvings */\n",
 		e->step->operators > 1 ? "" : "static ", series->size, e->upper, series->degree, series->halvings, slope_text(e));
 	fprintf(to, "    double x[%d], work[%d];\n", series->size, 2 * series->size);
 	emit_series_vector(e);
-	fprintf(to, "    pl_series_advance(&series, tau, x, work);\n    for (i = 0; i < %s_STATES; i++)\n        y[i] = x[i];\n}\n", e->upper);
+	fputs("    pl_series_advance(&series, tau, x, work);\n", to);
+	emit_hand_over(e);
+	fputs("}\n", to);
 }
 
 /* ---- jump ---- */
@@ -311,14 +327,14 @@ static struct power power_matrix(const struct emitter *e, int segment)
 	return p;
 }
 
-/* The second words of Phi: NAME_Phi has the first */
+/* The second words of Phi: the table has the first */
 static void emit_second_words(const struct emitter *e)
 {
 	int n = e->system->states;
 	double *low = ARRAY(double, (size_t)n * (size_t)n);
 	for (int i = 0; i < n * n; i++)
 		low[i] = e->step->table->Phi[i].low;
-	fprintf(e->to, "\n/* %s_Phi + %s_Phi_low is the transfer matrix in two words */\n", e->name, e->name);
+	fprintf(e->to, "\n/* %s + %s_Phi_low is the transfer matrix in two words */\n", stepped_phi(e), e->name);
 	fprintf(e->to, "static const double %s_Phi_low[%s_STATES][%s_STATES] = {\n", e->name, e->upper, e->upper);
 	emit_number_rows(e, n, n, low, e->model->state_name);
 	fputs("};\n", e->to);
@@ -354,7 +370,7 @@ static void emit_fill_power(const struct emitter *e, int size, int entries)
 	const char *n = e->name, *N = e->upper;
 	fprintf(e->to, "    for (i = 0; i < %d; i++)\n        power[i].hi = power[i].lo = 0.0;\n", size * size);
 	fprintf(e->to, "    for (i = 0; i < %s_STATES; i++)\n        for (j = 0; j < %s_STATES; j++) {\n", N, N);
-	fprintf(e->to, "            power[%d * i + j].hi = %s_Phi[i][j];\n            power[%d * i + j].lo = %s_Phi_low[i][j];\n        }\n", size, n, size, n);
+	fprintf(e->to, "            power[%d * i + j].hi = %s[i][j];\n            power[%d * i + j].lo = %s_Phi_low[i][j];\n        }\n", size, stepped_phi(e), size, n);
 	if (entries && e->system->segments > 1)
 		fprintf(e->to, "    for (i = 0; i < %d; i++)\n        if (%s_power_entry[i].segment == s->segment)\n"
 			       "            power[%d * %s_power_entry[i].row + %s_power_entry[i].column] = %s_power_entry[i].value;\n", entries, n, size, n, n, n);
@@ -365,8 +381,12 @@ static void emit_fill_power(const struct emitter *e, int size, int entries)
 
 static void emit_leap_start(const struct emitter *e)
 {
-	if (e->step->momenta || e->step->keepers) {
-		fprintf(e->to, "    %s_get(s, y);\n    for (i = 0; i < %s_STATES; i++)\n        x[i].hi = y[i];\n", e->name, e->upper);
+	if (e->step->momenta) {
+		if (e->model->relative)
+			emit_load_state(e, "y");
+		else
+			fprintf(e->to, "    %s_get(s, y);\n", e->name);
+		fprintf(e->to, "    for (i = 0; i < %s_STATES; i++)\n        x[i].hi = y[i];\n", e->upper);
 		return;
 	}
 	bool rest = e->step->program->compensated;
@@ -377,7 +397,7 @@ static void emit_leap_start(const struct emitter *e)
 
 static void emit_leap_end(const struct emitter *e)
 {
-	if (e->step->momenta || e->step->keepers) {
+	if (e->step->momenta) {
 		fprintf(e->to, "    for (i = 0; i < %s_STATES; i++)\n        y[i] = x[i].hi;\n", e->upper);
 		emit_store(e, "y", "    ");
 		return;
@@ -397,7 +417,7 @@ static void emit_leap(const struct emitter *e, const char *declaration)
 	int size = p.size, entries = emit_power_entries(e);
 	fprintf(to, "\n%s(%s *s, uint64_t n)\n{\n", declaration, e->name);
 	fprintf(to, "    pl_two power[%d], work[%d], x[%d], w[%d];\n", size * size, size * size, size, size);
-	if (e->step->momenta || e->step->keepers)
+	if (e->step->momenta)
 		fprintf(to, "    double y[%s_STATES];\n", e->upper);
 	emit_load_states(e, wanted_loads(e, p.load), false);
 	fputs("    int i, j;\n", to);

@@ -554,9 +554,15 @@ void emit_retune(const struct emitter *e)
 
 void emit_tuned_at(const struct emitter *e)
 {
-	bool inputs = e->system->inputs > 0;
-	fprintf(e->to, "\nvoid %s_at(const %s *s, %sdouble tau, double y[%s_STATES])\n{\n    %s_pass(s, %stau, y);\n}\n", e->name, e->name,
-		inputs ? format("const double u[%s_INPUTS], ", e->upper) : "", e->upper, e->name, inputs ? "u, " : "");
+	bool inputs = e->system->inputs > 0, relative = e->model->relative != NULL;
+	fprintf(e->to, "\nvoid %s_at(const %s *s, %sdouble tau, double y[%s_STATES])\n{\n", e->name, e->name,
+		inputs ? format("const double u[%s_INPUTS], ", e->upper) : "", e->upper);
+	if (relative)
+		fprintf(e->to, "    double x[%s_STATES];\n", e->upper);
+	fprintf(e->to, "    %s_pass(s, %stau, %s);\n", e->name, inputs ? "u, " : "", relative ? "x" : "y");
+	if (relative)
+		fprintf(e->to, "    %s_written(x, y);\n", e->name);
+	fputs("}\n", e->to);
 }
 
 /* ---- in the code of a step and of the outputs ---- */

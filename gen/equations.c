@@ -41,10 +41,6 @@ static int component_of(const struct node *coordinate)
 	return coordinate->symbol->index + (coordinate->component ? coordinate->component - 1 : 0);
 }
 
-static struct form *derivative_form(const struct node *coordinate, int order)
-{
-	return form_unit((struct basis){ .kind = BASIS_COORD, .index = component_of(coordinate), .order = order });
-}
 
 /* The element's force on its first coordinate, as it stands on the left side. */
 static void collect_element(void *context)
@@ -62,9 +58,9 @@ static void collect_element(void *context)
 		int order = element->kind == ELEMENT_MASS ? 2 : element->kind == ELEMENT_DAMPER ? 1 : 0;
 		if (!is_constant(value->cell[0]))
 			error(element->value->start, "what moves belongs in an equation, or in a force", "a mass, spring or damper needs a constant");
-		form = derivative_form(element->from, order);
+		form = coordinate_form(b->model, component_of(element->from), order);
 		if (element->to)
-			form = form_sum(form, derivative_form(element->to, order), true);
+			form = form_sum(form, coordinate_form(b->model, component_of(element->to), order), true);
 		form = form_product(&b->collector, value->cell[0], form);
 	}
 	work->snapshot->element[work->index] = form;
@@ -199,6 +195,10 @@ static const char *missing_name(const struct building *b, int coord)
 /* Each coordinate gets a written equation; sketched ones without get an empty one to which the elements add. */
 static bool assign_equations(struct building *b)
 {
+	if (b->model->relative) {
+		b->owner = b->model->owner;
+		return true;
+	}
 	int n = b->model->n, written = b->snapshot->written, all = written, surplus = -1, missing = -1;
 	b->owner = ARRAY(int, (size_t)n);
 	for (int j = 0; j < n; j++)
@@ -227,8 +227,12 @@ static bool assign_equations(struct building *b)
 /* Forces of elements: on the first coordinate as they are, on the second reversed. */
 static void add_elements(const struct building *b, struct snapshot *s)
 {
-	while (s->residuals < b->model->n)
+	const struct relative *relative = b->model->relative;
+	int written = b->spec->components;
+	while (s->residuals < written)
 		add_residual(s, NEW(struct form), b->spec->element[0].at, b->spec->element[0].end);
+	for (int i = written; i < b->model->n; i++)
+		add_residual(s, relative->extra[i - written], b->model->coord[i]->at, b->model->coord[i]->at);
 	for (int i = 0; i < b->spec->elements; i++) {
 		const struct element *element = &b->spec->element[i];
 		struct residual *from = &s->residual[b->owner[component_of(element->from)]];
@@ -651,6 +655,7 @@ void build_system(struct building *b)
 	for (int s = 0; s < system->segments && !model->loads_left; s++)
 		for (int i = 0; i < model->n; i++)
 			spread_loads(b, load_form(b, s, i), add_force, &(struct force_row){ system, s, i });
+	model->owner = b->owner;
 	model->residual = rows->residual;
 	model->snapshot = b->snapshot;
 	model->whole = b->whole;

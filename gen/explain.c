@@ -87,9 +87,20 @@ static void person_tuning(FILE *to, const struct tuning *t)
 	fprintf(to, "; the equations there have %d term%s%s.\n", t->terms, t->terms == 1 ? "" : "s", t->solves ? ", and are solved for the highest derivatives" : "");
 }
 
+/* What the step keeps in the place of positions and velocities as written */
+static void person_relative(FILE *to, const struct model *model)
+{
+	const struct relative *r = model->relative;
+	const char *list = "";
+	for (int j = 0; j < r->written->n; j++)
+		if (r->link[j].kind != LINK_NONE)
+			list = format("%s%s%s", list, *list ? ", " : "", r->name[j]);
+	fprintf(to, "What may move as a whole is kept apart from what moves in it: the step keeps %s.\n", list);
+}
+
 static void person_step(FILE *to, const struct step *step)
 {
-	const struct model *model = step->model;
+	const struct model *model = step->shown->model;
 	const struct program *program = step->program;
 	fprintf(to, "Step: form %s, h = %s s; %d multiplications, %d additions", form_text_of(step), readable_text(model->h), program->multiplications,
 		program->additions);
@@ -97,6 +108,10 @@ static void person_step(FILE *to, const struct step *step)
 		fprintf(to, " (%d and %d of them for the functions of the loads)", program->wave_multiplications, program->wave_additions);
 	if (program->calls)
 		fprintf(to, ", %d calls of the model's own functions", program->calls);
+	if (step->model->relative) {
+		fputs(".\n", to);
+		person_relative(to, step->model);
+	}
 	struct drift drift = drift_of(step);
 	if (drift.known)
 		fprintf(to, ".\n%s", drift_text(&drift));
@@ -104,7 +119,7 @@ static void person_step(FILE *to, const struct step *step)
 	for (int i = 0; i < model->system.states; i++) {
 		fprintf(to, "    %-8s", model->state_name[i]);
 		for (int j = 0; j < model->system.states; j++)
-			fprintf(to, " %24s", shortest(step->table->Phi[i * model->system.states + j].value));
+			fprintf(to, " %24s", shortest(step->shown->table->Phi[i * model->system.states + j].value));
 		fputc('\n', to);
 	}
 	if (model->tuning)
@@ -124,7 +139,7 @@ static void person_step(FILE *to, const struct step *step)
 /* Bytes of tables, and the most that a step can take: every piece of it by a Taylor polynomial, all events and splits used */
 static void person_regions(FILE *to, const struct step *step)
 {
-	const struct switching *s = step->model->switching;
+	const struct switching *s = step->shown->model->switching;
 	long size = step->series.size, matrices = s->systems, degree = step->series.degree, pieces = 1;
 	long bytes = 8 * (s->expressions * size + matrices * (2 * size * size + 3 * s->expressions * size)) + 4 * (s->regions + s->expressions + matrices);
 	for (int k = 0; k < step->operators; k++)
@@ -133,7 +148,7 @@ static void person_regions(FILE *to, const struct step *step)
 	fprintf(to, "Piecewise linear: %d regions, %d of them different; in each nothing is approximated, every constant is correctly rounded.\n",
 		possible_regions(s), s->systems);
 	for (int i = 0; i < s->expressions; i++) {
-		fprintf(to, "    expression %d: %s, breakpoints", i, form_text(step->model, s->expression[i].form));
+		fprintf(to, "    expression %d: %s, breakpoints", i, form_text(step->shown->model, s->expression[i].form));
 		for (int k = 0; k < s->expression[i].breaks; k++)
 			fprintf(to, "%s %s", k ? "," : "", readable_text(s->expression[i].at[k]));
 		fputc('\n', to);
@@ -154,7 +169,7 @@ static void person_regions(FILE *to, const struct step *step)
 /* What went where: the operators, then the leftover of the first; those of the others differ in linear terms only. */
 static void person_split(FILE *to, const struct step *step)
 {
-	const struct model *model = step->model;
+	const struct model *model = step->shown->model;
 	fprintf(to, "Split: y' = A y + loads%s + r(t, y). A, the loads%s are exact, each constant correctly rounded.\n",
 		step->system.inputs ? " + inputs" : "", model->loads_left ? " excepted" : step->system.inputs ? " and the inputs" : "");
 	for (int k = 0; k < model->operators; k++) {
@@ -167,7 +182,7 @@ static void person_split(FILE *to, const struct step *step)
 		person_matrix(to, "C", model->n, (const mpq_t *)operator->C);
 		person_matrix(to, "K", model->n, (const mpq_t *)operator->K);
 		if (model->scheme != SCHEME_PL)
-			person_poles(to, step->resolvent[k]);
+			person_poles(to, step->shown->resolvent[k]);
 	}
 	if (step->operators > 1)
 		fputs("A step uses the first operator whose value is not below the current one, else the last.\n", to);
@@ -197,7 +212,7 @@ static void person_reduction(FILE *to, const struct step *step)
 
 void explain_person(FILE *to, const struct step *step)
 {
-	const struct model *model = step->model;
+	const struct model *model = step->shown->model;
 	const struct spec *spec = model->spec;
 	fprintf(to, "Model %s: %d coordinate%s, %d states, scheme %s\n\n", model->name, model->written->n, model->written->n == 1 ? "" : "s", model->written->system.states,
 		scheme_name(model->scheme));
@@ -337,7 +352,7 @@ static void json_column(FILE *to, int rows, int columns, int column, const struc
 /* Columns as the step applies them: to the load states at the start of the step, t^k times cos before sin. */
 static void json_loads(FILE *to, const struct step *step)
 {
-	const struct table *table = step->table;
+	const struct table *table = step->shown->table;
 	fputs("  \"loads\": [", to);
 	for (int l = 0, column = 0; l < step->system.loads; l++) {
 		const struct load *load = &step->system.load[l];
@@ -366,11 +381,11 @@ static void json_loads(FILE *to, const struct step *step)
 /* Operators as what multiplies q' and q, and their poles; the leftover of the first, as text */
 static void json_split(FILE *to, const struct step *step)
 {
-	const struct model *model = step->model;
+	const struct model *model = step->shown->model;
 	fputs("  \"operators\": [", to);
 	for (int k = 0; k < model->operators; k++) {
 		struct pole_report *pole;
-		int count = poles_of(step->resolvent[k], &pole);
+		int count = poles_of(step->shown->resolvent[k], &pole);
 		fprintf(to, "%s{\n  \"at\": \"%s\",\n", k ? ", " : "", model->operator[k].text);
 		json_rational_matrix(to, "C", model->n, (const mpq_t *)model->operator[k].C);
 		json_rational_matrix(to, "K", model->n, (const mpq_t *)model->operator[k].K);
@@ -386,11 +401,11 @@ static void json_split(FILE *to, const struct step *step)
 
 static void json_regions(FILE *to, const struct step *step)
 {
-	const struct switching *s = step->model->switching;
+	const struct switching *s = step->shown->model->switching;
 	bool first = true;
 	fputs("  \"expressions\": [", to);
 	for (int i = 0; i < s->expressions; i++) {
-		fprintf(to, "%s\n    {\"expression\": \"%s\", \"breakpoints\": [", i ? "," : "", form_text(step->model, s->expression[i].form));
+		fprintf(to, "%s\n    {\"expression\": \"%s\", \"breakpoints\": [", i ? "," : "", form_text(step->shown->model, s->expression[i].form));
 		for (int k = 0; k < s->expression[i].breaks; k++)
 			fprintf(to, "%s%.17g", k ? ", " : "", nearest_double(s->expression[i].at[k]));
 		fputs("]}", to);
@@ -415,7 +430,7 @@ static void json_tuning(FILE *to, const struct tuning *t)
 
 void explain_json(FILE *to, const struct step *step)
 {
-	const struct model *model = step->model;
+	const struct model *model = step->shown->model;
 	const char **output = ARRAY(const char *, (size_t)model->outputs);
 	double *Phi = ARRAY(double, (size_t)(model->system.states * model->system.states));
 	const char **input = ARRAY(const char *, (size_t)model->system.inputs);
@@ -424,9 +439,9 @@ void explain_json(FILE *to, const struct step *step)
 	for (int i = 0; i < model->outputs; i++)
 		output[i] = model->output[i].name;
 	for (int i = 0; i < model->system.states * model->system.states; i++)
-		Phi[i] = step->table->Phi[i].value;
+		Phi[i] = step->shown->table->Phi[i].value;
 	fprintf(to, "{\n  \"model\": \"%s\",\n  \"scheme\": \"%s\",\n  \"form\": \"%s\",\n  \"accuracy\": \"%s\",\n  \"real\": \"%s\",\n  \"step\": %.17g,\n", model->name,
-		scheme_name(model->scheme), step_form_name(step->form), model->compensated ? "compensated" : "plain", target_name(), nearest_double(model->h));
+		scheme_name(model->scheme), step_form_name(step->form), step->model->compensated ? "compensated" : "plain", target_name(), nearest_double(model->h));
 	json_names(to, "states", model->system.states, model->state_name);
 	json_names(to, "outputs", model->outputs, output);
 	json_names(to, "inputs", model->system.inputs, input);

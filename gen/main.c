@@ -396,6 +396,17 @@ static int fail(void)
 	return 1;
 }
 
+/* The model over coordinates that part what moves as a whole from what moves in it, where there are such; else itself */
+static struct model *over_relative(struct model *model, struct spec *spec, const struct overrides *overrides)
+{
+	struct overrides again = *overrides;
+	again.relative = model->written == model && !model->irreducible ? relative_of(model) : NULL;
+	if (!again.relative)
+		return model;
+	struct model *relative = model_build(spec, &again);
+	return relative && find_tuning(relative, &again) ? relative : NULL;
+}
+
 int main(int argc, char **argv)
 {
 	struct options options = { 0 };
@@ -416,7 +427,8 @@ int main(int argc, char **argv)
 		model = model_reduce(model);
 	if (!model)
 		return fail();
-	struct step *step = options.print == PRINT_SOLUTION ? NULL : step_build(model);
+	struct model *stepped = options.print == PRINT_SOLUTION ? model : over_relative(model, spec, &options.overrides);
+	struct step *step = !stepped || options.print == PRINT_SOLUTION ? NULL : step_build(stepped);
 	if (!step && options.print != PRINT_SOLUTION)
 		return fail();
 

@@ -176,9 +176,39 @@ static void evaluate_initials(struct building *b)
 
 /* ---- the whole ---- */
 
+struct form *coordinate_form(const struct model *model, int coord, int order)
+{
+	if (model && model->relative)
+		return model->relative->form[order][coord];
+	return form_unit((struct basis){ .kind = BASIS_COORD, .index = coord, .order = order });
+}
+
+/* Coordinates that are kept in the place of written ones, with an order each: each has a symbol of its own */
+static void name_relative(struct building *b)
+{
+	struct model *model = b->model;
+	const struct relative *relative = model->relative;
+	size_t n = (size_t)relative->n;
+	model->n = model->system.n = relative->n;
+	model->coord = ARRAY(struct symbol *, n);
+	model->coord_name = relative->name;
+	model->owner = ARRAY(int, n);
+	for (int j = 0; j < relative->n; j++) {
+		const struct model *written = relative->written;
+		int like = j < written->n ? j : 0;
+		model->coord[j] = NEW(struct symbol);
+		*model->coord[j] = (struct symbol){ .kind = SYMBOL_COORD, .name = relative->name[j], .at = written->coord[like]->at, .index = j, .highest = relative->order[j] };
+		model->owner[j] = j < written->n ? written->owner[j] : j;
+	}
+}
+
 static void name_coordinates(struct building *b)
 {
 	struct model *model = b->model;
+	if (model->relative) {
+		name_relative(b);
+		return;
+	}
 	size_t n = (size_t)b->spec->components;
 	model->n = model->system.n = b->spec->components;
 	model->coord = ARRAY(struct symbol *, n);
@@ -203,7 +233,7 @@ static void name_states(struct building *b)
 	system->velocity = ARRAY(int, n);
 	system->coord = ARRAY(int, 2 * n);
 	system->states = model->n;
-	for (int j = 0; j < model->n; j++) {
+	for (int j = 0; j < model->n && !model->relative; j++) {
 		int order = find_order(b->spec, j);
 		model->coord[j]->highest = order > model->coord[j]->highest ? order : model->coord[j]->highest;
 	}
@@ -214,7 +244,7 @@ static void name_states(struct building *b)
 		if (system->velocity[j] < 0)
 			continue;
 		system->coord[system->states] = j;
-		model->state_name[system->states++] = format("%s'", model->coord_name[j]);
+		model->state_name[system->states++] = format(strchr(model->coord_name[j], ' ') ? "(%s)'" : "%s'", model->coord_name[j]);
 	}
 }
 
@@ -274,7 +304,10 @@ struct model *model_build(struct spec *spec, const struct overrides *overrides)
 	struct model *model = b.model;
 	mpq_srcptr zero = rationals(1)[0];
 	model->spec = spec;
-	model->written = model;
+	model->written = overrides->relative ? overrides->relative->written : model;
+	model->relative = overrides->relative;
+	if (model->relative)                    /* its params were collected for the written one */
+		b.collector.irrationals = model->written->irrationals;
 	b.collector.model = model;
 	model->atoms = b.collector.atoms = atoms_new();
 	model->form = overrides->form;
@@ -285,11 +318,13 @@ struct model *model_build(struct spec *spec, const struct overrides *overrides)
 	model->selftest = overrides->selftest;
 	model->name = overrides->prefix ? overrides->prefix : spec->name;
 	mpq_init(model->h);
+	for (struct symbol *s = spec->first; s; s = s->next)
+		s->whole = NULL;
 	b.polynomial = wave_of(&b.collector, zero, zero, zero);
 	for (int i = 0; i < overrides->definitions; i++)
 		define_override(&b, overrides->definition[i]);
 	set_tunables(&b);
-	if (overrides->prefix || (model->name && *model->name))
+	if (!overrides->relative && (overrides->prefix || (model->name && *model->name)))
 		check_prefix(&b);
 	name_coordinates(&b);
 	name_states(&b);
@@ -300,7 +335,9 @@ struct model *model_build(struct spec *spec, const struct overrides *overrides)
 	if (!overrides->tunable)
 		evaluate_lets(&b);
 	model->initial = rationals((size_t)model->system.states);
-	if (!overrides->tunable)
+	if (model->relative && !overrides->tunable)
+		relative_values(model, model->written->initial, model->initial);
+	else if (!overrides->tunable)
 		evaluate_initials(&b);
 	if (!overrides->tunable && (spec->step || overrides->step))
 		statement_guard(evaluate_step, &b);
@@ -321,7 +358,7 @@ struct model *model_build(struct spec *spec, const struct overrides *overrides)
 		say_error(model->scheme_at.source ? model->scheme_at : spec->name_at, NULL,
 			  "--reduce needs scheme exact: what %s leaves over depends on the coordinates", scheme_name(model->scheme));
 	model->irrationals = b.collector.irrationals;
-	if (!diagnostics_errors() && !overrides->solution && !overrides->tunable)
+	if (!diagnostics_errors() && !overrides->solution && !overrides->tunable && !overrides->relative)
 		warn(&b);
 	return diagnostics_errors() ? NULL : model;
 }

@@ -47,11 +47,40 @@ static void evaluate_fixed(struct point_work *work, const struct fixed *fixed)
 		add_fixing(work, fixed, first + i, value->cell[cells == 1 ? 0 : i]);
 }
 
+static mpq_t *find_fixed(struct point_work *work, int coord, int order)
+{
+	for (int i = 0; i < work->fixings; i++)
+		if (work->fixing[i].symbol && work->fixing[i].symbol->kind == SYMBOL_COORD && work->fixing[i].coord == coord && work->fixing[i].order == order)
+			return &work->fixing[i].value;
+	return NULL;
+}
+
+/* What is fixed of written coordinates, for those that the model is over. Of coordinates that are measured from each other all are fixed
+ * or none (relative.c). */
+static void fix_relative(struct point_work *work)
+{
+	const struct model *model = work->b->model;
+	int written = work->b->spec->components;
+	for (int order = 0; order < 2; order++) {
+		mpq_t **value = ARRAY(mpq_t *, (size_t)written), *kept = rationals((size_t)written);
+		for (int j = 0; j < written; j++)
+			value[j] = find_fixed(work, j, order);
+		for (int j = 0; j < written; j++)
+			if (value[j] && model->relative->link[j].kind != LINK_NONE)
+				relative_value(model->relative, j, value, kept[j]);
+		for (int j = 0; j < written; j++)
+			if (value[j] && model->relative->link[j].kind != LINK_NONE)
+				mpq_set(*value[j], kept[j]);
+	}
+}
+
 static void evaluate_point(void *context)
 {
 	struct point_work *work = context;
 	for (int i = 0; i < work->b->spec->fixeds; i++)
 		evaluate_fixed(work, &work->b->spec->fixed[i]);
+	if (work->b->model->relative)
+		fix_relative(work);
 }
 
 /* ---- a bank: one name with several values ---- */
@@ -340,7 +369,6 @@ void build_operators(struct building *b)
 		model->selector = NULL;
 		return;
 	}
-	model->owner = b->owner;
 	visit_leftovers(model, place_waves, b);
 }
 

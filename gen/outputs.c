@@ -190,8 +190,9 @@ static void name_outputs(struct building *b)
 		index++;
 	}
 	model->declared_outputs = b->spec->outputs > 0;
+	const struct model *written = model->relative ? model->relative->written : model;
 	for (int i = 0; i < model->system.states && !model->declared_outputs; i++)
-		add_output(model, model->state_name[i], NULL, NULL);
+		add_output(model, written->state_name[i], NULL, NULL);
 }
 
 static bool reads_too_high(const struct model *model, bool *seen, const struct form *form)
@@ -294,6 +295,15 @@ static void build_highest(struct building *b, const mpq_t *inverse, const mpq_t 
 	mpq_clear(one);
 }
 
+/* A written state, as the output that it is by itself */
+static void see_state(const struct model *model, int state, mpq_t *row)
+{
+	const struct model *written = model->relative ? model->relative->written : model;
+	const struct form *form = coordinate_form(model, written->system.coord[state], state >= written->n);
+	for (int i = 0; i < form->terms; i++)
+		mpq_set(row[state_of(model, &form->term[i].basis)], form->term[i].factor);
+}
+
 /* Loads that only outputs use get their load states too, so all are placed before any is spread. */
 void build_outputs(struct building *b)
 {
@@ -317,7 +327,7 @@ void build_outputs(struct building *b)
 			told = output->statement;
 		make_rows(system, model->channels, output);
 		if (!output->value)
-			mpq_set_ui(output->state[i], 1, 1);
+			see_state(model, i, output->state);
 		else if (output->form && !diagnostics_errors())
 			spread_output(b, (const mpq_t *)inverse, (const mpq_t *)highest, output);
 	}

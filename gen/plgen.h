@@ -491,10 +491,38 @@ struct model {
 	struct output **highest;    /* per coordinate: its highest derivative as a row, where an output that is not linear reads it */
 	const struct model *written; /* itself; of a reduced model: the one that it was made of */
 	int *place;                 /* of a reduced model, per written state: the state that is it, or -1 */
+	const struct relative *relative; /* the model is over other coordinates than the written ones; NULL: over those */
 	bool irreducible;           /* --reduce was asked for, and every state is seen */
 	int dropped;                /* written states that are no combination of the reduced ones */
 	const char **dropped_name;
 };
+/* ---- relative.c: coordinates in which what may move as a whole is parted from what moves in it ---- */
+
+struct link {                       /* of a written coordinate x: what is kept in its place */
+	enum { LINK_NONE, LINK_PARENT, LINK_CENTRE } kind; /* x itself; its distance from another; the centre of its group */
+	int from;                   /* LINK_PARENT: the other, x_p */
+	mpq_t ratio;                /* x - ratio x_p is kept, */
+	bool turned;                /* or ratio x_p - x */
+	mpq_t *weight, *shift;      /* LINK_CENTRE, per coordinate: X = sum of weight x; x = X + sum of shift times what is kept */
+	int velocity;               /* the kept coordinate that is its velocity, of first order; -1: that of what is kept */
+};
+struct relative {
+	const struct model *written;
+	int n;                      /* coordinates kept: in the place of each written one, then velocities that stand alone */
+	const char **name;
+	int *order;
+	struct link *link;          /* per written coordinate */
+	int links, *sequence;       /* those of LINK_PARENT, each after the one that it is measured from */
+	bool *split;                /* on the way: it is in a group of both orders */
+	struct form **form[3];      /* per derivative and written coordinate: over what is kept */
+	struct form **extra;        /* equations r' = v - ... of velocities that stand alone, after all others */
+};
+struct relative *relative_of(const struct model *model);     /* NULL: nothing moves as a whole that has parts */
+/* What is kept at a coordinate, from the written coordinates, or their velocities, that it takes */
+void relative_value(const struct relative *r, int coord, mpq_t *const *value, mpq_ptr kept);
+void relative_values(const struct model *model, mpq_t *written, mpq_t *kept); /* of all states */
+int  relative_place(const struct model *model, int written); /* the kept state that is a written one; -1: none is */
+
 struct expression {                 /* what is compared with breakpoints: linear in states, loads and inputs */
 	struct form *form;          /* without constant; its first factor is 1 */
 	struct output *row;         /* the same as a row */
@@ -522,6 +550,7 @@ struct overrides {                  /* from the command line */
 	enum step_form form;
 	bool solution;              /* the closed form is wanted, whatever the scheme */
 	const mpq_t *tunable;       /* values of the tunable params in place of the spec's, to see what the equations become: no step, no initial values, no warnings */
+	const struct relative *relative; /* the coordinates to build the model over; NULL: the written ones; then nothing is told a second time */
 	int definitions;
 	const char **definition;    /* NAME=EXPR */
 };
@@ -548,6 +577,7 @@ struct snapshot {                   /* the equations and outputs in one interval
 	struct value **output;      /* per output statement; NULL: not linear */
 };
 struct model *model_build(struct spec *spec, const struct overrides *overrides);
+struct form *coordinate_form(const struct model *model, int coord, int order); /* of a written coordinate, over those of the model */
 void argument_value(struct model *model, const char *text, mpq_ptr value); /* of --solution; may use params */
 const char *scheme_name(enum scheme scheme);
 
@@ -876,27 +906,18 @@ struct table **tables_of(const struct model *model, struct resolvent *resolvent,
 
 /* ---- scheme.c: what a scheme steps with, as a program over tables ---- */
 
-enum operand_kind { OPERAND_STATE, OPERAND_DIFFERENCE, OPERAND_LOAD, OPERAND_INPUT };
+enum operand_kind { OPERAND_STATE, OPERAND_LOAD, OPERAND_INPUT };
 struct operand {
 	enum operand_kind kind;
 	int index;                  /* state; or column of the loads, of the inputs */
-	int minus;                  /* of a difference: the state that is subtracted */
 };
 struct product {
 	const struct coefficient *factor; /* of a load: in the first segment of time */
 	struct operand operand;
 };
-/* Where nothing outside acts on a block of masses, a sum of its velocities (of kick-drift-kick: of its momenta) stays. One velocity is
- * then not stepped: it has lost what the others have gained since the last set, base, times their weights. */
-struct keeper {
-	int state, first;           /* its velocity; index of the first part in base */
-	int parts;
-	struct product *part;       /* weights times other velocities */
-};
 struct assignment {                 /* target <- sum of products */
 	int target;                 /* state */
 	bool added;                 /* target <- target + sum of products */
-	const struct keeper *keeper; /* target <- what the others leave for it now; no terms; before all others where nothing is in order */
 	int terms;
 	struct product *term;
 };
@@ -940,6 +961,7 @@ struct step {                       /* everything that is emitted for one model 
 	const struct model *model;
 	struct linear system;       /* of the first operator: with what the scheme holds taken out of C and K */
 	struct resolvent *written;  /* of the model as written: the report's poles, the closed form */
+	const struct step *shown;   /* what users see of tables: over the states as written; itself, where those are stepped */
 	struct resolvent *solved;   /* of `system` */
 	struct table *table;        /* of the whole step, of the first operator */
 	int operators, tables;      /* 1 and 1 where nothing is left over */
@@ -950,8 +972,6 @@ struct step {                       /* everything that is emitted for one model 
 	enum step_form form;        /* FORM_DIRECT, FORM_DELTA or FORM_KICK_DRIFT_KICK */
 	const mpq_t *mass;          /* of kick-drift-kick, per coordinate; in units of the first */
 	bool momenta;               /* NAME keeps mass times velocity, since not all masses are equal */
-	int keepers;
-	struct keeper *keeper;
 	mpfr_t growth;              /* pl: 1/s, largest real part of the modified equation's poles (report only) */
 	struct series series;
 	int *halvings;              /* of a piecewise-linear model, per operator */
@@ -969,11 +989,6 @@ void need_direct(const struct step *step);                  /* the same where an
 struct program *linear_program(const struct step *step);    /* from its table */
 bool has_second_word(const struct product *p, const struct linear *system); /* in the code: loads that change have none */
 void count_loads(struct program *program, const struct linear *system, bool single); /* what the load states of the columns in use cost */
-
-/* ---- momentum.c: sums of velocities that nothing changes ---- */
-
-void find_keepers(struct step *step);                        /* of a step of form delta or kick-drift-kick */
-const struct keeper *keeper_of(const struct step *step, int state); /* which gives this velocity; NULL: it is stepped */
 
 /* ---- drift.c: what the rounding of its constants does to a linear step ---- */
 
@@ -1045,6 +1060,8 @@ void emit_header(FILE *to, const struct step *step, const char *options, bool rh
 void emit_code(FILE *to, const struct step *step, const char *options, const char *header_name, bool rhs); /* header_name NULL: all in one */
 
 const char *tree(int terms, const char *const *term, int indent); /* a balanced sum */
+const struct model *speaker(const struct model *model);            /* over whose coordinates its forms are */
+const char *stepped_phi(const struct emitter *e);                  /* the table Phi of the states as they are kept */
 double finite_number(const struct emitter *e, mpq_srcptr q);       /* rounded; an error at the step where it overflows */
 const char *scaled(double factor, const char *operand);           /* operand NULL: 1 */
 void emit_number_rows(const struct emitter *e, int rows, int columns, const double *value, const char *const *row_note);
@@ -1066,7 +1083,7 @@ const char *step_length(const struct emitter *e);                 /* NAME_H; of 
 void emit_changes(const struct emitter *e);                       /* loads that change their formula: when */
 void emit_passing(const struct emitter *e);                       /* ... and pass(), across a change */
 void emit_series_vector(const struct emitter *e);                 /* declares i and load states; x[...] = what the series advances */
-const char *keeper_text(const struct emitter *e, const struct keeper *keeper, bool locals); /* its velocity, from locals or from s->y */
+void emit_hand_over(const struct emitter *e);                     /* in at: y from the states in x */
 void emit_locals(const struct emitter *e, const bool *reads);     /* the states wanted, under their names */
 void emit_raw_locals(const struct emitter *e, const bool *reads, bool changing); /* as kept: of kick-drift-kick, momenta */
 void emit_store(const struct emitter *e, const char *vector, const char *indent); /* s->y from states */

@@ -447,7 +447,8 @@ static void search(void *context)
 	while (!look(b, s))
 		;
 	mark_possible(s);
-	check_jumps(b, s);
+	if (!b->model->relative)                /* else it has been told */
+		check_jumps(b, s);
 	b->model->switching = s;
 }
 

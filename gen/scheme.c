@@ -489,7 +489,6 @@ static void build_exact(struct step *step)
 	}
 	if (!chosen)
 		make_whole(step);
-	find_keepers(step);
 	if (step->model->tuning)
 		mark_tuned_zeros(step);
 	step->program = linear_program(step);
@@ -615,5 +614,15 @@ struct step *step_build(const struct model *model)
 {
 	struct step *step = NEW(struct step);
 	step->model = model;
-	return statement_guard(build, step) ? step : NULL;
+	step->shown = step;
+	if (!statement_guard(build, step))
+		return NULL;
+	if (!model->relative)
+		return step;
+	struct model *plain = NEW(struct model);
+	*plain = *model->written;
+	plain->form = FORM_DIRECT;
+	plain->compensated = plain->selftest = false;
+	step->shown = step_build(plain);
+	return step->shown ? step : NULL;
 }

@@ -154,7 +154,7 @@ void emit_selftest(const struct emitter *e, bool jumps)
 	r.value = ARRAY(double, states * ROWS);
 	r.between = ARRAY(double, states);
 	r.unit = ARRAY(double, states);
-	fill_reference(e->step, &r);
+	fill_reference(e->step->shown, &r);
 	fprintf(to, "\n/* The largest of worst and |y - reference|, in units in the last place of the largest value that each state takes */\n");
 	fprintf(to, "static double %s_deviation(const double *y, const double *reference, double worst)\n{\n", n);
 	fprintf(to, "    static const double unit[%s_STATES] = {", N);

@@ -194,7 +194,7 @@ static void add_term(struct assignment *a, const struct coefficient *factor, enu
 {
 	if (factor->zero)
 		return;
-	a->term[a->terms++] = (struct product){ factor, { kind, index, 0 } };
+	a->term[a->terms++] = (struct product){ factor, { kind, index } };
 }
 
 /* A load that acts in some segment of time */
@@ -204,7 +204,7 @@ static void add_load_term(struct assignment *a, const struct table *table, int s
 	for (int s = 0; s < segments; s++)
 		any = any || !table->load[(s * table->states + row) * table->columns + column].zero;
 	if (any)
-		a->term[a->terms++] = (struct product){ &table->load[row * table->columns + column], { OPERAND_LOAD, column, 0 } };
+		a->term[a->terms++] = (struct product){ &table->load[row * table->columns + column], { OPERAND_LOAD, column } };
 }
 
 static bool is_identity(const struct assignment *a)
@@ -254,11 +254,8 @@ void count_loads(struct program *program, const struct linear *system, bool sing
 static void count_term(struct program *program, const struct product *p, const struct linear *system)
 {
 	program->multiplications += program->tuned ? !is_constant_load(p, system) : !is_unit(p, system);
-	program->additions += p->operand.kind == OPERAND_DIFFERENCE;
-	if (p->operand.kind == OPERAND_STATE || p->operand.kind == OPERAND_DIFFERENCE)
+	if (p->operand.kind == OPERAND_STATE)
 		program->reads[p->operand.index] = true;
-	if (p->operand.kind == OPERAND_DIFFERENCE)
-		program->reads[p->operand.minus] = true;
 	if (p->operand.kind == OPERAND_LOAD)
 		program->uses[p->operand.index] = true;
 }
@@ -278,27 +275,10 @@ static void count_compensation(struct program *program, const struct assignment 
 	program->additions += PL_ACCUMULATE_ADD - 1 + (seconds > 0 ? seconds - 1 : 0);
 }
 
-/* y[state] - sum of weight (velocity - base) */
-static void count_keeper(struct program *program, const struct keeper *keeper)
-{
-	program->reads[keeper->state] = true;
-	for (int k = 0; k < keeper->parts; k++) {
-		const struct coefficient *weight = keeper->part[k].factor;
-		bool unit = weight->value == 1 || weight->value == -1, second = program->compensated && weight->low != 0;
-		program->reads[keeper->part[k].operand.index] = true;
-		program->multiplications += !unit + second;
-		program->additions += 2 + program->compensated + second;
-	}
-}
-
 static void count(struct program *program, const struct linear *system, bool single)
 {
 	for (int i = 0; i < program->assignments; i++) {
 		const struct assignment *a = &program->assignment[i];
-		if (a->keeper) {
-			count_keeper(program, a->keeper);
-			continue;
-		}
 		program->additions += a->terms > 0 ? a->terms - !a->added : 0;
 		if (a->added)
 			program->reads[a->target] = true;
@@ -346,71 +326,26 @@ static void write_direct(struct program *program, const struct step *step)
 	}
 }
 
-/* Per coordinate, a state whose place is subtracted from its own in every row: where the whole block can be moved without a force
- * (the rows of its stiffness sum to 0), differences keep that whatever the rounding of the factors. -1: it cannot. */
-static int *anchors(const struct linear *system)
-{
-	struct block *block;
-	int blocks = blocks_of(system, &block), *anchor = ARRAY(int, (size_t)system->n);
-	mpq_t sum;
-	mpq_init(sum);
-	for (int b = 0; b < blocks; b++) {
-		const struct linear *part = &block[b].system;
-		bool movable = part->n > 1 && part->states == 2 * part->n && !part->heldK;
-		for (int i = 0; i < part->n && movable; i++) {
-			mpq_set_ui(sum, 0, 1);
-			for (int j = 0; j < part->n; j++)
-				mpq_add(sum, sum, part->K[i * part->n + j]);
-			movable = mpq_sgn(sum) == 0;
-		}
-		for (int j = 0; j < part->n; j++)
-			anchor[block[b].coord[j]] = movable ? b : -1;
-	}
-	mpq_clear(sum);
-	return anchor;
-}
-
-/* sum of factor[j] q_j over coordinates; `own` is the coordinate whose place is the anchor of its block */
-static void add_places(struct assignment *a, const struct linear *system, const int *anchor, int own, const struct coefficient *factor)
-{
-	for (int j = 0; j < system->n; j++) {
-		if (factor[j].zero)
-			continue;
-		if (anchor[own] < 0 || anchor[j] != anchor[own])
-			add_term(a, &factor[j], OPERAND_STATE, j);
-		else if (j != own)
-			a->term[a->terms++] = (struct product){ &factor[j], { OPERAND_DIFFERENCE, j, own } };
-	}
-}
-
 static void write_delta(struct program *program, const struct step *step)
 {
 	const struct table *table = step->table;
-	const struct tuning *tuning = step->model->tuning;
-	int n = table->states, *anchor = anchors(tuning ? &tuning->other->system : &step->system);
-	for (int k = 0; k < step->keepers; k++)
-		new_assignment(program, step, step->keeper[k].state, false)->keeper = &step->keeper[k];
+	int n = table->states;
 	for (int i = 0; i < n; i++) {
-		if (keeper_of(step, i))
-			continue;
 		struct assignment *a = new_assignment(program, step, i, true);
-		const struct coefficient *row = &table->increment[i * n];
-		add_places(a, &step->system, anchor, step->system.coord[i], row);
-		for (int j = step->system.n; j < n; j++)
-			add_term(a, &row[j], OPERAND_STATE, j);
+		for (int j = 0; j < n; j++)
+			add_term(a, &table->increment[i * n + j], OPERAND_STATE, j);
 		add_loads_and_inputs(a, step, i);
 		drop_identity(program);
 	}
 }
 
-static void write_kicks(struct program *program, const struct step *step, const int *anchor)
+static void write_kicks(struct program *program, const struct step *step)
 {
 	const struct linear *system = &step->system;
 	for (int i = 0; i < system->n; i++) {
-		if (keeper_of(step, system->velocity[i]))
-			continue;
 		struct assignment *a = new_assignment(program, step, system->velocity[i], true);
-		add_places(a, system, anchor, i, &step->table->kick[i * system->n]);
+		for (int j = 0; j < system->n; j++)
+			add_term(a, &step->table->kick[i * system->n + j], OPERAND_STATE, j);
 		drop_identity(program);
 	}
 }
@@ -418,21 +353,17 @@ static void write_kicks(struct program *program, const struct step *step, const 
 static void write_kick_drift_kick(struct program *program, const struct step *step)
 {
 	const struct linear *system = &step->system;
-	int n = system->n, *anchor = anchors(system);
+	int n = system->n;
 	program->in_order = true;
-	write_kicks(program, step, anchor);
-	for (int k = 0; k < step->keepers; k++)
-		new_assignment(program, step, step->keeper[k].state, false)->keeper = &step->keeper[k];
+	write_kicks(program, step);
 	for (int i = 0; i < n; i++) {
 		struct assignment *a = new_assignment(program, step, i, true);
 		for (int j = 0; j < n; j++)
 			add_term(a, &step->table->drift[i * n + j], OPERAND_STATE, system->velocity[j]);
 		drop_identity(program);
 	}
-	write_kicks(program, step, anchor);
+	write_kicks(program, step);
 	for (int i = 0; i < system->states; i++) {
-		if (keeper_of(step, i))
-			continue;
 		add_loads_and_inputs(new_assignment(program, step, i, true), step, i);
 		drop_identity(program);
 	}
