@@ -326,6 +326,8 @@ static void emit_state_struct(const struct emitter *e)
 		e->step->momenta ? format("; velocities times mass / mass of %s", e->model->coord_name[0]) : "");
 	if (e->step->program->compensated)
 		fprintf(to, "    double rest[%s_STATES];  /* what rounding took from y so far */\n", e->upper);
+	if (e->model->relative)
+		fprintf(to, "    double set[%s_STATES], from[%s_STATES];  /* at the last set: the states as written, and y */\n", e->upper, e->upper);
 	if (e->model->tuning)
 		fprintf(to, "    %s_coeffs coeffs;    /* its own */\n", e->name);
 	if (e->system->inputs)
@@ -478,12 +480,22 @@ void emit_locals_of(const struct emitter *e, const bool *reads, const char *vect
 
 /* ---- init, set, get, time ---- */
 
+static void emit_values(const struct emitter *e, const mpq_t *value)
+{
+	for (int i = 0; i < e->system->states; i++)
+		fprintf(e->to, "%s%s", i ? ", " : "", shortest(round_rational(value[i])));
+	fputs("};", e->to);
+}
+
 static void emit_init(const struct emitter *e)
 {
 	fprintf(e->to, "\nvoid %s_init(%s *s)\n{\n    static const double start[%s_STATES] = {", e->name, e->name, e->upper);
-	for (int i = 0; i < e->system->states; i++)
-		fprintf(e->to, "%s%s", i ? ", " : "", shortest(round_rational(e->model->initial[i])));
-	fprintf(e->to, e->model->relative ? "};  /* %s */\n" : "};\n", state_list(e->model));
+	emit_values(e, (const mpq_t *)e->model->initial);
+	if (e->model->relative) {
+		fprintf(e->to, "  /* %s */\n    static const double set[%s_STATES] = {", state_list(e->model), e->upper);
+		emit_values(e, (const mpq_t *)e->model->written->initial);
+	}
+	fputc('\n', e->to);
 	if (e->model->tuning)
 		fprintf(e->to, "    s->coeffs = %s_nominal;\n", e->name);
 	for (int i = 0; i < e->system->inputs; i++) {
@@ -491,7 +503,7 @@ static void emit_init(const struct emitter *e)
 		if (e->ramps)
 			fprintf(e->to, "    s->slope[%d] = 0.0;\n", i);
 	}
-	fprintf(e->to, "    %s_%s(s, 0.0, start);\n}\n", e->name, e->model->relative ? "begin" : "set");
+	fprintf(e->to, e->model->relative ? "    %s_begin(s, 0.0, set, start);\n}\n" : "    %s_set(s, 0.0, start);\n}\n", e->name);
 }
 
 const char *step_length(const struct emitter *e)
@@ -554,18 +566,18 @@ static const char *kept_text(const struct emitter *e, const struct link *link, i
 	return link->kind == LINK_CENTRE ? tree(terms, term, 12) : own;
 }
 
-/* The written one: x is what is kept, y what has been found of the others */
-static const char *written_text(const struct emitter *e, const struct link *link, int coord, const int *at, const int *kept)
+/* What the written one has gained since the last set: d is what was gained of what is kept, y of the others so far */
+static const char *gain_text(const struct emitter *e, const struct link *link, int coord, const int *at, const int *kept)
 {
 	const struct relative *r = e->model->relative;
 	const char **term = ARRAY(const char *, (size_t)r->written->n + 1);
 	int terms = 0;
 	if (link->kind == LINK_PARENT)
-		return format("%s %c x[%d]", scaled(finite_number(e, link->ratio), format("y[%d]", at[link->from])), link->turned ? '-' : '+', kept[coord]);
-	term[terms++] = format("x[%d]", kept[coord]);
+		return format("%s %c d[%d]", scaled(finite_number(e, link->ratio), format("y[%d]", at[link->from])), link->turned ? '-' : '+', kept[coord]);
+	term[terms++] = format("d[%d]", kept[coord]);
 	for (int k = 0; k < r->written->n && link->kind == LINK_CENTRE; k++)
 		if (mpq_sgn(link->shift[k]) != 0)
-			term[terms++] = scaled(finite_number(e, link->shift[k]), format("x[%d]", kept[k]));
+			term[terms++] = scaled(finite_number(e, link->shift[k]), format("d[%d]", kept[k]));
 	return tree(terms, term, 12);
 }
 
@@ -579,35 +591,61 @@ static void find_places(const struct emitter *e, int order, int *at, int *kept)
 	}
 }
 
-static void emit_conversion(const struct emitter *e, bool keep)
+static void emit_keep(const struct emitter *e, int order, const int *at, const int *kept)
 {
 	const struct relative *r = e->model->relative;
-	const struct model *written = r->written;
-	int *at = ARRAY(int, (size_t)written->n), *kept = ARRAY(int, (size_t)written->n);
-	fprintf(e->to, "\nstatic void %s_%s(const double %s[%s_STATES], double %s[%s_STATES])\n{\n", e->name, keep ? "keep" : "written", keep ? "y" : "x", e->upper,
-		keep ? "x" : "y", e->upper);
-	for (int order = 0; order < 2; order++) {
-		find_places(e, order, at, kept);
-		for (int i = 0; i < written->n + r->links; i++) {
-			int j = i < written->n ? i : r->sequence[i - written->n];
-			const struct link plain = { .kind = LINK_NONE }, *link = order && r->link[j].velocity >= 0 ? &plain : &r->link[j];
-			if (at[j] < 0 || (!keep && (link->kind == LINK_PARENT) != (i >= written->n)) || (keep && i >= written->n))
-				continue;
-			if (keep)
-				fprintf(e->to, "    x[%d] = %s;  /* %s */\n", kept[j], kept_text(e, link, j, at), e->model->state_name[kept[j]]);
-			else
-				fprintf(e->to, "    y[%d] = %s;  /* %s */\n", at[j], written_text(e, link, j, at, kept), written->state_name[at[j]]);
-		}
+	for (int j = 0; j < r->written->n; j++) {
+		const struct link plain = { .kind = LINK_NONE }, *link = order && r->link[j].velocity >= 0 ? &plain : &r->link[j];
+		if (at[j] >= 0)
+			fprintf(e->to, "    x[%d] = %s;  /* %s */\n", kept[j], kept_text(e, link, j, at), e->model->state_name[kept[j]]);
 	}
-	fputs("}\n", e->to);
 }
 
-/* NAME_keep, NAME_written */
+/* A coordinate that is measured from another comes after it. */
+static void emit_gains(const struct emitter *e, int order, const int *at, const int *kept)
+{
+	const struct relative *r = e->model->relative;
+	int n = r->written->n;
+	for (int i = 0; i < n + r->links; i++) {
+		int j = i < n ? i : r->sequence[i - n];
+		bool alone = order && r->link[j].velocity >= 0, linked = !alone && r->link[j].kind == LINK_PARENT;
+		if (at[j] >= 0 && !alone && r->link[j].kind != LINK_NONE && linked == (i >= n))
+			fprintf(e->to, "    y[%d] = %s;\n", at[j], gain_text(e, &r->link[j], j, at, kept));
+	}
+}
+
+/* What is kept as it is written */
+static void emit_unlinked(const struct emitter *e, int order, const int *at, const int *kept, bool gains)
+{
+	const struct relative *r = e->model->relative;
+	for (int j = 0; j < r->written->n; j++)
+		if (at[j] >= 0 && ((order && r->link[j].velocity >= 0) || r->link[j].kind == LINK_NONE))
+			fprintf(e->to, gains ? "    y[%d] = d[%d];\n" : "    y[%d] = x[%d];\n", at[j], kept[j]);
+}
+
+/* NAME_keep, NAME_written: a state is what it was at the last set, and what it has gained since; so get gives what set was given. */
 static void emit_conversions(const struct emitter *e)
 {
-	fputs("\n/* What may move as a whole is kept apart from what moves in it: x, from the states y as written; and back. */", e->to);
-	emit_conversion(e, true);
-	emit_conversion(e, false);
+	FILE *to = e->to;
+	const char *n = e->name, *N = e->upper;
+	int coords = e->model->relative->written->n, *at = ARRAY(int, 2 * (size_t)coords), *kept = ARRAY(int, 2 * (size_t)coords);
+	find_places(e, 0, at, kept);
+	find_places(e, 1, at + coords, kept + coords);
+	fprintf(to, "\n/* What may move as a whole is kept apart from what moves in it: x, from the states y as written */\n");
+	fprintf(to, "static void %s_keep(const double y[%s_STATES], double x[%s_STATES])\n{\n", n, N, N);
+	for (int order = 0; order < 2; order++)
+		emit_keep(e, order, at + order * coords, kept + order * coords);
+	fprintf(to, "}\n\n/* And back: what they were at the last set, and what was gained since */\n");
+	fprintf(to, "static void %s_written(const %s *s, const double x[%s_STATES], double y[%s_STATES])\n{\n    double d[%s_STATES];\n    int i;\n", n, n, N, N, N);
+	fprintf(to, "    for (i = 0; i < %s_STATES; i++)\n        d[i] = x[i] - s->from[i];\n", N);
+	for (int order = 0; order < 2; order++) {
+		emit_unlinked(e, order, at + order * coords, kept + order * coords, true);
+		emit_gains(e, order, at + order * coords, kept + order * coords);
+	}
+	fprintf(to, "    for (i = 0; i < %s_STATES; i++)\n        y[i] += s->set[i];\n", N);
+	for (int order = 0; order < 2; order++)
+		emit_unlinked(e, order, at + order * coords, kept + order * coords, false);
+	fputs("}\n", to);
 }
 
 static void emit_access(const struct emitter *e)
@@ -618,9 +656,15 @@ static void emit_access(const struct emitter *e)
 		emit_conversions(e);
 	else
 		emit_init(e);
-	fprintf(to, e->model->relative ? "\n/* From the states as they are kept */\nstatic void %s_begin(%s *s, double t, const double y[%s_STATES])\n{\n    int i;\n"
-				       : "\nvoid %s_set(%s *s, double t, const double y[%s_STATES])\n{\n    int i;\n", n, n, N);
-	emit_store(e, "y", "    ");
+	if (e->model->relative)
+		fprintf(to, "\n/* From the states as written, and as they are kept */\nstatic void %s_begin(%s *s, double t, const double y[%s_STATES], const double x[%s_STATES])\n"
+			    "{\n    int i;\n    for (i = 0; i < %s_STATES; i++) {\n        s->set[i] = y[i];\n        s->from[i] = x[i];\n    }\n", n, n, N, N, N);
+	else
+		fprintf(to, "\nvoid %s_set(%s *s, double t, const double y[%s_STATES])\n{\n    int i;\n", n, n, N);
+	emit_store(e, e->model->relative ? "x" : "y", "    ");
+	for (int i = 0; i < e->system->states; i++)
+		if (e->model->relative && factor_of_momentum(e, i))
+			fprintf(to, "    s->from[%d] = s->y[%d] / %s;\n", i, i, factor_of_momentum(e, i));
 	fputs("    s->t0 = t;\n    s->k = 0;\n", to);
 	if (has_status(e))
 		fputs("    s->status = 0;\n", to);
@@ -633,7 +677,7 @@ static void emit_access(const struct emitter *e)
 	fputs("}\n", to);
 	if (e->model->relative) {
 		emit_init(e);
-		fprintf(to, "\nvoid %s_set(%s *s, double t, const double y[%s_STATES])\n{\n    double x[%s_STATES];\n    %s_keep(y, x);\n    %s_begin(s, t, x);\n}\n",
+		fprintf(to, "\nvoid %s_set(%s *s, double t, const double y[%s_STATES])\n{\n    double x[%s_STATES];\n    %s_keep(y, x);\n    %s_begin(s, t, y, x);\n}\n",
 			n, n, N, N, n, n);
 	}
 	fprintf(to, "\nvoid %s_get(const %s *s, double y[%s_STATES])\n{\n    int i;\n", n, n, N);
@@ -641,7 +685,7 @@ static void emit_access(const struct emitter *e)
 		fprintf(to, "    double x[%s_STATES];\n", N);
 	emit_load_state(e, e->model->relative ? "x" : "y");
 	if (e->model->relative)
-		fprintf(to, "    %s_written(x, y);\n", n);
+		fprintf(to, "    %s_written(s, x, y);\n", n);
 	fputs("}\n", to);
 	emit_time(e);
 	if (has_status(e))

@@ -248,7 +248,7 @@ static void emit_held_leftover(const struct emitter *e)
 void emit_hand_over(const struct emitter *e)
 {
 	if (e->model->relative)
-		fprintf(e->to, "    %s_written(x, y);\n", e->name);
+		fprintf(e->to, "    %s_written(s, x, y);\n", e->name);
 	else
 		fprintf(e->to, "    for (i = 0; i < %s_STATES; i++)\n        y[i] = x[i];\n", e->upper);
 }
@@ -269,7 +269,7 @@ void emit_at(const struct emitter *e)
 		fprintf(to, "    %s_pass(s, %s%s%stau, %s);\n", e->name, e->step->operators > 1 ? "which, " : "", e->system->inputs ? "u, " : "",
 			series->powers ? "left, " : "", e->model->relative ? "x" : "y");
 		if (e->model->relative)
-			fprintf(to, "    %s_written(x, y);\n", e->name);
+			fprintf(to, "    %s_written(s, x, y);\n", e->name);
 		fputs("}\n", to);
 		return;
 	}

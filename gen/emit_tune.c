@@ -561,7 +561,7 @@ void emit_tuned_at(const struct emitter *e)
 		fprintf(e->to, "    double x[%s_STATES];\n", e->upper);
 	fprintf(e->to, "    %s_pass(s, %stau, %s);\n", e->name, inputs ? "u, " : "", relative ? "x" : "y");
 	if (relative)
-		fprintf(e->to, "    %s_written(x, y);\n", e->name);
+		fprintf(e->to, "    %s_written(s, x, y);\n", e->name);
 	fputs("}\n", e->to);
 }
 
