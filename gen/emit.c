@@ -221,6 +221,15 @@ static const char *state_list(const struct model *model)
 	return list;
 }
 
+static const char *carried_text(const struct emitter *e)
+{
+	const char *list = "";
+	for (int i = 0; i < e->system->states; i++)
+		if (e->step->carry[i] >= 0)
+			list = format("%s%s%s", list, *list ? ", " : "", e->model->state_name[i]);
+	return list;
+}
+
 /* What is kept in the place of positions that only differences of matter */
 static void banner_relative(const struct emitter *e)
 {
@@ -252,6 +261,8 @@ static void banner_form(const struct emitter *e)
 			e->step->program->compensated ? "; factors in two words,\n * and what rounding takes from the state is kept in rest" : "");
 	if (e->model->relative)
 		banner_relative(e);
+	if (e->step->carries)
+		fprintf(e->to, " * Nothing leads back from %s: what rounding takes from %s is carried on.\n", carried_text(e), e->step->carries > 1 ? "each" : "it");
 	if (drift.known)
 		fprintf(e->to, " * %s.\n", drift_text(&drift));
 	if (e->model->single)
@@ -326,6 +337,8 @@ static void emit_state_struct(const struct emitter *e)
 		e->step->momenta ? format("; velocities times mass / mass of %s", e->model->coord_name[0]) : "");
 	if (e->step->program->compensated)
 		fprintf(to, "    double rest[%s_STATES];  /* what rounding took from y so far */\n", e->upper);
+	if (e->step->carries)
+		fprintf(to, "    double carry[%d];      /* what rounding took from %s so far */\n", e->step->carries, carried_text(e));
 	if (e->model->relative)
 		fprintf(to, "    double set[%s_STATES], from[%s_STATES];  /* at the last set: the states as written, and y */\n", e->upper, e->upper);
 	if (e->model->tuning)
@@ -537,6 +550,8 @@ void emit_store(const struct emitter *e, const char *vector, const char *indent)
 	for (int i = 0; i < e->system->states; i++)
 		if (factor_of_momentum(e, i))
 			fprintf(to, "%ss->y[%d] = %s * %s[%d];\n", indent, i, factor_of_momentum(e, i), vector, i);
+	for (int i = 0; i < e->step->carries; i++)
+		fprintf(to, "%ss->carry[%d] = 0.0;\n", indent, i);
 }
 
 /* A vector of states from s->y */
@@ -856,7 +871,7 @@ void emit_code(FILE *to, const struct step *step, const char *options, const cha
 		emit_declarations(&e, rhs);
 	if (needs_math(&e, rhs))
 		fputs("\n#include <math.h>\n", to);
-	if (step->program->compensated)
+	if (step->program->compensated || step->carries)
 		fputs("\n#ifdef __FAST_MATH__\n#error \"two-word arithmetic needs rounding errors as they are: compile it without -ffast-math\"\n#endif\n", to);
 	emit_phi(&e);
 	if (e.system->inputs)

@@ -838,6 +838,7 @@ void emit_leftover_step(const struct emitter *e)
 	if (program->predicts)
 		emit_predictor(e);
 	fprintf(e->to, "\nvoid %s_step(%s)\n{\n", e->name, step_parameters(e));
+	emit_set_aside(e);
 	if (!program->loops)
 		emit_locals(e, all_states(e));
 	emit_load_states(e, acting_loads(e), false);
@@ -853,6 +854,7 @@ void emit_leftover_step(const struct emitter *e)
 		emit_driven(e);
 	for (int i = 0; i < program->actions; i++)
 		emit_action(e, &program->action[i]);
+	emit_take_back(e);
 	emit_step_end(e);
 	fprintf(e->to, "    s->status |= pl_not_finite(s->y, %s_STATES);\n", e->upper);
 	if (e->system->segments > 1)

@@ -345,10 +345,12 @@ void emit_region_step(const struct emitter *e)
 	const char *n = e->name, *N = e->upper;
 	fprintf(e->to, "\nvoid %s_step(%s)\n{\n    int i;\n", n, step_parameters(e));
 	declare_room(e);
+	emit_set_aside(e);
 	emit_load_states(e, needed_loads(e), false);
 	emit_x(e, "s->y", true);
 	fprintf(e->to, "    pl_switching_step(&%s_switching, x, &s->contact, s->crossing, work);\n", n);
 	fprintf(e->to, "    for (i = 0; i < %s_STATES; i++)\n        s->y[i] = x[i];\n", N);
+	emit_take_back(e);
 	emit_step_end(e);
 	fprintf(e->to, "    s->status |= s->contact.status | pl_not_finite(s->y, %s_STATES);\n}\n", N);
 	fprintf(e->to, "\nint %s_region(const %s *s)\n{\n    return s->contact.region;\n}\n", n, n);

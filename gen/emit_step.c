@@ -54,19 +54,19 @@ static const char *second_sum_text(const struct emitter *e, const struct assignm
 	return terms ? tree(terms, term, 14) : NULL;
 }
 
-/* target = target + (sum), what its rounding takes kept in s->rest */
+/* target = target + (sum), what its rounding takes kept in s->rest; of plain steps in s->carry */
 static void emit_compensated(const struct emitter *e, const struct assignment *a, const char *target)
 {
-	const char *second = second_sum_text(e, a), *sum = sum_text(e, a, 14);
-	fprintf(e->to, "    %s = pl_accumulate(%s,  /* %s */\n              %s,\n              %s, &s->rest[%d]);\n", target, e->local[a->target],
-		e->model->state_name[a->target], sum, second ? second : "0.0", a->target);
+	const char *second = a->carried ? NULL : second_sum_text(e, a), *sum = sum_text(e, a, 14);
+	fprintf(e->to, "    %s = pl_accumulate(%s,  /* %s */\n              %s,\n              %s, &s->%s[%d]);\n", target, e->local[a->target],
+		e->model->state_name[a->target], sum, second ? second : "0.0", a->carried ? "carry" : "rest", a->carried ? e->step->carry[a->target] : a->target);
 }
 
 static void emit_assignment(const struct emitter *e, const struct assignment *a)
 {
 	const struct program *program = e->step->program;
 	const char *target = program->in_order ? e->local[a->target] : format("s->y[%d]", a->target), *name = e->model->state_name[a->target];
-	if (program->compensated)
+	if (program->compensated || a->carried)
 		emit_compensated(e, a, target);
 	else if (program->in_order)
 		fprintf(e->to, "    %s += %s;\n", target, sum_text(e, a, 10));
@@ -133,6 +133,23 @@ static void emit_columns(const struct emitter *e, const char *table, const char 
 		table, vector);
 }
 
+void emit_set_aside(const struct emitter *e)
+{
+	for (int i = 0; i < e->system->states; i++)
+		if (e->step->carry[i] >= 0)
+			fprintf(e->to, "    const double far%d = s->y[%d];  /* nothing reads %s: over the step it is 0 */\n", e->step->carry[i], i, e->model->state_name[i]);
+	for (int i = 0; i < e->system->states; i++)
+		if (e->step->carry[i] >= 0)
+			fprintf(e->to, "    s->y[%d] = 0.0;\n", i);
+}
+
+void emit_take_back(const struct emitter *e)
+{
+	for (int i = 0; i < e->system->states; i++)
+		if (e->step->carry[i] >= 0)
+			fprintf(e->to, "    s->y[%d] = pl_accumulate(far%d, s->y[%d], 0.0, &s->carry[%d]);\n", i, e->step->carry[i], i, e->step->carry[i]);
+}
+
 /* A large model steps by loops over its tables: text that nobody would read is of no use. */
 static void emit_looped_step(const struct emitter *e)
 {
@@ -143,12 +160,14 @@ static void emit_looped_step(const struct emitter *e)
 	for (int l = 0; l < e->system->loads; l++)
 		loads[l] = true;
 	fprintf(to, "    double y[%s_STATES];\n    int i, j;\n", N);
+	emit_set_aside(e);
 	emit_load_states(e, loads, false);
 	fprintf(to, "    for (i = 0; i < %s_STATES; i++) {\n        y[i] = 0.0;\n        for (j = 0; j < %s_STATES; j++)\n", N, N);
 	fprintf(to, "            y[i] += %s[i][j] * s->y[j];\n    }\n", e->step->form == FORM_DELTA ? format("%s_increment", n) : stepped_phi(e));
 	emit_columns(e, format("%s_load_factor[%s]", n, e->system->segments > 1 ? "s->segment" : "0"), "load", OPERAND_LOAD, table->columns);
 	emit_columns(e, format("%s_Gamma", n), "input", OPERAND_INPUT, table->inputs);
 	fprintf(to, "    for (i = 0; i < %s_STATES; i++)\n        s->y[i] %s y[i];\n", N, e->step->form == FORM_DELTA ? "+=" : "=");
+	emit_take_back(e);
 }
 
 /* A step that no change of the loads interrupts */

@@ -393,6 +393,9 @@ static void emit_leap_start(const struct emitter *e)
 	fprintf(e->to, "    for (i = 0; i < %s_STATES; i++)%s\n        x[i].hi = s->y[i];\n", e->upper, rest ? " {" : "");
 	if (rest)
 		fputs("        x[i].lo = s->rest[i];\n    }\n", e->to);
+	for (int i = 0; i < e->system->states; i++)
+		if (e->step->carry[i] >= 0)
+			fprintf(e->to, "    x[%d].lo = s->carry[%d];\n", i, e->step->carry[i]);
 }
 
 static void emit_leap_end(const struct emitter *e)
@@ -406,6 +409,9 @@ static void emit_leap_end(const struct emitter *e)
 	fprintf(e->to, "    for (i = 0; i < %s_STATES; i++)%s\n        s->y[i] = x[i].hi;\n", e->upper, rest ? " {" : "");
 	if (rest)
 		fputs("        s->rest[i] = x[i].lo;\n    }\n", e->to);
+	for (int i = 0; i < e->system->states; i++)
+		if (e->step->carry[i] >= 0)
+			fprintf(e->to, "    s->carry[%d] = x[%d].lo;\n", e->step->carry[i], i);
 }
 
 /* n steps without a change of the loads: by powers of the one-step matrix */

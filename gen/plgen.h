@@ -918,6 +918,7 @@ struct product {
 struct assignment {                 /* target <- sum of products */
 	int target;                 /* state */
 	bool added;                 /* target <- target + sum of products */
+	bool carried;               /* with what rounding takes kept in carry */
 	int terms;
 	struct product *term;
 };
@@ -972,6 +973,7 @@ struct step {                       /* everything that is emitted for one model 
 	enum step_form form;        /* FORM_DIRECT, FORM_DELTA or FORM_KICK_DRIFT_KICK */
 	const mpq_t *mass;          /* of kick-drift-kick, per coordinate; in units of the first */
 	bool momenta;               /* NAME keeps mass times velocity, since not all masses are equal */
+	int carries, *carry;        /* states that nothing leads back from, which only add up: index of what rounding takes from each; -1: of others */
 	mpfr_t growth;              /* pl: 1/s, largest real part of the modified equation's poles (report only) */
 	struct series series;
 	int *halvings;              /* of a piecewise-linear model, per operator */
@@ -986,6 +988,7 @@ const char *form_text_of(const struct step *step);          /* delta, compensate
 bool step_form_of(const char *name, enum step_form *form);  /* false: there is none of this name */
 void choose_form(struct step *step);                        /* leaves the statement where the one asked for cannot be */
 void need_direct(const struct step *step);                  /* the same where another than direct is asked for */
+void find_carries(struct step *step);                       /* before its program; none where all of the state is compensated */
 struct program *linear_program(const struct step *step);    /* from its table */
 bool has_second_word(const struct product *p, const struct linear *system); /* in the code: loads that change have none */
 void count_loads(struct program *program, const struct linear *system, bool single); /* what the load states of the columns in use cost */
@@ -1083,6 +1086,8 @@ const char *step_length(const struct emitter *e);                 /* NAME_H; of 
 void emit_changes(const struct emitter *e);                       /* loads that change their formula: when */
 void emit_passing(const struct emitter *e);                       /* ... and pass(), across a change */
 void emit_series_vector(const struct emitter *e);                 /* declares i and load states; x[...] = what the series advances */
+void emit_set_aside(const struct emitter *e);                     /* in a step that is no list of assignments: what only adds up is 0 over it */
+void emit_take_back(const struct emitter *e);
 void emit_hand_over(const struct emitter *e);                     /* in at: y from the states in x */
 void emit_locals(const struct emitter *e, const bool *reads);     /* the states wanted, under their names */
 void emit_raw_locals(const struct emitter *e, const bool *reads, bool changing); /* as kept: of kick-drift-kick, momenta */

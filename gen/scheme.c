@@ -491,6 +491,7 @@ static void build_exact(struct step *step)
 		make_whole(step);
 	if (step->model->tuning)
 		mark_tuned_zeros(step);
+	find_carries(step);
 	step->program = linear_program(step);
 }
 
@@ -541,6 +542,7 @@ static void build_regions_step(struct step *step)
 	step->tables = 1;
 	step->table = tables_of(step->model, step->resolvent[0], &step->operator[0], 1, wanted_piece(step, 0))[0];
 	step->system = first;
+	find_carries(step);
 	step->program = linear_program(step);
 	step->program->multiplications = step->series.size * step->series.size + 6 * step->model->switching->expressions * step->series.size;
 	step->program->additions = step->program->multiplications;
@@ -558,6 +560,7 @@ static void build_with_leftover(struct step *step)
 	recipe->h = step->model->h;
 	write_recipe(recipe, step);
 	make_tables(step, recipe->tables, recipe->table);
+	find_carries(step);
 	step->program->reads = ARRAY(bool, (size_t)step->system.states);
 	step->program->uses = ARRAY(bool, (size_t)step->table->columns);
 	step->program->loops = !is_page(step);

@@ -188,6 +188,86 @@ void choose_form(struct step *step)
 		error(model->compensated_at, NULL, "--accuracy compensated is built for up to %d states", LIMIT_UNROLLED_STATES);
 }
 
+/* ---- states that only add up ---- */
+
+/* reads[i][j]: x_i' depends on x_j, in any region, with any operator, for some values of tunable params */
+static bool *readings(const struct step *step)
+{
+	const struct model *model = step->model;
+	int n = step->system.states;
+	bool *reads = ARRAY(bool, (size_t)(n * n));
+	for (int k = 0; k < step->operators; k++) {
+		const mpq_t *A = (const mpq_t *)state_matrix(model->tuning ? &model->tuning->other->system : &step->operator[k], false);
+		for (int i = 0; i < n * n; i++)
+			reads[i] = reads[i] || mpq_sgn(A[i]) != 0;
+	}
+	return reads;
+}
+
+/* Read by what is left over, by what breakpoints divide, by the choice of an operator */
+static bool *read_elsewhere(const struct step *step)
+{
+	const struct model *model = step->model;
+	int n = step->system.states;
+	bool *reads = ARRAY(bool, (size_t)n);
+	for (int k = 0; k < model->operators; k++) {
+		struct reads left = reads_of(model, model->channels, (const struct form *const *)model->operator[k].left);
+		for (int i = 0; i < n; i++)
+			reads[i] = reads[i] || left.state[i];
+	}
+	if (model->selector) {
+		struct reads selector = reads_of(model, 1, &model->selector);
+		for (int i = 0; i < n; i++)
+			reads[i] = reads[i] || selector.state[i];
+	}
+	for (int x = 0; model->switching && x < model->switching->expressions; x++)
+		for (int i = 0; i < n; i++)
+			reads[i] = reads[i] || mpq_sgn(model->switching->expression[x].row->state[i]) != 0;
+	return reads;
+}
+
+/* Is anything added to the state in a step? */
+static bool moves(const struct step *step, const bool *reads, int state, bool listed)
+{
+	const struct table *table = step->table;
+	int n = step->system.states;
+	bool any = false;
+	for (int j = 0; j < n; j++)
+		any = any || reads[state * n + j];
+	for (int s = 0; s < step->system.segments && listed; s++)
+		for (int k = 0; k < table->columns; k++)
+			any = any || !table->load[(s * n + state) * table->columns + k].zero;
+	for (int k = 0; k < table->inputs && listed; k++)
+		any = any || !table->input[state * table->inputs + k].zero;
+	return any;
+}
+
+/* Nothing damps what rounding does to a state that no chain of readings leads back to: a position known only by its rate, the velocity of a
+ * free body. Where the step is a list of assignments each such state is carried in two words; elsewhere those that nothing reads. */
+void find_carries(struct step *step)
+{
+	int n = step->system.states;
+	bool listed = !step->model->switching && !step->model->operators && n <= LIMIT_UNROLLED_STATES;
+	step->carry = ARRAY(int, (size_t)n);
+	step->carries = 0;
+	for (int i = 0; i < n; i++)
+		step->carry[i] = -1;
+	if (step->model->compensated || step->system.heldK)
+		return;
+	bool *reads = readings(step), *elsewhere = read_elsewhere(step);
+	for (int k = 0; k < n && listed; k++)
+		for (int i = 0; i < n; i++)
+			for (int j = 0; j < n && reads[i * n + k]; j++)
+				reads[i * n + j] = reads[i * n + j] || reads[k * n + j];
+	for (int i = 0; i < n; i++) {
+		bool alone = !reads[i * n + i] && !elsewhere[i] && moves(step, reads, i, listed);
+		for (int j = 0; j < n && !listed; j++)
+			alone = alone && !reads[j * n + i];
+		if (alone)
+			step->carry[i] = step->carries++;
+	}
+}
+
 /* ---- the program ---- */
 
 static void add_term(struct assignment *a, const struct coefficient *factor, enum operand_kind kind, int index)
@@ -286,6 +366,8 @@ static void count(struct program *program, const struct linear *system, bool sin
 			count_term(program, &a->term[k], system);
 		if (program->compensated)
 			count_compensation(program, a, system);
+		else if (a->carried)
+			program->additions += PL_ACCUMULATE_ADD - 1;
 	}
 	count_loads(program, system, single);
 }
@@ -294,7 +376,7 @@ static struct assignment *new_assignment(struct program *program, const struct s
 {
 	ENLARGE(program->assignment, (size_t)program->assignments + 1);
 	struct assignment *a = &program->assignment[program->assignments++];
-	*a = (struct assignment){ .target = target, .added = added };
+	*a = (struct assignment){ .target = target, .added = added, .carried = step->carry[target] >= 0 };
 	a->term = ARRAY(struct product, (size_t)(step->table->states + step->table->columns + step->table->inputs));
 	return a;
 }
@@ -318,9 +400,10 @@ static void write_direct(struct program *program, const struct step *step)
 {
 	int n = step->table->states;
 	for (int i = 0; i < n; i++) {
-		struct assignment *a = new_assignment(program, step, i, false);
+		struct assignment *a = new_assignment(program, step, i, step->carry[i] >= 0);
 		for (int j = 0; j < n; j++)
-			add_term(a, &step->table->Phi[i * n + j], OPERAND_STATE, j);
+			if (j != i || !a->added)        /* there Phi_ii is 1 */
+				add_term(a, &step->table->Phi[i * n + j], OPERAND_STATE, j);
 		add_loads_and_inputs(a, step, i);
 		drop_identity(program);
 	}
