@@ -565,6 +565,19 @@ void emit_load_state(const struct emitter *e, const char *vector)
 
 /* ---- states as written, and as they are kept ---- */
 
+/* The rate of a coordinate, over written values y; or what was gained of it, y being gains */
+static const char *rate_text(const struct emitter *e, const struct form *rate, bool whole)
+{
+	const char **term = ARRAY(const char *, (size_t)rate->terms + 1);
+	int terms = 0;
+	for (int i = 0; i < rate->terms; i++) {
+		const struct basis *basis = &rate->term[i].basis;
+		if (basis->kind == BASIS_COORD || whole)
+			term[terms++] = scaled(finite_number(e, rate->term[i].factor), basis->kind == BASIS_COORD ? format("y[%d]", basis->index) : NULL);
+	}
+	return terms > 1 ? format("(%s)", tree(terms, term, 12)) : terms ? term[0] : "0.0";
+}
+
 /* What is kept at a coordinate, over the written ones or their velocities, which stand `shift` behind */
 static const char *kept_text(const struct emitter *e, const struct link *link, int coord, const int *at)
 {
@@ -572,7 +585,8 @@ static const char *kept_text(const struct emitter *e, const struct link *link, i
 	const char **term = ARRAY(const char *, (size_t)r->written->n + 1), *own = format("y[%d]", at[coord]);
 	int terms = 0;
 	if (link->kind == LINK_PARENT) {
-		const char *from = scaled(finite_number(e, link->ratio), format("y[%d]", at[link->from]));
+		bool rate = link->rate && coord < r->written->n && at[coord] >= r->written->n;
+		const char *from = scaled(finite_number(e, link->ratio), rate ? rate_text(e, link->rate, true) : format("y[%d]", at[link->from]));
 		return link->turned ? format("%s - %s", from, own) : format(*from == '-' ? "%s - (%s)" : "%s - %s", own, from);
 	}
 	for (int k = 0; k < r->written->n && link->kind == LINK_CENTRE; k++)
@@ -587,6 +601,8 @@ static const char *gain_text(const struct emitter *e, const struct link *link, i
 	const struct relative *r = e->model->relative;
 	const char **term = ARRAY(const char *, (size_t)r->written->n + 1);
 	int terms = 0;
+	if (link->kind == LINK_PARENT && link->rate && at[coord] >= r->written->n)
+		return format("%s %c d[%d]", scaled(finite_number(e, link->ratio), rate_text(e, link->rate, false)), link->turned ? '-' : '+', kept[coord]);
 	if (link->kind == LINK_PARENT)
 		return format("%s %c d[%d]", scaled(finite_number(e, link->ratio), format("y[%d]", at[link->from])), link->turned ? '-' : '+', kept[coord]);
 	term[terms++] = format("d[%d]", kept[coord]);

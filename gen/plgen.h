@@ -504,7 +504,8 @@ struct link {                       /* of a written coordinate x: what is kept i
 	mpq_t ratio;                /* x - ratio x_p is kept, */
 	bool turned;                /* or ratio x_p - x */
 	mpq_t *weight, *shift;      /* LINK_CENTRE, per coordinate: X = sum of weight x; x = X + sum of shift times what is kept */
-	int velocity;               /* the kept coordinate that is its velocity, of first order; -1: that of what is kept */
+	struct form *rate;          /* LINK_PARENT, x of second order, x_p of first: x_p' over written coordinates, so that x' - ratio x_p' is kept, */
+	int velocity;               /* or else the kept coordinate that is x', of first order; -1: that of what is kept */
 };
 struct relative {
 	const struct model *written;
@@ -513,7 +514,6 @@ struct relative {
 	int *order;
 	struct link *link;          /* per written coordinate */
 	int links, *sequence;       /* those of LINK_PARENT, each after the one that it is measured from */
-	bool *split;                /* on the way: it is in a group of both orders */
 	struct form **form[3];      /* per derivative and written coordinate: over what is kept */
 	struct form **extra;        /* equations r' = v - ... of velocities that stand alone, after all others */
 };

@@ -198,14 +198,14 @@ static struct look look_at_equations(const struct model *model)
 
 /* One column for each basis that depends on states, one row of unknown factors for each equation */
 struct balance {
-	int bases;
+	int bases, first;           /* first: of the second set of equations */
 	struct basis *basis;
 	mpq_t **factor;             /* per basis: of it in each equation */
 };
 
-static void weigh(struct balance *b, int n, int row, const struct form_term *term)
+static void weigh(struct balance *b, int n, int from, int row, const struct form_term *term)
 {
-	int at = 0;
+	int at = from ? b->first : 0;
 	while (at < b->bases && basis_order(&b->basis[at], &term->basis) != 0)
 		at++;
 	if (at == b->bases) {
@@ -218,17 +218,20 @@ static void weigh(struct balance *b, int n, int row, const struct form_term *ter
 	mpq_set(b->factor[at][row], term->factor);
 }
 
+/* Of tunable models at other values too */
 static int free_sums(const struct model *model, mpq_t ***sum)
 {
 	struct balance b = { 0 };
 	struct echelon e = echelon_new(model->n);
-	for (int i = 0; i < model->n; i++) {
-		const struct form *form = model->residual[i].form;
+	for (int row = 0; row < model->n * (model->tuning ? 2 : 1); row++) {
+		int i = row % model->n;
+		b.first = row < model->n ? 0 : row == model->n ? b.bases : b.first;
+		const struct form *form = (row == i ? model : model->tuning->other)->residual[i].form;
 		for (int k = 0; k < form->terms; k++) {
 			const struct basis *basis = &form->term[k].basis;
 			bool state = basis->kind == BASIS_ATOM ? basis->atom->state : basis->kind == BASIS_COORD && !leads(model, basis);
 			if (state)
-				weigh(&b, model->n, i, &form->term[k]);
+				weigh(&b, model->n, row - i, i, &form->term[k]);
 		}
 	}
 	for (int k = 0; k < b.bases; k++)
@@ -249,6 +252,24 @@ static mpq_t *weights_of(const struct model *model, const mpq_t *u)
 		}
 	mpq_clear(product);
 	return w;
+}
+
+/* Do the weights change with tunable params? */
+static bool retunes(const struct model *model, const mpq_t *w, const mpq_t *other)
+{
+	int first = 0;
+	bool differ = false;
+	mpq_t a, b;
+	mpq_inits(a, b, NULL);
+	while (first < model->n && mpq_sgn(w[first]) == 0)
+		first++;
+	for (int j = 0; j < model->n && first < model->n; j++) {
+		mpq_mul(a, w[first], other[j]);
+		mpq_mul(b, w[j], other[first]);
+		differ = differ || !mpq_equal(a, b);
+	}
+	mpq_clears(a, b, NULL);
+	return differ;
 }
 
 /* ---- groups ---- */
@@ -378,7 +399,7 @@ static bool make_group(const struct model *model, const mpq_t *motion, mpq_t *we
 		mpq_mul(product, weight[j], motion[j]);
 		mpq_add(sum, sum, product);
 	}
-	if (mpq_sgn(sum) != 0 && !model->tuning && support(n, (const mpq_t *)weight) > 1 && !is_mixed(model, motion, (const mpq_t *)weight)) {
+	if (mpq_sgn(sum) != 0 && support(n, (const mpq_t *)weight) > 1 && !is_mixed(model, motion, (const mpq_t *)weight)) {
 		mpq_div(sum, sum, motion[g->root]);
 		scale(n, weight, sum);
 		g->weight = weight;
@@ -465,9 +486,47 @@ static void name_kept(struct relative *r, int centres)
 	}
 }
 
+/* x' of a first-order coordinate over constants and coordinates of first order that stay as written; NULL: it is not so simple */
+static struct form *rate_of(const struct relative *r, int coord)
+{
+	const struct model *model = r->written;
+	const struct form *form = model->residual[model->owner[coord]].form;
+	struct form *rate = NEW(struct form);
+	mpq_srcptr lead = NULL;
+	for (int i = 0; i < form->terms; i++) {
+		const struct basis *basis = &form->term[i].basis;
+		bool own = basis->kind == BASIS_COORD && basis->index == coord && basis->order == 1;
+		bool plain = basis->kind == BASIS_COORD && basis->order == 0 && r->link[basis->index].kind == LINK_NONE && model->system.velocity[basis->index] < 0;
+		if (own)
+			lead = form->term[i].factor;
+		else if (plain || basis->kind == BASIS_ONE)
+			rate = form_sum(rate, form_single(*basis, form->term[i].factor), true);
+		else
+			return NULL;
+	}
+	if (!lead || model->system.segments > 1)
+		return NULL;
+	mpq_t factor;
+	mpq_init(factor);
+	mpq_inv(factor, lead);
+	rate = form_scale(rate, factor);
+	mpq_clear(factor);
+	return rate;
+}
+
 static struct form *unit(int coord, int order)
 {
 	return form_unit((struct basis){ .kind = BASIS_COORD, .index = coord, .order = order });
+}
+
+/* Of constants and first-order coordinates */
+static struct form *derivative(const struct form *form)
+{
+	struct form *sum = NEW(struct form);
+	for (int i = 0; i < form->terms; i++)
+		if (form->term[i].basis.kind == BASIS_COORD)
+			sum = form_sum(sum, form_scale(unit(form->term[i].basis.index, 1), form->term[i].factor), false);
+	return sum;
 }
 
 /* The written coordinate, or a derivative, over what is kept */
@@ -476,6 +535,8 @@ static struct form *written_form(const struct relative *r, int coord, int order)
 	const struct link *link = &r->link[coord];
 	if (link->velocity >= 0 && order > 0)
 		return unit(link->velocity, order - 1);
+	if (link->rate && order > 0)
+		return form_sum(form_scale(order == 1 ? link->rate : derivative(link->rate), link->ratio), unit(coord, order), link->turned);
 	if (link->kind == LINK_PARENT)
 		return form_sum(form_scale(r->form[order][link->from], link->ratio), unit(coord, order), link->turned);
 	struct form *form = unit(coord, order);
@@ -510,14 +571,17 @@ static void write_forms(struct relative *r)
 			r->extra[r->link[j].velocity - n] = rate_equation(r, j);
 }
 
-/* Velocities of second order in a group of both */
+/* Velocities of coordinates that are measured from one without: relative to its rate where that is simple, else they stand alone */
 static void split_velocities(struct relative *r)
 {
 	const struct model *model = r->written;
 	for (int i = 0; i < r->links; i++) {
 		int j = r->sequence[i];
 		struct link *link = &r->link[j];
-		if (!r->split[j] || model->system.velocity[j] < 0)
+		if (model->system.velocity[j] < 0 || model->system.velocity[link->from] >= 0)
+			continue;
+		link->rate = rate_of(r, link->from);
+		if (link->rate)
 			continue;
 		link->velocity = r->n++;
 		r->name[link->velocity] = model->state_name[model->system.velocity[j]];
@@ -530,7 +594,7 @@ static struct relative *relative_new(const struct model *model)
 	struct relative *r = NEW(struct relative);
 	size_t n = (size_t)model->n;
 	*r = (struct relative){ .written = model, .n = model->n, .name = ARRAY(const char *, 2 * n), .order = ARRAY(int, 2 * n), .link = ARRAY(struct link, n),
-				.sequence = ARRAY(int, n), .split = ARRAY(bool, n) };
+				.sequence = ARRAY(int, n) };
 	for (int j = 0; j < model->n; j++) {
 		r->order[j] = model->system.velocity[j] >= 0 ? 2 : 1;
 		r->link[j].velocity = -1;
@@ -562,8 +626,12 @@ struct relative *relative_of(const struct model *model)
 		}
 	}
 	int rates = null_space(&both, &rate), sums = free_sums(model, &sum), *component = components_of(&l, &count);
-	for (int s = 0; s < sums; s++)
-		sum[s] = weights_of(model, (const mpq_t *)sum[s]);
+	for (int s = 0, all = sums; s < all; s++) {
+		const mpq_t *u = (const mpq_t *)sum[s];
+		sum[s] = weights_of(model, u);
+		if (model->tuning && retunes(model, (const mpq_t *)sum[s], (const mpq_t *)weights_of(model->tuning->other, u)))
+			sum[s] = rationals((size_t)n);
+	}
 	struct relative *r = relative_new(model);
 	for (int c = 0; c < count; c++) {
 		int found;
@@ -575,8 +643,6 @@ struct relative *relative_of(const struct model *model)
 		grow_tree(r, &l, &g);
 		if (g.weight)
 			place_root(r, &g, first);
-		for (int j = 0; j < n; j++)
-			r->split[j] = r->split[j] || (g.split && mpq_sgn(motion[j]) != 0);
 		centres += g.weight != NULL;
 		groups++;
 	}
@@ -615,6 +681,22 @@ void relative_value(const struct relative *r, int coord, mpq_t *const *value, mp
 	mpq_clear(product);
 }
 
+/* The rate that a link is measured from, at written values */
+static mpq_t *rate_value(const struct link *link, mpq_t *written)
+{
+	mpq_t *sum = rationals(1), product;
+	mpq_init(product);
+	for (int i = 0; i < link->rate->terms; i++) {
+		const struct form_term *term = &link->rate->term[i];
+		mpq_set(product, term->factor);
+		if (term->basis.kind == BASIS_COORD)
+			mpq_mul(product, product, written[term->basis.index]);
+		mpq_add(*sum, *sum, product);
+	}
+	mpq_clear(product);
+	return sum;
+}
+
 void relative_values(const struct model *model, mpq_t *written, mpq_t *kept)
 {
 	const struct relative *r = model->relative;
@@ -624,6 +706,9 @@ void relative_values(const struct model *model, mpq_t *written, mpq_t *kept)
 		place[j] = &written[j];
 		rate[j] = from->velocity[j] >= 0 ? &written[from->velocity[j]] : &written[j];
 	}
+	for (int j = 0; j < from->n; j++)
+		if (r->link[j].rate)
+			rate[r->link[j].from] = rate_value(&r->link[j], written);
 	for (int j = 0; j < from->n; j++) {
 		relative_value(r, j, place, kept[j]);
 		if (model->system.velocity[j] >= 0)
