@@ -18,7 +18,7 @@ absolute() {
 plgen=$(absolute "$1")
 inputs=$(absolute "$2")
 root=$(absolute "$3")
-warnings='-Wall -Wextra -Wpedantic -Wconversion -Wdouble-promotion -Werror'
+warnings='-Wall -Wextra -Wpedantic -Wconversion -Wdouble-promotion -Wshadow -Werror'
 . "${0%/*}/../tap.sh"
 
 for pair in "${GCCS:-gcc g++}" "${CLANGS:-clang clang++}"; do

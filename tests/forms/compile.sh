@@ -15,7 +15,7 @@ float=$4
 case $plgen in /*) ;; *) plgen=$PWD/$plgen ;; esac
 case $double in /*) ;; *) double=$PWD/$double ;; esac
 case $float in /*) ;; *) float=$PWD/$float ;; esac
-warnings='-Wall -Wextra -Wpedantic -Wconversion -Wdouble-promotion -Werror'
+warnings='-Wall -Wextra -Wpedantic -Wconversion -Wdouble-promotion -Wshadow -Werror'
 leftover='pendulum duffing vanderpol beam4'
 switching='gear1 two_masses quarter_car_bumps'
 . "${0%/*}/../tap.sh"
