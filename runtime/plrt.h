@@ -41,7 +41,7 @@ extern "C" {
 #define PL_ASSERT(condition, name, text) static_assert(condition, text)
 #elif defined __STDC_VERSION__ && __STDC_VERSION__ >= 201112L
 #define PL_ASSERT(condition, name, text) _Static_assert(condition, text)
-#elif defined __GNUC__ && !defined __cplusplus
+#elif defined __GNUC__ && !defined __cplusplus && !defined _Static_assert /* as glibc has it in C99, without words */
 #define PL_ASSERT(condition, name, text) __extension__ _Static_assert(condition, text)
 #else
 #define PL_ASSERT(condition, name, text) extern char name[(condition) ? 1 : -1] /* `name` says what `text` does */
@@ -61,13 +61,13 @@ __attribute__((used)) static void pl_look_at_flags(float a)
 #endif
 #elif defined __GNUC__ && !defined __clang__ && __GNUC__ < 12
 extern float pl_any_number;
-PL_ASSERT(!__builtin_constant_p((pl_any_number + 1.0f) - pl_any_number), pl_needs_sums_as_they_are_written,
+PL_ASSERT(!__builtin_constant_p((pl_any_number + 1.0f) - pl_any_number), pl_refuses_fassociative_math_and_funsafe_math_optimizations,
           "sums have to stay as they are written: compile it without -funsafe-math-optimizations, -fassociative-math");
 #endif
 
 /* Code for float defines this before: a constant such as 1.0 does not occur there, so what becomes of it does not matter. */
 #ifndef PL_FLOAT_ONLY
-PL_ASSERT(sizeof(1.0) == 8, pl_needs_constants_that_are_doubles_of_64_bits,
+PL_ASSERT(sizeof(1.0) == 8, pl_refuses_fsingle_precision_constant_and_doubles_of_32_bits,
           "1.0 has to be a double of 64 bits: compile it without -fsingle-precision-constant; where double has 32 bits, make models "
           "with --real float, and leave out the files of the runtime for double");
 #endif
