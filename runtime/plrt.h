@@ -31,7 +31,7 @@ extern "C" {
 
 /* ---- what the arithmetic needs of the compiler --------------------------------------------------------------- */
 
-/* y + (Phi - I) y as (I + Phi - I) y, or the error of a sum as 0: what a compiler may do that takes additions for associative */
+/* y + (Phi - I) y as Phi y, or the error of a sum as 0: so a compiler may read it that takes additions for associative. */
 #if defined __FAST_MATH__ || defined __ASSOCIATIVE_MATH__ || defined __RECIPROCAL_MATH__ || defined _M_FP_FAST
 #error "sums and quotients have to stay as they are written: compile it without -ffast-math, -Ofast, -funsafe-math-optimizations, \
 -fassociative-math, -freciprocal-math, /fp:fast"
@@ -41,18 +41,18 @@ extern "C" {
 #define PL_ASSERT(condition, name, text) static_assert(condition, text)
 #elif defined __STDC_VERSION__ && __STDC_VERSION__ >= 201112L
 #define PL_ASSERT(condition, name, text) _Static_assert(condition, text)
-#elif defined __GNUC__ && !defined __cplusplus && !defined _Static_assert /* as glibc has it in C99, without words */
+#elif defined __GNUC__ && !defined __cplusplus && !defined _Static_assert /* a macro of glibc in C99: without words */
 #define PL_ASSERT(condition, name, text) __extension__ _Static_assert(condition, text)
 #else
 #define PL_ASSERT(condition, name, text) extern char name[(condition) ? 1 : -1] /* `name` says what `text` does */
 #endif
 
-/* Compilers that know the flags but have no macro for them.  clang sees it when it optimizes, which is when it matters; the function
- * is empty otherwise. */
+/* Compilers that know the flags but have no macro for them.  clang sees it when it optimizes, which is when it matters;
+ * the function is empty otherwise. */
 #if defined __clang__ && defined __OPTIMIZE__ && defined __has_attribute
 #if __has_attribute(error)
-void pl_refused_flag(void) __attribute__((error("sums have to stay as they are written: compile it without -funsafe-math-optimizations, "
-                                                "-fassociative-math")));
+void pl_refused_flag(void) __attribute__((error("sums have to stay as they are written: compile it without "
+                                                "-funsafe-math-optimizations, -fassociative-math")));
 __attribute__((used)) static void pl_look_at_flags(float a)
 {
     if (__builtin_constant_p((a + 1.0f) - a))
@@ -61,18 +61,19 @@ __attribute__((used)) static void pl_look_at_flags(float a)
 #endif
 #elif defined __GNUC__ && !defined __clang__ && __GNUC__ < 12
 extern float pl_any_number;
-PL_ASSERT(!__builtin_constant_p((pl_any_number + 1.0f) - pl_any_number), pl_refuses_fassociative_math_and_funsafe_math_optimizations,
+PL_ASSERT(!__builtin_constant_p((pl_any_number + 1.0f) - pl_any_number),
+          pl_refuses_fassociative_math_and_funsafe_math_optimizations,
           "sums have to stay as they are written: compile it without -funsafe-math-optimizations, -fassociative-math");
 #endif
 
-/* Code for float defines this before: a constant such as 1.0 does not occur there, so what becomes of it does not matter. */
+/* Code for float defines this before: no constant such as 1.0 occurs there, so what becomes of it does not matter. */
 #ifndef PL_FLOAT_ONLY
 PL_ASSERT(sizeof(1.0) == 8, pl_refuses_fsingle_precision_constant_and_doubles_of_32_bits,
-          "1.0 has to be a double of 64 bits: compile it without -fsingle-precision-constant; where double has 32 bits, make models "
-          "with --real float, and leave out the files of the runtime for double");
+          "1.0 has to be a double of 64 bits: compile it without -fsingle-precision-constant; where double has 32 bits, make "
+          "models with --real float, and leave out the files of the runtime for double");
 #endif
 
-/* 1: sums are kept in more bits than a double, or a float, has: then their rounding is not what two-word arithmetic takes it for */
+/* 1: sums are kept in more bits than a double, or a float, has, so rounding is not what two-word arithmetic takes it for */
 #ifdef __FLT_EVAL_METHOD__
 #define PL_EXCESS_PRECISION (__FLT_EVAL_METHOD__ < 0 || __FLT_EVAL_METHOD__ == 2 || __FLT_EVAL_METHOD__ > 64)
 #define PL_EXCESS_PRECISIONF (__FLT_EVAL_METHOD__ != 0 && __FLT_EVAL_METHOD__ != 16 && __FLT_EVAL_METHOD__ != 32)
@@ -540,10 +541,10 @@ typedef struct pl_model {
     const char *const *param_names;
     const double *param_values;   /* the spec's */
     int (*retune)(void *s, const double *params, double h); /* state and time stay; as NAME_retune says; NULL: nothing is tunable */
-    void (*hold)(void *s, const double *u); /* the samples before the first step, as NAME_hold; NULL where no input is a ramp */
-    const int *start_samples;     /* of each input: how many it has had when the first step comes.  0: held, so row k of a record acts
-                                   * from k h to (k + 1) h; 1: a ramp, so row 0 is the sample at t = 0, which `hold` takes, and row
-                                   * k + 1 that at the end of step k.  NULL where there are no inputs */
+    void (*hold)(void *s, const double *u); /* the samples before the first step; NULL where no input is a ramp */
+    const int *start_samples;     /* of each input: how many it has had when the first step comes.  0: held, so row k of a
+                                   * record acts from k h to (k + 1) h; 1: a ramp, so row 0 is the sample at t = 0, which
+                                   * `hold` takes, and row k + 1 that at the end of step k.  NULL where there are no inputs */
 } pl_model;
 
 /* The same of a model in float. */

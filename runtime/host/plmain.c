@@ -7,10 +7,10 @@
  * A model made with --real float is compiled with -DFLOAT too.  Tunable params, and the step, take other values on the command
  * line: ./m 30 k2=60 step=0.005.
  *
- * One row at every step k*h <= T, from t = 0 on.  A model with inputs reads a record of them from standard input: rows of as many
- * numbers as inputs, separated by commas; a first line that gives the inputs' names may precede them.  Row k, the first being
- * row 0, is the sample at k h: of an input that is held it acts from k h to (k + 1) h, one with `hold first` goes straight from it
- * to row k + 1.  So n steps take n rows, and where an input is a ramp n + 1.
+ * One row at every step k*h <= T, from t = 0 on.  A model with inputs reads a record of them from standard input: rows of as
+ * many numbers as inputs, separated by commas; a first line that gives the inputs' names may precede them.  Row k, the first
+ * being row 0, is the sample at k h: of an input that is held it acts from k h to (k + 1) h, one with `hold first` goes
+ * straight from it to row k + 1.  So n steps take n rows, and where an input is a ramp n + 1.
  * A run that leaves the finite numbers ends there, with exit status 1 and the rows before it written. */
 #include "plrt.h"
 #include <stdio.h>
@@ -42,8 +42,8 @@ static void check_type(void)
 {
     if (model->real_size == (int)sizeof(real))
         return;
-    fprintf(stderr, "%s: error: plmain.c was compiled %s -DFLOAT, and the model is in %s\n", model->name, sizeof(real) == sizeof(float) ? "with" : "without",
-            model->real_size == (int)sizeof(float) ? "float" : "double");
+    fprintf(stderr, "%s: error: plmain.c was compiled %s -DFLOAT, and the model is in %s\n", model->name,
+            sizeof(real) == sizeof(float) ? "with" : "without", model->real_size == (int)sizeof(float) ? "float" : "double");
     fprintf(stderr, "note: -DFLOAT is for models made with --real float, and for no others\n");
     exit(2);
 }
@@ -107,10 +107,13 @@ static uint64_t rows_for(uint64_t steps)
 static void too_few(const samples *in, uint64_t row, uint64_t steps, double h)
 {
     const uint64_t rows = rows_for(steps);
-    fprintf(stderr, "<stdin>:%lu:1: error: too few samples: expected row %llu, of t = %.6g, found the end of the file\n", in->number, (unsigned long long)row,
-            (double)row * h);
-    fprintf(stderr, "note: %llu step%s take%s row%s 0%s%.0f%s\n", (unsigned long long)steps, steps == 1 ? "" : "s", steps == 1 ? "s" : "", rows == 1 ? "" : "s",
-            rows == 1 ? "" : " to ", (double)(rows - 1), has_ramps() ? ": a ramp starts at row 0, of t = 0, and ends a step at the next" : "");
+    const char *const ramps = has_ramps() ? ": a ramp starts at row 0, of t = 0, and ends a step at the next" : "";
+    fprintf(stderr, "<stdin>:%lu:1: error: too few samples: expected row %.0f, of t = %.6g, found the end of the file\n",
+            in->number, (double)row, (double)row * h);
+    if (rows == 1)
+        fprintf(stderr, "note: 1 step takes row 0%s\n", ramps);
+    else
+        fprintf(stderr, "note: %.0f step%s rows 0 to %.0f%s\n", (double)steps, steps == 1 ? " takes" : "s take", (double)(rows - 1), ramps);
     exit(1);
 }
 
