@@ -81,7 +81,8 @@ static bool has_jump(const struct emitter *e)
 	return e->system->inputs == 0 && !has_leftover(e->step) && !e->model->switching && !e->model->tuning;
 }
 
-static bool has_status(const struct emitter *e)
+/* Others look at the state when they are asked. */
+static bool keeps_status(const struct emitter *e)
 {
 	return has_leftover(e->step) || e->model->switching;
 }
@@ -353,7 +354,7 @@ static void emit_state_struct(const struct emitter *e)
 	fputs("    double t0;            /* [s]; time is t0 + k h */\n    uint64_t k;           /* steps since then */\n", to);
 	if (e->model->switching)
 		emit_region_members(e);
-	if (has_status(e))
+	if (keeps_status(e))
 		fputs("    int status;           /* sticky: 0, or what pl_status names */\n", to);
 	fputs("};\n\n", to);
 }
@@ -367,9 +368,9 @@ static void emit_functions(const struct emitter *e, bool rhs)
 	declare(e, format("void   %s_set(%s *s, double t, const double y[%s_STATES]);", n, n, N), "any state at any time [s]");
 	declare(e, format("void   %s_get(const %s *s, double y[%s_STATES]);", n, n, N), "");
 	declare(e, format("double %s_time(const %s *s);", n, n), "[s]");
-	if (has_status(e))
-		declare(e, format("int    %s_status(const %s *s);", n, n), e->model->switching ? "0, or bits: PL_NOT_FINITE, PL_TOO_MANY_EVENTS"
-			: "0, or PL_NOT_FINITE once a step has left the finite numbers");
+	declare(e, format("int    %s_status(const %s *s);", n, n), e->model->switching ? "0, or bits: PL_NOT_FINITE, PL_TOO_MANY_EVENTS"
+		: has_leftover(e->step) ? "0, or PL_NOT_FINITE once a step has left the finite numbers"
+		: "0, or PL_NOT_FINITE: a state is infinite or not a number");
 	if (e->model->switching)
 		emit_region_declarations(e);
 	if (e->ramps)
@@ -401,7 +402,8 @@ static void emit_declarations(const struct emitter *e, bool rhs)
 {
 	FILE *to = e->to;
 	const char *N = e->upper;
-	fprintf(to, "#ifndef %s_DECLARED\n#define %s_DECLARED\n\n#include \"plrt.h\"\n\n#ifdef __cplusplus\nextern \"C\" {\n#endif\n\n", N, N);
+	fprintf(to, "#ifndef %s_DECLARED\n#define %s_DECLARED\n\n%s#include \"plrt.h\"\n\n#ifdef __cplusplus\nextern \"C\" {\n#endif\n\n", N, N,
+		e->model->single ? "#define PL_FLOAT_ONLY\n" : "");
 	fprintf(to, "enum { %s_STATES = %d, %s_INPUTS = %d, %s_OUTPUTS = %d };\n", N, e->system->states, N, e->system->inputs, N, e->model->outputs);
 	if (e->model->switching)
 		fprintf(to, "enum { %s_MAX_EVENTS = %d };  /* crossings in a step */\n", N, MAX_EVENTS);
@@ -679,6 +681,22 @@ static void emit_conversions(const struct emitter *e)
 	fputs("}\n", to);
 }
 
+/* Of a linear model from its state, in both words where it has two: a step has nothing to do for it. */
+static void emit_status(const struct emitter *e)
+{
+	const char *n = e->name, *N = e->upper;
+	bool written = e->step->momenta || e->model->relative;  /* s->y is not the state */
+	fprintf(e->to, "\nint %s_status(const %s *s)\n{\n", n, n);
+	if (keeps_status(e)) {
+		fputs("    return s->status;\n}\n", e->to);
+		return;
+	}
+	if (written)
+		fprintf(e->to, "    double y[%s_STATES];\n    %s_get(s, y);\n", N, n);
+	fprintf(e->to, "    return pl_not_finite(%s, %s_STATES)%s;\n}\n", written ? "y" : "s->y", N,
+		e->step->program->compensated ? format(" | pl_not_finite(s->rest, %s_STATES)", N) : "");
+}
+
 static void emit_access(const struct emitter *e)
 {
 	FILE *to = e->to;
@@ -697,7 +715,7 @@ static void emit_access(const struct emitter *e)
 		if (e->model->relative && factor_of_momentum(e, i))
 			fprintf(to, "    s->from[%d] = s->y[%d] / %s;\n", i, i, factor_of_momentum(e, i));
 	fputs("    s->t0 = t;\n    s->k = 0;\n", to);
-	if (has_status(e))
+	if (keeps_status(e))
 		fputs("    s->status = 0;\n", to);
 	emit_load_set(e);
 	if (e->system->segments > 1)
@@ -719,11 +737,10 @@ static void emit_access(const struct emitter *e)
 		fprintf(to, "    %s_written(s, x, y);\n", n);
 	fputs("}\n", to);
 	emit_time(e);
-	if (has_status(e))
-		fprintf(to, "\nint %s_status(const %s *s)\n{\n    return s->status;\n}\n", n, n);
+	emit_status(e);
 	if (e->ramps)
-		fprintf(to, "\nvoid %s_hold(%s *s, const double u[%s_INPUTS])\n{\n    int i;\n    for (i = 0; i < %s_INPUTS; i++)\n        s->u[i] = u[i];\n}\n",
-			n, n, N, N);
+		fprintf(to, "\nvoid %s_hold(%s *s, const double u[%s_INPUTS])\n{\n    int i;\n    for (i = 0; i < %s_INPUTS; i++)\n        s->u[i] = u[i];\n%s}\n",
+			n, n, N, N, e->model->switching ? format("    if (s->k == 0)\n        %s_place(s);\n", n) : "");
 }
 
 /* ---- run ---- */
@@ -804,6 +821,14 @@ static void emit_wrapper(const struct emitter *e, const char *result, const char
 		*result != 'v' ? "return " : !e->system->inputs && strstr(parameters, "*u") ? "(void)u; " : "", e->name, function, state, arguments);
 }
 
+static void emit_start_samples(const struct emitter *e)
+{
+	fprintf(e->to, "static const int %s_start_samples[] = {", e->name);
+	for (int i = 0; i < e->system->inputs; i++)
+		fprintf(e->to, "%s%d", i ? ", " : "", e->system->input[i].first_order);
+	fputs("};\n", e->to);
+}
+
 static void emit_descriptor(const struct emitter *e)
 {
 	FILE *to = e->to;
@@ -816,8 +841,10 @@ static void emit_descriptor(const struct emitter *e)
 		input[i] = e->system->input[i].name;
 	fputs("\n/* The same functions for programs that drive any model. */\n\n", to);
 	emit_name_list(e, "state_names", e->system->states, e->step->shown->model->state_name);
-	if (inputs)
+	if (inputs) {
 		emit_name_list(e, "input_names", e->system->inputs, input);
+		emit_start_samples(e);
+	}
 	emit_name_list(e, "output_names", e->model->outputs, output);
 	fputc('\n', to);
 	emit_wrapper(e, "void", "init", "", "", false);
@@ -831,15 +858,18 @@ static void emit_descriptor(const struct emitter *e)
 		emit_wrapper(e, "void", "at", ", const double *u, double tau, double *y", inputs ? ", u, tau, y" : ", tau, y", true);
 	if (has_jump(e))
 		emit_wrapper(e, "void", "jump", ", uint64_t n", ", n", false);
-	if (has_status(e))
-		emit_wrapper(e, "int", "status", "", "", true);
+	emit_wrapper(e, "int", "status", "", "", true);
 	if (e->model->tuning)
 		emit_tuning_wrapper(e);
-	fprintf(to, "\nconst pl_model %s_model = {\n    \"%s\", sizeof(struct %s), %s_STATES, %s_INPUTS, %s_OUTPUTS, %s_H,\n", n, n, n, N, N, N, N);
+	if (e->ramps)
+		emit_wrapper(e, "void", "hold", ", const double *u", ", u", false);
+	fprintf(to, "\nconst pl_model %s_model = {\n    \"%s\", sizeof(struct %s), %s_STATES, %s_INPUTS, %s_OUTPUTS, sizeof(double), %s_H,\n", n, n, n, N, N, N,
+		N);
 	fprintf(to, "    %s_state_names, %s, %s_output_names,\n", n, inputs ? format("%s_input_names", n) : "NULL", n);
 	fprintf(to, "    %s_any_init, %s_any_set, %s_any_get, %s_any_time, %s_any_step,\n    %s_any_out, %s_any_run, %s, %s, %s,\n", n, n, n, n, n, n, n,
-		at ? format("%s_any_at", n) : "NULL", has_jump(e) ? format("%s_any_jump", n) : "NULL", has_status(e) ? format("%s_any_status", n) : "NULL");
-	fprintf(to, "    %s\n};\n", e->model->tuning ? format("%s_PARAMS, %s_param_names, %s_nominal.params, %s_any_retune", N, n, n, n) : "0, NULL, NULL, NULL");
+		at ? format("%s_any_at", n) : "NULL", has_jump(e) ? format("%s_any_jump", n) : "NULL", format("%s_any_status", n));
+	fprintf(to, "    %s,\n", e->model->tuning ? format("%s_PARAMS, %s_param_names, %s_nominal.params, %s_any_retune", N, n, n, n) : "0, NULL, NULL, NULL");
+	fprintf(to, "    %s, %s\n};\n", e->ramps ? format("%s_any_hold", n) : "NULL", inputs ? format("%s_start_samples", n) : "NULL");
 }
 
 /* Does an output read an acceleration that something left over acts on? */
@@ -888,7 +918,8 @@ void emit_code(FILE *to, const struct step *step, const char *options, const cha
 	if (needs_math(&e, rhs))
 		fputs("\n#include <math.h>\n", to);
 	if (step->program->compensated || step->carries)
-		fputs("\n#ifdef __FAST_MATH__\n#error \"two-word arithmetic needs rounding errors as they are: compile it without -ffast-math\"\n#endif\n", to);
+		fprintf(to, "\n#if PL_EXCESS_PRECISION%s\n#error \"two-word arithmetic needs sums that have the bits of their type: on x86 compile it with -msse2 "
+			    "-mfpmath=sse\"\n#endif\n", step->model->single ? "F" : "");
 	emit_phi(&e);
 	if (e.system->inputs)
 		emit_gamma(&e);

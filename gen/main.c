@@ -375,19 +375,25 @@ static void print_main_text(void *context)
 	}
 }
 
-/* C for the target double becomes C for float. */
-static void make_single(struct file *f)
+static void print_as_float(FILE *to, const char *text, const char *name)
 {
-	struct file single = *f;
-	FILE *stream = open_memstream(&single.text, &single.length);
+	(void)name;
+	print_single(to, text);
+}
+
+/* C becomes other C: for the target float, or with locals apart from the model's name. */
+static void rewrite(struct file *f, const char *name, void (*print)(FILE *to, const char *text, const char *name))
+{
+	struct file other = *f;
+	FILE *stream = open_memstream(&other.text, &other.length);
 	if (stream)
-		print_single(stream, f->text);
+		print(stream, f->text, name);
 	if (!stream || fclose(stream) != 0) {
 		fputs("plgen: error: out of memory\n", stderr);
 		exit(1);
 	}
 	free(f->text);
-	*f = single;
+	*f = other;
 }
 
 static int fail(void)
@@ -444,8 +450,11 @@ int main(int argc, char **argv)
 		emit_header(to, step, options.banner, options.rhs);
 		close_file(to);
 	}
-	for (int i = 0; i < files && options.overrides.single && options.print <= PRINT_HEADER; i++)
-		make_single(&file[i]);
+	for (int i = 0; i < files && options.print <= PRINT_HEADER; i++) {
+		if (options.overrides.single)
+			rewrite(&file[i], model->name, print_as_float);
+		rewrite(&file[i], model->name, print_apart);
+	}
 	if (options.depfile) {
 		to = open_file(options.depfile);
 		print_depfile(to, &options, model);

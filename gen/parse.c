@@ -630,18 +630,39 @@ static bool take_word(struct parser *p, const char *word)
 	return true;
 }
 
+/* `hold first` at the end of a list, and nowhere else in it, holds for the whole list. Else it holds for the name before it, and whoever has
+ * none is held: after the ramps only, where that cannot be taken for the other. `last`: of the list */
+static void apply_hold(struct parser *p, const struct symbol *last, int phrases)
+{
+	const struct symbol *held = NULL;
+	bool whole = phrases == 1 && last->first_order;
+	for (struct symbol *s = p->spec->first; s && phrases > 0; s = s->next) {
+		if (s->statement != p->statement)
+			continue;
+		if (s->first_order && held && !whole)
+			error(held->at, format("what is held goes last, or has a statement of its own: input %s", held->name),
+				"is '%s' held, or a ramp as '%s' is?", held->name, s->name);
+		held = s->first_order || held ? held : s;
+		s->first_order = s->first_order || whole;
+	}
+}
+
 /* input: input NAME [ hold first ] { , NAME [ hold first ] } */
 static void read_input(struct parser *p)
 {
+	struct symbol *input;
+	int phrases = 0;
 	do {
-		struct symbol *input = declare(p, expect_new_name(p, "the name of an input"), SYMBOL_INPUT, false);
+		input = declare(p, expect_new_name(p, "the name of an input"), SYMBOL_INPUT, false);
 		if (!take_word(p, "hold"))
 			continue;
 		input->first_order = take_word(p, "first");
 		if (!input->first_order)
 			error(p->token.at, "without 'hold first' an input is held from sample to sample", "expected 'first', found %s", token_text(p->token));
+		phrases++;
 	} while (take_op(p, ","));
 	expect_end(p);
+	apply_hold(p, input, phrases);
 }
 
 static void add_initial(struct parser *p, struct token name, struct symbol *coord, int component, struct node *value)

@@ -1141,6 +1141,10 @@ void emit_selftest(const struct emitter *e, bool jumps);
 
 void print_single(FILE *to, const char *text);               /* C for double as C for float */
 
+/* ---- apart.c: locals apart from the model's type ---- */
+
+void print_apart(FILE *to, const char *text, const char *name); /* the C of a model of this name, none of whose locals are called so */
+
 /* ---- explain.c, solution.c ---- */
 
 void explain_person(FILE *to, const struct step *step);

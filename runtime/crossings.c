@@ -4,10 +4,6 @@
  * is computed, so none is stepped over. */
 #include "real.h"
 
-#ifdef __FAST_MATH__
-#error "crossings.c compares what rounding left: compile it without -ffast-math"
-#endif
-
 /* SHORT: a length of s, which goes from 0 to 1 over a piece.  REST: what rounding may leave of a step, in parts of it. */
 #ifdef REAL_IS_FLOAT
 #define SHORT 0x1p-18f

@@ -18,7 +18,7 @@
  * turnsf.c, growthf.c, ... are the same for models in float, which never touch a double.  Their names end in f where the others
  * have pl_turn, pl_growth, ...: pl_turnf_at is to pl_turn_at as sinf is to sin.
  *
- * Compile it as the compiler comes: contraction to fused multiply-adds does no harm, -ffast-math is refused. */
+ * Compile it as the compiler comes: contraction to fused multiply-adds does no harm; flags that do are refused below. */
 #ifndef PLRT_H
 #define PLRT_H
 
@@ -27,6 +27,59 @@
 
 #ifdef __cplusplus
 extern "C" {
+#endif
+
+/* ---- what the arithmetic needs of the compiler --------------------------------------------------------------- */
+
+/* y + (Phi - I) y as Phi y, or the error of a sum as 0: so a compiler may read it that takes additions for associative. */
+#if defined __FAST_MATH__ || defined __ASSOCIATIVE_MATH__ || defined __RECIPROCAL_MATH__ || defined _M_FP_FAST
+#error "sums and quotients have to stay as they are written: compile it without -ffast-math, -Ofast, -funsafe-math-optimizations, \
+-fassociative-math, -freciprocal-math, /fp:fast"
+#endif
+
+#if defined __cplusplus && __cplusplus >= 201103L
+#define PL_ASSERT(condition, name, text) static_assert(condition, text)
+#elif defined __STDC_VERSION__ && __STDC_VERSION__ >= 201112L
+#define PL_ASSERT(condition, name, text) _Static_assert(condition, text)
+#elif defined __GNUC__ && !defined __cplusplus && !defined _Static_assert /* a macro of glibc in C99: without words */
+#define PL_ASSERT(condition, name, text) __extension__ _Static_assert(condition, text)
+#else
+#define PL_ASSERT(condition, name, text) extern char name[(condition) ? 1 : -1] /* `name` says what `text` does */
+#endif
+
+/* Compilers that know the flags but have no macro for them.  clang sees it when it optimizes, which is when it matters;
+ * the function is empty otherwise. */
+#if defined __clang__ && defined __OPTIMIZE__ && defined __has_attribute
+#if __has_attribute(error)
+void pl_refused_flag(void) __attribute__((error("sums have to stay as they are written: compile it without "
+                                                "-funsafe-math-optimizations, -fassociative-math")));
+__attribute__((used)) static void pl_look_at_flags(float a)
+{
+    if (__builtin_constant_p((a + 1.0f) - a))
+        pl_refused_flag();
+}
+#endif
+#elif defined __GNUC__ && !defined __clang__ && __GNUC__ < 12
+extern float pl_any_number;
+PL_ASSERT(!__builtin_constant_p((pl_any_number + 1.0f) - pl_any_number),
+          pl_refuses_fassociative_math_and_funsafe_math_optimizations,
+          "sums have to stay as they are written: compile it without -funsafe-math-optimizations, -fassociative-math");
+#endif
+
+/* Code for float defines this before: no constant such as 1.0 occurs there, so what becomes of it does not matter. */
+#ifndef PL_FLOAT_ONLY
+PL_ASSERT(sizeof(1.0) == 8, pl_refuses_fsingle_precision_constant_and_doubles_of_32_bits,
+          "1.0 has to be a double of 64 bits: compile it without -fsingle-precision-constant; where double has 32 bits, make "
+          "models with --real float, and leave out the files of the runtime for double");
+#endif
+
+/* 1: sums are kept in more bits than a double, or a float, has, so rounding is not what two-word arithmetic takes it for */
+#ifdef __FLT_EVAL_METHOD__
+#define PL_EXCESS_PRECISION (__FLT_EVAL_METHOD__ < 0 || __FLT_EVAL_METHOD__ == 2 || __FLT_EVAL_METHOD__ > 64)
+#define PL_EXCESS_PRECISIONF (__FLT_EVAL_METHOD__ != 0 && __FLT_EVAL_METHOD__ != 16 && __FLT_EVAL_METHOD__ != 32)
+#else
+#define PL_EXCESS_PRECISION 0 /* two.h asks <float.h> */
+#define PL_EXCESS_PRECISIONF 0
 #endif
 
 /* ---- turns.c: phases ------------------------------------------------------------------------------------- */
@@ -269,7 +322,7 @@ void pl_multiply(int rows, int columns, const double *table, const double *x, do
 void pl_multiply_add(int rows, int columns, const double *table, const double *x, double *y);
 
 /* What the status of a model says: 0, or */
-enum { PL_NOT_FINITE = 1 }; /* a step has left the finite numbers */
+enum { PL_NOT_FINITE = 1 }; /* a step has left the finite numbers: of linear models, while it shows in the state */
 
 /* PL_NOT_FINITE if an entry of y is infinite or not a number, else 0; n entries.  By their bits: no compiler that takes all numbers
  * for finite can leave it out, and it raises no exception. */
@@ -471,6 +524,7 @@ typedef struct pl_model {
     const char *name;
     size_t size;                  /* sizeof the state */
     int states, inputs, outputs;
+    int real_size;                /* sizeof(double); in its place a pl_modelf says sizeof(float) */
     double h;                     /* step [s] */
     const char *const *state_names, *const *input_names, *const *output_names;
     void (*init)(void *s);        /* t = 0 and the spec's initial values */
@@ -482,11 +536,15 @@ typedef struct pl_model {
     void (*run)(void *s, size_t n, const double *u, double *out); /* n steps; n rows of u; n rows of out, or NULL */
     void (*at)(const void *s, const double *u, double tau, double *y); /* 0 <= tau <= h; NULL where the model has none */
     void (*jump)(void *s, uint64_t n);                                 /* n steps at once; NULL where it has none */
-    int (*status)(const void *s); /* sticky until init or set: 0, or PL_NOT_FINITE; NULL where the model has none */
+    int (*status)(const void *s); /* 0, or bits: PL_NOT_FINITE, PL_TOO_MANY_EVENTS */
     int params;                   /* tunable ones */
     const char *const *param_names;
     const double *param_values;   /* the spec's */
     int (*retune)(void *s, const double *params, double h); /* state and time stay; as NAME_retune says; NULL: nothing is tunable */
+    void (*hold)(void *s, const double *u); /* the samples before the first step; NULL where no input is a ramp */
+    const int *start_samples;     /* of each input: how many it has had when the first step comes.  0: held, so row k of a
+                                   * record acts from k h to (k + 1) h; 1: a ramp, so row 0 is the sample at t = 0, which
+                                   * `hold` takes, and row k + 1 that at the end of step k.  NULL where there are no inputs */
 } pl_model;
 
 /* The same of a model in float. */
@@ -494,6 +552,7 @@ typedef struct pl_modelf {
     const char *name;
     size_t size;
     int states, inputs, outputs;
+    int real_size;
     float h;
     const char *const *state_names, *const *input_names, *const *output_names;
     void (*init)(void *s);
@@ -510,6 +569,8 @@ typedef struct pl_modelf {
     const char *const *param_names;
     const float *param_values;
     int (*retune)(void *s, const float *params, float h);
+    void (*hold)(void *s, const float *u);
+    const int *start_samples;
 } pl_modelf;
 
 #ifdef __cplusplus

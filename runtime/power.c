@@ -2,10 +2,6 @@
 /* P^k x by binary powering in two-word arithmetic. */
 #include "two.h"
 
-#ifdef __FAST_MATH__
-#error "power.c needs rounding errors as they are: compile it without -ffast-math"
-#endif
-
 static pl_two scaled(pl_two a, real power_of_2)
 {
     const real hi = a.hi * power_of_2;

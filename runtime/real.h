@@ -6,6 +6,10 @@
 #ifndef PLRT_REAL_H
 #define PLRT_REAL_H
 
+#ifdef REAL_IS_FLOAT
+#define PL_FLOAT_ONLY
+#endif
+
 #include "plrt.h"
 
 #include <float.h>

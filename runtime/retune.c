@@ -2,10 +2,6 @@
 /* Coefficients of a step from other params: those of the equations, in two words, and from them e^{A tau} - I. */
 #include "two.h"
 
-#ifdef __FAST_MATH__
-#error "retune.c needs rounding errors as they are: compile it without -ffast-math"
-#endif
-
 /* sum + a b.  The error of a sum of n such terms is about n 2^-104, or n 2^-46, of the sum of their sizes; what comes out is not yet
  * normal: lo may have grown beyond half a unit of hi. */
 static inline pl_two plus_product(pl_two sum, pl_two a, pl_two b)

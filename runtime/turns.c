@@ -3,10 +3,6 @@
  * turns does not lose accuracy with time, as w*t in radians does. */
 #include "words.h"
 
-#ifdef __FAST_MATH__
-#error "turns.c needs its sums in the order written: compile it without -ffast-math"
-#endif
-
 pl_turn pl_turn_times(pl_turn a, uint64_t n)
 {
     const words_pair p = words_product(a.lo, n);

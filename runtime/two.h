@@ -5,8 +5,17 @@
 
 #include "real.h"
 
-#ifdef __FAST_MATH__
-#error "two-word arithmetic needs rounding errors as they are: compile it without -ffast-math"
+#if defined __FINITE_MATH_ONLY__ && __FINITE_MATH_ONLY__ > 0
+#error "what overflows is told by its infinity: compile it without -ffinite-math-only"
+#endif
+
+#ifdef REAL_IS_FLOAT
+#define TWO_EXCESS (PL_EXCESS_PRECISIONF || FLT_EVAL_METHOD == 1 || FLT_EVAL_METHOD == 2)
+#else
+#define TWO_EXCESS (PL_EXCESS_PRECISION || FLT_EVAL_METHOD == 2)
+#endif
+#if TWO_EXCESS
+#error "two-word arithmetic needs sums that have the bits of their type: on x86 compile it with -msse2 -mfpmath=sse"
 #endif
 
 static inline int is_finite(real a)

@@ -7,8 +7,10 @@
  * A model made with --real float is compiled with -DFLOAT too.  Tunable params, and the step, take other values on the command
  * line: ./m 30 k2=60 step=0.005.
  *
- * One row at every step k*h <= T, from t = 0 on.  A model with inputs reads one row of samples per step from standard
- * input: as many numbers as inputs, separated by commas; a first line that gives the inputs' names may precede them.
+ * One row at every step k*h <= T, from t = 0 on.  A model with inputs reads a record of them from standard input: rows of as
+ * many numbers as inputs, separated by commas; a first line that gives the inputs' names may precede them.  Row k, the first
+ * being row 0, is the sample at k h: of an input that is held it acts from k h to (k + 1) h, one with `hold first` goes
+ * straight from it to row k + 1.  So n steps take n rows, and where an input is a ramp n + 1.
  * A run that leaves the finite numbers ends there, with exit status 1 and the rows before it written. */
 #include "plrt.h"
 #include <stdio.h>
@@ -24,16 +26,27 @@
 #ifdef FLOAT
 typedef float real;
 typedef pl_modelf descriptor;
-enum { DIGITS = 9, BITS = 24 };
+enum { SHORT_DIGITS = 6, DIGITS = 9, BITS = 24 };
 #else
 typedef double real;
 typedef pl_model descriptor;
-enum { DIGITS = 17, BITS = 53 };
+enum { SHORT_DIGITS = 15, DIGITS = 17, BITS = 53 };
 #endif
 
 extern const descriptor DESCRIPTOR(MODEL);
 
 static const descriptor *const model = &DESCRIPTOR(MODEL);
+
+/* The linker does not see types: a descriptor of the other one has `real_size` in the same place, and its name. */
+static void check_type(void)
+{
+    if (model->real_size == (int)sizeof(real))
+        return;
+    fprintf(stderr, "%s: error: plmain.c was compiled %s -DFLOAT, and the model is in %s\n", model->name,
+            sizeof(real) == sizeof(float) ? "with" : "without", model->real_size == (int)sizeof(float) ? "float" : "double");
+    fprintf(stderr, "note: -DFLOAT is for models made with --real float, and for no others\n");
+    exit(2);
+}
 
 static void fail(const char *what)
 {
@@ -46,6 +59,17 @@ static void *need(void *memory)
     if (memory == NULL)
         fail("out of memory");
     return memory;
+}
+
+/* With as few digits as read back the same: SHORT_DIGITS are never too many. */
+static void print_shortest(FILE *to, real value)
+{
+    char text[40];
+    int digits = SHORT_DIGITS;
+    do
+        sprintf(text, "%.*g", digits, (double)value);
+    while ((real)strtod(text, NULL) != value && digits++ < DIGITS);
+    fputs(text, to);
 }
 
 /* ---- the samples on standard input ---- */
@@ -62,6 +86,34 @@ static void bad_input(const samples *in, size_t column, const char *what)
     fprintf(stderr, "<stdin>:%lu:%lu: error: %s\n", in->number, (unsigned long)column + 1, what);
     if (in->length != 0)
         fprintf(stderr, "%s\n%*s^\n", in->line, column < 10000 ? (int)column : 0, "");
+    exit(1);
+}
+
+static int has_ramps(void)
+{
+    int i;
+    for (i = 0; i < model->inputs; i++)
+        if (model->start_samples[i] > 0)
+            return 1;
+    return 0;
+}
+
+/* What `steps` steps take */
+static uint64_t rows_for(uint64_t steps)
+{
+    return has_ramps() ? steps + 1 : steps;
+}
+
+static void too_few(const samples *in, uint64_t row, uint64_t steps, double h)
+{
+    const uint64_t rows = rows_for(steps);
+    const char *const ramps = has_ramps() ? ": a ramp starts at row 0, of t = 0, and ends a step at the next" : "";
+    fprintf(stderr, "<stdin>:%lu:1: error: too few samples: expected row %.0f, of t = %.6g, found the end of the file\n",
+            in->number, (double)row, (double)row * h);
+    if (rows == 1)
+        fprintf(stderr, "note: 1 step takes row 0%s\n", ramps);
+    else
+        fprintf(stderr, "note: %.0f step%s rows 0 to %.0f%s\n", (double)steps, steps == 1 ? " takes" : "s take", (double)(rows - 1), ramps);
     exit(1);
 }
 
@@ -128,13 +180,14 @@ static void read_header(samples *in)
     }
 }
 
-static void read_sample(samples *in, real *u)
+/* 0: there is no row left */
+static int read_sample(samples *in, real *u)
 {
     const char *p;
     char *end;
     int i;
     if (!next_line(in))
-        bad_input(in, 0, "too few samples: expected a row for every step, found the end of the file");
+        return 0;
     p = in->line;
     for (i = 0; i < model->inputs; i++) {
         p = skip_blanks(p);
@@ -149,6 +202,7 @@ static void read_sample(samples *in, real *u)
                       separator(i) ? "expected ',': one column for each input" : "expected the end of the line");
         p += *p == ',';
     }
+    return 1;
 }
 
 /* ---- the run ---- */
@@ -166,7 +220,7 @@ static void print_row(const void *state, real *out)
 {
     int i;
     model->out(state, out);
-    printf("%.*g", DIGITS, (double)model->time(state));
+    print_shortest(stdout, model->time(state));
     for (i = 0; i < model->outputs; i++)
         printf(",%.*g", DIGITS, (double)out[i]);
     printf("\n");
@@ -182,7 +236,9 @@ static void check_status(const void *state)
         return;
     if (fflush(stdout) != 0)
         fail("cannot write to standard output");
-    fprintf(stderr, "%s: error: t = %.*g: ", model->name, DIGITS, (double)model->time(state));
+    fprintf(stderr, "%s: error: t = ", model->name);
+    print_shortest(stderr, model->time(state));
+    fprintf(stderr, ": ");
     if (status == PL_NOT_FINITE)
         fprintf(stderr, "the step has left the finite numbers\n");
     else
@@ -196,8 +252,6 @@ static uint64_t steps_until(double end, double h)
     const double steps = end / h;
     if (!(steps < 9007199254740992.0)) {
         fprintf(stderr, "%s: error: T is more than 2^53 steps\n", model->name);
-        if (!((double)model->h > 1e-300)) /* as the other type's descriptor reads */
-            fprintf(stderr, "note: -DFLOAT is for models made with --real float, and for no others\n");
         exit(2);
     }
     return (uint64_t)(steps + 1e-9 + steps * (BITS == 24 ? 0x1p-23 : 0x1p-52));
@@ -206,12 +260,20 @@ static uint64_t steps_until(double end, double h)
 static void usage(const char *program)
 {
     int i;
-    fprintf(stderr, "usage: %s T%s %s> out.csv\n    T: time of the end [s]; the step is %.*g s\n", program,
-            model->retune != NULL ? " [NAME=VALUE ...]" : "", model->inputs > 0 ? "< inputs.csv " : "", DIGITS, (double)model->h);
-    for (i = 0; i < model->params; i++)
-        fprintf(stderr, "    %s=%.*g\n", model->param_names[i], DIGITS, (double)model->param_values[i]);
-    if (model->retune != NULL)
-        fprintf(stderr, "    step=%.*g\n", DIGITS, (double)model->h);
+    fprintf(stderr, "usage: %s T%s %s> out.csv\n    T: time of the end [s]; the step is ", program, model->retune != NULL ? " [NAME=VALUE ...]" : "",
+            model->inputs > 0 ? "< inputs.csv " : "");
+    print_shortest(stderr, model->h);
+    fprintf(stderr, " s\n");
+    for (i = 0; i < model->params; i++) {
+        fprintf(stderr, "    %s=", model->param_names[i]);
+        print_shortest(stderr, model->param_values[i]);
+        fprintf(stderr, "\n");
+    }
+    if (model->retune != NULL) {
+        fprintf(stderr, "    step=");
+        print_shortest(stderr, model->h);
+        fprintf(stderr, "\n");
+    }
     exit(2);
 }
 
@@ -274,11 +336,37 @@ static void retune(void *state, const real *params, real h)
         fail("with these values the numbers of the step are not finite");
 }
 
+/* u for step k: of inputs that are held from the row before, of ramps from the one read now, where there are any */
+static void next_sample(samples *in, real *row, real *u, uint64_t k, uint64_t steps, double h)
+{
+    const int ramps = has_ramps();
+    int i;
+    for (i = 0; i < model->inputs; i++)
+        u[i] = row[i];
+    if (!read_sample(in, row))
+        too_few(in, ramps ? k + 1 : k, steps, h);
+    for (i = 0; i < model->inputs; i++)
+        if (!ramps || model->start_samples[i] > 0)
+            u[i] = row[i];
+}
+
+/* The names, and what ramps start from */
+static void begin_samples(samples *in, void *state, real *row, uint64_t steps, double h)
+{
+    read_header(in);
+    if (!has_ramps())
+        return;
+    if (!read_sample(in, row))
+        too_few(in, 0, steps, h);
+    model->hold(state, row);
+}
+
 static void run(double end, int count, char **text, const char *program)
 {
     void *state = need(malloc(model->size));
     real *out = (real *)need(malloc(sizeof *out * (size_t)(model->outputs + 1)));
     real *u = (real *)need(malloc(sizeof *u * (size_t)(model->inputs + 1)));
+    real *row = (real *)need(calloc((size_t)(model->inputs + 1), sizeof *row));
     real *params = (real *)need(malloc(sizeof *params * (size_t)(model->params + 1)));
     samples in = {NULL, 256, 0, 0, 0};
     real h;
@@ -290,19 +378,20 @@ static void run(double end, int count, char **text, const char *program)
     if (count > 0)
         retune(state, params, h);
     steps = steps_until(end, (double)h);
-    if (model->inputs > 0 && steps > 0)
-        read_header(&in);
+    if (rows_for(steps) > 0 && model->inputs > 0)
+        begin_samples(&in, state, row, steps, (double)h);
     print_header();
     print_row(state, out);
     for (k = 0; k < steps; k++) {
         if (model->inputs > 0)
-            read_sample(&in, u);
+            next_sample(&in, row, u, k, steps, (double)h);
         model->step(state, model->inputs > 0 ? u : NULL);
         check_status(state);
         print_row(state, out);
     }
     free(in.line);
     free(params);
+    free(row);
     free(u);
     free(out);
     free(state);
@@ -310,7 +399,9 @@ static void run(double end, int count, char **text, const char *program)
 
 int main(int argc, char **argv)
 {
-    const double end = end_of_run(argc, argv);
+    double end;
+    check_type();
+    end = end_of_run(argc, argv);
     run(end, argc - 2, argv + 2, argv[0]);
     if (fclose(stdout) != 0)
         fail("cannot write to standard output");

@@ -991,7 +991,7 @@ static const struct { const char *name, *text; } specs[] = {
       "y'' + 0.2*(y' - v') + 25*(y - v) + 9*(y - x) + 0.1*u'*y^2 = 0.5*u\nstep 0.02\n" },
     { "a ramp on a free mass", "model m\ncoord x\ninput u hold first\ninit x = 0.1\n3*x'' + sin(x) = u + 0.1*u'\nstep 0.3\n" },
     { "held beside ramped, and a first order",
-      "model m\ncoord x, T\ninput u, v hold first\ninit x = 0.1\nx'' + 3*x + T*x = u - 2*v\nT' + 0.1*T + x*T = v + v'\nstep 0.1\n" },
+      "model m\ncoord x, T\ninput u\ninput v hold first\ninit x = 0.1\nx'' + 3*x + T*x = u - 2*v\nT' + 0.1*T + x*T = v + v'\nstep 0.1\n" },
     { "a bank of three",
       TWO "let w = 6*(1 - exp(-t))\nlet a = 6*exp(-t)\nx'' + 0.1*x' + (40 - w^2)*x - 2*w*y' - a*y = 0\n"
       "y'' + 0.1*y' + (60 - w^2)*y + 2*w*x' + a*x = 3*cos(2*t)\noperator at w = 0, 2, 4\nstep 0.02\n" },
@@ -1001,7 +1001,7 @@ static const struct { const char *name, *text; } specs[] = {
       "q[3]'' + 20*q[3] - 10*q[2] - 10*q[4] + q[3]^3 = 0\nq[4]'' + 20*q[4] - 10*q[3] - 10*q[5] + q[4]^3 = 0\n"
       "q[5]'' + 20*q[5] - 10*q[4] - 10*q[6] + q[5]^3 = 0\nq[6]'' + 20*q[6] - 10*q[5] - 10*q[7] + q[6]^3 = 0\n"
       "q[7]'' + 10*q[7] - 10*q[6] + q[7]^3 = 1\nstep 0.1\n" },
-    { "seven coordinates, free, held and ramped inputs", "model m\ncoord q[7]\ninput u, v hold first\n"
+    { "seven coordinates, free, held and ramped inputs", "model m\ncoord q[7]\ninput u\ninput v hold first\n"
       "q[1]'' + 10*q[1] - 10*q[2] + (q[1] - q[2])^3 = u\nq[2]'' + 20*q[2] - 10*q[1] - 10*q[3] - (q[1] - q[2])^3 = 0\n"
       "q[3]'' + 20*q[3] - 10*q[2] - 10*q[4] = v + v'\nq[4]'' + 20*q[4] - 10*q[3] - 10*q[5] = (t < 0.33 ? t : 0)\n"
       "q[5]'' + 20*q[5] - 10*q[4] - 10*q[6] = 0\nq[6]'' + 20*q[6] - 10*q[5] - 10*q[7] = 0\n"

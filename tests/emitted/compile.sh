@@ -14,7 +14,7 @@ case $plgen in
     /*) ;;
     *) plgen=$PWD/$plgen ;;
 esac
-warnings='-Wall -Wextra -Wpedantic -Wconversion -Wdouble-promotion -Werror'
+warnings='-Wall -Wextra -Wpedantic -Wconversion -Wdouble-promotion -Wshadow -Werror'
 . "${0%/*}/../tap.sh"
 
 installed() {

@@ -18,7 +18,7 @@ absolute() {
 plgen=$(absolute "$1")
 inputs=$(absolute "$2")
 root=$(absolute "$3")
-warnings='-Wall -Wextra -Wpedantic -Wconversion -Wdouble-promotion -Werror'
+warnings='-Wall -Wextra -Wpedantic -Wconversion -Wdouble-promotion -Wshadow -Werror'
 . "${0%/*}/../tap.sh"
 
 for pair in "${GCCS:-gcc g++}" "${CLANGS:-clang clang++}"; do
@@ -107,7 +107,7 @@ for spec in "$root"/tests/emitted/linear/*.spec; do
             result $? "$m, $kind: the driver's 10 s agree with --solution of the whole model"
         else
             : >log
-            driver "$kind/$m.std.c" "$m" one && "$inputs" samples 500 >samples.csv && ./one 10 <samples.csv >found.csv 2>>log &&
+            driver "$kind/$m.std.c" "$m" one && "$inputs" samples 501 >samples.csv && ./one 10 <samples.csv >found.csv 2>>log &&
                 "$inputs" expected "$m" 500 >expected.csv
             status=$?
             if [ $status -eq 0 ] && [ $kind = plain ]; then
@@ -184,7 +184,7 @@ EOF
     result $status "inputs $names: plgen takes them"
     [ $status -eq 0 ] && compiles collide.c "inputs $names: compiles"
     sed "s/\\b$a\\b/n1/g; s/\\b$b\\b/n2/g; s/\\b$c\\b/n3/g; s/\\b$d\\b/n4/g; s/\\b$e\\b/n5/g; s/\\b$f\\b/n6/g" names.spec >neutral.spec
-    "$inputs" samples 300 | sed 1d | paste -d, - - - >samples.csv
+    "$inputs" samples 303 | sed 1d | paste -d, - - - >samples.csv
     : >log
     "$plgen" neutral.spec >neutral.c 2>>log && driver collide.c any m -lm && driver neutral.c any n && ./m 1 <samples.csv >found.csv 2>>log &&
         ./n 1 <samples.csv >expected.csv 2>>log && cmp found.csv expected.csv >>log 2>&1

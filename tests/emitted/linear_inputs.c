@@ -265,22 +265,33 @@ static void by_gamma(const struct subject *s, const struct reference *r)
     free_floats(E, SIZE * SIZE);
 }
 
+/* Row k is the sample at k h: held over step k, or where a ramp starts it. */
 static void expected_rows(const pl_model *m, int n, double (*u)[2])
 {
     void *state = calloc(1, m->size);
-    double out[OUTPUTS];
+    double out[OUTPUTS], now[2];
+    char t[40];
     printf("t");
     for (int i = 0; i < m->outputs; i++)
         printf(",%s", m->output_names[i]);
     printf("\n");
     m->init(state);
+    if (m->hold != NULL)
+        m->hold(state, u[0]);
     for (int k = 0; k <= n; k++) {
         m->out(state, out);
-        printf("%.17g", m->time(state));
+        for (int digits = 1; digits <= 17; digits++) {
+            snprintf(t, sizeof t, "%.*g", digits, m->time(state));
+            if (strtod(t, NULL) == m->time(state) && strchr(t, 'e') == NULL)
+                break;
+        }
+        printf("%s", t);
         for (int i = 0; i < m->outputs; i++)
             printf(",%.17g", out[i]);
         printf("\n");
-        m->step(state, u[k]);
+        for (int i = 0; i < 2; i++)
+            now[i] = u[k + m->start_samples[i]][i];
+        m->step(state, now);
     }
     free(state);
 }

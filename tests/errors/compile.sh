@@ -52,7 +52,7 @@ for name in $names; do
 		arguments=$(tr '\n' ' ' < "$folder/$name.args")
 	fi
 	if "$plgen" $arguments "$name.spec" > "$name.c" 2> "$work/messages" < /dev/null &&
-	   "$@" -std=c99 -Wall -Wextra -Wpedantic -Wconversion -Wdouble-promotion -Werror -I"$runtime" -c "$name.c" -o "$name.o" 2> "$work/messages"; then
+	   "$@" -std=c99 -Wall -Wextra -Wpedantic -Wconversion -Wdouble-promotion -Wshadow -Werror -I"$runtime" -c "$name.c" -o "$name.o" 2> "$work/messages"; then
 		echo "ok $number - $name"
 	else
 		failed=$((failed + 1))

@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 # What plgen emits in every form, for double and for float: it compiles without a warning, as C99 and as C++17; float code names no double
-# and does nothing with one; two-word arithmetic refuses -ffast-math.
+# and does nothing with one.
 #
 #     compile.sh PLGEN SOURCE_ROOT VARIANTS_double.c VARIANTS_float.c
 #
@@ -15,7 +15,7 @@ float=$4
 case $plgen in /*) ;; *) plgen=$PWD/$plgen ;; esac
 case $double in /*) ;; *) double=$PWD/$double ;; esac
 case $float in /*) ;; *) float=$PWD/$float ;; esac
-warnings='-Wall -Wextra -Wpedantic -Wconversion -Wdouble-promotion -Werror'
+warnings='-Wall -Wextra -Wpedantic -Wconversion -Wdouble-promotion -Wshadow -Werror'
 leftover='pendulum duffing vanderpol beam4'
 switching='gear1 two_masses quarter_car_bumps'
 . "${0%/*}/../tap.sh"
@@ -113,27 +113,6 @@ done
 
 for f in "$root"/runtime/*f.c; do
     case ${f##*/} in turnsf.c | seriesf.c | powerf.c | untilf.c | growthf.c | applyf.c | crossingsf.c) no_double_instruction "$f" "runtime ${f##*/}" ;; esac
-done
-
-# ---- -ffast-math ----
-
-for real in double float; do
-    for form in delta kick-drift-kick; do
-        "$plgen" --real $real --form $form --accuracy compensated "$root/models/scs.spec" >fast.c 2>log
-        while read -r compiler options; do
-            command -v "$compiler" >/dev/null 2>&1 || continue
-            # shellcheck disable=SC2086
-            if "$compiler" -ffast-math -I"$root/runtime" $options -c fast.c -o out.o >log 2>&1; then
-                echo 'it compiled' >log
-                result 1 "$real, $form, compensated: refuses -ffast-math, $compiler"
-            else
-                grep -q 'error.*fast-math' log
-                result $? "$real, $form, compensated: refuses -ffast-math, $compiler"
-            fi
-        done <compilers
-        "$plgen" --real $real --form $form "$root/models/scs.spec" >fast.c 2>log && "${CC:-cc}" -std=c99 -ffast-math -I"$root/runtime" -c fast.c -o out.o >>log 2>&1
-        result $? "$real, $form: compiles with -ffast-math"
-    done
 done
 
 # ---- --explain=json ----

@@ -531,7 +531,7 @@ static const char *undamped_spec(uint64_t seed)
     const char *text = "model any\ncoord x1", *value;
     for (int i = 1; i < n; i++)
         text = format("%s, x%d", text, i + 1);
-    text = format("%s\n%s", text, sampled ? "input u, v hold first\n" : "");
+    text = format("%s\n%s", text, sampled ? "input u\ninput v hold first\n" : "");
     for (int i = 0; i < n; i++) {
         if (i == 0 || !equal)
             mass[i] = decimal(-1, 1, &value);

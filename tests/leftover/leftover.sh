@@ -20,7 +20,7 @@ for file; do
     esac
 done
 here=$root/tests/leftover
-warnings='-Wall -Wextra -Wpedantic -Wconversion -Wdouble-promotion -Werror'
+warnings='-Wall -Wextra -Wpedantic -Wconversion -Wdouble-promotion -Wshadow -Werror'
 . "${0%/*}/../tap.sh"
 
 # ---- compilers ----

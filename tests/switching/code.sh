@@ -19,7 +19,7 @@ for file; do
     esac
 done
 here=$root/tests/switching
-warnings='-Wall -Wextra -Wpedantic -Wconversion -Wdouble-promotion -Werror'
+warnings='-Wall -Wextra -Wpedantic -Wconversion -Wdouble-promotion -Wshadow -Werror'
 . "${0%/*}/../tap.sh"
 
 # compiled NAME FILE [OPTION ...]: by all compilers that there are

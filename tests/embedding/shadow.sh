@@ -1,0 +1,86 @@
+#!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
+# A model may bear the name of anything that its C has locals for: no -Wshadow, and no other warning, as C99 and as C++17.
+#
+#     shadow.sh PLGEN SOURCE_ROOT
+#
+# Every identifier in the C of a model, taken as the name of that model.  The compilers are those of GCCS and CLANGS (default:
+# gcc g++, clang clang++), all four for the first model, for the others gcc's C and clang's C++; what is not installed is
+# skipped.
+set -u
+plgen=$1
+root=$2
+case $plgen in /*) ;; *) plgen=$PWD/$plgen ;; esac
+warnings='-Wall -Wextra -Wpedantic -Wconversion -Wdouble-promotion -Wshadow -Werror'
+. "${0%/*}/../tap.sh"
+
+{
+    gccs=${GCCS:-gcc g++}
+    clangs=${CLANGS:-clang clang++}
+    echo "${gccs% *} -std=c99"
+    echo "${clangs#* } -std=c++17 -x c++"
+    echo "${gccs#* } -std=c++17 -x c++"
+    echo "${clangs% *} -std=c99"
+} >compilers
+
+# words FILE.c: the identifiers outside comments, strings and lines of the preprocessor, but for those that begin with the model's name,
+# and functions of <math.h>
+words() {
+    awk '{ text = text $0 "\n" }
+         END { while ((i = index(text, "/*")) > 0) {
+                   printf "%s", substr(text, 1, i - 1); text = substr(text, i + 2); text = substr(text, index(text, "*/") + 2) }
+               printf "%s", text }' "$1" | sed -e 's/"[^"]*"//g' -e '/^#/d' | tr -c 'A-Za-z0-9_' '\n' | grep '^[A-Za-z]' |
+        grep -v -i -e '^v\{0,1\}neutral' -e '^pl_' -e '^\(a\{0,1\}\(sin\|cos\|tan\)h\{0,1\}\|exp\|log\|sqrt\|fabs\|pow\|fmin\|fmax\|atan2\)f$' | sort -u
+}
+
+# shadows TITLE LEAST SPEC OPTIONS: under each name that plgen takes, at least so many
+shadows() {
+    title=$1
+    least=$2
+    spec=$3
+    shift 3
+    rm -f [a-zA-Z]*_named.c
+    "$plgen" --prefix neutral "$@" "$spec" >neutral_named.c 2>log
+    status=$?
+    names=0
+    words neutral_named.c >names
+    while read -r name; do
+        if "$plgen" --prefix "$name" "$@" "$spec" >text 2>/dev/null; then
+            mv text "${name}_named.c"
+            names=$((names + 1))
+        fi
+    done <names
+    echo "$names names" >>log
+    [ $status -eq 0 ] && [ $names -ge "$least" ]
+    result $? "$title: $least names or more of its C may be its own"
+    while read -r compiler options; do
+        if ! command -v "$compiler" >/dev/null 2>&1; then
+            skip "$title, $compiler" "$compiler is not installed"
+            continue
+        fi
+        # shellcheck disable=SC2086
+        "$compiler" $warnings -I"$root/runtime" -fsyntax-only $options ./*_named.c >log 2>&1
+        result $? "$title: under each of them it compiles without a warning, $compiler"
+    done <compilers
+    head -n 2 compilers >few && mv few compilers
+}
+
+shadows 'loads' 15 "$root/models/sdcsf.spec" --rhs --selftest
+shadows 'inputs, changing loads, float' 25 "$root/tests/emitted/linear/switched.spec" --real float
+shadows 'regions' 20 "$root/models/quarter_car_bumps.spec"
+shadows 'tunable' 30 "$root/tests/tunable/changes.spec"
+shadows 'a leftover of ramps, with nodes' 20 "$root/tests/leftover/ramped.spec" --rhs --scheme nc3
+
+# ---- they do what the model does under another name ----
+
+for name in s y x i out tau; do
+    : >log
+    for n in neutral $name; do
+        "$plgen" --prefix $n "$root/tests/emitted/linear/ramps.spec" >ran.c 2>>log &&
+            "${CC:-cc}" -std=c99 -I"$root/runtime" -DMODEL=$n "$root/runtime/host/plmain.c" ran.c "$root"/runtime/*.c -o ran 2>>log && ./ran 2 >$n.csv 2>>log || echo "$n" >>log
+    done
+    cmp "$name.csv" neutral.csv >>log 2>&1 && [ ! -s log ]
+    result $? "a model called $name runs as another"
+done
+
+tap_end
