@@ -308,6 +308,9 @@ static struct form *times(struct collector *c, const struct node *node, const st
 {
 	if (is_constant(a) || is_constant(b))
 		return form_product(c, a, b);
+	struct form *switched = keeps_piecewise(c) ? kept_switched(c, node, a, b) : NULL;
+	if (switched)
+		return switched;
 	if (keeps(c))
 		return kept_product(c, node, a, b);
 	if (has_coordinate(a) && has_coordinate(b))

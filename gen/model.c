@@ -322,6 +322,8 @@ struct model *model_build(struct spec *spec, const struct overrides *overrides)
 			  "--reduce needs scheme exact: what %s leaves over depends on the coordinates", scheme_name(model->scheme));
 	model->irrationals = b.collector.irrationals;
 	if (!diagnostics_errors() && !overrides->solution && !overrides->tunable)
+		judge_smoothness(&b);
+	if (!diagnostics_errors() && !overrides->solution && !overrides->tunable)
 		warn(&b);
 	return diagnostics_errors() ? NULL : model;
 }

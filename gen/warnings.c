@@ -255,6 +255,18 @@ static void check_softness(struct jacobian *j)
 		    moves ? format("at t = %.4g s ", worst.t) : "", worst.here, worst.operator);
 }
 
+/* ---- what is not smooth ---- */
+
+static void check_smoothness(const struct building *b)
+{
+	const struct model *model = b->model;
+	if (!loses_order(model))
+		return;
+	say_warning(model->smooth.node->start, model->smooth.kind == SMOOTH_JUMP ? "a smaller step, or something smooth in its place, such as tanh of a multiple"
+		    : "a smaller step, or something smoother in its place",
+		    "%s: scheme %s is of order %d at most there, not %d", smoothness_text(model), scheme_name(model->scheme), order_that_holds(model), order_of_scheme(model));
+}
+
 /* ---- the whole ---- */
 
 static void check_need(const struct building *b, bool left)
@@ -278,6 +290,7 @@ void warn(struct building *b)
 	bool left = model->channels > 0;
 	struct jacobian j = { .b = b };
 	check_need(b, left);
+	check_smoothness(b);
 	if (!left || model->scheme <= SCHEME_PL || is_linear(b) || !silent_guard(differentiate, &j))
 		return;
 	mpq_init(j.t);
