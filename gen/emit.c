@@ -217,7 +217,7 @@ static void banner_scheme(const struct emitter *e)
 	if (e->model->scheme != SCHEME_EXACT)
 		fprintf(to, " * %s\n", scheme_notes[e->model->scheme]);
 	if (loses_order(e->model))
-		fprintf(to, " * So where all is smooth; here of order %d at most: %s.\n", order_that_holds(e->model), printable(smoothness_text(e->model)));
+		fprintf(to, " * So where all is smooth; here of order %s at most: %s.\n", order_text(e->model), printable(smoothness_text(e->model)));
 	if (has_leftover(e->step))
 		banner_leftover(e);
 	else if (e->model->scheme != SCHEME_PL)

@@ -173,7 +173,7 @@ static void person_split(FILE *to, const struct step *step)
 		fputs("A step uses the first operator whose value is not below the current one, else the last.\n", to);
 	fprintf(to, "Scheme %s is of order %d in h", scheme_name(model->scheme), order_of_scheme(model));
 	if (loses_order(model))
-		fprintf(to, " where all is smooth; here of order %d at most: %s", order_that_holds(model), smoothness_text(model));
+		fprintf(to, " where all is smooth; here of order %s at most: %s", order_text(model), smoothness_text(model));
 	fprintf(to, ".\nr, left to scheme %s, is a force on each of these equations%s:\n", scheme_name(model->scheme),
 		step->operators > 1 ? " (with the first operator; with the others its linear terms differ)" : "");
 	for (int c = 0; c < model->channels; c++)

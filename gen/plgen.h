@@ -465,7 +465,7 @@ struct operator {                   /* A of y' = A y + loads + inputs + r(t, y);
 enum step_form { FORM_AUTO, FORM_DIRECT, FORM_DELTA, FORM_KICK_DRIFT_KICK, STEP_FORMS };
 enum scheme { SCHEME_EXACT, SCHEME_PL, SCHEME_ETD1, SCHEME_ETDRK2, SCHEME_ETDRK4, SCHEME_NC2, SCHEME_NC3, SCHEME_DQ4, SCHEME_BM3, SCHEMES };
 struct smoothness {                 /* of what is left over, else of the equations; where nothing is found all is 0 */
-	int order;                  /* that no scheme exceeds here: 1 at a jump, 2 at a kink */
+	int tenths;                 /* of the order that no scheme exceeds here: 10 at a jump, 20 at a kink */
 	enum { SMOOTH_ALL, SMOOTH_KINK, SMOOTH_JUMP } kind;
 	const struct node *node;    /* what jumps or has the kink */
 	const char *where;          /* x passes 0.5 */
@@ -618,7 +618,8 @@ bool reads_velocity(const struct model *model, const struct form *form); /* or a
 _Noreturn void tell_friction(const struct node *node, const char *where);
 int  order_of_scheme(const struct model *model);            /* where all is smooth; 0: of exact */
 bool loses_order(const struct model *model);                /* to what is not smooth */
-int  order_that_holds(const struct model *model);           /* 0: nothing is left over */
+int  order_that_holds(const struct model *model);           /* rounded down; 0: nothing is left over */
+const char *order_text(const struct model *model);          /* that is left: 2, 2.5 */
 const char *smoothness_text(const struct model *model);     /* max(x - 0.5, 0) has a kink where x passes 0.5 */
 
 /* ---- warnings.c: what a spec may say but is better told about ---- */

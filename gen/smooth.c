@@ -12,7 +12,8 @@ enum {
 	PRECISION = 320, POINTS = 12,
 	NEAR = 32,                  /* the difference is measured 2^-32 and 2^-64 away, */
 	GONE = -230,                /* and vanishes fast enough where it falls below 2^-230 */
-	SURE = 99,                  /* an order that limits no scheme */
+	SURE = 990,                 /* tenths of an order that limits no scheme; */
+	JUMP = 10, KINK = 20,       /* of those that are left here */
 	LIMIT_EXTREMES = 32,        /* of min and max: beyond, pairs are not looked at */
 	LIMIT_WORK = 2000000        /* terms measured in all, before what is left is judged by its kind */
 };
@@ -513,12 +514,12 @@ static long size_of(mpfr_srcptr value)
 	return mpfr_zero_p(value) || mpfr_get_exp(value) < GONE ? GONE : mpfr_get_exp(value);
 }
 
-/* From its sizes 2^-32 and 2^-64 away: 1 + p, rounded down; 0: it grows, which is a singularity and no matter of smoothness */
+/* From its sizes 2^-32 and 2^-64 away: 1 + p in tenths, rounded down; 0: it grows, which is a singularity and no matter of smoothness */
 static int order_of_sizes(long first, long second)
 {
 	if (second <= GONE)
 		return SURE;
-	return first - second < -4 ? 0 : (int)((first - second + 4) / NEAR) + 1;
+	return first - second < -4 ? 0 : (int)((10 * (first - second) + 15) / NEAR) + 10;
 }
 
 /* The difference is not defined off the surface, as in abs(x)^1.5: what each side does as it leaves it */
@@ -564,12 +565,12 @@ static int order_at(struct sample *sample, struct spot *p, const struct sides *f
 		measure(sample, p, f->difference, root, value);
 		int above = order_of_growth(sample, p, f->above, root, 1), below = order_of_growth(sample, p, f->below, root, -1);
 		if (mpfr_number_p(value))
-			order = size_of(value) > GONE ? 1 : above < below ? above : below;
+			order = size_of(value) > GONE ? JUMP : above < below ? above : below;
 	}
 	if (found && f->isolated) {
 		measure(sample, p, f->isolated, root, value);
 		if (mpfr_number_p(value) && size_of(value) > GONE)
-			order = 1;
+			order = JUMP;
 	}
 	mpfr_clears(root, at, value, NULL);
 	return order;
@@ -618,17 +619,17 @@ static bool is_number(const struct form *form)
 	return form->terms > 0 && is_constant(form);
 }
 
-/* Of the surface: 1 for a jump, 2 for a kink, more for what is smoother; `sure` where it was measured */
+/* What the surface leaves, in tenths: JUMP, KINK or more; `sure` where it was measured */
 static int order_on(struct search *s, const struct surface *surface, const struct form *form, bool *sure)
 {
 	struct judging j = { .s = s, .surface = surface, .form = form };
-	int worst = surface->abrupt ? 1 : 2, order = SURE;
+	int worst = surface->abrupt ? JUMP : KINK, order = SURE;
 	*sure = false;
 	if (!silent_guard(write_sides, &j))
 		return worst;
 	*sure = true;
 	if (is_number(j.sides.difference) || (j.sides.isolated && is_number(j.sides.isolated)))
-		return 1;
+		return JUMP;
 	if (j.sides.difference->terms == 0 && (!j.sides.isolated || j.sides.isolated->terms == 0))
 		return SURE;
 	struct spot *p = s->spot;
@@ -637,7 +638,7 @@ static int order_on(struct search *s, const struct surface *surface, const struc
 	p->scales = 0;
 	for (int i = 0; i < s->surfaces && i < POINTS; i++)
 		add_scale(p, s->surface[i].g);
-	for (p->draw = 1; p->draw <= POINTS && order > 1 && sample_work(s->sample) < LIMIT_WORK; p->draw++) {
+	for (p->draw = 1; p->draw <= POINTS && order > JUMP && sample_work(s->sample) < LIMIT_WORK; p->draw++) {
 		draw_number(p, 3, p->t);
 		mpfr_abs(p->t, p->t, MPFR_RNDN);
 		int here = order_at(s->sample, p, &j.sides);
@@ -697,7 +698,7 @@ static bool is_harmless_time(const struct model *model, const struct form *g, in
 	mpq_neg(t, t);
 	bool harmless = mpq_sgn(t) <= 0;
 	mpq_div(t, t, model->h);
-	harmless = harmless || (order > 1 && mpz_cmp_ui(mpq_denref(t), 1) == 0);
+	harmless = harmless || (order > JUMP && mpz_cmp_ui(mpq_denref(t), 1) == 0);
 	mpq_clear(t);
 	return harmless;
 }
@@ -710,11 +711,11 @@ static void judge_surface(struct search *s, const struct surface *surface, const
 	int order = order_on(s, surface, form, &sure);
 	if (is_harmless_time(model, surface->g, order))
 		return;
-	if (order == 1 && sure && !model->switching && reads_velocity(model, surface->g))
+	if (order == JUMP && sure && !model->switching && reads_velocity(model, surface->g))
 		tell_friction(surface->test, surface_text(model, surface->g));
-	if (order >= SURE || (smooth->order && smooth->order <= order))
+	if (order >= SURE || (smooth->tenths && smooth->tenths <= order))
 		return;
-	*smooth = (struct smoothness){ order, order == 1 ? SMOOTH_JUMP : SMOOTH_KINK, surface->node, surface_text(model, surface->g) };
+	*smooth = (struct smoothness){ order, order == JUMP ? SMOOTH_JUMP : SMOOTH_KINK, surface->node, surface_text(model, surface->g) };
 }
 
 /* The part of an equation that is not carried exactly for all time */
@@ -768,17 +769,23 @@ int order_of_scheme(const struct model *model)
 int order_that_holds(const struct model *model)
 {
 	int order = model->channels > 0 || model->scheme == SCHEME_PL ? order_of_scheme(model) : 0;
-	return loses_order(model) ? model->smooth.order : order;
+	return loses_order(model) ? model->smooth.tenths / 10 : order;
 }
 
 bool loses_order(const struct model *model)
 {
-	return model->channels > 0 && model->smooth.order > 0 && model->smooth.order < order_of_scheme(model);
+	return model->channels > 0 && model->smooth.tenths > 0 && model->smooth.tenths < 10 * order_of_scheme(model);
+}
+
+const char *order_text(const struct model *model)
+{
+	int tenths = model->smooth.tenths;
+	return tenths % 10 ? format("%d.%d", tenths / 10, tenths % 10) : format("%d", tenths / 10);
 }
 
 const char *smoothness_text(const struct model *model)
 {
 	const struct smoothness *smooth = &model->smooth;
 	return format("%s %s where %s", text_between(smooth->node->start, smooth->node->end), smooth->kind == SMOOTH_JUMP ? "jumps" :
-		      smooth->order == 2 ? "has a kink" : "is not smooth", smooth->where);
+		      smooth->tenths <= KINK ? "has a kink" : "is not smooth", smooth->where);
 }

@@ -264,7 +264,7 @@ static void check_smoothness(const struct building *b)
 		return;
 	say_warning(model->smooth.node->start, model->smooth.kind == SMOOTH_JUMP ? "a smaller step, or something smooth in its place, such as tanh of a multiple"
 		    : "a smaller step, or something smoother in its place",
-		    "%s: scheme %s is of order %d at most there, not %d", smoothness_text(model), scheme_name(model->scheme), order_that_holds(model), order_of_scheme(model));
+		    "%s: scheme %s is of order %s at most there, not %d", smoothness_text(model), scheme_name(model->scheme), order_text(model), order_of_scheme(model));
 }
 
 /* ---- the whole ---- */
