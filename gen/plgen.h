@@ -96,6 +96,7 @@ void say_error(struct place at, const char *note, const char *fmt, ...) __attrib
 _Noreturn void error(struct place at, const char *note, const char *fmt, ...) __attribute__((format(printf, 3, 4)));
 _Noreturn void abandon(void);                              /* leave the statement; its error has been said before */
 void say_warning(struct place at, const char *note, const char *fmt, ...) __attribute__((format(printf, 3, 4)));
+void say_note(struct place at, const char *fmt, ...) __attribute__((format(printf, 2, 3)));
 bool statement_guard(void (*work)(void *), void *context); /* true if the work ran to its end */
 bool silent_guard(void (*work)(void *), void *context);    /* the same; what it says when it fails is forgotten */
 void diagnostics_context(const char *note);                /* the note of what has none from now on; NULL: none */
@@ -389,6 +390,7 @@ void collect_constant(struct collector *collector, struct node *node, mpq_ptr nu
 
 _Noreturn void not_linear(const struct collector *c, const struct node *node, const char *why);
 struct form *constant_call(struct collector *c, const struct node *node, enum function function, const struct form *x);
+const char *rewrite_of(const struct node *term);            /* what scheme exact could treat in its place; "": there is nothing known */
 bool compare_values(enum comparison comparison, int order);
 void forget_lets(const struct spec *spec);
 _Noreturn void not_built(const struct collector *c, struct place at, const char *what);
@@ -503,6 +505,8 @@ struct model {
 	const struct atoms *atoms;
 	struct switching *switching; /* exact: the regions of a piecewise-linear model; NULL: it has one */
 	struct smoothness smooth;
+	const struct node *obstacle; /* the first term that stood in the way of exact, where no scheme was asked for; */
+	const char *obstacle_text;  /* why it did, and the way out if there is one */
 	const struct form *selector; /* of a bank: what is compared with `at`; NULL: one operator */
 	const struct tuning *tuning; /* tunable params, and how the equations follow from them; NULL: there are none */
 	int outputs;

@@ -12,8 +12,9 @@ enum {
 	PRECISION = 320, POINTS = 12,
 	NEAR = 32,                  /* the difference is measured 2^-32 and 2^-64 away, */
 	GONE = -230,                /* and vanishes fast enough where it falls below 2^-230 */
-	SURE = 990,                 /* tenths of an order that limits no scheme; */
-	JUMP = 10, KINK = 20,       /* of those that are left here */
+	SURE = 990,                 /* tenths of an order that limits nothing, */
+	HIGHEST = 40,               /* of that of the schemes, */
+	JUMP = 10, KINK = 20,       /* and of those that are left here */
 	LIMIT_EXTREMES = 32,        /* of min and max: beyond, pairs are not looked at */
 	LIMIT_WORK = 2000000        /* terms measured in all, before what is left is judged by its kind */
 };
@@ -713,7 +714,7 @@ static void judge_surface(struct search *s, const struct surface *surface, const
 		return;
 	if (order == JUMP && sure && !model->switching && reads_velocity(model, surface->g))
 		tell_friction(surface->test, surface_text(model, surface->g));
-	if (order >= SURE || (smooth->tenths && smooth->tenths <= order))
+	if (order >= HIGHEST || (smooth->tenths && smooth->tenths <= order))
 		return;
 	*smooth = (struct smoothness){ order, order == JUMP ? SMOOTH_JUMP : SMOOTH_KINK, surface->node, surface_text(model, surface->g) };
 }

@@ -289,6 +289,9 @@ void warn(struct building *b)
 	const struct model *model = b->model;
 	bool left = model->channels > 0;
 	struct jacobian j = { .b = b };
+	if (left && model->obstacle)
+		say_note(model->obstacle->start, "scheme %s, not exact: '%s' %s", scheme_name(model->scheme),
+			 text_between(model->obstacle->start, model->obstacle->end), model->obstacle_text);
 	check_need(b, left);
 	check_smoothness(b);
 	if (!left || model->scheme <= SCHEME_PL || is_linear(b) || !silent_guard(differentiate, &j))
