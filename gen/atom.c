@@ -70,13 +70,27 @@ static const struct shared *share(struct collector *c, const struct form *form)
 
 /* ---- atoms ---- */
 
-static void add_dependence(struct atom *atom, const struct form *form)
+bool is_velocity(const struct model *model, const struct basis *basis)
+{
+	return basis->atom ? basis->atom->velocity : basis->kind == BASIS_COORD && (basis->order > 0 || model->coord[basis->index]->highest == 1);
+}
+
+/* What of two bases moves more readily: a coordinate, then an input */
+const struct basis *moved_basis(const struct basis *known, const struct basis *basis)
+{
+	basis = basis->atom ? basis->atom->moves : basis->kind == BASIS_COORD || basis->kind == BASIS_INPUT ? basis : NULL;
+	return !known || (basis && basis->kind == BASIS_COORD && known->kind != BASIS_COORD) ? basis : known;
+}
+
+static void add_dependence(const struct collector *c, struct atom *atom, const struct form *form)
 {
 	for (int i = 0; i < form->terms; i++) {
 		const struct basis *basis = &form->term[i].basis;
 		atom->time = atom->time || basis->kind == BASIS_WAVE || (basis->atom && basis->atom->time);
 		atom->input = atom->input || basis->kind == BASIS_INPUT || (basis->atom && basis->atom->input);
 		atom->state = atom->state || basis->kind == BASIS_COORD || (basis->atom && basis->atom->state);
+		atom->velocity = atom->velocity || is_velocity(c->model, basis);
+		atom->moves = moved_basis(atom->moves, basis);
 	}
 }
 
@@ -125,7 +139,7 @@ static struct form *form_of_atom(struct collector *c, const struct node *node, s
 	if (!*link) {
 		for (int i = 0; i < wanted.operands; i++) {
 			check_highest(c, node, wanted.operand[i]);
-			add_dependence(&wanted, wanted.operand[i]);
+			add_dependence(c, &wanted, wanted.operand[i]);
 		}
 		wanted.node = node;
 		wanted.index = c->atoms->count++;
@@ -479,24 +493,42 @@ static bool is_piecewise_atom(const struct atom *a)
 
 bool is_piecewise_form(const struct form *form)
 {
-	for (int i = 0; i < form->terms; i++)
-		if (form->term[i].basis.atom && !is_piecewise_atom(form->term[i].basis.atom))
+	for (int i = 0; i < form->terms; i++) {
+		struct atom *a = (struct atom *)form->term[i].basis.atom;
+		if (a && a->piecewise == 0)
+			a->piecewise = is_piecewise_atom(a) ? 1 : -1;
+		if (a && a->piecewise < 0)
 			return false;
+	}
 	return true;
 }
 
-/* Constant but for comparisons and signs of what moves: then a product with it is a choice among multiples. */
+bool is_stepwise(const struct form *form)
+{
+	for (int i = 0; i < form->terms; i++) {
+		struct atom *a = (struct atom *)form->term[i].basis.atom;
+		if (!a && form->term[i].basis.kind > BASIS_PI)
+			return false;
+		if (a && a->stepwise == 0) {
+			bool step = a->kind == ATOM_COMPARE || (a->kind == ATOM_CALL && a->function == FN_SGN);
+			step = step || (a->kind == ATOM_CHOOSE && is_stepwise(a->operand[1]) && is_stepwise(a->operand[2]));
+			a->stepwise = step ? 1 : -1;
+		}
+		if (a && a->stepwise < 0)
+			return false;
+	}
+	return true;
+}
+
+/* Then a product with it is a choice among multiples; conditions on time alone stay factors. */
 static bool is_switch(const struct form *form)
 {
 	for (int i = 0; i < form->terms; i++) {
 		const struct atom *a = form->term[i].basis.atom;
-		bool step = a && (a->state || a->input) && (a->kind == ATOM_COMPARE || (a->kind == ATOM_CALL && a->function == FN_SGN));
-		if (a && (a->state || a->input) && a->kind == ATOM_CHOOSE)
-			step = is_switch(a->operand[1]) && is_switch(a->operand[2]);
-		if (!step && form->term[i].basis.kind > BASIS_PI)
+		if (a && !a->state && !a->input)
 			return false;
 	}
-	return true;
+	return is_stepwise(form);
 }
 
 static struct form *switched_atom(struct collector *c, const struct node *node, const struct atom *a, const struct form *x);

@@ -65,11 +65,17 @@ static bool holds_acceleration(struct node *node)
 struct contents {                   /* of a term, lets looked through */
 	const struct node *coordinate; /* the first */
 	bool several, time, input, equality, compound;
+	int nodes;
 };
 
 static void look_into(struct contents *found, const struct node *node)
 {
+	enum { LOOKED_AT = 10000 };
 	const struct node *known = found->coordinate;
+	if (++found->nodes > LOOKED_AT) {       /* lets that name each other twice, and so on */
+		found->several = true;
+		return;
+	}
 	if (node->kind == NODE_NAME && node->symbol->kind == SYMBOL_COORD) {
 		bool same = known && known->symbol == node->symbol && known->primes == node->primes && known->component == node->component;
 		found->several = found->several || (known && !same) || (node->symbol->length && !node->component);

@@ -323,7 +323,9 @@ struct atom {
 	int operands;               /* POWER: base, exponent; CHOOSE: condition, then, else; equal forms are one object */
 	const struct form **operand;
 	unsigned *exponent;         /* of ATOM_PRODUCT, one per factor */
-	bool time, input, state;    /* what it depends on */
+	bool time, input, state, velocity; /* what it depends on; a coordinate of first order counts as a velocity */
+	const struct basis *moves;  /* of that a coordinate, else an input; NULL: t alone */
+	signed char piecewise, stepwise; /* 1 and -1: is_piecewise_form, is_stepwise; 0: not asked yet */
 	const struct node *node;    /* where it comes from */
 	int index;                  /* in the order of first appearance */
 	struct atom *next;
@@ -343,6 +345,9 @@ struct form *kept_choice(struct collector *c, const struct node *node, const str
  * NULL: they are no such factors. */
 struct form *kept_switched(struct collector *c, const struct node *node, const struct form *a, const struct form *b);
 bool is_piecewise_form(const struct form *form);            /* linear but for functions and conditions of linear expressions */
+bool is_stepwise(const struct form *form);                  /* constant but for comparisons and sgn */
+bool is_velocity(const struct model *model, const struct basis *basis); /* it depends on one; a coordinate of first order is one too */
+const struct basis *moved_basis(const struct basis *known, const struct basis *basis); /* of which two moves more readily: see struct atom */
 bool depends_on_time_only(const struct basis *basis);       /* or on nothing */
 struct form *time_part(const struct form *form, bool atoms); /* its terms of time alone; or of them the atoms only */
 bool same_form(const struct form *a, const struct form *b);
@@ -471,6 +476,8 @@ struct smoothness {                 /* of what is left over, else of the equatio
 	enum { SMOOTH_ALL, SMOOTH_KINK, SMOOTH_JUMP } kind;
 	const struct node *node;    /* what jumps or has the kink */
 	const char *where;          /* x passes 0.5 */
+	bool piecewise;             /* exact could treat it alone */
+	bool timed;                 /* it lies at a time */
 };
 struct model {
 	const struct spec *spec;

@@ -21,7 +21,7 @@ enum {
 
 struct surface {
 	const struct form *g;       /* its first factor is 1 */
-	const struct node *node;    /* what decides on it, for a message */
+	const struct atom *whole;   /* what decides on it, for a message: a product or choice in place of its operand */
 	const struct node *test;    /* the comparison itself */
 	bool equality;              /* some == or != does */
 	bool abrupt;                /* something decides that is no abs, min, max, clip, deadzone or table */
@@ -41,30 +41,17 @@ struct search {
 
 /* ---- which surfaces ---- */
 
-/* Is it constant but for steps? Then it passes 0 only where another surface lies. */
-static bool is_stepwise(const struct form *form)
-{
-	for (int i = 0; i < form->terms; i++) {
-		const struct atom *a = form->term[i].basis.atom;
-		bool step = a && (a->kind == ATOM_COMPARE || (a->kind == ATOM_CALL && a->function == FN_SGN));
-		if (a && a->kind == ATOM_CHOOSE)
-			step = is_stepwise(a->operand[1]) && is_stepwise(a->operand[2]);
-		if (!step && form->term[i].basis.kind > BASIS_PI)
-			return false;
-	}
-	return true;
-}
-
 /* Inputs that are held change between steps only. */
 static bool moves_in_a_step(const struct model *model, const struct form *form)
 {
+	bool ramps = false;
+	for (int i = 0; i < model->system.inputs; i++)
+		ramps = ramps || model->system.input[i].first_order;
 	for (int i = 0; i < form->terms; i++) {
 		const struct basis *basis = &form->term[i].basis;
-		bool moves = basis->kind == BASIS_WAVE || basis->kind == BASIS_COORD;
-		moves = moves || (basis->kind == BASIS_INPUT && basis->order == 0 && model->system.input[basis->index].first_order);
-		for (int k = 0; basis->atom && k < basis->atom->operands && !moves; k++)
-			moves = moves_in_a_step(model, basis->atom->operand[k]);
-		if (moves)
+		if (basis->kind == BASIS_WAVE || basis->kind == BASIS_COORD || (basis->atom && (basis->atom->time || basis->atom->state)))
+			return true;
+		if (ramps && ((basis->kind == BASIS_INPUT && basis->order == 0) || (basis->atom && basis->atom->input)))
 			return true;
 	}
 	return false;
@@ -88,7 +75,7 @@ static mpq_srcptr first_factor(const struct form *form)
 static void visit_surfaces(const struct form *d, void (*visit)(void *context, const struct form *g), void *context)
 {
 	const struct atom *product = product_of(d);
-	if (is_constant(d) || is_stepwise(d))
+	if (is_constant(d) || is_stepwise(d))   /* what is constant but for steps passes 0 only where another surface lies */
 		return;
 	for (int i = 0; product && i < product->operands; i++)
 		if (product->exponent[i] % 2)
@@ -135,8 +122,7 @@ static void visit_decisions(const struct atom *a, void (*visit)(void *context, c
 
 struct finding {
 	struct search *s;
-	const struct atom *atom;
-	const struct node *node;
+	const struct atom *atom, *whole;
 };
 
 static void add_surface(void *context, const struct form *d)
@@ -156,7 +142,7 @@ static void add_surface(void *context, const struct form *d)
 		at++;
 	if (at == s->surfaces) {
 		ENLARGE(s->surface, (size_t)at + 1);
-		s->surface[s->surfaces++] = (struct surface){ .g = g, .node = f->node, .test = a->node };
+		s->surface[s->surfaces++] = (struct surface){ .g = g, .whole = f->whole, .test = a->node };
 	}
 	s->surface[at].equality |= (a->kind == ATOM_COMPARE && a->comparison >= CMP_EQ) || a->kind == ATOM_CHOOSE;
 	s->surface[at].abrupt |= a->kind != ATOM_CALL || a->function == FN_SGN;
@@ -167,18 +153,17 @@ static void add_decision(void *context, const struct form *d)
 	visit_surfaces(d, add_surface, context);
 }
 
-/* `whole`: what a message names in place of an operand, a product or a choice that it decides on */
-static void find_surfaces(struct search *s, const struct form *form, const struct node *whole)
+static void find_surfaces(struct search *s, const struct form *form, const struct atom *whole)
 {
 	for (int i = 0; i < form->terms; i++) {
 		const struct atom *a = form->term[i].basis.atom;
 		if (!a || s->seen[a->index])
 			continue;
 		s->seen[a->index] = true;
-		visit_decisions(a, add_decision, &(struct finding){ s, a, whole ? whole : a->node });
+		visit_decisions(a, add_decision, &(struct finding){ s, a, whole ? whole : a });
 		for (int k = 0; k < a->operands; k++)
-			find_surfaces(s, a->operand[k], a->kind == ATOM_PRODUCT || a->kind == ATOM_POWER ? whole ? whole : a->node :
-				      a->kind == ATOM_CHOOSE && k == 0 ? a->node : NULL);
+			find_surfaces(s, a->operand[k], a->kind == ATOM_PRODUCT || a->kind == ATOM_POWER ? whole ? whole : a :
+				      a->kind == ATOM_CHOOSE && k == 0 ? a : NULL);
 	}
 }
 
@@ -456,21 +441,6 @@ static void measure(struct sample *sample, struct spot *p, const struct form *fo
 	sample_form(sample, form, value);
 }
 
-/* A coordinate in it, before an input; NULL: t alone */
-static const struct basis *moved_basis(const struct form *form, const struct basis *found)
-{
-	for (int i = 0; i < form->terms; i++) {
-		const struct basis *basis = &form->term[i].basis;
-		if (basis->kind == BASIS_COORD && (!found || found->kind != BASIS_COORD))
-			found = basis;
-		if (basis->kind == BASIS_INPUT && !found)
-			found = basis;
-		for (int k = 0; basis->atom && k < basis->atom->operands; k++)
-			found = moved_basis(basis->atom->operand[k], found);
-	}
-	return found;
-}
-
 /* Where g is 0 along what is moved: by a secant, which is exact where g is linear in it, else between two points of different sign. */
 static bool find_zero(struct sample *sample, struct spot *p, const struct form *g, mpfr_ptr root)
 {
@@ -635,7 +605,9 @@ static int order_on(struct search *s, const struct surface *surface, const struc
 		return SURE;
 	struct spot *p = s->spot;
 	bool measured = false;
-	p->moved = moved_basis(surface->g, NULL);
+	p->moved = NULL;                        /* t, where nothing else moves */
+	for (int i = 0; i < surface->g->terms; i++)
+		p->moved = moved_basis(p->moved, &surface->g->term[i].basis);
 	p->scales = 0;
 	for (int i = 0; i < s->surfaces && i < POINTS; i++)
 		add_scale(p, s->surface[i].g);
@@ -654,14 +626,9 @@ static int order_on(struct search *s, const struct surface *surface, const struc
 
 bool reads_velocity(const struct model *model, const struct form *form)
 {
-	for (int i = 0; i < form->terms; i++) {
-		const struct basis *basis = &form->term[i].basis;
-		if (basis->kind == BASIS_COORD && (basis->order > 0 || model->coord[basis->index]->highest == 1))
+	for (int i = 0; i < form->terms; i++)
+		if (is_velocity(model, &form->term[i].basis))
 			return true;
-		for (int k = 0; basis->atom && k < basis->atom->operands; k++)
-			if (reads_velocity(model, basis->atom->operand[k]))
-				return true;
-	}
 	return false;
 }
 
@@ -708,6 +675,8 @@ static void judge_surface(struct search *s, const struct surface *surface, const
 {
 	struct model *model = s->b->model;
 	struct smoothness *smooth = &model->smooth;
+	struct form phase;
+	mpq_srcptr factor;
 	bool sure;
 	int order = order_on(s, surface, form, &sure);
 	if (is_harmless_time(model, surface->g, order))
@@ -716,7 +685,9 @@ static void judge_surface(struct search *s, const struct surface *surface, const
 		tell_friction(surface->test, surface_text(model, surface->g));
 	if (order >= HIGHEST || (smooth->tenths && smooth->tenths <= order))
 		return;
-	*smooth = (struct smoothness){ order, order == JUMP ? SMOOTH_JUMP : SMOOTH_KINK, surface->node, surface_text(model, surface->g) };
+	*smooth = (struct smoothness){ order, order == JUMP ? SMOOTH_JUMP : SMOOTH_KINK, surface->whole->node, surface_text(model, surface->g),
+				       is_piecewise_form(form_unit((struct basis){ .kind = BASIS_ATOM, .atom = surface->whole })),
+				       linear_in_time(surface->g, &factor, &phase) };
 }
 
 /* The part of an equation that is not carried exactly for all time */
