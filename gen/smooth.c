@@ -9,7 +9,7 @@
 #include <string.h>
 
 enum {
-	PRECISION = 320, POINTS = 12,
+	PRECISION = 320, POINTS = 48, SCALES = 12,
 	NEAR = 32,                  /* the difference is measured 2^-32 and 2^-64 away, */
 	GONE = -230,                /* and vanishes fast enough where it falls below 2^-230 */
 	SURE = 990,                 /* tenths of an order that limits nothing, */
@@ -609,7 +609,7 @@ static int order_on(struct search *s, const struct surface *surface, const struc
 	for (int i = 0; i < surface->g->terms; i++)
 		p->moved = moved_basis(p->moved, &surface->g->term[i].basis);
 	p->scales = 0;
-	for (int i = 0; i < s->surfaces && i < POINTS; i++)
+	for (int i = 0; i < s->surfaces && i < SCALES; i++)
 		add_scale(p, s->surface[i].g);
 	for (p->draw = 1; p->draw <= POINTS && order > JUMP && sample_work(s->sample) < LIMIT_WORK; p->draw++) {
 		draw_number(p, 3, p->t);

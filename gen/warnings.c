@@ -221,9 +221,11 @@ static void compare(struct jacobian *j, bool moved, const char *where, struct so
 	struct linear system = operator_system(model, choice.which);
 	if (!stiffness(&j->at, here) || !stiffness(&system, there))
 		return;
-	for (int i = 0; i < model->n; i++)
-		if (is_told(model, moved, here[i], there[i]) && (here[i] - there[i]) * worst->here >= (worst->here - worst->operator) * here[i])
+	for (int i = 0; i < model->n; i++) {
+		double now = (here[i] - there[i]) * worst->here, known = (worst->here - worst->operator) * here[i];
+		if (is_told(model, moved, here[i], there[i]) && (worst->here == 0 || (moved ? now > known : now >= known)))
 			*worst = (struct softness){ here[i], there[i], where };
+	}
 }
 
 static bool stiffness_moves(const struct jacobian *j)
@@ -254,6 +256,8 @@ static bool stiffness_reads_states(const struct jacobian *j)
 /* ---- a reference, to see how far the motion goes ---- */
 
 enum { LIMIT_WORK = 500000, FOLLOWED = 8 };      /* terms evaluated on the way; coordinates of which each has its own largest excursion */
+
+static const double LOST = 1e30;        /* the motion has left */
 
 struct reference {
 	const struct building *b;
@@ -353,7 +357,7 @@ static void compare_excursions(struct jacobian *j, double end, struct softness *
 			}
 		good = t < end && gsl_odeiv2_evolve_apply(evolve, control, step, &system, &t, end, &h, y) == GSL_SUCCESS;
 		for (int i = 0; i < states; i++)
-			good = good && isfinite(y[i]);
+			good = good && fabs(y[i]) < LOST;
 	}
 	gsl_odeiv2_evolve_free(evolve);
 	gsl_odeiv2_control_free(control);
@@ -421,7 +425,8 @@ static void check_smoothness(const struct building *b)
 		return;
 	const struct smoothness *smooth = &model->smooth;
 	const struct node *other = model->obstacle;
-	bool apart = smooth->piecewise && other && other->start.offset != smooth->node->start.offset;
+	bool apart = smooth->piecewise && !smooth->timed && other &&
+		     (other->end.offset <= smooth->node->start.offset || other->start.offset >= smooth->node->end.offset);
 	const char *cure = smooth->timed && smooth->kind == SMOOTH_KINK ? "a step of which that time is a multiple keeps the order" :
 		smooth->kind == SMOOTH_JUMP ? "a smaller step, or something smooth in its place, such as tanh of a multiple" :
 		"a smaller step, or something smoother in its place";
