@@ -206,8 +206,8 @@ static double drift_of_softness(const struct model *model, double difference)
 
 static bool is_told(const struct model *model, bool moved, double here, double there)
 {
-	double part = moved ? drift_of_softness(model, here - there) > DRIFT ? TWICE : TENFOLD : LITTLE;
-	return here - there > part * fabs(here);
+	bool felt = !moved || drift_of_softness(model, here - there) > DRIFT;
+	return here - there > (moved ? felt ? TWICE : TENFOLD : LITTLE) * fabs(here) && (felt || there > 0);
 }
 
 /* `moved`: the states are those of a motion, not at rest */
@@ -359,6 +359,7 @@ static void compare_excursions(struct jacobian *j, double end, struct softness *
 		for (int i = 0; i < states; i++)
 			good = good && fabs(y[i]) < LOST;
 	}
+	bool lost = t < end && (sample_work(r.sample) <= LIMIT_WORK || h < 1e-6 * nearest_double(model->h));
 	gsl_odeiv2_evolve_free(evolve);
 	gsl_odeiv2_control_free(control);
 	gsl_odeiv2_step_free(step);
@@ -366,7 +367,7 @@ static void compare_excursions(struct jacobian *j, double end, struct softness *
 	mpfr_clears(r.t, r.value, NULL);
 	mpq_t *state = rationals(size);
 	j->state = (const mpq_t *)state;
-	for (int k = 0; k < followed; k++) {
+	for (int k = 0; k < followed && !lost; k++) {
 		if (when[k] == 0)
 			continue;               /* at the initial values */
 		set_state(model, farthest + (size_t)k * size, state);
