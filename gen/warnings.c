@@ -12,7 +12,7 @@ enum { SAMPLES = 32 };
 
 /* By which part of itself a squared frequency exceeds the operator's: as time goes by a little is told, of a motion what is felt: twice the
  * operator's where the phase that this costs in a thousand steps is more than DRIFT [rad], ten times it anyhow. */
-static const double LITTLE = 1e-2, TWICE = 0.5, TENFOLD = 0.9, DRIFT = 1e-4;
+static const double LITTLE = 1e-2, TWICE = 0.5, TENFOLD = 0.9, DRIFT = 1e-3;
 
 /* ---- the Jacobian in time ---- */
 
