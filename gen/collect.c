@@ -60,6 +60,54 @@ static bool holds_acceleration(struct node *node)
 	return false;
 }
 
+/* ---- what scheme exact could treat in place of a term ---- */
+
+struct contents {                   /* of a term, lets looked through */
+	const struct node *coordinate; /* the first */
+	bool several, time, input, equality, compound;
+	int nodes;
+};
+
+static void look_into(struct contents *found, const struct node *node)
+{
+	enum { LOOKED_AT = 10000 };
+	const struct node *known = found->coordinate;
+	if (++found->nodes > LOOKED_AT) {       /* lets that name each other twice, and so on */
+		found->several = true;
+		return;
+	}
+	if (node->kind == NODE_NAME && node->symbol->kind == SYMBOL_COORD) {
+		bool same = known && known->symbol == node->symbol && known->primes == node->primes && known->component == node->component;
+		found->several = found->several || (known && !same) || (node->symbol->length && !node->component);
+		found->coordinate = known ? known : node;
+	}
+	if (node->kind == NODE_NAME && node->symbol->kind == SYMBOL_LET && node->symbol->value && !node->symbol->broken)
+		look_into(found, node->symbol->value);
+	found->input = found->input || (node->kind == NODE_NAME && node->symbol->kind == SYMBOL_INPUT);
+	found->time = found->time || node->kind == NODE_TIME;
+	found->equality = found->equality || (node->kind == NODE_COMPARE && node->comparison >= CMP_EQ);
+	found->compound = found->compound || (node->kind == NODE_CHOOSE && node->child[0]->kind != NODE_COMPARE);
+	for (int i = 0; node->kind != NODE_NAME && i < node->children; i++)
+		look_into(found, node->child[i]);
+}
+
+const char *rewrite_of(const struct node *term)
+{
+	struct contents found = { 0 };
+	look_into(&found, term);
+	if (found.equality)
+		return "== and != hold at single points: what < and > divide is exact";
+	if (found.compound)
+		return "conditions of one comparison each, one inside the other, are exact";
+	if (found.input && found.coordinate)
+		return "a tunable param in place of the input is exact";
+	if (found.input)
+		return "an input that brings the whole term is exact";
+	if (found.coordinate && !found.several && !found.time)
+		return format("straight pieces in its place, table(%s; ...), are exact", text_between(found.coordinate->start, found.coordinate->end));
+	return "";
+}
+
 _Noreturn void not_linear(const struct collector *c, const struct node *node, const char *why)
 {
 	if (c->tolerant)
@@ -70,7 +118,8 @@ _Noreturn void not_linear(const struct collector *c, const struct node *node, co
 		      "term '%s' %s", text_between(term->start, term->end), why);
 	if (c->closed)
 		error(term->start, NULL, "term '%s' %s: there is no closed form", text_between(term->start, term->end), why);
-	error(term->start, "etd1, etdrk2, etdrk4, nc2, nc3, dq4, bm3 and pl are the schemes that could",
+	const char *rewrite = rewrite_of(term);
+	error(term->start, format("%s%setd1, etdrk2, etdrk4, nc2, nc3, dq4, bm3 and pl are the schemes that could", rewrite, *rewrite ? "; " : ""),
 	      "term '%s' %s: scheme %s cannot treat it", text_between(term->start, term->end), why, c->scheme);
 }
 
@@ -308,6 +357,9 @@ static struct form *times(struct collector *c, const struct node *node, const st
 {
 	if (is_constant(a) || is_constant(b))
 		return form_product(c, a, b);
+	struct form *switched = keeps_piecewise(c) ? kept_switched(c, node, a, b) : NULL;
+	if (switched)
+		return switched;
 	if (keeps(c))
 		return kept_product(c, node, a, b);
 	if (has_coordinate(a) && has_coordinate(b))

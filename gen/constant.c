@@ -79,7 +79,7 @@ static bool exact_value(struct place at, enum function function, mpq_srcptr x, m
 	}
 }
 
-static void wide_value(enum function function, mpfr_ptr x)
+void wide_value(enum function function, mpfr_ptr x)
 {
 	switch (function) {
 	case FN_SIN:  mpfr_sin(x, x, MPFR_RNDN); break;

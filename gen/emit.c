@@ -196,6 +196,8 @@ static void banner_scheme(const struct emitter *e)
 	}
 	if (e->model->scheme != SCHEME_EXACT)
 		fprintf(to, " * %s\n", scheme_notes[e->model->scheme]);
+	if (loses_order(e->step->shown->model))
+		fprintf(to, " * So where all is smooth; here of order %s at most: %s.\n", order_text(e->step->shown->model), printable(smoothness_text(e->step->shown->model)));
 	if (has_leftover(e->step))
 		banner_leftover(e);
 	else if (e->model->scheme != SCHEME_PL)

@@ -425,21 +425,28 @@ static const struct node *changing_term(struct building *b, struct node *node, i
 	return found;
 }
 
+static const struct node *first_changing_term(struct building *b, int segment)
+{
+	const struct spec *spec = b->spec;
+	const struct node *term = NULL;
+	for (int i = 0; i < spec->equations && !term; i++) {
+		term = changing_term(b, spec->equation[i].left, segment);
+		term = term ? term : changing_term(b, spec->equation[i].right, segment);
+	}
+	for (int i = 0; i < spec->elements && !term; i++)
+		term = changing_term(b, spec->element[i].value, segment);
+	return term;
+}
+
 static void tell_change(void *context)
 {
 	struct indexed *work = context;
 	struct building *b = work->b;
 	const struct spec *spec = b->spec;
-	const struct node *term = NULL;
 	for (int i = 0; i < spec->elements; i++)
 		if (spec->element[i].kind != ELEMENT_FORCE && !same_in_states(b->snapshot[0].element[i], work->snapshot->element[i]))
 			error(spec->element[i].value->start, "what moves belongs in an equation, or in a force", "a mass, spring or damper needs a constant");
-	for (int i = 0; i < spec->equations && !term; i++) {
-		term = changing_term(b, spec->equation[i].left, work->index);
-		term = term ? term : changing_term(b, spec->equation[i].right, work->index);
-	}
-	for (int i = 0; i < spec->elements && !term; i++)
-		term = changing_term(b, spec->element[i].value, work->index);
+	const struct node *term = first_changing_term(b, work->index);
 	b->collector.term = term;
 	not_linear(&b->collector, term, format("has a factor that changes at t = %s", readable_text(b->model->system.change[work->index - 1])));
 }
@@ -542,29 +549,61 @@ static const struct form *load_form(const struct building *b, int segment, int r
 
 /* ---- the whole ---- */
 
-static const struct atom *first_atom(const struct building *b)
+/* The first in the text of those that are not piecewise linear; or of all */
+static const struct atom *first_atom(const struct building *b, bool all)
 {
+	const struct atom *first = NULL;
 	for (int s = 0; s < b->model->system.segments; s++)
 		for (int i = 0; i < b->model->n; i++)
-			if (holds_atom(b->snapshot[s].residual[i].form))
-				return b->snapshot[s].residual[i].form->term[b->snapshot[s].residual[i].form->terms - 1].basis.atom;
-	return NULL;
+			for (int k = 0; k < b->snapshot[s].residual[i].form->terms; k++) {
+				const struct basis *basis = &b->snapshot[s].residual[i].form->term[k].basis;
+				const struct atom *a = basis->atom;
+				if (a && (!first || a->node->start.offset < first->node->start.offset) && (all || !is_piecewise_form(form_unit(*basis))))
+					first = a;
+			}
+	return first;
 }
 
 static bool keeps_atoms(const struct building *b)
 {
-	return first_atom(b) != NULL;
+	return first_atom(b, true) != NULL;
 }
+
+static const char input_rewrite[] = "the load as an input is exact beside it";
 
 /* Scheme exact was asked for, and what it would have to switch on it cannot */
 static void tell_atom(void *context)
 {
 	const struct building *b = context;
-	const struct atom *atom = first_atom(b);
-	bool changes = b->model->system.segments > 1;
-	error(atom->node->start, "etd1, etdrk2, etdrk4, nc2, nc3, dq4, bm3 and pl are the schemes that could",
+	const struct atom *atom = first_atom(b, false);
+	bool changes = !atom;
+	atom = atom ? atom : first_atom(b, true);
+	const char *rewrite = changes ? input_rewrite : rewrite_of(atom->node);
+	error(atom->node->start, format("%s%setd1, etdrk2, etdrk4, nc2, nc3, dq4, bm3 and pl are the schemes that could", rewrite, *rewrite ? "; " : ""),
 	      changes ? "switching beside loads that change their formula in time is not built yet: scheme exact cannot treat '%s'"
 		      : "'%s' is not piecewise linear: scheme exact cannot treat it", text_between(atom->node->start, atom->node->end));
+}
+
+/* No scheme was asked for, and exact is not possible: what stood in its way */
+static void find_obstacle(void *context)
+{
+	struct building *b = context;
+	struct model *model = b->model;
+	const struct atom *atom = first_atom(b, false), *any = first_atom(b, true);
+	const char *why = "is not piecewise linear", *rewrite;
+	model->obstacle = atom ? atom->node : any ? any->node : NULL;
+	for (int s = 1; s < model->system.segments && !model->obstacle; s++) {
+		model->obstacle = same_equations(b, &b->snapshot[s]) ? NULL : first_changing_term(b, s);
+		why = format("has a factor that changes at t = %s", readable_text(model->system.change[s - 1]));
+	}
+	b->collector.interval = 0;
+	forget_lets(b->spec);
+	if (!model->obstacle)
+		return;
+	if (!atom && any)
+		why = "switches beside loads that change their formula in time";
+	rewrite = !atom && any ? input_rewrite : rewrite_of(model->obstacle);
+	model->obstacle_text = format("%s%s%s", why, *rewrite ? "; " : "", rewrite);
 }
 
 /* Exact where nothing is left over and no scheme was asked for; the equations for all time where something is. */
@@ -572,8 +611,10 @@ static bool settle_scheme(struct building *b)
 {
 	struct model *model = b->model;
 	bool linear = is_linear(b);
-	if (!linear && !model->scheme_at.source && !b->overrides->solution && !is_piecewise_linear(b))
+	if (!linear && !model->scheme_at.source && !b->overrides->solution && !is_piecewise_linear(b)) {
 		model->scheme = SCHEME_ETDRK4;
+		silent_guard(find_obstacle, b);
+	}
 	b->collector.scheme = scheme_name(model->scheme);
 	if (model->scheme == SCHEME_EXACT && b->overrides->loads_left) {
 		say_error(model->scheme_at.source ? model->scheme_at : b->spec->name_at, "etd1, etdrk2, etdrk4, nc2, nc3, dq4 and bm3 have; pl holds loads over a step",

@@ -186,7 +186,10 @@ static void person_split(FILE *to, const struct step *step)
 	}
 	if (step->operators > 1)
 		fputs("A step uses the first operator whose value is not below the current one, else the last.\n", to);
-	fprintf(to, "r, left to scheme %s, is a force on each of these equations%s:\n", scheme_name(model->scheme),
+	fprintf(to, "Scheme %s is of order %d in h", scheme_name(model->scheme), order_of_scheme(model));
+	if (loses_order(model))
+		fprintf(to, " where all is smooth; here of order %s at most: %s", order_text(model), smoothness_text(model));
+	fprintf(to, ".\nr, left to scheme %s, is a force on each of these equations%s:\n", scheme_name(model->scheme),
 		step->operators > 1 ? " (with the first operator; with the others its linear terms differ)" : "");
 	for (int c = 0; c < model->channels; c++)
 		fprintf(to, "    %s: %s\n", model->coord_name[coordinate_of_row(model, model->channel_row[c])], form_text(model, model->operator[0].left[c]));
@@ -456,6 +459,8 @@ void explain_json(FILE *to, const struct step *step)
 	json_loads(to, step);
 	if (model->scheme == SCHEME_PL)
 		fprintf(to, "  \"growth_rate\": %.17g,\n", mpfr_get_d(step->growth, MPFR_RNDN));
+	static const char *const smooth[] = { "smooth", "kink", "jump" };
+	fprintf(to, "  \"order\": %d,\n  \"smooth\": \"%s\",\n", order_that_holds(model), smooth[model->smooth.kind]);
 	if (step->model->switching)
 		json_regions(to, step);
 	if (has_leftover(step))

@@ -358,7 +358,10 @@ struct model *model_build(struct spec *spec, const struct overrides *overrides)
 		say_error(model->scheme_at.source ? model->scheme_at : spec->name_at, NULL,
 			  "--reduce needs scheme exact: what %s leaves over depends on the coordinates", scheme_name(model->scheme));
 	model->irrationals = b.collector.irrationals;
-	if (!diagnostics_errors() && !overrides->solution && !overrides->tunable && !overrides->relative)
+	bool told = overrides->solution || overrides->tunable || overrides->relative;
+	if (!diagnostics_errors() && !told)
+		judge_smoothness(&b);
+	if (!diagnostics_errors() && !told)
 		warn(&b);
 	return diagnostics_errors() ? NULL : model;
 }

@@ -96,6 +96,7 @@ void say_error(struct place at, const char *note, const char *fmt, ...) __attrib
 _Noreturn void error(struct place at, const char *note, const char *fmt, ...) __attribute__((format(printf, 3, 4)));
 _Noreturn void abandon(void);                              /* leave the statement; its error has been said before */
 void say_warning(struct place at, const char *note, const char *fmt, ...) __attribute__((format(printf, 3, 4)));
+void say_note(struct place at, const char *fmt, ...) __attribute__((format(printf, 2, 3)));
 bool statement_guard(void (*work)(void *), void *context); /* true if the work ran to its end */
 bool silent_guard(void (*work)(void *), void *context);    /* the same; what it says when it fails is forgotten */
 void diagnostics_context(const char *note);                /* the note of what has none from now on; NULL: none */
@@ -322,7 +323,9 @@ struct atom {
 	int operands;               /* POWER: base, exponent; CHOOSE: condition, then, else; equal forms are one object */
 	const struct form **operand;
 	unsigned *exponent;         /* of ATOM_PRODUCT, one per factor */
-	bool time, input, state;    /* what it depends on */
+	bool time, input, state, velocity; /* what it depends on; a coordinate of first order counts as a velocity */
+	const struct basis *moves;  /* of that a coordinate, else an input; NULL: t alone */
+	signed char piecewise, stepwise; /* 1 and -1: is_piecewise_form, is_stepwise; 0: not asked yet */
 	const struct node *node;    /* where it comes from */
 	int index;                  /* in the order of first appearance */
 	struct atom *next;
@@ -338,6 +341,13 @@ struct form *kept_whole_power(struct collector *c, const struct node *node, cons
 struct form *kept_call(struct collector *c, const struct node *node, enum function function, int count, struct form *const *x);
 struct form *kept_comparison(struct collector *c, const struct node *node, enum comparison comparison, const struct form *a, const struct form *b);
 struct form *kept_choice(struct collector *c, const struct node *node, const struct form *condition, const struct form *a, const struct form *b);
+/* A factor that is constant but for comparisons and sgn, times what is piecewise linear: (x' > 0 ? c1 : c2)*x' = (x' > 0 ? c1*x' : c2*x');
+ * NULL: they are no such factors. */
+struct form *kept_switched(struct collector *c, const struct node *node, const struct form *a, const struct form *b);
+bool is_piecewise_form(const struct form *form);            /* linear but for functions and conditions of linear expressions */
+bool is_stepwise(const struct form *form);                  /* constant but for comparisons and sgn */
+bool is_velocity(const struct model *model, const struct basis *basis); /* it depends on one; a coordinate of first order is one too */
+const struct basis *moved_basis(const struct basis *known, const struct basis *basis); /* of which two moves more readily: see struct atom */
 bool depends_on_time_only(const struct basis *basis);       /* or on nothing */
 struct form *time_part(const struct form *form, bool atoms); /* its terms of time alone; or of them the atoms only */
 bool same_form(const struct form *a, const struct form *b);
@@ -356,6 +366,14 @@ struct form **form_derivatives(struct collector *c, int count, const struct form
 struct point;                       /* t and coordinates fixed; lets are not looked at */
 struct point *point_new(struct collector *c, int fixings, const struct fixing *fixing);
 struct form *form_at(struct point *point, const struct form *form); /* leaves the statement where the form is not defined there */
+
+/* ---- value.c: forms as numbers at a point ---- */
+
+struct sample;                      /* `leaf` says what a coordinate or an input is there */
+struct sample *sample_new(int precision, void (*leaf)(void *context, const struct basis *basis, mpfr_ptr value), void *context);
+long sample_work(const struct sample *sample);             /* terms that were taken so far */
+void sample_at(struct sample *sample, mpfr_srcptr t);       /* a new point: what was found at the last is forgotten */
+void sample_form(struct sample *sample, const struct form *form, mpfr_ptr value); /* NaN where it is not defined */
 
 /* ---- wave.c: loads in time ---- */
 
@@ -377,6 +395,7 @@ void collect_constant(struct collector *collector, struct node *node, mpq_ptr nu
 
 _Noreturn void not_linear(const struct collector *c, const struct node *node, const char *why);
 struct form *constant_call(struct collector *c, const struct node *node, enum function function, const struct form *x);
+const char *rewrite_of(const struct node *term);            /* what scheme exact could treat in its place; "": there is nothing known */
 bool compare_values(enum comparison comparison, int order);
 void forget_lets(const struct spec *spec);
 _Noreturn void not_built(const struct collector *c, struct place at, const char *what);
@@ -401,6 +420,7 @@ struct mtx *mtx_read(const char *path, struct place at);    /* `at`: what names 
 
 void constant_pi(mpq_ptr value);
 bool constant_function(struct place at, enum function function, mpq_srcptr x, mpq_ptr value);
+void wide_value(enum function function, mpfr_ptr x);         /* x = function(x) of one argument, at x's precision */
 bool constant_atan2(struct place at, mpq_srcptr y, mpq_srcptr x, mpq_ptr value);
 bool constant_power(struct place at, mpq_srcptr base, mpq_srcptr exponent, mpq_ptr value);
 
@@ -451,6 +471,14 @@ struct operator {                   /* A of y' = A y + loads + inputs + r(t, y);
 };
 enum step_form { FORM_AUTO, FORM_DIRECT, FORM_DELTA, FORM_KICK_DRIFT_KICK, STEP_FORMS };
 enum scheme { SCHEME_EXACT, SCHEME_PL, SCHEME_ETD1, SCHEME_ETDRK2, SCHEME_ETDRK4, SCHEME_NC2, SCHEME_NC3, SCHEME_DQ4, SCHEME_BM3, SCHEMES };
+struct smoothness {                 /* of what is left over, else of the equations; where nothing is found all is 0 */
+	int tenths;                 /* of the order that no scheme exceeds here: 10 at a jump, 20 at a kink */
+	enum { SMOOTH_ALL, SMOOTH_KINK, SMOOTH_JUMP } kind;
+	const struct node *node;    /* what jumps or has the kink */
+	const char *where;          /* x passes 0.5 */
+	bool piecewise;             /* exact could treat it alone */
+	bool timed;                 /* it lies at a time */
+};
 struct model {
 	const struct spec *spec;
 	const char *name;           /* prefix of everything generated */
@@ -483,6 +511,9 @@ struct model {
 	int *channel_row;           /* its equation */
 	const struct atoms *atoms;
 	struct switching *switching; /* exact: the regions of a piecewise-linear model; NULL: it has one */
+	struct smoothness smooth;
+	const struct node *obstacle; /* the first term that stood in the way of exact, where no scheme was asked for; */
+	const char *obstacle_text;  /* why it did, and the way out if there is one */
 	const struct form *selector; /* of a bank: what is compared with `at`; NULL: one operator */
 	const struct tuning *tuning; /* tunable params, and how the equations follow from them; NULL: there are none */
 	int outputs;
@@ -607,7 +638,7 @@ struct linear empty_system(const struct model *model);      /* the model's coord
 
 /* ---- regions.c: piecewise-linear equations as regions with linear ones ---- */
 
-bool is_piecewise_linear(const struct building *b);         /* linear but for functions and conditions of linear expressions */
+bool is_piecewise_linear(const struct building *b);
 void find_regions(struct building *b);                      /* says what cannot be treated */
 void place_region_loads(struct building *b);
 void build_regions(struct building *b);                     /* their systems; after the loads of all have their places */
@@ -620,6 +651,17 @@ void build_operators(struct building *b);
 struct linear operator_system(const struct model *model, int k); /* the model's, with the operator's C and K and the channels */
 /* Every form that the leftovers and the selector are made of, once, operands before what they make. */
 void visit_leftovers(const struct model *model, void (*visit)(void *context, const struct form *form), void *context);
+
+/* ---- smooth.c: how smooth the equations are, and what order that leaves to a scheme ---- */
+
+void judge_smoothness(struct building *b);                  /* model->smooth; says where dry friction stands in what is left over */
+bool reads_velocity(const struct model *model, const struct form *form); /* or a coordinate of first order, which is one */
+_Noreturn void tell_friction(const struct node *node, const char *where);
+int  order_of_scheme(const struct model *model);            /* where all is smooth; 0: of exact */
+bool loses_order(const struct model *model);                /* to what is not smooth */
+int  order_that_holds(const struct model *model);           /* rounded down; 0: nothing is left over */
+const char *order_text(const struct model *model);          /* that is left: 2, 2.5 */
+const char *smoothness_text(const struct model *model);     /* max(x - 0.5, 0) has a kink where x passes 0.5 */
 
 /* ---- warnings.c: what a spec may say but is better told about ---- */
 

@@ -9,40 +9,12 @@ enum { LIMIT_CANDIDATES = 6561 };   /* regions looked at, before those that cann
 
 /* ---- is it? ---- */
 
-static bool is_piecewise_form(const struct building *b, const struct form *form);
-
-static bool is_comparison(const struct form *form)
-{
-	const struct form_term *only = form->terms == 1 ? form->term : NULL;
-	const struct atom *atom = only ? only->basis.atom : NULL;
-	return atom && atom->kind == ATOM_COMPARE && atom->comparison <= CMP_GE && mpq_cmp_ui(only->factor, 1, 1) == 0;
-}
-
-static bool is_piecewise_atom(const struct building *b, const struct atom *a)
-{
-	bool function = a->kind == ATOM_CALL && (a->function == FN_ABS || a->function == FN_SGN || a->function >= FN_MIN);
-	bool choice = a->kind == ATOM_CHOOSE && is_comparison(a->operand[0]);
-	bool comparison = a->kind == ATOM_COMPARE && a->comparison <= CMP_GE;
-	bool all = function || choice || comparison;
-	for (int i = 0; i < a->operands && all; i++)
-		all = is_piecewise_form(b, a->operand[i]);
-	return all;
-}
-
-static bool is_piecewise_form(const struct building *b, const struct form *form)
-{
-	for (int i = 0; i < form->terms; i++)
-		if (form->term[i].basis.atom && !is_piecewise_atom(b, form->term[i].basis.atom))
-			return false;
-	return true;
-}
-
 bool is_piecewise_linear(const struct building *b)
 {
 	if (b->model->system.segments > 1)
 		return false;
 	for (int i = 0; i < b->model->n; i++)
-		if (!is_piecewise_form(b, b->snapshot->residual[i].form))
+		if (!is_piecewise_form(b->snapshot->residual[i].form))
 			return false;
 	return true;
 }
@@ -386,16 +358,6 @@ static void mark_possible(struct switching *s)
 
 /* ---- what cannot be treated: forces that jump with a velocity ---- */
 
-static bool reads_velocity(const struct model *model, const struct form *form)
-{
-	for (int i = 0; i < form->terms; i++) {
-		const struct basis *basis = &form->term[i].basis;
-		if (basis->kind == BASIS_COORD && (basis->order > 0 || model->coord[basis->index]->highest == 1))
-			return true;
-	}
-	return false;
-}
-
 /* Is the form a multiple of e - at, so that it vanishes on the breakpoint? */
 static bool vanishes_on(struct collector *c, const struct form *form, const struct expression *e, mpq_srcptr at)
 {
@@ -425,9 +387,7 @@ static void check_face(struct building *b, const struct switching *s, int below,
 		const struct form *jump = form_sum(high->residual[i], low->residual[i], true);
 		if (vanishes_on(&b->collector, jump, e, at))
 			continue;
-		error(e->node->start, "a force that is continuous in the velocity can be switched, and one that jumps with a position",
-		      "the force jumps where %s passes %s: dry friction, which sticks and slips, is not treated", form_text(b->model, e->form),
-		      readable_text(at));
+		tell_friction(e->node, format("%s passes %s", form_text(b->model, e->form), readable_text(at)));
 	}
 }
 

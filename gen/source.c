@@ -62,6 +62,14 @@ void say_warning(struct place at, const char *note, const char *fmt, ...)
 	va_end(args);
 }
 
+void say_note(struct place at, const char *fmt, ...)
+{
+	va_list args;
+	va_start(args, fmt);
+	say(at, "note", NULL, fmt, args);
+	va_end(args);
+}
+
 void abandon(void)
 {
 	if (guard)

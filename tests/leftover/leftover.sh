@@ -150,8 +150,49 @@ for scheme in etd1 etdrk2 etdrk4; do
     says "$root/models/scs.spec" exact --scheme "$scheme"
     silent "$root/models/vanderpol_stiff.spec" --scheme "$scheme" --step 0.05
 done
-for name in pendulum vanderpol quad2dof duffing; do
-    silent "$root/models/$name.spec"
-done
+silent "$root/models/pendulum.spec"
+silent "$root/models/duffing.spec" --step 0.01 --scheme etdrk4
+says "$root/models/duffing.spec" softer
+
+# notes SPEC TERM: without a scheme, one note and nothing else, on the term that kept it from exact steps
+notes()
+{
+    "$plgen" "$1" >out.c 2>log && [ "$(grep -c 'note:' log)" -eq 1 ] && ! grep -q 'warning:' log && grep -q -F "note: scheme etdrk4, not exact: '$2'" log
+    result $? "${1##*/}: notes that $2 stands in the way of exact"
+}
+notes "$root/models/vanderpol.spec" "mu*(1 - x^2)*x'"
+notes "$root/models/quad2dof.spec" '-2*x*y'
+notes "$root/models/mathieu.spec" '(a - 2*q*cos(2*t))*x'
+
+# orders SPEC SCHEME ORDER SMOOTH TEXT: the order that holds, in JSON, --explain and the banner
+orders()
+{
+    status=0
+    "$plgen" --explain=json --scheme "$2" "$1" >out 2>log || status=1
+    grep -q -x "  \"order\": $3," out && grep -q -x "  \"smooth\": \"$4\"," out || { grep -e '"order"' -e '"smooth"' out >log; status=1; }
+    for option in --explain --rhs; do
+        "$plgen" $option --scheme "$2" "$1" >out 2>/dev/null || status=1
+        if [ -n "$5" ]; then
+            grep -q -F "$5" out || { echo "$option does not say: $5" >>log; status=1; }
+        else
+            ! grep -q 'where all is smooth' out || { echo "$option speaks of order" >>log; status=1; }
+        fi
+    done
+    result $status "${1##*/}, $2: order $3, $4"
+}
+orders "$here/kinked.spec" etdrk4 2 kink 'here of order 2 at most: max(x - 0.5, 0) has a kink where x passes 0.5.'
+orders "$here/kinked.spec" etdrk2 2 kink ''
+orders "$here/kinked.spec" exact 0 kink ''
+orders "$here/jumping.spec" bm3 1 jump 'here of order 1 at most: (x > 0.3 ? 2 : 0) jumps where x passes 0.3.'
+orders "$here/jumping.spec" etd1 1 jump ''
+orders "$here/jumping.spec" exact 0 jump ''
+orders "$here/rates.spec" etdrk4 2 kink "here of order 2 at most: (x' > 0 ? 0.5 : 2)*x' has a kink where x' passes 0."
+orders "$here/bowed.spec" etdrk4 3 kink 'here of order 3 at most: 6*x*abs(x) is not smooth where x passes 0.'
+orders "$here/hertz.spec" nc2 2 kink 'here of order 2.5 at most: max(x, 0)^1.5 is not smooth where x passes 0.'
+orders "$here/timed.spec" dq4 1 jump 'here of order 1 at most: (t < 1.2345678 ? 8 : 2) jumps where t passes 1.2345678.'
+orders "$root/models/duffing.spec" etdrk4 4 smooth ''
+orders "$root/models/beam4.spec" etdrk4 4 smooth ''
+orders "$root/models/scs.spec" exact 0 smooth ''
+orders "$root/models/scs.spec" pl 1 smooth ''
 
 tap_end

@@ -91,6 +91,28 @@ while read -r kind; do
     result $status "$kind"
 done <kinds
 
+# ---- a factor that switches is what its branches are ----
+
+# code EQUATION: the C of it, comments apart
+code()
+{
+    printf 'model kind\ncoord x, y\n%s\ny'"''"' + y = 0\nstep 0.01\nscheme exact\n' "$1" >kind.spec
+    "$plgen" kind.spec 2>>log | grep -v '^ \*' | grep -v '^/\*'
+}
+
+while IFS='|' read -r product branches; do
+    : >log
+    code "$product" >product.c && code "$branches" >branches.c && [ -s product.c ] && cmp product.c branches.c >>log 2>&1 && [ ! -s log ]
+    result $? "$product: as $branches"
+done <<'END'
+x'' + (x' > 0 ? 2 : 3)*x' + x = 0|x'' + (x' > 0 ? 2*x' : 3*x') + x = 0
+x'' + x + (x > 0)*x = 0|x'' + x + (x > 0 ? x : 0) = 0
+x'' + x + 2*x*sgn(x) = 0|x'' + x + 2*abs(x) = 0
+x'' + x + (x > 0.5 ? 3 : 1)*(x - 0.5) = 0|x'' + x + (x > 0.5 ? 3*x - 1.5 : x - 0.5) = 0
+x'' + x = (x > y)*(y > 1)*cos(t)|x'' + x = (x > y ? (y > 1 ? cos(t) : 0) : 0)
+x'' + x + (2 - sgn(x - y))*y = 0|x'' + x + (x > y ? y : 3*y) = 0
+END
+
 # ---- <math.h>, and what stands alone ----
 
 for name in gear1 gear2 gear3 bilinear stop two_masses quarter_car_bumps; do
