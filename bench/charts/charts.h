@@ -34,6 +34,7 @@ struct problem {
 	double *A;                  /* 2n x 2n, row-major: found by asking rhs, so rounded as its doubles are */
 	double *b0, *b1, *b2;       /* 2n each */
 	double w;                   /* rad/s; 0: no oscillating load */
+	double scale_q, scale_v;    /* largest |coordinate| and |velocity| of the history, from what is true (truth_of); 0: not known yet */
 	const pl_model *model;      /* generated code, or NULL */
 	void *handle;               /* of dlopen */
 };
@@ -73,6 +74,8 @@ struct run {
 };
 extern const struct method *const fixed_methods[];      /* classic.c; NULL at the end */
 extern const struct method *const adaptive_methods[];   /* adaptive.c */
+/* What the absolute tolerances of a run stand on: one that an adaptive method opens on this problem */
+void adaptive_scales(const struct problem *problem, double *scale_q, double *scale_v);
 extern const struct method *const propagator_methods[]; /* propagator.c: linear problems */
 const struct method *method_find(const char *name);     /* among these three */
 /* Our own: generated.c. `file` is a shared object of that variant (scheme, form, type, step), made by variant.sh, which keeps
@@ -95,7 +98,7 @@ struct truth {                      /* at each end of a unit and at TRUTH_BETWEE
 	const char *roads;          /* closed form in quadruple precision + CVODE; ... */
 };
 #define TRUTH_BETWEEN 0.375
-struct truth *truth_of(const struct problem *problem);
+struct truth *truth_of(struct problem *problem);                    /* and gives the problem its scales */
 void truth_free(struct truth *truth);
 struct error { double q_end, q_between, v_end, v_between, largest; bool failed; }; /* relative to the scales; failed: not finite or it gave up */
 struct error error_of(struct run *run, const struct truth *truth);   /* restarts the run and goes through the whole history */

@@ -4,6 +4,8 @@
  *
  *     precision --list [--quick] [MODEL...]              the variants wanted: one line each, FILE SPEC and plgen's options
  *     precision [--quick] VARIANTS FILE.csv [MODEL...]   VARIANTS: the folder with those files
+ *     precision --scales [--quick] VARIANTS [MODEL...]   of each model its history and the scales that tolerances stand on, a line each:
+ *                                                        name, shared object, unit [s], units, largest |coordinate|, |velocity|
  */
 #include "charts.h"
 
@@ -328,11 +330,27 @@ static void put_line(FILE *out, const struct line *line, const struct problem *p
 	fprintf(out, ",%.2g,%g,%g\n", t->agreement, p->unit, p->unit * p->units);
 }
 
+static struct problem *load(const struct charted *m, const char *folder, bool quick, char path[4096])
+{
+	snprintf(path, 4096, "%s/%s.so", folder, m->name);
+	return problem_load(path, m->name, value_of(m->unit), quick ? m->quick_units : m->units, m->linear, m->w);
+}
+
+static void say_scales(FILE *out, const struct charted *m, const char *folder, bool quick)
+{
+	char path[4096];
+	struct problem *p = load(m, folder, quick, path);
+	double scale_q, scale_v;
+	truth_free(truth_of(p));
+	adaptive_scales(p, &scale_q, &scale_v);
+	fprintf(out, "%s\t%s\t%.17g\t%d\t%.10g\t%.10g\n", m->name, path, p->unit, p->units, scale_q, scale_v);
+	problem_free(p);
+}
+
 static void measure(FILE *out, const struct charted *m, const char *folder, bool quick, double seconds)
 {
 	char path[4096];
-	snprintf(path, sizeof path, "%s/%s.so", folder, m->name);
-	struct problem *p = problem_load(path, m->name, value_of(m->unit), quick ? m->quick_units : m->units, m->linear, m->w);
+	struct problem *p = load(m, folder, quick, path);
 	struct truth *t = truth_of(p);
 	struct lines lines = { NULL, 0 };
 	add_peers(&lines, m, p, fixed_methods, quick);
@@ -363,31 +381,35 @@ static void measure(FILE *out, const struct charted *m, const char *folder, bool
 
 int main(int argc, char **argv)
 {
-	bool list = false, quick = false;
+	bool list = false, scales = false, quick = false;
 	int at = 1;
 	for (; at < argc && argv[at][0] == '-'; at++) {
 		list = list || strcmp(argv[at], "--list") == 0;
+		scales = scales || strcmp(argv[at], "--scales") == 0;
 		quick = quick || strcmp(argv[at], "--quick") == 0;
 	}
-	const int files = list ? 0 : 2;
+	const int files = list ? 0 : scales ? 1 : 2;
 	if (argc - at < files) {
-		fputs("usage: precision --list [--quick] [MODEL...]\n       precision [--quick] VARIANTS FILE.csv [MODEL...]\n", stderr);
+		fputs("usage: precision --list [--quick] [MODEL...]\n       precision [--quick] VARIANTS FILE.csv [MODEL...]\n"
+		      "       precision --scales [--quick] VARIANTS [MODEL...]\n", stderr);
 		return 2;
 	}
-	FILE *out = list ? stdout : fopen(argv[at + 1], "w");
+	FILE *out = list || scales ? stdout : fopen(argv[at + 1], "w");
 	if (!out) {
 		perror(argv[at + 1]);
 		return 1;
 	}
-	if (!list)
+	if (!list && !scales)
 		fputs("model,method,family,setting_kind,setting,q_end,q_between,v_end,v_between,largest,failed,evaluations_per_unit,"
 		      "ns_min,ns_median,ns_max,ns_samples,ns_units,settings,truth_agreement,unit_s,history_s\n", out);
 	for (int i = 0; i < (argc > at + files ? argc - at - files : MODELS); i++) {
 		const struct charted *m = argc > at + files ? model_named(argv[at + files + i]) : &models[i];
-		if (argc == at + files && quick && !m->quick)
+		if (argc == at + files && quick && !scales && !m->quick)
 			continue;
 		if (list)
 			list_model(m, quick);
+		else if (scales)
+			say_scales(out, m, argv[at], quick);
 		else
 			measure(out, m, argv[at], quick, quick ? 0.5 : 10);
 		fflush(out);
