@@ -106,11 +106,11 @@ struct error error_of(struct run *run, const struct truth *truth);   /* restarts
 /* ---- samples.c: time ---- */
 
 struct samples { double min, median, max; int count; };            /* nanoseconds per unit */
-/* Interleaved: sample k of every run is taken before sample k+1 of any; each is `units` of its run after a restart, repeated where that
- * is too short to time; `seconds` is the budget for all. The time is the process's own (CPU). */
-void sample_runs(int runs, struct run *const *run, int units, double seconds, struct samples *result);
-/* The same, each run with its own number of units. */
-void sample_runs_of(int runs, struct run *const *run, const int *units, double seconds, struct samples *result);
+/* A sample is a pass of the run from its start through the whole history, the start included, repeated where that is too short to time:
+ * what costs more in one part of a history than in another is weighed as it comes. Interleaved: sample k of every run is taken before
+ * sample k+1 of any, three of each and more of what is cheap; `seconds` is the budget for all. The time is the process's own (CPU). */
+void sample_runs(int runs, struct run *const *run, double seconds, struct samples *result);
+double sample_pass(struct run *run);        /* ns per unit of such a pass, taken by itself: what samples are held against */
 struct samples sample_summary(int count, double *ns);               /* sorts */
 double now_ns(void);
 void say_progress(const char *format, ...) __attribute__((format(printf, 1, 2))); /* standard error, one line */

@@ -200,7 +200,7 @@ static void look_for(struct rows *rows, const struct method *const *methods, con
 	}
 }
 
-static void sample_rows(struct rows *rows, int units, double seconds)
+static void sample_rows(struct rows *rows, double seconds)
 {
 	struct run *run[80];
 	struct samples samples[80];
@@ -208,7 +208,7 @@ static void sample_rows(struct rows *rows, int units, double seconds)
 	for (int i = 0; i < rows->count; i++)
 		if (rows->row[i].run)
 			run[count++] = rows->row[i].run;
-	sample_runs(count, run, units, seconds, samples);
+	sample_runs(count, run, seconds, samples);
 	for (int i = 0, k = 0; i < rows->count; i++)
 		if (rows->row[i].run)
 			rows->row[i].samples = samples[k++];
@@ -310,7 +310,7 @@ static void integrators(const struct problem *p, const struct truth *t, const ch
 			rows.row[rows.count++] = (struct row){ &mine[i].method, targets[k], { p->unit, error, error <= targets[k], 0 }, k == 0 ? mine[i].run : NULL, { 0, 0, 0, 0 } };
 	}
 	say_progress("scs: time");
-	sample_rows(&rows, quick ? 500 : 2000, quick ? 1 : 20);
+	sample_rows(&rows, quick ? 1 : 20);
 	double of_exact = NAN;
 	for (int i = 0; i < rows.count; i++)
 		if (rows.row[i].method->family == OURS) {
@@ -394,7 +394,7 @@ static void put_number(FILE *out, const struct entry *e, double value)
 		fprintf(out, "%.4g,", value);
 }
 
-static void sample_entries(struct entry *entry, int count, int units, double seconds)
+static void sample_entries(struct entry *entry, int count, double seconds)
 {
 	struct run *run[40];
 	struct samples samples[40];
@@ -402,7 +402,7 @@ static void sample_entries(struct entry *entry, int count, int units, double sec
 	for (int i = 0; i < count; i++)
 		if (entry[i].run)
 			run[runs++] = entry[i].run;
-	sample_runs(runs, run, units, seconds, samples);
+	sample_runs(runs, run, seconds, samples);
 	for (int i = 0, k = 0; i < count; i++)
 		if (entry[i].run)
 			entry[i].samples = samples[k++];
@@ -423,7 +423,7 @@ static void equal_step(const struct problem *p, const struct truth *t, const cha
 		entry[i].long_drift = drift(entry[i].run, quick ? 1000000 : 10000000);
 	}
 	say_progress("scs: time");
-	sample_entries(entry, count, quick ? 500 : 2000, quick ? 0.5 : 5);
+	sample_entries(entry, count, quick ? 0.5 : 5);
 	for (int i = 0; i < count; i++)
 		if (entry[i].method == &mine[0].method && entry[i].run)
 			of_exact = entry[i].samples.median;

@@ -4,7 +4,7 @@ here = system("dirname '".ARG0."'"); folder = ARG1; out = ARG2
 size = '900,800'
 load here.'/style.gp'
 small(n, y, text) = sprintf("set label %d \"%s\" at screen 0.01,%g left font ',8' textcolor rgb '#505050'", n, text, y)
-flags = "gcc -O2 for all, no -march=native, no -ffast-math. Medians of short samples taken in turns."
+flags = "gcc -O2 for all, no -march=native, no -ffast-math. Medians of whole histories taken in turns."
 chosen = "Layout deduced, parameters chosen: the source's did not survive."
 
 # ---- each integrator at the setting that reaches an error ----
