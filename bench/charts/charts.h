@@ -78,6 +78,15 @@ extern const struct method *const adaptive_methods[];   /* adaptive.c */
 void adaptive_scales(const struct problem *problem, double *scale_q, double *scale_v);
 extern const struct method *const propagator_methods[]; /* propagator.c: linear problems */
 const struct method *method_find(const char *name);     /* among these three */
+/* literals.c: the same with its matrix as constants in code: an object whose `void advance(real *z, long units, real *rows)` takes `steps`
+ * steps z <- Phi z a unit and keeps `own` entries of z in a row. NULL: an entry is not finite, or it does not compile. */
+struct literals {
+	int own, size;              /* entries of a row, and of z; those after `own` do not feel those before */
+	int steps;
+	bool single;                /* real is float, else double */
+	const double *Phi;          /* size x size, row-major */
+};
+void *literals_load(const struct literals *literals);
 /* Our own: generated.c. `file` is a shared object of that variant (scheme, form, type, step), made by variant.sh, which keeps
  * in it the options it was made with: by these generated_open knows a float, and the leftover evaluations of a scheme.
  * Setting: its step, which must divide the unit; NULL where it does not, or where there is no such file. */
