@@ -27,7 +27,7 @@ eval "plot ".clauses
 eval write
 unset label
 set key default
-size = '900,600'
+size = '1000,600'
 load here.'/style.gp'
 unset lmargin
 set xrange [*:*]
