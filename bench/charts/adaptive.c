@@ -2,9 +2,9 @@
  *
  * Integrators that choose their steps, each configured as its manual advises: the Dormand-Prince pair written plainly here, GSL's
  * odeiv2, SUNDIALS' CVODE and ARKODE. The setting is the relative tolerance e. The absolute tolerance of every coordinate is
- * e times the largest coordinate of the history, of every velocity e times the largest velocity: what a user who knows the
- * problem would give, and here taken from what is true (truth_of; hard.c: its closed forms). So the weight of an error is between
- * e and 2 e of the scale for everyone, and no work is lost where something passes through zero.
+ * e times the largest coordinate of the history, of every velocity e times the largest velocity: what a user who knows
+ * the problem would give, and here taken from what is true (truth_of; hard.c: its closed forms). So the weight of an
+ * error is between e and 2 e of the scale for everyone, and no work is lost where something passes through zero.
  *
  * Where an integrator has an interpolant it walks as it likes and output is read from it; one that has none (GSL), or whose own is
  * too coarse for its order, is stopped at each output time. The first kind looks ahead for `between`; for the

@@ -19,12 +19,17 @@ file == 1 {
 	real = method ~ /float/ ? "float" : "double"
 	error = row[column["largest"]]; unit[model] = row[column["unit_s"]]; ns = row[column["ns_median"]] + 0
 	if (!(model in known)) { known[model] = 1; models[++model_count] = model }
-	if (family != "ours" && !((model, method) in rival_seen)) { rival_seen[model, method] = 1; rivals[model, ++rival_count[model]] = method; real_of[method] = real }
+	if (family != "ours" && !((model, method) in rival_seen)) {
+		rival_seen[model, method] = 1
+		rivals[model, ++rival_count[model]] = method
+		real_of[method] = real
+	}
 	if (!is_number(error) || error + 0 > target[real] + 0 || ns <= 0) next
 	offer(family == "ours" ? model SUBSEP "ours" SUBSEP real : model SUBSEP "rival" SUBSEP method)
 }
 END {
-	print "model,real,target,rival,rival_setting,rival_error,rival_ns_per_unit,ours,our_step_s,our_error,our_ns_per_unit,generate_and_compile_ms,break_even_units,break_even_steps,word"
+	print "model,real,target,rival,rival_setting,rival_error,rival_ns_per_unit,ours,our_step_s,our_error," \
+		"our_ns_per_unit,generate_and_compile_ms,break_even_units,break_even_steps,word"
 	for (m = 1; m <= model_count; m++) {
 		model = models[m]
 		for (r = 1; r <= rival_count[model]; r++) {
@@ -38,7 +43,8 @@ END {
 			printf "%.6g,", once[model]
 			if (!(rival in cheapest)) print "none,none,not reached"
 			else if (!(ours in cheapest)) print "never,never,ours not reached"
-			else if (cheapest[rival] <= 1.1 * cheapest[ours]) print "never,never," (cheapest[rival] < cheapest[ours] / 1.1 ? "rival is faster" : "as fast")
+			else if (cheapest[rival] < cheapest[ours] / 1.1) print "never,never,rival is faster"
+			else if (cheapest[rival] <= cheapest[ours] * 1.1) print "never,never,as fast"
 			else {
 				units = 1e6 * once[model] / (cheapest[rival] - cheapest[ours])
 				printf "%.6g,%.6g,\n", units, units * unit[model] / setting[ours]

@@ -34,7 +34,7 @@ struct problem {
 	double *A;                  /* 2n x 2n, row-major: found by asking rhs, so rounded as its doubles are */
 	double *b0, *b1, *b2;       /* 2n each */
 	double w;                   /* rad/s; 0: no oscillating load */
-	double scale_q, scale_v;    /* largest |coordinate| and |velocity| of the history, from what is true (truth_of); 0: not known yet */
+	double scale_q, scale_v;    /* largest |coordinate|, |velocity| of the history (truth_of); 0: not known yet */
 	const pl_model *model;      /* generated code, or NULL */
 	void *handle;               /* of dlopen */
 };
@@ -78,7 +78,7 @@ extern const struct method *const adaptive_methods[];   /* adaptive.c */
 void adaptive_scales(const struct problem *problem, double *scale_q, double *scale_v);
 extern const struct method *const propagator_methods[]; /* propagator.c: linear problems */
 const struct method *method_find(const char *name);     /* among these three */
-/* literals.c: the same with its matrix as constants in code: an object whose `void advance(real *z, long units, real *rows)` takes `steps`
+/* literals.c: a matrix as constants in code. The object's `void advance(real *z, long units, real *rows)` takes `steps`
  * steps z <- Phi z a unit and keeps `own` entries of z in a row. NULL: an entry is not finite, or it does not compile. */
 struct literals {
 	int own, size;              /* entries of a row, and of z; those after `own` do not feel those before */
@@ -115,11 +115,12 @@ struct error error_of(struct run *run, const struct truth *truth);   /* restarts
 /* ---- samples.c: time ---- */
 
 struct samples { double min, median, max; int count; };            /* nanoseconds per unit */
-/* A sample is a pass of the run from its start through the whole history, the start included, repeated where that is too short to time:
- * what costs more in one part of a history than in another is weighed as it comes. Interleaved: sample k of every run is taken before
- * sample k+1 of any, three of each and more of what is cheap; `seconds` is the budget for all. The time is the process's own (CPU). */
+/* A sample is a pass of the run from its start through the whole history, the start included, repeated where that is
+ * too short to time: what costs more in one part of a history than in another is weighed as it comes. Interleaved:
+ * sample k of every run is taken before sample k+1 of any, three of each and more of what is cheap; `seconds` is the
+ * budget for all. The time is the process's own (CPU). */
 void sample_runs(int runs, struct run *const *run, double seconds, struct samples *result);
-double sample_pass(struct run *run);        /* ns per unit of such a pass, taken by itself: what samples are held against */
+double sample_pass(struct run *run);        /* ns per unit of one such pass by itself: what samples are held against */
 struct samples sample_summary(int count, double *ns);               /* sorts */
 double now_ns(void);
 void say_progress(const char *format, ...) __attribute__((format(printf, 1, 2))); /* standard error, one line */

@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# hard.sh PLGEN FOLDER [problems]: the generated code of the hard cases, FOLDER/hard_*.so, and its list FOLDER/hard.list (see hard.c). Run at the
-# top of the source tree. problems: without the methods, the cases alone.
+# hard.sh PLGEN FOLDER [problems]: the generated code of the hard cases, FOLDER/hard_*.so, and its list FOLDER/hard.list
+# (see hard.c). Run at the top of the source tree. problems: without the methods, the cases alone.
 set -e
 plgen=$1 folder=$2 only=$3
 charts=bench/charts

@@ -294,13 +294,13 @@ static void open_mine(struct mine *m, const struct ours *o, const struct problem
 }
 
 /* At one step per output: what it reaches, a row for each target; its time stands in both */
-static void add_exact(struct rows *rows, const struct method *method, struct run *run, const struct problem *p, const struct truth *t,
+static void add_exact(struct rows *rows, const struct method *method, struct run *run, const struct truth *t,
                       const double targets[2])
 {
 	const double error = error_at_outputs(run, t);
 	for (int k = 0; k < 2; k++)
-		rows->row[rows->count++] = (struct row){ .method = method, .target = targets[k], .found = { p->unit, error, error <= targets[k], 0 },
-		                                         .run = k == 0 ? run : NULL };
+		rows->row[rows->count++] = (struct row){ .method = method, .target = targets[k], .run = k == 0 ? run : NULL,
+		                                         .found = { run->problem->unit, error, error <= targets[k], 0 } };
 }
 
 static bool is_float(const char *name)
@@ -321,12 +321,12 @@ static void integrators(const struct problem *p, const struct truth *t, const ch
 	for (const struct method *const *m = propagator_methods; *m; m++) {
 		struct run *run = is_float((*m)->name) ? NULL : (*m)->open(*m, p, p->unit);
 		if (run)
-			add_exact(&rows, *m, run, p, t, targets);
+			add_exact(&rows, *m, run, t, targets);
 	}
 	for (int i = 0; i < OURS_COUNT; i++) {
 		open_mine(&mine[i], &ours[i], p, variants, "scs");
 		if (mine[i].run && !is_float(ours[i].name))
-			add_exact(&rows, &mine[i].method, mine[i].run, p, t, targets);
+			add_exact(&rows, &mine[i].method, mine[i].run, t, targets);
 		else if (mine[i].run)
 			mine[i].run->close(mine[i].run);
 	}

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A matrix of a step as C: its entries are constants in the code, zeros are left out, the state stays in registers from one output to the
- * next. Compiled as variant.sh compiles what plgen emits, and loaded. */
+/* A matrix of a step as C: its entries are constants in the code, zeros are left out, the state stays in registers from
+ * one output to the next. Compiled as variant.sh compiles what plgen emits, and loaded. */
 #include "charts.h"
 
 #include <dlfcn.h>
@@ -56,7 +56,8 @@ static bool compile(const struct literals *l, const char *folder)
 	put_code(c, l);
 	if (fclose(c) != 0)
 		return false;
-	snprintf(command, sizeof command, "%s -std=gnu11 -O2 -fPIC -shared '%s' -o '%s/step.so'", cc && *cc ? cc : "cc", path, folder);
+	snprintf(command, sizeof command, "%s -std=gnu11 -O2 -fPIC -shared '%s' -o '%s/step.so'", cc && *cc ? cc : "cc", path,
+	         folder);
 	return system(command) == 0;
 }
 

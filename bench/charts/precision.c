@@ -4,8 +4,8 @@
  *
  *     precision --list [--quick] [MODEL...]              the variants wanted: one line each, FILE SPEC and plgen's options
  *     precision [--quick] VARIANTS FILE.csv [MODEL...]   VARIANTS: the folder with those files
- *     precision --scales [--quick] VARIANTS [MODEL...]   of each model its history and the scales that tolerances stand on, a line each:
- *                                                        name, shared object, unit [s], units, largest |coordinate|, |velocity|
+ *     precision --scales [--quick] VARIANTS [MODEL...]   what tolerances stand on, a line for each model: name, shared
+ *                                                        object, unit [s], units, largest |coordinate|, |velocity|
  */
 #include "charts.h"
 
@@ -310,7 +310,8 @@ static void put_line(FILE *out, const struct line *line, const struct problem *p
 	else
 		fputs(",none", out);
 	if (line->samples.count > 0)
-		fprintf(out, ",%.5g,%.5g,%.5g,%d,%d,%.5g,", line->samples.min, line->samples.median, line->samples.max, line->samples.count, p->units, line->pass);
+		fprintf(out, ",%.5g,%.5g,%.5g,%d,%d,%.5g,", line->samples.min, line->samples.median, line->samples.max,
+		        line->samples.count, p->units, line->pass);
 	else
 		put_word(out, "none", 6), putc(',', out);
 	put_settings(out, line);

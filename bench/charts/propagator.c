@@ -5,8 +5,9 @@
  *
  *     z = y, 1, cos w t, sin w t        z' = [A b0 b1 b2; 0; 0 0 0 -w; 0 0 w 0] z
  *
- * of which what a problem does not have is left out. A step is unit/k for an integer k; `between` is as exact as a step. The matrix is
- * applied by a loop, by code for its size, by code that has its entries as constants, by a library, and in float.
+ * of which what a problem does not have is left out. A step is unit/k for an integer k; `between` is as exact as a step.
+ * The matrix is applied by a loop, by code for its size, by code that has its entries as constants, by a library, and in
+ * float.
  */
 #include <dlfcn.h>
 #include <math.h>
@@ -774,7 +775,8 @@ static struct run *with_literals(struct run *run)
 	struct propagator *r = (struct propagator *)run;
 	if (!run)
 		return NULL;
-	const struct literals l = { .own = r->own, .size = r->size, .steps = r->steps, .single = r->single != NULL, .Phi = r->Phi };
+	const struct literals l = { .own = r->own, .size = r->size, .steps = r->steps, .single = r->single != NULL,
+	                            .Phi = r->Phi };
 	r->code = literals_load(&l);
 	void *advance = r->code ? dlsym(r->code, "advance") : NULL;
 	if (!advance) {
@@ -850,7 +852,7 @@ static struct run *modal_open(const struct method *method, const struct problem 
 
 #define EXPONENTIAL "e^{Ah} once by gsl_linalg_exponential_ss, GSL_PREC_DOUBLE, loads as states; "
 #define ROUNDED "e^{Ah} once in long double, each entry then rounded to double"
-#define AS_CODE "compiled as plgen's code is"
+#define AS_CODE "printed as C whose entries are constants, zeros left out; compiled as plgen's code is"
 #define PROPAGATOR_METHOD(NAME, SETTINGS, OPEN) \
 	{.name = NAME, .family = PROPAGATOR, .linear_only = true, .settings = SETTINGS, .open = OPEN}
 
@@ -860,9 +862,9 @@ static const struct method rounded =
 static const struct method fixed_size =
 	PROPAGATOR_METHOD("exp(A h), fixed size", EXPONENTIAL "applied by a double loop, unrolled, size 4 known at compile time", fixed_size_open);
 static const struct method literals =
-	PROPAGATOR_METHOD("exp(A h), literals", EXPONENTIAL "printed as C whose entries are constants, zeros left out; " AS_CODE, literals_open);
+	PROPAGATOR_METHOD("exp(A h), literals", EXPONENTIAL AS_CODE, literals_open);
 static const struct method rounded_literals =
-	PROPAGATOR_METHOD("exp(A h) rounded, literals", ROUNDED "; printed as C whose entries are constants, zeros left out; " AS_CODE, rounded_literals_open);
+	PROPAGATOR_METHOD("exp(A h) rounded, literals", ROUNDED "; " AS_CODE, rounded_literals_open);
 static const struct method dgemv =
 	PROPAGATOR_METHOD("exp(A h), CBLAS", EXPONENTIAL "applied by cblas_dgemv of gslcblas, the CBLAS that comes with GSL", dgemv_open);
 static const struct method modal =
@@ -870,10 +872,11 @@ static const struct method modal =
 	                  modal_open);
 
 static const struct method loop_float =
-	PROPAGATOR_METHOD("exp(A h), loop, float", EXPONENTIAL "each entry rounded to float; applied by a double loop in float, size known at run time", loop_float_open);
+	PROPAGATOR_METHOD("exp(A h), loop, float",
+	                  EXPONENTIAL "each entry rounded to float; applied by a double loop in float, size known at run time",
+	                  loop_float_open);
 static const struct method literals_float =
-	PROPAGATOR_METHOD("exp(A h) rounded, literals, float", "e^{Ah} once in long double, each entry rounded to double and then to float; printed as C whose entries are constants, zeros left out; " AS_CODE,
-	                  literals_float_open);
+	PROPAGATOR_METHOD("exp(A h) rounded, literals, float", ROUNDED " and to float; " AS_CODE, literals_float_open);
 
 const struct method *const propagator_methods[] = {
 	&loop, &rounded, &fixed_size, &literals, &rounded_literals, &dgemv, &modal, &loop_float, &literals_float, NULL,

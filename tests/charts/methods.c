@@ -83,7 +83,8 @@ static void check_exact(struct problem *p, const char *folder, const char *name)
 
 /* ---- what is timed ---- */
 
-/* A run that does nothing but keep where it is. Its first units take no time, its last ones do: those are what a sample must not miss. */
+/* A run that does nothing but keep where it is. Its first units take no time, its last ones do: those are what a sample
+ * must not miss. */
 struct walk {
 	struct run run;
 	int now;                    /* units since the start */
@@ -119,13 +120,13 @@ static void check_walk(int units)
 	struct samples samples;
 	sample_runs(1, &run, 0, &samples);
 	walk_restart(run);
-	ok(w.passes > 3 && close_to(w.whole, w.passes - 1, 0, "%d units: passes to the end of the history, of those begun", units),
+	ok(w.passes > 3 && close_to(w.whole, w.passes - 1, 0, "%d units: passes to the end, of those begun", units),
 	   "samples go through all of %d units", units);
 	ok(samples.count >= 3, "%d samples of %d units, at least 3", samples.count, units);
 }
 
-/* Right-hand sides of the last sample, from its start on, against those of a pass a unit at a time: a history whose jumps cost most of it.
- * Of its first tenth for comparison */
+/* Right-hand sides of the last sample, from its start on, against those of a pass a unit at a time: a history whose jumps
+ * cost most of it. Of its first tenth for comparison */
 static void check_evaluations(const struct problem *p, const char *name)
 {
 	const struct method *m = method_find(name);

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* scales: the scales that the tolerances of adaptive integrators stand on are those of the motion. Standard input has a line for each
- * problem, from `precision --scales` and `hard --scales`: name, shared object, unit [s], units, largest |coordinate|, largest |velocity|.
- * The other road: CVODE's BDF on NAME_rhs, whose largest values over its own steps must be within a factor of 2. Its tolerances know
- * nothing of the motion: 1e-6 relative, 1e-9 absolute. */
+/* scales: the scales that the tolerances of adaptive integrators stand on are those of the motion. Standard input has a
+ * line for each problem, from `precision --scales` and `hard --scales`: name, shared object, unit [s], units, largest
+ * |coordinate|, largest |velocity|. The other road: CVODE's BDF on NAME_rhs, whose largest values over its own steps must
+ * be within a factor of 2. Its tolerances know nothing of the motion: 1e-6 relative, 1e-9 absolute. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -43,8 +43,9 @@ static bool follow(struct problem *p, double largest[2])
 	double t = 0;
 	memcpy(NV_DATA_S(y), p->start, 2 * (size_t)p->n * sizeof(double));
 	keep_largest(p, p->start, largest);
-	bool good = CVodeInit(memory, slope, 0, y) == 0 && CVodeSStolerances(memory, 1e-6, 1e-9) == 0 && CVodeSetUserData(memory, p) == 0 &&
-	            CVodeSetLinearSolver(memory, dense, jacobian) == 0 && CVodeSetStopTime(memory, end) == 0;
+	bool good = CVodeInit(memory, slope, 0, y) == 0 && CVodeSStolerances(memory, 1e-6, 1e-9) == 0 &&
+	            CVodeSetUserData(memory, p) == 0 && CVodeSetLinearSolver(memory, dense, jacobian) == 0 &&
+	            CVodeSetStopTime(memory, end) == 0;
 	while (good && t < end) {
 		good = CVode(memory, end, y, &t, CV_ONE_STEP) >= 0;
 		keep_largest(p, NV_DATA_S(y), largest);
@@ -60,8 +61,8 @@ static bool follow(struct problem *p, double largest[2])
 static void compare(const char *name, const char *of, double scale, double largest)
 {
 	const double share = largest / scale;
-	ok(close_to(share >= 1 ? share : 1 / share, 1, factor - 1, "%s: scale of %s %.6g, CVODE's largest %.6g: ratio", name, of, scale, largest),
-	   "%s: scale of %s", name, of);
+	ok(close_to(share >= 1 ? share : 1 / share, 1, factor - 1, "%s: scale of %s %.6g, CVODE's largest %.6g: ratio", name,
+	            of, scale, largest), "%s: scale of %s", name, of);
 }
 
 int main(void)
