@@ -2,9 +2,9 @@
  *
  * Integrators that choose their steps, each configured as its manual advises: the Dormand-Prince pair written plainly here, GSL's
  * odeiv2, SUNDIALS' CVODE and ARKODE. The setting is the relative tolerance e. The absolute tolerance of every coordinate is
- * e times the largest coordinate of the history, of every velocity e times the largest velocity: what a user who knows the
- * problem would give, and here found by a pilot solution when the run is opened. So the weight of an error is between e and 2 e of
- * the scale for everyone, and no work is lost where something passes through zero.
+ * e times the largest coordinate of the history, of every velocity e times the largest velocity: what a user who knows
+ * the problem would give, and here taken from what is true (truth_of; hard.c: its closed forms). So the weight of an
+ * error is between e and 2 e of the scale for everyone, and no work is lost where something passes through zero.
  *
  * Where an integrator has an interpolant it walks as it likes and output is read from it; one that has none (GSL), or whose own is
  * too coarse for its order, is stopped at each output time. The first kind looks ahead for `between`; for the
@@ -259,44 +259,20 @@ static const struct solver dormand_solver = {
 	.discard = dormand_discard,
 };
 
-/* ---- the pilot: what the scales are ---- */
+/* ---- the scales: what is true says them ---- */
 
-static double largest(double so_far, int n, const double *x)
-{
-	for (int i = 0; i < n; i++)
-		if (isfinite(x[i]))
-			so_far = fmax(so_far, fabs(x[i]));
-	return so_far;
-}
-
-static void set_scales(struct adaptive *a, double scale_q, double scale_v)
-{
-	for (int i = 0; i < a->n; i++) {
-		a->scale[i] = scale_q;
-		a->scale[a->n + i] = scale_v;
-	}
-}
-
-/* Dormand-Prince at 1e-3 of what was largest so far; a long or hard history is not gone to its end */
-static bool find_scales(struct adaptive *a)
+/* A coordinate that never moves has no scale of its own: 1 */
+static void set_scales(struct adaptive *a)
 {
 	const struct problem *p = a->run.problem;
-	struct dormand d = {.adaptive = *a};
-	int tries = 20000;
-	double scale_q = largest(1e-12, a->n, p->start), scale_v = largest(1e-12, a->n, p->start + a->n);
-	d.adaptive.run.setting = 1e-3;
-	if (!dormand_make(&d.adaptive))
-		return false;
-	set_scales(&d.adaptive, scale_q, scale_v);  /* a->scale is the pilot's too */
-	bool good = dormand_begin(&d.adaptive, 0.0, p->start);
-	while (good && d.t < p->units * p->unit && (good = dormand_step(&d, &tries))) {
-		scale_q = largest(scale_q, a->n, d.y);
-		scale_v = largest(scale_v, a->n, d.y + a->n);
-		set_scales(&d.adaptive, scale_q, scale_v);
+	if (!isfinite(p->scale_q + p->scale_v) || !(p->scale_q + p->scale_v > 0.0)) {
+		fprintf(stderr, "%s: %s before its scales are known\n", p->name, a->run.method->name);
+		exit(1);
 	}
-	set_scales(a, scale_q > 1e-12 ? scale_q : 1.0, scale_v > 1e-12 ? scale_v : 1.0);
-	dormand_discard(&d.adaptive);
-	return true;
+	for (int i = 0; i < a->n; i++) {
+		a->scale[i] = p->scale_q > 0.0 ? p->scale_q : 1.0;
+		a->scale[a->n + i] = p->scale_v > 0.0 ? p->scale_v : 1.0;
+	}
 }
 
 /* ---- GSL odeiv2 ---- */
@@ -632,8 +608,12 @@ static struct adaptive *adaptive_new(const struct method *method, const struct p
 	a->size = 2 * problem->n;
 	a->scale = calloc((size_t)a->size, sizeof *a->scale);
 	a->now = calloc((size_t)a->size, sizeof *a->now);
-	if (a->scale && a->now && (!method->tolerance || find_scales(a)) && kind->solver->make(a))
-		return a;
+	if (a->scale && a->now) {
+		if (method->tolerance)
+			set_scales(a);
+		if (kind->solver->make(a))
+			return a;
+	}
 	adaptive_close(&a->run);
 	return NULL;
 }
@@ -696,3 +676,13 @@ const struct method *const adaptive_methods[] = {
 	&dormand_prince.method, &gsl_rk8pd.method, &gsl_msadams.method, &gsl_rk8pd_fixed.method, &cvode_adams.method, &cvode_bdf.method,
 	&arkode.method, NULL,
 };
+
+void adaptive_scales(const struct problem *problem, double *scale_q, double *scale_v)
+{
+	struct adaptive *a = adaptive_new(&dormand_prince.method, problem, 1e-3);
+	if (!a)
+		exit(1);
+	*scale_q = a->scale[0];
+	*scale_v = a->scale[a->n];
+	adaptive_close(&a->run);
+}

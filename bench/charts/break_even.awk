@@ -4,6 +4,7 @@
 function offer(key) {
 	if (!(key in cheapest) || ns < cheapest[key]) { cheapest[key] = ns; setting[key] = row[column["setting"]]; error_at[key] = error; method_at[key] = method }
 }
+BEGIN { target["double"] = "1e-6"; target["float"] = "1e-3" }
 FNR == 1 { file++ }
 FNR == 1 { split("", column); read_head($0, column); next }
 file == 1 {
@@ -15,27 +16,35 @@ file == 1 {
 	split("", row)
 	split_row($0, row)
 	model = row[column["model"]]; method = row[column["method"]]; family = row[column["family"]]
+	real = method ~ /float/ ? "float" : "double"
 	error = row[column["largest"]]; unit[model] = row[column["unit_s"]]; ns = row[column["ns_median"]] + 0
 	if (!(model in known)) { known[model] = 1; models[++model_count] = model }
-	if (family != "ours" && !((model, method) in rival_seen)) { rival_seen[model, method] = 1; rivals[model, ++rival_count[model]] = method }
-	if (!is_number(error) || error + 0 > 1e-6 || ns <= 0) next
-	offer(family == "ours" ? model SUBSEP "ours" : model SUBSEP "rival" SUBSEP method)
+	if (family != "ours" && !((model, method) in rival_seen)) {
+		rival_seen[model, method] = 1
+		rivals[model, ++rival_count[model]] = method
+		real_of[method] = real
+	}
+	if (!is_number(error) || error + 0 > target[real] + 0 || ns <= 0) next
+	offer(family == "ours" ? model SUBSEP "ours" SUBSEP real : model SUBSEP "rival" SUBSEP method)
 }
 END {
-	print "model,rival,rival_setting,rival_error,rival_ns_per_unit,ours,our_step_s,our_error,our_ns_per_unit,generate_and_compile_ms,break_even_units,break_even_steps,word"
+	print "model,real,target,rival,rival_setting,rival_error,rival_ns_per_unit,ours,our_step_s,our_error," \
+		"our_ns_per_unit,generate_and_compile_ms,break_even_units,break_even_steps,word"
 	for (m = 1; m <= model_count; m++) {
-		model = models[m]; ours = model SUBSEP "ours"
+		model = models[m]
 		for (r = 1; r <= rival_count[model]; r++) {
-			rival = model SUBSEP "rival" SUBSEP rivals[model, r]
-			printf "%s,\"%s\",", model, rivals[model, r]
+			method = rivals[model, r]; real = real_of[method]
+			rival = model SUBSEP "rival" SUBSEP method; ours = model SUBSEP "ours" SUBSEP real
+			printf "%s,%s,%s,\"%s\",", model, real, target[real], method
 			if (rival in cheapest) printf "%s,%s,%.6g,", setting[rival], error_at[rival], cheapest[rival]
 			else printf "failed,failed,failed,"
 			if (ours in cheapest) printf "\"%s\",%s,%s,%.6g,", method_at[ours], setting[ours], error_at[ours], cheapest[ours]
 			else printf "none,failed,failed,failed,"
 			printf "%.6g,", once[model]
-			if (!(rival in cheapest)) print "failed,failed,not reached"
-			else if (!(ours in cheapest)) print "failed,failed,ours not reached"
-			else if (cheapest[rival] <= cheapest[ours]) print "failed,failed,never"
+			if (!(rival in cheapest)) print "none,none,not reached"
+			else if (!(ours in cheapest)) print "never,never,ours not reached"
+			else if (cheapest[rival] < cheapest[ours] / 1.1) print "never,never,rival is faster"
+			else if (cheapest[rival] <= cheapest[ours] * 1.1) print "never,never,as fast"
 			else {
 				units = 1e6 * once[model] / (cheapest[rival] - cheapest[ours])
 				printf "%.6g,%.6g,\n", units, units * unit[model] / setting[ours]

@@ -34,6 +34,7 @@ struct problem {
 	double *A;                  /* 2n x 2n, row-major: found by asking rhs, so rounded as its doubles are */
 	double *b0, *b1, *b2;       /* 2n each */
 	double w;                   /* rad/s; 0: no oscillating load */
+	double scale_q, scale_v;    /* largest |coordinate|, |velocity| of the history (truth_of); 0: not known yet */
 	const pl_model *model;      /* generated code, or NULL */
 	void *handle;               /* of dlopen */
 };
@@ -73,8 +74,19 @@ struct run {
 };
 extern const struct method *const fixed_methods[];      /* classic.c; NULL at the end */
 extern const struct method *const adaptive_methods[];   /* adaptive.c */
+/* What the absolute tolerances of a run stand on: one that an adaptive method opens on this problem */
+void adaptive_scales(const struct problem *problem, double *scale_q, double *scale_v);
 extern const struct method *const propagator_methods[]; /* propagator.c: linear problems */
 const struct method *method_find(const char *name);     /* among these three */
+/* literals.c: a matrix as constants in code. The object's `void advance(real *z, long units, real *rows)` takes `steps`
+ * steps z <- Phi z a unit and keeps `own` entries of z in a row. NULL: an entry is not finite, or it does not compile. */
+struct literals {
+	int own, size;              /* entries of a row, and of z; those after `own` do not feel those before */
+	int steps;
+	bool single;                /* real is float, else double */
+	const double *Phi;          /* size x size, row-major */
+};
+void *literals_load(const struct literals *literals);
 /* Our own: generated.c. `file` is a shared object of that variant (scheme, form, type, step), made by variant.sh, which keeps
  * in it the options it was made with: by these generated_open knows a float, and the leftover evaluations of a scheme.
  * Setting: its step, which must divide the unit; NULL where it does not, or where there is no such file. */
@@ -95,7 +107,7 @@ struct truth {                      /* at each end of a unit and at TRUTH_BETWEE
 	const char *roads;          /* closed form in quadruple precision + CVODE; ... */
 };
 #define TRUTH_BETWEEN 0.375
-struct truth *truth_of(const struct problem *problem);
+struct truth *truth_of(struct problem *problem);                    /* and gives the problem its scales */
 void truth_free(struct truth *truth);
 struct error { double q_end, q_between, v_end, v_between, largest; bool failed; }; /* relative to the scales; failed: not finite or it gave up */
 struct error error_of(struct run *run, const struct truth *truth);   /* restarts the run and goes through the whole history */
@@ -103,11 +115,12 @@ struct error error_of(struct run *run, const struct truth *truth);   /* restarts
 /* ---- samples.c: time ---- */
 
 struct samples { double min, median, max; int count; };            /* nanoseconds per unit */
-/* Interleaved: sample k of every run is taken before sample k+1 of any; each is `units` of its run after a restart, repeated where that
- * is too short to time; `seconds` is the budget for all. The time is the process's own (CPU). */
-void sample_runs(int runs, struct run *const *run, int units, double seconds, struct samples *result);
-/* The same, each run with its own number of units. */
-void sample_runs_of(int runs, struct run *const *run, const int *units, double seconds, struct samples *result);
+/* A sample is a pass of the run from its start through the whole history, the start included, repeated where that is
+ * too short to time: what costs more in one part of a history than in another is weighed as it comes. Interleaved:
+ * sample k of every run is taken before sample k+1 of any, three of each and more of what is cheap; `seconds` is the
+ * budget for all. The time is the process's own (CPU). */
+void sample_runs(int runs, struct run *const *run, double seconds, struct samples *result);
+double sample_pass(struct run *run);        /* ns per unit of one such pass by itself: what samples are held against */
 struct samples sample_summary(int count, double *ns);               /* sorts */
 double now_ns(void);
 void say_progress(const char *format, ...) __attribute__((format(printf, 1, 2))); /* standard error, one line */

@@ -9,7 +9,6 @@
  * VARIANTS/energy.list has a line for each piece of generated code: `case TAB method TAB real TAB h TAB file`; file is a shared object of variant.sh, or what it
  * was refused with is in FILE.refused.  The method `problem` gives the equations (and is ours no further): the peers are measured on
  * each of them that is `double`, a matrix exponential rounded to float on each that is `float`. */
-#include <gsl/gsl_linalg.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -51,71 +50,6 @@ static double change_since(const char *test, const double *start, const double *
 		return (double)((energy_of_chain(y) - energy_of_chain(start)) / energy_of_chain(start));
 	return (double)((momentum_of_pair(y) - momentum_of_pair(start)) / (fabsl(start[2]) + 2 * fabsl(start[3])));
 }
-
-/* ---- a matrix exponential of GSL, each entry rounded to float, applied by a plain loop in float ---- */
-
-struct float_loop {
-	struct run run;
-	float Phi[STATES][STATES], y[STATES];
-};
-
-static void loop_restart(struct run *run)
-{
-	struct float_loop *l = (struct float_loop *)run;
-	for (int i = 0; i < STATES; i++)
-		l->y[i] = (float)run->problem->start[i];
-}
-
-static bool loop_advance(struct run *run, int units, double *rows)
-{
-	struct float_loop *l = (struct float_loop *)run;
-	float next[STATES];
-	(void)rows;
-	for (int k = 0; k < units; k++) {
-		for (int i = 0; i < STATES; i++) {
-			next[i] = 0;
-			for (int j = 0; j < STATES; j++)
-				next[i] += l->Phi[i][j] * l->y[j];
-		}
-		memcpy(l->y, next, sizeof next);
-	}
-	return true;
-}
-
-static void loop_get(const struct run *run, double *y)
-{
-	const struct float_loop *l = (const struct float_loop *)run;
-	for (int i = 0; i < STATES; i++)
-		y[i] = l->y[i];
-}
-
-static void loop_close(struct run *run)
-{
-	free(run);
-}
-
-static struct run *loop_open(const struct method *method, const struct problem *p, double h)
-{
-	struct float_loop *l = calloc(1, sizeof *l);
-	gsl_matrix *A = gsl_matrix_alloc(STATES, STATES), *Phi = gsl_matrix_alloc(STATES, STATES);
-	if (!l || !A || !Phi)
-		return NULL;
-	for (size_t i = 0; i < STATES; i++)
-		for (size_t j = 0; j < STATES; j++)
-			gsl_matrix_set(A, i, j, h * p->A[i * STATES + j]);
-	gsl_linalg_exponential_ss(A, Phi, GSL_PREC_DOUBLE);
-	for (size_t i = 0; i < STATES; i++)
-		for (size_t j = 0; j < STATES; j++)
-			l->Phi[i][j] = (float)gsl_matrix_get(Phi, i, j);
-	gsl_matrix_free(A);
-	gsl_matrix_free(Phi);
-	l->run = (struct run){ .method = method, .problem = p, .setting = h, .restart = loop_restart, .advance = loop_advance,
-	                       .get = loop_get, .close = loop_close };
-	return &l->run;
-}
-
-static const struct method float_loop = { "exp(A h), loop, float", PROPAGATOR, false, true, 0,
-	"gsl_linalg_exponential_ss once, entries rounded to float", loop_open };
 
 /* ---- the list ---- */
 
@@ -238,18 +172,16 @@ static void measure(struct run *run, const struct code *v, double steps, FILE *c
 
 static void measure_peers(const struct problem *p, const struct code *v, double steps, FILE *changes, FILE *decays)
 {
-	static const char *const peers[] = { "RK4", "Newmark", "central difference", "exp(A h), loop" };
-	if (strcmp(v->real, "float") == 0)
-		measure(loop_open(&float_loop, p, v->h), v, steps, changes, decays);
-	else
-		for (size_t k = 0; k < sizeof peers / sizeof *peers; k++) {
-			const struct method *m = method_find(peers[k]);
-			if (!m) {
-				fprintf(stderr, "energy: no method is called %s\n", peers[k]);
-				exit(1);
-			}
-			measure(m->open(m, p, v->h), v, steps, changes, decays);
+	static const char *const peers[] = { "RK4", "Newmark", "central difference", "exp(A h), loop", NULL };
+	static const char *const float_peers[] = { "exp(A h), loop, float", NULL };
+	for (const char *const *name = strcmp(v->real, "float") == 0 ? float_peers : peers; *name; name++) {
+		const struct method *m = method_find(*name);
+		if (!m) {
+			fprintf(stderr, "energy: no method is called %s\n", *name);
+			exit(1);
 		}
+		measure(m->open(m, p, v->h), v, steps, changes, decays);
+	}
 }
 
 static void measure_ours(const struct problem *p, const struct code *v, double steps, FILE *changes, FILE *decays)

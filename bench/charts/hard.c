@@ -14,7 +14,9 @@
  * VARIANTS/hard.list has a line for each piece of generated code: `case TAB method TAB step TAB file`, file a shared object of
  * variant.sh, or `-` for what is as exact. The method `problem` comes first in each case and gives the equations.
  * Steps are powers of two except in van der Pol's case, so that a double holds them and time itself is no error.
- * What is true: closed forms in quadruple precision, below; for van der Pol truth_of. */
+ * What is true: closed forms in quadruple precision, below; for van der Pol truth_of.
+ *
+ * hard --scales [--quick] VARIANTS: the scales of each case, as precision --scales has them. */
 #include <gsl/gsl_errno.h>
 #include <math.h>
 #include <quadmath.h>
@@ -198,7 +200,8 @@ static void set_scales(struct history *h, const struct problem *p, double least_
 	}
 }
 
-static struct history history_of(const struct hard_case *c, const struct problem *p)
+/* And the problem's scales, which are the history's */
+static struct history history_of(const struct hard_case *c, struct problem *p)
 {
 	struct history h = { 2 * p->n, p->units, calloc((size_t)p->units * 2 * (size_t)p->n, sizeof(double)), { 0 } };
 	if (!h.y)
@@ -210,14 +213,16 @@ static struct history history_of(const struct hard_case *c, const struct problem
 			for (int i = 0; i < h.states; i++)
 				h.y[k * h.states + i] = (double)y[i];
 		}
+		set_scales(&h, p, c->least_v);
 	} else {
 		struct truth *truth = truth_of(p);
 		say_progress("hard: %s: two roads to what is true agree to %.2g", c->name, truth->agreement);
 		memcpy(h.y, truth->at_end, (size_t)(h.units * h.states) * sizeof *h.y);
 		memcpy(h.scale, (double[]){ truth->scale_q, fmax(truth->scale_v, c->least_v) }, sizeof h.scale);
-		return h;
+		truth_free(truth);
 	}
-	set_scales(&h, p, c->least_v);
+	p->scale_q = h.scale[0];
+	p->scale_v = h.scale[1];
 	return h;
 }
 
@@ -362,6 +367,13 @@ static struct problem *problem_of(const struct hard_case *c, const char *file, b
 	return problem_load(file, c->exact ? c->name : "vanderpol_stiff", c->unit, quick ? c->quick_units : c->units, c->linear, c->frequency);
 }
 
+static void say_scales(FILE *out, const struct problem *p, const char *name, const char *file)
+{
+	double scale_q, scale_v;
+	adaptive_scales(p, &scale_q, &scale_v);
+	fprintf(out, "%s\t%s\t%.17g\t%d\t%.10g\t%.10g\n", name, file, p->unit, p->units, scale_q, scale_v);
+}
+
 static FILE *open_in(const char *folder, const char *name, const char *mode)
 {
 	char path[4096];
@@ -376,16 +388,18 @@ static FILE *open_in(const char *folder, const char *name, const char *mode)
 
 int main(int argc, char **argv)
 {
-	const bool quick = argc > 1 && strcmp(argv[1], "--quick") == 0;
+	const bool scales = argc > 1 && strcmp(argv[1], "--scales") == 0;
+	const bool quick = argc > 1 + scales && strcmp(argv[1 + scales], "--quick") == 0;
 	char name[64], method[64], file[1024], line[2048];
 	double step;
 	if (argc - quick != 3) {
-		fputs("usage: hard [--quick] VARIANTS FOLDER\n", stderr);
+		fputs("usage: hard [--quick] VARIANTS FOLDER\n       hard --scales [--quick] VARIANTS\n", stderr);
 		return 2;
 	}
 	gsl_set_error_handler_off();            /* its statuses say it too */
-	FILE *list = open_in(argv[1 + quick], "hard.list", "r"), *out = open_in(argv[2 + quick], "hard.csv", "w");
-	fputs("case,method,family,setting_kind,setting,error,word,settings\n", out);
+	FILE *list = open_in(argv[1 + scales + quick], "hard.list", "r"), *out = scales ? stdout : open_in(argv[2 + quick], "hard.csv", "w");
+	if (!scales)
+		fputs("case,method,family,setting_kind,setting,error,word,settings\n", out);
 	struct problem *p = NULL;
 	struct history h = { 0 };
 	while (fgets(line, sizeof line, list)) {
@@ -397,8 +411,11 @@ int main(int argc, char **argv)
 		if (strcmp(method, "problem") == 0) {
 			p = problem_of(c, file, quick);
 			h = history_of(c, p);
-			try_peers(out, c, p, &h);
-		} else if (p) {
+			if (scales)
+				say_scales(out, p, name, file);
+			else
+				try_peers(out, c, p, &h);
+		} else if (p && !scales) {
 			try_ours(out, c, p, &h, method, step, file);
 		}
 	}

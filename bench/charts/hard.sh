@@ -1,9 +1,9 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# hard.sh PLGEN FOLDER: the generated code of the hard cases, FOLDER/hard_*.so, and its list FOLDER/hard.list (see hard.c). Run at the
-# top of the source tree.
+# hard.sh PLGEN FOLDER [problems]: the generated code of the hard cases, FOLDER/hard_*.so, and its list FOLDER/hard.list
+# (see hard.c). Run at the top of the source tree. problems: without the methods, the cases alone.
 set -e
-plgen=$1 folder=$2
+plgen=$1 folder=$2 only=$3
 charts=bench/charts
 specs=$charts/specs
 mkdir -p "$folder"
@@ -14,6 +14,7 @@ mkdir -p "$folder"
 variant() {
 	case=$1 method=$2 step=$3 spec=$4
 	shift 4
+	[ "$only" != problems ] || [ "$method" = problem ] || return 0
 	file=$folder/$(echo "hard $case $method $step" | sed 's/[^a-zA-Z0-9.-]\{1,\}/_/g').so
 	echo "$file $spec --step $step" "$@" >>"$folder/hard.jobs" # without a blank at its end: xargs would go on with the next line
 	printf '%s\t%s\t%s\t%s\n' "$case" "$method" "$(awk "BEGIN { printf \"%.17g\", $step }")" "$file" >>"$folder/hard.list"

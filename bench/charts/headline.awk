@@ -6,7 +6,7 @@ NR == 1 { read_head($0, column); next }
 	split_row($0, f)
 	name = f[column["method"]]
 	if (!(name in place)) { place[name] = ++rows; tics = tics (rows > 1 ? ", " : "") "'" name "' " rows }
-	family = f[column["family"]] == "ours" ? "ours" : "peer"
+	family = f[column["family"]] == "ours" ? "ours" : f[column["family"]] == "propagator" ? "matrix" : "peer"
 	which = (f[column["target"]] + 0 < 1e-10 ? "fine" : "coarse")
 	y = place[name] + (which == "fine" ? 0.17 : -0.17)
 	if (f[column["reached"]] == "reached")
@@ -18,12 +18,16 @@ NR == 1 { read_head($0, column); next }
 	}
 }
 END {
-	split("coarse_ours fine_ours coarse_peer fine_peer", name_of, " ")
+	split("coarse_ours fine_ours coarse_matrix fine_matrix coarse_peer fine_peer", name_of, " ")
 	title["coarse_ours"] = "plgen, error 10^{-9}"; title["fine_ours"] = "plgen, error 10^{-12}"
-	title["coarse_peer"] = "peer, error 10^{-9}"; title["fine_peer"] = "peer, error 10^{-12}"
+	title["coarse_matrix"] = "matrix of a step, error 10^{-9}"
+	title["fine_matrix"] = "matrix of a step, error 10^{-12}"
+	title["coarse_peer"] = "integrator, error 10^{-9}"; title["fine_peer"] = "integrator, error 10^{-12}"
 	look["coarse_ours"] = "pt 9 ps 1.3 lw 1.4 lc rgb '#d00000'"; look["fine_ours"] = "pt 7 ps 1.3 lw 1.4 lc rgb '#a00000'"
+	look["coarse_matrix"] = "pt 8 ps 1.2 lw 1.4 lc rgb '#007040'"
+	look["fine_matrix"] = "pt 6 ps 1.2 lw 1.4 lc rgb '#00402a'"
 	look["coarse_peer"] = "pt 8 ps 1.2 lw 1.4 lc rgb '#0050c0'"; look["fine_peer"] = "pt 6 ps 1.2 lw 1.4 lc rgb '#303030'"
-	for (i = 1; i <= 4; i++) {
+	for (i = 1; i <= 6; i++) {
 		b = name_of[i]
 		if (block[b] == "") continue
 		printf "$%s << EOD\n%sEOD\n", b, block[b]

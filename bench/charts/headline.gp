@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # gnuplot -c headline.gp TABLES OUTDIR: the pictures of headline_integrators.csv, headline_equal_step.csv, headline_confluence.csv.
 here = system("dirname '".ARG0."'"); folder = ARG1; out = ARG2
-size = '900,800'
+size = '900,940'
 load here.'/style.gp'
 small(n, y, text) = sprintf("set label %d \"%s\" at screen 0.01,%g left font ',8' textcolor rgb '#505050'", n, text, y)
-flags = "gcc -O2 for all, no -march=native, no -ffast-math. Medians of short samples taken in turns."
+flags = "gcc -O2 for all, no -march=native, no -ffast-math. Medians of whole histories taken in turns."
 chosen = "Layout deduced, parameters chosen: the source's did not survive."
 
 # ---- each integrator at the setting that reaches an error ----
@@ -27,7 +27,7 @@ eval "plot ".clauses
 eval write
 unset label
 set key default
-size = '900,600'
+size = '1000,600'
 load here.'/style.gp'
 unset lmargin
 set xrange [*:*]
@@ -40,7 +40,7 @@ csv = folder.'/headline_equal_step.csv'
 set title "scs at equal step, 0.01 s: time and drift of the energy"
 set xlabel 'CPU time per step with its output [ns], median'
 set ylabel 'relative change of the energy after '.system("awk -F, '$1 == \"\\\"exact\\\"\" { print $7 }' '".csv."'").' steps'
-set xrange [0.1:100]
+set xrange [1:100]
 set yrange [1e-16:1]
 eval small(1, 0.012, chosen." ".flags)
 eval small(2, 0.05, "Filled: plgen's. Open: a precomputed matrix exponential, and modal superposition.")

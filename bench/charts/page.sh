@@ -90,7 +90,7 @@ machine() {
 	cat <<'EOT'
 <p>plgen's own code has filled marks and thick lines; peers have open marks and thin lines, dashed with a fixed step, dotted where they
 adapt it, dash-dotted for matrices of a step. Errors are relative to the largest value of the history; they are the same to the last digit
-in every run. Times are medians of short samples taken in turns; the tables have minimum, median and maximum. A failure stands as a
+in every run. Times are medians of samples taken in turns, each of them a whole history; the tables have minimum, median and maximum. A failure stands as a
 <span class="bad">word</span>, in no place as a gap.</p>
 <p>Parameters of the models from the four papers are chosen, since those of the sources did not survive; what is deduced and what is chosen
 is said in each model's file.</p>
@@ -136,6 +136,9 @@ precision() {
 		picture "evaluations_$model"
 		table precision.csv "model=$model"
 	done
+	echo '<h3>How times agree</h3>'
+	caption precision_check
+	table precision_check.csv
 }
 
 generation() {

@@ -197,7 +197,7 @@ static void time_schemes(const struct papers *papers, const struct reference *b)
 	for (int i = 0; i < 3; i++)
 		run[i] = papers_run(papers, schemes[i], p, text("beam15_A15_%s_100", schemes[i]->name));
 	say_progress("papers: 004, times");
-	sample_runs(3, run, 1000, papers->quick ? 0.3 : 1.5, ns);
+	sample_runs(3, run, papers->quick ? 0.3 : 1.5, ns);
 	for (int i = 0; i < 3; i++) {
 		timing_row(papers, &(struct timing){ source, b->model, schemes[i]->name, "time of a step over etd1's", reported[i], text("%.3g", ns[i].median / ns[0].median),
 			"one operator A(15), h = 0.01 s, loads exact; compiled C, -O2", ns[i] });

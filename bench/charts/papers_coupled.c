@@ -241,7 +241,7 @@ static void time_histories(const struct papers *papers, const struct system *sys
 		papers_run(papers, &exact, p, text("%s_exact_%d", system->name, rate)) };
 	struct samples ns[3];
 	say_progress("papers: 000, times of %s, h = %g s", system->name, p->unit);
-	sample_runs(3, run, p->units, papers->quick ? 0.15 : 0.8, ns);
+	sample_runs(3, run, papers->quick ? 0.15 : 0.8, ns);
 	for (int i = 0; i < 3; i++) {
 		timing_row(papers, &(struct timing){ source, system->name, run[i]->method->name, text("time of a step over RK4's, 30 s at h = %g s", p->unit),
 			i == 1 ? system->time_ratio[fine] : NULL, text("%.3g", ns[i].median / ns[0].median),

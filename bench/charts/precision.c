@@ -4,6 +4,8 @@
  *
  *     precision --list [--quick] [MODEL...]              the variants wanted: one line each, FILE SPEC and plgen's options
  *     precision [--quick] VARIANTS FILE.csv [MODEL...]   VARIANTS: the folder with those files
+ *     precision --scales [--quick] VARIANTS [MODEL...]   what tolerances stand on, a line for each model: name, shared
+ *                                                        object, unit [s], units, largest |coordinate|, |velocity|
  */
 #include "charts.h"
 
@@ -150,9 +152,8 @@ struct line {                       /* one row of the CSV */
 	char *refused;
 	struct error error;
 	double evaluations;             /* per unit; below 0: none */
-	double cost;                    /* ns per unit, as the pass over the errors took it: decides how much is sampled */
-	int sampled;                    /* units of a sample */
 	struct samples samples;
+	double pass;                    /* ns per unit of one more pass, by itself */
 };
 
 struct lines { struct line *line; int count; };
@@ -238,41 +239,29 @@ static const struct method *method_of(const struct line *line)
 
 static void find_error(struct line *line, const struct problem *p, const struct truth *t)
 {
-	double start = now_ns();
 	line->error = error_of(line->run, t);
-	line->cost = (now_ns() - start) / p->units;
 	long evaluations = line->run->evaluations(line->run);
 	line->evaluations = evaluations < 0 ? -1 : (double)evaluations / p->units;
 }
 
-/* A whole history, or of a long one as much as takes 20 ms: some of its first units */
-static int units_sampled(const struct line *line, const struct problem *p)
-{
-	double most = 20e6 / line->cost;
-	return most >= p->units ? p->units : most < 1 ? 1 : (int)most;
-}
-
-static void find_times(struct lines *lines, const struct problem *p, double seconds)
+static void find_times(struct lines *lines, double seconds)
 {
 	struct run **run = calloc((size_t)lines->count + 1, sizeof *run);
 	struct samples *samples = calloc((size_t)lines->count + 1, sizeof *samples);
-	int *units = calloc((size_t)lines->count + 1, sizeof *units), count = 0;
-	if (!run || !samples || !units)
+	int count = 0;
+	if (!run || !samples)
 		exit(1);
-	for (int i = 0; i < lines->count; i++) {
-		struct line *line = &lines->line[i];
-		if (!line->run || line->error.failed)
-			continue;
-		line->sampled = units[count] = units_sampled(line, p);
-		run[count++] = line->run;
-	}
-	sample_runs_of(count, run, units, seconds, samples);
-	for (int i = 0, k = 0; i < lines->count; i++)
+	for (int i = 0; i < lines->count; i++)
 		if (lines->line[i].run && !lines->line[i].error.failed)
+			run[count++] = lines->line[i].run;
+	sample_runs(count, run, seconds, samples);
+	for (int i = 0, k = 0; i < lines->count; i++)
+		if (lines->line[i].run && !lines->line[i].error.failed) {
+			lines->line[i].pass = sample_pass(run[k]);
 			lines->line[i].samples = samples[k++];
+		}
 	free(run);
 	free(samples);
-	free(units);
 }
 
 /* ---- the table ---- */
@@ -321,18 +310,35 @@ static void put_line(FILE *out, const struct line *line, const struct problem *p
 	else
 		fputs(",none", out);
 	if (line->samples.count > 0)
-		fprintf(out, ",%.5g,%.5g,%.5g,%d,%d,", line->samples.min, line->samples.median, line->samples.max, line->samples.count, line->sampled);
+		fprintf(out, ",%.5g,%.5g,%.5g,%d,%d,%.5g,", line->samples.min, line->samples.median, line->samples.max,
+		        line->samples.count, p->units, line->pass);
 	else
-		put_word(out, "none", 5), putc(',', out);
+		put_word(out, "none", 6), putc(',', out);
 	put_settings(out, line);
 	fprintf(out, ",%.2g,%g,%g\n", t->agreement, p->unit, p->unit * p->units);
+}
+
+static struct problem *load(const struct charted *m, const char *folder, bool quick, char path[4096])
+{
+	snprintf(path, 4096, "%s/%s.so", folder, m->name);
+	return problem_load(path, m->name, value_of(m->unit), quick ? m->quick_units : m->units, m->linear, m->w);
+}
+
+static void say_scales(FILE *out, const struct charted *m, const char *folder, bool quick)
+{
+	char path[4096];
+	struct problem *p = load(m, folder, quick, path);
+	double scale_q, scale_v;
+	truth_free(truth_of(p));
+	adaptive_scales(p, &scale_q, &scale_v);
+	fprintf(out, "%s\t%s\t%.17g\t%d\t%.10g\t%.10g\n", m->name, path, p->unit, p->units, scale_q, scale_v);
+	problem_free(p);
 }
 
 static void measure(FILE *out, const struct charted *m, const char *folder, bool quick, double seconds)
 {
 	char path[4096];
-	snprintf(path, sizeof path, "%s/%s.so", folder, m->name);
-	struct problem *p = problem_load(path, m->name, value_of(m->unit), quick ? m->quick_units : m->units, m->linear, m->w);
+	struct problem *p = load(m, folder, quick, path);
 	struct truth *t = truth_of(p);
 	struct lines lines = { NULL, 0 };
 	add_peers(&lines, m, p, fixed_methods, quick);
@@ -347,7 +353,7 @@ static void measure(FILE *out, const struct charted *m, const char *folder, bool
 			find_error(line, p, t);
 	}
 	say_progress("%s: time", m->name);
-	find_times(&lines, p, seconds);
+	find_times(&lines, seconds);
 	for (int i = 0; i < lines.count; i++) {
 		put_line(out, &lines.line[i], p, t);
 		if (lines.line[i].run)
@@ -363,31 +369,35 @@ static void measure(FILE *out, const struct charted *m, const char *folder, bool
 
 int main(int argc, char **argv)
 {
-	bool list = false, quick = false;
+	bool list = false, scales = false, quick = false;
 	int at = 1;
 	for (; at < argc && argv[at][0] == '-'; at++) {
 		list = list || strcmp(argv[at], "--list") == 0;
+		scales = scales || strcmp(argv[at], "--scales") == 0;
 		quick = quick || strcmp(argv[at], "--quick") == 0;
 	}
-	const int files = list ? 0 : 2;
+	const int files = list ? 0 : scales ? 1 : 2;
 	if (argc - at < files) {
-		fputs("usage: precision --list [--quick] [MODEL...]\n       precision [--quick] VARIANTS FILE.csv [MODEL...]\n", stderr);
+		fputs("usage: precision --list [--quick] [MODEL...]\n       precision [--quick] VARIANTS FILE.csv [MODEL...]\n"
+		      "       precision --scales [--quick] VARIANTS [MODEL...]\n", stderr);
 		return 2;
 	}
-	FILE *out = list ? stdout : fopen(argv[at + 1], "w");
+	FILE *out = list || scales ? stdout : fopen(argv[at + 1], "w");
 	if (!out) {
 		perror(argv[at + 1]);
 		return 1;
 	}
-	if (!list)
+	if (!list && !scales)
 		fputs("model,method,family,setting_kind,setting,q_end,q_between,v_end,v_between,largest,failed,evaluations_per_unit,"
-		      "ns_min,ns_median,ns_max,ns_samples,ns_units,settings,truth_agreement,unit_s,history_s\n", out);
+		      "ns_min,ns_median,ns_max,ns_samples,ns_units,ns_pass,settings,truth_agreement,unit_s,history_s\n", out);
 	for (int i = 0; i < (argc > at + files ? argc - at - files : MODELS); i++) {
 		const struct charted *m = argc > at + files ? model_named(argv[at + files + i]) : &models[i];
-		if (argc == at + files && quick && !m->quick)
+		if (argc == at + files && quick && !scales && !m->quick)
 			continue;
 		if (list)
 			list_model(m, quick);
+		else if (scales)
+			say_scales(out, m, argv[at], quick);
 		else
 			measure(out, m, argv[at], quick, quick ? 0.5 : 10);
 		fflush(out);

@@ -6,7 +6,10 @@
  *     z = y, 1, cos w t, sin w t        z' = [A b0 b1 b2; 0; 0 0 0 -w; 0 0 w 0] z
  *
  * of which what a problem does not have is left out. A step is unit/k for an integer k; `between` is as exact as a step.
+ * The matrix is applied by a loop, by code for its size, by code that has its entries as constants, by a library, and in
+ * float.
  */
+#include <dlfcn.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -35,6 +38,12 @@ struct propagator {
 	double *part, part_length;  /* `between`: the same for a part of a step */
 	struct modes *modes;        /* modal superposition, or NULL */
 	double *ahead;              /* `between`: z ahead of now */
+	void *code;                 /* literals: its object */
+	void (*literals)(double *z, long units, double *rows);
+	void (*literals_single)(float *z, long units, float *rows);
+	float *single;              /* in float, or NULL: Phi, then z, then room for the next z */
+	float *row;                 /* rows on their way to double */
+	int rows;                   /* room in row */
 };
 
 /* ---- the augmented system ---- */
@@ -554,7 +563,87 @@ static bool modal_advance(struct run *run, int units, double *rows)
 	return march(run, units, rows, modal_unit);
 }
 
-/* Whole steps, and the exponential of the rest; what it needs for that is its own, or spare */
+static bool literals_advance(struct run *run, int units, double *rows)
+{
+	struct propagator *r = (struct propagator *)run;
+	r->literals(r->z, units, rows);
+	r->units += units;
+	r->failed = r->failed || !all_finite(r->own, r->z);
+	return !r->failed;
+}
+
+/* ---- in float: the matrix, the state and the rows ---- */
+
+static float *single_state(const struct propagator *r)
+{
+	return r->single + r->size * r->size;
+}
+
+static void single_steps(struct propagator *r, int steps)
+{
+	const int own = r->own, size = r->size;
+	const float *restrict Phi = r->single;
+	float *restrict z = single_state(r), *restrict next = z + size;
+	for (int k = 0; k < steps; k++) {
+		for (int i = 0; i < size; i++) {
+			float sum = 0;
+			for (int j = i < own ? 0 : own; j < size; j++)
+				sum += Phi[i * size + j] * z[j];
+			next[i] = sum;
+		}
+		memcpy(z, next, (size_t)size * sizeof *z);
+	}
+}
+
+/* Rows stay as the user of a float has them; the state goes to z, where the rest of this file looks for it */
+static bool single_timed(struct run *run, int units)
+{
+	struct propagator *r = (struct propagator *)run;
+	float *z = single_state(r);
+	if (units > r->rows) {
+		free(r->row);
+		r->rows = units;
+		r->row = calloc((size_t)units * (size_t)r->own, sizeof *r->row);
+		if (!r->row)
+			exit(1);
+	}
+	if (r->literals_single)
+		r->literals_single(z, units, r->row);
+	else
+		for (int u = 0; u < units; u++) {
+			single_steps(r, r->steps);
+			memcpy(r->row + (ptrdiff_t)u * r->own, z, (size_t)r->own * sizeof *z);
+		}
+	for (int i = 0; i < r->size; i++)
+		r->z[i] = z[i];
+	r->units += units;
+	r->failed = r->failed || !all_finite(r->own, r->z);
+	return !r->failed;
+}
+
+static bool single_advance(struct run *run, int units, double *rows)
+{
+	enum { CHUNK = 1000 };
+	struct propagator *r = (struct propagator *)run;
+	for (int k = 0; k < units; k += CHUNK) {
+		const int some = units - k < CHUNK ? units - k : CHUNK;
+		single_timed(run, some);
+		for (int i = 0; rows && i < some * r->own; i++)
+			rows[k * r->own + i] = r->row[i];
+	}
+	return !r->failed;
+}
+
+static void single_restart(struct run *run)
+{
+	struct propagator *r = (struct propagator *)run;
+	float *z = single_state(r);
+	propagator_restart(run);
+	for (int i = 0; i < r->size; i++)
+		r->z[i] = z[i] = (float)r->start[i];
+}
+
+/* Whole steps, and the exponential of the rest (in double); what it needs for that is its own, or spare */
 static void propagator_between(struct run *run, double fraction, double *y)
 {
 	struct propagator *r = (struct propagator *)run;
@@ -607,6 +696,10 @@ static void propagator_close(struct run *run)
 	free(r->part);
 	free(r->ahead);
 	discard_modes(r->modes);
+	free(r->single);
+	free(r->row);
+	if (r->code)
+		dlclose(r->code);
 	free(r);
 }
 
@@ -676,6 +769,71 @@ static struct run *dgemv_open(const struct method *method, const struct problem 
 	return propagator_open(method, problem, setting, dgemv_advance);
 }
 
+/* Its matrix as it then is, as code; NULL, and closed, where that cannot be */
+static struct run *with_literals(struct run *run)
+{
+	struct propagator *r = (struct propagator *)run;
+	if (!run)
+		return NULL;
+	const struct literals l = { .own = r->own, .size = r->size, .steps = r->steps, .single = r->single != NULL,
+	                            .Phi = r->Phi };
+	r->code = literals_load(&l);
+	void *advance = r->code ? dlsym(r->code, "advance") : NULL;
+	if (!advance) {
+		propagator_close(run);
+		return NULL;
+	}
+	if (r->single)
+		memcpy(&r->literals_single, &advance, sizeof advance);
+	else
+		memcpy(&r->literals, &advance, sizeof advance);
+	return run;
+}
+
+static struct run *literals_open(const struct method *method, const struct problem *problem, double setting)
+{
+	return with_literals(propagator_open(method, problem, setting, literals_advance));
+}
+
+static struct run *rounded_literals_open(const struct method *method, const struct problem *problem, double setting)
+{
+	struct run *run = rounded_open(method, problem, setting);
+	if (run)
+		run->advance = literals_advance;
+	return with_literals(run);
+}
+
+/* The matrix as it then is, rounded to float, and a state in float */
+static struct run *in_float(struct run *run)
+{
+	struct propagator *r = (struct propagator *)run;
+	if (!run)
+		return NULL;
+	const size_t size = (size_t)r->size;
+	r->single = calloc(size * size + 2 * size, sizeof *r->single);
+	if (!r->single) {
+		propagator_close(run);
+		return NULL;
+	}
+	for (size_t i = 0; i < size * size; i++)
+		r->Phi[i] = r->single[i] = (float)r->Phi[i];
+	run->restart = single_restart;
+	run->advance = single_advance;
+	run->timed = single_timed;
+	single_restart(run);
+	return run;
+}
+
+static struct run *loop_float_open(const struct method *method, const struct problem *problem, double setting)
+{
+	return in_float(loop_open(method, problem, setting));
+}
+
+static struct run *literals_float_open(const struct method *method, const struct problem *problem, double setting)
+{
+	return with_literals(in_float(rounded_open(method, problem, setting)));
+}
+
 static struct run *modal_open(const struct method *method, const struct problem *problem, double setting)
 {
 	struct run *run = propagator_open(method, problem, setting, modal_advance);
@@ -693,18 +851,33 @@ static struct run *modal_open(const struct method *method, const struct problem 
 /* ---- the list ---- */
 
 #define EXPONENTIAL "e^{Ah} once by gsl_linalg_exponential_ss, GSL_PREC_DOUBLE, loads as states; "
+#define ROUNDED "e^{Ah} once in long double, each entry then rounded to double"
+#define AS_CODE "printed as C whose entries are constants, zeros left out; compiled as plgen's code is"
 #define PROPAGATOR_METHOD(NAME, SETTINGS, OPEN) \
 	{.name = NAME, .family = PROPAGATOR, .linear_only = true, .settings = SETTINGS, .open = OPEN}
 
 static const struct method loop = PROPAGATOR_METHOD("exp(A h), loop", EXPONENTIAL "applied by a double loop, size known at run time", loop_open);
 static const struct method rounded =
-	PROPAGATOR_METHOD("exp(A h) rounded, loop", "e^{Ah} once in long double, each entry then rounded to double; applied by a double loop, size known at run time", rounded_open);
+	PROPAGATOR_METHOD("exp(A h) rounded, loop", ROUNDED "; applied by a double loop, size known at run time", rounded_open);
 static const struct method fixed_size =
 	PROPAGATOR_METHOD("exp(A h), fixed size", EXPONENTIAL "applied by a double loop, unrolled, size 4 known at compile time", fixed_size_open);
+static const struct method literals =
+	PROPAGATOR_METHOD("exp(A h), literals", EXPONENTIAL AS_CODE, literals_open);
+static const struct method rounded_literals =
+	PROPAGATOR_METHOD("exp(A h) rounded, literals", ROUNDED "; " AS_CODE, rounded_literals_open);
 static const struct method dgemv =
 	PROPAGATOR_METHOD("exp(A h), CBLAS", EXPONENTIAL "applied by cblas_dgemv of gslcblas, the CBLAS that comes with GSL", dgemv_open);
 static const struct method modal =
 	PROPAGATOR_METHOD("modal superposition", "gsl_eigen_nonsymmv: real modes where damping is classical, else complex; each advanced by its own exponential in closed form, loads by gsl_linalg_exponential_ss of the mode with them; output by the matrix of shapes",
 	                  modal_open);
 
-const struct method *const propagator_methods[] = {&loop, &rounded, &fixed_size, &dgemv, &modal, NULL};
+static const struct method loop_float =
+	PROPAGATOR_METHOD("exp(A h), loop, float",
+	                  EXPONENTIAL "each entry rounded to float; applied by a double loop in float, size known at run time",
+	                  loop_float_open);
+static const struct method literals_float =
+	PROPAGATOR_METHOD("exp(A h) rounded, literals, float", ROUNDED " and to float; " AS_CODE, literals_float_open);
+
+const struct method *const propagator_methods[] = {
+	&loop, &rounded, &fixed_size, &literals, &rounded_literals, &dgemv, &modal, &loop_float, &literals_float, NULL,
+};

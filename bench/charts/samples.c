@@ -8,7 +8,7 @@
 #include <time.h>
 #include <unistd.h>
 
-enum { SAMPLES_LEAST = 3, SAMPLES_MOST = 201 };
+enum { SAMPLES_LEAST = 3, SAMPLES_MOST = 201, CHUNK = 1000 };
 
 double now_ns(void)
 {
@@ -52,43 +52,56 @@ struct samples sample_summary(int count, double *ns)
 }
 
 struct turn {                       /* of one run */
-	int repeats;                    /* of its units in a sample */
+	int repeats;                    /* of its history in a sample */
 	double ns[SAMPLES_MOST];        /* per unit */
 	double spent;                   /* ns */
 	int count;
 };
 
-static void go(struct run *run, int units, double *rows)
+/* Rows are written over one another, so that they stay in the cache as in a program that uses them up. */
+static void pass(struct run *run, double *rows)
 {
-	if (run->timed)
-		run->timed(run, units);
-	else
-		run->advance(run, units, rows);
+	run->restart(run);
+	for (int k = 0; k < run->problem->units; k += CHUNK) {
+		const int units = run->problem->units - k < CHUNK ? run->problem->units - k : CHUNK;
+		if (run->timed)
+			run->timed(run, units);
+		else
+			run->advance(run, units, rows);
+	}
 }
 
 /* Returns nanoseconds of all of it. */
-static double sample(struct turn *turn, struct run *run, int units, double *rows)
+static double passes(struct run *run, int repeats, double *rows)
 {
-	run->restart(run);
-	double start = own_ns();
-	go(run, units, rows);
-	for (int k = 1; k < turn->repeats; k++) {
-		run->restart(run);
-		go(run, units, rows);
-	}
-	double ns = own_ns() - start;
-	turn->spent += ns;
-	return ns;
+	const double start = own_ns();
+	for (int k = 0; k < repeats; k++)
+		pass(run, rows);
+	return own_ns() - start;
 }
 
-/* The first sample meets cold caches, and is not kept; the second says how many it takes to last long against the clock's own time. */
-static void prepare(struct turn *turn, struct run *run, int units, double *rows)
+/* How many it takes to last long against the clock's own time */
+static int repeats_for(double ns)
 {
 	const double long_enough = 100e3;
+	return ns >= long_enough ? 1 : (int)(long_enough / (ns > 100 ? ns : 100)) + 1;
+}
+
+static void keep(struct turn *turn, const struct run *run, double ns)
+{
+	turn->ns[turn->count++] = ns / turn->repeats / run->problem->units;
+	turn->spent += ns;
+}
+
+/* The first pass meets cold caches: it is kept only where it is so long that they do not count. */
+static void prepare(struct turn *turn, struct run *run, double *rows)
+{
 	turn->repeats = 1;
-	sample(turn, run, units, rows);
-	double ns = sample(turn, run, units, rows);
-	turn->repeats = ns >= long_enough ? 1 : (int)(long_enough / (ns > 100 ? ns : 100)) + 1;
+	double ns = passes(run, 1, rows);
+	if (ns >= 20e6)
+		keep(turn, run, ns);
+	else
+		turn->repeats = repeats_for(passes(run, 1, rows));
 }
 
 static bool wants_more(const struct turn *turn, double share)
@@ -96,30 +109,38 @@ static bool wants_more(const struct turn *turn, double share)
 	return turn->count < SAMPLES_LEAST || (turn->count < SAMPLES_MOST && turn->spent < share);
 }
 
-void sample_runs_of(int runs, struct run *const *run, const int *units, double seconds, struct samples *result)
+static double *rows_of(int runs, struct run *const *run)
 {
-	struct turn *turn = calloc((size_t)runs + 1, sizeof *turn);
 	size_t most = 0;
 	for (int i = 0; i < runs; i++) {
-		size_t room = 2 * (size_t)run[i]->problem->n * (size_t)units[i];
+		size_t room = 2 * (size_t)run[i]->problem->n * CHUNK;
 		most = most > room ? most : room;
 	}
-	double *rows = calloc(most + 1, sizeof *rows), share = 1e9 * seconds / (runs > 0 ? runs : 1);
-	if (!turn || !rows) {
+	double *rows = calloc(most + 1, sizeof *rows);
+	if (!rows) {
 		fputs("samples: out of memory\n", stderr);
 		exit(1);
 	}
+	return rows;
+}
+
+void sample_runs(int runs, struct run *const *run, double seconds, struct samples *result)
+{
+	struct turn *turn = calloc((size_t)runs + 1, sizeof *turn);
+	double *rows = rows_of(runs, run), share = 1e9 * seconds / (runs > 0 ? runs : 1);
+	if (!turn) {
+		fputs("samples: out of memory\n", stderr);
+		exit(1);
+	}
+	for (int i = 0; i < runs; i++)
+		prepare(&turn[i], run[i], rows);
 	for (bool any = true; any;) {
 		any = false;
-		for (int i = 0; i < runs; i++) {
-			if (!wants_more(&turn[i], share))
-				continue;
-			any = true;
-			if (turn[i].count == 0)
-				prepare(&turn[i], run[i], units[i], rows);
-			double ns = sample(&turn[i], run[i], units[i], rows);
-			turn[i].ns[turn[i].count++] = ns / units[i] / turn[i].repeats;
-		}
+		for (int i = 0; i < runs; i++)
+			if (wants_more(&turn[i], share)) {
+				any = true;
+				keep(&turn[i], run[i], passes(run[i], turn[i].repeats, rows));
+			}
 	}
 	for (int i = 0; i < runs; i++)
 		result[i] = sample_summary(turn[i].count, turn[i].ns);
@@ -127,13 +148,13 @@ void sample_runs_of(int runs, struct run *const *run, const int *units, double s
 	free(rows);
 }
 
-void sample_runs(int runs, struct run *const *run, int units, double seconds, struct samples *result)
+double sample_pass(struct run *run)
 {
-	int *same = calloc((size_t)runs + 1, sizeof *same);
-	if (!same)
-		exit(1);
-	for (int i = 0; i < runs; i++)
-		same[i] = units;
-	sample_runs_of(runs, run, same, seconds, result);
-	free(same);
+	double *rows = rows_of(1, &run);
+	double ns = passes(run, 1, rows);
+	const int repeats = repeats_for(ns);
+	if (repeats > 1)
+		ns = passes(run, repeats, rows) / repeats;
+	free(rows);
+	return ns / run->problem->units;
 }

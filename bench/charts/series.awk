@@ -69,6 +69,10 @@ BEGIN {
 	look("BDF",                             12, "#8000c0", "3")
 	look("ARKODE",                          14, "#0070a0", "3")
 	# propagators: dash and dot
+	look("^exp\\(.*literals, float",         2, "#a08040", "4")
+	look("^exp\\(.*float",                  3, "#c0a060", "4")
+	look("^exp\\(.*rounded, literals",      6, "#000000", "4")
+	look("^exp\\(.*literals",               4, "#505050", "4")
 	look("^exp\\(.*CBLAS",                   14, "#606060", "4")
 	look("^exp\\(.*rounded",                12, "#000000", "4")
 	look("^exp\\(.*fixed",                    8, "#906000", "4")

@@ -10,14 +10,14 @@
 #     eval write                          # OUTDIR/name.svg and OUTDIR/name.png
 # clauses: one for each method in the CSV, each with the mark, colour and dash it has in all charts (series.awk).
 
-set terminal svg                        # until it is written: into nothing
-set output '/dev/null'
 set datafile separator ','
 set encoding utf8
 
 series(file, options) = "< awk -f '".here."/csv.awk' -f '".here."/series.awk' ".options." '".file."'"
 
 if (!exists('size')) size = '900,600'           # pixels; a script may set it before
+eval "set terminal svg size ".size              # until it is written: into nothing
+set output '/dev/null'
 svg = "set terminal svg size ".size." dynamic enhanced font 'DejaVu Sans,Helvetica,sans-serif,13' background rgb 'white'; set output out.'/'.name.'.svg'; replot; unset output;"
 png = "set terminal pngcairo size ".size." enhanced font 'DejaVu Sans,11' background rgb 'white'; set output out.'/'.name.'.png'; replot; unset output;"
 write = svg.png."set output '/dev/null'"

@@ -430,7 +430,8 @@ static struct truth *new_truth(const struct problem *p)
 	return t;
 }
 
-static void find_scales(const struct problem *p, struct truth *t)
+/* The problem learns them too: the second road is an integrator whose tolerances stand on them. */
+static void find_scales(struct problem *p, struct truth *t)
 {
 	for (int k = -1; k < p->units; k++)
 		for (int i = 0; i < 2 * p->n; i++) {
@@ -438,6 +439,8 @@ static void find_scales(const struct problem *p, struct truth *t)
 			double *scale = i < p->n ? &t->scale_q : &t->scale_v;
 			*scale = fmax(*scale, now);
 		}
+	p->scale_q = t->scale_q;
+	p->scale_v = t->scale_v;
 }
 
 /* The largest of `most` and how far y is from the truth at the end of unit k; what is not a number stays */
@@ -515,7 +518,7 @@ static void (*gears_of(const char *name))(struct hand_system *)
 	return NULL;
 }
 
-static void solve(const struct problem *p, struct truth *t)
+static void solve(struct problem *p, struct truth *t)
 {
 	const struct equations *e = equations_of(p);
 	if (p->linear) {
@@ -540,7 +543,7 @@ static void solve(const struct problem *p, struct truth *t)
 	}
 }
 
-struct truth *truth_of(const struct problem *p)
+struct truth *truth_of(struct problem *p)
 {
 	if (2 * p->n + 3 > MOST)
 		leave(p->name, "too many coordinates");

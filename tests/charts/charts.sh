@@ -48,6 +48,11 @@ awk -v list="$here/methods.list" -f "$csv" -f "$here/hard.awk" "$out/hard.csv" >
 result $? "hard.csv: every method on every case, each failure with its word"
 awk -f "$csv" -f "$here/orders.awk" "$out/convergence_orders.csv" >"$log" 2>&1
 result $? "convergence_orders.csv: orders within 0.15"
+awk -f "$csv" -f bench/charts/break_even.awk "$here/break_even/generation.csv" "$here/break_even/precision.csv" >"$work/break_even.csv" 2>&1
+diff "$work/break_even.csv" "$here/break_even/expect.csv" >"$log" 2>&1
+result $? "break-even of given times: as worked out by hand"
+awk -f "$csv" -f "$here/break_even/check.awk" "$out/break_even.csv" >"$log" 2>&1
+result $? "break_even.csv: like beside like, never where it never pays"
 for name in stability_check quality_check operator_check; do
     grep -v ',ok$' "$out/$name.csv" | sed 1d >"$log"
     [ ! -s "$log" ]

@@ -25,6 +25,12 @@ NR == 1 { read_head($0, column); next }
 		good = row[column["failed"]] == 0 ? is_number(value) && value >= 0 : value ~ /^(failed|refused|diverged|nan)$/
 		if (!good) { print model ", " method ": " errors[e] " is " value ", failed " row[column["failed"]]; bad = 1 }
 	}
+	timed = row[column["ns_units"]] * row[column["unit_s"]]
+	if (is_number(row[column["ns_median"]]) && timed != row[column["history_s"]]) {
+		print model ", " method ": timed over " row[column["ns_units"]] " units of " row[column["unit_s"]] " s, expected " \
+			row[column["history_s"]] " s, the whole history"
+		bad = 1
+	}
 	if (row[column["failed"]] == 0 && row[column["truth_agreement"]] + 0 > 1e-11) { print model ": two roads to what is true are " row[column["truth_agreement"]] " apart, tolerance 1e-11"; bad = 1 }
 }
 END {

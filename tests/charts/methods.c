@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* methods VARIANTS: the methods that the charts compare are what they are called: those with a fixed step have their order, on an
- * equation that is not linear and on linear ones; plgen's exact step has no error but rounding. VARIANTS: what methods.sh made. */
+ * equation that is not linear and on linear ones; plgen's exact step has no error but rounding. And what is timed is whole
+ * histories. VARIANTS: what methods.sh made. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -33,7 +34,7 @@ static int parts_for(int order)
 	return order == 1 ? 512 : order == 2 ? 32 : order == 4 ? 8 : 1;
 }
 
-static void check_fixed(const struct problem *p)
+static void check_fixed(struct problem *p)
 {
 	const struct truth *truth = truth_of(p);
 	for (const struct method *const *m = fixed_methods; *m; m++) {
@@ -50,7 +51,7 @@ static struct run *open_variant(const struct method *m, const struct problem *p,
 	return generated_open(m, p, file);
 }
 
-static void check_schemes(const struct problem *p, const char *folder, const char *name)
+static void check_schemes(struct problem *p, const char *folder, const char *name)
 {
 	static const struct { struct method method; int parts; } schemes[] = {
 		{ { .name = "pl", .family = OURS, .order = 1 }, 256 }, { { .name = "etd1", .family = OURS, .order = 1 }, 256 },
@@ -69,7 +70,7 @@ static void check_schemes(const struct problem *p, const char *folder, const cha
 }
 
 /* 30 s, at outputs and between */
-static void check_exact(const struct problem *p, const char *folder, const char *name)
+static void check_exact(struct problem *p, const char *folder, const char *name)
 {
 	static const struct method exact = { .name = "exact", .family = OURS };
 	const struct truth *truth = truth_of(p);
@@ -78,6 +79,69 @@ static void check_exact(const struct problem *p, const char *folder, const char 
 	ok(close_to(e.failed ? NAN : e.largest, 0, 1e-11, "largest error of exact on %s", name), "exact on %s: below 1e-11 over 30 s", name);
 	if (run)
 		run->close(run);
+}
+
+/* ---- what is timed ---- */
+
+/* A run that does nothing but keep where it is. Its first units take no time, its last ones do: those are what a sample
+ * must not miss. */
+struct walk {
+	struct run run;
+	int now;                    /* units since the start */
+	int passes, whole;          /* begun, and gone to the end */
+};
+
+static void walk_restart(struct run *run)
+{
+	struct walk *w = (struct walk *)run;
+	w->whole += w->now == run->problem->units;
+	w->passes++;
+	w->now = 0;
+}
+
+static bool walk_advance(struct run *run, int units, double *rows)
+{
+	struct walk *w = (struct walk *)run;
+	volatile double x = 1;
+	for (int k = 0; k < units; k++) {
+		for (int i = 0; 10 * w->now > 9 * run->problem->units && i < 20000; i++)
+			x = x * 1.0000001;
+		rows[2 * k] = rows[2 * k + 1] = x;
+		w->now++;
+	}
+	return true;
+}
+
+static void check_walk(int units)
+{
+	const struct problem p = { .name = "walk", .n = 1, .unit = 1, .units = units };
+	struct walk w = { .run = { .problem = &p, .restart = walk_restart, .advance = walk_advance } };
+	struct run *run = &w.run;
+	struct samples samples;
+	sample_runs(1, &run, 0, &samples);
+	walk_restart(run);
+	ok(w.passes > 3 && close_to(w.whole, w.passes - 1, 0, "%d units: passes to the end, of those begun", units),
+	   "samples go through all of %d units", units);
+	ok(samples.count >= 3, "%d samples of %d units, at least 3", samples.count, units);
+}
+
+/* Right-hand sides of the last sample, from its start on, against those of a pass a unit at a time: a history whose jumps
+ * cost most of it. Of its first tenth for comparison */
+static void check_evaluations(const struct problem *p, const char *name)
+{
+	const struct method *m = method_find(name);
+	struct run *run = m->open(m, p, 1e-8);
+	struct samples samples;
+	run->restart(run);
+	run->advance(run, p->units / 10, NULL);
+	const long tenth = run->evaluations(run);
+	for (int k = p->units / 10; k < p->units; k++)
+		run->advance(run, 1, NULL);
+	const long whole = run->evaluations(run);
+	sample_runs(1, &run, 0, &samples);
+	ok(close_to((double)run->evaluations(run), (double)whole, 0, "right-hand sides of a sample of %s", name),
+	   "a sample of %s on %s evaluates what the history does: %ld (its first tenth: %ld)", name, p->name, whole, tenth);
+	run->close(run);
 }
 
 static struct problem *load(const char *folder, const char *name, double unit, int units, bool linear, double w)
@@ -106,5 +170,13 @@ int main(int argc, char **argv)
 	check_exact(load(folder, "linear2dof", 0.2, 150, true, 0), folder, "linear2dof");
 	check_exact(load(folder, "tuned_floor", 0.01, 3000, true, 4 * M_PI), folder, "tuned_floor");
 	check_exact(load(folder, "quarter_car", 0.001, 30000, true, 0), folder, "quarter_car");
+	check_walk(10);
+	check_walk(1000);
+	check_walk(2500);
+	struct problem *jumps = load(folder, "vanderpol_stiff", 0.1, 2000, false, 0);
+	truth_free(truth_of(jumps));
+	check_evaluations(jumps, "CVODE BDF");
+	check_evaluations(jumps, "CVODE Adams");
+	check_evaluations(jumps, "GSL rk8pd");
 	return tap_end();
 }

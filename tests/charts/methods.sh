@@ -14,7 +14,7 @@ trap 'rm -rf "$work"' EXIT
 trap 'exit 99' HUP INT TERM
 cd "$root"
 {
-    for name in pendulum scs sdcs sdcsf scs_weak linear2dof tuned_floor quarter_car; do
+    for name in pendulum vanderpol_stiff scs sdcs sdcsf scs_weak linear2dof tuned_floor quarter_car; do
         echo "$work/$name.so models/$name.spec"
     done
     for parts in 256 512; do

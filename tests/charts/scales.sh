@@ -1,0 +1,28 @@
+#!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
+# scales.sh BUILD SCALES ROOT: the scales of every model and hard case of the charts, over their whole histories, held by
+# the program scales.
+set -e
+absolute() {
+    case $1 in
+        /*) echo "$1" ;;
+        *) echo "$PWD/$1" ;;
+    esac
+}
+build=$(absolute "$1") program=$(absolute "$2") root=$3
+charts=$build/bench/charts
+work=$(mktemp -d "${TMPDIR:-/tmp}/scales.XXXXXX") || exit 99
+trap 'rm -rf "$work"' EXIT
+trap 'exit 99' HUP INT TERM
+cd "$root"
+mkdir "$work/hard"
+# Lines of two fields: the models themselves
+"$charts/precision" --list | awk -v to="$work/" 'NF == 2 { print to $1, $2 }' |
+    xargs -P 2 -L 1 bench/charts/variant.sh "$build/plgen"
+sh bench/charts/hard.sh "$build/plgen" "$work/hard" problems
+{
+    "$charts/precision" --scales "$work" && "$charts/hard" --scales "$work/hard"
+} >"$work/scales" 2>"$work/said" || { status=$?; sed 's/^/# /' "$work/said"; exit $status; }
+models=$(awk 'END { print NR }' "$work/scales")
+[ "$models" -eq 29 ] || { echo "Bail out! $models models and cases, expected 17 and 12"; exit 1; }
+"$program" <"$work/scales"
