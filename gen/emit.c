@@ -257,8 +257,23 @@ static void banner_form(const struct emitter *e)
 		fprintf(e->to, " * No force from outside acts: what %s gained since the last set, %s lost; so momentum stays as it is.\n", others_text(e), keepers_text(e));
 	if (drift.known)
 		fprintf(e->to, " * %s.\n", drift_text(&drift));
+	if (e->step->rounding.known)
+		fprintf(e->to, " * %s.\n", rounding_text(e->step));
 	if (e->model->single)
 		fputs(" * Numbers and arithmetic are float; each constant is rounded to it once.\n", e->to);
+}
+
+/* What is left out of the step, and what it costs where it comes back */
+static void banner_forced(const struct emitter *e)
+{
+	const char *list = "";
+	int shown = 0;
+	for (int l = 0; l < e->system->loads; l++)
+		if (e->step->forced->load[l])
+			list = shown++ < 4 ? format("%s%s%s", list, *list ? ", " : "", column_text(&e->system->load[l], e->system->load[l].columns - 1)) : list;
+	fprintf(e->to, " * The step would round to what %s%s drive%s: the state is kept less their forced part, which is added where it is\n"
+		       " * read (get, out, at): %d multiplications, %d additions.\n", list, shown > 4 ? format(" and %d more loads", shown - 4) : "", shown == 1 ? "s" : "",
+		e->step->forced->multiplications, e->step->forced->additions);
 }
 
 static void banner_cost(const struct emitter *e)
@@ -275,6 +290,8 @@ static void banner_cost(const struct emitter *e)
 		fprintf(e->to, ", %d calls of the model's own functions", program->calls);
 	fputs(".\n", e->to);
 	banner_form(e);
+	if (e->step->forced)
+		banner_forced(e);
 	if (e->model->tuning)
 		banner_tuning(e);
 	fprintf(e->to, " * State y = %s.\n", state_list(e->model));
@@ -327,9 +344,11 @@ static void emit_state_struct(const struct emitter *e)
 	fprintf(to, "typedef struct %s %s;  /* copy it to save, assign it to restore */\n", e->name, e->name);
 	fprintf(to, "struct %s {\n    double y[%s_STATES];  /* %s%s%s */\n", e->name, e->upper, state_list(e->model),
 		e->step->momenta ? format("; velocities times mass / mass of %s", e->model->coord_name[0]) : "",
-		e->step->keepers ? format("; %s at the last set", keepers_text(e)) : "");
+		e->step->forced ? "; less their forced part" : e->step->keepers ? format("; %s at the last set", keepers_text(e)) : "");
 	if (e->step->program->compensated)
 		fprintf(to, "    double rest[%s_STATES];  /* what rounding took from y so far */\n", e->upper);
+	else if (e->step->forced)
+		fprintf(to, "    double rest[%s_STATES];  /* what rounding took from y at the last set */\n", e->upper);
 	if (e->step->keepers)
 		fprintf(to, "    double base[%d];      /* %s at the last set; what was gained since, %s lost */\n", parts_kept(e), others_text(e), keepers_text(e));
 	if (e->model->tuning)
@@ -472,9 +491,10 @@ const char *keeper_text(const struct emitter *e, const struct keeper *keeper, bo
 static void write_locals(const struct emitter *e, const bool *reads, const char *type, const char *vector, bool velocities)
 {
 	const char *list = "";
+	bool forced = velocities && e->step->forced;    /* then the vector is whole */
 	for (int i = 0; i < e->system->states; i++) {
-		const char *mass = velocities ? factor_of_momentum(e, i) : NULL;
-		const struct keeper *keeper = velocities ? keeper_of(e->step, i) : NULL;
+		const char *mass = velocities && !forced ? factor_of_momentum(e, i) : NULL;
+		const struct keeper *keeper = velocities && !forced ? keeper_of(e->step, i) : NULL;
 		const char *value = keeper ? format(mass ? "(%s)" : "%s", keeper_text(e, keeper, false)) : format("%s[%d]", vector, i);
 		if (reads[i] && (velocities || !keeper_of(e->step, i)))
 			list = format("%s%s%s = %s%s", list, *list ? ", " : format("    %s ", type), e->local[i], value, mass ? format(" / %s", mass) : "");
@@ -493,7 +513,12 @@ static void write_locals(const struct emitter *e, const bool *reads, const char 
 
 void emit_locals(const struct emitter *e, const bool *reads)
 {
-	write_locals(e, reads, "const double", "s->y", true);
+	bool any = false;
+	for (int i = 0; i < e->system->states; i++)
+		any = any || reads[i];
+	if (e->step->forced && any)
+		fprintf(e->to, "    double now[%s_STATES];\n    %s_get(s, now);\n", e->upper, e->name);
+	write_locals(e, reads, "const double", e->step->forced ? "now" : "s->y", true);
 }
 
 void emit_raw_locals(const struct emitter *e, const bool *reads, bool changing)
@@ -560,8 +585,31 @@ void emit_store(const struct emitter *e, const char *vector, const char *indent)
 			fprintf(to, "%ss->base[%d] = s->y[%d];\n", indent, e->step->keeper[k].first + i, e->step->keeper[k].part[i].operand.index);
 }
 
+/* y = z + f, f the forced part: what rounds off in z = y - f is kept in rest */
+void emit_state_forced(const struct emitter *e, const char *vector, const char *indent)
+{
+	fprintf(e->to, "%s%s_forced(s, now);\n", indent, e->name);
+	fprintf(e->to, "%sfor (i = 0; i < %s_STATES; i++) {\n", indent, e->upper);
+	fprintf(e->to, "%s    const double f = now[i], z = %s[i] - f, lost = z - %s[i];\n", indent, vector, vector);
+	fprintf(e->to, "%s    s->y[i] = z;\n%s    s->rest[i] = (%s[i] - (z - lost)) - (f + lost);\n%s}\n", indent, indent, vector, indent);
+	for (int k = 0; k < e->step->keepers; k++)
+		for (int i = 0; i < e->step->keeper[k].parts; i++)
+			fprintf(e->to, "%ss->base[%d] = s->y[%d];\n", indent, e->step->keeper[k].first + i, e->step->keeper[k].part[i].operand.index);
+}
+
 /* A vector of states from s->y */
 void emit_load_state(const struct emitter *e, const char *vector)
+{
+	if (e->step->forced)
+		fprintf(e->to, "    double now[%s_STATES];\n", e->upper);
+	emit_kept_state(e, vector);
+	if (!e->step->forced)
+		return;
+	fprintf(e->to, "    %s_forced(s, now);\n    for (i = 0; i < %s_STATES; i++)\n        %s[i] = (%s[i] + now[i]) + ", e->name, e->upper, vector, vector);
+	fputs(e->step->program->compensated ? "s->rest[i];\n" : "(s->k == 0 ? s->rest[i] : 0.0);\n", e->to);
+}
+
+void emit_kept_state(const struct emitter *e, const char *vector)
 {
 	fprintf(e->to, "    for (i = 0; i < %s_STATES; i++)\n        %s[i] = s->y[i];\n", e->upper, vector);
 	for (int i = 0; i < e->system->states; i++)
@@ -579,8 +627,13 @@ static void emit_access(const struct emitter *e)
 	FILE *to = e->to;
 	const char *n = e->name, *N = e->upper;
 	emit_init(e);
+	if (e->step->forced)
+		emit_forced(e);
 	fprintf(to, "\nvoid %s_set(%s *s, double t, const double y[%s_STATES])\n{\n    int i;\n", n, n, N);
-	emit_store(e, "y", "    ");
+	if (e->step->forced)
+		fprintf(to, "    double now[%s_STATES];\n", N);
+	else
+		emit_store(e, "y", "    ");
 	fputs("    s->t0 = t;\n    s->k = 0;\n", to);
 	if (has_status(e))
 		fputs("    s->status = 0;\n", to);
@@ -588,6 +641,8 @@ static void emit_access(const struct emitter *e)
 	if (e->system->segments > 1)
 		fprintf(to, "    for (s->segment = 0; s->segment < %d && %s_until(s, s->segment) <= 1e-18 * %s;)\n        s->segment++;\n",
 			e->system->segments - 1, n, step_length(e));
+	if (e->step->forced)
+		emit_state_forced(e, "y", "    ");
 	if (e->model->switching)
 		fprintf(to, "    %s_place(s);\n", n);
 	fprintf(to, "}\n\nvoid %s_get(const %s *s, double y[%s_STATES])\n{\n    int i;\n", n, n, N);

@@ -323,3 +323,59 @@ void emit_load_states(const struct emitter *e, const bool *loads, bool time_is_t
 		if (loads[l] && !is_plain_constant(&e->system->load[l]))
 			emit_one_load(e, l);
 }
+
+/* ---- the forced part ---- */
+
+/* A factor of a load state; where formulas change, its place in the table forced_part[segment][state][column] */
+static const char *forced_term(const struct emitter *e, int state, int column)
+{
+	const struct table *table = e->step->table;
+	const char *operand = column_operand(e, column);
+	if (e->system->segments == 1)
+		return scaled(e->step->forced->part[state * table->columns + column].value, operand);
+	const char *text = format("%s_forced_part[s->segment][%d][%d]", e->name, state, column);
+	return operand ? format("%s * %s", text, operand) : text;
+}
+
+static bool forces(const struct emitter *e, int state, int column)
+{
+	const struct table *table = e->step->table;
+	bool any = false;
+	for (int s = 0; s < e->system->segments && is_forced(e->step, column); s++)
+		any = any || !e->step->forced->part[(s * table->states + state) * table->columns + column].zero;
+	return any;
+}
+
+static void emit_forced_part(const struct emitter *e)
+{
+	const struct table *table = e->step->table;
+	double *value = ARRAY(double, (size_t)(table->states * table->columns));
+	fprintf(e->to, "\nstatic const double %s_forced_part[%d][%s_STATES][%d] = {  /* factors of the load states in each segment of time */\n",
+		e->name, e->system->segments, e->upper, table->columns);
+	for (int s = 0; s < e->system->segments; s++) {
+		for (int i = 0; i < table->states * table->columns; i++)
+			value[i] = is_forced(e->step, i % table->columns) ? e->step->forced->part[s * table->states * table->columns + i].value : 0;
+		fputs("  {\n", e->to);
+		emit_number_rows(e, table->states, table->columns, value, e->model->state_name);
+		fputs("  },\n", e->to);
+	}
+	fputs("};\n", e->to);
+}
+
+void emit_forced(const struct emitter *e)
+{
+	const struct table *table = e->step->table;
+	const char **term = ARRAY(const char *, (size_t)table->columns);
+	if (e->system->segments > 1)
+		emit_forced_part(e);
+	fprintf(e->to, "\n/* What the loads that the step leaves out sustain now */\nstatic void %s_forced(const %s *s, double now[%s_STATES])\n{\n", e->name, e->name, e->upper);
+	emit_load_states(e, e->step->forced->load, false);
+	for (int i = 0; i < table->states; i++) {
+		int terms = 0;
+		for (int k = 0; k < table->columns; k++)
+			if (forces(e, i, k))
+				term[terms++] = forced_term(e, i, k);
+		fprintf(e->to, "    now[%d] = %s;  /* %s */\n", i, terms ? tree(terms, term, 13) : "0.0", e->model->state_name[i]);
+	}
+	fputs("    (void)s;\n}\n", e->to);
+}

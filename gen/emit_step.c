@@ -112,13 +112,20 @@ static void emit_load_factors(const struct emitter *e)
 {
 	const struct table *table = e->step->table;
 	double *value = ARRAY(double, (size_t)(table->states * table->columns));
+	int columns = 0;
+	for (int k = 0; k < table->columns; k++)
+		columns += !e->step->program->loops || !is_forced(e->step, k);
+	if (columns == 0)
+		return;
 	fprintf(e->to, "\n/* Factors of the load states in each segment of time */\nstatic const double %s_load_factor[%d][%s_STATES][%d] = {\n",
-		e->name, e->system->segments, e->upper, table->columns);
+		e->name, e->system->segments, e->upper, columns);
 	for (int s = 0; s < e->system->segments; s++) {
+		int count = 0;
 		for (int i = 0; i < table->states * table->columns; i++)
-			value[i] = table->load[s * table->states * table->columns + i].value;
+			if (!e->step->program->loops || !is_forced(e->step, i % table->columns))
+				value[count++] = table->load[s * table->states * table->columns + i].value;
 		fputs("  {\n", e->to);
-		emit_number_rows(e, table->states, table->columns, value, e->model->state_name);
+		emit_number_rows(e, table->states, columns, value, e->model->state_name);
 		fputs("  },\n", e->to);
 	}
 	fputs("};\n", e->to);
@@ -127,12 +134,17 @@ static void emit_load_factors(const struct emitter *e)
 /* vector[...] = the operands of the columns of a table; then y[i] += table[i][...] vector[...] */
 static void emit_columns(const struct emitter *e, const char *table, const char *vector, enum operand_kind kind, int columns)
 {
+	int count = 0;
+	for (int k = 0; k < columns; k++)
+		count += kind != OPERAND_LOAD || !is_forced(e->step, k);
+	columns = count;
 	if (columns == 0)
 		return;
 	fprintf(e->to, "    const double %s[%d] = {", vector, columns);
-	for (int k = 0; k < columns; k++) {
+	for (int k = 0, shown = 0; shown < columns; k++) {
 		const char *operand = operand_text(e, &(struct operand){ kind, k, 0 });
-		fprintf(e->to, "%s%s", k ? ", " : "", operand ? operand : "1.0");
+		if (kind != OPERAND_LOAD || !is_forced(e->step, k))
+			fprintf(e->to, "%s%s", shown++ ? ", " : "", operand ? operand : "1.0");
 	}
 	fprintf(e->to, "};\n    for (i = 0; i < %s_STATES; i++)\n        for (j = 0; j < %d; j++)\n            y[i] += %s[i][j] * %s[j];\n", e->upper, columns,
 		table, vector);
@@ -145,9 +157,9 @@ static void emit_looped_step(const struct emitter *e)
 	const char *n = e->name, *N = e->upper;
 	const struct table *table = e->step->table;
 	bool *loads = ARRAY(bool, (size_t)e->system->loads);
-	for (int l = 0; l < e->system->loads; l++)
-		loads[l] = true;
 	fprintf(to, "    double y[%s_STATES];\n    int i, j;\n", N);
+	for (int l = 0, column = 0; l < e->system->loads; column += e->system->load[l++].columns)
+		loads[l] = !is_forced(e->step, column);
 	emit_load_states(e, loads, false);
 	fprintf(to, "    for (i = 0; i < %s_STATES; i++) {\n        y[i] = 0.0;\n        for (j = 0; j < %s_STATES; j++)\n", N, N);
 	fprintf(to, "            y[i] += %s_%s[i][j] * s->y[j];\n    }\n", n, e->step->form == FORM_DELTA ? "increment" : "Phi");
@@ -189,6 +201,20 @@ const char *step_parameters(const struct emitter *e)
 	return format("%s *s%s", e->name, e->system->inputs ? format(", const double u[%s_INPUTS]", e->upper) : "");
 }
 
+/* The forced part changes with the loads: the state is whole when it passes from one to the other. */
+static void emit_forced_changes(const struct emitter *e, const char *u)
+{
+	const char *n = e->name;
+	int changes = e->system->segments - 1;
+	fprintf(e->to, "    const int changes = s->segment < %d && %s_until(s, s->segment) < (1.0 + 1e-12) * %s;\n", changes, n, step_length(e));
+	fprintf(e->to, "    double y[%s_STATES], now[%s_STATES];\n    int i;\n", e->upper, e->upper);
+	fprintf(e->to, "    if (!changes) {\n        %s_plain_step(s%s);\n    } else {\n        %s_pass(s, %s%s, y);\n    }\n", n, *u ? ", u" : "", n, u, step_length(e));
+	emit_step_end(e);
+	fprintf(e->to, "    if (changes) {\n        while (s->segment < %d && %s_until(s, s->segment) <= 1e-18 * %s)\n            s->segment++;\n", changes, n, step_length(e));
+	emit_state_forced(e, "y", "        ");
+	fputs("    }\n}\n", e->to);
+}
+
 static void emit_changing_step(const struct emitter *e)
 {
 	const char *n = e->name, *u = e->system->inputs ? "u, " : "";
@@ -200,6 +226,10 @@ static void emit_changing_step(const struct emitter *e)
 	if (e->system->inputs)
 		fputs("    (void)u;\n", e->to);
 	fprintf(e->to, "}\n\nvoid %s_step(%s)\n{\n", n, step_parameters(e));
+	if (e->step->forced) {
+		emit_forced_changes(e, u);
+		return;
+	}
 	fprintf(e->to, "    if (s->segment < %d && %s_until(s, s->segment) < %s) {\n", changes, n, step_length(e));
 	fprintf(e->to, "        double y[%s_STATES];\n        int i;\n        %s_pass(s, %s%s, y);\n", e->upper, n, u, step_length(e));
 	emit_store(e, "y", "        ");

@@ -366,7 +366,11 @@ static void emit_fill_power(const struct emitter *e, int size, int entries)
 static void emit_leap_start(const struct emitter *e)
 {
 	if (e->step->momenta || e->step->keepers) {
-		fprintf(e->to, "    %s_get(s, y);\n    for (i = 0; i < %s_STATES; i++)\n        x[i].hi = y[i];\n", e->name, e->upper);
+		if (e->step->forced)
+			emit_kept_state(e, "y");
+		else
+			fprintf(e->to, "    %s_get(s, y);\n", e->name);
+		fprintf(e->to, "    for (i = 0; i < %s_STATES; i++)\n        x[i].hi = y[i];\n", e->upper);
 		return;
 	}
 	bool rest = e->step->program->compensated;
