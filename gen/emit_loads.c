@@ -342,7 +342,7 @@ static bool forces(const struct emitter *e, int state, int column)
 	const struct table *table = e->step->table;
 	bool any = false;
 	for (int s = 0; s < e->system->segments && is_forced(e->step, column); s++)
-		any = any || !e->step->forced->part[(s * table->states + state) * table->columns + column].zero;
+		any = any || e->step->forced->part[(s * table->states + state) * table->columns + column].value != 0;
 	return any;
 }
 

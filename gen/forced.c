@@ -101,7 +101,7 @@ static bool fill_forced(const struct linear *system, int l, struct coefficient *
 		for (int i = 0; i < states * load->columns; i++) {
 			struct coefficient *c = &part[(s * states + i / load->columns) * all + first + i % load->columns];
 			*c = (struct coefficient){ .value = round_rational(P[i]), .zero = mpq_sgn(P[i]) == 0 };
-			if (beyond_range(P[i]) || (c->value == 0 && !c->zero))
+			if (beyond_range(P[i]))
 				return false;
 			mpq_set_d(rest, c->value);
 			mpq_sub(rest, P[i], rest);
@@ -335,6 +335,11 @@ static struct rounded reckon(struct reckoning *r, const struct assignment *a)
 	return r->sum;
 }
 
+static double unit_of(const struct step *step)
+{
+	return step->model->single ? 0x1p-24 : 0x1p-53;
+}
+
 static double part_of(const struct reckoning *r, int state, bool sizes)
 {
 	const struct table *table = r->step->table;
@@ -344,7 +349,8 @@ static double part_of(const struct reckoning *r, int state, bool sizes)
 			continue;
 		const struct coefficient *c = &r->forced->part[(r->course->segment[r->k] * table->states + state) * table->columns + column];
 		double term = (c->value + c->low) * r->course->z[r->k * table->columns + column];
-		sum += sizes ? fabs(term) * (3 + levels(table->columns) + load_roundings(r, column)) : term;
+		double lost = fabs(c->low * r->course->z[r->k * table->columns + column]) / unit_of(r->step); /* of a factor, perhaps to 0 */
+		sum += sizes ? fabs(term) * (2 + levels(table->columns) + load_roundings(r, column)) + lost : term;
 	}
 	return sum;
 }
@@ -370,7 +376,8 @@ static void reckon_step(struct reckoning *r, double *largest)
 static struct rounding bound_of(const struct step *step, const struct course *c, const struct forced *forced)
 {
 	int n = step->system.states, *load_of = ARRAY(int, (size_t)step->table->columns);
-	double *each = ARRAY(double, (size_t)n), *first = ARRAY(double, (size_t)n), *last = ARRAY(double, (size_t)n), unit = step->model->single ? 0x1p-24 : 0x1p-53;
+	double *each = ARRAY(double, (size_t)n), *first = ARRAY(double, (size_t)n), *last = ARRAY(double, (size_t)n);
+	const double least = step->model->single ? 0x1p-102 : 0x1p-969; /* below, products leave the range */
 	struct reckoning r = { .step = step, .course = c, .forced = forced, .load_of = load_of };
 	struct rounding bound = { .known = true, .steps = c->steps };
 	for (int l = 0, column = 0; l < step->system.loads; l++)
@@ -387,8 +394,9 @@ static struct rounding bound_of(const struct step *step, const struct course *c,
 		double error = last[i] + c->largest[i];
 		for (int j = 0; j < n; j++)
 			error += c->sum[i * n + j] * each[j] + c->peak[i * n + j] * first[j];
-		error *= unit / c->largest[i];
-		if (c->largest[i] == 0)
+		error *= unit_of(step) / c->largest[i];
+		bound.tiny = bound.tiny || (c->largest[i] > 0 && c->largest[i] < least);
+		if (c->largest[i] < least)
 			continue;
 		bound.known = bound.known && isfinite(error);
 		if (error > bound.relative) {
@@ -400,6 +408,27 @@ static struct rounding bound_of(const struct step *step, const struct course *c,
 }
 
 /* ---- which loads are better not stepped ---- */
+
+/* What it costs to add the forced part, load states included */
+static void count_forced(const struct step *step, struct forced *forced)
+{
+	const struct linear *system = &step->system;
+	int columns = step->table->columns;
+	struct program program = { .uses = ARRAY(bool, (size_t)columns) };
+	for (int i = 0; i < system->states; i++)
+		for (int l = 0, column = 0; l < system->loads; l++)
+			for (int j = 0; j < system->load[l].columns; j++, column++) {
+				const struct coefficient *c = &forced->part[i * columns + column];
+				if (!forced->load[l] || (c->value == 0 && system->segments == 1))
+					continue;
+				program.uses[column] = true;
+				program.additions++;
+				program.multiplications += !(j == 0 && is_polynomial(system->load[l].wave)) && c->value != 1 && c->value != -1;
+			}
+	count_loads(&program, system, step->model->single);
+	forced->multiplications = program.multiplications;
+	forced->additions = program.additions;
+}
 
 /* Takes loads while each makes the bound less than half of what it was; where there are many, all at once. */
 static void choose_loads(struct step *step, const struct course *c, struct forced *forced, const bool *able)
@@ -431,6 +460,7 @@ static void choose_loads(struct step *step, const struct course *c, struct force
 	if (best.known && best.relative < 0.25 * step->rounding.relative) {
 		step->rounding = best;
 		step->forced = forced;
+		count_forced(step, forced);
 	}
 }
 
@@ -470,6 +500,7 @@ bool is_forced(const struct step *step, int column)
 const char *rounding_text(const struct step *step)
 {
 	const struct rounding *r = &step->rounding;
-	return format("In its first %d steps%s, loads counted, rounding takes at most %.2g of the largest value of a state (%s)", r->steps,
-		      step->system.inputs ? " with inputs 0" : "", r->relative, step->model->state_name[r->state]);
+	return format("In the first %d steps%s, loads counted, rounding takes at most %.2g of the largest value of a state (%s)%s", r->steps,
+		      step->system.inputs ? " with inputs 0" : "", r->relative, step->model->state_name[r->state],
+		      r->tiny ? format("; some are too small for %s", target_name()) : "");
 }

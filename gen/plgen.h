@@ -946,6 +946,7 @@ struct rounding {                   /* a bound over the first steps from the ini
 	bool known;
 	int steps, state;           /* the state where it is largest */
 	double relative;            /* to the state's largest value */
+	bool tiny;                  /* there are states too small for the target's range, which it leaves out */
 };
 struct step {                       /* everything that is emitted for one model */
 	const struct model *model;
