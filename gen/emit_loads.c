@@ -346,15 +346,15 @@ static bool forces(const struct emitter *e, int state, int column)
 	return any;
 }
 
-static void emit_forced_part(const struct emitter *e)
+/* [segment][state][column] */
+static void print_forced(const struct emitter *e, const char *name, const char *what, int segments, const struct coefficient *factor)
 {
 	const struct table *table = e->step->table;
 	double *value = ARRAY(double, (size_t)(table->states * table->columns));
-	fprintf(e->to, "\nstatic const double %s_forced_part[%d][%s_STATES][%d] = {  /* factors of the load states in each segment of time */\n",
-		e->name, e->system->segments, e->upper, table->columns);
-	for (int s = 0; s < e->system->segments; s++) {
+	fprintf(e->to, "\nstatic const double %s_%s[%d][%s_STATES][%d] = {  /* %s */\n", e->name, name, segments, e->upper, table->columns, what);
+	for (int s = 0; s < segments; s++) {
 		for (int i = 0; i < table->states * table->columns; i++)
-			value[i] = is_forced(e->step, i % table->columns) ? e->step->forced->part[s * table->states * table->columns + i].value : 0;
+			value[i] = is_forced(e->step, i % table->columns) ? factor[s * table->states * table->columns + i].value : 0;
 		fputs("  {\n", e->to);
 		emit_number_rows(e, table->states, table->columns, value, e->model->state_name);
 		fputs("  },\n", e->to);
@@ -362,12 +362,37 @@ static void emit_forced_part(const struct emitter *e)
 	fputs("};\n", e->to);
 }
 
+/* A change at the end of a step; a velocity that is not stepped follows the others. */
+static void emit_rebase(const struct emitter *e)
+{
+	const char *columns = "";
+	int count = e->step->table->columns;
+	for (int k = 0; k < count; k++) {
+		const char *operand = is_forced(e->step, k) ? column_operand(e, k) : "0.0";
+		columns = format("%s%s%s", columns, k ? ", " : "", operand ? operand : "1.0");
+	}
+	fprintf(e->to, "\nstatic void %s_rebase(%s *s)\n{\n", e->name, e->name);
+	emit_load_states(e, e->step->forced->load, false);
+	fprintf(e->to, "    const double load[%d] = {%s};\n    int i, j;\n", count, columns);
+	for (int k = 0; k < e->step->keepers; k++)
+		fprintf(e->to, "    const double kept%d = s->y[%d];\n", k + 1, e->step->keeper[k].state);
+	fprintf(e->to, "    for (i = 0; i < %s_STATES; i++)\n        for (j = 0; j < %d; j++)\n            s->y[i] += %s_forced_change[s->segment][i][j] * load[j];\n", e->upper, count,
+		e->name);
+	for (int k = 0; k < e->step->keepers; k++)
+		fprintf(e->to, "    s->y[%d] = kept%d;\n", e->step->keeper[k].state, k + 1);
+	fputs("}\n", e->to);
+}
+
 void emit_forced(const struct emitter *e)
 {
 	const struct table *table = e->step->table;
 	const char **term = ARRAY(const char *, (size_t)table->columns);
 	if (e->system->segments > 1)
-		emit_forced_part(e);
+		print_forced(e, "forced_part", "factors of the load states in each segment of time", e->system->segments, e->step->forced->part);
+	if (e->step->forced->changes) {
+		print_forced(e, "forced_change", "what they lose from each to the next", e->system->segments - 1, e->step->forced->change);
+		emit_rebase(e);
+	}
 	fprintf(e->to, "\n/* What the loads that the step leaves out sustain now */\nstatic void %s_forced(const %s *s, double now[%s_STATES])\n{\n", e->name, e->name, e->upper);
 	emit_load_states(e, e->step->forced->load, false);
 	for (int i = 0; i < table->states; i++) {

@@ -201,18 +201,18 @@ const char *step_parameters(const struct emitter *e)
 	return format("%s *s%s", e->name, e->system->inputs ? format(", const double u[%s_INPUTS]", e->upper) : "");
 }
 
-/* The forced part changes with the loads: the state is whole when it passes from one to the other. */
+/* The forced part changes with the loads; pass() does that for the changes inside the step. */
 static void emit_forced_changes(const struct emitter *e, const char *u)
 {
-	const char *n = e->name;
+	const char *n = e->name, *changing = e->step->forced->changes ? format("        %s_rebase(s);\n", e->name) : "";
 	int changes = e->system->segments - 1;
-	fprintf(e->to, "    const int changes = s->segment < %d && %s_until(s, s->segment) < (1.0 + 1e-12) * %s;\n", changes, n, step_length(e));
-	fprintf(e->to, "    double y[%s_STATES], now[%s_STATES];\n    int i;\n", e->upper, e->upper);
-	fprintf(e->to, "    if (!changes) {\n        %s_plain_step(s%s);\n    } else {\n        %s_pass(s, %s%s, y);\n    }\n", n, *u ? ", u" : "", n, u, step_length(e));
+	fprintf(e->to, "    int segment = s->segment;\n    if (segment < %d && %s_until(s, segment) < %s) {\n", changes, n, step_length(e));
+	fprintf(e->to, "        double y[%s_STATES];\n        int i;\n        segment = %s_pass(s, %s%s, 0, y);\n", e->upper, n, u, step_length(e));
+	emit_store(e, "y", "        ");
+	fprintf(e->to, "    } else {\n        %s_plain_step(s%s);\n    }\n", n, *u ? ", u" : "");
 	emit_step_end(e);
-	fprintf(e->to, "    if (changes) {\n        while (s->segment < %d && %s_until(s, s->segment) <= 1e-18 * %s)\n            s->segment++;\n", changes, n, step_length(e));
-	emit_state_forced(e, "y", "        ");
-	fputs("    }\n}\n", e->to);
+	fprintf(e->to, "    s->segment = segment;\n    while (s->segment < %d && %s_until(s, s->segment) <= 1e-18 * %s) {\n%s        s->segment++;\n    }\n}\n", changes, n,
+		step_length(e), changing);
 }
 
 static void emit_changing_step(const struct emitter *e)

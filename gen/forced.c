@@ -85,8 +85,21 @@ static int first_column(const struct linear *system, int load)
 	return column;
 }
 
-/* The load's columns of `part`; false: it has no forced part, or one beyond the range */
-static bool fill_forced(const struct linear *system, int l, struct coefficient *part)
+static struct coefficient rounded(mpq_srcptr q)
+{
+	struct coefficient c = { .value = round_rational(q), .zero = mpq_sgn(q) == 0 };
+	mpq_t rest;
+	mpq_init(rest);
+	if (!beyond_range(q))
+		mpq_set_d(rest, c.value);
+	mpq_sub(rest, q, rest);
+	c.low = nearest_double(rest);
+	mpq_clear(rest);
+	return c;
+}
+
+/* The load's columns of `part` and `change`; false: it has no forced part, or one beyond the range */
+static bool fill_forced(const struct linear *system, int l, struct forced *forced)
 {
 	const struct load *load = &system->load[l];
 	int states = system->states, all = load_columns(system), first = first_column(system, l), *state = ARRAY(int, (size_t)states);
@@ -94,19 +107,21 @@ static bool fill_forced(const struct linear *system, int l, struct coefficient *
 	if (m * (oscillates(load->wave) ? 2 : 1) > LIMIT_SOLVED)
 		return false;
 	const mpq_t *inverse = shifted_inverse(system, load->wave, m, state);
-	mpq_ptr rest = rationals(1)[0];
+	mpq_t *before = NULL;
 	for (int s = 0; s < system->segments && inverse; s++) {
 		mpq_t *P = rationals((size_t)(states * load->columns));
 		solve_forced(system, l, s, m, state, inverse, P);
 		for (int i = 0; i < states * load->columns; i++) {
-			struct coefficient *c = &part[(s * states + i / load->columns) * all + first + i % load->columns];
-			*c = (struct coefficient){ .value = round_rational(P[i]), .zero = mpq_sgn(P[i]) == 0 };
+			size_t cell = (size_t)((s * states + i / load->columns) * all + first + i % load->columns);
 			if (beyond_range(P[i]))
 				return false;
-			mpq_set_d(rest, c->value);
-			mpq_sub(rest, P[i], rest);
-			c->low = nearest_double(rest);
+			forced->part[cell] = rounded(P[i]);
+			if (!before)
+				continue;
+			mpq_sub(before[i], before[i], P[i]);
+			forced->change[cell - (size_t)(states * all)] = rounded(before[i]);
 		}
+		before = P;
 	}
 	return inverse != NULL;
 }
@@ -355,6 +370,19 @@ static double part_of(const struct reckoning *r, int state, bool sizes)
 	return sum;
 }
 
+/* What rounds where the forced part changes its formula before the next step */
+static double change_of(const struct reckoning *r, int state)
+{
+	const struct table *table = r->step->table;
+	int segment = r->course->segment[r->k];
+	double sum = 0;
+	for (int column = 0; r->forced && segment != r->course->segment[r->k + 1] && column < table->columns; column++)
+		if (r->forced->load[r->load_of[column]])
+			sum += fabs(r->forced->change[(segment * table->states + state) * table->columns + column].value *
+				    r->course->z[(r->k + 1) * table->columns + column]) * (4 + levels(table->columns) + load_roundings(r, column));
+	return sum;
+}
+
 /* What one step adds to the errors of the states at most, after k steps; `from` is the state as kept */
 static void reckon_step(struct reckoning *r, double *largest)
 {
@@ -387,8 +415,10 @@ static struct rounding bound_of(const struct step *step, const struct course *c,
 		first[i] = fabs(c->y[i]) + part_of(&r, i, true) + fabs(c->y[i] - part_of(&r, i, false));
 	for (r.k = 0; r.k < c->steps; r.k++) {
 		reckon_step(&r, each);
-		for (int i = 0; i < n; i++)
+		for (int i = 0; i < n; i++) {
 			last[i] = fmax(last[i], part_of(&r, i, true));
+			first[i] += change_of(&r, i);
+		}
 	}
 	for (int i = 0; i < n; i++) {
 		double error = last[i] + c->largest[i];
@@ -428,6 +458,8 @@ static void count_forced(const struct step *step, struct forced *forced)
 	count_loads(&program, system, step->model->single);
 	forced->multiplications = program.multiplications;
 	forced->additions = program.additions;
+	for (int i = 0; i < (system->segments - 1) * system->states * columns; i++)
+		forced->changes = forced->changes || (is_forced(step, i % columns) && forced->change[i].value != 0);
 }
 
 /* Takes loads while each makes the bound less than half of what it was; where there are many, all at once. */
@@ -480,8 +512,9 @@ void plan_forced(struct step *step)
 	struct forced *forced = NEW(struct forced);
 	forced->load = ARRAY(bool, (size_t)system->loads);
 	forced->part = ARRAY(struct coefficient, (size_t)(system->segments * system->states * step->table->columns));
+	forced->change = ARRAY(struct coefficient, (size_t)(system->segments * system->states * step->table->columns));
 	for (int l = 0; l < system->loads; l++) {
-		able[l] = load_acts(system, &system->load[l]) && fill_forced(system, l, forced->part);
+		able[l] = load_acts(system, &system->load[l]) && fill_forced(system, l, forced);
 		any = any || able[l];
 	}
 	if (any)

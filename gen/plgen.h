@@ -940,6 +940,8 @@ struct program {
 struct forced {                     /* part times the load states solves the equations: what some loads sustain by themselves */
 	bool *load;                 /* per load: one of them; then the step is without it */
 	struct coefficient *part;   /* [segment of time][states x load columns] */
+	struct coefficient *change; /* the same, from each segment to the next: what the state gains that is kept */
+	bool changes;               /* any of it */
 	int multiplications, additions; /* to add it */
 };
 struct rounding {                   /* a bound over the first steps from the initial values, inputs 0 */
