@@ -11,15 +11,15 @@ specs=$3
 case $plgen in /*) ;; *) plgen=$PWD/$plgen ;; esac
 case $specs in /*) ;; *) specs=$PWD/$specs ;; esac
 first=${4-1}
-last=${5-20}
+last=${5-8}
 seed=${6-1}
 . "${0%/*}/../tap.sh"
-compiler=${CC:-cc}
 echo '#include <math.h>' >models.c
 echo 'static const struct load_model { const char *name; const pl_model *model; const pl_modelf *modelf; double bound, boundf; } load_models[] = {' >table
 
-bound() {
-	"$plgen" --explain=json "$@" | sed -n 's/.*"rounding": {.*"relative": \([^,]*\),.*/\1/p'
+# stated FILE: the bound in its banner
+stated() {
+	sed -n 's/.* loads counted, rounding takes at most \([^ ]*\) of .*/\1/p' "$1"
 }
 
 # add NAME [OPTIONS]: NAME.spec, inputs 0 in the closed form
@@ -28,13 +28,13 @@ add() {
 	shift
 	h=$(sed -n 's/^step //p' "$name.spec")
 	sed -e '/^input/d' -e '/^tunable/d' -e 's/= u + /= /' "$name.spec" >closed.spec
-	"$plgen" --prefix "d$name" "$@" "$name.spec" >>models.c 2>log && "$plgen" --real float --prefix "f$name" "$@" "$name.spec" >>models.c 2>>log &&
+	"$plgen" --prefix "d$name" "$@" "$name.spec" >d.c 2>log && "$plgen" --real float --prefix "f$name" "$@" "$name.spec" >f.c 2>>log &&
 		"$plgen" --solution "1000*$h" closed.spec >"$name.csv" 2>>log || {
 		result 1 "$name"
 		tap_end
 	}
-	stated=$(bound "$@" "$name.spec") statedf=$(bound --real float "$@" "$name.spec")
-	echo "    {\"$name\", &d${name}_model, &f${name}_model, ${stated:-INFINITY}, ${statedf:-INFINITY}}," >>table
+	cat d.c f.c >>models.c
+	echo "    {\"$name\", &d${name}_model, &f${name}_model, $(stated d.c), $(stated f.c)}," >>table
 }
 
 "$specs" "$first" "$last" "$seed" || exit 99
@@ -97,6 +97,8 @@ cat >loose.spec <<-END
 	step 0.01
 END
 add loose
+sed -e 's/^model loose/model loose_passing/' -e 's/t^4\*cos(900\*t)/(t < 4.56 ? t^4*cos(900*t) : 1.000001*t^4*cos(900*t))/' loose.spec >loose_passing.spec
+add loose_passing
 awk 'BEGIN {
 	print "model large"
 	for (i = 1; i <= 10; i++) printf "%s%s", (i == 1 ? "coord x" : ", x"), i
@@ -111,7 +113,15 @@ add large_passing --form delta
 
 echo '};' >>table
 cat models.c table >load_models.h
-"$compiler" -O1 -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Werror -I"$root/runtime" -I"$root/tests/emitted" -I. -o program "$root/tests/forms/loads.c" \
+for compiler in "${CC:-cc} -std=c99" "clang -std=c99" "g++ -std=c++17 -x c++"; do
+	command -v "${compiler%% *}" >/dev/null || continue
+	# shellcheck disable=SC2086
+	$compiler -fsyntax-only -Wall -Wextra -Wpedantic -Wconversion -Wdouble-promotion -Wshadow -Werror -I"$root/runtime" models.c >log 2>&1 || {
+		result 1 "$compiler"
+		tap_end
+	}
+done
+"${CC:-cc}" -O1 -I"$root/runtime" -I"$root/tests/emitted" -I. -o program "$root/tests/forms/loads.c" \
 	"$root/tests/emitted/tap.c" "$root"/runtime/*.c -lm >log 2>&1 || {
 	result 1 'the models compile'
 	tap_end
