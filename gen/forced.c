@@ -10,7 +10,7 @@
 
 #include <math.h>
 
-enum { STEPS = 1000, BITS = 320, LIMIT_SIZE = 64, LIMIT_FORCED_STATES = 32, LIMIT_SOLVED = 48, FEW_LOADS = 8 };
+enum { STEPS = 1000, BITS = 320, LIMIT_SIZE = 64, LIMIT_FORCED_STATES = 32, LIMIT_SOLVED = 48, LIMIT_SEGMENTS = 16, FEW_LOADS = 8 };
 
 /* ---- the forced part of a load ---- */
 
@@ -264,7 +264,7 @@ static bool make_course(const struct step *step, struct course *c)
 	struct series place;
 	size_t states = (size_t)step->system.states, rows = STEPS + 1;
 	series_place(&place, &step->system, 0);
-	if (place.size > LIMIT_SIZE || step->system.states > LIMIT_FORCED_STATES)
+	if (place.size > LIMIT_SIZE || step->system.states > LIMIT_FORCED_STATES || step->system.segments > LIMIT_SEGMENTS)
 		return false;
 	*c = (struct course){ .steps = STEPS, .y = ARRAY(double, rows * states), .z = ARRAY(double, rows * (size_t)step->table->columns),
 			      .segment = ARRAY(int, rows), .largest = ARRAY(double, states), .sum = ARRAY(double, states * states),
