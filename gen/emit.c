@@ -268,8 +268,23 @@ static void banner_form(const struct emitter *e)
 		fprintf(e->to, " * Nothing leads back from %s: what rounding takes from %s is carried on.\n", carried_text(e), e->step->carries > 1 ? "each" : "it");
 	if (drift.known)
 		fprintf(e->to, " * %s.\n", drift_text(&drift));
+	if (e->step->rounding.known)
+		fprintf(e->to, " * %s.\n", rounding_text(e->step));
 	if (e->model->single)
 		fputs(" * Numbers and arithmetic are float; each constant is rounded to it once.\n", e->to);
+}
+
+/* What is left out of the step, and what it costs where it comes back */
+static void banner_forced(const struct emitter *e)
+{
+	const char *list = "";
+	int shown = 0;
+	for (int l = 0; l < e->system->loads; l++)
+		if (e->step->forced->load[l])
+			list = shown++ < 4 ? format("%s%s%s", list, *list ? ", " : "", column_text(&e->system->load[l], e->system->load[l].columns - 1)) : list;
+	fprintf(e->to, " * The step would round to what %s%s drive%s: the state is kept less their forced part, which is added where it is\n"
+		       " * read (get, out, at): %d multiplications, %d additions.\n", list, shown > 4 ? format(" and %d more loads", shown - 4) : "", shown == 1 ? "s" : "",
+		e->step->forced->multiplications, e->step->forced->additions);
 }
 
 static void banner_cost(const struct emitter *e)
@@ -286,6 +301,8 @@ static void banner_cost(const struct emitter *e)
 		fprintf(e->to, ", %d calls of the model's own functions", program->calls);
 	fputs(".\n", e->to);
 	banner_form(e);
+	if (e->step->forced)
+		banner_forced(e);
 	if (e->model->tuning)
 		banner_tuning(e);
 	fprintf(e->to, " * State y = %s.\n", state_list(e->step->shown->model));
@@ -336,14 +353,16 @@ static void emit_state_struct(const struct emitter *e)
 	if (e->model->tuning)
 		emit_coefficient_struct(e);
 	fprintf(to, "typedef struct %s %s;  /* copy it to save, assign it to restore */\n", e->name, e->name);
-	fprintf(to, "struct %s {\n    double y[%s_STATES];  /* %s%s */\n", e->name, e->upper, state_list(e->model),
-		e->step->momenta ? format("; velocities times mass / mass of %s", e->model->coord_name[0]) : "");
+	fprintf(to, "struct %s {\n    double y[%s_STATES];  /* %s%s%s */\n", e->name, e->upper, state_list(e->model),
+		e->step->momenta ? format("; velocities times mass / mass of %s", e->model->coord_name[0]) : "", e->step->forced ? "; less their forced part" : "");
 	if (e->step->program->compensated)
 		fprintf(to, "    double rest[%s_STATES];  /* what rounding took from y so far */\n", e->upper);
+	else if (e->step->forced)
+		fprintf(to, "    double rest[%s_STATES];  /* what rounding took from y at the last set */\n", e->upper);
 	if (e->step->carries)
 		fprintf(to, "    double carry[%d];      /* what rounding took from %s so far */\n", e->step->carries, carried_text(e));
 	if (e->model->relative)
-		fprintf(to, "    double set[%s_STATES], from[%s_STATES];  /* at the last set: the states as written, and y */\n", e->upper, e->upper);
+		fprintf(to, "    double set[%s_STATES], from[%s_STATES];  /* at the last set: the states as written, and as they are kept */\n", e->upper, e->upper);
 	if (e->model->tuning)
 		fprintf(to, "    %s_coeffs coeffs;    /* its own */\n", e->name);
 	if (e->system->inputs)
@@ -463,8 +482,9 @@ static const char *factor_of_momentum(const struct emitter *e, int state)
 static void write_locals(const struct emitter *e, const bool *reads, const char *type, const char *vector, bool velocities)
 {
 	const char *list = "";
+	bool forced = velocities && e->step->forced;    /* then the vector is whole */
 	for (int i = 0; i < e->system->states; i++) {
-		const char *mass = velocities ? factor_of_momentum(e, i) : NULL;
+		const char *mass = velocities && !forced ? factor_of_momentum(e, i) : NULL;
 		if (reads[i])
 			list = format("%s%s%s = %s[%d]%s", list, *list ? ", " : format("    %s ", type), e->local[i], vector, i, mass ? format(" / %s", mass) : "");
 	}
@@ -482,7 +502,12 @@ static void write_locals(const struct emitter *e, const bool *reads, const char 
 
 void emit_locals(const struct emitter *e, const bool *reads)
 {
-	write_locals(e, reads, "const double", "s->y", true);
+	bool any = false;
+	for (int i = 0; i < e->system->states; i++)
+		any = any || reads[i];
+	if (e->step->forced && any)
+		fprintf(e->to, "    double now[%s_STATES];\n    %s_get(s, now);\n", e->upper, e->name);
+	write_locals(e, reads, "const double", e->step->forced ? "now" : "s->y", true);
 }
 
 void emit_raw_locals(const struct emitter *e, const bool *reads, bool changing)
@@ -558,8 +583,30 @@ void emit_store(const struct emitter *e, const char *vector, const char *indent)
 		fprintf(to, "%ss->carry[%d] = 0.0;\n", indent, i);
 }
 
+/* y = z + f, f the forced part: what rounds off in z = y - f is kept in rest */
+void emit_state_forced(const struct emitter *e, const char *vector, const char *indent)
+{
+	fprintf(e->to, "%s%s_forced(s, now);\n", indent, e->name);
+	fprintf(e->to, "%sfor (i = 0; i < %s_STATES; i++) {\n", indent, e->upper);
+	fprintf(e->to, "%s    const double f = now[i], z = %s[i] - f, lost = z - %s[i];\n", indent, vector, vector);
+	fprintf(e->to, "%s    s->y[i] = z;\n%s    s->rest[i] = (%s[i] - (z - lost)) - (f + lost);\n%s}\n", indent, indent, vector, indent);
+	for (int i = 0; i < e->step->carries; i++)
+		fprintf(e->to, "%ss->carry[%d] = 0.0;\n", indent, i);
+}
+
 /* A vector of states from s->y */
 void emit_load_state(const struct emitter *e, const char *vector)
+{
+	if (e->step->forced)
+		fprintf(e->to, "    double now[%s_STATES];\n", e->upper);
+	emit_kept_state(e, vector);
+	if (!e->step->forced)
+		return;
+	fprintf(e->to, "    %s_forced(s, now);\n    for (i = 0; i < %s_STATES; i++)\n        %s[i] = (%s[i] + now[i]) + ", e->name, e->upper, vector, vector);
+	fputs(e->step->program->compensated ? "s->rest[i];\n" : "(s->k == 0 ? s->rest[i] : 0.0);\n", e->to);
+}
+
+void emit_kept_state(const struct emitter *e, const char *vector)
 {
 	fprintf(e->to, "    for (i = 0; i < %s_STATES; i++)\n        %s[i] = s->y[i];\n", e->upper, vector);
 	for (int i = 0; i < e->system->states; i++)
@@ -703,18 +750,26 @@ static void emit_access(const struct emitter *e)
 {
 	FILE *to = e->to;
 	const char *n = e->name, *N = e->upper;
+	const char *kept = e->model->relative ? "x" : "y";
 	if (e->model->relative)
 		emit_conversions(e);
 	else
 		emit_init(e);
+	if (e->step->forced)
+		emit_forced(e);
 	if (e->model->relative)
 		fprintf(to, "\n/* From the states as written, and as they are kept */\nstatic void %s_begin(%s *s, double t, const double y[%s_STATES], const double x[%s_STATES])\n"
-			    "{\n    int i;\n    for (i = 0; i < %s_STATES; i++) {\n        s->set[i] = y[i];\n        s->from[i] = x[i];\n    }\n", n, n, N, N, N);
+			    "{\n    int i;\n", n, n, N, N);
 	else
 		fprintf(to, "\nvoid %s_set(%s *s, double t, const double y[%s_STATES])\n{\n    int i;\n", n, n, N);
-	emit_store(e, e->model->relative ? "x" : "y", "    ");
+	if (e->step->forced)
+		fprintf(to, "    double now[%s_STATES];\n", N);
+	if (e->model->relative)
+		fprintf(to, "    for (i = 0; i < %s_STATES; i++) {\n        s->set[i] = y[i];\n        s->from[i] = x[i];\n    }\n", N);
+	if (!e->step->forced)
+		emit_store(e, kept, "    ");
 	for (int i = 0; i < e->system->states; i++)
-		if (e->model->relative && factor_of_momentum(e, i))
+		if (e->model->relative && !e->step->forced && factor_of_momentum(e, i))
 			fprintf(to, "    s->from[%d] = s->y[%d] / %s;\n", i, i, factor_of_momentum(e, i));
 	fputs("    s->t0 = t;\n    s->k = 0;\n", to);
 	if (keeps_status(e))
@@ -723,6 +778,8 @@ static void emit_access(const struct emitter *e)
 	if (e->system->segments > 1)
 		fprintf(to, "    for (s->segment = 0; s->segment < %d && %s_until(s, s->segment) <= 1e-18 * %s;)\n        s->segment++;\n",
 			e->system->segments - 1, n, step_length(e));
+	if (e->step->forced)
+		emit_state_forced(e, kept, "    ");
 	if (e->model->switching)
 		fprintf(to, "    %s_place(s);\n", n);
 	fputs("}\n", to);

@@ -323,3 +323,80 @@ void emit_load_states(const struct emitter *e, const bool *loads, bool time_is_t
 		if (loads[l] && !is_plain_constant(&e->system->load[l]))
 			emit_one_load(e, l);
 }
+
+/* ---- the forced part ---- */
+
+/* A factor of a load state; where formulas change, its place in the table forced_part[segment][state][column] */
+static const char *forced_term(const struct emitter *e, int state, int column)
+{
+	const struct table *table = e->step->table;
+	const char *operand = column_operand(e, column);
+	if (e->system->segments == 1)
+		return scaled(e->step->forced->part[state * table->columns + column].value, operand);
+	const char *text = format("%s_forced_part[s->segment][%d][%d]", e->name, state, column);
+	return operand ? format("%s * %s", text, operand) : text;
+}
+
+static bool forces(const struct emitter *e, int state, int column)
+{
+	const struct table *table = e->step->table;
+	bool any = false;
+	for (int s = 0; s < e->system->segments && is_forced(e->step, column); s++)
+		any = any || e->step->forced->part[(s * table->states + state) * table->columns + column].value != 0;
+	return any;
+}
+
+/* [segment][state][column] */
+static void print_forced(const struct emitter *e, const char *name, const char *what, int segments, const struct coefficient *factor)
+{
+	const struct table *table = e->step->table;
+	double *value = ARRAY(double, (size_t)(table->states * table->columns));
+	fprintf(e->to, "\nstatic const double %s_%s[%d][%s_STATES][%d] = {  /* %s */\n", e->name, name, segments, e->upper, table->columns, what);
+	for (int s = 0; s < segments; s++) {
+		for (int i = 0; i < table->states * table->columns; i++)
+			value[i] = is_forced(e->step, i % table->columns) ? factor[s * table->states * table->columns + i].value : 0;
+		fputs("  {\n", e->to);
+		emit_number_rows(e, table->states, table->columns, value, e->model->state_name);
+		fputs("  },\n", e->to);
+	}
+	fputs("};\n", e->to);
+}
+
+/* A change at the end of a step */
+static void emit_rebase(const struct emitter *e)
+{
+	const char *columns = "";
+	int count = e->step->table->columns;
+	for (int k = 0; k < count; k++) {
+		const char *operand = is_forced(e->step, k) ? column_operand(e, k) : "0.0";
+		columns = format("%s%s%s", columns, k ? ", " : "", operand ? operand : "1.0");
+	}
+	fprintf(e->to, "\nstatic void %s_rebase(%s *s)\n{\n", e->name, e->name);
+	emit_load_states(e, e->step->forced->load, false);
+	fprintf(e->to, "    const double load[%d] = {%s};\n    int i, j;\n", count, columns);
+	fprintf(e->to, "    for (i = 0; i < %s_STATES; i++)\n        for (j = 0; j < %d; j++)\n            s->y[i] += %s_forced_change[s->segment][i][j] * load[j];\n", e->upper, count,
+		e->name);
+	fputs("}\n", e->to);
+}
+
+void emit_forced(const struct emitter *e)
+{
+	const struct table *table = e->step->table;
+	const char **term = ARRAY(const char *, (size_t)table->columns);
+	if (e->system->segments > 1)
+		print_forced(e, "forced_part", "factors of the load states in each segment of time", e->system->segments, e->step->forced->part);
+	if (e->step->forced->changes) {
+		print_forced(e, "forced_change", "what they lose from each to the next", e->system->segments - 1, e->step->forced->change);
+		emit_rebase(e);
+	}
+	fprintf(e->to, "\n/* What the loads that the step leaves out sustain now */\nstatic void %s_forced(const %s *s, double now[%s_STATES])\n{\n", e->name, e->name, e->upper);
+	emit_load_states(e, e->step->forced->load, false);
+	for (int i = 0; i < table->states; i++) {
+		int terms = 0;
+		for (int k = 0; k < table->columns; k++)
+			if (forces(e, i, k))
+				term[terms++] = forced_term(e, i, k);
+		fprintf(e->to, "    now[%d] = %s;  /* %s */\n", i, terms ? tree(terms, term, 13) : "0.0", e->model->state_name[i]);
+	}
+	fputs("    (void)s;\n}\n", e->to);
+}

@@ -107,13 +107,20 @@ static void emit_load_factors(const struct emitter *e)
 {
 	const struct table *table = e->step->table;
 	double *value = ARRAY(double, (size_t)(table->states * table->columns));
+	int columns = 0;
+	for (int k = 0; k < table->columns; k++)
+		columns += !e->step->program->loops || !is_forced(e->step, k);
+	if (columns == 0)
+		return;
 	fprintf(e->to, "\n/* Factors of the load states in each segment of time */\nstatic const double %s_load_factor[%d][%s_STATES][%d] = {\n",
-		e->name, e->system->segments, e->upper, table->columns);
+		e->name, e->system->segments, e->upper, columns);
 	for (int s = 0; s < e->system->segments; s++) {
+		int count = 0;
 		for (int i = 0; i < table->states * table->columns; i++)
-			value[i] = table->load[s * table->states * table->columns + i].value;
+			if (!e->step->program->loops || !is_forced(e->step, i % table->columns))
+				value[count++] = table->load[s * table->states * table->columns + i].value;
 		fputs("  {\n", e->to);
-		emit_number_rows(e, table->states, table->columns, value, e->model->state_name);
+		emit_number_rows(e, table->states, columns, value, e->model->state_name);
 		fputs("  },\n", e->to);
 	}
 	fputs("};\n", e->to);
@@ -122,12 +129,17 @@ static void emit_load_factors(const struct emitter *e)
 /* vector[...] = the operands of the columns of a table; then y[i] += table[i][...] vector[...] */
 static void emit_columns(const struct emitter *e, const char *table, const char *vector, enum operand_kind kind, int columns)
 {
+	int count = 0;
+	for (int k = 0; k < columns; k++)
+		count += kind != OPERAND_LOAD || !is_forced(e->step, k);
+	columns = count;
 	if (columns == 0)
 		return;
 	fprintf(e->to, "    const double %s[%d] = {", vector, columns);
-	for (int k = 0; k < columns; k++) {
+	for (int k = 0, shown = 0; shown < columns; k++) {
 		const char *operand = operand_text(e, &(struct operand){ kind, k });
-		fprintf(e->to, "%s%s", k ? ", " : "", operand ? operand : "1.0");
+		if (kind != OPERAND_LOAD || !is_forced(e->step, k))
+			fprintf(e->to, "%s%s", shown++ ? ", " : "", operand ? operand : "1.0");
 	}
 	fprintf(e->to, "};\n    for (i = 0; i < %s_STATES; i++)\n        for (j = 0; j < %d; j++)\n            y[i] += %s[i][j] * %s[j];\n", e->upper, columns,
 		table, vector);
@@ -157,10 +169,10 @@ static void emit_looped_step(const struct emitter *e)
 	const char *n = e->name, *N = e->upper;
 	const struct table *table = e->step->table;
 	bool *loads = ARRAY(bool, (size_t)e->system->loads);
-	for (int l = 0; l < e->system->loads; l++)
-		loads[l] = true;
 	fprintf(to, "    double y[%s_STATES];\n    int i, j;\n", N);
 	emit_set_aside(e);
+	for (int l = 0, column = 0; l < e->system->loads; column += e->system->load[l++].columns)
+		loads[l] = !is_forced(e->step, column);
 	emit_load_states(e, loads, false);
 	fprintf(to, "    for (i = 0; i < %s_STATES; i++) {\n        y[i] = 0.0;\n        for (j = 0; j < %s_STATES; j++)\n", N, N);
 	fprintf(to, "            y[i] += %s[i][j] * s->y[j];\n    }\n", e->step->form == FORM_DELTA ? format("%s_increment", n) : stepped_phi(e));
@@ -201,6 +213,20 @@ const char *step_parameters(const struct emitter *e)
 	return format("%s *s%s", e->name, e->system->inputs ? format(", const double u[%s_INPUTS]", e->upper) : "");
 }
 
+/* The forced part changes with the loads; pass() does that for the changes inside the step. */
+static void emit_forced_changes(const struct emitter *e, const char *u)
+{
+	const char *n = e->name, *changing = e->step->forced->changes ? format("        %s_rebase(s);\n", e->name) : "";
+	int changes = e->system->segments - 1;
+	fprintf(e->to, "    int segment = s->segment;\n    if (segment < %d && %s_until(s, segment) < %s) {\n", changes, n, step_length(e));
+	fprintf(e->to, "        double y[%s_STATES];\n        int i;\n        segment = %s_pass(s, %s%s, 0, y);\n", e->upper, n, u, step_length(e));
+	emit_store(e, "y", "        ");
+	fprintf(e->to, "    } else {\n        %s_plain_step(s%s);\n    }\n", n, *u ? ", u" : "");
+	emit_step_end(e);
+	fprintf(e->to, "    s->segment = segment;\n    while (s->segment < %d && %s_until(s, s->segment) <= 1e-18 * %s) {\n%s        s->segment++;\n    }\n}\n", changes, n,
+		step_length(e), changing);
+}
+
 static void emit_changing_step(const struct emitter *e)
 {
 	const char *n = e->name, *u = e->system->inputs ? "u, " : "";
@@ -212,6 +238,10 @@ static void emit_changing_step(const struct emitter *e)
 	if (e->system->inputs)
 		fputs("    (void)u;\n", e->to);
 	fprintf(e->to, "}\n\nvoid %s_step(%s)\n{\n", n, step_parameters(e));
+	if (e->step->forced) {
+		emit_forced_changes(e, u);
+		return;
+	}
 	fprintf(e->to, "    if (s->segment < %d && %s_until(s, s->segment) < %s) {\n", changes, n, step_length(e));
 	fprintf(e->to, "        double y[%s_STATES];\n        int i;\n        %s_pass(s, %s%s, y);\n", e->upper, n, u, step_length(e));
 	emit_store(e, "y", "        ");

@@ -113,6 +113,24 @@ static int first_load_state(const struct emitter *e, int *columns)
 	return first;
 }
 
+/* Does this entry of x belong to a load that the step leaves out? */
+static bool forced_entry(const struct emitter *e, int entry)
+{
+	for (int l = 0; l < e->system->loads; l++)
+		if (e->step->forced && e->step->forced->load[l] && entry >= e->step->series.load[l] && entry < e->step->series.load[l] + e->system->load[l].columns)
+			return true;
+	return false;
+}
+
+/* x[...] of the loads that the step leaves out, each times its place in a table of factors[...][state][column]: into `vector` */
+static void emit_forced_sum(const struct emitter *e, const char *table, const char *vector, const char *indent)
+{
+	for (int l = 0, column = 0; l < e->system->loads; column += e->system->load[l++].columns)
+		if (e->step->forced->load[l])
+			fprintf(e->to, "%sfor (i = 0; i < %s_STATES; i++)\n%s    for (j = 0; j < %d; j++)\n%s        %s[i] += %s_%s[segment][i][%d + j] * x[%d + j];\n",
+				indent, e->upper, indent, e->system->load[l].columns, indent, vector, e->name, table, column, e->step->series.load[l]);
+}
+
 static void emit_segment_slopes(const struct emitter *e, int first, int columns)
 {
 	const struct series *series = &e->step->series;
@@ -125,7 +143,7 @@ static void emit_segment_slopes(const struct emitter *e, int first, int columns)
 		double *value = ARRAY(double, (size_t)(states * columns));
 		for (int i = 0; i < states; i++)
 			for (int j = 0; j < columns; j++)
-				value[i * columns + j] = round_rational(exact[i * series->size + first + j]);
+				value[i * columns + j] = forced_entry(e, first + j) ? 0 : round_rational(exact[i * series->size + first + j]);
 		emit_number_rows(e, states, columns, value, series_names(e));
 		fputs("  },\n", e->to);
 	}
@@ -157,7 +175,10 @@ void emit_series_vector(const struct emitter *e)
 	fprintf(e->to, "    int i;\n");
 	if (e->system->segments == 1)
 		emit_leftover_now(e);
-	emit_load_state(e, "x");
+	if (e->step->forced && e->system->segments > 1)
+		emit_kept_state(e, "x");
+	else
+		emit_load_state(e, "x");
 	emit_held(e);
 	store_loads(e, series->load, "");
 	store_inputs(e, series->input);
@@ -177,8 +198,8 @@ static void emit_pass(const struct emitter *e)
 		emit_use_segment(e, first, columns);
 	}
 	fprintf(to, "\n/* The state tau after now, from change to change of the loads on the way. */\n");
-	fprintf(to, "static void %s_pass(const %s *s, %s%s%sdouble tau, double y[%s_STATES])\n{\n", e->name, e->name, e->step->operators > 1 ? "int which, " : "",
-		input_parameter(e), series->powers ? "const double *left, " : "", e->upper);
+	fprintf(to, "static %s %s_pass(const %s *s, %s%s%sdouble tau, %sdouble y[%s_STATES])\n{\n", e->step->forced ? "int" : "void", e->name, e->name,
+		e->step->operators > 1 ? "int which, " : "", input_parameter(e), series->powers ? "const double *left, " : "", e->step->forced ? "int whole, " : "", e->upper);
 	fprintf(to, "    double A[%d][%d], done = 0.0, x[%d], work[%d];\n    int j, segment = s->segment;\n    pl_series series;\n", size, size, size, 2 * size);
 	emit_series_vector(e);
 	fprintf(to, "    for (i = 0; i < %d; i++)\n        for (j = 0; j < %d; j++)\n            A[i][j] = %s[i][j];\n", size, size, slope_text(e));
@@ -188,10 +209,19 @@ static void emit_pass(const struct emitter *e)
 		e->system->segments - 1, e->name, e->name);
 	if (first >= 0)
 		fprintf(to, "        %s_use_segment(A, segment);\n", e->name);
-	fputs("        if (ahead > done) {\n            pl_series_advance(&series, ahead - done, x, work);\n            done = ahead;\n        }\n    }\n", to);
+	fputs("        if (ahead > done) {\n            pl_series_advance(&series, ahead - done, x, work);\n            done = ahead;\n        }\n", to);
+	if (e->step->forced && e->step->forced->changes)
+		emit_forced_sum(e, "forced_change", "x", "        ");
+	fputs("    }\n", to);
 	if (first >= 0)
 		fprintf(to, "    %s_use_segment(A, segment);\n", e->name);
-	fprintf(to, "    pl_series_advance(&series, tau - done, x, work);\n    for (i = 0; i < %s_STATES; i++)\n        y[i] = x[i];\n}\n", e->upper);
+	fprintf(to, "    pl_series_advance(&series, tau - done, x, work);\n    for (i = 0; i < %s_STATES; i++)\n        y[i] = x[i];\n", e->upper);
+	if (e->step->forced) {
+		fputs("    if (whole) {\n", to);
+		emit_forced_sum(e, "forced_part", "y", "        ");
+		fputs("    }\n    return segment;\n", to);
+	}
+	fputs("}\n", to);
 }
 
 const char *low_text(mpq_srcptr q)
@@ -266,8 +296,8 @@ void emit_at(const struct emitter *e)
 		emit_leftover_now(e);
 		if (e->model->relative)
 			fprintf(to, "    double x[%s_STATES];\n", e->upper);
-		fprintf(to, "    %s_pass(s, %s%s%stau, %s);\n", e->name, e->step->operators > 1 ? "which, " : "", e->system->inputs ? "u, " : "",
-			series->powers ? "left, " : "", e->model->relative ? "x" : "y");
+		fprintf(to, "    %s_pass(s, %s%s%stau, %s%s);\n", e->name, e->step->operators > 1 ? "which, " : "", e->system->inputs ? "u, " : "",
+			series->powers ? "left, " : "", e->step->forced ? "1, " : "", e->model->relative ? "x" : "y");
 		if (e->model->relative)
 			fprintf(to, "    %s_written(s, x, y);\n", e->name);
 		fputs("}\n", to);
@@ -382,7 +412,9 @@ static void emit_fill_power(const struct emitter *e, int size, int entries)
 static void emit_leap_start(const struct emitter *e)
 {
 	if (e->step->momenta) {
-		if (e->model->relative)
+		if (e->step->forced)
+			emit_kept_state(e, "y");
+		else if (e->model->relative)
 			emit_load_state(e, "y");
 		else
 			fprintf(e->to, "    %s_get(s, y);\n", e->name);

@@ -115,6 +115,8 @@ static void person_step(FILE *to, const struct step *step)
 	struct drift drift = drift_of(step);
 	if (drift.known)
 		fprintf(to, ".\n%s", drift_text(&drift));
+	if (step->rounding.known)
+		fprintf(to, ".\n%s", rounding_text(step));
 	fprintf(to, ".\nPhi%s, each entry correctly rounded:\n", !has_leftover(step) ? "" : step->operators > 1 ? " = e^{A h} of the first operator" : " = e^{A h}");
 	for (int i = 0; i < model->system.states; i++) {
 		fprintf(to, "    %-8s", model->state_name[i]);
@@ -468,6 +470,9 @@ void explain_json(FILE *to, const struct step *step)
 	struct drift drift = drift_of(step);
 	if (drift.known)
 		fprintf(to, "  \"drift_per_step\": {\"amplitude\": %.17g, \"phase\": %.17g},\n", drift.amplitude, drift.phase);
+	if (step->rounding.known)
+		fprintf(to, "  \"rounding\": {\"steps\": %d, \"relative\": %.17g, \"state\": \"%s\"},\n", step->rounding.steps, step->rounding.relative,
+			model->state_name[step->rounding.state]);
 	fprintf(to, "  \"cost\": {\"multiplications\": %d, \"additions\": %d", step->program->multiplications, step->program->additions);
 	fprintf(to, step->program->calls ? ", \"calls\": %d}\n}\n" : "}\n}\n", step->program->calls);
 }

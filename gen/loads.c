@@ -196,7 +196,7 @@ struct response *response_of_load_state(const struct load *load, int to, int fro
 }
 
 /* z = t^j e^{a t} cos or sin(w t + p); the functions are irrational unless their argument is 0, then rationals of 256 bits. */
-static void load_state(const struct load *load, int column, mpq_srcptr t, mpq_ptr z)
+void load_state(const struct load *load, int column, mpq_srcptr t, mpq_ptr z)
 {
 	struct place nowhere = { 0 };
 	const struct wave *wave = load->wave;

@@ -851,6 +851,7 @@ struct started {                    /* a response that starts at a time of its o
 };
 /* output(t) from t = 0 as a sum of responses; returns how many */
 int responses_of_output(struct resolvent *r, const struct linear *system, const mpq_t *initial, const struct output *output, struct started **list);
+void load_state(const struct load *load, int column, mpq_srcptr t, mpq_ptr z);   /* its value, rational or the nearest of 256 bits */
 int load_columns(const struct linear *system);
 int input_columns(const struct linear *system);
 bool load_acts(const struct linear *system, const struct load *load);
@@ -1000,6 +1001,19 @@ struct program {
 	int *node_table;            /* per node: the table of loads and inputs that a predictor adds, or NONE */
 	bool predicts;
 };
+struct forced {                     /* part times the load states solves the equations: what some loads sustain by themselves */
+	bool *load;                 /* per load: one of them; then the step is without it */
+	struct coefficient *part;   /* [segment of time][states x load columns] */
+	struct coefficient *change; /* the same, from each segment to the next: what the state gains that is kept */
+	bool changes;               /* any of it */
+	int multiplications, additions; /* to add it */
+};
+struct rounding {                   /* a bound over the first steps from the initial values, inputs 0 */
+	bool known;
+	int steps, state;           /* the state where it is largest */
+	double relative;            /* to the state's largest value */
+	bool tiny;                  /* there are states too small for the target's range, which it leaves out */
+};
 struct step {                       /* everything that is emitted for one model */
 	const struct model *model;
 	struct linear system;       /* of the first operator: with what the scheme holds taken out of C and K */
@@ -1016,6 +1030,8 @@ struct step {                       /* everything that is emitted for one model 
 	const mpq_t *mass;          /* of kick-drift-kick, per coordinate; in units of the first */
 	bool momenta;               /* NAME keeps mass times velocity, since not all masses are equal */
 	int carries, *carry;        /* states that nothing leads back from, which only add up: index of what rounding takes from each; -1: of others */
+	struct forced *forced;      /* NAME keeps the state less this; NULL: as it is */
+	struct rounding rounding;
 	mpfr_t growth;              /* pl: 1/s, largest real part of the modified equation's poles (report only) */
 	struct series series;
 	int *halvings;              /* of a piecewise-linear model, per operator */
@@ -1034,6 +1050,12 @@ void find_carries(struct step *step);                       /* before its progra
 struct program *linear_program(const struct step *step);    /* from its table */
 bool has_second_word(const struct product *p, const struct linear *system); /* in the code: loads that change have none */
 void count_loads(struct program *program, const struct linear *system, bool single); /* what the load states of the columns in use cost */
+
+/* ---- forced.c: what rounding does to a step with loads ---- */
+
+void plan_forced(struct step *step);                         /* its rounding; its forced part, where the bound is the better for it */
+bool is_forced(const struct step *step, int column);         /* is this load state's load left out of the step? */
+const char *rounding_text(const struct step *step);
 
 /* ---- drift.c: what the rounding of its constants does to a linear step ---- */
 
@@ -1116,6 +1138,7 @@ void emit_load_members(const struct emitter *e);
 void emit_load_set(const struct emitter *e);
 void emit_load_advance(const struct emitter *e, const char *steps); /* `steps` NULL: one */
 void emit_load_states(const struct emitter *e, const bool *loads, bool time_is_there); /* declares load1[...] for the loads wanted */
+void emit_forced(const struct emitter *e);                        /* NAME_forced: what is not kept of the state */
 const char *load_operand(const struct emitter *e, int load, int column); /* NULL: the constant 1 */
 const char *column_operand(const struct emitter *e, int column);
 
@@ -1135,6 +1158,8 @@ void emit_locals(const struct emitter *e, const bool *reads);     /* the states 
 void emit_raw_locals(const struct emitter *e, const bool *reads, bool changing); /* as kept: of kick-drift-kick, momenta */
 void emit_store(const struct emitter *e, const char *vector, const char *indent); /* s->y from states */
 void emit_load_state(const struct emitter *e, const char *vector);  /* states from s->y */
+void emit_kept_state(const struct emitter *e, const char *vector);  /* the same, less their forced part where the step keeps them so */
+void emit_state_forced(const struct emitter *e, const char *vector, const char *indent); /* s->y from states that are whole */
 void emit_locals_of(const struct emitter *e, const bool *reads, const char *vector);
 void emit_step(const struct emitter *e);
 void emit_step_end(const struct emitter *e);                      /* samples, phases and time move on */

@@ -493,6 +493,9 @@ static void build_exact(struct step *step)
 		mark_tuned_zeros(step);
 	find_carries(step);
 	step->program = linear_program(step);
+	plan_forced(step);
+	if (step->forced)
+		step->program = linear_program(step);
 }
 
 static bool *loads_of_regions(const struct step *step)

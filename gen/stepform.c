@@ -278,12 +278,13 @@ static void add_term(struct assignment *a, const struct coefficient *factor, enu
 }
 
 /* A load that acts in some segment of time */
-static void add_load_term(struct assignment *a, const struct table *table, int segments, int row, int column)
+static void add_load_term(struct assignment *a, const struct step *step, int row, int column)
 {
+	const struct table *table = step->table;
 	bool any = false;
-	for (int s = 0; s < segments; s++)
+	for (int s = 0; s < step->system.segments; s++)
 		any = any || !table->load[(s * table->states + row) * table->columns + column].zero;
-	if (any)
+	if (any && !is_forced(step, column))
 		a->term[a->terms++] = (struct product){ &table->load[row * table->columns + column], { OPERAND_LOAD, column } };
 }
 
@@ -391,7 +392,7 @@ static void add_loads_and_inputs(struct assignment *a, const struct step *step, 
 {
 	const struct table *table = step->table;
 	for (int k = 0; k < table->columns; k++)
-		add_load_term(a, table, step->system.segments, row, k);
+		add_load_term(a, step, row, k);
 	for (int k = 0; k < table->inputs; k++)
 		add_term(a, &table->input[row * table->inputs + k], OPERAND_INPUT, k);
 }
@@ -453,9 +454,13 @@ static void write_kick_drift_kick(struct program *program, const struct step *st
 }
 
 /* A large model loops over its tables, zeros included. */
-static void count_loops(struct program *program, const struct table *table)
+static void count_loops(struct program *program, const struct step *step)
 {
-	int n = table->states, row = n + table->columns + table->inputs;
+	const struct table *table = step->table;
+	int columns = 0;
+	for (int k = 0; k < table->columns; k++)
+		columns += !is_forced(step, k);
+	int n = table->states, row = n + columns + table->inputs;
 	program->loops = true;
 	program->multiplications = n * row + program->wave_multiplications;
 	program->additions = n * row + program->wave_additions;
@@ -477,6 +482,6 @@ struct program *linear_program(const struct step *step)
 		write_kick_drift_kick(program, step);
 	count(program, &step->system, step->model->single);
 	if (table->states > LIMIT_UNROLLED_STATES)
-		count_loops(program, table);
+		count_loops(program, step);
 	return program;
 }

@@ -1,0 +1,130 @@
+#!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Models with loads, stepped in double and in float beside their closed form: what rounding takes (loads.c). Random ones, and some in which what the
+# step loses to a load is far larger than what the load leaves in a state.
+#
+#     loads.sh PLGEN SOURCE_ROOT LOAD_SPECS [FIRST LAST [SEED]]
+set -u
+plgen=$1
+root=$(cd "$2" && pwd) || exit 99
+specs=$3
+case $plgen in /*) ;; *) plgen=$PWD/$plgen ;; esac
+case $specs in /*) ;; *) specs=$PWD/$specs ;; esac
+first=${4-1}
+last=${5-8}
+seed=${6-1}
+. "${0%/*}/../tap.sh"
+echo '#include <math.h>' >models.c
+echo 'static const struct load_model { const char *name; const pl_model *model; const pl_modelf *modelf; double bound, boundf; } load_models[] = {' >table
+
+# stated FILE: the bound in its banner
+stated() {
+	sed -n 's/.* loads counted, rounding takes at most \([^ ]*\) of .*/\1/p' "$1"
+}
+
+# add NAME [OPTIONS]: NAME.spec, inputs 0 in the closed form
+add() {
+	name=$1
+	shift
+	h=$(sed -n 's/^step //p' "$name.spec")
+	sed -e '/^input/d' -e '/^tunable/d' -e 's/= u + /= /' "$name.spec" >closed.spec
+	"$plgen" --prefix "d$name" "$@" "$name.spec" >d.c 2>log && "$plgen" --real float --prefix "f$name" "$@" "$name.spec" >f.c 2>>log &&
+		"$plgen" --solution "1000*$h" closed.spec >"$name.csv" 2>>log || {
+		result 1 "$name"
+		tap_end
+	}
+	cat d.c f.c >>models.c
+	echo "    {\"$name\", &d${name}_model, &f${name}_model, $(stated d.c), $(stated f.c)}," >>table
+}
+
+"$specs" "$first" "$last" "$seed" || exit 99
+k=$first
+while [ "$k" -le "$last" ]; do
+	mv "$k.spec" "r$k.spec"
+	add "r$k"
+	k=$((k + 1))
+done
+
+# pair NAME LOAD [STATEMENTS]: the second mass driven far above its poles, the first only through it
+pair() {
+	cat >"$1.spec" <<-END
+		model $1
+		coord x1, x2
+		${3-}
+		x1'' + x1 + 0.1*x1' - 0.5*x2 = 0
+		x2'' + x2 + 0.1*x2' - 0.5*x1 = $2
+		step 0.01
+	END
+}
+pair power 't^4*cos(968*t)'
+add power
+pair plain 'cos(968*t)'
+add plain
+pair direct 't^4*cos(968*t)'
+add direct --form direct
+pair compensated 't^4*cos(968*t) + t'
+add compensated --accuracy compensated
+pair growing 't^2*exp(-0.2*t)*cos(500*t) + 0.001*cos(2*t)'
+add growing
+pair accelerations 't^4*cos(968*t)' "output x1, x1'', x2', d = x2 - x1"
+add accelerations
+pair driven 'u + t^3*cos(700*t)' 'input u'
+add driven
+pair ramped 'u + t^3*cos(700*t)' 'input u hold first'
+add ramped
+pair changing '(t < 3.003 ? t^4*cos(968*t) : t < 5 ? 0 : t^2*sin(400*t))'
+add changing
+pair passing 't^4*cos(968*t) + (t < 3.003 ? 0 : 1e-9*(t - 3.003))'
+add passing
+pair passing_driven 'u + (t < 4 ? t^4*cos(968*t) : (1 + 1e-9)*t^4*cos(968*t))' 'input u'
+add passing_driven --form delta
+pair passing_compensated 't^4*cos(968*t) + (t < 4 ? 0 : 1e-9)' "output d = x1 - x2, x2'', x1', x2"
+add passing_compensated --accuracy compensated
+cat >kicked.spec <<-END
+	model kicked
+	coord x1, x2
+	x1'' + x1 - 0.5*x2 = 0
+	x2'' + x2 - 0.5*x1 = t^4*cos(968*t)
+	step 0.01
+END
+add kicked
+cat >loose.spec <<-END
+	model loose
+	coord a, b, c
+	a'' + 0.1*(a' - b') + (a - b) = t^4*cos(900*t)
+	b'' + 0.1*(b' - a') + (b - a) + 2*(b - c) = -t^4*cos(900*t)
+	c'' + 2*(c - b) = 0
+	step 0.01
+END
+add loose
+sed -e 's/^model loose/model loose_passing/' -e 's/t^4\*cos(900\*t)/(t < 4.56 ? t^4*cos(900*t) : 1.000001*t^4*cos(900*t))/' loose.spec >loose_passing.spec
+add loose_passing
+awk 'BEGIN {
+	print "model large"
+	for (i = 1; i <= 10; i++) printf "%s%s", (i == 1 ? "coord x" : ", x"), i
+	print ""
+	for (i = 1; i <= 10; i++)
+		printf "x%d%s + 0.05*x%d%s + 3*x%d%s%s = %s\n", i, "\047\047", i, "\047", i, (i == 1 ? "" : " - x" i - 1), (i == 10 ? "" : " - x" i + 1), (i == 1 ? "t^3*cos(700*t)" : 0)
+	print "step 0.01"
+}' >large.spec
+add large
+sed -e 's/^model large/model large_passing/' -e 's/= t^3.*/= t^3*cos(700*t) + (t < 2.5 ? 0 : 1e-8*(t - 2.5))/' large.spec >large_passing.spec
+add large_passing --form delta
+
+echo '};' >>table
+cat models.c table >load_models.h
+for compiler in "${CC:-cc} -std=c99" "clang -std=c99" "g++ -std=c++17 -x c++"; do
+	command -v "${compiler%% *}" >/dev/null || continue
+	# shellcheck disable=SC2086
+	$compiler -fsyntax-only -Wall -Wextra -Wpedantic -Wconversion -Wdouble-promotion -Wshadow -Werror -I"$root/runtime" models.c >log 2>&1 || {
+		result 1 "$compiler"
+		tap_end
+	}
+done
+"${CC:-cc}" -O1 -I"$root/runtime" -I"$root/tests/emitted" -I. -o program "$root/tests/forms/loads.c" \
+	"$root/tests/emitted/tap.c" "$root"/runtime/*.c -lm >log 2>&1 || {
+	result 1 'the models compile'
+	tap_end
+}
+./program .
+exit $?
