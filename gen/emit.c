@@ -281,7 +281,8 @@ static void banner_forced(const struct emitter *e)
 	int shown = 0;
 	for (int l = 0; l < e->system->loads; l++)
 		if (e->step->forced->load[l])
-			list = shown++ < 4 ? format("%s%s%s", list, *list ? ", " : "", column_text(&e->system->load[l], e->system->load[l].columns - 1)) : list;
+			list = shown++ >= 4 ? list
+				: format("%s%s%s", list, *list ? ", " : "", column_text(&e->system->load[l], e->system->load[l].columns - 1 - oscillates(e->system->load[l].wave)));
 	fprintf(e->to, " * The step would round to what %s%s drive%s: the state is kept less their forced part, which is added where it is\n"
 		       " * read (get, out, at): %d multiplications, %d additions.\n", list, shown > 4 ? format(" and %d more loads", shown - 4) : "", shown == 1 ? "s" : "",
 		e->step->forced->multiplications, e->step->forced->additions);
