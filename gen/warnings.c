@@ -336,7 +336,8 @@ static void compare_excursions(struct jacobian *j, double end, struct softness *
 	const struct model *model = j->b->model;
 	int states = model->system.states, followed = model->n < FOLLOWED ? model->n : FOLLOWED;
 	size_t size = (size_t)states;
-	double *y = ARRAY(double, size), *farthest = ARRAY(double, (size_t)followed * size), *when = ARRAY(double, (size_t)followed), t = 0, h = nearest_double(model->h);
+	double *y = ARRAY(double, size), *farthest = ARRAY(double, (size_t)followed * size), *when = ARRAY(double, (size_t)followed);
+	double t = 0, h = nearest_double(model->h);
 	struct reference r;
 	if (!make_reference(&r, j->b))
 		return;
@@ -431,7 +432,8 @@ static void check_smoothness(const struct building *b)
 	const char *cure = smooth->timed && smooth->kind == SMOOTH_KINK ? "a step of which that time is a multiple keeps the order" :
 		smooth->kind == SMOOTH_JUMP ? "a smaller step, or something smooth in its place, such as tanh of a multiple" :
 		"a smaller step, or something smoother in its place";
-	say_warning(smooth->node->start, apart ? format("scheme exact treats it where '%s' is not beside it; else %s", text_between(other->start, other->end), cure) : cure,
+	say_warning(smooth->node->start, apart ? format("scheme exact treats it where '%s' is not beside it; else %s", text_between(other->start, other->end), cure)
+			  : cure,
 		    "%s: scheme %s is of order %s at most there, not %d", smoothness_text(model), scheme_name(model->scheme), order_text(model), order_of_scheme(model));
 }
 
