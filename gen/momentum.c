@@ -92,6 +92,15 @@ static bool larger(mpq_srcptr a, mpq_srcptr b)
 	return larger;
 }
 
+/* A velocity that stays by itself: then there is nothing to give it from, and its own row steps it exactly. */
+static bool is_alone(const mpq_t *w, int n)
+{
+	int parts = 0;
+	for (int i = 0; i < n; i++)
+		parts += mpq_sgn(w[i]) != 0;
+	return parts == 1;
+}
+
 /* Weights of the velocities in a sum that stays, the largest 1; false: none stays */
 static bool steady_sum(const struct linear *system, mpq_t *w, int *heaviest)
 {
@@ -101,7 +110,7 @@ static bool steady_sum(const struct linear *system, mpq_t *w, int *heaviest)
 		return false;
 	leading_inverse(system, inverse, &column);
 	highest_derivatives(system, (const mpq_t *)inverse, false, highest);
-	if (!left_null(n, states, (const mpq_t *)highest, w) || is_driven(system, (const mpq_t *)inverse, (const mpq_t *)w))
+	if (!left_null(n, states, (const mpq_t *)highest, w) || is_alone((const mpq_t *)w, n) || is_driven(system, (const mpq_t *)inverse, (const mpq_t *)w))
 		return false;
 	*heaviest = 0;
 	mpq_init(unit);
