@@ -7,6 +7,7 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <getopt.h>
+#include <signal.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -159,6 +160,26 @@ static void take_option(struct options *options, int option)
 	}
 }
 
+/* Where a file that is not there yet would be: the folder, and the name in it */
+static bool same_place(const char *a, const char *b)
+{
+	struct stat of_a, of_b;
+	const char *slash_a = strrchr(a, '/'), *slash_b = strrchr(b, '/');
+	const char *folder_a = slash_a ? format("%.*s/", (int)(slash_a - a), a) : ".", *folder_b = slash_b ? format("%.*s/", (int)(slash_b - b), b) : ".";
+	return strcmp(slash_a ? slash_a + 1 : a, slash_b ? slash_b + 1 : b) == 0 && stat(folder_a, &of_a) == 0 && stat(folder_b, &of_b) == 0 &&
+	       of_a.st_dev == of_b.st_dev && of_a.st_ino == of_b.st_ino;
+}
+
+/* One file under two names, links and - for standard input too; devices and pipes may be named twice. */
+static bool same_file(const char *a, const char *b)
+{
+	struct stat of_a, of_b;
+	bool there_a = (strcmp(a, "-") == 0 ? fstat(STDIN_FILENO, &of_a) : stat(a, &of_a)) == 0, there_b = stat(b, &of_b) == 0;
+	if (there_a && there_b)
+		return S_ISREG(of_a.st_mode) && of_a.st_dev == of_b.st_dev && of_a.st_ino == of_b.st_ino;
+	return !there_a && !there_b && same_place(a, b);
+}
+
 static void read_options(int argc, char **argv, struct options *options)
 {
 	int option;
@@ -199,14 +220,15 @@ static void read_options(int argc, char **argv, struct options *options)
 	const char *path[] = { options->spec, options->output, header, options->depfile };
 	for (int i = 0; i < 4; i++)
 		for (int j = i + 1; j < 4; j++)
-			if (path[i] && path[j] && strcmp(path[i], path[j]) == 0 && strncmp(path[i], "/dev/", 5) != 0)
+			if (path[i] && path[j] && same_file(path[i], path[j]))
 				wrong_usage(format("'%s' would be written over: each file needs a name of its own", path[i]));
 }
 
 /* ---- publishing: all files are written beside their places first, then moved in ---- */
 
 struct file {
-	const char *path, *temporary;
+	const char *path;
+	const char *volatile temporary;
 	char *text;
 	size_t length;
 };
@@ -223,6 +245,24 @@ static _Noreturn void cannot_write(const struct file *failed)
 		if (file[i].temporary)
 			unlink(file[i].temporary);
 	exit(1);
+}
+
+/* A signal that ends the program takes what was not published along. */
+static void clean_up(int number)
+{
+	for (int i = 0; i < files; i++)
+		if (file[i].temporary)
+			unlink(file[i].temporary);
+	signal(number, SIG_DFL);
+	raise(number);
+}
+
+static void catch_signals(void)
+{
+	static const int number[] = { SIGHUP, SIGINT, SIGTERM };
+	for (size_t i = 0; i < sizeof number / sizeof *number; i++)
+		if (signal(number[i], clean_up) == SIG_IGN)
+			signal(number[i], SIG_IGN);
 }
 
 static void write_all(const struct file *f, int descriptor)
@@ -260,10 +300,12 @@ static void write_beside(struct file *f)
 	mode_t mask = umask(0);
 	umask(mask);
 	char *temporary = format("%s.XXXXXX", f->path);
+	f->temporary = temporary;               /* before it is there: a signal may come at any time */
 	int descriptor = mkstemp(temporary);
-	if (descriptor < 0)
+	if (descriptor < 0) {
+		f->temporary = NULL;
 		cannot_write(f);
-	f->temporary = temporary;
+	}
 	if (fchmod(descriptor, exists ? status.st_mode & 07777 : 0666 & ~mask) != 0)
 		cannot_write(f);
 	write_all(f, descriptor);
@@ -271,6 +313,7 @@ static void write_beside(struct file *f)
 
 static void publish(void)
 {
+	catch_signals();
 	for (int i = 0; i < files; i++)
 		if (file[i].path)
 			write_beside(&file[i]);
@@ -390,6 +433,51 @@ static void make_single(struct file *f)
 	*f = single;
 }
 
+/* ---- a header and its C: of two runs, a kill between two renames for one, they must not compile ---- */
+
+static void insert_after(struct file *f, const char *line, const char *more)
+{
+	struct file longer = *f;
+	const char *end = strchr(strstr(f->text, line) + strlen(line), '\n') + 1;
+	FILE *stream = open_memstream(&longer.text, &longer.length);
+	if (stream)
+		fprintf(stream, "%.*s%s%s", (int)(end - f->text), f->text, more, end);
+	if (!stream || fclose(stream) != 0) {
+		fputs("plgen: error: out of memory\n", stderr);
+		exit(1);
+	}
+	free(f->text);
+	*f = longer;
+}
+
+/* The header's own text as a number (FNV-1a, without its sign bit); C beside another header is refused by the compiler. */
+static void mark(struct file *code, struct file *header)
+{
+	static const char declared[] = "\n#ifndef ";
+	unsigned long long hash = 0xcbf29ce484222325;
+	const char *name = strstr(header->text, declared) + strlen(declared);
+	int length = (int)(strstr(name, "_DECLARED\n") - name);
+	for (const char *c = header->text; *c; c++)
+		hash = (hash ^ (unsigned char)*c) * 0x100000001b3;
+	name = format("%.*s", length, name);
+	hash &= 0x7fffffffffffffff;
+	insert_after(header, "_DECLARED\n#define ", format("#define %s_MARK 0x%016llx  /* its C has the same */\n", name, hash));
+	if (code)
+		insert_after(code, "\n#include \"", format("#if %s_MARK != 0x%016llx\n#error \"this file and its header were not made together\"\n#endif\n", name, hash));
+}
+
+/* What the spec reads is not written over. */
+static bool spares_data(const struct model *model)
+{
+	for (int i = 0; i < files; i++)
+		for (int k = 0; k < model->spec->files; k++)
+			if (file[i].path && same_file(model->spec->file[k], file[i].path)) {
+				fprintf(stderr, "%s: error: the spec reads this file: it is not written over\n", file[i].path);
+				return false;
+			}
+	return true;
+}
+
 static int fail(void)
 {
 	diagnostics_print(stderr);
@@ -434,11 +522,17 @@ int main(int argc, char **argv)
 	}
 	for (int i = 0; i < files && options.overrides.single && options.print <= PRINT_HEADER; i++)
 		make_single(&file[i]);
+	if (options.print == PRINT_HEADER)
+		mark(NULL, &file[0]);
+	else if (options.print == PRINT_C && options.output)
+		mark(&file[0], &file[1]);
 	if (options.depfile) {
 		to = open_file(options.depfile);
 		print_depfile(to, &options, model);
 		close_file(to);
 	}
+	if (!spares_data(model))
+		return fail();
 	publish();
 	diagnostics_print(stderr);
 	return 0;
