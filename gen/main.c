@@ -461,9 +461,9 @@ static void mark(struct file *code, struct file *header)
 		hash = (hash ^ (unsigned char)*c) * 0x100000001b3;
 	name = format("%.*s", length, name);
 	hash &= 0x7fffffffffffffff;
-	insert_after(header, "_DECLARED\n#define ", format("#define %s_MARK 0x%016llx  /* its C has the same */\n", name, hash));
+	insert_after(header, "_DECLARED\n#define ", format("#define %s_PAIR 0x%016llx  /* its C has the same */\n", name, hash));
 	if (code)
-		insert_after(code, "\n#include \"", format("#if %s_MARK != 0x%016llx\n#error \"this file and its header were not made together\"\n#endif\n", name, hash));
+		insert_after(code, "\n#include \"", format("#if %s_PAIR != 0x%016llx\n#error \"this file and its header were not made together\"\n#endif\n", name, hash));
 }
 
 /* What the spec reads is not written over. */
