@@ -90,8 +90,28 @@ static const struct option long_options[] = {
 
 static bool told;               /* that standard output cannot be written */
 
+struct file {
+	const char *path;
+	const char *volatile temporary;
+	char *text;                     /* ends with a 0 */
+	size_t length;
+	bool lost;                      /* there was no memory for some of it */
+};
+
+enum { FILES = 3 };              /* C, header, depfile */
+static struct file file[FILES];
+static int files;
+
+static void remove_temporaries(void)
+{
+	for (int i = 0; i < files; i++)
+		if (file[i].temporary)
+			unlink(file[i].temporary);
+}
+
 static void finish(void)
 {
+	remove_temporaries();
 	memory_close();
 	if (!told && (fflush(stdout) != 0 || ferror(stdout))) {
 		fprintf(stderr, "plgen: error: cannot write to standard output: %s\n", strerror(errno));
@@ -226,33 +246,17 @@ static void read_options(int argc, char **argv, struct options *options)
 
 /* ---- publishing: all files are written beside their places first, then moved in ---- */
 
-struct file {
-	const char *path;
-	const char *volatile temporary;
-	char *text;
-	size_t length;
-};
-
-enum { FILES = 3 };              /* C, header, depfile */
-static struct file file[FILES];
-static int files;
-
 static _Noreturn void cannot_write(const struct file *failed)
 {
 	fprintf(stderr, "%s: error: cannot write: %s\n", failed->path ? failed->path : "standard output", strerror(errno));
 	told = told || !failed->path;
-	for (int i = 0; i < files; i++)
-		if (file[i].temporary)
-			unlink(file[i].temporary);
 	exit(1);
 }
 
 /* A signal that ends the program takes what was not published along. */
 static void clean_up(int number)
 {
-	for (int i = 0; i < files; i++)
-		if (file[i].temporary)
-			unlink(file[i].temporary);
+	remove_temporaries();
 	signal(number, SIG_DFL);
 	raise(number);
 }
@@ -294,6 +298,8 @@ static void write_beside(struct file *f)
 		return;
 	}
 	char *real = exists ? realpath(f->path, NULL) : NULL;
+	if (exists && !real)
+		cannot_write(f);
 	if (real)
 		f->path = format("%s", real);
 	free(real);
@@ -328,24 +334,48 @@ static void publish(void)
 	}
 }
 
-static FILE *open_file(const char *path)
+static _Noreturn void out_of_memory(void)
 {
-	struct file *f = &file[files++];
-	f->path = path;
-	FILE *stream = open_memstream(&f->text, &f->length);
-	if (!stream) {
-		fputs("plgen: error: out of memory\n", stderr);
-		exit(1);
+	fputs("plgen: error: out of memory\n", stderr);
+	exit(1);
+}
+
+static ssize_t keep(void *cookie, const char *bytes, size_t size)
+{
+	struct file *f = cookie;
+	char *text = f->lost ? NULL : realloc(f->text, f->length + size + 1);
+	if (!text) {
+		f->lost = true;
+		return 0;
 	}
+	memcpy(text + f->length, bytes, size);
+	f->text = text;
+	f->length += size;
+	text[f->length] = 0;
+	return (ssize_t)size;
+}
+
+/* Its text grows in memory: a stream of the library's own would lose what it has no memory for without a word. */
+static FILE *open_text(struct file *f)
+{
+	FILE *stream = fopencookie(f, "w", (cookie_io_functions_t){ .write = keep });
+	f->text = NULL;
+	f->length = 0;
+	if (!stream)
+		out_of_memory();
 	return stream;
 }
 
-static void close_file(FILE *stream)
+static void close_file(FILE *stream, const struct file *f)
 {
-	if (fclose(stream) != 0) {
-		fputs("plgen: error: out of memory\n", stderr);
-		exit(1);
-	}
+	if (fclose(stream) != 0 || f->lost)
+		out_of_memory();
+}
+
+static FILE *open_file(const char *path)
+{
+	file[files].path = path;
+	return open_text(&file[files++]);
 }
 
 /* ---- the pipeline ---- */
@@ -421,33 +451,23 @@ static void print_main_text(void *context)
 /* C for the target double becomes C for float. */
 static void make_single(struct file *f)
 {
-	struct file single = *f;
-	FILE *stream = open_memstream(&single.text, &single.length);
-	if (stream)
-		print_single(stream, f->text);
-	if (!stream || fclose(stream) != 0) {
-		fputs("plgen: error: out of memory\n", stderr);
-		exit(1);
-	}
-	free(f->text);
-	*f = single;
+	char *text = f->text;
+	FILE *stream = open_text(f);
+	print_single(stream, text);
+	close_file(stream, f);
+	free(text);
 }
 
 /* ---- a header and its C: of two runs, a kill between two renames for one, they must not compile ---- */
 
 static void insert_after(struct file *f, const char *line, const char *more)
 {
-	struct file longer = *f;
-	const char *end = strchr(strstr(f->text, line) + strlen(line), '\n') + 1;
-	FILE *stream = open_memstream(&longer.text, &longer.length);
-	if (stream)
-		fprintf(stream, "%.*s%s%s", (int)(end - f->text), f->text, more, end);
-	if (!stream || fclose(stream) != 0) {
-		fputs("plgen: error: out of memory\n", stderr);
-		exit(1);
-	}
-	free(f->text);
-	*f = longer;
+	char *text = f->text;
+	const char *end = strchr(strstr(text, line) + strlen(line), '\n') + 1;
+	FILE *stream = open_text(f);
+	fprintf(stream, "%.*s%s%s", (int)(end - text), text, more, end);
+	close_file(stream, f);
+	free(text);
 }
 
 /* The header's own text as a number (FNV-1a, without its sign bit); C beside another header is refused by the compiler. */
@@ -510,7 +530,7 @@ int main(int argc, char **argv)
 
 	FILE *to = open_file(options.output);
 	bool printed = statement_guard(print_main_text, &(struct printing){ &options, model, step, to });
-	close_file(to);
+	close_file(to, &file[files - 1]);
 	if (!printed) {
 		free(file[0].text);
 		return fail();
@@ -518,7 +538,7 @@ int main(int argc, char **argv)
 	if (options.output && options.print == PRINT_C) {
 		to = open_file(header_path(options.output));
 		emit_header(to, step, options.banner, options.rhs);
-		close_file(to);
+		close_file(to, &file[files - 1]);
 	}
 	for (int i = 0; i < files && options.overrides.single && options.print <= PRINT_HEADER; i++)
 		make_single(&file[i]);
@@ -529,7 +549,7 @@ int main(int argc, char **argv)
 	if (options.depfile) {
 		to = open_file(options.depfile);
 		print_depfile(to, &options, model);
-		close_file(to);
+		close_file(to, &file[files - 1]);
 	}
 	if (!spares_data(model))
 		return fail();
