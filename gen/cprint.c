@@ -39,7 +39,8 @@ static bool is_load_local(const char *name)
 bool may_be_macro(const char *name)
 {
 	static const char *const macros[] = { "NULL", "NAN", "INFINITY", "I", "unix", "linux", "i386", "vax", "sun", "OVERFLOW", "UNDERFLOW",
-					      "DOMAIN", "SING", "PLOSS", "TLOSS", "EOF", "BUFSIZ", "WCHAR_MAX", "WCHAR_MIN" };
+					      "DOMAIN", "SING", "PLOSS", "TLOSS", "EOF", "BUFSIZ", "WCHAR_MAX", "WCHAR_MIN",
+					      "math_errhandling", "signgam", "errno", "stdin", "stdout", "stderr", "complex", "imaginary", "assert" };
 	for (size_t i = 0; i < sizeof macros / sizeof *macros; i++)
 		if (strcmp(name, macros[i]) == 0)
 			return true;

@@ -130,7 +130,7 @@ static void banner_poles(const struct emitter *e)
 	characteristic_polynomial(e->step->written, B);
 	fprintf(e->to, " *\n *     B(s) = %s\n", polynomial_text(length, (const mpq_t *)B));
 	struct pole_report *pole;
-	int count = poles_of(e->step->written, &pole);
+	int count = poles_of(e->model, e->step->written, &pole);
 	fprintf(e->to, " *     %-34s %-16s damping ratio\n", "pole [1/s]", "frequency [Hz]");
 	for (int i = 0; i < count; i++)
 		fprintf(e->to, " *     %-34s %-16.8g %.8g\n", pole_text(&pole[i]), mpfr_get_d(pole[i].hertz, MPFR_RNDN),

@@ -798,11 +798,15 @@ static void emit_flows_apart(const struct emitter *e)
 	fputs("    }\n", e->to);
 }
 
+/* Loads whose states the step reads: loops read all of those that act, sums not the constant 1 */
 static bool *acting_loads(const struct emitter *e)
 {
-	bool *acting = ARRAY(bool, (size_t)e->system->loads);
-	for (int l = 0; l < e->system->loads; l++)
-		acting[l] = load_acts(e->system, &e->system->load[l]);
+	const struct linear *system = e->system;
+	bool *acting = ARRAY(bool, (size_t)system->loads);
+	for (int l = 0; l < system->loads; l++)
+		for (int k = 0; k < system->load[l].columns; k++)
+			for (int i = 0; i < system->segments * system->n && (e->step->program->loops || load_operand(e, l, k)); i++)
+				acting[l] = acting[l] || mpq_sgn(system->load[l].force[k][i]) != 0;
 	return acting;
 }
 

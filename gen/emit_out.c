@@ -105,7 +105,7 @@ static void mark_tuned_row(const struct emitter *e, const struct output *output,
 		needs->reads[i] = needs->reads[i] || tuned_output_reads(e, output, i);
 	for (int l = 0; l < e->system->loads; l++)
 		for (int k = 0; k < e->system->load[l].columns; k++, column++)
-			needs->loads[l] = needs->loads[l] || tuned_output_reads(e, output, column);
+			needs->loads[l] = needs->loads[l] || (load_operand(e, l, k) && tuned_output_reads(e, output, column));
 }
 
 static void mark_row(const struct emitter *e, const struct output *output, struct output_needs *needs)
@@ -118,7 +118,7 @@ static void mark_row(const struct emitter *e, const struct output *output, struc
 		needs->reads[i] = needs->reads[i] || mpq_sgn(output->state[i]) != 0;
 	for (int l = 0; l < e->system->loads; l++)
 		for (int k = 0; k < e->system->load[l].columns; k++)
-			needs->loads[l] = needs->loads[l] || any_factor(e, output, l, k);
+			needs->loads[l] = needs->loads[l] || (load_operand(e, l, k) && any_factor(e, output, l, k));
 	for (int c = 0; c < e->model->channels; c++)
 		needs->left = needs->left || mpq_sgn(output->channel[c]) != 0;
 }
@@ -136,7 +136,7 @@ static void mark_form(const struct emitter *e, const struct output *output, stru
 		needs->inputs[i] = needs->inputs[i] || reads.input[i];
 	for (int l = 0; l < e->system->loads; l++)
 		needs->loads[l] = needs->loads[l] || reads.load[l];
-	for (int k = 0; k < e->model->n; k++) {
+	for (int k = 0; k < written->n; k++) {
 		needs->highest[k] = needs->highest[k] || reads.highest[k];
 		if (reads.highest[k])
 			mark_row(e, e->model->highest[k], needs);
@@ -169,7 +169,7 @@ void emit_out(const struct emitter *e)
 		return;
 	}
 	struct output_needs needs = { ARRAY(bool, (size_t)e->system->states), ARRAY(bool, (size_t)e->system->loads),
-				      ARRAY(bool, 2 * (size_t)e->system->inputs), ARRAY(bool, (size_t)e->model->n), false, false };
+				      ARRAY(bool, 2 * (size_t)e->system->inputs), ARRAY(bool, (size_t)model->written->n), false, false };
 	const struct form **form = ARRAY(const struct form *, (size_t)model->outputs + 1);
 	int forms = 0;
 	for (int i = 0; i < model->outputs; i++) {
@@ -184,7 +184,7 @@ void emit_out(const struct emitter *e)
 	emit_load_states(e, needs.loads, needs.time);
 	if (needs.left)
 		fprintf(to, "    double left[%d];\n    %s\n", model->channels, leftover_of_outputs(e));
-	for (int k = 0; k < model->n; k++)
+	for (int k = 0; k < model->written->n; k++)
 		if (needs.highest[k])
 			fprintf(to, "    const double accel%d = %s;  /* %s%.*s */\n", k + 1, linear_output(e, model->highest[k]), model->coord_name[k],
 				model->coord[k]->highest, "''");

@@ -81,7 +81,7 @@ static bool *loads_of_step(const struct emitter *e)
 	bool *wanted = ARRAY(bool, (size_t)e->system->loads);
 	for (int l = 0, column = 0; l < e->system->loads; l++)
 		for (int k = 0; k < e->system->load[l].columns; k++, column++)
-			wanted[l] = wanted[l] || e->step->program->uses[column];
+			wanted[l] = wanted[l] || (load_operand(e, l, k) && e->step->program->uses[column]);
 	return wanted;
 }
 
@@ -126,6 +126,21 @@ static void emit_load_factors(const struct emitter *e)
 	fputs("};\n", e->to);
 }
 
+/* What --reduce has left nothing of for it to act on: it has no phase and no growth, and its factors are 0. */
+static bool is_gone(const struct emitter *e, int load)
+{
+	const struct wave *wave = e->system->load[load].wave;
+	return (oscillates(wave) && e->phase[load] < 0) || (mpq_sgn(wave->a) != 0 && e->growth[load] < 0);
+}
+
+static bool is_of_gone_load(const struct emitter *e, int column)
+{
+	int l = 0;
+	for (; column >= e->system->load[l].columns; l++)
+		column -= e->system->load[l].columns;
+	return is_gone(e, l);
+}
+
 /* vector[...] = the operands of the columns of a table; then y[i] += table[i][...] vector[...] */
 static void emit_columns(const struct emitter *e, const char *table, const char *vector, enum operand_kind kind, int columns)
 {
@@ -137,9 +152,10 @@ static void emit_columns(const struct emitter *e, const char *table, const char 
 		return;
 	fprintf(e->to, "    const double %s[%d] = {", vector, columns);
 	for (int k = 0, shown = 0; shown < columns; k++) {
+		bool gone = kind == OPERAND_LOAD && is_of_gone_load(e, k);
 		const char *operand = operand_text(e, &(struct operand){ kind, k });
 		if (kind != OPERAND_LOAD || !is_forced(e->step, k))
-			fprintf(e->to, "%s%s", shown++ ? ", " : "", operand ? operand : "1.0");
+			fprintf(e->to, "%s%s", shown++ ? ", " : "", gone ? "0.0" : operand ? operand : "1.0");
 	}
 	fprintf(e->to, "};\n    for (i = 0; i < %s_STATES; i++)\n        for (j = 0; j < %d; j++)\n            y[i] += %s[i][j] * %s[j];\n", e->upper, columns,
 		table, vector);
@@ -172,7 +188,7 @@ static void emit_looped_step(const struct emitter *e)
 	fprintf(to, "    double y[%s_STATES];\n    int i, j;\n", N);
 	emit_set_aside(e);
 	for (int l = 0, column = 0; l < e->system->loads; column += e->system->load[l++].columns)
-		loads[l] = !is_forced(e->step, column);
+		loads[l] = !is_forced(e->step, column) && !is_gone(e, l);
 	emit_load_states(e, loads, false);
 	fprintf(to, "    for (i = 0; i < %s_STATES; i++) {\n        y[i] = 0.0;\n        for (j = 0; j < %s_STATES; j++)\n", N, N);
 	fprintf(to, "            y[i] += %s[i][j] * s->y[j];\n    }\n", e->step->form == FORM_DELTA ? format("%s_increment", n) : stepped_phi(e));

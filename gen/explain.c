@@ -45,14 +45,14 @@ static void person_loads(FILE *to, const struct linear *system)
 			person_force(to, format("input %s%s", system->input[i].name, k ? "'" : ""), system->n, (const mpq_t *)system->input[i].force[k]);
 }
 
-static void person_poles(FILE *to, const struct resolvent *resolvent)
+static void person_poles(FILE *to, const struct model *model, const struct resolvent *resolvent)
 {
 	int length = resolvent_determinant(resolvent)->length;
 	mpq_t *B = rationals((size_t)length);
 	characteristic_polynomial(resolvent, B);
 	fprintf(to, "\n    B(s) = %s\n\n", polynomial_text(length, (const mpq_t *)B));
 	struct pole_report *pole;
-	int count = poles_of(resolvent, &pole);
+	int count = poles_of(model, resolvent, &pole);
 	fprintf(to, "    %-36s %-16s damping ratio\n", "pole [1/s]", "frequency [Hz]");
 	for (int i = 0; i < count; i++)
 		fprintf(to, "    %-36s %-16.8g %.8g\n", pole_text(&pole[i]), mpfr_get_d(pole[i].hertz, MPFR_RNDN),
@@ -184,7 +184,7 @@ static void person_split(FILE *to, const struct step *step)
 		person_matrix(to, "C", model->n, (const mpq_t *)operator->C);
 		person_matrix(to, "K", model->n, (const mpq_t *)operator->K);
 		if (model->scheme != SCHEME_PL)
-			person_poles(to, step->shown->resolvent[k]);
+			person_poles(to, model, step->shown->resolvent[k]);
 	}
 	if (step->operators > 1)
 		fputs("A step uses the first operator whose value is not below the current one, else the last.\n", to);
@@ -209,7 +209,7 @@ static void person_reduction(FILE *to, const struct step *step)
 		fprintf(to, "%s %s", i ? "," : "", model->dropped_name[i]);
 	fputs(model->dropped ? " (no output sees them, nor a combination of the states that are left).\n" : " nothing.\n", to);
 	struct pole_report *pole;
-	int count = poles_of(step->solved, &pole);
+	int count = poles_of(step->model, step->solved, &pole);
 	fputs("Poles that are left:\n", to);
 	for (int i = 0; i < count; i++)
 		fprintf(to, "    %s\n", pole_text(&pole[i]));
@@ -235,7 +235,7 @@ void explain_person(FILE *to, const struct step *step)
 	person_matrix(to, "C", model->written->n, (const mpq_t *)model->written->system.C);
 	person_matrix(to, "K", model->written->n, (const mpq_t *)model->written->system.K);
 	person_loads(to, &model->written->system);
-	person_poles(to, step->written);
+	person_poles(to, step->model, step->written);
 	const char *irrational = irrationals_text(&model->irrationals);
 	if (*irrational)
 		fprintf(to, "\nIrrational constants (%s) were taken as rationals of %d bits.\n", irrational, IRRATIONAL_BITS);
@@ -340,7 +340,7 @@ static void json_poles(FILE *to, const struct step *step)
 		fprintf(to, "%s\"%s\"", k ? ", " : "", exact_text(B[k]));
 	fputs("],\n", to);
 	struct pole_report *pole;
-	int count = poles_of(step->written, &pole);
+	int count = poles_of(step->model, step->written, &pole);
 	json_pole_list(to, count, pole);
 	fputs(",\n", to);
 	json_modes(to, count, pole);
@@ -390,7 +390,7 @@ static void json_split(FILE *to, const struct step *step)
 	fputs("  \"operators\": [", to);
 	for (int k = 0; k < model->operators; k++) {
 		struct pole_report *pole;
-		int count = poles_of(step->shown->resolvent[k], &pole);
+		int count = poles_of(model, step->shown->resolvent[k], &pole);
 		fprintf(to, "%s{\n  \"at\": \"%s\",\n", k ? ", " : "", model->operator[k].text);
 		json_rational_matrix(to, "C", model->n, (const mpq_t *)model->operator[k].C);
 		json_rational_matrix(to, "K", model->n, (const mpq_t *)model->operator[k].K);

@@ -321,7 +321,7 @@ static void look_at_form(struct reads *reading, const struct model *model, bool 
 		for (int l = 0; basis->kind == BASIS_WAVE && l < model->system.loads; l++)
 			if (model->system.load[l].wave == basis->wave && !is_polynomial(basis->wave)) {
 				reading->load[l] = true;
-				reading->time = reading->time || basis->power > 0;
+				reading->time = reading->time || model->system.load[l].powers > 1;  /* its load states up to the highest power */
 			}
 		if (!atom || seen[atom->index])
 			continue;

@@ -7,6 +7,7 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <getopt.h>
+#include <signal.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -89,8 +90,28 @@ static const struct option long_options[] = {
 
 static bool told;               /* that standard output cannot be written */
 
+struct file {
+	const char *path;
+	const char *volatile temporary;
+	char *text;                     /* ends with a 0 */
+	size_t length;
+	bool lost;                      /* there was no memory for some of it */
+};
+
+enum { FILES = 3 };              /* C, header, depfile */
+static struct file file[FILES];
+static int files;
+
+static void remove_temporaries(void)
+{
+	for (int i = 0; i < files; i++)
+		if (file[i].temporary)
+			unlink(file[i].temporary);
+}
+
 static void finish(void)
 {
+	remove_temporaries();
 	memory_close();
 	if (!told && (fflush(stdout) != 0 || ferror(stdout))) {
 		fprintf(stderr, "plgen: error: cannot write to standard output: %s\n", strerror(errno));
@@ -159,6 +180,26 @@ static void take_option(struct options *options, int option)
 	}
 }
 
+/* Where a file that is not there yet would be: the folder, and the name in it */
+static bool same_place(const char *a, const char *b)
+{
+	struct stat of_a, of_b;
+	const char *slash_a = strrchr(a, '/'), *slash_b = strrchr(b, '/');
+	const char *folder_a = slash_a ? format("%.*s/", (int)(slash_a - a), a) : ".", *folder_b = slash_b ? format("%.*s/", (int)(slash_b - b), b) : ".";
+	return strcmp(slash_a ? slash_a + 1 : a, slash_b ? slash_b + 1 : b) == 0 && stat(folder_a, &of_a) == 0 && stat(folder_b, &of_b) == 0 &&
+	       of_a.st_dev == of_b.st_dev && of_a.st_ino == of_b.st_ino;
+}
+
+/* One file under two names, links and - for standard input too; devices and pipes may be named twice. */
+static bool same_file(const char *a, const char *b)
+{
+	struct stat of_a, of_b;
+	bool there_a = (strcmp(a, "-") == 0 ? fstat(STDIN_FILENO, &of_a) : stat(a, &of_a)) == 0, there_b = stat(b, &of_b) == 0;
+	if (there_a && there_b)
+		return S_ISREG(of_a.st_mode) && of_a.st_dev == of_b.st_dev && of_a.st_ino == of_b.st_ino;
+	return !there_a && !there_b && same_place(a, b);
+}
+
 static void read_options(int argc, char **argv, struct options *options)
 {
 	int option;
@@ -199,30 +240,33 @@ static void read_options(int argc, char **argv, struct options *options)
 	const char *path[] = { options->spec, options->output, header, options->depfile };
 	for (int i = 0; i < 4; i++)
 		for (int j = i + 1; j < 4; j++)
-			if (path[i] && path[j] && strcmp(path[i], path[j]) == 0 && strncmp(path[i], "/dev/", 5) != 0)
+			if (path[i] && path[j] && same_file(path[i], path[j]))
 				wrong_usage(format("'%s' would be written over: each file needs a name of its own", path[i]));
 }
 
 /* ---- publishing: all files are written beside their places first, then moved in ---- */
 
-struct file {
-	const char *path, *temporary;
-	char *text;
-	size_t length;
-};
-
-enum { FILES = 3 };              /* C, header, depfile */
-static struct file file[FILES];
-static int files;
-
 static _Noreturn void cannot_write(const struct file *failed)
 {
 	fprintf(stderr, "%s: error: cannot write: %s\n", failed->path ? failed->path : "standard output", strerror(errno));
 	told = told || !failed->path;
-	for (int i = 0; i < files; i++)
-		if (file[i].temporary)
-			unlink(file[i].temporary);
 	exit(1);
+}
+
+/* A signal that ends the program takes what was not published along. */
+static void clean_up(int number)
+{
+	remove_temporaries();
+	signal(number, SIG_DFL);
+	raise(number);
+}
+
+static void catch_signals(void)
+{
+	static const int number[] = { SIGHUP, SIGINT, SIGTERM };
+	for (size_t i = 0; i < sizeof number / sizeof *number; i++)
+		if (signal(number[i], clean_up) == SIG_IGN)
+			signal(number[i], SIG_IGN);
 }
 
 static void write_all(const struct file *f, int descriptor)
@@ -254,16 +298,20 @@ static void write_beside(struct file *f)
 		return;
 	}
 	char *real = exists ? realpath(f->path, NULL) : NULL;
+	if (exists && !real)
+		cannot_write(f);
 	if (real)
 		f->path = format("%s", real);
 	free(real);
 	mode_t mask = umask(0);
 	umask(mask);
 	char *temporary = format("%s.XXXXXX", f->path);
+	f->temporary = temporary;               /* before it is there: a signal may come at any time */
 	int descriptor = mkstemp(temporary);
-	if (descriptor < 0)
+	if (descriptor < 0) {
+		f->temporary = NULL;
 		cannot_write(f);
-	f->temporary = temporary;
+	}
 	if (fchmod(descriptor, exists ? status.st_mode & 07777 : 0666 & ~mask) != 0)
 		cannot_write(f);
 	write_all(f, descriptor);
@@ -271,6 +319,7 @@ static void write_beside(struct file *f)
 
 static void publish(void)
 {
+	catch_signals();
 	for (int i = 0; i < files; i++)
 		if (file[i].path)
 			write_beside(&file[i]);
@@ -285,24 +334,48 @@ static void publish(void)
 	}
 }
 
-static FILE *open_file(const char *path)
+static _Noreturn void out_of_memory(void)
 {
-	struct file *f = &file[files++];
-	f->path = path;
-	FILE *stream = open_memstream(&f->text, &f->length);
-	if (!stream) {
-		fputs("plgen: error: out of memory\n", stderr);
-		exit(1);
+	fputs("plgen: error: out of memory\n", stderr);
+	exit(1);
+}
+
+static ssize_t keep(void *cookie, const char *bytes, size_t size)
+{
+	struct file *f = cookie;
+	char *text = f->lost ? NULL : realloc(f->text, f->length + size + 1);
+	if (!text) {
+		f->lost = true;
+		return 0;
 	}
+	memcpy(text + f->length, bytes, size);
+	f->text = text;
+	f->length += size;
+	text[f->length] = 0;
+	return (ssize_t)size;
+}
+
+/* Its text grows in memory: a stream of the library's own would lose what it has no memory for without a word. */
+static FILE *open_text(struct file *f)
+{
+	FILE *stream = fopencookie(f, "w", (cookie_io_functions_t){ .write = keep });
+	f->text = NULL;
+	f->length = 0;
+	if (!stream)
+		out_of_memory();
 	return stream;
 }
 
-static void close_file(FILE *stream)
+static void close_file(FILE *stream, const struct file *f)
 {
-	if (fclose(stream) != 0) {
-		fputs("plgen: error: out of memory\n", stderr);
-		exit(1);
-	}
+	if (fclose(stream) != 0 || f->lost)
+		out_of_memory();
+}
+
+static FILE *open_file(const char *path)
+{
+	file[files].path = path;
+	return open_text(&file[files++]);
 }
 
 /* ---- the pipeline ---- */
@@ -384,16 +457,51 @@ static void print_as_float(FILE *to, const char *text, const char *name)
 /* C becomes other C: for the target float, or with locals apart from the model's name. */
 static void rewrite(struct file *f, const char *name, void (*print)(FILE *to, const char *text, const char *name))
 {
-	struct file other = *f;
-	FILE *stream = open_memstream(&other.text, &other.length);
-	if (stream)
-		print(stream, f->text, name);
-	if (!stream || fclose(stream) != 0) {
-		fputs("plgen: error: out of memory\n", stderr);
-		exit(1);
-	}
-	free(f->text);
-	*f = other;
+	char *text = f->text;
+	FILE *stream = open_text(f);
+	print(stream, text, name);
+	close_file(stream, f);
+	free(text);
+}
+
+/* ---- a header and its C: of two runs, a kill between two renames for one, they must not compile ---- */
+
+static void insert_after(struct file *f, const char *line, const char *more)
+{
+	char *text = f->text;
+	const char *end = strchr(strstr(text, line) + strlen(line), '\n') + 1;
+	FILE *stream = open_text(f);
+	fprintf(stream, "%.*s%s%s", (int)(end - text), text, more, end);
+	close_file(stream, f);
+	free(text);
+}
+
+/* The header's own text as a number (FNV-1a, without its sign bit); C beside another header is refused by the compiler. */
+static void mark(struct file *code, struct file *header)
+{
+	static const char declared[] = "\n#ifndef ";
+	unsigned long long hash = 0xcbf29ce484222325;
+	const char *name = strstr(header->text, declared) + strlen(declared);
+	int length = (int)(strstr(name, "_DECLARED\n") - name);
+	for (const char *c = header->text; *c; c++)
+		hash = (hash ^ (unsigned char)*c) * 0x100000001b3;
+	name = format("%.*s", length, name);
+	hash &= 0x7fffffffffffffff;
+	insert_after(header, "_DECLARED\n#define ", format("#define %s_PAIR 0x%016llx  /* its C has the same */\n", name, hash));
+	if (code)
+		insert_after(code, "\n#include \"", format("#if %s_PAIR != 0x%016llx\n#error \"this file and its header were not made together\"\n#endif\n", name, hash));
+}
+
+/* What the spec reads is not written over. */
+static bool spares_data(const struct model *model)
+{
+	for (int i = 0; i < files; i++)
+		for (int k = 0; k < model->spec->files; k++)
+			if (file[i].path && same_file(model->spec->file[k], file[i].path)) {
+				fprintf(stderr, "%s: error: the spec reads this file: it is not written over\n", file[i].path);
+				return false;
+			}
+	return true;
 }
 
 static int fail(void)
@@ -440,7 +548,7 @@ int main(int argc, char **argv)
 
 	FILE *to = open_file(options.output);
 	bool printed = statement_guard(print_main_text, &(struct printing){ &options, model, step, to });
-	close_file(to);
+	close_file(to, &file[files - 1]);
 	if (!printed) {
 		free(file[0].text);
 		return fail();
@@ -448,18 +556,24 @@ int main(int argc, char **argv)
 	if (options.output && options.print == PRINT_C) {
 		to = open_file(header_path(options.output));
 		emit_header(to, step, options.banner, options.rhs);
-		close_file(to);
+		close_file(to, &file[files - 1]);
 	}
 	for (int i = 0; i < files && options.print <= PRINT_HEADER; i++) {
 		if (options.overrides.single)
 			rewrite(&file[i], model->name, print_as_float);
 		rewrite(&file[i], model->name, print_apart);
 	}
+	if (options.print == PRINT_HEADER)
+		mark(NULL, &file[0]);
+	else if (options.print == PRINT_C && options.output)
+		mark(&file[0], &file[1]);
 	if (options.depfile) {
 		to = open_file(options.depfile);
 		print_depfile(to, &options, model);
-		close_file(to);
+		close_file(to, &file[files - 1]);
 	}
+	if (!spares_data(model))
+		return fail();
 	publish();
 	diagnostics_print(stderr);
 	return 0;

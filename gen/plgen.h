@@ -1091,7 +1091,7 @@ struct pole_report {                /* sorted by |p|, then by real part */
 	int multiplicity;
 	bool pair;                  /* stands for itself and its conjugate */
 };
-int poles_of(const struct resolvent *resolvent, struct pole_report **report);
+int poles_of(const struct model *model, const struct resolvent *resolvent, struct pole_report **report); /* an error at the step where they are not told apart */
 const char *pole_text(const struct pole_report *report);
 const char *polynomial_text(int length, const mpq_t *c);    /* in s */
 const char *column_text(const struct load *load, int column); /* t*exp(-2*t)*cos(5*t) */

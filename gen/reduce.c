@@ -331,6 +331,7 @@ struct model *model_reduce(struct model *model)
 		reduced->state_name[r] = o.basis[r].name;
 		rational_product(1, o.states, 1, (const mpq_t *)o.basis[r].row, (const mpq_t *)model->initial, reduced->initial + r);
 	}
+	reduced->highest = ARRAY(struct output *, (size_t)o.rank); /* none: that was refused */
 	reduced->output = ARRAY(struct output, (size_t)model->outputs);
 	for (int i = 0; i < model->outputs; i++) {
 		reduced->output[i] = model->output[i];

@@ -42,7 +42,7 @@ static int by_size(const void *left, const void *right)
 	return order ? order : mpfr_cmp(a->im, b->im);
 }
 
-int poles_of(const struct resolvent *resolvent, struct pole_report **report)
+int poles_of(const struct model *model, const struct resolvent *resolvent, struct pole_report **report)
 {
 	mpz_t content;
 	mpz_init(content);
@@ -50,7 +50,7 @@ int poles_of(const struct resolvent *resolvent, struct pole_report **report)
 	mpz_clear(content);
 	int count = 0;
 	if (!spectrum_refine(spectrum, REPORT_BITS))
-		abandon();
+		error(model->step_at, "do two parameters differ by less than their rounding?", "two poles are too close to each other to be told apart");
 	*report = ARRAY(struct pole_report, (size_t)spectrum->D.length);
 	if (spectrum->zero)
 		add_report(&(*report)[count++], NULL, spectrum->zero, false);

@@ -417,7 +417,7 @@ static void find_growth(struct step *step)
 {
 	struct linear modified = modified_equation(&step->model->system, &step->system, step->model->h);
 	struct pole_report *pole;
-	int poles = poles_of(resolvent_of(&modified), &pole);
+	int poles = poles_of(step->model, resolvent_of(&modified), &pole);
 	mpfr_init2(step->growth, 53);
 	mpfr_set_inf(step->growth, -1);
 	for (int i = 0; i < poles; i++)

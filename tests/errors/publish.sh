@@ -5,6 +5,7 @@
 set -u
 plgen=$1
 spec=$2
+runtime=$(cd "${0%/*}/../../runtime" && pwd) || exit 1
 case $plgen in /*) ;; *) plgen=$PWD/$plgen ;; esac
 case $spec in /*) ;; *) spec=$PWD/$spec ;; esac
 LC_ALL=C
@@ -82,7 +83,7 @@ need_files()    # FOLDER LIST: nothing half-written, no temporaries
 	[ "$found" = "$2${2:+ }" ] || wrong "files in $1: $found, expected $2"
 }
 
-echo "1..35"
+echo "1..41"
 
 # ---- a full disk ----
 
@@ -342,6 +343,87 @@ run "$plgen" -o same/m.c same/m.c
 need_status 2
 need_same model.spec same/m.c
 result 'the spec is not written over'
+
+mkdir alias
+cp model.spec alias/q.c
+( cd alias && "$plgen" -o ./q.c q.c ) > out 2> err
+status=$?
+need_status 2
+need_message 'plgen: error: .*would be written over'
+need_same model.spec alias/q.c
+need_files alias q.c
+result 'the spec is not written over under another name'
+
+ln -s q.c alias/soft.c
+ln alias/q.c alias/hard.c
+for name in soft hard; do
+	run "$plgen" -o "alias/$name.c" alias/q.c
+	need_status 2
+	need_message 'plgen: error: .*would be written over'
+done
+ln -s q.c alias/header.h
+run "$plgen" -o alias/header.c alias/q.c
+need_status 2
+run "$plgen" --depfile alias/soft.c alias/q.c
+need_status 2
+need_same model.spec alias/q.c
+need_files alias 'hard.c header.h q.c soft.c'
+result 'nor through a link'
+
+mkdir data
+printf '%%%%MatrixMarket matrix array real general\n1 1\n4\n' > data/k.mtx
+cp data/k.mtx kept.mtx
+printf "model m\ncoord x\nmatrix K = \"k.mtx\"\nx'' + K*x = 0\nstep 0.1\n" > data/m.spec
+ln -s k.mtx data/m.h
+run "$plgen" -o data/m.c data/m.spec
+need_status 1
+need_message 'data/m\.h: error: the spec reads this file: it is not written over' 
+need_same kept.mtx data/k.mtx
+need_files data 'k.mtx m.h m.spec'
+result 'a data file is not written over'
+
+# ---- a pair that does not belong together ----
+
+mkdir pair
+run "$plgen" -o pair/a.c model.spec
+cp pair/a.c pair/first.c
+run "$plgen" --step 1/7 -o pair/a.c model.spec
+cp pair/first.c pair/a.c
+if command -v "${CC:-cc}" > make.path 2>&1; then
+	"${CC:-cc}" -fsyntax-only -I"$runtime" plain/m.c > out 2>&1 || wrong "a pair does not compile: $(head -n 3 out)"
+	"${CC:-cc}" -fsyntax-only -I"$runtime" pair/a.c > out 2>&1 && wrong 'C beside the header of another step compiles'
+	grep -q 'were not made together' out || wrong "another message: $(head -n 3 out)"
+	result 'C and header of two runs do not compile'
+else
+	skip 'C and header of two runs do not compile' 'no compiler'
+fi
+
+# ---- a signal while files are written ----
+
+mkdir signal
+mkfifo signal/m.d
+"$plgen" -o signal/m.c --depfile signal/m.d model.spec > out 2> err &
+child=$!
+for turn in 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20; do
+	[ "$(ls -A signal | wc -l)" -ge 3 ] && break
+	sleep 0.5
+done
+[ "$(ls -A signal | wc -l)" -eq 3 ] || wrong "no temporaries to remove: $(ls -A signal)"
+kill -TERM "$child"
+wait "$child" 2> out
+status=$?
+need_status 143
+need_files signal m.d
+result 'a signal leaves no temporaries'
+
+# ---- an error that the pipeline meets late ----
+
+printf "model m\ncoord x, y\nx'' + (100+1e-1000)*x = 0\ny'' + 100*y = 0\nstep 0.01\n" > near.spec
+run "$plgen" near.spec
+need_status 1
+need_message 'near\.spec:5:6: error: two poles are too close to each other to be told apart'
+[ -s out ] && wrong 'standard output is not empty'
+result 'poles that cannot be told apart are told'
 
 # ---- a reader that goes away ----
 

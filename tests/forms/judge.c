@@ -243,8 +243,9 @@ static void mark_kept(struct judge *j)
                 still = still && mpq_sgn(factor) == 0;
             }
         }
-        int heaviest = 0;
+        int heaviest = 0, parts = mpq_sgn(sum[f.size]) != 0;
         for (int r = 1; r < members; r++) {
+            parts += mpq_sgn(sum[f.size + r]) != 0;
             mpq_abs(factor, sum[f.size + r]);
             mpq_t most;
             mpq_init(most);
@@ -252,7 +253,7 @@ static void mark_kept(struct judge *j)
             heaviest = mpq_cmp(factor, most) > 0 ? r : heaviest;
             mpq_clear(most);
         }
-        j->kept[system->velocity[member[heaviest]]] = sums == 1 && still;
+        j->kept[system->velocity[member[heaviest]]] = sums == 1 && still && parts > 1;    /* one alone is stepped */
         mpq_clear(factor);
     }
 }

@@ -54,4 +54,16 @@ for spec in models/scs models/sdcsf tests/forms/damped_ramped; do
 		result $status "$name: each of $(wc -l <numbers) constants wrong is seen"
 	done
 done
+
+# What --reduce leaves, of fewer states than coordinates and of more than 16 states
+for spec in reduce_highest_good reduce_loops_good; do
+	for type in double float; do
+		rm -f reduced.c
+		"$plgen" --prefix subject --selftest --reduce --real "$type" "$root/tests/errors/$spec.spec" >reduced.c 2>log
+		value=$(value reduced.c "$type")
+		[ -n "$value" ] && echo "returns $value, expected below 60" >log
+		awk -v v="$value" 'BEGIN { exit !(v != "" && v + 0 < 60) }'
+		result $? "$spec $type: below 60 units in the last place"
+	done
+done
 tap_end
