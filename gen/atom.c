@@ -100,7 +100,7 @@ struct form *time_part(const struct form *form, bool atoms)
 	struct form *part = NEW(struct form);
 	for (int i = 0; i < form->terms; i++)
 		if (depends_on_time_only(&form->term[i].basis) && (!atoms || form->term[i].basis.kind == BASIS_ATOM))
-			part = form_sum(part, form_single(form->term[i].basis, form->term[i].factor), false);
+			form_add_basis(part, form->term[i].basis, form->term[i].factor);
 	return part;
 }
 
@@ -280,7 +280,7 @@ static struct parts parts_of(const struct collector *c, const struct form *form)
 		const struct form_term *term = &form->term[i];
 		bool time = term->basis.kind == BASIS_WAVE || (c->whole_time && depends_on_time_only(&term->basis));
 		struct form **part = term->basis.kind <= BASIS_PI ? &parts.constant : time ? &parts.time : &parts.rest;
-		*part = form_sum(*part, form_single(term->basis, term->factor), false);
+		form_add_basis(*part, term->basis, term->factor);
 	}
 	return parts;
 }

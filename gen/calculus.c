@@ -179,9 +179,9 @@ static struct form *derive(struct differentiation *d, const struct form *form)
 	for (int i = 0; i < form->terms; i++) {
 		const struct form_term *term = &form->term[i];
 		if (term->basis.kind == BASIS_ATOM)
-			total = sum(total, form_scale(known_derivative(d, term->basis.atom), term->factor));
+			form_add_to(total, known_derivative(d, term->basis.atom), term->factor);
 		else if (term->basis.kind == BASIS_COORD && term->basis.index == d->coord && term->basis.order == d->order)
-			total = sum(total, form_constant(term->factor));
+			form_add_basis(total, (struct basis){ .kind = BASIS_ONE }, term->factor);
 	}
 	return total;
 }
@@ -303,7 +303,7 @@ static struct form *place_form(struct point *p, const struct form *form)
 {
 	struct form *total = NEW(struct form);
 	for (int i = 0; i < form->terms; i++)
-		total = sum(total, form_scale(place_basis(p, &form->term[i].basis), form->term[i].factor));
+		form_add_to(total, place_basis(p, &form->term[i].basis), form->term[i].factor);
 	return total;
 }
 

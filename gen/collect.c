@@ -250,24 +250,42 @@ static struct value *collect_call(struct collector *c, struct node *node)
 
 /* ---- operators ---- */
 
+/* The limit on exact values, where a part has been added */
+static void check_sum(struct place at, const struct form *sum, const struct form *part)
+{
+	for (int i = 0; i < part->terms; i++) {
+		const struct form_term *term = form_find(sum, &part->term[i].basis);
+		if (term)
+			check_bits(at, term->factor);
+	}
+}
+
 static struct value *collect_sum(struct collector *c, struct node *node)
 {
 	struct value *sum = NULL;
 	const struct node *outer = c->term;
+	const struct place before = working_at();
+	mpq_t minus;
+	mpq_init(minus);
+	mpq_set_si(minus, -1, 1);
 	for (int i = 0; i < node->children; i++) {
-		if (node->children > 1)
+		if (node->children > 1) {
 			c->term = node->child[i];
+			work_at(c->term->start);
+		}
 		struct value *term = collect_node(c, node->child[i]);
 		if (!sum)
 			sum = value_new(term->rows, term->columns);
 		if (sum->rows != term->rows || sum->columns != term->columns)
 			error(node->operator[i], NULL, "sizes do not fit: %s and %s", shape_text(sum), shape_text(term));
 		for (int k = 0; k < sum->rows * sum->columns; k++) {
-			sum->cell[k] = form_sum(sum->cell[k], term->cell[k], node->inverse[i]);
-			check_form(node->operator[i], sum->cell[k]);
+			form_add_to(sum->cell[k], term->cell[k], node->inverse[i] ? minus : NULL);
+			check_sum(node->operator[i], sum->cell[k], term->cell[k]);
 		}
 	}
+	mpq_clear(minus);
 	c->term = outer;
+	work_at(before);
 	return sum;
 }
 
@@ -325,7 +343,7 @@ static struct form *dot(struct collector *c, const struct node *node, const stru
 	for (int k = 0; k < a->columns; k++) {
 		const struct form *x = a->cell[row * a->columns + k], *y = b->cell[k * b->columns + column];
 		if (x->terms > 0 && y->terms > 0)
-			sum = form_sum(sum, times(c, node, x, y), false);
+			form_add_to(sum, times(c, node, x, y), NULL);
 	}
 	return sum;
 }
@@ -470,7 +488,6 @@ static void collect_value(struct collector *c, struct symbol *symbol)
 	if (symbol->kind == SYMBOL_PARAM && !is_scalar(value))
 		error(symbol->value->start, "matrix NAME = ...", "a param is a number, found a %s matrix", shape_text(value));
 	c->waves = inner.waves;
-	c->wave_count = inner.wave_count;
 	c->irrationals = inner.irrationals;
 	c->changes = inner.changes;
 	c->change = inner.change;
@@ -508,6 +525,8 @@ static struct value *collect_name(struct collector *c, struct node *node)
 			return scalar(form_constant(c->fixing[i].value));
 	if (symbol->progress == COLLECTING && symbol->kind == SYMBOL_PARAM)
 		error(node->at, NULL, "param '%s' is defined by itself", symbol->name);
+	if (symbol->progress == COLLECTING)     /* a let that failed before: that was told */
+		abandon();
 	if (symbol->progress != COLLECTED)
 		collect_value(c, symbol);
 	return symbol->collected;
@@ -554,6 +573,7 @@ static struct value *collect_node(struct collector *c, struct node *node)
 struct value *collect(struct collector *c, struct node *node)
 {
 	c->term = node;
+	work_at(node->start);
 	return collect_node(c, node);
 }
 

@@ -338,7 +338,7 @@ void spread_loads(struct building *b, const struct form *form, void (*spread)(vo
 	struct linear *system = &b->model->system;
 	mpq_t constant;
 	mpq_init(constant);
-	struct form plain = { 0, form->term };
+	struct form plain = { 0, form->term, 0 };
 	while (plain.terms < form->terms && form->term[plain.terms].basis.kind <= BASIS_PI)
 		plain.terms++;
 	constant_value(&b->collector, &plain, constant);

@@ -51,6 +51,8 @@ enum {
 	LIMIT_UNROLLED_STATES = 16, /* beyond, a step loops over its tables */
 	LIMIT_RESIDUE_STATES = 12,  /* beyond, a Taylor series gives the numbers: residues get slow */
 	LIMIT_TURNS = 256,          /* log2 of a load's angle in a step, for models of more states than that */
+	LIMIT_TERMS = 10000000,     /* of forms, made on the way to the equations */
+	LIMIT_BYTES = 400000000,    /* held at a time */
 	LIMIT_ROWS = 10000000,      /* of --solution */
 	LIMIT_PRECISION = 16384,    /* bits of an enclosure before a coefficient is given up */
 	IRRATIONAL_BITS = 256       /* pi, sqrt(2), ... become rationals of this many bits */
@@ -64,6 +66,8 @@ void *allocate(size_t count, size_t size);                 /* zeroed */
 void *enlarge(void *block, size_t count, size_t size);     /* contents kept, the rest undefined */
 char *format(const char *fmt, ...) __attribute__((format(printf, 1, 2)));
 mpq_t *rationals(size_t count);                            /* initialised to 0 */
+void  discard(void *block);                                /* gives it back before the end; what it points to stays */
+void  spend_terms(size_t count);                            /* from the budget of LIMIT_TERMS; gives up when it is spent */
 #define NEW(type) ((type *)allocate(1, sizeof(type)))
 #define ARRAY(type, count) ((type *)allocate(count, sizeof(type)))
 #define ENLARGE(array, count) ((array) = enlarge(array, count, sizeof *(array)))
@@ -94,6 +98,9 @@ struct place place_end(const struct source *source);       /* just after the las
  * through the innermost `statement_guard`. */
 void say_error(struct place at, const char *note, const char *fmt, ...) __attribute__((format(printf, 3, 4)));
 _Noreturn void error(struct place at, const char *note, const char *fmt, ...) __attribute__((format(printf, 3, 4)));
+void work_at(struct place at);                             /* what is said to cost too much from now on */
+struct place working_at(void);
+_Noreturn void give_up(const char *message);               /* an error there, and the end: what is spent does not come back */
 _Noreturn void abandon(void);                              /* leave the statement; its error has been said before */
 void say_warning(struct place at, const char *note, const char *fmt, ...) __attribute__((format(printf, 3, 4)));
 bool statement_guard(void (*work)(void *), void *context); /* true if the work ran to its end */
@@ -265,7 +272,7 @@ struct basis {
 struct wave {                       /* e^{a t} cos(w t + p) and sin, w > 0; or e^{a t} alone, w = p = 0 */
 	mpq_t a, w, p;
 	int index;                  /* in the order of first appearance */
-	struct wave *next;
+	struct wave *next;          /* of the same hash */
 };
 struct form_term {
 	struct basis basis;
@@ -274,11 +281,11 @@ struct form_term {
 struct form {                       /* sum of factor * basis, sorted, no zero factors */
 	int terms;
 	struct form_term *term;
+	int room;                   /* of one that form_add_to has enlarged; else 0 */
 };
 struct irrationals { bool used[FN_TABLE + 1], pi, root; };  /* which became rationals of 256 bits; `root`: of a power */
 struct collector {
-	struct wave *waves;
-	int wave_count;
+	struct waves *waves;        /* made on first use; of the collectors inside it too */
 	struct irrationals irrationals;
 	const char *scheme;         /* for the message about a term that it cannot treat */
 	const struct node *term;    /* the innermost additive term being collected */
@@ -304,6 +311,11 @@ struct form *form_constant(mpq_srcptr value);
 struct form *form_number(long value);
 struct form *form_sum(const struct form *a, const struct form *b, bool subtract);
 struct form *form_difference(const struct form *a, const struct form *b);
+/* Into `sum`, which nothing else holds: what many parts make costs no more than the parts. `factor` NULL: 1 */
+void form_add_to(struct form *sum, const struct form *part, mpq_srcptr factor);
+void form_add_basis(struct form *sum, struct basis basis, mpq_srcptr factor);
+void form_free(struct form *form);                          /* which nothing else holds */
+const struct form_term *form_find(const struct form *form, const struct basis *basis); /* NULL: it does not occur */
 struct form *form_scale(const struct form *a, mpq_srcptr factor);
 struct form *form_product(struct collector *collector, const struct form *a, const struct form *b); /* one of them constant */
 bool is_constant(const struct form *form);                  /* 1 and pi only */

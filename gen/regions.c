@@ -9,7 +9,9 @@ enum { LIMIT_CANDIDATES = 6561 };   /* regions looked at, before those that cann
 
 /* ---- is it? ---- */
 
-static bool is_piecewise_form(const struct building *b, const struct form *form);
+enum answer { UNKNOWN, YES, NO };
+
+static bool is_piecewise_form(enum answer *known, const struct form *form);
 
 static bool is_comparison(const struct form *form)
 {
@@ -18,21 +20,25 @@ static bool is_comparison(const struct form *form)
 	return atom && atom->kind == ATOM_COMPARE && atom->comparison <= CMP_GE && mpq_cmp_ui(only->factor, 1, 1) == 0;
 }
 
-static bool is_piecewise_atom(const struct building *b, const struct atom *a)
+/* `known` keeps the answer per atom: a let that another uses twice is looked at once */
+static bool is_piecewise_atom(enum answer *known, const struct atom *a)
 {
+	if (known[a->index] != UNKNOWN)
+		return known[a->index] == YES;
 	bool function = a->kind == ATOM_CALL && (a->function == FN_ABS || a->function == FN_SGN || a->function >= FN_MIN);
 	bool choice = a->kind == ATOM_CHOOSE && is_comparison(a->operand[0]);
 	bool comparison = a->kind == ATOM_COMPARE && a->comparison <= CMP_GE;
 	bool all = function || choice || comparison;
 	for (int i = 0; i < a->operands && all; i++)
-		all = is_piecewise_form(b, a->operand[i]);
+		all = is_piecewise_form(known, a->operand[i]);
+	known[a->index] = all ? YES : NO;
 	return all;
 }
 
-static bool is_piecewise_form(const struct building *b, const struct form *form)
+static bool is_piecewise_form(enum answer *known, const struct form *form)
 {
 	for (int i = 0; i < form->terms; i++)
-		if (form->term[i].basis.atom && !is_piecewise_atom(b, form->term[i].basis.atom))
+		if (form->term[i].basis.atom && !is_piecewise_atom(known, form->term[i].basis.atom))
 			return false;
 	return true;
 }
@@ -41,8 +47,9 @@ bool is_piecewise_linear(const struct building *b)
 {
 	if (b->model->system.segments > 1)
 		return false;
+	enum answer *known = ARRAY(enum answer, (size_t)atoms_count(b->collector.atoms));
 	for (int i = 0; i < b->model->n; i++)
-		if (!is_piecewise_form(b, b->snapshot->residual[i].form))
+		if (!is_piecewise_form(known, b->snapshot->residual[i].form))
 			return false;
 	return true;
 }
@@ -74,11 +81,9 @@ int possible_regions(const struct switching *s)
 
 static int find_expression(const struct switching *s, const struct form *form)
 {
-	for (int i = 0; i < s->expressions; i++) {
-		const struct form *difference = form_sum(s->expression[i].form, form, true);
-		if (difference->terms == 0)
+	for (int i = 0; i < s->expressions; i++)
+		if (same_form(s->expression[i].form, form))
 			return i;
-	}
 	return -1;
 }
 
@@ -96,7 +101,7 @@ static void add_break(struct looking *l, struct expression *e, mpq_srcptr at)
 	l->grown = true;
 }
 
-/* Is e above `at` here? What is not known yet is noted. */
+/* Is e above `at` here? What is not known yet is noted. The form goes to the expression, or is freed. */
 static bool is_above(struct looking *l, const struct node *node, struct form *form, mpq_srcptr at)
 {
 	struct switching *s = l->s;
@@ -105,6 +110,8 @@ static bool is_above(struct looking *l, const struct node *node, struct form *fo
 		ENLARGE(s->expression, (size_t)s->expressions + 1);
 		index = s->expressions++;
 		s->expression[index] = (struct expression){ .form = form, .node = node };
+	} else {
+		form_free(form);
 	}
 	struct expression *e = &s->expression[index];
 	for (int i = 0; i < e->breaks; i++)
@@ -118,7 +125,7 @@ static bool is_above(struct looking *l, const struct node *node, struct form *fo
 static int sign_here(struct looking *l, const struct node *node, const struct form *form)
 {
 	struct collector *c = &l->b->collector;
-	struct form plain = { 0, form->term };
+	struct form plain = { 0, form->term, 0 };
 	while (plain.terms < form->terms && form->term[plain.terms].basis.kind <= BASIS_PI)
 		plain.terms++;
 	mpq_t constant, factor;
@@ -129,10 +136,19 @@ static int sign_here(struct looking *l, const struct node *node, const struct fo
 		mpq_inv(factor, form->term[plain.terms].factor);
 		mpq_mul(constant, constant, factor);
 		mpq_neg(constant, constant);    /* e = (form - constant)/factor against -constant/factor */
-		struct form *e = form_scale(form_sum(form, &plain, true), factor);
+		const struct form moving = { form->terms - plain.terms, form->term + plain.terms, 0 };
+		struct form *e = form_scale(&moving, factor);
 		sign = is_above(l, node, e, constant) == (mpq_sgn(factor) > 0) ? 1 : -1;
 	}
 	mpq_clears(constant, factor, NULL);
+	return sign;
+}
+
+static int order_here(struct looking *l, const struct node *node, const struct form *a, const struct form *b)
+{
+	struct form *difference = form_difference(a, b);
+	int sign = sign_here(l, node, difference);
+	form_free(difference);
 	return sign;
 }
 
@@ -144,7 +160,7 @@ static struct form *table_here(struct looking *l, const struct atom *a, struct f
 	mpq_t slope, width;
 	mpq_inits(slope, width, NULL);
 	for (int k = 3; k + 2 < a->operands; k += 2)
-		if (sign_here(l, a->node, form_difference(x[0], x[k])) > 0)
+		if (order_here(l, a->node, x[0], x[k]) > 0)
 			piece = k;
 	struct collector *c = &l->b->collector;
 	constant_value(c, form_difference(x[piece + 3], x[piece + 1]), slope);
@@ -159,7 +175,7 @@ static struct form *extreme_here(struct looking *l, const struct atom *a, struct
 {
 	struct form *best = x[0];
 	for (int i = 1; i < a->operands; i++)
-		if ((sign_here(l, a->node, form_difference(x[i], best)) < 0) == (a->function == FN_MIN))
+		if ((order_here(l, a->node, x[i], best) < 0) == (a->function == FN_MIN))
 			best = x[i];
 	return best;
 }
@@ -174,7 +190,7 @@ static struct form *call_here(struct looking *l, const struct atom *a, struct fo
 	case FN_MAX:   return extreme_here(l, a, x);
 	case FN_TABLE: return table_here(l, a, x);
 	default:
-		side = sign_here(l, a->node, form_difference(x[0], x[1])) < 0 ? 1 : sign_here(l, a->node, form_difference(x[0], x[2])) > 0 ? 2 : 0;
+		side = order_here(l, a->node, x[0], x[1]) < 0 ? 1 : order_here(l, a->node, x[0], x[2]) > 0 ? 2 : 0;
 		return a->function == FN_CLIP ? x[side] : side ? form_difference(x[0], x[side]) : form_number(0);
 	}
 }
@@ -182,7 +198,7 @@ static struct form *call_here(struct looking *l, const struct atom *a, struct fo
 /* <= and < differ on the breakpoint alone, where the motion decides */
 static bool comparison_here(struct looking *l, const struct atom *a)
 {
-	int sign = sign_here(l, a->node, form_difference(form_here(l, a->operand[0]), form_here(l, a->operand[1])));
+	int sign = order_here(l, a->node, form_here(l, a->operand[0]), form_here(l, a->operand[1]));
 	return a->comparison <= CMP_LE ? sign < 0 : sign > 0;
 }
 
@@ -198,16 +214,23 @@ static struct form *atom_here(struct looking *l, const struct atom *a)
 	return call_here(l, a, x);
 }
 
+/* Not to be changed: it may be the form itself, or what an atom is */
 static struct form *form_here(struct looking *l, const struct form *form)
 {
+	if (form->terms == 0 || !form->term[form->terms - 1].basis.atom)
+		return (struct form *)form;
 	struct form *total = NEW(struct form);
 	for (int i = 0; i < form->terms; i++) {
 		const struct form_term *term = &form->term[i];
 		const struct atom *atom = term->basis.atom;
-		if (atom && !l->known[atom->index])
+		if (atom && !l->known[atom->index]) {
+			work_at(atom->node->start);
 			l->known[atom->index] = atom_here(l, atom);
-		struct form *value = atom ? form_scale(l->known[atom->index], term->factor) : form_single(term->basis, term->factor);
-		total = form_sum(total, value, false);
+		}
+		if (atom)
+			form_add_to(total, l->known[atom->index], term->factor);
+		else
+			form_add_basis(total, term->basis, term->factor);
 	}
 	return total;
 }

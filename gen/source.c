@@ -21,6 +21,7 @@ static struct diagnostic *said;
 static int said_count, error_count;
 static const char *context_note;
 static jmp_buf *guard;
+static struct place working;
 
 static void say(struct place at, const char *severity, const char *note, const char *fmt, va_list args)
 {
@@ -60,6 +61,27 @@ void say_warning(struct place at, const char *note, const char *fmt, ...)
 	va_start(args, fmt);
 	say(at, "warning", note, fmt, args);
 	va_end(args);
+}
+
+void work_at(struct place at)
+{
+	working = at;
+}
+
+struct place working_at(void)
+{
+	return working;
+}
+
+void give_up(const char *message)
+{
+	guard = NULL;
+	if (working.source) {
+		error(working, NULL, "%s", message);
+	} else {
+		fprintf(stderr, "plgen: error: %s\n", message);
+		exit(1);
+	}
 }
 
 void abandon(void)
