@@ -270,6 +270,18 @@ static struct form *whole_product(struct collector *c, const struct node *node, 
 	return form;
 }
 
+struct form *kept_others(struct collector *c, const struct node *node, const struct atom *product, int factor)
+{
+	struct monomial m;
+	monomial_init(&m);
+	for (int i = 0; i < product->operands; i++)
+		if (product->exponent[i] > (i == factor))
+			multiply_form(c, node, &m, product->operand[i], product->exponent[i] - (i == factor));
+	struct form *form = form_of_monomial(c, node, &m);
+	mpq_clear(m.factor);
+	return form;
+}
+
 /* Terms of constants, of time alone, and the rest, in this order of sorts. */
 struct parts { struct form *constant, *time, *rest; };
 
@@ -331,7 +343,7 @@ static struct form *constant_to_power(struct collector *c, const struct node *no
 	mpq_init(value);
 	constant_value(c, base, value);
 	if (!constant_power(node->at, value, exponent, value))
-		c->irrationals.root = true;
+		met_irrational(c, &c->irrationals.root);
 	struct form *form = form_constant(value);
 	check_form(node->at, form);
 	mpq_clear(value);

@@ -514,11 +514,12 @@ static void part_loads(void *context)
 	int n = b->model->n, segments = b->model->system.segments;
 	b->load = ARRAY(struct form *, (size_t)(segments * n));
 	b->time_left = ARRAY(struct form *, (size_t)n);
+	struct point *point = point_new(c, 0, NULL);
 	for (int i = 0; i < n; i++) {
 		const struct form *whole = time_part(b->whole->residual[i].form, false);
 		bool same = true;
 		for (c->interval = 0; c->interval < segments; c->interval++) {
-			struct form *here = form_at(point_new(c, 0, NULL), whole), *left = time_part(here, true);
+			struct form *here = form_at(point, whole), *left = time_part(here, true);
 			b->load[c->interval * n + i] = form_sum(here, left, true);
 			b->time_left[i] = c->interval == 0 ? left : b->time_left[i];
 			same = same && same_form(left, b->time_left[i]);

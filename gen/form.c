@@ -234,6 +234,12 @@ mpq_srcptr factor_of(const struct form *form, enum basis_kind kind)
 	return NULL;
 }
 
+void met_irrational(struct collector *c, bool *which)
+{
+	*which = true;
+	c->irrational_count++;
+}
+
 void constant_value(struct collector *c, const struct form *form, mpq_ptr value)
 {
 	mpq_t sum;
@@ -242,7 +248,7 @@ void constant_value(struct collector *c, const struct form *form, mpq_ptr value)
 	if (pi) {
 		constant_pi(sum);
 		mpq_mul(sum, sum, pi);
-		c->irrationals.pi = true;
+		met_irrational(c, &c->irrationals.pi);
 	}
 	if (one)
 		mpq_add(sum, sum, one);

@@ -166,7 +166,10 @@ struct node {
 	struct node **child;
 	bool *inverse;              /* of SUM and PRODUCT, one per child */
 	struct place *operator;     /* of SUM and PRODUCT: the sign before each child */
+	enum { TIMELY_UNKNOWN, TIMELY, NOT_TIMELY } timely; /* reads nothing but t and params */
+	struct kept *kept;          /* of one that is: its value, and when it holds */
 };
+struct span { mpq_srcptr after, before; };   /* of time; NULL: no bound */
 enum symbol_kind { SYMBOL_PARAM, SYMBOL_COORD, SYMBOL_LET, SYMBOL_OUTPUT, SYMBOL_INPUT, SYMBOL_MATRIX };
 struct symbol {
 	enum symbol_kind kind;
@@ -188,6 +191,8 @@ struct symbol {
 	struct value *collected;    /* value, when COLLECTED */
 	const struct form *whole;   /* of a scalar let: its value for all time, where something is left over */
 	enum { FRESH, COLLECTING, COLLECTED } progress;
+	struct span span;           /* when it holds, if COLLECTED */
+	bool irrational;            /* something in it has become a rational, if COLLECTED */
 	struct symbol *next;
 };
 struct equation {
@@ -287,11 +292,13 @@ struct irrationals { bool used[FN_TABLE + 1], pi, root; };  /* which became rati
 struct collector {
 	struct waves *waves;        /* made on first use; of the collectors inside it too */
 	struct irrationals irrationals;
+	int irrational_count;       /* how often one was met */
 	const char *scheme;         /* for the message about a term that it cannot treat */
 	const struct node *term;    /* the innermost additive term being collected */
 	int changes;                /* of formula in time: breakpoints found so far, rising */
 	mpq_t *change;
 	int interval;               /* between them, which is being collected: 0 .. changes */
+	struct span span;           /* in which every condition on time that was met since it was opened has the outcome that it has now */
 	const struct node *argument; /* the innermost function of which an argument is being collected that must be linear */
 	bool constant_only;         /* a param, a step, an initial value */
 	bool tolerant;              /* give up in silence on what is not linear: an output may be */
@@ -322,6 +329,7 @@ bool is_constant(const struct form *form);                  /* 1 and pi only */
 mpq_srcptr factor_of(const struct form *form, enum basis_kind kind); /* NULL: it does not occur */
 bool same_in_states(const struct form *a, const struct form *b); /* they differ in loads only */
 void check_form(struct place at, const struct form *form);  /* the limit on exact values */
+void met_irrational(struct collector *collector, bool *which); /* one of its irrationals */
 void constant_value(struct collector *collector, const struct form *form, mpq_ptr value); /* form of 1 and pi only */
 
 /* ---- atom.c: what is not linear, as expressions that are shared wherever they are the same ---- */
@@ -344,6 +352,7 @@ int  atoms_count(const struct atoms *atoms);
 /* Each result is a form, folded where the operands are constant; sums of constants, times and states are multiplied out so
  * far that every constant times a state shows as a linear term, and every term of time alone stands alone. */
 struct form *kept_product(struct collector *c, const struct node *node, const struct form *a, const struct form *b);
+struct form *kept_others(struct collector *c, const struct node *node, const struct atom *product, int factor); /* the product, of at least two factors, with one of that factor less */
 struct form *kept_reciprocal(struct collector *c, const struct node *node, const struct form *x);
 struct form *kept_power(struct collector *c, const struct node *node, const struct form *base, const struct form *exponent);
 struct form *kept_whole_power(struct collector *c, const struct node *node, const struct form *x, unsigned n);
@@ -400,6 +409,9 @@ int order_now(struct collector *c, const struct node *node, const struct form *a
 struct form *piecewise(struct collector *c, const struct node *node, struct form *const *x); /* the function of its arguments' forms */
 void check_breakpoints(struct collector *c, const struct node *node, struct form *const *x);  /* of a function that is not taken apart */
 bool is_decided(const struct collector *c, int count, struct form *const *x); /* constants and times: conditions on them have an outcome */
+
+void narrow_span(struct collector *c, struct span span);
+bool holds_now(const struct collector *c, struct span span); /* in the collector's interval of time */
 
 /* ---- mtx.c: Matrix Market files ---- */
 

@@ -80,7 +80,8 @@ static struct form *any_wave(struct collector *c, mpq_srcptr factor, int power, 
 	if (mpq_sgn(w) == 0) {                  /* a beat of two equal frequencies */
 		struct place nowhere = { 0 };
 		enum function function = sine ? FN_SIN : FN_COS;
-		c->irrationals.used[function] |= !constant_function(nowhere, function, p, p);
+		if (!constant_function(nowhere, function, p, p))
+			met_irrational(c, &c->irrationals.used[function]);
 		mpq_mul(scale, scale, p);
 		mpq_set_ui(p, 0, 1);
 		sine = false;
