@@ -146,6 +146,13 @@ char *format(const char *fmt, ...)
 	return text;
 }
 
+void rationals_free(mpq_t *q, size_t count)
+{
+	for (size_t i = 0; i < count; i++)
+		mpq_clear(q[i]);
+	discard(q);
+}
+
 mpq_t *rationals(size_t count)
 {
 	enum { DENOMINATOR = 64 };      /* bytes of that of 0/1 */

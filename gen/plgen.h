@@ -66,6 +66,7 @@ void *allocate(size_t count, size_t size);                 /* zeroed */
 void *enlarge(void *block, size_t count, size_t size);     /* contents kept, the rest undefined */
 char *format(const char *fmt, ...) __attribute__((format(printf, 1, 2)));
 mpq_t *rationals(size_t count);                            /* initialised to 0 */
+void  rationals_free(mpq_t *q, size_t count);
 void  discard(void *block);                                /* gives it back before the end; what it points to stays */
 void  spend_terms(size_t count);                            /* from the budget of LIMIT_TERMS; gives up when it is spent */
 #define NEW(type) ((type *)allocate(1, sizeof(type)))

@@ -63,6 +63,7 @@ struct looking {
 	struct form **known;        /* per atom */
 	int count;
 	bool grown;                 /* an expression or a breakpoint was met for the first time: look again */
+	int lowest;                 /* of the regions, where there is one expression, that a new breakpoint divides */
 };
 
 int interval_of(const struct switching *s, int region, int expression)
@@ -99,6 +100,7 @@ static void add_break(struct looking *l, struct expression *e, mpq_srcptr at)
 	e->at = breaks;
 	e->breaks++;
 	l->grown = true;
+	l->lowest = below < l->lowest ? below : l->lowest;
 }
 
 /* Is e above `at` here? What is not known yet is noted. The form goes to the expression, or is freed. */
@@ -263,19 +265,25 @@ static _Noreturn void too_many(const struct switching *s)
 	      LIMIT_REGIONS);
 }
 
-/* One look at every region; false: something new was met on the way */
-static bool look(struct building *b, struct switching *s)
+/* One look at every region but the first `known`; false: something new was met on the way, but of the first `known` then.
+ * The regions of one expression are its intervals, in order, so that those below a new breakpoint stay what they are. */
+static bool look(struct building *b, struct switching *s, int *known)
 {
+	const struct region *before = s->region;
+	bool single = s->expressions == 1;
 	s->regions = count_candidates(s);
 	if (s->regions > LIMIT_CANDIDATES)
 		too_many(s);
 	s->region = ARRAY(struct region, (size_t)s->regions);
-	for (int r = 0; r < s->regions; r++) {
+	for (int r = 0; r < *known; r++)
+		s->region[r] = before[r];
+	for (int r = *known; r < s->regions; r++) {
 		int atoms = atoms_count(b->collector.atoms);
-		struct looking l = { .b = b, .s = s, .interval = intervals_of(s, r), .known = ARRAY(struct form *, (size_t)atoms), .count = atoms };
+		struct looking l = { .b = b, .s = s, .interval = intervals_of(s, r), .known = ARRAY(struct form *, (size_t)atoms), .count = atoms, .lowest = r };
 		s->region[r].residual = ARRAY(struct form *, (size_t)b->model->n);
 		for (int i = 0; i < b->model->n; i++)
 			s->region[r].residual[i] = form_here(&l, b->snapshot->residual[i].form);
+		*known = single && s->expressions == 1 ? l.lowest : 0;
 		if (l.grown)
 			return false;
 	}
@@ -467,7 +475,8 @@ static void search(void *context)
 {
 	struct building *b = context;
 	struct switching *s = NEW(struct switching);
-	while (!look(b, s))
+	int known = 0;
+	while (!look(b, s, &known))
 		;
 	mark_possible(s);
 	check_jumps(b, s);
