@@ -38,10 +38,11 @@ static void set_tunables(struct building *b)
 	}
 }
 
-static bool statement_failed(const struct spec *spec, size_t statement)
+/* Whether a symbol of the statement of `first`, its first one, is broken; those of a statement stand together */
+static bool statement_failed(const struct symbol *first)
 {
-	for (const struct symbol *s = spec->first; s; s = s->next)
-		if (s->broken && s->index >= 0 && s->statement == statement)
+	for (const struct symbol *s = first; s && s->statement == first->statement; s = s->next)
+		if (s->broken && s->index >= 0)
 			return true;
 	return false;
 }
@@ -61,10 +62,12 @@ static void evaluate_symbol(void *context)
 static void evaluate_params(struct building *b)
 {
 	b->collector.constant_only = true;
-	for (struct symbol *s = b->spec->first; s; s = s->next) {
+	bool failed = false;
+	for (struct symbol *s = b->spec->first, *before = NULL; s; before = s, s = s->next) {
+		failed = before && before->statement == s->statement ? failed || (before->broken && before->index >= 0) : statement_failed(s);
 		if ((s->kind != SYMBOL_PARAM && s->kind != SYMBOL_MATRIX) || s->broken)
 			continue;
-		if (s->progress == COLLECTING || statement_failed(b->spec, s->statement) ||
+		if (s->progress == COLLECTING || failed ||
 		    !statement_guard(evaluate_symbol, &(struct symbol_work){ b, s }))
 			s->broken = true;
 	}

@@ -51,6 +51,8 @@ enum {
 	LIMIT_UNROLLED_STATES = 16, /* beyond, a step loops over its tables */
 	LIMIT_RESIDUE_STATES = 12,  /* beyond, a Taylor series gives the numbers: residues get slow */
 	LIMIT_TURNS = 256,          /* log2 of a load's angle in a step, for models of more states than that */
+	LIMIT_ERRORS = 100,         /* told before the rest is not looked at */
+	LIMIT_DEPTH = 10000,        /* of an expression in operations, through params and lets; a function of many arguments counts as many */
 	LIMIT_TERMS = 10000000,     /* of forms, made on the way to the equations */
 	LIMIT_BYTES = 400000000,    /* held at a time */
 	LIMIT_ROWS = 10000000,      /* of --solution */
@@ -163,6 +165,7 @@ struct node {
 	const char *path;           /* of NODE_FILE */
 	enum function function;
 	enum comparison comparison;
+	int depth;                  /* operations inside each other, those of the names in it included */
 	int children;
 	struct node **child;
 	bool *inverse;              /* of SUM and PRODUCT, one per child */
@@ -192,6 +195,7 @@ struct symbol {
 	struct value *collected;    /* value, when COLLECTED */
 	const struct form *whole;   /* of a scalar let: its value for all time, where something is left over */
 	enum { FRESH, COLLECTING, COLLECTED } progress;
+	struct symbol *next_alike;  /* of the same bucket */
 	struct span span;           /* when it holds, if COLLECTED */
 	bool irrational;            /* something in it has become a rational, if COLLECTED */
 	struct symbol *next;
@@ -228,6 +232,7 @@ struct spec {                       /* what the text says, names resolved, nothi
 	const char *name;
 	struct place name_at;
 	struct symbol *first, **last;   /* all symbols in the order of declaration */
+	struct symbol **bucket;         /* the same by name */
 	int components;                 /* of all coordinates together */
 	int params, coords, lets, outputs, inputs, matrices;
 	int equations;
@@ -259,6 +264,7 @@ char *text_between(struct place start, struct place end);   /* without comments,
 
 bool is_reserved(const char *name);                         /* words that a user's name may not be */
 const char *prefix_objection(const char *name);             /* why it cannot name generated code, or NULL */
+size_t name_hash(const char *name);
 enum function function_of(const char *name);
 const char *function_name(enum function function);
 const char *nearest_name(const char *name, int count, const char *const *known); /* or NULL */
