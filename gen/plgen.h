@@ -54,7 +54,7 @@ enum {
 	LIMIT_ERRORS = 100,         /* told before the rest is not looked at */
 	LIMIT_DEPTH = 10000,        /* of an expression in operations, through params and lets; a function of many arguments counts as many */
 	LIMIT_TERMS = 10000000,     /* of forms, made on the way to the equations */
-	LIMIT_BYTES = 400000000,    /* held at a time */
+	LIMIT_BYTES = 470000000,    /* held at a time */
 	LIMIT_ROWS = 10000000,      /* of --solution */
 	LIMIT_PRECISION = 16384,    /* bits of an enclosure before a coefficient is given up */
 	IRRATIONAL_BITS = 256       /* pi, sqrt(2), ... become rationals of this many bits */
