@@ -114,7 +114,7 @@ struct form *time_part(const struct form *form, bool atoms)
 	struct form *part = NEW(struct form);
 	for (int i = 0; i < form->terms; i++)
 		if (depends_on_time_only(&form->term[i].basis) && (!atoms || form->term[i].basis.kind == BASIS_ATOM))
-			part = form_sum(part, form_single(form->term[i].basis, form->term[i].factor), false);
+			form_add_basis(part, form->term[i].basis, form->term[i].factor);
 	return part;
 }
 
@@ -284,6 +284,18 @@ static struct form *whole_product(struct collector *c, const struct node *node, 
 	return form;
 }
 
+struct form *kept_others(struct collector *c, const struct node *node, const struct atom *product, int factor)
+{
+	struct monomial m;
+	monomial_init(&m);
+	for (int i = 0; i < product->operands; i++)
+		if (product->exponent[i] > (i == factor))
+			multiply_form(c, node, &m, product->operand[i], product->exponent[i] - (i == factor));
+	struct form *form = form_of_monomial(c, node, &m);
+	mpq_clear(m.factor);
+	return form;
+}
+
 /* Terms of constants, of time alone, and the rest, in this order of sorts. */
 struct parts { struct form *constant, *time, *rest; };
 
@@ -294,7 +306,7 @@ static struct parts parts_of(const struct collector *c, const struct form *form)
 		const struct form_term *term = &form->term[i];
 		bool time = term->basis.kind == BASIS_WAVE || (c->whole_time && depends_on_time_only(&term->basis));
 		struct form **part = term->basis.kind <= BASIS_PI ? &parts.constant : time ? &parts.time : &parts.rest;
-		*part = form_sum(*part, form_single(term->basis, term->factor), false);
+		form_add_basis(*part, term->basis, term->factor);
 	}
 	return parts;
 }
@@ -345,7 +357,7 @@ static struct form *constant_to_power(struct collector *c, const struct node *no
 	mpq_init(value);
 	constant_value(c, base, value);
 	if (!constant_power(node->at, value, exponent, value))
-		c->irrationals.root = true;
+		met_irrational(c, &c->irrationals.root);
 	struct form *form = form_constant(value);
 	check_form(node->at, form);
 	mpq_clear(value);

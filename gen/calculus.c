@@ -21,13 +21,16 @@ static struct form *sum(const struct form *a, const struct form *b)
 /* sum over the factors: e f^{e-1} f' times the others */
 static struct form *derive_product(struct differentiation *d, const struct atom *a)
 {
+	enum { MANY = 16 };
 	struct collector *c = d->c;
 	struct form *total = NEW(struct form);
 	for (int i = 0; i < a->operands; i++) {
 		struct form *term = derive(d, a->operand[i]);
 		if (term->terms == 0)
 			continue;
-		for (int j = 0; j < a->operands; j++)
+		if (a->operands > MANY)         /* one by one they would be as many products as there are pairs */
+			term = kept_product(c, a->node, term, kept_others(c, a->node, a, i));
+		for (int j = 0; j < a->operands && a->operands <= MANY; j++)
 			term = kept_product(c, a->node, term, kept_whole_power(c, a->node, a->operand[j], a->exponent[j] - (j == i)));
 		total = sum(total, kept_product(c, a->node, form_number((long)a->exponent[i]), term));
 	}
@@ -179,9 +182,9 @@ static struct form *derive(struct differentiation *d, const struct form *form)
 	for (int i = 0; i < form->terms; i++) {
 		const struct form_term *term = &form->term[i];
 		if (term->basis.kind == BASIS_ATOM)
-			total = sum(total, form_scale(known_derivative(d, term->basis.atom), term->factor));
+			form_add_to(total, known_derivative(d, term->basis.atom), term->factor);
 		else if (term->basis.kind == BASIS_COORD && term->basis.index == d->coord && term->basis.order == d->order)
-			total = sum(total, form_constant(term->factor));
+			form_add_basis(total, (struct basis){ .kind = BASIS_ONE }, term->factor);
 	}
 	return total;
 }
@@ -203,6 +206,7 @@ struct point {
 	int fixings;
 	const struct fixing *fixing;
 	struct form **known;        /* per atom */
+	struct span *span;          /* when it holds */
 	int count;
 };
 
@@ -250,8 +254,12 @@ static struct form *place_product(struct point *p, const struct atom *a, struct 
 		bool expand = a->exponent[i] <= EXPANDED && !is_constant(x[i]);
 		for (unsigned k = 0; k < a->exponent[i] && expand; k++)
 			product = kept_product(p->c, a->node, product, x[i]);
-		if (!expand)
-			product = kept_product(p->c, a->node, product, kept_whole_power(p->c, a->node, x[i], a->exponent[i]));
+		if (!expand) {
+			struct form *power = kept_whole_power(p->c, a->node, x[i], a->exponent[i]), *before = product;
+			product = kept_product(p->c, a->node, before, power);
+			if (is_constant(before))        /* else atoms may hold it */
+				form_free(before);
+		}
 		check_form(a->node->at, product);
 	}
 	return product;
@@ -292,18 +300,30 @@ static struct form *place_basis(struct point *p, const struct basis *basis)
 		return wave_at(p, basis, time);
 	if (basis->kind != BASIS_ATOM)
 		return form_unit(*basis);
-	if (basis->atom->index >= p->count)
+	int index = basis->atom->index;
+	if (index >= p->count)
 		return place_atom(p, basis->atom);
-	if (!p->known[basis->atom->index])
-		p->known[basis->atom->index] = place_atom(p, basis->atom);
-	return p->known[basis->atom->index];
+	struct collector *c = p->c;
+	if (!p->known[index] || !holds_now(c, p->span[index])) {
+		struct span outer = c->span;
+		c->span = (struct span){ NULL, NULL };
+		p->known[index] = place_atom(p, basis->atom);
+		p->span[index] = c->span;
+		narrow_span(c, outer);
+	} else {
+		narrow_span(c, p->span[index]);
+	}
+	return p->known[index];
 }
 
+/* Not to be changed: it may be the form itself */
 static struct form *place_form(struct point *p, const struct form *form)
 {
+	if (is_constant(form))
+		return (struct form *)form;
 	struct form *total = NEW(struct form);
 	for (int i = 0; i < form->terms; i++)
-		total = sum(total, form_scale(place_basis(p, &form->term[i].basis), form->term[i].factor));
+		form_add_to(total, place_basis(p, &form->term[i].basis), form->term[i].factor);
 	return total;
 }
 
@@ -319,9 +339,13 @@ struct form *form_at(struct point *p, const struct form *form)
 	int count = atoms_count(p->c->atoms);
 	if (count > p->count) {
 		struct form **known = ARRAY(struct form *, (size_t)count);
-		for (int i = 0; i < p->count; i++)
+		struct span *span = ARRAY(struct span, (size_t)count);
+		for (int i = 0; i < p->count; i++) {
 			known[i] = p->known[i];
+			span[i] = p->span[i];
+		}
 		p->known = known;
+		p->span = span;
 		p->count = count;
 	}
 	return place_form(p, form);

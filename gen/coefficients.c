@@ -565,6 +565,16 @@ static struct coefficient immediate(struct filling *f, const struct kernel *kern
 	return c;
 }
 
+/* Whether a load acts alike in two segments of time: then its factors are the same */
+static bool same_forces(const struct linear *system, int load, int a, int b)
+{
+	bool same = true;
+	for (int k = 0; k < system->load[load].columns; k++)
+		for (int i = 0; i < system->n && same; i++)
+			same = mpq_equal(system->load[load].force[k][a * system->n + i], system->load[load].force[k][b * system->n + i]);
+	return same;
+}
+
 static void fill_row(struct filling *f, struct table *table)
 {
 	const struct linear *system = f->system;
@@ -585,10 +595,13 @@ static void fill_row(struct filling *f, struct table *table)
 			table->kernel[j][i * system->channels + e] = is_immediate(&wanted->kernel[j]) ? immediate(f, &wanted->kernel[j], e)
 				: number_of(f, false, combine_kernel, j, e, format("leftover %d", e + 1));
 	for (f->segment = 0; f->segment < system->segments; f->segment++)
-		for (int l = 0, column = 0; l < system->loads; l++)
-			for (int k = 0; k < system->load[l].columns; k++, column++)
-				table->load[(f->segment * n + i) * columns + column] =
-					number_of(f, wanted->two_words, combine_load, l, k, column_text(&system->load[l], k));
+		for (int l = 0, column = 0; l < system->loads; l++) {
+			bool known = f->segment > 0 && same_forces(system, l, f->segment - 1, f->segment);
+			for (int k = 0; k < system->load[l].columns; k++, column++) {
+				struct coefficient *here = &table->load[(f->segment * n + i) * columns + column];
+				*here = known ? here[-n * columns] : number_of(f, wanted->two_words, combine_load, l, k, column_text(&system->load[l], k));
+			}
+		}
 }
 
 static struct table *table_new(const struct linear *system, const struct wanted *wanted)

@@ -199,7 +199,7 @@ struct form *constant_call(struct collector *c, const struct node *node, enum fu
 	if (!rational) {
 		constant_value(c, x, value);
 		if (!constant_function(node->at, function, value, value))
-			c->irrationals.used[function] = true;
+			met_irrational(c, &c->irrationals.used[function]);
 	}
 	check_bits(node->at, value);
 	struct form *form = form_constant(value);
@@ -299,24 +299,42 @@ static struct value *collect_call(struct collector *c, struct node *node)
 
 /* ---- operators ---- */
 
+/* The limit on exact values, where a part has been added */
+static void check_sum(struct place at, const struct form *sum, const struct form *part)
+{
+	for (int i = 0; i < part->terms; i++) {
+		const struct form_term *term = form_find(sum, &part->term[i].basis);
+		if (term)
+			check_bits(at, term->factor);
+	}
+}
+
 static struct value *collect_sum(struct collector *c, struct node *node)
 {
 	struct value *sum = NULL;
 	const struct node *outer = c->term;
+	const struct place before = working_at();
+	mpq_t minus;
+	mpq_init(minus);
+	mpq_set_si(minus, -1, 1);
 	for (int i = 0; i < node->children; i++) {
-		if (node->children > 1)
+		if (node->children > 1) {
 			c->term = node->child[i];
+			work_at(c->term->start);
+		}
 		struct value *term = collect_node(c, node->child[i]);
 		if (!sum)
 			sum = value_new(term->rows, term->columns);
 		if (sum->rows != term->rows || sum->columns != term->columns)
 			error(node->operator[i], NULL, "sizes do not fit: %s and %s", shape_text(sum), shape_text(term));
 		for (int k = 0; k < sum->rows * sum->columns; k++) {
-			sum->cell[k] = form_sum(sum->cell[k], term->cell[k], node->inverse[i]);
-			check_form(node->operator[i], sum->cell[k]);
+			form_add_to(sum->cell[k], term->cell[k], node->inverse[i] ? minus : NULL);
+			check_sum(node->operator[i], sum->cell[k], term->cell[k]);
 		}
 	}
+	mpq_clear(minus);
 	c->term = outer;
+	work_at(before);
 	return sum;
 }
 
@@ -377,7 +395,7 @@ static struct form *dot(struct collector *c, const struct node *node, const stru
 	for (int k = 0; k < a->columns; k++) {
 		const struct form *x = a->cell[row * a->columns + k], *y = b->cell[k * b->columns + column];
 		if (x->terms > 0 && y->terms > 0)
-			sum = form_sum(sum, times(c, node, x, y), false);
+			form_add_to(sum, times(c, node, x, y), NULL);
 	}
 	return sum;
 }
@@ -440,7 +458,7 @@ static struct form *collect_power(struct collector *c, struct node *node)
 	if (is_constant(base)) {
 		constant_value(c, base, b);
 		if (!constant_power(node->at, b, e, b))
-			c->irrationals.root = true;
+			met_irrational(c, &c->irrationals.root);
 		power = form_constant(b);
 		check_form(node->at, power);
 	} else if (mpq_cmp_ui(e, 1, 1) == 0) {
@@ -514,6 +532,7 @@ static void collect_value(struct collector *c, struct symbol *symbol)
 {
 	struct collector inner = *c;
 	inner.term = symbol->value;
+	inner.span = (struct span){ NULL, NULL };
 	if (symbol->kind == SYMBOL_PARAM || symbol->kind == SYMBOL_MATRIX)
 		inner.constant_only = true;
 	symbol->progress = COLLECTING;
@@ -522,11 +541,13 @@ static void collect_value(struct collector *c, struct symbol *symbol)
 	if (symbol->kind == SYMBOL_PARAM && !is_scalar(value))
 		error(symbol->value->start, "matrix NAME = ...", "a param is a number, found a %s matrix", shape_text(value));
 	c->waves = inner.waves;
-	c->wave_count = inner.wave_count;
 	c->irrationals = inner.irrationals;
+	symbol->irrational = inner.irrational_count > c->irrational_count;
+	c->irrational_count = inner.irrational_count;
 	c->changes = inner.changes;
 	c->change = inner.change;
 	symbol->collected = value;
+	symbol->span = inner.span;
 	symbol->progress = COLLECTED;
 }
 
@@ -560,8 +581,12 @@ static struct value *collect_name(struct collector *c, struct node *node)
 			return scalar(form_constant(c->fixing[i].value));
 	if (symbol->progress == COLLECTING && symbol->kind == SYMBOL_PARAM)
 		error(node->at, NULL, "param '%s' is defined by itself", symbol->name);
+	if (symbol->progress == COLLECTING)     /* a let that failed before: that was told */
+		abandon();
 	if (symbol->progress != COLLECTED)
 		collect_value(c, symbol);
+	narrow_span(c, symbol->span);
+	c->irrational_count += symbol->irrational;
 	return symbol->collected;
 }
 
@@ -583,7 +608,7 @@ static struct value *collect_file(struct collector *c, struct node *node)
 	return value;
 }
 
-static struct value *collect_node(struct collector *c, struct node *node)
+static struct value *collect_anew(struct collector *c, struct node *node)
 {
 	switch (node->kind) {
 	case NODE_NUMBER:  return scalar(form_constant(node->number));
@@ -603,9 +628,61 @@ static struct value *collect_node(struct collector *c, struct node *node)
 	}
 }
 
+/* ---- what time alone decides is kept from interval to interval ---- */
+
+struct kept {
+	struct value *value;
+	struct span span;
+	const struct model *model;
+	unsigned mode;              /* of the collector */
+};
+
+static bool is_timely(struct node *node)
+{
+	if (node->timely != TIMELY_UNKNOWN)
+		return node->timely == TIMELY;
+	bool timely = node->kind != NODE_FILE;
+	if (node->kind == NODE_NAME && node->symbol->kind != SYMBOL_PARAM)
+		timely = node->symbol->kind == SYMBOL_LET && !node->symbol->broken && is_timely(node->symbol->value);
+	for (int i = 0; i < node->children && timely; i++)
+		timely = is_timely(node->child[i]);
+	node->timely = timely ? TIMELY : NOT_TIMELY;
+	return timely;
+}
+
+static unsigned mode_of(const struct collector *c)
+{
+	return (unsigned)c->keep | c->whole_time << 2 | c->tolerant << 3 | c->constant_only << 4 | c->closed << 5 | c->output << 6;
+}
+
+/* Cells of values are shared: nobody changes them. What has become a rational is told by those that are collected, so it is
+ * not kept. */
+static struct value *collect_node(struct collector *c, struct node *node)
+{
+	if (!c->model || c->fixings || c->constant_only || !is_timely(node))
+		return collect_anew(c, node);
+	struct kept *kept = node->kept;
+	if (kept && kept->model == c->model && kept->mode == mode_of(c) && holds_now(c, kept->span)) {
+		narrow_span(c, kept->span);
+		return kept->value;
+	}
+	struct span outer = c->span;
+	int irrationals = c->irrational_count;
+	c->span = (struct span){ NULL, NULL };
+	struct value *value = collect_anew(c, node);
+	if (!kept)
+		kept = node->kept = NEW(struct kept);
+	if (c->irrational_count == irrationals)
+		*kept = (struct kept){ value, c->span, c->model, mode_of(c) };
+	narrow_span(c, outer);
+	return value;
+}
+
 struct value *collect(struct collector *c, struct node *node)
 {
 	c->term = node;
+	c->span = (struct span){ NULL, NULL };
+	work_at(node->start);
 	return collect_node(c, node);
 }
 

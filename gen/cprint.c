@@ -5,9 +5,14 @@
 
 #include <string.h>
 
+enum { BUCKETS = 1 << 12 };
+
+struct taken {
+	const char *name;
+	struct taken *next;
+};
 struct naming {                     /* the identifiers given away so far */
-	int count;
-	const char **taken;
+	struct taken *taken[BUCKETS]; /* by name */
 	const char *name, *upper;   /* the model's: what begins with one of these and _ is generated */
 };
 
@@ -58,8 +63,8 @@ static bool is_taken(const struct naming *naming, const char *name)
 			return true;
 	if (is_load_local(name))
 		return true;
-	for (int i = 0; i < naming->count; i++)
-		if (strcmp(name, naming->taken[i]) == 0)
+	for (const struct taken *t = naming->taken[name_hash(name) % BUCKETS]; t; t = t->next)
+		if (strcmp(name, t->name) == 0)
 			return true;
 	return false;
 }
@@ -74,8 +79,9 @@ static const char *claim(struct naming *naming, const char *wish)
 	const char *name = may_be_macro(wish) ? format("v%s", wish) : wish;
 	while (is_generated(naming, name) || is_taken(naming, name) || may_be_macro(name))
 		name = is_generated(naming, name) ? format("v%s", name) : format("%s_", name);
-	ENLARGE(naming->taken, (size_t)naming->count + 1);
-	naming->taken[naming->count++] = name;
+	struct taken **first = &naming->taken[name_hash(name) % BUCKETS], *taken = NEW(struct taken);
+	*taken = (struct taken){ name, *first };
+	*first = taken;
 	return name;
 }
 

@@ -276,7 +276,10 @@ static void check_mass(const struct building *b)
 {
 	const struct model *model = b->model;
 	int n = model->n, column;
-	if (leading_inverse(&model->system, rationals((size_t)n * (size_t)n), &column))
+	mpq_t *inverse = rationals((size_t)n * (size_t)n);
+	bool regular = leading_inverse(&model->system, inverse, &column);
+	rationals_free(inverse, (size_t)n * (size_t)n);
+	if (regular)
 		return;
 	for (int j = n - 1; j >= 0; j--)
 		if (zero_column(model, j))
@@ -342,7 +345,7 @@ void spread_loads(struct building *b, const struct form *form, void (*spread)(vo
 	struct linear *system = &b->model->system;
 	mpq_t constant;
 	mpq_init(constant);
-	struct form plain = { 0, form->term };
+	struct form plain = { 0, form->term, 0 };
 	while (plain.terms < form->terms && form->term[plain.terms].basis.kind <= BASIS_PI)
 		plain.terms++;
 	constant_value(&b->collector, &plain, constant);
@@ -525,11 +528,12 @@ static void part_loads(void *context)
 	int n = b->model->n, segments = b->model->system.segments;
 	b->load = ARRAY(struct form *, (size_t)(segments * n));
 	b->time_left = ARRAY(struct form *, (size_t)n);
+	struct point *point = point_new(c, 0, NULL);
 	for (int i = 0; i < n; i++) {
 		const struct form *whole = time_part(b->whole->residual[i].form, false);
 		bool same = true;
 		for (c->interval = 0; c->interval < segments; c->interval++) {
-			struct form *here = form_at(point_new(c, 0, NULL), whole), *left = time_part(here, true);
+			struct form *here = form_at(point, whole), *left = time_part(here, true);
 			b->load[c->interval * n + i] = form_sum(here, left, true);
 			b->time_left[i] = c->interval == 0 ? left : b->time_left[i];
 			same = same && same_form(left, b->time_left[i]);

@@ -3,6 +3,8 @@
  * their derivatives. pi stays a basis element until it meets another factor, so that quarter turns are decided exactly. */
 #include "plgen.h"
 
+#include <string.h>
+
 int basis_order(const struct basis *a, const struct basis *b)
 {
 	if (a->kind != b->kind)
@@ -57,6 +59,7 @@ static struct form *form_add(const struct form *a, const struct form *b, mpq_src
 {
 	struct form *sum = NEW(struct form);
 	sum->term = ARRAY(struct form_term, (size_t)(a->terms + b->terms));
+	spend_terms((size_t)(a->terms + b->terms));
 	mpq_t scaled;
 	mpq_init(scaled);
 	for (int i = 0, j = 0; i < a->terms || j < b->terms;) {
@@ -70,10 +73,131 @@ static struct form *form_add(const struct form *a, const struct form *b, mpq_src
 			mpq_mul(scaled, b->term[j++].factor, factor);
 			mpq_add(term->factor, term->factor, scaled);
 		}
-		sum->terms += mpq_sgn(term->factor) != 0;
+		if (mpq_sgn(term->factor) != 0)
+			sum->terms++;
+		else
+			mpq_clear(term->factor);
 	}
 	mpq_clear(scaled);
 	return sum;
+}
+
+/* Where the basis stands in a form, or would */
+static int find_place(const struct form *form, const struct basis *basis, bool *found)
+{
+	int low = 0, high = form->terms;
+	*found = false;
+	while (low < high && !*found) {
+		int middle = low + (high - low) / 2, order = basis_order(&form->term[middle].basis, basis);
+		*found = order == 0;
+		low = order < 0 ? middle + 1 : order == 0 ? middle : low;
+		high = order > 0 ? middle : high;
+	}
+	return low;
+}
+
+const struct form_term *form_find(const struct form *form, const struct basis *basis)
+{
+	bool found;
+	int at = find_place(form, basis, &found);
+	return found ? &form->term[at] : NULL;
+}
+
+static void make_room(struct form *sum, int more)
+{
+	if (sum->terms + more <= sum->room)
+		return;
+	sum->room = 2 * sum->terms + more;
+	ENLARGE(sum->term, (size_t)sum->room);
+}
+
+static void add_factor(mpq_ptr sum, mpq_srcptr value, mpq_srcptr factor)
+{
+	mpq_t product;
+	if (!factor) {
+		mpq_add(sum, sum, value);
+		return;
+	}
+	mpq_init(product);
+	mpq_mul(product, value, factor);
+	mpq_add(sum, sum, product);
+	mpq_clear(product);
+}
+
+static void insert_term(struct form *sum, const struct form_term *term, mpq_srcptr factor)
+{
+	bool found;
+	int at = find_place(sum, &term->basis, &found);
+	if (!found) {
+		make_room(sum, 1);
+		memmove(sum->term + at + 1, sum->term + at, (size_t)(sum->terms - at) * sizeof *sum->term);
+		sum->term[at].basis = term->basis;
+		mpq_init(sum->term[at].factor);
+		sum->terms++;
+	}
+	add_factor(sum->term[at].factor, term->factor, factor);
+	if (mpq_sgn(sum->term[at].factor) != 0)
+		return;
+	mpq_clear(sum->term[at].factor);
+	sum->terms--;
+	memmove(sum->term + at, sum->term + at + 1, (size_t)(sum->terms - at) * sizeof *sum->term);
+}
+
+/* All at once, into a new list */
+static void merge_terms(struct form *sum, const struct form *part, mpq_srcptr factor)
+{
+	struct form merged = { 0, ARRAY(struct form_term, (size_t)(sum->terms + part->terms)), sum->terms + part->terms };
+	spend_terms((size_t)sum->terms / 4);
+	for (int i = 0, j = 0; i < sum->terms || j < part->terms;) {
+		int order = i == sum->terms ? 1 : j == part->terms ? -1 : basis_order(&sum->term[i].basis, &part->term[j].basis);
+		struct form_term *term = &merged.term[merged.terms];
+		if (order <= 0) {
+			*term = sum->term[i++];
+		} else {
+			term->basis = part->term[j].basis;
+			mpq_init(term->factor);
+		}
+		if (order >= 0)
+			add_factor(term->factor, part->term[j++].factor, factor);
+		if (mpq_sgn(term->factor) != 0)
+			merged.terms++;
+		else
+			mpq_clear(term->factor);
+	}
+	discard(sum->term);
+	*sum = merged;
+}
+
+void form_add_to(struct form *sum, const struct form *part, mpq_srcptr factor)
+{
+	enum { SINGLY = 8 };
+	spend_terms((size_t)part->terms);
+	if (factor && mpq_sgn(factor) == 0)
+		return;
+	if (part->terms > SINGLY) {
+		merge_terms(sum, part, factor);
+		return;
+	}
+	for (int i = 0; i < part->terms; i++)
+		insert_term(sum, &part->term[i], factor);
+}
+
+void form_add_basis(struct form *sum, struct basis basis, mpq_srcptr factor)
+{
+	struct form_term term = { .basis = basis };
+	if (mpq_sgn(factor) == 0)
+		return;
+	term.factor[0] = factor[0];             /* read only */
+	insert_term(sum, &term, NULL);
+	spend_terms(1);
+}
+
+void form_free(struct form *form)
+{
+	for (int i = 0; i < form->terms; i++)
+		mpq_clear(form->term[i].factor);
+	discard(form->term);
+	discard(form);
 }
 
 struct form *form_sum(const struct form *a, const struct form *b, bool subtract)
@@ -110,6 +234,12 @@ mpq_srcptr factor_of(const struct form *form, enum basis_kind kind)
 	return NULL;
 }
 
+void met_irrational(struct collector *c, bool *which)
+{
+	*which = true;
+	c->irrational_count++;
+}
+
 void constant_value(struct collector *c, const struct form *form, mpq_ptr value)
 {
 	mpq_t sum;
@@ -118,7 +248,7 @@ void constant_value(struct collector *c, const struct form *form, mpq_ptr value)
 	if (pi) {
 		constant_pi(sum);
 		mpq_mul(sum, sum, pi);
-		c->irrationals.pi = true;
+		met_irrational(c, &c->irrationals.pi);
 	}
 	if (one)
 		mpq_add(sum, sum, one);
@@ -154,12 +284,13 @@ void check_form(struct place at, const struct form *form)
 		check_bits(at, form->term[i].factor);
 }
 
-
 bool same_in_states(const struct form *a, const struct form *b)
 {
-	const struct form *difference = form_sum(a, b, true);
-	for (int i = 0; i < difference->terms; i++)
-		if (difference->term[i].basis.kind >= BASIS_INPUT)
-			return false;
-	return true;
+	int i = 0, j = 0;
+	while (i < a->terms && a->term[i].basis.kind < BASIS_INPUT)
+		i++;
+	while (j < b->terms && b->term[j].basis.kind < BASIS_INPUT)
+		j++;
+	const struct form left = { a->terms - i, a->term + i, 0 }, right = { b->terms - j, b->term + j, 0 };
+	return same_form(&left, &right);
 }

@@ -50,6 +50,7 @@ bool rational_inverse(int n, const mpq_t *A, mpq_t *inverse, int *column)
 		if (row == n) {
 			*column = k;
 			mpq_clear(pivot);
+			rationals_free(W, (size_t)(n * width));
 			return false;
 		}
 		for (int j = 0; j < width; j++)
@@ -67,6 +68,7 @@ bool rational_inverse(int n, const mpq_t *A, mpq_t *inverse, int *column)
 		for (int j = 0; j < n; j++)
 			mpq_set(inverse[i * n + j], W[i * width + n + j]);
 	mpq_clear(pivot);
+	rationals_free(W, (size_t)(n * width));
 	return true;
 }
 
@@ -111,7 +113,9 @@ bool leading_inverse(const struct linear *system, mpq_t *inverse, int *column)
 	for (int i = 0; i < n; i++)
 		for (int j = 0; j < n; j++)
 			mpq_set(W[i * n + j], (system->velocity[j] >= 0 ? system->M : system->C)[i * n + j]);
-	return rational_inverse(n, (const mpq_t *)W, inverse, column);
+	bool regular = rational_inverse(n, (const mpq_t *)W, inverse, column);
+	rationals_free(W, (size_t)n * (size_t)n);
+	return regular;
 }
 
 /* What multiplies a state in the equations; with the held terms of a scheme, or only those. */
@@ -129,6 +133,7 @@ void highest_derivatives(const struct linear *system, const mpq_t *inverse, bool
 		for (int j = 0; j < states; j++)
 			mpq_neg(lower[i * states + j], factor_of_state(system, i, j, held));
 	rational_product(n, n, states, inverse, (const mpq_t *)lower, row);
+	rationals_free(lower, (size_t)n * (size_t)states);
 }
 
 /* x' = A x over the states (held terms: those that a scheme holds, alone) */
@@ -146,5 +151,7 @@ mpq_t *state_matrix(const struct linear *system, bool held)
 		if (system->velocity[i] >= 0 && !held)
 			mpq_set_ui(A[i * states + system->velocity[i]], 1, 1);
 	}
+	rationals_free(inverse, (size_t)n * (size_t)n);
+	rationals_free(highest, (size_t)n * (size_t)states);
 	return A;
 }

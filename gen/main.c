@@ -8,6 +8,10 @@
 #include <fcntl.h>
 #include <getopt.h>
 #include <signal.h>
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
+#include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -521,7 +525,7 @@ static struct model *over_relative(struct model *model, struct spec *spec, const
 	return relative && find_tuning(relative, &again) ? relative : NULL;
 }
 
-int main(int argc, char **argv)
+static int compile(int argc, char **argv)
 {
 	struct options options = { 0 };
 	memory_open();
@@ -577,4 +581,36 @@ int main(int argc, char **argv)
 	publish();
 	diagnostics_print(stderr);
 	return 0;
+}
+
+/* ---- a stack that is large enough for whatever the limits allow ---- */
+
+/* The walks over expressions recurse, LIMIT_DEPTH deep at most; what stack a program is started with differs from system to
+ * system, and a limit of the user's cannot be raised from here. So all work is done on a stack of its own, of pages that cost
+ * nothing until they are used. */
+enum { STACK_SIZE = 96 << 20 };
+
+struct command { int argc; char **argv; };
+
+static void *work(void *context)
+{
+	const struct command *command = context;
+	exit(compile(command->argc, command->argv));
+}
+
+int main(int argc, char **argv)
+{
+	struct command command = { argc, argv };
+	pthread_attr_t attributes;
+	pthread_t thread;
+#ifdef M_ARENA_MAX
+	mallopt(M_ARENA_MAX, 1);        /* one thread works: it needs no heap of its own */
+#endif
+	if (pthread_attr_init(&attributes) != 0 || pthread_attr_setstacksize(&attributes, STACK_SIZE) != 0 ||
+	    pthread_create(&thread, &attributes, work, &command) != 0) {
+		fputs("plgen: error: out of memory\n", stderr);
+		return 1;
+	}
+	pthread_join(thread, NULL);
+	return 1;
 }

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Every chunk is kept in one ring and given back when the program ends. GMP, MPFR and MPFI free as they go; the
- * generator's own structures do not, so no stage needs to know who else still looks at them. */
+ * generator's own structures do not, so no stage needs to know who else still looks at them. What is held is counted, as
+ * are the terms that were made: two budgets, looked at where the generator itself asks for memory, never inside GMP. They
+ * are counts, so that a spec is within them on every machine or on none. */
 #include "plgen.h"
 
 #include <stdarg.h>
@@ -8,14 +10,18 @@
 #include <string.h>
 
 union chunk {
-	struct { union chunk *before, *after; } ring;
+	struct { union chunk *before, *after; size_t size; } ring;
 	max_align_t align;
 };
 
 static union chunk ring;
+static size_t held, terms;          /* bytes now; terms so far */
+static bool over;                   /* a budget is spent, and that is being told */
 
-static void link_block(union chunk *chunk)
+static void link_block(union chunk *chunk, size_t size)
 {
+	chunk->ring.size = size;
+	held += size;
 	chunk->ring.before = &ring;
 	chunk->ring.after = ring.ring.after;
 	chunk->ring.after->ring.before = chunk;
@@ -24,6 +30,7 @@ static void link_block(union chunk *chunk)
 
 static void unlink_block(union chunk *chunk)
 {
+	held -= chunk->ring.size;
 	chunk->ring.before->ring.after = chunk->ring.after;
 	chunk->ring.after->ring.before = chunk->ring.before;
 }
@@ -39,7 +46,7 @@ static void *ring_new(size_t size)
 	union chunk *chunk = size > SIZE_MAX - sizeof *chunk ? NULL : malloc(sizeof *chunk + size);
 	if (!chunk)
 		out_of_memory();
-	link_block(chunk);
+	link_block(chunk, sizeof *chunk + size);
 	return chunk + 1;
 }
 
@@ -52,7 +59,7 @@ static void *ring_resize(void *old, size_t size)
 	chunk = size > SIZE_MAX - sizeof *chunk ? NULL : realloc(chunk, sizeof *chunk + size);
 	if (!chunk)
 		out_of_memory();
-	link_block(chunk);
+	link_block(chunk, sizeof *chunk + size);
 	return chunk + 1;
 }
 
@@ -85,10 +92,29 @@ void memory_close(void)
 	ring.ring.before = ring.ring.after = &ring;
 }
 
+/* Before `size` more are asked for */
+static void check_bytes(size_t size)
+{
+	if (over || (held <= LIMIT_BYTES && size <= LIMIT_BYTES - held))
+		return;
+	over = true;
+	give_up(format("this takes more memory than the limit of %d bytes", LIMIT_BYTES));
+}
+
+void spend_terms(size_t count)
+{
+	terms += count;
+	if (terms <= LIMIT_TERMS || over)
+		return;
+	over = true;
+	give_up(format("multiplied out, this takes more terms than the limit of %d", LIMIT_TERMS));
+}
+
 void *allocate(size_t count, size_t size)
 {
 	if (size && count > SIZE_MAX / size)
 		out_of_memory();
+	check_bytes(count * size);
 	return memset(ring_new(count * size), 0, count * size);
 }
 
@@ -96,7 +122,14 @@ void *enlarge(void *chunk, size_t count, size_t size)
 {
 	if (size && count > SIZE_MAX / size)
 		out_of_memory();
+	check_bytes(chunk ? 0 : count * size);
 	return ring_resize(chunk, count * size);
+}
+
+void discard(void *chunk)
+{
+	if (chunk)
+		gmp_free(chunk, 0);
 }
 
 char *format(const char *fmt, ...)
@@ -105,6 +138,7 @@ char *format(const char *fmt, ...)
 	va_start(args, fmt);
 	va_copy(again, args);
 	int length = vsnprintf(NULL, 0, fmt, args);
+	check_bytes((size_t)length + 1);
 	char *text = ring_new((size_t)length + 1);
 	vsnprintf(text, (size_t)length + 1, fmt, again);
 	va_end(again);
@@ -112,8 +146,17 @@ char *format(const char *fmt, ...)
 	return text;
 }
 
+void rationals_free(mpq_t *q, size_t count)
+{
+	for (size_t i = 0; i < count; i++)
+		mpq_clear(q[i]);
+	discard(q);
+}
+
 mpq_t *rationals(size_t count)
 {
+	enum { DENOMINATOR = 64 };      /* bytes of that of 0/1 */
+	check_bytes(count > SIZE_MAX / DENOMINATOR ? SIZE_MAX : count * DENOMINATOR);
 	mpq_t *q = ARRAY(mpq_t, count);
 	for (size_t i = 0; i < count; i++)
 		mpq_init(q[i]);

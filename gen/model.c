@@ -38,10 +38,11 @@ static void set_tunables(struct building *b)
 	}
 }
 
-static bool statement_failed(const struct spec *spec, size_t statement)
+/* Whether a symbol of the statement of `first`, its first one, is broken; those of a statement stand together */
+static bool statement_failed(const struct symbol *first)
 {
-	for (const struct symbol *s = spec->first; s; s = s->next)
-		if (s->broken && s->index >= 0 && s->statement == statement)
+	for (const struct symbol *s = first; s && s->statement == first->statement; s = s->next)
+		if (s->broken && s->index >= 0)
 			return true;
 	return false;
 }
@@ -61,10 +62,12 @@ static void evaluate_symbol(void *context)
 static void evaluate_params(struct building *b)
 {
 	b->collector.constant_only = true;
-	for (struct symbol *s = b->spec->first; s; s = s->next) {
+	bool failed = false;
+	for (struct symbol *s = b->spec->first, *before = NULL; s; before = s, s = s->next) {
+		failed = before && before->statement == s->statement ? failed || (before->broken && before->index >= 0) : statement_failed(s);
 		if ((s->kind != SYMBOL_PARAM && s->kind != SYMBOL_MATRIX) || s->broken)
 			continue;
-		if (s->progress == COLLECTING || statement_failed(b->spec, s->statement) ||
+		if (s->progress == COLLECTING || failed ||
 		    !statement_guard(evaluate_symbol, &(struct symbol_work){ b, s }))
 			s->broken = true;
 	}
@@ -278,21 +281,55 @@ void forget_lets(const struct spec *spec)
 			s->progress = FRESH;
 }
 
-/* Equations and outputs in each interval of time; again from the first when a change of formula was found on the way. */
+static void collect_interval(struct building *b, struct snapshot *snapshot)
+{
+	forget_lets(b->spec);
+	collect_equations(b, snapshot);
+	forget_lets(b->spec);                   /* collected anew: in an output no atom is kept */
+	collect_outputs(b, snapshot);
+}
+
+/* Intervals that were one when they were collected get residuals of their own. */
+static void part_snapshots(struct snapshot *snapshot, int count)
+{
+	for (int i = count - 1; i > 0; i--) {
+		struct snapshot *s = &snapshot[i];
+		struct residual *residual = s->residual;
+		if (residual != s[-1].residual)
+			continue;
+		s->residual = ARRAY(struct residual, (size_t)s->residuals);
+		for (int k = 0; k < s->residuals; k++)
+			s->residual[k] = residual[k];
+	}
+}
+
+/* Equations and outputs in each interval of time. When a change of formula is met for the first time, the intervals before
+ * that are known, even where it divides them: what they read does not change there. */
 static void collect_intervals(struct building *b)
 {
 	struct collector *c = &b->collector;
-	int known;
+	struct snapshot *old = NULL;            /* of the intervals that the changes known then left, the first `done` of them */
+	const mpq_t *change = NULL;
+	int known, done = 0;
 	do {
+		const mpq_t *list = (const mpq_t *)c->change;
 		known = c->changes;
 		b->snapshot = ARRAY(struct snapshot, (size_t)known + 1);
+		int within = 0;                 /* the old interval in which this one lies */
 		for (c->interval = 0; c->interval <= known && c->changes == known && !(c->interval && diagnostics_errors()); c->interval++) {
-			forget_lets(b->spec);
-			collect_equations(b, &b->snapshot[c->interval]);
-			forget_lets(b->spec);       /* collected anew: in an output no atom is kept */
-			collect_outputs(b, &b->snapshot[c->interval]);
+			if (within < done && c->interval > 0 && mpq_equal(change[within], list[c->interval - 1]))
+				within++;
+			if (within < done)
+				b->snapshot[c->interval] = old[within];
+			else
+				collect_interval(b, &b->snapshot[c->interval]);
 		}
+		discard(old);
+		old = b->snapshot;
+		change = list;
+		done = c->interval - 1;         /* in the last one a change was met */
 	} while (c->changes != known && !diagnostics_errors());
+	part_snapshots(b->snapshot, known + 1);
 	c->interval = 0;
 	b->model->system.segments = c->changes + 1;
 	b->model->system.change = c->change;

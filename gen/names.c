@@ -148,6 +148,14 @@ static bool is_of_library(const char *name)
 	return length > 2 && strcmp(name + length - 2, "_t") == 0;
 }
 
+size_t name_hash(const char *name)
+{
+	size_t hash = 0;
+	for (; *name; name++)
+		hash = (hash ^ (unsigned char)*name) * 0x9e3779b97f4a7c15u;
+	return hash >> 20;
+}
+
 const char *function_name(enum function function)
 {
 	return function_names[function];
@@ -187,24 +195,32 @@ static int least(int a, int b, int c)
 	return ab < c ? ab : c;
 }
 
-/* Number of letters to insert, remove, replace or swap with their neighbour to make `a` into `b` (Damerau). */
-static int edit_distance(const char *a, const char *b)
+/* Number of letters to insert, remove, replace or swap with their neighbour to make `a` into `b` (Damerau), if it is below
+ * `limit`; else it is no less. */
+static int edit_distance(const char *a, const char *b, int limit)
 {
 	int m = (int)strlen(a), n = (int)strlen(b);
-	if (m > 64 || n > 64)
+	if (m > 64 || n > 64 || m - n >= limit || n - m >= limit)
 		return 64;
-	int d[65][65];
-	for (int i = 0; i <= m; i++)
+	int d[65][65], before = 0, row = 0;     /* the least of the last two rows */
+	for (int i = 0; i <= m; i++) {
+		if (i > 1 && before >= limit && row >= limit)
+			return 64;
+		before = row;
+		row = 64;
 		for (int j = 0; j <= n; j++) {
 			if (i == 0 || j == 0) {
 				d[i][j] = i + j;
+				row = d[i][j] < row ? d[i][j] : row;
 				continue;
 			}
 			int replace = d[i - 1][j - 1] + (a[i - 1] != b[j - 1]);
 			d[i][j] = least(d[i - 1][j] + 1, d[i][j - 1] + 1, replace);
 			if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1] && d[i - 2][j - 2] + 1 < d[i][j])
 				d[i][j] = d[i - 2][j - 2] + 1;
+			row = d[i][j] < row ? d[i][j] : row;
 		}
+	}
 	return d[m][n];
 }
 
@@ -213,7 +229,7 @@ const char *nearest_name(const char *name, int count, const char *const *known)
 	const char *best = NULL;
 	int distance = (int)strlen(name) <= 2 ? 2 : 3;
 	for (int i = 0; i < count; i++) {
-		int d = edit_distance(name, known[i]);
+		int d = edit_distance(name, known[i], distance);
 		if (d > 0 && strcasecmp(name, known[i]) == 0)
 			return known[i];
 		if (d > 0 && d < distance && d < (int)strlen(name)) {

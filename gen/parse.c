@@ -131,6 +131,11 @@ static void add_child(struct node *node, struct node *child, bool inverse, struc
 		ENLARGE(node->inverse, room);
 		ENLARGE(node->operator, room);
 	}
+	bool many = node->kind == NODE_CALL && (node->function == FN_MIN || node->function == FN_MAX || node->function == FN_TABLE);
+	int inside = child->depth + 1 + (many ? node->children : 0);
+	node->depth = inside > node->depth ? inside : node->depth;
+	if (node->depth > LIMIT_DEPTH)
+		error(child->start, NULL, "operations inside each other, through params and lets, over the limit of %d", LIMIT_DEPTH);
 	node->child[count] = child;
 	node->inverse[count] = inverse;
 	node->operator[count] = operator;
@@ -159,12 +164,25 @@ char *text_between(struct place start, struct place end)
 	return folded;
 }
 
+enum { BUCKETS = 1 << 14 };
+
 struct symbol *spec_find(const struct spec *spec, const char *name)
 {
-	for (struct symbol *s = spec->first; s; s = s->next)
+	for (struct symbol *s = spec->bucket[name_hash(name) % BUCKETS]; s; s = s->next_alike)
 		if (strcmp(s->name, name) == 0)
 			return s;
 	return NULL;
+}
+
+/* Behind all others: of equal names the first is found. */
+static void add_symbol(struct spec *spec, struct symbol *symbol)
+{
+	*spec->last = symbol;
+	spec->last = &symbol->next;
+	struct symbol **link = &spec->bucket[name_hash(symbol->name) % BUCKETS];
+	while (*link)
+		link = &(*link)->next_alike;
+	*link = symbol;
 }
 
 static bool begins(const char *line, const char *word)
@@ -266,6 +284,7 @@ static struct node *resolve_name(struct parser *p, struct token token)
 		error(token.at, "a let may use coordinates and their first derivatives", "an acceleration in a let");
 	struct node *node = node_new(NODE_NAME, token.at);
 	node->symbol = symbol;
+	node->depth = symbol->value ? symbol->value->depth + 1 : 0;
 	node->primes = token.primes;
 	node->component = component;
 	node->end = p->end;
@@ -534,8 +553,7 @@ static struct symbol *declare(struct parser *p, struct token name, enum symbol_k
 	struct symbol *symbol = NEW(struct symbol);
 	*symbol = (struct symbol){ .kind = kind, .name = name.name, .at = name.at, .statement = p->statement, .broken = broken };
 	symbol->index = broken ? -1 : (*counts[kind])++;
-	*spec->last = symbol;
-	spec->last = &symbol->next;
+	add_symbol(spec, symbol);
 	return symbol;
 }
 
@@ -716,8 +734,7 @@ static struct symbol *read_plain_output(struct parser *p, struct token name)
 	*symbol = (struct symbol){ .kind = SYMBOL_OUTPUT, .name = shown, .at = name.at, .statement = p->statement, .value = value };
 	symbol->index = p->spec->outputs++;
 	value->end = p->end;
-	*p->spec->last = symbol;
-	p->spec->last = &symbol->next;
+	add_symbol(p->spec, symbol);
 	return symbol;
 }
 
@@ -1063,6 +1080,7 @@ struct spec *parse_spec(const struct source *source)
 	struct spec *spec = NEW(struct spec);
 	spec->source = source;
 	spec->last = &spec->first;
+	spec->bucket = ARRAY(struct symbol *, BUCKETS);
 	spec->end = place_end(source);
 	size_t position = strncmp(source->text, "\xef\xbb\xbf", 3) == 0 ? 3 : 0;
 	while (position < source->length) {

@@ -4,23 +4,50 @@
  * the first time is added, and the collection is done again. */
 #include "plgen.h"
 
+#include <string.h>
+
 /* ---- time ---- */
 
-static void add_change(struct collector *c, mpq_srcptr t)
+/* The collectors that a collection has left behind may still look at the old list. */
+static mpq_srcptr add_change(struct collector *c, mpq_srcptr t)
 {
-	int at = 0;
-	while (at < c->changes && mpq_cmp(c->change[at], t) < 0)
-		at++;
-	if (at < c->changes && mpq_equal(c->change[at], t))
-		return;
+	int low = 0, high = c->changes;
+	while (low < high) {
+		int middle = low + (high - low) / 2, order = mpq_cmp(c->change[middle], t);
+		if (order == 0)
+			return c->change[middle];
+		low = order < 0 ? middle + 1 : low;
+		high = order < 0 ? high : middle;
+	}
 	if (c->changes == LIMIT_CHANGES)
 		error(c->term->start, NULL, "more changes of formula than the limit of %d", LIMIT_CHANGES);
-	mpq_t *change = rationals((size_t)c->changes + 1);
-	for (int i = 0; i < c->changes; i++)
-		mpq_set(change[i < at ? i : i + 1], c->change[i]);
-	mpq_set(change[at], t);
+	mpq_t *change = ARRAY(mpq_t, (size_t)c->changes + 1);
+	if (low > 0)
+		memcpy(change, c->change, (size_t)low * sizeof *change);
+	if (low < c->changes)
+		memcpy(change + low + 1, c->change + low, (size_t)(c->changes - low) * sizeof *change);
+	mpq_init(change[low]);
+	mpq_set(change[low], t);
 	c->change = change;
 	c->changes++;
+	return change[low];
+}
+
+/* ---- spans: when what was collected holds ---- */
+
+void narrow_span(struct collector *c, struct span span)
+{
+	if (span.after && (!c->span.after || mpq_cmp(span.after, c->span.after) > 0))
+		c->span.after = span.after;
+	if (span.before && (!c->span.before || mpq_cmp(span.before, c->span.before) < 0))
+		c->span.before = span.before;
+}
+
+bool holds_now(const struct collector *c, struct span span)
+{
+	if (span.after && (c->interval == 0 || mpq_cmp(c->change[c->interval - 1], span.after) < 0))
+		return false;
+	return !span.before || (c->interval < c->changes && mpq_cmp(c->change[c->interval], span.before) <= 0);
 }
 
 /* A time inside interval `index` of those that the breakpoints leave. */
@@ -50,10 +77,14 @@ static int sign_in_time(struct collector *c, mpq_srcptr factor, mpq_srcptr phase
 	mpq_div(root, phase, factor);
 	mpq_neg(root, root);
 	sample_time(c, c->interval, t);
-	int sign = mpq_cmp(t, root) * mpq_sgn(factor);
-	add_change(c, root);
+	int side = mpq_cmp(t, root);
+	mpq_srcptr change = add_change(c, root);
+	if (side != 0)
+		narrow_span(c, side > 0 ? (struct span){ change, NULL } : (struct span){ NULL, change });
+	else
+		narrow_span(c, (struct span){ change, change });
 	mpq_clears(t, root, NULL);
-	return sign;
+	return side * mpq_sgn(factor);
 }
 
 int order_now(struct collector *c, const struct node *node, const struct form *a, const struct form *b)
@@ -73,6 +104,7 @@ int order_now(struct collector *c, const struct node *node, const struct form *a
 		not_built(c, node->at, node->kind == NODE_CALL ? format("'%s' of what moves is", function_name(node->function))
 							       : "conditions on what moves are");
 	}
+	form_free(difference);
 	mpq_clear(value);
 	return sign;
 }
@@ -113,19 +145,24 @@ static struct form *clipped(struct collector *c, const struct node *node, struct
 	return side ? form_sum(x[0], x[side], true) : NEW(struct form);
 }
 
-static void constant_point(struct collector *c, const struct node *node, const struct form *x, mpq_ptr value)
+/* The value of a point: where it stands, if it is a plain number, else in `room` */
+static mpq_srcptr constant_point(struct collector *c, const struct node *node, const struct form *x, mpq_ptr room)
 {
 	if (!is_constant(x))
 		error(node->start, NULL, "the points of a table are constants");
-	constant_value(c, x, value);
+	if (x->terms == 1 && x->term[0].basis.kind == BASIS_ONE)
+		return x->term[0].factor;
+	mpq_init(room);
+	constant_value(c, x, room);
+	return room;
 }
 
 /* The numbers of a table at their arguments' places; its breakpoints rise. */
-static mpq_t *table_points(struct collector *c, const struct node *node, struct form *const *x)
+static mpq_srcptr *table_points(struct collector *c, const struct node *node, struct form *const *x, mpq_t *room)
 {
-	mpq_t *v = rationals((size_t)node->children);
+	mpq_srcptr *v = ARRAY(mpq_srcptr, (size_t)node->children);
 	for (int i = 1; i < node->children; i++)
-		constant_point(c, node->child[i], x[i], v[i]);
+		v[i] = constant_point(c, node->child[i], x[i], room[i]);
 	for (int i = 3; i < node->children; i += 2)
 		if (mpq_cmp(v[i - 2], v[i]) >= 0)
 			error(node->child[i]->start, NULL, "the breakpoints of a table rise");
@@ -135,7 +172,7 @@ static mpq_t *table_points(struct collector *c, const struct node *node, struct 
 void check_breakpoints(struct collector *c, const struct node *node, struct form *const *x)
 {
 	if (node->function == FN_TABLE)
-		table_points(c, node, x);
+		table_points(c, node, x, ARRAY(mpq_t, (size_t)node->children));
 	else if (is_constant(x[1]) && is_constant(x[2]) && order_now(c, node, x[1], x[2]) > 0)
 		error(node->child[1]->start, NULL, "the lower breakpoint is above the upper one");
 }
@@ -144,17 +181,22 @@ void check_breakpoints(struct collector *c, const struct node *node, struct form
 static struct form *tabulated(struct collector *c, const struct node *node, struct form *const *x)
 {
 	int points = (node->children - 1) / 2, left = 0;
-	mpq_t *v = table_points(c, node, x), slope, width;
+	mpq_t slope, width, *room = ARRAY(mpq_t, (size_t)node->children);
+	mpq_srcptr *v = table_points(c, node, x, room);
 	mpq_inits(slope, width, NULL);
 	for (int i = 1; i + 1 < points && (left == i - 1 || c->interval == 0); i++)     /* all breakpoints at the first sight */
 		left = order_now(c, node, x[0], x[2 * i + 1]) > 0 ? i : left;
-	const mpq_t *p = (const mpq_t *)v + 2 * left + 1;       /* x0, y0, x1, y1 */
+	mpq_srcptr *p = v + 2 * left + 1;       /* x0, y0, x1, y1 */
 	mpq_sub(slope, p[3], p[1]);
 	mpq_sub(width, p[2], p[0]);
 	mpq_div(slope, slope, width);
-	struct form *value = form_sum(x[2 * left + 2], form_scale(form_sum(x[0], x[2 * left + 1], true), slope), false);
+	struct form *value = form_sum(x[0], x[2 * left + 1], true), *piece = form_scale(value, slope);
+	form_free(value);
+	form_add_to(piece, x[2 * left + 2], NULL);
 	mpq_clears(slope, width, NULL);
-	return value;
+	discard(v);
+	discard(room);
+	return piece;
 }
 
 static struct form *angle(struct collector *c, const struct node *node, struct form *const *x)
@@ -166,7 +208,7 @@ static struct form *angle(struct collector *c, const struct node *node, struct f
 	constant_value(c, x[0], a);
 	constant_value(c, x[1], b);
 	if (!constant_atan2(node->at, a, b, a))
-		c->irrationals.used[FN_ATAN2] = true;
+		met_irrational(c, &c->irrationals.used[FN_ATAN2]);
 	struct form *form = form_constant(a);
 	mpq_clears(a, b, NULL);
 	return form;

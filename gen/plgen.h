@@ -51,6 +51,10 @@ enum {
 	LIMIT_UNROLLED_STATES = 16, /* beyond, a step loops over its tables */
 	LIMIT_RESIDUE_STATES = 12,  /* beyond, a Taylor series gives the numbers: residues get slow */
 	LIMIT_TURNS = 256,          /* log2 of a load's angle in a step, for models of more states than that */
+	LIMIT_ERRORS = 100,         /* told before the rest is not looked at */
+	LIMIT_DEPTH = 10000,        /* of an expression in operations, through params and lets; a function of many arguments counts as many */
+	LIMIT_TERMS = 10000000,     /* of forms, made on the way to the equations */
+	LIMIT_BYTES = 470000000,    /* held at a time */
 	LIMIT_ROWS = 10000000,      /* of --solution */
 	LIMIT_PRECISION = 16384,    /* bits of an enclosure before a coefficient is given up */
 	IRRATIONAL_BITS = 256       /* pi, sqrt(2), ... become rationals of this many bits */
@@ -64,6 +68,9 @@ void *allocate(size_t count, size_t size);                 /* zeroed */
 void *enlarge(void *block, size_t count, size_t size);     /* contents kept, the rest undefined */
 char *format(const char *fmt, ...) __attribute__((format(printf, 1, 2)));
 mpq_t *rationals(size_t count);                            /* initialised to 0 */
+void  rationals_free(mpq_t *q, size_t count);
+void  discard(void *block);                                /* gives it back before the end; what it points to stays */
+void  spend_terms(size_t count);                            /* from the budget of LIMIT_TERMS; gives up when it is spent */
 #define NEW(type) ((type *)allocate(1, sizeof(type)))
 #define ARRAY(type, count) ((type *)allocate(count, sizeof(type)))
 #define ENLARGE(array, count) ((array) = enlarge(array, count, sizeof *(array)))
@@ -94,6 +101,9 @@ struct place place_end(const struct source *source);       /* just after the las
  * through the innermost `statement_guard`. */
 void say_error(struct place at, const char *note, const char *fmt, ...) __attribute__((format(printf, 3, 4)));
 _Noreturn void error(struct place at, const char *note, const char *fmt, ...) __attribute__((format(printf, 3, 4)));
+void work_at(struct place at);                             /* what is said to cost too much from now on */
+struct place working_at(void);
+_Noreturn void give_up(const char *message);               /* an error there, and the end: what is spent does not come back */
 _Noreturn void abandon(void);                              /* leave the statement; its error has been said before */
 void say_warning(struct place at, const char *note, const char *fmt, ...) __attribute__((format(printf, 3, 4)));
 void say_note(struct place at, const char *fmt, ...) __attribute__((format(printf, 2, 3)));
@@ -156,11 +166,15 @@ struct node {
 	const char *path;           /* of NODE_FILE */
 	enum function function;
 	enum comparison comparison;
+	int depth;                  /* operations inside each other, those of the names in it included */
 	int children;
 	struct node **child;
 	bool *inverse;              /* of SUM and PRODUCT, one per child */
 	struct place *operator;     /* of SUM and PRODUCT: the sign before each child */
+	enum { TIMELY_UNKNOWN, TIMELY, NOT_TIMELY } timely; /* reads nothing but t and params */
+	struct kept *kept;          /* of one that is: its value, and when it holds */
 };
+struct span { mpq_srcptr after, before; };   /* of time; NULL: no bound */
 enum symbol_kind { SYMBOL_PARAM, SYMBOL_COORD, SYMBOL_LET, SYMBOL_OUTPUT, SYMBOL_INPUT, SYMBOL_MATRIX };
 struct symbol {
 	enum symbol_kind kind;
@@ -182,6 +196,9 @@ struct symbol {
 	struct value *collected;    /* value, when COLLECTED */
 	const struct form *whole;   /* of a scalar let: its value for all time, where something is left over */
 	enum { FRESH, COLLECTING, COLLECTED } progress;
+	struct symbol *next_alike;  /* of the same bucket */
+	struct span span;           /* when it holds, if COLLECTED */
+	bool irrational;            /* something in it has become a rational, if COLLECTED */
 	struct symbol *next;
 };
 struct equation {
@@ -216,6 +233,7 @@ struct spec {                       /* what the text says, names resolved, nothi
 	const char *name;
 	struct place name_at;
 	struct symbol *first, **last;   /* all symbols in the order of declaration */
+	struct symbol **bucket;         /* the same by name */
 	int components;                 /* of all coordinates together */
 	int params, coords, lets, outputs, inputs, matrices;
 	int equations;
@@ -247,6 +265,7 @@ char *text_between(struct place start, struct place end);   /* without comments,
 
 bool is_reserved(const char *name);                         /* words that a user's name may not be */
 const char *prefix_objection(const char *name);             /* why it cannot name generated code, or NULL */
+size_t name_hash(const char *name);
 enum function function_of(const char *name);
 const char *function_name(enum function function);
 const char *nearest_name(const char *name, int count, const char *const *known); /* or NULL */
@@ -266,7 +285,7 @@ struct basis {
 struct wave {                       /* e^{a t} cos(w t + p) and sin, w > 0; or e^{a t} alone, w = p = 0 */
 	mpq_t a, w, p;
 	int index;                  /* in the order of first appearance */
-	struct wave *next;
+	struct wave *next;          /* of the same hash */
 };
 struct form_term {
 	struct basis basis;
@@ -275,17 +294,19 @@ struct form_term {
 struct form {                       /* sum of factor * basis, sorted, no zero factors */
 	int terms;
 	struct form_term *term;
+	int room;                   /* of one that form_add_to has enlarged; else 0 */
 };
 struct irrationals { bool used[FN_TABLE + 1], pi, root; };  /* which became rationals of 256 bits; `root`: of a power */
 struct collector {
-	struct wave *waves;
-	int wave_count;
+	struct waves *waves;        /* made on first use; of the collectors inside it too */
 	struct irrationals irrationals;
+	int irrational_count;       /* how often one was met */
 	const char *scheme;         /* for the message about a term that it cannot treat */
 	const struct node *term;    /* the innermost additive term being collected */
 	int changes;                /* of formula in time: breakpoints found so far, rising */
 	mpq_t *change;
 	int interval;               /* between them, which is being collected: 0 .. changes */
+	struct span span;           /* in which every condition on time that was met since it was opened has the outcome that it has now */
 	const struct node *argument; /* the innermost function of which an argument is being collected that must be linear */
 	bool constant_only;         /* a param, a step, an initial value */
 	bool tolerant;              /* give up in silence on what is not linear: an output may be */
@@ -305,12 +326,18 @@ struct form *form_constant(mpq_srcptr value);
 struct form *form_number(long value);
 struct form *form_sum(const struct form *a, const struct form *b, bool subtract);
 struct form *form_difference(const struct form *a, const struct form *b);
+/* Into `sum`, which nothing else holds: what many parts make costs no more than the parts. `factor` NULL: 1 */
+void form_add_to(struct form *sum, const struct form *part, mpq_srcptr factor);
+void form_add_basis(struct form *sum, struct basis basis, mpq_srcptr factor);
+void form_free(struct form *form);                          /* which nothing else holds */
+const struct form_term *form_find(const struct form *form, const struct basis *basis); /* NULL: it does not occur */
 struct form *form_scale(const struct form *a, mpq_srcptr factor);
 struct form *form_product(struct collector *collector, const struct form *a, const struct form *b); /* one of them constant */
 bool is_constant(const struct form *form);                  /* 1 and pi only */
 mpq_srcptr factor_of(const struct form *form, enum basis_kind kind); /* NULL: it does not occur */
 bool same_in_states(const struct form *a, const struct form *b); /* they differ in loads only */
 void check_form(struct place at, const struct form *form);  /* the limit on exact values */
+void met_irrational(struct collector *collector, bool *which); /* one of its irrationals */
 void constant_value(struct collector *collector, const struct form *form, mpq_ptr value); /* form of 1 and pi only */
 
 /* ---- atom.c: what is not linear, as expressions that are shared wherever they are the same ---- */
@@ -335,6 +362,7 @@ int  atoms_count(const struct atoms *atoms);
 /* Each result is a form, folded where the operands are constant; sums of constants, times and states are multiplied out so
  * far that every constant times a state shows as a linear term, and every term of time alone stands alone. */
 struct form *kept_product(struct collector *c, const struct node *node, const struct form *a, const struct form *b);
+struct form *kept_others(struct collector *c, const struct node *node, const struct atom *product, int factor); /* the product, of at least two factors, with one of that factor less */
 struct form *kept_reciprocal(struct collector *c, const struct node *node, const struct form *x);
 struct form *kept_power(struct collector *c, const struct node *node, const struct form *base, const struct form *exponent);
 struct form *kept_whole_power(struct collector *c, const struct node *node, const struct form *x, unsigned n);
@@ -407,6 +435,9 @@ int order_now(struct collector *c, const struct node *node, const struct form *a
 struct form *piecewise(struct collector *c, const struct node *node, struct form *const *x); /* the function of its arguments' forms */
 void check_breakpoints(struct collector *c, const struct node *node, struct form *const *x);  /* of a function that is not taken apart */
 bool is_decided(const struct collector *c, int count, struct form *const *x); /* constants and times: conditions on them have an outcome */
+
+void narrow_span(struct collector *c, struct span span);
+bool holds_now(const struct collector *c, struct span span); /* in the collector's interval of time */
 
 /* ---- mtx.c: Matrix Market files ---- */
 

@@ -127,8 +127,95 @@ static struct poly interpolate(int count, const long *point, const mpz_t *value)
 	return p;
 }
 
+/* ---- blocks: rows and columns that have nothing in common with the others ---- */
+
+static int root_of(int *parent, int i)
+{
+	while (parent[i] != i)
+		i = parent[i] = parent[parent[i]];
+	return i;
+}
+
+/* The block of each row (0 .. n-1) and column (n .. 2n-1), numbered in the order of their first columns; how many there are */
+static int find_blocks(struct polymat P, int *block)
+{
+	int n = P.n, count = 0, *parent = ARRAY(int, 2 * (size_t)n);
+	for (int i = 0; i < 2 * n; i++)
+		parent[i] = i;
+	for (int cell = 0; cell < n * n; cell++)
+		if (P.cell[cell].length > 0)
+			parent[root_of(parent, cell / n)] = root_of(parent, n + cell % n);
+	for (int i = 0; i < 2 * n; i++)
+		block[i] = -1;
+	for (int j = 0; j < n; j++)
+		if (block[root_of(parent, n + j)] < 0)
+			block[root_of(parent, n + j)] = count++;
+	for (int i = 0; i < 2 * n; i++)
+		block[i] = block[root_of(parent, i)];
+	return count;
+}
+
+/* The rows and columns of one block; false: it is not square, so that P is singular */
+static bool part_of(struct polymat P, const int *block, int which, struct polymat *part)
+{
+	int rows = 0, columns = 0, filled = 0;
+	for (int i = 0; i < P.n; i++) {
+		rows += block[i] == which;
+		columns += block[P.n + i] == which;
+	}
+	*part = (struct polymat){ rows, ARRAY(struct poly, (size_t)rows * (size_t)columns) };
+	for (int i = 0; i < P.n; i++)
+		for (int j = 0; j < P.n && block[i] == which; j++)
+			if (block[P.n + j] == which)
+				part->cell[filled++] = P.cell[i * P.n + j];
+	return rows == columns;
+}
+
+/* Whether an order of blocks, kept within each, is an odd permutation */
+static bool odd_order(int n, const int *block)
+{
+	bool odd = false;
+	for (int i = 0; i < n; i++)
+		for (int j = i + 1; j < n; j++)
+			odd ^= block[i] > block[j];
+	return odd;
+}
+
+static bool same_matrix(struct polymat a, struct polymat b)
+{
+	bool same = a.n == b.n;
+	for (int i = 0; i < a.n * a.n && same; i++)
+		same = poly_equal(a.cell[i], b.cell[i]);
+	return same;
+}
+
+static struct poly determinant_of_blocks(struct polymat P, const int *block, int blocks)
+{
+	struct polymat *part = ARRAY(struct polymat, (size_t)blocks);
+	struct poly *det = ARRAY(struct poly, (size_t)blocks), product = poly_new(1);
+	mpz_set_si(product.c[0], odd_order(P.n, block) != odd_order(P.n, block + P.n) ? -1 : 1);
+	for (int k = 0; k < blocks; k++) {
+		int same = 0;
+		if (!part_of(P, block, k, &part[k]))
+			return poly_new(0);
+		while (!same_matrix(part[same], part[k]))
+			same++;
+		if (same == k)
+			polymat_adjugate(part[k], &det[k], NULL);
+		else
+			det[k] = det[same];
+		product = poly_mul(product, det[k]);
+	}
+	return product;
+}
+
 void polymat_adjugate(struct polymat P, struct poly *det, struct polymat *adj)
 {
+	int *block = ARRAY(int, 2 * (size_t)P.n), blocks = adj ? 1 : find_blocks(P, block);
+	if (blocks > 1) {
+		*det = determinant_of_blocks(P, block, blocks);
+		return;
+	}
 	int n = P.n, count = degree_bound(P) + 1, cells = adj ? n * n : 0;
 	long *point = ARRAY(long, (size_t)count);
 	mpz_t *dets = ARRAY(mpz_t, (size_t)count), *column = ARRAY(mpz_t, (size_t)count), **adjs = ARRAY(mpz_t *, (size_t)count);

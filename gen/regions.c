@@ -28,6 +28,7 @@ struct looking {
 	struct form **known;        /* per atom */
 	int count;
 	bool grown;                 /* an expression or a breakpoint was met for the first time: look again */
+	int lowest;                 /* of the regions, where there is one expression, that a new breakpoint divides */
 };
 
 int interval_of(const struct switching *s, int region, int expression)
@@ -46,11 +47,9 @@ int possible_regions(const struct switching *s)
 
 static int find_expression(const struct switching *s, const struct form *form)
 {
-	for (int i = 0; i < s->expressions; i++) {
-		const struct form *difference = form_sum(s->expression[i].form, form, true);
-		if (difference->terms == 0)
+	for (int i = 0; i < s->expressions; i++)
+		if (same_form(s->expression[i].form, form))
 			return i;
-	}
 	return -1;
 }
 
@@ -66,9 +65,10 @@ static void add_break(struct looking *l, struct expression *e, mpq_srcptr at)
 	e->at = breaks;
 	e->breaks++;
 	l->grown = true;
+	l->lowest = below < l->lowest ? below : l->lowest;
 }
 
-/* Is e above `at` here? What is not known yet is noted. */
+/* Is e above `at` here? What is not known yet is noted. The form goes to the expression, or is freed. */
 static bool is_above(struct looking *l, const struct node *node, struct form *form, mpq_srcptr at)
 {
 	struct switching *s = l->s;
@@ -77,6 +77,8 @@ static bool is_above(struct looking *l, const struct node *node, struct form *fo
 		ENLARGE(s->expression, (size_t)s->expressions + 1);
 		index = s->expressions++;
 		s->expression[index] = (struct expression){ .form = form, .node = node };
+	} else {
+		form_free(form);
 	}
 	struct expression *e = &s->expression[index];
 	for (int i = 0; i < e->breaks; i++)
@@ -90,7 +92,7 @@ static bool is_above(struct looking *l, const struct node *node, struct form *fo
 static int sign_here(struct looking *l, const struct node *node, const struct form *form)
 {
 	struct collector *c = &l->b->collector;
-	struct form plain = { 0, form->term };
+	struct form plain = { 0, form->term, 0 };
 	while (plain.terms < form->terms && form->term[plain.terms].basis.kind <= BASIS_PI)
 		plain.terms++;
 	mpq_t constant, factor;
@@ -101,10 +103,19 @@ static int sign_here(struct looking *l, const struct node *node, const struct fo
 		mpq_inv(factor, form->term[plain.terms].factor);
 		mpq_mul(constant, constant, factor);
 		mpq_neg(constant, constant);    /* e = (form - constant)/factor against -constant/factor */
-		struct form *e = form_scale(form_sum(form, &plain, true), factor);
+		const struct form moving = { form->terms - plain.terms, form->term + plain.terms, 0 };
+		struct form *e = form_scale(&moving, factor);
 		sign = is_above(l, node, e, constant) == (mpq_sgn(factor) > 0) ? 1 : -1;
 	}
 	mpq_clears(constant, factor, NULL);
+	return sign;
+}
+
+static int order_here(struct looking *l, const struct node *node, const struct form *a, const struct form *b)
+{
+	struct form *difference = form_difference(a, b);
+	int sign = sign_here(l, node, difference);
+	form_free(difference);
 	return sign;
 }
 
@@ -116,7 +127,7 @@ static struct form *table_here(struct looking *l, const struct atom *a, struct f
 	mpq_t slope, width;
 	mpq_inits(slope, width, NULL);
 	for (int k = 3; k + 2 < a->operands; k += 2)
-		if (sign_here(l, a->node, form_difference(x[0], x[k])) > 0)
+		if (order_here(l, a->node, x[0], x[k]) > 0)
 			piece = k;
 	struct collector *c = &l->b->collector;
 	constant_value(c, form_difference(x[piece + 3], x[piece + 1]), slope);
@@ -131,7 +142,7 @@ static struct form *extreme_here(struct looking *l, const struct atom *a, struct
 {
 	struct form *best = x[0];
 	for (int i = 1; i < a->operands; i++)
-		if ((sign_here(l, a->node, form_difference(x[i], best)) < 0) == (a->function == FN_MIN))
+		if ((order_here(l, a->node, x[i], best) < 0) == (a->function == FN_MIN))
 			best = x[i];
 	return best;
 }
@@ -146,7 +157,7 @@ static struct form *call_here(struct looking *l, const struct atom *a, struct fo
 	case FN_MAX:   return extreme_here(l, a, x);
 	case FN_TABLE: return table_here(l, a, x);
 	default:
-		side = sign_here(l, a->node, form_difference(x[0], x[1])) < 0 ? 1 : sign_here(l, a->node, form_difference(x[0], x[2])) > 0 ? 2 : 0;
+		side = order_here(l, a->node, x[0], x[1]) < 0 ? 1 : order_here(l, a->node, x[0], x[2]) > 0 ? 2 : 0;
 		return a->function == FN_CLIP ? x[side] : side ? form_difference(x[0], x[side]) : form_number(0);
 	}
 }
@@ -154,7 +165,7 @@ static struct form *call_here(struct looking *l, const struct atom *a, struct fo
 /* <= and < differ on the breakpoint alone, where the motion decides */
 static bool comparison_here(struct looking *l, const struct atom *a)
 {
-	int sign = sign_here(l, a->node, form_difference(form_here(l, a->operand[0]), form_here(l, a->operand[1])));
+	int sign = order_here(l, a->node, form_here(l, a->operand[0]), form_here(l, a->operand[1]));
 	return a->comparison <= CMP_LE ? sign < 0 : sign > 0;
 }
 
@@ -170,16 +181,23 @@ static struct form *atom_here(struct looking *l, const struct atom *a)
 	return call_here(l, a, x);
 }
 
+/* Not to be changed: it may be the form itself, or what an atom is */
 static struct form *form_here(struct looking *l, const struct form *form)
 {
+	if (form->terms == 0 || !form->term[form->terms - 1].basis.atom)
+		return (struct form *)form;
 	struct form *total = NEW(struct form);
 	for (int i = 0; i < form->terms; i++) {
 		const struct form_term *term = &form->term[i];
 		const struct atom *atom = term->basis.atom;
-		if (atom && !l->known[atom->index])
+		if (atom && !l->known[atom->index]) {
+			work_at(atom->node->start);
 			l->known[atom->index] = atom_here(l, atom);
-		struct form *value = atom ? form_scale(l->known[atom->index], term->factor) : form_single(term->basis, term->factor);
-		total = form_sum(total, value, false);
+		}
+		if (atom)
+			form_add_to(total, l->known[atom->index], term->factor);
+		else
+			form_add_basis(total, term->basis, term->factor);
 	}
 	return total;
 }
@@ -212,19 +230,25 @@ static _Noreturn void too_many(const struct switching *s)
 	      LIMIT_REGIONS);
 }
 
-/* One look at every region; false: something new was met on the way */
-static bool look(struct building *b, struct switching *s)
+/* One look at every region but the first `known`; false: something new was met on the way, but of the first `known` then.
+ * The regions of one expression are its intervals, in order, so that those below a new breakpoint stay what they are. */
+static bool look(struct building *b, struct switching *s, int *known)
 {
+	const struct region *before = s->region;
+	bool single = s->expressions == 1;
 	s->regions = count_candidates(s);
 	if (s->regions > LIMIT_CANDIDATES)
 		too_many(s);
 	s->region = ARRAY(struct region, (size_t)s->regions);
-	for (int r = 0; r < s->regions; r++) {
+	for (int r = 0; r < *known; r++)
+		s->region[r] = before[r];
+	for (int r = *known; r < s->regions; r++) {
 		int atoms = atoms_count(b->collector.atoms);
-		struct looking l = { .b = b, .s = s, .interval = intervals_of(s, r), .known = ARRAY(struct form *, (size_t)atoms), .count = atoms };
+		struct looking l = { .b = b, .s = s, .interval = intervals_of(s, r), .known = ARRAY(struct form *, (size_t)atoms), .count = atoms, .lowest = r };
 		s->region[r].residual = ARRAY(struct form *, (size_t)b->model->n);
 		for (int i = 0; i < b->model->n; i++)
 			s->region[r].residual[i] = form_here(&l, b->snapshot->residual[i].form);
+		*known = single && s->expressions == 1 ? l.lowest : 0;
 		if (l.grown)
 			return false;
 	}
@@ -404,7 +428,8 @@ static void search(void *context)
 {
 	struct building *b = context;
 	struct switching *s = NEW(struct switching);
-	while (!look(b, s))
+	int known = 0;
+	while (!look(b, s, &known))
 		;
 	mark_possible(s);
 	if (!b->model->relative)                /* else it has been told */

@@ -75,6 +75,7 @@ mpq_t *series_matrix(const struct series *series, const struct linear *system, i
 	for (int i = 0; i < states; i++)
 		for (int j = 0; j < states; j++)
 			mpq_set(A[i * size + j], own[i * states + j]);
+	rationals_free(own, (size_t)states * (size_t)states);
 	for (int i = 0; i < n && series->held >= 0; i++) {
 		mpq_set_ui(unit[i], 1, 1);
 		fill_force(A, size, series->held + i, system, (const mpq_t *)inverse, (const mpq_t *)unit);
@@ -101,6 +102,7 @@ mpq_t *series_matrix(const struct series *series, const struct linear *system, i
 		for (int m = 1; m < series->powers; m++)
 			mpq_set_ui(A[(at + m - 1) * size + at + m], 1, 1);
 	}
+	rationals_free(inverse, (size_t)(n * n));
 	return A;
 }
 
@@ -240,8 +242,11 @@ int series_degree(const struct step *step, int from, int to, int halvings)
 	int size = series->size, cells = size * size, quiet = 0, k = 0;
 	mpfr_t *A = positive_numbers(cells), *term = positive_numbers(cells), *next = positive_numbers(cells), *first = positive_numbers(cells);
 	for (int o = from; o < to; o++)
-		for (int s = 0; s < step->system.segments; s++)
-			add_envelope(A, cells, (const mpq_t *)series_matrix(series, &step->operator[o], s));
+		for (int s = 0; s < step->system.segments; s++) {
+			mpq_t *matrix = series_matrix(series, &step->operator[o], s);
+			add_envelope(A, cells, (const mpq_t *)matrix);
+			rationals_free(matrix, (size_t)cells);
+		}
 	for (int i = 0; i < cells; i++) {
 		mpfr_mul_q(A[i], A[i], step->model->h, MPFR_RNDN);
 		mpfr_div_2ui(A[i], A[i], (unsigned long)halvings, MPFR_RNDN);
@@ -254,6 +259,12 @@ int series_degree(const struct step *step, int from, int to, int halvings)
 		mpfr_t *swap = term;
 		term = next;
 		next = swap;
+	}
+	mpfr_t *used[] = { A, term, next, first };
+	for (int u = 0; u < 4; u++) {
+		for (int i = 0; i < cells; i++)
+			mpfr_clear(used[u][i]);
+		discard(used[u]);
 	}
 	return k - quiet > 0 ? k - quiet : 1;
 }

@@ -21,6 +21,7 @@ static struct diagnostic *said;
 static int said_count, error_count;
 static const char *context_note;
 static jmp_buf *guard;
+static struct place working;
 
 static void say(struct place at, const char *severity, const char *note, const char *fmt, va_list args)
 {
@@ -30,6 +31,14 @@ static void say(struct place at, const char *severity, const char *note, const c
 	char *message = ARRAY(char, (size_t)length + 1);
 	vsnprintf(message, (size_t)length + 1, fmt, again);
 	va_end(again);
+	for (int i = 0; i < said_count; i++)    /* a let that two equations use is told once */
+		if (said[i].at.offset == at.offset && said[i].at.source == at.source && strcmp(said[i].message, message) == 0)
+			return;
+	if (said_count == LIMIT_ERRORS && strcmp(severity, "error") == 0) {
+		message = format("more errors than the limit of %d: what comes after them is not looked at", LIMIT_ERRORS);
+		guard = NULL;                   /* the end */
+		note = NULL;
+	}
 	ENLARGE(said, (size_t)said_count + 1);
 	said[said_count] = (struct diagnostic){ at, severity, message, note ? note : context_note, said_count };
 	said_count++;
@@ -39,9 +48,11 @@ void say_error(struct place at, const char *note, const char *fmt, ...)
 {
 	va_list args;
 	va_start(args, fmt);
+	error_count++;
 	say(at, "error", note, fmt, args);
 	va_end(args);
-	error_count++;
+	if (said_count > LIMIT_ERRORS)
+		abandon();
 }
 
 void error(struct place at, const char *note, const char *fmt, ...)
@@ -68,6 +79,27 @@ void say_note(struct place at, const char *fmt, ...)
 	va_start(args, fmt);
 	say(at, "note", NULL, fmt, args);
 	va_end(args);
+}
+
+void work_at(struct place at)
+{
+	working = at;
+}
+
+struct place working_at(void)
+{
+	return working;
+}
+
+void give_up(const char *message)
+{
+	guard = NULL;
+	if (working.source) {
+		error(working, NULL, "%s", message);
+	} else {
+		fprintf(stderr, "plgen: error: %s\n", message);
+		exit(1);
+	}
 }
 
 void abandon(void)
@@ -216,9 +248,7 @@ void diagnostics_print(FILE *to)
 	struct count count = { NULL, 0, 1 };
 	qsort(said, (size_t)said_count, sizeof *said, by_place);
 	for (int i = 0; i < said_count; i++)
-		if (i == 0 || said[i].at.source != said[i - 1].at.source || said[i].at.offset != said[i - 1].at.offset ||
-		    strcmp(said[i].message, said[i - 1].message) != 0)
-			print_one(to, &said[i], &count);        /* a let that two equations use is told once */
+		print_one(to, &said[i], &count);
 	said_count = 0;
 }
 

@@ -2,20 +2,40 @@
 /* Loads in time: the forms of t^k e^{at} cos(wt+p) and sin, and their products. */
 #include "plgen.h"
 
+enum { BUCKETS = 1024 };
+
+struct waves {
+	int count;
+	struct wave *wave[BUCKETS]; /* by hash */
+};
+
+static size_t wave_hash(mpq_srcptr a, mpq_srcptr w, mpq_srcptr p)
+{
+	mpq_srcptr part[] = { a, w, p };
+	size_t hash = 0;
+	for (int i = 0; i < 3; i++) {
+		hash = (hash ^ mpz_get_ui(mpq_numref(part[i]))) * 0x9e3779b97f4a7c15u;
+		hash = (hash ^ mpz_get_ui(mpq_denref(part[i]))) * 0x9e3779b97f4a7c15u + (mpq_sgn(part[i]) < 0);
+	}
+	return (hash >> 20) % BUCKETS;
+}
+
 struct wave *wave_of(struct collector *c, mpq_srcptr a, mpq_srcptr w, mpq_srcptr p)
 {
-	struct wave **link = &c->waves;
+	if (!c->waves)
+		c->waves = NEW(struct waves);
+	struct wave **link = &c->waves->wave[wave_hash(a, w, p)];
 	for (; *link; link = &(*link)->next)
 		if (mpq_equal((*link)->a, a) && mpq_equal((*link)->w, w) && mpq_equal((*link)->p, p))
 			return *link;
-	if (c->wave_count == LIMIT_WAVES)
+	if (c->waves->count == LIMIT_WAVES)
 		error(c->term->start, NULL, "more loads of different frequency, phase or growth than the limit of %d", LIMIT_WAVES);
 	struct wave *wave = *link = NEW(struct wave);
 	mpq_inits(wave->a, wave->w, wave->p, NULL);
 	mpq_set(wave->a, a);
 	mpq_set(wave->w, w);
 	mpq_set(wave->p, p);
-	wave->index = c->wave_count++;
+	wave->index = c->waves->count++;
 	return wave;
 }
 
@@ -60,7 +80,8 @@ static struct form *any_wave(struct collector *c, mpq_srcptr factor, int power, 
 	if (mpq_sgn(w) == 0) {                  /* a beat of two equal frequencies */
 		struct place nowhere = { 0 };
 		enum function function = sine ? FN_SIN : FN_COS;
-		c->irrationals.used[function] |= !constant_function(nowhere, function, p, p);
+		if (!constant_function(nowhere, function, p, p))
+			met_irrational(c, &c->irrationals.used[function]);
 		mpq_mul(scale, scale, p);
 		mpq_set_ui(p, 0, 1);
 		sine = false;
@@ -109,7 +130,9 @@ static struct form *wave_product(struct collector *c, const struct basis *x, con
 	mpq_add(p, x->wave->p, y->wave->p);
 	if (x->sine && y->sine)
 		mpq_neg(half, half);
-	struct form *sum = form_sum(difference, any_wave(c, half, x->power + y->power, a, w, p, sine), false);
+	struct form *sum = any_wave(c, half, x->power + y->power, a, w, p, sine);
+	form_add_to(sum, difference, NULL);
+	form_free(difference);
 	mpq_clears(a, w, p, half, NULL);
 	return sum;
 }
@@ -125,10 +148,12 @@ struct form *load_product(struct collector *c, const struct form *a, const struc
 			const struct form_term *x = &a->term[i], *y = &b->term[j];
 			if (x->basis.kind == BASIS_WAVE && y->basis.kind == BASIS_WAVE) {
 				mpq_mul(factor, x->factor, y->factor);
-				sum = form_sum(sum, wave_product(c, &x->basis, &y->basis, factor), false);
+				struct form *product = wave_product(c, &x->basis, &y->basis, factor);
+				form_add_to(sum, product, NULL);
+				form_free(product);
 			} else {
 				struct form *p = form_product(c, form_single(x->basis, x->factor), form_single(y->basis, y->factor));
-				sum = form_sum(sum, p, false);
+				form_add_to(sum, p, NULL);
 			}
 		}
 	mpq_clear(factor);
@@ -138,7 +163,7 @@ struct form *load_product(struct collector *c, const struct form *a, const struc
 /* The parts of factor * t + phase; false if the form is anything else. */
 bool linear_in_time(const struct form *x, mpq_srcptr *factor, struct form *phase)
 {
-	*phase = (struct form){ 0, x->term };
+	*phase = (struct form){ 0, x->term, 0 };
 	while (phase->terms < x->terms && x->term[phase->terms].basis.kind <= BASIS_PI)
 		phase->terms++;
 	if (phase->terms + 1 != x->terms)

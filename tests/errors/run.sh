@@ -24,6 +24,7 @@ if command -v timeout > "$work/path" 2>&1; then
 	limit='timeout 20'
 fi
 mkdir "$work/in" && cd "$work/in" || exit 1
+ulimit -s 256           # KiB: what the limits allow needs no more of the stack that a program starts with
 
 count=0
 for expect in "$folder"/*.expect; do
