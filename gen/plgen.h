@@ -1105,6 +1105,8 @@ const char *selection_call(const struct emitter *e);              /* which opera
 void emit_node_phases(const struct emitter *e, const bool *loads); /* phases and growths from the start of the step to each node */
 int  coordinate_of_row(const struct model *model, int row);       /* whose equation it is */
 void emit_out(const struct emitter *e);
+/* A number for each output, then for each highest derivative that outputs which are not linear read */
+int output_row(const struct model *model, const struct output *output);
 void emit_at(const struct emitter *e);
 void emit_jump(const struct emitter *e);
 void emit_rhs(const struct emitter *e);

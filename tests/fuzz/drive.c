@@ -381,11 +381,13 @@ static void run_steps(void)
 static void find_ramps(void)
 {
 	for (int i = 0; i < inputs; i++) {
-		double u[MOST] = {0}, y0[MOST], y1[MOST], start[MOST] = {0};
+		double u[MOST] = {0}, seen[2][2 * MOST], start[MOST];
 		void *const s = malloc(of->whole->size);
 		if (!s)
 			exit(3);
 		ramps[i] = false;
+		for (int j = 0; j < of->whole->states; j++)
+			start[j] = 0.25 + j * 0.01;
 		for (int round = 0; round < 2; round++) {       /* the same state and time, the sample before differs */
 			of->whole->init(s);
 			u[i] = round ? 1 : 0;
@@ -393,10 +395,11 @@ static void find_ramps(void)
 			of->whole->set(s, 0, start);
 			u[i] = 0.5;
 			of->whole->step(s, u);
-			of->whole->get(s, round ? y1 : y0);
+			of->whole->get(s, seen[round]);
+			of->whole->out(s, seen[round] + of->whole->states);
 		}
-		for (int j = 0; j < of->whole->states; j++)
-			ramps[i] = ramps[i] || y0[j] != y1[j];
+		for (int j = 0; j < of->whole->states + of->whole->outputs; j++)
+			ramps[i] = ramps[i] || seen[0][j] != seen[1][j];
 		free(s);
 	}
 }
