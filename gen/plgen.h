@@ -388,6 +388,7 @@ int order_now(struct collector *c, const struct node *node, const struct form *a
 struct form *piecewise(struct collector *c, const struct node *node, struct form *const *x); /* the function of its arguments' forms */
 void check_breakpoints(struct collector *c, const struct node *node, struct form *const *x);  /* of a function that is not taken apart */
 bool is_decided(const struct collector *c, int count, struct form *const *x); /* constants and times: conditions on them have an outcome */
+bool is_decided_call(const struct collector *c, const struct node *node, struct form *const *x); /* those, or what moves alike: max(x, x + 1) */
 
 /* ---- mtx.c: Matrix Market files ---- */
 
