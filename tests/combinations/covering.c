@@ -305,7 +305,7 @@ static void print_options(FILE *to)
 		}
 	if (has("loads") && !scheme)
 		fputs(" --scheme etdrk4", to);
-	fprintf(to, "\n# class: %s\n", has("kinked") ? "kinked" : has("piecewise") ? "piecewise" : has("smooth") ? "smooth" : "linear");
+	fprintf(to, "\n# class: %s\n", has("kinked") || (has("loads") && has("change")) ? "kinked" : has("piecewise") ? "piecewise" : has("smooth") ? "smooth" : "linear");
 	fprintf(to, "# changes:%s\n", has("change") ? " 0.053 0.1 0.21" : "");
 	if (has("tunable"))
 		fputs("# retune: k=17.5 step=0.0125\n", to);
