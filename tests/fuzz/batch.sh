@@ -94,9 +94,9 @@ batch_add() {
 	scheme=$(sed -n 's/^ \* Scheme \([a-z0-9]*\).*/\1/p' "$id.c" | head -n 1)
 	solution=NULL
 	if [ "$scheme" = exact ] && ! grep -q 'INPUTS = [1-9]' "$id.h" && ! grep -q 'piecewise linear' "$id.c"; then
-		end=$(sed -n "s/^#define [A-Z0-9_]*_H \([-0-9.e]*\).*/\1/p" "$whole.h" | awk '{ printf "%.17g", 32.5 * $1 }')
+		horizon=$(sed -n "s/^#define [A-Z0-9_]*_H \([-0-9.e]*\).*/\1/p" "$whole.h" | awk '{ printf "%.17g", 32.5 * $1 }')
 		# shellcheck disable=SC2086
-		timeout 60 "$plgen" --solution "$end" $plain "$spec" >"$id.csv" 2>"$id.said" </dev/null
+		timeout 60 "$plgen" --solution "$horizon" $plain "$spec" >"$id.csv" 2>"$id.said" </dev/null
 		status=$?
 		if [ $status -eq 0 ]; then
 			solution="\"$id.csv\""
