@@ -70,7 +70,8 @@ static int changing_rows(const struct emitter *e)
 	return rows;
 }
 
-/* Factors of the load states in the outputs, and in the derivatives that outputs which are not linear read, where one changes its formula */
+/* Factors of the load states, where one changes its formula, in the outputs, and in the derivatives that those read which
+ * are not linear */
 static void emit_direct_factors(const struct emitter *e)
 {
 	const struct linear *system = e->system;

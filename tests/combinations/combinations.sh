@@ -33,7 +33,9 @@ words_of() {
 	for function in at jump; do
 		case " $2 " in
 			*" $function "*)
-				grep -q "_$function(" "$1.h" || grep -m 1 "There is no $1_$function" "$1.c" | sed "s/^ \* //; s/$1_/NAME_/" || echo "no NAME_$function, without a reason" ;;
+				grep -q "_$function(" "$1.h" && continue
+				reason=$(grep -m 1 "There is no $1_$function" "$1.c" | sed "s/^ \* //; s/$1_/NAME_/")
+				echo "${reason:-no NAME_$function, without a reason}" ;;
 		esac
 	done
 }

@@ -1,15 +1,16 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Models in which capabilities meet.
  *
- *     covering rows CAPABILITIES REFUSALS         one line for each model that must work: its capabilities.  Together they have every pair
- *                                                 that is not refused, and every triple of the first ones
- *     covering pairs CAPABILITIES REFUSALS        every pair that no group forbids: for who looks for refusals
- *     covering refused CAPABILITIES REFUSALS      one line for each set that is refused
- *     covering table CAPABILITIES REFUSALS        doc/combinations.md
- *     covering spec FILE.spec CAPABILITY ...      the model, its options and what grammar.sh wants to know in comments at its head
+ *     covering rows CAPABILITIES REFUSALS      a line for each model that must work: its capabilities.  Together they
+ *                                              have every pair that is not refused, of the first ones every triple
+ *     covering pairs CAPABILITIES REFUSALS     every pair that no group forbids: for who looks for refusals
+ *     covering refused CAPABILITIES REFUSALS   a line for each set that is refused
+ *     covering table CAPABILITIES REFUSALS     doc/combinations.md
+ *     covering spec FILE.spec CAPABILITY ...   the model, with its options and what batch.sh asks for in comments
  *
- * A line of REFUSALS is `CAPABILITY CAPABILITY ...<tab>MESSAGE`: part of what plgen says of a model with all of these.  The array is made greedily: a row
- * starts with the first set that is not covered yet, and takes what covers most of the others, as long as nothing in it is refused. */
+ * A line of REFUSALS is `CAPABILITY CAPABILITY ...<tab>MESSAGE`: part of what plgen says of a model with all of these.
+ * The array is made greedily: a row starts with the first set that is not covered yet, and takes what covers most of the
+ * others, as long as nothing in it is refused. */
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -53,7 +54,8 @@ static void read_lists(const char *capabilities, const char *refused)
 	while (fgets(line, sizeof line, file)) {
 		if (strncmp(line, "---", 3) == 0)
 			first = count;
-		else if (*line != '#' && count < MOST && sscanf(line, "%31s %31s %119[^\n]", capability[count].name, capability[count].group, capability[count].words) == 3)
+		else if (*line != '#' && count < MOST && sscanf(line, "%31s %31s %119[^\n]", capability[count].name,
+				capability[count].group, capability[count].words) == 3)
 			count++;
 	}
 	fclose(file);
@@ -234,10 +236,10 @@ static void print_table(void)
 {
 	puts("<!-- SPDX-License-Identifier: GPL-3.0-or-later -->");
 	puts("# What goes with what\n");
-	puts("Made by `tests/combinations/combinations.sh` from the lists beside it, which a test holds against plgen; do not edit. `+`: works, in a row");
-	puts("of a covering array that has every pair (of the first ones every triple), and agrees with CVODE or the closed form within the bounds of");
-	puts("`tests/fuzz/drive.c`, by `step`, `run`, `jump`, `at`, `set` at odd times, saved and restored, with `--rhs`. A number: refused, with the message");
-	puts("below. Blank: one excludes the other.\n");
+	puts("Made by `tests/combinations/combinations.sh` from the lists beside it, which a test holds against plgen; do not edit.");
+	puts("`+`: works, in a row of a covering array that has every pair (of the first ones every triple), and agrees with CVODE or");
+	puts("the closed form within the bounds of `tests/fuzz/drive.c`, by `step`, `run`, `jump`, `at`, `set` at odd times, saved and");
+	puts("restored, with `--rhs`. A number: refused, with the message below. Blank: one excludes the other.\n");
 	fputs("| |", stdout);
 	for (int j = 0; j < count; j++)
 		printf(" %s |", capability[j].name);
@@ -273,8 +275,9 @@ static void print_table(void)
 		}
 	}
 	puts("\n## A new capability\n");
-	puts("A line in `tests/combinations/capabilities.list`, what it adds to a spec or the options in `write_spec` of `covering.c`, and the refusals that it");
-	puts("brings in `refusals.list`: `combinations.sh --pairs` prints those that plgen has. `combinations.sh --table` then prints this page.");
+	puts("A line in `tests/combinations/capabilities.list`, what it adds to a spec or the options in `write_spec` of");
+	puts("`covering.c`, and the refusals that it brings in `refusals.list`: `combinations.sh ... --pairs` prints those that plgen");
+	puts("has. `combinations.sh ... --table` then prints this page.");
 }
 
 /* ---- a model ---- */
@@ -292,10 +295,12 @@ static bool has(const char *one)
 
 static void print_options(FILE *to)
 {
-	static const char *const option[][2] = { { "reduce", "--reduce" }, { "float", "--real float" }, { "compensated", "--accuracy compensated" },
-		{ "direct", "--form direct" }, { "delta", "--form delta" }, { "kdk", "--form kick-drift-kick" }, { "exact", "--scheme exact" },
-		{ "pl", "--scheme pl" }, { "etd1", "--scheme etd1" }, { "etdrk2", "--scheme etdrk2" }, { "etdrk4", "--scheme etdrk4" }, { "nc2", "--scheme nc2" },
-		{ "nc3", "--scheme nc3" }, { "dq4", "--scheme dq4" }, { "bm3", "--scheme bm3" }, { "selftest", "--selftest" }, { "loads", "--loads leftover" } };
+	static const char *const option[][2] = { { "reduce", "--reduce" }, { "float", "--real float" },
+		{ "compensated", "--accuracy compensated" }, { "direct", "--form direct" }, { "delta", "--form delta" },
+		{ "kdk", "--form kick-drift-kick" }, { "exact", "--scheme exact" }, { "pl", "--scheme pl" },
+		{ "etd1", "--scheme etd1" }, { "etdrk2", "--scheme etdrk2" }, { "etdrk4", "--scheme etdrk4" },
+		{ "nc2", "--scheme nc2" }, { "nc3", "--scheme nc3" }, { "dq4", "--scheme dq4" }, { "bm3", "--scheme bm3" },
+		{ "selftest", "--selftest" }, { "loads", "--loads leftover" } };
 	bool scheme = false;
 	fputs("# options:", to);
 	for (size_t i = 0; i < sizeof option / sizeof *option; i++)
@@ -305,7 +310,8 @@ static void print_options(FILE *to)
 		}
 	if (has("loads") && !scheme)
 		fputs(" --scheme etdrk4", to);
-	fprintf(to, "\n# class: %s\n", has("kinked") || (has("loads") && has("change")) ? "kinked" : has("piecewise") ? "piecewise" : has("smooth") ? "smooth" : "linear");
+	const bool kinks = has("kinked") || (has("loads") && has("change"));
+	fprintf(to, "\n# class: %s\n", kinks ? "kinked" : has("piecewise") ? "piecewise" : has("smooth") ? "smooth" : "linear");
 	fprintf(to, "# changes:%s\n", has("change") ? " 0.053 0.1 0.21" : "");
 	if (has("tunable"))
 		fputs("# retune: k=17.5 step=0.0125\n", to);
@@ -320,7 +326,7 @@ static void write_chain(FILE *to, int n)
 	fprintf(to, "]\n");
 }
 
-/* Two masses and what else is asked for; without dampers where the form asks for that.  Frequencies are below 6 rad/s. */
+/* Two masses and what else is asked for; without dampers where the form asks for that.  Frequencies: below 6 rad/s. */
 static void write_spec(FILE *to)
 {
 	const bool vector = has("file") || has("many"), damped = !has("kdk"), outputs = has("accel") || has("nonlinear") || has("reduce");

@@ -1,14 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* drive NAME: one of the subjects, by every function that its descriptor has, against CVODE on NAME_rhs, the closed form, and the
- * spec's second writing.  Prints what differs, both values, and ends with 1; else a line of the largest differences.
+/* drive NAME: one of the subjects, by every function that its descriptor has, against CVODE on NAME_rhs, the closed form,
+ * and the spec's second writing.  Prints what differs, both values, and ends with 1; else a line of the largest differences.
  *
  * Bounds, over the largest value of any state in the run (of an output: of any output, or state):
- *     states against CVODE (rtol 1e-10)   exact 1e-6; smooth leftover: order 4 1e-4, order 2 3e-3, order 1 5e-2; kinks: 1e-2, order 1 5e-2
- *     against the closed form             1e-12 per step
- *     rhs, outputs against the second writing   1e-10, of the largest slope or output
- *     jump, set, retune                   1e-12 per step; run, restore: to the last bit; at(0), at(h): 1e-12
- *     selftest                            100 units in the last place
- * In float each is at least 2e-5 per step for what is 1e-12 in double, and 2e-3 beside CVODE. */
+ *     states against CVODE, rtol 1e-10   exact 1e-6; a smooth leftover 1e-4, 3e-3 and 5e-2 in order 4, 2 and 1; with kinks
+ *                                        1e-2, in order 1 5e-2
+ *     the closed form                    1e-12 per step
+ *     rhs, outputs against the second writing    1e-10, of the largest slope or output
+ *     jump, set, retune                  1e-12 per step; run, restore: to the last bit; at(0), at(h): 1e-12
+ *     selftest                           100 units in the last place
+ * In float 2e-5 per step for what is 1e-12 in double, and at least 2e-3 beside CVODE. */
 #include "drive.h"
 #include "truth.h"
 
@@ -43,7 +44,8 @@ static bool near(double found, double expected, double tolerance, const char *wh
 {
 	if (fabs(found - expected) <= tolerance)
 		return true;
-	complain("%s, t = %.17g, %s: found %.17g, expected %.17g, difference %.3g, tolerance %.3g", what, t, which, found, expected, found - expected, tolerance);
+	complain("%s, t = %.17g, %s: found %.17g, expected %.17g, difference %.3g, tolerance %.3g", what, t, which, found,
+		expected, found - expected, tolerance);
 	return false;
 }
 
@@ -192,7 +194,7 @@ static void samples(int step, double *u)
 		u[i] = sample(step, i);
 }
 
-/* Which inputs ramp: those whose step depends on the sample before.  By the name's slope in the rhs no one can tell, so ask the model. */
+/* Which inputs ramp: find_ramps asks the model. */
 static bool ramps[MOST];
 
 /* Inputs over a step as NAME_rhs takes them: at its start, then slopes. */
@@ -319,7 +321,8 @@ static void judge_rhs(void)
 		for (int i = 0; i < of->whole->states; i++)
 			seed = seed * 1103515245u + 12345u, y[i] = (double)(seed >> 8) / 8388608 - 1;
 		for (int i = 0; i < 2 * inputs; i++)
-			seed = seed * 1103515245u + 12345u, u[i] = i < inputs || ramps[i - inputs] ? (double)(seed >> 8) / 8388608 - 1 : 0;
+			seed = seed * 1103515245u + 12345u, u[i] = i < inputs || ramps[i - inputs] ?
+				(double)(seed >> 8) / 8388608 - 1 : 0;
 		seed = seed * 1103515245u + 12345u;
 		const double t = (double)(seed >> 8) / 33554432;
 		if (at_a_change(t))
@@ -332,7 +335,8 @@ static void judge_rhs(void)
 		for (int i = 0; i < of->whole->states; i++)
 			largest = fmax(largest, fabs(found[i]));
 		for (int i = 0, velocity = of->coords[0]; i < of->coords[0]; i++)
-			near(found[of->coords[i + 1] == 2 ? velocity++ : i], top[i], 1e-10 * largest, "rhs against the second writing", t, of->whole->state_names[i]);
+			near(found[of->coords[i + 1] == 2 ? velocity++ : i], top[i], 1e-10 * largest, "rhs against the second writing", t,
+				of->whole->state_names[i]);
 	}
 }
 
@@ -371,13 +375,14 @@ static void run_steps(void)
 		samples(k, u);
 		model_step(s, u);
 	}
-	const int status = of->model ? of->model->status ? of->model->status(s) : 0 : of->modelf->status ? of->modelf->status(s) : 0;
+	const int status = of->model ? of->model->status ? of->model->status(s) : 0
+		: of->modelf->status ? of->modelf->status(s) : 0;
 	if (status)
 		complain("status %d after %d steps", status, STEPS);
 	free(s);
 }
 
-/* Which inputs are ramps: after `init` a first sample of 1 gives other states than the same sample again does, if u moved in between. */
+/* Of a ramp the sample before acts: after another first sample the same second one gives other states or outputs. */
 static void find_ramps(void)
 {
 	for (int i = 0; i < inputs; i++) {
@@ -446,12 +451,14 @@ static void judge_steps(void *s, int from, int steps, double step, struct row *f
 		if (all && of->wanted && !at_a_change(t + step) && highest(t + step, found, u, top)) {
 			of->wanted(model_time(s), found, u, top, expected);     /* at the model's own states */
 			for (int i = 0; i < outputs; i++)
-				good = near(seen[i], expected[i], (in_float ? 1e-4 : 1e-10) * fmax(out_size, size), "output of these states", t + step, output_name(i)) && good;
+				good = near(seen[i], expected[i], (in_float ? 1e-4 : 1e-10) * fmax(out_size, size), "output of these states",
+					t + step, output_name(i)) && good;
 		} else if (!all && !at_a_change(t + step)) {
 			of->whole->set(w, t + step, y);
 			of->whole->out(w, expected);
 			for (int i = 0; i < outputs; i++)
-				good = near(seen[i], expected[i], fmax(bound(), 1e-5) * fmax(out_size, size), "output, of a model reduced", t + step, output_name(i)) && good;
+				good = near(seen[i], expected[i], fmax(bound(), 1e-5) * fmax(out_size, size), "output, of a model reduced",
+					t + step, output_name(i)) && good;
 		}
 		if (!good)
 			break;
@@ -486,7 +493,8 @@ static void judge_solution(void)
 		bool good = near(row[k].t, t, in_float ? 1e-6 : 1e-13, "time", t, "t");
 		for (int i = 0; i < outputs; i++) {
 			const double expected = strtod(p + 1, &p);
-			good = near(row[k].out[i], expected, rounding(k) * fmax(out_size, size), "output against the closed form", t, output_name(i)) && good;
+			good = near(row[k].out[i], expected, rounding(k) * fmax(out_size, size), "output against the closed form", t,
+				output_name(i)) && good;
 			worst_solution = fmax(worst_solution, fabs(row[k].out[i] - expected) / fmax(out_size, size));
 		}
 		if (!good)
@@ -506,8 +514,10 @@ static bool same_bits(const double *a, const double *b, int n)
 static void judge_run(void)
 {
 	void *const s = fresh();
-	double *const out = malloc(sizeof *out * (size_t)(STEPS * outputs + 1)), *const u = malloc(sizeof *u * (size_t)(STEPS * inputs + 1)), y[MOST];
-	float *const outf = malloc(sizeof *outf * (size_t)(STEPS * outputs + 1)), *const uf = malloc(sizeof *uf * (size_t)(STEPS * inputs + 1));
+	double *const out = malloc(sizeof *out * (size_t)(STEPS * outputs + 1));
+	double *const u = malloc(sizeof *u * (size_t)(STEPS * inputs + 1)), y[MOST];
+	float *const outf = malloc(sizeof *outf * (size_t)(STEPS * outputs + 1));
+	float *const uf = malloc(sizeof *uf * (size_t)(STEPS * inputs + 1));
 	if (!out || !u || !outf || !uf)
 		exit(3);
 	for (int k = 0; k < STEPS; k++)
@@ -571,13 +581,15 @@ static void judge_jump(void)
 		model_get(s, y);
 		near(model_time(s), row[lengths[i]].t, in_float ? 1e-6 : 1e-14, "time after a jump", lengths[i] * h, "t");
 		for (int j = 0; j < states; j++)
-			near(y[j], row[lengths[i]].y[j], rounding(lengths[i]) * size, "jump against steps", lengths[i] * h, state_name(j));
+			near(y[j], row[lengths[i]].y[j], rounding(lengths[i]) * size, "jump against steps", lengths[i] * h,
+				state_name(j));
 	}
 	free(s);
 }
 
 static void judge_at(void)
 {
+	const bool plain = is(of->scheme, "exact") && *of->changes == 0 && !is(of->class, "piecewise");
 	void *const s = fresh(), *const before = fresh();
 	struct truth *solver = new_truth();
 	double u[MOST], y[MOST], now[MOST], past[MOST] = {0};
@@ -593,7 +605,7 @@ static void judge_at(void)
 				near(y[i], row[k].y[i], rounding(0) * size, "at(0)", row[k].t, state_name(i));
 			model_at(s, u, of->model ? of->model->h : (double)of->modelf->h, y);
 			for (int i = 0; i < states; i++)
-				near(y[i], row[k + 1].y[i], (is(of->scheme, "exact") && *of->changes == 0 && !is(of->class, "piecewise") ? rounding(4) : bound()) * size, "at(h)",
+				near(y[i], row[k + 1].y[i], (plain ? rounding(4) : bound()) * size, "at(h)",
 					row[k].t, state_name(i));
 			model_at(s, u, 0.375 * h, y);
 			if (memcmp(before, s, bytes()) != 0)
@@ -631,7 +643,8 @@ static void judge_set(void)
 	model_get(s, y);
 	const bool exact = is(of->scheme, "exact") && !is(of->class, "piecewise");
 	for (int i = 0; i < states; i++)
-		near(y[i], row[STEPS].y[i], (exact ? 4 * rounding(STEPS) : in_float ? 2e-3 : *of->changes ? bound() : 1e-7) * size, "steps after set to where it is", STEPS * h, state_name(i));
+		near(y[i], row[STEPS].y[i], (exact ? 4 * rounding(STEPS) : in_float ? 2e-3 : *of->changes ? bound() : 1e-7) * size,
+			"steps after set to where it is", STEPS * h, state_name(i));
 	if (!whole() || (of->model ? of->model->params : of->modelf->params) > 8) {
 		free(s);
 		return;
@@ -694,7 +707,8 @@ static void judge_retune(void)
 		}
 		model_get(s, y);
 		for (int i = 0; i < states; i++)
-			near(y[i], row[STEPS].y[i], 10 * rounding(STEPS) * size, "retuned to the spec's own values", STEPS * h, state_name(i));
+			near(y[i], row[STEPS].y[i], 10 * rounding(STEPS) * size, "retuned to the spec's own values", STEPS * h,
+				state_name(i));
 	}
 	if (w) {
 		model_init(s);
@@ -712,13 +726,15 @@ static void judge_retune(void)
 				for (int i = 0; i < states; i++)
 					largest = fmax(largest, fabs(expected[i]));
 				for (int i = 0; i < states; i++)
-					good = near(y[i], expected[i], 10 * rounding(k) * largest, "retuned, against the spec with these values", (k + 1) * step, state_name(i)) && good;
+					good = near(y[i], expected[i], 10 * rounding(k) * largest, "retuned, against the spec with these values",
+						(k + 1) * step, state_name(i)) && good;
 				model_out(s, y);
 				of->tuned->out(w, expected);
 				for (int i = 0; i < outputs; i++)
 					out_size = fmax(out_size, fabs(expected[i]));
 				for (int i = 0; i < outputs; i++)
-					good = near(y[i], expected[i], 10 * rounding(k) * fmax(largest, out_size), "retuned, outputs", (k + 1) * step, output_name(i)) && good;
+					good = near(y[i], expected[i], 10 * rounding(k) * fmax(largest, out_size), "retuned, outputs",
+						(k + 1) * step, output_name(i)) && good;
 				if (!good)
 					break;
 			}
