@@ -63,6 +63,7 @@ accuracy: all
 
 fuzz: all
 	ninja -C $(BUILD) fuzz_long
+	ninja -C $(BUILD) grammar_long
 
 install: all
 	meson install -C $(BUILD)

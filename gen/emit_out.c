@@ -18,6 +18,17 @@ static bool any_factor(const struct emitter *e, const struct output *output, int
 	return false;
 }
 
+int output_row(const struct model *model, const struct output *output)
+{
+	int row = model->outputs;
+	for (int k = 0; model->highest && k < model->n; k++) {
+		if (model->highest[k] == output)
+			return row;
+		row += model->highest[k] != NULL;
+	}
+	return (int)(output - model->output);
+}
+
 /* A load in an output: its factor, or where that changes its place in the table direct[segment][output] */
 static const char *direct_term(const struct emitter *e, const struct output *output, int load, int k, int column)
 {
@@ -25,7 +36,7 @@ static const char *direct_term(const struct emitter *e, const struct output *out
 	const char *operand = load_operand(e, load, k);
 	if (!changes(factor, e->system->segments))
 		return scaled(round_rational(factor[0]), operand);
-	const char *text = format("%s_direct[s->segment][%d][%d]", e->name, (int)(output - e->model->output), column);
+	const char *text = format("%s_direct[s->segment][%d][%d]", e->name, output_row(e->model, output), column);
 	return operand ? format("%s * %s", text, operand) : text;
 }
 
@@ -34,28 +45,50 @@ static bool is_tuned(const struct emitter *e, const struct output *output)
 	return e->model->tuning && e->model->tuning->output[output - e->model->output] >= 0;
 }
 
-/* Factors of the load states in the outputs, where one changes its formula */
+/* A row for output_row: NULL behind the last */
+static const struct output *row_of_output(const struct model *model, int row)
+{
+	if (row < model->outputs)
+		return &model->output[row];
+	for (int k = 0; model->highest && k < model->n; k++)
+		if (model->highest[k] && output_row(model, model->highest[k]) == row)
+			return model->highest[k];
+	return NULL;
+}
+
+/* How many rows the table of factors needs: up to the last in which one changes */
+static int changing_rows(const struct emitter *e)
+{
+	const struct linear *system = e->system;
+	const struct output *output;
+	int rows = 0;
+	for (int o = 0; (output = row_of_output(e->model, o)) != NULL; o++)
+		for (int l = 0; l < system->loads && !is_tuned(e, output); l++)
+			for (int k = 0; k < system->load[l].columns; k++)
+				if (changes((const mpq_t *)output->load[l] + k * system->segments, system->segments))
+					rows = o < e->model->outputs ? e->model->outputs : o + 1;
+	return rows;
+}
+
+/* Factors of the load states, where one changes its formula, in the outputs, and in the derivatives that those read which
+ * are not linear */
 static void emit_direct_factors(const struct emitter *e)
 {
 	const struct linear *system = e->system;
-	int columns = load_columns(system);
-	bool any = false;
-	for (int o = 0; o < e->model->outputs; o++)
-		for (int l = 0; l < system->loads && !is_tuned(e, &e->model->output[o]); l++)
-			for (int k = 0; k < system->load[l].columns; k++)
-				any = any || changes((const mpq_t *)e->model->output[o].load[l] + k * system->segments, system->segments);
-	if (!any)
+	const int columns = load_columns(system), rows = changing_rows(e);
+	if (rows == 0)
 		return;
-	fprintf(e->to, "\nstatic const double %s_direct[%d][%s_OUTPUTS][%d] = {  /* factors of the load states in each segment of time */\n",
-		e->name, system->segments, e->upper, columns);
+	fprintf(e->to, "\nstatic const double %s_direct[%d][%s][%d] = {  /* factors of the load states in each segment of time */\n",
+		e->name, system->segments, rows == e->model->outputs ? format("%s_OUTPUTS", e->upper) : format("%d", rows), columns);
 	for (int s = 0; s < system->segments; s++) {
 		fputs("  {\n", e->to);
-		for (int o = 0; o < e->model->outputs; o++) {
+		for (int o = 0; o < rows; o++) {
+			const struct output *output = row_of_output(e->model, o);
 			const char *row = "";
 			for (int l = 0; l < system->loads; l++)
 				for (int k = 0; k < system->load[l].columns; k++)
-					row = format("%s%s%s", row, *row ? ", " : "", shortest(round_rational(e->model->output[o].load[l][k * system->segments + s])));
-			fprintf(e->to, "    {%s},  /* %s */\n", row, e->model->output[o].name);
+					row = format("%s%s%s", row, *row ? ", " : "", shortest(round_rational(output->load[l][k * system->segments + s])));
+			fprintf(e->to, "    {%s},  /* %s%s */\n", row, o < e->model->outputs ? "" : "a highest derivative in ", output->name);
 		}
 		fputs("  },\n", e->to);
 	}

@@ -71,6 +71,15 @@ static const char *residual_text(const struct equation *equation)
 	return vanishes(equation->right) || strcmp(right, "0.0") == 0 ? left : format("%s - (%s)", left, right);
 }
 
+/* Of models of first order alone the residuals may read no state, and nothing else does */
+static void emit_unread_states(const struct emitter *e, bool read)
+{
+	for (int i = 0; i < e->model->written->n; i++)
+		read = read || e->model->written->system.velocity[i] >= 0;
+	if (!read)
+		fputs("    (void)y;\n", e->to);
+}
+
 /* ---- vectors and sketches: the collected equations ---- */
 
 static const char *join(const char *left, const char *right)
@@ -127,6 +136,14 @@ static bool is_scalar_text(const struct model *model)
 		if (model->spec->equation[i].left->kind == NODE_MATRIX || model->spec->equation[i].right->kind == NODE_MATRIX)
 			return false;
 	return model->spec->elements == 0 && model->spec->equations == model->n;
+}
+
+static bool reads_states(const struct emitter *e, const struct form *form)
+{
+	for (int i = 0; i < form->terms; i++)
+		if (form->term[i].basis.kind == BASIS_COORD && !is_highest(e, &form->term[i].basis))
+			return true;
+	return false;
 }
 
 static bool any_wave(const struct model *model, bool *math)
@@ -205,6 +222,11 @@ static void emit_whole_residuals(const struct emitter *e)
 		fputs("    (void)t;\n", e->to);
 	if (e->system->inputs)
 		fputs("    (void)u;\n", e->to);
+	const struct reads reads = reads_of(model, model->n, form);
+	bool read = false;
+	for (int i = 0; i < model->system.states; i++)
+		read = read || reads.state[i];
+	emit_unread_states(e, read);
 }
 
 bool rhs_needs_math(const struct model *any)
@@ -227,7 +249,7 @@ bool rhs_needs_math(const struct model *any)
 
 static void emit_collected_residuals(const struct emitter *e)
 {
-	bool math = false;
+	bool math = false, read = false;
 	fprintf(e->to, "    double residual[%d];  /* left side minus right side, without the highest derivatives */\n", e->model->written->n);
 	for (int segment = 0; segment < e->system->segments; segment++) {
 		if (e->system->segments > 1 && segment + 1 < e->system->segments)
@@ -244,6 +266,9 @@ static void emit_collected_residuals(const struct emitter *e)
 		fputs("    (void)t;\n", e->to);
 	if (e->system->inputs)
 		fputs("    (void)u;\n", e->to);
+	for (int i = 0; i < e->model->written->n * e->system->segments; i++)
+		read = read || reads_states(e, e->model->snapshot[i / e->model->written->n].residual[i % e->model->written->n].form);
+	emit_unread_states(e, read);
 }
 
 /* ---- scalar equations: their own text ---- */
@@ -310,6 +335,10 @@ static void emit_written_residuals(const struct emitter *e)
 		fprintf(e->to, "    residual[%d] = %s;\n", i, residual_text(&spec->equation[i]));
 	if (!time)
 		fputs("    (void)t;\n", e->to);
+	bool read = false;
+	for (int i = 0; i < e->model->written->system.states; i++)
+		read = read || reads[i];
+	emit_unread_states(e, read);
 }
 
 void emit_rhs(const struct emitter *stepped)

@@ -119,6 +119,18 @@ bool is_decided(const struct collector *c, int count, struct form *const *x)
 	return true;
 }
 
+bool is_decided_call(const struct collector *c, const struct node *node, struct form *const *x)
+{
+	if (is_decided(c, node->children, x))
+		return true;
+	if (node->function != FN_MIN && node->function != FN_MAX && node->function != FN_CLIP && node->function != FN_DEADZONE)
+		return false;
+	for (int i = 1; i < node->children; i++)
+		if (!is_constant(form_sum(x[i], x[0], true)))
+			return false;
+	return true;
+}
+
 /* ---- functions ---- */
 
 static struct form *negated(const struct form *x)

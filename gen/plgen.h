@@ -435,6 +435,7 @@ int order_now(struct collector *c, const struct node *node, const struct form *a
 struct form *piecewise(struct collector *c, const struct node *node, struct form *const *x); /* the function of its arguments' forms */
 void check_breakpoints(struct collector *c, const struct node *node, struct form *const *x);  /* of a function that is not taken apart */
 bool is_decided(const struct collector *c, int count, struct form *const *x); /* constants and times: conditions on them have an outcome */
+bool is_decided_call(const struct collector *c, const struct node *node, struct form *const *x); /* those, or what moves alike: max(x, x + 1) */
 
 void narrow_span(struct collector *c, struct span span);
 bool holds_now(const struct collector *c, struct span span); /* in the collector's interval of time */
@@ -1225,6 +1226,8 @@ const char *selection_call(const struct emitter *e);              /* which opera
 void emit_node_phases(const struct emitter *e, const bool *loads); /* phases and growths from the start of the step to each node */
 int  coordinate_of_row(const struct model *model, int row);       /* whose equation it is */
 void emit_out(const struct emitter *e);
+/* A number for each output, then for each highest derivative that outputs which are not linear read */
+int output_row(const struct model *model, const struct output *output);
 void emit_at(const struct emitter *e);
 void emit_jump(const struct emitter *e);
 void emit_rhs(const struct emitter *e);

@@ -1,0 +1,104 @@
+#!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
+# combinations.sh PLGEN COVERING ARCHIVE_GCC SOURCE: every row of the covering array is made and agrees with other roads, every set of
+# refusals.list is refused with its message, as TAP; and doc/combinations.md is what comes out of the lists.
+#     combinations.sh PLGEN COVERING ARCHIVE_GCC SOURCE --pairs     prints the pairs that plgen refuses, as lines for refusals.list
+#     combinations.sh PLGEN COVERING ARCHIVE_GCC SOURCE --table     prints doc/combinations.md
+set -u
+absolute() {
+	case $1 in
+		/*) echo "$1" ;;
+		*) echo "$PWD/$1" ;;
+	esac
+}
+plgen=$(absolute "$1")
+covering=$(absolute "$2")
+folder=$(dirname "$(absolute "$3")")
+source=$(absolute "$4")
+lists="$source/tests/combinations/capabilities.list $source/tests/combinations/refusals.list"
+. "$source/tests/tap.sh"
+. "$source/tests/fuzz/batch.sh"
+cp "$source"/tests/combinations/*.mtx .
+tab=$(printf '\t')
+
+# words_of ID ROW: what there is to say against ID.spec, made or not; nothing if all of the row is there
+words_of() {
+	make_c "$1" "$1.spec" "$(head_of "$1.spec" options)"
+	status=$?
+	if [ $status -ne 0 ]; then
+		sed -n 's/.*: error: //p' "$1.said" | grep -v '^$' | tail -n 1
+		[ $status -eq 1 ] || echo "status $status"
+		return
+	fi
+	for function in at jump; do
+		case " $2 " in
+			*" $function "*)
+				grep -q "_$function(" "$1.h" && continue
+				reason=$(grep -m 1 "There is no $1_$function" "$1.c" | sed "s/^ \* //; s/$1_/NAME_/")
+				echo "${reason:-no NAME_$function, without a reason}" ;;
+		esac
+	done
+}
+
+if [ "${5:-}" = --table ]; then
+	# shellcheck disable=SC2086
+	"$covering" table $lists
+	exit
+fi
+if [ "${5:-}" = --pairs ]; then
+	# shellcheck disable=SC2086
+	"$covering" pairs $lists | while read -r row; do
+		# shellcheck disable=SC2086
+		"$covering" spec p.spec $row
+		words=$(words_of p "$row")
+		[ -z "$words" ] || printf '%s\t%s\n' "$row" "$words"
+	done
+	exit
+fi
+
+batch_new
+number=0
+# shellcheck disable=SC2086
+"$covering" rows $lists >rows || exit 99
+while read -r row; do
+	number=$((number + 1))
+	# shellcheck disable=SC2086
+	"$covering" spec "r$number.spec" $row || exit 99
+	batch_add "r$number" "r$number.spec"
+	[ "$said" = refused ] && cp "r$number.said" "r$number.wrong"
+	for function in at jump; do
+		case " $row " in
+			*" $function "*) [ "$said" != made ] || grep -q "_$function(" "r$number.h" || echo "there is no NAME_$function" >"r$number.wrong" ;;
+		esac
+	done
+done <rows
+batch_build
+number=0
+while read -r row; do
+	number=$((number + 1))
+	[ -s "r$number.wrong" ] || batch_run "r$number"
+	cp "r$number.wrong" log
+	if [ -s log ]; then
+		sed 's/^/    /' "r$number.spec" >>log
+		result 1 "$row"
+	else
+		result 0 "$row:$(cut -d : -f 2- "r$number.ran")"
+	fi
+done <rows
+
+# shellcheck disable=SC2086
+"$covering" refused $lists >refused || exit 99
+while IFS="$tab" read -r row reason; do
+	# shellcheck disable=SC2086
+	"$covering" spec p.spec $row || exit 99
+	words_of p "$row" >log
+	grep -q -F -e "$reason" log
+	good=$?
+	echo "expected: $reason" >>log
+	result $good "$row is refused"
+done <refused
+
+# shellcheck disable=SC2086
+"$covering" table $lists | diff - "$source/doc/combinations.md" >log 2>&1
+result $? 'doc/combinations.md is the table of these lists'
+tap_end

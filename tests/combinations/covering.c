@@ -1,0 +1,412 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Models in which capabilities meet.
+ *
+ *     covering rows CAPABILITIES REFUSALS      a line for each model that must work: its capabilities.  Together they
+ *                                              have every pair that is not refused, of the first ones every triple
+ *     covering pairs CAPABILITIES REFUSALS     every pair that no group forbids: for who looks for refusals
+ *     covering refused CAPABILITIES REFUSALS   a line for each set that is refused
+ *     covering table CAPABILITIES REFUSALS     doc/combinations.md
+ *     covering spec FILE.spec CAPABILITY ...   the model, with its options and what batch.sh asks for in comments
+ *
+ * A line of REFUSALS is `CAPABILITY CAPABILITY ...<tab>MESSAGE`: part of what plgen says of a model with all of these.
+ * The array is made greedily: a row starts with the first set that is not covered yet, and takes what covers most of the
+ * others, as long as nothing in it is refused. */
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MOST = 64, MOST_REFUSALS = 600, LINE = 1000, ROW = 10 };
+
+static struct { char name[32], group[32], words[120]; } capability[MOST];
+static int count, first;
+static struct { bool has[MOST]; int size; char reason[LINE]; } refusal[MOST_REFUSALS];
+static int refusals;
+static bool covered[MOST][MOST], tripled[MOST][MOST][MOST];
+
+static void stop(const char *what, const char *which)
+{
+	fprintf(stderr, "covering: error: %s '%s'\n", what, which);
+	exit(2);
+}
+
+static int number_of(const char *name)
+{
+	for (int i = 0; i < count; i++)
+		if (strcmp(capability[i].name, name) == 0)
+			return i;
+	stop("unknown capability", name);
+	return -1;
+}
+
+static FILE *need(const char *path)
+{
+	FILE *const file = fopen(path, "r");
+	if (!file)
+		stop("cannot read", path);
+	return file;
+}
+
+static void read_lists(const char *capabilities, const char *refused)
+{
+	char line[LINE];
+	FILE *file = need(capabilities);
+	while (fgets(line, sizeof line, file)) {
+		if (strncmp(line, "---", 3) == 0)
+			first = count;
+		else if (*line != '#' && count < MOST && sscanf(line, "%31s %31s %119[^\n]", capability[count].name,
+				capability[count].group, capability[count].words) == 3)
+			count++;
+	}
+	fclose(file);
+	file = need(refused);
+	while (fgets(line, sizeof line, file) && refusals < MOST_REFUSALS) {
+		char *const tab = strchr(line, '\t');
+		if (*line == '#' || !tab)
+			continue;
+		*tab = 0;
+		for (char *name = strtok(line, " "); name; name = strtok(NULL, " ")) {
+			refusal[refusals].has[number_of(name)] = true;
+			refusal[refusals].size++;
+		}
+		tab[1 + strcspn(tab + 1, "\n")] = 0;
+		strcpy(refusal[refusals++].reason, tab + 1);
+	}
+	fclose(file);
+}
+
+static bool excludes(int i, int j)
+{
+	return i != j && strcmp(capability[i].group, "-") != 0 && strcmp(capability[i].group, capability[j].group) == 0;
+}
+
+static bool is_refused(const bool *row)
+{
+	for (int r = 0; r < refusals; r++) {
+		bool all = true;
+		for (int i = 0; i < count && all; i++)
+			all = !refusal[r].has[i] || row[i];
+		if (all)
+			return true;
+	}
+	return false;
+}
+
+static bool fits(bool *row, int i)
+{
+	for (int j = 0; j < count; j++)
+		if (row[j] && excludes(i, j))
+			return false;
+	const bool before = row[i];
+	row[i] = true;
+	const bool good = !is_refused(row);
+	row[i] = before;
+	return good;
+}
+
+/* How much that is not covered yet the row has, with i where i is not in it. */
+static int gain(const bool *row, int i)
+{
+	int sum = 0;
+	for (int j = 0; j < count; j++) {
+		if (!row[j])
+			continue;
+		sum += !covered[i][j];
+		for (int k = 0; k < j && i < first && j < first; k++)
+			sum += row[k] && !tripled[i][j][k];
+	}
+	return sum;
+}
+
+static void cover(const bool *row)
+{
+	for (int i = 0; i < count; i++)
+		for (int j = 0; j < count; j++) {
+			covered[i][j] = covered[i][j] || (row[i] && row[j]);
+			for (int k = 0; k < count; k++)
+				tripled[i][j][k] = tripled[i][j][k] || (row[i] && row[j] && row[k]);
+		}
+}
+
+static void print_row(const bool *row)
+{
+	const char *before = "";
+	for (int i = 0; i < count; i++)
+		if (row[i]) {
+			printf("%s%s", before, capability[i].name);
+			before = " ";
+		}
+	putchar('\n');
+}
+
+/* Starts a row with i, j and k, where that can be. */
+static bool start_row(bool *row, int i, int j, int k)
+{
+	memset(row, 0, MOST);
+	row[i] = true;
+	if (!fits(row, j))
+		return false;
+	row[j] = true;
+	if (!fits(row, k))
+		return false;
+	row[k] = true;
+	return !is_refused(row);
+}
+
+static void fill_row(bool *row)
+{
+	for (int size = 2; size < ROW; size++) {
+		int best = -1, most = 0;
+		for (int i = 0; i < count; i++)
+			if (!row[i] && fits(row, i) && gain(row, i) > most) {
+				most = gain(row, i);
+				best = i;
+			}
+		if (best < 0)
+			break;
+		row[best] = true;
+	}
+	cover(row);
+	print_row(row);
+}
+
+static void print_rows(void)
+{
+	bool row[MOST];
+	for (int i = 0; i < first; i++)
+		for (int j = 0; j < i; j++)
+			for (int k = 0; k < j; k++)
+				if (!tripled[i][j][k] && start_row(row, i, j, k))
+					fill_row(row);
+	for (int i = 0; i < count; i++)
+		for (int j = 0; j <= i; j++)
+			if (!covered[i][j] && start_row(row, i, j, j))
+				fill_row(row);
+}
+
+static void print_pairs(void)
+{
+	for (int i = 0; i < count; i++)
+		for (int j = 0; j <= i; j++)
+			if (!excludes(i, j))
+				printf(i == j ? "%s\n" : "%s %s\n", capability[j].name, capability[i].name);
+}
+
+static void print_refused(void)
+{
+	for (int r = 0; r < refusals; r++) {
+		const char *before = "";
+		for (int i = 0; i < count; i++)
+			if (refusal[r].has[i]) {
+				printf("%s%s", before, capability[i].name);
+				before = " ";
+			}
+		printf("\t%s\n", refusal[r].reason);
+	}
+}
+
+/* ---- the page ---- */
+
+static const char *reasons[MOST_REFUSALS];
+static int reasons_count;
+
+static int reason_number(const char *reason)
+{
+	for (int i = 0; i < reasons_count; i++)
+		if (strcmp(reasons[i], reason) == 0)
+			return i + 1;
+	reasons[reasons_count++] = reason;
+	return reasons_count;
+}
+
+static const char *cell(int i, int j)
+{
+	static char text[32];
+	if (excludes(i, j))
+		return "";
+	for (int r = 0; r < refusals; r++)
+		if (refusal[r].has[i] && refusal[r].has[j] && refusal[r].size == (i == j ? 1 : 2)) {
+			snprintf(text, sizeof text, "%d", reason_number(refusal[r].reason));
+			return text;
+		}
+	return "+";
+}
+
+static void print_table(void)
+{
+	puts("<!-- SPDX-License-Identifier: GPL-3.0-or-later -->");
+	puts("# What goes with what\n");
+	puts("Made by `tests/combinations/combinations.sh` from the lists beside it, which a test holds against plgen; do not edit.");
+	puts("`+`: works, in a row of a covering array that has every pair (of the first ones every triple), and agrees with CVODE or");
+	puts("the closed form within the bounds of `tests/fuzz/drive.c`, by `step`, `run`, `jump`, `at`, `set` at odd times, saved and");
+	puts("restored, with `--rhs`. A number: refused, with the message below. Blank: one excludes the other.\n");
+	fputs("| |", stdout);
+	for (int j = 0; j < count; j++)
+		printf(" %s |", capability[j].name);
+	fputs("\n| --- |", stdout);
+	for (int j = 0; j < count; j++)
+		fputs(" --- |", stdout);
+	putchar('\n');
+	for (int i = 0; i < count; i++) {
+		printf("| %s |", capability[i].name);
+		for (int j = 0; j < count; j++)
+			printf(" %s |", j <= i ? cell(i, j) : "");
+		putchar('\n');
+	}
+	puts("\n| name | what it is |\n| --- | --- |");
+	for (int i = 0; i < count; i++)
+		printf("| %s | %s |\n", capability[i].name, capability[i].words);
+	puts("\n## Refusals\n");
+	for (int i = 0; i < reasons_count; i++) {
+		printf("%d. ", i + 1);
+		puts(reasons[i]);
+	}
+	puts("\nRefused only with three or more together:\n");
+	for (int r = 0; r < refusals; r++) {
+		const char *before = "- ";
+		for (int i = 0; i < count && refusal[r].size > 2; i++)
+			if (refusal[r].has[i]) {
+				printf("%s%s", before, capability[i].name);
+				before = ", ";
+			}
+		if (refusal[r].size > 2) {
+			fputs(": ", stdout);
+			puts(refusal[r].reason);
+		}
+	}
+	puts("\n## A new capability\n");
+	puts("A line in `tests/combinations/capabilities.list`, what it adds to a spec or the options in `write_spec` of");
+	puts("`covering.c`, and the refusals that it brings in `refusals.list`: `combinations.sh ... --pairs` prints those that plgen");
+	puts("has. `combinations.sh ... --table` then prints this page.");
+}
+
+/* ---- a model ---- */
+
+static int given;
+static char **name;
+
+static bool has(const char *one)
+{
+	for (int i = 0; i < given; i++)
+		if (strcmp(name[i], one) == 0)
+			return true;
+	return false;
+}
+
+static void print_options(FILE *to)
+{
+	static const char *const option[][2] = { { "reduce", "--reduce" }, { "float", "--real float" },
+		{ "compensated", "--accuracy compensated" }, { "direct", "--form direct" }, { "delta", "--form delta" },
+		{ "kdk", "--form kick-drift-kick" }, { "exact", "--scheme exact" }, { "pl", "--scheme pl" },
+		{ "etd1", "--scheme etd1" }, { "etdrk2", "--scheme etdrk2" }, { "etdrk4", "--scheme etdrk4" },
+		{ "nc2", "--scheme nc2" }, { "nc3", "--scheme nc3" }, { "dq4", "--scheme dq4" }, { "bm3", "--scheme bm3" },
+		{ "selftest", "--selftest" }, { "loads", "--loads leftover" } };
+	bool scheme = false;
+	fputs("# options:", to);
+	for (size_t i = 0; i < sizeof option / sizeof *option; i++)
+		if (has(option[i][0])) {
+			fprintf(to, " %s", option[i][1]);
+			scheme = scheme || strncmp(option[i][1], "--scheme", 8) == 0;
+		}
+	if (has("loads") && !scheme)
+		fputs(" --scheme etdrk4", to);
+	const bool kinks = has("kinked") || (has("loads") && has("change"));
+	fprintf(to, "\n# class: %s\n", kinks ? "kinked" : has("piecewise") ? "piecewise" : has("smooth") ? "smooth" : "linear");
+	fprintf(to, "# changes:%s\n", has("change") ? " 0.053 0.1 0.21" : "");
+	if (has("tunable"))
+		fputs("# retune: k=17.5 step=0.0125\n", to);
+}
+
+static void write_chain(FILE *to, int n)
+{
+	fprintf(to, "[");
+	for (int i = 0; i < n; i++)
+		for (int j = 0; j < n; j++)
+			fprintf(to, "%s%d", j ? ", " : i ? "; " : "", i == j ? 16 : i == j + 1 || j == i + 1 ? -4 : 0);
+	fprintf(to, "]\n");
+}
+
+/* Two masses and what else is asked for; without dampers where the form asks for that.  Frequencies: below 6 rad/s. */
+static void write_spec(FILE *to)
+{
+	const bool vector = has("file") || has("many"), damped = !has("kdk"), outputs = has("accel") || has("nonlinear") || has("reduce");
+	const int n = has("many") ? 9 : 3;
+	print_options(to);
+	fputs("model f\nparam k = 12\n", to);
+	fputs(has("tunable") ? "tunable k\n" : "", to);
+	fputs("coord a, b\n", to);
+	fputs(has("first") ? "coord z\n" : "", to);
+	fputs(has("reduce") ? "coord unseen\n" : "", to);
+	if (vector)
+		fprintf(to, "coord q[%d]\n", n);
+	fputs(has("held") ? "input u\n" : "", to);
+	fputs(has("ramp") ? "input v hold first\n" : "", to);
+	fprintf(to, "init a = 0.2, b' = 0.5%s%s\n", has("first") ? ", z = 0.3" : "", vector ? ", q[2] = 0.1" : "");
+	if (vector) {
+		fputs("matrix K = ", to);
+		if (has("file"))
+			fprintf(to, "\"chain%d.mtx\"\n", n);
+		else
+			write_chain(to, n);
+		fputs("matrix e = [1", to);
+		for (int i = 1; i < n; i++)
+			fprintf(to, "; %d", i % 2);
+		fputs("]\n", to);
+	}
+	fprintf(to, "%sa''%s + k*(a - b)%s = ", damped ? "2*" : "", damped ? " + 0.3*(a' - b')" : "", has("rigid") ? "" : " + 30*a");
+	fputs(has("cos") || has("loads") ? "3*cos(7*t) + " : "", to);
+	fputs(has("change") ? "(t < 0.1 ? 4 : 1) + " : "", to);
+	fputs(has("held") ? "2*u + " : "", to);
+	fputs(has("ramp") ? "3*v + " : "", to);
+	fputs("0\n", to);
+	fprintf(to, "b''%s + k*(b - a) = ", damped ? " + 0.3*(b' - a')" : "");
+	fputs(has("power") ? "5*t^3 + " : "", to);
+	fputs(has("piecewise") ? "-9*max(b - 0.1, 0) + " : "", to);
+	fputs(has("smooth") ? "-2*b^3 + " : "", to);
+	fputs(has("kinked") ? "-3*abs(b)*b' + " : "", to);
+	fputs(has("ramp") ? "0.05*v' + " : "", to);
+	fputs("0\n", to);
+	fputs(has("first") ? "0.5*z' + 2*z = a - b\n" : "", to);
+	fputs(has("reduce") ? "unseen'' + 5*unseen = 0\n" : "", to);
+	if (vector) {
+		fprintf(to, "q''%s + K*q = ", damped ? " + 0.2*q'" : "");
+		fputs(has("cos") || has("change") ? "e*(" : "", to);
+		fputs(has("cos") ? "cos(7*t) + " : "", to);
+		fputs(has("change") ? "table(t; 0.053, 0; 0.1, 2; 0.21, 1) + " : "", to);
+		fputs(has("cos") || has("change") ? "0)\n" : "0\n", to);
+		fputs("spring 2 between b, q[1]\n", to);
+	}
+	if (outputs)
+		fprintf(to, "output a, b%s%s\n", has("first") ? ", z" : "", vector ? ", q[1], q[3]'" : "");
+	if (has("accel"))
+		fprintf(to, "output a'', s = 2*b'' - a%s\n", has("first") ? " + z'" : "");
+	fputs(has("nonlinear") ? "output r = a^2 + sin(b)*b'\n" : "", to);
+	fputs("step 0.01\n", to);
+}
+
+int main(int argc, char **argv)
+{
+	if (argc >= 3 && strcmp(argv[1], "spec") == 0) {
+		FILE *const to = fopen(argv[2], "w");
+		if (!to)
+			stop("cannot write", argv[2]);
+		given = argc - 3;
+		name = argv + 3;
+		write_spec(to);
+		return fclose(to) != 0;
+	}
+	if (argc != 4)
+		stop("usage: covering rows|pairs|refused|table CAPABILITIES REFUSALS, or spec FILE.spec CAPABILITY ..., not", argc > 1 ? argv[1] : "");
+	read_lists(argv[2], argv[3]);
+	if (strcmp(argv[1], "rows") == 0)
+		print_rows();
+	else if (strcmp(argv[1], "pairs") == 0)
+		print_pairs();
+	else if (strcmp(argv[1], "refused") == 0)
+		print_refused();
+	else if (strcmp(argv[1], "table") == 0)
+		print_table();
+	else
+		stop("no such use", argv[1]);
+	return ferror(stdout) != 0 || fflush(stdout) != 0;
+}

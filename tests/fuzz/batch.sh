@@ -1,0 +1,209 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Sourced by grammar.sh and ../combinations/combinations.sh, with $plgen, $source (the project) and $folder (of the archives that
+# archive.sh makes) set and $work the current folder: specs become C, many of them one program, each run by drive.c.
+#
+#     batch_new               no models
+#     batch_add ID SPEC       SPEC's lines of comment name its options, as grammar.c has them; ID.again.c: its second writing, if it is there
+#                             what is wrong goes to ID.wrong; `said` becomes made, refused or broken
+#     batch_build             compiles and links
+#     batch_run ID            the same for its run
+ASAN_OPTIONS=exitcode=99:detect_leaks=0:hard_rss_limit_mb=2048:${ASAN_OPTIONS:-}
+UBSAN_OPTIONS=print_stacktrace=1:exitcode=99:${UBSAN_OPTIONS:-}
+export ASAN_OPTIONS UBSAN_OPTIONS
+warnings='-Werror -Wall -Wextra -Wpedantic -Wconversion -Wdouble-promotion -Wshadow'
+sanitizers='-fsanitize=address,undefined -fno-sanitize-recover=all'
+
+batch_new() {
+	turn=0
+	for cc in gcc clang; do
+		: >"subjects_$cc.list"
+		: >"code_$cc.list"
+		rm -f "./batch_$cc"
+	done
+}
+
+head_of() { # SPEC WHAT
+	sed -n "s/^# $2://p" "$1" | head -n 1
+}
+
+# make_c ID SPEC OPTIONS: 0, or the status of plgen, in which case ID.said has its words
+make_c() {
+	# shellcheck disable=SC2086
+	timeout 60 "$plgen" --rhs --prefix "$1" $3 -o "$1.c" "$2" >"$1.out" 2>"$1.said" </dev/null
+}
+
+# what plgen said with this status: nothing if all is as it should be
+why_refused() { # ID STATUS
+	case $2 in
+		1|2) if ! grep -q ': error: ' "$1.said"; then
+				echo "status $2 without a message"
+			elif ! grep -q -E -f "$source/tests/fuzz/refusals.list" "$1.said"; then
+				echo "status $2: $(grep -m 1 ': error: ' "$1.said")"
+			fi ;;
+		124) echo 'plgen takes over 60 s' ;;
+		*) echo "plgen ends with status $2: $(grep -m 3 -e 'ERROR' -e 'runtime error' "$1.said" | tr '\n' ' ')" ;;
+	esac
+}
+
+# slopes ID: a function of one form around ID_rhs
+slopes() {
+	if grep -q "_rhs(double t, const double y\[\], double" "$1.h"; then
+		echo "static void $1_slopes(double t, const double *y, const double *u, double *d) { (void)u; $1_rhs(t, y, d); }"
+	else
+		echo "static void $1_slopes(double t, const double *y, const double *u, double *d) { $1_rhs(t, y, u, d); }"
+	fi
+}
+
+batch_add() {
+	id=$1
+	spec=$2
+	given=$(head_of "$spec" options)
+	class=$(head_of "$spec" class | tr -d ' ')
+	retune=$(head_of "$spec" retune)
+	said=broken
+	: >"$id.wrong"
+	make_c "$id" "$spec" "$given"
+	status=$?
+	if [ $status -ne 0 ]; then
+		why_refused "$id" $status >"$id.wrong"
+		[ -s "$id.wrong" ] || said=refused
+		return
+	fi
+	# the plain model: no state left out, in double
+	plain=$(printf '%s\n' "$given" | awk '{ for (i = 1; i < NF; i++) if ($i == "-D" || $i == "--step") printf " %s %s", $i, $(i + 1) }')
+	whole=$id
+	code="$id.c"
+	case $given in
+		*--real*|*--reduce*)
+			whole=w$id
+			if ! make_c "$whole" "$spec" "$plain"; then
+				echo "without --real and --reduce: $(grep -m 1 error "$whole.said")" >"$id.wrong"
+				return
+			fi
+			code="$code $whole.c" ;;
+	esac
+	tuned=
+	if [ -n "$retune" ]; then
+		tuned=t$id
+		if ! make_c "$tuned" "$spec" "$(printf '%s\n' "$retune" | sed 's/ step=/ --step /; s/ \([A-Za-z_0-9]*=\)/ -D \1/g')"; then
+			echo "with other params: $(grep -m 1 error "$tuned.said")" >"$id.wrong"
+			return
+		fi
+		code="$code $tuned.c"
+	fi
+	scheme=$(sed -n 's/^ \* Scheme \([a-z0-9]*\).*/\1/p' "$id.c" | head -n 1)
+	solution=NULL
+	if [ "$scheme" = exact ] && ! grep -q 'INPUTS = [1-9]' "$id.h" && ! grep -q 'piecewise linear' "$id.c"; then
+		horizon=$(sed -n "s/^#define [A-Z0-9_]*_H \([-0-9.e]*\).*/\1/p" "$whole.h" | awk '{ printf "%.17g", 32.5 * $1 }')
+		# shellcheck disable=SC2086
+		timeout 60 "$plgen" --solution "$horizon" $plain "$spec" >"$id.csv" 2>"$id.said" </dev/null
+		status=$?
+		if [ $status -eq 0 ]; then
+			solution="\"$id.csv\""
+		else
+			why_refused "$id" $status >"$id.wrong"
+			[ -s "$id.wrong" ] && return
+		fi
+	fi
+	turn=$((turn + 1))
+	cc=gcc
+	[ $((turn % 2)) -eq 0 ] && cc=clang
+	echo "$cc" >"$id.cc"
+	again='NULL, NULL, NULL'
+	if [ -f "$id.again.c" ]; then
+		again="${id}_coords, ${id}_residual, ${id}_wanted"
+		sed "1i #define AGAIN $id" "$id.again.c" >"$id.again.made.c"
+		echo "$id.again.made.c" >>"again_$cc.list"
+	fi
+	{
+		for one in $code; do
+			echo "#include \"${one%.c}.h\""
+		done
+		slopes "$whole"
+		model="&${id}_model, NULL"
+		grep -q "pl_modelf ${id}_model" "$id.h" && model="NULL, &${id}_model"
+		selftest=NULL
+		if grep -q "${id}_selftest" "$id.h"; then
+			selftest=${id}_tested
+			echo "static double ${id}_tested(void) { return (double)${id}_selftest(); }"
+		fi
+		if [ "$again" != 'NULL, NULL, NULL' ]; then
+			echo "extern const int ${id}_coords[];"
+			for function in residual wanted; do
+				echo "void ${id}_$function(double t, const double *y, const double *u, const double *top, double *out);"
+			done
+		fi
+		echo "SUBJECT {\"$id\", $model, &${whole}_model, ${whole}_slopes, \"$scheme\", \"$class\", \"$(head_of "$spec" changes)\", $solution, $selftest," \
+			"$again, ${tuned:+&}${tuned:-NULL}${tuned:+_model}, \"$retune\"},"
+	} >"$id.subject"
+	printf '%s\n' "$id" >>"subjects_$cc.list"
+	printf '%s\n' "$code" | tr ' ' '\n' >>"code_$cc.list"
+	said=made
+}
+
+# objects CC FILES: each on its own where together they fail; what does not compile is left out
+compile() {
+	cc=$1
+	while read -r id; do
+		code="$(sed -n 's/^#include "\(.*\)\.h"$/\1.c/p' "$id.subject" | tr '\n' ' ')"
+		# shellcheck disable=SC2086
+		if ! $cc -std=c99 -O1 $warnings $sanitizers -I"$source/runtime" -c $code 2>"$id.cc_said"; then
+			{
+				echo "$cc: the C does not compile"
+				grep -m 3 -e 'error' "$id.cc_said"
+			} >"$id.wrong"
+			continue
+		fi
+		if [ -f "$id.again.c" ]; then
+			$cc -std=gnu11 -O1 -I"$source/tests/fuzz" -c "$id.again.made.c" -o "$id.again.o" 2>"$id.cc_said" ||
+				{ { echo "$cc: the second writing does not compile"; grep -m 3 error "$id.cc_said"; } >"$id.wrong"; continue; }
+		fi
+		echo "$id" >>"compiled_$cc.list"
+	done <"subjects_$cc.list"
+}
+
+batch_build() {
+	for cc in gcc clang; do
+		: >"compiled_$cc.list"
+		[ -s "subjects_$cc.list" ] || continue
+		compile "$cc"
+		[ -s "compiled_$cc.list" ] || continue
+		{
+			echo '#include "drive.h"'
+			while read -r id; do
+				sed '/^SUBJECT/d' "$id.subject"
+			done <"compiled_$cc.list"
+			echo 'const struct subject subjects[] = {'
+			while read -r id; do
+				sed -n 's/^SUBJECT //p' "$id.subject"
+			done <"compiled_$cc.list"
+			echo '{0}};'
+		} >"subjects_$cc.c"
+		objects=
+		while read -r id; do
+			objects="$objects $(sed -n 's/^#include "\(.*\)\.h"$/\1.o/p' "$id.subject" | tr '\n' ' ')"
+			[ -f "$id.again.c" ] && objects="$objects $id.again.o"
+		done <"compiled_$cc.list"
+		# shellcheck disable=SC2086
+		$cc -std=gnu11 -O1 -w $sanitizers -I. -I"$source/runtime" -I"$source/tests/fuzz" "subjects_$cc.c" $objects "$folder/drive_$cc.a" \
+			-lsundials_cvode -lsundials_arkode -lsundials_nvecserial -lm -o "batch_$cc" >"link_$cc.said" 2>&1 || sed 's/^/# /' "link_$cc.said" | head -n 20
+	done
+}
+
+batch_run() {
+	id=$1
+	[ -s "$id.wrong" ] && return
+	cc=$(cat "$id.cc")
+	if ! [ -x "batch_$cc" ]; then
+		echo "$cc: the program does not link" >"$id.wrong"
+		return
+	fi
+	timeout 60 "./batch_$cc" "$id" >"$id.ran" 2>"$id.err" </dev/null
+	status=$?
+	if [ $status -ne 0 ]; then
+		{
+			[ $status -le 1 ] || echo "$cc: ends with status $status: $(grep -m 2 -e ERROR -e 'runtime error' "$id.err" | tr '\n' ' ')"
+			head -n 6 "$id.ran"
+		} >"$id.wrong"
+	fi
+}

@@ -1,0 +1,783 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* drive NAME: one of the subjects, by every function that its descriptor has, against CVODE on NAME_rhs, the closed form,
+ * and the spec's second writing.  Prints what differs, both values, and ends with 1; else a line of the largest differences.
+ *
+ * Bounds, over the largest value of any state in the run (of an output: of any output, or state):
+ *     states against CVODE, rtol 1e-10   exact 1e-6; a smooth leftover 1e-4, 3e-3 and 5e-2 in order 4, 2 and 1; with kinks
+ *                                        1e-2, in order 1 5e-2
+ *     the closed form                    1e-12 per step
+ *     rhs, outputs against the second writing    1e-10, of the largest slope or output
+ *     jump, set, retune                  1e-12 per step; run, restore: to the last bit; at(0), at(h): 1e-12
+ *     selftest                           100 units in the last place
+ * In float 2e-5 per step for what is 1e-12 in double, and at least 2e-3 beside CVODE. */
+#include "drive.h"
+#include "truth.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MOST = 80, STEPS = 32, LATER = 12 };
+
+static const struct subject *of;
+static int states, inputs, outputs, complaints;
+static double h, size, out_size;        /* step; of the largest state and output in the run */
+static bool in_float;
+static double worst_truth, worst_solution;
+
+__attribute__((format(printf, 1, 2))) static void complain(const char *form, ...)
+{
+	va_list arguments;
+	if (complaints++ > 5)
+		return;
+	va_start(arguments, form);
+	printf("%s: ", of->name);
+	vprintf(form, arguments);
+	putchar('\n');
+	va_end(arguments);
+}
+
+static bool near(double found, double expected, double tolerance, const char *what, double t, const char *which)
+{
+	if (fabs(found - expected) <= tolerance)
+		return true;
+	complain("%s, t = %.17g, %s: found %.17g, expected %.17g, difference %.3g, tolerance %.3g", what, t, which, found,
+		expected, found - expected, tolerance);
+	return false;
+}
+
+/* ---- a model in double or float, seen alike ---- */
+
+static void *fresh(void)
+{
+	void *s = malloc(of->model ? of->model->size : of->modelf->size);
+	if (!s)
+		exit(3);
+	memset(s, 0x5a, of->model ? of->model->size : of->modelf->size);
+	return s;
+}
+
+static size_t bytes(void)
+{
+	return of->model ? of->model->size : of->modelf->size;
+}
+
+static void narrow(const double *from, float *to, int n)
+{
+	for (int i = 0; i < n; i++)
+		to[i] = (float)from[i];
+}
+
+static void widen(const float *from, double *to, int n)
+{
+	for (int i = 0; i < n; i++)
+		to[i] = (double)from[i];
+}
+
+static void model_init(void *s)
+{
+	if (of->model)
+		of->model->init(s);
+	else
+		of->modelf->init(s);
+}
+
+static void model_set(void *s, double t, const double *y)
+{
+	float narrowed[MOST];
+	narrow(y, narrowed, states);
+	if (of->model)
+		of->model->set(s, t, y);
+	else
+		of->modelf->set(s, (float)t, narrowed);
+}
+
+static void model_get(const void *s, double *y)
+{
+	float narrowed[MOST];
+	if (of->model) {
+		of->model->get(s, y);
+		return;
+	}
+	of->modelf->get(s, narrowed);
+	widen(narrowed, y, states);
+}
+
+static double model_time(const void *s)
+{
+	return of->model ? of->model->time(s) : (double)of->modelf->time(s);
+}
+
+static void model_step(void *s, const double *u)
+{
+	float narrowed[MOST];
+	narrow(u, narrowed, inputs);
+	if (of->model)
+		of->model->step(s, inputs ? u : NULL);
+	else
+		of->modelf->step(s, inputs ? narrowed : NULL);
+}
+
+static void model_out(const void *s, double *out)
+{
+	float narrowed[MOST];
+	if (of->model) {
+		of->model->out(s, out);
+		return;
+	}
+	of->modelf->out(s, narrowed);
+	widen(narrowed, out, outputs);
+}
+
+static bool model_at(const void *s, const double *u, double tau, double *y)
+{
+	float narrowed[MOST], found[MOST];
+	if (of->model ? !of->model->at : !of->modelf->at)
+		return false;
+	narrow(u, narrowed, inputs);
+	if (of->model) {
+		of->model->at(s, inputs ? u : NULL, tau, y);
+		return true;
+	}
+	of->modelf->at(s, inputs ? narrowed : NULL, (float)tau, found);
+	widen(found, y, states);
+	return true;
+}
+
+static const char *state_name(int i)
+{
+	return of->model ? of->model->state_names[i] : of->modelf->state_names[i];
+}
+
+static const char *output_name(int i)
+{
+	return of->model ? of->model->output_names[i] : of->modelf->output_names[i];
+}
+
+/* ---- bounds ---- */
+
+static double rounding(int steps)
+{
+	return (in_float ? 2e-5 : 1e-12) * (steps + 1);
+}
+
+static bool is(const char *text, const char *word)
+{
+	return strcmp(text, word) == 0;
+}
+
+/* Of states against CVODE */
+static double bound(void)
+{
+	const bool first = is(of->scheme, "etd1") || is(of->scheme, "pl"), second = is(of->scheme, "etdrk2");
+	double b = first ? 5e-2 : second ? 3e-3 : 1e-4;
+	if (is(of->scheme, "exact"))
+		b = 1e-6;
+	else if (!is(of->class, "smooth") && !is(of->class, "linear") && !first)
+		b = 1e-2;
+	return in_float ? fmax(b, 2e-3) : b;
+}
+
+/* ---- samples of the inputs: numbers that a float holds ---- */
+
+static double sample(int step, int which)
+{
+	return (double)((step * 37 + which * 23 + 11) % 61 - 30) / 32;
+}
+
+static void samples(int step, double *u)
+{
+	for (int i = 0; i < inputs; i++)
+		u[i] = sample(step, i);
+}
+
+/* Which inputs ramp: find_ramps asks the model. */
+static bool ramps[MOST];
+
+/* Inputs over a step as NAME_rhs takes them: at its start, then slopes. */
+static void over_step(const double *before, const double *sampled, double step, double *u)
+{
+	for (int i = 0; i < inputs; i++) {
+		u[i] = ramps[i] ? before[i] : sampled[i];
+		u[inputs + i] = ramps[i] ? (sampled[i] - before[i]) / step : 0;
+	}
+}
+
+/* ---- the truth ---- */
+
+static void slopes_of(const void *nothing, double t, const double *y, const double *u, double *dydt)
+{
+	(void)nothing;
+	of->slopes(t, y, u, dydt);
+}
+
+/* Over a step, with a stop where a load changes. */
+static bool advance(struct truth *solver, double from, double to, const double *u, double *y)
+{
+	const char *p = of->changes;
+	double now = from, moved[2 * MOST];
+	memcpy(moved, u, sizeof *u * 2 * (size_t)inputs);
+	for (;;) {
+		double next = to;
+		const char *list = p;
+		char *end;
+		for (double change = strtod(list, &end); end != list; list = end, change = strtod(list, &end))
+			if (change > now + 1e-14 && change < next)
+				next = change;
+		for (int i = 0; i < inputs; i++)
+			moved[i] = u[i] + (now - from) * u[inputs + i];
+		if (!truth_advance(solver, now, next < to ? nextafter(next, 0) : to, inputs, moved, y))
+			return false;
+		if (next >= to)
+			return true;
+		now = next;
+	}
+}
+
+static struct truth *new_truth(void)
+{
+	double scale[MOST];
+	for (int i = 0; i < of->whole->states; i++)
+		scale[i] = 1;
+	return truth_new(of->whole->states, slopes_of, NULL, CVODE_ADAMS, 1e-10, scale);
+}
+
+/* The model's states of the whole one's, where all are there; or a model with fewer says only its outputs. */
+static bool whole(void)
+{
+	bool all = of->whole->states == states;
+	for (int i = 0; i < states && all; i++)
+		all = is(state_name(i), of->whole->state_names[i]);
+	return all;
+}
+
+/* ---- the spec's second writing ---- */
+
+/* Highest derivatives, by elimination: the residual is linear in them. */
+static bool highest(double t, const double *y, const double *u, double *top)
+{
+	const int n = of->coords[0];
+	double M[MOST][MOST], r0[MOST], r[MOST];
+	memset(top, 0, sizeof *top * (size_t)n);
+	of->residual(t, y, u, top, r0);
+	for (int j = 0; j < n; j++) {
+		top[j] = 1;
+		of->residual(t, y, u, top, r);
+		top[j] = 0;
+		for (int i = 0; i < n; i++)
+			M[i][j] = r[i] - r0[i];
+	}
+	for (int j = 0; j < n; j++) {
+		int p = j;
+		for (int i = j; i < n; i++)
+			if (fabs(M[i][j]) > fabs(M[p][j]))
+				p = i;
+		if (M[p][j] == 0)
+			return false;
+		for (int k = 0; k < n; k++) {
+			const double swap = M[p][k];
+			M[p][k] = M[j][k];
+			M[j][k] = swap;
+		}
+		const double swap = r0[p];
+		r0[p] = r0[j];
+		r0[j] = swap;
+		for (int i = j + 1; i < n; i++) {
+			const double f = M[i][j] / M[j][j];
+			for (int k = j; k < n; k++)
+				M[i][k] -= f * M[j][k];
+			r0[i] -= f * r0[j];
+		}
+	}
+	for (int j = n - 1; j >= 0; j--) {
+		top[j] = -r0[j];
+		for (int k = j + 1; k < n; k++)
+			top[j] -= M[j][k] * top[k];
+		top[j] /= M[j][j];
+	}
+	return true;
+}
+
+static bool at_a_change(double t)
+{
+	char *end;
+	const char *p = of->changes;
+	for (double change = strtod(p, &end); end != p; p = end, change = strtod(p, &end))
+		if (fabs(t - change) < 1e-6)
+			return true;
+	return false;
+}
+
+static void judge_rhs(void)
+{
+	unsigned seed = 1;
+	if (!of->residual)
+		return;
+	for (int point = 0; point < 40; point++) {
+		double y[MOST], u[2 * MOST], top[MOST], found[MOST], largest = 1;
+		for (int i = 0; i < of->whole->states; i++)
+			seed = seed * 1103515245u + 12345u, y[i] = (double)(seed >> 8) / 8388608 - 1;
+		for (int i = 0; i < 2 * inputs; i++)
+			seed = seed * 1103515245u + 12345u, u[i] = i < inputs || ramps[i - inputs] ?
+				(double)(seed >> 8) / 8388608 - 1 : 0;
+		seed = seed * 1103515245u + 12345u;
+		const double t = (double)(seed >> 8) / 33554432;
+		if (at_a_change(t))
+			continue;
+		if (!highest(t, y, u, top)) {
+			complain("the second writing has a singular mass matrix");
+			return;
+		}
+		of->slopes(t, y, u, found);
+		for (int i = 0; i < of->whole->states; i++)
+			largest = fmax(largest, fabs(found[i]));
+		for (int i = 0, velocity = of->coords[0]; i < of->coords[0]; i++)
+			near(found[of->coords[i + 1] == 2 ? velocity++ : i], top[i], 1e-10 * largest, "rhs against the second writing", t,
+				of->whole->state_names[i]);
+	}
+}
+
+/* ---- a run ---- */
+
+struct row {
+	double t, y[MOST], out[MOST], truth[MOST], u[2 * MOST];
+};
+
+static struct row row[STEPS + 1];
+
+static void record(const void *s, struct row *r)
+{
+	r->t = model_time(s);
+	model_get(s, r->y);
+	model_out(s, r->out);
+}
+
+static void run_steps(void)
+{
+	void *const s = fresh();
+	double u[MOST];
+	size = out_size = 0;
+	model_init(s);
+	for (int k = 0;; k++) {
+		record(s, &row[k]);
+		for (int i = 0; i < states; i++)
+			size = fmax(size, fabs(row[k].y[i]));
+		for (int i = 0; i < outputs; i++)
+			out_size = fmax(out_size, fabs(row[k].out[i]));
+		if (!(size <= 1e30) || !(out_size <= 1e30))
+			complain("a state or an output is not finite, t = %.17g", row[k].t);
+		near(row[k].t, k * h, in_float ? 4e-7 * (k + 1) * h : 1e-13, "time", k * h, "t");
+		if (k == STEPS)
+			break;
+		samples(k, u);
+		model_step(s, u);
+	}
+	const int status = of->model ? of->model->status ? of->model->status(s) : 0
+		: of->modelf->status ? of->modelf->status(s) : 0;
+	if (status)
+		complain("status %d after %d steps", status, STEPS);
+	free(s);
+}
+
+/* Of a ramp the sample before acts: after another first sample the same second one gives other states or outputs. */
+static void find_ramps(void)
+{
+	for (int i = 0; i < inputs; i++) {
+		double u[MOST] = {0}, seen[2][2 * MOST], start[MOST];
+		void *const s = malloc(of->whole->size);
+		if (!s)
+			exit(3);
+		ramps[i] = false;
+		for (int j = 0; j < of->whole->states; j++)
+			start[j] = 0.25 + j * 0.01;
+		for (int round = 0; round < 2; round++) {       /* the same state and time, the sample before differs */
+			of->whole->init(s);
+			u[i] = round ? 1 : 0;
+			of->whole->step(s, u);
+			of->whole->set(s, 0, start);
+			u[i] = 0.5;
+			of->whole->step(s, u);
+			of->whole->get(s, seen[round]);
+			of->whole->out(s, seen[round] + of->whole->states);
+		}
+		for (int j = 0; j < of->whole->states + of->whole->outputs; j++)
+			ramps[i] = ramps[i] || seen[0][j] != seen[1][j];
+		free(s);
+	}
+}
+
+/* Steps from a state and a time on; the truth beside them.  `steps` rows; the samples are those of step `from` on. */
+static void judge_steps(void *s, int from, int steps, double step, struct row *first, const char *what)
+{
+	const bool all = whole();
+	double y[MOST], u[2 * MOST], before[MOST], sampled[MOST];
+	void *const w = malloc(of->whole->size);
+	struct truth *const solver = new_truth();
+	if (!w)
+		exit(3);
+	of->whole->init(w);
+	if (all)
+		model_get(s, y);
+	else
+		of->whole->get(w, y);
+	double t = model_time(s);
+	for (int i = 0; i < inputs; i++)
+		before[i] = from > 0 ? sample(from - 1, i) : 0;
+	for (int k = 0; k < steps; k++, t += step) {
+		double found[MOST], seen[MOST], expected[MOST], top[MOST];
+		samples(from + k, sampled);
+		over_step(before, sampled, step, u);
+		memcpy(before, sampled, sizeof before);
+		of->whole->step(w, inputs ? sampled : NULL);      /* for its samples alone: its state is set anew below */
+		if (!advance(solver, t, t + step, u, y)) {
+			complain("%s: CVODE gives up at t = %.17g", what, t);
+			break;
+		}
+		model_step(s, sampled);
+		model_get(s, found);
+		model_out(s, seen);
+		if (first)
+			memcpy(first[k + 1].truth, y, sizeof y);
+		bool good = true;
+		for (int i = 0; i < states && all; i++) {
+			good = near(found[i], y[i], bound() * size, what, t + step, state_name(i)) && good;
+			worst_truth = fmax(worst_truth, fabs(found[i] - y[i]) / size);
+		}
+		for (int i = 0; i < inputs; i++)
+			u[i] = ramps[i] ? sampled[i] : u[i];
+		if (all && of->wanted && !at_a_change(t + step) && highest(t + step, found, u, top)) {
+			of->wanted(model_time(s), found, u, top, expected);     /* at the model's own states */
+			for (int i = 0; i < outputs; i++)
+				good = near(seen[i], expected[i], (in_float ? 1e-4 : 1e-10) * fmax(out_size, size), "output of these states",
+					t + step, output_name(i)) && good;
+		} else if (!all && !at_a_change(t + step)) {
+			of->whole->set(w, t + step, y);
+			of->whole->out(w, expected);
+			for (int i = 0; i < outputs; i++)
+				good = near(seen[i], expected[i], fmax(bound(), 1e-5) * fmax(out_size, size), "output, of a model reduced",
+					t + step, output_name(i)) && good;
+		}
+		if (!good)
+			break;
+	}
+	truth_free(solver);
+	free(w);
+}
+
+static void judge_truth(void)
+{
+	void *const s = fresh();
+	model_init(s);
+	judge_steps(s, 0, STEPS, h, row, "steps against CVODE");
+	free(s);
+}
+
+static void judge_solution(void)
+{
+	FILE *const file = of->solution ? fopen(of->solution, "r") : NULL;
+	char line[1 << 14];
+	if (!file)
+		return;
+	if (!fgets(line, sizeof line, file))
+		complain("the solution has no first line");
+	for (int k = 0; k <= STEPS; k++) {
+		char *p = line;
+		if (!fgets(line, sizeof line, file)) {
+			complain("the solution has %d rows, expected %d", k, STEPS + 1);
+			break;
+		}
+		const double t = strtod(p, &p);
+		bool good = near(row[k].t, t, in_float ? 1e-6 : 1e-13, "time", t, "t");
+		for (int i = 0; i < outputs; i++) {
+			const double expected = strtod(p + 1, &p);
+			good = near(row[k].out[i], expected, rounding(k) * fmax(out_size, size), "output against the closed form", t,
+				output_name(i)) && good;
+			worst_solution = fmax(worst_solution, fabs(row[k].out[i] - expected) / fmax(out_size, size));
+		}
+		if (!good)
+			break;
+	}
+	fclose(file);
+}
+
+static bool same_bits(const double *a, const double *b, int n)
+{
+	for (int i = 0; i < n; i++)
+		if (!(a[i] == b[i]))
+			return false;
+	return true;
+}
+
+static void judge_run(void)
+{
+	void *const s = fresh();
+	double *const out = malloc(sizeof *out * (size_t)(STEPS * outputs + 1));
+	double *const u = malloc(sizeof *u * (size_t)(STEPS * inputs + 1)), y[MOST];
+	float *const outf = malloc(sizeof *outf * (size_t)(STEPS * outputs + 1));
+	float *const uf = malloc(sizeof *uf * (size_t)(STEPS * inputs + 1));
+	if (!out || !u || !outf || !uf)
+		exit(3);
+	for (int k = 0; k < STEPS; k++)
+		samples(k, u + k * inputs);
+	narrow(u, uf, STEPS * inputs);
+	for (int rows = 0; rows < 2; rows++) {
+		model_init(s);
+		if (of->model) {
+			of->model->run(s, STEPS, inputs ? u : NULL, rows ? out : NULL);
+		} else {
+			of->modelf->run(s, STEPS, inputs ? uf : NULL, rows ? outf : NULL);
+			if (rows)
+				widen(outf, out, STEPS * outputs);
+		}
+		model_get(s, y);
+		for (int i = 0; i < states; i++)
+			near(y[i], row[STEPS].y[i], 0, rows ? "run with rows" : "run", STEPS * h, state_name(i));
+		for (int k = 0; k < STEPS && rows; k++)
+			for (int i = 0; i < outputs; i++)
+				near(out[k * outputs + i], row[k + 1].out[i], 0, "run, a row", (k + 1) * h, output_name(i));
+	}
+	free(s), free(out), free(u), free(outf), free(uf);
+}
+
+/* Saved at a third of the run, and gone on with in another place. */
+static void judge_restore(void)
+{
+	void *const s = fresh(), *const saved = fresh();
+	double u[MOST], y[MOST];
+	model_init(s);
+	for (int k = 0; k < STEPS; k++) {
+		if (k == STEPS / 3) {
+			memcpy(saved, s, bytes());
+			memset(s, 0, bytes());
+			memcpy(s, saved, bytes());
+		}
+		samples(k, u);
+		model_step(s, u);
+	}
+	model_get(s, y);
+	if (!same_bits(y, row[STEPS].y, states))
+		complain("a restored state goes on otherwise: %.17g, expected %.17g", y[0], row[STEPS].y[0]);
+	free(s), free(saved);
+}
+
+static void judge_jump(void)
+{
+	static const int lengths[] = { 0, 1, 7, STEPS };
+	void *const s = fresh();
+	double y[MOST];
+	if (of->model ? !of->model->jump : !of->modelf->jump) {
+		free(s);
+		return;
+	}
+	for (int i = 0; i < 4; i++) {
+		model_init(s);
+		if (of->model)
+			of->model->jump(s, (uint64_t)lengths[i]);
+		else
+			of->modelf->jump(s, (uint64_t)lengths[i]);
+		model_get(s, y);
+		near(model_time(s), row[lengths[i]].t, in_float ? 1e-6 : 1e-14, "time after a jump", lengths[i] * h, "t");
+		for (int j = 0; j < states; j++)
+			near(y[j], row[lengths[i]].y[j], rounding(lengths[i]) * size, "jump against steps", lengths[i] * h,
+				state_name(j));
+	}
+	free(s);
+}
+
+static void judge_at(void)
+{
+	const bool plain = is(of->scheme, "exact") && *of->changes == 0 && !is(of->class, "piecewise");
+	void *const s = fresh(), *const before = fresh();
+	struct truth *solver = new_truth();
+	double u[MOST], y[MOST], now[MOST], past[MOST] = {0};
+	const bool all = whole();
+	model_init(s);
+	for (int k = 0; k < STEPS; k++) {
+		samples(k, u);
+		if (k % 5 == 2) {
+			memcpy(before, s, bytes());
+			if (!model_at(s, u, 0, y))
+				break;
+			for (int i = 0; i < states; i++)
+				near(y[i], row[k].y[i], rounding(0) * size, "at(0)", row[k].t, state_name(i));
+			model_at(s, u, of->model ? of->model->h : (double)of->modelf->h, y);
+			for (int i = 0; i < states; i++)
+				near(y[i], row[k + 1].y[i], (plain ? rounding(4) : bound()) * size, "at(h)",
+					row[k].t, state_name(i));
+			model_at(s, u, 0.375 * h, y);
+			if (memcmp(before, s, bytes()) != 0)
+				complain("at changes the state, t = %.17g", row[k].t);
+			if (all) {
+				double moved[2 * MOST];
+				over_step(past, u, h, moved);
+				memcpy(now, row[k].y, sizeof now);
+				if (advance(solver, k * h, (k + 0.375) * h, moved, now))
+					for (int i = 0; i < states; i++)
+						near(y[i], now[i], bound() * size, "at(3/8 h) against CVODE", row[k].t, state_name(i));
+				truth_free(solver);
+				solver = new_truth();
+			}
+		}
+		memcpy(past, u, sizeof past);
+		model_step(s, u);
+	}
+	truth_free(solver);
+	free(s), free(before);
+}
+
+/* At an odd time, and where it is already. */
+static void judge_set(void)
+{
+	void *const s = fresh();
+	double u[MOST], y[MOST];
+	model_init(s);
+	for (int k = 0; k < STEPS; k++) {
+		samples(k, u);
+		if (k == 9)
+			model_set(s, row[k].t, row[k].y);
+		model_step(s, u);
+	}
+	model_get(s, y);
+	const bool exact = is(of->scheme, "exact") && !is(of->class, "piecewise");
+	for (int i = 0; i < states; i++)
+		near(y[i], row[STEPS].y[i], (exact ? 4 * rounding(STEPS) : in_float ? 2e-3 : *of->changes ? bound() : 1e-7) * size,
+			"steps after set to where it is", STEPS * h, state_name(i));
+	if (!whole() || (of->model ? of->model->params : of->modelf->params) > 8) {
+		free(s);
+		return;
+	}
+	for (int k = 0; k < 3; k++) {
+		samples(k, u);
+		model_step(s, u);
+	}
+	for (int i = 0; i < states; i++)
+		y[i] = (double)((i * 29 + 7) % 41 - 20) / 64;
+	model_set(s, 0.3515625, y);
+	model_get(s, u);
+	if (!same_bits(u, y, states))
+		complain("get after set: %.17g, expected %.17g", u[0], y[0]);
+	const double kept = size;
+	size = fmax(size, 0.5);
+	judge_steps(s, 3, LATER, h, NULL, "steps after set against CVODE");
+	size = kept;
+	free(s);
+}
+
+/* ---- other params ---- */
+
+static bool retuned(void *s, const char *values, double *step)
+{
+	const int count = of->model ? of->model->params : of->modelf->params;
+	double value[MOST];
+	float narrowed[MOST];
+	*step = h;
+	for (int i = 0; i < count; i++) {
+		const char *const name = of->model ? of->model->param_names[i] : of->modelf->param_names[i];
+		value[i] = of->model ? of->model->param_values[i] : (double)of->modelf->param_values[i];
+		for (const char *p = values; (p = strstr(p, name)); p++)
+			if ((p == values || p[-1] == ' ') && p[strlen(name)] == '=')
+				value[i] = strtod(p + strlen(name) + 1, NULL);
+	}
+	const char *const p = strstr(values, "step=");
+	if (p)
+		*step = strtod(p + 5, NULL);
+	narrow(value, narrowed, count);
+	const int status = of->model ? of->model->retune(s, value, *step) : of->modelf->retune(s, narrowed, (float)*step);
+	if (status)
+		complain("retune to %s: status %d", *values ? values : "the spec's own values", status);
+	return status == 0;
+}
+
+static void judge_retune(void)
+{
+	void *const s = fresh(), *const w = of->tuned ? malloc(of->tuned->size) : NULL;
+	double y[MOST], expected[MOST], u[MOST], step, largest = 0;
+	if (of->model ? !of->model->retune : !of->modelf->retune) {
+		free(s), free(w);
+		return;
+	}
+	model_init(s);
+	if (retuned(s, "", &step)) {
+		for (int k = 0; k < STEPS; k++) {
+			samples(k, u);
+			model_step(s, u);
+		}
+		model_get(s, y);
+		for (int i = 0; i < states; i++)
+			near(y[i], row[STEPS].y[i], 10 * rounding(STEPS) * size, "retuned to the spec's own values", STEPS * h,
+				state_name(i));
+	}
+	if (w) {
+		model_init(s);
+		of->tuned->init(w);
+		model_get(s, y);
+		of->tuned->set(w, 0, y);
+		if (retuned(s, of->retune, &step))
+			for (int k = 0; k < STEPS; k++) {
+				bool good = true;
+				samples(k, u);
+				model_step(s, u);
+				of->tuned->step(w, inputs ? u : NULL);
+				model_get(s, y);
+				of->tuned->get(w, expected);
+				for (int i = 0; i < states; i++)
+					largest = fmax(largest, fabs(expected[i]));
+				for (int i = 0; i < states; i++)
+					good = near(y[i], expected[i], 10 * rounding(k) * largest, "retuned, against the spec with these values",
+						(k + 1) * step, state_name(i)) && good;
+				model_out(s, y);
+				of->tuned->out(w, expected);
+				for (int i = 0; i < outputs; i++)
+					out_size = fmax(out_size, fabs(expected[i]));
+				for (int i = 0; i < outputs; i++)
+					good = near(y[i], expected[i], 10 * rounding(k) * fmax(largest, out_size), "retuned, outputs",
+						(k + 1) * step, output_name(i)) && good;
+				if (!good)
+					break;
+			}
+	}
+	free(s), free(w);
+}
+
+int main(int argc, char **argv)
+{
+	for (of = subjects; of->name && (argc < 2 || !is(of->name, argv[1]));)
+		of++;
+	if (!of->name) {
+		fprintf(stderr, "usage: drive NAME\n");
+		return 2;
+	}
+	in_float = !of->model;
+	states = in_float ? of->modelf->states : of->model->states;
+	inputs = in_float ? of->modelf->inputs : of->model->inputs;
+	outputs = in_float ? of->modelf->outputs : of->model->outputs;
+	h = of->whole->h;
+	if (states > MOST || outputs > MOST || of->whole->states > MOST || inputs > 4) {
+		complain("%d states, %d inputs and %d outputs are too many for this program", states, inputs, outputs);
+		return 1;
+	}
+	find_ramps();
+	judge_rhs();
+	run_steps();
+	if (complaints == 0) {
+		judge_truth();
+		judge_solution();
+		judge_run();
+		judge_restore();
+		judge_jump();
+		judge_at();
+		judge_set();
+		judge_retune();
+	}
+	if (of->selftest) {
+		const double ulps = of->selftest();
+		if (!(ulps <= 100))
+			complain("selftest: %.17g units in the last place, at most 100", ulps);
+	}
+	if (complaints == 0)
+		printf("%s: %s, CVODE %.1e, closed form %.1e\n", of->name, of->scheme, worst_truth, worst_solution);
+	return complaints != 0;
+}

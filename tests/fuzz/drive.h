@@ -1,0 +1,27 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* One model that drive.c holds against other roads; grammar.sh writes a table of them. */
+#ifndef DRIVE_H
+#define DRIVE_H
+
+#include "plrt.h"
+
+struct subject {
+	const char *name;
+	const pl_model *model;      /* or */
+	const pl_modelf *modelf;    /* of one in float */
+	const pl_model *whole;      /* the same spec in double, no state left out */
+	void (*slopes)(double t, const double *y, const double *u, double *dydt);   /* NAME_rhs of `whole` */
+	const char *scheme, *class; /* class: linear, piecewise, smooth, kinked; "": unknown */
+	const char *changes;        /* times at which a load changes its formula */
+	const char *solution;       /* file of --solution, or NULL */
+	double (*selftest)(void);   /* or NULL */
+	const int *coords;          /* of the spec's second writing: NULL where there is none */
+	void (*residual)(double t, const double *y, const double *u, const double *top, double *r);
+	void (*wanted)(double t, const double *y, const double *u, const double *top, double *out);
+	const pl_model *tuned;      /* the spec with other params and step; NULL: nothing is tunable */
+	const char *retune;         /* these values: NAME=VALUE ... */
+};
+
+extern const struct subject subjects[];     /* up to one without a name */
+
+#endif

@@ -1,0 +1,102 @@
+#!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
+# grammar.sh PLGEN GRAMMAR ARCHIVE_GCC SOURCE FIRST COUNT [CORPUS]: each spec of the folder CORPUS, then the specs that
+# `grammar` makes of the seeds FIRST to FIRST+COUNT-1, as TAP: a line for each spec of the corpus, and for each block of
+# seeds.  PLGEN is built with sanitizers; what it emits is compiled with all warnings as errors and sanitizers, by gcc and
+# clang in turn, and drive.c holds it against other roads.  A spec may be refused only with a message of refusals.list.
+# With KEEP=FOLDER the specs that fail are kept there; each finding belongs into the corpus.
+set -u
+absolute() {
+	case $1 in
+		/*) echo "$1" ;;
+		*) echo "$PWD/$1" ;;
+	esac
+}
+plgen=$(absolute "$1")
+grammar=$(absolute "$2")
+folder=$(dirname "$(absolute "$3")")
+source=$(absolute "$4")
+first=$5
+count_of_seeds=$6
+corpus=${7:-}
+[ -z "$corpus" ] || corpus=$(absolute "$corpus")
+keep=${KEEP:-}
+[ -z "$keep" ] || keep=$(absolute "$keep")
+. "$source/tests/tap.sh"
+. "$source/tests/fuzz/batch.sh"
+block=25
+made=0
+refused=0
+
+# keep_it ID NAME SPEC: what went wrong, into the log; the spec, where KEEP wants it
+keep_it() {
+	{
+		echo "$2, options '$(head_of "$3" options)':"
+		cat "$1.wrong"
+	} >>log
+	[ -z "$keep" ] || cp "$3" "$keep/$2.spec"
+}
+
+# the corpus, in one batch
+if [ -n "$corpus" ]; then
+	batch_new
+	names=
+	for spec in "$corpus"/*.spec; do
+		name=$(basename "$spec" .spec)
+		names="$names $name"
+		cp "$spec" "$name.spec"
+		batch_add "c_$name" "$name.spec"
+	done
+	batch_build
+	for name in $names; do
+		: >log
+		id=c_$name
+		if [ -f "$id.cc" ]; then
+			batch_run "$id"
+			words=$(cut -d : -f 2- "$id.ran" 2>>log)
+		else
+			words=' refused, with a reason'
+		fi
+		if [ -s "$id.wrong" ]; then
+			keep_it "$id" "$name" "$name.spec"
+			result 1 "$name"
+		else
+			result 0 "$name:$words"
+		fi
+	done
+fi
+
+seed=$first
+while [ "$seed" -lt $((first + count_of_seeds)) ]; do
+	end=$((seed + block))
+	[ "$end" -gt $((first + count_of_seeds)) ] && end=$((first + count_of_seeds))
+	from=$seed
+	bad=0
+	: >log
+	rm -f s*.* ws*.* ts*.*
+	batch_new
+	while [ "$seed" -lt "$end" ]; do
+		id=s$seed
+		"$grammar" "$seed" "$id.spec" "$id.again.c" || exit 99
+		batch_add "$id" "$id.spec"
+		case $said in
+			made) made=$((made + 1)) ;;
+			refused) refused=$((refused + 1)) ;;
+		esac
+		seed=$((seed + 1))
+	done
+	batch_build
+	seed=$from
+	while [ "$seed" -lt "$end" ]; do
+		id=s$seed
+		[ -f "$id.cc" ] && batch_run "$id"
+		if [ -s "$id.wrong" ]; then
+			bad=$((bad + 1))
+			keep_it "$id" "$seed" "$id.spec"
+		fi
+		seed=$((seed + 1))
+	done
+	result "$bad" "seeds $from to $((end - 1))"
+done
+echo "# $made models made, $refused specs refused with a reason"
+tap_end
