@@ -4,13 +4,16 @@
  * is computed, so none is stepped over. */
 #include "real.h"
 
-/* SHORT: a length of s, which goes from 0 to 1 over a piece.  REST: what rounding may leave of a step, in parts of it. */
+/* SHORT: a length of s, which goes from 0 to 1 over a piece.  REST: what rounding may leave of a step, in parts of it.  SCALE: that
+ * of expressions near the end of the range. */
 #ifdef REAL_IS_FLOAT
 #define SHORT 0x1p-18f
 #define REST 5e-6f
+#define SCALE 0x1p-48f
 #else
 #define SHORT 0x1p-40
 #define REST 1e-14
+#define SCALE 0x1p-48
 #endif
 
 static real magnitude(real a)
@@ -274,20 +277,28 @@ static point point_of(const beyond *f, real s)
     return p;
 }
 
-/* g = sign (e - b) from the coefficients of e, whose terms have this size at s = 0 */
+/* g = sign (e - b) from the coefficients of e, whose terms have this size at s = 0; both are scaled by a power of 2 where the
+ * derivatives of g could overflow and g does not */
 static void look_beyond(beyond *f, const real *e, real sign, real b, real terms)
 {
+    real largest = terms;
     int k;
+    for (k = 1; k <= f->degree; k++)
+        largest = larger(largest, magnitude(e[k]));
+    if (largest > REAL_LARGE) {
+        sign *= SCALE;
+        terms *= SCALE;
+    }
     f->coefficient[0] = sign * (e[0] - b);
     f->reach = f->fourth = f->fifth = 0;
     for (k = 1; k <= f->degree; k++) {
-        const real a = magnitude(e[k]), fourths = (real)(k * (k - 1) * (k - 2) * (k - 3));
+        const real a = magnitude(sign * e[k]), fourths = (real)(k * (k - 1) * (k - 2) * (k - 3));
         f->coefficient[k] = sign * e[k];
         f->fourth += fourths * a;
         f->fifth += fourths * (real)(k - 4) * a;
         f->reach += a;
     }
-    f->noise = noise_of(terms + magnitude(b) + f->reach);
+    f->noise = noise_of(terms + magnitude(sign * b) + f->reach);
 }
 
 /* The root between a, where g < 0, and z, where g > 0; g rises all the way.  Newton's method, safeguarded by halving. */
@@ -445,12 +456,16 @@ static void follow_jumps(const pl_switching *m, const real *x, pl_contact *c, pl
 }
 
 /* Moves x on over a piece of length dt, or to the first crossing in it; splits < 0: without looking for one.  y: x at the end
- * of a whole piece, NULL for others */
+ * of a whole piece, NULL for others.  What overflows is not looked at, and x is then not finite. */
 static found move(const pl_switching *m, pl_contact *c, real dt, const real *y, int *splits, real *x, real *work)
 {
     found first = nothing;
     int i;
     expand(m, c, dt, x, work);
+    if (pl_not_finite(work, (m->degree + 1) * m->size)) {
+        sum_up(m, work, 1, x);
+        return nothing;
+    }
     if (*splits >= 0)
         first = first_crossing(m, c->region, work, splits);
     if (*splits < 0) {
@@ -492,13 +507,14 @@ void pl_switching_advance(const pl_switching *m, real tau, real *x, pl_contact *
             continue;
         }
         first = move(m, c, dt, whole ? y : NULL, &splits, x, rest);
+        if (splits < 0)
+            break; /* x is held: this region may not be the one, and may be unstable */
         left -= first.s * dt;
         if (first.expression < 0)
             continue;
-        if (list(m, c, crossing, tau - left, first.expression, first.breakpoint, first.upward))
-            enter(m, c, c->region + (first.upward ? first.stride : -first.stride));
-        else
+        if (!list(m, c, crossing, tau - left, first.expression, first.breakpoint, first.upward))
             splits = -1; /* no further search */
+        enter(m, c, c->region + (first.upward ? first.stride : -first.stride));
     }
 }
 

@@ -390,8 +390,11 @@ void pl_switching_start(const pl_switching *m, const double *x, pl_contact *c, d
  *               has left its interval by that passes its breakpoints at time 0
  *     crossing  max_events entries
  *     work      PL_SWITCHING_WORK(size, switches, degree)
- * Beyond max_events or max_splits: PL_TOO_MANY_EVENTS, and the step ends in the region where it then is; the next one
- * starts in that of x. */
+ * Beyond max_events or max_splits: PL_TOO_MANY_EVENTS.  Then a last crossing is passed but not listed; pieces that are seen to stay
+ * clear go on as ever; the first other one goes by e^{A d} of the region where x is, without looking, d = h / 2^halvings or what
+ * is left, and behind it x is held to the end of the step.  As |pole| d is about 1 or below, no mode has grown by more than about e
+ * where its region was not the true one; from there on x is off by at most how far the true motion goes.  The next step starts in
+ * the region of x.  An x that is not finite sets no bit here: ask pl_not_finite. */
 void pl_switching_step(const pl_switching *m, double *x, pl_contact *c, pl_crossing *crossing, double *work);
 
 /* The same over tau, 0 <= tau <= h. */

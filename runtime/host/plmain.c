@@ -238,11 +238,15 @@ static void check_status(const void *state)
         fail("cannot write to standard output");
     fprintf(stderr, "%s: error: t = ", model->name);
     print_shortest(stderr, model->time(state));
-    fprintf(stderr, ": ");
-    if (status == PL_NOT_FINITE)
-        fprintf(stderr, "the step has left the finite numbers\n");
-    else
-        fprintf(stderr, "status %d\n", status);
+    fprintf(stderr, ":");
+    if (status & PL_TOO_MANY_EVENTS)
+        fprintf(stderr, " the step has met more crossings, or needed a longer search for them, than its bound%s",
+                status & PL_NOT_FINITE ? ";" : "");
+    if (status & PL_NOT_FINITE)
+        fprintf(stderr, " the step has left the finite numbers");
+    if (status & ~(PL_TOO_MANY_EVENTS | PL_NOT_FINITE))
+        fprintf(stderr, " status %d", status);
+    fprintf(stderr, "\n");
     exit(1);
 }
 
