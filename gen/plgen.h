@@ -587,7 +587,7 @@ void relative_values(const struct model *model, mpq_t *written, mpq_t *kept); /*
 int  relative_place(const struct model *model, int written); /* the kept state that is a written one; -1: none is */
 
 struct expression {                 /* what is compared with breakpoints: linear in states, loads and inputs */
-	struct form *form;          /* without constant; its first factor is 1 */
+	struct form *form;          /* without constant; sign and scale as first written */
 	struct output *row;         /* the same as a row */
 	int breaks;
 	mpq_t *at;                  /* rising */

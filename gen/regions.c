@@ -45,12 +45,31 @@ int possible_regions(const struct switching *s)
 	return count;
 }
 
-static int find_expression(const struct switching *s, const struct form *form)
+/* Is form a multiple of e? of: the factor */
+static bool is_multiple(const struct form *form, const struct form *e, mpq_ptr of)
+{
+	if (form->terms != e->terms || basis_order(&form->term[0].basis, &e->term[0].basis) != 0)
+		return false;
+	mpq_div(of, form->term[0].factor, e->term[0].factor);
+	struct form *same = form_scale(e, of);
+	bool multiple = same_form(form, same);
+	form_free(same);
+	return multiple;
+}
+
+/* The expression that form, which has no constant, is a multiple of; met for the first time it is one, with the sign and scale in
+ * which it was written. The form goes to it, or is freed. */
+static int find_expression(struct switching *s, const struct node *node, struct form *form, mpq_ptr of)
 {
 	for (int i = 0; i < s->expressions; i++)
-		if (same_form(s->expression[i].form, form))
+		if (is_multiple(form, s->expression[i].form, of)) {
+			form_free(form);
 			return i;
-	return -1;
+		}
+	ENLARGE(s->expression, (size_t)s->expressions + 1);
+	s->expression[s->expressions] = (struct expression){ .form = form, .node = node };
+	mpq_set_ui(of, 1, 1);
+	return s->expressions++;
 }
 
 static void add_break(struct looking *l, struct expression *e, mpq_srcptr at)
@@ -68,19 +87,10 @@ static void add_break(struct looking *l, struct expression *e, mpq_srcptr at)
 	l->lowest = below < l->lowest ? below : l->lowest;
 }
 
-/* Is e above `at` here? What is not known yet is noted. The form goes to the expression, or is freed. */
-static bool is_above(struct looking *l, const struct node *node, struct form *form, mpq_srcptr at)
+/* Is e above `at` here? What is not known yet is noted. */
+static bool is_above(struct looking *l, int index, mpq_srcptr at)
 {
-	struct switching *s = l->s;
-	int index = find_expression(s, form);
-	if (index < 0) {
-		ENLARGE(s->expression, (size_t)s->expressions + 1);
-		index = s->expressions++;
-		s->expression[index] = (struct expression){ .form = form, .node = node };
-	} else {
-		form_free(form);
-	}
-	struct expression *e = &s->expression[index];
+	struct expression *e = &l->s->expression[index];
 	for (int i = 0; i < e->breaks; i++)
 		if (mpq_equal(e->at[i], at))
 			return !l->grown && l->interval[index] > i;
@@ -88,10 +98,13 @@ static bool is_above(struct looking *l, const struct node *node, struct form *fo
 	return false;
 }
 
-/* The sign of a linear form: of a constant its own, else by the interval of the expression that it is a multiple of */
-static int sign_here(struct looking *l, const struct node *node, const struct form *form)
+/* The sign of a - b, linear forms: of a constant its own, else by the interval of the expression that it is a multiple of. What is
+ * compared with a constant is written as it is, on whichever side it stands. */
+static int sign_here(struct looking *l, const struct node *node, const struct form *a, const struct form *b)
 {
 	struct collector *c = &l->b->collector;
+	bool turned = is_constant(a) && !is_constant(b);
+	struct form *form = turned ? form_difference(b, a) : form_difference(a, b);
 	struct form plain = { 0, form->term, 0 };
 	while (plain.terms < form->terms && form->term[plain.terms].basis.kind <= BASIS_PI)
 		plain.terms++;
@@ -100,23 +113,14 @@ static int sign_here(struct looking *l, const struct node *node, const struct fo
 	constant_value(c, &plain, constant);
 	int sign = mpq_sgn(constant);
 	if (plain.terms < form->terms) {
-		mpq_inv(factor, form->term[plain.terms].factor);
-		mpq_mul(constant, constant, factor);
+		int e = find_expression(l->s, node, form_sum(form, &plain, true), factor);
+		mpq_div(constant, constant, factor);
 		mpq_neg(constant, constant);    /* e = (form - constant)/factor against -constant/factor */
-		const struct form moving = { form->terms - plain.terms, form->term + plain.terms, 0 };
-		struct form *e = form_scale(&moving, factor);
-		sign = is_above(l, node, e, constant) == (mpq_sgn(factor) > 0) ? 1 : -1;
+		sign = is_above(l, e, constant) == (mpq_sgn(factor) > 0) ? 1 : -1;
 	}
 	mpq_clears(constant, factor, NULL);
-	return sign;
-}
-
-static int order_here(struct looking *l, const struct node *node, const struct form *a, const struct form *b)
-{
-	struct form *difference = form_difference(a, b);
-	int sign = sign_here(l, node, difference);
-	form_free(difference);
-	return sign;
+	form_free(form);
+	return turned ? -sign : sign;
 }
 
 static struct form *form_here(struct looking *l, const struct form *form);
@@ -127,7 +131,7 @@ static struct form *table_here(struct looking *l, const struct atom *a, struct f
 	mpq_t slope, width;
 	mpq_inits(slope, width, NULL);
 	for (int k = 3; k + 2 < a->operands; k += 2)
-		if (order_here(l, a->node, x[0], x[k]) > 0)
+		if (sign_here(l, a->node, x[0], x[k]) > 0)
 			piece = k;
 	struct collector *c = &l->b->collector;
 	constant_value(c, form_difference(x[piece + 3], x[piece + 1]), slope);
@@ -142,7 +146,7 @@ static struct form *extreme_here(struct looking *l, const struct atom *a, struct
 {
 	struct form *best = x[0];
 	for (int i = 1; i < a->operands; i++)
-		if ((order_here(l, a->node, x[i], best) < 0) == (a->function == FN_MIN))
+		if ((sign_here(l, a->node, best, x[i]) > 0) == (a->function == FN_MIN))
 			best = x[i];
 	return best;
 }
@@ -151,13 +155,13 @@ static struct form *call_here(struct looking *l, const struct atom *a, struct fo
 {
 	int side;
 	switch (a->function) {
-	case FN_ABS:   return sign_here(l, a->node, x[0]) < 0 ? form_difference(form_number(0), x[0]) : x[0];
-	case FN_SGN:   return form_number(sign_here(l, a->node, x[0]));
+	case FN_ABS:   return sign_here(l, a->node, x[0], form_number(0)) < 0 ? form_difference(form_number(0), x[0]) : x[0];
+	case FN_SGN:   return form_number(sign_here(l, a->node, x[0], form_number(0)));
 	case FN_MIN:
 	case FN_MAX:   return extreme_here(l, a, x);
 	case FN_TABLE: return table_here(l, a, x);
 	default:
-		side = order_here(l, a->node, x[0], x[1]) < 0 ? 1 : order_here(l, a->node, x[0], x[2]) > 0 ? 2 : 0;
+		side = sign_here(l, a->node, x[0], x[1]) < 0 ? 1 : sign_here(l, a->node, x[0], x[2]) > 0 ? 2 : 0;
 		return a->function == FN_CLIP ? x[side] : side ? form_difference(x[0], x[side]) : form_number(0);
 	}
 }
@@ -165,7 +169,7 @@ static struct form *call_here(struct looking *l, const struct atom *a, struct fo
 /* <= and < differ on the breakpoint alone, where the motion decides */
 static bool comparison_here(struct looking *l, const struct atom *a)
 {
-	int sign = order_here(l, a->node, form_here(l, a->operand[0]), form_here(l, a->operand[1]));
+	int sign = sign_here(l, a->node, form_here(l, a->operand[0]), form_here(l, a->operand[1]));
 	return a->comparison <= CMP_LE ? sign < 0 : sign > 0;
 }
 
@@ -385,20 +389,17 @@ static void mark_possible(struct switching *s)
 /* Is the form a multiple of e - at, so that it vanishes on the breakpoint? */
 static bool vanishes_on(struct collector *c, const struct form *form, const struct expression *e, mpq_srcptr at)
 {
-	mpq_srcptr factor = NULL;
+	mpq_t factor, constant;
+	mpq_inits(factor, constant, NULL);
 	for (int i = 0; i < form->terms; i++)
 		if (basis_order(&form->term[i].basis, &e->form->term[0].basis) == 0)
-			factor = form->term[i].factor;
-	if (!factor)
-		return form->terms == 0;
+			mpq_div(factor, form->term[i].factor, e->form->term[0].factor);
 	const struct form *rest = form_sum(form, form_scale(form_sum(e->form, form_constant(at), true), factor), true);
-	mpq_t constant;
-	mpq_init(constant);
 	bool gone = is_constant(rest);
 	if (gone)
 		constant_value(c, rest, constant);
 	gone = gone && mpq_sgn(constant) == 0;
-	mpq_clear(constant);
+	mpq_clears(factor, constant, NULL);
 	return gone;
 }
 

@@ -129,4 +129,25 @@ gcc -std=c99 -O2 -ffreestanding -fno-builtin -I"$root/runtime" -c "$root/runtime
 [ ! -s log ]
 result $? "crossings.c: freestanding"
 
+# ---- expressions as written; what a run that ends early says ----
+
+"$plgen" --explain "$here/bump.spec" 2>&1 | grep '^    expression' >log
+printf '    expression 0: -w + x, breakpoints 0.1, 0.2\n    expression 1: 3*y, breakpoints 3, 6, 15\n' | diff - log >>log 2>&1
+result $? 'bump: sign and scale of expressions as first written'
+
+# told SPEC T MESSAGE: plmain ends with status 1 and this message, whatever the time in it
+told() {
+    name=$(sed -n 's/^model //p' "$1")
+    "$plgen" -o told.c "$1" >log 2>&1 && gcc -std=c99 $warnings -I"$root/runtime" -DMODEL="$name" told.c "$root"/runtime/*.c \
+        "$root/runtime/host/plmain.c" -o told >>log 2>&1
+    ./told "$2" >rows 2>message
+    status=$?
+    sed 's/t = [^:]*:/t = ...:/' message >>log
+    [ $status -eq 1 ] && [ "$(cat log)" = "$name: error: t = ...: $3" ]
+    result $? "plmain of $name: $3"
+}
+printf 'model grows\ncoord x\ninit x = 0.5\nx%s - 4*x + max(x - 1, 0) = 0\nstep 0.5\nscheme exact\n' "''" >grows.spec
+told grows.spec 1000 'the step has left the finite numbers'
+told "$here/chatter.spec" 100 'the step has met more crossings, or needed a longer search for them, than its bound'
+
 tap_end
