@@ -56,11 +56,11 @@ static struct complex over(struct complex a, struct complex b)
     return (struct complex){ (a.re * b.re + a.im * b.im) / size, (a.im * b.re - a.re * b.im) / size };
 }
 
-/* e^z - 1, |z| small */
+/* e^z - 1, |z| below 13 */
 static struct complex exponential(struct complex z)
 {
     struct complex sum = { 0, 0 }, term = { 1, 0 };
-    for (int k = 1; k < 40; k++) {
+    for (int k = 1; k < 90; k++) {
         term = times(term, (struct complex){ z.re / k, z.im / k });
         sum = plus(sum, term);
     }
@@ -138,6 +138,10 @@ static struct complex eigenvalue_near(const wide c[N + 1], struct complex z)
 
 static wide step_of(const char *name)
 {
+    if (strstr(name, "turned"))
+        return (wide)1 / 4;
+    if (strstr(name, "twice"))
+        return (wide)7 / 10;
     return (wide)1 / (strstr(name, "float") ? 10000 : 100);
 }
 
