@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A free drive against the same drive in twist and mean by hand: outputs and crossings, while drive and load change */
+/* A free drive against the same drive in twist and mean by hand: outputs and crossings, while drive and load change. Each crossing makes
+ * a difference about 1.2 times as large, so that rounding in another order shows after some hundred: 229 are looked at. */
 #include "model.h"
 #include "by_hand.h"
 
@@ -14,7 +15,7 @@ int main(void)
 	double a[3], b[3], y[4], z[4], worst = 0, early = 0;
 	rig_init(&s);
 	by_hand_init(&e);
-	for (int k = 0; k < 20000; k++) {
+	for (int k = 0; k < 6000; k++) {
 		const double u[2] = { 1.2 + 2 * sin(0.05 * k), 1.1 + cos(0.03 * k) };
 		rig_at(&s, u, 0.3 * RIG_H, y);
 		by_hand_at(&e, u, 0.3 * RIG_H, z);
@@ -27,5 +28,5 @@ int main(void)
 			worst = fmax(worst, fabs(a[i] - b[i]) / size[i]);
 	}
 	printf("# %d and %d crossings; outputs off by %.3g, between steps %.3g, at most 1e-10\n", (int)rig_crossed(&s), (int)by_hand_crossed(&e), worst, early);
-	return worst <= 1e-10 && early <= 1e-10 && rig_crossed(&s) == by_hand_crossed(&e) && rig_crossed(&s) > 100 ? 0 : 1;
+	return worst <= 1e-10 && early <= 1e-10 && rig_crossed(&s) == by_hand_crossed(&e) && rig_crossed(&s) > 200 ? 0 : 1;
 }
