@@ -18,7 +18,7 @@ static bool any_factor(const struct emitter *e, const struct output *output, int
 	return false;
 }
 
-int output_row(const struct model *model, const struct output *output)
+int place_of_output(const struct model *model, const struct output *output)
 {
 	int row = model->outputs;
 	for (int k = 0; model->highest && k < model->n; k++) {
@@ -36,7 +36,7 @@ static const char *direct_term(const struct emitter *e, const struct output *out
 	const char *operand = load_operand(e, load, k);
 	if (!changes(factor, e->system->segments))
 		return scaled(round_rational(factor[0]), operand);
-	const char *text = format("%s_direct[s->segment][%d][%d]", e->name, output_row(e->model, output), column);
+	const char *text = format("%s_direct[s->segment][%d][%d]", e->name, place_of_output(e->model, output), column);
 	return operand ? format("%s * %s", text, operand) : text;
 }
 
@@ -45,13 +45,13 @@ static bool is_tuned(const struct emitter *e, const struct output *output)
 	return e->model->tuning && e->model->tuning->output[output - e->model->output] >= 0;
 }
 
-/* A row for output_row: NULL behind the last */
-static const struct output *row_of_output(const struct model *model, int row)
+/* The output of a row of that table: NULL behind the last */
+static const struct output *output_of_row(const struct model *model, int row)
 {
 	if (row < model->outputs)
 		return &model->output[row];
 	for (int k = 0; model->highest && k < model->n; k++)
-		if (model->highest[k] && output_row(model, model->highest[k]) == row)
+		if (model->highest[k] && place_of_output(model, model->highest[k]) == row)
 			return model->highest[k];
 	return NULL;
 }
@@ -62,7 +62,7 @@ static int changing_rows(const struct emitter *e)
 	const struct linear *system = e->system;
 	const struct output *output;
 	int rows = 0;
-	for (int o = 0; (output = row_of_output(e->model, o)) != NULL; o++)
+	for (int o = 0; (output = output_of_row(e->model, o)) != NULL; o++)
 		for (int l = 0; l < system->loads && !is_tuned(e, output); l++)
 			for (int k = 0; k < system->load[l].columns; k++)
 				if (changes((const mpq_t *)output->load[l] + k * system->segments, system->segments))
@@ -83,7 +83,7 @@ static void emit_direct_factors(const struct emitter *e)
 	for (int s = 0; s < system->segments; s++) {
 		fputs("  {\n", e->to);
 		for (int o = 0; o < rows; o++) {
-			const struct output *output = row_of_output(e->model, o);
+			const struct output *output = output_of_row(e->model, o);
 			const char *row = "";
 			for (int l = 0; l < system->loads; l++)
 				for (int k = 0; k < system->load[l].columns; k++)

@@ -1227,7 +1227,7 @@ void emit_node_phases(const struct emitter *e, const bool *loads); /* phases and
 int  coordinate_of_row(const struct model *model, int row);       /* whose equation it is */
 void emit_out(const struct emitter *e);
 /* A number for each output, then for each highest derivative that outputs which are not linear read */
-int output_row(const struct model *model, const struct output *output);
+int place_of_output(const struct model *model, const struct output *output);
 void emit_at(const struct emitter *e);
 void emit_jump(const struct emitter *e);
 void emit_rhs(const struct emitter *e);
