@@ -267,8 +267,7 @@ static void emit_leftover_locals(const struct emitter *e, const struct reads *r,
 
 static const char *row_name(const struct emitter *e, int channel)
 {
-	const struct model *shown = e->step->shown->model;
-	return shown->coord_name[coordinate_of_row(shown, e->model->channel_row[channel])];
+	return e->model->coord_name[coordinate_of_row(e->model, e->model->channel_row[channel])];
 }
 
 static void emit_leftover(const struct emitter *e)

@@ -224,6 +224,20 @@ static bool assign_equations(struct building *b)
 	return all == n;
 }
 
+/* Over other coordinates than the written ones: equations combined as they are, and those of velocities that stand alone */
+static void combine_residuals(const struct building *b, struct snapshot *s)
+{
+	const struct relative *relative = b->model->relative;
+	int written = b->spec->components;
+	const struct form **equation = ARRAY(const struct form *, (size_t)written);
+	for (int j = 0; j < written; j++)
+		equation[j] = s->residual[b->owner[j]].form;
+	for (int j = 0; j < written; j++)
+		s->residual[b->owner[j]].form = combined_equation(relative, j, equation);
+	for (int i = written; i < b->model->n; i++)
+		add_residual(s, relative->extra[i - written], b->model->coord[i]->at, b->model->coord[i]->at);
+}
+
 /* Forces of elements: on the first coordinate as they are, on the second reversed. */
 static void add_elements(const struct building *b, struct snapshot *s)
 {
@@ -231,8 +245,6 @@ static void add_elements(const struct building *b, struct snapshot *s)
 	int written = b->spec->components;
 	while (s->residuals < written)
 		add_residual(s, NEW(struct form), b->spec->element[0].at, b->spec->element[0].end);
-	for (int i = written; i < b->model->n; i++)
-		add_residual(s, relative->extra[i - written], b->model->coord[i]->at, b->model->coord[i]->at);
 	for (int i = 0; i < b->spec->elements; i++) {
 		const struct element *element = &b->spec->element[i];
 		struct residual *from = &s->residual[b->owner[component_of(element->from)]];
@@ -242,6 +254,8 @@ static void add_elements(const struct building *b, struct snapshot *s)
 		struct residual *to = &s->residual[b->owner[component_of(element->to)]];
 		to->form = form_sum(to->form, s->element[i], true);
 	}
+	if (relative)
+		combine_residuals(b, s);
 }
 
 /* ---- the mass matrix ---- */

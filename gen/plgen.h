@@ -579,10 +579,13 @@ struct relative {
 	int links, *sequence;       /* those of LINK_PARENT, each after the one that it is measured from */
 	struct form **form[3];      /* per derivative and written coordinate: over what is kept */
 	struct form **extra;        /* equations r' = v - ... of velocities that stand alone, after all others */
+	mpq_t *solved;              /* per written coordinate: what its equation is divided by, so that equations are combined as coordinates are; */
+	                            /* NULL: equations stay as written */
 };
 struct relative *relative_of(const struct model *model);     /* NULL: nothing moves as a whole that has parts */
 /* What is kept at a coordinate, from the written coordinates, or their velocities, that it takes */
 void relative_value(const struct relative *r, int coord, mpq_t *const *value, mpq_ptr kept);
+struct form *combined_equation(const struct relative *r, int coord, const struct form *const *equation); /* that of what is kept there */
 void relative_values(const struct model *model, mpq_t *written, mpq_t *kept); /* of all states */
 int  relative_place(const struct model *model, int written); /* the kept state that is a written one; -1: none is */
 

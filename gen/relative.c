@@ -603,6 +603,58 @@ static struct relative *relative_new(const struct model *model)
 	return r;
 }
 
+/* ---- equations, combined as coordinates are ---- */
+
+/* Where each equation has the highest derivative of one coordinate alone, what multiplies it; NULL: not so. Tunable params would have to
+ * be divided by. */
+static mpq_t *leading_factors(const struct model *model)
+{
+	int n = model->n;
+	mpq_t *factor = rationals((size_t)n);
+	for (int j = 0; j < n; j++)
+		for (int i = 0; i < n; i++) {
+			mpq_srcptr entry = (model->system.velocity[j] >= 0 ? model->system.M : model->system.C)[i * n + j];
+			if (i == model->owner[j])
+				mpq_set(factor[j], entry);
+			else if (mpq_sgn(entry) != 0)
+				return NULL;
+		}
+	for (int j = 0; j < n; j++)
+		if (mpq_sgn(factor[j]) == 0)
+			return NULL;
+	return model->tuning ? NULL : factor;
+}
+
+static struct form *divided(const struct relative *r, int coord, const struct form *const *equation, mpq_srcptr times)
+{
+	mpq_t factor;
+	mpq_init(factor);
+	mpq_div(factor, times, r->solved[coord]);
+	struct form *form = form_scale(equation[coord], factor);
+	mpq_clear(factor);
+	return form;
+}
+
+struct form *combined_equation(const struct relative *r, int coord, const struct form *const *equation)
+{
+	const struct link *link = &r->link[coord];
+	struct form *form = NEW(struct form);
+	mpq_t one;
+	if (!r->solved || link->kind == LINK_NONE || link->rate || link->velocity >= 0)
+		return (struct form *)equation[coord];
+	mpq_init(one);
+	mpq_set_ui(one, 1, 1);
+	if (link->kind == LINK_PARENT) {
+		struct form *own = divided(r, coord, equation, one), *from = divided(r, link->from, equation, link->ratio);
+		form = link->turned ? form_difference(from, own) : form_difference(own, from);
+	}
+	for (int j = 0; j < r->written->n && link->kind == LINK_CENTRE; j++)
+		if (mpq_sgn(link->weight[j]) != 0)
+			form = form_sum(form, divided(r, j, equation, link->weight[j]), false);
+	mpq_clear(one);
+	return form;
+}
+
 struct relative *relative_of(const struct model *model)
 {
 	if (model->n < 2 || model->scheme == SCHEME_PL)
@@ -651,6 +703,7 @@ struct relative *relative_of(const struct model *model)
 	name_kept(r, centres);
 	split_velocities(r);
 	write_forms(r);
+	r->solved = leading_factors(model);
 	return r;
 }
 
