@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Locals apart from the model's type: a model called s or tau has functions whose parameters and locals would hide the
- * type's name. In its C they get another name; the C of every other model stays as it is. What reads the C here knows how
- * the emitter writes: `NAME *s`, `NAME s`, `struct NAME` are the type, products have blanks on both sides. */
+/* Locals apart from the model's type: a model called s or tau has functions whose parameters and locals would hide
+ * the type's name. In its C they get another name; the C of every other model stays as it is. What reads the C here
+ * knows how the emitter writes: `NAME *s`, `NAME s`, `struct NAME` are the type, products have blanks on both sides. */
 #include "plgen.h"
 
 #include <ctype.h>
@@ -57,7 +57,8 @@ static const char *behind(const char *text, char last)
 	return text;
 }
 
-/* Behind a typedef, or the tag and the members of a struct: `text` is at the word, of that length. NULL: it is neither. */
+/* Behind a typedef, or the tag and the members of a struct: `text` is at the word, of that length. NULL: it is
+ * neither. */
 static const char *behind_type(const char *text, size_t length)
 {
 	if (is_word(text, length, "typedef"))

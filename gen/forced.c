@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What rounding does to a linear step with its loads counted, and the part of the state that is better not stepped.
  *
- * A load F cos(w t), w far above the poles, drives a velocity of size F/w, and a step that adds it up rounds to that size; what else the
- * state does may be far smaller, and so may be the places that the load reaches through others. The forced part y_p of a load, P z
- * with the load states z, solves the equations by itself: P J = A P + B, z' = J z, y' = A y + B z. Then y - y_p moves freely, and
- * nothing of the load's size is ever rounded into it; y_p is added where the state is read. Near a pole y_p is large and
- * y small: there the loads stay in the step. Which is better is decided by a bound of either over the first steps. */
+ * A load F cos(w t), w far above the poles, drives a velocity of size F/w, and a step that adds it up rounds to that
+ * size; what else the state does may be far smaller, and so may be the places that the load reaches through others.
+ * The forced part y_p of a load, P z with the load states z, solves the equations by itself: P J = A P + B, z' = J
+ * z, y' = A y + B z. Then y - y_p moves freely, and nothing of the load's size is ever rounded into it; y_p is added
+ * where the state is read. Near a pole y_p is large and y small: there the loads stay in the step. Which is better
+ * is decided by a bound of either over the first steps. */
 #include "plgen.h"
 
 #include <math.h>
@@ -47,7 +48,8 @@ static const mpq_t *shifted_inverse(const struct linear *system, const struct wa
 	return rational_inverse(size, (const mpq_t *)W, inverse, &column) ? (const mpq_t *)inverse : NULL;
 }
 
-/* P, states x columns of the load, in one segment of time: t^k from the highest k down, (A P - P J)_k = (k + 1) P_{k+1} - B_k */
+/* P, states x columns of the load, in one segment of time: t^k from the highest k down, (A P - P J)_k = (k + 1)
+ * P_{k+1} - B_k */
 static void solve_forced(const struct linear *system, int l, int segment, int m, const int *state, const mpq_t *inverse, mpq_t *P)
 {
 	const struct load *load = &system->load[l];
@@ -195,7 +197,8 @@ static bool note_course(const struct step *step, const struct series *place, con
 	return finite;
 }
 
-/* Step by step, from the spec's initial values, inputs 0; a change of formula is taken at the step after it: sizes matter here. */
+/* Step by step, from the spec's initial values, inputs 0; a change of formula is taken at the step after it: sizes
+ * matter here. */
 static bool follow(const struct step *step, const struct series *place, struct course *c)
 {
 	int size = place->size;

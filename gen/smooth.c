@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* How smooth the equations are. A function or condition that divides its argument's range decides on the sign of a form; where that form is 0
- * lies a surface. The equations are written down as they are on either side of it, everything else left open; how fast the difference of
- * the two vanishes towards the surface, as distance^p, says what they have there: a jump for p = 0, a kink for p = 1, more than that beyond, as
- * x*abs(x) at 0 with p = 2. A scheme is then of order p + 1 at most: a step across the surface errs by h^{p+1}, and crossings do not become more
+/* How smooth the equations are. A function or condition that divides its argument's range decides on the sign of a
+ * form; where that form is 0 lies a surface. The equations are written down as they are on either side of it,
+ * everything else left open; how fast the difference of the two vanishes towards the surface, as distance^p, says
+ * what they have there: a jump for p = 0, a kink for p = 1, more than that beyond, as x*abs(x) at 0 with p = 2. A
+ * scheme is then of order p + 1 at most: a step across the surface errs by h^{p+1}, and crossings do not become more
  * as h shrinks. The difference is written symbolically and measured at points of the surface, in 320 bits. */
 #include "plgen.h"
 
@@ -441,7 +442,8 @@ static void measure(struct sample *sample, struct spot *p, const struct form *fo
 	sample_form(sample, form, value);
 }
 
-/* Where g is 0 along what is moved: by a secant, which is exact where g is linear in it, else between two points of different sign. */
+/* Where g is 0 along what is moved: by a secant, which is exact where g is linear in it, else between two points of
+ * different sign. */
 static bool find_zero(struct sample *sample, struct spot *p, const struct form *g, mpfr_ptr root)
 {
 	enum { CELLS = 48 };
@@ -485,7 +487,8 @@ static long size_of(mpfr_srcptr value)
 	return mpfr_zero_p(value) || mpfr_get_exp(value) < GONE ? GONE : mpfr_get_exp(value);
 }
 
-/* From its sizes 2^-32 and 2^-64 away: 1 + p in tenths, rounded down; 0: it grows, which is a singularity and no matter of smoothness */
+/* From its sizes 2^-32 and 2^-64 away: 1 + p in tenths, rounded down; 0: it grows, which is a singularity and no
+ * matter of smoothness */
 static int order_of_sizes(long first, long second)
 {
 	if (second <= GONE)
@@ -651,7 +654,8 @@ void tell_friction(const struct node *node, const char *where)
 	      "the force jumps where %s: dry friction, which sticks and slips, is not treated", where);
 }
 
-/* A time that is no later than the start is passed by no step, and what is continuous at the end of a step may change there. */
+/* A time that is no later than the start is passed by no step, and what is continuous at the end of a step may
+ * change there. */
 static bool is_harmless_time(const struct model *model, const struct form *g, int order)
 {
 	struct form phase;

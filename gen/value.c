@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Forms as numbers at a point, in MPFR at any precision: what only looks at a model needs no exact value. Where a form is not
- * defined its number is NaN. */
+/* Forms as numbers at a point, in MPFR at any precision: what only looks at a model needs no exact value. Where a
+ * form is not defined its number is NaN. */
 #include "plgen.h"
 
 struct sample {

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Drives that turn: after a million steps the torque, which is a difference of positions, is what the load asks for to the last digits, and the
- * position is where the speed has brought it. The specs are such that both have closed forms: constant drive and load, so that in
- * the end nothing but the whole moves. Each form, double or float. */
+/* Drives that turn: after a million steps the torque, which is a difference of positions, is what the load asks for
+ * to the last digits, and the position is where the speed has brought it. The specs are such that both have closed
+ * forms: constant drive and load, so that in the end nothing but the whole moves. Each form, double or float. */
 #include "../forms/variant.h"
 #include "../emitted/tap.h"
 
