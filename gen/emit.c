@@ -847,11 +847,21 @@ const char *stepped_phi(const struct emitter *e)
 	return format(e->model->relative ? "%s_Phi_kept" : "%s_Phi", e->name);
 }
 
+/* Does a loop of the step read Phi? */
+static bool step_reads_phi(const struct emitter *e)
+{
+	const struct program *program = e->step->program;
+	bool reads = !has_leftover(e->step) && e->step->form == FORM_DIRECT;
+	for (int i = 0; i < program->actions && has_leftover(e->step); i++)
+		reads = reads || program->action[i].flow == 0;
+	return reads && program->loops;
+}
+
 /* Of the states as written; of those that are kept where a function reads it */
 static void emit_phi(const struct emitter *e)
 {
 	emit_matrix(e, e->step->shown, format("const double %s_Phi", e->name));
-	if (e->model->relative && (has_jump(e) || (e->step->program->loops && e->step->form == FORM_DIRECT && !has_leftover(e->step))))
+	if (e->model->relative && (has_jump(e) || step_reads_phi(e)))
 		emit_matrix(e, e->step, format("static const double %s", stepped_phi(e)));
 }
 

@@ -318,13 +318,14 @@ static int first_entry(int n, const mpq_t *v)
 	return j;
 }
 
-/* The sum of the vectors that lie in a component */
+/* The sum of the vectors that lie in a component; a vector may be 0: of weights that change with tunable params */
 static mpq_t *sum_in(int n, int vectors, mpq_t **vector, const int *component, int number, int *count)
 {
 	mpq_t *sum = rationals((size_t)n);
 	*count = 0;
 	for (int v = 0; v < vectors; v++) {
-		if (component[first_entry(n, (const mpq_t *)vector[v])] != number)
+		int first = first_entry(n, (const mpq_t *)vector[v]);
+		if (first == n || component[first] != number)
 			continue;
 		for (int j = 0; j < n; j++)
 			mpq_add(sum[j], sum[j], vector[v][j]);

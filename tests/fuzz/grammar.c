@@ -5,6 +5,7 @@
  *     # class: linear, piecewise (linear in each region), smooth or kinked (a leftover; kinked: a slope of it jumps)
  *     # changes: times at which a load changes its formula [s]
  *     # retune: NAME=VALUE ... step=VALUE, for models with tunable params
+ * Outputs named inner... read what is between coordinates that move as a whole: they are judged by their own size.
  * Rates stay below some 10 rad/s and steps are short, so that each scheme is close to the solution.
  *
  * The C, for NAME given by -DNAME=...:
@@ -115,6 +116,8 @@ static int params;
 static char changes[400];
 static enum { LINEAR, PIECEWISE, SMOOTH, KINKED } class;
 static bool tunable;
+static enum { GROUNDED, TURNS, TURNS_FAR } drive;  /* may it move as a whole; and has it done so: positions of 1e4, velocities of 100 */
+static char *ratio[MOST_COORDS];                /* how far each coordinate moves then */
 static char *spec_lets = "", *c_lets = "";
 static char *spec_equations = "", *c_rows = "";
 static int rows, lets;
@@ -122,6 +125,11 @@ static int rows, lets;
 static void add(char **to, const char *more)
 {
 	*to = text("%s%s", *to, more);
+}
+
+static double motion(int which)
+{
+	return ratio[which] ? strtod(ratio[which], NULL) : 0;
 }
 
 /* A component of a coordinate, -1 of a scalar, differentiated. */
@@ -388,6 +396,113 @@ static void scalar_equation(int i)
 	equation(sum, chance(75) ? force() : same("0"));
 }
 
+static void any_output(int n);
+static char *spec_outputs = "", *c_outputs = "";
+static int outputs;
+
+/* ---- drives: what may move as a whole ---- */
+
+static char *spec_inner = "", *c_inner = "";
+static int inners;
+
+/* What is between two coordinates, `order` times differentiated */
+static struct both between(int i, int p, int order)
+{
+	char *const times = text("%.10g*", motion(i) / motion(p));
+	const struct both xi = derivative(i, -1, order), xp = derivative(p, -1, order);
+	return JOIN("(@ - @@)", xi, same(motion(i) == motion(p) ? "" : times), xp);
+}
+
+/* A force of it, such as the class has them; SECOND: its first derivative is at hand too */
+static struct both shaft(int i, int p, bool second)
+{
+	const struct both d = between(i, p, 0), k = factor(1, 40), a = fixed(0.02, 0.2);
+	struct both force = JOIN("@*@", k, d);
+	const int kind = below(10);
+	if (class == PIECEWISE && kind < 6)
+		force = kind < 2 ? JOIN("@*deadzone(@, -@, @)", k, d, a, fixed(0.05, 0.3)) : kind < 3 ? JOIN2("@*max(@ - @, 0)", "@*fmax(@ - @, 0)", k, d, a)
+			: kind < 4 ? JOIN2("table(@; -1, -@; -0.1, 0; 0.2, @)", "table3(@, -1, -@, -0.1, 0, 0.2, @)", d, k, a)
+			: kind < 5 ? JOIN2("@*(@ + abs(@))", "@*(@ + fabs(@))", k, d, d) : JOIN("@*@ + @*clip(@, -@, @)", k, d, k, d, a, a);
+	if (class >= SMOOTH && kind < 5)
+		force = kind < 2 ? JOIN2("@*@ + @*@^3", "@*@ + @*pow(@, 3)", k, d, fixed(1, 20), d) : kind < 3 ? JOIN("@*sin(@)", k, d)
+			: kind < 4 ? JOIN("(@ + @*cos(@*t))*@", k, a, fixed(1, 6), d) : JOIN("@*tanh(@)", k, d);
+	if (class == KINKED && kind >= 5 && kind < 8)
+		force = kind < 7 ? JOIN2("@*@*abs(@)", "@*@*fabs(@)", k, d, d) : JOIN2("@*max(@, 0)^2", "@*pow(fmax(@, 0), 2)", k, d);
+	if (second && chance(60))
+		force = JOIN("@ + @*@", force, factor(0.05, 1), between(i, p, 1));
+	else if (chance(8))             /* an inerter, or what the other's rate drags along */
+		force = JOIN("@ + @*@", force, fixed(0.05, 0.2), between(i, p, coord[i].order < coord[p].order ? coord[i].order : coord[p].order));
+	return force;
+}
+
+static struct both drive_load(void)
+{
+	if (drive == TURNS && chance(12))
+		return force();
+	return inputs && chance(50) ? JOIN("@*@", factor(0.5, 4), sampled()) : load(2);
+}
+
+/* Coordinates that are held by each other; forces come in pairs, mostly. */
+static void drive_equations(void)
+{
+	struct both sum[MOST_COORDS];
+	bool integrates[MOST_COORDS] = { false };
+	for (int i = 0; i < coords; i++) {
+		sum[i] = JOIN("@*@", factor(0.5, 3), derivative(i, -1, coord[i].order));
+		if (coord[i].order == 1 && i > 0 && coord[i - 1].order == 2 && motion(i) == motion(i - 1) && chance(25)) {
+			sum[i] = JOIN("@ - @", derivative(i, -1, 1), derivative(i - 1, -1, 1));
+			integrates[i] = true;
+		}
+	}
+	for (int i = 1; i < coords; i++) {
+		const int p = chance(80) ? i - 1 : below(i);
+		if (chance(6) || integrates[i])
+			continue;
+		struct both f = shaft(i, p, coord[i].order == 2 && coord[p].order == 2), d = between(i, p, 0);
+		if (chance(40)) {
+			const struct both name = same(text("shaft%d", lets++));
+			if (!strstr(f.c, "top[")) {
+				add(&spec_lets, text("let %s = %s\n", name.spec, f.spec));
+				add(&c_lets, text("\tconst double %s = %s;\n\t(void)%s;\n", name.c, f.c, name.c));
+				f = name;
+			}
+		}
+		sum[i] = JOIN("@ + @", sum[i], f);
+		if (!integrates[p] && chance(92))
+			sum[p] = motion(i) == motion(p) ? JOIN("@ - (@)", sum[p], f) : JOIN("@ - @*(@)", sum[p], same(text("%.10g", motion(i) / motion(p))), f);
+		if (inners < 4 && !strstr(f.c, "top[")) {
+			const struct both seen = chance(50) ? d : f;
+			add(&spec_inner, text("output inner%d = %s\n", inners, seen.spec));
+			add(&c_inner, text("\tout[%d] = %s;\n", inners++, seen.c));
+		}
+	}
+	if (chance(12) && coord[0].order == 2)
+		sum[0] = JOIN("@ + @*@", sum[0], fixed(0.01, 0.1), derivative(0, -1, 1));
+	for (int i = 0; i < coords; i++)
+		equation(sum[i], chance(60) ? drive_load() : coord[i].order == 1 && drive == TURNS_FAR ? same(text("%g", 100 * motion(i))) : same("0"));
+}
+
+static void declare_drive(void)
+{
+	static const char *const ratios[] = { "1", "1", "3", "2", "0.5", "-1", "0.3" };
+	const bool first = chance(10), gears = chance(40);
+	coords = chance(12) && !tunable && class != PIECEWISE ? 9 + below(3) : 2 + below(3);
+	for (int i = 0; i < coords; i++) {
+		coord[i].name = text("%s%d", (const char *const[]){ "x", "th_", "w" }[below(3)], i);
+		coord[i].order = first || chance(i ? 8 : 20) ? 1 : 2;
+		ratio[i] = copy(gears ? ratios[below(7)] : "1");
+	}
+}
+
+static void write_inner(void)
+{
+	spec_outputs = spec_inner;
+	c_outputs = c_inner;
+	outputs = inners;
+	for (int n = chance(50) ? below(3) : 0; n > 0; n--)
+		any_output(n);
+}
+
 static char *matrix_text(int n, double on, double beside)
 {
 	char *all = "[";
@@ -450,9 +565,6 @@ static void sketch(int i)
 }
 
 /* ---- outputs ---- */
-
-static char *spec_outputs = "", *c_outputs = "";
-static int outputs;
 
 static void output(const char *spec, const char *c)
 {
@@ -552,8 +664,10 @@ static const char *const odd[] = { "I", "complex", "NULL", "errno", "math_errhan
 static void declare(void)
 {
 	static const char *const plain[] = { "x", "z", "theta", "w", "body", "a" };
-	const int count = 1 + below(class == LINEAR ? 4 : 3);
+	const int count = drive ? 0 : 1 + below(class == LINEAR ? 4 : 3);
 	int used = 0;
+	if (drive)
+		declare_drive();
 	for (int i = 0; i < count; i++) {
 		struct coord *x = &coord[coords++];
 		const bool far = class != PIECEWISE && !tunable && chance(10);
@@ -567,7 +681,7 @@ static void declare(void)
 		if (tunable && x->size > 2)
 			x->size = 2;
 	}
-	if (below(2)) {         /* a first order alone is rare in the field */
+	if (!drive && below(2)) {         /* a first order alone is rare in the field */
 		coord[0].order = 2;
 	}
 	for (int i = 0; i < coords; i++) {
@@ -594,14 +708,18 @@ static char *initial(void)
 	for (int i = 0; i < coords; i++)
 		for (int primes = 0; primes < coord[i].order; primes++)
 			for (int r = 0; r < (coord[i].size ? coord[i].size : 1); r++)
-				if (chance(70) && r < 3)
+				if (drive == TURNS_FAR || (chance(70) && r < 3))
 					add(&all, text("%s%s = %.3f", *all ? ", " : "init ", derivative(i, coord[i].size ? r : -1, primes).spec,
-						(below(1201) - 600) * (primes ? 0.002 : 0.001)));
+						(below(1201) - 600) * (primes ? 0.002 : 0.001) + (drive == TURNS_FAR ? motion(i) * (primes ? 100 : 1e4) : 0)));
 	return *all ? text("%s\n", all) : all;
 }
 
 static void equations(void)
 {
+	if (drive) {
+		drive_equations();
+		return;
+	}
 	for (int i = 0; i < coords; i++)
 		if (coord[i].size)
 			vector_equation(i);
@@ -671,9 +789,13 @@ int main(int argc, char **argv)
 	const int kind = below(100);
 	class = kind < 46 ? LINEAR : kind < 70 ? PIECEWISE : kind < 88 ? SMOOTH : KINKED;
 	tunable = class == LINEAR && chance(25);
+	drive = chance(50) ? GROUNDED : chance(50) ? TURNS : TURNS_FAR;
 	declare();
 	equations();
-	write_outputs();
+	if (drive && chance(80))
+		write_inner();
+	else
+		write_outputs();
 	const char *const operator = operator_statement(), *const given = options();
 	FILE *const spec = fopen(argv[2], "w"), *const c = argc > 3 ? fopen(argv[3], "w") : NULL;
 	if (!spec || (argc > 3 && !c)) {
