@@ -385,11 +385,16 @@ static struct spectrum *spectrum_new(struct poly D)
 
 struct spectrum *spectrum_of(struct poly D)
 {
-	static struct spectrum *known;
-	for (struct spectrum *s = known; s; s = s->next)
+	enum { BUCKETS = 4096 };
+	static struct spectrum *known[BUCKETS];
+	unsigned long hash = 0;
+	for (int k = 0; k < D.length; k++)
+		hash = (hash ^ mpz_get_ui(D.c[k])) * 0x9e3779b1;
+	struct spectrum **first = &known[(hash >> 16) % BUCKETS];
+	for (struct spectrum *s = *first; s; s = s->next)
 		if (poly_equal(s->D, D))
 			return s;
 	struct spectrum *spectrum = spectrum_new(D);
-	spectrum->next = known;
-	return known = spectrum;
+	spectrum->next = *first;
+	return *first = spectrum;
 }
