@@ -8,16 +8,16 @@ void rational_product(int rows, int inner, int columns, const mpq_t *A, const mp
 {
 	mpq_t product;
 	mpq_init(product);
+	for (int i = 0; i < rows * columns; i++)
+		mpq_set_ui(AB[i], 0, 1);
 	for (int i = 0; i < rows; i++)
-		for (int j = 0; j < columns; j++) {
-			mpq_set_ui(AB[i * columns + j], 0, 1);
-			for (int k = 0; k < inner; k++) {
-				if (mpq_sgn(A[i * inner + k]) == 0 || mpq_sgn(B[k * columns + j]) == 0)
+		for (int k = 0; k < inner; k++)         /* by rows: most factors of large matrices are 0 */
+			for (int j = 0; j < columns && mpq_sgn(A[i * inner + k]) != 0; j++) {
+				if (mpq_sgn(B[k * columns + j]) == 0)
 					continue;
 				mpq_mul(product, A[i * inner + k], B[k * columns + j]);
 				mpq_add(AB[i * columns + j], AB[i * columns + j], product);
 			}
-		}
 	mpq_clear(product);
 }
 
@@ -26,6 +26,8 @@ static void subtract_row(int n, mpq_t *target, const mpq_t *row, mpq_srcptr fact
 	mpq_t product;
 	mpq_init(product);
 	for (int j = 0; j < n; j++) {
+		if (mpq_sgn(row[j]) == 0)
+			continue;
 		mpq_mul(product, row[j], factor);
 		mpq_sub(target[j], target[j], product);
 	}

@@ -200,6 +200,100 @@ static void iterate(struct poly g, struct iteration *it, int bits)
 			break;
 }
 
+/* ---- clusters ---- */
+
+/* g^(j)(z)/j! for j = 0 .. last, by Horner's rule */
+static void taylor_at(struct poly g, mpc_srcptr z, int last, mpc_t *c)
+{
+	for (int j = 0; j <= last; j++)
+		mpc_set_ui(c[j], 0, MPC_RNDNN);
+	for (int k = g.length - 1; k >= 0; k--) {
+		for (int j = last; j > 0; j--) {
+			mpc_mul(c[j], c[j], z, MPC_RNDNN);
+			mpc_add(c[j], c[j], c[j - 1], MPC_RNDNN);
+		}
+		mpc_mul(c[0], c[0], z, MPC_RNDNN);
+		mpfr_add_z(mpc_realref(c[0]), mpc_realref(c[0]), g.c[k], MPFR_RNDN);
+	}
+}
+
+/* Is b within the noise that a's last bits left of an m-fold root? */
+static bool stick_together(mpc_srcptr a, mpc_srcptr b, int bits)
+{
+	mpc_t difference;
+	mpfr_t size, scale;
+	mpc_init2(difference, mpfr_get_prec(mpc_realref(a)));
+	mpfr_init2(size, 53);
+	mpfr_init2(scale, 53);
+	mpc_sub(difference, a, b, MPC_RNDNN);
+	mpc_abs(size, difference, MPFR_RNDN);
+	mpc_abs(scale, a, MPFR_RNDN);
+	mpfr_mul_2si(scale, scale, -bits / 5, MPFR_RNDN);
+	bool close = mpfr_lessequal_p(size, scale);
+	mpc_clear(difference);
+	mpfr_clear(size);
+	mpfr_clear(scale);
+	return close;
+}
+
+/* z[member[0 .. m-1]] anew: the mean of m close roots is nearly a simple root of g^(m-1), which Newton's rule finds to all bits;
+ * around it the roots have the size that the ends of sum c_j u^j, j <= m, give. The sweeps alone gain less than two bits each. */
+static void part_cluster(struct poly g, struct iteration *it, const int *member, int m, int bits)
+{
+	mpc_t mean, step, *c = ARRAY(mpc_t, (size_t)m + 1);
+	mpfr_t radius;
+	mpc_init2(mean, bits);
+	mpc_init2(step, bits);
+	mpfr_init2(radius, 53);
+	for (int j = 0; j <= m; j++)
+		mpc_init2(c[j], bits);
+	mpc_set(mean, it->z[member[0]], MPC_RNDNN);
+	for (int k = 0; k < SWEEPS / 2; k++) {
+		taylor_at(g, mean, m, c);
+		mpc_div(step, c[m - 1], c[m], MPC_RNDNN);
+		mpc_div_ui(step, step, (unsigned long)m, MPC_RNDNN);
+		if (!is_finite(step) || mpc_cmp_si(step, 0) == 0)
+			break;
+		mpc_sub(mean, mean, step, MPC_RNDNN);
+	}
+	mpc_div(step, c[0], c[m], MPC_RNDNN);
+	mpc_abs(radius, step, MPFR_RNDN);
+	mpfr_rootn_ui(radius, radius, (unsigned long)m, MPFR_RNDN);
+	for (int i = 0; i < m && mpfr_regular_p(radius) && is_finite(mean); i++) {
+		double angle = 6.283185307179586 * (i + 0.27) / m;
+		mpc_set_d_d(step, cos(angle), sin(angle), MPC_RNDNN);
+		mpc_mul_fr(step, step, radius, MPC_RNDNN);
+		mpfr_prec_round(mpc_realref(it->z[member[i]]), bits, MPFR_RNDN);
+		mpfr_prec_round(mpc_imagref(it->z[member[i]]), bits, MPFR_RNDN);
+		mpc_add(it->z[member[i]], mean, step, MPC_RNDNN);
+	}
+	for (int j = 0; j <= m; j++)
+		mpc_clear(c[j]);
+	discard(c);
+	mpc_clear(mean);
+	mpc_clear(step);
+	mpfr_clear(radius);
+}
+
+/* Before a round with more bits: roots that those so far did not part */
+static void part_clusters(struct poly g, struct iteration *it, int bits)
+{
+	int *member = ARRAY(int, (size_t)it->degree);
+	bool *done = ARRAY(bool, (size_t)it->degree);
+	for (int i = 0; i < it->degree; i++) {
+		int m = 0;
+		for (int j = i; j < it->degree && !done[i]; j++)
+			if (!done[j] && stick_together(it->z[i], it->z[j], it->bits))
+				member[m++] = j;
+		for (int k = 0; k < m; k++)
+			done[member[k]] = true;
+		if (m > 1)
+			part_cluster(g, it, member, m, bits);
+	}
+	discard(member);
+	discard(done);
+}
+
 /* ---- discs ---- */
 
 static void distance(mpfi_ptr value, const struct rectangle *a, const struct rectangle *b)
@@ -341,7 +435,11 @@ static bool refine_factor(struct spectrum *spectrum, int f, int precision)
 {
 	struct iteration *it = &spectrum->iteration[f];
 	struct factor *factor = &spectrum->factor[f];
-	for (int bits = precision + GUARD_BITS + 2 * it->degree; bits < LIMIT_ITERATION_BITS; bits += bits / 2) {
+	int wanted = precision + GUARD_BITS + 2 * it->degree;   /* never fewer than before: what they have parted would meet again */
+	bool again = false;
+	for (int bits = wanted > it->bits ? wanted : it->bits; bits < LIMIT_ITERATION_BITS; bits += bits / 2, again = true) {
+		if (again)
+			part_clusters(factor->g, it, bits);
 		iterate(factor->g, it, bits);
 		find_discs(factor->g, it);
 		if (isolated(it, factor->symmetric, precision)) {
@@ -385,11 +483,16 @@ static struct spectrum *spectrum_new(struct poly D)
 
 struct spectrum *spectrum_of(struct poly D)
 {
-	static struct spectrum *known;
-	for (struct spectrum *s = known; s; s = s->next)
+	enum { BUCKETS = 4096 };
+	static struct spectrum *known[BUCKETS];
+	unsigned long hash = 0;
+	for (int k = 0; k < D.length; k++)
+		hash = (hash ^ mpz_get_ui(D.c[k])) * 0x9e3779b1;
+	struct spectrum **first = &known[(hash >> 16) % BUCKETS];
+	for (struct spectrum *s = *first; s; s = s->next)
 		if (poly_equal(s->D, D))
 			return s;
 	struct spectrum *spectrum = spectrum_new(D);
-	spectrum->next = known;
-	return known = spectrum;
+	spectrum->next = *first;
+	return *first = spectrum;
 }

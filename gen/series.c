@@ -194,12 +194,15 @@ static void next_term(int size, const mpfr_t *A, const mpfr_t *term, mpfr_t *nex
 			if (mpfr_zero_p(A[i * size + l]))
 				continue;
 			for (int j = 0; j < size; j++) {
+				if (mpfr_zero_p(term[l * size + j]))
+					continue;
 				mpfr_mul(product, A[i * size + l], term[l * size + j], MPFR_RNDU);
 				mpfr_add(next[i * size + j], next[i * size + j], product, MPFR_RNDU);
 			}
 		}
 	for (int i = 0; i < size * size; i++)
-		mpfr_div_ui(next[i], next[i], (unsigned long)k, MPFR_RNDU);
+		if (!mpfr_zero_p(next[i]))
+			mpfr_div_ui(next[i], next[i], (unsigned long)k, MPFR_RNDU);
 	mpfr_clear(product);
 }
 

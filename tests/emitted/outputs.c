@@ -3,6 +3,7 @@
 #include "quarter_car_pl.h"
 #include "tap.h"
 #include "tuned_floor_pl.h"
+#include "two_waves_pl.h"
 
 #include <math.h>
 
@@ -74,9 +75,27 @@ static void floor_and_absorber(void)
     tell(good, "tuned_floor: millimetres and acceleration, and rhs");
 }
 
+/* Each load keeps its own factor, whatever else it is part of; k steps are k/100 s. */
+static void waves(void)
+{
+    bool good = true;
+    two_waves s;
+    two_waves_init(&s);
+    for (int k = 0; k <= STEPS; k++, two_waves_step(&s)) {
+        double y[2], out[2];
+        two_waves_get(&s, y);
+        two_waves_out(&s, out);
+        const double slow = cos(3 * (k / 100.0)), fast = cos(5 * (k / 100.0));
+        good = is(out[0], y[0] * slow, 1 + fabs(y[0]), "gated", k) && good;
+        good = is(out[1], slow + 10 * fast, 11, "sum", k) && good;
+    }
+    tell(good, "two_waves: loads with a factor each");
+}
+
 int main(void)
 {
     car();
+    waves();
     floor_and_absorber();
     return tap_end();
 }
