@@ -842,28 +842,42 @@ static void emit_matrix(const struct emitter *e, const struct step *step, const 
 	fputs("};\n", e->to);
 }
 
-const char *stepped_phi(const struct emitter *e)
+/* The table Phi, or Gamma, of the states as they are kept */
+const char *stepped_table(const struct emitter *e, const char *table)
 {
-	return format(e->model->relative ? "%s_Phi_kept" : "%s_Phi", e->name);
+	return format(e->model->relative ? "%s_%s_kept" : "%s_%s", e->name, table);
+}
+
+/* Does a step that loops read Phi? One of form delta reads Phi - I. */
+static bool loops_over_phi(const struct step *step)
+{
+	return step->program->loops && !step->model->switching && (has_leftover(step) ? step->all[0][0]->Phi != NULL : step->form == FORM_DIRECT);
 }
 
 /* Of the states as written; of those that are kept where a function reads it */
 static void emit_phi(const struct emitter *e)
 {
 	emit_matrix(e, e->step->shown, format("const double %s_Phi", e->name));
-	if (e->model->relative && (has_jump(e) || (e->step->program->loops && e->step->form == FORM_DIRECT && !has_leftover(e->step))))
-		emit_matrix(e, e->step, format("static const double %s", stepped_phi(e)));
+	if (e->model->relative && (has_jump(e) || loops_over_phi(e->step)))
+		emit_matrix(e, e->step, format("static const double %s", stepped_table(e, "Phi")));
+}
+
+static void emit_input_matrix(const struct emitter *e, const struct step *step, const char *declaration)
+{
+	const struct table *table = step->table;
+	double *value = ARRAY(double, (size_t)(table->states * table->inputs));
+	for (int i = 0; i < table->states * table->inputs; i++)
+		value[i] = table->input[i].value;
+	fprintf(e->to, "\n%s[%s_STATES][%d] = {\n", declaration, e->upper, table->inputs);
+	emit_number_rows(e, table->states, table->inputs, value, step->model->state_name);
+	fputs("};\n", e->to);
 }
 
 static void emit_gamma(const struct emitter *e)
 {
-	const struct table *table = e->step->shown->table;
-	double *value = ARRAY(double, (size_t)(table->states * table->inputs));
-	for (int i = 0; i < table->states * table->inputs; i++)
-		value[i] = table->input[i].value;
-	fprintf(e->to, "\nconst double %s_Gamma[%s_STATES][%d] = {\n", e->name, e->upper, table->inputs);
-	emit_number_rows(e, table->states, table->inputs, value, e->step->shown->model->state_name);
-	fputs("};\n", e->to);
+	emit_input_matrix(e, e->step->shown, format("const double %s_Gamma", e->name));
+	if (e->model->relative && e->step->program->loops && !e->model->switching && !has_leftover(e->step))
+		emit_input_matrix(e, e->step, format("static const double %s", stepped_table(e, "Gamma")));
 }
 
 void emit_name_list(const struct emitter *e, const char *array, int count, const char *const *name)
