@@ -842,11 +842,13 @@ static void emit_matrix(const struct emitter *e, const struct step *step, const 
 	fputs("};\n", e->to);
 }
 
-const char *stepped_phi(const struct emitter *e)
+/* The table Phi, or Gamma, of the states as they are kept */
+const char *stepped_table(const struct emitter *e, const char *table)
 {
-	return format(e->model->relative ? "%s_Phi_kept" : "%s_Phi", e->name);
+	return format(e->model->relative ? "%s_%s_kept" : "%s_%s", e->name, table);
 }
 
+/* Does a step that loops read Phi? One of form delta reads Phi - I. */
 /* Does a loop of the step read Phi? */
 static bool step_reads_phi(const struct emitter *e)
 {
@@ -854,7 +856,7 @@ static bool step_reads_phi(const struct emitter *e)
 	bool reads = !has_leftover(e->step) && e->step->form == FORM_DIRECT;
 	for (int i = 0; i < program->actions && has_leftover(e->step); i++)
 		reads = reads || program->action[i].flow == 0;
-	return reads && program->loops;
+	return reads && program->loops && !e->model->switching;
 }
 
 /* Of the states as written; of those that are kept where a function reads it */
@@ -862,18 +864,25 @@ static void emit_phi(const struct emitter *e)
 {
 	emit_matrix(e, e->step->shown, format("const double %s_Phi", e->name));
 	if (e->model->relative && (has_jump(e) || step_reads_phi(e)))
-		emit_matrix(e, e->step, format("static const double %s", stepped_phi(e)));
+		emit_matrix(e, e->step, format("static const double %s", stepped_table(e, "Phi")));
+}
+
+static void emit_input_matrix(const struct emitter *e, const struct step *step, const char *declaration)
+{
+	const struct table *table = step->table;
+	double *value = ARRAY(double, (size_t)(table->states * table->inputs));
+	for (int i = 0; i < table->states * table->inputs; i++)
+		value[i] = table->input[i].value;
+	fprintf(e->to, "\n%s[%s_STATES][%d] = {\n", declaration, e->upper, table->inputs);
+	emit_number_rows(e, table->states, table->inputs, value, step->model->state_name);
+	fputs("};\n", e->to);
 }
 
 static void emit_gamma(const struct emitter *e)
 {
-	const struct table *table = e->step->shown->table;
-	double *value = ARRAY(double, (size_t)(table->states * table->inputs));
-	for (int i = 0; i < table->states * table->inputs; i++)
-		value[i] = table->input[i].value;
-	fprintf(e->to, "\nconst double %s_Gamma[%s_STATES][%d] = {\n", e->name, e->upper, table->inputs);
-	emit_number_rows(e, table->states, table->inputs, value, e->step->shown->model->state_name);
-	fputs("};\n", e->to);
+	emit_input_matrix(e, e->step->shown, format("const double %s_Gamma", e->name));
+	if (e->model->relative && e->step->program->loops && !e->model->switching && !has_leftover(e->step))
+		emit_input_matrix(e, e->step, format("static const double %s", stepped_table(e, "Gamma")));
 }
 
 void emit_name_list(const struct emitter *e, const char *array, int count, const char *const *name)

@@ -364,7 +364,7 @@ static void emit_second_words(const struct emitter *e)
 	double *low = ARRAY(double, (size_t)n * (size_t)n);
 	for (int i = 0; i < n * n; i++)
 		low[i] = e->step->table->Phi[i].low;
-	fprintf(e->to, "\n/* %s + %s_Phi_low is the transfer matrix in two words */\n", stepped_phi(e), e->name);
+	fprintf(e->to, "\n/* %s + %s_Phi_low is the transfer matrix in two words */\n", stepped_table(e, "Phi"), e->name);
 	fprintf(e->to, "static const double %s_Phi_low[%s_STATES][%s_STATES] = {\n", e->name, e->upper, e->upper);
 	emit_number_rows(e, n, n, low, e->model->state_name);
 	fputs("};\n", e->to);
@@ -400,7 +400,7 @@ static void emit_fill_power(const struct emitter *e, int size, int entries)
 	const char *n = e->name, *N = e->upper;
 	fprintf(e->to, "    for (i = 0; i < %d; i++)\n        power[i].hi = power[i].lo = 0.0;\n", size * size);
 	fprintf(e->to, "    for (i = 0; i < %s_STATES; i++)\n        for (j = 0; j < %s_STATES; j++) {\n", N, N);
-	fprintf(e->to, "            power[%d * i + j].hi = %s[i][j];\n            power[%d * i + j].lo = %s_Phi_low[i][j];\n        }\n", size, stepped_phi(e), size, n);
+	fprintf(e->to, "            power[%d * i + j].hi = %s[i][j];\n            power[%d * i + j].lo = %s_Phi_low[i][j];\n        }\n", size, stepped_table(e, "Phi"), size, n);
 	if (entries && e->system->segments > 1)
 		fprintf(e->to, "    for (i = 0; i < %d; i++)\n        if (%s_power_entry[i].segment == s->segment)\n"
 			       "            power[%d * %s_power_entry[i].row + %s_power_entry[i].column] = %s_power_entry[i].value;\n", entries, n, size, n, n, n);
