@@ -507,7 +507,7 @@ void emit_locals(const struct emitter *e, const bool *reads)
 	for (int i = 0; i < e->system->states; i++)
 		any = any || reads[i];
 	if (e->step->forced && any)
-		fprintf(e->to, "    double now[%s_STATES];\n    %s_get(s, now);\n", e->upper, e->name);
+		fprintf(e->to, "    double now[%s_STATES];\n    %s_%s(s, now);\n", e->upper, e->name, e->model->relative ? "kept" : "get");
 	write_locals(e, reads, "const double", e->step->forced ? "now" : "s->y", true);
 }
 
@@ -789,10 +789,19 @@ static void emit_access(const struct emitter *e)
 		fprintf(to, "\nvoid %s_set(%s *s, double t, const double y[%s_STATES])\n{\n    double x[%s_STATES];\n    %s_keep(y, x);\n    %s_begin(s, t, y, x);\n}\n",
 			n, n, N, N, n, n);
 	}
-	fprintf(to, "\nvoid %s_get(const %s *s, double y[%s_STATES])\n{\n    int i;\n", n, n, N);
+	bool apart = e->model->relative && e->step->forced; /* outputs read it too */
+	if (apart) {
+		fprintf(to, "\n/* The states as they are kept, their forced part added */\nstatic void %s_kept(const %s *s, double x[%s_STATES])\n{\n    int i;\n", n, n, N);
+		emit_load_state(e, "x");
+		fputs("}\n", to);
+	}
+	fprintf(to, "\nvoid %s_get(const %s *s, double y[%s_STATES])\n{\n%s", n, n, N, apart ? "" : "    int i;\n");
 	if (e->model->relative)
 		fprintf(to, "    double x[%s_STATES];\n", N);
-	emit_load_state(e, e->model->relative ? "x" : "y");
+	if (apart)
+		fprintf(to, "    %s_kept(s, x);\n", n);
+	else
+		emit_load_state(e, kept);
 	if (e->model->relative)
 		fprintf(to, "    %s_written(s, x, y);\n", n);
 	fputs("}\n", to);
@@ -848,7 +857,7 @@ const char *stepped_table(const struct emitter *e, const char *table)
 	return format(e->model->relative ? "%s_%s_kept" : "%s_%s", e->name, table);
 }
 
-/* Does a step that loops read Phi? One of form delta reads Phi - I. */
+
 /* Does a loop of the step read Phi? */
 static bool step_reads_phi(const struct emitter *e)
 {

@@ -201,8 +201,9 @@ void emit_out(const struct emitter *e)
 		fprintf(to, "    %s_get(s, out);\n}\n", e->name);
 		return;
 	}
+	const int coords = speaker(model)->n;
 	struct output_needs needs = { ARRAY(bool, (size_t)e->system->states), ARRAY(bool, (size_t)e->system->loads),
-				      ARRAY(bool, 2 * (size_t)e->system->inputs), ARRAY(bool, (size_t)speaker(model)->n), false, false };
+				      ARRAY(bool, 2 * (size_t)e->system->inputs), ARRAY(bool, (size_t)coords), false, false };
 	const struct form **form = ARRAY(const struct form *, (size_t)model->outputs + 1);
 	int forms = 0;
 	for (int i = 0; i < model->outputs; i++) {
@@ -217,7 +218,7 @@ void emit_out(const struct emitter *e)
 	emit_load_states(e, needs.loads, needs.time);
 	if (needs.left)
 		fprintf(to, "    double left[%d];\n    %s\n", model->channels, leftover_of_outputs(e));
-	for (int k = 0; k < speaker(model)->n; k++)
+	for (int k = 0; k < coords; k++)
 		if (needs.highest[k])
 			fprintf(to, "    const double accel%d = %s;  /* %s%.*s */\n", k + 1, linear_output(e, model->highest[k]), model->coord_name[k],
 				model->coord[k]->highest, "''");
