@@ -57,8 +57,12 @@ static bool bareiss(int n, int width, mpz_t *W, mpz_ptr det)
 				continue;
 			mpz_set(keep, W[i * width + k]);
 			for (int j = width > n ? 0 : k; j < width; j++) {
+				bool taken = mpz_sgn(keep) != 0 && mpz_sgn(W[k * width + j]) != 0;
+				if (!taken && mpz_sgn(W[i * width + j]) == 0)
+					continue;               /* chains: most of the way most cells are 0 */
 				mpz_mul(W[i * width + j], W[i * width + j], W[k * width + k]);
-				mpz_submul(W[i * width + j], keep, W[k * width + j]);
+				if (taken)
+					mpz_submul(W[i * width + j], keep, W[k * width + j]);
 				mpz_divexact(W[i * width + j], W[i * width + j], previous);
 			}
 		}

@@ -543,10 +543,43 @@ static void every_response_holds_its_truth(void **state)
 	mpq_clears(tau, scale, NULL);
 }
 
+/* -1 and -1 - 2^-3322: first at few bits, then at more, both stay apart. */
+static void a_close_pair_is_parted(void **state)
+{
+	enum { APART = 3322 };
+	struct poly D = poly_new(3);
+	mpq_t root[2];
+	(void)state;
+	mpz_setbit(D.c[2], APART);
+	mpz_mul_2exp(D.c[1], D.c[2], 1);
+	mpz_add_ui(D.c[1], D.c[1], 1);
+	mpz_add_ui(D.c[0], D.c[2], 1);
+	mpq_inits(root[0], root[1], NULL);
+	mpq_set_si(root[0], -1, 1);
+	mpz_neg(mpq_numref(root[1]), D.c[0]);
+	mpz_set(mpq_denref(root[1]), D.c[2]);
+	struct spectrum *s = spectrum_of(D);
+	for (int precision = 64; precision <= 256; precision *= 2) {
+		assert_true(spectrum_refine(s, precision));
+		assert_int_equal(s->factors, 1);
+		assert_int_equal(s->poles[0], 2);
+		for (int r = 0; r < 2; r++) {
+			int holds = 0;
+			for (int i = 0; i < 2; i++)
+				holds += mpfi_is_inside_q(root[r], s->pole[0][i].at.re) > 0;
+			if (holds != 1)
+				print_message("at %d bits %d discs hold root %d\n", precision, holds, r);
+			assert_int_equal(holds, 1);
+		}
+	}
+	mpq_clears(root[0], root[1], NULL);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(a_disc_alone_holds_one_root),
+		cmocka_unit_test(a_close_pair_is_parted),
 		cmocka_unit_test(every_pole_holds_its_root),
 		cmocka_unit_test(every_rectangle_holds_its_truth),
 		cmocka_unit_test(every_response_holds_its_truth),
