@@ -387,7 +387,10 @@ static struct form *form_on_side(struct side *s, const struct form *form)
 		bool changes = a && atom_touches(s, a);
 		if (changes && !s->known[a->index])
 			s->known[a->index] = atom_on_side(s, a);
-		total = form_sum(total, changes ? form_scale(s->known[a->index], term->factor) : form_single(term->basis, term->factor), false);
+		if (changes)
+			form_add_to(total, s->known[a->index], term->factor);
+		else
+			form_add_basis(total, term->basis, term->factor);
 	}
 	return total;
 }
