@@ -605,7 +605,7 @@ static struct relative *relative_new(const struct model *model)
 
 struct relative *relative_of(const struct model *model)
 {
-	if (model->n < 2 || model->scheme == SCHEME_PL)
+	if (model->n < 2)
 		return NULL;
 	struct look l = look_at_equations(model);
 	struct echelon both = l.place;
