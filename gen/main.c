@@ -514,13 +514,50 @@ static int fail(void)
 	return 1;
 }
 
+/* The coordinate from which all of its group are measured */
+static int root_of(const struct relative *r, int coord)
+{
+	while (r->link[coord].kind == LINK_PARENT)
+		coord = r->link[coord].from;
+	return coord;
+}
+
+/* Positions that a reduced model keeps as they are written, though they may move as a whole */
+static void warn_of_kept(const struct model *model)
+{
+	const struct relative *r = relative_of(model->written);
+	for (int i = 0; r && i < model->written->n; i++) {
+		const char *names = model->written->coord_name[i];
+		int count = 1;
+		for (int j = i + 1; j < model->written->n; j++)
+			if (model->place[i] >= 0 && model->place[j] >= 0 && root_of(r, i) == root_of(r, j)) {
+				names = format("%s, %s", names, model->written->coord_name[j]);
+				count++;
+			}
+		if (count > 1) {
+			say_warning(model->spec->name_at, "without --reduce differences are states of their own",
+				    "the reduced model keeps %s, which may move as a whole: where they grow, their differences lose digits", names);
+			return;
+		}
+	}
+}
+
 /* The model over coordinates that part what moves as a whole from what moves in it, where there are such; else itself */
 static struct model *over_relative(struct model *model, struct spec *spec, const struct overrides *overrides)
 {
 	struct overrides again = *overrides;
-	again.relative = model->written == model && !model->irreducible ? relative_of(model) : NULL;
+	if (model->written != model) {
+		warn_of_kept(model);
+		return model;
+	}
+	again.relative = model->irreducible ? NULL : relative_of(model);
 	if (!again.relative)
 		return model;
+	if (model->scheme == SCHEME_PL) {
+		say_warning(model->scheme_at.source ? model->scheme_at : spec->name_at, "any other scheme steps differences as states of their own",
+			    "pl keeps coordinates as they are written, and some may move as a whole: where they grow, their differences lose digits");
+		return model;
+	}
 	struct model *relative = model_build(spec, &again);
 	return relative && find_tuning(relative, &again) ? relative : NULL;
 }

@@ -658,7 +658,7 @@ struct form *combined_equation(const struct relative *r, int coord, const struct
 
 struct relative *relative_of(const struct model *model)
 {
-	if (model->n < 2 || model->scheme == SCHEME_PL)
+	if (model->n < 2)
 		return NULL;
 	struct look l = look_at_equations(model);
 	struct echelon both = l.place;
