@@ -518,11 +518,15 @@ static int fail(void)
 static struct model *over_relative(struct model *model, struct spec *spec, const struct overrides *overrides)
 {
 	struct overrides again = *overrides;
-	again.relative = model->written == model && !model->irreducible ? relative_of(model) : NULL;
+	again.relative = model->written == model ? relative_of(model) : NULL;
 	if (!again.relative)
 		return model;
+	again.reduce = again.reduce && !model->irreducible;
 	struct model *relative = model_build(spec, &again);
-	return relative && find_tuning(relative, &again) ? relative : NULL;
+	if (!relative || !find_tuning(relative, &again))
+		return NULL;
+	relative->irreducible = model->irreducible;
+	return relative;
 }
 
 static int compile(int argc, char **argv)

@@ -456,8 +456,8 @@ static void judge_steps(void *s, int from, int steps, double step, struct row *f
 		}
 		for (int i = 0; i < inputs; i++)
 			u[i] = ramps[i] ? sampled[i] : u[i];
-		if (all && of->wanted && !at_a_change(t + step) && highest(t + step, found, u, top)) {
-			of->wanted(model_time(s), found, u, top, expected);     /* at the model's own states */
+		if (all && of->wanted && !at_a_change(t + step) && !(in_float && size > 1e3) && highest(t + step, found, u, top)) {
+			of->wanted(model_time(s), found, u, top, expected);     /* at the model's own states: of large ones a float tells no differences */
 			for (int i = 0; i < outputs; i++)
 				good = near(seen[i], expected[i], (in_float ? 1e-4 : 1e-10) * fmax(out_size, size), "output of these states",
 					t + step, output_name(i)) && good;
