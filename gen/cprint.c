@@ -189,7 +189,8 @@ void mark_used(const struct node *node, bool *math)
 		*math = true;
 	if (node->kind == NODE_POWER && !(small_exponent(node->child[1]) && is_plain(node->child[0])))
 		*math = true;
-	for (int i = 0; i < node->children; i++)
+	const int read = node->kind == NODE_CALL && node->function == FN_TABLE ? 1 : node->children;  /* the points are printed as numbers */
+	for (int i = 0; i < read; i++)
 		mark_used(node->child[i], math);
 }
 

@@ -595,7 +595,7 @@ void emit_state_forced(const struct emitter *e, const char *vector, const char *
 		fprintf(e->to, "%ss->carry[%d] = 0.0;\n", indent, i);
 }
 
-/* A vector of states from s->y */
+/* A vector of states from s->y; what rounds off in z + f counts, so that it is what was set */
 void emit_load_state(const struct emitter *e, const char *vector)
 {
 	if (e->step->forced)
@@ -603,8 +603,10 @@ void emit_load_state(const struct emitter *e, const char *vector)
 	emit_kept_state(e, vector);
 	if (!e->step->forced)
 		return;
-	fprintf(e->to, "    %s_forced(s, now);\n    for (i = 0; i < %s_STATES; i++)\n        %s[i] = (%s[i] + now[i]) + ", e->name, e->upper, vector, vector);
-	fputs(e->step->program->compensated ? "s->rest[i];\n" : "(s->k == 0 ? s->rest[i] : 0.0);\n", e->to);
+	fprintf(e->to, "    %s_forced(s, now);\n    for (i = 0; i < %s_STATES; i++) {\n", e->name, e->upper);
+	fprintf(e->to, "        const double z = %s[i], sum = z + now[i], back = sum - z;\n", vector);
+	fprintf(e->to, "        %s[i] = sum + (((z - (sum - back)) + (now[i] - back)) + %s);\n    }\n", vector,
+		e->step->program->compensated ? "s->rest[i]" : "(s->k == 0 ? s->rest[i] : 0.0)");
 }
 
 void emit_kept_state(const struct emitter *e, const char *vector)

@@ -550,7 +550,7 @@ static struct model *over_relative(struct model *model, struct spec *spec, const
 		warn_of_kept(model);
 		return model;
 	}
-	again.relative = model->irreducible ? NULL : relative_of(model);
+	again.relative = relative_of(model);
 	if (!again.relative)
 		return model;
 	if (model->scheme == SCHEME_PL) {
@@ -558,8 +558,12 @@ static struct model *over_relative(struct model *model, struct spec *spec, const
 			    "pl keeps coordinates as they are written, and some may move as a whole: where they grow, their differences lose digits");
 		return model;
 	}
+	again.reduce = again.reduce && !model->irreducible;
 	struct model *relative = model_build(spec, &again);
-	return relative && find_tuning(relative, &again) ? relative : NULL;
+	if (!relative || !find_tuning(relative, &again))
+		return NULL;
+	relative->irreducible = model->irreducible;
+	return relative;
 }
 
 static int compile(int argc, char **argv)

@@ -340,11 +340,19 @@ static void scale(int n, mpq_t *v, mpq_srcptr divisor)
 		mpq_div(v[j], v[j], divisor);
 }
 
-/* The motion of a component: what no velocity feels either, if there is such; else the only one that no force feels. */
+/* The motion of a component: what no velocity feels either, if there is such; else the only one of several coordinates that no force feels. */
 static mpq_t *motion_in(int n, int places, mpq_t **place, int rates, mpq_t **rate, const int *component, int number)
 {
-	int count;
-	mpq_t *motion = sum_in(n, rates, rate, component, number, &count);
+	int count, several = 0;
+	mpq_t *motion = sum_in(n, rates, rate, component, number, &count), **shared = ARRAY(mpq_t *, (size_t)n);
+	if (support(n, (const mpq_t *)motion) > 1)
+		return motion;
+	for (int v = 0; v < places; v++)
+		if (support(n, (const mpq_t *)place[v]) > 1)
+			shared[several++] = place[v];
+	mpq_t *other = sum_in(n, several, shared, component, number, &several);
+	if (several == 1)
+		return other;
 	if (count)
 		return motion;
 	motion = sum_in(n, places, place, component, number, &count);

@@ -8,7 +8,8 @@
  *     the closed form                    1e-12 per step; of an output named inner... over its own largest value, or 1
  *     rhs, outputs against the second writing    1e-10, of the largest slope or output
  *     jump, set, retune                  1e-12 per step; run, restore: to the last bit; at(0), at(h): 1e-12
- *     selftest                           100 units in the last place
+ *     selftest                           100 units in the last place; 1000 at velocities that damping wears down slowly from 100,
+ *                                        where all steps round alike
  * In float 2e-5 per step for what is 1e-12 in double, and at least 2e-3 beside CVODE. */
 #include "drive.h"
 #include "truth.h"
@@ -456,8 +457,8 @@ static void judge_steps(void *s, int from, int steps, double step, struct row *f
 		}
 		for (int i = 0; i < inputs; i++)
 			u[i] = ramps[i] ? sampled[i] : u[i];
-		if (all && of->wanted && !at_a_change(t + step) && highest(t + step, found, u, top)) {
-			of->wanted(model_time(s), found, u, top, expected);     /* at the model's own states */
+		if (all && of->wanted && !at_a_change(t + step) && !(in_float && size > 1e3) && highest(t + step, found, u, top)) {
+			of->wanted(model_time(s), found, u, top, expected);     /* at the model's own states: of large ones a float tells no differences */
 			for (int i = 0; i < outputs; i++)
 				good = near(seen[i], expected[i], (in_float ? 1e-4 : 1e-10) * fmax(out_size, size), "output of these states",
 					t + step, output_name(i)) && good;
@@ -787,8 +788,9 @@ int main(int argc, char **argv)
 	}
 	if (of->selftest) {
 		const double ulps = of->selftest();
-		if (!(ulps <= 100))
-			complain("selftest: %.17g units in the last place, at most 100", ulps);
+		const double most = size > 1e3 ? 1000 : 100;
+		if (!(ulps <= most))
+			complain("selftest: %.17g units in the last place, at most %g", ulps, most);
 	}
 	if (complaints == 0)
 		printf("%s: %s, CVODE %.1e, closed form %.1e\n", of->name, of->scheme, worst_truth, worst_solution);

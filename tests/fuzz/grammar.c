@@ -283,7 +283,7 @@ static struct both regional(int depth)
 	case 5: return JOIN("(@ > @ ? @*(@ - @) : 0)", e, a, k, e, a);
 	case 6: return velocity(&v) ? JOIN("(@ > 0 ? @*@ : @*@)", v, fixed(0.1, 2), v, fixed(0.1, 2), v) : JOIN2("@*abs(@)", "@*fabs(@)", k, e);
 	case 7: return JOIN2("table(@; -1, @; -0.1, 0; 0.2, @)", "table3(@, -1, @, -0.1, 0, 0.2, @)", e, fixed(-3, -1), fixed(1, 3));
-	case 8: return JOIN2("@*sgn(@)", "@*sgn(@)", fixed(0.05, 0.5), position());
+	case 8: return JOIN2("@*sgn(@ - @)", "@*sgn(@ - @)", fixed(0.05, 0.5), position(), fixed(0.001, 0.002));    /* nothing rests there */
 	case 9: return depth > 0 ? JOIN("(@ - @)", regional(depth - 1), regional(0)) : JOIN("deadzone(@, -@, @)", e, a, a);
 	case 10: return JOIN2("deadzone(max(@, 0), @, @)", "deadzone(fmax(@, 0), @, @)", e, fixed(0.01, 0.1), fixed(0.11, 0.3));
 	default: return JOIN2("@*max(@, @)", "@*fmax(@, @)", k, e, position());
@@ -416,7 +416,7 @@ static struct both between(int i, int p, int order)
 /* A force of it, such as the class has them; SECOND: its first derivative is at hand too */
 static struct both shaft(int i, int p, bool second)
 {
-	const struct both d = between(i, p, 0), k = factor(1, 40), a = fixed(0.02, 0.2);
+	const struct both d = between(i, p, 0), k = factor(1, class == LINEAR ? 40 : 12), a = fixed(0.02, 0.2);
 	struct both force = JOIN("@*@", k, d);
 	const int kind = below(10);
 	if (class == PIECEWISE && kind < 6)
@@ -424,7 +424,7 @@ static struct both shaft(int i, int p, bool second)
 			: kind < 4 ? JOIN2("table(@; -1, -@; -0.1, 0; 0.2, @)", "table3(@, -1, -@, -0.1, 0, 0.2, @)", d, k, a)
 			: kind < 5 ? JOIN2("@*(@ + abs(@))", "@*(@ + fabs(@))", k, d, d) : JOIN("@*@ + @*clip(@, -@, @)", k, d, k, d, a, a);
 	if (class >= SMOOTH && kind < 5)
-		force = kind < 2 ? JOIN2("@*@ + @*@^3", "@*@ + @*pow(@, 3)", k, d, fixed(1, 20), d) : kind < 3 ? JOIN("@*sin(@)", k, d)
+		force = kind < 2 ? JOIN2("@*@ + @*@^3", "@*@ + @*pow(@, 3)", k, d, fixed(1, 5), d) : kind < 3 ? JOIN("@*sin(@)", k, d)
 			: kind < 4 ? JOIN("(@ + @*cos(@*t))*@", k, a, fixed(1, 6), d) : JOIN("@*tanh(@)", k, d);
 	if (class == KINKED && kind >= 5 && kind < 8)
 		force = kind < 7 ? JOIN2("@*@*abs(@)", "@*@*fabs(@)", k, d, d) : JOIN2("@*max(@, 0)^2", "@*pow(fmax(@, 0), 2)", k, d);
@@ -448,7 +448,7 @@ static void drive_equations(void)
 	struct both sum[MOST_COORDS];
 	bool integrates[MOST_COORDS] = { false };
 	for (int i = 0; i < coords; i++) {
-		sum[i] = JOIN("@*@", factor(0.5, 3), derivative(i, -1, coord[i].order));
+		sum[i] = JOIN("@*@", coord[i].order == 1 && class != LINEAR ? factor(3, 6) : factor(0.5, 3), derivative(i, -1, coord[i].order));
 		if (coord[i].order == 1 && i > 0 && coord[i - 1].order == 2 && motion(i) == motion(i - 1) && chance(25)) {
 			sum[i] = JOIN("@ - @", derivative(i, -1, 1), derivative(i - 1, -1, 1));
 			integrates[i] = true;
@@ -484,13 +484,13 @@ static void drive_equations(void)
 
 static void declare_drive(void)
 {
-	static const char *const ratios[] = { "1", "1", "3", "2", "0.5", "-1", "0.3" };
+	static const char *const ratios[] = { "1", "2", "-1", "3", "0.5", "0.3", "1" };
 	const bool first = chance(10), gears = chance(40);
 	coords = chance(12) && !tunable && class != PIECEWISE ? 9 + below(3) : 2 + below(3);
 	for (int i = 0; i < coords; i++) {
 		coord[i].name = text("%s%d", (const char *const[]){ "x", "th_", "w" }[below(3)], i);
 		coord[i].order = first || chance(i ? 8 : 20) ? 1 : 2;
-		ratio[i] = copy(gears ? ratios[below(7)] : "1");
+		ratio[i] = copy(gears ? ratios[below(class == LINEAR ? 7 : 3)] : "1")     /* a gear stiffens by its ratio squared */;
 	}
 }
 
@@ -636,9 +636,9 @@ static char *options(void)
 	char *all = "";
 	if (chance(20))
 		add(&all, " --real float");
-	if (class >= SMOOTH ? chance(70) : chance(12))
-		add(&all, text(" --scheme %s", chance(6) ? "pl" : of_all()));
-	else if (chance(8))
+	if (class >= SMOOTH ? chance(70) : !drive && chance(12))
+		add(&all, text(" --scheme %s", !drive && chance(6) ? "pl" : of_all()));
+	else if (!drive && chance(8))
 		add(&all, chance(70) ? " --scheme exact" : " --scheme pl");
 	if (class == LINEAR ? chance(30) : chance(2))
 		add(&all, text(" --form %s", (const char *const[]){ "direct", "delta", "kick-drift-kick", "auto" }[below(4)]));
@@ -710,7 +710,7 @@ static char *initial(void)
 			for (int r = 0; r < (coord[i].size ? coord[i].size : 1); r++)
 				if (drive == TURNS_FAR || (chance(70) && r < 3))
 					add(&all, text("%s%s = %.3f", *all ? ", " : "init ", derivative(i, coord[i].size ? r : -1, primes).spec,
-						(below(1201) - 600) * (primes ? 0.002 : 0.001) + (drive == TURNS_FAR ? motion(i) * (primes ? 100 : 1e4) : 0)));
+						(below(1201) - 600) * (primes ? 0.002 : drive && class != LINEAR ? 0.0003 : 0.001) + (drive == TURNS_FAR ? motion(i) * (primes ? 100 : 1e4) : 0)));
 	return *all ? text("%s\n", all) : all;
 }
 
