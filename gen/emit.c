@@ -867,15 +867,27 @@ static void emit_phi(const struct emitter *e)
 		emit_matrix(e, e->step, format("static const double %s", stepped_phi(e)));
 }
 
-static void emit_gamma(const struct emitter *e)
+static void emit_input_matrix(const struct emitter *e, const struct step *step, const char *declaration)
 {
-	const struct table *table = e->step->shown->table;
+	const struct table *table = step->table;
 	double *value = ARRAY(double, (size_t)(table->states * table->inputs));
 	for (int i = 0; i < table->states * table->inputs; i++)
 		value[i] = table->input[i].value;
-	fprintf(e->to, "\nconst double %s_Gamma[%s_STATES][%d] = {\n", e->name, e->upper, table->inputs);
-	emit_number_rows(e, table->states, table->inputs, value, e->step->shown->model->state_name);
+	fprintf(e->to, "\n%s[%s_STATES][%d] = {\n", declaration, e->upper, table->inputs);
+	emit_number_rows(e, table->states, table->inputs, value, step->model->state_name);
 	fputs("};\n", e->to);
+}
+
+const char *stepped_gamma(const struct emitter *e)
+{
+	return format(e->model->relative ? "%s_Gamma_kept" : "%s_Gamma", e->name);
+}
+
+static void emit_gamma(const struct emitter *e)
+{
+	emit_input_matrix(e, e->step->shown, format("const double %s_Gamma", e->name));
+	if (e->model->relative && e->step->program->loops && !has_leftover(e->step))
+		emit_input_matrix(e, e->step, format("static const double %s", stepped_gamma(e)));
 }
 
 void emit_name_list(const struct emitter *e, const char *array, int count, const char *const *name)

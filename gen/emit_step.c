@@ -193,7 +193,7 @@ static void emit_looped_step(const struct emitter *e)
 	fprintf(to, "    for (i = 0; i < %s_STATES; i++) {\n        y[i] = 0.0;\n        for (j = 0; j < %s_STATES; j++)\n", N, N);
 	fprintf(to, "            y[i] += %s[i][j] * s->y[j];\n    }\n", e->step->form == FORM_DELTA ? format("%s_increment", n) : stepped_phi(e));
 	emit_columns(e, format("%s_load_factor[%s]", n, e->system->segments > 1 ? "s->segment" : "0"), "load", OPERAND_LOAD, table->columns);
-	emit_columns(e, format("%s_Gamma", n), "input", OPERAND_INPUT, table->inputs);
+	emit_columns(e, stepped_gamma(e), "input", OPERAND_INPUT, table->inputs);
 	fprintf(to, "    for (i = 0; i < %s_STATES; i++)\n        s->y[i] %s y[i];\n", N, e->step->form == FORM_DELTA ? "+=" : "=");
 	emit_take_back(e);
 }

@@ -1161,6 +1161,7 @@ void emit_code(FILE *to, const struct step *step, const char *options, const cha
 const char *tree(int terms, const char *const *term, int indent); /* a balanced sum */
 const struct model *speaker(const struct model *model);            /* over whose coordinates its forms are */
 const char *stepped_phi(const struct emitter *e);                  /* the table Phi of the states as they are kept */
+const char *stepped_gamma(const struct emitter *e);                /* the same of what the inputs add */
 double finite_number(const struct emitter *e, mpq_srcptr q);       /* rounded; an error at the step where it overflows */
 const char *scaled(double factor, const char *operand);           /* operand NULL: 1 */
 void emit_number_rows(const struct emitter *e, int rows, int columns, const double *value, const char *const *row_note);
