@@ -414,7 +414,14 @@ static bool make_group(const struct model *model, const mpq_t *motion, mpq_t *we
 		g->weight = weight;
 	}
 	mpq_clears(sum, product, NULL);
-	return (support(n, motion) > 1 || g->weight) && !fixed_in_part(model, g);
+	if (support(n, motion) <= 1 && !g->weight)
+		return false;
+	if (!fixed_in_part(model, g))
+		return true;
+	if (model->operators > 0 && model->scheme != SCHEME_PL)
+		say_warning(model->spec->operator_at, "fix all of them, or none", "the operator fixes some of the coordinates that may move as a whole: they are kept as "
+			    "written, and where they grow their differences lose digits");
+	return false;
 }
 
 /* ---- the tree ---- */
