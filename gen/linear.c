@@ -21,7 +21,7 @@ void rational_product(int rows, int inner, int columns, const mpq_t *A, const mp
 	mpq_clear(product);
 }
 
-static void subtract_row(int n, mpq_t *target, const mpq_t *row, mpq_srcptr factor)
+void rational_subtract_row(int n, mpq_t *target, const mpq_t *row, mpq_srcptr factor)
 {
 	mpq_t product;
 	mpq_init(product);
@@ -63,7 +63,7 @@ bool rational_inverse(int n, const mpq_t *A, mpq_t *inverse, int *column)
 		for (int i = 0; i < n; i++) {
 			mpq_set(pivot, W[i * width + k]);
 			if (i != k && mpq_sgn(pivot) != 0)
-				subtract_row(width, W + i * width, (const mpq_t *)W + k * width, pivot);
+				rational_subtract_row(width, W + i * width, (const mpq_t *)W + k * width, pivot);
 		}
 	}
 	for (int i = 0; i < n; i++)

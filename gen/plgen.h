@@ -754,6 +754,7 @@ struct model *model_reduce(struct model *model);             /* itself where not
 /* ---- linear.c: rational matrices, and linear systems over them ---- */
 
 bool rational_inverse(int n, const mpq_t *A, mpq_t *inverse, int *column); /* false: singular, *column free */
+void rational_subtract_row(int n, mpq_t *target, const mpq_t *row, mpq_srcptr factor); /* target - factor row */
 void rational_product(int rows, int inner, int columns, const mpq_t *A, const mpq_t *B, mpq_t *AB);
 struct linear linear_like(const struct linear *shape);      /* the same coordinates and states, matrices 0, no loads */
 struct linear first_order_system(int n, const mpq_t *A);    /* x' = A x */

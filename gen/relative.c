@@ -1,13 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Coordinates in which what may move as a whole is parted from what moves in it. A drive that turns, a train that rolls: positions grow
- * without bound while forces depend on their differences only, and a difference of two large numbers has lost its digits. So
- * where the equations do not change when coordinates are moved by n, the step keeps x_k - (n_k/n_p) x_p of each coordinate and
- * its neighbour in a tree, beside one coordinate that alone is moved. Where a sum of the equations is free of states, u, that
- * one is the centre X = sum w_j x_j, w = u W with W what multiplies the highest derivatives: only loads and inputs act on it, and nothing
- * that rounds inside changes its velocity. Otherwise it is a coordinate as written.
+/* Coordinates in which what may move as a whole is parted from what moves in it. A drive that turns, a train that
+ * rolls: positions grow without bound while forces depend on their differences only, and a difference of two large
+ * numbers has lost its digits. So where the equations do not change when coordinates are moved by n, the step keeps
+ * x_k - (n_k/n_p) x_p of each coordinate and its neighbour in a tree, beside one coordinate that alone is moved.
+ * Where a sum of the equations is free of states, u, that one is the centre X = sum w_j x_j, w = u W with W what
+ * multiplies the highest derivatives: only loads and inputs act on it, and nothing that rounds inside changes its
+ * velocity. Otherwise it is a coordinate as written.
  *
- * The model is built a second time over these coordinates, so that regions, leftovers, Jacobians and tunable params are derived in
- * them from the start; where the user looks, states are the written ones. */
+ * The model is built a second time over these coordinates, so that regions, leftovers, Jacobians and tunable params
+ * are derived in them from the start; where the user looks, states are the written ones. */
 #include "plgen.h"
 
 #include <string.h>
@@ -25,19 +26,6 @@ static struct echelon echelon_new(int width)
 	return (struct echelon){ width, 0, ARRAY(mpq_t *, (size_t)width), ARRAY(int, (size_t)width) };
 }
 
-static void subtract(int width, mpq_t *target, const mpq_t *row, mpq_srcptr factor)
-{
-	mpq_t product;
-	mpq_init(product);
-	for (int j = 0; j < width; j++) {
-		if (mpq_sgn(row[j]) == 0)
-			continue;
-		mpq_mul(product, row[j], factor);
-		mpq_sub(target[j], target[j], product);
-	}
-	mpq_clear(product);
-}
-
 /* `row` is used up. */
 static void add_row(struct echelon *e, mpq_t *row)
 {
@@ -47,7 +35,7 @@ static void add_row(struct echelon *e, mpq_t *row)
 	for (int r = 0; r < e->rank; r++) {
 		mpq_set(factor, row[e->pivot[r]]);
 		if (mpq_sgn(factor) != 0)
-			subtract(e->width, row, (const mpq_t *)e->row[r], factor);
+			rational_subtract_row(e->width, row, (const mpq_t *)e->row[r], factor);
 	}
 	while (pivot < e->width && mpq_sgn(row[pivot]) == 0)
 		pivot++;
@@ -58,7 +46,7 @@ static void add_row(struct echelon *e, mpq_t *row)
 		for (int r = 0; r < e->rank; r++) {
 			mpq_set(factor, e->row[r][pivot]);
 			if (mpq_sgn(factor) != 0)
-				subtract(e->width, e->row[r], (const mpq_t *)row, factor);
+				rational_subtract_row(e->width, e->row[r], (const mpq_t *)row, factor);
 		}
 		e->row[e->rank] = row;
 		e->pivot[e->rank++] = pivot;
@@ -340,7 +328,8 @@ static void scale(int n, mpq_t *v, mpq_srcptr divisor)
 		mpq_div(v[j], v[j], divisor);
 }
 
-/* The motion of a component: what no velocity feels either, if there is such; else the only one of several coordinates that no force feels. */
+/* The motion of a component: what no velocity feels either, if there is such; else the only one of several
+ * coordinates that no force feels. */
 static mpq_t *motion_in(int n, int places, mpq_t **place, int rates, mpq_t **rate, const int *component, int number)
 {
 	int count, several = 0;
@@ -457,7 +446,8 @@ static void grow_tree(struct relative *r, const struct look *l, const struct gro
 	}
 }
 
-/* x_root = X + sum of shift[k] times what is kept at k, from X = sum of weight[j] x_j and x_j = (n_j/n_root) x_root + d_j */
+/* x_root = X + sum of shift[k] times what is kept at k, from X = sum of weight[j] x_j and x_j = (n_j/n_root) x_root
+ * + d_j */
 static void place_root(struct relative *r, const struct group *g, int first)
 {
 	int n = g->n;
@@ -502,7 +492,8 @@ static void name_kept(struct relative *r, int centres)
 	}
 }
 
-/* x' of a first-order coordinate over constants and coordinates of first order that stay as written; NULL: it is not so simple */
+/* x' of a first-order coordinate over constants and coordinates of first order that stay as written; NULL: it is not
+ * so simple */
 static struct form *rate_of(const struct relative *r, int coord)
 {
 	const struct model *model = r->written;
@@ -587,7 +578,8 @@ static void write_forms(struct relative *r)
 			r->extra[r->link[j].velocity - n] = rate_equation(r, j);
 }
 
-/* Velocities of coordinates that are measured from one without: relative to its rate where that is simple, else they stand alone */
+/* Velocities of coordinates that are measured from one without: relative to its rate where that is simple, else they
+ * stand alone */
 static void split_velocities(struct relative *r)
 {
 	const struct model *model = r->written;
@@ -621,8 +613,8 @@ static struct relative *relative_new(const struct model *model)
 
 /* ---- equations, combined as coordinates are ---- */
 
-/* Where each equation has the highest derivative of one coordinate alone, what multiplies it; NULL: not so. Tunable params would have to
- * be divided by. */
+/* Where each equation has the highest derivative of one coordinate alone, what multiplies it; NULL: not so. Tunable
+ * params would have to be divided by. */
 static mpq_t *leading_factors(const struct model *model)
 {
 	int n = model->n;
