@@ -13,7 +13,6 @@ static void mark_blocks(struct judge *j)
     const struct linear *system = j->system;
     const int n = system->n;
     j->block = ARRAY(int, (size_t)n);
-    j->movable = ARRAY(bool, (size_t)n);
     for (int i = 0; i < n; i++)
         j->block[i] = i;
     for (int pass = 0; pass < n; pass++)
@@ -25,33 +24,6 @@ static void mark_blocks(struct judge *j)
                         (mpq_sgn(system->M[q]) || mpq_sgn(system->C[q]) || mpq_sgn(system->K[q])) && j->block[a] < j->block[b])
                         j->block[b] = j->block[a];
                 }
-}
-
-/* A displacement of a whole block of at least two coordinates, all with a velocity, meets no force. */
-static void mark_movable(struct judge *j)
-{
-    const struct linear *system = j->system;
-    const int n = system->n;
-    mpq_t sum;
-    mpq_init(sum);
-    for (int a = 0; a < n; a++) {
-        int members = 0;
-        bool movable = !system->heldK;
-        for (int b = 0; b < n; b++)
-            if (j->block[b] == j->block[a]) {
-                members++;
-                movable = movable && system->velocity[b] >= 0;
-            }
-        for (int e = 0; e < n; e++) {
-            mpq_set_ui(sum, 0, 1);
-            for (int b = 0; b < n; b++)
-                if (j->block[b] == j->block[a])
-                    mpq_add(sum, sum, system->K[e * n + b]);
-            movable = movable && mpq_sgn(sum) == 0;
-        }
-        j->movable[a] = movable && members > 1;
-    }
-    mpq_clear(sum);
 }
 
 static bool is_undamped(const struct linear *system)
@@ -182,80 +154,6 @@ static bool *reach_of(const struct flow *f)
             for (int c = 0; c < n; c++)
                 reach[i * n + c] = reach[i * n + c] || (reach[i * n + k] && reach[k * n + c]);
     return reach;
-}
-
-/* ---- sums of velocities that nothing changes ---- */
-
-/* Rows of the accelerations of a block, one below the other, each beside a row of the unit matrix: eliminated, a row of zeros on the left
- * says which sum of them is 0.  Zeros are looked for in the states' columns first: that sum has to be the only one. */
-static void mark_kept(struct judge *j)
-{
-    const struct linear *system = j->system;
-    const int n = system->n;
-    j->kept = ARRAY(bool, (size_t)j->states);
-    for (int first = 0; first < n; first++) {
-        int member[64], members = 0, sums = 0, rank = 0;
-        bool second_order = !system->heldK, still = true;
-        for (int c = 0; c < n; c++)
-            if (j->block[c] == j->block[first]) {
-                member[members++] = c;
-                second_order = second_order && system->velocity[c] >= 0;
-            }
-        if (member[0] != first || members < 2 || !second_order || j->states > LIMIT_UNROLLED_STATES)
-            continue;
-        struct flow f = flow_of(j, 0);
-        const int width = f.size + members;
-        mpq_t *row = rationals((size_t)(members * width)), factor;
-        mpq_init(factor);
-        for (int r = 0; r < members; r++) {
-            for (int c = 0; c < f.size; c++)
-                mpq_set(row[r * width + c], f.A[system->velocity[member[r]] * f.size + c]);
-            mpq_set_ui(row[r * width + f.size + r], 1, 1);
-        }
-        for (int c = 0; c < j->states && rank < members; c++) {
-            int pivot = rank;
-            while (pivot < members && mpq_sgn(row[pivot * width + c]) == 0)
-                pivot++;
-            if (pivot == members)
-                continue;
-            for (int k = 0; k < width; k++)
-                mpq_swap(row[pivot * width + k], row[rank * width + k]);
-            for (int r = rank + 1; r < members; r++) {
-                mpq_div(factor, row[r * width + c], row[rank * width + c]);
-                mpq_neg(factor, factor);
-                add_row(width, row + r * width, factor, row + rank * width);
-            }
-            rank++;
-        }
-        sums = members - rank;
-        mpq_t *sum = row + (members - 1) * width;
-        for (int segment = 0; segment < system->segments && sums == 1; segment++) {
-            struct flow at = flow_of(j, segment);       /* what acts from outside: loads, inputs */
-            for (int c = j->states; c < f.size; c++) {
-                mpq_set_ui(factor, 0, 1);
-                for (int r = 0; r < members; r++) {
-                    mpq_t product;
-                    mpq_init(product);
-                    mpq_mul(product, sum[f.size + r], at.A[system->velocity[member[r]] * f.size + c]);
-                    mpq_add(factor, factor, product);
-                    mpq_clear(product);
-                }
-                still = still && mpq_sgn(factor) == 0;
-            }
-        }
-        int heaviest = 0, parts = mpq_sgn(sum[f.size]) != 0;
-        for (int r = 1; r < members; r++) {
-            parts += mpq_sgn(sum[f.size + r]) != 0;
-            mpq_abs(factor, sum[f.size + r]);
-            mpq_t most;
-            mpq_init(most);
-            mpq_abs(most, sum[f.size + heaviest]);
-            heaviest = mpq_cmp(factor, most) > 0 ? r : heaviest;
-            mpq_clear(most);
-        }
-        j->kept[system->velocity[member[heaviest]]] = sums == 1 && still && parts > 1;    /* one alone is stepped */
-        mpq_clear(factor);
-    }
 }
 
 /* ---- numbers ---- */
@@ -441,8 +339,6 @@ struct judge *judge_of(const struct linear *system, mpq_srcptr h)
         j->inputs += 1 + system->input[u].first_order;
     j->columns = j->states + j->loads + j->inputs;
     mark_blocks(j);
-    mark_movable(j);
-    mark_kept(j);
     j->step = numbers(system->segments * j->states * j->columns);
     j->increment = numbers(j->states * j->states);
     for (int s = 0; s < system->segments; s++)

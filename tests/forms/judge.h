@@ -17,8 +17,6 @@ struct judge {
     int states, loads, inputs, columns;     /* columns = states + loads + inputs */
     bool undamped;                          /* kick-drift-kick may be asked for */
     int *block;                             /* per coordinate */
-    bool *movable;                          /* per coordinate: its block has rows of stiffness that sum to 0 */
-    bool *kept;                             /* per state: in its place stands a sum of velocities that nothing changes */
     struct judged *step;                    /* [segment][states x columns] */
     struct judged *increment;               /* states x states */
     struct judged *drift, *kick;            /* coordinates x coordinates, where undamped */

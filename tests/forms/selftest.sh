@@ -16,8 +16,7 @@ printf '#include "plrt.h"\n#include <stdio.h>\nREAL subject_selftest(void);\nint
 
 # value FILE TYPE: what its self-test returns
 value() {
-	"$compiler" -O1 -I"$root/runtime" -DREAL="$2" "$1" main.c turns.o growth.o series.o power.o until.o turnsf.o growthf.o seriesf.o powerf.o untilf.o \
-		-o program >log 2>&1 && ./program
+	"$compiler" -O1 -I"$root/runtime" -DREAL="$2" "$1" main.c ./*.o -o program >log 2>&1 && ./program
 }
 
 # constants FILE: those of its step, each once, from 1e-5 on: what is smaller adds less than rounding to a step of float
