@@ -252,17 +252,33 @@ static const char *diagnostics(void)
     return text;
 }
 
+static struct spec *spec_of(const char *text)
+{
+    struct source *source = NEW(struct source);
+    *source = (struct source){ .name = "spec", .base = "spec", .text = text, .length = strlen(text) };
+    return parse_spec(source);
+}
+
+/* The spec, tunable params and all, and the coordinates that its target keeps, whatever they are */
+static char whole[1 << 14];
+static const struct relative *kept;
+
+static void find_kept(void)
+{
+    struct overrides *overrides = NEW(struct overrides);
+    struct model *model = model_build(spec_of(format("%s", whole)), overrides);
+    kept = model && find_tuning(model, overrides) ? relative_of(model) : NULL;
+}
+
 /* p NULL: the spec's values and step */
 static const struct step *generator(const struct tuned *m, const char *text, const real *p, real h)
 {
     struct overrides *overrides = NEW(struct overrides);
-    struct source *source = NEW(struct source);
-    *overrides = (struct overrides){ .form = m->direct ? FORM_DIRECT : FORM_DELTA, .single = BITS == 24, .step = p ? exact(h) : NULL };
+    *overrides = (struct overrides){ .relative = kept, .form = m->direct ? FORM_DIRECT : FORM_DELTA, .single = BITS == 24, .step = p ? exact(h) : NULL };
     overrides->definition = ARRAY(const char *, (size_t)m->model->params);
     for (int k = 0; k < m->model->params && p; k++)
         overrides->definition[overrides->definitions++] = format("%s=%s", m->model->param_names[k], exact(p[k]));
-    *source = (struct source){ .name = "spec", .base = "spec", .text = text, .length = strlen(text) };
-    struct spec *spec = parse_spec(source);
+    struct spec *spec = spec_of(text);
     struct model *model = spec ? model_build(spec, overrides) : NULL;
     return model ? step_build(model) : NULL;
 }
@@ -555,15 +571,19 @@ static char *text_of(const char *path)
     static char text[1 << 14];
     char line[1 << 10];
     FILE *f = fopen(path, "r");
-    text[0] = 0;
+    text[0] = whole[0] = 0;
     if (!f) {
         printf("Bail out! cannot read %s\n", path);
         exit(1);
     }
-    while (fgets(line, sizeof line, f))
+    while (fgets(line, sizeof line, f)) {
+        if (strlen(whole) + strlen(line) < sizeof whole)
+            strcat(whole, line);
         if (strncmp(line, "tunable", 7) != 0 && strlen(text) + strlen(line) < sizeof text)
             strcat(text, line);
+    }
     fclose(f);
+    find_kept();
     return text;
 }
 
