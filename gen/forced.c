@@ -527,7 +527,7 @@ bool is_forced(const struct step *step, int column)
 const char *rounding_text(const struct step *step)
 {
 	const struct rounding *r = &step->rounding;
-	return format("In the first %d steps%s, loads counted, rounding takes at most %.2g of the largest value of a state (%s)%s", r->steps,
-		      step->system.inputs ? " with inputs 0" : "", r->relative, step->model->state_name[r->state],
+	return format("In the first %d steps%s, loads counted, rounding takes at most %.2g of the largest value of a %sstate (%s)%s", r->steps,
+		      step->system.inputs ? " with inputs 0" : "", r->relative, step->model->relative ? "kept " : "", step->model->state_name[r->state],
 		      r->tiny ? format("; some are too small for %s", target_name()) : "");
 }

@@ -94,6 +94,7 @@ cat >loose.spec <<-END
 	a'' + 0.1*(a' - b') + (a - b) = t^4*cos(900*t)
 	b'' + 0.1*(b' - a') + (b - a) + 2*(b - c) = -t^4*cos(900*t)
 	c'' + 2*(c - b) = 0
+	output r = a - b, q = b - c, r_rate = a' - b', q_rate = b' - c', centre = (a + b + c)/3, centre_rate = (a' + b' + c')/3
 	step 0.01
 END
 add loose
