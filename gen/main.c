@@ -631,17 +631,18 @@ static int compile(int argc, char **argv)
  * nothing until they are used. */
 enum { STACK_SIZE = 96 << 20 };
 
-struct command { int argc; char **argv; };
+struct command { int argc; char **argv; int status; };
 
 static void *work(void *context)
 {
-	const struct command *command = context;
-	exit(compile(command->argc, command->argv));
+	struct command *command = context;
+	command->status = compile(command->argc, command->argv);
+	return NULL;
 }
 
 int main(int argc, char **argv)
 {
-	struct command command = { argc, argv };
+	struct command command = { argc, argv, 1 };
 	pthread_attr_t attributes;
 	pthread_t thread;
 #ifdef M_ARENA_MAX
@@ -653,5 +654,5 @@ int main(int argc, char **argv)
 		return 1;
 	}
 	pthread_join(thread, NULL);
-	return 1;
+	return command.status;
 }
