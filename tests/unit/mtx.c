@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* gen/mtx.c: what it reads, exactly, and what it says about files that are wrong. */
+/* gen/read/mtx.c: what it reads, exactly, and what it says about files that are wrong. */
 #include <stdarg.h>
 #include <stddef.h>
 #include <setjmp.h>
