@@ -2,7 +2,7 @@
 /* plgen: the command line, then the pipeline as one column of calls. Text is written to memory and published only when
  * all went well. */
 #define _GNU_SOURCE     /* getopt_long, open_memstream, realpath */
-#include "plgen.h"
+#include "emit/emit.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -570,6 +570,7 @@ static int compile(int argc, char **argv)
 {
 	struct options options = { 0 };
 	memory_open();
+	memory_on_limit(give_up);
 	atexit(finish);
 	read_options(argc, argv, &options);
 

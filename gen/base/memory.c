@@ -3,7 +3,7 @@
  * generator's own structures do not, so no stage needs to know who else still looks at them. What is held is counted, as
  * are the terms that were made: two budgets, looked at where the generator itself asks for memory, never inside GMP. They
  * are counts, so that a spec is within them on every machine or on none. */
-#include "plgen.h"
+#include "base/base.h"
 
 #include <stdarg.h>
 #include <stdlib.h>
@@ -92,13 +92,26 @@ void memory_close(void)
 	ring.ring.before = ring.ring.after = &ring;
 }
 
+static void stop(const char *message)
+{
+	fprintf(stderr, "plgen: error: %s\n", message);
+	exit(1);
+}
+
+static void (*spent)(const char *message) = stop;
+
+void memory_on_limit(void (*tell)(const char *message))
+{
+	spent = tell;
+}
+
 /* Before `size` more are asked for */
 static void check_bytes(size_t size)
 {
 	if (over || (held <= LIMIT_BYTES && size <= LIMIT_BYTES - held))
 		return;
 	over = true;
-	give_up(format("this takes more memory than the limit of %d bytes", LIMIT_BYTES));
+	spent(format("this takes more memory than the limit of %d bytes", LIMIT_BYTES));
 }
 
 void spend_terms(size_t count)
@@ -107,7 +120,7 @@ void spend_terms(size_t count)
 	if (terms <= LIMIT_TERMS || over)
 		return;
 	over = true;
-	give_up(format("multiplied out, this takes more terms than the limit of %d", LIMIT_TERMS));
+	spent(format("multiplied out, this takes more terms than the limit of %d", LIMIT_TERMS));
 }
 
 void *allocate(size_t count, size_t size)

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* One line on a terminal for what takes longer than a second; silent elsewhere. Nothing that is generated depends on it. */
 #define _POSIX_C_SOURCE 200809L
-#include "plgen.h"
+#include "base/base.h"
 
 #include <time.h>
 #include <unistd.h>

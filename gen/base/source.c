@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Texts, places in them, and what is said about a place. */
-#include "plgen.h"
+#include "base/base.h"
 
 #include <errno.h>
 #include <setjmp.h>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What is not linear, as atoms: expressions over forms, each made once. A form may then hold atoms beside coordinates and
  * loads, so that linear terms are found, and leftovers shared, wherever they stand. */
-#include "plgen.h"
+#include "collect/collect.h"
 
 #include <string.h>
 
@@ -47,16 +47,6 @@ static size_t form_hash(const struct form *form)
 	return (hash >> 20) % BUCKETS;
 }
 
-bool same_form(const struct form *a, const struct form *b)
-{
-	if (a->terms != b->terms)
-		return false;
-	for (int i = 0; i < a->terms; i++)
-		if (basis_order(&a->term[i].basis, &b->term[i].basis) != 0 || !mpq_equal(a->term[i].factor, b->term[i].factor))
-			return false;
-	return true;
-}
-
 static const struct shared *share(struct collector *c, const struct form *form)
 {
 	struct shared **link = &c->atoms->form[form_hash(form)];
@@ -69,11 +59,6 @@ static const struct shared *share(struct collector *c, const struct form *form)
 }
 
 /* ---- atoms ---- */
-
-bool is_velocity(const struct model *model, const struct basis *basis)
-{
-	return basis->atom ? basis->atom->velocity : basis->kind == BASIS_COORD && (basis->order > 0 || model->coord[basis->index]->highest == 1);
-}
 
 /* What of two bases moves more readily: a coordinate, then an input */
 const struct basis *moved_basis(const struct basis *known, const struct basis *basis)
@@ -89,7 +74,7 @@ static void add_dependence(const struct collector *c, struct atom *atom, const s
 		atom->time = atom->time || basis->kind == BASIS_WAVE || (basis->atom && basis->atom->time);
 		atom->input = atom->input || basis->kind == BASIS_INPUT || (basis->atom && basis->atom->input);
 		atom->state = atom->state || basis->kind == BASIS_COORD || (basis->atom && basis->atom->state);
-		atom->velocity = atom->velocity || is_velocity(c->model, basis);
+		atom->velocity = atom->velocity || is_velocity(c->frame, basis);
 		atom->moves = moved_basis(atom->moves, basis);
 	}
 }
@@ -104,7 +89,7 @@ static void check_highest(const struct collector *c, const struct node *node, co
 {
 	for (int i = 0; i < form->terms; i++) {
 		const struct basis *basis = &form->term[i].basis;
-		if (!c->output && basis->kind == BASIS_COORD && basis->order > 0 && basis->order >= c->model->coord[basis->index]->highest)
+		if (!c->output && basis->kind == BASIS_COORD && basis->order > 0 && basis->order >= c->frame->coord[basis->index]->highest)
 			not_linear(c, node, "is not linear");
 	}
 }

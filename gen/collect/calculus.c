@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Derivatives of forms with respect to a state, and forms at a point: what a Jacobian is made of. */
-#include "plgen.h"
+#include "collect/collect.h"
 
 /* ---- derivatives ---- */
 

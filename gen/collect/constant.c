@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Functions of constants: exact where the value is rational and known to be, else the nearest rational of 256 bits. */
-#include "plgen.h"
+#include "collect/collect.h"
 
 enum { GUARD_BITS = 128, LIMIT_ARGUMENT = 1 << 16 };    /* bits before the point of an argument of sin, exp, ... */
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Forms: sums of rational factors times basis elements: 1, pi, waves (t^k e^{at} cos or sin), inputs, coordinates and
  * their derivatives. pi stays a basis element until it meets another factor, so that quarter turns are decided exactly. */
-#include "plgen.h"
+#include "collect/collect.h"
 
 #include <string.h>
 
@@ -293,4 +293,26 @@ bool same_in_states(const struct form *a, const struct form *b)
 		j++;
 	const struct form left = { a->terms - i, a->term + i, 0 }, right = { b->terms - j, b->term + j, 0 };
 	return same_form(&left, &right);
+}
+
+bool same_form(const struct form *a, const struct form *b)
+{
+	if (a->terms != b->terms)
+		return false;
+	for (int i = 0; i < a->terms; i++)
+		if (basis_order(&a->term[i].basis, &b->term[i].basis) != 0 || !mpq_equal(a->term[i].factor, b->term[i].factor))
+			return false;
+	return true;
+}
+
+bool is_velocity(const struct frame *frame, const struct basis *basis)
+{
+	return basis->atom ? basis->atom->velocity : basis->kind == BASIS_COORD && (basis->order > 0 || frame->coord[basis->index]->highest == 1);
+}
+
+struct form *coordinate_form(const struct frame *frame, int coord, int order)
+{
+	if (frame && frame->form)
+		return frame->form[order][coord];
+	return form_unit((struct basis){ .kind = BASIS_COORD, .index = coord, .order = order });
 }

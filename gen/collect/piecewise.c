@@ -2,7 +2,7 @@
 /* Piecewise-linear functions and conditions of constants and of time. Time is divided at the breakpoints found so far; a
  * collection looks at one interval between them, in which every condition has one outcome. A breakpoint that is met for
  * the first time is added, and the collection is done again. */
-#include "plgen.h"
+#include "collect/collect.h"
 
 #include <string.h>
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Forms as numbers at a point, in MPFR at any precision: what only looks at a model needs no exact value. Where a
  * form is not defined its number is NaN. */
-#include "plgen.h"
+#include "collect/collect.h"
 
 struct sample {
 	void (*leaf)(void *context, const struct basis *basis, mpfr_ptr value);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Loads in time: the forms of t^k e^{at} cos(wt+p) and sin, and their products. */
-#include "plgen.h"
+#include "collect/collect.h"
 
 enum { BUCKETS = 1024 };
 
@@ -173,3 +173,12 @@ bool linear_in_time(const struct form *x, mpq_srcptr *factor, struct form *phase
 	return last->basis.kind == BASIS_WAVE && is_polynomial(last->basis.wave) && last->basis.power == 1;
 }
 
+bool is_polynomial(const struct wave *wave)
+{
+	return mpq_sgn(wave->a) == 0 && mpq_sgn(wave->w) == 0;
+}
+
+bool oscillates(const struct wave *wave)
+{
+	return mpq_sgn(wave->w) != 0;
+}

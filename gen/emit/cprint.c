@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Expressions of a spec as C. A coordinate x is the local x, its velocity x_dot; an acceleration counts as 0, since
  * NAME_rhs prints what the equations leave when accelerations are taken out. */
-#include "plgen.h"
+#include "emit/emit.h"
 
 #include <string.h>
 
@@ -40,33 +40,6 @@ static bool is_load_local(const char *name)
 	return false;
 }
 
-/* size_t, double_t, uint_fast16_t: types of the headers that generated code includes, which a local would hide */
-static bool is_type(const char *name)
-{
-	static const char *const types[] = { "size_t", "ssize_t", "ptrdiff_t", "wchar_t", "max_align_t", "nullptr_t", "float_t", "double_t" };
-	size_t length = strlen(name);
-	for (size_t i = 0; i < sizeof types / sizeof *types; i++)
-		if (strcmp(name, types[i]) == 0)
-			return true;
-	return length > 5 && strcmp(name + length - 2, "_t") == 0 && (strncmp(name, "int", 3) == 0 || strncmp(name, "uint", 4) == 0);
-}
-
-/* Macros of the headers that generated code may include, and of compilers in their GNU modes; types likewise */
-bool may_be_macro(const char *name)
-{
-	static const char *const macros[] = { "NULL", "NAN", "INFINITY", "I", "unix", "linux", "i386", "vax", "sun", "OVERFLOW", "UNDERFLOW",
-					      "DOMAIN", "SING", "PLOSS", "TLOSS", "EOF", "BUFSIZ", "WCHAR_MAX", "WCHAR_MIN",
-					      "math_errhandling", "signgam", "errno", "stdin", "stdout", "stderr", "complex", "imaginary", "assert" };
-	for (size_t i = 0; i < sizeof macros / sizeof *macros; i++)
-		if (strcmp(name, macros[i]) == 0)
-			return true;
-	size_t length = strlen(name);
-	return is_type(name) || name[0] == '_' || strncmp(name, "M_", 2) == 0 || strncmp(name, "FP_", 3) == 0 || strncmp(name, "HUGE", 4) == 0 ||
-	       strncmp(name, "MATH_", 5) == 0 || strncmp(name, "INT", 3) == 0 || strncmp(name, "UINT", 4) == 0 || strncmp(name, "PL", 2) == 0 ||
-	       strncmp(name, "pl_", 3) == 0 || strncmp(name, "SIZE_", 5) == 0 || (length > 4 && strcmp(name + length - 4, "_MAX") == 0) ||
-	       (length > 4 && strcmp(name + length - 4, "_MIN") == 0);
-}
-
 static bool is_taken(const struct naming *naming, const char *name)
 {
 	for (size_t i = 0; i < sizeof own_names / sizeof *own_names; i++)
@@ -100,7 +73,7 @@ static const char *claim(struct naming *naming, const char *wish)
 const char *written_local(const struct model *written, int state)
 {
 	int coord = written->system.coord[state];
-	const struct symbol *s = written->coord[coord];
+	const struct symbol *s = written->frame.coord[coord];
 	bool velocity = state >= written->n;
 	if (s->length)
 		return (velocity ? s->c_component_dot : s->c_component)[coord - s->index];

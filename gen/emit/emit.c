@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A step program and its tables as C. Everything printed here is meant to be read. */
-#include "plgen.h"
+#include "emit/emit.h"
 
 #include <ctype.h>
 #include <math.h>
@@ -50,11 +50,6 @@ static bool load_is_needed(const struct model *model, const struct linear *syste
 	return needed;
 }
 
-const struct model *speaker(const struct model *model)
-{
-	return model->relative ? model : model->written;
-}
-
 static struct emitter emitter_new(FILE *to, const struct step *step, const char *options)
 {
 	struct emitter e = { .to = to, .step = step, .model = step->model, .system = &step->system, .options = options };
@@ -85,22 +80,6 @@ static bool has_jump(const struct emitter *e)
 static bool keeps_status(const struct emitter *e)
 {
 	return has_leftover(e->step) || e->model->switching;
-}
-
-const char *input_name(const struct emitter *e, int input, int order)
-{
-	for (const struct symbol *s = e->model->spec->first; s; s = s->next)
-		if (s->kind == SYMBOL_INPUT && s->index == input)
-			return order ? s->c_dot : s->c_name;
-	return NULL;
-}
-
-int coordinate_of_row(const struct model *model, int row)
-{
-	int coord = 0;
-	while (model->owner[coord] != row)
-		coord++;
-	return coord;
 }
 
 /* ---- banner ---- */
@@ -437,90 +416,6 @@ static void emit_declarations(const struct emitter *e, bool rhs)
 
 /* ---- sums ---- */
 
-/* (a + b) + (c + d): the shortest chain of dependent additions; lines break at the middle of what is too long for one. */
-const char *tree(int terms, const char *const *term, int indent)
-{
-	enum { WIDTH = 100 };
-	if (terms == 1)
-		return term[0];
-	int half = (terms + 1) / 2;
-	half += terms > 3 && half % 2;          /* pairs stay together */
-	const char *left = tree(half, term, indent + 1), *right = tree(terms - half, term + half, indent + 1);
-	left = half > 1 ? format("(%s)", left) : left;
-	right = terms - half > 1 ? format("(%s)", right) : right;
-	bool subtract = terms - half == 1 && right[0] == '-';
-	const char *sign = subtract ? "-" : "+";
-	right += subtract;
-	bool wide = (int)(strlen(left) + strlen(right)) + indent > WIDTH;
-	return wide ? format("%s\n%*s%s %s", left, indent, "", sign, right) : format("%s %s %s", left, sign, right);
-}
-
-double finite_number(const struct emitter *e, mpq_srcptr q)
-{
-	if (beyond_range(q))
-		error(e->model->step_at, NULL, "a number of the equations is beyond the range of %s", target_name());
-	return round_rational(q);
-}
-
-const char *scaled(double factor, const char *operand)
-{
-	if (!operand)
-		return shortest(factor);
-	if (factor == 1)
-		return operand;
-	return factor == -1 ? format("-%s", operand) : format("%s * %s", shortest(factor), operand);
-}
-
-/* The mass that a kept velocity is multiplied with; NULL: 1 */
-static const char *factor_of_momentum(const struct emitter *e, int state)
-{
-	if (!e->step->momenta || state < e->model->n || mpq_cmp_ui(e->step->mass[e->system->coord[state]], 1, 1) == 0)
-		return NULL;
-	return shortest(finite_number(e, e->step->mass[e->system->coord[state]]));
-}
-
-/* The states wanted. `velocities`: without masses; else as the struct has them. */
-static void write_locals(const struct emitter *e, const bool *reads, const char *type, const char *vector, bool velocities)
-{
-	const char *list = "";
-	bool forced = velocities && e->step->forced;    /* then the vector is whole */
-	for (int i = 0; i < e->system->states; i++) {
-		const char *mass = velocities && !forced ? factor_of_momentum(e, i) : NULL;
-		if (reads[i])
-			list = format("%s%s%s = %s[%d]%s", list, *list ? ", " : format("    %s ", type), e->local[i], vector, i, mass ? format(" / %s", mass) : "");
-	}
-	for (int width = 0; *list; list++) {            /* a line break instead of the blank that would pass column 110 */
-		putc(*list == ' ' && width > 100 && list[-1] == ',' ? '\n' : *list, e->to);
-		if (*list == ' ' && width > 100 && list[-1] == ',') {
-			fputs("                 ", e->to);
-			width = 17;
-		}
-		width++;
-		if (!list[1])
-			fputs(";\n", e->to);
-	}
-}
-
-void emit_locals(const struct emitter *e, const bool *reads)
-{
-	bool any = false;
-	for (int i = 0; i < e->system->states; i++)
-		any = any || reads[i];
-	if (e->step->forced && any)
-		fprintf(e->to, "    double now[%s_STATES];\n    %s_%s(s, now);\n", e->upper, e->name, e->model->relative ? "kept" : "get");
-	write_locals(e, reads, "const double", e->step->forced ? "now" : "s->y", true);
-}
-
-void emit_raw_locals(const struct emitter *e, const bool *reads, bool changing)
-{
-	write_locals(e, reads, changing ? "double" : "const double", "s->y", false);
-}
-
-void emit_locals_of(const struct emitter *e, const bool *reads, const char *vector)
-{
-	write_locals(e, reads, "const double", vector, false);
-}
-
 /* ---- init, set, get, time ---- */
 
 static void emit_values(const struct emitter *e, const mpq_t *value)
@@ -549,11 +444,6 @@ static void emit_init(const struct emitter *e)
 	fprintf(e->to, e->model->relative ? "    %s_begin(s, 0.0, set, start);\n}\n" : "    %s_set(s, 0.0, start);\n}\n", e->name);
 }
 
-const char *step_length(const struct emitter *e)
-{
-	return e->model->tuning ? "s->coeffs.h" : format("%s_H", e->upper);
-}
-
 /* t0 + k p/q with p and q exact is one rounding away from the exact time while k p < 2^53. */
 static void emit_time(const struct emitter *e)
 {
@@ -567,54 +457,6 @@ static void emit_time(const struct emitter *e)
 	const char *divisor = mpz_cmp_ui(q, 1) == 0 ? "" : format(" / %s", shortest(mpz_get_d(q)));
 	fprintf(e->to, "\ndouble %s_time(const %s *s)\n{\n    return s->t0 + (double)s->k%s%s;\n}\n", e->name, e->name,
 		short_fraction ? factor : format(" * %s_H", e->upper), short_fraction ? divisor : "");
-}
-
-/* s->y from a vector of states, nothing left of earlier rounding */
-void emit_store(const struct emitter *e, const char *vector, const char *indent)
-{
-	FILE *to = e->to;
-	bool rest = e->step->program->compensated;
-	fprintf(to, "%sfor (i = 0; i < %s_STATES; i++)%s\n%s    s->y[i] = %s[i];\n", indent, e->upper, rest ? " {" : "", indent, vector);
-	if (rest)
-		fprintf(to, "%s    s->rest[i] = 0.0;\n%s}\n", indent, indent);
-	for (int i = 0; i < e->system->states; i++)
-		if (factor_of_momentum(e, i))
-			fprintf(to, "%ss->y[%d] = %s * %s[%d];\n", indent, i, factor_of_momentum(e, i), vector, i);
-	for (int i = 0; i < e->step->carries; i++)
-		fprintf(to, "%ss->carry[%d] = 0.0;\n", indent, i);
-}
-
-/* y = z + f, f the forced part: what rounds off in z = y - f is kept in rest */
-void emit_state_forced(const struct emitter *e, const char *vector, const char *indent)
-{
-	fprintf(e->to, "%s%s_forced(s, now);\n", indent, e->name);
-	fprintf(e->to, "%sfor (i = 0; i < %s_STATES; i++) {\n", indent, e->upper);
-	fprintf(e->to, "%s    const double f = now[i], z = %s[i] - f, lost = z - %s[i];\n", indent, vector, vector);
-	fprintf(e->to, "%s    s->y[i] = z;\n%s    s->rest[i] = (%s[i] - (z - lost)) - (f + lost);\n%s}\n", indent, indent, vector, indent);
-	for (int i = 0; i < e->step->carries; i++)
-		fprintf(e->to, "%ss->carry[%d] = 0.0;\n", indent, i);
-}
-
-/* A vector of states from s->y; what rounds off in z + f counts, so that it is what was set */
-void emit_load_state(const struct emitter *e, const char *vector)
-{
-	if (e->step->forced)
-		fprintf(e->to, "    double now[%s_STATES];\n", e->upper);
-	emit_kept_state(e, vector);
-	if (!e->step->forced)
-		return;
-	fprintf(e->to, "    %s_forced(s, now);\n    for (i = 0; i < %s_STATES; i++) {\n", e->name, e->upper);
-	fprintf(e->to, "        const double z = %s[i], sum = z + now[i], back = sum - z;\n", vector);
-	fprintf(e->to, "        %s[i] = sum + (((z - (sum - back)) + (now[i] - back)) + %s);\n    }\n", vector,
-		e->step->program->compensated ? "s->rest[i]" : "(s->k == 0 ? s->rest[i] : 0.0)");
-}
-
-void emit_kept_state(const struct emitter *e, const char *vector)
-{
-	fprintf(e->to, "    for (i = 0; i < %s_STATES; i++)\n        %s[i] = s->y[i];\n", e->upper, vector);
-	for (int i = 0; i < e->system->states; i++)
-		if (factor_of_momentum(e, i))
-			fprintf(e->to, "    %s[%d] = s->y[%d] / %s;\n", vector, i, i, factor_of_momentum(e, i));
 }
 
 /* ---- states as written, and as they are kept ---- */
@@ -829,19 +671,6 @@ static void emit_run(const struct emitter *e)
 
 /* ---- tables and descriptor ---- */
 
-void emit_number_rows(const struct emitter *e, int rows, int columns, const double *value, const char *const *row_note)
-{
-	for (int i = 0; i < rows; i++) {
-		fputs("    {", e->to);
-		for (int j = 0; j < columns; j++) {
-			if (!isfinite(value[i * columns + j]))
-				error(e->model->step_at, NULL, "a number in the row of %s is beyond the range of %s", row_note[i], target_name());
-			fprintf(e->to, "%s%s", j ? ", " : "", shortest(value[i * columns + j]));
-		}
-		fprintf(e->to, "},  /* %s */\n", row_note[i]);
-	}
-}
-
 static void emit_matrix(const struct emitter *e, const struct step *step, const char *declaration)
 {
 	int n = e->system->states;
@@ -852,13 +681,6 @@ static void emit_matrix(const struct emitter *e, const struct step *step, const 
 	emit_number_rows(e, n, n, value, step->model->state_name);
 	fputs("};\n", e->to);
 }
-
-/* The table Phi, or Gamma, of the states as they are kept */
-const char *stepped_table(const struct emitter *e, const char *table)
-{
-	return format(e->model->relative ? "%s_%s_kept" : "%s_%s", e->name, table);
-}
-
 
 /* Does a loop of the step read Phi? */
 static bool step_reads_phi(const struct emitter *e)
@@ -894,14 +716,6 @@ static void emit_gamma(const struct emitter *e)
 	emit_input_matrix(e, e->step->shown, format("const double %s_Gamma", e->name));
 	if (e->model->relative && e->step->program->loops && !e->model->switching && !has_leftover(e->step))
 		emit_input_matrix(e, e->step, format("static const double %s", stepped_table(e, "Gamma")));
-}
-
-void emit_name_list(const struct emitter *e, const char *array, int count, const char *const *name)
-{
-	fprintf(e->to, "static const char *const %s_%s[] = {", e->name, array);
-	for (int i = 0; i < count; i++)
-		fprintf(e->to, "%s\"%s\"", i == 0 ? "" : i % 10 ? ", " : ",\n    ", name[i]);
-	fputs("};\n", e->to);
 }
 
 static void emit_wrapper(const struct emitter *e, const char *result, const char *function, const char *parameters, const char *arguments, bool is_const)

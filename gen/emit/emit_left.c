@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A scheme that leaves something over, as C: the leftover as a function, and the step as actions on vectors. */
-#include "plgen.h"
+#include "emit/emit.h"
 
 #include <math.h>
 #include <string.h>
@@ -122,7 +122,7 @@ static int load_of_wave(const struct emitter *e, const struct wave *wave)
 static const char *coordinate_now(const struct emitter *e, const struct basis *basis)
 {
 	const struct model *written = speaker(e->model);
-	if (basis->order > 0 && basis->order >= written->coord[basis->index]->highest)
+	if (basis->order > 0 && basis->order >= written->frame.coord[basis->index]->highest)
 		return format("accel%d", basis->index + 1);
 	int state = basis->order ? written->system.velocity[basis->index] : basis->index;
 	return e->local[e->model->place ? e->model->place[state] : state];

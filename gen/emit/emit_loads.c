@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Loads on the target: phases as turns, growths as exponents of 2, and the load states made of them at a step's start. */
-#include "plgen.h"
+#include "emit/emit.h"
 
 /* What an angle is measured in, 2 pi, or what an exponent is, ln 2 */
 static void set_unit(mpfr_ptr unit, bool turns)

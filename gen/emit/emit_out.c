@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Outputs as C: rows over states, load states and inputs, or what is not linear as its own expression. */
-#include "plgen.h"
+#include "emit/emit.h"
 
 static bool changes(const mpq_t *factor, int segments)
 {
@@ -221,7 +221,7 @@ void emit_out(const struct emitter *e)
 	for (int k = 0; k < coords; k++)
 		if (needs.highest[k])
 			fprintf(to, "    const double accel%d = %s;  /* %s%.*s */\n", k + 1, linear_output(e, model->highest[k]), model->coord_name[k],
-				model->coord[k]->highest, "''");
+				model->frame.coord[k]->highest, "''");
 	struct writer *writer = writer_new(e, basis_now, forms, form);
 	for (int i = 0; i < model->outputs; i++) {
 		const struct output *output = &model->output[i];

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* NAME_rhs: the equations as written, for any ODE solver. */
-#include "plgen.h"
+#include "emit/emit.h"
 
 #include <string.h>
 
@@ -102,7 +102,7 @@ static const char *wave_expression(const struct basis *basis)
 
 static bool is_highest(const struct emitter *e, const struct basis *basis)
 {
-	return basis->kind == BASIS_COORD && basis->order == e->model->written->coord[basis->index]->highest;
+	return basis->kind == BASIS_COORD && basis->order == e->model->written->frame.coord[basis->index]->highest;
 }
 
 static const char *basis_expression(const struct emitter *e, const struct basis *basis)

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A step program as C: sums over the old state, or for a large model loops over its tables. */
-#include "plgen.h"
+#include "emit/emit.h"
 
 /* Held: the sample that the step is given. A ramp: the previous sample, then the one given. */
 const char *input_operand(const struct emitter *e, int column)

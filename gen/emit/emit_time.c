@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Any time: NAME_at inside a step by a Taylor series, NAME_jump over many steps by powers of the step. */
-#include "plgen.h"
+#include "emit/emit.h"
 
 /* ---- at ---- */
 
@@ -222,22 +222,6 @@ static void emit_pass(const struct emitter *e)
 		fputs("    }\n    return segment;\n", to);
 	}
 	fputs("}\n", to);
-}
-
-const char *low_text(mpq_srcptr q)
-{
-	mpq_t rest;
-	mpq_init(rest);
-	mpq_set_d(rest, round_rational(q));
-	mpq_sub(rest, q, rest);
-	const char *text = shortest(round_rational(rest));
-	mpq_clear(rest);
-	return text;
-}
-
-const char *two_text(mpq_srcptr q)
-{
-	return format("{%s, %s}", shortest(round_rational(q)), low_text(q));
 }
 
 void emit_changes(const struct emitter *e)

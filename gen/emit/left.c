@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Forms with atoms as C: what several places use is computed once, under the name of a let where it has one. */
-#include "plgen.h"
+#include "emit/emit.h"
 
 #include <string.h>
 
@@ -59,11 +59,6 @@ static void count_form(struct writer *w, const struct form *form)
 		for (int k = 0; k < atom->operands; k++)
 			count_operand(w, atom->operand[k], atom->exponent ? atom->exponent[k] : 1);
 	}
-}
-
-static bool is_unit(mpq_srcptr factor)
-{
-	return mpz_cmpabs_ui(mpq_numref(factor), 1) == 0 && mpz_cmp_ui(mpq_denref(factor), 1) == 0;
 }
 
 static bool equal_forms(const struct form *a, const struct form *b)
@@ -293,105 +288,4 @@ static const char *atom_text(struct writer *w, const struct atom *a)
 	const char *text = expression_of(w, a);
 	bool shared = w->let[a->index] || (w->uses[a->index] > 1 && a->kind != ATOM_COMPARE);
 	return shared ? (w->name[a->index] = declare(w, w->let[a->index], text)) : text;
-}
-
-/* ---- which states, inputs and functions a leftover reads ---- */
-
-/* The piecewise-linear functions are comparisons in C. */
-static bool calls_libm(const struct atom *a)
-{
-	bool piecewise = a->function == FN_ABS || a->function == FN_SGN || (a->function >= FN_MIN && a->function != FN_ATAN2);
-	return a->kind == ATOM_POWER || (a->kind == ATOM_CALL && !piecewise);
-}
-
-static void look_at_form(struct reads *reading, const struct model *model, bool *seen, const struct form *form)
-{
-	for (int i = 0; i < form->terms; i++) {
-		const struct basis *basis = &form->term[i].basis;
-		const struct atom *atom = basis->atom;
-		bool highest = basis->kind == BASIS_COORD && basis->order > 0 && basis->order >= model->coord[basis->index]->highest;
-		if (highest)
-			reading->highest[basis->index] = true;
-		else if (basis->kind == BASIS_COORD)
-			reading->state[basis->order ? model->system.velocity[basis->index] : basis->index] = true;
-		else if (basis->kind == BASIS_INPUT)
-			reading->input[basis->index + basis->order * model->system.inputs] = true;
-		else if (basis->kind == BASIS_WAVE && is_polynomial(basis->wave))
-			reading->time = true;
-		for (int l = 0; basis->kind == BASIS_WAVE && l < model->system.loads; l++)
-			if (model->system.load[l].wave == basis->wave && !is_polynomial(basis->wave)) {
-				reading->load[l] = true;
-				reading->time = reading->time || model->system.load[l].powers > 1;  /* its load states up to the highest power */
-			}
-		if (!atom || seen[atom->index])
-			continue;
-		seen[atom->index] = true;
-		reading->math = reading->math || calls_libm(atom);
-		for (int k = 0; k < atom->operands; k++)
-			look_at_form(reading, model, seen, atom->operand[k]);
-	}
-}
-
-struct reads reads_of(const struct model *model, int count, const struct form *const *form)
-{
-	struct reads reading = { ARRAY(bool, (size_t)model->system.states), ARRAY(bool, 2 * (size_t)model->system.inputs),
-				   ARRAY(bool, (size_t)model->system.loads), ARRAY(bool, (size_t)model->n), false, false };
-	bool *seen = ARRAY(bool, model->atoms ? (size_t)atoms_count(model->atoms) : 0);
-	for (int i = 0; i < count; i++)
-		look_at_form(&reading, model, seen, form[i]);
-	return reading;
-}
-
-/* ---- cost ---- */
-
-struct counting {
-	struct cost cost;
-	bool *seen;                 /* per atom */
-	int forms;                  /* sums counted so far */
-	const struct form **form;
-};
-
-static void cost_form(struct counting *c, const struct form *form);
-
-static void cost_operand(struct counting *c, const struct form *form)
-{
-	for (int i = 0; i < c->forms; i++)
-		if (c->form[i] == form)
-			return;
-	ENLARGE(c->form, (size_t)c->forms + 1);
-	c->form[c->forms++] = form;
-	cost_form(c, form);
-}
-
-static void cost_atom(struct counting *c, const struct atom *a)
-{
-	if (c->seen[a->index])
-		return;
-	c->seen[a->index] = true;
-	int factors = 0;
-	for (int k = 0; k < a->operands; k++) {
-		factors += a->exponent ? (int)a->exponent[k] : 0;
-		cost_operand(c, a->operand[k]);
-	}
-	c->cost.multiplications += a->kind == ATOM_PRODUCT ? factors - 1 : a->kind == ATOM_RECIPROCAL;
-	c->cost.calls += calls_libm(a);
-}
-
-static void cost_form(struct counting *c, const struct form *form)
-{
-	c->cost.additions += form->terms > 1 ? form->terms - 1 : 0;
-	for (int i = 0; i < form->terms; i++) {
-		c->cost.multiplications += form->term[i].basis.kind > BASIS_PI && !is_unit(form->term[i].factor);
-		if (form->term[i].basis.atom)
-			cost_atom(c, form->term[i].basis.atom);
-	}
-}
-
-struct cost leftover_cost(const struct step *step)
-{
-	const struct model *model = step->model;
-	struct counting c = { .seen = ARRAY(bool, (size_t)atoms_count(model->atoms)) };
-	for (int e = 0; e < model->channels; e++)
-		cost_form(&c, model->operator[0].left[e]);
-	return c.cost;
 }

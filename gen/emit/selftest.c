@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* NAME_selftest: states in closed form, for the target to step to. A wrong constant anywhere in the step, in NAME_jump or in NAME_at
  * shows as a deviation. Inputs follow u = 1 - t/h, which every factor of a sample has a part in; held, u = 1. */
-#include "plgen.h"
+#include "emit/emit.h"
 
 #include <math.h>
 
@@ -133,15 +133,6 @@ static void emit_replay(const struct emitter *e, const struct reference *r)
 	emit_sample(e, "            ", "-(double)k");
 	fprintf(to, "            %s_step(&s%s);\n        }\n", n, e->system->inputs ? ", u" : "");
 	fprintf(to, "        %s_get(&s, y);\n        worst = %s_deviation(y, reference[i].y, worst);\n    }\n", n, n);
-}
-
-void need_closed_form(const struct step *step)
-{
-	const struct model *model = step->model;
-	const char *why = model->switching ? "where it crosses a breakpoint is found by a search" : has_leftover(step) ? "what is left over has no closed form"
-		: model->scheme != SCHEME_EXACT ? format("scheme %s approximates", scheme_name(model->scheme)) : NULL;
-	if (why)
-		error((struct place){ source_argument("--selftest"), 0 }, NULL, "--selftest needs a linear model and scheme exact: %s", why);
 }
 
 void emit_selftest(const struct emitter *e, bool jumps)

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Complex numbers enclosed in rectangles: a pair of MPFI intervals. Targets may be operands. */
-#include "plgen.h"
+#include "math/math.h"
 
 void rectangle_init(struct rectangle *z, int precision)
 {

@@ -2,7 +2,7 @@
 /* A rational function of params that is known by its values alone, as a sum of products of their powers, -3 .. 3: exactly, or not at
  * all. Lines through a base point tell which powers of each param there are, steps along two params whether they meet in a product; then as
  * many scattered points as there are products left give their factors, and two more have to agree. */
-#include "plgen.h"
+#include "math/math.h"
 
 enum { EXPONENTS = 2 * FIT_DEGREE + 1, LINE = EXPONENTS + 1 };   /* exponents; points on a line to find and to check them */
 

@@ -3,7 +3,7 @@
  * Approximations come from GSL (or the Newton polygon where a double cannot hold the coefficients) and are improved by
  * the Ehrlich-Aberth iteration; the discs d |g(z_i)| / (|a_d| prod |z_i - z_j|) (Smith 1970) are computed in interval
  * arithmetic, so they are true whatever the iteration did. What a disc does not decide, more precision does. */
-#include "plgen.h"
+#include "math/math.h"
 
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_poly.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Polynomials over Z, constant term first. Values: an operation returns a new polynomial. */
-#include "plgen.h"
+#include "math/math.h"
 
 struct poly poly_new(int length)
 {

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Determinant and adjugate of a matrix of polynomials, by evaluation at integers and interpolation: exact, and free of
  * the growth that elimination over polynomials has. */
-#include "plgen.h"
+#include "math/math.h"
 
 struct samples {
 	int n, count, degree;       /* count = degree + 1 points */

@@ -2,7 +2,7 @@
 /* Values of the inverse Laplace transform of scale * N(s)/D(s), as sums of residues.
  * At a pole p of multiplicity m, with D(p+e) = e^m (v_0 + v_1 e + ...) and N(p+e)/(v_0 + v_1 e + ...) = a_0 + a_1 e + ...,
  * the residue of N/D e^{s tau} is e^{p tau} sum_k a_{m-1-k} tau^k/k!. The pole 0 is exact; the others are enclosed. */
-#include "plgen.h"
+#include "math/math.h"
 
 enum { GUARD_BITS = 32 };
 

@@ -11,7 +11,7 @@
  * sparse B. Its tail needs a norm: with D a diagonal of powers of two and b = ||D^-1 |B| D||,
  *     |sum_{k>=m} B^k/k!|_ij <= (d_i/d_j) b^m/m! / (1 - b/(m+1)),
  * and D only serves this estimate. Where no path of A leads from i to j the entry is exactly 0 and stays so. */
-#include "plgen.h"
+#include "math/math.h"
 
 #include <limits.h>
 #include <string.h>

@@ -1,80 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Rational matrices, and linear systems of coordinates of first and second order. */
-#include "plgen.h"
-
-/* ---- rational matrices ---- */
-
-void rational_product(int rows, int inner, int columns, const mpq_t *A, const mpq_t *B, mpq_t *AB)
-{
-	mpq_t product;
-	mpq_init(product);
-	for (int i = 0; i < rows * columns; i++)
-		mpq_set_ui(AB[i], 0, 1);
-	for (int i = 0; i < rows; i++)
-		for (int k = 0; k < inner; k++)         /* by rows: most factors of large matrices are 0 */
-			for (int j = 0; j < columns && mpq_sgn(A[i * inner + k]) != 0; j++) {
-				if (mpq_sgn(B[k * columns + j]) == 0)
-					continue;
-				mpq_mul(product, A[i * inner + k], B[k * columns + j]);
-				mpq_add(AB[i * columns + j], AB[i * columns + j], product);
-			}
-	mpq_clear(product);
-}
-
-void rational_subtract_row(int n, mpq_t *target, const mpq_t *row, mpq_srcptr factor)
-{
-	mpq_t product;
-	mpq_init(product);
-	for (int j = 0; j < n; j++) {
-		if (mpq_sgn(row[j]) == 0)
-			continue;
-		mpq_mul(product, row[j], factor);
-		mpq_sub(target[j], target[j], product);
-	}
-	mpq_clear(product);
-}
-
-/* Gauss and Jordan on [A | I]. */
-bool rational_inverse(int n, const mpq_t *A, mpq_t *inverse, int *column)
-{
-	int width = 2 * n;
-	mpq_t *W = rationals((size_t)(n * width)), pivot;
-	mpq_init(pivot);
-	for (int i = 0; i < n; i++) {
-		for (int j = 0; j < n; j++)
-			mpq_set(W[i * width + j], A[i * n + j]);
-		mpq_set_ui(W[i * width + n + i], 1, 1);
-	}
-	for (int k = 0; k < n; k++) {
-		int row = k;
-		while (row < n && mpq_sgn(W[row * width + k]) == 0)
-			row++;
-		if (row == n) {
-			*column = k;
-			mpq_clear(pivot);
-			rationals_free(W, (size_t)(n * width));
-			return false;
-		}
-		for (int j = 0; j < width; j++)
-			mpq_swap(W[row * width + j], W[k * width + j]);
-		mpq_inv(pivot, W[k * width + k]);
-		for (int j = 0; j < width; j++)
-			mpq_mul(W[k * width + j], W[k * width + j], pivot);
-		for (int i = 0; i < n; i++) {
-			mpq_set(pivot, W[i * width + k]);
-			if (i != k && mpq_sgn(pivot) != 0)
-				rational_subtract_row(width, W + i * width, (const mpq_t *)W + k * width, pivot);
-		}
-	}
-	for (int i = 0; i < n; i++)
-		for (int j = 0; j < n; j++)
-			mpq_set(inverse[i * n + j], W[i * width + n + j]);
-	mpq_clear(pivot);
-	rationals_free(W, (size_t)(n * width));
-	return true;
-}
-
-/* ---- systems ---- */
+/* Linear systems of coordinates of first and second order. */
+#include "model/model.h"
 
 struct linear linear_like(const struct linear *shape)
 {
@@ -156,4 +82,29 @@ mpq_t *state_matrix(const struct linear *system, bool held)
 	rationals_free(inverse, (size_t)n * (size_t)n);
 	rationals_free(highest, (size_t)n * (size_t)states);
 	return A;
+}
+
+int load_columns(const struct linear *system)
+{
+	int columns = 0;
+	for (int l = 0; l < system->loads; l++)
+		columns += system->load[l].columns;
+	return columns;
+}
+
+int input_columns(const struct linear *system)
+{
+	int columns = 0;
+	for (int i = 0; i < system->inputs; i++)
+		columns += system->input[i].first_order ? 2 : 1;
+	return columns;
+}
+
+bool load_acts(const struct linear *system, const struct load *load)
+{
+	for (int k = 0; k < load->columns; k++)
+		for (int i = 0; i < system->segments * system->n; i++)
+			if (mpq_sgn(load->force[k][i]) != 0)
+				return true;
+	return false;
 }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* From a parsed spec to a model: params, scheme, step and initial values here; equations.c and outputs.c do the rest. */
-#include "plgen.h"
+#include "model/model.h"
 
 #include <string.h>
 
@@ -86,13 +86,6 @@ static void evaluate_lets(struct building *b)
 
 /* ---- scheme and step ---- */
 
-static const char *const schemes[SCHEMES] = { "exact", "pl", "etd1", "etdrk2", "etdrk4", "nc2", "nc3", "dq4", "bm3" };
-
-const char *scheme_name(enum scheme scheme)
-{
-	return schemes[scheme];
-}
-
 /* Without a scheme: exact where the model allows it, which the equations tell. */
 static void choose_scheme(void *context)
 {
@@ -104,15 +97,15 @@ static void choose_scheme(void *context)
 	if (!wanted)
 		return;
 	struct place at = b->overrides->scheme ? (struct place){ source_argument(wanted), 0 } : b->spec->scheme_at;
-	for (int i = 0; i < SCHEMES; i++)
-		if (strcmp(wanted, schemes[i]) == 0) {
-			b->model->scheme = b->overrides->solution ? SCHEME_EXACT : (enum scheme)i;
-			b->model->scheme_at = at;
-			b->collector.scheme = scheme_name(b->model->scheme);
-			b->collector.keep = b->overrides->solution ? KEEP_NOTHING : i == SCHEME_EXACT ? KEEP_PIECEWISE : KEEP_ALL;
-			return;
-		}
-	const char *nearest = nearest_name(wanted, SCHEMES, schemes);
+	enum scheme scheme;
+	if (scheme_of(wanted, &scheme)) {
+		b->model->scheme = b->overrides->solution ? SCHEME_EXACT : scheme;
+		b->model->scheme_at = at;
+		b->collector.scheme = scheme_name(b->model->scheme);
+		b->collector.keep = b->overrides->solution ? KEEP_NOTHING : scheme == SCHEME_EXACT ? KEEP_PIECEWISE : KEEP_ALL;
+		return;
+	}
+	const char *nearest = nearest_scheme(wanted);
 	b->collector.keep = KEEP_ALL;           /* whatever was meant: one message is enough */
 	error(at, nearest ? format("did you mean '%s'?", nearest) : "the schemes are exact, pl, etd1, etdrk2, etdrk4, nc2, nc3, dq4, bm3",
 	      "unknown scheme '%s'", wanted);
@@ -179,13 +172,6 @@ static void evaluate_initials(struct building *b)
 
 /* ---- the whole ---- */
 
-struct form *coordinate_form(const struct model *model, int coord, int order)
-{
-	if (model && model->relative)
-		return model->relative->form[order][coord];
-	return form_unit((struct basis){ .kind = BASIS_COORD, .index = coord, .order = order });
-}
-
 /* Coordinates that are kept in the place of written ones, with an order each: each has a symbol of its own */
 static void name_relative(struct building *b)
 {
@@ -193,14 +179,14 @@ static void name_relative(struct building *b)
 	const struct relative *relative = model->relative;
 	size_t n = (size_t)relative->n;
 	model->n = model->system.n = relative->n;
-	model->coord = ARRAY(struct symbol *, n);
+	model->frame.coord = ARRAY(struct symbol *, n);
 	model->coord_name = relative->name;
 	model->owner = ARRAY(int, n);
 	for (int j = 0; j < relative->n; j++) {
 		const struct model *written = relative->written;
 		int like = j < written->n ? j : 0;
-		model->coord[j] = NEW(struct symbol);
-		*model->coord[j] = (struct symbol){ .kind = SYMBOL_COORD, .name = relative->name[j], .at = written->coord[like]->at, .index = j, .highest = relative->order[j] };
+		model->frame.coord[j] = NEW(struct symbol);
+		*model->frame.coord[j] = (struct symbol){ .kind = SYMBOL_COORD, .name = relative->name[j], .at = written->frame.coord[like]->at, .index = j, .highest = relative->order[j] };
 		model->owner[j] = j < written->n ? written->owner[j] : j;
 	}
 }
@@ -214,13 +200,13 @@ static void name_coordinates(struct building *b)
 	}
 	size_t n = (size_t)b->spec->components;
 	model->n = model->system.n = b->spec->components;
-	model->coord = ARRAY(struct symbol *, n);
+	model->frame.coord = ARRAY(struct symbol *, n);
 	model->coord_name = ARRAY(const char *, n);
 	for (struct symbol *s = b->spec->first; s; s = s->next) {
 		if (s->kind != SYMBOL_COORD)
 			continue;
 		for (int i = 0; i < (s->length ? s->length : 1); i++) {
-			model->coord[s->index + i] = s;
+			model->frame.coord[s->index + i] = s;
 			model->coord_name[s->index + i] = s->length ? format("%s[%d]", s->name, i + 1) : s->name;
 		}
 	}
@@ -238,12 +224,12 @@ static void name_states(struct building *b)
 	system->states = model->n;
 	for (int j = 0; j < model->n && !model->relative; j++) {
 		int order = find_order(b->spec, j);
-		model->coord[j]->highest = order > model->coord[j]->highest ? order : model->coord[j]->highest;
+		model->frame.coord[j]->highest = order > model->frame.coord[j]->highest ? order : model->frame.coord[j]->highest;
 	}
 	for (int j = 0; j < model->n; j++) {
 		model->state_name[j] = model->coord_name[j];
 		system->coord[j] = j;
-		system->velocity[j] = model->coord[j]->highest == 2 ? system->states : -1;
+		system->velocity[j] = model->frame.coord[j]->highest == 2 ? system->states : -1;
 		if (system->velocity[j] < 0)
 			continue;
 		system->coord[system->states] = j;
@@ -271,14 +257,7 @@ static void check_parts(const struct building *b)
 	if (!spec->step && !b->overrides->step)
 		say_error(spec->end, "step 0.01, or --step 0.01 on the command line", "missing step");
 	if (b->model->system.states > LIMIT_STATES)
-		say_error(b->model->coord[b->model->n - 1]->at, NULL, "more states than the limit of %d", LIMIT_STATES);
-}
-
-void forget_lets(const struct spec *spec)
-{
-	for (struct symbol *s = spec->first; s; s = s->next)
-		if (s->kind == SYMBOL_LET)
-			s->progress = FRESH;
+		say_error(b->model->frame.coord[b->model->n - 1]->at, NULL, "more states than the limit of %d", LIMIT_STATES);
 }
 
 static void collect_interval(struct building *b, struct snapshot *snapshot)
@@ -343,9 +322,10 @@ struct model *model_build(struct spec *spec, const struct overrides *overrides)
 	model->spec = spec;
 	model->written = overrides->relative ? overrides->relative->written : model;
 	model->relative = overrides->relative;
+	model->frame.form = model->relative ? model->relative->form : NULL;
 	if (model->relative)                    /* its params were collected for the written one */
 		b.collector.irrationals = model->written->irrationals;
-	b.collector.model = model;
+	b.collector.frame = &model->frame;
 	model->atoms = b.collector.atoms = atoms_new();
 	model->form = overrides->form;
 	model->form_at = (struct place){ source_argument(step_form_name(overrides->form)), 0 };

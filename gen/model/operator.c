@@ -2,7 +2,7 @@
 /* The linear operator A of y' = A y + loads + inputs + r(t, y), and the leftover r. Without a statement A is what the
  * equations have with constant coefficients; `operator at` takes the Jacobian with some names fixed. Of an entry that still
  * depends on anything, its constant part counts. r is exact: what the equations are minus what A takes. */
-#include "plgen.h"
+#include "model/model.h"
 
 /* ---- the fixed names ---- */
 
@@ -215,7 +215,7 @@ static bool is_carried(const struct building *b, const struct basis *basis)
 		return !model->loads_left;
 	if (basis->kind == BASIS_INPUT)
 		return true;
-	return basis->kind == BASIS_COORD && basis->order >= model->coord[basis->index]->highest;
+	return basis->kind == BASIS_COORD && basis->order >= model->frame.coord[basis->index]->highest;
 }
 
 /* The force that the leftover is on an equation: A's terms minus the equation's own, which stand on the left side */

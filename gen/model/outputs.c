@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Outputs as rows over states, load states and inputs. */
-#include "plgen.h"
+#include "model/model.h"
 
 #include <string.h>
 
@@ -78,7 +78,7 @@ static void spread_output(struct building *b, const mpq_t *inverse, const mpq_t 
 
 static bool is_too_high(const struct model *model, const struct basis *basis)
 {
-	return basis->kind == BASIS_COORD && basis->order > model->coord[basis->index]->highest;
+	return basis->kind == BASIS_COORD && basis->order > model->frame.coord[basis->index]->highest;
 }
 
 /* A coordinate whose highest derivative, or `above` it, stands there. */
@@ -299,7 +299,7 @@ static void build_highest(struct building *b, const mpq_t *inverse, const mpq_t 
 static void see_state(const struct model *model, int state, mpq_t *row)
 {
 	const struct model *written = model->relative ? model->relative->written : model;
-	const struct form *form = coordinate_form(model, written->system.coord[state], state >= written->n);
+	const struct form *form = coordinate_form(&model->frame, written->system.coord[state], state >= written->n);
 	for (int i = 0; i < form->terms; i++)
 		mpq_set(row[state_of(model, &form->term[i].basis)], form->term[i].factor);
 }

@@ -2,7 +2,7 @@
 /* What the outputs cannot see is left out, exactly: with T a basis of the rows c, c A, c A^2, ... of all outputs (the observable
  * part, Kalman 1963), w = T y obeys w' = A_r w + T W^-1 f with T A = A_r T. The basis is made of these rows themselves, so a state
  * of the reduced model is an output or a derivative of one. The poles that go are those that cancel in every N/B. */
-#include "plgen.h"
+#include "model/model.h"
 
 #include <string.h>
 

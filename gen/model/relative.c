@@ -9,7 +9,7 @@
  *
  * The model is built a second time over these coordinates, so that regions, leftovers, Jacobians and tunable params
  * are derived in them from the start; where the user looks, states are the written ones. */
-#include "plgen.h"
+#include "model/model.h"
 
 #include <string.h>
 
@@ -85,7 +85,7 @@ struct look {
 
 static bool leads(const struct model *model, const struct basis *basis)
 {
-	return basis->kind == BASIS_COORD && basis->order > 0 && basis->order >= model->coord[basis->index]->highest;
+	return basis->kind == BASIS_COORD && basis->order > 0 && basis->order >= model->frame.coord[basis->index]->highest;
 }
 
 static void join(bool *joined, int n, int a, int b)

@@ -5,7 +5,7 @@
  * what they have there: a jump for p = 0, a kink for p = 1, more than that beyond, as x*abs(x) at 0 with p = 2. A
  * scheme is then of order p + 1 at most: a step across the surface errs by h^{p+1}, and crossings do not become more
  * as h shrinks. The difference is written symbolically and measured at points of the surface, in 320 bits. */
-#include "plgen.h"
+#include "model/model.h"
 
 #include <string.h>
 
@@ -633,7 +633,7 @@ static int order_on(struct search *s, const struct surface *surface, const struc
 bool reads_velocity(const struct model *model, const struct form *form)
 {
 	for (int i = 0; i < form->terms; i++)
-		if (is_velocity(model, &form->term[i].basis))
+		if (is_velocity(&model->frame, &form->term[i].basis))
 			return true;
 	return false;
 }

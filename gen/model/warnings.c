@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What a spec may say but is better told about. Nothing here reaches the generated code, so eigenvalues in double will do. */
-#include "plgen.h"
+#include "model/model.h"
 
 #include <gsl/gsl_eigen.h>
 #include <gsl/gsl_errno.h>
@@ -52,7 +52,7 @@ static int fix_states(const struct jacobian *j, struct fixing *fixing)
 	const struct model *model = j->b->model;
 	for (int i = 0; i < model->system.states; i++) {
 		int coord = model->system.coord[i];
-		fixing[i] = (struct fixing){ .symbol = model->coord[coord], .coord = coord, .order = i >= model->n };
+		fixing[i] = (struct fixing){ .symbol = model->frame.coord[coord], .coord = coord, .order = i >= model->n };
 		mpq_init(fixing[i].value);
 		mpq_set(fixing[i].value, j->state[i]);
 	}
@@ -272,7 +272,7 @@ static void state_leaf(void *context, const struct basis *basis, mpfr_ptr value)
 {
 	const struct reference *r = context;
 	const struct model *model = r->b->model;
-	bool highest = basis->kind == BASIS_COORD && basis->order >= model->coord[basis->index]->highest;
+	bool highest = basis->kind == BASIS_COORD && basis->order >= model->frame.coord[basis->index]->highest;
 	if (basis->kind == BASIS_COORD && !highest)
 		mpfr_set_d(value, r->y[basis->order ? model->system.velocity[basis->index] : basis->index], MPFR_RNDN);
 	else

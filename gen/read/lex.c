@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Text to tokens. A lexer reads one statement, whose extent lex_statement_end finds first: so an error inside a
  * statement never hides the statements after it. */
-#include "plgen.h"
+#include "read/read.h"
 
 #include <string.h>
 

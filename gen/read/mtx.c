@@ -8,7 +8,7 @@
  * out transposed), no entry twice, and of a symmetric matrix the lower triangle only. */
 
 
-#include "plgen.h"
+#include "read/read.h"
 
 #include <errno.h>
 #include <string.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Words with a meaning of their own, and names that resemble a misspelt one. */
-#include "plgen.h"
+#include "read/read.h"
 
 #include <string.h>
 #include <strings.h>
@@ -253,4 +253,31 @@ const char *spec_suggestion(const struct spec *spec, const char *name)
 		known[count++] = function_names[f];
 	const char *best = nearest_name(name, count, known);
 	return best ? format("did you mean '%s'?", best) : NULL;
+}
+
+/* size_t, double_t, uint_fast16_t: types of the headers that generated code includes, which a local would hide */
+static bool is_type(const char *name)
+{
+	static const char *const types[] = { "size_t", "ssize_t", "ptrdiff_t", "wchar_t", "max_align_t", "nullptr_t", "float_t", "double_t" };
+	size_t length = strlen(name);
+	for (size_t i = 0; i < sizeof types / sizeof *types; i++)
+		if (strcmp(name, types[i]) == 0)
+			return true;
+	return length > 5 && strcmp(name + length - 2, "_t") == 0 && (strncmp(name, "int", 3) == 0 || strncmp(name, "uint", 4) == 0);
+}
+
+/* Macros of the headers that generated code may include, and of compilers in their GNU modes; types likewise */
+bool may_be_macro(const char *name)
+{
+	static const char *const macros[] = { "NULL", "NAN", "INFINITY", "I", "unix", "linux", "i386", "vax", "sun", "OVERFLOW", "UNDERFLOW",
+					      "DOMAIN", "SING", "PLOSS", "TLOSS", "EOF", "BUFSIZ", "WCHAR_MAX", "WCHAR_MIN",
+					      "math_errhandling", "signgam", "errno", "stdin", "stdout", "stderr", "complex", "imaginary", "assert" };
+	for (size_t i = 0; i < sizeof macros / sizeof *macros; i++)
+		if (strcmp(name, macros[i]) == 0)
+			return true;
+	size_t length = strlen(name);
+	return is_type(name) || name[0] == '_' || strncmp(name, "M_", 2) == 0 || strncmp(name, "FP_", 3) == 0 || strncmp(name, "HUGE", 4) == 0 ||
+	       strncmp(name, "MATH_", 5) == 0 || strncmp(name, "INT", 3) == 0 || strncmp(name, "UINT", 4) == 0 || strncmp(name, "PL", 2) == 0 ||
+	       strncmp(name, "pl_", 3) == 0 || strncmp(name, "SIZE_", 5) == 0 || (length > 4 && strcmp(name + length - 4, "_MAX") == 0) ||
+	       (length > 4 && strcmp(name + length - 4, "_MIN") == 0);
 }

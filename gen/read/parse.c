@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Tokens to nodes and declarations. The production stands above each function that reads it; names are resolved as
  * they are read, since they are declared before use. */
-#include "plgen.h"
+#include "read/read.h"
 
 #include <string.h>
 

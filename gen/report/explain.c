@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What was derived: for a person, and as JSON for a program. */
-#include "plgen.h"
+#include "report/report.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The closed-form solution as CSV: every value is its own residue sum, correctly rounded; nothing is stepped. */
-#include "plgen.h"
+#include "report/report.h"
 
 #include <math.h>
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The numbers of a step. Each is decided exactly to be rational, or enclosed ever more tightly until both ends of the
  * enclosure round to the same double (Ziv); so each is rounded once, correctly. */
-#include "plgen.h"
+#include "step/step.h"
 
 #include <math.h>
 

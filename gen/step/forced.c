@@ -7,7 +7,7 @@
  * z, y' = A y + B z. Then y - y_p moves freely, and nothing of the load's size is ever rounded into it; y_p is added
  * where the state is read. Near a pole y_p is large and y small: there the loads stay in the step. Which is better
  * is decided by a bound of either over the first steps. */
-#include "plgen.h"
+#include "step/step.h"
 
 #include <math.h>
 

@@ -2,42 +2,7 @@
 /* What acts during a step, as excitations. A load t^k e^{at} cos(wt+p) seen from the step's start t_n is, by the binomial
  * theorem and the addition theorem, a sum over its load states z = t_n^j e^{a t_n} cos or sin(w t_n + p), j <= k: one column
  * per load state. A sampled input is a constant, or a ramp from one sample to the next. */
-#include "plgen.h"
-
-bool is_polynomial(const struct wave *wave)
-{
-	return mpq_sgn(wave->a) == 0 && mpq_sgn(wave->w) == 0;
-}
-
-bool oscillates(const struct wave *wave)
-{
-	return mpq_sgn(wave->w) != 0;
-}
-
-int load_columns(const struct linear *system)
-{
-	int columns = 0;
-	for (int l = 0; l < system->loads; l++)
-		columns += system->load[l].columns;
-	return columns;
-}
-
-int input_columns(const struct linear *system)
-{
-	int columns = 0;
-	for (int i = 0; i < system->inputs; i++)
-		columns += system->input[i].first_order ? 2 : 1;
-	return columns;
-}
-
-bool load_acts(const struct linear *system, const struct load *load)
-{
-	for (int k = 0; k < load->columns; k++)
-		for (int i = 0; i < system->segments * system->n; i++)
-			if (mpq_sgn(load->force[k][i]) != 0)
-				return true;
-	return false;
-}
+#include "step/step.h"
 
 /* How much of load state `to` after tau comes from load state `from`, as factors of tau^m cos and tau^m sin:
  * t^k cos(..+wτ) from t_n^j: binomial(k, j) tau^{k-j}; cos(θ+wτ) = cos θ cos wτ - sin θ sin wτ, sin likewise. */

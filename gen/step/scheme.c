@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A scheme takes the equations apart into what is solved exactly and what is held over a step, and writes the step as
  * a program over the tables of the exact part. */
-#include "plgen.h"
+#include "step/step.h"
 
 /* ---- pl ---- */
 
@@ -422,11 +422,6 @@ static void find_growth(struct step *step)
 	mpfr_set_inf(step->growth, -1);
 	for (int i = 0; i < poles; i++)
 		mpfr_max(step->growth, step->growth, pole[i].re, MPFR_RNDN);
-}
-
-bool has_leftover(const struct step *step)
-{
-	return step->program->actions > 0;
 }
 
 /* The ramps of inputs as channels: u', held and as the slope of u */

@@ -7,30 +7,13 @@
  *   kick-drift-kick   p += X q; q += S p; p += X q; of undamped systems, S and X symmetric: symplectic whatever their rounding
  *
  * p is velocity times mass, masses in units of the first, so that equal masses leave velocities as they are. */
-#include "plgen.h"
+#include "step/step.h"
 
 #include <string.h>
 
-static const char *const names[STEP_FORMS] = { "auto", "direct", "delta", "kick-drift-kick" };
-
-const char *step_form_name(enum step_form form)
-{
-	return names[form];
-}
-
 const char *form_text_of(const struct step *step)
 {
-	return format("%s%s", names[step->form], step->program->compensated ? ", compensated" : "");
-}
-
-bool step_form_of(const char *name, enum step_form *form)
-{
-	for (int i = 0; i < STEP_FORMS; i++)
-		if (strcmp(name, names[i]) == 0) {
-			*form = (enum step_form)i;
-			return true;
-		}
-	return false;
+	return format("%s%s", step_form_name(step->form), step->program->compensated ? ", compensated" : "");
 }
 
 /* ---- which form ---- */
@@ -149,7 +132,7 @@ void need_direct(const struct step *step)
 	const struct model *model = step->model;
 	const char *what = model->switching ? "a piecewise-linear step" : "a step with a leftover";
 	if (model->form != FORM_AUTO && model->form != FORM_DIRECT)
-		error(model->form_at, NULL, "the form %s is of a linear step: %s has the form direct", names[model->form], what);
+		error(model->form_at, NULL, "the form %s is of a linear step: %s has the form direct", step_form_name(model->form), what);
 	if (model->compensated)
 		error(model->compensated_at, NULL, "--accuracy compensated is of a linear step: %s has the form direct", what);
 }
@@ -311,25 +294,6 @@ static bool is_unit(const struct product *p, const struct linear *system)
 {
 	double value = p->factor->value;
 	return value == 1 || value == -1 || is_constant_load(p, system);
-}
-
-/* What the load states of the columns in use cost */
-void count_loads(struct program *program, const struct linear *system, bool single)
-{
-	for (int l = 0, column = 0; l < system->loads; column += system->load[l++].columns) {
-		const struct load *load = &system->load[l];
-		bool used = false;
-		for (int k = 0; k < load->columns; k++)
-			used = used || program->uses[column + k];
-		bool grows = used && mpq_sgn(load->wave->a) != 0, turns = used && oscillates(load->wave);
-		program->oscillators += turns;
-		program->growths += grows;
-		program->multiplications += !used ? 0 : turns ? 2 * (load->powers - 1) + 2 * grows : load->powers > 1 ? load->powers - 2 + grows : 0;
-	}
-	program->wave_multiplications = program->oscillators * (single ? PL_COSSINF_MUL : PL_COSSIN_MUL) + program->growths * (single ? PL_GROWTHF_MUL : PL_GROWTH_MUL);
-	program->wave_additions = program->oscillators * (single ? PL_COSSINF_ADD : PL_COSSIN_ADD) + program->growths * (single ? PL_GROWTHF_ADD : PL_GROWTH_ADD);
-	program->multiplications += program->wave_multiplications;
-	program->additions += program->wave_additions;
 }
 
 static void count_term(struct program *program, const struct product *p, const struct linear *system)

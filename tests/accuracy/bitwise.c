@@ -14,7 +14,7 @@
 
 #include "bitwise_specs.h"
 #include "evaluator.h"
-#include "plgen.h"
+#include "step/step.h"
 #include "random_spec.h"
 #include "rationals.h"
 

@@ -11,7 +11,7 @@
  * needs, after Cox and Matthews 2002 and Liu, Wang, Li and Yi 2022.  Each case runs in a process of its own.
  */
 #include "evaluator.h"
-#include "plgen.h"
+#include "step/step.h"
 #include "random_spec.h"
 
 #include <math.h>

@@ -14,7 +14,7 @@
  * The largest met is printed for each family; for states also in ulp of the largest entry of Phi - I, for ramps in ulp of the largest entry
  * of both columns.
  */
-#include "plgen.h"
+#include "step/step.h"
 #include "tuned.h"
 
 #include <ctype.h>

@@ -8,7 +8,7 @@
  * M q'' + C q' + K q = loads + inputs of the model that -D makes with these values, it has to fulfil them, and rows of outputs have to be equal.
  * Nothing is rounded.  Random specs write their factors with nested params, matrices, lets and sketches; none may be refused.
  */
-#include "plgen.h"
+#include "step/step.h"
 
 #include <stdlib.h>
 #include <string.h>

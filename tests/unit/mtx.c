@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
-#include "plgen.h"
+#include "read/read.h"
 
 #define BANNER(rest) "%%MatrixMarket matrix " rest "\n"
 
