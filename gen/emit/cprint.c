@@ -118,7 +118,7 @@ void name_for_c(const struct model *model, const char *upper, const char **local
 		}
 	}
 	for (int i = 0; i < model->written->system.states; i++) {
-		int place = model->place ? model->place[i] : model->relative ? relative_place(model, i) : i;
+		int place = model->reduction.place ? model->reduction.place[i] : model->relative ? relative_place(model, i) : i;
 		if (place >= 0)
 			local[place] = written_local(model->written, i);
 	}

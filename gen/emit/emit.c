@@ -52,7 +52,7 @@ static bool load_is_needed(const struct model *model, const struct linear *syste
 
 static struct emitter emitter_new(FILE *to, const struct step *step, const char *options)
 {
-	struct emitter e = { .to = to, .step = step, .model = step->model, .system = &step->system, .options = options };
+	struct emitter e = { .to = to, .step = step, .model = step->model, .system = &step->branch->system, .options = options };
 	size_t loads = (size_t)e.system->loads;
 	e.name = step->model->name;
 	e.upper = upper_case(e.name);
@@ -136,7 +136,7 @@ static void banner_leftover(const struct emitter *e)
 	const struct model *model = e->step->shown->model;
 	const char *at = model->operator[0].text;
 	fprintf(e->to, " * y' = A y + loads + inputs + r(t, y). A: the %s%s%s.\n", *at ? "equations' Jacobian at " : model->scheme == SCHEME_PL ? "own terms of each coordinate" : "linear terms with constant coefficients",
-		at, e->step->operators > 1 ? format(", and so on: %d operators", e->step->operators) : "");
+		at, e->step->branches > 1 ? format(", and so on: %d operators", e->step->branches) : "");
 	fprintf(e->to, " * Exact: A%s; approximated: r, which is\n", model->loads_left ? " and the inputs, each constant correctly rounded" :
 		", the loads and the inputs, each constant correctly rounded");
 	for (int c = 0; c < model->channels && c < SHOWN; c++) {
@@ -249,7 +249,7 @@ static void banner_form(const struct emitter *e)
 		fprintf(e->to, " * %s.\n", drift_text(&drift));
 	if (e->step->rounding.known)
 		fprintf(e->to, " * %s.\n", rounding_text(e->step));
-	if (e->model->single)
+	if (e->model->asked.single)
 		fputs(" * Numbers and arithmetic are float; each constant is rounded to it once.\n", e->to);
 }
 
@@ -292,7 +292,7 @@ static void banner_cost(const struct emitter *e)
 	if (e->system->segments > 1)
 		fprintf(e->to, " * The loads change their formula %d time%s; a step across a change is exact too, by a series that stops there.\n",
 			e->system->segments - 1, e->system->segments > 2 ? "s" : "");
-	if (e->model->dropped)
+	if (e->model->reduction.dropped)
 		fprintf(e->to, " * Reduced to what the outputs can see: %d of %d states.\n", e->system->states, e->model->written->system.states);
 	if (has_jump(e) && e->system->states > 12)
 		fprintf(e->to, " * %s_jump needs some %d KB of stack.\n", e->name, 1 + 32 * e->system->states * e->system->states / 1024);
@@ -388,9 +388,9 @@ static void emit_functions(const struct emitter *e, bool rhs)
 		emit_tuning_declarations(e);
 	if (rhs)
 		declare(e, format("void   %s_rhs(double t, const double y[], %sdouble dydt[]);", n, inputs ? "const double u[], " : ""),
-			e->model->place ? format("as written; y: all %d written states", e->model->written->system.states)
+			e->model->reduction.place ? format("as written; y: all %d written states", e->model->written->system.states)
 			: e->ramps ? "as written; u: inputs, then their slopes" : "the equations as written");
-	if (e->model->selftest)
+	if (e->model->asked.selftest)
 		declare(e, format("double %s_selftest(void);", n), "largest deviation from the closed form, in units in the last place");
 	declare(e, format("extern const double %s_Phi[%s_STATES][%s_STATES];", n, N, N), "y(t+h) = Phi y(t) + ...");
 	if (inputs)
@@ -404,7 +404,7 @@ static void emit_declarations(const struct emitter *e, bool rhs)
 	FILE *to = e->to;
 	const char *N = e->upper;
 	fprintf(to, "#ifndef %s_DECLARED\n#define %s_DECLARED\n\n%s#include \"plrt.h\"\n\n#ifdef __cplusplus\nextern \"C\" {\n#endif\n\n", N, N,
-		e->model->single ? "#define PL_FLOAT_ONLY\n" : "");
+		e->model->asked.single ? "#define PL_FLOAT_ONLY\n" : "");
 	fprintf(to, "enum { %s_STATES = %d, %s_INPUTS = %d, %s_OUTPUTS = %d };\n", N, e->system->states, N, e->system->inputs, N, e->model->outputs);
 	if (e->model->switching)
 		fprintf(to, "enum { %s_MAX_EVENTS = %d };  /* crossings in a step */\n", N, MAX_EVENTS);
@@ -452,7 +452,7 @@ static void emit_time(const struct emitter *e)
 		return;
 	}
 	mpz_srcptr p = mpq_numref(e->model->h), q = mpq_denref(e->model->h);
-	bool short_fraction = e->model->single ? mpz_sizeinbase(p, 2) <= 12 && mpz_sizeinbase(q, 2) <= 24 : mpz_sizeinbase(p, 2) <= 40 && mpz_sizeinbase(q, 2) <= 53;
+	bool short_fraction = e->model->asked.single ? mpz_sizeinbase(p, 2) <= 12 && mpz_sizeinbase(q, 2) <= 24 : mpz_sizeinbase(p, 2) <= 40 && mpz_sizeinbase(q, 2) <= 53;
 	const char *factor = mpz_cmp_ui(p, 1) == 0 ? "" : format(" * %s", shortest(mpz_get_d(p)));
 	const char *divisor = mpz_cmp_ui(q, 1) == 0 ? "" : format(" / %s", shortest(mpz_get_d(q)));
 	fprintf(e->to, "\ndouble %s_time(const %s *s)\n{\n    return s->t0 + (double)s->k%s%s;\n}\n", e->name, e->name,
@@ -676,7 +676,7 @@ static void emit_matrix(const struct emitter *e, const struct step *step, const 
 	int n = e->system->states;
 	double *value = ARRAY(double, (size_t)(n * n));
 	for (int i = 0; i < n * n; i++)
-		value[i] = step->table->Phi[i].value;
+		value[i] = step->branch->whole->Phi[i].value;
 	fprintf(e->to, "\n%s[%s_STATES][%s_STATES] = {  /* columns: %s */\n", declaration, e->upper, e->upper, state_list(step->model));
 	emit_number_rows(e, n, n, value, step->model->state_name);
 	fputs("};\n", e->to);
@@ -702,7 +702,7 @@ static void emit_phi(const struct emitter *e)
 
 static void emit_input_matrix(const struct emitter *e, const struct step *step, const char *declaration)
 {
-	const struct table *table = step->table;
+	const struct table *table = step->branch->whole;
 	double *value = ARRAY(double, (size_t)(table->states * table->inputs));
 	for (int i = 0; i < table->states * table->inputs; i++)
 		value[i] = table->input[i].value;
@@ -823,7 +823,7 @@ void emit_code(FILE *to, const struct step *step, const char *options, const cha
 		fputs("\n#include <math.h>\n", to);
 	if (step->program->compensated || step->carries)
 		fprintf(to, "\n#if PL_EXCESS_PRECISION%s\n#error \"two-word arithmetic needs sums that have the bits of their type: on x86 compile it with -msse2 "
-			    "-mfpmath=sse\"\n#endif\n", step->model->single ? "F" : "");
+			    "-mfpmath=sse\"\n#endif\n", step->model->asked.single ? "F" : "");
 	emit_phi(&e);
 	if (e.system->inputs)
 		emit_gamma(&e);
@@ -861,7 +861,7 @@ void emit_code(FILE *to, const struct step *step, const char *options, const cha
 		emit_at(&e);
 	if (has_jump(&e))
 		emit_jump(&e);
-	if (e.model->selftest)
+	if (e.model->asked.selftest)
 		emit_selftest(&e, has_jump(&e));
 	if (rhs)
 		emit_rhs(&e);

@@ -125,7 +125,7 @@ static const char *coordinate_now(const struct emitter *e, const struct basis *b
 	if (basis->order > 0 && basis->order >= written->frame.coord[basis->index]->highest)
 		return format("accel%d", basis->index + 1);
 	int state = basis->order ? written->system.velocity[basis->index] : basis->index;
-	return e->local[e->model->place ? e->model->place[state] : state];
+	return e->local[e->model->reduction.place ? e->model->reduction.place[state] : state];
 }
 
 const char *basis_now(const struct emitter *e, const struct basis *basis)
@@ -351,7 +351,7 @@ struct picked {                     /* a matrix of a table: Phi, the loads' colu
 
 static double picked_entry(const struct picked *p, const struct emitter *e, int operator, int segment, int i, int j)
 {
-	const struct table *table = e->step->all[operator][p->table];
+	const struct table *table = e->step->branch[operator].table[p->table];
 	switch (p->kind) {
 	case PICK_PHI:   return table->Phi[i * table->states + j].value;
 	case PICK_LOAD:  return table->load[(segment * table->states + i) * table->columns + p->column[j]].value;
@@ -364,7 +364,7 @@ static double *picked_matrix(const struct picked *p, const struct emitter *e, in
 {
 	int rows = e->system->states;
 	double *value = ARRAY(double, (size_t)(rows * p->columns));
-	const struct linear *system = &e->step->operator[operator];
+	const struct linear *system = &e->step->branch[operator].system;
 	mpq_t *A = p->kind == PICK_SLOPE ? state_matrix(system, false) : NULL;
 	for (int j = 0; j < p->columns; j++) {
 		mpq_t *B = p->kind == PICK_FORCE ? impulse_of_channel(system, j) : NULL;
@@ -392,7 +392,7 @@ static void emit_table(const struct emitter *e, const char *name, const char *no
 
 static void emit_one_table(const struct emitter *e, int t)
 {
-	const struct wanted *wanted = &e->step->table->wanted[t];
+	const struct wanted *wanted = &e->step->branch->whole->wanted[t];
 	int states = e->system->states, *column, columns = acting_columns(e, &column);
 	if (wanted->Phi && t > 0)
 		emit_table(e, wanted->name, format("e^{A tau}, tau = %s h", exact_text(wanted->fraction)), 0, (struct picked){ PICK_PHI, t, 0, states, NULL });
@@ -400,8 +400,8 @@ static void emit_one_table(const struct emitter *e, int t)
 		emit_table(e, wanted->name, "e^{A h} of the operators after the first", 1, (struct picked){ PICK_PHI, t, 0, states, NULL });
 	if (columns)
 		emit_table(e, format("%s_load", wanted->name), "what the load states add", 0, (struct picked){ PICK_LOAD, t, 0, columns, column });
-	if (e->step->table->inputs)
-		emit_table(e, format("%s_input", wanted->name), "what the inputs add", 0, (struct picked){ PICK_INPUT, t, 0, e->step->table->inputs, NULL });
+	if (e->step->branch->whole->inputs)
+		emit_table(e, format("%s_input", wanted->name), "what the inputs add", 0, (struct picked){ PICK_INPUT, t, 0, e->step->branch->whole->inputs, NULL });
 	for (int k = 0; k < wanted->kernels; k++)
 		emit_table(e, wanted->kernel[k].name, "what leftovers add", 0, (struct picked){ PICK_KERNEL, t, k, e->model->channels, NULL });
 }
@@ -430,14 +430,14 @@ static const char *matrix_text(const struct emitter *e, const char *name)
 static const char *phi_text(const struct emitter *e, int t)
 {
 	if (t > 0)
-		return matrix_text(e, e->step->table->wanted[t].name);
+		return matrix_text(e, e->step->branch->whole->wanted[t].name);
 	const char *first = format("%s[0]", stepped_table(e, "Phi"));
 	return many_operators(e) ? format("which ? %s_full[which - 1][0] : %s", e->name, first) : first;
 }
 
 static const char *load_text(const struct emitter *e, int t)
 {
-	const char *name = format("%s_%s_load", e->name, e->step->table->wanted[t].name);
+	const char *name = format("%s_%s_load", e->name, e->step->branch->whole->wanted[t].name);
 	if (e->system->segments == 1)
 		return format("%s[%s][0]", name, operator_index(e));
 	return many_operators(e) ? format("%s[%d * s->segment + which][0]", name, e->model->operators) : format("%s[s->segment][0]", name);
@@ -578,13 +578,13 @@ static int add_flow_terms(const struct emitter *e, const struct table *table, in
 
 static size_t most_terms(const struct emitter *e)
 {
-	const struct table *table = e->step->table;
+	const struct table *table = e->step->branch->whole;
 	return (size_t)(table->states + table->columns + table->inputs + 4 * table->channels + 2);
 }
 
 static void emit_sum(const struct emitter *e, const struct action *a)
 {
-	struct table *const *table = e->step->all[0];
+	struct table *const *table = e->step->branch[0].table;
 	for (int i = 0; i < e->system->states; i++) {
 		const char **term = ARRAY(const char *, most_terms(e));
 		int terms = a->flow != NONE ? add_flow_terms(e, table[a->flow], i, term) : 0;
@@ -604,7 +604,7 @@ static void emit_sum(const struct emitter *e, const struct action *a)
 /* target = Phi y + loads + inputs; without Phi: the loads and inputs alone */
 static void emit_flow_loop(const struct emitter *e, int t, const char *target, const char *margin)
 {
-	const struct table *table = e->step->all[0][t];
+	const struct table *table = e->step->branch[0].table[t];
 	int *column, columns = acting_columns(e, &column);
 	const char *N = e->upper, *function = "pl_multiply";
 	if (table->Phi) {
@@ -622,7 +622,7 @@ static void emit_flow_loop(const struct emitter *e, int t, const char *target, c
 
 static void emit_sum_loop(const struct emitter *e, const struct action *a)
 {
-	struct table *const *table = e->step->all[0];
+	struct table *const *table = e->step->branch[0].table;
 	const char *target = vector_name(a->target);
 	if (a->flow != NONE && !flows_apart(e))
 		emit_flow_loop(e, a->flow, target, "    ");
@@ -685,7 +685,7 @@ static void declare_vectors(const struct emitter *e)
 	if (program->predicts)
 		list = format("%s%sfirst[%s_STATES]", list, *list ? ", " : "", e->upper);
 	for (int t = 0; t < e->step->tables && flows_apart(e); t++)
-		if (e->step->all[0][t]->Phi)
+		if (e->step->branch[0].table[t]->Phi)
 			list = format("%s, flow%d[%s_STATES]", list, t, e->upper);
 	for (int i = 0; i < program->nodes; i++)
 		if (program->node_table[i] != NONE)
@@ -729,9 +729,9 @@ static void emit_operands(const struct emitter *e)
 		}
 		fputs("};\n", e->to);
 	}
-	if (e->step->table->inputs) {
-		fprintf(e->to, "    const double input[%d] = {", e->step->table->inputs);
-		for (int k = 0; k < e->step->table->inputs; k++)
+	if (e->step->branch->whole->inputs) {
+		fprintf(e->to, "    const double input[%d] = {", e->step->branch->whole->inputs);
+		for (int k = 0; k < e->step->branch->whole->inputs; k++)
 			fprintf(e->to, "%s%s", k ? ", " : "", input_operand(e, k));
 		fputs("};\n", e->to);
 	}
@@ -746,14 +746,14 @@ static void emit_driven(const struct emitter *e)
 		if (t == NONE)
 			continue;
 		if (program->loops) {
-			struct table without = *e->step->all[0][t], *kept = e->step->all[0][t];
+			struct table without = *e->step->branch[0].table[t], *kept = e->step->branch[0].table[t];
 			without.Phi = NULL;
-			e->step->all[0][t] = &without;
+			e->step->branch[0].table[t] = &without;
 			emit_flow_loop(e, t, format("driven%d", i), flows_apart(e) ? "        " : "    ");
-			e->step->all[0][t] = kept;
+			e->step->branch[0].table[t] = kept;
 			continue;
 		}
-		struct table without = *e->step->all[0][t];
+		struct table without = *e->step->branch[0].table[t];
 		without.Phi = NULL;
 		for (int row = 0; row < e->system->states; row++) {
 			const char **term = ARRAY(const char *, most_terms(e));
@@ -784,14 +784,14 @@ static void emit_flows_apart(const struct emitter *e)
 	if (is_driven(e))
 		fprintf(e->to, "        %s rest = *s;\n        for (i = 0; i < %s_STATES; i++)\n            rest.y[i] = 0.0;\n", n, e->upper);
 	for (int t = 0; t < e->step->tables; t++)
-		if (e->step->all[0][t]->Phi)
-			fprintf(e->to, "        %s_pass(s, %s%s%s%s, flow%d);\n", n, which, u, held, time_of(e, e->step->table->wanted[t].fraction), t);
+		if (e->step->branch[0].table[t]->Phi)
+			fprintf(e->to, "        %s_pass(s, %s%s%s%s, flow%d);\n", n, which, u, held, time_of(e, e->step->branch->whole->wanted[t].fraction), t);
 	for (int i = 0; i < program->nodes; i++)
 		if (program->node_table[i] != NONE)
 			fprintf(e->to, "        %s_pass(&rest, %s%s%s%s, driven%d);\n", n, which, u, held, time_of(e, program->node[i]), i);
 	fputs("    } else {\n", e->to);
 	for (int t = 0; t < e->step->tables; t++)
-		if (e->step->all[0][t]->Phi)
+		if (e->step->branch[0].table[t]->Phi)
 			emit_flow_loop(e, t, format("flow%d", t), "        ");
 	emit_driven(e);
 	fputs("    }\n", e->to);
@@ -815,7 +815,7 @@ static bool *all_states(const struct emitter *e)
 	for (int i = 0; i < e->system->states; i++)
 		for (int j = 0; j < e->system->states; j++)
 			for (int t = 0; t < e->step->tables; t++)
-				all[j] = all[j] || (e->step->all[0][t]->Phi && !e->step->all[0][t]->Phi[i * e->system->states + j].zero);
+				all[j] = all[j] || (e->step->branch[0].table[t]->Phi && !e->step->branch[0].table[t]->Phi[i * e->system->states + j].zero);
 	return all;
 }
 

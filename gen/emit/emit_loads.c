@@ -15,7 +15,7 @@ static void set_unit(mpfr_ptr unit, bool turns)
 /* Bits of a phase or an exponent on the target */
 static int load_bits(const struct emitter *e)
 {
-	return e->model->single ? 64 : 128;
+	return e->model->asked.single ? 64 : 128;
 }
 
 /* q / unit as so many bits with `fraction` of them behind the point, wrapped; the unit is 2 pi for turns, else ln 2 */
@@ -49,7 +49,7 @@ static void print_rate(const struct emitter *e, mpq_srcptr q, bool turns, const 
 {
 	mpfr_t rate, unit, wide;
 	mpz_t word, digits;
-	int words = e->model->single ? 2 : 3;
+	int words = e->model->asked.single ? 2 : 3;
 	mpfr_init2(rate, 64 * words);
 	mpfr_inits2(512, unit, wide, NULL);
 	mpz_inits(word, digits, NULL);
@@ -329,7 +329,7 @@ void emit_load_states(const struct emitter *e, const bool *loads, bool time_is_t
 /* A factor of a load state; where formulas change, its place in the table forced_part[segment][state][column] */
 static const char *forced_term(const struct emitter *e, int state, int column)
 {
-	const struct table *table = e->step->table;
+	const struct table *table = e->step->branch->whole;
 	const char *operand = column_operand(e, column);
 	if (e->system->segments == 1)
 		return scaled(e->step->forced->part[state * table->columns + column].value, operand);
@@ -339,7 +339,7 @@ static const char *forced_term(const struct emitter *e, int state, int column)
 
 static bool forces(const struct emitter *e, int state, int column)
 {
-	const struct table *table = e->step->table;
+	const struct table *table = e->step->branch->whole;
 	bool any = false;
 	for (int s = 0; s < e->system->segments && is_forced(e->step, column); s++)
 		any = any || e->step->forced->part[(s * table->states + state) * table->columns + column].value != 0;
@@ -349,7 +349,7 @@ static bool forces(const struct emitter *e, int state, int column)
 /* [segment][state][column] */
 static void print_forced(const struct emitter *e, const char *name, const char *what, int segments, const struct coefficient *factor)
 {
-	const struct table *table = e->step->table;
+	const struct table *table = e->step->branch->whole;
 	double *value = ARRAY(double, (size_t)(table->states * table->columns));
 	fprintf(e->to, "\nstatic const double %s_%s[%d][%s_STATES][%d] = {  /* %s */\n", e->name, name, segments, e->upper, table->columns, what);
 	for (int s = 0; s < segments; s++) {
@@ -366,7 +366,7 @@ static void print_forced(const struct emitter *e, const char *name, const char *
 static void emit_rebase(const struct emitter *e)
 {
 	const char *columns = "";
-	int count = e->step->table->columns;
+	int count = e->step->branch->whole->columns;
 	for (int k = 0; k < count; k++) {
 		const char *operand = is_forced(e->step, k) ? column_operand(e, k) : "0.0";
 		columns = format("%s%s%s", columns, k ? ", " : "", operand ? operand : "1.0");
@@ -381,7 +381,7 @@ static void emit_rebase(const struct emitter *e)
 
 void emit_forced(const struct emitter *e)
 {
-	const struct table *table = e->step->table;
+	const struct table *table = e->step->branch->whole;
 	const char **term = ARRAY(const char *, (size_t)table->columns);
 	if (e->system->segments > 1)
 		print_forced(e, "forced_part", "factors of the load states in each segment of time", e->system->segments, e->step->forced->part);

@@ -164,7 +164,7 @@ static void mark_form(const struct emitter *e, const struct output *output, stru
 	struct reads reads = reads_of(written, 1, &form);
 	for (int i = 0; i < written->system.states; i++)
 		if (reads.state[i])
-			needs->reads[e->model->place ? e->model->place[i] : i] = true;
+			needs->reads[e->model->reduction.place ? e->model->reduction.place[i] : i] = true;
 	for (int i = 0; i < 2 * e->system->inputs; i++)
 		needs->inputs[i] = needs->inputs[i] || reads.input[i];
 	for (int l = 0; l < e->system->loads; l++)

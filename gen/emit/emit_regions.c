@@ -21,7 +21,7 @@ static void fill_load_states(const struct emitter *e, mpq_srcptr piece, double *
 		for (int to = 0; to < load->columns && series->load[l] >= 0; to++)
 			for (int from = 0; from < load->columns; from++)
 				Phi[(series->load[l] + to) * series->size + series->load[l] + from] =
-					response_value(response_of_load_state(load, to, from), piece, false, e->model->step_at, column_text(load, to)).value;
+					response_value(response_of_load_state(load, to, from), piece, false, e->model->asked.step_at, column_text(load, to)).value;
 	}
 }
 
@@ -54,7 +54,7 @@ static void fill_inputs(const struct emitter *e, const struct table *table, doub
 static double *phi_of(const struct emitter *e, int system)
 {
 	const struct series *series = &e->step->series;
-	const struct table *table = e->step->all[system][0];
+	const struct table *table = e->step->branch[system].table[0];
 	double *Phi = ARRAY(double, (size_t)series->size * (size_t)series->size);
 	for (int i = 0; i < table->states; i++) {
 		for (int j = 0; j < table->states; j++)
@@ -67,7 +67,7 @@ static double *phi_of(const struct emitter *e, int system)
 	fill_inputs(e, table, Phi);
 	mpq_t piece;
 	mpq_init(piece);
-	mpq_div_2exp(piece, e->model->h, (mp_bitcnt_t)e->step->halvings[system]);
+	mpq_div_2exp(piece, e->model->h, (mp_bitcnt_t)e->step->branch[system].halvings);
 	fill_load_states(e, piece, Phi);
 	fill_input_states(e, piece, Phi);
 	mpq_clear(piece);
@@ -77,7 +77,7 @@ static double *phi_of(const struct emitter *e, int system)
 static double *slopes_of(const struct emitter *e, int system)
 {
 	int size = e->step->series.size;
-	mpq_t *exact = series_matrix(&e->step->series, &e->step->operator[system], 0);
+	mpq_t *exact = series_matrix(&e->step->series, &e->step->branch[system].system, 0);
 	double *A = ARRAY(double, (size_t)size * (size_t)size);
 	for (int i = 0; i < size * size; i++)
 		A[i] = finite_number(e, exact[i]);
@@ -189,8 +189,8 @@ static const char **expression_names(const struct emitter *e)
 static void emit_matrices(const struct emitter *e, const char *name, const char *note, double *(*of)(const struct emitter *, int))
 {
 	int size = e->step->series.size;
-	fprintf(e->to, "\nstatic const double %s_%s[%d][%d][%d] = {  /* %s */\n", e->name, name, e->step->operators, size, size, note);
-	for (int k = 0; k < e->step->operators; k++) {
+	fprintf(e->to, "\nstatic const double %s_%s[%d][%d][%d] = {  /* %s */\n", e->name, name, e->step->branches, size, size, note);
+	for (int k = 0; k < e->step->branches; k++) {
 		fputs("  {\n", e->to);
 		emit_number_rows(e, size, size, of(e, k), entry_names(e));
 		fputs("  },\n", e->to);
@@ -225,8 +225,8 @@ static void emit_breakpoints(const struct emitter *e)
 		fprintf(e->to, "%s%d", r == 0 ? "" : r % 20 ? ", " : ",\n    ", s->region[r].possible ? s->region[r].system : -1);
 	fputs("\n};\n\n", e->to);
 	fprintf(e->to, "static const int %s_halvings[] = {", e->name);
-	for (int k = 0; k < e->step->operators; k++)
-		fprintf(e->to, "%s%d", k ? ", " : "", e->step->halvings[k]);
+	for (int k = 0; k < e->step->branches; k++)
+		fprintf(e->to, "%s%d", k ? ", " : "", e->step->branch[k].halvings);
 	fputs("};\n", e->to);
 }
 
@@ -234,11 +234,11 @@ static void emit_breakpoints(const struct emitter *e)
 static double *bound_of(const struct emitter *e, int k, const double *A, int expression, int order)
 {
 	int size = e->step->series.size;
-	double d = ldexp(round_rational(e->model->h), -e->step->halvings[k]), factor = order == 1 ? d / 3 : order == 2 ? d * d / 8 : d * d * d * d / 384;
+	double d = ldexp(round_rational(e->model->h), -e->step->branch[k].halvings), factor = order == 1 ? d / 3 : order == 2 ? d * d / 8 : d * d * d * d / 384;
 	double *row = row_of(e, &regions_of(e)->expression[expression]), *bound = ARRAY(double, (size_t)size);
 	if (order > 1) {
 		bound_derivative(e, A, row, order, d, factor, bound);
-		for (int j = 0; j < size && e->model->single; j++)
+		for (int j = 0; j < size && e->model->asked.single; j++)
 			bound[j] *= 1 + ldexp(1, -22);  /* still a bound when it is printed as a float */
 		return bound;
 	}
@@ -253,8 +253,8 @@ static void emit_bound(const struct emitter *e, const char *name, const char *no
 {
 	const struct switching *s = regions_of(e);
 	int size = e->step->series.size;
-	fprintf(e->to, "\nstatic const double %s_%s[%d][%d][%d] = {  /* %s */\n", e->name, name, e->step->operators, s->expressions, size, note);
-	for (int k = 0; k < e->step->operators; k++) {
+	fprintf(e->to, "\nstatic const double %s_%s[%d][%d][%d] = {  /* %s */\n", e->name, name, e->step->branches, s->expressions, size, note);
+	for (int k = 0; k < e->step->branches; k++) {
 		double *A = slopes_of(e, k), *value = ARRAY(double, (size_t)(s->expressions * size));
 		for (int i = 0; i < s->expressions; i++)
 			memcpy(value + i * size, bound_of(e, k, A, i, order), (size_t)size * sizeof *value);

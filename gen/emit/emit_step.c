@@ -105,7 +105,7 @@ static bool any_load_term(const struct program *program)
 
 static void emit_load_factors(const struct emitter *e)
 {
-	const struct table *table = e->step->table;
+	const struct table *table = e->step->branch->whole;
 	double *value = ARRAY(double, (size_t)(table->states * table->columns));
 	int columns = 0;
 	for (int k = 0; k < table->columns; k++)
@@ -183,7 +183,7 @@ static void emit_looped_step(const struct emitter *e)
 {
 	FILE *to = e->to;
 	const char *n = e->name, *N = e->upper;
-	const struct table *table = e->step->table;
+	const struct table *table = e->step->branch->whole;
 	bool *loads = ARRAY(bool, (size_t)e->system->loads);
 	fprintf(to, "    double y[%s_STATES];\n    int i, j;\n", N);
 	emit_set_aside(e);
@@ -209,7 +209,7 @@ static void emit_plain_step(const struct emitter *e)
 	emit_raw_locals(e, program->reads, program->in_order);
 	emit_load_states(e, loads_of_step(e), false);
 	if (e->system->segments > 1 && any_load_term(program) && !program->tuned)
-		fprintf(e->to, "    const double (*const factor)[%d] = %s_load_factor[s->segment];\n", e->step->table->columns, e->name);
+		fprintf(e->to, "    const double (*const factor)[%d] = %s_load_factor[s->segment];\n", e->step->branch->whole->columns, e->name);
 	for (int i = 0; i < program->assignments; i++)
 		emit_assignment(e, &program->assignment[i]);
 	for (int i = 0; i < e->system->states && program->in_order; i++)
@@ -272,7 +272,7 @@ static void emit_increments(const struct emitter *e)
 	int n = e->system->states;
 	double *value = ARRAY(double, (size_t)(n * n));
 	for (int i = 0; i < n * n; i++)
-		value[i] = e->step->table->increment[i].value;
+		value[i] = e->step->branch->whole->increment[i].value;
 	fprintf(e->to, "\nstatic const double %s_increment[%s_STATES][%s_STATES] = {  /* Phi - I, rounded as it is */\n", e->name, e->upper, e->upper);
 	emit_number_rows(e, n, n, value, e->model->state_name);
 	fputs("};\n", e->to);
@@ -282,7 +282,7 @@ void emit_step(const struct emitter *e)
 {
 	if (e->step->program->loops && e->step->form == FORM_DELTA)
 		emit_increments(e);
-	if (e->step->program->loops && e->step->table->columns)
+	if (e->step->program->loops && e->step->branch->whole->columns)
 		emit_load_factors(e);
 	if (e->system->segments > 1) {
 		emit_changing_step(e);

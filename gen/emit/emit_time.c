@@ -77,12 +77,12 @@ static void emit_slopes(const struct emitter *e)
 	const struct series *series = &e->step->series;
 	size_t cells = (size_t)series->size * (size_t)series->size;
 	double *A = ARRAY(double, cells);
-	bool bank = e->step->operators > 1;
+	bool bank = e->step->branches > 1;
 	fprintf(e->to, "\n/* x' = A x; x = y%s%s */\nstatic const double %s_slope%s[%d][%d] = {\n",
 		series->size > e->system->states ? ", then what acts on it" : "", bank ? "; for each operator" : "", e->name,
-		bank ? format("[%d]", e->step->operators) : "", series->size, series->size);
-	for (int o = 0; o < e->step->operators; o++) {
-		mpq_t *exact = series_matrix(series, &e->step->operator[o], 0);
+		bank ? format("[%d]", e->step->branches) : "", series->size, series->size);
+	for (int o = 0; o < e->step->branches; o++) {
+		mpq_t *exact = series_matrix(series, &e->step->branch[o].system, 0);
 		for (size_t i = 0; i < cells; i++)
 			A[i] = round_rational(exact[i]);
 		fputs(bank ? "  {\n" : "", e->to);
@@ -94,7 +94,7 @@ static void emit_slopes(const struct emitter *e)
 
 static const char *slope_text(const struct emitter *e)
 {
-	return e->step->operators > 1 ? format("%s_slope[which]", e->name) : format("%s_slope", e->name);
+	return e->step->branches > 1 ? format("%s_slope[which]", e->name) : format("%s_slope", e->name);
 }
 
 /* ---- loads that change their formula: A's columns of the loads, for each segment of time ---- */
@@ -199,7 +199,7 @@ static void emit_pass(const struct emitter *e)
 	}
 	fprintf(to, "\n/* The state tau after now, from change to change of the loads on the way. */\n");
 	fprintf(to, "static %s %s_pass(const %s *s, %s%s%sdouble tau, %sdouble y[%s_STATES])\n{\n", e->step->forced ? "int" : "void", e->name, e->name,
-		e->step->operators > 1 ? "int which, " : "", input_parameter(e), series->powers ? "const double *left, " : "", e->step->forced ? "int whole, " : "", e->upper);
+		e->step->branches > 1 ? "int which, " : "", input_parameter(e), series->powers ? "const double *left, " : "", e->step->forced ? "int whole, " : "", e->upper);
 	fprintf(to, "    double A[%d][%d], done = 0.0, x[%d], work[%d];\n    int j, segment = s->segment;\n    pl_series series;\n", size, size, size, 2 * size);
 	emit_series_vector(e);
 	fprintf(to, "    for (i = 0; i < %d; i++)\n        for (j = 0; j < %d; j++)\n            A[i][j] = %s[i][j];\n", size, size, slope_text(e));
@@ -253,7 +253,7 @@ static void emit_held_leftover(const struct emitter *e)
 	if (!has_leftover(e->step))
 		return;
 	emit_samples(e);
-	if (e->step->operators > 1)
+	if (e->step->branches > 1)
 		fprintf(e->to, "    const int which = %s;\n", selection_call(e));
 	fprintf(e->to, "    double left[%d];\n", e->system->channels);
 }
@@ -280,7 +280,7 @@ void emit_at(const struct emitter *e)
 		emit_leftover_now(e);
 		if (e->model->relative)
 			fprintf(to, "    double x[%s_STATES];\n", e->upper);
-		fprintf(to, "    %s_pass(s, %s%s%stau, %s%s);\n", e->name, e->step->operators > 1 ? "which, " : "", e->system->inputs ? "u, " : "",
+		fprintf(to, "    %s_pass(s, %s%s%stau, %s%s);\n", e->name, e->step->branches > 1 ? "which, " : "", e->system->inputs ? "u, " : "",
 			series->powers ? "left, " : "", e->step->forced ? "1, " : "", e->model->relative ? "x" : "y");
 		if (e->model->relative)
 			fprintf(to, "    %s_written(s, x, y);\n", e->name);
@@ -288,7 +288,7 @@ void emit_at(const struct emitter *e)
 		return;
 	}
 	fprintf(to, "    %sconst pl_series series = {%d, %s_STATES, %d, %d, %s[0]};  /* size, states, degree, halvings */\n",
-		e->step->operators > 1 ? "" : "static ", series->size, e->upper, series->degree, series->halvings, slope_text(e));
+		e->step->branches > 1 ? "" : "static ", series->size, e->upper, series->degree, series->halvings, slope_text(e));
 	fprintf(to, "    double x[%d], work[%d];\n", series->size, 2 * series->size);
 	emit_series_vector(e);
 	fputs("    pl_series_advance(&series, tau, x, work);\n", to);
@@ -319,7 +319,7 @@ static void place_load_states(const struct emitter *e, struct power *p)
 
 static struct power power_matrix(const struct emitter *e, int segment)
 {
-	const struct table *table = e->step->table;
+	const struct table *table = e->step->branch->whole;
 	const struct model *model = e->model;
 	int n = table->states;
 	struct power p;
@@ -335,7 +335,7 @@ static struct power power_matrix(const struct emitter *e, int segment)
 				p.cell[i * p.size + p.load[l] + k] = table->load[(segment * n + i) * table->columns + column + k];
 			for (int from = 0; from < load->columns; from++)
 				p.cell[(p.load[l] + k) * p.size + p.load[l] + from] =
-					response_value(response_of_load_state(load, k, from), model->h, true, model->step_at, column_text(load, k));
+					response_value(response_of_load_state(load, k, from), model->h, true, model->asked.step_at, column_text(load, k));
 		}
 	}
 	return p;
@@ -347,7 +347,7 @@ static void emit_second_words(const struct emitter *e)
 	int n = e->system->states;
 	double *low = ARRAY(double, (size_t)n * (size_t)n);
 	for (int i = 0; i < n * n; i++)
-		low[i] = e->step->table->Phi[i].low;
+		low[i] = e->step->branch->whole->Phi[i].low;
 	fprintf(e->to, "\n/* %s + %s_Phi_low is the transfer matrix in two words */\n", stepped_table(e, "Phi"), e->name);
 	fprintf(e->to, "static const double %s_Phi_low[%s_STATES][%s_STATES] = {\n", e->name, e->upper, e->upper);
 	emit_number_rows(e, n, n, low, e->model->state_name);

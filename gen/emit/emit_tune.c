@@ -78,7 +78,7 @@ static int work_size(const struct emitter *e)
 /* Bytes, frames of the calls not counted */
 static int retune_stack(const struct emitter *e)
 {
-	int size = e->step->series.size, real = e->model->single ? 4 : 8;
+	int size = e->step->series.size, real = e->model->asked.single ? 4 : 8;
 	int twos = e->model->tuning->rows * equation_width(e) + size * size + work_size(e) + e->system->segments * e->system->states * size;
 	return 2 * real * twos;
 }
@@ -161,7 +161,7 @@ void emit_tuning_wrapper(const struct emitter *e)
 
 static double *nominal_step(const struct emitter *e)
 {
-	const struct table *table = e->step->table;
+	const struct table *table = e->step->branch->whole;
 	const struct coefficient *square = e->step->form == FORM_DELTA ? table->increment : table->Phi;
 	int n = table->states, width = step_columns(e), segments = e->system->segments;
 	double *value = ARRAY(double, (size_t)(n * width));

@@ -36,13 +36,13 @@ struct closed_form {                /* of one state */
 
 static struct closed_form closed_form_of(const struct step *step, int state, const mpq_t *start)
 {
-	const struct linear *system = &step->system;
+	const struct linear *system = &step->branch->system;
 	struct output output = state_output(system, state);
 	struct closed_form form;
-	form.count = responses_of_output(step->solved, system, start, &output, &form.list);
+	form.count = responses_of_output(step->branch->resolvent, system, start, &output, &form.list);
 	ENLARGE(form.list, (size_t)form.count + (size_t)system->inputs);
 	for (int i = 0; i < system->inputs; i++) {
-		form.list[form.count].response = response_of_input(step->solved, system, state, i, 0, step->model->h);
+		form.list[form.count].response = response_of_input(step->branch->resolvent, system, state, i, 0, step->model->h);
 		mpq_init(form.list[form.count++].start);
 	}
 	return form;
@@ -65,8 +65,8 @@ struct reference {
 static bool fill_row(const struct step *step, const struct closed_form *form, mpq_srcptr t, double *row)
 {
 	bool finite = true;
-	for (int i = 0; i < step->system.states; i++) {
-		row[i] = started_value(form[i].count, form[i].list, t, step->model->step_at, "a value of the self-test").value;
+	for (int i = 0; i < step->branch->system.states; i++) {
+		row[i] = started_value(form[i].count, form[i].list, t, step->model->asked.step_at, "a value of the self-test").value;
 		finite = finite && isfinite(row[i]);
 	}
 	return finite;
@@ -74,7 +74,7 @@ static bool fill_row(const struct step *step, const struct closed_form *form, mp
 
 static void fill_reference(const struct step *step, struct reference *r)
 {
-	int n = step->system.states;
+	int n = step->branch->system.states;
 	mpq_t *start = rationals((size_t)n), t;
 	struct closed_form *form = ARRAY(struct closed_form, (size_t)n);
 	mpq_init(t);
@@ -97,7 +97,7 @@ static void fill_reference(const struct step *step, struct reference *r)
 		double largest = fabs(r->start[i]);
 		for (int k = 0; k < r->rows; k++)
 			largest = fmax(largest, fabs(r->value[k * n + i]));
-		r->unit[i] = ulp_of(largest, step->model->single);
+		r->unit[i] = ulp_of(largest, step->model->asked.single);
 	}
 	mpq_clear(t);
 }

@@ -35,7 +35,7 @@ const char *scaled(double factor, const char *operand)
 double finite_number(const struct emitter *e, mpq_srcptr q)
 {
 	if (beyond_range(q))
-		error(e->model->step_at, NULL, "a number of the equations is beyond the range of %s", target_name());
+		error(e->model->asked.step_at, NULL, "a number of the equations is beyond the range of %s", target_name());
 	return round_rational(q);
 }
 
@@ -45,7 +45,7 @@ void emit_number_rows(const struct emitter *e, int rows, int columns, const doub
 		fputs("    {", e->to);
 		for (int j = 0; j < columns; j++) {
 			if (!isfinite(value[i * columns + j]))
-				error(e->model->step_at, NULL, "a number in the row of %s is beyond the range of %s", row_note[i], target_name());
+				error(e->model->asked.step_at, NULL, "a number in the row of %s is beyond the range of %s", row_note[i], target_name());
 			fprintf(e->to, "%s%s", j ? ", " : "", shortest(value[i * columns + j]));
 		}
 		fprintf(e->to, "},  /* %s */\n", row_note[i]);

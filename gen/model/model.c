@@ -28,12 +28,12 @@ static void define_override(struct building *b, const char *text)
 
 static void set_tunables(struct building *b)
 {
-	for (int i = 0; b->overrides->tunable && i < b->spec->tunables; i++) {
+	for (int i = 0; b->request->tunable && i < b->spec->tunables; i++) {
 		const struct tunable *tunable = &b->spec->tunable[i];
 		struct node *value = NEW(struct node);
 		*value = (struct node){ .kind = NODE_NUMBER, .at = tunable->at, .start = tunable->at, .end = tunable->at };
 		mpq_init(value->number);
-		mpq_set(value->number, b->overrides->tunable[i]);
+		mpq_set(value->number, b->request->tunable[i]);
 		tunable->symbol->value = value;
 	}
 }
@@ -90,19 +90,19 @@ static void evaluate_lets(struct building *b)
 static void choose_scheme(void *context)
 {
 	struct building *b = context;
-	const char *wanted = b->overrides->scheme ? b->overrides->scheme : b->spec->scheme;
+	const char *wanted = b->request->scheme ? b->request->scheme : b->spec->scheme;
 	b->collector.scheme = "exact";
-	b->collector.closed = b->overrides->solution;
-	b->collector.keep = b->overrides->solution ? KEEP_NOTHING : wanted ? KEEP_PIECEWISE : KEEP_ALL;
+	b->collector.closed = b->request->solution;
+	b->collector.keep = b->request->solution ? KEEP_NOTHING : wanted ? KEEP_PIECEWISE : KEEP_ALL;
 	if (!wanted)
 		return;
-	struct place at = b->overrides->scheme ? (struct place){ source_argument(wanted), 0 } : b->spec->scheme_at;
+	struct place at = b->request->scheme ? (struct place){ source_argument(wanted), 0 } : b->spec->scheme_at;
 	enum scheme scheme;
 	if (scheme_of(wanted, &scheme)) {
-		b->model->scheme = b->overrides->solution ? SCHEME_EXACT : scheme;
-		b->model->scheme_at = at;
+		b->model->scheme = b->request->solution ? SCHEME_EXACT : scheme;
+		b->model->asked.scheme_at = at;
 		b->collector.scheme = scheme_name(b->model->scheme);
-		b->collector.keep = b->overrides->solution ? KEEP_NOTHING : scheme == SCHEME_EXACT ? KEEP_PIECEWISE : KEEP_ALL;
+		b->collector.keep = b->request->solution ? KEEP_NOTHING : scheme == SCHEME_EXACT ? KEEP_PIECEWISE : KEEP_ALL;
 		return;
 	}
 	const char *nearest = nearest_scheme(wanted);
@@ -116,14 +116,14 @@ static void evaluate_step(void *context)
 	struct building *b = context;
 	struct node *node = b->spec->step;
 	struct place at = b->spec->step_at;
-	if (b->overrides->step) {
-		struct source *source = source_argument(b->overrides->step);
+	if (b->request->step) {
+		struct source *source = source_argument(b->request->step);
 		node = parse_argument(b->spec, source, 0);
 		at = (struct place){ source, 0 };
 		if (!node)
 			abandon();
 	}
-	b->model->step_at = b->model->end_at = at;
+	b->model->asked.step_at = b->model->asked.end_at = at;
 	collect_constant(&b->collector, node, b->model->h);
 	if (mpq_sgn(b->model->h) <= 0)
 		error(at, NULL, "the step must be above 0");
@@ -240,7 +240,7 @@ static void name_states(struct building *b)
 static void check_prefix(const struct building *b)
 {
 	const char *prefix = b->model->name, *why = prefix_objection(prefix);
-	bool given = b->overrides->prefix != NULL;
+	bool given = b->request->prefix != NULL;
 	struct place at = given ? (struct place){ source_argument(prefix), 0 } : b->spec->name_at;
 	bool identifier = *prefix && prefix[strspn(prefix, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ_0123456789")] == 0 && !strchr("0123456789", prefix[0]);
 	if (given && !identifier)
@@ -254,7 +254,7 @@ static void check_parts(const struct building *b)
 	const struct spec *spec = b->spec;
 	if (spec->coords == 0)
 		say_error(spec->end, "coord x", "missing coordinates: there is no statement 'coord'");
-	if (!spec->step && !b->overrides->step)
+	if (!spec->step && !b->request->step)
 		say_error(spec->end, "step 0.01, or --step 0.01 on the command line", "missing step");
 	if (b->model->system.states > LIMIT_STATES)
 		say_error(b->model->frame.coord[b->model->n - 1]->at, NULL, "more states than the limit of %d", LIMIT_STATES);
@@ -314,49 +314,46 @@ static void collect_intervals(struct building *b)
 	b->model->system.change = c->change;
 }
 
-struct model *model_build(struct spec *spec, const struct overrides *overrides)
+struct model *model_build(struct spec *spec, const struct request *request)
 {
-	struct building b = { .spec = spec, .model = NEW(struct model), .overrides = overrides };
+	struct building b = { .spec = spec, .model = NEW(struct model), .request = request };
 	struct model *model = b.model;
 	mpq_srcptr zero = rationals(1)[0];
 	model->spec = spec;
-	model->written = overrides->relative ? overrides->relative->written : model;
-	model->relative = overrides->relative;
+	model->asked = *request;
+	model->written = request->relative ? request->relative->written : model;
+	model->relative = request->relative;
 	model->frame.form = model->relative ? model->relative->form : NULL;
 	if (model->relative)                    /* its params were collected for the written one */
 		b.collector.irrationals = model->written->irrationals;
 	b.collector.frame = &model->frame;
 	model->atoms = b.collector.atoms = atoms_new();
-	model->form = overrides->form;
-	model->form_at = (struct place){ source_argument(step_form_name(overrides->form)), 0 };
-	model->compensated_at = (struct place){ source_argument("compensated"), 0 };
-	model->compensated = overrides->compensated;
-	model->single = overrides->single;
-	model->selftest = overrides->selftest;
-	model->name = overrides->prefix ? overrides->prefix : spec->name;
+	model->asked.form_at = (struct place){ source_argument(step_form_name(request->form)), 0 };
+	model->asked.compensated_at = (struct place){ source_argument("compensated"), 0 };
+	model->name = request->prefix ? request->prefix : spec->name;
 	mpq_init(model->h);
 	for (struct symbol *s = spec->first; s; s = s->next)
 		s->whole = NULL;
 	b.polynomial = wave_of(&b.collector, zero, zero, zero);
-	for (int i = 0; i < overrides->definitions; i++)
-		define_override(&b, overrides->definition[i]);
+	for (int i = 0; i < request->definitions; i++)
+		define_override(&b, request->definition[i]);
 	set_tunables(&b);
-	if (!overrides->relative && (overrides->prefix || (model->name && *model->name)))
+	if (!request->relative && (request->prefix || (model->name && *model->name)))
 		check_prefix(&b);
 	name_coordinates(&b);
 	name_states(&b);
-	if (!overrides->tunable)                /* else what nothing reads may not be defined there */
+	if (!request->tunable)                /* else what nothing reads may not be defined there */
 		evaluate_params(&b);
 	statement_guard(choose_scheme, &b);
 	collect_intervals(&b);
-	if (!overrides->tunable)
+	if (!request->tunable)
 		evaluate_lets(&b);
 	model->initial = rationals((size_t)model->system.states);
-	if (model->relative && !overrides->tunable)
+	if (model->relative && !request->tunable)
 		relative_values(model, model->written->initial, model->initial);
-	else if (!overrides->tunable)
+	else if (!request->tunable)
 		evaluate_initials(&b);
-	if (!overrides->tunable && (spec->step || overrides->step))
+	if (!request->tunable && (spec->step || request->step))
 		statement_guard(evaluate_step, &b);
 	bool clean = !diagnostics_errors();
 	if (clean)
@@ -369,13 +366,13 @@ struct model *model_build(struct spec *spec, const struct overrides *overrides)
 		build_outputs(&b);
 	if (!diagnostics_errors() && model->switching)
 		build_regions(&b);
-	if (!diagnostics_errors() && overrides->reduce && model->switching)
+	if (!diagnostics_errors() && request->reduce && model->switching)
 		say_error(spec->name_at, NULL, "--reduce needs a linear model: what regions hold depends on the coordinates");
-	if (!diagnostics_errors() && overrides->reduce && model->scheme != SCHEME_EXACT)
-		say_error(model->scheme_at.source ? model->scheme_at : spec->name_at, NULL,
+	if (!diagnostics_errors() && request->reduce && model->scheme != SCHEME_EXACT)
+		say_error(model->asked.scheme_at.source ? model->asked.scheme_at : spec->name_at, NULL,
 			  "--reduce needs scheme exact: what %s leaves over depends on the coordinates", scheme_name(model->scheme));
 	model->irrationals = b.collector.irrationals;
-	bool told = overrides->solution || overrides->tunable || overrides->relative;
+	bool told = request->solution || request->tunable || request->relative;
 	if (!diagnostics_errors() && !told)
 		judge_smoothness(&b);
 	if (!diagnostics_errors() && !told)
@@ -393,5 +390,5 @@ void argument_value(struct model *model, const char *text, mpq_ptr value)
 	collect_constant(&collector, node, value);
 	if (mpq_sgn(value) < 0)
 		error(at, NULL, "--solution takes a time that is not below 0");
-	model->end_at = at;
+	model->asked.end_at = at;
 }

@@ -8,7 +8,6 @@
 
 /* ---- linear.c: linear systems of coordinates ---- */
 
-struct overrides;
 struct load {                       /* force on the equations: t^k times one wave */
 	const struct wave *wave;
 	int powers;                 /* k = 0 .. powers-1 */
@@ -73,8 +72,35 @@ struct smoothness {                 /* of what is left over, else of the equatio
 	bool piecewise;             /* exact could treat it alone */
 	bool timed;                 /* it lies at a time */
 };
+struct request {                    /* what the user asks for on the command line; of most, a spec may say it too */
+	const char *step, *scheme, *prefix;
+	bool reduce;
+	bool loads_left;            /* known loads are left to the scheme */
+	bool compensated;           /* two-word arithmetic */
+	bool single;                /* the target's numbers are floats */
+	bool selftest;              /* NAME_selftest */
+	enum step_form form;
+	bool solution;              /* the closed form is wanted, whatever the scheme */
+	int definitions;
+	const char **definition;    /* NAME=EXPR */
+	/* Where it is asked for, command line or spec: found when the model is built */
+	struct place scheme_at;     /* source NULL: it is not */
+	struct place step_at, form_at, compensated_at;
+	struct place end_at;        /* the end of --solution, else as step_at */
+	/* What builders ask for to build a model a second time; then nothing is told again */
+	const mpq_t *tunable;       /* values of the tunable params in place of the spec's, to see what the equations become: */
+	                            /* no step, no initial values */
+	const struct relative *relative; /* the coordinates to build the model over; NULL: the written ones */
+};
+struct reduction {                  /* what --reduce found */
+	int *place;                 /* of a reduced model, per written state: the state that is it, or -1 */
+	bool irreducible;           /* it was asked for, and every state is seen */
+	int dropped;                /* written states that are no combination of the reduced ones */
+	const char **dropped_name;
+};
 struct model {
 	const struct spec *spec;
+	struct request asked;
 	const char *name;           /* prefix of everything generated */
 	int n;                      /* coordinates */
 	const char **coord_name;
@@ -87,17 +113,8 @@ struct model {
 	struct irrationals irrationals;
 	mpq_t *initial;             /* one per state */
 	mpq_t h;
-	struct place step_at;       /* where h is given */
-	struct place end_at;         /* where the end of --solution is given, else h */
 	enum scheme scheme;
-	struct place scheme_at;     /* source NULL: it was not given */
 	bool loads_left;            /* known loads are left to the scheme */
-	enum step_form form;        /* as asked for */
-	struct place form_at;       /* on the command line */
-	bool compensated;           /* two-word arithmetic is asked for */
-	struct place compensated_at;
-	bool single;                /* the target's numbers are floats */
-	bool selftest;              /* NAME_selftest is asked for */
 	int operators;              /* 0: exact, or nothing is left over */
 	struct operator *operator;
 	int *owner;                 /* per coordinate: the row of its equation */
@@ -115,11 +132,8 @@ struct model {
 	bool declared_outputs;
 	struct output **highest;    /* per coordinate: its highest derivative as a row, where an output that is not linear reads it */
 	const struct model *written; /* itself; of a reduced model: the one that it was made of */
-	int *place;                 /* of a reduced model, per written state: the state that is it, or -1 */
+	struct reduction reduction;
 	const struct relative *relative; /* the model is over other coordinates than the written ones; NULL: over those */
-	bool irreducible;           /* --reduce was asked for, and every state is seen */
-	int dropped;                /* written states that are no combination of the reduced ones */
-	const char **dropped_name;
 };
 
 /* ---- relative.c: coordinates in which what may move as a whole is parted from what moves in it ---- */
@@ -173,7 +187,7 @@ struct switching {
 	int systems;
 	struct linear *system;
 };
-struct model *model_build(struct spec *spec, const struct overrides *overrides);
+struct model *model_build(struct spec *spec, const struct request *request);
 void argument_value(struct model *model, const char *text, mpq_ptr value); /* of --solution; may use params */
 
 /* ---- the builders of a model share ---- */
@@ -186,7 +200,7 @@ struct building {                   /* what the builders share */
 	struct spec *spec;
 	struct model *model;
 	struct collector collector;
-	const struct overrides *overrides;
+	const struct request *request;
 	const struct wave *polynomial; /* the wave of t^k alone */
 	struct snapshot *snapshot;  /* per interval between changes of formula in time */
 	struct snapshot *whole;     /* the same for all time, with atoms; NULL: there is no leftover */
@@ -199,16 +213,6 @@ struct snapshot {                   /* the equations and outputs in one interval
 	struct residual *residual;
 	struct form **element;      /* per element of the sketch: its force */
 	struct value **output;      /* per output statement; NULL: not linear */
-};
-struct overrides {                  /* from the command line */
-	const char *step, *scheme, *prefix;
-	bool reduce, loads_left, compensated, single, selftest;
-	enum step_form form;
-	bool solution;              /* the closed form is wanted, whatever the scheme */
-	const mpq_t *tunable;       /* values of the tunable params in place of the spec's, to see what the equations become: no step, no initial values, no warnings */
-	const struct relative *relative; /* the coordinates to build the model over; NULL: the written ones; then nothing is told a second time */
-	int definitions;
-	const char **definition;    /* NAME=EXPR */
 };
 
 /* ---- blocks.c: coordinates that do not influence each other ---- */
@@ -336,6 +340,6 @@ struct tuning {
 	bool *acts;                 /* rows x columns: of W^-1 R, whether it is anything but 0 for some values */
 	const struct model *other;  /* the model at values that are related by nothing: what holds there holds for all */
 };
-bool find_tuning(struct model *model, const struct overrides *overrides); /* model->tuning, where something is tunable; false: it was said why not */
+bool find_tuning(struct model *model, const struct request *request); /* model->tuning, where something is tunable; false: it was said why not */
 
 #endif

@@ -295,16 +295,16 @@ static void place_states(const struct observable *o, struct model *reduced)
 {
 	int states = o->states;
 	mpq_t *unit = rationals((size_t)states), *rest = rationals((size_t)states), *coefficient = rationals((size_t)states);
-	reduced->place = ARRAY(int, (size_t)states);
-	reduced->dropped_name = ARRAY(const char *, (size_t)states);
+	reduced->reduction.place = ARRAY(int, (size_t)states);
+	reduced->reduction.dropped_name = ARRAY(const char *, (size_t)states);
 	for (int j = 0; j < states; j++) {
 		mpq_set_ui(unit[j], 1, 1);
-		reduced->place[j] = -1;
+		reduced->reduction.place[j] = -1;
 		for (int r = 0; r < o->rank; r++)
 			if (strcmp(o->basis[r].name, reduced->written->state_name[j]) == 0)
-				reduced->place[j] = r;
+				reduced->reduction.place[j] = r;
 		if (!express(o, (const mpq_t *)unit, rest, coefficient))
-			reduced->dropped_name[reduced->dropped++] = reduced->written->state_name[j];
+			reduced->reduction.dropped_name[reduced->reduction.dropped++] = reduced->written->state_name[j];
 		mpq_set_ui(unit[j], 0, 1);
 	}
 }
@@ -312,8 +312,8 @@ static void place_states(const struct observable *o, struct model *reduced)
 struct model *model_reduce(struct model *model)
 {
 	struct observable all = observe(model);
-	model->irreducible = all.rank == model->system.states;
-	if (model->irreducible)
+	model->reduction.irreducible = all.rank == model->system.states;
+	if (model->reduction.irreducible)
 		return model;
 	if (all.rank == 0) {
 		say_error(model->output[0].value->start, "without --reduce all states are kept", "--reduce would leave no state: no output depends on one");

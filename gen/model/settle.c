@@ -201,13 +201,13 @@ static bool settle_scheme(struct building *b)
 {
 	struct model *model = b->model;
 	bool linear = is_linear(b);
-	if (!linear && !model->scheme_at.source && !b->overrides->solution && !is_piecewise_linear(b)) {
+	if (!linear && !model->asked.scheme_at.source && !b->request->solution && !is_piecewise_linear(b)) {
 		model->scheme = SCHEME_ETDRK4;
 		silent_guard(find_obstacle, b);
 	}
 	b->collector.scheme = scheme_name(model->scheme);
-	if (model->scheme == SCHEME_EXACT && b->overrides->loads_left) {
-		say_error(model->scheme_at.source ? model->scheme_at : b->spec->name_at, "etd1, etdrk2, etdrk4, nc2, nc3, dq4 and bm3 have; pl holds loads over a step",
+	if (model->scheme == SCHEME_EXACT && b->request->loads_left) {
+		say_error(model->asked.scheme_at.source ? model->asked.scheme_at : b->spec->name_at, "etd1, etdrk2, etdrk4, nc2, nc3, dq4 and bm3 have; pl holds loads over a step",
 			  "--loads leftover needs a scheme with a quadrature: exact has none");
 		return false;
 	}
@@ -222,9 +222,9 @@ static bool settle_scheme(struct building *b)
 		return statement_guard(tell_atom, b);
 	if (model->scheme == SCHEME_EXACT)
 		return check_changes(b);
-	if (!linear || b->overrides->loads_left || b->spec->has_operator)
+	if (!linear || b->request->loads_left || b->spec->has_operator)
 		collect_whole(b);
-	model->loads_left = b->whole && b->overrides->loads_left;
+	model->loads_left = b->whole && b->request->loads_left;
 	if (b->whole && !diagnostics_errors())
 		statement_guard(part_loads, b);
 	return !diagnostics_errors();

@@ -99,13 +99,13 @@ static void check_model(const struct model *model)
 			      "output '%s' is not linear and reads a derivative that tunable params change", model->highest[k]->name);
 }
 
-static void check_kind(const struct model *model, const struct overrides *overrides)
+static void check_kind(const struct model *model, const struct request *request)
 {
 	struct place at = model->spec->tunable[0].at;
 	if (model->switching || model->channels > 0 || model->scheme == SCHEME_PL)
 		error(at, "tunable params are for scheme exact and linear models", model->switching ? "a piecewise-linear model cannot be retuned"
 		      : model->channels > 0 ? "a model with a leftover cannot be retuned" : "scheme pl cannot be retuned");
-	if (overrides->reduce)
+	if (request->reduce)
 		error(at, NULL, "--reduce takes out what is not seen at the spec's values: it does not go with tunable params");
 	if (model->system.states > LIMIT_UNROLLED_STATES)
 		error(at, NULL, "tunable params are built for up to %d states: the model has %d", LIMIT_UNROLLED_STATES, model->system.states);
@@ -116,7 +116,7 @@ static void check_kind(const struct model *model, const struct overrides *overri
 struct search {
 	struct tuning *tuning;
 	const struct model *model;
-	const struct overrides *overrides;
+	const struct request *request;
 	struct model *found;
 	mpq_t *values;
 	int points;                 /* looked at so far */
@@ -128,10 +128,10 @@ struct search {
 static void build_there(void *context)
 {
 	struct search *s = context;
-	struct overrides overrides = *s->overrides;
-	overrides.tunable = (const mpq_t *)s->values;
+	struct request request = *s->request;
+	request.tunable = (const mpq_t *)s->values;
 	struct spec *spec = parse_spec(s->model->spec->source);
-	s->found = model_build(spec, &overrides);
+	s->found = model_build(spec, &request);
 	if (!s->found)
 		abandon();
 }
@@ -500,7 +500,7 @@ static void find(void *context)
 	struct search *s = context;
 	struct tuning *t = s->tuning;
 	int culprit = -1;
-	check_kind(s->model, s->overrides);
+	check_kind(s->model, s->request);
 	spread_tuned(s->model->spec);
 	check_model(s->model);
 	for (int k = 0; k < t->params; k++)
@@ -518,14 +518,14 @@ static void find(void *context)
 	warn_of_idle(t);
 }
 
-bool find_tuning(struct model *model, const struct overrides *overrides)
+bool find_tuning(struct model *model, const struct request *request)
 {
 	const struct linear *system = &model->system;
 	const struct spec *spec = model->spec;
 	if (spec->tunables == 0)
 		return true;
 	struct tuning *t = NEW(struct tuning);
-	struct search s = { .tuning = t, .model = model, .overrides = overrides };
+	struct search s = { .tuning = t, .model = model, .request = request };
 	t->params = spec->tunables;
 	t->param = spec->tunable;
 	t->nominal = rationals((size_t)t->params);

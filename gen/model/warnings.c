@@ -143,7 +143,7 @@ static double fastest_pole(const struct linear *system)
 
 static struct place scheme_place(const struct building *b)
 {
-	return b->model->scheme_at.source ? b->model->scheme_at : b->spec->name_at;
+	return b->model->asked.scheme_at.source ? b->model->asked.scheme_at : b->spec->name_at;
 }
 
 static void check_predictor(struct jacobian *j)

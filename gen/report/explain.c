@@ -61,7 +61,7 @@ static void person_poles(FILE *to, const struct model *model, const struct resol
 
 static void person_held(FILE *to, const struct step *step)
 {
-	const struct linear *system = &step->system;
+	const struct linear *system = &step->branch->system;
 	int n = system->n;
 	fputs("Scheme pl holds these accelerations at their value at the start of each step:\n", to);
 	for (int i = 0; i < n; i++)
@@ -117,11 +117,11 @@ static void person_step(FILE *to, const struct step *step)
 		fprintf(to, ".\n%s", drift_text(&drift));
 	if (step->rounding.known)
 		fprintf(to, ".\n%s", rounding_text(step));
-	fprintf(to, ".\nPhi%s, each entry correctly rounded:\n", !has_leftover(step) ? "" : step->operators > 1 ? " = e^{A h} of the first operator" : " = e^{A h}");
+	fprintf(to, ".\nPhi%s, each entry correctly rounded:\n", !has_leftover(step) ? "" : step->branches > 1 ? " = e^{A h} of the first operator" : " = e^{A h}");
 	for (int i = 0; i < model->system.states; i++) {
 		fprintf(to, "    %-8s", model->state_name[i]);
 		for (int j = 0; j < model->system.states; j++)
-			fprintf(to, " %24s", shortest(step->shown->table->Phi[i * model->system.states + j].value));
+			fprintf(to, " %24s", shortest(step->shown->branch->whole->Phi[i * model->system.states + j].value));
 		fputc('\n', to);
 	}
 	if (model->tuning)
@@ -144,8 +144,8 @@ static void person_regions(FILE *to, const struct step *step)
 	const struct switching *s = step->shown->model->switching;
 	long size = step->series.size, matrices = s->systems, degree = step->series.degree, pieces = 1;
 	long bytes = 8 * (s->expressions * size + matrices * (2 * size * size + 3 * s->expressions * size)) + 4 * (s->regions + s->expressions + matrices);
-	for (int k = 0; k < step->operators; k++)
-		pieces = 1l << step->halvings[k] > pieces ? 1l << step->halvings[k] : pieces;
+	for (int k = 0; k < step->branches; k++)
+		pieces = 1l << step->branch[k].halvings > pieces ? 1l << step->branch[k].halvings : pieces;
 	pieces += MAX_EVENTS + 1;
 	fprintf(to, "Piecewise linear: %d regions, %d of them different; in each nothing is approximated, every constant is correctly rounded.\n",
 		possible_regions(s), s->systems);
@@ -173,7 +173,7 @@ static void person_split(FILE *to, const struct step *step)
 {
 	const struct model *model = step->shown->model;
 	fprintf(to, "Split: y' = A y + loads%s + r(t, y). A, the loads%s are exact, each constant correctly rounded.\n",
-		step->system.inputs ? " + inputs" : "", model->loads_left ? " excepted" : step->system.inputs ? " and the inputs" : "");
+		step->branch->system.inputs ? " + inputs" : "", model->loads_left ? " excepted" : step->branch->system.inputs ? " and the inputs" : "");
 	for (int k = 0; k < model->operators; k++) {
 		const struct operator *operator = &model->operator[k];
 		if (!*operator->text) {
@@ -184,15 +184,15 @@ static void person_split(FILE *to, const struct step *step)
 		person_matrix(to, "C", model->n, (const mpq_t *)operator->C);
 		person_matrix(to, "K", model->n, (const mpq_t *)operator->K);
 		if (model->scheme != SCHEME_PL)
-			person_poles(to, model, step->shown->resolvent[k]);
+			person_poles(to, model, step->shown->branch[k].resolvent);
 	}
-	if (step->operators > 1)
+	if (step->branches > 1)
 		fputs("A step uses the first operator whose value is not below the current one, else the last.\n", to);
 	fprintf(to, "Scheme %s is of order %d in h", scheme_name(model->scheme), order_of_scheme(model));
 	if (loses_order(model))
 		fprintf(to, " where all is smooth; here of order %s at most: %s", order_text(model), smoothness_text(model));
 	fprintf(to, ".\nr, left to scheme %s, is a force on each of these equations%s:\n", scheme_name(model->scheme),
-		step->operators > 1 ? " (with the first operator; with the others its linear terms differ)" : "");
+		step->branches > 1 ? " (with the first operator; with the others its linear terms differ)" : "");
 	for (int c = 0; c < model->channels; c++)
 		fprintf(to, "    %s: %s\n", model->coord_name[coordinate_of_row(model, model->channel_row[c])], form_text(model, model->operator[0].left[c]));
 }
@@ -205,11 +205,11 @@ static void person_reduction(FILE *to, const struct step *step)
 	for (int i = 0; i < model->system.states; i++)
 		fprintf(to, "    state %s\n", model->state_name[i]);
 	fputs("Gone:", to);
-	for (int i = 0; i < model->dropped; i++)
-		fprintf(to, "%s %s", i ? "," : "", model->dropped_name[i]);
-	fputs(model->dropped ? " (no output sees them, nor a combination of the states that are left).\n" : " nothing.\n", to);
+	for (int i = 0; i < model->reduction.dropped; i++)
+		fprintf(to, "%s %s", i ? "," : "", model->reduction.dropped_name[i]);
+	fputs(model->reduction.dropped ? " (no output sees them, nor a combination of the states that are left).\n" : " nothing.\n", to);
 	struct pole_report *pole;
-	int count = poles_of(step->model, step->solved, &pole);
+	int count = poles_of(step->model, step->branch->resolvent, &pole);
 	fputs("Poles that are left:\n", to);
 	for (int i = 0; i < count; i++)
 		fprintf(to, "    %s\n", pole_text(&pole[i]));
@@ -250,7 +250,7 @@ void explain_person(FILE *to, const struct step *step)
 		fputs("Nothing is approximated: every constant is its closed form, correctly rounded.\n", to);
 	if (model->written != model)
 		person_reduction(to, step);
-	if (model->irreducible)
+	if (model->reduction.irreducible)
 		fputs("Nothing to reduce: every state is seen by an output.\n", to);
 	person_step(to, step);
 }
@@ -357,10 +357,10 @@ static void json_column(FILE *to, int rows, int columns, int column, const struc
 /* Columns as the step applies them: to the load states at the start of the step, t^k times cos before sin. */
 static void json_loads(FILE *to, const struct step *step)
 {
-	const struct table *table = step->shown->table;
+	const struct table *table = step->shown->branch->whole;
 	fputs("  \"loads\": [", to);
-	for (int l = 0, column = 0; l < step->system.loads; l++) {
-		const struct load *load = &step->system.load[l];
+	for (int l = 0, column = 0; l < step->branch->system.loads; l++) {
+		const struct load *load = &step->branch->system.load[l];
 		int trig = oscillates(load->wave) ? 2 : 1;
 		for (int k = 0; k < load->columns; k += trig) {
 			fprintf(to, "%s\n    {\"term\": \"%s\", \"columns\": [", column ? "," : "", column_text(load, k));
@@ -372,9 +372,9 @@ static void json_loads(FILE *to, const struct step *step)
 		}
 	}
 	fputs("],\n  \"Gamma\": [", to);
-	for (int i = 0, column = 0; i < step->system.inputs; i++) {
-		fprintf(to, "%s\n    {\"input\": \"%s\", \"columns\": [", i ? "," : "", step->system.input[i].name);
-		for (int k = 0; k <= step->system.input[i].first_order; k++, column++) {
+	for (int i = 0, column = 0; i < step->branch->system.inputs; i++) {
+		fprintf(to, "%s\n    {\"input\": \"%s\", \"columns\": [", i ? "," : "", step->branch->system.input[i].name);
+		for (int k = 0; k <= step->branch->system.input[i].first_order; k++, column++) {
 			fputs(k ? ", " : "", to);
 			json_column(to, table->states, table->inputs, column, table->input);
 		}
@@ -390,7 +390,7 @@ static void json_split(FILE *to, const struct step *step)
 	fputs("  \"operators\": [", to);
 	for (int k = 0; k < model->operators; k++) {
 		struct pole_report *pole;
-		int count = poles_of(model, step->shown->resolvent[k], &pole);
+		int count = poles_of(model, step->shown->branch[k].resolvent, &pole);
 		fprintf(to, "%s{\n  \"at\": \"%s\",\n", k ? ", " : "", model->operator[k].text);
 		json_rational_matrix(to, "C", model->n, (const mpq_t *)model->operator[k].C);
 		json_rational_matrix(to, "K", model->n, (const mpq_t *)model->operator[k].K);
@@ -444,13 +444,13 @@ void explain_json(FILE *to, const struct step *step)
 	for (int i = 0; i < model->outputs; i++)
 		output[i] = model->output[i].name;
 	for (int i = 0; i < model->system.states * model->system.states; i++)
-		Phi[i] = step->shown->table->Phi[i].value;
+		Phi[i] = step->shown->branch->whole->Phi[i].value;
 	fprintf(to, "{\n  \"model\": \"%s\",\n  \"scheme\": \"%s\",\n  \"form\": \"%s\",\n  \"accuracy\": \"%s\",\n  \"real\": \"%s\",\n  \"step\": %.17g,\n", model->name,
-		scheme_name(model->scheme), step_form_name(step->form), step->model->compensated ? "compensated" : "plain", target_name(), nearest_double(model->h));
+		scheme_name(model->scheme), step_form_name(step->form), step->model->asked.compensated ? "compensated" : "plain", target_name(), nearest_double(model->h));
 	json_names(to, "states", model->system.states, model->state_name);
 	json_names(to, "outputs", model->outputs, output);
 	json_names(to, "inputs", model->system.inputs, input);
-	json_names(to, "dropped", model->dropped, model->dropped_name);
+	json_names(to, "dropped", model->reduction.dropped, model->reduction.dropped_name);
 	if (model->tuning)
 		json_tuning(to, model->tuning);
 	json_rational_matrix(to, "M", model->written->n, (const mpq_t *)model->written->system.M);

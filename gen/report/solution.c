@@ -7,7 +7,7 @@
 static void check_outputs(const struct model *model)
 {
 	if (model->system.inputs)
-		error(model->end_at, NULL, "--solution needs a model without inputs: their samples are not known");
+		error(model->asked.end_at, NULL, "--solution needs a model without inputs: their samples are not known");
 	for (int j = 0; j < model->outputs; j++)
 		if (!model->output[j].form && model->output[j].value)
 			error(model->output[j].value->start, "--solution prints outputs that are linear in states and loads",
@@ -23,7 +23,7 @@ static unsigned long last_step(const struct model *model, mpq_srcptr end)
 	mpq_div(steps, end, model->h);
 	mpz_fdiv_q(last, mpq_numref(steps), mpq_denref(steps));
 	if (mpz_cmp_ui(last, LIMIT_ROWS) >= 0)
-		error(model->end_at, NULL, "--solution would print more rows than the limit of %d", LIMIT_ROWS);
+		error(model->asked.end_at, NULL, "--solution would print more rows than the limit of %d", LIMIT_ROWS);
 	unsigned long rows = mpz_get_ui(last);
 	mpq_clear(steps);
 	mpz_clear(last);
@@ -53,9 +53,9 @@ void print_solution(FILE *to, const struct model *model, struct resolvent *writt
 		progress("row", (int)k, (int)last);
 		fprintf(to, "%.17g", nearest_double(t));
 		for (int j = 0; j < model->outputs; j++) {
-			struct coefficient value = started_value(form[j].count, form[j].list, t, model->step_at, model->output[j].name);
+			struct coefficient value = started_value(form[j].count, form[j].list, t, model->asked.step_at, model->output[j].name);
 			if (!isfinite(value.value))
-				error(model->end_at, NULL, "output '%s' leaves the range of double at t = %s s", model->output[j].name, readable_text(t));
+				error(model->asked.end_at, NULL, "output '%s' leaves the range of double at t = %s s", model->output[j].name, readable_text(t));
 			fprintf(to, ",%.17g", value.value);
 		}
 		fputc('\n', to);

@@ -20,7 +20,7 @@ void check_pole_size(const struct model *model, const struct resolvent *resolven
 	}
 	long step = (long)mpz_sizeinbase(mpq_numref(model->h), 2) - (long)mpz_sizeinbase(mpq_denref(model->h), 2);
 	if (largest + step > LIMIT_PRECISION)
-		error(model->step_at, NULL, "the largest pole, about 2^%ld 1/s, times the step is beyond the limit of 2^%d", largest, LIMIT_PRECISION);
+		error(model->asked.step_at, NULL, "the largest pole, about 2^%ld 1/s, times the step is beyond the limit of 2^%d", largest, LIMIT_PRECISION);
 }
 
 struct culprit {                    /* what an overflow comes from */
@@ -216,7 +216,7 @@ static void check_range(const struct model *model, const struct coefficient *c, 
 	if (isfinite(c->value) || count == 0)
 		return;
 	struct culprit pole = find_culprit(list[0].response, nearest_double(model->h));
-	error(model->step_at, pole.grows ? "a smaller step would do" : NULL, "%s is beyond the range of %s: pole %s, h = %s s", what,
+	error(model->asked.step_at, pole.grows ? "a smaller step would do" : NULL, "%s is beyond the range of %s: pole %s, h = %s s", what,
 	      target_name(), pole_of(&pole), readable_text(model->h));
 }
 
@@ -303,7 +303,7 @@ static struct coefficient number_of(struct filling *f, bool two_words, void (*co
 	}
 	struct number number = { .count = f->responses, .list = f->response, .t = f->tau, .scale = f->scale, .less = f->less };
 	if (!round_number(&number, two_words, LIMIT_PRECISION, &c, &isolated))
-		undecided(f->model->step_at, what, isolated);
+		undecided(f->model->asked.step_at, what, isolated);
 	check_range(f->model, &c, f->responses, f->response, what);
 	return c;
 }
@@ -452,11 +452,11 @@ static void fill_kicks(struct filling *f, struct table *table)
 	while (!round_kicks(f, table, precision)) {
 		precision *= 2;
 		if (precision > LIMIT_PRECISION)
-			undecided(f->model->step_at, "a kick of the form kick-drift-kick", true);
+			undecided(f->model->asked.step_at, "a kick of the form kick-drift-kick", true);
 	}
 	for (int i = 0; i < system->n * system->n; i++)
 		if (!isfinite(table->kick[i].value) || !isfinite(table->drift[i].value))
-			error(f->model->step_at, "--form delta or --form direct may do", "a factor of the form kick-drift-kick is beyond the range of %s", target_name());
+			error(f->model->asked.step_at, "--form delta or --form direct may do", "a factor of the form kick-drift-kick is beyond the range of %s", target_name());
 }
 
 /* A ramp from u0 to u1 over h: u0 (u - u'/h) + u1 u'/h */
@@ -655,7 +655,7 @@ static void check_waves(const struct filling *f)
 		mpq_srcptr w = f->system->load[l].wave->w;
 		long bits = (long)mpz_sizeinbase(mpq_numref(w), 2) - (long)mpz_sizeinbase(mpq_denref(w), 2);
 		if (bits + step > LIMIT_TURNS && load_acts(f->system, &f->system->load[l]))
-			error(f->model->step_at, NULL, "the frequency of %s times the step is beyond the limit of 2^%d for models of more than %d states",
+			error(f->model->asked.step_at, NULL, "the frequency of %s times the step is beyond the limit of 2^%d for models of more than %d states",
 			      column_text(&f->system->load[l], 0), LIMIT_TURNS, LIMIT_RESIDUE_STATES);
 	}
 }

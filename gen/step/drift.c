@@ -25,7 +25,7 @@ static void add_product(mpq_ptr sum, const struct product *p, bool second_word, 
 static void run_program(const struct step *step, mpq_t *state)
 {
 	const struct program *program = step->program;
-	int n = step->system.states;
+	int n = step->branch->system.states;
 	mpq_t *old = rationals((size_t)n), sum;
 	mpq_init(sum);
 	for (int i = 0; i < n; i++)
@@ -47,7 +47,7 @@ static void run_program(const struct step *step, mpq_t *state)
 /* det(z D - D E), D the common denominator of the entries of E: powers of 2, since they are sums of products of floating-point numbers */
 static struct poly characteristic(const struct step *step)
 {
-	int n = step->system.states;
+	int n = step->branch->system.states;
 	struct polymat P = { n, ARRAY(struct poly, (size_t)(n * n)) };
 	mpq_t *E = rationals((size_t)(n * n)), *column = rationals((size_t)n);
 	mpz_t common, content;
@@ -176,7 +176,7 @@ struct drift drift_of(const struct step *step)
 		return drift;
 	struct spectrum *map = spectrum_of(characteristic(step));
 	mpz_init(content);
-	struct spectrum *exact = spectrum_of(poly_primitive(*resolvent_determinant(step->solved), content));
+	struct spectrum *exact = spectrum_of(poly_primitive(*resolvent_determinant(step->branch->resolvent), content));
 	mpz_clear(content);
 	if (!spectrum_refine(map, DRIFT_BITS) || !spectrum_refine(exact, DRIFT_BITS))
 		return drift;

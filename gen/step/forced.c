@@ -143,7 +143,7 @@ struct flow { mpfr_t *E; };         /* of one segment of time: e^{A h} of the se
 static bool make_flow(const struct step *step, const struct series *place, int segment, struct flow *flow)
 {
 	int size = place->size;
-	struct taylor *taylor = taylor_of(size, (const mpq_t *)series_matrix(place, &step->system, segment), step->model->h);
+	struct taylor *taylor = taylor_of(size, (const mpq_t *)series_matrix(place, &step->branch->system, segment), step->model->h);
 	mpfi_t value;
 	if (!taylor_enclose(taylor, BITS))
 		return false;
@@ -180,7 +180,7 @@ static int segment_at(const struct linear *system, mpq_srcptr t)
 
 static bool note_course(const struct step *step, const struct series *place, const mpfr_t *x, struct course *c, int k)
 {
-	int states = step->system.states, columns = step->table->columns;
+	int states = step->branch->system.states, columns = step->branch->whole->columns;
 	bool finite = true;
 	for (int i = 0; i < states; i++) {
 		double y = mpfr_get_d(x[i], MPFR_RNDN);
@@ -188,8 +188,8 @@ static bool note_course(const struct step *step, const struct series *place, con
 		c->largest[i] = fmax(c->largest[i], fabs(y));
 		finite = finite && isfinite(y);
 	}
-	for (int l = 0, column = 0; l < step->system.loads; l++)
-		for (int j = 0; j < step->system.load[l].columns; j++, column++) {
+	for (int l = 0, column = 0; l < step->branch->system.loads; l++)
+		for (int j = 0; j < step->branch->system.load[l].columns; j++, column++) {
 			double z = place->load[l] < 0 ? 0 : mpfr_get_d(x[place->load[l] + j], MPFR_RNDN);
 			c->z[k * columns + column] = z;
 			finite = finite && isfinite(z);
@@ -203,25 +203,25 @@ static bool follow(const struct step *step, const struct series *place, struct c
 {
 	int size = place->size;
 	mpfr_t *x = ARRAY(mpfr_t, (size_t)size), *next = ARRAY(mpfr_t, (size_t)size);
-	struct flow *flow = ARRAY(struct flow, (size_t)step->system.segments);
+	struct flow *flow = ARRAY(struct flow, (size_t)step->branch->system.segments);
 	mpq_t t, value;
 	mpq_inits(t, value, NULL);
 	for (int i = 0; i < size; i++) {
 		mpfr_inits2(BITS, x[i], next[i], NULL);
 		mpfr_set_zero(x[i], 1);
-		if (i < step->system.states)
+		if (i < step->branch->system.states)
 			mpfr_set_q(x[i], step->model->initial[i], MPFR_RNDN);
 	}
-	for (int l = 0; l < step->system.loads; l++)
-		for (int j = 0; j < step->system.load[l].columns && place->load[l] >= 0; j++) {
-			load_state(&step->system.load[l], j, t, value);
+	for (int l = 0; l < step->branch->system.loads; l++)
+		for (int j = 0; j < step->branch->system.load[l].columns && place->load[l] >= 0; j++) {
+			load_state(&step->branch->system.load[l], j, t, value);
 			mpfr_set_q(x[place->load[l] + j], value, MPFR_RNDN);
 		}
 	bool good = true;
 	for (int k = 0; k <= c->steps && good; k++) {
 		mpq_set_si(t, k, 1);
 		mpq_mul(t, t, step->model->h);
-		c->segment[k] = segment_at(&step->system, t);
+		c->segment[k] = segment_at(&step->branch->system, t);
 		good = note_course(step, place, (const mpfr_t *)x, c, k);
 		struct flow *now = &flow[c->segment[k]];
 		good = good && (now->E || make_flow(step, place, c->segment[k], now));
@@ -230,7 +230,7 @@ static bool follow(const struct step *step, const struct series *place, struct c
 	}
 	for (int i = 0; i < size; i++)
 		mpfr_clears(x[i], next[i], NULL);
-	for (int s = 0; s < step->system.segments; s++)
+	for (int s = 0; s < step->branch->system.segments; s++)
 		for (int i = 0; flow[s].E && i < size * size; i++)
 			mpfr_clear(flow[s].E[i]);
 	mpq_clears(t, value, NULL);
@@ -240,7 +240,7 @@ static bool follow(const struct step *step, const struct series *place, struct c
 /* How far errors reach: what one at each step adds up to at most, and the most that becomes of one */
 static bool add_powers_of_phi(const struct step *step, struct course *c)
 {
-	int n = step->system.states;
+	int n = step->branch->system.states;
 	double *power = ARRAY(double, (size_t)(n * n)), *next = ARRAY(double, (size_t)(n * n)), largest = 0;
 	for (int i = 0; i < n; i++)
 		power[i * n + i] = 1;
@@ -253,8 +253,8 @@ static bool add_powers_of_phi(const struct step *step, struct course *c)
 		}
 		for (int i = 0; i < n; i++)
 			for (int k = 0; k < n; k++)
-				for (int j = 0; j < n && !step->table->Phi[i * n + k].zero; j++)
-					next[i * n + j] += step->table->Phi[i * n + k].value * power[k * n + j];
+				for (int j = 0; j < n && !step->branch->whole->Phi[i * n + k].zero; j++)
+					next[i * n + j] += step->branch->whole->Phi[i * n + k].value * power[k * n + j];
 		double *swap = power;
 		power = next;
 		next = swap;
@@ -265,11 +265,11 @@ static bool add_powers_of_phi(const struct step *step, struct course *c)
 static bool make_course(const struct step *step, struct course *c)
 {
 	struct series place;
-	size_t states = (size_t)step->system.states, rows = STEPS + 1;
-	series_place(&place, &step->system, 0);
-	if (place.size > LIMIT_SIZE || step->system.states > LIMIT_FORCED_STATES || step->system.segments > LIMIT_SEGMENTS)
+	size_t states = (size_t)step->branch->system.states, rows = STEPS + 1;
+	series_place(&place, &step->branch->system, 0);
+	if (place.size > LIMIT_SIZE || step->branch->system.states > LIMIT_FORCED_STATES || step->branch->system.segments > LIMIT_SEGMENTS)
 		return false;
-	*c = (struct course){ .steps = STEPS, .y = ARRAY(double, rows * states), .z = ARRAY(double, rows * (size_t)step->table->columns),
+	*c = (struct course){ .steps = STEPS, .y = ARRAY(double, rows * states), .z = ARRAY(double, rows * (size_t)step->branch->whole->columns),
 			      .segment = ARRAY(int, rows), .largest = ARRAY(double, states), .sum = ARRAY(double, states * states),
 			      .peak = ARRAY(double, states * states) };
 	return follow(step, &place, c) && add_powers_of_phi(step, c);
@@ -293,14 +293,14 @@ struct reckoning {
 /* Roundings of a load state relative to itself: of cos and sin, of a growth, of t and its products */
 static double load_roundings(const struct reckoning *r, int column)
 {
-	int l = r->load_of[column], at = column - first_column(&r->step->system, l);
-	const struct load *load = &r->step->system.load[l];
+	int l = r->load_of[column], at = column - first_column(&r->step->branch->system, l);
+	const struct load *load = &r->step->branch->system.load[l];
 	return 2 + 3 * (mpq_sgn(load->wave->a) != 0) + 4 * (at / (oscillates(load->wave) ? 2 : 1));
 }
 
 static void reckon_product(struct reckoning *r, int row, const struct product *p)
 {
-	const struct table *table = r->step->table;
+	const struct table *table = r->step->branch->whole;
 	double factor = p->factor->value, x, error = 0;
 	if (p->operand.kind == OPERAND_INPUT)
 		return;
@@ -346,12 +346,12 @@ static struct rounded reckon(struct reckoning *r, const struct assignment *a)
 
 static double unit_of(const struct step *step)
 {
-	return step->model->single ? 0x1p-24 : 0x1p-53;
+	return step->model->asked.single ? 0x1p-24 : 0x1p-53;
 }
 
 static double part_of(const struct reckoning *r, int state, bool sizes)
 {
-	const struct table *table = r->step->table;
+	const struct table *table = r->step->branch->whole;
 	double sum = 0;
 	for (int column = 0; r->forced && column < table->columns; column++) {
 		if (!r->forced->load[r->load_of[column]])
@@ -367,7 +367,7 @@ static double part_of(const struct reckoning *r, int state, bool sizes)
 /* What rounds where the forced part changes its formula before the next step */
 static double change_of(const struct reckoning *r, int state)
 {
-	const struct table *table = r->step->table;
+	const struct table *table = r->step->branch->whole;
 	int segment = r->course->segment[r->k];
 	double sum = 0;
 	for (int column = 0; r->forced && segment != r->course->segment[r->k + 1] && column < table->columns; column++)
@@ -381,7 +381,7 @@ static double change_of(const struct reckoning *r, int state)
 static void reckon_step(struct reckoning *r, double *largest)
 {
 	const struct program *program = r->step->program;
-	int n = r->step->system.states;
+	int n = r->step->branch->system.states;
 	struct rounded *now = ARRAY(struct rounded, (size_t)n), *old = ARRAY(struct rounded, (size_t)n);
 	for (int i = 0; i < n; i++)
 		old[i] = now[i] = (struct rounded){ r->course->y[r->k * n + i] - part_of(r, i, false), 0 };
@@ -397,13 +397,13 @@ static void reckon_step(struct reckoning *r, double *largest)
 /* Over the whole course, relative to each state's largest value; the worst */
 static struct rounding bound_of(const struct step *step, const struct course *c, const struct forced *forced)
 {
-	int n = step->system.states, *load_of = ARRAY(int, (size_t)step->table->columns);
+	int n = step->branch->system.states, *load_of = ARRAY(int, (size_t)step->branch->whole->columns);
 	double *each = ARRAY(double, (size_t)n), *first = ARRAY(double, (size_t)n), *last = ARRAY(double, (size_t)n);
-	const double least = step->model->single ? 0x1p-102 : 0x1p-969; /* below, products leave the range */
+	const double least = step->model->asked.single ? 0x1p-102 : 0x1p-969; /* below, products leave the range */
 	struct reckoning r = { .step = step, .course = c, .forced = forced, .load_of = load_of };
 	struct rounding bound = { .known = true, .steps = c->steps };
-	for (int l = 0, column = 0; l < step->system.loads; l++)
-		for (int j = 0; j < step->system.load[l].columns; j++)
+	for (int l = 0, column = 0; l < step->branch->system.loads; l++)
+		for (int j = 0; j < step->branch->system.load[l].columns; j++)
 			load_of[column++] = l;
 	for (int i = 0; i < n; i++)
 		first[i] = fabs(c->y[i]) + part_of(&r, i, true) + fabs(c->y[i] - part_of(&r, i, false));
@@ -436,8 +436,8 @@ static struct rounding bound_of(const struct step *step, const struct course *c,
 /* What it costs to add the forced part, load states included */
 static void count_forced(const struct step *step, struct forced *forced)
 {
-	const struct linear *system = &step->system;
-	int columns = step->table->columns;
+	const struct linear *system = &step->branch->system;
+	int columns = step->branch->whole->columns;
 	struct program program = { .uses = ARRAY(bool, (size_t)columns) };
 	for (int i = 0; i < system->states; i++)
 		for (int l = 0, column = 0; l < system->loads; l++)
@@ -449,7 +449,7 @@ static void count_forced(const struct step *step, struct forced *forced)
 				program.additions++;
 				program.multiplications += !(j == 0 && is_polynomial(system->load[l].wave)) && c->value != 1 && c->value != -1;
 			}
-	count_loads(&program, system, step->model->single);
+	count_loads(&program, system, step->model->asked.single);
 	forced->multiplications = program.multiplications;
 	forced->additions = program.additions;
 	for (int i = 0; i < (system->segments - 1) * system->states * columns; i++)
@@ -460,7 +460,7 @@ static void count_forced(const struct step *step, struct forced *forced)
 static void choose_loads(struct step *step, const struct course *c, struct forced *forced, const bool *able)
 {
 	struct rounding best = step->rounding;
-	int loads = step->system.loads;
+	int loads = step->branch->system.loads;
 	for (int l = 0; l < loads && loads > FEW_LOADS; l++)
 		forced->load[l] = able[l];
 	if (loads > FEW_LOADS)
@@ -492,8 +492,8 @@ static void choose_loads(struct step *step, const struct course *c, struct force
 
 void plan_forced(struct step *step)
 {
-	const double much = step->model->single ? 0x1p-7 : 0x1p-36; /* 2^17 units of rounding: over 1000 steps a bound, more than comes */
-	struct linear *system = &step->system;
+	const double much = step->model->asked.single ? 0x1p-7 : 0x1p-36; /* 2^17 units of rounding: over 1000 steps a bound, more than comes */
+	struct linear *system = &step->branch->system;
 	struct course course;
 	bool acts = false, any = false, *able = ARRAY(bool, (size_t)system->loads);
 	for (int l = 0; l < system->loads; l++)
@@ -505,8 +505,8 @@ void plan_forced(struct step *step)
 		return;
 	struct forced *forced = NEW(struct forced);
 	forced->load = ARRAY(bool, (size_t)system->loads);
-	forced->part = ARRAY(struct coefficient, (size_t)(system->segments * system->states * step->table->columns));
-	forced->change = ARRAY(struct coefficient, (size_t)(system->segments * system->states * step->table->columns));
+	forced->part = ARRAY(struct coefficient, (size_t)(system->segments * system->states * step->branch->whole->columns));
+	forced->change = ARRAY(struct coefficient, (size_t)(system->segments * system->states * step->branch->whole->columns));
 	for (int l = 0; l < system->loads; l++) {
 		able[l] = load_acts(system, &system->load[l]) && fill_forced(system, l, forced);
 		any = any || able[l];
@@ -517,7 +517,7 @@ void plan_forced(struct step *step)
 
 bool is_forced(const struct step *step, int column)
 {
-	const struct linear *system = &step->system;
+	const struct linear *system = &step->branch->system;
 	for (int l = 0; l < system->loads; column -= system->load[l++].columns)
 		if (column < system->load[l].columns)
 			return step->forced && step->forced->load[l];
@@ -528,6 +528,6 @@ const char *rounding_text(const struct step *step)
 {
 	const struct rounding *r = &step->rounding;
 	return format("In the first %d steps%s, loads counted, rounding takes at most %.2g of the largest value of a %sstate (%s)%s", r->steps,
-		      step->system.inputs ? " with inputs 0" : "", r->relative, step->model->relative ? "kept " : "", step->model->state_name[r->state],
+		      step->branch->system.inputs ? " with inputs 0" : "", r->relative, step->model->relative ? "kept " : "", step->model->state_name[r->state],
 		      r->tiny ? format("; some are too small for %s", target_name()) : "");
 }

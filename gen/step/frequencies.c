@@ -49,7 +49,7 @@ int poles_of(const struct model *model, const struct resolvent *resolvent, struc
 	mpz_clear(content);
 	int count = 0;
 	if (!spectrum_refine(spectrum, REPORT_BITS))
-		error(model->step_at, "do two parameters differ by less than their rounding?", "two poles are too close to each other to be told apart");
+		error(model->asked.step_at, "do two parameters differ by less than their rounding?", "two poles are too close to each other to be told apart");
 	*report = ARRAY(struct pole_report, (size_t)spectrum->D.length);
 	if (spectrum->zero)
 		add_report(&(*report)[count++], NULL, spectrum->zero, false);

@@ -306,7 +306,7 @@ static void write_recipe(struct recipe *r, const struct step *step)
 	case SCHEME_ETD1:   recipe_etd1(r); break;
 	case SCHEME_ETDRK2: recipe_etdrk2(r); break;
 	case SCHEME_ETDRK4: recipe_etdrk4(r); break;
-	default:            recipe_quadrature(r, &quadratures[step->model->scheme], is_driven(&step->operator[0])); break;
+	default:            recipe_quadrature(r, &quadratures[step->model->scheme], is_driven(&step->branch[0].system)); break;
 	}
 }
 
@@ -320,7 +320,7 @@ struct tally {
 
 static void tally_matrix(struct tally *t, const struct coefficient *c, int columns)
 {
-	for (int i = 0; i < t->step->system.states; i++)
+	for (int i = 0; i < t->step->branch->system.states; i++)
 		for (int j = 0; j < columns; j++) {
 			double value = c[i * columns + j].value;
 			if (c[i * columns + j].zero && !t->program->loops)
@@ -340,13 +340,13 @@ static void tally_flow(struct tally *t, const struct table *table)
 
 static void tally_sum(struct tally *t, const struct action *a)
 {
-	struct table *const *table = t->step->all[0];
-	int rows = t->step->system.states;
+	struct table *const *table = t->step->branch[0].table;
+	int rows = t->step->branch->system.states;
 	t->terms = ARRAY(int, (size_t)rows);
 	if (a->flow != NONE)
 		tally_flow(t, table[a->flow]);
 	for (int k = 0; k < a->kernels; k++)
-		tally_matrix(t, table[a->kernel[k].table]->kernel[a->kernel[k].kernel], t->step->system.channels);
+		tally_matrix(t, table[a->kernel[k].table]->kernel[a->kernel[k].kernel], t->step->branch->system.channels);
 	for (int i = 0; i < rows; i++)
 		t->program->additions += t->terms[i] + (a->plain != NONE) - (t->terms[i] > 0 || a->plain != NONE);
 }
@@ -354,8 +354,8 @@ static void tally_sum(struct tally *t, const struct action *a)
 /* Three slopes beside the first, which all predictions of a step share, and the sums of Runge and Kutta */
 static void tally_prediction(struct tally *t, bool first)
 {
-	int rows = t->step->system.states, slopes = first ? 4 : 3, n = t->step->system.n;
-	int terms = n * (rows + t->step->system.channels);
+	int rows = t->step->branch->system.states, slopes = first ? 4 : 3, n = t->step->branch->system.n;
+	int terms = n * (rows + t->step->branch->system.channels);
 	t->program->multiplications += slopes * terms + 4 * rows;
 	t->program->additions += slopes * terms + 6 * rows;
 }
@@ -378,7 +378,7 @@ static void tally_program(const struct step *step, struct program *program)
 		if (a->kind == ACTION_SUM)
 			tally_sum(&t, a);
 		if (a->kind == ACTION_COMBINE)
-			program->additions += step->system.channels;
+			program->additions += step->branch->system.channels;
 		if (a->kind == ACTION_PREDICT) {
 			tally_prediction(&t, first);
 			first = false;
@@ -398,14 +398,14 @@ static bool is_page(const struct step *step)
 	for (int i = 0; i < step->program->actions; i++) {
 		const struct action *a = &step->program->action[i];
 		if (a->kind == ACTION_SUM)
-			terms += step->system.states * ((a->flow != NONE ? step->system.states : 0) + a->kernels * step->system.channels);
+			terms += step->branch->system.states * ((a->flow != NONE ? step->branch->system.states : 0) + a->kernels * step->branch->system.channels);
 	}
-	return step->operators == 1 && step->system.segments == 1 && step->system.states <= LIMIT_UNROLLED_STATES && terms <= TERMS;
+	return step->branches == 1 && step->branch->system.segments == 1 && step->branch->system.states <= LIMIT_UNROLLED_STATES && terms <= TERMS;
 }
 
 static void mark_loads(const struct step *step, struct program *program)
 {
-	const struct linear *system = &step->system;
+	const struct linear *system = &step->branch->system;
 	for (int l = 0, column = 0; l < system->loads; l++)
 		for (int k = 0; k < system->load[l].columns; k++, column++)
 			program->uses[column] = load_acts(system, &system->load[l]);
@@ -415,7 +415,7 @@ static void mark_loads(const struct step *step, struct program *program)
 
 static void find_growth(struct step *step)
 {
-	struct linear modified = modified_equation(&step->model->system, &step->system, step->model->h);
+	struct linear modified = modified_equation(&step->model->system, &step->branch->system, step->model->h);
 	struct pole_report *pole;
 	int poles = poles_of(step->model, resolvent_of(&modified), &pole);
 	mpfr_init2(step->growth, 53);
@@ -440,27 +440,23 @@ static void take_operators(struct step *step)
 {
 	const struct model *model = step->model;
 	const struct switching *regions = model->switching;
-	step->operators = regions ? regions->systems : model->operators ? model->operators : 1;
-	step->operator = ARRAY(struct linear, (size_t)step->operators);
-	step->resolvent = ARRAY(struct resolvent *, (size_t)step->operators);
-	step->all = ARRAY(struct table **, (size_t)step->operators);
-	for (int k = 0; k < step->operators; k++) {
+	step->branches = regions ? regions->systems : model->operators ? model->operators : 1;
+	step->branch = ARRAY(struct branch, (size_t)step->branches);
+	for (int k = 0; k < step->branches; k++) {
 		struct linear system = regions ? driven_system(&regions->system[k]) : model->operators ? operator_system(model, k) : model->system;
 		bool as_written = !regions && !model->operators && model->written == model && model->scheme != SCHEME_PL;
-		step->operator[k] = model->scheme == SCHEME_PL ? piecewise_laplace(&system) : system;
-		step->resolvent[k] = as_written ? step->written : resolvent_of(&step->operator[k]);
-		check_pole_size(model, step->resolvent[k]);
+		step->branch[k].system = model->scheme == SCHEME_PL ? piecewise_laplace(&system) : system;
+		step->branch[k].resolvent = as_written ? step->written : resolvent_of(&step->branch[k].system);
+		check_pole_size(model, step->branch[k].resolvent);
 	}
-	step->system = step->operator[0];
-	step->solved = step->resolvent[0];
 }
 
 static void make_tables(struct step *step, int count, const struct wanted *wanted)
 {
 	step->tables = count;
-	for (int k = 0; k < step->operators; k++)
-		step->all[k] = tables_of(step->model, step->resolvent[k], &step->operator[k], count, wanted);
-	step->table = step->all[0][0];
+	for (int k = 0; k < step->branches; k++)
+		step->branch[k].table = tables_of(step->model, step->branch[k].resolvent, &step->branch[k].system, count, wanted);
+	step->branch->whole = step->branch[0].table[0];
 }
 
 static void make_whole(void *context)
@@ -476,7 +472,7 @@ static void make_whole(void *context)
 static void build_exact(struct step *step)
 {
 	choose_form(step);
-	bool chosen = step->model->form == FORM_AUTO && step->form == FORM_KICK_DRIFT_KICK;
+	bool chosen = step->model->asked.form == FORM_AUTO && step->form == FORM_KICK_DRIFT_KICK;
 	if (chosen && !silent_guard(make_whole, step)) {        /* kicks may leave the range where Phi does not */
 		step->form = FORM_DELTA;
 		step->mass = NULL;
@@ -496,12 +492,12 @@ static void build_exact(struct step *step)
 static bool *loads_of_regions(const struct step *step)
 {
 	const struct switching *s = step->model->switching;
-	bool *needed = ARRAY(bool, (size_t)step->system.loads);
-	for (int l = 0; l < step->system.loads; l++) {
+	bool *needed = ARRAY(bool, (size_t)step->branch->system.loads);
+	for (int l = 0; l < step->branch->system.loads; l++) {
 		for (int k = 0; k < s->systems; k++)
 			needed[l] = needed[l] || load_acts(&s->system[k], &s->system[k].load[l]);
 		for (int e = 0; e < s->expressions; e++)
-			for (int k = 0; k < step->system.load[l].columns; k++)
+			for (int k = 0; k < step->branch->system.load[l].columns; k++)
 				needed[l] = needed[l] || mpq_sgn(s->expression[e].row->load[l][k]) != 0;
 	}
 	return needed;
@@ -520,34 +516,34 @@ static struct wanted *wanted_piece(const struct step *step, int halvings)
 
 static void plan_region(struct step *step, int k)
 {
-	step->halvings[k] = series_halvings(step, k);
-	if (step->halvings[k] > LIMIT_PIECES)
-		error(step->model->step_at, "a smaller step would do", "the largest pole times h is above 2^%d: too many pieces of a step to look for crossings in",
+	step->branch[k].halvings = series_halvings(step, k);
+	if (step->branch[k].halvings > LIMIT_PIECES)
+		error(step->model->asked.step_at, "a smaller step would do", "the largest pole times h is above 2^%d: too many pieces of a step to look for crossings in",
 		      LIMIT_PIECES);
-	struct linear *system = &step->operator[k];
-	step->all[k] = tables_of(step->model, step->resolvent[k], system, 1, wanted_piece(step, step->halvings[k]));
+	struct linear *system = &step->branch[k].system;
+	step->branch[k].table = tables_of(step->model, step->branch[k].resolvent, system, 1, wanted_piece(step, step->branch[k].halvings));
 	system->channels = 0;
-	int degree = series_degree(step, k, k + 1, step->halvings[k]);
+	int degree = series_degree(step, k, k + 1, step->branch[k].halvings);
 	step->series.degree = degree > step->series.degree ? degree : step->series.degree;
 }
 
 /* A piecewise-linear model: e^{A d} of each region for pieces d of the step, and the series that finds crossings */
 static void build_regions_step(struct step *step)
 {
-	struct linear first = step->system;
-	first.channels = 0;
-	series_place_loads(&step->series, &first, 0, loads_of_regions(step));
+	struct branch *first = step->branch;
+	int channels = first->system.channels;  /* ramps of inputs, while tables are made */
 	step->tables = 1;
-	step->table = tables_of(step->model, step->resolvent[0], &step->operator[0], 1, wanted_piece(step, 0))[0];
-	step->system = first;
+	first->whole = tables_of(step->model, first->resolvent, &first->system, 1, wanted_piece(step, 0))[0];
+	first->system.channels = 0;
+	series_place_loads(&step->series, &first->system, 0, loads_of_regions(step));
 	find_carries(step);
 	step->program = linear_program(step);
 	step->program->multiplications = step->series.size * step->series.size + 6 * step->model->switching->expressions * step->series.size;
 	step->program->additions = step->program->multiplications;
-	step->halvings = ARRAY(int, (size_t)step->operators);
+	first->system.channels = channels;
 	step->series.degree = 3;
 	step->series.emitted = true;
-	for (int k = 0; k < step->operators; k++)
+	for (int k = 0; k < step->branches; k++)
 		plan_region(step, k);
 }
 
@@ -559,21 +555,21 @@ static void build_with_leftover(struct step *step)
 	write_recipe(recipe, step);
 	make_tables(step, recipe->tables, recipe->table);
 	find_carries(step);
-	step->program->reads = ARRAY(bool, (size_t)step->system.states);
-	step->program->uses = ARRAY(bool, (size_t)step->table->columns);
+	step->program->reads = ARRAY(bool, (size_t)step->branch->system.states);
+	step->program->uses = ARRAY(bool, (size_t)step->branch->whole->columns);
 	step->program->loops = !is_page(step);
 	mark_loads(step, step->program);
 	tally_program(step, step->program);
-	count_loads(step->program, &step->system, step->model->single);
+	count_loads(step->program, &step->branch->system, step->model->asked.single);
 }
 
 /* Of tunable models: no Taylor series in the step's own time, but e^{A tau} at any, of every load */
 static void place_all_loads(struct step *step)
 {
-	bool *all = ARRAY(bool, (size_t)step->system.loads);
-	for (int l = 0; l < step->system.loads; l++)
+	bool *all = ARRAY(bool, (size_t)step->branch->system.loads);
+	for (int l = 0; l < step->branch->system.loads; l++)
 		all[l] = true;
-	series_place_loads(&step->series, &step->system, 0, all);
+	series_place_loads(&step->series, &step->branch->system, 0, all);
 	step->series.emitted = true;
 }
 
@@ -591,7 +587,7 @@ static void build(void *context)
 	if (model->switching) {
 		need_direct(step);
 		build_regions_step(step);
-		if (model->selftest)
+		if (model->asked.selftest)
 			need_closed_form(step);
 		return;
 	}
@@ -600,14 +596,14 @@ static void build(void *context)
 	if (model->tuning)
 		place_all_loads(step);
 	else
-		series_place(&step->series, &step->system, left && model->scheme <= SCHEME_ETD1);
+		series_place(&step->series, &step->branch->system, left && model->scheme <= SCHEME_ETD1);
 	if (left)
 		build_with_leftover(step);
 	else
 		build_exact(step);
 	if (!model->tuning)
 		series_plan(step);
-	if (model->selftest)
+	if (model->asked.selftest)
 		need_closed_form(step);
 }
 
@@ -622,8 +618,8 @@ struct step *step_build(const struct model *model)
 		return step;
 	struct model *plain = NEW(struct model);
 	*plain = *model->written;
-	plain->form = FORM_DIRECT;
-	plain->compensated = plain->selftest = false;
+	plain->asked.form = FORM_DIRECT;
+	plain->asked.compensated = plain->asked.selftest = false;
 	step->shown = step_build(plain);
 	return step->shown ? step : NULL;
 }

@@ -49,11 +49,11 @@ static void largest_angle(const struct step *step, mpfr_ptr angle)
 {
 	mpfr_init2(angle, BITS);
 	mpfr_set_zero(angle, 1);
-	for (int k = 0; k < step->operators; k++)
-		larger_poles(angle, step->resolvent[k]);
-	for (int l = 0; l < step->system.loads; l++)
+	for (int k = 0; k < step->branches; k++)
+		larger_poles(angle, step->branch[k].resolvent);
+	for (int l = 0; l < step->branch->system.loads; l++)
 		if (step->series.load[l] >= 0)
-			larger_wave(angle, step->system.load[l].wave);
+			larger_wave(angle, step->branch->system.load[l].wave);
 	mpfr_mul_q(angle, angle, step->model->h, MPFR_RNDU);
 }
 
@@ -62,7 +62,7 @@ double largest_pole_angle(const struct step *step)
 	mpfr_t angle;
 	mpfr_init2(angle, BITS);
 	mpfr_set_zero(angle, 1);
-	larger_poles(angle, step->solved);
+	larger_poles(angle, step->branch->resolvent);
 	mpfr_mul_q(angle, angle, step->model->h, MPFR_RNDU);
 	double bound = mpfr_get_d(angle, MPFR_RNDU);
 	mpfr_clear(angle);
@@ -142,8 +142,8 @@ int series_degree(const struct step *step, int from, int to, int halvings)
 	int size = series->size, cells = size * size, quiet = 0, k = 0;
 	mpfr_t *A = positive_numbers(cells), *term = positive_numbers(cells), *next = positive_numbers(cells), *first = positive_numbers(cells);
 	for (int o = from; o < to; o++)
-		for (int s = 0; s < step->system.segments; s++) {
-			mpq_t *matrix = series_matrix(series, &step->operator[o], s);
+		for (int s = 0; s < step->branch->system.segments; s++) {
+			mpq_t *matrix = series_matrix(series, &step->branch[o].system, s);
 			add_envelope(A, cells, (const mpq_t *)matrix);
 			rationals_free(matrix, (size_t)cells);
 		}
@@ -175,10 +175,10 @@ int series_halvings(const struct step *step, int operator)
 	int halvings = 0;
 	mpfr_init2(angle, BITS);
 	mpfr_set_zero(angle, 1);
-	larger_poles(angle, step->resolvent[operator]);
-	for (int l = 0; l < step->system.loads; l++)
+	larger_poles(angle, step->branch[operator].resolvent);
+	for (int l = 0; l < step->branch->system.loads; l++)
 		if (step->series.load[l] >= 0)
-			larger_wave(angle, step->system.load[l].wave);
+			larger_wave(angle, step->branch->system.load[l].wave);
 	mpfr_mul_q(angle, angle, step->model->h, MPFR_RNDU);
 	for (; mpfr_cmp_ui(angle, 1) > 0 && halvings <= 30; halvings++)
 		mpfr_div_2ui(angle, angle, 1, MPFR_RNDU);
@@ -193,10 +193,10 @@ void series_plan(struct step *step)
 	largest_angle(step, angle);
 	bool held = !has_leftover(step) || series->powers > 0;  /* what is left over is held over the step, or there is none */
 	series->emitted = held && mpfr_cmp_ui(angle, LIMIT_RADIANS) <= 0;
-	if (series->emitted || (step->system.segments > 1 && mpfr_cmp_ui(angle, LIMIT_PARTS) <= 0)) {
+	if (series->emitted || (step->branch->system.segments > 1 && mpfr_cmp_ui(angle, LIMIT_PARTS) <= 0)) {
 		for (series->halvings = 0; mpfr_cmp_ui(angle, 1) > 0; series->halvings++)
 			mpfr_div_2ui(angle, angle, 1, MPFR_RNDU);
-		series->degree = series_degree(step, 0, step->operators, series->halvings);
+		series->degree = series_degree(step, 0, step->branches, series->halvings);
 	}
 	mpfr_clear(angle);
 }

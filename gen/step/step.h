@@ -164,17 +164,20 @@ struct rounding {                   /* a bound over the first steps from the ini
 	double relative;            /* to the state's largest value */
 	bool tiny;                  /* there are states too small for the target's range, which it leaves out */
 };
+struct branch {                     /* an operator of a scheme, a region of a piecewise-linear model, or the linear model */
+	struct linear system;       /* with what the scheme holds taken out of C and K */
+	struct resolvent *resolvent; /* of `system` */
+	struct table **table;
+	struct table *whole;        /* of the whole step: the first; of regions, whose tables are of pieces, that of the first region only */
+	int halvings;               /* of a region: log2 of the pieces of a step in which crossings are looked for */
+};
 struct step {                       /* everything that is emitted for one model */
 	const struct model *model;
-	struct linear system;       /* of the first operator: with what the scheme holds taken out of C and K */
 	struct resolvent *written;  /* of the model as written: the report's poles, the closed form */
 	const struct step *shown;   /* what users see of tables: over the states as written; itself, where those are stepped */
-	struct resolvent *solved;   /* of `system` */
-	struct table *table;        /* of the whole step, of the first operator */
-	int operators, tables;      /* 1 and 1 where nothing is left over */
-	struct linear *operator;    /* the system of each */
-	struct resolvent **resolvent;
-	struct table ***all;        /* [operator][table] */
+	int branches;               /* 1 where nothing is left over */
+	struct branch *branch;
+	int tables;                 /* of each; 1 where nothing is left over */
 	struct program *program;
 	enum step_form form;        /* FORM_DIRECT, FORM_DELTA or FORM_KICK_DRIFT_KICK */
 	const mpq_t *mass;          /* of kick-drift-kick, per coordinate; in units of the first */
@@ -184,7 +187,6 @@ struct step {                       /* everything that is emitted for one model 
 	struct rounding rounding;
 	mpfr_t growth;              /* pl: 1/s, largest real part of the modified equation's poles (report only) */
 	struct series series;
-	int *halvings;              /* of a piecewise-linear model, per operator */
 };
 bool has_leftover(const struct step *step);                 /* or nothing is left over, and a step is assignments */
 void need_closed_form(const struct step *step);              /* leaves the statement where there is none */

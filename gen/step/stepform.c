@@ -102,7 +102,7 @@ static bool all_equal(int n, const mpq_t *mass)
 /* What stands against kick-drift-kick; NULL: nothing */
 static const char *kick_objection(struct step *step)
 {
-	const struct linear *system = &step->system;
+	const struct linear *system = &step->branch->system;
 	int n = system->n;
 	mpq_t *a = rationals((size_t)(n * n));
 	if (system->heldK)
@@ -131,44 +131,44 @@ void need_direct(const struct step *step)
 {
 	const struct model *model = step->model;
 	const char *what = model->switching ? "a piecewise-linear step" : "a step with a leftover";
-	if (model->form != FORM_AUTO && model->form != FORM_DIRECT)
-		error(model->form_at, NULL, "the form %s is of a linear step: %s has the form direct", step_form_name(model->form), what);
-	if (model->compensated)
-		error(model->compensated_at, NULL, "--accuracy compensated is of a linear step: %s has the form direct", what);
+	if (model->asked.form != FORM_AUTO && model->asked.form != FORM_DIRECT)
+		error(model->asked.form_at, NULL, "the form %s is of a linear step: %s has the form direct", step_form_name(model->asked.form), what);
+	if (model->asked.compensated)
+		error(model->asked.compensated_at, NULL, "--accuracy compensated is of a linear step: %s has the form direct", what);
 }
 
 /* Kick-drift-kick where it can be; delta where I is most of Phi. */
 static enum step_form best_form(struct step *step)
 {
 	const struct model *model = step->model;
-	if (step->system.heldK)
-		return model->compensated ? FORM_DELTA : FORM_DIRECT;
+	if (step->branch->system.heldK)
+		return model->asked.compensated ? FORM_DELTA : FORM_DIRECT;
 	if (!kick_objection(step))
 		return FORM_KICK_DRIFT_KICK;
 	if (model->tuning)
 		return FORM_DELTA;      /* good at any step that the target may be told */
-	return model->compensated || largest_pole_angle(step) <= 1 ? FORM_DELTA : FORM_DIRECT;
+	return model->asked.compensated || largest_pole_angle(step) <= 1 ? FORM_DELTA : FORM_DIRECT;
 }
 
 void choose_form(struct step *step)
 {
 	const struct model *model = step->model;
-	step->form = model->form == FORM_AUTO ? best_form(step) : model->form;
-	if (model->form == FORM_KICK_DRIFT_KICK) {
+	step->form = model->asked.form == FORM_AUTO ? best_form(step) : model->asked.form;
+	if (model->asked.form == FORM_KICK_DRIFT_KICK) {
 		const char *objection = kick_objection(step);
 		if (objection)
-			error(model->form_at, "forms: direct, delta, kick-drift-kick", "the form kick-drift-kick cannot step this model: %s", objection);
+			error(model->asked.form_at, "forms: direct, delta, kick-drift-kick", "the form kick-drift-kick cannot step this model: %s", objection);
 	}
 	if (step->form != FORM_KICK_DRIFT_KICK) {
 		step->mass = NULL;
 		step->momenta = false;
 	}
-	if (model->compensated && step->form == FORM_DIRECT)
-		error(model->compensated_at, NULL, "--accuracy compensated takes the form delta or kick-drift-kick");
-	if (model->compensated && model->tuning)
-		error(model->compensated_at, NULL, "--accuracy compensated needs factors in two words: those of tunable params have one");
-	if (model->compensated && step->system.states > LIMIT_UNROLLED_STATES)
-		error(model->compensated_at, NULL, "--accuracy compensated is built for up to %d states", LIMIT_UNROLLED_STATES);
+	if (model->asked.compensated && step->form == FORM_DIRECT)
+		error(model->asked.compensated_at, NULL, "--accuracy compensated takes the form delta or kick-drift-kick");
+	if (model->asked.compensated && model->tuning)
+		error(model->asked.compensated_at, NULL, "--accuracy compensated needs factors in two words: those of tunable params have one");
+	if (model->asked.compensated && step->branch->system.states > LIMIT_UNROLLED_STATES)
+		error(model->asked.compensated_at, NULL, "--accuracy compensated is built for up to %d states", LIMIT_UNROLLED_STATES);
 }
 
 /* ---- states that only add up ---- */
@@ -177,10 +177,10 @@ void choose_form(struct step *step)
 static bool *readings(const struct step *step)
 {
 	const struct model *model = step->model;
-	int n = step->system.states;
+	int n = step->branch->system.states;
 	bool *reads = ARRAY(bool, (size_t)(n * n));
-	for (int k = 0; k < step->operators; k++) {
-		const mpq_t *A = (const mpq_t *)state_matrix(model->tuning ? &model->tuning->other->system : &step->operator[k], false);
+	for (int k = 0; k < step->branches; k++) {
+		const mpq_t *A = (const mpq_t *)state_matrix(model->tuning ? &model->tuning->other->system : &step->branch[k].system, false);
 		for (int i = 0; i < n * n; i++)
 			reads[i] = reads[i] || mpq_sgn(A[i]) != 0;
 	}
@@ -191,7 +191,7 @@ static bool *readings(const struct step *step)
 static bool *read_elsewhere(const struct step *step)
 {
 	const struct model *model = step->model;
-	int n = step->system.states;
+	int n = step->branch->system.states;
 	bool *reads = ARRAY(bool, (size_t)n);
 	for (int k = 0; k < model->operators; k++) {
 		struct reads left = reads_of(model, model->channels, (const struct form *const *)model->operator[k].left);
@@ -212,12 +212,12 @@ static bool *read_elsewhere(const struct step *step)
 /* Is anything added to the state in a step? */
 static bool moves(const struct step *step, const bool *reads, int state, bool listed)
 {
-	const struct table *table = step->table;
-	int n = step->system.states;
+	const struct table *table = step->branch->whole;
+	int n = step->branch->system.states;
 	bool any = false;
 	for (int j = 0; j < n; j++)
 		any = any || reads[state * n + j];
-	for (int s = 0; s < step->system.segments && listed; s++)
+	for (int s = 0; s < step->branch->system.segments && listed; s++)
 		for (int k = 0; k < table->columns; k++)
 			any = any || !table->load[(s * n + state) * table->columns + k].zero;
 	for (int k = 0; k < table->inputs && listed; k++)
@@ -229,13 +229,13 @@ static bool moves(const struct step *step, const bool *reads, int state, bool li
  * free body. Where the step is a list of assignments each such state is carried in two words; elsewhere those that nothing reads. */
 void find_carries(struct step *step)
 {
-	int n = step->system.states;
+	int n = step->branch->system.states;
 	bool listed = !step->model->switching && !step->model->operators && n <= LIMIT_UNROLLED_STATES;
 	step->carry = ARRAY(int, (size_t)n);
 	step->carries = 0;
 	for (int i = 0; i < n; i++)
 		step->carry[i] = -1;
-	if (step->model->compensated || step->system.heldK)
+	if (step->model->asked.compensated || step->branch->system.heldK)
 		return;
 	bool *reads = readings(step), *elsewhere = read_elsewhere(step);
 	for (int k = 0; k < n && listed; k++)
@@ -263,9 +263,9 @@ static void add_term(struct assignment *a, const struct coefficient *factor, enu
 /* A load that acts in some segment of time */
 static void add_load_term(struct assignment *a, const struct step *step, int row, int column)
 {
-	const struct table *table = step->table;
+	const struct table *table = step->branch->whole;
 	bool any = false;
-	for (int s = 0; s < step->system.segments; s++)
+	for (int s = 0; s < step->branch->system.segments; s++)
 		any = any || !table->load[(s * table->states + row) * table->columns + column].zero;
 	if (any && !is_forced(step, column))
 		a->term[a->terms++] = (struct product){ &table->load[row * table->columns + column], { OPERAND_LOAD, column } };
@@ -342,7 +342,7 @@ static struct assignment *new_assignment(struct program *program, const struct s
 	ENLARGE(program->assignment, (size_t)program->assignments + 1);
 	struct assignment *a = &program->assignment[program->assignments++];
 	*a = (struct assignment){ .target = target, .added = added, .carried = step->carry[target] >= 0 };
-	a->term = ARRAY(struct product, (size_t)(step->table->states + step->table->columns + step->table->inputs));
+	a->term = ARRAY(struct product, (size_t)(step->branch->whole->states + step->branch->whole->columns + step->branch->whole->inputs));
 	return a;
 }
 
@@ -354,7 +354,7 @@ static void drop_identity(struct program *program)
 
 static void add_loads_and_inputs(struct assignment *a, const struct step *step, int row)
 {
-	const struct table *table = step->table;
+	const struct table *table = step->branch->whole;
 	for (int k = 0; k < table->columns; k++)
 		add_load_term(a, step, row, k);
 	for (int k = 0; k < table->inputs; k++)
@@ -363,12 +363,12 @@ static void add_loads_and_inputs(struct assignment *a, const struct step *step, 
 
 static void write_direct(struct program *program, const struct step *step)
 {
-	int n = step->table->states;
+	int n = step->branch->whole->states;
 	for (int i = 0; i < n; i++) {
 		struct assignment *a = new_assignment(program, step, i, step->carry[i] >= 0);
 		for (int j = 0; j < n; j++)
 			if (j != i || !a->added)        /* there Phi_ii is 1 */
-				add_term(a, &step->table->Phi[i * n + j], OPERAND_STATE, j);
+				add_term(a, &step->branch->whole->Phi[i * n + j], OPERAND_STATE, j);
 		add_loads_and_inputs(a, step, i);
 		drop_identity(program);
 	}
@@ -376,7 +376,7 @@ static void write_direct(struct program *program, const struct step *step)
 
 static void write_delta(struct program *program, const struct step *step)
 {
-	const struct table *table = step->table;
+	const struct table *table = step->branch->whole;
 	int n = table->states;
 	for (int i = 0; i < n; i++) {
 		struct assignment *a = new_assignment(program, step, i, true);
@@ -389,25 +389,25 @@ static void write_delta(struct program *program, const struct step *step)
 
 static void write_kicks(struct program *program, const struct step *step)
 {
-	const struct linear *system = &step->system;
+	const struct linear *system = &step->branch->system;
 	for (int i = 0; i < system->n; i++) {
 		struct assignment *a = new_assignment(program, step, system->velocity[i], true);
 		for (int j = 0; j < system->n; j++)
-			add_term(a, &step->table->kick[i * system->n + j], OPERAND_STATE, j);
+			add_term(a, &step->branch->whole->kick[i * system->n + j], OPERAND_STATE, j);
 		drop_identity(program);
 	}
 }
 
 static void write_kick_drift_kick(struct program *program, const struct step *step)
 {
-	const struct linear *system = &step->system;
+	const struct linear *system = &step->branch->system;
 	int n = system->n;
 	program->in_order = true;
 	write_kicks(program, step);
 	for (int i = 0; i < n; i++) {
 		struct assignment *a = new_assignment(program, step, i, true);
 		for (int j = 0; j < n; j++)
-			add_term(a, &step->table->drift[i * n + j], OPERAND_STATE, system->velocity[j]);
+			add_term(a, &step->branch->whole->drift[i * n + j], OPERAND_STATE, system->velocity[j]);
 		drop_identity(program);
 	}
 	write_kicks(program, step);
@@ -420,7 +420,7 @@ static void write_kick_drift_kick(struct program *program, const struct step *st
 /* A large model loops over its tables, zeros included. */
 static void count_loops(struct program *program, const struct step *step)
 {
-	const struct table *table = step->table;
+	const struct table *table = step->branch->whole;
 	int columns = 0;
 	for (int k = 0; k < table->columns; k++)
 		columns += !is_forced(step, k);
@@ -432,9 +432,9 @@ static void count_loops(struct program *program, const struct step *step)
 
 struct program *linear_program(const struct step *step)
 {
-	const struct table *table = step->table;
+	const struct table *table = step->branch->whole;
 	struct program *program = NEW(struct program);
-	program->compensated = step->model->compensated;
+	program->compensated = step->model->asked.compensated;
 	program->tuned = step->model->tuning != NULL;
 	program->reads = ARRAY(bool, (size_t)table->states);
 	program->uses = ARRAY(bool, (size_t)table->columns);
@@ -444,7 +444,7 @@ struct program *linear_program(const struct step *step)
 		write_delta(program, step);
 	else
 		write_kick_drift_kick(program, step);
-	count(program, &step->system, step->model->single);
+	count(program, &step->branch->system, step->model->asked.single);
 	if (table->states > LIMIT_UNROLLED_STATES)
 		count_loops(program, step);
 	return program;

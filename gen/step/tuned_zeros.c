@@ -6,7 +6,7 @@
 static bool *couplings(const struct step *step)
 {
 	const struct tuning *t = step->model->tuning;
-	const struct linear *system = &step->system;
+	const struct linear *system = &step->branch->system;
 	int size = step->series.size, states = system->states;
 	mpq_t *A = series_matrix(&step->series, system, 0);
 	bool *reads = ARRAY(bool, (size_t)(size * size));
@@ -37,8 +37,8 @@ static bool *reach(const struct step *step)
 
 void mark_tuned_zeros(struct step *step)
 {
-	struct table *table = step->table;
-	const struct linear *system = &step->system;
+	struct table *table = step->branch->whole;
+	const struct linear *system = &step->branch->system;
 	int n = table->states, size = step->series.size;
 	const bool *reached = reach(step);
 	for (int i = 0; i < n; i++) {
