@@ -5,9 +5,23 @@
 
 #include "report/report.h"
 
-struct emitter;
+/* ---- text.c: what all emitters write with ---- */
 
-/* ---- text.c: sums, factors, rows of numbers ---- */
+struct emitter {
+	FILE *to;
+	const struct step *step;
+	const struct model *model;
+	const struct linear *system;
+	const char *name, *upper;   /* scs, SCS */
+	const char *options;
+	const char **local;         /* per state: the C local that holds it */
+	int phases, growths;        /* in the state */
+	int *phase, *growth;        /* per load: index of its phase and of its growth; -1: none */
+	bool ramps;                 /* some input is of first order */
+	bool at_node;               /* load states are those at `node` of the step, not at its start */
+};
+/* The only writer: a printf format in which $n is the model's name and $N the same in capitals, $$ a dollar. */
+void say(const struct emitter *e, const char *layout, ...) __attribute__((format(printf, 2, 3)));
 
 const char *tree(int terms, const char *const *term, int indent); /* a balanced sum */
 const char *scaled(double factor, const char *operand);           /* operand NULL: 1 */
@@ -64,19 +78,6 @@ void emit_selftest(const struct emitter *e, bool jumps);
 
 /* ---- emit.c, emit_step.c, emit_left.c, emit_out.c, emit_loads.c, emit_time.c, emit_tune.c, emit_rhs.c: a step as C ---- */
 
-struct emitter {
-	FILE *to;
-	const struct step *step;
-	const struct model *model;
-	const struct linear *system;
-	const char *name, *upper;   /* scs, SCS */
-	const char *options;
-	const char **local;         /* per state: the C local that holds it */
-	int phases, growths;        /* in the state */
-	int *phase, *growth;        /* per load: index of its phase and of its growth; -1: none */
-	bool ramps;                 /* some input is of first order */
-	bool at_node;               /* load states are those at `node` of the step, not at its start */
-};
 void emit_header(FILE *to, const struct step *step, const char *options, bool rhs);
 void emit_code(FILE *to, const struct step *step, const char *options, const char *header_name, bool rhs); /* header_name NULL: all in one */
 

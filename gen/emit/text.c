@@ -1,9 +1,39 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The toolbox of all emitters: sums, factors, rows of numbers. */
+/* What all emitters write with: text laid out as the C it becomes, sums, factors, rows of numbers. */
 #include "emit/emit.h"
 
 #include <math.h>
+#include <stdarg.h>
 #include <string.h>
+
+/* `layout` with the names in it: names are C identifiers, without a % */
+static char *with_names(const struct emitter *e, const char *layout)
+{
+	size_t length = 1, longest = strlen(e->name) + strlen(e->upper);
+	for (const char *c = layout; *c; c++)
+		length += *c == '$' ? longest : 1;
+	char *text = ARRAY(char, length), *end = text;
+	for (const char *c = layout; *c; c++) {
+		if (*c != '$') {
+			*end++ = *c;
+			continue;
+		}
+		c++;
+		const char *what = *c == 'n' ? e->name : *c == 'N' ? e->upper : "$";
+		end = stpcpy(end, what);
+	}
+	return text;
+}
+
+void say(const struct emitter *e, const char *layout, ...)
+{
+	char *named = strchr(layout, '$') ? with_names(e, layout) : NULL;
+	va_list arguments;
+	va_start(arguments, layout);
+	vfprintf(e->to, named ? named : layout, arguments);
+	va_end(arguments);
+	discard(named);
+}
 
 /* (a + b) + (c + d): the shortest chain of dependent additions; lines break at the middle of what is too long for one. */
 const char *tree(int terms, const char *const *term, int indent)
@@ -42,22 +72,22 @@ double finite_number(const struct emitter *e, mpq_srcptr q)
 void emit_number_rows(const struct emitter *e, int rows, int columns, const double *value, const char *const *row_note)
 {
 	for (int i = 0; i < rows; i++) {
-		fputs("    {", e->to);
+		say(e, "    {");
 		for (int j = 0; j < columns; j++) {
 			if (!isfinite(value[i * columns + j]))
 				error(e->model->asked.step_at, NULL, "a number in the row of %s is beyond the range of %s", row_note[i], target_name());
-			fprintf(e->to, "%s%s", j ? ", " : "", shortest(value[i * columns + j]));
+			say(e, "%s%s", j ? ", " : "", shortest(value[i * columns + j]));
 		}
-		fprintf(e->to, "},  /* %s */\n", row_note[i]);
+		say(e, "},  /* %s */\n", row_note[i]);
 	}
 }
 
 void emit_name_list(const struct emitter *e, const char *array, int count, const char *const *name)
 {
-	fprintf(e->to, "static const char *const %s_%s[] = {", e->name, array);
+	say(e, "static const char *const $n_%s[] = {", array);
 	for (int i = 0; i < count; i++)
-		fprintf(e->to, "%s\"%s\"", i == 0 ? "" : i % 10 ? ", " : ",\n    ", name[i]);
-	fputs("};\n", e->to);
+		say(e, "%s\"%s\"", i == 0 ? "" : i % 10 ? ", " : ",\n    ", name[i]);
+	say(e, "};\n");
 }
 
 const char *low_text(mpq_srcptr q)
