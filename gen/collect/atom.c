@@ -134,6 +134,7 @@ static struct form *form_of_atom(struct collector *c, const struct node *node, s
 		}
 		wanted.node = node;
 		wanted.index = c->atoms->count++;
+		wanted.judged = NEW(struct judged);
 		*link = NEW(struct atom);
 		**link = wanted;
 	}
@@ -439,8 +440,10 @@ static const struct node *call_at(const struct node *node, enum function functio
 	call->function = function;
 	if (call->children < count || call->kind != NODE_CALL) {
 		call->child = ARRAY(struct node *, (size_t)count);
+		struct node *place = NEW(struct node);
+		*place = *node;
 		for (int i = 0; i < count; i++)
-			call->child[i] = (struct node *)node;
+			call->child[i] = place;
 	}
 	call->kind = NODE_CALL;
 	call->children = count;
@@ -517,10 +520,10 @@ static bool is_piecewise_atom(const struct atom *a)
 bool is_piecewise_form(const struct form *form)
 {
 	for (int i = 0; i < form->terms; i++) {
-		struct atom *a = (struct atom *)form->term[i].basis.atom;
-		if (a && a->piecewise == 0)
-			a->piecewise = is_piecewise_atom(a) ? 1 : -1;
-		if (a && a->piecewise < 0)
+		const struct atom *a = form->term[i].basis.atom;
+		if (a && a->judged->piecewise == 0)
+			a->judged->piecewise = is_piecewise_atom(a) ? 1 : -1;
+		if (a && a->judged->piecewise < 0)
 			return false;
 	}
 	return true;
@@ -529,16 +532,16 @@ bool is_piecewise_form(const struct form *form)
 bool is_stepwise(const struct form *form)
 {
 	for (int i = 0; i < form->terms; i++) {
-		struct atom *a = (struct atom *)form->term[i].basis.atom;
+		const struct atom *a = form->term[i].basis.atom;
 		if (!a && form->term[i].basis.kind > BASIS_PI)
 			return false;
-		if (a && a->stepwise == 0) {
+		if (a && a->judged->stepwise == 0) {
 			bool step = a->kind == ATOM_COMPARE || (a->kind == ATOM_CALL && a->function == FN_SGN);
 			step = step ||
 			       (a->kind == ATOM_CHOOSE && is_stepwise(a->operand[1]) && is_stepwise(a->operand[2]));
-			a->stepwise = step ? 1 : -1;
+			a->judged->stepwise = step ? 1 : -1;
 		}
-		if (a && a->stepwise < 0)
+		if (a && a->judged->stepwise < 0)
 			return false;
 	}
 	return true;

@@ -325,11 +325,11 @@ static struct form *place_basis(struct point *p, const struct basis *basis)
 	return p->known[index];
 }
 
-/* Not to be changed: it may be the form itself */
+/* Not to be changed: it may share the terms of the form */
 static struct form *place_form(struct point *p, const struct form *form)
 {
 	if (is_constant(form))
-		return (struct form *)form;
+		return form_alias(form);
 	struct form *total = NEW(struct form);
 	for (int i = 0; i < form->terms; i++)
 		form_add_to(total, place_basis(p, &form->term[i].basis), form->term[i].factor);

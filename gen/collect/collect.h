@@ -40,6 +40,7 @@ int basis_order(const struct basis *a, const struct basis *b); /* by which terms
 struct form *form_single(struct basis basis, mpq_srcptr factor);
 struct form *form_unit(struct basis basis);                 /* factor 1 */
 struct form *form_constant(mpq_srcptr value);
+struct form *form_alias(const struct form *form);           /* the same terms: neither may be changed from then on */
 struct form *form_number(long value);
 struct form *form_sum(const struct form *a, const struct form *b, bool subtract);
 struct form *form_difference(const struct form *a, const struct form *b);
@@ -122,6 +123,7 @@ bool oscillates(const struct wave *wave);
 /* ---- atom.c: what is not linear, as expressions that are shared wherever they are the same ---- */
 
 enum atom_kind { ATOM_PRODUCT, ATOM_RECIPROCAL, ATOM_POWER, ATOM_CALL, ATOM_COMPARE, ATOM_CHOOSE };
+struct judged { signed char piecewise, stepwise; }; /* 1 and -1: is_piecewise_form, is_stepwise; 0: not asked yet */
 struct atom {
 	enum atom_kind kind;
 	enum function function;     /* of ATOM_CALL */
@@ -132,7 +134,7 @@ struct atom {
 	unsigned *exponent;         /* of ATOM_PRODUCT, one per factor */
 	bool time, input, state, velocity; /* what it depends on; a coordinate of first order counts as a velocity */
 	const struct basis *moves;  /* of that a coordinate, else an input; NULL: t alone */
-	signed char piecewise, stepwise; /* 1 and -1: is_piecewise_form, is_stepwise; 0: not asked yet */
+	struct judged *judged;      /* what was found out about it */
 	const struct node *node;    /* where it comes from */
 	int index;                  /* in the order of first appearance */
 	struct atom *next;

@@ -3,7 +3,7 @@
  * constants. */
 #include "collect/collect.h"
 
-static bool holds_acceleration(struct node *node)
+static bool holds_acceleration(const struct node *node)
 {
 	if (node->kind == NODE_NAME && node->symbol->kind == SYMBOL_COORD)
 		return node->primes > 0 && node->primes >= node->symbol->highest;
@@ -72,7 +72,7 @@ _Noreturn void not_linear(const struct collector *c, const struct node *node, co
 {
 	if (c->tolerant)
 		abandon();
-	struct node *term = (struct node *)(c->term ? c->term : node);
+	const struct node *term = c->term ? c->term : node;
 	if (holds_acceleration(term))
 		error(term->start,
 		      "highest derivatives stand in every equation with constant factors: no scheme treats this",

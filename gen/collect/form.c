@@ -30,6 +30,13 @@ struct form *form_single(struct basis basis, mpq_srcptr factor)
 	return form;
 }
 
+struct form *form_alias(const struct form *form)
+{
+	struct form *alias = NEW(struct form);
+	*alias = *form;
+	return alias;
+}
+
 struct form *form_constant(mpq_srcptr value)
 {
 	return form_single((struct basis){ .kind = BASIS_ONE }, value);

@@ -240,7 +240,7 @@ static void combine_residuals(const struct building *b, struct snapshot *s)
 {
 	const struct relative *relative = b->model->relative;
 	int written = b->spec->components;
-	const struct form **equation = ARRAY(const struct form *, (size_t)written);
+	struct form **equation = ARRAY(struct form *, (size_t)written);
 	for (int j = 0; j < written; j++)
 		equation[j] = s->residual[b->owner[j]].form;
 	for (int j = 0; j < written; j++)

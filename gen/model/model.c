@@ -417,7 +417,7 @@ void argument_value(struct model *model, const char *text, mpq_ptr value)
 {
 	struct collector collector = { .scheme = "exact" };
 	struct place at = { source_argument(text), 0 };
-	struct node *node = parse_argument((struct spec *)model->spec, at.source, 0);
+	struct node *node = parse_argument(model->spec, at.source, 0);
 	if (!node)
 		abandon();
 	collect_constant(&collector, node, value);

@@ -100,7 +100,7 @@ struct reduction {                  /* what --reduce found */
 	const char **dropped_name;
 };
 struct model {
-	const struct spec *spec;
+	struct spec *spec;
 	struct request asked;
 	const char *name;           /* prefix of everything generated */
 	int n;                      /* coordinates */
@@ -174,7 +174,7 @@ struct relative *relative_of(const struct model *model);     /* NULL: nothing mo
 /* What is kept at a coordinate, from the written coordinates, or their velocities, that it takes */
 void relative_value(const struct relative *r, int coord, mpq_t *const *value, mpq_ptr kept);
 /* that of what is kept there */
-struct form *combined_equation(const struct relative *r, int coord, const struct form *const *equation);
+struct form *combined_equation(const struct relative *r, int coord, struct form *const *equation);
 void relative_values(const struct model *model, mpq_t *written, mpq_t *kept); /* of all states */
 int  relative_place(const struct model *model, int written); /* the kept state that is a written one; -1: none is */
 

@@ -126,7 +126,7 @@ static void find_selector(void *context)
 	struct building *b = context;
 	struct collector *c = &b->collector;
 	const struct fixed *bank = banked(b->spec);
-	struct symbol *symbol = (struct symbol *)bank->symbol;
+	struct symbol *symbol = bank->symbol;
 	struct node name = { .kind = symbol ? NODE_NAME : NODE_TIME,
 			     .at = bank->at,
 			     .start = bank->at,

@@ -186,11 +186,11 @@ static struct form *atom_here(struct looking *l, const struct atom *a)
 	return call_here(l, a, x);
 }
 
-/* Not to be changed: it may be the form itself, or what an atom is */
+/* Not to be changed: it may share the terms of the form, or be what an atom is */
 static struct form *form_here(struct looking *l, const struct form *form)
 {
 	if (form->terms == 0 || !form->term[form->terms - 1].basis.atom)
-		return (struct form *)form;
+		return form_alias(form);
 	struct form *total = NEW(struct form);
 	for (int i = 0; i < form->terms; i++) {
 		const struct form_term *term = &form->term[i];

@@ -656,7 +656,7 @@ static mpq_t *leading_factors(const struct model *model)
 	return model->tuning ? NULL : factor;
 }
 
-static struct form *divided(const struct relative *r, int coord, const struct form *const *equation, mpq_srcptr times)
+static struct form *divided(const struct relative *r, int coord, struct form *const *equation, mpq_srcptr times)
 {
 	mpq_t factor;
 	mpq_init(factor);
@@ -666,13 +666,13 @@ static struct form *divided(const struct relative *r, int coord, const struct fo
 	return form;
 }
 
-struct form *combined_equation(const struct relative *r, int coord, const struct form *const *equation)
+struct form *combined_equation(const struct relative *r, int coord, struct form *const *equation)
 {
 	const struct link *link = &r->link[coord];
 	struct form *form = NEW(struct form);
 	mpq_t one;
 	if (!r->solved || link->kind == LINK_NONE || link->rate || link->velocity >= 0)
-		return (struct form *)equation[coord];
+		return equation[coord];
 	mpq_init(one);
 	mpq_set_ui(one, 1, 1);
 	if (link->kind == LINK_PARENT) {

@@ -112,7 +112,7 @@ struct initial {
 };
 struct fixed {                      /* of `operator at NAME = value, value, ...` */
 	struct place at, end;
-	const struct symbol *symbol; /* a coordinate or a let; NULL: t */
+	struct symbol *symbol; /* a coordinate or a let; NULL: t */
 	int primes, component;
 	int values;
 	struct node **value;

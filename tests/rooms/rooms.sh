@@ -1,13 +1,11 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# rooms.sh SOURCE_ROOT OBJECT_OR_ARCHIVE ...: who may call whom in the generator, read from its objects and headers.
+# rooms.sh SOURCE_ROOT LIBRARY PLGEN: who may call whom in the generator, read from the objects of its library, from those that stand
+# beside the program, and from its headers.
 set -u
 root=$(cd "$1" && pwd) || exit 99
-shift
-nm -A "$@" >"${TMPDIR:-/tmp}/plgen.nm.$$" 2>/dev/null
-listing=$(cat "${TMPDIR:-/tmp}/plgen.nm.$$")
-rm -f "${TMPDIR:-/tmp}/plgen.nm.$$"
-. "$(dirname "$0")/../tap.sh"
+listing=$(nm -A "$2" "$3".p/*.o)
+. "$root/tests/tap.sh"
 rooms='base math read collect model step report emit'
 printf '%s\n' "$listing" >listing
 
