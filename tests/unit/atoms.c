@@ -3,6 +3,7 @@
  * are evaluated by MPFR directly; both have the same values. Derivatives are held against difference quotients of the
  * tree. */
 #include "draw.h"
+#include "collect/collect.h"
 
 #include <string.h>
 
@@ -245,7 +246,7 @@ static void value_of(const struct tree *tree, const struct at *at, mpfr_ptr valu
 /* ---- forms ---- */
 
 static struct collector collector;
-static struct model model;
+static struct frame frame;
 static struct node node;
 
 static void new_collector(void)
@@ -258,10 +259,10 @@ static void new_collector(void)
         coords[i] = &coord[i];
     }
     discard(collector.atoms);
-    model = (struct model){ .n = COORDS, .coord = coords };
+    frame = (struct frame){ .coord = coords };
     node = (struct node){ .kind = NODE_TIME, .at = { &source, 0 }, .start = { &source, 0 }, .end = { &source, 3 } };
     collector = (struct collector){
-        .atoms = atoms_new(), .model = &model, .keep = KEEP_ALL, .whole_time = true, .scheme = "nc3", .term = &node
+        .atoms = atoms_new(), .frame = &frame, .keep = KEEP_ALL, .whole_time = true, .scheme = "nc3", .term = &node
     };
 }
 
@@ -600,7 +601,7 @@ static void dependence_is_of_what_is_named(void **state)
         for (int i = 0; i < a.form->terms; i++) {
             const struct basis *basis = &a.form->term[i].basis;
             const struct atom *atom = basis->atom;
-            if ((atom && atom->time && !timed) || (is_velocity(&model, basis) && !fast) ||
+            if ((atom && atom->time && !timed) || (is_velocity(&frame, basis) && !fast) ||
                 (!depends_on_time_only(basis) && !moves))
                 fail_msg("case %d: a term of %s depends on what it does not name", n, tree_text(a.tree));
             if (atom && atom->state != (moved_basis(NULL, basis) != NULL))

@@ -8,7 +8,7 @@
 #include <setjmp.h>
 #include <stdint.h>
 #include <cmocka.h>
-#include "plgen.h"
+#include <gmp.h>
 
 static uint64_t seed;
 

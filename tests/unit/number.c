@@ -3,6 +3,7 @@
  * rationals; texts against what the C library reads, and against all that are shorter. The last case turns to float for
  * good. */
 #include "draw.h"
+#include "base/base.h"
 
 #include <float.h>
 #include <math.h>
