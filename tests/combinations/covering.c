@@ -297,8 +297,8 @@ static void print_table(void)
 {
 	puts("<!-- SPDX-License-Identifier: GPL-3.0-or-later -->\n"
 	     "# What goes with what\n\n"
-	     "Made by `tests/combinations/combinations.sh` from the lists beside it, which a test holds against plgen;\n"
-	     "do not edit. `+`: works, in a row of a covering array that has every pair (of the first ones every\n"
+	     "Made by `tests/combinations/combinations.sh` from the lists beside it, which a test holds against\n"
+	     "plgen; do not edit. `+`: works, in a row of a covering array that has every pair (of the first ones every\n"
 	     "triple), and agrees with CVODE or the closed form within the bounds of `tests/fuzz/drive.c`, by `step`,\n"
 	     "`run`, `jump`, `at`, `set` at odd times, saved and restored, with `--rhs`. A number: refused, with the\n"
 	     "message below. Blank: one excludes the other. A column has the letter of its row.\n");
@@ -306,8 +306,8 @@ static void print_table(void)
 	print_refusals();
 	puts("\n## A new capability\n\n"
 	     "A line in `tests/combinations/capabilities.list`, what it adds to a spec or the options in `write_spec`\n"
-	     "of `covering.c`, and the refusals that it brings in `refusals.list`: `combinations.sh ... --pairs` prints\n"
-	     "those that plgen has. `combinations.sh ... --table` then prints this page.");
+	     "of `covering.c`, and the refusals that it brings in `refusals.list`: `combinations.sh ... --pairs`\n"
+	     "prints those that plgen has. `combinations.sh ... --table` then prints this page.");
 }
 
 /* ---- a model ---- */
