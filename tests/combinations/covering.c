@@ -298,8 +298,8 @@ static void print_table(void)
 	puts("<!-- SPDX-License-Identifier: GPL-3.0-or-later -->\n"
 	     "# What goes with what\n\n"
 	     "Made by `tests/combinations/combinations.sh` from the lists beside it, which a test holds against\n"
-	     "plgen; do not edit. `+`: works, in a row of a covering array that has every pair (of the first ones every\n"
-	     "triple), and agrees with CVODE or the closed form within the bounds of `tests/fuzz/drive.c`, by `step`,\n"
+	     "plgen; do not edit. `+`: works, in a row of a covering array that has every pair (of the first ones\n"
+	     "every triple), and agrees with CVODE or the closed form within the bounds of `tests/fuzz/drive.c`, by `step`,\n"
 	     "`run`, `jump`, `at`, `set` at odd times, saved and restored, with `--rhs`. A number: refused, with the\n"
 	     "message below. Blank: one excludes the other. A column has the letter of its row.\n");
 	print_pairs_table();
