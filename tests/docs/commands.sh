@@ -10,7 +10,8 @@
 # ```console    `$ command` and what it says, to the last letter
 # ```c          statements, with the headers that they name: compiled with the models of the page, linked and run
 #
-# A block of commands that cannot be run here is one of `elsewhere` alone. Any other block fails.
+# A block of commands that cannot be run here is one of `elsewhere` alone; a picture in letters is named in `pictures`.
+# Any other block fails.
 set -u
 plgen=$1
 root=$2
@@ -21,6 +22,8 @@ warnings='-Wall -Wextra -Wpedantic -Werror'
 # Installs packages, and takes minutes; the demo has steps that other blocks run, check is what runs this test.
 elsewhere='make demo
 make check'
+# What a page draws, by its first line
+pictures='doc/design.md:      gen/base      memory'
 
 mkdir bin
 ln -s "$plgen" bin/plgen
@@ -90,6 +93,10 @@ try() {
 				result $? "$1:$4: commands for elsewhere: $(tr '\n' ' ' <commands)"
 				return
 			fi ;;
+		text)
+			echo "$pictures" | grep -qF -e "$1:$(sed 's/,.*//; q' "$block")"
+			result $? "$1:$4: a picture"
+			return ;;
 		*)
 			echo 'spec, sh, console and c are tried' >log
 			result 1 "$1:$4: a block that is $3"
@@ -105,7 +112,7 @@ for file in "$root"/runtime/*.c; do
 done
 ar -rcs runtime.a objects/*.o || exit 99
 
-for page in README.md doc/spec.md doc/accuracy.md doc/performance.md doc/firmware.md doc/packages.md; do
+for page in README.md doc/spec.md doc/accuracy.md doc/performance.md doc/firmware.md doc/packages.md doc/design.md; do
 	rm -rf page blocks
 	mkdir -p page/build blocks
 	ln -s "$root/runtime" "$root/models" page
