@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# beam.sh BUILD: time of a step of the rotating beam (15 coordinates) by each scheme, per multiplication of its operation count,
-# beside a plain matrix-vector loop; and the time to generate it.
+# beam.sh BUILD: time of a step of the rotating beam (15 coordinates) by each scheme, per multiplication of its
+# operation count, beside a plain matrix-vector loop; and the time to generate it.
 set -e
 build=$1
 work=$(mktemp -d)

@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# retune.sh BUILD: what NAME_retune costs for two masses undamped, damped and driven, at small and large |pole| h, and a step with tunable
-# params, beside GSL's matrix exponential and a step with fixed constants.
+# retune.sh BUILD: what NAME_retune costs for two masses undamped, damped and driven, at small and large |pole| h, and
+# a step with tunable params, beside GSL's matrix exponential and a step with fixed constants.
 set -e
 build=$1
 work=$(mktemp -d)

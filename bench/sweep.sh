@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# sweep.sh BUILD: the gear pair of models/gear1.spec over the frequency of its force, up and down: gear1_sweep.csv and gear1_sweep.svg
-# in BUILD/bench. Parameters as in the spec; they are chosen, the source's did not survive.
+# sweep.sh BUILD: the gear pair of models/gear1.spec over the frequency of its force, up and down: gear1_sweep.csv and
+# gear1_sweep.svg in BUILD/bench. Parameters as in the spec; they are chosen, the source's did not survive.
 set -e
 build=$1
 out=$build/bench

@@ -1,6 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# switching.sh BUILD: time of a step of piecewise-linear models without a crossing and with one, beside the same model without stops.
+# switching.sh BUILD: time of a step of piecewise-linear models without a crossing and with one, beside the same model
+# without stops.
 set -e
 build=$1
 work=$(mktemp -d)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# awk -f csv.awk -f hard_table.awk hard.csv: the hard cases across, methods down, as an HTML table; where a method was tried with two steps, the
-# longer stands first.
+# awk -f csv.awk -f hard_table.awk hard.csv: the hard cases across, methods down, as an HTML table; where a method was
+# tried with two steps, the longer stands first.
 function class_of(word) { return word == "ok" ? "n" : word == "poor" ? "poor" : word == "linear only" || word == "as exact" ? "none" : "bad" }
 # 0.0078125: 1/128
 function step_text(h) { return length(h) > 6 && h < 1 ? "1/" 1 / h : h }

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# awk -f csv.awk -f headline.awk headline_integrators.csv: gnuplot for a chart with a row for each method: its median time at each of the two errors, or the word
-# that it does not get there; `rows` and `clauses`.
+# awk -f csv.awk -f headline.awk headline_integrators.csv: gnuplot for a chart with a row for each method: its median
+# time at each of the two errors, or the word that it does not get there; `rows` and `clauses`.
 NR == 1 { read_head($0, column); next }
 {
 	split_row($0, f)

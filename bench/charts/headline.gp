@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# gnuplot -c headline.gp TABLES OUTDIR: the pictures of headline_integrators.csv, headline_equal_step.csv, headline_confluence.csv.
+# gnuplot -c headline.gp TABLES OUTDIR: the pictures of headline_integrators.csv, headline_equal_step.csv,
+# headline_confluence.csv.
 here = system("dirname '".ARG0."'"); folder = ARG1; out = ARG2
 size = '900,940'
 load here.'/style.gp'

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# How the maps look: classes of growth in eleven colours, blue below and orange to red above, neutral in grey; x is log10.
-# `bounds`: ten of them, between the classes.
+# How the maps look: classes of growth in eleven colours, blue below and orange to red above, neutral in grey; x is
+# log10. `bounds`: ten of them, between the classes.
 cells(file, name, options) = "< awk -F, -v name='".name."' -v bounds='".bounds."' ".options." -f '".here."/cells.awk' '".file."'"
 svg_of_map = "set terminal svg size 900,660 dynamic enhanced font 'DejaVu Sans,Helvetica,sans-serif,12' background rgb 'white'"
 png_of_map = "set terminal pngcairo size 900,660 enhanced font 'DejaVu Sans,10' background rgb 'white'"

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# gnuplot -c bench/charts/operator_map.gp FOLDER OUTDIR: FOLDER has operator_map.csv, pl_map.csv and operator_boundary.csv
+# gnuplot -c bench/charts/operator_map.gp FOLDER OUTDIR: FOLDER has operator_map.csv, pl_map.csv and
+# operator_boundary.csv
 here = system("dirname '".ARG0."'"); folder = ARG1; out = ARG2
 load here.'/style.gp'
 load here.'/map.gp'
@@ -44,7 +45,8 @@ do for [form=1:2] {
 }
 
 # ---- pl ----
-# Where pl grows by kappa h/4 a second the amplitude grows by e^{(pi/2) (k2/(k1 + k2)) w h} a period: dashed, at the bounds of the classes
+# Where pl grows by kappa h/4 a second the amplitude grows by e^{(pi/2) (k2/(k1 + k2)) w h} a period: dashed, at the
+# bounds of the classes
 predicted(x, percent) = log(1 + percent/100.0)*2/pi/10**x         # k2/(k1 + k2)
 coupling(x, percent) = predicted(x, percent) < 1 ? log10(predicted(x, percent)/(1 - predicted(x, percent))) : NaN
 set yrange [-3:1]

@@ -1,8 +1,9 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# page.sh BUILD FOLDER COMMAND: FOLDER/index.html from the pictures and tables that charts.sh has made there. Run at the top of the source
-# tree. A picture is followed by its caption (captions/NAME.txt, or that of the longest beginning of NAME that has one) and its numbers.
-# What lies in FOLDER and is named nowhere here comes at the end, so that nothing is left out.
+# page.sh BUILD FOLDER COMMAND: FOLDER/index.html from the pictures and tables that charts.sh has made there. Run at
+# the top of the source tree. A picture is followed by its caption (captions/NAME.txt, or that of the longest beginning
+# of NAME that has one) and its numbers. What lies in FOLDER and is named nowhere here comes at the end, so that
+# nothing is left out.
 set -e
 build=$1 folder=$2 command=$3
 charts=bench/charts

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# papers_times.gp papers_times.csv OUTDIR: time of a step of pl over that of RK4, beside the ratios that its source reports
+# papers_times.gp papers_times.csv OUTDIR: time of a step of pl over that of RK4, beside the ratios that its source
+# reports
 here = system("dirname '".ARG0."'"); csv = ARG1; out = ARG2
 load here.'/style.gp'
 unset logscale

@@ -7,8 +7,8 @@ unset key
 set format '%g'
 set grid noxtics noytics
 
-# log10 of w h, of k2/k1, and of the ratio within 4 decades; a blank line between rows of the map. Where both errors are beyond half the
-# initial displacement there is nothing to compare
+# log10 of w h, of k2/k1, and of the ratio within 4 decades; a blank line between rows of the map. Where both errors
+# are beyond half the initial displacement there is nothing to compare
 block(layout, periods, masked) = "< awk -F, -v layout='".layout."' -v periods=".periods." -v masked=".masked." '".\
 	"$1 == layout && $2 == periods { if ($4 != last) print \"\"; last = $4; r = \"NaN\"; if ($7 != \"none\") { r = log($7)/log(10); if (r < -4) r = -4; if (r > 4) r = 4 } ".\
 	"if (masked && ($5 == \"diverged\" || $5 > 0.5) && ($6 == \"diverged\" || $6 > 0.5)) r = \"NaN\"; print log($3)/log(10), log($4)/log(10), r }' '".csv."'"

@@ -397,8 +397,8 @@ int main(int argc, char **argv)
 	}
 	if (!list && !scales)
 		fputs("model,method,family,setting_kind,setting,q_end,q_between,v_end,v_between,largest,failed,"
-		      "evaluations_per_unit,ns_min,ns_median,ns_max,ns_samples,ns_units,ns_pass,settings,truth_agreement,"
-		      "unit_s,history_s\n", out);
+		      "evaluations_per_unit,ns_min,ns_median,ns_max,ns_samples,ns_units,ns_pass,settings,"
+		      "truth_agreement,unit_s,history_s\n", out);
 	for (int i = 0; i < (argc > at + files ? argc - at - files : MODELS); i++) {
 		const struct charted *m = argc > at + files ? model_named(argv[at + files + i]) : &models[i];
 		if (argc == at + files && quick && !scales && !m->quick)

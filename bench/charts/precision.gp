@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# gnuplot -c precision.gp precision.csv OUTDIR: for each model in the table its error against time, and against evaluations.
+# gnuplot -c precision.gp precision.csv OUTDIR: for each model in the table its error against time, and against
+# evaluations.
 here = system("dirname '".ARG0."'"); csv = ARG1; out = ARG2
 size = '1000,720'                       # room for some thirty methods in the legend
 load here.'/style.gp'

@@ -1,8 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# precision.sh PLGEN PRECISION OUTDIR [--quick] [MODEL...]: the variants, the table OUTDIR/precision.csv, how its times agree
-# (precision_check.csv), and its pictures.
-# Run at the top of the source tree.
+# precision.sh PLGEN PRECISION OUTDIR [--quick] [MODEL...]: the variants, the table OUTDIR/precision.csv, how its times
+# agree (precision_check.csv), and its pictures. Run at the top of the source tree.
 set -e
 plgen=$1 program=$2 out=$3
 shift 3

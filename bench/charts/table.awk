@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# awk [-v where='model=scs;real=float'] -v name=FILE.csv -f csv.awk -f table.awk FILE.csv: its rows as an HTML table; more than 30 are folded, more
-# than 3000 stay in the file, which is linked. Words for a failure are marked. A column `settings` becomes a list below, once a method.
+# awk [-v where='model=scs;real=float'] -v name=FILE.csv -f csv.awk -f table.awk FILE.csv: its rows as an HTML table;
+# more than 30 are folded, more than 3000 stay in the file, which is linked. Words for a failure are marked. A column
+# `settings` becomes a list below, once a method.
 function escaped(text) {
 	gsub(/&/, "\\&amp;", text)
 	gsub(/</, "\\&lt;", text)
