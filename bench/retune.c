@@ -20,8 +20,8 @@ typedef double real;
 #define REAL_NAME "double"
 #endif
 
-enum { SAMPLES = 301, RETUNES = 20, STEPS = 200, STATES = TUNED_STATES, COLUMNS = sizeof tuned_nominal.step[0] /
-       sizeof(real) };
+enum { SAMPLES = 301, RETUNES = 20, STEPS = 200, STATES = TUNED_STATES };
+enum { COLUMNS = sizeof tuned_nominal.step[0] / sizeof(real) };
 
 static double nanoseconds(void)
 {

@@ -16,7 +16,8 @@ for real in double float; do
 		"$build/plgen" --real $real --form delta --prefix plain -o "$work/plain_pl.c" "models/$name.spec"
 		"$build/plgen" --real $real --form delta --prefix tuned -o "$work/tuned_pl.c" "$work/$name.spec"
 		# shellcheck disable=SC2046
-		gcc -std=gnu11 -O2 $option -Iruntime -I"$work" bench/retune.c "$work/plain_pl.c" "$work/tuned_pl.c" runtime/*.c $(pkg-config --cflags --libs gsl) \
+		gcc -std=gnu11 -O2 $option -Iruntime -I"$work" bench/retune.c "$work/plain_pl.c" "$work/tuned_pl.c" \
+			runtime/*.c $(pkg-config --cflags --libs gsl) \
 			-o "$work/retune"
 		"$work/retune" $name "${damping%:*}" 0.01 0.05 0.3 3
 	done

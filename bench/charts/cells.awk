@@ -22,7 +22,8 @@ BEGIN {
 }
 NR == 1 {
 	for (i = 1; i <= NF; i++) column[$i] = i
-	if (!(x in column) || !(y in column) || !(value in column)) { print "cells.awk: no column " x ", " y " or " value > "/dev/stderr"; exit 1 }
+	if (!(x in column) || !(y in column) || !(value in column)) {
+		print "cells.awk: no column " x ", " y " or " value > "/dev/stderr"; exit 1 }
 	next
 }
 $1 == name {
@@ -40,5 +41,6 @@ $1 == name {
 END {
 	flush_row()
 	half = lines > 1 ? (line_y[2] - line_y[1])/2 : 0.5
-	for (i = 1; i <= rows; i++) printf "%s,%.6g,%.6g,%d\n", row[i], row_y[i] - half, row_y[i] + 1.3*half, row_class[i]
+	for (i = 1; i <= rows; i++)
+		printf "%s,%.6g,%.6g,%d\n", row[i], row_y[i] - half, row_y[i] + 1.3*half, row_class[i]
 }

@@ -14,7 +14,8 @@ mkdir -p "$folder"
 for system in scs sdcs sdcsf; do
 	for scheme in pl exact; do
 		for n in $intervals; do
-			echo "$folder/convergence_${system}_${scheme}_$n.so models/$system.spec --scheme $scheme --step 30/$n"
+			echo "$folder/convergence_${system}_${scheme}_$n.so" \
+				"models/$system.spec --scheme $scheme --step 30/$n"
 		done
 	done
 done | xargs -P 2 -L 1 "$(dirname "$0")/variant.sh" "$plgen"

@@ -33,7 +33,9 @@ measure() {
 		awk -F, 'NR == 1 { printf "%s,", $0 } NR == 2 { print $2 }'
 }
 
-echo 'model,bytes_of_C,generate_ms_min,generate_ms_median,generate_ms_max,compile_ms_min,compile_ms_median,compile_ms_max,empty_ms_median,samples' >"$folder/generation.csv"
+columns=model,bytes_of_C,generate_ms_min,generate_ms_median,generate_ms_max
+columns=$columns,compile_ms_min,compile_ms_median,compile_ms_max,empty_ms_median,samples
+echo "$columns" >"$folder/generation.csv"
 awk -F, 'NR > 1 && !seen[$1]++ { print $1 }' "$folder/precision.csv" >"$work/models"
 while read -r model; do
 	echo "generation: $model" >&2
@@ -44,4 +46,5 @@ while read -r model; do
 	echo "$model,$(wc -c <"$work/$model.c"),${generate%,*},$compile,$runs" >>"$folder/generation.csv"
 done <"$work/models"
 
-awk -f bench/charts/csv.awk -f bench/charts/break_even.awk "$folder/generation.csv" "$folder/precision.csv" >"$folder/break_even.csv"
+awk -f bench/charts/csv.awk -f bench/charts/break_even.awk "$folder/generation.csv" "$folder/precision.csv" \
+	>"$folder/break_even.csv"

@@ -18,5 +18,6 @@ NR == 1 { read_head($0, column); print "model,times,within_10_percent,farthest_p
 	}
 }
 END {
-	for (m = 1; m <= count; m++) printf "%s,%d,%d,%s\n", models[m], times[models[m]], within[models[m]], of[models[m]]
+	for (m = 1; m <= count; m++)
+		printf "%s,%d,%d,%s\n", models[m], times[models[m]], within[models[m]], of[models[m]]
 }

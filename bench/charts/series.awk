@@ -7,7 +7,8 @@
 # method looks alike in every chart: ours filled marks and thick unbroken lines, peers open marks and thin lines,
 # dashed by family, so they stay apart in black and white too. What is not in the table below gets a look by its turn.
 
-function look(pattern, mark, colour, dash) { looks++; pattern_of[looks] = pattern; mark_of[looks] = mark; colour_of[looks] = colour; dash_of[looks] = dash }
+function look(pattern, mark, colour, dash) { looks++; pattern_of[looks] = pattern; mark_of[looks] = mark;
+	colour_of[looks] = colour; dash_of[looks] = dash }
 function wanted(field,    i) {
 	for (i = 1; i <= conditions; i++)
 		if (field[condition_column[i]] != condition_value[i]) return 0
@@ -26,8 +27,12 @@ function clause(k, name,    i, dash, thick, width, size) {
 	sub(/^\+/, "", dash)
 	width = thick ? 2.6 : 1.5
 	size = thick ? 1.2 : 1.1
-	if (with == "lines") return sprintf("$series_%d using 1:2 with lines lc rgb '%s' dt %s lw %s title '%s'", k, colour_of[i], dash, width, name)
-	return sprintf("$series_%d using 1:2 with " (with == "points" ? "points" : "linespoints") " pt %d ps %s lc rgb '%s'" (with == "points" ? "" : " dt " dash) " lw %s title '%s'", k, mark_of[i], size, colour_of[i], with == "points" ? 1.6 : width, name)
+	if (with == "lines")
+		return sprintf("$series_%d using 1:2 with lines lc rgb '%s' dt %s lw %s title '%s'", k, colour_of[i],
+		dash, width, name)
+	return sprintf("$series_%d using 1:2 with " (with == "points" ? "points" \
+		: "linespoints") " pt %d ps %s lc rgb '%s'" (with == "points" ? "" : " dt " dash) " lw %s title '%s'",
+		k, mark_of[i], size, colour_of[i], with == "points" ? 1.6 : width, name)
 }
 BEGIN {
 	by = by == "" ? "method" : by
@@ -89,7 +94,8 @@ NR == 1 {
 		split(condition[i], part, "=")
 		condition_column[i] = column[part[1]]; condition_value[i] = part[2]
 	}
-	if (!(by in column) || !(x in column) || !(y in column)) { print "series.awk: no column " by ", " x " or " y > "/dev/stderr"; exit 1 }
+	if (!(by in column) || !(x in column) || !(y in column)) {
+		print "series.awk: no column " by ", " x " or " y > "/dev/stderr"; exit 1 }
 	next
 }
 {
