@@ -1,11 +1,12 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# No line of what people read and write is longer than 120 columns, in characters, a tab as up to 8. As TAP, a case a folder.
+# No line of what people read and write is longer than 120 columns, in characters, a tab as up to 8. As TAP, a case a
+# folder.
 #
 #     lines.sh SOURCE_ROOT
 #
-# Not looked at: what programs write (doc/charts, *.csv, *.expect) or read as data (*.list, *.mtx, *.txt of tests), and specs
-# of tests/errors and tests/fuzz, where a line may be what is tested.
+# Not looked at: what programs write (doc/charts, *.csv, *.expect) or read as data (*.list, *.mtx, *.txt of tests), and
+# specs of tests/errors and tests/fuzz, where a line may be what is tested.
 set -u
 root=$1
 case $root in /*) ;; *) root=$PWD/$root ;; esac
@@ -15,7 +16,8 @@ case $root in /*) ;; *) root=$PWD/$root ;; esac
 long() {
 	for file; do
 		[ ! -f "$file" ] || expand -t 8 "$file" | tr -d '\200-\277' |
-			awk -v file="${file#"$root"/}" 'length($0) > 120 { print file ":" NR ": " length($0) " columns" }'
+			awk -v file="${file#"$root"/}" 'length($0) > 120 {
+				print file ":" NR ": " length($0) " columns" }'
 	done
 }
 
@@ -33,11 +35,10 @@ look() {
 	result $? "$name: $(wc -l <files) files, $(wc -l <log) lines over 120 columns"
 }
 
-code='-name *.c -o -name *.h -o -name *.h.in -o -name *.sh -o -name *.awk -o -name *.gp -o -name meson.build -o -name *.ld'
+code='-name *.c -o -name *.h -o -name *.in -o -name *.sh -o -name *.awk -o -name *.gp -o -name *.build -o -name *.ld'
 set -f
 look gen gen
 look runtime runtime
-look models models ! -name '*.mtx'
 look bench bench ! -name '*.list' ! -name '*.csv'
 # shellcheck disable=SC2086
 look tests tests '(' $code ')'

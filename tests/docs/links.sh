@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# What the pages name is there: files and headings that they link to, targets of the Makefile, and what makes a figure of
-# the README. As TAP.
+# What the pages name is there: files and headings that they link to, targets of the Makefile, and what makes a figure
+# of the README. As TAP.
 #
 #     links.sh SOURCE_ROOT BUILD_ROOT
 set -u
