@@ -300,8 +300,8 @@ static void print_table(void)
 	     "Made by `tests/combinations/combinations.sh` from the lists beside it, which a test holds against\n"
 	     "plgen; do not edit. `+`: works, in a row of a covering array that has every pair (of the first ones\n"
 	     "every triple), and agrees with CVODE or the closed form within the bounds of `tests/fuzz/drive.c`, by\n"
-	     "`step`, `run`, `jump`, `at`, `set` at odd times, saved and restored, with `--rhs`. A number: refused, with\n"
-	     "the message below. Blank: one excludes the other. A column has the letter of its row.\n");
+	     "`step`, `run`, `jump`, `at`, `set` at odd times, saved and restored, with `--rhs`. A number: refused,\n"
+	     "with the message below. Blank: one excludes the other. A column has the letter of its row.\n");
 	print_pairs_table();
 	print_refusals();
 	puts("\n## A new capability\n\n"
