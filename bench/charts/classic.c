@@ -415,8 +415,8 @@ static bool trapezoid_advance(struct run *run, int units, double *rows)
 /* ---- Newmark's family and generalized-alpha: Chung and Hulbert, J. Applied Mechanics 60 (1993) 371-375 ----
  *
  *     q+ = q + h v + h^2 ((1/2 - beta) a + beta a+)        v+ = v + h ((1 - gamma) a + gamma a+)
- *     (1 - alpha_m) a+ + alpha_m a = acceleration at t + (1 - alpha_f) h, (1 - alpha_f) q+ + alpha_f q, (1 - alpha_f)
- *     v+ + alpha_f v
+ *     (1 - alpha_m) a+ + alpha_m a = acceleration at t + (1 - alpha_f) h, (1 - alpha_f) q+ + alpha_f q,
+ *                                    (1 - alpha_f) v+ + alpha_f v
  */
 struct newmark {
 	double alpha_m, alpha_f, beta, gamma;
@@ -726,7 +726,7 @@ static const struct classic explicit_trapezoid = {
 static const struct classic implicit_trapezoid = {
 	.method = FIXED_METHOD("implicit trapezoid", 2,
 	                       "fixed step; linear: I - h/2 A factored once, 1 evaluation a step, 2 with a load in "
-	                       "time; " "else " NEWTON_SETTINGS),
+	                       "time; else " NEWTON_SETTINGS),
 	.plain = {trapezoid_step, trapezoid_advance},
 	.linear = {trapezoid_linear_step, trapezoid_linear_advance},
 	.wants_linear = has_matrix, .unknowns = 2, .fill = trapezoid_fill,
@@ -747,7 +747,7 @@ static const struct classic central_difference = {
 static const struct classic newmark_average = {
 	.method = FIXED_METHOD("Newmark", 2,
 	                       "fixed step; average acceleration, beta = 1/4, gamma = 1/2; linear: I + h/2 C + h^2/4 K "
-	                       "factored once, 1 evaluation a step; " "else in the accelerations by " NEWTON_SETTINGS),
+	                       "factored once, 1 evaluation a step; else in the accelerations by " NEWTON_SETTINGS),
 	.plain = {average_step, average_advance},
 	.linear = {average_linear_step, average_linear_advance},
 	.wants_linear = has_matrix, .unknowns = 1, .fill = average_fill, .keeps_acceleration = true,
@@ -755,7 +755,7 @@ static const struct classic newmark_average = {
 static const struct classic generalized_alpha = {
 	.method = FIXED_METHOD("generalized-alpha", 2,
 	                       "fixed step; Chung and Hulbert 1993, spectral radius at infinity 0.8; linear: matrix "
-	                       "factored once, 1 evaluation a step; " "else in the accelerations by " NEWTON_SETTINGS),
+	                       "factored once, 1 evaluation a step; else in the accelerations by " NEWTON_SETTINGS),
 	.plain = {alpha_step, alpha_advance},
 	.linear = {alpha_linear_step, alpha_linear_advance},
 	.wants_linear = has_matrix, .unknowns = 1, .fill = alpha_fill, .keeps_acceleration = true,

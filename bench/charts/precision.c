@@ -4,8 +4,9 @@
  * side.
  *
  *     precision --list [--quick] [MODEL...]              the variants wanted: one line each, FILE SPEC and plgen's
- *     options precision [--quick] VARIANTS FILE.csv [MODEL...]   VARIANTS: the folder with those files precision
- *     --scales [--quick] VARIANTS [MODEL...]   what tolerances stand on, a line for each model: name, shared
+ *                                                        options
+ *     precision [--quick] VARIANTS FILE.csv [MODEL...]   VARIANTS: the folder with those files
+ *     precision --scales [--quick] VARIANTS [MODEL...]   what tolerances stand on, a line for each model: name, shared
  *                                                        object, unit [s], units, largest |coordinate|, |velocity|
  */
 #include "charts.h"
@@ -386,8 +387,9 @@ int main(int argc, char **argv)
 	}
 	const int files = list ? 0 : scales ? 1 : 2;
 	if (argc - at < files) {
-		fputs("usage: precision --list [--quick] [MODEL...]\n       precision [--quick] VARIANTS FILE.csv "
-		      "[MODEL...]\n" "       precision --scales [--quick] VARIANTS [MODEL...]\n", stderr);
+		fputs("usage: precision --list [--quick] [MODEL...]\n"
+		      "       precision [--quick] VARIANTS FILE.csv [MODEL...]\n"
+		      "       precision --scales [--quick] VARIANTS [MODEL...]\n", stderr);
 		return 2;
 	}
 	FILE *out = list || scales ? stdout : fopen(argv[at + 1], "w");
