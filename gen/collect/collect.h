@@ -123,7 +123,7 @@ bool oscillates(const struct wave *wave);
 /* ---- atom.c: what is not linear, as expressions that are shared wherever they are the same ---- */
 
 enum atom_kind { ATOM_PRODUCT, ATOM_RECIPROCAL, ATOM_POWER, ATOM_CALL, ATOM_COMPARE, ATOM_CHOOSE };
-struct judged { signed char piecewise, stepwise; }; /* 1 and -1: is_piecewise_form, is_stepwise; 0: not asked yet */
+struct verdict { signed char piecewise, stepwise; }; /* 1 and -1: is_piecewise_form, is_stepwise; 0: not asked yet */
 struct atom {
 	enum atom_kind kind;
 	enum function function;     /* of ATOM_CALL */
@@ -134,7 +134,7 @@ struct atom {
 	unsigned *exponent;         /* of ATOM_PRODUCT, one per factor */
 	bool time, input, state, velocity; /* what it depends on; a coordinate of first order counts as a velocity */
 	const struct basis *moves;  /* of that a coordinate, else an input; NULL: t alone */
-	struct judged *judged;      /* what was found out about it */
+	struct verdict *judged;      /* what was found out about it */
 	const struct node *node;    /* where it comes from */
 	int index;                  /* in the order of first appearance */
 	struct atom *next;

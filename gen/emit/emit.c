@@ -299,7 +299,7 @@ static void banner_cost(const struct emitter *e)
 	if (!has_jump(e))
 		fprintf(e->to, " * There is no %s_jump: %s.\n", e->name, e->model->switching ? "crossings are found step by step" : e->model->tuning ? "retuned coefficients have one word" : has_leftover(e->step) ? "what is left over is not linear in the state"
 									  : "the samples to come are not known");
-	if (has_leftover(e->step) && !e->step->series.powers)
+	if (has_leftover(e->step) && !e->step->layout.powers)
 		fprintf(e->to, " * There is no %s_at: between its steps the scheme has no values of its order.\n", e->name);
 	else if (!e->step->series.emitted)
 		fprintf(e->to, " * There is no %s_at: the largest |pole| times h is above 8.\n", e->name);

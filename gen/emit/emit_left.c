@@ -779,7 +779,7 @@ static void emit_flows_apart(const struct emitter *e)
 {
 	const struct program *program = e->step->program;
 	const char *n = e->name, *which = many_operators(e) ? "which, " : "", *u = e->system->inputs ? "u, " : "";
-	const char *held = e->step->series.powers ? "NULL, " : "";
+	const char *held = e->step->layout.powers ? "NULL, " : "";
 	fprintf(e->to, "    if (s->segment < %d && %s_until(s, s->segment) < %s_H) {\n", e->system->segments - 1, n, e->upper);
 	if (is_driven(e))
 		fprintf(e->to, "        %s rest = *s;\n        for (i = 0; i < %s_STATES; i++)\n            rest.y[i] = 0.0;\n", n, e->upper);

@@ -15,54 +15,54 @@ static const struct switching *regions_of(const struct emitter *e)
 /* The load states among themselves */
 static void fill_load_states(const struct emitter *e, mpq_srcptr piece, double *Phi)
 {
-	const struct series *series = &e->step->series;
+	const struct layout *layout = &e->step->layout;
 	for (int l = 0; l < e->system->loads; l++) {
 		const struct load *load = &e->system->load[l];
-		for (int to = 0; to < load->columns && series->load[l] >= 0; to++)
+		for (int to = 0; to < load->columns && layout->load[l] >= 0; to++)
 			for (int from = 0; from < load->columns; from++)
-				Phi[(series->load[l] + to) * series->size + series->load[l] + from] =
+				Phi[(layout->load[l] + to) * layout->size + layout->load[l] + from] =
 					response_value(response_of_load_state(load, to, from), piece, false, e->model->asked.step_at, column_text(load, to)).value;
 	}
 }
 
 static void fill_input_states(const struct emitter *e, mpq_srcptr piece, double *Phi)
 {
-	const struct series *series = &e->step->series;
+	const struct layout *layout = &e->step->layout;
 	for (int i = 0; i < e->system->inputs; i++) {
-		int at = series->input[i];
-		Phi[at * series->size + at] = 1;
+		int at = layout->input[i];
+		Phi[at * layout->size + at] = 1;
 		if (!e->system->input[i].first_order)
 			continue;
-		Phi[at * series->size + at + 1] = round_rational(piece);
-		Phi[(at + 1) * series->size + at + 1] = 1;
+		Phi[at * layout->size + at + 1] = round_rational(piece);
+		Phi[(at + 1) * layout->size + at + 1] = 1;
 	}
 }
 
 /* u, and of a ramp u': held, and as the slope of u */
 static void fill_inputs(const struct emitter *e, const struct table *table, double *Phi)
 {
-	const struct series *series = &e->step->series;
+	const struct layout *layout = &e->step->layout;
 	for (int row = 0; row < table->states; row++)
 		for (int i = 0; i < e->system->inputs; i++) {
 			const struct coefficient *held = &table->kernel[0][row * table->channels], *ramp = &table->kernel[1][row * table->channels];
-			Phi[row * series->size + series->input[i]] = held[2 * i].value;
+			Phi[row * layout->size + layout->input[i]] = held[2 * i].value;
 			if (e->system->input[i].first_order)
-				Phi[row * series->size + series->input[i] + 1] = ramp[2 * i].value + held[2 * i + 1].value;
+				Phi[row * layout->size + layout->input[i] + 1] = ramp[2 * i].value + held[2 * i + 1].value;
 		}
 }
 
 static double *phi_of(const struct emitter *e, int system)
 {
-	const struct series *series = &e->step->series;
+	const struct layout *layout = &e->step->layout;
 	const struct table *table = e->step->branch[system].table[0];
-	double *Phi = ARRAY(double, (size_t)series->size * (size_t)series->size);
+	double *Phi = ARRAY(double, (size_t)layout->size * (size_t)layout->size);
 	for (int i = 0; i < table->states; i++) {
 		for (int j = 0; j < table->states; j++)
-			Phi[i * series->size + j] = table->Phi[i * table->states + j].value;
+			Phi[i * layout->size + j] = table->Phi[i * table->states + j].value;
 		for (int l = 0, column = 0; l < e->system->loads; l++)
 			for (int k = 0; k < e->system->load[l].columns; k++, column++)
-				if (series->load[l] >= 0)
-					Phi[i * series->size + series->load[l] + k] = table->load[i * table->columns + column].value;
+				if (layout->load[l] >= 0)
+					Phi[i * layout->size + layout->load[l] + k] = table->load[i * table->columns + column].value;
 	}
 	fill_inputs(e, table, Phi);
 	mpq_t piece;
@@ -76,8 +76,8 @@ static double *phi_of(const struct emitter *e, int system)
 
 static double *slopes_of(const struct emitter *e, int system)
 {
-	int size = e->step->series.size;
-	mpq_t *exact = series_matrix(&e->step->series, &e->step->branch[system].system, 0);
+	int size = e->step->layout.size;
+	mpq_t *exact = augmented_matrix(&e->step->layout, &e->step->branch[system].system, 0);
 	double *A = ARRAY(double, (size_t)size * (size_t)size);
 	for (int i = 0; i < size * size; i++)
 		A[i] = finite_number(e, exact[i]);
@@ -88,17 +88,17 @@ static double *slopes_of(const struct emitter *e, int system)
 
 static double *row_of(const struct emitter *e, const struct expression *x)
 {
-	const struct series *series = &e->step->series;
-	double *row = ARRAY(double, (size_t)series->size);
+	const struct layout *layout = &e->step->layout;
+	double *row = ARRAY(double, (size_t)layout->size);
 	for (int i = 0; i < e->system->states; i++)
 		row[i] = finite_number(e, x->row->state[i]);
 	for (int l = 0; l < e->system->loads; l++)
-		for (int k = 0; k < e->system->load[l].columns && series->load[l] >= 0; k++)
-			row[series->load[l] + k] = finite_number(e, x->row->load[l][k]);
+		for (int k = 0; k < e->system->load[l].columns && layout->load[l] >= 0; k++)
+			row[layout->load[l] + k] = finite_number(e, x->row->load[l][k]);
 	for (int i = 0; i < e->system->inputs; i++) {
-		row[series->input[i]] = finite_number(e, x->row->input[0][i]);
+		row[layout->input[i]] = finite_number(e, x->row->input[0][i]);
 		if (e->system->input[i].first_order)
-			row[series->input[i] + 1] = finite_number(e, x->row->input[1][i]);
+			row[layout->input[i] + 1] = finite_number(e, x->row->input[1][i]);
 	}
 	return row;
 }
@@ -139,7 +139,7 @@ static void times_matrix(int n, double *row, const double *A)
 static void bound_derivative(const struct emitter *e, const double *A, const double *expression, int order, double d, double factor, double *bound)
 {
 	enum { PARTS = 8 };
-	int n = e->step->series.size, pieces = PARTS;
+	int n = e->step->layout.size, pieces = PARTS;
 	double delta = d / PARTS, *row = ARRAY(double, (size_t)n);
 	double *E = ARRAY(double, (size_t)(n * n)), *growth = ARRAY(double, (size_t)(n * n));
 	exponential(n, A, delta, false, E);
@@ -162,17 +162,17 @@ static void bound_derivative(const struct emitter *e, const double *A, const dou
 
 static const char **entry_names(const struct emitter *e)
 {
-	const struct series *series = &e->step->series;
-	const char **name = ARRAY(const char *, (size_t)series->size);
+	const struct layout *layout = &e->step->layout;
+	const char **name = ARRAY(const char *, (size_t)layout->size);
 	for (int i = 0; i < e->system->states; i++)
 		name[i] = e->model->state_name[i];
 	for (int l = 0; l < e->system->loads; l++)
-		for (int k = 0; k < e->system->load[l].columns && series->load[l] >= 0; k++)
-			name[series->load[l] + k] = column_text(&e->system->load[l], k);
+		for (int k = 0; k < e->system->load[l].columns && layout->load[l] >= 0; k++)
+			name[layout->load[l] + k] = column_text(&e->system->load[l], k);
 	for (int i = 0; i < e->system->inputs; i++) {
-		name[series->input[i]] = e->system->input[i].name;
+		name[layout->input[i]] = e->system->input[i].name;
 		if (e->system->input[i].first_order)
-			name[series->input[i] + 1] = format("%s'", e->system->input[i].name);
+			name[layout->input[i] + 1] = format("%s'", e->system->input[i].name);
 	}
 	return name;
 }
@@ -188,7 +188,7 @@ static const char **expression_names(const struct emitter *e)
 
 static void emit_matrices(const struct emitter *e, const char *name, const char *note, double *(*of)(const struct emitter *, int))
 {
-	int size = e->step->series.size;
+	int size = e->step->layout.size;
 	fprintf(e->to, "\nstatic const double %s_%s[%d][%d][%d] = {  /* %s */\n", e->name, name, e->step->branches, size, size, note);
 	for (int k = 0; k < e->step->branches; k++) {
 		fputs("  {\n", e->to);
@@ -201,7 +201,7 @@ static void emit_matrices(const struct emitter *e, const char *name, const char 
 static void emit_rows(const struct emitter *e)
 {
 	const struct switching *s = regions_of(e);
-	int size = e->step->series.size;
+	int size = e->step->layout.size;
 	double *row = ARRAY(double, (size_t)(s->expressions * size));
 	for (int i = 0; i < s->expressions; i++)
 		memcpy(row + i * size, row_of(e, &s->expression[i]), (size_t)size * sizeof *row);
@@ -233,7 +233,7 @@ static void emit_breakpoints(const struct emitter *e)
 /* Of e over a piece d: d/3 times its slope, or a bound of d^2/8 times its second, d^4/384 times its fourth derivative */
 static double *bound_of(const struct emitter *e, int k, const double *A, int expression, int order)
 {
-	int size = e->step->series.size;
+	int size = e->step->layout.size;
 	double d = ldexp(round_rational(e->model->h), -e->step->branch[k].halvings), factor = order == 1 ? d / 3 : order == 2 ? d * d / 8 : d * d * d * d / 384;
 	double *row = row_of(e, &regions_of(e)->expression[expression]), *bound = ARRAY(double, (size_t)size);
 	if (order > 1) {
@@ -252,7 +252,7 @@ static double *bound_of(const struct emitter *e, int k, const double *A, int exp
 static void emit_bound(const struct emitter *e, const char *name, const char *note, int order)
 {
 	const struct switching *s = regions_of(e);
-	int size = e->step->series.size;
+	int size = e->step->layout.size;
 	fprintf(e->to, "\nstatic const double %s_%s[%d][%d][%d] = {  /* %s */\n", e->name, name, e->step->branches, s->expressions, size, note);
 	for (int k = 0; k < e->step->branches; k++) {
 		double *A = slopes_of(e, k), *value = ARRAY(double, (size_t)(s->expressions * size));
@@ -277,7 +277,7 @@ void emit_regions(const struct emitter *e)
 	emit_bound(e, "sag", "d^2/8 times its second derivative, at most", 2);
 	emit_bound(e, "sway", "d^4/384 times its fourth derivative, at most", 4);
 	fprintf(e->to, "\nstatic const pl_switching %s_switching = {\n    %d, %s_H, %d, %s_row[0], %s_breaks, %s_breakpoint, %s_matrix, %s_halvings,\n", n,
-		e->step->series.size, e->upper, s->expressions, n, n, n, n, n);
+		e->step->layout.size, e->upper, s->expressions, n, n, n, n, n);
 	fprintf(e->to, "    %s_slopes[0][0], %s_pieces[0][0], %s_lean[0][0], %s_sag[0][0], %s_sway[0][0], %d, %s_MAX_EVENTS, %d\n};\n", n, n, n, n, n,
 		e->step->series.degree, e->upper, MAX_SPLITS);
 }
@@ -301,33 +301,33 @@ static bool *needed_loads(const struct emitter *e)
 {
 	bool *needed = ARRAY(bool, (size_t)e->system->loads);
 	for (int l = 0; l < e->system->loads; l++)
-		needed[l] = e->step->series.load[l] >= 0;
+		needed[l] = e->step->layout.load[l] >= 0;
 	return needed;
 }
 
 /* x from y; `u`: the samples, slope: of ramps, or NULL */
 static void emit_x(const struct emitter *e, const char *y, bool step)
 {
-	const struct series *series = &e->step->series;
+	const struct layout *layout = &e->step->layout;
 	fprintf(e->to, "    for (i = 0; i < %s_STATES; i++)\n        x[i] = %s[i];\n", e->upper, y);
 	for (int l = 0; l < e->system->loads; l++)
-		for (int k = 0; k < e->system->load[l].columns && series->load[l] >= 0; k++) {
+		for (int k = 0; k < e->system->load[l].columns && layout->load[l] >= 0; k++) {
 			const char *operand = load_operand(e, l, k);
-			fprintf(e->to, "    x[%d] = %s;\n", series->load[l] + k, operand ? operand : "1.0");
+			fprintf(e->to, "    x[%d] = %s;\n", layout->load[l] + k, operand ? operand : "1.0");
 		}
 	for (int i = 0; i < e->system->inputs; i++) {
 		bool ramp = e->system->input[i].first_order;
-		fprintf(e->to, "    x[%d] = %s[%d];\n", series->input[i], step && !ramp ? "u" : "s->u", i);
+		fprintf(e->to, "    x[%d] = %s[%d];\n", layout->input[i], step && !ramp ? "u" : "s->u", i);
 		if (ramp && step)
-			fprintf(e->to, "    x[%d] = (u[%d] - s->u[%d]) / %s_H;\n", series->input[i] + 1, i, i, e->upper);
+			fprintf(e->to, "    x[%d] = (u[%d] - s->u[%d]) / %s_H;\n", layout->input[i] + 1, i, i, e->upper);
 		else if (ramp)
-			fprintf(e->to, "    x[%d] = 0.0;\n", series->input[i] + 1);
+			fprintf(e->to, "    x[%d] = 0.0;\n", layout->input[i] + 1);
 	}
 }
 
 static void declare_room(const struct emitter *e)
 {
-	fprintf(e->to, "    double x[%d], work[PL_SWITCHING_WORK(%d, %d, %d)];\n", e->step->series.size, e->step->series.size, regions_of(e)->expressions,
+	fprintf(e->to, "    double x[%d], work[PL_SWITCHING_WORK(%d, %d, %d)];\n", e->step->layout.size, e->step->layout.size, regions_of(e)->expressions,
 		e->step->series.degree);
 }
 

@@ -7,30 +7,30 @@
 /* Names of the entries of the series' vector; `slopes`: of the states' rows. */
 static const char **series_names(const struct emitter *e)
 {
-	const struct series *series = &e->step->series;
-	const char **name = ARRAY(const char *, (size_t)series->size);
+	const struct layout *layout = &e->step->layout;
+	const char **name = ARRAY(const char *, (size_t)layout->size);
 	for (int i = 0; i < e->system->states; i++)
 		name[i] = format("%s'", e->model->state_name[i]);
-	for (int i = 0; i < e->model->n && series->held >= 0; i++)
-		name[series->held + i] = format("held for %s", e->model->coord_name[i]);
+	for (int i = 0; i < e->model->n && layout->held >= 0; i++)
+		name[layout->held + i] = format("held for %s", e->model->coord_name[i]);
 	for (int l = 0; l < e->system->loads; l++)
-		for (int k = 0; k < e->system->load[l].columns && series->load[l] >= 0; k++)
-			name[series->load[l] + k] = column_text(&e->system->load[l], k);
+		for (int k = 0; k < e->system->load[l].columns && layout->load[l] >= 0; k++)
+			name[layout->load[l] + k] = column_text(&e->system->load[l], k);
 	for (int i = 0; i < e->system->inputs; i++) {
-		name[series->input[i]] = e->system->input[i].name;
+		name[layout->input[i]] = e->system->input[i].name;
 		if (e->system->input[i].first_order)
-			name[series->input[i] + 1] = format("%s'", e->system->input[i].name);
+			name[layout->input[i] + 1] = format("%s'", e->system->input[i].name);
 	}
-	for (int c = 0; c < e->system->channels * series->powers; c++)
-		name[series->channel + c] = format("leftover %d", c + 1);
+	for (int c = 0; c < e->system->channels * layout->powers; c++)
+		name[layout->channel + c] = format("leftover %d", c + 1);
 	return name;
 }
 
 static void emit_held(const struct emitter *e)
 {
-	const struct series *series = &e->step->series;
+	const struct layout *layout = &e->step->layout;
 	int n = e->model->n;
-	for (int i = 0; i < n && series->held >= 0; i++) {
+	for (int i = 0; i < n && layout->held >= 0; i++) {
 		const char **term = ARRAY(const char *, (size_t)e->system->states);
 		int terms = 0;
 		for (int j = 0; j < e->system->states; j++) {
@@ -39,7 +39,7 @@ static void emit_held(const struct emitter *e)
 			if (mpq_sgn(held[cell]) != 0)
 				term[terms++] = scaled(-finite_number(e, held[cell]), format("s->y[%d]", j));
 		}
-		fprintf(e->to, "    x[%d] = %s;  /* held for %s */\n", series->held + i, terms ? tree(terms, term, 12) : "0.0", e->model->coord_name[i]);
+		fprintf(e->to, "    x[%d] = %s;  /* held for %s */\n", layout->held + i, terms ? tree(terms, term, 12) : "0.0", e->model->coord_name[i]);
 	}
 }
 
@@ -74,19 +74,19 @@ static void store_inputs(const struct emitter *e, const int *index)
 /* Of a bank: one matrix for each operator */
 static void emit_slopes(const struct emitter *e)
 {
-	const struct series *series = &e->step->series;
-	size_t cells = (size_t)series->size * (size_t)series->size;
+	const struct layout *layout = &e->step->layout;
+	size_t cells = (size_t)layout->size * (size_t)layout->size;
 	double *A = ARRAY(double, cells);
 	bool bank = e->step->branches > 1;
 	fprintf(e->to, "\n/* x' = A x; x = y%s%s */\nstatic const double %s_slope%s[%d][%d] = {\n",
-		series->size > e->system->states ? ", then what acts on it" : "", bank ? "; for each operator" : "", e->name,
-		bank ? format("[%d]", e->step->branches) : "", series->size, series->size);
+		layout->size > e->system->states ? ", then what acts on it" : "", bank ? "; for each operator" : "", e->name,
+		bank ? format("[%d]", e->step->branches) : "", layout->size, layout->size);
 	for (int o = 0; o < e->step->branches; o++) {
-		mpq_t *exact = series_matrix(series, &e->step->branch[o].system, 0);
+		mpq_t *exact = augmented_matrix(layout, &e->step->branch[o].system, 0);
 		for (size_t i = 0; i < cells; i++)
 			A[i] = round_rational(exact[i]);
 		fputs(bank ? "  {\n" : "", e->to);
-		emit_number_rows(e, series->size, series->size, A, series_names(e));
+		emit_number_rows(e, layout->size, layout->size, A, series_names(e));
 		fputs(bank ? "  },\n" : "", e->to);
 	}
 	fputs("};\n", e->to);
@@ -104,7 +104,7 @@ static int first_load_state(const struct emitter *e, int *columns)
 	int first = -1;
 	*columns = 0;
 	for (int l = 0; l < e->system->loads; l++) {
-		int at = e->step->series.load[l];
+		int at = e->step->layout.load[l];
 		if (at < 0)
 			continue;
 		first = first < 0 ? at : first;
@@ -117,7 +117,7 @@ static int first_load_state(const struct emitter *e, int *columns)
 static bool forced_entry(const struct emitter *e, int entry)
 {
 	for (int l = 0; l < e->system->loads; l++)
-		if (e->step->forced && e->step->forced->load[l] && entry >= e->step->series.load[l] && entry < e->step->series.load[l] + e->system->load[l].columns)
+		if (e->step->forced && e->step->forced->load[l] && entry >= e->step->layout.load[l] && entry < e->step->layout.load[l] + e->system->load[l].columns)
 			return true;
 	return false;
 }
@@ -128,22 +128,22 @@ static void emit_forced_sum(const struct emitter *e, const char *table, const ch
 	for (int l = 0, column = 0; l < e->system->loads; column += e->system->load[l++].columns)
 		if (e->step->forced->load[l])
 			fprintf(e->to, "%sfor (i = 0; i < %s_STATES; i++)\n%s    for (j = 0; j < %d; j++)\n%s        %s[i] += %s_%s[segment][i][%d + j] * x[%d + j];\n",
-				indent, e->upper, indent, e->system->load[l].columns, indent, vector, e->name, table, column, e->step->series.load[l]);
+				indent, e->upper, indent, e->system->load[l].columns, indent, vector, e->name, table, column, e->step->layout.load[l]);
 }
 
 static void emit_segment_slopes(const struct emitter *e, int first, int columns)
 {
-	const struct series *series = &e->step->series;
+	const struct layout *layout = &e->step->layout;
 	int states = e->system->states;
 	fprintf(e->to, "\n/* The columns of A from %d on, in each segment of time */\nstatic const double %s_load_slope[%d][%s_STATES][%d] = {\n", first,
 		e->name, e->system->segments, e->upper, columns);
 	for (int s = 0; s < e->system->segments; s++) {
-		mpq_t *exact = series_matrix(series, e->system, s);
+		mpq_t *exact = augmented_matrix(layout, e->system, s);
 		fputs("  {\n", e->to);
 		double *value = ARRAY(double, (size_t)(states * columns));
 		for (int i = 0; i < states; i++)
 			for (int j = 0; j < columns; j++)
-				value[i * columns + j] = forced_entry(e, first + j) ? 0 : round_rational(exact[i * series->size + first + j]);
+				value[i * columns + j] = forced_entry(e, first + j) ? 0 : round_rational(exact[i * layout->size + first + j]);
 		emit_number_rows(e, states, columns, value, series_names(e));
 		fputs("  },\n", e->to);
 	}
@@ -152,7 +152,7 @@ static void emit_segment_slopes(const struct emitter *e, int first, int columns)
 
 static void emit_use_segment(const struct emitter *e, int first, int columns)
 {
-	fprintf(e->to, "\nstatic void %s_use_segment(double A[][%d], int segment)\n{\n    int i, j;\n", e->name, e->step->series.size);
+	fprintf(e->to, "\nstatic void %s_use_segment(double A[][%d], int segment)\n{\n    int i, j;\n", e->name, e->step->layout.size);
 	fprintf(e->to, "    for (i = 0; i < %s_STATES; i++)\n        for (j = 0; j < %d; j++)\n            A[i][%d + j] = %s_load_slope[segment][i][j];\n}\n",
 		e->upper, columns, first, e->name);
 }
@@ -164,14 +164,14 @@ static const char *input_parameter(const struct emitter *e)
 
 static void emit_leftover_now(const struct emitter *e)
 {
-	if (e->step->series.powers)
+	if (e->step->layout.powers)
 		fprintf(e->to, "    %s\n", leftover_of_step(e));
 }
 
 void emit_series_vector(const struct emitter *e)
 {
-	const struct series *series = &e->step->series;
-	emit_load_states(e, wanted_loads(e, series->load), false);
+	const struct layout *layout = &e->step->layout;
+	emit_load_states(e, wanted_loads(e, layout->load), false);
 	fprintf(e->to, "    int i;\n");
 	if (e->system->segments == 1)
 		emit_leftover_now(e);
@@ -180,10 +180,10 @@ void emit_series_vector(const struct emitter *e)
 	else
 		emit_load_state(e, "x");
 	emit_held(e);
-	store_loads(e, series->load, "");
-	store_inputs(e, series->input);
-	if (series->powers)
-		fprintf(e->to, "    for (i = 0; i < %d; i++)\n        x[%d + i] = %s;\n", e->system->channels, series->channel,
+	store_loads(e, layout->load, "");
+	store_inputs(e, layout->input);
+	if (layout->powers)
+		fprintf(e->to, "    for (i = 0; i < %d; i++)\n        x[%d + i] = %s;\n", e->system->channels, layout->channel,
 			e->system->segments > 1 ? "left ? left[i] : 0.0" : "left[i]");
 }
 
@@ -191,15 +191,16 @@ void emit_series_vector(const struct emitter *e)
 static void emit_pass(const struct emitter *e)
 {
 	const struct series *series = &e->step->series;
+	const struct layout *layout = &e->step->layout;
 	FILE *to = e->to;
-	int columns, first = first_load_state(e, &columns), size = series->size;
+	int columns, first = first_load_state(e, &columns), size = layout->size;
 	if (first >= 0) {
 		emit_segment_slopes(e, first, columns);
 		emit_use_segment(e, first, columns);
 	}
 	fprintf(to, "\n/* The state tau after now, from change to change of the loads on the way. */\n");
 	fprintf(to, "static %s %s_pass(const %s *s, %s%s%sdouble tau, %sdouble y[%s_STATES])\n{\n", e->step->forced ? "int" : "void", e->name, e->name,
-		e->step->branches > 1 ? "int which, " : "", input_parameter(e), series->powers ? "const double *left, " : "", e->step->forced ? "int whole, " : "", e->upper);
+		e->step->branches > 1 ? "int which, " : "", input_parameter(e), layout->powers ? "const double *left, " : "", e->step->forced ? "int whole, " : "", e->upper);
 	fprintf(to, "    double A[%d][%d], done = 0.0, x[%d], work[%d];\n    int j, segment = s->segment;\n    pl_series series;\n", size, size, size, 2 * size);
 	emit_series_vector(e);
 	fprintf(to, "    for (i = 0; i < %d; i++)\n        for (j = 0; j < %d; j++)\n            A[i][j] = %s[i][j];\n", size, size, slope_text(e));
@@ -270,6 +271,7 @@ void emit_hand_over(const struct emitter *e)
 void emit_at(const struct emitter *e)
 {
 	const struct series *series = &e->step->series;
+	const struct layout *layout = &e->step->layout;
 	FILE *to = e->to;
 	bool changes = e->system->segments > 1;
 	if (!changes)
@@ -281,15 +283,15 @@ void emit_at(const struct emitter *e)
 		if (e->model->relative)
 			fprintf(to, "    double x[%s_STATES];\n", e->upper);
 		fprintf(to, "    %s_pass(s, %s%s%stau, %s%s);\n", e->name, e->step->branches > 1 ? "which, " : "", e->system->inputs ? "u, " : "",
-			series->powers ? "left, " : "", e->step->forced ? "1, " : "", e->model->relative ? "x" : "y");
+			layout->powers ? "left, " : "", e->step->forced ? "1, " : "", e->model->relative ? "x" : "y");
 		if (e->model->relative)
 			fprintf(to, "    %s_written(s, x, y);\n", e->name);
 		fputs("}\n", to);
 		return;
 	}
 	fprintf(to, "    %sconst pl_series series = {%d, %s_STATES, %d, %d, %s[0]};  /* size, states, degree, halvings */\n",
-		e->step->branches > 1 ? "" : "static ", series->size, e->upper, series->degree, series->halvings, slope_text(e));
-	fprintf(to, "    double x[%d], work[%d];\n", series->size, 2 * series->size);
+		e->step->branches > 1 ? "" : "static ", layout->size, e->upper, series->degree, series->halvings, slope_text(e));
+	fprintf(to, "    double x[%d], work[%d];\n", layout->size, 2 * layout->size);
 	emit_series_vector(e);
 	fputs("    pl_series_advance(&series, tau, x, work);\n", to);
 	emit_hand_over(e);

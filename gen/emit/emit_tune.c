@@ -7,7 +7,7 @@
 /* Columns of a step's factors: states, load states in each segment of time, inputs */
 static int step_columns(const struct emitter *e)
 {
-	return e->model->tuning->columns;
+	return e->model->tuning->x.size;
 }
 
 static int tuned_outputs(const struct emitter *e)
@@ -48,7 +48,7 @@ static const char *column_list(const struct emitter *e)
 {
 	enum { WIDTH = 110 };
 	const char **name = column_names(e), *list = "", *line = "";
-	int states = e->system->states, loads = e->model->tuning->loads, segments = e->system->segments;
+	int states = e->system->states, loads = e->model->tuning->x.loads, segments = e->system->segments;
 	for (int i = 0; i < step_columns(e); i++) {
 		if (i >= states + loads && i < states + segments * loads)
 			continue;
@@ -66,19 +66,19 @@ static const char *column_list(const struct emitter *e)
 static int equation_width(const struct emitter *e)
 {
 	const struct tuning *t = e->model->tuning;
-	return t->columns + (t->solves ? t->rows : 0);
+	return t->x.size + (t->solves ? t->rows : 0);
 }
 
 static int work_size(const struct emitter *e)
 {
-	int size = e->step->series.size, increment = PL_INCREMENT_WORK(size), products = e->model->tuning->monomials + 1;
+	int size = e->step->layout.size, increment = PL_INCREMENT_WORK(size), products = e->model->tuning->monomials + 1;
 	return increment > products ? increment : products;
 }
 
 /* Bytes, frames of the calls not counted */
 static int retune_stack(const struct emitter *e)
 {
-	int size = e->step->series.size, real = e->model->asked.single ? 4 : 8;
+	int size = e->step->layout.size, real = e->model->asked.single ? 4 : 8;
 	int twos = e->model->tuning->rows * equation_width(e) + size * size + work_size(e) + e->system->segments * e->system->states * size;
 	return 2 * real * twos;
 }
@@ -290,10 +290,10 @@ static const char *product_text(const struct tuning *t, const struct tuned_term 
 static const char *term_note(const struct emitter *e, const struct tuned_term *term)
 {
 	const struct tuning *t = e->model->tuning;
-	bool left = term->column >= t->columns;
+	bool left = term->column >= t->x.size;
 	if (term->row >= t->rows - t->frequencies)
 		return format("%s: %s", row_name(e, term->row), product_text(t, term));
-	const char *of = left ? row_name(e, term->column - t->columns) : column_names(e)[term->column];
+	const char *of = left ? row_name(e, term->column - t->x.size) : column_names(e)[term->column];
 	const char *where = t->solves ? format("equation %d, %s", term->row + 1, left ? "left" : "right") : row_name(e, term->row);
 	return format("%s: %s %s", where, product_text(t, term), of);
 }
@@ -311,7 +311,7 @@ static void emit_equations(const struct emitter *e)
 			term_note(e, &t->term[i]));
 	}
 	fprintf(to, "};\n\n/* The highest derivatives%s, over x%s */\n", tuned_outputs(e) ? " and outputs" : "", t->frequencies ? "; frequencies of loads, in column 0" : "");
-	fprintf(to, "static const pl_equations %s_equations = {%d, %d, %d, %s_PARAMS, %d, %d, %s, %s_term};\n", n, t->rows, t->columns, t->solves, e->upper,
+	fprintf(to, "static const pl_equations %s_equations = {%d, %d, %d, %s_PARAMS, %d, %d, %s, %s_term};\n", n, t->rows, t->x.size, t->solves, e->upper,
 		t->monomials, t->terms, t->monomials ? format("%s_monomial", n) : "NULL", n);
 }
 
@@ -319,7 +319,7 @@ static void emit_equations(const struct emitter *e)
 static bool is_tuned_frequency(const struct emitter *e, int row, int column)
 {
 	for (int l = 0; l < e->system->loads; l++) {
-		int from = e->step->series.load[l];
+		int from = e->step->layout.load[l];
 		if (e->model->tuning->frequency[l] >= 0 && row >= from && row < from + e->system->load[l].columns && row != column && (row - from) / 2 == (column - from) / 2)
 			return true;
 	}
@@ -329,7 +329,7 @@ static bool is_tuned_frequency(const struct emitter *e, int row, int column)
 static void emit_tuned_frequencies(const struct emitter *e)
 {
 	for (int l = 0; l < e->system->loads; l++) {
-		int row = e->model->tuning->frequency[l], from = e->step->series.load[l];
+		int row = e->model->tuning->frequency[l], from = e->step->layout.load[l];
 		for (int k = from; row >= 0 && k < from + e->system->load[l].columns; k += 2)
 			fprintf(e->to, "    A[%d][%d].hi = -value[%d][0].hi;\n    A[%d][%d].lo = -value[%d][0].lo;\n    A[%d][%d] = value[%d][0];\n", k, k + 1, row, k, k + 1,
 				row, k + 1, k, row);
@@ -340,8 +340,8 @@ static void emit_tuned_frequencies(const struct emitter *e)
 static int emit_fixed_entries(const struct emitter *e)
 {
 	const struct linear *system = e->system;
-	int size = e->step->series.size, count = 0;
-	mpq_t *A = series_matrix(&e->step->series, system, 0);
+	int size = e->step->layout.size, count = 0;
+	mpq_t *A = augmented_matrix(&e->step->layout, system, 0);
 	for (int i = 0; i < size; i++)
 		for (int j = 0; j < size; j++) {
 			bool derivative = i < system->states && (i >= system->n || system->velocity[i] < 0);
@@ -361,7 +361,7 @@ static void emit_slopes(const struct emitter *e)
 	FILE *to = e->to;
 	const struct tuning *t = e->model->tuning;
 	const struct linear *system = e->system;
-	int size = e->step->series.size, inputs = input_columns(system);
+	int size = e->step->layout.size, inputs = input_columns(system);
 	bool segments = system->segments > 1;
 	fprintf(to, "\n/* x' = A x%s */\nstatic void %s_slopes(pl_two value[%d][%d], %spl_two A[%d][%d])\n{\n", segments ? ", in a segment of time" : "", e->name, t->rows,
 		equation_width(e), segments ? "int segment, " : "", size, size);
@@ -379,10 +379,10 @@ static void emit_slopes(const struct emitter *e)
 	if (!segments)
 		fputs("}\n", to);
 	if (segments)
-		fprintf(to, "        for (j = 0; j < %d; j++)\n            A[row[i]][%s_STATES + j] = value[i][%s_STATES + segment * %d + j];\n", t->loads, e->upper, e->upper, t->loads);
+		fprintf(to, "        for (j = 0; j < %d; j++)\n            A[row[i]][%s_STATES + j] = value[i][%s_STATES + segment * %d + j];\n", t->x.loads, e->upper, e->upper, t->x.loads);
 	if (segments && inputs)
-		fprintf(to, "        for (j = 0; j < %d; j++)\n            A[row[i]][%d + j] = value[i][%d + j];\n", inputs, system->states + t->loads,
-			system->states + system->segments * t->loads);
+		fprintf(to, "        for (j = 0; j < %d; j++)\n            A[row[i]][%d + j] = value[i][%d + j];\n", inputs, system->states + t->x.loads,
+			system->states + system->segments * t->x.loads);
 	if (segments)
 		fputs("    }\n}\n", to);
 }
@@ -392,16 +392,16 @@ static void emit_slopes(const struct emitter *e)
 /* Declares what the equations are solved in. */
 static void emit_work(const struct emitter *e)
 {
-	int size = e->step->series.size;
+	int size = e->step->layout.size;
 	fprintf(e->to, "    pl_two value[%d][%d], A[%d][%d], work[%d];\n", e->model->tuning->rows, equation_width(e), size, size, work_size(e));
 }
 
 /* The columns of inputs in c->step, from D */
 static void emit_input_factors(const struct emitter *e, const char *D)
 {
-	int column = e->system->states + e->system->segments * e->model->tuning->loads;
+	int column = e->system->states + e->system->segments * e->model->tuning->x.loads;
 	for (int i = 0; i < e->system->inputs; i++) {
-		int at = e->step->series.input[i];
+		int at = e->step->layout.input[i];
 		if (e->system->input[i].first_order) {
 			fprintf(e->to, "        c->step[i][%d] = pl_ramp_before(%s[i][%d], %s[i][%d], h);\n", column, D, at, D, at + 1);
 			fprintf(e->to, "        c->step[i][%d] = %s[i][%d].hi / h;\n", column + 1, D, at + 1);
@@ -420,10 +420,10 @@ static void emit_take_factors(const struct emitter *e)
 	bool segments = e->system->segments > 1;
 	const char *D = segments ? "D[0]" : "D";
 	fprintf(to, "    for (i = 0; i < %s_STATES; i++) {\n        for (j = 0; j < %s%s; j++)\n            c->step[i][j] = %s[i][j].hi;\n", N,
-		segments ? N : format("%d", e->system->states + t->loads), segments ? "_STATES" : "", D);
-	if (segments && t->loads)
-		fprintf(to, "        for (j = 0; j < %d; j++)\n            c->step[i][%s_STATES + j] = D[j / %d][i][%s_STATES + j %% %d].hi;\n", e->system->segments * t->loads, N,
-			t->loads, N, t->loads);
+		segments ? N : format("%d", e->system->states + t->x.loads), segments ? "_STATES" : "", D);
+	if (segments && t->x.loads)
+		fprintf(to, "        for (j = 0; j < %d; j++)\n            c->step[i][%s_STATES + j] = D[j / %d][i][%s_STATES + j %% %d].hi;\n", e->system->segments * t->x.loads, N,
+			t->x.loads, N, t->x.loads);
 	emit_input_factors(e, D);
 	if (e->step->form == FORM_DIRECT)
 		fprintf(to, "        c->step[i][i] = (1.0 + c->step[i][i]) + %s[i][i].lo;\n", D);
@@ -453,11 +453,11 @@ static void emit_take_loads(const struct emitter *e)
 /* In one word where that is enough, also for what is left of a ramp's value before the step */
 static void emit_increment(const struct emitter *e, const char *D)
 {
-	int size = e->step->series.size;
+	int size = e->step->layout.size;
 	const char *cancels = "";
 	for (int i = 0; i < e->system->inputs; i++)
 		if (e->system->input[i].first_order)
-			cancels = format("%s%spl_ramp_cancels(%d, %s_STATES, %s, %d, h)", cancels, *cancels ? " || " : "", size, e->upper, D, e->step->series.input[i]);
+			cancels = format("%s%spl_ramp_cancels(%d, %s_STATES, %s, %d, h)", cancels, *cancels ? " || " : "", size, e->upper, D, e->step->layout.input[i]);
 	fprintf(e->to, "        status = pl_increment(%d, %s_STATES, A[0], h, 1, %s, work);\n", size, e->upper, D);
 	if (*cancels)
 		fprintf(e->to, "        if (status == 0 && (%s))\n            status = pl_increment(%d, %s_STATES, A[0], h, 2, %s, work);\n", cancels, size, e->upper, D);
@@ -478,7 +478,7 @@ static void emit_retune_function(const struct emitter *e)
 {
 	FILE *to = e->to;
 	const char *n = e->name, *N = e->upper;
-	int segments = e->system->segments, size = e->step->series.size;
+	int segments = e->system->segments, size = e->step->layout.size;
 	fprintf(to, "\nint %s_retune(%s_coeffs *c, const double params[%s_PARAMS], double h)\n{\n", n, n, N);
 	emit_work(e);
 	fprintf(to, "    pl_two D%s[%s_STATES][%d];  /* e^{A h} - I */\n    int i, j, status;\n", segments > 1 ? format("[%d]", segments) : "", N, size);
@@ -507,7 +507,7 @@ static void emit_retune_function(const struct emitter *e)
 static void emit_advance(const struct emitter *e)
 {
 	FILE *to = e->to;
-	int size = e->step->series.size;
+	int size = e->step->layout.size;
 	bool segments = e->system->segments > 1;
 	const char *rows = segments ? format("%d", size) : format("%s_STATES", e->upper);
 	fprintf(to, "\n/* The states tau on */\nstatic void %s_advance(pl_two value[%d][%d], %sdouble tau, double x[%d])\n{\n", e->name, e->model->tuning->rows, equation_width(e),
@@ -522,7 +522,7 @@ static void emit_tuned_pass(const struct emitter *e)
 {
 	FILE *to = e->to;
 	const char *n = e->name, *N = e->upper;
-	int size = e->step->series.size, changes = e->system->segments - 1;
+	int size = e->step->layout.size, changes = e->system->segments - 1;
 	const char *u = e->system->inputs ? format("const double u[%s_INPUTS], ", N) : "";
 	emit_advance(e);
 	fprintf(to, "\n/* The state tau after now%s */\n", changes ? ", from change to change of the loads on the way" : "");

@@ -126,7 +126,7 @@ void emit_kept_state(const struct emitter *e, const char *vector)
 
 static const char *tuned_entry(const struct emitter *e, const char *table, int row, int column)
 {
-	int states = e->system->states, loads = e->model->tuning->loads, segments = e->system->segments;
+	int states = e->system->states, loads = e->model->tuning->x.loads, segments = e->system->segments;
 	if (column >= states + loads)
 		column += (segments - 1) * loads;
 	else if (column >= states && segments > 1)
@@ -137,7 +137,7 @@ static const char *tuned_entry(const struct emitter *e, const char *table, int r
 const char *tuned_factor(const struct emitter *e, int row, const struct operand *operand)
 {
 	int states = e->system->states;
-	int column = operand->kind == OPERAND_LOAD ? states + operand->index : operand->kind == OPERAND_INPUT ? states + e->model->tuning->loads + operand->index : operand->index;
+	int column = operand->kind == OPERAND_LOAD ? states + operand->index : operand->kind == OPERAND_INPUT ? states + e->model->tuning->x.loads + operand->index : operand->index;
 	return tuned_entry(e, "step", row, column);
 }
 
@@ -148,15 +148,15 @@ const char *tuned_output(const struct emitter *e, const struct output *output)
 	int row = t ? t->output[output - e->model->output] : -1, states = system->states, terms = 0;
 	if (row < 0)
 		return NULL;
-	const char **term = ARRAY(const char *, (size_t)t->columns + 1), **operand = ARRAY(const char *, (size_t)t->columns);
+	const char **term = ARRAY(const char *, (size_t)t->x.size + 1), **operand = ARRAY(const char *, (size_t)t->x.size);
 	for (int i = 0; i < states; i++)
 		operand[i] = e->local[i];
-	for (int k = 0; k < t->loads; k++)
+	for (int k = 0; k < t->x.loads; k++)
 		operand[states + k] = column_operand(e, k);
-	for (int i = 0, column = states + t->loads; i < system->inputs; i++)
+	for (int i = 0, column = states + t->x.loads; i < system->inputs; i++)
 		for (int k = 0; k < (system->input[i].first_order ? 2 : 1); k++)
 			operand[column++] = format(k ? "s->slope[%d]" : "s->u[%d]", i);
-	for (int j = 0; j < states + t->loads + input_columns(system); j++)
+	for (int j = 0; j < states + t->x.loads + input_columns(system); j++)
 		if (tuned_output_reads(e, output, j)) {
 			const char *factor = tuned_entry(e, "out", row - e->model->n, j);
 			term[terms++] = operand[j] ? format("%s * %s", factor, operand[j]) : factor;
@@ -168,13 +168,13 @@ bool tuned_output_reads(const struct emitter *e, const struct output *output, in
 {
 	const struct tuning *t = e->model->tuning;
 	int states = e->system->states, segments = e->system->segments;
-	const bool *acts = t->acts + t->output[output - e->model->output] * t->columns;
+	const bool *acts = t->acts + t->output[output - e->model->output] * t->x.size;
 	if (column < states)
 		return acts[column];
-	if (column >= states + t->loads)
-		return acts[column + (segments - 1) * t->loads];
+	if (column >= states + t->x.loads)
+		return acts[column + (segments - 1) * t->x.loads];
 	bool any = false;
 	for (int s = 0; s < segments; s++)
-		any = any || acts[column + s * t->loads];
+		any = any || acts[column + s * t->x.loads];
 	return any;
 }

@@ -147,7 +147,7 @@ static void person_step(FILE *to, const struct step *step)
 			step->series.degree, 1 << step->series.halvings, step->series.halvings ? "s" : "");
 	else
 		fprintf(to, "%s_at is not emitted: %s.\n", model->name,
-			has_leftover(step) && !step->series.powers
+			has_leftover(step) && !step->layout.powers
 				? "between its steps the scheme has no values of its order"
 				: "the largest |pole| times h is above 8");
 }
@@ -157,7 +157,7 @@ static void person_step(FILE *to, const struct step *step)
 static void person_regions(FILE *to, const struct step *step)
 {
 	const struct switching *s = step->shown->model->switching;
-	long size = step->series.size, matrices = s->systems, degree = step->series.degree, pieces = 1;
+	long size = step->layout.size, matrices = s->systems, degree = step->series.degree, pieces = 1;
 	long bytes = 8 * (s->expressions * size + matrices * (2 * size * size + 3 * s->expressions * size)) +
 		     4 * (s->regions + s->expressions + matrices);
 	for (int k = 0; k < step->branches; k++)

@@ -535,10 +535,10 @@ static void build_regions_step(struct step *step)
 	step->tables = 1;
 	first->whole = tables_of(step->model, first->resolvent, &first->system, 1, wanted_piece(step, 0))[0];
 	first->system.channels = 0;
-	series_place_loads(&step->series, &first->system, 0, loads_of_regions(step));
+	step->layout = layout_with(&first->system, 0, loads_of_regions(step));
 	find_carries(step);
 	step->program = linear_program(step);
-	step->program->multiplications = step->series.size * step->series.size + 6 * step->model->switching->expressions * step->series.size;
+	step->program->multiplications = step->layout.size * step->layout.size + 6 * step->model->switching->expressions * step->layout.size;
 	step->program->additions = step->program->multiplications;
 	first->system.channels = channels;
 	step->series.degree = 3;
@@ -569,7 +569,7 @@ static void place_all_loads(struct step *step)
 	bool *all = ARRAY(bool, (size_t)step->branch->system.loads);
 	for (int l = 0; l < step->branch->system.loads; l++)
 		all[l] = true;
-	series_place_loads(&step->series, &step->branch->system, 0, all);
+	step->layout = layout_with(&step->branch->system, 0, all);
 	step->series.emitted = true;
 }
 
@@ -596,7 +596,7 @@ static void build(void *context)
 	if (model->tuning)
 		place_all_loads(step);
 	else
-		series_place(&step->series, &step->branch->system, left && model->scheme <= SCHEME_ETD1);
+		step->layout = layout_of(&step->branch->system, left && model->scheme <= SCHEME_ETD1);
 	if (left)
 		build_with_leftover(step);
 	else

@@ -194,6 +194,10 @@ struct branch {
 	struct table *whole;
 	int halvings;               /* of a region: log2 of the pieces of a step in which crossings are looked for */
 };
+struct series {                     /* of e^{A tau} x: the Taylor series behind NAME_at, and the pieces of regions */
+	bool emitted;               /* max|pole| h <= 8 */
+	int degree, halvings;
+};
 struct step {                       /* everything that is emitted for one model */
 	const struct model *model;
 	struct resolvent *written;  /* of the model as written: the report's poles, the closed form */
@@ -212,6 +216,7 @@ struct step {                       /* everything that is emitted for one model 
 	struct forced *forced;      /* NAME keeps the state less this; NULL: as it is */
 	struct rounding rounding;
 	mpfr_t growth;              /* pl: 1/s, largest real part of the modified equation's poles (report only) */
+	struct layout layout;       /* of x */
 	struct series series;
 };
 bool has_leftover(const struct step *step);                 /* or nothing is left over, and a step is assignments */

@@ -428,19 +428,19 @@ static void compare_road(struct taylor *taylor, int i, int j, const char *what, 
 static void compare_roads(const struct step *step)
 {
     const struct linear *system = &step->branch->system;
-    const struct series *series = &step->series;
+    const struct layout *layout = &step->layout;
     const int n = system->states, columns = step->branch->whole->columns;
     if (n > LIMIT_RESIDUE_STATES || system->heldK)
         return;
-    struct taylor *taylor = taylor_of(series->size, (const mpq_t *)series_matrix(series, system, 0), step->model->h);
+    struct taylor *taylor = taylor_of(layout->size, (const mpq_t *)augmented_matrix(layout, system, 0), step->model->h);
     for (int i = 0; i < n; i++) {
         for (int j = 0; j < n; j++)
             compare_road(taylor, i, j, entry_name(step->model, (size_t)i, (size_t)j),
                          step->branch->whole->Phi[i * n + j].value);
         for (int l = 0, column = 0; l < system->loads; l++)
             for (int k = 0; k < system->load[l].columns; k++, column++)
-                if (series->load[l] >= 0)
-                    compare_road(taylor, i, series->load[l] + k,
+                if (layout->load[l] >= 0)
+                    compare_road(taylor, i, layout->load[l] + k,
                                  entry_name(step->model, (size_t)i, (size_t)(n + column)),
                                  step->branch->whole->load[i * columns + column].value);
     }

@@ -148,13 +148,13 @@ static void add_product(mpq_ptr sum, mpq_srcptr a, mpq_srcptr b)
 /* [R | W] at these values, rows x (columns + rows); without W the unit matrix stands there. */
 static mpq_t *rows_at(const struct tuning *t, const mpq_t *values)
 {
-    const int width = t->columns + t->rows;
+    const int width = t->x.size + t->rows;
     mpq_t *product = rationals((size_t)t->monomials + 1), *value = rationals((size_t)(t->rows * width));
     mpq_set_ui(product[0], 1, 1);
     for (int m = 0; m < t->monomials; m++)
         (t->monomial[m].divides ? mpq_div : mpq_mul)(product[m + 1], product[t->monomial[m].from], values[t->monomial[m].param]);
     for (int i = 0; i < t->rows && !t->solves; i++)
-        mpq_set_ui(value[i * width + t->columns + i], 1, 1);
+        mpq_set_ui(value[i * width + t->x.size + i], 1, 1);
     for (int i = 0; i < t->terms; i++)
         add_product(value[t->term[i].row * width + t->term[i].column], t->term[i].factor, product[t->term[i].monomial]);
     return value;
@@ -163,22 +163,22 @@ static mpq_t *rows_at(const struct tuning *t, const mpq_t *values)
 /* W^-1 R by Gauss and Jordan; false: singular */
 static bool solve(const struct tuning *t, mpq_t *value)
 {
-    const int width = t->columns + t->rows;
+    const int width = t->x.size + t->rows;
     mpq_t factor;
     mpq_init(factor);
     for (int k = 0; k < t->rows; k++) {
         int pivot = k;
-        while (pivot < t->rows && mpq_sgn(value[pivot * width + t->columns + k]) == 0)
+        while (pivot < t->rows && mpq_sgn(value[pivot * width + t->x.size + k]) == 0)
             pivot++;
         if (pivot == t->rows)
             return false;
         for (int j = 0; j < width; j++)
             mpq_swap(value[pivot * width + j], value[k * width + j]);
-        mpq_inv(factor, value[k * width + t->columns + k]);
+        mpq_inv(factor, value[k * width + t->x.size + k]);
         for (int j = 0; j < width; j++)
             mpq_mul(value[k * width + j], value[k * width + j], factor);
         for (int i = 0; i < t->rows; i++) {
-            mpq_neg(factor, value[i * width + t->columns + k]);
+            mpq_neg(factor, value[i * width + t->x.size + k]);
             for (int j = 0; i != k && j < width; j++)
                 add_product(value[i * width + j], factor, value[k * width + j]);
         }
@@ -189,7 +189,7 @@ static bool solve(const struct tuning *t, mpq_t *value)
 /* Left side of equation i in a column, highest derivatives from `value`; and its right side */
 static void sides(const struct linear *system, const struct tuning *t, const mpq_t *value, int i, int column, mpq_ptr left)
 {
-    const int width = t->columns + t->rows, n = system->n;
+    const int width = t->x.size + t->rows, n = system->n;
     mpq_set_ui(left, 0, 1);
     for (int j = 0; j < n; j++)
         add_product(left, (system->velocity[j] >= 0 ? system->M : system->C)[i * n + j], value[j * width + column]);
@@ -222,11 +222,11 @@ static mpq_srcptr force_at(const struct linear *system, int column, int i, const
 static void compare_model(const struct model *there, const struct tuning *t, const mpq_t *value)
 {
     const struct linear *system = &there->system;
-    const int width = t->columns + t->rows;
+    const int width = t->x.size + t->rows;
     mpq_t left, zero;
     mpq_inits(left, zero, NULL);
     for (int i = 0; i < system->n; i++)
-        for (int j = 0; j < t->columns; j++) {
+        for (int j = 0; j < t->x.size; j++) {
             sides(system, t, value, i, j, left);
             compare(left, j < system->states ? zero : force_at(system, j, i, NULL), "equation", i, j);
         }
@@ -234,7 +234,7 @@ static void compare_model(const struct model *there, const struct tuning *t, con
         if (t->frequency[l] >= 0)
             compare(value[t->frequency[l] * width], system->load[l].wave->w, "frequency of load", l, 0);
     for (int o = 0; o < there->outputs; o++)
-        for (int j = 0; j < t->columns && t->output[o] >= 0; j++)
+        for (int j = 0; j < t->x.size && t->output[o] >= 0; j++)
             compare(value[t->output[o] * width + j], j < system->states ? there->output[o].state[j] : force_at(system, j, 0, &there->output[o]), there->output[o].name, o, j);
 }
 
@@ -242,7 +242,7 @@ static void compare_model(const struct model *there, const struct tuning *t, con
 static void compare_fixed(const struct model *a, const struct model *b, const struct tuning *t)
 {
     for (int o = 0; o < a->outputs; o++)
-        for (int j = 0; j < t->columns && t->output[o] < 0; j++)
+        for (int j = 0; j < t->x.size && t->output[o] < 0; j++)
             compare(j < a->system.states ? a->output[o].state[j] : force_at(&a->system, j, 0, &a->output[o]),
                     j < a->system.states ? b->output[o].state[j] : force_at(&b->system, j, 0, &b->output[o]), "fixed output", o, j);
 }
@@ -251,7 +251,7 @@ static void compare_fixed(const struct model *a, const struct model *b, const st
 static bool turned(const struct model *model, const struct tuning *t, const mpq_t *value)
 {
     for (int l = 0; l < model->system.loads; l++)
-        if (t->frequency[l] >= 0 && mpq_sgn(value[t->frequency[l] * (t->columns + t->rows)]) <= 0)
+        if (t->frequency[l] >= 0 && mpq_sgn(value[t->frequency[l] * (t->x.size + t->rows)]) <= 0)
             return true;
     return false;
 }
