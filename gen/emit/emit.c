@@ -612,7 +612,7 @@ static void emit_access(const struct emitter *e)
 	if (e->model->relative)
 		fprintf(to, "    for (i = 0; i < %s_STATES; i++) {\n        s->set[i] = y[i];\n        s->from[i] = x[i];\n    }\n", N);
 	if (!e->step->forced)
-		emit_store(e, kept, "    ");
+		emit_set_state(e, kept, "    ");
 	for (int i = 0; i < e->system->states; i++)
 		if (e->model->relative && !e->step->forced && factor_of_momentum(e, i))
 			fprintf(to, "    s->from[%d] = s->y[%d] / %s;\n", i, i, factor_of_momentum(e, i));
@@ -624,7 +624,7 @@ static void emit_access(const struct emitter *e)
 		fprintf(to, "    for (s->segment = 0; s->segment < %d && %s_until(s, s->segment) <= 1e-18 * %s;)\n        s->segment++;\n",
 			e->system->segments - 1, n, step_length(e));
 	if (e->step->forced)
-		emit_state_forced(e, kept, "    ");
+		emit_set_forced_state(e, kept, "    ");
 	if (e->model->switching)
 		fprintf(to, "    %s_place(s);\n", n);
 	fputs("}\n", to);
@@ -636,7 +636,7 @@ static void emit_access(const struct emitter *e)
 	bool apart = e->model->relative && e->step->forced; /* outputs read it too */
 	if (apart) {
 		fprintf(to, "\n/* The states as they are kept, their forced part added */\nstatic void %s_kept(const %s *s, double x[%s_STATES])\n{\n    int i;\n", n, n, N);
-		emit_load_state(e, "x");
+		emit_get_state(e, "x");
 		fputs("}\n", to);
 	}
 	fprintf(to, "\nvoid %s_get(const %s *s, double y[%s_STATES])\n{\n%s", n, n, N, apart ? "" : "    int i;\n");
@@ -645,7 +645,7 @@ static void emit_access(const struct emitter *e)
 	if (apart)
 		fprintf(to, "    %s_kept(s, x);\n", n);
 	else
-		emit_load_state(e, kept);
+		emit_get_state(e, kept);
 	if (e->model->relative)
 		fprintf(to, "    %s_written(s, x, y);\n", n);
 	fputs("}\n", to);

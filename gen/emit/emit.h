@@ -57,10 +57,10 @@ void emit_locals(const struct emitter *e, const bool *reads);     /* the states 
 void emit_raw_locals(const struct emitter *e, const bool *reads, bool changing); /* as kept: of kick-drift-kick, momenta */
 void emit_locals_of(const struct emitter *e, const bool *reads, const char *vector);
 const char *step_length(const struct emitter *e);                 /* NAME_H; of tunable models that of the instance s */
-void emit_store(const struct emitter *e, const char *vector, const char *indent); /* s->y from states */
-void emit_state_forced(const struct emitter *e, const char *vector, const char *indent); /* s->y from states that are whole */
-void emit_load_state(const struct emitter *e, const char *vector);  /* states from s->y */
-void emit_kept_state(const struct emitter *e, const char *vector);  /* the same, less their forced part where the step keeps them so */
+void emit_set_state(const struct emitter *e, const char *vector, const char *indent); /* s->y from states */
+void emit_set_forced_state(const struct emitter *e, const char *vector, const char *indent); /* s->y from states that are whole */
+void emit_get_state(const struct emitter *e, const char *vector);  /* states from s->y */
+void emit_get_kept_state(const struct emitter *e, const char *vector);  /* the same, less their forced part where the step keeps them so */
 const char *tuned_factor(const struct emitter *e, int row, const struct operand *operand);
 const char *tuned_output(const struct emitter *e, const struct output *output); /* its sum; NULL: no param changes it */
 bool tuned_output_reads(const struct emitter *e, const struct output *output, int column); /* columns of x as in struct tuning */

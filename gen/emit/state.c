@@ -77,7 +77,7 @@ const char *step_length(const struct emitter *e)
 }
 
 /* s->y from a vector of states, nothing left of earlier rounding */
-void emit_store(const struct emitter *e, const char *vector, const char *indent)
+void emit_set_state(const struct emitter *e, const char *vector, const char *indent)
 {
 	FILE *to = e->to;
 	bool rest = e->step->program->compensated;
@@ -92,7 +92,7 @@ void emit_store(const struct emitter *e, const char *vector, const char *indent)
 }
 
 /* y = z + f, f the forced part: what rounds off in z = y - f is kept in rest */
-void emit_state_forced(const struct emitter *e, const char *vector, const char *indent)
+void emit_set_forced_state(const struct emitter *e, const char *vector, const char *indent)
 {
 	fprintf(e->to, "%s%s_forced(s, now);\n", indent, e->name);
 	fprintf(e->to, "%sfor (i = 0; i < %s_STATES; i++) {\n", indent, e->upper);
@@ -103,11 +103,11 @@ void emit_state_forced(const struct emitter *e, const char *vector, const char *
 }
 
 /* A vector of states from s->y; what rounds off in z + f counts, so that it is what was set */
-void emit_load_state(const struct emitter *e, const char *vector)
+void emit_get_state(const struct emitter *e, const char *vector)
 {
 	if (e->step->forced)
 		fprintf(e->to, "    double now[%s_STATES];\n", e->upper);
-	emit_kept_state(e, vector);
+	emit_get_kept_state(e, vector);
 	if (!e->step->forced)
 		return;
 	fprintf(e->to, "    %s_forced(s, now);\n    for (i = 0; i < %s_STATES; i++) {\n", e->name, e->upper);
@@ -116,7 +116,7 @@ void emit_load_state(const struct emitter *e, const char *vector)
 		e->step->program->compensated ? "s->rest[i]" : "(s->k == 0 ? s->rest[i] : 0.0)");
 }
 
-void emit_kept_state(const struct emitter *e, const char *vector)
+void emit_get_kept_state(const struct emitter *e, const char *vector)
 {
 	fprintf(e->to, "    for (i = 0; i < %s_STATES; i++)\n        %s[i] = s->y[i];\n", e->upper, vector);
 	for (int i = 0; i < e->system->states; i++)
