@@ -49,6 +49,10 @@ void mark_used(const struct node *node, bool *math);        /* flags the symbols
 
 /* ---- state.c: the state in emitted code ---- */
 
+bool has_jump(const struct emitter *e);
+bool keeps_status(const struct emitter *e);                       /* others look at the state when they are asked */
+const char *state_list(const struct model *model);                /* x, x' */
+const char *carried_text(const struct emitter *e);                /* the states that only add up */
 const struct model *speaker(const struct model *model);            /* over whose coordinates its forms are */
 const char *input_name(const struct emitter *e, int input, int order); /* the C name of an input, of its slope */
 const char *stepped_table(const struct emitter *e, const char *table); /* Phi or Gamma of the states as they are kept */
@@ -75,6 +79,25 @@ const char *write_form(struct writer *w, const struct form *form, int indent);
 /* ---- selftest.c: reference states in closed form, for the target to step to ---- */
 
 void emit_selftest(const struct emitter *e, bool jumps);
+
+/* ---- banner.c, declarations.c: what a header has ---- */
+
+void emit_banner(const struct emitter *e);
+void emit_declarations(const struct emitter *e, bool rhs);
+
+/* ---- kept.c: states as written, and as they are kept ---- */
+
+void emit_conversions(const struct emitter *e);
+
+/* ---- access.c: init, set, get, time, status ---- */
+
+void emit_access(const struct emitter *e);
+
+/* ---- descriptor.c: tables for all to read, and the descriptor ---- */
+
+void emit_phi(const struct emitter *e);
+void emit_gamma(const struct emitter *e);
+void emit_descriptor(const struct emitter *e);
 
 /* ---- emit.c, emit_step.c, emit_left.c, emit_out.c, emit_loads.c, emit_time.c, emit_tune.c, emit_rhs.c: a step as C ---- */
 

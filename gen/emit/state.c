@@ -7,6 +7,33 @@ const struct model *speaker(const struct model *model)
 	return model->relative ? model : model->written;
 }
 
+bool has_jump(const struct emitter *e)
+{
+	return e->system->inputs == 0 && !has_leftover(e->step) && !e->model->switching && !e->model->tuning;
+}
+
+bool keeps_status(const struct emitter *e)
+{
+	return has_leftover(e->step) || e->model->switching;
+}
+
+const char *state_list(const struct model *model)
+{
+	const char *list = "";
+	for (int i = 0; i < model->system.states; i++)
+		list = format("%s%s%s", list, i ? ", " : "", model->state_name[i]);
+	return list;
+}
+
+const char *carried_text(const struct emitter *e)
+{
+	const char *list = "";
+	for (int i = 0; i < e->system->states; i++)
+		if (e->step->carry[i] >= 0)
+			list = format("%s%s%s", list, *list ? ", " : "", e->model->state_name[i]);
+	return list;
+}
+
 const char *input_name(const struct emitter *e, int input, int order)
 {
 	for (const struct symbol *s = e->model->spec->first; s; s = s->next)
