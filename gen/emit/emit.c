@@ -65,7 +65,7 @@ static struct emitter emitter_new(FILE *to, const struct step *step, const char 
 	for (int i = 0; i < e.system->inputs; i++)
 		e.ramps = e.ramps || e.system->input[i].first_order;
 	e.local = ARRAY(const char *, (size_t)e.system->states);
-	name_for_c(step->model, e.upper, e.local);
+	e.c = identifiers_of(step->model, e.upper, e.local);
 	return e;
 }
 
@@ -110,7 +110,7 @@ static bool needs_math(const struct emitter *e, bool rhs)
 		math = math || reads_of(e->model, e->model->channels, (const struct form *const *)e->model->operator[k].left).math;
 	if (e->model->selector)
 		math = math || reads_of(e->model, 1, &e->model->selector).math;
-	return math || (rhs && rhs_needs_math(e->model));
+	return math || (rhs && rhs_needs_math(e));
 }
 
 void emit_code(FILE *to, const struct step *step, const char *options, const char *header_name, bool rhs)

@@ -14,6 +14,7 @@ struct emitter {
 	const struct linear *system;
 	const char *name, *upper;   /* scs, SCS */
 	const char *options;
+	struct identifiers *c;      /* of every symbol */
 	const char **local;         /* per state: the C local that holds it */
 	int phases, growths;        /* in the state */
 	int *phase, *growth;        /* per load: index of its phase and of its growth; -1: none */
@@ -41,11 +42,15 @@ void print_apart(FILE *to, const char *text, const char *name); /* the C of a mo
 
 /* ---- cprint.c: expressions as C ---- */
 
-void name_for_c(const struct model *model, const char *upper, const char **local); /* gives every symbol and every state its C identifier */
-const char *written_local(const struct model *written, int state); /* after that: of a written state */
-const char *c_expression(const struct node *node);          /* fit for a term of a sum; accelerations count as 0 */
+/* What every symbol is called in C; `local` receives the same of every state. */
+struct identifiers *identifiers_of(const struct model *model, const char *upper, const char **local);
+const char *c_name(const struct identifiers *c, const struct symbol *s, int order); /* of it, of its first derivative */
+const char *written_local(const struct identifiers *c, const struct model *written, int state); /* of a written state */
+const char *c_expression(const struct identifiers *c, const struct node *node); /* fit for a term of a sum; accelerations count as 0 */
 bool vanishes(const struct node *node);                     /* nothing is left when accelerations are 0 */
-void mark_used(const struct node *node, bool *math);        /* flags the symbols that it needs; *math: it needs <math.h> */
+void forget_used(struct identifiers *c);
+void mark_used(struct identifiers *c, const struct node *node, bool *math); /* the symbols that it needs; *math: it needs <math.h> */
+bool is_used(const struct identifiers *c, const struct symbol *s, int order); /* since they were forgotten: it, its first derivative */
 
 /* ---- state.c: the state in emitted code ---- */
 
@@ -154,6 +159,6 @@ int place_of_output(const struct model *model, const struct output *output);
 void emit_at(const struct emitter *e);
 void emit_jump(const struct emitter *e);
 void emit_rhs(const struct emitter *e);
-bool rhs_needs_math(const struct model *model);
+bool rhs_needs_math(const struct emitter *e);
 
 #endif

@@ -187,7 +187,7 @@ static void emit_input_locals(const struct emitter *e, const bool *wanted)
 	for (const struct symbol *s = e->model->spec->first; s; s = s->next)
 		for (int k = 0; k < 2 && s->kind == SYMBOL_INPUT; k++)
 			if (wanted[s->index + k * e->system->inputs])
-				fprintf(e->to, "    const double %s = s->%s[%d];\n", k ? s->c_dot : s->c_name, k ? "slope" : "u", s->index);
+				fprintf(e->to, "    const double %s = s->%s[%d];\n", c_name(e->c, s, k), k ? "slope" : "u", s->index);
 }
 
 void emit_out(const struct emitter *e)

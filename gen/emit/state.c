@@ -38,7 +38,7 @@ const char *input_name(const struct emitter *e, int input, int order)
 {
 	for (const struct symbol *s = e->model->spec->first; s; s = s->next)
 		if (s->kind == SYMBOL_INPUT && s->index == input)
-			return order ? s->c_dot : s->c_name;
+			return c_name(e->c, s, order);
 	return NULL;
 }
 
