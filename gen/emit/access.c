@@ -5,64 +5,74 @@
 static void emit_values(const struct emitter *e, const mpq_t *value)
 {
 	for (int i = 0; i < e->system->states; i++)
-		fprintf(e->to, "%s%s", i ? ", " : "", shortest(round_rational(value[i])));
-	fputs("};", e->to);
+		say(e, "%s%s", i ? ", " : "", shortest(round_rational(value[i])));
+	say(e, "};");
 }
 
 static void emit_init(const struct emitter *e)
 {
-	fprintf(e->to, "\nvoid %s_init(%s *s)\n{\n    static const double start[%s_STATES] = {", e->name, e->name, e->upper);
+	say(e, "\nvoid $n_init($n *s)\n"
+	       "{\n"
+	       "    static const double start[$N_STATES] = {");
 	emit_values(e, (const mpq_t *)e->model->initial);
 	if (e->model->relative) {
-		fprintf(e->to, "  /* %s */\n    static const double set[%s_STATES] = {", state_list(e->model), e->upper);
+		say(e, "  /* %s */\n"
+		       "    static const double set[$N_STATES] = {", state_list(e->model));
 		emit_values(e, (const mpq_t *)e->model->written->initial);
 	}
-	fputc('\n', e->to);
+	say(e, "\n");
 	if (e->model->tuning)
-		fprintf(e->to, "    s->coeffs = %s_nominal;\n", e->name);
+		say(e, "    s->coeffs = $n_nominal;\n");
 	for (int i = 0; i < e->system->inputs; i++) {
-		fprintf(e->to, "    s->u[%d] = 0.0;\n", i);
+		say(e, "    s->u[%d] = 0.0;\n", i);
 		if (e->ramps)
-			fprintf(e->to, "    s->slope[%d] = 0.0;\n", i);
+			say(e, "    s->slope[%d] = 0.0;\n", i);
 	}
-	fprintf(e->to, e->model->relative ? "    %s_begin(s, 0.0, set, start);\n}\n" : "    %s_set(s, 0.0, start);\n}\n", e->name);
+	say(e, "    $n_%s, start);\n"
+	       "}\n", e->model->relative ? "begin(s, 0.0, set" : "set(s, 0.0");
 }
 
 /* t0 + k p/q with p and q exact is one rounding away from the exact time while k p < 2^53. */
 static void emit_time(const struct emitter *e)
 {
 	if (e->model->tuning) {
-		fprintf(e->to, "\ndouble %s_time(const %s *s)\n{\n    return s->t0 + (double)s->k * s->coeffs.h;\n}\n", e->name, e->name);
+		say(e, "\ndouble $n_time(const $n *s)\n"
+		       "{\n"
+		       "    return s->t0 + (double)s->k * s->coeffs.h;\n"
+		       "}\n");
 		return;
 	}
 	mpz_srcptr p = mpq_numref(e->model->h), q = mpq_denref(e->model->h);
 	bool short_fraction = e->model->asked.single ? mpz_sizeinbase(p, 2) <= 12 && mpz_sizeinbase(q, 2) <= 24 : mpz_sizeinbase(p, 2) <= 40 && mpz_sizeinbase(q, 2) <= 53;
 	const char *factor = mpz_cmp_ui(p, 1) == 0 ? "" : format(" * %s", shortest(mpz_get_d(p)));
 	const char *divisor = mpz_cmp_ui(q, 1) == 0 ? "" : format(" / %s", shortest(mpz_get_d(q)));
-	fprintf(e->to, "\ndouble %s_time(const %s *s)\n{\n    return s->t0 + (double)s->k%s%s;\n}\n", e->name, e->name,
-		short_fraction ? factor : format(" * %s_H", e->upper), short_fraction ? divisor : "");
+	say(e, "\ndouble $n_time(const $n *s)\n"
+	       "{\n"
+	       "    return s->t0 + (double)s->k%s%s;\n"
+	       "}\n", short_fraction ? factor : spell(e, " * $N_H"), short_fraction ? divisor : "");
 }
 
 /* Of a linear model from its state, in both words where it has two: a step has nothing to do for it. */
 static void emit_status(const struct emitter *e)
 {
-	const char *n = e->name, *N = e->upper;
 	bool written = e->step->momenta || e->model->relative;  /* s->y is not the state */
-	fprintf(e->to, "\nint %s_status(const %s *s)\n{\n", n, n);
+	say(e, "\nint $n_status(const $n *s)\n"
+	       "{\n");
 	if (keeps_status(e)) {
-		fputs("    return s->status;\n}\n", e->to);
+		say(e, "    return s->status;\n"
+		       "}\n");
 		return;
 	}
 	if (written)
-		fprintf(e->to, "    double y[%s_STATES];\n    %s_get(s, y);\n", N, n);
-	fprintf(e->to, "    return pl_not_finite(%s, %s_STATES)%s;\n}\n", written ? "y" : "s->y", N,
-		e->step->program->compensated ? format(" | pl_not_finite(s->rest, %s_STATES)", N) : "");
+		say(e, "    double y[$N_STATES];\n"
+		       "    $n_get(s, y);\n");
+	say(e, "    return pl_not_finite(%s, $N_STATES)%s;\n"
+	       "}\n", written ? "y" : "s->y",
+	       e->step->program->compensated ? spell(e, " | pl_not_finite(s->rest, $N_STATES)") : "");
 }
 
 void emit_access(const struct emitter *e)
 {
-	FILE *to = e->to;
-	const char *n = e->name, *N = e->upper;
 	const char *kept = e->model->relative ? "x" : "y";
 	if (e->model->relative)
 		emit_conversions(e);
@@ -71,55 +81,76 @@ void emit_access(const struct emitter *e)
 	if (e->step->forced)
 		emit_forced(e);
 	if (e->model->relative)
-		fprintf(to, "\n/* From the states as written, and as they are kept */\nstatic void %s_begin(%s *s, double t, const double y[%s_STATES], const double x[%s_STATES])\n"
-			    "{\n    int i;\n", n, n, N, N);
+		say(e, "\n/* From the states as written, and as they are kept */\n"
+		       "static void $n_begin($n *s, double t, const double y[$N_STATES], const double x[$N_STATES])\n"
+		       "{\n"
+		       "    int i;\n");
 	else
-		fprintf(to, "\nvoid %s_set(%s *s, double t, const double y[%s_STATES])\n{\n    int i;\n", n, n, N);
+		say(e, "\nvoid $n_set($n *s, double t, const double y[$N_STATES])\n"
+		       "{\n"
+		       "    int i;\n");
 	if (e->step->forced)
-		fprintf(to, "    double now[%s_STATES];\n", N);
+		say(e, "    double now[$N_STATES];\n");
 	if (e->model->relative)
-		fprintf(to, "    for (i = 0; i < %s_STATES; i++) {\n        s->set[i] = y[i];\n        s->from[i] = x[i];\n    }\n", N);
+		say(e, "    for (i = 0; i < $N_STATES; i++) {\n"
+		       "        s->set[i] = y[i];\n"
+		       "        s->from[i] = x[i];\n"
+		       "    }\n");
 	if (!e->step->forced)
 		emit_set_state(e, kept, "    ");
 	for (int i = 0; i < e->system->states; i++)
 		if (e->model->relative && !e->step->forced && factor_of_momentum(e, i))
-			fprintf(to, "    s->from[%d] = s->y[%d] / %s;\n", i, i, factor_of_momentum(e, i));
-	fputs("    s->t0 = t;\n    s->k = 0;\n", to);
+			say(e, "    s->from[%d] = s->y[%d] / %s;\n", i, i, factor_of_momentum(e, i));
+	say(e, "    s->t0 = t;\n"
+	       "    s->k = 0;\n");
 	if (keeps_status(e))
-		fputs("    s->status = 0;\n", to);
+		say(e, "    s->status = 0;\n");
 	emit_load_set(e);
 	if (e->system->segments > 1)
-		fprintf(to, "    for (s->segment = 0; s->segment < %d && %s_until(s, s->segment) <= 1e-18 * %s;)\n        s->segment++;\n",
-			e->system->segments - 1, n, step_length(e));
+		say(e, "    for (s->segment = 0; s->segment < %d && $n_until(s, s->segment) <= 1e-18 * %s;)\n"
+		       "        s->segment++;\n", e->system->segments - 1, step_length(e));
 	if (e->step->forced)
 		emit_set_forced_state(e, kept, "    ");
 	if (e->model->switching)
-		fprintf(to, "    %s_place(s);\n", n);
-	fputs("}\n", to);
+		say(e, "    $n_place(s);\n");
+	say(e, "}\n");
 	if (e->model->relative) {
 		emit_init(e);
-		fprintf(to, "\nvoid %s_set(%s *s, double t, const double y[%s_STATES])\n{\n    double x[%s_STATES];\n    %s_keep(y, x);\n    %s_begin(s, t, y, x);\n}\n",
-			n, n, N, N, n, n);
+		say(e, "\nvoid $n_set($n *s, double t, const double y[$N_STATES])\n"
+		       "{\n"
+		       "    double x[$N_STATES];\n"
+		       "    $n_keep(y, x);\n"
+		       "    $n_begin(s, t, y, x);\n"
+		       "}\n");
 	}
 	bool apart = e->model->relative && e->step->forced; /* outputs read it too */
 	if (apart) {
-		fprintf(to, "\n/* The states as they are kept, their forced part added */\nstatic void %s_kept(const %s *s, double x[%s_STATES])\n{\n    int i;\n", n, n, N);
+		say(e, "\n/* The states as they are kept, their forced part added */\n"
+		       "static void $n_kept(const $n *s, double x[$N_STATES])\n"
+		       "{\n"
+		       "    int i;\n");
 		emit_get_state(e, "x");
-		fputs("}\n", to);
+		say(e, "}\n");
 	}
-	fprintf(to, "\nvoid %s_get(const %s *s, double y[%s_STATES])\n{\n%s", n, n, N, apart ? "" : "    int i;\n");
+	say(e, "\nvoid $n_get(const $n *s, double y[$N_STATES])\n"
+	       "{\n"
+	       "%s", apart ? "" : "    int i;\n");
 	if (e->model->relative)
-		fprintf(to, "    double x[%s_STATES];\n", N);
+		say(e, "    double x[$N_STATES];\n");
 	if (apart)
-		fprintf(to, "    %s_kept(s, x);\n", n);
+		say(e, "    $n_kept(s, x);\n");
 	else
 		emit_get_state(e, kept);
 	if (e->model->relative)
-		fprintf(to, "    %s_written(s, x, y);\n", n);
-	fputs("}\n", to);
+		say(e, "    $n_written(s, x, y);\n");
+	say(e, "}\n");
 	emit_time(e);
 	emit_status(e);
 	if (e->ramps)
-		fprintf(to, "\nvoid %s_hold(%s *s, const double u[%s_INPUTS])\n{\n    int i;\n    for (i = 0; i < %s_INPUTS; i++)\n        s->u[i] = u[i];\n%s}\n",
-			n, n, N, N, e->model->switching ? format("    if (s->k == 0)\n        %s_place(s);\n", n) : "");
+		say(e, "\nvoid $n_hold($n *s, const double u[$N_INPUTS])\n"
+		       "{\n"
+		       "    int i;\n"
+		       "    for (i = 0; i < $N_INPUTS; i++)\n"
+		       "        s->u[i] = u[i];\n"
+		       "%s}\n", e->model->switching ? spell(e, "    if (s->k == 0)\n        $n_place(s);\n") : "");
 }

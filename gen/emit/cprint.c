@@ -25,7 +25,8 @@ struct identifiers {
 
 /* What the generated functions use themselves. */
 static const char *const own_names[] = {
-	"s", "y", "t", "u", "out", "dydt", "residual", "growth", "factor", "left", "node", "which", "start", "slope", "excess", "now", "first",
+	"s", "y", "t", "u", "out", "dydt", "residual", "growth", "factor", "left", "node", "which", "start", "slope",
+	"excess", "now", "first",
 	"fabs", "fmin", "fmax", "pow"   /* of <math.h>, which no function of a spec is named after */
 };
 
@@ -41,7 +42,8 @@ static bool is_load_local(const char *name)
 	static const char *const stem[] = { "wave", "load", "part", "left", "flow", "stage", "driven", "accel" };
 	for (size_t i = 0; i < sizeof stem / sizeof *stem; i++) {
 		size_t length = strlen(stem[i]);
-		if (strncmp(name, stem[i], length) == 0 && name[length] && strspn(name + length, "0123456789") == strlen(name + length))
+		const char *number = strncmp(name, stem[i], length) == 0 ? name + length : "";
+		if (*number && strspn(number, "0123456789") == strlen(number))
 			return true;
 	}
 	return false;
@@ -124,10 +126,19 @@ static void name_symbols(struct identifiers *c, const struct spec *spec)
 			own->name[1] = claim(c, format("%s_dot", s->name));
 		for (int order = 0; order < 2; order++)
 			own->component[order] = ARRAY(const char *, (size_t)s->length);
-		for (int i = 0; i < s->length; i++)
-			for (int order = 0; order < 2; order++)
-				own->component[order][i] = claim(c, format("%s%d%s", s->name, i + 1, order ? "_dot" : ""));
+		for (int i = 0; i < s->length; i++) {
+			own->component[0][i] = claim(c, format("%s%d", s->name, i + 1));
+			own->component[1][i] = claim(c, format("%s%d_dot", s->name, i + 1));
+		}
 	}
+}
+
+/* The state that is a written one; -1: none is */
+static int place_of_written(const struct model *model, int state)
+{
+	if (model->reduction.place)
+		return model->reduction.place[state];
+	return model->relative ? relative_place(model, state) : state;
 }
 
 struct identifiers *identifiers_of(const struct model *model, const char *upper, const char **local)
@@ -137,7 +148,7 @@ struct identifiers *identifiers_of(const struct model *model, const char *upper,
 	c->symbol = ARRAY(struct identifier, (size_t)c->symbols + 1);
 	name_symbols(c, model->spec);
 	for (int i = 0; i < model->written->system.states; i++) {
-		int place = model->reduction.place ? model->reduction.place[i] : model->relative ? relative_place(model, i) : i;
+		int place = place_of_written(model, i);
 		if (place >= 0)
 			local[place] = written_local(c, model->written, i);
 	}
@@ -209,12 +220,14 @@ void mark_used(struct identifiers *c, const struct node *node, bool *math)
 		*math = true;
 	if (node->kind == NODE_POWER && !(small_exponent(node->child[1]) && is_plain(node->child[0])))
 		*math = true;
-	const int read = node->kind == NODE_CALL && node->function == FN_TABLE ? 1 : node->children;  /* the points are printed as numbers */
+	bool table = node->kind == NODE_CALL && node->function == FN_TABLE; /* its points are printed as numbers */
+	const int read = table ? 1 : node->children;
 	for (int i = 0; i < read; i++)
 		mark_used(c, node->child[i], math);
 }
 
-/* ---- text; `tight` is the precedence that the surroundings need: 0 choice, 1 comparison, 2 sum, 3 product, 4 unary, 5 primary ---- */
+/* ---- text; `tight` is the precedence that the surroundings need: 0 choice, 1 comparison, 2 sum, 3 product, 4 unary,
+ * 5 primary ---- */
 
 static const char *text_of(const struct identifiers *c, const struct node *node, int tight);
 
@@ -299,6 +312,18 @@ static const char *table_text(const struct identifiers *c, const struct node *no
 	return format("(%s)", text);
 }
 
+static const char *sign_text(const struct identifiers *c, const struct node *operand)
+{
+	const char *x = text_of(c, operand, 2);
+	return format("(double)((%s > 0) - (%s < 0))", x, x);
+}
+
+static const char *clip_text(const struct identifiers *c, const struct node *node)
+{
+	const char *x = text_of(c, node->child[0], 0);
+	return format("fmin(fmax(%s, %s), %s)", x, text_of(c, node->child[1], 0), text_of(c, node->child[2], 0));
+}
+
 static const char *call_text(const struct identifiers *c, const struct node *node)
 {
 	if (node->function == FN_TABLE)
@@ -306,21 +331,28 @@ static const char *call_text(const struct identifiers *c, const struct node *nod
 	const char *x = text_of(c, node->child[0], 0);
 	switch (node->function) {
 	case FN_ABS: return format("fabs(%s)", x);
-	case FN_SGN: return format("(double)((%s > 0) - (%s < 0))", text_of(c, node->child[0], 2), text_of(c, node->child[0], 2));
+	case FN_SGN: return sign_text(c, node->child[0]);
 	case FN_MIN: return fold_text(c, "fmin", node);
 	case FN_MAX: return fold_text(c, "fmax", node);
 	case FN_ATAN2: return format("atan2(%s, %s)", x, text_of(c, node->child[1], 0));
-	case FN_CLIP:
-		return format("fmin(fmax(%s, %s), %s)", x, text_of(c, node->child[1], 0), text_of(c, node->child[2], 0));
-	case FN_DEADZONE:
-		return format("(%s - fmin(fmax(%s, %s), %s))", text_of(c, node->child[0], 2), x, text_of(c, node->child[1], 0), text_of(c, node->child[2], 0));
+	case FN_CLIP: return clip_text(c, node);
+	case FN_DEADZONE: return format("(%s - %s)", text_of(c, node->child[0], 2), clip_text(c, node));
 	default: return format("%s(%s)", function_name(node->function), x);
 	}
 }
 
 static const char *choice_text(const struct identifiers *c, const struct node *node, int tight)
 {
-	return enclose(tight > 0, format("%s ? %s : %s", text_of(c, node->child[0], 1), text_of(c, node->child[1], 1), text_of(c, node->child[2], 0)));
+	const char *condition = text_of(c, node->child[0], 1);
+	const char *then = text_of(c, node->child[1], 1), *otherwise = text_of(c, node->child[2], 0);
+	return enclose(tight > 0, format("%s ? %s : %s", condition, then, otherwise));
+}
+
+static const char *comparison_text(const struct identifiers *c, const struct node *node, int tight)
+{
+	static const char *const sign[] = { "<", "<=", ">", ">=", "==", "!=" };
+	const char *left = text_of(c, node->child[0], 2), *right = text_of(c, node->child[1], 2);
+	return enclose(tight > 1, format("%s %s %s", left, sign[node->comparison], right));
 }
 
 static const char *name_text(const struct identifiers *c, const struct node *node)
@@ -332,7 +364,6 @@ static const char *name_text(const struct identifiers *c, const struct node *nod
 
 static const char *text_of(const struct identifiers *c, const struct node *node, int tight)
 {
-	static const char *const comparisons[] = { "<", "<=", ">", ">=", "==", "!=" };
 	if (vanishes(node))
 		return "0.0";
 	switch (node->kind) {
@@ -345,8 +376,7 @@ static const char *text_of(const struct identifiers *c, const struct node *node,
 	case NODE_POWER:   return power_text(c, node);
 	case NODE_CALL:    return call_text(c, node);
 	case NODE_CHOOSE:  return choice_text(c, node, tight);
-	default:
-		return enclose(tight > 1, format("%s %s %s", text_of(c, node->child[0], 2), comparisons[node->comparison], text_of(c, node->child[1], 2)));
+	default:           return comparison_text(c, node, tight);
 	}
 }
 

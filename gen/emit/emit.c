@@ -72,12 +72,20 @@ static struct emitter emitter_new(FILE *to, const struct step *step, const char 
 static void emit_run(const struct emitter *e)
 {
 	bool inputs = e->system->inputs > 0;
-	fprintf(e->to, "\nvoid %s_run(%s *s, size_t n, %sdouble *out)\n{\n    for (; n > 0; n--) {\n", e->name, e->name, inputs ? "const double *u, " : "");
+	say(e, "\nvoid $n_run($n *s, size_t n, %sdouble *out)\n"
+	       "{\n"
+	       "    for (; n > 0; n--) {\n", inputs ? "const double *u, " : "");
 	if (inputs)
-		fprintf(e->to, "        %s_step(s, u);\n        u += %s_INPUTS;\n", e->name, e->upper);
+		say(e, "        $n_step(s, u);\n"
+		       "        u += $N_INPUTS;\n");
 	else
-		fprintf(e->to, "        %s_step(s);\n", e->name);
-	fprintf(e->to, "        if (out) {\n            %s_out(s, out);\n            out += %s_OUTPUTS;\n        }\n    }\n}\n", e->name, e->upper);
+		say(e, "        $n_step(s);\n");
+	say(e, "        if (out) {\n"
+	       "            $n_out(s, out);\n"
+	       "            out += $N_OUTPUTS;\n"
+	       "        }\n"
+	       "    }\n"
+	       "}\n");
 }
 
 /* Does an output read an acceleration that something left over acts on? */
@@ -118,14 +126,15 @@ void emit_code(FILE *to, const struct step *step, const char *options, const cha
 	struct emitter e = emitter_new(to, step, options);
 	emit_banner(&e);
 	if (header_name)
-		fprintf(to, "#include \"%s\"\n", header_name);
+		say(&e, "#include \"%s\"\n", header_name);
 	else
 		emit_declarations(&e, rhs);
 	if (needs_math(&e, rhs))
-		fputs("\n#include <math.h>\n", to);
+		say(&e, "\n#include <math.h>\n");
 	if (step->program->compensated || step->carries)
-		fprintf(to, "\n#if PL_EXCESS_PRECISION%s\n#error \"two-word arithmetic needs sums that have the bits of their type: on x86 compile it with -msse2 "
-			    "-mfpmath=sse\"\n#endif\n", step->model->asked.single ? "F" : "");
+		say(&e, "\n#if PL_EXCESS_PRECISION%s\n"
+		       "#error \"two-word arithmetic needs sums that have the bits of their type: on x86 compile it with -msse2 -mfpmath=sse\"\n"
+		       "#endif\n", step->model->asked.single ? "F" : "");
 	emit_phi(&e);
 	if (e.system->inputs)
 		emit_gamma(&e);

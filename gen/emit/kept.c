@@ -9,8 +9,9 @@ static const char *rate_text(const struct emitter *e, const struct form *rate, b
 	int terms = 0;
 	for (int i = 0; i < rate->terms; i++) {
 		const struct basis *basis = &rate->term[i].basis;
-		if (basis->kind == BASIS_COORD || whole)
-			term[terms++] = scaled(finite_number(e, rate->term[i].factor), basis->kind == BASIS_COORD ? format("y[%d]", basis->index) : NULL);
+		const char *operand = basis->kind == BASIS_COORD ? format("y[%d]", basis->index) : NULL;
+		if (operand || whole)
+			term[terms++] = scaled(finite_number(e, rate->term[i].factor), operand);
 	}
 	return terms > 1 ? format("(%s)", tree(terms, term, 12)) : terms ? term[0] : "0.0";
 }
@@ -23,8 +24,11 @@ static const char *kept_text(const struct emitter *e, const struct link *link, i
 	int terms = 0;
 	if (link->kind == LINK_PARENT) {
 		bool rate = link->rate && coord < r->written->n && at[coord] >= r->written->n;
-		const char *from = scaled(finite_number(e, link->ratio), rate ? rate_text(e, link->rate, true) : format("y[%d]", at[link->from]));
-		return link->turned ? format("%s - %s", from, own) : format(*from == '-' ? "%s - (%s)" : "%s - %s", own, from);
+		const char *parent = rate ? rate_text(e, link->rate, true) : format("y[%d]", at[link->from]);
+		const char *from = scaled(finite_number(e, link->ratio), parent);
+		if (link->turned)
+			return format("%s - %s", from, own);
+		return format(*from == '-' ? "%s - (%s)" : "%s - %s", own, from);
 	}
 	for (int k = 0; k < r->written->n && link->kind == LINK_CENTRE; k++)
 		if (mpq_sgn(link->weight[k]) != 0)
@@ -33,15 +37,18 @@ static const char *kept_text(const struct emitter *e, const struct link *link, i
 }
 
 /* What the written one has gained since the last set: d is what was gained of what is kept, y of the others so far */
-static const char *gain_text(const struct emitter *e, const struct link *link, int coord, const int *at, const int *kept)
+static const char *gain_text(const struct emitter *e, const struct link *link, int coord, const int *at,
+			     const int *kept)
 {
 	const struct relative *r = e->model->relative;
 	const char **term = ARRAY(const char *, (size_t)r->written->n + 1);
 	int terms = 0;
-	if (link->kind == LINK_PARENT && link->rate && at[coord] >= r->written->n)
-		return format("%s %c d[%d]", scaled(finite_number(e, link->ratio), rate_text(e, link->rate, false)), link->turned ? '-' : '+', kept[coord]);
-	if (link->kind == LINK_PARENT)
-		return format("%s %c d[%d]", scaled(finite_number(e, link->ratio), format("y[%d]", at[link->from])), link->turned ? '-' : '+', kept[coord]);
+	if (link->kind == LINK_PARENT) {
+		bool rate = link->rate && at[coord] >= r->written->n;
+		const char *parent = rate ? rate_text(e, link->rate, false) : format("y[%d]", at[link->from]);
+		const char *from = scaled(finite_number(e, link->ratio), parent);
+		return format("%s %c d[%d]", from, link->turned ? '-' : '+', kept[coord]);
+	}
 	term[terms++] = format("d[%d]", kept[coord]);
 	for (int k = 0; k < r->written->n && link->kind == LINK_CENTRE; k++)
 		if (mpq_sgn(link->shift[k]) != 0)
@@ -49,7 +56,8 @@ static const char *gain_text(const struct emitter *e, const struct link *link, i
 	return tree(terms, term, 12);
 }
 
-/* Places of positions (order 0) and velocities in the vector of states, -1: there is none; of velocities that stand alone in `kept` too */
+/* Places of positions (order 0) and velocities in the vector of states, -1: there is none; of velocities that stand
+ * alone in `kept` too */
 static void find_places(const struct emitter *e, int order, int *at, int *kept)
 {
 	const struct relative *r = e->model->relative;
@@ -63,9 +71,11 @@ static void emit_keep(const struct emitter *e, int order, const int *at, const i
 {
 	const struct relative *r = e->model->relative;
 	for (int j = 0; j < r->written->n; j++) {
-		const struct link plain = { .kind = LINK_NONE }, *link = order && r->link[j].velocity >= 0 ? &plain : &r->link[j];
+		const struct link plain = { .kind = LINK_NONE };
+		const struct link *link = order && r->link[j].velocity >= 0 ? &plain : &r->link[j];
 		if (at[j] >= 0)
-			fprintf(e->to, "    x[%d] = %s;  /* %s */\n", kept[j], kept_text(e, link, j, at), e->model->state_name[kept[j]]);
+			say(e, "    x[%d] = %s;  /* %s */\n", kept[j], kept_text(e, link, j, at),
+			       e->model->state_name[kept[j]]);
 	}
 }
 
@@ -78,7 +88,7 @@ static void emit_gains(const struct emitter *e, int order, const int *at, const 
 		int j = i < n ? i : r->sequence[i - n];
 		bool alone = order && r->link[j].velocity >= 0, linked = !alone && r->link[j].kind == LINK_PARENT;
 		if (at[j] >= 0 && !alone && r->link[j].kind != LINK_NONE && linked == (i >= n))
-			fprintf(e->to, "    y[%d] = %s;\n", at[j], gain_text(e, &r->link[j], j, at, kept));
+			say(e, "    y[%d] = %s;\n", at[j], gain_text(e, &r->link[j], j, at, kept));
 	}
 }
 
@@ -88,30 +98,37 @@ static void emit_unlinked(const struct emitter *e, int order, const int *at, con
 	const struct relative *r = e->model->relative;
 	for (int j = 0; j < r->written->n; j++)
 		if (at[j] >= 0 && ((order && r->link[j].velocity >= 0) || r->link[j].kind == LINK_NONE))
-			fprintf(e->to, gains ? "    y[%d] = d[%d];\n" : "    y[%d] = x[%d];\n", at[j], kept[j]);
+			say(e, "    y[%d] = %c[%d];\n", at[j], gains ? 'd' : 'x', kept[j]);
 }
 
-/* NAME_keep, NAME_written: a state is what it was at the last set, and what it has gained since; so get gives what set was given. */
+/* NAME_keep, NAME_written: a state is what it was at the last set, and what it has gained since; so get gives what set
+ * was given. */
 void emit_conversions(const struct emitter *e)
 {
-	FILE *to = e->to;
-	const char *n = e->name, *N = e->upper;
-	int coords = e->model->relative->written->n, *at = ARRAY(int, 2 * (size_t)coords), *kept = ARRAY(int, 2 * (size_t)coords);
+	int coords = e->model->relative->written->n;
+	int *at = ARRAY(int, 2 * (size_t)coords), *kept = ARRAY(int, 2 * (size_t)coords);
 	find_places(e, 0, at, kept);
 	find_places(e, 1, at + coords, kept + coords);
-	fprintf(to, "\n/* What may move as a whole is kept apart from what moves in it: x, from the states y as written */\n");
-	fprintf(to, "static void %s_keep(const double y[%s_STATES], double x[%s_STATES])\n{\n", n, N, N);
+	say(e, "\n/* What may move as a whole is kept apart from what moves in it: x, from the states y as written */\n"
+	       "static void $n_keep(const double y[$N_STATES], double x[$N_STATES])\n"
+	       "{\n");
 	for (int order = 0; order < 2; order++)
 		emit_keep(e, order, at + order * coords, kept + order * coords);
-	fprintf(to, "}\n\n/* And back: what they were at the last set, and what was gained since */\n");
-	fprintf(to, "static void %s_written(const %s *s, const double x[%s_STATES], double y[%s_STATES])\n{\n    double d[%s_STATES];\n    int i;\n", n, n, N, N, N);
-	fprintf(to, "    for (i = 0; i < %s_STATES; i++)\n        d[i] = x[i] - s->from[i];\n", N);
+	say(e, "}\n"
+	       "\n/* And back: what they were at the last set, and what was gained since */\n"
+	       "static void $n_written(const $n *s, const double x[$N_STATES], double y[$N_STATES])\n"
+	       "{\n"
+	       "    double d[$N_STATES];\n"
+	       "    int i;\n"
+	       "    for (i = 0; i < $N_STATES; i++)\n"
+	       "        d[i] = x[i] - s->from[i];\n");
 	for (int order = 0; order < 2; order++) {
 		emit_unlinked(e, order, at + order * coords, kept + order * coords, true);
 		emit_gains(e, order, at + order * coords, kept + order * coords);
 	}
-	fprintf(to, "    for (i = 0; i < %s_STATES; i++)\n        y[i] += s->set[i];\n", N);
+	say(e, "    for (i = 0; i < $N_STATES; i++)\n"
+	       "        y[i] += s->set[i];\n");
 	for (int order = 0; order < 2; order++)
 		emit_unlinked(e, order, at + order * coords, kept + order * coords, false);
-	fputs("}\n", to);
+	say(e, "}\n");
 }
