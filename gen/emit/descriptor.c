@@ -15,21 +15,11 @@ static void emit_matrix(const struct emitter *e, const struct step *step, const 
 	say(e, "};\n");
 }
 
-/* Does a loop of the step read Phi? */
-static bool step_reads_phi(const struct emitter *e)
-{
-	const struct program *program = e->step->program;
-	bool reads = !has_leftover(e->step) && e->step->form == FORM_DIRECT;
-	for (int i = 0; i < program->actions && has_leftover(e->step); i++)
-		reads = reads || program->action[i].flow == 0;
-	return reads && program->loops && !e->model->switching;
-}
-
 /* Of the states as written; of those that are kept where a function reads it */
 void emit_phi(const struct emitter *e)
 {
 	emit_matrix(e, e->step->shown, spell(e, "const double $n_Phi"));
-	if (e->model->relative && (has_jump(e) || step_reads_phi(e)))
+	if (e->model->relative && (has_jump(e) || e->kind->reads_phi(e->step)))
 		emit_matrix(e, e->step, format("static const double %s", stepped_table(e, "Phi")));
 }
 
@@ -47,13 +37,15 @@ static void emit_input_matrix(const struct emitter *e, const struct step *step, 
 void emit_gamma(const struct emitter *e)
 {
 	emit_input_matrix(e, e->step->shown, spell(e, "const double $n_Gamma"));
-	if (e->model->relative && e->step->program->loops && !e->model->switching && !has_leftover(e->step))
+	if (e->model->relative && e->kind->reads_gamma(e->step))
 		emit_input_matrix(e, e->step, format("static const double %s", stepped_table(e, "Gamma")));
 }
 
-static void emit_wrapper(const struct emitter *e, const char *result, const char *function, const char *parameters, const char *arguments, bool is_const)
+static void emit_wrapper(const struct emitter *e, const char *result, const char *function, const char *parameters,
+			 const char *arguments, bool is_const)
 {
-	const char *state = format(is_const ? "const struct %s" : "struct %s", e->name); /* the tag: a parameter may bear the name */
+	/* the tag: a parameter may bear the name */
+	const char *state = format(is_const ? "const struct %s" : "struct %s", e->name);
 	say(e, "static %s $n_any_%s(%svoid *s%s) { %s$n_%s((%s *)s%s); }\n", result, function,
 	       is_const ? "const " : "", parameters,
 	       *result != 'v' ? "return " : !e->system->inputs && strstr(parameters, "*u") ? "(void)u; " : "",
@@ -68,47 +60,65 @@ static void emit_start_samples(const struct emitter *e)
 	say(e, "};\n");
 }
 
-void emit_descriptor(const struct emitter *e)
+static void emit_names(const struct emitter *e)
 {
-	bool at = e->step->series.emitted, inputs = e->system->inputs > 0;
-	const char **output = ARRAY(const char *, (size_t)e->model->outputs), **input = ARRAY(const char *, (size_t)e->system->inputs);
-	for (int i = 0; i < e->model->outputs; i++)
-		output[i] = e->model->output[i].name;
+	const struct model *model = e->model;
+	const char **output = ARRAY(const char *, (size_t)model->outputs);
+	const char **input = ARRAY(const char *, (size_t)e->system->inputs);
+	for (int i = 0; i < model->outputs; i++)
+		output[i] = model->output[i].name;
 	for (int i = 0; i < e->system->inputs; i++)
 		input[i] = e->system->input[i].name;
-	say(e, "\n/* The same functions for programs that drive any model. */\n"
-	       "\n");
 	emit_name_list(e, "state_names", e->system->states, e->step->shown->model->state_name);
-	if (inputs) {
+	if (e->system->inputs) {
 		emit_name_list(e, "input_names", e->system->inputs, input);
 		emit_start_samples(e);
 	}
-	emit_name_list(e, "output_names", e->model->outputs, output);
-	say(e, "\n");
+	emit_name_list(e, "output_names", model->outputs, output);
+}
+
+static void emit_wrappers(const struct emitter *e)
+{
+	bool inputs = e->system->inputs > 0;
 	emit_wrapper(e, "void", "init", "", "", false);
 	emit_wrapper(e, "void", "set", ", double t, const double *y", ", t, y", false);
 	emit_wrapper(e, "void", "get", ", double *y", ", y", true);
 	emit_wrapper(e, "double", "time", "", "", true);
 	emit_wrapper(e, "void", "step", ", const double *u", inputs ? ", u" : "", false);
 	emit_wrapper(e, "void", "out", ", double *out", ", out", true);
-	emit_wrapper(e, "void", "run", ", size_t n, const double *u, double *out", inputs ? ", n, u, out" : ", n, out", false);
-	if (at)
-		emit_wrapper(e, "void", "at", ", const double *u, double tau, double *y", inputs ? ", u, tau, y" : ", tau, y", true);
+	emit_wrapper(e, "void", "run", ", size_t n, const double *u, double *out", inputs ? ", n, u, out" : ", n, out",
+		     false);
+	if (e->step->series.emitted)
+		emit_wrapper(e, "void", "at", ", const double *u, double tau, double *y",
+			     inputs ? ", u, tau, y" : ", tau, y", true);
 	if (has_jump(e))
 		emit_wrapper(e, "void", "jump", ", uint64_t n", ", n", false);
 	emit_wrapper(e, "int", "status", "", "", true);
-	if (e->model->tuning)
-		emit_tuning_wrapper(e);
+	e->kind->wrappers(e);
 	if (e->ramps)
 		emit_wrapper(e, "void", "hold", ", const double *u", ", u", false);
+}
+
+/* The name of what there is in some models only */
+static const char *name_if(const struct emitter *e, bool there, const char *name)
+{
+	return there ? spell(e, "$n_%s", name) : "NULL";
+}
+
+void emit_descriptor(const struct emitter *e)
+{
+	bool inputs = e->system->inputs > 0;
+	say(e, "\n/* The same functions for programs that drive any model. */\n\n");
+	emit_names(e);
+	say(e, "\n");
+	emit_wrappers(e);
 	say(e, "\nconst pl_model $n_model = {\n"
-	       "    \"$n\", sizeof(struct $n), $N_STATES, $N_INPUTS, $N_OUTPUTS, sizeof(double), $N_H,\n");
-	say(e, "    $n_state_names, %s, $n_output_names,\n", inputs ? spell(e, "$n_input_names") : "NULL");
-	say(e, "    $n_any_init, $n_any_set, $n_any_get, $n_any_time, $n_any_step,\n"
-	       "    $n_any_out, $n_any_run, %s, %s, %s,\n", at ? spell(e, "$n_any_at") : "NULL",
-	       has_jump(e) ? spell(e, "$n_any_jump") : "NULL", spell(e, "$n_any_status"));
-	say(e, "    %s,\n",
-	       e->model->tuning ? spell(e, "$N_PARAMS, $n_param_names, $n_nominal.params, $n_any_retune") : "0, NULL, NULL, NULL");
+	       "    \"$n\", sizeof(struct $n), $N_STATES, $N_INPUTS, $N_OUTPUTS, sizeof(double), $N_H,\n"
+	       "    $n_state_names, %s, $n_output_names,\n"
+	       "    $n_any_init, $n_any_set, $n_any_get, $n_any_time, $n_any_step,\n"
+	       "    $n_any_out, $n_any_run, %s, %s, $n_any_status,\n", name_if(e, inputs, "input_names"),
+	       name_if(e, e->step->series.emitted, "any_at"), name_if(e, has_jump(e), "any_jump"));
+	e->kind->params(e);
 	say(e, "    %s, %s\n"
-	       "};\n", e->ramps ? spell(e, "$n_any_hold") : "NULL", inputs ? spell(e, "$n_start_samples") : "NULL");
+	       "};\n", name_if(e, e->ramps, "any_hold"), name_if(e, inputs, "start_samples"));
 }

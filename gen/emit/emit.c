@@ -12,7 +12,8 @@ static const char *upper_case(const char *name)
 	return upper;
 }
 
-/* A load leaves no trace where it acts on nothing and no output shows it. */
+/* ---- which loads the step or an output reads: others leave no trace ---- */
+
 struct wave_search {
 	const struct wave *wave;
 	bool found;
@@ -21,47 +22,67 @@ struct wave_search {
 static void look_for_wave(void *context, const struct form *form)
 {
 	struct wave_search *search = context;
-	for (int i = 0; i < form->terms; i++)
-		search->found = search->found || (form->term[i].basis.kind == BASIS_WAVE && form->term[i].basis.wave == search->wave);
+	for (int i = 0; i < form->terms; i++) {
+		const struct basis *basis = &form->term[i].basis;
+		search->found = search->found || (basis->kind == BASIS_WAVE && basis->wave == search->wave);
+	}
 }
 
-static bool load_is_needed(const struct model *model, const struct linear *system, int load)
+static bool leftovers_read(const struct model *model, const struct wave *wave)
 {
-	struct wave_search search = { system->load[load].wave, false };
+	struct wave_search search = { wave, false };
 	visit_leftovers(model, look_for_wave, &search);
-	bool needed = search.found || load_acts(system, &system->load[load]);
+	return search.found;
+}
+
+static bool row_reads(const struct linear *system, const struct output *row, int load)
+{
+	bool reads = false;
+	for (int k = 0; k < system->load[load].columns * system->segments; k++)
+		reads = reads || mpq_sgn(row->load[load][k]) != 0;
+	return reads;
+}
+
+static bool outputs_read(const struct emitter *e, int load)
+{
+	const struct model *model = e->model;
+	bool read = false;
 	for (int o = 0; o < model->outputs; o++) {
 		const struct form *left = model->output[o].left;
-		needed = needed || (left && reads_of(speaker(model), 1, &left).load[load]);
+		read = read || (left && reads_of(speaker(model), 1, &left).load[load]);
+		read = read || row_reads(e->system, &model->output[o], load);
 	}
-	for (int x = 0; model->switching && x < model->switching->expressions; x++)
-		for (int k = 0; k < system->load[load].columns; k++)
-			needed = needed || mpq_sgn(model->switching->expression[x].row->load[load][k]) != 0;
-	for (int x = 0; model->switching && x < model->switching->systems; x++)
-		needed = needed || load_acts(&model->switching->system[x], &model->switching->system[x].load[load]);
-	for (int o = 0; o < model->n; o++)
-		for (int k = 0; model->highest && model->highest[o] && k < system->load[load].columns * system->segments; k++)
-			needed = needed || mpq_sgn(model->highest[o]->load[load][k]) != 0;
-	for (int o = 0; o < model->outputs; o++)
-		for (int k = 0; k < system->load[load].columns * system->segments; k++)
-			needed = needed || mpq_sgn(model->output[o].load[load][k]) != 0;
-	return needed;
+	for (int i = 0; model->highest && i < model->n; i++)
+		read = read || (model->highest[i] && row_reads(e->system, model->highest[i], load));
+	return read;
+}
+
+static bool load_is_needed(const struct emitter *e, int load)
+{
+	return e->kind->reads_load(e, load) || load_acts(e->system, &e->system->load[load]) ||
+	       leftovers_read(e->model, e->system->load[load].wave) || outputs_read(e, load);
+}
+
+static void number_loads(struct emitter *e)
+{
+	e->phase = ARRAY(int, (size_t)e->system->loads);
+	e->growth = ARRAY(int, (size_t)e->system->loads);
+	for (int l = 0; l < e->system->loads; l++) {
+		const struct wave *wave = e->system->load[l].wave;
+		bool needed = load_is_needed(e, l);
+		e->phase[l] = needed && oscillates(wave) ? e->phases++ : -1;
+		e->growth[l] = needed && mpq_sgn(wave->a) != 0 ? e->growths++ : -1;
+	}
 }
 
 static struct emitter emitter_new(FILE *to, const struct step *step, const char *options)
 {
-	struct emitter e = { .to = to, .step = step, .model = step->model, .system = &step->branch->system, .options = options };
-	size_t loads = (size_t)e.system->loads;
-	e.name = step->model->name;
-	e.upper = upper_case(e.name);
-	e.phase = ARRAY(int, loads);
-	e.growth = ARRAY(int, loads);
-	for (size_t l = 0; l < loads; l++) {
-		const struct wave *wave = e.system->load[l].wave;
-		bool needed = e.model->tuning || load_is_needed(e.model, e.system, (int)l);
-		e.phase[l] = needed && oscillates(wave) ? e.phases++ : -1;
-		e.growth[l] = needed && mpq_sgn(wave->a) != 0 ? e.growths++ : -1;
-	}
+	struct emitter e = {
+		.to = to, .step = step, .kind = row_of_kind(step->kind), .model = step->model,
+		.system = &step->branch->system, .options = options, .name = step->model->name,
+		.upper = upper_case(step->model->name)
+	};
+	number_loads(&e);
 	for (int i = 0; i < e.system->inputs; i++)
 		e.ramps = e.ramps || e.system->input[i].first_order;
 	e.local = ARRAY(const char *, (size_t)e.system->states);
@@ -69,17 +90,43 @@ static struct emitter emitter_new(FILE *to, const struct step *step, const char 
 	return e;
 }
 
+/* ---- the two texts ---- */
+
+static bool forms_need_math(const struct emitter *e)
+{
+	const struct model *model = e->model;
+	bool math = model->selector && reads_of(model, 1, &model->selector).math;
+	for (int i = 0; i < model->outputs; i++) {
+		const struct form *left = model->output[i].left;
+		math = math || (left && reads_of(speaker(model), 1, &left).math);
+	}
+	for (int k = 0; k < model->operators; k++) {
+		const struct form *const *left = (const struct form *const *)model->operator[k].left;
+		math = math || reads_of(model, model->channels, left).math;
+	}
+	return math;
+}
+
+static void emit_includes(const struct emitter *e, bool rhs)
+{
+	if (forms_need_math(e) || (rhs && rhs_needs_math(e)))
+		say(e, "\n#include <math.h>\n");
+	if (e->step->program->compensated || e->step->carries)
+		say(e, "\n#if PL_EXCESS_PRECISION%s\n"
+		       "#error \"two-word arithmetic needs sums that have the bits of their type: "
+		       "on x86 compile it with -msse2 -mfpmath=sse\"\n"
+		       "#endif\n", e->model->asked.single ? "F" : "");
+}
+
 static void emit_run(const struct emitter *e)
 {
 	bool inputs = e->system->inputs > 0;
 	say(e, "\nvoid $n_run($n *s, size_t n, %sdouble *out)\n"
 	       "{\n"
-	       "    for (; n > 0; n--) {\n", inputs ? "const double *u, " : "");
+	       "    for (; n > 0; n--) {\n"
+	       "        $n_step(s%s);\n", inputs ? "const double *u, " : "", inputs ? ", u" : "");
 	if (inputs)
-		say(e, "        $n_step(s, u);\n"
-		       "        u += $N_INPUTS;\n");
-	else
-		say(e, "        $n_step(s);\n");
+		say(e, "        u += $N_INPUTS;\n");
 	say(e, "        if (out) {\n"
 	       "            $n_out(s, out);\n"
 	       "            out += $N_OUTPUTS;\n"
@@ -88,16 +135,26 @@ static void emit_run(const struct emitter *e)
 	       "}\n");
 }
 
-/* Does an output read an acceleration that something left over acts on? */
-static bool reads_channels(const struct model *model)
+static void emit_tables(const struct emitter *e)
 {
-	bool any = false;
-	for (int i = 0; i < model->outputs + model->n; i++) {
-		const struct output *output = i < model->outputs ? &model->output[i] : model->highest[i - model->outputs];
-		for (int c = 0; output && c < model->channels; c++)
-			any = any || mpq_sgn(output->channel[c]) != 0;
-	}
-	return any;
+	emit_phi(e);
+	if (e->system->inputs)
+		emit_gamma(e);
+	emit_load_tables(e);
+	e->kind->tables(e);
+}
+
+/* What is there of some models only: states between steps, many steps at once, the ways to check it */
+static void emit_further_functions(const struct emitter *e, bool rhs)
+{
+	if (e->step->series.emitted)
+		e->kind->at(e);
+	if (has_jump(e))
+		emit_jump(e);
+	if (e->model->asked.selftest)
+		emit_selftest(e, has_jump(e));
+	if (rhs)
+		emit_rhs(e);
 }
 
 void emit_header(FILE *to, const struct step *step, const char *options, bool rhs)
@@ -107,74 +164,21 @@ void emit_header(FILE *to, const struct step *step, const char *options, bool rh
 	emit_declarations(&e, rhs);
 }
 
-static bool needs_math(const struct emitter *e, bool rhs)
-{
-	bool math = false;
-	for (int i = 0; i < e->model->outputs; i++) {
-		const struct form *left = e->model->output[i].left;
-		math = math || (left && reads_of(speaker(e->model), 1, &left).math);
-	}
-	for (int k = 0; k < e->model->operators; k++)
-		math = math || reads_of(e->model, e->model->channels, (const struct form *const *)e->model->operator[k].left).math;
-	if (e->model->selector)
-		math = math || reads_of(e->model, 1, &e->model->selector).math;
-	return math || (rhs && rhs_needs_math(e));
-}
-
 void emit_code(FILE *to, const struct step *step, const char *options, const char *header_name, bool rhs)
 {
-	struct emitter e = emitter_new(to, step, options);
-	emit_banner(&e);
+	struct emitter made = emitter_new(to, step, options), *e = &made;
+	emit_banner(e);
 	if (header_name)
-		say(&e, "#include \"%s\"\n", header_name);
+		say(e, "#include \"%s\"\n", header_name);
 	else
-		emit_declarations(&e, rhs);
-	if (needs_math(&e, rhs))
-		say(&e, "\n#include <math.h>\n");
-	if (step->program->compensated || step->carries)
-		say(&e, "\n#if PL_EXCESS_PRECISION%s\n"
-		       "#error \"two-word arithmetic needs sums that have the bits of their type: on x86 compile it with -msse2 -mfpmath=sse\"\n"
-		       "#endif\n", step->model->asked.single ? "F" : "");
-	emit_phi(&e);
-	if (e.system->inputs)
-		emit_gamma(&e);
-	emit_load_tables(&e);
-	if (step->model->tuning)
-		emit_nominal(&e);
-	if (e.system->segments > 1)
-		emit_changes(&e);
-	if (step->model->switching) {
-		emit_regions(&e);
-		emit_region_start(&e);
-	}
-	emit_access(&e);
-	if (step->model->tuning)
-		emit_retune(&e);
-	else if (e.system->segments > 1)
-		emit_passing(&e);
-	if (step->model->switching && reads_channels(step->model))
-		emit_leftover_functions(&e);
-	if (step->model->switching) {
-		emit_region_step(&e);
-	} else if (has_leftover(step)) {
-		emit_leftover_functions(&e);
-		emit_leftover_step(&e);
-	} else {
-		emit_step(&e);
-	}
-	emit_out(&e);
-	emit_run(&e);
-	if (step->model->switching)
-		emit_region_at(&e);
-	else if (step->model->tuning)
-		emit_tuned_at(&e);
-	else if (step->series.emitted)
-		emit_at(&e);
-	if (has_jump(&e))
-		emit_jump(&e);
-	if (e.model->asked.selftest)
-		emit_selftest(&e, has_jump(&e));
-	if (rhs)
-		emit_rhs(&e);
-	emit_descriptor(&e);
+		emit_declarations(e, rhs);
+	emit_includes(e, rhs);
+	emit_tables(e);
+	emit_access(e);
+	e->kind->pass(e);
+	e->kind->step(e);
+	emit_out(e);
+	emit_run(e);
+	emit_further_functions(e, rhs);
+	emit_descriptor(e);
 }

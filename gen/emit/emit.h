@@ -10,6 +10,7 @@
 struct emitter {
 	FILE *to;
 	const struct step *step;
+	const struct kind *kind;    /* of the step */
 	const struct model *model;
 	const struct linear *system;
 	const char *name, *upper;   /* scs, SCS */
@@ -63,7 +64,6 @@ bool is_used(const struct identifiers *c, const struct symbol *s, int order);
 /* ---- state.c: the state in emitted code ---- */
 
 bool has_jump(const struct emitter *e);
-bool keeps_status(const struct emitter *e);                       /* others look at the state when they are asked */
 const char *state_list(const struct model *model);                /* x, x' */
 const char *carried_text(const struct emitter *e);                /* the states that only add up */
 const struct model *speaker(const struct model *model);            /* over whose coordinates its forms are */
@@ -99,9 +99,48 @@ const char *write_form(struct writer *w, const struct form *form, int indent);
 
 void emit_selftest(const struct emitter *e, bool jumps);
 
+/* ---- kinds.c: what the C of a step has that depends on its kind, in the order of the C ---- */
+
+struct kind {
+	/* The comment at the top: what is approximated; before what a step costs; after it */
+	void (*banner)(const struct emitter *e);
+	const char *step_note;
+	void (*banner_more)(const struct emitter *e);
+	const char *no_jump;                            /* why there never is a NAME_jump; NULL: there may be one */
+	const char *(*no_at)(const struct step *step);  /* why there is no NAME_at; NULL: there is one */
+	/* The header: constants; types before that of the state; in it, before the inputs and at its end; functions */
+	void (*constants)(const struct emitter *e);
+	void (*types)(const struct emitter *e);
+	void (*coefficients)(const struct emitter *e);
+	void (*members)(const struct emitter *e);
+	bool keeps_status;                              /* else NAME_status looks at the state when it is asked */
+	const char *init_note, *status_note;
+	void (*declare_state)(const struct emitter *e); /* of what else the state has */
+	void (*declare_more)(const struct emitter *e);
+	/* The state */
+	const char *step_length;                        /* of the instance s; NULL: it is NAME_H */
+	void (*start)(const struct emitter *e);         /* in init, before set */
+	bool places;                                    /* NAME_place(s) finds what follows from a state that was set */
+	/* Tables and functions */
+	bool (*reads_load)(const struct emitter *e, int load); /* elsewhere than in the system, leftovers, outputs */
+	bool (*reads_phi)(const struct step *step);     /* of what is kept, in a loop */
+	bool (*reads_gamma)(const struct step *step);
+	void (*tables)(const struct emitter *e);
+	void (*pass)(const struct emitter *e);          /* over what changes at a time, or when it is told to */
+	void (*step)(const struct emitter *e);
+	void (*at)(const struct emitter *e);
+	/* The descriptor: functions that it names; its line of tunable params */
+	void (*wrappers)(const struct emitter *e);
+	void (*params)(const struct emitter *e);
+};
+const struct kind *row_of_kind(enum step_kind kind);
+
 /* ---- banner.c, declarations.c: what a header has ---- */
 
 void emit_banner(const struct emitter *e);
+void banner_linear(const struct emitter *e);                      /* what is approximated, of each kind */
+void banner_leftover(const struct emitter *e);
+void banner_regions(const struct emitter *e);
 void emit_declarations(const struct emitter *e, bool rhs);
 
 /* ---- kept.c: states as written, and as they are kept ---- */

@@ -9,12 +9,7 @@ const struct model *speaker(const struct model *model)
 
 bool has_jump(const struct emitter *e)
 {
-	return e->system->inputs == 0 && !has_leftover(e->step) && !e->model->switching && !e->model->tuning;
-}
-
-bool keeps_status(const struct emitter *e)
-{
-	return has_leftover(e->step) || e->model->switching;
+	return e->system->inputs == 0 && !e->kind->no_jump;
 }
 
 const char *state_list(const struct model *model)
@@ -109,7 +104,7 @@ void emit_locals_of(const struct emitter *e, const bool *reads, const char *vect
 
 const char *step_length(const struct emitter *e)
 {
-	return e->model->tuning ? "s->coeffs.h" : spell(e, "$N_H");
+	return e->kind->step_length ? e->kind->step_length : spell(e, "$N_H");
 }
 
 /* s->y from a vector of states, nothing left of earlier rounding */
