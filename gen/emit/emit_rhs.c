@@ -11,18 +11,12 @@ static void emit_used_constants(const struct emitter *e)
 	mpq_t value;
 	mpq_init(value);
 	for (const struct symbol *s = e->model->spec->first; s; s = s->next) {
-		if (!s->used || s->kind != SYMBOL_PARAM)
+		if (!is_used(e->c, s, 0) || s->kind != SYMBOL_PARAM)
 			continue;
 		constant_value(&collector, s->collected->cell[0], value);
-		fprintf(e->to, "    const double %s = %s;\n", s->c_name, finite_text(s->at, value));
+		fprintf(e->to, "    const double %s = %s;\n", c_name(e->c, s, 0), finite_text(s->at, value));
 	}
 	mpq_clear(value);
-}
-
-static void clear_used(const struct spec *spec)
-{
-	for (struct symbol *s = spec->first; s; s = s->next)
-		s->used = s->slope_used = false;
 }
 
 static bool uses_time(const struct node *node);
@@ -63,9 +57,9 @@ static void mark_states(const struct model *written, const struct node *node, bo
 		mark_states(written, node->child[i], reads);
 }
 
-static const char *residual_text(const struct equation *equation)
+static const char *residual_text(const struct identifiers *c, const struct equation *equation)
 {
-	const char *left = c_expression(equation->left), *right = c_expression(equation->right);
+	const char *left = c_expression(c, equation->left), *right = c_expression(c, equation->right);
 	if (vanishes(equation->left))
 		return format("-(%s)", right);
 	return vanishes(equation->right) || strcmp(right, "0.0") == 0 ? left : format("%s - (%s)", left, right);
@@ -229,9 +223,9 @@ static void emit_whole_residuals(const struct emitter *e)
 	emit_unread_states(e, read);
 }
 
-bool rhs_needs_math(const struct model *any)
+bool rhs_needs_math(const struct emitter *e)
 {
-	const struct model *model = any->written;
+	const struct model *model = e->model->written;
 	bool math = false;
 	if (!is_scalar_text(model) && model->whole)
 		return reading_of_rhs(model).math;
@@ -239,10 +233,10 @@ bool rhs_needs_math(const struct model *any)
 		any_wave(model, &math);
 		return math;
 	}
-	clear_used(model->spec);
+	forget_used(e->c);
 	for (int i = 0; i < model->spec->equations; i++) {
-		mark_used(model->spec->equation[i].left, &math);
-		mark_used(model->spec->equation[i].right, &math);
+		mark_used(e->c, model->spec->equation[i].left, &math);
+		mark_used(e->c, model->spec->equation[i].right, &math);
 	}
 	return math;
 }
@@ -280,21 +274,21 @@ static void emit_rhs_locals(const struct emitter *e, const bool *reads)
 	emit_used_constants(e);
 	for (int i = 0; i < e->model->written->system.states; i++)
 		if (reads[i])
-			fprintf(e->to, "    const double %s = y[%d];\n", written_local(e->model->written, i), i);
+			fprintf(e->to, "    const double %s = y[%d];\n", written_local(e->c, e->model->written, i), i);
 	for (const struct symbol *s = spec->first; s; s = s->next) {
-		if (s->used && s->kind == SYMBOL_INPUT)
-			fprintf(e->to, "    const double %s = u[%d];\n", s->c_name, s->index);
-		if (s->used && s->kind == SYMBOL_INPUT && s->slope_used)
-			fprintf(e->to, "    const double %s = u[%d];\n", s->c_dot, e->system->inputs + s->index);
-		if (s->used && s->kind == SYMBOL_INPUT)
-			fprintf(e->to, "    (void)%s;\n", s->c_name);
-		inputs = inputs || (s->used && s->kind == SYMBOL_INPUT);
+		if (s->kind != SYMBOL_INPUT || !is_used(e->c, s, 0))
+			continue;
+		inputs = true;
+		fprintf(e->to, "    const double %s = u[%d];\n", c_name(e->c, s, 0), s->index);
+		if (is_used(e->c, s, 1))
+			fprintf(e->to, "    const double %s = u[%d];\n", c_name(e->c, s, 1), e->system->inputs + s->index);
+		fprintf(e->to, "    (void)%s;\n", c_name(e->c, s, 0));
 	}
 	if (e->system->inputs && !inputs)
 		fputs("    (void)u;\n", e->to);
 	for (const struct symbol *s = spec->first; s; s = s->next)
-		if (s->used && s->kind == SYMBOL_LET)
-			fprintf(e->to, "    const double %s = %s;\n", s->c_name, c_expression(s->value));
+		if (s->kind == SYMBOL_LET && is_used(e->c, s, 0))
+			fprintf(e->to, "    const double %s = %s;\n", c_name(e->c, s, 0), c_expression(e->c, s->value));
 }
 
 /* Highest derivatives: minus the residuals through W^-1, W what multiplies the highest derivatives. */
@@ -321,18 +315,18 @@ static void emit_written_residuals(const struct emitter *e)
 {
 	const struct spec *spec = e->model->spec;
 	bool math = false, *reads = ARRAY(bool, (size_t)e->model->written->system.states), time = false;
-	clear_used(spec);
+	forget_used(e->c);
 	for (int i = 0; i < spec->equations; i++)
 		for (int side = 0; side < 2; side++) {
 			const struct node *node = side ? spec->equation[i].right : spec->equation[i].left;
-			mark_used(node, &math);
+			mark_used(e->c, node, &math);
 			mark_states(e->model->written, node, reads);
 			time = time || uses_time(node);
 		}
 	emit_rhs_locals(e, reads);
 	fprintf(e->to, "    double residual[%d];  /* left side minus right side, without the highest derivatives */\n", spec->equations);
 	for (int i = 0; i < spec->equations; i++)
-		fprintf(e->to, "    residual[%d] = %s;\n", i, residual_text(&spec->equation[i]));
+		fprintf(e->to, "    residual[%d] = %s;\n", i, residual_text(e->c, &spec->equation[i]));
 	if (!time)
 		fputs("    (void)t;\n", e->to);
 	bool read = false;

@@ -236,7 +236,7 @@ static void emit_forced_changes(const struct emitter *e, const char *u)
 	int changes = e->system->segments - 1;
 	fprintf(e->to, "    int segment = s->segment;\n    if (segment < %d && %s_until(s, segment) < %s) {\n", changes, n, step_length(e));
 	fprintf(e->to, "        double y[%s_STATES];\n        int i;\n        segment = %s_pass(s, %s%s, 0, y);\n", e->upper, n, u, step_length(e));
-	emit_store(e, "y", "        ");
+	emit_set_state(e, "y", "        ");
 	fprintf(e->to, "    } else {\n        %s_plain_step(s%s);\n    }\n", n, *u ? ", u" : "");
 	emit_step_end(e);
 	fprintf(e->to, "    s->segment = segment;\n    while (s->segment < %d && %s_until(s, s->segment) <= 1e-18 * %s) {\n%s        s->segment++;\n    }\n}\n", changes, n,
@@ -260,7 +260,7 @@ static void emit_changing_step(const struct emitter *e)
 	}
 	fprintf(e->to, "    if (s->segment < %d && %s_until(s, s->segment) < %s) {\n", changes, n, step_length(e));
 	fprintf(e->to, "        double y[%s_STATES];\n        int i;\n        %s_pass(s, %s%s, y);\n", e->upper, n, u, step_length(e));
-	emit_store(e, "y", "        ");
+	emit_set_state(e, "y", "        ");
 	fprintf(e->to, "    } else {\n        %s_plain_step(s%s);\n    }\n", n, *u ? ", u" : "");
 	emit_step_end(e);
 	fprintf(e->to, "    while (s->segment < %d && %s_until(s, s->segment) <= 1e-18 * %s)\n        s->segment++;\n}\n", changes, n, step_length(e));

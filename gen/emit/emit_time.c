@@ -176,9 +176,9 @@ void emit_series_vector(const struct emitter *e)
 	if (e->system->segments == 1)
 		emit_leftover_now(e);
 	if (e->step->forced && e->system->segments > 1)
-		emit_kept_state(e, "x");
+		emit_get_kept_state(e, "x");
 	else
-		emit_load_state(e, "x");
+		emit_get_state(e, "x");
 	emit_held(e);
 	store_loads(e, layout->load, "");
 	store_inputs(e, layout->input);
@@ -399,9 +399,9 @@ static void emit_leap_start(const struct emitter *e)
 {
 	if (e->step->momenta) {
 		if (e->step->forced)
-			emit_kept_state(e, "y");
+			emit_get_kept_state(e, "y");
 		else if (e->model->relative)
-			emit_load_state(e, "y");
+			emit_get_state(e, "y");
 		else
 			fprintf(e->to, "    %s_get(s, y);\n", e->name);
 		fprintf(e->to, "    for (i = 0; i < %s_STATES; i++)\n        x[i].hi = y[i];\n", e->upper);
@@ -420,7 +420,7 @@ static void emit_leap_end(const struct emitter *e)
 {
 	if (e->step->momenta) {
 		fprintf(e->to, "    for (i = 0; i < %s_STATES; i++)\n        y[i] = x[i].hi;\n", e->upper);
-		emit_store(e, "y", "    ");
+		emit_set_state(e, "y", "    ");
 		return;
 	}
 	bool rest = e->step->program->compensated;

@@ -75,10 +75,10 @@ static void name_lets(struct writer *w)
 			continue;
 		const struct form_term *only = s->whole->terms == 1 ? s->whole->term : NULL;
 		if (only && only->basis.atom && mpq_cmp_ui(only->factor, 1, 1) == 0)
-			w->let[only->basis.atom->index] = s->c_name;
+			w->let[only->basis.atom->index] = c_name(w->e->c, s, 0);
 		for (int i = 0; i < w->parts && s->whole->terms > 1; i++)
 			if (equal_forms(w->part[i].form, s->whole))
-				w->part[i].let = s->c_name;
+				w->part[i].let = c_name(w->e->c, s, 0);
 	}
 }
 

@@ -177,6 +177,7 @@ struct symbol *spec_find(const struct spec *spec, const char *name)
 /* Behind all others: of equal names the first is found. */
 static void add_symbol(struct spec *spec, struct symbol *symbol)
 {
+	symbol->number = ++spec->symbols;
 	*spec->last = symbol;
 	spec->last = &symbol->next;
 	struct symbol **link = &spec->bucket[name_hash(symbol->name) % BUCKETS];

@@ -68,9 +68,7 @@ struct span { mpq_srcptr after, before; };   /* of time; NULL: no bound */
 enum symbol_kind { SYMBOL_PARAM, SYMBOL_COORD, SYMBOL_LET, SYMBOL_OUTPUT, SYMBOL_INPUT, SYMBOL_MATRIX };
 struct symbol {
 	enum symbol_kind kind;
-	bool used, slope_used;      /* by the expressions now being printed */
-	const char *c_name, *c_dot; /* C identifiers of it and of its first derivative */
-	const char **c_component, **c_component_dot; /* of a vector coordinate */
+	int number;                 /* 1, 2, ... in the order of declaration; 0: no statement declares it */
 	const char *name;
 	struct place at;
 	size_t statement;           /* offset of the statement that declares it */
@@ -128,7 +126,7 @@ struct spec {                       /* what the text says, names resolved, nothi
 	struct symbol *first, **last;   /* all symbols in the order of declaration */
 	struct symbol **bucket;         /* the same by name */
 	int components;                 /* of all coordinates together */
-	int params, coords, lets, outputs, inputs, matrices;
+	int symbols, params, coords, lets, outputs, inputs, matrices;
 	int equations;
 	struct equation *equation;
 	int elements;

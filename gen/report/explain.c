@@ -57,8 +57,7 @@ static void person_poles(FILE *to, const struct model *model, const struct resol
 	int count = poles_of(model, resolvent, &pole);
 	fprintf(to, "    %-36s %-16s damping ratio\n", "pole [1/s]", "frequency [Hz]");
 	for (int i = 0; i < count; i++)
-		fprintf(to, "    %-36s %-16.8g %.8g\n", pole_text(&pole[i]), mpfr_get_d(pole[i].hertz, MPFR_RNDN),
-			mpfr_get_d(pole[i].damping_ratio, MPFR_RNDN));
+		fprintf(to, "    %s\n", pole_row(&pole[i], 36));
 }
 
 static void person_held(FILE *to, const struct step *step)
@@ -81,7 +80,7 @@ static void person_held(FILE *to, const struct step *step)
 		"It is of first order in h. Its modified equation y' = L y - (h/2) R L y (R: the held terms) has "
 		"growth rate\n"
 		"%.6g 1/s, the largest real part of its poles, at h = %s s.\n",
-		mpfr_get_d(step->growth, MPFR_RNDN), readable_text(step->model->h));
+		growth_rate(step), readable_text(step->model->h));
 }
 
 static void person_tuning(FILE *to, const struct tuning *t)
@@ -504,7 +503,7 @@ void explain_json(FILE *to, const struct step *step)
 	json_matrix(to, "Phi", model->system.states, model->system.states, Phi);
 	json_loads(to, step);
 	if (model->scheme == SCHEME_PL)
-		fprintf(to, "  \"growth_rate\": %.17g,\n", mpfr_get_d(step->growth, MPFR_RNDN));
+		fprintf(to, "  \"growth_rate\": %.17g,\n", growth_rate(step));
 	static const char *const smooth[] = { "smooth", "kink", "jump" };
 	fprintf(to, "  \"order\": %d,\n  \"smooth\": \"%s\",\n", order_that_holds(model), smooth[model->smooth.kind]);
 	if (step->model->switching)

@@ -2,9 +2,18 @@
 /* The program of a step. */
 #include "step/step.h"
 
+enum step_kind kind_of_step(const struct model *model)
+{
+	if (model->switching)
+		return KIND_REGIONS;
+	if (model->tuning)
+		return KIND_TUNED;
+	return model->channels > 0 ? KIND_LEFTOVER : KIND_LINEAR;
+}
+
 bool has_leftover(const struct step *step)
 {
-	return step->program->actions > 0;
+	return step->kind == KIND_LEFTOVER;
 }
 
 void need_closed_form(const struct step *step)

@@ -577,14 +577,15 @@ static void build(void *context)
 {
 	struct step *step = context;
 	const struct model *model = step->model;
-	bool left = model->channels > 0 && !model->switching;
+	step->kind = kind_of_step(model);
+	bool left = has_leftover(step);
 	step->form = FORM_DIRECT;
 	step->written = resolvent_of(&model->written->system);
 	check_pole_size(model, step->written);
 	take_operators(step);
 	if (model->scheme == SCHEME_PL)
 		find_growth(step);
-	if (model->switching) {
+	if (step->kind == KIND_REGIONS) {
 		need_direct(step);
 		build_regions_step(step);
 		if (model->asked.selftest)

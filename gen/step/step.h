@@ -198,8 +198,16 @@ struct series {                     /* of e^{A tau} x: the Taylor series behind 
 	bool emitted;               /* max|pole| h <= 8 */
 	int degree, halvings;
 };
+enum step_kind {                    /* what a step is made of */
+	KIND_LINEAR,                /* assignments, or loops over tables: nothing is left over */
+	KIND_TUNED,                 /* the same, its factors from the params that the instance has */
+	KIND_REGIONS,               /* the series of a region, and a search for crossings */
+	KIND_LEFTOVER,              /* a list of actions on stages and leftovers */
+	KINDS
+};
 struct step {                       /* everything that is emitted for one model */
 	const struct model *model;
+	enum step_kind kind;
 	struct resolvent *written;  /* of the model as written: the report's poles, the closed form */
 	/* what users see of tables: over the states as written; itself, where those are stepped */
 	const struct step *shown;
@@ -219,7 +227,8 @@ struct step {                       /* everything that is emitted for one model 
 	struct layout layout;       /* of x */
 	struct series series;
 };
-bool has_leftover(const struct step *step);                 /* or nothing is left over, and a step is assignments */
+enum step_kind kind_of_step(const struct model *model);
+bool has_leftover(const struct step *step);                 /* it is of that kind */
 void need_closed_form(const struct step *step);              /* leaves the statement where there is none */
 
 /* ---- series.c: the Taylor series behind NAME_at ---- */
