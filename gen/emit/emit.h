@@ -65,7 +65,7 @@ const char *tuned_factor(const struct emitter *e, int row, const struct operand 
 const char *tuned_output(const struct emitter *e, const struct output *output); /* its sum; NULL: no param changes it */
 bool tuned_output_reads(const struct emitter *e, const struct output *output, int column); /* columns of x as in struct tuning */
 
-/* ---- left.c: forms with atoms as C ---- */
+/* ---- expression.c: forms with atoms as C ---- */
 
 struct writer;                      /* declares locals for what several places use as it goes */
 struct writer *writer_new(const struct emitter *e, const char *(*basis_text)(const struct emitter *, const struct basis *), int count,
