@@ -7,13 +7,12 @@
 /* Params that the equations name */
 static void emit_used_constants(const struct emitter *e)
 {
-	struct collector collector = { .scheme = "exact" };
 	mpq_t value;
 	mpq_init(value);
 	for (const struct symbol *s = e->model->spec->first; s; s = s->next) {
 		if (!s->used || s->kind != SYMBOL_PARAM)
 			continue;
-		constant_value(&collector, s->collected->cell[0], value);
+		param_value(s, value);
 		fprintf(e->to, "    const double %s = %s;\n", s->c_name, finite_text(s->at, value));
 	}
 	mpq_clear(value);

@@ -194,22 +194,14 @@ static const char *product_text(struct writer *w, const struct atom *a)
 static const char *table_text(struct writer *w, const struct atom *a)
 {
 	const char *x = word_of(w, a->operand[0]), *text = "";
-	struct collector collector = { .scheme = "exact" };
-	mpq_t p[4];
-	for (int k = 0; k < 4; k++)
-		mpq_init(p[k]);
-	for (int i = 1; i + 3 < a->operands; i += 2) {
-		for (int k = 0; k < 4; k++)
-			constant_value(&collector, a->operand[i + k], p[k]);
-		const char *condition = i + 5 < a->operands ? format("%s < %s ? ", x, shortest(finite_number(w->e, p[2]))) : "";
-		mpq_sub(p[3], p[3], p[1]);
-		mpq_sub(p[2], p[2], p[0]);
-		mpq_div(p[3], p[3], p[2]);
-		text = format("%s%s%s%s + %s * (%s - %s)", text, *text ? " : " : "", condition, shortest(finite_number(w->e, p[1])),
-			      shortest(finite_number(w->e, p[3])), x, shortest(finite_number(w->e, p[0])));
+	struct piece *piece;
+	int pieces = pieces_of_atom(a, &piece);
+	for (const struct piece *p = piece; p < piece + pieces; p++) {
+		const char *condition = p->end ? format("%s < %s ? ", x, shortest(finite_number(w->e, p->end))) : "";
+		text = format("%s%s%s%s + %s * (%s - %s)", text, *text ? " : " : "", condition,
+			      shortest(finite_number(w->e, p->y)), shortest(finite_number(w->e, p->slope)), x,
+			      shortest(finite_number(w->e, p->x)));
 	}
-	for (int k = 0; k < 4; k++)
-		mpq_clear(p[k]);
 	return format("(%s)", text);
 }
 
