@@ -233,6 +233,17 @@ const char *drift_text(const struct drift *drift);          /* over 1e9 steps */
 
 void mark_tuned_zeros(struct step *step);                    /* in its table: what vanishes at these values only is no zero */
 
+/* ---- closed.c: states in closed form for the self-test ---- */
+
+struct reference {                  /* from t = 0 on; inputs follow u = 1 - t/h; held, u = 1 */
+	int states, rows;           /* rows: fewer where the states leave the range */
+	const unsigned long *steps; /* per row: how many have been taken */
+	double *start, *value;      /* [states]; [row][states] */
+	double *between;            /* [states] at h/2, where NAME_at is there */
+	double *unit;               /* [states]: one in the last place of the largest value */
+};
+struct reference reference_of(const struct step *step);
+
 /* ---- scheme.c: the step of a model ---- */
 
 struct step *step_build(const struct model *model);         /* NULL: it was said why */
