@@ -68,8 +68,8 @@ bool tuned_output_reads(const struct emitter *e, const struct output *output, in
 /* ---- expression.c: forms with atoms as C ---- */
 
 struct writer;                      /* declares locals for what several places use as it goes */
-struct writer *writer_new(const struct emitter *e, const char *(*basis_text)(const struct emitter *, const struct basis *), int count,
-			  const struct form *const *form);
+typedef const char *basis_writer(const struct emitter *e, const struct basis *basis); /* NULL: 1 */
+struct writer *writer_new(const struct emitter *e, basis_writer *basis_text, int count, const struct form *const *form);
 const char *write_form(struct writer *w, const struct form *form, int indent);
 
 /* ---- selftest.c: reference states in closed form, for the target to step to ---- */
