@@ -233,6 +233,29 @@ const char *drift_text(const struct drift *drift);          /* over 1e9 steps */
 
 void mark_tuned_zeros(struct step *step);                    /* in its table: what vanishes at these values only is no zero */
 
+/* ---- exact.c: exact numbers of the equations that stand in the code as they are, each rounded once ---- */
+
+/* An error at the step where it is beyond the range */
+struct coefficient equation_number(const struct model *model, mpq_srcptr q);
+double time_in_step(const struct model *model, mpq_srcptr fraction);      /* a part of h [s] */
+struct slopes {                     /* y' = A y + B r: r is what is left over, or another force on the channels */
+	struct coefficient *A, *B;  /* states x states; states x channels */
+};
+struct slopes state_slopes(const struct step *step, int operator);
+
+/* ---- bank.c: what the leftovers of a bank's operators have in common ---- */
+
+struct excess {                     /* a linear term in which they differ: a coordinate or its velocity, on a channel */
+	int channel, coord, order;
+};
+struct bank {                       /* the leftover of an operator = common + sum of factor times term */
+	int count;                  /* 0: of one operator */
+	struct excess *excess;
+	double *factor;             /* [operator][excess] */
+	const struct form **common; /* per channel */
+};
+struct bank bank_of(const struct step *step);
+
 /* ---- closed.c: states in closed form for the self-test ---- */
 
 struct reference {                  /* from t = 0 on; inputs follow u = 1 - t/h; held, u = 1 */
