@@ -267,6 +267,21 @@ struct reference {                  /* from t = 0 on; inputs follow u = 1 - t/h;
 };
 struct reference reference_of(const struct step *step);
 
+/* ---- tuned.c: what a model with tunable params keeps; columns as in struct tuning ---- */
+
+double *nominal_step(const struct step *step);              /* states x columns, of the spec's values */
+double *nominal_outputs(const struct step *step);           /* of outputs that depend on params: outputs x columns */
+struct fixed_slope {                /* an entry of A, x' = A x, that no param changes: velocities, how loads go on */
+	int row, column;
+	struct coefficient value;
+};
+int fixed_slopes(const struct step *step, struct fixed_slope **list);
+struct room {                       /* that the target computes coefficients in, in numbers of two words */
+	int width, work;            /* columns of the equations, W's among them; for products and exponentials */
+	int kilobytes;              /* of stack; frames of the calls not counted */
+};
+struct room room_of(const struct step *step);
+
 /* ---- scheme.c: the step of a model ---- */
 
 struct step *step_build(const struct model *model);         /* NULL: it was said why */
