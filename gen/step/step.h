@@ -282,6 +282,13 @@ struct room {                       /* that the target computes coefficients in,
 };
 struct room room_of(const struct step *step);
 
+/* ---- written.c: the equations as written, for NAME_rhs ---- */
+
+bool is_highest(const struct model *model, const struct basis *basis); /* a coordinate's highest derivative */
+const struct form *without_highest(const struct model *model, const struct form *form);
+/* -W^-1, n x n: the highest derivatives are it times the residuals */
+struct coefficient *derivatives_of_residuals(const struct model *model);
+
 /* ---- scheme.c: the step of a model ---- */
 
 struct step *step_build(const struct model *model);         /* NULL: it was said why */
