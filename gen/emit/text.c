@@ -87,10 +87,7 @@ const char *scaled(double factor, const char *operand)
 
 double finite_number(const struct emitter *e, mpq_srcptr q)
 {
-	if (beyond_range(q))
-		error(e->model->asked.step_at, NULL, "a number of the equations is beyond the range of %s",
-		      target_name());
-	return round_rational(q);
+	return equation_number(e->model, q).value;
 }
 
 void emit_number_rows(const struct emitter *e, int rows, int columns, const double *value, const char *const *row_note)
