@@ -116,26 +116,13 @@ static void banner_poles(const struct emitter *e)
 			mpfr_get_d(pole[i].damping_ratio, MPFR_RNDN));
 }
 
-static const char *const scheme_notes[SCHEMES] = {
-	[SCHEME_PL] = "Scheme pl, of first order in h: the coupling terms (the other coordinates and their velocities, after\n"
-		      " * division by the mass matrix) are held at their value at the start of the step; a coordinate's own terms and\n"
-		      " * the loads are exact.",
-	[SCHEME_ETD1] = "Scheme etd1, of first order in h: exponential time differencing (Cox and Matthews).",
-	[SCHEME_ETDRK2] = "Scheme etdrk2, of second order in h: exponential time differencing (Cox and Matthews).",
-	[SCHEME_ETDRK4] = "Scheme etdrk4, of fourth order in h: exponential time differencing (Cox and Matthews).",
-	[SCHEME_NC2] = "Scheme nc2, of fourth order in h: precise integration, Simpson's rule on nodes that RK4 predicts.",
-	[SCHEME_NC3] = "Scheme nc3, of fourth order in h: precise integration, the 3/8 rule on nodes that RK4 predicts.",
-	[SCHEME_DQ4] = "Scheme dq4, of fourth order in h: precise integration, differential quadrature on nodes that RK4 predicts.",
-	[SCHEME_BM3] = "Scheme bm3, of fourth order in h: precise integration, a block method on nodes that RK4 predicts."
-};
-
 /* One line for each equation that has a leftover, as far as they are few and short */
 static void banner_leftover(const struct emitter *e)
 {
 	enum { SHOWN = 6, WIDTH = 90 };
 	const struct model *model = e->step->shown->model;
 	const char *at = model->operator[0].text;
-	fprintf(e->to, " * y' = A y + loads + inputs + r(t, y). A: the %s%s%s.\n", *at ? "equations' Jacobian at " : model->scheme == SCHEME_PL ? "own terms of each coordinate" : "linear terms with constant coefficients",
+	fprintf(e->to, " * y' = A y + loads + inputs + r(t, y). A: the %s%s%s.\n", *at ? "equations' Jacobian at " : scheme_row(model->scheme)->holds_coupling ? "own terms of each coordinate" : "linear terms with constant coefficients",
 		at, e->step->branches > 1 ? format(", and so on: %d operators", e->step->branches) : "");
 	fprintf(e->to, " * Exact: A%s; approximated: r, which is\n", model->loads_left ? " and the inputs, each constant correctly rounded" :
 		", the loads and the inputs, each constant correctly rounded");
@@ -174,15 +161,15 @@ static void banner_scheme(const struct emitter *e)
 		return;
 	}
 	if (e->model->scheme != SCHEME_EXACT)
-		fprintf(to, " * %s\n", scheme_notes[e->model->scheme]);
+		fprintf(to, " * %s\n", scheme_note(e->model->scheme));
 	if (loses_order(e->step->shown->model))
 		fprintf(to, " * So where all is smooth; here of order %s at most: %s.\n", order_text(e->step->shown->model), printable(smoothness_text(e->step->shown->model)));
 	if (has_leftover(e->step))
 		banner_leftover(e);
-	else if (e->model->scheme != SCHEME_PL)
+	else if (!scheme_row(e->model->scheme)->holds_coupling)
 		fprintf(to, " * %sothing is approximated; each constant is its closed form, correctly rounded.\n",
 			e->model->scheme == SCHEME_EXACT ? "Scheme exact: n" : "Nothing is left over: n");
-	if (e->model->scheme == SCHEME_PL)
+	if (scheme_row(e->model->scheme)->holds_coupling)
 		fprintf(to, " * Each constant is its closed form, correctly rounded.\n"
 			    " * The modified equation of its linear part grows at %.3g 1/s (largest real part of its poles; the poles above are exact).\n",
 			mpfr_get_d(e->step->growth, MPFR_RNDN));
