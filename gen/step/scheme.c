@@ -188,11 +188,34 @@ static void place_all_loads(struct step *step)
 	step->series.emitted = true;
 }
 
+static void place_series(struct step *step, bool left)
+{
+	const struct model *model = step->model;
+	if (model->tuning)
+		place_all_loads(step);
+	else
+		series_place(&step->series, &step->branch->system, left && scheme_row(model->scheme)->holds_leftover);
+}
+
+/* A linear step, or one that leaves something over */
+static void build_smooth_step(struct step *step)
+{
+	bool left = step->model->channels > 0;
+	if (left)
+		need_direct(step);
+	place_series(step, left);
+	if (left)
+		build_with_leftover(step);
+	else
+		build_exact(step);
+	if (!step->model->tuning)
+		series_plan(step);
+}
+
 static void build(void *context)
 {
 	struct step *step = context;
 	const struct model *model = step->model;
-	bool left = model->channels > 0 && !model->switching;
 	step->form = FORM_DIRECT;
 	step->written = resolvent_of(&model->written->system);
 	check_pole_size(model, step->written);
@@ -202,24 +225,12 @@ static void build(void *context)
 	if (model->switching) {
 		need_direct(step);
 		build_regions_step(step);
-		if (model->asked.selftest)
-			need_closed_form(step);
-		return;
+	} else {
+		build_smooth_step(step);
 	}
-	if (left)
-		need_direct(step);
-	if (model->tuning)
-		place_all_loads(step);
-	else
-		series_place(&step->series, &step->branch->system, left && scheme_row(model->scheme)->holds_leftover);
-	if (left)
-		build_with_leftover(step);
-	else
-		build_exact(step);
-	if (!model->tuning)
-		series_plan(step);
 	if (model->asked.selftest)
 		need_closed_form(step);
+	program_check(step);
 }
 
 struct step *step_build(const struct model *model)

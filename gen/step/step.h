@@ -116,6 +116,11 @@ struct assignment {                 /* target <- sum of products */
 	int terms;
 	struct product *term;
 };
+struct matrix_product {             /* of a step that loops: rows of a matrix times the vector of operands of this kind */
+	const struct coefficient *factor; /* states x columns; of loads: [segment of time][states x columns] */
+	enum operand_kind kind;
+	int columns;
+};
 /* A step of a scheme that leaves something over is a list of actions on vectors: stages are states (0: the state itself),
  * lefts are leftovers. */
 enum { STAGE_STATE = 0, NONE = -1, SUM_KERNELS = 4 };
@@ -143,6 +148,9 @@ struct program {
 	int wave_multiplications, wave_additions; /* for them, counted below too */
 	int multiplications, additions, calls; /* calls: of the model's own functions */
 	bool loops;                 /* over the tables, zeros included: a large model */
+	int products;               /* of a list that loops: what its assignments are rows of; loads that are forced are left out */
+	struct matrix_product product[3];
+	bool products_added;        /* to the state */
 	bool tuned;                 /* factors are read from the instance's coefficients */
 	int actions;                /* 0: assignments */
 	struct action *action;
@@ -191,6 +199,10 @@ struct step {                       /* everything that is emitted for one model 
 };
 bool has_leftover(const struct step *step);                 /* or nothing is left over, and a step is assignments */
 void need_closed_form(const struct step *step);              /* leaves the statement where there is none */
+
+/* ---- check.c: between those who write programs and those who read them ---- */
+
+void program_check(const struct step *step);                /* a violation is an internal error, and leaves the statement */
 
 /* ---- recipe.c: what recipes are written in; one that asks for more than there is room for leaves the statement ---- */
 
