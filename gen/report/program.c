@@ -33,9 +33,10 @@ static const char *kernel_text(const struct kernel *kernel)
 	const char *text = "";
 	for (int i = 0; i < kernel->parts; i++) {
 		const struct kernel_part *part = &kernel->part[i];
-		const char *time = time_text(part->fraction), *plus = *text ? ", plus " : "", *at = mpq_sgn(part->fraction) == 0 ? "" : "e^{A tau} ";
+		const char *time = time_text(part->fraction), *plus = *text ? ", plus " : "";
+		const char *at = mpq_sgn(part->fraction) == 0 ? "" : format("e^{A tau}, tau = %s, times ", time);
 		if (mpq_sgn(part->impulse) != 0)
-			text = format("%s%s%sB times %s s%s", text, plus, at, exact_text(part->impulse), *at ? format(", tau = %s", time) : "");
+			text = format("%s%s%s%s s B", text, plus, at, exact_text(part->impulse));
 		else
 			text = format("%s%sresponse to B (%s) from s = 0 to %s", text, plus, powers_text(part), time);
 	}
@@ -55,7 +56,8 @@ static void print_table(FILE *to, const struct table *table)
 	fprintf(to, " %d load column%s, %d input column%s\n", table->columns, table->columns == 1 ? "" : "s", table->inputs,
 		table->inputs == 1 ? "" : "s");
 	for (int k = 0; k < wanted->kernels; k++)
-		fprintf(to, "        %s (%d x %d): %s\n", wanted->kernel[k].name, table->states, table->channels, kernel_text(&wanted->kernel[k]));
+		fprintf(to, "        %s (%d x %d): %s\n", wanted->kernel[k].name, table->states, table->channels,
+			kernel_text(&wanted->kernel[k]));
 }
 
 static void print_tables(FILE *to, const struct step *step)
@@ -113,7 +115,7 @@ static void print_action(FILE *to, const struct step *step, const struct action 
 		fprintf(to, "    left%d = %s\n", a->target, combination_text(a));
 		break;
 	case ACTION_SUM:
-		fprintf(to, "    %s = %s        # %s\n", stage_text(a->target), sum_text(step, a), a->note);
+		fprintf(to, "    # %s\n    %s = %s\n", a->note, stage_text(a->target), sum_text(step, a));
 		break;
 	case ACTION_PREDICT:
 		fprintf(to, "    %s = RK4 from y to %s, by way of %s\n", stage_text(a->target), node_text(program, a->node),
@@ -128,10 +130,11 @@ static void print_nodes(FILE *to, const struct step *step)
 	fputs("Nodes:", to);
 	for (int i = 0; i < program->nodes; i++) {
 		int table = program->node_table[i];
-		fprintf(to, "%s %s%s", i ? "," : "", node_text(program, i),
-			table == NONE ? "" : format(" (loads and inputs: %s)", step->branch->table[table]->wanted->name));
+		const char *loads = table == NONE ? "" : format(" (loads: %s)", step->branch->table[table]->wanted->name);
+		fprintf(to, "%s %s%s", i ? "," : "", node_text(program, i), loads);
 	}
-	fprintf(to, "\nStages: %d; leftovers: %d, each of %d\n", program->stages, program->lefts, step->branch->system.channels);
+	fprintf(to, "\nStages: %d; leftovers: %d, each of %d number%s\n", program->stages, program->lefts,
+		step->branch->system.channels, step->branch->system.channels == 1 ? "" : "s");
 }
 
 static void print_actions(FILE *to, const struct step *step)
@@ -160,7 +163,8 @@ static const char *input_column_text(const struct step *step, int column)
 	const struct linear *system = &step->branch->system;
 	for (int i = 0; i < system->inputs; column -= system->input[i++].first_order ? 2 : 1)
 		if (column < (system->input[i].first_order ? 2 : 1))
-			return format("%s%s", system->input[i].name, !system->input[i].first_order ? "" : column ? "(end)" : "(start)");
+			return format("%s%s", system->input[i].name,
+				      !system->input[i].first_order ? "" : column ? "(end)" : "(start)");
 	return "";
 }
 
@@ -183,19 +187,21 @@ static void print_assignment(FILE *to, const struct step *step, const struct ass
 			factor = format("(%s + %s)", factor, shortest(p->factor->low));
 		fprintf(to, "%s %s*%s", k ? " +" : "", factor, operand_text(step, &p->operand));
 	}
-	fprintf(to, "%s%s\n", a->terms ? "" : " 0", a->carried ? "        # with a carry" : "");
+	fprintf(to, "%s%s\n", a->terms ? "" : " 0", a->carried ? "        # what rounding takes is kept" : "");
 }
 
 static void print_products(FILE *to, const struct step *step)
 {
-	static const char *const operands[] = { [OPERAND_STATE] = "y", [OPERAND_LOAD] = "load states", [OPERAND_INPUT] = "inputs" };
+	static const char *const operands[] = {
+		[OPERAND_STATE] = "y", [OPERAND_LOAD] = "loads", [OPERAND_INPUT] = "inputs"
+	};
 	const struct program *program = step->program;
 	const struct table *whole = step->branch->whole;
 	fprintf(to, "A loop over all states:\n    y %s", program->products_added ? "+=" : "=");
 	for (int k = 0; k < program->products; k++) {
 		const struct matrix_product *p = &program->product[k];
 		const char *name = p->factor == whole->increment ? "(Phi - I)" : p->factor == whole->Phi ? "Phi" : "columns";
-		fprintf(to, "%s %s[%d x %d] %s", k ? " +" : "", name, whole->states, p->columns, operands[p->kind]);
+		fprintf(to, "%s %s %d x %d times %s", k ? " +" : "", name, whole->states, p->columns, operands[p->kind]);
 	}
 	fputc('\n', to);
 }
@@ -205,7 +211,7 @@ static void print_list(FILE *to, const struct step *step)
 	const struct program *program = step->program;
 	print_tables(to, step);
 	if (program->tuned)
-		fputs("Factors are read from the instance; these are those of the spec's values.\n", to);
+		fputs("Factors are read from the instance; these are of the spec's values.\n", to);
 	if (step->branch->system.segments > 1)
 		fprintf(to, "Factors of loads change %d times; these are those before.\n", step->branch->system.segments - 1);
 	if (program->loops) {
@@ -226,10 +232,11 @@ static void print_regions(FILE *to, const struct step *step)
 	const struct switching *s = step->model->switching;
 	fprintf(to, "Actions, from piece to piece d of the step:\n"
 		    "    y = piece.Phi y + loads + piece.held u + piece.ramp u'\n"
-		    "    where one of %d expressions passes a breakpoint: the Taylor series of y, of degree %d, to there; then the next region\n",
-		s->expressions, step->series.degree);
+		    "    where %s passes a breakpoint: the Taylor series of y, of degree %d, to there; then the next region\n",
+		s->expressions == 1 ? "the expression" : format("one of %d expressions", s->expressions), step->series.degree);
 	for (int k = 0; k < step->branches; k++) {
-		fprintf(to, "Matrix %d: pieces of h/%ld\n", k, 1l << step->branch[k].halvings);
+		fprintf(to, "Matrix %d, %s:\n", k,
+			step->branch[k].halvings ? format("pieces of h/%ld", 1l << step->branch[k].halvings) : "one piece");
 		print_table(to, step->branch[k].table[0]);
 	}
 }
@@ -253,7 +260,8 @@ static void print_reads(FILE *to, const struct step *step)
 
 static const char *kind_text(const struct step *step)
 {
-	return step->model->switching ? "regions" : has_leftover(step) ? "a leftover" : step->program->tuned ? "linear, tunable" : "linear";
+	return step->model->switching ? "regions" : has_leftover(step) ? "with a leftover"
+	       : step->program->tuned ? "linear, tunable" : "linear";
 }
 
 void explain_program(FILE *to, const struct step *step)
