@@ -126,6 +126,8 @@ double nearest_double(mpq_srcptr q);                        /* whatever the targ
 bool   beyond_range(mpq_srcptr q);
 const char *finite_text(struct place at, mpq_srcptr q);     /* shortest; leaves the statement at a value beyond the range */
 bool   round_enclosure(mpfi_srcptr x, double *d);           /* false: both ends do not round to one number */
+bool   round_integer(mpfi_srcptr x, mpz_ptr n);             /* the same, to the nearest integer */
+bool   round_bits(mpfi_srcptr x, int bits, mpz_ptr digits, long *exponent); /* to digits 2^exponent, so many bits; x is not 0 */
 const char *shortest(double d);                             /* fewest digits that read back; a C literal, of type double */
 
 /* ---- rational.c: exact numbers as text ---- */

@@ -2,135 +2,60 @@
 /* Loads on the target: phases as turns, growths as exponents of 2, and the load states made of them at a step's start. */
 #include "emit/emit.h"
 
-/* What an angle is measured in, 2 pi, or what an exponent is, ln 2 */
-static void set_unit(mpfr_ptr unit, bool turns)
-{
-	if (turns)
-		mpfr_const_pi(unit, MPFR_RNDN);
-	else
-		mpfr_const_log2(unit, MPFR_RNDN);
-	mpfr_mul_2ui(unit, unit, turns ? 1 : 0, MPFR_RNDN);
-}
-
-/* Bits of a phase or an exponent on the target */
-static int load_bits(const struct emitter *e)
-{
-	return e->model->asked.single ? 64 : 128;
-}
-
-/* q / unit as so many bits with `fraction` of them behind the point, wrapped; the unit is 2 pi for turns, else ln 2 */
-static void fixed_point(mpq_srcptr q, bool turns, int bits, int fraction, uint64_t word[2])
-{
-	long above = (long)mpz_sizeinbase(mpq_numref(q), 2) - (long)mpz_sizeinbase(mpq_denref(q), 2);
-	mpfr_t x, unit;
-	mpz_t fixed, part;
-	mpfr_inits2(512 + (above > 0 ? above : 0), x, unit, NULL);
-	mpz_inits(fixed, part, NULL);
-	set_unit(unit, turns);
-	mpfr_set_q(x, q, MPFR_RNDN);
-	mpfr_div(x, x, unit, MPFR_RNDN);
-	mpfr_mul_2si(x, x, fraction, MPFR_RNDN);
-	mpfr_get_z(fixed, x, MPFR_RNDN);
-	mpz_ui_pow_ui(part, 2, (unsigned long)bits - 1);
-	mpz_sub_ui(part, part, 1);
-	if (!turns && mpz_cmpabs(fixed, part) > 0)      /* an exponent beyond any double is saturated, not wrapped */
-		mpz_mul_si(fixed, part, mpz_sgn(fixed));
-	mpz_fdiv_r_2exp(fixed, fixed, (mp_bitcnt_t)bits);
-	mpz_fdiv_r_2exp(part, fixed, 64);
-	word[1] = mpz_get_ui(part);
-	mpz_fdiv_q_2exp(part, fixed, 64);
-	word[0] = mpz_get_ui(part);
-	mpz_clears(fixed, part, NULL);
-	mpfr_clears(x, unit, NULL);
-}
-
-/* |q| / unit as three words, for float two, and a power of two; unit is 2 pi or ln 2 */
-static void print_rate(const struct emitter *e, mpq_srcptr q, bool turns, const char *note)
-{
-	mpfr_t rate, unit, wide;
-	mpz_t word, digits;
-	int words = e->model->asked.single ? 2 : 3;
-	mpfr_init2(rate, 64 * words);
-	mpfr_inits2(512, unit, wide, NULL);
-	mpz_inits(word, digits, NULL);
-	set_unit(unit, turns);
-	mpfr_set_q(wide, q, MPFR_RNDN);
-	mpfr_abs(wide, wide, MPFR_RNDN);
-	mpfr_div(rate, wide, unit, MPFR_RNDN);
-	long binary = mpfr_get_z_2exp(digits, rate);
-	fputs("    {{", e->to);
-	for (int k = words - 1; k >= 0; k--) {
-		mpz_fdiv_q_2exp(word, digits, (mp_bitcnt_t)k * 64);
-		mpz_fdiv_r_2exp(word, word, 64);
-		fprintf(e->to, "UINT64_C(0x%016llx)%s", (unsigned long long)mpz_get_ui(word), k ? ", " : "");
-	}
-	fprintf(e->to, "}, %ld},  /* %s */\n", -binary, note);
-	mpz_clears(word, digits, NULL);
-	mpfr_clears(rate, unit, wide, NULL);
-}
-
 /* ---- tables ---- */
 
-/* What the exponent of a load's growth gains in so many seconds: units of 2^-112, for float of 2^-48 */
-static const char *growth_text(const struct emitter *e, const struct load *load, mpq_srcptr seconds)
+/* |q| / unit as words, the first the highest, and a power of two */
+static void print_rate(const struct emitter *e, const struct rate *rate, const char *note)
 {
-	mpq_t product;
-	uint64_t word[2];
-	int bits = load_bits(e);
-	mpq_init(product);
-	mpq_mul(product, load->wave->a, seconds);
-	fixed_point(product, false, bits, bits - 16, word);
-	mpq_clear(product);
-	bool negative = word[bits == 64] >> 63;
-	uint64_t high = word[bits == 64];
+	say(e, "    {{");
+	for (int k = 0; k < rate->words; k++)
+		say(e, "%sUINT64_C(0x%016llx)", k ? ", " : "", (unsigned long long)rate->word[k]);
+	say(e, "}, %ld},  /* %s */\n", -rate->exponent, note);
+}
+
+static const char *growth_text(const struct emitter *e, const struct advance *advance)
+{
+	bool one_word = phase_bits(e->step) == 64;
+	uint64_t high = one_word ? advance->growth.low : advance->growth.high;
+	bool negative = high >> 63;
 	const char *text = format(negative ? "-INT64_C(0x%llx) - 1" : "INT64_C(0x%llx)", (unsigned long long)(negative ? ~high : high));
-	return bits == 64 ? text : format("{%s, UINT64_C(0x%016llx)}", text, (unsigned long long)word[1]);
+	return one_word ? text : format("{%s, UINT64_C(0x%016llx)}", text, (unsigned long long)advance->growth.low);
 }
 
-/* An angle in units of 2^-128 turn, for float of 2^-64 */
-static const char *turn_text(const struct emitter *e, mpq_srcptr angle)
+static const char *turn_text(const struct emitter *e, const struct fixed_point *turn)
 {
-	uint64_t word[2];
-	int bits = load_bits(e);
-	fixed_point(angle, true, bits, bits, word);
-	const char *low = format("UINT64_C(0x%016llx)", (unsigned long long)word[1]);
-	return bits == 64 ? low : format("{UINT64_C(0x%016llx), %s}", (unsigned long long)word[0], low);
+	const char *low = format("UINT64_C(0x%016llx)", (unsigned long long)turn->low);
+	return phase_bits(e->step) == 64 ? low : format("{UINT64_C(0x%016llx), %s}", (unsigned long long)turn->high, low);
 }
 
-static const char *phase_text(const struct emitter *e, const struct load *load, mpq_srcptr seconds)
+static const char *phase_text(const struct emitter *e, const struct advance *advance)
 {
-	mpq_t angle;
-	mpq_init(angle);
-	mpq_mul(angle, load->wave->w, seconds);
-	const char *text = turn_text(e, angle);
-	mpq_clear(angle);
-	return text;
+	return turn_text(e, &advance->turn);
 }
 
 const char *phase_step_text(const struct emitter *e, int load)
 {
-	return phase_text(e, &e->system->load[load], e->model->h);
+	return phase_text(e, &e->step->phase[load].step);
 }
 
 const char *growth_step_text(const struct emitter *e, int load)
 {
-	return growth_text(e, &e->system->load[load], e->model->h);
+	return growth_text(e, &e->step->phase[load].step);
 }
 
 static void print_turns(const struct emitter *e, const char *name, const char *what, bool per_step)
 {
 	fprintf(e->to, "\nstatic const pl_turn %s_%s[%d] = {  /* %s */\n", e->name, name, e->phases, what);
-	for (int l = 0; l < e->system->loads; l++) {
-		const struct load *load = &e->system->load[l];
+	for (int l = 0; l < e->system->loads; l++)
 		if (e->phase[l] >= 0)
-			fprintf(e->to, "    %s,  /* %s */\n", per_step ? phase_step_text(e, l) : turn_text(e, load->wave->p), column_text(load, 0));
-	}
+			fprintf(e->to, "    %s,  /* %s */\n", turn_text(e, per_step ? &e->step->phase[l].step.turn : &e->step->phase[l].start),
+				column_text(&e->system->load[l], 0));
 	fputs("};\n", e->to);
 }
 
 static void print_growths(const struct emitter *e)
 {
-	fprintf(e->to, "\nstatic const pl_growth %s_growth_step[%d] = {  /* a h / ln 2, in units of 2^-%d */\n", e->name, e->growths, load_bits(e) - 16);
+	fprintf(e->to, "\nstatic const pl_growth %s_growth_step[%d] = {  /* a h / ln 2, in units of 2^-%d */\n", e->name, e->growths, phase_bits(e->step) - 16);
 	for (int l = 0; l < e->system->loads; l++)
 		if (e->growth[l] >= 0)
 			fprintf(e->to, "    %s,  /* %s */\n", growth_step_text(e, l), column_text(&e->system->load[l], 0));
@@ -139,22 +64,18 @@ static void print_growths(const struct emitter *e)
 
 /* One row for each node; loads that are not read there keep their place. */
 static void print_node_rows(const struct emitter *e, const char *type, const char *name, const int *index, int count,
-			    const char *(*text)(const struct emitter *, const struct load *, mpq_srcptr))
+			    const char *(*text)(const struct emitter *, const struct advance *))
 {
 	const struct program *program = e->step->program;
-	mpq_t seconds;
-	mpq_init(seconds);
 	fprintf(e->to, "\nstatic const %s %s_%s[%d][%d] = {  /* from the start of a step to each node */\n", type, e->name, name, program->nodes, count);
 	for (int i = 0; i < program->nodes; i++) {
 		const char *row = "";
-		mpq_mul(seconds, program->node[i], e->model->h);
 		for (int l = 0; l < e->system->loads; l++)
 			if (index[l] >= 0)
-				row = format("%s%s%s", row, *row ? ",\n     " : "", text(e, &e->system->load[l], seconds));
+				row = format("%s%s%s", row, *row ? ",\n     " : "", text(e, &e->step->phase[l].node[i]));
 		fprintf(e->to, "    {%s},  /* %s h */\n", row, exact_text(program->node[i]));
 	}
 	fputs("};\n", e->to);
-	mpq_clear(seconds);
 }
 
 void emit_node_phases(const struct emitter *e, const bool *loads)
@@ -172,11 +93,9 @@ void emit_node_phases(const struct emitter *e, const bool *loads)
 
 static void print_rate_rows(const struct emitter *e, bool turns)
 {
-	for (int l = 0; l < e->system->loads; l++) {
-		const struct wave *wave = e->system->load[l].wave;
+	for (int l = 0; l < e->system->loads; l++)
 		if ((turns ? e->phase : e->growth)[l] >= 0)
-			print_rate(e, turns ? wave->w : wave->a, turns, column_text(&e->system->load[l], 0));
-	}
+			print_rate(e, turns ? &e->step->phase[l].turns : &e->step->phase[l].growth, column_text(&e->system->load[l], 0));
 }
 
 static void print_rates(const struct emitter *e, bool turns, const char *name, int count, const char *what)
@@ -199,7 +118,7 @@ static bool has_tuned_rates(const struct emitter *e)
 void emit_load_tables(const struct emitter *e)
 {
 	if (e->phases) {
-		print_turns(e, "phase_start", format("at t = 0, in turns of 2^-%d", load_bits(e)), false);
+		print_turns(e, "phase_start", format("at t = 0, in turns of 2^-%d", phase_bits(e->step)), false);
 		if (!e->model->tuning)
 			print_turns(e, "phase_step", "in one step", true);
 		if (!has_tuned_rates(e))

@@ -171,6 +171,22 @@ struct branch {                     /* an operator of a scheme, a region of a pi
 	struct table *whole;        /* of the whole step: the first; of regions, whose tables are of pieces, that of the first region only */
 	int halvings;               /* of a region: log2 of the pieces of a step in which crossings are looked for */
 };
+/* Phases and growths of loads e^{at} cos(wt + p) in fixed point: 128 bits; 64, in `low`, where the target's type is float */
+struct fixed_point { uint64_t high, low; };
+struct advance {                    /* over some time tau; 0 where there is no w, no a */
+	struct fixed_point turn;          /* w tau / 2 pi in units of 2^-128 (2^-64), wrapped */
+	struct fixed_point growth;        /* a tau / ln 2 in units of 2^-112 (2^-48), two's complement; saturated */
+};
+struct rate {                       /* word[0] word[1] word[2] 2^exponent, as one number of 64 bits a word [1/s] */
+	int words;                  /* 3; for float 2 */
+	uint64_t word[3];
+	long exponent;
+};
+struct load_phase {                 /* of one load */
+	struct fixed_point start;         /* p / 2 pi, as a turn */
+	struct advance step, *node; /* over the step; from its start to each node of the program */
+	struct rate turns, growth;  /* |w| / 2 pi, |a| / ln 2 */
+};
 struct step {                       /* everything that is emitted for one model */
 	const struct model *model;
 	struct resolvent *written;  /* of the model as written: the report's poles, the closed form */
@@ -187,6 +203,7 @@ struct step {                       /* everything that is emitted for one model 
 	struct rounding rounding;
 	mpfr_t growth;              /* pl: 1/s, largest real part of the modified equation's poles (report only) */
 	struct series series;
+	struct load_phase *phase;   /* per load */
 };
 bool has_leftover(const struct step *step);                 /* or nothing is left over, and a step is assignments */
 void need_closed_form(const struct step *step);              /* leaves the statement where there is none */
@@ -197,6 +214,11 @@ void series_plan(struct step *step);                        /* degree, halvings 
 double largest_pole_angle(const struct step *step);         /* max|pole| h, rounded up */
 int  series_halvings(const struct step *step, int operator); /* of the time h, so that |pole| tau <= 1 */
 int  series_degree(const struct step *step, int first, int last, int halvings); /* for these operators, over h 2^-halvings */
+
+/* ---- phases.c: phases and growths of loads in fixed point ---- */
+
+int  phase_bits(const struct step *step);                    /* 128, or 64 */
+void plan_phases(struct step *step);                        /* step->phase; after the program, for its nodes */
 
 /* ---- cost.c: what a step costs ---- */
 
