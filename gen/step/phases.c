@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Loads on the target: phases as turns, growths as exponents of 2, in fixed point, so that they add up without error however long
- * a run is. Both are irrational: each is enclosed ever more tightly until both ends round to the same bits (Ziv). */
+/* Loads on the target: phases as turns, growths as exponents of 2, in fixed point, so that they add up without error
+ * however long a run is. Quotients by pi and ln 2 are irrational: each is enclosed ever more tightly until both ends
+ * round to the same bits (Ziv). */
 #include "step/step.h"
 
 enum { GUARD_BITS = 64, GROWTH_INTEGER_BITS = 16 };  /* of a growth, its sign among them */
@@ -30,13 +31,15 @@ static void divide_by_unit(mpq_srcptr q, enum unit unit, mpfi_ptr x)
 
 static _Noreturn void undecided(const struct step *step, mpq_srcptr q, enum unit unit, long precision)
 {
-	error(step->model->asked.step_at, NULL, "%s / %s is not decided with %ld bits", readable_text(q), unit == TURN ? "(2*pi)" : "ln 2", precision);
+	error(step->model->asked.step_at, NULL, "%s / %s is not decided with %ld bits", readable_text(q),
+	      unit == TURN ? "(2*pi)" : "ln 2", precision);
 }
 
 /* The integer nearest to 2^fraction q / unit */
 static void nearest_multiple(const struct step *step, mpq_srcptr q, enum unit unit, int fraction, mpz_ptr nearest)
 {
-	long above = bits_above(q), precision = fraction + (above > 0 ? above : 0) + GUARD_BITS, limit = 2 * precision + LIMIT_PRECISION;
+	long above = bits_above(q), precision = fraction + (above > 0 ? above : 0) + GUARD_BITS;
+	long limit = 2 * precision + LIMIT_PRECISION;
 	bool decided = false;
 	mpfi_t x;
 	mpfi_init2(x, precision);
@@ -86,6 +89,11 @@ int phase_bits(const struct step *step)
 	return step->model->asked.single ? 64 : 128;
 }
 
+int growth_bits(const struct step *step)
+{
+	return phase_bits(step) - GROWTH_INTEGER_BITS;
+}
+
 static struct fixed_point turn_of(const struct step *step, mpq_srcptr angle)
 {
 	return fixed_from(step, angle, TURN, phase_bits(step), phase_bits(step));
@@ -102,7 +110,7 @@ static struct advance advance_over(const struct step *step, const struct wave *w
 	}
 	if (mpq_sgn(wave->a) != 0) {
 		mpq_mul(product, wave->a, seconds);
-		advance.growth = fixed_from(step, product, OCTAVE, phase_bits(step), phase_bits(step) - GROWTH_INTEGER_BITS);
+		advance.growth = fixed_from(step, product, OCTAVE, phase_bits(step), growth_bits(step));
 	}
 	mpq_clear(product);
 	return advance;
