@@ -224,11 +224,11 @@ void forget_lets(const struct spec *spec);
 
 /* ---- table.c: the straight pieces of a table() as numbers ---- */
 
-struct piece {                      /* y + slope (argument - x), where the argument is below `end` */
+struct straight {                      /* y + slope (argument - x), where the argument is below `end` */
 	mpq_srcptr x, y, end;       /* end NULL: the last piece; the first and the last go on beyond the table */
 	mpq_t slope;
 };
-int pieces_of_atom(const struct atom *a, struct piece **list);     /* in order; returns how many */
-int pieces_of_call(const struct node *node, struct piece **list);
+int pieces_of_atom(const struct atom *a, struct straight **list);     /* in order; returns how many */
+int pieces_of_call(const struct node *node, struct straight **list);
 
 #endif

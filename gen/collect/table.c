@@ -3,12 +3,12 @@
 #include "collect/collect.h"
 
 /* v: x0, y0, x1, y1, ... */
-static int pieces_between(int points, mpq_t *v, struct piece **list)
+static int pieces_between(int points, mpq_t *v, struct straight **list)
 {
-	struct piece *piece = ARRAY(struct piece, (size_t)points);
+	struct straight *piece = ARRAY(struct straight, (size_t)points);
 	for (int i = 0; i + 1 < points; i++) {
 		mpq_srcptr p[4] = { v[2 * i], v[2 * i + 1], v[2 * i + 2], v[2 * i + 3] };
-		piece[i] = (struct piece){ .x = p[0], .y = p[1], .end = i + 2 < points ? p[2] : NULL };
+		piece[i] = (struct straight){ .x = p[0], .y = p[1], .end = i + 2 < points ? p[2] : NULL };
 		mpq_init(piece[i].slope);
 		slope_between(p, piece[i].slope);
 	}
@@ -16,7 +16,7 @@ static int pieces_between(int points, mpq_t *v, struct piece **list)
 	return points - 1;
 }
 
-int pieces_of_atom(const struct atom *a, struct piece **list)
+int pieces_of_atom(const struct atom *a, struct straight **list)
 {
 	struct collector collector = { .scheme = "exact" };
 	int points = (a->operands - 1) / 2;
@@ -26,7 +26,7 @@ int pieces_of_atom(const struct atom *a, struct piece **list)
 	return pieces_between(points, v, list);
 }
 
-int pieces_of_call(const struct node *node, struct piece **list)
+int pieces_of_call(const struct node *node, struct straight **list)
 {
 	struct collector collector = { .scheme = "exact" };
 	int points = (node->children - 1) / 2;

@@ -288,9 +288,9 @@ static const char *fold_text(const struct identifiers *c, const char *function, 
 static const char *table_text(const struct identifiers *c, const struct node *node)
 {
 	const char *x = text_of(c, node->child[0], 5), *text = "";
-	struct piece *piece;
+	struct straight *piece;
 	int pieces = pieces_of_call(node, &piece);
-	for (const struct piece *p = piece; p < piece + pieces; p++) {
+	for (const struct straight *p = piece; p < piece + pieces; p++) {
 		const char *condition = p->end ? format("%s < %s ? ", x, finite_text(node->at, p->end)) : "";
 		text = format("%s%s%s%s + %s*(%s - %s)", text, *text ? " : " : "", condition, finite_text(node->at, p->y),
 			      finite_text(node->at, p->slope), x, finite_text(node->at, p->x));

@@ -189,9 +189,9 @@ static const char *product_text(struct writer *w, const struct atom *a)
 static const char *table_text(struct writer *w, const struct atom *a)
 {
 	const char *x = word_of(w, a->operand[0]), *text = "";
-	struct piece *piece;
+	struct straight *piece;
 	int pieces = pieces_of_atom(a, &piece);
-	for (const struct piece *p = piece; p < piece + pieces; p++) {
+	for (const struct straight *p = piece; p < piece + pieces; p++) {
 		const char *condition = p->end ? format("%s < %s ? ", x, shortest(finite_number(w->e, p->end))) : "";
 		text = format("%s%s%s%s + %s * (%s - %s)", text, *text ? " : " : "", condition,
 			      shortest(finite_number(w->e, p->y)), shortest(finite_number(w->e, p->slope)), x,

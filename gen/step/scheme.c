@@ -234,12 +234,18 @@ static void build(void *context)
 	program_check(step);
 }
 
+static void build_all(void *context)
+{
+	build(context);
+	plan_phases(context);
+}
+
 struct step *step_build(const struct model *model)
 {
 	struct step *step = NEW(struct step);
 	step->model = model;
 	step->shown = step;
-	if (!statement_guard(build, step))
+	if (!statement_guard(build_all, step))
 		return NULL;
 	if (!model->relative)
 		return step;
