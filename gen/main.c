@@ -38,7 +38,7 @@ static const char usage[] =
 	"  --solution T        print the closed-form solution at every step up to T as CSV\n"
 	"  --rhs               also emit NAME_rhs: the equations as written\n"
 	"  --step EXPR         instead of the spec's step\n"
-	"  --scheme NAME       instead of the spec's: exact pl etd1 etdrk2 etdrk4 nc2 nc3 dq4 bm3\n"
+	"  --scheme NAME       instead of the spec's: %s\n"
 	"  --real float        numbers and arithmetic of type float (default: double)\n"
 	"  --form NAME         of a linear step: auto direct delta kick-drift-kick\n"
 	"  --accuracy compensated   two-word factors, and what rounding takes from the state is kept\n"
@@ -177,7 +177,7 @@ static void take_option(struct options *options, int option)
 		break;
 	case OPT_SELFTEST: options->request.selftest = true; break;
 	case OPT_DEPFILE: options->depfile = optarg; break;
-	case OPT_HELP: say_and_stop(usage);
+	case OPT_HELP: say_and_stop(format(usage, all_schemes(" ")));
 	case OPT_VERSION: say_and_stop("plgen " PLGEN_VERSION "\n");
 	case ':': wrong_usage(format("option %s needs a value", optopt > 0 && optopt < 256 ? format("-%c", optopt) : "above"));
 	default: wrong_usage(format("unknown option '%s'", optopt > 0 && optopt < 256 ? format("-%c", optopt) : "above"));
@@ -553,9 +553,10 @@ static struct model *over_relative(struct model *model, struct spec *spec, const
 	again.relative = relative_of(model);
 	if (!again.relative)
 		return model;
-	if (model->scheme == SCHEME_PL) {
+	if (scheme_row(model->scheme)->holds_coupling) {
 		say_warning(model->asked.scheme_at.source ? model->asked.scheme_at : spec->name_at, "any other scheme steps differences as states of their own",
-			    "pl keeps coordinates as they are written, and some may move as a whole: where they grow, their differences lose digits");
+			    "%s keeps coordinates as they are written, and some may move as a whole: where they grow, their differences lose digits",
+			    scheme_name(model->scheme));
 		return model;
 	}
 	again.reduce = again.reduce && !model->reduction.irreducible;

@@ -38,31 +38,12 @@ static void banner_poles(const struct emitter *e)
 		say(e, " *     %s\n", pole_row(&pole[i], 34));
 }
 
-static const char *const scheme_notes[SCHEMES] = {
-	[SCHEME_PL] = "Scheme pl, of first order in h: the coupling terms (the other coordinates and their velocities, "
-		      "after\n"
-		      " * division by the mass matrix) are held at their value at the start of the step; "
-		      "a coordinate's own terms and\n"
-		      " * the loads are exact.",
-	[SCHEME_ETD1] = "Scheme etd1, of first order in h: exponential time differencing (Cox and Matthews).",
-	[SCHEME_ETDRK2] = "Scheme etdrk2, of second order in h: exponential time differencing (Cox and Matthews).",
-	[SCHEME_ETDRK4] = "Scheme etdrk4, of fourth order in h: exponential time differencing (Cox and Matthews).",
-	[SCHEME_NC2] = "Scheme nc2, of fourth order in h: precise integration, "
-		       "Simpson's rule on nodes that RK4 predicts.",
-	[SCHEME_NC3] = "Scheme nc3, of fourth order in h: precise integration, "
-		       "the 3/8 rule on nodes that RK4 predicts.",
-	[SCHEME_DQ4] = "Scheme dq4, of fourth order in h: precise integration, "
-		       "differential quadrature on nodes that RK4 predicts.",
-	[SCHEME_BM3] = "Scheme bm3, of fourth order in h: precise integration, "
-		       "a block method on nodes that RK4 predicts."
-};
-
 /* What the scheme is; nothing of exact */
 static void banner_scheme(const struct emitter *e)
 {
 	const struct model *shown = e->step->shown->model;
 	if (e->model->scheme != SCHEME_EXACT)
-		say(e, " * %s\n", scheme_notes[e->model->scheme]);
+		say(e, " * %s\n", scheme_note(e->model->scheme));
 	if (loses_order(shown))
 		say(e, " * So where all is smooth; here of order %s at most: %s.\n", order_text(shown),
 		    printable(smoothness_text(shown)));
@@ -71,7 +52,7 @@ static void banner_scheme(const struct emitter *e)
 /* What holding the coupling terms does */
 static void banner_growth(const struct emitter *e)
 {
-	if (e->model->scheme != SCHEME_PL)
+	if (!scheme_row(e->model->scheme)->holds_coupling)
 		return;
 	say(e, " * Each constant is its closed form, correctly rounded.\n"
 	       " * The modified equation of its linear part grows at %.3g 1/s "
@@ -81,7 +62,7 @@ static void banner_growth(const struct emitter *e)
 void banner_linear(const struct emitter *e)
 {
 	banner_scheme(e);
-	if (e->model->scheme != SCHEME_PL)
+	if (!scheme_row(e->model->scheme)->holds_coupling)
 		say(e, " * %sothing is approximated; each constant is its closed form, correctly rounded.\n",
 		    e->model->scheme == SCHEME_EXACT ? "Scheme exact: n" : "Nothing is left over: n");
 	banner_growth(e);
@@ -105,7 +86,8 @@ static const char *operator_text(const struct model *model)
 {
 	if (*model->operator[0].text)
 		return format("equations' Jacobian at %s", model->operator[0].text);
-	return model->scheme == SCHEME_PL ? "own terms of each coordinate" : "linear terms with constant coefficients";
+	bool own = scheme_row(model->scheme)->holds_coupling;
+	return own ? "own terms of each coordinate" : "linear terms with constant coefficients";
 }
 
 void banner_leftover(const struct emitter *e)

@@ -110,11 +110,11 @@ static void check_model(const struct model *model)
 static void check_kind(const struct model *model, const struct request *request)
 {
 	struct place at = model->spec->tunable[0].at;
-	if (model->switching || model->channels > 0 || model->scheme == SCHEME_PL)
-		error(at, "tunable params are for scheme exact and linear models",
-		      model->switching      ? "a piecewise-linear model cannot be retuned"
-		      : model->channels > 0 ? "a model with a leftover cannot be retuned"
-					    : "scheme pl cannot be retuned");
+	if (model->switching || model->channels > 0 || scheme_row(model->scheme)->holds_coupling)
+		error(at, "tunable params are for scheme exact and linear models", "%s cannot be retuned",
+		      model->switching      ? "a piecewise-linear model"
+		      : model->channels > 0 ? "a model with a leftover"
+					    : format("scheme %s", scheme_name(model->scheme)));
 	if (request->reduce)
 		error(at, NULL,
 		      "--reduce takes out what is not seen at the spec's values: it does not go with tunable params");

@@ -199,7 +199,7 @@ static void person_split(FILE *to, const struct step *step)
 	for (int k = 0; k < model->operators; k++) {
 		const struct operator *operator = &model->operator[k];
 		if (!*operator->text) {
-			fputs(model->scheme == SCHEME_PL
+			fputs(scheme_row(model->scheme)->holds_coupling
 				      ? "A: each coordinate's own terms.\n"
 				      : "A: the linear terms with constant coefficients, as above.\n",
 			      to);
@@ -211,7 +211,7 @@ static void person_split(FILE *to, const struct step *step)
 			operator->text);
 		person_matrix(to, "C", model->n, (const mpq_t *)operator->C);
 		person_matrix(to, "K", model->n, (const mpq_t *)operator->K);
-		if (model->scheme != SCHEME_PL)
+		if (!scheme_row(model->scheme)->holds_coupling)
 			person_poles(to, model, step->shown->branch[k].resolvent);
 	}
 	if (step->branches > 1)
@@ -274,13 +274,13 @@ void explain_person(FILE *to, const struct step *step)
 		fprintf(to, "\nIrrational constants (%s) were taken as rationals of %d bits.\n", irrational,
 			IRRATIONAL_BITS);
 	fputc('\n', to);
-	if (model->scheme == SCHEME_PL)
+	if (scheme_row(model->scheme)->holds_coupling)
 		person_held(to, step);
 	if (model->switching)
 		person_regions(to, step);
 	else if (has_leftover(step))
 		person_split(to, step);
-	else if (model->scheme != SCHEME_PL)
+	else if (!scheme_row(model->scheme)->holds_coupling)
 		fputs("Nothing is approximated: every constant is its closed form, correctly rounded.\n", to);
 	if (model->written != model)
 		person_reduction(to, step);
@@ -502,7 +502,7 @@ void explain_json(FILE *to, const struct step *step)
 	json_poles(to, step);
 	json_matrix(to, "Phi", model->system.states, model->system.states, Phi);
 	json_loads(to, step);
-	if (model->scheme == SCHEME_PL)
+	if (scheme_row(model->scheme)->holds_coupling)
 		fprintf(to, "  \"growth_rate\": %.17g,\n", growth_rate(step));
 	static const char *const smooth[] = { "smooth", "kink", "jump" };
 	fprintf(to, "  \"order\": %d,\n  \"smooth\": \"%s\",\n", order_that_holds(model), smooth[model->smooth.kind]);

@@ -63,14 +63,15 @@ struct coefficient {
 /* What multiplies a leftover, as a sum of parts: at tau = fraction h, B the force of its channel,
  *     impulse e^{A tau} B + integral over 0..tau of e^{A (tau - s)} B (power[0] + power[1] s/h + power[2] (s/h)^2) ds
  * so h phi_k(A h) B is power k-1 over (k-1)!. The sum is rounded once. */
+enum { PART_POWERS = 3, KERNEL_PARTS = 2, TABLE_KERNELS = 4 };
 struct kernel_part {
-	mpq_t fraction, impulse, power[3];
+	mpq_t fraction, impulse, power[PART_POWERS];
 	int powers;
 };
 struct kernel {
 	const char *name;           /* b1 */
 	int parts;
-	struct kernel_part part[2];
+	struct kernel_part part[KERNEL_PARTS];
 };
 struct wanted {                     /* of one table */
 	mpq_t fraction;             /* its time, as a part of h */
@@ -79,7 +80,7 @@ struct wanted {                     /* of one table */
 	const mpq_t *mass;          /* kicks and drifts; one per coordinate, in units of the first; NULL: not wanted */
 	const char *name;           /* full, half */
 	int kernels;
-	struct kernel kernel[4];
+	struct kernel kernel[TABLE_KERNELS];
 };
 struct table {                      /* of one time: y(tau) = Phi y + sum of columns */
 	const struct wanted *wanted;
@@ -134,9 +135,14 @@ struct assignment {                 /* target <- sum of products */
 	int terms;
 	struct product *term;
 };
+struct matrix_product {             /* of a step that loops: a matrix times the vector of operands of this kind */
+	const struct coefficient *factor; /* states x columns; of loads: [segment of time][states x columns] */
+	enum operand_kind kind;
+	int columns;
+};
 /* A step of a scheme that leaves something over is a list of actions on vectors: stages are states (0: the state
  * itself), lefts are leftovers. */
-enum { STAGE_STATE = 0, NONE = -1 };
+enum { STAGE_STATE = 0, NONE = -1, SUM_KERNELS = 4 };
 struct action {
 	enum { ACTION_LEFTOVER, ACTION_COMBINE, ACTION_SUM, ACTION_PREDICT } kind;
 	int target;                 /* LEFTOVER, COMBINE: a left; SUM, PREDICT: a stage */
@@ -147,7 +153,7 @@ struct action {
 	int flow;                   /* SUM: table whose Phi, loads and inputs act on the state, or NONE */
 	int plain;                  /* SUM: stage added as it is, or NONE */
 	int kernels;                /* SUM: kernel of table times left, added */
-	struct { int table, kernel, left; } kernel[4];
+	struct { int table, kernel, left; } kernel[SUM_KERNELS];
 	const char *note;           /* a = F y + q1 r0 */
 };
 struct program {
@@ -162,6 +168,9 @@ struct program {
 	int wave_multiplications, wave_additions; /* for them, counted below too */
 	int multiplications, additions, calls; /* calls: of the model's own functions */
 	bool loops;                 /* over the tables, zeros included: a large model */
+	int products;               /* of a list that loops: what its assignments are rows of; loads that are forced are left out */
+	struct matrix_product product[3];
+	bool products_added;        /* to the state */
 	bool tuned;                 /* factors are read from the instance's coefficients */
 	int actions;                /* 0: assignments */
 	struct action *action;
@@ -226,6 +235,44 @@ enum step_kind kind_of_step(const struct model *model);
 bool has_leftover(const struct step *step);                 /* it is of that kind */
 void need_closed_form(const struct step *step);              /* leaves the statement where there is none */
 
+/* ---- check.c: between those who write programs and those who read them ---- */
+
+void program_check(const struct step *step);                /* a violation is an internal error, and leaves the statement */
+
+/* ---- recipe.c: what recipes are written in; one that asks for more than there is room for leaves the statement ---- */
+
+enum { RECIPE_TABLES = 8 };
+struct recipe {                     /* of one scheme, being written */
+	const struct step *step;
+	struct program *program;
+	int tables;
+	struct wanted table[RECIPE_TABLES];
+};
+_Noreturn void internal_error(const struct step *step, const char *what); /* a fault of this program's own */
+int  add_table(struct recipe *r, const char *name, long p, unsigned long q, bool Phi); /* at p/q of the step */
+/* h (c0 phi1 + c1 phi2 + 2 c2 phi3) of A h as the response to c0 + c1 s/h + c2 (s/h)^2, over p/q of the step */
+int  add_phi(struct recipe *r, int table, const char *name, long p, unsigned long q, int powers, const long *c);
+void add_phi_part(struct recipe *r, int table, int kernel, long p, unsigned long q, int powers, const long *c); /* added to that */
+int  add_weighted(struct recipe *r, int table, const char *name, long p, unsigned long q, long weight,
+		 unsigned long over); /* e^{A h p/q} h weight/over */
+int  add_node(struct recipe *r, long p, unsigned long q);   /* a time at which leftovers are evaluated */
+void need_loads_at(struct recipe *r, int node);
+int  new_stage(struct recipe *r);
+struct action *add_action(struct recipe *r, struct action action); /* valid until the next is added, as that of add_sum is */
+int  add_leftover(struct recipe *r, int node, int stage);
+int  add_combination(struct recipe *r, int plus, int minus, bool added);
+struct action *add_sum(struct recipe *r, int stage, int flow, int plain, const char *note);
+void times_left(struct recipe *r, struct action *sum, int table, int kernel, int left); /* one term more of the sum */
+
+/* ---- recipes.c: of each scheme ---- */
+
+void write_recipe(struct recipe *r);
+
+/* ---- held.c: what scheme pl holds over a step ---- */
+
+struct linear piecewise_laplace(const struct linear *written);
+struct linear modified_equation(const struct linear *written, const struct linear *split, mpq_srcptr h);
+
 /* ---- series.c: the Taylor series behind NAME_at ---- */
 
 void series_plan(struct step *step);                        /* degree, halvings */
@@ -238,6 +285,7 @@ int  series_degree(const struct step *step, int first, int last, int halvings);
 
 struct cost { int multiplications, additions, calls; };
 struct cost leftover_cost(const struct step *step);         /* of one evaluation */
+void count_program(const struct step *step, struct program *program); /* of a step with a leftover, not its loads */
 /* what the load states of the columns in use cost */
 void count_loads(struct program *program, const struct linear *system, bool single);
 
