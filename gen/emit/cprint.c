@@ -284,31 +284,18 @@ static const char *fold_text(const struct identifiers *c, const char *function, 
 	return text;
 }
 
-static void point(const struct node *node, int index, mpq_ptr value)
-{
-	struct collector collector = { .scheme = "exact" };
-	collect_constant(&collector, node->child[index], value);
-}
-
 /* (x < x1 ? y0 + slope*(x - x0) : x < x2 ? ... ): one piece between each two points, the end ones extended */
 static const char *table_text(const struct identifiers *c, const struct node *node)
 {
 	const char *x = text_of(c, node->child[0], 5), *text = "";
-	mpq_t x0, y0, x1, y1;
-	mpq_inits(x0, y0, x1, y1, NULL);
-	for (int k = 1; k + 3 < node->children; k += 2) {
-		point(node, k, x0);
-		point(node, k + 1, y0);
-		point(node, k + 2, x1);
-		point(node, k + 3, y1);
-		const char *condition = k + 5 < node->children ? format("%s < %s ? ", x, finite_text(node->at, x1)) : "";
-		mpq_sub(y1, y1, y0);
-		mpq_sub(x1, x1, x0);
-		mpq_div(y1, y1, x1);
-		text = format("%s%s%s%s + %s*(%s - %s)", text, *text ? " : " : "", condition, finite_text(node->at, y0), finite_text(node->at, y1), x,
-			      finite_text(node->at, x0));
+	struct piece *piece;
+	int pieces = pieces_of_call(node, &piece);
+	for (const struct piece *p = piece; p < piece + pieces; p++) {
+		const char *condition = p->end ? format("%s < %s ? ", x, finite_text(node->at, p->end)) : "";
+		text = format("%s%s%s%s + %s*(%s - %s)", text, *text ? " : " : "", condition,
+			      finite_text(node->at, p->y), finite_text(node->at, p->slope), x,
+			      finite_text(node->at, p->x));
 	}
-	mpq_clears(x0, y0, x1, y1, NULL);
 	return format("(%s)", text);
 }
 

@@ -87,13 +87,61 @@ const char *tuned_output(const struct emitter *e, const struct output *output); 
 /* columns of x as in struct tuning */
 bool tuned_output_reads(const struct emitter *e, const struct output *output, int column);
 
-/* ---- left.c: forms with atoms as C ---- */
+/* ---- expression.c: forms with atoms as C ---- */
 
 struct writer;                      /* declares locals for what several places use as it goes */
-struct writer *writer_new(const struct emitter *e,
-			  const char *(*basis_text)(const struct emitter *, const struct basis *), int count,
-			  const struct form *const *form);
+typedef const char *basis_writer(const struct emitter *e, const struct basis *basis); /* NULL: 1 */
+struct writer *writer_new(const struct emitter *e, basis_writer *basis_text, int count, const struct form *const *form);
 const char *write_form(struct writer *w, const struct form *form, int indent);
+
+/* ---- leftover.c: what a scheme leaves over, as a function ---- */
+
+bool many_operators(const struct emitter *e);
+bool any_of(const bool *flag, int count);
+bool reads_slope(const struct emitter *e, const struct reads *r); /* of an input */
+bool takes_slope(const struct emitter *e, const struct reads *r); /* also since ramps go on between nodes of a step */
+struct reads reads_of_leftover(const struct emitter *e);
+bool needs_node(const struct emitter *e, const struct reads *r);  /* it depends on time, of which there are several */
+/* What every function of a step is handed on: the operator, the node, the inputs */
+const char *leftover_parameters(const struct emitter *e, const struct reads *r, bool with_node);
+/* Where a call stands: in a step, whose own inputs are set up there; inside a function that got them; in the outputs */
+enum call_from { FROM_STEP, FROM_INSIDE, FROM_OUTPUTS };
+/* node NULL: none */
+const char *leftover_arguments(const struct emitter *e, const struct reads *r, const char *node, enum call_from from);
+const char *leftover_call(const struct emitter *e, const char *node, const char *state, const char *left,
+			  enum call_from from);
+const char *leftover_of_step(const struct emitter *e);            /* its call at the start of a step, into `left` */
+const char *leftover_of_outputs(const struct emitter *e);
+const char *basis_now(const struct emitter *e, const struct basis *basis); /* of states, inputs, load states, t */
+void emit_leftover(const struct emitter *e);
+
+/* ---- selection.c: which operator of a bank serves now ---- */
+
+void emit_selection(const struct emitter *e);
+const char *selection_call(const struct emitter *e);
+
+/* ---- loops.c: a step with a leftover that loops over its tables ---- */
+
+void emit_tables(const struct emitter *e);
+const char *matrix_text(const struct emitter *e, const char *name); /* its first entry, of the operator that serves */
+const char *vector_name(int stage);
+bool flows_apart(const struct emitter *e);                        /* where a change of the loads may interrupt them */
+void emit_operands(const struct emitter *e);                      /* declares load, input, which the tables multiply */
+/* target = Phi y + loads + inputs over the time of table t; from rest: the loads and inputs alone */
+void emit_flow_loop(const struct emitter *e, int t, bool from_rest, const char *target, const char *margin);
+void emit_combination_loop(const struct emitter *e, const struct action *a);
+void emit_sum_loop(const struct emitter *e, const struct action *a);
+
+/* ---- predict.c: predictors of a quadrature ---- */
+
+void emit_predictor(const struct emitter *e);
+bool adds_driven(const struct emitter *e);                        /* loads or inputs have a part in them */
+
+/* ---- actions.c: the step of a scheme that leaves something over ---- */
+
+void emit_leftover_functions(const struct emitter *e);            /* what is left over; which operator serves */
+void emit_leftover_step(const struct emitter *e);
+void emit_samples(const struct emitter *e);                       /* start, slope: what leftovers read of ramps */
 
 /* ---- selftest.c: reference states in closed form, for the target to step to ---- */
 
@@ -157,7 +205,7 @@ void emit_phi(const struct emitter *e);
 void emit_gamma(const struct emitter *e);
 void emit_descriptor(const struct emitter *e);
 
-/* ---- emit.c, emit_step.c, emit_left.c, emit_out.c, emit_loads.c, emit_time.c, emit_tune.c, emit_rhs.c: a step as C */
+/* ---- emit.c, emit_step.c, emit_out.c, emit_loads.c, emit_time.c, emit_tune.c, emit_rhs.c: a step as C */
 
 void emit_header(FILE *to, const struct step *step, const char *options, bool rhs);
 /* header_name NULL: all in one */
@@ -194,13 +242,6 @@ void emit_region_members(const struct emitter *e);
 void emit_region_start(const struct emitter *e);                  /* in set */
 void emit_region_step(const struct emitter *e);
 void emit_region_at(const struct emitter *e);
-void emit_leftover_functions(const struct emitter *e);            /* what is left over; which operator serves */
-void emit_leftover_step(const struct emitter *e);
-/* in terms of locals: states, inputs, load states, t */
-const char *basis_now(const struct emitter *e, const struct basis *basis);
-const char *leftover_of_step(const struct emitter *e);            /* its call at the start of a step, into `left` */
-const char *leftover_of_outputs(const struct emitter *e);
-void emit_samples(const struct emitter *e);                       /* start, slope: what leftovers read of ramps */
 /* Of models with tunable params: */
 void emit_coefficient_struct(const struct emitter *e);
 void emit_tuning_declarations(const struct emitter *e);
@@ -210,7 +251,6 @@ void banner_tuning(const struct emitter *e);
 void emit_nominal(const struct emitter *e);
 void emit_retune(const struct emitter *e);                        /* the equations, retune, use */
 void emit_tuned_at(const struct emitter *e);                      /* pass, from change to change of the loads; at */
-const char *selection_call(const struct emitter *e);              /* which operator of a bank serves now */
 /* phases and growths from the start of the step to each node */
 void emit_node_phases(const struct emitter *e, const bool *loads);
 void emit_out(const struct emitter *e);

@@ -529,8 +529,7 @@ static void find(void *context)
 	spread_tuned(s->model->spec);
 	check_model(s->model);
 	for (int k = 0; k < t->params; k++)
-		constant_value(&(struct collector){ .scheme = "exact" }, t->param[k].symbol->collected->cell[0],
-			       t->nominal[k]);
+		param_value(t->param[k].symbol, t->nominal[k]);
 	for (int i = 0; i < FIT_POINTS; i++)
 		look(s, (const mpq_t *)scattered_values(t->params, i));
 	t->other = s->found;

@@ -322,6 +322,62 @@ const char *drift_text(const struct drift *drift);          /* over 1e9 steps */
 /* in its table: what vanishes at these values only is no zero */
 void mark_tuned_zeros(struct step *step);
 
+/* ---- exact.c: exact numbers of the equations that stand in the code as they are, each rounded once ---- */
+
+/* An error at the step where it is beyond the range */
+struct coefficient equation_number(const struct model *model, mpq_srcptr q);
+double time_in_step(const struct model *model, mpq_srcptr fraction);      /* a part of h [s] */
+struct slopes {                     /* y' = A y + B r: r is what is left over, or another force on the channels */
+	struct coefficient *A, *B;  /* states x states; states x channels */
+};
+struct slopes state_slopes(const struct step *step, int operator);
+
+/* ---- bank.c: what the leftovers of a bank's operators have in common ---- */
+
+struct excess {                     /* a linear term in which they differ: a coordinate or its velocity, on a channel */
+	int channel, coord, order;
+};
+struct bank {                       /* the leftover of an operator = common + sum of factor times term */
+	int count;                  /* 0: of one operator */
+	struct excess *excess;
+	double *factor;             /* [operator][excess] */
+	const struct form **common; /* per channel */
+};
+struct bank bank_of(const struct step *step);
+
+/* ---- closed.c: states in closed form for the self-test ---- */
+
+struct reference {                  /* from t = 0 on; inputs follow u = 1 - t/h; held, u = 1 */
+	int states, rows;           /* rows: fewer where the states leave the range */
+	const unsigned long *steps; /* per row: how many have been taken */
+	double *start, *value;      /* [states]; [row][states] */
+	double *between;            /* [states] at h/2, where NAME_at is there */
+	double *unit;               /* [states]: one in the last place of the largest value */
+};
+struct reference reference_of(const struct step *step);
+
+/* ---- tuned.c: what a model with tunable params keeps; columns as in struct tuning ---- */
+
+double *nominal_step(const struct step *step);              /* states x columns, of the spec's values */
+double *nominal_outputs(const struct step *step);           /* of outputs that depend on params: outputs x columns */
+struct fixed_slope {                /* an entry of A, x' = A x, that no param changes: velocities, how loads go on */
+	int row, column;
+	struct coefficient value;
+};
+int fixed_slopes(const struct step *step, struct fixed_slope **list);
+struct room {                       /* that the target computes coefficients in, in numbers of two words */
+	int width, work;            /* columns of the equations, W's among them; for products and exponentials */
+	int kilobytes;              /* of stack; frames of the calls not counted */
+};
+struct room room_of(const struct step *step);
+
+/* ---- written.c: the equations as written, for NAME_rhs ---- */
+
+bool is_highest(const struct model *model, const struct basis *basis); /* a coordinate's highest derivative */
+const struct form *without_highest(const struct model *model, const struct form *form);
+/* -W^-1, n x n: the highest derivatives are it times the residuals */
+struct coefficient *derivatives_of_residuals(const struct model *model);
+
 /* ---- scheme.c: the step of a model ---- */
 
 struct step *step_build(const struct model *model);         /* NULL: it was said why */
