@@ -229,6 +229,7 @@ static void build(void *context)
 	if (model->asked.selftest)
 		need_closed_form(step);
 	program_check(step);
+	plan_phases(step);
 }
 
 struct step *step_build(const struct model *model)

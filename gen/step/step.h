@@ -203,6 +203,22 @@ struct branch {
 	struct table *whole;
 	int halvings;               /* of a region: log2 of the pieces of a step in which crossings are looked for */
 };
+/* Phases and growths of loads e^{at} cos(wt + p) in fixed point: 128 bits; for the target float 64, in `low` */
+struct fixed_point { uint64_t high, low; };
+struct advance {                    /* over some time tau; 0 where there is no w, no a */
+	struct fixed_point turn;          /* w tau / 2 pi in units of 2^-128 (2^-64), wrapped */
+	struct fixed_point growth;        /* a tau / ln 2 in units of 2^-112 (2^-48), two's complement; saturated */
+};
+struct rate {                       /* word[0] word[1] word[2] 2^exponent, as one number of 64 bits a word [1/s] */
+	int words;                  /* 3; for float 2 */
+	uint64_t word[3];
+	long exponent;
+};
+struct load_phase {                 /* of one load */
+	struct fixed_point start;         /* p / 2 pi, as a turn */
+	struct advance step, *node; /* over the step; from its start to each node of the program */
+	struct rate turns, growth;  /* |w| / 2 pi, |a| / ln 2 */
+};
 enum step_kind {                    /* what a step is made of */
 	KIND_LINEAR,                /* assignments, or loops over tables: nothing is left over */
 	KIND_TUNED,                 /* the same, its factors from the params that the instance has */
@@ -230,6 +246,7 @@ struct step {                       /* everything that is emitted for one model 
 	struct rounding rounding;
 	mpfr_t growth;              /* pl: 1/s, largest real part of the modified equation's poles (report only) */
 	struct series series;
+	struct load_phase *phase;   /* per load */
 };
 enum step_kind kind_of_step(const struct model *model);
 bool has_leftover(const struct step *step);                 /* it is of that kind */
@@ -280,6 +297,55 @@ double largest_pole_angle(const struct step *step);         /* max|pole| h, roun
 int  series_halvings(const struct step *step, int operator); /* of the time h, so that |pole| tau <= 1 */
 /* for these operators, over h 2^-halvings */
 int  series_degree(const struct step *step, int first, int last, int halvings);
+
+/* ---- phases.c: phases and growths of loads in fixed point ---- */
+
+int  phase_bits(const struct step *step);                    /* 128, or 64, all behind the point */
+int  growth_bits(const struct step *step);                   /* 112, or 48: those behind the point */
+void plan_phases(struct step *step);                        /* step->phase; after the program, for its nodes */
+
+/* ---- slopes.c: A of x' = A x, rounded; x as in struct series ---- */
+
+struct load_slopes {                /* the columns of A that change from segment to segment of time */
+	int first, columns;         /* of x; first -1: no load acts */
+	double **segment;           /* states x columns [x/s]; 0 of loads that the step leaves out */
+};
+_Noreturn void tell_range(const struct step *step);          /* an error at the step: a number overflows */
+double number_in_range(const struct step *step, mpq_srcptr q); /* rounded, or told */
+double *slopes_of(const struct step *step, int branch);      /* size x size [x/s], loads as in the first segment; */
+							     /* infinite beyond the range */
+struct load_slopes load_slopes_of(const struct step *step);
+struct coefficient *held_forces_of(const struct step *step); /* n x states: what a scheme holds, as forces */
+
+/* ---- leap.c: the step as one matrix, for powers of it ---- */
+
+struct leap {                       /* x(t+h) = matrix x; x = states, then the load states that the step reads */
+	int size;
+	int *load;                  /* index of the first state of each load; -1: the step does not read it */
+};
+struct leap_entry {                 /* in a segment of time, in two words */
+	int segment, row, column;
+	struct coefficient value;
+};
+struct leap leap_of(const struct step *step);
+/* Beyond Phi, what is not 0; returns how many */
+int leap_entries_of(const struct step *step, const struct leap *leap, struct leap_entry **entry);
+
+/* ---- pieces.c: what a piecewise-linear model finds its crossings with ---- */
+
+struct region_piece {                      /* of a branch, d = h 2^-halvings long; x as in struct series */
+	double *slopes;             /* A of x' = A x, size x size [x/s] */
+	double *Phi;                /* e^{A d}, size x size */
+	double *slope;              /* slope . x is d/3 times the slope of each expression; expressions x size */
+	double *second, *fourth;    /* second . |x(0)|, fourth . |x(0)| bound, on 0 .. d, d^2/8 times the second and */
+				    /* d^4/384 times the fourth derivative of each; expressions x size */
+};
+struct pieces {
+	double *row;                /* of each expression: row . x, expressions x size */
+	double *breakpoint;         /* those of the first expression, rising; of the second; ... */
+	struct region_piece *piece;        /* per branch */
+};
+struct pieces pieces_of(const struct step *step);
 
 /* ---- cost.c: what a step costs ---- */
 
