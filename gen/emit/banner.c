@@ -86,7 +86,8 @@ static const char *operator_text(const struct model *model)
 {
 	if (*model->operator[0].text)
 		return format("equations' Jacobian at %s", model->operator[0].text);
-	return scheme_row(model->scheme)->holds_coupling ? "own terms of each coordinate" : "linear terms with constant coefficients";
+	bool own = scheme_row(model->scheme)->holds_coupling;
+	return own ? "own terms of each coordinate" : "linear terms with constant coefficients";
 }
 
 void banner_leftover(const struct emitter *e)

@@ -292,8 +292,9 @@ static const char *table_text(const struct identifiers *c, const struct node *no
 	int pieces = pieces_of_call(node, &piece);
 	for (const struct straight *p = piece; p < piece + pieces; p++) {
 		const char *condition = p->end ? format("%s < %s ? ", x, finite_text(node->at, p->end)) : "";
-		text = format("%s%s%s%s + %s*(%s - %s)", text, *text ? " : " : "", condition, finite_text(node->at, p->y),
-			      finite_text(node->at, p->slope), x, finite_text(node->at, p->x));
+		text = format("%s%s%s%s + %s*(%s - %s)", text, *text ? " : " : "", condition,
+			      finite_text(node->at, p->y), finite_text(node->at, p->slope), x,
+			      finite_text(node->at, p->x));
 	}
 	return format("(%s)", text);
 }

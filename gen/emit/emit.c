@@ -135,7 +135,7 @@ static void emit_run(const struct emitter *e)
 	       "}\n");
 }
 
-static void emit_tables(const struct emitter *e)
+static void emit_all_tables(const struct emitter *e)
 {
 	emit_phi(e);
 	if (e->system->inputs)
@@ -173,7 +173,7 @@ void emit_code(FILE *to, const struct step *step, const char *options, const cha
 	else
 		emit_declarations(e, rhs);
 	emit_includes(e, rhs);
-	emit_tables(e);
+	emit_all_tables(e);
 	emit_access(e);
 	e->kind->pass(e);
 	e->kind->step(e);

@@ -40,14 +40,14 @@ struct matrices {
 	const char *name, *note;
 	int rows;
 	const char **row_name;
-	double *(*of)(const struct piece *piece);
+	double *(*of)(const struct region_piece *piece);
 };
 
-static double *slopes_of_piece(const struct piece *piece) { return piece->slopes; }
-static double *Phi_of_piece(const struct piece *piece)    { return piece->Phi; }
-static double *slope_of_piece(const struct piece *piece)  { return piece->slope; }
-static double *second_of_piece(const struct piece *piece) { return piece->second; }
-static double *fourth_of_piece(const struct piece *piece) { return piece->fourth; }
+static double *slopes_of_piece(const struct region_piece *piece) { return piece->slopes; }
+static double *Phi_of_piece(const struct region_piece *piece)    { return piece->Phi; }
+static double *slope_of_piece(const struct region_piece *piece)  { return piece->slope; }
+static double *second_of_piece(const struct region_piece *piece) { return piece->second; }
+static double *fourth_of_piece(const struct region_piece *piece) { return piece->fourth; }
 
 static void emit_matrices(const struct emitter *e, const struct pieces *pieces, const struct matrices *m)
 {

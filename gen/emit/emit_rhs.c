@@ -301,7 +301,7 @@ static void emit_rhs_locals(const struct emitter *e, const bool *reads)
 	if (!emit_rhs_inputs(e) && e->system->inputs)
 		say(e, "    (void)u;\n");
 	for (const struct symbol *s = e->model->spec->first; s; s = s->next)
-		if (is_used(e->c, s, 0) && s->kind == SYMBOL_LET)
+		if (s->kind == SYMBOL_LET && is_used(e->c, s, 0))
 			say(e, "    const double %s = %s;\n", c_name(e->c, s, 0), c_expression(e->c, s->value));
 }
 

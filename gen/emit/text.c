@@ -97,7 +97,8 @@ void emit_number_rows(const struct emitter *e, int rows, int columns, const doub
 		for (int j = 0; j < columns; j++) {
 			if (!isfinite(value[i * columns + j]))
 				error(e->model->asked.step_at, NULL,
-				      "a number in the row of %s is beyond the range of %s", row_note[i], target_name());
+				      "a number in the row of %s is beyond the range of %s", row_note[i],
+				      target_name());
 			say(e, "%s%s", j ? ", " : "", shortest(value[i * columns + j]));
 		}
 		say(e, "},  /* %s */\n", row_note[i]);

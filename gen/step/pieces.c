@@ -228,7 +228,7 @@ static double *bound_rows(const struct step *step, const struct pieces *pieces, 
 
 static void fill_bounds(const struct step *step, const struct pieces *pieces, int branch)
 {
-	struct piece *piece = &pieces->piece[branch];
+	struct region_piece *piece = &pieces->piece[branch];
 	double d = ldexp(round_rational(step->model->h), -step->branch[branch].halvings);
 	struct growth growth = growth_of(step->layout.size, piece->slopes, d);
 	piece->slope = slope_rows(step, pieces, piece->slopes, d / 3);
@@ -240,7 +240,7 @@ static void fill_bounds(const struct step *step, const struct pieces *pieces, in
 
 struct pieces pieces_of(const struct step *step)
 {
-	struct pieces pieces = { rows_of(step), breakpoints_of(step), ARRAY(struct piece, (size_t)step->branches) };
+	struct pieces pieces = { rows_of(step), breakpoints_of(step), ARRAY(struct region_piece, (size_t)step->branches) };
 	for (int k = 0; k < step->branches; k++)
 		pieces.piece[k].slopes = finite_slopes(step, k);
 	for (int k = 0; k < step->branches; k++)

@@ -147,6 +147,7 @@ static void build_regions_step(struct step *step)
 {
 	struct branch *first = step->branch;
 	int channels = first->system.channels;  /* ramps of inputs, while tables are made */
+	need_direct(step);
 	step->tables = 1;
 	first->whole = tables_of(step->model, first->resolvent, &first->system, 1, wanted_piece(step, 0))[0];
 	first->system.channels = 0;
@@ -188,32 +189,33 @@ static void place_all_loads(struct step *step)
 	step->series.emitted = true;
 }
 
-static void place_series(struct step *step, bool left)
+static void build_linear_step(struct step *step)
 {
-	const struct model *model = step->model;
-	if (model->tuning)
-		place_all_loads(step);
-	else
-		step->layout = layout_of(&step->branch->system, left && scheme_row(model->scheme)->holds_leftover);
+	step->layout = layout_of(&step->branch->system, false);
+	build_exact(step);
+	series_plan(step);
 }
 
-/* A linear step, or one that leaves something over */
-static void build_smooth_step(struct step *step)
+static void build_tuned_step(struct step *step)
 {
-	bool left = has_leftover(step);
-	if (left)
-		need_direct(step);
-	place_series(step, left);
-	if (left)
-		build_with_leftover(step);
-	else
-		build_exact(step);
-	if (!step->model->tuning)
-		series_plan(step);
+	place_all_loads(step);
+	build_exact(step);
+}
+
+static void build_leftover_step(struct step *step)
+{
+	need_direct(step);
+	step->layout = layout_of(&step->branch->system, scheme_row(step->model->scheme)->holds_leftover);
+	build_with_leftover(step);
+	series_plan(step);
 }
 
 static void build(void *context)
 {
+	static void (*const build_kind[KINDS])(struct step *) = {
+		[KIND_LINEAR] = build_linear_step, [KIND_TUNED] = build_tuned_step,
+		[KIND_REGIONS] = build_regions_step, [KIND_LEFTOVER] = build_leftover_step
+	};
 	struct step *step = context;
 	const struct model *model = step->model;
 	step->kind = kind_of_step(model);
@@ -223,21 +225,11 @@ static void build(void *context)
 	take_operators(step);
 	if (scheme_row(model->scheme)->holds_coupling)
 		find_growth(step);
-	if (step->kind == KIND_REGIONS) {
-		need_direct(step);
-		build_regions_step(step);
-	} else {
-		build_smooth_step(step);
-	}
+	build_kind[step->kind](step);
 	if (model->asked.selftest)
 		need_closed_form(step);
 	program_check(step);
-}
-
-static void build_all(void *context)
-{
-	build(context);
-	plan_phases(context);
+	plan_phases(step);
 }
 
 struct step *step_build(const struct model *model)
@@ -245,7 +237,7 @@ struct step *step_build(const struct model *model)
 	struct step *step = NEW(struct step);
 	step->model = model;
 	step->shown = step;
-	if (!statement_guard(build_all, step))
+	if (!statement_guard(build, step))
 		return NULL;
 	if (!model->relative)
 		return step;

@@ -338,7 +338,7 @@ int leap_entries_of(const struct step *step, const struct leap *leap, struct lea
 
 /* ---- pieces.c: what a piecewise-linear model finds its crossings with ---- */
 
-struct piece {                      /* of a branch, d = h 2^-halvings long; x as in struct series */
+struct region_piece {                      /* of a branch, d = h 2^-halvings long; x as in struct series */
 	double *slopes;             /* A of x' = A x, size x size [x/s] */
 	double *Phi;                /* e^{A d}, size x size */
 	double *slope;              /* slope . x is d/3 times the slope of each expression; expressions x size */
@@ -348,7 +348,7 @@ struct piece {                      /* of a branch, d = h 2^-halvings long; x as
 struct pieces {
 	double *row;                /* of each expression: row . x, expressions x size */
 	double *breakpoint;         /* those of the first expression, rising; of the second; ... */
-	struct piece *piece;        /* per branch */
+	struct region_piece *piece;        /* per branch */
 };
 struct pieces pieces_of(const struct step *step);
 
