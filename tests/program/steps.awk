@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Reads the closed form as CSV, then the text of --explain=program, whose assignments it does `steps` times from the first
-# row on; every state that both name must then be within 1e-11 of its largest value. Velocities that are no column of the
+# row on; every state that both name must then be within 1e-13 of its largest value. Velocities that are no column of the
 # CSV start from 0.
 FNR == 1 {
 	file++
@@ -60,7 +60,7 @@ END {
 		error = error < 0 ? -error : error
 		compared++
 		printf "%s %.17g, closed form %.17g, difference %.3g of %.3g\n", name[i], state[name[i]], last[i], error, largest[name[i]]
-		if (!(error <= 1e-11 * largest[name[i]]))
+		if (!(error <= 1e-13 * largest[name[i]]))
 			bad = 1
 	}
 	exit bad || !compared || !count
