@@ -34,7 +34,7 @@ struct file *file_new(const char *path);                    /* open; published i
 void file_close(struct file *f);
 /* C becomes other C: for the target float, or with locals apart from the model's name. */
 void file_rewrite(struct file *f, const char *name, void (*print)(FILE *to, const char *text, const char *name));
-void mark_pair(struct file *code, struct file *header);     /* of two runs they must not compile; code NULL: in one file */
+void mark_pair(struct file *code, struct file *header);     /* of two runs they must not compile; code NULL: alone */
 bool spares(int count, const char *const *path);            /* is nothing written over them? Else it says so */
 void publish(void);
 

@@ -163,9 +163,9 @@ static bool compile(struct work *w)
 	return true;
 }
 
-/* The walks over expressions recurse, LIMIT_DEPTH deep at most; what stack a program is started with differs from system to
- * system, and a limit of the user's cannot be raised from here. So all work is done on a stack of its own, of pages that
- * cost nothing until they are used. */
+/* The walks over expressions recurse, LIMIT_DEPTH deep at most; what stack a program is started with differs from
+ * system to system, and a limit of the user's cannot be raised from here. So all work is done on a stack of its own, of
+ * pages that cost nothing until they are used. */
 enum { STACK_SIZE = 96 << 20 };
 
 struct command { int argc; char **argv; int status; };

@@ -133,7 +133,8 @@ static const struct row {
 	{ "scheme", "NAME", "instead of the spec's: ", take_scheme, all_schemes },
 	{ "real", "float", "numbers and arithmetic of type float (default: double)", take_real, NULL },
 	{ "form", "NAME", "of a linear step: auto direct delta kick-drift-kick", take_form, NULL },
-	{ "accuracy", "compensated", "two-word factors, and what rounding takes from the state is kept", take_accuracy, NULL },
+	{ "accuracy", "compensated", "two-word factors, and what rounding takes from the state is kept",
+	  take_accuracy, NULL },
 	{ "loads", "leftover", "leave known loads to the scheme's quadrature (default: exact)", take_loads, NULL },
 	{ "D", "NAME=EXPR", "another value for a param; EXPR may use the spec's params", take_definition, NULL },
 	{ "prefix", "NAME", "instead of the model's name for everything generated", take_prefix, NULL },
@@ -143,16 +144,17 @@ static const struct row {
 	{ "help", NULL, NULL, print_usage, NULL },
 	{ "version", NULL, NULL, print_version, NULL }
 };
-enum { ROWS = sizeof rows / sizeof *rows, LONG = 256 };         /* what getopt_long returns for a long option: LONG + its row */
+/* LONG + its row is what getopt_long returns for a long option. */
+enum { ROWS = sizeof rows / sizeof *rows, LONG = 256 };
 
 static bool is_short(const struct row *row)
 {
 	return !row->name[1];
 }
 
-static bool is_optional(const struct row *row)
+static int values_of(const struct row *row)
 {
-	return row->argument && row->argument[0] == '[';
+	return !row->argument ? no_argument : row->argument[0] == '[' ? optional_argument : required_argument;
 }
 
 /* ---- usage ---- */
@@ -161,7 +163,8 @@ static void print_row(const struct row *row)
 {
 	const char *argument = row->argument ? row->argument : "", *space = strchr("[=", *argument) ? "" : " ";
 	const char *option = format("%s%s%s%s", is_short(row) ? "-" : "--", row->name, space, argument);
-	printf("  %-19s%s%s%s\n", option, strlen(option) < 19 ? " " : "   ", row->help, row->values ? row->values(" ") : "");
+	printf("  %-19s%s%s%s\n", option, strlen(option) < 19 ? " " : "   ", row->help,
+	       row->values ? row->values(" ") : "");
 }
 
 static _Noreturn void print_usage(struct options *options, const char *value)
@@ -177,7 +180,9 @@ static _Noreturn void print_usage(struct options *options, const char *value)
 		else
 			rest = format("%s%s--%s", rest, *rest ? ", " : "", rows[i].name);
 	printf("  %s\n\n"
-	       "Exit status: 0 done; 1 the spec is wrong or a file cannot be read or written; 2 the command line is wrong.\n", rest);
+	       "Exit status: 0 done; 1 the spec is wrong or a file cannot be read or written; 2 the command line is "
+	       "wrong.\n",
+	       rest);
 	exit(0);
 }
 
@@ -192,8 +197,7 @@ static const char *fill_known(struct option *known)
 		if (row->take && is_short(row))
 			letters = format("%s%s%s", letters, row->name, row->argument ? ":" : "");
 		else if (row->take)
-			*known++ = (struct option){ row->name, is_optional(row) ? optional_argument : row->argument ? required_argument
-						    : no_argument, NULL, LONG + i };
+			*known++ = (struct option){ row->name, values_of(row), NULL, LONG + i };
 	}
 	return letters;
 }
@@ -215,7 +219,8 @@ static _Noreturn void not_taken(int option, const char *word)
 	const char *shown = letter ? format("-%c", optopt) : format("'%s'", word);
 	if (option == ':')
 		wrong_usage(format("option %s needs a value", shown));
-	wrong_usage(letter ? format("unknown option '%s'", shown) : format("unknown option or surplus value: %s", shown));
+	wrong_usage(letter ? format("unknown option '%s'", shown)
+			   : format("unknown option or surplus value: %s", shown));
 }
 
 static void take_all(int argc, char **argv, struct options *options)
@@ -276,7 +281,8 @@ static void check_names(const struct options *options)
 	for (int i = 0; i < 4; i++)
 		for (int j = i + 1; j < 4; j++)
 			if (path[i] && path[j] && same_file(path[i], path[j]))
-				wrong_usage(format("'%s' would be written over: each file needs a name of its own", path[i]));
+				wrong_usage(format("'%s' would be written over: each file needs a name of its own",
+						   path[i]));
 }
 
 void read_options(int argc, char **argv, struct options *options)

@@ -69,7 +69,8 @@ bool spares(int count, const char *const *path)
 	for (int i = 0; i < files; i++)
 		for (int k = 0; k < count; k++)
 			if (file[i].path && same_file(path[k], file[i].path)) {
-				fprintf(stderr, "%s: error: the spec reads this file: it is not written over\n", file[i].path);
+				fprintf(stderr, "%s: error: the spec reads this file: it is not written over\n",
+					file[i].path);
 				return false;
 			}
 	return true;
@@ -167,7 +168,8 @@ void mark_pair(struct file *code, struct file *header)
 
 static _Noreturn void cannot_write(const struct file *failed)
 {
-	fprintf(stderr, "%s: error: cannot write: %s\n", failed->path ? failed->path : "standard output", strerror(errno));
+	fprintf(stderr, "%s: error: cannot write: %s\n", failed->path ? failed->path : "standard output",
+		strerror(errno));
 	told = told || !failed->path;
 	exit(1);
 }
