@@ -9,8 +9,8 @@
  *     covering spec FILE.spec CAPABILITY ...   the model, with its options and what batch.sh asks for in comments
  *
  * A line of REFUSALS is `CAPABILITY CAPABILITY ...<tab>MESSAGE`: part of what plgen says of a model with all of these.
- * The array is made greedily: a row starts with the first set that is not covered yet, and takes what covers most of the
- * others, as long as nothing in it is refused. */
+ * The array is made greedily: a row starts with the first set that is not covered yet, and takes what covers most of
+ * the others, as long as nothing in it is refused. */
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -236,9 +236,12 @@ static void print_table(void)
 {
 	puts("<!-- SPDX-License-Identifier: GPL-3.0-or-later -->");
 	puts("# What goes with what\n");
-	puts("Made by `tests/combinations/combinations.sh` from the lists beside it, which a test holds against plgen; do not edit.");
-	puts("`+`: works, in a row of a covering array that has every pair (of the first ones every triple), and agrees with CVODE or");
-	puts("the closed form within the bounds of `tests/fuzz/drive.c`, by `step`, `run`, `jump`, `at`, `set` at odd times, saved and");
+	puts("Made by `tests/combinations/combinations.sh` from the lists beside it, which a test holds against plgen; do "
+	    "not edit.");
+	puts("`+`: works, in a row of a covering array that has every pair (of the first ones every triple), and agrees "
+	    "with CVODE or");
+	puts("the closed form within the bounds of `tests/fuzz/drive.c`, by `step`, `run`, `jump`, `at`, `set` at odd "
+	    "times, saved and");
 	puts("restored, with `--rhs`. A number: refused, with the message below. Blank: one excludes the other.\n");
 	fputs("| |", stdout);
 	for (int j = 0; j < count; j++)
@@ -276,7 +279,8 @@ static void print_table(void)
 	}
 	puts("\n## A new capability\n");
 	puts("A line in `tests/combinations/capabilities.list`, what it adds to a spec or the options in `write_spec` of");
-	puts("`covering.c`, and the refusals that it brings in `refusals.list`: `combinations.sh ... --pairs` prints those that plgen");
+	puts("`covering.c`, and the refusals that it brings in `refusals.list`: `combinations.sh ... --pairs` prints those "
+	    "that plgen");
 	puts("has. `combinations.sh ... --table` then prints this page.");
 }
 
@@ -311,7 +315,8 @@ static void print_options(FILE *to)
 	if (has("loads") && !scheme)
 		fputs(" --scheme etdrk4", to);
 	const bool kinks = has("kinked") || (has("loads") && has("change"));
-	fprintf(to, "\n# class: %s\n", kinks ? "kinked" : has("piecewise") ? "piecewise" : has("smooth") ? "smooth" : "linear");
+	fprintf(to, "\n# class: %s\n", kinks ? "kinked" : has("piecewise") ? "piecewise" : has("smooth") ? "smooth"
+		: "linear");
 	fprintf(to, "# changes:%s\n", has("change") ? " 0.053 0.1 0.21" : "");
 	if (has("tunable"))
 		fputs("# retune: k=17.5 step=0.0125\n", to);
@@ -329,7 +334,8 @@ static void write_chain(FILE *to, int n)
 /* Two masses and what else is asked for; without dampers where the form asks for that.  Frequencies: below 6 rad/s. */
 static void write_spec(FILE *to)
 {
-	const bool vector = has("file") || has("many"), damped = !has("kdk"), outputs = has("accel") || has("nonlinear") || has("reduce");
+	const bool vector = has("file") || has("many"), damped = !has("kdk"), outputs = has("accel") || has("nonlinear") ||
+		has("reduce");
 	const int n = has("many") ? 9 : 3;
 	print_options(to);
 	fputs("model f\nparam k = 12\n", to);
@@ -353,7 +359,8 @@ static void write_spec(FILE *to)
 			fprintf(to, "; %d", i % 2);
 		fputs("]\n", to);
 	}
-	fprintf(to, "%sa''%s + k*(a - b)%s = ", damped ? "2*" : "", damped ? " + 0.3*(a' - b')" : "", has("rigid") ? "" : " + 30*a");
+	fprintf(to, "%sa''%s + k*(a - b)%s = ", damped ? "2*" : "", damped ? " + 0.3*(a' - b')" : "",
+		has("rigid") ? "" : " + 30*a");
 	fputs(has("cos") || has("loads") ? "3*cos(7*t) + " : "", to);
 	fputs(has("change") ? "(t < 0.1 ? 4 : 1) + " : "", to);
 	fputs(has("held") ? "2*u + " : "", to);
@@ -396,7 +403,8 @@ int main(int argc, char **argv)
 		return fclose(to) != 0;
 	}
 	if (argc != 4)
-		stop("usage: covering rows|pairs|refused|table CAPABILITIES REFUSALS, or spec FILE.spec CAPABILITY ..., not", argc > 1 ? argv[1] : "");
+		stop("usage: covering rows|pairs|refused|table CAPABILITIES REFUSALS, or spec FILE.spec CAPABILITY ..., not",
+			argc > 1 ? argv[1] : "");
 	read_lists(argv[2], argv[3]);
 	if (strcmp(argv[1], "rows") == 0)
 		print_rows();
