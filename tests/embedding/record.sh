@@ -1,7 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Recorded inputs through runtime/host/plmain.c: row k is the sample at t = k h.  Against the closed form of the same model with the record written
-# into its equations, as a table in time for a ramp and as a change of formula at every sample for an input that is held.  And what plmain says.
+# Recorded inputs through runtime/host/plmain.c: row k is the sample at t = k h.  Against the closed form of the same
+# model with the record written into its equations, as a table in time for a ramp and as a change of formula at every
+# sample for an input that is held.  And what plmain says.
 #
 #     record.sh PLGEN SOURCE_ROOT
 set -u
@@ -10,24 +11,25 @@ root=$2
 case $plgen in /*) ;; *) plgen=$PWD/$plgen ;; esac
 . "${0%/*}/../tap.sh"
 
-for file in "$root"/runtime/*.c; do
-    "${CC:-cc}" -std=c99 -O1 -I"$root/runtime" -c "$file" -o "runtime_${file##*/}.o" || exit 99
-done
+runtime_archive "$root/runtime"
 
 # driver FILE.c NAME PROGRAM [FLAGS]
 driver() {
     # shellcheck disable=SC2086
-    "${CC:-cc}" -std=c99 -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Werror ${4-} -I"$root/runtime" "$root/runtime/host/plmain.c" "$1" runtime_*.o "-DMODEL=$2" -lm -o "$3" >>log 2>&1
+    "${CC:-cc}" -std=c99 -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Werror ${4-} -I"$root/runtime" \
+        "$root/runtime/host/plmain.c" "$1" "$archive" "-DMODEL=$2" -lm -o "$3" >>log 2>&1
 }
 
 # 41 samples of two inputs, 0.05 s apart, neither 0 at the start
-awk 'BEGIN { print "u,v"; for (k = 0; k <= 40; k++) printf "%d,%d\n", (k * 37 + 11) % 23 - 8, (k * 53 + 5) % 29 - 20 }' >rows.csv
+awk 'BEGIN { print "u,v"; for (k = 0; k <= 40; k++) printf "%d,%d\n", (k * 37 + 11) % 23 - 8,
+    (k * 53 + 5) % 29 - 20 }' >rows.csv
 
 # as_load COLUMN RAMP: the record as an expression of t
 as_load() {
     awk -F, -v column="$1" -v ramp="$2" 'NR > 1 { u[n++] = $column }
         END { if (ramp) { printf "table(t"; for (k = 0; k < n; k++) printf "; %d/20, %d", k, u[k]; printf ")" }
-              else { for (k = 0; k < n - 1; k++) printf "(t < %d/20 ? %d : ", k + 1, u[k]; printf "%d", u[n - 1]; for (k = 0; k < n - 1; k++) printf ")" } }' rows.csv
+              else { for (k = 0; k < n - 1; k++) printf "(t < %d/20 ? %d : ", k + 1, u[k]; printf "%d", u[n - 1];
+                  for (k = 0; k < n - 1; k++) printf ")" } }' rows.csv
 }
 
 # spec DECLARATION OUTPUTS [SLOPES]
@@ -39,12 +41,16 @@ spec() {
 # near FOUND EXPECTED BOUND: each column within BOUND of its largest value
 near() {
     awk -F, -v bound="$3" '
-        FNR == NR { rows = FNR; for (i = 1; i <= NF; i++) { e[FNR, i] = $i; v = $i < 0 ? -$i : +$i; if (FNR > 1 && v > most[i]) most[i] = v } columns = NF; next }
+        FNR == NR { rows = FNR; for (i = 1; i <= NF; i++) { e[FNR, i] = $i; v = $i < 0 ? -$i : +$i;
+            if (FNR > 1 && v > most[i]) most[i] = v } columns = NF; next }
         FNR == 1 { next }
         { if (NF != columns) { print "row " FNR ": found " NF " columns, expected " columns; bad = 1 }
           for (i = 1; i <= NF; i++) { d = $i - e[FNR, i]; if (d < 0) d = -d
-              if (!(d <= bound * most[i]) && shown++ < 5) { print "row " FNR " column " i ": found " $i ", expected " e[FNR, i] ", tolerance " bound * most[i]; bad = 1 } } last = FNR }
-        END { if (last != rows || rows < 42) { print "rows: found " last ", expected " rows ", 42 or more"; bad = 1 } exit bad ? 1 : 0 }' "$2" "$1" >>log 2>&1
+              if (!(d <= bound * most[i]) && shown++ < 5) {
+                  print "row " FNR " column " i ": found " $i ", expected " e[FNR, i] ", tolerance " bound * most[i];
+                  bad = 1 } } last = FNR }
+        END { if (last != rows || rows < 42) { print "rows: found " last ", expected " rows ", 42 or more";
+            bad = 1 } exit bad ? 1 : 0 }' "$2" "$1" >>log 2>&1
 }
 
 # form TITLE STATEMENTS RAMP_U RAMP_V COLUMNS
@@ -57,7 +63,8 @@ form() {
     # the slope of a table, by hand
     by_slope=$slopes
     if [ -n "$slopes" ]; then
-        by_slope=$(awk -F, 'NR > 1 { u[n++] = $1 } END { printf " + 0.3*"; for (k = 0; k < n - 2; k++) printf "(t < %d/20 ? %d : ", k + 1, 20 * (u[k + 1] - u[k])
+        by_slope=$(awk -F, 'NR > 1 { u[n++] = $1 } END { printf " + 0.3*";
+            for (k = 0; k < n - 2; k++) printf "(t < %d/20 ? %d : ", k + 1, 20 * (u[k + 1] - u[k])
             printf "%d", 20 * (u[n - 1] - u[n - 2]); for (k = 0; k < n - 2; k++) printf ")" }' rows.csv)
     fi
     { spec "let u = $(as_load 1 "$3")\nlet v = $(as_load 2 "$4")" "$outputs" "$by_slope"; } >closed.spec
@@ -71,7 +78,8 @@ form() {
         for options in '' '--accuracy compensated'; do
             : >log
             # shellcheck disable=SC2086
-            "$plgen" --real $real $options rec.spec >rec.c 2>>log && driver rec.c rec rec "$flags" && ./rec 2 <rows.csv >found.csv 2>>log && near found.csv expected.csv $bound
+            "$plgen" --real $real $options rec.spec >rec.c 2>>log && driver rec.c rec rec "$flags" &&
+                ./rec 2 <rows.csv >found.csv 2>>log && near found.csv expected.csv $bound
             result $? "$1, $real${options:+, compensated}: 40 steps of the record are its closed form within $bound of the largest value"
         done
     done
@@ -79,7 +87,8 @@ form() {
     result $? "$1: Gamma has $5 columns"
     sed 's/^step/tunable k\nstep/; s/^coord/param k = 30\ncoord/; s/30\*x/k*x/' rec.spec >tuned.spec
     : >log
-    "$plgen" tuned.spec >rec.c 2>>log && driver rec.c rec rec && ./rec 2 <rows.csv >found.csv 2>>log && near found.csv expected.csv 1e-13
+    "$plgen" tuned.spec >rec.c 2>>log && driver rec.c rec rec && ./rec 2 <rows.csv >found.csv 2>>log &&
+        near found.csv expected.csv 1e-13
     result $? "$1, tunable: the same"
 }
 
@@ -95,7 +104,8 @@ form 'input u, v' 'input u, v' 0 0 2
 says() {
     head -n "$4" rows.csv | ./rec 2 >found.csv 2>log
     status=$?
-    [ $status -eq "$2" ] && { [ -z "$3" ] && [ ! -s log ] || grep -q -e "${3:-.}" log; } && [ "$(wc -l <found.csv)" -eq "$5" ]
+    [ $status -eq "$2" ] && { [ -z "$3" ] && [ ! -s log ] || grep -q -e "${3:-.}" log; } &&
+        [ "$(wc -l <found.csv)" -eq "$5" ]
     status=$?
     echo "$(wc -l <found.csv) lines, expected $5; expected '$3'" >>log
     result $status "$1"
@@ -147,7 +157,7 @@ int main(void)
 }
 EOF
 "$plgen" -o touch_pl.c touch.spec 2>log && "$plgen" -o fixed_pl.c fixed.spec 2>>log &&
-    "${CC:-cc}" -std=c99 -I"$root/runtime" touch.c touch_pl.c fixed_pl.c runtime_*.o -o touch >>log 2>&1 && ./touch >>log
+    "${CC:-cc}" -std=c99 -I"$root/runtime" touch.c touch_pl.c fixed_pl.c "$archive" -o touch >>log 2>&1 && ./touch >>log
 result $? 'piecewise linear: held before the first step, the sample decides the region, and nothing is crossed'
 
 # ---- the other type; times ----
@@ -161,7 +171,9 @@ for real in double float; do
     "$plgen" --real $real two.spec >two.c && driver two.c two two "$other" && ./two 1 >found.csv 2>said
     status=$?
     cat said >>log
-    [ $status -eq 2 ] && [ ! -s found.csv ] && grep -q "^two: error: plmain.c was compiled $is -DFLOAT, and the model is in $real$" said && grep -q 'note: -DFLOAT is for' said
+    [ $status -eq 2 ] && [ ! -s found.csv ] &&
+        grep -q "^two: error: plmain.c was compiled $is -DFLOAT, and the model is in $real$" said &&
+        grep -q 'note: -DFLOAT is for' said
     result $? "plmain compiled $is -DFLOAT, a model in $real: told"
     sed '/tunable/d' two.spec >fixed.spec       # its time is k/100, not k times what h was rounded to
     own=-DFLOAT
@@ -169,7 +181,8 @@ for real in double float; do
     "$plgen" --real $real fixed.spec >two.c && driver two.c two two "$own" && ./two 2 >found.csv 2>>log
     awk -F, 'NR > 1 { t = NR - 2; want = int(t / 100); rest = t % 100
         if (rest) { want = want "." (rest < 10 ? "0" rest : rest); sub(/0$/, "", want) }
-        if ($1 != want && shown++ < 5) print "row " NR ": found " $1 ", expected " want } END { if (NR != 202) print NR " lines, expected 202" }' found.csv >log
+        if ($1 != want && shown++ < 5) print "row " NR ": found " $1 ", expected " want } END {
+            if (NR != 202) print NR " lines, expected 202" }' found.csv >log
     [ ! -s log ]
     result $? "times of $real in as few digits as read back the same"
 done
@@ -180,7 +193,8 @@ awk '/^    model two/ { on = 1 } on && !/^(    |$)/ { exit } on { print substr($
 line=$(sed -n 's/^    \(gnuplot .*\)/\1/p' "$root/README.md")
 if command -v gnuplot >/dev/null 2>&1; then
     : >log
-    "$plgen" two.spec >two.c 2>>log && driver two.c two two && ./two 30 >two.csv 2>>log && [ "$(wc -l <two.csv)" -eq 3002 ] &&
+    "$plgen" two.spec >two.c 2>>log && driver two.c two two && ./two 30 >two.csv 2>>log &&
+        [ "$(wc -l <two.csv)" -eq 3002 ] &&
         sh -c "$line" >>log 2>&1 && [ "$(grep -c '<path' two.svg)" -ge 1 ] && [ "$(wc -c <two.svg)" -gt 20000 ]
     result $? 'README: the spec, stepped and drawn with the gnuplot that is there'
 else

@@ -62,7 +62,8 @@ only_runtime() {
     [ ! -s log ]
 }
 
-# same_columns FOUND.csv EXPECTED.csv: same header, same number of rows, every value within 1e-11 of its column's largest
+# same_columns FOUND.csv EXPECTED.csv: same header, same number of rows, every value within 1e-11 of its column's
+# largest
 same_columns() {
     awk -F, '
         FNR == NR { expected[FNR] = $0; rows = FNR
@@ -75,12 +76,15 @@ same_columns() {
               d = $i - e[i]; if (d < 0) d = -d
               if (!(d <= 1e-11 * most[i]) && ++bad < 10)
                   print "row " FNR " column " i ": found " $i ", expected " e[i] ", tolerance " 1e-11 * most[i] } }
-        END { if (FNR != rows) { print "rows: found " FNR ", expected " rows; bad = 1 }; exit bad ? 1 : 0 }' "$2" "$1" >>log 2>&1
+        END { if (FNR != rows) { print "rows: found " FNR ", expected " rows; bad = 1 };
+            exit bad ? 1 : 0 }' "$2" "$1" >>log 2>&1
 }
 
+runtime_archive "$root/runtime"
 driver() {          # driver FILE.c NAME PROGRAM [FLAGS [LIBRARIES]]
     # shellcheck disable=SC2086
-    ${CC:-cc} ${4-} -I"$root/runtime" "$root/runtime/host/plmain.c" "$1" "$root"/runtime/*.c "-DMODEL=$2" ${5-} -o "$3" >>log 2>&1
+    ${CC:-cc} ${4-} -I"$root/runtime" "$root/runtime/host/plmain.c" "$1" "$archive" "-DMODEL=$2" ${5-} \
+        -o "$3" >>log 2>&1
 }
 
 # ---- every model ----
@@ -132,7 +136,8 @@ for pair in "${GCCS:-gcc g++}" "${CLANGS:-clang clang++}"; do
         result $status "runtime: needs memcpy and memset at most, $compiler $level"
         status=0
         for m in $models; do
-            "$compiler" -std=c99 "$level" -I"$root/runtime" -c "$m/stdout.c" -o "$m/nm.o" && only_runtime "$m/nm.o" || status=1
+            "$compiler" -std=c99 "$level" -I"$root/runtime" -c "$m/stdout.c" -o "$m/nm.o" && only_runtime "$m/nm.o" ||
+                status=1
             [ $status -eq 0 ] || break
         done
         result $status "models without --rhs: need the runtime, memcpy and memset at most, $compiler $level"
@@ -142,7 +147,8 @@ done
 # ---- force code only where there is a force ----
 
 for m in $models; do
-    sed '1,/^ \*\/$/d' "$m/stdout.c" | grep -E 'pl_cossin|phase|pl_turn|pl_rate|wave' >log     # the banner may speak of phases
+    # the banner may speak of phases
+    sed '1,/^ \*\/$/d' "$m/stdout.c" | grep -E 'pl_cossin|phase|pl_turn|pl_rate|wave' >log
     found=$?
     sed 's/#.*//' "$root/models/$m.spec" | grep -q -E '(cos|sin)\('
     forced=$?
@@ -181,7 +187,8 @@ for pair in "${GCCS:-gcc g++}" "${CLANGS:-clang clang++}"; do
         objects="$objects $f.o"
     done
     # shellcheck disable=SC2086
-    [ $status -eq 0 ] && "$cpp" -std=c++17 $warnings -I"$root/runtime" $includes main.cpp $objects -o program >>log 2>&1 &&
+    [ $status -eq 0 ] &&
+        "$cpp" -std=c++17 $warnings -I"$root/runtime" $includes main.cpp $objects -o program >>log 2>&1 &&
         ./program >values 2>>log
     result $? "all models link into one C++ program, which runs, $cpp"
     {
@@ -221,7 +228,8 @@ for m in $models; do
         (cd / && "$plgen" --rhs "$work/elsewhere/$m.spec") | cmp - "$m.rhs/stdout.c" >>log 2>&1 &&
         LC_ALL=C.UTF-8 TZ=Asia/Tokyo "$plgen" --rhs "$root/models/$m.spec" | cmp - "$m.rhs/stdout.c" >>log 2>&1
     result $? "$m: the same bytes twice, from other directories, in another locale"
-    "$plgen" --rhs -o "elsewhere/$m.c" "elsewhere/$m.spec" && cmp "elsewhere/$m.c" "$m.rhs/$m.c" >log 2>&1 && cmp "elsewhere/$m.h" "$m.rhs/$m.h" >>log 2>&1
+    "$plgen" --rhs -o "elsewhere/$m.c" "elsewhere/$m.spec" && cmp "elsewhere/$m.c" "$m.rhs/$m.c" >log 2>&1 &&
+        cmp "elsewhere/$m.h" "$m.rhs/$m.h" >>log 2>&1
     result $? "$m: -o writes the same bytes into another directory"
     ! grep -n -F -e "$root" -e "$work" "$m.rhs/stdout.c" "$m.rhs/$m.h" "elsewhere/$m.c" >log 2>&1
     result $? "$m: no path in it"
@@ -238,7 +246,8 @@ right() {
     [ $status -eq 0 ] || return
     all_compile collide.c "$3: compiles"
     : >log
-    "$plgen" --solution 1 "$1" >expected.csv 2>>log && driver collide.c "$2" m '' -lm && ./m 1 >found.csv 2>>log && same_columns found.csv expected.csv
+    "$plgen" --solution 1 "$1" >expected.csv 2>>log && driver collide.c "$2" m '' -lm && ./m 1 >found.csv 2>>log &&
+        same_columns found.csv expected.csv
     result $? "$3: runs right, in the compiler's own dialect"
 }
 
@@ -284,7 +293,8 @@ model names'
 as_lets() {
     awk 'BEGIN {
         print "model names\ncoord first_mass, second_mass\ninit first_mass = 1"
-        for (i = 1; i < ARGC; i++) { print "let " ARGV[i] " = " i "*second_mass - first_mass\047/10"; sum = sum " + " ARGV[i] }
+        for (i = 1; i < ARGC; i++) { print "let " ARGV[i] " = " i "*second_mass - first_mass\047/10";
+            sum = sum " + " ARGV[i] }
         print "first_mass\047\047 + 20*first_mass + (" ARGV[1] sum ")/10000 = cos(3*t)"
         print "second_mass\047\047 + 4*second_mass - first_mass = 0"
         for (i = 1; i < ARGC; i++) print "output a" i " = " ARGV[i] ", b" i " = abs(" ARGV[i] ")^1.5 + max(t, " ARGV[i] ")"
@@ -338,19 +348,12 @@ int main(void)
     return 0;
 }
 EOF
-for f in $runtime; do
-    ${CC:-cc} -I"$root/runtime" -c "$f.c" -o "$f.o" || exit 99
-done
-runtime_objects=
-for f in $runtime; do
-    runtime_objects="$runtime_objects $f.o"
-done
 
 # probe SPEC NAME OUT.csv: in the compiler's own dialect, as a user would
 probe() {
     # shellcheck disable=SC2086
     "$plgen" --rhs --prefix "$2" "$1" >probed.c 2>>log &&
-        ${CC:-cc} -I"$root/runtime" "-DPROBE=$2" probe.c probed.c $runtime_objects -lm -o probed >>log 2>&1 && ./probed >"$3"
+        ${CC:-cc} -I"$root/runtime" "-DPROBE=$2" probe.c probed.c "$archive" -lm -o probed >>log 2>&1 && ./probed >"$3"
 }
 
 # alike NAME NEUTRAL.spec TITLE: names.spec compiles everywhere and does what NEUTRAL.spec does
@@ -416,9 +419,12 @@ EOF
 }
 
 as_model neutral >neutral.spec
-for name in a b c i h k m n r s u w x y z A H I K M N S T X Y a1 pl1 Pl PL plrt PLRT STATES INPUTS OUTPUTS states tau out any phase slope series power \
-    power_entry state state_names output_names phase_step phase_start phase_rate work start wave wave1 residual dydt model_ scs Scs \
-    NAN INFINITY INT_MAX NULL EOF UINT64_C M_PI unix linux i386 errno bool_ uint64_t size_t double_t pl_model sem re hash list queue thread x_ x1 names_test; do
+for name in a b c i h k m n r s u w x y z A H I K M N S T X Y a1 pl1 Pl PL plrt PLRT STATES INPUTS OUTPUTS states tau \
+    out any phase slope series power \
+    power_entry state state_names output_names phase_step phase_start phase_rate work start wave wave1 residual dydt \
+        model_ scs Scs \
+    NAN INFINITY INT_MAX NULL EOF UINT64_C M_PI unix linux i386 errno bool_ uint64_t size_t double_t pl_model sem re \
+        hash list queue thread x_ x1 names_test; do
     as_model "$name" >model.spec
     : >log
     if "$plgen" --rhs model.spec >/dev/null 2>log; then
@@ -427,14 +433,17 @@ for name in a b c i h k m n r s u w x y z A H I K M N S T X Y a1 pl1 Pl PL plrt 
     else
         grep -q -e '--prefix' log
         result $? "model $name: refused, and --prefix is named"
-        "$plgen" --rhs --prefix other_name model.spec >collide.c 2>log && all_compile collide.c "model $name: with --prefix it compiles"
+        "$plgen" --rhs --prefix other_name model.spec >collide.c 2>log &&
+            all_compile collide.c "model $name: with --prefix it compiles"
     fi
 done
 
 # The same name for everything, and functions of the model as names inside it.
 for name in x same; do
-    printf "model %s\nparam %s_time = 2, %s_get = 3\ncoord %s, %s_out, %s_step\ninit %s = 1\n" $name $name $name $name $name $name $name >same.spec
-    printf "%s'' + %s_time*%s = cos(t)\n%s_out'' + %s_get*%s_out - %s = 0\n%s_step'' + %s_step = 0\n" $name $name $name $name $name $name $name $name $name >>same.spec
+    printf "model %s\nparam %s_time = 2, %s_get = 3\ncoord %s, %s_out, %s_step\ninit %s = 1\n" $name $name $name $name \
+        $name $name $name >same.spec
+    printf "%s'' + %s_time*%s = cos(t)\n%s_out'' + %s_get*%s_out - %s = 0\n%s_step'' + %s_step = 0\n" $name $name \
+        $name $name $name $name $name $name $name >>same.spec
     printf "output a = %s + t, b = 2*%s_out + %s_get\nstep 0.01\n" $name $name $name >>same.spec
     right same.spec $name "model $name, coordinates and params called after it and its functions"
 done

@@ -41,7 +41,8 @@ link "$work/image.elf" "$work"/*.o || exit 99
 emulate "${FIRMWARE_TIMEOUT:-240}" "$work/image.elf" >"$work/found"
 status=$?
 
-# A result for each variant, one for the stack, which on a small board must not reach the variables, and one for the end.
+# A result for each variant, one for the stack, which on a small board must not reach the variables, and one for the
+# end.
 awk -v board="$name" -v steps="$6" -v status=$status '
     FNR == NR { if (!($1 in lines)) order[++n] = $1
                 expected[$1 " " $2] = $0; lines[$1] = lines[$1] "|" $1 " " $2; next }

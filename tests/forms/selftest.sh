@@ -12,16 +12,17 @@ case $plgen in /*) ;; *) plgen=$PWD/$plgen ;; esac
 . "${0%/*}/../tap.sh"
 compiler=${CC:-cc}
 printf '#include "plrt.h"\n#include <stdio.h>\nREAL subject_selftest(void);\nint main(void)\n{\n    printf("%%g\\n", (double)subject_selftest());\n    return 0;\n}\n' >main.c
-"$compiler" -O1 -c -I"$root/runtime" "$root"/runtime/*.c >log 2>&1 || { result 1 'the runtime compiles'; tap_end; }
+runtime_archive "$root/runtime"
 
 # value FILE TYPE: what its self-test returns
 value() {
-	"$compiler" -O1 -I"$root/runtime" -DREAL="$2" "$1" main.c ./*.o -o program >log 2>&1 && ./program
+	"$compiler" -O1 -I"$root/runtime" -DREAL="$2" "$1" main.c "$archive" -o program >log 2>&1 && ./program
 }
 
 # constants FILE: those of its step, each once, from 1e-5 on: what is smaller adds less than rounding to a step of float
 constants() {
-	sed -n '/^void subject_step/,/^}/p' "$1" | sed 's,/\*.*\*/,,' | grep -o -E '[0-9]\.[0-9]{4,}(e-?[0-9]+)?f?' | sort -u | awk '$1 + 0 >= 1e-5'
+	sed -n '/^void subject_step/,/^}/p' "$1" | sed 's,/\*.*\*/,,' | grep -o -E '[0-9]\.[0-9]{4,}(e-?[0-9]+)?f?' | sort -u |
+		awk '$1 + 0 >= 1e-5'
 }
 
 # Its first digit that is not 0 becomes another
@@ -34,7 +35,8 @@ for spec in models/scs models/sdcsf tests/forms/damped_ramped; do
 		case $options in *float*) type=float ;; *) type=double ;; esac
 		name="$(basename "$spec") ${options:-default}"
 		# shellcheck disable=SC2086
-		"$plgen" --prefix subject --selftest $options "$root/$spec.spec" >good.c 2>log || { result 1 "$name: plgen"; continue; }
+		"$plgen" --prefix subject --selftest $options "$root/$spec.spec" >good.c 2>log ||
+			{ result 1 "$name: plgen"; continue; }
 		good=$(value good.c "$type")
 		echo "returns $good, expected below 60" >log
 		awk -v v="$good" 'BEGIN { exit !(v != "" && v + 0 < 60) }'
@@ -43,9 +45,11 @@ for spec in models/scs models/sdcsf tests/forms/damped_ramped; do
 		constants good.c >numbers
 		while read -r number; do
 			wrong=$(damaged "$number")
-			awk -v from="$number" -v to="$wrong" '{ while (i = index($0, from)) { out = out substr($0, 1, i - 1) to; $0 = substr($0, i + length(from)) } print out $0; out = "" }' good.c >bad.c
+			awk -v from="$number" -v to="$wrong" '{ while (i = index($0, from)) { out = out substr($0, 1, i - 1) to;
+				$0 = substr($0, i + length(from)) } print out $0; out = "" }' good.c >bad.c
 			bad=$(value bad.c "$type")
-			awk -v v="$bad" 'BEGIN { exit !(v != "" && !(v + 0 <= 300)) }' || echo "$number as $wrong: returns $bad, expected above 300" >>missed
+			awk -v v="$bad" 'BEGIN { exit !(v != "" && !(v + 0 <= 300)) }' ||
+				echo "$number as $wrong: returns $bad, expected above 300" >>missed
 		done <numbers
 		[ -s numbers ] && [ ! -s missed ]
 		status=$?

@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Sourced by grammar.sh and ../combinations/combinations.sh, with $plgen, $source (the project) and $folder (of the archives that
-# archive.sh makes) set and $work the current folder: specs become C, many of them one program, each run by drive.c.
+# Sourced by grammar.sh and ../combinations/combinations.sh, with $plgen, $source (the project) and $folder (of the
+# archives that archive.sh makes) set and $work the current folder: specs become C, many of them one program, each run
+# by drive.c.
 #
 #     batch_new               no models
-#     batch_add ID SPEC       SPEC's lines of comment name its options, as grammar.c has them; ID.again.c: its second writing, if it is there
+#     batch_add ID SPEC       SPEC's lines of comment name its options, as grammar.c has them; ID.again.c: its second
+#     writing, if it is there
 #                             what is wrong goes to ID.wrong; `said` becomes made, refused or broken
 #     batch_build             compiles and links
 #     batch_run ID            the same for its run
@@ -70,7 +72,8 @@ batch_add() {
 		return
 	fi
 	# the plain model: no state left out, in double
-	plain=$(printf '%s\n' "$given" | awk '{ for (i = 1; i < NF; i++) if ($i == "-D" || $i == "--step") printf " %s %s", $i, $(i + 1) }')
+	plain=$(printf '%s\n' "$given" | awk '{ for (i = 1; i < NF; i++) if ($i == "-D" || $i == "--step") printf " %s %s",
+		$i, $(i + 1) }')
 	whole=$id
 	code="$id.c"
 	case $given in
@@ -85,7 +88,8 @@ batch_add() {
 	tuned=
 	if [ -n "$retune" ]; then
 		tuned=t$id
-		if ! make_c "$tuned" "$spec" "$(printf '%s\n' "$retune" | sed 's/ step=/ --step /; s/ \([A-Za-z_0-9]*=\)/ -D \1/g')"; then
+		if ! make_c "$tuned" "$spec" \
+			"$(printf '%s\n' "$retune" | sed 's/ step=/ --step /; s/ \([A-Za-z_0-9]*=\)/ -D \1/g')"; then
 			echo "with other params: $(grep -m 1 error "$tuned.said")" >"$id.wrong"
 			return
 		fi
@@ -185,8 +189,10 @@ batch_build() {
 			[ -f "$id.again.c" ] && objects="$objects $id.again.o"
 		done <"compiled_$cc.list"
 		# shellcheck disable=SC2086
-		$cc -std=gnu11 -O1 -w $sanitizers -I. -I"$source/runtime" -I"$source/tests/fuzz" "subjects_$cc.c" $objects "$folder/drive_$cc.a" \
-			-lsundials_cvode -lsundials_arkode -lsundials_nvecserial -lm -o "batch_$cc" >"link_$cc.said" 2>&1 || sed 's/^/# /' "link_$cc.said" | head -n 20
+		$cc -std=gnu11 -O1 -w $sanitizers -I. -I"$source/runtime" -I"$source/tests/fuzz" "subjects_$cc.c" $objects \
+			"$folder/drive_$cc.a" \
+			-lsundials_cvode -lsundials_arkode -lsundials_nvecserial -lm -o "batch_$cc" >"link_$cc.said" 2>&1 ||
+				sed 's/^/# /' "link_$cc.said" | head -n 20
 	done
 }
 
@@ -202,7 +208,8 @@ batch_run() {
 	status=$?
 	if [ $status -ne 0 ]; then
 		{
-			[ $status -le 1 ] || echo "$cc: ends with status $status: $(grep -m 2 -e ERROR -e 'runtime error' "$id.err" | tr '\n' ' ')"
+			[ $status -le 1 ] ||
+				echo "$cc: ends with status $status: $(grep -m 2 -e ERROR -e 'runtime error' "$id.err" | tr '\n' ' ')"
 			head -n 6 "$id.ran"
 		} >"$id.wrong"
 	fi

@@ -4,8 +4,9 @@
 #
 #     tuned.sh PLGEN REAL CODE.c HEADER.h MODEL.spec ...
 #
-# Each is there as NAME and, with --form direct, as direct_NAME; as plain_NAME and plain_direct_NAME: the same spec without `tunable`; and
-# where its line `#there OPTION ...` gives other values, with these as there_NAME and there_direct_NAME, again without `tunable`.
+# Each is there as NAME and, with --form direct, as direct_NAME; as plain_NAME and plain_direct_NAME: the same spec
+# without `tunable`; and where its line `#there OPTION ...` gives other values, with these as there_NAME and
+# there_direct_NAME, again without `tunable`.
 set -eu
 LC_ALL=C
 export LC_ALL
@@ -29,7 +30,8 @@ make() {
     from=$1
     prefix=$2
     shift 2
-    "$plgen" --real "$real" --prefix "$prefix" "$@" -o "$work/$prefix.c" "$from" 2>"$work/said" || { cat "$work/said" >&2; exit 1; }
+    "$plgen" --real "$real" --prefix "$prefix" "$@" -o "$work/$prefix.c" "$from" 2>"$work/said" ||
+        { cat "$work/said" >&2; exit 1; }
     cat "$work/$prefix.h" >>"$work/headers"
     grep -v '^#include "'"$prefix"'.h"$' "$work/$prefix.c" >>"$work/bodies"
 }
