@@ -8,7 +8,8 @@ DEMO_PACKAGES = $(PACKAGES) libsundials-dev gnuplot-nox
 CHECK_PACKAGES = $(DEMO_PACKAGES) g++ clang libcmocka-dev valgrind \
 	gcc-arm-none-eabi libnewlib-arm-none-eabi qemu-system-arm
 
-.PHONY: all setup deps demo-deps check-deps demo tests check check-long bench charts charts-quick firmware-report install clean
+.PHONY: all setup deps demo-deps check-deps demo tests check check-long bench charts charts-quick firmware-report \
+	install clean
 
 all: setup
 	ninja -C $(BUILD) plgen
@@ -26,7 +27,8 @@ if [ -n "$$missing" ]; then \
 fi
 endef
 
-# configure TEST,OPTIONS: the build folder, unless TEST finds in it what is wanted; what was set up before a package came, once more
+# configure TEST,OPTIONS: the build folder, unless TEST finds in it what is wanted; what was set up before a package
+# came, once more
 define configure
 @if ! { $(1); } >/dev/null 2>&1; then \
 	again=; [ ! -f $(BUILD)/build.ninja ] || again=--reconfigure; \
@@ -38,28 +40,10 @@ endef
 deps:
 	$(call need,$(PACKAGES))
 
-demo-# configure TEST,OPTIONS: the build folder, unless TEST finds in it what is wanted; what was set up before a package came, once more
-define configure
-@if ! { $(1); } >/dev/null 2>&1; then \
-	again=; [ ! -f $(BUILD)/build.ninja ] || again=--reconfigure; \
-	meson setup $$again $(2) $(BUILD) >$(BUILD).log || { cat $(BUILD).log; exit 1; }; \
-	rm -f $(BUILD).log; \
-fi
-endef
-
-deps:
+demo-deps:
 	$(call need,$(DEMO_PACKAGES))
 
-check-# configure TEST,OPTIONS: the build folder, unless TEST finds in it what is wanted; what was set up before a package came, once more
-define configure
-@if ! { $(1); } >/dev/null 2>&1; then \
-	again=; [ ! -f $(BUILD)/build.ninja ] || again=--reconfigure; \
-	meson setup $$again $(2) $(BUILD) >$(BUILD).log || { cat $(BUILD).log; exit 1; }; \
-	rm -f $(BUILD).log; \
-fi
-endef
-
-deps:
+check-deps:
 	$(call need,$(CHECK_PACKAGES))
 
 setup: deps

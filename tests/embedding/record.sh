@@ -35,7 +35,8 @@ as_load() {
 # spec DECLARATION OUTPUTS [SLOPES]
 spec() {
     printf 'model rec\ncoord x, y\n%b\ninit x = 0.5\n' "$1"
-    printf "2*x'' + 0.4*x' + 30*x - 5*y = 3*u + 0.7*v%s\ny'' + 0.2*y' + 12*y - 5*x = v - u\noutput x, y%s\nstep 0.05\n" "${3-}" "$2"
+    printf "2*x'' + 0.4*x' + 30*x - 5*y = 3*u + 0.7*v%s\ny'' + 0.2*y' + 12*y - 5*x = v - u\n" "${3-}"
+    printf 'output x, y%s\nstep 0.05\n' "$2"
 }
 
 # near FOUND EXPECTED BOUND: each column within BOUND of its largest value
@@ -80,7 +81,8 @@ form() {
             # shellcheck disable=SC2086
             "$plgen" --real $real $options rec.spec >rec.c 2>>log && driver rec.c rec rec "$flags" &&
                 ./rec 2 <rows.csv >found.csv 2>>log && near found.csv expected.csv $bound
-            result $? "$1, $real${options:+, compensated}: 40 steps of the record are its closed form within $bound of the largest value"
+            result $? "$1, $real${options:+, compensated}: 40 steps of the record are its closed form \
+within $bound of the largest value"
         done
     done
     "$plgen" --header rec.spec >log && grep -q "rec_Gamma\[REC_STATES\]\[$5\];" log
@@ -127,8 +129,9 @@ says 'ramps: not even the first' 1 'expected row 0, of t = 0, found' 1 0
 # ---- where the state is before the first step ----
 
 # In contact from the start on, and so not crossed into: as the same model with the sample as a param.
-printf "model touch\ncoord x\ninput u hold first\nx'' + 0.2*x' + 4*x + 10*max(x - u, 0) = 0\noutput x\nstep 0.05\n" >touch.spec
-printf "model fixed\nparam u = -1\ncoord x\nx'' + 0.2*x' + 4*x + 10*max(x - u, 0) = 0\noutput x\nstep 0.05\n" >fixed.spec
+for model in 'touch\ncoord x\ninput u hold first' 'fixed\nparam u = -1\ncoord x'; do
+    printf "model %b\nx'' + 0.2*x' + 4*x + 10*max(x - u, 0) = 0\noutput x\nstep 0.05\n" "$model" >"${model%%\\*}.spec"
+done
 cat >touch.c <<'EOF'
 #include "touch_pl.h"
 #include "fixed_pl.h"
@@ -145,7 +148,8 @@ int main(void)
     for (k = 0; k < 200; k++) {
         const double d = s.y[0] - f.y[0];
         if (touch_crossed(&s) != fixed_crossed(&f) || !(d < 1e-12 && d > -1e-12)) {
-            printf("step %d: crossed %d, x = %.17g; expected %d, %.17g\n", k, (int)touch_crossed(&s), s.y[0], (int)fixed_crossed(&f), f.y[0]);
+            printf("step %d: crossed %d, x = %.17g; expected %d, %.17g\n", k, (int)touch_crossed(&s), s.y[0],
+                (int)fixed_crossed(&f), f.y[0]);
             bad = 1;
             break;
         }

@@ -94,7 +94,8 @@ int main(void)
 }
 EOF
 
-printf "model linear\ncoord x, y\ninit x = 1\nx'' - 9*x + y = 0\ny'' + 0.1*y' + 4*y - x = cos(t)\nstep 0.1\n" >grows.spec
+printf "model linear\ncoord x, y\ninit x = 1\nx'' - 9*x + y = 0\n" >grows.spec
+printf "y'' + 0.1*y' + 4*y - x = cos(t)\nstep 0.1\n" >>grows.spec
 
 # looks TITLE SPEC FLAGS OPTIONS: in double and float
 looks() {

@@ -160,9 +160,24 @@ done
 
 {
     for m in $models; do echo "#include \"$m.h\""; done
-    printf '#include <cstdio>\n\ntemplate<class S> static double last(void (*init)(S *), void (*step)(S *), const pl_model &model)\n{\n'
-    printf '    S s;\n    double out[16];\n    init(&s);\n    for (int k = 0; k < 100; k++)\n        step(&s);\n    S saved = s;\n    model.out(&saved, out);\n    return out[0];\n}\n\n'
-    printf 'int main()\n{\n'
+    cat <<'EOF'
+#include <cstdio>
+
+template<class S> static double last(void (*init)(S *), void (*step)(S *), const pl_model &model)
+{
+    S s;
+    double out[16];
+    init(&s);
+    for (int k = 0; k < 100; k++)
+        step(&s);
+    S saved = s;
+    model.out(&saved, out);
+    return out[0];
+}
+
+int main()
+{
+EOF
     for m in $models; do printf '    std::printf("%%.17g\\n", last(%s_init, %s_step, %s_model));\n' "$m" "$m" "$m"; done
     printf '    return 0;\n}\n'
 } >main.cpp
@@ -252,24 +267,29 @@ right() {
 }
 
 # Words that the emitted C or its headers might use themselves.
-locals='s y u n k i j x z w h tau out dydt t0 power work wave wave1 wave2 load residual series slope phase phase_start phase_step phase_rate start
-    power_entry row column value state_names output_names any_init any_step any_out unused size states degree halvings A M C K
-    x_dot y_dot s_dot v_dot double_ pl_cossin pl_turn pl_turn_add pl_series_advance pl_power_apply uint64_t size_t int64_t
+locals='s y u n k i j x z w h tau out dydt t0 power work wave wave1 wave2 load residual series slope phase
+    phase_start phase_step phase_rate start power_entry row column value state_names output_names any_init any_step
+    any_out unused size states degree halvings A M C K x_dot y_dot s_dot v_dot double_ pl_cossin
+    pl_turn pl_turn_add pl_series_advance pl_power_apply
+    uint64_t size_t int64_t
     PROBE_STATES PROBE_H probe probe_time probe_get probe_out probe_slope probe_phase_step'
-macros='NAN INFINITY HUGE_VAL M_PI M_E INT_MAX UINT64_MAX SIZE_MAX UINT64_C INT64_C FP_NAN MATH_ERRNO NULL EOF I unix linux i386 errno assert
-    OVERFLOW DOMAIN SING PLRT_H PL_COSSIN_MUL DBL_MAX LONG_MAX CHAR_BIT SHRT_MIN isnan isinf signbit fpclassify isless signgam _x __x _Complex'
-functions='j0 j1 jn y0 y1 yn gamma lgamma pow fabs fmin fmax floor ceil fmod hypot erf cbrt exp2 log2 round trunc div abort memcpy memset time main
-    index read write std NAN_ double_t float_t complex'
+macros='NAN INFINITY HUGE_VAL M_PI M_E INT_MAX UINT64_MAX SIZE_MAX UINT64_C INT64_C FP_NAN MATH_ERRNO NULL EOF I
+    unix linux i386 errno assert OVERFLOW DOMAIN SING PLRT_H PL_COSSIN_MUL DBL_MAX LONG_MAX CHAR_BIT SHRT_MIN isnan
+    isinf signbit fpclassify isless signgam _x __x _Complex'
+functions='j0 j1 jn y0 y1 yn gamma lgamma pow fabs fmin fmax floor ceil fmod hypot erf cbrt exp2 log2 round trunc
+    div abort memcpy memset time main index read write std NAN_ double_t float_t complex'
 
 # The specs below use every name beside functions of <math.h>, in outputs of both kinds.
 
 as_coordinates() {      # NAME ...: a chain
     awk 'BEGIN {
         for (i = 1; i < ARGC; i++) list = list (i > 1 ? ", " : "") ARGV[i]
-        print "model names\nparam stiff = 3, power2 = 2\ncoord " list "\ninit " ARGV[1] " = 1, " ARGV[ARGC - 1] "\047 = 0.5"
+        print "model names\nparam stiff = 3, power2 = 2\ncoord " list
+        print "init " ARGV[1] " = 1, " ARGV[ARGC - 1] "\047 = 0.5"
         for (i = 1; i < ARGC; i++) {
             c = ARGV[i]; next_one = ARGV[i % (ARGC - 1) + 1]
-            print c "\047\047 + " i " * stiff*" c " + 0.1*" c "\047 - 0.5*(" next_one " - " c ") = " (i % 2 ? "cos(3*t)" : "power2^2*sin(2*t) + 1")
+            load = i % 2 ? "cos(3*t)" : "power2^2*sin(2*t) + 1"
+            print c "\047\047 + " i " * stiff*" c " + 0.1*" c "\047 - 0.5*(" next_one " - " c ") = " load
             print "output acceleration" i " = " c "\047\047"
             print "output bent" i " = max(abs(" c "), abs(" c ")^2.5, min(" c "\047, " next_one "))"
             print "output cut" i " = clip(" c ", -1, 1) + t + " c "\047"
@@ -284,8 +304,8 @@ as_params() {
         print "first_mass\047\047 + first_mass*(1 " sum ")/50 = (1" sum ")*cos(3*t)"
         print "second_mass\047\047 + 4*second_mass - first_mass = sin(" ARGV[1] "*t)"
         for (i = 1; i < ARGC; i++)
-            print "output a" i " = abs(" ARGV[i] "*first_mass)\noutput b" i " = " ARGV[i] "*max(first_mass\047, second_mass, " ARGV[i] \
-                "^0.5*first_mass) + t"
+            print "output a" i " = abs(" ARGV[i] "*first_mass)\noutput b" i " = " ARGV[i] \
+                "*max(first_mass\047, second_mass, " ARGV[i] "^0.5*first_mass) + t"
         print "step 0.01" }' "$@" | sed '1i\
 model names'
 }
@@ -297,7 +317,8 @@ as_lets() {
             sum = sum " + " ARGV[i] }
         print "first_mass\047\047 + 20*first_mass + (" ARGV[1] sum ")/10000 = cos(3*t)"
         print "second_mass\047\047 + 4*second_mass - first_mass = 0"
-        for (i = 1; i < ARGC; i++) print "output a" i " = " ARGV[i] ", b" i " = abs(" ARGV[i] ")^1.5 + max(t, " ARGV[i] ")"
+        for (i = 1; i < ARGC; i++)
+            print "output a" i " = " ARGV[i] ", b" i " = abs(" ARGV[i] ")^1.5 + max(t, " ARGV[i] ")"
         print "step 0.01" }' "$@"
 }
 
@@ -449,7 +470,8 @@ for name in x same; do
 done
 
 # The spec's text in the banner: nothing in it may end or open a comment.
-printf "model banner\nparam k = 4\ncoord x\ninit x = 1\nx'' + (k # a comment */ broken( /* in a comment\n + 0)*x = 0\nstep 0.01\n" >banner.spec
+printf "model banner\nparam k = 4\ncoord x\ninit x = 1\n" >banner.spec
+printf "x'' + (k # a comment */ broken( /* in a comment\n + 0)*x = 0\nstep 0.01\n" >>banner.spec
 right banner.spec banner 'an equation with the signs of C comments in its own comment'
 cp banner.spec 'odd*.spec'
 sed -i '/# a comment/s/#.*//' 'odd*.spec'
@@ -483,7 +505,8 @@ right wide.spec wide 'very small and very large constants'
     i=1
     while [ $i -le 12 ]; do
         next=$((i % 12 + 1))
-        printf "a_rather_long_name_for_mass_%d'' + 20*a_rather_long_name_for_mass_%d - 5*a_rather_long_name_for_mass_%d = 0\n" $i $i $next
+        long=a_rather_long_name_for_mass
+        printf "${long}_%d'' + 20*${long}_%d - 5*${long}_%d = 0\n" $i $i $next
         i=$((i + 1))
     done
     echo 'step 0.05'

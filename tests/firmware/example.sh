@@ -38,7 +38,8 @@ for name in m4f m3 m0; do
     board $name
     clock=25000000
     [ $name != m0 ] || clock=16000000
-    drivers="$firmware/start.c $firmware/semihosting.c $firmware/digits.c $firmware/example_board.c -I$firmware -DBOARD_CLOCK_HZ=${clock}u -Werror"
+    drivers="$firmware/start.c $firmware/semihosting.c $firmware/digits.c $firmware/example_board.c"
+    drivers="$drivers -I$firmware -DBOARD_CLOCK_HZ=${clock}u -Werror"
     # Not the flags of a make that runs this test
     MAKEFLAGS= make -s firmware.elf PLGEN="$plgen" RUNTIME="$root/runtime" SPEC="$root/models/quarter_car.spec" \
         CPU="$cpu" \
@@ -75,7 +76,13 @@ diff out.m4f out.m3 >>log && diff out.m4f out.m0 >>log
 result $? 'all boards say the same'
 
 echo '#include "cycles.h"
-uint32_t spent(void (*f)(void)); uint32_t spent(void (*f)(void)) { const uint32_t before = (cycles_start(), cycles()); f(); return cycles() - before; }' >cycles.c
+uint32_t spent(void (*f)(void));
+uint32_t spent(void (*f)(void))
+{
+    const uint32_t before = (cycles_start(), cycles());
+    f();
+    return cycles() - before;
+}' >cycles.c
 for name in m3 m4f m7; do
     board $name
     # shellcheck disable=SC2086

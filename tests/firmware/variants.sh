@@ -24,7 +24,9 @@ while read -r name model options; do
 done <"$out.lines"
 {
     echo 'const struct variant variants_'"$real"'[] = {'
-    sed "s/\([^ ]*\) [^ ]* untested.*/    UNTESTED(\1_$real),/; t; s/\([^ ]*\) [^ ]* tunable.*/    TUNABLE(\1_$real),/; t; s/ .*//; s/.*/    VARIANT(&_$real),/" "$out.lines"
+    sed -e "s/\([^ ]*\) [^ ]* untested.*/    UNTESTED(\1_$real),/; t" \
+        -e "s/\([^ ]*\) [^ ]* tunable.*/    TUNABLE(\1_$real),/; t" \
+        -e "s/ .*//; s/.*/    VARIANT(&_$real),/" "$out.lines"
     echo '    {0, 0, 0, 0}};'
 } >>"$out.part"
 rm "$out.lines"

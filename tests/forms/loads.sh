@@ -15,7 +15,14 @@ last=${5-8}
 seed=${6-1}
 . "${0%/*}/../tap.sh"
 echo '#include <math.h>' >models.c
-echo 'static const struct load_model { const char *name; const pl_model *model; const pl_modelf *modelf; double bound, boundf; } load_models[] = {' >table
+cat >table <<'EOF'
+static const struct load_model {
+    const char *name;
+    const pl_model *model;
+    const pl_modelf *modelf;
+    double bound, boundf;
+} load_models[] = {
+EOF
 
 # stated FILE: the bound in its banner
 stated() {

@@ -17,7 +17,8 @@ grep -v -e '^#' -e '^$' "$list" | while read -r name _ step as options; do
         sed -n -e "/^struct $as {/,/^};/p" -e "/^enum {/p" -e "/^void ${as}_step($as \*s)\$/,/^}/p" |
         sed -e 's/\<float\>/wide/g' -e 's/\<double\>/wide/g' -e 's/pl_accumulatef*(/wide_accumulate(/' \
             -e "s/^struct $as {/typedef struct $as $as;\\n&/" -e 's/^void/static void/'
-    printf 'static void %s_map(wide *y)\n{\n    %s s = {0};\n    memcpy(s.y, y, sizeof s.y);\n    %s_step(&s);\n    memcpy(y, s.y, sizeof s.y);\n}\n' "$as" "$as" "$as"
+    printf 'static void %s_map(wide *y)\n{\n    %s s = {0};\n    memcpy(s.y, y, sizeof s.y);\n' "$as" "$as"
+    printf '    %s_step(&s);\n    memcpy(y, s.y, sizeof s.y);\n}\n' "$as"
 done
 echo 'static const struct map maps[] = {'
 grep -v -e '^#' -e '^$' "$list" | while read -r name _ step as options; do

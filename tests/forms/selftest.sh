@@ -11,7 +11,16 @@ root=$(cd "$2" && pwd) || exit 99
 case $plgen in /*) ;; *) plgen=$PWD/$plgen ;; esac
 . "${0%/*}/../tap.sh"
 compiler=${CC:-cc}
-printf '#include "plrt.h"\n#include <stdio.h>\nREAL subject_selftest(void);\nint main(void)\n{\n    printf("%%g\\n", (double)subject_selftest());\n    return 0;\n}\n' >main.c
+cat >main.c <<'EOF'
+#include "plrt.h"
+#include <stdio.h>
+REAL subject_selftest(void);
+int main(void)
+{
+    printf("%g\n", (double)subject_selftest());
+    return 0;
+}
+EOF
 runtime_archive "$root/runtime"
 
 # value FILE TYPE: what its self-test returns

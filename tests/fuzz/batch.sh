@@ -137,7 +137,9 @@ batch_add() {
 				echo "void ${id}_$function(double t, const double *y, const double *u, const double *top, double *out);"
 			done
 		fi
-		echo "SUBJECT {\"$id\", $model, &${whole}_model, ${whole}_slopes, \"$scheme\", \"$class\", \"$(head_of "$spec" changes)\", $solution, $selftest," \
+		changes=$(head_of "$spec" changes)
+		echo "SUBJECT {\"$id\", $model, &${whole}_model, ${whole}_slopes, \"$scheme\", \"$class\", \"$changes\"," \
+			"$solution, $selftest," \
 			"$again, ${tuned:+&}${tuned:-NULL}${tuned:+_model}, \"$retune\"},"
 	} >"$id.subject"
 	printf '%s\n' "$id" >>"subjects_$cc.list"

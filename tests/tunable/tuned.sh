@@ -44,11 +44,18 @@ has() {
 
 # entry NAME PLAIN THERE FORM: what tuned.h says of one
 entry() {
-    echo "static int $1_any_coeffs(void *c, const real *params, real h) { return $1_retune(($1_coeffs *)c, params, h); }" >>"$work/bodies"
+    {
+        echo "static int $1_any_coeffs(void *c, const real *params, real h)"
+        echo "{"
+        echo "    return $1_retune(($1_coeffs *)c, params, h);"
+        echo "}"
+    } >>"$work/bodies"
     echo "static void $1_any_use(void *s, const void *c) { $1_use(($1 *)s, (const $1_coeffs *)c); }" >>"$work/bodies"
     {
-        echo "    {\"$1\", &$1_model, &$2_model, $3, \"$there\", $4, sizeof($1_coeffs), offsetof($1, coeffs), &$1_nominal, $1_any_coeffs, $1_any_use,"
-        echo "    .h = offsetof($1_coeffs, h), .params = offsetof($1_coeffs, params), .columns = (int)(sizeof $1_nominal.step[0] / sizeof $1_nominal.step[0][0]),"
+        echo "    {\"$1\", &$1_model, &$2_model, $3, \"$there\", $4, sizeof($1_coeffs), offsetof($1, coeffs),"
+        echo "    &$1_nominal, $1_any_coeffs, $1_any_use,"
+        echo "    .h = offsetof($1_coeffs, h), .params = offsetof($1_coeffs, params),"
+        echo "    .columns = (int)(sizeof $1_nominal.step[0] / sizeof $1_nominal.step[0][0]),"
         has "$1" step
         has "$1" out
         has "$1" phase_step
