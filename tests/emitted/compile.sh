@@ -2,17 +2,24 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # What plgen emits compiles without a warning, as C99 and as C++17, needs nothing but the runtime, and runs.
 #
-#     compile.sh PLGEN SOURCE_ROOT MODEL ...
+#     compile.sh PLGEN SOURCE_ROOT SOLUTIONS MODEL ...
+#
+# SOLUTIONS is a folder with MODEL_solution.csv, of --solution 30.
 #
 # The compilers are those of GCCS and CLANGS (default: gcc g++, clang clang++); what is not installed is skipped.
 set -u
 plgen=$1
 root=$2
-shift 2
+solutions=$3
+shift 3
 models=$*
 case $plgen in
     /*) ;;
     *) plgen=$PWD/$plgen ;;
+esac
+case $solutions in
+    /*) ;;
+    *) solutions=$PWD/$solutions ;;
 esac
 warnings='-Wall -Wextra -Wpedantic -Wconversion -Wdouble-promotion -Wshadow -Werror'
 . "${0%/*}/../tap.sh"
@@ -223,7 +230,7 @@ done
 for m in $models; do
     : >log
     driver "$m/stdout.c" "$m" m "-std=c99 $warnings" && ./m 30 >found.csv 2>>log &&
-        "$plgen" --solution 30 "$root/models/$m.spec" >expected.csv 2>>log && same_columns found.csv expected.csv
+        same_columns found.csv "$solutions/${m}_solution.csv"
     result $? "$m: the driver's 30 s agree with --solution 30"
     rows=$(($(wc -l <found.csv) - 1))
     h=$("$plgen" --explain=json "$root/models/$m.spec" | sed -n 's/^ *"step": \(.*\),$/\1/p')

@@ -104,9 +104,8 @@ for spec in "$root"/tests/emitted/linear/*.spec; do
         result $status "$m, $kind: standard output compiles, freestanding, needs the runtime, memcpy and memset at most"
         if [ -z "$inputs_of" ]; then
             : >log
-            driver "$kind/$m.std.c" "$m" one && ./one 10 >found.csv 2>>log &&
-                "$plgen" --solution 10 "$spec" >expected.csv 2>>log &&
-                same_columns found.csv expected.csv
+            [ -s "$m.csv" ] || "$plgen" --solution 10 "$spec" >"$m.csv" 2>>log
+            driver "$kind/$m.std.c" "$m" one && ./one 10 >found.csv 2>>log && same_columns found.csv "$m.csv"
             result $? "$m, $kind: the driver's 10 s agree with --solution of the whole model"
         else
             : >log

@@ -77,7 +77,9 @@ done
 # ---- figures.csv ----
 
 {
-    echo model,form,accuracy,real,multiplications,additions,ram,m0_step_bytes,m0_flash,m0_stack,m0_instructions,m0_most,m0_soft_float,m4f_step_bytes,m4f_flash,m4f_stack,m4f_instructions,m4f_most
+    printf '%s,' model form accuracy real multiplications additions ram
+    printf '%s,' m0_step_bytes m0_flash m0_stack m0_instructions m0_most m0_soft_float
+    echo m4f_step_bytes,m4f_flash,m4f_stack,m4f_instructions,m4f_most
     for real in double float; do
         [ $real = double ] && models=$double || models=$float
         awk -v real=$real -v folder="$work" '
@@ -87,7 +89,8 @@ done
                     if (split(line, field, " ") != 5) continue
                     ram[field[1]] = field[2]
                     # One instruction of the empty function came off with its call.
-                    figures[board, field[1]] = field[5] "," int(field[3] / 200 / ticks + 1.5) "," int(field[4] / ticks + 1.5)
+                    figures[board, field[1]] = field[5] "," int(field[3] / 200 / ticks + 1.5) "," \
+                        int(field[4] / ticks + 1.5)
                 }
                 file = folder "/" board "." real "/bytes"
                 while ((getline line <file) > 0) {
@@ -106,8 +109,10 @@ done
                 return (total[what] - total["draw"]) / 200 / 16.384
             }
             function row(variant, what, multiplications, additions) {
-                return what "," real "," multiplications "," additions "," ram[variant] "," bytes["m0", variant] "," figures["m0", variant] "," \
-                    int(multiplications * multiply + additions * add + 0.5) "," bytes["m4f", variant] "," figures["m4f", variant] "\n"
+                return what "," real "," multiplications "," additions "," ram[variant] "," \
+                    bytes["m0", variant] "," figures["m0", variant] "," \
+                    int(multiplications * multiply + additions * add + 0.5) "," \
+                    bytes["m4f", variant] "," figures["m4f", variant] "\n"
             }
             BEGIN { read_board("m0", 16.384); read_board("m4f", 25.6); multiply = cost("multiply"); add = cost("add") }
             /^\/\* [a-z0-9_]*: made by plgen/ {
@@ -136,7 +141,9 @@ done
 # ---- retune.csv ----
 
 {
-    echo model,form,real,coefficients,pole_h,m0_retune_bytes,m0_flash,m0_flash_more,m0_stack,m0_instructions,m0_most,m4f_retune_bytes,m4f_flash,m4f_flash_more,m4f_stack,m4f_instructions,m4f_most
+    printf '%s,' model form real coefficients pole_h
+    printf '%s,' m0_retune_bytes m0_flash m0_flash_more m0_stack m0_instructions m0_most
+    echo m4f_retune_bytes,m4f_flash,m4f_flash_more,m4f_stack,m4f_instructions,m4f_most
     for real in double float; do
         [ $real = double ] && models=$double || models=$float
         awk -v real=$real -v folder="$work" '
@@ -157,7 +164,8 @@ done
                         if (board == "m0")
                             times[variant, ++many[variant]] = field[6]
                         size[variant] = field[2]
-                        figures[board, variant, field[6]] = bytes[variant] "," field[5] "," int(field[3] / 4 / ticks + 0.5) "," int(field[4] / ticks + 0.5)
+                        figures[board, variant, field[6]] = bytes[variant] "," field[5] "," \
+                            int(field[3] / 4 / ticks + 0.5) "," int(field[4] / ticks + 0.5)
                     }
             }
             BEGIN { read_board("m0", 16.384); read_board("m4f", 25.6) }
@@ -194,10 +202,12 @@ done
 {
     echo "\`$arm-gcc\` $($arm-gcc -dumpfullversion), \`-O2 -ffp-contract=off\`:"
     echo
-    echo '| model | form | | operations | RAM | M0: step | flash | stack | instructions | M4F: step | flash | stack | instructions |'
+    printf '| model | form | | operations | RAM | M0: step | flash | stack | instructions | '
+    echo 'M4F: step | flash | stack | instructions |'
     echo '| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |'
     awk -F, 'NR > 1 { form = $2 ($3 == "compensated" ? ", two words" : "")
-                      print "| " $1 " | " form " | " $4 " | " $5 " + " $6 " | " $7 " | " $8 " | " $9 " | " $10 " | " $11 " | " $14 " | " $15 " | " $16 " | " $17 " |" }' "$doc/firmware/figures.csv"
+                      print "| " $1 " | " form " | " $4 " | " $5 " + " $6 " | " $7 " | " $8 " | " $9 " | " $10 \
+                          " | " $11 " | " $14 " | " $15 " | " $16 " | " $17 " |" }' "$doc/firmware/figures.csv"
 } >"$work/figures"
 {
     echo '| | M0: own | deepest | M4F: own | deepest |'
@@ -219,9 +229,11 @@ done
                                m "_retune") " | " of(m4f, m "_selftest") " |" } }' "$doc/firmware/stack.csv"
 } >"$work/model_stack"
 {
-    echo '| model | form | | coefficients | largest \|pole\| h | M0: retune | flash | stack | instructions | M4F: retune | flash | stack | instructions |'
+    printf '%s' '| model | form | | coefficients | largest \|pole\| h | M0: retune | flash | stack | instructions | '
+    echo 'M4F: retune | flash | stack | instructions |'
     echo '| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |'
-    awk -F, 'NR > 1 { print "| " $1 " | " $2 " | " $3 " | " $4 " | " $5 " | " $6 " | +" $8 " | " $9 " | " $10 " | " $12 " | +" $14 " | " $15 " | " $16 " |" }' "$doc/firmware/retune.csv"
+    awk -F, 'NR > 1 { print "| " $1 " | " $2 " | " $3 " | " $4 " | " $5 " | " $6 " | +" $8 " | " $9 \
+        " | " $10 " | " $12 " | +" $14 " | " $15 " | " $16 " |" }' "$doc/firmware/retune.csv"
 } >"$work/retune"
 # One multiplication and one addition of soft float, calls included
 for name in m0 m4f; do
