@@ -38,7 +38,7 @@ link "$work/image.elf" "$work"/*.o || exit 99
 
 "$host" "$6" >"$work/expected" || exit 99
 # Many times what the slowest takes
-emulate "${FIRMWARE_TIMEOUT:-240}" "$work/image.elf" >"$work/found"
+emulate "${FIRMWARE_TIMEOUT:-4800}" "$work/image.elf" >"$work/found"
 status=$?
 
 # A result for each variant, one for the stack, which on a small board must not reach the variables, and one for the

@@ -46,7 +46,7 @@ for name in m4f m3 m0; do
         BOARD="$drivers -nostartfiles -L$firmware -T $script" >log 2>&1 && [ ! -s log ]
     result $? "$name: the example builds with the lines of its Makefile, without a warning"
     # An instruction every 16 ns, whatever the host: 62500 in a millisecond.
-    emulate 60 firmware.elf -icount shift=4,align=off,sleep=off >out
+    emulate 1200 firmware.elf -icount shift=4,align=off,sleep=off >out
     status=$?
     {
         echo "status $status; time [ms], ticks, micrometres off with corrections, without:"
@@ -68,7 +68,7 @@ for folder in models runtime tests; do
 done
 cp main.c board.h Makefile tree/doc/firmware
 MAKEFLAGS= make -s -C tree/doc/firmware PLGEN="$plgen" >log 2>&1 && board m4f &&
-    emulate 60 tree/doc/firmware/firmware.elf -icount shift=4,align=off,sleep=off >out 2>>log
+    emulate 1200 tree/doc/firmware/firmware.elf -icount shift=4,align=off,sleep=off >out 2>>log
 diff out out.m4f >>log
 result $? 'the Makefile as it stands builds what runs on the M4F'
 : >log

@@ -31,7 +31,7 @@ head_of() { # SPEC WHAT
 # make_c ID SPEC OPTIONS: 0, or the status of plgen, in which case ID.said has its words
 make_c() {
 	# shellcheck disable=SC2086
-	timeout 60 "$plgen" --rhs --prefix "$1" $3 -o "$1.c" "$2" >"$1.out" 2>"$1.said" </dev/null
+	timeout 1200 "$plgen" --rhs --prefix "$1" $3 -o "$1.c" "$2" >"$1.out" 2>"$1.said" </dev/null
 }
 
 # what plgen said with this status: nothing if all is as it should be
@@ -42,7 +42,7 @@ why_refused() { # ID STATUS
 			elif ! grep -q -E -f "$source/tests/fuzz/refusals.list" "$1.said"; then
 				echo "status $2: $(grep -m 1 ': error: ' "$1.said")"
 			fi ;;
-		124) echo 'plgen takes over 60 s' ;;
+		124) echo 'plgen takes over 1200 s' ;;
 		*) echo "plgen ends with status $2: $(grep -m 3 -e 'ERROR' -e 'runtime error' "$1.said" | tr '\n' ' ')" ;;
 	esac
 }
@@ -100,7 +100,7 @@ batch_add() {
 	if [ "$scheme" = exact ] && ! grep -q 'INPUTS = [1-9]' "$id.h" && ! grep -q 'piecewise linear' "$id.c"; then
 		horizon=$(sed -n "s/^#define [A-Z0-9_]*_H \([-0-9.e]*\).*/\1/p" "$whole.h" | awk '{ printf "%.17g", 32.5 * $1 }')
 		# shellcheck disable=SC2086
-		timeout 60 "$plgen" --solution "$horizon" $plain "$spec" >"$id.csv" 2>"$id.said" </dev/null
+		timeout 1200 "$plgen" --solution "$horizon" $plain "$spec" >"$id.csv" 2>"$id.said" </dev/null
 		status=$?
 		if [ $status -eq 0 ]; then
 			solution="\"$id.csv\""
@@ -206,7 +206,7 @@ batch_run() {
 		echo "$cc: the program does not link" >"$id.wrong"
 		return
 	fi
-	timeout 60 "./batch_$cc" "$id" >"$id.ran" 2>"$id.err" </dev/null
+	timeout 1200 "./batch_$cc" "$id" >"$id.ran" 2>"$id.err" </dev/null
 	status=$?
 	if [ $status -ne 0 ]; then
 		{
