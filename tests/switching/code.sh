@@ -27,7 +27,7 @@ compiled() {
     name=$1
     file=$2
     shift 2
-    for compiler in 'gcc -std=c99 -O2 -c -o object.o' 'clang -std=c99 -fsyntax-only' \
+    for compiler in 'gcc -std=c99 -O1 -c -o object.o' 'clang -std=c99 -fsyntax-only' \
         'g++ -std=c++17 -fsyntax-only -x c++' \
         'clang++ -std=c++17 -fsyntax-only -x c++'; do
         if ! command -v "${compiler%% *}" >/dev/null 2>&1; then
