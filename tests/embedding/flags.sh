@@ -40,7 +40,7 @@ compile() {
     esac
     # shellcheck disable=SC2086
     "$1" $language -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wno-ignored-optimization-argument $2 \
-        -I"$root/runtime" -fsyntax-only "$3"
+        -I"$root/runtime" -c "$3" -o out.o
 }
 
 # refused COMPILER FLAGS WORDS FILES: none of the files compiles, and each is told why
