@@ -14,7 +14,7 @@
 
 #include "bitwise_specs.h"
 #include "evaluator.h"
-#include "plgen.h"
+#include "report/report.h"
 #include "random_spec.h"
 #include "rationals.h"
 
@@ -103,7 +103,7 @@ static void eliminate(size_t rows, size_t width, mpq_t *W)
 }
 
 /* The highest derivative of each coordinate as a row: over the states (without sign), the load columns of one segment,
- * u and u' of every input. Columns of M multiply accelerations; of a coordinate of first order the column of C
+ * u and u' of every input.  Columns of M multiply accelerations; of a coordinate of first order the column of C
  * multiplies what is solved for. */
 static mpq_t *highest_rows(const struct linear *system, int segment, size_t *width)
 {
@@ -315,7 +315,7 @@ static bool rounded(mpfi_ptr x, double *d)
 
 /* (e^{A h} X)_ij - subtract, rounded: true if this enclosure decides it. */
 static bool rounded_difference(const struct augmented *a, const evaluator_enclosure *E, size_t i, size_t j,
-    double subtract, double *d)
+                               double subtract, double *d)
 {
     mpfi_t sum;
     size_t bits = mpz_sizeinbase(E->radius, 2);
@@ -357,7 +357,7 @@ static const char *entry_name(const struct model *model, size_t i, size_t j)
 
 /* A flag says 0 at this tau: either 0 at every tau, or the judge finds nothing there with 4096 bits. */
 static void compare_flag(const char *what, struct enclosures *e, size_t i, size_t j, const struct coefficient *found,
-    bool always)
+                         bool always)
 {
     double value;
     if (always && !found->zero)
@@ -381,7 +381,7 @@ static const struct coefficient *found_entry(const struct table *table, int segm
 
 /* The states and the inputs have the same factors in every segment. */
 static void compare_step(const struct model *model, int segment, const struct augmented *a, const struct table *table,
-    const double *expected)
+                         const double *expected)
 {
     struct enclosures e = { .a = a, .h = model->h };
     const bool *always = always_zero(a);
@@ -427,22 +427,22 @@ static void compare_road(struct taylor *taylor, int i, int j, const char *what, 
 /* Small models come by residues, large ones by Taylor series: here the small ones by the second road too. */
 static void compare_roads(const struct step *step)
 {
-    const struct linear *system = &step->system;
+    const struct linear *system = &step->branch->system;
     const struct series *series = &step->series;
-    const int n = system->states, columns = step->table->columns;
+    const int n = system->states, columns = step->branch->whole->columns;
     if (n > LIMIT_RESIDUE_STATES || system->heldK)
         return;
     struct taylor *taylor = taylor_of(series->size, (const mpq_t *)series_matrix(series, system, 0), step->model->h);
     for (int i = 0; i < n; i++) {
         for (int j = 0; j < n; j++)
             compare_road(taylor, i, j, entry_name(step->model, (size_t)i, (size_t)j),
-                step->table->Phi[i * n + j].value);
+                         step->branch->whole->Phi[i * n + j].value);
         for (int l = 0, column = 0; l < system->loads; l++)
             for (int k = 0; k < system->load[l].columns; k++, column++)
                 if (series->load[l] >= 0)
                     compare_road(taylor, i, series->load[l] + k,
-                        entry_name(step->model, (size_t)i, (size_t)(n + column)),
-                                 step->table->load[i * columns + column].value);
+                                 entry_name(step->model, (size_t)i, (size_t)(n + column)),
+                                 step->branch->whole->load[i * columns + column].value);
     }
 }
 
@@ -479,14 +479,14 @@ static void compare_scheme(const struct model *model, bool both_roads)
     for (int s = 0; s < model->system.segments; s++) {
         const struct augmented a = augment(&model->system, s, model->scheme == SCHEME_PL, model->h);
         double *expected = ARRAY(double, a.size * a.columns);
-        const int undecided = evaluator_round(a.size, (const mpq_t *)a.A, model->h, a.columns, (const mpq_t *)a.X, 0,
-            expected);
+        const int undecided =
+            evaluator_round(a.size, (const mpq_t *)a.A, model->h, a.columns, (const mpq_t *)a.X, 0, expected);
         for (size_t i = 0; i < a.states * a.columns; i++)
             overflow = overflow || isinf(expected[i]);
         if (step && undecided)
             complain(format("entry %d of %zu x %zu", -1 - undecided, a.size, a.columns), "the judge cannot decide");
         else if (step)
-            compare_step(model, s, &a, step->table, expected);
+            compare_step(model, s, &a, step->branch->whole, expected);
     }
     if (!step)
         compare_refusal(overflow);
@@ -502,8 +502,8 @@ struct solution {
     mpq_t *A, *start;
 };
 
-/* exp, cos or sin of q as the generator takes it: to 256 bits, from a number of so many that it need not be looked
- * at twice */
+/* exp, cos or sin of q as the generator takes it: to 256 bits, from a number of so many that it need not be looked at
+ * twice */
 static void set_function(mpq_ptr value, mpq_srcptr q, int (*function)(mpfr_t, const mpfr_t, mpfr_rnd_t))
 {
     mpfr_t wide, rounded;
@@ -590,7 +590,7 @@ struct solution_work {
     double *expected;
 };
 
-/* False: the judge cannot decide. That is no failure where another value is out of range: e^{1e5} beside 1 is beyond
+/* False: the judge cannot decide.  That is no failure where another value is out of range: e^{1e5} beside 1 is beyond
  * its 16384 bits. */
 static bool expected_outputs(const struct solution *s, mpq_srcptr t, double *expected)
 {
@@ -621,9 +621,9 @@ static void compare_solution_values(void *context)
             continue;
         for (int o = 0; o < model->outputs; o++) {
             struct started *list;
-            const int count = responses_of_output(resolvent, &model->system, (const mpq_t *)model->initial,
-                &model->output[o], &list);
-            const struct coefficient c = started_value(count, list, t, model->step_at, model->output[o].name);
+            const int count =
+                responses_of_output(resolvent, &model->system, (const mpq_t *)model->initial, &model->output[o], &list);
+            const struct coefficient c = started_value(count, list, t, model->asked.step_at, model->output[o].name);
             compare(model->output[o].name, c.value, work->expected[first + (size_t)o]);
         }
     }
@@ -731,7 +731,7 @@ static mpfr_t *advance(const struct augmented *a, mpq_srcptr tau, const mpfr_t *
 }
 
 /* All states at t, driven from change to change; the loads are states that run on.  Phases are 256-bit numbers at t = 0
- * here and at the changes there: the two differ by about 2^-256 of what they are summed from. `segment` becomes that
+ * here and at the changes there: the two differ by about 2^-256 of what they are summed from.  `segment` becomes that
  * of t. */
 static mpfr_t *driven(const struct model *model, mpq_srcptr t, int *segment)
 {
@@ -761,8 +761,7 @@ static mpfr_t *driven(const struct model *model, mpq_srcptr t, int *segment)
 
 /* |found - sum| is to be half a unit in the last place, or 2^-200 of the largest term. */
 static void compare_driven(const struct model *model, const struct augmented *a, int segment,
-    const struct output *output, const mpfr_t *y,
-                           double found)
+                           const struct output *output, const mpfr_t *y, double found)
 {
     const mpq_t *row = (const mpq_t *)output_row(model, a, segment, output);
     mpfr_t sum, size, error;
@@ -786,8 +785,8 @@ static void compare_driven(const struct model *model, const struct augmented *a,
         const double spacing = nextafter(fabs(found), HUGE_VAL) - fabs(found);
         mpfr_sub_d(error, error, found == 0 ? 0 : spacing / 2, MPFR_RNDN);
         if (!(mpfr_cmp(error, size) <= 0))
-            complain(output->name, format("found %a = %.17g, expected %a = %.17g (driven)", found, found, expected,
-                expected));
+            complain(output->name,
+                     format("found %a = %.17g, expected %a = %.17g (driven)", found, found, expected, expected));
     }
     mpfr_clears(sum, size, error, (mpfr_ptr)NULL);
 }
@@ -812,9 +811,9 @@ static void compare_changes(void *context)
         }
         for (int o = 0; o < model->outputs; o++) {
             struct started *list;
-            const int count = responses_of_output(resolvent, &model->system, (const mpq_t *)model->initial,
-                &model->output[o], &list);
-            const struct coefficient c = started_value(count, list, t, model->step_at, model->output[o].name);
+            const int count =
+                responses_of_output(resolvent, &model->system, (const mpq_t *)model->initial, &model->output[o], &list);
+            const struct coefficient c = started_value(count, list, t, model->asked.step_at, model->output[o].name);
             compare_driven(model, &a, segment, &model->output[o], y, c.value);
         }
     }
@@ -846,7 +845,7 @@ static void compare_solution(struct model *model, mpq_srcptr written_step)
 
 static struct model *model_of(const char *text)
 {
-    static const struct overrides none;
+    static const struct request none;
     struct source *source = NEW(struct source);
     *source = (struct source){ .name = "spec", .base = "spec", .text = text, .length = strlen(text) };
     struct model *model = model_build(parse_spec(source), &none);
@@ -927,7 +926,7 @@ static size_t observable_rank(const struct model *model)
     return rank;
 }
 
-struct reduction {
+struct reduced_case {
     const struct model *full, *reduced;
 };
 
@@ -935,23 +934,23 @@ struct reduction {
 static void compare_outputs(void *context)
 {
     static const unsigned long multiples[] = { 0, 1, 17, 60, 3000 };
-    const struct reduction *r = context;
+    const struct reduced_case *r = context;
     struct resolvent *full = resolvent_of(&r->full->system), *reduced = resolvent_of(&r->reduced->system);
     mpq_t t;
     mpq_init(t);
     for (int o = 0; o < r->full->outputs; o++) {
         const char *name = r->full->output[o].name;
         struct started *f, *g;
-        const int fs = responses_of_output(full, &r->full->system, (const mpq_t *)r->full->initial, &r->full->output[o],
-            &f);
+        const int fs =
+            responses_of_output(full, &r->full->system, (const mpq_t *)r->full->initial, &r->full->output[o], &f);
         const int gs = responses_of_output(reduced, &r->reduced->system, (const mpq_t *)r->reduced->initial,
-            &r->reduced->output[o], &g);
+                                           &r->reduced->output[o], &g);
         for (size_t k = 0; k < sizeof multiples / sizeof *multiples; k++) {
             mpq_set_ui(t, multiples[k], 1);
             mpq_mul(t, t, r->full->h);
             trial.time = format("%lu h", multiples[k]);
-            const double expected = started_value(fs, f, t, r->full->step_at, name).value;
-            compare(name, started_value(gs, g, t, r->full->step_at, name).value, expected);
+            const double expected = started_value(fs, f, t, r->full->asked.step_at, name).value;
+            compare(name, started_value(gs, g, t, r->full->asked.step_at, name).value, expected);
         }
     }
     mpq_clear(t);
@@ -972,7 +971,7 @@ static void try_reduction(const char *text)
         complain("states", format("found %d, expected %zu of %d", reduced->system.states, rank, full->system.states));
     if (rank == (size_t)full->system.states)
         complain("states", "nothing was hidden");
-    if (!statement_guard(compare_outputs, &(struct reduction){ full, reduced }))
+    if (!statement_guard(compare_outputs, &(struct reduced_case){ full, reduced }))
         complain("outputs", first_line(diagnostics()));
     trial.scheme = "exact (reduced)";
     trial.time = "as written";
@@ -1088,13 +1087,13 @@ static void try_critical(const char *text)
     trial.time = "as written, w h = 1";
     struct model *model = model_of(text);
     const struct step *step = model ? step_build(model) : NULL;
-    if (!step || !step->table->Phi[3].zero || step->table->Phi[3].value != 0)
+    if (!step || !step->branch->whole->Phi[3].zero || step->branch->whole->Phi[3].value != 0)
         complain("Phi_22", "not found to be zero");
     if (!step)
         return;
     rational_parse(model->h, "0.0100000000000000000000000000001");
     step = step_build(model);
-    if (!step || step->table->Phi[3].zero || !(step->table->Phi[3].value < -3e-30))
+    if (!step || step->branch->whole->Phi[3].zero || !(step->branch->whole->Phi[3].value < -3e-30))
         complain("Phi_22", "1e-31 beside its zero: found to be zero");
 }
 
@@ -1142,7 +1141,7 @@ static void compare_exact(const char *what, struct response *response, mpq_srcpt
 }
 
 static void compare_exact_row(const struct model *model, int segment, const struct augmented *a, const mpq_t *expected,
-    int i)
+                              int i)
 {
     const struct linear *system = &model->system;
     struct resolvent *resolvent = resolvent_of(system);
@@ -1153,11 +1152,11 @@ static void compare_exact_row(const struct model *model, int segment, const stru
     for (int l = 0; l < system->loads; l++)
         for (int k = 0; k < system->load[l].columns; k++, at++)
             compare_exact(entry_name(model, (size_t)i, at), response_of_load(resolvent, system, segment, i, l, k),
-                model->h, row[at]);
+                          model->h, row[at]);
     for (int u = 0; u < system->inputs; u++)
         for (int k = 0; k <= system->input[u].first_order; k++, at++)
             compare_exact(entry_name(model, (size_t)i, at), response_of_input(resolvent, system, i, u, k, model->h),
-                model->h, row[at]);
+                          model->h, row[at]);
 }
 
 /* Every number of the step is the very rational, before it is rounded. */

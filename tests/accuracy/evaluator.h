@@ -22,9 +22,8 @@ int evaluator_apply(size_t n, const mpq_t *A, const mpq_t tau, const mpq_t *x, d
 
 /* The general form, Y (n x m) <- e^{A tau} X.  Result as above, the index counting in Y. */
 enum {
-    /* e^{A tau} X - X instead, rounded relative to itself: with X = I the increment Phi - I */
-    EVALUATOR_LESS_X = 1,
-    EVALUATOR_FLOAT = 2         /* rounded once to float, never via double; Y then holds floats */
+    EVALUATOR_LESS_X = 1, /* e^{A tau} X - X instead, rounded relative to itself: with X = I the increment Phi - I */
+    EVALUATOR_FLOAT = 2 /* rounded once to float, never via double; Y then holds floats */
 };
 int evaluator_round(size_t n, const mpq_t *A, const mpq_t tau, size_t m, const mpq_t *X, unsigned flags, double *Y);
 

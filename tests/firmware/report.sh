@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Measures every form of every linear model on an emulated Cortex-M0 and M4F, and retuning where params are tunable, and
-# writes what doc/firmware.md shows of it.
+# Measures every form of every linear model on an emulated Cortex-M0 and M4F, and retuning where params are tunable, and writes what
+# doc/firmware.md shows of it.
 #
 #     report.sh SOURCE_ROOT DOC_FOLDER ALL_double.c ALL_float.c MODEL_double.c MODEL_float.c ...
 #
@@ -43,8 +43,7 @@ for name in m0 m4f; do
         for f in "$root"/runtime/*.c; do compile "$f" "$of/runtime_$(basename "$f" .c)" -fcallgraph-info=su; done
         for f; do
             case $f in /*) ;; *) f=$PWD/$f ;; esac
-            case $f in *_$real.c) (cd "$work" && compile "$f" other -fcallgraph-info=su &&
-                mv other.ci "$of/other_$(basename "$f" .c).ci") ;; esac
+            case $f in *_$real.c) (cd "$work" && compile "$f" other -fcallgraph-info=su && mv other.ci "$of/other_$(basename "$f" .c).ci") ;; esac
         done
         awk -f "$firmware/stack.awk" "$of"/*.ci | sort >"$work/stack.$name.$real"
         link "$of/image.elf" "$of"/*.o
@@ -66,8 +65,7 @@ for name in m0 m4f; do
         # Bytes of a retune itself, and of a program that has it beside init, step and get
         sed -n 's/_retune .*//p' "$of/out" | uniq | while read -r variant; do
             bytes=$($arm-nm -S "$of/image.elf" | awk -v f="${variant}_retune" '$4 == f { print $2 }')
-            link "$of/one.elf" -Wl,-e,"${variant}_step" -Wl,-u,"${variant}_init" -Wl,-u,"${variant}_get" \
-                -Wl,-u,"${variant}_retune" -Wl,-u,"${variant}_use" \
+            link "$of/one.elf" -Wl,-e,"${variant}_step" -Wl,-u,"${variant}_init" -Wl,-u,"${variant}_get" -Wl,-u,"${variant}_retune" -Wl,-u,"${variant}_use" \
                 "$of/models.o" "$of"/runtime_*.o
             echo "$variant $((0x$bytes)) $($arm-size "$of/one.elf" | awk 'NR == 2 { print $1 + $2 }')"
         done >"$of/retune_bytes"
@@ -77,9 +75,7 @@ done
 # ---- figures.csv ----
 
 {
-    printf '%s,' model form accuracy real multiplications additions ram
-    printf '%s,' m0_step_bytes m0_flash m0_stack m0_instructions m0_most m0_soft_float
-    echo m4f_step_bytes,m4f_flash,m4f_stack,m4f_instructions,m4f_most
+    echo model,form,accuracy,real,multiplications,additions,ram,m0_step_bytes,m0_flash,m0_stack,m0_instructions,m0_most,m0_soft_float,m4f_step_bytes,m4f_flash,m4f_stack,m4f_instructions,m4f_most
     for real in double float; do
         [ $real = double ] && models=$double || models=$float
         awk -v real=$real -v folder="$work" '
@@ -89,8 +85,7 @@ done
                     if (split(line, field, " ") != 5) continue
                     ram[field[1]] = field[2]
                     # One instruction of the empty function came off with its call.
-                    figures[board, field[1]] = field[5] "," int(field[3] / 200 / ticks + 1.5) "," \
-                        int(field[4] / ticks + 1.5)
+                    figures[board, field[1]] = field[5] "," int(field[3] / 200 / ticks + 1.5) "," int(field[4] / ticks + 1.5)
                 }
                 file = folder "/" board "." real "/bytes"
                 while ((getline line <file) > 0) {
@@ -109,10 +104,8 @@ done
                 return (total[what] - total["draw"]) / 200 / 16.384
             }
             function row(variant, what, multiplications, additions) {
-                return what "," real "," multiplications "," additions "," ram[variant] "," \
-                    bytes["m0", variant] "," figures["m0", variant] "," \
-                    int(multiplications * multiply + additions * add + 0.5) "," \
-                    bytes["m4f", variant] "," figures["m4f", variant] "\n"
+                return what "," real "," multiplications "," additions "," ram[variant] "," bytes["m0", variant] "," figures["m0", variant] "," \
+                    int(multiplications * multiply + additions * add + 0.5) "," bytes["m4f", variant] "," figures["m4f", variant] "\n"
             }
             BEGIN { read_board("m0", 16.384); read_board("m4f", 25.6); multiply = cost("multiply"); add = cost("add") }
             /^\/\* [a-z0-9_]*: made by plgen/ {
@@ -141,9 +134,7 @@ done
 # ---- retune.csv ----
 
 {
-    printf '%s,' model form real coefficients pole_h
-    printf '%s,' m0_retune_bytes m0_flash m0_flash_more m0_stack m0_instructions m0_most
-    echo m4f_retune_bytes,m4f_flash,m4f_flash_more,m4f_stack,m4f_instructions,m4f_most
+    echo model,form,real,coefficients,pole_h,m0_retune_bytes,m0_flash,m0_flash_more,m0_stack,m0_instructions,m0_most,m4f_retune_bytes,m4f_flash,m4f_flash_more,m4f_stack,m4f_instructions,m4f_most
     for real in double float; do
         [ $real = double ] && models=$double || models=$float
         awk -v real=$real -v folder="$work" '
@@ -164,8 +155,7 @@ done
                         if (board == "m0")
                             times[variant, ++many[variant]] = field[6]
                         size[variant] = field[2]
-                        figures[board, variant, field[6]] = bytes[variant] "," field[5] "," \
-                            int(field[3] / 4 / ticks + 0.5) "," int(field[4] / ticks + 0.5)
+                        figures[board, variant, field[6]] = bytes[variant] "," field[5] "," int(field[3] / 4 / ticks + 0.5) "," int(field[4] / ticks + 0.5)
                     }
             }
             BEGIN { read_board("m0", 16.384); read_board("m4f", 25.6) }
@@ -181,8 +171,7 @@ done
                 match($0, /form [a-z-]*/)
                 form = substr($0, RSTART + 5, RLENGTH - 5)
                 for (i = 1; i <= many[variant]; i++)
-                    printf "%s,%s,%s,%d,%.2g,%s,%s\n", model, form, real, size[variant],
-                        6.283185307 * pole * $7 * times[variant, i],
+                    printf "%s,%s,%s,%d,%.2g,%s,%s\n", model, form, real, size[variant], 6.283185307 * pole * $7 * times[variant, i],
                         figures["m0", variant, times[variant, i]], figures["m4f", variant, times[variant, i]]
             }' "$models"
     done
@@ -202,12 +191,10 @@ done
 {
     echo "\`$arm-gcc\` $($arm-gcc -dumpfullversion), \`-O2 -ffp-contract=off\`:"
     echo
-    printf '| model | form | | operations | RAM | M0: step | flash | stack | instructions | '
-    echo 'M4F: step | flash | stack | instructions |'
+    echo '| model | form | | operations | RAM | M0: step | flash | stack | instr. | M4F: step | flash | stack | instr. |'
     echo '| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |'
     awk -F, 'NR > 1 { form = $2 ($3 == "compensated" ? ", two words" : "")
-                      print "| " $1 " | " form " | " $4 " | " $5 " + " $6 " | " $7 " | " $8 " | " $9 " | " $10 \
-                          " | " $11 " | " $14 " | " $15 " | " $16 " | " $17 " |" }' "$doc/firmware/figures.csv"
+                      print "| " $1 " | " form " | " $4 " | " $5 " + " $6 " | " $7 " | " $8 " | " $9 " | " $10 " | " $11 " | " $14 " | " $15 " | " $16 " | " $17 " |" }' "$doc/firmware/figures.csv"
 } >"$work/figures"
 {
     echo '| | M0: own | deepest | M4F: own | deepest |'
@@ -217,23 +204,18 @@ done
 {
     echo '| | M0: step | at | jump | retune | selftest | M4F: step | at | jump | retune | selftest |'
     echo '| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |'
-    awk -F, '$1 ~ /_step$/ && $1 !~ /^pl_|_(direct|delta|delta_two|kick_two)_(double|float)_step$/ { model = $1;
-        sub(/_step$/, "", model); order[++n] = model }
+    awk -F, '$1 ~ /_step$/ && $1 !~ /^pl_|_(direct|delta|delta_two|kick_two)_(double|float)_step$/ { model = $1; sub(/_step$/, "", model); order[++n] = model }
              { m0[$1] = $3; m4f[$1] = $5 }
              function of(table, f) { return f in table ? table[f] : "" }
              END { for (i = 1; i <= n; i++) {
                        m = order[i]
-                       print "| " m " | " of(m0, m "_step") " | " of(m0, m "_at") " | " of(m0, m "_jump") " | " of(m0,
-                           m "_retune") " | " of(m0, m "_selftest") " | " \
-                           of(m4f, m "_step") " | " of(m4f, m "_at") " | " of(m4f, m "_jump") " | " of(m4f,
-                               m "_retune") " | " of(m4f, m "_selftest") " |" } }' "$doc/firmware/stack.csv"
+                       print "| " m " | " of(m0, m "_step") " | " of(m0, m "_at") " | " of(m0, m "_jump") " | " of(m0, m "_retune") " | " of(m0, m "_selftest") " | " \
+                           of(m4f, m "_step") " | " of(m4f, m "_at") " | " of(m4f, m "_jump") " | " of(m4f, m "_retune") " | " of(m4f, m "_selftest") " |" } }' "$doc/firmware/stack.csv"
 } >"$work/model_stack"
 {
-    printf '%s' '| model | form | | coefficients | largest \|pole\| h | M0: retune | flash | stack | instructions | '
-    echo 'M4F: retune | flash | stack | instructions |'
+    echo '| model | form | | RAM | \|pole\| h | M0: retune | flash | stack | instr. | M4F: retune | flash | stack | instr. |'
     echo '| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |'
-    awk -F, 'NR > 1 { print "| " $1 " | " $2 " | " $3 " | " $4 " | " $5 " | " $6 " | +" $8 " | " $9 \
-        " | " $10 " | " $12 " | +" $14 " | " $15 " | " $16 " |" }' "$doc/firmware/retune.csv"
+    awk -F, 'NR > 1 { print "| " $1 " | " $2 " | " $3 " | " $4 " | " $5 " | " $6 " | +" $8 " | " $9 " | " $10 " | " $12 " | +" $14 " | " $15 " | " $16 " |" }' "$doc/firmware/retune.csv"
 } >"$work/retune"
 # One multiplication and one addition of soft float, calls included
 for name in m0 m4f; do
@@ -241,17 +223,14 @@ for name in m0 m4f; do
     [ $name = m0 ] || ticks=25.6
     for real in double float; do
         awk -v ticks=$ticks -v what="$name, $real" '{ total[$1] = $3 }
-            END { printf "| %s | %.0f | %.0f |\n", what, (total["multiply"] - total["draw"]) / 200 / ticks,
-                (total["add"] - total["draw"]) / 200 / ticks }' "$work/$name.$real/out"
+            END { printf "| %s | %.0f | %.0f |\n", what, (total["multiply"] - total["draw"]) / 200 / ticks, (total["add"] - total["draw"]) / 200 / ticks }' "$work/$name.$real/out"
     done
 done >"$work/soft.rows"
-{ echo '| | multiplication | addition |'; echo '| --- | --- | --- |'; sed 's/^| m0/| M0/; s/^| m4f/| M4F/' \
-    "$work/soft.rows"; } >"$work/operations"
+{ echo '| | multiplication | addition |'; echo '| --- | --- | --- |'; sed 's/^| m0/| M0/; s/^| m4f/| M4F/' "$work/soft.rows"; } >"$work/operations"
 
 # Between <!-- table NAME --> and <!-- end --> stands table NAME.
 awk -v folder="$work" '
     /^<!-- end -->/ { inside = 0 }
     !inside { print }
-    /^<!-- table / { inside = 1; print ""; while ((getline line <(folder "/" $3)) > 0) print line;
-        print "" }' "$doc/firmware.md" >"$work/firmware.md"
+    /^<!-- table / { inside = 1; print ""; while ((getline line <(folder "/" $3)) > 0) print line; print "" }' "$doc/firmware.md" >"$work/firmware.md"
 cp "$work/firmware.md" "$doc/firmware.md"

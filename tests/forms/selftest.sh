@@ -74,7 +74,7 @@ done
 for spec in reduce_highest_good reduce_loops_good; do
 	for type in double float; do
 		rm -f reduced.c
-		"$plgen" --prefix subject --selftest --reduce --real "$type" "$root/tests/errors/$spec.spec" >reduced.c 2>log
+		"$plgen" --prefix subject --selftest --reduce --real "$type" "$root/tests/errors/schemes/$spec.spec" >reduced.c 2>log
 		subjects
 		subject reduced.c
 		value=$(values)

@@ -1,19 +1,11 @@
 /* SPDX-License-Identifier: MIT-0 */
 /* runtime/power.c against closed forms in MPFR. */
-#include <stdarg.h>
-#include <stddef.h>
-#include <setjmp.h>
-#include <stdint.h>
-#include <cmocka.h>
-#include <inttypes.h>
-#include <math.h>
-#include <mpfr.h>
-#include "real.h"
+#include "runtime.h"
 
 enum { BITS = 400 };
 
-/* UNIT: what a step loses, of the whole.  NUMBERS: how many Fibonacci numbers fit two words.  2^(MANY + FEW) is within the range,
- * 2^(2 MANY) beyond it. */
+/* UNIT: what a step loses, of the whole.  NUMBERS: how many Fibonacci numbers fit two words.  2^(MANY + FEW) is within
+ * the range, 2^(2 MANY) beyond it. */
 #ifdef REAL_IS_FLOAT
 #define UNIT 0x1p-46
 #define real_of(v) mpfr_get_flt(v, MPFR_RNDN)
@@ -68,8 +60,8 @@ static void assert_within(pl_two found, mpfr_t expected, double tolerance, const
         worst = fabs(off) / tolerance;
     if (!(fabs(off) <= tolerance)) {
         pl_two e = two_of(expected);
-        fail_msg("%s, k = %" PRIu64 ": found %.17g + %.17g, expected %.17g + %.17g; off by %.17g, tolerance %.17g", what, k,
-                 found.hi, found.lo, e.hi, e.lo, off, tolerance);
+        fail_msg("%s, k = %" PRIu64 ": found %.17g + %.17g, expected %.17g + %.17g; off by %.17g, tolerance %.17g",
+                 what, k, found.hi, found.lo, e.hi, e.lo, off, tolerance);
     }
 }
 
@@ -79,8 +71,8 @@ static void assert_double(double found, double expected, const char *what)
         fail_msg("%s: found %.17g, expected %.17g, exactly", what, found, expected);
 }
 
-/* A rotation by 0.05 a step, from (1, 0).  What its two-word entries are off by is 2^-107 each, or 2^-49, k times; so is what the
- * powers lose. */
+/* A rotation by 0.05 a step, from (1, 0).  What its two-word entries are off by is 2^-107 each, or 2^-49, k times; so
+ * is what the powers lose. */
 static void rotation(void **state)
 {
     mpfr_t angle, c, s;
@@ -155,7 +147,9 @@ static void coupled(void **state)
     }
     pl_power_apply(3, p, W, v, w, count);
     for (i = 0; i < 3; i++)
-        assert_within(v[i], x[i], (double)count * UNIT * fmax(fabs((double)v[0].hi), fmax(fabs((double)v[1].hi), fabs((double)v[2].hi))),
+        assert_within(v[i], x[i],
+                      (double)count * UNIT *
+                          fmax(fabs((double)v[0].hi), fmax(fabs((double)v[1].hi), fabs((double)v[2].hi))),
                       "coupled", count);
     for (i = 0; i < 9; i++)
         mpfr_clears(P[i], Q[i], (mpfr_ptr)0);
@@ -259,18 +253,15 @@ static void overflow_has_the_sign_of_the_sum(void **state)
     assert_double(x[2].hi, 0.0, "no terms");
 }
 
-int main(void)
+static void report(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(rotation),
-        cmocka_unit_test(coupled),
-        cmocka_unit_test(fibonacci),
-        cmocka_unit_test(no_steps),
-        cmocka_unit_test(overflow_is_infinite_and_stays_where_it_is),
-        cmocka_unit_test(overflow_has_the_sign_of_the_sum),
-    };
-    const int status = cmocka_run_group_tests(tests, NULL, NULL);
     print_message("# largest error of pl_power_apply: %.2g k 2^%d\n", worst, ilogb(UNIT));
-    mpfr_free_cache();
-    return status;
 }
+
+ROOM_WITH(power, NULL, report,
+    cmocka_unit_test(rotation),
+    cmocka_unit_test(coupled),
+    cmocka_unit_test(fibonacci),
+    cmocka_unit_test(no_steps),
+    cmocka_unit_test(overflow_is_infinite_and_stays_where_it_is),
+    cmocka_unit_test(overflow_has_the_sign_of_the_sum))

@@ -1,15 +1,7 @@
 /* SPDX-License-Identifier: MIT-0 */
-/* runtime/series.c against e^{A tau} in MPFR, computed from the systems as written: the rounding of A counts as error. */
-#include <stdarg.h>
-#include <stddef.h>
-#include <setjmp.h>
-#include <stdint.h>
-#include <cmocka.h>
-#include <float.h>
-#include <math.h>
-#include <mpfr.h>
-#include <string.h>
-#include "real.h"
+/* runtime/series.c against e^{A tau} in MPFR, computed from the systems as written:
+ * the rounding of A counts as error. */
+#include "runtime.h"
 
 enum { MOST = 6, BITS = 256, GRID = 16 };
 
@@ -160,15 +152,10 @@ static void chain_matrix(matrix *A, const chain *s)
     }
 }
 
-static uint64_t seed = 42;
-
 /* -1 .. 1 */
 static double random_number(void)
 {
-    seed ^= seed << 13;
-    seed ^= seed >> 7;
-    seed ^= seed << 17;
-    return (double)(int64_t)seed * 0x1p-63;
+    return (double)(int64_t)random_word() * 0x1p-63;
 }
 
 static double worst_ratio;
@@ -191,8 +178,8 @@ static void assert_state(const chain *s, const matrix *Phi, double most[MOST][MO
         mpfr_sub_d(t, exact, x[i], MPFR_RNDN);
         error = fabs(mpfr_get_d(t, MPFR_RNDN));
         if (!(error <= 16 * (double)REAL_EPSILON * size))
-            fail_msg("%s, tau = %.17g: entry %d is %.17g, expected %.17g; off by %.17g, tolerance %.17g", s->name, tau, i, x[i],
-                     mpfr_get_d(exact, MPFR_RNDN), error, 16 * (double)REAL_EPSILON * size);
+            fail_msg("%s, tau = %.17g: entry %d is %.17g, expected %.17g; off by %.17g, tolerance %.17g", s->name, tau,
+                     i, x[i], mpfr_get_d(exact, MPFR_RNDN), error, 16 * (double)REAL_EPSILON * size);
         if (size > 0.0 && error / ((double)REAL_EPSILON * size) > worst_ratio)
             worst_ratio = error / ((double)REAL_EPSILON * size);
     }
@@ -279,13 +266,6 @@ static void free_fall_is_exact(void **state)
     assert_exactly(x[2], 2.0, "acceleration");
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(free_fall_is_exact),
-        cmocka_unit_test(chains_within_a_step),
-    };
-    const int status = cmocka_run_group_tests(tests, NULL, NULL);
-    mpfr_free_cache();
-    return status;
-}
+ROOM(series,
+    cmocka_unit_test(free_fall_is_exact),
+    cmocka_unit_test(chains_within_a_step))

@@ -1,14 +1,6 @@
 /* SPDX-License-Identifier: MIT-0 */
 /* runtime/until.c against MPFR. */
-#include <stdarg.h>
-#include <stddef.h>
-#include <setjmp.h>
-#include <stdint.h>
-#include <cmocka.h>
-#include <inttypes.h>
-#include <math.h>
-#include <mpfr.h>
-#include "real.h"
+#include "runtime.h"
 
 enum { BITS = 400 };
 
@@ -20,20 +12,11 @@ enum { BITS = 400 };
 #define real_of(v) mpfr_get_d(v, MPFR_RNDN)
 #endif
 
-static uint64_t seed = 0x9E3779B97F4A7C15u;
-
-static uint64_t random_word(void)
-{
-    seed ^= seed << 13;
-    seed ^= seed >> 7;
-    seed ^= seed << 17;
-    return seed * 0x2545F4914F6CDD1Du;
-}
-
 /* 2^low .. 2^high, about */
 static double random_number(int low, int high)
 {
-    return ldexp((double)(random_word() >> 11 | (uint64_t)1 << 52), low - 52 + (int)(random_word() % (uint64_t)(high - low)));
+    return ldexp((double)(random_word() >> 11 | (uint64_t)1 << 52),
+                 low - 52 + (int)(random_word() % (uint64_t)(high - low)));
 }
 
 static pl_two two_of(mpfr_t v)
@@ -77,9 +60,11 @@ static void assert_until(real t0, uint64_t k, pl_two h, pl_two change)
     if (off / largest > worst)
         worst = off / largest;
     if (!(off <= LARGEST_ERROR * largest))
-        fail_msg("t0 = %.17g, k = %" PRIu64 ", h = %.17g + %.17g, change = %.17g + %.17g: found %.17g, expected %.17g; off by %.3g, "
-                 "tolerance %.3g", (double)t0, k, (double)h.hi, (double)h.lo, (double)change.hi, (double)change.lo, found, expected,
-                 off, LARGEST_ERROR * largest);
+        fail_msg("t0 = %.17g, k = %" PRIu64
+                 ", h = %.17g + %.17g, change = %.17g + %.17g: found %.17g, expected %.17g; off by %.3g, "
+                 "tolerance %.3g",
+                 (double)t0, k, (double)h.hi, (double)h.lo, (double)change.hi, (double)change.lo, found, expected, off,
+                 LARGEST_ERROR * largest);
 }
 
 /* A change in the middle of a step, which comes after as many as 2^63 */
@@ -133,13 +118,6 @@ static void counts_are_exact(void **state)
     assert_exactly(pl_until(5, 0, second, none), -5.0, "no steps");
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(changes_inside_a_step),
-        cmocka_unit_test(counts_are_exact),
-    };
-    const int status = cmocka_run_group_tests(tests, NULL, NULL);
-    mpfr_free_cache();
-    return status;
-}
+ROOM(until,
+    cmocka_unit_test(changes_inside_a_step),
+    cmocka_unit_test(counts_are_exact))
