@@ -21,7 +21,8 @@ static void mark_blocks(struct judge *j)
                 for (int b = 0; b < n; b++) {
                     const int p = e * n + a, q = e * n + b;
                     if ((mpq_sgn(system->M[p]) || mpq_sgn(system->C[p]) || mpq_sgn(system->K[p])) &&
-                        (mpq_sgn(system->M[q]) || mpq_sgn(system->C[q]) || mpq_sgn(system->K[q])) && j->block[a] < j->block[b])
+                        (mpq_sgn(system->M[q]) || mpq_sgn(system->C[q]) || mpq_sgn(system->K[q])) &&
+                            j->block[a] < j->block[b])
                         j->block[b] = j->block[a];
                 }
 }
@@ -174,7 +175,8 @@ static void take_entry(mpfi_ptr x, const evaluator_enclosure *E, int i, int k)
 }
 
 /* One column of e^{A h} X: a state, a load, an input (held: u; a ramp: its values before and after) */
-static void take_column(const struct judge *j, const struct flow *f, const evaluator_enclosure *E, int i, int column, mpfi_ptr x)
+static void take_column(const struct judge *j, const struct flow *f, const evaluator_enclosure *E, int i, int column,
+    mpfi_ptr x)
 {
     const struct linear *system = j->system;
     int u = 0, part = column - j->states - j->loads;
