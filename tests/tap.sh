@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Sourced by tests that are shell scripts, once they have made their paths absolute: a folder of their own, which is the current one and goes at the
-# end, and results as TAP. What a command says goes to `log` there; a failure shows the head of it. A script ends with `tap_end`.
+# Sourced by tests that are shell scripts, once they have made their paths absolute: a folder of their own, which is the
+# current one and goes at the end, and results as TAP. What a command says goes to `log` there; a failure shows the head
+# of it. A script ends with `tap_end`.
 LC_ALL=C
 export LC_ALL
 work=$(mktemp -d "${TMPDIR:-/tmp}/plgen.XXXXXX") || exit 99

@@ -1,8 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 #
-# compile.sh PLGEN RUNTIME FOLDER COMPILER...: the C of every good case of FOLDER (status 0, see run.sh) that prints C, as
-# TAP: it compiles without a warning, whatever the names in its spec are.
+# compile.sh PLGEN RUNTIME FOLDER COMPILER...: the C of every good case (status 0, see run.sh) that prints C, as TAP: it
+# compiles without a warning, whatever the names in its spec are. FOLDER is a topic, or the folder of all topics.
 set -u
 plgen=$1
 runtime=$2
@@ -17,42 +17,37 @@ trap 'rm -rf "$work"' EXIT
 trap 'exit 1' HUP INT TERM
 mkdir "$work/in" && cd "$work/in" || exit 1
 
-prints_c()      # NAME
+prints_c()      # PATH, without ending
 {
-	[ "$(cat "$folder/$1.status")" = 0 ] || return 1
-	! [ -f "$folder/$1.args" ] || ! grep -q -e '^--explain' -e '^--solution' -e '^--help' -e '^--version' "$folder/$1.args"
+	[ "$(cat "$1.status")" = 0 ] || return 1
+	! [ -f "$1.args" ] || ! grep -q -e '^--explain' -e '^--solution' -e '^--help' -e '^--version' "$1.args"
 }
 
-names=''
-count=0
-for status in "$folder"/*.status; do
-	name=${status##*/}
-	name=${name%.status}
-	if prints_c "$name"; then
-		names="$names $name"
-		count=$((count + 1))
-	fi
-done
-echo "1..$count"
-
+warnings='-Wall -Wextra -Wpedantic -Wconversion -Wdouble-promotion -Wshadow -Werror'
 failed=0
 number=0
-for name in $names; do
-	number=$((number + 1))
-	if [ -f "$folder/$name.sh" ]; then
-		sh "$folder/$name.sh" > "$name.spec"
-	else
-		cp "$folder/$name.spec" .
+for status in "$folder"/*.status "$folder"/*/*.status; do
+	path=${status%.status}
+	name=${path##*/}
+	if ! [ -f "$status" ] || ! prints_c "$path"; then
+		continue
 	fi
-	if [ -f "$folder/$name.mtx" ]; then
-		cp "$folder/$name.mtx" .
+	number=$((number + 1))
+	if [ -f "$path.sh" ]; then
+		sh "$path.sh" > "$name.spec"
+	else
+		cp "$path.spec" .
+	fi
+	if [ -f "$path.mtx" ]; then
+		cp "$path.mtx" .
 	fi
 	arguments=''            # options and names without spaces
-	if [ -f "$folder/$name.args" ]; then
-		arguments=$(tr '\n' ' ' < "$folder/$name.args")
+	if [ -f "$path.args" ]; then
+		arguments=$(tr '\n' ' ' < "$path.args")
 	fi
+	# shellcheck disable=SC2086
 	if "$plgen" $arguments "$name.spec" > "$name.c" 2> "$work/messages" < /dev/null &&
-	   "$@" -std=c99 -Wall -Wextra -Wpedantic -Wconversion -Wdouble-promotion -Wshadow -Werror -I"$runtime" -c "$name.c" -o "$name.o" 2> "$work/messages"; then
+	   "$@" -std=c99 $warnings -I"$runtime" -c "$name.c" -o "$name.o" 2> "$work/messages"; then
 		echo "ok $number - $name"
 	else
 		failed=$((failed + 1))
@@ -61,4 +56,5 @@ for name in $names; do
 	fi
 	rm -f "$name".*
 done
+echo "1..$number"
 [ "$failed" -eq 0 ]

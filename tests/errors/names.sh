@@ -1,8 +1,9 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 #
-# names.sh PLGEN RUNTIME COMPILER...: no model may bear a name that gives it a function, type or macro of the C library. What generated code
-# names after a model is read from models of every kind, and what the library has from its headers; so a new suffix is looked at too.
+# names.sh PLGEN RUNTIME COMPILER...: no model may bear a name that gives it a function, type or macro of the C library.
+# What generated code names after a model is read from models of every kind, and what the library has from its headers;
+# so a new suffix is looked at too.
 set -u
 plgen=$1
 runtime=$2
@@ -45,7 +46,8 @@ printf "model qqq\ncoord x\nx'' + x = t < 3 ? cos(t) : 1\nstep 0.1\n" | model ch
 printf "model qqq\ncoord x\nx'' + x + x^3 = cos(t)\noperator at x = 0, 1\nstep 0.1\n" | model bank --rhs
 printf "model qqq\ncoord x\nx'' + x + x^3 = cos(t)\nstep 0.1\n" | model nodes '--scheme nc3'
 printf "model qqq\ncoord x\ninput u\nx'' + x + max(x - 1, 0) = u\nstep 0.1\n" | model regions ''
-printf "model qqq\nparam k = 1\ntunable k\ncoord x\nx'' + k*x = cos(t)\noutput k*x\nstep 0.1\n" | sed 's/output k/output o = k/' | model tunable '--rhs'
+printf "model qqq\nparam k = 1\ntunable k\ncoord x\nx'' + k*x = cos(t)\noutput o = k*x\nstep 0.1\n" |
+	model tunable '--rhs'
 grep -o -E '\b(qqq|QQQ)_[A-Za-z_0-9]+' text | sed 's/^...//' | sort -u > suffixes
 [ "$(wc -l < suffixes)" -ge 40 ] || echo "only $(wc -l < suffixes) suffixes were found" >> wrong
 result 1 "models of every kind: $(wc -l < suffixes) suffixes"
@@ -53,16 +55,24 @@ result 1 "models of every kind: $(wc -l < suffixes) suffixes"
 # ---- the library: identifiers of the headers that are here ----
 
 : > headers.c
-for header in aio complex ctype dirent dlfcn errno fcntl fenv float fnmatch ftw glob iconv inttypes langinfo limits locale math mqueue netdb poll pthread pwd regex \
-	sched search semaphore setjmp signal spawn stdarg stdatomic stddef stdint stdio stdlib string strings sys/mman sys/resource sys/select sys/sem sys/socket sys/stat \
-	sys/time sys/types sys/wait syslog termios threads time uchar unistd wchar wctype fts obstack envz sys/inotify sys/epoll; do
+for header in aio complex ctype dirent dlfcn errno fcntl fenv float fnmatch ftw glob iconv inttypes langinfo limits \
+	locale math mqueue netdb poll pthread pwd regex sched search semaphore setjmp signal spawn stdarg stdatomic stddef stdint \
+	stdio stdlib string strings sys/mman sys/resource sys/select sys/sem sys/socket sys/stat sys/time sys/types sys/wait \
+	syslog termios threads time uchar unistd wchar wctype fts obstack envz sys/inotify sys/epoll; do
 	printf '#include <%s.h>\n' "$header" > one.c
 	"$@" -std=gnu11 -E one.c > log 2>&1 && cat one.c >> headers.c
 done
-{ "$@" -D_GNU_SOURCE -std=gnu11 -E -P headers.c; "$@" -D_GNU_SOURCE -std=gnu11 -E -dM headers.c; } 2> log | grep -o -E '\b[A-Za-z][A-Za-z0-9_]*\b' | sort -u > identifiers
+{ "$@" -D_GNU_SOURCE -std=gnu11 -E -P headers.c; "$@" -D_GNU_SOURCE -std=gnu11 -E -dM headers.c; } 2> log |
+	grep -o -E '\b[A-Za-z][A-Za-z0-9_]*\b' | sort -u > identifiers
 : > wrong
 awk 'NR == FNR { suffix[$1]; next }
-{ for (s in suffix) { n = length($1) - length(s); if (n > 0 && substr($1, n + 1) == s) print tolower(substr($1, 1, n)), $1 } }' suffixes identifiers | sort -u > met
+{
+	for (s in suffix) {
+		n = length($1) - length(s)
+		if (n > 0 && substr($1, n + 1) == s) print tolower(substr($1, 1, n)), $1
+	}
+}
+' suffixes identifiers | sort -u > met
 [ -s met ] || echo 'no identifier of the library ends as generated ones do' > wrong
 while read -r name meets; do
 	case $name in [!a-z]*) continue ;; esac
@@ -73,19 +83,26 @@ result 2 "$(wc -l < met) identifiers of the library that end as generated ones d
 # ---- names of the library as names of models and of coordinates ----
 
 : > wrong
-for name in sinf cosl FILE strdup signgam errno stdin EOF NAN FP_NAN HUGE_VAL math_errhandling complex requires concept co_await consteval char8_t pid_t \
+for name in sinf cosl FILE strdup signgam errno stdin EOF NAN FP_NAN HUGE_VAL math_errhandling complex requires \
+	concept co_await consteval char8_t pid_t \
 	sem mtx cnd tss fts aio pthread_attr strlcpy sigaction mkdir getline; do
 	"$plgen" --prefix "$name" inputs.spec > out 2> log && echo "a model may be called $name" >> wrong
 done
 result 3 'names that no model may have'
 
 : > wrong
-for name in sinf FILE strdup signgam errno stdin stdout EOF NAN FP_NAN HUGE_VAL math_errhandling complex imaginary I assert index time y0 gamma NULL DOMAIN; do
-	printf "model m\ncoord %s, other\ninput NAN_\nparam INFINITY_ = 1\n%s'' + sin(%s)*other = NAN_\nother'' + INFINITY_*other = 0\noutput o = sqrt(%s)\nstep 0.1\n" "$name" "$name" "$name" "$name" > name.spec
+for name in sinf FILE strdup signgam errno stdin stdout EOF NAN FP_NAN HUGE_VAL math_errhandling complex imaginary I \
+	assert index time y0 gamma NULL DOMAIN; do
+	{
+		printf "model m\ncoord %s, other\ninput NAN_\nparam INFINITY_ = 1\n" "$name"
+		printf "%s'' + sin(%s)*other = NAN_\nother'' + INFINITY_*other = 0\n" "$name" "$name"
+		printf "output o = sqrt(%s)\nstep 0.1\n" "$name"
+	} > name.spec
 	"$plgen" --rhs name.spec > name.c 2> log || { grep -q 'reserved\|is kept' log || head -n 2 log >> wrong; continue; }
 	for flags in -std=c99 -std=gnu11 '-x c++ -std=c++20'; do
 		# shellcheck disable=SC2086
-		"$@" -Wall -Wextra -Wshadow -Werror $flags -I"$runtime" -c name.c -o name.o > log 2>&1 || { echo "coordinate $name, $flags: $(grep -m 1 error: log)" >> wrong; }
+		"$@" -Wall -Wextra -Wshadow -Werror $flags -I"$runtime" -c name.c -o name.o > log 2>&1 ||
+			echo "coordinate $name, $flags: $(grep -m 1 error: log)" >> wrong
 	done
 done
 result 4 'names of the library as coordinates'

@@ -205,8 +205,10 @@ need_files plain 'm.c m.h'
 grep -q '^#include "m.h"' plain/m.c || wrong 'm.c does not include m.h'
 result '-o writes FILE.c and FILE.h'
 
-[ "$(ls -l plain/m.c | cut -c 1-10)" = -rw-r--r-- ] || wrong "m.c: $(ls -l plain/m.c | cut -c 1-10), expected -rw-r--r--"
-[ "$(ls -l plain/m.h | cut -c 1-10)" = -rw-r--r-- ] || wrong "m.h: $(ls -l plain/m.h | cut -c 1-10), expected -rw-r--r--"
+for file in m.c m.h; do
+	mode=$(ls -l "plain/$file" | cut -c 1-10)
+	[ "$mode" = -rw-r--r-- ] || wrong "$file: $mode, expected -rw-r--r--"
+done
 result 'a new file has the mode that umask leaves'
 
 mkdir mode

@@ -1,8 +1,9 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 #
-# torture.sh PLGEN LIBRARY EACH SPEC...: each EACH-th allocation and every write of the generator fails once, in turn (LIBRARY: fail.c). It exits 1
-# with a message, leaves the header and the C of before or of now, never a part of one, and no temporaries.
+# torture.sh PLGEN LIBRARY EACH SPEC...: each EACH-th allocation and every write of the generator fails once, in turn
+# (LIBRARY: fail.c). It exits 1 with a message, leaves the header and the C of before or of now, never a part of one, and
+# no temporaries.
 set -u
 plgen=$1
 library=$2
@@ -25,7 +26,8 @@ one()
 {
 	echo before > ../out/m.c
 	echo before > ../out/m.h
-	LD_PRELOAD=$library FAIL_KIND=$1 FAIL_AT=$2 FAIL_COUNT=$work/count "$plgen" -o ../out/m.c "$name" > ../stdout 2> ../stderr < /dev/null
+	LD_PRELOAD=$library FAIL_KIND=$1 FAIL_AT=$2 FAIL_COUNT=$work/count \
+		"$plgen" -o ../out/m.c "$name" > ../stdout 2> ../stderr < /dev/null
 	status=$?
 }
 
@@ -36,7 +38,8 @@ complain()
 
 whole()         # FILE: as it was before, or all of the new one
 {
-	[ "$(head -c 20 "../out/$1")" = before ] || cmp -s "../out/$1" "../good/$1" || complain "$1 is neither as before nor whole"
+	[ "$(head -c 20 "../out/$1")" = before ] || cmp -s "../out/$1" "../good/$1" ||
+		complain "$1 is neither as before nor whole"
 }
 
 echo "1..$((2 * $#))"
@@ -58,7 +61,8 @@ for spec in "$@"; do
 			one "$kind" "$at"
 			tried=$((tried + 1))
 			# the C library does without a buffer of its own: then all is well
-			if [ "$kind" = memory ] && [ "$status" -eq 0 ] && cmp -s ../out/m.c ../good/m.c && cmp -s ../out/m.h ../good/m.h; then
+			if [ "$kind" = memory ] && [ "$status" -eq 0 ] &&
+			   cmp -s ../out/m.c ../good/m.c && cmp -s ../out/m.h ../good/m.h; then
 				at=$((at + step))
 				continue
 			fi

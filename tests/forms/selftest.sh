@@ -58,7 +58,7 @@ done
 for spec in reduce_highest_good reduce_loops_good; do
 	for type in double float; do
 		rm -f reduced.c
-		"$plgen" --prefix subject --selftest --reduce --real "$type" "$root/tests/errors/$spec.spec" >reduced.c 2>log
+		"$plgen" --prefix subject --selftest --reduce --real "$type" "$root/tests/errors/schemes/$spec.spec" >reduced.c 2>log
 		value=$(value reduced.c "$type")
 		[ -n "$value" ] && echo "returns $value, expected below 60" >log
 		awk -v v="$value" 'BEGIN { exit !(v != "" && v + 0 < 60) }'

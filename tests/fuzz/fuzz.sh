@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 #
 # fuzz.sh PLGEN MUTATE FIRST COUNT GOOD BAD: mutated specs FIRST to FIRST+COUNT-1 through PLGEN (built with sanitizers), as
-# TAP, one line for each hundred. They are made from the specs in the folders GOOD (drawn more often) and BAD. What fails is
-# kept if KEEP names a folder. With CHECK_C (a compiler and its options) the C is compiled as well. Every finding belongs
-# into ../errors as a case of its own.
+# TAP, one line for each hundred. They are made from the specs in the folders GOOD (drawn more often) and BAD/*. What
+# fails is kept if KEEP names a folder. With CHECK_C (a compiler and its options) the C is compiled as well. Every finding
+# belongs into ../errors as a case of its own.
 set -u
 plgen=$1
 mutate=$2
@@ -70,10 +70,10 @@ options()       # SEED: sets the arguments, printed
 	arguments=$*
 }
 
-for data in "$bad"/*.mtx "$good"/*/*.mtx; do    # beside the spec, as the specs name them
+for data in "$bad"/*/*.mtx "$good"/*/*.mtx; do    # beside the spec, as the specs name them
 	if [ -f "$data" ]; then
 		folder=$work/$(basename "$(dirname "$data")")
-		[ "${data%/*}" = "$bad" ] && folder=$work
+		case $data in "$bad"/*) folder=$work ;; esac
 		mkdir -p "$folder"
 		cp "$data" "$folder"
 	fi
@@ -89,7 +89,7 @@ while [ "$seed" -lt $((first + count)) ]; do
 	failed=0
 	: > "$work/complaints"
 	while [ "$seed" -lt "$end" ]; do
-		"$mutate" "$seed" "$good"/*.spec -- "$bad"/*.spec > "$work/in.spec" || exit 1
+		"$mutate" "$seed" "$good"/*.spec -- "$bad"/*/*.spec > "$work/in.spec" || exit 1
 		options "$seed"
 		timeout 30 "$plgen" $arguments "$work/in.spec" > "$work/out" 2> "$work/err" < /dev/null
 		why=$(check $?)
