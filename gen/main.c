@@ -2,7 +2,7 @@
 /* plgen: the command line, then the pipeline as one column of calls. Text is written to memory and published only when
  * all went well. */
 #define _GNU_SOURCE     /* getopt_long, open_memstream, realpath */
-#include "plgen.h"
+#include "emit/emit.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -23,7 +23,7 @@ struct options {
 	const char *spec, *output, *depfile, *solution;
 	enum print print;
 	bool rhs;
-	struct overrides overrides;
+	struct request request;
 	const char *banner;             /* what of them belongs in a banner */
 };
 
@@ -65,13 +65,13 @@ static void need_print(struct options *options, enum print print)
 	options->print = print;
 }
 
-static void add_definition(struct overrides *overrides, const char *text)
+static void add_definition(struct request *request, const char *text)
 {
 	const char *equals = strchr(text, '=');
 	if (!equals || equals == text || equals[1] == 0)
 		wrong_usage(format("-D takes NAME=EXPR, found '%s'", text));
-	ENLARGE(overrides->definition, (size_t)overrides->definitions + 1);
-	overrides->definition[overrides->definitions++] = text;
+	ENLARGE(request->definition, (size_t)request->definitions + 1);
+	request->definition[request->definitions++] = text;
 }
 
 static void note_in_banner(struct options *options, const char *option)
@@ -134,7 +134,7 @@ static void take_option(struct options *options, int option)
 	switch (option) {
 	case 'o': options->output = optarg; break;
 	case 'D':
-		add_definition(&options->overrides, optarg);
+		add_definition(&options->request, optarg);
 		note_in_banner(options, format("-D %s", optarg));
 		break;
 	case OPT_HEADER: need_print(options, PRINT_HEADER); break;
@@ -146,36 +146,36 @@ static void take_option(struct options *options, int option)
 	case OPT_SOLUTION:
 		need_print(options, PRINT_SOLUTION);
 		options->solution = optarg;
-		options->overrides.solution = true;
+		options->request.solution = true;
 		break;
 	case OPT_RHS: options->rhs = true; break;
-	case OPT_STEP: options->overrides.step = optarg; break;
-	case OPT_SCHEME: options->overrides.scheme = optarg; break;
-	case OPT_PREFIX: options->overrides.prefix = optarg; break;
+	case OPT_STEP: options->request.step = optarg; break;
+	case OPT_SCHEME: options->request.scheme = optarg; break;
+	case OPT_PREFIX: options->request.prefix = optarg; break;
 	case OPT_REDUCE:
-		options->overrides.reduce = true;
+		options->request.reduce = true;
 		note_in_banner(options, "--reduce");
 		break;
 	case OPT_LOADS:
 		if (strcmp(optarg, "leftover") != 0 && strcmp(optarg, "exact") != 0)
 			wrong_usage(format("--loads takes exact or leftover, found '%s'", optarg));
-		options->overrides.loads_left = strcmp(optarg, "leftover") == 0;
+		options->request.loads_left = strcmp(optarg, "leftover") == 0;
 		break;
 	case OPT_REAL:
 		if (strcmp(optarg, "double") != 0 && strcmp(optarg, "float") != 0)
 			wrong_usage(format("--real takes double or float, found '%s'", optarg));
-		options->overrides.single = strcmp(optarg, "float") == 0;
+		options->request.single = strcmp(optarg, "float") == 0;
 		break;
 	case OPT_FORM:
-		if (!step_form_of(optarg, &options->overrides.form))
+		if (!step_form_of(optarg, &options->request.form))
 			wrong_usage(format("--form takes auto, direct, delta or kick-drift-kick, found '%s'", optarg));
 		break;
 	case OPT_ACCURACY:
 		if (strcmp(optarg, "compensated") != 0)
 			wrong_usage(format("--accuracy takes compensated, found '%s'", optarg));
-		options->overrides.compensated = true;
+		options->request.compensated = true;
 		break;
-	case OPT_SELFTEST: options->overrides.selftest = true; break;
+	case OPT_SELFTEST: options->request.selftest = true; break;
 	case OPT_DEPFILE: options->depfile = optarg; break;
 	case OPT_HELP: say_and_stop(usage);
 	case OPT_VERSION: say_and_stop("plgen " PLGEN_VERSION "\n");
@@ -219,21 +219,21 @@ static void read_options(int argc, char **argv, struct options *options)
 	if (optind + 1 < argc)
 		wrong_usage(format("one spec at a time: surplus argument '%s'", argv[optind + 1]));
 	options->spec = argv[optind];
-	if (options->overrides.scheme)
-		note_in_banner(options, format("--scheme %s", options->overrides.scheme));
-	if (options->overrides.step)
-		note_in_banner(options, format("--step %s", options->overrides.step));
-	if (options->overrides.prefix)
-		note_in_banner(options, format("--prefix %s", options->overrides.prefix));
-	if (options->overrides.loads_left)
+	if (options->request.scheme)
+		note_in_banner(options, format("--scheme %s", options->request.scheme));
+	if (options->request.step)
+		note_in_banner(options, format("--step %s", options->request.step));
+	if (options->request.prefix)
+		note_in_banner(options, format("--prefix %s", options->request.prefix));
+	if (options->request.loads_left)
 		note_in_banner(options, "--loads leftover");
-	if (options->overrides.single)
+	if (options->request.single)
 		note_in_banner(options, "--real float");
-	if (options->overrides.form != FORM_AUTO)
-		note_in_banner(options, format("--form %s", step_form_name(options->overrides.form)));
-	if (options->overrides.compensated)
+	if (options->request.form != FORM_AUTO)
+		note_in_banner(options, format("--form %s", step_form_name(options->request.form)));
+	if (options->request.compensated)
 		note_in_banner(options, "--accuracy compensated");
-	if (options->overrides.selftest)
+	if (options->request.selftest)
 		note_in_banner(options, "--selftest");
 	if (options->rhs)
 		note_in_banner(options, "--rhs");
@@ -530,7 +530,7 @@ static void warn_of_kept(const struct model *model)
 		const char *names = model->written->coord_name[i];
 		int count = 1;
 		for (int j = i + 1; j < model->written->n; j++)
-			if (model->place[i] >= 0 && model->place[j] >= 0 && root_of(r, i) == root_of(r, j)) {
+			if (model->reduction.place[i] >= 0 && model->reduction.place[j] >= 0 && root_of(r, i) == root_of(r, j)) {
 				names = format("%s, %s", names, model->written->coord_name[j]);
 				count++;
 			}
@@ -543,9 +543,9 @@ static void warn_of_kept(const struct model *model)
 }
 
 /* The model over coordinates that part what moves as a whole from what moves in it, where there are such; else itself */
-static struct model *over_relative(struct model *model, struct spec *spec, const struct overrides *overrides)
+static struct model *over_relative(struct model *model, struct spec *spec, const struct request *request)
 {
-	struct overrides again = *overrides;
+	struct request again = *request;
 	if (model->written != model) {
 		warn_of_kept(model);
 		return model;
@@ -554,15 +554,15 @@ static struct model *over_relative(struct model *model, struct spec *spec, const
 	if (!again.relative)
 		return model;
 	if (model->scheme == SCHEME_PL) {
-		say_warning(model->scheme_at.source ? model->scheme_at : spec->name_at, "any other scheme steps differences as states of their own",
+		say_warning(model->asked.scheme_at.source ? model->asked.scheme_at : spec->name_at, "any other scheme steps differences as states of their own",
 			    "pl keeps coordinates as they are written, and some may move as a whole: where they grow, their differences lose digits");
 		return model;
 	}
-	again.reduce = again.reduce && !model->irreducible;
+	again.reduce = again.reduce && !model->reduction.irreducible;
 	struct model *relative = model_build(spec, &again);
 	if (!relative || !find_tuning(relative, &again))
 		return NULL;
-	relative->irreducible = model->irreducible;
+	relative->reduction.irreducible = model->reduction.irreducible;
 	return relative;
 }
 
@@ -570,23 +570,24 @@ static int compile(int argc, char **argv)
 {
 	struct options options = { 0 };
 	memory_open();
+	memory_on_limit(give_up);
 	atexit(finish);
 	read_options(argc, argv, &options);
 
-	if (options.overrides.single && options.print != PRINT_SOLUTION)
+	if (options.request.single && options.print != PRINT_SOLUTION)
 		target_float();
 	const struct source *source = source_read(options.spec);
 	if (!source)
 		return fail();
 	struct spec *spec = parse_spec(source);
-	struct model *model = model_build(spec, &options.overrides);
-	if (!model || (options.print != PRINT_SOLUTION && !find_tuning(model, &options.overrides)))
+	struct model *model = model_build(spec, &options.request);
+	if (!model || (options.print != PRINT_SOLUTION && !find_tuning(model, &options.request)))
 		return fail();
-	if (options.overrides.reduce)
+	if (options.request.reduce)
 		model = model_reduce(model);
 	if (!model)
 		return fail();
-	struct model *stepped = options.print == PRINT_SOLUTION ? model : over_relative(model, spec, &options.overrides);
+	struct model *stepped = options.print == PRINT_SOLUTION ? model : over_relative(model, spec, &options.request);
 	struct step *step = !stepped || options.print == PRINT_SOLUTION ? NULL : step_build(stepped);
 	if (!step && options.print != PRINT_SOLUTION)
 		return fail();
@@ -604,7 +605,7 @@ static int compile(int argc, char **argv)
 		close_file(to, &file[files - 1]);
 	}
 	for (int i = 0; i < files && options.print <= PRINT_HEADER; i++) {
-		if (options.overrides.single)
+		if (options.request.single)
 			rewrite(&file[i], model->name, print_as_float);
 		rewrite(&file[i], model->name, print_apart);
 	}

@@ -14,7 +14,7 @@
 
 #include "bitwise_specs.h"
 #include "evaluator.h"
-#include "plgen.h"
+#include "report/report.h"
 #include "random_spec.h"
 #include "rationals.h"
 
@@ -422,20 +422,20 @@ static void compare_road(struct taylor *taylor, int i, int j, const char *what, 
 /* Small models come by residues, large ones by Taylor series: here the small ones by the second road too. */
 static void compare_roads(const struct step *step)
 {
-    const struct linear *system = &step->system;
+    const struct linear *system = &step->branch->system;
     const struct series *series = &step->series;
-    const int n = system->states, columns = step->table->columns;
+    const int n = system->states, columns = step->branch->whole->columns;
     if (n > LIMIT_RESIDUE_STATES || system->heldK)
         return;
     struct taylor *taylor = taylor_of(series->size, (const mpq_t *)series_matrix(series, system, 0), step->model->h);
     for (int i = 0; i < n; i++) {
         for (int j = 0; j < n; j++)
-            compare_road(taylor, i, j, entry_name(step->model, (size_t)i, (size_t)j), step->table->Phi[i * n + j].value);
+            compare_road(taylor, i, j, entry_name(step->model, (size_t)i, (size_t)j), step->branch->whole->Phi[i * n + j].value);
         for (int l = 0, column = 0; l < system->loads; l++)
             for (int k = 0; k < system->load[l].columns; k++, column++)
                 if (series->load[l] >= 0)
                     compare_road(taylor, i, series->load[l] + k, entry_name(step->model, (size_t)i, (size_t)(n + column)),
-                                 step->table->load[i * columns + column].value);
+                                 step->branch->whole->load[i * columns + column].value);
     }
 }
 
@@ -478,7 +478,7 @@ static void compare_scheme(const struct model *model, bool both_roads)
         if (step && undecided)
             complain(format("entry %d of %zu x %zu", -1 - undecided, a.size, a.columns), "the judge cannot decide");
         else if (step)
-            compare_step(model, s, &a, step->table, expected);
+            compare_step(model, s, &a, step->branch->whole, expected);
     }
     if (!step)
         compare_refusal(overflow);
@@ -612,7 +612,7 @@ static void compare_solution_values(void *context)
         for (int o = 0; o < model->outputs; o++) {
             struct started *list;
             const int count = responses_of_output(resolvent, &model->system, (const mpq_t *)model->initial, &model->output[o], &list);
-            const struct coefficient c = started_value(count, list, t, model->step_at, model->output[o].name);
+            const struct coefficient c = started_value(count, list, t, model->asked.step_at, model->output[o].name);
             compare(model->output[o].name, c.value, work->expected[first + (size_t)o]);
         }
     }
@@ -799,7 +799,7 @@ static void compare_changes(void *context)
         for (int o = 0; o < model->outputs; o++) {
             struct started *list;
             const int count = responses_of_output(resolvent, &model->system, (const mpq_t *)model->initial, &model->output[o], &list);
-            const struct coefficient c = started_value(count, list, t, model->step_at, model->output[o].name);
+            const struct coefficient c = started_value(count, list, t, model->asked.step_at, model->output[o].name);
             compare_driven(model, &a, segment, &model->output[o], y, c.value);
         }
     }
@@ -831,7 +831,7 @@ static void compare_solution(struct model *model, mpq_srcptr written_step)
 
 static struct model *model_of(const char *text)
 {
-    static const struct overrides none;
+    static const struct request none;
     struct source *source = NEW(struct source);
     *source = (struct source){ .name = "spec", .base = "spec", .text = text, .length = strlen(text) };
     struct model *model = model_build(parse_spec(source), &none);
@@ -912,7 +912,7 @@ static size_t observable_rank(const struct model *model)
     return rank;
 }
 
-struct reduction {
+struct reduced_case {
     const struct model *full, *reduced;
 };
 
@@ -920,7 +920,7 @@ struct reduction {
 static void compare_outputs(void *context)
 {
     static const unsigned long multiples[] = { 0, 1, 17, 60, 3000 };
-    const struct reduction *r = context;
+    const struct reduced_case *r = context;
     struct resolvent *full = resolvent_of(&r->full->system), *reduced = resolvent_of(&r->reduced->system);
     mpq_t t;
     mpq_init(t);
@@ -933,8 +933,8 @@ static void compare_outputs(void *context)
             mpq_set_ui(t, multiples[k], 1);
             mpq_mul(t, t, r->full->h);
             trial.time = format("%lu h", multiples[k]);
-            const double expected = started_value(fs, f, t, r->full->step_at, name).value;
-            compare(name, started_value(gs, g, t, r->full->step_at, name).value, expected);
+            const double expected = started_value(fs, f, t, r->full->asked.step_at, name).value;
+            compare(name, started_value(gs, g, t, r->full->asked.step_at, name).value, expected);
         }
     }
     mpq_clear(t);
@@ -955,7 +955,7 @@ static void try_reduction(const char *text)
         complain("states", format("found %d, expected %zu of %d", reduced->system.states, rank, full->system.states));
     if (rank == (size_t)full->system.states)
         complain("states", "nothing was hidden");
-    if (!statement_guard(compare_outputs, &(struct reduction){ full, reduced }))
+    if (!statement_guard(compare_outputs, &(struct reduced_case){ full, reduced }))
         complain("outputs", first_line(diagnostics()));
     trial.scheme = "exact (reduced)";
     trial.time = "as written";
@@ -1071,13 +1071,13 @@ static void try_critical(const char *text)
     trial.time = "as written, w h = 1";
     struct model *model = model_of(text);
     const struct step *step = model ? step_build(model) : NULL;
-    if (!step || !step->table->Phi[3].zero || step->table->Phi[3].value != 0)
+    if (!step || !step->branch->whole->Phi[3].zero || step->branch->whole->Phi[3].value != 0)
         complain("Phi_22", "not found to be zero");
     if (!step)
         return;
     rational_parse(model->h, "0.0100000000000000000000000000001");
     step = step_build(model);
-    if (!step || step->table->Phi[3].zero || !(step->table->Phi[3].value < -3e-30))
+    if (!step || step->branch->whole->Phi[3].zero || !(step->branch->whole->Phi[3].value < -3e-30))
         complain("Phi_22", "1e-31 beside its zero: found to be zero");
 }
 

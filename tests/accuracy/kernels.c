@@ -11,7 +11,7 @@
  * needs, after Cox and Matthews 2002 and Liu, Wang, Li and Yi 2022.  Each case runs in a process of its own.
  */
 #include "evaluator.h"
-#include "plgen.h"
+#include "step/step.h"
 #include "random_spec.h"
 
 #include <math.h>
@@ -801,7 +801,7 @@ static void compare_segment(const struct model *model, const struct step *step, 
     trial.operator = which;
     trial.segment = segment;
     for (int t = 0; judge && t < step->tables; t++) {
-        const struct table *table = step->all[which][t];
+        const struct table *table = step->branch[which].table[t];
         trial.table = table->wanted->name;
         trial.name = "";
         if (!has_size(table, &judge->plant)) {
@@ -818,7 +818,7 @@ static void compare_segment(const struct model *model, const struct step *step, 
             compare_defined(model, judge, table);
     }
     if (judge && segment == 0 && quadratures[model->scheme].nodes)
-        compare_quadrature(model, judge, step, step->all[which]);
+        compare_quadrature(model, judge, step, step->branch[which].table);
 }
 
 /* The first error that was said; warnings come before it. */
@@ -865,10 +865,10 @@ static void check_refusal(const struct model *model)
 
 static struct model *model_of(const char *scheme)
 {
-    const struct overrides overrides = { .scheme = scheme, .loads_left = trial.loads_left };
+    const struct request request = { .scheme = scheme, .loads_left = trial.loads_left };
     struct source *source = NEW(struct source);
     *source = (struct source){ .name = trial.path, .base = "spec", .text = trial.spec, .length = strlen(trial.spec) };
-    struct model *model = model_build(parse_spec(source), &overrides);
+    struct model *model = model_build(parse_spec(source), &request);
     if (!model)
         complain("not accepted: ", diagnostics());
     else if (model->channels == 0)
@@ -895,7 +895,7 @@ static void try_scheme(const char *scheme, bool loads_left)
         return;
     }
     for (int k = 0; k < model->operators; k++)
-        check_tables(model, step, step->all[k]);
+        check_tables(model, step, step->branch[k].table);
     for (int k = 0; k < model->operators; k++)
         for (int s = 0; s < model->system.segments; s++)
             compare_segment(model, step, k, s);

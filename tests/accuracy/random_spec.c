@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "random_spec.h"
 
-#include "plgen.h"
+#include "step/step.h"
 
 #include <string.h>
 

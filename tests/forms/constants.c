@@ -48,11 +48,11 @@ static const struct relative *kept;
 
 static struct model *model_of(const char *text, const struct variant *v)
 {
-    struct overrides *overrides = NEW(struct overrides);
+    struct request *request = NEW(struct request);
     struct source *source = NEW(struct source);
-    *overrides = (struct overrides){ .form = v->form, .compensated = v->compensated, .single = v->single, .relative = kept };
+    *request = (struct request){ .form = v->form, .compensated = v->compensated, .single = v->single, .relative = kept };
     *source = (struct source){ .name = "spec", .base = "spec", .text = text, .length = strlen(text) };
-    return model_build(parse_spec(source), overrides);
+    return model_build(parse_spec(source), request);
 }
 
 /* The first line of what was said */
@@ -352,11 +352,11 @@ static void compare_code(const char *code, const struct step *step, const struct
 /* Numbers that stand twice are the same twice, whoever is right about their value. */
 static void compare_symmetry(const struct step *step)
 {
-    const int n = step->system.n;
+    const int n = step->branch->system.n;
     for (int i = 0; i < n; i++)
         for (int k = 0; k < i; k++) {
-            const struct coefficient *pair[2][2] = { { &step->table->kick[i * n + k], &step->table->kick[k * n + i] },
-                                                     { &step->table->drift[i * n + k], &step->table->drift[k * n + i] } };
+            const struct coefficient *pair[2][2] = { { &step->branch->whole->kick[i * n + k], &step->branch->whole->kick[k * n + i] },
+                                                     { &step->branch->whole->drift[i * n + k], &step->branch->whole->drift[k * n + i] } };
             for (int p = 0; p < 2; p++) {
                 trial.compared++;
                 if (pair[p][0]->value != pair[p][1]->value || pair[p][0]->low != pair[p][1]->low)

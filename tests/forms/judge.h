@@ -4,7 +4,7 @@
 #ifndef JUDGE_H
 #define JUDGE_H
 
-#include "plgen.h"
+#include "emit/emit.h"
 
 /* A number in intervals, and whether it is 0: no path leads from its column to its row, or 4096 bits show nothing there. */
 struct judged {

@@ -14,7 +14,7 @@
  * The largest met is printed for each family; for states also in ulp of the largest entry of Phi - I, for ramps in ulp of the largest entry
  * of both columns.
  */
-#include "plgen.h"
+#include "emit/emit.h"
 #include "tuned.h"
 
 #include <ctype.h>
@@ -265,21 +265,21 @@ static const struct relative *kept;
 
 static void find_kept(void)
 {
-    struct overrides *overrides = NEW(struct overrides);
-    struct model *model = model_build(spec_of(format("%s", whole)), overrides);
-    kept = model && find_tuning(model, overrides) ? relative_of(model) : NULL;
+    struct request *request = NEW(struct request);
+    struct model *model = model_build(spec_of(format("%s", whole)), request);
+    kept = model && find_tuning(model, request) ? relative_of(model) : NULL;
 }
 
 /* p NULL: the spec's values and step */
 static const struct step *generator(const struct tuned *m, const char *text, const real *p, real h)
 {
-    struct overrides *overrides = NEW(struct overrides);
-    *overrides = (struct overrides){ .relative = kept, .form = m->direct ? FORM_DIRECT : FORM_DELTA, .single = BITS == 24, .step = p ? exact(h) : NULL };
-    overrides->definition = ARRAY(const char *, (size_t)m->model->params);
+    struct request *request = NEW(struct request);
+    *request = (struct request){ .relative = kept, .form = m->direct ? FORM_DIRECT : FORM_DELTA, .single = BITS == 24, .step = p ? exact(h) : NULL };
+    request->definition = ARRAY(const char *, (size_t)m->model->params);
     for (int k = 0; k < m->model->params && p; k++)
-        overrides->definition[overrides->definitions++] = format("%s=%s", m->model->param_names[k], exact(p[k]));
+        request->definition[request->definitions++] = format("%s=%s", m->model->param_names[k], exact(p[k]));
     struct spec *spec = spec_of(text);
-    struct model *model = spec ? model_build(spec, overrides) : NULL;
+    struct model *model = spec ? model_build(spec, request) : NULL;
     return model ? step_build(model) : NULL;
 }
 
@@ -432,7 +432,7 @@ static void compare_outputs(const struct tuned *m, const char *coeffs, const str
         double largest = 0;
         if (!varies[o])
             continue;
-        output_row(&step->system, &step->model->output[o], row);
+        output_row(&step->branch->system, &step->model->output[o], row);
         for (int j = 0; j < m->columns; j++)
             largest = fmax(largest, fabs(row[j]));
         for (int j = 0; j < m->columns && at < m->out_entries; j++)
@@ -486,10 +486,10 @@ static void compare_words(const char *coeffs, size_t place, int index, const cha
 
 static void compare_loads(const struct tuned *m, const char *coeffs, const struct step *step)
 {
-    const struct emitter e = { .step = step, .model = step->model, .system = &step->system };
+    const struct emitter e = { .step = step, .model = step->model, .system = &step->branch->system };
     int phases = 0, growths = 0;
-    for (int l = 0; l < step->system.loads; l++) {
-        const struct wave *wave = step->system.load[l].wave;
+    for (int l = 0; l < step->branch->system.loads; l++) {
+        const struct wave *wave = step->branch->system.load[l].wave;
         if (mpq_sgn(wave->w) != 0)
             compare_words(coeffs, m->phase_step, phases++, phase_step_text(&e, l), "phase");
         if (mpq_sgn(wave->a) != 0)
@@ -512,8 +512,8 @@ static bool *output_varies(const struct tuned *m, const char *text)
     bool *varies = ARRAY(bool, (size_t)one->model->outputs);
     double *row = ARRAY(double, 2 * (size_t)m->columns);
     for (int o = 0; o < one->model->outputs; o++) {
-        output_row(&one->system, &one->model->output[o], row);
-        output_row(&two->system, &two->model->output[o], row + m->columns);
+        output_row(&one->branch->system, &one->model->output[o], row);
+        output_row(&two->branch->system, &two->model->output[o], row + m->columns);
         varies[o] = memcmp(row, row + m->columns, (size_t)m->columns * sizeof *row) != 0;
     }
     return varies;
@@ -543,8 +543,8 @@ static void try_values(const struct tuned *m, const char *text, const bool *vari
     const double angle = largest_pole_angle(step);
     met.least_angle = met.compared == 0 ? angle : fmin(met.least_angle, angle);
     met.most_angle = fmax(met.most_angle, angle);
-    compare_states(m, coeffs, step->table);
-    compare_columns(m, coeffs, step->table, &step->system);
+    compare_states(m, coeffs, step->branch->whole);
+    compare_columns(m, coeffs, step->branch->whole, &step->branch->system);
     if (m->out_entries > 0)
         compare_outputs(m, coeffs, step, varies);
     compare_loads(m, coeffs, step);
@@ -637,8 +637,8 @@ static void try_nominal(const struct batch *b)
     params_now = m->model->param_values;
     h_now = m->model->h;
     bound = 0;
-    compare_states(m, m->nominal, step->table);
-    compare_columns(m, m->nominal, step->table, &step->system);
+    compare_states(m, m->nominal, step->branch->whole);
+    compare_columns(m, m->nominal, step->branch->whole, &step->branch->system);
     if (m->out_entries > 0)
         compare_outputs(m, m->nominal, step, b->varies);
     compare_loads(m, m->nominal, step);

@@ -8,7 +8,7 @@
  * M q'' + C q' + K q = loads + inputs of the model that -D makes with these values, it has to fulfil them, and rows of outputs have to be equal.
  * Nothing is rounded.  Random specs write their factors with nested params, matrices, lets and sketches; none may be refused.
  */
-#include "plgen.h"
+#include "step/step.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -124,16 +124,16 @@ static const char *random_text(uint64_t seed)
 
 static struct model *model_of(const char *text, const struct spec *tunables, const mpq_t *values)
 {
-    struct overrides *overrides = NEW(struct overrides);
+    struct request *request = NEW(struct request);
     struct source *source = NEW(struct source);
     *source = (struct source){ .name = "spec", .base = "spec", .text = text, .length = strlen(text) };
     for (int k = 0; tunables && k < tunables->tunables; k++) {
-        ENLARGE(overrides->definition, (size_t)k + 1);
-        overrides->definition[overrides->definitions++] = format("%s=%s", tunables->tunable[k].symbol->name, mpq_get_str(NULL, 10, values[k]));
+        ENLARGE(request->definition, (size_t)k + 1);
+        request->definition[request->definitions++] = format("%s=%s", tunables->tunable[k].symbol->name, mpq_get_str(NULL, 10, values[k]));
     }
     struct spec *spec = parse_spec(source);
-    struct model *model = spec ? model_build(spec, overrides) : NULL;
-    return model && (tunables || find_tuning(model, overrides)) ? model : NULL;
+    struct model *model = spec ? model_build(spec, request) : NULL;
+    return model && (tunables || find_tuning(model, request)) ? model : NULL;
 }
 
 static void add_product(mpq_ptr sum, mpq_srcptr a, mpq_srcptr b)

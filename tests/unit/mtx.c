@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* gen/mtx.c: what it reads, exactly, and what it says about files that are wrong. */
+/* gen/read/mtx.c: what it reads, exactly, and what it says about files that are wrong. */
 #include <stdarg.h>
 #include <stddef.h>
 #include <setjmp.h>
@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
-#include "plgen.h"
+#include "read/read.h"
 
 #define BANNER(rest) "%%MatrixMarket matrix " rest "\n"
 

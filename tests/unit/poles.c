@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the proofs of gen/poles.c, gen/enclosure.c and gen/residues.c promise, where the truth is known by construction: polynomials are
+/* What the proofs of gen/math: poles.c, enclosure.c and residues.c promise, where the truth is known by construction: polynomials are
  * products of factors with rational roots, real or complex, so that whether a disc holds a root is decided in rationals. poles.c is
  * part of this file: its discs are looked at when approximations are still poor, as an iteration that has converged hides much. */
-#include "../../gen/poles.c"
+#include "../../gen/math/poles.c"
 
 #include <stdarg.h>
 #include <stddef.h>

@@ -1,0 +1,136 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/*
+ * Memory, texts and what is said about them, numbers of the target: what every room stands on.
+ *
+ * Glossary.  The field's letters collide; in this program they mean:
+ *   M, C, K    mass, damping and stiffness matrix of the equations as written
+ *   P(s)       M s^2 + C s + K, the dynamic stiffness: P(s) Q(s) = (M s + C) q(0) + M q'(0) + F(s)
+ *   B(s)       det P(s), the characteristic polynomial; its roots are the poles
+ *   N/D        the image of one number in s: numerator and denominator, coprime
+ *   Phi        transfer matrix over one step: y(t+h) = Phi y(t) + loads; y = coordinates, then velocities
+ *   h, tau     the step; a time after the step's start
+ *   w, p       angular frequency [rad/s] and phase [rad] of a load cos(w t + p)
+ *   wave       a load cos(w t + p) or sin(w t + p); the two of one (w, p) share an oscillator
+ *   held       terms that a scheme keeps at their value at the start of the step
+ *
+ * Data flow: source -> tokens -> nodes -> model (exact) -> images N/D (exact) -> poles, residues (enclosed)
+ *            -> coefficients (rounded once) -> step program -> C, header, report.
+ * No double stands before `coefficients`, the starting values of the root iteration excepted.
+ */
+#ifndef PLGEN_BASE_H
+#define PLGEN_BASE_H
+
+#include <gmp.h>
+#include <mpfr.h>
+#include <mpfi.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+
+#include "plrt.h"           /* the cost of its routines */
+
+#define PLGEN_VERSION "0.1.0"
+
+/* Limits; each names itself in the message that it causes. */
+enum {
+	LIMIT_LINE = 1 << 20,       /* bytes of a line */
+	LIMIT_NESTING = 1000,       /* brackets, signs and powers inside each other */
+	LIMIT_EXPONENT = 9999,      /* of a literal such as 1e9999 */
+	LIMIT_BITS = 1000000,       /* of an exact value */
+	LIMIT_STATES = 512,
+	LIMIT_CHANGES = 1000,       /* of formula in time */
+	LIMIT_TUNABLES = 16,        /* params that the target may change */
+	LIMIT_MONOMIALS = 64,       /* products of them in one factor of a state */
+	LIMIT_REGIONS = 243,        /* of a piecewise-linear model */
+	MAX_EVENTS = 32,            /* crossings in a step of generated code */
+	LIMIT_PIECES = 16,          /* halvings of a step in which crossings are looked for */
+	MAX_SPLITS = 500,           /* of intervals in search of them, in a step */
+	LIMIT_WAVES = 500,          /* frequencies, phases and growths of loads */
+	LIMIT_LOAD_POWER = 32,      /* exponent of a load, as in t^3 */
+	LIMIT_UNROLLED_STATES = 16, /* beyond, a step loops over its tables */
+	LIMIT_RESIDUE_STATES = 12,  /* beyond, a Taylor series gives the numbers: residues get slow */
+	LIMIT_TURNS = 256,          /* log2 of a load's angle in a step, for models of more states than that */
+	LIMIT_ERRORS = 100,         /* told before the rest is not looked at */
+	LIMIT_DEPTH = 10000,        /* of an expression in operations, through params and lets; a function of many arguments counts as many */
+	LIMIT_TERMS = 10000000,     /* of forms, made on the way to the equations */
+	LIMIT_BYTES = 470000000,    /* held at a time */
+	LIMIT_ROWS = 10000000,      /* of --solution */
+	LIMIT_PRECISION = 16384,    /* bits of an enclosure before a coefficient is given up */
+	IRRATIONAL_BITS = 256       /* pi, sqrt(2), ... become rationals of this many bits */
+};
+
+/* ---- memory.c: everything lives until the program ends; GMP, MPFR and MPFI allocate here too ---- */
+
+void  memory_open(void);
+void  memory_close(void);
+void  memory_on_limit(void (*tell)(const char *message)); /* what says that a limit is reached, and ends the program */
+void *allocate(size_t count, size_t size);                 /* zeroed */
+void *enlarge(void *block, size_t count, size_t size);     /* contents kept, the rest undefined */
+char *format(const char *fmt, ...) __attribute__((format(printf, 1, 2)));
+mpq_t *rationals(size_t count);                            /* initialised to 0 */
+void  rationals_free(mpq_t *q, size_t count);
+void  discard(void *block);                                /* gives it back before the end; what it points to stays */
+void  spend_terms(size_t count);                            /* from the budget of LIMIT_TERMS; gives up when it is spent */
+#define NEW(type) ((type *)allocate(1, sizeof(type)))
+#define ARRAY(type, count) ((type *)allocate(count, sizeof(type)))
+#define ENLARGE(array, count) ((array) = enlarge(array, count, sizeof *(array)))
+
+/* ---- progress.c: a line on a terminal for what takes longer than a second ---- */
+
+void progress(const char *what, int done, int all);         /* done = 0 starts the clock */
+void progress_end(void);                                    /* the line goes */
+
+/* ---- source.c: texts, places in them, and what is said about a place ---- */
+
+struct source {
+	const char *name;           /* as the user named it */
+	const char *base;           /* without folders: what generated text shows */
+	const char *text;           /* ends with a 0 byte that does not count */
+	size_t length;
+	int order;                  /* in which they were opened: the spec first */
+};
+struct place {
+	const struct source *source;
+	size_t offset;
+};
+struct source *source_read(const char *path);              /* "-" is standard input; says what went wrong and returns NULL */
+struct source *source_argument(const char *text);          /* a value from the command line */
+struct place place_end(const struct source *source);       /* just after the last character of the last line */
+
+/* An error is kept until diagnostics_print, which sorts by place. `error` does not return: it leaves the statement
+ * through the innermost `statement_guard`. */
+void say_error(struct place at, const char *note, const char *fmt, ...) __attribute__((format(printf, 3, 4)));
+_Noreturn void error(struct place at, const char *note, const char *fmt, ...) __attribute__((format(printf, 3, 4)));
+void work_at(struct place at);                             /* what is said to cost too much from now on */
+struct place working_at(void);
+_Noreturn void give_up(const char *message);               /* an error there, and the end: what is spent does not come back */
+_Noreturn void abandon(void);                              /* leave the statement; its error has been said before */
+void say_warning(struct place at, const char *note, const char *fmt, ...) __attribute__((format(printf, 3, 4)));
+void say_note(struct place at, const char *fmt, ...) __attribute__((format(printf, 2, 3)));
+bool statement_guard(void (*work)(void *), void *context); /* true if the work ran to its end */
+bool silent_guard(void (*work)(void *), void *context);    /* the same; what it says when it fails is forgotten */
+void diagnostics_context(const char *note);                /* the note of what has none from now on; NULL: none */
+int  diagnostics_errors(void);
+void diagnostics_print(FILE *to);
+void check_bits(struct place at, mpq_srcptr value);        /* the limit on exact values */
+void check_power(struct place at, mpq_srcptr base, unsigned long exponent); /* the same, before the work */
+
+/* ---- number.c: the border to rounded numbers ---- */
+
+/* The target's type is double, or float after target_float; a double holds its numbers. */
+void   target_float(void);
+const char *target_name(void);
+double round_rational(mpq_srcptr q);                        /* nearest of the target's numbers; +-HUGE_VAL beyond the range */
+double nearest_double(mpq_srcptr q);                        /* whatever the target */
+bool   beyond_range(mpq_srcptr q);
+const char *finite_text(struct place at, mpq_srcptr q);     /* shortest; leaves the statement at a value beyond the range */
+bool   round_enclosure(mpfi_srcptr x, double *d);           /* false: both ends do not round to one number */
+const char *shortest(double d);                             /* fewest digits that read back; a C literal, of type double */
+
+/* ---- rational.c: exact numbers as text ---- */
+
+const char *exact_text(mpq_srcptr q);                       /* a decimal if there is one, else p/q */
+const char *readable_text(mpq_srcptr q);                    /* the same while it is short, else 12 digits */
+
+#endif

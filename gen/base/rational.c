@@ -1,0 +1,53 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Rationals as text: a decimal where there is one. */
+#include "base/base.h"
+
+#include <string.h>
+
+/* q = digits / 10^places if its denominator allows */
+static bool decimal_places(mpq_srcptr q, unsigned long *places)
+{
+	mpz_t rest, five;
+	mpz_init(rest);
+	mpz_init_set_ui(five, 5);
+	unsigned long twos = mpz_scan1(mpq_denref(q), 0);
+	mpz_fdiv_q_2exp(rest, mpq_denref(q), twos);
+	unsigned long fives = mpz_remove(rest, rest, five);
+	bool decimal = mpz_cmp_ui(rest, 1) == 0;
+	*places = twos > fives ? twos : fives;
+	mpz_clears(rest, five, NULL);
+	return decimal;
+}
+
+const char *exact_text(mpq_srcptr q)
+{
+	enum { LONGEST_DECIMAL = 40 };
+	unsigned long places;
+	if (!decimal_places(q, &places) || places > LONGEST_DECIMAL) {
+		char *text = ARRAY(char, mpz_sizeinbase(mpq_numref(q), 10) + mpz_sizeinbase(mpq_denref(q), 10) + 3);
+		return mpq_get_str(text, 10, q);
+	}
+	mpz_t digits;
+	mpz_init(digits);
+	mpz_ui_pow_ui(digits, 10, places);
+	mpz_mul(digits, digits, mpq_numref(q));
+	mpz_divexact(digits, digits, mpq_denref(q));
+	mpz_abs(digits, digits);
+	char *all = ARRAY(char, mpz_sizeinbase(digits, 10) + 2);
+	mpz_get_str(all, 10, digits);
+	mpz_clear(digits);
+	const char *sign = mpq_sgn(q) < 0 ? "-" : "";
+	if (places == 0)
+		return format("%s%s", sign, all);
+	while (strlen(all) <= places)
+		all = format("0%s", all);
+	size_t whole = strlen(all) - places;
+	return format("%s%.*s.%s", sign, (int)whole, all, all + whole);
+}
+
+const char *readable_text(mpq_srcptr q)
+{
+	enum { LONGEST_READABLE = 18 };
+	const char *exact = exact_text(q);
+	return strlen(exact) <= LONGEST_READABLE ? exact : format("%.12g", nearest_double(q));
+}

@@ -1,0 +1,580 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What is not linear, as atoms: expressions over forms, each made once. A form may then hold atoms beside coordinates and
+ * loads, so that linear terms are found, and leftovers shared, wherever they stand. */
+#include "collect/collect.h"
+
+#include <string.h>
+
+enum { BUCKETS = 4096, FLATTENED = 64 };
+
+struct shared {                     /* an operand; equal ones are one object */
+	const struct form *form;
+	int index;
+	struct shared *next;
+};
+struct atoms {
+	int forms, count;
+	struct shared *form[BUCKETS];
+	struct atom *atom[BUCKETS];
+};
+
+struct atoms *atoms_new(void)
+{
+	return NEW(struct atoms);
+}
+
+int atoms_count(const struct atoms *atoms)
+{
+	return atoms->count;
+}
+
+/* ---- operands ---- */
+
+static size_t mix(size_t hash, size_t value)
+{
+	return (hash ^ value) * 0x9e3779b97f4a7c15u;
+}
+
+static size_t form_hash(const struct form *form)
+{
+	size_t hash = (size_t)form->terms;
+	for (int i = 0; i < form->terms; i++) {
+		const struct basis *basis = &form->term[i].basis;
+		hash = mix(hash, (size_t)basis->kind * 8 + (size_t)basis->order * 2 + basis->sine);
+		hash = mix(hash, basis->wave ? (size_t)basis->wave->index * 64 + (size_t)basis->power : (size_t)basis->index);
+		hash = mix(hash, mpz_get_ui(mpq_numref(form->term[i].factor)) + 3 * mpz_get_ui(mpq_denref(form->term[i].factor)));
+	}
+	return (hash >> 20) % BUCKETS;
+}
+
+static const struct shared *share(struct collector *c, const struct form *form)
+{
+	struct shared **link = &c->atoms->form[form_hash(form)];
+	for (; *link; link = &(*link)->next)
+		if (same_form((*link)->form, form))
+			return *link;
+	*link = NEW(struct shared);
+	**link = (struct shared){ form, c->atoms->forms++, NULL };
+	return *link;
+}
+
+/* ---- atoms ---- */
+
+/* What of two bases moves more readily: a coordinate, then an input */
+const struct basis *moved_basis(const struct basis *known, const struct basis *basis)
+{
+	basis = basis->atom ? basis->atom->moves : basis->kind == BASIS_COORD || basis->kind == BASIS_INPUT ? basis : NULL;
+	return !known || (basis && basis->kind == BASIS_COORD && known->kind != BASIS_COORD) ? basis : known;
+}
+
+static void add_dependence(const struct collector *c, struct atom *atom, const struct form *form)
+{
+	for (int i = 0; i < form->terms; i++) {
+		const struct basis *basis = &form->term[i].basis;
+		atom->time = atom->time || basis->kind == BASIS_WAVE || (basis->atom && basis->atom->time);
+		atom->input = atom->input || basis->kind == BASIS_INPUT || (basis->atom && basis->atom->input);
+		atom->state = atom->state || basis->kind == BASIS_COORD || (basis->atom && basis->atom->state);
+		atom->velocity = atom->velocity || is_velocity(c->frame, basis);
+		atom->moves = moved_basis(atom->moves, basis);
+	}
+}
+
+bool depends_on_time_only(const struct basis *basis)
+{
+	return basis->atom ? !basis->atom->input && !basis->atom->state : basis->kind <= BASIS_WAVE;
+}
+
+/* Highest derivatives are what the equations are solved for: they cannot stand inside. */
+static void check_highest(const struct collector *c, const struct node *node, const struct form *form)
+{
+	for (int i = 0; i < form->terms; i++) {
+		const struct basis *basis = &form->term[i].basis;
+		if (!c->output && basis->kind == BASIS_COORD && basis->order > 0 && basis->order >= c->frame->coord[basis->index]->highest)
+			not_linear(c, node, "is not linear");
+	}
+}
+
+struct form *time_part(const struct form *form, bool atoms)
+{
+	struct form *part = NEW(struct form);
+	for (int i = 0; i < form->terms; i++)
+		if (depends_on_time_only(&form->term[i].basis) && (!atoms || form->term[i].basis.kind == BASIS_ATOM))
+			form_add_basis(part, form->term[i].basis, form->term[i].factor);
+	return part;
+}
+
+static bool same_atom(const struct atom *a, const struct atom *b)
+{
+	if (a->kind != b->kind || a->function != b->function || a->comparison != b->comparison || a->operands != b->operands)
+		return false;
+	for (int i = 0; i < a->operands; i++)
+		if (a->operand[i] != b->operand[i] || (a->exponent && a->exponent[i] != b->exponent[i]))
+			return false;
+	return true;
+}
+
+static struct form *form_of_atom(struct collector *c, const struct node *node, struct atom wanted)
+{
+	size_t hash = (size_t)wanted.kind * 64 + wanted.function;
+	for (int i = 0; i < wanted.operands; i++)
+		hash = mix(hash, form_hash(wanted.operand[i]) + (wanted.exponent ? wanted.exponent[i] : 0));
+	struct atom **link = &c->atoms->atom[(hash >> 20) % BUCKETS];
+	while (*link && !same_atom(*link, &wanted))
+		link = &(*link)->next;
+	if (!*link) {
+		for (int i = 0; i < wanted.operands; i++) {
+			check_highest(c, node, wanted.operand[i]);
+			add_dependence(c, &wanted, wanted.operand[i]);
+		}
+		wanted.node = node;
+		wanted.index = c->atoms->count++;
+		*link = NEW(struct atom);
+		**link = wanted;
+	}
+	return form_unit((struct basis){ .kind = BASIS_ATOM, .index = (*link)->index, .atom = *link });
+}
+
+static struct form *new_atom(struct collector *c, const struct node *node, struct atom wanted, int count, const struct form *const *operand)
+{
+	wanted.operands = count;
+	wanted.operand = ARRAY(const struct form *, (size_t)count);
+	for (int i = 0; i < count; i++)
+		wanted.operand[i] = share(c, operand[i])->form;
+	return form_of_atom(c, node, wanted);
+}
+
+/* ---- products: a rational times powers of shared forms, sorted ---- */
+
+struct monomial {
+	mpq_t factor;
+	int count;
+	const struct shared **base;
+	unsigned *exponent;
+};
+
+static void monomial_init(struct monomial *m)
+{
+	*m = (struct monomial){ .count = 0 };
+	mpq_init(m->factor);
+	mpq_set_ui(m->factor, 1, 1);
+}
+
+static void check_exponent(const struct node *node, unsigned long exponent)
+{
+	if (exponent > LIMIT_EXPONENT)
+		error(node->at, NULL, "power beyond the limit of %d", LIMIT_EXPONENT);
+}
+
+/* The factors of a product join another while their powers stay small. */
+static bool flattens(const struct atom *product, unsigned exponent)
+{
+	for (int i = 0; i < product->operands; i++)
+		if (exponent > FLATTENED / product->exponent[i])
+			return false;
+	return true;
+}
+
+/* m->factor *= factor^exponent */
+static void multiply_factor(const struct node *node, struct monomial *m, mpq_srcptr factor, unsigned exponent)
+{
+	mpq_t power, whole;
+	mpq_inits(power, whole, NULL);
+	mpq_set_ui(whole, exponent, 1);
+	constant_power(node->at, factor, whole, power);
+	mpq_mul(m->factor, m->factor, power);
+	mpq_clears(power, whole, NULL);
+}
+
+static void multiply_base(const struct node *node, struct monomial *m, const struct shared *base, unsigned exponent)
+{
+	int at = 0;
+	while (at < m->count && m->base[at]->index < base->index)
+		at++;
+	if (at < m->count && m->base[at] == base) {
+		check_exponent(node, (unsigned long)m->exponent[at] + exponent);
+		m->exponent[at] += exponent;
+		return;
+	}
+	ENLARGE(m->base, (size_t)m->count + 1);
+	ENLARGE(m->exponent, (size_t)m->count + 1);
+	memmove(m->base + at + 1, m->base + at, (size_t)(m->count - at) * sizeof *m->base);
+	memmove(m->exponent + at + 1, m->exponent + at, (size_t)(m->count - at) * sizeof *m->exponent);
+	m->base[at] = base;
+	m->exponent[at] = exponent;
+	m->count++;
+}
+
+/* A single term brings its factor and the factors of its own product; a sum is a base, with its first term positive. */
+static void multiply_form(struct collector *c, const struct node *node, struct monomial *m, const struct form *form, unsigned exponent)
+{
+	const struct atom *atom = form->terms == 1 ? form->term[0].basis.atom : NULL;
+	mpq_srcptr first = form->term[0].factor;
+	mpq_t unit;
+	mpq_init(unit);
+	mpq_set_si(unit, mpq_sgn(first), 1);
+	multiply_factor(node, m, form->terms == 1 ? first : unit, exponent);
+	if (atom && atom->kind == ATOM_PRODUCT && flattens(atom, exponent))
+		for (int i = 0; i < atom->operands; i++)
+			multiply_form(c, node, m, atom->operand[i], exponent * atom->exponent[i]);
+	else if (form->terms == 1)
+		multiply_base(node, m, share(c, form_unit(form->term[0].basis)), exponent);
+	else
+		multiply_base(node, m, share(c, form_scale(form, unit)), exponent);
+	mpq_clear(unit);
+}
+
+static bool is_of_time(const struct form *form)
+{
+	for (int i = 0; i < form->terms; i++)
+		if (!depends_on_time_only(&form->term[i].basis))
+			return false;
+	return true;
+}
+
+static struct form *form_of_powers(struct collector *c, const struct node *node, int count, const struct shared **base, unsigned *exponent)
+{
+	if (count == 1 && exponent[0] == 1)
+		return form_sum(base[0]->form, NEW(struct form), false);
+	struct atom atom = { .kind = ATOM_PRODUCT, .operands = count, .operand = ARRAY(const struct form *, (size_t)count), .exponent = exponent };
+	for (int i = 0; i < count; i++)
+		atom.operand[i] = base[i]->form;
+	return form_of_atom(c, node, atom);
+}
+
+/* The powers of time make an atom of their own, so that products that share it compute it once. */
+static struct form *form_of_monomial(struct collector *c, const struct node *node, const struct monomial *m)
+{
+	struct monomial time, rest;
+	monomial_init(&time);
+	monomial_init(&rest);
+	for (int i = 0; i < m->count; i++)
+		multiply_base(node, is_of_time(m->base[i]->form) ? &time : &rest, m->base[i], m->exponent[i]);
+	if (time.count > 0 && rest.count > 0)
+		multiply_base(node, &rest, share(c, form_of_powers(c, node, time.count, time.base, time.exponent)), 1);
+	struct monomial *all = rest.count ? &rest : &time;
+	struct form *form = form_scale(form_of_powers(c, node, all->count, all->base, all->exponent), m->factor);
+	check_form(node->at, form);
+	mpq_clears(time.factor, rest.factor, NULL);
+	return form;
+}
+
+static struct form *whole_product(struct collector *c, const struct node *node, const struct form *a, const struct form *b)
+{
+	struct monomial m;
+	monomial_init(&m);
+	multiply_form(c, node, &m, a, 1);
+	multiply_form(c, node, &m, b, 1);
+	struct form *form = form_of_monomial(c, node, &m);
+	mpq_clear(m.factor);
+	return form;
+}
+
+struct form *kept_others(struct collector *c, const struct node *node, const struct atom *product, int factor)
+{
+	struct monomial m;
+	monomial_init(&m);
+	for (int i = 0; i < product->operands; i++)
+		if (product->exponent[i] > (i == factor))
+			multiply_form(c, node, &m, product->operand[i], product->exponent[i] - (i == factor));
+	struct form *form = form_of_monomial(c, node, &m);
+	mpq_clear(m.factor);
+	return form;
+}
+
+/* Terms of constants, of time alone, and the rest, in this order of sorts. */
+struct parts { struct form *constant, *time, *rest; };
+
+static struct parts parts_of(const struct collector *c, const struct form *form)
+{
+	struct parts parts = { NEW(struct form), NEW(struct form), NEW(struct form) };
+	for (int i = 0; i < form->terms; i++) {
+		const struct form_term *term = &form->term[i];
+		bool time = term->basis.kind == BASIS_WAVE || (c->whole_time && depends_on_time_only(&term->basis));
+		struct form **part = term->basis.kind <= BASIS_PI ? &parts.constant : time ? &parts.time : &parts.rest;
+		form_add_basis(*part, term->basis, term->factor);
+	}
+	return parts;
+}
+
+struct form *kept_product(struct collector *c, const struct node *node, const struct form *a, const struct form *b)
+{
+	if (is_constant(a) || is_constant(b))
+		return form_product(c, a, b);
+	struct parts x = parts_of(c, a), y = parts_of(c, b);
+	const struct form *moving_a = form_sum(a, x.constant, true), *moving_b = form_sum(b, y.constant, true);
+	struct form *sum = form_sum(form_product(c, x.constant, b), form_product(c, moving_a, y.constant), false);
+	if (x.time->terms && y.time->terms)
+		sum = form_sum(sum, (c->whole_time ? whole_product(c, node, x.time, y.time) : load_product(c, x.time, y.time)), false);
+	if (x.time->terms && y.rest->terms)
+		sum = form_sum(sum, whole_product(c, node, x.time, y.rest), false);
+	if (x.rest->terms)
+		sum = form_sum(sum, whole_product(c, node, x.rest, moving_b), false);
+	return sum;
+}
+
+/* ---- the others ---- */
+
+struct form *kept_reciprocal(struct collector *c, const struct node *node, const struct form *x)
+{
+	mpq_t value;
+	mpq_init(value);
+	struct form *form;
+	if (is_constant(x)) {
+		constant_value(c, x, value);
+		if (mpq_sgn(value) == 0)
+			error(node->at, NULL, "division by zero");
+		mpq_inv(value, value);
+		form = form_constant(value);
+	} else if (x->terms == 1) {             /* 1/(2 x) = 0.5 (1/x) */
+		const struct form *unit = form_unit(x->term[0].basis);
+		mpq_inv(value, x->term[0].factor);
+		form = form_scale(new_atom(c, node, (struct atom){ .kind = ATOM_RECIPROCAL }, 1, &unit), value);
+	} else {
+		form = new_atom(c, node, (struct atom){ .kind = ATOM_RECIPROCAL }, 1, &x);
+	}
+	mpq_clear(value);
+	return form;
+}
+
+static struct form *constant_to_power(struct collector *c, const struct node *node, const struct form *base, mpq_srcptr exponent)
+{
+	mpq_t value;
+	mpq_init(value);
+	constant_value(c, base, value);
+	if (!constant_power(node->at, value, exponent, value))
+		met_irrational(c, &c->irrationals.root);
+	struct form *form = form_constant(value);
+	check_form(node->at, form);
+	mpq_clear(value);
+	return form;
+}
+
+/* x^n as one product, n >= 1. A sum stays whole: multiplied out it would lose digits to cancellation. */
+static struct form *power_form(struct collector *c, const struct node *node, const struct form *x, unsigned n)
+{
+	struct monomial m;
+	monomial_init(&m);
+	multiply_form(c, node, &m, x, n);
+	struct form *form = form_of_monomial(c, node, &m);
+	mpq_clear(m.factor);
+	return form;
+}
+
+/* Of loads that the linear core carries: multiplied out */
+static struct form *load_power(struct collector *c, const struct node *node, const struct form *x, unsigned n)
+{
+	struct form *form = form_unit((struct basis){ .kind = BASIS_ONE });
+	for (unsigned k = 0; k < n; k++)
+		form = kept_product(c, node, form, x);
+	return form;
+}
+
+struct form *kept_whole_power(struct collector *c, const struct node *node, const struct form *x, unsigned n)
+{
+	mpq_t exponent;
+	mpq_init(exponent);
+	mpq_set_ui(exponent, n, 1);
+	bool load = !c->whole_time && n <= LIMIT_LOAD_POWER && is_of_time(x) && time_part(x, true)->terms == 0;
+	struct form *form = is_constant(x) ? constant_to_power(c, node, x, exponent) : n == 0 ? form_unit((struct basis){ .kind = BASIS_ONE })
+			  : load ? load_power(c, node, x, n) : power_form(c, node, x, n);
+	mpq_clear(exponent);
+	return form;
+}
+
+struct form *kept_power(struct collector *c, const struct node *node, const struct form *base, const struct form *exponent)
+{
+	const struct form *operand[] = { base, exponent };
+	if (!is_constant(exponent))
+		return new_atom(c, node, (struct atom){ .kind = ATOM_POWER }, 2, operand);
+	mpq_t e;
+	mpq_init(e);
+	constant_value(c, exponent, e);
+	bool whole = mpz_cmp_ui(mpq_denref(e), 1) == 0 && mpz_cmpabs_ui(mpq_numref(e), LIMIT_EXPONENT) <= 0;
+	struct form *form;
+	if (is_constant(base)) {
+		form = constant_to_power(c, node, base, e);
+	} else if (whole) {
+		form = kept_whole_power(c, node, base, (unsigned)mpz_get_ui(mpq_numref(e)));    /* its size */
+		form = mpq_sgn(e) < 0 ? kept_reciprocal(c, node, form) : form;
+	} else {
+		form = new_atom(c, node, (struct atom){ .kind = ATOM_POWER }, 2, operand);
+	}
+	mpq_clear(e);
+	return form;
+}
+
+static bool all_constant(int count, struct form *const *x)
+{
+	for (int i = 0; i < count; i++)
+		if (!is_constant(x[i]))
+			return false;
+	return true;
+}
+
+/* A node that calls a function where another one stands: for messages, which show the place. */
+static const struct node *call_at(const struct node *node, enum function function, int count)
+{
+	struct node *call = NEW(struct node);
+	*call = *node;
+	call->function = function;
+	if (call->children < count || call->kind != NODE_CALL) {
+		call->child = ARRAY(struct node *, (size_t)count);
+		for (int i = 0; i < count; i++)
+			call->child[i] = (struct node *)node;
+	}
+	call->kind = NODE_CALL;
+	call->children = count;
+	return call;
+}
+
+struct form *kept_call(struct collector *c, const struct node *node, enum function function, int count, struct form *const *x)
+{
+	bool single = function < FN_ATAN2 && function != FN_ABS && function != FN_SGN;
+	if (all_constant(count, x) || (!single && function != FN_ATAN2 && is_decided(c, count, x)))
+		return single ? constant_call(c, node, function, x[0]) : piecewise(c, call_at(node, function, count), x);
+	if (function >= FN_DEADZONE)
+		check_breakpoints(c, node, x);
+	return new_atom(c, node, (struct atom){ .kind = ATOM_CALL, .function = function }, count, (const struct form *const *)x);
+}
+
+struct form *kept_comparison(struct collector *c, const struct node *node, enum comparison comparison, const struct form *a, const struct form *b)
+{
+	struct form *difference = form_sum(a, b, true);
+	const struct form *operand[] = { a, b };
+	if (!is_decided(c, 1, &difference))
+		return new_atom(c, node, (struct atom){ .kind = ATOM_COMPARE, .comparison = comparison }, 2, operand);
+	mpq_t value;
+	mpq_init(value);
+	mpq_set_ui(value, compare_values(comparison, order_now(c, node, difference, NEW(struct form))), 1);
+	struct form *form = form_constant(value);
+	mpq_clear(value);
+	return form;
+}
+
+struct form *kept_choice(struct collector *c, const struct node *node, const struct form *condition, const struct form *a, const struct form *b)
+{
+	const struct form *operand[] = { condition, a, b };
+	if (is_constant(condition) || same_form(a, b)) {
+		mpq_t value;
+		mpq_init(value);
+		bool first = true;
+		if (is_constant(condition)) {
+			constant_value(c, condition, value);
+			first = mpq_sgn(value) != 0;
+		}
+		mpq_clear(value);
+		return form_sum(first ? a : b, NEW(struct form), false);
+	}
+	return new_atom(c, node, (struct atom){ .kind = ATOM_CHOOSE }, 3, operand);
+}
+
+/* ---- what is piecewise linear ---- */
+
+static bool is_comparison(const struct form *form)
+{
+	const struct form_term *only = form->terms == 1 ? form->term : NULL;
+	const struct atom *atom = only ? only->basis.atom : NULL;
+	return atom && atom->kind == ATOM_COMPARE && atom->comparison <= CMP_GE && mpq_cmp_ui(only->factor, 1, 1) == 0;
+}
+
+static bool is_piecewise_atom(const struct atom *a)
+{
+	bool function = a->kind == ATOM_CALL && (a->function == FN_ABS || a->function == FN_SGN || a->function >= FN_MIN);
+	bool choice = a->kind == ATOM_CHOOSE && is_comparison(a->operand[0]);
+	bool comparison = a->kind == ATOM_COMPARE && a->comparison <= CMP_GE;
+	bool all = function || choice || comparison;
+	for (int i = 0; i < a->operands && all; i++)
+		all = is_piecewise_form(a->operand[i]);
+	return all;
+}
+
+bool is_piecewise_form(const struct form *form)
+{
+	for (int i = 0; i < form->terms; i++) {
+		struct atom *a = (struct atom *)form->term[i].basis.atom;
+		if (a && a->piecewise == 0)
+			a->piecewise = is_piecewise_atom(a) ? 1 : -1;
+		if (a && a->piecewise < 0)
+			return false;
+	}
+	return true;
+}
+
+bool is_stepwise(const struct form *form)
+{
+	for (int i = 0; i < form->terms; i++) {
+		struct atom *a = (struct atom *)form->term[i].basis.atom;
+		if (!a && form->term[i].basis.kind > BASIS_PI)
+			return false;
+		if (a && a->stepwise == 0) {
+			bool step = a->kind == ATOM_COMPARE || (a->kind == ATOM_CALL && a->function == FN_SGN);
+			step = step || (a->kind == ATOM_CHOOSE && is_stepwise(a->operand[1]) && is_stepwise(a->operand[2]));
+			a->stepwise = step ? 1 : -1;
+		}
+		if (a && a->stepwise < 0)
+			return false;
+	}
+	return true;
+}
+
+/* Then a product with it is a choice among multiples; conditions on time alone stay factors. */
+static bool is_switch(const struct form *form)
+{
+	for (int i = 0; i < form->terms; i++) {
+		const struct atom *a = form->term[i].basis.atom;
+		if (a && !a->state && !a->input)
+			return false;
+	}
+	return is_stepwise(form);
+}
+
+static struct form *switched_atom(struct collector *c, const struct node *node, const struct atom *a, const struct form *x);
+
+static struct form *switched_form(struct collector *c, const struct node *node, const struct form *form, const struct form *x)
+{
+	struct form *total = form_number(0);
+	for (int i = 0; i < form->terms; i++) {
+		const struct form_term *term = &form->term[i];
+		struct form *product = term->basis.atom ? form_scale(switched_atom(c, node, term->basis.atom, x), term->factor)
+							: form_product(c, form_single(term->basis, term->factor), x);
+		total = form_sum(total, product, false);
+	}
+	return total;
+}
+
+/* sgn(g) x: abs(g) times k where x = k g */
+static struct form *signed_product(struct collector *c, const struct node *node, const struct form *g, const struct form *x)
+{
+	const struct form *zero = form_number(0), *none = form_number(0);
+	mpq_t ratio;
+	mpq_init(ratio);
+	if (g->terms == x->terms)
+		mpq_div(ratio, x->term[0].factor, g->term[0].factor);
+	struct form *form, *argument = form_sum(g, zero, false);
+	if (mpq_sgn(ratio) != 0 && same_form(x, form_scale(g, ratio))) {
+		form = form_scale(kept_call(c, call_at(node, FN_ABS, 1), FN_ABS, 1, &argument), ratio);
+	} else {
+		form = kept_choice(c, node, kept_comparison(c, node, CMP_LT, g, zero), form_difference(zero, x), none);
+		form = kept_choice(c, node, kept_comparison(c, node, CMP_GT, g, zero), x, form);
+	}
+	mpq_clear(ratio);
+	return form;
+}
+
+static struct form *switched_atom(struct collector *c, const struct node *node, const struct atom *a, const struct form *x)
+{
+	const struct form *itself = form_unit((struct basis){ .kind = BASIS_ATOM, .index = a->index, .atom = a });
+	if (a->kind == ATOM_COMPARE)
+		return kept_choice(c, node, itself, x, form_number(0));
+	if (a->kind == ATOM_CALL)
+		return signed_product(c, node, a->operand[0], x);
+	return kept_choice(c, node, a->operand[0], switched_form(c, node, a->operand[1], x), switched_form(c, node, a->operand[2], x));
+}
+
+struct form *kept_switched(struct collector *c, const struct node *node, const struct form *a, const struct form *b)
+{
+	bool first = is_switch(a);
+	if ((!first && !is_switch(b)) || is_constant(a) || is_constant(b) || !is_piecewise_form(a) || !is_piecewise_form(b))
+		return NULL;
+	return switched_form(c, node, first ? a : b, first ? b : a);
+}

@@ -1,0 +1,352 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Derivatives of forms with respect to a state, and forms at a point: what a Jacobian is made of. */
+#include "collect/collect.h"
+
+/* ---- derivatives ---- */
+
+struct differentiation {
+	struct collector *c;
+	int coord, order;           /* of the state */
+	struct form **known;        /* per atom: its derivative, once found */
+	int count;
+};
+
+static struct form *derive(struct differentiation *d, const struct form *form);
+
+static struct form *sum(const struct form *a, const struct form *b)
+{
+	return form_sum(a, b, false);
+}
+
+/* sum over the factors: e f^{e-1} f' times the others */
+static struct form *derive_product(struct differentiation *d, const struct atom *a)
+{
+	enum { MANY = 16 };
+	struct collector *c = d->c;
+	struct form *total = NEW(struct form);
+	for (int i = 0; i < a->operands; i++) {
+		struct form *term = derive(d, a->operand[i]);
+		if (term->terms == 0)
+			continue;
+		if (a->operands > MANY)         /* one by one they would be as many products as there are pairs */
+			term = kept_product(c, a->node, term, kept_others(c, a->node, a, i));
+		for (int j = 0; j < a->operands && a->operands <= MANY; j++)
+			term = kept_product(c, a->node, term, kept_whole_power(c, a->node, a->operand[j], a->exponent[j] - (j == i)));
+		total = sum(total, kept_product(c, a->node, form_number((long)a->exponent[i]), term));
+	}
+	return total;
+}
+
+/* (b^e)' = e b^{e-1} b', and b^e log(b) e' where e moves too */
+static struct form *derive_power(struct differentiation *d, const struct atom *a, const struct form *itself)
+{
+	struct collector *c = d->c;
+	const struct form *base = a->operand[0], *exponent = a->operand[1];
+	struct form *outer = derive(d, base), *inner = derive(d, exponent), *total = NEW(struct form);
+	if (outer->terms) {
+		struct form *lower = kept_power(c, a->node, base, form_difference(exponent, form_number(1)));
+		total = kept_product(c, a->node, kept_product(c, a->node, exponent, lower), outer);
+	}
+	if (inner->terms) {
+		struct form *log = kept_call(c, a->node, FN_LOG, 1, (struct form *[]){ sum(base, form_number(0)) });
+		total = sum(total, kept_product(c, a->node, kept_product(c, a->node, itself, log), inner));
+	}
+	return total;
+}
+
+/* f'(x) of a function of one argument; `y` is f(x) */
+static struct form *slope_of_function(struct collector *c, const struct atom *a, struct form *x, const struct form *y)
+{
+	const struct node *node = a->node;
+	struct form *one = form_number(1), *square;
+	switch (a->function) {
+	case FN_SIN:  return kept_call(c, node, FN_COS, 1, &x);
+	case FN_COS:  return form_difference(form_number(0), kept_call(c, node, FN_SIN, 1, &x));
+	case FN_TAN:  return sum(one, kept_product(c, node, y, y));
+	case FN_EXP:  return sum(y, form_number(0));
+	case FN_LOG:  return kept_reciprocal(c, node, x);
+	case FN_SQRT: return kept_reciprocal(c, node, kept_product(c, node, form_number(2), y));
+	case FN_ABS:  return kept_call(c, node, FN_SGN, 1, &x);
+	case FN_SINH: return kept_call(c, node, FN_COSH, 1, &x);
+	case FN_COSH: return kept_call(c, node, FN_SINH, 1, &x);
+	case FN_TANH: return form_difference(one, kept_product(c, node, y, y));
+	case FN_ASIN:
+	case FN_ACOS:
+		square = form_difference(one, kept_product(c, node, x, x));
+		square = kept_reciprocal(c, node, kept_call(c, node, FN_SQRT, 1, &square));
+		return a->function == FN_ASIN ? square : form_difference(form_number(0), square);
+	case FN_ATAN: return kept_reciprocal(c, node, sum(one, kept_product(c, node, x, x)));
+	default:      return NEW(struct form);      /* sgn */
+	}
+}
+
+/* (y' x - x' y)/(x^2 + y^2) */
+static struct form *derive_angle(struct differentiation *d, const struct atom *a)
+{
+	struct collector *c = d->c;
+	const struct form *y = a->operand[0], *x = a->operand[1];
+	struct form *turning = form_difference(kept_product(c, a->node, derive(d, y), x), kept_product(c, a->node, derive(d, x), y));
+	struct form *square = sum(kept_product(c, a->node, x, x), kept_product(c, a->node, y, y));
+	return kept_product(c, a->node, turning, kept_reciprocal(c, a->node, square));
+}
+
+/* min(a, b, ...): the derivative of the least so far */
+static struct form *derive_extreme(struct differentiation *d, const struct atom *a)
+{
+	struct collector *c = d->c;
+	const struct form *best = a->operand[0];
+	struct form *slope = derive(d, best);
+	for (int i = 1; i < a->operands; i++) {
+		struct form *better = kept_comparison(c, a->node, a->function == FN_MIN ? CMP_LT : CMP_GT, a->operand[i], best);
+		slope = kept_choice(c, a->node, better, derive(d, a->operand[i]), slope);
+		best = kept_choice(c, a->node, better, a->operand[i], best);
+	}
+	return slope;
+}
+
+static struct form *derive_clipped(struct differentiation *d, const struct atom *a)
+{
+	struct collector *c = d->c;
+	const struct form *x = a->operand[0], *low = a->operand[1], *high = a->operand[2];
+	struct form *inside = derive(d, x), *below = derive(d, low), *above = derive(d, high);
+	if (a->function == FN_DEADZONE) {
+		below = form_difference(inside, below);
+		above = form_difference(inside, above);
+		inside = NEW(struct form);
+	}
+	struct form *rest = kept_choice(c, a->node, kept_comparison(c, a->node, CMP_GT, x, high), above, inside);
+	return kept_choice(c, a->node, kept_comparison(c, a->node, CMP_LT, x, low), below, rest);
+}
+
+/* The slope of the piece that holds x, from the last piece to the first */
+static struct form *derive_table(struct differentiation *d, const struct atom *a)
+{
+	struct collector *c = d->c;
+	struct form *slope = NULL;
+	for (int k = a->operands - 4; k >= 1; k -= 2) {
+		struct form *width = form_difference(a->operand[k + 2], a->operand[k]), *rise = form_difference(a->operand[k + 3], a->operand[k + 1]);
+		struct form *here = kept_product(c, a->node, rise, kept_reciprocal(c, a->node, width));
+		slope = !slope ? here : kept_choice(c, a->node, kept_comparison(c, a->node, CMP_LT, a->operand[0], a->operand[k + 2]), here, slope);
+	}
+	return kept_product(c, a->node, slope, derive(d, a->operand[0]));
+}
+
+static struct form *derive_call(struct differentiation *d, const struct atom *a, const struct form *itself)
+{
+	struct form *x = sum(a->operand[0], form_number(0));
+	switch (a->function) {
+	case FN_ATAN2:    return derive_angle(d, a);
+	case FN_MIN:
+	case FN_MAX:      return derive_extreme(d, a);
+	case FN_DEADZONE:
+	case FN_CLIP:     return derive_clipped(d, a);
+	case FN_TABLE:    return derive_table(d, a);
+	default:          return kept_product(d->c, a->node, slope_of_function(d->c, a, x, itself), derive(d, x));
+	}
+}
+
+static struct form *derive_reciprocal(struct differentiation *d, const struct atom *a, const struct form *itself)
+{
+	struct form *slope = derive(d, a->operand[0]), *square = kept_product(d->c, a->node, itself, itself);
+	return form_difference(form_number(0), kept_product(d->c, a->node, square, slope));
+}
+
+static struct form *derive_atom(struct differentiation *d, const struct atom *a)
+{
+	const struct form *itself = form_unit((struct basis){ .kind = BASIS_ATOM, .index = a->index, .atom = a });
+	if (!a->state)
+		return NEW(struct form);
+	switch (a->kind) {
+	case ATOM_PRODUCT:    return derive_product(d, a);
+	case ATOM_RECIPROCAL: return derive_reciprocal(d, a, itself);
+	case ATOM_POWER:      return derive_power(d, a, itself);
+	case ATOM_CALL:       return derive_call(d, a, itself);
+	case ATOM_COMPARE:    return NEW(struct form);
+	default:              return kept_choice(d->c, a->node, a->operand[0], derive(d, a->operand[1]), derive(d, a->operand[2]));
+	}
+}
+
+/* What atoms there were at the start is derived once; those made on the way are not looked at. */
+static struct form *known_derivative(struct differentiation *d, const struct atom *a)
+{
+	if (a->index >= d->count)
+		return derive_atom(d, a);
+	if (!d->known[a->index])
+		d->known[a->index] = derive_atom(d, a);
+	return d->known[a->index];
+}
+
+static struct form *derive(struct differentiation *d, const struct form *form)
+{
+	struct form *total = NEW(struct form);
+	for (int i = 0; i < form->terms; i++) {
+		const struct form_term *term = &form->term[i];
+		if (term->basis.kind == BASIS_ATOM)
+			form_add_to(total, known_derivative(d, term->basis.atom), term->factor);
+		else if (term->basis.kind == BASIS_COORD && term->basis.index == d->coord && term->basis.order == d->order)
+			form_add_basis(total, (struct basis){ .kind = BASIS_ONE }, term->factor);
+	}
+	return total;
+}
+
+struct form **form_derivatives(struct collector *c, int count, const struct form *const *form, int coord, int order)
+{
+	int atoms = atoms_count(c->atoms);
+	struct differentiation d = { c, coord, order, ARRAY(struct form *, (size_t)atoms), atoms };
+	struct form **slope = ARRAY(struct form *, (size_t)count);
+	for (int i = 0; i < count; i++)
+		slope[i] = derive(&d, form[i]);
+	return slope;
+}
+
+/* ---- at a point ---- */
+
+struct point {
+	struct collector *c;
+	int fixings;
+	const struct fixing *fixing;
+	struct form **known;        /* per atom */
+	struct span *span;          /* when it holds */
+	int count;
+};
+
+static struct form *place_form(struct point *p, const struct form *form);
+
+static mpq_srcptr fixed_coordinate(const struct point *p, const struct basis *basis)
+{
+	for (int i = 0; i < p->fixings; i++) {
+		const struct fixing *f = &p->fixing[i];
+		if (f->symbol && f->symbol->kind == SYMBOL_COORD && f->coord == basis->index && f->order == basis->order)
+			return f->value;
+	}
+	return NULL;
+}
+
+static const struct fixing *fixed_time(const struct point *p)
+{
+	for (int i = 0; i < p->fixings; i++)
+		if (!p->fixing[i].symbol)
+			return &p->fixing[i];
+	return NULL;
+}
+
+/* t^k e^{a t} cos or sin(w t + p) */
+static struct form *wave_at(const struct point *p, const struct basis *basis, const struct fixing *time)
+{
+	const struct wave *wave = basis->wave;
+	const struct node *node = &(struct node){ .kind = NODE_CALL, .at = time->at };
+	struct form *value = constant_call(p->c, node, FN_EXP, form_scale(time->form, wave->a));
+	for (int k = 0; k < basis->power; k++)
+		value = form_product(p->c, value, time->form);
+	if (!oscillates(wave))
+		return value;
+	const struct form *angle = sum(form_scale(time->form, wave->w), form_constant(wave->p));
+	return form_product(p->c, value, constant_call(p->c, node, basis->sine ? FN_SIN : FN_COS, angle));
+}
+
+/* Multiplied out while that is short: (2 - y)^2 with y not fixed has the constant part 4 */
+enum { EXPANDED = 8 };
+
+static struct form *place_product(struct point *p, const struct atom *a, struct form *const *x)
+{
+	struct form *product = form_number(1);
+	for (int i = 0; i < a->operands; i++) {
+		bool expand = a->exponent[i] <= EXPANDED && !is_constant(x[i]);
+		for (unsigned k = 0; k < a->exponent[i] && expand; k++)
+			product = kept_product(p->c, a->node, product, x[i]);
+		if (!expand) {
+			struct form *power = kept_whole_power(p->c, a->node, x[i], a->exponent[i]), *before = product;
+			product = kept_product(p->c, a->node, before, power);
+			if (is_constant(before))        /* else atoms may hold it */
+				form_free(before);
+		}
+		check_form(a->node->at, product);
+	}
+	return product;
+}
+
+static struct form *place_atom(struct point *p, const struct atom *a)
+{
+	struct collector *c = p->c;
+	struct form **x = ARRAY(struct form *, (size_t)a->operands);
+	x[0] = place_form(p, a->operand[0]);
+	if (a->kind == ATOM_CHOOSE && is_constant(x[0])) {      /* the other branch need not be defined here */
+		mpq_t truth;
+		mpq_init(truth);
+		constant_value(c, x[0], truth);
+		int taken = mpq_sgn(truth) != 0 ? 1 : 2;
+		mpq_clear(truth);
+		return place_form(p, a->operand[taken]);
+	}
+	for (int i = 1; i < a->operands; i++)
+		x[i] = place_form(p, a->operand[i]);
+	switch (a->kind) {
+	case ATOM_PRODUCT:    return place_product(p, a, x);
+	case ATOM_RECIPROCAL: return kept_reciprocal(c, a->node, x[0]);
+	case ATOM_POWER:      return kept_power(c, a->node, x[0], x[1]);
+	case ATOM_CALL:       return kept_call(c, a->node, a->function, a->operands, x);
+	case ATOM_COMPARE:    return kept_comparison(c, a->node, a->comparison, x[0], x[1]);
+	default:              return kept_choice(c, a->node, x[0], x[1], x[2]);
+	}
+}
+
+static struct form *place_basis(struct point *p, const struct basis *basis)
+{
+	const struct fixing *time = fixed_time(p);
+	mpq_srcptr value = basis->kind == BASIS_COORD ? fixed_coordinate(p, basis) : NULL;
+	if (value)
+		return form_constant(value);
+	if (basis->kind == BASIS_WAVE && time)
+		return wave_at(p, basis, time);
+	if (basis->kind != BASIS_ATOM)
+		return form_unit(*basis);
+	int index = basis->atom->index;
+	if (index >= p->count)
+		return place_atom(p, basis->atom);
+	struct collector *c = p->c;
+	if (!p->known[index] || !holds_now(c, p->span[index])) {
+		struct span outer = c->span;
+		c->span = (struct span){ NULL, NULL };
+		p->known[index] = place_atom(p, basis->atom);
+		p->span[index] = c->span;
+		narrow_span(c, outer);
+	} else {
+		narrow_span(c, p->span[index]);
+	}
+	return p->known[index];
+}
+
+/* Not to be changed: it may be the form itself */
+static struct form *place_form(struct point *p, const struct form *form)
+{
+	if (is_constant(form))
+		return (struct form *)form;
+	struct form *total = NEW(struct form);
+	for (int i = 0; i < form->terms; i++)
+		form_add_to(total, place_basis(p, &form->term[i].basis), form->term[i].factor);
+	return total;
+}
+
+struct point *point_new(struct collector *c, int fixings, const struct fixing *fixing)
+{
+	struct point *p = NEW(struct point);
+	*p = (struct point){ .c = c, .fixings = fixings, .fixing = fixing };
+	return p;
+}
+
+struct form *form_at(struct point *p, const struct form *form)
+{
+	int count = atoms_count(p->c->atoms);
+	if (count > p->count) {
+		struct form **known = ARRAY(struct form *, (size_t)count);
+		struct span *span = ARRAY(struct span, (size_t)count);
+		for (int i = 0; i < p->count; i++) {
+			known[i] = p->known[i];
+			span[i] = p->span[i];
+		}
+		p->known = known;
+		p->span = span;
+		p->count = count;
+	}
+	return place_form(p, form);
+}

@@ -1,0 +1,553 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Symbolic collection: nodes to values whose cells are forms, linear in what the linear core can carry. */
+#include "collect/collect.h"
+
+static struct value *collect_node(struct collector *c, struct node *node);
+
+/* ---- values: matrices of forms; a scalar is 1 x 1 ---- */
+
+static struct value *value_new(int rows, int columns)
+{
+	struct value *value = NEW(struct value);
+	*value = (struct value){ rows, columns, ARRAY(struct form *, (size_t)rows * (size_t)columns) };
+	for (int i = 0; i < rows * columns; i++)
+		value->cell[i] = NEW(struct form);
+	return value;
+}
+
+static struct value *scalar(struct form *form)
+{
+	struct value *value = NEW(struct value);
+	*value = (struct value){ 1, 1, ARRAY(struct form *, 1) };
+	value->cell[0] = form;
+	return value;
+}
+
+static const char *shape_text(const struct value *value)
+{
+	return format("%d x %d", value->rows, value->columns);
+}
+
+static bool is_scalar(const struct value *value)
+{
+	return value->rows == 1 && value->columns == 1;
+}
+
+static struct form *collect_scalar(struct collector *c, struct node *node)
+{
+	struct value *value = collect_node(c, node);
+	if (value->rows != 1 || value->columns != 1)
+		error(node->start, NULL, "expected a scalar, found a %d x %d matrix", value->rows, value->columns);
+	return value->cell[0];
+}
+
+/* ---- what cannot be treated ---- */
+
+static bool keeps(const struct collector *c)
+{
+	return c->keep == KEEP_ALL && !c->tolerant;
+}
+
+static bool keeps_piecewise(const struct collector *c)
+{
+	return c->keep != KEEP_NOTHING && !c->tolerant;
+}
+
+static void need_constant(const struct collector *c, const struct node *node, const char *what)
+{
+	if (c->constant_only)
+		error(node->at, NULL, "%s is not a constant", what);
+}
+
+/* ---- functions ---- */
+
+static struct form *not_a_load(struct collector *c, const struct node *node, struct form *x)
+{
+	if (!keeps(c))
+		not_linear(c, node, "is not linear");
+	return kept_call(c, node, node->function, 1, &x);
+}
+
+static struct form *sine_of(struct collector *c, struct node *node, struct form *x)
+{
+	struct form phase;
+	mpq_srcptr w;
+	if (is_constant(x))
+		return constant_call(c, node, node->function, x);
+	if (!linear_in_time(x, &w, &phase))
+		return not_a_load(c, node, x);
+	return collect_wave(c, node->function == FN_SIN, w, &phase);
+}
+
+/* e^{a t + b} = e^b e^{a t} */
+static struct form *exponential_of(struct collector *c, struct node *node, struct form *x)
+{
+	struct form phase;
+	mpq_srcptr a;
+	if (is_constant(x))
+		return constant_call(c, node, FN_EXP, x);
+	if (!linear_in_time(x, &a, &phase))
+		return not_a_load(c, node, x);
+	struct form *wave = plain_wave(c, 0, a);
+	return phase.terms ? form_product(c, constant_call(c, node, FN_EXP, &phase), wave) : wave;
+}
+
+static struct form *function_of_form(struct collector *c, struct node *node, struct form *x)
+{
+	if (node->function == FN_SIN || node->function == FN_COS)
+		return sine_of(c, node, x);
+	if (node->function == FN_EXP)
+		return exponential_of(c, node, x);
+	return is_constant(x) ? constant_call(c, node, node->function, x) : not_a_load(c, node, x);
+}
+
+/* The argument of a function that no exact scheme will take apart. */
+static struct value *collect_argument(struct collector *c, const struct node *node)
+{
+	const struct node *outer = c->argument, *term = c->term;
+	c->argument = node;
+	struct value *x = collect_node(c, node->child[0]);
+	c->argument = outer;
+	c->term = term;
+	return x;
+}
+
+/* A function that divides its arguments' range, of one cell of each */
+static struct form *piecewise_cell(struct collector *c, struct node *node, struct form *const *x)
+{
+	bool kept = (node->function == FN_ATAN2 ? keeps : keeps_piecewise)(c) && !is_decided_call(c, node, x);
+	return kept ? kept_call(c, node, node->function, node->children, x) : piecewise(c, node, x);
+}
+
+/* Cell by cell; a scalar goes with every cell of the others */
+static struct value *collect_piecewise(struct collector *c, struct node *node)
+{
+	struct value **argument = ARRAY(struct value *, (size_t)node->children), *shape = NULL;
+	for (int i = 0; i < node->children; i++) {
+		argument[i] = collect_node(c, node->child[i]);
+		bool single = is_scalar(argument[i]);
+		if (!single && shape && (shape->rows != argument[i]->rows || shape->columns != argument[i]->columns))
+			error(node->child[i]->start, NULL, "sizes do not fit: %s and %s", shape_text(shape), shape_text(argument[i]));
+		shape = single ? shape : argument[i];
+	}
+	struct value *result = shape ? value_new(shape->rows, shape->columns) : value_new(1, 1);
+	struct form **x = ARRAY(struct form *, (size_t)node->children);
+	for (int k = 0; k < result->rows * result->columns; k++) {
+		for (int i = 0; i < node->children; i++)
+			x[i] = argument[i]->cell[is_scalar(argument[i]) ? 0 : k];
+		result->cell[k] = piecewise_cell(c, node, x);
+	}
+	return result;
+}
+
+/* Functions apply to each cell. */
+static struct value *collect_call(struct collector *c, struct node *node)
+{
+	if (node->function >= FN_MIN || node->function == FN_ABS || node->function == FN_SGN || node->function == FN_ATAN2)
+		return collect_piecewise(c, node);
+	struct value *x = collect_argument(c, node), *y = value_new(x->rows, x->columns);
+	for (int i = 0; i < x->rows * x->columns; i++)
+		y->cell[i] = function_of_form(c, node, x->cell[i]);
+	return y;
+}
+
+/* ---- operators ---- */
+
+/* The limit on exact values, where a part has been added */
+static void check_sum(struct place at, const struct form *sum, const struct form *part)
+{
+	for (int i = 0; i < part->terms; i++) {
+		const struct form_term *term = form_find(sum, &part->term[i].basis);
+		if (term)
+			check_bits(at, term->factor);
+	}
+}
+
+static struct value *collect_sum(struct collector *c, struct node *node)
+{
+	struct value *sum = NULL;
+	const struct node *outer = c->term;
+	const struct place before = working_at();
+	mpq_t minus;
+	mpq_init(minus);
+	mpq_set_si(minus, -1, 1);
+	for (int i = 0; i < node->children; i++) {
+		if (node->children > 1) {
+			c->term = node->child[i];
+			work_at(c->term->start);
+		}
+		struct value *term = collect_node(c, node->child[i]);
+		if (!sum)
+			sum = value_new(term->rows, term->columns);
+		if (sum->rows != term->rows || sum->columns != term->columns)
+			error(node->operator[i], NULL, "sizes do not fit: %s and %s", shape_text(sum), shape_text(term));
+		for (int k = 0; k < sum->rows * sum->columns; k++) {
+			form_add_to(sum->cell[k], term->cell[k], node->inverse[i] ? minus : NULL);
+			check_sum(node->operator[i], sum->cell[k], term->cell[k]);
+		}
+	}
+	mpq_clear(minus);
+	c->term = outer;
+	work_at(before);
+	return sum;
+}
+
+static struct form *collect_division(struct collector *c, const struct form *a, const struct form *b, struct place at)
+{
+	mpq_t value;
+	mpq_init(value);
+	mpq_srcptr one = factor_of(a, BASIS_PI), pi = factor_of(b, BASIS_PI);
+	if (one && pi && a->terms == 1 && b->terms == 1) {      /* pi/pi */
+		mpq_div(value, one, pi);
+		struct form *ratio = form_constant(value);
+		mpq_clear(value);
+		return ratio;
+	}
+	constant_value(c, b, value);
+	if (mpq_sgn(value) == 0)
+		error(at, NULL, "division by zero");
+	mpq_inv(value, value);
+	struct form *quotient = form_scale(a, value);
+	mpq_clear(value);
+	return quotient;
+}
+
+static bool has_coordinate(const struct form *form)
+{
+	return form->terms > 0 && form->term[form->terms - 1].basis.kind >= BASIS_COORD;
+}
+
+static bool has_input(const struct form *form)
+{
+	for (int i = 0; i < form->terms; i++)
+		if (form->term[i].basis.kind == BASIS_INPUT)
+			return true;
+	return false;
+}
+
+static struct form *times(struct collector *c, const struct node *node, const struct form *a, const struct form *b)
+{
+	if (is_constant(a) || is_constant(b))
+		return form_product(c, a, b);
+	struct form *switched = keeps_piecewise(c) ? kept_switched(c, node, a, b) : NULL;
+	if (switched)
+		return switched;
+	if (keeps(c))
+		return kept_product(c, node, a, b);
+	if (has_coordinate(a) && has_coordinate(b))
+		not_linear(c, node, "is not linear");
+	if (has_coordinate(a) || has_coordinate(b))
+		not_linear(c, node, "has a factor that changes in time");
+	if (has_input(a) || has_input(b))
+		not_linear(c, node, "multiplies an input by what changes in time");
+	return load_product(c, a, b);
+}
+
+static struct form *dot(struct collector *c, const struct node *node, const struct value *a, int row, const struct value *b, int column)
+{
+	struct form *sum = NEW(struct form);
+	for (int k = 0; k < a->columns; k++) {
+		const struct form *x = a->cell[row * a->columns + k], *y = b->cell[k * b->columns + column];
+		if (x->terms > 0 && y->terms > 0)
+			form_add_to(sum, times(c, node, x, y), NULL);
+	}
+	return sum;
+}
+
+static struct value *multiply(struct collector *c, const struct node *node, const struct value *a, const struct value *b, struct place at)
+{
+	if (!is_scalar(a) && !is_scalar(b) && a->columns != b->rows)
+		error(at, NULL, "sizes do not fit: %s times %s", shape_text(a), shape_text(b));
+	if (!is_scalar(a) && !is_scalar(b)) {
+		struct value *product = value_new(a->rows, b->columns);
+		for (int i = 0; i < a->rows; i++)
+			for (int j = 0; j < b->columns; j++)
+				product->cell[i * b->columns + j] = dot(c, node, a, i, b, j);
+		return product;
+	}
+	const struct value *shape = is_scalar(a) ? b : a;
+	struct value *product = value_new(shape->rows, shape->columns);
+	for (int i = 0; i < shape->rows * shape->columns; i++)
+		product->cell[i] = times(c, node, a->cell[is_scalar(a) ? 0 : i], b->cell[is_scalar(b) ? 0 : i]);
+	return product;
+}
+
+static struct value *divide(struct collector *c, const struct node *node, const struct value *a, const struct value *b, struct place at)
+{
+	if (!is_scalar(b))
+		error(at, NULL, "division by a %s matrix", shape_text(b));
+	bool kept = !is_constant(b->cell[0]);
+	if (kept && !keeps(c))
+		not_linear(c, node, "divides by what moves");
+	struct value *quotient = value_new(a->rows, a->columns);
+	const struct form *inverse = kept ? kept_reciprocal(c, node, b->cell[0]) : NULL;
+	for (int i = 0; i < a->rows * a->columns; i++)
+		quotient->cell[i] = kept ? kept_product(c, node, a->cell[i], inverse) : collect_division(c, a->cell[i], b->cell[0], at);
+	return quotient;
+}
+
+static struct value *collect_product(struct collector *c, struct node *node)
+{
+	struct value *product = collect_node(c, node->child[0]);
+	for (int i = 1; i < node->children; i++) {
+		struct value *factor = collect_node(c, node->child[i]);
+		product = (node->inverse[i] ? divide : multiply)(c, node, product, factor, node->operator[i]);
+		for (int k = 0; k < product->rows * product->columns; k++)
+			check_form(node->operator[i], product->cell[k]);
+	}
+	return product;
+}
+
+static struct form *collect_power(struct collector *c, struct node *node)
+{
+	struct form *base = collect_scalar(c, node->child[0]), *exponent = collect_scalar(c, node->child[1]);
+	if (!is_constant(exponent) && keeps(c))
+		return kept_power(c, node, base, exponent);
+	if (!is_constant(exponent))
+		not_linear(c, node, "is not linear");
+	mpq_t b, e;
+	mpq_inits(b, e, NULL);
+	constant_value(c, exponent, e);
+	struct form *power = NULL;
+	if (is_constant(base)) {
+		constant_value(c, base, b);
+		if (!constant_power(node->at, b, e, b))
+			met_irrational(c, &c->irrationals.root);
+		power = form_constant(b);
+		check_form(node->at, power);
+	} else if (mpq_cmp_ui(e, 1, 1) == 0) {
+		power = base;
+	} else if (mpq_sgn(e) == 0) {
+		mpq_set_ui(b, 1, 1);
+		power = form_constant(b);
+	} else if (!c->whole_time && !has_coordinate(base) && !has_input(base) && mpz_cmp_ui(mpq_denref(e), 1) == 0 && mpq_sgn(e) > 0) {
+		if (mpq_cmp_ui(e, LIMIT_LOAD_POWER, 1) > 0)
+			error(node->at, NULL, "power of a load beyond the limit of %d", LIMIT_LOAD_POWER);
+		power = base;
+		for (unsigned long k = mpz_get_ui(mpq_numref(e)); k > 1; k--)
+			power = load_product(c, power, base);
+	}
+	mpq_clears(b, e, NULL);
+	if (!power && keeps(c))
+		return kept_power(c, node, base, exponent);
+	if (!power)
+		not_linear(c, node, "is not linear");
+	check_form(node->at, power);
+	return power;
+}
+
+/* A condition on constants or on time; true is 1, false is 0. */
+static struct form *collect_comparison(struct collector *c, struct node *node)
+{
+	struct form *left = collect_scalar(c, node->child[0]), *right = collect_scalar(c, node->child[1]), *difference = form_sum(left, right, true);
+	mpq_t truth;
+	if (keeps_piecewise(c) && !is_decided(c, 1, &difference))
+		return kept_comparison(c, node, node->comparison, left, right);
+	mpq_init(truth);
+	mpq_set_ui(truth, compare_values(node->comparison, order_now(c, node, left, right)), 1);
+	struct form *form = form_constant(truth);
+	mpq_clear(truth);
+	return form;
+}
+
+static struct value *kept_choices(struct collector *c, struct node *node, const struct form *condition)
+{
+	struct value *a = collect_node(c, node->child[1]), *b = collect_node(c, node->child[2]), *choice = value_new(a->rows, a->columns);
+	if (a->rows != b->rows || a->columns != b->columns)
+		error(node->at, NULL, "sizes do not fit: %s and %s", shape_text(a), shape_text(b));
+	for (int i = 0; i < a->rows * a->columns; i++)
+		choice->cell[i] = kept_choice(c, node, condition, a->cell[i], b->cell[i]);
+	return choice;
+}
+
+static struct value *collect_choice(struct collector *c, struct node *node)
+{
+	struct form *condition = collect_scalar(c, node->child[0]), *zero = NEW(struct form);
+	if (keeps_piecewise(c) && !is_decided(c, 1, &condition))
+		return kept_choices(c, node, condition);
+	return collect_node(c, node->child[order_now(c, node, condition, zero) != 0 ? 1 : 2]);
+}
+
+/* ---- names, matrices ---- */
+
+static void collect_value(struct collector *c, struct symbol *symbol)
+{
+	struct collector inner = *c;
+	inner.term = symbol->value;
+	inner.span = (struct span){ NULL, NULL };
+	if (symbol->kind == SYMBOL_PARAM || symbol->kind == SYMBOL_MATRIX)
+		inner.constant_only = true;
+	symbol->progress = COLLECTING;
+	symbol->collected = NULL;
+	struct value *value = collect_node(&inner, symbol->value);
+	if (symbol->kind == SYMBOL_PARAM && !is_scalar(value))
+		error(symbol->value->start, "matrix NAME = ...", "a param is a number, found a %s matrix", shape_text(value));
+	c->waves = inner.waves;
+	c->irrationals = inner.irrationals;
+	symbol->irrational = inner.irrational_count > c->irrational_count;
+	c->irrational_count = inner.irrational_count;
+	c->changes = inner.changes;
+	c->change = inner.change;
+	symbol->collected = value;
+	symbol->span = inner.span;
+	symbol->progress = COLLECTED;
+}
+
+/* A coordinate, whole or one component. */
+static struct value *collect_coordinate(struct collector *c, struct node *node)
+{
+	const struct symbol *symbol = node->symbol;
+	need_constant(c, node, format("coordinate '%s'", symbol->name));
+	int first = symbol->index + (node->component ? node->component - 1 : 0), rows = node->component || !symbol->length ? 1 : symbol->length;
+	struct value *value = value_new(rows, 1);
+	for (int i = 0; i < rows; i++)
+		value->cell[i] = coordinate_form(c->frame, first + i, node->primes);
+	return value;
+}
+
+static struct value *collect_name(struct collector *c, struct node *node)
+{
+	struct symbol *symbol = node->symbol;
+	if (symbol->broken)
+		abandon();
+	if (symbol->kind == SYMBOL_COORD)
+		return collect_coordinate(c, node);
+	if (symbol->kind == SYMBOL_INPUT) {
+		need_constant(c, node, format("input '%s'", symbol->name));
+		return scalar(form_unit((struct basis){ .kind = BASIS_INPUT, .index = symbol->index, .order = node->primes }));
+	}
+	if (symbol->kind == SYMBOL_LET)
+		need_constant(c, node, format("let '%s'", symbol->name));
+	for (int i = 0; i < c->fixings; i++)
+		if (c->fixing[i].symbol == symbol)
+			return scalar(form_constant(c->fixing[i].value));
+	if (symbol->progress == COLLECTING && symbol->kind == SYMBOL_PARAM)
+		error(node->at, NULL, "param '%s' is defined by itself", symbol->name);
+	if (symbol->progress == COLLECTING)     /* a let that failed before: that was told */
+		abandon();
+	if (symbol->progress != COLLECTED)
+		collect_value(c, symbol);
+	narrow_span(c, symbol->span);
+	c->irrational_count += symbol->irrational;
+	return symbol->collected;
+}
+
+static struct value *collect_matrix(struct collector *c, struct node *node)
+{
+	struct value *value = value_new(node->children / node->columns, node->columns);
+	for (int i = 0; i < node->children; i++)
+		value->cell[i] = collect_scalar(c, node->child[i]);
+	return value;
+}
+
+static struct value *collect_file(struct collector *c, struct node *node)
+{
+	(void)c;
+	const struct mtx *file = mtx_read(node->path, node->at);
+	struct value *value = value_new(file->rows, file->columns);
+	for (int i = 0; i < file->rows * file->columns; i++)
+		value->cell[i] = form_constant(file->cell[i]);
+	return value;
+}
+
+static struct value *collect_anew(struct collector *c, struct node *node)
+{
+	switch (node->kind) {
+	case NODE_NUMBER:  return scalar(form_constant(node->number));
+	case NODE_PI:      return scalar(form_unit((struct basis){ .kind = BASIS_PI }));
+	case NODE_TIME:
+		need_constant(c, node, "'t'");
+		return scalar(plain_wave(c, 1, NULL));
+	case NODE_NAME:    return collect_name(c, node);
+	case NODE_SUM:     return collect_sum(c, node);
+	case NODE_PRODUCT: return collect_product(c, node);
+	case NODE_POWER:   return scalar(collect_power(c, node));
+	case NODE_CALL:    return collect_call(c, node);
+	case NODE_COMPARE: return scalar(collect_comparison(c, node));
+	case NODE_MATRIX:  return collect_matrix(c, node);
+	case NODE_FILE:    return collect_file(c, node);
+	default:           return collect_choice(c, node);
+	}
+}
+
+/* ---- what time alone decides is kept from interval to interval ---- */
+
+struct kept {
+	struct value *value;
+	struct span span;
+	const struct frame *frame;
+	unsigned mode;              /* of the collector */
+};
+
+static bool is_timely(struct node *node)
+{
+	if (node->timely != TIMELY_UNKNOWN)
+		return node->timely == TIMELY;
+	bool timely = node->kind != NODE_FILE;
+	if (node->kind == NODE_NAME && node->symbol->kind != SYMBOL_PARAM)
+		timely = node->symbol->kind == SYMBOL_LET && !node->symbol->broken && is_timely(node->symbol->value);
+	for (int i = 0; i < node->children && timely; i++)
+		timely = is_timely(node->child[i]);
+	node->timely = timely ? TIMELY : NOT_TIMELY;
+	return timely;
+}
+
+static unsigned mode_of(const struct collector *c)
+{
+	return (unsigned)c->keep | c->whole_time << 2 | c->tolerant << 3 | c->constant_only << 4 | c->closed << 5 | c->output << 6;
+}
+
+/* Cells of values are shared: nobody changes them. What has become a rational is told by those that are collected, so it is
+ * not kept. */
+static struct value *collect_node(struct collector *c, struct node *node)
+{
+	if (!c->frame || c->fixings || c->constant_only || !is_timely(node))
+		return collect_anew(c, node);
+	struct kept *kept = node->kept;
+	if (kept && kept->frame == c->frame && kept->mode == mode_of(c) && holds_now(c, kept->span)) {
+		narrow_span(c, kept->span);
+		return kept->value;
+	}
+	struct span outer = c->span;
+	int irrationals = c->irrational_count;
+	c->span = (struct span){ NULL, NULL };
+	struct value *value = collect_anew(c, node);
+	if (!kept)
+		kept = node->kept = NEW(struct kept);
+	if (c->irrational_count == irrationals)
+		*kept = (struct kept){ value, c->span, c->frame, mode_of(c) };
+	narrow_span(c, outer);
+	return value;
+}
+
+struct value *collect(struct collector *c, struct node *node)
+{
+	c->term = node;
+	c->span = (struct span){ NULL, NULL };
+	work_at(node->start);
+	return collect_node(c, node);
+}
+
+struct value *collect_constants(struct collector *c, struct node *node)
+{
+	bool outer = c->constant_only;
+	c->constant_only = true;
+	struct value *value = collect(c, node);
+	c->constant_only = outer;
+	return value;
+}
+
+void collect_constant(struct collector *c, struct node *node, mpq_ptr number)
+{
+	struct value *value = collect_constants(c, node);
+	if (!is_scalar(value))
+		error(node->start, NULL, "expected a number, found a %s matrix", shape_text(value));
+	constant_value(c, value->cell[0], number);
+}
+
+void forget_lets(const struct spec *spec)
+{
+	for (struct symbol *s = spec->first; s; s = s->next)
+		if (s->kind == SYMBOL_LET)
+			s->progress = FRESH;
+}

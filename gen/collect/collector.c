@@ -1,0 +1,159 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What the collector and all that it is made of share: what is said of terms that cannot be treated, functions of constants. */
+#include "collect/collect.h"
+
+static bool holds_acceleration(struct node *node)
+{
+	if (node->kind == NODE_NAME && node->symbol->kind == SYMBOL_COORD)
+		return node->primes > 0 && node->primes >= node->symbol->highest;
+	if (node->kind == NODE_NAME && node->symbol->kind == SYMBOL_LET) {
+		if (node->symbol->highest == 0)         /* not known yet; a let has no order of its own */
+			node->symbol->highest = holds_acceleration(node->symbol->value) ? 1 : -1;
+		return node->symbol->highest > 0;
+	}
+	if (node->kind == NODE_NAME)
+		return false;
+	for (int i = 0; i < node->children; i++)
+		if (holds_acceleration(node->child[i]))
+			return true;
+	return false;
+}
+
+struct contents {                   /* of a term, lets looked through */
+	const struct node *coordinate; /* the first */
+	bool several, time, input, equality, compound;
+	int nodes;
+};
+
+static void look_into(struct contents *found, const struct node *node)
+{
+	enum { LOOKED_AT = 10000 };
+	const struct node *known = found->coordinate;
+	if (++found->nodes > LOOKED_AT) {       /* lets that name each other twice, and so on */
+		found->several = true;
+		return;
+	}
+	if (node->kind == NODE_NAME && node->symbol->kind == SYMBOL_COORD) {
+		bool same = known && known->symbol == node->symbol && known->primes == node->primes && known->component == node->component;
+		found->several = found->several || (known && !same) || (node->symbol->length && !node->component);
+		found->coordinate = known ? known : node;
+	}
+	if (node->kind == NODE_NAME && node->symbol->kind == SYMBOL_LET && node->symbol->value && !node->symbol->broken)
+		look_into(found, node->symbol->value);
+	found->input = found->input || (node->kind == NODE_NAME && node->symbol->kind == SYMBOL_INPUT);
+	found->time = found->time || node->kind == NODE_TIME;
+	found->equality = found->equality || (node->kind == NODE_COMPARE && node->comparison >= CMP_EQ);
+	found->compound = found->compound || (node->kind == NODE_CHOOSE && node->child[0]->kind != NODE_COMPARE);
+	for (int i = 0; node->kind != NODE_NAME && i < node->children; i++)
+		look_into(found, node->child[i]);
+}
+
+const char *rewrite_of(const struct node *term)
+{
+	struct contents found = { 0 };
+	look_into(&found, term);
+	if (found.equality)
+		return "== and != hold at single points: what < and > divide is exact";
+	if (found.compound)
+		return "conditions of one comparison each, one inside the other, are exact";
+	if (found.input && found.coordinate)
+		return "a tunable param in place of the input is exact";
+	if (found.input)
+		return "an input that brings the whole term is exact";
+	if (found.coordinate && !found.several && !found.time)
+		return format("straight pieces in its place, table(%s; ...), are exact", text_between(found.coordinate->start, found.coordinate->end));
+	return "";
+}
+
+_Noreturn void not_linear(const struct collector *c, const struct node *node, const char *why)
+{
+	if (c->tolerant)
+		abandon();
+	struct node *term = (struct node *)(c->term ? c->term : node);
+	if (holds_acceleration(term))
+		error(term->start, "highest derivatives stand in every equation with constant factors: no scheme treats this",
+		      "term '%s' %s", text_between(term->start, term->end), why);
+	if (c->closed)
+		error(term->start, NULL, "term '%s' %s: there is no closed form", text_between(term->start, term->end), why);
+	const char *rewrite = rewrite_of(term);
+	error(term->start, format("%s%setd1, etdrk2, etdrk4, nc2, nc3, dq4, bm3 and pl are the schemes that could", rewrite, *rewrite ? "; " : ""),
+	      "term '%s' %s: scheme %s cannot treat it", text_between(term->start, term->end), why, c->scheme);
+}
+
+_Noreturn void not_built(const struct collector *c, struct place at, const char *what)
+{
+	if (c->tolerant)
+		abandon();
+	if (c->argument)                        /* not even then */
+		not_linear(c, c->argument, "is not linear");
+	if (c->closed)
+		error(at, NULL, "%s not linear: there is no closed form", what);
+	error(at, NULL, "%s not built yet", what);
+}
+
+/* sin, cos of q pi are rational at multiples of pi/6 only where it shows here: 0, +-1/2, +-1 (Niven). */
+static bool niven(bool sine, const struct form *x, mpq_ptr value)
+{
+	static const int halves[12] = { 2, 99, 1, 0, -1, 99, -2, 99, -1, 0, 1, 99 };   /* 2 cos(k pi/6); 99: irrational */
+	mpq_srcptr pi = factor_of(x, BASIS_PI);
+	if (x->terms != 1 || !pi || mpz_cmp_ui(mpq_denref(pi), 6) > 0 || 6 % mpz_get_ui(mpq_denref(pi)) != 0)
+		return false;
+	mpz_t k;
+	mpz_init(k);
+	mpz_mul_ui(k, mpq_numref(pi), 6);
+	mpz_divexact(k, k, mpq_denref(pi));
+	unsigned long sixth = (mpz_fdiv_ui(k, 12) + (sine ? 9 : 0)) % 12;
+	mpz_clear(k);
+	if (halves[sixth] == 99)
+		return false;
+	mpq_set_si(value, halves[sixth], 2);
+	mpq_canonicalize(value);
+	return true;
+}
+
+/* tan of q pi is rational at multiples of pi/4 only. */
+static bool tangent(const struct node *node, const struct form *x, mpq_ptr value)
+{
+	mpq_srcptr pi = factor_of(x, BASIS_PI);
+	if (x->terms != 1 || !pi || mpz_cmp_ui(mpq_denref(pi), 4) > 0 || 4 % mpz_get_ui(mpq_denref(pi)) != 0)
+		return false;
+	mpz_t k;
+	mpz_init(k);
+	mpz_mul_ui(k, mpq_numref(pi), 4);
+	mpz_divexact(k, k, mpq_denref(pi));
+	unsigned long eighth = mpz_fdiv_ui(k, 4);
+	mpz_clear(k);
+	if (eighth == 2)
+		error(node->at, NULL, "tan of an odd number of quarter turns");
+	mpq_set_si(value, eighth == 0 ? 0 : eighth == 1 ? 1 : -1, 1);
+	return true;
+}
+
+struct form *constant_call(struct collector *c, const struct node *node, enum function function, const struct form *x)
+{
+	mpq_t value;
+	mpq_init(value);
+	bool trigonometric = function == FN_SIN || function == FN_COS;
+	bool rational = function == FN_TAN ? tangent(node, x, value) : trigonometric && niven(function == FN_SIN, x, value);
+	if (!rational) {
+		constant_value(c, x, value);
+		if (!constant_function(node->at, function, value, value))
+			met_irrational(c, &c->irrationals.used[function]);
+	}
+	check_bits(node->at, value);
+	struct form *form = form_constant(value);
+	mpq_clear(value);
+	return form;
+}
+
+bool compare_values(enum comparison comparison, int order)
+{
+	switch (comparison) {
+	case CMP_LT: return order < 0;
+	case CMP_LE: return order <= 0;
+	case CMP_GT: return order > 0;
+	case CMP_GE: return order >= 0;
+	case CMP_EQ: return order == 0;
+	default:     return order != 0;
+	}
+}

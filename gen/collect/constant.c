@@ -1,0 +1,189 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Functions of constants: exact where the value is rational and known to be, else the nearest rational of 256 bits. */
+#include "collect/collect.h"
+
+enum { GUARD_BITS = 128, LIMIT_ARGUMENT = 1 << 16 };    /* bits before the point of an argument of sin, exp, ... */
+
+static void set_irrational(mpq_ptr value, struct place at, mpfr_srcptr wide)
+{
+	mpfr_t rounded;
+	if (mpfr_nan_p(wide))
+		error(at, NULL, "the value is not a number");
+	if (!mpfr_regular_p(wide) || (mpfr_get_exp(wide) > LIMIT_BITS || mpfr_get_exp(wide) < -LIMIT_BITS))  /* infinite or 0: beyond even the range of MPFR */
+		error(at, NULL, "exact value over the limit of %d bits", LIMIT_BITS);
+	mpfr_init2(rounded, IRRATIONAL_BITS);
+	mpfr_set(rounded, wide, MPFR_RNDN);
+	mpfr_get_q(value, rounded);
+	mpfr_clear(rounded);
+}
+
+void constant_pi(mpq_ptr value)
+{
+	mpfr_t pi;
+	mpfr_init2(pi, IRRATIONAL_BITS);
+	mpfr_const_pi(pi, MPFR_RNDN);
+	mpfr_get_q(value, pi);
+	mpfr_clear(pi);
+}
+
+/* The exact n-th root of a non-negative rational, if it has one. */
+static bool exact_root(mpq_srcptr q, unsigned long n, mpq_ptr root)
+{
+	mpz_t numerator, denominator;
+	mpz_inits(numerator, denominator, NULL);
+	bool exact = mpz_root(numerator, mpq_numref(q), n) && mpz_root(denominator, mpq_denref(q), n);
+	if (exact) {
+		mpz_set(mpq_numref(root), numerator);
+		mpz_set(mpq_denref(root), denominator);
+	}
+	mpz_clears(numerator, denominator, NULL);
+	return exact;
+}
+
+static void domain(struct place at, enum function function, bool outside, const char *where)
+{
+	if (outside)
+		error(at, NULL, "%s of a number %s", function_name(function), where);
+}
+
+static bool outside_unit(mpq_srcptr x)
+{
+	return mpz_cmpabs(mpq_numref(x), mpq_denref(x)) > 0;
+}
+
+/* Values of the real functions that are rational at a rational argument (all of them, by Lindemann). */
+static bool exact_value(struct place at, enum function function, mpq_srcptr x, mpq_ptr value)
+{
+	bool zero = mpq_sgn(x) == 0, one = mpq_cmp_ui(x, 1, 1) == 0;
+	switch (function) {
+	case FN_SIN: case FN_TAN: case FN_SINH: case FN_TANH: case FN_ASIN: case FN_ATAN:
+		domain(at, function, function == FN_ASIN && outside_unit(x), "outside -1 to 1");
+		mpq_set_ui(value, 0, 1);
+		return zero;
+	case FN_COS: case FN_COSH: case FN_EXP:
+		mpq_set_ui(value, 1, 1);
+		return zero;
+	case FN_ACOS:
+		domain(at, function, outside_unit(x), "outside -1 to 1");
+		mpq_set_ui(value, 0, 1);
+		return one;
+	case FN_LOG:
+		domain(at, function, mpq_sgn(x) <= 0, "that is not positive");
+		mpq_set_ui(value, 0, 1);
+		return one;
+	case FN_SQRT:
+		domain(at, function, mpq_sgn(x) < 0, "below 0");
+		return exact_root(x, 2, value);
+	default:
+		return false;
+	}
+}
+
+void wide_value(enum function function, mpfr_ptr x)
+{
+	switch (function) {
+	case FN_SIN:  mpfr_sin(x, x, MPFR_RNDN); break;
+	case FN_COS:  mpfr_cos(x, x, MPFR_RNDN); break;
+	case FN_TAN:  mpfr_tan(x, x, MPFR_RNDN); break;
+	case FN_EXP:  mpfr_exp(x, x, MPFR_RNDN); break;
+	case FN_LOG:  mpfr_log(x, x, MPFR_RNDN); break;
+	case FN_SQRT: mpfr_sqrt(x, x, MPFR_RNDN); break;
+	case FN_SINH: mpfr_sinh(x, x, MPFR_RNDN); break;
+	case FN_COSH: mpfr_cosh(x, x, MPFR_RNDN); break;
+	case FN_TANH: mpfr_tanh(x, x, MPFR_RNDN); break;
+	case FN_ASIN: mpfr_asin(x, x, MPFR_RNDN); break;
+	case FN_ACOS: mpfr_acos(x, x, MPFR_RNDN); break;
+	case FN_ATAN: mpfr_atan(x, x, MPFR_RNDN); break;
+	default: break;
+	}
+}
+
+/* A rational at enough bits that the function's value keeps 256 good ones. */
+static void set_wide(mpfr_ptr wide, struct place at, mpq_srcptr x)
+{
+	long bits = (long)mpz_sizeinbase(mpq_numref(x), 2) - (long)mpz_sizeinbase(mpq_denref(x), 2);
+	if (bits > LIMIT_ARGUMENT)
+		error(at, NULL, "the argument has more than %d bits before its point", LIMIT_ARGUMENT);
+	long size = bits < 0 ? -bits : bits;
+	mpfr_init2(wide, IRRATIONAL_BITS + GUARD_BITS + (size < 4096 ? size : LIMIT_ARGUMENT));
+	mpfr_set_q(wide, x, MPFR_RNDN);
+}
+
+bool constant_function(struct place at, enum function function, mpq_srcptr x, mpq_ptr value)
+{
+	mpq_t result;
+	mpq_init(result);
+	bool exact = exact_value(at, function, x, result);
+	if (!exact) {
+		mpfr_t wide;
+		set_wide(wide, at, x);
+		wide_value(function, wide);
+		set_irrational(result, at, wide);
+		mpfr_clear(wide);
+	}
+	mpq_set(value, result);
+	mpq_clear(result);
+	return exact;
+}
+
+bool constant_atan2(struct place at, mpq_srcptr y, mpq_srcptr x, mpq_ptr value)
+{
+	if (mpq_sgn(y) == 0 && mpq_sgn(x) >= 0) {
+		mpq_set_ui(value, 0, 1);
+		return true;
+	}
+	mpfr_t wide, other;
+	set_wide(wide, at, y);
+	set_wide(other, at, x);
+	mpfr_atan2(wide, wide, other, MPFR_RNDN);
+	set_irrational(value, at, wide);
+	mpfr_clears(wide, other, NULL);
+	return false;
+}
+
+static void integer_power(struct place at, mpq_srcptr base, mpz_srcptr exponent, mpq_ptr value)
+{
+	bool trivial = mpz_cmpabs_ui(mpq_numref(base), 1) <= 0 && mpz_cmp_ui(mpq_denref(base), 1) == 0;
+	unsigned long n = mpz_get_ui(exponent);
+	if (trivial)
+		n = mpz_odd_p(exponent) ? 1 : mpz_sgn(exponent) ? 2 : 0;
+	else if (!mpz_fits_slong_p(exponent))
+		error(at, NULL, "exact value over the limit of %d bits", LIMIT_BITS);
+	check_power(at, base, n);
+	mpz_t numerator, denominator;
+	mpz_inits(numerator, denominator, NULL);
+	mpz_pow_ui(numerator, mpq_numref(base), n);
+	mpz_pow_ui(denominator, mpq_denref(base), n);
+	bool negative = mpz_sgn(exponent) < 0;
+	mpq_set_num(value, negative ? denominator : numerator);
+	mpq_set_den(value, negative ? numerator : denominator);
+	mpq_canonicalize(value);
+	mpz_clears(numerator, denominator, NULL);
+}
+
+bool constant_power(struct place at, mpq_srcptr base, mpq_srcptr exponent, mpq_ptr value)
+{
+	if (mpq_sgn(base) == 0 && mpq_sgn(exponent) < 0)
+		error(at, NULL, "division by zero: 0 to a negative power");
+	if (mpz_cmp_ui(mpq_denref(exponent), 1) == 0) {
+		integer_power(at, base, mpq_numref(exponent), value);
+		return true;
+	}
+	if (mpq_sgn(base) < 0)
+		error(at, NULL, "a number below 0 to a power that is no integer");
+	mpq_t root;
+	mpq_init(root);
+	bool exact = mpz_fits_ulong_p(mpq_denref(exponent)) && exact_root(base, mpz_get_ui(mpq_denref(exponent)), root);
+	if (exact) {
+		integer_power(at, root, mpq_numref(exponent), value);
+	} else {
+		mpfr_t wide, power;
+		set_wide(wide, at, base);
+		set_wide(power, at, exponent);
+		mpfr_pow(wide, wide, power, MPFR_RNDN);
+		set_irrational(value, at, wide);
+		mpfr_clears(wide, power, NULL);
+	}
+	mpq_clear(root);
+	return exact;
+}

@@ -1,0 +1,184 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Loads in time: the forms of t^k e^{at} cos(wt+p) and sin, and their products. */
+#include "collect/collect.h"
+
+enum { BUCKETS = 1024 };
+
+struct waves {
+	int count;
+	struct wave *wave[BUCKETS]; /* by hash */
+};
+
+static size_t wave_hash(mpq_srcptr a, mpq_srcptr w, mpq_srcptr p)
+{
+	mpq_srcptr part[] = { a, w, p };
+	size_t hash = 0;
+	for (int i = 0; i < 3; i++) {
+		hash = (hash ^ mpz_get_ui(mpq_numref(part[i]))) * 0x9e3779b97f4a7c15u;
+		hash = (hash ^ mpz_get_ui(mpq_denref(part[i]))) * 0x9e3779b97f4a7c15u + (mpq_sgn(part[i]) < 0);
+	}
+	return (hash >> 20) % BUCKETS;
+}
+
+struct wave *wave_of(struct collector *c, mpq_srcptr a, mpq_srcptr w, mpq_srcptr p)
+{
+	if (!c->waves)
+		c->waves = NEW(struct waves);
+	struct wave **link = &c->waves->wave[wave_hash(a, w, p)];
+	for (; *link; link = &(*link)->next)
+		if (mpq_equal((*link)->a, a) && mpq_equal((*link)->w, w) && mpq_equal((*link)->p, p))
+			return *link;
+	if (c->waves->count == LIMIT_WAVES)
+		error(c->term->start, NULL, "more loads of different frequency, phase or growth than the limit of %d", LIMIT_WAVES);
+	struct wave *wave = *link = NEW(struct wave);
+	mpq_inits(wave->a, wave->w, wave->p, NULL);
+	mpq_set(wave->a, a);
+	mpq_set(wave->w, w);
+	mpq_set(wave->p, p);
+	wave->index = c->waves->count++;
+	return wave;
+}
+
+/* The number of quarter turns in `phase` = turns * pi, if it is nothing else. */
+static bool quarter_turns(const struct form *phase, int *quarters)
+{
+	*quarters = 0;
+	if (phase->terms == 0)
+		return true;
+	mpq_srcptr pi = factor_of(phase, BASIS_PI);
+	if (phase->terms != 1 || !pi || mpz_cmp_ui(mpq_denref(pi), 2) > 0)
+		return false;
+	unsigned long halves = mpz_fdiv_ui(mpq_numref(pi), 4);
+	*quarters = (int)(mpz_cmp_ui(mpq_denref(pi), 1) == 0 ? 2 * halves % 4 : halves);
+	return true;
+}
+
+/* t^k, e^{a t} */
+struct form *plain_wave(struct collector *c, int power, mpq_srcptr a)
+{
+	mpq_t zero;
+	mpq_init(zero);
+	struct form *form = form_unit((struct basis){ .kind = BASIS_WAVE, .wave = wave_of(c, a ? a : zero, zero, zero), .power = power });
+	mpq_clear(zero);
+	return form;
+}
+
+/* factor t^power e^{a t} cos or sin of (w t + p), with w > 0 or a number in its place */
+static struct form *any_wave(struct collector *c, mpq_srcptr factor, int power, mpq_srcptr a, mpq_srcptr frequency, mpq_srcptr phase, bool sine)
+{
+	mpq_t w, p, scale;
+	mpq_inits(w, p, scale, NULL);
+	mpq_set(scale, factor);
+	mpq_set(w, frequency);
+	mpq_set(p, phase);
+	if (mpq_sgn(w) < 0 || (mpq_sgn(w) == 0 && mpq_sgn(p) < 0)) {
+		mpq_neg(w, w);
+		mpq_neg(p, p);
+		if (sine)
+			mpq_neg(scale, scale);
+	}
+	if (mpq_sgn(w) == 0) {                  /* a beat of two equal frequencies */
+		struct place nowhere = { 0 };
+		enum function function = sine ? FN_SIN : FN_COS;
+		if (!constant_function(nowhere, function, p, p))
+			met_irrational(c, &c->irrationals.used[function]);
+		mpq_mul(scale, scale, p);
+		mpq_set_ui(p, 0, 1);
+		sine = false;
+	}
+	struct form *form = form_single((struct basis){ .kind = BASIS_WAVE, .wave = wave_of(c, a, w, p), .power = power, .sine = sine }, scale);
+	mpq_clears(w, p, scale, NULL);
+	return form;
+}
+
+/* cos or sin of w t + phase; whole quarter turns leave no phase behind. */
+struct form *collect_wave(struct collector *c, bool sine, mpq_srcptr frequency, const struct form *phase)
+{
+	mpq_t zero, p, sign;
+	mpq_inits(zero, p, sign, NULL);
+	mpq_set_si(sign, 1, 1);
+	int quarters;
+	if (quarter_turns(phase, &quarters)) {  /* cos(x + q pi/2): cos, -sin, -cos, sin; sin(x + ...) is one quarter behind */
+		int turn = (quarters + (sine ? 3 : 0)) % 4;
+		sine = turn % 2 == 1;
+		mpq_set_si(sign, turn == 1 || turn == 2 ? -1 : 1, 1);
+	} else {
+		constant_value(c, phase, p);
+	}
+	struct form *form = any_wave(c, sign, 0, zero, frequency, p, sine);
+	mpq_clears(zero, p, sign, NULL);
+	return form;
+}
+
+/* factor times the product of two waves: cos x cos y = (cos(x-y) + cos(x+y))/2, sin x cos y = (sin(x-y) + sin(x+y))/2,
+ * sin x sin y = (cos(x-y) - cos(x+y))/2 */
+static struct form *wave_product(struct collector *c, const struct basis *x, const struct basis *y, mpq_srcptr factor)
+{
+	if (!x->sine && y->sine)
+		return wave_product(c, y, x, factor);
+	if (x->power + y->power > LIMIT_LOAD_POWER)
+		error(c->term->start, NULL, "power of a load beyond the limit of %d", LIMIT_LOAD_POWER);
+	mpq_t a, w, p, half;
+	mpq_inits(a, w, p, half, NULL);
+	mpq_add(a, x->wave->a, y->wave->a);
+	mpq_div_2exp(half, factor, 1);
+	mpq_sub(w, x->wave->w, y->wave->w);
+	mpq_sub(p, x->wave->p, y->wave->p);
+	bool sine = x->sine && !y->sine;
+	struct form *difference = any_wave(c, half, x->power + y->power, a, w, p, sine);
+	mpq_add(w, x->wave->w, y->wave->w);
+	mpq_add(p, x->wave->p, y->wave->p);
+	if (x->sine && y->sine)
+		mpq_neg(half, half);
+	struct form *sum = any_wave(c, half, x->power + y->power, a, w, p, sine);
+	form_add_to(sum, difference, NULL);
+	form_free(difference);
+	mpq_clears(a, w, p, half, NULL);
+	return sum;
+}
+
+/* Products of loads, term by term. */
+struct form *load_product(struct collector *c, const struct form *a, const struct form *b)
+{
+	struct form *sum = NEW(struct form);
+	mpq_t factor;
+	mpq_init(factor);
+	for (int i = 0; i < a->terms; i++)
+		for (int j = 0; j < b->terms; j++) {
+			const struct form_term *x = &a->term[i], *y = &b->term[j];
+			if (x->basis.kind == BASIS_WAVE && y->basis.kind == BASIS_WAVE) {
+				mpq_mul(factor, x->factor, y->factor);
+				struct form *product = wave_product(c, &x->basis, &y->basis, factor);
+				form_add_to(sum, product, NULL);
+				form_free(product);
+			} else {
+				struct form *p = form_product(c, form_single(x->basis, x->factor), form_single(y->basis, y->factor));
+				form_add_to(sum, p, NULL);
+			}
+		}
+	mpq_clear(factor);
+	return sum;
+}
+
+/* The parts of factor * t + phase; false if the form is anything else. */
+bool linear_in_time(const struct form *x, mpq_srcptr *factor, struct form *phase)
+{
+	*phase = (struct form){ 0, x->term, 0 };
+	while (phase->terms < x->terms && x->term[phase->terms].basis.kind <= BASIS_PI)
+		phase->terms++;
+	if (phase->terms + 1 != x->terms)
+		return false;
+	const struct form_term *last = &x->term[phase->terms];
+	*factor = last->factor;
+	return last->basis.kind == BASIS_WAVE && is_polynomial(last->basis.wave) && last->basis.power == 1;
+}
+
+bool is_polynomial(const struct wave *wave)
+{
+	return mpq_sgn(wave->a) == 0 && mpq_sgn(wave->w) == 0;
+}
+
+bool oscillates(const struct wave *wave)
+{
+	return mpq_sgn(wave->w) != 0;
+}

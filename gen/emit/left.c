@@ -1,0 +1,291 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Forms with atoms as C: what several places use is computed once, under the name of a let where it has one. */
+#include "emit/emit.h"
+
+#include <string.h>
+
+/* ---- what is used how often ---- */
+
+struct part {                       /* a sum of several terms inside atoms */
+	const struct form *form;
+	int uses;
+	const char *name;           /* of the local that holds it, once declared */
+	const char *let;
+};
+struct writer {
+	FILE *to;
+	const struct emitter *e;
+	const char *(*basis_text)(const struct emitter *e, const struct basis *basis);
+	int atoms;
+	int *uses;                  /* per atom */
+	const char **name, **let;   /* per atom: the local that holds it; the let that it is */
+	int parts;
+	struct part *part;
+	int locals;                 /* declared so far */
+};
+
+static struct part *part_of(const struct writer *w, const struct form *form)
+{
+	for (int i = 0; i < w->parts; i++)
+		if (w->part[i].form == form)
+			return &w->part[i];
+	return NULL;
+}
+
+static void count_form(struct writer *w, const struct form *form);
+
+static void count_operand(struct writer *w, const struct form *form, unsigned times)
+{
+	if (form->terms == 1) {
+		count_form(w, form);
+		return;
+	}
+	struct part *known = part_of(w, form);
+	if (known) {
+		known->uses += (int)times;
+		return;
+	}
+	ENLARGE(w->part, (size_t)w->parts + 1);
+	w->part[w->parts++] = (struct part){ form, (int)times, NULL, NULL };
+	count_form(w, form);
+}
+
+static void count_form(struct writer *w, const struct form *form)
+{
+	for (int i = 0; i < form->terms; i++) {
+		const struct atom *atom = form->term[i].basis.atom;
+		if (!atom || w->uses[atom->index]++ > 0)
+			continue;
+		for (int k = 0; k < atom->operands; k++)
+			count_operand(w, atom->operand[k], atom->exponent ? atom->exponent[k] : 1);
+	}
+}
+
+static bool equal_forms(const struct form *a, const struct form *b)
+{
+	const struct form *difference = form_sum(a, b, true);
+	return difference->terms == 0;
+}
+
+/* A let is what its value is in the equations for all time. */
+static void name_lets(struct writer *w)
+{
+	for (const struct symbol *s = w->e->model->spec->first; s; s = s->next) {
+		if (s->kind != SYMBOL_LET || !s->whole)
+			continue;
+		const struct form_term *only = s->whole->terms == 1 ? s->whole->term : NULL;
+		if (only && only->basis.atom && mpq_cmp_ui(only->factor, 1, 1) == 0)
+			w->let[only->basis.atom->index] = s->c_name;
+		for (int i = 0; i < w->parts && s->whole->terms > 1; i++)
+			if (equal_forms(w->part[i].form, s->whole))
+				w->part[i].let = s->c_name;
+	}
+}
+
+struct writer *writer_new(const struct emitter *e, const char *(*basis_text)(const struct emitter *, const struct basis *), int count,
+			  const struct form *const *form)
+{
+	struct writer *w = NEW(struct writer);
+	int atoms = atoms_count(e->model->atoms);
+	*w = (struct writer){ .to = e->to, .e = e, .basis_text = basis_text, .atoms = atoms };
+	w->uses = ARRAY(int, (size_t)atoms);
+	w->name = ARRAY(const char *, (size_t)atoms);
+	w->let = ARRAY(const char *, (size_t)atoms);
+	for (int i = 0; i < count; i++)
+		count_form(w, form[i]);
+	name_lets(w);
+	return w;
+}
+
+/* ---- text ---- */
+
+static const char *atom_text(struct writer *w, const struct atom *a);
+
+static const char *declare(struct writer *w, const char *let, const char *text)
+{
+	const char *name = let ? let : format("part%d", ++w->locals);
+	fprintf(w->to, "    const double %s = %s;\n", name, text);
+	return name;
+}
+
+static const char *basis_in_c(struct writer *w, const struct basis *basis)
+{
+	return basis->kind == BASIS_ATOM ? atom_text(w, basis->atom) : w->basis_text(w->e, basis);
+}
+
+const char *write_form(struct writer *w, const struct form *form, int indent)
+{
+	const char **term = ARRAY(const char *, (size_t)form->terms + 1);
+	for (int i = 0; i < form->terms; i++)
+		term[i] = scaled(finite_number(w->e, form->term[i].factor), basis_in_c(w, &form->term[i].basis));
+	return form->terms ? tree(form->terms, term, indent) : "0.0";
+}
+
+/* A name or a number, or a sum in brackets */
+static const char *operand_text(struct writer *w, const struct form *form)
+{
+	enum { INDENT = 18 };
+	const struct form_term *only = form->terms == 1 ? form->term : NULL;
+	if (only && only->basis.kind > BASIS_PI && mpq_cmp_ui(only->factor, 1, 1) == 0)
+		return basis_in_c(w, &only->basis);
+	struct part *part = part_of(w, form);
+	if (part && part->name)
+		return part->name;
+	const char *text = write_form(w, form, INDENT);
+	if (part && (part->uses > 1 || part->let))
+		return part->name = declare(w, part->let, text);
+	return form->terms == 0 || (only && only->basis.kind <= BASIS_PI && mpq_sgn(only->factor) > 0) ? text : format("(%s)", text);
+}
+
+static bool is_word(const char *text)
+{
+	return text[strspn(text, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ_0123456789.[]")] == 0;
+}
+
+/* What a text needs more than once is a name. */
+static const char *word_of(struct writer *w, const struct form *form)
+{
+	const char *text = operand_text(w, form);
+	return is_word(text) ? text : declare(w, NULL, text);
+}
+
+static const char *argument_text(struct writer *w, const struct form *form)
+{
+	enum { LONG = 400 };                    /* compilers limit how deep brackets nest */
+	const struct part *part = part_of(w, form);
+	if (part && (part->name || part->uses > 1 || part->let))
+		return operand_text(w, form);
+	const char *text = write_form(w, form, 18);
+	return strlen(text) > LONG ? declare(w, NULL, text) : text;
+}
+
+/* base^n with few multiplications; base is a name */
+static const char *power_text(struct writer *w, const char *base, unsigned n)
+{
+	if (n <= 3)
+		return n == 1 ? base : n == 2 ? format("%s * %s", base, base) : format("%s * %s * %s", base, base, base);
+	const char *half = declare(w, NULL, power_text(w, base, n / 2));
+	return format(n % 2 ? "%s * %s * %s" : "%s * %s", half, half, base);
+}
+
+static const struct form *divisor_of(const struct form *form)
+{
+	const struct atom *atom = form->terms == 1 ? form->term[0].basis.atom : NULL;
+	return atom && atom->kind == ATOM_RECIPROCAL ? atom->operand[0] : NULL;
+}
+
+static const char *product_text(struct writer *w, const struct atom *a)
+{
+	const char *above = "", *below = "";
+	for (int i = 0; i < a->operands; i++) {
+		const struct form *divisor = divisor_of(a->operand[i]);
+		const struct form *base = divisor && !w->name[a->operand[i]->term[0].basis.index] ? divisor : a->operand[i];
+		bool inverse = base == divisor;
+		const char *power = a->exponent[i] > 1 ? power_text(w, word_of(w, base), a->exponent[i]) : operand_text(w, base);
+		if (inverse)
+			below = format("%s / %s", below, is_word(power) ? power : format("(%s)", power));
+		else
+			above = format("%s%s%s", above, *above ? " * " : "", power);
+	}
+	return format("%s%s", *above ? above : "1.0", below);
+}
+
+/* (x < x1 ? y0 + slope*(x - x0) : ...): one piece between each two points, the end ones extended */
+static const char *table_text(struct writer *w, const struct atom *a)
+{
+	const char *x = word_of(w, a->operand[0]), *text = "";
+	struct collector collector = { .scheme = "exact" };
+	mpq_t p[4];
+	for (int k = 0; k < 4; k++)
+		mpq_init(p[k]);
+	for (int i = 1; i + 3 < a->operands; i += 2) {
+		for (int k = 0; k < 4; k++)
+			constant_value(&collector, a->operand[i + k], p[k]);
+		const char *condition = i + 5 < a->operands ? format("%s < %s ? ", x, shortest(finite_number(w->e, p[2]))) : "";
+		mpq_sub(p[3], p[3], p[1]);
+		mpq_sub(p[2], p[2], p[0]);
+		mpq_div(p[3], p[3], p[2]);
+		text = format("%s%s%s%s + %s * (%s - %s)", text, *text ? " : " : "", condition, shortest(finite_number(w->e, p[1])),
+			      shortest(finite_number(w->e, p[3])), x, shortest(finite_number(w->e, p[0])));
+	}
+	for (int k = 0; k < 4; k++)
+		mpq_clear(p[k]);
+	return format("(%s)", text);
+}
+
+/* Without libm, which a target may not have: comparisons */
+static const char *extreme_text(struct writer *w, const struct atom *a)
+{
+	const char *best = word_of(w, a->operand[0]), *text = best;
+	for (int i = 1; i < a->operands; i++) {
+		const char *x = word_of(w, a->operand[i]);
+		text = format("(%s %s %s ? %s : %s)", x, a->function == FN_MIN ? "<" : ">", best, x, best);
+		best = i + 1 < a->operands ? declare(w, NULL, text) : text;
+	}
+	return text;
+}
+
+static const char *call_text(struct writer *w, const struct atom *a)
+{
+	const char *x, *low, *high;
+	switch (a->function) {
+	case FN_TABLE: return table_text(w, a);
+	case FN_MIN:
+	case FN_MAX:   return extreme_text(w, a);
+	case FN_ATAN2: return format("atan2(%s, %s)", argument_text(w, a->operand[0]), argument_text(w, a->operand[1]));
+	case FN_ABS:
+		x = word_of(w, a->operand[0]);
+		return format("(%s < 0.0 ? -%s : %s)", x, x, x);
+	case FN_SGN:
+		x = word_of(w, a->operand[0]);
+		return format("(double)((%s > 0.0) - (%s < 0.0))", x, x);
+	case FN_CLIP:
+	case FN_DEADZONE:
+		x = word_of(w, a->operand[0]);
+		low = word_of(w, a->operand[1]);
+		high = word_of(w, a->operand[2]);
+		return a->function == FN_CLIP ? format("(%s < %s ? %s : %s > %s ? %s : %s)", x, low, low, x, high, high, x)
+					      : format("(%s < %s ? %s - %s : %s > %s ? %s - %s : 0.0)", x, low, x, low, x, high, x, high);
+	default: return format("%s(%s)", function_name(a->function), argument_text(w, a->operand[0]));
+	}
+}
+
+static const char *comparison_text(struct writer *w, const struct atom *a)
+{
+	static const char *const sign[] = { "<", "<=", ">", ">=", "==", "!=" };
+	const char *left = argument_text(w, a->operand[0]);
+	return format("%s %s %s", left, sign[a->comparison], argument_text(w, a->operand[1]));
+}
+
+static const char *choice_text(struct writer *w, const struct atom *a)
+{
+	const struct form *condition = a->operand[0];
+	const struct atom *comparison = condition->terms == 1 && mpq_cmp_ui(condition->term[0].factor, 1, 1) == 0 ? condition->term[0].basis.atom : NULL;
+	const char *text = comparison && comparison->kind == ATOM_COMPARE ? comparison_text(w, comparison) : format("%s != 0.0", operand_text(w, condition));
+	const char *first = argument_text(w, a->operand[1]);
+	return format("(%s ? %s : %s)", text, first, argument_text(w, a->operand[2]));
+}
+
+static const char *expression_of(struct writer *w, const struct atom *a)
+{
+	const char *base;
+	switch (a->kind) {
+	case ATOM_PRODUCT:    return product_text(w, a);
+	case ATOM_RECIPROCAL: return format("(1.0 / %s)", operand_text(w, a->operand[0]));
+	case ATOM_POWER:
+		base = argument_text(w, a->operand[0]);
+		return format("pow(%s, %s)", base, argument_text(w, a->operand[1]));
+	case ATOM_CALL:       return call_text(w, a);
+	case ATOM_COMPARE:    return format("(double)(%s)", comparison_text(w, a));
+	default:              return choice_text(w, a);
+	}
+}
+
+static const char *atom_text(struct writer *w, const struct atom *a)
+{
+	if (w->name[a->index])
+		return w->name[a->index];
+	const char *text = expression_of(w, a);
+	bool shared = w->let[a->index] || (w->uses[a->index] > 1 && a->kind != ATOM_COMPARE);
+	return shared ? (w->name[a->index] = declare(w, w->let[a->index], text)) : text;
+}

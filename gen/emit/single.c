@@ -1,0 +1,86 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The target float: what is printed for double, with every type, literal and function under its name for float. The numbers are
+ * floats already: number.c rounds straight to the target's type. */
+#include "emit/emit.h"
+
+#include <ctype.h>
+#include <string.h>
+
+/* Of the runtime and of <math.h>, with the name's part before the f; a function of <math.h> counts only where it is called. */
+static const struct name { const char *name, *stem; bool called; } names[] = {
+	{ "double", "", false },
+	{ "pl_turn", "pl_turn", false }, { "pl_turn_add", "pl_turn", false }, { "pl_turn_times", "pl_turn", false }, { "pl_turn_at", "pl_turn", false },
+	{ "pl_rate", "pl_rate", false }, { "pl_rate_of", "pl_rate", false }, { "pl_cossin", "pl_cossin", false },
+	{ "pl_growth", "pl_growth", false }, { "pl_growth_add", "pl_growth", false }, { "pl_growth_times", "pl_growth", false },
+	{ "pl_growth_at", "pl_growth", false }, { "pl_growth_value", "pl_growth", false },
+	{ "pl_series", "pl_series", false }, { "pl_series_advance", "pl_series", false },
+	{ "pl_two", "pl_two", false }, { "pl_power_apply", "pl_power", false }, { "pl_until", "pl_until", false }, { "pl_accumulate", "pl_accumulate", false },
+	{ "pl_multiply", "pl_multiply", false }, { "pl_multiply_add", "pl_multiply", false }, { "pl_not_finite", "pl_not_finite", false },
+	{ "pl_term", "pl_term", false }, { "pl_equations", "pl_equations", false }, { "pl_equations_at", "pl_equations", false }, { "pl_increment", "pl_increment", false }, { "pl_ramp_before", "pl_ramp", false }, { "pl_ramp_cancels", "pl_ramp", false },
+	{ "pl_switching", "pl_switching", false }, { "pl_switching_start", "pl_switching", false }, { "pl_switching_step", "pl_switching", false },
+	{ "pl_switching_advance", "pl_switching", false }, { "pl_crossing", "pl_crossing", false }, { "pl_model", "pl_model", false },
+	{ "sin", "sin", true }, { "cos", "cos", true }, { "tan", "tan", true }, { "exp", "exp", true }, { "log", "log", true },
+	{ "sqrt", "sqrt", true }, { "fabs", "fabs", true }, { "sinh", "sinh", true }, { "cosh", "cosh", true }, { "tanh", "tanh", true },
+	{ "asin", "asin", true }, { "acos", "acos", true }, { "atan", "atan", true }, { "atan2", "atan2", true }, { "pow", "pow", true },
+	{ "fmin", "fmin", true }, { "fmax", "fmax", true }, { "copysign", "copysign", true }
+};
+
+static bool in_name(char c)
+{
+	return isalnum((unsigned char)c) || c == '_';
+}
+
+static const char *print_name(FILE *to, const char *text)
+{
+	const char *end = text;
+	while (in_name(*end))
+		end++;
+	size_t length = (size_t)(end - text);
+	for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
+		const struct name *n = &names[i];
+		if (strlen(n->name) != length || memcmp(n->name, text, length) != 0 || (n->called && *end != '('))
+			continue;
+		size_t stem = strlen(n->stem);
+		if (stem == 0)
+			fputs("float", to);
+		else
+			fprintf(to, "%sf%.*s", n->stem, (int)(length - stem), text + stem);
+		return end;
+	}
+	fwrite(text, 1, length, to);
+	return end;
+}
+
+/* 0x1f has no exponent, 1e-5 has one */
+static const char *print_number(FILE *to, const char *text)
+{
+	bool hexadecimal = text[0] == '0' && (text[1] == 'x' || text[1] == 'X'), real = false;
+	const char *end = text;
+	for (; in_name(*end) || *end == '.' || (!hexadecimal && (*end == '-' || *end == '+') && end > text && end[-1] == 'e'); end++)
+		real = real || *end == '.' || (!hexadecimal && *end == 'e');
+	fprintf(to, "%.*s%s", (int)(end - text), text, real ? "f" : "");
+	return end;
+}
+
+static const char *print_until(FILE *to, const char *text, const char *close)
+{
+	const char *end = strstr(text + strlen(close), close);
+	end = end ? end + strlen(close) : text + strlen(text);
+	fwrite(text, 1, (size_t)(end - text), to);
+	return end;
+}
+
+void print_single(FILE *to, const char *text)
+{
+	while (*text)
+		if (strncmp(text, "/*", 2) == 0)
+			text = print_until(to, text, "*/");
+		else if (*text == '"')
+			text = print_until(to, text, "\"");     /* names of states, outputs, files: no escapes */
+		else if (isdigit((unsigned char)*text))
+			text = print_number(to, text);
+		else if (in_name(*text))
+			text = print_name(to, text);
+		else
+			putc(*text++, to);
+}

@@ -1,0 +1,107 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What all emitters write with: text laid out as the C it becomes, sums, factors, rows of numbers. */
+#include "emit/emit.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <string.h>
+
+/* `layout` with the names in it: names are C identifiers, without a % */
+static char *with_names(const struct emitter *e, const char *layout)
+{
+	size_t length = 1, longest = strlen(e->name) + strlen(e->upper);
+	for (const char *c = layout; *c; c++)
+		length += *c == '$' ? longest : 1;
+	char *text = ARRAY(char, length), *end = text;
+	for (const char *c = layout; *c; c++) {
+		if (*c != '$') {
+			*end++ = *c;
+			continue;
+		}
+		c++;
+		const char *what = *c == 'n' ? e->name : *c == 'N' ? e->upper : "$";
+		end = stpcpy(end, what);
+	}
+	return text;
+}
+
+void say(const struct emitter *e, const char *layout, ...)
+{
+	char *named = strchr(layout, '$') ? with_names(e, layout) : NULL;
+	va_list arguments;
+	va_start(arguments, layout);
+	vfprintf(e->to, named ? named : layout, arguments);
+	va_end(arguments);
+	discard(named);
+}
+
+/* (a + b) + (c + d): the shortest chain of dependent additions; lines break at the middle of what is too long for one. */
+const char *tree(int terms, const char *const *term, int indent)
+{
+	enum { WIDTH = 100 };
+	if (terms == 1)
+		return term[0];
+	int half = (terms + 1) / 2;
+	half += terms > 3 && half % 2;          /* pairs stay together */
+	const char *left = tree(half, term, indent + 1), *right = tree(terms - half, term + half, indent + 1);
+	left = half > 1 ? format("(%s)", left) : left;
+	right = terms - half > 1 ? format("(%s)", right) : right;
+	bool subtract = terms - half == 1 && right[0] == '-';
+	const char *sign = subtract ? "-" : "+";
+	right += subtract;
+	bool wide = (int)(strlen(left) + strlen(right)) + indent > WIDTH;
+	return wide ? format("%s\n%*s%s %s", left, indent, "", sign, right) : format("%s %s %s", left, sign, right);
+}
+
+const char *scaled(double factor, const char *operand)
+{
+	if (!operand)
+		return shortest(factor);
+	if (factor == 1)
+		return operand;
+	return factor == -1 ? format("-%s", operand) : format("%s * %s", shortest(factor), operand);
+}
+
+double finite_number(const struct emitter *e, mpq_srcptr q)
+{
+	if (beyond_range(q))
+		error(e->model->asked.step_at, NULL, "a number of the equations is beyond the range of %s", target_name());
+	return round_rational(q);
+}
+
+void emit_number_rows(const struct emitter *e, int rows, int columns, const double *value, const char *const *row_note)
+{
+	for (int i = 0; i < rows; i++) {
+		say(e, "    {");
+		for (int j = 0; j < columns; j++) {
+			if (!isfinite(value[i * columns + j]))
+				error(e->model->asked.step_at, NULL, "a number in the row of %s is beyond the range of %s", row_note[i], target_name());
+			say(e, "%s%s", j ? ", " : "", shortest(value[i * columns + j]));
+		}
+		say(e, "},  /* %s */\n", row_note[i]);
+	}
+}
+
+void emit_name_list(const struct emitter *e, const char *array, int count, const char *const *name)
+{
+	say(e, "static const char *const $n_%s[] = {", array);
+	for (int i = 0; i < count; i++)
+		say(e, "%s\"%s\"", i == 0 ? "" : i % 10 ? ", " : ",\n    ", name[i]);
+	say(e, "};\n");
+}
+
+const char *low_text(mpq_srcptr q)
+{
+	mpq_t rest;
+	mpq_init(rest);
+	mpq_set_d(rest, round_rational(q));
+	mpq_sub(rest, q, rest);
+	const char *text = shortest(round_rational(rest));
+	mpq_clear(rest);
+	return text;
+}
+
+const char *two_text(mpq_srcptr q)
+{
+	return format("{%s, %s}", shortest(round_rational(q)), low_text(q));
+}

@@ -1,0 +1,109 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Complex numbers enclosed in rectangles: a pair of MPFI intervals. Targets may be operands. */
+#include "math/math.h"
+
+void rectangle_init(struct rectangle *z, int precision)
+{
+	mpfi_init2(z->re, precision);
+	mpfi_init2(z->im, precision);
+	mpfi_set_ui(z->re, 0);
+	mpfi_set_ui(z->im, 0);
+}
+
+void rectangle_clear(struct rectangle *z)
+{
+	mpfi_clear(z->re);
+	mpfi_clear(z->im);
+}
+
+void rectangle_set(struct rectangle *z, const struct rectangle *a)
+{
+	mpfi_set(z->re, a->re);
+	mpfi_set(z->im, a->im);
+}
+
+/* A product by a part that is exactly 0 is exactly 0, also where the other factor is unbounded. */
+static void product(mpfi_ptr z, mpfi_srcptr a, mpfi_srcptr b)
+{
+	bool zero = (mpfr_zero_p(&a->left) && mpfr_zero_p(&a->right)) || (mpfr_zero_p(&b->left) && mpfr_zero_p(&b->right));
+	if (zero)
+		mpfi_set_ui(z, 0);
+	else
+		mpfi_mul(z, a, b);
+}
+
+void rectangle_mul(struct rectangle *z, const struct rectangle *a, const struct rectangle *b)
+{
+	mpfi_t re, im, other;
+	int precision = (int)mpfi_get_prec(z->re);
+	mpfi_init2(re, precision);
+	mpfi_init2(im, precision);
+	mpfi_init2(other, precision);
+	product(re, a->re, b->re);
+	product(other, a->im, b->im);
+	mpfi_sub(re, re, other);
+	product(im, a->re, b->im);
+	product(other, a->im, b->re);
+	mpfi_add(im, im, other);
+	mpfi_set(z->re, re);
+	mpfi_set(z->im, im);
+	mpfi_clear(re);
+	mpfi_clear(im);
+	mpfi_clear(other);
+}
+
+void rectangle_div(struct rectangle *z, const struct rectangle *a, const struct rectangle *b)
+{
+	struct rectangle conjugate;
+	mpfi_t square, norm;
+	int precision = (int)mpfi_get_prec(z->re);
+	rectangle_init(&conjugate, precision);
+	mpfi_init2(square, precision);
+	mpfi_init2(norm, precision);
+	mpfi_sqr(norm, b->re);
+	mpfi_sqr(square, b->im);
+	mpfi_add(norm, norm, square);
+	mpfi_set(conjugate.re, b->re);
+	mpfi_neg(conjugate.im, b->im);
+	rectangle_mul(z, a, &conjugate);
+	mpfi_div(z->re, z->re, norm);
+	mpfi_div(z->im, z->im, norm);
+	rectangle_clear(&conjugate);
+	mpfi_clear(square);
+	mpfi_clear(norm);
+}
+
+void rectangle_sub(struct rectangle *z, const struct rectangle *a, const struct rectangle *b)
+{
+	mpfi_sub(z->re, a->re, b->re);
+	mpfi_sub(z->im, a->im, b->im);
+}
+
+/* e^{a tau} */
+void rectangle_exp(struct rectangle *z, const struct rectangle *a, mpq_srcptr tau)
+{
+	mpfi_t size, angle;
+	int precision = (int)mpfi_get_prec(z->re);
+	mpfi_init2(size, precision);
+	mpfi_init2(angle, precision);
+	mpfi_mul_q(size, a->re, tau);
+	mpfi_exp(size, size);
+	mpfi_mul_q(angle, a->im, tau);
+	mpfi_cos(z->re, angle);
+	mpfi_sin(z->im, angle);
+	product(z->re, z->re, size);
+	product(z->im, z->im, size);
+	mpfi_clear(size);
+	mpfi_clear(angle);
+}
+
+/* p(a) by Horner's rule */
+void rectangle_evaluate(struct rectangle *z, struct poly p, const struct rectangle *a)
+{
+	mpfi_set_ui(z->re, 0);
+	mpfi_set_ui(z->im, 0);
+	for (int k = p.length - 1; k >= 0; k--) {
+		rectangle_mul(z, z, a);
+		mpfi_add_z(z->re, z->re, p.c[k]);
+	}
+}

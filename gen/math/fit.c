@@ -1,0 +1,177 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A rational function of params that is known by its values alone, as a sum of products of their powers, -3 .. 3: exactly, or not at
+ * all. Lines through a base point tell which powers of each param there are, steps along two params whether they meet in a product; then as
+ * many scattered points as there are products left give their factors, and two more have to agree. */
+#include "math/math.h"
+
+enum { EXPONENTS = 2 * FIT_DEGREE + 1, LINE = EXPONENTS + 1 };   /* exponents; points on a line to find and to check them */
+
+/* A value like no other */
+static void set_value(mpq_ptr value, int index)
+{
+	uint32_t bits = (uint32_t)index * 2654435761u + 12345u;
+	bits ^= bits >> 15;
+	bits *= 2246822519u;
+	bits ^= bits >> 13;
+	mpq_set_ui(value, 1 + bits % 65521, 1 + (bits >> 16) % 251);
+	mpq_canonicalize(value);
+}
+
+/* Point 0 is the base of the lines and pairs; the others are for fitting and checking. */
+mpq_t *scattered_values(int params, int number)
+{
+	mpq_t *values = rationals((size_t)params);
+	for (int k = 0; k < params; k++)
+		set_value(values[k], number * LIMIT_TUNABLES + k);
+	return values;
+}
+
+/* The base with `up` added to param k and `other` to param j */
+static mpq_t *near_base(const struct fit *f, int k, int up, int j, int other)
+{
+	mpq_t *values = scattered_values(f->params, 0), shift;
+	mpq_init(shift);
+	mpq_set_si(shift, up, 1);
+	mpq_add(values[k], values[k], shift);
+	mpq_set_si(shift, other, 1);
+	mpq_add(values[j], values[j], shift);
+	mpq_clear(shift);
+	return values;
+}
+
+static mpq_srcptr value_at(const struct fit *f, const mpq_t *values)
+{
+	return f->value(f->context, values);
+}
+
+static void power_of(mpq_srcptr x, int exponent, mpq_ptr result)
+{
+	mpq_set_ui(result, 1, 1);
+	for (int i = exponent < 0 ? -exponent : exponent; i > 0; i--)
+		mpq_mul(result, result, x);
+	if (exponent < 0)
+		mpq_inv(result, result);
+}
+
+/* f(x) x^3 through seven points as a polynomial of degree 6: which of its coefficients are not 0. The eighth point checks. */
+static bool find_exponents(struct fit *f, int k)
+{
+	int unused;
+	mpq_t *V = rationals(EXPONENTS * EXPONENTS), *inverse = rationals(EXPONENTS * EXPONENTS), *y = rationals(LINE), *c = rationals(EXPONENTS);
+	mpq_t *sum = rationals(2);
+	for (int i = 0; i < LINE; i++) {
+		mpq_t *at = near_base(f, k, i, k, 0);
+		mpq_set(y[i], value_at(f, (const mpq_t *)at));
+		for (int j = 0; j < EXPONENTS && i < EXPONENTS; j++)
+			power_of(at[k], j - FIT_DEGREE, V[i * EXPONENTS + j]);
+	}
+	for (int i = 1; i < LINE; i++)
+		f->depends[k] = f->depends[k] || !mpq_equal(y[i], y[0]);
+	if (!f->depends[k])
+		return true;
+	rational_inverse(EXPONENTS, (const mpq_t *)V, inverse, &unused);
+	rational_product(EXPONENTS, EXPONENTS, 1, (const mpq_t *)inverse, (const mpq_t *)y, c);
+	mpq_t *at = near_base(f, k, EXPONENTS, k, 0);
+	for (int j = 0; j < EXPONENTS; j++) {
+		f->exponent[k][j] = mpq_sgn(c[j]) != 0;
+		power_of(at[k], j - FIT_DEGREE, sum[0]);
+		mpq_mul(sum[0], sum[0], c[j]);
+		mpq_add(sum[1], sum[1], sum[0]);
+	}
+	return mpq_equal(sum[1], y[EXPONENTS]) != 0;
+}
+
+/* f(a, b) - f(a', b) - f(a, b') + f(a', b') is 0 where no product holds both */
+static void find_pairs(struct fit *f)
+{
+	mpq_t *sum = rationals(1);
+	for (int i = 0; i < f->params; i++)
+		for (int j = 0; j < i; j++) {
+			if (!f->depends[i] || !f->depends[j])
+				continue;
+			mpq_sub(sum[0], value_at(f, (const mpq_t *)near_base(f, i, 0, j, 0)), value_at(f, (const mpq_t *)near_base(f, i, 1, j, 0)));
+			mpq_sub(sum[0], sum[0], value_at(f, (const mpq_t *)near_base(f, i, 0, j, 1)));
+			mpq_add(sum[0], sum[0], value_at(f, (const mpq_t *)near_base(f, i, 1, j, 1)));
+			f->together[i][j] = f->together[j][i] = mpq_sgn(sum[0]) != 0;
+		}
+}
+
+/* Every product of powers that may occur, from param k on; false: too many */
+static bool list_products(struct fit *f, signed char *power, int k)
+{
+	if (k == f->params) {
+		if (f->products == LIMIT_MONOMIALS)
+			return false;
+		for (int i = 0; i < k; i++)
+			f->power[f->products][i] = power[i];
+		f->products++;
+		return true;
+	}
+	for (int j = 0; j < EXPONENTS; j++) {
+		bool possible = j == FIT_DEGREE || (f->depends[k] && f->exponent[k][j]);
+		for (int i = 0; i < k && possible && j != FIT_DEGREE; i++)
+			possible = power[i] == 0 || f->together[k][i];
+		power[k] = (signed char)(j - FIT_DEGREE);
+		if (possible && !list_products(f, power, k + 1))
+			return false;
+	}
+	return true;
+}
+
+static void product_at(const struct fit *f, int product, const mpq_t *values, mpq_ptr result)
+{
+	mpq_t power;
+	mpq_init(power);
+	mpq_set_ui(result, 1, 1);
+	for (int k = 0; k < f->params; k++) {
+		power_of(values[k], f->power[product][k], power);
+		mpq_mul(result, result, power);
+	}
+	mpq_clear(power);
+}
+
+/* Factors from as many points as there are products; two more points check them. */
+static bool fit_products(struct fit *f)
+{
+	int count = f->products, unused;
+	mpq_t *V = rationals((size_t)(count * count)), *inverse = rationals((size_t)(count * count)), *y = rationals((size_t)count), *sum = rationals(2);
+	f->factor = rationals((size_t)count);
+	for (int i = 0; i < count; i++) {
+		const mpq_t *at = (const mpq_t *)scattered_values(f->params, i + 1);
+		mpq_set(y[i], value_at(f, at));
+		for (int j = 0; j < count; j++)
+			product_at(f, j, at, V[i * count + j]);
+	}
+	if (!rational_inverse(count, (const mpq_t *)V, inverse, &unused))
+		return false;
+	rational_product(count, count, 1, (const mpq_t *)inverse, (const mpq_t *)y, f->factor);
+	for (int i = count + 1; i <= count + 2; i++) {
+		const mpq_t *at = (const mpq_t *)scattered_values(f->params, i);
+		mpq_set_ui(sum[0], 0, 1);
+		for (int j = 0; j < count; j++) {
+			product_at(f, j, at, sum[1]);
+			mpq_mul(sum[1], sum[1], f->factor[j]);
+			mpq_add(sum[0], sum[0], sum[1]);
+		}
+		if (!mpq_equal(sum[0], value_at(f, at)))
+			return false;
+	}
+	return true;
+}
+
+bool fit_value(struct fit *f)
+{
+	signed char power[LIMIT_TUNABLES] = { 0 };
+	bool constant = true;
+	mpq_srcptr first = value_at(f, (const mpq_t *)scattered_values(f->params, 0));
+	f->culprit = -1;
+	for (int i = 1; i < FIT_POINTS; i++)
+		constant = constant && mpq_equal(value_at(f, (const mpq_t *)scattered_values(f->params, i)), first);
+	for (int k = 0; k < f->params && !constant; k++)
+		if (!find_exponents(f, k)) {
+			f->culprit = k;
+			return false;
+		}
+	find_pairs(f);
+	return list_products(f, power, 0) && fit_products(f);
+}

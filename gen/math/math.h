@@ -1,0 +1,130 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Polynomials, poles, residues, e^{A tau}: exact and enclosed. Knows no model. */
+#ifndef PLGEN_MATH_H
+#define PLGEN_MATH_H
+
+#include "base/base.h"
+
+/* ---- matrix.c: rational matrices ---- */
+
+bool rational_inverse(int n, const mpq_t *A, mpq_t *inverse, int *column); /* false: singular, *column free */
+void rational_subtract_row(int n, mpq_t *target, const mpq_t *row, mpq_srcptr factor); /* target - factor row */
+void rational_product(int rows, int inner, int columns, const mpq_t *A, const mpq_t *B, mpq_t *AB);
+
+/* ---- poly.c: polynomials over Z, constant term first ---- */
+
+struct poly {
+	int length;                 /* degree + 1; 0 is the zero polynomial; the last coefficient is not 0 */
+	mpz_t *c;
+};
+struct poly poly_new(int length);                           /* coefficients 0; call poly_trim after filling */
+void poly_trim(struct poly *p);
+struct poly poly_add(struct poly a, struct poly b);
+struct poly poly_sub(struct poly a, struct poly b);
+struct poly poly_mul(struct poly a, struct poly b);
+struct poly poly_scale(struct poly a, mpz_srcptr factor);
+struct poly poly_shift(struct poly a, int powers);          /* times s^powers; negative: exact division */
+struct poly poly_divide(struct poly a, struct poly b);      /* b divides a exactly, over Q; primitive up to a factor: see .c */
+struct poly poly_gcd(struct poly a, struct poly b);         /* primitive, leading coefficient positive */
+struct poly poly_derivative(struct poly a);
+struct poly poly_hasse(struct poly a, int k);               /* k-th derivative over k! */
+struct poly poly_mirror(struct poly a);                     /* a(-s) */
+struct poly poly_primitive(struct poly a, mpz_ptr content); /* a = content * result, result's leading coefficient positive */
+bool poly_divides(struct poly d, struct poly a);            /* d | a over Q */
+bool poly_equal(struct poly a, struct poly b);
+int  poly_valuation(struct poly a);                         /* how often s divides a (not 0) */
+
+struct factor {                     /* square-free, no root at 0 */
+	struct poly g;
+	int multiplicity;
+	bool symmetric;             /* g(s) = +-g(-s): for every root its negative */
+};
+int poly_square_free(struct poly a, struct factor **factors); /* a primitive; roots at 0 left out; returns the count */
+
+/* ---- polymat.c: square matrices of polynomials ---- */
+
+struct polymat {
+	int n;
+	struct poly *cell;          /* row-major */
+};
+/* det P not the zero polynomial; adj may be NULL, its n x n cells are filled in */
+void polymat_adjugate(struct polymat P, struct poly *det, struct polymat *adj);
+
+/* ---- enclosure.c: complex numbers enclosed in rectangles; targets may be operands ---- */
+
+struct rectangle { mpfi_t re, im; };
+void rectangle_init(struct rectangle *z, int precision);    /* 0 */
+void rectangle_clear(struct rectangle *z);
+void rectangle_set(struct rectangle *z, const struct rectangle *a);
+void rectangle_sub(struct rectangle *z, const struct rectangle *a, const struct rectangle *b);
+void rectangle_mul(struct rectangle *z, const struct rectangle *a, const struct rectangle *b);
+void rectangle_div(struct rectangle *z, const struct rectangle *a, const struct rectangle *b);
+void rectangle_exp(struct rectangle *z, const struct rectangle *a, mpq_srcptr tau);         /* e^{a tau} */
+void rectangle_evaluate(struct rectangle *z, struct poly p, const struct rectangle *a);     /* p(a); z is not a */
+
+/* ---- poles.c: roots with proof ---- */
+
+struct pole {                       /* of the upper half plane or real; its conjugate is implied */
+	struct rectangle at;        /* encloses the pole; a part that is 0 is exactly [0,0] */
+	bool real, imaginary;
+};
+struct spectrum {                   /* the distinct poles of one denominator, 0 excepted */
+	struct poly D;              /* primitive */
+	int zero;                   /* multiplicity of the pole 0 */
+	int factors;
+	struct factor *factor;
+	int *poles;                 /* per factor */
+	struct pole **pole;
+	int precision;              /* bits to which the poles are known now; 0: not yet */
+	struct iteration *iteration; /* poles.c: where the iteration stands, per factor */
+	struct growth *growth;      /* residues.c: e^{p tau} and the denominator's series at the poles */
+	struct spectrum *next;
+};
+struct spectrum *spectrum_of(struct poly D);                /* the same object for the same D */
+bool spectrum_refine(struct spectrum *spectrum, int precision); /* relative 2^-precision; false: not isolated within the limits */
+
+/* ---- residues.c: values of c e^{A tau} b as sums of residues, enclosed ---- */
+
+struct response {                   /* scale * N/D, N and D coprime */
+	mpq_t scale;
+	struct poly N;
+	struct spectrum *spectrum;
+	mpq_t *at_zero;             /* residue at 0 as a polynomial in tau: zero-th coefficient first */
+	struct rectangle ***residue; /* [factor][pole][k], for `precision` bits */
+	int precision;
+};
+struct response *response_of(mpq_srcptr scale, struct poly N, struct poly D);
+/* True if the value at tau is rational: then `exact` is it. False: it is transcendental and response_enclose converges. */
+bool response_exact(struct response *response, mpq_srcptr tau, mpq_ptr exact);
+bool response_enclose(struct response *response, mpq_srcptr tau, int precision, mpfi_ptr value); /* false: poles not isolated */
+
+/* ---- taylor.c: e^{A tau} as a whole, enclosed by a Taylor series and squarings ---- */
+
+struct taylor;                      /* one rational A (n x n, row-major) and one tau */
+struct taylor *taylor_of(int n, const mpq_t *A, mpq_srcptr tau);
+/* Every entry to an absolute error below 2^-precision times the largest entry's size (of the real e^{A tau} or its
+ * enclosure); small entries of short paths come out to nearly that many bits of their own. Cached: asking for less than
+ * is known costs nothing. False: |A tau| above 2^512, an entry beyond 2^(2^50), or errors that outgrow 64 kbit. */
+bool taylor_enclose(struct taylor *t, int precision);
+void taylor_entry(const struct taylor *t, int i, int j, mpfi_ptr value);    /* sets value's precision; after taylor_enclose */
+/* True if the entry is a polynomial in tau, zero included, for every tau: then `exact` is its value at this one. */
+bool taylor_exact(struct taylor *t, int i, int j, mpq_ptr exact);
+
+/* ---- fit.c: functions of params from their values ---- */
+
+enum { FIT_DEGREE = 3, FIT_POINTS = 3 };    /* powers up to it, and down to its negative; points that tell what is constant */
+struct fit {
+	int params;
+	mpq_srcptr (*value)(void *context, const mpq_t *params);    /* of the function */
+	void *context;
+	int products;               /* found: factors, some 0, times powers of params */
+	signed char power[LIMIT_MONOMIALS + 1][LIMIT_TUNABLES];
+	mpq_t *factor;
+	int culprit;                /* the param of which no power fits; -1: too many products, or there is none */
+	bool exponent[LIMIT_TUNABLES][2 * FIT_DEGREE + 1]; /* on the way: which powers of each occur, from the lowest on; */
+	bool depends[LIMIT_TUNABLES], together[LIMIT_TUNABLES][LIMIT_TUNABLES]; /* whether any does; whether a product holds both */
+};
+bool fit_value(struct fit *fit);                            /* params, value and context given; false: it is no such sum */
+mpq_t *scattered_values(int params, int number);            /* values that are related by nothing */
+
+#endif

@@ -1,0 +1,240 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Determinant and adjugate of a matrix of polynomials, by evaluation at integers and interpolation: exact, and free of
+ * the growth that elimination over polynomials has. */
+#include "math/math.h"
+
+struct samples {
+	int n, count, degree;       /* count = degree + 1 points */
+	long *point;
+	mpz_t *det;                 /* per point */
+	mpz_t **adj;                /* per point n x n, or NULL */
+};
+
+static int degree_bound(struct polymat P)
+{
+	int bound = 0;
+	for (int i = 0; i < P.n; i++) {
+		int row = 0;
+		for (int j = 0; j < P.n; j++)
+			row = P.cell[i * P.n + j].length - 1 > row ? P.cell[i * P.n + j].length - 1 : row;
+		bound += row;
+	}
+	return bound;
+}
+
+static void evaluate(struct poly p, long point, mpz_ptr value)
+{
+	mpz_set_ui(value, 0);
+	for (int k = p.length - 1; k >= 0; k--) {
+		mpz_mul_si(value, value, point);
+		mpz_add(value, value, p.c[k]);
+	}
+}
+
+/* Fraction-free elimination (Bareiss): on W of width n the determinant; on [W | I], after Jordan, also adj W in the place
+ * of I. False at a singular matrix. */
+static bool bareiss(int n, int width, mpz_t *W, mpz_ptr det)
+{
+	int sign = 1;
+	mpz_t previous, keep;
+	mpz_init_set_ui(previous, 1);
+	mpz_init(keep);
+	bool regular = true;
+	for (int k = 0; k < n && regular; k++) {
+		int row = k;
+		while (row < n && mpz_sgn(W[row * width + k]) == 0)
+			row++;
+		regular = row < n;
+		if (!regular)
+			break;
+		if (row != k) {
+			sign = -sign;
+			for (int j = 0; j < width; j++)
+				mpz_swap(W[row * width + j], W[k * width + j]);
+		}
+		for (int i = width > n ? 0 : k + 1; i < n; i++) {     /* for the determinant alone, Gauss will do */
+			if (i == k)
+				continue;
+			mpz_set(keep, W[i * width + k]);
+			for (int j = width > n ? 0 : k; j < width; j++) {
+				bool taken = mpz_sgn(keep) != 0 && mpz_sgn(W[k * width + j]) != 0;
+				if (!taken && mpz_sgn(W[i * width + j]) == 0)
+					continue;               /* chains: most of the way most cells are 0 */
+				mpz_mul(W[i * width + j], W[i * width + j], W[k * width + k]);
+				if (taken)
+					mpz_submul(W[i * width + j], keep, W[k * width + j]);
+				mpz_divexact(W[i * width + j], W[i * width + j], previous);
+			}
+		}
+		mpz_set(previous, W[k * width + k]);
+	}
+	(sign < 0 ? mpz_neg : mpz_set)(det, previous);
+	if (sign < 0)
+		for (int i = 0; i < n * width; i++)
+			mpz_neg(W[i], W[i]);
+	mpz_clears(previous, keep, NULL);
+	return regular;
+}
+
+/* det and adj of P at one point; false if P is singular there */
+static bool sample(struct polymat P, long point, mpz_ptr det, mpz_t *adj)
+{
+	int n = P.n, width = adj ? 2 * n : n;
+	mpz_t *W = ARRAY(mpz_t, (size_t)(n * width));
+	for (int i = 0; i < n; i++)
+		for (int j = 0; j < width; j++) {
+			mpz_init(W[i * width + j]);
+			if (j < n)
+				evaluate(P.cell[i * n + j], point, W[i * width + j]);
+			else
+				mpz_set_ui(W[i * width + j], j - n == i);
+		}
+	bool regular = bareiss(n, width, W, det);
+	for (int i = 0; i < n && regular && adj; i++)
+		for (int j = 0; j < n; j++) {
+			mpz_init_set(adj[i * n + j], W[i * width + n + j]);
+		}
+	for (int i = 0; i < n * width; i++)
+		mpz_clear(W[i]);
+	return regular;
+}
+
+/* Newton's divided differences, over Q, then the powers of s; the result is integral. */
+static struct poly interpolate(int count, const long *point, const mpz_t *value)
+{
+	mpq_t *difference = rationals((size_t)count), *c = rationals((size_t)count), factor;
+	mpq_init(factor);
+	for (int i = 0; i < count; i++)
+		mpq_set_z(difference[i], value[i]);
+	for (int k = 1; k < count; k++)
+		for (int i = count - 1; i >= k; i--) {
+			mpq_sub(difference[i], difference[i], difference[i - 1]);
+			mpq_set_si(factor, point[i] - point[i - k], 1);
+			mpq_div(difference[i], difference[i], factor);
+		}
+	for (int k = count - 1; k >= 0; k--) {          /* c <- c (s - point_k) + difference_k */
+		mpq_set_si(factor, -point[k], 1);
+		for (int i = count - 1; i >= 0; i--) {
+			mpq_mul(c[i], c[i], factor);
+			if (i > 0)
+				mpq_add(c[i], c[i], c[i - 1]);
+		}
+		mpq_add(c[0], c[0], difference[k]);
+	}
+	struct poly p = poly_new(count);
+	for (int i = 0; i < count; i++) {
+		mpz_set(p.c[i], mpq_numref(c[i]));
+		mpq_clears(c[i], difference[i], NULL);
+	}
+	mpq_clear(factor);
+	poly_trim(&p);
+	return p;
+}
+
+/* ---- blocks: rows and columns that have nothing in common with the others ---- */
+
+static int root_of(int *parent, int i)
+{
+	while (parent[i] != i)
+		i = parent[i] = parent[parent[i]];
+	return i;
+}
+
+/* The block of each row (0 .. n-1) and column (n .. 2n-1), numbered in the order of their first columns; how many there are */
+static int find_blocks(struct polymat P, int *block)
+{
+	int n = P.n, count = 0, *parent = ARRAY(int, 2 * (size_t)n);
+	for (int i = 0; i < 2 * n; i++)
+		parent[i] = i;
+	for (int cell = 0; cell < n * n; cell++)
+		if (P.cell[cell].length > 0)
+			parent[root_of(parent, cell / n)] = root_of(parent, n + cell % n);
+	for (int i = 0; i < 2 * n; i++)
+		block[i] = -1;
+	for (int j = 0; j < n; j++)
+		if (block[root_of(parent, n + j)] < 0)
+			block[root_of(parent, n + j)] = count++;
+	for (int i = 0; i < 2 * n; i++)
+		block[i] = block[root_of(parent, i)];
+	return count;
+}
+
+/* The rows and columns of one block; false: it is not square, so that P is singular */
+static bool part_of(struct polymat P, const int *block, int which, struct polymat *part)
+{
+	int rows = 0, columns = 0, filled = 0;
+	for (int i = 0; i < P.n; i++) {
+		rows += block[i] == which;
+		columns += block[P.n + i] == which;
+	}
+	*part = (struct polymat){ rows, ARRAY(struct poly, (size_t)rows * (size_t)columns) };
+	for (int i = 0; i < P.n; i++)
+		for (int j = 0; j < P.n && block[i] == which; j++)
+			if (block[P.n + j] == which)
+				part->cell[filled++] = P.cell[i * P.n + j];
+	return rows == columns;
+}
+
+/* Whether an order of blocks, kept within each, is an odd permutation */
+static bool odd_order(int n, const int *block)
+{
+	bool odd = false;
+	for (int i = 0; i < n; i++)
+		for (int j = i + 1; j < n; j++)
+			odd ^= block[i] > block[j];
+	return odd;
+}
+
+static bool same_matrix(struct polymat a, struct polymat b)
+{
+	bool same = a.n == b.n;
+	for (int i = 0; i < a.n * a.n && same; i++)
+		same = poly_equal(a.cell[i], b.cell[i]);
+	return same;
+}
+
+static struct poly determinant_of_blocks(struct polymat P, const int *block, int blocks)
+{
+	struct polymat *part = ARRAY(struct polymat, (size_t)blocks);
+	struct poly *det = ARRAY(struct poly, (size_t)blocks), product = poly_new(1);
+	mpz_set_si(product.c[0], odd_order(P.n, block) != odd_order(P.n, block + P.n) ? -1 : 1);
+	for (int k = 0; k < blocks; k++) {
+		int same = 0;
+		if (!part_of(P, block, k, &part[k]))
+			return poly_new(0);
+		while (!same_matrix(part[same], part[k]))
+			same++;
+		if (same == k)
+			polymat_adjugate(part[k], &det[k], NULL);
+		else
+			det[k] = det[same];
+		product = poly_mul(product, det[k]);
+	}
+	return product;
+}
+
+void polymat_adjugate(struct polymat P, struct poly *det, struct polymat *adj)
+{
+	int *block = ARRAY(int, 2 * (size_t)P.n), blocks = adj ? 1 : find_blocks(P, block);
+	if (blocks > 1) {
+		*det = determinant_of_blocks(P, block, blocks);
+		return;
+	}
+	int n = P.n, count = degree_bound(P) + 1, cells = adj ? n * n : 0;
+	long *point = ARRAY(long, (size_t)count);
+	mpz_t *dets = ARRAY(mpz_t, (size_t)count), *column = ARRAY(mpz_t, (size_t)count), **adjs = ARRAY(mpz_t *, (size_t)count);
+	for (int found = 0, tried = 0; found < count; tried++) {        /* 0, 1, -1, 2, -2, ... where P is regular */
+		point[found] = tried % 2 ? (tried + 1) / 2 : -(tried / 2);
+		progress("B(s), point", found, count);
+		adjs[found] = ARRAY(mpz_t, (size_t)cells);
+		mpz_init(dets[found]);
+		found += sample(P, point[found], dets[found], adj ? adjs[found] : NULL);
+	}
+	progress_end();
+	*det = interpolate(count, point, (const mpz_t *)dets);
+	for (int cell = 0; cell < cells; cell++) {
+		for (int k = 0; k < count; k++)
+			column[k][0] = adjs[k][cell][0];        /* borrowed, not copied */
+		adj->cell[cell] = interpolate(count, point, (const mpz_t *)column);
+	}
+}

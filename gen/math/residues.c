@@ -1,0 +1,277 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Values of the inverse Laplace transform of scale * N(s)/D(s), as sums of residues.
+ * At a pole p of multiplicity m, with D(p+e) = e^m (v_0 + v_1 e + ...) and N(p+e)/(v_0 + v_1 e + ...) = a_0 + a_1 e + ...,
+ * the residue of N/D e^{s tau} is e^{p tau} sum_k a_{m-1-k} tau^k/k!. The pole 0 is exact; the others are enclosed. */
+#include "math/math.h"
+
+enum { GUARD_BITS = 32 };
+
+struct growth {                     /* what all responses with one denominator share, for one precision */
+	int precision;
+	struct rectangle ***series; /* [factor][pole][k]: v_k */
+	mpq_t tau;
+	int exponential_precision;  /* of `exponential`, at tau; 0: none */
+	struct rectangle **exponential;
+};
+
+/* ---- exact parts ---- */
+
+/* a = n/v as power series of `count` terms */
+static void series_quotient(int count, const mpq_t *n, const mpq_t *v, mpq_t *a)
+{
+	mpq_t product;
+	mpq_init(product);
+	for (int k = 0; k < count; k++) {
+		mpq_set(a[k], n[k]);
+		for (int j = 1; j <= k; j++) {
+			mpq_mul(product, v[j], a[k - j]);
+			mpq_sub(a[k], a[k], product);
+		}
+		mpq_div(a[k], a[k], v[0]);
+	}
+	mpq_clear(product);
+}
+
+static void set_coefficient(mpq_ptr q, struct poly p, int k)
+{
+	if (k < p.length)
+		mpq_set_z(q, p.c[k]);
+}
+
+static void residue_at_zero(struct response *response)
+{
+	int m = response->spectrum->zero;
+	mpq_t *n = rationals((size_t)m), *v = rationals((size_t)m), *a = rationals((size_t)m);
+	for (int k = 0; k < m; k++) {
+		set_coefficient(n[k], response->N, k);
+		set_coefficient(v[k], response->spectrum->D, m + k);
+	}
+	series_quotient(m, (const mpq_t *)n, (const mpq_t *)v, a);
+	response->at_zero = rationals((size_t)m);
+	for (int k = 0; k < m; k++)
+		mpq_set(response->at_zero[k], a[m - 1 - k]);
+}
+
+/* sum_k at_zero_k tau^k/k! */
+static void value_at_zero(const struct response *response, mpq_srcptr tau, mpq_ptr sum)
+{
+	mpq_t power, term;
+	mpq_inits(power, term, NULL);
+	mpq_set_ui(power, 1, 1);
+	mpq_set_ui(sum, 0, 1);
+	for (int k = 0; k < response->spectrum->zero; k++) {
+		mpq_mul(term, response->at_zero[k], power);
+		mpq_add(sum, sum, term);
+		mpq_set_ui(term, (unsigned long)k + 1, 1);
+		mpq_mul(power, power, tau);
+		mpq_div(power, power, term);
+	}
+	mpq_clears(power, term, NULL);
+}
+
+struct response *response_of(mpq_srcptr scale, struct poly N, struct poly D)
+{
+	struct response *response = NEW(struct response);
+	mpq_t content;
+	mpq_inits(content, response->scale, NULL);
+	if (N.length > 0) {
+		struct poly common = poly_gcd(N, D);
+		N = poly_primitive(poly_divide(N, common), mpq_numref(content));
+		D = poly_primitive(poly_divide(D, common), mpq_denref(content));
+		mpq_canonicalize(content);
+		mpq_mul(response->scale, scale, content);
+	} else {
+		D = poly_new(1);
+		mpz_set_ui(D.c[0], 1);
+	}
+	mpq_clear(content);
+	response->N = N;
+	response->spectrum = spectrum_of(D);
+	residue_at_zero(response);
+	return response;
+}
+
+/* Is e^{-p tau} times the residue 0 at every root of the factor? With w_k = a_k v_0^{k+1}, an integer polynomial in p:
+ * sum_k w_{m-1-k} v_0^k tau^k/k! must be divisible by the factor. */
+static bool residue_vanishes(const struct response *response, const struct factor *factor, mpq_srcptr tau)
+{
+	int m = factor->multiplicity;
+	struct poly *v = ARRAY(struct poly, (size_t)m), *v0 = ARRAY(struct poly, (size_t)m + 1), *w = ARRAY(struct poly, (size_t)m);
+	v0[0] = poly_new(1);
+	mpz_set_ui(v0[0].c[0], 1);
+	for (int k = 0; k < m; k++) {
+		v[k] = poly_hasse(response->spectrum->D, m + k);
+		v0[k + 1] = poly_mul(v0[k], v[0]);
+		w[k] = poly_mul(v0[k], poly_hasse(response->N, k));
+		for (int j = 1; j <= k; j++)
+			w[k] = poly_sub(w[k], poly_mul(poly_mul(v[j], v0[j - 1]), w[k - j]));
+	}
+	mpz_t weight, scale;
+	mpz_inits(weight, scale, NULL);
+	struct poly sum = poly_new(0);
+	for (int k = 0; k < m; k++) {           /* common denominator den(tau)^{m-1} (m-1)! */
+		mpz_pow_ui(weight, mpq_numref(tau), (unsigned long)k);
+		mpz_pow_ui(scale, mpq_denref(tau), (unsigned long)(m - 1 - k));
+		mpz_mul(weight, weight, scale);
+		for (int i = k + 1; i < m; i++)
+			mpz_mul_ui(weight, weight, (unsigned long)i);
+		sum = poly_add(sum, poly_scale(poly_mul(w[m - 1 - k], v0[k]), weight));
+	}
+	mpz_clears(weight, scale, NULL);
+	return poly_divides(factor->g, sum);
+}
+
+/* Lindemann and Weierstrass: with tau != 0 rational the exponentials of distinct poles are independent over the
+ * algebraic numbers, so the value is rational only if every residue away from 0 vanishes; a simple one never does. */
+bool response_exact(struct response *response, mpq_srcptr tau, mpq_ptr exact)
+{
+	const struct spectrum *spectrum = response->spectrum;
+	if (mpq_sgn(tau) == 0) {                /* the limit s N/D at infinity */
+		mpq_set_ui(exact, 0, 1);
+		if (response->N.length > 0 && response->N.length + 1 == spectrum->D.length) {
+			mpz_set(mpq_numref(exact), response->N.c[response->N.length - 1]);
+			mpz_set(mpq_denref(exact), spectrum->D.c[spectrum->D.length - 1]);
+			mpq_canonicalize(exact);
+			mpq_mul(exact, exact, response->scale);
+		}
+		return true;
+	}
+	for (int f = 0; f < spectrum->factors; f++)
+		if (spectrum->factor[f].multiplicity == 1)
+			return false;
+	for (int f = 0; f < spectrum->factors; f++)
+		if (!residue_vanishes(response, &spectrum->factor[f], tau))
+			return false;
+	value_at_zero(response, tau, exact);
+	mpq_mul(exact, exact, response->scale);
+	return true;
+}
+
+/* ---- enclosures ---- */
+
+static struct rectangle *rectangles(int count, int precision)
+{
+	struct rectangle *z = ARRAY(struct rectangle, (size_t)count);
+	for (int i = 0; i < count; i++)
+		rectangle_init(&z[i], precision);
+	return z;
+}
+
+
+/* v_0 .. v_{m-1} at every pole, for this precision */
+static struct growth *denominator_series(struct spectrum *spectrum, int precision)
+{
+	struct growth *growth = spectrum->growth;
+	if (growth && growth->precision >= precision)
+		return growth;
+	growth = spectrum->growth = NEW(struct growth);
+	growth->precision = precision;
+	mpq_init(growth->tau);
+	growth->series = ARRAY(struct rectangle **, (size_t)spectrum->factors);
+	growth->exponential = ARRAY(struct rectangle *, (size_t)spectrum->factors);
+	for (int f = 0; f < spectrum->factors; f++) {
+		int m = spectrum->factor[f].multiplicity;
+		growth->series[f] = ARRAY(struct rectangle *, (size_t)spectrum->poles[f]);
+		growth->exponential[f] = rectangles(spectrum->poles[f], precision + GUARD_BITS);
+		for (int i = 0; i < spectrum->poles[f]; i++)
+			growth->series[f][i] = rectangles(m, precision + GUARD_BITS);
+		for (int k = 0; k < m; k++) {
+			struct poly taylor = poly_hasse(spectrum->D, m + k);
+			for (int i = 0; i < spectrum->poles[f]; i++)
+				rectangle_evaluate(&growth->series[f][i][k], taylor, &spectrum->pole[f][i].at);
+		}
+	}
+	return growth;
+}
+
+static void find_exponentials(struct spectrum *spectrum, struct growth *growth, mpq_srcptr tau)
+{
+	if (growth->exponential_precision && mpq_equal(growth->tau, tau))
+		return;
+	growth->exponential_precision = growth->precision;
+	mpq_set(growth->tau, tau);
+	for (int f = 0; f < spectrum->factors; f++)
+		for (int i = 0; i < spectrum->poles[f]; i++)
+			rectangle_exp(&growth->exponential[f][i], &spectrum->pole[f][i].at, tau);
+}
+
+/* a_k of one pole, written so that a[k] multiplies tau^k/k! */
+static struct rectangle *residue_series(const struct response *response, int f, int i, int precision)
+{
+	const struct spectrum *spectrum = response->spectrum;
+	int m = spectrum->factor[f].multiplicity;
+	const struct rectangle *v = spectrum->growth->series[f][i], *p = &spectrum->pole[f][i].at;
+	struct rectangle *a = rectangles(m, precision + GUARD_BITS), product;
+	rectangle_init(&product, precision + GUARD_BITS);
+	for (int k = 0; k < m; k++) {
+		struct rectangle *at = &a[m - 1 - k];
+		rectangle_evaluate(at, poly_hasse(response->N, k), p);
+		for (int j = 1; j <= k; j++) {
+			rectangle_mul(&product, &v[j], &a[m - 1 - k + j]);
+			rectangle_sub(at, at, &product);
+		}
+		rectangle_div(at, at, &v[0]);
+	}
+	rectangle_clear(&product);
+	return a;
+}
+
+static void find_residues(struct response *response, int precision)
+{
+	const struct spectrum *spectrum = response->spectrum;
+	if (response->precision == precision)
+		return;
+	response->residue = ARRAY(struct rectangle **, (size_t)spectrum->factors);
+	for (int f = 0; f < spectrum->factors; f++) {
+		response->residue[f] = ARRAY(struct rectangle *, (size_t)spectrum->poles[f]);
+		for (int i = 0; i < spectrum->poles[f]; i++)
+			response->residue[f][i] = residue_series(response, f, i, precision);
+	}
+	response->precision = precision;
+}
+
+/* sum += (2) Re e^{p tau} sum_k a_k tau^k/k! */
+static void add_residue(const struct pole *pole, int m, const struct rectangle *a, const struct rectangle *exponential, mpq_srcptr tau, mpfi_ptr sum)
+{
+	int precision = (int)mpfi_get_prec(sum);
+	struct rectangle total;
+	mpq_t power;
+	rectangle_init(&total, precision);
+	mpq_init(power);
+	for (int k = m - 1; k >= 0; k--) {      /* Horner: (a_{m-1} tau/(m-1) + a_{m-2}) tau/(m-2) ... */
+		mpq_set_ui(power, 1, (unsigned long)k + 1);
+		mpq_mul(power, power, tau);
+		mpfi_mul_q(total.re, total.re, power);
+		mpfi_mul_q(total.im, total.im, power);
+		mpfi_add(total.re, total.re, a[k].re);
+		mpfi_add(total.im, total.im, a[k].im);
+	}
+	rectangle_mul(&total, &total, exponential);
+	if (!pole->real)
+		mpfi_mul_ui(total.re, total.re, 2);
+	mpfi_add(sum, sum, total.re);
+	rectangle_clear(&total);
+	mpq_clear(power);
+}
+
+bool response_enclose(struct response *response, mpq_srcptr tau, int precision, mpfi_ptr value)
+{
+	struct spectrum *spectrum = response->spectrum;
+	if (!spectrum_refine(spectrum, precision))
+		return false;
+	struct growth *growth = denominator_series(spectrum, precision);
+	find_exponentials(spectrum, growth, tau);
+	find_residues(response, precision);
+	mpq_t exact;
+	mpq_init(exact);
+	value_at_zero(response, tau, exact);
+	mpfi_set_prec(value, precision + GUARD_BITS);
+	mpfi_set_q(value, exact);
+	for (int f = 0; f < spectrum->factors; f++)
+		for (int i = 0; i < spectrum->poles[f]; i++)
+			add_residue(&spectrum->pole[f][i], spectrum->factor[f].multiplicity, response->residue[f][i],
+				    &growth->exponential[f][i], tau, value);
+	mpfi_mul_q(value, value, response->scale);
+	mpq_clear(exact);
+	return true;
+}

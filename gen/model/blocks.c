@@ -1,0 +1,120 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Coordinates that do not influence each other, in either direction, are separate systems: each has its own B(s), and the
+ * factors between them are exactly 0. */
+#include "model/model.h"
+
+/* Equations 0 .. n-1 and coordinates n .. 2n-1 as nodes of one graph; parent pointers of its components. */
+static int root(int *parent, int i)
+{
+	while (parent[i] != i)
+		i = parent[i] = parent[parent[i]];
+	return i;
+}
+
+static int *components(const struct linear *system)
+{
+	int n = system->n, *parent = ARRAY(int, 2 * (size_t)n);
+	const mpq_t *matrix[] = { system->M, system->C, system->K, system->heldC, system->heldK };
+	for (int i = 0; i < 2 * n; i++)
+		parent[i] = i;
+	for (int k = 0; k < 5; k++)
+		for (int cell = 0; matrix[k] && cell < n * n; cell++)
+			if (mpq_sgn(matrix[k][cell]) != 0)
+				parent[root(parent, cell / n)] = root(parent, n + cell % n);
+	return parent;
+}
+
+static mpq_t *submatrix(const mpq_t *A, int n, const struct block *b)
+{
+	mpq_t *part = A ? rationals((size_t)b->system.n * (size_t)b->system.n) : NULL;
+	for (int i = 0; A && i < b->system.n; i++)
+		for (int j = 0; j < b->system.n; j++)
+			mpq_set(part[i * b->system.n + j], A[b->equation[i] * n + b->coord[j]]);
+	return part;
+}
+
+static mpq_t *subvector(const mpq_t *force, int segments, int n, const struct block *b)
+{
+	mpq_t *part = rationals((size_t)segments * (size_t)b->system.n);
+	for (int s = 0; s < segments; s++)
+		for (int i = 0; i < b->system.n; i++)
+			mpq_set(part[s * b->system.n + i], force[s * n + b->equation[i]]);
+	return part;
+}
+
+static void number_states(const struct linear *whole, struct block *b)
+{
+	struct linear *system = &b->system;
+	size_t n = (size_t)system->n;
+	system->velocity = ARRAY(int, n);
+	system->coord = ARRAY(int, 2 * n);
+	b->state = ARRAY(int, 2 * n);
+	system->states = system->n;
+	for (int j = 0; j < system->n; j++) {
+		system->coord[j] = j;
+		b->state[j] = b->coord[j];
+		system->velocity[j] = -1;
+	}
+	for (int j = 0; j < system->n; j++) {
+		if (whole->velocity[b->coord[j]] < 0)
+			continue;
+		system->velocity[j] = system->states;
+		system->coord[system->states] = j;
+		b->state[system->states++] = whole->velocity[b->coord[j]];
+	}
+}
+
+static void restrict_system(const struct linear *whole, struct block *b)
+{
+	struct linear *system = &b->system;
+	int n = whole->n;
+	number_states(whole, b);
+	system->M = submatrix((const mpq_t *)whole->M, n, b);
+	system->C = submatrix((const mpq_t *)whole->C, n, b);
+	system->K = submatrix((const mpq_t *)whole->K, n, b);
+	system->heldC = submatrix((const mpq_t *)whole->heldC, n, b);
+	system->heldK = submatrix((const mpq_t *)whole->heldK, n, b);
+	system->load = ARRAY(struct load, (size_t)whole->loads);
+	for (int l = 0; l < whole->loads; l++) {
+		system->load[l] = whole->load[l];
+		system->load[l].force = ARRAY(mpq_t *, (size_t)whole->load[l].columns);
+		for (int k = 0; k < whole->load[l].columns; k++)
+			system->load[l].force[k] = subvector((const mpq_t *)whole->load[l].force[k], whole->segments, n, b);
+	}
+	system->input = ARRAY(struct input, (size_t)whole->inputs);
+	for (int i = 0; i < whole->inputs; i++) {
+		system->input[i] = whole->input[i];
+		for (int k = 0; k < 2; k++)
+			system->input[i].force[k] = subvector((const mpq_t *)whole->input[i].force[k], 1, n, b);
+	}
+	system->channel = ARRAY(mpq_t *, (size_t)whole->channels);
+	for (int e = 0; e < whole->channels; e++)
+		system->channel[e] = subvector((const mpq_t *)whole->channel[e], 1, n, b);
+}
+
+int blocks_of(const struct linear *system, struct block **blocks)
+{
+	int n = system->n, count = 0, *parent = components(system);
+	*blocks = ARRAY(struct block, (size_t)n);
+	for (int j = 0; j < n; j++) {           /* a block for each component, in the order of their first coordinates */
+		bool seen = false;
+		for (int earlier = 0; earlier < j; earlier++)
+			seen = seen || root(parent, n + earlier) == root(parent, n + j);
+		if (seen)
+			continue;
+		struct block *b = &(*blocks)[count++];
+		b->system = *system;
+		b->system.n = 0;
+		b->equation = ARRAY(int, (size_t)n);
+		b->coord = ARRAY(int, (size_t)n);
+		int equations = 0;
+		for (int i = 0; i < n; i++) {
+			if (root(parent, n + i) == root(parent, n + j))
+				b->coord[b->system.n++] = i;
+			if (root(parent, i) == root(parent, n + j))
+				b->equation[equations++] = i;
+		}
+		restrict_system(system, b);
+	}
+	return count;
+}

@@ -1,0 +1,327 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Written equations and sketches to residuals, one for each coordinate. */
+#include "model/model.h"
+
+struct indexed {
+	struct building *b;
+	struct snapshot *snapshot;
+	int index;
+};
+
+/* ---- collection ---- */
+
+static void add_residual(struct snapshot *s, struct form *form, struct place at, struct place end)
+{
+	ENLARGE(s->residual, (size_t)s->residuals + 1);
+	s->residual[s->residuals++] = (struct residual){ form, at, end };
+}
+
+static bool is_zero(const struct value *value)
+{
+	return value->rows == 1 && value->columns == 1 && value->cell[0]->terms == 0;
+}
+
+/* Left side minus right side, cell by cell; a plain 0 fits any size. */
+static void collect_equation(void *context)
+{
+	struct indexed *work = context;
+	const struct equation *equation = &work->b->spec->equation[work->index];
+	struct value *left = collect(&work->b->collector, equation->left), *right = collect(&work->b->collector, equation->right);
+	const struct value *shape = is_zero(left) ? right : left;
+	if (!is_zero(left) && !is_zero(right) && (left->rows != right->rows || left->columns != right->columns))
+		error(equation->at, NULL, "the sides of the equation do not fit: %d x %d and %d x %d", left->rows, left->columns, right->rows, right->columns);
+	for (int i = 0; i < shape->rows * shape->columns; i++) {
+		const struct form *l = is_zero(left) ? left->cell[0] : left->cell[i], *r = is_zero(right) ? right->cell[0] : right->cell[i];
+		add_residual(work->snapshot, form_sum(l, r, true), equation->at, equation->end);
+	}
+}
+
+static int component_of(const struct node *coordinate)
+{
+	return coordinate->symbol->index + (coordinate->component ? coordinate->component - 1 : 0);
+}
+
+/* The element's force on its first coordinate, as it stands on the left side. */
+static void collect_element(void *context)
+{
+	struct indexed *work = context;
+	struct building *b = work->b;
+	const struct element *element = &b->spec->element[work->index];
+	struct value *value = collect(&b->collector, element->value);
+	if (value->rows != 1 || value->columns != 1)
+		error(element->value->start, NULL, "expected a scalar, found a %d x %d matrix", value->rows, value->columns);
+	struct form *form;
+	if (element->kind == ELEMENT_FORCE) {
+		form = form_sum(NEW(struct form), value->cell[0], true);
+	} else {
+		int order = element->kind == ELEMENT_MASS ? 2 : element->kind == ELEMENT_DAMPER ? 1 : 0;
+		if (!is_constant(value->cell[0]))
+			error(element->value->start, "what moves belongs in an equation, or in a force", "a mass, spring or damper needs a constant");
+		form = coordinate_form(&b->model->frame, component_of(element->from), order);
+		if (element->to)
+			form = form_sum(form, coordinate_form(&b->model->frame, component_of(element->to), order), true);
+		form = form_product(&b->collector, value->cell[0], form);
+	}
+	work->snapshot->element[work->index] = form;
+}
+
+void collect_equations(struct building *b, struct snapshot *snapshot)
+{
+	for (int i = 0; i < b->spec->equations; i++)
+		if (b->spec->equation[i].right)
+			statement_guard(collect_equation, &(struct indexed){ b, snapshot, i });
+	snapshot->written = snapshot->residuals;
+	snapshot->element = ARRAY(struct form *, (size_t)b->spec->elements);
+	for (int i = 0; i < b->spec->elements; i++)
+		statement_guard(collect_element, &(struct indexed){ b, snapshot, i });
+}
+
+/* ---- where a derivative stands ---- */
+
+static const struct node *find_derivative(const struct node *node, int coord, int primes)
+{
+	if (node->kind == NODE_NAME && node->symbol->kind == SYMBOL_COORD && node->primes == primes) {
+		int first = component_of(node), last = node->component || !node->symbol->length ? first : first + node->symbol->length - 1;
+		if (first <= coord && coord <= last)
+			return node;
+	}
+	for (int i = 0; i < node->children; i++) {
+		const struct node *found = find_derivative(node->child[i], coord, primes);
+		if (found)
+			return found;
+	}
+	return NULL;
+}
+
+static const struct node *find_in_equations(const struct spec *spec, int coord, int primes)
+{
+	const struct node *found = NULL;
+	for (int i = 0; i < spec->equations && !found; i++) {
+		if (!spec->equation[i].right)
+			continue;               /* broken: it has been told */
+		found = find_derivative(spec->equation[i].left, coord, primes);
+		found = found ? found : find_derivative(spec->equation[i].right, coord, primes);
+	}
+	for (const struct symbol *s = spec->first; s && !found; s = s->next)
+		if (s->kind == SYMBOL_LET && !s->broken)
+			found = find_derivative(s->value, coord, primes);
+	return found;
+}
+
+static const struct element *find_mass(const struct spec *spec, int coord)
+{
+	for (int i = 0; i < spec->elements; i++)
+		if (spec->element[i].kind == ELEMENT_MASS && component_of(spec->element[i].from) == coord)
+			return &spec->element[i];
+	return NULL;
+}
+
+/* A coordinate is of second order if its acceleration stands in an equation or a mass at it. */
+int find_order(const struct spec *spec, int coord)
+{
+	return find_mass(spec, coord) || find_in_equations(spec, coord, 2) ? 2 : 1;
+}
+
+/* ---- does each coordinate have its equation? ---- */
+
+static int order_of(const struct model *model, int coord)
+{
+	return model->system.velocity[coord] >= 0 ? 2 : 1;
+}
+
+static const char *highest_name(const struct model *model, int coord)
+{
+	return format("%s%s", model->coord_name[coord], order_of(model, coord) == 2 ? "''" : "'");
+}
+
+static bool has_coordinate_of_order(const struct form *form, int coord, int order)
+{
+	for (int i = 0; i < form->terms; i++)
+		if (form->term[i].basis.kind == BASIS_COORD && form->term[i].basis.index == coord && (order < 0 || form->term[i].basis.order == order))
+			return true;
+	return false;
+}
+
+static bool is_sketched(const struct building *b, int coord)
+{
+	for (int i = 0; i < b->spec->elements; i++) {
+		const struct element *element = &b->spec->element[i];
+		if (component_of(element->from) == coord || (element->to && component_of(element->to) == coord))
+			return true;
+	}
+	return false;
+}
+
+/* A written equation can be the coordinate's own if it has its highest derivative or, at last, if a mass statement gives
+ * that. Coordinates that no sketch touches have only written ones and choose first. */
+enum choice { UNTOUCHED, HIGHEST, ANY };
+
+static bool can_own(const struct building *b, int row, int coord, enum choice choice)
+{
+	if (choice == UNTOUCHED && is_sketched(b, coord))
+		return false;
+	int order = choice == ANY && find_mass(b->spec, coord) ? -1 : order_of(b->model, coord);
+	return has_coordinate_of_order(b->snapshot->residual[row].form, coord, order);
+}
+
+/* An augmenting path of the bipartite matching from equation `row`. */
+static bool augment(const struct building *b, int row, enum choice choice, bool *visited)
+{
+	for (int k = 0; k < b->model->n; k++) {
+		int j = (row + k) % b->model->n;        /* that of the same number first: the rows of a vector equation */
+		if (visited[j] || !can_own(b, row, j, choice))
+			continue;
+		visited[j] = true;
+		if (b->owner[j] < 0 || augment(b, b->owner[j], choice, visited)) {
+			b->owner[j] = row;
+			return true;
+		}
+	}
+	return false;
+}
+
+static const char *plural(int count, const char *word)
+{
+	return format("%d %s%s", count, word, count == 1 ? "" : "s");
+}
+
+/* A coordinate that stands nowhere is one of second order that was forgotten. */
+static const char *missing_name(const struct building *b, int coord)
+{
+	return find_in_equations(b->spec, coord, 1) ? highest_name(b->model, coord) : format("%s''", b->model->coord_name[coord]);
+}
+
+/* Each coordinate gets a written equation; sketched ones without get an empty one to which the elements add. */
+bool assign_equations(struct building *b)
+{
+	if (b->model->relative) {
+		b->owner = b->model->owner;
+		return true;
+	}
+	int n = b->model->n, written = b->snapshot->written, all = written, surplus = -1, missing = -1;
+	b->owner = ARRAY(int, (size_t)n);
+	for (int j = 0; j < n; j++)
+		b->owner[j] = -1;
+	bool *owns = ARRAY(bool, (size_t)written);
+	for (enum choice choice = UNTOUCHED; choice <= ANY; choice++)
+		for (int i = 0; i < written; i++)
+			owns[i] = owns[i] || augment(b, i, choice, ARRAY(bool, (size_t)n));
+	for (int i = written - 1; i >= 0; i--)
+		surplus = owns[i] ? surplus : i;
+	for (int j = 0; j < n; j++) {
+		if (b->owner[j] < 0 && is_sketched(b, j))
+			b->owner[j] = all++;
+		else if (b->owner[j] < 0)
+			missing = j;
+	}
+	if (all > n)
+		say_error(b->snapshot->residual[surplus < 0 ? written - 1 : surplus].at, NULL, "surplus equation: %s for %s", plural(all, "equation"),
+			  plural(n, "coordinate"));
+	else if (all < n)
+		say_error(b->spec->end, "each coordinate needs an equation of motion", "missing equation: %s, %s; none determines %s", plural(n, "coordinate"),
+			  plural(all, "equation"), missing_name(b, missing));
+	return all == n;
+}
+
+/* Over other coordinates than the written ones: equations combined as they are, and those of velocities that stand alone */
+static void combine_residuals(const struct building *b, struct snapshot *s)
+{
+	const struct relative *relative = b->model->relative;
+	int written = b->spec->components;
+	const struct form **equation = ARRAY(const struct form *, (size_t)written);
+	for (int j = 0; j < written; j++)
+		equation[j] = s->residual[b->owner[j]].form;
+	for (int j = 0; j < written; j++)
+		s->residual[b->owner[j]].form = combined_equation(relative, j, equation);
+	for (int i = written; i < b->model->n; i++)
+		add_residual(s, relative->extra[i - written], b->model->frame.coord[i]->at, b->model->frame.coord[i]->at);
+}
+
+/* Forces of elements: on the first coordinate as they are, on the second reversed. */
+void add_elements(const struct building *b, struct snapshot *s)
+{
+	const struct relative *relative = b->model->relative;
+	int written = b->spec->components;
+	while (s->residuals < written)
+		add_residual(s, NEW(struct form), b->spec->element[0].at, b->spec->element[0].end);
+	for (int i = 0; i < b->spec->elements; i++) {
+		const struct element *element = &b->spec->element[i];
+		struct residual *from = &s->residual[b->owner[component_of(element->from)]];
+		from->form = form_sum(from->form, s->element[i], false);
+		if (!element->to)
+			continue;
+		struct residual *to = &s->residual[b->owner[component_of(element->to)]];
+		to->form = form_sum(to->form, s->element[i], true);
+	}
+	if (relative)
+		combine_residuals(b, s);
+}
+
+/* ---- the mass matrix ---- */
+
+static bool zero_column(const struct model *model, int coord)
+{
+	const mpq_t *A = (const mpq_t *)(order_of(model, coord) == 2 ? model->system.M : model->system.C);
+	for (int i = 0; i < model->n; i++)
+		if (mpq_sgn(A[i * model->n + coord]) != 0)
+			return false;
+	return true;
+}
+
+static void tell_singular(const struct building *b, int coord)
+{
+	const struct model *model = b->model;
+	int order = order_of(model, coord);
+	const struct node *highest = find_in_equations(b->spec, coord, order);
+	const struct element *mass = find_mass(b->spec, coord);
+	struct place at = highest ? highest->at : mass ? mass->at : model->frame.coord[coord]->at;
+	if (!highest && !mass)
+		say_error(at, "every coordinate needs a mass, or a first derivative", "singular mass matrix: no derivative of %s stands in an equation",
+			  model->coord_name[coord]);
+	else if (zero_column(model, coord))
+		say_error(at, "every coordinate needs a mass", "singular mass matrix: the factor of %s is 0", highest_name(model, coord));
+	else
+		say_error(at, NULL, "singular mass matrix: the equations do not determine %s", highest_name(model, coord));
+}
+
+/* Prefer to name a coordinate without any mass over one that elimination happened to stop at. */
+void check_mass(const struct building *b)
+{
+	const struct model *model = b->model;
+	int n = model->n, column;
+	mpq_t *inverse = rationals((size_t)n * (size_t)n);
+	bool regular = leading_inverse(&model->system, inverse, &column);
+	rationals_free(inverse, (size_t)n * (size_t)n);
+	if (regular)
+		return;
+	for (int j = n - 1; j >= 0; j--)
+		if (zero_column(model, j))
+			column = j;
+	tell_singular(b, column);
+}
+
+/* The equations for all time, in which nothing is taken apart that a state multiplies. */
+void collect_whole(struct building *b)
+{
+	int keep = (int)b->collector.keep;
+	b->collector.keep = KEEP_ALL;
+	b->whole = NEW(struct snapshot);
+	b->collector.whole_time = true;
+	forget_lets(b->spec);
+	collect_equations(b, b->whole);
+	b->collector.whole_time = false;
+	b->collector.keep = (unsigned)keep;
+	if (!diagnostics_errors())
+		add_elements(b, b->whole);
+	for (struct symbol *s = b->spec->first; s && !b->collector.fixings; s = s->next)
+		if (s->kind == SYMBOL_LET && s->progress == COLLECTED && s->collected->rows * s->collected->columns == 1)
+			s->whole = s->collected->cell[0];
+}
+
+int coordinate_of_row(const struct model *model, int row)
+{
+	int coord = 0;
+	while (model->owner[coord] != row)
+		coord++;
+	return coord;
+}

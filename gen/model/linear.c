@@ -1,0 +1,110 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Linear systems of coordinates of first and second order. */
+#include "model/model.h"
+
+struct linear linear_like(const struct linear *shape)
+{
+	struct linear system = *shape;
+	size_t cells = (size_t)shape->n * (size_t)shape->n;
+	system.M = rationals(cells);
+	system.C = rationals(cells);
+	system.K = rationals(cells);
+	system.heldC = system.heldK = NULL;
+	system.loads = 0;
+	system.inputs = 0;
+	system.load = NULL;
+	system.channels = 0;
+	return system;
+}
+
+/* x' = A x as coordinates of first order */
+struct linear first_order_system(int n, const mpq_t *A)
+{
+	struct linear shape = { .n = n, .states = n, .segments = 1, .velocity = ARRAY(int, (size_t)n), .coord = ARRAY(int, (size_t)n) };
+	for (int i = 0; i < n; i++) {
+		shape.velocity[i] = -1;
+		shape.coord[i] = i;
+	}
+	struct linear system = linear_like(&shape);
+	for (int i = 0; i < n; i++) {
+		mpq_set_ui(system.C[i * n + i], 1, 1);
+		for (int j = 0; j < n; j++)
+			mpq_neg(system.K[i * n + j], A[i * n + j]);
+	}
+	return system;
+}
+
+bool leading_inverse(const struct linear *system, mpq_t *inverse, int *column)
+{
+	int n = system->n;
+	mpq_t *W = rationals((size_t)n * (size_t)n);
+	for (int i = 0; i < n; i++)
+		for (int j = 0; j < n; j++)
+			mpq_set(W[i * n + j], (system->velocity[j] >= 0 ? system->M : system->C)[i * n + j]);
+	bool regular = rational_inverse(n, (const mpq_t *)W, inverse, column);
+	rationals_free(W, (size_t)n * (size_t)n);
+	return regular;
+}
+
+/* What multiplies a state in the equations; with the held terms of a scheme, or only those. */
+static mpq_srcptr factor_of_state(const struct linear *system, int row, int state, bool held)
+{
+	const mpq_t *K = held ? system->heldK : system->K, *C = held ? system->heldC : system->C;
+	return (state < system->n ? K : C)[row * system->n + system->coord[state]];
+}
+
+void highest_derivatives(const struct linear *system, const mpq_t *inverse, bool held, mpq_t *row)
+{
+	int n = system->n, states = system->states;
+	mpq_t *lower = rationals((size_t)n * (size_t)states);
+	for (int i = 0; i < n; i++)
+		for (int j = 0; j < states; j++)
+			mpq_neg(lower[i * states + j], factor_of_state(system, i, j, held));
+	rational_product(n, n, states, inverse, (const mpq_t *)lower, row);
+	rationals_free(lower, (size_t)n * (size_t)states);
+}
+
+/* x' = A x over the states (held terms: those that a scheme holds, alone) */
+mpq_t *state_matrix(const struct linear *system, bool held)
+{
+	int n = system->n, states = system->states, column;
+	mpq_t *A = rationals((size_t)states * (size_t)states), *inverse = rationals((size_t)n * (size_t)n);
+	mpq_t *highest = rationals((size_t)n * (size_t)states);
+	leading_inverse(system, inverse, &column);
+	highest_derivatives(system, (const mpq_t *)inverse, held, highest);
+	for (int i = 0; i < n; i++) {
+		int state = system->velocity[i] >= 0 ? system->velocity[i] : i;
+		for (int j = 0; j < states; j++)
+			mpq_set(A[state * states + j], highest[i * states + j]);
+		if (system->velocity[i] >= 0 && !held)
+			mpq_set_ui(A[i * states + system->velocity[i]], 1, 1);
+	}
+	rationals_free(inverse, (size_t)n * (size_t)n);
+	rationals_free(highest, (size_t)n * (size_t)states);
+	return A;
+}
+
+int load_columns(const struct linear *system)
+{
+	int columns = 0;
+	for (int l = 0; l < system->loads; l++)
+		columns += system->load[l].columns;
+	return columns;
+}
+
+int input_columns(const struct linear *system)
+{
+	int columns = 0;
+	for (int i = 0; i < system->inputs; i++)
+		columns += system->input[i].first_order ? 2 : 1;
+	return columns;
+}
+
+bool load_acts(const struct linear *system, const struct load *load)
+{
+	for (int k = 0; k < load->columns; k++)
+		for (int i = 0; i < system->segments * system->n; i++)
+			if (mpq_sgn(load->force[k][i]) != 0)
+				return true;
+	return false;
+}

@@ -1,0 +1,394 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* From a parsed spec to a model: params, scheme, step and initial values here; equations.c and outputs.c do the rest. */
+#include "model/model.h"
+
+#include <string.h>
+
+/* ---- params, lets ---- */
+
+static void define_override(struct building *b, const char *text)
+{
+	const char *equals = strchr(text, '=');
+	char *name = format("%.*s", (int)(equals - text), text);
+	struct source *source = source_argument(text);
+	struct symbol *symbol = spec_find(b->spec, name);
+	if (symbol && symbol->broken)
+		return;
+	if (!symbol || symbol->kind != SYMBOL_PARAM) {
+		const char *note = symbol ? "-D gives a param another value" : spec_suggestion(b->spec, name);
+		say_error((struct place){ source, 0 }, note, symbol ? "'%s' is not a param" : "no param is named '%s'", name);
+		return;
+	}
+	struct node *value = parse_argument(b->spec, source, (size_t)(equals - text) + 1);
+	if (value)
+		symbol->value = value;
+	else
+		symbol->broken = true;
+}
+
+static void set_tunables(struct building *b)
+{
+	for (int i = 0; b->request->tunable && i < b->spec->tunables; i++) {
+		const struct tunable *tunable = &b->spec->tunable[i];
+		struct node *value = NEW(struct node);
+		*value = (struct node){ .kind = NODE_NUMBER, .at = tunable->at, .start = tunable->at, .end = tunable->at };
+		mpq_init(value->number);
+		mpq_set(value->number, b->request->tunable[i]);
+		tunable->symbol->value = value;
+	}
+}
+
+/* Whether a symbol of the statement of `first`, its first one, is broken; those of a statement stand together */
+static bool statement_failed(const struct symbol *first)
+{
+	for (const struct symbol *s = first; s && s->statement == first->statement; s = s->next)
+		if (s->broken && s->index >= 0)
+			return true;
+	return false;
+}
+
+struct symbol_work {
+	struct building *b;
+	struct symbol *symbol;
+};
+
+static void evaluate_symbol(void *context)
+{
+	struct symbol_work *work = context;
+	struct node name = { .kind = NODE_NAME, .at = work->symbol->at, .start = work->symbol->at, .end = work->symbol->at, .symbol = work->symbol };
+	collect(&work->b->collector, &name);
+}
+
+static void evaluate_params(struct building *b)
+{
+	b->collector.constant_only = true;
+	bool failed = false;
+	for (struct symbol *s = b->spec->first, *before = NULL; s; before = s, s = s->next) {
+		failed = before && before->statement == s->statement ? failed || (before->broken && before->index >= 0) : statement_failed(s);
+		if ((s->kind != SYMBOL_PARAM && s->kind != SYMBOL_MATRIX) || s->broken)
+			continue;
+		if (s->progress == COLLECTING || failed ||
+		    !statement_guard(evaluate_symbol, &(struct symbol_work){ b, s }))
+			s->broken = true;
+	}
+	b->collector.constant_only = false;
+}
+
+/* A let that nothing linear uses may be anything; but a division by zero in it is told all the same. */
+static void evaluate_lets(struct building *b)
+{
+	b->collector.tolerant = true;
+	for (struct symbol *s = b->spec->first; s; s = s->next)
+		if (s->kind == SYMBOL_LET && !s->broken && s->progress != COLLECTED)
+			statement_guard(evaluate_symbol, &(struct symbol_work){ b, s });
+	b->collector.tolerant = false;
+}
+
+/* ---- scheme and step ---- */
+
+/* Without a scheme: exact where the model allows it, which the equations tell. */
+static void choose_scheme(void *context)
+{
+	struct building *b = context;
+	const char *wanted = b->request->scheme ? b->request->scheme : b->spec->scheme;
+	b->collector.scheme = "exact";
+	b->collector.closed = b->request->solution;
+	b->collector.keep = b->request->solution ? KEEP_NOTHING : wanted ? KEEP_PIECEWISE : KEEP_ALL;
+	if (!wanted)
+		return;
+	struct place at = b->request->scheme ? (struct place){ source_argument(wanted), 0 } : b->spec->scheme_at;
+	enum scheme scheme;
+	if (scheme_of(wanted, &scheme)) {
+		b->model->scheme = b->request->solution ? SCHEME_EXACT : scheme;
+		b->model->asked.scheme_at = at;
+		b->collector.scheme = scheme_name(b->model->scheme);
+		b->collector.keep = b->request->solution ? KEEP_NOTHING : scheme == SCHEME_EXACT ? KEEP_PIECEWISE : KEEP_ALL;
+		return;
+	}
+	const char *nearest = nearest_scheme(wanted);
+	b->collector.keep = KEEP_ALL;           /* whatever was meant: one message is enough */
+	error(at, nearest ? format("did you mean '%s'?", nearest) : "the schemes are exact, pl, etd1, etdrk2, etdrk4, nc2, nc3, dq4, bm3",
+	      "unknown scheme '%s'", wanted);
+}
+
+static void evaluate_step(void *context)
+{
+	struct building *b = context;
+	struct node *node = b->spec->step;
+	struct place at = b->spec->step_at;
+	if (b->request->step) {
+		struct source *source = source_argument(b->request->step);
+		node = parse_argument(b->spec, source, 0);
+		at = (struct place){ source, 0 };
+		if (!node)
+			abandon();
+	}
+	b->model->asked.step_at = b->model->asked.end_at = at;
+	collect_constant(&b->collector, node, b->model->h);
+	if (mpq_sgn(b->model->h) <= 0)
+		error(at, NULL, "the step must be above 0");
+	if (beyond_range(b->model->h) || round_rational(b->model->h) == 0)
+		error(at, NULL, "the step is beyond the range of %s", target_name());
+}
+
+/* ---- initial values ---- */
+
+struct initial_work {
+	struct building *b;
+	int index;
+};
+
+static void evaluate_initial(void *context)
+{
+	struct initial_work *work = context;
+	const struct initial *initial = &work->b->spec->initial[work->index];
+	const struct symbol *coord = initial->coord;
+	struct model *model = work->b->model;
+	int first = coord->index + (initial->component ? initial->component - 1 : 0), count = initial->component || !coord->length ? 1 : coord->length;
+	struct value *value = collect_constants(&work->b->collector, initial->value);
+	bool single = value->rows == 1 && value->columns == 1;
+	if (initial->primes == 1 && coord->highest == 1)
+		error(initial->at, "it appears only as a first derivative, so its start fixes all", "%s is of first order: its derivative has no initial value",
+		      coord->name);
+	if (!single && value->rows * value->columns != count)
+		error(initial->value->start, NULL, "sizes do not fit: %s has %d components, the value is %d x %d", coord->name, count, value->rows, value->columns);
+	for (int i = 0; i < count; i++) {
+		int state = initial->primes ? model->system.velocity[first + i] : first + i;
+		constant_value(&work->b->collector, value->cell[single ? 0 : i], model->initial[state]);
+		if (beyond_range(model->initial[state]))
+			error(initial->value->start, NULL, "the initial value is beyond the range of %s", target_name());
+	}
+}
+
+static void evaluate_initials(struct building *b)
+{
+	size_t failed = SIZE_MAX;
+	for (int i = 0; i < b->spec->initials; i++) {
+		size_t statement = b->spec->initial[i].statement;
+		if (statement != failed && !statement_guard(evaluate_initial, &(struct initial_work){ b, i }))
+			failed = statement;
+	}
+}
+
+/* ---- the whole ---- */
+
+/* Coordinates that are kept in the place of written ones, with an order each: each has a symbol of its own */
+static void name_relative(struct building *b)
+{
+	struct model *model = b->model;
+	const struct relative *relative = model->relative;
+	size_t n = (size_t)relative->n;
+	model->n = model->system.n = relative->n;
+	model->frame.coord = ARRAY(struct symbol *, n);
+	model->coord_name = relative->name;
+	model->owner = ARRAY(int, n);
+	for (int j = 0; j < relative->n; j++) {
+		const struct model *written = relative->written;
+		int like = j < written->n ? j : 0;
+		model->frame.coord[j] = NEW(struct symbol);
+		*model->frame.coord[j] = (struct symbol){ .kind = SYMBOL_COORD, .name = relative->name[j], .at = written->frame.coord[like]->at, .index = j, .highest = relative->order[j] };
+		model->owner[j] = j < written->n ? written->owner[j] : j;
+	}
+}
+
+static void name_coordinates(struct building *b)
+{
+	struct model *model = b->model;
+	if (model->relative) {
+		name_relative(b);
+		return;
+	}
+	size_t n = (size_t)b->spec->components;
+	model->n = model->system.n = b->spec->components;
+	model->frame.coord = ARRAY(struct symbol *, n);
+	model->coord_name = ARRAY(const char *, n);
+	for (struct symbol *s = b->spec->first; s; s = s->next) {
+		if (s->kind != SYMBOL_COORD)
+			continue;
+		for (int i = 0; i < (s->length ? s->length : 1); i++) {
+			model->frame.coord[s->index + i] = s;
+			model->coord_name[s->index + i] = s->length ? format("%s[%d]", s->name, i + 1) : s->name;
+		}
+	}
+}
+
+/* The states are the coordinates, then the velocities of those of second order. A vector is of one order. */
+static void name_states(struct building *b)
+{
+	struct model *model = b->model;
+	struct linear *system = &model->system;
+	size_t n = (size_t)model->n;
+	model->state_name = ARRAY(const char *, 2 * n);
+	system->velocity = ARRAY(int, n);
+	system->coord = ARRAY(int, 2 * n);
+	system->states = model->n;
+	for (int j = 0; j < model->n && !model->relative; j++) {
+		int order = find_order(b->spec, j);
+		model->frame.coord[j]->highest = order > model->frame.coord[j]->highest ? order : model->frame.coord[j]->highest;
+	}
+	for (int j = 0; j < model->n; j++) {
+		model->state_name[j] = model->coord_name[j];
+		system->coord[j] = j;
+		system->velocity[j] = model->frame.coord[j]->highest == 2 ? system->states : -1;
+		if (system->velocity[j] < 0)
+			continue;
+		system->coord[system->states] = j;
+		model->state_name[system->states++] = format(strchr(model->coord_name[j], ' ') ? "(%s)'" : "%s'", model->coord_name[j]);
+	}
+}
+
+static void check_prefix(const struct building *b)
+{
+	const char *prefix = b->model->name, *why = prefix_objection(prefix);
+	bool given = b->request->prefix != NULL;
+	struct place at = given ? (struct place){ source_argument(prefix), 0 } : b->spec->name_at;
+	bool identifier = *prefix && prefix[strspn(prefix, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ_0123456789")] == 0 && !strchr("0123456789", prefix[0]);
+	if (given && !identifier)
+		say_error(at, NULL, "'%s' is not a C identifier", prefix);
+	else if (why)
+		say_error(at, given ? NULL : "give another with --prefix NAME", "'%s' %s and cannot name generated code", prefix, why);
+}
+
+static void check_parts(const struct building *b)
+{
+	const struct spec *spec = b->spec;
+	if (spec->coords == 0)
+		say_error(spec->end, "coord x", "missing coordinates: there is no statement 'coord'");
+	if (!spec->step && !b->request->step)
+		say_error(spec->end, "step 0.01, or --step 0.01 on the command line", "missing step");
+	if (b->model->system.states > LIMIT_STATES)
+		say_error(b->model->frame.coord[b->model->n - 1]->at, NULL, "more states than the limit of %d", LIMIT_STATES);
+}
+
+static void collect_interval(struct building *b, struct snapshot *snapshot)
+{
+	forget_lets(b->spec);
+	collect_equations(b, snapshot);
+	forget_lets(b->spec);                   /* collected anew: in an output no atom is kept */
+	collect_outputs(b, snapshot);
+}
+
+/* Intervals that were one when they were collected get residuals of their own. */
+static void part_snapshots(struct snapshot *snapshot, int count)
+{
+	for (int i = count - 1; i > 0; i--) {
+		struct snapshot *s = &snapshot[i];
+		struct residual *residual = s->residual;
+		if (residual != s[-1].residual)
+			continue;
+		s->residual = ARRAY(struct residual, (size_t)s->residuals);
+		for (int k = 0; k < s->residuals; k++)
+			s->residual[k] = residual[k];
+	}
+}
+
+/* Equations and outputs in each interval of time. When a change of formula is met for the first time, the intervals before
+ * that are known, even where it divides them: what they read does not change there. */
+static void collect_intervals(struct building *b)
+{
+	struct collector *c = &b->collector;
+	struct snapshot *old = NULL;            /* of the intervals that the changes known then left, the first `done` of them */
+	const mpq_t *change = NULL;
+	int known, done = 0;
+	do {
+		const mpq_t *list = (const mpq_t *)c->change;
+		known = c->changes;
+		b->snapshot = ARRAY(struct snapshot, (size_t)known + 1);
+		int within = 0;                 /* the old interval in which this one lies */
+		for (c->interval = 0; c->interval <= known && c->changes == known && !(c->interval && diagnostics_errors()); c->interval++) {
+			if (within < done && c->interval > 0 && mpq_equal(change[within], list[c->interval - 1]))
+				within++;
+			if (within < done)
+				b->snapshot[c->interval] = old[within];
+			else
+				collect_interval(b, &b->snapshot[c->interval]);
+		}
+		discard(old);
+		old = b->snapshot;
+		change = list;
+		done = c->interval - 1;         /* in the last one a change was met */
+	} while (c->changes != known && !diagnostics_errors());
+	part_snapshots(b->snapshot, known + 1);
+	c->interval = 0;
+	b->model->system.segments = c->changes + 1;
+	b->model->system.change = c->change;
+}
+
+struct model *model_build(struct spec *spec, const struct request *request)
+{
+	struct building b = { .spec = spec, .model = NEW(struct model), .request = request };
+	struct model *model = b.model;
+	mpq_srcptr zero = rationals(1)[0];
+	model->spec = spec;
+	model->asked = *request;
+	model->written = request->relative ? request->relative->written : model;
+	model->relative = request->relative;
+	model->frame.form = model->relative ? model->relative->form : NULL;
+	if (model->relative)                    /* its params were collected for the written one */
+		b.collector.irrationals = model->written->irrationals;
+	b.collector.frame = &model->frame;
+	model->atoms = b.collector.atoms = atoms_new();
+	model->asked.form_at = (struct place){ source_argument(step_form_name(request->form)), 0 };
+	model->asked.compensated_at = (struct place){ source_argument("compensated"), 0 };
+	model->name = request->prefix ? request->prefix : spec->name;
+	mpq_init(model->h);
+	for (struct symbol *s = spec->first; s; s = s->next)
+		s->whole = NULL;
+	b.polynomial = wave_of(&b.collector, zero, zero, zero);
+	for (int i = 0; i < request->definitions; i++)
+		define_override(&b, request->definition[i]);
+	set_tunables(&b);
+	if (!request->relative && (request->prefix || (model->name && *model->name)))
+		check_prefix(&b);
+	name_coordinates(&b);
+	name_states(&b);
+	if (!request->tunable)                /* else what nothing reads may not be defined there */
+		evaluate_params(&b);
+	statement_guard(choose_scheme, &b);
+	collect_intervals(&b);
+	if (!request->tunable)
+		evaluate_lets(&b);
+	model->initial = rationals((size_t)model->system.states);
+	if (model->relative && !request->tunable)
+		relative_values(model, model->written->initial, model->initial);
+	else if (!request->tunable)
+		evaluate_initials(&b);
+	if (!request->tunable && (spec->step || request->step))
+		statement_guard(evaluate_step, &b);
+	bool clean = !diagnostics_errors();
+	if (clean)
+		check_parts(&b);
+	if (clean && model->n > 0 && model->system.states <= LIMIT_STATES)
+		build_system(&b);
+	if (!diagnostics_errors())
+		build_operators(&b);
+	if (!diagnostics_errors())
+		build_outputs(&b);
+	if (!diagnostics_errors() && model->switching)
+		build_regions(&b);
+	if (!diagnostics_errors() && request->reduce && model->switching)
+		say_error(spec->name_at, NULL, "--reduce needs a linear model: what regions hold depends on the coordinates");
+	if (!diagnostics_errors() && request->reduce && model->scheme != SCHEME_EXACT)
+		say_error(model->asked.scheme_at.source ? model->asked.scheme_at : spec->name_at, NULL,
+			  "--reduce needs scheme exact: what %s leaves over depends on the coordinates", scheme_name(model->scheme));
+	model->irrationals = b.collector.irrationals;
+	bool told = request->solution || request->tunable || request->relative;
+	if (!diagnostics_errors() && !told)
+		judge_smoothness(&b);
+	if (!diagnostics_errors() && !told)
+		warn(&b);
+	return diagnostics_errors() ? NULL : model;
+}
+
+void argument_value(struct model *model, const char *text, mpq_ptr value)
+{
+	struct collector collector = { .scheme = "exact" };
+	struct place at = { source_argument(text), 0 };
+	struct node *node = parse_argument((struct spec *)model->spec, at.source, 0);
+	if (!node)
+		abandon();
+	collect_constant(&collector, node, value);
+	if (mpq_sgn(value) < 0)
+		error(at, NULL, "--solution takes a time that is not below 0");
+	model->asked.end_at = at;
+}

@@ -1,0 +1,345 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The equations of motion, exact: M, C, K, loads, operators, regions, outputs. */
+#ifndef PLGEN_MODEL_H
+#define PLGEN_MODEL_H
+
+#include "collect/collect.h"
+#include "math/math.h"
+
+/* ---- linear.c: linear systems of coordinates ---- */
+
+struct load {                       /* force on the equations: t^k times one wave */
+	const struct wave *wave;
+	int powers;                 /* k = 0 .. powers-1 */
+	int columns;                /* t^k, or t^k cos and t^k sin: the load states z */
+	mpq_t **force;              /* per column: [segment][equation] */
+};
+struct input {                      /* a sampled input u */
+	const char *name;
+	bool first_order;           /* ramp between samples; else held */
+	mpq_t *force[2];            /* of u and of u': one rational per equation */
+};
+struct linear {                     /* M q'' + C q' + K q = force - heldC q'(t_n) - heldK q(t_n) */
+	int n, states;              /* states: the coordinates, then the velocities of those of second order */
+	int *velocity;              /* per coordinate: the state that is its velocity; -1: of first order */
+	int *coord;                 /* per state: its coordinate */
+	mpq_t *M, *C, *K;           /* n x n, row-major; a coordinate of first order has no column in M */
+	mpq_t *heldC, *heldK;       /* n x n, or NULL where nothing is held */
+	int segments;               /* of time, in which the loads have one formula each */
+	mpq_t *change;              /* segments - 1 times, rising */
+	int loads;
+	struct load *load;
+	int inputs;
+	struct input *input;
+	int channels;               /* of what is left over: one for each equation that has some */
+	mpq_t **channel;            /* its force on the equations */
+};
+struct linear linear_like(const struct linear *shape);      /* the same coordinates and states, matrices 0, no loads */
+struct linear first_order_system(int n, const mpq_t *A);    /* x' = A x */
+/* W^-1, n x n; W has the columns of M, and those of C where a coordinate is of first order. False: singular. */
+bool leading_inverse(const struct linear *system, mpq_t *inverse, int *column);
+/* Highest derivatives of the coordinates, -W^-1 (C v + K q), n x states; `held`: of the held terms alone */
+void highest_derivatives(const struct linear *system, const mpq_t *inverse, bool held, mpq_t *row);
+mpq_t *state_matrix(const struct linear *system, bool held); /* A of y' = A y, states x states */
+int load_columns(const struct linear *system);
+int input_columns(const struct linear *system);
+bool load_acts(const struct linear *system, const struct load *load);
+
+/* ---- model.c: the equations of motion, exact ---- */
+
+struct output {
+	const char *name;
+	struct node *value;         /* as written */
+	int statement, cell;        /* which output statement, and which cell of its value */
+	struct form *form;          /* in the first segment of time; NULL where it is not linear in states and loads */
+	struct form *left;          /* then: for all time, with atoms; highest derivatives stand for themselves */
+	mpq_t *state;               /* factors of y, one per state, accelerations replaced */
+	mpq_t **load;               /* per load: factors of its columns, [column][segment] */
+	mpq_t *input[2];            /* per input: factors of u and u' */
+	mpq_t *channel;             /* factors of what is left over, where an acceleration is read */
+};
+struct operator {                   /* A of y' = A y + loads + inputs + r(t, y); its M is that of the equations */
+	mpq_t *C, *K;
+	struct form **left;         /* per channel: the leftover, a force on its equation */
+	mpq_t at;                   /* of a bank: the value up to which it serves */
+	const char *text;           /* x = 2, x' = 0 */
+};
+struct smoothness {                 /* of what is left over, else of the equations; where nothing is found all is 0 */
+	int tenths;                 /* of the order that no scheme exceeds here: 10 at a jump, 20 at a kink */
+	enum { SMOOTH_ALL, SMOOTH_KINK, SMOOTH_JUMP } kind;
+	const struct node *node;    /* what jumps or has the kink */
+	const char *where;          /* x passes 0.5 */
+	bool piecewise;             /* exact could treat it alone */
+	bool timed;                 /* it lies at a time */
+};
+struct request {                    /* what the user asks for on the command line; of most, a spec may say it too */
+	const char *step, *scheme, *prefix;
+	bool reduce;
+	bool loads_left;            /* known loads are left to the scheme */
+	bool compensated;           /* two-word arithmetic */
+	bool single;                /* the target's numbers are floats */
+	bool selftest;              /* NAME_selftest */
+	enum step_form form;
+	bool solution;              /* the closed form is wanted, whatever the scheme */
+	int definitions;
+	const char **definition;    /* NAME=EXPR */
+	/* Where it is asked for, command line or spec: found when the model is built */
+	struct place scheme_at;     /* source NULL: it is not */
+	struct place step_at, form_at, compensated_at;
+	struct place end_at;        /* the end of --solution, else as step_at */
+	/* What builders ask for to build a model a second time; then nothing is told again */
+	const mpq_t *tunable;       /* values of the tunable params in place of the spec's, to see what the equations become: */
+	                            /* no step, no initial values */
+	const struct relative *relative; /* the coordinates to build the model over; NULL: the written ones */
+};
+struct reduction {                  /* what --reduce found */
+	int *place;                 /* of a reduced model, per written state: the state that is it, or -1 */
+	bool irreducible;           /* it was asked for, and every state is seen */
+	int dropped;                /* written states that are no combination of the reduced ones */
+	const char **dropped_name;
+};
+struct model {
+	const struct spec *spec;
+	struct request asked;
+	const char *name;           /* prefix of everything generated */
+	int n;                      /* coordinates */
+	const char **coord_name;
+	const char **state_name;    /* x1, x2, x1', x2' */
+	struct frame frame;         /* the coordinates, and how the written ones follow from them */
+	struct linear system;       /* as written */
+	struct residual *residual;  /* per row of the system, in the first segment of time */
+	struct snapshot *snapshot;  /* per segment */
+	struct snapshot *whole;     /* for all time, conditions and products of time kept; NULL: nothing is left over */
+	struct irrationals irrationals;
+	mpq_t *initial;             /* one per state */
+	mpq_t h;
+	enum scheme scheme;
+	bool loads_left;            /* known loads are left to the scheme */
+	int operators;              /* 0: exact, or nothing is left over */
+	struct operator *operator;
+	int *owner;                 /* per coordinate: the row of its equation */
+	int channels;               /* of what is left over, of each operator: one for each equation that has some */
+	int *channel_row;           /* its equation */
+	const struct atoms *atoms;
+	struct switching *switching; /* exact: the regions of a piecewise-linear model; NULL: it has one */
+	struct smoothness smooth;
+	const struct node *obstacle; /* the first term that stood in the way of exact, where no scheme was asked for; */
+	const char *obstacle_text;  /* why it did, and the way out if there is one */
+	const struct form *selector; /* of a bank: what is compared with `at`; NULL: one operator */
+	const struct tuning *tuning; /* tunable params, and how the equations follow from them; NULL: there are none */
+	int outputs;
+	struct output *output;
+	bool declared_outputs;
+	struct output **highest;    /* per coordinate: its highest derivative as a row, where an output that is not linear reads it */
+	const struct model *written; /* itself; of a reduced model: the one that it was made of */
+	struct reduction reduction;
+	const struct relative *relative; /* the model is over other coordinates than the written ones; NULL: over those */
+};
+
+/* ---- relative.c: coordinates in which what may move as a whole is parted from what moves in it ---- */
+
+struct link {                       /* of a written coordinate x: what is kept in its place */
+	enum { LINK_NONE, LINK_PARENT, LINK_CENTRE } kind; /* x itself; its distance from another; the centre of its group */
+	int from;                   /* LINK_PARENT: the other, x_p */
+	mpq_t ratio;                /* x - ratio x_p is kept, */
+	bool turned;                /* or ratio x_p - x */
+	mpq_t *weight, *shift;      /* LINK_CENTRE, per coordinate: X = sum of weight x; x = X + sum of shift times what is kept */
+	struct form *rate;          /* LINK_PARENT, x of second order, x_p of first: x_p' over written coordinates, so that x' - ratio x_p' is kept, */
+	int velocity;               /* or else the kept coordinate that is x', of first order; -1: that of what is kept */
+};
+struct relative {
+	const struct model *written;
+	int n;                      /* coordinates kept: in the place of each written one, then velocities that stand alone */
+	const char **name;
+	int *order;
+	struct link *link;          /* per written coordinate */
+	int links, *sequence;       /* those of LINK_PARENT, each after the one that it is measured from */
+	struct form **form[3];      /* per derivative and written coordinate: over what is kept */
+	struct form **extra;        /* equations r' = v - ... of velocities that stand alone, after all others */
+	mpq_t *solved;              /* per written coordinate: what its equation is divided by, so that equations are combined as coordinates are; */
+	                            /* NULL: equations stay as written */
+};
+struct relative *relative_of(const struct model *model);     /* NULL: nothing moves as a whole that has parts */
+/* What is kept at a coordinate, from the written coordinates, or their velocities, that it takes */
+void relative_value(const struct relative *r, int coord, mpq_t *const *value, mpq_ptr kept);
+struct form *combined_equation(const struct relative *r, int coord, const struct form *const *equation); /* that of what is kept there */
+void relative_values(const struct model *model, mpq_t *written, mpq_t *kept); /* of all states */
+int  relative_place(const struct model *model, int written); /* the kept state that is a written one; -1: none is */
+
+struct expression {                 /* what is compared with breakpoints: linear in states, loads and inputs */
+	struct form *form;          /* without constant; sign and scale as first written */
+	struct output *row;         /* the same as a row */
+	int breaks;
+	mpq_t *at;                  /* rising */
+	const struct node *node;    /* where it comes from */
+	int stride;                 /* of its interval in the index of a region */
+};
+struct region {                     /* one interval for each expression */
+	bool possible;              /* its inequalities can hold together */
+	int system;                 /* index of its equations; equal ones are one */
+	struct form **residual;     /* per row: linear */
+};
+struct switching {
+	int expressions;
+	struct expression *expression;
+	int regions;                /* all, possible or not: products of the expressions' intervals */
+	struct region *region;
+	int systems;
+	struct linear *system;
+};
+struct model *model_build(struct spec *spec, const struct request *request);
+void argument_value(struct model *model, const char *text, mpq_ptr value); /* of --solution; may use params */
+
+/* ---- the builders of a model share ---- */
+
+struct residual {                   /* left side minus right side of one scalar equation */
+	struct form *form;
+	struct place at, end;
+};
+struct building {                   /* what the builders share */
+	struct spec *spec;
+	struct model *model;
+	struct collector collector;
+	const struct request *request;
+	const struct wave *polynomial; /* the wave of t^k alone */
+	struct snapshot *snapshot;  /* per interval between changes of formula in time */
+	struct snapshot *whole;     /* the same for all time, with atoms; NULL: there is no leftover */
+	struct form **load;         /* [segment][row]: the residual's part that depends on time alone, as the linear core carries it */
+	struct form **time_left;    /* per row: what depends on time alone and it cannot carry */
+	int *owner;                 /* per coordinate: its residual */
+};
+struct snapshot {                   /* the equations and outputs in one interval of time */
+	int residuals, written;     /* all; those of written equations come first */
+	struct residual *residual;
+	struct form **element;      /* per element of the sketch: its force */
+	struct value **output;      /* per output statement; NULL: not linear */
+};
+
+/* ---- blocks.c: coordinates that do not influence each other ---- */
+
+struct block {
+	struct linear system;
+	int *equation, *coord;      /* of the whole system, per equation and coordinate of the block */
+	int *state;                 /* likewise per state */
+};
+int blocks_of(const struct linear *system, struct block **blocks); /* M regular, so that a block has as many equations as coordinates */
+
+/* ---- augmented.c: the augmented state ---- */
+
+struct series {                     /* x' = A x; x = state, held terms, constant load, cos and sin of each wave */
+	bool emitted;               /* max|pole| h <= 8 */
+	int size, degree, halvings;
+	int held;                   /* index of the first held term, one per coordinate; -1: none */
+	int *load;                  /* index of the first state of each load; -1: it acts on nothing */
+	int *input;                 /* index of each input (then of its slope, if of first order) */
+	int channel, powers;        /* index of the first leftover; each is a chain of so many integrators, its force the first */
+};
+void series_place(struct series *series, const struct linear *system, int powers); /* which entry of x is what */
+void series_place_loads(struct series *series, const struct linear *system, int powers, const bool *needed); /* of loads those needed */
+mpq_t *series_matrix(const struct series *series, const struct linear *system, int segment); /* A in one segment of time */
+
+/* ---- spell.c: loads, forms and equations for a reader ---- */
+
+const char *column_text(const struct load *load, int column); /* t*exp(-2*t)*cos(5*t) */
+const char *equation_text(const struct model *model, const struct form *residual); /* coordinates = loads */
+const char *form_text(const struct model *model, const struct form *form);          /* atoms spelled out, long ones cut short */
+
+/* ---- equations.c: equations and sketches to residuals ---- */
+
+void collect_equations(struct building *b, struct snapshot *snapshot);
+void collect_outputs(struct building *b, struct snapshot *snapshot);
+int  find_order(const struct spec *spec, int coord);
+void build_outputs(struct building *b);
+struct output *row_of_form(struct building *b, struct form *form); /* of states, loads and inputs; no highest derivatives */
+int  coordinate_of_row(const struct model *model, int row);       /* whose equation it is */
+void collect_whole(struct building *b);                     /* the equations for all time, atoms kept: b->whole */
+bool assign_equations(struct building *b);                  /* false: it was said which is missing or too many */
+void add_elements(const struct building *b, struct snapshot *s); /* the sketch's forces to the residuals */
+void check_mass(const struct building *b);
+
+/* ---- reads.c: what forms read ---- */
+
+struct reads {                    /* what forms read */
+	bool *state, *input, *load; /* inputs, then their slopes */
+	bool *highest;              /* per coordinate: its highest derivative */
+	bool time, math;            /* t itself; <math.h> */
+};
+bool calls_libm(const struct atom *a);                       /* not of the piecewise-linear functions: they are comparisons in C */
+struct reads reads_of(const struct model *model, int count, const struct form *const *form);
+
+/* ---- system.c: residuals to M, C, K, loads and inputs ---- */
+
+void fill_states(struct building *b, const struct snapshot *rows); /* M, C, K, inputs */
+void fill_loads(struct building *b, int segment, int row, const struct form *residual);
+void place_loads(struct building *b, const struct form *form); /* every load of the form gets load states */
+void spread_loads(struct building *b, const struct form *form, void (*spread)(void *context, int load, int column, mpq_srcptr factor), void *context);
+void fill_system(struct building *b, struct linear *system, int segment, int row, const struct form *residual); /* one row of everything */
+struct linear empty_system(const struct model *model);      /* the model's coordinates, loads and inputs; no factors yet */
+
+/* ---- operator.c: the linear operator of a scheme, and what it leaves over ---- */
+
+void build_operators(struct building *b);
+struct linear operator_system(const struct model *model, int k); /* the model's, with the operator's C and K and the channels */
+/* Every form that the leftovers and the selector are made of, once, operands before what they make. */
+void visit_leftovers(const struct model *model, void (*visit)(void *context, const struct form *form), void *context);
+
+/* ---- smooth.c: how smooth the equations are, and what order that leaves to a scheme ---- */
+
+void judge_smoothness(struct building *b);                  /* model->smooth; says where dry friction stands in what is left over */
+bool reads_velocity(const struct model *model, const struct form *form); /* or a coordinate of first order, which is one */
+_Noreturn void tell_friction(const struct node *node, const char *where);
+int  order_of_scheme(const struct model *model);            /* where all is smooth; 0: of exact */
+bool loses_order(const struct model *model);                /* to what is not smooth */
+int  order_that_holds(const struct model *model);           /* rounded down; 0: nothing is left over */
+const char *order_text(const struct model *model);          /* that is left: 2, 2.5 */
+const char *smoothness_text(const struct model *model);     /* max(x - 0.5, 0) has a kink where x passes 0.5 */
+
+/* ---- regions.c: piecewise-linear equations as regions with linear ones ---- */
+
+bool is_piecewise_linear(const struct building *b);
+void find_regions(struct building *b);                      /* says what cannot be treated */
+void place_region_loads(struct building *b);
+void build_regions(struct building *b);                     /* their systems; after the loads of all have their places */
+int  interval_of(const struct switching *s, int region, int expression);
+int  possible_regions(const struct switching *s);
+
+/* ---- settle.c: which scheme the equations allow ---- */
+
+bool is_linear(const struct building *b);                   /* with constant coefficients, loads in time excepted */
+void build_system(struct building *b);                      /* M, C, K, loads, inputs */
+
+/* ---- reduce.c: the smallest model with the same outputs ---- */
+
+struct model *model_reduce(struct model *model);             /* itself where nothing can go */
+
+/* ---- warnings.c: what a spec may say but is better told about ---- */
+
+void warn(struct building *b);
+
+/* ---- tune.c: how the equations follow from tunable params ---- */
+
+struct tuned_monomial { int from, param; bool divides; };  /* an earlier one times a param, or divided by it; number 0 is 1, these are 1, 2, ... */
+struct tuned_term {
+	int row, column, monomial;
+	mpq_t factor;
+};
+/* W a = R x, exactly, for all values of the params: a holds the highest derivatives of the coordinates, then the outputs that
+ * depend on params, then the frequencies of loads that do (in column 0); x is the states, the load states in each segment of time, the inputs (of ramps: u, u'). */
+struct tuning {
+	int params;
+	const struct tunable *param;
+	mpq_t *nominal;             /* the spec's values */
+	int columns, loads;         /* of x; of the load states in one segment */
+	int rows, outputs, frequencies; /* rows: of coordinates, such outputs, such frequencies */
+	int *output, *frequency;    /* per output, per load: its row, or -1: no param changes it */
+	bool solves;                /* there is a W, columns behind those of R; else it is the unit matrix */
+	int monomials;
+	struct tuned_monomial *monomial;
+	int terms;
+	struct tuned_term *term;    /* by rows, then by columns */
+	bool *acts;                 /* rows x columns: of W^-1 R, whether it is anything but 0 for some values */
+	const struct model *other;  /* the model at values that are related by nothing: what holds there holds for all */
+};
+bool find_tuning(struct model *model, const struct request *request); /* model->tuning, where something is tunable; false: it was said why not */
+
+#endif

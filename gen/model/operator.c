@@ -1,0 +1,387 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The linear operator A of y' = A y + loads + inputs + r(t, y), and the leftover r. Without a statement A is what the
+ * equations have with constant coefficients; `operator at` takes the Jacobian with some names fixed. Of an entry that still
+ * depends on anything, its constant part counts. r is exact: what the equations are minus what A takes. */
+#include "model/model.h"
+
+/* ---- the fixed names ---- */
+
+struct point_work {
+	struct building *b;
+	int which;                  /* of a bank */
+	int fixings;
+	struct fixing *fixing;
+};
+
+static void add_fixing(struct point_work *work, const struct fixed *fixed, int coord, const struct form *value)
+{
+	ENLARGE(work->fixing, (size_t)work->fixings + 1);
+	struct fixing *f = &work->fixing[work->fixings++];
+	*f = (struct fixing){ .at = fixed->at, .symbol = fixed->symbol, .coord = coord, .order = fixed->primes };
+	f->form = value;
+	mpq_init(f->value);
+	if (fixed->symbol || fixed->values > 1) /* t stays a form, so that quarter turns are exact */
+		constant_value(&work->b->collector, value, f->value);
+}
+
+static void check_order(const struct fixed *fixed)
+{
+	if (fixed->symbol && fixed->symbol->kind == SYMBOL_COORD && fixed->primes >= fixed->symbol->highest)
+		error(fixed->at, NULL, "%s is of first order: its derivative follows from the equations", fixed->symbol->name);
+}
+
+/* One value of one name; of a vector each component, from a vector of values or from one for all. */
+static void evaluate_fixed(struct point_work *work, const struct fixed *fixed)
+{
+	struct collector *c = &work->b->collector;
+	const struct symbol *symbol = fixed->symbol;
+	struct node *node = fixed->value[fixed->values > 1 ? work->which : 0];
+	bool vector = symbol && symbol->kind == SYMBOL_COORD && symbol->length && !fixed->component;
+	int count = vector ? symbol->length : 1, first = symbol && symbol->kind == SYMBOL_COORD ? symbol->index + (fixed->component ? fixed->component - 1 : 0) : 0;
+	check_order(fixed);
+	const struct value *value = collect_constants(c, node);
+	int cells = value->rows * value->columns;
+	if (cells != 1 && cells != count)
+		error(node->start, NULL, "sizes do not fit: %d components, the value is %d x %d", count, value->rows, value->columns);
+	for (int i = 0; i < count; i++)
+		add_fixing(work, fixed, first + i, value->cell[cells == 1 ? 0 : i]);
+}
+
+static mpq_t *find_fixed(struct point_work *work, int coord, int order)
+{
+	for (int i = 0; i < work->fixings; i++)
+		if (work->fixing[i].symbol && work->fixing[i].symbol->kind == SYMBOL_COORD && work->fixing[i].coord == coord && work->fixing[i].order == order)
+			return &work->fixing[i].value;
+	return NULL;
+}
+
+/* What is fixed of written coordinates, for those that the model is over. Of coordinates that are measured from each other all are fixed
+ * or none (relative.c). */
+static void fix_relative(struct point_work *work)
+{
+	const struct model *model = work->b->model;
+	int written = work->b->spec->components;
+	for (int order = 0; order < 2; order++) {
+		mpq_t **value = ARRAY(mpq_t *, (size_t)written), *kept = rationals((size_t)written);
+		for (int j = 0; j < written; j++)
+			value[j] = find_fixed(work, j, order);
+		for (int j = 0; j < written; j++)
+			if (value[j] && model->relative->link[j].kind != LINK_NONE)
+				relative_value(model->relative, j, value, kept[j]);
+		for (int j = 0; j < written; j++)
+			if (value[j] && model->relative->link[j].kind != LINK_NONE)
+				mpq_set(*value[j], kept[j]);
+	}
+}
+
+static void evaluate_point(void *context)
+{
+	struct point_work *work = context;
+	for (int i = 0; i < work->b->spec->fixeds; i++)
+		evaluate_fixed(work, &work->b->spec->fixed[i]);
+	if (work->b->model->relative)
+		fix_relative(work);
+}
+
+/* ---- a bank: one name with several values ---- */
+
+static const struct fixed *banked(const struct spec *spec)
+{
+	for (int i = 0; i < spec->fixeds; i++)
+		if (spec->fixed[i].values > 1)
+			return &spec->fixed[i];
+	return NULL;
+}
+
+static void check_bank(void *context)
+{
+	const struct building *b = context;
+	const struct fixed *bank = banked(b->spec);
+	for (int i = 0; i < b->spec->fixeds; i++)
+		if (bank && b->spec->fixed[i].values > 1 && &b->spec->fixed[i] != bank)
+			error(b->spec->fixed[i].at, NULL, "a bank varies one name: %s has several values already", text_between(bank->at, bank->end));
+	if (bank && bank->symbol && bank->symbol->kind == SYMBOL_COORD && bank->symbol->length && !bank->component)
+		error(bank->at, NULL, "a bank is chosen by one number: name a component");
+}
+
+static void check_rising(const struct building *b, const struct fixed *bank)
+{
+	const struct operator *operator = b->model->operator;
+	for (int k = 1; k < b->model->operators; k++)
+		if (mpq_cmp(operator[k - 1].at, operator[k].at) >= 0)
+			error(bank->value[k]->start, "the step uses the first whose value is not below the current one", "the values of a bank rise");
+}
+
+/* What a step compares: the name that the bank varies, as it is now */
+static void find_selector(void *context)
+{
+	struct building *b = context;
+	struct collector *c = &b->collector;
+	const struct fixed *bank = banked(b->spec);
+	struct symbol *symbol = (struct symbol *)bank->symbol;
+	struct node name = { .kind = symbol ? NODE_NAME : NODE_TIME, .at = bank->at, .start = bank->at, .end = bank->end, .symbol = symbol,
+			     .primes = bank->primes, .component = bank->component };
+	check_rising(b, bank);
+	c->whole_time = true;
+	forget_lets(b->spec);
+	struct node *kept = NEW(struct node);
+	*kept = name;
+	const struct value *value = collect(c, kept);
+	c->whole_time = false;
+	if (value->rows * value->columns != 1)
+		error(bank->at, NULL, "a bank is chosen by one number, found a %d x %d matrix", value->rows, value->columns);
+	b->model->selector = value->cell[0];
+}
+
+/* ---- the Jacobian ---- */
+
+struct jacobian_work {
+	struct point_work *point;
+	struct operator *operator;
+};
+
+static void constant_part(struct collector *c, const struct form *form, mpq_ptr value)
+{
+	struct form plain = { 0, form->term, 0 };
+	while (plain.terms < form->terms && form->term[plain.terms].basis.kind <= BASIS_PI)
+		plain.terms++;
+	constant_value(c, &plain, value);
+}
+
+static bool fixes_lets(const struct point_work *point)
+{
+	for (int i = 0; i < point->fixings; i++)
+		if (point->fixing[i].symbol && point->fixing[i].symbol->kind == SYMBOL_LET)
+			return true;
+	return false;
+}
+
+/* The equations with lets replaced by their fixed values */
+static const struct snapshot *fixed_equations(const struct point_work *point)
+{
+	struct building *b = point->b;
+	struct collector *c = &b->collector;
+	if (!fixes_lets(point))
+		return b->whole;
+	struct snapshot *kept = b->whole;
+	c->fixings = point->fixings;
+	c->fixing = point->fixing;
+	collect_whole(b);
+	c->fixings = 0;
+	struct snapshot *fixed = b->whole;
+	b->whole = kept;
+	if (diagnostics_errors())
+		abandon();
+	return fixed;
+}
+
+/* The highest derivative of a coordinate of first order keeps its factors: it is what the equations are solved for. */
+static void keep_highest(const struct model *model, mpq_t *C)
+{
+	for (int j = 0; j < model->n; j++)
+		for (int i = 0; i < model->n && model->system.velocity[j] < 0; i++)
+			mpq_set(C[i * model->n + j], model->system.C[i * model->n + j]);
+}
+
+/* C and K at the point: constant parts of d residual / d q' and d residual / d q */
+static void find_jacobian(void *context)
+{
+	struct jacobian_work *work = context;
+	struct building *b = work->point->b;
+	struct collector *c = &b->collector;
+	const struct linear *system = &b->model->system;
+	int n = b->model->n;
+	const struct snapshot *equations = fixed_equations(work->point);
+	const struct form **residual = ARRAY(const struct form *, (size_t)n);
+	struct point *point = point_new(c, work->point->fixings, work->point->fixing);
+	for (int i = 0; i < n; i++)
+		residual[i] = equations->residual[i].form;
+	keep_highest(b->model, work->operator->C);
+	for (int state = 0; state < system->states; state++) {
+		int coord = system->coord[state], order = state >= n;
+		struct form **slope = form_derivatives(c, n, residual, coord, order);
+		for (int i = 0; i < n; i++)
+			constant_part(c, form_at(point, slope[i]), (order ? work->operator->C : work->operator->K)[i * n + coord]);
+	}
+}
+
+/* ---- what is left over ---- */
+
+/* Inputs that the linear core carries are not left over, nor are the highest derivatives; loads are looked at apart. */
+static bool is_carried(const struct building *b, const struct basis *basis)
+{
+	const struct model *model = b->model;
+	if (depends_on_time_only(basis))
+		return !model->loads_left;
+	if (basis->kind == BASIS_INPUT)
+		return true;
+	return basis->kind == BASIS_COORD && basis->order >= model->frame.coord[basis->index]->highest;
+}
+
+/* The force that the leftover is on an equation: A's terms minus the equation's own, which stand on the left side */
+static struct form *leftover_of(const struct building *b, const struct operator *operator, int row)
+{
+	const struct linear *system = &b->model->system;
+	const struct form *equation = b->whole->residual[row].form;
+	struct form *left = NEW(struct form);
+	if (!b->model->loads_left)
+		left = form_sum(left, b->time_left[row], true);
+	for (int i = 0; i < equation->terms; i++)
+		if (!is_carried(b, &equation->term[i].basis))
+			left = form_sum(left, form_single(equation->term[i].basis, equation->term[i].factor), true);
+	for (int state = 0; state < system->states; state++) {
+		struct basis basis = { .kind = BASIS_COORD, .index = system->coord[state], .order = state >= system->n };
+		mpq_srcptr factor = (state >= system->n ? operator->C : operator->K)[row * system->n + basis.index];
+		left = form_sum(left, form_single(basis, factor), false);
+	}
+	return left;
+}
+
+static void find_channels(struct building *b)
+{
+	struct model *model = b->model;
+	int n = model->n;
+	struct form **all = ARRAY(struct form *, (size_t)(model->operators * n));
+	model->channel_row = ARRAY(int, (size_t)n);
+	for (int i = 0; i < n; i++) {
+		bool any = false;
+		for (int k = 0; k < model->operators; k++) {
+			all[k * n + i] = leftover_of(b, &model->operator[k], i);
+			any = any || all[k * n + i]->terms > 0;
+		}
+		if (any)
+			model->channel_row[model->channels++] = i;
+	}
+	for (int k = 0; k < model->operators; k++) {
+		struct operator *operator = &model->operator[k];
+		operator->left = ARRAY(struct form *, (size_t)model->channels);
+		for (int e = 0; e < model->channels; e++)
+			operator->left[e] = all[k * n + model->channel_row[e]];
+	}
+}
+
+/* ---- waves that the leftover reads get load states, as loads do ---- */
+
+struct visit {
+	bool *seen;                 /* per atom */
+	void (*visit)(void *context, const struct form *form);
+	void *context;
+};
+
+static void visit_form(const struct visit *v, const struct form *form)
+{
+	for (int i = 0; i < form->terms; i++) {
+		const struct atom *atom = form->term[i].basis.atom;
+		if (!atom || v->seen[atom->index])
+			continue;
+		v->seen[atom->index] = true;
+		for (int k = 0; k < atom->operands; k++)
+			visit_form(v, atom->operand[k]);
+	}
+	v->visit(v->context, form);
+}
+
+void visit_leftovers(const struct model *model, void (*visit)(void *, const struct form *), void *context)
+{
+	if (model->operators == 0)
+		return;
+	struct visit v = { ARRAY(bool, (size_t)atoms_count(model->atoms)), visit, context };
+	for (int k = 0; k < model->operators; k++)
+		for (int e = 0; e < model->channels; e++)
+			visit_form(&v, model->operator[k].left[e]);
+	if (model->selector)
+		visit_form(&v, model->selector);
+}
+
+static void place_waves(void *context, const struct form *form)
+{
+	struct building *b = context;
+	for (int i = 0; i < form->terms; i++) {
+		const struct basis *basis = &form->term[i].basis;
+		if (basis->kind == BASIS_WAVE && !is_polynomial(basis->wave))
+			place_loads(b, form_single(*basis, form->term[i].factor));
+	}
+}
+
+/* ---- the whole ---- */
+
+static const char *point_text(const struct spec *spec, int which)
+{
+	const char *text = "";
+	for (int i = 0; i < spec->fixeds; i++) {
+		const struct fixed *f = &spec->fixed[i];
+		const struct node *value = f->value[f->values > 1 ? which : 0];
+		text = format("%s%s%s = %s", text, *text ? ", " : "", text_between(f->at, f->end), text_between(value->start, value->end));
+	}
+	return text;
+}
+
+static bool fixes(const struct fixing *fixing, const struct fixed *name)
+{
+	bool coordinate = name->symbol && name->symbol->kind == SYMBOL_COORD;
+	int coord = coordinate ? name->symbol->index + (name->component ? name->component - 1 : 0) : 0;
+	return fixing->symbol == name->symbol && fixing->order == name->primes && fixing->coord == coord;
+}
+
+static bool add_operator(struct building *b, const struct fixed *bank, int which)
+{
+	struct model *model = b->model;
+	struct operator *operator = &model->operator[which];
+	size_t cells = (size_t)model->n * (size_t)model->n;
+	struct point_work point = { b, which, 0, NULL };
+	operator->C = model->system.C;
+	operator->K = model->system.K;
+	operator->text = model->scheme == SCHEME_PL ? "" : point_text(b->spec, which);   /* pl has an operator of its own */
+	mpq_init(operator->at);
+	if (!*operator->text)
+		return true;
+	operator->C = rationals(cells);
+	operator->K = rationals(cells);
+	if (!statement_guard(evaluate_point, &point))
+		return false;
+	diagnostics_context(format("at the operator's point, %s, where the derivatives of the equations are taken", operator->text));
+	bool found = statement_guard(find_jacobian, &(struct jacobian_work){ &point, operator });
+	diagnostics_context(NULL);
+	if (!found)
+		return false;
+	for (int i = 0; bank && i < point.fixings; i++)
+		if (fixes(&point.fixing[i], bank))
+			mpq_set(operator->at, point.fixing[i].value);
+	return true;
+}
+
+void build_operators(struct building *b)
+{
+	struct model *model = b->model;
+	const struct fixed *bank = model->scheme == SCHEME_PL ? NULL : banked(b->spec);
+	if (!b->whole || !statement_guard(check_bank, b))
+		return;
+	bool good = true;
+	model->operators = bank ? bank->values : 1;
+	model->operator = ARRAY(struct operator, (size_t)model->operators);
+	for (int k = 0; k < model->operators && good; k++)
+		good = add_operator(b, bank, k);
+	if (!good || (bank && !statement_guard(find_selector, b)))
+		return;
+	find_channels(b);
+	if (model->channels == 0) {             /* then every operator is the equations' own */
+		model->operators = 0;
+		model->selector = NULL;
+		return;
+	}
+	visit_leftovers(model, place_waves, b);
+}
+
+struct linear operator_system(const struct model *model, int k)
+{
+	struct linear system = model->system;
+	system.C = model->operator[k].C;
+	system.K = model->operator[k].K;
+	system.channels = model->channels;
+	system.channel = ARRAY(mpq_t *, (size_t)model->channels);
+	for (int e = 0; e < model->channels; e++) {
+		system.channel[e] = rationals((size_t)model->n);
+		mpq_set_ui(system.channel[e][model->channel_row[e]], 1, 1);
+	}
+	return system;
+}

@@ -1,0 +1,336 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Outputs as rows over states, load states and inputs. */
+#include "model/model.h"
+
+#include <string.h>
+
+/* output += factor * (the highest derivative of a coordinate: its row over the states, and W^-1 force) */
+static void add_highest(const struct model *model, const mpq_t *inverse, const mpq_t *highest, int coord, mpq_srcptr factor, struct output *output)
+{
+	const struct linear *system = &model->system;
+	mpq_t weight, product;
+	mpq_inits(weight, product, NULL);
+	for (int j = 0; j < system->states; j++) {
+		mpq_mul(product, factor, highest[coord * system->states + j]);
+		mpq_add(output->state[j], output->state[j], product);
+	}
+	for (int i = 0; i < model->n; i++) {
+		mpq_mul(weight, inverse[coord * model->n + i], factor);
+		for (int c = 0; c < model->channels; c++)
+			if (model->channel_row[c] == i)
+				mpq_add(output->channel[c], output->channel[c], weight);
+		for (int l = 0; l < system->loads; l++)
+			for (int k = 0; k < system->load[l].columns; k++)
+				for (int s = 0; s < system->segments; s++) {
+					mpq_ptr sum = output->load[l][k * system->segments + s];
+					mpq_mul(product, weight, system->load[l].force[k][s * model->n + i]);
+					mpq_add(sum, sum, product);
+				}
+		for (int j = 0; j < system->inputs; j++)
+			for (int k = 0; k < 2; k++) {
+				mpq_mul(product, weight, system->input[j].force[k][i]);
+				mpq_add(output->input[k][j], output->input[k][j], product);
+			}
+	}
+	mpq_clears(weight, product, NULL);
+}
+
+/* The state that is the `order`-th derivative of a coordinate; -1: it is the highest derivative, and no state. */
+static int state_of(const struct model *model, const struct basis *basis)
+{
+	return basis->order == 0 ? basis->index : basis->order == 1 ? model->system.velocity[basis->index] : -1;
+}
+
+/* Its form in one segment of time */
+static const struct form *output_form(const struct building *b, const struct output *output, int segment)
+{
+	return b->snapshot[segment].output[output->statement]->cell[output->cell];
+}
+
+struct direct_row {
+	struct output *output;
+	int segments, segment;
+};
+
+static void add_direct(void *context, int load, int column, mpq_srcptr factor)
+{
+	const struct direct_row *row = context;
+	mpq_ptr sum = row->output->load[load][column * row->segments + row->segment];
+	mpq_add(sum, sum, factor);
+}
+
+static void spread_output(struct building *b, const mpq_t *inverse, const mpq_t *highest, struct output *output)
+{
+	struct model *model = b->model;
+	for (int s = 0; s < model->system.segments; s++)
+		spread_loads(b, output_form(b, output, s), add_direct, &(struct direct_row){ output, model->system.segments, s });
+	for (int i = 0; i < output->form->terms; i++) {
+		const struct form_term *term = &output->form->term[i];
+		const struct basis *basis = &term->basis;
+		if (basis->kind == BASIS_INPUT)
+			mpq_add(output->input[basis->order][basis->index], output->input[basis->order][basis->index], term->factor);
+		else if (basis->kind == BASIS_COORD && state_of(model, basis) < 0)
+			add_highest(model, inverse, highest, basis->index, term->factor, output);
+		else if (basis->kind == BASIS_COORD)
+			mpq_add(output->state[state_of(model, basis)], output->state[state_of(model, basis)], term->factor);
+	}
+}
+
+static bool is_too_high(const struct model *model, const struct basis *basis)
+{
+	return basis->kind == BASIS_COORD && basis->order > model->frame.coord[basis->index]->highest;
+}
+
+/* A coordinate whose highest derivative, or `above` it, stands there. */
+static const struct node *find_acceleration(const struct node *node, int above)
+{
+	if (node->kind == NODE_NAME && node->symbol->kind == SYMBOL_COORD && node->primes >= node->symbol->highest + above)
+		return node;
+	for (int i = 0; i < node->children; i++) {
+		const struct node *found = find_acceleration(node->child[i], above);
+		if (found)
+			return found;
+	}
+	return NULL;
+}
+
+/* ---- one output statement may name a vector: one output per component ---- */
+
+struct output_work {
+	struct building *b;
+	const struct symbol *symbol;
+	struct value *value;
+};
+
+static void collect_output(void *context)
+{
+	struct output_work *work = context;
+	work->value = collect(&work->b->collector, work->symbol->value);
+}
+
+static void add_output(struct model *model, const char *name, struct node *value, struct form *form)
+{
+	ENLARGE(model->output, (size_t)model->outputs + 1);
+	model->output[model->outputs++] = (struct output){ .name = name, .value = value, .form = form };
+}
+
+/* q, q' as q[1], q[1]'; another vector v as v[1] */
+static const char *component_name(const char *name, int component)
+{
+	const char *prime = strchr(name, '\'');
+	int length = prime ? (int)(prime - name) : (int)strlen(name);
+	return format("%.*s[%d]%s", length, name, component, name + length);
+}
+
+/* What is not linear becomes forms with atoms, printed as C. */
+void collect_outputs(struct building *b, struct snapshot *snapshot)
+{
+	int index = 0;
+	snapshot->output = ARRAY(struct value *, (size_t)b->spec->outputs);
+	b->collector.tolerant = true;
+	for (const struct symbol *s = b->spec->first; s; s = s->next) {
+		struct output_work work = { b, s, NULL };
+		if (s->kind != SYMBOL_OUTPUT)
+			continue;
+		statement_guard(collect_output, &work);
+		snapshot->output[index++] = work.value;
+	}
+	b->collector.tolerant = false;
+}
+
+/* An output is a row over states and loads if it is so in all segments of time, with the same states. */
+static bool is_row(const struct building *b, int index)
+{
+	const struct value *first = b->snapshot->output[index];
+	for (int s = 0; s < b->model->system.segments; s++) {
+		const struct value *value = b->snapshot[s].output[index];
+		if (!value || value->rows != first->rows || value->columns != first->columns)
+			return false;
+		for (int i = 0; i < value->rows * value->columns; i++)
+			if (!same_in_states(value->cell[i], first->cell[i]))
+				return false;
+	}
+	return true;
+}
+
+static void collect_left(void *context)
+{
+	struct output_work *work = context;
+	struct collector *c = &work->b->collector;
+	int keep = (int)c->keep;
+	c->keep = KEEP_ALL;
+	c->whole_time = c->output = true;
+	forget_lets(work->b->spec);
+	collect_output(work);
+	c->keep = (unsigned)keep;
+	c->whole_time = c->output = false;
+	for (struct symbol *s = work->b->spec->first; s; s = s->next)
+		if (s->kind == SYMBOL_LET && !s->whole && s->progress == COLLECTED && s->collected->rows * s->collected->columns == 1)
+			s->whole = s->collected->cell[0];
+}
+
+static void name_outputs(struct building *b)
+{
+	struct model *model = b->model;
+	int index = 0;
+	for (const struct symbol *s = b->spec->first; s; s = s->next) {
+		if (s->kind != SYMBOL_OUTPUT)
+			continue;
+		bool row = is_row(b, index);
+		struct output_work work = { b, s, row ? b->snapshot->output[index] : NULL };
+		if (!row)
+			statement_guard(collect_left, &work);
+		int count = work.value ? work.value->rows * work.value->columns : 0;
+		for (int i = 0; i < count; i++) {
+			add_output(model, count == 1 ? s->name : component_name(s->name, i + 1), s->value, row ? work.value->cell[i] : NULL);
+			model->output[model->outputs - 1].left = row ? NULL : work.value->cell[i];
+			model->output[model->outputs - 1].statement = index;
+			model->output[model->outputs - 1].cell = i;
+		}
+		index++;
+	}
+	model->declared_outputs = b->spec->outputs > 0;
+	const struct model *written = model->relative ? model->relative->written : model;
+	for (int i = 0; i < model->system.states && !model->declared_outputs; i++)
+		add_output(model, written->state_name[i], NULL, NULL);
+}
+
+static bool reads_too_high(const struct model *model, bool *seen, const struct form *form)
+{
+	for (int i = 0; form && i < form->terms; i++) {
+		const struct basis *basis = &form->term[i].basis;
+		if (is_too_high(model, basis))
+			return true;
+		if (!basis->atom || seen[basis->atom->index])
+			continue;
+		seen[basis->atom->index] = true;
+		for (int k = 0; k < basis->atom->operands; k++)
+			if (reads_too_high(model, seen, basis->atom->operand[k]))
+				return true;
+	}
+	return false;
+}
+
+/* Whether it is good; else it has been told. */
+static bool check_output(const struct model *model, const struct output *output)
+{
+	bool *seen = ARRAY(bool, (size_t)atoms_count(model->atoms));
+	if (!reads_too_high(model, seen, output->form ? output->form : output->left))
+		return true;
+	const struct node *name = find_acceleration(output->value, 1);
+	say_error(name->at, NULL, "%s is of first order and has no second derivative", name->symbol->name);
+	return false;
+}
+
+static void make_rows(const struct linear *system, int channels, struct output *output)
+{
+	output->state = rationals((size_t)system->states);
+	output->load = ARRAY(mpq_t *, (size_t)system->loads);
+	for (int l = 0; l < system->loads; l++)
+		output->load[l] = rationals((size_t)system->load[l].columns * (size_t)system->segments);
+	for (int k = 0; k < 2; k++)
+		output->input[k] = rationals((size_t)system->inputs);
+	output->channel = rationals((size_t)channels);
+}
+
+/* ---- an expression as a row ---- */
+
+struct output *row_of_form(struct building *b, struct form *form)
+{
+	struct output *row = NEW(struct output);
+	int segments = b->model->system.segments;
+	make_rows(&b->model->system, b->model->channels, row);
+	for (int s = 0; s < segments; s++)
+		spread_loads(b, form, add_direct, &(struct direct_row){ row, segments, s });
+	for (int i = 0; i < form->terms; i++) {
+		const struct basis *basis = &form->term[i].basis;
+		if (basis->kind == BASIS_INPUT)
+			mpq_set(row->input[basis->order][basis->index], form->term[i].factor);
+		else if (basis->kind == BASIS_COORD)
+			mpq_set(row->state[state_of(b->model, basis)], form->term[i].factor);
+	}
+	return row;
+}
+
+/* ---- outputs that are not linear ---- */
+
+static void place_output_waves(struct building *b, bool *seen, const struct form *form)
+{
+	for (int i = 0; form && i < form->terms; i++) {
+		const struct basis *basis = &form->term[i].basis;
+		if (basis->kind == BASIS_WAVE && !is_polynomial(basis->wave))
+			place_loads(b, form_single(*basis, form->term[i].factor));
+		if (!basis->atom || seen[basis->atom->index])
+			continue;
+		seen[basis->atom->index] = true;
+		for (int k = 0; k < basis->atom->operands; k++)
+			place_output_waves(b, seen, basis->atom->operand[k]);
+	}
+}
+
+/* The highest derivatives that they read, each as a row of its own */
+static void build_highest(struct building *b, const mpq_t *inverse, const mpq_t *highest)
+{
+	struct model *model = b->model;
+	mpq_t one;
+	mpq_init(one);
+	mpq_set_ui(one, 1, 1);
+	model->highest = ARRAY(struct output *, (size_t)model->n);
+	for (int i = 0; i < model->outputs; i++) {
+		const struct form *left = model->output[i].left;
+		struct reads reads = reads_of(model, left != NULL, &left);
+		for (int k = 0; k < model->n; k++) {
+			if (!reads.highest[k] || model->highest[k])
+				continue;
+			if (b->request->reduce)
+				say_error(find_acceleration(model->output[i].value, 0)->at, "without --reduce it can",
+					  "an output that is not linear cannot read an acceleration under --reduce");
+			model->highest[k] = NEW(struct output);
+			model->highest[k]->value = model->output[i].value;
+			model->highest[k]->name = model->output[i].name;
+			make_rows(&model->system, model->channels, model->highest[k]);
+			add_highest(model, inverse, highest, k, one, model->highest[k]);
+		}
+	}
+	mpq_clear(one);
+}
+
+/* A written state, as the output that it is by itself */
+static void see_state(const struct model *model, int state, mpq_t *row)
+{
+	const struct model *written = model->relative ? model->relative->written : model;
+	const struct form *form = coordinate_form(&model->frame, written->system.coord[state], state >= written->n);
+	for (int i = 0; i < form->terms; i++)
+		mpq_set(row[state_of(model, &form->term[i].basis)], form->term[i].factor);
+}
+
+/* Loads that only outputs use get their load states too, so all are placed before any is spread. */
+void build_outputs(struct building *b)
+{
+	struct model *model = b->model;
+	struct linear *system = &model->system;
+	int column;
+	mpq_t *inverse = rationals((size_t)(model->n * model->n)), *highest = rationals((size_t)(model->n * system->states));
+	struct linear first = model->operators ? operator_system(model, 0) : *system;   /* what is left over is left by this one */
+	leading_inverse(system, inverse, &column);
+	highest_derivatives(&first, (const mpq_t *)inverse, false, highest);
+	name_outputs(b);
+	int told = -1;                          /* the statement last told: once is enough */
+	for (int i = 0; i < model->outputs; i++)
+		for (int s = 0; s < system->segments && model->output[i].form; s++)
+			place_loads(b, output_form(b, &model->output[i], s));
+	for (int i = 0; i < model->outputs; i++)
+		place_output_waves(b, ARRAY(bool, (size_t)atoms_count(model->atoms)), model->output[i].left);
+	for (int i = 0; i < model->outputs; i++) {
+		struct output *output = &model->output[i];
+		if (output->statement != told && !check_output(model, output))
+			told = output->statement;
+		make_rows(system, model->channels, output);
+		if (!output->value)
+			see_state(model, i, output->state);
+		else if (output->form && !diagnostics_errors())
+			spread_output(b, (const mpq_t *)inverse, (const mpq_t *)highest, output);
+	}
+	if (!diagnostics_errors())
+		build_highest(b, (const mpq_t *)inverse, (const mpq_t *)highest);
+}

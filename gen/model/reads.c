@@ -1,0 +1,48 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Which states, inputs, loads and functions forms read. */
+#include "model/model.h"
+
+/* The piecewise-linear functions are comparisons in C. */
+bool calls_libm(const struct atom *a)
+{
+	bool piecewise = a->function == FN_ABS || a->function == FN_SGN || (a->function >= FN_MIN && a->function != FN_ATAN2);
+	return a->kind == ATOM_POWER || (a->kind == ATOM_CALL && !piecewise);
+}
+
+static void look_at_form(struct reads *reading, const struct model *model, bool *seen, const struct form *form)
+{
+	for (int i = 0; i < form->terms; i++) {
+		const struct basis *basis = &form->term[i].basis;
+		const struct atom *atom = basis->atom;
+		bool highest = basis->kind == BASIS_COORD && basis->order > 0 && basis->order >= model->frame.coord[basis->index]->highest;
+		if (highest)
+			reading->highest[basis->index] = true;
+		else if (basis->kind == BASIS_COORD)
+			reading->state[basis->order ? model->system.velocity[basis->index] : basis->index] = true;
+		else if (basis->kind == BASIS_INPUT)
+			reading->input[basis->index + basis->order * model->system.inputs] = true;
+		else if (basis->kind == BASIS_WAVE && is_polynomial(basis->wave))
+			reading->time = true;
+		for (int l = 0; basis->kind == BASIS_WAVE && l < model->system.loads; l++)
+			if (model->system.load[l].wave == basis->wave && !is_polynomial(basis->wave)) {
+				reading->load[l] = true;
+				reading->time = reading->time || model->system.load[l].powers > 1;  /* its load states up to the highest power */
+			}
+		if (!atom || seen[atom->index])
+			continue;
+		seen[atom->index] = true;
+		reading->math = reading->math || calls_libm(atom);
+		for (int k = 0; k < atom->operands; k++)
+			look_at_form(reading, model, seen, atom->operand[k]);
+	}
+}
+
+struct reads reads_of(const struct model *model, int count, const struct form *const *form)
+{
+	struct reads reading = { ARRAY(bool, (size_t)model->system.states), ARRAY(bool, 2 * (size_t)model->system.inputs),
+				   ARRAY(bool, (size_t)model->system.loads), ARRAY(bool, (size_t)model->n), false, false };
+	bool *seen = ARRAY(bool, model->atoms ? (size_t)atoms_count(model->atoms) : 0);
+	for (int i = 0; i < count; i++)
+		look_at_form(&reading, model, seen, form[i]);
+	return reading;
+}

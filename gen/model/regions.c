@@ -1,0 +1,571 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Piecewise-linear equations: deadzone, clip, table, abs, sgn, min, max and conditions, of expressions that are linear in states, known
+ * loads and inputs. Each comparison is of one expression with one breakpoint; the breakpoints of an expression divide it into
+ * intervals; a region is one interval for each expression, and in it every equation is linear. Expressions are found by looking
+ * at one region after the other, as breakpoints in time are. */
+#include "model/model.h"
+
+enum { LIMIT_CANDIDATES = 6561 };   /* regions looked at, before those that cannot be are left out */
+
+/* ---- is it? ---- */
+
+bool is_piecewise_linear(const struct building *b)
+{
+	if (b->model->system.segments > 1)
+		return false;
+	for (int i = 0; i < b->model->n; i++)
+		if (!is_piecewise_form(b->snapshot->residual[i].form))
+			return false;
+	return true;
+}
+
+/* ---- a form in one region ---- */
+
+struct looking {
+	struct building *b;
+	struct switching *s;
+	const int *interval;        /* per expression */
+	struct form **known;        /* per atom */
+	int count;
+	bool grown;                 /* an expression or a breakpoint was met for the first time: look again */
+	int lowest;                 /* of the regions, where there is one expression, that a new breakpoint divides */
+};
+
+int interval_of(const struct switching *s, int region, int expression)
+{
+	const struct expression *e = &s->expression[expression];
+	return region / e->stride % (e->breaks + 1);
+}
+
+int possible_regions(const struct switching *s)
+{
+	int count = 0;
+	for (int r = 0; r < s->regions; r++)
+		count += s->region[r].possible;
+	return count;
+}
+
+/* Is form a multiple of e? of: the factor */
+static bool is_multiple(const struct form *form, const struct form *e, mpq_ptr of)
+{
+	if (form->terms != e->terms || basis_order(&form->term[0].basis, &e->term[0].basis) != 0)
+		return false;
+	mpq_div(of, form->term[0].factor, e->term[0].factor);
+	struct form *same = form_scale(e, of);
+	bool multiple = same_form(form, same);
+	form_free(same);
+	return multiple;
+}
+
+/* The expression that form, which has no constant, is a multiple of; met for the first time it is one, with the sign and scale in
+ * which it was written. The form goes to it, or is freed. */
+static int find_expression(struct switching *s, const struct node *node, struct form *form, mpq_ptr of)
+{
+	for (int i = 0; i < s->expressions; i++)
+		if (is_multiple(form, s->expression[i].form, of)) {
+			form_free(form);
+			return i;
+		}
+	ENLARGE(s->expression, (size_t)s->expressions + 1);
+	s->expression[s->expressions] = (struct expression){ .form = form, .node = node };
+	mpq_set_ui(of, 1, 1);
+	return s->expressions++;
+}
+
+static void add_break(struct looking *l, struct expression *e, mpq_srcptr at)
+{
+	mpq_t *breaks = rationals((size_t)e->breaks + 1);
+	int below = 0;
+	while (below < e->breaks && mpq_cmp(e->at[below], at) < 0)
+		below++;
+	for (int i = 0; i < e->breaks; i++)
+		mpq_set(breaks[i < below ? i : i + 1], e->at[i]);
+	mpq_set(breaks[below], at);
+	e->at = breaks;
+	e->breaks++;
+	l->grown = true;
+	l->lowest = below < l->lowest ? below : l->lowest;
+}
+
+/* Is e above `at` here? What is not known yet is noted. */
+static bool is_above(struct looking *l, int index, mpq_srcptr at)
+{
+	struct expression *e = &l->s->expression[index];
+	for (int i = 0; i < e->breaks; i++)
+		if (mpq_equal(e->at[i], at))
+			return !l->grown && l->interval[index] > i;
+	add_break(l, e, at);
+	return false;
+}
+
+/* The sign of a - b, linear forms: of a constant its own, else by the interval of the expression that it is a multiple of. What is
+ * compared with a constant is written as it is, on whichever side it stands. */
+static int sign_here(struct looking *l, const struct node *node, const struct form *a, const struct form *b)
+{
+	struct collector *c = &l->b->collector;
+	bool turned = is_constant(a) && !is_constant(b);
+	struct form *form = turned ? form_difference(b, a) : form_difference(a, b);
+	struct form plain = { 0, form->term, 0 };
+	while (plain.terms < form->terms && form->term[plain.terms].basis.kind <= BASIS_PI)
+		plain.terms++;
+	mpq_t constant, factor;
+	mpq_inits(constant, factor, NULL);
+	constant_value(c, &plain, constant);
+	int sign = mpq_sgn(constant);
+	if (plain.terms < form->terms) {
+		int e = find_expression(l->s, node, form_sum(form, &plain, true), factor);
+		mpq_div(constant, constant, factor);
+		mpq_neg(constant, constant);    /* e = (form - constant)/factor against -constant/factor */
+		sign = is_above(l, e, constant) == (mpq_sgn(factor) > 0) ? 1 : -1;
+	}
+	mpq_clears(constant, factor, NULL);
+	form_free(form);
+	return turned ? -sign : sign;
+}
+
+static struct form *form_here(struct looking *l, const struct form *form);
+
+static struct form *table_here(struct looking *l, const struct atom *a, struct form *const *x)
+{
+	int piece = 1;
+	mpq_t slope, width;
+	mpq_inits(slope, width, NULL);
+	for (int k = 3; k + 2 < a->operands; k += 2)
+		if (sign_here(l, a->node, x[0], x[k]) > 0)
+			piece = k;
+	struct collector *c = &l->b->collector;
+	constant_value(c, form_difference(x[piece + 3], x[piece + 1]), slope);
+	constant_value(c, form_difference(x[piece + 2], x[piece]), width);
+	mpq_div(slope, slope, width);
+	struct form *form = form_sum(x[piece + 1], form_scale(form_difference(x[0], x[piece]), slope), false);
+	mpq_clears(slope, width, NULL);
+	return form;
+}
+
+static struct form *extreme_here(struct looking *l, const struct atom *a, struct form *const *x)
+{
+	struct form *best = x[0];
+	for (int i = 1; i < a->operands; i++)
+		if ((sign_here(l, a->node, best, x[i]) > 0) == (a->function == FN_MIN))
+			best = x[i];
+	return best;
+}
+
+static struct form *call_here(struct looking *l, const struct atom *a, struct form *const *x)
+{
+	int side;
+	switch (a->function) {
+	case FN_ABS:   return sign_here(l, a->node, x[0], form_number(0)) < 0 ? form_difference(form_number(0), x[0]) : x[0];
+	case FN_SGN:   return form_number(sign_here(l, a->node, x[0], form_number(0)));
+	case FN_MIN:
+	case FN_MAX:   return extreme_here(l, a, x);
+	case FN_TABLE: return table_here(l, a, x);
+	default:
+		side = sign_here(l, a->node, x[0], x[1]) < 0 ? 1 : sign_here(l, a->node, x[0], x[2]) > 0 ? 2 : 0;
+		return a->function == FN_CLIP ? x[side] : side ? form_difference(x[0], x[side]) : form_number(0);
+	}
+}
+
+/* <= and < differ on the breakpoint alone, where the motion decides */
+static bool comparison_here(struct looking *l, const struct atom *a)
+{
+	int sign = sign_here(l, a->node, form_here(l, a->operand[0]), form_here(l, a->operand[1]));
+	return a->comparison <= CMP_LE ? sign < 0 : sign > 0;
+}
+
+static struct form *atom_here(struct looking *l, const struct atom *a)
+{
+	if (a->kind == ATOM_COMPARE)
+		return form_number(comparison_here(l, a));
+	if (a->kind == ATOM_CHOOSE)
+		return form_here(l, a->operand[comparison_here(l, a->operand[0]->term[0].basis.atom) ? 1 : 2]);
+	struct form **x = ARRAY(struct form *, (size_t)a->operands);
+	for (int i = 0; i < a->operands; i++)
+		x[i] = form_here(l, a->operand[i]);
+	return call_here(l, a, x);
+}
+
+/* Not to be changed: it may be the form itself, or what an atom is */
+static struct form *form_here(struct looking *l, const struct form *form)
+{
+	if (form->terms == 0 || !form->term[form->terms - 1].basis.atom)
+		return (struct form *)form;
+	struct form *total = NEW(struct form);
+	for (int i = 0; i < form->terms; i++) {
+		const struct form_term *term = &form->term[i];
+		const struct atom *atom = term->basis.atom;
+		if (atom && !l->known[atom->index]) {
+			work_at(atom->node->start);
+			l->known[atom->index] = atom_here(l, atom);
+		}
+		if (atom)
+			form_add_to(total, l->known[atom->index], term->factor);
+		else
+			form_add_basis(total, term->basis, term->factor);
+	}
+	return total;
+}
+
+/* ---- all regions ---- */
+
+static int *intervals_of(const struct switching *s, int region)
+{
+	int *interval = ARRAY(int, (size_t)s->expressions + 1);
+	for (int i = 0; i < s->expressions; i++)
+		interval[i] = interval_of(s, region, i);
+	return interval;
+}
+
+static int count_candidates(struct switching *s)
+{
+	int count = 1;
+	for (int i = 0; i < s->expressions; i++) {
+		s->expression[i].stride = count;
+		if (count > LIMIT_CANDIDATES / (s->expression[i].breaks + 1))
+			return LIMIT_CANDIDATES + 1;
+		count *= s->expression[i].breaks + 1;
+	}
+	return count;
+}
+
+static _Noreturn void too_many(const struct switching *s)
+{
+	error(s->expression[s->expressions - 1].node->at, "a scheme with a leftover, such as etdrk4, needs no regions", "more regions than the limit of %d",
+	      LIMIT_REGIONS);
+}
+
+/* One look at every region but the first `known`; false: something new was met on the way, but of the first `known` then.
+ * The regions of one expression are its intervals, in order, so that those below a new breakpoint stay what they are. */
+static bool look(struct building *b, struct switching *s, int *known)
+{
+	const struct region *before = s->region;
+	bool single = s->expressions == 1;
+	s->regions = count_candidates(s);
+	if (s->regions > LIMIT_CANDIDATES)
+		too_many(s);
+	s->region = ARRAY(struct region, (size_t)s->regions);
+	for (int r = 0; r < *known; r++)
+		s->region[r] = before[r];
+	for (int r = *known; r < s->regions; r++) {
+		int atoms = atoms_count(b->collector.atoms);
+		struct looking l = { .b = b, .s = s, .interval = intervals_of(s, r), .known = ARRAY(struct form *, (size_t)atoms), .count = atoms, .lowest = r };
+		s->region[r].residual = ARRAY(struct form *, (size_t)b->model->n);
+		for (int i = 0; i < b->model->n; i++)
+			s->region[r].residual[i] = form_here(&l, b->snapshot->residual[i].form);
+		*known = single && s->expressions == 1 ? l.lowest : 0;
+		if (l.grown)
+			return false;
+	}
+	return true;
+}
+
+/* ---- which can be: inequalities that hold together, by elimination (Fourier and Motzkin) ---- */
+
+struct inequality { mpq_t *a; };    /* a[0] v0 + a[1] v1 + ... < a[count] */
+
+struct inequalities {
+	int variables, count;
+	struct inequality *row;
+};
+
+static void add_inequality(struct inequalities *set, mpq_t *a)
+{
+	ENLARGE(set->row, (size_t)set->count + 1);
+	set->row[set->count++].a = a;
+}
+
+/* upper and lower bound on variable v combined, so that it drops out */
+static mpq_t *combined(int size, int v, const mpq_t *upper, const mpq_t *lower)
+{
+	mpq_t *a = rationals((size_t)size + 1), product, factor;
+	mpq_inits(product, factor, NULL);
+	for (int i = 0; i <= size; i++) {
+		mpq_div(product, upper[i], upper[v]);
+		mpq_div(factor, lower[i], lower[v]);
+		mpq_sub(a[i], product, factor); /* v + ... < ., and -v - ... < -. */
+	}
+	mpq_clears(product, factor, NULL);
+	return a;
+}
+
+static bool can_hold(struct inequalities set)
+{
+	for (int v = 0; v < set.variables; v++) {
+		struct inequalities rest = { set.variables, 0, NULL };
+		for (int i = 0; i < set.count; i++) {
+			int sign = mpq_sgn(set.row[i].a[v]);
+			if (sign == 0)
+				add_inequality(&rest, set.row[i].a);
+			for (int j = 0; j < set.count && sign > 0; j++)
+				if (mpq_sgn(set.row[j].a[v]) < 0)
+					add_inequality(&rest, combined(set.variables, v, (const mpq_t *)set.row[i].a, (const mpq_t *)set.row[j].a));
+		}
+		set = rest;
+	}
+	for (int i = 0; i < set.count; i++)
+		if (mpq_sgn(set.row[i].a[set.variables]) <= 0)
+			return false;           /* 0 < what is not above 0 */
+	return true;
+}
+
+/* The bases that expressions are made of, as variables */
+static int find_bases(const struct switching *s, struct basis **basis)
+{
+	int count = 0;
+	*basis = NULL;
+	for (int i = 0; i < s->expressions; i++)
+		for (int k = 0; k < s->expression[i].form->terms; k++) {
+			const struct basis *found = &s->expression[i].form->term[k].basis;
+			bool known = false;
+			for (int j = 0; j < count; j++)
+				known = known || basis_order(&(*basis)[j], found) == 0;
+			if (known)
+				continue;
+			ENLARGE(*basis, (size_t)count + 1);
+			(*basis)[count++] = *found;
+		}
+	return count;
+}
+
+static mpq_t *bound_row(const struct expression *e, int bases, const struct basis *basis, mpq_srcptr at, bool below)
+{
+	mpq_t *a = rationals((size_t)bases + 1);
+	for (int k = 0; k < e->form->terms; k++)
+		for (int j = 0; j < bases; j++)
+			if (basis_order(&basis[j], &e->form->term[k].basis) == 0)
+				mpq_set(a[j], e->form->term[k].factor);
+	mpq_set(a[bases], at);
+	for (int j = 0; j <= bases && !below; j++)
+		mpq_neg(a[j], a[j]);
+	return a;
+}
+
+static bool is_possible(const struct switching *s, int region, int bases, const struct basis *basis)
+{
+	struct inequalities set = { bases, 0, NULL };
+	for (int i = 0; i < s->expressions; i++) {
+		const struct expression *e = &s->expression[i];
+		int interval = interval_of(s, region, i);
+		if (interval < e->breaks)
+			add_inequality(&set, bound_row(e, bases, basis, e->at[interval], true));
+		if (interval > 0)
+			add_inequality(&set, bound_row(e, bases, basis, e->at[interval - 1], false));
+	}
+	return can_hold(set);
+}
+
+/* Expressions of which each has a basis of its own are independent: then every region can be. */
+static bool independent(const struct switching *s)
+{
+	for (int i = 0; i < s->expressions; i++) {
+		bool own = false;
+		for (int k = 0; k < s->expression[i].form->terms && !own; k++) {
+			own = true;
+			for (int j = 0; j < s->expressions; j++)
+				for (int m = 0; m < s->expression[j].form->terms; m++)
+					own = own && (i == j || basis_order(&s->expression[i].form->term[k].basis, &s->expression[j].form->term[m].basis) != 0);
+		}
+		if (!own)
+			return false;
+	}
+	return true;
+}
+
+static void mark_possible(struct switching *s)
+{
+	struct basis *basis;
+	int bases = find_bases(s, &basis), count = 0;
+	bool all = independent(s);
+	for (int r = 0; r < s->regions; r++) {
+		s->region[r].possible = all || is_possible(s, r, bases, basis);
+		count += s->region[r].possible;
+	}
+	if (count > LIMIT_REGIONS)
+		too_many(s);
+}
+
+/* ---- what cannot be treated: forces that jump with a velocity ---- */
+
+/* Is the form a multiple of e - at, so that it vanishes on the breakpoint? */
+static bool vanishes_on(struct collector *c, const struct form *form, const struct expression *e, mpq_srcptr at)
+{
+	mpq_t factor, constant;
+	mpq_inits(factor, constant, NULL);
+	for (int i = 0; i < form->terms; i++)
+		if (basis_order(&form->term[i].basis, &e->form->term[0].basis) == 0)
+			mpq_div(factor, form->term[i].factor, e->form->term[0].factor);
+	const struct form *rest = form_sum(form, form_scale(form_sum(e->form, form_constant(at), true), factor), true);
+	bool gone = is_constant(rest);
+	if (gone)
+		constant_value(c, rest, constant);
+	gone = gone && mpq_sgn(constant) == 0;
+	mpq_clears(factor, constant, NULL);
+	return gone;
+}
+
+static void check_face(struct building *b, const struct switching *s, int below, int expression)
+{
+	const struct expression *e = &s->expression[expression];
+	const struct region *low = &s->region[below], *high = &s->region[below + e->stride];
+	mpq_srcptr at = e->at[interval_of(s, below, expression)];
+	for (int i = 0; i < b->model->n; i++) {
+		const struct form *jump = form_sum(high->residual[i], low->residual[i], true);
+		if (vanishes_on(&b->collector, jump, e, at))
+			continue;
+		tell_friction(e->node, format("%s passes %s", form_text(b->model, e->form), readable_text(at)));
+	}
+}
+
+static void check_jumps(struct building *b, const struct switching *s)
+{
+	for (int e = 0; e < s->expressions; e++)
+		for (int r = 0; r < s->regions && reads_velocity(b->model, s->expression[e].form); r++)
+			if (interval_of(s, r, e) < s->expression[e].breaks && s->region[r].possible && s->region[r + s->expression[e].stride].possible)
+				check_face(b, s, r, e);
+}
+
+/* Highest derivatives cannot decide on their own equations; the collector has refused them. */
+static void search(void *context)
+{
+	struct building *b = context;
+	struct switching *s = NEW(struct switching);
+	int known = 0;
+	while (!look(b, s, &known))
+		;
+	mark_possible(s);
+	if (!b->model->relative)                /* else it has been told */
+		check_jumps(b, s);
+	b->model->switching = s;
+}
+
+void find_regions(struct building *b)
+{
+	statement_guard(search, b);
+}
+
+/* ---- their systems ---- */
+
+static bool same_matrix(const mpq_t *a, const mpq_t *b, size_t cells)
+{
+	for (size_t i = 0; i < cells; i++)
+		if (!mpq_equal(a[i], b[i]))
+			return false;
+	return true;
+}
+
+static bool same_system(const struct linear *a, const struct linear *b)
+{
+	size_t n = (size_t)a->n, cells = n * n;
+	bool same = same_matrix((const mpq_t *)a->C, (const mpq_t *)b->C, cells) && same_matrix((const mpq_t *)a->K, (const mpq_t *)b->K, cells);
+	for (int l = 0; l < a->loads && same; l++)
+		for (int k = 0; k < a->load[l].columns && same; k++)
+			same = same_matrix((const mpq_t *)a->load[l].force[k], (const mpq_t *)b->load[l].force[k], n);
+	for (int i = 0; i < a->inputs && same; i++)
+		for (int k = 0; k < 2 && same; k++)
+			same = same_matrix((const mpq_t *)a->input[i].force[k], (const mpq_t *)b->input[i].force[k], n);
+	return same;
+}
+
+static int add_system(struct switching *s, const struct linear *system)
+{
+	for (int i = 0; i < s->systems; i++)
+		if (same_system(&s->system[i], system))
+			return i;
+	ENLARGE(s->system, (size_t)s->systems + 1);
+	s->system[s->systems] = *system;
+	return s->systems++;
+}
+
+/* ---- breakpoints on which nothing changes ---- */
+
+/* Whether all regions below it have the equations of those above it */
+static bool changes_nothing(const struct switching *s, int expression, int at)
+{
+	for (int r = 0; r < s->regions; r++) {
+		const struct region *low = &s->region[r], *high = low + s->expression[expression].stride;
+		if (interval_of(s, r, expression) == at && low->possible && high->possible && low->system != high->system)
+			return false;
+	}
+	return true;
+}
+
+/* Without breakpoint `at` of one expression: each region above it falls to the one below. The last breakpoint of all stays. */
+static void remove_break(struct switching *s, int expression, int at)
+{
+	struct switching old = *s;
+	struct expression *e = &s->expression[expression];
+	old.expression = ARRAY(struct expression, (size_t)s->expressions);
+	for (int i = 0; i < s->expressions; i++)
+		old.expression[i] = s->expression[i];
+	e->at = rationals((size_t)e->breaks);
+	for (int i = 0, k = 0; i < e->breaks; i++)
+		if (i != at)
+			mpq_set(e->at[k++], old.expression[expression].at[i]);
+	e->breaks--;
+	s->regions = count_candidates(s);
+	s->region = ARRAY(struct region, (size_t)s->regions);
+	for (int r = 0; r < old.regions; r++) {
+		int merged = 0;
+		for (int i = 0; i < s->expressions; i++) {
+			int interval = interval_of(&old, r, i);
+			merged += (interval - (i == expression && interval > at)) * s->expression[i].stride;
+		}
+		if (old.region[r].possible)
+			s->region[merged] = old.region[r];
+	}
+}
+
+static int breaks_of_all(const struct switching *s)
+{
+	int count = 0;
+	for (int e = 0; e < s->expressions; e++)
+		count += s->expression[e].breaks;
+	return count;
+}
+
+static void drop_expression(struct switching *s, int expression)
+{
+	for (int e = expression; e + 1 < s->expressions; e++)
+		s->expression[e] = s->expression[e + 1];
+	s->expressions--;
+	count_candidates(s);
+}
+
+static void remove_idle_breaks(struct switching *s)
+{
+	for (int e = s->expressions - 1; e >= 0; e--) {
+		for (int at = s->expression[e].breaks - 1; at >= 0; at--)
+			if (breaks_of_all(s) > 1 && changes_nothing(s, e, at))
+				remove_break(s, e, at);
+		if (s->expression[e].breaks == 0)
+			drop_expression(s, e);
+	}
+}
+
+void place_region_loads(struct building *b)
+{
+	const struct switching *s = b->model->switching;
+	for (int r = 0; r < s->regions; r++)
+		for (int i = 0; i < b->model->n && s->region[r].possible; i++)
+			place_loads(b, s->region[r].residual[i]);
+	for (int e = 0; e < s->expressions; e++)
+		place_loads(b, s->expression[e].form);
+}
+
+void build_regions(struct building *b)
+{
+	struct model *model = b->model;
+	struct switching *s = model->switching;
+	for (int r = 0; r < s->regions; r++) {
+		struct region *region = &s->region[r];
+		if (!region->possible)
+			continue;
+		struct linear system = empty_system(model);
+		for (int i = 0; i < model->n; i++)
+			fill_system(b, &system, 0, i, region->residual[i]);
+		region->system = add_system(s, &system);
+	}
+	remove_idle_breaks(s);
+	for (int e = 0; e < s->expressions; e++)
+		s->expression[e].row = row_of_form(b, s->expression[e].form);
+}

@@ -1,0 +1,791 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Coordinates in which what may move as a whole is parted from what moves in it. A drive that turns, a train that
+ * rolls: positions grow without bound while forces depend on their differences only, and a difference of two large
+ * numbers has lost its digits. So where the equations do not change when coordinates are moved by n, the step keeps
+ * x_k - (n_k/n_p) x_p of each coordinate and its neighbour in a tree, beside one coordinate that alone is moved.
+ * Where a sum of the equations is free of states, u, that one is the centre X = sum w_j x_j, w = u W with W what
+ * multiplies the highest derivatives: only loads and inputs act on it, and nothing that rounds inside changes its
+ * velocity. Otherwise it is a coordinate as written.
+ *
+ * The model is built a second time over these coordinates, so that regions, leftovers, Jacobians and tunable params
+ * are derived in them from the start; where the user looks, states are the written ones. */
+#include "model/model.h"
+
+#include <string.h>
+
+/* ---- linear algebra over rows that come one by one ---- */
+
+struct echelon {                    /* reduced: a pivot stands alone in its column */
+	int width, rank;
+	mpq_t **row;
+	int *pivot;
+};
+
+static struct echelon echelon_new(int width)
+{
+	return (struct echelon){ width, 0, ARRAY(mpq_t *, (size_t)width), ARRAY(int, (size_t)width) };
+}
+
+/* `row` is used up. */
+static void add_row(struct echelon *e, mpq_t *row)
+{
+	mpq_t factor;
+	int pivot = 0;
+	mpq_init(factor);
+	for (int r = 0; r < e->rank; r++) {
+		mpq_set(factor, row[e->pivot[r]]);
+		if (mpq_sgn(factor) != 0)
+			rational_subtract_row(e->width, row, (const mpq_t *)e->row[r], factor);
+	}
+	while (pivot < e->width && mpq_sgn(row[pivot]) == 0)
+		pivot++;
+	if (pivot < e->width) {
+		mpq_inv(factor, row[pivot]);
+		for (int j = 0; j < e->width; j++)
+			mpq_mul(row[j], row[j], factor);
+		for (int r = 0; r < e->rank; r++) {
+			mpq_set(factor, e->row[r][pivot]);
+			if (mpq_sgn(factor) != 0)
+				rational_subtract_row(e->width, e->row[r], (const mpq_t *)row, factor);
+		}
+		e->row[e->rank] = row;
+		e->pivot[e->rank++] = pivot;
+	}
+	mpq_clear(factor);
+}
+
+/* A basis of what all rows annihilate: one vector for each column without pivot, 1 there; returns how many */
+static int null_space(const struct echelon *e, mpq_t ***basis)
+{
+	int count = 0;
+	bool *pivot = ARRAY(bool, (size_t)e->width);
+	*basis = ARRAY(mpq_t *, (size_t)e->width);
+	for (int r = 0; r < e->rank; r++)
+		pivot[e->pivot[r]] = true;
+	for (int j = 0; j < e->width; j++) {
+		if (pivot[j])
+			continue;
+		mpq_t *v = rationals((size_t)e->width);
+		mpq_set_ui(v[j], 1, 1);
+		for (int r = 0; r < e->rank; r++)
+			mpq_neg(v[e->pivot[r]], e->row[r][j]);
+		(*basis)[count++] = v;
+	}
+	return count;
+}
+
+/* ---- what the equations read ---- */
+
+struct look {
+	const struct model *model;
+	struct echelon place, rate; /* factors of coordinates in every form, sums inside functions too; and of velocities */
+	bool *strong, *weak;        /* n x n: read in one sum, in one equation */
+	bool *seen;                 /* per atom */
+};
+
+static bool leads(const struct model *model, const struct basis *basis)
+{
+	return basis->kind == BASIS_COORD && basis->order > 0 && basis->order >= model->frame.coord[basis->index]->highest;
+}
+
+static void join(bool *joined, int n, int a, int b)
+{
+	joined[a * n + b] = joined[b * n + a] = true;
+}
+
+/* Coordinates of a sum, one after the other */
+static void join_terms(struct look *l, const struct form *form)
+{
+	int last = -1, count = 0;
+	for (int i = 0; i < form->terms; i++)
+		count += form->term[i].basis.kind == BASIS_COORD && form->term[i].basis.order == 0;
+	for (int i = 0; i < form->terms && count == 2; i++) {
+		const struct basis *basis = &form->term[i].basis;
+		if (basis->kind != BASIS_COORD || basis->order != 0)
+			continue;
+		if (last >= 0)
+			join(l->strong, l->model->n, last, basis->index);
+		last = basis->index;
+	}
+}
+
+static void look_at(struct look *l, const struct form *form, int own)
+{
+	int n = l->model->n;
+	mpq_t *place = rationals((size_t)n), *rate = rationals((size_t)n);
+	join_terms(l, form);
+	for (int i = 0; i < form->terms; i++) {
+		const struct basis *basis = &form->term[i].basis;
+		const struct atom *atom = basis->kind == BASIS_ATOM ? basis->atom : NULL;
+		if (basis->kind == BASIS_COORD) {
+			join(l->weak, n, own, basis->index);
+			if (basis->order == 0 && own != basis->index)
+				join(l->strong, n, own, basis->index);
+			if (basis->order == 0)
+				mpq_set(place[basis->index], form->term[i].factor);
+			else if (!leads(l->model, basis))
+				mpq_set(rate[basis->index], form->term[i].factor);
+		}
+		if (!atom)
+			continue;
+		for (int k = 0; k < atom->operands && !l->seen[atom->index]; k++)
+			look_at(l, atom->operand[k], own);
+		l->seen[atom->index] = true;
+	}
+	add_row(&l->place, place);
+	add_row(&l->rate, rate);
+}
+
+static int own_coordinate(const struct model *model, int row)
+{
+	for (int j = 0; j < model->n; j++)
+		if (model->owner[j] == row)
+			return j;
+	return 0;
+}
+
+/* An atom is looked at once, but joins all equations in which it stands. */
+static void join_atoms(struct look *l, const struct form *form, int own)
+{
+	for (int i = 0; i < form->terms; i++) {
+		const struct basis *basis = &form->term[i].basis;
+		if (basis->kind == BASIS_COORD)
+			join(l->weak, l->model->n, own, basis->index);
+		if (basis->kind != BASIS_ATOM || l->seen[basis->atom->index])
+			continue;
+		l->seen[basis->atom->index] = true;
+		for (int k = 0; k < basis->atom->operands; k++)
+			join_atoms(l, basis->atom->operand[k], own);
+	}
+}
+
+static struct look look_new(const struct model *model)
+{
+	size_t n = (size_t)model->n;
+	return (struct look){ model, echelon_new(model->n), echelon_new(model->n), ARRAY(bool, n * n), ARRAY(bool, n * n),
+			      ARRAY(bool, (size_t)atoms_count(model->atoms)) };
+}
+
+/* The equations; of tunable models also at values that are related by nothing */
+static struct look look_at_equations(const struct model *model)
+{
+	struct look l = look_new(model);
+	for (int i = 0; i < model->n; i++)
+		look_at(&l, model->residual[i].form, own_coordinate(model, i));
+	for (int i = 0; i < model->n && model->channels + (model->switching != NULL) > 0; i++) {
+		memset(l.seen, 0, (size_t)atoms_count(model->atoms));
+		join_atoms(&l, model->residual[i].form, own_coordinate(model, i));
+	}
+	memset(l.seen, 0, (size_t)atoms_count(model->atoms));
+	for (int i = 0; i < model->n && model->tuning; i++)
+		look_at(&l, model->tuning->other->residual[i].form, own_coordinate(model, i));
+	return l;
+}
+
+/* ---- sums of equations that no state enters ---- */
+
+/* One column for each basis that depends on states, one row of unknown factors for each equation */
+struct balance {
+	int bases, first;           /* first: of the second set of equations */
+	struct basis *basis;
+	mpq_t **factor;             /* per basis: of it in each equation */
+};
+
+static void weigh(struct balance *b, int n, int from, int row, const struct form_term *term)
+{
+	int at = from ? b->first : 0;
+	while (at < b->bases && basis_order(&b->basis[at], &term->basis) != 0)
+		at++;
+	if (at == b->bases) {
+		b->bases++;
+		ENLARGE(b->basis, (size_t)b->bases);
+		ENLARGE(b->factor, (size_t)b->bases);
+		b->basis[at] = term->basis;
+		b->factor[at] = rationals((size_t)n);
+	}
+	mpq_set(b->factor[at][row], term->factor);
+}
+
+/* Of tunable models at other values too */
+static int free_sums(const struct model *model, mpq_t ***sum)
+{
+	struct balance b = { 0 };
+	struct echelon e = echelon_new(model->n);
+	for (int row = 0; row < model->n * (model->tuning ? 2 : 1); row++) {
+		int i = row % model->n;
+		b.first = row < model->n ? 0 : row == model->n ? b.bases : b.first;
+		const struct form *form = (row == i ? model : model->tuning->other)->residual[i].form;
+		for (int k = 0; k < form->terms; k++) {
+			const struct basis *basis = &form->term[k].basis;
+			bool state = basis->kind == BASIS_ATOM ? basis->atom->state : basis->kind == BASIS_COORD && !leads(model, basis);
+			if (state)
+				weigh(&b, model->n, row - i, i, &form->term[k]);
+		}
+	}
+	for (int k = 0; k < b.bases; k++)
+		add_row(&e, b.factor[k]);
+	return null_space(&e, sum);
+}
+
+/* w = u W: what a sum of equations multiplies the highest derivatives with */
+static mpq_t *weights_of(const struct model *model, const mpq_t *u)
+{
+	int n = model->n;
+	mpq_t *w = rationals((size_t)n), product;
+	mpq_init(product);
+	for (int i = 0; i < n; i++)
+		for (int j = 0; j < n; j++) {
+			mpq_mul(product, u[i], (model->system.velocity[j] >= 0 ? model->system.M : model->system.C)[i * n + j]);
+			mpq_add(w[j], w[j], product);
+		}
+	mpq_clear(product);
+	return w;
+}
+
+/* Do the weights change with tunable params? */
+static bool retunes(const struct model *model, const mpq_t *w, const mpq_t *other)
+{
+	int first = 0;
+	bool differ = false;
+	mpq_t a, b;
+	mpq_inits(a, b, NULL);
+	while (first < model->n && mpq_sgn(w[first]) == 0)
+		first++;
+	for (int j = 0; j < model->n && first < model->n; j++) {
+		mpq_mul(a, w[first], other[j]);
+		mpq_mul(b, w[j], other[first]);
+		differ = differ || !mpq_equal(a, b);
+	}
+	mpq_clears(a, b, NULL);
+	return differ;
+}
+
+/* ---- groups ---- */
+
+struct group {                      /* coordinates that are moved together */
+	int n;                      /* of the model */
+	const mpq_t *motion;        /* n: how far each is moved */
+	mpq_t *weight;              /* of the centre, sum of weight times motion = motion of the root; or NULL */
+	int root;
+	bool split;                 /* coordinates of both orders: velocities of the second stand alone */
+};
+
+static int support(int n, const mpq_t *v)
+{
+	int count = 0;
+	for (int j = 0; j < n; j++)
+		count += mpq_sgn(v[j]) != 0;
+	return count;
+}
+
+static void spread(const bool *joined, int n, int from, int number, int *component)
+{
+	component[from] = number;
+	for (int j = 0; j < n; j++)
+		if (component[j] < 0 && joined[from * n + j])
+			spread(joined, n, j, number, component);
+}
+
+static int *components_of(const struct look *l, int *count)
+{
+	int n = l->model->n, *component = ARRAY(int, (size_t)n);
+	*count = 0;
+	for (int j = 0; j < n; j++)
+		component[j] = -1;
+	for (int j = 0; j < n; j++)
+		if (component[j] < 0)
+			spread(l->weak, n, j, (*count)++, component);
+	return component;
+}
+
+static int first_entry(int n, const mpq_t *v)
+{
+	int j = 0;
+	while (j < n && mpq_sgn(v[j]) == 0)
+		j++;
+	return j;
+}
+
+/* The sum of the vectors that lie in a component; a vector may be 0: of weights that change with tunable params */
+static mpq_t *sum_in(int n, int vectors, mpq_t **vector, const int *component, int number, int *count)
+{
+	mpq_t *sum = rationals((size_t)n);
+	*count = 0;
+	for (int v = 0; v < vectors; v++) {
+		int first = first_entry(n, (const mpq_t *)vector[v]);
+		if (first == n || component[first] != number)
+			continue;
+		for (int j = 0; j < n; j++)
+			mpq_add(sum[j], sum[j], vector[v][j]);
+		++*count;
+	}
+	return sum;
+}
+
+static void scale(int n, mpq_t *v, mpq_srcptr divisor)
+{
+	for (int j = 0; j < n; j++)
+		mpq_div(v[j], v[j], divisor);
+}
+
+/* The motion of a component: what no velocity feels either, if there is such; else the only one of several
+ * coordinates that no force feels. */
+static mpq_t *motion_in(int n, int places, mpq_t **place, int rates, mpq_t **rate, const int *component, int number)
+{
+	int count, several = 0;
+	mpq_t *motion = sum_in(n, rates, rate, component, number, &count), **shared = ARRAY(mpq_t *, (size_t)n);
+	if (support(n, (const mpq_t *)motion) > 1)
+		return motion;
+	for (int v = 0; v < places; v++)
+		if (support(n, (const mpq_t *)place[v]) > 1)
+			shared[several++] = place[v];
+	mpq_t *other = sum_in(n, several, shared, component, number, &several);
+	if (several == 1)
+		return other;
+	if (count)
+		return motion;
+	motion = sum_in(n, places, place, component, number, &count);
+	return count == 1 ? motion : NULL;
+}
+
+/* Coordinates of both orders? */
+static bool is_mixed(const struct model *model, const mpq_t *motion, const mpq_t *weight)
+{
+	bool order[2] = { false, false };
+	for (int j = 0; j < model->n; j++)
+		if (mpq_sgn(motion[j]) != 0 || mpq_sgn(weight[j]) != 0)
+			order[model->system.velocity[j] >= 0] = true;
+	return order[0] && order[1];
+}
+
+/* Names that `operator at` fixes: a difference is fixed where both are. */
+static bool fixed_in_part(const struct model *model, const struct group *g)
+{
+	for (int order = 0; order < 2; order++) {
+		int fixed = 0, all = 0;
+		for (int j = 0; j < g->n; j++) {
+			bool member = mpq_sgn(g->motion[j]) != 0 || (g->weight && mpq_sgn(g->weight[j]) != 0), found = false;
+			for (int i = 0; i < model->spec->fixeds && member; i++) {
+				const struct fixed *f = &model->spec->fixed[i];
+				int first = f->symbol ? f->symbol->index + (f->component ? f->component - 1 : 0) : 0;
+				int length = f->symbol && f->symbol->length && !f->component ? f->symbol->length : 1;
+				found = found || (f->symbol && f->symbol->kind == SYMBOL_COORD && f->primes == order && first <= j && j < first + length);
+			}
+			fixed += found;
+			all += member;
+		}
+		if (fixed > 0 && (fixed < all || g->split))
+			return true;
+	}
+	return false;
+}
+
+/* Whether it is one, and which */
+static bool make_group(const struct model *model, const mpq_t *motion, mpq_t *weight, struct group *g)
+{
+	int n = model->n;
+	mpq_t sum, product;
+	*g = (struct group){ .n = n, .motion = motion, .split = is_mixed(model, motion, motion) };
+	g->root = first_entry(n, motion);
+	for (int j = 0; j < n && g->split; j++)
+		if (mpq_sgn(motion[j]) != 0 && model->system.velocity[j] < 0) {
+			g->root = j;
+			break;
+		}
+	mpq_inits(sum, product, NULL);
+	for (int j = 0; j < n && weight; j++) {
+		mpq_mul(product, weight[j], motion[j]);
+		mpq_add(sum, sum, product);
+	}
+	if (mpq_sgn(sum) != 0 && support(n, (const mpq_t *)weight) > 1 && !is_mixed(model, motion, (const mpq_t *)weight)) {
+		mpq_div(sum, sum, motion[g->root]);
+		scale(n, weight, sum);
+		g->weight = weight;
+	}
+	mpq_clears(sum, product, NULL);
+	if (support(n, motion) <= 1 && !g->weight)
+		return false;
+	if (!fixed_in_part(model, g))
+		return true;
+	if (model->operators > 0 && model->scheme != SCHEME_PL)
+		say_warning(model->spec->operator_at, "fix all of them, or none", "the operator fixes some of the coordinates that may move as a whole: they are kept as "
+			    "written, and where they grow their differences lose digits");
+	return false;
+}
+
+/* ---- the tree ---- */
+
+static void link_to(struct relative *r, const struct group *g, int coord, int parent)
+{
+	struct link *link = &r->link[coord];
+	link->kind = LINK_PARENT;
+	link->from = parent;
+	link->turned = coord > parent;
+	mpq_div(link->ratio, g->motion[coord], g->motion[parent]);
+	r->sequence[r->links++] = coord;
+}
+
+/* Breadth first from the root: neighbours in a sum, then in an equation, then the rest */
+static void grow_tree(struct relative *r, const struct look *l, const struct group *g)
+{
+	int n = g->n, *queue = ARRAY(int, (size_t)n), done = 0, count = 1;
+	bool *in = ARRAY(bool, (size_t)n);
+	queue[0] = g->root;
+	in[g->root] = true;
+	for (int stage = 0; stage < 3; stage++) {
+		const bool *joined = stage == 0 ? l->strong : l->weak;
+		for (done = 0; done < count; done++)
+			for (int j = 0; j < n; j++) {
+				bool near = stage == 2 ? queue[done] == g->root : joined[queue[done] * n + j];
+				if (in[j] || !near || mpq_sgn(g->motion[j]) == 0)
+					continue;
+				in[j] = true;
+				link_to(r, g, j, queue[done]);
+				queue[count++] = j;
+			}
+	}
+}
+
+/* x_root = X + sum of shift[k] times what is kept at k, from X = sum of weight[j] x_j and x_j = (n_j/n_root) x_root
+ * + d_j */
+static void place_root(struct relative *r, const struct group *g, int first)
+{
+	int n = g->n;
+	struct link *root = &r->link[g->root];
+	mpq_t *d = rationals((size_t)(n * n)), product; /* d_j over what is kept */
+	mpq_init(product);
+	root->kind = LINK_CENTRE;
+	root->weight = g->weight;
+	root->shift = rationals((size_t)n);
+	for (int j = 0; j < n; j++)
+		if (mpq_sgn(g->motion[j]) == 0)
+			mpq_set_ui(d[j * n + j], 1, 1);
+	for (int i = first; i < r->links; i++) {
+		int j = r->sequence[i], p = r->link[j].from;
+		for (int k = 0; k < n; k++)
+			mpq_mul(d[j * n + k], r->link[j].ratio, d[p * n + k]);
+		mpq_set_si(d[j * n + j], r->link[j].turned ? -1 : 1, 1);
+	}
+	for (int j = 0; j < n; j++)
+		for (int k = 0; k < n; k++) {
+			mpq_mul(product, g->weight[j], d[j * n + k]);
+			mpq_sub(root->shift[k], root->shift[k], product);
+		}
+	mpq_clear(product);
+}
+
+/* ---- what is kept ---- */
+
+static const char *times(mpq_srcptr ratio, const char *name)
+{
+	return mpq_cmp_ui(ratio, 1, 1) == 0 ? name : format("%s*%s", readable_text(ratio), name);
+}
+
+static void name_kept(struct relative *r, int centres)
+{
+	const struct model *model = r->written;
+	for (int j = 0, centre = 0; j < model->n; j++) {
+		const struct link *link = &r->link[j];
+		const char *own = model->coord_name[j], *from = link->kind == LINK_PARENT ? times(link->ratio, model->coord_name[link->from]) : "";
+		r->name[j] = link->kind == LINK_NONE ? own : link->kind == LINK_CENTRE ? (centres > 1 ? format("centre%d", ++centre) : "centre")
+			   : link->turned ? format("%s - %s", from, own) : format("%s - %s", own, from);
+	}
+}
+
+/* x' of a first-order coordinate over constants and coordinates of first order that stay as written; NULL: it is not
+ * so simple */
+static struct form *rate_of(const struct relative *r, int coord)
+{
+	const struct model *model = r->written;
+	const struct form *form = model->residual[model->owner[coord]].form;
+	struct form *rate = NEW(struct form);
+	mpq_srcptr lead = NULL;
+	for (int i = 0; i < form->terms; i++) {
+		const struct basis *basis = &form->term[i].basis;
+		bool own = basis->kind == BASIS_COORD && basis->index == coord && basis->order == 1;
+		bool plain = basis->kind == BASIS_COORD && basis->order == 0 && r->link[basis->index].kind == LINK_NONE && model->system.velocity[basis->index] < 0;
+		if (own)
+			lead = form->term[i].factor;
+		else if (plain || basis->kind == BASIS_ONE)
+			rate = form_sum(rate, form_single(*basis, form->term[i].factor), true);
+		else
+			return NULL;
+	}
+	if (!lead || model->system.segments > 1)
+		return NULL;
+	mpq_t factor;
+	mpq_init(factor);
+	mpq_inv(factor, lead);
+	rate = form_scale(rate, factor);
+	mpq_clear(factor);
+	return rate;
+}
+
+static struct form *unit(int coord, int order)
+{
+	return form_unit((struct basis){ .kind = BASIS_COORD, .index = coord, .order = order });
+}
+
+/* Of constants and first-order coordinates */
+static struct form *derivative(const struct form *form)
+{
+	struct form *sum = NEW(struct form);
+	for (int i = 0; i < form->terms; i++)
+		if (form->term[i].basis.kind == BASIS_COORD)
+			sum = form_sum(sum, form_scale(unit(form->term[i].basis.index, 1), form->term[i].factor), false);
+	return sum;
+}
+
+/* The written coordinate, or a derivative, over what is kept */
+static struct form *written_form(const struct relative *r, int coord, int order)
+{
+	const struct link *link = &r->link[coord];
+	if (link->velocity >= 0 && order > 0)
+		return unit(link->velocity, order - 1);
+	if (link->rate && order > 0)
+		return form_sum(form_scale(order == 1 ? link->rate : derivative(link->rate), link->ratio), unit(coord, order), link->turned);
+	if (link->kind == LINK_PARENT)
+		return form_sum(form_scale(r->form[order][link->from], link->ratio), unit(coord, order), link->turned);
+	struct form *form = unit(coord, order);
+	for (int k = 0; k < r->written->n && link->kind == LINK_CENTRE; k++)
+		if (mpq_sgn(link->shift[k]) != 0)
+			form = form_sum(form, form_scale(unit(k, order), link->shift[k]), false);
+	return form;
+}
+
+/* r' = x' - (n_k/n_p) x_p', where the velocity x' stands alone */
+static struct form *rate_equation(const struct relative *r, int coord)
+{
+	const struct link *link = &r->link[coord];
+	struct form *rate = form_sum(r->form[1][coord], form_scale(r->form[1][link->from], link->ratio), true);
+	return form_sum(unit(coord, 1), rate, !link->turned);
+}
+
+static void write_forms(struct relative *r)
+{
+	int n = r->written->n;
+	for (int order = 0; order < 3; order++) {
+		r->form[order] = ARRAY(struct form *, (size_t)n);
+		for (int j = 0; j < n; j++)
+			if (r->link[j].kind != LINK_PARENT)
+				r->form[order][j] = written_form(r, j, order);
+		for (int i = 0; i < r->links; i++)
+			r->form[order][r->sequence[i]] = written_form(r, r->sequence[i], order);
+	}
+	r->extra = ARRAY(struct form *, (size_t)(r->n - n));
+	for (int j = 0; j < n; j++)
+		if (r->link[j].velocity >= 0)
+			r->extra[r->link[j].velocity - n] = rate_equation(r, j);
+}
+
+/* Velocities of coordinates that are measured from one without: relative to its rate where that is simple, else they
+ * stand alone */
+static void split_velocities(struct relative *r)
+{
+	const struct model *model = r->written;
+	for (int i = 0; i < r->links; i++) {
+		int j = r->sequence[i];
+		struct link *link = &r->link[j];
+		if (model->system.velocity[j] < 0 || model->system.velocity[link->from] >= 0)
+			continue;
+		link->rate = rate_of(r, link->from);
+		if (link->rate)
+			continue;
+		link->velocity = r->n++;
+		r->name[link->velocity] = model->state_name[model->system.velocity[j]];
+		r->order[j] = r->order[link->velocity] = 1;
+	}
+}
+
+static struct relative *relative_new(const struct model *model)
+{
+	struct relative *r = NEW(struct relative);
+	size_t n = (size_t)model->n;
+	*r = (struct relative){ .written = model, .n = model->n, .name = ARRAY(const char *, 2 * n), .order = ARRAY(int, 2 * n), .link = ARRAY(struct link, n),
+				.sequence = ARRAY(int, n) };
+	for (int j = 0; j < model->n; j++) {
+		r->order[j] = model->system.velocity[j] >= 0 ? 2 : 1;
+		r->link[j].velocity = -1;
+		mpq_init(r->link[j].ratio);
+	}
+	return r;
+}
+
+/* ---- equations, combined as coordinates are ---- */
+
+/* Where each equation has the highest derivative of one coordinate alone, what multiplies it; NULL: not so. Tunable
+ * params would have to be divided by. */
+static mpq_t *leading_factors(const struct model *model)
+{
+	int n = model->n;
+	mpq_t *factor = rationals((size_t)n);
+	for (int j = 0; j < n; j++)
+		for (int i = 0; i < n; i++) {
+			mpq_srcptr entry = (model->system.velocity[j] >= 0 ? model->system.M : model->system.C)[i * n + j];
+			if (i == model->owner[j])
+				mpq_set(factor[j], entry);
+			else if (mpq_sgn(entry) != 0)
+				return NULL;
+		}
+	for (int j = 0; j < n; j++)
+		if (mpq_sgn(factor[j]) == 0)
+			return NULL;
+	return model->tuning ? NULL : factor;
+}
+
+static struct form *divided(const struct relative *r, int coord, const struct form *const *equation, mpq_srcptr times)
+{
+	mpq_t factor;
+	mpq_init(factor);
+	mpq_div(factor, times, r->solved[coord]);
+	struct form *form = form_scale(equation[coord], factor);
+	mpq_clear(factor);
+	return form;
+}
+
+struct form *combined_equation(const struct relative *r, int coord, const struct form *const *equation)
+{
+	const struct link *link = &r->link[coord];
+	struct form *form = NEW(struct form);
+	mpq_t one;
+	if (!r->solved || link->kind == LINK_NONE || link->rate || link->velocity >= 0)
+		return (struct form *)equation[coord];
+	mpq_init(one);
+	mpq_set_ui(one, 1, 1);
+	if (link->kind == LINK_PARENT) {
+		struct form *own = divided(r, coord, equation, one), *from = divided(r, link->from, equation, link->ratio);
+		form = link->turned ? form_difference(from, own) : form_difference(own, from);
+	}
+	for (int j = 0; j < r->written->n && link->kind == LINK_CENTRE; j++)
+		if (mpq_sgn(link->weight[j]) != 0)
+			form = form_sum(form, divided(r, j, equation, link->weight[j]), false);
+	mpq_clear(one);
+	return form;
+}
+
+struct relative *relative_of(const struct model *model)
+{
+	if (model->n < 2)
+		return NULL;
+	struct look l = look_at_equations(model);
+	struct echelon both = l.place;
+	mpq_t **place, **rate, **sum;
+	int n = model->n, count, groups = 0, centres = 0, places = null_space(&l.place, &place);
+	if (places == 0)
+		return NULL;
+	both.row = ARRAY(mpq_t *, (size_t)n);
+	both.pivot = ARRAY(int, (size_t)n);
+	both.rank = 0;
+	for (int k = 0; k < 2; k++) {
+		const struct echelon *from = k ? &l.rate : &l.place;
+		for (int i = 0; i < from->rank; i++) {
+			mpq_t *row = rationals((size_t)n);
+			for (int j = 0; j < n; j++)
+				mpq_set(row[j], from->row[i][j]);
+			add_row(&both, row);
+		}
+	}
+	int rates = null_space(&both, &rate), sums = free_sums(model, &sum), *component = components_of(&l, &count);
+	for (int s = 0, all = sums; s < all; s++) {
+		const mpq_t *u = (const mpq_t *)sum[s];
+		sum[s] = weights_of(model, u);
+		if (model->tuning && retunes(model, (const mpq_t *)sum[s], (const mpq_t *)weights_of(model->tuning->other, u)))
+			sum[s] = rationals((size_t)n);
+	}
+	struct relative *r = relative_new(model);
+	for (int c = 0; c < count; c++) {
+		int found;
+		struct group g;
+		mpq_t *motion = motion_in(n, places, place, rates, rate, component, c), *weight = sum_in(n, sums, sum, component, c, &found);
+		if (!motion || !make_group(model, (const mpq_t *)motion, found == 1 ? weight : NULL, &g))
+			continue;
+		int first = r->links;
+		grow_tree(r, &l, &g);
+		if (g.weight)
+			place_root(r, &g, first);
+		centres += g.weight != NULL;
+		groups++;
+	}
+	if (groups == 0)
+		return NULL;
+	name_kept(r, centres);
+	split_velocities(r);
+	write_forms(r);
+	r->solved = leading_factors(model);
+	return r;
+}
+
+/* ---- values ---- */
+
+void relative_value(const struct relative *r, int coord, mpq_t *const *value, mpq_ptr kept)
+{
+	const struct link *link = &r->link[coord];
+	mpq_t product;
+	mpq_init(product);
+	if (link->kind == LINK_NONE) {
+		mpq_set(kept, *value[coord]);
+	} else if (link->kind == LINK_PARENT) {
+		mpq_mul(product, link->ratio, *value[link->from]);
+		if (link->turned)
+			mpq_sub(kept, product, *value[coord]);
+		else
+			mpq_sub(kept, *value[coord], product);
+	} else {
+		mpq_set_ui(kept, 0, 1);
+		for (int j = 0; j < r->written->n; j++) {
+			if (mpq_sgn(link->weight[j]) == 0)
+				continue;
+			mpq_mul(product, link->weight[j], *value[j]);
+			mpq_add(kept, kept, product);
+		}
+	}
+	mpq_clear(product);
+}
+
+/* The rate that a link is measured from, at written values */
+static mpq_t *rate_value(const struct link *link, mpq_t *written)
+{
+	mpq_t *sum = rationals(1), product;
+	mpq_init(product);
+	for (int i = 0; i < link->rate->terms; i++) {
+		const struct form_term *term = &link->rate->term[i];
+		mpq_set(product, term->factor);
+		if (term->basis.kind == BASIS_COORD)
+			mpq_mul(product, product, written[term->basis.index]);
+		mpq_add(*sum, *sum, product);
+	}
+	mpq_clear(product);
+	return sum;
+}
+
+void relative_values(const struct model *model, mpq_t *written, mpq_t *kept)
+{
+	const struct relative *r = model->relative;
+	const struct linear *from = &r->written->system;
+	mpq_t **place = ARRAY(mpq_t *, (size_t)from->n), **rate = ARRAY(mpq_t *, (size_t)from->n);
+	for (int j = 0; j < from->n; j++) {
+		place[j] = &written[j];
+		rate[j] = from->velocity[j] >= 0 ? &written[from->velocity[j]] : &written[j];
+	}
+	for (int j = 0; j < from->n; j++)
+		if (r->link[j].rate)
+			rate[r->link[j].from] = rate_value(&r->link[j], written);
+	for (int j = 0; j < from->n; j++) {
+		relative_value(r, j, place, kept[j]);
+		if (model->system.velocity[j] >= 0)
+			relative_value(r, j, rate, kept[model->system.velocity[j]]);
+		else if (r->link[j].velocity >= 0)
+			mpq_set(kept[r->link[j].velocity], *rate[j]);
+	}
+}
+
+int relative_place(const struct model *model, int written)
+{
+	const struct linear *from = &model->relative->written->system;
+	int coord = from->coord[written];
+	const struct link *link = &model->relative->link[coord];
+	bool velocity = written >= from->n;
+	if (velocity && link->velocity >= 0)
+		return link->velocity;
+	return link->kind != LINK_NONE ? -1 : velocity ? model->system.velocity[coord] : coord;
+}

@@ -1,0 +1,257 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Which scheme the equations allow: exact, exact in regions, or one that leaves something over. */
+#include "model/model.h"
+
+struct change {                     /* of formula in time */
+	struct building *b;
+	const struct snapshot *snapshot; /* after it */
+	int index;
+};
+
+static bool same_cells(const struct value *a, const struct value *b)
+{
+	if (a->rows != b->rows || a->columns != b->columns)
+		return false;
+	for (int i = 0; i < a->rows * a->columns; i++)
+		if (!same_in_states(a->cell[i], b->cell[i]))
+			return false;
+	return true;
+}
+
+static struct value *collect_in(struct building *b, struct node *node, int segment)
+{
+	b->collector.interval = segment;
+	forget_lets(b->spec);
+	return collect(&b->collector, node);
+}
+
+/* The first term of sums whose coordinates or inputs are not those of the first segment. */
+static const struct node *changing_term(struct building *b, struct node *node, int segment)
+{
+	const struct node *found = NULL;
+	if (node->kind != NODE_SUM)
+		return same_cells(collect_in(b, node, 0), collect_in(b, node, segment)) ? NULL : node;
+	for (int i = 0; i < node->children && !found; i++)
+		found = changing_term(b, node->child[i], segment);
+	return found;
+}
+
+static const struct node *first_changing_term(struct building *b, int segment)
+{
+	const struct spec *spec = b->spec;
+	const struct node *term = NULL;
+	for (int i = 0; i < spec->equations && !term; i++) {
+		term = changing_term(b, spec->equation[i].left, segment);
+		term = term ? term : changing_term(b, spec->equation[i].right, segment);
+	}
+	for (int i = 0; i < spec->elements && !term; i++)
+		term = changing_term(b, spec->element[i].value, segment);
+	return term;
+}
+
+static void tell_change(void *context)
+{
+	struct change *work = context;
+	struct building *b = work->b;
+	const struct spec *spec = b->spec;
+	for (int i = 0; i < spec->elements; i++)
+		if (spec->element[i].kind != ELEMENT_FORCE && !same_in_states(b->snapshot[0].element[i], work->snapshot->element[i]))
+			error(spec->element[i].value->start, "what moves belongs in an equation, or in a force", "a mass, spring or damper needs a constant");
+	const struct node *term = first_changing_term(b, work->index);
+	b->collector.term = term;
+	not_linear(&b->collector, term, format("has a factor that changes at t = %s", readable_text(b->model->system.change[work->index - 1])));
+}
+
+static bool same_equations(const struct building *b, const struct snapshot *s)
+{
+	for (int i = 0; i < b->model->n; i++)
+		if (!same_in_states(b->snapshot->residual[i].form, s->residual[i].form))
+			return false;
+	return true;
+}
+
+/* Only loads may change their formula in time. */
+static bool check_changes(struct building *b)
+{
+	for (int s = 1; s < b->model->system.segments; s++)
+		if (!same_equations(b, &b->snapshot[s]))
+			return statement_guard(tell_change, &(struct change){ b, &b->snapshot[s], s });
+	return true;
+}
+
+/* An equation is as many scalar ones at all times. */
+static bool check_sizes(const struct building *b)
+{
+	const struct snapshot *first = b->snapshot;
+	for (int s = 1; s < b->model->system.segments; s++)
+		for (int i = 0; i < first->written || i < first[s].written; i++)
+			if (i >= first->written || i >= first[s].written || first->residual[i].at.offset != first[s].residual[i].at.offset) {
+				say_error((i < first->written ? first : first + s)->residual[i].at, NULL, "the size of the equation changes at t = %s",
+					  readable_text(b->model->system.change[s - 1]));
+				return false;
+			}
+	return true;
+}
+
+static bool holds_atom(const struct form *form)
+{
+	return form->terms > 0 && form->term[form->terms - 1].basis.kind == BASIS_ATOM;
+}
+
+bool is_linear(const struct building *b)
+{
+	for (int s = 0; s < b->model->system.segments; s++)
+		for (int i = 0; i < b->model->n; i++)
+			if (holds_atom(b->snapshot[s].residual[i].form) || !same_equations(b, &b->snapshot[s]))
+				return false;
+	return true;
+}
+
+/* What depends on time alone, in each interval of time: t < 1 ? ... has one formula there. What is then still no load, such as
+ * sqrt(t), is left over if it is the same in all intervals; if it is not, all that is no plain load for all time is. */
+static void part_loads(void *context)
+{
+	struct building *b = context;
+	struct collector *c = &b->collector;
+	int n = b->model->n, segments = b->model->system.segments;
+	b->load = ARRAY(struct form *, (size_t)(segments * n));
+	b->time_left = ARRAY(struct form *, (size_t)n);
+	struct point *point = point_new(c, 0, NULL);
+	for (int i = 0; i < n; i++) {
+		const struct form *whole = time_part(b->whole->residual[i].form, false);
+		bool same = true;
+		for (c->interval = 0; c->interval < segments; c->interval++) {
+			struct form *here = form_at(point, whole), *left = time_part(here, true);
+			b->load[c->interval * n + i] = form_sum(here, left, true);
+			b->time_left[i] = c->interval == 0 ? left : b->time_left[i];
+			same = same && same_form(left, b->time_left[i]);
+		}
+		if (!same)
+			b->time_left[i] = time_part(whole, true);
+		for (int s = 0; s < segments && !same; s++)
+			b->load[s * n + i] = form_sum(whole, b->time_left[i], true);
+	}
+	c->interval = 0;
+}
+
+static const struct form *load_form(const struct building *b, int segment, int row)
+{
+	return b->whole ? b->load[segment * b->model->n + row] : b->snapshot[segment].residual[row].form;
+}
+
+/* The first in the text of those that are not piecewise linear; or of all */
+static const struct atom *first_atom(const struct building *b, bool all)
+{
+	const struct atom *first = NULL;
+	for (int s = 0; s < b->model->system.segments; s++)
+		for (int i = 0; i < b->model->n; i++)
+			for (int k = 0; k < b->snapshot[s].residual[i].form->terms; k++) {
+				const struct basis *basis = &b->snapshot[s].residual[i].form->term[k].basis;
+				const struct atom *a = basis->atom;
+				if (a && (!first || a->node->start.offset < first->node->start.offset) && (all || !is_piecewise_form(form_unit(*basis))))
+					first = a;
+			}
+	return first;
+}
+
+static bool keeps_atoms(const struct building *b)
+{
+	return first_atom(b, true) != NULL;
+}
+
+static const char input_rewrite[] = "the load as an input is exact beside it";
+
+/* Scheme exact was asked for, and what it would have to switch on it cannot */
+static void tell_atom(void *context)
+{
+	const struct building *b = context;
+	const struct atom *atom = first_atom(b, false);
+	bool changes = !atom;
+	atom = atom ? atom : first_atom(b, true);
+	const char *rewrite = changes ? input_rewrite : rewrite_of(atom->node);
+	error(atom->node->start, format("%s%setd1, etdrk2, etdrk4, nc2, nc3, dq4, bm3 and pl are the schemes that could", rewrite, *rewrite ? "; " : ""),
+	      changes ? "switching beside loads that change their formula in time is not built yet: scheme exact cannot treat '%s'"
+		      : "'%s' is not piecewise linear: scheme exact cannot treat it", text_between(atom->node->start, atom->node->end));
+}
+
+/* No scheme was asked for, and exact is not possible: what stood in its way */
+static void find_obstacle(void *context)
+{
+	struct building *b = context;
+	struct model *model = b->model;
+	const struct atom *atom = first_atom(b, false), *any = first_atom(b, true);
+	const char *why = "is not piecewise linear", *rewrite;
+	model->obstacle = atom ? atom->node : any ? any->node : NULL;
+	for (int s = 1; s < model->system.segments && !model->obstacle; s++) {
+		model->obstacle = same_equations(b, &b->snapshot[s]) ? NULL : first_changing_term(b, s);
+		why = format("has a factor that changes at t = %s", readable_text(model->system.change[s - 1]));
+	}
+	b->collector.interval = 0;
+	forget_lets(b->spec);
+	if (!model->obstacle)
+		return;
+	if (!atom && any)
+		why = "switches beside loads that change their formula in time";
+	rewrite = !atom && any ? input_rewrite : rewrite_of(model->obstacle);
+	model->obstacle_text = format("%s%s%s", why, *rewrite ? "; " : "", rewrite);
+}
+
+/* Exact where nothing is left over and no scheme was asked for; the equations for all time where something is. */
+static bool settle_scheme(struct building *b)
+{
+	struct model *model = b->model;
+	bool linear = is_linear(b);
+	if (!linear && !model->asked.scheme_at.source && !b->request->solution && !is_piecewise_linear(b)) {
+		model->scheme = SCHEME_ETDRK4;
+		silent_guard(find_obstacle, b);
+	}
+	b->collector.scheme = scheme_name(model->scheme);
+	if (model->scheme == SCHEME_EXACT && b->request->loads_left) {
+		say_error(model->asked.scheme_at.source ? model->asked.scheme_at : b->spec->name_at, "etd1, etdrk2, etdrk4, nc2, nc3, dq4 and bm3 have; pl holds loads over a step",
+			  "--loads leftover needs a scheme with a quadrature: exact has none");
+		return false;
+	}
+	if (model->scheme == SCHEME_EXACT && !linear && is_piecewise_linear(b)) {
+		find_regions(b);
+		collect_whole(b);               /* for outputs and NAME_rhs */
+		if (!diagnostics_errors())
+			statement_guard(part_loads, b);
+		return !diagnostics_errors();
+	}
+	if (model->scheme == SCHEME_EXACT && keeps_atoms(b))
+		return statement_guard(tell_atom, b);
+	if (model->scheme == SCHEME_EXACT)
+		return check_changes(b);
+	if (!linear || b->request->loads_left || b->spec->has_operator)
+		collect_whole(b);
+	model->loads_left = b->whole && b->request->loads_left;
+	if (b->whole && !diagnostics_errors())
+		statement_guard(part_loads, b);
+	return !diagnostics_errors();
+}
+
+void build_system(struct building *b)
+{
+	struct model *model = b->model;
+	struct linear *system = &model->system;
+	if (!check_sizes(b) || !assign_equations(b))
+		return;
+	for (int s = 0; s < system->segments; s++)
+		add_elements(b, &b->snapshot[s]);
+	if (!settle_scheme(b))
+		return;
+	const struct snapshot *rows = b->whole ? b->whole : b->snapshot;
+	fill_states(b, rows);
+	for (int s = 0; s < system->segments && !model->loads_left; s++)
+		for (int i = 0; i < model->n; i++)
+			place_loads(b, load_form(b, s, i));
+	if (model->switching)
+		place_region_loads(b);
+	for (int s = 0; s < system->segments && !model->loads_left; s++)
+		for (int i = 0; i < model->n; i++)
+			fill_loads(b, s, i, load_form(b, s, i));
+	model->owner = b->owner;
+	model->residual = rows->residual;
+	model->snapshot = b->snapshot;
+	model->whole = b->whole;
+}

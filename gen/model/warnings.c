@@ -1,0 +1,475 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What a spec may say but is better told about. Nothing here reaches the generated code, so eigenvalues in double will do. */
+#include "model/model.h"
+
+#include <gsl/gsl_eigen.h>
+#include <gsl/gsl_errno.h>
+#include <gsl/gsl_odeiv2.h>
+#include <math.h>
+#include <stdlib.h>
+
+enum { SAMPLES = 32 };
+
+/* By which part of itself a squared frequency exceeds the operator's: as time goes by a little is told, of a motion what is felt: twice the
+ * operator's where the phase that this costs in a thousand steps is more than DRIFT [rad], ten times it anyhow. */
+static const double LITTLE = 1e-2, TWICE = 0.5, TENFOLD = 0.9, DRIFT = 1e-3;
+
+/* ---- the Jacobian in time ---- */
+
+struct jacobian {
+	struct building *b;
+	struct form ***C, ***K;     /* [coordinate][row]: of the equations for all time, by velocity and by coordinate */
+	struct linear at;           /* evaluated */
+	bool damped;                /* C too */
+	const mpq_t *state;         /* where the states are fixed */
+	mpq_t t;
+};
+
+static struct form **columns(struct building *b, int coord, int order)
+{
+	const struct form **row = ARRAY(const struct form *, (size_t)b->model->n);
+	for (int i = 0; i < b->model->n; i++)
+		row[i] = b->whole->residual[i].form;
+	return form_derivatives(&b->collector, b->model->n, row, coord, order);
+}
+
+static void differentiate(void *context)
+{
+	struct jacobian *j = context;
+	const struct model *model = j->b->model;
+	j->C = ARRAY(struct form **, (size_t)model->n);
+	j->K = ARRAY(struct form **, (size_t)model->n);
+	for (int k = 0; k < model->n; k++) {
+		j->C[k] = columns(j->b, k, 1);
+		j->K[k] = columns(j->b, k, 0);
+	}
+	j->at = linear_like(&model->system);
+	j->at.M = model->system.M;
+}
+
+static int fix_states(const struct jacobian *j, struct fixing *fixing)
+{
+	const struct model *model = j->b->model;
+	for (int i = 0; i < model->system.states; i++) {
+		int coord = model->system.coord[i];
+		fixing[i] = (struct fixing){ .symbol = model->frame.coord[coord], .coord = coord, .order = i >= model->n };
+		mpq_init(fixing[i].value);
+		mpq_set(fixing[i].value, j->state[i]);
+	}
+	struct fixing *time = &fixing[model->system.states];
+	*time = (struct fixing){ .at = model->spec->name_at };
+	time->form = form_constant(j->t);
+	return model->system.states + 1;
+}
+
+static void constant_of(struct collector *c, const struct form *form, mpq_ptr value)
+{
+	mpq_set_ui(value, 0, 1);
+	if (is_constant(form))                  /* what still depends on inputs is left out */
+		constant_value(c, form, value);
+}
+
+/* K, and C where it is wanted, at j->t and j->state; leaves the statement where they are not defined */
+static void evaluate(void *context)
+{
+	struct jacobian *j = context;
+	const struct model *model = j->b->model;
+	struct collector *c = &j->b->collector;
+	int n = model->n;
+	struct fixing *fixing = ARRAY(struct fixing, (size_t)model->system.states + 1);
+	struct point *point = point_new(c, fix_states(j, fixing), fixing);
+	for (int k = 0; k < n; k++)
+		for (int i = 0; i < n; i++) {
+			if (j->damped || model->system.velocity[k] < 0)   /* of first order: what multiplies the highest derivative */
+				constant_of(c, form_at(point, j->C[k][i]), j->at.C[i * n + k]);
+			constant_of(c, form_at(point, j->K[k][i]), j->at.K[i * n + k]);
+		}
+}
+
+/* ---- eigenvalues ---- */
+
+static int ascending(const void *left, const void *right)
+{
+	const double *a = left, *b = right;
+	return (*a > *b) - (*a < *b);
+}
+
+/* Sizes of the eigenvalues, or their real parts; false: not found. `value` receives n, sorted. */
+static bool eigenvalues(int n, const mpq_t *A, bool sizes, double *value)
+{
+	gsl_matrix *m = gsl_matrix_alloc((size_t)n, (size_t)n);
+	gsl_vector_complex *eigen = gsl_vector_complex_alloc((size_t)n);
+	gsl_eigen_nonsymm_workspace *work = gsl_eigen_nonsymm_alloc((size_t)n);
+	gsl_error_handler_t *handler = gsl_set_error_handler_off();
+	bool finite = true;
+	for (int i = 0; i < n * n; i++) {
+		double entry = nearest_double(A[i]);
+		finite = finite && isfinite(entry);
+		gsl_matrix_set(m, (size_t)(i / n), (size_t)(i % n), entry);
+	}
+	gsl_eigen_nonsymm_params(0, 1, work);
+	bool found = finite && gsl_eigen_nonsymm(m, eigen, work) == GSL_SUCCESS;
+	for (int i = 0; i < n && found; i++) {
+		gsl_complex z = gsl_vector_complex_get(eigen, (size_t)i);
+		value[i] = sizes ? hypot(GSL_REAL(z), GSL_IMAG(z)) : GSL_REAL(z);
+	}
+	qsort(value, (size_t)n, sizeof *value, ascending);
+	gsl_set_error_handler(handler);
+	gsl_eigen_nonsymm_free(work);
+	gsl_vector_complex_free(eigen);
+	gsl_matrix_free(m);
+	return found;
+}
+
+/* Squared frequencies [1/s^2] of the coordinates' stiffness alone: eigenvalues of W^-1 K */
+static bool stiffness(const struct linear *system, double *value)
+{
+	int n = system->n, column;
+	mpq_t *inverse = rationals((size_t)(n * n)), *product = rationals((size_t)(n * n));
+	if (!leading_inverse(system, inverse, &column))
+		return false;
+	rational_product(n, n, n, (const mpq_t *)inverse, (const mpq_t *)system->K, product);
+	return eigenvalues(n, (const mpq_t *)product, false, value);
+}
+
+static double fastest_pole(const struct linear *system)
+{
+	double *value = ARRAY(double, (size_t)system->states);
+	bool found = eigenvalues(system->states, (const mpq_t *)state_matrix(system, false), true, value);
+	return found ? value[system->states - 1] : 0;
+}
+
+/* ---- explicit predictors ---- */
+
+static struct place scheme_place(const struct building *b)
+{
+	return b->model->asked.scheme_at.source ? b->model->asked.scheme_at : b->spec->name_at;
+}
+
+static void check_predictor(struct jacobian *j)
+{
+	static const double limit = 2.5;        /* RK4's own is 2.8; with a good operator the schemes last to 3 to 7 */
+	struct building *b = j->b;
+	const struct model *model = b->model;
+	double fastest = 0;
+	j->state = (const mpq_t *)model->initial;
+	j->damped = true;
+	if (silent_guard(evaluate, j))
+		fastest = fastest_pole(&j->at);
+	for (int k = 0; k < model->operators; k++) {
+		struct linear system = operator_system(model, k);
+		fastest = fmax(fastest, fastest_pole(&system));
+	}
+	double h = nearest_double(model->h);
+	if (fastest * h > limit)
+		say_warning(scheme_place(b), format("a step up to %.3g s, or a scheme of the etd family, whose operator bears the stiffness", limit / fastest),
+			    "%s predicts its nodes explicitly, up to |lambda| h of about %.1f: here |lambda| = %.4g 1/s, times h = %s s that is %.3g",
+			    scheme_name(model->scheme), limit, fastest, readable_text(model->h), fastest * h);
+}
+
+/* ---- operators that are too soft ---- */
+
+/* Of a bank: that which serves at this point */
+struct choice_work {
+	struct jacobian *j;
+	int which;
+};
+
+static void choose_operator(void *context)
+{
+	struct choice_work *work = context;
+	const struct model *model = work->j->b->model;
+	struct collector *c = &work->j->b->collector;
+	struct fixing *fixing = ARRAY(struct fixing, (size_t)model->system.states + 1);
+	const struct form *now = form_at(point_new(c, fix_states(work->j, fixing), fixing), model->selector);
+	if (!is_constant(now))
+		abandon();
+	mpq_t value;
+	mpq_init(value);
+	constant_value(c, now, value);
+	while (work->which + 1 < model->operators && mpq_cmp(value, model->operator[work->which].at) > 0)
+		work->which++;
+	mpq_clear(value);
+}
+
+struct softness {
+	double here, operator;      /* squared frequencies, of the mode that exceeds the operator's most for its size */
+	const char *where;          /* and when; "": at rest */
+};
+
+/* What h^2 times the difference of squared frequencies costs in a thousand steps: growth in etd1, else the phase of a Runge-Kutta scheme */
+static double drift_of_softness(const struct model *model, double difference)
+{
+	double h = nearest_double(model->h), d = difference * h * h;
+	return model->scheme == SCHEME_ETD1 ? 250 * d : model->scheme == SCHEME_ETDRK2 ? 1000 * pow(d, 1.5) / 6 : 1000 * pow(d, 2.5) / 120;
+}
+
+static bool is_told(const struct model *model, bool moved, double here, double there)
+{
+	bool felt = !moved || drift_of_softness(model, here - there) > DRIFT;
+	return here - there > (moved ? felt ? TWICE : TENFOLD : LITTLE) * fabs(here) && (felt || there > 0);
+}
+
+/* `moved`: the states are those of a motion, not at rest */
+static void compare(struct jacobian *j, bool moved, const char *where, struct softness *worst)
+{
+	const struct model *model = j->b->model;
+	struct choice_work choice = { j, 0 };
+	double *here = ARRAY(double, (size_t)model->n), *there = ARRAY(double, (size_t)model->n);
+	if (!silent_guard(evaluate, j) || (model->selector && !silent_guard(choose_operator, &choice)))
+		return;
+	struct linear system = operator_system(model, choice.which);
+	if (!stiffness(&j->at, here) || !stiffness(&system, there))
+		return;
+	for (int i = 0; i < model->n; i++) {
+		double now = (here[i] - there[i]) * worst->here, known = (worst->here - worst->operator) * here[i];
+		if (is_told(model, moved, here[i], there[i]) && (worst->here == 0 || (moved ? now > known : now >= known)))
+			*worst = (struct softness){ here[i], there[i], where };
+	}
+}
+
+static bool stiffness_moves(const struct jacobian *j)
+{
+	const struct model *model = j->b->model;
+	for (int k = 0; k < model->n; k++) {
+		struct reads reads = reads_of(model, model->n, (const struct form *const *)j->K[k]);
+		for (int l = 0; l < model->system.loads; l++)
+			reads.time = reads.time || reads.load[l];
+		if (reads.time)
+			return true;
+	}
+	return false;
+}
+
+static bool stiffness_reads_states(const struct jacobian *j)
+{
+	const struct model *model = j->b->model;
+	for (int k = 0; k < model->n; k++) {
+		struct reads reads = reads_of(model, model->n, (const struct form *const *)j->K[k]);
+		for (int i = 0; i < model->system.states; i++)
+			if (reads.state[i])
+				return true;
+	}
+	return false;
+}
+
+/* ---- a reference, to see how far the motion goes ---- */
+
+enum { LIMIT_WORK = 500000, FOLLOWED = 8 };      /* terms evaluated on the way; coordinates of which each has its own largest excursion */
+
+static const double LOST = 1e30;        /* the motion has left */
+
+struct reference {
+	const struct building *b;
+	struct sample *sample;
+	const double *y;            /* where it is evaluated */
+	mpfr_t t, value;
+	double *inverse;            /* of what multiplies the highest derivatives */
+	double *residual;
+};
+
+static void state_leaf(void *context, const struct basis *basis, mpfr_ptr value)
+{
+	const struct reference *r = context;
+	const struct model *model = r->b->model;
+	bool highest = basis->kind == BASIS_COORD && basis->order >= model->frame.coord[basis->index]->highest;
+	if (basis->kind == BASIS_COORD && !highest)
+		mpfr_set_d(value, r->y[basis->order ? model->system.velocity[basis->index] : basis->index], MPFR_RNDN);
+	else
+		mpfr_set_ui(value, 0, MPFR_RNDN);       /* inputs are not known */
+}
+
+static int slopes(double t, const double y[], double dydt[], void *context)
+{
+	struct reference *r = context;
+	const struct model *model = r->b->model;
+	int n = model->n;
+	if (sample_work(r->sample) > LIMIT_WORK)
+		return GSL_EBADFUNC;
+	r->y = y;
+	mpfr_set_d(r->t, t, MPFR_RNDN);
+	sample_at(r->sample, r->t);
+	for (int i = 0; i < n; i++) {
+		sample_form(r->sample, r->b->whole->residual[i].form, r->value);
+		r->residual[i] = mpfr_get_d(r->value, MPFR_RNDN);
+		if (!isfinite(r->residual[i]))
+			return GSL_EBADFUNC;
+	}
+	for (int k = 0; k < n; k++) {
+		int velocity = model->system.velocity[k];
+		double highest = 0;
+		for (int i = 0; i < n; i++)
+			highest -= r->inverse[k * n + i] * r->residual[i];
+		dydt[k] = velocity < 0 ? highest : y[velocity];
+		if (velocity >= 0)
+			dydt[velocity] = highest;
+	}
+	return GSL_SUCCESS;
+}
+
+static bool make_reference(struct reference *r, const struct building *b)
+{
+	const struct model *model = b->model;
+	size_t n = (size_t)model->n;
+	mpq_t *inverse = rationals(n * n);
+	int column;
+	if (!leading_inverse(&model->system, inverse, &column))
+		return false;
+	*r = (struct reference){ .b = b, .inverse = ARRAY(double, n * n), .residual = ARRAY(double, n) };
+	for (size_t i = 0; i < n * n; i++)
+		r->inverse[i] = nearest_double(inverse[i]);
+	mpfr_inits2(53, r->t, r->value, NULL);
+	r->sample = sample_new(53, state_leaf, r);
+	return true;
+}
+
+/* The state as short rationals: a Jacobian there is no better known than the motion */
+static void set_state(const struct model *model, const double *y, mpq_t *state)
+{
+	for (int i = 0; i < model->system.states; i++)
+		mpq_set_d(state[i], (double)(float)y[i]);
+}
+
+/* Where each coordinate is farthest from 0 until `end`, as far as that can be followed */
+static void compare_excursions(struct jacobian *j, double end, struct softness *worst)
+{
+	const struct model *model = j->b->model;
+	int states = model->system.states, followed = model->n < FOLLOWED ? model->n : FOLLOWED;
+	size_t size = (size_t)states;
+	double *y = ARRAY(double, size), *farthest = ARRAY(double, (size_t)followed * size), *when = ARRAY(double, (size_t)followed);
+	double t = 0, h = nearest_double(model->h);
+	struct reference r;
+	if (!make_reference(&r, j->b))
+		return;
+	for (int i = 0; i < states; i++)
+		y[i] = nearest_double(model->initial[i]);
+	gsl_error_handler_t *handler = gsl_set_error_handler_off();
+	gsl_odeiv2_system system = { slopes, NULL, size, &r };
+	gsl_odeiv2_step *step = gsl_odeiv2_step_alloc(gsl_odeiv2_step_rkf45, size);
+	gsl_odeiv2_control *control = gsl_odeiv2_control_y_new(1e-8, 1e-4);
+	gsl_odeiv2_evolve *evolve = gsl_odeiv2_evolve_alloc(size);
+	bool good = true;
+	while (good) {
+		for (int k = 0; k < followed; k++)
+			if (fabs(y[k]) > fabs(farthest[(size_t)k * size + (size_t)k])) {
+				for (int i = 0; i < states; i++)
+					farthest[(size_t)k * size + (size_t)i] = y[i];
+				when[k] = t;
+			}
+		good = t < end && gsl_odeiv2_evolve_apply(evolve, control, step, &system, &t, end, &h, y) == GSL_SUCCESS;
+		for (int i = 0; i < states; i++)
+			good = good && fabs(y[i]) < LOST;
+	}
+	bool lost = t < end && (sample_work(r.sample) <= LIMIT_WORK || h < 1e-6 * nearest_double(model->h));
+	gsl_odeiv2_evolve_free(evolve);
+	gsl_odeiv2_control_free(control);
+	gsl_odeiv2_step_free(step);
+	gsl_set_error_handler(handler);
+	mpfr_clears(r.t, r.value, NULL);
+	mpq_t *state = rationals(size);
+	j->state = (const mpq_t *)state;
+	for (int k = 0; k < followed && !lost; k++) {
+		if (when[k] == 0)
+			continue;               /* at the initial values */
+		set_state(model, farthest + (size_t)k * size, state);
+		mpq_set_d(j->t, (double)(float)when[k]);
+		compare(j, true, format("where %s is at its largest, at t = %.3g s, ", model->coord_name[k], when[k]), worst);
+	}
+}
+
+/* Over the time in which loads change their formula, else over a thousand steps */
+static void check_softness(struct jacobian *j)
+{
+	struct building *b = j->b;
+	const struct model *model = b->model;
+	struct softness worst = { 0, 0, "" };
+	mpq_t end;
+	mpq_init(end);
+	int changes = model->system.segments - 1;
+	if (changes > 0 && mpq_sgn(model->system.change[changes - 1]) > 0)
+		mpq_set(end, model->system.change[changes - 1]);
+	else
+		mpq_set_ui(end, 1000, 1);
+	if (changes == 0 || mpq_sgn(model->system.change[changes - 1]) <= 0)
+		mpq_mul(end, end, model->h);
+	j->state = (const mpq_t *)rationals((size_t)model->system.states);      /* at rest; where that is not defined, at the start */
+	if (!silent_guard(evaluate, j))
+		j->state = (const mpq_t *)model->initial;
+	bool moves = stiffness_moves(j);
+	for (int k = 0; k <= (moves ? SAMPLES : 0); k++) {
+		mpq_set_ui(j->t, (unsigned long)k, SAMPLES);
+		mpq_canonicalize(j->t);
+		mpq_mul(j->t, j->t, end);
+		compare(j, false, moves ? format("at t = %.4g s ", mpq_get_d(j->t)) : "", &worst);
+	}
+	if (stiffness_reads_states(j)) {
+		mpq_set_ui(j->t, 0, 1);
+		j->state = (const mpq_t *)model->initial;
+		compare(j, true, "at the initial values ", &worst);
+		compare_excursions(j, nearest_double(end), &worst);
+	}
+	mpq_clear(end);
+	if (worst.here <= worst.operator)
+		return;
+	double growth = nearest_double(model->h) / 4 * (worst.here - worst.operator);
+	const char *rate = model->scheme == SCHEME_ETD1 ? format(", growing at up to %.3g 1/s in etd1 (h/4 times the difference)", growth) : "";
+	say_warning(b->spec->has_operator ? b->spec->operator_at : scheme_place(b), format("what is left over then drives the motion%s; fix the operator where the model is stiffest", rate),
+		    "the linear operator is softer than the model gets: %sa squared frequency is %.4g 1/s^2, the operator's %.4g",
+		    worst.where, worst.here, worst.operator);
+}
+
+/* ---- what is not smooth ---- */
+
+static void check_smoothness(const struct building *b)
+{
+	const struct model *model = b->model;
+	if (!loses_order(model))
+		return;
+	const struct smoothness *smooth = &model->smooth;
+	const struct node *other = model->obstacle;
+	bool apart = smooth->piecewise && !smooth->timed && other &&
+		     (other->end.offset <= smooth->node->start.offset || other->start.offset >= smooth->node->end.offset);
+	const char *cure = smooth->timed && smooth->kind == SMOOTH_KINK ? "a step of which that time is a multiple keeps the order" :
+		smooth->kind == SMOOTH_JUMP ? "a smaller step, or something smooth in its place, such as tanh of a multiple" :
+		"a smaller step, or something smoother in its place";
+	say_warning(smooth->node->start, apart ? format("scheme exact treats it where '%s' is not beside it; else %s", text_between(other->start, other->end), cure)
+			  : cure,
+		    "%s: scheme %s is of order %s at most there, not %d", smoothness_text(model), scheme_name(model->scheme), order_text(model), order_of_scheme(model));
+}
+
+/* ---- the whole ---- */
+
+static void check_need(const struct building *b, bool left)
+{
+	const struct model *model = b->model;
+	if (b->spec->has_operator && (model->scheme <= SCHEME_PL || !left))
+		say_warning(b->spec->operator_at, NULL, model->scheme == SCHEME_PL ? "the operator has no effect: that of scheme pl is each coordinate's own terms"
+			: "the operator has no effect: nothing is left over");
+	if (left && !model->loads_left)
+		return;
+	if (model->scheme == SCHEME_PL && !model->loads_left)
+		say_warning(scheme_place(b), NULL, "scheme pl is of first order in h: this model is linear, and exact has no error");
+	else if (model->scheme > SCHEME_PL && is_linear(b))
+		say_warning(scheme_place(b), NULL, left ? "scheme %s approximates the loads: this model is linear, and exact has no error"
+			: "scheme %s has nothing to do: this model is linear, and exact covers it", scheme_name(model->scheme));
+}
+
+void warn(struct building *b)
+{
+	const struct model *model = b->model;
+	bool left = model->channels > 0;
+	struct jacobian j = { .b = b };
+	if (left && model->obstacle)
+		say_note(model->obstacle->start, "scheme %s, not exact: '%s' %s", scheme_name(model->scheme),
+			 text_between(model->obstacle->start, model->obstacle->end), model->obstacle_text);
+	check_need(b, left);
+	check_smoothness(b);
+	if (!left || model->scheme <= SCHEME_PL || is_linear(b) || !silent_guard(differentiate, &j))
+		return;
+	mpq_init(j.t);
+	if (model->scheme >= SCHEME_NC2)
+		check_predictor(&j);
+	else
+		check_softness(&j);
+	mpq_clear(j.t);
+}

@@ -1,0 +1,1131 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Tokens to nodes and declarations. The production stands above each function that reads it; names are resolved as
+ * they are read, since they are declared before use. */
+#include "read/read.h"
+
+#include <string.h>
+
+struct parser {
+	struct spec *spec;
+	struct lexer lexer;
+	struct token token;         /* the next one, not yet taken */
+	struct place end;           /* just after the last one taken */
+	size_t operand_end;         /* just after the last operand: there an operator may be missing */
+	size_t statement;           /* offset where it starts */
+	int nesting;
+	bool no_acceleration;       /* in a let */
+};
+
+static const char WORD[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ_0123456789";
+
+static struct node *read_expression(struct parser *p);
+
+/* ---- tokens ---- */
+
+static struct token take(struct parser *p)
+{
+	struct token token = p->token;
+	p->end = token.at;
+	p->end.offset += token.length;
+	p->token = lex_next(&p->lexer);
+	return token;
+}
+
+static bool is_op(const struct parser *p, const char *op)
+{
+	return p->token.kind == TOKEN_OPERATOR && strcmp(p->token.op, op) == 0;
+}
+
+static bool take_op(struct parser *p, const char *op)
+{
+	if (!is_op(p, op))
+		return false;
+	take(p);
+	return true;
+}
+
+/* 1,5 */
+static bool decimal_comma(const struct parser *p)
+{
+	const char *text = p->lexer.source->text + p->token.at.offset;
+	size_t before = p->token.at.offset;
+	bool number = p->token.kind == TOKEN_NUMBER && before > 1 && text[-1] == ',' && text[-2] >= '0' && text[-2] <= '9';
+	return number || (is_op(p, ",") && before > 0 && text[-1] >= '0' && text[-1] <= '9' && text[1] >= '0' && text[1] <= '9');
+}
+
+/* A name before a single =: the next definition of a list, its comma forgotten. */
+static bool starts_definition(const struct parser *p)
+{
+	const char *text = p->lexer.source->text + p->token.at.offset + p->token.length;
+	text += strspn(text, " \t");
+	return p->token.kind == TOKEN_NAME && text[0] == '=' && text[1] != '=';
+}
+
+/* A word between the parts of an element of a sketch. */
+static bool is_place(struct token token)
+{
+	static const char *const word[] = { "at", "between", "on", "ground" };
+	for (int i = 0; i < 4; i++)
+		if (strcmp(token.name, word[i]) == 0)
+			return true;
+	return false;
+}
+
+/* What usually stands behind a token that fits nowhere. */
+static const char *stray_note(const struct parser *p)
+{
+	bool after_operand = p->operand_end > 0 && p->operand_end == p->end.offset;
+	if (decimal_comma(p))
+		return "the decimal mark is the point: 1.5";
+	if (is_op(p, ";") && p->nesting == 0)
+		return "each statement has its own line; the parts of one are separated by commas";
+	if (starts_definition(p))
+		return "definitions are separated by commas";
+	if (after_operand && ((p->token.kind == TOKEN_NAME && !is_place(p->token)) || p->token.kind == TOKEN_NUMBER || is_op(p, "(")))
+		return "multiplication is written with *";
+	if (is_op(p, "=="))
+		return "an equation has a single =";
+	return NULL;
+}
+
+static _Noreturn void unexpected(const struct parser *p, const char *expected)
+{
+	error(p->token.at, stray_note(p), "expected %s, found %s", expected, token_text(p->token));
+}
+
+static void expect_op(struct parser *p, const char *op, const char *expected)
+{
+	if (!take_op(p, op))
+		unexpected(p, expected);
+}
+
+static void expect_end(struct parser *p)
+{
+	if (p->token.kind != TOKEN_END)
+		unexpected(p, "the end of the statement");
+}
+
+static void nest(struct parser *p, struct place at)
+{
+	if (++p->nesting > LIMIT_NESTING)
+		error(at, NULL, "nesting over the limit of %d", LIMIT_NESTING);
+}
+
+/* ---- nodes ---- */
+
+static struct node *node_new(enum node_kind kind, struct place at)
+{
+	struct node *node = NEW(struct node);
+	node->kind = kind;
+	node->at = node->start = node->end = at;
+	mpq_init(node->number);
+	return node;
+}
+
+static void add_child(struct node *node, struct node *child, bool inverse, struct place operator)
+{
+	size_t count = (size_t)node->children;
+	if ((count & (count - 1)) == 0) {       /* room grows by doubling */
+		size_t room = count ? 2 * count : 1;
+		ENLARGE(node->child, room);
+		ENLARGE(node->inverse, room);
+		ENLARGE(node->operator, room);
+	}
+	bool many = node->kind == NODE_CALL && (node->function == FN_MIN || node->function == FN_MAX || node->function == FN_TABLE);
+	int inside = child->depth + 1 + (many ? node->children : 0);
+	node->depth = inside > node->depth ? inside : node->depth;
+	if (node->depth > LIMIT_DEPTH)
+		error(child->start, NULL, "operations inside each other, through params and lets, over the limit of %d", LIMIT_DEPTH);
+	node->child[count] = child;
+	node->inverse[count] = inverse;
+	node->operator[count] = operator;
+	node->children++;
+	node->end = child->end;
+}
+
+char *text_between(struct place start, struct place end)
+{
+	const char *text = start.source->text;
+	char *folded = ARRAY(char, end.offset - start.offset + 1);
+	size_t length = 0;
+	for (size_t i = start.offset; i < end.offset; i++) {
+		if (text[i] == '#')
+			while (i < end.offset && text[i] != '\n')
+				i++;
+		bool space = i >= end.offset || strchr(" \t\r\n\f\v", text[i]);
+		if (!space)
+			folded[length++] = text[i];
+		else if (length > 0 && folded[length - 1] != ' ')
+			folded[length++] = ' ';
+	}
+	while (length > 0 && folded[length - 1] == ' ')
+		length--;
+	folded[length] = 0;
+	return folded;
+}
+
+enum { BUCKETS = 1 << 14 };
+
+struct symbol *spec_find(const struct spec *spec, const char *name)
+{
+	for (struct symbol *s = spec->bucket[name_hash(name) % BUCKETS]; s; s = s->next_alike)
+		if (strcmp(s->name, name) == 0)
+			return s;
+	return NULL;
+}
+
+/* Behind all others: of equal names the first is found. */
+static void add_symbol(struct spec *spec, struct symbol *symbol)
+{
+	*spec->last = symbol;
+	spec->last = &symbol->next;
+	struct symbol **link = &spec->bucket[name_hash(symbol->name) % BUCKETS];
+	while (*link)
+		link = &(*link)->next_alike;
+	*link = symbol;
+}
+
+static bool begins(const char *line, const char *word)
+{
+	size_t length = strlen(word);
+	return strncmp(line, word, length) == 0 && (line[length] == ' ' || line[length] == '\t');
+}
+
+/* Whether the rest of this statement or a later one declares it: then the order is what is wrong. */
+static bool declared_later(const struct parser *p, const char *name)
+{
+	size_t length = strlen(name);
+	const char *rest = p->lexer.source->text + p->lexer.position;
+	for (const char *line = p->lexer.source->text + p->statement; line; line = strchr(line, '\n'), line = line ? line + 1 : NULL) {
+		line += strspn(line, " \t");
+		bool coord = begins(line, "coord") || begins(line, "input");
+		if (!coord && !begins(line, "param") && !begins(line, "let") && !begins(line, "matrix"))
+			continue;
+		for (const char *at = line + 3; *at && !strchr("\n#", *at); at++) {
+			size_t word = strspn(at, WORD);
+			const char *after = at + word + strspn(at + word, " \t");
+			if (word == length && at >= rest && strncmp(at, name, word) == 0 && (coord || (after[0] == '=' && after[1] != '=')))
+				return true;
+			at += word > 0 ? word - 1 : 0;
+		}
+	}
+	return false;
+}
+
+static _Noreturn void unknown_name(const struct parser *p, struct token token)
+{
+	if (declared_later(p, token.name))
+		error(token.at, "names are declared before use; this one is declared further down", "unknown name '%s'", token.name);
+	error(token.at, spec_suggestion(p->spec, token.name), "unknown name '%s'", token.name);
+}
+
+static const char *kind_text(const struct symbol *symbol)
+{
+	static const char *const text[] = { "param", "coordinate", "let", "output", "input", "matrix" };
+	return text[symbol->kind];
+}
+
+/* component: [ NUMBER ] { ' }; *primes grows by those behind the bracket */
+static int read_component(struct parser *p, int *primes, bool declared)
+{
+	if (!is_op(p, "[") || p->token.at.offset != p->end.offset)
+		return 0;
+	struct place opening = take(p).at;
+	if (*primes > 0)
+		error(opening, "q[1]' is the velocity of a component", "a component stands before the primes");
+	if (p->token.kind != TOKEN_NUMBER)
+		unexpected(p, declared ? "the number of components" : "the number of a component");
+	mpq_t number;
+	mpq_init(number);
+	struct token token = take(p);
+	lex_number(token, number);
+	if (mpz_cmp_ui(mpq_denref(number), 1) != 0 || mpq_sgn(number) <= 0)
+		error(token.at, NULL, declared ? "a vector has a whole number of components, at least 1" : "components are numbered from 1");
+	if (declared && mpq_cmp_ui(number, LIMIT_STATES, 1) > 0)
+		error(token.at, NULL, "more states than the limit of %d", LIMIT_STATES);
+	int component = mpq_cmp_ui(number, LIMIT_STATES, 1) > 0 ? LIMIT_STATES + 1 : (int)mpz_get_ui(mpq_numref(number));
+	mpq_clear(number);
+	expect_op(p, "]", "']'");
+	if (p->token.kind == TOKEN_OPERATOR && p->token.op[0] == '\'')
+		*primes = (int)take(p).length;
+	return component;
+}
+
+static void check_component(const struct symbol *symbol, int component, struct place at)
+{
+	if (component == 0)
+		return;
+	if (symbol->kind != SYMBOL_COORD || symbol->length == 0)
+		error(at, "only vector coordinates have components", "'%s' is not a vector", symbol->name);
+	if (component > symbol->length)
+		error(at, NULL, "'%s' has %d components", symbol->name, symbol->length);
+}
+
+/* name: NAME { ' } | NAME [ NUMBER ] { ' } */
+static struct node *resolve_name(struct parser *p, struct token token)
+{
+	int component = read_component(p, &token.primes, false);
+	struct symbol *symbol = spec_find(p->spec, token.name);
+	if (!symbol)
+		unknown_name(p, token);
+	if (symbol->broken)
+		abandon();
+	if (symbol->kind == SYMBOL_OUTPUT)
+		error(token.at, "a shorthand for use in expressions is a let", "output '%s' cannot be used in an expression", token.name);
+	if (token.primes > 0 && symbol->kind != SYMBOL_COORD && symbol->kind != SYMBOL_INPUT)
+		error(token.at, "only coordinates have derivatives", "%s '%s' has no derivative", kind_text(symbol), token.name);
+	if (token.primes > 0 && symbol->kind == SYMBOL_INPUT && !symbol->first_order)
+		error(token.at, format("input %s hold first ramps between samples and has one", token.name), "input '%s' is held over a step: it has no slope",
+		      token.name);
+	if (token.primes > 1 && symbol->kind == SYMBOL_INPUT)
+		error(token.at, NULL, "input '%s' has no second derivative", token.name);
+	check_component(symbol, component, token.at);
+	if (p->no_acceleration && symbol->kind == SYMBOL_COORD && token.primes > 1)
+		error(token.at, "a let may use coordinates and their first derivatives", "an acceleration in a let");
+	struct node *node = node_new(NODE_NAME, token.at);
+	node->symbol = symbol;
+	node->depth = symbol->value ? symbol->value->depth + 1 : 0;
+	node->primes = token.primes;
+	node->component = component;
+	node->end = p->end;
+	return node;
+}
+
+static void check_arguments(const struct node *call)
+{
+	int wanted = call->function == FN_ATAN2 ? 2 : call->function == FN_DEADZONE || call->function == FN_CLIP ? 3 : 1;
+	bool open_ended = call->function == FN_MIN || call->function == FN_MAX || call->function == FN_TABLE;
+	if (call->function == FN_TABLE && call->children < 5)
+		error(call->at, "table(x; x0, y0; x1, y1; ...)", "a table needs at least two points");
+	if (open_ended ? call->children < 2 : call->children != wanted)
+		error(call->at, NULL, "%s takes %s%d argument%s, found %d", function_name(call->function), open_ended ? "at least " : "",
+		      open_ended ? 2 : wanted, wanted == 1 && !open_ended ? "" : "s", call->children);
+}
+
+/* call: FUNCTION ( expression { , expression } )   |   table ( expression { ; expression , expression } ) */
+static struct node *read_call(struct parser *p, struct token name, enum function function)
+{
+	struct node *call = node_new(NODE_CALL, name.at);
+	call->function = function;
+	if (name.primes > 0)
+		error(name.at, NULL, "a function has no derivative here: '%s'", name.name);
+	if (!is_op(p, "("))
+		error(name.at, NULL, "'%s' is a function: expected '(' after it, found %s", name.name, token_text(p->token));
+	nest(p, name.at);
+	struct place separator = take(p).at;
+	add_child(call, read_expression(p), false, separator);
+	while (is_op(p, ",") || is_op(p, ";")) {
+		bool semicolon = is_op(p, ";");
+		if (semicolon != (function == FN_TABLE && call->children % 2 == 1))
+			unexpected(p, function == FN_TABLE ? "the points of a table as x; x0, y0; x1, y1" : "',' or ')'");
+		separator = take(p).at;
+		add_child(call, read_expression(p), false, separator);
+	}
+	expect_op(p, ")", "',' or ')'");
+	p->nesting--;
+	call->end = p->end;
+	if (function == FN_TABLE && call->children % 2 == 0)
+		error(call->at, "table(x; x0, y0; x1, y1; ...)", "the last point of the table has no y");
+	check_arguments(call);
+	return call;
+}
+
+static struct node *read_bracket(struct parser *p)
+{
+	struct place opening = take(p).at;
+	nest(p, opening);
+	struct node *inner = read_expression(p);
+	expect_op(p, ")", "')' or an operator");
+	p->nesting--;
+	if (p->token.kind == TOKEN_OPERATOR && p->token.op[0] == '\'')
+		unexpected(p, "an operator");
+	inner->start = opening;
+	inner->end = p->end;
+	return inner;
+}
+
+/* matrix: [ expression { , expression } { ; expression { , expression } } ] */
+static struct node *read_matrix(struct parser *p)
+{
+	struct place separator = p->token.at;
+	struct node *node = node_new(NODE_MATRIX, separator);
+	nest(p, separator);
+	for (int column = 0;;) {
+		take(p);
+		add_child(node, read_expression(p), false, separator);
+		column++;
+		separator = p->token.at;
+		if (is_op(p, ","))
+			continue;
+		if (node->columns == 0)
+			node->columns = column;
+		if (column != node->columns)
+			error(separator, NULL, "row of %d in a matrix with rows of %d", column, node->columns);
+		column = 0;
+		if (!is_op(p, ";"))
+			break;
+	}
+	expect_op(p, "]", "',', ';' or ']'");
+	p->nesting--;
+	node->end = p->end;
+	return node;
+}
+
+/* operand: NUMBER | pi | t | name | call | ( expression ) | matrix */
+static struct node *read_operand(struct parser *p)
+{
+	if (is_op(p, "("))
+		return read_bracket(p);
+	if (is_op(p, "["))
+		return read_matrix(p);
+	if (p->token.kind == TOKEN_NUMBER) {
+		struct token token = take(p);
+		struct node *node = node_new(NODE_NUMBER, token.at);
+		lex_number(token, node->number);
+		node->end = p->end;
+		return node;
+	}
+	if (p->token.kind != TOKEN_NAME)
+		unexpected(p, "a number, a name or '('");
+	struct token name = take(p);
+	enum function function = function_of(name.name);
+	if (function != FN_NONE)
+		return read_call(p, name, function);
+	bool time = strcmp(name.name, "t") == 0;
+	if (time || strcmp(name.name, "pi") == 0) {
+		if (name.primes > 0)
+			error(name.at, NULL, "'%s' has no derivative", name.name);
+		struct node *node = node_new(time ? NODE_TIME : NODE_PI, name.at);
+		node->end = p->end;
+		return node;
+	}
+	if (is_reserved(name.name) && !spec_find(p->spec, name.name))   /* else broken: told where it is declared */
+		error(name.at, NULL, "'%s' is a reserved word", name.name);
+	return resolve_name(p, name);
+}
+
+/* primary: NUMBER | pi | t | name | call | ( expression ) */
+static struct node *read_primary(struct parser *p)
+{
+	struct node *operand = read_operand(p);
+	p->operand_end = p->end.offset;
+	return operand;
+}
+
+static struct node *read_unary(struct parser *p);
+
+/* power: primary [ ^ ( power | sign power ) ] */
+static struct node *read_power(struct parser *p)
+{
+	struct node *base = read_primary(p);
+	if (!is_op(p, "^")) {
+		if (is_op(p, "*") && p->lexer.source->text[p->token.at.offset + 1] == '*')
+			error(p->token.at, "a power is written with ^", "unexpected '**'");
+		return base;
+	}
+	struct node *power = node_new(NODE_POWER, p->token.at);
+	struct place caret = take(p).at;
+	nest(p, caret);
+	struct node *exponent = is_op(p, "+") || is_op(p, "-") ? read_unary(p) : read_power(p);
+	p->nesting--;
+	add_child(power, base, false, caret);
+	add_child(power, exponent, false, caret);
+	power->start = base->start;
+	return power;
+}
+
+/* unary: ( + | - ) unary | power */
+static struct node *read_unary(struct parser *p)
+{
+	if (!is_op(p, "+") && !is_op(p, "-"))
+		return read_power(p);
+	struct token sign = take(p);
+	nest(p, sign.at);
+	struct node *operand = read_unary(p);
+	p->nesting--;
+	struct node *node = node_new(NODE_SUM, sign.at);
+	add_child(node, operand, sign.op[0] == '-', sign.at);
+	return node;
+}
+
+/* One level of left-associative operators, as one node with many children: long sums stay flat. */
+static struct node *read_chain(struct parser *p, enum node_kind kind, const char *plain, const char *inverse, struct node *(*read)(struct parser *))
+{
+	struct node *first = read(p);
+	if (!is_op(p, plain) && !is_op(p, inverse))
+		return first;
+	struct node *chain = node_new(kind, p->token.at);
+	chain->start = first->start;
+	add_child(chain, first, false, first->start);
+	while (is_op(p, plain) || is_op(p, inverse)) {
+		struct token operator = take(p);
+		add_child(chain, read(p), strcmp(operator.op, inverse) == 0, operator.at);
+	}
+	return chain;
+}
+
+/* product: unary { ( * | / ) unary } */
+static struct node *read_product(struct parser *p)
+{
+	return read_chain(p, NODE_PRODUCT, "*", "/", read_unary);
+}
+
+/* sum: product { ( + | - ) product } */
+static struct node *read_sum(struct parser *p)
+{
+	return read_chain(p, NODE_SUM, "+", "-", read_product);
+}
+
+static bool comparison_of(const struct parser *p, enum comparison *comparison)
+{
+	static const char *const text[] = { "<", "<=", ">", ">=", "==", "!=" };
+	for (int i = 0; i < 6; i++)
+		if (is_op(p, text[i])) {
+			*comparison = (enum comparison)i;
+			return true;
+		}
+	return false;
+}
+
+/* comparison: sum [ ( < | <= | > | >= | == | != ) sum ] */
+static struct node *read_comparison(struct parser *p)
+{
+	struct node *left = read_sum(p);
+	enum comparison comparison;
+	if (!comparison_of(p, &comparison))
+		return left;
+	struct node *node = node_new(NODE_COMPARE, p->token.at);
+	struct place operator = take(p).at;
+	node->comparison = comparison;
+	node->start = left->start;
+	add_child(node, left, false, operator);
+	add_child(node, read_sum(p), false, operator);
+	if (comparison_of(p, &comparison))
+		unexpected(p, "a single comparison");
+	return node;
+}
+
+/* expression: comparison [ ? expression : expression ] */
+static struct node *read_expression(struct parser *p)
+{
+	struct node *condition = read_comparison(p);
+	if (!is_op(p, "?"))
+		return condition;
+	struct node *node = node_new(NODE_CHOOSE, p->token.at);
+	struct place mark = take(p).at;
+	nest(p, mark);
+	node->start = condition->start;
+	add_child(node, condition, false, mark);
+	add_child(node, read_expression(p), false, mark);
+	expect_op(p, ":", "':' of the condition");
+	add_child(node, read_expression(p), false, mark);
+	p->nesting--;
+	return node;
+}
+
+/* ---- statements ---- */
+
+static struct token expect_new_name(struct parser *p, const char *what)
+{
+	if (p->token.kind != TOKEN_NAME)
+		unexpected(p, what);
+	if (p->token.primes > 0)
+		error(p->token.at, NULL, "a name is declared without primes: '%s'", p->token.name);
+	if (is_reserved(p->token.name))
+		error(p->token.at, NULL, "'%s' is a reserved word", p->token.name);
+	return take(p);
+}
+
+static struct place last_token(const struct parser *p, size_t length)
+{
+	return (struct place){ p->end.source, p->end.offset - length };
+}
+
+static struct symbol *declare(struct parser *p, struct token name, enum symbol_kind kind, bool broken)
+{
+	struct spec *spec = p->spec;
+	struct symbol *known = spec_find(spec, name.name);
+	if (known && known->broken)
+		abandon();
+	if (known)
+		error(name.at, NULL, "'%s' is declared already, as %s %s", name.name, known->kind == SYMBOL_OUTPUT || known->kind == SYMBOL_INPUT ? "an" : "a", kind_text(known));
+	int *counts[] = { &spec->params, &spec->coords, &spec->lets, &spec->outputs, &spec->inputs, &spec->matrices };
+	struct symbol *symbol = NEW(struct symbol);
+	*symbol = (struct symbol){ .kind = kind, .name = name.name, .at = name.at, .statement = p->statement, .broken = broken };
+	symbol->index = broken ? -1 : (*counts[kind])++;
+	add_symbol(spec, symbol);
+	return symbol;
+}
+
+/* param: param NAME = expression { , NAME = expression };   let: let NAME = expression */
+static void read_definitions(struct parser *p, enum symbol_kind kind)
+{
+	do {
+		struct token name = expect_new_name(p, "a name");
+		expect_op(p, "=", "'='");
+		struct node *value = read_expression(p);
+		declare(p, name, kind, false)->value = value;
+	} while (take_op(p, ","));
+	expect_end(p);
+}
+
+static void read_param(struct parser *p)
+{
+	read_definitions(p, SYMBOL_PARAM);
+}
+
+static void read_let(struct parser *p)
+{
+	p->no_acceleration = true;
+	read_definitions(p, SYMBOL_LET);
+}
+
+static void add_file(struct spec *spec, const char *path)
+{
+	ENLARGE(spec->file, (size_t)spec->files + 1);
+	spec->file[spec->files++] = path;
+}
+
+/* A data file stands beside the spec unless its path is absolute. */
+static struct node *read_file_name(struct parser *p)
+{
+	struct token token = take(p);
+	const char *name = format("%.*s", (int)token.length - 2, token.at.source->text + token.at.offset + 1);
+	const char *spec = p->spec->source->name, *slash = strrchr(spec, '/');
+	struct node *node = node_new(NODE_FILE, token.at);
+	node->end = p->end;
+	node->path = name[0] == '/' || !slash ? name : format("%.*s/%s", (int)(slash - spec), spec, name);
+	add_file(p->spec, node->path);
+	return node;
+}
+
+/* matrix: matrix NAME = ( STRING | expression ) { , ... } */
+static void read_matrix_statement(struct parser *p)
+{
+	do {
+		struct token name = expect_new_name(p, "the name of a matrix");
+		expect_op(p, "=", "'='");
+		struct node *value = p->token.kind == TOKEN_STRING ? read_file_name(p) : read_expression(p);
+		declare(p, name, SYMBOL_MATRIX, false)->value = value;
+	} while (take_op(p, ","));
+	expect_end(p);
+}
+
+/* model: model NAME */
+static void read_model(struct parser *p)
+{
+	if (p->spec->name && *p->spec->name)
+		error(last_token(p, 5), NULL, "the model is named already: '%s'", p->spec->name);
+	if (p->token.kind != TOKEN_NAME || p->token.primes > 0)
+		unexpected(p, "the model's name");
+	struct token name = take(p);
+	expect_end(p);
+	p->spec->name = name.name;
+	p->spec->name_at = name.at;
+}
+
+/* coord: coord NAME [ '[' NUMBER ']' ] { , ... } */
+static void read_coord(struct parser *p)
+{
+	do {
+		struct token name = expect_new_name(p, "the name of a coordinate");
+		int primes = 0, length = read_component(p, &primes, true);
+		if (primes)
+			error(name.at, NULL, "a coordinate is declared without primes");
+		struct symbol *symbol = declare(p, name, SYMBOL_COORD, false);
+		symbol->length = length;
+		symbol->index = p->spec->components;
+		p->spec->components += length ? length : 1;
+	} while (take_op(p, ","));
+	expect_end(p);
+}
+
+static bool take_word(struct parser *p, const char *word)
+{
+	if (p->token.kind != TOKEN_NAME || p->token.primes > 0 || strcmp(p->token.name, word) != 0)
+		return false;
+	take(p);
+	return true;
+}
+
+/* `hold first` at the end of a list, and nowhere else in it, holds for the whole list. Else it holds for the name before it, and whoever has
+ * none is held: after the ramps only, where that cannot be taken for the other. `last`: of the list */
+static void apply_hold(struct parser *p, const struct symbol *last, int phrases)
+{
+	const struct symbol *held = NULL;
+	bool whole = phrases == 1 && last->first_order;
+	for (struct symbol *s = p->spec->first; s && phrases > 0; s = s->next) {
+		if (s->statement != p->statement)
+			continue;
+		if (s->first_order && held && !whole)
+			error(held->at, format("what is held goes last, or has a statement of its own: input %s", held->name),
+				"is '%s' held, or a ramp as '%s' is?", held->name, s->name);
+		held = s->first_order || held ? held : s;
+		s->first_order = s->first_order || whole;
+	}
+}
+
+/* input: input NAME [ hold first ] { , NAME [ hold first ] } */
+static void read_input(struct parser *p)
+{
+	struct symbol *input;
+	int phrases = 0;
+	do {
+		input = declare(p, expect_new_name(p, "the name of an input"), SYMBOL_INPUT, false);
+		if (!take_word(p, "hold"))
+			continue;
+		input->first_order = take_word(p, "first");
+		if (!input->first_order)
+			error(p->token.at, "without 'hold first' an input is held from sample to sample", "expected 'first', found %s", token_text(p->token));
+		phrases++;
+	} while (take_op(p, ","));
+	expect_end(p);
+	apply_hold(p, input, phrases);
+}
+
+static void add_initial(struct parser *p, struct token name, struct symbol *coord, int component, struct node *value)
+{
+	struct spec *spec = p->spec;
+	for (int i = 0; i < spec->initials; i++)
+		if (spec->initial[i].coord == coord && spec->initial[i].primes == name.primes &&
+		    (!component || !spec->initial[i].component || spec->initial[i].component == component))
+			error(name.at, NULL, "the initial value of %s is given already", token_text(name));
+	ENLARGE(spec->initial, (size_t)spec->initials + 1);
+	spec->initial[spec->initials++] = (struct initial){ name.at, p->statement, coord, name.primes, component, value };
+}
+
+/* init: init NAME [ ' ] = expression { , ... } */
+static void read_init(struct parser *p)
+{
+	do {
+		if (p->token.kind != TOKEN_NAME)
+			unexpected(p, "a coordinate");
+		struct token name = take(p);
+		int component = read_component(p, &name.primes, false);
+		name.length = p->end.offset - name.at.offset;
+		struct symbol *coord = spec_find(p->spec, name.name);
+		if (coord && coord->broken)
+			abandon();
+		if (!coord && !is_reserved(name.name))
+			unknown_name(p, name);
+		if (!coord || coord->kind != SYMBOL_COORD)
+			error(name.at, "initial values are for coordinates and their velocities", "'%s' is not a coordinate", name.name);
+		check_component(coord, component, name.at);
+		if (name.primes > 1)
+			error(name.at, NULL, "an acceleration has no initial value: it follows from the equations");
+		expect_op(p, "=", "'='");
+		add_initial(p, name, coord, component, read_expression(p));
+	} while (take_op(p, ","));
+	expect_end(p);
+}
+
+/* An output that only names something: x1, x2', x1'', a let. */
+static struct symbol *read_plain_output(struct parser *p, struct token name)
+{
+	struct node *value = strcmp(name.name, "t") == 0 ? node_new(NODE_TIME, name.at) : resolve_name(p, name);
+	const char *shown = value->component ? format("%s[%d]%.*s", name.name, value->component, value->primes, "''")
+					     : format("%s%.*s", name.name, value->primes, "''");
+	if (p->token.kind != TOKEN_END && !is_op(p, ","))
+		unexpected(p, "'=' or ','");
+	for (struct symbol *s = p->spec->first; s; s = s->next)
+		if (s->kind == SYMBOL_OUTPUT && strcmp(s->name, shown) == 0)
+			error(name.at, NULL, "output '%s' is declared already", shown);
+	struct symbol *symbol = NEW(struct symbol);
+	*symbol = (struct symbol){ .kind = SYMBOL_OUTPUT, .name = shown, .at = name.at, .statement = p->statement, .value = value };
+	symbol->index = p->spec->outputs++;
+	value->end = p->end;
+	add_symbol(p->spec, symbol);
+	return symbol;
+}
+
+/* output: output ( NAME = expression | name ) { , ... } */
+static void read_output(struct parser *p)
+{
+	do {
+		if (p->token.kind != TOKEN_NAME)
+			unexpected(p, "the name of an output");
+		struct token name = take(p);
+		if (!is_op(p, "=")) {
+			read_plain_output(p, name);
+			continue;
+		}
+		if (name.primes > 0 || is_reserved(name.name))
+			error(name.at, NULL, "'%s' cannot be the name of an output", name.name);
+		take(p);
+		struct node *value = read_expression(p);
+		declare(p, name, SYMBOL_OUTPUT, false)->value = value;
+	} while (take_op(p, ","));
+	expect_end(p);
+}
+
+/* step: step expression */
+static void read_step(struct parser *p)
+{
+	struct place at = last_token(p, 4);
+	if (p->spec->step)
+		error(at, NULL, "the step is given already");
+	p->spec->step_at = p->token.at;
+	p->spec->step = read_expression(p);
+	expect_end(p);
+}
+
+/* scheme: scheme NAME */
+static void read_scheme(struct parser *p)
+{
+	struct place at = last_token(p, 6);
+	if (p->spec->scheme)
+		error(at, NULL, "the scheme is given already");
+	if (p->token.kind != TOKEN_NAME || p->token.primes > 0)
+		unexpected(p, "the name of a scheme");
+	struct token name = take(p);
+	p->spec->scheme_at = name.at;
+	expect_end(p);
+	p->spec->scheme = name.name;
+}
+
+static void expect_word(struct parser *p, const char *word)
+{
+	if (!take_word(p, word))
+		unexpected(p, format("'%s'", word));
+}
+
+/* NAME = or q[3]' =: the next name of a list of definitions */
+static bool names_definition(const struct parser *p)
+{
+	const char *text = p->lexer.source->text + p->token.at.offset + p->token.length;
+	if (p->token.kind == TOKEN_NAME && *text == '[')
+		text += strcspn(text, "]\n") + (text[strcspn(text, "]\n")] == ']');
+	text += strspn(text, "' \t");
+	return p->token.kind == TOKEN_NAME && text[0] == '=' && text[1] != '=';
+}
+
+/* What an operator can fix: t, a coordinate, its first derivative, a let */
+static struct fixed *read_fixed_name(struct parser *p)
+{
+	struct spec *spec = p->spec;
+	if (p->token.kind != TOKEN_NAME)
+		unexpected(p, "a name to fix");
+	struct token token = take(p);
+	bool time = strcmp(token.name, "t") == 0 && token.primes == 0;
+	struct node *name = time ? NULL : resolve_name(p, token);
+	const struct symbol *symbol = time ? NULL : name->symbol;
+	if (symbol && symbol->kind != SYMBOL_COORD && symbol->kind != SYMBOL_LET)
+		error(token.at, "an operator fixes t, coordinates, their first derivatives and lets", "%s '%s' cannot be fixed", kind_text(symbol), symbol->name);
+	if (token.primes > 1 || (name && name->primes > 1))
+		error(token.at, "an operator fixes t, coordinates, their first derivatives and lets", "an acceleration cannot be fixed");
+	for (int i = 0; i < spec->fixeds; i++) {
+		const struct fixed *other = &spec->fixed[i];
+		bool same = other->symbol == symbol && (!name || (other->primes == name->primes &&
+			    (!other->component || !name->component || other->component == name->component)));
+		if (same)
+			error(token.at, NULL, "%s is fixed already", text_between(token.at, p->end));
+	}
+	ENLARGE(spec->fixed, (size_t)spec->fixeds + 1);
+	struct fixed *fixed = &spec->fixed[spec->fixeds++];
+	*fixed = (struct fixed){ .at = token.at, .end = p->end, .symbol = symbol };
+	fixed->primes = name ? name->primes : 0;
+	fixed->component = name ? name->component : 0;
+	return fixed;
+}
+
+/* operator: operator at NAME = expression { , ( NAME = expression | expression ) } */
+static void read_operator(struct parser *p)
+{
+	struct spec *spec = p->spec;
+	struct place at = last_token(p, 8);
+	struct fixed *fixed = NULL;
+	if (spec->has_operator)
+		error(at, NULL, "the operator is given already");
+	spec->has_operator = true;
+	spec->operator_at = at;
+	expect_word(p, "at");
+	do {
+		if (!fixed || names_definition(p)) {
+			fixed = read_fixed_name(p);
+			expect_op(p, "=", "'='");
+		}
+		ENLARGE(fixed->value, (size_t)fixed->values + 1);
+		fixed->value[fixed->values++] = read_expression(p);
+	} while (take_op(p, ","));
+	expect_end(p);
+}
+
+/* ---- params that the target may change ---- */
+
+/* tunable: tunable NAME { , NAME } */
+static void read_tunable(struct parser *p)
+{
+	struct spec *spec = p->spec;
+	do {
+		if (p->token.kind != TOKEN_NAME || is_reserved(p->token.name))
+			unexpected(p, "a param");
+		struct token token = take(p);
+		struct symbol *symbol = spec_find(spec, token.name);
+		if (!symbol || symbol->broken || symbol->kind == SYMBOL_PARAM)
+			symbol = resolve_name(p, token)->symbol;
+		if (symbol->kind != SYMBOL_PARAM)
+			error(token.at, "a param is tunable, and nothing else", "%s '%s' is not a param", kind_text(symbol), symbol->name);
+		if (symbol->tuned)
+			error(token.at, NULL, "'%s' is tunable already", symbol->name);
+		if (spec->tunables == LIMIT_TUNABLES)
+			error(token.at, NULL, "more tunable params than the limit of %d", LIMIT_TUNABLES);
+		symbol->tuned = true;
+		ENLARGE(spec->tunable, (size_t)spec->tunables + 1);
+		spec->tunable[spec->tunables++] = (struct tunable){ token.at, symbol };
+	} while (take_op(p, ","));
+	expect_end(p);
+}
+
+/* ---- sketches ---- */
+
+static struct node *read_coordinate(struct parser *p, bool ground)
+{
+	if (ground && take_word(p, "ground"))
+		return NULL;
+	if (p->token.kind != TOKEN_NAME || is_reserved(p->token.name))
+		unexpected(p, ground ? "a coordinate or ground" : "a coordinate");
+	struct node *node = resolve_name(p, take(p));
+	if (node->symbol->kind != SYMBOL_COORD || node->primes > 0 || (node->symbol->length && !node->component))
+		error(node->at, NULL, "expected a scalar coordinate or a component, found '%s'", text_between(node->start, node->end));
+	return node;
+}
+
+/* mass: mass expression at coordinate;  spring, damper: ... expression between coordinate , coordinate;
+ * force: force expression on coordinate */
+static void read_element(struct parser *p, int kind)
+{
+	struct spec *spec = p->spec;
+	struct element element = { .kind = kind, .at = (struct place){ p->lexer.source, p->statement } };
+	element.value = read_expression(p);
+	expect_word(p, kind == ELEMENT_MASS ? "at" : kind == ELEMENT_FORCE ? "on" : "between");
+	bool two = kind == ELEMENT_SPRING || kind == ELEMENT_DAMPER;
+	struct token first = p->token;
+	element.from = read_coordinate(p, two);
+	if (two) {
+		expect_op(p, ",", "','");
+		element.to = read_coordinate(p, true);
+	}
+	if (two && !element.from) {
+		element.from = element.to;
+		element.to = NULL;
+	}
+	if (!element.from || (element.to && element.from->symbol == element.to->symbol && element.from->component == element.to->component))
+		error(first.at, NULL, "it acts between a coordinate and itself");
+	expect_end(p);
+	element.end = p->end;
+	ENLARGE(spec->element, (size_t)spec->elements + 1);
+	spec->element[spec->elements++] = element;
+}
+
+static void read_mass(struct parser *p) { read_element(p, ELEMENT_MASS); }
+static void read_spring(struct parser *p) { read_element(p, ELEMENT_SPRING); }
+static void read_damper(struct parser *p) { read_element(p, ELEMENT_DAMPER); }
+static void read_force(struct parser *p) { read_element(p, ELEMENT_FORCE); }
+
+static const struct statement {
+	const char *word;
+	void (*read)(struct parser *);
+} statements[] = {
+	{ "model", read_model }, { "param", read_param }, { "coord", read_coord }, { "init", read_init }, { "let", read_let },
+	{ "output", read_output }, { "step", read_step }, { "scheme", read_scheme },
+	{ "input", read_input }, { "matrix", read_matrix_statement }, { "mass", read_mass }, { "spring", read_spring },
+	{ "damper", read_damper }, { "force", read_force }, { "operator", read_operator },
+	{ "tunable", read_tunable }
+};
+
+static const struct statement *statement_of(struct token token)
+{
+	for (size_t i = 0; token.kind == TOKEN_NAME && token.primes == 0 && i < sizeof statements / sizeof *statements; i++)
+		if (strcmp(token.name, statements[i].word) == 0)
+			return &statements[i];
+	return NULL;
+}
+
+static const char *nearest_statement(const char *word)
+{
+	const char *known[sizeof statements / sizeof *statements];
+	for (size_t i = 0; i < sizeof statements / sizeof *statements; i++)
+		known[i] = statements[i].word;
+	return nearest_name(word, (int)(sizeof statements / sizeof *statements), known);
+}
+
+/* A line such as `parm m = 1` or `stpe 0.01`: no expression starts with a name and a name or number. */
+static bool resembles_statement(const struct spec *spec, struct token token)
+{
+	const char *text = token.at.source->text + token.at.offset + token.length;
+	size_t space = strspn(text, " \t");
+	return token.kind == TOKEN_NAME && token.primes == 0 && space > 0 && strspn(text + space, WORD) > 0 &&
+	       !spec_find(spec, token.name) && !is_reserved(token.name);
+}
+
+/* It is meant as a statement: say so rather than that its first word is unknown. */
+static void check_statement_word(const struct parser *p)
+{
+	struct token token = p->token;
+	if (!resembles_statement(p->spec, token))
+		return;
+	const char *nearest = nearest_statement(token.name);
+	error(token.at, nearest ? format("did you mean '%s'?", nearest) : NULL, "unknown statement '%s'", token.name);
+}
+
+/* equation: expression = expression */
+static void read_equation(struct parser *p)
+{
+	check_statement_word(p);
+	struct spec *spec = p->spec;
+	struct equation equation = { .at = p->token.at };
+	spec->equations++;                      /* counted even if broken: its absence is not to be told as well */
+	ENLARGE(spec->equation, (size_t)spec->equations);
+	spec->equation[spec->equations - 1] = equation;
+	equation.left = read_expression(p);
+	if (p->token.kind == TOKEN_END && equation.left->kind == NODE_COMPARE && equation.left->comparison == CMP_EQ)
+		error(equation.left->at, "an equation has a single =", "expected an operator or the '=' of the equation, found '=='");
+	if (!is_op(p, "="))
+		unexpected(p, "an operator or the '=' of the equation");
+	take(p);
+	equation.right = read_expression(p);
+	equation.end = p->end;
+	if (is_op(p, "="))
+		error(p->token.at, NULL, "an equation has a single =");
+	expect_end(p);
+	spec->equation[spec->equations - 1] = equation;
+}
+
+static void read_statement(void *context)
+{
+	struct parser *p = context;
+	p->token = lex_next(&p->lexer);
+	p->end = p->token.at;
+	const struct statement *statement = statement_of(p->token);
+	if (!p->spec->name && !(statement && statement->read == read_model)) {
+		p->spec->name = "";             /* told once */
+		error(p->token.at, "a spec begins with its name: model NAME", "expected the statement 'model', found %s", token_text(p->token));
+	}
+	if (!p->spec->name)
+		p->spec->name = "";             /* should its statement fail, that is told */
+	if (!statement) {
+		read_equation(p);
+	} else {
+		take(p);
+		statement->read(p);
+	}
+}
+
+/* ---- after an error ---- */
+
+static void declare_broken(void *context)
+{
+	struct parser *p = context;
+	struct token token = p->token;
+	if (!spec_find(p->spec, token.name))
+		declare(p, token, SYMBOL_PARAM, true);
+}
+
+/* The statement that starts at `from`, or that its misspelt first word is meant for. Nothing is lexed: what cannot be
+ * has been told, and no guard stands around this. */
+static const struct statement *failed_statement(const struct parser *p, size_t from, size_t *after)
+{
+	const char *text = p->lexer.source->text + from;
+	size_t length = strspn(text, WORD);
+	struct token token = { TOKEN_NAME, { p->lexer.source, from }, length, "", format("%.*s", (int)length, text), text[length] == '\'' };
+	const struct statement *statement = statement_of(token);
+	*after = from + length;
+	if (statement || !resembles_statement(p->spec, token))
+		return statement;
+	const char *nearest = nearest_statement(token.name);
+	for (size_t i = 0; nearest && i < sizeof statements / sizeof *statements; i++)
+		if (strcmp(nearest, statements[i].word) == 0)
+			return &statements[i];
+	return NULL;
+}
+
+/* The names that a failed statement would have declared are known but broken, so that their use is not told as well. */
+static void declare_what_failed(struct parser *p, size_t from)
+{
+	const char *text = p->lexer.source->text;
+	size_t after;
+	const struct statement *statement = failed_statement(p, from, &after);
+	for (struct symbol *s = p->spec->first; s; s = s->next)
+		if (s->statement == p->statement && (s->kind == SYMBOL_PARAM || s->kind == SYMBOL_MATRIX))
+			s->broken = true;
+	bool all = statement && (statement->read == read_coord || statement->read == read_input);
+	if (!statement || (!all && statement->read != read_param && statement->read != read_let && statement->read != read_output &&
+	     statement->read != read_matrix_statement))
+		return;
+	bool listed = true;                     /* here a definition starts, even one without its = */
+	int depth = 0;
+	for (size_t i = after; i < p->lexer.end; i++) {
+		if (text[i] == '#')
+			break;
+		size_t length = strspn(text + i, WORD);
+		if (length == 0) {
+			depth += strchr("([{", text[i]) ? 1 : strchr(")]}", text[i]) ? -1 : 0;
+			listed = depth == 0 && (text[i] == ',' || (listed && strchr(" \t", text[i])));
+			continue;
+		}
+		const char *next = text + i + length + strspn(text + i + length, " \t");
+		bool defined = listed || (next[0] == '=' && next[1] != '=');
+		listed = false;
+		if ((all || defined) && !strchr("0123456789", text[i])) {
+			p->token = (struct token){ TOKEN_NAME, { p->lexer.source, i }, length, "", format("%.*s", (int)length, text + i), 0 };
+			statement_guard(declare_broken, p);
+		}
+		i += length - 1;
+	}
+}
+
+/* spec: { statement line-end } */
+struct spec *parse_spec(const struct source *source)
+{
+	struct spec *spec = NEW(struct spec);
+	spec->source = source;
+	spec->last = &spec->first;
+	spec->bucket = ARRAY(struct symbol *, BUCKETS);
+	spec->end = place_end(source);
+	size_t position = strncmp(source->text, "\xef\xbb\xbf", 3) == 0 ? 3 : 0;
+	while (position < source->length) {
+		size_t unclosed, from = position;
+		struct parser p = { .spec = spec };
+		p.lexer = (struct lexer){ source, from, lex_statement_end(source, from, &unclosed) };
+		position = p.lexer.end + 1;
+		for (size_t i = from; strchr(" \t\r\f\v", source->text[i]) && i < p.lexer.end;)
+			from = ++i;
+		if (from >= p.lexer.end || source->text[from] == '#')
+			continue;
+		p.statement = from;
+		bool good = false;
+		if (unclosed != SIZE_MAX)
+			say_error((struct place){ source, unclosed }, NULL, "'%c' is not closed", source->text[unclosed]);
+		else
+			good = statement_guard(read_statement, &p);
+		if (!good)
+			declare_what_failed(&p, from);
+	}
+	if (!spec->name)
+		say_error(spec->end.offset ? spec->end : (struct place){ source, 0 }, "a spec begins with its name: model NAME",
+			  source->length ? "there is no statement in this file" : "the file is empty");
+	return spec;
+}
+
+struct argument {
+	struct parser parser;
+	struct node *value;
+};
+
+static void read_argument(void *context)
+{
+	struct argument *argument = context;
+	struct parser *p = &argument->parser;
+	p->token = lex_next(&p->lexer);
+	p->end = p->token.at;
+	struct node *value = read_expression(p);
+	expect_end(p);
+	argument->value = value;
+}
+
+struct node *parse_argument(struct spec *spec, const struct source *source, size_t from)
+{
+	struct argument argument = { .parser = { .spec = spec, .lexer = { source, from, source->length } } };
+	statement_guard(read_argument, &argument);
+	return argument.value;
+}

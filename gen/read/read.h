@@ -1,0 +1,183 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Text to what it says: names resolved, nothing evaluated. */
+#ifndef PLGEN_READ_H
+#define PLGEN_READ_H
+
+#include "base/base.h"
+
+/* ---- lex.c: text to tokens ---- */
+
+enum token_kind { TOKEN_END, TOKEN_NUMBER, TOKEN_NAME, TOKEN_STRING, TOKEN_OPERATOR };
+struct token {
+	enum token_kind kind;
+	struct place at;
+	size_t length;
+	char op[3];                 /* of TOKEN_OPERATOR */
+	const char *name;           /* of TOKEN_NAME, without its primes */
+	int primes;
+};
+struct lexer {
+	const struct source *source;
+	size_t position, end;       /* a statement: line ends inside brackets are white space */
+};
+/* Where the statement that starts at `from` ends: the line end outside brackets. `unclosed` receives the offset of a
+ * bracket that no later text closes (the statement is then its line), else SIZE_MAX. */
+size_t lex_statement_end(const struct source *source, size_t from, size_t *unclosed);
+struct token lex_next(struct lexer *lexer);
+const char *token_text(struct token token);                /* for messages: 'x1', the end of the line */
+void lex_number(struct token token, mpq_ptr value);        /* the decimal, exactly */
+
+/* ---- parse.c: tokens to nodes and declarations ---- */
+
+enum function {
+	FN_NONE, FN_SIN, FN_COS, FN_TAN, FN_EXP, FN_LOG, FN_SQRT, FN_ABS, FN_SGN, FN_SINH, FN_COSH, FN_TANH,
+	FN_ASIN, FN_ACOS, FN_ATAN, FN_ATAN2, FN_MIN, FN_MAX, FN_DEADZONE, FN_CLIP, FN_TABLE
+};
+enum comparison { CMP_LT, CMP_LE, CMP_GT, CMP_GE, CMP_EQ, CMP_NE };
+enum node_kind {
+	NODE_NUMBER, NODE_PI, NODE_TIME, NODE_NAME,
+	NODE_SUM,                   /* children added; those with `inverse` subtracted */
+	NODE_PRODUCT,               /* children multiplied; those with `inverse` divide */
+	NODE_POWER,                 /* two children */
+	NODE_CALL,
+	NODE_COMPARE,               /* two children */
+	NODE_CHOOSE,                /* condition, then, else */
+	NODE_MATRIX,                /* children row by row */
+	NODE_FILE                   /* a matrix in a file */
+};
+struct node {
+	enum node_kind kind;
+	struct place at;            /* of the token that makes it: a name, an operator, a function */
+	struct place start, end;    /* its text, brackets included */
+	mpq_t number;
+	struct symbol *symbol;      /* of NODE_NAME */
+	int primes, component;      /* of NODE_NAME; component 0: the whole */
+	int columns;                /* of NODE_MATRIX */
+	const char *path;           /* of NODE_FILE */
+	enum function function;
+	enum comparison comparison;
+	int depth;                  /* operations inside each other, those of the names in it included */
+	int children;
+	struct node **child;
+	bool *inverse;              /* of SUM and PRODUCT, one per child */
+	struct place *operator;     /* of SUM and PRODUCT: the sign before each child */
+	enum { TIMELY_UNKNOWN, TIMELY, NOT_TIMELY } timely; /* reads nothing but t and params */
+	struct kept *kept;          /* of one that is: its value, and when it holds */
+};
+struct span { mpq_srcptr after, before; };   /* of time; NULL: no bound */
+enum symbol_kind { SYMBOL_PARAM, SYMBOL_COORD, SYMBOL_LET, SYMBOL_OUTPUT, SYMBOL_INPUT, SYMBOL_MATRIX };
+struct symbol {
+	enum symbol_kind kind;
+	bool used, slope_used;      /* by the expressions now being printed */
+	const char *c_name, *c_dot; /* C identifiers of it and of its first derivative */
+	const char **c_component, **c_component_dot; /* of a vector coordinate */
+	const char *name;
+	struct place at;
+	size_t statement;           /* offset of the statement that declares it */
+	int index;                  /* among its kind, in the order of declaration; of a coordinate: of its first component */
+	int length;                 /* of a vector coordinate; 0: scalar */
+	bool broken;                /* its own statement failed: what uses it is passed over in silence */
+	bool tuned, tuning_checked; /* it is tunable, or made of something that is; of that: tune.c has looked through its value */
+	bool first_order;           /* of an input: hold first */
+	int highest;                /* of a coordinate: its order, 1 or 2; of a let: 1 if it reads a highest derivative, else -1, 0 unknown */
+	enum { TIME_UNKNOWN, TIME_READ, TIME_NOT_READ } time; /* of a let */
+	bool marked;                /* of a let: its states are marked */
+	struct node *value;         /* of param, let, output */
+	struct value *collected;    /* value, when COLLECTED */
+	const struct form *whole;   /* of a scalar let: its value for all time, where something is left over */
+	enum { FRESH, COLLECTING, COLLECTED } progress;
+	struct symbol *next_alike;  /* of the same bucket */
+	struct span span;           /* when it holds, if COLLECTED */
+	bool irrational;            /* something in it has become a rational, if COLLECTED */
+	struct symbol *next;
+};
+struct equation {
+	struct place at, end;       /* first token; just after the last */
+	struct node *left, *right;
+};
+struct element {                    /* of a sketch */
+	enum { ELEMENT_MASS, ELEMENT_SPRING, ELEMENT_DAMPER, ELEMENT_FORCE } kind;
+	struct place at, end;
+	struct node *value, *from, *to; /* coordinates, or components; `to` NULL: the ground, or none */
+};
+struct initial {
+	struct place at;
+	size_t statement;
+	struct symbol *coord;
+	int primes, component;
+	struct node *value;
+};
+struct fixed {                      /* of `operator at NAME = value, value, ...` */
+	struct place at, end;
+	const struct symbol *symbol; /* a coordinate or a let; NULL: t */
+	int primes, component;
+	int values;
+	struct node **value;
+};
+struct tunable {                    /* a param that the target may change */
+	struct place at;
+	struct symbol *symbol;
+};
+struct spec {                       /* what the text says, names resolved, nothing evaluated */
+	const struct source *source;
+	const char *name;
+	struct place name_at;
+	struct symbol *first, **last;   /* all symbols in the order of declaration */
+	struct symbol **bucket;         /* the same by name */
+	int components;                 /* of all coordinates together */
+	int params, coords, lets, outputs, inputs, matrices;
+	int equations;
+	struct equation *equation;
+	int elements;
+	struct element *element;
+	int files;                      /* data files, for the dependency file */
+	const char **file;
+	int initials;
+	struct initial *initial;
+	struct node *step;
+	struct place step_at;
+	const char *scheme;
+	struct place scheme_at;
+	bool has_operator;
+	struct place operator_at;
+	int fixeds;
+	struct fixed *fixed;
+	int tunables;
+	struct tunable *tunable;
+	struct place end;
+};
+struct spec *parse_spec(const struct source *source);
+struct node *parse_argument(struct spec *spec, const struct source *source, size_t from); /* an expression from the command line */
+struct symbol *spec_find(const struct spec *spec, const char *name);
+char *text_between(struct place start, struct place end);   /* without comments, white space folded */
+
+/* ---- names.c: words with a meaning of their own ---- */
+
+bool is_reserved(const char *name);                         /* words that a user's name may not be */
+const char *prefix_objection(const char *name);             /* why it cannot name generated code, or NULL */
+size_t name_hash(const char *name);
+enum function function_of(const char *name);
+const char *function_name(enum function function);
+const char *nearest_name(const char *name, int count, const char *const *known); /* or NULL */
+const char *spec_suggestion(const struct spec *spec, const char *name); /* a note with the nearest known name, or NULL */
+bool may_be_macro(const char *name);
+
+/* ---- mtx.c: Matrix Market files ---- */
+
+struct mtx {
+	int rows, columns;
+	mpq_t *cell;                /* row-major */
+};
+struct mtx *mtx_read(const char *path, struct place at);    /* `at`: what names the file */
+
+/* ---- schemes.c: the schemes and the forms of a step ---- */
+
+enum step_form { FORM_AUTO, FORM_DIRECT, FORM_DELTA, FORM_KICK_DRIFT_KICK, STEP_FORMS };
+enum scheme { SCHEME_EXACT, SCHEME_PL, SCHEME_ETD1, SCHEME_ETDRK2, SCHEME_ETDRK4, SCHEME_NC2, SCHEME_NC3, SCHEME_DQ4, SCHEME_BM3, SCHEMES };
+const char *scheme_name(enum scheme scheme);
+bool scheme_of(const char *name, enum scheme *scheme);      /* false: there is none of this name */
+const char *nearest_scheme(const char *name);               /* or NULL */
+const char *step_form_name(enum step_form form);
+bool step_form_of(const char *name, enum step_form *form);  /* false: there is none of this name */
+
+#endif

@@ -1,0 +1,48 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Poles and polynomials as a reader wants to see them: good to the printed digits, in a fixed order. */
+#include "report/report.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static const char *digits(mpfr_srcptr x)
+{
+	return format("%.8g", mpfr_get_d(x, MPFR_RNDN));
+}
+
+const char *pole_text(const struct pole_report *r)
+{
+	const char *text = digits(r->re);
+	if (r->pair)
+		text = format("%s +- %s i", text, digits(r->im));
+	return r->multiplicity > 1 ? format("%s  (%d-fold)", text, r->multiplicity) : text;
+}
+
+const char *polynomial_text(int length, const mpq_t *c)
+{
+	const char *text = "";
+	for (int k = length - 1; k >= 0; k--) {
+		if (mpq_sgn(c[k]) == 0)
+			continue;
+		bool negative = mpq_sgn(c[k]) < 0, first = *text == 0;
+		mpq_t size;
+		mpq_init(size);
+		mpq_abs(size, c[k]);
+		const char *factor = k > 0 && mpq_cmp_ui(size, 1, 1) == 0 ? "" : readable_text(size);
+		const char *power = k == 0 ? "" : k == 1 ? "s" : format("s^%d", k);
+		text = format("%s%s%s%s%s", text, first ? (negative ? "-" : "") : negative ? " - " : " + ", factor, *factor && k ? " " : "", power);
+		mpq_clear(size);
+	}
+	return text;
+}
+
+const char *irrationals_text(const struct irrationals *used)
+{
+	const char *text = used->pi ? "pi" : "";
+	for (int f = FN_SIN; f <= FN_TABLE; f++)
+		if (used->used[f])
+			text = format("%s%s%s", text, *text ? ", " : "", function_name((enum function)f));
+	if (used->root)
+		text = format("%s%s%s", text, *text ? ", " : "", "roots");
+	return text;
+}

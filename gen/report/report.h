@@ -1,0 +1,20 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What was derived, for a person or a program to read. */
+#ifndef PLGEN_REPORT_H
+#define PLGEN_REPORT_H
+
+#include "step/step.h"
+
+/* ---- report.c: poles and polynomials for a reader ---- */
+
+const char *pole_text(const struct pole_report *report);
+const char *polynomial_text(int length, const mpq_t *c);    /* in s */
+const char *irrationals_text(const struct irrationals *used);
+
+/* ---- explain.c, solution.c ---- */
+
+void explain_person(FILE *to, const struct step *step);
+void explain_json(FILE *to, const struct step *step);
+void print_solution(FILE *to, const struct model *model, struct resolvent *written, mpq_srcptr end);
+
+#endif

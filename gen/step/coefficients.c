@@ -1,0 +1,768 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The numbers of a step. Each is decided exactly to be rational, or enclosed ever more tightly until both ends of the
+ * enclosure round to the same double (Ziv); so each is rounded once, correctly. */
+#include "step/step.h"
+
+#include <math.h>
+
+enum { FIRST_PRECISION = 128, GUARD_BITS = 32 };
+
+/* log2 |p| of the largest pole is at least the largest log2 |c_i/c_d| / (d-i), less log2 d (Cauchy's bound, reversed).
+ * An angle |p| h of more bits than an enclosure may have could never be reduced to a turn. */
+void check_pole_size(const struct model *model, const struct resolvent *resolvent)
+{
+	struct poly B = *resolvent_determinant(resolvent);
+	long lead = (long)mpz_sizeinbase(B.c[B.length - 1], 2), largest = 0;
+	for (int i = 0; i < B.length - 1; i++) {
+		long bits = (long)mpz_sizeinbase(B.c[i], 2) - lead - B.length;
+		if (mpz_sgn(B.c[i]) != 0 && bits / (B.length - 1 - i) > largest)
+			largest = bits / (B.length - 1 - i);
+	}
+	long step = (long)mpz_sizeinbase(mpq_numref(model->h), 2) - (long)mpz_sizeinbase(mpq_denref(model->h), 2);
+	if (largest + step > LIMIT_PRECISION)
+		error(model->asked.step_at, NULL, "the largest pole, about 2^%ld 1/s, times the step is beyond the limit of 2^%d", largest, LIMIT_PRECISION);
+}
+
+struct culprit {                    /* what an overflow comes from */
+	double re, im, size;
+	bool grows;                 /* by more than e in a step */
+};
+
+/* The pole that grows fastest; if none grows in a step, the largest one, since then its units are to blame. */
+static struct culprit find_culprit(const struct response *response, double h)
+{
+	const struct spectrum *spectrum = response->spectrum;
+	struct culprit fastest = { spectrum->zero ? 0 : -INFINITY, 0, 0, false }, largest = { 0 };
+	for (int f = 0; f < spectrum->factors; f++)
+		for (int i = 0; i < spectrum->poles[f]; i++) {
+			double re = mpfi_get_d(spectrum->pole[f][i].at.re), im = mpfi_get_d(spectrum->pole[f][i].at.im);
+			struct culprit pole = { re, im, hypot(re, im), re * h > 1 };
+			fastest = pole.re > fastest.re ? pole : fastest;
+			largest = pole.size > largest.size ? pole : largest;
+		}
+	return fastest.grows ? fastest : largest;
+}
+
+static const char *pole_of(const struct culprit *pole)
+{
+	return pole->im == 0 ? format("%.6g 1/s", pole->re) : format("%.6g +- %.6g i 1/s", pole->re, pole->im);
+}
+
+static _Noreturn void undecided(struct place at, const char *what, bool isolated)
+{
+	const char *note = isolated ? NULL : "two poles cannot be told apart; do two parameters differ by less than their rounding?";
+	error(at, note, "%s is not decided with %d bits", what, LIMIT_PRECISION);
+}
+
+/* ---- numbers: sums of responses at a time, or combinations of entries of e^{A tau} ---- */
+
+struct entry {                      /* weight e^{A tau}[row][column] */
+	struct taylor *taylor;
+	int column;
+	mpq_t weight;
+};
+struct number {
+	int count;
+	const struct started *list; /* responses, each from its own start to t */
+	mpq_srcptr t;
+	const struct entry *entry;  /* or, if not NULL, entries of one row */
+	int row;
+	mpq_srcptr scale;           /* of the sum, then */
+	mpq_srcptr less;            /* is subtracted; NULL: 1 and 0 */
+};
+
+/* One term; false: it is beyond the method's limits. *absent: it has not started. */
+static bool enclose_term(const struct number *n, int i, int precision, mpfi_ptr value, bool *absent)
+{
+	*absent = false;
+	if (n->entry) {
+		const struct entry *entry = &n->entry[i];
+		if (!taylor_enclose(entry->taylor, precision))
+			return false;
+		taylor_entry(entry->taylor, n->row, entry->column, value);
+		mpfi_mul_q(value, value, entry->weight);
+		return true;
+	}
+	mpq_t tau;
+	mpq_init(tau);
+	mpq_sub(tau, n->t, n->list[i].start);
+	*absent = mpq_sgn(tau) < 0;
+	bool good = *absent || response_enclose(n->list[i].response, tau, precision, value);
+	mpq_clear(tau);
+	return good;
+}
+
+static bool enclose_number(const struct number *n, int precision, mpfi_ptr sum)
+{
+	mpfi_t value;
+	bool good = true, absent;
+	mpfi_init2(value, precision);
+	mpfi_set_prec(sum, precision + GUARD_BITS);
+	mpfi_set_ui(sum, 0);
+	for (int i = 0; i < n->count && good; i++) {
+		good = enclose_term(n, i, precision, value, &absent);
+		if (good && !absent)
+			mpfi_add(sum, sum, value);
+	}
+	if (n->scale)
+		mpfi_mul_q(sum, sum, n->scale);
+	if (n->less)
+		mpfi_sub_q(sum, sum, n->less);
+	mpfi_clear(value);
+	return good;
+}
+
+static bool exact_term(const struct number *n, int i, mpq_ptr value)
+{
+	if (n->entry) {
+		bool exact = taylor_exact(n->entry[i].taylor, n->row, n->entry[i].column, value);
+		mpq_mul(value, value, n->entry[i].weight);
+		return exact;
+	}
+	mpq_t tau;
+	mpq_init(tau);
+	mpq_sub(tau, n->t, n->list[i].start);
+	mpq_set_ui(value, 0, 1);
+	bool exact = mpq_sgn(tau) < 0 || response_exact(n->list[i].response, tau, value);
+	mpq_clear(tau);
+	return exact;
+}
+
+static bool exact_number(const struct number *n, mpq_ptr sum)
+{
+	mpq_t value;
+	bool exact = true;
+	mpq_init(value);
+	mpq_set_ui(sum, 0, 1);
+	for (int i = 0; i < n->count && exact; i++) {
+		exact = exact_term(n, i, value);
+		mpq_add(sum, sum, value);
+	}
+	if (n->scale)
+		mpq_mul(sum, sum, n->scale);
+	if (n->less)
+		mpq_sub(sum, sum, n->less);
+	mpq_clear(value);
+	return exact;
+}
+
+/* number - subtract, rounded; false: not decided, *isolated says whether the poles were */
+static bool round_difference(const struct number *n, double subtract, int limit, double *value, bool *isolated)
+{
+	mpfi_t enclosure;
+	mpfi_init2(enclosure, FIRST_PRECISION);
+	bool decided = false;
+	*isolated = true;
+	for (int precision = FIRST_PRECISION; precision <= limit && !decided && *isolated; precision *= 2) {
+		*isolated = enclose_number(n, precision, enclosure);
+		if (!*isolated)
+			break;
+		mpfi_sub_d(enclosure, enclosure, subtract);
+		decided = round_enclosure(enclosure, value);
+	}
+	mpfi_clear(enclosure);
+	return decided;
+}
+
+static bool round_number(const struct number *n, bool two_words, int limit, struct coefficient *c, bool *isolated)
+{
+	mpq_t exact, low;
+	bool decided = true;
+	mpq_inits(exact, low, NULL);
+	*isolated = true;
+	*c = (struct coefficient){ 0 };
+	if (exact_number(n, exact)) {
+		c->zero = mpq_sgn(exact) == 0;
+		c->value = round_rational(exact);
+		if (two_words && isfinite(c->value)) {
+			mpq_set_d(low, c->value);
+			mpq_sub(low, exact, low);
+			c->low = round_rational(low);
+		}
+	} else {
+		decided = round_difference(n, 0, limit, &c->value, isolated);
+		if (decided && two_words && isfinite(c->value))
+			decided = round_difference(n, c->value, limit, &c->low, isolated);
+	}
+	mpq_clears(exact, low, NULL);
+	return decided;
+}
+
+struct coefficient started_value(int count, const struct started *list, mpq_srcptr t, struct place at, const char *what)
+{
+	struct number number = { .count = count, .list = list, .t = t };
+	struct coefficient c;
+	bool isolated;
+	if (!round_number(&number, false, LIMIT_PRECISION, &c, &isolated))
+		undecided(at, what, isolated);
+	return c;
+}
+
+struct coefficient response_value(struct response *response, mpq_srcptr tau, bool two_words, struct place at, const char *what)
+{
+	struct started alone = { .response = response };
+	mpq_init(alone.start);
+	struct number number = { .count = 1, .list = &alone, .t = tau };
+	struct coefficient c;
+	bool isolated;
+	if (!round_number(&number, two_words, LIMIT_PRECISION, &c, &isolated))
+		undecided(at, what, isolated);
+	mpq_clear(alone.start);
+	return c;
+}
+
+static void check_range(const struct model *model, const struct coefficient *c, int count, const struct started *list, const char *what)
+{
+	if (isfinite(c->value) || count == 0)
+		return;
+	struct culprit pole = find_culprit(list[0].response, nearest_double(model->h));
+	error(model->asked.step_at, pole.grows ? "a smaller step would do" : NULL, "%s is beyond the range of %s: pole %s, h = %s s", what,
+	      target_name(), pole_of(&pole), readable_text(model->h));
+}
+
+/* ---- tables ---- */
+
+struct exponential {                /* e^{A tau} of one system by Taylor series */
+	mpq_srcptr tau;
+	struct taylor **segment;    /* of time: loads may change; NULL: not made yet */
+};
+struct filling {
+	const struct model *model;
+	const struct linear *system;
+	struct resolvent *resolvent;
+	const char **state_name;
+	struct series series;
+	int exponentials;           /* 0: residues */
+	struct exponential *exponential;
+	const struct wanted *wanted; /* the table being filled */
+	int segment, row;
+	mpq_t tau;                  /* its time */
+	int entries;                /* room for one combination */
+	struct entry *entry;
+	int responses;
+	struct started *response;
+	mpq_t **impulse;            /* per channel, once asked for */
+	mpq_srcptr scale, less;     /* of the number being rounded; NULL: 1 and 0 */
+	const int *coord;           /* of a block, per coordinate: of the whole; NULL: it is the whole */
+};
+
+static const mpq_t *impulse_of(struct filling *f, int channel)
+{
+	if (!f->impulse)
+		f->impulse = ARRAY(mpq_t *, (size_t)f->system->channels);
+	if (!f->impulse[channel])
+		f->impulse[channel] = impulse_of_channel(f->system, channel);
+	return (const mpq_t *)f->impulse[channel];
+}
+
+static struct taylor *taylor_at(const struct filling *f, mpq_srcptr tau)
+{
+	for (int i = 0; i < f->exponentials; i++) {
+		struct taylor **made = &f->exponential[i].segment[f->segment];
+		if (!mpq_equal(f->exponential[i].tau, tau))
+			continue;
+		if (!*made)
+			*made = taylor_of(f->series.size, (const mpq_t *)series_matrix(&f->series, f->system, f->segment), tau);
+		return *made;
+	}
+	return NULL;
+}
+
+static void add_entry(struct filling *f, mpq_srcptr tau, int column, mpq_srcptr weight)
+{
+	struct entry *entry = &f->entry[f->entries++];
+	entry->taylor = taylor_at(f, tau);
+	entry->column = column;
+	mpq_set(entry->weight, weight);
+}
+
+static void add_response(struct filling *f, struct response *response, mpq_srcptr start)
+{
+	f->response[f->responses].response = response;
+	mpq_set(f->response[f->responses++].start, start);
+}
+
+/* Rounds what `combine` adds: entries of e^{A tau} if the filling has them and they decide it; what vanishes at this very
+ * step only residues decide. */
+static struct coefficient number_of(struct filling *f, bool two_words, void (*combine)(struct filling *f, int a, int b), int a, int b, const char *of)
+{
+	enum { TAYLOR_PRECISION = 2048 };
+	const char *what = format("the factor of %s in the step of %s", of, f->state_name[f->row]);
+	struct coefficient c;
+	bool isolated, by_series = f->exponentials > 0;
+	f->entries = f->responses = 0;
+	combine(f, a, b);
+	if (by_series) {
+		struct number number = { .count = f->entries, .entry = f->entry, .row = f->row, .scale = f->scale, .less = f->less };
+		if (round_number(&number, two_words, TAYLOR_PRECISION, &c, &isolated) && isfinite(c.value))
+			return c;
+		int kept = f->exponentials;
+		f->exponentials = 0;
+		combine(f, a, b);
+		f->exponentials = kept;
+	}
+	struct number number = { .count = f->responses, .list = f->response, .t = f->tau, .scale = f->scale, .less = f->less };
+	if (!round_number(&number, two_words, LIMIT_PRECISION, &c, &isolated))
+		undecided(f->model->asked.step_at, what, isolated);
+	check_range(f->model, &c, f->responses, f->response, what);
+	return c;
+}
+
+/* The state itself, and what a scheme holds of it: -heldK q or -heldC v in the held terms */
+static void combine_state(struct filling *f, int state, int unused)
+{
+	(void)unused;
+	const struct linear *system = f->system;
+	const mpq_t *held = state < system->n ? system->heldK : system->heldC;
+	mpq_t weight;
+	mpq_init(weight);
+	if (!f->exponentials) {
+		add_response(f, response_of_state(f->resolvent, system, f->row, state), weight);
+		mpq_clear(weight);
+		return;
+	}
+	mpq_set_ui(weight, 1, 1);
+	add_entry(f, f->tau, state, weight);
+	for (int i = 0; i < system->n && held; i++) {
+		mpq_neg(weight, held[i * system->n + system->coord[state]]);
+		if (mpq_sgn(weight) != 0)
+			add_entry(f, f->tau, f->series.held + i, weight);
+	}
+	mpq_clear(weight);
+}
+
+/* ---- forms other than direct ---- */
+
+/* Phi - I, rounded as it is and not as Phi */
+static struct coefficient increment_entry(struct filling *f, int j, bool two_words)
+{
+	mpq_t one;
+	mpq_init(one);
+	mpq_set_ui(one, 1, 1);
+	f->less = f->row == j ? one : NULL;
+	struct coefficient c = number_of(f, two_words, combine_state, j, 0, f->state_name[j]);
+	f->less = NULL;
+	mpq_clear(one);
+	return c;
+}
+
+static mpq_srcptr mass_of(const struct filling *f, int coord)
+{
+	return f->wanted->mass[f->coord ? f->coord[coord] : coord];
+}
+
+/* S = Phi_12 M^-1 */
+static struct coefficient drift_entry(struct filling *f, int j, bool two_words)
+{
+	mpq_t inverse;
+	mpq_init(inverse);
+	mpq_inv(inverse, mass_of(f, j));
+	f->scale = inverse;
+	struct coefficient c = number_of(f, two_words, combine_state, f->system->velocity[j], 0, f->state_name[f->system->velocity[j]]);
+	f->scale = NULL;
+	mpq_clear(inverse);
+	return c;
+}
+
+static bool enclose_state(struct filling *f, int i, int j, int precision, mpfi_ptr value)
+{
+	f->entries = f->responses = 0;
+	f->row = i;
+	combine_state(f, j, 0);
+	struct number number = { .count = f->exponentials ? f->entries : f->responses, .list = f->response, .t = f->tau, .row = i };
+	number.entry = f->exponentials ? f->entry : NULL;
+	return enclose_number(&number, precision, value);
+}
+
+/* X <- S^-1 R, all n x n, in intervals, by elimination; S is symmetric and positive definite, S and R are destroyed. */
+static bool solve_enclosed(int n, mpfi_t *S, mpfi_t *R, int precision)
+{
+	mpfi_t factor, product;
+	bool regular = true;
+	mpfi_init2(factor, precision);
+	mpfi_init2(product, precision);
+	for (int k = 0; k < n && regular; k++) {
+		regular = !mpfi_has_zero(S[k * n + k]);
+		for (int i = 0; i < n && regular; i++) {
+			if (i == k)
+				continue;
+			mpfi_div(factor, S[i * n + k], S[k * n + k]);
+			for (int j = 0; j < n; j++) {
+				mpfi_mul(product, factor, S[k * n + j]);
+				mpfi_sub(S[i * n + j], S[i * n + j], product);
+				mpfi_mul(product, factor, R[k * n + j]);
+				mpfi_sub(R[i * n + j], R[i * n + j], product);
+			}
+		}
+	}
+	for (int i = 0; i < n && regular; i++)
+		for (int j = 0; j < n; j++)
+			mpfi_div(R[i * n + j], R[i * n + j], S[i * n + i]);
+	mpfi_clear(factor);
+	mpfi_clear(product);
+	return regular;
+}
+
+static bool round_words(mpfi_ptr x, struct coefficient *c)
+{
+	if (!round_enclosure(x, &c->value))
+		return false;
+	mpfi_sub_d(x, x, c->value);
+	return round_enclosure(x, &c->low);
+}
+
+/* X = S^-1 (Phi_11 - I) with so many bits; false: they do not decide every entry */
+static bool round_kicks(struct filling *f, struct table *table, int precision)
+{
+	const struct linear *system = f->system;
+	int n = system->n;
+	mpfi_t *S = ARRAY(mpfi_t, (size_t)(n * n)), *R = ARRAY(mpfi_t, (size_t)(n * n));
+	bool decided = true;
+	for (int i = 0; i < n; i++)
+		for (int j = 0; j < n; j++) {
+			mpfi_init2(S[i * n + j], precision);
+			mpfi_init2(R[i * n + j], precision);
+			decided = decided && enclose_state(f, i, system->velocity[j], precision, S[i * n + j]);
+			decided = decided && enclose_state(f, i, j, precision, R[i * n + j]);
+			mpfi_div_q(S[i * n + j], S[i * n + j], mass_of(f, j));
+			mpfi_sub_ui(R[i * n + j], R[i * n + j], i == j);
+		}
+	decided = decided && solve_enclosed(n, S, R, precision);
+	for (int i = 0; i < n; i++)
+		for (int j = i; j < n && decided; j++) {
+			decided = round_words(R[i * n + j], &table->kick[i * n + j]);
+			table->kick[j * n + i] = table->kick[i * n + j];
+		}
+	for (int i = 0; i < n * n; i++) {
+		mpfi_clear(S[i]);
+		mpfi_clear(R[i]);
+	}
+	return decided;
+}
+
+static void fill_kicks(struct filling *f, struct table *table)
+{
+	const struct linear *system = f->system;
+	int precision = FIRST_PRECISION;
+	f->segment = 0;
+	if (system->n == 1 && mpq_sgn(system->K[0]) == 0) {
+		table->kick[0].zero = true;
+		return;
+	}
+	while (!round_kicks(f, table, precision)) {
+		precision *= 2;
+		if (precision > LIMIT_PRECISION)
+			undecided(f->model->asked.step_at, "a kick of the form kick-drift-kick", true);
+	}
+	for (int i = 0; i < system->n * system->n; i++)
+		if (!isfinite(table->kick[i].value) || !isfinite(table->drift[i].value))
+			error(f->model->asked.step_at, "--form delta or --form direct may do", "a factor of the form kick-drift-kick is beyond the range of %s", target_name());
+}
+
+/* A ramp from u0 to u1 over h: u0 (u - u'/h) + u1 u'/h */
+static void combine_input(struct filling *f, int input, int column)
+{
+	mpq_t weight;
+	mpq_init(weight);
+	if (!f->exponentials) {
+		add_response(f, response_of_input(f->resolvent, f->system, f->row, input, column, f->model->h), weight);
+		mpq_clear(weight);
+		return;
+	}
+	int at = f->series.input[input];
+	mpq_set_ui(weight, 1, 1);
+	if (column == 0)
+		add_entry(f, f->tau, at, weight);
+	if (f->system->input[input].first_order) {
+		mpq_inv(weight, f->model->h);
+		if (column == 0)
+			mpq_neg(weight, weight);
+		add_entry(f, f->tau, at + 1, weight);
+	}
+	mpq_clear(weight);
+}
+
+static void combine_load(struct filling *f, int load, int column)
+{
+	mpq_t one;
+	mpq_init(one);
+	if (!f->exponentials)
+		add_response(f, response_of_load(f->resolvent, f->system, f->segment, f->row, load, column), one);
+	mpq_set_ui(one, 1, 1);
+	if (f->exponentials && f->series.load[load] >= 0)
+		add_entry(f, f->tau, f->series.load[load] + column, one);
+	mpq_clear(one);
+}
+
+/* (s/h)^m from u_m of a chain u_0' = u_1, u_1' = u_2 ..., u_0 the force: s^m/m! */
+static void add_powers(struct filling *f, const struct kernel_part *part, mpq_srcptr tau, int channel)
+{
+	mpq_t weight, scale;
+	mpq_inits(weight, scale, NULL);
+	mpq_set_ui(scale, 1, 1);
+	for (int m = 0; m < part->powers; m++) {
+		if (m > 0) {
+			mpq_set_ui(weight, (unsigned long)m, 1);
+			mpq_mul(scale, scale, weight);
+			mpq_div(scale, scale, f->model->h);
+		}
+		mpq_mul(weight, part->power[m], scale);
+		if (mpq_sgn(weight) != 0)
+			add_entry(f, tau, f->series.channel + channel * f->series.powers + m, weight);
+	}
+	mpq_clears(weight, scale, NULL);
+}
+
+/* impulse e^{A tau} B: B are the highest derivatives that the force gives */
+static void add_impulse(struct filling *f, const struct kernel_part *part, mpq_srcptr tau, int channel)
+{
+	const struct linear *system = f->system;
+	const mpq_t *B = impulse_of(f, channel);
+	mpq_t weight;
+	mpq_init(weight);
+	for (int i = 0; i < system->states; i++) {
+		mpq_mul(weight, B[i], part->impulse);
+		if (mpq_sgn(weight) != 0)
+			add_entry(f, tau, i, weight);
+	}
+	mpq_clear(weight);
+}
+
+static void combine_kernel(struct filling *f, int index, int channel)
+{
+	const struct kernel *kernel = &f->wanted->kernel[index];
+	mpq_t tau, start;
+	mpq_inits(tau, start, NULL);
+	for (int k = 0; k < kernel->parts; k++) {
+		const struct kernel_part *part = &kernel->part[k];
+		mpq_mul(tau, part->fraction, f->model->h);
+		mpq_sub(start, f->tau, tau);
+		if (!f->exponentials) {
+			add_response(f, response_of_kernel(f->resolvent, f->system, f->row, channel, part, f->model->h), start);
+			continue;
+		}
+		add_powers(f, part, tau, channel);
+		if (mpq_sgn(part->impulse) != 0)
+			add_impulse(f, part, tau, channel);
+	}
+	mpq_clears(tau, start, NULL);
+}
+
+/* At tau = 0 an impulse is what it is. */
+static bool is_immediate(const struct kernel *kernel)
+{
+	return kernel->parts == 1 && mpq_sgn(kernel->part[0].fraction) == 0;
+}
+
+static struct coefficient immediate(struct filling *f, const struct kernel *kernel, int channel)
+{
+	mpq_t value;
+	mpq_init(value);
+	mpq_mul(value, impulse_of(f, channel)[f->row], kernel->part[0].impulse);
+	struct coefficient c = { .value = round_rational(value), .zero = mpq_sgn(value) == 0 };
+	check_range(f->model, &c, 0, NULL, "a factor of the leftover");
+	mpq_clear(value);
+	return c;
+}
+
+/* Whether a load acts alike in two segments of time: then its factors are the same */
+static bool same_forces(const struct linear *system, int load, int a, int b)
+{
+	bool same = true;
+	for (int k = 0; k < system->load[load].columns; k++)
+		for (int i = 0; i < system->n && same; i++)
+			same = mpq_equal(system->load[load].force[k][a * system->n + i], system->load[load].force[k][b * system->n + i]);
+	return same;
+}
+
+static void fill_row(struct filling *f, struct table *table)
+{
+	const struct linear *system = f->system;
+	const struct wanted *wanted = f->wanted;
+	int n = table->states, columns = table->columns, i = f->row;
+	f->segment = 0;
+	for (int j = 0; j < n && wanted->Phi; j++)
+		table->Phi[i * n + j] = number_of(f, wanted->two_words, combine_state, j, 0, f->state_name[j]);
+	for (int j = 0; j < n && wanted->increments; j++)
+		table->increment[i * n + j] = i == j ? increment_entry(f, j, wanted->two_words) : table->Phi[i * n + j];
+	for (int j = 0; j < system->n && wanted->mass && i < system->n; j++)
+		table->drift[i * system->n + j] = drift_entry(f, j, wanted->two_words);
+	for (int j = 0, column = 0; j < system->inputs; j++)
+		for (int k = 0; k <= system->input[j].first_order; k++, column++)
+			table->input[i * table->inputs + column] = number_of(f, wanted->two_words, combine_input, j, k, system->input[j].name);
+	for (int j = 0; j < wanted->kernels; j++)
+		for (int e = 0; e < system->channels; e++)
+			table->kernel[j][i * system->channels + e] = is_immediate(&wanted->kernel[j]) ? immediate(f, &wanted->kernel[j], e)
+				: number_of(f, false, combine_kernel, j, e, format("leftover %d", e + 1));
+	for (f->segment = 0; f->segment < system->segments; f->segment++)
+		for (int l = 0, column = 0; l < system->loads; l++) {
+			bool known = f->segment > 0 && same_forces(system, l, f->segment - 1, f->segment);
+			for (int k = 0; k < system->load[l].columns; k++, column++) {
+				struct coefficient *here = &table->load[(f->segment * n + i) * columns + column];
+				*here = known ? here[-n * columns] : number_of(f, wanted->two_words, combine_load, l, k, column_text(&system->load[l], k));
+			}
+		}
+}
+
+static struct table *table_new(const struct linear *system, const struct wanted *wanted)
+{
+	struct table *table = NEW(struct table);
+	size_t n = (size_t)system->states;
+	table->states = system->states;
+	table->columns = load_columns(system);
+	table->inputs = input_columns(system);
+	table->channels = system->channels;
+	table->wanted = wanted;
+	size_t coordinates = (size_t)system->n;
+	table->Phi = wanted->Phi ? ARRAY(struct coefficient, n * n) : NULL;
+	table->increment = wanted->increments ? ARRAY(struct coefficient, n * n) : NULL;
+	table->drift = wanted->mass ? ARRAY(struct coefficient, coordinates * coordinates) : NULL;
+	table->kick = wanted->mass ? ARRAY(struct coefficient, coordinates * coordinates) : NULL;
+	table->load = ARRAY(struct coefficient, (size_t)system->segments * n * (size_t)table->columns);
+	table->input = ARRAY(struct coefficient, n * (size_t)table->inputs);
+	table->kernel = ARRAY(struct coefficient *, (size_t)wanted->kernels);
+	for (int k = 0; k < wanted->kernels; k++)
+		table->kernel[k] = ARRAY(struct coefficient, n * (size_t)system->channels);
+	return table;
+}
+
+static void add_exponential(struct filling *f, mpq_srcptr fraction)
+{
+	mpq_ptr tau = rationals(1)[0];
+	mpq_mul(tau, fraction, f->model->h);
+	for (int i = 0; i < f->exponentials; i++)
+		if (mpq_equal(f->exponential[i].tau, tau))
+			return;
+	ENLARGE(f->exponential, (size_t)f->exponentials + 1);
+	f->exponential[f->exponentials++] = (struct exponential){ tau, ARRAY(struct taylor *, (size_t)f->system->segments) };
+}
+
+static void plan_exponentials(struct filling *f, int count, const struct wanted *wanted)
+{
+	for (int t = 0; t < count; t++) {
+		add_exponential(f, wanted[t].fraction);
+		for (int k = 0; k < wanted[t].kernels; k++)
+			for (int j = 0; j < wanted[t].kernel[k].parts; j++)
+				add_exponential(f, wanted[t].kernel[k].part[j].fraction);
+	}
+}
+
+/* A series of a wave that turns so often in a step would not end, and residues are slow beyond a few states. */
+static void check_waves(const struct filling *f)
+{
+	long step = (long)mpz_sizeinbase(mpq_numref(f->model->h), 2) - (long)mpz_sizeinbase(mpq_denref(f->model->h), 2);
+	for (int l = 0; l < f->system->loads; l++) {
+		mpq_srcptr w = f->system->load[l].wave->w;
+		long bits = (long)mpz_sizeinbase(mpq_numref(w), 2) - (long)mpz_sizeinbase(mpq_denref(w), 2);
+		if (bits + step > LIMIT_TURNS && load_acts(f->system, &f->system->load[l]))
+			error(f->model->asked.step_at, NULL, "the frequency of %s times the step is beyond the limit of 2^%d for models of more than %d states",
+			      column_text(&f->system->load[l], 0), LIMIT_TURNS, LIMIT_RESIDUE_STATES);
+	}
+}
+
+static int longest_chain(int count, const struct wanted *wanted)
+{
+	int powers = 0;
+	for (int t = 0; t < count; t++)
+		for (int k = 0; k < wanted[t].kernels; k++)
+			for (int j = 0; j < wanted[t].kernel[k].parts; j++)
+				powers = wanted[t].kernel[k].part[j].powers > powers ? wanted[t].kernel[k].part[j].powers : powers;
+	return powers;
+}
+
+static struct table **tables_of_block(struct filling *f, int count, const struct wanted *wanted)
+{
+	const struct linear *system = f->system;
+	struct table **table = ARRAY(struct table *, (size_t)count);
+	size_t room = (size_t)system->states + (size_t)system->n + 8;
+	f->entry = ARRAY(struct entry, room);
+	f->response = ARRAY(struct started, 4);
+	for (size_t i = 0; i < room; i++)
+		mpq_init(f->entry[i].weight);
+	for (size_t i = 0; i < 4; i++)
+		mpq_init(f->response[i].start);
+	mpq_init(f->tau);
+	series_place(&f->series, system, longest_chain(count, wanted));
+	if (system->states > LIMIT_RESIDUE_STATES) {
+		check_waves(f);
+		plan_exponentials(f, count, wanted);
+	}
+	for (int t = 0; t < count; t++) {
+		f->wanted = &wanted[t];
+		table[t] = table_new(system, f->wanted);
+		mpq_mul(f->tau, f->wanted->fraction, f->model->h);
+		for (f->row = 0; f->row < system->states; f->row++) {
+			progress("factors of the step, row", t * system->states + f->row, count * system->states);
+			fill_row(f, table[t]);
+		}
+		if (f->wanted->mass)
+			fill_kicks(f, table[t]);
+	}
+	progress_end();
+	return table;
+}
+
+static void mark_zero(struct coefficient *c, size_t count)
+{
+	for (size_t i = 0; c && i < count; i++)
+		c[i].zero = true;
+}
+
+static void scatter_square(const struct block *block, int n, const struct coefficient *part, struct coefficient *whole)
+{
+	int m = block->system.n;
+	for (int i = 0; part && i < m; i++)
+		for (int j = 0; j < m; j++)
+			whole[block->coord[i] * n + block->coord[j]] = part[i * m + j];
+}
+
+/* The block's rows and columns to their places in the whole; between blocks everything stays exactly 0. */
+static void scatter(const struct block *block, const struct table *part, int segments, struct table *table)
+{
+	for (int i = 0; i < part->states; i++) {
+		int row = block->state[i];
+		for (int j = 0; part->Phi && j < part->states; j++)
+			table->Phi[row * table->states + block->state[j]] = part->Phi[i * part->states + j];
+		for (int j = 0; part->increment && j < part->states; j++)
+			table->increment[row * table->states + block->state[j]] = part->increment[i * part->states + j];
+		for (int s = 0; s < segments; s++)
+			for (int k = 0; k < table->columns; k++)
+				table->load[(s * table->states + row) * table->columns + k] = part->load[(s * part->states + i) * part->columns + k];
+		for (int k = 0; k < table->inputs; k++)
+			table->input[row * table->inputs + k] = part->input[i * part->inputs + k];
+		for (int k = 0; k < table->wanted->kernels; k++)
+			for (int e = 0; e < table->channels; e++)
+				table->kernel[k][row * table->channels + e] = part->kernel[k][i * part->channels + e];
+	}
+}
+
+struct table **tables_of(const struct model *model, struct resolvent *resolvent, const struct linear *system, int count, const struct wanted *wanted)
+{
+	struct block *block;
+	int blocks = blocks_of(system, &block);
+	struct filling whole = { .model = model, .system = system, .resolvent = resolvent, .state_name = model->state_name };
+	if (blocks == 1)
+		return tables_of_block(&whole, count, wanted);
+	struct table **table = ARRAY(struct table *, (size_t)count);
+	for (int t = 0; t < count; t++) {
+		table[t] = table_new(system, &wanted[t]);
+		mark_zero(table[t]->Phi, (size_t)system->states * (size_t)system->states);
+		mark_zero(table[t]->increment, (size_t)system->states * (size_t)system->states);
+		mark_zero(table[t]->kick, (size_t)system->n * (size_t)system->n);
+		mark_zero(table[t]->drift, (size_t)system->n * (size_t)system->n);
+	}
+	for (int b = 0; b < blocks; b++) {
+		struct filling part = { .model = model, .system = &block[b].system, .resolvent = resolvent_of(&block[b].system) };
+		part.state_name = ARRAY(const char *, (size_t)block[b].system.states);
+		part.coord = block[b].coord;
+		for (int i = 0; i < block[b].system.states; i++)
+			part.state_name[i] = model->state_name[block[b].state[i]];
+		struct table **made = tables_of_block(&part, count, wanted);
+		for (int t = 0; t < count; t++) {
+			scatter(&block[b], made[t], system->segments, table[t]);
+			scatter_square(&block[b], system->n, made[t]->kick, table[t]->kick);
+			scatter_square(&block[b], system->n, made[t]->drift, table[t]->drift);
+		}
+	}
+	return table;
+}

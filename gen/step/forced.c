@@ -1,0 +1,533 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What rounding does to a linear step with its loads counted, and the part of the state that is better not stepped.
+ *
+ * A load F cos(w t), w far above the poles, drives a velocity of size F/w, and a step that adds it up rounds to that
+ * size; what else the state does may be far smaller, and so may be the places that the load reaches through others.
+ * The forced part y_p of a load, P z with the load states z, solves the equations by itself: P J = A P + B, z' = J
+ * z, y' = A y + B z. Then y - y_p moves freely, and nothing of the load's size is ever rounded into it; y_p is added
+ * where the state is read. Near a pole y_p is large and y small: there the loads stay in the step. Which is better
+ * is decided by a bound of either over the first steps. */
+#include "step/step.h"
+
+#include <math.h>
+
+enum { STEPS = 1000, BITS = 320, LIMIT_SIZE = 64, LIMIT_FORCED_STATES = 32, LIMIT_SOLVED = 48, LIMIT_SEGMENTS = 16, FEW_LOADS = 8 };
+
+/* ---- the forced part of a load ---- */
+
+/* States that a load can move: those of the blocks that it acts on */
+static int moved_states(const struct linear *system, int load, int *state)
+{
+	struct block *block;
+	int count = 0, blocks = blocks_of(system, &block);
+	bool *moved = ARRAY(bool, (size_t)system->states);
+	for (int b = 0; b < blocks; b++)
+		for (int i = 0; i < block[b].system.states && load_acts(&block[b].system, &block[b].system.load[load]); i++)
+			moved[block[b].state[i]] = true;
+	for (int i = 0; i < system->states; i++)
+		if (moved[i])
+			state[count++] = i;
+	return count;
+}
+
+/* [[A - a, -w], [w, A - a]]^-1 over the states given, without waves (A - a)^-1; NULL: a + iw is a pole */
+static const mpq_t *shifted_inverse(const struct linear *system, const struct wave *wave, int m, const int *state)
+{
+	int trig = oscillates(wave) ? 2 : 1, size = trig * m, column;
+	const mpq_t *A = (const mpq_t *)state_matrix(system, false);
+	mpq_t *W = rationals((size_t)(size * size)), *inverse = rationals((size_t)(size * size));
+	for (int part = 0; part < trig; part++)
+		for (int i = 0; i < m; i++) {
+			mpq_t *row = W + (part * m + i) * size;
+			for (int j = 0; j < m; j++)
+				mpq_set(row[part * m + j], A[state[i] * system->states + state[j]]);
+			mpq_sub(row[part * m + i], row[part * m + i], wave->a);
+			if (trig == 2)
+				(part ? mpq_set : mpq_neg)(row[(1 - part) * m + i], wave->w);
+		}
+	return rational_inverse(size, (const mpq_t *)W, inverse, &column) ? (const mpq_t *)inverse : NULL;
+}
+
+/* P, states x columns of the load, in one segment of time: t^k from the highest k down, (A P - P J)_k = (k + 1)
+ * P_{k+1} - B_k */
+static void solve_forced(const struct linear *system, int l, int segment, int m, const int *state, const mpq_t *inverse, mpq_t *P)
+{
+	const struct load *load = &system->load[l];
+	int n = system->n, columns = load->columns, trig = oscillates(load->wave) ? 2 : 1, size = trig * m, column;
+	mpq_t *right = rationals((size_t)size), *part = rationals((size_t)size), *W = rationals((size_t)(n * n)), *a = rationals((size_t)n);
+	leading_inverse(system, W, &column);
+	for (int k = load->powers - 1; k >= 0; k--) {
+		for (int p = 0; p < trig; p++) {
+			column = trig * k + p;
+			rational_product(n, n, 1, (const mpq_t *)W, (const mpq_t *)load->force[column] + segment * n, a);
+			for (int i = 0; i < m; i++) {
+				mpq_ptr r = right[p * m + i];
+				mpq_set_si(r, k + 1, 1);
+				if (k + 1 < load->powers)
+					mpq_mul(r, r, P[state[i] * columns + column + trig]);
+				else
+					mpq_set_ui(r, 0, 1);
+				for (int q = 0; q < n; q++)
+					if (state[i] == (system->velocity[q] >= 0 ? system->velocity[q] : q))
+						mpq_sub(r, r, a[q]);
+			}
+		}
+		rational_product(size, size, 1, inverse, (const mpq_t *)right, part);
+		for (int p = 0; p < trig; p++)
+			for (int i = 0; i < m; i++)
+				mpq_set(P[state[i] * columns + trig * k + p], part[p * m + i]);
+	}
+}
+
+static int first_column(const struct linear *system, int load)
+{
+	int column = 0;
+	for (int l = 0; l < load; l++)
+		column += system->load[l].columns;
+	return column;
+}
+
+static struct coefficient rounded(mpq_srcptr q)
+{
+	struct coefficient c = { .value = round_rational(q), .zero = mpq_sgn(q) == 0 };
+	mpq_t rest;
+	mpq_init(rest);
+	if (!beyond_range(q))
+		mpq_set_d(rest, c.value);
+	mpq_sub(rest, q, rest);
+	c.low = nearest_double(rest);
+	mpq_clear(rest);
+	return c;
+}
+
+/* The load's columns of `part` and `change`; false: it has no forced part, or one beyond the range */
+static bool fill_forced(const struct linear *system, int l, struct forced *forced)
+{
+	const struct load *load = &system->load[l];
+	int states = system->states, all = load_columns(system), first = first_column(system, l), *state = ARRAY(int, (size_t)states);
+	int m = moved_states(system, l, state);
+	if (m * (oscillates(load->wave) ? 2 : 1) > LIMIT_SOLVED)
+		return false;
+	const mpq_t *inverse = shifted_inverse(system, load->wave, m, state);
+	mpq_t *before = NULL;
+	for (int s = 0; s < system->segments && inverse; s++) {
+		mpq_t *P = rationals((size_t)(states * load->columns));
+		solve_forced(system, l, s, m, state, inverse, P);
+		for (int i = 0; i < states * load->columns; i++) {
+			size_t cell = (size_t)((s * states + i / load->columns) * all + first + i % load->columns);
+			if (beyond_range(P[i]))
+				return false;
+			forced->part[cell] = rounded(P[i]);
+			if (!before)
+				continue;
+			mpq_sub(before[i], before[i], P[i]);
+			forced->change[cell - (size_t)(states * all)] = rounded(before[i]);
+		}
+		before = P;
+	}
+	return inverse != NULL;
+}
+
+/* ---- the exact course of the model over its first steps ---- */
+
+struct course {
+	int steps;
+	double *y, *z;              /* [steps + 1][states], [steps + 1][load columns] */
+	int *segment;               /* [steps + 1] */
+	double *largest;            /* per state */
+	double *sum, *peak;         /* states x states: sum and largest of |Phi^m| */
+};
+
+struct flow { mpfr_t *E; };         /* of one segment of time: e^{A h} of the series' matrix */
+
+static bool make_flow(const struct step *step, const struct series *place, int segment, struct flow *flow)
+{
+	int size = place->size;
+	struct taylor *taylor = taylor_of(size, (const mpq_t *)series_matrix(place, &step->branch->system, segment), step->model->h);
+	mpfi_t value;
+	if (!taylor_enclose(taylor, BITS))
+		return false;
+	flow->E = ARRAY(mpfr_t, (size_t)(size * size));
+	mpfi_init2(value, BITS);
+	for (int i = 0; i < size * size; i++) {
+		mpfr_init2(flow->E[i], BITS);
+		taylor_entry(taylor, i / size, i % size, value);
+		mpfi_mid(flow->E[i], value);
+	}
+	mpfi_clear(value);
+	return true;
+}
+
+static void advance(int size, const mpfr_t *E, mpfr_t *x, mpfr_t *next)
+{
+	for (int i = 0; i < size; i++) {
+		mpfr_set_zero(next[i], 1);
+		for (int j = 0; j < size; j++)
+			if (!mpfr_zero_p(E[i * size + j]) && !mpfr_zero_p(x[j]))
+				mpfr_fma(next[i], E[i * size + j], x[j], next[i], MPFR_RNDN);
+	}
+	for (int i = 0; i < size; i++)
+		mpfr_swap(x[i], next[i]);
+}
+
+static int segment_at(const struct linear *system, mpq_srcptr t)
+{
+	int segment = 0;
+	while (segment < system->segments - 1 && mpq_cmp(system->change[segment], t) <= 0)
+		segment++;
+	return segment;
+}
+
+static bool note_course(const struct step *step, const struct series *place, const mpfr_t *x, struct course *c, int k)
+{
+	int states = step->branch->system.states, columns = step->branch->whole->columns;
+	bool finite = true;
+	for (int i = 0; i < states; i++) {
+		double y = mpfr_get_d(x[i], MPFR_RNDN);
+		c->y[k * states + i] = y;
+		c->largest[i] = fmax(c->largest[i], fabs(y));
+		finite = finite && isfinite(y);
+	}
+	for (int l = 0, column = 0; l < step->branch->system.loads; l++)
+		for (int j = 0; j < step->branch->system.load[l].columns; j++, column++) {
+			double z = place->load[l] < 0 ? 0 : mpfr_get_d(x[place->load[l] + j], MPFR_RNDN);
+			c->z[k * columns + column] = z;
+			finite = finite && isfinite(z);
+		}
+	return finite;
+}
+
+/* Step by step, from the spec's initial values, inputs 0; a change of formula is taken at the step after it: sizes
+ * matter here. */
+static bool follow(const struct step *step, const struct series *place, struct course *c)
+{
+	int size = place->size;
+	mpfr_t *x = ARRAY(mpfr_t, (size_t)size), *next = ARRAY(mpfr_t, (size_t)size);
+	struct flow *flow = ARRAY(struct flow, (size_t)step->branch->system.segments);
+	mpq_t t, value;
+	mpq_inits(t, value, NULL);
+	for (int i = 0; i < size; i++) {
+		mpfr_inits2(BITS, x[i], next[i], NULL);
+		mpfr_set_zero(x[i], 1);
+		if (i < step->branch->system.states)
+			mpfr_set_q(x[i], step->model->initial[i], MPFR_RNDN);
+	}
+	for (int l = 0; l < step->branch->system.loads; l++)
+		for (int j = 0; j < step->branch->system.load[l].columns && place->load[l] >= 0; j++) {
+			load_state(&step->branch->system.load[l], j, t, value);
+			mpfr_set_q(x[place->load[l] + j], value, MPFR_RNDN);
+		}
+	bool good = true;
+	for (int k = 0; k <= c->steps && good; k++) {
+		mpq_set_si(t, k, 1);
+		mpq_mul(t, t, step->model->h);
+		c->segment[k] = segment_at(&step->branch->system, t);
+		good = note_course(step, place, (const mpfr_t *)x, c, k);
+		struct flow *now = &flow[c->segment[k]];
+		good = good && (now->E || make_flow(step, place, c->segment[k], now));
+		if (good)
+			advance(size, (const mpfr_t *)now->E, x, next);
+	}
+	for (int i = 0; i < size; i++)
+		mpfr_clears(x[i], next[i], NULL);
+	for (int s = 0; s < step->branch->system.segments; s++)
+		for (int i = 0; flow[s].E && i < size * size; i++)
+			mpfr_clear(flow[s].E[i]);
+	mpq_clears(t, value, NULL);
+	return good;
+}
+
+/* How far errors reach: what one at each step adds up to at most, and the most that becomes of one */
+static bool add_powers_of_phi(const struct step *step, struct course *c)
+{
+	int n = step->branch->system.states;
+	double *power = ARRAY(double, (size_t)(n * n)), *next = ARRAY(double, (size_t)(n * n)), largest = 0;
+	for (int i = 0; i < n; i++)
+		power[i * n + i] = 1;
+	for (int m = 0; m < c->steps; m++) {
+		for (int i = 0; i < n * n; i++) {
+			c->sum[i] += fabs(power[i]);
+			c->peak[i] = fmax(c->peak[i], fabs(power[i]));
+			largest = fmax(largest, c->sum[i]);
+			next[i] = 0;
+		}
+		for (int i = 0; i < n; i++)
+			for (int k = 0; k < n; k++)
+				for (int j = 0; j < n && !step->branch->whole->Phi[i * n + k].zero; j++)
+					next[i * n + j] += step->branch->whole->Phi[i * n + k].value * power[k * n + j];
+		double *swap = power;
+		power = next;
+		next = swap;
+	}
+	return isfinite(largest);
+}
+
+static bool make_course(const struct step *step, struct course *c)
+{
+	struct series place;
+	size_t states = (size_t)step->branch->system.states, rows = STEPS + 1;
+	series_place(&place, &step->branch->system, 0);
+	if (place.size > LIMIT_SIZE || step->branch->system.states > LIMIT_FORCED_STATES || step->branch->system.segments > LIMIT_SEGMENTS)
+		return false;
+	*c = (struct course){ .steps = STEPS, .y = ARRAY(double, rows * states), .z = ARRAY(double, rows * (size_t)step->branch->whole->columns),
+			      .segment = ARRAY(int, rows), .largest = ARRAY(double, states), .sum = ARRAY(double, states * states),
+			      .peak = ARRAY(double, states * states) };
+	return follow(step, &place, c) && add_powers_of_phi(step, c);
+}
+
+/* ---- a bound of rounding ---- */
+
+struct rounded { double value, error; };   /* what the program computes, and how far it may be off, in units of rounding */
+
+struct reckoning {
+	const struct step *step;
+	const struct course *course;
+	const struct forced *forced;
+	const int *load_of;         /* per column */
+	int k;
+	const struct rounded *from; /* states */
+	struct rounded sum;
+	double size;                /* sum of |products| */
+};
+
+/* Roundings of a load state relative to itself: of cos and sin, of a growth, of t and its products */
+static double load_roundings(const struct reckoning *r, int column)
+{
+	int l = r->load_of[column], at = column - first_column(&r->step->branch->system, l);
+	const struct load *load = &r->step->branch->system.load[l];
+	return 2 + 3 * (mpq_sgn(load->wave->a) != 0) + 4 * (at / (oscillates(load->wave) ? 2 : 1));
+}
+
+static void reckon_product(struct reckoning *r, int row, const struct product *p)
+{
+	const struct table *table = r->step->branch->whole;
+	double factor = p->factor->value, x, error = 0;
+	if (p->operand.kind == OPERAND_INPUT)
+		return;
+	if (p->operand.kind == OPERAND_LOAD) {
+		if (r->forced && r->forced->load[r->load_of[p->operand.index]])
+			return;
+		factor = table->load[(r->course->segment[r->k] * table->states + row) * table->columns + p->operand.index].value;
+		x = r->course->z[r->k * table->columns + p->operand.index];
+		error = load_roundings(r, p->operand.index) * fabs(x);
+	} else {
+		x = r->from[p->operand.index].value;
+		error = r->from[p->operand.index].error;
+	}
+	r->sum.value += factor * x;
+	r->sum.error += fabs(factor) * error;
+	r->size += fabs(factor * x);
+}
+
+static int levels(int terms)
+{
+	int levels = 0;
+	while (1 << levels < terms)
+		levels++;
+	return levels;
+}
+
+/* Each product is off by its factor's rounding and its own, and by those of the additions above it. */
+static struct rounded reckon(struct reckoning *r, const struct assignment *a)
+{
+	const struct program *program = r->step->program;
+	const struct rounded *old = &r->from[a->target];
+	r->sum = (struct rounded){ 0, 0 };
+	r->size = 0;
+	for (int i = 0; i < a->terms; i++)
+		reckon_product(r, a->target, &a->term[i]);
+	r->sum.error += r->size * (2 + (program->loops ? a->terms : levels(a->terms)) + 8 * program->tuned);
+	if (a->added) {
+		r->sum.value += old->value;
+		r->sum.error += old->error + (program->compensated || a->carried ? 0 : fabs(r->sum.value));
+	}
+	return r->sum;
+}
+
+static double unit_of(const struct step *step)
+{
+	return step->model->asked.single ? 0x1p-24 : 0x1p-53;
+}
+
+static double part_of(const struct reckoning *r, int state, bool sizes)
+{
+	const struct table *table = r->step->branch->whole;
+	double sum = 0;
+	for (int column = 0; r->forced && column < table->columns; column++) {
+		if (!r->forced->load[r->load_of[column]])
+			continue;
+		const struct coefficient *c = &r->forced->part[(r->course->segment[r->k] * table->states + state) * table->columns + column];
+		double term = (c->value + c->low) * r->course->z[r->k * table->columns + column];
+		double lost = fabs(c->low * r->course->z[r->k * table->columns + column]) / unit_of(r->step); /* of a factor, perhaps to 0 */
+		sum += sizes ? fabs(term) * (2 + levels(table->columns) + load_roundings(r, column)) + lost : term;
+	}
+	return sum;
+}
+
+/* What rounds where the forced part changes its formula before the next step */
+static double change_of(const struct reckoning *r, int state)
+{
+	const struct table *table = r->step->branch->whole;
+	int segment = r->course->segment[r->k];
+	double sum = 0;
+	for (int column = 0; r->forced && segment != r->course->segment[r->k + 1] && column < table->columns; column++)
+		if (r->forced->load[r->load_of[column]])
+			sum += fabs(r->forced->change[(segment * table->states + state) * table->columns + column].value *
+				    r->course->z[(r->k + 1) * table->columns + column]) * (4 + levels(table->columns) + load_roundings(r, column));
+	return sum;
+}
+
+/* What one step adds to the errors of the states at most, after k steps; `from` is the state as kept */
+static void reckon_step(struct reckoning *r, double *largest)
+{
+	const struct program *program = r->step->program;
+	int n = r->step->branch->system.states;
+	struct rounded *now = ARRAY(struct rounded, (size_t)n), *old = ARRAY(struct rounded, (size_t)n);
+	for (int i = 0; i < n; i++)
+		old[i] = now[i] = (struct rounded){ r->course->y[r->k * n + i] - part_of(r, i, false), 0 };
+	r->from = program->in_order ? now : old;
+	for (int i = 0; i < program->assignments; i++) {
+		struct rounded value = reckon(r, &program->assignment[i]);
+		now[program->assignment[i].target] = value;
+	}
+	for (int i = 0; i < n; i++)
+		largest[i] = fmax(largest[i], now[i].error);
+}
+
+/* Over the whole course, relative to each state's largest value; the worst */
+static struct rounding bound_of(const struct step *step, const struct course *c, const struct forced *forced)
+{
+	int n = step->branch->system.states, *load_of = ARRAY(int, (size_t)step->branch->whole->columns);
+	double *each = ARRAY(double, (size_t)n), *first = ARRAY(double, (size_t)n), *last = ARRAY(double, (size_t)n);
+	const double least = step->model->asked.single ? 0x1p-102 : 0x1p-969; /* below, products leave the range */
+	struct reckoning r = { .step = step, .course = c, .forced = forced, .load_of = load_of };
+	struct rounding bound = { .known = true, .steps = c->steps };
+	for (int l = 0, column = 0; l < step->branch->system.loads; l++)
+		for (int j = 0; j < step->branch->system.load[l].columns; j++)
+			load_of[column++] = l;
+	for (int i = 0; i < n; i++)
+		first[i] = fabs(c->y[i]) + part_of(&r, i, true) + fabs(c->y[i] - part_of(&r, i, false));
+	for (r.k = 0; r.k < c->steps; r.k++) {
+		reckon_step(&r, each);
+		for (int i = 0; i < n; i++) {
+			last[i] = fmax(last[i], part_of(&r, i, true));
+			first[i] += change_of(&r, i);
+		}
+	}
+	for (int i = 0; i < n; i++) {
+		double error = last[i] + c->largest[i];
+		for (int j = 0; j < n; j++)
+			error += c->sum[i * n + j] * each[j] + c->peak[i * n + j] * first[j];
+		error *= unit_of(step) / c->largest[i];
+		bound.tiny = bound.tiny || (c->largest[i] > 0 && c->largest[i] < least);
+		if (c->largest[i] < least)
+			continue;
+		bound.known = bound.known && isfinite(error);
+		if (error > bound.relative) {
+			bound.relative = error;
+			bound.state = i;
+		}
+	}
+	return bound;
+}
+
+/* ---- which loads are better not stepped ---- */
+
+/* What it costs to add the forced part, load states included */
+static void count_forced(const struct step *step, struct forced *forced)
+{
+	const struct linear *system = &step->branch->system;
+	int columns = step->branch->whole->columns;
+	struct program program = { .uses = ARRAY(bool, (size_t)columns) };
+	for (int i = 0; i < system->states; i++)
+		for (int l = 0, column = 0; l < system->loads; l++)
+			for (int j = 0; j < system->load[l].columns; j++, column++) {
+				const struct coefficient *c = &forced->part[i * columns + column];
+				if (!forced->load[l] || (c->value == 0 && system->segments == 1))
+					continue;
+				program.uses[column] = true;
+				program.additions++;
+				program.multiplications += !(j == 0 && is_polynomial(system->load[l].wave)) && c->value != 1 && c->value != -1;
+			}
+	count_loads(&program, system, step->model->asked.single);
+	forced->multiplications = program.multiplications;
+	forced->additions = program.additions;
+	for (int i = 0; i < (system->segments - 1) * system->states * columns; i++)
+		forced->changes = forced->changes || (is_forced(step, i % columns) && forced->change[i].value != 0);
+}
+
+/* Takes loads while each makes the bound less than half of what it was; where there are many, all at once. */
+static void choose_loads(struct step *step, const struct course *c, struct forced *forced, const bool *able)
+{
+	struct rounding best = step->rounding;
+	int loads = step->branch->system.loads;
+	for (int l = 0; l < loads && loads > FEW_LOADS; l++)
+		forced->load[l] = able[l];
+	if (loads > FEW_LOADS)
+		best = bound_of(step, c, forced);
+	for (int found = 0; found >= 0 && loads <= FEW_LOADS;) {
+		struct rounding least = best;
+		found = -1;
+		for (int l = 0; l < loads; l++) {
+			if (!able[l] || forced->load[l])
+				continue;
+			forced->load[l] = true;
+			struct rounding bound = bound_of(step, c, forced);
+			forced->load[l] = false;
+			if (bound.known && bound.relative < 0.5 * best.relative && bound.relative < least.relative) {
+				least = bound;
+				found = l;
+			}
+		}
+		if (found >= 0)
+			forced->load[found] = true;
+		best = least;
+	}
+	if (best.known && best.relative < 0.25 * step->rounding.relative) {
+		step->rounding = best;
+		step->forced = forced;
+		count_forced(step, forced);
+	}
+}
+
+void plan_forced(struct step *step)
+{
+	const double much = step->model->asked.single ? 0x1p-7 : 0x1p-36; /* 2^17 units of rounding: over 1000 steps a bound, more than comes */
+	struct linear *system = &step->branch->system;
+	struct course course;
+	bool acts = false, any = false, *able = ARRAY(bool, (size_t)system->loads);
+	for (int l = 0; l < system->loads; l++)
+		acts = acts || load_acts(system, &system->load[l]);
+	if (!acts || system->heldK || !make_course(step, &course))
+		return;
+	step->rounding = bound_of(step, &course, NULL);
+	if (!step->rounding.known || step->rounding.relative <= much || step->model->tuning)
+		return;
+	struct forced *forced = NEW(struct forced);
+	forced->load = ARRAY(bool, (size_t)system->loads);
+	forced->part = ARRAY(struct coefficient, (size_t)(system->segments * system->states * step->branch->whole->columns));
+	forced->change = ARRAY(struct coefficient, (size_t)(system->segments * system->states * step->branch->whole->columns));
+	for (int l = 0; l < system->loads; l++) {
+		able[l] = load_acts(system, &system->load[l]) && fill_forced(system, l, forced);
+		any = any || able[l];
+	}
+	if (any)
+		choose_loads(step, &course, forced, able);
+}
+
+bool is_forced(const struct step *step, int column)
+{
+	const struct linear *system = &step->branch->system;
+	for (int l = 0; l < system->loads; column -= system->load[l++].columns)
+		if (column < system->load[l].columns)
+			return step->forced && step->forced->load[l];
+	return false;
+}
+
+const char *rounding_text(const struct step *step)
+{
+	const struct rounding *r = &step->rounding;
+	return format("In the first %d steps%s, loads counted, rounding takes at most %.2g of the largest value of a %sstate (%s)%s", r->steps,
+		      step->branch->system.inputs ? " with inputs 0" : "", r->relative, step->model->relative ? "kept " : "", step->model->state_name[r->state],
+		      r->tiny ? format("; some are too small for %s", target_name()) : "");
+}

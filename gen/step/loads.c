@@ -1,0 +1,229 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What acts during a step, as excitations. A load t^k e^{at} cos(wt+p) seen from the step's start t_n is, by the binomial
+ * theorem and the addition theorem, a sum over its load states z = t_n^j e^{a t_n} cos or sin(w t_n + p), j <= k: one column
+ * per load state. A sampled input is a constant, or a ramp from one sample to the next. */
+#include "step/step.h"
+
+/* How much of load state `to` after tau comes from load state `from`, as factors of tau^m cos and tau^m sin:
+ * t^k cos(..+wτ) from t_n^j: binomial(k, j) tau^{k-j}; cos(θ+wτ) = cos θ cos wτ - sin θ sin wτ, sin likewise. */
+struct transition {
+	int m;                      /* -1: nothing */
+	long cosine, sine;          /* before the binomial factor */
+	unsigned long binomial;
+};
+
+static struct transition transition_of(const struct load *load, int to, int from)
+{
+	int trig = oscillates(load->wave) ? 2 : 1, k = to / trig, j = from / trig;
+	bool to_sine = to % trig, from_sine = from % trig;
+	struct transition t = { k - j, to_sine == from_sine, to_sine == from_sine ? 0 : to_sine ? 1 : -1, 1 };
+	for (int i = 0; i < k - j; i++)         /* small: powers of loads are limited */
+		t.binomial = t.binomial * (unsigned long)(k - i) / (unsigned long)(i + 1);
+	return t;
+}
+
+static void add_scaled(mpq_ptr sum, mpq_srcptr q, long factor, unsigned long binomial)
+{
+	mpq_t scaled, multiple;
+	mpq_inits(scaled, multiple, NULL);
+	mpq_set_ui(multiple, binomial, 1);
+	mpq_set_si(scaled, factor, 1);
+	mpq_mul(scaled, scaled, multiple);
+	mpq_mul(scaled, scaled, q);
+	mpq_add(sum, sum, scaled);
+	mpq_clears(scaled, multiple, NULL);
+}
+
+/* e += weight * (the load's force and direct factors in one segment, as they follow from load state `from` = 1) */
+static void add_load(struct excitation *e, const struct linear *system, int segment, const struct load *load, const mpq_t *direct, int from,
+		     mpq_srcptr weight)
+{
+	mpq_t value;
+	mpq_init(value);
+	for (int to = 0; to < load->columns; to++) {
+		struct transition t = transition_of(load, to, from);
+		if (t.m < 0)
+			continue;
+		for (int i = 0; i < system->n; i++) {
+			mpq_mul(value, load->force[to][segment * system->n + i], weight);
+			add_scaled(e->force[(2 * t.m) * system->n + i], value, t.cosine, t.binomial);
+			add_scaled(e->force[(2 * t.m + 1) * system->n + i], value, t.sine, t.binomial);
+		}
+		if (direct) {
+			mpq_mul(value, direct[to * system->segments + segment], weight);
+			add_scaled(e->direct[2 * t.m], value, t.cosine, t.binomial);
+			add_scaled(e->direct[2 * t.m + 1], value, t.sine, t.binomial);
+		}
+	}
+	mpq_clear(value);
+}
+
+static const mpq_t *unit(int count, int index)
+{
+	mpq_t *e = rationals((size_t)count);
+	mpq_set_ui(e[index], 1, 1);
+	return (const mpq_t *)e;
+}
+
+/* A held term is a constant force -heldK q_j(0) or -heldC v_j(0). */
+struct response *response_of_state(struct resolvent *r, const struct linear *system, int i, int j)
+{
+	const mpq_t *held = j < system->n ? system->heldK : system->heldC;
+	int n = system->n, c = system->coord[j];
+	struct excitation constant = excitation_new(n, NULL, NULL, 1);
+	bool any = false;
+	for (int k = 0; k < n && held; k++) {
+		mpq_neg(constant.force[k], held[k * n + c]);
+		any = any || mpq_sgn(constant.force[k]) != 0;
+	}
+	return image_of(r, &(struct question){ unit(system->states, j), any, &constant, unit(system->states, i) });
+}
+
+struct response *response_of_load(struct resolvent *r, const struct linear *system, int segment, int i, int l, int column)
+{
+	const struct load *load = &system->load[l];
+	struct excitation e = excitation_new(system->n, load->wave->a, load->wave->w, load->powers);
+	mpq_t one;
+	mpq_init(one);
+	mpq_set_ui(one, 1, 1);
+	add_load(&e, system, segment, load, NULL, column, one);
+	mpq_clear(one);
+	return image_of(r, &(struct question){ NULL, 1, &e, unit(system->states, i) });
+}
+
+/* Held: u. A ramp from u0 to u1: u = u0 + (u1 - u0) tau/h, u' = (u1 - u0)/h; column 0 is u0's share, column 1 that of u1. */
+struct response *response_of_input(struct resolvent *r, const struct linear *system, int i, int index, int column, mpq_srcptr h)
+{
+	const struct input *input = &system->input[index];
+	int n = system->n;
+	struct excitation e = excitation_new(n, NULL, NULL, input->first_order ? 2 : 1);
+	for (int k = 0; k < n; k++) {
+		if (column == 0)
+			mpq_set(e.force[k], input->force[0][k]);
+		if (!input->first_order)
+			continue;
+		mpq_t slope, jump;
+		mpq_inits(slope, jump, NULL);
+		mpq_div(slope, input->force[0][k], h);
+		mpq_div(jump, input->force[1][k], h);
+		(column ? mpq_add : mpq_sub)(e.force[k], e.force[k], jump);
+		(column ? mpq_add : mpq_sub)(e.force[2 * n + k], e.force[2 * n + k], slope);
+		mpq_clears(slope, jump, NULL);
+	}
+	return image_of(r, &(struct question){ NULL, 1, &e, unit(system->states, i) });
+}
+
+mpq_t *impulse_of_channel(const struct linear *system, int channel)
+{
+	int n = system->n, column;
+	mpq_t *inverse = rationals((size_t)(n * n)), *highest = rationals((size_t)n), *B = rationals((size_t)system->states);
+	leading_inverse(system, inverse, &column);
+	rational_product(n, n, 1, (const mpq_t *)inverse, (const mpq_t *)system->channel[channel], highest);
+	for (int i = 0; i < n; i++)
+		mpq_set(B[system->velocity[i] >= 0 ? system->velocity[i] : i], highest[i]);
+	return B;
+}
+
+/* sum power[m] (s/h)^m as a force, and an impulse at the start */
+struct response *response_of_kernel(struct resolvent *r, const struct linear *system, int i, int channel, const struct kernel_part *part, mpq_srcptr h)
+{
+	int n = system->n;
+	struct excitation e = excitation_new(n, NULL, NULL, part->powers);
+	mpq_t scale, *start = impulse_of_channel(system, channel);
+	mpq_init(scale);
+	for (int m = 0; m < part->powers; m++) {
+		mpq_set(scale, part->power[m]);
+		for (int k = 0; k < m; k++)
+			mpq_div(scale, scale, h);
+		for (int k = 0; k < n; k++)
+			mpq_mul(e.force[2 * m * n + k], system->channel[channel][k], scale);
+	}
+	for (int k = 0; k < system->states; k++)
+		mpq_mul(start[k], start[k], part->impulse);
+	mpq_clear(scale);
+	return image_of(r, &(struct question){ (const mpq_t *)start, part->powers > 0, &e, unit(system->states, i) });
+}
+
+struct response *response_of_load_state(const struct load *load, int to, int from)
+{
+	struct linear scalar = first_order_system(1, (const mpq_t *)rationals(1));
+	struct excitation e = excitation_new(1, load->wave->a, load->wave->w, load->powers);
+	struct transition t = transition_of(load, to, from);
+	mpq_t one;
+	mpq_init(one);
+	mpq_set_ui(one, 1, 1);
+	if (t.m >= 0) {
+		add_scaled(e.direct[2 * t.m], one, t.cosine, t.binomial);
+		add_scaled(e.direct[2 * t.m + 1], one, t.sine, t.binomial);
+	}
+	mpq_clear(one);
+	return image_of(resolvent_of(&scalar), &(struct question){ NULL, 1, &e, (const mpq_t *)rationals(1) });
+}
+
+/* z = t^j e^{a t} cos or sin(w t + p); the functions are irrational unless their argument is 0, then rationals of 256 bits. */
+void load_state(const struct load *load, int column, mpq_srcptr t, mpq_ptr z)
+{
+	struct place nowhere = { 0 };
+	const struct wave *wave = load->wave;
+	bool turns = oscillates(wave);
+	mpq_t factor;
+	mpq_init(factor);
+	mpq_mul(factor, wave->a, t);
+	constant_function(nowhere, FN_EXP, factor, z);
+	for (int k = 0; k < (turns ? column / 2 : column); k++)
+		mpq_mul(z, z, t);
+	if (turns) {
+		mpq_mul(factor, wave->w, t);
+		mpq_add(factor, factor, wave->p);
+		constant_function(nowhere, column % 2 ? FN_SIN : FN_COS, factor, factor);
+		mpq_mul(z, z, factor);
+	}
+	mpq_clear(factor);
+}
+
+/* All loads of one segment from time t on, times `sign` */
+static void add_loads(struct excitation *e, const struct linear *system, const struct output *output, int segment, mpq_srcptr t, int sign)
+{
+	mpq_t z;
+	mpq_init(z);
+	for (int l = 0; l < system->loads; l++)
+		for (int column = 0; column < system->load[l].columns; column++) {
+			load_state(&system->load[l], column, t, z);
+			if (sign < 0)
+				mpq_neg(z, z);
+			if (mpq_sgn(z) != 0)
+				add_load(&e[l], system, segment, &system->load[l], (const mpq_t *)output->load[l], column, z);
+		}
+	mpq_clear(z);
+}
+
+static struct excitation *no_loads(const struct linear *system)
+{
+	struct excitation *e = ARRAY(struct excitation, (size_t)system->loads);
+	for (int l = 0; l < system->loads; l++)
+		e[l] = excitation_new(system->n, system->load[l].wave->a, system->load[l].wave->w, system->load[l].powers);
+	return e;
+}
+
+/* From the start with the loads of the segment that holds t = 0; then at each change the difference of the loads. */
+int responses_of_output(struct resolvent *r, const struct linear *system, const mpq_t *initial, const struct output *output, struct started **list)
+{
+	int first = 0, count = 0;
+	mpq_srcptr zero = rationals(1)[0];
+	while (first < system->segments - 1 && mpq_sgn(system->change[first]) <= 0)
+		first++;
+	*list = ARRAY(struct started, (size_t)(system->segments - first));
+	for (int s = first; s < system->segments; s++, count++) {
+		struct excitation *e = no_loads(system);
+		mpq_srcptr start = s == first ? zero : system->change[s - 1];
+		add_loads(e, system, output, s, start, 1);
+		if (s > first)
+			add_loads(e, system, output, s - 1, start, -1);
+		const mpq_t *none = (const mpq_t *)rationals((size_t)system->states);
+		bool from_rest = s > first;
+		(*list)[count].response = image_of(r, &(struct question){ from_rest ? none : initial, system->loads, e, (const mpq_t *)output->state });
+		mpq_init((*list)[count].start);
+		mpq_set((*list)[count].start, start);
+	}
+	return count;
+}

@@ -1,0 +1,240 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A model to the program of its step, and every number of it, rounded once. */
+#ifndef PLGEN_STEP_H
+#define PLGEN_STEP_H
+
+#include "model/model.h"
+
+/* ---- resolvent.c: the Laplace images of what a step needs ---- */
+
+struct excitation {                 /* acts from tau = 0 on: sum over m of tau^m e^{a tau} times cos(w tau) and sin(w tau) */
+	mpq_srcptr a, w;
+	int powers;                 /* m = 0 .. powers-1; where w = 0 there is no sine */
+	mpq_t *force;               /* [m][cos, sin][equation]: on the equations */
+	mpq_t *direct;              /* [m][cos, sin]: added to the result itself */
+};
+struct excitation excitation_new(int n, mpq_srcptr a, mpq_srcptr w, int powers); /* all 0; a, w NULL: 0 */
+struct question {                   /* row . y(tau) */
+	const mpq_t *initial;       /* y(0), one per state; NULL: 0 */
+	int excitations;
+	struct excitation *excitation;
+	const mpq_t *row;           /* one per state */
+};
+struct resolvent;                   /* adj P and B of one system */
+struct resolvent *resolvent_of(const struct linear *system);
+struct response *image_of(struct resolvent *r, const struct question *question);
+void characteristic_polynomial(const struct resolvent *r, mpq_t *coefficient); /* B(s) = det P, as many as its degree + 1 */
+const struct poly *resolvent_determinant(const struct resolvent *r);           /* B(s) times the scales of the rows */
+
+/* ---- loads.c: loads, inputs and held terms as excitations of a step ---- */
+
+struct response *response_of_state(struct resolvent *r, const struct linear *system, int i, int j); /* Phi_ij, held terms included */
+struct response *response_of_load(struct resolvent *r, const struct linear *system, int segment, int i, int load, int column);
+struct response *response_of_input(struct resolvent *r, const struct linear *system, int i, int input, int column, mpq_srcptr h);
+struct response *response_of_load_state(const struct load *load, int to, int from); /* of one load: z_to(t+tau) from z_from(t) */
+struct kernel_part;
+struct response *response_of_kernel(struct resolvent *r, const struct linear *system, int i, int channel, const struct kernel_part *part, mpq_srcptr h);
+mpq_t *impulse_of_channel(const struct linear *system, int channel);         /* what its unit force gives the states' derivatives */
+struct started {                    /* a response that starts at a time of its own */
+	struct response *response;
+	mpq_t start;
+};
+/* output(t) from t = 0 as a sum of responses; returns how many */
+int responses_of_output(struct resolvent *r, const struct linear *system, const mpq_t *initial, const struct output *output, struct started **list);
+void load_state(const struct load *load, int column, mpq_srcptr t, mpq_ptr z);   /* its value, rational or the nearest of 256 bits */
+
+/* ---- coefficients.c: numbers of the step, each rounded once ---- */
+
+struct coefficient {
+	double value, low;          /* of the target's type; value + low is the number in two words (low only where asked for) */
+	bool zero;                  /* exactly: no trace in the code */
+};
+/* What multiplies a leftover, as a sum of parts: at tau = fraction h, B the force of its channel,
+ *     impulse e^{A tau} B + integral over 0..tau of e^{A (tau - s)} B (power[0] + power[1] s/h + power[2] (s/h)^2) ds
+ * so h phi_k(A h) B is power k-1 over (k-1)!. The sum is rounded once. */
+struct kernel_part {
+	mpq_t fraction, impulse, power[3];
+	int powers;
+};
+struct kernel {
+	const char *name;           /* b1 */
+	int parts;
+	struct kernel_part part[2];
+};
+struct wanted {                     /* of one table */
+	mpq_t fraction;             /* its time, as a part of h */
+	bool Phi, two_words;
+	bool increments;            /* Phi - I */
+	const mpq_t *mass;          /* kicks and drifts; one per coordinate, in units of the first; NULL: not wanted */
+	const char *name;           /* full, half */
+	int kernels;
+	struct kernel kernel[4];
+};
+struct table {                      /* of one time: y(tau) = Phi y + sum of columns */
+	const struct wanted *wanted;
+	int states, columns, inputs, channels;
+	struct coefficient *Phi;    /* states x states, or NULL */
+	struct coefficient *increment; /* Phi - I, each entry rounded as it is; or NULL */
+	struct coefficient *drift, *kick; /* coordinates x coordinates, symmetric: S = Phi_12 M^-1 and X = S^-1 (Phi_11 - I); or NULL */
+	struct coefficient *load;   /* [segment of time][states x columns]: of the loads in order */
+	struct coefficient *input;  /* states x inputs: u held; or its value before the step and after it */
+	struct coefficient **kernel; /* per kernel: states x channels */
+};
+void check_pole_size(const struct model *model, const struct resolvent *resolvent); /* leaves the statement where |p| h is hopeless */
+/* Rounded, infinite beyond the range; `at` and `what` name it where it cannot be decided. */
+struct coefficient started_value(int count, const struct started *list, mpq_srcptr t, struct place at, const char *what); /* their sum */
+struct coefficient response_value(struct response *response, mpq_srcptr tau, bool two_words, struct place at, const char *what);
+/* Block by block; by residues, beyond LIMIT_RESIDUE_STATES states by Taylor series. `resolvent` is that of the whole. */
+struct table **tables_of(const struct model *model, struct resolvent *resolvent, const struct linear *system, int count, const struct wanted *wanted);
+
+/* ---- frequencies.c: natural frequencies and damping ratios ---- */
+
+struct pole_report {                /* sorted by |p|, then by real part */
+	mpfr_t re, im;              /* rounded from 256 bits */
+	mpfr_t hertz, damping_ratio;
+	int multiplicity;
+	bool pair;                  /* stands for itself and its conjugate */
+};
+int poles_of(const struct model *model, const struct resolvent *resolvent, struct pole_report **report); /* an error at the step where they are not told apart */
+
+/* ---- program.c: what a scheme steps with, as a program over tables ---- */
+
+enum operand_kind { OPERAND_STATE, OPERAND_LOAD, OPERAND_INPUT };
+struct operand {
+	enum operand_kind kind;
+	int index;                  /* state; or column of the loads, of the inputs */
+};
+struct product {
+	const struct coefficient *factor; /* of a load: in the first segment of time */
+	struct operand operand;
+};
+struct assignment {                 /* target <- sum of products */
+	int target;                 /* state */
+	bool added;                 /* target <- target + sum of products */
+	bool carried;               /* with what rounding takes kept in carry */
+	int terms;
+	struct product *term;
+};
+/* A step of a scheme that leaves something over is a list of actions on vectors: stages are states (0: the state itself),
+ * lefts are leftovers. */
+enum { STAGE_STATE = 0, NONE = -1 };
+struct action {
+	enum { ACTION_LEFTOVER, ACTION_COMBINE, ACTION_SUM, ACTION_PREDICT } kind;
+	int target;                 /* LEFTOVER, COMBINE: a left; SUM, PREDICT: a stage */
+	int node, from;             /* LEFTOVER: when, and of which stage; PREDICT: when it ends */
+	int half;                   /* PREDICT: the node in the middle */
+	int plus, minus;            /* COMBINE: lefts; minus NONE: twice `plus`; `added` adds instead */
+	bool added;
+	int flow;                   /* SUM: table whose Phi, loads and inputs act on the state, or NONE */
+	int plain;                  /* SUM: stage added as it is, or NONE */
+	int kernels;                /* SUM: kernel of table times left, added */
+	struct { int table, kernel, left; } kernel[4];
+	const char *note;           /* a = F y + q1 r0 */
+};
+struct program {
+	int assignments;            /* of a scheme that leaves nothing over */
+	struct assignment *assignment;
+	bool in_order;              /* each assignment reads what those before it have left; else all read the old state */
+	bool compensated;           /* factors in two words, and what rounding takes from a state is kept */
+	bool *reads;                /* per state: whether its old value is read */
+	bool *uses;                 /* per column of the loads */
+	int oscillators, growths;   /* cos/sin pairs and exponentials evaluated per step */
+	int wave_multiplications, wave_additions; /* for them, counted below too */
+	int multiplications, additions, calls; /* calls: of the model's own functions */
+	bool loops;                 /* over the tables, zeros included: a large model */
+	bool tuned;                 /* factors are read from the instance's coefficients */
+	int actions;                /* 0: assignments */
+	struct action *action;
+	int stages, lefts;          /* vectors, the state not counted */
+	int nodes;                  /* times at which leftovers are evaluated, as parts of h; the first is 0 */
+	mpq_t *node;
+	int *node_table;            /* per node: the table of loads and inputs that a predictor adds, or NONE */
+	bool predicts;
+};
+struct forced {                     /* part times the load states solves the equations: what some loads sustain by themselves */
+	bool *load;                 /* per load: one of them; then the step is without it */
+	struct coefficient *part;   /* [segment of time][states x load columns] */
+	struct coefficient *change; /* the same, from each segment to the next: what the state gains that is kept */
+	bool changes;               /* any of it */
+	int multiplications, additions; /* to add it */
+};
+struct rounding {                   /* a bound over the first steps from the initial values, inputs 0 */
+	bool known;
+	int steps, state;           /* the state where it is largest */
+	double relative;            /* to the state's largest value */
+	bool tiny;                  /* there are states too small for the target's range, which it leaves out */
+};
+struct branch {                     /* an operator of a scheme, a region of a piecewise-linear model, or the linear model */
+	struct linear system;       /* with what the scheme holds taken out of C and K */
+	struct resolvent *resolvent; /* of `system` */
+	struct table **table;
+	struct table *whole;        /* of the whole step: the first; of regions, whose tables are of pieces, that of the first region only */
+	int halvings;               /* of a region: log2 of the pieces of a step in which crossings are looked for */
+};
+struct step {                       /* everything that is emitted for one model */
+	const struct model *model;
+	struct resolvent *written;  /* of the model as written: the report's poles, the closed form */
+	const struct step *shown;   /* what users see of tables: over the states as written; itself, where those are stepped */
+	int branches;               /* 1 where nothing is left over */
+	struct branch *branch;
+	int tables;                 /* of each; 1 where nothing is left over */
+	struct program *program;
+	enum step_form form;        /* FORM_DIRECT, FORM_DELTA or FORM_KICK_DRIFT_KICK */
+	const mpq_t *mass;          /* of kick-drift-kick, per coordinate; in units of the first */
+	bool momenta;               /* NAME keeps mass times velocity, since not all masses are equal */
+	int carries, *carry;        /* states that nothing leads back from, which only add up: index of what rounding takes from each; -1: of others */
+	struct forced *forced;      /* NAME keeps the state less this; NULL: as it is */
+	struct rounding rounding;
+	mpfr_t growth;              /* pl: 1/s, largest real part of the modified equation's poles (report only) */
+	struct series series;
+};
+bool has_leftover(const struct step *step);                 /* or nothing is left over, and a step is assignments */
+void need_closed_form(const struct step *step);              /* leaves the statement where there is none */
+
+/* ---- series.c: the Taylor series behind NAME_at ---- */
+
+void series_plan(struct step *step);                        /* degree, halvings */
+double largest_pole_angle(const struct step *step);         /* max|pole| h, rounded up */
+int  series_halvings(const struct step *step, int operator); /* of the time h, so that |pole| tau <= 1 */
+int  series_degree(const struct step *step, int first, int last, int halvings); /* for these operators, over h 2^-halvings */
+
+/* ---- cost.c: what a step costs ---- */
+
+struct cost { int multiplications, additions, calls; };
+struct cost leftover_cost(const struct step *step);         /* of one evaluation */
+void count_loads(struct program *program, const struct linear *system, bool single); /* what the load states of the columns in use cost */
+
+/* ---- forced.c: what rounding does to a step with loads ---- */
+
+void plan_forced(struct step *step);                         /* its rounding; its forced part, where the bound is the better for it */
+bool is_forced(const struct step *step, int column);         /* is this load state's load left out of the step? */
+const char *rounding_text(const struct step *step);
+
+/* ---- stepform.c: a linear step as direct, delta or kick-drift-kick ---- */
+
+const char *form_text_of(const struct step *step);          /* delta, compensated */
+void choose_form(struct step *step);                        /* leaves the statement where the one asked for cannot be */
+void need_direct(const struct step *step);                  /* the same where another than direct is asked for */
+void find_carries(struct step *step);                       /* before its program; none where all of the state is compensated */
+struct program *linear_program(const struct step *step);    /* from its table */
+bool has_second_word(const struct product *p, const struct linear *system); /* in the code: loads that change have none */
+
+/* ---- drift.c: what the rounding of its constants does to a linear step ---- */
+
+struct drift {                      /* per step, of the mode where it is largest */
+	double amplitude;           /* ln|z| - Re p h */
+	double phase;               /* |arg z - Im p h| [rad] */
+	bool known;                 /* nothing is left over, and the step does not loop over tables */
+};
+struct drift drift_of(const struct step *step);
+const char *drift_text(const struct drift *drift);          /* over 1e9 steps */
+
+/* ---- tuned_zeros.c: factors that are 0 whatever the tunable params are ---- */
+
+void mark_tuned_zeros(struct step *step);                    /* in its table: what vanishes at these values only is no zero */
+
+/* ---- scheme.c: the step of a model ---- */
+
+struct step *step_build(const struct model *model);         /* NULL: it was said why */
+
+#endif

@@ -1,0 +1,58 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Which factors of a step are 0 whatever the tunable params are: the others may not be left out of the code. */
+#include "step/step.h"
+
+/* x_i' reads x_j, for some values of the params: states, load states, inputs as in the series of `step` */
+static bool *couplings(const struct step *step)
+{
+	const struct tuning *t = step->model->tuning;
+	const struct linear *system = &step->branch->system;
+	int size = step->series.size, states = system->states;
+	mpq_t *A = series_matrix(&step->series, system, 0);
+	bool *reads = ARRAY(bool, (size_t)(size * size));
+	for (int i = 0; i < size * size; i++)
+		reads[i] = mpq_sgn(A[i]) != 0;
+	for (int k = 0; k < system->n; k++) {
+		bool *row = reads + (system->velocity[k] >= 0 ? system->velocity[k] : k) * size;
+		for (int j = 0; j < t->columns; j++) {
+			bool load = j >= states && j < states + system->segments * t->loads;
+			int at = load ? states + (j - states) % t->loads : j < states ? j : j - (system->segments - 1) * t->loads;
+			row[at] = row[at] || t->acts[k * t->columns + j];
+		}
+	}
+	return reads;
+}
+
+/* Reaching over any number of couplings */
+static bool *reach(const struct step *step)
+{
+	int size = step->series.size;
+	bool *reads = couplings(step);
+	for (int k = 0; k < size; k++)
+		for (int i = 0; i < size; i++)
+			for (int j = 0; j < size; j++)
+				reads[i * size + j] = reads[i * size + j] || (reads[i * size + k] && reads[k * size + j]);
+	return reads;
+}
+
+void mark_tuned_zeros(struct step *step)
+{
+	struct table *table = step->branch->whole;
+	const struct linear *system = &step->branch->system;
+	int n = table->states, size = step->series.size;
+	const bool *reached = reach(step);
+	for (int i = 0; i < n; i++) {
+		const bool *row = reached + i * size;
+		for (int j = 0; j < n; j++) {
+			table->Phi[i * n + j].zero = !row[j] && i != j;
+			if (table->increment)
+				table->increment[i * n + j].zero = !row[j];
+		}
+		for (int s = 0; s < system->segments; s++)
+			for (int k = 0; k < table->columns; k++)
+				table->load[(s * n + i) * table->columns + k].zero = !row[n + k];
+		for (int input = 0, column = 0; input < system->inputs; input++)
+			for (int k = 0; k < (system->input[input].first_order ? 2 : 1); k++, column++)
+				table->input[i * table->inputs + column].zero = !row[step->series.input[input]] && !(system->input[input].first_order && row[step->series.input[input] + 1]);
+	}
+}
