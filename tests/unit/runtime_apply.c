@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT-0 */
-/* runtime/apply.c against MPFR, and against its documented order of sums.  Every block is as long as it says, so that valgrind and
- * the sanitizers see what is read beyond. */
+/* runtime/apply.c against MPFR, and against its documented order of sums.  Every block is as long as it says, so that
+ * valgrind and the sanitizers see what is read beyond. */
 #include <stdarg.h>
 #include <stddef.h>
 #include <setjmp.h>
@@ -53,7 +53,8 @@ static real *numbers(int count, int bits, int spread)
 static void assert_bits(real found, real expected, const char *what, int rows, int columns, int row)
 {
     if (memcmp(&found, &expected, sizeof found) != 0)
-        fail_msg("%s, %d x %d, row %d: found %.17g, expected %.17g, to the last bit", what, rows, columns, row, found, expected);
+        fail_msg("%s, %d x %d, row %d: found %.17g, expected %.17g, to the last bit", what, rows, columns, row, found,
+                 expected);
 }
 
 /* |found - (start + row x)| against the documented bound, and one more rounding where there is a start */
@@ -82,8 +83,8 @@ static void assert_row(int columns, const real *row, const real *x, const real *
     off = fabs(mpfr_get_d(sum, MPFR_RNDA));
     mpfr_clears(sum, term, sizes, (mpfr_ptr)0);
     if (!(off <= tolerance))
-        fail_msg("%d x %d, row %d: found %.17g, expected %.17g; off by %.17g, tolerance %.17g", rows, columns, i, found, expected,
-                 off, tolerance);
+        fail_msg("%d x %d, row %d: found %.17g, expected %.17g; off by %.17g, tolerance %.17g", rows, columns, i, found,
+                 expected, off, tolerance);
 }
 
 static void check_products(int rows, int columns, int spread)
@@ -137,8 +138,8 @@ static void cancellation(void **state)
     }
 }
 
-/* The order that plrt.h gives, with every sum stored.  Factors of half the bits: products are exact, so contraction changes
- * nothing. */
+/* The order that plrt.h gives, with every sum stored.  Factors of half the bits: products are exact, so contraction
+ * changes nothing. */
 static real ordered(int columns, const real *row, const real *x)
 {
     volatile real s[4] = {0, 0, 0, 0}, even, odd;
@@ -157,7 +158,8 @@ static void one_order_for_all(void **state)
     for (rows = 1; rows <= 9; rows++)
         for (columns = 0; columns <= LARGEST; columns++) {
             const int half = REAL_DIGITS / 2;
-            real *table = numbers(rows * columns, half, 20), *x = numbers(columns, half, 20), *y = numbers(rows, half, 0);
+            real *table = numbers(rows * columns, half, 20), *x = numbers(columns, half, 20),
+                 *y = numbers(rows, half, 0);
             pl_multiply(rows, columns, table, x, y);
             for (i = 0; i < rows; i++)
                 assert_bits(y[i], ordered(columns, table + i * columns, x), "documented order", rows, columns, i);
@@ -253,7 +255,10 @@ static const real_bits finite_number[] = {
     0xFFEFFFFFFFFFFFFFu
 };
 #endif
-enum { NOT_FINITE = sizeof infinite_or_nan / sizeof *infinite_or_nan, FINITE = sizeof finite_number / sizeof *finite_number };
+enum {
+    NOT_FINITE = sizeof infinite_or_nan / sizeof *infinite_or_nan,
+    FINITE = sizeof finite_number / sizeof *finite_number
+};
 
 static void assert_status(const real *y, int n, int expected, uint64_t bits, int place)
 {

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* runtime/crossings.c against closed forms, published values, and small steps in long double with crossings by bisection. */
+/* runtime/crossings.c against closed forms, published values, and small steps in long double with crossings by
+ * bisection. */
 #include <stdarg.h>
 #include <stddef.h>
 #include <setjmp.h>
@@ -283,7 +284,8 @@ static void assert_near(double found, double expected, double tolerance, const c
 static void assert_count(const model *s, uint64_t expected, const char *what, double at)
 {
     if (s->c.total != expected || s->c.status != 0)
-        fail_msg("%s at %g: %d crossings, status %d; expected %d and 0", what, at, (int)s->c.total, s->c.status, (int)expected);
+        fail_msg("%s at %g: %d crossings, status %d; expected %d and 0", what, at, (int)s->c.total, s->c.status,
+                 (int)expected);
 }
 
 /* ---- models ---- */
@@ -471,7 +473,8 @@ static void grazing(void **state)
     for (i = 0; i < SEVERAL; i++)
         for (power = 2; power <= LEAST_GRAZING; power++)
             for (sign = -1; sign <= 1; sign++) {
-                const double d = sign * pow(10.0, -power), h = several_steps[i], from[5] = {0.0, 1.0 + d, 1.0, 1.0, 0.0};
+                const double d = sign * pow(10.0, -power), h = several_steps[i],
+                             from[5] = {0.0, 1.0 + d, 1.0, 1.0, 0.0};
                 model *s = single(1.0, 0.0, 0.0, 1.0, 0.0, 1, 1.0, 0.0);
                 int n;
                 spring(s, 0, 1, 0, 5.0, 1.0);
@@ -480,7 +483,8 @@ static void grazing(void **state)
                 for (n = 0; n * h < 4.0 && s->c.total == 0; n++)
                     step(s);
                 if (sign > 0) {
-                    assert_near((n - 1) * h + s->crossing[0].time, asin(1.0 / (1.0 + d)), 4e-15 / sqrt(d), "grazing", h);
+                    assert_near((n - 1) * h + s->crossing[0].time, asin(1.0 / (1.0 + d)), 4e-15 / sqrt(d), "grazing",
+                                h);
                     for (; n * h < 4.0; n++)
                         step(s);
                 }
@@ -489,7 +493,8 @@ static void grazing(void **state)
             }
 }
 
-/* Free flight, x = p + d^2/8 - (t - c)^2/2 with p the breakpoint: two crossings d apart around t = c in the one step of 1 */
+/* Free flight, x = p + d^2/8 - (t - c)^2/2 with p the breakpoint: two crossings d apart around t = c in the one step of
+ * 1 */
 static void two_crossings_in_a_step(void **state)
 {
     static const double when[] = {0.001, 0.1, 0.5, 0.50001, 0.77, 0.999};
@@ -497,7 +502,8 @@ static void two_crossings_in_a_step(void **state)
     (void)state;
     for (i = 0; i < 6; i++)
         for (power = FIRST_APART; power <= LAST_APART; power++) {
-            const double c = when[i], d = pow(10.0, -power), from[5] = {3.0 + d * d / 8.0 - c * c / 2.0, c, 1.0, 1.0, 0.0};
+            const double c = when[i], d = pow(10.0, -power),
+                         from[5] = {3.0 + d * d / 8.0 - c * c / 2.0, c, 1.0, 1.0, 0.0};
             model *s;
             if (c <= d / 2.0 || c >= 1.0 - d / 2.0) /* not both within the step */
                 continue;
@@ -514,8 +520,8 @@ static void two_crossings_in_a_step(void **state)
         }
 }
 
-/* A load that is a polynomial in t with the given roots, as a switch of its own: a step of 1 that meets them all, and its slope
- * at the ends need not tell.  In between the mass is pushed one way or the other. */
+/* A load that is a polynomial in t with the given roots, as a switch of its own: a step of 1 that meets them all, and
+ * its slope at the ends need not tell.  In between the mass is pushed one way or the other. */
 static model *polynomial(const double *root, int roots)
 {
     model *s = new_model(2, 8, 1);
@@ -705,7 +711,8 @@ static void assert_region(model *s, double q, double v, double u, int expected, 
     const double x[5] = {q, v, 1.0, u, 0.0};
     start(s, x);
     if (s->c.region != expected || s->c.matrix != s->matrix[expected])
-        fail_msg("%s, from %.17g, %.17g: region %d, matrix %d; expected %d", what, q, v, s->c.region, s->c.matrix, expected);
+        fail_msg("%s, from %.17g, %.17g: region %d, matrix %d; expected %d", what, q, v, s->c.region, s->c.matrix,
+                 expected);
     assert_count(s, 0, what, q);
 }
 
@@ -852,8 +859,8 @@ static void chatter(void **state)
     }
 }
 
-/* x'' = 400 x - 0.5 x' + 1 below 0, - 1 above: comes to rest at 0, where it switches for ever.  Either region by itself is unstable: e^20
- * in a step of 1.  What a step does behind its last crossing does not grow. */
+/* x'' = 400 x - 0.5 x' + 1 below 0, - 1 above: comes to rest at 0, where it switches for ever.  Either region by itself
+ * is unstable: e^20 in a step of 1.  What a step does behind its last crossing does not grow. */
 static void held_behind_the_last(void **state)
 {
     static const double from[5] = {0.001, 0.0, 1.0, 1.0, 0.0};
@@ -877,8 +884,8 @@ static void held_behind_the_last(void **state)
     free_model(s);
 }
 
-/* x'' = 4 x, twice as steep above 1, until it overflows: that, and nothing of crossings; likewise x'' = 0.5 x' - 100 x, of which
- * ever larger ones cross till the end. */
+/* x'' = 4 x, twice as steep above 1, until it overflows: that, and nothing of crossings; likewise x'' = 0.5 x' - 100 x,
+ * of which ever larger ones cross till the end. */
 static void overflow_is_not_chatter(void **state)
 {
     static const double from[5] = {0.5, 0.5, 1.0, 1.0, 0.0};
@@ -1212,14 +1219,16 @@ static void random_systems(void **state)
             if (differs(s, &fine, ALIKE, &worst) || s->c.status != 0 || s->c.total != (uint64_t)fine.crossings)
                 fail_msg("system %d (%d states, %d switches), h = %g: %d crossings, expected %d; status %d; x %.17g, "
                          "expected %.17g",
-                         i, s->states, s->m.switches, h, (int)s->c.total, fine.crossings, s->c.status, s->x[0], (double)fine.x[0]);
+                         i, s->states, s->m.switches, h, (int)s->c.total, fine.crossings, s->c.status, s->x[0],
+                         (double)fine.x[0]);
             by_signs[k] += coarse.crossings != fine.crossings || differs(s, &coarse, ALIKE, &ignored);
             crossings += s->c.total;
         }
         free_model(s);
     }
-    printf("# %d systems, %d crossings, worst end state off by %.2g; wrong by signs at step ends, h = 0.5, 1, 2, 4: %d %d %d %d\n",
-           systems, (int)crossings, worst, by_signs[0], by_signs[1], by_signs[2], by_signs[3]);
+    printf(
+        "# %d systems, %d crossings, worst end state off by %.2g; wrong by signs at step ends, h = 0.5, 1, 2, 4: %d %d %d %d\n",
+        systems, (int)crossings, worst, by_signs[0], by_signs[1], by_signs[2], by_signs[3]);
 }
 
 /* Parts of a step come to where the step does: NAME_at. */

@@ -186,8 +186,9 @@ static void assert_growth_at(const pl_rate *rate, mpfr_t value, mpfr_t scratch, 
         mpfr_neg(scratch, scratch, MPFR_RNDN);
     expected = growth_of(scratch);
     if (found.hi != expected.hi || found.lo != expected.lo)
-        fail_msg("rate exponent %d, %s, t = %.17g: found %016" PRIx64 " %016" PRIx64 ", expected %016" PRIx64 " %016" PRIx64
-                 ", exactly", rate->exponent, negative ? "negative" : "positive", t, (uint64_t)found.hi, found.lo,
+        fail_msg("rate exponent %d, %s, t = %.17g: found %016" PRIx64 " %016" PRIx64 ", expected %016" PRIx64
+                 " %016" PRIx64 ", exactly",
+                 rate->exponent, negative ? "negative" : "positive", t, (uint64_t)found.hi, found.lo,
                  (uint64_t)expected.hi, expected.lo);
     if (expected.hi == INT64_MAX || expected.hi == INT64_MIN)
         beyond++;
@@ -213,12 +214,14 @@ static void exponent_at_any_time(void **state)
         any.bits = random_word();
         if (isfinite(any.t)) /* 1e-308 .. 1e308, either sign */
             assert_growth_at(&rate, value, scratch, any.t);
-        assert_growth_at(&rate, value, scratch, ldexp((double)(int64_t)random_word(), (int)(random_word() % 240) - 140));
+        assert_growth_at(&rate, value, scratch,
+                         ldexp((double)(int64_t)random_word(), (int)(random_word() % 240) - 140));
         assert_growth_at(&rate, value, scratch, special[(size_t)i % (sizeof special / sizeof special[0])]);
         rate = random_rate(value, (int)(random_word() % 40) + 180); /* about the end of the range and down to 2^-60 */
         assert_growth_at(&rate, value, scratch, ldexp((double)(int64_t)random_word(), (int)(random_word() % 40) - 65));
         rate = random_rate(value, (int)(random_word() % 2000) - 900); /* far from it, but the product is not */
-        assert_growth_at(&rate, value, scratch, ldexp((double)(int64_t)random_word(), rate.exponent - 254 + (int)(random_word() % 20)));
+        assert_growth_at(&rate, value, scratch,
+                         ldexp((double)(int64_t)random_word(), rate.exponent - 254 + (int)(random_word() % 20)));
     }
     print_message("# exponents tested: %ld of ordinary size, %ld beyond the range\n", inside, beyond);
     assert_true(inside > 10000 && beyond > 10000);
@@ -272,7 +275,8 @@ static void exponent_after_a_thousand_million_steps(void **state)
         mpfr_sub(found, found, exact, MPFR_RNDN);
         off = mpfr_get_d(found, MPFR_RNDN);
         if (!(fabs(off) <= 0x1p-83))
-            fail_msg("exponent after 1e9 steps of rate %.17g off by %.17g, tolerance 2^-83 = %.17g", rates[i], off, 0x1p-83);
+            fail_msg("exponent after 1e9 steps of rate %.17g off by %.17g, tolerance 2^-83 = %.17g", rates[i], off,
+                     0x1p-83);
     }
     mpz_clear(z);
     mpfr_clears(step, exact, found, (mpfr_ptr)0);
@@ -359,7 +363,8 @@ static void powers_of_2(void **state)
         const pl_growth beside = growth((int64_t)off, random_word()), half = growth((int64_t)1 << 47, 0);
         assert_value(pl_growth_add(edge, beside), x, exact);
         assert_value(pl_growth_add(edge, growth(-1 - beside.hi, beside.lo)), x, exact);
-        assert_value(pl_growth_add(pl_growth_add(edge, half), beside), x, exact); /* where the nearest integer changes */
+        assert_value(pl_growth_add(pl_growth_add(edge, half), beside), x,
+                     exact); /* where the nearest integer changes */
         assert_value(pl_growth_add(pl_growth_add(edge, half), growth(-1 - beside.hi, beside.lo)), x, exact);
     }
     print_message("# largest error of pl_growth_value: %.5f ulp\n", worst_error);

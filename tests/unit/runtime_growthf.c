@@ -37,7 +37,8 @@ static pl_growthf random_growth(void)
 static void assert_growth(pl_growthf found, pl_growthf expected, const char *what)
 {
     if (found != expected)
-        fail_msg("%s: found %016" PRIx64 ", expected %016" PRIx64 ", exactly", what, (uint64_t)found, (uint64_t)expected);
+        fail_msg("%s: found %016" PRIx64 ", expected %016" PRIx64 ", exactly", what, (uint64_t)found,
+                 (uint64_t)expected);
 }
 
 /* z 2^-48, kept to the range */
@@ -158,8 +159,8 @@ static void assert_growth_at(const pl_ratef *rate, mpfr_t value, mpfr_t scratch,
         mpfr_neg(scratch, scratch, MPFR_RNDN);
     expected = growth_of(scratch);
     if (found != expected)
-        fail_msg("rate exponent %d, %s, t = %.9g: found %016" PRIx64 ", expected %016" PRIx64 ", exactly", rate->exponent,
-                 negative ? "negative" : "positive", (double)t, (uint64_t)found, (uint64_t)expected);
+        fail_msg("rate exponent %d, %s, t = %.9g: found %016" PRIx64 ", expected %016" PRIx64 ", exactly",
+                 rate->exponent, negative ? "negative" : "positive", (double)t, (uint64_t)found, (uint64_t)expected);
     if (expected == most || expected == least)
         beyond++;
     else if (expected != 0)
@@ -184,7 +185,8 @@ static void exponent_at_any_time(void **state)
         any.bits = (uint32_t)random_word();
         if (isfinite(any.t)) /* 1e-38 .. 1e38, either sign */
             assert_growth_at(&rate, value, scratch, any.t);
-        assert_growth_at(&rate, value, scratch, ldexpf((float)(int64_t)random_word(), (int)(random_word() % 120) - 100));
+        assert_growth_at(&rate, value, scratch,
+                         ldexpf((float)(int64_t)random_word(), (int)(random_word() % 120) - 100));
         assert_growth_at(&rate, value, scratch, special[(size_t)i % (sizeof special / sizeof special[0])]);
         rate = random_rate(value, (int)(random_word() % 40) + 116); /* about the end of the range and down to 2^-60 */
         assert_growth_at(&rate, value, scratch, ldexpf((float)(int64_t)random_word(), (int)(random_word() % 40) - 65));
@@ -240,7 +242,8 @@ static void exponent_after_a_thousand_million_steps(void **state)
         mpfr_sub(found, found, exact, MPFR_RNDN);
         off = mpfr_get_d(found, MPFR_RNDN);
         if (!(fabs(off) <= 0x1p-19))
-            fail_msg("exponent after 1e9 steps of rate %.17g off by %.17g, tolerance 2^-19 = %.17g", rates[i], off, 0x1p-19);
+            fail_msg("exponent after 1e9 steps of rate %.17g off by %.17g, tolerance 2^-19 = %.17g", rates[i], off,
+                     0x1p-19);
     }
     mpfr_clears(step, exact, found, (mpfr_ptr)0);
 }
@@ -288,8 +291,8 @@ static void assert_value(pl_growthf a, mpfr_t x, mpfr_t exact)
     if (error > worst_error)
         worst_error = error;
     if (!(error < 0.52) || signbit(found))
-        fail_msg("2^(%016" PRIx64 "): found %.9g, expected %.9g; off by %.17g ulp, tolerance 0.52", (uint64_t)a, found, expected,
-                 error);
+        fail_msg("2^(%016" PRIx64 "): found %.9g, expected %.9g; off by %.17g ulp, tolerance 0.52", (uint64_t)a, found,
+                 expected, error);
 }
 
 static pl_growthf between(int low, int high)

@@ -12,8 +12,8 @@
 
 enum { BITS = 400 };
 
-/* UNIT: what a step loses, of the whole.  NUMBERS: how many Fibonacci numbers fit two words.  2^(MANY + FEW) is within the range,
- * 2^(2 MANY) beyond it. */
+/* UNIT: what a step loses, of the whole.  NUMBERS: how many Fibonacci numbers fit two words.  2^(MANY + FEW) is within
+ * the range, 2^(2 MANY) beyond it. */
 #ifdef REAL_IS_FLOAT
 #define UNIT 0x1p-46
 #define real_of(v) mpfr_get_flt(v, MPFR_RNDN)
@@ -68,8 +68,8 @@ static void assert_within(pl_two found, mpfr_t expected, double tolerance, const
         worst = fabs(off) / tolerance;
     if (!(fabs(off) <= tolerance)) {
         pl_two e = two_of(expected);
-        fail_msg("%s, k = %" PRIu64 ": found %.17g + %.17g, expected %.17g + %.17g; off by %.17g, tolerance %.17g", what, k,
-                 found.hi, found.lo, e.hi, e.lo, off, tolerance);
+        fail_msg("%s, k = %" PRIu64 ": found %.17g + %.17g, expected %.17g + %.17g; off by %.17g, tolerance %.17g",
+                 what, k, found.hi, found.lo, e.hi, e.lo, off, tolerance);
     }
 }
 
@@ -79,8 +79,8 @@ static void assert_double(double found, double expected, const char *what)
         fail_msg("%s: found %.17g, expected %.17g, exactly", what, found, expected);
 }
 
-/* A rotation by 0.05 a step, from (1, 0).  What its two-word entries are off by is 2^-107 each, or 2^-49, k times; so is what the
- * powers lose. */
+/* A rotation by 0.05 a step, from (1, 0).  What its two-word entries are off by is 2^-107 each, or 2^-49, k times; so
+ * is what the powers lose. */
 static void rotation(void **state)
 {
     mpfr_t angle, c, s;
@@ -155,7 +155,9 @@ static void coupled(void **state)
     }
     pl_power_apply(3, p, W, v, w, count);
     for (i = 0; i < 3; i++)
-        assert_within(v[i], x[i], (double)count * UNIT * fmax(fabs((double)v[0].hi), fmax(fabs((double)v[1].hi), fabs((double)v[2].hi))),
+        assert_within(v[i], x[i],
+                      (double)count * UNIT *
+                          fmax(fabs((double)v[0].hi), fmax(fabs((double)v[1].hi), fabs((double)v[2].hi))),
                       "coupled", count);
     for (i = 0; i < 9; i++)
         mpfr_clears(P[i], Q[i], (mpfr_ptr)0);

@@ -80,15 +80,26 @@ static void any_frequency(void **state)
 	print_message("# off by 2^%g at most, bound 2^%d\n", worst, BOUND);
 }
 
-/* One word is exact, so only the rate's own bits are short: 2 pi, whole numbers, the ends of the range, subnormal numbers */
+/* One word is exact, so only the rate's own bits are short: 2 pi, whole numbers, the ends of the range, subnormal
+ * numbers */
 static void one_word(void **state)
 {
-	const double some[] = { 1, 2, 5, 314, 6.283185307179586, 1e-3, 0x1p-20, ldexp(1, LEAST - 1), ldexp(1, LEAST - DIGITS), ldexp(3, LEAST - DIGITS), ldexp(2 - ldexp(1, 1 - DIGITS), MOST - 1) };
-	double worst = -BITS;
-	(void)state;
-	for (size_t k = 0; k < sizeof some / sizeof *some; k++) {
-		two w = { (real)some[k], 0 };
-		check(w, 1 - 64 * WORDS + 1, &worst);
+    const double some[] = { 1,
+                            2,
+                            5,
+                            314,
+                            6.283185307179586,
+                            1e-3,
+                            0x1p-20,
+                            ldexp(1, LEAST - 1),
+                            ldexp(1, LEAST - DIGITS),
+                            ldexp(3, LEAST - DIGITS),
+                            ldexp(2 - ldexp(1, 1 - DIGITS), MOST - 1) };
+    double worst = -BITS;
+    (void)state;
+    for (size_t k = 0; k < sizeof some / sizeof *some; k++) {
+        two w = { (real)some[k], 0 };
+        check(w, 1 - 64 * WORDS + 1, &worst);
 	}
 	two pi = { (real)6.283185307179586476925286766559L, 0 };
 	pi.lo = (real)(6.283185307179586476925286766559L - (long double)pi.hi);
@@ -106,12 +117,13 @@ static void none(void **state)
 
 int main(void)
 {
-	const struct CMUnitTest tests[] = { cmocka_unit_test(any_frequency), cmocka_unit_test(one_word), cmocka_unit_test(none) };
-	mpfr_inits2(BITS, turn, expected, found, (mpfr_ptr)0);
-	mpfr_const_pi(turn, MPFR_RNDN);
-	mpfr_mul_2ui(turn, turn, 1, MPFR_RNDN);
-	const int failed = cmocka_run_group_tests(tests, NULL, NULL);
-	mpfr_clears(turn, expected, found, (mpfr_ptr)0);
-	mpfr_free_cache();
-	return failed;
+    const struct CMUnitTest tests[] = { cmocka_unit_test(any_frequency), cmocka_unit_test(one_word),
+                                        cmocka_unit_test(none) };
+    mpfr_inits2(BITS, turn, expected, found, (mpfr_ptr)0);
+    mpfr_const_pi(turn, MPFR_RNDN);
+    mpfr_mul_2ui(turn, turn, 1, MPFR_RNDN);
+    const int failed = cmocka_run_group_tests(tests, NULL, NULL);
+    mpfr_clears(turn, expected, found, (mpfr_ptr)0);
+    mpfr_free_cache();
+    return failed;
 }

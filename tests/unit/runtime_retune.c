@@ -95,7 +95,8 @@ static void clear(system_of *s, int states, int loads)
         s->A[i] = one_word(0.0);
 }
 
-static mpfr_t exact_A[LARGEST * LARGEST], exact_D[LARGEST * LARGEST], power[LARGEST * LARGEST], room[LARGEST * LARGEST], temporary;
+static mpfr_t exact_A[LARGEST * LARGEST], exact_D[LARGEST * LARGEST], power[LARGEST * LARGEST], room[LARGEST * LARGEST],
+    temporary;
 
 static void set_two(mpfr_t v, pl_two t)
 {
@@ -118,7 +119,8 @@ static void exact_product(int n, mpfr_t *a, mpfr_t *b)
         }
 }
 
-/* exact_D <- e^{A tau} - I: the series on 2^-halvings of tau, term by term until they are small, then e^X itself squared, all to BITS */
+/* exact_D <- e^{A tau} - I: the series on 2^-halvings of tau, term by term until they are small, then e^X itself
+ * squared, all to BITS */
 static void exact_increment(const system_of *s, real tau)
 {
     const int n = s->size;
@@ -184,9 +186,10 @@ static void assert_columns(const system_of *s, real tau, const real *D, int from
                         if (s->A[row * s->size + column].hi != 0)
                             print_message("# A[%d][%d] = %.17g + %.17g\n", row, column, s->A[row * s->size + column].hi,
                                           s->A[row * s->size + column].lo);
-                fail_msg("%s, %d states, size %d, tau = %.17g, D[%d][%d]: found %.17g, expected %.17g; off by %g units, bound %d", family,
-                         s->states, s->size, (double)tau, i, j, (double)D[i * s->size + j],
-                         mpfr_get_d(exact_D[i * s->size + j], MPFR_RNDN), unit > 0 ? off / unit : (double)INFINITY, BOUND);
+                fail_msg(
+                    "%s, %d states, size %d, tau = %.17g, D[%d][%d]: found %.17g, expected %.17g; off by %g units, bound %d",
+                    family, s->states, s->size, (double)tau, i, j, (double)D[i * s->size + j],
+                    mpfr_get_d(exact_D[i * s->size + j], MPFR_RNDN), unit > 0 ? off / unit : (double)INFINITY, BOUND);
             }
         }
 }
@@ -262,7 +265,8 @@ static double random_masses(system_of *s, int masses, double least_damping, doub
     return masses == 1 ? one_mass(s, m[0], c[0], k[0]) : two_masses(s, m, c, k);
 }
 
-static void masses_without_loads(int count, double least_damping, double most_damping, double from, double to, const char *family)
+static void masses_without_loads(int count, double least_damping, double most_damping, double from, double to,
+                                 const char *family)
 {
     int i;
     for (i = 0; i < count; i++) {
@@ -301,7 +305,8 @@ static void near_confluence(void **state)
     (void)state;
     seed = 3;
     for (i = 0; i < 400; i++) {
-        const double m = scattered(1e-3, 1e3), w = i % 2 ? ldexp(1.0, below(20)) : scattered(1.0, 1e6), gap = scattered(1e-16, 1e-10);
+        const double m = scattered(1e-3, 1e3), w = i % 2 ? ldexp(1.0, below(20)) : scattered(1.0, 1e6),
+                     gap = scattered(1e-16, 1e-10);
         const double exact = i % 4 == 3;
         double fastest;
         system_of s;
@@ -311,7 +316,8 @@ static void near_confluence(void **state)
             *entry(&s, 1, 0) = one_word(-w * w);
             *entry(&s, 1, 1) = one_word(-2 * w);
         }
-        assert_increment(&s, tau_of(fastest, i % 3 == 0 ? -10.0 : -2.0, i % 3 == 0 ? FARTHEST : 5.0), "near confluence");
+        assert_increment(&s, tau_of(fastest, i % 3 == 0 ? -10.0 : -2.0, i % 3 == 0 ? FARTHEST : 5.0),
+                         "near confluence");
     }
     report("near confluence");
     for (i = 0; i < 200; i++) { /* two equal oscillators, nearly or not at all coupled, one way or both */
@@ -466,7 +472,10 @@ static void loads(void **state)
             double fastest, own;
             system_of s;
             clear(&s, 2 * masses, LARGEST - 2 * masses); /* the width comes first */
-            s.size = 2 * masses + (load == CONSTANT || load == EXPONENTIAL ? 1 : load == MONOMIAL ? 6 : load == SEVERAL ? 6 : 2);
+            s.size = 2 * masses + (load == CONSTANT || load == EXPONENTIAL ? 1
+                                   : load == MONOMIAL                      ? 6
+                                   : load == SEVERAL                       ? 6
+                                                                           : 2);
             own = fastest = random_masses(&s, masses, 1e-4, i % 4 == 0 ? 0 : 3.0);
             if (load == SEVERAL) {
                 used = put_load(&s, HARMONIC, s.states, own, &fastest);
@@ -502,14 +511,16 @@ static void far_columns(void **state)
     report("far columns");
 }
 
-/* Two ways to a load's column that all but cancel at tau: what acts at once, and what comes by way of the other column */
+/* Two ways to a load's column that all but cancel at tau: what acts at once, and what comes by way of the other column
+ */
 static void cancelling_loads(void **state)
 {
     int i, j;
     (void)state;
     seed = 10;
     for (i = 0; i < 300; i++) {
-        const int masses = below(3), all = i % 3 == 0; /* masses 0: x' = -a x; all: to the next order of tau, else a tenth is left */
+        const int masses = below(3),
+                  all = i % 3 == 0; /* masses 0: x' = -a x; all: to the next order of tau, else a tenth is left */
         double fastest, rate, force;
         real tau;
         system_of s;
@@ -627,7 +638,8 @@ static void set_fraction(mpq_t v, pl_two t)
     mpq_clear(low);
 }
 
-/* Row i divided by its entry k, and taken off all others: [R | W] -> [W^-1 R | I], n x width with W from `first` on.  0: singular */
+/* Row i divided by its entry k, and taken off all others: [R | W] -> [W^-1 R | I], n x width with W from `first` on. 0:
+ * singular */
 static int exact_solve(int n, int first, int width, mpq_t *value)
 {
     int i, j, k;
@@ -656,12 +668,13 @@ static int exact_solve(int n, int first, int width, mpq_t *value)
     return k == n;
 }
 
-/* Of each entry at most LOSS sum_k |W^-1|_ik, times the largest in that column of R' + W' |W^-1 R|, where R' and W' are sums of the sizes
- * of terms; without W LOSS R'. */
+/* Of each entry at most LOSS sum_k |W^-1|_ik, times the largest in that column of R' + W' |W^-1 R|, where R' and W' are
+ * sums of the sizes of terms; without W LOSS R'. */
 static void assert_equations(const case_of *c, const char *family)
 {
     const pl_equations *e = &c->e;
-    const int n = e->rows, width = e->columns + (e->solves ? n : 0), wide = width + n; /* and the unit matrix, for W^-1 */
+    const int n = e->rows, width = e->columns + (e->solves ? n : 0),
+              wide = width + n; /* and the unit matrix, for W^-1 */
     mpq_t exact[ROWS * (WIDEST + ROWS)], sizes[ROWS * (WIDEST + ROWS)], monomial[MONOMIALS + 1], t, u, sum, inverse;
     pl_two value[ROWS * WIDEST], work[MONOMIALS + 1];
     int i, j, k, l, status;
@@ -712,9 +725,9 @@ static void assert_equations(const case_of *c, const char *family)
             if (terms > 0)
                 worst = fmax(worst, off / terms);
             if (!(off <= LOSS * terms))
-                fail_msg("%s, row %d, column %d: found %.17g + %.17g, expected %.17g; off by %g, bound %g", family, i, j,
-                         (double)value[i * width + j].hi, (double)value[i * width + j].lo, mpq_get_d(exact[i * wide + j]), off,
-                         LOSS * terms);
+                fail_msg("%s, row %d, column %d: found %.17g + %.17g, expected %.17g; off by %g, bound %g", family, i,
+                         j, (double)value[i * width + j].hi, (double)value[i * width + j].lo,
+                         mpq_get_d(exact[i * wide + j]), off, LOSS * terms);
         }
     for (i = 0; i < n * wide; i++)
         mpq_clears(exact[i], sizes[i], (mpq_ptr)0);
@@ -778,7 +791,8 @@ static void equations(void **state)
                     if (below(3) || column == c.e.columns + row) {
                         int terms = 1 + (c.e.terms < TERMS - 40 ? below(3) : 0);
                         for (; terms > 0; terms--) {
-                            const pl_two factor = below(3) ? about(either(scattered(1e-3, 1e3))) : one_word(either(1.0));
+                            const pl_two factor =
+                                below(3) ? about(either(scattered(1e-3, 1e3))) : one_word(either(1.0));
                             put_term(&c, row, column, below(c.e.monomials + 1), factor);
                         }
                     }
@@ -833,7 +847,8 @@ static void singular(void **state)
         assert_equations(&c, "singular"); /* by the same road: exactly singular there too */
         assert_status(pl_equations_at(&c.e, c.params, value, work), PL_SINGULAR, "singular");
     }
-    for (n = 0; n < 100; n++) { /* m on an arm: m L^2 a + m L b = ..., m L a + m b = ...; in no number of words exactly */
+    for (n = 0; n < 100;
+         n++) { /* m on an arm: m L^2 a + m L b = ..., m L a + m b = ...; in no number of words exactly */
         case_of c;
         start_case(&c, 2, 1, 1);
         c.params[0] = (real)scattered(0.1, 10.0);

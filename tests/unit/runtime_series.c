@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT-0 */
-/* runtime/series.c against e^{A tau} in MPFR, computed from the systems as written: the rounding of A counts as error. */
+/* runtime/series.c against e^{A tau} in MPFR, computed from the systems as written: the rounding of A counts as error.
+ */
 #include <stdarg.h>
 #include <stddef.h>
 #include <setjmp.h>
@@ -191,8 +192,8 @@ static void assert_state(const chain *s, const matrix *Phi, double most[MOST][MO
         mpfr_sub_d(t, exact, x[i], MPFR_RNDN);
         error = fabs(mpfr_get_d(t, MPFR_RNDN));
         if (!(error <= 16 * (double)REAL_EPSILON * size))
-            fail_msg("%s, tau = %.17g: entry %d is %.17g, expected %.17g; off by %.17g, tolerance %.17g", s->name, tau, i, x[i],
-                     mpfr_get_d(exact, MPFR_RNDN), error, 16 * (double)REAL_EPSILON * size);
+            fail_msg("%s, tau = %.17g: entry %d is %.17g, expected %.17g; off by %.17g, tolerance %.17g", s->name, tau,
+                     i, x[i], mpfr_get_d(exact, MPFR_RNDN), error, 16 * (double)REAL_EPSILON * size);
         if (size > 0.0 && error / ((double)REAL_EPSILON * size) > worst_ratio)
             worst_ratio = error / ((double)REAL_EPSILON * size);
     }

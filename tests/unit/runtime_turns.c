@@ -36,8 +36,8 @@ static pl_turn minus(pl_turn a)
 static void assert_turn(pl_turn found, pl_turn expected, const char *what)
 {
     if (found.hi != expected.hi || found.lo != expected.lo)
-        fail_msg("%s: found %016" PRIx64 " %016" PRIx64 ", expected %016" PRIx64 " %016" PRIx64 ", exactly", what, found.hi,
-                 found.lo, expected.hi, expected.lo);
+        fail_msg("%s: found %016" PRIx64 " %016" PRIx64 ", expected %016" PRIx64 " %016" PRIx64 ", exactly", what,
+                 found.hi, found.lo, expected.hi, expected.lo);
 }
 
 /* a in turns */
@@ -131,7 +131,8 @@ static void phase_after_a_thousand_million_steps(void **state)
     set_turn(found, a);
     mpfr_sub(found, found, exact, MPFR_RNDN);
     if (!(fabs(mpfr_get_d(found, MPFR_RNDN)) <= 0x1p-99))
-        fail_msg("phase after 1e9 steps off by %.17g turn, tolerance 2^-99 = %.17g", mpfr_get_d(found, MPFR_RNDN), 0x1p-99);
+        fail_msg("phase after 1e9 steps off by %.17g turn, tolerance 2^-99 = %.17g", mpfr_get_d(found, MPFR_RNDN),
+                 0x1p-99);
     mpfr_clears(step, exact, found, (mpfr_ptr)0);
 }
 
@@ -159,8 +160,9 @@ static void assert_turn_at(const pl_rate *rate, mpfr_t value, mpfr_t scratch, do
     {
         const pl_turn found = pl_turn_at(rate, t), expected = turn_of(scratch);
         if (found.hi != expected.hi || found.lo != expected.lo)
-            fail_msg("rate exponent %d, t = %.17g: found %016" PRIx64 " %016" PRIx64 ", expected %016" PRIx64 " %016" PRIx64
-                     ", exactly", rate->exponent, t, found.hi, found.lo, expected.hi, expected.lo);
+            fail_msg("rate exponent %d, t = %.17g: found %016" PRIx64 " %016" PRIx64 ", expected %016" PRIx64
+                     " %016" PRIx64 ", exactly",
+                     rate->exponent, t, found.hi, found.lo, expected.hi, expected.lo);
     }
 }
 
@@ -214,16 +216,16 @@ static void quarter_turns_are_exact(void **state)
         pl_cossin(turn(q << 62, 0), z);
         for (i = 0; i < 2; i++)
             if (z[i] != circle[q][i] || (z[i] == 0.0 && signbit(z[i])))
-                fail_msg("%s of %d quarter turns: found %.17g, expected %.17g, exactly", i ? "sine" : "cosine", (int)q, z[i],
-                         circle[q][i]);
+                fail_msg("%s of %d quarter turns: found %.17g, expected %.17g, exactly", i ? "sine" : "cosine", (int)q,
+                         z[i], circle[q][i]);
     }
 }
 
 static void assert_pair(const double z[2], double c, double s, pl_turn a, const char *what)
 {
     if (z[0] != c || z[1] != s)
-        fail_msg("%s of %016" PRIx64 " %016" PRIx64 ": found %.17g, %.17g, expected %.17g, %.17g, exactly", what, a.hi, a.lo,
-                 z[0], z[1], c, s);
+        fail_msg("%s of %016" PRIx64 " %016" PRIx64 ": found %.17g, %.17g, expected %.17g, %.17g, exactly", what, a.hi,
+                 a.lo, z[0], z[1], c, s);
 }
 
 static void symmetric_to_the_last_bit(void **state)
@@ -274,7 +276,8 @@ static void assert_cossin(pl_turn a, mpfr_t angle, mpfr_t c, mpfr_t s, mpfr_t tw
             if (error > worst_error)
                 worst_error = error;
             if (!(error < 0.6))
-                fail_msg("%s of %016" PRIx64 " %016" PRIx64 ": found %.17g, expected %.17g; off by %.17g ulp, tolerance 0.6",
+                fail_msg("%s of %016" PRIx64 " %016" PRIx64
+                         ": found %.17g, expected %.17g; off by %.17g ulp, tolerance 0.6",
                          i ? "sine" : "cosine", a.hi, a.lo, z[i], expected, error);
         }
     }

@@ -89,7 +89,8 @@ static void multiples_are_exact(void **state)
     mpfr_clears(x, n, (mpfr_ptr)0);
 }
 
-/* An irrational angle a step, 10^9 steps on, one by one: the only error is that of the step's angle, 2^-65 turn, times n. */
+/* An irrational angle a step, 10^9 steps on, one by one: the only error is that of the step's angle, 2^-65 turn, times
+ * n. */
 static void phase_after_a_thousand_million_steps(void **state)
 {
     const uint64_t steps = 1000000000;
@@ -112,7 +113,8 @@ static void phase_after_a_thousand_million_steps(void **state)
     set_turn(found, a);
     mpfr_sub(found, found, exact, MPFR_RNDN);
     if (!(fabs(mpfr_get_d(found, MPFR_RNDN)) <= 0x1p-35))
-        fail_msg("phase after 1e9 steps off by %.17g turn, tolerance 2^-35 = %.17g", mpfr_get_d(found, MPFR_RNDN), 0x1p-35);
+        fail_msg("phase after 1e9 steps off by %.17g turn, tolerance 2^-35 = %.17g", mpfr_get_d(found, MPFR_RNDN),
+                 0x1p-35);
     mpfr_clears(step, exact, found, (mpfr_ptr)0);
 }
 
@@ -140,8 +142,8 @@ static void assert_turn_at(const pl_ratef *rate, mpfr_t value, mpfr_t scratch, f
     {
         const pl_turnf found = pl_turnf_at(rate, t), expected = turn_of(scratch);
         if (found != expected)
-            fail_msg("rate exponent %d, t = %.9g: found %016" PRIx64 ", expected %016" PRIx64 ", exactly", rate->exponent, (double)t,
-                     found, expected);
+            fail_msg("rate exponent %d, t = %.9g: found %016" PRIx64 ", expected %016" PRIx64 ", exactly",
+                     rate->exponent, (double)t, found, expected);
     }
 }
 
@@ -195,16 +197,16 @@ static void quarter_turns_are_exact(void **state)
         pl_cossinf(q << 62, z);
         for (i = 0; i < 2; i++)
             if (z[i] != circle[q][i] || (z[i] == 0 && signbit(z[i])))
-                fail_msg("%s of %d quarter turns: found %.17g, expected %.17g, exactly", i ? "sine" : "cosine", (int)q, (double)z[i],
-                         (double)circle[q][i]);
+                fail_msg("%s of %d quarter turns: found %.17g, expected %.17g, exactly", i ? "sine" : "cosine", (int)q,
+                         (double)z[i], (double)circle[q][i]);
     }
 }
 
 static void assert_pair(const float z[2], float c, float s, pl_turnf a, const char *what)
 {
     if (z[0] != c || z[1] != s)
-        fail_msg("%s of %016" PRIx64 ": found %.9g, %.9g, expected %.9g, %.9g, exactly", what, a, (double)z[0], (double)z[1],
-                 (double)c, (double)s);
+        fail_msg("%s of %016" PRIx64 ": found %.9g, %.9g, expected %.9g, %.9g, exactly", what, a, (double)z[0],
+                 (double)z[1], (double)c, (double)s);
 }
 
 static void symmetric_to_the_last_bit(void **state)
@@ -258,8 +260,8 @@ static void assert_cossin(pl_turnf a, mpfr_t angle, mpfr_t c, mpfr_t s, mpfr_t t
             if (error > worst_error)
                 worst_error = error;
             if (!(error < 0.52))
-                fail_msg("%s of %016" PRIx64 ": found %.9g, expected %.9g; off by %.17g ulp, tolerance 0.52", i ? "sine" : "cosine",
-                         a, (double)z[i], (double)expected, error);
+                fail_msg("%s of %016" PRIx64 ": found %.9g, expected %.9g; off by %.17g ulp, tolerance 0.52",
+                         i ? "sine" : "cosine", a, (double)z[i], (double)expected, error);
         }
     }
 }

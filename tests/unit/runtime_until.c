@@ -33,7 +33,8 @@ static uint64_t random_word(void)
 /* 2^low .. 2^high, about */
 static double random_number(int low, int high)
 {
-    return ldexp((double)(random_word() >> 11 | (uint64_t)1 << 52), low - 52 + (int)(random_word() % (uint64_t)(high - low)));
+    return ldexp((double)(random_word() >> 11 | (uint64_t)1 << 52),
+                 low - 52 + (int)(random_word() % (uint64_t)(high - low)));
 }
 
 static pl_two two_of(mpfr_t v)
@@ -77,9 +78,11 @@ static void assert_until(real t0, uint64_t k, pl_two h, pl_two change)
     if (off / largest > worst)
         worst = off / largest;
     if (!(off <= LARGEST_ERROR * largest))
-        fail_msg("t0 = %.17g, k = %" PRIu64 ", h = %.17g + %.17g, change = %.17g + %.17g: found %.17g, expected %.17g; off by %.3g, "
-                 "tolerance %.3g", (double)t0, k, (double)h.hi, (double)h.lo, (double)change.hi, (double)change.lo, found, expected,
-                 off, LARGEST_ERROR * largest);
+        fail_msg("t0 = %.17g, k = %" PRIu64
+                 ", h = %.17g + %.17g, change = %.17g + %.17g: found %.17g, expected %.17g; off by %.3g, "
+                 "tolerance %.3g",
+                 (double)t0, k, (double)h.hi, (double)h.lo, (double)change.hi, (double)change.lo, found, expected, off,
+                 LARGEST_ERROR * largest);
 }
 
 /* A change in the middle of a step, which comes after as many as 2^63 */

@@ -1,0 +1,717 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Atoms, derivatives and forms at a point: random expressions are made as forms and, beside them, as plain trees that
+ * are evaluated by MPFR directly; both have the same values. Derivatives are held against difference quotients of the
+ * tree. */
+#include "draw.h"
+
+#include <string.h>
+
+enum { CASES = 600, COORDS = 2, LEAVES = 2 * COORDS + 1, MOST = 7, BITS = 500 };
+
+/* ---- trees ---- */
+
+enum kind { NUMBER, TIME, WAVE, STATE, SUM, DIFFERENCE, PRODUCT, QUOTIENT, POWER, RAISED, CALL, CHOICE };
+struct tree {
+    enum kind kind;
+    mpq_t number;               /* NUMBER; of WAVE its frequency */
+    int index, order;           /* STATE */
+    unsigned exponent;          /* POWER */
+    enum function function;     /* CALL */
+    enum comparison comparison; /* CHOICE: x0 ? x1 then x2 else x3 */
+    int children;
+    struct tree *child[MOST];
+};
+
+static struct tree *new_tree(enum kind kind, int children)
+{
+    struct tree *tree = NEW(struct tree);
+    tree->kind = kind;
+    tree->children = children;
+    mpq_init(tree->number);
+    return tree;
+}
+
+static struct tree *number_tree(long value)
+{
+    struct tree *tree = new_tree(NUMBER, 0);
+    mpq_set_si(tree->number, value, 1);
+    return tree;
+}
+
+static bool constants_only;         /* no state and no time in what is drawn */
+
+static struct tree *draw_leaf(void)
+{
+    static const enum kind kinds[] = { NUMBER, TIME, WAVE, STATE, STATE, STATE, STATE, STATE };
+    struct tree *tree = new_tree(constants_only ? NUMBER : kinds[draw(8)], 0);
+    draw_fraction(tree->number, 20, 6);
+    if (tree->kind == WAVE)
+        mpq_set_si(tree->number, 1 + (long)draw(3), 1);
+    tree->index = (int)draw(COORDS);
+    tree->order = (int)draw(2);
+    return tree;
+}
+
+static struct tree *draw_tree(int depth);
+
+static struct tree *draw_call(int depth)
+{
+    static const enum function all[] = { FN_SIN,   FN_COS,  FN_TAN,  FN_EXP,      FN_LOG,  FN_SQRT, FN_ABS,
+                                         FN_SGN,   FN_SINH, FN_COSH, FN_TANH,     FN_ASIN, FN_ACOS, FN_ATAN,
+                                         FN_ATAN2, FN_MIN,  FN_MAX,  FN_DEADZONE, FN_CLIP, FN_TABLE };
+    enum function function = all[draw(sizeof all / sizeof *all)];
+    int count = function == FN_TABLE      ? 7
+                : function >= FN_DEADZONE ? 3
+                : function >= FN_MIN      ? 2 + (int)draw(2)
+                : function == FN_ATAN2    ? 2
+                                          : 1;
+    struct tree *tree = new_tree(CALL, count);
+    tree->function = function;
+    for (int i = 0; i < count; i++)
+        tree->child[i] = i > 0 && function >= FN_DEADZONE ? number_tree(draw_integer(5)) : draw_tree(depth - 1);
+    if (function == FN_DEADZONE || function == FN_CLIP)
+        mpq_set_si(tree->child[2]->number, 6 + (long)draw(5), 1);
+    for (int i = 1; i < count && function == FN_TABLE; i += 2)       /* -1, 0, 2 */
+        mpq_set_si(tree->child[i]->number, i == 1 ? -1 : i == 3 ? 0 : 2, 1);
+    return tree;
+}
+
+static struct tree *draw_tree(int depth)
+{
+    static const enum kind kinds[] = { SUM,   SUM,   DIFFERENCE, PRODUCT, PRODUCT, PRODUCT, QUOTIENT,
+                                       POWER, POWER, RAISED,     CALL,    CALL,    CALL,    CHOICE };
+    if (depth == 0 || draw(8) == 0)
+        return draw_leaf();
+    enum kind kind = kinds[draw(sizeof kinds / sizeof *kinds)];
+    if (kind == CALL)
+        return draw_call(depth);
+    struct tree *tree = new_tree(kind, kind == CHOICE ? 4 : kind == POWER ? 1 : 2);
+    for (int i = 0; i < tree->children; i++)
+        tree->child[i] = draw_tree(depth - 1);
+    tree->exponent = draw(5);
+    tree->comparison = (enum comparison)draw(4);
+    return tree;
+}
+
+static const char *tree_text(const struct tree *tree)
+{
+    static const char *const sign[] = {
+        [SUM] = "+", [DIFFERENCE] = "-", [PRODUCT] = "*", [QUOTIENT] = "/", [RAISED] = "^"
+    };
+    const char *text = "";
+    switch (tree->kind) {
+    case NUMBER: return mpq_get_str(NULL, 10, tree->number);
+    case TIME:   return "t";
+    case WAVE:   return format("sin(%s t + 1)", mpq_get_str(NULL, 10, tree->number));
+    case STATE:  return format("x%d%s", tree->index, tree->order ? "'" : "");
+    case POWER:  return format("(%s)^%u", tree_text(tree->child[0]), tree->exponent);
+    case CHOICE:
+        return format("(%s %s %s ? %s : %s)", tree_text(tree->child[0]),
+                      (const char *[]){ "<", "<=", ">", ">=" }[tree->comparison], tree_text(tree->child[1]),
+                      tree_text(tree->child[2]), tree_text(tree->child[3]));
+    case CALL:
+        for (int i = 0; i < tree->children; i++)
+            text = format("%s%s%s", text, i ? ", " : "", tree_text(tree->child[i]));
+        return format("%s(%s)", function_name(tree->function), text);
+    default:
+        return format("(%s %s %s)", tree_text(tree->child[0]), sign[tree->kind], tree_text(tree->child[1]));
+    }
+}
+
+/* ---- their values ---- */
+
+struct at { mpq_t state[COORDS][2], t; };
+
+static void draw_point(struct at *at)
+{
+    for (int i = 0; i < COORDS; i++)
+        for (int order = 0; order < 2; order++)
+            mpq_set_si(at->state[i][order], draw_integer(4000), 1009);     /* no breakpoint of a table */
+    mpq_set_si(at->t, 1 + (long)draw(3000), 1013);
+    for (int i = 0; i < COORDS; i++)
+        for (int order = 0; order < 2; order++)
+            mpq_canonicalize(at->state[i][order]);
+    mpq_canonicalize(at->t);
+}
+
+/* A few digits of a rational are lost where a quotient of values nearly 0 is formed: what is nearer to 0 than this, or
+ * farther, is not compared. */
+static bool is_plain(mpfr_srcptr x)
+{
+    return mpfr_zero_p(x) || (mpfr_regular_p(x) && mpfr_get_exp(x) > -60 && mpfr_get_exp(x) < 60);
+}
+
+static void value_of(const struct tree *tree, const struct at *at, mpfr_ptr value);
+
+static void value_of_table(mpfr_t *x, int points, mpfr_ptr value)
+{
+    int piece = 0;
+    while (piece + 2 < points && mpfr_cmp(x[0], x[1 + 2 * (piece + 1)]) > 0)
+        piece++;
+    mpfr_t *p = x + 1 + 2 * piece, part;
+    mpfr_init2(part, BITS);
+    mpfr_sub(part, x[0], p[0], MPFR_RNDN);
+    mpfr_sub(value, p[2], p[0], MPFR_RNDN);
+    mpfr_div(part, part, value, MPFR_RNDN);         /* y0 (1 - part) + y1 part */
+    mpfr_mul(value, part, p[3], MPFR_RNDN);
+    mpfr_ui_sub(part, 1, part, MPFR_RNDN);
+    mpfr_fma(value, part, p[1], value, MPFR_RNDN);
+    mpfr_clear(part);
+}
+
+static void value_of_call(const struct tree *tree, mpfr_t *x, mpfr_ptr value)
+{
+    switch (tree->function) {
+    case FN_SIN:   mpfr_sin(value, x[0], MPFR_RNDN); break;
+    case FN_COS:   mpfr_cos(value, x[0], MPFR_RNDN); break;
+    case FN_TAN:   mpfr_tan(value, x[0], MPFR_RNDN); break;
+    case FN_EXP:   mpfr_exp(value, x[0], MPFR_RNDN); break;
+    case FN_LOG:   mpfr_log(value, x[0], MPFR_RNDN); break;
+    case FN_SQRT:  mpfr_sqrt(value, x[0], MPFR_RNDN); break;
+    case FN_ABS:   mpfr_abs(value, x[0], MPFR_RNDN); break;
+    case FN_SGN:   mpfr_set_si(value, mpfr_sgn(x[0]), MPFR_RNDN); break;
+    case FN_SINH:  mpfr_sinh(value, x[0], MPFR_RNDN); break;
+    case FN_COSH:  mpfr_cosh(value, x[0], MPFR_RNDN); break;
+    case FN_TANH:  mpfr_tanh(value, x[0], MPFR_RNDN); break;
+    case FN_ASIN:  mpfr_asin(value, x[0], MPFR_RNDN); break;
+    case FN_ACOS:  mpfr_acos(value, x[0], MPFR_RNDN); break;
+    case FN_ATAN:  mpfr_atan(value, x[0], MPFR_RNDN); break;
+    case FN_ATAN2: mpfr_atan2(value, x[0], x[1], MPFR_RNDN); break;
+    case FN_TABLE: value_of_table(x, (tree->children - 1) / 2, value); break;
+    default:
+        mpfr_set(value, x[0], MPFR_RNDN);
+        for (int i = 1; i < tree->children; i++) {
+            bool low = tree->function == FN_MAX || (tree->function >= FN_DEADZONE && i == 1);
+            if (low ? mpfr_cmp(x[i], value) > 0 : mpfr_cmp(x[i], value) < 0)
+                mpfr_set(value, x[i], MPFR_RNDN);
+        }
+        if (tree->function == FN_DEADZONE)
+            mpfr_sub(value, x[0], value, MPFR_RNDN);
+    }
+}
+
+static bool compares(enum comparison comparison, int order)
+{
+    return comparison == CMP_LT   ? order < 0
+           : comparison == CMP_LE ? order <= 0
+           : comparison == CMP_GT ? order > 0
+                                  : order >= 0;
+}
+
+static void value_of_operation(const struct tree *tree, mpfr_t *x, mpfr_ptr value)
+{
+    switch (tree->kind) {
+    case SUM:        mpfr_add(value, x[0], x[1], MPFR_RNDN); break;
+    case DIFFERENCE: mpfr_sub(value, x[0], x[1], MPFR_RNDN); break;
+    case PRODUCT:    mpfr_mul(value, x[0], x[1], MPFR_RNDN); break;
+    case QUOTIENT:   mpfr_div(value, x[0], x[1], MPFR_RNDN); break;
+    case POWER:      mpfr_pow_ui(value, x[0], tree->exponent, MPFR_RNDN); break;
+    case RAISED:     mpfr_pow(value, x[0], x[1], MPFR_RNDN); break;
+    case CHOICE:     mpfr_set(value, x[compares(tree->comparison, mpfr_cmp(x[0], x[1])) ? 2 : 3], MPFR_RNDN); break;
+    default:         value_of_call(tree, x, value);
+    }
+}
+
+/* NaN where some part is not plain: there nothing is compared */
+static void value_of(const struct tree *tree, const struct at *at, mpfr_ptr value)
+{
+    mpfr_t x[MOST];
+    bool plain = true;
+    for (int i = 0; i < tree->children; i++) {
+        mpfr_init2(x[i], BITS);
+        value_of(tree->child[i], at, x[i]);
+        plain = plain && is_plain(x[i]);
+    }
+    if (tree->kind == NUMBER) {
+        mpfr_set_q(value, tree->number, MPFR_RNDN);
+    } else if (tree->kind == TIME) {
+        mpfr_set_q(value, at->t, MPFR_RNDN);
+    } else if (tree->kind == WAVE) {
+        mpfr_set_q(value, at->t, MPFR_RNDN);
+        mpfr_mul_q(value, value, tree->number, MPFR_RNDN);
+        mpfr_add_ui(value, value, 1, MPFR_RNDN);
+        mpfr_sin(value, value, MPFR_RNDN);
+    } else if (tree->kind == STATE) {
+        mpfr_set_q(value, at->state[tree->index][tree->order], MPFR_RNDN);
+    } else if (plain) {
+        value_of_operation(tree, x, value);
+    }
+    if (!plain || !is_plain(value))
+        mpfr_set_nan(value);
+    for (int i = 0; i < tree->children; i++)
+        mpfr_clear(x[i]);
+}
+
+/* ---- forms ---- */
+
+static struct collector collector;
+static struct frame frame;
+static struct node node;
+
+static void new_collector(void)
+{
+    static const struct source source = { .name = "m.spec", .base = "m.spec", .text = "x'' + x = 0\n", .length = 12 };
+    static struct symbol coord[COORDS];
+    static struct symbol *coords[COORDS];
+    for (int i = 0; i < COORDS; i++) {
+        coord[i] = (struct symbol){ .kind = SYMBOL_COORD, .name = i ? "y" : "x", .index = i, .highest = 2 };
+        coords[i] = &coord[i];
+    }
+    discard(collector.atoms);
+    frame = (struct frame){ .coord = coords };
+    node = (struct node){ .kind = NODE_TIME, .at = { &source, 0 }, .start = { &source, 0 }, .end = { &source, 3 } };
+    collector = (struct collector){
+        .atoms = atoms_new(), .frame = &frame, .keep = KEEP_ALL, .whole_time = true, .scheme = "nc3", .term = &node
+    };
+}
+
+static struct form *state_form(int index, int order)
+{
+    return form_unit((struct basis){ .kind = BASIS_COORD, .index = index, .order = order });
+}
+
+static struct form *form_of(const struct tree *tree);
+
+static struct form *form_of_call(const struct tree *tree, struct form *const *x)
+{
+    struct node *call = NEW(struct node);
+    *call = node;
+    call->kind = NODE_CALL;
+    call->function = tree->function;
+    call->children = tree->children;
+    call->child = ARRAY(struct node *, (size_t)tree->children);
+    for (int i = 0; i < tree->children; i++)
+        call->child[i] = &node;
+    return kept_call(&collector, call, tree->function, tree->children, x);
+}
+
+static struct form *form_of(const struct tree *tree)
+{
+    struct collector *c = &collector;
+    struct form *x[MOST];
+    for (int i = 0; i < tree->children; i++)
+        x[i] = form_of(tree->child[i]);
+    switch (tree->kind) {
+    case NUMBER:     return form_constant(tree->number);
+    case TIME:       return plain_wave(c, 1, NULL);
+    case WAVE:       return collect_wave(c, true, tree->number, form_number(1));
+    case STATE:      return state_form(tree->index, tree->order);
+    case SUM:        return form_sum(x[0], x[1], false);
+    case DIFFERENCE: return form_sum(x[0], x[1], true);
+    case PRODUCT:    return kept_product(c, &node, x[0], x[1]);
+    case QUOTIENT:   return kept_product(c, &node, x[0], kept_reciprocal(c, &node, x[1]));
+    case POWER:      return kept_whole_power(c, &node, x[0], tree->exponent);
+    case RAISED:     return kept_power(c, &node, x[0], x[1]);
+    case CALL:       return form_of_call(tree, x);
+    default:         return kept_choice(c, &node, kept_comparison(c, &node, tree->comparison, x[0], x[1]), x[2], x[3]);
+    }
+}
+
+static void leaf(void *context, const struct basis *basis, mpfr_ptr value)
+{
+    const struct at *at = context;
+    mpfr_set_q(value, at->state[basis->index][basis->order], MPFR_RNDN);
+}
+
+static void sampled(const struct form *form, struct at *at, mpfr_ptr value)
+{
+    mpfr_t t;
+    struct sample *sample = sample_new(BITS, leaf, at);
+    mpfr_init2(t, BITS);
+    mpfr_set_q(t, at->t, MPFR_RNDN);
+    sample_at(sample, t);
+    sample_form(sample, form, value);
+    mpfr_clear(t);
+}
+
+/* What may fail for good reasons, as where a constant divides by 0 */
+struct attempt {
+    const struct tree *tree;
+    struct form *form, **slope;
+    int coord, order;
+    struct point *point;
+};
+
+static void make_form(void *context)
+{
+    struct attempt *a = context;
+    a->form = form_of(a->tree);
+}
+
+static void make_slope(void *context)
+{
+    struct attempt *a = context;
+    a->slope = form_derivatives(&collector, 1, (const struct form *const *)&a->form, a->coord, a->order);
+}
+
+static void make_placed(void *context)
+{
+    struct attempt *a = context;
+    a->form = form_at(a->point, a->form);
+}
+
+/* |found - expected| <= 2^bits (1 + |expected|) */
+static void assert_close(const char *what, int n, const struct tree *tree, mpfr_srcptr found, mpfr_srcptr expected,
+                         int bits)
+{
+    mpfr_t off, most;
+    mpfr_inits2(BITS, off, most, NULL);
+    mpfr_sub(off, found, expected, MPFR_RNDN);
+    mpfr_abs(most, expected, MPFR_RNDN);
+    mpfr_add_ui(most, most, 1, MPFR_RNDN);
+    mpfr_mul_2si(most, most, bits, MPFR_RNDN);
+    if (!(mpfr_cmpabs(off, most) <= 0) || mpfr_nan_p(off))
+        fail_msg("%s, case %d, %s: found %.17g, expected %.17g; off by %.3g, tolerance %.3g", what, n, tree_text(tree),
+                 mpfr_get_d(found, MPFR_RNDN), mpfr_get_d(expected, MPFR_RNDN), mpfr_get_d(off, MPFR_RNDN),
+                 mpfr_get_d(most, MPFR_RNDN));
+    mpfr_clears(off, most, NULL);
+}
+
+static void at_init(struct at *at)
+{
+    for (int i = 0; i < COORDS; i++)
+        mpq_inits(at->state[i][0], at->state[i][1], NULL);
+    mpq_init(at->t);
+}
+
+/* ---- values ---- */
+
+static bool irrational_met(void)
+{
+    return collector.irrational_count > 0;
+}
+
+/* Functions of constants become rationals of 256 bits: what holds one is compared to fewer digits */
+static void forms_have_the_values_of_their_trees(void **state)
+{
+    struct at at;
+    mpfr_t found, expected;
+    int compared = 0;
+    at_init(&at);
+    mpfr_inits2(BITS, found, expected, NULL);
+    (void)state;
+    for (int n = 0; n < CASES; n++) {
+        new_collector();
+        struct attempt a = { .tree = draw_tree(1 + (int)draw(4)) };
+        if (!silent_guard(make_form, &a))
+            continue;
+        draw_point(&at);
+        value_of(a.tree, &at, expected);
+        if (mpfr_nan_p(expected))
+            continue;
+        sampled(a.form, &at, found);
+        assert_close("value", n, a.tree, found, expected, irrational_met() ? -100 : -250);
+        compared++;
+    }
+    print_message("# %d of %d forms compared\n", compared, CASES);
+    assert_true(compared > CASES / 2);
+    mpfr_clears(found, expected, NULL);
+}
+
+static void constants_are_folded(void **state)
+{
+    struct at at;
+    mpfr_t found, expected;
+    int compared = 0;
+    at_init(&at);
+    mpfr_inits2(BITS, found, expected, NULL);
+    constants_only = true;
+    (void)state;
+    for (int n = 0; n < CASES; n++) {
+        new_collector();
+        struct attempt a = { .tree = draw_tree(1 + (int)draw(4)) };
+        if (!silent_guard(make_form, &a))
+            continue;
+        value_of(a.tree, &at, expected);
+        if (mpfr_nan_p(expected))
+            continue;
+        if (!is_constant(a.form) || atoms_count(collector.atoms) > 0)
+            fail_msg("case %d: %s is not folded: %d terms, %d atoms", n, tree_text(a.tree), a.form->terms,
+                     atoms_count(collector.atoms));
+        sampled(a.form, &at, found);
+        assert_close("constant", n, a.tree, found, expected, irrational_met() ? -100 : -250);
+        compared++;
+    }
+    constants_only = false;
+    print_message("# %d of %d constants compared\n", compared, CASES);
+    assert_true(compared > CASES / 3);
+    mpfr_clears(found, expected, NULL);
+}
+
+/* With sums turned round */
+static struct tree *copied_tree(const struct tree *from)
+{
+    bool turned = from->kind == SUM;
+    struct tree *tree = NEW(struct tree);
+    *tree = *from;
+    for (int i = 0; i < from->children; i++)
+        tree->child[i] = copied_tree(from->child[turned ? 1 - i : i]);
+    return tree;
+}
+
+/* The same again, with sums turned round: the same form, and no atom more */
+static void same_expressions_are_shared(void **state)
+{
+    int atoms = 0;
+    (void)state;
+    for (int n = 0; n < CASES; n++) {
+        new_collector();
+        struct attempt a = { .tree = draw_tree(1 + (int)draw(4)) }, again = { .tree = copied_tree(a.tree) };
+        if (!silent_guard(make_form, &a))
+            continue;
+        int count = atoms_count(collector.atoms);
+        assert_true(silent_guard(make_form, &again));
+        atoms += count;
+        if (!same_form(a.form, again.form) || atoms_count(collector.atoms) != count)
+            fail_msg("case %d: %s made twice: %d atoms, then %d; expected one form, no atom more", n, tree_text(a.tree),
+                     count, atoms_count(collector.atoms));
+        if (same_form(a.form, form_sum(a.form, form_number(1), false)))
+            fail_msg("case %d: %s is the same as itself plus 1", n, tree_text(a.tree));
+    }
+    assert_true(atoms > CASES);
+}
+
+/* a b and b a are one; so are a b c in any order, for sums that are not multiplied out into each other */
+static void products_commute(void **state)
+{
+    (void)state;
+    for (int n = 0; n < CASES; n++) {
+        new_collector();
+        struct form *x[3];
+        for (int i = 0; i < 3; i++) {
+            struct form *inner = form_sum(state_form((int)draw(2), (int)draw(2)), form_number((long)draw(5)), false);
+            x[i] = kept_call(&collector, &node, draw(2) ? FN_SIN : FN_EXP, 1, &inner);
+        }
+        struct form *left = kept_product(&collector, &node, kept_product(&collector, &node, x[0], x[1]), x[2]);
+        struct form *right = kept_product(&collector, &node, kept_product(&collector, &node, x[2], x[0]), x[1]);
+        if (!same_form(left, right) || left->terms != 1)
+            fail_msg("case %d: (a b) c and (c a) b are different products, of %d and %d terms", n, left->terms,
+                     right->terms);
+        const struct atom *product = left->term[0].basis.atom;
+        for (int i = 0; i < product->operands; i++) {
+            if (product->operands == 1 && product->exponent[0] == 1)
+                continue;
+            struct form *others = product->operands == 1 && product->exponent[0] == 2
+                ? form_sum(product->operand[0], form_number(0), false) : kept_others(&collector, &node, product, i);
+            struct form *whole = kept_product(&collector, &node, others, product->operand[i]);
+            if (!same_form(whole, left))
+                fail_msg("case %d: what is left without factor %d, times that factor, is another product", n, i);
+        }
+    }
+}
+
+/* A factor that jumps times what is piecewise linear, as choices: the same value */
+static void switched_products_keep_their_value(void **state)
+{
+    struct at at;
+    mpfr_t found, expected;
+    int switched = 0;
+    at_init(&at);
+    mpfr_inits2(BITS, found, expected, NULL);
+    (void)state;
+    for (int n = 0; n < CASES; n++) {
+        new_collector();
+        struct tree *jump = draw(2) ? new_tree(CALL, 1) : new_tree(CHOICE, 4), *product = new_tree(PRODUCT, 2),
+                    *x = draw_leaf();
+        jump->function = FN_SGN;
+        jump->comparison = (enum comparison)draw(4);
+        for (int i = 0; i < jump->children; i++)
+            jump->child[i] = i < 2 ? draw_leaf() : number_tree(draw_integer(9));
+        product->child[0] = jump;
+        product->child[1] = draw(3) ? x : jump->child[0];
+        struct form *a = form_of(product->child[0]), *b = form_of(product->child[1]);
+        struct form *made = draw(2) ? kept_switched(&collector, &node, a, b) : kept_switched(&collector, &node, b, a);
+        if (!made)
+            continue;
+        switched++;
+        if (!is_piecewise_form(made))
+            fail_msg("case %d: %s is not piecewise linear", n, tree_text(product));
+        draw_point(&at);
+        value_of(product, &at, expected);
+        sampled(made, &at, found);
+        assert_close("switched product", n, product, found, expected, -250);
+    }
+    print_message("# %d of %d products switched\n", switched, CASES);
+    assert_true(switched > CASES / 4);
+    mpfr_clears(found, expected, NULL);
+}
+
+/* What a form depends on is what changes its value. */
+static bool names_state(const struct tree *tree, int index, int order)
+{
+    bool named = tree->kind == STATE && (index < 0 || tree->index == index) && (order < 0 || tree->order == order);
+    for (int i = 0; i < tree->children && !named; i++)
+        named = names_state(tree->child[i], index, order);
+    return named;
+}
+
+static bool names_kind(const struct tree *tree, bool piecewise)
+{
+    bool bent = tree->kind == QUOTIENT || tree->kind == RAISED || tree->kind == PRODUCT || tree->kind == POWER;
+    bool call = tree->kind == CALL && tree->function != FN_ABS && tree->function != FN_SGN && tree->function < FN_MIN;
+    bool named = piecewise ? bent || call : tree->kind == TIME || tree->kind == WAVE;
+    for (int i = 0; i < tree->children && !named; i++)
+        named = names_kind(tree->child[i], piecewise);
+    return named;
+}
+
+static void dependence_is_of_what_is_named(void **state)
+{
+    (void)state;
+    for (int n = 0; n < CASES; n++) {
+        new_collector();
+        struct attempt a = { .tree = draw_tree(1 + (int)draw(3)) };
+        if (!silent_guard(make_form, &a))
+            continue;
+        bool moves = names_state(a.tree, -1, -1), fast = names_state(a.tree, -1, 1), timed = names_kind(a.tree, false);
+        for (int i = 0; i < a.form->terms; i++) {
+            const struct basis *basis = &a.form->term[i].basis;
+            const struct atom *atom = basis->atom;
+            if ((atom && atom->time && !timed) || (is_velocity(&frame, basis) && !fast) ||
+                (!depends_on_time_only(basis) && !moves))
+                fail_msg("case %d: a term of %s depends on what it does not name", n, tree_text(a.tree));
+            if (atom && atom->state != (moved_basis(NULL, basis) != NULL))
+                fail_msg("case %d: a term of %s depends on a state: %d; it has one that moves: %d", n,
+                         tree_text(a.tree), atom->state, moved_basis(NULL, basis) != NULL);
+        }
+        if (!names_kind(a.tree, true) && !is_piecewise_form(a.form))
+            fail_msg("case %d: %s is not found piecewise linear", n, tree_text(a.tree));
+    }
+    struct form *sine = state_form(0, 0), *square = kept_whole_power(&collector, &node, sine, 2);
+    sine = kept_call(&collector, &node, FN_SIN, 1, &sine);
+    assert_false(is_piecewise_form(sine));
+    assert_false(is_piecewise_form(square));
+    assert_false(is_stepwise(sine));
+    assert_true(is_stepwise(kept_comparison(&collector, &node, CMP_LT, sine, form_number(0))));
+}
+
+/* ---- derivatives ---- */
+
+/* Of the tree by (f(x + d) - f(x - d))/(2 d), d = 2^-80: off by some f''' d^2. False: not plain on both sides */
+static bool difference_quotient(const struct tree *tree, struct at *at, int coord, int order, mpfr_ptr slope)
+{
+    enum { STEP = 80 };
+    mpfr_t before;
+    mpq_t kept, step;
+    mpq_inits(kept, step, NULL);
+    mpfr_init2(before, BITS);
+    mpq_set(kept, at->state[coord][order]);
+    mpq_set_ui(step, 1, 1);
+    mpq_div_2exp(step, step, STEP);
+    mpq_add(at->state[coord][order], kept, step);
+    value_of(tree, at, slope);
+    mpq_sub(at->state[coord][order], kept, step);
+    value_of(tree, at, before);
+    mpq_set(at->state[coord][order], kept);
+    mpfr_sub(slope, slope, before, MPFR_RNDN);
+    mpfr_mul_2ui(slope, slope, STEP - 1, MPFR_RNDN);
+    mpfr_clear(before);
+    mpq_clears(kept, step, NULL);
+    return is_plain(slope);
+}
+
+static void derivatives_are_difference_quotients(void **state)
+{
+    struct at at;
+    mpfr_t found, expected;
+    int compared = 0, moving = 0;
+    at_init(&at);
+    mpfr_inits2(BITS, found, expected, NULL);
+    (void)state;
+    for (int n = 0; n < 3 * CASES; n++) {
+        new_collector();
+        struct attempt a = { .tree = draw_tree(1 + (int)draw(3)), .coord = (int)draw(COORDS), .order = (int)draw(2) };
+        if (!silent_guard(make_form, &a) || !silent_guard(make_slope, &a))
+            continue;
+        if (!names_state(a.tree, a.coord, a.order) && a.slope[0]->terms > 0)
+            fail_msg("case %d: %s has a derivative for x%d, order %d, which it does not hold", n, tree_text(a.tree),
+                     a.coord, a.order);
+        draw_point(&at);
+        if (!difference_quotient(a.tree, &at, a.coord, a.order, expected))
+            continue;
+        sampled(a.slope[0], &at, found);
+        if (mpfr_nan_p(found))                          /* 0 * log(negative) of an even power */
+            continue;
+        assert_close("derivative", n, a.tree, found, expected, -60);
+        compared++;
+        moving += mpfr_sgn(expected) != 0;
+    }
+    print_message("# %d of %d derivatives compared, %d not 0\n", compared, 3 * CASES, moving);
+    assert_true(moving > CASES / 2);
+    mpfr_clears(found, expected, NULL);
+}
+
+/* ---- at a point ---- */
+
+static void forms_at_a_point(void **state)
+{
+    struct at at;
+    mpfr_t found, expected;
+    int compared = 0, constant = 0;
+    static struct symbol coord = { .kind = SYMBOL_COORD };
+    at_init(&at);
+    mpfr_inits2(BITS, found, expected, NULL);
+    (void)state;
+    for (int n = 0; n < 2 * CASES; n++) {
+        struct fixing fixing[LEAVES];
+        int fixings = 0;
+        bool all = draw(3) != 0;
+        new_collector();
+        struct attempt a = { .tree = draw_tree(1 + (int)draw(4)) };
+        if (!silent_guard(make_form, &a))
+            continue;
+        draw_point(&at);
+        value_of(a.tree, &at, expected);
+        if (mpfr_nan_p(expected))
+            continue;
+        for (int k = 0; k < LEAVES; k++) {              /* the states, and t */
+            struct fixing *f = &fixing[fixings];
+            if (!all && draw(2))
+                continue;
+            fixings++;
+            *f = (struct fixing){
+                .at = node.at, .symbol = k < 2 * COORDS ? &coord : NULL, .coord = k / 2, .order = k % 2
+            };
+            mpq_init(f->value);
+            mpq_set(f->value, k < 2 * COORDS ? at.state[k / 2][k % 2] : at.t);
+            f->form = form_constant(f->value);
+        }
+        a.point = point_new(&collector, fixings, fixing);
+        if (!silent_guard(make_placed, &a))
+            continue;
+        if (all && !is_constant(a.form))
+            fail_msg("case %d: %s with everything fixed is no constant", n, tree_text(a.tree));
+        sampled(a.form, &at, found);
+        assert_close("at a point", n, a.tree, found, expected, irrational_met() ? -100 : -250);
+        /* what is fixed has no say any more */
+        if (all) {
+            draw_point(&at);
+            sampled(a.form, &at, found);
+            assert_close("at another point", n, a.tree, found, expected, irrational_met() ? -100 : -250);
+        }
+        compared++;
+        constant += all;
+    }
+    print_message("# %d of %d forms at a point compared, %d of them constants\n", compared, 2 * CASES, constant);
+    assert_true(constant > CASES / 2 && compared > constant + CASES / 8);
+    mpfr_clears(found, expected, NULL);
+}
+
+int main(int argc, char **argv)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(forms_have_the_values_of_their_trees),
+        cmocka_unit_test(constants_are_folded),
+        cmocka_unit_test(same_expressions_are_shared),
+        cmocka_unit_test(products_commute),
+        cmocka_unit_test(switched_products_keep_their_value),
+        cmocka_unit_test(dependence_is_of_what_is_named),
+        cmocka_unit_test(derivatives_are_difference_quotients),
+        cmocka_unit_test(forms_at_a_point),
+    };
+    choose_cases(argc, argv);
+    memory_open();
+    const int status = cmocka_run_group_tests(tests, NULL, NULL);
+    memory_close();
+    return status;
+}
