@@ -86,17 +86,26 @@ file_of()
 
 # ---- do they apply? ----
 
+# As TAP, for the tests that `make check` runs
 check_all()
 {
-	bad=0
+	number=0
+	failed=0
+	echo "1..$#"
 	for name; do
-		for word in suite says; do
-			[ -n "$(head_of "$name" $word)" ] || { echo "$name: the head has no '$word'"; bad=$((bad + 1)); }
-		done
-		file_of "$root" "$name" >/dev/null || { echo "$name: applies to no file"; bad=$((bad + 1)); }
+		number=$((number + 1))
+		why=
+		[ -n "$(head_of "$name" suite)" ] && [ -n "$(head_of "$name" says)" ] || why='its head has no suite, or says nothing'
+		[ -n "$(file_of "$root" "$name")" ] || why='it applies to no file'
+		if [ -z "$why" ]; then
+			echo "ok $number - $name"
+		else
+			echo "not ok $number - $name"
+			echo "# $why"
+			failed=1
+		fi
 	done
-	echo "$(($# - bad)) of $# apply"
-	[ "$bad" -eq 0 ]
+	return $failed
 }
 
 # refresh NAME: the same fault, as a patch of the tree as it is
@@ -135,10 +144,10 @@ run_suite()
 	ninja -C "$1/build" plgen >"$3" 2>&1 || return 2
 	if [ -n "$program" ]; then
 		ninja -C "$1/build" "${program%% *}" >>"$3" 2>&1 || return 2
-		(cd "$1" && eval "build/$program") >>"$3" 2>&1 && return 0
+		(cd "$1" && eval "timeout 900 build/$program") >>"$3" 2>&1 && return 0
 		return 1
 	fi
-	meson test -C "$1/build" --print-errorlogs "$suite" --test-args="$(head_of "$2" case)" >>"$3" 2>&1
+	meson test -C "$1/build" --timeout-multiplier 5 --print-errorlogs "$suite" --test-args="$(head_of "$2" case)" >>"$3" 2>&1
 	case $? in
 	0) return 0 ;;
 	125) return 2 ;;

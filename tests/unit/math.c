@@ -774,6 +774,97 @@ static void residues_of_double_pairs(void **state)
     mpfr_clear(truth);
 }
 
+/* c/((s - a)(s - b)) is c (e^{a t} - e^{b t})/(a - b) */
+static void residues_of_real_poles(void **state)
+{
+    mpq_t a, b, t, scale, factor, none;
+    mpfr_t truth;
+    mpfi_t value;
+    (void)state;
+    mpq_inits(a, b, t, scale, factor, none, NULL);
+    mpfr_init2(truth, TRUE_BITS);
+    for (int n = 0; n < 60; n++) {
+        long first = draw_integer(9), second = first + 1 + (long)draw(9);
+        mpq_set_si(a, first, 1);
+        mpq_set_si(b, second, 1);
+        draw_fraction(scale, 50, 9);
+        mpq_set_ui(t, 1 + draw(20), 1 + draw(20));
+        mpq_canonicalize(t);
+        mpfr_set_zero(truth, 1);
+        mpq_sub(factor, a, b);
+        mpq_div(factor, scale, factor);
+        add_wave(truth, a, none, t, factor, 0, false);
+        mpq_neg(factor, factor);
+        add_wave(truth, b, none, t, factor, 0, false);
+        struct poly D = poly_mul(linear_poly(1, -first), linear_poly(1, -second));
+        int precision = 20 + (int)draw(150);
+        mpfi_init2(value, 64 + precision);
+        assert_true(response_enclose(response_of(scale, one_poly(), D), t, precision, value));
+        assert_interval("real poles", n, value, truth);
+        mpfi_clear(value);
+    }
+    mpq_clears(a, b, t, scale, factor, none, NULL);
+    mpfr_clear(truth);
+}
+
+/* sin(r t)/r with r^2 = 2, of one response that is asked again and again: at other times, with more bits or fewer. What
+ * was found for one question is not good enough, or wrong, for the next. */
+static void a_response_asked_anew(void **state)
+{
+    mpq_t t, one;
+    mpfr_t root, truth;
+    mpfi_t value;
+    (void)state;
+    mpq_inits(t, one, NULL);
+    mpfr_inits2(TRUE_BITS, root, truth, NULL);
+    mpq_set_ui(one, 1, 1);
+    mpfr_sqrt_ui(root, 2, MPFR_RNDN);
+    struct poly D = poly_new(3);
+    mpz_set_ui(D.c[0], 2);
+    mpz_set_ui(D.c[2], 1);
+    struct response *response = response_of(one, one_poly(), D);
+    for (int n = 0; n < 60; n++) {
+        int precision = 20 + (int)draw(200);
+        mpq_set_ui(t, 1 + draw(20), 1 + draw(20));
+        mpq_canonicalize(t);
+        mpfr_mul_q(truth, root, t, MPFR_RNDN);
+        mpfr_sin(truth, truth, MPFR_RNDN);
+        mpfr_div(truth, truth, root, MPFR_RNDN);
+        mpfi_init2(value, 64 + precision);
+        assert_true(response_enclose(response, t, precision, value));
+        assert_interval("asked anew", n, value, truth);
+        assert_narrow("asked anew", n, value, 16 - precision);  /* the phase r t is below 2^5 */
+        mpfi_clear(value);
+    }
+    mpq_clears(t, one, NULL);
+    mpfr_clears(root, truth, NULL);
+}
+
+/* c/s^m is c t^{m-1}/(m-1)!, which is a rational number */
+static void residues_of_powers_of_time(void **state)
+{
+    mpq_t scale, t, truth, found;
+    (void)state;
+    mpq_inits(scale, t, truth, found, NULL);
+    for (int n = 0; n < 60; n++) {
+        int m = 1 + (int)draw(6);
+        draw_fraction(scale, 50, 9);
+        mpq_set_ui(t, 1 + draw(20), 1 + draw(20));
+        mpq_canonicalize(t);
+        mpq_set(truth, scale);
+        for (int k = 1; k < m; k++) {
+            mpq_set_ui(found, 1, (unsigned long)k);
+            mpq_mul(truth, truth, found);
+            mpq_mul(truth, truth, t);
+        }
+        struct response *response = response_of(scale, one_poly(), poly_shift(one_poly(), m));
+        assert_true(response_exact(response, t, found));
+        if (!mpq_equal(found, truth))
+            fail_msg("case %d: s^-%d at %g: %.17g, expected %.17g", n, m, mpq_get_d(t), mpq_get_d(found), mpq_get_d(truth));
+    }
+    mpq_clears(scale, t, truth, found, NULL);
+}
+
 /* ---- exponentials of matrices ---- */
 
 enum { PRECISION = 120 };
@@ -1138,6 +1229,9 @@ int main(int argc, char **argv)
         cmocka_unit_test(rectangle_exponential),
         cmocka_unit_test(roots_multiplied_back),
         cmocka_unit_test(residues_of_double_pairs),
+        cmocka_unit_test(residues_of_powers_of_time),
+        cmocka_unit_test(residues_of_real_poles),
+        cmocka_unit_test(a_response_asked_anew),
         cmocka_unit_test(taylor_times_its_inverse),
         cmocka_unit_test(taylor_of_sums),
         cmocka_unit_test(taylor_of_known_eigenvalues),
