@@ -1056,6 +1056,62 @@ static void taylor_of_known_eigenvalues(void **state)
         mpfr_clear(e[k]);
 }
 
+/* Of x' = [[0, 2^g], [-a b 2^-g, a + b]] x, a and b below 0 and rational, with few bits: there what the series leaves out
+ * is more than what rounding does. With E the exponentials E11 = (a e^{b t} - b e^{a t})/(a - b) and
+ * E12 = 2^g (e^{a t} - e^{b t})/(a - b), in states whose units differ by 2^g. */
+static void taylor_of_few_bits(void **state)
+{
+    mpq_t a, b, tau, factor, none;
+    mpfr_t truth;
+    (void)state;
+    mpq_inits(a, b, tau, factor, none, NULL);
+    mpfr_init2(truth, TRUE_BITS);
+    for (int n = 0; n < 300; n++) {
+        int g = 2 * (int)draw(50) - 50;
+        mpq_t *A = rationals(4);
+        mpq_set_si(a, -1 - (long)draw(40), 1 + draw(40));
+        mpq_canonicalize(a);
+        mpq_set_si(b, -1 - (long)draw(20), 41 + draw(20));
+        mpq_canonicalize(b);
+        mpq_set_ui(tau, 1 + draw(20), 1 + draw(20));
+        mpq_canonicalize(tau);
+        mpq_sub(factor, a, b);
+        if (mpq_sgn(factor) == 0)
+            continue;
+        mpq_set_ui(A[1], 1, 1);
+        mpq_mul(A[2], a, b);
+        mpq_neg(A[2], A[2]);
+        mpq_add(A[3], a, b);
+        for (int k = 0; k < (g < 0 ? -g : g); k++) {
+            (g < 0 ? mpq_div_2exp : mpq_mul_2exp)(A[1], A[1], 1);
+            (g < 0 ? mpq_mul_2exp : mpq_div_2exp)(A[2], A[2], 1);
+        }
+        mpfi_t *E = entries_of(taylor_of(2, (const mpq_t *)A, tau), 2, 2 + (int)draw(46));
+        mpfr_set_zero(truth, 1);
+        mpq_div(factor, A[1], factor);
+        add_wave(truth, a, none, tau, factor, 0, false);
+        mpq_neg(factor, factor);
+        add_wave(truth, b, none, tau, factor, 0, false);
+        assert_interval("E12", n, E[1], truth);
+        mpfr_set_zero(truth, 1);
+        mpq_div(factor, factor, A[1]);
+        mpq_mul(none, factor, b);
+        mpq_mul(factor, factor, a);
+        mpq_neg(factor, factor);
+        mpq_swap(none, factor);
+        mpq_t zero;
+        mpq_init(zero);
+        add_wave(truth, a, zero, tau, factor, 0, false);
+        add_wave(truth, b, zero, tau, none, 0, false);
+        mpq_clear(zero);
+        mpq_set_ui(none, 0, 1);
+        assert_interval("E11", n, E[0], truth);
+        entries_free(2, E);
+    }
+    mpq_clears(a, b, tau, factor, none, NULL);
+    mpfr_clear(truth);
+}
+
 /* Where no circle is on the way entries are polynomials in tau: here in a triangle without diagonal, all are. */
 static void taylor_of_a_chain(void **state)
 {
@@ -1235,6 +1291,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(taylor_times_its_inverse),
         cmocka_unit_test(taylor_of_sums),
         cmocka_unit_test(taylor_of_known_eigenvalues),
+        cmocka_unit_test(taylor_of_few_bits),
         cmocka_unit_test(taylor_of_a_chain),
         cmocka_unit_test(fit_of_known_sums),
     };
