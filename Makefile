@@ -7,7 +7,7 @@ PACKAGES = gcc g++ clang make meson ninja-build pkgconf \
 	libsundials-dev libcmocka-dev valgrind gnuplot-nox \
 	gcc-arm-none-eabi libnewlib-arm-none-eabi qemu-system-arm
 
-.PHONY: all setup deps demo check bench charts charts-quick firmware-report fuzz accuracy install clean
+.PHONY: all setup deps demo check bench charts charts-quick firmware-report fuzz accuracy faults install clean
 
 all: setup
 	ninja -C $(BUILD)
@@ -64,6 +64,10 @@ accuracy: all
 fuzz: all
 	ninja -C $(BUILD) fuzz_long
 	ninja -C $(BUILD) grammar_long
+
+# Does the suite that should notice a fault notice it?  150 faults, each put into a copy: tests/faults
+faults: setup
+	sh tests/faults/faults.sh -j 2
 
 install: all
 	meson install -C $(BUILD)

@@ -4,6 +4,7 @@
  * tree. */
 #include "draw.h"
 
+#include <math.h>
 #include <string.h>
 
 enum { CASES = 600, COORDS = 2, LEAVES = 2 * COORDS + 1, MOST = 7, BITS = 500 };
@@ -697,6 +698,62 @@ static void forms_at_a_point(void **state)
     mpfr_clears(found, expected, NULL);
 }
 
+/* ---- loads ---- */
+
+/* Of constants and waves, in double */
+static double value_in_time(const struct form *form, double t)
+{
+    double sum = 0;
+    for (int i = 0; i < form->terms; i++) {
+        const struct basis *basis = &form->term[i].basis;
+        double value = basis->kind == BASIS_PI ? acos(-1) : 1;
+        assert_true(basis->kind <= BASIS_WAVE);
+        if (basis->kind == BASIS_WAVE) {
+            double angle = mpq_get_d(basis->wave->w) * t + mpq_get_d(basis->wave->p);
+            value = pow(t, basis->power) * exp(mpq_get_d(basis->wave->a) * t);
+            value *= basis->sine ? sin(angle) : cos(angle);
+        }
+        sum += mpq_get_d(form->term[i].factor) * value;
+    }
+    return sum;
+}
+
+/* t^k e^{a t} sin or cos of w t + q pi + r, as a form and its value at t */
+static struct form *draw_load(double t, double *value)
+{
+    mpq_t a, w, q, r;
+    mpq_inits(a, w, q, r, NULL);
+    int power = (int)draw(3), sine = (int)draw(2);
+    draw_fraction(a, 3, 4);
+    draw_fraction(w, 9, 4);
+    mpq_set_si(q, draw_integer(12), 1 + draw(4));
+    mpq_canonicalize(q);
+    if (draw(3) == 0)
+        draw_fraction(r, 5, 4);
+    struct form *phase = form_sum(form_single((struct basis){ .kind = BASIS_PI }, q), form_constant(r), false);
+    double angle = mpq_get_d(w) * t + acos(-1) * mpq_get_d(q) + mpq_get_d(r);
+    *value = pow(t, power) * exp(mpq_get_d(a) * t) * (sine ? sin(angle) : cos(angle));
+    struct form *wave = collect_wave(&collector, sine, w, phase);
+    struct form *load = load_product(&collector, plain_wave(&collector, power, a), wave);
+    mpq_clears(a, w, q, r, NULL);
+    return load;
+}
+
+static void loads_and_their_products_have_their_values(void **state)
+{
+    (void)state;
+    for (int n = 0; n < CASES; n++) {
+        new_collector();
+        double t = 0.1 + 0.02 * (double)draw(100), x, y;
+        struct form *a = draw_load(t, &x), *b = draw_load(t, &y), *product = load_product(&collector, a, b);
+        double one = value_in_time(a, t), both = value_in_time(product, t);
+        if (!(fabs(one - x) <= 1e-11 * (1 + exp(3 * t) * t * t)))
+            fail_msg("case %d: a load is %.17g at t = %g, expected %.17g", n, one, t, x);
+        if (!(fabs(both - x * y) <= 1e-11 * (1 + exp(6 * t) * t * t * t * t)))
+            fail_msg("case %d: a product of loads is %.17g at t = %g, expected %.17g", n, both, t, x * y);
+    }
+}
+
 int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
@@ -708,6 +765,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(dependence_is_of_what_is_named),
         cmocka_unit_test(derivatives_are_difference_quotients),
         cmocka_unit_test(forms_at_a_point),
+        cmocka_unit_test(loads_and_their_products_have_their_values),
     };
     choose_cases(argc, argv);
     memory_open();
