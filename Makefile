@@ -47,7 +47,8 @@ bench: all
 	sh bench/retune.sh $(BUILD)
 	sh bench/sweep.sh $(BUILD)
 
-# Speed against accuracy, and stability where methods fail: charts/index.html with its pictures and tables. 15 minutes; quick: 2.
+# Speed against accuracy, and stability where methods fail: charts/index.html with its pictures and tables. 20 minutes;
+# quick: 4.
 charts charts-quick: setup
 	ninja -C $(BUILD) charts
 	sh bench/charts/charts.sh $(BUILD) charts $(if $(findstring quick,$@),--quick)

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* apply: time of one product of a matrix with a vector, by the runtime and by a plain loop, in short samples that take turns so
- * that both meet the same machine; prints both medians and their ratio. */
+/* apply: time of one product of a matrix with a vector, by the runtime and by a plain loop, in short samples that take
+ * turns so that both meet the same machine; prints both medians and their ratio. */
 #include "plrt.h"
 
 #include <stdio.h>
@@ -65,8 +65,8 @@ static void measure(int rows, int columns)
 		loop[k] = sample(of_loop, rows, columns, table, x, y);
 	}
 	double a = median(runtime), b = median(loop);
-	printf("%2d x %2d: pl_multiply %7.1f ns (%.3f ns a multiplication), plain loop %7.1f ns, ratio %.2f\n", rows, columns, a,
-	       a / (rows * columns), b, a / b);
+	printf("%2d x %2d: pl_multiply %7.1f ns (%.3f ns a multiplication), plain loop %7.1f ns, ratio %.2f\n", rows,
+	       columns, a, a / (rows * columns), b, a / b);
 }
 
 int main(void)

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* beam: time of one step of the rotating beam, and of its linear part's plain loop, in short samples that take turns so that both
- * meet the same machine; prints medians, time per multiplication and their ratio. MULTIPLICATIONS is the step's count in the
- * generator's report. */
+/* beam: time of one step of the rotating beam, and of its linear part's plain loop, in short samples that take turns
+ * so that both meet the same machine; prints medians, time per multiplication and their ratio. MULTIPLICATIONS is the
+ * step's count in the generator's report. */
 #include "plrt.h"
 
 #include <stdio.h>
@@ -77,8 +77,9 @@ int main(int argc, char **argv)
 		loops[k] = sample_loops(table, x, y);
 	}
 	double step = median(steps), loop = median(loops), count = MULTIPLICATIONS;
-	printf("%-24s %8.0f ns a step of %5.0f multiplications: %.3f ns each; plain 30 x 30 loop: %.3f ns each; ratio %.2f\n", argv[1], step, count,
-	       step / count, loop / (STATES * STATES), step / count / (loop / (STATES * STATES)));
+	printf("%-24s %8.0f ns a step of %5.0f multiplications: %.3f ns each; plain 30 x 30 loop: %.3f ns each; ratio "
+	       "%.2f\n", argv[1], step, count, step / count, loop / (STATES * STATES),
+	       step / count / (loop / (STATES * STATES)));
 	free(state);
 	return 0;
 }

@@ -26,7 +26,8 @@ static double run(char **command)
 	posix_spawn_file_actions_init(&quiet);
 	posix_spawn_file_actions_addopen(&quiet, 1, "/dev/null", O_WRONLY, 0);
 	double start = milliseconds();
-	if (posix_spawn(&child, command[0], &quiet, NULL, command, environ) != 0 || waitpid(child, &status, 0) != child || status != 0) {
+	if (posix_spawn(&child, command[0], &quiet, NULL, command, environ) != 0 ||
+	    waitpid(child, &status, 0) != child || status != 0) {
 		fprintf(stderr, "clock: %s failed\n", command[0]);
 		exit(1);
 	}
@@ -54,7 +55,8 @@ int main(int argc, char **argv)
 		fputs("usage: clock RUNS EMPTY -- COMMAND...\n", stderr);
 		return 2;
 	}
-	double *of_empty = calloc((size_t)runs, sizeof *of_empty), *of_command = calloc((size_t)runs, sizeof *of_command);
+	double *of_empty = calloc((size_t)runs, sizeof *of_empty),
+		*of_command = calloc((size_t)runs, sizeof *of_command);
 	char *empty[] = { argv[2], NULL }, name[256] = "";
 	if (!of_empty || !of_command)
 		return 1;
@@ -66,7 +68,8 @@ int main(int argc, char **argv)
 	}
 	for (int i = 4; i < argc; i++) {
 		const char *slash = i == 4 ? strrchr(argv[i], '/') : NULL;
-		snprintf(name + strlen(name), sizeof name - strlen(name), "%s%s", i > 4 ? " " : "", slash ? slash + 1 : argv[i]);
+		snprintf(name + strlen(name), sizeof name - strlen(name), "%s%s", i > 4 ? " " : "",
+		         slash ? slash + 1 : argv[i]);
 	}
 	report(name, runs, of_command);
 	report("an empty program", runs, of_empty);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* crossings: time of a step of a piecewise-linear model that stays clear of its stops, comes near one, and crosses one, and of
- * the plain product Phi x; in short samples that take turns so that all meet the same machine; prints medians and ratios. */
+/* crossings: time of a step of a piecewise-linear model that stays clear of its stops, comes near one, and crosses
+ * one, and of the plain product Phi x; in short samples that take turns so that all meet the same machine; prints
+ * medians and ratios. */
 #include "plrt.h"
 
 #include <math.h>
@@ -93,8 +94,10 @@ static void fill(bench *b, int dof, double h)
 {
 	memset(b, 0, sizeof *b);
 	b->m = (pl_switching){.size = 2 * dof + 3, .h = h, .switches = dof, .row = b->row,
-	                      .breaks = b->breaks, .at = b->at, .matrix = b->matrix, .A = b->A, .Phi = b->Phi, .lean = b->lean,
-	                      .sag = b->sag, .sway = b->sway, .halvings = b->halvings, .max_events = 16, .max_splits = 500};
+	                      .breaks = b->breaks, .at = b->at, .matrix = b->matrix, .A = b->A, .Phi = b->Phi,
+	                      .lean = b->lean,
+	                      .sag = b->sag, .sway = b->sway, .halvings = b->halvings, .max_events = 16,
+	                      .max_splits = 500};
 	for (int i = 0; i < dof; i++) {
 		b->row[i * b->m.size + i] = b->at[i] = 1.0;
 		b->breaks[i] = 1;
@@ -145,11 +148,13 @@ static int ascending(const void *a, const void *b)
 
 static void measure(int dof, double h)
 {
-	static const char *const what[CASES] = {"Phi x", "clear", "near, by a cubic", "near, by a Taylor polynomial", "one crossing"};
+	static const char *const what[CASES] = {"Phi x", "clear", "near, by a cubic", "near, by a Taylor polynomial",
+	                                        "one crossing"};
 	static bench b;
 	static double time[CASES][SAMPLES];
 	/* of the first mass; the others are at rest at 0.1 */
-	double position[CASES] = {0.1, 0.1, 0.999, 1.0 - 1e-9, 1.0 - 0.3 * h}, speed[CASES] = {0.1, 0.1, -0.5, 0.0, 0.6};
+	double position[CASES] = {0.1, 0.1, 0.999, 1.0 - 1e-9, 1.0 - 0.3 * h},
+		speed[CASES] = {0.1, 0.1, -0.5, 0.0, 0.6};
 	int crossings[CASES];
 	fill(&b, dof, h);
 	for (int k = 0; k < SAMPLES; k++)
@@ -162,11 +167,12 @@ static void measure(int dof, double h)
 			from[2 * dof] = from[2 * dof + 1] = 1.0;
 			time[i][k] = sample(&b, from, i == 0, &crossings[i]);
 		}
-	printf("%d masses and stops, size %d, h = %g, degree %d, %d halvings\n", dof, b.m.size, h, b.m.degree, b.halvings[0]);
+	printf("%d masses and stops, size %d, h = %g, degree %d, %d halvings\n", dof, b.m.size, h, b.m.degree,
+	       b.halvings[0]);
 	for (int i = 0; i < CASES; i++) {
 		qsort(time[i], SAMPLES, sizeof **time, ascending);
-		printf("    %-30s %8.1f ns   %6.2f   %d crossings\n", what[i], time[i][SAMPLES / 2], time[i][SAMPLES / 2] / time[0][SAMPLES / 2],
-		       crossings[i]);
+		printf("    %-30s %8.1f ns   %6.2f   %d crossings\n", what[i], time[i][SAMPLES / 2],
+		       time[i][SAMPLES / 2] / time[0][SAMPLES / 2], crossings[i]);
 	}
 }
 

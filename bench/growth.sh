@@ -17,7 +17,8 @@ chain() {
 		print "\ninit x1 = 1"
 		for (i = 1; i <= n; i++) {
 			to = (i > 1 ? "x" (i - 1) : "ground")
-			printf "mass %.1f at x%d\nspring 100 between %s, x%d\ndamper 0.1 between %s, x%d\n", 1 + i / 10, i, to, i, to, i
+			printf "mass %.1f at x%d\nspring 100 between %s, x%d\ndamper 0.1 between %s, x%d\n", 1 + i / \
+				10, i, to, i, to, i
 		}
 		print "step 0.01" }'
 }
@@ -28,7 +29,8 @@ dense() {
 			x = seed
 			for (i = 1; i <= n; i++) for (j = 1; j <= i; j++) {
 				digits = ""
-				for (k = 0; k < 4; k++) { x = (x * 1103 + 12345) % 65536; digits = digits sprintf("%04d", x % 10000) }
+				for (k = 0; k < 4; k++) { x = (x * 1103 + 12345) % 65536; digits = digits \
+					sprintf("%04d", x % 10000) }
 				x = (x * 1103 + 12345) % 65536
 				a[i, j] = a[j, i] = (i == j ? n : 0) "." digits x % 10
 			}
@@ -41,7 +43,8 @@ dense() {
 measure() {
 	"$3" "$2" >"$work/$1.spec"
 	"$build/bench/clock" 5 "$work/empty" -- "$build/plgen" "$work/$1.spec" |
-		awk -v kind="$1" -v n="$2" '/^plgen/ { for (i = 1; i <= NF; i++) if ($i == "median") print kind "," n "," $(i + 1) }'
+		awk -v kind="$1" -v n="$2" '/^plgen/ {
+			for (i = 1; i <= NF; i++) if ($i == "median") print kind "," n "," $(i + 1) }'
 }
 {
 	echo 'model,coordinates,milliseconds'
@@ -58,7 +61,9 @@ set xlabel 'coordinates'
 set ylabel 'time [ms]'
 set grid lc rgb '#dddddd'
 set key left top
-plot '$out/growth.csv' using (strcol(1) eq 'chain' ? \$2 : 1/0):3 with linespoints pt 7 lc rgb '#0b5fa5' title 'chain of damped masses', \
-     '' using (strcol(1) eq 'dense' ? \$2 : 1/0):3 with linespoints pt 4 dt 2 lc rgb '#c4501b' title 'dense matrices of 17 digits'
+plot '$out/growth.csv' using (strcol(1) eq 'chain' ? \$2 : 1/0):3 with linespoints pt 7 lc rgb '#0b5fa5' title \
+	'chain of damped masses', \
+     '' using (strcol(1) eq 'dense' ? \$2 : 1/0):3 with linespoints pt 4 dt 2 lc rgb '#c4501b' title \
+     	'dense matrices of 17 digits'
 EOT
 echo "$out/growth.svg"

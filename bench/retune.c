@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* retune NAME DAMPING STEP ...: time of NAME_retune for two masses at each of these steps of h, beside that of GSL's exponential of the same
- * matrix in double, and of a step with tunable params beside one with fixed constants: in short samples that take turns so that all meet
- * the same machine; prints medians and ratios, and how far both exponentials are apart. */
+/* retune NAME DAMPING STEP ...: time of NAME_retune for two masses at each of these steps of h, beside that of GSL's
+ * exponential of the same matrix in double, and of a step with tunable params beside one with fixed constants: in
+ * short samples that take turns so that all meet the same machine; prints medians and ratios, and how far both
+ * exponentials are apart. */
 #include "plain_pl.h"
 #include "tuned_pl.h"
 
@@ -19,7 +20,8 @@ typedef double real;
 #define REAL_NAME "double"
 #endif
 
-enum { SAMPLES = 301, RETUNES = 20, STEPS = 200, STATES = TUNED_STATES, COLUMNS = sizeof tuned_nominal.step[0] / sizeof(real) };
+enum { SAMPLES = 301, RETUNES = 20, STEPS = 200, STATES = TUNED_STATES };
+enum { COLUMNS = sizeof tuned_nominal.step[0] / sizeof(real) };
 
 static double nanoseconds(void)
 {
@@ -62,7 +64,8 @@ static double sample_retune(tuned_coeffs *coeffs, double h)
 static double sample_gsl(double A[COLUMNS][COLUMNS], double h, double E[COLUMNS][COLUMNS])
 {
 	double scaled[COLUMNS][COLUMNS];
-	gsl_matrix_view from = gsl_matrix_view_array(scaled[0], COLUMNS, COLUMNS), to = gsl_matrix_view_array(E[0], COLUMNS, COLUMNS);
+	gsl_matrix_view from = gsl_matrix_view_array(scaled[0], COLUMNS, COLUMNS),
+		to = gsl_matrix_view_array(E[0], COLUMNS, COLUMNS);
 	double start = nanoseconds();
 	for (int k = 0; k < RETUNES; k++) {
 		for (int i = 0; i < COLUMNS * COLUMNS; i++)
@@ -123,7 +126,8 @@ static double apart(const tuned_coeffs *coeffs, double E[COLUMNS][COLUMNS])
 
 int main(int argc, char **argv)
 {
-	static double retune[SAMPLES], gsl[SAMPLES], step[SAMPLES], fixed[SAMPLES], A[COLUMNS][COLUMNS], E[COLUMNS][COLUMNS];
+	static double retune[SAMPLES], gsl[SAMPLES], step[SAMPLES], fixed[SAMPLES], A[COLUMNS][COLUMNS],
+		E[COLUMNS][COLUMNS];
 	tuned_coeffs coeffs = tuned_nominal;
 	tuned s;
 	plain p;
@@ -137,15 +141,16 @@ int main(int argc, char **argv)
 			gsl[k] = sample_gsl(A, h, E);
 		}
 		double ours = median(retune), theirs = median(gsl);
-		printf("%-6s %-6s |pole| h %6.3g: retune %7.0f ns; gsl_linalg_exponential_ss %7.0f ns, %5.1f times that; they differ by %.1e\n", argv[1], REAL_NAME,
-		       sqrt(300.0) * h, ours, theirs, theirs / ours, apart(&coeffs, E));
+		printf("%-6s %-6s |pole| h %6.3g: retune %7.0f ns; gsl_linalg_exponential_ss %7.0f ns, %5.1f times "
+		       "that; they differ by %.1e\n", argv[1], REAL_NAME, sqrt(300.0) * h, ours, theirs, theirs / ours,
+		       apart(&coeffs, E));
 	}
 	for (int k = 0; k < SAMPLES; k++) {
 		step[k] = sample_tuned(&s);
 		fixed[k] = sample_plain(&p);
 	}
 	double tunable = median(step), constant = median(fixed);
-	printf("%-6s %-6s a step with tunable params %6.2f ns, with fixed constants %6.2f ns, ratio %.2f\n", argv[1], REAL_NAME, tunable, constant,
-	       tunable / constant);
+	printf("%-6s %-6s a step with tunable params %6.2f ns, with fixed constants %6.2f ns, ratio %.2f\n", argv[1],
+	       REAL_NAME, tunable, constant, tunable / constant);
 	return 0;
 }

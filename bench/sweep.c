@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* sweep: steady amplitude and mean of a gear pair over the frequency of its force, up and then down, each start being the end of
- * the one before; where two motions are stable the two ways differ. One line each: eta, amplitude, mean; a blank line between. */
+/* sweep: steady amplitude and mean of a gear pair over the frequency of its force, up and then down, each start being
+ * the end of the one before; where two motions are stable the two ways differ. One line each: eta, amplitude, mean; a
+ * blank line between. */
 #include "plrt.h"
 
 #include <stdio.h>

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* switching NAME: times of a step of a piecewise-linear model without a crossing and with one, beside a step of the same model without
- * stops, in short samples that take turns so that all meet the same machine; prints medians and ratios. */
+/* switching NAME: times of a step of a piecewise-linear model without a crossing and with one, beside a step of the
+ * same model without stops, in short samples that take turns so that all meet the same machine; prints medians and
+ * ratios. */
 #include "plrt.h"
 
 #include <stdio.h>
@@ -87,7 +88,8 @@ int main(int argc, char **argv)
 		copy[k] = sample_again(&stops_model, state, before, 0);
 	}
 	double step = median(linear), without = median(clear), with = median(one) - median(copy);
-	printf("%-12s %2d states, h = %-6g linear %6.1f ns; no crossing %6.1f ns, %.2f times that; one crossing %7.0f ns, %.1f times that\n", argv[1],
-	       stops_model.states, stops_model.h, step, without, without / step, with, with / step);
+	printf("%-12s %2d states, h = %-6g linear %6.1f ns; no crossing %6.1f ns, %.2f times that; one crossing %7.0f "
+	       "ns, %.1f times that\n", argv[1], stops_model.states, stops_model.h, step, without, without / step, with,
+	       with / step);
 	return 0;
 }

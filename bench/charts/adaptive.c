@@ -1,14 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  *
- * Integrators that choose their steps, each configured as its manual advises: the Dormand-Prince pair written plainly here, GSL's
- * odeiv2, SUNDIALS' CVODE and ARKODE. The setting is the relative tolerance e. The absolute tolerance of every coordinate is
- * e times the largest coordinate of the history, of every velocity e times the largest velocity: what a user who knows
- * the problem would give, and here taken from what is true (truth_of; hard.c: its closed forms). So the weight of an
- * error is between e and 2 e of the scale for everyone, and no work is lost where something passes through zero.
+ * Integrators that choose their steps, each configured as its manual advises: the Dormand-Prince pair written plainly
+ * here, GSL's odeiv2, SUNDIALS' CVODE and ARKODE. The setting is the relative tolerance e. The absolute tolerance of
+ * every coordinate is e times the largest coordinate of the history, of every velocity e times the largest velocity:
+ * what a user who knows the problem would give, and here taken from what is true (truth_of; hard.c: its closed forms).
+ * So the weight of an error is between e and 2 e of the scale for everyone, and no work is lost where something passes
+ * through zero.
  *
- * Where an integrator has an interpolant it walks as it likes and output is read from it; one that has none (GSL), or whose own is
- * too coarse for its order, is stopped at each output time. The first kind looks ahead for `between`; for the
- * second a fresh solution at the same tolerance goes there from the end of the last unit. Neither changes the run.
+ * Where an integrator has an interpolant it walks as it likes and output is read from it; one that has none (GSL), or
+ * whose own is too coarse for its order, is stopped at each output time. The first kind looks ahead for `between`; for
+ * the second a fresh solution at the same tolerance goes there from the end of the last unit. Neither changes the run.
  */
 #include <float.h>
 #include <math.h>
@@ -48,8 +49,10 @@ struct solver {
 	size_t bytes;               /* of its struct, which begins with a struct adaptive */
 	bool (*make)(struct adaptive *a);
 	bool (*begin)(struct adaptive *a, double t, const double *y);
-	bool (*reach)(struct adaptive *a, double end, double *y);   /* the solution at `end`, not before what was asked last */
-	bool looks_ahead;           /* `reach` may be asked for a time inside a unit, and the run goes on as if it had not been */
+	/* the solution at `end`, not before what was asked last */
+	bool (*reach)(struct adaptive *a, double end, double *y);
+	/* `reach` may be asked for a time inside a unit, and the run goes on as if it had not been */
+	bool looks_ahead;
 	void (*discard)(struct adaptive *a);
 };
 
@@ -149,7 +152,8 @@ static double dormand_try(struct dormand *d, double h)
 	struct adaptive *a = &d->adaptive;
 	const int size = a->size;
 	const double t = d->t, *restrict y = d->y;
-	double *restrict k1 = d->k[0], *restrict k2 = d->k[1], *restrict k3 = d->k[2], *restrict k4 = d->k[3], *restrict k5 = d->k[4];
+	double *restrict k1 = d->k[0], *restrict k2 = d->k[1], *restrict k3 = d->k[2], *restrict k4 = d->k[3],
+		*restrict k5 = d->k[4];
 	double *restrict k6 = d->k[5], *restrict k7 = d->k[6], *restrict x = d->next;
 	for (int i = 0; i < size; i++)
 		x[i] = y[i] + h * (1.0 / 5.0 * k1[i]);
@@ -161,26 +165,29 @@ static double dormand_try(struct dormand *d, double h)
 		x[i] = y[i] + h * (44.0 / 45.0 * k1[i] - 56.0 / 15.0 * k2[i] + 32.0 / 9.0 * k3[i]);
 	slope(a, t + h * (4.0 / 5.0), x, k4);
 	for (int i = 0; i < size; i++)
-		x[i] = y[i] + h * (19372.0 / 6561.0 * k1[i] - 25360.0 / 2187.0 * k2[i] + 64448.0 / 6561.0 * k3[i] - 212.0 / 729.0 * k4[i]);
+		x[i] = y[i] + h * (19372.0 / 6561.0 * k1[i] - 25360.0 / 2187.0 * k2[i] + 64448.0 / 6561.0 * k3[i] -
+		                   212.0 / 729.0 * k4[i]);
 	slope(a, t + h * (8.0 / 9.0), x, k5);
 	for (int i = 0; i < size; i++)
-		x[i] = y[i] + h * (9017.0 / 3168.0 * k1[i] - 355.0 / 33.0 * k2[i] + 46732.0 / 5247.0 * k3[i] + 49.0 / 176.0 * k4[i] -
-		                   5103.0 / 18656.0 * k5[i]);
+		x[i] = y[i] + h * (9017.0 / 3168.0 * k1[i] - 355.0 / 33.0 * k2[i] + 46732.0 / 5247.0 * k3[i] +
+		                   49.0 / 176.0 * k4[i] - 5103.0 / 18656.0 * k5[i]);
 	slope(a, t + h, x, k6);
 	for (int i = 0; i < size; i++)
-		x[i] = y[i] + h * (35.0 / 384.0 * k1[i] + 500.0 / 1113.0 * k3[i] + 125.0 / 192.0 * k4[i] - 2187.0 / 6784.0 * k5[i] + 11.0 / 84.0 * k6[i]);
+		x[i] = y[i] + h * (35.0 / 384.0 * k1[i] + 500.0 / 1113.0 * k3[i] + 125.0 / 192.0 * k4[i] -
+		                   2187.0 / 6784.0 * k5[i] + 11.0 / 84.0 * k6[i]);
 	slope(a, t + h, x, k7);
 	double sum = 0.0;
 	for (int i = 0; i < size; i++) {
-		const double error = h * (71.0 / 57600.0 * k1[i] - 71.0 / 16695.0 * k3[i] + 71.0 / 1920.0 * k4[i] - 17253.0 / 339200.0 * k5[i] +
-		                          22.0 / 525.0 * k6[i] - 1.0 / 40.0 * k7[i]);
+		const double error = h * (71.0 / 57600.0 * k1[i] - 71.0 / 16695.0 * k3[i] + 71.0 / 1920.0 * k4[i] -
+		                          17253.0 / 339200.0 * k5[i] + 22.0 / 525.0 * k6[i] - 1.0 / 40.0 * k7[i]);
 		const double share = error / (d->tolerance * (a->scale[i] + fmax(fabs(y[i]), fabs(x[i]))));
 		sum += share * share;
 	}
 	return sqrt(sum / size);
 }
 
-/* The end of the step becomes the start of the next; the first slope too (first same as last), but k7 stays for the interpolant */
+/* The end of the step becomes the start of the next; the first slope too (first same as last), but k7 stays for the
+ * interpolant */
 static void dormand_accept(struct dormand *d, double h)
 {
 	double *start = d->start;
@@ -227,7 +234,8 @@ static void dormand_interpolate(const struct dormand *d, double t, double *y)
 	const double b6 = h * x * (-11.0 / 7.0 + x * (11.0 / 3.0 - x * (55.0 / 28.0)));
 	const double b7 = h * x * (3.0 / 2.0 + x * (-4.0 + x * (5.0 / 2.0)));
 	for (int i = 0; i < d->adaptive.size; i++)
-		y[i] = d->start[i] + (b1 * d->k[0][i] + b3 * d->k[2][i] + b4 * d->k[3][i] + b5 * d->k[4][i] + b6 * d->k[5][i] + b7 * d->k[6][i]);
+		y[i] = d->start[i] + (b1 * d->k[0][i] + b3 * d->k[2][i] + b4 * d->k[3][i] + b5 * d->k[4][i] +
+		                      b6 * d->k[5][i] + b7 * d->k[6][i]);
 }
 
 static bool dormand_reach(struct adaptive *a, double end, double *y)
@@ -255,7 +263,8 @@ static void dormand_discard(struct adaptive *a)
 }
 
 static const struct solver dormand_solver = {
-	.bytes = sizeof(struct dormand), .make = dormand_make, .begin = dormand_begin, .reach = dormand_reach, .looks_ahead = true,
+	.bytes = sizeof(struct dormand), .make = dormand_make, .begin = dormand_begin, .reach = dormand_reach,
+	.looks_ahead = true,
 	.discard = dormand_discard,
 };
 
@@ -304,7 +313,8 @@ static bool gsl_make(struct adaptive *a)
 	if (fixed)                  /* tolerances so open that the control never rejects a step */
 		g->driver = gsl_odeiv2_driver_alloc_y_new(&g->system, type, g->first, DBL_MAX, 0.0);
 	else
-		g->driver = gsl_odeiv2_driver_alloc_scaled_new(&g->system, type, g->first, a->run.setting, a->run.setting, 1.0, 0.0, a->scale);
+		g->driver = gsl_odeiv2_driver_alloc_scaled_new(&g->system, type, g->first, a->run.setting,
+		                                               a->run.setting, 1.0, 0.0, a->scale);
 	return g->y && g->driver && gsl_odeiv2_driver_set_nmax(g->driver, fixed ? 0 : MOST_STEPS) == GSL_SUCCESS;
 }
 
@@ -330,7 +340,8 @@ static bool gsl_reach_fixed(struct adaptive *a, double end, double *y)
 {
 	struct gsl *g = (struct gsl *)a;
 	const double length = end - g->t, steps = fmax(1.0, ceil(length / a->run.setting - 1e-6));
-	if (gsl_odeiv2_driver_apply_fixed_step(g->driver, &g->t, length / steps, (unsigned long)steps, g->y) != GSL_SUCCESS)
+	if (gsl_odeiv2_driver_apply_fixed_step(g->driver, &g->t, length / steps, (unsigned long)steps, g->y) !=
+	    GSL_SUCCESS)
 		return false;
 	g->t = end;
 	memcpy(y, g->y, (size_t)a->size * sizeof *y);
@@ -349,7 +360,8 @@ static const struct solver gsl_solver = {
 	.bytes = sizeof(struct gsl), .make = gsl_make, .begin = gsl_begin, .reach = gsl_reach, .discard = gsl_discard,
 };
 static const struct solver gsl_fixed_solver = {
-	.bytes = sizeof(struct gsl), .make = gsl_make, .begin = gsl_begin, .reach = gsl_reach_fixed, .discard = gsl_discard,
+	.bytes = sizeof(struct gsl), .make = gsl_make, .begin = gsl_begin, .reach = gsl_reach_fixed,
+	.discard = gsl_discard,
 };
 
 /* ---- SUNDIALS ---- */
@@ -409,7 +421,8 @@ static void sundials_discard(struct adaptive *a)
 		SUNContext_Free(&s->context);
 }
 
-static int cvode_jacobian(realtype t, N_Vector y, N_Vector dydt, SUNMatrix J, void *of, N_Vector w1, N_Vector w2, N_Vector w3)
+static int cvode_jacobian(realtype t, N_Vector y, N_Vector dydt, SUNMatrix J, void *of, N_Vector w1, N_Vector w2,
+                          N_Vector w3)
 {
 	const struct adaptive *a = of;
 	(void)t, (void)y, (void)dydt, (void)w1, (void)w2, (void)w3;
@@ -438,9 +451,11 @@ static bool cvode_make(struct adaptive *a)
 	struct sundials *s = (struct sundials *)a;
 	if (!sundials_vectors(s) || !(s->memory = CVodeCreate(kind_of(a)->formula, s->context)))
 		return false;
-	return CVodeSetErrHandlerFn(s->memory, sundials_silent, NULL) == 0 && CVodeInit(s->memory, sundials_slope, 0.0, s->y) == 0 &&
-	       CVodeSVtolerances(s->memory, a->run.setting, s->tolerances) == 0 && CVodeSetUserData(s->memory, a) == 0 &&
-	       CVodeSetMaxNumSteps(s->memory, MOST_STEPS) == 0 && cvode_iteration(s);
+	return CVodeSetErrHandlerFn(s->memory, sundials_silent, NULL) == 0 &&
+	       CVodeInit(s->memory, sundials_slope, 0.0, s->y) == 0 &&
+	       CVodeSVtolerances(s->memory, a->run.setting, s->tolerances) == 0 &&
+	       CVodeSetUserData(s->memory, a) == 0 && CVodeSetMaxNumSteps(s->memory, MOST_STEPS) == 0 &&
+	       cvode_iteration(s);
 }
 
 static bool cvode_begin(struct adaptive *a, double t, const double *y)
@@ -452,7 +467,8 @@ static bool cvode_begin(struct adaptive *a, double t, const double *y)
 	return CVodeReInit(s->memory, t, s->y) == 0;
 }
 
-/* The first call says how far the user means to go, by which the first step is chosen: always a unit, whatever is asked first */
+/* The first call says how far the user means to go, by which the first step is chosen: always a unit, whatever is
+ * asked first */
 static bool cvode_reach(struct adaptive *a, double end, double *y)
 {
 	struct sundials *s = (struct sundials *)a;
@@ -473,21 +489,24 @@ static void cvode_discard(struct adaptive *a)
 }
 
 static const struct solver cvode_solver = {
-	.bytes = sizeof(struct sundials), .make = cvode_make, .begin = cvode_begin, .reach = cvode_reach, .looks_ahead = true,
+	.bytes = sizeof(struct sundials), .make = cvode_make, .begin = cvode_begin, .reach = cvode_reach,
+	.looks_ahead = true,
 	.discard = cvode_discard,
 };
 
-/* By ARKStep: ERKStep of SUNDIALS 6.4 takes the last stage of this table for the first of the next step, which it is not, and so loses
- * accuracy (SUNDIALS issue 311, mended since). Its interpolants, of degree 5 at most, spoil what is below 1e-5 between its long steps:
- * stopped at the output times it reaches 1e-9 with less than half the evaluations, though 1e-4 with twice as many. */
+/* By ARKStep: ERKStep of SUNDIALS 6.4 takes the last stage of this table for the first of the next step, which it is
+ * not, and so loses accuracy (SUNDIALS issue 311, mended since). Its interpolants, of degree 5 at most, spoil what is
+ * below 1e-5 between its long steps: stopped at the output times it reaches 1e-9 with less than half the evaluations,
+ * though 1e-4 with twice as many. */
 static bool arkode_make(struct adaptive *a)
 {
 	struct sundials *s = (struct sundials *)a;
 	if (!sundials_vectors(s) || !(s->memory = ARKStepCreate(sundials_slope, NULL, 0.0, s->y, s->context)))
 		return false;
-	return ARKStepSetErrHandlerFn(s->memory, sundials_silent, NULL) == 0 && ARKStepSetTableNum(s->memory, ARKODE_DIRK_NONE, ARKODE_FEHLBERG_13_7_8) == 0 &&
-	       ARKStepSVtolerances(s->memory, a->run.setting, s->tolerances) == 0 && ARKStepSetUserData(s->memory, a) == 0 &&
-	       ARKStepSetMaxNumSteps(s->memory, MOST_STEPS) == 0;
+	return ARKStepSetErrHandlerFn(s->memory, sundials_silent, NULL) == 0 &&
+	       ARKStepSetTableNum(s->memory, ARKODE_DIRK_NONE, ARKODE_FEHLBERG_13_7_8) == 0 &&
+	       ARKStepSVtolerances(s->memory, a->run.setting, s->tolerances) == 0 &&
+	       ARKStepSetUserData(s->memory, a) == 0 && ARKStepSetMaxNumSteps(s->memory, MOST_STEPS) == 0;
 }
 
 static bool arkode_begin(struct adaptive *a, double t, const double *y)
@@ -514,7 +533,8 @@ static void arkode_discard(struct adaptive *a)
 }
 
 static const struct solver arkode_solver = {
-	.bytes = sizeof(struct sundials), .make = arkode_make, .begin = arkode_begin, .reach = arkode_reach, .discard = arkode_discard,
+	.bytes = sizeof(struct sundials), .make = arkode_make, .begin = arkode_begin, .reach = arkode_reach,
+	.discard = arkode_discard,
 };
 
 /* ---- the run as charts.h has it ---- */
@@ -541,7 +561,8 @@ static bool adaptive_advance(struct run *run, int units, double *rows)
 	const struct solver *solver = kind_of(a)->solver;
 	for (int u = 0; u < units && !a->failed; u++) {
 		a->units++;
-		a->failed = !solver->reach(a, (double)a->units * run->problem->unit, a->now) || !all_finite(a->size, a->now);
+		a->failed = !solver->reach(a, (double)a->units * run->problem->unit, a->now) ||
+		            !all_finite(a->size, a->now);
 		if (rows)
 			memcpy(rows + (ptrdiff_t)u * a->size, a->now, (size_t)a->size * sizeof *rows);
 	}
@@ -557,7 +578,8 @@ static bool go_aside(struct adaptive *a, double end, double *y)
 		a->aside = adaptive_new(a->run.method, a->run.problem, a->run.setting);
 	if (!a->aside)
 		return false;
-	return solver->begin(a->aside, (double)a->units * a->run.problem->unit, a->now) && solver->reach(a->aside, end, y);
+	return solver->begin(a->aside, (double)a->units * a->run.problem->unit, a->now) &&
+	       solver->reach(a->aside, end, y);
 }
 
 /* What looks ahead cannot look back behind its last step: then it goes aside as the others do */
@@ -599,8 +621,10 @@ static struct adaptive *adaptive_new(const struct method *method, const struct p
 	struct adaptive *a = calloc(1, kind->solver->bytes);
 	if (!a)
 		return NULL;
-	a->run = (struct run){.method = method, .problem = problem, .setting = setting, .restart = adaptive_restart, .advance = adaptive_advance,
-	                      .between = adaptive_between, .get = adaptive_get, .evaluations = adaptive_evaluations, .close = adaptive_close};
+	a->run = (struct run){.method = method, .problem = problem, .setting = setting, .restart = adaptive_restart,
+	                      .advance = adaptive_advance,
+	                      .between = adaptive_between, .get = adaptive_get, .evaluations = adaptive_evaluations,
+	                      .close = adaptive_close};
 	a->rhs = problem->rhs_of ? NULL : problem->rhs;
 	a->rhs_of = problem->rhs_of;
 	a->of = problem->of;
@@ -640,40 +664,54 @@ static struct run *fixed_open(const struct method *method, const struct problem 
 /* ---- the list ---- */
 
 #define BY_TOLERANCE(NAME, ORDER, SETTINGS) \
-	{.name = NAME, .family = ADAPTIVE, .tolerance = true, .order = ORDER, .settings = TOLERANCES SETTINGS, .open = adaptive_open}
+	{.name = NAME, .family = ADAPTIVE, .tolerance = true, .order = ORDER, .settings = TOLERANCES SETTINGS, \
+	 .open = adaptive_open}
 
 static const struct kind dormand_prince = {
-	.method = BY_TOLERANCE("Dormand-Prince", 5, "5(4) pair as in ode45, PI controller (beta 0.04), output from its free interpolant of order 4"),
+	.method = BY_TOLERANCE("Dormand-Prince", 5,
+	                       "5(4) pair as in ode45, PI controller (beta 0.04), output from its free interpolant of "
+	                       "order 4"),
 	.solver = &dormand_solver,
 };
 static const struct kind gsl_rk8pd = {
-	.method = BY_TOLERANCE("GSL rk8pd", 8, "driver with scaled control, applied to each output time; it has no interpolant"),
+	.method = BY_TOLERANCE("GSL rk8pd", 8,
+	                       "driver with scaled control, applied to each output time; it has no interpolant"),
 	.solver = &gsl_solver, .gsl = &gsl_odeiv2_step_rk8pd,
 };
 static const struct kind gsl_msadams = {
-	.method = BY_TOLERANCE("GSL msadams", 0, "order 1 to 12, driver with scaled control, applied to each output time; it has no interpolant"),
+	.method = BY_TOLERANCE("GSL msadams", 0,
+	                       "order 1 to 12, driver with scaled control, applied to each output time; it has no "
+	                       "interpolant"),
 	.solver = &gsl_solver, .gsl = &gsl_odeiv2_step_msadams,
 };
 static const struct kind gsl_rk8pd_fixed = {
 	.method = {.name = "GSL rk8pd (fixed step)", .family = FIXED, .order = 8, .open = fixed_open,
-	           .settings = "gsl_odeiv2_driver_apply_fixed_step, tolerances open (epsabs = DBL_MAX): no step is ever rejected"},
+	           .settings = "gsl_odeiv2_driver_apply_fixed_step, tolerances open (epsabs = DBL_MAX): no step is "
+	                       "ever rejected"},
 	.solver = &gsl_fixed_solver, .gsl = &gsl_odeiv2_step_rk8pd,
 };
 static const struct kind cvode_adams = {
-	.method = BY_TOLERANCE("CVODE Adams", 0, "order 1 to 12, fixed-point iteration (manual: for nonstiff), CV_NORMAL, output from its interpolant"),
+	.method = BY_TOLERANCE("CVODE Adams", 0,
+	                       "order 1 to 12, fixed-point iteration (manual: for nonstiff), CV_NORMAL, output from "
+	                       "its interpolant"),
 	.solver = &cvode_solver, .formula = CV_ADAMS,
 };
 static const struct kind cvode_bdf = {
-	.method = BY_TOLERANCE("CVODE BDF", 0, "order 1 to 5, Newton, dense; Jacobian exact for linear problems, else its own differences; CV_NORMAL, output from its interpolant"),
+	.method = BY_TOLERANCE("CVODE BDF", 0,
+	                       "order 1 to 5, Newton, dense; Jacobian exact for linear problems, else its own "
+	                       "differences; CV_NORMAL, output from its interpolant"),
 	.solver = &cvode_solver, .formula = CV_BDF,
 };
 static const struct kind arkode = {
-	.method = BY_TOLERANCE("ARKODE order 8", 8, "ARKStep, explicit, Fehlberg 13-7-8, stopped at each output time (its interpolants are of degree 5 at most)"),
+	.method = BY_TOLERANCE("ARKODE order 8", 8,
+	                       "ARKStep, explicit, Fehlberg 13-7-8, stopped at each output time (its interpolants are "
+	                       "of degree 5 at most)"),
 	.solver = &arkode_solver,
 };
 
 const struct method *const adaptive_methods[] = {
-	&dormand_prince.method, &gsl_rk8pd.method, &gsl_msadams.method, &gsl_rk8pd_fixed.method, &cvode_adams.method, &cvode_bdf.method,
+	&dormand_prince.method, &gsl_rk8pd.method, &gsl_msadams.method, &gsl_rk8pd_fixed.method, &cvode_adams.method,
+	&cvode_bdf.method,
 	&arkode.method, NULL,
 };
 

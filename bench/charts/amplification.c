@@ -29,7 +29,8 @@ void free_motion_of(struct free_motion *m, const char *name, int n, const double
 	memset(m, 0, sizeof *m);
 	memcpy(m->A, A, sizeof *A * (size_t)(4 * n * n));
 	m->blow = -1;
-	m->problem = (struct problem){.name = name, .n = n, .rhs_of = slope, .of = m, .start = m->start, .units = 1, .linear = true,
+	m->problem = (struct problem){.name = name, .n = n, .rhs_of = slope, .of = m, .start = m->start, .units = 1,
+	                              .linear = true,
 	                              .A = m->A, .b0 = m->none, .b1 = m->none, .b2 = m->none};
 }
 
@@ -58,7 +59,8 @@ static void all_of_it(const struct system *s, int which, real *A)
 
 const struct system *oscillator_by_hand(double zeta)
 {
-	static const struct system system = {.name = "oscillator", .states = 2, .equations = oscillator, .linear = all_of_it};
+	static const struct system system = {.name = "oscillator", .states = 2, .equations = oscillator,
+	                                     .linear = all_of_it};
 	zeta_by_hand = (real)zeta;
 	return &system;
 }
@@ -81,7 +83,8 @@ static void another_frequency(const struct system *s, int which, real *A)
 
 const struct system *mismatched_by_hand(double ratio)
 {
-	static const struct system system = {.name = "mismatched", .states = 2, .equations = free_of_damping, .linear = another_frequency};
+	static const struct system system = {.name = "mismatched", .states = 2, .equations = free_of_damping,
+	                                     .linear = another_frequency};
 	ratio_by_hand = (real)ratio;
 	return &system;
 }
@@ -116,7 +119,8 @@ static void of_many(int size, const double *matrix, double complex *eigenvalue)
 	gsl_vector_complex *values = gsl_vector_complex_alloc(n);
 	gsl_eigen_nonsymm_workspace *work = gsl_eigen_nonsymm_alloc(n);
 	memcpy(a->data, matrix, n * n * sizeof *matrix);
-	gsl_eigen_nonsymm_params(0, 1, work);           /* balanced: coordinates and velocities are of different sizes */
+	/* balanced: coordinates and velocities are of different sizes */
+	gsl_eigen_nonsymm_params(0, 1, work);
 	const bool good = gsl_eigen_nonsymm(a, values, work) == 0;
 	for (size_t i = 0; i < n; i++) {
 		const gsl_complex z = gsl_vector_complex_get(values, i);
@@ -204,21 +208,23 @@ static bool is_all(const struct answers *a)
 	return off <= 1e-11 * most;
 }
 
-/* What goes on is the state and accelerations, z, of which only the states are seen: Y_k = (I 0) P^k Z.  H0 = (Y_0; Y_1) and
- * H1 = (Y_1; Y_2) are one matrix of observation times Z and P Z, so P is similar to the least squares solution of H0 P = H1
- * (the realization of Ho and Kalman, 1966). */
+/* What goes on is the state and accelerations, z, of which only the states are seen: Y_k = (I 0) P^k Z.  H0 = (Y_0;
+ * Y_1) and H1 = (Y_1; Y_2) are one matrix of observation times Z and P Z, so P is similar to the least squares
+ * solution of H0 P = H1 (the realization of Ho and Kalman, 1966). */
 static int with_accelerations(const struct answers *a, double complex *eigenvalue)
 {
 	const size_t rows = 2 * (size_t)a->size, columns = (size_t)a->starts, half = (size_t)a->size * columns;
 	double P[MOST_EIGENVALUES * MOST_EIGENVALUES];
 	gsl_matrix *H0 = gsl_matrix_alloc(rows, columns);
-	gsl_vector *tau = gsl_vector_alloc(columns), *x = gsl_vector_alloc(columns), *b = gsl_vector_alloc(rows), *rest = gsl_vector_alloc(rows);
+	gsl_vector *tau = gsl_vector_alloc(columns), *x = gsl_vector_alloc(columns), *b = gsl_vector_alloc(rows),
+		*rest = gsl_vector_alloc(rows);
 	memcpy(H0->data, a->y[0], half * sizeof *H0->data);
 	memcpy(H0->data + half, a->y[1], half * sizeof *H0->data);
 	gsl_linalg_QR_decomp(H0, tau);
 	for (size_t j = 0; j < columns; j++) {
 		for (size_t i = 0; i < rows; i++)
-			gsl_vector_set(b, i, i < rows / 2 ? a->y[1][i * columns + j] : a->y[2][(i - rows / 2) * columns + j]);
+			gsl_vector_set(b, i, i < rows / 2 ? a->y[1][i * columns + j]
+			               : a->y[2][(i - rows / 2) * columns + j]);
 		gsl_linalg_QR_lssolve(H0, tau, b, x, rest);
 		for (size_t i = 0; i < columns; i++)
 			P[i * columns + j] = gsl_vector_get(x, i);
@@ -300,7 +306,8 @@ double boundary_between(growth_function *growth, const void *of, double from, do
 
 const struct method *charted_method(int i)
 {
-	static const char *const names[] = {"explicit Euler", "explicit trapezoid", "RK4", "central difference", "implicit trapezoid", "Newmark",
+	static const char *const names[] = {"explicit Euler", "explicit trapezoid", "RK4", "central difference",
+	                                    "implicit trapezoid", "Newmark",
 	                                    "generalized-alpha"};
 	enum { NAMES = sizeof names / sizeof *names };
 	if (i >= NAMES)

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  *
- * A method with a fixed step turns the state of a linear system at the start of a step into that at its end by a matrix, its
- * amplification matrix (Bathe, Finite Element Procedures, section 9.4; Hughes, The Finite Element Method, section 9.1). Its
- * eigenvalues say all there is to say of a free motion: the largest modulus is the growth per step, the argument the frequency that is seen.
- * Here it is found by asking the method, the same one that other charts time.
+ * A method with a fixed step turns the state of a linear system at the start of a step into that at its end by a
+ * matrix, its amplification matrix (Bathe, Finite Element Procedures, section 9.4; Hughes, The Finite Element Method,
+ * section 9.1). Its eigenvalues say all there is to say of a free motion: the largest modulus is the growth per step,
+ * the argument the frequency that is seen. Here it is found by asking the method, the same one that other charts time.
  */
 #ifndef AMPLIFICATION_H
 #define AMPLIFICATION_H
@@ -13,7 +13,8 @@
 
 #include <complex.h>
 
-enum { MOST_STATES = 8 };               /* 2n of the systems looked at here, and 3n of a method that keeps accelerations: 12 */
+/* 2n of the systems looked at here, and 3n of a method that keeps accelerations: 12 */
+enum { MOST_STATES = 8 };
 enum { MOST_EIGENVALUES = 12 };
 #define NOT_GROWING 1e-12               /* growth per step below 1 + this counts as none: rounding makes as much */
 
@@ -25,31 +26,39 @@ struct free_motion {
 };
 void free_motion_of(struct free_motion *m, const char *name, int n, const double *A);
 void free_oscillator(struct free_motion *m, double w, double zeta);     /* x'' + 2 zeta w x' + w^2 x = 0 */
-const struct system *oscillator_by_hand(double zeta);   /* the same with w = 1, its operator all of it; it stays until the next call */
-/* x'' + x = 0 under an operator of another frequency: x'' + ratio^2 x is exact, (ratio^2 - 1) x left over; it stays until the next call */
+/* the same with w = 1, its operator all of it; it stays until the next call */
+const struct system *oscillator_by_hand(double zeta);
+/* x'' + x = 0 under an operator of another frequency: x'' + ratio^2 x is exact, (ratio^2 - 1) x left over; it stays
+ * until the next call */
 const struct system *mismatched_by_hand(double ratio);
 
-/* Both return how many eigenvalues there are, of falling modulus; 0: the method could not, or what it gave is not finite. */
+/* Both return how many eigenvalues there are, of falling modulus; 0: the method could not, or what it gave is not
+ * finite. */
 int eigenvalues_of(int size, const double *matrix, double complex *eigenvalue);
 int amplification(struct free_motion *m, const struct method *method, double h, double complex *eigenvalue);
-/* The same of the schemes by hand; scheme "flow": e^{A h}, A the operator of the system, whose `equations` are linear */
+/* The same of the schemes by hand; scheme "flow": e^{A h}, A the operator of the system, whose `equations` are
+ * linear */
 int amplification_by_hand(const struct system *s, const char *scheme, double h, double complex *eigenvalue);
 /* And of generated code, whose step is linear or nearly so about 0: from unit states times `size` */
 int amplification_of_model(const pl_model *model, double size, double complex *eigenvalue);
 double largest(int count, const double complex *eigenvalue);            /* modulus; NAN where there is none */
 
-/* The ends of stability between two settings `from` and `to`, from stable to unstable or back; bisection, settings on a log scale */
+/* The ends of stability between two settings `from` and `to`, from stable to unstable or back; bisection, settings on
+ * a log scale */
 typedef double growth_function(const void *of, double setting);         /* per step */
 double boundary_between(growth_function *growth, const void *of, double from, double to, double limit);
 
 extern const struct method dormand_prince_fixed, rk8pd_fixed;           /* fixed_pairs.c */
-const struct method *charted_method(int i);     /* what is charted, from i = 0: those of classic.c and these two; NULL at the end */
+/* what is charted, from i = 0: those of classic.c and these two; NULL at the end */
+const struct method *charted_method(int i);
 
 /* ---- checks: what is known beside what is measured ---- */
 
 struct checks { FILE *csv; int off; };
-void checks_open(struct checks *c, const char *folder, const char *name);       /* folder/name: what,known,measured,tolerance,result */
-void check(struct checks *c, double known, double measured, double tolerance, const char *format, ...) __attribute__((format(printf, 5, 6)));
+/* folder/name: what,known,measured,tolerance,result */
+void checks_open(struct checks *c, const char *folder, const char *name);
+void check(struct checks *c, double known, double measured, double tolerance, const char *format, ...)
+	__attribute__((format(printf, 5, 6)));
 int checks_close(struct checks *c);     /* an exit status; the tolerance is relative, absolute where 0 is known */
 FILE *table_open(const char *folder, const char *name, const char *header);
 void table_close(FILE *csv, const char *name);

@@ -2,14 +2,16 @@
 # awk -f csv.awk -f break_even.awk generation.csv precision.csv: see generation.sh.
 # The cheapest of them so far
 function offer(key) {
-	if (!(key in cheapest) || ns < cheapest[key]) { cheapest[key] = ns; setting[key] = row[column["setting"]]; error_at[key] = error; method_at[key] = method }
+	if (!(key in cheapest) || ns < cheapest[key]) { cheapest[key] = ns; setting[key] = row[column["setting"]];
+		error_at[key] = error; method_at[key] = method }
 }
 BEGIN { target["double"] = "1e-6"; target["float"] = "1e-3" }
 FNR == 1 { file++ }
 FNR == 1 { split("", column); read_head($0, column); next }
 file == 1 {
 	split_row($0, row)
-	once[row[1]] = row[column["generate_ms_median"]] + row[column["compile_ms_median"]] - 2 * row[column["empty_ms_median"]]
+	once[row[1]] = row[column["generate_ms_median"]] + row[column["compile_ms_median"]] - 2 * \
+		row[column["empty_ms_median"]]
 	next
 }
 {
@@ -38,7 +40,9 @@ END {
 			printf "%s,%s,%s,\"%s\",", model, real, target[real], method
 			if (rival in cheapest) printf "%s,%s,%.6g,", setting[rival], error_at[rival], cheapest[rival]
 			else printf "failed,failed,failed,"
-			if (ours in cheapest) printf "\"%s\",%s,%s,%.6g,", method_at[ours], setting[ours], error_at[ours], cheapest[ours]
+			if (ours in cheapest)
+				printf "\"%s\",%s,%s,%.6g,", method_at[ours], setting[ours], error_at[ours],
+				cheapest[ours]
 			else printf "none,failed,failed,failed,"
 			printf "%.6g,", once[model]
 			if (!(rival in cheapest)) print "none,none,not reached"

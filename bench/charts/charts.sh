@@ -1,7 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# charts.sh BUILD FOLDER [--quick]: all charts and the page FOLDER/index.html. Run at the top of the source tree; progress on standard
-# error. What measures no time runs first, in two queues side by side; what measures time runs alone.
+# charts.sh BUILD FOLDER [--quick]: all charts and the page FOLDER/index.html. Run at the top of the source tree;
+# progress on standard error. What measures no time runs first, in two queues side by side; what measures time runs
+# alone.
 set -e
 build=$1 folder=$2 quick=
 [ "$3" != --quick ] || quick=--quick

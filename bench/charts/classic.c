@@ -18,7 +18,8 @@
 
 struct factors {
 	int size;
-	double *matrix;             /* size x size, row-major: the matrix, then its factors L (diagonal of ones) and U */
+	/* size x size, row-major: the matrix, then its factors L (diagonal of ones) and U */
+	double *matrix;
 	double *reciprocal;         /* 1 / U_ii */
 	int *row;                   /* row i of L U is row row[i] of the matrix */
 	bool stale;                 /* Newton: to be made anew */
@@ -209,7 +210,8 @@ INLINE bool rk4_step(struct fixed *f, struct factors *s, double t, double h, dou
 {
 	const int size = 2 * f->n;
 	const double half = 0.5 * h, sixth = h / 6.0;
-	double *restrict k1 = f->work[0], *restrict k2 = f->work[1], *restrict k3 = f->work[2], *restrict k4 = f->work[3];
+	double *restrict k1 = f->work[0], *restrict k2 = f->work[1], *restrict k3 = f->work[2],
+		*restrict k4 = f->work[3];
 	double *restrict x = f->work[4];
 	(void)s;
 	slope(f, t, state, k1);
@@ -232,7 +234,8 @@ static bool rk4_advance(struct run *run, int units, double *rows)
 	return march(run, units, rows, rk4_step);
 }
 
-/* Velocity Verlet: the accelerations are those at t. Forces that depend on velocity see v + h a, which is of second order */
+/* Velocity Verlet: the accelerations are those at t. Forces that depend on velocity see v + h a, which is of second
+ * order */
 INLINE bool verlet_step(struct fixed *f, struct factors *s, double t, double h, double *state)
 {
 	const int n = f->n;
@@ -259,11 +262,13 @@ static bool verlet_advance(struct run *run, int units, double *rows)
 
 /* ---- Newton's method ----
  *
- * The factors are kept from step to step while an iteration shrinks the correction to a fifth, and made anew, by forward
- * differences of the residual, where it does not. It ends when the correction still to come, judged by the last two, is
- * below 1e-12 of the largest coordinate or velocity so far, and fails after 25 iterations. */
+ * The factors are kept from step to step while an iteration shrinks the correction to a fifth, and made anew, by
+ * forward differences of the residual, where it does not. It ends when the correction still to come, judged by the
+ * last two, is below 1e-12 of the largest coordinate or velocity so far, and fails after 25 iterations. */
 
-#define NEWTON_SETTINGS "Newton, Jacobian by differences, kept while corrections shrink to 1/5; to 1e-12 of the largest coordinate and velocity; fails after 25 iterations"
+#define NEWTON_SETTINGS \
+	"Newton, Jacobian by differences, kept while corrections shrink to 1/5; to 1e-12 of the largest coordinate " \
+	"and velocity; fails after 25 iterations"
 enum { NEWTON_ITERATIONS = 25 };
 static const double newton_tolerance = 1e-12;
 
@@ -273,13 +278,15 @@ struct equation {               /* of one step, in its unknowns z */
 };
 typedef void residual_function(struct fixed *f, const struct equation *e, const double *z, double *r);
 
-INLINE void difference(struct fixed *f, struct factors *s, const struct equation *e, double *z, const double *r, residual_function *residual)
+INLINE void difference(struct fixed *f, struct factors *s, const struct equation *e, double *z, const double *r,
+                       residual_function *residual)
 {
 	const int m = s->size;
 	double *moved = f->work[7];
 	for (int j = 0; j < m; j++) {
 		const double kept = z[j];
-		volatile double sum = kept + sqrt(DBL_EPSILON) * fmax(fabs(kept), 1.0 / f->weight[j]); /* so that the difference is what is moved */
+		/* so that the difference is what is moved */
+		volatile double sum = kept + sqrt(DBL_EPSILON) * fmax(fabs(kept), 1.0 / f->weight[j]);
 		z[j] = sum;
 		residual(f, e, z, moved);
 		for (int i = 0; i < m; i++)
@@ -306,7 +313,8 @@ INLINE bool newton(struct fixed *f, struct factors *s, const struct equation *e,
 		}
 		if (!all_finite(m, d))
 			return false;
-		if (now <= newton_tolerance || (k > 0 && now < before && now * now / (before - now) <= newton_tolerance))
+		if (now <= newton_tolerance ||
+		    (k > 0 && now < before && now * now / (before - now) <= newton_tolerance))
 			return true;
 		s->stale = k > 0 && now > 0.2 * before;
 		before = now;
@@ -407,14 +415,16 @@ static bool trapezoid_advance(struct run *run, int units, double *rows)
 /* ---- Newmark's family and generalized-alpha: Chung and Hulbert, J. Applied Mechanics 60 (1993) 371-375 ----
  *
  *     q+ = q + h v + h^2 ((1/2 - beta) a + beta a+)        v+ = v + h ((1 - gamma) a + gamma a+)
- *     (1 - alpha_m) a+ + alpha_m a = acceleration at t + (1 - alpha_f) h, (1 - alpha_f) q+ + alpha_f q, (1 - alpha_f) v+ + alpha_f v
+ *     (1 - alpha_m) a+ + alpha_m a = acceleration at t + (1 - alpha_f) h, (1 - alpha_f) q+ + alpha_f q,
+ *                                    (1 - alpha_f) v+ + alpha_f v
  */
 struct newmark {
 	double alpha_m, alpha_f, beta, gamma;
 };
 static const struct newmark central = {0.0, 0.0, 0.0, 0.5};     /* explicit in q, implicit in v: Bathe's (M + h/2 C) */
 static const struct newmark average = {0.0, 0.0, 0.25, 0.5};
-/* rho = 0.8: alpha_m = (2 rho - 1)/(rho + 1), alpha_f = rho/(rho + 1), gamma = 1/2 - alpha_m + alpha_f, beta = (1 - alpha_m + alpha_f)^2/4 */
+/* rho = 0.8: alpha_m = (2 rho - 1)/(rho + 1), alpha_f = rho/(rho + 1), gamma = 1/2 - alpha_m + alpha_f, beta = (1 -
+ * alpha_m + alpha_f)^2/4 */
 static const struct newmark alpha = {1.0 / 3.0, 4.0 / 9.0, 25.0 / 81.0, 11.0 / 18.0};
 
 INLINE void newmark_fill(const struct problem *p, double h, double *matrix, const struct newmark *c)
@@ -423,7 +433,8 @@ INLINE void newmark_fill(const struct problem *p, double h, double *matrix, cons
 	for (int i = 0; i < n; i++)
 		for (int j = 0; j < n; j++) {
 			const double *row = p->A + (n + i) * 2 * n;
-			matrix[i * n + j] = (1.0 - c->alpha_m) * (i == j) - (1.0 - c->alpha_f) * (c->beta * h * h * row[j] + c->gamma * h * row[n + j]);
+			matrix[i * n + j] = (1.0 - c->alpha_m) * (i == j) - (1.0 - c->alpha_f) *
+			                    (c->beta * h * h * row[j] + c->gamma * h * row[n + j]);
 		}
 }
 
@@ -449,7 +460,8 @@ INLINE void newmark_end(const struct newmark *c, int n, double h, double *state,
 	}
 }
 
-INLINE bool newmark_linear(struct fixed *f, struct factors *s, double t, double h, double *state, const struct newmark *c)
+INLINE bool newmark_linear(struct fixed *f, struct factors *s, double t, double h, double *state,
+                           const struct newmark *c)
 {
 	const int n = f->n;
 	double *restrict x = f->work[0], *restrict right = f->work[1], *restrict end = f->work[2];
@@ -462,7 +474,8 @@ INLINE bool newmark_linear(struct fixed *f, struct factors *s, double t, double 
 	return true;
 }
 
-INLINE void newmark_residual(struct fixed *f, const struct equation *e, const double *z, double *r, const struct newmark *c)
+INLINE void newmark_residual(struct fixed *f, const struct equation *e, const double *z, double *r,
+                             const struct newmark *c)
 {
 	const int n = f->n;
 	double *x = f->work[1], *dxdt = f->work[2];
@@ -472,8 +485,8 @@ INLINE void newmark_residual(struct fixed *f, const struct equation *e, const do
 		r[i] = (1.0 - c->alpha_m) * z[i] + c->alpha_m * e->state[2 * n + i] - dxdt[n + i];
 }
 
-INLINE bool newmark_newton(struct fixed *f, struct factors *s, double t, double h, double *state, const struct newmark *c,
-                           residual_function *residual)
+INLINE bool newmark_newton(struct fixed *f, struct factors *s, double t, double h, double *state,
+                           const struct newmark *c, residual_function *residual)
 {
 	const int n = f->n;
 	double *z = f->work[0];
@@ -711,8 +724,9 @@ static const struct classic explicit_trapezoid = {
 	.plain = {heun_step, heun_advance},
 };
 static const struct classic implicit_trapezoid = {
-	.method = FIXED_METHOD("implicit trapezoid", 2, "fixed step; linear: I - h/2 A factored once, 1 evaluation a step, 2 with a load in time; "
-	                       "else " NEWTON_SETTINGS),
+	.method = FIXED_METHOD("implicit trapezoid", 2,
+	                       "fixed step; linear: I - h/2 A factored once, 1 evaluation a step, 2 with a load in "
+	                       "time; else " NEWTON_SETTINGS),
 	.plain = {trapezoid_step, trapezoid_advance},
 	.linear = {trapezoid_linear_step, trapezoid_linear_advance},
 	.wants_linear = has_matrix, .unknowns = 2, .fill = trapezoid_fill,
@@ -722,22 +736,26 @@ static const struct classic rk4 = {
 	.plain = {rk4_step, rk4_advance},
 };
 static const struct classic central_difference = {
-	.method = FIXED_METHOD("central difference", 2, "fixed step; as velocity Verlet; linear damping implicit in the velocity: I + h/2 C factored once (Bathe); "
+	.method = FIXED_METHOD("central difference", 2,
+	                       "fixed step; as velocity Verlet; linear damping implicit in the velocity: I + h/2 C "
+	                       "factored once (Bathe); "
 	                       "nonlinear forces of velocity are taken at v + h a; 1 evaluation a step"),
 	.plain = {verlet_step, verlet_advance},
 	.linear = {central_linear_step, central_linear_advance},
 	.wants_linear = is_damped, .unknowns = 1, .fill = central_fill, .keeps_acceleration = true,
 };
 static const struct classic newmark_average = {
-	.method = FIXED_METHOD("Newmark", 2, "fixed step; average acceleration, beta = 1/4, gamma = 1/2; linear: I + h/2 C + h^2/4 K factored once, 1 evaluation a step; "
-	                       "else in the accelerations by " NEWTON_SETTINGS),
+	.method = FIXED_METHOD("Newmark", 2,
+	                       "fixed step; average acceleration, beta = 1/4, gamma = 1/2; linear: I + h/2 C + h^2/4 K "
+	                       "factored once, 1 evaluation a step; else in the accelerations by " NEWTON_SETTINGS),
 	.plain = {average_step, average_advance},
 	.linear = {average_linear_step, average_linear_advance},
 	.wants_linear = has_matrix, .unknowns = 1, .fill = average_fill, .keeps_acceleration = true,
 };
 static const struct classic generalized_alpha = {
-	.method = FIXED_METHOD("generalized-alpha", 2, "fixed step; Chung and Hulbert 1993, spectral radius at infinity 0.8; linear: matrix factored once, 1 evaluation a step; "
-	                       "else in the accelerations by " NEWTON_SETTINGS),
+	.method = FIXED_METHOD("generalized-alpha", 2,
+	                       "fixed step; Chung and Hulbert 1993, spectral radius at infinity 0.8; linear: matrix "
+	                       "factored once, 1 evaluation a step; else in the accelerations by " NEWTON_SETTINGS),
 	.plain = {alpha_step, alpha_advance},
 	.linear = {alpha_linear_step, alpha_linear_advance},
 	.wants_linear = has_matrix, .unknowns = 1, .fill = alpha_fill, .keeps_acceleration = true,

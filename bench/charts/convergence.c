@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* convergence [--quick] VARIANTS FOLDER: how fast errors fall with the number N of intervals in 30 s, as Fang, Wang, Dai and Zhang show it
- * (Science Progress 2020): both readings of their method, pl (coupling held over an interval) and exact (nothing held), beside
- * Euler, the explicit trapezoid and RK4, in FOLDER/convergence.csv; slopes over the range in FOLDER/convergence_orders.csv.
+/* convergence [--quick] VARIANTS FOLDER: how fast errors fall with the number N of intervals in 30 s, as Fang, Wang,
+ * Dai and Zhang show it (Science Progress 2020): both readings of their method, pl (coupling held over an interval)
+ * and exact (nothing held), beside Euler, the explicit trapezoid and RK4, in FOLDER/convergence.csv; slopes over the
+ * range in FOLDER/convergence_orders.csv.
  *
- * The error is the largest of any displacement, over the initial displacement, at the ends of the 1000 intervals of 0.03 s that every N
- * has in common, until 30 s and until 0.6 s. VARIANTS holds what convergence.sh made. */
+ * The error is the largest of any displacement, over the initial displacement, at the ends of the 1000 intervals of
+ * 0.03 s that every N has in common, until 30 s and until 0.6 s. VARIANTS holds what convergence.sh made. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -21,8 +22,10 @@ static const int quick_intervals[] = { 1000, 2000, 5000, 20000, 0 };
 static const struct { const char *name; double frequency; } systems[] = { { "scs", 0 }, { "sdcs", 0 }, { "sdcsf", 5 } };
 
 static const struct method readings[] = {
-	{ .name = "pl", .family = OURS, .linear_only = true, .order = 1, .settings = "plgen --scheme pl: coupling held over each interval" },
-	{ .name = "exact", .family = OURS, .linear_only = true, .order = 0, .settings = "plgen --scheme exact: nothing held" },
+	{ .name = "pl", .family = OURS, .linear_only = true, .order = 1,
+	  .settings = "plgen --scheme pl: coupling held over each interval" },
+	{ .name = "exact", .family = OURS, .linear_only = true, .order = 0,
+	  .settings = "plgen --scheme exact: nothing held" },
 };
 static const char *const peers[] = { "explicit Euler", "explicit trapezoid", "RK4" };
 
@@ -63,14 +66,16 @@ static double largest_error(const struct problem *p, const struct truth *truth, 
 	return worst / fabs(p->start[0]);
 }
 
-static void follow(struct curve *curve, const struct problem *p, const struct truth *truth, const char *variants, const int *intervals)
+static void follow(struct curve *curve, const struct problem *p, const struct truth *truth, const char *variants,
+                   const int *intervals)
 {
 	double *rows = calloc((size_t)COMMON * 2 * (size_t)p->n, sizeof *rows);
 	for (int k = 0; intervals[k]; k++) {
 		struct run *run = open_run(curve->method, p, variants, intervals[k]);
 		if (!run) {
 			curve->refused = refusal(curve->method, p, variants, intervals[k]);
-			fprintf(stderr, "convergence: %s, %s, N = %d: %s\n", p->name, curve->method->name, intervals[k], curve->refused ? curve->refused : "cannot");
+			fprintf(stderr, "convergence: %s, %s, N = %d: %s\n", p->name, curve->method->name, intervals[k],
+				curve->refused ? curve->refused : "cannot");
 			curve->error[0][k] = curve->error[1][k] = NAN;
 			continue;
 		}
@@ -105,7 +110,8 @@ static void write_curve(FILE *csv, const struct curve *curve, const char *system
 	for (int i = 0; i < HORIZONS; i++)
 		for (int k = 0; intervals[k]; k++) {
 			const double error = curve->error[i][k];
-			fprintf(csv, "%s,%g,%d,%.6g,%s,", system, whole * horizons[i] / COMMON, intervals[k], whole / intervals[k], curve->method->name);
+			fprintf(csv, "%s,%g,%d,%.6g,%s,", system, whole * horizons[i] / COMMON, intervals[k],
+				whole / intervals[k], curve->method->name);
 			if (isnan(error))
 				fputs("refused,none", csv);
 			else if (isinf(error))
@@ -137,7 +143,8 @@ static void write_orders(FILE *csv, const struct curve *curve, const char *syste
 	}
 }
 
-static void converge(const char *system, double frequency, const char *variants, const int *intervals, FILE *csv, FILE *orders)
+static void converge(const char *system, double frequency, const char *variants, const int *intervals, FILE *csv,
+                     FILE *orders)
 {
 	char file[4096];
 	snprintf(file, sizeof file, "%s/convergence_%s_exact_%d.so", variants, system, intervals[0]);
@@ -186,10 +193,12 @@ int main(int argc, char **argv)
 	}
 	const char *variants = argv[1 + quick], *folder = argv[2 + quick];
 	FILE *csv = create(folder, "convergence.csv"), *orders = create(folder, "convergence_orders.csv");
-	fputs("system,horizon_s,intervals_in_30_s,h_s,method,error_over_initial_displacement,order_since_last,settings\n", csv);
+	fputs("system,horizon_s,intervals_in_30_s,h_s,method,error_over_initial_displacement,order_since_last,"
+	      "settings\n", csv);
 	fputs("system,horizon_s,method,order_expected,order_over_range,order_at_last\n", orders);
 	for (size_t i = 0; i < sizeof systems / sizeof *systems; i++)
-		converge(systems[i].name, systems[i].frequency, variants, quick ? quick_intervals : all_intervals, csv, orders);
+		converge(systems[i].name, systems[i].frequency, variants, quick ? quick_intervals : all_intervals, csv,
+		         orders);
 	finish(csv);
 	finish(orders);
 	return 0;

@@ -1,14 +1,16 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* energy [--quick] VARIANTS FOLDER: what must stay constant, over 1e8 steps (--quick: 1e6), in FOLDER/energy.csv and FOLDER/decay.csv.
+/* energy [--quick] VARIANTS FOLDER: what must stay constant, over 1e8 steps (--quick: 1e6), in FOLDER/energy.csv and
+ * FOLDER/decay.csv.
  *
  *     undamped   scs: the energy, relative to that at the start
  *     moving     free_pair with v2 = 0: the momentum, relative to sum m |v| at the start
  *     resting    free_pair with v2 = -0.5: the same, where the momentum is 0
  *     damped     sdcs with c = 1e-6: how fast the energy of each mode falls, beside -2 Re(pole)
  *
- * VARIANTS/energy.list has a line for each piece of generated code: `case TAB method TAB real TAB h TAB file`; file is a shared object of variant.sh, or what it
- * was refused with is in FILE.refused.  The method `problem` gives the equations (and is ours no further): the peers are measured on
- * each of them that is `double`, a matrix exponential rounded to float on each that is `float`. */
+ * VARIANTS/energy.list has a line for each piece of generated code: `case TAB method TAB real TAB h TAB file`; file is
+ * a shared object of variant.sh, or what it was refused with is in FILE.refused.  The method `problem` gives the
+ * equations (and is ours no further): the peers are measured on each of them that is `double`, a matrix exponential
+ * rounded to float on each that is `float`. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -73,7 +75,8 @@ static struct code *codes_read(const char *folder, int *count)
 	for (*count = 0; fgets(line, sizeof line, in); ++*count) {
 		all = realloc(all, ((size_t)*count + 1) * sizeof *all);
 		struct code *v = all + *count;
-		if (!all || sscanf(line, "%31[^\t]\t%63[^\t]\t%15[^\t]\t%lf\t%1023[^\n]", v->test, v->method, v->real, &v->h, v->file) != 5) {
+		if (!all || sscanf(line, "%31[^\t]\t%63[^\t]\t%15[^\t]\t%lf\t%1023[^\n]", v->test, v->method, v->real,
+		                   &v->h, v->file) != 5) {
 			fprintf(stderr, "energy: in the list: %s", line);
 			exit(1);
 		}
@@ -95,7 +98,8 @@ static void print_quoted(FILE *out, const char *text)
 
 /* ---- one method over all steps ---- */
 
-static void print_change(FILE *out, const struct code *v, const char *method, enum family family, double steps, double change, double largest)
+static void print_change(FILE *out, const struct code *v, const char *method, enum family family, double steps,
+                         double change, double largest)
 {
 	fprintf(out, "%s,\"%s\",%s,%s,%g,%.0f,", v->test, method, family_names[family], v->real, v->h, steps);
 	if (isfinite(change))
@@ -104,7 +108,8 @@ static void print_change(FILE *out, const struct code *v, const char *method, en
 		fputs("failed,failed,nan\n", out);
 }
 
-/* Samples at 1, 2, 3, 4, 6, 10, ... steps.  `largest`: of the samples so far, since a change passes through 0 now and then. */
+/* Samples at 1, 2, 3, 4, 6, 10, ... steps.  `largest`: of the samples so far, since a change passes through 0 now and
+ * then. */
 static void follow(struct run *run, const struct code *v, double steps, FILE *out)
 {
 	double start[STATES], y[STATES], largest = 0;
@@ -126,7 +131,8 @@ static void follow(struct run *run, const struct code *v, double steps, FILE *ou
 	}
 }
 
-/* The energy of a mode falls as e^{-c t}, of the other as e^{-3 c t}: C = c [2, -1; -1, 2], and that is -2 Re(pole) to 1e-14 of it. */
+/* The energy of a mode falls as e^{-c t}, of the other as e^{-3 c t}: C = c [2, -1; -1, 2], and that is -2 Re(pole) to
+ * 1e-14 of it. */
 static void decay(struct run *run, const struct code *v, double steps, FILE *out)
 {
 	const double c = 1e-6, time = v->h * steps;
@@ -137,9 +143,10 @@ static void decay(struct run *run, const struct code *v, double steps, FILE *out
 	run->get(run, y);
 	for (int sign = 1; sign >= -1; sign -= 2) {
 		const double rate = sign > 0 ? c : 3 * c;
-		const double measured = good ? -(double)logl(energy_of_mode(y, sign) / energy_of_mode(start, sign)) / time : NAN;
-		fprintf(out, "\"%s\",%s,%s,%g,%.0f,%g,%.6g,", run->method->name, family_names[run->method->family], v->real, v->h, steps,
-			sign > 0 ? 10 : sqrt(300), rate);
+		const double measured = good ? -(double)logl(energy_of_mode(y, sign) / energy_of_mode(start, sign)) /
+		                        time : NAN;
+		fprintf(out, "\"%s\",%s,%s,%g,%.0f,%g,%.6g,", run->method->name, family_names[run->method->family],
+			v->real, v->h, steps, sign > 0 ? 10 : sqrt(300), rate);
 		if (isfinite(measured))
 			fprintf(out, "%.6g,%.4g,\n", measured, 100 * (measured - rate) / rate);
 		else
@@ -205,7 +212,8 @@ int main(int argc, char **argv)
 	const double steps = quick ? 1e6 : 1e8;
 	int count;
 	const struct code *all = codes_read(argv[1 + quick], &count);
-	FILE *changes = open_in(argv[2 + quick], "energy.csv", "w"), *decays = open_in(argv[2 + quick], "decay.csv", "w");
+	FILE *changes = open_in(argv[2 + quick], "energy.csv", "w"), *decays = open_in(argv[2 + quick], "decay.csv",
+		"w");
 	fputs("case,method,family,real,step_s,steps,change,largest,word\n", changes);
 	fputs("method,family,real,step_s,steps,mode_rad_per_s,rate_per_s,measured_per_s,error_percent,word\n", decays);
 	struct problem *p = NULL;               /* the latest given */

@@ -6,7 +6,8 @@ set xlabel 'steps taken'
 set xrange [1:*]
 source = "Layout deduced, parameters chosen: the source's did not survive. "
 flags = "gcc -O2 for all, no -march=native, no -ffast-math."
-set label 2 "Largest of the changes met so far at five numbers of steps a decade; what never changed is in the table alone." at screen 0.01,0.05 left font ',9' textcolor rgb '#505050'
+set label 2 "Largest of the changes met so far at five numbers of steps a decade; what never changed is in the ".\
+	"table alone." at screen 0.01,0.05 left font ',9' textcolor rgb '#505050'
 eval note." source.flags"
 
 set ylabel 'largest change of energy so far, relative to the start'

@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# energy.sh PLGEN FOLDER: the generated code that energy.c follows, FOLDER/energy_*.so, and its list FOLDER/energy.list. Run at the top
-# of the source tree.
+# energy.sh PLGEN FOLDER: the generated code that energy.c follows, FOLDER/energy_*.so, and its list
+# FOLDER/energy.list. Run at the top of the source tree.
 set -e
 plgen=$1 folder=$2
 charts=bench/charts
@@ -14,7 +14,8 @@ variant() {
 	of=$1 method=$2 real=$3 h=$4 spec=$5
 	shift 5
 	file=$(echo "energy $of $method $h $real" | sed 's/[^a-z0-9.]\{1,\}/_/g').so
-	echo "$folder/$file $spec --step $h" "$@" >>"$folder/energy.jobs" # without a blank at its end: xargs would go on with the next line
+	# without a blank at its end: xargs would go on with the next line
+	echo "$folder/$file $spec --step $h" "$@" >>"$folder/energy.jobs"
 	printf '%s\t%s\t%s\t%s\t%s\n' "$of" "$method" "$real" "$h" "$folder/$file" >>"$folder/energy.list"
 }
 

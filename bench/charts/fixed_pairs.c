@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  *
- * The higher formula of two embedded pairs at a fixed step: what an adaptive solver does while its error estimate does not bind.
+ * The higher formula of two embedded pairs at a fixed step: what an adaptive solver does while its error estimate does
+ * not bind.
  */
 #include "amplification.h"
 
@@ -131,7 +132,8 @@ static struct run *open_run(const struct method *method, const struct problem *p
 	double *next = calloc(9 * size, sizeof *next);
 	if (!p || !next)
 		abort();
-	p->run = (struct run){.method = method, .problem = problem, .setting = setting, .restart = restart, .advance = advance, .get = get,
+	p->run = (struct run){.method = method, .problem = problem, .setting = setting, .restart = restart,
+	                      .advance = advance, .get = get,
 	                      .evaluations = evaluations, .close = close_run};
 	p->steps = (int)round(problem->unit / setting);
 	p->h = problem->unit / p->steps;

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* plgen's own code as a method: a shared object of one variant, driven through its descriptor as a user would drive it. */
+/* plgen's own code as a method: a shared object of one variant, driven through its descriptor as a user would drive
+ * it. */
 #include "charts.h"
 
 #include <dlfcn.h>
@@ -23,12 +24,13 @@ struct generated {
 	long taken;                 /* steps since the start */
 };
 
-/* etd1 and pl: r0. etdrk2: r at two states, etdrk4: at four. The quadratures: r at each node, and at those after the first three more
- * right-hand sides of an RK4 step that begins at r0. */
+/* etd1 and pl: r0. etdrk2: r at two states, etdrk4: at four. The quadratures: r at each node, and at those after the
+ * first three more right-hand sides of an RK4 step that begins at r0. */
 int leftover_evaluations(const char *scheme)
 {
 	static const struct { const char *name; int evaluations; } schemes[] = {
-		{ "pl", 1 }, { "etd1", 1 }, { "etdrk2", 2 }, { "etdrk4", 4 }, { "nc2", 3 + 2 * 3 }, { "nc3", 4 + 3 * 3 }, { "dq4", 4 + 3 * 3 },
+		{ "pl", 1 }, { "etd1", 1 }, { "etdrk2", 2 }, { "etdrk4", 4 }, { "nc2", 3 + 2 * 3 },
+		{ "nc3", 4 + 3 * 3 }, { "dq4", 4 + 3 * 3 },
 		{ "bm3", 4 + 3 * 3 }
 	};
 	for (size_t i = 0; i < sizeof schemes / sizeof *schemes; i++)
@@ -168,8 +170,8 @@ static bool advance_single(struct run *run, int units)
 	return good(g);
 }
 
-/* Where a scheme has nothing for the inside of a step: the polynomial of degree 5 through the coordinates at its ends with their
- * velocities and accelerations (Hermite), and its slope for the velocities. */
+/* Where a scheme has nothing for the inside of a step: the polynomial of degree 5 through the coordinates at its ends
+ * with their velocities and accelerations (Hermite), and its slope for the velocities. */
 static void hermite(const struct generated *g, void *state, double t, double tau, double *y)
 {
 	const int n = g->run.problem->n;
@@ -183,8 +185,10 @@ static void hermite(const struct generated *g, void *state, double t, double tau
 	for (int i = 0; i < n; i++) {
 		/* Coefficients of s^3, s^4, s^5 from what the first three leave to be met at the end */
 		const double v = h * from[n + i], a = h * h * from_slope[n + i] / 2;
-		const double end = to[i] - from[i] - v - a, end_v = h * to[n + i] - v - 2 * a, end_a = h * h * to_slope[n + i] - 2 * a;
-		const double c3 = 10 * end - 4 * end_v + end_a / 2, c4 = -15 * end + 7 * end_v - end_a, c5 = 6 * end - 3 * end_v + end_a / 2;
+		const double end = to[i] - from[i] - v - a, end_v = h * to[n + i] - v - 2 * a,
+			end_a = h * h * to_slope[n + i] - 2 * a;
+		const double c3 = 10 * end - 4 * end_v + end_a / 2, c4 = -15 * end + 7 * end_v - end_a,
+			c5 = 6 * end - 3 * end_v + end_a / 2;
 		y[i] = from[i] + s * (v + s * (a + s * (c3 + s * (c4 + s * c5))));
 		y[n + i] = (v + s * (2 * a + s * (3 * c3 + s * (4 * c4 + s * 5 * c5)))) / h;
 	}
@@ -194,7 +198,8 @@ static void hermite(const struct generated *g, void *state, double t, double tau
 const char *generated_between(const struct run *run)
 {
 	const struct generated *g = of_const(run);
-	return (g->single ? g->single->at != NULL : g->model->at != NULL) ? "inside a step NAME_at" : "inside a step Hermite's polynomial of degree 5 with NAME_rhs";
+	return (g->single ? g->single->at != NULL : g->model->at != NULL) ? "inside a step NAME_at"
+	       : "inside a step Hermite's polynomial of degree 5 with NAME_rhs";
 }
 
 static void inside_step(const struct generated *g, void *state, double t, double tau, double *y)
@@ -218,7 +223,8 @@ static void between(struct run *run, double fraction, double *y)
 	double whole = floor(fraction * g->steps + 1e-9), rest = fraction * g->steps - whole;
 	memcpy(g->copy, g->state, g->size);
 	take_steps(g, g->copy, (int)whole);
-	inside_step(g, g->copy, ((double)g->taken + whole) / g->steps * run->problem->unit, rest < 1e-9 ? 0 : rest * g->h, y);
+	inside_step(g, g->copy, ((double)g->taken + whole) / g->steps * run->problem->unit,
+	            rest < 1e-9 ? 0 : rest * g->h, y);
 }
 
 static long evaluations(const struct run *run)
@@ -270,13 +276,15 @@ static bool load(struct generated *g, const char *file)
 		g->single = model;
 		g->h = g->single->h;
 		g->size = g->single->size;
-		g->rows_are_states = same_names(g->single->states, g->single->outputs, g->single->state_names, g->single->output_names);
+		g->rows_are_states = same_names(g->single->states, g->single->outputs, g->single->state_names,
+		                                g->single->output_names);
 		g->run.timed = advance_single;
 	} else {
 		g->model = model;
 		g->h = g->model->h;
 		g->size = g->model->size;
-		g->rows_are_states = same_names(g->model->states, g->model->outputs, g->model->state_names, g->model->output_names);
+		g->rows_are_states = same_names(g->model->states, g->model->outputs, g->model->state_names,
+		                                g->model->output_names);
 	}
 	return (g->single ? g->single->states : g->model->states) == 2 * g->run.problem->n;
 }
@@ -292,7 +300,8 @@ struct run *generated_open(const struct method *method, const struct problem *pr
 	struct generated *g = calloc(1, sizeof *g);
 	if (!g)
 		return NULL;
-	g->run = (struct run){ .method = method, .problem = problem, .restart = restart, .advance = advance, .between = between, .get = get,
+	g->run = (struct run){ .method = method, .problem = problem, .restart = restart, .advance = advance,
+	                       .between = between, .get = get,
 	                       .evaluations = evaluations, .close = close_run };
 	if (!load(g, file) || !divides(g)) {
 		close_run(&g->run);

@@ -1,16 +1,18 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# generation.sh [--quick] BUILD FOLDER: what generating costs, and when it pays. Run at the top of the source tree, after precision.
+# generation.sh [--quick] BUILD FOLDER: what generating costs, and when it pays. Run at the top of the source tree,
+# after precision.
 #
-# FOLDER/generation.csv: for each model of FOLDER/precision.csv the time of plgen and of cc -O2 -c on what it wrote, whole processes in
-# turn with an empty one (bench/clock.c); minimum, median and maximum in milliseconds, as measured: the empty one's stand beside them.
+# FOLDER/generation.csv: for each model of FOLDER/precision.csv the time of plgen and of cc -O2 -c on what it wrote,
+# whole processes in turn with an empty one (bench/clock.c); minimum, median and maximum in milliseconds, as measured:
+# the empty one's stand beside them.
 #
-# FOLDER/break_even.csv: on each model, against each rival, from precision.csv: its cheapest setting whose largest error is
-# at most 1e-6, in float 1e-3 (ns per unit of output, median), ours in the same type likewise, and after how many steps of
-# ours the time to generate and compile is won back:
+# FOLDER/break_even.csv: on each model, against each rival, from precision.csv: its cheapest setting whose largest
+# error is at most 1e-6, in float 1e-3 (ns per unit of output, median), ours in the same type likewise, and after how
+# many steps of ours the time to generate and compile is won back:
 #     steps = (generate + compile - 2 empty) / (rival's ns per step of ours - ours)
-# never: the rival is faster or, within the 10 % that times hold, as fast, or only the rival comes to that error; none: no
-# setting of the rival comes to it, so there is nothing to win back against.
+# never: the rival is faster or, within the 10 % that times hold, as fast, or only the rival comes to that error; none:
+# no setting of the rival comes to it, so there is nothing to win back against.
 set -e
 runs=15
 if [ "$1" = --quick ]; then
@@ -31,7 +33,9 @@ measure() {
 		awk -F, 'NR == 1 { printf "%s,", $0 } NR == 2 { print $2 }'
 }
 
-echo 'model,bytes_of_C,generate_ms_min,generate_ms_median,generate_ms_max,compile_ms_min,compile_ms_median,compile_ms_max,empty_ms_median,samples' >"$folder/generation.csv"
+columns=model,bytes_of_C,generate_ms_min,generate_ms_median,generate_ms_max
+columns=$columns,compile_ms_min,compile_ms_median,compile_ms_max,empty_ms_median,samples
+echo "$columns" >"$folder/generation.csv"
 awk -F, 'NR > 1 && !seen[$1]++ { print $1 }' "$folder/precision.csv" >"$work/models"
 while read -r model; do
 	echo "generation: $model" >&2
@@ -42,4 +46,5 @@ while read -r model; do
 	echo "$model,$(wc -c <"$work/$model.c"),${generate%,*},$compile,$runs" >>"$folder/generation.csv"
 done <"$work/models"
 
-awk -f bench/charts/csv.awk -f bench/charts/break_even.awk "$folder/generation.csv" "$folder/precision.csv" >"$folder/break_even.csv"
+awk -f bench/charts/csv.awk -f bench/charts/break_even.awk "$folder/generation.csv" "$folder/precision.csv" \
+	>"$folder/break_even.csv"

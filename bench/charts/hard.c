@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* hard [--quick] VARIANTS FOLDER: where methods fail. Every method on every hard case, in FOLDER/hard.csv: the largest error of any
- * displacement and velocity at the ends of units, relative to the largest displacement and velocity of the history, or why there is none:
+/* hard [--quick] VARIANTS FOLDER: where methods fail. Every method on every hard case, in FOLDER/hard.csv: the largest
+ * error of any displacement and velocity at the ends of units, relative to the largest displacement and velocity of
+ * the history, or why there is none:
  *
  *     ok            the error is below a thousandth
  *     poor          it is not, but below a tenth
@@ -11,10 +12,10 @@
  *     linear only   it is for linear models
  *     as exact      nothing is left over for this scheme: it is the exact step
  *
- * VARIANTS/hard.list has a line for each piece of generated code: `case TAB method TAB step TAB file`, file a shared object of
- * variant.sh, or `-` for what is as exact. The method `problem` comes first in each case and gives the equations.
- * Steps are powers of two except in van der Pol's case, so that a double holds them and time itself is no error.
- * What is true: closed forms in quadruple precision, below; for van der Pol truth_of.
+ * VARIANTS/hard.list has a line for each piece of generated code: `case TAB method TAB step TAB file`, file a shared
+ * object of variant.sh, or `-` for what is as exact. The method `problem` comes first in each case and gives the
+ * equations. Steps are powers of two except in van der Pol's case, so that a double holds them and time itself is no
+ * error. What is true: closed forms in quadruple precision, below; for van der Pol truth_of.
  *
  * hard --scales [--quick] VARIANTS: the scales of each case, as precision --scales has them. */
 #include <gsl/gsl_errno.h>
@@ -40,7 +41,8 @@ static void add_wave(quad *y, int n, const quad *shape, quad w, quad t)
 	}
 }
 
-/* From rest at a: x'' + (1 + S) x1 - S x2 = 0, x2'' + S (x2 - x1) = 0, S = 1e8; the slow root as product over fast root */
+/* From rest at a: x'' + (1 + S) x1 - S x2 = 0, x2'' + S (x2 - x1) = 0, S = 1e8; the slow root as product over fast
+ * root */
 static void stiff_spring(quad t, quad *y)
 {
 	const quad S = 1e8Q, fast = (1 + 2 * S + sqrtq(1 + 4 * S * S)) / 2, slow = S / fast;
@@ -118,8 +120,8 @@ static void fast_slow(quad t, quad *y)
 	y[1] = a * b * (expq(b * t) - expq(a * t)) / (a - b);
 }
 
-/* x'' + x = 0 up to the stop at b = 1 - 1e-6, reached with speed v; inside, e = x - b: e'' + (1 + K) e + b = 0. A period is from -1 to -1,
- * symmetric about the deepest point, where tan(W t) = v W / b. */
+/* x'' + x = 0 up to the stop at b = 1 - 1e-6, reached with speed v; inside, e = x - b: e'' + (1 + K) e + b = 0. A
+ * period is from -1 to -1, symmetric about the deepest point, where tan(W t) = v W / b. */
 static void graze(quad t, quad *y)
 {
 	const quad b = 1 - 1e-6Q, W = sqrtq(1 + 1e8Q), v = sqrtq((1 - b) * (1 + b));
@@ -149,8 +151,8 @@ static const struct hard_case {
 	double frequency;                       /* of its load */
 	bool linear;
 	void (*exact)(quad t, quad *y);         /* NULL: truth_of models/vanderpol_stiff.spec; y comes as zeros */
-	double least_v;                         /* scale of velocities where ends of units have no larger: van der Pol's jump, 4/3 mu, falls
-	                                         * between them */
+	/* scale of velocities where ends of units have no larger: van der Pol's jump, 4/3 mu, falls between them */
+	double least_v;
 	double steps[3];                        /* to take, 0 at the end */
 	double tolerance;                       /* of adaptive methods */
 	long most_evaluations;
@@ -286,8 +288,8 @@ static struct cell follow(struct run *run, const struct history *h)
 	return cell_of_error(largest);
 }
 
-static struct cell try_method(const struct method *m, const struct problem *p, const struct history *h, double setting, const char *file,
-                              long most_evaluations)
+static struct cell try_method(const struct method *m, const struct problem *p, const struct history *h, double setting,
+                              const char *file, long most_evaluations)
 {
 	struct problem asked = *p;
 	if (m->linear_only && !p->linear)
@@ -316,10 +318,12 @@ static void print_quoted(FILE *out, const char *text)
 	putc('"', out);
 }
 
-static void print_cell(FILE *out, const struct hard_case *c, const struct method *m, double setting, struct cell cell, const char *settings)
+static void print_cell(FILE *out, const struct hard_case *c, const struct method *m, double setting, struct cell cell,
+                       const char *settings)
 {
 	static const char *const families[] = { "ours", "fixed", "adaptive", "propagator" };
-	fprintf(out, "\"%s\",\"%s\",%s,%s,%.8g,", c->name, m->name, families[m->family], m->tolerance ? "tolerance" : "step", setting);
+	fprintf(out, "\"%s\",\"%s\",%s,%s,%.8g,", c->name, m->name, families[m->family], m->tolerance ? "tolerance"
+		: "step", setting);
 	if (isfinite(cell.error) && strcmp(cell.word, "diverged") != 0)
 		fprintf(out, "%.3g,%s,", cell.error, cell.word);
 	else
@@ -329,10 +333,12 @@ static void print_cell(FILE *out, const struct hard_case *c, const struct method
 	say_progress("hard: %s: %s %g: %s", c->name, m->name, setting, cell.word);
 }
 
-static void try_peer(FILE *out, const struct hard_case *c, const struct problem *p, const struct history *h, const struct method *m)
+static void try_peer(FILE *out, const struct hard_case *c, const struct problem *p, const struct history *h,
+                     const struct method *m)
 {
 	if (m->tolerance) {
-		print_cell(out, c, m, c->tolerance, try_method(m, p, h, c->tolerance, NULL, c->most_evaluations), m->settings);
+		print_cell(out, c, m, c->tolerance, try_method(m, p, h, c->tolerance, NULL, c->most_evaluations),
+		           m->settings);
 		return;
 	}
 	for (const double *step = c->steps; *step > 0; step++)
@@ -348,8 +354,8 @@ static void try_peers(FILE *out, const struct hard_case *c, const struct problem
 	try_peer(out, c, p, h, &residues_naive);
 }
 
-static void try_ours(FILE *out, const struct hard_case *c, const struct problem *p, const struct history *h, const char *name, double step,
-                     const char *file)
+static void try_ours(FILE *out, const struct hard_case *c, const struct problem *p, const struct history *h,
+                     const char *name, double step, const char *file)
 {
 	const struct method m = { .name = name, .family = OURS };
 	if (strcmp(file, "-") == 0) {
@@ -357,14 +363,16 @@ static void try_ours(FILE *out, const struct hard_case *c, const struct problem 
 		return;
 	}
 	char *refusal = variant_refused(file);
-	const struct cell cell = refusal ? (struct cell){ NAN, "refused" } : try_method(&m, p, h, step, file, c->most_evaluations);
+	const struct cell cell = refusal ? (struct cell){ NAN, "refused" } : try_method(&m, p, h, step, file,
+		c->most_evaluations);
 	print_cell(out, c, &m, step, cell, refusal);
 	free(refusal);
 }
 
 static struct problem *problem_of(const struct hard_case *c, const char *file, bool quick)
 {
-	return problem_load(file, c->exact ? c->name : "vanderpol_stiff", c->unit, quick ? c->quick_units : c->units, c->linear, c->frequency);
+	return problem_load(file, c->exact ? c->name : "vanderpol_stiff", c->unit, quick ? c->quick_units : c->units,
+	                    c->linear, c->frequency);
 }
 
 static void say_scales(FILE *out, const struct problem *p, const char *name, const char *file)
@@ -397,7 +405,8 @@ int main(int argc, char **argv)
 		return 2;
 	}
 	gsl_set_error_handler_off();            /* its statuses say it too */
-	FILE *list = open_in(argv[1 + scales + quick], "hard.list", "r"), *out = scales ? stdout : open_in(argv[2 + quick], "hard.csv", "w");
+	FILE *list = open_in(argv[1 + scales + quick], "hard.list", "r"), *out = scales ? stdout
+	             : open_in(argv[2 + quick], "hard.csv", "w");
 	if (!scales)
 		fputs("case,method,family,setting_kind,setting,error,word,settings\n", out);
 	struct problem *p = NULL;

@@ -16,8 +16,10 @@ variant() {
 	shift 4
 	[ "$only" != problems ] || [ "$method" = problem ] || return 0
 	file=$folder/$(echo "hard $case $method $step" | sed 's/[^a-zA-Z0-9.-]\{1,\}/_/g').so
-	echo "$file $spec --step $step" "$@" >>"$folder/hard.jobs" # without a blank at its end: xargs would go on with the next line
-	printf '%s\t%s\t%s\t%s\n' "$case" "$method" "$(awk "BEGIN { printf \"%.17g\", $step }")" "$file" >>"$folder/hard.list"
+	# without a blank at its end: xargs would go on with the next line
+	echo "$file $spec --step $step" "$@" >>"$folder/hard.jobs"
+	printf '%s\t%s\t%s\t%s\n' "$case" "$method" "$(awk "BEGIN { printf \"%.17g\", $step }")" "$file" \
+		>>"$folder/hard.list"
 }
 
 # nothing_left CASE METHOD STEP

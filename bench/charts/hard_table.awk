@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# awk -f csv.awk -f hard_table.awk hard.csv: the hard cases across, methods down, as an HTML table; where a method was tried with two steps, the
-# longer stands first.
-function class_of(word) { return word == "ok" ? "n" : word == "poor" ? "poor" : word == "linear only" || word == "as exact" ? "none" : "bad" }
+# awk -f csv.awk -f hard_table.awk hard.csv: the hard cases across, methods down, as an HTML table; where a method was
+# tried with two steps, the longer stands first.
+function class_of(word) { return word == "ok" ? "n" : word == "poor" ? "poor" : word == "linear only" ||
+	word == "as exact" ? "none" : "bad" }
 # 0.0078125: 1/128
 function step_text(h) { return length(h) > 6 && h < 1 ? "1/" 1 / h : h }
 NR == 1 { next }
@@ -13,7 +14,8 @@ NR == 1 { next }
 	if (!(method in known_method)) { known_method[method] = family; methods[++method_count] = method }
 	if (kind == "step") setting = step_text(setting)
 	shown = error == "failed" ? word : word == "ok" ? error : error " " word
-	cells[of, method] = cells[of, method] "<div class=" class_of(word) (kind == "step" ? " title=\"h = " setting " s\"" : " title=\"relative tolerance " setting "\"") ">" shown "</div>"
+	cells[of, method] = cells[of, method] "<div class=" class_of(word) (kind == "step" ? " title=\"h = " \
+		setting " s\"" : " title=\"relative tolerance " setting "\"") ">" shown "</div>"
 	if (kind == "step" && index(steps[of] " ", " " setting " ") == 0) steps[of] = steps[of] " " setting
 }
 END {

@@ -1,9 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* headline: the two comparisons that lead the page, on scs over 1000 s with output every 0.01 s.
  *
- *   headline_integrators.csv  each integrator at the coarsest setting found that reaches an error of 1e-9 and of 1e-12: time per output;
- *                             and what is exact at any step, ours and e^{A h}, at one step per output
- *   headline_equal_step.csv   beside a precomputed e^{A h} and modal superposition at the same step: time, error, drift of the energy
+ *   headline_integrators.csv  each integrator at the coarsest setting found that reaches an error of 1e-9 and of
+ *                             1e-12: time per output; and what is exact at any step, ours and e^{A h}, at one step per
+ *                             output
+ *   headline_equal_step.csv   beside a precomputed e^{A h} and modal superposition at the same step: time, error,
+ *                             drift of the energy
  *   headline_confluence.csv   the same methods where frequencies nearly meet: the largest error over 100 s
  *
  *     headline --list [--quick]             the variants wanted: FILE SPEC options, a line each
@@ -29,11 +31,13 @@ static const struct ours ours[] = {
 };
 enum { OURS_COUNT = sizeof ours / sizeof *ours };
 
-/* Frequencies 10 and 10 (1 + gap) rad/s. Twins: scs whose masses hardly feel each other; its modes stay apart however near the
- * frequencies. One-way: the first mass drives the second and feels nothing; the modes become one, and A defective at gap 0. */
+/* Frequencies 10 and 10 (1 + gap) rad/s. Twins: scs whose masses hardly feel each other; its modes stay apart however
+ * near the frequencies. One-way: the first mass drives the second and feels nothing; the modes become one, and A
+ * defective at gap 0. */
 struct meeting { const char *gap, *twins, *one_way; };
 static const struct meeting meetings[] = {
-	{ "1e-4", "k2=1e-2", "w2=10.001" }, { "1e-6", "k2=1e-4", "w2=10.00001" }, { "1e-8", "k2=1e-6", "w2=10.0000001" },
+	{ "1e-4", "k2=1e-2", "w2=10.001" }, { "1e-6", "k2=1e-4", "w2=10.00001" },
+	{ "1e-8", "k2=1e-6", "w2=10.0000001" },
 	{ "1e-10", "k2=1e-8", "w2=10.000000001" }, { "0", "k2=0", "w2=10" }
 };
 enum { MEETINGS = sizeof meetings / sizeof *meetings };
@@ -73,7 +77,8 @@ static double error_at_outputs(struct run *run, const struct truth *t)
 		if (!run->advance(run, units, rows))
 			return INFINITY;
 		for (int i = 0; i < units * size; i++) {
-			const double off = fabs(rows[i] - t->at_end[k * size + i]) / (i % size < t->n ? t->scale_q : t->scale_v);
+			const double off = fabs(rows[i] - t->at_end[k * size + i]) / (i % size < t->n ? t->scale_q
+				: t->scale_v);
 			if (!isfinite(off))
 				return INFINITY;
 			most = fmax(most, off);
@@ -94,11 +99,13 @@ static double error_with(const struct method *method, const struct problem *p, c
 
 /* ---- the setting that reaches an error ---- */
 
-struct found { double setting, error; bool reached; double estimate; };    /* estimate: parts of a unit it would take, where too many */
+/* estimate: parts of a unit it would take, where too many */
+struct found { double setting, error; bool reached; double estimate; };
 
-/* Tolerances, ten to the decade: bisection between one that does not reach it and one that does. Near the end of double precision errors
- * are not monotonic, so that first every decade is asked. */
-static struct found find_tolerance(const struct method *method, const struct problem *p, const struct truth *t, double target)
+/* Tolerances, ten to the decade: bisection between one that does not reach it and one that does. Near the end of
+ * double precision errors are not monotonic, so that first every decade is asked. */
+static struct found find_tolerance(const struct method *method, const struct problem *p, const struct truth *t,
+                                   double target)
 {
 	enum { COARSEST = 40, FINEST = 150, DECADE = 10 };
 	struct found best = { 0, INFINITY, false, 0 };
@@ -125,8 +132,10 @@ static struct found find_tolerance(const struct method *method, const struct pro
 	return best;
 }
 
-/* Parts of a unit: from the error with some and the order follows how many it takes; from there one down as long as that does, or up. */
-static struct found find_step(const struct method *method, const struct problem *p, const struct truth *t, double target, int most)
+/* Parts of a unit: from the error with some and the order follows how many it takes; from there one down as long as
+ * that does, or up. */
+static struct found find_step(const struct method *method, const struct problem *p, const struct truth *t,
+                              double target, int most)
 {
 	const double unit = p->unit;
 	struct found best = { 0, INFINITY, false, 0 };
@@ -143,7 +152,8 @@ static struct found find_step(const struct method *method, const struct problem 
 		else if (tries > 0 && low >= 16)
 			return best;                    /* finer steps only add rounding */
 		low = parts;
-		double wanted = isfinite(error) && error < 0.1 ? parts * pow(error / target, 1.0 / method->order) : 4.0 * parts;
+		double wanted = isfinite(error) && error < 0.1 ? parts * pow(error / target, 1.0 / method->order)
+		                : 4.0 * parts;
 		if (wanted > most) {
 			best.estimate = error < 0.1 ? wanted : 0;
 			return best;
@@ -186,7 +196,8 @@ static const struct found *found_before(const struct rows *rows, const struct me
 	return NULL;
 }
 
-static void look_for(struct rows *rows, const struct method *const *methods, const struct problem *p, const struct truth *t, double target, int most)
+static void look_for(struct rows *rows, const struct method *const *methods, const struct problem *p,
+                     const struct truth *t, double target, int most)
 {
 	for (; *methods; methods++) {
 		struct row *row = &rows->row[rows->count++];
@@ -257,7 +268,8 @@ static void put_row(FILE *out, const struct row *row, double of_exact)
 	const struct found *f = &row->found;
 	fprintf(out, "%.0e,", row->target);
 	put_quoted(out, row->method->name);
-	fprintf(out, ",%s,%s,%.6g,", families[row->method->family], row->method->tolerance ? "tolerance" : "step", f->setting);
+	fprintf(out, ",%s,%s,%.6g,", families[row->method->family], row->method->tolerance ? "tolerance" : "step",
+		f->setting);
 	if (isfinite(f->error))
 		fprintf(out, "%.4g,", f->error);
 	else
@@ -281,7 +293,8 @@ struct mine {
 	struct run *run;
 };
 
-static void open_mine(struct mine *m, const struct ours *o, const struct problem *p, const char *folder, const char *base)
+static void open_mine(struct mine *m, const struct ours *o, const struct problem *p, const char *folder,
+                      const char *base)
 {
 	char file[4096];
 	if (o == ours)
@@ -299,8 +312,10 @@ static void add_exact(struct rows *rows, const struct method *method, struct run
 {
 	const double error = error_at_outputs(run, t);
 	for (int k = 0; k < 2; k++)
-		rows->row[rows->count++] = (struct row){ .method = method, .target = targets[k], .run = k == 0 ? run : NULL,
-		                                         .found = { run->problem->unit, error, error <= targets[k], 0 } };
+		rows->row[rows->count++] = (struct row){ .method = method, .target = targets[k],
+		                                         .run = k == 0 ? run : NULL,
+		                                         .found = { run->problem->unit, error, error <= targets[k],
+		                                                    0 } };
 }
 
 static bool is_float(const char *name)
@@ -308,7 +323,8 @@ static bool is_float(const char *name)
 	return strstr(name, "float") != NULL;
 }
 
-static void integrators(const struct problem *p, const struct truth *t, const char *variants, const char *folder, bool quick)
+static void integrators(const struct problem *p, const struct truth *t, const char *variants, const char *folder,
+                        bool quick)
 {
 	static struct rows rows;
 	struct mine mine[OURS_COUNT];
@@ -342,7 +358,8 @@ static void integrators(const struct problem *p, const struct truth *t, const ch
 				row->samples = rows.row[i - 1].samples; /* the same run, once for each target */
 		}
 	FILE *out = create(folder, "headline_integrators.csv",
-		"target,method,family,setting_kind,setting,error,reached,parts_estimated,ns_min,ns_median,ns_max,ns_samples,ns_over_exact,settings\n");
+		"target,method,family,setting_kind,setting,error,reached,parts_estimated,ns_min,ns_median,ns_max,"
+		"ns_samples,ns_over_exact,settings\n");
 	for (int i = 0; i < rows.count; i++) {
 		put_row(out, &rows.row[i], of_exact);
 		if (rows.row[i].run)
@@ -382,14 +399,16 @@ struct entry {
 	struct samples samples;
 };
 
-static int entries_of(struct entry *entry, struct mine *mine, const struct problem *p, const char *variants, const char *base)
+static int entries_of(struct entry *entry, struct mine *mine, const struct problem *p, const char *variants,
+                      const char *base)
 {
 	int count = 0;
 	for (const struct method *const *m = propagator_methods; *m; m++)
 		entry[count++] = (struct entry){ .method = *m, .run = (*m)->open(*m, p, p->unit) };
 	for (int i = 0; i < OURS_COUNT; i++) {
 		open_mine(&mine[i], &ours[i], p, variants, base);
-		entry[count++] = (struct entry){ .method = &mine[i].method, .refused = mine[i].refused, .run = mine[i].run };
+		entry[count++] = (struct entry){ .method = &mine[i].method, .refused = mine[i].refused,
+		                                 .run = mine[i].run };
 	}
 	return count;
 }
@@ -429,7 +448,8 @@ static void sample_entries(struct entry *entry, int count, double seconds)
 			entry[i].samples = samples[k++];
 }
 
-static void equal_step(const struct problem *p, const struct truth *t, const char *variants, const char *folder, bool quick)
+static void equal_step(const struct problem *p, const struct truth *t, const char *variants, const char *folder,
+                       bool quick)
 {
 	struct entry entry[40];
 	struct mine mine[OURS_COUNT];
@@ -449,7 +469,8 @@ static void equal_step(const struct problem *p, const struct truth *t, const cha
 		if (entry[i].method == &mine[0].method && entry[i].run)
 			of_exact = entry[i].samples.median;
 	FILE *out = create(folder, "headline_equal_step.csv",
-		"method,family,step,error,energy_drift,energy_drift_long,long_steps,ns_min,ns_median,ns_max,ns_samples,ns_over_exact,settings\n");
+		"method,family,step,error,energy_drift,energy_drift_long,long_steps,ns_min,ns_median,ns_max,"
+		"ns_samples,ns_over_exact,settings\n");
 	for (int i = 0; i < count; i++) {
 		const struct entry *e = &entry[i];
 		put_quoted(out, e->method->name);
@@ -494,7 +515,8 @@ static void meet(FILE *out, const char *kind, const char *gap, const char *varia
 
 static void confluence(const char *variants, const char *folder)
 {
-	FILE *out = create(folder, "headline_confluence.csv", "case,gap,method,family,error,settings,truth_agreement\n");
+	FILE *out = create(folder, "headline_confluence.csv",
+	                   "case,gap,method,family,error,settings,truth_agreement\n");
 	for (int i = 0; i < MEETINGS; i++)
 		meet(out, "twins", meetings[i].gap, variants);
 	for (int i = 0; i < MEETINGS; i++)

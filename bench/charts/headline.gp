@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# gnuplot -c headline.gp TABLES OUTDIR: the pictures of headline_integrators.csv, headline_equal_step.csv, headline_confluence.csv.
+# gnuplot -c headline.gp TABLES OUTDIR: the pictures of headline_integrators.csv, headline_equal_step.csv,
+# headline_confluence.csv.
 here = system("dirname '".ARG0."'"); folder = ARG1; out = ARG2
 size = '900,940'
 load here.'/style.gp'
@@ -22,7 +23,8 @@ set grid noytics
 set lmargin 25
 set key inside top right box lc rgb '#c0c0c0' opaque spacing 1.2
 eval small(1, 0.012, chosen." ".flags)
-eval small(2, 0.035, "Largest error over the history, relative to the largest value. Beside a method that does not get there: the least error found, or what it would take by its order.")
+eval small(2, 0.035, "Largest error over the history, relative to the largest value. Beside a method that does not ".\
+	"get there: the least error found, or what it would take by its order.")
 eval "plot ".clauses
 eval write
 unset label
@@ -39,7 +41,8 @@ set ytics autofreq
 csv = folder.'/headline_equal_step.csv'
 set title "scs at equal step, 0.01 s: time and drift of the energy"
 set xlabel 'CPU time per step with its output [ns], median'
-set ylabel 'relative change of the energy after '.system("awk -F, '$1 == \"\\\"exact\\\"\" { print $7 }' '".csv."'").' steps'
+set ylabel 'relative change of the energy after '.system("awk -F, '$1 == \"\\\"exact\\\"\" { print $7 }' ".\
+	"'".csv."'").' steps'
 set xrange [1:100]
 set yrange [1e-16:1]
 eval small(1, 0.012, chosen." ".flags)
@@ -63,13 +66,15 @@ set xrange [3e-4:3e-13] reverse
 set yrange [1e-17:10]
 set xtics ('10^{-4}' 1e-4, '10^{-6}' 1e-6, '10^{-8}' 1e-8, '10^{-10}' 1e-10, '0' 1e-12)
 set title "One mass drives the next and feels nothing of it: the two modes become one"
-eval small(1, 0.02, "Frequencies 10 and 10 (1 + gap) rad/s, step 0.01 s (chosen). At gap 0 the matrix is defective: it has no second mode.")
+eval small(1, 0.02, "Frequencies 10 and 10 (1 + gap) rad/s, step 0.01 s (chosen). At gap 0 the matrix is defective: ".\
+	"it has no second mode.")
 name = 'headline_confluence'
 load series(csv, "-v where=case=one-way -v x=gap -v y=error -v xzero=1e-12")
 eval "plot ".clauses
 eval write
 set title "scs, its coupling spring nearly gone: two frequencies meet, the modes stay apart"
-eval small(1, 0.02, "k2 = 100 gap N/m, k1 = k3 = 100 N/m, step 0.01 s (chosen). At gap 0 the masses no longer feel each other.")
+eval small(1, 0.02, "k2 = 100 gap N/m, k1 = k3 = 100 N/m, step 0.01 s (chosen). At gap 0 the masses no longer feel ".\
+	"each other.")
 name = 'headline_twins'
 load series(csv, "-v where=case=twins -v x=gap -v y=error -v xzero=1e-12")
 eval "plot ".clauses

@@ -7,6 +7,8 @@ plgen=$1 program=$2 out=$3
 shift 3
 variants=$out/variants/headline
 mkdir -p "$variants"
-"$program" --list | xargs -P2 -L1 sh -c 'plgen=$1 folder=$2 file=$3; shift 3; exec sh bench/charts/variant.sh "$plgen" "$folder/$file" "$@"' make "$plgen" "$variants"
+"$program" --list |
+	xargs -P2 -L1 sh -c 'plgen=$1 folder=$2 file=$3; shift 3
+		exec sh bench/charts/variant.sh "$plgen" "$folder/$file" "$@"' make "$plgen" "$variants"
 "$program" "$@" "$variants" "$out"
 gnuplot -c bench/charts/headline.gp "$out" "$out"

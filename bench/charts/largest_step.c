@@ -2,11 +2,11 @@
  *
  * largest_step [--quick] OUTDIR VARIANTS
  *
- * The largest step with which each method stays stable on each model: largest_step.csv.  Linear models: by the growth per step of
- * free motion, 1 + 1e-12 at most.  The others: by whole histories, whose coordinates and velocities are to stay within 10 times the
- * largest of a reference (RK4 at a small step).  Steps are tried from small to large, and the first end is found by bisection; so every
- * smaller step that was tried is stable too; a narrow band of unstable steps between two that were tried is missed (the etd schemes
- * have such bands: operator_map).  In the table a step [s], or
+ * The largest step with which each method stays stable on each model: largest_step.csv.  Linear models: by the growth
+ * per step of free motion, 1 + 1e-12 at most.  The others: by whole histories, whose coordinates and velocities are to
+ * stay within 10 times the largest of a reference (RK4 at a small step).  Steps are tried from small to large, and the
+ * first end is found by bisection; so every smaller step that was tried is stable too; a narrow band of unstable steps
+ * between two that were tried is missed (the etd schemes have such bands: operator_map).  In the table a step [s], or
  *     none       it grows at every step, however small; then the growth rate at h = 0.01 s stands beside it
  *     below H    unstable at the smallest step tried
  *     any        no end: at all steps tried, up to 100 over the largest frequency, or up to the step told
@@ -52,7 +52,8 @@ static const struct model models[] = {
 struct effort { int per_decade; double digits; double shorter; };
 static struct effort effort;
 
-static void entry(FILE *csv, const char *model, const char *method, const char *step, const char *rate, const char *criterion)
+static void entry(FILE *csv, const char *model, const char *method, const char *step, const char *rate,
+                  const char *criterion)
 {
 	fprintf(csv, "%s,%s,%s,%s,\"%s\"\n", model, method, step, rate, criterion);
 }
@@ -105,7 +106,8 @@ static double growth(const void *of, double h)
 	if (s->method)
 		return largest(amplification(s->motion, s->method, h, eigenvalue), eigenvalue);
 	const bool pl = strcmp(s->scheme, "pl") == 0;
-	const struct system system = {.name = s->scheme, .states = 2 * s->motion->problem.n, .equations = linear_equations,
+	const struct system system = {.name = s->scheme, .states = 2 * s->motion->problem.n,
+	                              .equations = linear_equations,
 	                              .linear = pl ? own_operator : whole_operator};
 	matrix_by_hand = s->motion->A;
 	coordinates_by_hand = s->motion->problem.n;
@@ -152,7 +154,8 @@ static void linear_model(FILE *csv, const struct problem *p)
 	free_motion_of(&motion, p->name, p->n, p->A);
 	const double fastest = largest(eigenvalues_of(2 * p->n, p->A, eigenvalue), eigenvalue);
 	for (int k = 0; charted_method(k); k++)
-		free_entry(csv, &(struct free_subject){&motion, charted_method(k), NULL}, fastest, charted_method(k)->name);
+		free_entry(csv, &(struct free_subject){&motion, charted_method(k), NULL}, fastest,
+		           charted_method(k)->name);
 	free_entry(csv, &(struct free_subject){&motion, NULL, "flow"}, fastest, "exact");
 	free_entry(csv, &(struct free_subject){&motion, NULL, "pl"}, fastest, "pl");
 	for (int k = 0; k < 7; k++)
@@ -245,8 +248,10 @@ static void history_entry(FILE *csv, const struct history *s, double from, const
 	const double apart = pow(10, slow && from < 0.01 ? 0.25 : 1.0 / effort.per_decade);
 	double h = from;
 	char step[40], criterion[400];
-	snprintf(criterion, sizeof criterion, "history of %g s or %g steps, the shorter, within 10 times the largest of RK4 at %g s; steps of %g s to %g s tried, each %.3g times the one before%s%s",
-	         s->model->seconds, s->model->most_steps * effort.shorter, s->model->reference, from, s->model->to, apart,
+	snprintf(criterion, sizeof criterion,
+	         "history of %g s or %g steps, the shorter, within 10 times the largest of RK4 at %g s; steps of %g s "
+	         "to %g s tried, each %.3g times the one before%s%s", s->model->seconds,
+	         s->model->most_steps * effort.shorter, s->model->reference, from, s->model->to, apart,
 	         slow ? "; operator at the final speed" : "", s->method ? "" : "; by hand in long double");
 	if (bounded(s, h) > 0)
 		snprintf(step, sizeof step, "below %g", from);
@@ -256,7 +261,8 @@ static void history_entry(FILE *csv, const struct history *s, double from, const
 		if (h * apart > 1.001 * s->model->to)
 			snprintf(step, sizeof step, "any");
 		else
-			snprintf(step, sizeof step, slow ? "%.2g" : "%.3g", end_between(s, h, h * apart, slow ? 0.01 : effort.digits));
+			snprintf(step, sizeof step, slow ? "%.2g" : "%.3g",
+			         end_between(s, h, h * apart, slow ? 0.01 : effort.digits));
 	}
 	entry(csv, s->model->name, name, step, "", criterion);
 }
@@ -307,7 +313,8 @@ static void beam_operator(const struct system *s, int which, real *A)
 	}
 }
 
-static const struct system beam_by_hand = {.name = "beam", .states = CANTILEVER_STATES, .equations = beam_equations, .linear = beam_operator};
+static const struct system beam_by_hand = {.name = "beam", .states = CANTILEVER_STATES, .equations = beam_equations,
+                                           .linear = beam_operator};
 
 /* ---- nonlinear models ---- */
 
@@ -334,7 +341,8 @@ static void exact_entry(FILE *csv, const struct history *s, const char *variants
 		free(state);
 	}
 	entry(csv, s->model->name, "exact", good ? "any" : "failed", "",
-	      "piecewise linear, each region exact; generated code at steps of 0.1 s, 1 s and 10 s, within 10 times the largest of RK4 at 0.01 s");
+	      "piecewise linear, each region exact; generated code at steps of 0.1 s, 1 s and 10 s, within 10 times "
+	      "the largest of RK4 at 0.01 s");
 }
 
 static void other_model(FILE *csv, const struct model *m, struct problem *p, const char *variants)
@@ -371,12 +379,14 @@ int main(int argc, char **argv)
 		return 2;
 	}
 	effort = quick ? (struct effort){4, 0.02, 0.1} : (struct effort){10, 0.001, 1};
-	FILE *csv = table_open(argv[1 + quick], "largest_step.csv", "model,method,largest_step_s,growth_per_s_at_step_0.01,criterion");
+	FILE *csv = table_open(argv[1 + quick], "largest_step.csv",
+	                       "model,method,largest_step_s,growth_per_s_at_step_0.01,criterion");
 	for (size_t i = 0; i < sizeof models / sizeof *models; i++) {
 		const struct model *m = &models[i];
 		char path[4096];
 		snprintf(path, sizeof path, "%s/%s.so", argv[2 + quick], m->name);
-		struct problem *p = problem_load(path, m->name, 0.01, 1, m->linear, strcmp(m->name, "sdcsf") == 0 ? 5 : 0);
+		struct problem *p = problem_load(path, m->name, 0.01, 1, m->linear, strcmp(m->name, "sdcsf") == 0 ? 5
+		                                 : 0);
 		say_progress("largest_step: %s", m->name);
 		if (m->linear)
 			linear_model(csv, p);

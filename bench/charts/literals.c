@@ -28,7 +28,8 @@ static void put_row(FILE *c, const struct literals *l, int i)
 
 static void put_code(FILE *c, const struct literals *l)
 {
-	fprintf(c, "typedef %s real;\nvoid advance(real *z, long units, real *rows)\n{\n", l->single ? "float" : "double");
+	fprintf(c, "typedef %s real;\nvoid advance(real *z, long units, real *rows)\n{\n",
+		l->single ? "float" : "double");
 	for (int i = 0; i < l->size; i++)
 		fprintf(c, "\treal z%d = z[%d];\n", i, i);
 	fprintf(c, "\tfor (long u = 0; u < units; u++) {\n\t\tfor (int k = 0; k < %d; k++) {\n", l->steps);
@@ -56,8 +57,8 @@ static bool compile(const struct literals *l, const char *folder)
 	put_code(c, l);
 	if (fclose(c) != 0)
 		return false;
-	snprintf(command, sizeof command, "%s -std=gnu11 -O2 -fPIC -shared '%s' -o '%s/step.so'", cc && *cc ? cc : "cc", path,
-	         folder);
+	snprintf(command, sizeof command, "%s -std=gnu11 -O2 -fPIC -shared '%s' -o '%s/step.so'", cc && *cc ? cc : "cc",
+	         path, folder);
 	return system(command) == 0;
 }
 

@@ -3,11 +3,13 @@
  * operator_map [--quick] OUTDIR VARIANTS
  *
  * What happens when the exact part of a step is not the whole motion?
- *   etd1 ... bm3: x'' + w^2 x = 0 under an operator of frequency wA, the difference left to the scheme, over (w h, wA/w): operator_map.csv
- *   pl: two equal masses, each on a spring k1 and with k2 between them; each one's own (k1 + k2) x is exact, k2 times the other one is
- *   held over the step, over (w h, k2/k1), w = sqrt((k1 + k2)/m): pl_map.csv
- * rho: growth per step; growth: of the amplitude within one true period 2 pi/w, 0: none.  Both by the schemes of tests/leftover/hand.c in
- * long double; generated code at a few points beside it: operator_check.csv.  Where stability ends: operator_boundary.csv.
+ *   etd1 ... bm3: x'' + w^2 x = 0 under an operator of frequency wA, the difference left to the scheme, over
+ *   (w h, wA/w): operator_map.csv
+ *   pl: two equal masses, each on a spring k1 and with k2 between them; each one's own (k1 + k2) x is exact, k2 times
+ *   the other one is held over the step, over (w h, k2/k1), w = sqrt((k1 + k2)/m): pl_map.csv
+ * rho: growth per step; growth: of the amplitude within one true period 2 pi/w, 0: none.  Both by the schemes of
+ * tests/leftover/hand.c in long double; generated code at a few points beside it: operator_check.csv.  Where stability
+ * ends: operator_boundary.csv.
  */
 #include "amplification.h"
 
@@ -90,13 +92,15 @@ static void chart(FILE *map, FILE *ends, const char *scheme, struct grid g)
 		for (int i = 0; i < g.steps; i++) {
 			const double wh = step_at(g, i), rho = growth(&s, wh);
 			if (isfinite(rho))
-				fprintf(map, "%s,%.6g,%.6g,%.6g,%.4g\n", scheme, wh, s.across, rho, per_period(rho, wh));
+				fprintf(map, "%s,%.6g,%.6g,%.6g,%.4g\n", scheme, wh, s.across, rho,
+					per_period(rho, wh));
 			else
 				fprintf(map, "%s,%.6g,%.6g,failed,failed\n", scheme, wh, s.across);
 			/* Else weak growth has only come in sight */
 			const bool real_one = fmin(before, rho) < 1 - NOT_GROWING;
 			if (i > 0 && real_one && (before <= limit) != (rho <= limit))
-				fprintf(ends, "%s,%.6g,%.6g\n", scheme, boundary_between(growth, &s, step_at(g, i - 1), wh, limit), s.across);
+				fprintf(ends, "%s,%.6g,%.6g\n", scheme, boundary_between(growth, &s, step_at(g, i - 1),
+					wh, limit), s.across);
 			before = rho;
 		}
 	}
@@ -130,22 +134,31 @@ static void check_rates(struct checks *c)
 	check(c, h / 4 * (1 - 0.25), rate("etd1", 0.5, h), 0.01, "etd1 wA/w 0.5: growth rate (h/4)(w^2 - wA^2)");
 	check(c, h / 4 * (1 - 4), rate("etd1", 2, h), 0.01, "etd1 wA/w 2: growth rate (h/4)(w^2 - wA^2)");
 	for (int k = 0; k < 2; k++) {
-		const double coupling = k == 0 ? 0.01 : 1, k2 = coupling / (1 + coupling), in_phase = 1 - k2, out_of_phase = 1 + k2;
+		const double coupling = k == 0 ? 0.01 : 1, k2 = coupling / (1 + coupling), in_phase = 1 - k2,
+			out_of_phase = 1 + k2;
 		const struct subject soft = {"etd1", sqrt(1 / out_of_phase)}, stiff = {"etd1", sqrt(1 / in_phase)};
-		const double wh = 0.5, modes = fmax(growth(&soft, wh * sqrt(out_of_phase)), growth(&stiff, wh * sqrt(in_phase)));
-		check(c, k2 * h / 4, rate("pl", coupling, h), 0.01, "pl k2/k1 %g: growth rate kappa h/4, kappa = k2/m", coupling);
-		check(c, modes, growth_of_pl(coupling, wh), 1e-13, "pl k2/k1 %g w h 0.5: as etd1 of its modes, whose operators are too soft and too stiff", coupling);
+		const double wh = 0.5, modes = fmax(growth(&soft, wh * sqrt(out_of_phase)),
+		                                    growth(&stiff, wh * sqrt(in_phase)));
+		check(c, k2 * h / 4, rate("pl", coupling, h), 0.01, "pl k2/k1 %g: growth rate kappa h/4, kappa = k2/m",
+		      coupling);
+		check(c, modes, growth_of_pl(coupling, wh), 1e-13,
+		      "pl k2/k1 %g w h 0.5: as etd1 of its modes, whose operators are too soft and too stiff",
+		      coupling);
 	}
 	const struct subject free = {"etd1", 1e-8};
-	check(c, sqrt(1 + 0.125), growth(&free, 0.5), 1e-12, "etd1 wA 0 w h 0.5: the force held over a step, rho = sqrt(1 + (w h)^2/2)");
+	check(c, sqrt(1 + 0.125), growth(&free, 0.5), 1e-12,
+	      "etd1 wA 0 w h 0.5: the force held over a step, rho = sqrt(1 + (w h)^2/2)");
 }
 
-/* Of the generated code of a spring whose operator is fixed away from rest, at motions so small that its cubic term is below rounding */
+/* Of the generated code of a spring whose operator is fixed away from rest, at motions so small that its cubic term is
+ * below rounding */
 static void check_generated(struct checks *c, const char *variants)
 {
 	static const struct { const char *file, *scheme; double across, wh; } points[] = {
-		{"operator_etd1.so", "etd1", 0.5, 0.1}, {"operator_etdrk2.so", "etdrk2", 2, 0.5}, {"operator_etdrk4.so", "etdrk4", 0.5, 1},
-		{"operator_nc2.so", "nc2", 2, 1}, {"operator_nc3.so", "nc3", 2, 1}, {"operator_dq4.so", "dq4", 2, 1}, {"operator_bm3.so", "bm3", 0.5, 2},
+		{"operator_etd1.so", "etd1", 0.5, 0.1}, {"operator_etdrk2.so", "etdrk2", 2, 0.5},
+		{"operator_etdrk4.so", "etdrk4", 0.5, 1},
+		{"operator_nc2.so", "nc2", 2, 1}, {"operator_nc3.so", "nc3", 2, 1}, {"operator_dq4.so", "dq4", 2, 1},
+		{"operator_bm3.so", "bm3", 0.5, 2},
 		{"pl_weak.so", "pl", 0.01, 0.5}, {"pl_equal.so", "pl", 1, 1}, {"pl_strong.so", "pl", 4, 3}};
 	for (size_t i = 0; i < sizeof points / sizeof *points; i++) {
 		const struct subject s = {points[i].scheme, points[i].across};
@@ -160,8 +173,9 @@ static void check_generated(struct checks *c, const char *variants)
 			measured = largest(eigenvalues_of(4, Phi, eigenvalue), eigenvalue);
 		else if (model)
 			measured = largest(amplification_of_model(model, 1e-12, eigenvalue), eigenvalue);
-		check(c, growth(&s, points[i].wh), measured, 1e-13, "%s %s %g w h %g: rho of generated code", points[i].scheme,
-		      strcmp(points[i].scheme, "pl") == 0 ? "k2/k1" : "wA/w", points[i].across, points[i].wh);
+		check(c, growth(&s, points[i].wh), measured, 1e-13, "%s %s %g w h %g: rho of generated code",
+		      points[i].scheme, strcmp(points[i].scheme, "pl") == 0 ? "k2/k1" : "wA/w", points[i].across,
+		      points[i].wh);
 	}
 }
 

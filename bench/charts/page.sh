@@ -1,8 +1,9 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# page.sh BUILD FOLDER COMMAND: FOLDER/index.html from the pictures and tables that charts.sh has made there. Run at the top of the source
-# tree. A picture is followed by its caption (captions/NAME.txt, or that of the longest beginning of NAME that has one) and its numbers.
-# What lies in FOLDER and is named nowhere here comes at the end, so that nothing is left out.
+# page.sh BUILD FOLDER COMMAND: FOLDER/index.html from the pictures and tables that charts.sh has made there. Run at
+# the top of the source tree. A picture is followed by its caption (captions/NAME.txt, or that of the longest beginning
+# of NAME that has one) and its numbers. What lies in FOLDER and is named nowhere here comes at the end, so that
+# nothing is left out.
 set -e
 build=$1 folder=$2 command=$3
 charts=bench/charts
@@ -60,16 +61,21 @@ head_of_page() {
 <meta name="viewport" content="width=device-width, initial-scale=1">
 <title>plgen: speed against accuracy, and stability where methods fail</title>
 <style>
-body { font: 16px/1.5 system-ui, sans-serif; color: #222; background: #fff; max-width: 1100px; margin: 0 auto; padding: 1rem 1.5rem 4rem; }
-h1 { font-size: 1.7rem; line-height: 1.2; } h2 { margin-top: 3rem; border-bottom: 2px solid #d00000; padding-bottom: .2rem; } h3 { margin: 2rem 0 0; }
+body { font: 16px/1.5 system-ui, sans-serif; color: #222; background: #fff; max-width: 1100px; margin: 0 auto;
+	padding: 1rem 1.5rem 4rem; }
+h1 { font-size: 1.7rem; line-height: 1.2; }
+h2 { margin-top: 3rem; border-bottom: 2px solid #d00000; padding-bottom: .2rem; } h3 { margin: 2rem 0 0; }
 figure { margin: 1rem 0 0; } img { width: 100%; max-width: 900px; height: auto; border: 1px solid #ddd; }
 .as, .numbers { font-size: .8rem; margin: 0; } .caption { max-width: 900px; margin: .3rem 0 .6rem; }
 .wide { overflow-x: auto; max-height: 34rem; overflow-y: auto; margin: .3rem 0 1rem; }
 table { border-collapse: collapse; font-size: .78rem; font-variant-numeric: tabular-nums; }
 th, td { border: 1px solid #ddd; padding: .12rem .4rem; text-align: left; vertical-align: top; max-width: 26rem; }
-th { background: #f4f4f4; } .n { text-align: right; } .bad { color: #c00000; font-weight: 600; } .poor { color: #a05a00; } .none { color: #888; }
-.machine td, .machine th { font-size: .85rem; } .hard td, .hard th { white-space: normal; } .ours th:first-child { color: #c00000; }
-details { margin: .3rem 0 1rem; } summary { cursor: pointer; font-size: .85rem; } nav { columns: 2; font-size: .95rem; } nav a { display: block; }
+th { background: #f4f4f4; } .n { text-align: right; } .bad { color: #c00000; font-weight: 600; }
+.poor { color: #a05a00; } .none { color: #888; }
+.machine td, .machine th { font-size: .85rem; } .hard td, .hard th { white-space: normal; }
+.ours th:first-child { color: #c00000; }
+details { margin: .3rem 0 1rem; } summary { cursor: pointer; font-size: .85rem; }
+nav { columns: 2; font-size: .95rem; } nav a { display: block; }
 code { font-size: .9em; background: #f4f4f4; padding: 0 .2em; }
 </style>
 <h1>plgen: speed against accuracy, and stability where methods fail</h1>
@@ -80,20 +86,25 @@ machine() {
 	section machine 'Measured on'
 	echo '<table class="machine">'
 	row processor "$(sed -n 's/^model name[^:]*: *//p' /proc/cpuinfo | sed -n 1p), $(nproc) cores"
-	row system "$(uname -s) $(uname -r | sed 's/-.*//') $(uname -m)$(sed -n 's/^PRETTY_NAME="\(.*\)"/, \1/p' /etc/os-release 2>/dev/null)"
+	row system "$(uname -s) $(uname -r | sed 's/-.*//') $(uname -m)$(
+		sed -n 's/^PRETTY_NAME="\(.*\)"/, \1/p' /etc/os-release 2>/dev/null)"
 	row compiler "$(${CC:-cc} --version | sed -n 1p)"
-	row flags '<code>-O2</code> for all, generated code and peers alike; no <code>-march=native</code>, no <code>-ffast-math</code>'
-	row libraries "GSL $(gsl-config --version 2>/dev/null), SUNDIALS $(awk '$2 == "SUNDIALS_VERSION" { gsub(/"/, "", $3); print $3 }' /usr/include/sundials/sundials_config.h 2>/dev/null), $(gnuplot --version)"
+	row flags '<code>-O2</code> for all, generated code and peers alike; '\
+'no <code>-march=native</code>, no <code>-ffast-math</code>'
+	sundials=$(awk '$2 == "SUNDIALS_VERSION" { gsub(/"/, "", $3); print $3 }' \
+		/usr/include/sundials/sundials_config.h 2>/dev/null)
+	row libraries "GSL $(gsl-config --version 2>/dev/null), SUNDIALS $sundials, $(gnuplot --version)"
 	row plgen "$("$build/plgen" --version)"
 	row command "<code>$command</code>"
 	echo '</table>'
 	cat <<'EOT'
-<p>plgen's own code has filled marks and thick lines; peers have open marks and thin lines, dashed with a fixed step, dotted where they
-adapt it, dash-dotted for matrices of a step. Errors are relative to the largest value of the history; they are the same to the last digit
-in every run. Times are medians of samples taken in turns, each of them a whole history; the tables have minimum, median and maximum. A failure stands as a
+<p>plgen's own code has filled marks and thick lines; peers have open marks and thin lines, dashed with a fixed step,
+dotted where they adapt it, dash-dotted for matrices of a step. Errors are relative to the largest value of the history;
+they are the same to the last digit in every run. Times are medians of samples taken in turns, each of them a whole
+history; the tables have minimum, median and maximum. A failure stands as a
 <span class="bad">word</span>, in no place as a gap.</p>
-<p>Parameters of the models from the four papers are chosen, since those of the sources did not survive; what is deduced and what is chosen
-is said in each model's file.</p>
+<p>Parameters of the models from the four papers are chosen, since those of the sources did not survive; what is deduced
+and what is chosen is said in each model's file.</p>
 EOT
 }
 
@@ -128,8 +139,8 @@ headline() {
 
 precision() {
 	section precision '2 Work and precision'
-	echo '<p class="caption">For each model the largest error over its whole history against the time for a unit of output, and against'
-	echo 'evaluations of the right-hand side. Models that are not linear come first.</p>'
+	echo '<p class="caption">For each model the largest error over its whole history against the time for a unit'
+	echo 'of output, and against evaluations of the right-hand side. Models that are not linear come first.</p>'
 	awk -F, 'NR > 1 && !seen[$1]++ { print $1 }' "$folder/precision.csv" | while read -r model; do
 		printf '<h3 id="model_%s">%s</h3>\n' "$model" "$model"
 		picture "precision_$model"

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* papers [--quick] VARIANTS FOLDER: the findings of the four sources beside what is measured: FOLDER/papers_000.csv (coupled
- * systems), papers_001.csv (precise integration), papers_002.csv (clearances), papers_004.csv (rotating beam), and all times in
- * papers_times.csv. VARIANTS holds what papers.sh made. The sources' parameter values did not survive: those of the models are chosen. */
+/* papers [--quick] VARIANTS FOLDER: the findings of the four sources beside what is measured: FOLDER/papers_000.csv
+ * (coupled systems), papers_001.csv (precise integration), papers_002.csv (clearances), papers_004.csv (rotating
+ * beam), and all times in papers_times.csv. VARIANTS holds what papers.sh made. The sources' parameter values did not
+ * survive: those of the models are chosen. */
 #include <math.h>
 #include <stdarg.h>
 #include <stdlib.h>
@@ -58,7 +59,8 @@ FILE *table_begin(const struct papers *papers, const char *name)
 
 void table_row(FILE *table, const struct row *row)
 {
-	const char *const field[] = { row->source, row->model, row->method, row->quantity, row->reported, row->recovered, row->measured, row->settings };
+	const char *const field[] = { row->source, row->model, row->method, row->quantity, row->reported,
+	                              row->recovered, row->measured, row->settings };
 	print_fields(table, sizeof field / sizeof *field, field);
 	fputc('\n', table);
 }
@@ -80,20 +82,23 @@ void timing_row(const struct papers *papers, const struct timing *t)
 	fputc('\n', papers->times);
 }
 
-struct problem *papers_problem(const struct papers *papers, const char *variant, const char *name, double unit, int units, double frequency)
+struct problem *papers_problem(const struct papers *papers, const char *variant, const char *name, double unit,
+                               int units, double frequency)
 {
 	char file[4096];
 	snprintf(file, sizeof file, "%s/papers_%s.so", papers->variants, variant);
 	return problem_load(file, name, unit, units, frequency >= 0, frequency >= 0 ? frequency : 0);
 }
 
-struct run *papers_run(const struct papers *papers, const struct method *method, const struct problem *p, const char *variant)
+struct run *papers_run(const struct papers *papers, const struct method *method, const struct problem *p,
+                       const char *variant)
 {
 	char file[4096];
 	snprintf(file, sizeof file, "%s/papers_%s.so", papers->variants, variant);
 	struct run *run = generated_open(method, p, file);
 	if (!run) {
-		fprintf(stderr, "papers: %s: %s\n", file, variant_refused(file) ? variant_refused(file) : "cannot be used");
+		fprintf(stderr, "papers: %s: %s\n", file, variant_refused(file) ? variant_refused(file)
+			: "cannot be used");
 		exit(1);
 	}
 	return run;
@@ -127,7 +132,8 @@ int main(int argc, char **argv)
 		return 2;
 	}
 	struct papers papers = { .variants = argv[1 + quick], .folder = argv[2 + quick], .quick = quick };
-	papers.times = file_begin(&papers, "papers_times.csv", "source,model,method,quantity,reported,measured,ns_min,ns_median,ns_max,settings");
+	papers.times = file_begin(&papers, "papers_times.csv",
+	                          "source,model,method,quantity,reported,measured,ns_min,ns_median,ns_max,settings");
 	coupled_systems(&papers);
 	precise_integration(&papers);
 	clearances(&papers);

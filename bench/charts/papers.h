@@ -37,8 +37,10 @@ void timing_row(const struct papers *papers, const struct timing *timing);
 const char *text(const char *format, ...) __attribute__((format(printf, 1, 2))); /* good until 16 more of them */
 const char *percent(double part);
 /* frequency: of a linear model's load, 0 where it has none; below 0: the model is not linear */
-struct problem *papers_problem(const struct papers *papers, const char *variant, const char *name, double unit, int units, double frequency);
-struct run *papers_run(const struct papers *papers, const struct method *method, const struct problem *p, const char *variant);
+struct problem *papers_problem(const struct papers *papers, const char *variant, const char *name, double unit,
+                               int units, double frequency);
+struct run *papers_run(const struct papers *papers, const struct method *method, const struct problem *p,
+                       const char *variant);
 
 /* Errors of several methods, from the smallest up: "A < B < C" */
 struct placing { const char *method; double error; };

@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# papers.sh [--quick] PLGEN FOLDER: the generated code that papers.c compares with what the four sources report, as FOLDER/papers_*.so.
-# Run at the top of the source tree. --quick: the beam at h = 0.01 only.
+# papers.sh [--quick] PLGEN FOLDER: the generated code that papers.c compares with what the four sources report, as
+# FOLDER/papers_*.so. Run at the top of the source tree. --quick: the beam at h = 0.01 only.
 set -e
 beam_rates='10 100 1000' fine_rates='100 1000'
 if [ "$1" = --quick ]; then

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Source 004: Fang, Wang and Guo, exponential time differencing for a rotating flexible beam: which operator A(speed) makes a scheme
- * diverge, what the others' errors are, and what they cost. */
+/* Source 004: Fang, Wang and Guo, exponential time differencing for a rotating flexible beam: which operator A(speed)
+ * makes a scheme diverge, what the others' errors are, and what they cost. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -11,7 +11,8 @@ static const char source[] = "004";
 enum { COORDINATES = 15, SECONDS = 50, PER_SECOND = 10, ROWS = SECONDS * PER_SECOND, FINE = 10, TIP = 13 };
 static const double spin_up = 15;           /* [s] */
 static const double gone = 1000;            /* a deflection [m] that tells divergence: the beam is 8 m long */
-static const double seen = 0.1;             /* a deflection [m] after the spin-up that a plot shows: the true one is below 0.015 */
+/* a deflection [m] after the spin-up that a plot shows: the true one is below 0.015 */
+static const double seen = 0.1;
 
 struct reference {
 	const char *model;
@@ -51,12 +52,15 @@ static void describe(struct reference *b)
 	}
 }
 
-static const struct method etdrk4 = { .name = "etdrk4", .family = OURS, .order = 4, .settings = "plgen --scheme etdrk4" };
-static const struct method etdrk2 = { .name = "etdrk2", .family = OURS, .order = 2, .settings = "plgen --scheme etdrk2" };
+static const struct method etdrk4 = { .name = "etdrk4", .family = OURS, .order = 4,
+                                      .settings = "plgen --scheme etdrk4" };
+static const struct method etdrk2 = { .name = "etdrk2", .family = OURS, .order = 2,
+                                      .settings = "plgen --scheme etdrk2" };
 static const struct method etd1 = { .name = "etd1", .family = OURS, .order = 1, .settings = "plgen --scheme etd1" };
 static const struct method *const schemes[] = { &etd1, &etdrk2, &etdrk4 };
 
-/* Two roads at h = 0.0001: etdrk4 with the operator of full speed, and RK4 on the equations as written, which share nothing. */
+/* Two roads at h = 0.0001: etdrk4 with the operator of full speed, and RK4 on the equations as written, which share
+ * nothing. */
 static void solve(const struct papers *papers, const char *variant, struct reference *b)
 {
 	static double other[ROWS * FINE];
@@ -72,13 +76,19 @@ static void solve(const struct papers *papers, const char *variant, struct refer
 	b->p = papers_problem(papers, variant, b->model, 1.0 / PER_SECOND, ROWS, -1);
 }
 
-static void compare_reference(FILE *table, const struct reference *b, const char *least, const char *when, const char *late)
+static void compare_reference(FILE *table, const struct reference *b, const char *least, const char *when,
+                              const char *late)
 {
-	const char *roads = text("etdrk4 at h = 0.0001 s; RK4 at 0.0001 s on the equations differs by at most %.2g m", b->agreement);
-	table_row(table, &(struct row){ source, b->model, "reference", "smallest tip deflection [m]", NULL, least, text("%.6g", b->least), roads });
-	table_row(table, &(struct row){ source, b->model, "reference", "its time [s]", NULL, when, text("%.5g", b->when), "parabola through rows of 0.01 s" });
+	const char *roads = text("etdrk4 at h = 0.0001 s; RK4 at 0.0001 s on the equations differs by at most %.2g m",
+	                         b->agreement);
+	table_row(table, &(struct row){ source, b->model, "reference", "smallest tip deflection [m]", NULL, least,
+	                                text("%.6g", b->least), roads });
+	table_row(table, &(struct row){ source, b->model, "reference", "its time [s]", NULL, when,
+	                                text("%.5g", b->when), "parabola through rows of 0.01 s" });
 	if (late)
-		table_row(table, &(struct row){ source, b->model, "reference", "largest deflection after the spin-up [m]", NULL, late, text("%.2g", b->late), roads });
+		table_row(table, &(struct row){ source, b->model, "reference",
+		                                "largest deflection after the spin-up [m]", NULL, late,
+		                                text("%.2g", b->late), roads });
 }
 
 /* ---- what becomes of a run ---- */
@@ -118,8 +128,9 @@ static const char *say(const struct fate *f, const struct reference *b)
 		return text("diverges: seen at %.3g s, beyond 1000 m at %.3g s", f->seen, f->gone);
 	if (isfinite(f->seen))
 		return text("grows: beyond 0.1 m at %.3g s, %.2g m at the end", f->seen, f->last);
-	return text("%s: largest in the last 10 s %.3g m, in the first 10 s after the spin-up %.3g m", f->last > 1.001 * f->early && f->last > 1.001 * b->late ? "grows" :
-		f->last < 0.95 * f->early ? "decays" : "bounded", f->last, f->early);
+	return text("%s: largest in the last 10 s %.3g m, in the first 10 s after the spin-up %.3g m",
+	            f->last > 1.001 * f->early && f->last > 1.001 * b->late ? "grows" : f->last < 0.95 * f->early
+	            ? "decays" : "bounded", f->last, f->early);
 }
 
 /* Largest |deflection| in each second, for the picture */
@@ -144,16 +155,22 @@ static void compare_operators(const struct papers *papers, FILE *table, FILE *pi
 {
 	static const int rates[] = { 10, 100, 1000 };
 	static const char *const recovered[3][7] = {
-		{ "diverges near 30 s", "diverges near 30 s", "diverges near 35 s", "grows", "bounded", "bounded; decays", "bounded; decays" },
-		{ "diverges near 27.5 s", "diverges near 28 s", "diverges near 35 s", "grows", "bounded", "bounded; decays", "bounded; decays" },
-		{ "diverges near 45 s", "diverges near 48 s", "visibly growing", "only just growing", NULL, NULL, NULL },
+		{ "diverges near 30 s", "diverges near 30 s", "diverges near 35 s", "grows", "bounded",
+		  "bounded; decays", "bounded; decays" },
+		{ "diverges near 27.5 s", "diverges near 28 s", "diverges near 35 s", "grows", "bounded",
+		  "bounded; decays", "bounded; decays" },
+		{ "diverges near 45 s", "diverges near 48 s", "visibly growing", "only just growing", NULL, NULL,
+		  NULL },
 	};
 	for (int i = papers->quick ? 1 : 0; i < (papers->quick ? 2 : 3); i++) {
 		say_progress("papers: 004, etd1, h = %g", 1.0 / rates[i]);
 		draw(picture, rates[i], -1, b->tip);
 		for (int speed = 0; speed <= 6; speed++) {
-			const struct fate f = fate_of(papers_run(papers, &etd1, b->p, text("beam4_A%d_etd1_%d", speed, rates[i])), b);
-			table_row(table, &(struct row){ source, b->model, "etd1", text("operator A(%d), h = %g s, 50 s", speed, 1.0 / rates[i]), NULL, recovered[i][speed], say(&f, b),
+			const struct fate f = fate_of(papers_run(papers, &etd1, b->p,
+			                                         text("beam4_A%d_etd1_%d", speed, rates[i])), b);
+			table_row(table,
+			          &(struct row){ source, b->model, "etd1", text("operator A(%d), h = %g s, 50 s", speed,
+			          1.0 / rates[i]), NULL, recovered[i][speed], say(&f, b),
 				"Om = 4; operator at w = the number in brackets" });
 			draw(picture, rates[i], speed, f.tip);
 		}
@@ -166,23 +183,33 @@ static void compare_schemes(const struct papers *papers, FILE *table, const stru
 	static const char *const at_rest[] = { "diverges near 10 s", "diverges near 22 s", "diverges near 26 s" };
 	static const char *const left[2][2] = { { "7.5e-4", "8.8e-5" }, { "1.5e-3", "6.3e-7" } };
 	for (int i = 0; i < 3; i++) {
-		const struct fate f = fate_of(papers_run(papers, schemes[i], b->p, text("beam15_A0_%s_100", schemes[i]->name)), b);
-		table_row(table, &(struct row){ source, b->model, schemes[i]->name, "operator A(0), h = 0.01 s, 50 s", NULL, at_rest[i], say(&f, b), "Om = 15" });
+		const struct fate f = fate_of(papers_run(papers, schemes[i], b->p,
+		                                         text("beam15_A0_%s_100", schemes[i]->name)), b);
+		table_row(table, &(struct row){ source, b->model, schemes[i]->name, "operator A(0), h = 0.01 s, 50 s",
+		                                NULL, at_rest[i], say(&f, b), "Om = 15" });
 	}
 	for (int i = 0; i < 3; i++) {
-		const struct fate f = fate_of(papers_run(papers, schemes[i], b->p, text("beam15_A15_%s_100", schemes[i]->name)), b);
-		table_row(table, &(struct row){ source, b->model, schemes[i]->name, "operator A(15), h = 0.01 s, 50 s", NULL, "bounded", say(&f, b), "Om = 15" });
+		const struct fate f = fate_of(papers_run(papers, schemes[i], b->p,
+		                                         text("beam15_A15_%s_100", schemes[i]->name)), b);
+		table_row(table, &(struct row){ source, b->model, schemes[i]->name, "operator A(15), h = 0.01 s, 50 s",
+		                                NULL, "bounded", say(&f, b), "Om = 15" });
 	}
 	for (int fine = 0; fine < (papers->quick ? 1 : 2); fine++) {
 		const int rate = fine ? 1000 : 100;
 		for (int i = 1; i < 3; i++) {
-			const struct fate f = fate_of(papers_run(papers, schemes[i], b->p, text("beam15_left_%s_%d", schemes[i]->name, rate)), b);
-			table_row(table, &(struct row){ source, b->model, schemes[i]->name, text("largest error of the tip [m], A(15), h = %g s", 1.0 / rate), NULL, left[i - 1][fine],
+			const struct fate f = fate_of(papers_run(papers, schemes[i], b->p,
+			                                         text("beam15_left_%s_%d", schemes[i]->name, rate)), b);
+			table_row(table, &(struct row){ source, b->model, schemes[i]->name,
+			                                text("largest error of the tip [m], A(15), h = %g s",
+			                                     1.0 / rate), NULL, left[i - 1][fine],
 				text("%.2g", f.error), "Om = 15; loads left to the scheme" });
 		}
 		for (int i = 1; i < 3; i++) {
-			const struct fate f = fate_of(papers_run(papers, schemes[i], b->p, text("beam15_A15_%s_%d", schemes[i]->name, rate)), b);
-			table_row(table, &(struct row){ source, b->model, schemes[i]->name, text("largest error of the tip [m], A(15), h = %g s", 1.0 / rate), NULL, NULL,
+			const struct fate f = fate_of(papers_run(papers, schemes[i], b->p,
+			                                         text("beam15_A15_%s_%d", schemes[i]->name, rate)), b);
+			table_row(table, &(struct row){ source, b->model, schemes[i]->name,
+			                                text("largest error of the tip [m], A(15), h = %g s",
+			                                     1.0 / rate), NULL, NULL,
 				text("%.2g", f.error), "Om = 15; loads carried exactly, plgen's default" });
 		}
 	}
@@ -199,7 +226,8 @@ static void time_schemes(const struct papers *papers, const struct reference *b)
 	say_progress("papers: 004, times");
 	sample_runs(3, run, papers->quick ? 0.3 : 1.5, ns);
 	for (int i = 0; i < 3; i++) {
-		timing_row(papers, &(struct timing){ source, b->model, schemes[i]->name, "time of a step over etd1's", reported[i], text("%.3g", ns[i].median / ns[0].median),
+		timing_row(papers, &(struct timing){ source, b->model, schemes[i]->name, "time of a step over etd1's",
+		                                     reported[i], text("%.3g", ns[i].median / ns[0].median),
 			"one operator A(15), h = 0.01 s, loads exact; compiled C, -O2", ns[i] });
 		run[i]->close(run[i]);
 	}

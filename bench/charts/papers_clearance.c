@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Source 002: piecewise full decoupling of piecewise-linear systems (Kranjcevic, Stegic and Vrankovic, PAMM 2003): exact inside each
- * region, crossings found in time. Here the states and numbers of crossings at known times, steady motion beside the balance of one
- * harmonic, and what a crossing costs. */
+/* Source 002: piecewise full decoupling of piecewise-linear systems (Kranjcevic, Stegic and Vrankovic, PAMM 2003):
+ * exact inside each region, crossings found in time. Here the states and numbers of crossings at known times, steady
+ * motion beside the balance of one harmonic, and what a crossing costs. */
 #include <dlfcn.h>
 #include <math.h>
 #include <stdlib.h>
@@ -45,8 +45,12 @@ static void compare_states(const struct papers *papers, FILE *table, const struc
 	m->run(state, (size_t)lround(k->seconds / m->h), NULL, NULL);
 	m->get(state, y);
 	for (int i = 0; i < k->states; i++)
-		table_row(table, &(struct row){ source, k->model, "exact", text("%s at t = %g s", m->state_names[i], k->seconds), NULL, k->state[i], text("%.13g", y[i]), chosen });
-	table_row(table, &(struct row){ source, k->model, "exact", text("changes of region until t = %g s", k->seconds), NULL, k->crossings,
+		table_row(table,
+		          &(struct row){ source, k->model, "exact",
+		                         text("%s at t = %g s", m->state_names[i], k->seconds), NULL, k->state[i],
+		                         text("%.13g", y[i]), chosen });
+	table_row(table, &(struct row){ source, k->model, "exact", text("changes of region until t = %g s", k->seconds),
+	                                NULL, k->crossings,
 		text("%ju", (uintmax_t)crossed_of(p)(state)), chosen });
 	free(state);
 	problem_free(p);
@@ -75,8 +79,8 @@ static void harmonics(struct swing x, double *force, double *harmonic)
 	}
 }
 
-/* The square of the load that a motion of this amplitude asks for, less that there is; its mean balances the mean load, and the
- * average force rises with it. */
+/* The square of the load that a motion of this amplitude asks for, less that there is; its mean balances the mean
+ * load, and the average force rises with it. */
 static double lacks(double eta, struct swing *x)
 {
 	double low = 0, high = 4, force, harmonic;
@@ -98,7 +102,8 @@ static int balance(double eta, int most, struct swing *found)
 	const double apart = 0.02;
 	int count = 0;
 	struct swing x = { 0, 0 };
-	for (double from = apart / 2, before = (x.amplitude = from, lacks(eta, &x)); from < 2 && count < most; from += apart) {
+	for (double from = apart / 2, before = (x.amplitude = from, lacks(eta, &x)); from < 2 && count < most;
+	     from += apart) {
 		double low = from, high = from + apart;
 		x.amplitude = high;
 		const double after = lacks(eta, &x);
@@ -156,10 +161,14 @@ static void compare_motion(const struct papers *papers, FILE *table, int tenths,
 	const char *simulated = "half the range and the average over one period after 600 s";
 	const char *one = count == 1 ? "mean and one harmonic: an approximation; its only solution" :
 		text("mean and one harmonic: an approximation; the nearest of its %d solutions", count);
-	table_row(table, &(struct row){ source, model, "exact", "steady amplitude", NULL, recovered[0], text("%.4f", found.amplitude), simulated });
-	table_row(table, &(struct row){ source, model, "harmonic balance", "steady amplitude", NULL, recovered[2], text("%.4f", balanced[nearest].amplitude), one });
-	table_row(table, &(struct row){ source, model, "exact", "steady mean", NULL, recovered[1], text("%.4f", found.mean), simulated });
-	table_row(table, &(struct row){ source, model, "harmonic balance", "steady mean", NULL, recovered[3], text("%.4f", balanced[nearest].mean), one });
+	table_row(table, &(struct row){ source, model, "exact", "steady amplitude", NULL, recovered[0],
+	                                text("%.4f", found.amplitude), simulated });
+	table_row(table, &(struct row){ source, model, "harmonic balance", "steady amplitude", NULL, recovered[2],
+	                                text("%.4f", balanced[nearest].amplitude), one });
+	table_row(table, &(struct row){ source, model, "exact", "steady mean", NULL, recovered[1],
+	                                text("%.4f", found.mean), simulated });
+	table_row(table, &(struct row){ source, model, "harmonic balance", "steady mean", NULL, recovered[3],
+	                                text("%.4f", balanced[nearest].mean), one });
 	problem_free(p);
 }
 
@@ -212,10 +221,12 @@ static bool find(const struct problem *p, int steps, uint64_t crossings, void *k
 
 static void time_crossings(const struct papers *papers, const char *variant, const char *model)
 {
-	static const char *const quantity[3] = { "step without a clearance", "step without a crossing", "step with one crossing" };
+	static const char *const quantity[3] = { "step without a clearance", "step without a crossing",
+	                                         "step with one crossing" };
 	static const char *const settings[3] = { "20 steps onward; h = 0.1 s; -O2", "20 steps onward; h = 0.1 s; -O2",
 		"the same step again and again, less what putting the state back costs; h = 0.1 s; -O2" };
-	struct problem *plain = papers_problem(papers, text("%s_plain", model), model, 1, 1, -1), *stops = papers_problem(papers, variant, model, 1, 1, -1);
+	struct problem *plain = papers_problem(papers, text("%s_plain", model), model, 1, 1, -1),
+		*stops = papers_problem(papers, variant, model, 1, 1, -1);
 	const pl_model *of[3] = { plain->model, stops->model, stops->model };
 	void *kept[3], *state = calloc(1, stops->model->size + plain->model->size);
 	double ns[3][SAMPLES];
@@ -234,7 +245,9 @@ static void time_crossings(const struct papers *papers, const char *variant, con
 	for (int i = 0; i < 3; i++)
 		time[i] = sample_summary(found ? SAMPLES : 0, ns[i]);
 	for (int i = 0; i < 3; i++) {
-		timing_row(papers, &(struct timing){ source, model, "exact", text("%s, over one without a clearance", quantity[i]), NULL,
+		timing_row(papers,
+		           &(struct timing){ source, model, "exact",
+		                             text("%s, over one without a clearance", quantity[i]), NULL,
 			found ? text("%.3g", time[i].median / time[0].median) : "failed", settings[i], time[i] });
 		free(kept[i]);
 	}
@@ -245,7 +258,8 @@ static void time_crossings(const struct papers *papers, const char *variant, con
 
 void clearances(struct papers *papers)
 {
-	static const char *const recovered[3][4] = { { "0.3248", "0.9935", "0.3129", "1.0008" }, { "0.1870", "1.0733", "0.1839", "1.0734" },
+	static const char *const recovered[3][4] = { { "0.3248", "0.9935", "0.3129", "1.0008" },
+	                                             { "0.1870", "1.0733", "0.1839", "1.0734" },
 		{ "0.1071", "1.0997", "0.1071", "1.0994" } };
 	FILE *table = table_begin(papers, "papers_002.csv");
 	say_progress("papers: 002, clearances");

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Source 000: Fang, Wang, Dai and Zhang, "Piecewise-Laplace method ...", Science Progress 2020: coupled masses. Its methods are Euler,
- * trapezoid, ode45, RK4 and its own (`pl`: coupling held over a step), judged against RK4 at 0.001 s; here against the closed form too. */
+/* Source 000: Fang, Wang, Dai and Zhang, "Piecewise-Laplace method ...", Science Progress 2020: coupled masses. Its
+ * methods are Euler, trapezoid, ode45, RK4 and its own (`pl`: coupling held over a step), judged against RK4 at 0.001
+ * s; here against the closed form too. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -14,16 +15,19 @@ static const struct system {
 	const char *name;
 	double frequency;                       /* of the load */
 	const char *time_ratio[2];              /* CPU time of PL over RK4 that it reports, at h = 0.01 and 0.001 */
-} systems[] = { { "scs", 0, { "0.53", "0.51" } }, { "sdcs", 0, { "0.72", "0.57" } }, { "sdcsf", 5, { "0.81", "0.62" } } };
+} systems[] = { { "scs", 0, { "0.53", "0.51" } }, { "sdcs", 0, { "0.72", "0.57" } },
+                { "sdcsf", 5, { "0.81", "0.62" } } };
 
-static const struct method pl = { .name = "pl", .family = OURS, .linear_only = true, .order = 1, .settings = "plgen --scheme pl" };
-static const struct method exact = { .name = "exact", .family = OURS, .linear_only = true, .settings = "plgen --scheme exact" };
+static const struct method pl = { .name = "pl", .family = OURS, .linear_only = true, .order = 1,
+                                  .settings = "plgen --scheme pl" };
+static const struct method exact = { .name = "exact", .family = OURS, .linear_only = true,
+                                     .settings = "plgen --scheme exact" };
 
 /* ---- ode45 ----
  *
- * What MATLAB's ode45 does by its documentation and Shampine and Reichelt, "The MATLAB ODE suite", 1997: the pair of Dormand and Prince
- * (J. Comput. Appl. Math. 6, 1980) with local extrapolation and the defaults RelTol = 1e-3, AbsTol = 1e-6, and values between
- * steps by the pair's continuous extension. */
+ * What MATLAB's ode45 does by its documentation and Shampine and Reichelt, "The MATLAB ODE suite", 1997: the pair of
+ * Dormand and Prince (J. Comput. Appl. Math. 6, 1980) with local extrapolation and the defaults RelTol = 1e-3, AbsTol
+ * = 1e-6, and values between steps by the pair's continuous extension. */
 
 enum { STAGES = 7, STATES = 4 };
 static const double node[STAGES] = { 0, 1. / 5, 3. / 10, 4. / 5, 8. / 9, 1, 1 };
@@ -37,7 +41,8 @@ static const double tableau[STAGES][STAGES - 1] = {
 	{ 35. / 384, 0, 500. / 1113, 125. / 192, -2187. / 6784, 11. / 84 },
 };
 /* Weights of order 5 less those of order 4 */
-static const double defect[STAGES] = { 71. / 57600, 0, -71. / 16695, 71. / 1920, -17253. / 339200, 22. / 525, -1. / 40 };
+static const double defect[STAGES] = { 71. / 57600, 0, -71. / 16695, 71. / 1920, -17253. / 339200, 22. / 525,
+                                       -1. / 40 };
 /* Of the continuous extension: powers 1 to 4 of the part of the step */
 static const double extension[STAGES][4] = {
 	{ 1, -183. / 64, 37. / 12, -145. / 128 }, { 0 }, { 0, 1500. / 371, -1000. / 159, 1000. / 371 },
@@ -86,7 +91,9 @@ static void inside(const struct ode45 *s, double part, double *y)
 	for (int i = 0; i < STATES; i++) {
 		y[i] = s->y[i];
 		for (int j = 0; j < STAGES; j++)
-			y[i] += s->h * s->k[j][i] * part * (extension[j][0] + part * (extension[j][1] + part * (extension[j][2] + part * extension[j][3])));
+			y[i] += s->h * s->k[j][i] * part *
+				(extension[j][0] +
+				 part * (extension[j][1] + part * (extension[j][2] + part * extension[j][3])));
 	}
 }
 
@@ -157,9 +164,11 @@ enum { METHODS = 6 };
 
 static void order_errors(const struct papers *papers, FILE *table, const struct system *system)
 {
-	static const char *const names[METHODS] = { "explicit Euler", "explicit trapezoid", "ode45", "RK4", "pl", "exact" };
+	static const char *const names[METHODS] = { "explicit Euler", "explicit trapezoid", "ode45", "RK4", "pl",
+	                                            "exact" };
 	static const double horizon[2] = { 30, 0.6 };
-	struct problem *p = papers_problem(papers, text("%s_exact_100", system->name), system->name, 0.01, 3000, system->frequency);
+	struct problem *p = papers_problem(papers, text("%s_exact_100", system->name), system->name, 0.01, 3000,
+	                                   system->frequency);
 	struct truth *truth = truth_of(p);
 	double *rows[METHODS], *fine = fine_rk4(p);
 	int steps = 0;
@@ -171,7 +180,8 @@ static void order_errors(const struct papers *papers, FILE *table, const struct 
 		} else if (peer) {
 			rows[i] = history(peer->open(peer, p, p->unit));
 		} else {
-			rows[i] = history(papers_run(papers, i == 4 ? &pl : &exact, p, text("%s_%s_100", system->name, names[i])));
+			rows[i] = history(papers_run(papers, i == 4 ? &pl : &exact, p,
+			                             text("%s_%s_100", system->name, names[i])));
 		}
 	}
 	for (int k = 0; k < 2; k++) {
@@ -180,18 +190,33 @@ static void order_errors(const struct papers *papers, FILE *table, const struct 
 		for (int i = 0; i < METHODS; i++) {
 			by_fine[i] = (struct placing){ names[i], largest(p, rows[i], fine, units) };
 			by_truth[i] = (struct placing){ names[i], largest(p, rows[i], truth->at_end, units) };
-			const char *settings = i == 2 ? text("RelTol 1e-3; AbsTol 1e-6; %d steps in 30 s", steps) : "h = 0.01 s";
-			table_row(table, &(struct row){ source, system->name, names[i], text("largest displacement error over x1(0), %g s, against RK4 at 0.001 s", horizon[k]),
+			const char *settings = i == 2 ? text("RelTol 1e-3; AbsTol 1e-6; %d steps in 30 s", steps)
+			                       : "h = 0.01 s";
+			table_row(table, &(struct row){ source, system->name, names[i],
+			                                text("largest displacement error over x1(0), %g s, against RK4 "
+			                                     "at 0.001 s", horizon[k]),
 				NULL, NULL, percent(by_fine[i].error), settings });
-			table_row(table, &(struct row){ source, system->name, names[i], text("largest displacement error over x1(0), %g s, against the closed form", horizon[k]),
+			table_row(table, &(struct row){ source, system->name, names[i],
+			                                text("largest displacement error over x1(0), %g s, against the "
+			                                     "closed form", horizon[k]),
 				NULL, NULL, percent(by_truth[i].error), settings });
 		}
-		table_row(table, &(struct row){ source, system->name, "all", text("order of these errors, %g s, against RK4 at 0.001 s", horizon[k]), "PL < RK4", NULL,
-			ordering(METHODS, by_fine), "smallest first; its printed tables contradict its text: stated largest error 10.18 %, a printed row 19.8 %" });
-		table_row(table, &(struct row){ source, system->name, "all", text("order of these errors, %g s, against the closed form", horizon[k]), NULL, NULL,
+		table_row(table,
+		          &(struct row){ source, system->name, "all",
+		                         text("order of these errors, %g s, against RK4 at 0.001 s", horizon[k]),
+		                         "PL < RK4", NULL,
+			ordering(METHODS, by_fine),
+				"smallest first; its printed tables contradict its text: stated largest error 10.18 %, "
+				"a printed row 19.8 %" });
+		table_row(table,
+		          &(struct row){ source, system->name, "all",
+		                         text("order of these errors, %g s, against the closed form", horizon[k]), NULL,
+		                         NULL,
 			ordering(METHODS, by_truth), "smallest first" });
 	}
-	table_row(table, &(struct row){ source, system->name, "RK4", "its reference itself: RK4 at 0.001 s, 30 s, against the closed form", NULL, NULL,
+	table_row(table,
+	          &(struct row){ source, system->name, "RK4",
+	                         "its reference itself: RK4 at 0.001 s, 30 s, against the closed form", NULL, NULL,
 		percent(largest(p, fine, truth->at_end, p->units)), truth->roads });
 	for (int i = 0; i < METHODS; i++)
 		free(rows[i]);
@@ -219,12 +244,17 @@ static void compare_springs(const struct papers *papers, FILE *table, const stru
 	const struct method *rk4 = method_find("RK4");
 	struct problem *p = papers_problem(papers, text("%s_exact", variant), model, 0.01, 60, 0);
 	struct truth *truth = truth_of(p);
-	struct run *run[] = { papers_run(papers, &pl, p, text("%s_pl", variant)), rk4->open(rk4, p, p->unit), papers_run(papers, &exact, p, text("%s_exact", variant)) };
+	struct run *run[] = { papers_run(papers, &pl, p, text("%s_pl", variant)), rk4->open(rk4, p, p->unit),
+	                      papers_run(papers, &exact, p, text("%s_exact", variant)) };
 	for (int i = 0; i < 3; i++) {
 		const char *name = run[i]->method->name;
 		double *rows = history(run[i]);
-		table_row(table, &(struct row){ source, model, name, "largest displacement error over x1(0), 0.6 s, against the closed form", i < 2 ? s->reported[i] : NULL,
-			i < 2 ? s->recovered[i] : NULL, percent(largest(p, rows, truth->at_end, p->units)), "h = 0.01 s; m = 1; undamped" });
+		table_row(table,
+		          &(struct row){ source, model, name,
+		                         "largest displacement error over x1(0), 0.6 s, against the closed form",
+		                         i < 2 ? s->reported[i] : NULL,
+			i < 2 ? s->recovered[i] : NULL, percent(largest(p, rows, truth->at_end, p->units)),
+				"h = 0.01 s; m = 1; undamped" });
 		free(rows);
 	}
 	problem_free(p);
@@ -236,14 +266,17 @@ static void time_histories(const struct papers *papers, const struct system *sys
 {
 	const int rate = fine ? 1000 : 100;
 	const struct method *rk4 = method_find("RK4");
-	struct problem *p = papers_problem(papers, text("%s_exact_%d", system->name, rate), system->name, 1.0 / rate, (int)whole * rate, system->frequency);
-	struct run *run[] = { rk4->open(rk4, p, p->unit), papers_run(papers, &pl, p, text("%s_pl_%d", system->name, rate)),
+	struct problem *p = papers_problem(papers, text("%s_exact_%d", system->name, rate), system->name, 1.0 / rate,
+	                                   (int)whole * rate, system->frequency);
+	struct run *run[] = { rk4->open(rk4, p, p->unit),
+	                      papers_run(papers, &pl, p, text("%s_pl_%d", system->name, rate)),
 		papers_run(papers, &exact, p, text("%s_exact_%d", system->name, rate)) };
 	struct samples ns[3];
 	say_progress("papers: 000, times of %s, h = %g s", system->name, p->unit);
 	sample_runs(3, run, papers->quick ? 0.15 : 0.8, ns);
 	for (int i = 0; i < 3; i++) {
-		timing_row(papers, &(struct timing){ source, system->name, run[i]->method->name, text("time of a step over RK4's, 30 s at h = %g s", p->unit),
+		timing_row(papers, &(struct timing){ source, system->name, run[i]->method->name,
+		                                     text("time of a step over RK4's, 30 s at h = %g s", p->unit),
 			i == 1 ? system->time_ratio[fine] : NULL, text("%.3g", ns[i].median / ns[0].median),
 			"compiled C, -O2; RK4 on the generated NAME_rhs; a row kept at each step", ns[i] });
 		run[i]->close(run[i]);

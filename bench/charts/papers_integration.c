@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Source 001: Liu, Wang, Li, Yi and others, improved precise integration, Journal of Vibration and Shock 2022: the Duhamel integral by
- * quadrature, at nodes that one step of RK4 each predicts. It finds its block method bm3 the best of the four, and all
- * better than RK4. */
+/* Source 001: Liu, Wang, Li, Yi and others, improved precise integration, Journal of Vibration and Shock 2022: the
+ * Duhamel integral by quadrature, at nodes that one step of RK4 each predicts. It finds its block method bm3 the best
+ * of the four, and all better than RK4. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -28,7 +28,8 @@ static const struct history {
 } histories[] = {
 	{ "linear2dof", 5, 10, 1, true, { "4.61e-06", "8.18e-06", "1.61e-05", "1.84e-05" }, "4.2e-3",
 	  "load left to the scheme (--loads leftover) as its source has it; the scheme exact has no error" },
-	{ "pendulum", 10, 10, 1, false, { "1.4e-8", "3.2e-8", "5.4e-8", "6.9e-8" }, NULL, "operator: Jacobian at 0; g/l = 1 chosen" },
+	{ "pendulum", 10, 10, 1, false, { "1.4e-8", "3.2e-8", "5.4e-8", "6.9e-8" }, NULL,
+	  "operator: Jacobian at 0; g/l = 1 chosen" },
 	{ "vanderpol", 10, 10, 1, false, { NULL }, NULL, "mu = 1, x(0) = 2 chosen" },
 	{ "quad2dof", 10, 10, 2, false, { NULL }, NULL, "equations deduced" },
 	{ "quad2dof", 2, 10, 2, false, { NULL }, NULL, "equations deduced" },
@@ -58,23 +59,33 @@ static const char *number(double error)
 
 static void compare(const struct papers *papers, FILE *table, const struct history *h)
 {
-	struct problem *p = papers_problem(papers, text("%s_bm3_%d", h->model, h->rate), h->model, 1.0 / h->rate, (int)lround(h->seconds * h->rate), h->linear ? 0 : -1);
+	struct problem *p = papers_problem(papers, text("%s_bm3_%d", h->model, h->rate), h->model, 1.0 / h->rate,
+	                                   (int)lround(h->seconds * h->rate), h->linear ? 0 : -1);
 	struct truth *truth = truth_of(p);
 	const struct method *rk4 = method_find("RK4");
 	struct placing placing[SCHEMES + 1];
 	char quantity[200], settings[300];
 	say_progress("papers: 001, %s, h = %g", h->model, p->unit);
-	snprintf(quantity, sizeof quantity, "largest error of %s, h = %g s, %g s", h->first == 1 ? p->n == 1 ? "x" : "x1" : "x and y", p->unit, h->seconds);
+	snprintf(quantity, sizeof quantity, "largest error of %s, h = %g s, %g s", h->first == 1 ? p->n == 1 ? "x"
+	         : "x1" : "x and y", p->unit, h->seconds);
 	for (int i = 0; i < SCHEMES; i++) {
-		placing[i] = (struct placing){ schemes[i].name, largest(papers_run(papers, &schemes[i], p, text("%s_%s_%d", h->model, schemes[i].name, h->rate)), truth, h->first) };
-		snprintf(settings, sizeof settings, "%s; %d evaluations of the leftover a step", h->operator_of, leftover_evaluations(schemes[i].name));
-		table_row(table, &(struct row){ source, h->model, schemes[i].name, quantity, NULL, h->recovered[i], number(placing[i].error), settings });
+		placing[i] = (struct placing){ schemes[i].name,
+		                               largest(papers_run(papers, &schemes[i], p,
+		                                                  text("%s_%s_%d", h->model, schemes[i].name, h->rate)),
+		                                                  truth, h->first) };
+		snprintf(settings, sizeof settings, "%s; %d evaluations of the leftover a step", h->operator_of,
+		         leftover_evaluations(schemes[i].name));
+		table_row(table, &(struct row){ source, h->model, schemes[i].name, quantity, NULL, h->recovered[i],
+		                                number(placing[i].error), settings });
 	}
 	placing[SCHEMES] = (struct placing){ "RK4", largest(rk4->open(rk4, p, p->unit), truth, h->first) };
-	table_row(table, &(struct row){ source, h->model, "RK4", quantity, NULL, h->recovered_rk4, number(placing[SCHEMES].error), "4 evaluations a step" });
-	table_row(table, &(struct row){ source, h->model, "RK4, h/3", quantity, NULL, NULL, number(largest(rk4->open(rk4, p, p->unit / 3), truth, h->first)),
+	table_row(table, &(struct row){ source, h->model, "RK4", quantity, NULL, h->recovered_rk4,
+	                                number(placing[SCHEMES].error), "4 evaluations a step" });
+	table_row(table, &(struct row){ source, h->model, "RK4, h/3", quantity, NULL, NULL,
+	                                number(largest(rk4->open(rk4, p, p->unit / 3), truth, h->first)),
 		"12 evaluations a step of h: about as many as nc3, dq4 and bm3" });
-	table_row(table, &(struct row){ source, h->model, "all", text("order of these errors, h = %g s", p->unit), "bm3 leads; RK4 last",
+	table_row(table, &(struct row){ source, h->model, "all", text("order of these errors, h = %g s", p->unit),
+	                                "bm3 leads; RK4 last",
 		"bm3 < nc3 < dq4 < nc2 < RK4 (by error constants)",
 		ordering(SCHEMES + 1, placing), text("smallest first; truth: %s", truth->roads) });
 	problem_free(p);

@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* plmap [--quick] VARIANTS FOLDER: the Piecewise-Laplace method with its coupling held (pl) against RK4 at the same step, on two masses
- * of 1 between walls, undamped, the first let go (wall -k1- m -k2- m -k3- wall): the ratio of their largest displacement errors over
- * w h and k2/k1, w = sqrt(k1/m), until 6 and 60 periods 2 pi/w, for equal walls (k3 = k1) and for unequal ones (k3 = k1/2), in
- * FOLDER/plmap.csv. Errors are over the initial displacement, at the ends of steps, in long double. Below 1: pl is the more accurate.
- * FOLDER/plmap_check.csv: this step of pl beside the generated code, on what plmap.sh made in VARIANTS. */
+/* plmap [--quick] VARIANTS FOLDER: the Piecewise-Laplace method with its coupling held (pl) against RK4 at the same
+ * step, on two masses of 1 between walls, undamped, the first let go (wall -k1- m -k2- m -k3- wall): the ratio of
+ * their largest displacement errors over w h and k2/k1, w = sqrt(k1/m), until 6 and 60 periods 2 pi/w, for equal walls
+ * (k3 = k1) and for unequal ones (k3 = k1/2), in FOLDER/plmap.csv. Errors are over the initial displacement, at the
+ * ends of steps, in long double. Below 1: pl is the more accurate. FOLDER/plmap_check.csv: this step of pl beside the
+ * generated code, on what plmap.sh made in VARIANTS. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -27,7 +28,8 @@ static void slopes(const struct chain *c, matrix A)
 	A[2][1] = A[3][0] = c->k2;
 }
 
-/* Each mass on its own spring of stiffness own = (wall + k2), pushed by k2 times where the other was at the start of the step */
+/* Each mass on its own spring of stiffness own = (wall + k2), pushed by k2 times where the other was at the start of
+ * the step */
 static void pl_step(const struct chain *c, real h, matrix P)
 {
 	memset(P, 0, sizeof(matrix));
@@ -70,7 +72,8 @@ static void advance(matrix P, real y[STATES])
 
 /* ---- the closed form: two modes of the symmetric stiffness matrix ---- */
 
-struct modes { real w[2], part[2][2]; };    /* x_i(t) = sum over modes of part[mode][i] cos(w t), from x = (1, 0) at rest */
+/* x_i(t) = sum over modes of part[mode][i] cos(w t), from x = (1, 0) at rest */
+struct modes { real w[2], part[2][2]; };
 
 static struct modes modes_of(const struct chain *c)
 {
@@ -112,7 +115,8 @@ static struct errors compare(const struct chain *c, real h)
 					continue;
 				advance(P[k], y[k]);
 				for (int i = 0; i < 2; i++)
-					worst[k] = fmaxl(worst[k], fabsl(y[k][i] - (m.part[0][i] * soft + m.part[1][i] * stiff)));
+					worst[k] = fmaxl(worst[k],
+					                 fabsl(y[k][i] - (m.part[0][i] * soft + m.part[1][i] * stiff)));
 			}
 		}
 		for (int k = 0; k < METHODS; k++)
@@ -154,7 +158,8 @@ static void map_layout(FILE *csv, const struct layout *layout, int per_decade)
 /* ---- the generated code ---- */
 
 static const struct point { const char *name; struct chain c; real h; } points[] = {
-	{ "scs", { 100, 100, 100 }, 0.01L }, { "weak", { 4000, 40, 2000 }, 0.01L }, { "slow", { 1, 0.001L, 0.5L }, 0.1L },
+	{ "scs", { 100, 100, 100 }, 0.01L }, { "weak", { 4000, 40, 2000 }, 0.01L },
+	{ "slow", { 1, 0.001L, 0.5L }, 0.1L },
 	{ "fast", { 1, 0.1L, 1 }, 2 }, { "stiff", { 1, 8, 0.5L }, 1 },
 };
 
@@ -213,11 +218,13 @@ int main(int argc, char **argv)
 		return 2;
 	}
 	const char *variants = argv[1 + quick], *folder = argv[2 + quick];
-	FILE *csv = create(folder, "plmap_check.csv", "k1,k2,k3,h_s,largest_difference_of_generated_step_over_largest_entry");
+	FILE *csv = create(folder, "plmap_check.csv",
+	                   "k1,k2,k3,h_s,largest_difference_of_generated_step_over_largest_entry");
 	for (size_t i = 0; i < sizeof points / sizeof *points; i++)
 		check(csv, &points[i], variants);
 	finish(csv);
-	csv = create(folder, "plmap.csv", "layout,periods,w_h,coupling_k2_over_k1,error_pl,error_RK4,ratio_pl_over_RK4");
+	csv = create(folder, "plmap.csv",
+	             "layout,periods,w_h,coupling_k2_over_k1,error_pl,error_RK4,ratio_pl_over_RK4");
 	for (size_t i = 0; i < sizeof layouts / sizeof *layouts; i++) {
 		say_progress("plmap: %s", layouts[i].name);
 		map_layout(csv, &layouts[i], quick ? 6 : 12);

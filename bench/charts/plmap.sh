@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# plmap.sh [--quick] PLGEN FOLDER: scheme pl at some points of the map, as FOLDER/plmap_*.so: what plmap.c checks its own step with.
-# Run at the top of the source tree.
+# plmap.sh [--quick] PLGEN FOLDER: scheme pl at some points of the map, as FOLDER/plmap_*.so: what plmap.c checks its
+# own step with. Run at the top of the source tree.
 set -e
 [ "$1" != --quick ] || shift
 plgen=$1 folder=$2

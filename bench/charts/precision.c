@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* precision: what accuracy costs. Each method on each model with several steps or tolerances: its largest error over the whole
- * history against the time it takes for a unit of output, and against its evaluations of the right-hand side.
+/* precision: what accuracy costs. Each method on each model with several steps or tolerances: its largest error over
+ * the whole history against the time it takes for a unit of output, and against its evaluations of the right-hand
+ * side.
  *
- *     precision --list [--quick] [MODEL...]              the variants wanted: one line each, FILE SPEC and plgen's options
+ *     precision --list [--quick] [MODEL...]              the variants wanted: one line each, FILE SPEC and plgen's
+ *                                                        options
  *     precision [--quick] VARIANTS FILE.csv [MODEL...]   VARIANTS: the folder with those files
  *     precision --scales [--quick] VARIANTS [MODEL...]   what tolerances stand on, a line for each model: name, shared
  *                                                        object, unit [s], units, largest |coordinate|, |velocity|
@@ -15,7 +17,8 @@
 
 /* ---- what is measured ---- */
 
-enum kind { ORDINARY, STIFF, LARGE };   /* stiff: steps from coarse to fine; large: fewer settings, each of which takes long */
+/* stiff: steps from coarse to fine; large: fewer settings, each of which takes long */
+enum kind { ORDINARY, STIFF, LARGE };
 
 struct charted {
 	const char *name;
@@ -48,14 +51,17 @@ static const struct charted models[] = {
 };
 enum { MODELS = sizeof models / sizeof *models };
 
-/* Steps, as the unit over these, and tolerances, as 10 to the minus these; 0 ends. A step of the beams must be below 2.7e-4 s for RK4;
- * their implicit methods, which solve for 30 unknowns, and their schemes stay at the first. */
-static const int parts_fixed[][8] = { { 1, 2, 4, 8, 16, 32, 64, 0 }, { 4, 16, 64, 256, 1024, 0 }, { 1, 4, 16, 40, 80, 0 } };
+/* Steps, as the unit over these, and tolerances, as 10 to the minus these; 0 ends. A step of the beams must be below
+ * 2.7e-4 s for RK4; their implicit methods, which solve for 30 unknowns, and their schemes stay at the first. */
+static const int parts_fixed[][8] = { { 1, 2, 4, 8, 16, 32, 64, 0 }, { 4, 16, 64, 256, 1024, 0 },
+                                      { 1, 4, 16, 40, 80, 0 } };
 static const int parts_fixed_quick[][8] = { { 1, 8, 64, 0 }, { 16, 256, 0 }, { 1, 16, 40, 0 } };
 static const int parts_scheme[][8] = { { 1, 2, 4, 8, 16, 32, 0 }, { 1, 4, 16, 64, 256, 1024, 0 }, { 1, 4, 16, 0 } };
 static const int parts_scheme_quick[][8] = { { 1, 8, 0 }, { 4, 64, 0 }, { 1, 8, 0 } };
-static const int parts_implicit_large[] = { 1, 2, 4, 16, 0 }, parts_exact[] = { 1, 4, 0 }, parts_exact_quick[] = { 1, 0 };
-static const int digits[][8] = { { 3, 4, 6, 8, 10, 12, 13, 0 }, { 3, 4, 6, 8, 10, 12, 13, 0 }, { 4, 8, 12, 0 } }, digits_quick[] = { 3, 8, 12, 0 };
+static const int parts_implicit_large[] = { 1, 2, 4, 16, 0 }, parts_exact[] = { 1, 4, 0 },
+	parts_exact_quick[] = { 1, 0 };
+static const int digits[][8] = { { 3, 4, 6, 8, 10, 12, 13, 0 }, { 3, 4, 6, 8, 10, 12, 13, 0 }, { 4, 8, 12, 0 } },
+	digits_quick[] = { 3, 8, 12, 0 };
 
 struct ours {
 	const char *name, *options;
@@ -181,7 +187,8 @@ static void add_peer(struct lines *lines, const struct problem *p, const struct 
 
 static bool is_implicit(const struct method *method)
 {
-	return strcmp(method->name, "implicit trapezoid") == 0 || strcmp(method->name, "Newmark") == 0 || strcmp(method->name, "generalized-alpha") == 0;
+	return strcmp(method->name, "implicit trapezoid") == 0 || strcmp(method->name, "Newmark") == 0 ||
+	       strcmp(method->name, "generalized-alpha") == 0;
 }
 
 static const int *parts_of_peer(const struct charted *m, const struct method *method, bool quick)
@@ -193,7 +200,8 @@ static const int *parts_of_peer(const struct charted *m, const struct method *me
 	return quick ? parts_fixed_quick[m->kind] : parts_fixed[m->kind];
 }
 
-static void add_peers(struct lines *lines, const struct charted *m, const struct problem *p, const struct method *const *methods, bool quick)
+static void add_peers(struct lines *lines, const struct charted *m, const struct problem *p,
+                      const struct method *const *methods, bool quick)
 {
 	for (; *methods; methods++) {
 		const struct method *method = *methods;
@@ -286,7 +294,8 @@ static void put_settings(FILE *out, const struct line *line)
 {
 	const struct method *method = method_of(line);
 	char text[400];
-	snprintf(text, sizeof text, "%s; %s", method->settings, line->run && !line->method ? generated_between(line->run) : "");
+	snprintf(text, sizeof text, "%s; %s", method->settings, line->run &&
+	         !line->method ? generated_between(line->run) : "");
 	put_quoted(out, line->refused ? line->refused : line->method ? method->settings : text);
 }
 
@@ -378,7 +387,8 @@ int main(int argc, char **argv)
 	}
 	const int files = list ? 0 : scales ? 1 : 2;
 	if (argc - at < files) {
-		fputs("usage: precision --list [--quick] [MODEL...]\n       precision [--quick] VARIANTS FILE.csv [MODEL...]\n"
+		fputs("usage: precision --list [--quick] [MODEL...]\n"
+		      "       precision [--quick] VARIANTS FILE.csv [MODEL...]\n"
 		      "       precision --scales [--quick] VARIANTS [MODEL...]\n", stderr);
 		return 2;
 	}
@@ -388,8 +398,9 @@ int main(int argc, char **argv)
 		return 1;
 	}
 	if (!list && !scales)
-		fputs("model,method,family,setting_kind,setting,q_end,q_between,v_end,v_between,largest,failed,evaluations_per_unit,"
-		      "ns_min,ns_median,ns_max,ns_samples,ns_units,ns_pass,settings,truth_agreement,unit_s,history_s\n", out);
+		fputs("model,method,family,setting_kind,setting,q_end,q_between,v_end,v_between,largest,failed,"
+		      "evaluations_per_unit,ns_min,ns_median,ns_max,ns_samples,ns_units,ns_pass,settings,"
+		      "truth_agreement,unit_s,history_s\n", out);
 	for (int i = 0; i < (argc > at + files ? argc - at - files : MODELS); i++) {
 		const struct charted *m = argc > at + files ? model_named(argv[at + files + i]) : &models[i];
 		if (argc == at + files && quick && !scales && !m->quick)

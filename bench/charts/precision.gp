@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# gnuplot -c precision.gp precision.csv OUTDIR: for each model in the table its error against time, and against evaluations.
+# gnuplot -c precision.gp precision.csv OUTDIR: for each model in the table its error against time, and against
+# evaluations.
 here = system("dirname '".ARG0."'"); csv = ARG1; out = ARG2
 size = '1000,720'                       # room for some thirty methods in the legend
 load here.'/style.gp'
@@ -25,7 +26,8 @@ title_of(m) = \
 	m eq 'linear2dof' ? 'linear2dof: Bathe and Wilson, from rest' : \
 	m eq 'tuned\_floor' ? 'Floor with a tuned mass damper' : m
 source_note(m) = strstrt(' gear1 gear2 gear3 ', ' '.m.' ') > 0 ? "Parameters chosen: the source's did not survive. " : \
-	strstrt(' scs sdcs sdcsf scs_weak ', ' '.m.' ') > 0 ? "Layout deduced, parameters chosen: the source's did not survive. " : ''
+	strstrt(' scs sdcs sdcsf scs_weak ', ' '.m.' ') > 0 ? \
+	"Layout deduced, parameters chosen: the source's did not survive. " : ''
 plain(m) = system("echo '".m."' | sed 's/_/\\\\_/g'")
 
 set ylabel 'largest error over the history, relative to the largest value'
@@ -33,16 +35,19 @@ set yrange [1e-16:10]
 do for [m in models] {
 	last = system("awk -F, '$1 == \"".m."\" { print $(NF - 1), $NF; exit }' '".csv."'")
 	set title title_of(plain(m)).', '.word(last, 2).' s'
-	set label 1 source_note(m)."Displacements and velocities, at outputs and between; gcc -O2 for all, no -march=native or -ffast-math." \
+	set label 1 source_note(m)."Displacements and velocities, at outputs and between; gcc -O2 for all, no ".\
+		"-march=native or -ffast-math." \
 		at screen 0.01,0.02 left font ',7.5' textcolor rgb '#505050'
-	set label 2 "Filled, thick: plgen's. Open, thin: peers; dashed: fixed step, dotted: adaptive, dash-dot: propagators. Errors above 10, refused and failed runs: in the table." \
+	set label 2 "Filled, thick: plgen's. Open, thin: peers; dashed: fixed step, dotted: adaptive, dash-dot: ".\
+		"propagators. Errors above 10, refused and failed runs: in the table." \
 		at screen 0.01,0.05 left font ',7.5' textcolor rgb '#505050'
 	set xlabel "CPU time per output, every ".word(last, 1)." s [µs], median"
 	name = 'precision_'.m
 	load series(csv, sprintf("-v 'where=model=%s' -v x=ns_median -v y=largest -v xfactor=1e-3", m))
 	eval "plot ".clauses
 	eval write
-	set xlabel "evaluations of the right-hand side per output, every ".word(last, 1)." s (what needs none is left out)"
+	set xlabel "evaluations of the right-hand side per output, every ".word(last, \
+		1)." s (what needs none is left out)"
 	name = 'evaluations_'.m
 	load series(csv, sprintf("-v 'where=model=%s' -v x=evaluations_per_unit -v y=largest", m))
 	eval "plot ".clauses

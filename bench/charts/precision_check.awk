@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# awk -f csv.awk -f precision_check.awk precision.csv: of each model how many of its times (ns_median) are within 10 percent of one more pass
-# through the whole history, taken by itself (ns_pass), and which of them is farthest from it.
+# awk -f csv.awk -f precision_check.awk precision.csv: of each model how many of its times (ns_median) are within 10
+# percent of one more pass through the whole history, taken by itself (ns_pass), and which of them is farthest from it.
 NR == 1 { read_head($0, column); print "model,times,within_10_percent,farthest_percent,method,setting"; next }
 {
 	split("", row)
@@ -18,5 +18,6 @@ NR == 1 { read_head($0, column); print "model,times,within_10_percent,farthest_p
 	}
 }
 END {
-	for (m = 1; m <= count; m++) printf "%s,%d,%d,%s\n", models[m], times[models[m]], within[models[m]], of[models[m]]
+	for (m = 1; m <= count; m++)
+		printf "%s,%d,%d,%s\n", models[m], times[models[m]], within[models[m]], of[models[m]]
 }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A problem is what a model's own C says of itself: its equations as written (NAME_rhs), its start; and for a linear one the
- * matrices, found by asking the equations. */
+/* A problem is what a model's own C says of itself: its equations as written (NAME_rhs), its start; and for a linear
+ * one the matrices, found by asking the equations. */
 #include "charts.h"
 
 #include <dlfcn.h>
@@ -33,7 +33,8 @@ static void *open_object(const char *file)
 }
 
 /* C has no conversion from an object pointer to a function's; POSIX has, through memory. */
-static void find_function(void *handle, const char *file, const char *name, void (**function)(double, const double *, double *))
+static void find_function(void *handle, const char *file, const char *name,
+                          void (**function)(double, const double *, double *))
 {
 	void *symbol = dlsym(handle, name);
 	if (!symbol)

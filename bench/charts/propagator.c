@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  *
- * Linear problems by what everyone can do with a library: a matrix exponential computed once and multiplied with the state at each
- * step, and modal superposition. Loads are states of their own, so both act on
+ * Linear problems by what everyone can do with a library: a matrix exponential computed once and multiplied with the
+ * state at each step, and modal superposition. Loads are states of their own, so both act on
  *
  *     z = y, 1, cos w t, sin w t        z' = [A b0 b1 b2; 0; 0 0 0 -w; 0 0 w 0] z
  *
- * of which what a problem does not have is left out. A step is unit/k for an integer k; `between` is as exact as a step.
- * The matrix is applied by a loop, by code for its size, by code that has its entries as constants, by a library, and in
- * float.
+ * of which what a problem does not have is left out. A step is unit/k for an integer k; `between` is as exact as a
+ * step. The matrix is applied by a loop, by code for its size, by code that has its entries as constants, by a
+ * library, and in float.
  */
 #include <dlfcn.h>
 #include <math.h>
@@ -98,19 +98,22 @@ static void exponential(int entries, const double *generator, double length, dou
 	double *scaled = calloc(size * size, sizeof *scaled);
 	for (size_t i = 0; scaled && i < size * size; i++)
 		scaled[i] = length * generator[i];
-	gsl_matrix_view from = gsl_matrix_view_array(scaled, size, size), to = gsl_matrix_view_array(result, size, size);
+	gsl_matrix_view from = gsl_matrix_view_array(scaled, size, size),
+		to = gsl_matrix_view_array(result, size, size);
 	if (!scaled || gsl_linalg_exponential_ss(&from.matrix, &to.matrix, GSL_PREC_DOUBLE) != GSL_SUCCESS)
 		for (size_t i = 0; i < size * size; i++)
 			result[i] = NAN;
 	free(scaled);
 }
 
-/* The same without the error of gsl_linalg_exponential_ss: Taylor's series of a 2^-k part, squared k times, in long double */
+/* The same without the error of gsl_linalg_exponential_ss: Taylor's series of a 2^-k part, squared k times, in long
+ * double */
 static void rounded_exponential(int size, const double *generator, double length, double *result)
 {
 	enum { TERMS = 24 };
 	const size_t entries = (size_t)size * (size_t)size;
-	long double *block = calloc(3 * entries, sizeof *block), *part = block, *sum = block + entries, *product = block + 2 * entries;
+	long double *block = calloc(3 * entries, sizeof *block), *part = block, *sum = block + entries,
+		*product = block + 2 * entries;
 	long double norm = 0;
 	int halvings = 0;
 	if (!block)
@@ -152,7 +155,8 @@ static void rounded_exponential(int size, const double *generator, double length
 /* ---- a step as a plain loop ---- */
 
 /* spare <- matrix z; nothing acts on the loads but themselves */
-static inline void multiply(int own, int size, const double *restrict matrix, const double *restrict z, double *restrict spare)
+static inline void multiply(int own, int size, const double *restrict matrix, const double *restrict z,
+                            double *restrict spare)
 {
 	for (int i = 0; i < own; i++) {
 		double sum = 0.0;
@@ -181,7 +185,8 @@ static void loop_unit(struct propagator *r)
 	r->spare = next;
 }
 
-/* The size is known when this is compiled, and the loops are unrolled: the matrix stays in reach, the state in registers */
+/* The size is known when this is compiled, and the loops are unrolled: the matrix stays in reach, the state in
+ * registers */
 enum { FOUR = 4 };
 static inline void fixed_size_step(const double *restrict Phi, double *restrict z)
 {
@@ -202,7 +207,8 @@ static void dgemv_unit(struct propagator *r)
 {
 	for (int k = 0; k < r->steps; k++) {
 		double *z = r->z;
-		cblas_dgemv(CblasRowMajor, CblasNoTrans, r->size, r->size, 1.0, r->Phi, r->size, z, 1, 0.0, r->spare, 1);
+		cblas_dgemv(CblasRowMajor, CblasNoTrans, r->size, r->size, 1.0, r->Phi, r->size, z, 1, 0.0, r->spare,
+		            1);
 		r->z = r->spare;
 		r->spare = z;
 	}
@@ -210,10 +216,10 @@ static void dgemv_unit(struct propagator *r)
 
 /* ---- modal superposition ----
  *
- * y = W x, where W^-1 A W falls into blocks: of a classically damped system a pair of columns (phi; 0), (0; phi) for each real mode phi
- * of M^-1 K, otherwise the real and the imaginary part of each eigenvector of A. A block with its loads is advanced by its own
- * exponential, so a rigid body, critical damping and resonance are nothing special; where eigenvectors are missing (W singular to
- * rounding) what comes out is what nearly dependent columns give. */
+ * y = W x, where W^-1 A W falls into blocks: of a classically damped system a pair of columns (phi; 0), (0; phi) for
+ * each real mode phi of M^-1 K, otherwise the real and the imaginary part of each eigenvector of A. A block with its
+ * loads is advanced by its own exponential, so a rigid body, critical damping and resonance are nothing special; where
+ * eigenvectors are missing (W singular to rounding) what comes out is what nearly dependent columns give. */
 
 enum { ROW = 2 + MOST_LOADS, BLOCK = 2 * ROW };
 
@@ -224,7 +230,8 @@ struct modes {
 	double *diagonal;           /* W^-1 A W */
 	double *loads;              /* W^-1 of their columns: own x loads */
 	double *x, *start;
-	double *table;              /* of each block two rows: of its exponential over a step 2 entries, then those of the loads */
+	/* of each block two rows: of its exponential over a step 2 entries, then those of the loads */
+	double *table;
 	double *part, part_length;  /* `between`: the same for another length */
 };
 
@@ -271,12 +278,15 @@ static bool real_shapes(struct propagator *r, gsl_vector_complex *values, gsl_ma
 			return false;
 		add_block(m, 2 * j, 2);
 		for (int i = 0; i < n; i++)
-			m->shapes[i * own + 2 * j] = m->shapes[(n + i) * own + 2 * j + 1] = GSL_REAL(gsl_matrix_complex_get(vectors, (size_t)i, (size_t)j));
+			m->shapes[i * own + 2 * j] = m->shapes[(n + i) * own + 2 * j +
+			                                       1] = GSL_REAL(gsl_matrix_complex_get(vectors, (size_t)i,
+			                                       (size_t)j));
 	}
 	return true;
 }
 
-static bool complex_shapes(struct propagator *r, gsl_vector_complex *values, gsl_matrix_complex *vectors, double *matrix)
+static bool complex_shapes(struct propagator *r, gsl_vector_complex *values, gsl_matrix_complex *vectors,
+                           double *matrix)
 {
 	const int own = r->own;
 	struct modes *m = r->modes;
@@ -301,7 +311,8 @@ static bool invert(struct propagator *r, double *matrix)
 {
 	const size_t own = (size_t)r->own;
 	gsl_permutation *order = gsl_permutation_alloc(own);
-	gsl_matrix_view shapes = gsl_matrix_view_array(matrix, own, own), inverse = gsl_matrix_view_array(r->modes->inverse, own, own);
+	gsl_matrix_view shapes = gsl_matrix_view_array(matrix, own, own),
+		inverse = gsl_matrix_view_array(r->modes->inverse, own, own);
 	int sign;
 	memcpy(matrix, r->modes->shapes, own * own * sizeof *matrix);
 	bool good = order && gsl_linalg_LU_decomp(&shapes.matrix, order, &sign) == GSL_SUCCESS &&
@@ -336,7 +347,8 @@ static bool find_shapes(struct propagator *r)
 	gsl_matrix_complex *vectors = gsl_matrix_complex_alloc(own, own), *quarter = gsl_matrix_complex_alloc(n, n);
 	bool good = matrix && values && half && vectors && quarter;
 	if (good && !(real_shapes(r, half, quarter, matrix) && invert(r, matrix) && diagonalise(r, matrix) < 1e-11))
-		good = complex_shapes(r, values, vectors, matrix) && invert(r, matrix) && isfinite(diagonalise(r, matrix));
+		good = complex_shapes(r, values, vectors, matrix) && invert(r, matrix) &&
+		       isfinite(diagonalise(r, matrix));
 	gsl_vector_complex_free(values);
 	gsl_vector_complex_free(half);
 	gsl_matrix_complex_free(vectors);
@@ -353,12 +365,14 @@ static void project(struct propagator *r)
 		for (int j = 0; j < own; j++) {
 			m->start[i] += m->inverse[i * own + j] * r->start[j];
 			for (int k = 0; k < loads; k++)
-				m->loads[i * loads + k] += m->inverse[i * own + j] * r->generator[j * r->size + own + k];
+				m->loads[i * loads + k] += m->inverse[i * own + j] * r->generator[j * r->size + own +
+					k];
 		}
 }
 
-/* e^{B length} of a block of two in closed form, as textbooks have the oscillator's: with the mean m of its poles, C = B - m I and
- * C^2 = -w^2 I it is e^{m length} (cos(w length) I + sin(w length)/w C); without oscillation cosh and sinh */
+/* e^{B length} of a block of two in closed form, as textbooks have the oscillator's: with the mean m of its poles, C =
+ * B - m I and C^2 = -w^2 I it is e^{m length} (cos(w length) I + sin(w length)/w C); without oscillation cosh and
+ * sinh */
 static void pair_exponential(const double b[4], double length, double *rows)
 {
 	const double mean = 0.5 * (b[0] + b[3]), half = 0.5 * (b[0] - b[3]), square = -half * half - b[1] * b[2];
@@ -391,7 +405,8 @@ static void block_exponential(const struct propagator *r, int block, double leng
 		memcpy(rows + i * ROW + 2, result + i * size + order, (size_t)loads * sizeof *rows);
 	}
 	if (order == 2)
-		pair_exponential((double[]){generator[0], generator[1], generator[size], generator[size + 1]}, length, rows);
+		pair_exponential((double[]){generator[0], generator[1], generator[size], generator[size + 1]}, length,
+		                 rows);
 }
 
 static void fill_table(const struct propagator *r, double length, double *table)
@@ -440,7 +455,8 @@ static bool find_modes(struct propagator *r)
 }
 
 /* x <- what it is a step on, under loads as they are now */
-static inline void move_modes(const struct propagator *r, const double *restrict table, const double *x, const double *restrict load, double *after)
+static inline void move_modes(const struct propagator *r, const double *restrict table, const double *x,
+                              const double *restrict load, double *after)
 {
 	const struct modes *m = r->modes;
 	const int loads = r->size - r->own;
@@ -516,7 +532,8 @@ static bool all_finite(int size, const double *y)
 	return zero == 0.0;
 }
 
-static inline __attribute__((always_inline)) bool march(struct run *run, int units, double *rows, void (*unit)(struct propagator *r))
+static inline __attribute__((always_inline)) bool march(struct run *run, int units, double *rows,
+                                                        void (*unit)(struct propagator *r))
 {
 	struct propagator *r = (struct propagator *)run;
 	for (int u = 0; u < units && !r->failed; u++) {
@@ -718,17 +735,21 @@ static bool allot(struct propagator *r)
 
 typedef bool advance_function(struct run *run, int units, double *rows);
 
-static struct run *propagator_open(const struct method *method, const struct problem *p, double setting, advance_function *advance)
+static struct run *propagator_open(const struct method *method, const struct problem *p, double setting,
+                                   advance_function *advance)
 {
 	const double steps = round(p->unit / setting);
-	if (!p->linear || !p->A || !(setting > 0.0) || !(steps >= 1.0 && steps <= 1e9) || setting > p->unit * (1.0 + 1e-9))
+	if (!p->linear || !p->A || !(setting > 0.0) || !(steps >= 1.0 && steps <= 1e9) ||
+	    setting > p->unit * (1.0 + 1e-9))
 		return NULL;
 	struct propagator *r = calloc(1, sizeof *r);
 	if (!r)
 		return NULL;
 	gsl_set_error_handler_off();
-	r->run = (struct run){.method = method, .problem = p, .setting = p->unit / steps, .restart = propagator_restart, .advance = advance,
-	                      .between = propagator_between, .get = propagator_get, .evaluations = no_evaluations, .close = propagator_close};
+	r->run = (struct run){.method = method, .problem = p, .setting = p->unit / steps, .restart = propagator_restart,
+	                      .advance = advance,
+	                      .between = propagator_between, .get = propagator_get, .evaluations = no_evaluations,
+	                      .close = propagator_close};
 	r->own = 2 * p->n;
 	r->size = r->own + is_pushed(p) + 2 * is_shaken(p);
 	r->steps = (int)steps;
@@ -856,24 +877,33 @@ static struct run *modal_open(const struct method *method, const struct problem 
 #define PROPAGATOR_METHOD(NAME, SETTINGS, OPEN) \
 	{.name = NAME, .family = PROPAGATOR, .linear_only = true, .settings = SETTINGS, .open = OPEN}
 
-static const struct method loop = PROPAGATOR_METHOD("exp(A h), loop", EXPONENTIAL "applied by a double loop, size known at run time", loop_open);
+static const struct method loop = PROPAGATOR_METHOD("exp(A h), loop",
+                                                    EXPONENTIAL "applied by a double loop, size known at run time",
+                                                    loop_open);
 static const struct method rounded =
-	PROPAGATOR_METHOD("exp(A h) rounded, loop", ROUNDED "; applied by a double loop, size known at run time", rounded_open);
+	PROPAGATOR_METHOD("exp(A h) rounded, loop", ROUNDED "; applied by a double loop, size known at run time",
+	                  rounded_open);
 static const struct method fixed_size =
-	PROPAGATOR_METHOD("exp(A h), fixed size", EXPONENTIAL "applied by a double loop, unrolled, size 4 known at compile time", fixed_size_open);
+	PROPAGATOR_METHOD("exp(A h), fixed size",
+	                  EXPONENTIAL "applied by a double loop, unrolled, size 4 known at compile time",
+	                  fixed_size_open);
 static const struct method literals =
 	PROPAGATOR_METHOD("exp(A h), literals", EXPONENTIAL AS_CODE, literals_open);
 static const struct method rounded_literals =
 	PROPAGATOR_METHOD("exp(A h) rounded, literals", ROUNDED "; " AS_CODE, rounded_literals_open);
 static const struct method dgemv =
-	PROPAGATOR_METHOD("exp(A h), CBLAS", EXPONENTIAL "applied by cblas_dgemv of gslcblas, the CBLAS that comes with GSL", dgemv_open);
+	PROPAGATOR_METHOD("exp(A h), CBLAS",
+	                  EXPONENTIAL "applied by cblas_dgemv of gslcblas, the CBLAS that comes with GSL", dgemv_open);
 static const struct method modal =
-	PROPAGATOR_METHOD("modal superposition", "gsl_eigen_nonsymmv: real modes where damping is classical, else complex; each advanced by its own exponential in closed form, loads by gsl_linalg_exponential_ss of the mode with them; output by the matrix of shapes",
-	                  modal_open);
+	PROPAGATOR_METHOD("modal superposition",
+	                  "gsl_eigen_nonsymmv: real modes where damping is classical, else complex; each advanced by "
+	                  "its own exponential in closed form, loads by gsl_linalg_exponential_ss of the mode with "
+	                  "them; output by the matrix of shapes", modal_open);
 
 static const struct method loop_float =
 	PROPAGATOR_METHOD("exp(A h), loop, float",
-	                  EXPONENTIAL "each entry rounded to float; applied by a double loop in float, size known at run time",
+	                  EXPONENTIAL "each entry rounded to float; applied by a double loop in float, size known at "
+	                              "run time",
 	                  loop_float_open);
 static const struct method literals_float =
 	PROPAGATOR_METHOD("exp(A h) rounded, literals, float", ROUNDED " and to float; " AS_CODE, literals_float_open);

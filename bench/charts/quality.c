@@ -2,10 +2,11 @@
  *
  * quality [--quick] OUTDIR
  *
- * How well does each method keep period and amplitude of a free undamped oscillation?  Period elongation and amplitude decay against h/T,
- * as the textbooks of structural dynamics draw them (Bathe, Finite Element Procedures, figure 9.3; Hughes, The Finite Element Method,
- * section 9.3), from the eigenvalue of one step that stands for the oscillation, l = e^{(-xi + i) phi}: the period seen is 2 pi h/phi,
- * the amplitude falls by 1 - e^{-2 pi xi} in each of them, and xi is the algorithmic damping ratio.  quality.csv, quality_check.csv.
+ * How well does each method keep period and amplitude of a free undamped oscillation?  Period elongation and amplitude
+ * decay against h/T, as the textbooks of structural dynamics draw them (Bathe, Finite Element Procedures, figure 9.3;
+ * Hughes, The Finite Element Method, section 9.3), from the eigenvalue of one step that stands for the oscillation, l
+ * = e^{(-xi + i) phi}: the period seen is 2 pi h/phi, the amplitude falls by 1 - e^{-2 pi xi} in each of them, and xi
+ * is the algorithmic damping ratio.  quality.csv, quality_check.csv.
  */
 #include "amplification.h"
 
@@ -27,8 +28,9 @@ static double complex principal(int count, const double complex *eigenvalue, dou
 	return best;
 }
 
-/* What is charted: a method; or by hand: exact, or scheme pl in one of the modes of two equal masses with k2/k1 = 0.1, where it is etd1 with
- * an operator of own frequency sqrt(k1 + k2) beside the true sqrt(k1) (in phase) and sqrt(k1 + 2 k2) (out of phase) */
+/* What is charted: a method; or by hand: exact, or scheme pl in one of the modes of two equal masses with k2/k1 = 0.1,
+ * where it is etd1 with an operator of own frequency sqrt(k1 + k2) beside the true sqrt(k1) (in phase) and sqrt(k1 + 2
+ * k2) (out of phase) */
 struct subject {
 	const char *name;
 	const struct method *method;
@@ -40,7 +42,8 @@ static bool subject_at(int k, struct subject *s)
 	int methods = 0;
 	while (charted_method(methods))
 		methods++;
-	const struct subject ours[] = {{"exact", NULL, 0}, {"pl 0.1 in phase", NULL, sqrt(1.1)}, {"pl 0.1 out of phase", NULL, sqrt(1.1 / 1.2)}};
+	const struct subject ours[] = {{"exact", NULL, 0}, {"pl 0.1 in phase", NULL, sqrt(1.1)},
+	                               {"pl 0.1 out of phase", NULL, sqrt(1.1 / 1.2)}};
 	if (k >= methods + 3)
 		return false;
 	*s = k >= methods ? ours[k - methods] : (struct subject){charted_method(k)->name, charted_method(k), 0};
@@ -81,10 +84,12 @@ static void chart(FILE *csv, int points)
 			const double share = 0.005 * pow(100, (double)i / (points - 1));
 			const struct quality q = quality_of(&s, 2 * M_PI * share);
 			if (q.oscillates)
-				fprintf(csv, "%s,%.6g,%.6g,%.6g,%.6g,%.6g,%.6g\n", s.name, share, 100 * q.elongation, 100 * q.decay, q.damping, 100 * seen(q.elongation),
-				        100 * seen(q.decay));
+				fprintf(csv, "%s,%.6g,%.6g,%.6g,%.6g,%.6g,%.6g\n", s.name, share, 100 * q.elongation,
+					100 * q.decay, q.damping, 100 * seen(q.elongation), 100 * seen(q.decay));
 			else
-				fprintf(csv, "%s,%.6g,no oscillation,no oscillation,no oscillation,no oscillation,no oscillation\n", s.name, share);
+				fprintf(csv,
+					"%s,%.6g,no oscillation,no oscillation,no oscillation,no oscillation,no "
+					"oscillation\n", s.name, share);
 		}
 	}
 }
@@ -99,18 +104,22 @@ static struct subject named(const char *name)
 }
 
 /* What the literature has for small steps: the first power of w h with its factor */
-static void check_small(struct checks *c, const char *name, double wh, double elongation, double damping, double tolerance)
+static void check_small(struct checks *c, const char *name, double wh, double elongation, double damping,
+                        double tolerance)
 {
 	const struct subject s = named(name);
 	const struct quality q = quality_of(&s, wh);
-	check(c, elongation, q.elongation, elongation == 0 ? 1e-13 : tolerance, "%s: period elongation at w h = %g, first term for small steps", name, wh);
-	check(c, damping, q.damping, damping == 0 ? 1e-13 : tolerance, "%s: algorithmic damping ratio at w h = %g, first term", name, wh);
+	check(c, elongation, q.elongation, elongation == 0 ? 1e-13 : tolerance,
+	      "%s: period elongation at w h = %g, first term for small steps", name, wh);
+	check(c, damping, q.damping, damping == 0 ? 1e-13 : tolerance,
+	      "%s: algorithmic damping ratio at w h = %g, first term", name, wh);
 }
 
 static void check_damping(struct checks *c, const char *name, double wh, double damping)
 {
 	const struct subject s = named(name);
-	check(c, damping, quality_of(&s, wh).damping, 1e-2, "%s: algorithmic damping ratio at w h = %g, first term", name, wh);
+	check(c, damping, quality_of(&s, wh).damping, 1e-2, "%s: algorithmic damping ratio at w h = %g, first term",
+	      name, wh);
 }
 
 int main(int argc, char **argv)
@@ -122,7 +131,9 @@ int main(int argc, char **argv)
 		return 2;
 	}
 	const char *folder = argv[1 + quick];
-	FILE *csv = table_open(folder, "quality.csv", "method,h_over_T,period_elongation_percent,amplitude_decay_percent_per_period,algorithmic_damping_ratio,elongation_size,decay_size");
+	FILE *csv = table_open(folder, "quality.csv",
+	                       "method,h_over_T,period_elongation_percent,amplitude_decay_percent_per_period,"
+	                       "algorithmic_damping_ratio,elongation_size,decay_size");
 	say_progress("quality: period elongation and amplitude decay");
 	chart(csv, quick ? 25 : 81);
 	table_close(csv, "quality.csv");

@@ -10,7 +10,8 @@ unset bmargin
 # Two panels side by side, and between them nothing but their axes: the key stands below both
 do for [which=1:2] {
 	do for [form=1:2] {
-		eval (form == 1 ? "set terminal svg size 900,600 dynamic enhanced font 'DejaVu Sans,Helvetica,sans-serif,12' background rgb 'white'" : \
+		eval (form == 1 ? "set terminal svg size 900,600 dynamic enhanced font 'DejaVu ".\
+			"Sans,Helvetica,sans-serif,12' background rgb 'white'" : \
 			"set terminal pngcairo size 900,600 enhanced font 'DejaVu Sans,10' background rgb 'white'")
 		set output out.'/'.(which == 1 ? 'quality' : 'quality_small').'.'.(form == 1 ? 'svg' : 'png')
 		set multiplot
@@ -20,32 +21,47 @@ do for [which=1:2] {
 			set lmargin 9; set rmargin 2; set tmargin 2; set bmargin 4
 			set xlabel 'h / T, step over period' offset 0,0.3
 			if (which == 1) {
-				unset logscale; set format '%g'; set xrange [0:0.4]; set xtics 0,0.1,0.4; set ytics auto; set xzeroaxis lw 1.5 lc rgb '#404040'
+				unset logscale; set format '%g'; set xrange [0:0.4]; set xtics 0,0.1,0.4;
+				set ytics auto; set xzeroaxis lw 1.5 lc rgb '#404040'
 				set yrange [(side == 1 ? -20 : -30):(side == 1 ? 40 : 30)]
-				set ylabel (side == 1 ? 'period elongation  [%]' : 'amplitude decay in a period  [%], below 0: growth') offset 1,0
+				set ylabel (side == 1 ? 'period elongation  [%]' : \
+					'amplitude decay in a period  [%], below 0: growth') offset 1,0
 			} else {
-				set logscale xy; set xrange [0.005:0.5]; set xtics ('0.005' 0.005, '0.01' 0.01, '0.02' 0.02, '0.05' 0.05, '0.1' 0.1, '0.2' 0.2, '0.5' 0.5); set format y '10^{%T}'
+				set logscale xy; set xrange [0.005:0.5];
+				set xtics ('0.005' 0.005, '0.01' 0.01, '0.02' 0.02, '0.05' 0.05, '0.1' 0.1, '0.2' \
+					0.2, '0.5' 0.5); set format y '10^{%T}'
 				set yrange [1e-10:1e2]
-				set ylabel (side == 1 ? 'size of the period elongation  [%]' : 'size of the amplitude''s change in a period  [%]') offset 1,0
+				set ylabel (side == 1 ? 'size of the period elongation  [%]' : \
+					'size of the amplitude''s change in a period  [%]') offset 1,0
 			}
-			if (side == 1) { set label 1 (which == 1 ? "x'' + w^2x = 0: how well each method keeps the period T = 2π/w and the amplitude" : \
-				"x'' + w^2x = 0: error of period and amplitude for small steps; what rounding makes is left out") at screen 0.5,0.97 center font ',13' }
-			load marked((which == 1 ? 4 : 9), '-v x=h_over_T -v y='.(which == 1 ? (side == 1 ? 'period_elongation_percent' : 'amplitude_decay_percent_per_period') : \
-				(side == 1 ? 'elongation_size' : 'decay_size')).(which == 1 ? ' -v any=1' : " -v skip='in phase'"))
+			if (side == 1) { set label 1 (which == 1 ? \
+				"x'' + w^2x = 0: how well each method keeps the period T = 2π/w and the amplitude" : \
+				"x'' + w^2x = 0: error of period and amplitude for small steps; ".\
+				"what rounding makes is left out") at screen 0.5,0.97 center font ',13' }
+			load marked((which == 1 ? 4 : 9), '-v x=h_over_T -v y='.(which == 1 ? (side == 1 ? \
+				'period_elongation_percent' : 'amplitude_decay_percent_per_period') : \
+				(side == 1 ? 'elongation_size' : 'decay_size')).(which == 1 ? ' -v any=1' : \
+				" -v skip='in phase'"))
 			eval 'plot '.clauses
 		}
 		# the key alone
-		unset label; unset border; unset xtics; unset ytics; unset xlabel; unset ylabel; unset logscale; unset grid; unset xzeroaxis
+		unset label; unset border; unset xtics; unset ytics; unset xlabel; unset ylabel; unset logscale;
+		unset grid; unset xzeroaxis
 		set origin 0,0; set size 1,0.22
 		set lmargin 2; set rmargin 2; set tmargin 0; set bmargin 0
-		set key at screen 0.5,0.125 center vertical Left reverse maxrows 4 width -2 samplen 4.5 spacing 1.25 font ',10'
+		set key at screen 0.5,0.125 center vertical Left reverse maxrows 4 width -2 samplen 4.5 spacing 1.25 \
+			font ',10'
 		load marked(9, '-v x=h_over_T -v y=period_elongation_percent -v any=1')
-		set label 1 (which == 1 ? 'pl 0.1: scheme pl on two equal masses, k2/k1 = 0.1, in the mode in phase (decays) and out of phase (grows).  exact: 0 in both.' : \
-			'exact has neither; in amplitude the implicit trapezoid, Newmark and central difference have none either.  pl 0.1: two equal masses, k2/k1 = 0.1') at screen 0.5,0.022 center font ',9'
+		set label 1 (which == 1 ? 'pl 0.1: scheme pl on two equal masses, k2/k1 = 0.1, in the mode in phase '.\
+			'(decays) and out of phase (grows).  exact: 0 in both.' : \
+			'exact has neither; '.\
+			'in amplitude the implicit trapezoid, Newmark and central difference have none either.  pl '.\
+			'0.1: two equal masses, k2/k1 = 0.1') at screen 0.5,0.022 center font ',9'
 		set xrange [10:11]; set yrange [1e6:1e7]          # nothing of the curves
 		eval 'plot '.clauses
 		unset multiplot
 		unset output
-		set border lw 1 lc rgb '#404040'; set grid xtics ytics lc rgb '#dcdcdc' lw 1 dt 1; set xtics nomirror; set ytics nomirror
+		set border lw 1 lc rgb '#404040'; set grid xtics ytics lc rgb '#dcdcdc' lw 1 dt 1; set xtics nomirror;
+		set ytics nomirror
 	}
 }

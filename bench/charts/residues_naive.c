@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Residues as one would type them in from the page (Fang, Wang, Dai and Zhang 2020), in double: the poles from GSL's polynomial
- * solver, every pole taken for a simple one, A(s)/B'(s) e^{sh} summed into the matrix of a step. For one or two coordinates.
- * It shows what plgen's exact multiplicities and correct rounding are for; nobody need write it like this. */
+/* Residues as one would type them in from the page (Fang, Wang, Dai and Zhang 2020), in double: the poles from GSL's
+ * polynomial solver, every pole taken for a simple one, A(s)/B'(s) e^{sh} summed into the matrix of a step. For one or
+ * two coordinates. It shows what plgen's exact multiplicities and correct rounding are for; nobody need write it like
+ * this. */
 #include "residues_naive.h"
 
 #include <complex.h>
@@ -20,7 +21,8 @@ struct naive {
 	double C[MOST][MOST], K[MOST][MOST];            /* of x'' + C x' + K x = loads */
 	double B[DEGREE + 1];                           /* det(s^2 + C s + K), rising powers */
 	double Phi[2 * MOST][2 * MOST];
-	double held[2 * MOST][MOST], cosine[2 * MOST][MOST], sine[2 * MOST][MOST]; /* answers to loads 1, cos(w tau), sin(w tau) */
+	/* answers to loads 1, cos(w tau), sin(w tau) */
+	double held[2 * MOST][MOST], cosine[2 * MOST][MOST], sine[2 * MOST][MOST];
 };
 
 static double complex at(const double *polynomial, int degree, double complex s)
@@ -67,11 +69,14 @@ static void adjugate(const struct naive *r, double complex s, double complex adj
 	}
 	for (int i = 0; i < 2; i++)
 		for (int j = 0; j < 2; j++)
-			adj[i][j] = i == j ? s * s + s * r->C[1 - i][1 - i] + r->K[1 - i][1 - i] : -(s * r->C[i][j] + r->K[i][j]);
+			adj[i][j] = i == j ? s * s + s * r->C[1 - i][1 - i] + r->K[1 - i][1 - i]
+			            : -(s * r->C[i][j] + r->K[i][j]);
 }
 
-/* A pole s of B or of a load: X(s) = adj P(s) / ..., whose residue is `weight` adj P(s); velocities are s times as much. */
-static void add_response(const struct naive *r, double complex s, double complex weight, double response[2 * MOST][MOST])
+/* A pole s of B or of a load: X(s) = adj P(s) / ..., whose residue is `weight` adj P(s); velocities are s times as
+ * much. */
+static void add_response(const struct naive *r, double complex s, double complex weight,
+                         double response[2 * MOST][MOST])
 {
 	double complex adj[MOST][MOST];
 	adjugate(r, s, adj);
@@ -109,7 +114,8 @@ static bool sum_residues(struct naive *r, double h, double w)
 	if (status != 0)
 		return false;
 	for (int k = 0; k < degree; k++) {
-		const double complex s = CMPLX(root[2 * k], root[2 * k + 1]), weight = cexp(s * h) / slope_at(r->B, degree, s);
+		const double complex s = CMPLX(root[2 * k], root[2 * k + 1]),
+			weight = cexp(s * h) / slope_at(r->B, degree, s);
 		add_free(r, s, weight);
 		add_response(r, s, weight / s, r->held);
 		add_response(r, s, weight * s / (s * s + w * w), r->cosine);
@@ -124,7 +130,8 @@ static bool sum_residues(struct naive *r, double h, double w)
 	return true;
 }
 
-/* A load that is not there must not bring in its poles, which may coincide with others and give what is not a number. */
+/* A load that is not there must not bring in its poles, which may coincide with others and give what is not a
+ * number. */
 static bool acts(const struct problem *p, const double *b)
 {
 	for (int i = p->n; i < 2 * p->n; i++)
@@ -152,7 +159,8 @@ static void step(struct naive *r)
 			if (acts(p, p->b0))
 				next[i] += r->held[i][j] * p->b0[k];
 			if (p->w > 0)
-				next[i] += r->cosine[i][j] * (p->b1[k] * c + p->b2[k] * s) + r->sine[i][j] * (p->b2[k] * c - p->b1[k] * s);
+				next[i] += r->cosine[i][j] * (p->b1[k] * c + p->b2[k] * s) +
+				           r->sine[i][j] * (p->b2[k] * c - p->b1[k] * s);
 		}
 	}
 	memcpy(r->y, next, sizeof next);
@@ -200,7 +208,8 @@ static struct run *open_run(const struct method *method, const struct problem *p
 			r->K[i][j] = -p->A[(p->n + i) * 2 * p->n + j];
 			r->C[i][j] = -p->A[(p->n + i) * 2 * p->n + p->n + j];
 		}
-	r->run = (struct run){ .method = method, .problem = p, .setting = h, .restart = restart, .advance = advance, .get = get,
+	r->run = (struct run){ .method = method, .problem = p, .setting = h, .restart = restart, .advance = advance,
+	                       .get = get,
 	                       .evaluations = evaluations, .close = close_run };
 	characteristic(r);
 	if (!sum_residues(r, h, p->w)) {
@@ -213,5 +222,6 @@ static struct run *open_run(const struct method *method, const struct problem *p
 
 const struct method residues_naive = {
 	.name = "naive residues", .family = PROPAGATOR, .linear_only = true,
-	.settings = "gsl_poly_complex_solve; every pole taken for a simple one; a matrix of the step in double", .open = open_run,
+	.settings = "gsl_poly_complex_solve; every pole taken for a simple one; a matrix of the step in double",
+	.open = open_run,
 };

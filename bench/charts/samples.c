@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Time, taken in turns: what disturbs the machine for a while then meets all methods alike, and the median does not see it. It is the
- * process's own time, so that what else the machine does meanwhile is not in it but for the caches. */
+/* Time, taken in turns: what disturbs the machine for a while then meets all methods alike, and the median does not
+ * see it. It is the process's own time, so that what else the machine does meanwhile is not in it but for the
+ * caches. */
 #include "charts.h"
 
 #include <stdarg.h>

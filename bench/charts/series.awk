@@ -1,11 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# awk -v where='model=scs;quantity=largest' -v x=ns_median -v y=largest [-v by=method] [-v xfactor=1e-3] [-v yfactor=1] [-v skip=REGEX]
+# awk -v where='model=scs;quantity=largest' -v x=ns_median -v y=largest [-v by=method] [-v xfactor=1e-3] [-v yfactor=1]
+# [-v skip=REGEX]
 #     [-v with=lines|points] [-v abs=1] [-v xzero=1e-12] -f csv.awk -f series.awk FILE.csv
-# prints gnuplot: a data block for each method that has rows with numbers above 0 in both columns (above or below, with -v any=1), and
-# `clauses`, what to plot of them; abs: of absolute values of y; xzero: where 0 stands on a log axis. A method looks alike in every chart: ours filled marks and thick unbroken lines, peers open marks and
-# thin lines, dashed by family, so they stay apart in black and white too. What is not in the table below gets a look by its turn.
+# prints gnuplot: a data block for each method that has rows with numbers above 0 in both columns (above or below, with
+# -v any=1), and `clauses`, what to plot of them; abs: of absolute values of y; xzero: where 0 stands on a log axis. A
+# method looks alike in every chart: ours filled marks and thick unbroken lines, peers open marks and thin lines,
+# dashed by family, so they stay apart in black and white too. What is not in the table below gets a look by its turn.
 
-function look(pattern, mark, colour, dash) { looks++; pattern_of[looks] = pattern; mark_of[looks] = mark; colour_of[looks] = colour; dash_of[looks] = dash }
+function look(pattern, mark, colour, dash) { looks++; pattern_of[looks] = pattern; mark_of[looks] = mark;
+	colour_of[looks] = colour; dash_of[looks] = dash }
 function wanted(field,    i) {
 	for (i = 1; i <= conditions; i++)
 		if (field[condition_column[i]] != condition_value[i]) return 0
@@ -24,15 +27,19 @@ function clause(k, name,    i, dash, thick, width, size) {
 	sub(/^\+/, "", dash)
 	width = thick ? 2.6 : 1.5
 	size = thick ? 1.2 : 1.1
-	if (with == "lines") return sprintf("$series_%d using 1:2 with lines lc rgb '%s' dt %s lw %s title '%s'", k, colour_of[i], dash, width, name)
-	return sprintf("$series_%d using 1:2 with " (with == "points" ? "points" : "linespoints") " pt %d ps %s lc rgb '%s'" (with == "points" ? "" : " dt " dash) " lw %s title '%s'", k, mark_of[i], size, colour_of[i], with == "points" ? 1.6 : width, name)
+	if (with == "lines")
+		return sprintf("$series_%d using 1:2 with lines lc rgb '%s' dt %s lw %s title '%s'", k, colour_of[i],
+		dash, width, name)
+	return sprintf("$series_%d using 1:2 with " (with == "points" ? "points" \
+		: "linespoints") " pt %d ps %s lc rgb '%s'" (with == "points" ? "" : " dt " dash) " lw %s title '%s'",
+		k, mark_of[i], size, colour_of[i], with == "points" ? 1.6 : width, name)
 }
 BEGIN {
 	by = by == "" ? "method" : by
 	xfactor = xfactor == "" ? 1 : xfactor
 	yfactor = yfactor == "" ? 1 : yfactor
-	# ours: filled marks (5 square, 7 disc, 9 and 11 triangles, 13 diamond, 15 pentagon), thick, unbroken but where marks
-	# run out (a dash with +); the first pattern that fits counts
+	# ours: filled marks (5 square, 7 disc, 9 and 11 triangles, 13 diamond, 15 pentagon), thick, unbroken but where
+	# marks run out (a dash with +); the first pattern that fits counts
 	look("^(exact, )?float.*compensated",   15, "#604000")
 	look("^(exact, )?float.*delta",         13, "#f0b000")
 	look("^(exact, )?float.*kick",          11, "#b07000")
@@ -87,7 +94,8 @@ NR == 1 {
 		split(condition[i], part, "=")
 		condition_column[i] = column[part[1]]; condition_value[i] = part[2]
 	}
-	if (!(by in column) || !(x in column) || !(y in column)) { print "series.awk: no column " by ", " x " or " y > "/dev/stderr"; exit 1 }
+	if (!(by in column) || !(x in column) || !(y in column)) {
+		print "series.awk: no column " by ", " x " or " y > "/dev/stderr"; exit 1 }
 	next
 }
 {

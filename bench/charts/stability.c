@@ -2,9 +2,10 @@
  *
  * stability [--quick] OUTDIR VARIANTS
  *
- * Where does each method stay bounded on x'' + 2 zeta w x' + w^2 x = 0?  The spectral radius of one step over (w h, zeta), and where it
- * passes 1: stability_map.csv, stability_boundary.csv; what is known of these boundaries beside what is measured: stability_check.csv.
- * `exact` is e^{A h} by hand, compared with generated code at a few points (VARIANTS/oscillator_*.so, where they are).
+ * Where does each method stay bounded on x'' + 2 zeta w x' + w^2 x = 0?  The spectral radius of one step over (w h,
+ * zeta), and where it passes 1: stability_map.csv, stability_boundary.csv; what is known of these boundaries beside
+ * what is measured: stability_check.csv. `exact` is e^{A h} by hand, compared with generated code at a few points
+ * (VARIANTS/oscillator_*.so, where they are).
  */
 #include "amplification.h"
 
@@ -46,11 +47,13 @@ static void row_of_map(FILE *map, FILE *ends, const char *name, const struct sub
 	for (int i = 0; i < g.steps; i++) {
 		const double wh = step_at(g, i), rho = growth(s, wh), limit = 1 + NOT_GROWING;
 		if (isfinite(rho))
-			fprintf(map, "%s,%.6g,%.6g,%.6g,%.4g\n", name, wh, s->zeta, rho, fabs(rho - 1) <= NOT_GROWING ? 0 : rho - 1);
+			fprintf(map, "%s,%.6g,%.6g,%.6g,%.4g\n", name, wh, s->zeta, rho, fabs(rho - 1) <= NOT_GROWING
+				? 0 : rho - 1);
 		else
 			fprintf(map, "%s,%.6g,%.6g,failed,failed\n", name, wh, s->zeta);
 		if (i > 0 && (before <= limit) != (rho <= limit))
-			fprintf(ends, "%s,%d,%.6g,%.6g\n", name, ++branch, boundary_between(growth, s, step_at(g, i - 1), wh, limit), s->zeta);
+			fprintf(ends, "%s,%d,%.6g,%.6g\n", name, ++branch,
+				boundary_between(growth, s, step_at(g, i - 1), wh, limit), s->zeta);
 		before = rho;
 	}
 }
@@ -84,7 +87,8 @@ static const struct method *named(const char *name)
 	return NULL;
 }
 
-/* The first end of stability from w h = 0.01 up; 0: not even there; infinite: none up to 100, beyond which rounding alone makes 1e-12 */
+/* The first end of stability from w h = 0.01 up; 0: not even there; infinite: none up to 100, beyond which rounding
+ * alone makes 1e-12 */
 static double first_end(const char *name, double zeta, double limit)
 {
 	const struct subject s = {named(name), zeta};
@@ -97,14 +101,15 @@ static double first_end(const char *name, double zeta, double limit)
 	return INFINITY;
 }
 
-/* |R(i y)|^2 - 1 of the formula of order 5 of Dormand and Prince: R(z) = 1 + z + ... + z^5/120 + z^6/600 (Hairer, Norsett and Wanner,
- * Solving ODEs I, section IV.2 of volume II) */
+/* |R(i y)|^2 - 1 of the formula of order 5 of Dormand and Prince: R(z) = 1 + z + ... + z^5/120 + z^6/600 (Hairer,
+ * Norsett and Wanner, Solving ODEs I, section IV.2 of volume II) */
 static double dormand_prince_end(void)
 {
 	double from = 0.5, to = 1.5;
 	while (to - from > 1e-14) {
 		const double y = (from + to) / 2, q = y * y;
-		const double re = 1 + q * (-1 / 2.0 + q * (1 / 24.0 - q / 600)), im = y * (1 + q * (-1 / 6.0 + q / 120));
+		const double re = 1 + q * (-1 / 2.0 + q * (1 / 24.0 - q / 600)),
+			im = y * (1 + q * (-1 / 6.0 + q / 120));
 		*(re * re + im * im <= 1 ? &from : &to) = y;
 	}
 	return from;
@@ -116,21 +121,26 @@ static void check_ends(struct checks *c)
 	const double limit = 1 + NOT_GROWING;
 	check(c, 0, first_end("explicit Euler", 0, limit), 0, "explicit Euler zeta 0: end of stability w h (0: none)");
 	check(c, 0.2, first_end("explicit Euler", 0.1, limit), 1e-6, "explicit Euler zeta 0.1: w h = 2 zeta");
-	check(c, 0, first_end("explicit trapezoid", 0, limit), 0, "explicit trapezoid zeta 0: end of stability w h (0: none)");
+	check(c, 0, first_end("explicit trapezoid", 0, limit), 0,
+	      "explicit trapezoid zeta 0: end of stability w h (0: none)");
 	check(c, sqrt(8), first_end("RK4", 0, limit), 1e-6, "RK4 zeta 0: w h = 2 sqrt(2)");
 	check(c, 2.785293563405, first_end("RK4", 1, limit), 1e-6, "RK4 zeta 1: the end on the negative real axis");
 	check(c, 2, first_end("central difference", 0, limit), 1e-6, "central difference zeta 0: w h = 2");
 	check(c, 2, first_end("central difference", 0.5, limit), 1e-6, "central difference zeta 0.5: w h = 2");
-	check(c, dormand_prince_end(), first_end("Dormand-Prince 5 (fixed step)", 0, limit), 1e-3, "Dormand-Prince 5 zeta 0: |R(i w h)| = 1");
+	check(c, dormand_prince_end(), first_end("Dormand-Prince 5 (fixed step)", 0, limit), 1e-3,
+	      "Dormand-Prince 5 zeta 0: |R(i w h)| = 1");
 	for (int i = 0; i < 3; i++)
 		for (int z = 0; z < 2; z++)
-			check(c, INFINITY, first_end(implicit[i], 0.1 * z, limit), 0, "%s zeta %g: end of stability w h", implicit[i], 0.1 * z);
+			check(c, INFINITY, first_end(implicit[i], 0.1 * z, limit), 0,
+			      "%s zeta %g: end of stability w h", implicit[i], 0.1 * z);
 }
 
-/* Chung and Hulbert, J. Applied Mechanics 60 (1993): q, v and a of one step on x'' + x = 0; alpha_m = 1/3, alpha_f = 4/9 */
+/* Chung and Hulbert, J. Applied Mechanics 60 (1993): q, v and a of one step on x'' + x = 0; alpha_m = 1/3, alpha_f =
+ * 4/9 */
 static double alpha_by_hand(double h)
 {
-	const double m = 1 / 3.0, f = 4 / 9.0, beta = 25 / 81.0, gamma = 11 / 18.0, left = 1 - m + (1 - f) * beta * h * h;
+	const double m = 1 / 3.0, f = 4 / 9.0, beta = 25 / 81.0, gamma = 11 / 18.0,
+		left = 1 - m + (1 - f) * beta * h * h;
 	const double a[3] = {-1 / left, -(1 - f) * h / left, -(m + (1 - f) * h * h * (0.5 - beta)) / left};
 	double matrix[9];
 	double complex eigenvalue[3];
@@ -144,17 +154,23 @@ static double alpha_by_hand(double h)
 
 static void check_growth(struct checks *c)
 {
-	const struct subject euler = {named("explicit Euler"), 0}, heun = {named("explicit trapezoid"), 0}, rk4 = {named("RK4"), 0};
+	const struct subject euler = {named("explicit Euler"), 0}, heun = {named("explicit trapezoid"), 0},
+		rk4 = {named("RK4"), 0};
 	const struct subject rk8pd = {&rk8pd_fixed, 0}, alpha = {named("generalized-alpha"), 0};
 	check(c, sqrt(1.01), growth(&euler, 0.1), 1e-14, "explicit Euler zeta 0 w h 0.1: rho = sqrt(1 + (w h)^2)");
-	check(c, sqrt(1 + 1e-4 / 4), growth(&heun, 0.1), 1e-14, "explicit trapezoid zeta 0 w h 0.1: rho = sqrt(1 + (w h)^4/4)");
-	check(c, sqrt(1 - 1e-6 / 72 + 1e-8 / 576), growth(&rk4, 0.1), 1e-14, "RK4 zeta 0 w h 0.1: rho^2 = 1 - (w h)^6/72 + (w h)^8/576");
-	check(c, alpha_by_hand(0.1), growth(&alpha, 0.1), 1e-12, "generalized-alpha zeta 0 w h 0.1: rho of its matrix by hand");
-	check(c, alpha_by_hand(10), growth(&alpha, 10), 1e-12, "generalized-alpha zeta 0 w h 10: rho of its matrix by hand");
+	check(c, sqrt(1 + 1e-4 / 4), growth(&heun, 0.1), 1e-14,
+	      "explicit trapezoid zeta 0 w h 0.1: rho = sqrt(1 + (w h)^4/4)");
+	check(c, sqrt(1 - 1e-6 / 72 + 1e-8 / 576), growth(&rk4, 0.1), 1e-14,
+	      "RK4 zeta 0 w h 0.1: rho^2 = 1 - (w h)^6/72 + (w h)^8/576");
+	check(c, alpha_by_hand(0.1), growth(&alpha, 0.1), 1e-12,
+	      "generalized-alpha zeta 0 w h 0.1: rho of its matrix by hand");
+	check(c, alpha_by_hand(10), growth(&alpha, 10), 1e-12,
+	      "generalized-alpha zeta 0 w h 10: rho of its matrix by hand");
 	check(c, 0.8, growth(&alpha, 1e4), 1e-2, "generalized-alpha zeta 0 w h 1e4: rho at infinity as chosen");
 	/* Weak growth looks like stability where rounding hides it, so its power is looked at where it shows */
 	check(c, 10, log((growth(&rk8pd, 0.45) - 1) / (growth(&rk8pd, 0.36) - 1)) / log(0.45 / 0.36), 0.03,
-	      "GSL rk8pd zeta 0: growth per step goes as (w h)^10, so it has no end of stability (below 1e-12 for w h < %.3g)",
+	      "GSL rk8pd zeta 0: growth per step goes as (w h)^10, so it has no end of stability (below 1e-12 for w h "
+	      "< %.3g)",
 	      first_end(rk8pd.method->name, 0, 1 + NOT_GROWING));
 }
 
@@ -162,21 +178,23 @@ static void check_growth(struct checks *c)
 static void check_exact(struct checks *c, const char *variants)
 {
 	static const struct { const char *file; double wh, zeta; } points[] = {
-		{"oscillator_undamped.so", 0.5, 0}, {"oscillator_damped.so", 5, 0.05}, {"oscillator_overdamped.so", 2, 1.25}};
+		{"oscillator_undamped.so", 0.5, 0}, {"oscillator_damped.so", 5, 0.05},
+		{"oscillator_overdamped.so", 2, 1.25}};
 	const struct subject undamped = {NULL, 0};
 	double worst = 0;
 	for (double wh = 0.01; wh <= 100; wh *= 1.1)
 		worst = fmax(worst, fabs(growth(&undamped, wh) - 1));
 	check(c, 0, worst, 1e-13, "exact by hand zeta 0 w h 0.01 to 100: largest |rho - 1|");
 	for (int i = 0; i < 3; i++) {
-		const double over = points[i].zeta > 1 ? points[i].zeta - sqrt(points[i].zeta * points[i].zeta - 1) : points[i].zeta;
+		const double over = points[i].zeta > 1 ? points[i].zeta - sqrt(points[i].zeta * points[i].zeta - 1)
+		                    : points[i].zeta;
 		char path[4096];
 		snprintf(path, sizeof path, "%s/%s", variants, points[i].file);
 		void *handle = dlopen(path, RTLD_NOW | RTLD_LOCAL);
 		const double *Phi = handle ? dlsym(handle, "subject_Phi") : NULL;
 		double complex eigenvalue[2];
-		check(c, exp(-over * points[i].wh), Phi ? largest(eigenvalues_of(2, Phi, eigenvalue), eigenvalue) : NAN, 1e-14,
-		      "exact generated zeta %g w h %g: rho of the emitted Phi", points[i].zeta, points[i].wh);
+		check(c, exp(-over * points[i].wh), Phi ? largest(eigenvalues_of(2, Phi, eigenvalue), eigenvalue) : NAN,
+		      1e-14, "exact generated zeta %g w h %g: rho of the emitted Phi", points[i].zeta, points[i].wh);
 	}
 }
 

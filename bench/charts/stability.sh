@@ -1,8 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# stability.sh [--quick] PLGEN PROGRAMS OUTDIR: where methods are stable, and how well they keep period and amplitude.  Run at the top of
-# the source tree; PROGRAMS has stability, quality, operator_map and largest_step.  CSV, SVG and PNG go to OUTDIR; exit status 1 where a
-# measured boundary is not the known one (OUTDIR/*_check.csv).
+# stability.sh [--quick] PLGEN PROGRAMS OUTDIR: where methods are stable, and how well they keep period and amplitude.
+# Run at the top of the source tree; PROGRAMS has stability, quality, operator_map and largest_step.  CSV, SVG and PNG
+# go to OUTDIR; exit status 1 where a measured boundary is not the known one (OUTDIR/*_check.csv).
 set -e
 quick=
 [ "$1" = --quick ] && quick=$1 && shift

@@ -18,8 +18,10 @@ series(file, options) = "< awk -f '".here."/csv.awk' -f '".here."/series.awk' ".
 if (!exists('size')) size = '900,600'           # pixels; a script may set it before
 eval "set terminal svg size ".size              # until it is written: into nothing
 set output '/dev/null'
-svg = "set terminal svg size ".size." dynamic enhanced font 'DejaVu Sans,Helvetica,sans-serif,13' background rgb 'white'; set output out.'/'.name.'.svg'; replot; unset output;"
-png = "set terminal pngcairo size ".size." enhanced font 'DejaVu Sans,11' background rgb 'white'; set output out.'/'.name.'.png'; replot; unset output;"
+svg = "set terminal svg size ".size." dynamic enhanced font 'DejaVu Sans,Helvetica,sans-serif,13' background rgb ".\
+	"'white'; set output out.'/'.name.'.svg'; replot; unset output;"
+png = "set terminal pngcairo size ".size." enhanced font 'DejaVu Sans,11' background rgb 'white'; set output ".\
+	"out.'/'.name.'.png'; replot; unset output;"
 write = svg.png."set output '/dev/null'"
 
 set border lw 1 lc rgb '#404040'

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# awk [-v where='model=scs;real=float'] -v name=FILE.csv -f csv.awk -f table.awk FILE.csv: its rows as an HTML table; more than 30 are folded, more
-# than 3000 stay in the file, which is linked. Words for a failure are marked. A column `settings` becomes a list below, once a method.
+# awk [-v where='model=scs;real=float'] -v name=FILE.csv -f csv.awk -f table.awk FILE.csv: its rows as an HTML table;
+# more than 30 are folded, more than 3000 stay in the file, which is linked. Words for a failure are marked. A column
+# `settings` becomes a list below, once a method.
 function escaped(text) {
 	gsub(/&/, "\\&amp;", text)
 	gsub(/</, "\\&lt;", text)
@@ -8,7 +9,8 @@ function escaped(text) {
 	return text
 }
 function class_of(head, text) {
-	if (text ~ /^(failed|diverged|refused|nan|-nan|inf|-inf|wrong|gave up|not reached|ours not reached|no|FAILED)$/) return "bad"
+	if (text ~ /^(failed|diverged|refused|nan|-nan|inf|-inf|wrong|gave up|not reached|ours not reached|no|FAILED)$/)
+		return "bad"
 	if (text ~ /^(poor|never)$/) return "poor"
 	if (text ~ /^(linear only|as exact)$/) return "none"
 	return is_number(text) ? "n" : ""
@@ -47,11 +49,13 @@ NR == 1 {
 END {
 	link = "<a href=\"" name "\">" name "</a>"
 	gsub(/;/, ", ", where)
-	if (count == 0) { print "<p class=bad>" link " has no rows" (where == "" ? "" : " of " escaped(where)) ".</p>"; exit }
+	if (count == 0) { print "<p class=bad>" link " has no rows" (where == "" ? "" : " of " escaped(where)) ".</p>";
+		exit }
 	if (count > 3000) { print "<p class=numbers>Numbers: " link ", " count " rows.</p>"; exit }
 	if (count > 30) print "<details><summary>Numbers: " count " rows</summary>"
 	print "<p class=numbers>" link (where == "" ? "" : ": " escaped(where)) "</p><div class=wide><table><tr>"
-	for (i = 1; i <= columns; i++) if (!(i in hidden)) { title = head[i]; gsub(/_/, "_<wbr>", title); printf "<th>%s</th>", title }
+	for (i = 1; i <= columns; i++) if (!(i in hidden)) { title = head[i]; gsub(/_/, "_<wbr>", title);
+		printf "<th>%s</th>", title }
 	print "</tr>"
 	for (i = 1; i <= count; i++) print lines[i]
 	print "</table></div>"

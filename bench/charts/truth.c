@@ -1,14 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What the charts compare with, by two roads.
  *
- *   linear         e^{A t} in quadruple precision (33 digits), loads carried as states: no error that a double could see.
+ *   linear         e^{A t} in quadruple precision (33 digits), loads carried as states: no error that a double could
+ *                  see.
  *   nonlinear      the equations by hand, by extrapolation (Gragg, Bulirsch, Stoer) in long double (19 digits).
  *   the beams      the same on matrices found by quadrature of their definition (tests/leftover/cantilever.c).
  *   clearances     the equations by hand, by Taylor series between crossings in long double (tests/switching/hand.c).
  *   what has none of these: NAME_rhs, in double, by extrapolation in long double.
  *
- * The second road is another method on NAME_rhs in double; how far the two are apart is the truth's `agreement`, and says how good
- * that method is as much as how good the truth is. */
+ * The second road is another method on NAME_rhs in double; how far the two are apart is the truth's `agreement`, and
+ * says how good that method is as much as how good the truth is. */
 #include "charts.h"
 
 #include "../../tests/leftover/elliptic.h"
@@ -115,7 +116,8 @@ static void flow_of_asked(const struct problem *p, struct flow *f, quad w)
 static quad floor_by_hand(struct flow *f)
 {
 	const quad m = 20000, mu = 0.02Q, w0 = 4 * M_PIq, md = mu * m, wd = w0 / (1 + mu);
-	const quad k = m * w0 * w0, c = 2 * 0.01Q * w0 * m, kd = md * wd * wd, cd = 2 * md * wd * sqrtq(3 * mu / (8 * (1 + mu) * (1 + mu) * (1 + mu)));
+	const quad k = m * w0 * w0, c = 2 * 0.01Q * w0 * m, kd = md * wd * wd,
+		cd = 2 * md * wd * sqrtq(3 * mu / (8 * (1 + mu) * (1 + mu) * (1 + mu)));
 	const int n = f->size;
 	quad *a = f->A + 2 * n, *b = f->A + 3 * n;
 	a[0] = -(k + kd) / m, a[1] = kd / m, a[2] = -(c + cd) / m, a[3] = cd / m, a[6] = 400 / m;
@@ -180,9 +182,11 @@ static void closed_form(const struct problem *p, struct truth *t)
 struct equations {
 	const char *name;
 	void (*slopes)(const struct problem *p, real t, const real *y, real *dydt);
-	real tolerance;                 /* relative to the scales; the beams' stiffness (1e8 /s^2) leaves no more to long double */
-	int parts;                      /* second road: GSL rk8pd with this many fixed steps a unit (the beams: where steps end on stability, not on
-	                                 * accuracy, its control lets errors of 1e-9 pass); 0: by tolerances */
+	/* relative to the scales; the beams' stiffness (1e8 /s^2) leaves no more to long double */
+	real tolerance;
+	/* second road: GSL rk8pd with this many fixed steps a unit (the beams: where steps end on stability, not on
+	 * accuracy, its control lets errors of 1e-9 pass); 0: by tolerances */
+	int parts;
 };
 
 static void pendulum(const struct problem *p, real t, const real *y, real *dydt)
@@ -265,7 +269,8 @@ struct extrapolation {
 };
 
 /* Gragg 1965: the modified midpoint rule with `parts` substeps; its error has even powers only. */
-static void midpoint(const struct extrapolation *x, real t, real H, int parts, const real *y, const real *slope, real *result)
+static void midpoint(const struct extrapolation *x, real t, real H, int parts, const real *y, const real *slope,
+                     real *result)
 {
 	real before[MOST], now[MOST], f[MOST], h = H / parts;
 	for (int i = 0; i < x->size; i++) {
@@ -299,7 +304,8 @@ static real extrapolate(const struct extrapolation *x, real t, real H, const rea
 		}
 		if (k == COLUMNS - 1)
 			for (int i = 0; i < x->size; i++)
-				error = fmaxl(error, fabsl(table[0][i] - last[i]) / (i < x->p->n ? x->scale_q : x->scale_v));
+				error = fmaxl(error,
+				              fabsl(table[0][i] - last[i]) / (i < x->p->n ? x->scale_q : x->scale_v));
 	}
 	memcpy(result, table[0], sizeof table[0]);
 	return error;
@@ -338,7 +344,8 @@ static void follow(struct extrapolation *x, real from, real to, real *y)
 
 static void extrapolated(const struct problem *p, const struct equations *e, struct truth *t)
 {
-	struct extrapolation x = { .p = p, .e = e, .size = 2 * p->n, .step = (real)p->unit / 10, .scale_q = 1e-3L, .scale_v = 1e-3L };
+	struct extrapolation x = { .p = p, .e = e, .size = 2 * p->n, .step = (real)p->unit / 10, .scale_q = 1e-3L,
+	                           .scale_v = 1e-3L };
 	const real unit = (real)exactly(p->unit);
 	real y[MOST] = { 0 };
 	for (int i = 0; i < x.size; i++)
@@ -353,7 +360,8 @@ static void extrapolated(const struct problem *p, const struct equations *e, str
 		for (int i = 0; i < x.size; i++)
 			t->at_end[k * x.size + i] = (double)y[i];
 	}
-	t->scale_q = (double)x.scale_q;                 /* over all steps: a jump's peak lies between the ends of units */
+	/* over all steps: a jump's peak lies between the ends of units */
+	t->scale_q = (double)x.scale_q;
 	t->scale_v = (double)x.scale_v;
 }
 
@@ -375,14 +383,16 @@ static void add_gap(struct hand_system *s, const real *row, const real *push, re
 /* models/gear1.spec */
 static void gear1(struct hand_system *s)
 {
-	*s = (struct hand_system){ .n = 1, .C = { { 0.1L } }, .f0 = { 0.1L }, .fa = { 0.05L }, .w = 0.8L, .start = { 1.1L } };
+	*s = (struct hand_system){ .n = 1, .C = { { 0.1L } }, .f0 = { 0.1L }, .fa = { 0.05L }, .w = 0.8L,
+	                           .start = { 1.1L } };
 	add_gap(s, (real[]){ 1 }, (real[]){ 1 }, 1, 1);
 }
 
 /* models/gear2.spec */
 static void gear2(struct hand_system *s)
 {
-	*s = (struct hand_system){ .n = 2, .K = { { 0, -0.5L }, { 0, 1 } }, .C = { { 0.1L, -0.05L }, { -0.05L, 0.1L } }, .f0 = { 0.1L, 0.05L },
+	*s = (struct hand_system){ .n = 2, .K = { { 0, -0.5L }, { 0, 1 } }, .C = { { 0.1L, -0.05L }, { -0.05L, 0.1L } },
+	                           .f0 = { 0.1L, 0.05L },
 	                           .fa = { 0.05L }, .w = 0.8L, .start = { 1.2L, 0.1L } };
 	add_gap(s, (real[]){ 1, 0 }, (real[]){ 1, -0.5L }, 1, 1);
 }
@@ -390,14 +400,16 @@ static void gear2(struct hand_system *s)
 /* models/gear3.spec: masses 1, 0.5, 2 divided out */
 static void gear3(struct hand_system *s)
 {
-	*s = (struct hand_system){ .n = 3, .C = { { 0.4L, -0.4L, 0 }, { -0.8L, 1.4L, -0.6L }, { 0, -0.15L, 0.15L } }, .f0 = { 1, 0, -0.5L },
+	*s = (struct hand_system){ .n = 3, .C = { { 0.4L, -0.4L, 0 }, { -0.8L, 1.4L, -0.6L }, { 0, -0.15L, 0.15L } },
+	                           .f0 = { 1, 0, -0.5L },
 	                           .fa = { 0.8L }, .w = 7, .start = { 0.03L, 0, -0.03L } };
 	add_gap(s, (real[]){ 1, -1, 0 }, (real[]){ 1, -2, 0 }, 100, 0.01L);
 	add_gap(s, (real[]){ 0, 1, -1 }, (real[]){ 0, 2, -0.5L }, 80, 0.02L);
 }
 
 /* models/stop.spec and bilinear.spec are not charted */
-static const struct { const char *name; void (*make)(struct hand_system *s); } gears[] = { { "gear1", gear1 }, { "gear2", gear2 }, { "gear3", gear3 } };
+static const struct { const char *name; void (*make)(struct hand_system *s); } gears[] = { { "gear1", gear1 },
+	{ "gear2", gear2 }, { "gear3", gear3 } };
 
 static void between_crossings(const struct problem *p, void (*make)(struct hand_system *s), struct truth *t)
 {
@@ -463,7 +475,8 @@ static double elliptic_difference(const struct problem *p, const struct truth *t
 	return most;
 }
 
-static double difference_at(const struct problem *p, const struct truth *t, const struct method *method, double tolerance)
+static double difference_at(const struct problem *p, const struct truth *t, const struct method *method,
+                            double tolerance)
 {
 	struct run *run = method->open(method, p, tolerance);
 	double row[MOST], most = 0;
@@ -477,7 +490,8 @@ static double difference_at(const struct problem *p, const struct truth *t, cons
 	return good ? most : NAN;
 }
 
-/* Another integrator in double: where tolerances are that tight, rounding decides which of them is best, and the best is taken. */
+/* Another integrator in double: where tolerances are that tight, rounding decides which of them is best, and the best
+ * is taken. */
 static double solver_difference(const struct problem *p, const struct truth *t, int parts)
 {
 	const struct method *method = method_find(parts > 0 ? "GSL rk8pd (fixed step)" : "GSL rk8pd");
@@ -532,7 +546,8 @@ static void solve(struct problem *p, struct truth *t)
 		t->roads = "by hand: Taylor series between crossings in long double; NAME_rhs by GSL rk8pd";
 		between_crossings(p, gears_of(p->name), t);
 	} else {
-		t->roads = e->name ? "by hand: extrapolation in long double; NAME_rhs by GSL rk8pd" : "NAME_rhs: extrapolation in long double; GSL rk8pd";
+		t->roads = e->name ? "by hand: extrapolation in long double; NAME_rhs by GSL rk8pd"
+		           : "NAME_rhs: extrapolation in long double; GSL rk8pd";
 		extrapolated(p, e, t);
 	}
 	find_scales(p, t);

@@ -1,8 +1,9 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# variant.sh PLGEN OUT.so SPEC [plgen options]: a model's C as a shared object whose names begin with `subject`, compiled as its user
-# would. Run at the top of the source tree. It keeps the options it was made with: subject_options.
-# What plgen refuses is a result too: its message goes to OUT.so.refused, no object is left, and the exit status is 0.
+# variant.sh PLGEN OUT.so SPEC [plgen options]: a model's C as a shared object whose names begin with `subject`,
+# compiled as its user would. Run at the top of the source tree. It keeps the options it was made with:
+# subject_options. What plgen refuses is a result too: its message goes to OUT.so.refused, no object is left, and the
+# exit status is 0.
 #     -fno-semantic-interposition  gcc may inline subject_step into subject_run, as it does in a program
 #     no -march=native, no -ffast-math: for the peers neither
 set -e

@@ -39,15 +39,16 @@ int main(int argc, char **argv)
 	SUNMatrix jacobian = SUNDenseMatrix(model->states, model->states, context);
 	SUNLinearSolver solver = SUNLinSol_Dense(u, jacobian, context);
 	void *cvode = CVodeCreate(CV_ADAMS, context);
-	if (CVodeInit(cvode, rhs, 0, u) || CVodeSStolerances(cvode, 1e-12, 1e-15) || CVodeSetLinearSolver(cvode, solver, jacobian) ||
-	    CVodeSetMaxNumSteps(cvode, 1000000))
+	if (CVodeInit(cvode, rhs, 0, u) || CVodeSStolerances(cvode, 1e-12, 1e-15) ||
+	    CVodeSetLinearSolver(cvode, solver, jacobian) || CVodeSetMaxNumSteps(cvode, 1000000))
 		return 1;
 	long steps = lround(end / model->h);
 	for (long k = 1; k <= steps; k++) {
 		double t;
 		model->step(state, NULL);
 		model->get(state, y);
-		if (CVodeSetStopTime(cvode, model->time(state)) || CVode(cvode, model->time(state), u, &t, CV_NORMAL) < 0)
+		if (CVodeSetStopTime(cvode, model->time(state)) || CVode(cvode, model->time(state), u, &t, CV_NORMAL) <
+		    0)
 			return 1;
 		for (int i = 0; i < model->states; i++) {
 			largest[i] = fmax(largest[i], fabs(y[i]));

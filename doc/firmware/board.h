@@ -9,7 +9,8 @@
 #define BOARD_CLOCK_HZ 25000000u /* of the processor, which SysTick counts */
 #endif
 
-/* Called every millisecond, in the interrupt: 1 and the travel of the suspension [m] where there is a new measurement, else 0. */
+/* Called every millisecond, in the interrupt: 1 and the travel of the suspension [m] where there is a new measurement,
+ * else 0. */
 int board_travel(float *travel);
 
 /* Called every 50 ms, outside. */

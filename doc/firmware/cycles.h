@@ -7,9 +7,9 @@
  *     scs_step(&s);
  *     spent = cycles() - before;     // right also when the counter wraps
  *
- * Take off what two calls of cycles() with nothing between them give; let it run some hundred times with interrupts masked, and look at the
- * least and the largest: flash wait states and caches make the difference.  Where the compiler can see both calls, it may move
- * arithmetic across them: keep the step in another file. */
+ * Take off what two calls of cycles() with nothing between them give; let it run some hundred times with interrupts
+ * masked, and look at the least and the largest: flash wait states and caches make the difference.  Where the compiler
+ * can see both calls, it may move arithmetic across them: keep the step in another file. */
 #ifndef CYCLES_H
 #define CYCLES_H
 

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT-0 */
 /* A quarter car beside the real one: stepped by a timer interrupt at 1 kHz, and kept near it by what a sensor measures.
  *
- * Bare metal: no operating system, no allocation, no library but the runtime.  board.h is what your board has to offer. */
+ * Bare metal: no operating system, no allocation, no library but the runtime.  board.h is what your board has to offer.
+ */
 #include "board.h"
 #include "quarter_car_pl.h"
 
@@ -9,8 +10,9 @@
 static quarter_car car;
 static volatile uint32_t ticks; /* of 1 ms: QUARTER_CAR_H */
 
-/* The sensor tells how far the suspension is pressed, wheel - body [m].  Each gain says how much of a surprise of 1 m goes into that state:
- * body, wheel [m], body', wheel' [m/s].  These are a Kalman filter's, for a measurement every 10 ms that is good to 1 mm. */
+/* The sensor tells how far the suspension is pressed, wheel - body [m].  Each gain says how much of a surprise of 1 m
+ * goes into that state: body, wheel [m], body', wheel' [m/s].  These are a Kalman filter's, for a measurement every 10
+ * ms that is good to 1 mm. */
 static void correct(float travel)
 {
     static const float gain[QUARTER_CAR_STATES] = {-0.64f, 0.15f, -6.0f, 11.4f};
@@ -20,7 +22,8 @@ static void correct(float travel)
     surprise = travel - (y[1] - y[0]);
     for (i = 0; i < QUARTER_CAR_STATES; i++)
         y[i] += gain[i] * surprise;
-    /* The time comes from the counter of ticks.  Time that is read back and set again, in float, would be rounded each time. */
+    /* The time comes from the counter of ticks.  Time that is read back and set again, in float, would be rounded each
+     * time. */
     quarter_car_set(&car, (float)ticks * QUARTER_CAR_H, y);
 }
 

@@ -52,7 +52,8 @@ enum {
 	LIMIT_RESIDUE_STATES = 12,  /* beyond, a Taylor series gives the numbers: residues get slow */
 	LIMIT_TURNS = 256,          /* log2 of a load's angle in a step, for models of more states than that */
 	LIMIT_ERRORS = 100,         /* told before the rest is not looked at */
-	LIMIT_DEPTH = 10000,        /* of an expression in operations, through params and lets; a function of many arguments counts as many */
+	/* of an expression in operations, through params and lets; a function of many arguments counts as many */
+	LIMIT_DEPTH = 10000,
 	LIMIT_TERMS = 10000000,     /* of forms, made on the way to the equations */
 	LIMIT_BYTES = 470000000,    /* held at a time */
 	LIMIT_ROWS = 10000000,      /* of --solution */
@@ -71,7 +72,8 @@ char *format(const char *fmt, ...) __attribute__((format(printf, 1, 2)));
 mpq_t *rationals(size_t count);                            /* initialised to 0 */
 void  rationals_free(mpq_t *q, size_t count);
 void  discard(void *block);                                /* gives it back before the end; what it points to stays */
-void  spend_terms(size_t count);                            /* from the budget of LIMIT_TERMS; gives up when it is spent */
+/* from the budget of LIMIT_TERMS; gives up when it is spent */
+void  spend_terms(size_t count);
 #define NEW(type) ((type *)allocate(1, sizeof(type)))
 #define ARRAY(type, count) ((type *)allocate(count, sizeof(type)))
 #define ENLARGE(array, count) ((array) = enlarge(array, count, sizeof *(array)))
@@ -94,7 +96,8 @@ struct place {
 	const struct source *source;
 	size_t offset;
 };
-struct source *source_read(const char *path);              /* "-" is standard input; says what went wrong and returns NULL */
+/* "-" is standard input; says what went wrong and returns NULL */
+struct source *source_read(const char *path);
 struct source *source_argument(const char *text);          /* a value from the command line */
 struct place place_end(const struct source *source);       /* just after the last character of the last line */
 
@@ -104,7 +107,8 @@ void say_error(struct place at, const char *note, const char *fmt, ...) __attrib
 _Noreturn void error(struct place at, const char *note, const char *fmt, ...) __attribute__((format(printf, 3, 4)));
 void work_at(struct place at);                             /* what is said to cost too much from now on */
 struct place working_at(void);
-_Noreturn void give_up(const char *message);               /* an error there, and the end: what is spent does not come back */
+/* an error there, and the end: what is spent does not come back */
+_Noreturn void give_up(const char *message);
 _Noreturn void abandon(void);                              /* leave the statement; its error has been said before */
 void say_warning(struct place at, const char *note, const char *fmt, ...) __attribute__((format(printf, 3, 4)));
 void say_note(struct place at, const char *fmt, ...) __attribute__((format(printf, 2, 3)));
@@ -121,12 +125,15 @@ void check_power(struct place at, mpq_srcptr base, unsigned long exponent); /* t
 /* The target's type is double, or float after target_float; a double holds its numbers. */
 void   target_float(void);
 const char *target_name(void);
-double round_rational(mpq_srcptr q);                        /* nearest of the target's numbers; +-HUGE_VAL beyond the range */
+/* nearest of the target's numbers; +-HUGE_VAL beyond the range */
+double round_rational(mpq_srcptr q);
 double nearest_double(mpq_srcptr q);                        /* whatever the target */
 bool   beyond_range(mpq_srcptr q);
-const char *finite_text(struct place at, mpq_srcptr q);     /* shortest; leaves the statement at a value beyond the range */
+/* shortest; leaves the statement at a value beyond the range */
+const char *finite_text(struct place at, mpq_srcptr q);
 bool   round_enclosure(mpfi_srcptr x, double *d);           /* false: both ends do not round to one number */
-const char *shortest(double d);                             /* fewest digits that read back; a C literal, of type double */
+/* fewest digits that read back; a C literal, of type double */
+const char *shortest(double d);
 
 /* ---- rational.c: exact numbers as text ---- */
 

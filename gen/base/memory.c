@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Every chunk is kept in one ring and given back when the program ends. GMP, MPFR and MPFI free as they go; the
- * generator's own structures do not, so no stage needs to know who else still looks at them. What is held is counted, as
- * are the terms that were made: two budgets, looked at where the generator itself asks for memory, never inside GMP. They
- * are counts, so that a spec is within them on every machine or on none. */
+ * generator's own structures do not, so no stage needs to know who else still looks at them. What is held is counted,
+ * as are the terms that were made: two budgets, looked at where the generator itself asks for memory, never inside GMP.
+ * They are counts, so that a spec is within them on every machine or on none. */
 #include "base/base.h"
 
 #include <stdarg.h>

@@ -13,7 +13,8 @@ struct range {
 	mpfr_exp_t least, most;         /* of the smallest subnormal number, of the largest number */
 	int digits;                     /* that always read back */
 };
-static const struct range range_of_double = { "double", 53, -1073, 1024, 17 }, range_of_float = { "float", 24, -148, 128, 9 };
+static const struct range range_of_double = { "double", 53, -1073, 1024, 17 },
+			  range_of_float = { "float", 24, -148, 128, 9 };
 static const struct range *target = &range_of_double;
 
 void target_float(void)

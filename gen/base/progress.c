@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* One line on a terminal for what takes longer than a second; silent elsewhere. Nothing that is generated depends on it. */
+/* One line on a terminal for what takes longer than a second; silent elsewhere. Nothing that is generated depends on
+ * it. */
 #define _POSIX_C_SOURCE 200809L
 #include "base/base.h"
 

@@ -32,10 +32,12 @@ static void say(struct place at, const char *severity, const char *note, const c
 	vsnprintf(message, (size_t)length + 1, fmt, again);
 	va_end(again);
 	for (int i = 0; i < said_count; i++)    /* a let that two equations use is told once */
-		if (said[i].at.offset == at.offset && said[i].at.source == at.source && strcmp(said[i].message, message) == 0)
+		if (said[i].at.offset == at.offset && said[i].at.source == at.source &&
+		    strcmp(said[i].message, message) == 0)
 			return;
 	if (said_count == LIMIT_ERRORS && strcmp(severity, "error") == 0) {
-		message = format("more errors than the limit of %d: what comes after them is not looked at", LIMIT_ERRORS);
+		message = format("more errors than the limit of %d: what comes after them is not looked at",
+				 LIMIT_ERRORS);
 		guard = NULL;                   /* the end */
 		note = NULL;
 	}
@@ -150,7 +152,8 @@ static size_t line_start(const struct source *source, size_t offset)
 	size_t from = offset;
 	while (offset > 0 && source->text[offset - 1] != '\n')
 		offset--;
-	return offset == 0 && from >= 3 && strncmp(source->text, "\xef\xbb\xbf", 3) == 0 ? 3 : offset;   /* the mark is no column */
+	/* the mark is no column */
+	return offset == 0 && from >= 3 && strncmp(source->text, "\xef\xbb\xbf", 3) == 0 ? 3 : offset;
 }
 
 static bool is_continuation(char c)
@@ -169,7 +172,11 @@ static size_t count_characters(const char *text, size_t length)
 /* Length of the well-formed UTF-8 character at `s`, 0 if there is none (s ends with a 0 byte). */
 static size_t character_length(const unsigned char *s)
 {
-	size_t length = s[0] < 0x80 ? 1 : s[0] >= 0xc2 && s[0] < 0xe0 ? 2 : (s[0] & 0xf0) == 0xe0 ? 3 : s[0] >= 0xf0 && s[0] < 0xf5 ? 4 : 0;
+	size_t length = s[0] < 0x80                   ? 1
+			: s[0] >= 0xc2 && s[0] < 0xe0 ? 2
+			: (s[0] & 0xf0) == 0xe0       ? 3
+			: s[0] >= 0xf0 && s[0] < 0xf5 ? 4
+						      : 0;
 	for (size_t i = 1; i < length; i++)
 		if ((s[i] & 0xc0) != 0x80)
 			return 0;
@@ -192,7 +199,8 @@ static void print_line(FILE *to, struct place at)
 	size_t until = from;
 	while (until < source->length && source->text[until] != '\n' && until - from < SHOWN)
 		until++;
-	while (until > from && (source->text[until - 1] == '\r' || (until < source->length && is_continuation(source->text[until]))))
+	while (until > from &&
+	       (source->text[until - 1] == '\r' || (until < source->length && is_continuation(source->text[until]))))
 		until--;
 	for (size_t i = from, length; i < until; i += length) {
 		unsigned char c = (unsigned char)source->text[i];
@@ -280,7 +288,8 @@ static bool check_text(const struct source *source)
 		if (c == '\n')
 			line = i + 1;
 		else if (i - line >= LIMIT_LINE) {
-			say_error((struct place){ source, line }, NULL, "line longer than the limit of %d bytes", LIMIT_LINE);
+			say_error((struct place){ source, line }, NULL, "line longer than the limit of %d bytes",
+				  LIMIT_LINE);
 			return false;
 		}
 	}
@@ -308,7 +317,11 @@ struct source *source_read(const char *path)
 {
 	bool standard = strcmp(path, "-") == 0;
 	const char *slash = strrchr(path, '/');
-	struct source *source = source_new(standard ? "<stdin>" : path, standard ? "<stdin>" : slash ? slash + 1 : path, "", 0);
+	struct source *source = source_new(standard ? "<stdin>" : path,
+					   standard ? "<stdin>"
+					   : slash  ? slash + 1
+						    : path,
+					   "", 0);
 	struct place start = { source, 0 };
 	FILE *file = standard ? stdin : fopen(path, "rb");
 	if (!file) {

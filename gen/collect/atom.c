@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What is not linear, as atoms: expressions over forms, each made once. A form may then hold atoms beside coordinates and
- * loads, so that linear terms are found, and leftovers shared, wherever they stand. */
+/* What is not linear, as atoms: expressions over forms, each made once. A form may then hold atoms beside coordinates
+ * and loads, so that linear terms are found, and leftovers shared, wherever they stand. */
 #include "collect/collect.h"
 
 #include <string.h>
@@ -41,8 +41,10 @@ static size_t form_hash(const struct form *form)
 	for (int i = 0; i < form->terms; i++) {
 		const struct basis *basis = &form->term[i].basis;
 		hash = mix(hash, (size_t)basis->kind * 8 + (size_t)basis->order * 2 + basis->sine);
-		hash = mix(hash, basis->wave ? (size_t)basis->wave->index * 64 + (size_t)basis->power : (size_t)basis->index);
-		hash = mix(hash, mpz_get_ui(mpq_numref(form->term[i].factor)) + 3 * mpz_get_ui(mpq_denref(form->term[i].factor)));
+		hash = mix(hash,
+			   basis->wave ? (size_t)basis->wave->index * 64 + (size_t)basis->power : (size_t)basis->index);
+		hash = mix(hash, mpz_get_ui(mpq_numref(form->term[i].factor)) +
+					 3 * mpz_get_ui(mpq_denref(form->term[i].factor)));
 	}
 	return (hash >> 20) % BUCKETS;
 }
@@ -63,7 +65,9 @@ static const struct shared *share(struct collector *c, const struct form *form)
 /* What of two bases moves more readily: a coordinate, then an input */
 const struct basis *moved_basis(const struct basis *known, const struct basis *basis)
 {
-	basis = basis->atom ? basis->atom->moves : basis->kind == BASIS_COORD || basis->kind == BASIS_INPUT ? basis : NULL;
+	basis = basis->atom                                                ? basis->atom->moves
+		: basis->kind == BASIS_COORD || basis->kind == BASIS_INPUT ? basis
+									   : NULL;
 	return !known || (basis && basis->kind == BASIS_COORD && known->kind != BASIS_COORD) ? basis : known;
 }
 
@@ -89,7 +93,8 @@ static void check_highest(const struct collector *c, const struct node *node, co
 {
 	for (int i = 0; i < form->terms; i++) {
 		const struct basis *basis = &form->term[i].basis;
-		if (!c->output && basis->kind == BASIS_COORD && basis->order > 0 && basis->order >= c->frame->coord[basis->index]->highest)
+		if (!c->output && basis->kind == BASIS_COORD && basis->order > 0 &&
+		    basis->order >= c->frame->coord[basis->index]->highest)
 			not_linear(c, node, "is not linear");
 	}
 }
@@ -105,7 +110,8 @@ struct form *time_part(const struct form *form, bool atoms)
 
 static bool same_atom(const struct atom *a, const struct atom *b)
 {
-	if (a->kind != b->kind || a->function != b->function || a->comparison != b->comparison || a->operands != b->operands)
+	if (a->kind != b->kind || a->function != b->function || a->comparison != b->comparison ||
+	    a->operands != b->operands)
 		return false;
 	for (int i = 0; i < a->operands; i++)
 		if (a->operand[i] != b->operand[i] || (a->exponent && a->exponent[i] != b->exponent[i]))
@@ -128,13 +134,15 @@ static struct form *form_of_atom(struct collector *c, const struct node *node, s
 		}
 		wanted.node = node;
 		wanted.index = c->atoms->count++;
+		wanted.judged = NEW(struct judged);
 		*link = NEW(struct atom);
 		**link = wanted;
 	}
 	return form_unit((struct basis){ .kind = BASIS_ATOM, .index = (*link)->index, .atom = *link });
 }
 
-static struct form *new_atom(struct collector *c, const struct node *node, struct atom wanted, int count, const struct form *const *operand)
+static struct form *new_atom(struct collector *c, const struct node *node, struct atom wanted, int count,
+			     const struct form *const *operand)
 {
 	wanted.operands = count;
 	wanted.operand = ARRAY(const struct form *, (size_t)count);
@@ -205,7 +213,8 @@ static void multiply_base(const struct node *node, struct monomial *m, const str
 }
 
 /* A single term brings its factor and the factors of its own product; a sum is a base, with its first term positive. */
-static void multiply_form(struct collector *c, const struct node *node, struct monomial *m, const struct form *form, unsigned exponent)
+static void multiply_form(struct collector *c, const struct node *node, struct monomial *m, const struct form *form,
+			  unsigned exponent)
 {
 	const struct atom *atom = form->terms == 1 ? form->term[0].basis.atom : NULL;
 	mpq_srcptr first = form->term[0].factor;
@@ -231,11 +240,15 @@ static bool is_of_time(const struct form *form)
 	return true;
 }
 
-static struct form *form_of_powers(struct collector *c, const struct node *node, int count, const struct shared **base, unsigned *exponent)
+static struct form *form_of_powers(struct collector *c, const struct node *node, int count, const struct shared **base,
+				   unsigned *exponent)
 {
 	if (count == 1 && exponent[0] == 1)
 		return form_sum(base[0]->form, NEW(struct form), false);
-	struct atom atom = { .kind = ATOM_PRODUCT, .operands = count, .operand = ARRAY(const struct form *, (size_t)count), .exponent = exponent };
+	struct atom atom = { .kind = ATOM_PRODUCT,
+			     .operands = count,
+			     .operand = ARRAY(const struct form *, (size_t)count),
+			     .exponent = exponent };
 	for (int i = 0; i < count; i++)
 		atom.operand[i] = base[i]->form;
 	return form_of_atom(c, node, atom);
@@ -258,7 +271,8 @@ static struct form *form_of_monomial(struct collector *c, const struct node *nod
 	return form;
 }
 
-static struct form *whole_product(struct collector *c, const struct node *node, const struct form *a, const struct form *b)
+static struct form *whole_product(struct collector *c, const struct node *node, const struct form *a,
+				  const struct form *b)
 {
 	struct monomial m;
 	monomial_init(&m);
@@ -304,7 +318,10 @@ struct form *kept_product(struct collector *c, const struct node *node, const st
 	const struct form *moving_a = form_sum(a, x.constant, true), *moving_b = form_sum(b, y.constant, true);
 	struct form *sum = form_sum(form_product(c, x.constant, b), form_product(c, moving_a, y.constant), false);
 	if (x.time->terms && y.time->terms)
-		sum = form_sum(sum, (c->whole_time ? whole_product(c, node, x.time, y.time) : load_product(c, x.time, y.time)), false);
+		sum = form_sum(sum,
+			       (c->whole_time ? whole_product(c, node, x.time, y.time)
+					      : load_product(c, x.time, y.time)),
+			       false);
 	if (x.time->terms && y.rest->terms)
 		sum = form_sum(sum, whole_product(c, node, x.time, y.rest), false);
 	if (x.rest->terms)
@@ -336,7 +353,8 @@ struct form *kept_reciprocal(struct collector *c, const struct node *node, const
 	return form;
 }
 
-static struct form *constant_to_power(struct collector *c, const struct node *node, const struct form *base, mpq_srcptr exponent)
+static struct form *constant_to_power(struct collector *c, const struct node *node, const struct form *base,
+				      mpq_srcptr exponent)
 {
 	mpq_t value;
 	mpq_init(value);
@@ -375,13 +393,16 @@ struct form *kept_whole_power(struct collector *c, const struct node *node, cons
 	mpq_init(exponent);
 	mpq_set_ui(exponent, n, 1);
 	bool load = !c->whole_time && n <= LIMIT_LOAD_POWER && is_of_time(x) && time_part(x, true)->terms == 0;
-	struct form *form = is_constant(x) ? constant_to_power(c, node, x, exponent) : n == 0 ? form_unit((struct basis){ .kind = BASIS_ONE })
-			  : load ? load_power(c, node, x, n) : power_form(c, node, x, n);
+	struct form *form = is_constant(x) ? constant_to_power(c, node, x, exponent)
+			    : n == 0       ? form_unit((struct basis){ .kind = BASIS_ONE })
+			    : load         ? load_power(c, node, x, n)
+					   : power_form(c, node, x, n);
 	mpq_clear(exponent);
 	return form;
 }
 
-struct form *kept_power(struct collector *c, const struct node *node, const struct form *base, const struct form *exponent)
+struct form *kept_power(struct collector *c, const struct node *node, const struct form *base,
+			const struct form *exponent)
 {
 	const struct form *operand[] = { base, exponent };
 	if (!is_constant(exponent))
@@ -419,25 +440,31 @@ static const struct node *call_at(const struct node *node, enum function functio
 	call->function = function;
 	if (call->children < count || call->kind != NODE_CALL) {
 		call->child = ARRAY(struct node *, (size_t)count);
+		struct node *place = NEW(struct node);
+		*place = *node;
 		for (int i = 0; i < count; i++)
-			call->child[i] = (struct node *)node;
+			call->child[i] = place;
 	}
 	call->kind = NODE_CALL;
 	call->children = count;
 	return call;
 }
 
-struct form *kept_call(struct collector *c, const struct node *node, enum function function, int count, struct form *const *x)
+struct form *kept_call(struct collector *c, const struct node *node, enum function function, int count,
+		       struct form *const *x)
 {
 	bool single = function < FN_ATAN2 && function != FN_ABS && function != FN_SGN;
 	if (all_constant(count, x) || (!single && function != FN_ATAN2 && is_decided(c, count, x)))
-		return single ? constant_call(c, node, function, x[0]) : piecewise(c, call_at(node, function, count), x);
+		return single ? constant_call(c, node, function, x[0])
+			      : piecewise(c, call_at(node, function, count), x);
 	if (function >= FN_DEADZONE)
 		check_breakpoints(c, node, x);
-	return new_atom(c, node, (struct atom){ .kind = ATOM_CALL, .function = function }, count, (const struct form *const *)x);
+	return new_atom(c, node, (struct atom){ .kind = ATOM_CALL, .function = function }, count,
+			(const struct form *const *)x);
 }
 
-struct form *kept_comparison(struct collector *c, const struct node *node, enum comparison comparison, const struct form *a, const struct form *b)
+struct form *kept_comparison(struct collector *c, const struct node *node, enum comparison comparison,
+			     const struct form *a, const struct form *b)
 {
 	struct form *difference = form_sum(a, b, true);
 	const struct form *operand[] = { a, b };
@@ -451,7 +478,8 @@ struct form *kept_comparison(struct collector *c, const struct node *node, enum 
 	return form;
 }
 
-struct form *kept_choice(struct collector *c, const struct node *node, const struct form *condition, const struct form *a, const struct form *b)
+struct form *kept_choice(struct collector *c, const struct node *node, const struct form *condition,
+			 const struct form *a, const struct form *b)
 {
 	const struct form *operand[] = { condition, a, b };
 	if (is_constant(condition) || same_form(a, b)) {
@@ -479,7 +507,8 @@ static bool is_comparison(const struct form *form)
 
 static bool is_piecewise_atom(const struct atom *a)
 {
-	bool function = a->kind == ATOM_CALL && (a->function == FN_ABS || a->function == FN_SGN || a->function >= FN_MIN);
+	bool function = a->kind == ATOM_CALL &&
+			(a->function == FN_ABS || a->function == FN_SGN || a->function >= FN_MIN);
 	bool choice = a->kind == ATOM_CHOOSE && is_comparison(a->operand[0]);
 	bool comparison = a->kind == ATOM_COMPARE && a->comparison <= CMP_GE;
 	bool all = function || choice || comparison;
@@ -491,10 +520,10 @@ static bool is_piecewise_atom(const struct atom *a)
 bool is_piecewise_form(const struct form *form)
 {
 	for (int i = 0; i < form->terms; i++) {
-		struct atom *a = (struct atom *)form->term[i].basis.atom;
-		if (a && a->piecewise == 0)
-			a->piecewise = is_piecewise_atom(a) ? 1 : -1;
-		if (a && a->piecewise < 0)
+		const struct atom *a = form->term[i].basis.atom;
+		if (a && a->judged->piecewise == 0)
+			a->judged->piecewise = is_piecewise_atom(a) ? 1 : -1;
+		if (a && a->judged->piecewise < 0)
 			return false;
 	}
 	return true;
@@ -503,15 +532,16 @@ bool is_piecewise_form(const struct form *form)
 bool is_stepwise(const struct form *form)
 {
 	for (int i = 0; i < form->terms; i++) {
-		struct atom *a = (struct atom *)form->term[i].basis.atom;
+		const struct atom *a = form->term[i].basis.atom;
 		if (!a && form->term[i].basis.kind > BASIS_PI)
 			return false;
-		if (a && a->stepwise == 0) {
+		if (a && a->judged->stepwise == 0) {
 			bool step = a->kind == ATOM_COMPARE || (a->kind == ATOM_CALL && a->function == FN_SGN);
-			step = step || (a->kind == ATOM_CHOOSE && is_stepwise(a->operand[1]) && is_stepwise(a->operand[2]));
-			a->stepwise = step ? 1 : -1;
+			step = step ||
+			       (a->kind == ATOM_CHOOSE && is_stepwise(a->operand[1]) && is_stepwise(a->operand[2]));
+			a->judged->stepwise = step ? 1 : -1;
 		}
-		if (a && a->stepwise < 0)
+		if (a && a->judged->stepwise < 0)
 			return false;
 	}
 	return true;
@@ -528,22 +558,26 @@ static bool is_switch(const struct form *form)
 	return is_stepwise(form);
 }
 
-static struct form *switched_atom(struct collector *c, const struct node *node, const struct atom *a, const struct form *x);
+static struct form *switched_atom(struct collector *c, const struct node *node, const struct atom *a,
+				  const struct form *x);
 
-static struct form *switched_form(struct collector *c, const struct node *node, const struct form *form, const struct form *x)
+static struct form *switched_form(struct collector *c, const struct node *node, const struct form *form,
+				  const struct form *x)
 {
 	struct form *total = form_number(0);
 	for (int i = 0; i < form->terms; i++) {
 		const struct form_term *term = &form->term[i];
-		struct form *product = term->basis.atom ? form_scale(switched_atom(c, node, term->basis.atom, x), term->factor)
-							: form_product(c, form_single(term->basis, term->factor), x);
+		struct form *product = term->basis.atom
+					       ? form_scale(switched_atom(c, node, term->basis.atom, x), term->factor)
+					       : form_product(c, form_single(term->basis, term->factor), x);
 		total = form_sum(total, product, false);
 	}
 	return total;
 }
 
 /* sgn(g) x: abs(g) times k where x = k g */
-static struct form *signed_product(struct collector *c, const struct node *node, const struct form *g, const struct form *x)
+static struct form *signed_product(struct collector *c, const struct node *node, const struct form *g,
+				   const struct form *x)
 {
 	const struct form *zero = form_number(0), *none = form_number(0);
 	mpq_t ratio;
@@ -561,20 +595,23 @@ static struct form *signed_product(struct collector *c, const struct node *node,
 	return form;
 }
 
-static struct form *switched_atom(struct collector *c, const struct node *node, const struct atom *a, const struct form *x)
+static struct form *switched_atom(struct collector *c, const struct node *node, const struct atom *a,
+				  const struct form *x)
 {
 	const struct form *itself = form_unit((struct basis){ .kind = BASIS_ATOM, .index = a->index, .atom = a });
 	if (a->kind == ATOM_COMPARE)
 		return kept_choice(c, node, itself, x, form_number(0));
 	if (a->kind == ATOM_CALL)
 		return signed_product(c, node, a->operand[0], x);
-	return kept_choice(c, node, a->operand[0], switched_form(c, node, a->operand[1], x), switched_form(c, node, a->operand[2], x));
+	return kept_choice(c, node, a->operand[0], switched_form(c, node, a->operand[1], x),
+			   switched_form(c, node, a->operand[2], x));
 }
 
 struct form *kept_switched(struct collector *c, const struct node *node, const struct form *a, const struct form *b)
 {
 	bool first = is_switch(a);
-	if ((!first && !is_switch(b)) || is_constant(a) || is_constant(b) || !is_piecewise_form(a) || !is_piecewise_form(b))
+	if ((!first && !is_switch(b)) || is_constant(a) || is_constant(b) || !is_piecewise_form(a) ||
+	    !is_piecewise_form(b))
 		return NULL;
 	return switched_form(c, node, first ? a : b, first ? b : a);
 }

@@ -31,7 +31,8 @@ static struct form *derive_product(struct differentiation *d, const struct atom 
 		if (a->operands > MANY)         /* one by one they would be as many products as there are pairs */
 			term = kept_product(c, a->node, term, kept_others(c, a->node, a, i));
 		for (int j = 0; j < a->operands && a->operands <= MANY; j++)
-			term = kept_product(c, a->node, term, kept_whole_power(c, a->node, a->operand[j], a->exponent[j] - (j == i)));
+			term = kept_product(c, a->node, term,
+					    kept_whole_power(c, a->node, a->operand[j], a->exponent[j] - (j == i)));
 		total = sum(total, kept_product(c, a->node, form_number((long)a->exponent[i]), term));
 	}
 	return total;
@@ -85,7 +86,8 @@ static struct form *derive_angle(struct differentiation *d, const struct atom *a
 {
 	struct collector *c = d->c;
 	const struct form *y = a->operand[0], *x = a->operand[1];
-	struct form *turning = form_difference(kept_product(c, a->node, derive(d, y), x), kept_product(c, a->node, derive(d, x), y));
+	struct form *turning =
+		form_difference(kept_product(c, a->node, derive(d, y), x), kept_product(c, a->node, derive(d, x), y));
 	struct form *square = sum(kept_product(c, a->node, x, x), kept_product(c, a->node, y, y));
 	return kept_product(c, a->node, turning, kept_reciprocal(c, a->node, square));
 }
@@ -97,7 +99,8 @@ static struct form *derive_extreme(struct differentiation *d, const struct atom 
 	const struct form *best = a->operand[0];
 	struct form *slope = derive(d, best);
 	for (int i = 1; i < a->operands; i++) {
-		struct form *better = kept_comparison(c, a->node, a->function == FN_MIN ? CMP_LT : CMP_GT, a->operand[i], best);
+		struct form *better =
+			kept_comparison(c, a->node, a->function == FN_MIN ? CMP_LT : CMP_GT, a->operand[i], best);
 		slope = kept_choice(c, a->node, better, derive(d, a->operand[i]), slope);
 		best = kept_choice(c, a->node, better, a->operand[i], best);
 	}
@@ -124,9 +127,13 @@ static struct form *derive_table(struct differentiation *d, const struct atom *a
 	struct collector *c = d->c;
 	struct form *slope = NULL;
 	for (int k = a->operands - 4; k >= 1; k -= 2) {
-		struct form *width = form_difference(a->operand[k + 2], a->operand[k]), *rise = form_difference(a->operand[k + 3], a->operand[k + 1]);
+		struct form *width = form_difference(a->operand[k + 2], a->operand[k]),
+			    *rise = form_difference(a->operand[k + 3], a->operand[k + 1]);
 		struct form *here = kept_product(c, a->node, rise, kept_reciprocal(c, a->node, width));
-		slope = !slope ? here : kept_choice(c, a->node, kept_comparison(c, a->node, CMP_LT, a->operand[0], a->operand[k + 2]), here, slope);
+		slope = !slope ? here
+			       : kept_choice(c, a->node,
+					     kept_comparison(c, a->node, CMP_LT, a->operand[0], a->operand[k + 2]),
+					     here, slope);
 	}
 	return kept_product(c, a->node, slope, derive(d, a->operand[0]));
 }
@@ -162,7 +169,7 @@ static struct form *derive_atom(struct differentiation *d, const struct atom *a)
 	case ATOM_POWER:      return derive_power(d, a, itself);
 	case ATOM_CALL:       return derive_call(d, a, itself);
 	case ATOM_COMPARE:    return NEW(struct form);
-	default:              return kept_choice(d->c, a->node, a->operand[0], derive(d, a->operand[1]), derive(d, a->operand[2]));
+	default: return kept_choice(d->c, a->node, a->operand[0], derive(d, a->operand[1]), derive(d, a->operand[2]));
 	}
 }
 
@@ -183,7 +190,8 @@ static struct form *derive(struct differentiation *d, const struct form *form)
 		const struct form_term *term = &form->term[i];
 		if (term->basis.kind == BASIS_ATOM)
 			form_add_to(total, known_derivative(d, term->basis.atom), term->factor);
-		else if (term->basis.kind == BASIS_COORD && term->basis.index == d->coord && term->basis.order == d->order)
+		else if (term->basis.kind == BASIS_COORD && term->basis.index == d->coord &&
+			 term->basis.order == d->order)
 			form_add_basis(total, (struct basis){ .kind = BASIS_ONE }, term->factor);
 	}
 	return total;
@@ -216,7 +224,8 @@ static mpq_srcptr fixed_coordinate(const struct point *p, const struct basis *ba
 {
 	for (int i = 0; i < p->fixings; i++) {
 		const struct fixing *f = &p->fixing[i];
-		if (f->symbol && f->symbol->kind == SYMBOL_COORD && f->coord == basis->index && f->order == basis->order)
+		if (f->symbol && f->symbol->kind == SYMBOL_COORD && f->coord == basis->index &&
+		    f->order == basis->order)
 			return f->value;
 	}
 	return NULL;
@@ -316,11 +325,11 @@ static struct form *place_basis(struct point *p, const struct basis *basis)
 	return p->known[index];
 }
 
-/* Not to be changed: it may be the form itself */
+/* Not to be changed: it may share the terms of the form */
 static struct form *place_form(struct point *p, const struct form *form)
 {
 	if (is_constant(form))
-		return (struct form *)form;
+		return form_alias(form);
 	struct form *total = NEW(struct form);
 	for (int i = 0; i < form->terms; i++)
 		form_add_to(total, place_basis(p, &form->term[i].basis), form->term[i].factor);

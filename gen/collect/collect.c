@@ -127,7 +127,8 @@ static struct value *collect_piecewise(struct collector *c, struct node *node)
 		argument[i] = collect_node(c, node->child[i]);
 		bool single = is_scalar(argument[i]);
 		if (!single && shape && (shape->rows != argument[i]->rows || shape->columns != argument[i]->columns))
-			error(node->child[i]->start, NULL, "sizes do not fit: %s and %s", shape_text(shape), shape_text(argument[i]));
+			error(node->child[i]->start, NULL, "sizes do not fit: %s and %s", shape_text(shape),
+			      shape_text(argument[i]));
 		shape = single ? shape : argument[i];
 	}
 	struct value *result = shape ? value_new(shape->rows, shape->columns) : value_new(1, 1);
@@ -143,7 +144,8 @@ static struct value *collect_piecewise(struct collector *c, struct node *node)
 /* Functions apply to each cell. */
 static struct value *collect_call(struct collector *c, struct node *node)
 {
-	if (node->function >= FN_MIN || node->function == FN_ABS || node->function == FN_SGN || node->function == FN_ATAN2)
+	if (node->function >= FN_MIN || node->function == FN_ABS || node->function == FN_SGN ||
+	    node->function == FN_ATAN2)
 		return collect_piecewise(c, node);
 	struct value *x = collect_argument(c, node), *y = value_new(x->rows, x->columns);
 	for (int i = 0; i < x->rows * x->columns; i++)
@@ -180,7 +182,8 @@ static struct value *collect_sum(struct collector *c, struct node *node)
 		if (!sum)
 			sum = value_new(term->rows, term->columns);
 		if (sum->rows != term->rows || sum->columns != term->columns)
-			error(node->operator[i], NULL, "sizes do not fit: %s and %s", shape_text(sum), shape_text(term));
+			error(node->operator[i], NULL, "sizes do not fit: %s and %s", shape_text(sum),
+			      shape_text(term));
 		for (int k = 0; k < sum->rows * sum->columns; k++) {
 			form_add_to(sum->cell[k], term->cell[k], node->inverse[i] ? minus : NULL);
 			check_sum(node->operator[i], sum->cell[k], term->cell[k]);
@@ -243,7 +246,8 @@ static struct form *times(struct collector *c, const struct node *node, const st
 	return load_product(c, a, b);
 }
 
-static struct form *dot(struct collector *c, const struct node *node, const struct value *a, int row, const struct value *b, int column)
+static struct form *dot(struct collector *c, const struct node *node, const struct value *a, int row,
+			const struct value *b, int column)
 {
 	struct form *sum = NEW(struct form);
 	for (int k = 0; k < a->columns; k++) {
@@ -254,7 +258,8 @@ static struct form *dot(struct collector *c, const struct node *node, const stru
 	return sum;
 }
 
-static struct value *multiply(struct collector *c, const struct node *node, const struct value *a, const struct value *b, struct place at)
+static struct value *multiply(struct collector *c, const struct node *node, const struct value *a,
+			      const struct value *b, struct place at)
 {
 	if (!is_scalar(a) && !is_scalar(b) && a->columns != b->rows)
 		error(at, NULL, "sizes do not fit: %s times %s", shape_text(a), shape_text(b));
@@ -272,7 +277,8 @@ static struct value *multiply(struct collector *c, const struct node *node, cons
 	return product;
 }
 
-static struct value *divide(struct collector *c, const struct node *node, const struct value *a, const struct value *b, struct place at)
+static struct value *divide(struct collector *c, const struct node *node, const struct value *a, const struct value *b,
+			    struct place at)
 {
 	if (!is_scalar(b))
 		error(at, NULL, "division by a %s matrix", shape_text(b));
@@ -282,7 +288,8 @@ static struct value *divide(struct collector *c, const struct node *node, const 
 	struct value *quotient = value_new(a->rows, a->columns);
 	const struct form *inverse = kept ? kept_reciprocal(c, node, b->cell[0]) : NULL;
 	for (int i = 0; i < a->rows * a->columns; i++)
-		quotient->cell[i] = kept ? kept_product(c, node, a->cell[i], inverse) : collect_division(c, a->cell[i], b->cell[0], at);
+		quotient->cell[i] = kept ? kept_product(c, node, a->cell[i], inverse)
+					 : collect_division(c, a->cell[i], b->cell[0], at);
 	return quotient;
 }
 
@@ -320,7 +327,8 @@ static struct form *collect_power(struct collector *c, struct node *node)
 	} else if (mpq_sgn(e) == 0) {
 		mpq_set_ui(b, 1, 1);
 		power = form_constant(b);
-	} else if (!c->whole_time && !has_coordinate(base) && !has_input(base) && mpz_cmp_ui(mpq_denref(e), 1) == 0 && mpq_sgn(e) > 0) {
+	} else if (!c->whole_time && !has_coordinate(base) && !has_input(base) && mpz_cmp_ui(mpq_denref(e), 1) == 0 &&
+		   mpq_sgn(e) > 0) {
 		if (mpq_cmp_ui(e, LIMIT_LOAD_POWER, 1) > 0)
 			error(node->at, NULL, "power of a load beyond the limit of %d", LIMIT_LOAD_POWER);
 		power = base;
@@ -339,7 +347,8 @@ static struct form *collect_power(struct collector *c, struct node *node)
 /* A condition on constants or on time; true is 1, false is 0. */
 static struct form *collect_comparison(struct collector *c, struct node *node)
 {
-	struct form *left = collect_scalar(c, node->child[0]), *right = collect_scalar(c, node->child[1]), *difference = form_sum(left, right, true);
+	struct form *left = collect_scalar(c, node->child[0]), *right = collect_scalar(c, node->child[1]),
+		    *difference = form_sum(left, right, true);
 	mpq_t truth;
 	if (keeps_piecewise(c) && !is_decided(c, 1, &difference))
 		return kept_comparison(c, node, node->comparison, left, right);
@@ -352,7 +361,8 @@ static struct form *collect_comparison(struct collector *c, struct node *node)
 
 static struct value *kept_choices(struct collector *c, struct node *node, const struct form *condition)
 {
-	struct value *a = collect_node(c, node->child[1]), *b = collect_node(c, node->child[2]), *choice = value_new(a->rows, a->columns);
+	struct value *a = collect_node(c, node->child[1]), *b = collect_node(c, node->child[2]),
+		     *choice = value_new(a->rows, a->columns);
 	if (a->rows != b->rows || a->columns != b->columns)
 		error(node->at, NULL, "sizes do not fit: %s and %s", shape_text(a), shape_text(b));
 	for (int i = 0; i < a->rows * a->columns; i++)
@@ -381,7 +391,8 @@ static void collect_value(struct collector *c, struct symbol *symbol)
 	symbol->collected = NULL;
 	struct value *value = collect_node(&inner, symbol->value);
 	if (symbol->kind == SYMBOL_PARAM && !is_scalar(value))
-		error(symbol->value->start, "matrix NAME = ...", "a param is a number, found a %s matrix", shape_text(value));
+		error(symbol->value->start, "matrix NAME = ...", "a param is a number, found a %s matrix",
+		      shape_text(value));
 	c->waves = inner.waves;
 	c->irrationals = inner.irrationals;
 	symbol->irrational = inner.irrational_count > c->irrational_count;
@@ -398,7 +409,8 @@ static struct value *collect_coordinate(struct collector *c, struct node *node)
 {
 	const struct symbol *symbol = node->symbol;
 	need_constant(c, node, format("coordinate '%s'", symbol->name));
-	int first = symbol->index + (node->component ? node->component - 1 : 0), rows = node->component || !symbol->length ? 1 : symbol->length;
+	int first = symbol->index + (node->component ? node->component - 1 : 0),
+	    rows = node->component || !symbol->length ? 1 : symbol->length;
 	struct value *value = value_new(rows, 1);
 	for (int i = 0; i < rows; i++)
 		value->cell[i] = coordinate_form(c->frame, first + i, node->primes);
@@ -414,7 +426,8 @@ static struct value *collect_name(struct collector *c, struct node *node)
 		return collect_coordinate(c, node);
 	if (symbol->kind == SYMBOL_INPUT) {
 		need_constant(c, node, format("input '%s'", symbol->name));
-		return scalar(form_unit((struct basis){ .kind = BASIS_INPUT, .index = symbol->index, .order = node->primes }));
+		return scalar(form_unit(
+			(struct basis){ .kind = BASIS_INPUT, .index = symbol->index, .order = node->primes }));
 	}
 	if (symbol->kind == SYMBOL_LET)
 		need_constant(c, node, format("let '%s'", symbol->name));
@@ -494,11 +507,12 @@ static bool is_timely(struct node *node)
 
 static unsigned mode_of(const struct collector *c)
 {
-	return (unsigned)c->keep | c->whole_time << 2 | c->tolerant << 3 | c->constant_only << 4 | c->closed << 5 | c->output << 6;
+	return (unsigned)c->keep | c->whole_time << 2 | c->tolerant << 3 | c->constant_only << 4 | c->closed << 5 |
+	       c->output << 6;
 }
 
-/* Cells of values are shared: nobody changes them. What has become a rational is told by those that are collected, so it is
- * not kept. */
+/* Cells of values are shared: nobody changes them. What has become a rational is told by those that are collected, so
+ * it is not kept. */
 static struct value *collect_node(struct collector *c, struct node *node)
 {
 	if (!c->frame || c->fixings || c->constant_only || !is_timely(node))

@@ -15,7 +15,8 @@ struct frame {                      /* the coordinates that forms are over */
 enum basis_kind { BASIS_ONE, BASIS_PI, BASIS_WAVE, BASIS_INPUT, BASIS_COORD, BASIS_ATOM };
 struct basis {
 	enum basis_kind kind;
-	int index, order;           /* of BASIS_COORD and BASIS_INPUT: which, and how often differentiated; of BASIS_ATOM: its index */
+	/* of BASIS_COORD and BASIS_INPUT: which, and how often differentiated; of BASIS_ATOM: its index */
+	int index, order;
 	struct wave *wave;          /* of BASIS_WAVE: t^power times its cos or sin */
 	int power;
 	bool sine;
@@ -39,6 +40,7 @@ int basis_order(const struct basis *a, const struct basis *b); /* by which terms
 struct form *form_single(struct basis basis, mpq_srcptr factor);
 struct form *form_unit(struct basis basis);                 /* factor 1 */
 struct form *form_constant(mpq_srcptr value);
+struct form *form_alias(const struct form *form);           /* the same terms: neither may be changed from then on */
 struct form *form_number(long value);
 struct form *form_sum(const struct form *a, const struct form *b, bool subtract);
 struct form *form_difference(const struct form *a, const struct form *b);
@@ -48,7 +50,8 @@ void form_add_basis(struct form *sum, struct basis basis, mpq_srcptr factor);
 void form_free(struct form *form);                          /* which nothing else holds */
 const struct form_term *form_find(const struct form *form, const struct basis *basis); /* NULL: it does not occur */
 struct form *form_scale(const struct form *a, mpq_srcptr factor);
-struct form *form_product(struct collector *collector, const struct form *a, const struct form *b); /* one of them constant */
+/* one of them constant */
+struct form *form_product(struct collector *collector, const struct form *a, const struct form *b);
 bool is_constant(const struct form *form);                  /* 1 and pi only */
 mpq_srcptr factor_of(const struct form *form, enum basis_kind kind); /* NULL: it does not occur */
 bool same_in_states(const struct form *a, const struct form *b); /* they differ in loads only */
@@ -56,8 +59,10 @@ void check_form(struct place at, const struct form *form);  /* the limit on exac
 void met_irrational(struct collector *collector, bool *which); /* one of its irrationals */
 void constant_value(struct collector *collector, const struct form *form, mpq_ptr value); /* form of 1 and pi only */
 bool same_form(const struct form *a, const struct form *b);
-bool is_velocity(const struct frame *frame, const struct basis *basis); /* it depends on one; a coordinate of first order is one too */
-struct form *coordinate_form(const struct frame *frame, int coord, int order); /* of a written coordinate; `frame` NULL: over itself */
+/* it depends on one; a coordinate of first order is one too */
+bool is_velocity(const struct frame *frame, const struct basis *basis);
+/* of a written coordinate; `frame` NULL: over itself */
+struct form *coordinate_form(const struct frame *frame, int coord, int order);
 
 /* ---- collector.c: what collection goes by, and what it says ---- */
 
@@ -71,12 +76,16 @@ struct collector {
 	int changes;                /* of formula in time: breakpoints found so far, rising */
 	mpq_t *change;
 	int interval;               /* between them, which is being collected: 0 .. changes */
-	struct span span;           /* in which every condition on time that was met since it was opened has the outcome that it has now */
-	const struct node *argument; /* the innermost function of which an argument is being collected that must be linear */
+	/* in which every condition on time that was met since it was opened has the outcome that it has now */
+	struct span span;
+	/* the innermost function of which an argument is being collected that must be linear */
+	const struct node *argument;
 	bool constant_only;         /* a param, a step, an initial value */
 	bool tolerant;              /* give up in silence on what is not linear: an output may be */
-	enum { KEEP_NOTHING, KEEP_PIECEWISE, KEEP_ALL } keep; /* as atoms: what is piecewise linear; whatever is not linear */
-	bool whole_time;            /* with KEEP_ALL: conditions and products of time become atoms too, and time is not divided */
+	/* as atoms: what is piecewise linear; whatever is not linear */
+	enum { KEEP_NOTHING, KEEP_PIECEWISE, KEEP_ALL } keep;
+	/* with KEEP_ALL: conditions and products of time become atoms too, and time is not divided */
+	bool whole_time;
 	bool closed;                /* for --solution */
 	bool output;                /* an output is being collected: highest derivatives may stand anywhere */
 	struct atoms *atoms;
@@ -88,7 +97,8 @@ _Noreturn void not_linear(const struct collector *c, const struct node *node, co
 _Noreturn void not_built(const struct collector *c, struct place at, const char *what);
 struct form *constant_call(struct collector *c, const struct node *node, enum function function, const struct form *x);
 bool compare_values(enum comparison comparison, int order);
-const char *rewrite_of(const struct node *term);            /* what scheme exact could treat in its place; "": there is nothing known */
+/* what scheme exact could treat in its place; "": there is nothing known */
+const char *rewrite_of(const struct node *term);
 
 /* ---- constant.c: functions of constants; true where the value is exact, else it is the nearest of 256 bits ---- */
 
@@ -103,46 +113,57 @@ bool constant_power(struct place at, mpq_srcptr base, mpq_srcptr exponent, mpq_p
 struct wave *wave_of(struct collector *collector, mpq_srcptr a, mpq_srcptr w, mpq_srcptr p);
 struct form *plain_wave(struct collector *collector, int power, mpq_srcptr a); /* t^power e^{a t}; a NULL: 0 */
 struct form *collect_wave(struct collector *collector, bool sine, mpq_srcptr frequency, const struct form *phase);
-struct form *load_product(struct collector *collector, const struct form *a, const struct form *b); /* of loads and constants */
-bool linear_in_time(const struct form *x, mpq_srcptr *factor, struct form *phase); /* x = factor t + phase, factor not 0 */
+/* of loads and constants */
+struct form *load_product(struct collector *collector, const struct form *a, const struct form *b);
+/* x = factor t + phase, factor not 0 */
+bool linear_in_time(const struct form *x, mpq_srcptr *factor, struct form *phase);
 bool is_polynomial(const struct wave *wave);                /* t^k alone */
 bool oscillates(const struct wave *wave);
 
 /* ---- atom.c: what is not linear, as expressions that are shared wherever they are the same ---- */
 
 enum atom_kind { ATOM_PRODUCT, ATOM_RECIPROCAL, ATOM_POWER, ATOM_CALL, ATOM_COMPARE, ATOM_CHOOSE };
+struct judged { signed char piecewise, stepwise; }; /* 1 and -1: is_piecewise_form, is_stepwise; 0: not asked yet */
 struct atom {
 	enum atom_kind kind;
 	enum function function;     /* of ATOM_CALL */
 	enum comparison comparison; /* of ATOM_COMPARE: two operands */
-	int operands;               /* POWER: base, exponent; CHOOSE: condition, then, else; equal forms are one object */
+	/* POWER: base, exponent; CHOOSE: condition, then, else; equal forms are one object */
+	int operands;
 	const struct form **operand;
 	unsigned *exponent;         /* of ATOM_PRODUCT, one per factor */
 	bool time, input, state, velocity; /* what it depends on; a coordinate of first order counts as a velocity */
 	const struct basis *moves;  /* of that a coordinate, else an input; NULL: t alone */
-	signed char piecewise, stepwise; /* 1 and -1: is_piecewise_form, is_stepwise; 0: not asked yet */
+	struct judged *judged;      /* what was found out about it */
 	const struct node *node;    /* where it comes from */
 	int index;                  /* in the order of first appearance */
 	struct atom *next;
 };
 struct atoms *atoms_new(void);
 int  atoms_count(const struct atoms *atoms);
-/* Each result is a form, folded where the operands are constant; sums of constants, times and states are multiplied out so
- * far that every constant times a state shows as a linear term, and every term of time alone stands alone. */
+/* Each result is a form, folded where the operands are constant; sums of constants, times and states are multiplied out
+ * so far that every constant times a state shows as a linear term, and every term of time alone stands alone. */
 struct form *kept_product(struct collector *c, const struct node *node, const struct form *a, const struct form *b);
-struct form *kept_others(struct collector *c, const struct node *node, const struct atom *product, int factor); /* the product, of at least two factors, with one of that factor less */
+/* the product, of at least two factors, with one of that factor less */
+struct form *kept_others(struct collector *c, const struct node *node, const struct atom *product, int factor);
 struct form *kept_reciprocal(struct collector *c, const struct node *node, const struct form *x);
-struct form *kept_power(struct collector *c, const struct node *node, const struct form *base, const struct form *exponent);
+struct form *kept_power(struct collector *c, const struct node *node, const struct form *base,
+			const struct form *exponent);
 struct form *kept_whole_power(struct collector *c, const struct node *node, const struct form *x, unsigned n);
-struct form *kept_call(struct collector *c, const struct node *node, enum function function, int count, struct form *const *x);
-struct form *kept_comparison(struct collector *c, const struct node *node, enum comparison comparison, const struct form *a, const struct form *b);
-struct form *kept_choice(struct collector *c, const struct node *node, const struct form *condition, const struct form *a, const struct form *b);
-/* A factor that is constant but for comparisons and sgn, times what is piecewise linear: (x' > 0 ? c1 : c2)*x' = (x' > 0 ? c1*x' : c2*x');
- * NULL: they are no such factors. */
+struct form *kept_call(struct collector *c, const struct node *node, enum function function, int count,
+		       struct form *const *x);
+struct form *kept_comparison(struct collector *c, const struct node *node, enum comparison comparison,
+			     const struct form *a, const struct form *b);
+struct form *kept_choice(struct collector *c, const struct node *node, const struct form *condition,
+			 const struct form *a, const struct form *b);
+/* A factor that is constant but for comparisons and sgn, times what is piecewise linear: (x' > 0 ? c1 : c2)*x' = (x' >
+ * 0 ? c1*x' : c2*x'); NULL: they are no such factors. */
 struct form *kept_switched(struct collector *c, const struct node *node, const struct form *a, const struct form *b);
-bool is_piecewise_form(const struct form *form);            /* linear but for functions and conditions of linear expressions */
+/* linear but for functions and conditions of linear expressions */
+bool is_piecewise_form(const struct form *form);
 bool is_stepwise(const struct form *form);                  /* constant but for comparisons and sgn */
-const struct basis *moved_basis(const struct basis *known, const struct basis *basis); /* of which two moves more readily: see struct atom */
+/* of which two moves more readily: see struct atom */
+const struct basis *moved_basis(const struct basis *known, const struct basis *basis);
 bool depends_on_time_only(const struct basis *basis);       /* or on nothing */
 struct form *time_part(const struct form *form, bool atoms); /* its terms of time alone; or of them the atoms only */
 
@@ -159,12 +180,14 @@ struct fixing {                     /* a name that `operator at` fixes */
 struct form **form_derivatives(struct collector *c, int count, const struct form *const *form, int coord, int order);
 struct point;                       /* t and coordinates fixed; lets are not looked at */
 struct point *point_new(struct collector *c, int fixings, const struct fixing *fixing);
-struct form *form_at(struct point *point, const struct form *form); /* leaves the statement where the form is not defined there */
+/* leaves the statement where the form is not defined there */
+struct form *form_at(struct point *point, const struct form *form);
 
 /* ---- value.c: forms as numbers at a point ---- */
 
 struct sample;                      /* `leaf` says what a coordinate or an input is there */
-struct sample *sample_new(int precision, void (*leaf)(void *context, const struct basis *basis, mpfr_ptr value), void *context);
+struct sample *sample_new(int precision, void (*leaf)(void *context, const struct basis *basis, mpfr_ptr value),
+			  void *context);
 long sample_work(const struct sample *sample);             /* terms that were taken so far */
 void sample_at(struct sample *sample, mpfr_srcptr t);       /* a new point: what was found at the last is forgotten */
 void sample_form(struct sample *sample, const struct form *form, mpfr_ptr value); /* NaN where it is not defined */
@@ -173,10 +196,14 @@ void sample_form(struct sample *sample, const struct form *form, mpfr_ptr value)
 
 /* Sign of a - b, constant or linear in t, in the collector's interval of time; breakpoints met are added. */
 int order_now(struct collector *c, const struct node *node, const struct form *a, const struct form *b);
-struct form *piecewise(struct collector *c, const struct node *node, struct form *const *x); /* the function of its arguments' forms */
-void check_breakpoints(struct collector *c, const struct node *node, struct form *const *x);  /* of a function that is not taken apart */
-bool is_decided(const struct collector *c, int count, struct form *const *x); /* constants and times: conditions on them have an outcome */
-bool is_decided_call(const struct collector *c, const struct node *node, struct form *const *x); /* those, or what moves alike: max(x, x + 1) */
+/* the function of its arguments' forms */
+struct form *piecewise(struct collector *c, const struct node *node, struct form *const *x);
+/* of a function that is not taken apart */
+void check_breakpoints(struct collector *c, const struct node *node, struct form *const *x);
+/* constants and times: conditions on them have an outcome */
+bool is_decided(const struct collector *c, int count, struct form *const *x);
+/* those, or what moves alike: max(x, x + 1) */
+bool is_decided_call(const struct collector *c, const struct node *node, struct form *const *x);
 
 void narrow_span(struct collector *c, struct span span);
 bool holds_now(const struct collector *c, struct span span); /* in the collector's interval of time */
@@ -187,7 +214,8 @@ struct value {                      /* a scalar is 1 x 1 */
 	int rows, columns;
 	struct form **cell;         /* row-major */
 };
-struct value *collect(struct collector *collector, struct node *node);   /* leaves the statement at what is not linear */
+/* leaves the statement at what is not linear */
+struct value *collect(struct collector *collector, struct node *node);
 struct value *collect_constants(struct collector *collector, struct node *node);
 void collect_constant(struct collector *collector, struct node *node, mpq_ptr number);
 void forget_lets(const struct spec *spec);

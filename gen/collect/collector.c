@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the collector and all that it is made of share: what is said of terms that cannot be treated, functions of constants. */
+/* What the collector and all that it is made of share: what is said of terms that cannot be treated, functions of
+ * constants. */
 #include "collect/collect.h"
 
-static bool holds_acceleration(struct node *node)
+static bool holds_acceleration(const struct node *node)
 {
 	if (node->kind == NODE_NAME && node->symbol->kind == SYMBOL_COORD)
 		return node->primes > 0 && node->primes >= node->symbol->highest;
@@ -34,7 +35,8 @@ static void look_into(struct contents *found, const struct node *node)
 		return;
 	}
 	if (node->kind == NODE_NAME && node->symbol->kind == SYMBOL_COORD) {
-		bool same = known && known->symbol == node->symbol && known->primes == node->primes && known->component == node->component;
+		bool same = known && known->symbol == node->symbol && known->primes == node->primes &&
+			    known->component == node->component;
 		found->several = found->several || (known && !same) || (node->symbol->length && !node->component);
 		found->coordinate = known ? known : node;
 	}
@@ -61,7 +63,8 @@ const char *rewrite_of(const struct node *term)
 	if (found.input)
 		return "an input that brings the whole term is exact";
 	if (found.coordinate && !found.several && !found.time)
-		return format("straight pieces in its place, table(%s; ...), are exact", text_between(found.coordinate->start, found.coordinate->end));
+		return format("straight pieces in its place, table(%s; ...), are exact",
+			      text_between(found.coordinate->start, found.coordinate->end));
 	return "";
 }
 
@@ -69,14 +72,18 @@ _Noreturn void not_linear(const struct collector *c, const struct node *node, co
 {
 	if (c->tolerant)
 		abandon();
-	struct node *term = (struct node *)(c->term ? c->term : node);
+	const struct node *term = c->term ? c->term : node;
 	if (holds_acceleration(term))
-		error(term->start, "highest derivatives stand in every equation with constant factors: no scheme treats this",
+		error(term->start,
+		      "highest derivatives stand in every equation with constant factors: no scheme treats this",
 		      "term '%s' %s", text_between(term->start, term->end), why);
 	if (c->closed)
-		error(term->start, NULL, "term '%s' %s: there is no closed form", text_between(term->start, term->end), why);
+		error(term->start, NULL, "term '%s' %s: there is no closed form", text_between(term->start, term->end),
+		      why);
 	const char *rewrite = rewrite_of(term);
-	error(term->start, format("%s%setd1, etdrk2, etdrk4, nc2, nc3, dq4, bm3 and pl are the schemes that could", rewrite, *rewrite ? "; " : ""),
+	error(term->start,
+	      format("%s%setd1, etdrk2, etdrk4, nc2, nc3, dq4, bm3 and pl are the schemes that could", rewrite,
+		     *rewrite ? "; " : ""),
 	      "term '%s' %s: scheme %s cannot treat it", text_between(term->start, term->end), why, c->scheme);
 }
 
@@ -94,7 +101,8 @@ _Noreturn void not_built(const struct collector *c, struct place at, const char 
 /* sin, cos of q pi are rational at multiples of pi/6 only where it shows here: 0, +-1/2, +-1 (Niven). */
 static bool niven(bool sine, const struct form *x, mpq_ptr value)
 {
-	static const int halves[12] = { 2, 99, 1, 0, -1, 99, -2, 99, -1, 0, 1, 99 };   /* 2 cos(k pi/6); 99: irrational */
+	/* 2 cos(k pi/6); 99: irrational */
+	static const int halves[12] = { 2, 99, 1, 0, -1, 99, -2, 99, -1, 0, 1, 99 };
 	mpq_srcptr pi = factor_of(x, BASIS_PI);
 	if (x->terms != 1 || !pi || mpz_cmp_ui(mpq_denref(pi), 6) > 0 || 6 % mpz_get_ui(mpq_denref(pi)) != 0)
 		return false;
@@ -134,7 +142,8 @@ struct form *constant_call(struct collector *c, const struct node *node, enum fu
 	mpq_t value;
 	mpq_init(value);
 	bool trigonometric = function == FN_SIN || function == FN_COS;
-	bool rational = function == FN_TAN ? tangent(node, x, value) : trigonometric && niven(function == FN_SIN, x, value);
+	bool rational = function == FN_TAN ? tangent(node, x, value)
+					   : trigonometric && niven(function == FN_SIN, x, value);
 	if (!rational) {
 		constant_value(c, x, value);
 		if (!constant_function(node->at, function, value, value))

@@ -9,7 +9,8 @@ static void set_irrational(mpq_ptr value, struct place at, mpfr_srcptr wide)
 	mpfr_t rounded;
 	if (mpfr_nan_p(wide))
 		error(at, NULL, "the value is not a number");
-	if (!mpfr_regular_p(wide) || (mpfr_get_exp(wide) > LIMIT_BITS || mpfr_get_exp(wide) < -LIMIT_BITS))  /* infinite or 0: beyond even the range of MPFR */
+	/* infinite or 0: beyond even the range of MPFR */
+	if (!mpfr_regular_p(wide) || (mpfr_get_exp(wide) > LIMIT_BITS || mpfr_get_exp(wide) < -LIMIT_BITS))
 		error(at, NULL, "exact value over the limit of %d bits", LIMIT_BITS);
 	mpfr_init2(rounded, IRRATIONAL_BITS);
 	mpfr_set(rounded, wide, MPFR_RNDN);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Forms: sums of rational factors times basis elements: 1, pi, waves (t^k e^{at} cos or sin), inputs, coordinates and
- * their derivatives. pi stays a basis element until it meets another factor, so that quarter turns are decided exactly. */
+ * their derivatives. pi stays a basis element until it meets another factor, so that quarter turns are decided exactly.
+ */
 #include "collect/collect.h"
 
 #include <string.h>
@@ -27,6 +28,13 @@ struct form *form_single(struct basis basis, mpq_srcptr factor)
 	mpq_init(form->term[0].factor);
 	mpq_set(form->term[0].factor, factor);
 	return form;
+}
+
+struct form *form_alias(const struct form *form)
+{
+	struct form *alias = NEW(struct form);
+	*alias = *form;
+	return alias;
 }
 
 struct form *form_constant(mpq_srcptr value)
@@ -146,10 +154,13 @@ static void insert_term(struct form *sum, const struct form_term *term, mpq_srcp
 /* All at once, into a new list */
 static void merge_terms(struct form *sum, const struct form *part, mpq_srcptr factor)
 {
-	struct form merged = { 0, ARRAY(struct form_term, (size_t)(sum->terms + part->terms)), sum->terms + part->terms };
+	struct form merged = { 0, ARRAY(struct form_term, (size_t)(sum->terms + part->terms)),
+			       sum->terms + part->terms };
 	spend_terms((size_t)sum->terms / 4);
 	for (int i = 0, j = 0; i < sum->terms || j < part->terms;) {
-		int order = i == sum->terms ? 1 : j == part->terms ? -1 : basis_order(&sum->term[i].basis, &part->term[j].basis);
+		int order = i == sum->terms    ? 1
+			    : j == part->terms ? -1
+					       : basis_order(&sum->term[i].basis, &part->term[j].basis);
 		struct form_term *term = &merged.term[merged.terms];
 		if (order <= 0) {
 			*term = sum->term[i++];
@@ -300,14 +311,17 @@ bool same_form(const struct form *a, const struct form *b)
 	if (a->terms != b->terms)
 		return false;
 	for (int i = 0; i < a->terms; i++)
-		if (basis_order(&a->term[i].basis, &b->term[i].basis) != 0 || !mpq_equal(a->term[i].factor, b->term[i].factor))
+		if (basis_order(&a->term[i].basis, &b->term[i].basis) != 0 ||
+		    !mpq_equal(a->term[i].factor, b->term[i].factor))
 			return false;
 	return true;
 }
 
 bool is_velocity(const struct frame *frame, const struct basis *basis)
 {
-	return basis->atom ? basis->atom->velocity : basis->kind == BASIS_COORD && (basis->order > 0 || frame->coord[basis->index]->highest == 1);
+	return basis->atom
+		       ? basis->atom->velocity
+		       : basis->kind == BASIS_COORD && (basis->order > 0 || frame->coord[basis->index]->highest == 1);
 }
 
 struct form *coordinate_form(const struct frame *frame, int coord, int order)

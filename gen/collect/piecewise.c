@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Piecewise-linear functions and conditions of constants and of time. Time is divided at the breakpoints found so far; a
- * collection looks at one interval between them, in which every condition has one outcome. A breakpoint that is met for
- * the first time is added, and the collection is done again. */
+/* Piecewise-linear functions and conditions of constants and of time. Time is divided at the breakpoints found so far;
+ * a collection looks at one interval between them, in which every condition has one outcome. A breakpoint that is met
+ * for the first time is added, and the collection is done again. */
 #include "collect/collect.h"
 
 #include <string.h>
@@ -101,8 +101,9 @@ int order_now(struct collector *c, const struct node *node, const struct form *a
 		constant_value(c, &phase, value);
 		sign = sign_in_time(c, factor, value);
 	} else {
-		not_built(c, node->at, node->kind == NODE_CALL ? format("'%s' of what moves is", function_name(node->function))
-							       : "conditions on what moves are");
+		not_built(c, node->at,
+			  node->kind == NODE_CALL ? format("'%s' of what moves is", function_name(node->function))
+						  : "conditions on what moves are");
 	}
 	form_free(difference);
 	mpq_clear(value);
@@ -123,7 +124,8 @@ bool is_decided_call(const struct collector *c, const struct node *node, struct 
 {
 	if (is_decided(c, node->children, x))
 		return true;
-	if (node->function != FN_MIN && node->function != FN_MAX && node->function != FN_CLIP && node->function != FN_DEADZONE)
+	if (node->function != FN_MIN && node->function != FN_MAX && node->function != FN_CLIP &&
+	    node->function != FN_DEADZONE)
 		return false;
 	for (int i = 1; i < node->children; i++)
 		if (!is_constant(form_sum(x[i], x[0], true)))
@@ -196,7 +198,8 @@ static struct form *tabulated(struct collector *c, const struct node *node, stru
 	mpq_t slope, width, *room = ARRAY(mpq_t, (size_t)node->children);
 	mpq_srcptr *v = table_points(c, node, x, room);
 	mpq_inits(slope, width, NULL);
-	for (int i = 1; i + 1 < points && (left == i - 1 || c->interval == 0); i++)     /* all breakpoints at the first sight */
+	/* all breakpoints at the first sight */
+	for (int i = 1; i + 1 < points && (left == i - 1 || c->interval == 0); i++)
 		left = order_now(c, node, x[0], x[2 * i + 1]) > 0 ? i : left;
 	mpq_srcptr *p = v + 2 * left + 1;       /* x0, y0, x1, y1 */
 	mpq_sub(slope, p[3], p[1]);

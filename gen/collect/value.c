@@ -14,7 +14,8 @@ struct sample {
 	unsigned *age, now;         /* at which point its value was found; the point */
 };
 
-struct sample *sample_new(int precision, void (*leaf)(void *context, const struct basis *basis, mpfr_ptr value), void *context)
+struct sample *sample_new(int precision, void (*leaf)(void *context, const struct basis *basis, mpfr_ptr value),
+			  void *context)
 {
 	struct sample *s = NEW(struct sample);
 	*s = (struct sample){ .leaf = leaf, .context = context, .precision = precision };

@@ -29,7 +29,8 @@ struct wave *wave_of(struct collector *c, mpq_srcptr a, mpq_srcptr w, mpq_srcptr
 		if (mpq_equal((*link)->a, a) && mpq_equal((*link)->w, w) && mpq_equal((*link)->p, p))
 			return *link;
 	if (c->waves->count == LIMIT_WAVES)
-		error(c->term->start, NULL, "more loads of different frequency, phase or growth than the limit of %d", LIMIT_WAVES);
+		error(c->term->start, NULL, "more loads of different frequency, phase or growth than the limit of %d",
+		      LIMIT_WAVES);
 	struct wave *wave = *link = NEW(struct wave);
 	mpq_inits(wave->a, wave->w, wave->p, NULL);
 	mpq_set(wave->a, a);
@@ -58,13 +59,15 @@ struct form *plain_wave(struct collector *c, int power, mpq_srcptr a)
 {
 	mpq_t zero;
 	mpq_init(zero);
-	struct form *form = form_unit((struct basis){ .kind = BASIS_WAVE, .wave = wave_of(c, a ? a : zero, zero, zero), .power = power });
+	struct form *form = form_unit(
+		(struct basis){ .kind = BASIS_WAVE, .wave = wave_of(c, a ? a : zero, zero, zero), .power = power });
 	mpq_clear(zero);
 	return form;
 }
 
 /* factor t^power e^{a t} cos or sin of (w t + p), with w > 0 or a number in its place */
-static struct form *any_wave(struct collector *c, mpq_srcptr factor, int power, mpq_srcptr a, mpq_srcptr frequency, mpq_srcptr phase, bool sine)
+static struct form *any_wave(struct collector *c, mpq_srcptr factor, int power, mpq_srcptr a, mpq_srcptr frequency,
+			     mpq_srcptr phase, bool sine)
 {
 	mpq_t w, p, scale;
 	mpq_inits(w, p, scale, NULL);
@@ -86,7 +89,11 @@ static struct form *any_wave(struct collector *c, mpq_srcptr factor, int power, 
 		mpq_set_ui(p, 0, 1);
 		sine = false;
 	}
-	struct form *form = form_single((struct basis){ .kind = BASIS_WAVE, .wave = wave_of(c, a, w, p), .power = power, .sine = sine }, scale);
+	struct form *form = form_single((struct basis){ .kind = BASIS_WAVE,
+							.wave = wave_of(c, a, w, p),
+							.power = power,
+							.sine = sine },
+					scale);
 	mpq_clears(w, p, scale, NULL);
 	return form;
 }
@@ -98,7 +105,8 @@ struct form *collect_wave(struct collector *c, bool sine, mpq_srcptr frequency, 
 	mpq_inits(zero, p, sign, NULL);
 	mpq_set_si(sign, 1, 1);
 	int quarters;
-	if (quarter_turns(phase, &quarters)) {  /* cos(x + q pi/2): cos, -sin, -cos, sin; sin(x + ...) is one quarter behind */
+	/* cos(x + q pi/2): cos, -sin, -cos, sin; sin(x + ...) is one quarter behind */
+	if (quarter_turns(phase, &quarters)) {
 		int turn = (quarters + (sine ? 3 : 0)) % 4;
 		sine = turn % 2 == 1;
 		mpq_set_si(sign, turn == 1 || turn == 2 ? -1 : 1, 1);
@@ -152,7 +160,8 @@ struct form *load_product(struct collector *c, const struct form *a, const struc
 				form_add_to(sum, product, NULL);
 				form_free(product);
 			} else {
-				struct form *p = form_product(c, form_single(x->basis, x->factor), form_single(y->basis, y->factor));
+				struct form *p = form_product(c, form_single(x->basis, x->factor),
+							      form_single(y->basis, y->factor));
 				form_add_to(sum, p, NULL);
 			}
 		}

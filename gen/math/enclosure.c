@@ -25,7 +25,8 @@ void rectangle_set(struct rectangle *z, const struct rectangle *a)
 /* A product by a part that is exactly 0 is exactly 0, also where the other factor is unbounded. */
 static void product(mpfi_ptr z, mpfi_srcptr a, mpfi_srcptr b)
 {
-	bool zero = (mpfr_zero_p(&a->left) && mpfr_zero_p(&a->right)) || (mpfr_zero_p(&b->left) && mpfr_zero_p(&b->right));
+	bool zero = (mpfr_zero_p(&a->left) && mpfr_zero_p(&a->right)) ||
+		    (mpfr_zero_p(&b->left) && mpfr_zero_p(&b->right));
 	if (zero)
 		mpfi_set_ui(z, 0);
 	else

@@ -1,10 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A rational function of params that is known by its values alone, as a sum of products of their powers, -3 .. 3: exactly, or not at
- * all. Lines through a base point tell which powers of each param there are, steps along two params whether they meet in a product; then as
- * many scattered points as there are products left give their factors, and two more have to agree. */
+/* A rational function of params that is known by its values alone, as a sum of products of their powers, -3 .. 3:
+ * exactly, or not at all. Lines through a base point tell which powers of each param there are, steps along two params
+ * whether they meet in a product; then as many scattered points as there are products left give their factors, and two
+ * more have to agree. */
 #include "math/math.h"
 
-enum { EXPONENTS = 2 * FIT_DEGREE + 1, LINE = EXPONENTS + 1 };   /* exponents; points on a line to find and to check them */
+/* exponents; points on a line to find and to check them */
+enum { EXPONENTS = 2 * FIT_DEGREE + 1, LINE = EXPONENTS + 1 };
 
 /* A value like no other */
 static void set_value(mpq_ptr value, int index)
@@ -53,11 +55,13 @@ static void power_of(mpq_srcptr x, int exponent, mpq_ptr result)
 		mpq_inv(result, result);
 }
 
-/* f(x) x^3 through seven points as a polynomial of degree 6: which of its coefficients are not 0. The eighth point checks. */
+/* f(x) x^3 through seven points as a polynomial of degree 6: which of its coefficients are not 0. The eighth point
+ * checks. */
 static bool find_exponents(struct fit *f, int k)
 {
 	int unused;
-	mpq_t *V = rationals(EXPONENTS * EXPONENTS), *inverse = rationals(EXPONENTS * EXPONENTS), *y = rationals(LINE), *c = rationals(EXPONENTS);
+	mpq_t *V = rationals(EXPONENTS * EXPONENTS), *inverse = rationals(EXPONENTS * EXPONENTS), *y = rationals(LINE),
+	      *c = rationals(EXPONENTS);
 	mpq_t *sum = rationals(2);
 	for (int i = 0; i < LINE; i++) {
 		mpq_t *at = near_base(f, k, i, k, 0);
@@ -89,7 +93,8 @@ static void find_pairs(struct fit *f)
 		for (int j = 0; j < i; j++) {
 			if (!f->depends[i] || !f->depends[j])
 				continue;
-			mpq_sub(sum[0], value_at(f, (const mpq_t *)near_base(f, i, 0, j, 0)), value_at(f, (const mpq_t *)near_base(f, i, 1, j, 0)));
+			mpq_sub(sum[0], value_at(f, (const mpq_t *)near_base(f, i, 0, j, 0)),
+				value_at(f, (const mpq_t *)near_base(f, i, 1, j, 0)));
 			mpq_sub(sum[0], sum[0], value_at(f, (const mpq_t *)near_base(f, i, 0, j, 1)));
 			mpq_add(sum[0], sum[0], value_at(f, (const mpq_t *)near_base(f, i, 1, j, 1)));
 			f->together[i][j] = f->together[j][i] = mpq_sgn(sum[0]) != 0;
@@ -134,7 +139,8 @@ static void product_at(const struct fit *f, int product, const mpq_t *values, mp
 static bool fit_products(struct fit *f)
 {
 	int count = f->products, unused;
-	mpq_t *V = rationals((size_t)(count * count)), *inverse = rationals((size_t)(count * count)), *y = rationals((size_t)count), *sum = rationals(2);
+	mpq_t *V = rationals((size_t)(count * count)), *inverse = rationals((size_t)(count * count)),
+	      *y = rationals((size_t)count), *sum = rationals(2);
 	f->factor = rationals((size_t)count);
 	for (int i = 0; i < count; i++) {
 		const mpq_t *at = (const mpq_t *)scattered_values(f->params, i + 1);

@@ -24,12 +24,14 @@ struct poly poly_sub(struct poly a, struct poly b);
 struct poly poly_mul(struct poly a, struct poly b);
 struct poly poly_scale(struct poly a, mpz_srcptr factor);
 struct poly poly_shift(struct poly a, int powers);          /* times s^powers; negative: exact division */
-struct poly poly_divide(struct poly a, struct poly b);      /* b divides a exactly, over Q; primitive up to a factor: see .c */
+/* b divides a exactly, over Q; primitive up to a factor: see .c */
+struct poly poly_divide(struct poly a, struct poly b);
 struct poly poly_gcd(struct poly a, struct poly b);         /* primitive, leading coefficient positive */
 struct poly poly_derivative(struct poly a);
 struct poly poly_hasse(struct poly a, int k);               /* k-th derivative over k! */
 struct poly poly_mirror(struct poly a);                     /* a(-s) */
-struct poly poly_primitive(struct poly a, mpz_ptr content); /* a = content * result, result's leading coefficient positive */
+/* a = content * result, result's leading coefficient positive */
+struct poly poly_primitive(struct poly a, mpz_ptr content);
 bool poly_divides(struct poly d, struct poly a);            /* d | a over Q */
 bool poly_equal(struct poly a, struct poly b);
 int  poly_valuation(struct poly a);                         /* how often s divides a (not 0) */
@@ -81,7 +83,8 @@ struct spectrum {                   /* the distinct poles of one denominator, 0 
 	struct spectrum *next;
 };
 struct spectrum *spectrum_of(struct poly D);                /* the same object for the same D */
-bool spectrum_refine(struct spectrum *spectrum, int precision); /* relative 2^-precision; false: not isolated within the limits */
+/* relative 2^-precision; false: not isolated within the limits */
+bool spectrum_refine(struct spectrum *spectrum, int precision);
 
 /* ---- residues.c: values of c e^{A tau} b as sums of residues, enclosed ---- */
 
@@ -94,9 +97,11 @@ struct response {                   /* scale * N/D, N and D coprime */
 	int precision;
 };
 struct response *response_of(mpq_srcptr scale, struct poly N, struct poly D);
-/* True if the value at tau is rational: then `exact` is it. False: it is transcendental and response_enclose converges. */
+/* True if the value at tau is rational: then `exact` is it. False: it is transcendental and response_enclose converges.
+ */
 bool response_exact(struct response *response, mpq_srcptr tau, mpq_ptr exact);
-bool response_enclose(struct response *response, mpq_srcptr tau, int precision, mpfi_ptr value); /* false: poles not isolated */
+/* false: poles not isolated */
+bool response_enclose(struct response *response, mpq_srcptr tau, int precision, mpfi_ptr value);
 
 /* ---- taylor.c: e^{A tau} as a whole, enclosed by a Taylor series and squarings ---- */
 
@@ -106,13 +111,15 @@ struct taylor *taylor_of(int n, const mpq_t *A, mpq_srcptr tau);
  * enclosure); small entries of short paths come out to nearly that many bits of their own. Cached: asking for less than
  * is known costs nothing. False: |A tau| above 2^512, an entry beyond 2^(2^50), or errors that outgrow 64 kbit. */
 bool taylor_enclose(struct taylor *t, int precision);
-void taylor_entry(const struct taylor *t, int i, int j, mpfi_ptr value);    /* sets value's precision; after taylor_enclose */
+/* sets value's precision; after taylor_enclose */
+void taylor_entry(const struct taylor *t, int i, int j, mpfi_ptr value);
 /* True if the entry is a polynomial in tau, zero included, for every tau: then `exact` is its value at this one. */
 bool taylor_exact(struct taylor *t, int i, int j, mpq_ptr exact);
 
 /* ---- fit.c: functions of params from their values ---- */
 
-enum { FIT_DEGREE = 3, FIT_POINTS = 3 };    /* powers up to it, and down to its negative; points that tell what is constant */
+/* powers up to it, and down to its negative; points that tell what is constant */
+enum { FIT_DEGREE = 3, FIT_POINTS = 3 };
 struct fit {
 	int params;
 	mpq_srcptr (*value)(void *context, const mpq_t *params);    /* of the function */
@@ -121,10 +128,13 @@ struct fit {
 	signed char power[LIMIT_MONOMIALS + 1][LIMIT_TUNABLES];
 	mpq_t *factor;
 	int culprit;                /* the param of which no power fits; -1: too many products, or there is none */
-	bool exponent[LIMIT_TUNABLES][2 * FIT_DEGREE + 1]; /* on the way: which powers of each occur, from the lowest on; */
-	bool depends[LIMIT_TUNABLES], together[LIMIT_TUNABLES][LIMIT_TUNABLES]; /* whether any does; whether a product holds both */
+	/* on the way: which powers of each occur, from the lowest on; */
+	bool exponent[LIMIT_TUNABLES][2 * FIT_DEGREE + 1];
+	/* whether any does; whether a product holds both */
+	bool depends[LIMIT_TUNABLES], together[LIMIT_TUNABLES][LIMIT_TUNABLES];
 };
-bool fit_value(struct fit *fit);                            /* params, value and context given; false: it is no such sum */
+/* params, value and context given; false: it is no such sum */
+bool fit_value(struct fit *fit);
 mpq_t *scattered_values(int params, int number);            /* values that are related by nothing */
 
 #endif

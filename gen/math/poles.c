@@ -236,8 +236,9 @@ static bool stick_together(mpc_srcptr a, mpc_srcptr b, int bits)
 	return close;
 }
 
-/* z[member[0 .. m-1]] anew: the mean of m close roots is nearly a simple root of g^(m-1), which Newton's rule finds to all bits;
- * around it the roots have the size that the ends of sum c_j u^j, j <= m, give. The sweeps alone gain less than two bits each. */
+/* z[member[0 .. m-1]] anew: the mean of m close roots is nearly a simple root of g^(m-1), which Newton's rule finds to
+ * all bits; around it the roots have the size that the ends of sum c_j u^j, j <= m, give. The sweeps alone gain less
+ * than two bits each. */
 static void part_cluster(struct poly g, struct iteration *it, const int *member, int m, int bits)
 {
 	mpc_t mean, step, *c = ARRAY(mpc_t, (size_t)m + 1);
@@ -435,9 +436,11 @@ static bool refine_factor(struct spectrum *spectrum, int f, int precision)
 {
 	struct iteration *it = &spectrum->iteration[f];
 	struct factor *factor = &spectrum->factor[f];
-	int wanted = precision + GUARD_BITS + 2 * it->degree;   /* never fewer than before: what they have parted would meet again */
+	/* never fewer than before: what they have parted would meet again */
+	int wanted = precision + GUARD_BITS + 2 * it->degree;
 	bool again = false;
-	for (int bits = wanted > it->bits ? wanted : it->bits; bits < LIMIT_ITERATION_BITS; bits += bits / 2, again = true) {
+	for (int bits = wanted > it->bits ? wanted : it->bits; bits < LIMIT_ITERATION_BITS;
+	     bits += bits / 2, again = true) {
 		if (again)
 			part_clusters(factor->g, it, bits);
 		iterate(factor->g, it, bits);

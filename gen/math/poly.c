@@ -277,7 +277,8 @@ int poly_square_free(struct poly a, struct factor **factors)
 	*factors = NULL;
 	a = primitive_part(poly_shift(a, -poly_valuation(a)));
 	struct poly derivative = poly_derivative(a), common = poly_gcd(a, derivative);
-	struct poly b = poly_divide(a, common), c = poly_divide(derivative, common), d = poly_sub(c, poly_derivative(b));
+	struct poly b = poly_divide(a, common), c = poly_divide(derivative, common),
+		    d = poly_sub(c, poly_derivative(b));
 	for (int multiplicity = 1; b.length > 1; multiplicity++) {
 		struct poly g = poly_gcd(b, d);
 		split_symmetric(factors, &count, g, multiplicity);

@@ -31,8 +31,8 @@ static void evaluate(struct poly p, long point, mpz_ptr value)
 	}
 }
 
-/* Fraction-free elimination (Bareiss): on W of width n the determinant; on [W | I], after Jordan, also adj W in the place
- * of I. False at a singular matrix. */
+/* Fraction-free elimination (Bareiss): on W of width n the determinant; on [W | I], after Jordan, also adj W in the
+ * place of I. False at a singular matrix. */
 static bool bareiss(int n, int width, mpz_t *W, mpz_ptr det)
 {
 	int sign = 1;
@@ -140,7 +140,8 @@ static int root_of(int *parent, int i)
 	return i;
 }
 
-/* The block of each row (0 .. n-1) and column (n .. 2n-1), numbered in the order of their first columns; how many there are */
+/* The block of each row (0 .. n-1) and column (n .. 2n-1), numbered in the order of their first columns; how many there
+ * are */
 static int find_blocks(struct polymat P, int *block)
 {
 	int n = P.n, count = 0, *parent = ARRAY(int, 2 * (size_t)n);
@@ -222,7 +223,8 @@ void polymat_adjugate(struct polymat P, struct poly *det, struct polymat *adj)
 	}
 	int n = P.n, count = degree_bound(P) + 1, cells = adj ? n * n : 0;
 	long *point = ARRAY(long, (size_t)count);
-	mpz_t *dets = ARRAY(mpz_t, (size_t)count), *column = ARRAY(mpz_t, (size_t)count), **adjs = ARRAY(mpz_t *, (size_t)count);
+	mpz_t *dets = ARRAY(mpz_t, (size_t)count), *column = ARRAY(mpz_t, (size_t)count),
+	      **adjs = ARRAY(mpz_t *, (size_t)count);
 	for (int found = 0, tried = 0; found < count; tried++) {        /* 0, 1, -1, 2, -2, ... where P is regular */
 		point[found] = tried % 2 ? (tried + 1) / 2 : -(tried / 2);
 		progress("B(s), point", found, count);

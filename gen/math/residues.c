@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Values of the inverse Laplace transform of scale * N(s)/D(s), as sums of residues.
- * At a pole p of multiplicity m, with D(p+e) = e^m (v_0 + v_1 e + ...) and N(p+e)/(v_0 + v_1 e + ...) = a_0 + a_1 e + ...,
- * the residue of N/D e^{s tau} is e^{p tau} sum_k a_{m-1-k} tau^k/k!. The pole 0 is exact; the others are enclosed. */
+ * At a pole p of multiplicity m, with D(p+e) = e^m (v_0 + v_1 e + ...) and N(p+e)/(v_0 + v_1 e + ...) = a_0 + a_1 e +
+ * ..., the residue of N/D e^{s tau} is e^{p tau} sum_k a_{m-1-k} tau^k/k!. The pole 0 is exact; the others are
+ * enclosed. */
 #include "math/math.h"
 
 enum { GUARD_BITS = 32 };
@@ -96,7 +97,8 @@ struct response *response_of(mpq_srcptr scale, struct poly N, struct poly D)
 static bool residue_vanishes(const struct response *response, const struct factor *factor, mpq_srcptr tau)
 {
 	int m = factor->multiplicity;
-	struct poly *v = ARRAY(struct poly, (size_t)m), *v0 = ARRAY(struct poly, (size_t)m + 1), *w = ARRAY(struct poly, (size_t)m);
+	struct poly *v = ARRAY(struct poly, (size_t)m), *v0 = ARRAY(struct poly, (size_t)m + 1),
+		    *w = ARRAY(struct poly, (size_t)m);
 	v0[0] = poly_new(1);
 	mpz_set_ui(v0[0].c[0], 1);
 	for (int k = 0; k < m; k++) {
@@ -231,7 +233,8 @@ static void find_residues(struct response *response, int precision)
 }
 
 /* sum += (2) Re e^{p tau} sum_k a_k tau^k/k! */
-static void add_residue(const struct pole *pole, int m, const struct rectangle *a, const struct rectangle *exponential, mpq_srcptr tau, mpfi_ptr sum)
+static void add_residue(const struct pole *pole, int m, const struct rectangle *a, const struct rectangle *exponential,
+			mpq_srcptr tau, mpfi_ptr sum)
 {
 	int precision = (int)mpfi_get_prec(sum);
 	struct rectangle total;

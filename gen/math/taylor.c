@@ -2,15 +2,15 @@
 /* e^{A tau} for models whose residues would be slow: e^B by its Taylor series, B = A tau / 2^s, then s squarings.
  *
  * Every entry is a ball: a middle of `limbs` 64-bit digits with an exponent of its own, and a radius of its own. With
- * relative rounding all errors stay below a small multiple of 2^-p (e^{|A| tau})_ij, entry by entry: |XY| <= |X||Y|, and
- * e^{|A|tau/2} e^{|A|tau/2} = e^{|A|tau}. So an entry of size 1e-200 (the far end of a chain, a short step) has as many good digits
- * as the largest, in whatever units the states are. The radii are not that bound but what the operands at hand give,
- * which is far less where the motion is damped.
+ * relative rounding all errors stay below a small multiple of 2^-p (e^{|A| tau})_ij, entry by entry: |XY| <= |X||Y|,
+ * and e^{|A|tau/2} e^{|A|tau/2} = e^{|A|tau}. So an entry of size 1e-200 (the far end of a chain, a short step) has as
+ * many good digits as the largest, in whatever units the states are. The radii are not that bound but what the operands
+ * at hand give, which is far less where the motion is damped.
  *
- * The series is summed in blocks of q powers (Paterson and Stockmeyer, SIAM J. Comput. 2, 1973); q = 1 is Horner's rule with the
- * sparse B. Its tail needs a norm: with D a diagonal of powers of two and b = ||D^-1 |B| D||,
- *     |sum_{k>=m} B^k/k!|_ij <= (d_i/d_j) b^m/m! / (1 - b/(m+1)),
- * and D only serves this estimate. Where no path of A leads from i to j the entry is exactly 0 and stays so. */
+ * The series is summed in blocks of q powers (Paterson and Stockmeyer, SIAM J. Comput. 2, 1973); q = 1 is Horner's rule
+ * with the sparse B. Its tail needs a norm: with D a diagonal of powers of two and b = ||D^-1 |B| D||, |sum_{k>=m}
+ * B^k/k!|_ij <= (d_i/d_j) b^m/m! / (1 - b/(m+1)), and D only serves this estimate. Where no path of A leads from i to j
+ * the entry is exactly 0 and stays so. */
 #include "math/math.h"
 
 #include <limits.h>
@@ -124,8 +124,12 @@ struct balls {                      /* a matrix, or a few scalars; row-major */
 
 static void balls_init(struct balls *x, size_t count, int limbs)
 {
-	*x = (struct balls){ limbs, ARRAY(mp_limb_t, count * (size_t)limbs), ARRAY(long, count), ARRAY(signed char, count),
-			     ARRAY(struct magnitude, count), ARRAY(struct magnitude, count) };
+	*x = (struct balls){ limbs,
+			     ARRAY(mp_limb_t, count * (size_t)limbs),
+			     ARRAY(long, count),
+			     ARRAY(signed char, count),
+			     ARRAY(struct magnitude, count),
+			     ARRAY(struct magnitude, count) };
 }
 
 static void balls_clear(struct balls *x)
@@ -150,7 +154,8 @@ static void update_size(struct balls *x, size_t at)
 	mp_limb_t top = limbs_of(x, at)[x->limbs - 1];
 	struct magnitude middle = magnitude((top >> 32) + 1, LIMB * (x->exponent[at] - 1) + 32);
 	if (top >> 32 == 0)             /* few bits in the top digit: the next one counts */
-		middle = magnitude((top << 24 | (x->limbs > 1 ? limbs_of(x, at)[x->limbs - 2] >> 40 : 0)) + 1, LIMB * (x->exponent[at] - 1) - 24);
+		middle = magnitude((top << 24 | (x->limbs > 1 ? limbs_of(x, at)[x->limbs - 2] >> 40 : 0)) + 1,
+				   LIMB * (x->exponent[at] - 1) - 24);
 	x->size[at] = magnitude_add(middle, x->radius[at]);
 }
 
@@ -165,7 +170,8 @@ static void ball_set_rational(struct balls *x, size_t at, mpq_srcptr q, long hal
 		return;
 	}
 	mpz_inits(middle, scaled, NULL);
-	long bits = (long)mpz_sizeinbase(mpq_numref(q), 2) - (long)mpz_sizeinbase(mpq_denref(q), 2) + 1 - halvings; /* |x| < 2^bits */
+	/* |x| < 2^bits */
+	long bits = (long)mpz_sizeinbase(mpq_numref(q), 2) - (long)mpz_sizeinbase(mpq_denref(q), 2) + 1 - halvings;
 	long exponent = bits >= 0 ? (bits + LIMB - 1) / LIMB : -(-bits / LIMB);
 	bool exact;
 	for (;;) {
@@ -199,9 +205,13 @@ struct sum {
 
 static void sum_init(struct sum *sum, int capacity, int limbs)
 {
-	*sum = (struct sum){ .limbs = limbs, .top = LONG_MIN, .error_top = LONG_MIN, .term = ARRAY(struct term, (size_t)capacity),
+	*sum = (struct sum){ .limbs = limbs,
+			     .top = LONG_MIN,
+			     .error_top = LONG_MIN,
+			     .term = ARRAY(struct term, (size_t)capacity),
 			     .error = ARRAY(struct magnitude, 2 * (size_t)capacity),
-			     .accumulator = ARRAY(mp_limb_t, (size_t)limbs + 2), .product = ARRAY(mp_limb_t, 2 * (size_t)limbs) };
+			     .accumulator = ARRAY(mp_limb_t, (size_t)limbs + 2),
+			     .product = ARRAY(mp_limb_t, 2 * (size_t)limbs) };
 }
 
 static void sum_clear(struct sum *sum)
@@ -226,7 +236,8 @@ static void sum_product(struct sum *sum, const struct balls *x, size_t a, const 
 {
 	if (x->sign[a] && y->sign[b]) {
 		long exponent = x->exponent[a] + y->exponent[b];
-		sum->term[sum->terms++] = (struct term){ limbs_of(x, a), limbs_of(y, b), exponent, x->sign[a] != y->sign[b] };
+		sum->term[sum->terms++] =
+			(struct term){ limbs_of(x, a), limbs_of(y, b), exponent, x->sign[a] != y->sign[b] };
 		if (exponent > sum->top)
 			sum->top = exponent;
 	}
@@ -245,9 +256,9 @@ static struct magnitude inherited_error(const struct sum *sum)
 	return magnitude(total, total ? sum->error_top : 0);
 }
 
-/* The products go into a window of limbs + 1 digits below 2^(64 top), with one digit above for carries and sign. A product that
- * starts g digits below the top needs only the first limbs + 1 - g digits of its factors: cutting each factor costs less than
- * one unit of the window's last digit, cutting the product another. */
+/* The products go into a window of limbs + 1 digits below 2^(64 top), with one digit above for carries and sign. A
+ * product that starts g digits below the top needs only the first limbs + 1 - g digits of its factors: cutting each
+ * factor costs less than one unit of the window's last digit, cutting the product another. */
 static void accumulate(struct sum *sum)
 {
 	int window = sum->limbs + 1;
@@ -269,7 +280,8 @@ static void accumulate(struct sum *sum)
 	}
 }
 
-/* x[at] <- the sum, which is empty afterwards. Radius: inherited, 3 units of the window per product, 1 unit of the result. */
+/* x[at] <- the sum, which is empty afterwards. Radius: inherited, 3 units of the window per product, 1 unit of the
+ * result. */
 static void sum_finish(struct sum *sum, struct balls *x, size_t at)
 {
 	int limbs = sum->limbs, window = limbs + 1;
@@ -291,9 +303,11 @@ static void sum_finish(struct sum *sum, struct balls *x, size_t at)
 			x->sign[at] = minus ? -1 : 1;
 			x->exponent[at] = sum->top - window + used;
 			if (used > limbs)
-				x->radius[at] = magnitude_add(x->radius[at], magnitude(1, LIMB * (x->exponent[at] - limbs)));
+				x->radius[at] =
+					magnitude_add(x->radius[at], magnitude(1, LIMB * (x->exponent[at] - limbs)));
 		}
-		x->radius[at] = magnitude_add(x->radius[at], magnitude(3 * (uint64_t)sum->terms, LIMB * (sum->top - window)));
+		x->radius[at] =
+			magnitude_add(x->radius[at], magnitude(3 * (uint64_t)sum->terms, LIMB * (sum->top - window)));
 	}
 	update_size(x, at);
 	sum->terms = sum->errors = 0;
@@ -311,7 +325,8 @@ struct taylor {
 	long *scale;                /* log2 d_i */
 	struct magnitude norm;      /* ||D^-1 |A tau| D|| */
 	int depth;                  /* largest distance */
-	long *least;                /* per distance: log2 of the least entry of D^-1 |A tau|^k/k! D first reached there */
+	/* per distance: log2 of the least entry of D^-1 |A tau|^k/k! D first reached there */
+	long *least;
 	long density[LARGEST_BLOCK + 1];    /* nonzeros of B^q */
 	long filled;                /* and of e^B */
 	int precision;              /* what `value` is known to; 0: nothing */
@@ -322,7 +337,8 @@ struct taylor {
 	struct exact_row *row;      /* the last one proved, or NULL */
 };
 
-/* Osborne's balancing, on the exponents alone. A state that nothing leads into or out of is scaled until its entries are below 1. */
+/* Osborne's balancing, on the exponents alone. A state that nothing leads into or out of is scaled until its entries
+ * are below 1. */
 static void balance(struct taylor *t)
 {
 	int n = t->n;
@@ -381,16 +397,20 @@ static void next_power(const struct taylor *t, struct magnitude *power, struct m
 			if (t->B_size[i * n + m].m)
 				for (int j = 0; j < n; j++)
 					if (power[m * n + j].m)
-						next[i * n + j] = magnitude_add(next[i * n + j], magnitude_mul(t->B_size[i * n + m], power[m * n + j]));
+						next[i * n + j] = magnitude_add(next[i * n + j],
+										magnitude_mul(t->B_size[i * n + m],
+											      power[m * n + j]));
 	for (int i = 0; i < n * n; i++)
 		power[i] = magnitude_div(next[i], (uint64_t)k);
 }
 
-/* Distances, and how small the entries first reached at each distance are: what the length of the series must allow for. */
+/* Distances, and how small the entries first reached at each distance are: what the length of the series must allow
+ * for. */
 static void find_distances(struct taylor *t)
 {
 	int n = t->n;
-	struct magnitude *power = ARRAY(struct magnitude, (size_t)(n * n)), *next = ARRAY(struct magnitude, (size_t)(n * n));
+	struct magnitude *power = ARRAY(struct magnitude, (size_t)(n * n)),
+			 *next = ARRAY(struct magnitude, (size_t)(n * n));
 	for (int i = 0; i < n * n; i++)
 		t->distance[i] = -1;
 	for (int i = 0; i < n; i++)
@@ -427,8 +447,13 @@ struct taylor *taylor_of(int n, const mpq_t *A, mpq_srcptr tau)
 {
 	struct taylor *t = NEW(struct taylor);
 	size_t cells = (size_t)n * (size_t)n;
-	*t = (struct taylor){ .n = n, .A = rationals(cells), .B = rationals(cells), .B_size = ARRAY(struct magnitude, cells),
-			      .distance = ARRAY(int, cells), .scale = ARRAY(long, (size_t)n), .least = ARRAY(long, (size_t)n + 1) };
+	*t = (struct taylor){ .n = n,
+			      .A = rationals(cells),
+			      .B = rationals(cells),
+			      .B_size = ARRAY(struct magnitude, cells),
+			      .distance = ARRAY(int, cells),
+			      .scale = ARRAY(long, (size_t)n),
+			      .least = ARRAY(long, (size_t)n + 1) };
 	mpq_init(t->tau);
 	mpq_set(t->tau, tau);
 	for (size_t i = 0; i < cells; i++) {
@@ -448,7 +473,8 @@ struct plan {
 	struct magnitude tail;      /* of D^-1 e^B D */
 };
 
-/* The least m with b^m/m! < 2^bits and b <= (m + 1)/2, and 2 b^m/m!, which then bounds the tail; 0: none within reason */
+/* The least m with b^m/m! < 2^bits and b <= (m + 1)/2, and 2 b^m/m!, which then bounds the tail; 0: none within reason
+ */
 static int series_length(struct magnitude b, long bits, struct magnitude *tail)
 {
 	struct magnitude term = magnitude(1, 0);
@@ -591,7 +617,8 @@ static void swap(struct balls *x, struct balls *y)
 }
 
 /* e^B without its tail: U_0; `other` is room for a matrix */
-static void sum_series(struct work *w, const struct taylor *t, const struct plan *plan, struct balls *U, struct balls *other)
+static void sum_series(struct work *w, const struct taylor *t, const struct plan *plan, struct balls *U,
+		       struct balls *other)
 {
 	int n = w->n, q = plan->block;
 	size_t cells = (size_t)n * (size_t)n;
@@ -634,7 +661,8 @@ static void add_tail(const struct taylor *t, struct magnitude tail, struct balls
 		}
 }
 
-/* Keeps exponents far from the limits of a long: what is tiny becomes 0 with a radius. False: something is too large. */
+/* Keeps exponents far from the limits of a long: what is tiny becomes 0 with a radius. False: something is too large.
+ */
 static bool keep_in_range(struct balls *U, size_t cells)
 {
 	for (size_t i = 0; i < cells; i++) {
@@ -720,7 +748,8 @@ bool taylor_enclose(struct taylor *t, int precision)
 	return false;
 }
 
-/* Bounds are rounded once: MPFR's exponents end at 2^30, and an interval [largest, infinity] still says on which side it is. */
+/* Bounds are rounded once: MPFR's exponents end at 2^30, and an interval [largest, infinity] still says on which side
+ * it is. */
 static void set_interval(mpfi_ptr value, mpz_srcptr left, mpz_srcptr right, long exponent)
 {
 	mpfr_set_z_2exp(&value->left, left, exponent, MPFR_RNDD);
@@ -757,8 +786,9 @@ void taylor_entry(const struct taylor *t, int i, int j, mpfi_ptr value)
 
 /* ---- what is exactly known ----
  * Walks from i to j stay among the states S that i leads to and that lead to j; with N = |S|, Cayley and Hamilton make
- * (A^k)_ij a recurrence of order N in k. If it is 0 for N <= k < 2N, it is 0 for all k >= N, and (e^{A tau})_ij is the polynomial
- * sum_{k<N} (A^k)_ij tau^k/k!; without a cycle in S that needs no test. Otherwise the entry has a pole other than 0. */
+ * (A^k)_ij a recurrence of order N in k. If it is 0 for N <= k < 2N, it is 0 for all k >= N, and (e^{A tau})_ij is the
+ * polynomial sum_{k<N} (A^k)_ij tau^k/k!; without a cycle in S that needs no test. Otherwise the entry has a pole other
+ * than 0. */
 
 static bool leads(const struct taylor *t, int i, int j)
 {
@@ -809,7 +839,8 @@ static uint64_t reduce(const struct taylor *t, uint64_t *residue)
 }
 
 /* row <- x A modulo the prime; eight products of 62-bit factors fit into 127 bits */
-static void modular_row(int n, uint64_t prime, const uint64_t *x, const uint64_t *A, unsigned __int128 *sum, uint64_t *row)
+static void modular_row(int n, uint64_t prime, const uint64_t *x, const uint64_t *A, unsigned __int128 *sum,
+			uint64_t *row)
 {
 	memset(sum, 0, (size_t)n * sizeof *sum);
 	int products = 0;
@@ -827,7 +858,8 @@ static void modular_row(int n, uint64_t prime, const uint64_t *x, const uint64_t
 }
 
 /* power <- A^exponent modulo the prime */
-static void modular_power(int n, uint64_t prime, const uint64_t *A, int exponent, unsigned __int128 *sum, uint64_t *power)
+static void modular_power(int n, uint64_t prime, const uint64_t *A, int exponent, unsigned __int128 *sum,
+			  uint64_t *power)
 {
 	size_t cells = (size_t)n * (size_t)n;
 	uint64_t *next = ARRAY(uint64_t, cells);
@@ -936,8 +968,8 @@ static bool integer_row(int N, mpz_t *row, mpz_t *next, mpz_t *block)
 	return any;
 }
 
-/* For every state of S that may have a polynomial entry in row i: value <- sum_{k<N} (A^k) tau^k/k!, polynomial <- whether all later
- * powers are 0. Kept for the next column, whose S is mostly the same. */
+/* For every state of S that may have a polynomial entry in row i: value <- sum_{k<N} (A^k) tau^k/k!, polynomial <-
+ * whether all later powers are 0. Kept for the next column, whose S is mostly the same. */
 struct exact_row {
 	int i, N;
 	int *state;                 /* S */

@@ -50,7 +50,8 @@ static void fill_load_rows(mpq_t *A, int size, int at, const struct load *load)
 }
 
 /* column `at` of the rows of the highest derivatives = W^-1 force */
-static void fill_force(mpq_t *A, int size, int at, const struct linear *system, const mpq_t *inverse, const mpq_t *force)
+static void fill_force(mpq_t *A, int size, int at, const struct linear *system, const mpq_t *inverse,
+		       const mpq_t *force)
 {
 	int n = system->n;
 	mpq_t *product = rationals((size_t)n);
@@ -64,7 +65,8 @@ static void fill_force(mpq_t *A, int size, int at, const struct linear *system, 
 mpq_t *series_matrix(const struct series *series, const struct linear *system, int segment)
 {
 	int n = system->n, size = series->size, states = system->states, column;
-	mpq_t *A = rationals((size_t)size * (size_t)size), *inverse = rationals((size_t)(n * n)), *unit = rationals((size_t)n);
+	mpq_t *A = rationals((size_t)size * (size_t)size), *inverse = rationals((size_t)(n * n)),
+	      *unit = rationals((size_t)n);
 	mpq_t *own = state_matrix(system, false);
 	leading_inverse(system, inverse, &column);
 	for (int i = 0; i < states; i++)
@@ -80,7 +82,8 @@ mpq_t *series_matrix(const struct series *series, const struct linear *system, i
 		if (series->load[l] < 0)
 			continue;
 		for (int k = 0; k < system->load[l].columns; k++)
-			fill_force(A, size, series->load[l] + k, system, (const mpq_t *)inverse, (const mpq_t *)system->load[l].force[k] + segment * n);
+			fill_force(A, size, series->load[l] + k, system, (const mpq_t *)inverse,
+				   (const mpq_t *)system->load[l].force[k] + segment * n);
 		fill_load_rows(A, size, series->load[l], &system->load[l]);
 	}
 	for (int i = 0; i < system->inputs; i++) {

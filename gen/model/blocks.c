@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Coordinates that do not influence each other, in either direction, are separate systems: each has its own B(s), and the
- * factors between them are exactly 0. */
+/* Coordinates that do not influence each other, in either direction, are separate systems: each has its own B(s), and
+ * the factors between them are exactly 0. */
 #include "model/model.h"
 
 /* Equations 0 .. n-1 and coordinates n .. 2n-1 as nodes of one graph; parent pointers of its components. */
@@ -79,7 +79,8 @@ static void restrict_system(const struct linear *whole, struct block *b)
 		system->load[l] = whole->load[l];
 		system->load[l].force = ARRAY(mpq_t *, (size_t)whole->load[l].columns);
 		for (int k = 0; k < whole->load[l].columns; k++)
-			system->load[l].force[k] = subvector((const mpq_t *)whole->load[l].force[k], whole->segments, n, b);
+			system->load[l].force[k] =
+				subvector((const mpq_t *)whole->load[l].force[k], whole->segments, n, b);
 	}
 	system->input = ARRAY(struct input, (size_t)whole->inputs);
 	for (int i = 0; i < whole->inputs; i++) {
@@ -96,7 +97,8 @@ int blocks_of(const struct linear *system, struct block **blocks)
 {
 	int n = system->n, count = 0, *parent = components(system);
 	*blocks = ARRAY(struct block, (size_t)n);
-	for (int j = 0; j < n; j++) {           /* a block for each component, in the order of their first coordinates */
+	/* a block for each component, in the order of their first coordinates */
+	for (int j = 0; j < n; j++) {
 		bool seen = false;
 		for (int earlier = 0; earlier < j; earlier++)
 			seen = seen || root(parent, n + earlier) == root(parent, n + j);

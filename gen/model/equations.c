@@ -26,12 +26,15 @@ static void collect_equation(void *context)
 {
 	struct indexed *work = context;
 	const struct equation *equation = &work->b->spec->equation[work->index];
-	struct value *left = collect(&work->b->collector, equation->left), *right = collect(&work->b->collector, equation->right);
+	struct value *left = collect(&work->b->collector, equation->left),
+		     *right = collect(&work->b->collector, equation->right);
 	const struct value *shape = is_zero(left) ? right : left;
 	if (!is_zero(left) && !is_zero(right) && (left->rows != right->rows || left->columns != right->columns))
-		error(equation->at, NULL, "the sides of the equation do not fit: %d x %d and %d x %d", left->rows, left->columns, right->rows, right->columns);
+		error(equation->at, NULL, "the sides of the equation do not fit: %d x %d and %d x %d", left->rows,
+		      left->columns, right->rows, right->columns);
 	for (int i = 0; i < shape->rows * shape->columns; i++) {
-		const struct form *l = is_zero(left) ? left->cell[0] : left->cell[i], *r = is_zero(right) ? right->cell[0] : right->cell[i];
+		const struct form *l = is_zero(left) ? left->cell[0] : left->cell[i],
+				  *r = is_zero(right) ? right->cell[0] : right->cell[i];
 		add_residual(work->snapshot, form_sum(l, r, true), equation->at, equation->end);
 	}
 }
@@ -49,17 +52,20 @@ static void collect_element(void *context)
 	const struct element *element = &b->spec->element[work->index];
 	struct value *value = collect(&b->collector, element->value);
 	if (value->rows != 1 || value->columns != 1)
-		error(element->value->start, NULL, "expected a scalar, found a %d x %d matrix", value->rows, value->columns);
+		error(element->value->start, NULL, "expected a scalar, found a %d x %d matrix", value->rows,
+		      value->columns);
 	struct form *form;
 	if (element->kind == ELEMENT_FORCE) {
 		form = form_sum(NEW(struct form), value->cell[0], true);
 	} else {
 		int order = element->kind == ELEMENT_MASS ? 2 : element->kind == ELEMENT_DAMPER ? 1 : 0;
 		if (!is_constant(value->cell[0]))
-			error(element->value->start, "what moves belongs in an equation, or in a force", "a mass, spring or damper needs a constant");
+			error(element->value->start, "what moves belongs in an equation, or in a force",
+			      "a mass, spring or damper needs a constant");
 		form = coordinate_form(&b->model->frame, component_of(element->from), order);
 		if (element->to)
-			form = form_sum(form, coordinate_form(&b->model->frame, component_of(element->to), order), true);
+			form = form_sum(form, coordinate_form(&b->model->frame, component_of(element->to), order),
+					true);
 		form = form_product(&b->collector, value->cell[0], form);
 	}
 	work->snapshot->element[work->index] = form;
@@ -81,7 +87,8 @@ void collect_equations(struct building *b, struct snapshot *snapshot)
 static const struct node *find_derivative(const struct node *node, int coord, int primes)
 {
 	if (node->kind == NODE_NAME && node->symbol->kind == SYMBOL_COORD && node->primes == primes) {
-		int first = component_of(node), last = node->component || !node->symbol->length ? first : first + node->symbol->length - 1;
+		int first = component_of(node),
+		    last = node->component || !node->symbol->length ? first : first + node->symbol->length - 1;
 		if (first <= coord && coord <= last)
 			return node;
 	}
@@ -137,7 +144,8 @@ static const char *highest_name(const struct model *model, int coord)
 static bool has_coordinate_of_order(const struct form *form, int coord, int order)
 {
 	for (int i = 0; i < form->terms; i++)
-		if (form->term[i].basis.kind == BASIS_COORD && form->term[i].basis.index == coord && (order < 0 || form->term[i].basis.order == order))
+		if (form->term[i].basis.kind == BASIS_COORD && form->term[i].basis.index == coord &&
+		    (order < 0 || form->term[i].basis.order == order))
 			return true;
 	return false;
 }
@@ -152,8 +160,8 @@ static bool is_sketched(const struct building *b, int coord)
 	return false;
 }
 
-/* A written equation can be the coordinate's own if it has its highest derivative or, at last, if a mass statement gives
- * that. Coordinates that no sketch touches have only written ones and choose first. */
+/* A written equation can be the coordinate's own if it has its highest derivative or, at last, if a mass statement
+ * gives that. Coordinates that no sketch touches have only written ones and choose first. */
 enum choice { UNTOUCHED, HIGHEST, ANY };
 
 static bool can_own(const struct building *b, int row, int coord, enum choice choice)
@@ -168,7 +176,8 @@ static bool can_own(const struct building *b, int row, int coord, enum choice ch
 static bool augment(const struct building *b, int row, enum choice choice, bool *visited)
 {
 	for (int k = 0; k < b->model->n; k++) {
-		int j = (row + k) % b->model->n;        /* that of the same number first: the rows of a vector equation */
+		/* that of the same number first: the rows of a vector equation */
+		int j = (row + k) % b->model->n;
 		if (visited[j] || !can_own(b, row, j, choice))
 			continue;
 		visited[j] = true;
@@ -188,7 +197,8 @@ static const char *plural(int count, const char *word)
 /* A coordinate that stands nowhere is one of second order that was forgotten. */
 static const char *missing_name(const struct building *b, int coord)
 {
-	return find_in_equations(b->spec, coord, 1) ? highest_name(b->model, coord) : format("%s''", b->model->coord_name[coord]);
+	return find_in_equations(b->spec, coord, 1) ? highest_name(b->model, coord)
+						    : format("%s''", b->model->coord_name[coord]);
 }
 
 /* Each coordinate gets a written equation; sketched ones without get an empty one to which the elements add. */
@@ -215,26 +225,29 @@ bool assign_equations(struct building *b)
 			missing = j;
 	}
 	if (all > n)
-		say_error(b->snapshot->residual[surplus < 0 ? written - 1 : surplus].at, NULL, "surplus equation: %s for %s", plural(all, "equation"),
-			  plural(n, "coordinate"));
+		say_error(b->snapshot->residual[surplus < 0 ? written - 1 : surplus].at, NULL,
+			  "surplus equation: %s for %s", plural(all, "equation"), plural(n, "coordinate"));
 	else if (all < n)
-		say_error(b->spec->end, "each coordinate needs an equation of motion", "missing equation: %s, %s; none determines %s", plural(n, "coordinate"),
+		say_error(b->spec->end, "each coordinate needs an equation of motion",
+			  "missing equation: %s, %s; none determines %s", plural(n, "coordinate"),
 			  plural(all, "equation"), missing_name(b, missing));
 	return all == n;
 }
 
-/* Over other coordinates than the written ones: equations combined as they are, and those of velocities that stand alone */
+/* Over other coordinates than the written ones: equations combined as they are, and those of velocities that stand
+ * alone */
 static void combine_residuals(const struct building *b, struct snapshot *s)
 {
 	const struct relative *relative = b->model->relative;
 	int written = b->spec->components;
-	const struct form **equation = ARRAY(const struct form *, (size_t)written);
+	struct form **equation = ARRAY(struct form *, (size_t)written);
 	for (int j = 0; j < written; j++)
 		equation[j] = s->residual[b->owner[j]].form;
 	for (int j = 0; j < written; j++)
 		s->residual[b->owner[j]].form = combined_equation(relative, j, equation);
 	for (int i = written; i < b->model->n; i++)
-		add_residual(s, relative->extra[i - written], b->model->frame.coord[i]->at, b->model->frame.coord[i]->at);
+		add_residual(s, relative->extra[i - written], b->model->frame.coord[i]->at,
+			     b->model->frame.coord[i]->at);
 }
 
 /* Forces of elements: on the first coordinate as they are, on the second reversed. */
@@ -276,12 +289,14 @@ static void tell_singular(const struct building *b, int coord)
 	const struct element *mass = find_mass(b->spec, coord);
 	struct place at = highest ? highest->at : mass ? mass->at : model->frame.coord[coord]->at;
 	if (!highest && !mass)
-		say_error(at, "every coordinate needs a mass, or a first derivative", "singular mass matrix: no derivative of %s stands in an equation",
-			  model->coord_name[coord]);
+		say_error(at, "every coordinate needs a mass, or a first derivative",
+			  "singular mass matrix: no derivative of %s stands in an equation", model->coord_name[coord]);
 	else if (zero_column(model, coord))
-		say_error(at, "every coordinate needs a mass", "singular mass matrix: the factor of %s is 0", highest_name(model, coord));
+		say_error(at, "every coordinate needs a mass", "singular mass matrix: the factor of %s is 0",
+			  highest_name(model, coord));
 	else
-		say_error(at, NULL, "singular mass matrix: the equations do not determine %s", highest_name(model, coord));
+		say_error(at, NULL, "singular mass matrix: the equations do not determine %s",
+			  highest_name(model, coord));
 }
 
 /* Prefer to name a coordinate without any mass over one that elimination happened to stop at. */
@@ -314,7 +329,8 @@ void collect_whole(struct building *b)
 	if (!diagnostics_errors())
 		add_elements(b, b->whole);
 	for (struct symbol *s = b->spec->first; s && !b->collector.fixings; s = s->next)
-		if (s->kind == SYMBOL_LET && s->progress == COLLECTED && s->collected->rows * s->collected->columns == 1)
+		if (s->kind == SYMBOL_LET && s->progress == COLLECTED &&
+		    s->collected->rows * s->collected->columns == 1)
 			s->whole = s->collected->cell[0];
 }
 

@@ -20,7 +20,11 @@ struct linear linear_like(const struct linear *shape)
 /* x' = A x as coordinates of first order */
 struct linear first_order_system(int n, const mpq_t *A)
 {
-	struct linear shape = { .n = n, .states = n, .segments = 1, .velocity = ARRAY(int, (size_t)n), .coord = ARRAY(int, (size_t)n) };
+	struct linear shape = { .n = n,
+				.states = n,
+				.segments = 1,
+				.velocity = ARRAY(int, (size_t)n),
+				.coord = ARRAY(int, (size_t)n) };
 	for (int i = 0; i < n; i++) {
 		shape.velocity[i] = -1;
 		shape.coord[i] = i;

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* From a parsed spec to a model: params, scheme, step and initial values here; equations.c and outputs.c do the rest. */
+/* From a parsed spec to a model: params, scheme, step and initial values here; equations.c and outputs.c do the rest.
+ */
 #include "model/model.h"
 
 #include <string.h>
@@ -16,7 +17,8 @@ static void define_override(struct building *b, const char *text)
 		return;
 	if (!symbol || symbol->kind != SYMBOL_PARAM) {
 		const char *note = symbol ? "-D gives a param another value" : spec_suggestion(b->spec, name);
-		say_error((struct place){ source, 0 }, note, symbol ? "'%s' is not a param" : "no param is named '%s'", name);
+		say_error((struct place){ source, 0 }, note, symbol ? "'%s' is not a param" : "no param is named '%s'",
+			  name);
 		return;
 	}
 	struct node *value = parse_argument(b->spec, source, (size_t)(equals - text) + 1);
@@ -31,7 +33,10 @@ static void set_tunables(struct building *b)
 	for (int i = 0; b->request->tunable && i < b->spec->tunables; i++) {
 		const struct tunable *tunable = &b->spec->tunable[i];
 		struct node *value = NEW(struct node);
-		*value = (struct node){ .kind = NODE_NUMBER, .at = tunable->at, .start = tunable->at, .end = tunable->at };
+		*value = (struct node){ .kind = NODE_NUMBER,
+					.at = tunable->at,
+					.start = tunable->at,
+					.end = tunable->at };
 		mpq_init(value->number);
 		mpq_set(value->number, b->request->tunable[i]);
 		tunable->symbol->value = value;
@@ -55,7 +60,11 @@ struct symbol_work {
 static void evaluate_symbol(void *context)
 {
 	struct symbol_work *work = context;
-	struct node name = { .kind = NODE_NAME, .at = work->symbol->at, .start = work->symbol->at, .end = work->symbol->at, .symbol = work->symbol };
+	struct node name = { .kind = NODE_NAME,
+			     .at = work->symbol->at,
+			     .start = work->symbol->at,
+			     .end = work->symbol->at,
+			     .symbol = work->symbol };
 	collect(&work->b->collector, &name);
 }
 
@@ -64,7 +73,8 @@ static void evaluate_params(struct building *b)
 	b->collector.constant_only = true;
 	bool failed = false;
 	for (struct symbol *s = b->spec->first, *before = NULL; s; before = s, s = s->next) {
-		failed = before && before->statement == s->statement ? failed || (before->broken && before->index >= 0) : statement_failed(s);
+		failed = before && before->statement == s->statement ? failed || (before->broken && before->index >= 0)
+								     : statement_failed(s);
 		if ((s->kind != SYMBOL_PARAM && s->kind != SYMBOL_MATRIX) || s->broken)
 			continue;
 		if (s->progress == COLLECTING || failed ||
@@ -102,12 +112,16 @@ static void choose_scheme(void *context)
 		b->model->scheme = b->request->solution ? SCHEME_EXACT : scheme;
 		b->model->asked.scheme_at = at;
 		b->collector.scheme = scheme_name(b->model->scheme);
-		b->collector.keep = b->request->solution ? KEEP_NOTHING : scheme == SCHEME_EXACT ? KEEP_PIECEWISE : KEEP_ALL;
+		b->collector.keep = b->request->solution     ? KEEP_NOTHING
+				    : scheme == SCHEME_EXACT ? KEEP_PIECEWISE
+							     : KEEP_ALL;
 		return;
 	}
 	const char *nearest = nearest_scheme(wanted);
 	b->collector.keep = KEEP_ALL;           /* whatever was meant: one message is enough */
-	error(at, nearest ? format("did you mean '%s'?", nearest) : "the schemes are exact, pl, etd1, etdrk2, etdrk4, nc2, nc3, dq4, bm3",
+	error(at,
+	      nearest ? format("did you mean '%s'?", nearest)
+		      : "the schemes are exact, pl, etd1, etdrk2, etdrk4, nc2, nc3, dq4, bm3",
 	      "unknown scheme '%s'", wanted);
 }
 
@@ -144,19 +158,22 @@ static void evaluate_initial(void *context)
 	const struct initial *initial = &work->b->spec->initial[work->index];
 	const struct symbol *coord = initial->coord;
 	struct model *model = work->b->model;
-	int first = coord->index + (initial->component ? initial->component - 1 : 0), count = initial->component || !coord->length ? 1 : coord->length;
+	int first = coord->index + (initial->component ? initial->component - 1 : 0),
+	    count = initial->component || !coord->length ? 1 : coord->length;
 	struct value *value = collect_constants(&work->b->collector, initial->value);
 	bool single = value->rows == 1 && value->columns == 1;
 	if (initial->primes == 1 && coord->highest == 1)
-		error(initial->at, "it appears only as a first derivative, so its start fixes all", "%s is of first order: its derivative has no initial value",
-		      coord->name);
+		error(initial->at, "it appears only as a first derivative, so its start fixes all",
+		      "%s is of first order: its derivative has no initial value", coord->name);
 	if (!single && value->rows * value->columns != count)
-		error(initial->value->start, NULL, "sizes do not fit: %s has %d components, the value is %d x %d", coord->name, count, value->rows, value->columns);
+		error(initial->value->start, NULL, "sizes do not fit: %s has %d components, the value is %d x %d",
+		      coord->name, count, value->rows, value->columns);
 	for (int i = 0; i < count; i++) {
 		int state = initial->primes ? model->system.velocity[first + i] : first + i;
 		constant_value(&work->b->collector, value->cell[single ? 0 : i], model->initial[state]);
 		if (beyond_range(model->initial[state]))
-			error(initial->value->start, NULL, "the initial value is beyond the range of %s", target_name());
+			error(initial->value->start, NULL, "the initial value is beyond the range of %s",
+			      target_name());
 	}
 }
 
@@ -186,7 +203,11 @@ static void name_relative(struct building *b)
 		const struct model *written = relative->written;
 		int like = j < written->n ? j : 0;
 		model->frame.coord[j] = NEW(struct symbol);
-		*model->frame.coord[j] = (struct symbol){ .kind = SYMBOL_COORD, .name = relative->name[j], .at = written->frame.coord[like]->at, .index = j, .highest = relative->order[j] };
+		*model->frame.coord[j] = (struct symbol){ .kind = SYMBOL_COORD,
+							  .name = relative->name[j],
+							  .at = written->frame.coord[like]->at,
+							  .index = j,
+							  .highest = relative->order[j] };
 		model->owner[j] = j < written->n ? written->owner[j] : j;
 	}
 }
@@ -224,7 +245,8 @@ static void name_states(struct building *b)
 	system->states = model->n;
 	for (int j = 0; j < model->n && !model->relative; j++) {
 		int order = find_order(b->spec, j);
-		model->frame.coord[j]->highest = order > model->frame.coord[j]->highest ? order : model->frame.coord[j]->highest;
+		model->frame.coord[j]->highest =
+			order > model->frame.coord[j]->highest ? order : model->frame.coord[j]->highest;
 	}
 	for (int j = 0; j < model->n; j++) {
 		model->state_name[j] = model->coord_name[j];
@@ -233,7 +255,8 @@ static void name_states(struct building *b)
 		if (system->velocity[j] < 0)
 			continue;
 		system->coord[system->states] = j;
-		model->state_name[system->states++] = format(strchr(model->coord_name[j], ' ') ? "(%s)'" : "%s'", model->coord_name[j]);
+		model->state_name[system->states++] =
+			format(strchr(model->coord_name[j], ' ') ? "(%s)'" : "%s'", model->coord_name[j]);
 	}
 }
 
@@ -242,11 +265,15 @@ static void check_prefix(const struct building *b)
 	const char *prefix = b->model->name, *why = prefix_objection(prefix);
 	bool given = b->request->prefix != NULL;
 	struct place at = given ? (struct place){ source_argument(prefix), 0 } : b->spec->name_at;
-	bool identifier = *prefix && prefix[strspn(prefix, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ_0123456789")] == 0 && !strchr("0123456789", prefix[0]);
+	bool identifier = *prefix &&
+			  prefix[strspn(prefix, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ_0123456789")] ==
+				  0 &&
+			  !strchr("0123456789", prefix[0]);
 	if (given && !identifier)
 		say_error(at, NULL, "'%s' is not a C identifier", prefix);
 	else if (why)
-		say_error(at, given ? NULL : "give another with --prefix NAME", "'%s' %s and cannot name generated code", prefix, why);
+		say_error(at, given ? NULL : "give another with --prefix NAME",
+			  "'%s' %s and cannot name generated code", prefix, why);
 }
 
 static void check_parts(const struct building *b)
@@ -257,7 +284,8 @@ static void check_parts(const struct building *b)
 	if (!spec->step && !b->request->step)
 		say_error(spec->end, "step 0.01, or --step 0.01 on the command line", "missing step");
 	if (b->model->system.states > LIMIT_STATES)
-		say_error(b->model->frame.coord[b->model->n - 1]->at, NULL, "more states than the limit of %d", LIMIT_STATES);
+		say_error(b->model->frame.coord[b->model->n - 1]->at, NULL, "more states than the limit of %d",
+			  LIMIT_STATES);
 }
 
 static void collect_interval(struct building *b, struct snapshot *snapshot)
@@ -282,12 +310,13 @@ static void part_snapshots(struct snapshot *snapshot, int count)
 	}
 }
 
-/* Equations and outputs in each interval of time. When a change of formula is met for the first time, the intervals before
- * that are known, even where it divides them: what they read does not change there. */
+/* Equations and outputs in each interval of time. When a change of formula is met for the first time, the intervals
+ * before that are known, even where it divides them: what they read does not change there. */
 static void collect_intervals(struct building *b)
 {
 	struct collector *c = &b->collector;
-	struct snapshot *old = NULL;            /* of the intervals that the changes known then left, the first `done` of them */
+	/* of the intervals that the changes known then left, the first `done` of them */
+	struct snapshot *old = NULL;
 	const mpq_t *change = NULL;
 	int known, done = 0;
 	do {
@@ -295,7 +324,9 @@ static void collect_intervals(struct building *b)
 		known = c->changes;
 		b->snapshot = ARRAY(struct snapshot, (size_t)known + 1);
 		int within = 0;                 /* the old interval in which this one lies */
-		for (c->interval = 0; c->interval <= known && c->changes == known && !(c->interval && diagnostics_errors()); c->interval++) {
+		for (c->interval = 0;
+		     c->interval <= known && c->changes == known && !(c->interval && diagnostics_errors());
+		     c->interval++) {
 			if (within < done && c->interval > 0 && mpq_equal(change[within], list[c->interval - 1]))
 				within++;
 			if (within < done)
@@ -367,10 +398,12 @@ struct model *model_build(struct spec *spec, const struct request *request)
 	if (!diagnostics_errors() && model->switching)
 		build_regions(&b);
 	if (!diagnostics_errors() && request->reduce && model->switching)
-		say_error(spec->name_at, NULL, "--reduce needs a linear model: what regions hold depends on the coordinates");
+		say_error(spec->name_at, NULL,
+			  "--reduce needs a linear model: what regions hold depends on the coordinates");
 	if (!diagnostics_errors() && request->reduce && model->scheme != SCHEME_EXACT)
 		say_error(model->asked.scheme_at.source ? model->asked.scheme_at : spec->name_at, NULL,
-			  "--reduce needs scheme exact: what %s leaves over depends on the coordinates", scheme_name(model->scheme));
+			  "--reduce needs scheme exact: what %s leaves over depends on the coordinates",
+			  scheme_name(model->scheme));
 	model->irrationals = b.collector.irrationals;
 	bool told = request->solution || request->tunable || request->relative;
 	if (!diagnostics_errors() && !told)
@@ -384,7 +417,7 @@ void argument_value(struct model *model, const char *text, mpq_ptr value)
 {
 	struct collector collector = { .scheme = "exact" };
 	struct place at = { source_argument(text), 0 };
-	struct node *node = parse_argument((struct spec *)model->spec, at.source, 0);
+	struct node *node = parse_argument(model->spec, at.source, 0);
 	if (!node)
 		abandon();
 	collect_constant(&collector, node, value);

@@ -88,7 +88,8 @@ struct request {                    /* what the user asks for on the command lin
 	struct place step_at, form_at, compensated_at;
 	struct place end_at;        /* the end of --solution, else as step_at */
 	/* What builders ask for to build a model a second time; then nothing is told again */
-	const mpq_t *tunable;       /* values of the tunable params in place of the spec's, to see what the equations become: */
+	/* values of the tunable params in place of the spec's, to see what the equations become: */
+	const mpq_t *tunable;
 	                            /* no step, no initial values */
 	const struct relative *relative; /* the coordinates to build the model over; NULL: the written ones */
 };
@@ -99,7 +100,7 @@ struct reduction {                  /* what --reduce found */
 	const char **dropped_name;
 };
 struct model {
-	const struct spec *spec;
+	struct spec *spec;
 	struct request asked;
 	const char *name;           /* prefix of everything generated */
 	int n;                      /* coordinates */
@@ -130,39 +131,50 @@ struct model {
 	int outputs;
 	struct output *output;
 	bool declared_outputs;
-	struct output **highest;    /* per coordinate: its highest derivative as a row, where an output that is not linear reads it */
+	/* per coordinate: its highest derivative as a row, where an output that is not linear reads it */
+	struct output **highest;
 	const struct model *written; /* itself; of a reduced model: the one that it was made of */
 	struct reduction reduction;
-	const struct relative *relative; /* the model is over other coordinates than the written ones; NULL: over those */
+	/* the model is over other coordinates than the written ones; NULL: over those */
+	const struct relative *relative;
 };
 
 /* ---- relative.c: coordinates in which what may move as a whole is parted from what moves in it ---- */
 
 struct link {                       /* of a written coordinate x: what is kept in its place */
-	enum { LINK_NONE, LINK_PARENT, LINK_CENTRE } kind; /* x itself; its distance from another; the centre of its group */
+	/* x itself; its distance from another; the centre of its group */
+	enum { LINK_NONE, LINK_PARENT, LINK_CENTRE } kind;
 	int from;                   /* LINK_PARENT: the other, x_p */
 	mpq_t ratio;                /* x - ratio x_p is kept, */
 	bool turned;                /* or ratio x_p - x */
-	mpq_t *weight, *shift;      /* LINK_CENTRE, per coordinate: X = sum of weight x; x = X + sum of shift times what is kept */
-	struct form *rate;          /* LINK_PARENT, x of second order, x_p of first: x_p' over written coordinates, so that x' - ratio x_p' is kept, */
-	int velocity;               /* or else the kept coordinate that is x', of first order; -1: that of what is kept */
+	/* LINK_CENTRE, per coordinate: X = sum of weight x; x = X + sum of shift times what is kept */
+	mpq_t *weight, *shift;
+	/* LINK_PARENT, x of second order, x_p of first: x_p' over written coordinates, so that x' - ratio x_p' is
+	 * kept, */
+	struct form *rate;
+	/* or else the kept coordinate that is x', of first order; -1: that of what is kept */
+	int velocity;
 };
 struct relative {
 	const struct model *written;
-	int n;                      /* coordinates kept: in the place of each written one, then velocities that stand alone */
+	/* coordinates kept: in the place of each written one, then velocities that stand alone */
+	int n;
 	const char **name;
 	int *order;
 	struct link *link;          /* per written coordinate */
 	int links, *sequence;       /* those of LINK_PARENT, each after the one that it is measured from */
 	struct form **form[3];      /* per derivative and written coordinate: over what is kept */
 	struct form **extra;        /* equations r' = v - ... of velocities that stand alone, after all others */
-	mpq_t *solved;              /* per written coordinate: what its equation is divided by, so that equations are combined as coordinates are; */
+	/* per written coordinate: what its equation is divided by, so that equations are combined as coordinates
+	 * are; */
+	mpq_t *solved;
 	                            /* NULL: equations stay as written */
 };
 struct relative *relative_of(const struct model *model);     /* NULL: nothing moves as a whole that has parts */
 /* What is kept at a coordinate, from the written coordinates, or their velocities, that it takes */
 void relative_value(const struct relative *r, int coord, mpq_t *const *value, mpq_ptr kept);
-struct form *combined_equation(const struct relative *r, int coord, const struct form *const *equation); /* that of what is kept there */
+/* that of what is kept there */
+struct form *combined_equation(const struct relative *r, int coord, struct form *const *equation);
 void relative_values(const struct model *model, mpq_t *written, mpq_t *kept); /* of all states */
 int  relative_place(const struct model *model, int written); /* the kept state that is a written one; -1: none is */
 
@@ -204,7 +216,8 @@ struct building {                   /* what the builders share */
 	const struct wave *polynomial; /* the wave of t^k alone */
 	struct snapshot *snapshot;  /* per interval between changes of formula in time */
 	struct snapshot *whole;     /* the same for all time, with atoms; NULL: there is no leftover */
-	struct form **load;         /* [segment][row]: the residual's part that depends on time alone, as the linear core carries it */
+	/* [segment][row]: the residual's part that depends on time alone, as the linear core carries it */
+	struct form **load;
 	struct form **time_left;    /* per row: what depends on time alone and it cannot carry */
 	int *owner;                 /* per coordinate: its residual */
 };
@@ -222,7 +235,8 @@ struct block {
 	int *equation, *coord;      /* of the whole system, per equation and coordinate of the block */
 	int *state;                 /* likewise per state */
 };
-int blocks_of(const struct linear *system, struct block **blocks); /* M regular, so that a block has as many equations as coordinates */
+/* M regular, so that a block has as many equations as coordinates */
+int blocks_of(const struct linear *system, struct block **blocks);
 
 /* ---- augmented.c: the augmented state ---- */
 
@@ -232,17 +246,21 @@ struct series {                     /* x' = A x; x = state, held terms, constant
 	int held;                   /* index of the first held term, one per coordinate; -1: none */
 	int *load;                  /* index of the first state of each load; -1: it acts on nothing */
 	int *input;                 /* index of each input (then of its slope, if of first order) */
-	int channel, powers;        /* index of the first leftover; each is a chain of so many integrators, its force the first */
+	/* index of the first leftover; each is a chain of so many integrators, its force the first */
+	int channel, powers;
 };
 void series_place(struct series *series, const struct linear *system, int powers); /* which entry of x is what */
-void series_place_loads(struct series *series, const struct linear *system, int powers, const bool *needed); /* of loads those needed */
-mpq_t *series_matrix(const struct series *series, const struct linear *system, int segment); /* A in one segment of time */
+/* of loads those needed */
+void series_place_loads(struct series *series, const struct linear *system, int powers, const bool *needed);
+/* A in one segment of time */
+mpq_t *series_matrix(const struct series *series, const struct linear *system, int segment);
 
 /* ---- spell.c: loads, forms and equations for a reader ---- */
 
 const char *column_text(const struct load *load, int column); /* t*exp(-2*t)*cos(5*t) */
 const char *equation_text(const struct model *model, const struct form *residual); /* coordinates = loads */
-const char *form_text(const struct model *model, const struct form *form);          /* atoms spelled out, long ones cut short */
+/* atoms spelled out, long ones cut short */
+const char *form_text(const struct model *model, const struct form *form);
 
 /* ---- equations.c: equations and sketches to residuals ---- */
 
@@ -250,7 +268,8 @@ void collect_equations(struct building *b, struct snapshot *snapshot);
 void collect_outputs(struct building *b, struct snapshot *snapshot);
 int  find_order(const struct spec *spec, int coord);
 void build_outputs(struct building *b);
-struct output *row_of_form(struct building *b, struct form *form); /* of states, loads and inputs; no highest derivatives */
+/* of states, loads and inputs; no highest derivatives */
+struct output *row_of_form(struct building *b, struct form *form);
 int  coordinate_of_row(const struct model *model, int row);       /* whose equation it is */
 void collect_whole(struct building *b);                     /* the equations for all time, atoms kept: b->whole */
 bool assign_equations(struct building *b);                  /* false: it was said which is missing or too many */
@@ -264,7 +283,8 @@ struct reads {                    /* what forms read */
 	bool *highest;              /* per coordinate: its highest derivative */
 	bool time, math;            /* t itself; <math.h> */
 };
-bool calls_libm(const struct atom *a);                       /* not of the piecewise-linear functions: they are comparisons in C */
+/* not of the piecewise-linear functions: they are comparisons in C */
+bool calls_libm(const struct atom *a);
 struct reads reads_of(const struct model *model, int count, const struct form *const *form);
 
 /* ---- system.c: residuals to M, C, K, loads and inputs ---- */
@@ -272,21 +292,27 @@ struct reads reads_of(const struct model *model, int count, const struct form *c
 void fill_states(struct building *b, const struct snapshot *rows); /* M, C, K, inputs */
 void fill_loads(struct building *b, int segment, int row, const struct form *residual);
 void place_loads(struct building *b, const struct form *form); /* every load of the form gets load states */
-void spread_loads(struct building *b, const struct form *form, void (*spread)(void *context, int load, int column, mpq_srcptr factor), void *context);
-void fill_system(struct building *b, struct linear *system, int segment, int row, const struct form *residual); /* one row of everything */
-struct linear empty_system(const struct model *model);      /* the model's coordinates, loads and inputs; no factors yet */
+void spread_loads(struct building *b, const struct form *form,
+		  void (*spread)(void *context, int load, int column, mpq_srcptr factor), void *context);
+/* one row of everything */
+void fill_system(struct building *b, struct linear *system, int segment, int row, const struct form *residual);
+/* the model's coordinates, loads and inputs; no factors yet */
+struct linear empty_system(const struct model *model);
 
 /* ---- operator.c: the linear operator of a scheme, and what it leaves over ---- */
 
 void build_operators(struct building *b);
-struct linear operator_system(const struct model *model, int k); /* the model's, with the operator's C and K and the channels */
+/* the model's, with the operator's C and K and the channels */
+struct linear operator_system(const struct model *model, int k);
 /* Every form that the leftovers and the selector are made of, once, operands before what they make. */
 void visit_leftovers(const struct model *model, void (*visit)(void *context, const struct form *form), void *context);
 
 /* ---- smooth.c: how smooth the equations are, and what order that leaves to a scheme ---- */
 
-void judge_smoothness(struct building *b);                  /* model->smooth; says where dry friction stands in what is left over */
-bool reads_velocity(const struct model *model, const struct form *form); /* or a coordinate of first order, which is one */
+/* model->smooth; says where dry friction stands in what is left over */
+void judge_smoothness(struct building *b);
+/* or a coordinate of first order, which is one */
+bool reads_velocity(const struct model *model, const struct form *form);
 _Noreturn void tell_friction(const struct node *node, const char *where);
 int  order_of_scheme(const struct model *model);            /* where all is smooth; 0: of exact */
 bool loses_order(const struct model *model);                /* to what is not smooth */
@@ -299,7 +325,8 @@ const char *smoothness_text(const struct model *model);     /* max(x - 0.5, 0) h
 bool is_piecewise_linear(const struct building *b);
 void find_regions(struct building *b);                      /* says what cannot be treated */
 void place_region_loads(struct building *b);
-void build_regions(struct building *b);                     /* their systems; after the loads of all have their places */
+/* their systems; after the loads of all have their places */
+void build_regions(struct building *b);
 int  interval_of(const struct switching *s, int region, int expression);
 int  possible_regions(const struct switching *s);
 
@@ -318,13 +345,15 @@ void warn(struct building *b);
 
 /* ---- tune.c: how the equations follow from tunable params ---- */
 
-struct tuned_monomial { int from, param; bool divides; };  /* an earlier one times a param, or divided by it; number 0 is 1, these are 1, 2, ... */
+/* an earlier one times a param, or divided by it; number 0 is 1, these are 1, 2, ... */
+struct tuned_monomial { int from, param; bool divides; };
 struct tuned_term {
 	int row, column, monomial;
 	mpq_t factor;
 };
-/* W a = R x, exactly, for all values of the params: a holds the highest derivatives of the coordinates, then the outputs that
- * depend on params, then the frequencies of loads that do (in column 0); x is the states, the load states in each segment of time, the inputs (of ramps: u, u'). */
+/* W a = R x, exactly, for all values of the params: a holds the highest derivatives of the coordinates, then the
+ * outputs that depend on params, then the frequencies of loads that do (in column 0); x is the states, the load states
+ * in each segment of time, the inputs (of ramps: u, u'). */
 struct tuning {
 	int params;
 	const struct tunable *param;
@@ -338,8 +367,10 @@ struct tuning {
 	int terms;
 	struct tuned_term *term;    /* by rows, then by columns */
 	bool *acts;                 /* rows x columns: of W^-1 R, whether it is anything but 0 for some values */
-	const struct model *other;  /* the model at values that are related by nothing: what holds there holds for all */
+	/* the model at values that are related by nothing: what holds there holds for all */
+	const struct model *other;
 };
-bool find_tuning(struct model *model, const struct request *request); /* model->tuning, where something is tunable; false: it was said why not */
+/* model->tuning, where something is tunable; false: it was said why not */
+bool find_tuning(struct model *model, const struct request *request);
 
 #endif

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The linear operator A of y' = A y + loads + inputs + r(t, y), and the leftover r. Without a statement A is what the
- * equations have with constant coefficients; `operator at` takes the Jacobian with some names fixed. Of an entry that still
- * depends on anything, its constant part counts. r is exact: what the equations are minus what A takes. */
+ * equations have with constant coefficients; `operator at` takes the Jacobian with some names fixed. Of an entry that
+ * still depends on anything, its constant part counts. r is exact: what the equations are minus what A takes. */
 #include "model/model.h"
 
 /* ---- the fixed names ---- */
@@ -27,7 +27,8 @@ static void add_fixing(struct point_work *work, const struct fixed *fixed, int c
 static void check_order(const struct fixed *fixed)
 {
 	if (fixed->symbol && fixed->symbol->kind == SYMBOL_COORD && fixed->primes >= fixed->symbol->highest)
-		error(fixed->at, NULL, "%s is of first order: its derivative follows from the equations", fixed->symbol->name);
+		error(fixed->at, NULL, "%s is of first order: its derivative follows from the equations",
+		      fixed->symbol->name);
 }
 
 /* One value of one name; of a vector each component, from a vector of values or from one for all. */
@@ -37,12 +38,16 @@ static void evaluate_fixed(struct point_work *work, const struct fixed *fixed)
 	const struct symbol *symbol = fixed->symbol;
 	struct node *node = fixed->value[fixed->values > 1 ? work->which : 0];
 	bool vector = symbol && symbol->kind == SYMBOL_COORD && symbol->length && !fixed->component;
-	int count = vector ? symbol->length : 1, first = symbol && symbol->kind == SYMBOL_COORD ? symbol->index + (fixed->component ? fixed->component - 1 : 0) : 0;
+	int count = vector ? symbol->length : 1,
+	    first = symbol && symbol->kind == SYMBOL_COORD
+			    ? symbol->index + (fixed->component ? fixed->component - 1 : 0)
+			    : 0;
 	check_order(fixed);
 	const struct value *value = collect_constants(c, node);
 	int cells = value->rows * value->columns;
 	if (cells != 1 && cells != count)
-		error(node->start, NULL, "sizes do not fit: %d components, the value is %d x %d", count, value->rows, value->columns);
+		error(node->start, NULL, "sizes do not fit: %d components, the value is %d x %d", count, value->rows,
+		      value->columns);
 	for (int i = 0; i < count; i++)
 		add_fixing(work, fixed, first + i, value->cell[cells == 1 ? 0 : i]);
 }
@@ -50,13 +55,14 @@ static void evaluate_fixed(struct point_work *work, const struct fixed *fixed)
 static mpq_t *find_fixed(struct point_work *work, int coord, int order)
 {
 	for (int i = 0; i < work->fixings; i++)
-		if (work->fixing[i].symbol && work->fixing[i].symbol->kind == SYMBOL_COORD && work->fixing[i].coord == coord && work->fixing[i].order == order)
+		if (work->fixing[i].symbol && work->fixing[i].symbol->kind == SYMBOL_COORD &&
+		    work->fixing[i].coord == coord && work->fixing[i].order == order)
 			return &work->fixing[i].value;
 	return NULL;
 }
 
-/* What is fixed of written coordinates, for those that the model is over. Of coordinates that are measured from each other all are fixed
- * or none (relative.c). */
+/* What is fixed of written coordinates, for those that the model is over. Of coordinates that are measured from each
+ * other all are fixed or none (relative.c). */
 static void fix_relative(struct point_work *work)
 {
 	const struct model *model = work->b->model;
@@ -99,7 +105,8 @@ static void check_bank(void *context)
 	const struct fixed *bank = banked(b->spec);
 	for (int i = 0; i < b->spec->fixeds; i++)
 		if (bank && b->spec->fixed[i].values > 1 && &b->spec->fixed[i] != bank)
-			error(b->spec->fixed[i].at, NULL, "a bank varies one name: %s has several values already", text_between(bank->at, bank->end));
+			error(b->spec->fixed[i].at, NULL, "a bank varies one name: %s has several values already",
+			      text_between(bank->at, bank->end));
 	if (bank && bank->symbol && bank->symbol->kind == SYMBOL_COORD && bank->symbol->length && !bank->component)
 		error(bank->at, NULL, "a bank is chosen by one number: name a component");
 }
@@ -109,7 +116,8 @@ static void check_rising(const struct building *b, const struct fixed *bank)
 	const struct operator *operator = b->model->operator;
 	for (int k = 1; k < b->model->operators; k++)
 		if (mpq_cmp(operator[k - 1].at, operator[k].at) >= 0)
-			error(bank->value[k]->start, "the step uses the first whose value is not below the current one", "the values of a bank rise");
+			error(bank->value[k]->start, "the step uses the first whose value is not below the current one",
+			      "the values of a bank rise");
 }
 
 /* What a step compares: the name that the bank varies, as it is now */
@@ -118,9 +126,14 @@ static void find_selector(void *context)
 	struct building *b = context;
 	struct collector *c = &b->collector;
 	const struct fixed *bank = banked(b->spec);
-	struct symbol *symbol = (struct symbol *)bank->symbol;
-	struct node name = { .kind = symbol ? NODE_NAME : NODE_TIME, .at = bank->at, .start = bank->at, .end = bank->end, .symbol = symbol,
-			     .primes = bank->primes, .component = bank->component };
+	struct symbol *symbol = bank->symbol;
+	struct node name = { .kind = symbol ? NODE_NAME : NODE_TIME,
+			     .at = bank->at,
+			     .start = bank->at,
+			     .end = bank->end,
+			     .symbol = symbol,
+			     .primes = bank->primes,
+			     .component = bank->component };
 	check_rising(b, bank);
 	c->whole_time = true;
 	forget_lets(b->spec);
@@ -129,7 +142,8 @@ static void find_selector(void *context)
 	const struct value *value = collect(c, kept);
 	c->whole_time = false;
 	if (value->rows * value->columns != 1)
-		error(bank->at, NULL, "a bank is chosen by one number, found a %d x %d matrix", value->rows, value->columns);
+		error(bank->at, NULL, "a bank is chosen by one number, found a %d x %d matrix", value->rows,
+		      value->columns);
 	b->model->selector = value->cell[0];
 }
 
@@ -199,9 +213,10 @@ static void find_jacobian(void *context)
 	keep_highest(b->model, work->operator->C);
 	for (int state = 0; state < system->states; state++) {
 		int coord = system->coord[state], order = state >= n;
+		mpq_t *matrix = order ? work->operator->C : work->operator->K;
 		struct form **slope = form_derivatives(c, n, residual, coord, order);
 		for (int i = 0; i < n; i++)
-			constant_part(c, form_at(point, slope[i]), (order ? work->operator->C : work->operator->K)[i * n + coord]);
+			constant_part(c, form_at(point, slope[i]), matrix[i * n + coord]);
 	}
 }
 
@@ -230,7 +245,9 @@ static struct form *leftover_of(const struct building *b, const struct operator 
 		if (!is_carried(b, &equation->term[i].basis))
 			left = form_sum(left, form_single(equation->term[i].basis, equation->term[i].factor), true);
 	for (int state = 0; state < system->states; state++) {
-		struct basis basis = { .kind = BASIS_COORD, .index = system->coord[state], .order = state >= system->n };
+		struct basis basis = { .kind = BASIS_COORD,
+				       .index = system->coord[state],
+				       .order = state >= system->n };
 		mpq_srcptr factor = (state >= system->n ? operator->C : operator->K)[row * system->n + basis.index];
 		left = form_sum(left, form_single(basis, factor), false);
 	}
@@ -311,7 +328,8 @@ static const char *point_text(const struct spec *spec, int which)
 	for (int i = 0; i < spec->fixeds; i++) {
 		const struct fixed *f = &spec->fixed[i];
 		const struct node *value = f->value[f->values > 1 ? which : 0];
-		text = format("%s%s%s = %s", text, *text ? ", " : "", text_between(f->at, f->end), text_between(value->start, value->end));
+		text = format("%s%s%s = %s", text, *text ? ", " : "", text_between(f->at, f->end),
+			      text_between(value->start, value->end));
 	}
 	return text;
 }
@@ -331,7 +349,8 @@ static bool add_operator(struct building *b, const struct fixed *bank, int which
 	struct point_work point = { b, which, 0, NULL };
 	operator->C = model->system.C;
 	operator->K = model->system.K;
-	operator->text = model->scheme == SCHEME_PL ? "" : point_text(b->spec, which);   /* pl has an operator of its own */
+	/* pl has an operator of its own */
+	operator->text = model->scheme == SCHEME_PL ? "" : point_text(b->spec, which);
 	mpq_init(operator->at);
 	if (!*operator->text)
 		return true;
@@ -339,7 +358,8 @@ static bool add_operator(struct building *b, const struct fixed *bank, int which
 	operator->K = rationals(cells);
 	if (!statement_guard(evaluate_point, &point))
 		return false;
-	diagnostics_context(format("at the operator's point, %s, where the derivatives of the equations are taken", operator->text));
+	diagnostics_context(format("at the operator's point, %s, where the derivatives of the equations are taken",
+				   operator->text));
 	bool found = statement_guard(find_jacobian, &(struct jacobian_work){ &point, operator });
 	diagnostics_context(NULL);
 	if (!found)

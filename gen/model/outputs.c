@@ -5,7 +5,8 @@
 #include <string.h>
 
 /* output += factor * (the highest derivative of a coordinate: its row over the states, and W^-1 force) */
-static void add_highest(const struct model *model, const mpq_t *inverse, const mpq_t *highest, int coord, mpq_srcptr factor, struct output *output)
+static void add_highest(const struct model *model, const mpq_t *inverse, const mpq_t *highest, int coord,
+			mpq_srcptr factor, struct output *output)
 {
 	const struct linear *system = &model->system;
 	mpq_t weight, product;
@@ -63,16 +64,19 @@ static void spread_output(struct building *b, const mpq_t *inverse, const mpq_t 
 {
 	struct model *model = b->model;
 	for (int s = 0; s < model->system.segments; s++)
-		spread_loads(b, output_form(b, output, s), add_direct, &(struct direct_row){ output, model->system.segments, s });
+		spread_loads(b, output_form(b, output, s), add_direct,
+			     &(struct direct_row){ output, model->system.segments, s });
 	for (int i = 0; i < output->form->terms; i++) {
 		const struct form_term *term = &output->form->term[i];
 		const struct basis *basis = &term->basis;
 		if (basis->kind == BASIS_INPUT)
-			mpq_add(output->input[basis->order][basis->index], output->input[basis->order][basis->index], term->factor);
+			mpq_add(output->input[basis->order][basis->index], output->input[basis->order][basis->index],
+				term->factor);
 		else if (basis->kind == BASIS_COORD && state_of(model, basis) < 0)
 			add_highest(model, inverse, highest, basis->index, term->factor, output);
 		else if (basis->kind == BASIS_COORD)
-			mpq_add(output->state[state_of(model, basis)], output->state[state_of(model, basis)], term->factor);
+			mpq_add(output->state[state_of(model, basis)], output->state[state_of(model, basis)],
+				term->factor);
 	}
 }
 
@@ -84,7 +88,8 @@ static bool is_too_high(const struct model *model, const struct basis *basis)
 /* A coordinate whose highest derivative, or `above` it, stands there. */
 static const struct node *find_acceleration(const struct node *node, int above)
 {
-	if (node->kind == NODE_NAME && node->symbol->kind == SYMBOL_COORD && node->primes >= node->symbol->highest + above)
+	if (node->kind == NODE_NAME && node->symbol->kind == SYMBOL_COORD &&
+	    node->primes >= node->symbol->highest + above)
 		return node;
 	for (int i = 0; i < node->children; i++) {
 		const struct node *found = find_acceleration(node->child[i], above);
@@ -165,7 +170,8 @@ static void collect_left(void *context)
 	c->keep = (unsigned)keep;
 	c->whole_time = c->output = false;
 	for (struct symbol *s = work->b->spec->first; s; s = s->next)
-		if (s->kind == SYMBOL_LET && !s->whole && s->progress == COLLECTED && s->collected->rows * s->collected->columns == 1)
+		if (s->kind == SYMBOL_LET && !s->whole && s->progress == COLLECTED &&
+		    s->collected->rows * s->collected->columns == 1)
 			s->whole = s->collected->cell[0];
 }
 
@@ -182,7 +188,8 @@ static void name_outputs(struct building *b)
 			statement_guard(collect_left, &work);
 		int count = work.value ? work.value->rows * work.value->columns : 0;
 		for (int i = 0; i < count; i++) {
-			add_output(model, count == 1 ? s->name : component_name(s->name, i + 1), s->value, row ? work.value->cell[i] : NULL);
+			add_output(model, count == 1 ? s->name : component_name(s->name, i + 1), s->value,
+				   row ? work.value->cell[i] : NULL);
 			model->output[model->outputs - 1].left = row ? NULL : work.value->cell[i];
 			model->output[model->outputs - 1].statement = index;
 			model->output[model->outputs - 1].cell = i;
@@ -310,8 +317,10 @@ void build_outputs(struct building *b)
 	struct model *model = b->model;
 	struct linear *system = &model->system;
 	int column;
-	mpq_t *inverse = rationals((size_t)(model->n * model->n)), *highest = rationals((size_t)(model->n * system->states));
-	struct linear first = model->operators ? operator_system(model, 0) : *system;   /* what is left over is left by this one */
+	mpq_t *inverse = rationals((size_t)(model->n * model->n)),
+	      *highest = rationals((size_t)(model->n * system->states));
+	/* what is left over is left by this one */
+	struct linear first = model->operators ? operator_system(model, 0) : *system;
 	leading_inverse(system, inverse, &column);
 	highest_derivatives(&first, (const mpq_t *)inverse, false, highest);
 	name_outputs(b);

@@ -5,7 +5,8 @@
 /* The piecewise-linear functions are comparisons in C. */
 bool calls_libm(const struct atom *a)
 {
-	bool piecewise = a->function == FN_ABS || a->function == FN_SGN || (a->function >= FN_MIN && a->function != FN_ATAN2);
+	bool piecewise = a->function == FN_ABS || a->function == FN_SGN ||
+			 (a->function >= FN_MIN && a->function != FN_ATAN2);
 	return a->kind == ATOM_POWER || (a->kind == ATOM_CALL && !piecewise);
 }
 
@@ -14,7 +15,8 @@ static void look_at_form(struct reads *reading, const struct model *model, bool 
 	for (int i = 0; i < form->terms; i++) {
 		const struct basis *basis = &form->term[i].basis;
 		const struct atom *atom = basis->atom;
-		bool highest = basis->kind == BASIS_COORD && basis->order > 0 && basis->order >= model->frame.coord[basis->index]->highest;
+		bool highest = basis->kind == BASIS_COORD && basis->order > 0 &&
+			       basis->order >= model->frame.coord[basis->index]->highest;
 		if (highest)
 			reading->highest[basis->index] = true;
 		else if (basis->kind == BASIS_COORD)
@@ -26,7 +28,8 @@ static void look_at_form(struct reads *reading, const struct model *model, bool 
 		for (int l = 0; basis->kind == BASIS_WAVE && l < model->system.loads; l++)
 			if (model->system.load[l].wave == basis->wave && !is_polynomial(basis->wave)) {
 				reading->load[l] = true;
-				reading->time = reading->time || model->system.load[l].powers > 1;  /* its load states up to the highest power */
+				/* its load states up to the highest power */
+				reading->time = reading->time || model->system.load[l].powers > 1;
 			}
 		if (!atom || seen[atom->index])
 			continue;
@@ -39,8 +42,12 @@ static void look_at_form(struct reads *reading, const struct model *model, bool 
 
 struct reads reads_of(const struct model *model, int count, const struct form *const *form)
 {
-	struct reads reading = { ARRAY(bool, (size_t)model->system.states), ARRAY(bool, 2 * (size_t)model->system.inputs),
-				   ARRAY(bool, (size_t)model->system.loads), ARRAY(bool, (size_t)model->n), false, false };
+	struct reads reading = { ARRAY(bool, (size_t)model->system.states),
+				 ARRAY(bool, 2 * (size_t)model->system.inputs),
+				 ARRAY(bool, (size_t)model->system.loads),
+				 ARRAY(bool, (size_t)model->n),
+				 false,
+				 false };
 	bool *seen = ARRAY(bool, model->atoms ? (size_t)atoms_count(model->atoms) : 0);
 	for (int i = 0; i < count; i++)
 		look_at_form(&reading, model, seen, form[i]);

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the outputs cannot see is left out, exactly: with T a basis of the rows c, c A, c A^2, ... of all outputs (the observable
- * part, Kalman 1963), w = T y obeys w' = A_r w + T W^-1 f with T A = A_r T. The basis is made of these rows themselves, so a state
- * of the reduced model is an output or a derivative of one. The poles that go are those that cancel in every N/B. */
+/* What the outputs cannot see is left out, exactly: with T a basis of the rows c, c A, c A^2, ... of all outputs (the
+ * observable part, Kalman 1963), w = T y obeys w' = A_r w + T W^-1 f with T A = A_r T. The basis is made of these rows
+ * themselves, so a state of the reduced model is an output or a derivative of one. The poles that go are those that
+ * cancel in every N/B. */
 #include "model/model.h"
 
 #include <string.h>
@@ -111,27 +112,31 @@ static mpq_t *force_column(const struct linear *written, const mpq_t *inverse, c
 	return column;
 }
 
-/* Does no load and no input act on row . y' directly? Then (row A) y is the derivative of row y, and may be named so. */
+/* Does no load and no input act on row . y' directly? Then (row A) y is the derivative of row y, and may be named so.
+ */
 static bool unforced(const struct linear *written, const mpq_t *inverse, const mpq_t *row)
 {
 	bool free = true;
 	mpq_t *product = rationals(1);
 	for (int l = 0; l < written->loads; l++)
 		for (int k = 0; k < written->load[l].columns * written->segments; k++) {
-			const mpq_t *force = (const mpq_t *)written->load[l].force[k / written->segments] + k % written->segments * written->n;
-			rational_product(1, written->states, 1, row, (const mpq_t *)force_column(written, inverse, force), product);
+			const mpq_t *force = (const mpq_t *)written->load[l].force[k / written->segments] +
+					     k % written->segments * written->n;
+			rational_product(1, written->states, 1, row,
+					 (const mpq_t *)force_column(written, inverse, force), product);
 			free = free && mpq_sgn(product[0]) == 0;
 		}
 	for (int i = 0; i < 2 * written->inputs; i++) {
 		const mpq_t *force = (const mpq_t *)written->input[i / 2].force[i % 2];
-		rational_product(1, written->states, 1, row, (const mpq_t *)force_column(written, inverse, force), product);
+		rational_product(1, written->states, 1, row, (const mpq_t *)force_column(written, inverse, force),
+				 product);
 		free = free && mpq_sgn(product[0]) == 0;
 	}
 	return free;
 }
 
-static const char *derivative_name(const struct observable *o, const struct model *model, const mpq_t *inverse, const struct basis_row *of,
-				   const mpq_t *derivative)
+static const char *derivative_name(const struct observable *o, const struct model *model, const mpq_t *inverse,
+				   const struct basis_row *of, const mpq_t *derivative)
 {
 	const char *unit = unit_name(model, derivative);
 	if (unit)
@@ -141,7 +146,8 @@ static const char *derivative_name(const struct observable *o, const struct mode
 }
 
 /* A row and its derivatives, as far as they are new */
-static void see_row(struct observable *o, const struct model *model, const mpq_t *inverse, const mpq_t *row, const char *name)
+static void see_row(struct observable *o, const struct model *model, const mpq_t *inverse, const mpq_t *row,
+		    const char *name)
 {
 	mpq_t *derivative = rationals((size_t)o->states);
 	for (int before = -1; before != o->rank && o->rank < o->states;) {
@@ -179,14 +185,18 @@ static void see_outputs(struct observable *o, const struct model *model, const m
 		const mpq_t *row = (const mpq_t *)output->state;
 		const char *unit = unit_name(model, row);
 		if ((output->form || !output->value) && is_position(model, output) == positions)
-			see_row(o, model, inverse, row, unit ? unit : positions ? output->name : format("state%d", o->rank + 1));
+			see_row(o, model, inverse, row,
+				unit        ? unit
+				: positions ? output->name
+					    : format("state%d", o->rank + 1));
 	}
 }
 
 static struct observable observe(const struct model *model)
 {
 	size_t n = (size_t)model->system.states;
-	struct observable o = { .states = model->system.states, .A = (const mpq_t *)state_matrix(&model->system, false) };
+	struct observable o = { .states = model->system.states,
+				.A = (const mpq_t *)state_matrix(&model->system, false) };
 	mpq_t *inverse = rationals((size_t)model->n * (size_t)model->n);
 	int column;
 	leading_inverse(&model->system, inverse, &column);
@@ -212,7 +222,10 @@ static struct observable observe(const struct model *model)
 static struct observable with_written_states(const struct observable *all, const struct model *model)
 {
 	size_t n = (size_t)all->states;
-	struct observable o = { .states = all->states, .A = all->A, .basis = ARRAY(struct basis_row, n), .pivot = ARRAY(int, n) };
+	struct observable o = { .states = all->states,
+				.A = all->A,
+				.basis = ARRAY(struct basis_row, n),
+				.pivot = ARRAY(int, n) };
 	mpq_t *unit = rationals(n), *rest = rationals(n), *coefficient = rationals(n);
 	o.echelon = rationals(n * n);
 	o.combination = rationals(n * n);
@@ -237,7 +250,8 @@ static mpq_t *coefficients_of(const struct observable *o, const mpq_t *row)
 }
 
 /* T W^-1 force; a force is one rational per equation */
-static void project_force(const struct observable *o, const struct linear *written, const mpq_t *inverse, const mpq_t *force, mpq_t *reduced)
+static void project_force(const struct observable *o, const struct linear *written, const mpq_t *inverse,
+			  const mpq_t *force, mpq_t *reduced)
 {
 	mpq_t *column = force_column(written, inverse, force);
 	for (int r = 0; r < o->rank; r++)
@@ -270,7 +284,8 @@ static void project_loads(const struct observable *o, const struct linear *writt
 		system->input[i] = written->input[i];
 		for (int k = 0; k < 2; k++) {
 			system->input[i].force[k] = rationals((size_t)o->rank);
-			project_force(o, written, (const mpq_t *)inverse, (const mpq_t *)written->input[i].force[k], system->input[i].force[k]);
+			project_force(o, written, (const mpq_t *)inverse, (const mpq_t *)written->input[i].force[k],
+				      system->input[i].force[k]);
 		}
 	}
 }
@@ -294,7 +309,8 @@ static struct linear project_system(const struct observable *o, const struct lin
 static void place_states(const struct observable *o, struct model *reduced)
 {
 	int states = o->states;
-	mpq_t *unit = rationals((size_t)states), *rest = rationals((size_t)states), *coefficient = rationals((size_t)states);
+	mpq_t *unit = rationals((size_t)states), *rest = rationals((size_t)states),
+	      *coefficient = rationals((size_t)states);
 	reduced->reduction.place = ARRAY(int, (size_t)states);
 	reduced->reduction.dropped_name = ARRAY(const char *, (size_t)states);
 	for (int j = 0; j < states; j++) {
@@ -316,7 +332,8 @@ struct model *model_reduce(struct model *model)
 	if (model->reduction.irreducible)
 		return model;
 	if (all.rank == 0) {
-		say_error(model->output[0].value->start, "without --reduce all states are kept", "--reduce would leave no state: no output depends on one");
+		say_error(model->output[0].value->start, "without --reduce all states are kept",
+			  "--reduce would leave no state: no output depends on one");
 		return NULL;
 	}
 	struct observable o = with_written_states(&all, model);
@@ -329,7 +346,8 @@ struct model *model_reduce(struct model *model)
 	reduced->initial = rationals((size_t)o.rank);
 	for (int r = 0; r < o.rank; r++) {
 		reduced->state_name[r] = o.basis[r].name;
-		rational_product(1, o.states, 1, (const mpq_t *)o.basis[r].row, (const mpq_t *)model->initial, reduced->initial + r);
+		rational_product(1, o.states, 1, (const mpq_t *)o.basis[r].row, (const mpq_t *)model->initial,
+				 reduced->initial + r);
 	}
 	reduced->highest = ARRAY(struct output *, (size_t)o.rank); /* none: that was refused */
 	reduced->output = ARRAY(struct output, (size_t)model->outputs);

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Piecewise-linear equations: deadzone, clip, table, abs, sgn, min, max and conditions, of expressions that are linear in states, known
- * loads and inputs. Each comparison is of one expression with one breakpoint; the breakpoints of an expression divide it into
- * intervals; a region is one interval for each expression, and in it every equation is linear. Expressions are found by looking
- * at one region after the other, as breakpoints in time are. */
+/* Piecewise-linear equations: deadzone, clip, table, abs, sgn, min, max and conditions, of expressions that are linear
+ * in states, known loads and inputs. Each comparison is of one expression with one breakpoint; the breakpoints of an
+ * expression divide it into intervals; a region is one interval for each expression, and in it every equation is
+ * linear. Expressions are found by looking at one region after the other, as breakpoints in time are. */
 #include "model/model.h"
 
 enum { LIMIT_CANDIDATES = 6561 };   /* regions looked at, before those that cannot be are left out */
@@ -57,8 +57,8 @@ static bool is_multiple(const struct form *form, const struct form *e, mpq_ptr o
 	return multiple;
 }
 
-/* The expression that form, which has no constant, is a multiple of; met for the first time it is one, with the sign and scale in
- * which it was written. The form goes to it, or is freed. */
+/* The expression that form, which has no constant, is a multiple of; met for the first time it is one, with the sign
+ * and scale in which it was written. The form goes to it, or is freed. */
 static int find_expression(struct switching *s, const struct node *node, struct form *form, mpq_ptr of)
 {
 	for (int i = 0; i < s->expressions; i++)
@@ -98,8 +98,8 @@ static bool is_above(struct looking *l, int index, mpq_srcptr at)
 	return false;
 }
 
-/* The sign of a - b, linear forms: of a constant its own, else by the interval of the expression that it is a multiple of. What is
- * compared with a constant is written as it is, on whichever side it stands. */
+/* The sign of a - b, linear forms: of a constant its own, else by the interval of the expression that it is a multiple
+ * of. What is compared with a constant is written as it is, on whichever side it stands. */
 static int sign_here(struct looking *l, const struct node *node, const struct form *a, const struct form *b)
 {
 	struct collector *c = &l->b->collector;
@@ -155,7 +155,8 @@ static struct form *call_here(struct looking *l, const struct atom *a, struct fo
 {
 	int side;
 	switch (a->function) {
-	case FN_ABS:   return sign_here(l, a->node, x[0], form_number(0)) < 0 ? form_difference(form_number(0), x[0]) : x[0];
+	case FN_ABS:
+		return sign_here(l, a->node, x[0], form_number(0)) < 0 ? form_difference(form_number(0), x[0]) : x[0];
 	case FN_SGN:   return form_number(sign_here(l, a->node, x[0], form_number(0)));
 	case FN_MIN:
 	case FN_MAX:   return extreme_here(l, a, x);
@@ -185,11 +186,11 @@ static struct form *atom_here(struct looking *l, const struct atom *a)
 	return call_here(l, a, x);
 }
 
-/* Not to be changed: it may be the form itself, or what an atom is */
+/* Not to be changed: it may share the terms of the form, or be what an atom is */
 static struct form *form_here(struct looking *l, const struct form *form)
 {
 	if (form->terms == 0 || !form->term[form->terms - 1].basis.atom)
-		return (struct form *)form;
+		return form_alias(form);
 	struct form *total = NEW(struct form);
 	for (int i = 0; i < form->terms; i++) {
 		const struct form_term *term = &form->term[i];
@@ -230,12 +231,13 @@ static int count_candidates(struct switching *s)
 
 static _Noreturn void too_many(const struct switching *s)
 {
-	error(s->expression[s->expressions - 1].node->at, "a scheme with a leftover, such as etdrk4, needs no regions", "more regions than the limit of %d",
-	      LIMIT_REGIONS);
+	error(s->expression[s->expressions - 1].node->at, "a scheme with a leftover, such as etdrk4, needs no regions",
+	      "more regions than the limit of %d", LIMIT_REGIONS);
 }
 
-/* One look at every region but the first `known`; false: something new was met on the way, but of the first `known` then.
- * The regions of one expression are its intervals, in order, so that those below a new breakpoint stay what they are. */
+/* One look at every region but the first `known`; false: something new was met on the way, but of the first `known`
+ * then. The regions of one expression are its intervals, in order, so that those below a new breakpoint stay what they
+ * are. */
 static bool look(struct building *b, struct switching *s, int *known)
 {
 	const struct region *before = s->region;
@@ -248,7 +250,12 @@ static bool look(struct building *b, struct switching *s, int *known)
 		s->region[r] = before[r];
 	for (int r = *known; r < s->regions; r++) {
 		int atoms = atoms_count(b->collector.atoms);
-		struct looking l = { .b = b, .s = s, .interval = intervals_of(s, r), .known = ARRAY(struct form *, (size_t)atoms), .count = atoms, .lowest = r };
+		struct looking l = { .b = b,
+				     .s = s,
+				     .interval = intervals_of(s, r),
+				     .known = ARRAY(struct form *, (size_t)atoms),
+				     .count = atoms,
+				     .lowest = r };
 		s->region[r].residual = ARRAY(struct form *, (size_t)b->model->n);
 		for (int i = 0; i < b->model->n; i++)
 			s->region[r].residual[i] = form_here(&l, b->snapshot->residual[i].form);
@@ -298,7 +305,8 @@ static bool can_hold(struct inequalities set)
 				add_inequality(&rest, set.row[i].a);
 			for (int j = 0; j < set.count && sign > 0; j++)
 				if (mpq_sgn(set.row[j].a[v]) < 0)
-					add_inequality(&rest, combined(set.variables, v, (const mpq_t *)set.row[i].a, (const mpq_t *)set.row[j].a));
+					add_inequality(&rest, combined(set.variables, v, (const mpq_t *)set.row[i].a,
+								       (const mpq_t *)set.row[j].a));
 		}
 		set = rest;
 	}
@@ -363,7 +371,9 @@ static bool independent(const struct switching *s)
 			own = true;
 			for (int j = 0; j < s->expressions; j++)
 				for (int m = 0; m < s->expression[j].form->terms; m++)
-					own = own && (i == j || basis_order(&s->expression[i].form->term[k].basis, &s->expression[j].form->term[m].basis) != 0);
+					own = own &&
+					      (i == j || basis_order(&s->expression[i].form->term[k].basis,
+								     &s->expression[j].form->term[m].basis) != 0);
 		}
 		if (!own)
 			return false;
@@ -420,7 +430,8 @@ static void check_jumps(struct building *b, const struct switching *s)
 {
 	for (int e = 0; e < s->expressions; e++)
 		for (int r = 0; r < s->regions && reads_velocity(b->model, s->expression[e].form); r++)
-			if (interval_of(s, r, e) < s->expression[e].breaks && s->region[r].possible && s->region[r + s->expression[e].stride].possible)
+			if (interval_of(s, r, e) < s->expression[e].breaks && s->region[r].possible &&
+			    s->region[r + s->expression[e].stride].possible)
 				check_face(b, s, r, e);
 }
 
@@ -456,7 +467,8 @@ static bool same_matrix(const mpq_t *a, const mpq_t *b, size_t cells)
 static bool same_system(const struct linear *a, const struct linear *b)
 {
 	size_t n = (size_t)a->n, cells = n * n;
-	bool same = same_matrix((const mpq_t *)a->C, (const mpq_t *)b->C, cells) && same_matrix((const mpq_t *)a->K, (const mpq_t *)b->K, cells);
+	bool same = same_matrix((const mpq_t *)a->C, (const mpq_t *)b->C, cells) &&
+		    same_matrix((const mpq_t *)a->K, (const mpq_t *)b->K, cells);
 	for (int l = 0; l < a->loads && same; l++)
 		for (int k = 0; k < a->load[l].columns && same; k++)
 			same = same_matrix((const mpq_t *)a->load[l].force[k], (const mpq_t *)b->load[l].force[k], n);
@@ -483,13 +495,15 @@ static bool changes_nothing(const struct switching *s, int expression, int at)
 {
 	for (int r = 0; r < s->regions; r++) {
 		const struct region *low = &s->region[r], *high = low + s->expression[expression].stride;
-		if (interval_of(s, r, expression) == at && low->possible && high->possible && low->system != high->system)
+		if (interval_of(s, r, expression) == at && low->possible && high->possible &&
+		    low->system != high->system)
 			return false;
 	}
 	return true;
 }
 
-/* Without breakpoint `at` of one expression: each region above it falls to the one below. The last breakpoint of all stays. */
+/* Without breakpoint `at` of one expression: each region above it falls to the one below. The last breakpoint of all
+ * stays. */
 static void remove_break(struct switching *s, int expression, int at)
 {
 	struct switching old = *s;

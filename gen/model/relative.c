@@ -78,14 +78,16 @@ static int null_space(const struct echelon *e, mpq_t ***basis)
 
 struct look {
 	const struct model *model;
-	struct echelon place, rate; /* factors of coordinates in every form, sums inside functions too; and of velocities */
+	/* factors of coordinates in every form, sums inside functions too; and of velocities */
+	struct echelon place, rate;
 	bool *strong, *weak;        /* n x n: read in one sum, in one equation */
 	bool *seen;                 /* per atom */
 };
 
 static bool leads(const struct model *model, const struct basis *basis)
 {
-	return basis->kind == BASIS_COORD && basis->order > 0 && basis->order >= model->frame.coord[basis->index]->highest;
+	return basis->kind == BASIS_COORD && basis->order > 0 &&
+	       basis->order >= model->frame.coord[basis->index]->highest;
 }
 
 static void join(bool *joined, int n, int a, int b)
@@ -162,7 +164,11 @@ static void join_atoms(struct look *l, const struct form *form, int own)
 static struct look look_new(const struct model *model)
 {
 	size_t n = (size_t)model->n;
-	return (struct look){ model, echelon_new(model->n), echelon_new(model->n), ARRAY(bool, n * n), ARRAY(bool, n * n),
+	return (struct look){ model,
+			      echelon_new(model->n),
+			      echelon_new(model->n),
+			      ARRAY(bool, n *n),
+			      ARRAY(bool, n *n),
 			      ARRAY(bool, (size_t)atoms_count(model->atoms)) };
 }
 
@@ -217,7 +223,8 @@ static int free_sums(const struct model *model, mpq_t ***sum)
 		const struct form *form = (row == i ? model : model->tuning->other)->residual[i].form;
 		for (int k = 0; k < form->terms; k++) {
 			const struct basis *basis = &form->term[k].basis;
-			bool state = basis->kind == BASIS_ATOM ? basis->atom->state : basis->kind == BASIS_COORD && !leads(model, basis);
+			bool state = basis->kind == BASIS_ATOM ? basis->atom->state
+							       : basis->kind == BASIS_COORD && !leads(model, basis);
 			if (state)
 				weigh(&b, model->n, row - i, i, &form->term[k]);
 		}
@@ -235,7 +242,8 @@ static mpq_t *weights_of(const struct model *model, const mpq_t *u)
 	mpq_init(product);
 	for (int i = 0; i < n; i++)
 		for (int j = 0; j < n; j++) {
-			mpq_mul(product, u[i], (model->system.velocity[j] >= 0 ? model->system.M : model->system.C)[i * n + j]);
+			mpq_mul(product, u[i],
+				(model->system.velocity[j] >= 0 ? model->system.M : model->system.C)[i * n + j]);
 			mpq_add(w[j], w[j], product);
 		}
 	mpq_clear(product);
@@ -364,12 +372,14 @@ static bool fixed_in_part(const struct model *model, const struct group *g)
 	for (int order = 0; order < 2; order++) {
 		int fixed = 0, all = 0;
 		for (int j = 0; j < g->n; j++) {
-			bool member = mpq_sgn(g->motion[j]) != 0 || (g->weight && mpq_sgn(g->weight[j]) != 0), found = false;
+			bool member = mpq_sgn(g->motion[j]) != 0 || (g->weight && mpq_sgn(g->weight[j]) != 0),
+			     found = false;
 			for (int i = 0; i < model->spec->fixeds && member; i++) {
 				const struct fixed *f = &model->spec->fixed[i];
 				int first = f->symbol ? f->symbol->index + (f->component ? f->component - 1 : 0) : 0;
 				int length = f->symbol && f->symbol->length && !f->component ? f->symbol->length : 1;
-				found = found || (f->symbol && f->symbol->kind == SYMBOL_COORD && f->primes == order && first <= j && j < first + length);
+				found = found || (f->symbol && f->symbol->kind == SYMBOL_COORD && f->primes == order &&
+						  first <= j && j < first + length);
 			}
 			fixed += found;
 			all += member;
@@ -397,7 +407,8 @@ static bool make_group(const struct model *model, const mpq_t *motion, mpq_t *we
 		mpq_mul(product, weight[j], motion[j]);
 		mpq_add(sum, sum, product);
 	}
-	if (mpq_sgn(sum) != 0 && support(n, (const mpq_t *)weight) > 1 && !is_mixed(model, motion, (const mpq_t *)weight)) {
+	if (mpq_sgn(sum) != 0 && support(n, (const mpq_t *)weight) > 1 &&
+	    !is_mixed(model, motion, (const mpq_t *)weight)) {
 		mpq_div(sum, sum, motion[g->root]);
 		scale(n, weight, sum);
 		g->weight = weight;
@@ -408,7 +419,8 @@ static bool make_group(const struct model *model, const mpq_t *motion, mpq_t *we
 	if (!fixed_in_part(model, g))
 		return true;
 	if (model->operators > 0 && model->scheme != SCHEME_PL)
-		say_warning(model->spec->operator_at, "fix all of them, or none", "the operator fixes some of the coordinates that may move as a whole: they are kept as "
+		say_warning(model->spec->operator_at, "fix all of them, or none",
+			    "the operator fixes some of the coordinates that may move as a whole: they are kept as "
 			    "written, and where they grow their differences lose digits");
 	return false;
 }
@@ -486,9 +498,12 @@ static void name_kept(struct relative *r, int centres)
 	const struct model *model = r->written;
 	for (int j = 0, centre = 0; j < model->n; j++) {
 		const struct link *link = &r->link[j];
-		const char *own = model->coord_name[j], *from = link->kind == LINK_PARENT ? times(link->ratio, model->coord_name[link->from]) : "";
-		r->name[j] = link->kind == LINK_NONE ? own : link->kind == LINK_CENTRE ? (centres > 1 ? format("centre%d", ++centre) : "centre")
-			   : link->turned ? format("%s - %s", from, own) : format("%s - %s", own, from);
+		const char *own = model->coord_name[j],
+			   *from = link->kind == LINK_PARENT ? times(link->ratio, model->coord_name[link->from]) : "";
+		r->name[j] = link->kind == LINK_NONE     ? own
+			     : link->kind == LINK_CENTRE ? (centres > 1 ? format("centre%d", ++centre) : "centre")
+			     : link->turned              ? format("%s - %s", from, own)
+							 : format("%s - %s", own, from);
 	}
 }
 
@@ -503,7 +518,8 @@ static struct form *rate_of(const struct relative *r, int coord)
 	for (int i = 0; i < form->terms; i++) {
 		const struct basis *basis = &form->term[i].basis;
 		bool own = basis->kind == BASIS_COORD && basis->index == coord && basis->order == 1;
-		bool plain = basis->kind == BASIS_COORD && basis->order == 0 && r->link[basis->index].kind == LINK_NONE && model->system.velocity[basis->index] < 0;
+		bool plain = basis->kind == BASIS_COORD && basis->order == 0 &&
+			     r->link[basis->index].kind == LINK_NONE && model->system.velocity[basis->index] < 0;
 		if (own)
 			lead = form->term[i].factor;
 		else if (plain || basis->kind == BASIS_ONE)
@@ -532,7 +548,8 @@ static struct form *derivative(const struct form *form)
 	struct form *sum = NEW(struct form);
 	for (int i = 0; i < form->terms; i++)
 		if (form->term[i].basis.kind == BASIS_COORD)
-			sum = form_sum(sum, form_scale(unit(form->term[i].basis.index, 1), form->term[i].factor), false);
+			sum = form_sum(sum, form_scale(unit(form->term[i].basis.index, 1), form->term[i].factor),
+				       false);
 	return sum;
 }
 
@@ -543,7 +560,8 @@ static struct form *written_form(const struct relative *r, int coord, int order)
 	if (link->velocity >= 0 && order > 0)
 		return unit(link->velocity, order - 1);
 	if (link->rate && order > 0)
-		return form_sum(form_scale(order == 1 ? link->rate : derivative(link->rate), link->ratio), unit(coord, order), link->turned);
+		return form_sum(form_scale(order == 1 ? link->rate : derivative(link->rate), link->ratio),
+				unit(coord, order), link->turned);
 	if (link->kind == LINK_PARENT)
 		return form_sum(form_scale(r->form[order][link->from], link->ratio), unit(coord, order), link->turned);
 	struct form *form = unit(coord, order);
@@ -601,7 +619,11 @@ static struct relative *relative_new(const struct model *model)
 {
 	struct relative *r = NEW(struct relative);
 	size_t n = (size_t)model->n;
-	*r = (struct relative){ .written = model, .n = model->n, .name = ARRAY(const char *, 2 * n), .order = ARRAY(int, 2 * n), .link = ARRAY(struct link, n),
+	*r = (struct relative){ .written = model,
+				.n = model->n,
+				.name = ARRAY(const char *, 2 * n),
+				.order = ARRAY(int, 2 * n),
+				.link = ARRAY(struct link, n),
 				.sequence = ARRAY(int, n) };
 	for (int j = 0; j < model->n; j++) {
 		r->order[j] = model->system.velocity[j] >= 0 ? 2 : 1;
@@ -621,7 +643,8 @@ static mpq_t *leading_factors(const struct model *model)
 	mpq_t *factor = rationals((size_t)n);
 	for (int j = 0; j < n; j++)
 		for (int i = 0; i < n; i++) {
-			mpq_srcptr entry = (model->system.velocity[j] >= 0 ? model->system.M : model->system.C)[i * n + j];
+			mpq_srcptr entry =
+				(model->system.velocity[j] >= 0 ? model->system.M : model->system.C)[i * n + j];
 			if (i == model->owner[j])
 				mpq_set(factor[j], entry);
 			else if (mpq_sgn(entry) != 0)
@@ -633,7 +656,7 @@ static mpq_t *leading_factors(const struct model *model)
 	return model->tuning ? NULL : factor;
 }
 
-static struct form *divided(const struct relative *r, int coord, const struct form *const *equation, mpq_srcptr times)
+static struct form *divided(const struct relative *r, int coord, struct form *const *equation, mpq_srcptr times)
 {
 	mpq_t factor;
 	mpq_init(factor);
@@ -643,17 +666,18 @@ static struct form *divided(const struct relative *r, int coord, const struct fo
 	return form;
 }
 
-struct form *combined_equation(const struct relative *r, int coord, const struct form *const *equation)
+struct form *combined_equation(const struct relative *r, int coord, struct form *const *equation)
 {
 	const struct link *link = &r->link[coord];
 	struct form *form = NEW(struct form);
 	mpq_t one;
 	if (!r->solved || link->kind == LINK_NONE || link->rate || link->velocity >= 0)
-		return (struct form *)equation[coord];
+		return equation[coord];
 	mpq_init(one);
 	mpq_set_ui(one, 1, 1);
 	if (link->kind == LINK_PARENT) {
-		struct form *own = divided(r, coord, equation, one), *from = divided(r, link->from, equation, link->ratio);
+		struct form *own = divided(r, coord, equation, one),
+			    *from = divided(r, link->from, equation, link->ratio);
 		form = link->turned ? form_difference(from, own) : form_difference(own, from);
 	}
 	for (int j = 0; j < r->written->n && link->kind == LINK_CENTRE; j++)
@@ -689,14 +713,16 @@ struct relative *relative_of(const struct model *model)
 	for (int s = 0, all = sums; s < all; s++) {
 		const mpq_t *u = (const mpq_t *)sum[s];
 		sum[s] = weights_of(model, u);
-		if (model->tuning && retunes(model, (const mpq_t *)sum[s], (const mpq_t *)weights_of(model->tuning->other, u)))
+		if (model->tuning &&
+		    retunes(model, (const mpq_t *)sum[s], (const mpq_t *)weights_of(model->tuning->other, u)))
 			sum[s] = rationals((size_t)n);
 	}
 	struct relative *r = relative_new(model);
 	for (int c = 0; c < count; c++) {
 		int found;
 		struct group g;
-		mpq_t *motion = motion_in(n, places, place, rates, rate, component, c), *weight = sum_in(n, sums, sum, component, c, &found);
+		mpq_t *motion = motion_in(n, places, place, rates, rate, component, c),
+		      *weight = sum_in(n, sums, sum, component, c, &found);
 		if (!motion || !make_group(model, (const mpq_t *)motion, found == 1 ? weight : NULL, &g))
 			continue;
 		int first = r->links;

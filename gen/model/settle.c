@@ -55,11 +55,15 @@ static void tell_change(void *context)
 	struct building *b = work->b;
 	const struct spec *spec = b->spec;
 	for (int i = 0; i < spec->elements; i++)
-		if (spec->element[i].kind != ELEMENT_FORCE && !same_in_states(b->snapshot[0].element[i], work->snapshot->element[i]))
-			error(spec->element[i].value->start, "what moves belongs in an equation, or in a force", "a mass, spring or damper needs a constant");
+		if (spec->element[i].kind != ELEMENT_FORCE &&
+		    !same_in_states(b->snapshot[0].element[i], work->snapshot->element[i]))
+			error(spec->element[i].value->start, "what moves belongs in an equation, or in a force",
+			      "a mass, spring or damper needs a constant");
 	const struct node *term = first_changing_term(b, work->index);
 	b->collector.term = term;
-	not_linear(&b->collector, term, format("has a factor that changes at t = %s", readable_text(b->model->system.change[work->index - 1])));
+	not_linear(&b->collector, term,
+		   format("has a factor that changes at t = %s",
+			  readable_text(b->model->system.change[work->index - 1])));
 }
 
 static bool same_equations(const struct building *b, const struct snapshot *s)
@@ -85,8 +89,10 @@ static bool check_sizes(const struct building *b)
 	const struct snapshot *first = b->snapshot;
 	for (int s = 1; s < b->model->system.segments; s++)
 		for (int i = 0; i < first->written || i < first[s].written; i++)
-			if (i >= first->written || i >= first[s].written || first->residual[i].at.offset != first[s].residual[i].at.offset) {
-				say_error((i < first->written ? first : first + s)->residual[i].at, NULL, "the size of the equation changes at t = %s",
+			if (i >= first->written || i >= first[s].written ||
+			    first->residual[i].at.offset != first[s].residual[i].at.offset) {
+				say_error((i < first->written ? first : first + s)->residual[i].at, NULL,
+					  "the size of the equation changes at t = %s",
 					  readable_text(b->model->system.change[s - 1]));
 				return false;
 			}
@@ -107,8 +113,9 @@ bool is_linear(const struct building *b)
 	return true;
 }
 
-/* What depends on time alone, in each interval of time: t < 1 ? ... has one formula there. What is then still no load, such as
- * sqrt(t), is left over if it is the same in all intervals; if it is not, all that is no plain load for all time is. */
+/* What depends on time alone, in each interval of time: t < 1 ? ... has one formula there. What is then still no load,
+ * such as sqrt(t), is left over if it is the same in all intervals; if it is not, all that is no plain load for all
+ * time is. */
 static void part_loads(void *context)
 {
 	struct building *b = context;
@@ -148,7 +155,8 @@ static const struct atom *first_atom(const struct building *b, bool all)
 			for (int k = 0; k < b->snapshot[s].residual[i].form->terms; k++) {
 				const struct basis *basis = &b->snapshot[s].residual[i].form->term[k].basis;
 				const struct atom *a = basis->atom;
-				if (a && (!first || a->node->start.offset < first->node->start.offset) && (all || !is_piecewise_form(form_unit(*basis))))
+				if (a && (!first || a->node->start.offset < first->node->start.offset) &&
+				    (all || !is_piecewise_form(form_unit(*basis))))
 					first = a;
 			}
 	return first;
@@ -169,9 +177,13 @@ static void tell_atom(void *context)
 	bool changes = !atom;
 	atom = atom ? atom : first_atom(b, true);
 	const char *rewrite = changes ? input_rewrite : rewrite_of(atom->node);
-	error(atom->node->start, format("%s%setd1, etdrk2, etdrk4, nc2, nc3, dq4, bm3 and pl are the schemes that could", rewrite, *rewrite ? "; " : ""),
-	      changes ? "switching beside loads that change their formula in time is not built yet: scheme exact cannot treat '%s'"
-		      : "'%s' is not piecewise linear: scheme exact cannot treat it", text_between(atom->node->start, atom->node->end));
+	error(atom->node->start,
+	      format("%s%setd1, etdrk2, etdrk4, nc2, nc3, dq4, bm3 and pl are the schemes that could", rewrite,
+		     *rewrite ? "; " : ""),
+	      changes ? "switching beside loads that change their formula in time is not built yet: scheme exact "
+			"cannot treat '%s'"
+		      : "'%s' is not piecewise linear: scheme exact cannot treat it",
+	      text_between(atom->node->start, atom->node->end));
 }
 
 /* No scheme was asked for, and exact is not possible: what stood in its way */
@@ -207,7 +219,8 @@ static bool settle_scheme(struct building *b)
 	}
 	b->collector.scheme = scheme_name(model->scheme);
 	if (model->scheme == SCHEME_EXACT && b->request->loads_left) {
-		say_error(model->asked.scheme_at.source ? model->asked.scheme_at : b->spec->name_at, "etd1, etdrk2, etdrk4, nc2, nc3, dq4 and bm3 have; pl holds loads over a step",
+		say_error(model->asked.scheme_at.source ? model->asked.scheme_at : b->spec->name_at,
+			  "etd1, etdrk2, etdrk4, nc2, nc3, dq4 and bm3 have; pl holds loads over a step",
 			  "--loads leftover needs a scheme with a quadrature: exact has none");
 		return false;
 	}

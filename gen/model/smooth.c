@@ -50,7 +50,8 @@ static bool moves_in_a_step(const struct model *model, const struct form *form)
 		ramps = ramps || model->system.input[i].first_order;
 	for (int i = 0; i < form->terms; i++) {
 		const struct basis *basis = &form->term[i].basis;
-		if (basis->kind == BASIS_WAVE || basis->kind == BASIS_COORD || (basis->atom && (basis->atom->time || basis->atom->state)))
+		if (basis->kind == BASIS_WAVE || basis->kind == BASIS_COORD ||
+		    (basis->atom && (basis->atom->time || basis->atom->state)))
 			return true;
 		if (ramps && ((basis->kind == BASIS_INPUT && basis->order == 0) || (basis->atom && basis->atom->input)))
 			return true;
@@ -76,7 +77,8 @@ static mpq_srcptr first_factor(const struct form *form)
 static void visit_surfaces(const struct form *d, void (*visit)(void *context, const struct form *g), void *context)
 {
 	const struct atom *product = product_of(d);
-	if (is_constant(d) || is_stepwise(d))   /* what is constant but for steps passes 0 only where another surface lies */
+	/* what is constant but for steps passes 0 only where another surface lies */
+	if (is_constant(d) || is_stepwise(d))
 		return;
 	for (int i = 0; product && i < product->operands; i++)
 		if (product->exponent[i] % 2)
@@ -163,8 +165,10 @@ static void find_surfaces(struct search *s, const struct form *form, const struc
 		s->seen[a->index] = true;
 		visit_decisions(a, add_decision, &(struct finding){ s, a, whole ? whole : a });
 		for (int k = 0; k < a->operands; k++)
-			find_surfaces(s, a->operand[k], a->kind == ATOM_PRODUCT || a->kind == ATOM_POWER ? whole ? whole : a :
-				      a->kind == ATOM_CHOOSE && k == 0 ? a : NULL);
+			find_surfaces(s, a->operand[k],
+				      a->kind == ATOM_PRODUCT || a->kind == ATOM_POWER ? whole ? whole : a
+				      : a->kind == ATOM_CHOOSE && k == 0               ? a
+										       : NULL);
 	}
 }
 
@@ -175,7 +179,8 @@ struct side {
 	const struct form *g;
 	int sign;                   /* of g there; 0: on it */
 	int count;
-	signed char *touched;       /* per atom: whether it decides on g, or what it is made of does; 0 not known yet, else -1 or 1 */
+	/* per atom: whether it decides on g, or what it is made of does; 0 not known yet, else -1 or 1 */
+	signed char *touched;
 	struct form **known;        /* per atom that does */
 };
 
@@ -257,8 +262,11 @@ static struct decided decide(const struct side *s, const struct form *d)
 		const struct form *rest = form_number(mpq_sgn(d->term[0].factor));
 		for (int k = 0; k < product->operands; k++)
 			if (k != i)
-				rest = kept_product(s->c, product->node, rest, kept_whole_power(s->c, product->node, product->operand[k], product->exponent[k]));
-		return (struct decided){ true, product->exponent[i] % 2 ? multiple * s->sign : s->sign != 0, is_constant(rest) ? NULL : rest };
+				rest = kept_product(s->c, product->node, rest,
+						    kept_whole_power(s->c, product->node, product->operand[k],
+								     product->exponent[k]));
+		return (struct decided){ true, product->exponent[i] % 2 ? multiple * s->sign : s->sign != 0,
+					 is_constant(rest) ? NULL : rest };
 	}
 	return (struct decided){ false, 0, NULL };
 }
@@ -274,7 +282,8 @@ static struct form *copy(const struct form *form)
 static struct form *sign_form(const struct side *s, const struct atom *a, struct decided d)
 {
 	struct form *rest = d.rest ? copy(d.rest) : NULL;
-	return rest ? kept_product(s->c, a->node, form_number(d.sign), kept_call(s->c, a->node, FN_SGN, 1, &rest)) : form_number(d.sign);
+	return rest ? kept_product(s->c, a->node, form_number(d.sign), kept_call(s->c, a->node, FN_SGN, 1, &rest))
+		    : form_number(d.sign);
 }
 
 /* min or max without those that another one beats for sure */
@@ -285,7 +294,8 @@ static struct form *extreme_on_side(const struct side *s, const struct atom *a, 
 	for (int i = 0; i < a->operands; i++) {
 		bool beaten = false;
 		for (int j = 0; j < a->operands && i < LIMIT_EXTREMES && j < LIMIT_EXTREMES && !beaten; j++) {
-			const struct decided d = i == j ? (struct decided){ false, 0, NULL } : decide(s, form_difference(x[i], x[j]));
+			const struct decided d = i == j ? (struct decided){ false, 0, NULL }
+							: decide(s, form_difference(x[i], x[j]));
 			beaten = d.known && !d.rest && (d.sign == wanted || (d.sign == 0 && j < i));
 		}
 		if (!beaten)
@@ -299,7 +309,9 @@ static struct form *clip_on_side(const struct side *s, const struct atom *a, str
 	struct decided low = decide(s, form_difference(x[0], x[1])), high = decide(s, form_difference(x[0], x[2]));
 	struct form *clipped, *upper[] = { x[0], x[2] }, *lower[] = { x[0], x[1] };
 	if (low.known && !low.rest)
-		clipped = low.sign < 0 ? x[1] : high.known && !high.rest && high.sign > 0 ? x[2] : kept_call(s->c, a->node, FN_MIN, 2, upper);
+		clipped = low.sign < 0                                ? x[1]
+			  : high.known && !high.rest && high.sign > 0 ? x[2]
+								      : kept_call(s->c, a->node, FN_MIN, 2, upper);
 	else if (high.known && !high.rest)
 		clipped = high.sign > 0 ? x[2] : kept_call(s->c, a->node, FN_MAX, 2, lower);
 	else
@@ -315,7 +327,8 @@ static struct form *table_on_side(const struct side *s, const struct atom *a, st
 		if (!d.known || d.rest)
 			continue;
 		int left = d.sign > 0 ? k : k - 2;
-		struct form *rise = form_difference(x[left + 3], x[left + 1]), *width = form_difference(x[left + 2], x[left]);
+		struct form *rise = form_difference(x[left + 3], x[left + 1]),
+			    *width = form_difference(x[left + 2], x[left]);
 		struct form *slope = kept_product(s->c, a->node, rise, kept_reciprocal(s->c, a->node, width));
 		return form_sum(x[k + 1], kept_product(s->c, a->node, slope, form_difference(x[0], x[k])), false);
 	}
@@ -331,13 +344,15 @@ static struct form *call_on_side(const struct side *s, const struct atom *a, str
 		d = decide(s, x[0]);
 		if (!d.known)
 			break;
-		return a->function == FN_SGN ? sign_form(s, a, d) : kept_product(s->c, a->node, sign_form(s, a, d), x[0]);
+		return a->function == FN_SGN ? sign_form(s, a, d)
+					     : kept_product(s->c, a->node, sign_form(s, a, d), x[0]);
 	case FN_SQRT:
 		d = root_of_square(a) ? decide(s, root_of_square(a)) : (struct decided){ false, 0, NULL };
 		if (!d.known || product_of(x[0]) != product_of(a->operand[0]))
 			break;
-		return kept_product(s->c, a->node, kept_product(s->c, a->node, sign_form(s, a, d), root_of_square(a)), kept_power(s->c, a->node,
-			form_constant(x[0]->term[0].factor), kept_reciprocal(s->c, a->node, form_number(2))));
+		return kept_product(s->c, a->node, kept_product(s->c, a->node, sign_form(s, a, d), root_of_square(a)),
+				    kept_power(s->c, a->node, form_constant(x[0]->term[0].factor),
+					       kept_reciprocal(s->c, a->node, form_number(2))));
 	case FN_MIN:
 	case FN_MAX:      return extreme_on_side(s, a, x);
 	case FN_CLIP:
@@ -354,7 +369,8 @@ static struct form *comparison_on_side(const struct side *s, const struct atom *
 	if (!d.known)
 		return kept_comparison(s->c, a->node, a->comparison, x[0], x[1]);
 	if (d.rest && d.sign)
-		return kept_comparison(s->c, a->node, a->comparison, kept_product(s->c, a->node, form_number(d.sign), d.rest), form_number(0));
+		return kept_comparison(s->c, a->node, a->comparison,
+				       kept_product(s->c, a->node, form_number(d.sign), d.rest), form_number(0));
 	return form_number(compare_values(a->comparison, d.sign));
 }
 
@@ -434,7 +450,10 @@ static void spot_leaf(void *context, const struct basis *basis, mpfr_ptr value)
 	if (p->moved && basis_order(p->moved, basis) == 0)
 		mpfr_set(value, p->value, MPFR_RNDN);
 	else
-		draw_number(p, (unsigned long)basis->kind * 1000003 + (unsigned long)basis->index * 4 + (unsigned long)basis->order + 1, value);
+		draw_number(p,
+			    (unsigned long)basis->kind * 1000003 + (unsigned long)basis->index * 4 +
+				    (unsigned long)basis->order + 1,
+			    value);
 }
 
 /* g, or the difference, with what is moved at `at` */
@@ -478,7 +497,8 @@ static bool find_zero(struct sample *sample, struct spot *p, const struct form *
 			measure(sample, p, g, root, value);
 			mpfr_set(mpfr_sgn(value) * mpfr_sgn(a) > 0 ? low : middle, root, MPFR_RNDN);
 		}
-		found = mpfr_number_p(value) && (mpfr_zero_p(value) || mpfr_get_exp(value) < GONE);      /* not at a pole */
+		/* not at a pole */
+		found = mpfr_number_p(value) && (mpfr_zero_p(value) || mpfr_get_exp(value) < GONE);
 	}
 	mpfr_clears(a, b, low, high, middle, value, NULL);
 	return found;
@@ -500,7 +520,8 @@ static int order_of_sizes(long first, long second)
 }
 
 /* The difference is not defined off the surface, as in abs(x)^1.5: what each side does as it leaves it */
-static int order_of_growth(struct sample *sample, struct spot *p, const struct form *side, mpfr_srcptr root, int direction)
+static int order_of_growth(struct sample *sample, struct spot *p, const struct form *side, mpfr_srcptr root,
+			   int direction)
 {
 	mpfr_t at, here, there;
 	long size[2];
@@ -540,7 +561,8 @@ static int order_at(struct sample *sample, struct spot *p, const struct sides *f
 	}
 	if (found && order < 0) {
 		measure(sample, p, f->difference, root, value);
-		int above = order_of_growth(sample, p, f->above, root, 1), below = order_of_growth(sample, p, f->below, root, -1);
+		int above = order_of_growth(sample, p, f->above, root, 1),
+		    below = order_of_growth(sample, p, f->below, root, -1);
 		if (mpfr_number_p(value))
 			order = size_of(value) > GONE ? JUMP : above < below ? above : below;
 	}
@@ -646,14 +668,17 @@ static const char *surface_text(const struct model *model, const struct form *g)
 	mpq_init(at);
 	if (one)
 		mpq_neg(at, one);
-	const char *text = format("%s passes %s", form_text(model, form_sum(g, form_constant(at), false)), readable_text(at));
+	const char *text =
+		format("%s passes %s", form_text(model, form_sum(g, form_constant(at), false)), readable_text(at));
 	mpq_clear(at);
 	return text;
 }
 
 void tell_friction(const struct node *node, const char *where)
 {
-	error(node->start, "a force that is continuous in the velocity is treated, such as clip(100*x', -1, 1) in place of sgn(x'), and one that jumps with a position",
+	error(node->start,
+	      "a force that is continuous in the velocity is treated, such as clip(100*x', -1, 1) in place of sgn(x'), "
+	      "and one that jumps with a position",
 	      "the force jumps where %s: dry friction, which sticks and slips, is not treated", where);
 }
 
@@ -692,8 +717,12 @@ static void judge_surface(struct search *s, const struct surface *surface, const
 		tell_friction(surface->test, surface_text(model, surface->g));
 	if (order >= HIGHEST || (smooth->tenths && smooth->tenths <= order))
 		return;
-	*smooth = (struct smoothness){ order, order == JUMP ? SMOOTH_JUMP : SMOOTH_KINK, surface->whole->node, surface_text(model, surface->g),
-				       is_piecewise_form(form_unit((struct basis){ .kind = BASIS_ATOM, .atom = surface->whole })),
+	*smooth = (struct smoothness){ order,
+				       order == JUMP ? SMOOTH_JUMP : SMOOTH_KINK,
+				       surface->whole->node,
+				       surface_text(model, surface->g),
+				       is_piecewise_form(
+					       form_unit((struct basis){ .kind = BASIS_ATOM, .atom = surface->whole })),
 				       linear_in_time(surface->g, &factor, &phase) };
 }
 
@@ -740,8 +769,10 @@ void judge_smoothness(struct building *b)
 
 int order_of_scheme(const struct model *model)
 {
-	static const int order[SCHEMES] = { [SCHEME_PL] = 1, [SCHEME_ETD1] = 1, [SCHEME_ETDRK2] = 2, [SCHEME_ETDRK4] = 4, [SCHEME_NC2] = 4,
-					    [SCHEME_NC3] = 4, [SCHEME_DQ4] = 4, [SCHEME_BM3] = 4 };
+	static const int order[SCHEMES] = {
+		[SCHEME_PL] = 1,  [SCHEME_ETD1] = 1, [SCHEME_ETDRK2] = 2, [SCHEME_ETDRK4] = 4,
+		[SCHEME_NC2] = 4, [SCHEME_NC3] = 4,  [SCHEME_DQ4] = 4,    [SCHEME_BM3] = 4
+	};
 	return order[model->scheme];
 }
 
@@ -765,6 +796,9 @@ const char *order_text(const struct model *model)
 const char *smoothness_text(const struct model *model)
 {
 	const struct smoothness *smooth = &model->smooth;
-	return format("%s %s where %s", text_between(smooth->node->start, smooth->node->end), smooth->kind == SMOOTH_JUMP ? "jumps" :
-		      smooth->tenths <= KINK ? "has a kink" : "is not smooth", smooth->where);
+	return format("%s %s where %s", text_between(smooth->node->start, smooth->node->end),
+		      smooth->kind == SMOOTH_JUMP ? "jumps"
+		      : smooth->tenths <= KINK    ? "has a kink"
+						  : "is not smooth",
+		      smooth->where);
 }

@@ -28,7 +28,9 @@ const char *column_text(const struct load *load, int column)
 		mpq_t size;
 		mpq_init(size);
 		mpq_abs(size, wave->p);
-		const char *phase = mpq_sgn(size) == 0 ? "" : format(" %c %s", mpq_sgn(wave->p) < 0 ? '-' : '+', readable_text(size));
+		const char *phase = mpq_sgn(size) == 0
+					    ? ""
+					    : format(" %c %s", mpq_sgn(wave->p) < 0 ? '-' : '+', readable_text(size));
 		text = joined(text, format("%s(%s%s)", column % 2 ? "sin" : "cos", times_t(wave->w), phase));
 		mpq_clear(size);
 	}
@@ -46,7 +48,8 @@ static const char *spell_form(struct spelling *s, const struct form *form);
 static const char *let_of(const struct model *model, const struct atom *atom)
 {
 	for (const struct symbol *s = model->spec->first; s; s = s->next) {
-		const struct form_term *only = s->kind == SYMBOL_LET && s->whole && s->whole->terms == 1 ? s->whole->term : NULL;
+		const struct form_term *only =
+			s->kind == SYMBOL_LET && s->whole && s->whole->terms == 1 ? s->whole->term : NULL;
 		if (only && only->basis.atom == atom && mpq_cmp_ui(only->factor, 1, 1) == 0)
 			return s->name;
 	}
@@ -57,7 +60,8 @@ static const char *spell_operand(struct spelling *s, const struct form *form)
 {
 	const char *text = spell_form(s, form);
 	const struct form_term *only = form->terms == 1 ? form->term : NULL;
-	bool single = only && mpq_cmp_ui(only->factor, 1, 1) == 0 && !(only->basis.atom && only->basis.atom->kind == ATOM_COMPARE);
+	bool single = only && mpq_cmp_ui(only->factor, 1, 1) == 0 &&
+		      !(only->basis.atom && only->basis.atom->kind == ATOM_COMPARE);
 	return single ? text : format("(%s)", text);
 }
 
@@ -66,14 +70,16 @@ static const char *spell_product(struct spelling *s, const struct atom *a)
 	const char *text = "";
 	for (int i = 0; i < a->operands; i++) {
 		const struct atom *inner = a->operand[i]->terms == 1 ? a->operand[i]->term[0].basis.atom : NULL;
-		if (*text && inner && inner->kind == ATOM_RECIPROCAL && a->exponent[i] == 1 && !let_of(s->model, inner)) {
+		if (*text && inner && inner->kind == ATOM_RECIPROCAL && a->exponent[i] == 1 &&
+		    !let_of(s->model, inner)) {
 			text = format("%s/%s", text, spell_operand(s, inner->operand[0]));
 			continue;
 		}
 		const char *factor = spell_operand(s, a->operand[i]);
 		bool product = strpbrk(factor, "*/") && factor[0] != '(' && a->exponent[i] > 1;
 		factor = product ? format("(%s)", factor) : factor;
-		text = format("%s%s%s", text, *text ? "*" : "", a->exponent[i] > 1 ? format("%s^%u", factor, a->exponent[i]) : factor);
+		text = format("%s%s%s", text, *text ? "*" : "",
+			      a->exponent[i] > 1 ? format("%s^%u", factor, a->exponent[i]) : factor);
 	}
 	return text;
 }
@@ -82,7 +88,11 @@ static const char *spell_call(struct spelling *s, const struct atom *a)
 {
 	const char *text = "";
 	for (int i = 0; i < a->operands; i++)
-		text = format("%s%s%s", text, !i ? "" : a->function == FN_TABLE && i % 2 ? "; " : ", ", spell_form(s, a->operand[i]));
+		text = format("%s%s%s", text,
+			      !i                                 ? ""
+			      : a->function == FN_TABLE && i % 2 ? "; "
+								 : ", ",
+			      spell_form(s, a->operand[i]));
 	return format("%s(%s)", function_name(a->function), text);
 }
 
@@ -120,7 +130,8 @@ static const char *basis_text(struct spelling *s, const struct basis *basis)
 	case BASIS_PI:    return "pi";
 	case BASIS_INPUT: return format("%s%s", model->system.input[basis->index].name, basis->order ? "'" : "");
 	case BASIS_COORD:
-		return format(strchr(model->coord_name[basis->index], ' ') ? "(%s)%.*s" : "%s%.*s", model->coord_name[basis->index], basis->order, "''");
+		return format(strchr(model->coord_name[basis->index], ' ') ? "(%s)%.*s" : "%s%.*s",
+			      model->coord_name[basis->index], basis->order, "''");
 	default:          break;
 	}
 	struct load load = { .wave = basis->wave };
@@ -136,7 +147,11 @@ static const char *add_term(struct spelling *s, const char *text, const struct f
 	const char *what = basis_text(s, &term->basis);
 	const char *factor = *what && mpq_cmp_ui(size, 1, 1) == 0 ? "" : readable_text(size);
 	mpq_clear(size);
-	return format("%s%s%s%s%s", text, *text ? (minus ? " - " : " + ") : minus ? "-" : "", factor, *factor && *what ? "*" : "", what);
+	return format("%s%s%s%s%s", text,
+		      *text   ? (minus ? " - " : " + ")
+		      : minus ? "-"
+			      : "",
+		      factor, *factor && *what ? "*" : "", what);
 }
 
 static const char *spell_form(struct spelling *s, const struct form *form)

@@ -8,7 +8,8 @@ static void fill_row(struct linear *system, int row, const struct form *form)
 	mpq_t *matrix[] = { system->K, system->C, system->M };
 	for (int i = 0; i < form->terms; i++)
 		if (form->term[i].basis.kind == BASIS_COORD)
-			mpq_set(matrix[form->term[i].basis.order][row * n + form->term[i].basis.index], form->term[i].factor);
+			mpq_set(matrix[form->term[i].basis.order][row * n + form->term[i].basis.index],
+				form->term[i].factor);
 }
 
 static struct load *load_of_wave(struct model *model, const struct wave *wave)
@@ -53,7 +54,8 @@ void place_loads(struct building *b, const struct form *form)
 }
 
 /* value[load][column] of the terms of a form; `spread` is called for each */
-void spread_loads(struct building *b, const struct form *form, void (*spread)(void *context, int load, int column, mpq_srcptr factor), void *context)
+void spread_loads(struct building *b, const struct form *form,
+		  void (*spread)(void *context, int load, int column, mpq_srcptr factor), void *context)
 {
 	struct linear *system = &b->model->system;
 	mpq_t constant;
@@ -67,7 +69,8 @@ void spread_loads(struct building *b, const struct form *form, void (*spread)(vo
 	for (int i = plain.terms; i < form->terms; i++) {
 		const struct basis *basis = &form->term[i].basis;
 		if (basis->kind == BASIS_WAVE)
-			spread(context, (int)(load_of_wave(b->model, basis->wave) - system->load), load_column(basis), form->term[i].factor);
+			spread(context, (int)(load_of_wave(b->model, basis->wave) - system->load), load_column(basis),
+			       form->term[i].factor);
 	}
 	mpq_clear(constant);
 }

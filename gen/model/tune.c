@@ -1,12 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* How the equations follow from tunable params. Params stand in a spec wherever a number may: in equations, sketches, matrices, other
- * params. So nothing is derived from its text: the model is built anew at a few exact values, and every entry of it is found from its
- * values there (fit.c). What could only seem to be a sum of products, a function or a condition, is refused before. */
+/* How the equations follow from tunable params. Params stand in a spec wherever a number may: in equations, sketches,
+ * matrices, other params. So nothing is derived from its text: the model is built anew at a few exact values, and every
+ * entry of it is found from its values there (fit.c). What could only seem to be a sum of products, a function or a
+ * condition, is refused before. */
 #include "model/model.h"
 
 /* ---- what cannot be recomputed ---- */
 
-static const char *const refused_note = "sums, products and quotients of tunables are recomputed on the target; make what the function gives a tunable of its own";
+static const char *const refused_note = "sums, products and quotients of tunables are recomputed on the target; make "
+					"what the function gives a tunable of its own";
 static const char *const decided_note = "which way it goes is decided when plgen runs: where formulas change is fixed";
 
 static bool depends(const struct node *node)
@@ -42,12 +44,14 @@ static void refuse_within(const struct node *node, const char *inside, const cha
 {
 	const struct node *name = first_tuned(node);
 	if (name)
-		error(name->at, note, "'%s' is tunable, or made of what is, and stands inside %s", name->symbol->name, inside);
+		error(name->at, note, "'%s' is tunable, or made of what is, and stands inside %s", name->symbol->name,
+		      inside);
 }
 
 static bool reads_time(const struct node *node)
 {
-	if (node->kind == NODE_TIME || (node->kind == NODE_NAME && node->symbol->value && reads_time(node->symbol->value)))
+	if (node->kind == NODE_TIME ||
+	    (node->kind == NODE_NAME && node->symbol->value && reads_time(node->symbol->value)))
 		return true;
 	for (int i = 0; i < node->children; i++)
 		if (reads_time(node->child[i]))
@@ -63,7 +67,8 @@ static void check_node(const struct node *node)
 	}
 	for (int i = 0; i < node->children; i++) {
 		bool wave = (node->function == FN_SIN || node->function == FN_COS) && reads_time(node->child[i]);
-		if (node->kind == NODE_CALL && !wave)   /* a load's frequency may be tunable; its phase is looked at with the model */
+		/* a load's frequency may be tunable; its phase is looked at with the model */
+		if (node->kind == NODE_CALL && !wave)
 			refuse_within(node->child[i], format("%s()", function_name(node->function)), refused_note);
 		if (node->kind == NODE_COMPARE)
 			refuse_within(node->child[i], "a comparison", decided_note);
@@ -90,25 +95,32 @@ static void check_model(const struct model *model)
 	for (int i = 0; i < model->outputs; i++) {
 		const struct node *name = model->output[i].left ? first_tuned(model->output[i].value) : NULL;
 		if (name)
-			error(name->at, "read the states, and multiply on the target", "'%s' is tunable, or made of what is, and output '%s' is not linear",
-			      name->symbol->name, model->output[i].name);
+			error(name->at, "read the states, and multiply on the target",
+			      "'%s' is tunable, or made of what is, and output '%s' is not linear", name->symbol->name,
+			      model->output[i].name);
 	}
 	for (int k = 0; model->highest && k < model->n; k++)
 		if (model->highest[k])
-			error(model->highest[k]->value->start, "an output that is linear may: give the derivative one of its own",
-			      "output '%s' is not linear and reads a derivative that tunable params change", model->highest[k]->name);
+			error(model->highest[k]->value->start,
+			      "an output that is linear may: give the derivative one of its own",
+			      "output '%s' is not linear and reads a derivative that tunable params change",
+			      model->highest[k]->name);
 }
 
 static void check_kind(const struct model *model, const struct request *request)
 {
 	struct place at = model->spec->tunable[0].at;
 	if (model->switching || model->channels > 0 || model->scheme == SCHEME_PL)
-		error(at, "tunable params are for scheme exact and linear models", model->switching ? "a piecewise-linear model cannot be retuned"
-		      : model->channels > 0 ? "a model with a leftover cannot be retuned" : "scheme pl cannot be retuned");
+		error(at, "tunable params are for scheme exact and linear models",
+		      model->switching      ? "a piecewise-linear model cannot be retuned"
+		      : model->channels > 0 ? "a model with a leftover cannot be retuned"
+					    : "scheme pl cannot be retuned");
 	if (request->reduce)
-		error(at, NULL, "--reduce takes out what is not seen at the spec's values: it does not go with tunable params");
+		error(at, NULL,
+		      "--reduce takes out what is not seen at the spec's values: it does not go with tunable params");
 	if (model->system.states > LIMIT_UNROLLED_STATES)
-		error(at, NULL, "tunable params are built for up to %d states: the model has %d", LIMIT_UNROLLED_STATES, model->system.states);
+		error(at, NULL, "tunable params are built for up to %d states: the model has %d", LIMIT_UNROLLED_STATES,
+		      model->system.states);
 }
 
 /* ---- the model at other values ---- */
@@ -158,7 +170,8 @@ static bool same_shape(const struct linear *a, const struct linear *b)
 	return true;
 }
 
-/* Entries of one point: W^-1 R of all rows, then [R | W], then the frequencies of the loads. Rows: the coordinates, then the outputs. */
+/* Entries of one point: W^-1 R of all rows, then [R | W], then the frequencies of the loads. Rows: the coordinates,
+ * then the outputs. */
 static int all_rows(const struct search *s)
 {
 	return s->model->n + s->model->outputs;
@@ -185,7 +198,8 @@ static mpq_t *frequency_entry(const struct search *s, mpq_t *entry, int load)
 }
 
 /* Calls take(context, column, force) for what acts on the equations, in the order of the columns behind the states */
-static void each_force(const struct linear *system, void (*take)(void *context, int column, const mpq_t *force), void *context)
+static void each_force(const struct linear *system, void (*take)(void *context, int column, const mpq_t *force),
+		       void *context)
 {
 	int column = system->states;
 	for (int s = 0; s < system->segments; s++)
@@ -229,10 +243,12 @@ static void read_equations(struct reading *r)
 	for (int i = 0; i < n; i++) {
 		for (int j = 0; j < states; j++) {
 			mpq_set(*solved_entry(s, r->entry, i, j), highest[i * states + j]);
-			mpq_neg(*raw_entry(s, r->entry, i, j), (j < n ? system->K : system->C)[i * n + system->coord[j]]);
+			mpq_neg(*raw_entry(s, r->entry, i, j),
+				(j < n ? system->K : system->C)[i * n + system->coord[j]]);
 		}
 		for (int j = 0; j < n; j++)
-			mpq_set(*raw_entry(s, r->entry, i, s->tuning->columns + j), (system->velocity[j] >= 0 ? system->M : system->C)[i * n + j]);
+			mpq_set(*raw_entry(s, r->entry, i, s->tuning->columns + j),
+				(system->velocity[j] >= 0 ? system->M : system->C)[i * n + j]);
 	}
 	each_force(system, read_force, r);
 }
@@ -247,7 +263,8 @@ static void read_output_row(const struct reading *r, int row, const struct outpu
 	for (int s = 0; s < system->segments; s++)
 		for (int l = 0; l < system->loads; l++)
 			for (int k = 0; k < system->load[l].columns; k++)
-				mpq_set(*solved_entry(r->search, r->entry, row, column++), output->load[l][k * system->segments + s]);
+				mpq_set(*solved_entry(r->search, r->entry, row, column++),
+					output->load[l][k * system->segments + s]);
 	for (int i = 0; i < system->inputs; i++)
 		for (int k = 0; k < (system->input[i].first_order ? 2 : 1); k++)
 			mpq_set(*solved_entry(r->search, r->entry, row, column++), output->input[k][i]);
@@ -322,7 +339,9 @@ static const mpq_t *look(struct search *s, const mpq_t *values)
 		error(t->param[0].at, NULL, "with other values of the tunable params this is no model");
 	if (!same_shape(&s->found->system, &s->model->system)) {
 		const struct tunable *why = suspect(s);
-		error(why->at, "a load is there only where its factor is not 0; its phase, growth and changes in time are fixed", "with another value of '%s' the model has other loads", why->symbol->name);
+		error(why->at,
+		      "a load is there only where its factor is not 0; its phase, growth and changes in time are fixed",
+		      "with another value of '%s' the model has other loads", why->symbol->name);
 	}
 	ENLARGE(s->point, (size_t)s->points + 1);
 	ENLARGE(s->seen, (size_t)s->points + 1);
@@ -390,7 +409,8 @@ static void number_rows(struct search *s)
 		bool changes = false;
 		for (int i = 1; i < s->points; i++)
 			for (int j = 0; j < t->columns; j++)
-				changes = changes || !mpq_equal(*solved_entry(s, s->seen[i], s->model->n + o, j), *solved_entry(s, s->seen[0], s->model->n + o, j));
+				changes = changes || !mpq_equal(*solved_entry(s, s->seen[i], s->model->n + o, j),
+								*solved_entry(s, s->seen[0], s->model->n + o, j));
 		t->output[o] = changes ? t->rows++ : -1;
 		t->outputs += changes;
 	}
@@ -398,7 +418,8 @@ static void number_rows(struct search *s)
 	for (int l = 0; l < system->loads; l++) {
 		bool changes = false;
 		for (int i = 1; i < s->points; i++)
-			changes = changes || !mpq_equal(*frequency_entry(s, s->seen[i], l), *frequency_entry(s, s->seen[0], l));
+			changes = changes ||
+				  !mpq_equal(*frequency_entry(s, s->seen[i], l), *frequency_entry(s, s->seen[0], l));
 		t->frequency[l] = changes ? t->rows++ : -1;
 		t->frequencies += changes;
 	}
@@ -467,7 +488,8 @@ static bool fit_all(struct search *s, bool solved, int *culprit)
 	mpq_t *first = s->seen[0];
 	for (int i = 0; i < rows; i++)
 		for (int j = 0; j < t->columns + (solved ? 0 : rows); j++) {
-			mpq_t *entry = solved ? solved_entry(s, first, entry_row(s, i), j) : raw_entry(s, first, entry_row(s, i), entry_column(s, j));
+			mpq_t *entry = solved ? solved_entry(s, first, entry_row(s, i), j)
+					      : raw_entry(s, first, entry_row(s, i), entry_column(s, j));
 			if (!fit_into(s, (const mpq_t *)entry, i, j, culprit))
 				return false;
 		}
@@ -481,7 +503,9 @@ static void mark_acting(struct search *s)
 	for (int p = 0; p < s->points; p++)
 		for (int i = 0; i < t->rows - t->frequencies; i++)
 			for (int j = 0; j < t->columns; j++)
-				t->acts[i * t->columns + j] = t->acts[i * t->columns + j] || mpq_sgn(*solved_entry(s, s->seen[p], entry_row(s, i), j)) != 0;
+				t->acts[i * t->columns + j] =
+					t->acts[i * t->columns + j] ||
+					mpq_sgn(*solved_entry(s, s->seen[p], entry_row(s, i), j)) != 0;
 }
 
 static void warn_of_idle(const struct tuning *t)
@@ -491,7 +515,8 @@ static void warn_of_idle(const struct tuning *t)
 		for (int m = 0; m < t->monomials; m++)
 			used = used || t->monomial[m].param == k;
 		if (!used)
-			say_warning(t->param[k].at, NULL, "tunable '%s' changes nothing that the target recomputes", t->param[k].symbol->name);
+			say_warning(t->param[k].at, NULL, "tunable '%s' changes nothing that the target recomputes",
+				    t->param[k].symbol->name);
 	}
 }
 
@@ -504,15 +529,20 @@ static void find(void *context)
 	spread_tuned(s->model->spec);
 	check_model(s->model);
 	for (int k = 0; k < t->params; k++)
-		constant_value(&(struct collector){ .scheme = "exact" }, t->param[k].symbol->collected->cell[0], t->nominal[k]);
+		constant_value(&(struct collector){ .scheme = "exact" }, t->param[k].symbol->collected->cell[0],
+			       t->nominal[k]);
 	for (int i = 0; i < FIT_POINTS; i++)
 		look(s, (const mpq_t *)scattered_values(t->params, i));
 	t->other = s->found;
 	number_rows(s);
 	if (!fit_all(s, true, &culprit) && !fit_all(s, false, &culprit)) {
 		const struct tunable *why = &t->param[culprit < 0 ? 0 : culprit];
-		error(why->at, format("sums and products, and quotients by single terms, up to the power %d of each and %d of them in an entry, are recomputed on the target; multiply an equation by what divides it",
-				      FIT_DEGREE, LIMIT_MONOMIALS), "the equations depend on '%s' in a way that cannot be recomputed on the target", why->symbol->name);
+		error(why->at,
+		      format("sums and products, and quotients by single terms, up to the power %d of each and %d of "
+			     "them in an entry, are recomputed on the target; multiply an equation by what divides it",
+			     FIT_DEGREE, LIMIT_MONOMIALS),
+		      "the equations depend on '%s' in a way that cannot be recomputed on the target",
+		      why->symbol->name);
 	}
 	mark_acting(s);
 	warn_of_idle(t);

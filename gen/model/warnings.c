@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What a spec may say but is better told about. Nothing here reaches the generated code, so eigenvalues in double will do. */
+/* What a spec may say but is better told about. Nothing here reaches the generated code, so eigenvalues in double will
+ * do. */
 #include "model/model.h"
 
 #include <gsl/gsl_eigen.h>
@@ -10,15 +11,17 @@
 
 enum { SAMPLES = 32 };
 
-/* By which part of itself a squared frequency exceeds the operator's: as time goes by a little is told, of a motion what is felt: twice the
- * operator's where the phase that this costs in a thousand steps is more than DRIFT [rad], ten times it anyhow. */
+/* By which part of itself a squared frequency exceeds the operator's: as time goes by a little is told, of a motion
+ * what is felt: twice the operator's where the phase that this costs in a thousand steps is more than DRIFT [rad], ten
+ * times it anyhow. */
 static const double LITTLE = 1e-2, TWICE = 0.5, TENFOLD = 0.9, DRIFT = 1e-3;
 
 /* ---- the Jacobian in time ---- */
 
 struct jacobian {
 	struct building *b;
-	struct form ***C, ***K;     /* [coordinate][row]: of the equations for all time, by velocity and by coordinate */
+	/* [coordinate][row]: of the equations for all time, by velocity and by coordinate */
+	struct form ***C, ***K;
 	struct linear at;           /* evaluated */
 	bool damped;                /* C too */
 	const mpq_t *state;         /* where the states are fixed */
@@ -52,7 +55,8 @@ static int fix_states(const struct jacobian *j, struct fixing *fixing)
 	const struct model *model = j->b->model;
 	for (int i = 0; i < model->system.states; i++) {
 		int coord = model->system.coord[i];
-		fixing[i] = (struct fixing){ .symbol = model->frame.coord[coord], .coord = coord, .order = i >= model->n };
+		fixing[i] =
+			(struct fixing){ .symbol = model->frame.coord[coord], .coord = coord, .order = i >= model->n };
 		mpq_init(fixing[i].value);
 		mpq_set(fixing[i].value, j->state[i]);
 	}
@@ -80,7 +84,8 @@ static void evaluate(void *context)
 	struct point *point = point_new(c, fix_states(j, fixing), fixing);
 	for (int k = 0; k < n; k++)
 		for (int i = 0; i < n; i++) {
-			if (j->damped || model->system.velocity[k] < 0)   /* of first order: what multiplies the highest derivative */
+			/* of first order: what multiplies the highest derivative */
+			if (j->damped || model->system.velocity[k] < 0)
 				constant_of(c, form_at(point, j->C[k][i]), j->at.C[i * n + k]);
 			constant_of(c, form_at(point, j->K[k][i]), j->at.K[i * n + k]);
 		}
@@ -162,8 +167,12 @@ static void check_predictor(struct jacobian *j)
 	}
 	double h = nearest_double(model->h);
 	if (fastest * h > limit)
-		say_warning(scheme_place(b), format("a step up to %.3g s, or a scheme of the etd family, whose operator bears the stiffness", limit / fastest),
-			    "%s predicts its nodes explicitly, up to |lambda| h of about %.1f: here |lambda| = %.4g 1/s, times h = %s s that is %.3g",
+		say_warning(scheme_place(b),
+			    format("a step up to %.3g s, or a scheme of the etd family, whose operator bears the "
+				   "stiffness",
+				   limit / fastest),
+			    "%s predicts its nodes explicitly, up to |lambda| h of about %.1f: here |lambda| = %.4g "
+			    "1/s, times h = %s s that is %.3g",
 			    scheme_name(model->scheme), limit, fastest, readable_text(model->h), fastest * h);
 }
 
@@ -197,11 +206,14 @@ struct softness {
 	const char *where;          /* and when; "": at rest */
 };
 
-/* What h^2 times the difference of squared frequencies costs in a thousand steps: growth in etd1, else the phase of a Runge-Kutta scheme */
+/* What h^2 times the difference of squared frequencies costs in a thousand steps: growth in etd1, else the phase of a
+ * Runge-Kutta scheme */
 static double drift_of_softness(const struct model *model, double difference)
 {
 	double h = nearest_double(model->h), d = difference * h * h;
-	return model->scheme == SCHEME_ETD1 ? 250 * d : model->scheme == SCHEME_ETDRK2 ? 1000 * pow(d, 1.5) / 6 : 1000 * pow(d, 2.5) / 120;
+	return model->scheme == SCHEME_ETD1     ? 250 * d
+	       : model->scheme == SCHEME_ETDRK2 ? 1000 * pow(d, 1.5) / 6
+						: 1000 * pow(d, 2.5) / 120;
 }
 
 static bool is_told(const struct model *model, bool moved, double here, double there)
@@ -223,7 +235,8 @@ static void compare(struct jacobian *j, bool moved, const char *where, struct so
 		return;
 	for (int i = 0; i < model->n; i++) {
 		double now = (here[i] - there[i]) * worst->here, known = (worst->here - worst->operator) * here[i];
-		if (is_told(model, moved, here[i], there[i]) && (worst->here == 0 || (moved ? now > known : now >= known)))
+		if (is_told(model, moved, here[i], there[i]) &&
+		    (worst->here == 0 || (moved ? now > known : now >= known)))
 			*worst = (struct softness){ here[i], there[i], where };
 	}
 }
@@ -255,7 +268,8 @@ static bool stiffness_reads_states(const struct jacobian *j)
 
 /* ---- a reference, to see how far the motion goes ---- */
 
-enum { LIMIT_WORK = 500000, FOLLOWED = 8 };      /* terms evaluated on the way; coordinates of which each has its own largest excursion */
+/* terms evaluated on the way; coordinates of which each has its own largest excursion */
+enum { LIMIT_WORK = 500000, FOLLOWED = 8 };
 
 static const double LOST = 1e30;        /* the motion has left */
 
@@ -336,7 +350,8 @@ static void compare_excursions(struct jacobian *j, double end, struct softness *
 	const struct model *model = j->b->model;
 	int states = model->system.states, followed = model->n < FOLLOWED ? model->n : FOLLOWED;
 	size_t size = (size_t)states;
-	double *y = ARRAY(double, size), *farthest = ARRAY(double, (size_t)followed * size), *when = ARRAY(double, (size_t)followed);
+	double *y = ARRAY(double, size), *farthest = ARRAY(double, (size_t)followed *size),
+	       *when = ARRAY(double, (size_t)followed);
 	double t = 0, h = nearest_double(model->h);
 	struct reference r;
 	if (!make_reference(&r, j->b))
@@ -356,7 +371,8 @@ static void compare_excursions(struct jacobian *j, double end, struct softness *
 					farthest[(size_t)k * size + (size_t)i] = y[i];
 				when[k] = t;
 			}
-		good = t < end && gsl_odeiv2_evolve_apply(evolve, control, step, &system, &t, end, &h, y) == GSL_SUCCESS;
+		good = t < end &&
+		       gsl_odeiv2_evolve_apply(evolve, control, step, &system, &t, end, &h, y) == GSL_SUCCESS;
 		for (int i = 0; i < states; i++)
 			good = good && fabs(y[i]) < LOST;
 	}
@@ -373,7 +389,8 @@ static void compare_excursions(struct jacobian *j, double end, struct softness *
 			continue;               /* at the initial values */
 		set_state(model, farthest + (size_t)k * size, state);
 		mpq_set_d(j->t, (double)(float)when[k]);
-		compare(j, true, format("where %s is at its largest, at t = %.3g s, ", model->coord_name[k], when[k]), worst);
+		compare(j, true, format("where %s is at its largest, at t = %.3g s, ", model->coord_name[k], when[k]),
+			worst);
 	}
 }
 
@@ -392,7 +409,8 @@ static void check_softness(struct jacobian *j)
 		mpq_set_ui(end, 1000, 1);
 	if (changes == 0 || mpq_sgn(model->system.change[changes - 1]) <= 0)
 		mpq_mul(end, end, model->h);
-	j->state = (const mpq_t *)rationals((size_t)model->system.states);      /* at rest; where that is not defined, at the start */
+	/* at rest; where that is not defined, at the start */
+	j->state = (const mpq_t *)rationals((size_t)model->system.states);
 	if (!silent_guard(evaluate, j))
 		j->state = (const mpq_t *)model->initial;
 	bool moves = stiffness_moves(j);
@@ -412,9 +430,14 @@ static void check_softness(struct jacobian *j)
 	if (worst.here <= worst.operator)
 		return;
 	double growth = nearest_double(model->h) / 4 * (worst.here - worst.operator);
-	const char *rate = model->scheme == SCHEME_ETD1 ? format(", growing at up to %.3g 1/s in etd1 (h/4 times the difference)", growth) : "";
-	say_warning(b->spec->has_operator ? b->spec->operator_at : scheme_place(b), format("what is left over then drives the motion%s; fix the operator where the model is stiffest", rate),
-		    "the linear operator is softer than the model gets: %sa squared frequency is %.4g 1/s^2, the operator's %.4g",
+	const char *rate = model->scheme == SCHEME_ETD1
+				   ? format(", growing at up to %.3g 1/s in etd1 (h/4 times the difference)", growth)
+				   : "";
+	say_warning(b->spec->has_operator ? b->spec->operator_at : scheme_place(b),
+		    format("what is left over then drives the motion%s; fix the operator where the model is stiffest",
+			   rate),
+		    "the linear operator is softer than the model gets: %sa squared frequency is %.4g 1/s^2, the "
+		    "operator's %.4g",
 		    worst.where, worst.here, worst.operator);
 }
 
@@ -427,14 +450,20 @@ static void check_smoothness(const struct building *b)
 		return;
 	const struct smoothness *smooth = &model->smooth;
 	const struct node *other = model->obstacle;
-	bool apart = smooth->piecewise && !smooth->timed && other &&
-		     (other->end.offset <= smooth->node->start.offset || other->start.offset >= smooth->node->end.offset);
-	const char *cure = smooth->timed && smooth->kind == SMOOTH_KINK ? "a step of which that time is a multiple keeps the order" :
-		smooth->kind == SMOOTH_JUMP ? "a smaller step, or something smooth in its place, such as tanh of a multiple" :
-		"a smaller step, or something smoother in its place";
-	say_warning(smooth->node->start, apart ? format("scheme exact treats it where '%s' is not beside it; else %s", text_between(other->start, other->end), cure)
+	bool apart =
+		smooth->piecewise && !smooth->timed && other &&
+		(other->end.offset <= smooth->node->start.offset || other->start.offset >= smooth->node->end.offset);
+	const char *cure = smooth->timed && smooth->kind == SMOOTH_KINK
+				   ? "a step of which that time is a multiple keeps the order"
+			   : smooth->kind == SMOOTH_JUMP
+				   ? "a smaller step, or something smooth in its place, such as tanh of a multiple"
+				   : "a smaller step, or something smoother in its place";
+	say_warning(smooth->node->start,
+		    apart ? format("scheme exact treats it where '%s' is not beside it; else %s",
+				   text_between(other->start, other->end), cure)
 			  : cure,
-		    "%s: scheme %s is of order %s at most there, not %d", smoothness_text(model), scheme_name(model->scheme), order_text(model), order_of_scheme(model));
+		    "%s: scheme %s is of order %s at most there, not %d", smoothness_text(model),
+		    scheme_name(model->scheme), order_text(model), order_of_scheme(model));
 }
 
 /* ---- the whole ---- */
@@ -443,15 +472,20 @@ static void check_need(const struct building *b, bool left)
 {
 	const struct model *model = b->model;
 	if (b->spec->has_operator && (model->scheme <= SCHEME_PL || !left))
-		say_warning(b->spec->operator_at, NULL, model->scheme == SCHEME_PL ? "the operator has no effect: that of scheme pl is each coordinate's own terms"
-			: "the operator has no effect: nothing is left over");
+		say_warning(b->spec->operator_at, NULL,
+			    model->scheme == SCHEME_PL
+				    ? "the operator has no effect: that of scheme pl is each coordinate's own terms"
+				    : "the operator has no effect: nothing is left over");
 	if (left && !model->loads_left)
 		return;
 	if (model->scheme == SCHEME_PL && !model->loads_left)
-		say_warning(scheme_place(b), NULL, "scheme pl is of first order in h: this model is linear, and exact has no error");
+		say_warning(scheme_place(b), NULL,
+			    "scheme pl is of first order in h: this model is linear, and exact has no error");
 	else if (model->scheme > SCHEME_PL && is_linear(b))
-		say_warning(scheme_place(b), NULL, left ? "scheme %s approximates the loads: this model is linear, and exact has no error"
-			: "scheme %s has nothing to do: this model is linear, and exact covers it", scheme_name(model->scheme));
+		say_warning(scheme_place(b), NULL,
+			    left ? "scheme %s approximates the loads: this model is linear, and exact has no error"
+				 : "scheme %s has nothing to do: this model is linear, and exact covers it",
+			    scheme_name(model->scheme));
 }
 
 void warn(struct building *b)

@@ -808,7 +808,7 @@ static struct fixed *read_fixed_name(struct parser *p)
 	struct token token = take(p);
 	bool time = strcmp(token.name, "t") == 0 && token.primes == 0;
 	struct node *name = time ? NULL : resolve_name(p, token);
-	const struct symbol *symbol = time ? NULL : name->symbol;
+	struct symbol *symbol = time ? NULL : name->symbol;
 	if (symbol && symbol->kind != SYMBOL_COORD && symbol->kind != SYMBOL_LET)
 		error(token.at, "an operator fixes t, coordinates, their first derivatives and lets", "%s '%s' cannot be fixed", kind_text(symbol), symbol->name);
 	if (token.primes > 1 || (name && name->primes > 1))

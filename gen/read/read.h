@@ -74,12 +74,15 @@ struct symbol {
 	const char *name;
 	struct place at;
 	size_t statement;           /* offset of the statement that declares it */
-	int index;                  /* among its kind, in the order of declaration; of a coordinate: of its first component */
+	/* among its kind, in the order of declaration; of a coordinate: of its first component */
+	int index;
 	int length;                 /* of a vector coordinate; 0: scalar */
 	bool broken;                /* its own statement failed: what uses it is passed over in silence */
-	bool tuned, tuning_checked; /* it is tunable, or made of something that is; of that: tune.c has looked through its value */
+	/* it is tunable, or made of something that is; of that: tune.c has looked through its value */
+	bool tuned, tuning_checked;
 	bool first_order;           /* of an input: hold first */
-	int highest;                /* of a coordinate: its order, 1 or 2; of a let: 1 if it reads a highest derivative, else -1, 0 unknown */
+	/* of a coordinate: its order, 1 or 2; of a let: 1 if it reads a highest derivative, else -1, 0 unknown */
+	int highest;
 	enum { TIME_UNKNOWN, TIME_READ, TIME_NOT_READ } time; /* of a let */
 	bool marked;                /* of a let: its states are marked */
 	struct node *value;         /* of param, let, output */
@@ -109,7 +112,7 @@ struct initial {
 };
 struct fixed {                      /* of `operator at NAME = value, value, ...` */
 	struct place at, end;
-	const struct symbol *symbol; /* a coordinate or a let; NULL: t */
+	struct symbol *symbol; /* a coordinate or a let; NULL: t */
 	int primes, component;
 	int values;
 	struct node **value;
@@ -147,7 +150,8 @@ struct spec {                       /* what the text says, names resolved, nothi
 	struct place end;
 };
 struct spec *parse_spec(const struct source *source);
-struct node *parse_argument(struct spec *spec, const struct source *source, size_t from); /* an expression from the command line */
+/* an expression from the command line */
+struct node *parse_argument(struct spec *spec, const struct source *source, size_t from);
 struct symbol *spec_find(const struct spec *spec, const char *name);
 char *text_between(struct place start, struct place end);   /* without comments, white space folded */
 
@@ -159,7 +163,8 @@ size_t name_hash(const char *name);
 enum function function_of(const char *name);
 const char *function_name(enum function function);
 const char *nearest_name(const char *name, int count, const char *const *known); /* or NULL */
-const char *spec_suggestion(const struct spec *spec, const char *name); /* a note with the nearest known name, or NULL */
+/* a note with the nearest known name, or NULL */
+const char *spec_suggestion(const struct spec *spec, const char *name);
 bool may_be_macro(const char *name);
 
 /* ---- mtx.c: Matrix Market files ---- */
@@ -173,7 +178,18 @@ struct mtx *mtx_read(const char *path, struct place at);    /* `at`: what names 
 /* ---- schemes.c: the schemes and the forms of a step ---- */
 
 enum step_form { FORM_AUTO, FORM_DIRECT, FORM_DELTA, FORM_KICK_DRIFT_KICK, STEP_FORMS };
-enum scheme { SCHEME_EXACT, SCHEME_PL, SCHEME_ETD1, SCHEME_ETDRK2, SCHEME_ETDRK4, SCHEME_NC2, SCHEME_NC3, SCHEME_DQ4, SCHEME_BM3, SCHEMES };
+enum scheme {
+	SCHEME_EXACT,
+	SCHEME_PL,
+	SCHEME_ETD1,
+	SCHEME_ETDRK2,
+	SCHEME_ETDRK4,
+	SCHEME_NC2,
+	SCHEME_NC3,
+	SCHEME_DQ4,
+	SCHEME_BM3,
+	SCHEMES
+};
 const char *scheme_name(enum scheme scheme);
 bool scheme_of(const char *name, enum scheme *scheme);      /* false: there is none of this name */
 const char *nearest_scheme(const char *name);               /* or NULL */

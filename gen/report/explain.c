@@ -39,10 +39,12 @@ static void person_loads(FILE *to, const struct linear *system)
 {
 	for (int l = 0; l < system->loads; l++)
 		for (int k = 0; k < system->load[l].columns; k++)
-			person_force(to, format("load %s", column_text(&system->load[l], k)), system->n, (const mpq_t *)system->load[l].force[k]);
+			person_force(to, format("load %s", column_text(&system->load[l], k)), system->n,
+				     (const mpq_t *)system->load[l].force[k]);
 	for (int i = 0; i < system->inputs; i++)
 		for (int k = 0; k < 2; k++)
-			person_force(to, format("input %s%s", system->input[i].name, k ? "'" : ""), system->n, (const mpq_t *)system->input[i].force[k]);
+			person_force(to, format("input %s%s", system->input[i].name, k ? "'" : ""), system->n,
+				     (const mpq_t *)system->input[i].force[k]);
 }
 
 static void person_poles(FILE *to, const struct model *model, const struct resolvent *resolvent)
@@ -71,12 +73,15 @@ static void person_held(FILE *to, const struct step *step)
 				mpq_init(factor);
 				mpq_neg(factor, (k ? system->heldC : system->heldK)[i * n + j]);
 				if (mpq_sgn(factor) != 0)
-					fprintf(to, "    in %s'': %s * %s%s\n", step->model->coord_name[i], readable_text(factor), step->model->coord_name[j],
-						k ? "'" : "");
+					fprintf(to, "    in %s'': %s * %s%s\n", step->model->coord_name[i],
+						readable_text(factor), step->model->coord_name[j], k ? "'" : "");
 				mpq_clear(factor);
 			}
-	fprintf(to, "It is of first order in h. Its modified equation y' = L y - (h/2) R L y (R: the held terms) has growth rate\n"
-		    "%.6g 1/s, the largest real part of its poles, at h = %s s.\n", mpfr_get_d(step->growth, MPFR_RNDN), readable_text(step->model->h));
+	fprintf(to,
+		"It is of first order in h. Its modified equation y' = L y - (h/2) R L y (R: the held terms) has "
+		"growth rate\n"
+		"%.6g 1/s, the largest real part of its poles, at h = %s s.\n",
+		mpfr_get_d(step->growth, MPFR_RNDN), readable_text(step->model->h));
 }
 
 static void person_tuning(FILE *to, const struct tuning *t)
@@ -84,7 +89,8 @@ static void person_tuning(FILE *to, const struct tuning *t)
 	fputs("Tunable on the target:", to);
 	for (int k = 0; k < t->params; k++)
 		fprintf(to, "%s %s = %s", k ? "," : "", t->param[k].symbol->name, readable_text(t->nominal[k]));
-	fprintf(to, "; the equations there have %d term%s%s.\n", t->terms, t->terms == 1 ? "" : "s", t->solves ? ", and are solved for the highest derivatives" : "");
+	fprintf(to, "; the equations there have %d term%s%s.\n", t->terms, t->terms == 1 ? "" : "s",
+		t->solves ? ", and are solved for the highest derivatives" : "");
 }
 
 /* What the step keeps in the place of positions and velocities as written */
@@ -102,10 +108,11 @@ static void person_step(FILE *to, const struct step *step)
 {
 	const struct model *model = step->shown->model;
 	const struct program *program = step->program;
-	fprintf(to, "Step: form %s, h = %s s; %d multiplications, %d additions", form_text_of(step), readable_text(model->h), program->multiplications,
-		program->additions);
+	fprintf(to, "Step: form %s, h = %s s; %d multiplications, %d additions", form_text_of(step),
+		readable_text(model->h), program->multiplications, program->additions);
 	if (program->wave_multiplications)
-		fprintf(to, " (%d and %d of them for the functions of the loads)", program->wave_multiplications, program->wave_additions);
+		fprintf(to, " (%d and %d of them for the functions of the loads)", program->wave_multiplications,
+			program->wave_additions);
 	if (program->calls)
 		fprintf(to, ", %d calls of the model's own functions", program->calls);
 	if (step->model->relative) {
@@ -117,11 +124,15 @@ static void person_step(FILE *to, const struct step *step)
 		fprintf(to, ".\n%s", drift_text(&drift));
 	if (step->rounding.known)
 		fprintf(to, ".\n%s", rounding_text(step));
-	fprintf(to, ".\nPhi%s, each entry correctly rounded:\n", !has_leftover(step) ? "" : step->branches > 1 ? " = e^{A h} of the first operator" : " = e^{A h}");
+	fprintf(to, ".\nPhi%s, each entry correctly rounded:\n",
+		!has_leftover(step)  ? ""
+		: step->branches > 1 ? " = e^{A h} of the first operator"
+				     : " = e^{A h}");
 	for (int i = 0; i < model->system.states; i++) {
 		fprintf(to, "    %-8s", model->state_name[i]);
 		for (int j = 0; j < model->system.states; j++)
-			fprintf(to, " %24s", shortest(step->shown->branch->whole->Phi[i * model->system.states + j].value));
+			fprintf(to, " %24s",
+				shortest(step->shown->branch->whole->Phi[i * model->system.states + j].value));
 		fputc('\n', to);
 	}
 	if (model->tuning)
@@ -129,28 +140,36 @@ static void person_step(FILE *to, const struct step *step)
 	if (model->switching)
 		fprintf(to, "%s_at: like a step, with every crossing on the way.\n", model->name);
 	else if (model->tuning)
-		fprintf(to, "%s_at: e^{A tau} of the instance's own params, as %s_retune computes it.\n", model->name, model->name);
+		fprintf(to, "%s_at: e^{A tau} of the instance's own params, as %s_retune computes it.\n", model->name,
+			model->name);
 	else if (step->series.emitted)
-		fprintf(to, "%s_at: Taylor series of degree %d on %d part%s of the time.\n", model->name, step->series.degree, 1 << step->series.halvings,
-			step->series.halvings ? "s" : "");
+		fprintf(to, "%s_at: Taylor series of degree %d on %d part%s of the time.\n", model->name,
+			step->series.degree, 1 << step->series.halvings, step->series.halvings ? "s" : "");
 	else
-		fprintf(to, "%s_at is not emitted: %s.\n", model->name, has_leftover(step) && !step->series.powers
-			? "between its steps the scheme has no values of its order" : "the largest |pole| times h is above 8");
+		fprintf(to, "%s_at is not emitted: %s.\n", model->name,
+			has_leftover(step) && !step->series.powers
+				? "between its steps the scheme has no values of its order"
+				: "the largest |pole| times h is above 8");
 }
 
-/* Bytes of tables, and the most that a step can take: every piece of it by a Taylor polynomial, all events and splits used */
+/* Bytes of tables, and the most that a step can take: every piece of it by a Taylor polynomial, all events and splits
+ * used */
 static void person_regions(FILE *to, const struct step *step)
 {
 	const struct switching *s = step->shown->model->switching;
 	long size = step->series.size, matrices = s->systems, degree = step->series.degree, pieces = 1;
-	long bytes = 8 * (s->expressions * size + matrices * (2 * size * size + 3 * s->expressions * size)) + 4 * (s->regions + s->expressions + matrices);
+	long bytes = 8 * (s->expressions * size + matrices * (2 * size * size + 3 * s->expressions * size)) +
+		     4 * (s->regions + s->expressions + matrices);
 	for (int k = 0; k < step->branches; k++)
 		pieces = 1l << step->branch[k].halvings > pieces ? 1l << step->branch[k].halvings : pieces;
 	pieces += MAX_EVENTS + 1;
-	fprintf(to, "Piecewise linear: %d regions, %d of them different; in each nothing is approximated, every constant is correctly rounded.\n",
+	fprintf(to,
+		"Piecewise linear: %d regions, %d of them different; in each nothing is approximated, every constant "
+		"is correctly rounded.\n",
 		possible_regions(s), s->systems);
 	for (int i = 0; i < s->expressions; i++) {
-		fprintf(to, "    expression %d: %s, breakpoints", i, form_text(step->shown->model, s->expression[i].form));
+		fprintf(to, "    expression %d: %s, breakpoints", i,
+			form_text(step->shown->model, s->expression[i].form));
 		for (int k = 0; k < s->expression[i].breaks; k++)
 			fprintf(to, "%s %s", k ? "," : "", readable_text(s->expression[i].at[k]));
 		fputc('\n', to);
@@ -163,9 +182,10 @@ static void person_regions(FILE *to, const struct step *step)
 			fprintf(to, " %d", interval_of(s, r, i));
 		fprintf(to, "): matrix %d\n", s->region[r].system);
 	}
-	fprintf(to, "Tables: %ld bytes. Per step at most %d crossings and %d splits; at most %ld multiplications.\n", bytes, MAX_EVENTS, MAX_SPLITS,
+	fprintf(to, "Tables: %ld bytes. Per step at most %d crossings and %d splits; at most %ld multiplications.\n",
+		bytes, MAX_EVENTS, MAX_SPLITS,
 		pieces * (degree * (size * size + 2 * size) + (degree + 1) * s->expressions * (size + 6)) +
-		4 * (degree + 1) * (2 * MAX_SPLITS + 4 * s->expressions * pieces + 64 * MAX_EVENTS));
+			4 * (degree + 1) * (2 * MAX_SPLITS + 4 * s->expressions * pieces + 64 * MAX_EVENTS));
 }
 
 /* What went where: the operators, then the leftover of the first; those of the others differ in linear terms only. */
@@ -173,14 +193,23 @@ static void person_split(FILE *to, const struct step *step)
 {
 	const struct model *model = step->shown->model;
 	fprintf(to, "Split: y' = A y + loads%s + r(t, y). A, the loads%s are exact, each constant correctly rounded.\n",
-		step->branch->system.inputs ? " + inputs" : "", model->loads_left ? " excepted" : step->branch->system.inputs ? " and the inputs" : "");
+		step->branch->system.inputs ? " + inputs" : "",
+		model->loads_left             ? " excepted"
+		: step->branch->system.inputs ? " and the inputs"
+					      : "");
 	for (int k = 0; k < model->operators; k++) {
 		const struct operator *operator = &model->operator[k];
 		if (!*operator->text) {
-			fputs(model->scheme == SCHEME_PL ? "A: each coordinate's own terms.\n" : "A: the linear terms with constant coefficients, as above.\n", to);
+			fputs(model->scheme == SCHEME_PL
+				      ? "A: each coordinate's own terms.\n"
+				      : "A: the linear terms with constant coefficients, as above.\n",
+			      to);
 			continue;
 		}
-		fprintf(to, "A: the Jacobian of the equations at %s (of an entry that still moves there, the constant part):\n", operator->text);
+		fprintf(to,
+			"A: the Jacobian of the equations at %s (of an entry that still moves there, the constant "
+			"part):\n",
+			operator->text);
 		person_matrix(to, "C", model->n, (const mpq_t *)operator->C);
 		person_matrix(to, "K", model->n, (const mpq_t *)operator->K);
 		if (model->scheme != SCHEME_PL)
@@ -190,24 +219,29 @@ static void person_split(FILE *to, const struct step *step)
 		fputs("A step uses the first operator whose value is not below the current one, else the last.\n", to);
 	fprintf(to, "Scheme %s is of order %d in h", scheme_name(model->scheme), order_of_scheme(model));
 	if (loses_order(model))
-		fprintf(to, " where all is smooth; here of order %s at most: %s", order_text(model), smoothness_text(model));
+		fprintf(to, " where all is smooth; here of order %s at most: %s", order_text(model),
+			smoothness_text(model));
 	fprintf(to, ".\nr, left to scheme %s, is a force on each of these equations%s:\n", scheme_name(model->scheme),
 		step->branches > 1 ? " (with the first operator; with the others its linear terms differ)" : "");
 	for (int c = 0; c < model->channels; c++)
-		fprintf(to, "    %s: %s\n", model->coord_name[coordinate_of_row(model, model->channel_row[c])], form_text(model, model->operator[0].left[c]));
+		fprintf(to, "    %s: %s\n", model->coord_name[coordinate_of_row(model, model->channel_row[c])],
+			form_text(model, model->operator[0].left[c]));
 }
 
 /* What went: states that no output sees, and with them the poles that cancel in every N/B. */
 static void person_reduction(FILE *to, const struct step *step)
 {
 	const struct model *model = step->model;
-	fprintf(to, "Reduced to what the outputs can see: %d of %d states.\n", model->system.states, model->written->system.states);
+	fprintf(to, "Reduced to what the outputs can see: %d of %d states.\n", model->system.states,
+		model->written->system.states);
 	for (int i = 0; i < model->system.states; i++)
 		fprintf(to, "    state %s\n", model->state_name[i]);
 	fputs("Gone:", to);
 	for (int i = 0; i < model->reduction.dropped; i++)
 		fprintf(to, "%s %s", i ? "," : "", model->reduction.dropped_name[i]);
-	fputs(model->reduction.dropped ? " (no output sees them, nor a combination of the states that are left).\n" : " nothing.\n", to);
+	fputs(model->reduction.dropped ? " (no output sees them, nor a combination of the states that are left).\n"
+				       : " nothing.\n",
+	      to);
 	struct pole_report *pole;
 	int count = poles_of(step->model, step->branch->resolvent, &pole);
 	fputs("Poles that are left:\n", to);
@@ -219,8 +253,8 @@ void explain_person(FILE *to, const struct step *step)
 {
 	const struct model *model = step->shown->model;
 	const struct spec *spec = model->spec;
-	fprintf(to, "Model %s: %d coordinate%s, %d states, scheme %s\n\n", model->name, model->written->n, model->written->n == 1 ? "" : "s", model->written->system.states,
-		scheme_name(model->scheme));
+	fprintf(to, "Model %s: %d coordinate%s, %d states, scheme %s\n\n", model->name, model->written->n,
+		model->written->n == 1 ? "" : "s", model->written->system.states, scheme_name(model->scheme));
 	for (int i = 0; i < spec->equations; i++)
 		fprintf(to, "    %s\n", text_between(spec->equation[i].at, spec->equation[i].end));
 	for (int i = 0; i < spec->elements; i++)
@@ -238,7 +272,8 @@ void explain_person(FILE *to, const struct step *step)
 	person_poles(to, step->model, step->written);
 	const char *irrational = irrationals_text(&model->irrationals);
 	if (*irrational)
-		fprintf(to, "\nIrrational constants (%s) were taken as rationals of %d bits.\n", irrational, IRRATIONAL_BITS);
+		fprintf(to, "\nIrrational constants (%s) were taken as rationals of %d bits.\n", irrational,
+			IRRATIONAL_BITS);
 	fputc('\n', to);
 	if (model->scheme == SCHEME_PL)
 		person_held(to, step);
@@ -301,8 +336,8 @@ static void json_rational_matrix(FILE *to, const char *key, int n, const mpq_t *
 static void json_pole(FILE *to, const struct pole_report *pole, bool conjugate, bool first)
 {
 	double im = mpfr_get_d(pole->im, MPFR_RNDN);
-	fprintf(to, "%s\n    {\"re\": %s, \"im\": %s, \"multiplicity\": %d}", first ? "" : ",", json_number(mpfr_get_d(pole->re, MPFR_RNDN)),
-		json_number(conjugate ? -im : im), pole->multiplicity);
+	fprintf(to, "%s\n    {\"re\": %s, \"im\": %s, \"multiplicity\": %d}", first ? "" : ",",
+		json_number(mpfr_get_d(pole->re, MPFR_RNDN)), json_number(conjugate ? -im : im), pole->multiplicity);
 }
 
 /* One mode for each pair of poles, for each real pole, and for each two poles at 0 (a rigid body). */
@@ -314,7 +349,8 @@ static void json_modes(FILE *to, int count, const struct pole_report *pole)
 		int modes = mpfr_zero_p(pole[i].hertz) ? (pole[i].multiplicity + 1) / 2 : pole[i].multiplicity;
 		for (int k = 0; k < modes; k++, first = false)
 			fprintf(to, "%s\n    {\"frequency_hz\": %s, \"damping_ratio\": %s}", first ? "" : ",",
-				json_number(mpfr_get_d(pole[i].hertz, MPFR_RNDN)), json_number(mpfr_get_d(pole[i].damping_ratio, MPFR_RNDN)));
+				json_number(mpfr_get_d(pole[i].hertz, MPFR_RNDN)),
+				json_number(mpfr_get_d(pole[i].damping_ratio, MPFR_RNDN)));
 	}
 	fputs("],\n", to);
 }
@@ -363,7 +399,8 @@ static void json_loads(FILE *to, const struct step *step)
 		const struct load *load = &step->branch->system.load[l];
 		int trig = oscillates(load->wave) ? 2 : 1;
 		for (int k = 0; k < load->columns; k += trig) {
-			fprintf(to, "%s\n    {\"term\": \"%s\", \"columns\": [", column ? "," : "", column_text(load, k));
+			fprintf(to, "%s\n    {\"term\": \"%s\", \"columns\": [", column ? "," : "",
+				column_text(load, k));
 			for (int i = 0; i < trig; i++, column++) {
 				fputs(i ? ", " : "", to);
 				json_column(to, table->states, table->columns, column, table->load);
@@ -373,7 +410,8 @@ static void json_loads(FILE *to, const struct step *step)
 	}
 	fputs("],\n  \"Gamma\": [", to);
 	for (int i = 0, column = 0; i < step->branch->system.inputs; i++) {
-		fprintf(to, "%s\n    {\"input\": \"%s\", \"columns\": [", i ? "," : "", step->branch->system.input[i].name);
+		fprintf(to, "%s\n    {\"input\": \"%s\", \"columns\": [", i ? "," : "",
+			step->branch->system.input[i].name);
 		for (int k = 0; k <= step->branch->system.input[i].first_order; k++, column++) {
 			fputs(k ? ", " : "", to);
 			json_column(to, table->states, table->inputs, column, table->input);
@@ -400,7 +438,8 @@ static void json_split(FILE *to, const struct step *step)
 	fputs("],\n  \"leftover\": [", to);
 	for (int c = 0; c < model->channels; c++)
 		fprintf(to, "%s\n    {\"equation\": \"%s\", \"force\": \"%s\"}", c ? "," : "",
-			model->coord_name[coordinate_of_row(model, model->channel_row[c])], form_text(model, model->operator[0].left[c]));
+			model->coord_name[coordinate_of_row(model, model->channel_row[c])],
+			form_text(model, model->operator[0].left[c]));
 	fputs("],\n", to);
 }
 
@@ -410,7 +449,8 @@ static void json_regions(FILE *to, const struct step *step)
 	bool first = true;
 	fputs("  \"expressions\": [", to);
 	for (int i = 0; i < s->expressions; i++) {
-		fprintf(to, "%s\n    {\"expression\": \"%s\", \"breakpoints\": [", i ? "," : "", form_text(step->shown->model, s->expression[i].form));
+		fprintf(to, "%s\n    {\"expression\": \"%s\", \"breakpoints\": [", i ? "," : "",
+			form_text(step->shown->model, s->expression[i].form));
 		for (int k = 0; k < s->expression[i].breaks; k++)
 			fprintf(to, "%s%.17g", k ? ", " : "", nearest_double(s->expression[i].at[k]));
 		fputs("]}", to);
@@ -429,7 +469,8 @@ static void json_tuning(FILE *to, const struct tuning *t)
 {
 	fputs("  \"tunable\": [", to);
 	for (int k = 0; k < t->params; k++)
-		fprintf(to, "%s{\"name\": \"%s\", \"value\": %.17g}", k ? ", " : "", t->param[k].symbol->name, nearest_double(t->nominal[k]));
+		fprintf(to, "%s{\"name\": \"%s\", \"value\": %.17g}", k ? ", " : "", t->param[k].symbol->name,
+			nearest_double(t->nominal[k]));
 	fputs("],\n", to);
 }
 
@@ -445,8 +486,11 @@ void explain_json(FILE *to, const struct step *step)
 		output[i] = model->output[i].name;
 	for (int i = 0; i < model->system.states * model->system.states; i++)
 		Phi[i] = step->shown->branch->whole->Phi[i].value;
-	fprintf(to, "{\n  \"model\": \"%s\",\n  \"scheme\": \"%s\",\n  \"form\": \"%s\",\n  \"accuracy\": \"%s\",\n  \"real\": \"%s\",\n  \"step\": %.17g,\n", model->name,
-		scheme_name(model->scheme), step_form_name(step->form), step->model->asked.compensated ? "compensated" : "plain", target_name(), nearest_double(model->h));
+	fprintf(to,
+		"{\n  \"model\": \"%s\",\n  \"scheme\": \"%s\",\n  \"form\": \"%s\",\n  \"accuracy\": \"%s\",\n  "
+		"\"real\": \"%s\",\n  \"step\": %.17g,\n",
+		model->name, scheme_name(model->scheme), step_form_name(step->form),
+		step->model->asked.compensated ? "compensated" : "plain", target_name(), nearest_double(model->h));
 	json_names(to, "states", model->system.states, model->state_name);
 	json_names(to, "outputs", model->outputs, output);
 	json_names(to, "inputs", model->system.inputs, input);
@@ -469,10 +513,12 @@ void explain_json(FILE *to, const struct step *step)
 		json_split(to, step);
 	struct drift drift = drift_of(step);
 	if (drift.known)
-		fprintf(to, "  \"drift_per_step\": {\"amplitude\": %.17g, \"phase\": %.17g},\n", drift.amplitude, drift.phase);
+		fprintf(to, "  \"drift_per_step\": {\"amplitude\": %.17g, \"phase\": %.17g},\n", drift.amplitude,
+			drift.phase);
 	if (step->rounding.known)
-		fprintf(to, "  \"rounding\": {\"steps\": %d, \"relative\": %.17g, \"state\": \"%s\"},\n", step->rounding.steps, step->rounding.relative,
-			model->state_name[step->rounding.state]);
-	fprintf(to, "  \"cost\": {\"multiplications\": %d, \"additions\": %d", step->program->multiplications, step->program->additions);
+		fprintf(to, "  \"rounding\": {\"steps\": %d, \"relative\": %.17g, \"state\": \"%s\"},\n",
+			step->rounding.steps, step->rounding.relative, model->state_name[step->rounding.state]);
+	fprintf(to, "  \"cost\": {\"multiplications\": %d, \"additions\": %d", step->program->multiplications,
+		step->program->additions);
 	fprintf(to, step->program->calls ? ", \"calls\": %d}\n}\n" : "}\n}\n", step->program->calls);
 }

@@ -30,7 +30,11 @@ const char *polynomial_text(int length, const mpq_t *c)
 		mpq_abs(size, c[k]);
 		const char *factor = k > 0 && mpq_cmp_ui(size, 1, 1) == 0 ? "" : readable_text(size);
 		const char *power = k == 0 ? "" : k == 1 ? "s" : format("s^%d", k);
-		text = format("%s%s%s%s%s", text, first ? (negative ? "-" : "") : negative ? " - " : " + ", factor, *factor && k ? " " : "", power);
+		text = format("%s%s%s%s%s", text,
+			      first      ? (negative ? "-" : "")
+			      : negative ? " - "
+					 : " + ",
+			      factor, *factor && k ? " " : "", power);
 		mpq_clear(size);
 	}
 	return text;

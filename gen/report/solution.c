@@ -7,10 +7,12 @@
 static void check_outputs(const struct model *model)
 {
 	if (model->system.inputs)
-		error(model->asked.end_at, NULL, "--solution needs a model without inputs: their samples are not known");
+		error(model->asked.end_at, NULL,
+		      "--solution needs a model without inputs: their samples are not known");
 	for (int j = 0; j < model->outputs; j++)
 		if (!model->output[j].form && model->output[j].value)
-			error(model->output[j].value->start, "--solution prints outputs that are linear in states and loads",
+			error(model->output[j].value->start,
+			      "--solution prints outputs that are linear in states and loads",
 			      "output '%s' has no closed form", model->output[j].name);
 }
 
@@ -43,7 +45,8 @@ void print_solution(FILE *to, const struct model *model, struct resolvent *writt
 	struct closed_form *form = ARRAY(struct closed_form, (size_t)model->outputs);
 	fputc('t', to);
 	for (int j = 0; j < model->outputs; j++) {
-		form[j].count = responses_of_output(written, &model->system, (const mpq_t *)model->initial, &model->output[j], &form[j].list);
+		form[j].count = responses_of_output(written, &model->system, (const mpq_t *)model->initial,
+						    &model->output[j], &form[j].list);
 		fprintf(to, ",%s", model->output[j].name);
 	}
 	fputc('\n', to);
@@ -53,9 +56,11 @@ void print_solution(FILE *to, const struct model *model, struct resolvent *writt
 		progress("row", (int)k, (int)last);
 		fprintf(to, "%.17g", nearest_double(t));
 		for (int j = 0; j < model->outputs; j++) {
-			struct coefficient value = started_value(form[j].count, form[j].list, t, model->asked.step_at, model->output[j].name);
+			struct coefficient value = started_value(form[j].count, form[j].list, t, model->asked.step_at,
+								 model->output[j].name);
 			if (!isfinite(value.value))
-				error(model->asked.end_at, NULL, "output '%s' leaves the range of double at t = %s s", model->output[j].name, readable_text(t));
+				error(model->asked.end_at, NULL, "output '%s' leaves the range of double at t = %s s",
+				      model->output[j].name, readable_text(t));
 			fprintf(to, ",%.17g", value.value);
 		}
 		fputc('\n', to);

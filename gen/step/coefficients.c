@@ -20,7 +20,9 @@ void check_pole_size(const struct model *model, const struct resolvent *resolven
 	}
 	long step = (long)mpz_sizeinbase(mpq_numref(model->h), 2) - (long)mpz_sizeinbase(mpq_denref(model->h), 2);
 	if (largest + step > LIMIT_PRECISION)
-		error(model->asked.step_at, NULL, "the largest pole, about 2^%ld 1/s, times the step is beyond the limit of 2^%d", largest, LIMIT_PRECISION);
+		error(model->asked.step_at, NULL,
+		      "the largest pole, about 2^%ld 1/s, times the step is beyond the limit of 2^%d", largest,
+		      LIMIT_PRECISION);
 }
 
 struct culprit {                    /* what an overflow comes from */
@@ -50,7 +52,9 @@ static const char *pole_of(const struct culprit *pole)
 
 static _Noreturn void undecided(struct place at, const char *what, bool isolated)
 {
-	const char *note = isolated ? NULL : "two poles cannot be told apart; do two parameters differ by less than their rounding?";
+	const char *note = isolated ? NULL
+				    : "two poles cannot be told apart; do two parameters differ by less than their "
+				      "rounding?";
 	error(at, note, "%s is not decided with %d bits", what, LIMIT_PRECISION);
 }
 
@@ -198,7 +202,8 @@ struct coefficient started_value(int count, const struct started *list, mpq_srcp
 	return c;
 }
 
-struct coefficient response_value(struct response *response, mpq_srcptr tau, bool two_words, struct place at, const char *what)
+struct coefficient response_value(struct response *response, mpq_srcptr tau, bool two_words, struct place at,
+				  const char *what)
 {
 	struct started alone = { .response = response };
 	mpq_init(alone.start);
@@ -211,13 +216,15 @@ struct coefficient response_value(struct response *response, mpq_srcptr tau, boo
 	return c;
 }
 
-static void check_range(const struct model *model, const struct coefficient *c, int count, const struct started *list, const char *what)
+static void check_range(const struct model *model, const struct coefficient *c, int count, const struct started *list,
+			const char *what)
 {
 	if (isfinite(c->value) || count == 0)
 		return;
 	struct culprit pole = find_culprit(list[0].response, nearest_double(model->h));
-	error(model->asked.step_at, pole.grows ? "a smaller step would do" : NULL, "%s is beyond the range of %s: pole %s, h = %s s", what,
-	      target_name(), pole_of(&pole), readable_text(model->h));
+	error(model->asked.step_at, pole.grows ? "a smaller step would do" : NULL,
+	      "%s is beyond the range of %s: pole %s, h = %s s", what, target_name(), pole_of(&pole),
+	      readable_text(model->h));
 }
 
 /* ---- tables ---- */
@@ -262,7 +269,8 @@ static struct taylor *taylor_at(const struct filling *f, mpq_srcptr tau)
 		if (!mpq_equal(f->exponential[i].tau, tau))
 			continue;
 		if (!*made)
-			*made = taylor_of(f->series.size, (const mpq_t *)series_matrix(&f->series, f->system, f->segment), tau);
+			*made = taylor_of(f->series.size,
+					  (const mpq_t *)series_matrix(&f->series, f->system, f->segment), tau);
 		return *made;
 	}
 	return NULL;
@@ -282,9 +290,10 @@ static void add_response(struct filling *f, struct response *response, mpq_srcpt
 	mpq_set(f->response[f->responses++].start, start);
 }
 
-/* Rounds what `combine` adds: entries of e^{A tau} if the filling has them and they decide it; what vanishes at this very
- * step only residues decide. */
-static struct coefficient number_of(struct filling *f, bool two_words, void (*combine)(struct filling *f, int a, int b), int a, int b, const char *of)
+/* Rounds what `combine` adds: entries of e^{A tau} if the filling has them and they decide it; what vanishes at this
+ * very step only residues decide. */
+static struct coefficient number_of(struct filling *f, bool two_words, void (*combine)(struct filling *f, int a, int b),
+				    int a, int b, const char *of)
 {
 	enum { TAYLOR_PRECISION = 2048 };
 	const char *what = format("the factor of %s in the step of %s", of, f->state_name[f->row]);
@@ -293,7 +302,11 @@ static struct coefficient number_of(struct filling *f, bool two_words, void (*co
 	f->entries = f->responses = 0;
 	combine(f, a, b);
 	if (by_series) {
-		struct number number = { .count = f->entries, .entry = f->entry, .row = f->row, .scale = f->scale, .less = f->less };
+		struct number number = { .count = f->entries,
+					 .entry = f->entry,
+					 .row = f->row,
+					 .scale = f->scale,
+					 .less = f->less };
 		if (round_number(&number, two_words, TAYLOR_PRECISION, &c, &isolated) && isfinite(c.value))
 			return c;
 		int kept = f->exponentials;
@@ -301,7 +314,11 @@ static struct coefficient number_of(struct filling *f, bool two_words, void (*co
 		combine(f, a, b);
 		f->exponentials = kept;
 	}
-	struct number number = { .count = f->responses, .list = f->response, .t = f->tau, .scale = f->scale, .less = f->less };
+	struct number number = { .count = f->responses,
+				 .list = f->response,
+				 .t = f->tau,
+				 .scale = f->scale,
+				 .less = f->less };
 	if (!round_number(&number, two_words, LIMIT_PRECISION, &c, &isolated))
 		undecided(f->model->asked.step_at, what, isolated);
 	check_range(f->model, &c, f->responses, f->response, what);
@@ -358,7 +375,8 @@ static struct coefficient drift_entry(struct filling *f, int j, bool two_words)
 	mpq_init(inverse);
 	mpq_inv(inverse, mass_of(f, j));
 	f->scale = inverse;
-	struct coefficient c = number_of(f, two_words, combine_state, f->system->velocity[j], 0, f->state_name[f->system->velocity[j]]);
+	struct coefficient c = number_of(f, two_words, combine_state, f->system->velocity[j], 0,
+					 f->state_name[f->system->velocity[j]]);
 	f->scale = NULL;
 	mpq_clear(inverse);
 	return c;
@@ -369,7 +387,10 @@ static bool enclose_state(struct filling *f, int i, int j, int precision, mpfi_p
 	f->entries = f->responses = 0;
 	f->row = i;
 	combine_state(f, j, 0);
-	struct number number = { .count = f->exponentials ? f->entries : f->responses, .list = f->response, .t = f->tau, .row = i };
+	struct number number = { .count = f->exponentials ? f->entries : f->responses,
+				 .list = f->response,
+				 .t = f->tau,
+				 .row = i };
 	number.entry = f->exponentials ? f->entry : NULL;
 	return enclose_number(&number, precision, value);
 }
@@ -456,7 +477,8 @@ static void fill_kicks(struct filling *f, struct table *table)
 	}
 	for (int i = 0; i < system->n * system->n; i++)
 		if (!isfinite(table->kick[i].value) || !isfinite(table->drift[i].value))
-			error(f->model->asked.step_at, "--form delta or --form direct may do", "a factor of the form kick-drift-kick is beyond the range of %s", target_name());
+			error(f->model->asked.step_at, "--form delta or --form direct may do",
+			      "a factor of the form kick-drift-kick is beyond the range of %s", target_name());
 }
 
 /* A ramp from u0 to u1 over h: u0 (u - u'/h) + u1 u'/h */
@@ -538,7 +560,8 @@ static void combine_kernel(struct filling *f, int index, int channel)
 		mpq_mul(tau, part->fraction, f->model->h);
 		mpq_sub(start, f->tau, tau);
 		if (!f->exponentials) {
-			add_response(f, response_of_kernel(f->resolvent, f->system, f->row, channel, part, f->model->h), start);
+			add_response(f, response_of_kernel(f->resolvent, f->system, f->row, channel, part, f->model->h),
+				     start);
 			continue;
 		}
 		add_powers(f, part, tau, channel);
@@ -571,7 +594,8 @@ static bool same_forces(const struct linear *system, int load, int a, int b)
 	bool same = true;
 	for (int k = 0; k < system->load[load].columns; k++)
 		for (int i = 0; i < system->n && same; i++)
-			same = mpq_equal(system->load[load].force[k][a * system->n + i], system->load[load].force[k][b * system->n + i]);
+			same = mpq_equal(system->load[load].force[k][a * system->n + i],
+					 system->load[load].force[k][b * system->n + i]);
 	return same;
 }
 
@@ -589,17 +613,22 @@ static void fill_row(struct filling *f, struct table *table)
 		table->drift[i * system->n + j] = drift_entry(f, j, wanted->two_words);
 	for (int j = 0, column = 0; j < system->inputs; j++)
 		for (int k = 0; k <= system->input[j].first_order; k++, column++)
-			table->input[i * table->inputs + column] = number_of(f, wanted->two_words, combine_input, j, k, system->input[j].name);
+			table->input[i * table->inputs + column] =
+				number_of(f, wanted->two_words, combine_input, j, k, system->input[j].name);
 	for (int j = 0; j < wanted->kernels; j++)
 		for (int e = 0; e < system->channels; e++)
-			table->kernel[j][i * system->channels + e] = is_immediate(&wanted->kernel[j]) ? immediate(f, &wanted->kernel[j], e)
-				: number_of(f, false, combine_kernel, j, e, format("leftover %d", e + 1));
+			table->kernel[j][i * system->channels + e] =
+				is_immediate(&wanted->kernel[j])
+					? immediate(f, &wanted->kernel[j], e)
+					: number_of(f, false, combine_kernel, j, e, format("leftover %d", e + 1));
 	for (f->segment = 0; f->segment < system->segments; f->segment++)
 		for (int l = 0, column = 0; l < system->loads; l++) {
 			bool known = f->segment > 0 && same_forces(system, l, f->segment - 1, f->segment);
 			for (int k = 0; k < system->load[l].columns; k++, column++) {
 				struct coefficient *here = &table->load[(f->segment * n + i) * columns + column];
-				*here = known ? here[-n * columns] : number_of(f, wanted->two_words, combine_load, l, k, column_text(&system->load[l], k));
+				*here = known ? here[-n * columns]
+					      : number_of(f, wanted->two_words, combine_load, l, k,
+							  column_text(&system->load[l], k));
 			}
 		}
 }
@@ -634,7 +663,8 @@ static void add_exponential(struct filling *f, mpq_srcptr fraction)
 		if (mpq_equal(f->exponential[i].tau, tau))
 			return;
 	ENLARGE(f->exponential, (size_t)f->exponentials + 1);
-	f->exponential[f->exponentials++] = (struct exponential){ tau, ARRAY(struct taylor *, (size_t)f->system->segments) };
+	f->exponential[f->exponentials++] =
+		(struct exponential){ tau, ARRAY(struct taylor *, (size_t)f->system->segments) };
 }
 
 static void plan_exponentials(struct filling *f, int count, const struct wanted *wanted)
@@ -655,7 +685,9 @@ static void check_waves(const struct filling *f)
 		mpq_srcptr w = f->system->load[l].wave->w;
 		long bits = (long)mpz_sizeinbase(mpq_numref(w), 2) - (long)mpz_sizeinbase(mpq_denref(w), 2);
 		if (bits + step > LIMIT_TURNS && load_acts(f->system, &f->system->load[l]))
-			error(f->model->asked.step_at, NULL, "the frequency of %s times the step is beyond the limit of 2^%d for models of more than %d states",
+			error(f->model->asked.step_at, NULL,
+			      "the frequency of %s times the step is beyond the limit of 2^%d for models of more than "
+			      "%d states",
 			      column_text(&f->system->load[l], 0), LIMIT_TURNS, LIMIT_RESIDUE_STATES);
 	}
 }
@@ -666,7 +698,9 @@ static int longest_chain(int count, const struct wanted *wanted)
 	for (int t = 0; t < count; t++)
 		for (int k = 0; k < wanted[t].kernels; k++)
 			for (int j = 0; j < wanted[t].kernel[k].parts; j++)
-				powers = wanted[t].kernel[k].part[j].powers > powers ? wanted[t].kernel[k].part[j].powers : powers;
+				powers = wanted[t].kernel[k].part[j].powers > powers
+						 ? wanted[t].kernel[k].part[j].powers
+						 : powers;
 	return powers;
 }
 
@@ -727,7 +761,8 @@ static void scatter(const struct block *block, const struct table *part, int seg
 			table->increment[row * table->states + block->state[j]] = part->increment[i * part->states + j];
 		for (int s = 0; s < segments; s++)
 			for (int k = 0; k < table->columns; k++)
-				table->load[(s * table->states + row) * table->columns + k] = part->load[(s * part->states + i) * part->columns + k];
+				table->load[(s * table->states + row) * table->columns + k] =
+					part->load[(s * part->states + i) * part->columns + k];
 		for (int k = 0; k < table->inputs; k++)
 			table->input[row * table->inputs + k] = part->input[i * part->inputs + k];
 		for (int k = 0; k < table->wanted->kernels; k++)
@@ -736,11 +771,15 @@ static void scatter(const struct block *block, const struct table *part, int seg
 	}
 }
 
-struct table **tables_of(const struct model *model, struct resolvent *resolvent, const struct linear *system, int count, const struct wanted *wanted)
+struct table **tables_of(const struct model *model, struct resolvent *resolvent, const struct linear *system, int count,
+			 const struct wanted *wanted)
 {
 	struct block *block;
 	int blocks = blocks_of(system, &block);
-	struct filling whole = { .model = model, .system = system, .resolvent = resolvent, .state_name = model->state_name };
+	struct filling whole = { .model = model,
+				 .system = system,
+				 .resolvent = resolvent,
+				 .state_name = model->state_name };
 	if (blocks == 1)
 		return tables_of_block(&whole, count, wanted);
 	struct table **table = ARRAY(struct table *, (size_t)count);
@@ -752,7 +791,9 @@ struct table **tables_of(const struct model *model, struct resolvent *resolvent,
 		mark_zero(table[t]->drift, (size_t)system->n * (size_t)system->n);
 	}
 	for (int b = 0; b < blocks; b++) {
-		struct filling part = { .model = model, .system = &block[b].system, .resolvent = resolvent_of(&block[b].system) };
+		struct filling part = { .model = model,
+					.system = &block[b].system,
+					.resolvent = resolvent_of(&block[b].system) };
 		part.state_name = ARRAY(const char *, (size_t)block[b].system.states);
 		part.coord = block[b].coord;
 		for (int i = 0; i < block[b].system.states; i++)

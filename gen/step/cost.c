@@ -70,10 +70,15 @@ void count_loads(struct program *program, const struct linear *system, bool sing
 		bool grows = used && mpq_sgn(load->wave->a) != 0, turns = used && oscillates(load->wave);
 		program->oscillators += turns;
 		program->growths += grows;
-		program->multiplications += !used ? 0 : turns ? 2 * (load->powers - 1) + 2 * grows : load->powers > 1 ? load->powers - 2 + grows : 0;
+		program->multiplications += !used              ? 0
+					    : turns            ? 2 * (load->powers - 1) + 2 * grows
+					    : load->powers > 1 ? load->powers - 2 + grows
+							       : 0;
 	}
-	program->wave_multiplications = program->oscillators * (single ? PL_COSSINF_MUL : PL_COSSIN_MUL) + program->growths * (single ? PL_GROWTHF_MUL : PL_GROWTH_MUL);
-	program->wave_additions = program->oscillators * (single ? PL_COSSINF_ADD : PL_COSSIN_ADD) + program->growths * (single ? PL_GROWTHF_ADD : PL_GROWTH_ADD);
+	program->wave_multiplications = program->oscillators * (single ? PL_COSSINF_MUL : PL_COSSIN_MUL) +
+					program->growths * (single ? PL_GROWTHF_MUL : PL_GROWTH_MUL);
+	program->wave_additions = program->oscillators * (single ? PL_COSSINF_ADD : PL_COSSIN_ADD) +
+				  program->growths * (single ? PL_GROWTHF_ADD : PL_GROWTH_ADD);
 	program->multiplications += program->wave_multiplications;
 	program->additions += program->wave_additions;
 }

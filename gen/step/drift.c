@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the rounding of its constants alone does to a linear step over many steps: the eigenvalues z of the map that the program
- * makes with the constants as they are emitted, beside e^{p h} of the poles p. The map is made by running the program on unit states in
- * rationals, so that it is that of any form; its eigenvalues are enclosed like poles. */
+/* What the rounding of its constants alone does to a linear step over many steps: the eigenvalues z of the map that the
+ * program makes with the constants as they are emitted, beside e^{p h} of the poles p. The map is made by running the
+ * program on unit states in rationals, so that it is that of any form; its eigenvalues are enclosed like poles. */
 #include "step/step.h"
 
 enum { DRIFT_BITS = 256 };
@@ -44,7 +44,8 @@ static void run_program(const struct step *step, mpq_t *state)
 	mpq_clear(sum);
 }
 
-/* det(z D - D E), D the common denominator of the entries of E: powers of 2, since they are sums of products of floating-point numbers */
+/* det(z D - D E), D the common denominator of the entries of E: powers of 2, since they are sums of products of
+ * floating-point numbers */
 static struct poly characteristic(const struct step *step)
 {
 	int n = step->branch->system.states;
@@ -140,7 +141,8 @@ static int modes_of(const struct spectrum *spectrum, mpq_srcptr h, struct mode *
 	}
 	for (int f = 0; f < spectrum->factors; f++)
 		for (int i = 0; i < spectrum->poles[f]; i++)
-			(*list)[count++] = h ? mode_of_pole(&spectrum->pole[f][i].at, h) : mode_of_eigenvalue(&spectrum->pole[f][i].at);
+			(*list)[count++] = h ? mode_of_pole(&spectrum->pole[f][i].at, h)
+					     : mode_of_eigenvalue(&spectrum->pole[f][i].at);
 	return count;
 }
 
@@ -191,7 +193,9 @@ const char *drift_text(const struct drift *drift)
 {
 	const double steps = 1e9;
 	double amplitude = steps * drift->amplitude, size = amplitude < 0 ? -amplitude : amplitude;
-	const char *change = amplitude == 0 ? "no amplitude" : size < 0.1 ? format("amplitudes by %.2g of themselves at most", amplitude)
-		: format("an amplitude by a factor of e^%.3g", amplitude);
-	return format("In 1e9 steps the rounding of its constants changes %s, phases by at most %.2g rad", change, steps * drift->phase);
+	const char *change = amplitude == 0 ? "no amplitude"
+			     : size < 0.1   ? format("amplitudes by %.2g of themselves at most", amplitude)
+					    : format("an amplitude by a factor of e^%.3g", amplitude);
+	return format("In 1e9 steps the rounding of its constants changes %s, phases by at most %.2g rad", change,
+		      steps * drift->phase);
 }

@@ -11,7 +11,15 @@
 
 #include <math.h>
 
-enum { STEPS = 1000, BITS = 320, LIMIT_SIZE = 64, LIMIT_FORCED_STATES = 32, LIMIT_SOLVED = 48, LIMIT_SEGMENTS = 16, FEW_LOADS = 8 };
+enum {
+	STEPS = 1000,
+	BITS = 320,
+	LIMIT_SIZE = 64,
+	LIMIT_FORCED_STATES = 32,
+	LIMIT_SOLVED = 48,
+	LIMIT_SEGMENTS = 16,
+	FEW_LOADS = 8
+};
 
 /* ---- the forced part of a load ---- */
 
@@ -22,7 +30,8 @@ static int moved_states(const struct linear *system, int load, int *state)
 	int count = 0, blocks = blocks_of(system, &block);
 	bool *moved = ARRAY(bool, (size_t)system->states);
 	for (int b = 0; b < blocks; b++)
-		for (int i = 0; i < block[b].system.states && load_acts(&block[b].system, &block[b].system.load[load]); i++)
+		for (int i = 0; i < block[b].system.states && load_acts(&block[b].system, &block[b].system.load[load]);
+		     i++)
 			moved[block[b].state[i]] = true;
 	for (int i = 0; i < system->states; i++)
 		if (moved[i])
@@ -50,16 +59,19 @@ static const mpq_t *shifted_inverse(const struct linear *system, const struct wa
 
 /* P, states x columns of the load, in one segment of time: t^k from the highest k down, (A P - P J)_k = (k + 1)
  * P_{k+1} - B_k */
-static void solve_forced(const struct linear *system, int l, int segment, int m, const int *state, const mpq_t *inverse, mpq_t *P)
+static void solve_forced(const struct linear *system, int l, int segment, int m, const int *state, const mpq_t *inverse,
+			 mpq_t *P)
 {
 	const struct load *load = &system->load[l];
 	int n = system->n, columns = load->columns, trig = oscillates(load->wave) ? 2 : 1, size = trig * m, column;
-	mpq_t *right = rationals((size_t)size), *part = rationals((size_t)size), *W = rationals((size_t)(n * n)), *a = rationals((size_t)n);
+	mpq_t *right = rationals((size_t)size), *part = rationals((size_t)size), *W = rationals((size_t)(n * n)),
+	      *a = rationals((size_t)n);
 	leading_inverse(system, W, &column);
 	for (int k = load->powers - 1; k >= 0; k--) {
 		for (int p = 0; p < trig; p++) {
 			column = trig * k + p;
-			rational_product(n, n, 1, (const mpq_t *)W, (const mpq_t *)load->force[column] + segment * n, a);
+			rational_product(n, n, 1, (const mpq_t *)W, (const mpq_t *)load->force[column] + segment * n,
+					 a);
 			for (int i = 0; i < m; i++) {
 				mpq_ptr r = right[p * m + i];
 				mpq_set_si(r, k + 1, 1);
@@ -104,7 +116,8 @@ static struct coefficient rounded(mpq_srcptr q)
 static bool fill_forced(const struct linear *system, int l, struct forced *forced)
 {
 	const struct load *load = &system->load[l];
-	int states = system->states, all = load_columns(system), first = first_column(system, l), *state = ARRAY(int, (size_t)states);
+	int states = system->states, all = load_columns(system), first = first_column(system, l),
+	    *state = ARRAY(int, (size_t)states);
 	int m = moved_states(system, l, state);
 	if (m * (oscillates(load->wave) ? 2 : 1) > LIMIT_SOLVED)
 		return false;
@@ -143,7 +156,8 @@ struct flow { mpfr_t *E; };         /* of one segment of time: e^{A h} of the se
 static bool make_flow(const struct step *step, const struct series *place, int segment, struct flow *flow)
 {
 	int size = place->size;
-	struct taylor *taylor = taylor_of(size, (const mpq_t *)series_matrix(place, &step->branch->system, segment), step->model->h);
+	struct taylor *taylor =
+		taylor_of(size, (const mpq_t *)series_matrix(place, &step->branch->system, segment), step->model->h);
 	mpfi_t value;
 	if (!taylor_enclose(taylor, BITS))
 		return false;
@@ -267,17 +281,23 @@ static bool make_course(const struct step *step, struct course *c)
 	struct series place;
 	size_t states = (size_t)step->branch->system.states, rows = STEPS + 1;
 	series_place(&place, &step->branch->system, 0);
-	if (place.size > LIMIT_SIZE || step->branch->system.states > LIMIT_FORCED_STATES || step->branch->system.segments > LIMIT_SEGMENTS)
+	if (place.size > LIMIT_SIZE || step->branch->system.states > LIMIT_FORCED_STATES ||
+	    step->branch->system.segments > LIMIT_SEGMENTS)
 		return false;
-	*c = (struct course){ .steps = STEPS, .y = ARRAY(double, rows * states), .z = ARRAY(double, rows * (size_t)step->branch->whole->columns),
-			      .segment = ARRAY(int, rows), .largest = ARRAY(double, states), .sum = ARRAY(double, states * states),
-			      .peak = ARRAY(double, states * states) };
+	*c = (struct course){ .steps = STEPS,
+			      .y = ARRAY(double, rows *states),
+			      .z = ARRAY(double, rows *(size_t)step->branch->whole->columns),
+			      .segment = ARRAY(int, rows),
+			      .largest = ARRAY(double, states),
+			      .sum = ARRAY(double, states *states),
+			      .peak = ARRAY(double, states *states) };
 	return follow(step, &place, c) && add_powers_of_phi(step, c);
 }
 
 /* ---- a bound of rounding ---- */
 
-struct rounded { double value, error; };   /* what the program computes, and how far it may be off, in units of rounding */
+/* what the program computes, and how far it may be off, in units of rounding */
+struct rounded { double value, error; };
 
 struct reckoning {
 	const struct step *step;
@@ -307,7 +327,9 @@ static void reckon_product(struct reckoning *r, int row, const struct product *p
 	if (p->operand.kind == OPERAND_LOAD) {
 		if (r->forced && r->forced->load[r->load_of[p->operand.index]])
 			return;
-		factor = table->load[(r->course->segment[r->k] * table->states + row) * table->columns + p->operand.index].value;
+		factor = table->load[(r->course->segment[r->k] * table->states + row) * table->columns +
+				     p->operand.index]
+				 .value;
 		x = r->course->z[r->k * table->columns + p->operand.index];
 		error = load_roundings(r, p->operand.index) * fabs(x);
 	} else {
@@ -356,9 +378,11 @@ static double part_of(const struct reckoning *r, int state, bool sizes)
 	for (int column = 0; r->forced && column < table->columns; column++) {
 		if (!r->forced->load[r->load_of[column]])
 			continue;
-		const struct coefficient *c = &r->forced->part[(r->course->segment[r->k] * table->states + state) * table->columns + column];
+		const struct coefficient *c =
+			&r->forced->part[(r->course->segment[r->k] * table->states + state) * table->columns + column];
 		double term = (c->value + c->low) * r->course->z[r->k * table->columns + column];
-		double lost = fabs(c->low * r->course->z[r->k * table->columns + column]) / unit_of(r->step); /* of a factor, perhaps to 0 */
+		/* of a factor, perhaps to 0 */
+		double lost = fabs(c->low * r->course->z[r->k * table->columns + column]) / unit_of(r->step);
 		sum += sizes ? fabs(term) * (2 + levels(table->columns) + load_roundings(r, column)) + lost : term;
 	}
 	return sum;
@@ -372,8 +396,10 @@ static double change_of(const struct reckoning *r, int state)
 	double sum = 0;
 	for (int column = 0; r->forced && segment != r->course->segment[r->k + 1] && column < table->columns; column++)
 		if (r->forced->load[r->load_of[column]])
-			sum += fabs(r->forced->change[(segment * table->states + state) * table->columns + column].value *
-				    r->course->z[(r->k + 1) * table->columns + column]) * (4 + levels(table->columns) + load_roundings(r, column));
+			sum += fabs(r->forced->change[(segment * table->states + state) * table->columns + column]
+					    .value *
+				    r->course->z[(r->k + 1) * table->columns + column]) *
+			       (4 + levels(table->columns) + load_roundings(r, column));
 	return sum;
 }
 
@@ -447,7 +473,8 @@ static void count_forced(const struct step *step, struct forced *forced)
 					continue;
 				program.uses[column] = true;
 				program.additions++;
-				program.multiplications += !(j == 0 && is_polynomial(system->load[l].wave)) && c->value != 1 && c->value != -1;
+				program.multiplications += !(j == 0 && is_polynomial(system->load[l].wave)) &&
+							   c->value != 1 && c->value != -1;
 			}
 	count_loads(&program, system, step->model->asked.single);
 	forced->multiplications = program.multiplications;
@@ -492,7 +519,8 @@ static void choose_loads(struct step *step, const struct course *c, struct force
 
 void plan_forced(struct step *step)
 {
-	const double much = step->model->asked.single ? 0x1p-7 : 0x1p-36; /* 2^17 units of rounding: over 1000 steps a bound, more than comes */
+	/* 2^17 units of rounding: over 1000 steps a bound, more than comes */
+	const double much = step->model->asked.single ? 0x1p-7 : 0x1p-36;
 	struct linear *system = &step->branch->system;
 	struct course course;
 	bool acts = false, any = false, *able = ARRAY(bool, (size_t)system->loads);
@@ -505,8 +533,10 @@ void plan_forced(struct step *step)
 		return;
 	struct forced *forced = NEW(struct forced);
 	forced->load = ARRAY(bool, (size_t)system->loads);
-	forced->part = ARRAY(struct coefficient, (size_t)(system->segments * system->states * step->branch->whole->columns));
-	forced->change = ARRAY(struct coefficient, (size_t)(system->segments * system->states * step->branch->whole->columns));
+	forced->part =
+		ARRAY(struct coefficient, (size_t)(system->segments * system->states * step->branch->whole->columns));
+	forced->change =
+		ARRAY(struct coefficient, (size_t)(system->segments * system->states * step->branch->whole->columns));
 	for (int l = 0; l < system->loads; l++) {
 		able[l] = load_acts(system, &system->load[l]) && fill_forced(system, l, forced);
 		any = any || able[l];
@@ -527,7 +557,9 @@ bool is_forced(const struct step *step, int column)
 const char *rounding_text(const struct step *step)
 {
 	const struct rounding *r = &step->rounding;
-	return format("In the first %d steps%s, loads counted, rounding takes at most %.2g of the largest value of a %sstate (%s)%s", r->steps,
-		      step->branch->system.inputs ? " with inputs 0" : "", r->relative, step->model->relative ? "kept " : "", step->model->state_name[r->state],
+	return format("In the first %d steps%s, loads counted, rounding takes at most %.2g of the largest value of a "
+		      "%sstate (%s)%s",
+		      r->steps, step->branch->system.inputs ? " with inputs 0" : "", r->relative,
+		      step->model->relative ? "kept " : "", step->model->state_name[r->state],
 		      r->tiny ? format("; some are too small for %s", target_name()) : "");
 }

@@ -49,13 +49,15 @@ int poles_of(const struct model *model, const struct resolvent *resolvent, struc
 	mpz_clear(content);
 	int count = 0;
 	if (!spectrum_refine(spectrum, REPORT_BITS))
-		error(model->asked.step_at, "do two parameters differ by less than their rounding?", "two poles are too close to each other to be told apart");
+		error(model->asked.step_at, "do two parameters differ by less than their rounding?",
+		      "two poles are too close to each other to be told apart");
 	*report = ARRAY(struct pole_report, (size_t)spectrum->D.length);
 	if (spectrum->zero)
 		add_report(&(*report)[count++], NULL, spectrum->zero, false);
 	for (int f = 0; f < spectrum->factors; f++)
 		for (int i = 0; i < spectrum->poles[f]; i++)
-			add_report(&(*report)[count++], &spectrum->pole[f][i].at, spectrum->factor[f].multiplicity, !spectrum->pole[f][i].real);
+			add_report(&(*report)[count++], &spectrum->pole[f][i].at, spectrum->factor[f].multiplicity,
+				   !spectrum->pole[f][i].real);
 	qsort(*report, (size_t)count, sizeof **report, by_size);
 	return count;
 }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What acts during a step, as excitations. A load t^k e^{at} cos(wt+p) seen from the step's start t_n is, by the binomial
- * theorem and the addition theorem, a sum over its load states z = t_n^j e^{a t_n} cos or sin(w t_n + p), j <= k: one column
- * per load state. A sampled input is a constant, or a ramp from one sample to the next. */
+/* What acts during a step, as excitations. A load t^k e^{at} cos(wt+p) seen from the step's start t_n is, by the
+ * binomial theorem and the addition theorem, a sum over its load states z = t_n^j e^{a t_n} cos or sin(w t_n + p), j <=
+ * k: one column per load state. A sampled input is a constant, or a ramp from one sample to the next. */
 #include "step/step.h"
 
 /* How much of load state `to` after tau comes from load state `from`, as factors of tau^m cos and tau^m sin:
@@ -35,8 +35,8 @@ static void add_scaled(mpq_ptr sum, mpq_srcptr q, long factor, unsigned long bin
 }
 
 /* e += weight * (the load's force and direct factors in one segment, as they follow from load state `from` = 1) */
-static void add_load(struct excitation *e, const struct linear *system, int segment, const struct load *load, const mpq_t *direct, int from,
-		     mpq_srcptr weight)
+static void add_load(struct excitation *e, const struct linear *system, int segment, const struct load *load,
+		     const mpq_t *direct, int from, mpq_srcptr weight)
 {
 	mpq_t value;
 	mpq_init(value);
@@ -79,7 +79,8 @@ struct response *response_of_state(struct resolvent *r, const struct linear *sys
 	return image_of(r, &(struct question){ unit(system->states, j), any, &constant, unit(system->states, i) });
 }
 
-struct response *response_of_load(struct resolvent *r, const struct linear *system, int segment, int i, int l, int column)
+struct response *response_of_load(struct resolvent *r, const struct linear *system, int segment, int i, int l,
+				  int column)
 {
 	const struct load *load = &system->load[l];
 	struct excitation e = excitation_new(system->n, load->wave->a, load->wave->w, load->powers);
@@ -91,8 +92,10 @@ struct response *response_of_load(struct resolvent *r, const struct linear *syst
 	return image_of(r, &(struct question){ NULL, 1, &e, unit(system->states, i) });
 }
 
-/* Held: u. A ramp from u0 to u1: u = u0 + (u1 - u0) tau/h, u' = (u1 - u0)/h; column 0 is u0's share, column 1 that of u1. */
-struct response *response_of_input(struct resolvent *r, const struct linear *system, int i, int index, int column, mpq_srcptr h)
+/* Held: u. A ramp from u0 to u1: u = u0 + (u1 - u0) tau/h, u' = (u1 - u0)/h; column 0 is u0's share, column 1 that of
+ * u1. */
+struct response *response_of_input(struct resolvent *r, const struct linear *system, int i, int index, int column,
+				   mpq_srcptr h)
 {
 	const struct input *input = &system->input[index];
 	int n = system->n;
@@ -116,7 +119,8 @@ struct response *response_of_input(struct resolvent *r, const struct linear *sys
 mpq_t *impulse_of_channel(const struct linear *system, int channel)
 {
 	int n = system->n, column;
-	mpq_t *inverse = rationals((size_t)(n * n)), *highest = rationals((size_t)n), *B = rationals((size_t)system->states);
+	mpq_t *inverse = rationals((size_t)(n * n)), *highest = rationals((size_t)n),
+	      *B = rationals((size_t)system->states);
 	leading_inverse(system, inverse, &column);
 	rational_product(n, n, 1, (const mpq_t *)inverse, (const mpq_t *)system->channel[channel], highest);
 	for (int i = 0; i < n; i++)
@@ -125,7 +129,8 @@ mpq_t *impulse_of_channel(const struct linear *system, int channel)
 }
 
 /* sum power[m] (s/h)^m as a force, and an impulse at the start */
-struct response *response_of_kernel(struct resolvent *r, const struct linear *system, int i, int channel, const struct kernel_part *part, mpq_srcptr h)
+struct response *response_of_kernel(struct resolvent *r, const struct linear *system, int i, int channel,
+				    const struct kernel_part *part, mpq_srcptr h)
 {
 	int n = system->n;
 	struct excitation e = excitation_new(n, NULL, NULL, part->powers);
@@ -160,7 +165,8 @@ struct response *response_of_load_state(const struct load *load, int to, int fro
 	return image_of(resolvent_of(&scalar), &(struct question){ NULL, 1, &e, (const mpq_t *)rationals(1) });
 }
 
-/* z = t^j e^{a t} cos or sin(w t + p); the functions are irrational unless their argument is 0, then rationals of 256 bits. */
+/* z = t^j e^{a t} cos or sin(w t + p); the functions are irrational unless their argument is 0, then rationals of 256
+ * bits. */
 void load_state(const struct load *load, int column, mpq_srcptr t, mpq_ptr z)
 {
 	struct place nowhere = { 0 };
@@ -182,7 +188,8 @@ void load_state(const struct load *load, int column, mpq_srcptr t, mpq_ptr z)
 }
 
 /* All loads of one segment from time t on, times `sign` */
-static void add_loads(struct excitation *e, const struct linear *system, const struct output *output, int segment, mpq_srcptr t, int sign)
+static void add_loads(struct excitation *e, const struct linear *system, const struct output *output, int segment,
+		      mpq_srcptr t, int sign)
 {
 	mpq_t z;
 	mpq_init(z);
@@ -192,7 +199,8 @@ static void add_loads(struct excitation *e, const struct linear *system, const s
 			if (sign < 0)
 				mpq_neg(z, z);
 			if (mpq_sgn(z) != 0)
-				add_load(&e[l], system, segment, &system->load[l], (const mpq_t *)output->load[l], column, z);
+				add_load(&e[l], system, segment, &system->load[l], (const mpq_t *)output->load[l],
+					 column, z);
 		}
 	mpq_clear(z);
 }
@@ -201,12 +209,14 @@ static struct excitation *no_loads(const struct linear *system)
 {
 	struct excitation *e = ARRAY(struct excitation, (size_t)system->loads);
 	for (int l = 0; l < system->loads; l++)
-		e[l] = excitation_new(system->n, system->load[l].wave->a, system->load[l].wave->w, system->load[l].powers);
+		e[l] = excitation_new(system->n, system->load[l].wave->a, system->load[l].wave->w,
+				      system->load[l].powers);
 	return e;
 }
 
 /* From the start with the loads of the segment that holds t = 0; then at each change the difference of the loads. */
-int responses_of_output(struct resolvent *r, const struct linear *system, const mpq_t *initial, const struct output *output, struct started **list)
+int responses_of_output(struct resolvent *r, const struct linear *system, const mpq_t *initial,
+			const struct output *output, struct started **list)
 {
 	int first = 0, count = 0;
 	mpq_srcptr zero = rationals(1)[0];
@@ -221,7 +231,8 @@ int responses_of_output(struct resolvent *r, const struct linear *system, const 
 			add_loads(e, system, output, s - 1, start, -1);
 		const mpq_t *none = (const mpq_t *)rationals((size_t)system->states);
 		bool from_rest = s > first;
-		(*list)[count].response = image_of(r, &(struct question){ from_rest ? none : initial, system->loads, e, (const mpq_t *)output->state });
+		(*list)[count].response = image_of(r, &(struct question){ from_rest ? none : initial, system->loads, e,
+									  (const mpq_t *)output->state });
 		mpq_init((*list)[count].start);
 		mpq_set((*list)[count].start, start);
 	}

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The Laplace images N/D of what a step is made of. From M q'' + C q' + K q = f(tau):
  *     P(s) Q(s) = (M s + C) q(0) + M v(0) + F(s),      V(s) = s Q(s) - q(0),      P^-1 = adj P / B
- * Whatever acts during a step is an excitation: a sum of tau^m e^{a tau} cos(w tau) and sin(w tau). With u = s - a their
- * images are m! Re (u + iw)^{m+1} / (u^2 + w^2)^{m+1}, and the same with Im. Everything is scaled into Z[s]. */
+ * Whatever acts during a step is an excitation: a sum of tau^m e^{a tau} cos(w tau) and sin(w tau). With u = s - a
+ * their images are m! Re (u + iw)^{m+1} / (u^2 + w^2)^{m+1}, and the same with Im. Everything is scaled into Z[s]. */
 #include "step/step.h"
 
 struct resolvent {
@@ -142,7 +142,8 @@ static void transform(const struct oscillation *o, int m, struct poly *cosine, s
 }
 
 /* scale * (numerator over D^powers) of sum_m factor[m][0] cos + factor[m][1] sin; `stride` apart in `factor` */
-static struct poly excitation_image(const struct excitation *e, const struct oscillation *o, const mpq_t *factor, int stride, mpz_srcptr scale)
+static struct poly excitation_image(const struct excitation *e, const struct oscillation *o, const mpq_t *factor,
+				    int stride, mpz_srcptr scale)
 {
 	struct poly sum = poly_new(0), part[2];
 	mpz_t z;
@@ -221,7 +222,8 @@ static struct poly unit_state(const struct resolvent *r, int k, int state)
 }
 
 /* scale * (all denominators) * row k of the right-hand side */
-static struct poly right_side(const struct resolvent *r, const struct question *ask, const struct denominators *p, mpz_srcptr scale, int k)
+static struct poly right_side(const struct resolvent *r, const struct question *ask, const struct denominators *p,
+			      mpz_srcptr scale, int k)
 {
 	struct poly start = poly_new(0), sum = poly_new(0);
 	mpz_t factor;
@@ -262,7 +264,8 @@ struct response *image_of(struct resolvent *r, const struct question *ask)
 	question_scale(ask, system, scale);
 	common_denominator(rows, system->states, ask->row);
 	struct denominators p = find_denominators(ask);
-	struct poly *x = ARRAY(struct poly, (size_t)n), N = poly_new(0), D = poly_mul(r->B, p.all), direct = poly_new(0);
+	struct poly *x = ARRAY(struct poly, (size_t)n), N = poly_new(0), D = poly_mul(r->B, p.all),
+		    direct = poly_new(0);
 	for (int k = 0; k < n; k++)
 		x[k] = right_side(r, ask, &p, scale, k);
 	for (int i = 0; i < system->states; i++) {
@@ -281,7 +284,8 @@ struct response *image_of(struct resolvent *r, const struct question *ask)
 	}
 	for (int l = 0; l < ask->excitations; l++) {
 		const struct excitation *e = &ask->excitation[l];
-		direct = poly_add(direct, poly_mul(excitation_image(e, &p.o[l], (const mpq_t *)e->direct, 1, scale), p.without[l]));
+		direct = poly_add(direct, poly_mul(excitation_image(e, &p.o[l], (const mpq_t *)e->direct, 1, scale),
+						   p.without[l]));
 	}
 	N = poly_add(N, poly_scale(poly_mul(direct, r->B), rows));
 	mpq_t unit;

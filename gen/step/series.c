@@ -35,7 +35,8 @@ static void larger_poles(mpfr_ptr largest, const struct resolvent *resolvent)
 	mpz_init(content);
 	struct spectrum *spectrum = spectrum_of(poly_primitive(*resolvent_determinant(resolvent), content));
 	mpz_clear(content);
-	if (!spectrum_refine(spectrum, POLE_BITS)) {      /* as the residues begin: fewer bits may bring two iterates of a cluster together for good */
+	/* as the residues begin: fewer bits may bring two iterates of a cluster together for good */
+	if (!spectrum_refine(spectrum, POLE_BITS)) {
 		mpfr_set_inf(largest, 1);
 		return;
 	}
@@ -135,12 +136,14 @@ static void add_envelope(mpfr_t *A, int cells, const mpq_t *segment)
 	mpfr_clear(size);
 }
 
-/* The first degree after which two terms in a row are negligible, for any of the operators from `first` to before `last`. */
+/* The first degree after which two terms in a row are negligible, for any of the operators from `first` to before
+ * `last`. */
 int series_degree(const struct step *step, int from, int to, int halvings)
 {
 	const struct series *series = &step->series;
 	int size = series->size, cells = size * size, quiet = 0, k = 0;
-	mpfr_t *A = positive_numbers(cells), *term = positive_numbers(cells), *next = positive_numbers(cells), *first = positive_numbers(cells);
+	mpfr_t *A = positive_numbers(cells), *term = positive_numbers(cells), *next = positive_numbers(cells),
+	       *first = positive_numbers(cells);
 	for (int o = from; o < to; o++)
 		for (int s = 0; s < step->branch->system.segments; s++) {
 			mpq_t *matrix = series_matrix(series, &step->branch[o].system, s);
@@ -191,7 +194,8 @@ void series_plan(struct step *step)
 	struct series *series = &step->series;
 	mpfr_t angle;
 	largest_angle(step, angle);
-	bool held = !has_leftover(step) || series->powers > 0;  /* what is left over is held over the step, or there is none */
+	/* what is left over is held over the step, or there is none */
+	bool held = !has_leftover(step) || series->powers > 0;
 	series->emitted = held && mpfr_cmp_ui(angle, LIMIT_RADIANS) <= 0;
 	if (series->emitted || (step->branch->system.segments > 1 && mpfr_cmp_ui(angle, LIMIT_PARTS) <= 0)) {
 		for (series->halvings = 0; mpfr_cmp_ui(angle, 1) > 0; series->halvings++)

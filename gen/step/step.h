@@ -7,7 +7,8 @@
 
 /* ---- resolvent.c: the Laplace images of what a step needs ---- */
 
-struct excitation {                 /* acts from tau = 0 on: sum over m of tau^m e^{a tau} times cos(w tau) and sin(w tau) */
+/* acts from tau = 0 on: sum over m of tau^m e^{a tau} times cos(w tau) and sin(w tau) */
+struct excitation {
 	mpq_srcptr a, w;
 	int powers;                 /* m = 0 .. powers-1; where w = 0 there is no sine */
 	mpq_t *force;               /* [m][cos, sin][equation]: on the equations */
@@ -23,30 +24,40 @@ struct question {                   /* row . y(tau) */
 struct resolvent;                   /* adj P and B of one system */
 struct resolvent *resolvent_of(const struct linear *system);
 struct response *image_of(struct resolvent *r, const struct question *question);
-void characteristic_polynomial(const struct resolvent *r, mpq_t *coefficient); /* B(s) = det P, as many as its degree + 1 */
+/* B(s) = det P, as many as its degree + 1 */
+void characteristic_polynomial(const struct resolvent *r, mpq_t *coefficient);
 const struct poly *resolvent_determinant(const struct resolvent *r);           /* B(s) times the scales of the rows */
 
 /* ---- loads.c: loads, inputs and held terms as excitations of a step ---- */
 
-struct response *response_of_state(struct resolvent *r, const struct linear *system, int i, int j); /* Phi_ij, held terms included */
-struct response *response_of_load(struct resolvent *r, const struct linear *system, int segment, int i, int load, int column);
-struct response *response_of_input(struct resolvent *r, const struct linear *system, int i, int input, int column, mpq_srcptr h);
-struct response *response_of_load_state(const struct load *load, int to, int from); /* of one load: z_to(t+tau) from z_from(t) */
+/* Phi_ij, held terms included */
+struct response *response_of_state(struct resolvent *r, const struct linear *system, int i, int j);
+struct response *response_of_load(struct resolvent *r, const struct linear *system, int segment, int i, int load,
+				  int column);
+struct response *response_of_input(struct resolvent *r, const struct linear *system, int i, int input, int column,
+				   mpq_srcptr h);
+/* of one load: z_to(t+tau) from z_from(t) */
+struct response *response_of_load_state(const struct load *load, int to, int from);
 struct kernel_part;
-struct response *response_of_kernel(struct resolvent *r, const struct linear *system, int i, int channel, const struct kernel_part *part, mpq_srcptr h);
-mpq_t *impulse_of_channel(const struct linear *system, int channel);         /* what its unit force gives the states' derivatives */
+struct response *response_of_kernel(struct resolvent *r, const struct linear *system, int i, int channel,
+				    const struct kernel_part *part, mpq_srcptr h);
+/* what its unit force gives the states' derivatives */
+mpq_t *impulse_of_channel(const struct linear *system, int channel);
 struct started {                    /* a response that starts at a time of its own */
 	struct response *response;
 	mpq_t start;
 };
 /* output(t) from t = 0 as a sum of responses; returns how many */
-int responses_of_output(struct resolvent *r, const struct linear *system, const mpq_t *initial, const struct output *output, struct started **list);
-void load_state(const struct load *load, int column, mpq_srcptr t, mpq_ptr z);   /* its value, rational or the nearest of 256 bits */
+int responses_of_output(struct resolvent *r, const struct linear *system, const mpq_t *initial,
+			const struct output *output, struct started **list);
+/* its value, rational or the nearest of 256 bits */
+void load_state(const struct load *load, int column, mpq_srcptr t, mpq_ptr z);
 
 /* ---- coefficients.c: numbers of the step, each rounded once ---- */
 
 struct coefficient {
-	double value, low;          /* of the target's type; value + low is the number in two words (low only where asked for) */
+	/* of the target's type; value + low is the number in two words (low only where asked for) */
+	double value, low;
 	bool zero;                  /* exactly: no trace in the code */
 };
 /* What multiplies a leftover, as a sum of parts: at tau = fraction h, B the force of its channel,
@@ -75,17 +86,24 @@ struct table {                      /* of one time: y(tau) = Phi y + sum of colu
 	int states, columns, inputs, channels;
 	struct coefficient *Phi;    /* states x states, or NULL */
 	struct coefficient *increment; /* Phi - I, each entry rounded as it is; or NULL */
-	struct coefficient *drift, *kick; /* coordinates x coordinates, symmetric: S = Phi_12 M^-1 and X = S^-1 (Phi_11 - I); or NULL */
+	/* coordinates x coordinates, symmetric: S = Phi_12 M^-1 and X = S^-1 (Phi_11 - I); or NULL */
+	struct coefficient *drift, *kick;
 	struct coefficient *load;   /* [segment of time][states x columns]: of the loads in order */
 	struct coefficient *input;  /* states x inputs: u held; or its value before the step and after it */
 	struct coefficient **kernel; /* per kernel: states x channels */
 };
-void check_pole_size(const struct model *model, const struct resolvent *resolvent); /* leaves the statement where |p| h is hopeless */
+/* leaves the statement where |p| h is hopeless */
+void check_pole_size(const struct model *model, const struct resolvent *resolvent);
 /* Rounded, infinite beyond the range; `at` and `what` name it where it cannot be decided. */
-struct coefficient started_value(int count, const struct started *list, mpq_srcptr t, struct place at, const char *what); /* their sum */
-struct coefficient response_value(struct response *response, mpq_srcptr tau, bool two_words, struct place at, const char *what);
-/* Block by block; by residues, beyond LIMIT_RESIDUE_STATES states by Taylor series. `resolvent` is that of the whole. */
-struct table **tables_of(const struct model *model, struct resolvent *resolvent, const struct linear *system, int count, const struct wanted *wanted);
+/* their sum */
+struct coefficient started_value(int count, const struct started *list, mpq_srcptr t, struct place at,
+				 const char *what);
+struct coefficient response_value(struct response *response, mpq_srcptr tau, bool two_words, struct place at,
+				  const char *what);
+/* Block by block; by residues, beyond LIMIT_RESIDUE_STATES states by Taylor series. `resolvent` is that of the whole.
+ */
+struct table **tables_of(const struct model *model, struct resolvent *resolvent, const struct linear *system, int count,
+			 const struct wanted *wanted);
 
 /* ---- frequencies.c: natural frequencies and damping ratios ---- */
 
@@ -95,7 +113,8 @@ struct pole_report {                /* sorted by |p|, then by real part */
 	int multiplicity;
 	bool pair;                  /* stands for itself and its conjugate */
 };
-int poles_of(const struct model *model, const struct resolvent *resolvent, struct pole_report **report); /* an error at the step where they are not told apart */
+/* an error at the step where they are not told apart */
+int poles_of(const struct model *model, const struct resolvent *resolvent, struct pole_report **report);
 
 /* ---- program.c: what a scheme steps with, as a program over tables ---- */
 
@@ -115,8 +134,8 @@ struct assignment {                 /* target <- sum of products */
 	int terms;
 	struct product *term;
 };
-/* A step of a scheme that leaves something over is a list of actions on vectors: stages are states (0: the state itself),
- * lefts are leftovers. */
+/* A step of a scheme that leaves something over is a list of actions on vectors: stages are states (0: the state
+ * itself), lefts are leftovers. */
 enum { STAGE_STATE = 0, NONE = -1 };
 struct action {
 	enum { ACTION_LEFTOVER, ACTION_COMBINE, ACTION_SUM, ACTION_PREDICT } kind;
@@ -134,7 +153,8 @@ struct action {
 struct program {
 	int assignments;            /* of a scheme that leaves nothing over */
 	struct assignment *assignment;
-	bool in_order;              /* each assignment reads what those before it have left; else all read the old state */
+	/* each assignment reads what those before it have left; else all read the old state */
+	bool in_order;
 	bool compensated;           /* factors in two words, and what rounding takes from a state is kept */
 	bool *reads;                /* per state: whether its old value is read */
 	bool *uses;                 /* per column of the loads */
@@ -151,7 +171,8 @@ struct program {
 	int *node_table;            /* per node: the table of loads and inputs that a predictor adds, or NONE */
 	bool predicts;
 };
-struct forced {                     /* part times the load states solves the equations: what some loads sustain by themselves */
+/* part times the load states solves the equations: what some loads sustain by themselves */
+struct forced {
 	bool *load;                 /* per load: one of them; then the step is without it */
 	struct coefficient *part;   /* [segment of time][states x load columns] */
 	struct coefficient *change; /* the same, from each segment to the next: what the state gains that is kept */
@@ -164,17 +185,20 @@ struct rounding {                   /* a bound over the first steps from the ini
 	double relative;            /* to the state's largest value */
 	bool tiny;                  /* there are states too small for the target's range, which it leaves out */
 };
-struct branch {                     /* an operator of a scheme, a region of a piecewise-linear model, or the linear model */
+/* an operator of a scheme, a region of a piecewise-linear model, or the linear model */
+struct branch {
 	struct linear system;       /* with what the scheme holds taken out of C and K */
 	struct resolvent *resolvent; /* of `system` */
 	struct table **table;
-	struct table *whole;        /* of the whole step: the first; of regions, whose tables are of pieces, that of the first region only */
+	/* of the whole step: the first; of regions, whose tables are of pieces, that of the first region only */
+	struct table *whole;
 	int halvings;               /* of a region: log2 of the pieces of a step in which crossings are looked for */
 };
 struct step {                       /* everything that is emitted for one model */
 	const struct model *model;
 	struct resolvent *written;  /* of the model as written: the report's poles, the closed form */
-	const struct step *shown;   /* what users see of tables: over the states as written; itself, where those are stepped */
+	/* what users see of tables: over the states as written; itself, where those are stepped */
+	const struct step *shown;
 	int branches;               /* 1 where nothing is left over */
 	struct branch *branch;
 	int tables;                 /* of each; 1 where nothing is left over */
@@ -182,7 +206,9 @@ struct step {                       /* everything that is emitted for one model 
 	enum step_form form;        /* FORM_DIRECT, FORM_DELTA or FORM_KICK_DRIFT_KICK */
 	const mpq_t *mass;          /* of kick-drift-kick, per coordinate; in units of the first */
 	bool momenta;               /* NAME keeps mass times velocity, since not all masses are equal */
-	int carries, *carry;        /* states that nothing leads back from, which only add up: index of what rounding takes from each; -1: of others */
+	/* states that nothing leads back from, which only add up: index of what rounding takes from each; -1: of
+	 * others */
+	int carries, *carry;
 	struct forced *forced;      /* NAME keeps the state less this; NULL: as it is */
 	struct rounding rounding;
 	mpfr_t growth;              /* pl: 1/s, largest real part of the modified equation's poles (report only) */
@@ -196,17 +222,20 @@ void need_closed_form(const struct step *step);              /* leaves the state
 void series_plan(struct step *step);                        /* degree, halvings */
 double largest_pole_angle(const struct step *step);         /* max|pole| h, rounded up */
 int  series_halvings(const struct step *step, int operator); /* of the time h, so that |pole| tau <= 1 */
-int  series_degree(const struct step *step, int first, int last, int halvings); /* for these operators, over h 2^-halvings */
+/* for these operators, over h 2^-halvings */
+int  series_degree(const struct step *step, int first, int last, int halvings);
 
 /* ---- cost.c: what a step costs ---- */
 
 struct cost { int multiplications, additions, calls; };
 struct cost leftover_cost(const struct step *step);         /* of one evaluation */
-void count_loads(struct program *program, const struct linear *system, bool single); /* what the load states of the columns in use cost */
+/* what the load states of the columns in use cost */
+void count_loads(struct program *program, const struct linear *system, bool single);
 
 /* ---- forced.c: what rounding does to a step with loads ---- */
 
-void plan_forced(struct step *step);                         /* its rounding; its forced part, where the bound is the better for it */
+/* its rounding; its forced part, where the bound is the better for it */
+void plan_forced(struct step *step);
 bool is_forced(const struct step *step, int column);         /* is this load state's load left out of the step? */
 const char *rounding_text(const struct step *step);
 
@@ -215,9 +244,11 @@ const char *rounding_text(const struct step *step);
 const char *form_text_of(const struct step *step);          /* delta, compensated */
 void choose_form(struct step *step);                        /* leaves the statement where the one asked for cannot be */
 void need_direct(const struct step *step);                  /* the same where another than direct is asked for */
-void find_carries(struct step *step);                       /* before its program; none where all of the state is compensated */
+/* before its program; none where all of the state is compensated */
+void find_carries(struct step *step);
 struct program *linear_program(const struct step *step);    /* from its table */
-bool has_second_word(const struct product *p, const struct linear *system); /* in the code: loads that change have none */
+/* in the code: loads that change have none */
+bool has_second_word(const struct product *p, const struct linear *system);
 
 /* ---- drift.c: what the rounding of its constants does to a linear step ---- */
 
@@ -231,7 +262,8 @@ const char *drift_text(const struct drift *drift);          /* over 1e9 steps */
 
 /* ---- tuned_zeros.c: factors that are 0 whatever the tunable params are ---- */
 
-void mark_tuned_zeros(struct step *step);                    /* in its table: what vanishes at these values only is no zero */
+/* in its table: what vanishes at these values only is no zero */
+void mark_tuned_zeros(struct step *step);
 
 /* ---- scheme.c: the step of a model ---- */
 

@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A step that leaves nothing over, y+ = Phi y + loads + inputs, as a program in one of several forms. In exact arithmetic all
- * are the same map; what differs is what rounding does to them over many steps.
+/* A step that leaves nothing over, y+ = Phi y + loads + inputs, as a program in one of several forms. In exact
+ * arithmetic all are the same map; what differs is what rounding does to them over many steps.
  *
  *   direct            y = Phi y. Where |pole| h is small, Phi - I loses the digits that the 1 takes.
  *   delta             y += (Phi - I) y, Phi - I rounded relative to itself
- *   kick-drift-kick   p += X q; q += S p; p += X q; of undamped systems, S and X symmetric: symplectic whatever their rounding
+ *   kick-drift-kick   p += X q; q += S p; p += X q; of undamped systems, S and X symmetric: symplectic whatever their
+ * rounding
  *
  * p is velocity times mass, masses in units of the first, so that equal masses leave velocities as they are. */
 #include "step/step.h"
@@ -53,9 +54,9 @@ static bool spread_masses(int n, const mpq_t *a, int from, mpq_t *mass)
 	return good;
 }
 
-/* Masses in units of the first that make mass times acceleration symmetric in the coordinates, accelerations being a q: found, not
- * read, since an equation may have been divided by its mass, have its sign turned, or stand in another place. Blocks that
- * nothing couples keep the masses that were written, if they were. NULL: there are none. */
+/* Masses in units of the first that make mass times acceleration symmetric in the coordinates, accelerations being a q:
+ * found, not read, since an equation may have been divided by its mass, have its sign turned, or stand in another
+ * place. Blocks that nothing couples keep the masses that were written, if they were. NULL: there are none. */
 static const mpq_t *relative_masses(const struct linear *system, const mpq_t *a)
 {
 	int n = system->n;
@@ -110,9 +111,11 @@ static const char *kick_objection(struct step *step)
 	if (system->states > LIMIT_UNROLLED_STATES)
 		return format("it is built for up to %d states", LIMIT_UNROLLED_STATES);
 	if (step->model->tuning)
-		return "there are tunable params: the target computes e^{A h}, and not what kicks and drifts are made of";
+		return "there are tunable params: the target computes e^{A h}, and not what kicks and drifts are made "
+		       "of";
 	if (!accelerations(system, a))
-		return system->states == 2 * n ? "there is damping, or a term that depends on velocities" : "a coordinate has no velocity";
+		return system->states == 2 * n ? "there is damping, or a term that depends on velocities"
+					       : "a coordinate has no velocity";
 	step->mass = relative_masses(system, (const mpq_t *)a);
 	if (!step->mass)
 		return "its stiffness is not symmetric, whatever the masses";
@@ -123,7 +126,8 @@ static const char *kick_objection(struct step *step)
 			return format("a mass, in units of the first, is beyond the range of %s", target_name());
 	step->momenta = !all_equal(n, step->mass);
 	if (step->momenta && (load_columns(system) || input_columns(system)))
-		return "masses are unequal and there are loads or inputs"; /* they would have to be multiplied by the masses */
+		/* they would have to be multiplied by the masses */
+		return "masses are unequal and there are loads or inputs";
 	return NULL;
 }
 
@@ -132,9 +136,11 @@ void need_direct(const struct step *step)
 	const struct model *model = step->model;
 	const char *what = model->switching ? "a piecewise-linear step" : "a step with a leftover";
 	if (model->asked.form != FORM_AUTO && model->asked.form != FORM_DIRECT)
-		error(model->asked.form_at, NULL, "the form %s is of a linear step: %s has the form direct", step_form_name(model->asked.form), what);
+		error(model->asked.form_at, NULL, "the form %s is of a linear step: %s has the form direct",
+		      step_form_name(model->asked.form), what);
 	if (model->asked.compensated)
-		error(model->asked.compensated_at, NULL, "--accuracy compensated is of a linear step: %s has the form direct", what);
+		error(model->asked.compensated_at, NULL,
+		      "--accuracy compensated is of a linear step: %s has the form direct", what);
 }
 
 /* Kick-drift-kick where it can be; delta where I is most of Phi. */
@@ -157,18 +163,22 @@ void choose_form(struct step *step)
 	if (model->asked.form == FORM_KICK_DRIFT_KICK) {
 		const char *objection = kick_objection(step);
 		if (objection)
-			error(model->asked.form_at, "forms: direct, delta, kick-drift-kick", "the form kick-drift-kick cannot step this model: %s", objection);
+			error(model->asked.form_at, "forms: direct, delta, kick-drift-kick",
+			      "the form kick-drift-kick cannot step this model: %s", objection);
 	}
 	if (step->form != FORM_KICK_DRIFT_KICK) {
 		step->mass = NULL;
 		step->momenta = false;
 	}
 	if (model->asked.compensated && step->form == FORM_DIRECT)
-		error(model->asked.compensated_at, NULL, "--accuracy compensated takes the form delta or kick-drift-kick");
+		error(model->asked.compensated_at, NULL,
+		      "--accuracy compensated takes the form delta or kick-drift-kick");
 	if (model->asked.compensated && model->tuning)
-		error(model->asked.compensated_at, NULL, "--accuracy compensated needs factors in two words: those of tunable params have one");
+		error(model->asked.compensated_at, NULL,
+		      "--accuracy compensated needs factors in two words: those of tunable params have one");
 	if (model->asked.compensated && step->branch->system.states > LIMIT_UNROLLED_STATES)
-		error(model->asked.compensated_at, NULL, "--accuracy compensated is built for up to %d states", LIMIT_UNROLLED_STATES);
+		error(model->asked.compensated_at, NULL, "--accuracy compensated is built for up to %d states",
+		      LIMIT_UNROLLED_STATES);
 }
 
 /* ---- states that only add up ---- */
@@ -180,7 +190,9 @@ static bool *readings(const struct step *step)
 	int n = step->branch->system.states;
 	bool *reads = ARRAY(bool, (size_t)(n * n));
 	for (int k = 0; k < step->branches; k++) {
-		const mpq_t *A = (const mpq_t *)state_matrix(model->tuning ? &model->tuning->other->system : &step->branch[k].system, false);
+		const mpq_t *A = (const mpq_t *)state_matrix(model->tuning ? &model->tuning->other->system
+									   : &step->branch[k].system,
+							     false);
 		for (int i = 0; i < n * n; i++)
 			reads[i] = reads[i] || mpq_sgn(A[i]) != 0;
 	}
@@ -194,7 +206,8 @@ static bool *read_elsewhere(const struct step *step)
 	int n = step->branch->system.states;
 	bool *reads = ARRAY(bool, (size_t)n);
 	for (int k = 0; k < model->operators; k++) {
-		struct reads left = reads_of(model, model->channels, (const struct form *const *)model->operator[k].left);
+		struct reads left =
+			reads_of(model, model->channels, (const struct form *const *)model->operator[k].left);
 		for (int i = 0; i < n; i++)
 			reads[i] = reads[i] || left.state[i];
 	}
@@ -225,8 +238,9 @@ static bool moves(const struct step *step, const bool *reads, int state, bool li
 	return any;
 }
 
-/* Nothing damps what rounding does to a state that no chain of readings leads back to: a position known only by its rate, the velocity of a
- * free body. Where the step is a list of assignments each such state is carried in two words; elsewhere those that nothing reads. */
+/* Nothing damps what rounding does to a state that no chain of readings leads back to: a position known only by its
+ * rate, the velocity of a free body. Where the step is a list of assignments each such state is carried in two words;
+ * elsewhere those that nothing reads. */
 void find_carries(struct step *step)
 {
 	int n = step->branch->system.states;
@@ -268,14 +282,16 @@ static void add_load_term(struct assignment *a, const struct step *step, int row
 	for (int s = 0; s < step->branch->system.segments; s++)
 		any = any || !table->load[(s * table->states + row) * table->columns + column].zero;
 	if (any && !is_forced(step, column))
-		a->term[a->terms++] = (struct product){ &table->load[row * table->columns + column], { OPERAND_LOAD, column } };
+		a->term[a->terms++] =
+			(struct product){ &table->load[row * table->columns + column], { OPERAND_LOAD, column } };
 }
 
 static bool is_identity(const struct assignment *a)
 {
 	if (a->added)
 		return a->terms == 0;
-	return a->terms == 1 && a->term[0].operand.kind == OPERAND_STATE && a->term[0].operand.index == a->target && a->term[0].factor->value == 1;
+	return a->terms == 1 && a->term[0].operand.kind == OPERAND_STATE && a->term[0].operand.index == a->target &&
+	       a->term[0].factor->value == 1;
 }
 
 /* A load that is added as it is */
@@ -342,7 +358,8 @@ static struct assignment *new_assignment(struct program *program, const struct s
 	ENLARGE(program->assignment, (size_t)program->assignments + 1);
 	struct assignment *a = &program->assignment[program->assignments++];
 	*a = (struct assignment){ .target = target, .added = added, .carried = step->carry[target] >= 0 };
-	a->term = ARRAY(struct product, (size_t)(step->branch->whole->states + step->branch->whole->columns + step->branch->whole->inputs));
+	a->term = ARRAY(struct product, (size_t)(step->branch->whole->states + step->branch->whole->columns +
+						 step->branch->whole->inputs));
 	return a;
 }
 

@@ -16,7 +16,9 @@ static bool *couplings(const struct step *step)
 		bool *row = reads + (system->velocity[k] >= 0 ? system->velocity[k] : k) * size;
 		for (int j = 0; j < t->columns; j++) {
 			bool load = j >= states && j < states + system->segments * t->loads;
-			int at = load ? states + (j - states) % t->loads : j < states ? j : j - (system->segments - 1) * t->loads;
+			int at = load         ? states + (j - states) % t->loads
+				 : j < states ? j
+					      : j - (system->segments - 1) * t->loads;
 			row[at] = row[at] || t->acts[k * t->columns + j];
 		}
 	}
@@ -31,7 +33,8 @@ static bool *reach(const struct step *step)
 	for (int k = 0; k < size; k++)
 		for (int i = 0; i < size; i++)
 			for (int j = 0; j < size; j++)
-				reads[i * size + j] = reads[i * size + j] || (reads[i * size + k] && reads[k * size + j]);
+				reads[i * size + j] = reads[i * size + j] ||
+						      (reads[i * size + k] && reads[k * size + j]);
 	return reads;
 }
 
@@ -53,6 +56,8 @@ void mark_tuned_zeros(struct step *step)
 				table->load[(s * n + i) * table->columns + k].zero = !row[n + k];
 		for (int input = 0, column = 0; input < system->inputs; input++)
 			for (int k = 0; k < (system->input[input].first_order ? 2 : 1); k++, column++)
-				table->input[i * table->inputs + column].zero = !row[step->series.input[input]] && !(system->input[input].first_order && row[step->series.input[input] + 1]);
+				table->input[i * table->inputs + column].zero =
+					!row[step->series.input[input]] &&
+					!(system->input[input].first_order && row[step->series.input[input] + 1]);
 	}
 }

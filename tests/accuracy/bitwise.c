@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  *
- * Every number that the generator finds, by poles and residues or by Taylor series, against the judge, bit for bit: the transfer
- * matrix, the load columns of every segment of time and the input columns of schemes exact and pl (both words of each), the
- * closed-form solution, and the models that --reduce makes.
+ * Every number that the generator finds, by poles and residues or by Taylor series, against the judge, bit for bit: the
+ * transfer matrix, the load columns of every segment of time and the input columns of schemes exact and pl (both words
+ * of each), the closed-form solution, and the models that --reduce makes.
  *
  *     bitwise [-n RANDOM] [-r REDUCED] [-s SEED] [-v] exponentials.txt MODEL.spec ...
  *
- * Shared with the generator: its parser and the matrices M, C, K and loads that it reads from a spec.  From there on the judge has
- * its own algebra: the augmented matrix A of y' = A y is made here.  Each case runs in a process of its own, so that a crash or an
- * endless loop is one failed case.
+ * Shared with the generator: its parser and the matrices M, C, K and loads that it reads from a spec.  From there on
+ * the judge has its own algebra: the augmented matrix A of y' = A y is made here.  Each case runs in a process of its
+ * own, so that a crash or an endless loop is one failed case.
  */
 #include <stdio.h>                      /* before gmp.h, which then declares gmp_fscanf */
 
@@ -63,8 +63,8 @@ static void show_spec(void)
 
 /* ---- the augmented matrix ---- */
 
-/* y = states, [held states,] loads, inputs (with their slopes); y' = A y in one segment of time, and e^{A h} X has the factors of one
- * step in its first rows: of the states, of the load columns, of the input columns */
+/* y = states, [held states,] loads, inputs (with their slopes); y' = A y in one segment of time, and e^{A h} X has the
+ * factors of one step in its first rows: of the states, of the load columns, of the input columns */
 struct augmented {
     size_t states, loads, inputs;       /* columns of X of each kind */
     size_t first_load, size, columns;   /* of A and of X */
@@ -102,8 +102,9 @@ static void eliminate(size_t rows, size_t width, mpq_t *W)
     mpq_clear(factor);
 }
 
-/* The highest derivative of each coordinate as a row: over the states (without sign), the load columns of one segment, u and u' of
- * every input.  Columns of M multiply accelerations; of a coordinate of first order the column of C multiplies what is solved for. */
+/* The highest derivative of each coordinate as a row: over the states (without sign), the load columns of one segment,
+ * u and u' of every input.  Columns of M multiply accelerations; of a coordinate of first order the column of C
+ * multiplies what is solved for. */
 static mpq_t *highest_rows(const struct linear *system, int segment, size_t *width)
 {
     const size_t n = (size_t)system->n, states = (size_t)system->states;
@@ -313,7 +314,8 @@ static bool rounded(mpfi_ptr x, double *d)
 }
 
 /* (e^{A h} X)_ij - subtract, rounded: true if this enclosure decides it. */
-static bool rounded_difference(const struct augmented *a, const evaluator_enclosure *E, size_t i, size_t j, double subtract, double *d)
+static bool rounded_difference(const struct augmented *a, const evaluator_enclosure *E, size_t i, size_t j,
+                               double subtract, double *d)
 {
     mpfi_t sum;
     size_t bits = mpz_sizeinbase(E->radius, 2);
@@ -354,7 +356,8 @@ static const char *entry_name(const struct model *model, size_t i, size_t j)
 }
 
 /* A flag says 0 at this tau: either 0 at every tau, or the judge finds nothing there with 4096 bits. */
-static void compare_flag(const char *what, struct enclosures *e, size_t i, size_t j, const struct coefficient *found, bool always)
+static void compare_flag(const char *what, struct enclosures *e, size_t i, size_t j, const struct coefficient *found,
+                         bool always)
 {
     double value;
     if (always && !found->zero)
@@ -377,11 +380,13 @@ static const struct coefficient *found_entry(const struct table *table, int segm
 }
 
 /* The states and the inputs have the same factors in every segment. */
-static void compare_step(const struct model *model, int segment, const struct augmented *a, const struct table *table, const double *expected)
+static void compare_step(const struct model *model, int segment, const struct augmented *a, const struct table *table,
+                         const double *expected)
 {
     struct enclosures e = { .a = a, .h = model->h };
     const bool *always = always_zero(a);
-    if ((size_t)table->states != a->states || (size_t)table->columns != a->loads || (size_t)table->inputs != a->inputs) {
+    if ((size_t)table->states != a->states || (size_t)table->columns != a->loads ||
+        (size_t)table->inputs != a->inputs) {
         complain("table", "wrong size");
         return;
     }
@@ -430,11 +435,13 @@ static void compare_roads(const struct step *step)
     struct taylor *taylor = taylor_of(series->size, (const mpq_t *)series_matrix(series, system, 0), step->model->h);
     for (int i = 0; i < n; i++) {
         for (int j = 0; j < n; j++)
-            compare_road(taylor, i, j, entry_name(step->model, (size_t)i, (size_t)j), step->branch->whole->Phi[i * n + j].value);
+            compare_road(taylor, i, j, entry_name(step->model, (size_t)i, (size_t)j),
+                         step->branch->whole->Phi[i * n + j].value);
         for (int l = 0, column = 0; l < system->loads; l++)
             for (int k = 0; k < system->load[l].columns; k++, column++)
                 if (series->load[l] >= 0)
-                    compare_road(taylor, i, series->load[l] + k, entry_name(step->model, (size_t)i, (size_t)(n + column)),
+                    compare_road(taylor, i, series->load[l] + k,
+                                 entry_name(step->model, (size_t)i, (size_t)(n + column)),
                                  step->branch->whole->load[i * columns + column].value);
     }
 }
@@ -472,7 +479,8 @@ static void compare_scheme(const struct model *model, bool both_roads)
     for (int s = 0; s < model->system.segments; s++) {
         const struct augmented a = augment(&model->system, s, model->scheme == SCHEME_PL, model->h);
         double *expected = ARRAY(double, a.size * a.columns);
-        const int undecided = evaluator_round(a.size, (const mpq_t *)a.A, model->h, a.columns, (const mpq_t *)a.X, 0, expected);
+        const int undecided =
+            evaluator_round(a.size, (const mpq_t *)a.A, model->h, a.columns, (const mpq_t *)a.X, 0, expected);
         for (size_t i = 0; i < a.states * a.columns; i++)
             overflow = overflow || isinf(expected[i]);
         if (step && undecided)
@@ -494,7 +502,8 @@ struct solution {
     mpq_t *A, *start;
 };
 
-/* exp, cos or sin of q as the generator takes it: to 256 bits, from a number of so many that it need not be looked at twice */
+/* exp, cos or sin of q as the generator takes it: to 256 bits, from a number of so many that it need not be looked at
+ * twice */
 static void set_function(mpq_ptr value, mpq_srcptr q, int (*function)(mpfr_t, const mpfr_t, mpfr_rnd_t))
 {
     mpfr_t wide, rounded;
@@ -581,7 +590,8 @@ struct solution_work {
     double *expected;
 };
 
-/* False: the judge cannot decide.  That is no failure where another value is out of range: e^{1e5} beside 1 is beyond its 16384 bits. */
+/* False: the judge cannot decide.  That is no failure where another value is out of range: e^{1e5} beside 1 is beyond
+ * its 16384 bits. */
 static bool expected_outputs(const struct solution *s, mpq_srcptr t, double *expected)
 {
     const int undecided = evaluator_apply(s->size, (const mpq_t *)s->A, t, (const mpq_t *)s->start, expected);
@@ -611,7 +621,8 @@ static void compare_solution_values(void *context)
             continue;
         for (int o = 0; o < model->outputs; o++) {
             struct started *list;
-            const int count = responses_of_output(resolvent, &model->system, (const mpq_t *)model->initial, &model->output[o], &list);
+            const int count =
+                responses_of_output(resolvent, &model->system, (const mpq_t *)model->initial, &model->output[o], &list);
             const struct coefficient c = started_value(count, list, t, model->asked.step_at, model->output[o].name);
             compare(model->output[o].name, c.value, work->expected[first + (size_t)o]);
         }
@@ -719,8 +730,9 @@ static mpfr_t *advance(const struct augmented *a, mpq_srcptr tau, const mpfr_t *
     return next;
 }
 
-/* All states at t, driven from change to change; the loads are states that run on.  Phases are 256-bit numbers at t = 0 here and at
- * the changes there: the two differ by about 2^-256 of what they are summed from.  `segment` becomes that of t. */
+/* All states at t, driven from change to change; the loads are states that run on.  Phases are 256-bit numbers at t = 0
+ * here and at the changes there: the two differ by about 2^-256 of what they are summed from.  `segment` becomes that
+ * of t. */
 static mpfr_t *driven(const struct model *model, mpq_srcptr t, int *segment)
 {
     const struct linear *system = &model->system;
@@ -748,8 +760,8 @@ static mpfr_t *driven(const struct model *model, mpq_srcptr t, int *segment)
 }
 
 /* |found - sum| is to be half a unit in the last place, or 2^-200 of the largest term. */
-static void compare_driven(const struct model *model, const struct augmented *a, int segment, const struct output *output, const mpfr_t *y,
-                           double found)
+static void compare_driven(const struct model *model, const struct augmented *a, int segment,
+                           const struct output *output, const mpfr_t *y, double found)
 {
     const mpq_t *row = (const mpq_t *)output_row(model, a, segment, output);
     mpfr_t sum, size, error;
@@ -773,7 +785,8 @@ static void compare_driven(const struct model *model, const struct augmented *a,
         const double spacing = nextafter(fabs(found), HUGE_VAL) - fabs(found);
         mpfr_sub_d(error, error, found == 0 ? 0 : spacing / 2, MPFR_RNDN);
         if (!(mpfr_cmp(error, size) <= 0))
-            complain(output->name, format("found %a = %.17g, expected %a = %.17g (driven)", found, found, expected, expected));
+            complain(output->name,
+                     format("found %a = %.17g, expected %a = %.17g (driven)", found, found, expected, expected));
     }
     mpfr_clears(sum, size, error, (mpfr_ptr)NULL);
 }
@@ -798,7 +811,8 @@ static void compare_changes(void *context)
         }
         for (int o = 0; o < model->outputs; o++) {
             struct started *list;
-            const int count = responses_of_output(resolvent, &model->system, (const mpq_t *)model->initial, &model->output[o], &list);
+            const int count =
+                responses_of_output(resolvent, &model->system, (const mpq_t *)model->initial, &model->output[o], &list);
             const struct coefficient c = started_value(count, list, t, model->asked.step_at, model->output[o].name);
             compare_driven(model, &a, segment, &model->output[o], y, c.value);
         }
@@ -927,8 +941,10 @@ static void compare_outputs(void *context)
     for (int o = 0; o < r->full->outputs; o++) {
         const char *name = r->full->output[o].name;
         struct started *f, *g;
-        const int fs = responses_of_output(full, &r->full->system, (const mpq_t *)r->full->initial, &r->full->output[o], &f);
-        const int gs = responses_of_output(reduced, &r->reduced->system, (const mpq_t *)r->reduced->initial, &r->reduced->output[o], &g);
+        const int fs =
+            responses_of_output(full, &r->full->system, (const mpq_t *)r->full->initial, &r->full->output[o], &f);
+        const int gs = responses_of_output(reduced, &r->reduced->system, (const mpq_t *)r->reduced->initial,
+                                           &r->reduced->output[o], &g);
         for (size_t k = 0; k < sizeof multiples / sizeof *multiples; k++) {
             mpq_set_ui(t, multiples[k], 1);
             mpq_mul(t, t, r->full->h);
@@ -1124,7 +1140,8 @@ static void compare_exact(const char *what, struct response *response, mpq_srcpt
     mpq_clear(found);
 }
 
-static void compare_exact_row(const struct model *model, int segment, const struct augmented *a, const mpq_t *expected, int i)
+static void compare_exact_row(const struct model *model, int segment, const struct augmented *a, const mpq_t *expected,
+                              int i)
 {
     const struct linear *system = &model->system;
     struct resolvent *resolvent = resolvent_of(system);
@@ -1134,10 +1151,12 @@ static void compare_exact_row(const struct model *model, int segment, const stru
         compare_exact(entry_name(model, (size_t)i, at), response_of_state(resolvent, system, i, j), model->h, row[at]);
     for (int l = 0; l < system->loads; l++)
         for (int k = 0; k < system->load[l].columns; k++, at++)
-            compare_exact(entry_name(model, (size_t)i, at), response_of_load(resolvent, system, segment, i, l, k), model->h, row[at]);
+            compare_exact(entry_name(model, (size_t)i, at), response_of_load(resolvent, system, segment, i, l, k),
+                          model->h, row[at]);
     for (int u = 0; u < system->inputs; u++)
         for (int k = 0; k <= system->input[u].first_order; k++, at++)
-            compare_exact(entry_name(model, (size_t)i, at), response_of_input(resolvent, system, i, u, k, model->h), model->h, row[at]);
+            compare_exact(entry_name(model, (size_t)i, at), response_of_input(resolvent, system, i, u, k, model->h),
+                          model->h, row[at]);
 }
 
 /* Every number of the step is the very rational, before it is rounded. */

@@ -4,7 +4,8 @@
 
 #include <stddef.h>
 
-/* Models in which naive closed forms break down: resonance, repeated and nearly repeated poles, pole 0, growth, stiffness. */
+/* Models in which naive closed forms break down: resonance, repeated and nearly repeated poles, pole 0, growth,
+ * stiffness. */
 struct bitwise_spec {
     const char *name, *text;
     enum {

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  *
- * e^{A tau} as (e^B)^(2^s), B = A tau / 2^s with |B| <= 2^-8, in integers.  |.| is the largest absolute row sum throughout.
+ * e^{A tau} as (e^B)^(2^s), B = A tau / 2^s with |B| <= 2^-8, in integers.  |.| is the largest absolute row sum
+ * throughout.
  *
  *     exact     entries that are zero or polynomial in tau at every tau, by the rational numbers (A^k X)_ij
  *     enclosed  the others: Taylor series and s squarings with p bits, one radius for all entries
@@ -154,7 +155,8 @@ static void scaled_matrix(size_t n, const mpq_t *A, const mpq_t tau, unsigned lo
 
 /* E <- e^B, exponent -p.  With T_k = B^k / k!, each computed T_k is off by at most 3 n units:
  *     t_k <= (t_{k-1} |B^| + |T_{k-1}| n) / k + n,   t_0 = 0,  |B^| <= 1 the truncated B, off by n,  |T_{k-1}| <= 1;
- * t_1 <= 2 n, and from k = 2 on (3 n + n) / k + n <= 3 n.  The series ends at T_K; as |B| <= 1/2, what follows is below |T_K| / 3. */
+ * t_1 <= 2 n, and from k = 2 on (3 n + n) / k + n <= 3 n.  The series ends at T_K; as |B| <= 1/2, what follows is below
+ * |T_K| / 3. */
 static void taylor(size_t n, mpz_t *B, unsigned long p, evaluator_enclosure *E)
 {
     mpz_t *T = new_integers(n * n), *U = new_integers(n * n), norm;
@@ -219,7 +221,8 @@ static void square(evaluator_enclosure *E, unsigned long p, mpz_t *U)
     mpz_clear(norm);
 }
 
-/* E <- e^{A tau} with p bits.  -1 if the radius outgrew the matrix on the way: from there on it would double its length at every square. */
+/* E <- e^{A tau} with p bits.  -1 if the radius outgrew the matrix on the way: from there on it would double its length
+ * at every square. */
 static int enclose_with(const mpq_t *A, const mpq_t tau, unsigned long p, evaluator_enclosure *E)
 {
     const size_t n = E->n;
@@ -426,8 +429,8 @@ static void prove(const exact_problem *P, const mpq_t tau, const char *wanted, c
 }
 
 /* Decides what is zero or polynomial at every tau in column x: y[i * stride], done[i * stride].
- * By Cayley-Hamilton n vanishing (A^k x)_i in a row, k = 0..n-1, mean all vanish; vanishing from k = n to 2n - 1 means that only the pole 0
- * is left in this entry, and there the series has ended. */
+ * By Cayley-Hamilton n vanishing (A^k x)_i in a row, k = 0..n-1, mean all vanish; vanishing from k = n to 2n - 1 means
+ * that only the pole 0 is left in this entry, and there the series has ended. */
 static void exact_entries(const exact_problem *P, const mpq_t tau, unsigned flags, size_t stride, double *y, char *done)
 {
     const size_t n = P->n;
@@ -475,8 +478,8 @@ static void exact_entries(const exact_problem *P, const mpq_t tau, unsigned flag
 /* ---- the whole ---- */
 
 /* Row i of (E - I or E) x for the column of P; result (mid +- radius) 2^exponent */
-static void enclosed_entry(const exact_problem *P, const evaluator_enclosure *E, unsigned long p, size_t i, unsigned flags,
-                           mpz_t mid, mpz_t radius, long *exponent)
+static void enclosed_entry(const exact_problem *P, const evaluator_enclosure *E, unsigned long p, size_t i,
+                           unsigned flags, mpz_t mid, mpz_t radius, long *exponent)
 {
     const size_t n = P->n;
 

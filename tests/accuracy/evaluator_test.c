@@ -92,7 +92,8 @@ static void same_double(double found, double expected, const char *what, size_t 
 /* expected: as good as exact, rounded here once */
 static void same_value(double found, const mpfr_t expected, unsigned flags, const char *what, size_t index)
 {
-    const double e = flags & EVALUATOR_FLOAT ? (double)mpfr_get_flt(expected, MPFR_RNDN) : mpfr_get_d(expected, MPFR_RNDN);
+    const double e =
+        flags & EVALUATOR_FLOAT ? (double)mpfr_get_flt(expected, MPFR_RNDN) : mpfr_get_d(expected, MPFR_RNDN);
     same_double(found, e == 0 ? 0.0 : e, what, index);
 }
 
@@ -144,8 +145,8 @@ static void parser(void **state)
 {
     (void)state;
     static const char *good[][2] = {
-        { "1e-12", "1/1000000000000" }, { "-220/3", "-220/3" }, { "0.5", "1/2" }, { "+1.5E3/7", "1500/7" }, { "-.25e+1", "-5/2" },
-        { "0", "0" }, { "6/4", "3/2" }, { "1/-0.2", "-5" },
+        { "1e-12", "1/1000000000000" }, { "-220/3", "-220/3" }, { "0.5", "1/2" }, { "+1.5E3/7", "1500/7" },
+        { "-.25e+1", "-5/2" },          { "0", "0" },           { "6/4", "3/2" }, { "1/-0.2", "-5" },
     };
     static const char *bad[] = { "", "-", ".", "e5", "1e", "1e+", "1/", "1/0", "1x", "1//2", "1.2.3", "1e999999999" };
     mpq_t q, expected;
@@ -200,8 +201,10 @@ static void scalar(void **state)
 {
     (void)state;
     static const char *arguments[] = {
-        "1", "-1", "0.5", "1e-12", "-1e-300", "709.782712893383", "709.782712893384", "710", "-708.5", "-740.25", "-744.44", "-745.13", "-745.1332",
-        "-745.14", "88.72283", "88.7229", "-87.5", "-100.125", "-103.97", "-103.98", "1e6", "-1e6", "-1e14", "1/3", "-22/7", "5000/3",
+        "1",        "-1",      "0.5",     "1e-12",    "-1e-300", "709.782712893383", "709.782712893384",
+        "710",      "-708.5",  "-740.25", "-744.44",  "-745.13", "-745.1332",        "-745.14",
+        "88.72283", "88.7229", "-87.5",   "-100.125", "-103.97", "-103.98",          "1e6",
+        "-1e6",     "-1e14",   "1/3",     "-22/7",    "5000/3",
     };
     mpq_t q;
     mpfr_t e;
@@ -250,7 +253,8 @@ static void rotation(void **state)
     mpq_clear(q);
 }
 
-/* Undamped and stiff, x'' = -1e12 x: units so unequal that every squaring costs 20 bits and the first precisions are of no use */
+/* Undamped and stiff, x'' = -1e12 x: units so unequal that every squaring costs 20 bits and the first precisions are of
+ * no use */
 static void unequal_units(void **state)
 {
     (void)state;
@@ -282,14 +286,15 @@ static void jordan_block(void **state)
 {
     (void)state;
     static const char *cases[][2] = {
-        { "0", "0.01" }, { "0", "1/3" }, { "0", "1e-12" }, { "0", "3" }, { "-2", "0.01" }, { "1/3", "1e3" }, { "-7/3", "1e2" }, { "-1e3", "1" },
-        { "0", "-1/3" }, { "-2", "-1/7" },
+        { "0", "0.01" },  { "0", "1/3" },    { "0", "1e-12" }, { "0", "3" },    { "-2", "0.01" },
+        { "1/3", "1e3" }, { "-7/3", "1e2" }, { "-1e3", "1" },  { "0", "-1/3" }, { "-2", "-1/7" },
     };
     enum { N = 5 };
     mpfr_t e;
     mpfr_init2(e, CLOSED_FORM_BITS);
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        mpq_t *A = new_rationals(N * N), *lambda = matrix(1, cases[i][0]), *tau = matrix(1, cases[i][1]), *term = new_rationals(1);
+        mpq_t *A = new_rationals(N * N), *lambda = matrix(1, cases[i][0]), *tau = matrix(1, cases[i][1]),
+              *term = new_rationals(1);
         double E[N * N];
         for (size_t j = 0; j < N; j++) {
             mpq_set(A[j * N + j], lambda[0]);
@@ -321,15 +326,16 @@ static void jordan_block(void **state)
 }
 
 /* Two real poles -a, -b far apart, by their partial fractions:
- * Phi_12 = (e^{-a tau} - e^{-b tau}) / (b - a),  Phi_11 = (b e^{-a tau} - a e^{-b tau}) / (b - a),  Phi_21 = -a b Phi_12,
- * Phi_22 = (b e^{-b tau} - a e^{-a tau}) / (b - a) */
+ * Phi_12 = (e^{-a tau} - e^{-b tau}) / (b - a),  Phi_11 = (b e^{-a tau} - a e^{-b tau}) / (b - a),  Phi_21 = -a b
+ * Phi_12, Phi_22 = (b e^{-b tau} - a e^{-a tau}) / (b - a) */
 static void stiff(void **state)
 {
     (void)state;
     static const char *times[] = { "1e-12", "1e-9", "1e-7", "0.01", "1", "1e3", "7e5", "1e6", "1e12" };
     mpfr_t ea, eb, phi[4];
     mpfr_inits2(CLOSED_FORM_BITS, ea, eb, phi[0], phi[1], phi[2], phi[3], (mpfr_ptr)NULL);
-    mpq_t *A = matrix(4, "0 1  -100000 -100000000.001"), *a = matrix(1, "0.001"), *b = matrix(1, "1e8"), *ab = matrix(1, "1e5");
+    mpq_t *A = matrix(4, "0 1  -100000 -100000000.001"), *a = matrix(1, "0.001"), *b = matrix(1, "1e8"),
+          *ab = matrix(1, "1e5");
     mpq_t *gap = matrix(1, "99999999.999"), *product = new_rationals(1);
     for (size_t i = 0; i < sizeof times / sizeof *times; i++) {
         mpq_t *tau = matrix(1, times[i]);
@@ -369,7 +375,8 @@ static void stiff(void **state)
     mpfr_clears(ea, eb, phi[0], phi[1], phi[2], phi[3], (mpfr_ptr)NULL);
 }
 
-/* Exact rationals at and near the midpoints, the smallest and the largest numbers: Phi_12 = a tau of [[0, a], [0, 0]] */
+/* Exact rationals at and near the midpoints, the smallest and the largest numbers: Phi_12 = a tau of [[0, a], [0, 0]]
+ */
 static void rounding(void **state)
 {
     (void)state;
@@ -462,7 +469,8 @@ static void combinations(void **state)
     random_state = 1;
     for (int round = 0; round < 60; round++) {
         const size_t n = 1 + random_below(7);
-        mpq_t *A = random_matrix(n, round % 2), *x = new_rationals(n), *tau = new_rationals(1), *I = new_rationals(n * n);
+        mpq_t *A = random_matrix(n, round % 2), *x = new_rationals(n), *tau = new_rationals(1),
+              *I = new_rationals(n * n);
         mpfr_t *M = malloc(n * n * sizeof *M), sum, term;
         double E[49], D[49], y[7];
 
@@ -560,7 +568,8 @@ static void release(rational_enclosure *R)
     mpq_clears(R->radius, R->norm, NULL);
 }
 
-/* e^{A (t1 + t2)} = e^{A t1} e^{A t2}, 500 bits, in rationals; the allowance is what the three radii allow and no more */
+/* e^{A (t1 + t2)} = e^{A t1} e^{A t2}, 500 bits, in rationals; the allowance is what the three radii allow and no more
+ */
 static void semigroup(void **state)
 {
     (void)state;

@@ -1,14 +1,16 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  *
- * Every number of the schemes that leave something over, against the judge, bit for bit: the transfer matrices e^{A h} and
- * e^{A h/2}, the load columns of every segment of time and the input columns at every fraction of the step, and what multiplies
- * the leftover, each combination rounded once.  A number carries the mark of zero if and only if it is zero.
+ * Every number of the schemes that leave something over, against the judge, bit for bit: the transfer matrices e^{A h}
+ * and e^{A h/2}, the load columns of every segment of time and the input columns at every fraction of the step, and
+ * what multiplies the leftover, each combination rounded once.  A number carries the mark of zero if and only if it is
+ * zero.
  *
  *     kernels [-n RANDOM] [-l LARGE] [-s SEED] [-w] [-v] MODEL.spec ...
  *
- * Shared with the generator: its parser, the matrices M, C, K, loads and inputs that it reads from a spec, the C and K of each
- * operator, and which equations have a leftover.  From there on the judge has its own algebra and its own list of what each scheme
- * needs, after Cox and Matthews 2002 and Liu, Wang, Li and Yi 2022.  Each case runs in a process of its own.
+ * Shared with the generator: its parser, the matrices M, C, K, loads and inputs that it reads from a spec, the C and K
+ * of each operator, and which equations have a leftover.  From there on the judge has its own algebra and its own list
+ * of what each scheme needs, after Cox and Matthews 2002 and Liu, Wang, Li and Yi 2022.  Each case runs in a process of
+ * its own.
  */
 #include "evaluator.h"
 #include "step/step.h"
@@ -41,8 +43,9 @@ static struct {
 static void complain(const char *what, const char *message)
 {
     if (trial.failed++ < MISMATCHES_SHOWN)
-        printf("# %s%s, operator %d, segment %d, table %s, %s%s: %s\n", trial.scheme, trial.loads_left ? ", loads left" : "", trial.operator,
-               trial.segment, trial.table, trial.name, what, message);
+        printf("# %s%s, operator %d, segment %d, table %s, %s%s: %s\n", trial.scheme,
+               trial.loads_left ? ", loads left" : "", trial.operator, trial.segment, trial.table, trial.name, what,
+               message);
 }
 
 static void show_spec(void)
@@ -56,8 +59,9 @@ static void show_spec(void)
 
 /* ---- the plant: one operator in one segment of time, as x' = A x ---- */
 
-/* x = states, [held states,] loads, inputs (with their slopes), then for each channel a chain u0' = u1, u1' = u2, u2' = 0, whose u0
- * is the force on its equation: the response to a unit u2 is tau^3 phi3(A tau) B, B what a unit force gives the derivatives. */
+/* x = states, [held states,] loads, inputs (with their slopes), then for each channel a chain u0' = u1, u1' = u2, u2' =
+ * 0, whose u0 is the force on its equation: the response to a unit u2 is tau^3 phi3(A tau) B, B what a unit force gives
+ * the derivatives. */
 struct plant {
     size_t states, held, loads, inputs, channels;
     size_t load_at, input_at, channel_at, size;
@@ -98,8 +102,9 @@ static bool eliminate(size_t rows, size_t width, mpq_t *W)
     return true;
 }
 
-/* The highest derivative of each coordinate: over the states, without sign, the load columns, u and u' of every input, the channels.
- * A coordinate of first order is solved for its derivative, whose factor stands in C and is no part of an operator. */
+/* The highest derivative of each coordinate: over the states, without sign, the load columns, u and u' of every input,
+ * the channels. A coordinate of first order is solved for its derivative, whose factor stands in C and is no part of an
+ * operator. */
 static mpq_t *highest_rows(const struct model *model, int which, int segment, size_t *width)
 {
     const struct linear *system = &model->system;
@@ -179,7 +184,9 @@ static bool make_plant(struct plant *p, const struct model *model, int which, in
 {
     const struct linear *system = &model->system;
     size_t width;
-    *p = (struct plant){ .states = (size_t)system->states, .held = split ? (size_t)system->states : 0, .loads = (size_t)load_columns(system),
+    *p = (struct plant){ .states = (size_t)system->states,
+                         .held = split ? (size_t)system->states : 0,
+                         .loads = (size_t)load_columns(system),
                          .channels = (size_t)model->channels };
     for (int u = 0; u < system->inputs; u++)
         p->inputs += system->input[u].first_order ? 2 : 1;
@@ -243,7 +250,8 @@ static const evaluator_enclosure *enclosure(const struct judge *judge, struct mo
     if (!m->level[level]) {
         m->level[level] = NEW(evaluator_enclosure);
         evaluator_enclosure_init(m->level[level], judge->plant.size);
-        m->given_up[level] = evaluator_enclose((const mpq_t *)judge->plant.A, m->tau, LEVEL_BITS[level], m->level[level]) != 0;
+        m->given_up[level] =
+            evaluator_enclose((const mpq_t *)judge->plant.A, m->tau, LEVEL_BITS[level], m->level[level]) != 0;
     }
     return m->given_up[level] ? NULL : m->level[level];
 }
@@ -268,8 +276,8 @@ static struct part *add_part(struct judge *judge, struct column *column, mpq_src
     return part;
 }
 
-/* By Cayley and Hamilton (e^{A tau} w)_i is zero at every tau if (A^k w)_i = 0 for k < n, a polynomial in tau if for n <= k < 2n: here
- * modulo a prime of 61 bits. */
+/* By Cayley and Hamilton (e^{A tau} w)_i is zero at every tau if (A^k w)_i = 0 for k < n, a polynomial in tau if for n
+ * <= k < 2n: here modulo a prime of 61 bits. */
 static const uint64_t PRIME = (UINT64_C(1) << 61) - 1;
 
 static uint64_t times(uint64_t a, uint64_t b)
@@ -413,7 +421,8 @@ static void compare(const char *what, double found, double expected)
 }
 
 /* A polynomial in tau: rational, so its zeros are known */
-static void compare_rational(const char *what, const struct judge *judge, struct column *column, size_t i, const struct coefficient *found)
+static void compare_rational(const char *what, const struct judge *judge, struct column *column, size_t i,
+                             const struct coefficient *found)
 {
     mpq_t sum;
     mpfr_t value;
@@ -428,13 +437,15 @@ static void compare_rational(const char *what, const struct judge *judge, struct
     mpfr_set_q(value, sum, MPFR_RNDN);
     compare(what, found->value, rounded(value));
     if (found->zero != (mpq_sgn(sum) == 0))
-        complain(what, found->zero ? format("marked as zero, but it is %s", readable_text(sum)) : "zero, and not marked so");
+        complain(what,
+                 found->zero ? format("marked as zero, but it is %s", readable_text(sum)) : "zero, and not marked so");
     mpq_clear(sum);
     mpfr_clear(value);
 }
 
 /* Marked as zero: nothing is found there with 3950 bits.  Not marked, and rounded to zero: it can be told from zero. */
-static void compare_mark(const char *what, const struct judge *judge, const struct column *column, size_t i, const struct coefficient *found)
+static void compare_mark(const char *what, const struct judge *judge, const struct column *column, size_t i,
+                         const struct coefficient *found)
 {
     mpfi_t sum;
     bool apart = false;
@@ -447,7 +458,8 @@ static void compare_mark(const char *what, const struct judge *judge, const stru
     mpfi_clear(sum);
 }
 
-static void compare_enclosed(const char *what, const struct judge *judge, const struct column *column, size_t i, const struct coefficient *found)
+static void compare_enclosed(const char *what, const struct judge *judge, const struct column *column, size_t i,
+                             const struct coefficient *found)
 {
     mpfi_t sum;
     bool decided = false;
@@ -468,8 +480,8 @@ static void compare_enclosed(const char *what, const struct judge *judge, const 
 }
 
 /* `found` has one number per state, `stride` apart. */
-static void compare_column(const struct model *model, const struct judge *judge, struct column *column, const struct coefficient *found,
-                           size_t stride)
+static void compare_column(const struct model *model, const struct judge *judge, struct column *column,
+                           const struct coefficient *found, size_t stride)
 {
     const size_t states = judge->plant.states;
     for (int k = 0; k < column->parts; k++)
@@ -489,7 +501,7 @@ static void compare_column(const struct model *model, const struct judge *judge,
 /* ---- what each scheme needs, written from the papers ---- */
 
 struct fraction { long p; unsigned long q; };
-struct kernel_term {                    /* tau = f h: tau phi1(A tau), and where f = 1 also h phi2(A h), h phi3(A h), times these */
+struct kernel_term { /* tau = f h: tau phi1(A tau), and where f = 1 also h phi2(A h), h phi3(A h), times these */
     struct fraction f;
     long phi[3];
 };
@@ -596,7 +608,8 @@ static void compare_loads(const struct model *model, struct judge *judge, const 
         struct column column = { 0 };
         mpq_set_ui(add_part(judge, &column, table->wanted->fraction)->w[judge->plant.load_at + j], 1, 1);
         trial.name = format("factor of load column %zu", j);
-        compare_column(model, judge, &column, table->load + (size_t)trial.segment * judge->plant.states * loads + j, loads);
+        compare_column(model, judge, &column, table->load + (size_t)trial.segment * judge->plant.states * loads + j,
+                       loads);
     }
 }
 
@@ -619,8 +632,8 @@ static void compare_inputs(const struct model *model, struct judge *judge, const
         }
 }
 
-static void compare_kernel(const struct model *model, const struct judge *judge, struct column *column, const struct table *table, int kernel,
-                           size_t channel)
+static void compare_kernel(const struct model *model, const struct judge *judge, struct column *column,
+                           const struct table *table, int kernel, size_t channel)
 {
     trial.name = format("%s of channel %zu", table->wanted->kernel[kernel].name, channel + 1);
     compare_column(model, judge, column, table->kernel[kernel] + channel, judge->plant.channels);
@@ -670,7 +683,8 @@ static const struct action *last_sum(const struct program *program)
     return sum;
 }
 
-static void compare_quadrature(const struct model *model, struct judge *judge, const struct step *step, struct table *const *tables)
+static void compare_quadrature(const struct model *model, struct judge *judge, const struct step *step,
+                               struct table *const *tables)
 {
     const struct action *sum = last_sum(step->program);
     int used = 0;
@@ -723,7 +737,8 @@ static void expect_table(struct expected_tables *e, struct fraction f)
     e->at[e->count++] = f;
 }
 
-/* The whole step; its half where stages stand there; where a predictor passes, if there are loads to be carried along. */
+/* The whole step; its half where stages stand there; where a predictor passes, if there are loads to be carried along.
+ */
 static struct expected_tables expected_tables(const struct model *model)
 {
     struct expected_tables e = { 1, { { 1, 1 } } };
@@ -791,8 +806,8 @@ static struct judge *judge_of(const struct model *model, int which, int segment)
 
 static bool has_size(const struct table *table, const struct plant *p)
 {
-    return (size_t)table->states == p->states && (size_t)table->columns == p->loads && (size_t)table->inputs == p->inputs &&
-           (size_t)table->channels == p->channels;
+    return (size_t)table->states == p->states && (size_t)table->columns == p->loads &&
+           (size_t)table->inputs == p->inputs && (size_t)table->channels == p->channels;
 }
 
 static void compare_segment(const struct model *model, const struct step *step, int which, int segment)
@@ -852,7 +867,8 @@ static void check_refusal(const struct model *model)
             for (size_t i = 0; E && i < judge->plant.states * judge->plant.size; i++) {
                 mpfi_set_ui(x, 0);
                 add_entry(x, E, i, one);
-                overflow = overflow || isinf(mpfr_get_d(&x->left, MPFR_RNDN)) || isinf(mpfr_get_d(&x->right, MPFR_RNDN));
+                overflow =
+                    overflow || isinf(mpfr_get_d(&x->left, MPFR_RNDN)) || isinf(mpfr_get_d(&x->right, MPFR_RNDN));
             }
         }
     if (!overflow || !strstr(said, "is beyond the range of double"))
@@ -900,8 +916,8 @@ static void try_scheme(const char *scheme, bool loads_left)
         for (int s = 0; s < model->system.segments; s++)
             compare_segment(model, step, k, s);
     if (verbose)
-        printf("# %s%s: generator %.2f s, judge %.2f s\n", scheme, loads_left ? ", loads left" : "", (double)(built - start) / CLOCKS_PER_SEC,
-               (double)(clock() - built) / CLOCKS_PER_SEC);
+        printf("# %s%s: generator %.2f s, judge %.2f s\n", scheme, loads_left ? ", loads left" : "",
+               (double)(built - start) / CLOCKS_PER_SEC, (double)(clock() - built) / CLOCKS_PER_SEC);
 }
 
 static int states_of(void)
@@ -910,13 +926,16 @@ static int states_of(void)
     return model ? model->system.states : 0;
 }
 
-/* Loads left over or not: another A has other columns.  Of a large model two schemes will do.  A refusal stays an error for what
- * follows in this process, so it ends the case; pl, whose own terms may grow where the operator does not, comes last. */
+/* Loads left over or not: another A has other columns.  Of a large model two schemes will do.  A refusal stays an error
+ * for what follows in this process, so it ends the case; pl, whose own terms may grow where the operator does not,
+ * comes last. */
 static void try_spec(const char *text)
 {
-    static const struct { const char *scheme; bool loads_left, large; } tries[] = {
-        { "etd1", false, false }, { "etdrk2", false, false }, { "etdrk4", false, true }, { "nc2", false, false }, { "nc3", false, false },
-        { "dq4", false, false }, { "bm3", false, true }, { "etdrk4", true, false }, { "bm3", true, false }, { "pl", false, false },
+    static const struct { const char *scheme; bool loads_left, large;
+    } tries[] = {
+        { "etd1", false, false }, { "etdrk2", false, false }, { "etdrk4", false, true }, { "nc2", false, false },
+        { "nc3", false, false },  { "dq4", false, false },    { "bm3", false, true },    { "etdrk4", true, false },
+        { "bm3", true, false },   { "pl", false, false },
     };
     trial.spec = text;
     const bool large = states_of() > LARGE_STATES && !whole;
@@ -931,12 +950,14 @@ static void try_spec(const char *text)
 #define TWO "model m\ncoord x, y\ninit x = 0.3\n"
 #define THREE "model m\ncoord x, y, z\ninit x = 0.3\n"
 
-static const struct { const char *name, *text; } specs[] = {
+static const struct { const char *name, *text;
+} specs[] = {
     { "undamped", ONE "x'' + 25*x + x^3 = 0\nstep 0.1\n" },
     { "undamped, two equal", TWO "x'' + 100*x + x^3 = 0\ny'' + 100*y + y^2 = 0\nstep 0.05\n" },
     { "no stiffness", ONE "x'' + sin(x) = 0\nstep 0.1\n" },
     { "no stiffness, a step that is a power of two", ONE "3*x'' + sin(x) = 7 + t\nstep 1/16\n" },
-    { "rigid body", TWO "2*x'' + 50*(x - y) + 3*(x - y)^3 = 1\n3*y'' + 50*(y - x) + 3*(y - x)^3 = cos(4*t + 1)\nstep 0.02\n" },
+    { "rigid body",
+      TWO "2*x'' + 50*(x - y) + 3*(x - y)^3 = 1\n3*y'' + 50*(y - x) + 3*(y - x)^3 = cos(4*t + 1)\nstep 0.02\n" },
     { "pole 0 four times", TWO "x'' + 0.1*y^3 = 1\ny'' = x + x^2\nstep 0.3\n" },
     { "drag alone", ONE "x'' + 3*x' + x'^3 = 2 + sin(t)\nstep 0.25\n" },
     { "coupled by velocity alone", TWO "x'' + 2*y' + x^3 = 0\ny'' - 2*x' + y^3 = 1\nstep 0.1\n" },
@@ -946,9 +967,10 @@ static const struct { const char *name, *text; } specs[] = {
     { "defective complex pair", TWO "x'' + 2*x' + 5*x + x^3 = 0\ny'' + 2*y' + 5*y = x + sin(y)\nstep 0.1\n" },
     { "defective pair at resonance", TWO "x'' + 100*x + x^3 = cos(10*t)\ny'' + 100*y = x\nstep 0.1\n" },
     { "poles 1e-10 apart", ONE "x'' + 2.0000000001*x' + 1.0000000001*x + x^2 = 1\nstep 0.1\n" },
-    { "poles 1e-30 apart, as those of the load",
-      ONE "x'' + 2.000000000000000000000000000001*x' + 1.000000000000000000000000000001*x + x^2 = exp(-t)\nstep 0.1\n" },
-    { "complex pairs 1e-10 apart", TWO "x'' + 100*x + x^3 = 0\ny'' + 100.000000002*y + 1e-3*x*y = 1e-3*x + cos(10*t)\nstep 0.05\n" },
+    { "poles 1e-30 apart, as those of the load", ONE
+      "x'' + 2.000000000000000000000000000001*x' + 1.000000000000000000000000000001*x + x^2 = exp(-t)\nstep 0.1\n" },
+    { "complex pairs 1e-10 apart",
+      TWO "x'' + 100*x + x^3 = 0\ny'' + 100.000000002*y + 1e-3*x*y = 1e-3*x + cos(10*t)\nstep 0.05\n" },
     { "poles -1 and -2: e^{-h} twice, and e^{-2 h/2}", ONE "x'' + 3*x' + 2*x + x^3 = 0\nstep 0.5\n" },
     { "stiff: mu = 1e6", ONE "x'' - 1e6*(1 - x^2)*x' + x = 0\noperator at x = 2, x' = 0\nstep 0.01\n" },
     { "stiff: mu = 1e6, the linear terms grow", ONE "x'' - 1e6*(1 - x^2)*x' + x = 0\nstep 1e-4\n" },
@@ -966,22 +988,27 @@ static const struct { const char *name, *text; } specs[] = {
       "T' + 0.5*T = 0.2 + 0.1*f^2\noperator at x = 0.1, f = 0.5\nstep 0.02\n" },
     { "first order, mixed derivatives",
       TWO "3*x' + 2*y' + x + x^3 = sin(2*t)\nx' - 5*y' - y + 0.1*x*y = 0\nstep 0.1\n" },
-    { "a spring shared by two equations", TWO "2*x'' + 30*x + 5*(x - y)^3 = 0\ny'' + 0.1*y' + 20*y - 5*(x - y)^3 = 0\nstep 0.02\n" },
+    { "a spring shared by two equations",
+      TWO "2*x'' + 30*x + 5*(x - y)^3 = 0\ny'' + 0.1*y' + 20*y - 5*(x - y)^3 = 0\nstep 0.02\n" },
     { "shared inertia",
       TWO "2*x'' + 0.5*y'' + 0.1*x' + 0.4*(x' - y')^3 + 30*x + 5*(x - y)^3 = sin(3*t)\n"
-      "0.5*x'' + y'' + 0.2*y' - 0.4*(x' - y')^3 + 20*y - 5*(x - y)^3 + 0.3*x*y' = 0\nstep 0.02\n" },
-    { "shared inertia, with an operator",
-      TWO "2*x'' + 0.5*y'' + 0.1*x' + 0.4*(x' - y')^3 + 30*x + 5*(x - y)^3 = sin(3*t)\n"
+          "0.5*x'' + y'' + 0.2*y' - 0.4*(x' - y')^3 + 20*y - 5*(x - y)^3 + 0.3*x*y' = 0\nstep 0.02\n" },
+    { "shared inertia, with an operator", TWO
+      "2*x'' + 0.5*y'' + 0.1*x' + 0.4*(x' - y')^3 + 30*x + 5*(x - y)^3 = sin(3*t)\n"
       "0.5*x'' + y'' + 0.2*y' - 0.4*(x' - y')^3 + 20*y - 5*(x - y)^3 + 0.3*x*y' = 0\noperator at x = 0.5, y = -0.2, x' = 1, y' = 0\nstep 0.02\n" },
     { "independent blocks, coupled by the leftover alone",
       THREE "x'' + 4*x + x*y = 0\ny'' + 0.1*y' + 9*y + y*z = cos(2*t)\nz' + z = x^2\nstep 0.1\n" },
-    { "independent blocks, one without a leftover", TWO "x'' + 4*x + x^3 = sin(t)\ny'' + 0.2*y' + 9*y = cos(2*t)\nstep 0.1\n" },
+    { "independent blocks, one without a leftover",
+      TWO "x'' + 4*x + x^3 = sin(t)\ny'' + 0.2*y' + 9*y = cos(2*t)\nstep 0.1\n" },
     { "one drives the other", TWO "x'' + 4*x + x^3 = 0\ny'' + 0.2*y' + 9*y = x\nstep 0.1\n" },
-    { "a load that changes its formula", ONE "x'' + 0.2*x' + 4*x + x^3 = (t < 0.605 ? 10*sin(pi*t/0.605) : 0)\nstep 0.01\n" },
-    { "loads in three segments of time",
-      TWO "x'' + 0.2*x' + 4*x - y + x^3 = (t < 0.3 ? 2*t : t < 1 ? exp(-t) : cos(5*t))\ny'' + 9*y - x + y^3 = 1\nstep 0.05\n" },
-    { "powers, growths and waves", ONE "x'' + 0.2*x' + 4*x + x^3 = t^3 + t*exp(-0.2*t)*cos(2*t + 0.3) + exp(0.1*t) - 2\nstep 0.05\n" },
-    { "waves that the leftover alone reads", TWO "x'' + x + x*cos(3*t) = 0\ny'' + 2*y - x + sin(y*exp(-t)) = 0\nstep 0.1\n" },
+    { "a load that changes its formula",
+      ONE "x'' + 0.2*x' + 4*x + x^3 = (t < 0.605 ? 10*sin(pi*t/0.605) : 0)\nstep 0.01\n" },
+    { "loads in three segments of time", TWO
+      "x'' + 0.2*x' + 4*x - y + x^3 = (t < 0.3 ? 2*t : t < 1 ? exp(-t) : cos(5*t))\ny'' + 9*y - x + y^3 = 1\nstep 0.05\n" },
+    { "powers, growths and waves",
+      ONE "x'' + 0.2*x' + 4*x + x^3 = t^3 + t*exp(-0.2*t)*cos(2*t + 0.3) + exp(0.1*t) - 2\nstep 0.05\n" },
+    { "waves that the leftover alone reads",
+      TWO "x'' + x + x*cos(3*t) = 0\ny'' + 2*y - x + sin(y*exp(-t)) = 0\nstep 0.1\n" },
     { "held inputs",
       "model m\ncoord x, y\ninput u, v\ninit x = 0.3\n1.5*x'' + 0.3*x' + 40*x + 200*x^3 - 10*y = 2*u - v\n"
       "y'' + 0.2*y' + 25*y - 10*x + 30*(y - x)^3 = 3*v + 0.5*u + 0.2*u*y*y'\nstep 0.02\n" },
@@ -989,19 +1016,23 @@ static const struct { const char *name, *text; } specs[] = {
       "model m\ncoord x, y\ninput u hold first, v hold first\ninit x = 0.1\n"
       "20*x'' + 0.3*(x' - u') + 400*(x - u) + 2000*(x - u)^3 + 90*(x - y) = 0\n"
       "y'' + 0.2*(y' - v') + 25*(y - v) + 9*(y - x) + 0.1*u'*y^2 = 0.5*u\nstep 0.02\n" },
-    { "a ramp on a free mass", "model m\ncoord x\ninput u hold first\ninit x = 0.1\n3*x'' + sin(x) = u + 0.1*u'\nstep 0.3\n" },
+    { "a ramp on a free mass",
+      "model m\ncoord x\ninput u hold first\ninit x = 0.1\n3*x'' + sin(x) = u + 0.1*u'\nstep 0.3\n" },
     { "held beside ramped, and a first order",
       "model m\ncoord x, T\ninput u\ninput v hold first\ninit x = 0.1\nx'' + 3*x + T*x = u - 2*v\nT' + 0.1*T + x*T = v + v'\nstep 0.1\n" },
     { "a bank of three",
       TWO "let w = 6*(1 - exp(-t))\nlet a = 6*exp(-t)\nx'' + 0.1*x' + (40 - w^2)*x - 2*w*y' - a*y = 0\n"
-      "y'' + 0.1*y' + (60 - w^2)*y + 2*w*x' + a*x = 3*cos(2*t)\noperator at w = 0, 2, 4\nstep 0.02\n" },
-    { "a bank through a repeated pole", ONE "x'' + 2*x' + (1 + t)*x = 1\noperator at t = -0.1, 0, 0.1, 1e-10 + 0.2\nstep 0.1\n" },
-    { "seven coordinates, every one with a spring", "model m\ncoord q[7]\ninit q[1] = 0.3\n"
+          "y'' + 0.1*y' + (60 - w^2)*y + 2*w*x' + a*x = 3*cos(2*t)\noperator at w = 0, 2, 4\nstep 0.02\n" },
+    { "a bank through a repeated pole",
+      ONE "x'' + 2*x' + (1 + t)*x = 1\noperator at t = -0.1, 0, 0.1, 1e-10 + 0.2\nstep 0.1\n" },
+    { "seven coordinates, every one with a spring",
+      "model m\ncoord q[7]\ninit q[1] = 0.3\n"
       "q[1]'' + 20*q[1] - 10*q[2] + q[1]^3 = cos(3*t)\nq[2]'' + 20*q[2] - 10*q[1] - 10*q[3] + q[2]^3 = 0\n"
       "q[3]'' + 20*q[3] - 10*q[2] - 10*q[4] + q[3]^3 = 0\nq[4]'' + 20*q[4] - 10*q[3] - 10*q[5] + q[4]^3 = 0\n"
       "q[5]'' + 20*q[5] - 10*q[4] - 10*q[6] + q[5]^3 = 0\nq[6]'' + 20*q[6] - 10*q[5] - 10*q[7] + q[6]^3 = 0\n"
       "q[7]'' + 10*q[7] - 10*q[6] + q[7]^3 = 1\nstep 0.1\n" },
-    { "seven coordinates, free, held and ramped inputs", "model m\ncoord q[7]\ninput u\ninput v hold first\n"
+    { "seven coordinates, free, held and ramped inputs",
+      "model m\ncoord q[7]\ninput u\ninput v hold first\n"
       "q[1]'' + 10*q[1] - 10*q[2] + (q[1] - q[2])^3 = u\nq[2]'' + 20*q[2] - 10*q[1] - 10*q[3] - (q[1] - q[2])^3 = 0\n"
       "q[3]'' + 20*q[3] - 10*q[2] - 10*q[4] = v + v'\nq[4]'' + 20*q[4] - 10*q[3] - 10*q[5] = (t < 0.33 ? t : 0)\n"
       "q[5]'' + 20*q[5] - 10*q[4] - 10*q[6] = 0\nq[6]'' + 20*q[6] - 10*q[5] - 10*q[7] = 0\n"
@@ -1027,7 +1058,8 @@ static bool chance(unsigned percent)
 /* 1 to 9 digits times 10^(low..high) */
 static char *number(int low, int high)
 {
-    return format("%u.%0*ue%d", 1 + below(9), 1 + (int)below(8), below(10), low + (int)below((unsigned)(high - low) + 1));
+    return format("%u.%0*ue%d", 1 + below(9), 1 + (int)below(8), below(10),
+                  low + (int)below((unsigned)(high - low) + 1));
 }
 
 /* A force between i and j, or on i alone: `force` adds to the equations that stand there. */
@@ -1058,7 +1090,8 @@ static char *operator_at(unsigned n)
     return format("%s\n", text);
 }
 
-/* random_spec, whose last line is the step: another one, since e^{1e3 growth} has a limit and --step is no part of what is shown */
+/* random_spec, whose last line is the step: another one, since e^{1e3 growth} has a limit and --step is no part of what
+ * is shown */
 static char *random_text(uint64_t seed)
 {
     const char *linear = random_spec(seed), *step = strstr(linear, "\nstep ");
@@ -1083,8 +1116,8 @@ static char *large_text(uint64_t seed)
         text = format("%s, x%u", text, i);
     text = format("%s\n%s", text, ramp ? "input v hold first\n" : "");
     for (unsigned i = 1; i <= n; i++)
-        text = format("%s%s*x%u%s = %s%s\n", text, number(-1, 1), i, i == first ? "'" : "''", load && i == 1 ? "3*cos(2*t)" : "0",
-                      ramp && i == n ? " + 2*v - v'" : "");
+        text = format("%s%s*x%u%s = %s%s\n", text, number(-1, 1), i, i == first ? "'" : "''",
+                      load && i == 1 ? "3*cos(2*t)" : "0", ramp && i == n ? " + 2*v - v'" : "");
     for (unsigned i = 1; i < n; i++) {
         text = format("%sspring %s between x%u, x%u\n", text, number(0, 2), i, i + 1);
         text = format("%s%s", text, damped ? format("damper %s between x%u, x%u\n", number(-2, 0), i, i + 1) : "");
@@ -1114,8 +1147,8 @@ static void run(const char *name, const char *path, const char *text)
         if (trial.compared == 0)
             puts("# nothing was compared");
         if (verbose)
-            printf("# %d numbers compared in %.2f s; steps refused %d, too small to be told from 0: %d\n", trial.compared,
-                   (double)clock() / CLOCKS_PER_SEC, trial.refused, trial.unsettled);
+            printf("# %d numbers compared in %.2f s; steps refused %d, too small to be told from 0: %d\n",
+                   trial.compared, (double)clock() / CLOCKS_PER_SEC, trial.refused, trial.unsettled);
         fflush(stdout);
         _exit(trial.failed || trial.compared == 0);
     }

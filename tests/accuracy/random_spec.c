@@ -67,7 +67,8 @@ static void add_chain(struct equations *e, int low, int high, const char *primes
     }
 }
 
-/* Whole matrices with some zeros; what they do to the energy is not asked, so they stay small: e^{1e3 growth} has a limit. */
+/* Whole matrices with some zeros; what they do to the energy is not asked, so they stay small: e^{1e3 growth} has a
+ * limit. */
 static void add_dense(struct equations *e, const char *primes)
 {
     for (int i = 0; i < e->n; i++)
@@ -88,7 +89,9 @@ static void add_masses(struct equations *e)
 
 static char *wave(void)
 {
-    char *phase = chance(50) ? "" : chance(30) ? format(" + pi/%u", 2 + below(7)) : format(" + %s", signed_number(-3, 2));
+    char *phase = chance(50)   ? ""
+                  : chance(30) ? format(" + pi/%u", 2 + below(7))
+                               : format(" + %s", signed_number(-3, 2));
     return format("%s(%s*t%s)", chance(50) ? "cos" : "sin", chance(30) ? "10" : signed_number(-4, 3), phase);
 }
 
@@ -119,7 +122,8 @@ static char *changing_load(void)
     case 2:
         return format("%s*max(t - %s, 0)", signed_number(-2, 2), number(-3, 0));
     case 3:
-        return format("table(t; 0, %s; 0.1, %s; 0.37, %s)", signed_number(-2, 2), signed_number(-2, 2), signed_number(-2, 2));
+        return format("table(t; 0, %s; 0.1, %s; 0.37, %s)", signed_number(-2, 2), signed_number(-2, 2),
+                      signed_number(-2, 2));
     default:
         return format("min(%s*t, %s)", number(-1, 2), number(-2, 0));
     }
@@ -131,7 +135,8 @@ static char *initial_values(const struct equations *e)
     for (int i = 0; i < e->n; i++)
         for (int k = 0; k < (e->first_order[i] ? 1 : 2); k++)
             if (chance(40))
-                text = format("%s%sx%d%s = %s", text, *text ? ", " : "init ", i + 1, k ? "'" : "", signed_number(-4, 1));
+                text =
+                    format("%s%sx%d%s = %s", text, *text ? ", " : "init ", i + 1, k ? "'" : "", signed_number(-4, 1));
     return format("%s\n", text);
 }
 
@@ -200,8 +205,11 @@ char *random_spec(uint64_t seed)
     if (chance(20))
         text = format("%s%s", text, sketch(&e));
     if (chance(30))
-        text = format("%soutput a = x1%s + 0.25*x%d', b = x1 - 3*x%d + 2*cos(10*t), c = t - x1%s\n", text, e.first_order[0] ? "'" : "''", e.n,
-                      e.n, held ? " + 2*u" : ramp ? " + 2*v - v'" : "");
+        text = format("%soutput a = x1%s + 0.25*x%d', b = x1 - 3*x%d + 2*cos(10*t), c = t - x1%s\n", text,
+                      e.first_order[0] ? "'" : "''", e.n, e.n,
+                      held   ? " + 2*u"
+                      : ramp ? " + 2*v - v'"
+                             : "");
     return format("%sstep %s\n", text, number(-12, 2));
 }
 
@@ -228,7 +236,8 @@ static char *mirrored(struct equations *e)
 /* Two equal blocks, coupled or not */
 static char *doubled(struct equations *e)
 {
-    const char *mass[2] = { number(-1, 1), number(-1, 1) }, *inside = number(-1, 2), *across = number(-2, 1), *ground = number(-1, 2);
+    const char *mass[2] = { number(-1, 1), number(-1, 1) }, *inside = number(-1, 2), *across = number(-2, 1),
+               *ground = number(-1, 2);
     const bool coupled = chance(50), damped = chance(50), coil = chance(40);
     const char *damping = number(-2, 0);
     e->n = 4;
@@ -261,8 +270,9 @@ static char *summed(struct equations *e)
     }
     for (int i = 0; i < e->n; i++) {
         e->first_order[i] = first;
-        e->left[i] = first ? format("x%d' + %s*x%d + %s*(%s)", i + 1, own, i + 1, shared, sum)
-                           : format("x%d'' + %s*x%d' + %s*x%d + %s*(%s)", i + 1, damping, i + 1, own, i + 1, shared, sum);
+        e->left[i] = first
+                         ? format("x%d' + %s*x%d + %s*(%s)", i + 1, own, i + 1, shared, sum)
+                         : format("x%d'' + %s*x%d' + %s*x%d + %s*(%s)", i + 1, damping, i + 1, own, i + 1, shared, sum);
     }
     return format("output a = %s, b = %s\n", sum, speeds);
 }

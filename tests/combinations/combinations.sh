@@ -1,8 +1,10 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# combinations.sh PLGEN COVERING ARCHIVE_GCC SOURCE: every row of the covering array is made and agrees with other roads, every set of
-# refusals.list is refused with its message, as TAP; and doc/combinations.md is what comes out of the lists.
-#     combinations.sh PLGEN COVERING ARCHIVE_GCC SOURCE --pairs     prints the pairs that plgen refuses, as lines for refusals.list
+# combinations.sh PLGEN COVERING ARCHIVE_GCC SOURCE: every row of the covering array is made and agrees with other
+# roads, every set of refusals.list is refused with its message, as TAP; and doc/combinations.md is what comes out of
+# the lists.
+#     combinations.sh PLGEN COVERING ARCHIVE_GCC SOURCE --pairs     prints the pairs that plgen refuses, as lines for
+#                                                                   refusals.list
 #     combinations.sh PLGEN COVERING ARCHIVE_GCC SOURCE --table     prints doc/combinations.md
 set -u
 absolute() {
@@ -68,7 +70,9 @@ while read -r row; do
 	[ "$said" = refused ] && cp "r$number.said" "r$number.wrong"
 	for function in at jump; do
 		case " $row " in
-			*" $function "*) [ "$said" != made ] || grep -q "_$function(" "r$number.h" || echo "there is no NAME_$function" >"r$number.wrong" ;;
+			*" $function "*)
+				[ "$said" != made ] || grep -q "_$function(" "r$number.h" ||
+					echo "there is no NAME_$function" >"r$number.wrong" ;;
 		esac
 	done
 done <rows

@@ -9,14 +9,14 @@
  *     covering spec FILE.spec CAPABILITY ...   the model, with its options and what batch.sh asks for in comments
  *
  * A line of REFUSALS is `CAPABILITY CAPABILITY ...<tab>MESSAGE`: part of what plgen says of a model with all of these.
- * The array is made greedily: a row starts with the first set that is not covered yet, and takes what covers most of the
- * others, as long as nothing in it is refused. */
+ * The array is made greedily: a row starts with the first set that is not covered yet, and takes what covers most of
+ * the others, as long as nothing in it is refused. */
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { MOST = 64, MOST_REFUSALS = 600, LINE = 1000, ROW = 10 };
+enum { MOST = 52, MOST_REFUSALS = 600, LINE = 1000, ROW = 10, PAGE = 118 };
 
 static struct { char name[32], group[32], words[120]; } capability[MOST];
 static int count, first;
@@ -232,52 +232,82 @@ static const char *cell(int i, int j)
 	return "+";
 }
 
-static void print_table(void)
+/* The text of an item of a list, which begins in this column, as lines of at most PAGE columns. */
+static void print_words(const char *text, int column)
 {
-	puts("<!-- SPDX-License-Identifier: GPL-3.0-or-later -->");
-	puts("# What goes with what\n");
-	puts("Made by `tests/combinations/combinations.sh` from the lists beside it, which a test holds against plgen; do not edit.");
-	puts("`+`: works, in a row of a covering array that has every pair (of the first ones every triple), and agrees with CVODE or");
-	puts("the closed form within the bounds of `tests/fuzz/drive.c`, by `step`, `run`, `jump`, `at`, `set` at odd times, saved and");
-	puts("restored, with `--rhs`. A number: refused, with the message below. Blank: one excludes the other.\n");
+	for (int at = column; *text;) {
+		const int length = (int)strcspn(text, " ");
+		if (at > column && at + 1 + length > PAGE) {
+			printf("\n%*s", column, "");
+			at = column;
+		}
+		at += printf("%s%.*s", at > column ? " " : "", length, text);
+		text += length + (text[length] == ' ');
+	}
+	putchar('\n');
+}
+
+/* Columns and rows are known by letters, so that a row fits on a line. */
+static char letter(int i)
+{
+	return "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz"[i];
+}
+
+static void print_pairs_table(void)
+{
 	fputs("| |", stdout);
 	for (int j = 0; j < count; j++)
-		printf(" %s |", capability[j].name);
+		printf("%c|", letter(j));
 	fputs("\n| --- |", stdout);
 	for (int j = 0; j < count; j++)
-		fputs(" --- |", stdout);
+		fputs("-|", stdout);
 	putchar('\n');
 	for (int i = 0; i < count; i++) {
-		printf("| %s |", capability[i].name);
+		printf("| %c %s |", letter(i), capability[i].name);
 		for (int j = 0; j < count; j++)
-			printf(" %s |", j <= i ? cell(i, j) : "");
+			printf("%s|", j <= i ? cell(i, j) : "");
 		putchar('\n');
 	}
-	puts("\n| name | what it is |\n| --- | --- |");
+	puts("\n| | name | what it is |\n| --- | --- | --- |");
 	for (int i = 0; i < count; i++)
-		printf("| %s | %s |\n", capability[i].name, capability[i].words);
+		printf("| %c | %s | %s |\n", letter(i), capability[i].name, capability[i].words);
+}
+
+static void print_refusals(void)
+{
 	puts("\n## Refusals\n");
-	for (int i = 0; i < reasons_count; i++) {
-		printf("%d. ", i + 1);
-		puts(reasons[i]);
-	}
+	for (int i = 0; i < reasons_count; i++)
+		print_words(reasons[i], printf("%d. ", i + 1));
 	puts("\nRefused only with three or more together:\n");
 	for (int r = 0; r < refusals; r++) {
-		const char *before = "- ";
-		for (int i = 0; i < count && refusal[r].size > 2; i++)
-			if (refusal[r].has[i]) {
-				printf("%s%s", before, capability[i].name);
-				before = ", ";
-			}
-		if (refusal[r].size > 2) {
-			fputs(": ", stdout);
-			puts(refusal[r].reason);
-		}
+		char item[2 * LINE];
+		int at = 0;
+		if (refusal[r].size < 3)
+			continue;
+		for (int i = 0; i < count; i++)
+			if (refusal[r].has[i])
+				at += snprintf(item + at, sizeof item - (size_t)at, "%s%s", at ? ", " : "",
+					capability[i].name);
+		snprintf(item + at, sizeof item - (size_t)at, ": %s", refusal[r].reason);
+		print_words(item, printf("- "));
 	}
-	puts("\n## A new capability\n");
-	puts("A line in `tests/combinations/capabilities.list`, what it adds to a spec or the options in `write_spec` of");
-	puts("`covering.c`, and the refusals that it brings in `refusals.list`: `combinations.sh ... --pairs` prints those that plgen");
-	puts("has. `combinations.sh ... --table` then prints this page.");
+}
+
+static void print_table(void)
+{
+	puts("<!-- SPDX-License-Identifier: GPL-3.0-or-later -->\n"
+	     "# What goes with what\n\n"
+	     "Made by `tests/combinations/combinations.sh` from the lists beside it, which a test holds against\n"
+	     "plgen; do not edit. `+`: works, in a row of a covering array that has every pair (of the first ones\n"
+	     "every triple), and agrees with CVODE or the closed form within the bounds of `tests/fuzz/drive.c`, by\n"
+	     "`step`, `run`, `jump`, `at`, `set` at odd times, saved and restored, with `--rhs`. A number: refused,\n"
+	     "with the message below. Blank: one excludes the other. A column has the letter of its row.\n");
+	print_pairs_table();
+	print_refusals();
+	puts("\n## A new capability\n\n"
+	     "A line in `tests/combinations/capabilities.list`, what it adds to a spec or the options in `write_spec`\n"
+	     "of `covering.c`, and the refusals that it brings in `refusals.list`: `combinations.sh ... --pairs`\n"
+	     "prints those that plgen has. `combinations.sh ... --table` then prints this page.");
 }
 
 /* ---- a model ---- */
@@ -299,8 +329,8 @@ static void print_options(FILE *to)
 		{ "compensated", "--accuracy compensated" }, { "direct", "--form direct" }, { "delta", "--form delta" },
 		{ "kdk", "--form kick-drift-kick" }, { "exact", "--scheme exact" }, { "pl", "--scheme pl" },
 		{ "etd1", "--scheme etd1" }, { "etdrk2", "--scheme etdrk2" }, { "etdrk4", "--scheme etdrk4" },
-		{ "nc2", "--scheme nc2" }, { "nc3", "--scheme nc3" }, { "dq4", "--scheme dq4" }, { "bm3", "--scheme bm3" },
-		{ "selftest", "--selftest" }, { "loads", "--loads leftover" } };
+		{ "nc2", "--scheme nc2" }, { "nc3", "--scheme nc3" }, { "dq4", "--scheme dq4" },
+		{ "bm3", "--scheme bm3" }, { "selftest", "--selftest" }, { "loads", "--loads leftover" } };
 	bool scheme = false;
 	fputs("# options:", to);
 	for (size_t i = 0; i < sizeof option / sizeof *option; i++)
@@ -311,7 +341,11 @@ static void print_options(FILE *to)
 	if (has("loads") && !scheme)
 		fputs(" --scheme etdrk4", to);
 	const bool kinks = has("kinked") || (has("loads") && has("change"));
-	fprintf(to, "\n# class: %s\n", kinks ? "kinked" : has("piecewise") ? "piecewise" : has("smooth") ? "smooth" : "linear");
+	fprintf(to, "\n# class: %s\n",
+		kinks                      ? "kinked"
+			: has("piecewise") ? "piecewise"
+			: has("smooth")    ? "smooth"
+					   : "linear");
 	fprintf(to, "# changes:%s\n", has("change") ? " 0.053 0.1 0.21" : "");
 	if (has("tunable"))
 		fputs("# retune: k=17.5 step=0.0125\n", to);
@@ -329,7 +363,8 @@ static void write_chain(FILE *to, int n)
 /* Two masses and what else is asked for; without dampers where the form asks for that.  Frequencies: below 6 rad/s. */
 static void write_spec(FILE *to)
 {
-	const bool vector = has("file") || has("many"), damped = !has("kdk"), outputs = has("accel") || has("nonlinear") || has("reduce");
+	const bool vector = has("file") || has("many"), damped = !has("kdk");
+	const bool outputs = has("accel") || has("nonlinear") || has("reduce");
 	const int n = has("many") ? 9 : 3;
 	print_options(to);
 	fputs("model f\nparam k = 12\n", to);
@@ -353,7 +388,8 @@ static void write_spec(FILE *to)
 			fprintf(to, "; %d", i % 2);
 		fputs("]\n", to);
 	}
-	fprintf(to, "%sa''%s + k*(a - b)%s = ", damped ? "2*" : "", damped ? " + 0.3*(a' - b')" : "", has("rigid") ? "" : " + 30*a");
+	fprintf(to, "%sa''%s + k*(a - b)%s = ", damped ? "2*" : "", damped ? " + 0.3*(a' - b')" : "",
+	        has("rigid") ? "" : " + 30*a");
 	fputs(has("cos") || has("loads") ? "3*cos(7*t) + " : "", to);
 	fputs(has("change") ? "(t < 0.1 ? 4 : 1) + " : "", to);
 	fputs(has("held") ? "2*u + " : "", to);
@@ -396,7 +432,9 @@ int main(int argc, char **argv)
 		return fclose(to) != 0;
 	}
 	if (argc != 4)
-		stop("usage: covering rows|pairs|refused|table CAPABILITIES REFUSALS, or spec FILE.spec CAPABILITY ..., not", argc > 1 ? argv[1] : "");
+		stop("usage: covering rows|pairs|refused|table CAPABILITIES REFUSALS, or spec FILE.spec CAPABILITY "
+		     "..., not",
+			argc > 1 ? argv[1] : "");
 	read_lists(argv[2], argv[3]);
 	if (strcmp(argv[1], "rows") == 0)
 		print_rows();

@@ -191,7 +191,7 @@ done
 {
     echo "\`$arm-gcc\` $($arm-gcc -dumpfullversion), \`-O2 -ffp-contract=off\`:"
     echo
-    echo '| model | form | | operations | RAM | M0: step | flash | stack | instructions | M4F: step | flash | stack | instructions |'
+    echo '| model | form | | operations | RAM | M0: step | flash | stack | instr. | M4F: step | flash | stack | instr. |'
     echo '| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |'
     awk -F, 'NR > 1 { form = $2 ($3 == "compensated" ? ", two words" : "")
                       print "| " $1 " | " form " | " $4 " | " $5 " + " $6 " | " $7 " | " $8 " | " $9 " | " $10 " | " $11 " | " $14 " | " $15 " | " $16 " | " $17 " |" }' "$doc/firmware/figures.csv"
@@ -213,7 +213,7 @@ done
                            of(m4f, m "_step") " | " of(m4f, m "_at") " | " of(m4f, m "_jump") " | " of(m4f, m "_retune") " | " of(m4f, m "_selftest") " |" } }' "$doc/firmware/stack.csv"
 } >"$work/model_stack"
 {
-    echo '| model | form | | coefficients | largest \|pole\| h | M0: retune | flash | stack | instructions | M4F: retune | flash | stack | instructions |'
+    echo '| model | form | | RAM | \|pole\| h | M0: retune | flash | stack | instr. | M4F: retune | flash | stack | instr. |'
     echo '| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |'
     awk -F, 'NR > 1 { print "| " $1 " | " $2 " | " $3 " | " $4 " | " $5 " | " $6 " | +" $8 " | " $9 " | " $10 " | " $12 " | +" $14 " | " $15 " | " $16 " |" }' "$doc/firmware/retune.csv"
 } >"$work/retune"

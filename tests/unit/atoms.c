@@ -3,6 +3,7 @@
  * are evaluated by MPFR directly; both have the same values. Derivatives are held against difference quotients of the
  * tree. */
 #include "draw.h"
+#include "collect/collect.h"
 
 #include <math.h>
 #include <string.h>
@@ -69,9 +70,9 @@ static struct tree *draw_call(int depth)
     struct tree *tree = new_tree(CALL, count);
     tree->function = function;
     for (int i = 0; i < count; i++)
-        tree->child[i] = i > 0 && function >= FN_DEADZONE ? number_tree(draw_integer(5)) : draw_tree(depth - 1);
+        tree->child[i] = i > 0 && function >= FN_DEADZONE ? number_tree(-(long)draw(4)) : draw_tree(depth - 1);
     if (function == FN_DEADZONE || function == FN_CLIP)
-        mpq_set_si(tree->child[2]->number, 6 + (long)draw(5), 1);
+        mpq_set_si(tree->child[2]->number, (long)draw(3), 1);
     for (int i = 1; i < count && function == FN_TABLE; i += 2)       /* -1, 0, 2 */
         mpq_set_si(tree->child[i]->number, i == 1 ? -1 : i == 3 ? 0 : 2, 1);
     return tree;
@@ -472,6 +473,39 @@ static void same_expressions_are_shared(void **state)
     assert_true(atoms > CASES);
 }
 
+/* Thousands in one collector, so that many fall into one bucket: powers of one sum, functions of one argument. */
+static void different_expressions_are_not_shared(void **state)
+{
+    static const enum function functions[] = { FN_SIN,  FN_COS,  FN_EXP, FN_SINH, FN_COSH,
+                                               FN_TANH, FN_ATAN, FN_ABS, FN_SGN };
+    enum { FUNCTIONS = sizeof functions / sizeof *functions };
+    struct form *sum;
+    int expected = 0;
+    (void)state;
+    new_collector();
+    sum = form_sum(state_form(0, 0), form_number(1), false);
+    for (unsigned n = 2; n < 4000; n++) {
+        kept_whole_power(&collector, &node, sum, n);
+        if (atoms_count(collector.atoms) != ++expected)
+            fail_msg("power %u: %d atoms, expected %d", n, atoms_count(collector.atoms), expected);
+    }
+    for (int k = 1; k < 1000; k++) {
+        struct form *argument = form_sum(state_form(0, 0), form_number(k), false);
+        for (int f = 0; f < FUNCTIONS; f++) {
+            kept_call(&collector, &node, functions[f], 1, &argument);
+            if (atoms_count(collector.atoms) != ++expected)
+                fail_msg("%s(x + %d): %d atoms, expected %d", function_name(functions[f]), k,
+                         atoms_count(collector.atoms), expected);
+        }
+        for (int comparison = CMP_LT; comparison <= CMP_GE; comparison++) {
+            kept_comparison(&collector, &node, (enum comparison)comparison, argument, form_number(0));
+            if (atoms_count(collector.atoms) != ++expected)
+                fail_msg("comparison %d of x + %d: %d atoms, expected %d", comparison, k, atoms_count(collector.atoms),
+                         expected);
+        }
+    }
+}
+
 /* a b and b a are one; so are a b c in any order, for sums that are not multiplied out into each other */
 static void products_commute(void **state)
 {
@@ -760,6 +794,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(forms_have_the_values_of_their_trees),
         cmocka_unit_test(constants_are_folded),
         cmocka_unit_test(same_expressions_are_shared),
+        cmocka_unit_test(different_expressions_are_not_shared),
         cmocka_unit_test(products_commute),
         cmocka_unit_test(switched_products_keep_their_value),
         cmocka_unit_test(dependence_is_of_what_is_named),

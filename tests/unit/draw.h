@@ -8,7 +8,7 @@
 #include <setjmp.h>
 #include <stdint.h>
 #include <cmocka.h>
-#include "model/model.h"
+#include <gmp.h>
 
 static uint64_t seed;
 

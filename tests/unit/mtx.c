@@ -272,7 +272,8 @@ static void file_that_cannot_be_read(void **state)
     assert_null(reading_of("/dev/zero", &said));
     assert_string_equal(
         said,
-        "m.spec:2:12: error: '/dev/zero' is longer than the limit of 67108864 bytes\nmatrix M = \"M.mtx\"\n           ^\n");
+        "m.spec:2:12: error: '/dev/zero' is longer than the limit of 67108864 bytes\n"
+        "matrix M = \"M.mtx\"\n           ^\n");
     free(said);
 }
 

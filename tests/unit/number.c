@@ -3,6 +3,7 @@
  * rationals; texts against what the C library reads, and against all that are shorter. The last case turns to float for
  * good. */
 #include "draw.h"
+#include "base/base.h"
 
 #include <float.h>
 #include <math.h>
@@ -247,6 +248,8 @@ static void check_texts(void)
         double plain = strtod(text, &end);
         if (strlen(text) < 3 || strcmp(end - 2, ".0") != 0)
             shorter = shorter_text(d, digits_of(text) - 1);
+        else if (strlen(text) > strlen("-12345678901234567.0"))
+            fail_msg("case %d: '%s' is longer than with an exponent", n, text);
         else if (plain != d)                            /* a whole number has all of its digits */
             fail_msg("case %d: '%s' for %s; expected this number exactly", n, text, exponent_text(d));
         if (*end || !strpbrk(text, ".e"))
@@ -324,7 +327,7 @@ static void exact_texts(void **state)
         mpz_clears(rest, prime, NULL);
         decimals += decimal;
         read_exact(text, back);
-        if (!mpq_equal(q, back))
+        if (!mpq_equal(q, back) || *strpbrk(text, ".0123456789") == '.')
             fail_msg("case %d: %s is written '%s'", n, mpq_get_str(NULL, 10, q), text);
         if (decimal == (strchr(text, '/') != NULL))
             fail_msg("case %d: %s is written '%s', expected %s", n, mpq_get_str(NULL, 10, q), text,

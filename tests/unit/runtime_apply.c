@@ -1,19 +1,9 @@
 /* SPDX-License-Identifier: MIT-0 */
 /* runtime/apply.c against MPFR, and against its documented order of sums.  Every block is as long as it says, so that
  * valgrind and the sanitizers see what is read beyond. */
-#include <stdarg.h>
-#include <stddef.h>
-#include <setjmp.h>
-#include <stdint.h>
-#include <cmocka.h>
-#include <inttypes.h>
+#include "runtime.h"
+
 #include <fenv.h>
-#include <float.h>
-#include <math.h>
-#include <mpfr.h>
-#include <stdlib.h>
-#include <string.h>
-#include "real.h"
 
 /* BITS: products of numbers from 2^-WIDE to 2^WIDE and their sums, exactly */
 #ifdef REAL_IS_FLOAT
@@ -21,16 +11,6 @@ enum { BITS = 500, LARGEST = 41, WIDE = 20, WIDEST = 37 };
 #else
 enum { BITS = 2400, LARGEST = 41, WIDE = 200, WIDEST = 300 };
 #endif
-
-static uint64_t seed = 0x9E3779B97F4A7C15u;
-
-static uint64_t random_word(void)
-{
-    seed ^= seed << 13;
-    seed ^= seed >> 7;
-    seed ^= seed << 17;
-    return seed * 0x2545F4914F6CDD1Du;
-}
 
 /* `bits` significant bits, either sign, sizes spread over 2^-spread .. 2^spread */
 static real random_number(int bits, int spread)
@@ -295,18 +275,11 @@ static void status_by_the_bits(void **state)
     assert_status(NULL, 0, 0, 0, 0);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(products),
-        cmocka_unit_test(cancellation),
-        cmocka_unit_test(one_order_for_all),
-        cmocka_unit_test(a_row_is_as_if_alone),
-        cmocka_unit_test(nothing_to_do),
-        cmocka_unit_test(infinities_go_where_the_table_leads),
-        cmocka_unit_test(status_by_the_bits),
-    };
-    const int status = cmocka_run_group_tests(tests, NULL, NULL);
-    mpfr_free_cache();
-    return status;
-}
+ROOM(apply,
+    cmocka_unit_test(products),
+    cmocka_unit_test(cancellation),
+    cmocka_unit_test(one_order_for_all),
+    cmocka_unit_test(a_row_is_as_if_alone),
+    cmocka_unit_test(nothing_to_do),
+    cmocka_unit_test(infinities_go_where_the_table_leads),
+    cmocka_unit_test(status_by_the_bits))

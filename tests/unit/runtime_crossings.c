@@ -1,17 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* runtime/crossings.c against closed forms, published values, and small steps in long double with crossings by
  * bisection. */
-#include <stdarg.h>
-#include <stddef.h>
-#include <setjmp.h>
-#include <stdint.h>
-#include <cmocka.h>
-#include <float.h>
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-#include "real.h"
+#include "runtime.h"
 
 /* Tolerances below are those for doubles; a float's are COARSER times as large. */
 #define COARSER ((double)REAL_EPSILON / DBL_EPSILON)
@@ -50,14 +40,9 @@ typedef struct model {
     pl_crossing *crossing;
 } model;
 
-static uint64_t seed = 0x9E3779B97F4A7C15u;
-
 static double uniform(double lo, double hi)
 {
-    seed ^= seed << 13;
-    seed ^= seed >> 7;
-    seed ^= seed << 17;
-    return lo + (hi - lo) * (double)((seed * 0x2545F4914F6CDD1Du) >> 11) * 0x1p-53;
+    return lo + (hi - lo) * (double)(random_word() >> 11) * 0x1p-53;
 }
 
 static int below(int n)
@@ -1227,7 +1212,8 @@ static void random_systems(void **state)
         free_model(s);
     }
     printf(
-        "# %d systems, %d crossings, worst end state off by %.2g; wrong by signs at step ends, h = 0.5, 1, 2, 4: %d %d %d %d\n",
+        "# %d systems, %d crossings, worst end state off by %.2g; "
+        "wrong by signs at step ends, h = 0.5, 1, 2, 4: %d %d %d %d\n",
         systems, (int)crossings, worst, by_signs[0], by_signs[1], by_signs[2], by_signs[3]);
 }
 
@@ -1257,30 +1243,25 @@ static void parts_of_a_step(void **state)
     }
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(bilinear_period),
-        cmocka_unit_test(stiff_stop),
-        cmocka_unit_test(gear_of_one),
-        cmocka_unit_test(gear_of_two),
-        cmocka_unit_test(grazing),
-        cmocka_unit_test(two_crossings_in_a_step),
-        cmocka_unit_test(all_roots_of_a_load),
-        cmocka_unit_test(hidden_in_the_middle),
-        cmocka_unit_test(narrow_interval),
-        cmocka_unit_test(together),
-        cmocka_unit_test(starts_on_a_breakpoint),
-        cmocka_unit_test(starts_by_higher_derivatives),
-        cmocka_unit_test(starts_where_regions_cannot_occur),
-        cmocka_unit_test(resting),
-        cmocka_unit_test(input_jumps),
-        cmocka_unit_test(chatter),
-        cmocka_unit_test(held_behind_the_last),
-        cmocka_unit_test(overflow_is_not_chatter),
-        cmocka_unit_test(bounds_hold),
-        cmocka_unit_test(random_systems),
-        cmocka_unit_test(parts_of_a_step),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+ROOM(crossings,
+    cmocka_unit_test(bilinear_period),
+    cmocka_unit_test(stiff_stop),
+    cmocka_unit_test(gear_of_one),
+    cmocka_unit_test(gear_of_two),
+    cmocka_unit_test(grazing),
+    cmocka_unit_test(two_crossings_in_a_step),
+    cmocka_unit_test(all_roots_of_a_load),
+    cmocka_unit_test(hidden_in_the_middle),
+    cmocka_unit_test(narrow_interval),
+    cmocka_unit_test(together),
+    cmocka_unit_test(starts_on_a_breakpoint),
+    cmocka_unit_test(starts_by_higher_derivatives),
+    cmocka_unit_test(starts_where_regions_cannot_occur),
+    cmocka_unit_test(resting),
+    cmocka_unit_test(input_jumps),
+    cmocka_unit_test(chatter),
+    cmocka_unit_test(held_behind_the_last),
+    cmocka_unit_test(overflow_is_not_chatter),
+    cmocka_unit_test(bounds_hold),
+    cmocka_unit_test(random_systems),
+    cmocka_unit_test(parts_of_a_step))

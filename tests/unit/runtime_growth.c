@@ -1,25 +1,55 @@
 /* SPDX-License-Identifier: MIT-0 */
 /* runtime/growth.c against GMP and MPFR. */
-#include <stdarg.h>
-#include <stddef.h>
-#include <setjmp.h>
-#include <stdint.h>
-#include <cmocka.h>
-#include <inttypes.h>
-#include <math.h>
-#include <mpfr.h>
-#include "plrt.h"
+#include "runtime.h"
 
-static uint64_t seed = 0x9E3779B97F4A7C15u;
+/* growth(hi, lo) is hi 2^-48 + lo 2^-112; a float's ends with hi */
+#ifdef REAL_IS_FLOAT
+#define pl_growth pl_growthf
+#define pl_growth_add pl_growthf_add
+#define pl_growth_times pl_growthf_times
+#define pl_growth_at pl_growthf_at
+#define pl_growth_value pl_growthf_value
+enum { RATE_WORDS = 2, GROWTH_BITS = 48, LONGEST = 600, EXPONENTS = 400, SCALES = 120, LEAST_SCALE = -100 };
+enum { FAR_LEAST = 40, FAR_EXPONENTS = 140, STEPS = 1000000000, START = 90 };
+#define TOLERANCE 0.52 /* of a power of 2, in units of the last place */
+#define OVERFLOW_SLACK 0x1p-29
+#define NUMBER "%.9g"
+#else
+enum { RATE_WORDS = 3, GROWTH_BITS = 112, LONGEST = 2600, EXPONENTS = 500, SCALES = 240, LEAST_SCALE = -140 };
+enum { FAR_LEAST = -900, FAR_EXPONENTS = 2000, STEPS = 10000000, START = 900 };
+#define TOLERANCE 0.53
+#define OVERFLOW_SLACK 0
+#define NUMBER "%.17g"
+#endif
+#define GROWTH "%016" PRIx64 " %016" PRIx64
 
-static uint64_t random_word(void)
+/* Exponents of the smallest number, the smallest normal one, and of what is beyond the largest */
+#ifdef REAL_IS_FLOAT
+enum { NORMAL = FLT_MIN_EXP - 1, LEAST = NORMAL - FLT_MANT_DIG + 1, BEYOND = FLT_MAX_EXP };
+#else
+enum { NORMAL = DBL_MIN_EXP - 1, LEAST = NORMAL - DBL_MANT_DIG + 1, BEYOND = DBL_MAX_EXP };
+#endif
+
+#ifdef REAL_IS_FLOAT
+static pl_growth growth(int64_t hi, uint64_t lo)
 {
-    seed ^= seed << 13;
-    seed ^= seed >> 7;
-    seed ^= seed << 17;
-    return seed * 0x2545F4914F6CDD1Du;
+    (void)lo;
+    return hi;
 }
 
+static int64_t high_word(pl_growth a)
+{
+    return a;
+}
+
+static uint64_t low_word(pl_growth a)
+{
+    (void)a;
+    return 0;
+}
+
+static const pl_growth most = INT64_MAX, least = INT64_MIN;
+#else
 static pl_growth growth(int64_t hi, uint64_t lo)
 {
     pl_growth a;
@@ -28,37 +58,67 @@ static pl_growth growth(int64_t hi, uint64_t lo)
     return a;
 }
 
+static int64_t high_word(pl_growth a)
+{
+    return a.hi;
+}
+
+static uint64_t low_word(pl_growth a)
+{
+    return a.lo;
+}
+
 static const pl_growth most = {INT64_MAX, UINT64_MAX}, least = {INT64_MIN, 0};
+#endif
 
 static pl_growth integer(int k)
 {
     return growth((int64_t)k * ((int64_t)1 << 48), 0);
 }
 
-/* any size from 2^-112 up, either sign */
+/* k of the smallest part */
+static pl_growth units(int k)
+{
+    return GROWTH_BITS == 48 ? growth(k, 0) : growth(k < 0 ? -1 : 0, (uint64_t)(int64_t)k);
+}
+
+static pl_growth negated(pl_growth a)
+{
+    return growth(-high_word(a) - (low_word(a) != 0), 0u - low_word(a));
+}
+
+/* any size from the smallest part up, either sign */
 static pl_growth random_growth(void)
 {
-    const int shift = (int)(random_word() % 127);
+    const int shift = (int)(random_word() % (GROWTH_BITS + 15));
     const uint64_t hi = random_word() >> 1, lo = random_word();
     const pl_growth a = shift < 64 ? growth((int64_t)(hi >> shift), lo) : growth(0, lo >> (shift - 64));
-    return random_word() & 1 ? growth(-a.hi - (a.lo != 0), 0u - a.lo) : a;
+    return random_word() & 1 ? negated(a) : a;
+}
+
+static int same_growth(pl_growth a, pl_growth b)
+{
+    return high_word(a) == high_word(b) && low_word(a) == low_word(b);
 }
 
 static void assert_growth(pl_growth found, pl_growth expected, const char *what)
 {
-    if (found.hi != expected.hi || found.lo != expected.lo)
-        fail_msg("%s: found %016" PRIx64 " %016" PRIx64 ", expected %016" PRIx64 " %016" PRIx64 ", exactly", what,
-                 (uint64_t)found.hi, found.lo, (uint64_t)expected.hi, expected.lo);
+    if (!same_growth(found, expected))
+        fail_msg("%s: found " GROWTH ", expected " GROWTH ", exactly", what, (uint64_t)high_word(found),
+                 low_word(found), (uint64_t)high_word(expected), low_word(expected));
 }
 
+/* a in units of 2^-GROWTH_BITS */
 static void set_words(mpz_t z, pl_growth a)
 {
-    mpz_set_si(z, a.hi);
-    mpz_mul_2exp(z, z, 64);
-    mpz_add_ui(z, z, a.lo);
+    mpz_set_si(z, high_word(a));
+    if (GROWTH_BITS > 48) {
+        mpz_mul_2exp(z, z, 64);
+        mpz_add_ui(z, z, low_word(a));
+    }
 }
 
-/* z 2^-112, kept to the range */
+/* z 2^-GROWTH_BITS, kept to the range */
 static pl_growth saturated(mpz_t z)
 {
     mpz_t bound, word;
@@ -70,10 +130,10 @@ static pl_growth saturated(mpz_t z)
     } else {
         set_words(bound, least);
         if (mpz_cmp(z, bound) > 0) {
-            mpz_fdiv_q_2exp(word, z, 64);
-            a.hi = mpz_get_si(word);
-            mpz_fdiv_r_2exp(word, z, 64);
-            a.lo = mpz_get_ui(word);
+            mpz_mul_2exp(bound, z, 112 - GROWTH_BITS);
+            mpz_fdiv_q_2exp(word, bound, 64);
+            mpz_fdiv_r_2exp(bound, bound, 64);
+            a = growth(mpz_get_si(word), mpz_get_ui(bound));
         }
     }
     mpz_clears(bound, word, NULL);
@@ -93,13 +153,13 @@ static void sums_are_exact_or_saturate(void **state)
         mpz_add(x, x, y);
         assert_growth(pl_growth_add(a, b), saturated(x), "a + b");
     }
-    assert_growth(pl_growth_add(most, growth(0, 1)), most, "most + smallest");
-    assert_growth(pl_growth_add(least, growth(-1, UINT64_MAX)), least, "least - smallest");
+    assert_growth(pl_growth_add(most, units(1)), most, "most + smallest");
+    assert_growth(pl_growth_add(least, units(-1)), least, "least - smallest");
     assert_growth(pl_growth_add(most, most), most, "most + most");
     assert_growth(pl_growth_add(least, least), least, "least + least");
-    assert_growth(pl_growth_add(most, least), growth(-1, UINT64_MAX), "most + least");
-    assert_growth(pl_growth_add(growth(INT64_MAX, UINT64_MAX - 1), growth(0, 1)), most, "up to the end");
-    assert_growth(pl_growth_add(growth(INT64_MIN, 1), growth(-1, UINT64_MAX)), least, "down to the end");
+    assert_growth(pl_growth_add(most, least), units(-1), "most + least");
+    assert_growth(pl_growth_add(negated(pl_growth_add(least, units(2))), units(1)), most, "up to the end");
+    assert_growth(pl_growth_add(pl_growth_add(least, units(1)), units(-1)), least, "down to the end");
     mpz_clears(x, y, NULL);
 }
 
@@ -124,7 +184,7 @@ static void multiples_are_exact_or_saturate(void **state)
     assert_growth(pl_growth_times(least, UINT64_MAX), least, "(2^64 - 1) least");
     assert_growth(pl_growth_times(integer(-1), 32768), least, "-2^15, which there is");
     assert_growth(pl_growth_times(integer(1), 32768), most, "2^15, which there is not");
-    assert_growth(pl_growth_times(integer(1), (uint64_t)1 << 48), most, "2^48: the upper word alone would be 0");
+    assert_growth(pl_growth_times(integer(1), (uint64_t)1 << 48), most, "2^48: one word alone would be 0");
     mpz_clear(x);
 }
 
@@ -140,7 +200,7 @@ static void multiples_are_repeated_additions(void **state)
     }
 }
 
-/* value in units of 2^-112, rounded to nearest, halves away from 0 */
+/* value in units of 2^-GROWTH_BITS, rounded to nearest, halves away from 0 */
 static pl_growth growth_of(mpfr_t value)
 {
     mpfr_t y;
@@ -148,7 +208,7 @@ static pl_growth growth_of(mpfr_t value)
     pl_growth a;
     mpfr_init2(y, mpfr_get_prec(value));
     mpz_init(z);
-    mpfr_mul_2ui(y, value, 112, MPFR_RNDN);
+    mpfr_mul_2ui(y, value, GROWTH_BITS, MPFR_RNDN);
     mpfr_round(y, y);
     mpfr_get_z(z, y, MPFR_RNDN);
     a = saturated(z);
@@ -163,12 +223,12 @@ static pl_rate random_rate(mpfr_t value, int exponent)
     pl_rate rate;
     mpz_t z;
     int i;
-    for (i = 0; i < 3; i++)
+    for (i = 0; i < RATE_WORDS; i++)
         rate.word[i] = random_word();
     rate.word[0] |= (uint64_t)1 << 63;
     rate.exponent = exponent;
     mpz_init(z);
-    mpz_import(z, 3, 1, sizeof rate.word[0], 0, 0, rate.word);
+    mpz_import(z, RATE_WORDS, 1, sizeof rate.word[0], 0, 0, rate.word);
     mpfr_set_z(value, z, MPFR_RNDN);
     mpfr_mul_2si(value, value, -(long)exponent, MPFR_RNDN);
     mpz_clear(z);
@@ -177,7 +237,7 @@ static pl_rate random_rate(mpfr_t value, int exponent)
 
 static long inside, beyond; /* how many of the exponents below are not, and are, saturated */
 
-static void assert_growth_at(const pl_rate *rate, mpfr_t value, mpfr_t scratch, double t)
+static void assert_growth_at(const pl_rate *rate, mpfr_t value, mpfr_t scratch, real t)
 {
     const int negative = (int)(random_word() & 1);
     pl_growth found = pl_growth_at(rate, negative, t), expected;
@@ -185,43 +245,52 @@ static void assert_growth_at(const pl_rate *rate, mpfr_t value, mpfr_t scratch, 
     if (negative)
         mpfr_neg(scratch, scratch, MPFR_RNDN);
     expected = growth_of(scratch);
-    if (found.hi != expected.hi || found.lo != expected.lo)
-        fail_msg("rate exponent %d, %s, t = %.17g: found %016" PRIx64 " %016" PRIx64 ", expected %016" PRIx64
-                 " %016" PRIx64 ", exactly",
-                 rate->exponent, negative ? "negative" : "positive", t, (uint64_t)found.hi, found.lo,
-                 (uint64_t)expected.hi, expected.lo);
-    if (expected.hi == INT64_MAX || expected.hi == INT64_MIN)
+    if (!same_growth(found, expected))
+        fail_msg("rate exponent %d, %s, t = " NUMBER ": found " GROWTH ", expected " GROWTH ", exactly", rate->exponent,
+                 negative ? "negative" : "positive", (double)t, (uint64_t)high_word(found), low_word(found),
+                 (uint64_t)high_word(expected), low_word(expected));
+    if (same_growth(expected, most) || same_growth(expected, least))
         beyond++;
-    else if (expected.hi != 0 && expected.hi != -1)
+    else if (high_word(expected) != 0 && high_word(expected) != -1)
         inside++;
+}
+
+/* 63 bits times 2^exponent */
+static real random_time(int exponent)
+{
+    const real t = (real)(int64_t)random_word();
+    return (real)ldexp(t, exponent);
 }
 
 static void exponent_at_any_time(void **state)
 {
-    static const double special[] = {0.0, -0.0, 1.0, -1.0, 0x1p-1074, -0x1p-1074, 0x1.fffffffffffffp1023, 0x1p-1022,
-                                     0x0.fffffffffffffp-1022, 1e300, -1e-300, 0.01, 30.0};
+#ifdef REAL_IS_FLOAT
+    static const real special[] = {0.0f, -0.0f, 1.0f, -1.0f, 0x1p-149f, -0x1p-149f, 0x1.fffffep127f, 0x1p-126f,
+                                   0x0.fffffep-126f, 1e30f, -1e-30f, 0.01f, 30.0f};
+#else
+    static const real special[] = {0.0, -0.0, 1.0, -1.0, 0x1p-1074, -0x1p-1074, 0x1.fffffffffffffp1023, 0x1p-1022,
+                                   0x0.fffffffffffffp-1022, 1e300, -1e-300, 0.01, 30.0};
+#endif
     mpfr_t value, scratch;
     int i;
     (void)state;
-    mpfr_init2(value, 192);
-    mpfr_init2(scratch, 2600);
+    mpfr_init2(value, 64 * RATE_WORDS);
+    mpfr_init2(scratch, LONGEST);
     for (i = 0; i < 20000; i++) {
-        pl_rate rate = random_rate(value, (int)(random_word() % 500) - 50);
-        union {
-            uint64_t bits;
-            double t;
-        } any;
-        any.bits = random_word();
-        if (isfinite(any.t)) /* 1e-308 .. 1e308, either sign */
-            assert_growth_at(&rate, value, scratch, any.t);
-        assert_growth_at(&rate, value, scratch,
-                         ldexp((double)(int64_t)random_word(), (int)(random_word() % 240) - 140));
+        pl_rate rate = random_rate(value, (int)(random_word() % EXPONENTS) - 50);
+        real_parts any;
+        any.bits = (real_bits)random_word();
+        if (isfinite(any.value)) /* of any size, either sign */
+            assert_growth_at(&rate, value, scratch, any.value);
+        assert_growth_at(&rate, value, scratch, random_time((int)(random_word() % SCALES) + LEAST_SCALE));
         assert_growth_at(&rate, value, scratch, special[(size_t)i % (sizeof special / sizeof special[0])]);
-        rate = random_rate(value, (int)(random_word() % 40) + 180); /* about the end of the range and down to 2^-60 */
-        assert_growth_at(&rate, value, scratch, ldexp((double)(int64_t)random_word(), (int)(random_word() % 40) - 65));
-        rate = random_rate(value, (int)(random_word() % 2000) - 900); /* far from it, but the product is not */
+        /* about the end of the range and down to 2^-60 */
+        rate = random_rate(value, (int)(random_word() % 40) + 64 * RATE_WORDS - 12);
+        assert_growth_at(&rate, value, scratch, random_time((int)(random_word() % 40) - 65));
+        /* far from it, but the product is not */
+        rate = random_rate(value, (int)(random_word() % FAR_EXPONENTS) + FAR_LEAST);
         assert_growth_at(&rate, value, scratch,
-                         ldexp((double)(int64_t)random_word(), rate.exponent - 254 + (int)(random_word() % 20)));
+                         random_time(rate.exponent - 64 * RATE_WORDS - 62 + (int)(random_word() % 20)));
     }
     print_message("# exponents tested: %ld of ordinary size, %ld beyond the range\n", inside, beyond);
     assert_true(inside > 10000 && beyond > 10000);
@@ -230,34 +299,38 @@ static void exponent_at_any_time(void **state)
 
 static void exponent_at_special_times(void **state)
 {
-    const pl_rate one = {{(uint64_t)1 << 63, 0, 0}, 191}, none = {{0, 0, 0}, 0};
-    const pl_rate ones = {{UINT64_MAX, UINT64_MAX, UINT64_MAX}, 177};
+    const pl_rate one = {{(uint64_t)1 << 63}, 64 * RATE_WORDS - 1}, none = {{0}, 0};
+    const real infinite = (real)INFINITY, half = (real)ldexp(1, -GROWTH_BITS - 1);
+    pl_rate ones;
+    memset(ones.word, 0xff, sizeof ones.word);
+    ones.exponent = 64 * RATE_WORDS - 15;
     (void)state;
-    assert_growth(pl_growth_at(&one, 0, (double)INFINITY), most, "infinite t");
-    assert_growth(pl_growth_at(&one, 1, (double)INFINITY), least, "infinite t, negative rate");
-    assert_growth(pl_growth_at(&one, 0, -(double)INFINITY), least, "t = -infinity");
-    assert_growth(pl_growth_at(&none, 0, (double)INFINITY), integer(0), "infinite t, rate 0");
-    assert_growth(pl_growth_at(&one, 0, (double)NAN), integer(0), "t not a number");
-    assert_growth(pl_growth_at(&one, 1, (double)NAN), integer(0), "t not a number, negative rate");
-    assert_growth(pl_growth_at(&none, 1, 1e10), integer(0), "rate 0");
-    assert_growth(pl_growth_at(&one, 0, 7.25), growth((int64_t)29 << 46, 0), "7.25");
-    assert_growth(pl_growth_at(&one, 1, 7.25), growth(-((int64_t)29 << 46), 0), "-7.25");
-    assert_growth(pl_growth_at(&one, 1, -7.25), growth((int64_t)29 << 46, 0), "7.25 from two signs");
-    assert_growth(pl_growth_at(&one, 0, 0x1p-113), growth(0, 1), "half a unit");
-    assert_growth(pl_growth_at(&one, 0, -0x1p-113), growth(-1, UINT64_MAX), "half a unit, negative");
-    assert_growth(pl_growth_at(&one, 0, 0x1.fffffffffffffp-114), integer(0), "less than half a unit");
-    assert_growth(pl_growth_at(&one, 0, 32767.0), integer(32767), "the largest integer");
-    assert_growth(pl_growth_at(&one, 0, 32768.0), most, "2^15");
-    assert_growth(pl_growth_at(&one, 0, -32768.0), least, "-2^15");
-    assert_growth(pl_growth_at(&ones, 0, 1.0), most, "rounded up beyond the range");
-    assert_growth(pl_growth_at(&ones, 1, 1.0), least, "rounded down to its end");
+    assert_growth(pl_growth_at(&one, 0, infinite), most, "infinite t");
+    assert_growth(pl_growth_at(&one, 1, infinite), least, "infinite t, negative rate");
+    assert_growth(pl_growth_at(&one, 0, -infinite), least, "t = -infinity");
+    assert_growth(pl_growth_at(&none, 0, infinite), integer(0), "infinite t, rate 0");
+    assert_growth(pl_growth_at(&one, 0, (real)NAN), integer(0), "t not a number");
+    assert_growth(pl_growth_at(&one, 1, (real)NAN), integer(0), "t not a number, negative rate");
+    assert_growth(pl_growth_at(&none, 1, (real)1e10), integer(0), "rate 0");
+    assert_growth(pl_growth_at(&one, 0, (real)7.25), growth((int64_t)29 << 46, 0), "7.25");
+    assert_growth(pl_growth_at(&one, 1, (real)7.25), growth(-((int64_t)29 << 46), 0), "-7.25");
+    assert_growth(pl_growth_at(&one, 1, -(real)7.25), growth((int64_t)29 << 46, 0), "7.25 from two signs");
+    assert_growth(pl_growth_at(&one, 0, half), units(1), "half a unit");
+    assert_growth(pl_growth_at(&one, 0, -half), units(-1), "half a unit, negative");
+    assert_growth(pl_growth_at(&one, 0, half * (1 - REAL_EPSILON / 2)), integer(0), "less than half a unit");
+    assert_growth(pl_growth_at(&one, 0, 32767), integer(32767), "the largest integer");
+    assert_growth(pl_growth_at(&one, 0, 32768), most, "2^15");
+    assert_growth(pl_growth_at(&one, 0, -32768), least, "-2^15");
+    assert_growth(pl_growth_at(&ones, 0, 1), most, "rounded up beyond the range");
+    assert_growth(pl_growth_at(&ones, 1, 1), least, "rounded down to its end");
 }
 
-/* e^{a t} after 10^9 steps: the only error of the exponent is that of the step's, 2^-113, times n. */
+/* e^{a t} after 10^9 steps: the only error of the exponent is that of the step's, half a unit, times n. */
 static void exponent_after_a_thousand_million_steps(void **state)
 {
     static const double rates[] = {-0.7, 0.3, -1e-9, 1e-300, -0.0001};
     const uint64_t steps = 1000000000;
+    const double tolerance = ldexp(1.0, 29 - GROWTH_BITS);
     mpfr_t step, exact, found;
     mpz_t z;
     size_t i;
@@ -270,28 +343,27 @@ static void exponent_after_a_thousand_million_steps(void **state)
         mpfr_d_div(step, rates[i] * 1e-6, step, MPFR_RNDN); /* h = 1e-6 s */
         set_words(z, pl_growth_times(growth_of(step), steps));
         mpfr_set_z(found, z, MPFR_RNDN);
-        mpfr_div_2ui(found, found, 112, MPFR_RNDN);
+        mpfr_div_2ui(found, found, GROWTH_BITS, MPFR_RNDN);
         mpfr_mul_ui(exact, step, (unsigned long)steps, MPFR_RNDN);
         mpfr_sub(found, found, exact, MPFR_RNDN);
         off = mpfr_get_d(found, MPFR_RNDN);
-        if (!(fabs(off) <= 0x1p-83))
-            fail_msg("exponent after 1e9 steps of rate %.17g off by %.17g, tolerance 2^-83 = %.17g", rates[i], off,
-                     0x1p-83);
+        if (!(fabs(off) <= tolerance))
+            fail_msg("exponent after 1e9 steps of rate %.17g off by %.17g, tolerance %.17g", rates[i], off, tolerance);
     }
     mpz_clear(z);
     mpfr_clears(step, exact, found, (mpfr_ptr)0);
 }
 
-/* The same, step by step as generated code goes: the sum after every step is the multiple. */
+/* The same, step by step as generated code goes: the sum after all steps is the multiple. */
 static void additions_do_not_drift(void **state)
 {
-    const pl_growth step = growth(-1, 0xFFFFFFFF00000001u);
-    pl_growth a = integer(900);
+    const volatile pl_growth step = GROWTH_BITS == 48 ? units(-123457) : growth(-1, 0xFFFFFFFF00000001u);
+    pl_growth a = integer(START); /* `step` is read anew each time: no compiler multiplies instead */
     long n;
     (void)state;
-    for (n = 0; n < 10000000; n++)
+    for (n = 0; n < STEPS; n++)
         a = pl_growth_add(a, step);
-    assert_growth(a, pl_growth_add(integer(900), pl_growth_times(step, 10000000)), "10^7 additions");
+    assert_growth(a, pl_growth_add(integer(START), pl_growth_times(step, STEPS)), "sum of all steps");
 }
 
 static void integers_are_exact(void **state)
@@ -299,42 +371,58 @@ static void integers_are_exact(void **state)
     int k;
     (void)state;
     for (k = -32768; k < 32768; k++) {
-        const double found = pl_growth_value(integer(k)), expected = ldexp(1.0, k);
+        const real found = pl_growth_value(integer(k)), expected = (real)ldexp(1.0, k);
         if (found != expected || signbit(found))
-            fail_msg("2^%d: found %.17g, expected %.17g, exactly", k, found, expected);
+            fail_msg("2^%d: found %.17g, expected %.17g, exactly", k, (double)found, (double)expected);
     }
-    assert_true(pl_growth_value(most) == (double)INFINITY);
-    assert_true(pl_growth_value(least) == 0.0);
+    assert_true(isinf(pl_growth_value(most)) && pl_growth_value(most) > 0);
+    assert_true(pl_growth_value(least) == 0);
 }
 
 static double worst_error; /* in units of the last place of the result, subnormal or not */
 
+/* Whether infinite is right where the value is: half a unit beyond the largest number */
+static int overflows(mpfr_t exact, double slack)
+{
+    mpfr_t limit;
+    int beyond_it;
+    mpfr_init2(limit, 160);
+    mpfr_set_ui_2exp(limit, 1, -REAL_DIGITS - 1, MPFR_RNDN);
+    mpfr_ui_sub(limit, 1, limit, MPFR_RNDN);
+    mpfr_mul_2si(limit, limit, BEYOND, MPFR_RNDN);
+    mpfr_mul_d(limit, limit, 1 + slack, MPFR_RNDN);
+    beyond_it = mpfr_cmp(exact, limit) >= 0;
+    mpfr_clear(limit);
+    return beyond_it;
+}
+
 static void assert_value(pl_growth a, mpfr_t x, mpfr_t exact)
 {
-    const double found = pl_growth_value(a);
-    double expected, unit, error;
+    const double found = (double)pl_growth_value(a);
+    double error;
+    long exponent;
     mpz_t z;
     mpz_init(z);
     set_words(z, a);
-    mpfr_set_z(x, z, MPFR_RNDN); /* 128 bits: exact */
-    mpfr_div_2ui(x, x, 112, MPFR_RNDN);
+    mpfr_set_z(x, z, MPFR_RNDN); /* at most 128 bits: exact */
+    mpfr_div_2ui(x, x, GROWTH_BITS, MPFR_RNDN);
     mpz_clear(z);
     mpfr_exp2(exact, x, MPFR_RNDN);
-    expected = mpfr_get_d(exact, MPFR_RNDN);
-    if (isinf(expected)) {
-        if (!isinf(found) || found < 0.0)
-            fail_msg("2^(%016" PRIx64 " %016" PRIx64 "): found %.17g, expected infinity", (uint64_t)a.hi, a.lo, found);
+    if (isinf(found) ? found < 0 || !overflows(exact, -OVERFLOW_SLACK) : overflows(exact, OVERFLOW_SLACK))
+        fail_msg("2^(" GROWTH "): found %.17g, expected %.17g or infinity beside it", (uint64_t)high_word(a),
+                 low_word(a), found, mpfr_get_d(exact, MPFR_RNDN));
+    if (isinf(found))
         return;
-    }
-    unit = ldexp(1.0, (expected < 0x1p-1022 ? -1022 : ilogb(expected)) - 52);
+    exponent = (long)mpfr_get_exp(exact) - 1;
+    exponent = exponent < NORMAL ? NORMAL : exponent >= BEYOND ? BEYOND - 1 : exponent;
     mpfr_sub_d(x, exact, found, MPFR_RNDN);
-    mpfr_div_d(x, x, unit, MPFR_RNDN);
+    mpfr_div_2si(x, x, exponent - REAL_DIGITS + 1, MPFR_RNDN);
     error = fabs(mpfr_get_d(x, MPFR_RNDN));
     if (error > worst_error)
         worst_error = error;
-    if (!(error < 0.53) || signbit(found))
-        fail_msg("2^(%016" PRIx64 " %016" PRIx64 "): found %.17g, expected %.17g; off by %.17g ulp, tolerance 0.53",
-                 (uint64_t)a.hi, a.lo, found, expected, error);
+    if (!(error < TOLERANCE) || signbit(found))
+        fail_msg("2^(" GROWTH "): found %.17g, expected %.17g; off by %.17g ulp, tolerance %.17g",
+                 (uint64_t)high_word(a), low_word(a), found, mpfr_get_d(exact, MPFR_RNDN), error, TOLERANCE);
 }
 
 static pl_growth between(int low, int high)
@@ -346,45 +434,40 @@ static pl_growth between(int low, int high)
 
 static void powers_of_2(void **state)
 {
-    static const int edges[] = {-1076, -1075, -1074, -1073, -1023, -1022, -1021, -1, 0, 1, 1023, 1024, 1025};
+    static const int edges[] = {LEAST - 2, LEAST - 1, LEAST, LEAST + 1, NORMAL - 1, NORMAL, NORMAL + 1,
+                                -1, 0, 1, BEYOND - 1, BEYOND, BEYOND + 1};
     mpfr_t x, exact;
     long i;
     (void)state;
     mpfr_inits2(160, x, exact, (mpfr_ptr)0);
     for (i = 0; i < 400000; i++)
-        assert_value(between(-1080, 1026), x, exact);
+        assert_value(between(LEAST - 6, BEYOND + 2), x, exact);
     for (i = 0; i < 300000; i++)
         assert_value(between(-1, 1), x, exact);
     for (i = 0; i < 200000; i++)
-        assert_value(between(-1077, -1021), x, exact); /* subnormal results */
+        assert_value(between(LEAST - 3, NORMAL + 1), x, exact); /* subnormal results */
     for (i = 0; i < 100000; i++) {
         const pl_growth edge = integer(edges[(size_t)i % (sizeof edges / sizeof edges[0])]);
         const uint64_t off = random_word() >> (random_word() % 49 + 15);
-        const pl_growth beside = growth((int64_t)off, random_word()), half = growth((int64_t)1 << 47, 0);
+        const pl_growth beside = growth((int64_t)off, random_word()), below = pl_growth_add(negated(beside), units(-1));
+        const pl_growth middle =
+            pl_growth_add(edge, growth((int64_t)1 << 47, 0)); /* where the nearest integer changes */
         assert_value(pl_growth_add(edge, beside), x, exact);
-        assert_value(pl_growth_add(edge, growth(-1 - beside.hi, beside.lo)), x, exact);
-        assert_value(pl_growth_add(pl_growth_add(edge, half), beside), x,
-                     exact); /* where the nearest integer changes */
-        assert_value(pl_growth_add(pl_growth_add(edge, half), growth(-1 - beside.hi, beside.lo)), x, exact);
+        assert_value(pl_growth_add(edge, below), x, exact);
+        assert_value(pl_growth_add(middle, beside), x, exact);
+        assert_value(pl_growth_add(middle, below), x, exact);
     }
     print_message("# largest error of pl_growth_value: %.5f ulp\n", worst_error);
     mpfr_clears(x, exact, (mpfr_ptr)0);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(sums_are_exact_or_saturate),
-        cmocka_unit_test(multiples_are_exact_or_saturate),
-        cmocka_unit_test(multiples_are_repeated_additions),
-        cmocka_unit_test(exponent_at_any_time),
-        cmocka_unit_test(exponent_at_special_times),
-        cmocka_unit_test(exponent_after_a_thousand_million_steps),
-        cmocka_unit_test(additions_do_not_drift),
-        cmocka_unit_test(integers_are_exact),
-        cmocka_unit_test(powers_of_2),
-    };
-    const int status = cmocka_run_group_tests(tests, NULL, NULL);
-    mpfr_free_cache();
-    return status;
-}
+ROOM(growth,
+    cmocka_unit_test(sums_are_exact_or_saturate),
+    cmocka_unit_test(multiples_are_exact_or_saturate),
+    cmocka_unit_test(multiples_are_repeated_additions),
+    cmocka_unit_test(exponent_at_any_time),
+    cmocka_unit_test(exponent_at_special_times),
+    cmocka_unit_test(exponent_after_a_thousand_million_steps),
+    cmocka_unit_test(additions_do_not_drift),
+    cmocka_unit_test(integers_are_exact),
+    cmocka_unit_test(powers_of_2))

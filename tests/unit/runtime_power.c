@@ -1,14 +1,6 @@
 /* SPDX-License-Identifier: MIT-0 */
 /* runtime/power.c against closed forms in MPFR. */
-#include <stdarg.h>
-#include <stddef.h>
-#include <setjmp.h>
-#include <stdint.h>
-#include <cmocka.h>
-#include <inttypes.h>
-#include <math.h>
-#include <mpfr.h>
-#include "real.h"
+#include "runtime.h"
 
 enum { BITS = 400 };
 
@@ -261,18 +253,15 @@ static void overflow_has_the_sign_of_the_sum(void **state)
     assert_double(x[2].hi, 0.0, "no terms");
 }
 
-int main(void)
+static void report(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(rotation),
-        cmocka_unit_test(coupled),
-        cmocka_unit_test(fibonacci),
-        cmocka_unit_test(no_steps),
-        cmocka_unit_test(overflow_is_infinite_and_stays_where_it_is),
-        cmocka_unit_test(overflow_has_the_sign_of_the_sum),
-    };
-    const int status = cmocka_run_group_tests(tests, NULL, NULL);
     print_message("# largest error of pl_power_apply: %.2g k 2^%d\n", worst, ilogb(UNIT));
-    mpfr_free_cache();
-    return status;
 }
+
+ROOM_WITH(power, NULL, report,
+    cmocka_unit_test(rotation),
+    cmocka_unit_test(coupled),
+    cmocka_unit_test(fibonacci),
+    cmocka_unit_test(no_steps),
+    cmocka_unit_test(overflow_is_infinite_and_stays_where_it_is),
+    cmocka_unit_test(overflow_has_the_sign_of_the_sum))

@@ -1,29 +1,11 @@
 /* SPDX-License-Identifier: MIT-0 */
-/* rate.c against w / (2 pi) of 400 bits; also compiled with RATE_OF_FLOATS, for those. */
-#include "plrt.h"
+/* runtime/rate.c against w / (2 pi) of 400 bits. */
+#include "runtime.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <float.h>
-#include <math.h>
-#include <mpfr.h>
-#include <stdlib.h>
-
-#include <cmocka.h>
-
-#ifdef RATE_OF_FLOATS
-typedef float real;
-typedef pl_twof two;
-typedef pl_ratef rate;
-#define RATE_OF pl_ratef_of
-enum { WORDS = 2, DIGITS = FLT_MANT_DIG, LEAST = FLT_MIN_EXP, MOST = FLT_MAX_EXP, BOUND = -86 };
+#ifdef REAL_IS_FLOAT
+enum { WORDS = 2, LEAST = FLT_MIN_EXP, MOST = FLT_MAX_EXP, BOUND = -86 };
 #else
-typedef double real;
-typedef pl_two two;
-typedef pl_rate rate;
-#define RATE_OF pl_rate_of
-enum { WORDS = 3, DIGITS = DBL_MANT_DIG, LEAST = DBL_MIN_EXP, MOST = DBL_MAX_EXP, BOUND = -115 };
+enum { WORDS = 3, LEAST = DBL_MIN_EXP, MOST = DBL_MAX_EXP, BOUND = -115 };
 #endif
 
 enum { BITS = 400 };
@@ -32,52 +14,54 @@ static mpfr_t turn, expected, found;
 
 static double uniform(void)
 {
-	static uint64_t state = 1;
-	state = state * UINT64_C(6364136223846793005) + UINT64_C(1442695040888963407);
-	return (double)(state >> 11) / 0x1p53;
+    static uint64_t state = 1;
+    state = state * UINT64_C(6364136223846793005) + UINT64_C(1442695040888963407);
+    return (double)(state >> 11) / 0x1p53;
 }
 
 /* Error in bits, relative to the rate; least that a double tells where there is none */
-static double error_of(two w, const rate *r)
+static double error_of(pl_two w, const pl_rate *r)
 {
-	mpfr_set_zero(found, 1);
-	for (int i = 0; i < WORDS; i++) {
-		mpfr_mul_2ui(found, found, 64, MPFR_RNDN);
-		mpfr_add_ui(found, found, r->word[i], MPFR_RNDN);
-	}
-	mpfr_mul_2si(found, found, -r->exponent, MPFR_RNDN);
-	mpfr_set_d(expected, (double)w.hi, MPFR_RNDN);
-	mpfr_add_d(expected, expected, (double)w.lo, MPFR_RNDN);
-	mpfr_div(expected, expected, turn, MPFR_RNDN);
-	mpfr_sub(found, found, expected, MPFR_RNDN);
-	mpfr_div(found, found, expected, MPFR_RNDN);
-	return mpfr_zero_p(found) ? -BITS : (double)mpfr_get_exp(found);
+    mpfr_set_zero(found, 1);
+    for (int i = 0; i < WORDS; i++) {
+        mpfr_mul_2ui(found, found, 64, MPFR_RNDN);
+        mpfr_add_ui(found, found, r->word[i], MPFR_RNDN);
+    }
+    mpfr_mul_2si(found, found, -r->exponent, MPFR_RNDN);
+    mpfr_set_d(expected, (double)w.hi, MPFR_RNDN);
+    mpfr_add_d(expected, expected, (double)w.lo, MPFR_RNDN);
+    mpfr_div(expected, expected, turn, MPFR_RNDN);
+    mpfr_sub(found, found, expected, MPFR_RNDN);
+    mpfr_div(found, found, expected, MPFR_RNDN);
+    return mpfr_zero_p(found) ? -BITS : (double)mpfr_get_exp(found);
 }
 
-static void check(two w, double bound, double *worst)
+static void check(pl_two w, double bound, double *worst)
 {
-	const rate r = RATE_OF(w);
-	const double error = error_of(w, &r);
-	*worst = fmax(*worst, error);
-	if (error > bound)
-		fail_msg("w = %a + %a: off by 2^%g of the rate, bound 2^%g", (double)w.hi, (double)w.lo, error, bound);
-	if (r.word[0] >> 63 == 0)
-		fail_msg("w = %a + %a: the top bit of word[0] is 0", (double)w.hi, (double)w.lo);
+    const pl_rate r = pl_rate_of(w);
+    const double error = error_of(w, &r);
+    *worst = fmax(*worst, error);
+    if (error > bound)
+        fail_msg("w = %a + %a: off by 2^%g of the rate, bound 2^%g", (double)w.hi, (double)w.lo, error, bound);
+    if (r.word[0] >> 63 == 0)
+        fail_msg("w = %a + %a: the top bit of word[0] is 0", (double)w.hi, (double)w.lo);
 }
 
 /* A second word of any size up to half a unit of the first, 0 now and then */
 static void any_frequency(void **state)
 {
-	double worst = -BITS;
-	(void)state;
-	for (int k = 0; k < 100000; k++) {
-		const int exponent = LEAST + 2 * DIGITS + (int)(uniform() * (MOST - LEAST - 2 * DIGITS - 2));
-		two w;
-		w.hi = (real)ldexp(1 + uniform(), exponent);
-		w.lo = k % 4 == 0 ? 0 : (real)ldexp(2 * uniform() - 1, exponent - DIGITS - (k % 4 == 1 ? (int)(uniform() * 80) : 0));
-		check(w, BOUND, &worst);
-	}
-	print_message("# off by 2^%g at most, bound 2^%d\n", worst, BOUND);
+    double worst = -BITS;
+    (void)state;
+    for (int k = 0; k < 100000; k++) {
+        const int exponent = LEAST + 2 * REAL_DIGITS + (int)(uniform() * (MOST - LEAST - 2 * REAL_DIGITS - 2));
+        pl_two w;
+        w.hi = (real)ldexp(1 + uniform(), exponent);
+        w.lo = k % 4 == 0
+                   ? 0
+                   : (real)ldexp(2 * uniform() - 1, exponent - REAL_DIGITS - (k % 4 == 1 ? (int)(uniform() * 80) : 0));
+        check(w, BOUND, &worst);
+    }
+    print_message("# off by 2^%g at most, bound 2^%d\n", worst, BOUND);
 }
 
 /* One word is exact, so only the rate's own bits are short: 2 pi, whole numbers, the ends of the range, subnormal
@@ -92,38 +76,42 @@ static void one_word(void **state)
                             1e-3,
                             0x1p-20,
                             ldexp(1, LEAST - 1),
-                            ldexp(1, LEAST - DIGITS),
-                            ldexp(3, LEAST - DIGITS),
-                            ldexp(2 - ldexp(1, 1 - DIGITS), MOST - 1) };
+                            ldexp(1, LEAST - REAL_DIGITS),
+                            ldexp(3, LEAST - REAL_DIGITS),
+                            ldexp(2 - ldexp(1, 1 - REAL_DIGITS), MOST - 1) };
     double worst = -BITS;
     (void)state;
     for (size_t k = 0; k < sizeof some / sizeof *some; k++) {
-        two w = { (real)some[k], 0 };
+        pl_two w = { (real)some[k], 0 };
         check(w, 1 - 64 * WORDS + 1, &worst);
-	}
-	two pi = { (real)6.283185307179586476925286766559L, 0 };
-	pi.lo = (real)(6.283185307179586476925286766559L - (long double)pi.hi);
-	check(pi, BOUND, &worst);
+    }
+    pl_two pi = { (real)6.283185307179586476925286766559L, 0 };
+    pi.lo = (real)(6.283185307179586476925286766559L - (long double)pi.hi);
+    check(pi, BOUND, &worst);
 }
 
 static void none(void **state)
 {
-	const two w = { 0, 0 };
-	const rate r = RATE_OF(w);
-	(void)state;
-	for (int i = 0; i < WORDS; i++)
-		assert_int_equal(r.word[i], 0);
+    const pl_two w = { 0, 0 };
+    const pl_rate r = pl_rate_of(w);
+    (void)state;
+    for (int i = 0; i < WORDS; i++)
+        assert_int_equal(r.word[i], 0);
 }
 
-int main(void)
+static void start(void)
 {
-    const struct CMUnitTest tests[] = { cmocka_unit_test(any_frequency), cmocka_unit_test(one_word),
-                                        cmocka_unit_test(none) };
     mpfr_inits2(BITS, turn, expected, found, (mpfr_ptr)0);
     mpfr_const_pi(turn, MPFR_RNDN);
     mpfr_mul_2ui(turn, turn, 1, MPFR_RNDN);
-    const int failed = cmocka_run_group_tests(tests, NULL, NULL);
-    mpfr_clears(turn, expected, found, (mpfr_ptr)0);
-    mpfr_free_cache();
-    return failed;
 }
+
+static void end(void)
+{
+    mpfr_clears(turn, expected, found, (mpfr_ptr)0);
+}
+
+ROOM_WITH(rate, start, end,
+    cmocka_unit_test(any_frequency),
+    cmocka_unit_test(one_word),
+    cmocka_unit_test(none))

@@ -1,14 +1,6 @@
 /* SPDX-License-Identifier: MIT-0 */
 /* runtime/retune.c: increments against Taylor's series in MPFR, equations against exact fractions. */
-#include <stdarg.h>
-#include <stddef.h>
-#include <setjmp.h>
-#include <stdint.h>
-#include <cmocka.h>
-#include <math.h>
-#include <mpfr.h>
-#include <string.h>
-#include "real.h"
+#include "runtime.h"
 
 /* BOUND: of an increment, in units in the last place of the largest entry.  FARTHEST: log2 of the largest |A| tau.
  * SMALLEST: below it underflow may take bits.  LOSS: of an equation, in parts of all its terms. */
@@ -25,11 +17,11 @@ enum { FARTHEST = 20 };
 
 /* ---- random numbers ---- */
 
-static uint64_t seed;
+static uint64_t drawn;
 
 static uint64_t random_bits(void) /* splitmix64 */
 {
-    uint64_t z = seed += 0x9e3779b97f4a7c15u;
+    uint64_t z = drawn += 0x9e3779b97f4a7c15u;
     z = (z ^ z >> 30) * 0xbf58476d1ce4e5b9u;
     z = (z ^ z >> 27) * 0x94d049bb133111ebu;
     return z ^ z >> 31;
@@ -187,7 +179,8 @@ static void assert_columns(const system_of *s, real tau, const real *D, int from
                             print_message("# A[%d][%d] = %.17g + %.17g\n", row, column, s->A[row * s->size + column].hi,
                                           s->A[row * s->size + column].lo);
                 fail_msg(
-                    "%s, %d states, size %d, tau = %.17g, D[%d][%d]: found %.17g, expected %.17g; off by %g units, bound %d",
+                    "%s, %d states, size %d, tau = %.17g, D[%d][%d]: found %.17g, expected %.17g; off by %g "
+                    "units, bound %d",
                     family, s->states, s->size, (double)tau, i, j, (double)D[i * s->size + j],
                     mpfr_get_d(exact_D[i * s->size + j], MPFR_RNDN), unit > 0 ? off / unit : (double)INFINITY, BOUND);
             }
@@ -283,7 +276,7 @@ static void masses_without_loads(int count, double least_damping, double most_da
 static void damped(void **state)
 {
     (void)state;
-    seed = 1;
+    drawn = 1;
     masses_without_loads(600, 1e-4, 3.0, -20.0, -2.0, "damped, short");
     masses_without_loads(1000, 1e-4, 3.0, -2.0, 3.0, "damped, |A| tau about 1");
     masses_without_loads(500, 1e-4, 3.0, 3.0, FARTHEST, "damped, long");
@@ -292,7 +285,7 @@ static void damped(void **state)
 static void undamped(void **state)
 {
     (void)state;
-    seed = 2;
+    drawn = 2;
     masses_without_loads(300, 0, 0, -20.0, -2.0, "undamped, short");
     masses_without_loads(1000, 0, 0, -2.0, 3.0, "undamped, |A| tau about 1");
     masses_without_loads(500, 0, 0, 3.0, FARTHEST, "undamped, long");
@@ -303,7 +296,7 @@ static void near_confluence(void **state)
 {
     int i;
     (void)state;
-    seed = 3;
+    drawn = 3;
     for (i = 0; i < 400; i++) {
         const double m = scattered(1e-3, 1e3), w = i % 2 ? ldexp(1.0, below(20)) : scattered(1.0, 1e6),
                      gap = scattered(1e-16, 1e-10);
@@ -339,7 +332,7 @@ static void stiff(void **state)
 {
     int i;
     (void)state;
-    seed = 4;
+    drawn = 4;
     for (i = 0; i < 300; i++) {
         const double fast = scattered(1e5, 1e7), slow = scattered(1e-4, 1e-2), unit = scattered(1e-6, 1e6);
         double m[2], c[2], k[2], fastest;
@@ -373,7 +366,7 @@ static void rigid_body(void **state)
 {
     int i, j;
     (void)state;
-    seed = 5;
+    drawn = 5;
     for (i = 0; i < 200; i++) {
         const double m[2] = {scattered(1e-3, 1e3), scattered(1e-3, 1e3)};
         double c[2] = {0, i % 2 ? scattered(1e-3, 1e3) : 0}, k[2] = {0, scattered(1.0, 1e6)}, fastest;
@@ -463,7 +456,7 @@ static void loads(void **state)
                                              "exponential loads", "ramps",          "several loads"};
     int i, load;
     (void)state;
-    seed = 6;
+    drawn = 6;
     for (load = 0; load < LOADS; load++) {
         for (i = 0; i < 300; i++) {
             const int masses = 1 + below(2);
@@ -495,7 +488,7 @@ static void far_columns(void **state)
 {
     int i, j;
     (void)state;
-    seed = 7;
+    drawn = 7;
     for (i = 0; i < 300; i++) {
         const int length = 1 + below(9);
         double damping;
@@ -517,7 +510,7 @@ static void cancelling_loads(void **state)
 {
     int i, j;
     (void)state;
-    seed = 10;
+    drawn = 10;
     for (i = 0; i < 300; i++) {
         const int masses = below(3),
                   all = i % 3 == 0; /* masses 0: x' = -a x; all: to the next order of tau, else a tenth is left */
@@ -550,7 +543,7 @@ static void random_matrices(void **state)
 {
     int i, j, k;
     (void)state;
-    seed = 11;
+    drawn = 11;
     for (i = 0; i < 1000; i++) {
         const int states = 1 + below(4), others = below(3), n = states + others, dense = below(2);
         double unit[LARGEST];
@@ -780,7 +773,7 @@ static void equations(void **state)
 {
     int i, row, column, solves;
     (void)state;
-    seed = 8;
+    drawn = 8;
     for (solves = 0; solves <= 1; solves++) {
         for (i = 0; i < 2000; i++) {
             case_of c;
@@ -807,7 +800,7 @@ static void nearly_singular(void **state)
 {
     int i, row, column;
     (void)state;
-    seed = 9;
+    drawn = 9;
     for (i = 0; i < 500; i++) {
         case_of c;
         const int n = 2 + below(ROWS - 1);
@@ -835,7 +828,7 @@ static void singular(void **state)
     pl_two value[ROWS * WIDEST], work[MONOMIALS + 1];
     int row, column, n;
     (void)state;
-    seed = 12;
+    drawn = 12;
     for (n = 1; n <= ROWS; n++) {
         case_of c;
         start_case(&c, n, 2, 1);
@@ -912,32 +905,34 @@ static void not_finite(void **state)
     }
 }
 
-int main(void)
+static void start(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(damped),
-        cmocka_unit_test(undamped),
-        cmocka_unit_test(near_confluence),
-        cmocka_unit_test(stiff),
-        cmocka_unit_test(rigid_body),
-        cmocka_unit_test(loads),
-        cmocka_unit_test(far_columns),
-        cmocka_unit_test(cancelling_loads),
-        cmocka_unit_test(random_matrices),
-        cmocka_unit_test(ends_of_the_range),
-        cmocka_unit_test(equations),
-        cmocka_unit_test(nearly_singular),
-        cmocka_unit_test(singular),
-        cmocka_unit_test(not_finite),
-    };
-    int i, status;
+    int i;
     for (i = 0; i < LARGEST * LARGEST; i++)
         mpfr_inits2(BITS, exact_A[i], exact_D[i], power[i], room[i], (mpfr_ptr)0);
     mpfr_init2(temporary, BITS);
-    status = cmocka_run_group_tests(tests, NULL, NULL);
+}
+
+static void end(void)
+{
+    int i;
     for (i = 0; i < LARGEST * LARGEST; i++)
         mpfr_clears(exact_A[i], exact_D[i], power[i], room[i], (mpfr_ptr)0);
     mpfr_clear(temporary);
-    mpfr_free_cache();
-    return status;
 }
+
+ROOM_WITH(retune, start, end,
+    cmocka_unit_test(damped),
+    cmocka_unit_test(undamped),
+    cmocka_unit_test(near_confluence),
+    cmocka_unit_test(stiff),
+    cmocka_unit_test(rigid_body),
+    cmocka_unit_test(loads),
+    cmocka_unit_test(far_columns),
+    cmocka_unit_test(cancelling_loads),
+    cmocka_unit_test(random_matrices),
+    cmocka_unit_test(ends_of_the_range),
+    cmocka_unit_test(equations),
+    cmocka_unit_test(nearly_singular),
+    cmocka_unit_test(singular),
+    cmocka_unit_test(not_finite))

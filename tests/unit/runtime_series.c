@@ -1,16 +1,7 @@
 /* SPDX-License-Identifier: MIT-0 */
-/* runtime/series.c against e^{A tau} in MPFR, computed from the systems as written: the rounding of A counts as error.
- */
-#include <stdarg.h>
-#include <stddef.h>
-#include <setjmp.h>
-#include <stdint.h>
-#include <cmocka.h>
-#include <float.h>
-#include <math.h>
-#include <mpfr.h>
-#include <string.h>
-#include "real.h"
+/* runtime/series.c against e^{A tau} in MPFR, computed from the systems as written:
+ * the rounding of A counts as error. */
+#include "runtime.h"
 
 enum { MOST = 6, BITS = 256, GRID = 16 };
 
@@ -161,15 +152,10 @@ static void chain_matrix(matrix *A, const chain *s)
     }
 }
 
-static uint64_t seed = 42;
-
 /* -1 .. 1 */
 static double random_number(void)
 {
-    seed ^= seed << 13;
-    seed ^= seed >> 7;
-    seed ^= seed << 17;
-    return (double)(int64_t)seed * 0x1p-63;
+    return (double)(int64_t)random_word() * 0x1p-63;
 }
 
 static double worst_ratio;
@@ -280,13 +266,6 @@ static void free_fall_is_exact(void **state)
     assert_exactly(x[2], 2.0, "acceleration");
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(free_fall_is_exact),
-        cmocka_unit_test(chains_within_a_step),
-    };
-    const int status = cmocka_run_group_tests(tests, NULL, NULL);
-    mpfr_free_cache();
-    return status;
-}
+ROOM(series,
+    cmocka_unit_test(free_fall_is_exact),
+    cmocka_unit_test(chains_within_a_step))

@@ -1,14 +1,6 @@
 /* SPDX-License-Identifier: MIT-0 */
 /* runtime/until.c against MPFR. */
-#include <stdarg.h>
-#include <stddef.h>
-#include <setjmp.h>
-#include <stdint.h>
-#include <cmocka.h>
-#include <inttypes.h>
-#include <math.h>
-#include <mpfr.h>
-#include "real.h"
+#include "runtime.h"
 
 enum { BITS = 400 };
 
@@ -19,16 +11,6 @@ enum { BITS = 400 };
 #define LARGEST_ERROR 0x1p-100
 #define real_of(v) mpfr_get_d(v, MPFR_RNDN)
 #endif
-
-static uint64_t seed = 0x9E3779B97F4A7C15u;
-
-static uint64_t random_word(void)
-{
-    seed ^= seed << 13;
-    seed ^= seed >> 7;
-    seed ^= seed << 17;
-    return seed * 0x2545F4914F6CDD1Du;
-}
 
 /* 2^low .. 2^high, about */
 static double random_number(int low, int high)
@@ -136,13 +118,6 @@ static void counts_are_exact(void **state)
     assert_exactly(pl_until(5, 0, second, none), -5.0, "no steps");
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(changes_inside_a_step),
-        cmocka_unit_test(counts_are_exact),
-    };
-    const int status = cmocka_run_group_tests(tests, NULL, NULL);
-    mpfr_free_cache();
-    return status;
-}
+ROOM(until,
+    cmocka_unit_test(changes_inside_a_step),
+    cmocka_unit_test(counts_are_exact))

@@ -1,0 +1,125 @@
+#!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
+# What the pages tell a reader to type is typed: every block of every page, as TAP, each page in an empty folder that
+# has but `runtime`, `models` and `build/plgen`, as a clone has.
+#
+#     commands.sh PLGEN SOURCE_ROOT
+#
+# ```spec       a model: plgen makes NAME_pl.c and NAME_pl.h of it
+# ```sh         commands: run one after the other; all succeed, nothing they write is empty
+# ```console    `$ command` and what it says, to the last letter
+# ```c          statements, with the headers that they name: compiled with the models of the page, linked and run
+#
+# A block of commands that cannot be run here is one of `elsewhere` alone; a picture in letters is named in `pictures`.
+# Any other block fails.
+set -u
+plgen=$1
+root=$2
+case $plgen in /*) ;; *) plgen=$PWD/$plgen ;; esac
+. "${0%/*}/../tap.sh"
+here=$root/tests/docs
+warnings='-Wall -Wextra -Wpedantic -Werror'
+# Installs packages, and takes minutes; the demo has steps that other blocks run, check is what runs this test.
+elsewhere='make demo
+make check'
+# What a page draws, by its first line
+pictures='doc/design.md:      gen/base      memory'
+
+mkdir bin
+ln -s "$plgen" bin/plgen
+PATH=$PWD/bin:$PATH
+
+# target NAME: the Makefile has it
+target() {
+	sed -n 's/^\([a-z][a-z -]*\):.*/\1/p' "$root/Makefile" | tr ' ' '\n' | grep -qx -e "$1"
+}
+
+# is_elsewhere FILE: each command is one that cannot be run here; those of make are there
+is_elsewhere() {
+	sed 's/ *#.*//; /^$/d' "$1" >commands
+	while read -r words; do
+		echo "$elsewhere" | grep -qx -e "$words" || return 1
+		target "${words#make }" || echo "the Makefile has no ${words#make }" >>log
+	done <commands
+}
+
+# In the folder of the page, with PAGE, NUMBER and KIND of a block:
+
+run_spec() {
+	name=$(sed -n 's/^model \([A-Za-z0-9_]*\).*/\1/p' "$block")
+	cp "$block" "$name.spec" && plgen -o "${name}_pl.c" "$name.spec" >>../log 2>&1 && [ -s "${name}_pl.h" ]
+}
+
+run_sh() {
+	sh -eu "$block" >../said 2>>../log || return 1
+	find . -type f -size 0 | sed 's/$/ is empty/' >>../log
+	for picture in ./*.svg; do
+		[ ! -f "$picture" ] || grep -q '<path' "$picture" || echo "$picture has no lines" >>../log
+	done
+	[ ! -s ../log ]
+}
+
+run_console() {
+	sed -n 's/^\$ //p' "$block" >../commands
+	while IFS= read -r line; do
+		printf '$ %s\n' "$line"
+		sh -c "$line" 2>&1
+	done <../commands >../said
+	[ -s ../commands ] && diff "$block" ../said >>../log
+}
+
+run_c() {
+	{
+		grep '^#' "$block"
+		echo 'int main(void)'
+		echo '{'
+		grep -v '^#' "$block"
+		echo '}'
+	} >program.c
+	# shellcheck disable=SC2086
+	"${CC:-cc}" -std=c99 $warnings -Iruntime program.c ./*_pl.c ../runtime.a -lm -o program >>../log 2>&1 &&
+		./program >>../log 2>&1
+}
+
+# try PAGE NUMBER KIND LINE
+try() {
+	: >log
+	block=$PWD/blocks/$2.$3
+	case $3 in
+		spec | console | c) ;;
+		sh)
+			if is_elsewhere "$block"; then
+				[ ! -s log ]
+				result $? "$1:$4: commands for elsewhere: $(tr '\n' ' ' <commands)"
+				return
+			fi ;;
+		text)
+			echo "$pictures" | grep -qF -e "$1:$(sed 's/,.*//; q' "$block")"
+			result $? "$1:$4: a picture"
+			return ;;
+		*)
+			echo 'spec, sh, console and c are tried' >log
+			result 1 "$1:$4: a block that is $3"
+			return ;;
+	esac
+	(cd page && "run_$3")
+	result $? "$1:$4: $3: $(grep -v -e '^#' -e '^$' "$block" | head -n 1 | sed 's, *[#/].*,,' | cut -c 1-60)"
+}
+
+mkdir objects
+for file in "$root"/runtime/*.c; do
+	"${CC:-cc}" -std=c99 -O1 -I"$root/runtime" -c "$file" -o "objects/$(basename "$file" .c).o" || exit 99
+done
+ar -rcs runtime.a objects/*.o || exit 99
+
+for page in README.md doc/spec.md doc/accuracy.md doc/performance.md doc/firmware.md doc/packages.md doc/design.md; do
+	rm -rf page blocks
+	mkdir -p page/build blocks
+	ln -s "$root/runtime" "$root/models" page
+	ln -s "$plgen" page/build/plgen
+	awk -v folder=blocks -f "$here/blocks.awk" "$root/$page" >found || exit 99
+	while read -r number kind line; do
+		try "$page" "$number" "$kind" "$line"
+	done <found
+done
+tap_end

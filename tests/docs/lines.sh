@@ -1,0 +1,48 @@
+#!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
+# No line of what people read and write is longer than 120 columns, in characters, a tab as up to 8. As TAP, a case a
+# folder.
+#
+#     lines.sh SOURCE_ROOT
+#
+# Not looked at: what programs write (doc/charts, *.csv, *.expect) or read as data (*.list, *.mtx, *.txt of tests), and
+# specs of tests/errors and tests/fuzz, where a line may be what is tested.
+set -u
+root=$1
+case $root in /*) ;; *) root=$PWD/$root ;; esac
+. "${0%/*}/../tap.sh"
+
+# long FILES: those lines, as FILE:LINE: COLUMNS
+long() {
+	for file; do
+		[ ! -f "$file" ] || expand -t 8 "$file" | tr -d '\200-\277' |
+			awk -v file="${file#"$root"/}" 'length($0) > 120 {
+				print file ":" NR ": " length($0) " columns" }'
+	done
+}
+
+# look NAME FOLDER TESTS_OF_FIND ...
+look() {
+	name=$1
+	folder=$2
+	shift 2
+	find "$root/$folder" -type f "$@" | sort >files
+	: >log
+	while read -r file; do
+		long "$file"
+	done <files >log
+	[ -s files ] && [ ! -s log ]
+	result $? "$name: $(wc -l <files) files, $(wc -l <log) lines over 120 columns"
+}
+
+code='-name *.c -o -name *.h -o -name *.in -o -name *.sh -o -name *.awk -o -name *.gp -o -name *.build -o -name *.ld'
+set -f
+look gen gen
+look runtime runtime
+look bench bench ! -name '*.list' ! -name '*.csv'
+# shellcheck disable=SC2086
+look tests tests '(' $code ')'
+look specs tests -name '*.spec' ! -path '*/errors/*' ! -path '*/fuzz/*'
+look doc doc ! -path '*/charts/*' ! -name '*.csv'
+look top . -maxdepth 1 '(' -name '*.md' -o -name Makefile -o -name meson.build ')'
+tap_end

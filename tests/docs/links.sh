@@ -1,0 +1,74 @@
+#!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
+# What the pages name is there: files and headings that they link to, targets of the Makefile, and what makes a figure
+# of the README. As TAP.
+#
+#     links.sh SOURCE_ROOT BUILD_ROOT
+set -u
+root=$1
+build=$2
+case $root in /*) ;; *) root=$PWD/$root ;; esac
+case $build in /*) ;; *) build=$PWD/$build ;; esac
+. "${0%/*}/../tap.sh"
+anchors=$root/tests/docs/anchors.awk
+
+# links PAGE: TARGET of each [..](TARGET), one a line
+links() {
+	awk '/^```/ { inside = !inside }
+		!inside { for (rest = $0; match(rest, /\]\([^)]*\)/); rest = substr(rest, RSTART + RLENGTH))
+			print substr(rest, RSTART + 2, RLENGTH - 3) }' "$1"
+}
+
+# follow PAGE: what its links miss goes to `log`
+follow() {
+	links "$root/$1" >targets
+	while read -r target; do
+		file=${target%%#*}
+		path=$root/$1
+		[ -z "$file" ] || path=$(dirname "$path")/$file
+		case $target in
+			http*) continue ;;
+			*'#'*)
+				[ -f "$path" ] && awk -f "$anchors" "$path" | grep -qx -e "${target#*#}" ||
+					echo "$1: no heading for $target" >>log ;;
+			*) [ -e "$path" ] || echo "$1: no file $target" >>log ;;
+		esac
+	done <targets
+}
+
+# A name in code, `make X`: of the target X
+made() {
+	sed -n 's/^\([a-z][a-z -]*\):.*/\1/p' "$root/Makefile" | tr ' ' '\n' | sort -u >there
+	grep -o '`make [a-z][a-z-]*`' "$root/$1" | sed 's/`make \(.*\)`/\1/' | sort -u | comm -23 - there |
+		sed "s,.*,$1: no target & in the Makefile," >>log
+}
+
+for page in README.md $(cd "$root" && ls doc/*.md); do
+	: >log
+	follow "$page"
+	[ ! -s log ]
+	result $? "$page: $(wc -l <targets) links lead somewhere"
+	: >log
+	made "$page"
+	[ ! -s log ]
+	result $? "$page: targets of make are there"
+done
+
+# The last column of the table of figures: `make X`, a program of the build with its arguments, or a test.
+tr ',' '\n' <"$build/meson-info/intro-tests.json" | sed -n 's/.*"name": "\([^"]*\)".*/\1/p' | sort -u >tests
+sed -n '/^## Figures/,$s/^|.*| `\([^`]*\)` |$/\1/p' "$root/README.md" >figures
+: >log
+while read -r first rest; do
+	case $first in
+		make) continue ;;
+		build/*) grep -q -e "build ${first#build/}:" "$build/build.ninja" ;;
+		*) grep -qx -e "$first" tests ;;
+	esac || echo "nothing makes this figure: $first $rest" >>log
+done <figures
+[ "$(grep -c . figures)" -ge 10 ] || echo 'the table of figures is not found' >>log
+[ ! -s log ]
+result $? "$(wc -l <figures) figures of the README have what makes them"
+
+[ "$(wc -l <"$root/README.md")" -le 110 ] && ! tr -d '\200-\277' <"$root/README.md" | grep -n '.\{111\}' >log
+result $? 'README.md: at most 110 lines of at most 110 columns'
+tap_end

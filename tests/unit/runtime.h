@@ -1,0 +1,53 @@
+/* SPDX-License-Identifier: MIT-0 */
+/* What the tests of the runtime share. Each runtime_NAME.c is one text for doubles and floats, as the runtime itself
+ * is, and is compiled twice: with REAL_IS_FLOAT `real` is a float and the names of plrt.h stand for those that end in
+ * f. */
+#ifndef TESTS_RUNTIME_H
+#define TESTS_RUNTIME_H
+
+#include <stdarg.h>
+#include <stddef.h>
+#include <setjmp.h>
+#include <stdint.h>
+#include <cmocka.h>
+#include <inttypes.h>
+#include <float.h>
+#include <math.h>
+#include <mpfr.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include "real.h"
+
+/* The cases of one file; `start` and `end`, where there are any, go around all of them. */
+struct room {
+    const char *name;
+    const struct CMUnitTest *test;
+    size_t tests;
+    void (*start)(void), (*end)(void);
+};
+
+/* The last lines of a file; in the program its cases are called NAME_CASE. */
+#define ROOM_WITH(name, start, end, ...)                                                                               \
+    static const struct CMUnitTest cases_of_##name[] = {__VA_ARGS__};                                                  \
+    const struct room room_of_##name = {#name, cases_of_##name, sizeof cases_of_##name / sizeof *cases_of_##name,      \
+                                        start, end};
+#define ROOM(name, ...) ROOM_WITH(name, NULL, NULL, __VA_ARGS__)
+
+#define ROOMS(each) \
+    each(turns) each(growth) each(series) each(power) each(until) each(apply) each(crossings) each(retune) each(rate)
+#define DECLARE_ROOM(name) extern const struct room room_of_##name;
+ROOMS(DECLARE_ROOM)
+
+/* xorshift64*; every file draws from a sequence of its own */
+static uint64_t seed = 0x9E3779B97F4A7C15u;
+
+static inline uint64_t random_word(void)
+{
+    seed ^= seed << 13;
+    seed ^= seed >> 7;
+    seed ^= seed << 17;
+    return seed * 0x2545F4914F6CDD1Du;
+}
+
+#endif
