@@ -1268,6 +1268,29 @@ static void fit_of_known_sums(void **state)
         mpq_clear(sum.factor[i]);
 }
 
+/* (a - a0)(b - b0)(c - c0), which is 0 on all lines through the base from which powers are found */
+static mpq_srcptr value_off_the_lines(void *context, const mpq_t *params)
+{
+    const mpq_t *base = context;
+    mpq_t *result = rationals(1), difference;
+    mpq_init(difference);
+    mpq_set_ui(result[0], 1, 1);
+    for (int k = 0; k < 3; k++) {
+        mpq_sub(difference, params[k], base[k]);
+        mpq_mul(result[0], result[0], difference);
+    }
+    mpq_clear(difference);
+    return result[0];
+}
+
+static void fit_is_held_against_other_points(void **state)
+{
+    (void)state;
+    struct fit f = { .params = 3, .value = value_off_the_lines, .context = scattered_values(3, 0) };
+    if (fit_value(&f))
+        fail_msg("a product of three differences is taken for a sum of %d products of powers", f.products);
+}
+
 int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
@@ -1295,6 +1318,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(taylor_of_few_bits),
         cmocka_unit_test(taylor_of_a_chain),
         cmocka_unit_test(fit_of_known_sums),
+        cmocka_unit_test(fit_is_held_against_other_points),
     };
     choose_cases(argc, argv);
     memory_open();
