@@ -2,6 +2,7 @@
 /* The two budgets of a spec: bytes that are held, and terms that were made so far. Who asks for more ends the program,
  * with a message; so each case is a process of its own. */
 #include "draw.h"
+#include "base/base.h"
 
 #include <stdio.h>
 #include <string.h>
