@@ -590,6 +590,18 @@ static bool names_kind(const struct tree *tree, bool piecewise)
     return named;
 }
 
+/* Does it hold such a basis, however deep? */
+static bool holds(const struct atom *atom, enum basis_kind kind)
+{
+    for (int k = 0; k < atom->operands; k++)
+        for (int i = 0; i < atom->operand[k]->terms; i++) {
+            const struct basis *basis = &atom->operand[k]->term[i].basis;
+            if (basis->kind == kind || (basis->atom && holds(basis->atom, kind)))
+                return true;
+        }
+    return false;
+}
+
 static void dependence_is_of_what_is_named(void **state)
 {
     (void)state;
@@ -602,6 +614,10 @@ static void dependence_is_of_what_is_named(void **state)
         for (int i = 0; i < a.form->terms; i++) {
             const struct basis *basis = &a.form->term[i].basis;
             const struct atom *atom = basis->atom;
+            if (atom && (atom->time != holds(atom, BASIS_WAVE) || atom->state != holds(atom, BASIS_COORD)))
+                fail_msg("case %d: a term of %s depends on time: %d, on a state: %d; it holds some: %d, %d", n,
+                         tree_text(a.tree), atom->time, atom->state, holds(atom, BASIS_WAVE),
+                         holds(atom, BASIS_COORD));
             if ((atom && atom->time && !timed) || (is_velocity(&frame, basis) && !fast) ||
                 (!depends_on_time_only(basis) && !moves))
                 fail_msg("case %d: a term of %s depends on what it does not name", n, tree_text(a.tree));
