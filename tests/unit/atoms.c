@@ -748,6 +748,49 @@ static void forms_at_a_point(void **state)
     mpfr_clears(found, expected, NULL);
 }
 
+/* ---- pi ---- */
+
+static void assert_constant(const char *what, int n, const struct form *form, mpfr_srcptr truth)
+{
+    mpq_t value;
+    mpfr_t off;
+    mpq_init(value);
+    mpfr_init2(off, BITS);
+    constant_value(&collector, form, value);
+    mpfr_sub_q(off, truth, value, MPFR_RNDN);
+    if (!mpfr_zero_p(off) && mpfr_get_exp(off) > -250)
+        fail_msg("%s(%d pi/12) is %.17g, expected %.17g", what, n, mpq_get_d(value), mpfr_get_d(truth, MPFR_RNDN));
+    mpq_clear(value);
+    mpfr_clear(off);
+}
+
+/* sin, cos and tan of multiples of pi/12, some of which are rational */
+static void functions_of_pi(void **state)
+{
+    static const enum function functions[] = { FN_SIN, FN_COS, FN_TAN };
+    mpq_t q;
+    mpfr_t x;
+    (void)state;
+    mpq_init(q);
+    mpfr_init2(x, BITS);
+    for (int n = -30; n <= 30; n++)
+        for (int f = 0; f < 3; f++) {
+            new_collector();
+            mpq_set_si(q, n, 12);
+            mpq_canonicalize(q);
+            const struct form *angle = form_single((struct basis){ .kind = BASIS_PI }, q);
+            mpfr_const_pi(x, MPFR_RNDN);
+            mpfr_mul_q(x, x, q, MPFR_RNDN);
+            assert_constant("", n, angle, x);
+            if (f == 2 && n % 12 != 0 && n % 6 == 0)
+                continue;               /* a pole */
+            wide_value(functions[f], x);
+            assert_constant(function_name(functions[f]), n, constant_call(&collector, &node, functions[f], angle), x);
+        }
+    mpq_clear(q);
+    mpfr_clear(x);
+}
+
 /* ---- loads ---- */
 
 /* Of constants and waves, in double */
@@ -816,6 +859,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(dependence_is_of_what_is_named),
         cmocka_unit_test(derivatives_are_difference_quotients),
         cmocka_unit_test(forms_at_a_point),
+        cmocka_unit_test(functions_of_pi),
         cmocka_unit_test(loads_and_their_products_have_their_values),
     };
     choose_cases(argc, argv);
