@@ -144,10 +144,10 @@ run_suite()
 	ninja -C "$1/build" plgen >"$3" 2>&1 || return 2
 	if [ -n "$program" ]; then
 		ninja -C "$1/build" "${program%% *}" >>"$3" 2>&1 || return 2
-		(cd "$1" && eval "timeout 900 build/$program") >>"$3" 2>&1 && return 0
+		(cd "$1" && eval "timeout 300 build/$program") >>"$3" 2>&1 && return 0
 		return 1
 	fi
-	meson test -C "$1/build" --timeout-multiplier 5 --print-errorlogs "$suite" --test-args="$(head_of "$2" case)" >>"$3" 2>&1
+	timeout 600 meson test -C "$1/build" --timeout-multiplier 5 --print-errorlogs "$suite" --test-args="$(head_of "$2" case)" >>"$3" 2>&1
 	case $? in
 	0) return 0 ;;
 	125) return 2 ;;
@@ -214,10 +214,13 @@ run_all()
 	start=$(date +%s)
 	suites=$(for name; do head_of "$name" suite; done | sort | uniq -c | sort -rn | awk '{ print $2 }')
 	number=1
+	workers=
 	while [ "$number" -le "$copies" ]; do
 		worker "$folder/copy$number" "$suites" "$@" &
+		workers="$workers $!"
 		number=$((number + 1))
 	done
+	trap 'kill $workers; exit 99' HUP INT TERM
 	wait
 	noticed=0
 	for name; do
