@@ -759,7 +759,7 @@ static void assert_constant(const char *what, int n, const struct form *form, mp
     constant_value(&collector, form, value);
     mpfr_sub_q(off, truth, value, MPFR_RNDN);
     if (!mpfr_zero_p(off) && mpfr_get_exp(off) > -250)
-        fail_msg("%s(%d pi/12) is %.17g, expected %.17g", what, n, mpq_get_d(value), mpfr_get_d(truth, MPFR_RNDN));
+        fail_msg("%s, %d (pi/12, or case) is %.17g, expected %.17g", what, n, mpq_get_d(value), mpfr_get_d(truth, MPFR_RNDN));
     mpq_clear(value);
     mpfr_clear(off);
 }
@@ -789,6 +789,39 @@ static void functions_of_pi(void **state)
         }
     mpq_clear(q);
     mpfr_clear(x);
+}
+
+static struct form *draw_pi(mpfr_ptr value)
+{
+    mpq_t one, pi;
+    mpq_inits(one, pi, NULL);
+    draw_fraction(one, 9, 5);
+    draw_fraction(pi, 9, 5);
+    mpfr_const_pi(value, MPFR_RNDN);
+    mpfr_mul_q(value, value, pi, MPFR_RNDN);
+    mpfr_add_q(value, value, one, MPFR_RNDN);
+    struct form *form = form_sum(form_constant(one), form_single((struct basis){ .kind = BASIS_PI }, pi), false);
+    mpq_clears(one, pi, NULL);
+    return form;
+}
+
+static void products_with_pi(void **state)
+{
+    mpfr_t x, y;
+    (void)state;
+    mpfr_inits2(BITS, x, y, NULL);
+    for (int n = 0; n < 200; n++) {
+        new_collector();
+        const struct form *a = draw_pi(x), *b = draw_pi(y);
+        mpfr_mul(x, x, y, MPFR_RNDN);
+        mpfr_div_2ui(x, x, 16, MPFR_RNDN);      /* of numbers up to 2^12 */
+        mpq_t scale;
+        mpq_init(scale);
+        mpq_set_ui(scale, 1, 1 << 16);
+        assert_constant("product", n, form_scale(form_product(&collector, a, b), scale), x);
+        mpq_clear(scale);
+    }
+    mpfr_clears(x, y, NULL);
 }
 
 /* ---- loads ---- */
@@ -860,6 +893,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(derivatives_are_difference_quotients),
         cmocka_unit_test(forms_at_a_point),
         cmocka_unit_test(functions_of_pi),
+        cmocka_unit_test(products_with_pi),
         cmocka_unit_test(loads_and_their_products_have_their_values),
     };
     choose_cases(argc, argv);
