@@ -93,7 +93,7 @@ struct wanting {
     struct list *list, low;         /* second words wait for the end of their sum */
 };
 
-static void want(struct wanting *w, const struct judged *number, bool alone, bool second, const char *what)
+static void want(struct wanting *w, const struct ruling *number, bool alone, bool second, const char *what)
 {
     double value, low;
     if (number->zero)
@@ -119,7 +119,7 @@ static const char *state_name(const struct wanting *w, int state)
     return w->model->state_name[state];
 }
 
-static void want_places(struct wanting *w, const struct judged *row, const char *what, const char *target)
+static void want_places(struct wanting *w, const struct ruling *row, const char *what, const char *target)
 {
     for (int k = 0; k < w->judge->system->n; k++)
         want(w, &row[k], false, w->variant->compensated, format("%s of %s in %s", what, state_name(w, k), target));
@@ -134,7 +134,7 @@ static void want_loads_and_inputs(struct wanting *w, int i)
         for (int k = 0; k < system->load[l].columns; k++, column++) {
             const struct wave *wave = system->load[l].wave;
             const bool constant = k == 0 && !mpq_sgn(wave->a) && !mpq_sgn(wave->w);
-            const struct judged *number = &j->step[i * j->columns + j->states + column];
+            const struct ruling *number = &j->step[i * j->columns + j->states + column];
             if (!changes)
                 want(w, number, constant, w->variant->compensated, format("load column %d in %s", column, state_name(w, i)));
         }
@@ -149,7 +149,7 @@ static void want_rows(struct wanting *w)
     const struct judge *j = w->judge;
     const struct linear *system = j->system;
     for (int i = 0; i < j->states; i++) {
-        const struct judged *row = w->variant->form == FORM_DIRECT ? &j->step[i * j->columns] : &j->increment[i * j->states];
+        const struct ruling *row = w->variant->form == FORM_DIRECT ? &j->step[i * j->columns] : &j->increment[i * j->states];
         if (w->variant->form == FORM_DIRECT) {
             for (int k = 0; k < system->n; k++)
                 want(w, &row[k], false, false, format("factor of %s in %s", state_name(w, k), state_name(w, i)));
@@ -302,7 +302,7 @@ static void drop_zeros(struct list *list)
     list->count = left;
 }
 
-static void want_table_entry(struct wanting *w, const struct judged *number, const char *what)
+static void want_table_entry(struct wanting *w, const struct ruling *number, const char *what)
 {
     double value, low;
     if (!judge_words(number, w->variant->single, &value, &low))
@@ -310,7 +310,7 @@ static void want_table_entry(struct wanting *w, const struct judged *number, con
     append(w->list, value, what);
 }
 
-static void compare_table(const char *code, struct wanting *w, const char *table, int segment, int from, int to, const struct judged *numbers, int width)
+static void compare_table(const char *code, struct wanting *w, const char *table, int segment, int from, int to, const struct ruling *numbers, int width)
 {
     struct list found = { 0 }, expected = { 0 };
     w->list = &expected;

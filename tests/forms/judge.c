@@ -226,7 +226,7 @@ static void fill_segment(struct judge *j, int segment)
         }
         for (int i = 0; i < j->states; i++)
             for (int k = 0; k < j->columns; k++) {
-                struct judged *number = &j->step[(segment * j->states + i) * j->columns + k];
+                struct ruling *number = &j->step[(segment * j->states + i) * j->columns + k];
                 number->zero = !column_reaches(j, &f, reach, i, k);
                 take_column(j, &f, &E, i, k, number->x);
                 if (mpfi_has_zero(number->x) && !number->zero) {
@@ -235,7 +235,7 @@ static void fill_segment(struct judge *j, int segment)
                 }
                 if (segment || k >= j->states)
                     continue;
-                struct judged *increment = &j->increment[i * j->states + k];
+                struct ruling *increment = &j->increment[i * j->states + k];
                 mpfi_set_prec(increment->x, mpfi_get_prec(number->x));
                 mpfi_sub_ui(increment->x, number->x, i == k);
                 increment->zero = number->zero && i != k;
@@ -307,7 +307,7 @@ static void fill_kicks(struct judge *j)
     solve_intervals(n, L, R);
     for (int i = 0; i < n * n; i++) {
         const bool apart = j->block[i / n] != j->block[i % n];
-        const struct judged *Phi_12 = &j->step[(i / n) * j->columns + system->velocity[i % n]];
+        const struct ruling *Phi_12 = &j->step[(i / n) * j->columns + system->velocity[i % n]];
         mpq_div(mass, system->M[i / n * (n + 1)], system->M[0]);
         mpfi_mul_q(R[i], R[i], mass);
         mpfi_set_prec(j->kick[i].x, mpfi_get_prec(R[i]));
@@ -321,9 +321,9 @@ static void fill_kicks(struct judge *j)
     evaluator_enclosure_clear(&E);
 }
 
-static struct judged *numbers(int count)
+static struct ruling *numbers(int count)
 {
-    struct judged *x = ARRAY(struct judged, (size_t)count);
+    struct ruling *x = ARRAY(struct ruling, (size_t)count);
     for (int i = 0; i < count; i++)
         mpfi_init2(x[i].x, BITS);
     return x;
@@ -375,7 +375,7 @@ static bool is_narrow(mpfi_srcptr rest, double value)
     return narrow;
 }
 
-bool judge_words(const struct judged *number, bool single, double *value, double *low)
+bool judge_words(const struct ruling *number, bool single, double *value, double *low)
 {
     bool good;
     mpfi_t rest;
