@@ -8,7 +8,7 @@ DEMO_PACKAGES = $(PACKAGES) libsundials-dev gnuplot-nox
 CHECK_PACKAGES = $(DEMO_PACKAGES) g++ clang libcmocka-dev valgrind \
 	gcc-arm-none-eabi libnewlib-arm-none-eabi qemu-system-arm
 
-.PHONY: all setup deps demo-deps check-deps demo tests check check-long bench charts charts-quick firmware-report \
+.PHONY: all setup deps demo-deps check-deps demo tests check check-long faults bench charts charts-quick firmware-report \
 	install clean
 
 all: setup
@@ -88,6 +88,10 @@ charts charts-quick: tests
 # Bytes, stack and instructions on emulated boards: doc/firmware.md
 firmware-report: tests
 	ninja -C $(BUILD) firmware_report
+
+# Does the suite that should notice a fault notice it?  150 faults, each put into a copy: tests/faults
+faults: check-deps
+	sh tests/faults/faults.sh -j 2
 
 install: all
 	meson install -C $(BUILD) --no-rebuild

@@ -5,6 +5,7 @@
 #include "draw.h"
 #include "collect/collect.h"
 
+#include <math.h>
 #include <string.h>
 
 enum { CASES = 600, COORDS = 2, LEAVES = 2 * COORDS + 1, MOST = 7, BITS = 500 };
@@ -589,6 +590,18 @@ static bool names_kind(const struct tree *tree, bool piecewise)
     return named;
 }
 
+/* Does it hold such a basis, however deep? */
+static bool holds(const struct atom *atom, enum basis_kind kind)
+{
+    for (int k = 0; k < atom->operands; k++)
+        for (int i = 0; i < atom->operand[k]->terms; i++) {
+            const struct basis *basis = &atom->operand[k]->term[i].basis;
+            if (basis->kind == kind || (basis->atom && holds(basis->atom, kind)))
+                return true;
+        }
+    return false;
+}
+
 static void dependence_is_of_what_is_named(void **state)
 {
     (void)state;
@@ -601,6 +614,10 @@ static void dependence_is_of_what_is_named(void **state)
         for (int i = 0; i < a.form->terms; i++) {
             const struct basis *basis = &a.form->term[i].basis;
             const struct atom *atom = basis->atom;
+            if (atom && (atom->time != holds(atom, BASIS_WAVE) || atom->state != holds(atom, BASIS_COORD)))
+                fail_msg("case %d: a term of %s depends on time: %d, on a state: %d; it holds some: %d, %d", n,
+                         tree_text(a.tree), atom->time, atom->state, holds(atom, BASIS_WAVE),
+                         holds(atom, BASIS_COORD));
             if ((atom && atom->time && !timed) || (is_velocity(&frame, basis) && !fast) ||
                 (!depends_on_time_only(basis) && !moves))
                 fail_msg("case %d: a term of %s depends on what it does not name", n, tree_text(a.tree));
@@ -731,6 +748,138 @@ static void forms_at_a_point(void **state)
     mpfr_clears(found, expected, NULL);
 }
 
+/* ---- pi ---- */
+
+static void assert_constant(const char *what, int n, const struct form *form, mpfr_srcptr truth)
+{
+    mpq_t value;
+    mpfr_t off;
+    mpq_init(value);
+    mpfr_init2(off, BITS);
+    constant_value(&collector, form, value);
+    mpfr_sub_q(off, truth, value, MPFR_RNDN);
+    if (!mpfr_zero_p(off) && mpfr_get_exp(off) > -250)
+        fail_msg("%s, %d (pi/12, or case) is %.17g, expected %.17g", what, n, mpq_get_d(value), mpfr_get_d(truth, MPFR_RNDN));
+    mpq_clear(value);
+    mpfr_clear(off);
+}
+
+/* sin, cos and tan of multiples of pi/12, some of which are rational */
+static void functions_of_pi(void **state)
+{
+    static const enum function functions[] = { FN_SIN, FN_COS, FN_TAN };
+    mpq_t q;
+    mpfr_t x;
+    (void)state;
+    mpq_init(q);
+    mpfr_init2(x, BITS);
+    for (int n = -30; n <= 30; n++)
+        for (int f = 0; f < 3; f++) {
+            new_collector();
+            mpq_set_si(q, n, 12);
+            mpq_canonicalize(q);
+            const struct form *angle = form_single((struct basis){ .kind = BASIS_PI }, q);
+            mpfr_const_pi(x, MPFR_RNDN);
+            mpfr_mul_q(x, x, q, MPFR_RNDN);
+            assert_constant("", n, angle, x);
+            if (f == 2 && n % 12 != 0 && n % 6 == 0)
+                continue;               /* a pole */
+            wide_value(functions[f], x);
+            assert_constant(function_name(functions[f]), n, constant_call(&collector, &node, functions[f], angle), x);
+        }
+    mpq_clear(q);
+    mpfr_clear(x);
+}
+
+static struct form *draw_pi(mpfr_ptr value)
+{
+    mpq_t one, pi;
+    mpq_inits(one, pi, NULL);
+    draw_fraction(one, 9, 5);
+    draw_fraction(pi, 9, 5);
+    mpfr_const_pi(value, MPFR_RNDN);
+    mpfr_mul_q(value, value, pi, MPFR_RNDN);
+    mpfr_add_q(value, value, one, MPFR_RNDN);
+    struct form *form = form_sum(form_constant(one), form_single((struct basis){ .kind = BASIS_PI }, pi), false);
+    mpq_clears(one, pi, NULL);
+    return form;
+}
+
+static void products_with_pi(void **state)
+{
+    mpfr_t x, y;
+    (void)state;
+    mpfr_inits2(BITS, x, y, NULL);
+    for (int n = 0; n < 200; n++) {
+        new_collector();
+        const struct form *a = draw_pi(x), *b = draw_pi(y);
+        mpfr_mul(x, x, y, MPFR_RNDN);
+        mpfr_div_2ui(x, x, 16, MPFR_RNDN);      /* of numbers up to 2^12 */
+        mpq_t scale;
+        mpq_init(scale);
+        mpq_set_ui(scale, 1, 1 << 16);
+        assert_constant("product", n, form_scale(form_product(&collector, a, b), scale), x);
+        mpq_clear(scale);
+    }
+    mpfr_clears(x, y, NULL);
+}
+
+/* ---- loads ---- */
+
+/* Of constants and waves, in double */
+static double value_in_time(const struct form *form, double t)
+{
+    double sum = 0;
+    for (int i = 0; i < form->terms; i++) {
+        const struct basis *basis = &form->term[i].basis;
+        double value = basis->kind == BASIS_PI ? acos(-1) : 1;
+        assert_true(basis->kind <= BASIS_WAVE);
+        if (basis->kind == BASIS_WAVE) {
+            double angle = mpq_get_d(basis->wave->w) * t + mpq_get_d(basis->wave->p);
+            value = pow(t, basis->power) * exp(mpq_get_d(basis->wave->a) * t);
+            value *= basis->sine ? sin(angle) : cos(angle);
+        }
+        sum += mpq_get_d(form->term[i].factor) * value;
+    }
+    return sum;
+}
+
+/* t^k e^{a t} sin or cos of w t + q pi + r, as a form and its value at t */
+static struct form *draw_load(double t, double *value)
+{
+    mpq_t a, w, q, r;
+    mpq_inits(a, w, q, r, NULL);
+    int power = (int)draw(3), sine = (int)draw(2);
+    draw_fraction(a, 3, 4);
+    draw_fraction(w, 9, 4);
+    mpq_set_si(q, draw_integer(12), 1 + draw(4));
+    mpq_canonicalize(q);
+    if (draw(3) == 0)
+        draw_fraction(r, 5, 4);
+    struct form *phase = form_sum(form_single((struct basis){ .kind = BASIS_PI }, q), form_constant(r), false);
+    double angle = mpq_get_d(w) * t + acos(-1) * mpq_get_d(q) + mpq_get_d(r);
+    *value = pow(t, power) * exp(mpq_get_d(a) * t) * (sine ? sin(angle) : cos(angle));
+    struct form *wave = collect_wave(&collector, sine, w, phase);
+    struct form *load = load_product(&collector, plain_wave(&collector, power, a), wave);
+    mpq_clears(a, w, q, r, NULL);
+    return load;
+}
+
+static void loads_and_their_products_have_their_values(void **state)
+{
+    (void)state;
+    for (int n = 0; n < CASES; n++) {
+        new_collector();
+        double t = 0.1 + 0.02 * (double)draw(100), x, y;
+        struct form *a = draw_load(t, &x), *b = draw_load(t, &y), *product = load_product(&collector, a, b);
+        double one = value_in_time(a, t), both = value_in_time(product, t);
+        if (!(fabs(one - x) <= 1e-11 * (1 + exp(3 * t) * t * t)))
+            fail_msg("case %d: a load is %.17g at t = %g, expected %.17g", n, one, t, x);
+        if (!(fabs(both - x * y) <= 1e-11 * (1 + exp(6 * t) * t * t * t * t)))
+            fail_msg("case %d: a product of loads is %.17g at t = %g, expected %.17g", n, both, t, x * y);
+    }
+}
+
 int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
@@ -743,6 +892,9 @@ int main(int argc, char **argv)
         cmocka_unit_test(dependence_is_of_what_is_named),
         cmocka_unit_test(derivatives_are_difference_quotients),
         cmocka_unit_test(forms_at_a_point),
+        cmocka_unit_test(functions_of_pi),
+        cmocka_unit_test(products_with_pi),
+        cmocka_unit_test(loads_and_their_products_have_their_values),
     };
     choose_cases(argc, argv);
     memory_open();

@@ -775,6 +775,97 @@ static void residues_of_double_pairs(void **state)
     mpfr_clear(truth);
 }
 
+/* c/((s - a)(s - b)) is c (e^{a t} - e^{b t})/(a - b) */
+static void residues_of_real_poles(void **state)
+{
+    mpq_t a, b, t, scale, factor, none;
+    mpfr_t truth;
+    mpfi_t value;
+    (void)state;
+    mpq_inits(a, b, t, scale, factor, none, NULL);
+    mpfr_init2(truth, TRUE_BITS);
+    for (int n = 0; n < 60; n++) {
+        long first = draw_integer(9), second = first + 1 + (long)draw(9);
+        mpq_set_si(a, first, 1);
+        mpq_set_si(b, second, 1);
+        draw_fraction(scale, 50, 9);
+        mpq_set_ui(t, 1 + draw(20), 1 + draw(20));
+        mpq_canonicalize(t);
+        mpfr_set_zero(truth, 1);
+        mpq_sub(factor, a, b);
+        mpq_div(factor, scale, factor);
+        add_wave(truth, a, none, t, factor, 0, false);
+        mpq_neg(factor, factor);
+        add_wave(truth, b, none, t, factor, 0, false);
+        struct poly D = poly_mul(linear_poly(1, -first), linear_poly(1, -second));
+        int precision = 20 + (int)draw(150);
+        mpfi_init2(value, 64 + precision);
+        assert_true(response_enclose(response_of(scale, one_poly(), D), t, precision, value));
+        assert_interval("real poles", n, value, truth);
+        mpfi_clear(value);
+    }
+    mpq_clears(a, b, t, scale, factor, none, NULL);
+    mpfr_clear(truth);
+}
+
+/* sin(r t)/r with r^2 = 2, of one response that is asked again and again: at other times, with more bits or fewer. What
+ * was found for one question is not good enough, or wrong, for the next. */
+static void a_response_asked_anew(void **state)
+{
+    mpq_t t, one;
+    mpfr_t root, truth;
+    mpfi_t value;
+    (void)state;
+    mpq_inits(t, one, NULL);
+    mpfr_inits2(TRUE_BITS, root, truth, NULL);
+    mpq_set_ui(one, 1, 1);
+    mpfr_sqrt_ui(root, 2, MPFR_RNDN);
+    struct poly D = poly_new(3);
+    mpz_set_ui(D.c[0], 2);
+    mpz_set_ui(D.c[2], 1);
+    struct response *response = response_of(one, one_poly(), D);
+    for (int n = 0; n < 60; n++) {
+        int precision = 20 + (int)draw(200);
+        mpq_set_ui(t, 1 + draw(20), 1 + draw(20));
+        mpq_canonicalize(t);
+        mpfr_mul_q(truth, root, t, MPFR_RNDN);
+        mpfr_sin(truth, truth, MPFR_RNDN);
+        mpfr_div(truth, truth, root, MPFR_RNDN);
+        mpfi_init2(value, 64 + precision);
+        assert_true(response_enclose(response, t, precision, value));
+        assert_interval("asked anew", n, value, truth);
+        assert_narrow("asked anew", n, value, 16 - precision);  /* the phase r t is below 2^5 */
+        mpfi_clear(value);
+    }
+    mpq_clears(t, one, NULL);
+    mpfr_clears(root, truth, NULL);
+}
+
+/* c/s^m is c t^{m-1}/(m-1)!, which is a rational number */
+static void residues_of_powers_of_time(void **state)
+{
+    mpq_t scale, t, truth, found;
+    (void)state;
+    mpq_inits(scale, t, truth, found, NULL);
+    for (int n = 0; n < 60; n++) {
+        int m = 1 + (int)draw(6);
+        draw_fraction(scale, 50, 9);
+        mpq_set_ui(t, 1 + draw(20), 1 + draw(20));
+        mpq_canonicalize(t);
+        mpq_set(truth, scale);
+        for (int k = 1; k < m; k++) {
+            mpq_set_ui(found, 1, (unsigned long)k);
+            mpq_mul(truth, truth, found);
+            mpq_mul(truth, truth, t);
+        }
+        struct response *response = response_of(scale, one_poly(), poly_shift(one_poly(), m));
+        assert_true(response_exact(response, t, found));
+        if (!mpq_equal(found, truth))
+            fail_msg("case %d: s^-%d at %g: %.17g, expected %.17g", n, m, mpq_get_d(t), mpq_get_d(found), mpq_get_d(truth));
+    }
+    mpq_clears(scale, t, truth, found, NULL);
+}
+
 /* ---- exponentials of matrices ---- */
 
 enum { PRECISION = 120 };
@@ -966,6 +1057,62 @@ static void taylor_of_known_eigenvalues(void **state)
         mpfr_clear(e[k]);
 }
 
+/* Of x' = [[0, 2^g], [-a b 2^-g, a + b]] x, a and b below 0 and rational, with few bits: there what the series leaves out
+ * is more than what rounding does. With E the exponentials E11 = (a e^{b t} - b e^{a t})/(a - b) and
+ * E12 = 2^g (e^{a t} - e^{b t})/(a - b), in states whose units differ by 2^g. */
+static void taylor_of_few_bits(void **state)
+{
+    mpq_t a, b, tau, factor, none;
+    mpfr_t truth;
+    (void)state;
+    mpq_inits(a, b, tau, factor, none, NULL);
+    mpfr_init2(truth, TRUE_BITS);
+    for (int n = 0; n < 300; n++) {
+        int g = 2 * (int)draw(50) - 50;
+        mpq_t *A = rationals(4);
+        mpq_set_si(a, -1 - (long)draw(40), 1 + draw(40));
+        mpq_canonicalize(a);
+        mpq_set_si(b, -1 - (long)draw(20), 41 + draw(20));
+        mpq_canonicalize(b);
+        mpq_set_ui(tau, 1 + draw(20), 1 + draw(20));
+        mpq_canonicalize(tau);
+        mpq_sub(factor, a, b);
+        if (mpq_sgn(factor) == 0)
+            continue;
+        mpq_set_ui(A[1], 1, 1);
+        mpq_mul(A[2], a, b);
+        mpq_neg(A[2], A[2]);
+        mpq_add(A[3], a, b);
+        for (int k = 0; k < (g < 0 ? -g : g); k++) {
+            (g < 0 ? mpq_div_2exp : mpq_mul_2exp)(A[1], A[1], 1);
+            (g < 0 ? mpq_mul_2exp : mpq_div_2exp)(A[2], A[2], 1);
+        }
+        mpfi_t *E = entries_of(taylor_of(2, (const mpq_t *)A, tau), 2, 2 + (int)draw(46));
+        mpfr_set_zero(truth, 1);
+        mpq_div(factor, A[1], factor);
+        add_wave(truth, a, none, tau, factor, 0, false);
+        mpq_neg(factor, factor);
+        add_wave(truth, b, none, tau, factor, 0, false);
+        assert_interval("E12", n, E[1], truth);
+        mpfr_set_zero(truth, 1);
+        mpq_div(factor, factor, A[1]);
+        mpq_mul(none, factor, b);
+        mpq_mul(factor, factor, a);
+        mpq_neg(factor, factor);
+        mpq_swap(none, factor);
+        mpq_t zero;
+        mpq_init(zero);
+        add_wave(truth, a, zero, tau, factor, 0, false);
+        add_wave(truth, b, zero, tau, none, 0, false);
+        mpq_clear(zero);
+        mpq_set_ui(none, 0, 1);
+        assert_interval("E11", n, E[0], truth);
+        entries_free(2, E);
+    }
+    mpq_clears(a, b, tau, factor, none, NULL);
+    mpfr_clear(truth);
+}
+
 /* Where no circle is on the way entries are polynomials in tau: here in a triangle without diagonal, all are. */
 static void taylor_of_a_chain(void **state)
 {
@@ -1121,6 +1268,29 @@ static void fit_of_known_sums(void **state)
         mpq_clear(sum.factor[i]);
 }
 
+/* (a - a0)(b - b0)(c - c0), which is 0 on all lines through the base from which powers are found */
+static mpq_srcptr value_off_the_lines(void *context, const mpq_t *params)
+{
+    const mpq_t *base = context;
+    mpq_t *result = rationals(1), difference;
+    mpq_init(difference);
+    mpq_set_ui(result[0], 1, 1);
+    for (int k = 0; k < 3; k++) {
+        mpq_sub(difference, params[k], base[k]);
+        mpq_mul(result[0], result[0], difference);
+    }
+    mpq_clear(difference);
+    return result[0];
+}
+
+static void fit_is_held_against_other_points(void **state)
+{
+    (void)state;
+    struct fit f = { .params = 3, .value = value_off_the_lines, .context = scattered_values(3, 0) };
+    if (fit_value(&f))
+        fail_msg("a product of three differences is taken for a sum of %d products of powers", f.products);
+}
+
 int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
@@ -1139,11 +1309,16 @@ int main(int argc, char **argv)
         cmocka_unit_test(rectangle_exponential),
         cmocka_unit_test(roots_multiplied_back),
         cmocka_unit_test(residues_of_double_pairs),
+        cmocka_unit_test(residues_of_powers_of_time),
+        cmocka_unit_test(residues_of_real_poles),
+        cmocka_unit_test(a_response_asked_anew),
         cmocka_unit_test(taylor_times_its_inverse),
         cmocka_unit_test(taylor_of_sums),
         cmocka_unit_test(taylor_of_known_eigenvalues),
+        cmocka_unit_test(taylor_of_few_bits),
         cmocka_unit_test(taylor_of_a_chain),
         cmocka_unit_test(fit_of_known_sums),
+        cmocka_unit_test(fit_is_held_against_other_points),
     };
     choose_cases(argc, argv);
     memory_open();

@@ -583,11 +583,38 @@ static void a_close_pair_is_parted(void **state)
     mpq_clears(root[0], root[1], NULL);
 }
 
+/* Of two discs that do not meet, one touches the real axis, and its mirror image meets the other: these may be a pair of
+ * conjugate roots, of which neither is real. */
+static void a_mirrored_disc_is_not_alone(void **state)
+{
+    static const double center[2] = { 1.0 / 1024, -1.5 / 1024 }, radius[2] = { 1.1 / 1024, 0.3 / 1024 };
+    struct iteration it = { .degree = 2, .bits = 64 };
+    (void)state;
+    it.z = ARRAY(mpc_t, 2);
+    it.center = ARRAY(struct rectangle, 2);
+    it.radius = ARRAY(mpfr_t, 2);
+    for (int i = 0; i < 2; i++) {
+        mpc_init2(it.z[i], 64);
+        mpfr_init2(it.radius[i], 64);
+        rectangle_init(&it.center[i], 64);
+        mpc_set_d_d(it.z[i], 1, center[i], MPC_RNDNN);
+        mpfi_set_d(it.center[i].re, 1);
+        mpfi_set_d(it.center[i].im, center[i]);
+        mpfr_set_d(it.radius[i], radius[i], MPFR_RNDN);
+    }
+    assert_false(discs_meet(&it, 0, 1, false, false));
+    assert_true(discs_meet(&it, 0, 1, false, true));
+    assert_false(isolated(&it, false, 5));
+    mpfr_set_d(it.radius[0], 0.9 / 1024, MPFR_RNDN);        /* off the axis both are alone */
+    assert_true(isolated(&it, false, 5));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_disc_alone_holds_one_root),
         cmocka_unit_test(a_close_pair_is_parted),
+        cmocka_unit_test(a_mirrored_disc_is_not_alone),
         cmocka_unit_test(every_pole_holds_its_root),
         cmocka_unit_test(every_rectangle_holds_its_truth),
         cmocka_unit_test(every_response_holds_its_truth),

@@ -921,6 +921,26 @@ static void end(void)
     mpfr_clear(temporary);
 }
 
+/* What a ramp's value before the step is multiplied with, u - u'/h: is less than two fifths of the larger left? */
+static void ramps_that_cancel(void **state)
+{
+    static const struct {
+        double u, slope;
+        int cancels;
+    } cases[] = {{1, 0.25, 0}, {1, 0.49, 1}, {1, 0.5, 1}, {-1, -0.45, 1}, {1, -0.5, 0}, {0.5, 0.5, 0}, {1, 0.26, 0}};
+    size_t k;
+    (void)state;
+    for (k = 0; k < sizeof cases / sizeof *cases; k++) {
+        pl_two D[3] = {{3, 0}, {0, 0}, {0, 0}};
+        int found;
+        D[1].hi = (real)cases[k].u;
+        D[2].hi = (real)cases[k].slope;
+        found = pl_ramp_cancels(3, 1, D, 1, (real)0.5);
+        if (found != cases[k].cancels)
+            fail_msg("u %g, u' %g, h 0.5: %d, expected %d", cases[k].u, cases[k].slope, found, cases[k].cancels);
+    }
+}
+
 ROOM_WITH(retune, start, end,
     cmocka_unit_test(damped),
     cmocka_unit_test(undamped),
@@ -935,4 +955,5 @@ ROOM_WITH(retune, start, end,
     cmocka_unit_test(equations),
     cmocka_unit_test(nearly_singular),
     cmocka_unit_test(singular),
+    cmocka_unit_test(ramps_that_cancel),
     cmocka_unit_test(not_finite))

@@ -1,0 +1,237 @@
+#!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
+#
+# faults.sh [-j COPIES] [-w FOLDER] [--check | --refresh] [NAME ...]: faults of which a suite is known to notice them, all or those named.
+# Each NAME.patch beside this script changes one file of gen or runtime. Its head says:
+#   # suite: TEST            the meson test that has to fail
+#   # run: PROGRAM ARGUMENT  only this of it, where the whole takes long: the program by its path in the build folder, run in the root of the tree
+#   # case: ARGUMENT ...     or this is appended to the command of the test
+#   # notice: build          plgen may stop while it writes what the suite is made of; otherwise what does not build is not noticed
+#   # says: ...              what a user would see
+# Each is applied to a copy of the tree and taken out again; the suite must pass before and fail with it. --check: do all apply?
+# --refresh writes the patches anew where lines or files have moved. The copies stay in FOLDER, where there is one, for the next time.
+set -u
+here=$(cd "$(dirname "$0")" && pwd) || exit 99
+root=$(cd "$here/../.." && pwd) || exit 99
+LC_ALL=C
+export LC_ALL
+
+usage()
+{
+	echo "usage: faults.sh [-j COPIES] [-w FOLDER] [--check | --refresh] [NAME ...]" >&2
+	exit 2
+}
+
+copies=1
+folder=
+mode=run
+while [ $# -gt 0 ]; do
+	case $1 in
+	-j) [ $# -gt 1 ] || usage; copies=$2; shift ;;
+	-w) [ $# -gt 1 ] || usage; folder=$2; shift ;;
+	--check) mode=check ;;
+	--refresh) mode=refresh ;;
+	-*) usage ;;
+	*) break ;;
+	esac
+	shift
+done
+
+if [ $# -eq 0 ]; then
+	for patch in "$here"/*.patch; do
+		patch=${patch##*/}
+		set -- "$@" "${patch%.patch}"
+	done
+fi
+for name; do
+	[ -f "$here/$name.patch" ] || { echo "faults.sh: no fault $name" >&2; exit 2; }
+done
+
+work=$(mktemp -d "${TMPDIR:-/tmp}/plgen.XXXXXX") || exit 99
+trap 'rm -rf "$work"' EXIT
+trap 'exit 99' HUP INT TERM
+if [ -z "$folder" ]; then
+	folder=$work
+fi
+mkdir -p "$folder" && folder=$(cd "$folder" && pwd) || exit 99
+
+# head_of NAME WORD: what the head says of it
+head_of()
+{
+	sed -n "s/^# $2: *//p; /^--- /q" "$here/$1.patch"
+}
+
+# accepts TREE FILE PATCH: with the context as it is
+accepts()
+{
+	patch -s -f --dry-run -F 0 "$1/$2" "$3" >/dev/null 2>&1
+}
+
+# file_of TREE NAME: the file that the patch is for: by its path, by its name in another room, or by what it says
+file_of()
+{
+	wanted=$(sed -n 's|^+++ b/||p' "$here/$2.patch")
+	if accepts "$1" "$wanted" "$here/$2.patch"; then
+		echo "$wanted"
+		return
+	fi
+	for file in $(cd "$1" && { find gen runtime -name "${wanted##*/}"; find gen runtime -name '*.[ch]'; }); do
+		if accepts "$1" "$file" "$here/$2.patch"; then
+			echo "$file"
+			return
+		fi
+	done
+	return 1
+}
+
+# ---- do they apply? ----
+
+# As TAP, for the tests that `make check` runs
+check_all()
+{
+	number=0
+	failed=0
+	echo "1..$#"
+	for name; do
+		number=$((number + 1))
+		why=
+		[ -n "$(head_of "$name" suite)" ] && [ -n "$(head_of "$name" says)" ] || why='its head has no suite, or says nothing'
+		[ -n "$(file_of "$root" "$name")" ] || why='it applies to no file'
+		if [ -z "$why" ]; then
+			echo "ok $number - $name"
+		else
+			echo "not ok $number - $name"
+			echo "# $why"
+			failed=1
+		fi
+	done
+	return $failed
+}
+
+# refresh NAME: the same fault, as a patch of the tree as it is
+refresh()
+{
+	file=$(file_of "$root" "$1") || { echo "$1: applies to no file"; return 1; }
+	cp "$root/$file" "$work/old" && cp "$work/old" "$work/new" || return 1
+	patch -s -f -F 0 "$work/new" "$here/$1.patch" || return 1
+	sed '/^--- /,$d' "$here/$1.patch" >"$work/patch"
+	diff -u --label "a/$file" --label "b/$file" "$work/old" "$work/new" >>"$work/patch"
+	cmp -s "$work/patch" "$here/$1.patch" || { cp "$work/patch" "$here/$1.patch" && echo "$1: $file"; }
+}
+
+# ---- are they noticed? ----
+
+# make_copy FOLDER: all but builds, those files newer that differ
+make_copy()
+{
+	mkdir -p "$1" || return 1
+	(cd "$root" && for entry in *; do
+		[ -f "$entry/build.ninja" ] || [ -f "$entry/index.html" ] || echo "$entry"
+	done) >"$1.entries"
+	(cd "$root" && find $(cat "$1.entries") -type f) | while IFS= read -r file; do
+		if ! cmp -s "$root/$file" "$1/$file"; then
+			mkdir -p "$1/$(dirname "$file")" && cp -p "$root/$file" "$1/$file" && touch "$1/$file"
+		fi
+	done
+	[ -f "$1/build/build.ninja" ] || meson setup -Dbuildtype=plain -Doptimization=0 "$1/build" "$1" >"$1.log" 2>&1
+}
+
+# run_suite COPY NAME LOG: 0 passes, 1 fails, 2 does not build
+run_suite()
+{
+	suite=$(head_of "$2" suite)
+	program=$(head_of "$2" run)
+	ninja -C "$1/build" plgen >"$3" 2>&1 || return 2
+	if [ -n "$program" ]; then
+		ninja -C "$1/build" "${program%% *}" >>"$3" 2>&1 || return 2
+		(cd "$1" && eval "timeout 300 build/$program") >>"$3" 2>&1 && return 0
+		return 1
+	fi
+	timeout 600 meson test -C "$1/build" --timeout-multiplier 5 --print-errorlogs "$suite" --test-args="$(head_of "$2" case)" >>"$3" 2>&1
+	case $? in
+	0) return 0 ;;
+	125) return 2 ;;
+	*) return 1 ;;
+	esac
+}
+
+# passes_without COPY NAME: once for each way to call a suite
+passes_without()
+{
+	key=$(printf '%s' "$(head_of "$2" suite)$(head_of "$2" run)$(head_of "$2" case)" | tr -c 'a-zA-Z0-9_.-' '_')
+	if [ ! -f "$work/passed.$key" ]; then
+		run_suite "$1" "$2" "$1.log" || return 1
+		: >"$work/passed.$key"
+	fi
+}
+
+# verdict COPY NAME: a word or two
+verdict()
+{
+	passes_without "$1" "$2" || { echo "SUITE FAILS WITHOUT IT"; return; }
+	file=$(file_of "$1" "$2") || { echo "APPLIES TO NO FILE"; return; }
+	cp "$1/$file" "$1.kept"
+	patch -s -f -F 0 "$1/$file" "$here/$2.patch"
+	run_suite "$1" "$2" "$1.log"
+	case $?$(head_of "$2" notice) in
+	1 | 1build) echo noticed ;;
+	2build) if [ -n "$(find "$1/build/plgen" -newer "$1.kept")" ]; then echo noticed; else echo "DOES NOT COMPILE"; fi ;;
+	2) echo "DOES NOT BUILD" ;;
+	*) echo "NOT NOTICED" ;;
+	esac
+	cp "$1.kept" "$1/$file"
+}
+
+# one NAME COPY
+one()
+{
+	begin=$(date +%s)
+	is=$(verdict "$2" "$1")
+	printf '%-32s %-24s %s, %d s\n' "$1" "$(head_of "$1" suite)" "$is" $(($(date +%s) - begin))
+	echo "$is" >"$work/verdict.$1"
+	if [ "$is" != noticed ]; then
+		tail -n 20 "$2.log" | cut -c 1-200 | sed 's/^/    /'
+	fi
+}
+
+# worker COPY SUITE-LIST NAME ...: takes a suite that nobody took, and all its faults
+worker()
+{
+	copy=$1
+	suites=$2
+	shift 2
+	make_copy "$copy" || { echo "faults.sh: no copy $copy" >&2; cat "$copy.log" >&2; return 1; }
+	for suite in $suites; do
+		mkdir "$work/taken.$suite" 2>/dev/null || continue
+		for name; do
+			[ "$(head_of "$name" suite)" != "$suite" ] || one "$name" "$copy"
+		done
+	done
+}
+
+run_all()
+{
+	start=$(date +%s)
+	suites=$(for name; do head_of "$name" suite; done | sort | uniq -c | sort -rn | awk '{ print $2 }')
+	number=1
+	workers=
+	while [ "$number" -le "$copies" ]; do
+		worker "$folder/copy$number" "$suites" "$@" &
+		workers="$workers $!"
+		number=$((number + 1))
+	done
+	trap 'kill $workers; exit 99' HUP INT TERM
+	wait
+	noticed=0
+	for name; do
+		[ "$(cat "$work/verdict.$name" 2>/dev/null)" != noticed ] || noticed=$((noticed + 1))
+	done
+	echo "$noticed of $# noticed, $(($(date +%s) - start)) seconds"
+	[ "$noticed" -eq $# ]
+}
+
+case $mode in
+check) check_all "$@" ;;
+refresh) for name; do refresh "$name"; done ;;
+run) run_all "$@" ;;
+esac
