@@ -104,7 +104,12 @@ void emit_locals_of(const struct emitter *e, const bool *reads, const char *vect
 
 const char *step_length(const struct emitter *e)
 {
-	return e->kind->step_length ? e->kind->step_length : spell(e, "$N_H");
+	return e->kind->own_factors ? "s->coeffs.h" : spell(e, "$N_H");
+}
+
+const char *of_step(const struct emitter *e, const char *table)
+{
+	return e->kind->own_factors ? format("s->coeffs.%s", table) : spell(e, "$n_%s", table);
 }
 
 /* s->y from a vector of states, nothing left of earlier rounding */
@@ -178,13 +183,18 @@ const char *tuned_factor(const struct emitter *e, int row, const struct operand 
 	return tuned_entry(e, "step", row, first[operand->kind] + operand->index);
 }
 
+bool is_tuned_output(const struct emitter *e, const struct output *output)
+{
+	return e->kind->own_factors && e->model->tuning->output[output - e->model->output] >= 0;
+}
+
 const char *tuned_output(const struct emitter *e, const struct output *output)
 {
 	const struct tuning *t = e->model->tuning;
 	const struct linear *system = e->system;
-	int row = t ? t->output[output - e->model->output] : -1, states = system->states, terms = 0;
-	if (row < 0)
+	if (!is_tuned_output(e, output))
 		return NULL;
+	int row = t->output[output - e->model->output], states = system->states, terms = 0;
 	const char **term = ARRAY(const char *, (size_t)t->columns + 1);
 	const char **operand = ARRAY(const char *, (size_t)t->columns);
 	for (int i = 0; i < states; i++)
