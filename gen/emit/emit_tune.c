@@ -71,7 +71,7 @@ void banner_tuning(const struct emitter *e)
 	say(e, " * Tunable: %s. $n_retune computes the factors of a step from other values and another h on the target;"
 	       " of the spec's\n"
 	       " * values they are these, correctly rounded. It needs some %d KB of stack.\n", param_list(e),
-	    room_of(e->step).kilobytes);
+	    workspace_of(e->step).kilobytes);
 }
 
 /* A member, its comment at a common column */
@@ -347,7 +347,7 @@ static void emit_slopes(const struct emitter *e)
 {
 	const struct linear *system = e->system;
 	struct fixed_slope *list;
-	int size = e->step->series.size, fixed = fixed_slopes(e->step, &list), width = room_of(e->step).width;
+	int size = e->step->series.size, fixed = fixed_slopes(e->step, &list), width = workspace_of(e->step).width;
 	bool segments = system->segments > 1;
 	say(e, "\n/* x' = A x%s */\n"
 	       "static void $n_slopes(pl_two value[%d][%d], %spl_two A[%d][%d])\n"
@@ -487,11 +487,11 @@ static void emit_increments(const struct emitter *e)
 static void emit_retune_function(const struct emitter *e)
 {
 	int segments = e->system->segments, size = e->step->series.size;
-	struct room room = room_of(e->step);
+	struct workspace space = workspace_of(e->step);
 	say(e, "\nint $n_retune($n_coeffs *c, const double params[$N_PARAMS], double h)\n"
 	       "{\n"
-	       "    pl_two value[%d][%d], A[%d][%d], work[%d];\n", e->model->tuning->rows, room.width, size, size,
-	    room.work);
+	       "    pl_two value[%d][%d], A[%d][%d], work[%d];\n", e->model->tuning->rows, space.width, size, size,
+	    space.work);
 	say(e, "    pl_two D%s[$N_STATES][%d];  /* e^{A h} - I */\n"
 	       "    int i, j, status;\n"
 	       "    if (!(h > 0.0))\n"
@@ -517,14 +517,14 @@ static void emit_retune_function(const struct emitter *e)
 static void emit_advance(const struct emitter *e)
 {
 	int size = e->step->series.size;
-	struct room room = room_of(e->step);
+	struct workspace space = workspace_of(e->step);
 	bool segments = e->system->segments > 1;
 	const char *rows = segments ? format("%d", size) : format("%s_STATES", e->upper);
 	say(e, "\n/* The states tau on */\n"
 	       "static void $n_advance(pl_two value[%d][%d], %sdouble tau, double x[%d])\n"
 	       "{\n"
-	       "    pl_two A[%d][%d], D[%s][%d], work[%d];\n", e->model->tuning->rows, room.width,
-	    segments ? "int segment, " : "", size, size, size, rows, size, room.work);
+	       "    pl_two A[%d][%d], D[%s][%d], work[%d];\n", e->model->tuning->rows, space.width,
+	    segments ? "int segment, " : "", size, size, size, rows, size, space.work);
 	say(e, "    double more[%s];\n"
 	       "    int i, j;\n"
 	       "    $n_slopes(value, %sA);\n"
@@ -561,7 +561,7 @@ static void emit_tuned_pass(const struct emitter *e)
 	       "{\n", changes ? ", from change to change of the loads on the way" : "",
 	    e->system->inputs ? format("const double u[%s_INPUTS], ", e->upper) : "");
 	say(e, "    pl_two value[%d][%d], work[%d];\n"
-	       "    double x[%d]%s;\n", t->rows, room_of(e->step).width, t->monomials + 1, e->step->series.size,
+	       "    double x[%d]%s;\n", t->rows, workspace_of(e->step).width, t->monomials + 1, e->step->series.size,
 	    changes ? ", done = 0.0" : "");
 	if (changes)
 		say(e, "    int segment = s->segment;\n");

@@ -431,11 +431,11 @@ struct fixed_slope {                /* an entry of A, x' = A x, that no param ch
 	struct coefficient value;
 };
 int fixed_slopes(const struct step *step, struct fixed_slope **list);
-struct room {                       /* that the target computes coefficients in, in numbers of two words */
+struct workspace {                  /* that the target computes coefficients in, in numbers of two words */
 	int width, work;            /* columns of the equations, W's among them; for products and exponentials */
 	int kilobytes;              /* of stack; frames of the calls not counted */
 };
-struct room room_of(const struct step *step);
+struct workspace workspace_of(const struct step *step);
 
 /* ---- written.c: the equations as written, for NAME_rhs ---- */
 

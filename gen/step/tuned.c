@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What a model with tunable params keeps: the coefficients of the spec's own values, what no param changes of x' = A x,
- * and the room that the target works in. */
+ * and what the target computes coefficients in. */
 #include "step/step.h"
 
 /* Columns: states, load states in each segment of time, inputs */
@@ -84,15 +84,15 @@ int fixed_slopes(const struct step *step, struct fixed_slope **list)
 	return count;
 }
 
-struct room room_of(const struct step *step)
+struct workspace workspace_of(const struct step *step)
 {
 	const struct tuning *t = step->model->tuning;
 	int size = step->series.size, products = t->monomials + 1, real = step->model->asked.single ? 4 : 8;
-	struct room room = { .width = t->columns + (t->solves ? t->rows : 0), .work = PL_INCREMENT_WORK(size) };
-	if (room.work < products)
-		room.work = products;
+	struct workspace space = { .width = t->columns + (t->solves ? t->rows : 0), .work = PL_INCREMENT_WORK(size) };
+	if (space.work < products)
+		space.work = products;
 	int increments = step->branch->system.segments * step->branch->system.states * size;
-	int twos = t->rows * room.width + size * size + room.work + increments;
-	room.kilobytes = 1 + 2 * real * twos / 1024;
-	return room;
+	int twos = t->rows * space.width + size * size + space.work + increments;
+	space.kilobytes = 1 + 2 * real * twos / 1024;
+	return space;
 }
