@@ -373,4 +373,8 @@ struct tuning {
 /* model->tuning, where something is tunable; false: it was said why not */
 bool find_tuning(struct model *model, const struct request *request);
 
+/* ---- stepped.c: the model that a step is built of ---- */
+
+struct model *stepped_model(struct model *model, struct spec *spec, const struct request *request); /* NULL: said why */
+
 #endif

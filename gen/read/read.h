@@ -189,11 +189,11 @@ struct scheme_row {
 	const char *citation;       /* of its recipe */
 	bool leaves;                /* a quadrature of its own treats what it leaves over */
 	bool by_default;            /* where exact is not possible and no scheme is asked for */
-	bool holds_coupling;        /* over the step: its operator is each coordinate's own terms, of linear models too */
+	bool holds_coupling;        /* over the step: A is each coordinate's own terms, of linear models too */
 	bool holds_leftover;        /* over the step: there is a value of its order at any time between steps */
 	bool predicts;              /* the nodes by an explicit method, which bears no stiffness */
-	/* Stability: where the operator's squared frequencies are below the model's by d, the state grows at h d / this;
-	 * 0: its phase drifts, by the order. */
+	/* Stability: where the operator's squared frequencies are below the model's by d, the state grows at h d over
+	 * this; 0: its phase drifts, by the order. */
 	int growth_divisor;
 };
 const struct scheme_row *scheme_row(enum scheme scheme);

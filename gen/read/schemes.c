@@ -88,8 +88,8 @@ const char *scheme_note(enum scheme scheme)
 	enum { WORDS = 5 };
 	static const char *const ordinal[WORDS] = { "zeroth", "first", "second", "third", "fourth" };
 	const struct scheme_row *row = &rows[scheme];
-	return format("Scheme %s, of %s order in h: %s.", row->name, row->order < WORDS ? ordinal[row->order] : format("%dth", row->order),
-		      row->method);
+	return format("Scheme %s, of %s order in h: %s.", row->name,
+		      row->order < WORDS ? ordinal[row->order] : format("%dth", row->order), row->method);
 }
 
 /* ---- forms ---- */

@@ -2,12 +2,16 @@
 /* The program of a step as text: what emitters print as C, before they do. */
 #include "report/report.h"
 
+#include <string.h>
+
 /* ---- tables and kernels ---- */
 
 /* p/q h, or h */
 static const char *time_text(mpq_srcptr fraction)
 {
-	return mpq_sgn(fraction) == 0 ? "0" : mpq_cmp_ui(fraction, 1, 1) == 0 ? "h" : format("%s h", exact_text(fraction));
+	return mpq_sgn(fraction) == 0		 ? "0"
+	       : mpq_cmp_ui(fraction, 1, 1) == 0 ? "h"
+						 : format("%s h", exact_text(fraction));
 }
 
 /* 1 - 3 (s/h) + 2 (s/h)^2 */
@@ -21,7 +25,11 @@ static const char *powers_text(const struct kernel_part *part)
 		int sign = mpq_sgn(part->power[m]);
 		mpq_abs(size, part->power[m]);
 		if (sign != 0)
-			text = format("%s%s%s%s", text, sign < 0 ? (*text ? " - " : "-") : *text ? " + " : "", exact_text(size), power[m]);
+			text = format("%s%s%s%s", text,
+				      sign < 0 ? (*text ? " - " : "-")
+				      : *text  ? " + "
+					       : "",
+				      exact_text(size), power[m]);
 	}
 	mpq_clear(size);
 	return text;
@@ -33,9 +41,10 @@ static const char *kernel_text(const struct kernel *kernel)
 	const char *text = "";
 	for (int i = 0; i < kernel->parts; i++) {
 		const struct kernel_part *part = &kernel->part[i];
-		const char *time = time_text(part->fraction), *plus = *text ? ", plus " : "", *at = mpq_sgn(part->fraction) == 0 ? "" : "e^{A tau} ";
+		const char *time = time_text(part->fraction), *plus = *text ? ", plus " : "";
+		const char *at = mpq_sgn(part->fraction) == 0 ? "" : format("e^{A tau}, tau = %s, times ", time);
 		if (mpq_sgn(part->impulse) != 0)
-			text = format("%s%s%sB times %s s%s", text, plus, at, exact_text(part->impulse), *at ? format(", tau = %s", time) : "");
+			text = format("%s%s%s%s s B", text, plus, at, exact_text(part->impulse));
 		else
 			text = format("%s%sresponse to B (%s) from s = 0 to %s", text, plus, powers_text(part), time);
 	}
@@ -52,10 +61,11 @@ static void print_table(FILE *to, const struct table *table)
 		fprintf(to, " Phi - I,");
 	if (table->kick)
 		fprintf(to, " kicks and drifts,");
-	fprintf(to, " %d load column%s, %d input column%s\n", table->columns, table->columns == 1 ? "" : "s", table->inputs,
-		table->inputs == 1 ? "" : "s");
+	fprintf(to, " %d load column%s, %d input column%s\n", table->columns, table->columns == 1 ? "" : "s",
+		table->inputs, table->inputs == 1 ? "" : "s");
 	for (int k = 0; k < wanted->kernels; k++)
-		fprintf(to, "        %s (%d x %d): %s\n", wanted->kernel[k].name, table->states, table->channels, kernel_text(&wanted->kernel[k]));
+		fprintf(to, "        %s (%d x %d): %s\n", wanted->kernel[k].name, table->states, table->channels,
+			kernel_text(&wanted->kernel[k]));
 }
 
 static void print_tables(FILE *to, const struct step *step)
@@ -84,13 +94,13 @@ static const char *sum_text(const struct step *step, const struct action *a)
 	const char *text = a->plain == NONE ? "" : stage_text(a->plain);
 	if (a->flow != NONE) {
 		const struct table *flow = table[a->flow];
-		text = format("%s%s%s.Phi y%s%s", text, *text ? " + " : "", flow->wanted->name, flow->columns ? " + loads" : "",
-			      flow->inputs ? " + inputs" : "");
+		text = format("%s%s%s.Phi y%s%s", text, *text ? " + " : "", flow->wanted->name,
+			      flow->columns ? " + loads" : "", flow->inputs ? " + inputs" : "");
 	}
 	for (int k = 0; k < a->kernels; k++) {
 		const struct wanted *wanted = table[a->kernel[k].table]->wanted;
-		text = format("%s%s%s.%s left%d", text, *text ? " + " : "", wanted->name, wanted->kernel[a->kernel[k].kernel].name,
-			      a->kernel[k].left);
+		text = format("%s%s%s.%s left%d", text, *text ? " + " : "", wanted->name,
+			      wanted->kernel[a->kernel[k].kernel].name, a->kernel[k].left);
 	}
 	return text;
 }
@@ -113,11 +123,11 @@ static void print_action(FILE *to, const struct step *step, const struct action 
 		fprintf(to, "    left%d = %s\n", a->target, combination_text(a));
 		break;
 	case ACTION_SUM:
-		fprintf(to, "    %s = %s        # %s\n", stage_text(a->target), sum_text(step, a), a->note);
+		fprintf(to, "    # %s\n    %s = %s\n", a->note, stage_text(a->target), sum_text(step, a));
 		break;
 	case ACTION_PREDICT:
-		fprintf(to, "    %s = RK4 from y to %s, by way of %s\n", stage_text(a->target), node_text(program, a->node),
-			node_text(program, a->half));
+		fprintf(to, "    %s = RK4 from y to %s, by way of %s\n", stage_text(a->target),
+			node_text(program, a->node), node_text(program, a->half));
 		break;
 	}
 }
@@ -128,10 +138,12 @@ static void print_nodes(FILE *to, const struct step *step)
 	fputs("Nodes:", to);
 	for (int i = 0; i < program->nodes; i++) {
 		int table = program->node_table[i];
-		fprintf(to, "%s %s%s", i ? "," : "", node_text(program, i),
-			table == NONE ? "" : format(" (loads and inputs: %s)", step->branch->table[table]->wanted->name));
+		const char *loads =
+			table == NONE ? "" : format(" (loads: %s)", step->branch->table[table]->wanted->name);
+		fprintf(to, "%s %s%s", i ? "," : "", node_text(program, i), loads);
 	}
-	fprintf(to, "\nStages: %d; leftovers: %d, each of %d\n", program->stages, program->lefts, step->branch->system.channels);
+	fprintf(to, "\nStages: %d; leftovers: %d, each of %d number%s\n", program->stages, program->lefts,
+		step->branch->system.channels, step->branch->system.channels == 1 ? "" : "s");
 }
 
 static void print_actions(FILE *to, const struct step *step)
@@ -145,6 +157,13 @@ static void print_actions(FILE *to, const struct step *step)
 }
 
 /* ---- a list of assignments ---- */
+
+/* A state that is a difference stands in brackets */
+static const char *state_text(const struct step *step, int state)
+{
+	const char *name = step->model->state_name[state];
+	return strchr(name, ' ') && name[0] != '(' ? format("(%s)", name) : name;
+}
 
 static const char *load_column_text(const struct linear *system, int column)
 {
@@ -160,14 +179,15 @@ static const char *input_column_text(const struct step *step, int column)
 	const struct linear *system = &step->branch->system;
 	for (int i = 0; i < system->inputs; column -= system->input[i++].first_order ? 2 : 1)
 		if (column < (system->input[i].first_order ? 2 : 1))
-			return format("%s%s", system->input[i].name, !system->input[i].first_order ? "" : column ? "(end)" : "(start)");
+			return format("%s%s", system->input[i].name,
+				      !system->input[i].first_order ? "" : column ? "(end)" : "(start)");
 	return "";
 }
 
 static const char *operand_text(const struct step *step, const struct operand *operand)
 {
 	switch (operand->kind) {
-	case OPERAND_STATE: return step->model->state_name[operand->index];
+	case OPERAND_STATE: return state_text(step, operand->index);
 	case OPERAND_LOAD:  return load_column_text(&step->branch->system, operand->index);
 	default:            return input_column_text(step, operand->index);
 	}
@@ -175,7 +195,7 @@ static const char *operand_text(const struct step *step, const struct operand *o
 
 static void print_assignment(FILE *to, const struct step *step, const struct assignment *a)
 {
-	fprintf(to, "    %s %s", step->model->state_name[a->target], a->added ? "+=" : "=");
+	fprintf(to, "    %s %s", state_text(step, a->target), a->added ? "+=" : "=");
 	for (int k = 0; k < a->terms; k++) {
 		const struct product *p = &a->term[k];
 		const char *factor = shortest(p->factor->value);
@@ -183,19 +203,24 @@ static void print_assignment(FILE *to, const struct step *step, const struct ass
 			factor = format("(%s + %s)", factor, shortest(p->factor->low));
 		fprintf(to, "%s %s*%s", k ? " +" : "", factor, operand_text(step, &p->operand));
 	}
-	fprintf(to, "%s%s\n", a->terms ? "" : " 0", a->carried ? "        # with a carry" : "");
+	fprintf(to, "%s%s\n", a->terms ? "" : " 0", a->carried ? "        # what rounding takes is kept" : "");
 }
 
 static void print_products(FILE *to, const struct step *step)
 {
-	static const char *const operands[] = { [OPERAND_STATE] = "y", [OPERAND_LOAD] = "load states", [OPERAND_INPUT] = "inputs" };
+	static const char *const operands[] = {
+		[OPERAND_STATE] = "y", [OPERAND_LOAD] = "loads", [OPERAND_INPUT] = "inputs"
+	};
 	const struct program *program = step->program;
 	const struct table *whole = step->branch->whole;
 	fprintf(to, "A loop over all states:\n    y %s", program->products_added ? "+=" : "=");
 	for (int k = 0; k < program->products; k++) {
 		const struct matrix_product *p = &program->product[k];
-		const char *name = p->factor == whole->increment ? "(Phi - I)" : p->factor == whole->Phi ? "Phi" : "columns";
-		fprintf(to, "%s %s[%d x %d] %s", k ? " +" : "", name, whole->states, p->columns, operands[p->kind]);
+		const char *name = p->factor == whole->increment ? "(Phi - I)"
+				   : p->factor == whole->Phi	 ? "Phi"
+								 : "columns";
+		fprintf(to, "%s %s %d x %d times %s", k ? " +" : "", name, whole->states, p->columns,
+			operands[p->kind]);
 	}
 	fputc('\n', to);
 }
@@ -205,15 +230,17 @@ static void print_list(FILE *to, const struct step *step)
 	const struct program *program = step->program;
 	print_tables(to, step);
 	if (program->tuned)
-		fputs("Factors are read from the instance; these are those of the spec's values.\n", to);
+		fputs("Factors are read from the instance; these are of the spec's values.\n", to);
 	if (step->branch->system.segments > 1)
-		fprintf(to, "Factors of loads change %d times; these are those before.\n", step->branch->system.segments - 1);
+		fprintf(to, "Factors of loads change %d time%s; these are those before.\n",
+			step->branch->system.segments - 1, step->branch->system.segments == 2 ? "" : "s");
 	if (program->loops) {
 		print_products(to, step);
 		return;
 	}
 	fprintf(to, "Assignments, %s%s:\n",
-		program->in_order ? "in order: each reads what those before it have left" : "all of which read the old state",
+		program->in_order ? "in order: each reads what those before it have left"
+				  : "all of which read the old state",
 		step->momenta ? "; velocities are kept as momenta" : "");
 	for (int i = 0; i < program->assignments; i++)
 		print_assignment(to, step, &program->assignment[i]);
@@ -224,12 +251,17 @@ static void print_list(FILE *to, const struct step *step)
 static void print_regions(FILE *to, const struct step *step)
 {
 	const struct switching *s = step->model->switching;
-	fprintf(to, "Actions, from piece to piece d of the step:\n"
-		    "    y = piece.Phi y + loads + piece.held u + piece.ramp u'\n"
-		    "    where one of %d expressions passes a breakpoint: the Taylor series of y, of degree %d, to there; then the next region\n",
-		s->expressions, step->series.degree);
+	fprintf(to,
+		"Actions, from piece to piece d of the step:\n"
+		"    y = piece.Phi y + loads + piece.held u + piece.ramp u'\n"
+		"    where %s passes a breakpoint: the Taylor series of y, of degree %d, to there; then the next "
+		"region\n",
+		s->expressions == 1 ? "the expression" : format("one of %d expressions", s->expressions),
+		step->series.degree);
 	for (int k = 0; k < step->branches; k++) {
-		fprintf(to, "Matrix %d: pieces of h/%ld\n", k, 1l << step->branch[k].halvings);
+		fprintf(to, "Matrix %d, %s:\n", k,
+			step->branch[k].halvings ? format("pieces of h/%ld", 1l << step->branch[k].halvings)
+						 : "one piece");
 		print_table(to, step->branch[k].table[0]);
 	}
 }
@@ -242,7 +274,7 @@ static void print_reads(FILE *to, const struct step *step)
 	const char *states = "", *loads = "";
 	for (int i = 0; i < step->branch->whole->states; i++)
 		if (program->reads[i])
-			states = format("%s%s %s", states, *states ? "," : "", step->model->state_name[i]);
+			states = format("%s%s %s", states, *states ? "," : "", state_text(step, i));
 	for (int k = 0; k < step->branch->whole->columns; k++)
 		if (program->uses[k])
 			loads = format("%s%s %s", loads, *loads ? "," : "", load_column_text(&step->branch->system, k));
@@ -253,7 +285,8 @@ static void print_reads(FILE *to, const struct step *step)
 
 static const char *kind_text(const struct step *step)
 {
-	return step->model->switching ? "regions" : has_leftover(step) ? "a leftover" : step->program->tuned ? "linear, tunable" : "linear";
+	return step->model->switching ? "regions" : has_leftover(step) ? "with a leftover"
+	       : step->program->tuned ? "linear, tunable" : "linear";
 }
 
 void explain_program(FILE *to, const struct step *step)
@@ -268,6 +301,7 @@ void explain_program(FILE *to, const struct step *step)
 	else
 		print_list(to, step);
 	print_reads(to, step);
-	fprintf(to, "Cost: %d multiplications, %d additions, %d calls%s\n", program->multiplications, program->additions, program->calls,
+	fprintf(to, "Cost: %d multiplications, %d additions, %d calls%s\n", program->multiplications,
+		program->additions, program->calls,
 		step->forced ? "; the state is kept less what its loads sustain" : "");
 }

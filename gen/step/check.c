@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What every program of a step keeps to, whichever scheme wrote it: emitters and the report take it as given. Each stage and each
- * leftover is written once, and before it is read; what is named is there. */
+/* What every program of a step keeps to, whichever scheme wrote it: emitters and the report take it as given. Each
+ * stage and each leftover is written once, and before it is read; what is named is there. */
 #include "step/step.h"
 
 struct check {
@@ -50,10 +50,15 @@ static void check_tables(struct check *c)
 
 /* ---- a list of assignments ---- */
 
+static int operands_of(const struct table *table, enum operand_kind kind)
+{
+	return kind == OPERAND_STATE ? table->states : kind == OPERAND_LOAD ? table->columns : table->inputs;
+}
+
 static void check_operand(const struct check *c, const struct product *p)
 {
 	const struct table *table = c->step->branch->whole;
-	int columns = p->operand.kind == OPERAND_STATE ? table->states : p->operand.kind == OPERAND_LOAD ? table->columns : table->inputs;
+	int columns = operands_of(table, p->operand.kind);
 	need(c, p->factor, "a term without its factor");
 	need(c, among(p->operand.index, columns), "a term whose operand is out of range");
 	if (p->operand.kind == OPERAND_STATE)
@@ -66,9 +71,11 @@ static void check_assignment(const struct check *c, const struct assignment *a)
 {
 	const struct table *table = c->step->branch->whole;
 	need(c, among(a->target, table->states), "its target is out of range");
-	need(c, among(a->terms, table->states + table->columns + table->inputs + 1), "its number of terms is out of range");
+	need(c, among(a->terms, table->states + table->columns + table->inputs + 1),
+	     "its number of terms is out of range");
 	need(c, !a->added || c->program->reads[a->target], "it adds to a state that is not marked as read");
-	need(c, !a->carried || c->step->carry[a->target] >= 0, "it carries what rounding takes, and there is no place for that");
+	need(c, !a->carried || c->step->carry[a->target] >= 0,
+	     "it carries what rounding takes, and there is no place for that");
 	for (int k = 0; k < a->terms; k++)
 		check_operand(c, &a->term[k]);
 }
@@ -78,8 +85,7 @@ static void check_product(const struct check *c, const struct matrix_product *p)
 {
 	const struct table *table = c->step->branch->whole;
 	need(c, p->factor, "a matrix is not there");
-	need(c, p->columns == (p->kind == OPERAND_STATE ? table->states : p->kind == OPERAND_LOAD ? table->columns : table->inputs),
-	     "a matrix with columns for another number of operands");
+	need(c, p->columns == operands_of(table, p->kind), "a matrix with columns for another number of operands");
 }
 
 static void check_list(struct check *c)
@@ -97,7 +103,8 @@ static void check_list(struct check *c)
 	need(c, program->loops == (program->products > 0), "a step loops over matrices, or it has none");
 	for (int k = 0; k < program->products; k++)
 		check_product(c, &program->product[k]);
-	need(c, !program->loops || !(program->in_order || program->compensated), "a step of a form that is not built with loops");
+	need(c, !program->loops || !(program->in_order || program->compensated),
+	     "a step of a form that is not built with loops");
 	need(c, !program->tuned || c->step->model->tuning, "factors of tunable params, and there are none");
 }
 
@@ -147,7 +154,8 @@ static void check_sum(struct check *c, const struct action *a)
 		check_stage_read(c, a->plain);
 	for (int k = 0; k < a->kernels; k++) {
 		need(c, among(a->kernel[k].table, c->step->tables), "the table of a kernel is out of range");
-		need(c, among(a->kernel[k].kernel, table[a->kernel[k].table]->wanted->kernels), "a kernel is out of range");
+		need(c, among(a->kernel[k].kernel, table[a->kernel[k].table]->wanted->kernels),
+		     "a kernel is out of range");
 		check_left_read(c, a->kernel[k].left);
 	}
 	check_stage_target(c, a->target);
@@ -196,7 +204,8 @@ static void check_nodes(struct check *c)
 	need(c, program->nodes > 0 && mpq_sgn(program->node[0]) == 0, "the first is not 0");
 	for (int i = 0; i < program->nodes; i++) {
 		int table = program->node_table[i];
-		need(c, mpq_sgn(program->node[i]) >= 0 && mpq_cmp_ui(program->node[i], 1, 1) <= 0, "one is outside the step");
+		need(c, mpq_sgn(program->node[i]) >= 0 && mpq_cmp_ui(program->node[i], 1, 1) <= 0,
+		     "one is outside the step");
 		need(c, table == NONE || among(table, c->step->tables), "the table of one is out of range");
 	}
 }

@@ -119,7 +119,8 @@ static void tally_sum(struct tally *t, const struct action *a)
 	if (a->flow != NONE)
 		tally_flow(t, table[a->flow]);
 	for (int k = 0; k < a->kernels; k++)
-		tally_matrix(t, table[a->kernel[k].table]->kernel[a->kernel[k].kernel], t->step->branch->system.channels);
+		tally_matrix(t, table[a->kernel[k].table]->kernel[a->kernel[k].kernel],
+			     t->step->branch->system.channels);
 	for (int i = 0; i < rows; i++)
 		t->program->additions += t->terms[i] + (a->plain != NONE) - (t->terms[i] > 0 || a->plain != NONE);
 }
@@ -137,7 +138,9 @@ static int leftovers_evaluated(const struct program *program)
 {
 	int count = 0;
 	for (int i = 0; i < program->actions; i++)
-		count += program->action[i].kind == ACTION_LEFTOVER ? 1 : program->action[i].kind == ACTION_PREDICT ? 3 : 0;
+		count += program->action[i].kind == ACTION_LEFTOVER  ? 1
+			 : program->action[i].kind == ACTION_PREDICT ? 3
+								     : 0;
 	return count;
 }
 

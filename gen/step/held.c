@@ -20,7 +20,8 @@ static void normalize_loads(const struct linear *written, const mpq_t *inverse, 
 		split->load[l] = *load;
 		split->load[l].force = ARRAY(mpq_t *, (size_t)load->columns);
 		for (int k = 0; k < load->columns; k++)
-			split->load[l].force[k] = normalized(n, written->segments, inverse, (const mpq_t *)load->force[k]);
+			split->load[l].force[k] =
+				normalized(n, written->segments, inverse, (const mpq_t *)load->force[k]);
 	}
 	split->inputs = written->inputs;
 	split->input = ARRAY(struct input, (size_t)written->inputs);
@@ -63,7 +64,8 @@ struct linear piecewise_laplace(const struct linear *written)
 struct linear modified_equation(const struct linear *written, const struct linear *split, mpq_srcptr h)
 {
 	int states = split->states;
-	mpq_t *L = state_matrix(written, false), *R = state_matrix(split, true), *RL = rationals((size_t)(states * states));
+	mpq_t *L = state_matrix(written, false), *R = state_matrix(split, true),
+	      *RL = rationals((size_t)(states * states));
 	mpq_t half;
 	rational_product(states, states, states, (const mpq_t *)R, (const mpq_t *)L, RL);
 	mpq_init(half);

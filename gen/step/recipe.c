@@ -1,13 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The words that recipes are written in: tables of the exact part, kernels in them, nodes, stages, leftovers. A recipe that
- * asks for more than there is room for is told so. */
+/* The words that recipes are written in: tables of the exact part, kernels in them, nodes, stages, leftovers. A recipe
+ * that asks for more than there is room for is told so. */
 #include "step/step.h"
 
 _Noreturn void internal_error(const struct step *step, const char *what)
 {
 	const struct model *model = step->model;
-	error(model->asked.scheme_at.source ? model->asked.scheme_at : model->spec->name_at, "this is a fault of plgen, not of the spec",
-	      "internal error: the program of scheme %s: %s", scheme_name(model->scheme), what);
+	error(model->asked.scheme_at.source ? model->asked.scheme_at : model->spec->name_at,
+	      "this is a fault of plgen, not of the spec", "internal error: the program of scheme %s: %s",
+	      scheme_name(model->scheme), what);
 }
 
 /* The next of so many */
@@ -63,7 +64,8 @@ int add_phi(struct recipe *r, int table, const char *name, long p, unsigned long
 	return kernel;
 }
 
-int add_weighted(struct recipe *r, int table, const char *name, long p, unsigned long q, long weight, unsigned long over)
+int add_weighted(struct recipe *r, int table, const char *name, long p, unsigned long q, long weight,
+		 unsigned long over)
 {
 	int kernel = add_kernel(r, &r->table[table], name);
 	struct kernel_part *part = add_part(r, &r->table[table].kernel[kernel], p, q);
@@ -120,20 +122,23 @@ struct action *add_action(struct recipe *r, struct action action)
 
 int add_leftover(struct recipe *r, int node, int stage)
 {
-	add_action(r, (struct action){ .kind = ACTION_LEFTOVER, .target = r->program->lefts, .node = node, .from = stage });
-	return r->program->lefts++;
+	int left = r->program->lefts++;
+	add_action(r, (struct action){ .kind = ACTION_LEFTOVER, .target = left, .node = node, .from = stage });
+	return left;
 }
 
 int add_combination(struct recipe *r, int plus, int minus, bool added)
 {
-	add_action(r, (struct action){ .kind = ACTION_COMBINE, .target = r->program->lefts, .plus = plus, .minus = minus,
-				       .added = added });
-	return r->program->lefts++;
+	struct action action = { .kind = ACTION_COMBINE, .plus = plus, .minus = minus, .added = added };
+	action.target = r->program->lefts++;
+	add_action(r, action);
+	return action.target;
 }
 
 struct action *add_sum(struct recipe *r, int stage, int flow, int plain, const char *note)
 {
-	return add_action(r, (struct action){ .kind = ACTION_SUM, .target = stage, .flow = flow, .plain = plain, .note = note });
+	struct action action = { .kind = ACTION_SUM, .target = stage, .flow = flow, .plain = plain, .note = note };
+	return add_action(r, action);
 }
 
 void times_left(struct recipe *r, struct action *sum, int table, int kernel, int left)

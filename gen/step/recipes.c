@@ -21,8 +21,8 @@ static void recipe_etdrk2(struct recipe *r)
 	times_left(r, add_sum(r, STAGE_STATE, NONE, a, "y = a + p2 (r(t+h, a) - r0)"), full, p2, difference);
 }
 
-/* Cox and Matthews 2002, (26)-(29), with F a, in which loads would have to start anew at t + h/2, written as E y + F q1 r0
- * and the loads' exact part; F q1 = p1 - q1. */
+/* Cox and Matthews 2002, (26)-(29), with F a, in which loads would have to start anew at t + h/2, written as E y + F q1
+ * r0 and the loads' exact part; F q1 = p1 - q1. */
 static void recipe_etdrk4(struct recipe *r)
 {
 	int full = add_table(r, "full", 1, 1, true), half = add_table(r, "half", 1, 2, true);
@@ -51,8 +51,8 @@ static void recipe_etdrk4(struct recipe *r)
 
 /* ---- quadratures ---- */
 
-/* Liu, Wang, Li, Yi 2022: y+ = E y + h sum w_i e^{A (1 - c_i) h} r(t + c_i h, Y_i), Y_i by one step of RK4 of length c_i h;
- * h w_i is folded into the matrices. */
+/* Liu, Wang, Li, Yi 2022: y+ = E y + h sum w_i e^{A (1 - c_i) h} r(t + c_i h, Y_i), Y_i by one step of RK4 of length
+ * c_i h; h w_i is folded into the matrices. */
 struct quadrature {
 	int count;
 	struct {
@@ -107,7 +107,8 @@ static void recipe_nc2(struct recipe *r)
 
 static void recipe_nc3(struct recipe *r)
 {
-	add_quadrature(r, &(struct quadrature){ 4, { { 0, 1, 1, 8 }, { 1, 3, 3, 8 }, { 2, 3, 3, 8 }, { 1, 1, 1, 8 } } });
+	add_quadrature(r,
+		       &(struct quadrature){ 4, { { 0, 1, 1, 8 }, { 1, 3, 3, 8 }, { 2, 3, 3, 8 }, { 1, 1, 1, 8 } } });
 }
 
 /* The weight at 1 is 0. */
@@ -118,7 +119,8 @@ static void recipe_dq4(struct recipe *r)
 
 static void recipe_bm3(struct recipe *r)
 {
-	add_quadrature(r, &(struct quadrature){ 4, { { 0, 1, 1, 18 }, { 1, 4, 4, 9 }, { 3, 4, 4, 9 }, { 1, 1, 1, 18 } } });
+	add_quadrature(r,
+		       &(struct quadrature){ 4, { { 0, 1, 1, 18 }, { 1, 4, 4, 9 }, { 3, 4, 4, 9 }, { 1, 1, 1, 18 } } });
 }
 
 /* ---- which is whose ---- */

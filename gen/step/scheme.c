@@ -3,7 +3,8 @@
  * a program over the tables of the exact part. */
 #include "step/step.h"
 
-/* A page that a person reads is unrolled; what is larger, has several operators, or loads that change, loops over its tables. */
+/* A page that a person reads is unrolled; what is larger, has several operators, or loads that change, loops over its
+ * tables. */
 static bool is_page(const struct step *step)
 {
 	enum { TERMS = 320 };
@@ -11,9 +12,11 @@ static bool is_page(const struct step *step)
 	for (int i = 0; i < step->program->actions; i++) {
 		const struct action *a = &step->program->action[i];
 		if (a->kind == ACTION_SUM)
-			terms += step->branch->system.states * ((a->flow != NONE ? step->branch->system.states : 0) + a->kernels * step->branch->system.channels);
+			terms += step->branch->system.states * ((a->flow != NONE ? step->branch->system.states : 0) +
+								a->kernels * step->branch->system.channels);
 	}
-	return step->branches == 1 && step->branch->system.segments == 1 && step->branch->system.states <= LIMIT_UNROLLED_STATES && terms <= TERMS;
+	return step->branches == 1 && step->branch->system.segments == 1 &&
+	       step->branch->system.states <= LIMIT_UNROLLED_STATES && terms <= TERMS;
 }
 
 static void mark_loads(const struct step *step, struct program *program)
@@ -57,7 +60,9 @@ static void take_operators(struct step *step)
 	step->branches = regions ? regions->systems : model->operators ? model->operators : 1;
 	step->branch = ARRAY(struct branch, (size_t)step->branches);
 	for (int k = 0; k < step->branches; k++) {
-		struct linear system = regions ? driven_system(&regions->system[k]) : model->operators ? operator_system(model, k) : model->system;
+		struct linear system = regions		  ? driven_system(&regions->system[k])
+				       : model->operators ? operator_system(model, k)
+							  : model->system;
 		bool as_written = !regions && !model->operators && model->written == model && !holds;
 		step->branch[k].system = holds ? piecewise_laplace(&system) : system;
 		step->branch[k].resolvent = as_written ? step->written : resolvent_of(&step->branch[k].system);
@@ -69,7 +74,8 @@ static void make_tables(struct step *step, int count, const struct wanted *wante
 {
 	step->tables = count;
 	for (int k = 0; k < step->branches; k++)
-		step->branch[k].table = tables_of(step->model, step->branch[k].resolvent, &step->branch[k].system, count, wanted);
+		step->branch[k].table =
+			tables_of(step->model, step->branch[k].resolvent, &step->branch[k].system, count, wanted);
 	step->branch->whole = step->branch[0].table[0];
 }
 
@@ -77,7 +83,11 @@ static void make_whole(void *context)
 {
 	struct step *step = context;
 	struct wanted *whole = NEW(struct wanted);
-	*whole = (struct wanted){ .Phi = true, .two_words = true, .name = "full", .increments = step->form == FORM_DELTA, .mass = step->mass };
+	*whole = (struct wanted){ .Phi = true,
+				  .two_words = true,
+				  .name = "full",
+				  .increments = step->form == FORM_DELTA,
+				  .mass = step->mass };
 	mpq_init(whole->fraction);
 	mpq_set_ui(whole->fraction, 1, 1);
 	make_tables(step, 1, whole);
@@ -133,10 +143,12 @@ static void plan_region(struct step *step, int k)
 {
 	step->branch[k].halvings = series_halvings(step, k);
 	if (step->branch[k].halvings > LIMIT_PIECES)
-		error(step->model->asked.step_at, "a smaller step would do", "the largest pole times h is above 2^%d: too many pieces of a step to look for crossings in",
+		error(step->model->asked.step_at, "a smaller step would do",
+		      "the largest pole times h is above 2^%d: too many pieces of a step to look for crossings in",
 		      LIMIT_PIECES);
 	struct linear *system = &step->branch[k].system;
-	step->branch[k].table = tables_of(step->model, step->branch[k].resolvent, system, 1, wanted_piece(step, step->branch[k].halvings));
+	step->branch[k].table = tables_of(step->model, step->branch[k].resolvent, system, 1,
+					  wanted_piece(step, step->branch[k].halvings));
 	system->channels = 0;
 	int degree = series_degree(step, k, k + 1, step->branch[k].halvings);
 	step->series.degree = degree > step->series.degree ? degree : step->series.degree;
@@ -154,7 +166,8 @@ static void build_regions_step(struct step *step)
 	series_place_loads(&step->series, &first->system, 0, loads_of_regions(step));
 	find_carries(step);
 	step->program = linear_program(step);
-	step->program->multiplications = step->series.size * step->series.size + 6 * step->model->switching->expressions * step->series.size;
+	step->program->multiplications =
+		step->series.size * step->series.size + 6 * step->model->switching->expressions * step->series.size;
 	step->program->additions = step->program->multiplications;
 	first->system.channels = channels;
 	step->series.degree = 3;
