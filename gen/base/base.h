@@ -133,7 +133,7 @@ bool   beyond_range(mpq_srcptr q);
 const char *finite_text(struct place at, mpq_srcptr q);
 bool   round_enclosure(mpfi_srcptr x, double *d);           /* false: both ends do not round to one number */
 bool   round_integer(mpfi_srcptr x, mpz_ptr n);             /* the same, to the nearest integer */
-/* to digits 2^exponent, so many bits; x is not 0 */
+/* The same for x that is not 0, to digits 2^exponent, so many bits of them */
 bool   round_bits(mpfi_srcptr x, int bits, mpz_ptr digits, long *exponent);
 /* fewest digits that read back; a C literal, of type double */
 const char *shortest(double d);
