@@ -84,11 +84,6 @@ void emit_get_state(const struct emitter *e, const char *vector);  /* states fro
 void emit_get_kept_state(const struct emitter *e, const char *vector);
 /* a table of what a step adds: the instance's own, or the model's */
 const char *of_step(const struct emitter *e, const char *table);
-bool is_tuned_output(const struct emitter *e, const struct output *output); /* params change it */
-const char *tuned_factor(const struct emitter *e, int row, const struct operand *operand);
-const char *tuned_output(const struct emitter *e, const struct output *output); /* its sum; NULL: no param changes it */
-/* columns of x as in struct tuning */
-bool tuned_output_reads(const struct emitter *e, const struct output *output, int column);
 
 /* ---- expression.c: forms with atoms as C ---- */
 
@@ -145,6 +140,14 @@ bool adds_driven(const struct emitter *e);                        /* loads or in
 void emit_leftover_functions(const struct emitter *e);            /* what is left over; which operator serves */
 void emit_leftover_step(const struct emitter *e);
 void emit_samples(const struct emitter *e);                       /* start, slope: what leftovers read of ramps */
+
+/* ---- tuned_terms.c: factors that the instance has ---- */
+
+bool is_tuned_output(const struct emitter *e, const struct output *output); /* params change it */
+const char *tuned_factor(const struct emitter *e, int row, const struct operand *operand);
+const char *tuned_output(const struct emitter *e, const struct output *output); /* its sum; NULL: no param changes it */
+/* columns of x as in struct tuning */
+bool tuned_output_reads(const struct emitter *e, const struct output *output, int column);
 
 /* ---- selftest.c: reference states in closed form, for the target to step to ---- */
 
