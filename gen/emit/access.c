@@ -22,7 +22,7 @@ static void emit_init(const struct emitter *e)
 		emit_values(e, (const mpq_t *)model->written->initial);
 	}
 	say(e, "\n");
-	e->kind->start(e);
+	e->kind->start(e, "s->");
 	for (int i = 0; i < e->system->inputs; i++) {
 		say(e, "    s->u[%d] = 0.0;\n", i);
 		if (e->ramps)
@@ -152,7 +152,7 @@ static const char *elapsed_text(const struct emitter *e)
 	size_t bits = mpz_sizeinbase(p, 2), divisor_bits = mpz_sizeinbase(q, 2);
 	bool single = e->model->asked.single;
 	bool short_fraction = bits <= (single ? 12 : 40) && divisor_bits <= (single ? 24 : 53);
-	if (e->kind->step_length || !short_fraction)
+	if (e->kind->own_factors || !short_fraction)
 		return format("(double)s->k * %s", step_length(e));
 	const char *factor = mpz_cmp_ui(p, 1) == 0 ? "" : format(" * %s", shortest(mpz_get_d(p)));
 	const char *divisor = mpz_cmp_ui(q, 1) == 0 ? "" : format(" / %s", shortest(mpz_get_d(q)));

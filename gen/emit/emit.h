@@ -82,10 +82,8 @@ void emit_set_forced_state(const struct emitter *e, const char *vector, const ch
 void emit_get_state(const struct emitter *e, const char *vector);  /* states from s->y */
 /* the same, less their forced part where the step keeps them so */
 void emit_get_kept_state(const struct emitter *e, const char *vector);
-const char *tuned_factor(const struct emitter *e, int row, const struct operand *operand);
-const char *tuned_output(const struct emitter *e, const struct output *output); /* its sum; NULL: no param changes it */
-/* columns of x as in struct tuning */
-bool tuned_output_reads(const struct emitter *e, const struct output *output, int column);
+/* a table of what a step adds: the instance's own, or the model's */
+const char *of_step(const struct emitter *e, const char *table);
 
 /* ---- expression.c: forms with atoms as C ---- */
 
@@ -143,6 +141,14 @@ void emit_leftover_functions(const struct emitter *e);            /* what is lef
 void emit_leftover_step(const struct emitter *e);
 void emit_samples(const struct emitter *e);                       /* start, slope: what leftovers read of ramps */
 
+/* ---- tuned_terms.c: factors that the instance has ---- */
+
+bool is_tuned_output(const struct emitter *e, const struct output *output); /* params change it */
+const char *tuned_factor(const struct emitter *e, int row, const struct operand *operand);
+const char *tuned_output(const struct emitter *e, const struct output *output); /* its sum; NULL: no param changes it */
+/* columns of x as in struct tuning */
+bool tuned_output_reads(const struct emitter *e, const struct output *output, int column);
+
 /* ---- selftest.c: reference states in closed form, for the target to step to ---- */
 
 void emit_selftest(const struct emitter *e, bool jumps);
@@ -166,8 +172,8 @@ struct kind {
 	void (*declare_state)(const struct emitter *e); /* of what else the state has */
 	void (*declare_more)(const struct emitter *e);
 	/* The state */
-	const char *step_length;                        /* of the instance s; NULL: it is NAME_H */
-	void (*start)(const struct emitter *e);         /* in init, before set */
+	bool own_factors;                               /* what depends on h is in s->coeffs; else in tables */
+	void (*start)(const struct emitter *e, const char *s); /* before the first set; s: "s->" or "s." */
 	bool places;                                    /* NAME_place(s) finds what follows from a state that was set */
 	/* Tables and functions */
 	bool (*reads_load)(const struct emitter *e, int load); /* elsewhere than in the system, leftovers, outputs */
@@ -176,6 +182,7 @@ struct kind {
 	void (*tables)(const struct emitter *e);
 	void (*pass)(const struct emitter *e);          /* over what changes at a time, or when it is told to */
 	void (*step)(const struct emitter *e);
+	void (*held)(const struct emitter *e);          /* in at: what is held over the step */
 	void (*at)(const struct emitter *e);
 	/* The descriptor: functions that it names; its line of tunable params */
 	void (*wrappers)(const struct emitter *e);
@@ -225,6 +232,7 @@ void emit_phase_rates(const struct emitter *e);                   /* rows of ini
 const char *phase_step_text(const struct emitter *e, int load);   /* in one step: a turn, as an initialiser */
 const char *growth_step_text(const struct emitter *e, int load);
 void emit_changes(const struct emitter *e);                       /* loads that change their formula: when */
+void emit_held_leftover(const struct emitter *e);                 /* which operator serves, and what is left over now */
 void emit_passing(const struct emitter *e);                       /* ... and pass(), across a change */
 /* declares i and load states; x[...] = what the series advances */
 void emit_series_vector(const struct emitter *e);

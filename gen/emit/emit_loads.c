@@ -132,20 +132,20 @@ void emit_phase_rates(const struct emitter *e)
 
 static bool has_tuned_rates(const struct emitter *e)
 {
-	return e->model->tuning && e->model->tuning->frequencies > 0;
+	return e->kind->own_factors && e->model->tuning->frequencies > 0;
 }
 
 void emit_load_tables(const struct emitter *e)
 {
 	if (e->phases) {
 		print_turns(e, "phase_start", format("at t = 0, in turns of 2^-%d", phase_bits(e->step)), false);
-		if (!e->model->tuning)
+		if (!e->kind->own_factors)
 			print_turns(e, "phase_step", "in one step", true);
 		if (!has_tuned_rates(e))
 			print_rates(e, true, "phase_rate", e->phases, "turns per second");
 	}
 	if (e->growths) {
-		if (!e->model->tuning)
+		if (!e->kind->own_factors)
 			print_growths(e);
 		print_rates(e, false, "growth_rate", e->growths, "|a| / ln 2 [1/s]");
 	}
@@ -176,7 +176,7 @@ void emit_load_set(const struct emitter *e)
 /* s->phase[i], or s->growth[i], gains what it does in one step, or `steps` times that */
 static void advance_one(const struct emitter *e, const char *what, const char *type, int i, const char *steps)
 {
-	const char *gain = format("%s%s_step[%d]", e->model->tuning ? "s->coeffs." : format("%s_", e->name), what, i);
+	const char *gain = format("%s[%d]", of_step(e, format("%s_step", what)), i);
 	if (steps)
 		gain = format("%s_times(%s, %s)", type, gain, steps);
 	say(e, "    s->%s[%d] = %s_add(s->%s[%d], %s);\n", what, i, type, what, i, gain);

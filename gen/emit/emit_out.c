@@ -40,11 +40,6 @@ static const char *direct_term(const struct emitter *e, const struct output *out
 	return operand ? format("%s * %s", text, operand) : text;
 }
 
-static bool is_tuned(const struct emitter *e, const struct output *output)
-{
-	return e->model->tuning && e->model->tuning->output[output - e->model->output] >= 0;
-}
-
 /* The output of a row of that table: NULL behind the last */
 static const struct output *output_of_row(const struct model *model, int row)
 {
@@ -63,7 +58,7 @@ static int changing_rows(const struct emitter *e)
 	const struct output *output;
 	int rows = 0;
 	for (int o = 0; (output = output_of_row(e->model, o)) != NULL; o++)
-		for (int l = 0; l < system->loads && !is_tuned(e, output); l++)
+		for (int l = 0; l < system->loads && !is_tuned_output(e, output); l++)
 			for (int k = 0; k < system->load[l].columns; k++)
 				if (changes((const mpq_t *)output->load[l] + k * system->segments, system->segments))
 					rows = o < e->model->outputs ? e->model->outputs : o + 1;
@@ -150,7 +145,7 @@ static void mark_tuned_row(const struct emitter *e, const struct output *output,
 
 static void mark_row(const struct emitter *e, const struct output *output, struct output_needs *needs)
 {
-	if (is_tuned(e, output)) {
+	if (is_tuned_output(e, output)) {
 		mark_tuned_row(e, output, needs);
 		return;
 	}

@@ -243,7 +243,7 @@ void emit_changes(const struct emitter *e)
 	       "/* Time from now to a change */\n"
 	       "static double $n_until(const $n *s, int change)\n"
 	       "{\n");
-	if (e->model->tuning)
+	if (e->kind->own_factors)
 		say(e, "    pl_two h;\n"
 		       "    h.hi = s->coeffs.h;\n"
 		       "    h.lo = s->coeffs.h_low;\n");
@@ -259,11 +259,8 @@ void emit_passing(const struct emitter *e)
 	emit_pass(e);
 }
 
-/* What is held over the step: which operator, and what is left over now */
-static void emit_held_leftover(const struct emitter *e)
+void emit_held_leftover(const struct emitter *e)
 {
-	if (!has_leftover(e->step))
-		return;
 	emit_samples(e);
 	if (e->step->branches > 1)
 		say(e, "    const int which = %s;\n", selection_call(e));
@@ -316,7 +313,7 @@ void emit_at(const struct emitter *e)
 	       "void $n_at(const $n *s, %sdouble tau, double y[$N_STATES])\n"
 	       "{\n",
 	    input_parameter(e));
-	emit_held_leftover(e);
+	e->kind->held(e);
 	if (changes)
 		emit_passing_at(e);
 	else

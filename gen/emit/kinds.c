@@ -7,6 +7,12 @@ static void nothing(const struct emitter *e)
 	(void)e;
 }
 
+static void no_start(const struct emitter *e, const char *s)
+{
+	(void)e;
+	(void)s;
+}
+
 static bool never(const struct step *step)
 {
 	(void)step;
@@ -67,13 +73,14 @@ static const struct kind linear = {
 	.status_note = "0, or PL_NOT_FINITE: a state is infinite or not a number",
 	.declare_state = nothing,
 	.declare_more = nothing,
-	.start = nothing,
+	.start = no_start,
 	.reads_load = no_further_load,
 	.reads_phi = loops_over_phi,
 	.reads_gamma = loops,
 	.tables = emit_times_of_changes,
 	.pass = emit_pass_of_changes,
 	.step = emit_step,
+	.held = nothing,
 	.at = emit_at,
 	.wrappers = nothing,
 	.params = emit_no_params
@@ -93,9 +100,9 @@ static void emit_own_coefficients(const struct emitter *e)
 	say(e, "    $n_coeffs coeffs;    /* its own */\n");
 }
 
-static void emit_nominal_start(const struct emitter *e)
+static void emit_nominal_start(const struct emitter *e, const char *s)
 {
-	say(e, "    s->coeffs = $n_nominal;\n");
+	say(e, "    %scoeffs = $n_nominal;\n", s);
 }
 
 static void emit_tuned_tables(const struct emitter *e)
@@ -123,7 +130,7 @@ static const struct kind tuned = {
 	.status_note = "0, or PL_NOT_FINITE: a state is infinite or not a number",
 	.declare_state = nothing,
 	.declare_more = emit_tuning_declarations,
-	.step_length = "s->coeffs.h",
+	.own_factors = true,
 	.start = emit_nominal_start,
 	.reads_load = any_load,
 	.reads_phi = loops_over_phi,
@@ -131,6 +138,7 @@ static const struct kind tuned = {
 	.tables = emit_tuned_tables,
 	.pass = emit_retune,
 	.step = emit_step,
+	.held = nothing,
 	.at = emit_tuned_at,
 	.wrappers = emit_tuning_wrapper,
 	.params = emit_tuned_params
@@ -197,7 +205,7 @@ static const struct kind regions = {
 	.status_note = "0, or bits: PL_NOT_FINITE, PL_TOO_MANY_EVENTS",
 	.declare_state = emit_region_declarations,
 	.declare_more = nothing,
-	.start = nothing,
+	.start = no_start,
 	.places = true,
 	.reads_load = regions_read_load,
 	.reads_phi = never,
@@ -205,6 +213,7 @@ static const struct kind regions = {
 	.tables = emit_region_tables,
 	.pass = emit_pass_of_changes,
 	.step = emit_regions_step,
+	.held = nothing,
 	.at = emit_region_at,
 	.wrappers = nothing,
 	.params = emit_no_params
@@ -247,13 +256,14 @@ static const struct kind leftover = {
 	.status_note = "0, or PL_NOT_FINITE once a step has left the finite numbers",
 	.declare_state = nothing,
 	.declare_more = nothing,
-	.start = nothing,
+	.start = no_start,
 	.reads_load = no_further_load,
 	.reads_phi = flows_whole,
 	.reads_gamma = never,
 	.tables = emit_times_of_changes,
 	.pass = emit_pass_of_changes,
 	.step = emit_actions_step,
+	.held = emit_held_leftover,
 	.at = emit_at,
 	.wrappers = nothing,
 	.params = emit_no_params

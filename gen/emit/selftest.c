@@ -18,8 +18,7 @@ static void emit_sample(const struct emitter *e, const char *indent, const char 
 
 static void emit_begin(const struct emitter *e)
 {
-	if (e->model->tuning)
-		say(e, "    s.coeffs = $n_nominal;\n");
+	e->kind->start(e, "s.");
 	say(e, "    $n_set(&s, 0.0, start);\n");
 	if (e->ramps) {
 		emit_sample(e, "    ", "1.0");

@@ -104,7 +104,12 @@ void emit_locals_of(const struct emitter *e, const bool *reads, const char *vect
 
 const char *step_length(const struct emitter *e)
 {
-	return e->kind->step_length ? e->kind->step_length : spell(e, "$N_H");
+	return e->kind->own_factors ? "s->coeffs.h" : spell(e, "$N_H");
+}
+
+const char *of_step(const struct emitter *e, const char *table)
+{
+	return e->kind->own_factors ? format("s->coeffs.%s", table) : spell(e, "$n_%s", table);
 }
 
 /* s->y from a vector of states, nothing left of earlier rounding */
@@ -159,60 +164,4 @@ void emit_get_kept_state(const struct emitter *e, const char *vector)
 	for (int i = 0; i < e->system->states; i++)
 		if (factor_of_momentum(e, i))
 			say(e, "    %s[%d] = s->y[%d] / %s;\n", vector, i, i, factor_of_momentum(e, i));
-}
-
-static const char *tuned_entry(const struct emitter *e, const char *table, int row, int column)
-{
-	int states = e->system->states, loads = e->model->tuning->x.loads, segments = e->system->segments;
-	if (column >= states + loads)
-		column += (segments - 1) * loads;
-	else if (column >= states && segments > 1)
-		return format("s->coeffs.%s[%d][%d + s->segment * %d]", table, row, column, loads);
-	return format("s->coeffs.%s[%d][%d]", table, row, column);
-}
-
-const char *tuned_factor(const struct emitter *e, int row, const struct operand *operand)
-{
-	int states = e->system->states, loads = e->model->tuning->x.loads;
-	const int first[] = { [OPERAND_STATE] = 0, [OPERAND_LOAD] = states, [OPERAND_INPUT] = states + loads };
-	return tuned_entry(e, "step", row, first[operand->kind] + operand->index);
-}
-
-const char *tuned_output(const struct emitter *e, const struct output *output)
-{
-	const struct tuning *t = e->model->tuning;
-	const struct linear *system = e->system;
-	int row = t ? t->output[output - e->model->output] : -1, states = system->states, terms = 0;
-	if (row < 0)
-		return NULL;
-	const char **term = ARRAY(const char *, (size_t)t->x.size + 1);
-	const char **operand = ARRAY(const char *, (size_t)t->x.size);
-	for (int i = 0; i < states; i++)
-		operand[i] = e->local[i];
-	for (int k = 0; k < t->x.loads; k++)
-		operand[states + k] = column_operand(e, k);
-	for (int i = 0, column = states + t->x.loads; i < system->inputs; i++)
-		for (int k = 0; k < (system->input[i].first_order ? 2 : 1); k++)
-			operand[column++] = format(k ? "s->slope[%d]" : "s->u[%d]", i);
-	for (int j = 0; j < states + t->x.loads + input_columns(system); j++)
-		if (tuned_output_reads(e, output, j)) {
-			const char *factor = tuned_entry(e, "out", row - e->model->n, j);
-			term[terms++] = operand[j] ? format("%s * %s", factor, operand[j]) : factor;
-		}
-	return terms ? tree(terms, term, 13) : "0.0";
-}
-
-bool tuned_output_reads(const struct emitter *e, const struct output *output, int column)
-{
-	const struct tuning *t = e->model->tuning;
-	int states = e->system->states, segments = e->system->segments;
-	const bool *acts = t->acts + t->output[output - e->model->output] * t->x.size;
-	if (column < states)
-		return acts[column];
-	if (column >= states + t->x.loads)
-		return acts[column + (segments - 1) * t->x.loads];
-	bool any = false;
-	for (int s = 0; s < segments; s++)
-		any = any || acts[column + s * t->x.loads];
-	return any;
 }
