@@ -2,8 +2,8 @@
 /* Matrices times vectors: what the steps of the schemes with a leftover are made of. */
 #include "real.h"
 
-/* Four sums, so that an addition need not wait for the one before it: as fast as several rows at a time, in one order for all.
- * Inline: a call for each row costs a fifth of the time. */
+/* Four sums, so that an addition need not wait for the one before it: as fast as several rows at a time, in one order
+ * for all. Inline: a call for each row costs a fifth of the time. */
 static inline real row_times(int columns, const real *row, const real *x)
 {
     const int whole = columns - columns % 4;

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT-0 */
-/* Steps of piecewise-linear models, in pieces in which the fastest pole does not turn far.  Most pieces stay clear of every
- * breakpoint, and a bound shows it; the others go by Taylor polynomials, on which the first crossing is isolated before it
- * is computed, so none is stepped over. */
+/* Steps of piecewise-linear models, in pieces in which the fastest pole does not turn far.  Most pieces stay clear of
+ * every breakpoint, and a bound shows it; the others go by Taylor polynomials, on which the first crossing is isolated
+ * before it is computed, so none is stepped over. */
 #include "real.h"
 
-/* SHORT: a length of s, which goes from 0 to 1 over a piece.  REST: what rounding may leave of a step, in parts of it.  SCALE: that
- * of expressions near the end of the range. */
+/* SHORT: a length of s, which goes from 0 to 1 over a piece.  REST: what rounding may leave of a step, in parts of it.
+ * SCALE: that of expressions near the end of the range. */
 #ifdef REAL_IS_FLOAT
 #define SHORT 0x1p-18f
 #define REST 5e-6f
@@ -117,7 +117,8 @@ static int list(const pl_switching *m, pl_contact *c, pl_crossing *crossing, rea
 }
 
 /* e - b, and what rounding may have done to it.  The rows of lean are a third of a piece's e'. */
-static real excess(const pl_switching *m, const pl_contact *c, const walk *w, int breakpoint, const real *x, real *noise)
+static real excess(const pl_switching *m, const pl_contact *c, const walk *w, int breakpoint, const real *x,
+                   real *noise)
 {
     const real *row = m->row + w->i * m->size, *lean = rows_of(m->lean, m, c) + w->i * m->size, b = w->at[breakpoint];
     real e;
@@ -164,8 +165,8 @@ static int heading(const pl_switching *m, const pl_contact *c, const real *row, 
     return 0;
 }
 
-/* Puts what is on its upper breakpoint in region `below` above or below that: where it is heading or, with `possible`, so that the
- * region can occur. */
+/* Puts what is on its upper breakpoint in region `below` above or below that: where it is heading or, with `possible`,
+ * so that the region can occur. */
 static void decide(const pl_switching *m, const real *x, pl_contact *c, int below, int possible, real *work)
 {
     real noise;
@@ -277,8 +278,8 @@ static point point_of(const beyond *f, real s)
     return p;
 }
 
-/* g = sign (e - b) from the coefficients of e, whose terms have this size at s = 0; both are scaled by a power of 2 where the
- * derivatives of g could overflow and g does not */
+/* g = sign (e - b) from the coefficients of e, whose terms have this size at s = 0; both are scaled by a power of 2
+ * where the derivatives of g could overflow and g does not */
 static void look_beyond(beyond *f, const real *e, real sign, real b, real terms)
 {
     real largest = terms;
@@ -301,7 +302,8 @@ static void look_beyond(beyond *f, const real *e, real sign, real b, real terms)
     f->noise = noise_of(terms + magnitude(sign * b) + f->reach);
 }
 
-/* The root between a, where g < 0, and z, where g > 0; g rises all the way.  Newton's method, safeguarded by halving. */
+/* The root between a, where g < 0, and z, where g > 0; g rises all the way.  Newton's method, safeguarded by halving.
+ */
 static real root_between(const beyond *f, point a, point z)
 {
     const real enough = SHORT; /* the step after that would be below rounding */
@@ -335,8 +337,8 @@ static int between(const beyond *f, point a, point z)
     return smaller(a.slope, z.slope) - w * third > 0 ? RISES : UNKNOWN;
 }
 
-/* Where g first rises through 0 before `end`, or -1.  Walks from the left, by intervals that are halved until it is known what g
- * does in them, and doubled again after that. */
+/* Where g first rises through 0 before `end`, or -1.  Walks from the left, by intervals that are halved until it is
+ * known what g does in them, and doubled again after that. */
 static real first_root(const beyond *f, real end, int *splits)
 {
     const real shortest = SHORT; /* what g does in less is below its noise */
@@ -455,8 +457,8 @@ static void follow_jumps(const pl_switching *m, const real *x, pl_contact *c, pl
         }
 }
 
-/* Moves x on over a piece of length dt, or to the first crossing in it; splits < 0: without looking for one.  y: x at the end
- * of a whole piece, NULL for others.  What overflows is not looked at, and x is then not finite. */
+/* Moves x on over a piece of length dt, or to the first crossing in it; splits < 0: without looking for one.  y: x at
+ * the end of a whole piece, NULL for others.  What overflows is not looked at, and x is then not finite. */
 static found move(const pl_switching *m, pl_contact *c, real dt, const real *y, int *splits, real *x, real *work)
 {
     found first = nothing;

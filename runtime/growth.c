@@ -54,9 +54,9 @@ pl_growth pl_growth_at(const pl_rate *rate, int negative, double t)
     return growth(m, (negative != 0) != (t < 0.0));
 }
 
-/* (e^r - 1 - r - r^2/2)/r^3 for |r| <= ln(2)/2.  Minimax for the error relative to e^r by Remez exchange in 60 digits, the
- * coefficients rounded in turn from the lowest on and the others fitted again each time.  As used, it is
- * within 2^-61.7 of e^r. */
+/* (e^r - 1 - r - r^2/2)/r^3 for |r| <= ln(2)/2.  Minimax for the error relative to e^r by Remez exchange in 60 digits,
+ * the coefficients rounded in turn from the lowest on and the others fitted again each time.  As used, it is within
+ * 2^-61.7 of e^r. */
 static double exponential_rest(double r)
 {
     return 0x1.555555555555ap-3
@@ -80,20 +80,22 @@ static double assembled(uint64_t significand, int power)
     } u;
     const int biased = power + 1023;
     const int drop = biased > 0 ? 11 : 12 - biased; /* 53 bits stay, fewer of a subnormal: 11 .. 64 of 64 go */
-    const uint64_t above = (significand - 1) >> (drop - 1); /* less 1: a half goes down, for 2^-1075 is 0 in IEEE arithmetic */
+    /* less 1: a half goes down, for 2^-1075 is 0 in IEEE arithmetic */
+    const uint64_t above = (significand - 1) >> (drop - 1);
     u.bits = (above >> 1) + (above & 1);
     if (biased > 1)
         u.bits += (uint64_t)(biased - 1) << 52; /* a carry goes on into the exponent, as it should, to infinity even */
     return u.value;
 }
 
-/* 2^k e^r with k the nearest integer: 1 + r + r^2/2 in integers of 64 bits; the small rest in doubles, where no rounding of it
- * can be seen. */
+/* 2^k e^r with k the nearest integer: 1 + r + r^2/2 in integers of 64 bits; the small rest in doubles, where no
+ * rounding of it can be seen. */
 double pl_growth_value(pl_growth a)
 {
     const uint64_t ln_2 = 0xB17217F7D1CF79AC; /* ln 2 2^64 */
     const int64_t one = (int64_t)1 << 48;     /* of a.hi */
-    const uint64_t shifted = (uint64_t)a.hi + ((uint64_t)2048 << 48) + ((uint64_t)1 << 47); /* positive, and halves go up */
+    /* positive, and halves go up */
+    const uint64_t shifted = (uint64_t)a.hi + ((uint64_t)2048 << 48) + ((uint64_t)1 << 47);
     const int k = (int)(shifted >> 48) - 2048;
     uint64_t fraction = (uint64_t)a.hi << 16 | a.lo >> 48, r, rr, sum;
     const int below = (int)(fraction >> 63); /* of k */

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT-0 */
-/* e^{a t} as a power of 2 whose exponent a t / ln 2 is a fixed-point number, added up without rounding.  The power is made of
- * integers of 32 bits and rounded once, into the subnormal range too. */
+/* e^{a t} as a power of 2 whose exponent a t / ln 2 is a fixed-point number, added up without rounding.  The power is
+ * made of integers of 32 bits and rounded once, into the subnormal range too. */
 #define REAL_IS_FLOAT
 #include "words.h"
 
@@ -33,9 +33,9 @@ pl_growthf pl_growthf_at(const pl_ratef *rate, int negative, float t)
     return growth(beyond ? UINT64_MAX : m.lo, (negative != 0) != (t < 0));
 }
 
-/* 2^f - 1, both in units of 2^-32.  Minimax for the error relative to 2^f by Remez exchange in 50 digits, the coefficients rounded to
- * 2^-32 in turn from the lowest on and the others fitted again each time: within 2^-33.6 of 2^f, before the products are
- * rounded down. */
+/* 2^f - 1, both in units of 2^-32.  Minimax for the error relative to 2^f by Remez exchange in 50 digits, the
+ * coefficients rounded to 2^-32 in turn from the lowest on and the others fitted again each time: within 2^-33.6 of
+ * 2^f, before the products are rounded down. */
 static uint32_t power_of_2(uint32_t f)
 {
     uint32_t sum = words_times32(f, 0x00016785);
@@ -52,7 +52,8 @@ static float assembled(uint32_t significand, int power)
 {
     const int biased = power + 127;
     const int drop = biased > 0 ? 8 : 9 - biased; /* 24 bits stay, fewer of a subnormal: 8 .. 32 of 32 go */
-    const uint32_t above = (significand - 1) >> (drop - 1); /* less 1: a half goes down, for 2^-150 is 0 in IEEE arithmetic */
+    /* less 1: a half goes down, for 2^-150 is 0 in IEEE arithmetic */
+    const uint32_t above = (significand - 1) >> (drop - 1);
     real_parts u;
     u.bits = (above >> 1) + (above & 1);
     if (biased > 1)

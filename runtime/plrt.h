@@ -15,10 +15,11 @@
  *     retune.c    coefficients of a step from other params: NAME_retune
  *     rate.c      the rate of a load's phase from another frequency
  *
- * turnsf.c, growthf.c, ... are the same for models in float, which never touch a double.  Their names end in f where the others
- * have pl_turn, pl_growth, ...: pl_turnf_at is to pl_turn_at as sinf is to sin.
+ * turnsf.c, growthf.c, ... are the same for models in float, which never touch a double.  Their names end in f where
+ * the others have pl_turn, pl_growth, ...: pl_turnf_at is to pl_turn_at as sinf is to sin.
  *
- * Compile it as the compiler comes: contraction to fused multiply-adds does no harm; flags that do are refused below. */
+ * Compile it as the compiler comes: contraction to fused multiply-adds does no harm; flags that do are refused below.
+ */
 #ifndef PLRT_H
 #define PLRT_H
 
@@ -31,10 +32,11 @@ extern "C" {
 
 /* ---- what the arithmetic needs of the compiler --------------------------------------------------------------- */
 
-/* y + (Phi - I) y as Phi y, or the error of a sum as 0: so a compiler may read it that takes additions for associative. */
+/* y + (Phi - I) y as Phi y, or the error of a sum as 0: so a compiler may read it that takes additions for associative.
+ */
 #if defined __FAST_MATH__ || defined __ASSOCIATIVE_MATH__ || defined __RECIPROCAL_MATH__ || defined _M_FP_FAST
-#error "sums and quotients have to stay as they are written: compile it without -ffast-math, -Ofast, -funsafe-math-optimizations, \
--fassociative-math, -freciprocal-math, /fp:fast"
+#error "sums and quotients have to stay as they are written: compile it without -ffast-math, -Ofast, \
+-funsafe-math-optimizations, -fassociative-math, -freciprocal-math, /fp:fast"
 #endif
 
 #if defined __cplusplus && __cplusplus >= 201103L
@@ -69,11 +71,13 @@ PL_ASSERT(!__builtin_constant_p((pl_any_number + 1.0f) - pl_any_number),
 /* Code for float defines this before: no constant such as 1.0 occurs there, so what becomes of it does not matter. */
 #ifndef PL_FLOAT_ONLY
 PL_ASSERT(sizeof(1.0) == 8, pl_refuses_fsingle_precision_constant_and_doubles_of_32_bits,
-          "1.0 has to be a double of 64 bits: compile it without -fsingle-precision-constant; where double has 32 bits, make "
+          "1.0 has to be a double of 64 bits: compile it without -fsingle-precision-constant; where double has "
+          "32 bits, make "
           "models with --real float, and leave out the files of the runtime for double");
 #endif
 
-/* 1: sums are kept in more bits than a double, or a float, has, so rounding is not what two-word arithmetic takes it for */
+/* 1: sums are kept in more bits than a double, or a float, has, so rounding is not what two-word arithmetic takes it
+ * for */
 #ifdef __FLT_EVAL_METHOD__
 #define PL_EXCESS_PRECISION (__FLT_EVAL_METHOD__ < 0 || __FLT_EVAL_METHOD__ == 2 || __FLT_EVAL_METHOD__ > 64)
 #define PL_EXCESS_PRECISIONF (__FLT_EVAL_METHOD__ != 0 && __FLT_EVAL_METHOD__ != 16 && __FLT_EVAL_METHOD__ != 32)
@@ -125,12 +129,12 @@ enum { PL_COSSIN_MUL = 23, PL_COSSIN_ADD = 22 };
 
 /* ---- turnsf.c: phases of models in float ------------------------------------------------------------------- */
 
-/* An angle in units of 2^-64 turn, which wraps as a phase should.  Adding a step's angle n times is off by n 2^-65 turn:
- * 2^-35 turn after 10^9 steps. */
+/* An angle in units of 2^-64 turn, which wraps as a phase should.  Adding a step's angle n times is off by n 2^-65
+ * turn: 2^-35 turn after 10^9 steps. */
 typedef uint64_t pl_turnf;
 
-/* A frequency in turns per second [Hz], or another rate: (word[0] 2^64 + word[1]) 2^-exponent, with the top bit of word[0] set,
- * or both words 0. */
+/* A frequency in turns per second [Hz], or another rate: (word[0] 2^64 + word[1]) 2^-exponent, with the top bit of
+ * word[0] set, or both words 0. */
 typedef struct pl_ratef {
     uint64_t word[2];
     int exponent;
@@ -145,14 +149,14 @@ static inline pl_turnf pl_turnf_add(pl_turnf a, pl_turnf b)
 /* n a mod 1 turn, exactly. */
 pl_turnf pl_turnf_times(pl_turnf a, uint64_t n);
 
-/* rate t mod 1 turn, t in seconds, any sign: the product is exact, then rounded once to 2^-64 turn.  The rate itself is known to
- * 128 bits, so beyond 2^64 turns the last bits of the angle are its rounding's, and beyond 2^128 turns nothing of the
- * angle is known.  An infinite t, or not a number, gives 0. */
+/* rate t mod 1 turn, t in seconds, any sign: the product is exact, then rounded once to 2^-64 turn.  The rate itself is
+ * known to 128 bits, so beyond 2^64 turns the last bits of the angle are its rounding's, and beyond 2^128 turns nothing
+ * of the angle is known.  An infinite t, or not a number, gives 0. */
 pl_turnf pl_turnf_at(const pl_ratef *rate, float t);
 
-/* z[0] = cos a, z[1] = sin a.  Off by less than 0.52 units in the last place (0.515 measured over 2 10^7 angles), small angles
- * included; exactly 0, 1 or -1 at quarter turns; mirror images about a quarter turn agree to the last bit but for sign, and no
- * zero is negative. */
+/* z[0] = cos a, z[1] = sin a.  Off by less than 0.52 units in the last place (0.515 measured over 2 10^7 angles), small
+ * angles included; exactly 0, 1 or -1 at quarter turns; mirror images about a quarter turn agree to the last bit but
+ * for sign, and no zero is negative. */
 void pl_cossinf(pl_turnf a, float z[2]);
 
 /* What one pl_cossinf costs: twelve products of 32-bit integers and two multiplications of floats; ten additions of
@@ -161,9 +165,9 @@ enum { PL_COSSINF_MUL = 14, PL_COSSINF_ADD = 10 };
 
 /* ---- growth.c: exponential loads -------------------------------------------------------------------------- */
 
-/* An exponent of 2, a t / ln 2 for e^{a t}: (hi 2^64 + lo) 2^-112, from -2^15 to just below 2^15.  What is beyond stays at the
- * end of this range, where the power has long been 0 or infinite.  Adding a step's exponent n times is as good as
- * multiplying it by n: the power is off by a factor of 1 + n 2^-113, 1 + 2^-83 after 10^9 steps. */
+/* An exponent of 2, a t / ln 2 for e^{a t}: (hi 2^64 + lo) 2^-112, from -2^15 to just below 2^15.  What is beyond stays
+ * at the end of this range, where the power has long been 0 or infinite.  Adding a step's exponent n times is as good
+ * as multiplying it by n: the power is off by a factor of 1 + n 2^-113, 1 + 2^-83 after 10^9 steps. */
 typedef struct pl_growth {
     int64_t hi;
     uint64_t lo;
@@ -189,22 +193,23 @@ static inline pl_growth pl_growth_add(pl_growth a, pl_growth b)
 /* n a. */
 pl_growth pl_growth_times(pl_growth a, uint64_t n);
 
-/* rate t, or -rate t where `negative` is not 0; rate in powers of 2 per second, t in seconds, any sign: the product is exact,
- * then rounded once to 2^-112.  An infinite t counts as the largest finite one, and not a number as 0. */
+/* rate t, or -rate t where `negative` is not 0; rate in powers of 2 per second, t in seconds, any sign: the product is
+ * exact, then rounded once to 2^-112.  An infinite t counts as the largest finite one, and not a number as 0. */
 pl_growth pl_growth_at(const pl_rate *rate, int negative, double t);
 
 /* 2^a, off by less than 0.53 units in the last place (0.526 measured over 2 10^7 arguments; 0.508 where the result is
  * subnormal); exactly 2^k at an integer k; 0 from 2^-1075 down, infinite from 2^1024 up. */
 double pl_growth_value(pl_growth a);
 
-/* What one pl_growth_value costs: 14 multiplications of doubles and two products of 64-bit integers; nine additions of doubles, a
- * conversion of an integer to a double, which takes as long, and three additions of those integers. */
+/* What one pl_growth_value costs: 14 multiplications of doubles and two products of 64-bit integers; nine additions of
+ * doubles, a conversion of an integer to a double, which takes as long, and three additions of those integers. */
 enum { PL_GROWTH_MUL = 16, PL_GROWTH_ADD = 13 };
 
 /* ---- growthf.c: exponential loads of models in float -------------------------------------------------------- */
 
-/* An exponent of 2, a t / ln 2 for e^{a t}, in units of 2^-48: from -2^15 to just below 2^15, where what is beyond stays.  Adding
- * a step's exponent n times is off by n 2^-49, and the power by a factor of 1 + n 2^-49: 1 + 2^-19 after 10^9 steps. */
+/* An exponent of 2, a t / ln 2 for e^{a t}, in units of 2^-48: from -2^15 to just below 2^15, where what is beyond
+ * stays.  Adding a step's exponent n times is off by n 2^-49, and the power by a factor of 1 + n 2^-49: 1 + 2^-19 after
+ * 10^9 steps. */
 typedef int64_t pl_growthf;
 
 /* a + b. */
@@ -220,24 +225,25 @@ static inline pl_growthf pl_growthf_add(pl_growthf a, pl_growthf b)
 /* n a. */
 pl_growthf pl_growthf_times(pl_growthf a, uint64_t n);
 
-/* rate t, or -rate t where `negative` is not 0; rate in powers of 2 per second, t in seconds, any sign: the product is exact,
- * then rounded once to 2^-48.  An infinite t counts as the largest finite one, and not a number as 0. */
+/* rate t, or -rate t where `negative` is not 0; rate in powers of 2 per second, t in seconds, any sign: the product is
+ * exact, then rounded once to 2^-48.  An infinite t counts as the largest finite one, and not a number as 0. */
 pl_growthf pl_growthf_at(const pl_ratef *rate, int negative, float t);
 
-/* 2^a, off by less than 0.52 units in the last place (0.513 measured over 2 10^7 arguments), subnormal results included;
- * exactly 2^k at an integer k; 0 from 2^-150 down, infinite from 2^128 up. */
+/* 2^a, off by less than 0.52 units in the last place (0.513 measured over 2 10^7 arguments), subnormal results
+ * included; exactly 2^k at an integer k; 0 from 2^-150 down, infinite from 2^128 up. */
 float pl_growthf_value(pl_growthf a);
 
-/* What one pl_growthf_value costs: seven products of 32-bit integers and nine additions of integers; nothing in floats. */
+/* What one pl_growthf_value costs: seven products of 32-bit integers and nine additions of integers; nothing in floats.
+ */
 enum { PL_GROWTHF_MUL = 7, PL_GROWTHF_ADD = 9 };
 
 /* ---- series.c: between two steps ------------------------------------------------------------------------- */
 
 /* x' = A x, to be advanced by a Taylor polynomial of e^{A tau} on 2^halvings equal parts of tau.  The generator chooses
  * degree and halvings for 0 <= tau <= h.  With |pole| h / 2^halvings <= 1 for every
- * pole, those of loads included, and degree 15 + d, d the longest way from one entry to another along nonzero entries of A,
- * the error of x_i stays below 8 DBL_EPSILON sum_j most_ij |x_j|, most_ij the largest |Phi_ij| of e^{A tau} on 0 .. h
- * (measured for |pole| h up to 8: 7.4 in 200 damped and undamped chains, half of them below 1.7). */
+ * pole, those of loads included, and degree 15 + d, d the longest way from one entry to another along nonzero entries
+ * of A, the error of x_i stays below 8 DBL_EPSILON sum_j most_ij |x_j|, most_ij the largest |Phi_ij| of e^{A tau} on 0
+ * .. h (measured for |pole| h up to 8: 7.4 in 200 damped and undamped chains, half of them below 1.7). */
 typedef struct pl_series {
     int size;        /* entries of x */
     int states;      /* of which the first are the model's own states; the others carry loads and inputs */
@@ -249,8 +255,8 @@ typedef struct pl_series {
 /* x <- e^{A tau} x, tau in seconds; all `size` entries.  work: 2 size doubles, contents of no meaning. */
 void pl_series_advance(const pl_series *p, double tau, double *x, double *work);
 
-/* The same for floats: with degree 8 + d the error stays below 8 FLT_EPSILON sum_j most_ij |x_j| (measured for |pole| h up to 8: 6.7
- * in eleven damped and undamped chains). */
+/* The same for floats: with degree 8 + d the error stays below 8 FLT_EPSILON sum_j most_ij |x_j| (measured for |pole| h
+ * up to 8: 6.7 in eleven damped and undamped chains). */
 typedef struct pl_seriesf {
     int size, states, degree, halvings;
     const float *A;
@@ -269,12 +275,12 @@ typedef struct pl_two {
  *     P     destroyed
  *     x     n entries, in and out; k = 0 leaves them as they are
  *     W, w  work: n x n and n entries
- * A result beyond the range of double is an infinity with lo = 0; no NaN comes out of finite arguments.  Once an entry of
- * a power of P has itself overflowed, what it reaches is infinite, and its sign means nothing. */
+ * A result beyond the range of double is an infinity with lo = 0; no NaN comes out of finite arguments.  Once an entry
+ * of a power of P has itself overflowed, what it reaches is infinite, and its sign means nothing. */
 void pl_power_apply(int n, pl_two *P, pl_two *W, pl_two *x, pl_two *w, uint64_t k);
 
-/* The same in floats: 48 bits, and the relative error is about k 2^-46.  A term below 2^-102 loses bits of its low word to
- * underflow. */
+/* The same in floats: 48 bits, and the relative error is about k 2^-46.  A term below 2^-102 loses bits of its low word
+ * to underflow. */
 typedef struct pl_twof {
     float hi, lo;
 } pl_twof;
@@ -283,8 +289,9 @@ void pl_powerf_apply(int n, pl_twof *P, pl_twof *W, pl_twof *x, pl_twof *w, uint
 
 /* ---- sums whose rounding is kept: the forms of --accuracy compensated ------------------------------------------ */
 
-/* sum + term + (small + *rest), rounded; *rest becomes what that rounding took.  The first sum's error is exact (Knuth's TwoSum: no
- * condition on sizes); `small` and *rest, of the size of roundings, are added to it and not to `term`, where they would be lost. */
+/* sum + term + (small + *rest), rounded; *rest becomes what that rounding took.  The first sum's error is exact
+ * (Knuth's TwoSum: no condition on sizes); `small` and *rest, of the size of roundings, are added to it and not to
+ * `term`, where they would be lost. */
 static inline double pl_accumulate(double sum, double term, double small, double *rest)
 {
     const double whole = sum + term, part = whole - sum;
@@ -303,8 +310,8 @@ enum { PL_ACCUMULATE_ADD = 11 };
 
 /* ---- until.c: when a load changes ------------------------------------------------------------------------- */
 
-/* change - (t0 + k h) [s], off by less than 2^-100 of the largest of change, t0 and k h, and rounded: so a change inside a step is
- * met where it is, however late the step.  k counts in full up to 2^63. */
+/* change - (t0 + k h) [s], off by less than 2^-100 of the largest of change, t0 and k h, and rounded: so a change
+ * inside a step is met where it is, however late the step.  k counts in full up to 2^63. */
 double pl_until(double t0, uint64_t k, pl_two h, pl_two change);
 
 /* The same in floats, off by less than 2^-45 of the largest (2^-46.5 measured over 9 10^5). */
@@ -312,9 +319,9 @@ float pl_untilf(float t0, uint64_t k, pl_twof h, pl_twof change);
 
 /* ---- apply.c: matrices times vectors ----------------------------------------------------------------------- */
 
-/* y = table x; table is rows x columns, row-major; x has `columns` entries, y `rows`.  y overlaps neither x nor table.  Without
- * columns y is 0.  Each row is summed in one order, whatever the sizes and the row's place: four sums, of the columns m, m + 4,
- * m + 8, ... upwards from 0 for m = 0 .. 3, then (s_0 + s_2) + (s_1 + s_3).  Off by less than
+/* y = table x; table is rows x columns, row-major; x has `columns` entries, y `rows`.  y overlaps neither x nor table.
+ * Without columns y is 0.  Each row is summed in one order, whatever the sizes and the row's place: four sums, of the
+ * columns m, m + 4, m + 8, ... upwards from 0 for m = 0 .. 3, then (s_0 + s_2) + (s_1 + s_3).  Off by less than
  * (columns/4 + 4) DBL_EPSILON/2 sum_j |a_j x_j| where nothing overflows or underflows. */
 void pl_multiply(int rows, int columns, const double *table, const double *x, double *y);
 
@@ -324,8 +331,8 @@ void pl_multiply_add(int rows, int columns, const double *table, const double *x
 /* What the status of a model says: 0, or */
 enum { PL_NOT_FINITE = 1 }; /* a step has left the finite numbers: of linear models, while it shows in the state */
 
-/* PL_NOT_FINITE if an entry of y is infinite or not a number, else 0; n entries.  By their bits: no compiler that takes all numbers
- * for finite can leave it out, and it raises no exception. */
+/* PL_NOT_FINITE if an entry of y is infinite or not a number, else 0; n entries.  By their bits: no compiler that takes
+ * all numbers for finite can leave it out, and it raises no exception. */
 int pl_not_finite(const double *y, int n);
 
 /* The same for floats; with FLT_EPSILON. */
@@ -335,13 +342,15 @@ int pl_not_finitef(const float *y, int n);
 
 /* ---- crossings.c: piecewise-linear models ------------------------------------------------------------------- */
 
-/* x' = A x with another constant A in each region.  x holds the model's own states, then what carries its loads (1, t, cos w t,
- * ...) and inputs, so that between two crossings nothing is approximated.  Switching expressions e_i = row_i . x, each with
- * breakpoints b_i0 < b_i1 < ..., are in interval 0 below b_i0, in 1 between b_i0 and b_i1, ...; a region is one interval for
- * each expression, its number interval_0 + (breaks_0 + 1) (interval_1 + (breaks_1 + 1) (interval_2 + ...)).
+/* x' = A x with another constant A in each region.  x holds the model's own states, then what carries its loads (1, t,
+ * cos w t,
+ * ...) and inputs, so that between two crossings nothing is approximated.  Switching expressions e_i = row_i . x, each
+ * with breakpoints b_i0 < b_i1 < ..., are in interval 0 below b_i0, in 1 between b_i0 and b_i1, ...; a region is one
+ * interval for each expression, its number interval_0 + (breaks_0 + 1) (interval_1 + (breaks_1 + 1) (interval_2 +
+ * ...)).
  *
- * A rounding error of e against a breakpoint b is taken to be 8 DBL_EPSILON (sum_j |row_j x_j| + |b| + how far e moves in the
- * time looked at).  What passes b by less is no crossing; what passes by more is found, whatever the step. */
+ * A rounding error of e against a breakpoint b is taken to be 8 DBL_EPSILON (sum_j |row_j x_j| + |b| + how far e moves
+ * in the time looked at).  What passes b by less is no crossing; what passes by more is found, whatever the step. */
 typedef struct pl_switching {
     int size;           /* entries of x */
     double h;           /* step [s] */
@@ -356,9 +365,10 @@ typedef struct pl_switching {
     const double *Phi;   /* e^{A d}: the piece where nothing is crossed */
     const double *lean;  /* d/3 row . A, so that lean . x = d/3 e' */
     const double *sag;   /* on 0 .. d, e is off the chord through its ends by at most sag . |x(0)|: d^2/8 max|e''| */
-    const double *sway;  /* on 0 .. d, e is off the cubic through its ends with its slopes there by at most sway . |x(0)|:
-                          * d^4/384 max|e''''| */
-    int degree;          /* of Taylor polynomials of e^{A tau} on 0 .. d, >= 3: as for pl_series, less where |pole| d is small */
+    const double *sway; /* on 0 .. d, e is off the cubic through its ends with its slopes there by at most sway .
+                         * |x(0)|: d^4/384 max|e''''| */
+    /* of Taylor polynomials of e^{A tau} on 0 .. d, >= 3: as for pl_series, less where |pole| d is small */
+    int degree;
     int max_events, max_splits; /* per step: crossings, and halvings of an interval in search of them */
 } pl_switching;
 
@@ -376,29 +386,30 @@ typedef struct pl_contact {
     int status;     /* 0 or PL_TOO_MANY_EVENTS, sticky until the next start */
 } pl_contact;
 
-enum { PL_TOO_MANY_EVENTS = 2 }; /* a step has met more crossings, or needed more splits, than its bound: chatter, as a rule */
+/* a step has met more crossings, or needed more splits, than its bound: chatter, as a rule */
+enum { PL_TOO_MANY_EVENTS = 2 };
 
 /* How many doubles, or floats, of work the functions below need; contents of no meaning. */
 #define PL_SWITCHING_WORK(size, switches, degree) (((degree) + 1) * ((size) + 2) + 2 * (size) + 5 * (switches))
 
-/* The region of x, no crossings, status 0.  Exactly on a breakpoint the sign of e' decides, then of e'', then of e'''; what
- * rests there counts as below. */
+/* The region of x, no crossings, status 0.  Exactly on a breakpoint the sign of e' decides, then of e'', then of e''';
+ * what rests there counts as below. */
 void pl_switching_start(const pl_switching *m, const double *x, pl_contact *c, double *work);
 
 /* x over h, with every crossing on the way, in order.  A whole piece without one is Phi x, to the last bit.
- *     x         `size` entries, in and out.  Loads may be set anew before each step, and inputs may jump: an expression that
- *               has left its interval by that passes its breakpoints at time 0
- *     crossing  max_events entries
- *     work      PL_SWITCHING_WORK(size, switches, degree)
- * Beyond max_events or max_splits: PL_TOO_MANY_EVENTS.  Then a last crossing is passed but not listed; pieces that are seen to stay
- * clear go on as ever; the first other one goes by e^{A d} of the region where x is, without looking, d = h / 2^halvings or what
- * is left, and behind it x is held to the end of the step.  As |pole| d is about 1 or below, no mode has grown by more than about e
- * where its region was not the true one; from there on x is off by at most how far the true motion goes.  The next step starts in
- * the region of x.  An x that is not finite sets no bit here: ask pl_not_finite. */
+ *     x         `size` entries, in and out.  Loads may be set anew before each step, and inputs may jump: an expression
+ * that has left its interval by that passes its breakpoints at time 0 crossing  max_events entries work
+ * PL_SWITCHING_WORK(size, switches, degree) Beyond max_events or max_splits: PL_TOO_MANY_EVENTS.  Then a last crossing
+ * is passed but not listed; pieces that are seen to stay clear go on as ever; the first other one goes by e^{A d} of
+ * the region where x is, without looking, d = h / 2^halvings or what is left, and behind it x is held to the end of the
+ * step.  As |pole| d is about 1 or below, no mode has grown by more than about e where its region was not the true one;
+ * from there on x is off by at most how far the true motion goes.  The next step starts in the region of x.  An x that
+ * is not finite sets no bit here: ask pl_not_finite. */
 void pl_switching_step(const pl_switching *m, double *x, pl_contact *c, pl_crossing *crossing, double *work);
 
 /* The same over tau, 0 <= tau <= h. */
-void pl_switching_advance(const pl_switching *m, double tau, double *x, pl_contact *c, pl_crossing *crossing, double *work);
+void pl_switching_advance(const pl_switching *m, double tau, double *x, pl_contact *c, pl_crossing *crossing,
+                          double *work);
 
 /* The same for floats; rounding errors are taken to be 8 FLT_EPSILON (...).  A pl_contact serves both. */
 typedef struct pl_switchingf {
@@ -420,11 +431,13 @@ typedef struct pl_crossingf {
 
 void pl_switchingf_start(const pl_switchingf *m, const float *x, pl_contact *c, float *work);
 void pl_switchingf_step(const pl_switchingf *m, float *x, pl_contact *c, pl_crossingf *crossing, float *work);
-void pl_switchingf_advance(const pl_switchingf *m, float tau, float *x, pl_contact *c, pl_crossingf *crossing, float *work);
+void pl_switchingf_advance(const pl_switchingf *m, float tau, float *x, pl_contact *c, pl_crossingf *crossing,
+                           float *work);
 
 /* ---- retune.c: coefficients from other params --------------------------------------------------------------- */
 
-/* A product of params: an earlier one times a param, or divided by it.  Product 0 is 1; a list of these makes 1, 2, ... */
+/* A product of params: an earlier one times a param, or divided by it.  Product 0 is 1; a list of these makes 1, 2, ...
+ */
 typedef struct pl_monomial {
     int from;    /* an earlier product */
     int param;
@@ -438,8 +451,8 @@ typedef struct pl_term {
     pl_two factor;
 } pl_term;
 
-/* W a = R x: equations of highest derivatives a over the states and what acts on them, x.  Where every mass is fixed the generator
- * has multiplied by the inverse of W, and there is no W. */
+/* W a = R x: equations of highest derivatives a over the states and what acts on them, x.  Where every mass is fixed
+ * the generator has multiplied by the inverse of W, and there is no W. */
 typedef struct pl_equations {
     int rows;    /* entries of a */
     int columns; /* entries of x */
@@ -450,49 +463,51 @@ typedef struct pl_equations {
     const pl_term *term; /* the same entry's one after the other */
 } pl_equations;
 
-/* value <- W^-1 R at these params, in two words: row i from value[i width] on, width = columns + (solves ? rows : 0); what is behind
- * `columns` has no meaning.  By elimination with partial pivoting.
- *     value  rows x width
- *     work   monomials + 1 entries, contents of no meaning
- * 0; PL_SINGULAR: W has no inverse, or nothing but rounding says that it has one, or a divisor is 0; PL_NOT_FINITE: a param or a result
- * is infinite, or not a number.
+/* value <- W^-1 R at these params, in two words: row i from value[i width] on, width = columns + (solves ? rows : 0);
+ * what is behind `columns` has no meaning.  By elimination with partial pivoting. value  rows x width work   monomials
+ * + 1 entries, contents of no meaning 0; PL_SINGULAR: W has no inverse, or nothing but rounding says that it has one,
+ * or a divisor is 0; PL_NOT_FINITE: a param or a result is infinite, or not a number.
  *
- * Without W an entry is off by less than 2^-101 (in floats 2^-43) of the sizes of its terms, summed (2^-103.7 and 2^-45.9 measured over
- * 6 10^4 equations).  With W that of row i, column j is off by less than 2^-101 of sum_k |W^-1|_ik times the largest, over rows, of the
- * sizes of all terms in W a - R x for column j (2^-104.2 and 2^-46.5 measured, nearly singular W included). */
+ * Without W an entry is off by less than 2^-101 (in floats 2^-43) of the sizes of its terms, summed (2^-103.7 and
+ * 2^-45.9 measured over 6 10^4 equations).  With W that of row i, column j is off by less than 2^-101 of sum_k
+ * |W^-1|_ik times the largest, over rows, of the sizes of all terms in W a - R x for column j (2^-104.2 and 2^-46.5
+ * measured, nearly singular W included). */
 int pl_equations_at(const pl_equations *e, const double *params, pl_two *value, pl_two *work);
 
 /* D <- e^{A tau} - I, its first `states` rows, tau in seconds.
- *     A     size x size, row-major [1/s]; 0 below the first `states` rows and left of column `states`: what acts on the states does
- *           not depend on them
- *     words 1, or 2: two words in any case
- *     D     states x size; the low words are 0 where one word was enough
- *     work  PL_INCREMENT_WORK(size) entries, contents of no meaning
- * 0, or PL_NOT_FINITE and D has no meaning; so it ends too where |A| tau is beyond 2^64, or 2^32 in floats.  |A| is a norm that
- * knows no units, as a rule at most twice the largest pole or frequency of a load.
+ *     A     size x size, row-major [1/s]; 0 below the first `states` rows and left of column `states`: what acts on the
+ * states does not depend on them words 1, or 2: two words in any case D     states x size; the low words are 0 where
+ * one word was enough work  PL_INCREMENT_WORK(size) entries, contents of no meaning 0, or PL_NOT_FINITE and D has no
+ * meaning; so it ends too where |A| tau is beyond 2^64, or 2^32 in floats.  |A| is a norm that knows no units, as a
+ * rule at most twice the largest pole or frequency of a load.
  *
- * In the first `states` columns no entry is off by more than 16 units in the last place of the largest of all these, in each other
- * column of the largest in it, for |A| tau up to 2^20 and where that largest is above 2^-900.  Measured: 7.2 units, over 2 10^5 models
- * with and without damping, stiff, near confluence and free, with all kinds of loads; 0.5 where two words are used.  In floats for
- * |A| tau up to 2^10 and above 2^-100: 11.5 units; up to 2^12 one in 2 10^4 damped models was off by 16.7 in units that are far apart.
+ * In the first `states` columns no entry is off by more than 16 units in the last place of the largest of all these, in
+ * each other column of the largest in it, for |A| tau up to 2^20 and where that largest is above 2^-900.  Measured: 7.2
+ * units, over 2 10^5 models with and without damping, stiff, near confluence and free, with all kinds of loads; 0.5
+ * where two words are used.  In floats for |A| tau up to 2^10 and above 2^-100: 11.5 units; up to 2^12 one in 2 10^4
+ * damped models was off by 16.7 in units that are far apart.
  *
- * Taylor's series of A tau 2^-k, then k times D <- 2 D + D^2, which keeps small entries that I + D would lose.  In one word where
- * |A| tau is below 2.  In two beyond, and where terms of the series meet that leave little; there it is I + D that is squared from
- * |A| tau 2^-k = 1/2 on, which keeps what decays. */
+ * Taylor's series of A tau 2^-k, then k times D <- 2 D + D^2, which keeps small entries that I + D would lose.  In one
+ * word where |A| tau is below 2.  In two beyond, and where terms of the series meet that leave little; there it is I +
+ * D that is squared from |A| tau 2^-k = 1/2 on, which keeps what decays. */
 int pl_increment(int size, int states, const pl_two *A, double tau, int words, pl_two *D, pl_two *work);
 
 #define PL_INCREMENT_WORK(size) (6 * (size) * (size))
 
-/* A ramp that is u in column `column` of D and u' in the next acts by its value after the step with D_{u'} / h, and by that before
- * with D_u - D_{u'} / h.  1: so much of that cancels that one word is not enough.  D: states x size */
+/* A ramp that is u in column `column` of D and u' in the next acts by its value after the step with D_{u'} / h, and by
+ * that before with D_u - D_{u'} / h.  1: so much of that cancels that one word is not enough.  D: states x size */
 int pl_ramp_cancels(int size, int states, const pl_two *D, int column, double h);
 
 /* whole - slope / h, rounded: that difference */
 double pl_ramp_before(pl_two whole, pl_two slope, double h);
 
 /* What NAME_retune says, beside PL_NOT_FINITE; the coefficients are then as they were */
-enum { PL_SINGULAR = 4, /* the mass matrix has no inverse, or a param that something is divided by is 0 */ PL_NO_STEP = 8, /* the step is not above 0 */
-       PL_NO_RATE = 16 /* a load's frequency is below 0 */ };
+/* the step is not above 0 */
+enum {
+    PL_SINGULAR = 4,
+    /* the mass matrix has no inverse, or a param that something is divided by is 0 */ PL_NO_STEP = 8,
+    PL_NO_RATE = 16 /* a load's frequency is below 0 */
+};
 
 /* The same in floats. */
 typedef struct pl_termf {
@@ -514,7 +529,8 @@ float pl_rampf_before(pl_twof whole, pl_twof slope, float h);
 
 /* ---- rate.c: frequencies from other params -------------------------------------------------------------------- */
 
-/* w / (2 pi), w >= 0 an angular frequency [rad/s]: off by less than 2^-115 of itself, beside what two words leave of w. */
+/* w / (2 pi), w >= 0 an angular frequency [rad/s]: off by less than 2^-115 of itself, beside what two words leave of w.
+ */
 pl_rate pl_rate_of(pl_two w);
 pl_ratef pl_ratef_of(pl_twof w); /* 2^-86 */
 
@@ -537,17 +553,20 @@ typedef struct pl_model {
     void (*step)(void *s, const double *u);
     void (*out)(const void *s, double *out);         /* out: `outputs` entries */
     void (*run)(void *s, size_t n, const double *u, double *out); /* n steps; n rows of u; n rows of out, or NULL */
-    void (*at)(const void *s, const double *u, double tau, double *y); /* 0 <= tau <= h; NULL where the model has none */
+    /* 0 <= tau <= h; NULL where the model has none */
+    void (*at)(const void *s, const double *u, double tau, double *y);
     void (*jump)(void *s, uint64_t n);                                 /* n steps at once; NULL where it has none */
     int (*status)(const void *s); /* 0, or bits: PL_NOT_FINITE, PL_TOO_MANY_EVENTS */
     int params;                   /* tunable ones */
     const char *const *param_names;
     const double *param_values;   /* the spec's */
-    int (*retune)(void *s, const double *params, double h); /* state and time stay; as NAME_retune says; NULL: nothing is tunable */
+    /* state and time stay; as NAME_retune says; NULL: nothing is tunable */
+    int (*retune)(void *s, const double *params, double h);
     void (*hold)(void *s, const double *u); /* the samples before the first step; NULL where no input is a ramp */
-    const int *start_samples;     /* of each input: how many it has had when the first step comes.  0: held, so row k of a
-                                   * record acts from k h to (k + 1) h; 1: a ramp, so row 0 is the sample at t = 0, which
-                                   * `hold` takes, and row k + 1 that at the end of step k.  NULL where there are no inputs */
+    const int
+        *start_samples; /* of each input: how many it has had when the first step comes.  0: held, so row k of a
+                         * record acts from k h to (k + 1) h; 1: a ramp, so row 0 is the sample at t = 0, which
+                         * `hold` takes, and row k + 1 that at the end of step k.  NULL where there are no inputs */
 } pl_model;
 
 /* The same of a model in float. */

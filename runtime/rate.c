@@ -5,9 +5,8 @@
 enum { INVERSE = 4, WIDE = 6, RATE = sizeof ((pl_rate *)0)->word / sizeof(uint64_t) };
 
 /* 1/(2 pi) 2^258, least significant word first */
-static const uint64_t inverse_of_turn[INVERSE] = {
-    UINT64_C(0xfe5163abdebbc562), UINT64_C(0xdb6295993c439041), UINT64_C(0xfc2757d1f534ddc0), UINT64_C(0xa2f9836e4e441529)
-};
+static const uint64_t inverse_of_turn[INVERSE] = { UINT64_C(0xfe5163abdebbc562), UINT64_C(0xdb6295993c439041),
+                                                   UINT64_C(0xfc2757d1f534ddc0), UINT64_C(0xa2f9836e4e441529) };
 
 /* |a| as an integer times 2^*exponent */
 static uint64_t digits_of(real a, int *exponent)
@@ -21,8 +20,8 @@ static uint64_t digits_of(real a, int *exponent)
     return (u.bits & REAL_FRACTION) | (e == 0 ? 0 : REAL_FRACTION + 1);
 }
 
-/* w 2^(64 - e), e the exponent of its high word, to an integer: *m, least significant word first.  The low word is at most half a unit
- * of the high one, so it is moved up by 11 bits at most. */
+/* w 2^(64 - e), e the exponent of its high word, to an integer: *m, least significant word first.  The low word is at
+ * most half a unit of the high one, so it is moved up by 11 bits at most. */
 static void in_integers(pl_two w, uint64_t m[2], int *e)
 {
     int lower, up;

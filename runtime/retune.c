@@ -2,8 +2,8 @@
 /* Coefficients of a step from other params: those of the equations, in two words, and from them e^{A tau} - I. */
 #include "two.h"
 
-/* sum + a b.  The error of a sum of n such terms is about n 2^-104, or n 2^-46, of the sum of their sizes; what comes out is not yet
- * normal: lo may have grown beyond half a unit of hi. */
+/* sum + a b.  The error of a sum of n such terms is about n 2^-104, or n 2^-46, of the sum of their sizes; what comes
+ * out is not yet normal: lo may have grown beyond half a unit of hi. */
 static inline pl_two plus_product(pl_two sum, pl_two a, pl_two b)
 {
     const pl_two p = two_product(a.hi, b.hi), s = two_sum(sum.hi, p.hi);
@@ -35,8 +35,8 @@ static real larger(real a, real b)
 
 /* ---- equations ---- */
 
-/* sum + a b; 0 where so much cancels that rounding alone could have left the rest: else a singular matrix would show only in huge
- * numbers */
+/* sum + a b; 0 where so much cancels that rounding alone could have left the rest: else a singular matrix would show
+ * only in huge numbers */
 static pl_two reduced(pl_two sum, pl_two a, pl_two b)
 {
     const pl_two rest = normal(plus_product(sum, a, b));
@@ -144,8 +144,8 @@ int pl_equations_at(const pl_equations *e, const real *params, pl_two *value, pl
 
 /* ---- e^{A tau} - I ---- */
 
-/* Taylor's polynomial has degree BLOCK^2, so it is made of BLOCK powers of X and BLOCK - 1 products with the last of them.  MOST: the
- * square of a norm of A tau beyond which it is refused. */
+/* Taylor's polynomial has degree BLOCK^2, so it is made of BLOCK powers of X and BLOCK - 1 products with the last of
+ * them.  MOST: the square of a norm of A tau beyond which it is refused. */
 #ifdef REAL_IS_FLOAT
 enum { BLOCK = 3 };
 #define MOST 0x1p64f
@@ -168,8 +168,8 @@ static real power_of_2(int e)
     return u.value;
 }
 
-/* Gives row and column i of B, n x n, about the same sum off the diagonal, by a power of 2.  1: that changed something.  What has no way
- * back to itself has no part in any pole: its row and column are left out, and counted. */
+/* Gives row and column i of B, n x n, about the same sum off the diagonal, by a power of 2.  1: that changed something.
+ * What has no way back to itself has no part in any pole: its row and column are left out, and counted. */
 static int balance(int n, pl_two *B, int i, int *isolated)
 {
     real row = 0, column = 0, up, down;
@@ -199,8 +199,9 @@ static int balance(int n, pl_two *B, int i, int *isolated)
     return 1;
 }
 
-/* The square of a norm of A tau, A an n x n block on the diagonal of a larger matrix, `stride` wide: |B^2| for |A tau| in units in which
- * it is well balanced (Osborne), which one entry alone cannot blow up.  Not finite if A is not.  B: work, n x n */
+/* The square of a norm of A tau, A an n x n block on the diagonal of a larger matrix, `stride` wide: |B^2| for |A tau|
+ * in units in which it is well balanced (Osborne), which one entry alone cannot blow up.  Not finite if A is not.  B:
+ * work, n x n */
 static real norm_squared(int n, const pl_two *A, int stride, real tau, pl_two *B, int *isolated)
 {
     enum { SWEEPS = 4 };
@@ -230,7 +231,8 @@ static real norm_squared(int n, const pl_two *A, int stride, real tau, pl_two *B
     return is_finite(all) ? most : all;
 }
 
-/* The longest of the shortest ways from a load's column to the states, in powers of A: 1 where it acts on them.  mark: work, `size` */
+/* The longest of the shortest ways from a load's column to the states, in powers of A: 1 where it acts on them.  mark:
+ * work, `size` */
 static int load_depth(int size, int states, const pl_two *A, pl_two *mark)
 {
     int i, j, found, depth = 0;
@@ -254,8 +256,8 @@ static int load_depth(int size, int states, const pl_two *A, pl_two *mark)
     return depth;
 }
 
-/* What follows is in one word, the high one, or in two.  Matrices are size x size and 0 below the first `states` rows and left of column
- * `states`, where nothing is read or written. */
+/* What follows is in one word, the high one, or in two.  Matrices are size x size and 0 below the first `states` rows
+ * and left of column `states`, where nothing is read or written. */
 typedef struct layout {
     int words, size, states;
 } layout;
@@ -265,7 +267,8 @@ static int first_column(const layout *m, int i)
     return i < m->states ? 0 : m->states;
 }
 
-static void product_one(const layout *m, int rows, real factor, const pl_two *d, const pl_two *a, const pl_two *b, pl_two *c)
+static void product_one(const layout *m, int rows, real factor, const pl_two *d, const pl_two *a, const pl_two *b,
+                        pl_two *c)
 {
     const int size = m->size;
     int i, j, k;
@@ -279,7 +282,8 @@ static void product_one(const layout *m, int rows, real factor, const pl_two *d,
         }
 }
 
-static void product_two(const layout *m, int rows, real factor, const pl_two *d, const pl_two *a, const pl_two *b, pl_two *c)
+static void product_two(const layout *m, int rows, real factor, const pl_two *d, const pl_two *a, const pl_two *b,
+                        pl_two *c)
 {
     const int size = m->size;
     int i, j, k;
@@ -294,7 +298,8 @@ static void product_two(const layout *m, int rows, real factor, const pl_two *d,
 }
 
 /* c <- factor d + a b, its first `rows` rows; the factor is 0 or a power of 2, and c may be d */
-static void product(const layout *m, int rows, real factor, const pl_two *d, const pl_two *a, const pl_two *b, pl_two *c)
+static void product(const layout *m, int rows, real factor, const pl_two *d, const pl_two *a, const pl_two *b,
+                    pl_two *c)
 {
     if (m->words == 1)
         product_one(m, rows, factor, d, a, b, c);
@@ -321,8 +326,8 @@ static void combine(const layout *m, int rows, const real *coefficient, const pl
         }
 }
 
-/* e^X - I, its first `rows` rows; X is followed by room for its powers up to the BLOCKth.  The result is *sum; *sum and *other change
- * places on the way. */
+/* e^X - I, its first `rows` rows; X is followed by room for its powers up to the BLOCKth.  The result is *sum; *sum and
+ * *other change places on the way. */
 static void taylor(const layout *m, int rows, pl_two *X, pl_two **sum, pl_two **other)
 {
     const int entries = m->size * m->size;
@@ -358,9 +363,9 @@ static void shift(int size, int rows, pl_two *a, real one)
         a[i * size + i] = add(a[i * size + i], two(one, 0));
 }
 
-/* Do terms of the series meet that leave less than half of the largest?  In the states' block, or in a load's column.  One word has then
- * lost too much.  Of X^2 the sizes of its own terms count: they may have met before.  X and its powers as taylor() leaves them, D what
- * became of them */
+/* Do terms of the series meet that leave less than half of the largest?  In the states' block, or in a load's column.
+ * One word has then lost too much.  Of X^2 the sizes of its own terms count: they may have met before.  X and its
+ * powers as taylor() leaves them, D what became of them */
 static int cancelled(const layout *m, int halvings, const pl_two *X, const pl_two *D)
 {
     const int size = m->size, states = m->states, entries = size * size;
@@ -393,8 +398,8 @@ static int cancelled(const layout *m, int halvings, const pl_two *X, const pl_tw
     return 0;
 }
 
-/* e^{A tau} - I, its first `states` rows, by `halvings` halvings of tau, of which the first `far` bring |A tau| below 1/2.  The result is
- * one of two matrices behind those of taylor(), or NULL if it is not finite. */
+/* e^{A tau} - I, its first `states` rows, by `halvings` halvings of tau, of which the first `far` bring |A tau| below
+ * 1/2.  The result is one of two matrices behind those of taylor(), or NULL if it is not finite. */
 static const pl_two *increment(const layout *m, const pl_two *A, real tau, int halvings, int far, pl_two *work)
 {
     const int size = m->size, entries = size * size;
@@ -410,7 +415,8 @@ static const pl_two *increment(const layout *m, const pl_two *A, real tau, int h
     taylor(m, halvings == 0 ? m->states : size, X, &sum, &other);
     for (; halvings > 0; halvings--) {
         pl_two *const from = sum;
-        if (m->words == 2 && halvings == far) { /* I + D, from here on: what decays would be lost in D, which is then close to -I */
+        /* I + D, from here on: what decays would be lost in D, which is then close to -I */
+        if (m->words == 2 && halvings == far) {
             shift(size, size, from, 1);
             less = 0;
         }

@@ -27,9 +27,9 @@ pl_turn pl_turn_at(const pl_rate *rate, double t)
 
 enum { TERMS = 7 };
 
-/* (sin r - r + r^3/6)/r^5 and (cos r - 1 + r^2/2)/r^4 as polynomials of r^2, for |r| <= pi/4.  Minimax by Remez exchange
- * in 60 digits, the coefficients rounded in turn from the lowest on and the others fitted again each time.
- * As used, they are within 2^-56.8 |r| and 2^-63.6. */
+/* (sin r - r + r^3/6)/r^5 and (cos r - 1 + r^2/2)/r^4 as polynomials of r^2, for |r| <= pi/4.  Minimax by Remez
+ * exchange in 60 digits, the coefficients rounded in turn from the lowest on and the others fitted again each time. As
+ * used, they are within 2^-56.8 |r| and 2^-63.6. */
 static double sine_rest(double rr)
 {
     return 0x1.1111111110ccdp-7
@@ -85,7 +85,8 @@ void pl_cossin(pl_turn a, double z[2])
         a.lo <<= 4;
         shift += 4;
     }
-    unit.bits = (uint64_t)(1023 - 63 - shift) << 52; /* 2^-(63 + shift): made at once, since a target may multiply in software */
+    /* 2^-(63 + shift): made at once, since a target may multiply in software */
+    unit.bits = (uint64_t)(1023 - 63 - shift) << 52;
     x = words_times(a.hi, half_pi); /* radians, in `unit`: less than 2^63 */
     xx = shift < 32 ? words_times(2 * x, 2 * x) >> 2 * shift : 0;
 

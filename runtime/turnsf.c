@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT-0 */
-/* Phases as 64-bit fractions of a turn, and their cosine and sine in integers of 32 bits: with eight bits more than a float keeps
- * there is nothing to gain from floating point, and much to lose where it is software. */
+/* Phases as 64-bit fractions of a turn, and their cosine and sine in integers of 32 bits: with eight bits more than a
+ * float keeps there is nothing to gain from floating point, and much to lose where it is software. */
 #define REAL_IS_FLOAT
 #include "words.h"
 
@@ -17,9 +17,9 @@ pl_turnf pl_turnf_at(const pl_ratef *rate, float t)
     return t < 0 ? 0u - a : a;
 }
 
-/* 1 - cos r and 1 - sin r / r in units of 2^-32, from rr = r^2 in the same, |r| <= pi/4.  Minimax by Remez exchange in 50 digits, the
- * coefficients rounded to 2^-32 in turn from the lowest on and the others fitted again each time: within 2^-34 and
- * 2^-36.7, before the products are rounded down. */
+/* 1 - cos r and 1 - sin r / r in units of 2^-32, from rr = r^2 in the same, |r| <= pi/4.  Minimax by Remez exchange in
+ * 50 digits, the coefficients rounded to 2^-32 in turn from the lowest on and the others fitted again each time: within
+ * 2^-34 and 2^-36.7, before the products are rounded down. */
 static uint32_t less_cosine(uint32_t rr)
 {
     uint32_t sum = 0x005B0217 - words_times32(rr, 0x0001992C);

@@ -23,8 +23,8 @@ static inline int is_finite(real a)
     return a - a == 0;
 }
 
-/* a as a number that was rounded and stored.  Without this a compiler that contracts could put an exact product where the
- * error term below needs the rounded one, and a wide register could keep more of a sum than its type. */
+/* a as a number that was rounded and stored.  Without this a compiler that contracts could put an exact product where
+ * the error term below needs the rounded one, and a wide register could keep more of a sum than its type. */
 static inline real rounded(real a)
 {
     volatile real stored = a;
@@ -46,8 +46,8 @@ static inline pl_two two_sum(real a, real b)
     return two(s, is_finite(s) ? (a - a_part) + (b - b_part) : 0);
 }
 
-/* a rounded to 26 bits of 53, or 12 of 24, so that it and what remains both have products without rounding error.  By its bits:
- * this does not overflow below the last binade, and no compiler can rewrite it. */
+/* a rounded to 26 bits of 53, or 12 of 24, so that it and what remains both have products without rounding error.  By
+ * its bits: this does not overflow below the last binade, and no compiler can rewrite it. */
 static inline real top_half(real a)
 {
     const real_bits unit = (real_bits)1 << (REAL_DIGITS + 1) / 2;
@@ -57,7 +57,8 @@ static inline real top_half(real a)
     return u.value;
 }
 
-/* a b, exactly while it is above 2^-969, or 2^-102.  Every product in the error term is exact, so contraction changes nothing. */
+/* a b, exactly while it is above 2^-969, or 2^-102.  Every product in the error term is exact, so contraction changes
+ * nothing. */
 static inline pl_two two_product(real a, real b)
 {
     const real p = rounded(a * b);
@@ -66,7 +67,8 @@ static inline pl_two two_product(real a, real b)
     return two(p, is_finite(lost) ? lost : 0);
 }
 
-/* a + b within 2^-104, or 2^-46, of |a| + |b|.  An infinity stays, and the first one wins: no NaN from infinities that meet. */
+/* a + b within 2^-104, or 2^-46, of |a| + |b|.  An infinity stays, and the first one wins: no NaN from infinities that
+ * meet. */
 static inline pl_two add(pl_two a, pl_two b)
 {
     pl_two s, t;
@@ -80,7 +82,8 @@ static inline pl_two add(pl_two a, pl_two b)
     return two_sum(s.hi, s.lo + t.lo);
 }
 
-/* a b within 2^-104, or 2^-46, of itself.  0 times infinity is 0: what is decoupled stays so when its neighbour overflows. */
+/* a b within 2^-104, or 2^-46, of itself.  0 times infinity is 0: what is decoupled stays so when its neighbour
+ * overflows. */
 static inline pl_two multiply(pl_two a, pl_two b)
 {
     pl_two p;

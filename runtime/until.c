@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT-0 */
-/* The time from now to a change of the loads. Both are far larger than what is between them, so it is found in two words. */
+/* The time from now to a change of the loads. Both are far larger than what is between them, so it is found in two
+ * words. */
 #include "two.h"
 
 /* The steps go in parts that a number holds exactly, the largest first. */

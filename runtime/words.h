@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT-0 */
-/* words.h: integers of several words, for the runtime's own use.  A product with a rate is exact here; who needs it takes
- * out of it the bits that count. */
+/* words.h: integers of several words, for the runtime's own use.  A product with a rate is exact here; who needs it
+ * takes out of it the bits that count. */
 #ifndef PLRT_WORDS_H
 #define PLRT_WORDS_H
 

@@ -343,27 +343,88 @@ static void collect_intervals(struct building *b)
 	b->model->system.change = c->change;
 }
 
-struct model *model_build(struct spec *spec, const struct request *request)
+/* What is known before anything is collected */
+static void begin_model(struct building *b)
 {
-	struct building b = { .spec = spec, .model = NEW(struct model), .request = request };
-	struct model *model = b.model;
+	struct model *model = b->model;
+	const struct request *request = b->request;
 	mpq_srcptr zero = rationals(1)[0];
-	model->spec = spec;
+	model->spec = b->spec;
 	model->asked = *request;
 	model->written = request->relative ? request->relative->written : model;
 	model->relative = request->relative;
 	model->frame.form = model->relative ? model->relative->form : NULL;
 	if (model->relative)                    /* its params were collected for the written one */
-		b.collector.irrationals = model->written->irrationals;
-	b.collector.frame = &model->frame;
-	model->atoms = b.collector.atoms = atoms_new();
+		b->collector.irrationals = model->written->irrationals;
+	b->collector.frame = &model->frame;
+	model->atoms = b->collector.atoms = atoms_new();
 	model->asked.form_at = (struct place){ source_argument(step_form_name(request->form)), 0 };
 	model->asked.compensated_at = (struct place){ source_argument("compensated"), 0 };
-	model->name = request->prefix ? request->prefix : spec->name;
+	model->name = request->prefix ? request->prefix : b->spec->name;
 	mpq_init(model->h);
-	for (struct symbol *s = spec->first; s; s = s->next)
+	for (struct symbol *s = b->spec->first; s; s = s->next)
 		s->whole = NULL;
-	b.polynomial = wave_of(&b.collector, zero, zero, zero);
+	b->polynomial = wave_of(&b->collector, zero, zero, zero);
+}
+
+/* Params, equations and outputs as forms; initial values and the step. With values of the tunable params no more than the
+ * equations: what nothing reads may not be defined there. */
+static void collect_model(struct building *b)
+{
+	struct model *model = b->model;
+	const struct request *request = b->request;
+	bool all = !request->tunable;
+	if (all)
+		evaluate_params(b);
+	statement_guard(choose_scheme, b);
+	collect_intervals(b);
+	if (all)
+		evaluate_lets(b);
+	model->initial = rationals((size_t)model->system.states);
+	if (all && model->relative)
+		relative_values(model, model->written->initial, model->initial);
+	else if (all)
+		evaluate_initials(b);
+	if (all && (b->spec->step || request->step))
+		statement_guard(evaluate_step, b);
+}
+
+static void check_reduction(const struct building *b)
+{
+	const struct model *model = b->model;
+	if (!diagnostics_errors() && model->switching)
+		say_error(b->spec->name_at, NULL,
+			  "--reduce needs a linear model: what regions hold depends on the coordinates");
+	if (!diagnostics_errors() && model->scheme != SCHEME_EXACT)
+		say_error(model->asked.scheme_at.source ? model->asked.scheme_at : b->spec->name_at, NULL,
+			  "--reduce needs scheme exact: what %s leaves over depends on the coordinates",
+			  scheme_name(model->scheme));
+}
+
+/* Forms to matrices, operators, outputs, regions */
+static void build_parts(struct building *b)
+{
+	struct model *model = b->model;
+	bool clean = !diagnostics_errors();
+	if (clean)
+		check_parts(b);
+	if (clean && model->n > 0 && model->system.states <= LIMIT_STATES)
+		build_system(b);
+	if (!diagnostics_errors())
+		build_operators(b);
+	if (!diagnostics_errors())
+		build_outputs(b);
+	if (!diagnostics_errors() && model->switching)
+		build_regions(b);
+	if (b->request->reduce)
+		check_reduction(b);
+}
+
+struct model *model_build(struct spec *spec, const struct request *request)
+{
+	struct building b = { .spec = spec, .model = NEW(struct model), .request = request };
+	struct model *model = b.model;
+	begin_model(&b);
 	for (int i = 0; i < request->definitions; i++)
 		define_override(&b, request->definition[i]);
 	set_tunables(&b);
@@ -371,37 +432,8 @@ struct model *model_build(struct spec *spec, const struct request *request)
 		check_prefix(&b);
 	name_coordinates(&b);
 	name_states(&b);
-	if (!request->tunable)                /* else what nothing reads may not be defined there */
-		evaluate_params(&b);
-	statement_guard(choose_scheme, &b);
-	collect_intervals(&b);
-	if (!request->tunable)
-		evaluate_lets(&b);
-	model->initial = rationals((size_t)model->system.states);
-	if (model->relative && !request->tunable)
-		relative_values(model, model->written->initial, model->initial);
-	else if (!request->tunable)
-		evaluate_initials(&b);
-	if (!request->tunable && (spec->step || request->step))
-		statement_guard(evaluate_step, &b);
-	bool clean = !diagnostics_errors();
-	if (clean)
-		check_parts(&b);
-	if (clean && model->n > 0 && model->system.states <= LIMIT_STATES)
-		build_system(&b);
-	if (!diagnostics_errors())
-		build_operators(&b);
-	if (!diagnostics_errors())
-		build_outputs(&b);
-	if (!diagnostics_errors() && model->switching)
-		build_regions(&b);
-	if (!diagnostics_errors() && request->reduce && model->switching)
-		say_error(spec->name_at, NULL,
-			  "--reduce needs a linear model: what regions hold depends on the coordinates");
-	if (!diagnostics_errors() && request->reduce && model->scheme != SCHEME_EXACT)
-		say_error(model->asked.scheme_at.source ? model->asked.scheme_at : spec->name_at, NULL,
-			  "--reduce needs scheme exact: what %s leaves over depends on the coordinates",
-			  scheme_name(model->scheme));
+	collect_model(&b);
+	build_parts(&b);
 	model->irrationals = b.collector.irrationals;
 	bool told = request->solution || request->tunable || request->relative;
 	if (!diagnostics_errors() && !told)

@@ -240,7 +240,8 @@ int blocks_of(const struct linear *system, struct block **blocks);
 
 /* ---- augmented.c: the augmented state ---- */
 
-/* x = [states, held terms, load states, inputs, channels]; every column of a table or of tuned equations has its place here too */
+/* x = [states, held terms, load states, inputs, channels]; every column of a table or of tuned equations has its place
+ * here too */
 struct layout {
 	int size, states;
 	int held;                   /* index of the first held term, one per coordinate; -1: none */
@@ -253,7 +254,8 @@ struct layout {
 };
 struct layout layout_of(const struct linear *system, int powers);   /* of loads those that act */
 struct layout layout_with(const struct linear *system, int powers, const bool *needed); /* of loads those needed */
-struct layout layout_of_columns(const struct linear *system);       /* states, all load states of all segments, inputs */
+/* states, all load states of all segments, inputs */
+struct layout layout_of_columns(const struct linear *system);
 const char **layout_names(const struct layout *layout, const struct linear *system, const char *const *state);
 mpq_t *augmented_matrix(const struct layout *layout, const struct linear *system, int segment); /* A of x' = A x */
 

@@ -16,7 +16,8 @@ static const char *kept_with(const struct model *model, const struct relative *r
 	const char *names = model->written->coord_name[first];
 	int count = 1;
 	for (int j = first + 1; j < model->written->n; j++)
-		if (model->reduction.place[first] >= 0 && model->reduction.place[j] >= 0 && root_of(r, first) == root_of(r, j)) {
+		if (model->reduction.place[first] >= 0 && model->reduction.place[j] >= 0 &&
+		    root_of(r, first) == root_of(r, j)) {
 			names = format("%s, %s", names, model->written->coord_name[j]);
 			count++;
 		}
@@ -32,11 +33,14 @@ static void warn_of_kept(const struct model *model)
 		names = kept_with(model, r, i);
 	if (names)
 		say_warning(model->spec->name_at, "without --reduce differences are states of their own",
-			    "the reduced model keeps %s, which may move as a whole: where they grow, their differences lose "
-			    "digits", names);
+			    "the reduced model keeps %s, which may move as a whole: where they grow, their differences "
+			    "lose "
+			    "digits",
+			    names);
 }
 
-/* The model over coordinates that part what moves as a whole from what moves in it, where there are such; else itself */
+/* The model over coordinates that part what moves as a whole from what moves in it, where there are such; else itself
+ */
 struct model *stepped_model(struct model *model, struct spec *spec, const struct request *request)
 {
 	struct request again = *request;

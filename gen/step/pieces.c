@@ -240,7 +240,8 @@ static void fill_bounds(const struct step *step, const struct pieces *pieces, in
 
 struct pieces pieces_of(const struct step *step)
 {
-	struct pieces pieces = { rows_of(step), breakpoints_of(step), ARRAY(struct region_piece, (size_t)step->branches) };
+	struct pieces pieces = { rows_of(step), breakpoints_of(step),
+				 ARRAY(struct region_piece, (size_t)step->branches) };
 	for (int k = 0; k < step->branches; k++)
 		pieces.piece[k].slopes = finite_slopes(step, k);
 	for (int k = 0; k < step->branches; k++)

@@ -168,7 +168,8 @@ struct program {
 	int wave_multiplications, wave_additions; /* for them, counted below too */
 	int multiplications, additions, calls; /* calls: of the model's own functions */
 	bool loops;                 /* over the tables, zeros included: a large model */
-	int products;               /* of a list that loops: what its assignments are rows of; loads that are forced are left out */
+	/* of a list that loops: what its assignments are rows of; loads that are forced are left out */
+	int products;
 	struct matrix_product product[3];
 	bool products_added;        /* to the state */
 	bool tuned;                 /* factors are read from the instance's coefficients */
@@ -259,9 +260,11 @@ void need_closed_form(const struct step *step);              /* leaves the state
 
 /* ---- check.c: between those who write programs and those who read them ---- */
 
-void program_check(const struct step *step);                /* a violation is an internal error, and leaves the statement */
+/* a violation is an internal error, and leaves the statement */
+void program_check(const struct step *step);
 
-/* ---- recipe.c: what recipes are written in; one that asks for more than there is room for leaves the statement ---- */
+/* ---- recipe.c: what recipes are written in; one that asks for more than there is room for leaves the statement ----
+ */
 
 enum { RECIPE_TABLES = 8 };
 struct recipe {                     /* of one scheme, being written */
@@ -274,13 +277,15 @@ _Noreturn void internal_error(const struct step *step, const char *what); /* a f
 int  add_table(struct recipe *r, const char *name, long p, unsigned long q, bool Phi); /* at p/q of the step */
 /* h (c0 phi1 + c1 phi2 + 2 c2 phi3) of A h as the response to c0 + c1 s/h + c2 (s/h)^2, over p/q of the step */
 int  add_phi(struct recipe *r, int table, const char *name, long p, unsigned long q, int powers, const long *c);
-void add_phi_part(struct recipe *r, int table, int kernel, long p, unsigned long q, int powers, const long *c); /* added to that */
+/* added to that */
+void add_phi_part(struct recipe *r, int table, int kernel, long p, unsigned long q, int powers, const long *c);
 int  add_weighted(struct recipe *r, int table, const char *name, long p, unsigned long q, long weight,
 		 unsigned long over); /* e^{A h p/q} h weight/over */
 int  add_node(struct recipe *r, long p, unsigned long q);   /* a time at which leftovers are evaluated */
 void need_loads_at(struct recipe *r, int node);
 int  new_stage(struct recipe *r);
-struct action *add_action(struct recipe *r, struct action action); /* valid until the next is added, as that of add_sum is */
+/* valid until the next is added, as that of add_sum is */
+struct action *add_action(struct recipe *r, struct action action);
 int  add_leftover(struct recipe *r, int node, int stage);
 int  add_combination(struct recipe *r, int plus, int minus, bool added);
 struct action *add_sum(struct recipe *r, int stage, int flow, int plain, const char *note);

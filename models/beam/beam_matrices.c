@@ -4,13 +4,13 @@
  *     M q'' + 2 w G q' + [K + w^2 (D - M) + w' G] q = w^2 fu - w' fw            w: speed of rotation
  *
  * Euler-Bernoulli beam clamped on the axis of rotation, first-order stiffening theory: the model of Fang, Wang and Guo
- * (exponential time differencing for a rotating flexible beam), whose own matrices did not survive; these are deduced.  In the
- * turning frame u is along the beam, on linear shape functions, and v across it, on Hermite's cubics; D is what the shortening
- * of a bent beam does in the centrifugal field.  Coordinates [u1 v1 t1 u2 v2 t2 ...] of the nodes behind the clamped root,
- * t = dv/dx.
- * M, K and D are symmetric, G antisymmetric.
+ * (exponential time differencing for a rotating flexible beam), whose own matrices did not survive; these are deduced.
+ * In the turning frame u is along the beam, on linear shape functions, and v across it, on Hermite's cubics; D is what
+ * the shortening of a bent beam does in the centrifugal field.  Coordinates [u1 v1 t1 u2 v2 t2 ...] of the nodes behind
+ * the clamped root, t = dv/dx. M, K and D are symmetric, G antisymmetric.
  *
- *     cc -o beam_matrices beam_matrices.c -lm && ./beam_matrices            (M.mtx, K.mtx, G.mtx, D.mtx, fu.mtx, fw.mtx)
+ *     cc -o beam_matrices beam_matrices.c -lm && ./beam_matrices            (M.mtx, K.mtx, G.mtx, D.mtx, fu.mtx,
+ * fw.mtx)
  */
 #include <errno.h>
 #include <math.h>
@@ -100,9 +100,12 @@ static void add_load(struct vector *vector, const struct element *e, int row, do
 
 static void mass(struct system *s, const struct beam *b, const struct element *e)
 {
-	static const int table[4][4] = { { 156, 22, 54, -13 }, { 22, 4, 13, -3 }, { 54, 13, 156, -22 }, { -13, -3, -22, 4 } };
-	add_axial(&s->M, e, b->rho * b->S * e->l / 6, 2, 1);
-	add_lateral(&s->M, e, b->rho * b->S * e->l / 420, table);
+    static const int table[4][4] = { { 156, 22, 54, -13 },
+                                     { 22, 4, 13, -3 },
+                                     { 54, 13, 156, -22 },
+                                     { -13, -3, -22, 4 } };
+    add_axial(&s->M, e, b->rho * b->S * e->l / 6, 2, 1);
+    add_lateral(&s->M, e, b->rho * b->S * e->l / 420, table);
 }
 
 static void stiffness(struct system *s, const struct beam *b, const struct element *e)
@@ -124,8 +127,8 @@ static void gyroscopic(struct system *s, const struct beam *b, const struct elem
 		}
 }
 
-/* rho S/2 integral of (L^2 - x^2) N'^T N' dx.  With x = x0 + l z and N' taken with respect to z, the tables are the integrals
- * from 0 to 1 of N'^T N' times 1, z, z^2, times 30, 60, 210. */
+/* rho S/2 integral of (L^2 - x^2) N'^T N' dx.  With x = x0 + l z and N' taken with respect to z, the tables are the
+ * integrals from 0 to 1 of N'^T N' times 1, z, z^2, times 30, 60, 210. */
 static void stiffening(struct system *s, const struct beam *b, const struct element *e)
 {
 	static const int z0[4][4] = { { 36, 3, -36, 3 }, { 3, 4, -3, -1 }, { -36, -3, 36, -3 }, { 3, -1, -3, 4 } };
@@ -169,12 +172,13 @@ static struct vector vector(const char *name, const char *meaning, long rows)
 static struct system assemble(const struct beam *b)
 {
 	const long rows = 3 * b->elements;
-	struct system s = {
-		matrix("M", "mass", true, rows), matrix("K", "stiffness", true, rows),
-		matrix("G", "gyroscopic, antisymmetric", false, rows), matrix("D", "stiffening by the centrifugal field, over w^2", true, rows),
-		vector("fu", "axial load, over w^2", rows), vector("fw", "lateral load, over -w'", rows)
-	};
-	for (long number = 0; number < b->elements; number++) {
+        struct system s = { matrix("M", "mass", true, rows),
+                            matrix("K", "stiffness", true, rows),
+                            matrix("G", "gyroscopic, antisymmetric", false, rows),
+                            matrix("D", "stiffening by the centrifugal field, over w^2", true, rows),
+                            vector("fu", "axial load, over w^2", rows),
+                            vector("fw", "lateral load, over -w'", rows) };
+        for (long number = 0; number < b->elements; number++) {
 		const struct element e = element(b, number);
 		mass(&s, b, &e);
 		stiffness(&s, b, &e);
@@ -204,8 +208,9 @@ static void print_head(FILE *file, const struct beam *b, const char *kind, const
 	const struct { const char *name; double value; } parameter[] = {
 		{ "L", b->L }, { "S", b->S }, { "I", b->I }, { "rho", b->rho }, { "E", b->E }
 	};
-	fprintf(file, "%%%%MatrixMarket matrix %s\n%% %s: %s; made by beam_matrices: %ld elements", kind, name, meaning, b->elements);
-	for (size_t i = 0; i < sizeof parameter / sizeof *parameter; i++) {
+        fprintf(file, "%%%%MatrixMarket matrix %s\n%% %s: %s; made by beam_matrices: %ld elements", kind, name, meaning,
+                b->elements);
+        for (size_t i = 0; i < sizeof parameter / sizeof *parameter; i++) {
 		fprintf(file, ", %s = ", parameter[i].name);
 		print_number(file, parameter[i].value);
 	}
@@ -266,8 +271,9 @@ static void write_matrix(const struct beam *b, const struct matrix *m, const cha
 {
 	char *path;
 	FILE *file = create(prefix, m->name, &path);
-	print_head(file, b, m->symmetric ? "coordinate real symmetric" : "coordinate real general", m->name, m->meaning);
-	fprintf(file, "%ld %ld %ld\n", m->rows, m->rows, entries(m));
+        print_head(file, b, m->symmetric ? "coordinate real symmetric" : "coordinate real general", m->name,
+                   m->meaning);
+        fprintf(file, "%ld %ld %ld\n", m->rows, m->rows, entries(m));
 	for (long i = 0; i < m->rows; i++)
 		for (long j = first_column(i); j <= last_column(m, i); j++) {
 			const double value = m->band[i][j - i + REACH];
@@ -348,8 +354,9 @@ static long count(const char *option, const char *text)
 	char *end;
 	const long value = strtol(text, &end, 10);
 	if (end == text || *end || value < 1 || value > LIMIT_ELEMENTS) {
-		fprintf(stderr, "beam_matrices: option %s wants a whole number from 1 to %d, found '%s'\n", option, LIMIT_ELEMENTS, text);
-		exit(2);
+            fprintf(stderr, "beam_matrices: option %s wants a whole number from 1 to %d, found '%s'\n", option,
+                    LIMIT_ELEMENTS, text);
+            exit(2);
 	}
 	return value;
 }

@@ -4,14 +4,14 @@
  *     cc -Iruntime runtime/host/plmain.c model_pl.c runtime/turns.c ... -DMODEL=scs -o m
  *     ./m 30 < inputs.csv > out.csv
  *
- * A model made with --real float is compiled with -DFLOAT too.  Tunable params, and the step, take other values on the command
- * line: ./m 30 k2=60 step=0.005.
+ * A model made with --real float is compiled with -DFLOAT too.  Tunable params, and the step, take other values on the
+ * command line: ./m 30 k2=60 step=0.005.
  *
- * One row at every step k*h <= T, from t = 0 on.  A model with inputs reads a record of them from standard input: rows of as
- * many numbers as inputs, separated by commas; a first line that gives the inputs' names may precede them.  Row k, the first
- * being row 0, is the sample at k h: of an input that is held it acts from k h to (k + 1) h, one with `hold first` goes
- * straight from it to row k + 1.  So n steps take n rows, and where an input is a ramp n + 1.
- * A run that leaves the finite numbers ends there, with exit status 1 and the rows before it written. */
+ * One row at every step k*h <= T, from t = 0 on.  A model with inputs reads a record of them from standard input: rows
+ * of as many numbers as inputs, separated by commas; a first line that gives the inputs' names may precede them.  Row
+ * k, the first being row 0, is the sample at k h: of an input that is held it acts from k h to (k + 1) h, one with
+ * `hold first` goes straight from it to row k + 1.  So n steps take n rows, and where an input is a ramp n + 1. A run
+ * that leaves the finite numbers ends there, with exit status 1 and the rows before it written. */
 #include "plrt.h"
 #include <stdio.h>
 #include <stdlib.h>
@@ -43,7 +43,8 @@ static void check_type(void)
     if (model->real_size == (int)sizeof(real))
         return;
     fprintf(stderr, "%s: error: plmain.c was compiled %s -DFLOAT, and the model is in %s\n", model->name,
-            sizeof(real) == sizeof(float) ? "with" : "without", model->real_size == (int)sizeof(float) ? "float" : "double");
+            sizeof(real) == sizeof(float) ? "with" : "without",
+            model->real_size == (int)sizeof(float) ? "float" : "double");
     fprintf(stderr, "note: -DFLOAT is for models made with --real float, and for no others\n");
     exit(2);
 }
@@ -108,12 +109,14 @@ static void too_few(const samples *in, uint64_t row, uint64_t steps, double h)
 {
     const uint64_t rows = rows_for(steps);
     const char *const ramps = has_ramps() ? ": a ramp starts at row 0, of t = 0, and ends a step at the next" : "";
-    fprintf(stderr, "<stdin>:%lu:1: error: too few samples: expected row %.0f, of t = %.6g, found the end of the file\n",
+    fprintf(stderr,
+            "<stdin>:%lu:1: error: too few samples: expected row %.0f, of t = %.6g, found the end of the file\n",
             in->number, (double)row, (double)row * h);
     if (rows == 1)
         fprintf(stderr, "note: 1 step takes row 0%s\n", ramps);
     else
-        fprintf(stderr, "note: %.0f step%s rows 0 to %.0f%s\n", (double)steps, steps == 1 ? " takes" : "s take", (double)(rows - 1), ramps);
+        fprintf(stderr, "note: %.0f step%s rows 0 to %.0f%s\n", (double)steps, steps == 1 ? " takes" : "s take",
+                (double)(rows - 1), ramps);
     exit(1);
 }
 
@@ -172,8 +175,8 @@ static void read_header(samples *in)
         if (strncmp(name, expected, strlen(expected)) != 0 || strcspn(name, " \t,") != strlen(expected)
             || *p != separator(i)) {
             fprintf(stderr, "<stdin>:%lu:%lu: error: expected the input '%s'%s\n%s\n", in->number,
-                    (unsigned long)(name - in->line) + 1, expected, separator(i) ? " and a ','" : " and the end of the line",
-                    in->line);
+                    (unsigned long)(name - in->line) + 1, expected,
+                    separator(i) ? " and a ','" : " and the end of the line", in->line);
             exit(1);
         }
         p += *p == ',';
@@ -250,7 +253,8 @@ static void check_status(const void *state)
     exit(1);
 }
 
-/* The last k with k h <= end.  Since h and the quotient are rounded, what is a whole number but for that counts as whole. */
+/* The last k with k h <= end.  Since h and the quotient are rounded, what is a whole number but for that counts as
+ * whole. */
 static uint64_t steps_until(double end, double h)
 {
     const double steps = end / h;
@@ -264,8 +268,8 @@ static uint64_t steps_until(double end, double h)
 static void usage(const char *program)
 {
     int i;
-    fprintf(stderr, "usage: %s T%s %s> out.csv\n    T: time of the end [s]; the step is ", program, model->retune != NULL ? " [NAME=VALUE ...]" : "",
-            model->inputs > 0 ? "< inputs.csv " : "");
+    fprintf(stderr, "usage: %s T%s %s> out.csv\n    T: time of the end [s]; the step is ", program,
+            model->retune != NULL ? " [NAME=VALUE ...]" : "", model->inputs > 0 ? "< inputs.csv " : "");
     print_shortest(stderr, model->h);
     fprintf(stderr, " s\n");
     for (i = 0; i < model->params; i++) {
@@ -319,7 +323,8 @@ static void read_values(int count, char **text, const char *program, real *param
         const double value = place != NULL ? strtod(text[i] + length + 1, &rest) : 0.0;
         if (place == NULL || rest == text[i] + length + 1 || *rest != '\0') {
             fprintf(stderr, "%s: error: expected %s, found '%s'\n", model->name,
-                    model->retune != NULL ? "NAME=VALUE, a tunable param or step, and a number" : "nothing after the time: the model has no tunable params",
+                    model->retune != NULL ? "NAME=VALUE, a tunable param or step, and a number"
+                                          : "nothing after the time: the model has no tunable params",
                     text[i]);
             usage(program);
         }

@@ -1,11 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * Every constant in the code of a linear step, in each form, for double and for float, plain and in two words, bit for bit:
+ * Every constant in the code of a linear step, in each form, for double and for float, plain and in two words, bit for
+ * bit:
  *
  *     constants [-n RANDOM] [-u UNDAMPED] [-s SEED] [-v] MODEL.spec ...
  *
- * The numbers are read from the C that is emitted: those of the step's own sums in the order in which they stand there, and the tables
- * Phi, Gamma, increment and load_factor.  What they ought to be says the judge (judge.h).  Each variant runs in a process of its own.
+ * The numbers are read from the C that is emitted: those of the step's own sums in the order in which they stand there,
+ * and the tables Phi, Gamma, increment and load_factor.  What they ought to be says the judge (judge.h).  Each variant
+ * runs in a process of its own.
  */
 #include "judge.h"
 #include "cases.h"
@@ -42,7 +44,8 @@ struct variant {
 
 static const char *variant_name(const struct variant *v)
 {
-    return format("%s, form %s%s", v->single ? "float" : "double", step_form_name(v->form), v->compensated ? ", compensated" : "");
+    return format("%s, form %s%s", v->single ? "float" : "double", step_form_name(v->form),
+                  v->compensated ? ", compensated" : "");
 }
 
 /* What may move as a whole is judged twice: over the coordinates as written, and over those that plgen keeps. */
@@ -51,7 +54,8 @@ static const struct relative *kept;
 static struct model *model_of(const char *text, const struct variant *v)
 {
     struct request *request = NEW(struct request);
-    *request = (struct request){ .form = v->form, .compensated = v->compensated, .single = v->single, .relative = kept };
+    *request =
+        (struct request){ .form = v->form, .compensated = v->compensated, .single = v->single, .relative = kept };
     return model_build(spec_of("spec", text), request);
 }
 
@@ -124,7 +128,8 @@ static void want_loads_and_inputs(struct wanting *w, int i)
             const bool constant = k == 0 && !mpq_sgn(wave->a) && !mpq_sgn(wave->w);
             const struct judged_number *number = &j->step[i * j->columns + j->states + column];
             if (!changes)
-                want(w, number, constant, w->variant->compensated, format("load column %d in %s", column, state_name(w, i)));
+                want(w, number, constant, w->variant->compensated,
+                     format("load column %d in %s", column, state_name(w, i)));
         }
     for (int k = 0; k < j->inputs; k++)
         want(w, &j->step[i * j->columns + j->states + j->loads + k], false, w->variant->compensated,
@@ -137,7 +142,8 @@ static void want_rows(struct wanting *w)
     const struct judge *j = w->judge;
     const struct linear *system = j->system;
     for (int i = 0; i < j->states; i++) {
-        const struct judged_number *row = w->variant->form == FORM_DIRECT ? &j->step[i * j->columns] : &j->increment[i * j->states];
+        const struct judged_number *row = w->variant->form == FORM_DIRECT ? &j->step[i * j->columns]
+                                                                          : &j->increment[i * j->states];
         if (w->variant->form == FORM_DIRECT) {
             for (int k = 0; k < system->n; k++)
                 want(w, &row[k], false, false, format("factor of %s in %s", state_name(w, k), state_name(w, i)));
@@ -145,7 +151,8 @@ static void want_rows(struct wanting *w)
             want_places(w, row, "increment", state_name(w, i));
         }
         for (int k = system->n; k < j->states; k++)
-            want(w, &row[k], false, w->variant->compensated, format("factor of %s in %s", state_name(w, k), state_name(w, i)));
+            want(w, &row[k], false, w->variant->compensated,
+                 format("factor of %s in %s", state_name(w, k), state_name(w, i)));
         want_loads_and_inputs(w, i);
     }
 }
@@ -177,8 +184,8 @@ static void want_kick_drift_kick(struct wanting *w)
 
 /* ---- what stands there ---- */
 
-/* Numbers with a point or an exponent from `text` to `end`, in their order; not those in comments.  A minus before one is its sign,
- * whether it subtracts or not: no sum here is subtracted as a whole. */
+/* Numbers with a point or an exponent from `text` to `end`, in their order; not those in comments.  A minus before one
+ * is its sign, whether it subtracts or not: no sum here is subtracted as a whole. */
 static void read_numbers(const char *text, const char *end, bool single, struct list *list)
 {
     for (bool minus = false; text < end;) {
@@ -271,8 +278,8 @@ static void compare_lists(const char *where, const struct list *found, const str
         trial.compared++;
         if (memcmp(&found->value[i], &expected->value[i], sizeof(double)) == 0)
             continue;
-        complain(format("%s, number %d, %s: found %a = %.17g, expected %a = %.17g, tolerance 0", where, i, expected->what[i], found->value[i],
-                        found->value[i], expected->value[i], expected->value[i]));
+        complain(format("%s, number %d, %s: found %a = %.17g, expected %a = %.17g, tolerance 0", where, i,
+                        expected->what[i], found->value[i], found->value[i], expected->value[i], expected->value[i]));
         if (found->count != expected->count)
             return;                     /* all that follows is shifted */
     }
@@ -298,7 +305,8 @@ static void want_table_entry(struct wanting *w, const struct judged_number *numb
     append(w->list, value, what);
 }
 
-static void compare_table(const char *code, struct wanting *w, const char *table, int segment, int from, int to, const struct judged_number *numbers, int width)
+static void compare_table(const char *code, struct wanting *w, const char *table, int segment, int from, int to,
+                          const struct judged_number *numbers, int width)
 {
     struct list found = { 0 }, expected = { 0 };
     w->list = &expected;
@@ -306,7 +314,8 @@ static void compare_table(const char *code, struct wanting *w, const char *table
     for (int s = 0; s < segments; s++)
         for (int i = 0; i < w->judge->states; i++)
             for (int k = from; k < to; k++)
-                want_table_entry(w, &numbers[(s * w->judge->states + i) * width + k], format("entry %d, %d of segment %d", i, k - from, s));
+                want_table_entry(w, &numbers[(s * w->judge->states + i) * width + k],
+                                 format("entry %d, %d of segment %d", i, k - from, s));
     read_table(code, w->model->name, table, w->variant->single, &found);
     compare_lists(table, &found, &expected);
 }
@@ -343,13 +352,15 @@ static void compare_symmetry(const struct step *step)
     const int n = step->branch->system.n;
     for (int i = 0; i < n; i++)
         for (int k = 0; k < i; k++) {
-            const struct coefficient *pair[2][2] = { { &step->branch->whole->kick[i * n + k], &step->branch->whole->kick[k * n + i] },
-                                                     { &step->branch->whole->drift[i * n + k], &step->branch->whole->drift[k * n + i] } };
+            const struct coefficient *pair[2][2] = {
+                { &step->branch->whole->kick[i * n + k], &step->branch->whole->kick[k * n + i] },
+                { &step->branch->whole->drift[i * n + k], &step->branch->whole->drift[k * n + i] }
+            };
             for (int p = 0; p < 2; p++) {
                 trial.compared++;
                 if (pair[p][0]->value != pair[p][1]->value || pair[p][0]->low != pair[p][1]->low)
-                    complain(format("%s %d, %d: %a + %a, its mirror image %a + %a", p ? "drift" : "kick", i, k, pair[p][0]->value, pair[p][0]->low,
-                                    pair[p][1]->value, pair[p][1]->low));
+                    complain(format("%s %d, %d: %a + %a, its mirror image %a + %a", p ? "drift" : "kick", i, k,
+                                    pair[p][0]->value, pair[p][0]->low, pair[p][1]->value, pair[p][1]->low));
             }
         }
 }
@@ -503,14 +514,15 @@ static double decimal(int least, int most, const char **text)
     return strtod(*text, NULL);
 }
 
-/* Masses in a row, further springs between any two of them, some rows without a ground; masses equal or not; in some, loads and
- * inputs where masses are equal.  |pole| h is between 1e-6 and 2.4 by Gershgorin's bound. */
+/* Masses in a row, further springs between any two of them, some rows without a ground; masses equal or not; in some,
+ * loads and inputs where masses are equal.  |pole| h is between 1e-6 and 2.4 by Gershgorin's bound. */
 static const char *undamped_spec(uint64_t seed)
 {
     random_state = seed * UINT64_C(0x9e3779b97f4a7c15) + 7;
     below(2);
     const int n = seed % 15 == 0 ? 7 + (int)below(2) : 1 + (int)below(4);
-    const bool equal = below(2), grounded = below(3) > 0, loaded = equal && below(3) == 0, sampled = equal && below(4) == 0;
+    const bool equal = below(2), grounded = below(3) > 0, loaded = equal && below(3) == 0,
+               sampled = equal && below(4) == 0;
     double *mass = ARRAY(double, (size_t)n), *row = ARRAY(double, (size_t)n), bound = 1e-6;
     const char *text = "model any\ncoord x1", *value;
     for (int i = 1; i < n; i++)
@@ -529,7 +541,8 @@ static const char *undamped_spec(uint64_t seed)
                 const double stiffness = decimal(0, 3, &value);
                 row[i] += 2 * stiffness;
                 row[k] += 2 * stiffness;
-                text = format("%sspring %s between x%d, %s\n", text, value, i + 1, k == i ? "ground" : format("x%d", k + 1));
+                text = format("%sspring %s between x%d, %s\n", text, value, i + 1,
+                              k == i ? "ground" : format("x%d", k + 1));
             }
     for (int i = 0; i < n; i++) {
         bound = fmax(bound, row[i] / mass[i]);
@@ -548,7 +561,8 @@ static const char *undamped_spec(uint64_t seed)
 
 /* ---- where rounding to double first would give another float ---- */
 
-/* h such that an entry is just beyond the middle of two floats, closer to it than doubles are: T = (1/2 + 2^-25)(1 + 2^-60) */
+/* h such that an entry is just beyond the middle of two floats, closer to it than doubles are: T = (1/2 + 2^-25)(1 +
+ * 2^-60) */
 struct twice {
     const char *name, *equation;
     int (*angle)(mpfr_ptr, mpfr_srcptr, mpfr_rnd_t);    /* h from T */
@@ -589,7 +603,8 @@ static const char *twice_spec(const struct twice *t)
     char *digits = NULL;
     if (mpfr_asprintf(&digits, "%.80Rf", h) < 0)
         exit(1);
-    return format("model any\ncoord x\n%s%s\nstep %s\n", strchr(t->equation, 'u') ? "input u\n" : "", t->equation, digits);
+    return format("model any\ncoord x\n%s%s\nstep %s\n", strchr(t->equation, 'u') ? "input u\n" : "", t->equation,
+                  digits);
 }
 
 /* ---- the whole ---- */

@@ -1,12 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the constants of a step ought to be, form by form, from M, C, K and the forces alone: e^{A h} by the evaluator of
- * ../accuracy, in intervals.  Kicks come from half a step, X = M Phi_11(h/2)^-1 Phi_21(h/2), which no other program here uses. */
+/* What the constants of a step ought to be, form by form, from M, C, K and the forces alone: e^{A h} by the evaluator
+ * of
+ * ../accuracy, in intervals.  Kicks come from half a step, X = M Phi_11(h/2)^-1 Phi_21(h/2), which no other program
+ * here uses. */
 #ifndef JUDGE_H
 #define JUDGE_H
 
 #include "emit/emit.h"
 
-/* A number in intervals, and whether it is 0: no path leads from its column to its row, or 4096 bits show nothing there. */
+/* A number in intervals, and whether it is 0: no path leads from its column to its row, or 4096 bits show nothing
+ * there. */
 struct judged_number {
     mpfi_t x;
     bool zero;

@@ -48,9 +48,9 @@ static bool near(double found, double expected, double tolerance, const char *wh
 {
 	if (fabs(found - expected) <= tolerance)
 		return true;
-	complain("%s, t = %.17g, %s: found %.17g, expected %.17g, difference %.3g, tolerance %.3g", what, t, which, found,
-		expected, found - expected, tolerance);
-	return false;
+        complain("%s, t = %.17g, %s: found %.17g, expected %.17g, difference %.3g, tolerance %.3g", what, t, which,
+                 found, expected, found - expected, tolerance);
+        return false;
 }
 
 /* ---- a model in double or float, seen alike ---- */
@@ -339,9 +339,9 @@ static void judge_rhs(void)
 		for (int i = 0; i < of->whole->states; i++)
 			largest = fmax(largest, fabs(found[i]));
 		for (int i = 0, velocity = of->coords[0]; i < of->coords[0]; i++)
-			near(found[of->coords[i + 1] == 2 ? velocity++ : i], top[i], 1e-10 * largest, "rhs against the second writing", t,
-				of->whole->state_names[i]);
-	}
+                    near(found[of->coords[i + 1] == 2 ? velocity++ : i], top[i], 1e-10 * largest,
+                         "rhs against the second writing", t, of->whole->state_names[i]);
+        }
 }
 
 /* ---- a run ---- */
@@ -442,8 +442,8 @@ static void judge_steps(void *s, int from, int steps, double step, struct row *f
 		samples(from + k, sampled);
 		over_step(before, sampled, step, u);
 		memcpy(before, sampled, sizeof before);
-		of->whole->step(w, inputs ? sampled : NULL);      /* for its samples alone: its state is set anew below */
-		if (!advance(solver, t, t + step, u, y)) {
+                of->whole->step(w, inputs ? sampled : NULL); /* for its samples alone: its state is set anew below */
+                if (!advance(solver, t, t + step, u, y)) {
 			complain("%s: CVODE gives up at t = %.17g", what, t);
 			break;
 		}
@@ -459,26 +459,30 @@ static void judge_steps(void *s, int from, int steps, double step, struct row *f
 		}
 		for (int i = 0; i < inputs; i++)
 			u[i] = ramps[i] ? sampled[i] : u[i];
-		if (all && of->wanted && !at_a_change(t + step) && !(in_float && size > 1e3) && highest(t + step, found, u, top)) {
-			/* at the model's own states: of large ones a float tells no differences */
-			of->wanted(model_time(s), found, u, top, expected);
-			for (int i = 0; i < outputs; i++)
-				good = near(seen[i], expected[i], (in_float ? 1e-4 : 1e-10) * fmax(out_size, size), "output of these states",
-					t + step, output_name(i)) && good;
-		}
-		if (all && first && of->wanted && !at_a_change(t + step) && highest(t + step, y, u, top)) {
+                if (all && of->wanted && !at_a_change(t + step) && !(in_float && size > 1e3) &&
+                    highest(t + step, found, u, top)) {
+                    /* at the model's own states: of large ones a float tells no differences */
+                    of->wanted(model_time(s), found, u, top, expected);
+                    for (int i = 0; i < outputs; i++)
+                        good = near(seen[i], expected[i], (in_float ? 1e-4 : 1e-10) * fmax(out_size, size),
+                                    "output of these states", t + step, output_name(i)) &&
+                               good;
+                }
+                if (all && first && of->wanted && !at_a_change(t + step) && highest(t + step, y, u, top)) {
 			of->wanted(t + step, y, u, top, expected);              /* at CVODE's */
 			for (int i = 0; i < outputs; i++)
 				if (strncmp(output_name(i), "inner", 5) == 0 && !is(of->scheme, "pl"))
-					good = near(seen[i], expected[i], fmax(10 * bound(), 1e-4) * own[i], "output against CVODE",
-						t + step, output_name(i)) && good;
-		} else if (!all && !at_a_change(t + step)) {
+                                    good = near(seen[i], expected[i], fmax(10 * bound(), 1e-4) * own[i],
+                                                "output against CVODE", t + step, output_name(i)) &&
+                                           good;
+                } else if (!all && !at_a_change(t + step)) {
 			of->whole->set(w, t + step, y);
 			of->whole->out(w, expected);
 			for (int i = 0; i < outputs; i++)
-				good = near(seen[i], expected[i], fmax(bound(), 1e-5) * fmax(out_size, size), "output, of a model reduced",
-					t + step, output_name(i)) && good;
-		}
+                            good = near(seen[i], expected[i], fmax(bound(), 1e-5) * fmax(out_size, size),
+                                        "output, of a model reduced", t + step, output_name(i)) &&
+                                   good;
+                }
 		if (!good)
 			break;
 	}
@@ -556,8 +560,8 @@ static void judge_run(void)
 			near(y[i], row[STEPS].y[i], 0, rows ? "run with rows" : "run", STEPS * h, state_name(i));
 		for (int k = 0; k < STEPS && rows; k++)
 			for (int i = 0; i < outputs; i++)
-				near(out[k * outputs + i], row[k + 1].out[i], 0, "run, a row", (k + 1) * h, output_name(i));
-	}
+                            near(out[k * outputs + i], row[k + 1].out[i], 0, "run, a row", (k + 1) * h, output_name(i));
+        }
 	free(s), free(out), free(u), free(outf), free(uf);
 }
 
@@ -598,11 +602,12 @@ static void judge_jump(void)
 		else
 			of->modelf->jump(s, (uint64_t)lengths[i]);
 		model_get(s, y);
-		near(model_time(s), row[lengths[i]].t, in_float ? 1e-6 : 1e-14, "time after a jump", lengths[i] * h, "t");
-		for (int j = 0; j < states; j++)
-			near(y[j], row[lengths[i]].y[j], rounding(lengths[i]) * size, "jump against steps", lengths[i] * h,
-				state_name(j));
-	}
+                near(model_time(s), row[lengths[i]].t, in_float ? 1e-6 : 1e-14, "time after a jump", lengths[i] * h,
+                     "t");
+                for (int j = 0; j < states; j++)
+                    near(y[j], row[lengths[i]].y[j], rounding(lengths[i]) * size, "jump against steps", lengths[i] * h,
+                         state_name(j));
+        }
 	free(s);
 }
 
@@ -635,8 +640,9 @@ static void judge_at(void)
 				memcpy(now, row[k].y, sizeof now);
 				if (advance(solver, k * h, (k + 0.375) * h, moved, now))
 					for (int i = 0; i < states; i++)
-						near(y[i], now[i], bound() * size, "at(3/8 h) against CVODE", row[k].t, state_name(i));
-				truth_free(solver);
+                                            near(y[i], now[i], bound() * size, "at(3/8 h) against CVODE", row[k].t,
+                                                 state_name(i));
+                                truth_free(solver);
 				solver = new_truth();
 			}
 		}
@@ -662,9 +668,14 @@ static void judge_set(void)
 	model_get(s, y);
 	const bool exact = is(of->scheme, "exact") && !is(of->class, "piecewise");
 	for (int i = 0; i < states; i++)
-		near(y[i], row[STEPS].y[i], (exact ? 4 * rounding(STEPS) : in_float ? 2e-3 : *of->changes ? bound() : 1e-7) * size,
-			"steps after set to where it is", STEPS * h, state_name(i));
-	if (!whole() || (of->model ? of->model->params : of->modelf->params) > 8) {
+            near(y[i], row[STEPS].y[i],
+                 (exact          ? 4 * rounding(STEPS)
+                  : in_float     ? 2e-3
+                  : *of->changes ? bound()
+                                 : 1e-7) *
+                     size,
+                 "steps after set to where it is", STEPS * h, state_name(i));
+        if (!whole() || (of->model ? of->model->params : of->modelf->params) > 8) {
 		free(s);
 		return;
 	}
@@ -704,8 +715,9 @@ static bool retuned(void *s, const char *values, double *step)
 	if (p)
 		*step = strtod(p + 5, NULL);
 	narrow(value, narrowed, count);
-	const int status = of->model ? of->model->retune(s, value, *step) : of->modelf->retune(s, narrowed, (float)*step);
-	if (status)
+        const int status = of->model ? of->model->retune(s, value, *step)
+                                     : of->modelf->retune(s, narrowed, (float)*step);
+        if (status)
 		complain("retune to %s: status %d", *values ? values : "the spec's own values", status);
 	return status == 0;
 }
@@ -726,9 +738,9 @@ static void judge_retune(void)
 		}
 		model_get(s, y);
 		for (int i = 0; i < states; i++)
-			near(y[i], row[STEPS].y[i], 10 * rounding(STEPS) * size, "retuned to the spec's own values", STEPS * h,
-				state_name(i));
-	}
+                    near(y[i], row[STEPS].y[i], 10 * rounding(STEPS) * size, "retuned to the spec's own values",
+                         STEPS * h, state_name(i));
+        }
 	if (w) {
 		model_init(s);
 		of->tuned->init(w);
@@ -745,16 +757,19 @@ static void judge_retune(void)
 				for (int i = 0; i < states; i++)
 					largest = fmax(largest, fabs(expected[i]));
 				for (int i = 0; i < states; i++)
-					good = near(y[i], expected[i], 10 * rounding(k) * largest, "retuned, against the spec with these values",
-						(k + 1) * step, state_name(i)) && good;
-				model_out(s, y);
+                                    good = near(y[i], expected[i], 10 * rounding(k) * largest,
+                                                "retuned, against the spec with these values", (k + 1) * step,
+                                                state_name(i)) &&
+                                           good;
+                                model_out(s, y);
 				of->tuned->out(w, expected);
 				for (int i = 0; i < outputs; i++)
 					out_size = fmax(out_size, fabs(expected[i]));
 				for (int i = 0; i < outputs; i++)
-					good = near(y[i], expected[i], 10 * rounding(k) * fmax(largest, out_size), "retuned, outputs",
-						(k + 1) * step, output_name(i)) && good;
-				if (!good)
+                                    good = near(y[i], expected[i], 10 * rounding(k) * fmax(largest, out_size),
+                                                "retuned, outputs", (k + 1) * step, output_name(i)) &&
+                                           good;
+                                if (!good)
 					break;
 			}
 	}

@@ -83,20 +83,20 @@ static struct both join2(const char *spec, const char *c, int count, const struc
 		int used = 0;
 		size_t n = 0;
 		for (const char *p = form[k]; *p; p++) {
-			const char one[2] = { *p, 0 }, *piece = *p != '@' ? one : k ? operand[used].c : operand[used].spec;
-			used += *p == '@';
-			if (used > count || n + strlen(piece) >= ROOM)
-				exit(3);
-			strcpy(line[k] + n, piece);
-			n += strlen(piece);
+                    const char one[2] = { *p, 0 }, *piece = *p != '@' ? one : k ? operand[used].c : operand[used].spec;
+                    used += *p == '@';
+                    if (used > count || n + strlen(piece) >= ROOM)
+                        exit(3);
+                    strcpy(line[k] + n, piece);
+                    n += strlen(piece);
 		}
 		line[k][n] = 0;
 	}
 	return (struct both){ copy(line[0]), copy(line[1]) };
 }
 
-#define JOIN2(spec, c, ...) \
-	join2(spec, c, (int)(sizeof(struct both[]){ __VA_ARGS__ } / sizeof(struct both)), (struct both[]){ __VA_ARGS__ })
+#define JOIN2(spec, c, ...)                                                                                            \
+    join2(spec, c, (int)(sizeof(struct both[]){ __VA_ARGS__ } / sizeof(struct both)), (struct both[]){ __VA_ARGS__ })
 #define JOIN(form, ...) JOIN2(form, form, __VA_ARGS__)
 
 /* ---- what is declared ---- */
@@ -291,8 +291,9 @@ static struct both regional(int depth)
 		fixed(1, 3));
 	/* nothing rests there */
 	case 8: return JOIN2("@*sgn(@ - @)", "@*sgn(@ - @)", fixed(0.05, 0.5), position(), fixed(0.001, 0.002));
-	case 9: return depth > 0 ? JOIN("(@ - @)", regional(depth - 1), regional(0)) : JOIN("deadzone(@, -@, @)", e, a, a);
-	case 10: return JOIN2("deadzone(max(@, 0), @, @)", "deadzone(fmax(@, 0), @, @)", e, fixed(0.01, 0.1),
+        case 9:
+            return depth > 0 ? JOIN("(@ - @)", regional(depth - 1), regional(0)) : JOIN("deadzone(@, -@, @)", e, a, a);
+        case 10: return JOIN2("deadzone(max(@, 0), @, @)", "deadzone(fmax(@, 0), @, @)", e, fixed(0.01, 0.1),
 		fixed(0.11, 0.3));
 	default: return JOIN2("@*max(@, @)", "@*fmax(@, @)", k, e, position());
 	}
@@ -337,8 +338,9 @@ static struct both kinked(void)
 	case 2: return JOIN2("(@ > @ ? (@ - @)^2 : 0)", "(@ > @ ? pow(@ - @, 2) : 0)", x, same("0.1"), x, same("0.1"));
 	case 3: return JOIN2("sqrt(abs(@))*0.2", "sqrt(fabs(@))*0.2", w);
 	case 4: return JOIN2("min(@^2, 0.04)", "fmin(pow(@, 2), 0.04)", x);
-	case 5: return JOIN2("(t < @ ? @ : 0.5)*@^2", "(t < @ ? @ : 0.5)*pow(@, 2)", change_at(0.02, 0.2), fixed(0, 2), x);
-	default: return JOIN("@ + @", regional(1), leftover());
+        case 5:
+            return JOIN2("(t < @ ? @ : 0.5)*@^2", "(t < @ ? @ : 0.5)*pow(@, 2)", change_at(0.02, 0.2), fixed(0, 2), x);
+        default: return JOIN("@ + @", regional(1), leftover());
 	}
 }
 
@@ -397,8 +399,9 @@ static void scalar_equation(int i)
 		const int j = below(i), component = any_component(j);
 		sum = JOIN("@ + @*(@ - @)", sum, factor(0.5, 9), derivative(i, -1, 0), derivative(j, component, 0));
 		if (x->order == 2 && coord[j].order == 2 && chance(30))
-			sum = JOIN("@ - @*(@ - @)", sum, fixed(0.01, 0.2), derivative(j, component, 1), derivative(i, -1, 1));
-	}
+                    sum =
+                        JOIN("@ - @*(@ - @)", sum, fixed(0.01, 0.2), derivative(j, component, 1), derivative(i, -1, 1));
+        }
 	if (i + 1 < coords && chance(40))
 		sum = JOIN("@ - @*@", sum, factor(0.2, 4), derivative(i + 1, any_component(i + 1), 0));
 	equation(sum, chance(75) ? force() : same("0"));
@@ -428,16 +431,21 @@ static struct both shaft(int i, int p, bool second)
 	struct both force = JOIN("@*@", k, d);
 	const int kind = below(10);
 	if (class == PIECEWISE && kind < 6)
-		force = kind < 2 ? JOIN("@*deadzone(@, -@, @)", k, d, a, fixed(0.05, 0.3)) : kind < 3 ? JOIN2("@*max(@ - @, 0)",
-			"@*fmax(@ - @, 0)", k, d, a)
-			: kind < 4 ? JOIN2("table(@; -1, -@; -0.1, 0; 0.2, @)", "table3(@, -1, -@, -0.1, 0, 0.2, @)", d, k, a)
-			: kind < 5 ? JOIN2("@*(@ + abs(@))", "@*(@ + fabs(@))", k, d, d) : JOIN("@*@ + @*clip(@, -@, @)", k, d, k, d, a, a);
-	if (class >= SMOOTH && kind < 5)
-		force = kind < 2 ? JOIN2("@*@ + @*@^3", "@*@ + @*pow(@, 3)", k, d, fixed(1, 5), d) : kind < 3 ? JOIN("@*sin(@)", k, d)
-			: kind < 4 ? JOIN("(@ + @*cos(@*t))*@", k, a, fixed(1, 6), d) : JOIN("@*tanh(@)", k, d);
-	if (class == KINKED && kind >= 5 && kind < 8)
-		force = kind < 7 ? JOIN2("@*@*abs(@)", "@*@*fabs(@)", k, d, d) : JOIN2("@*max(@, 0)^2", "@*pow(fmax(@, 0), 2)", k, d);
-	if (second && chance(60))
+            force = kind < 2   ? JOIN("@*deadzone(@, -@, @)", k, d, a, fixed(0.05, 0.3))
+                    : kind < 3 ? JOIN2("@*max(@ - @, 0)", "@*fmax(@ - @, 0)", k, d, a)
+                    : kind < 4
+                        ? JOIN2("table(@; -1, -@; -0.1, 0; 0.2, @)", "table3(@, -1, -@, -0.1, 0, 0.2, @)", d, k, a)
+                    : kind < 5 ? JOIN2("@*(@ + abs(@))", "@*(@ + fabs(@))", k, d, d)
+                               : JOIN("@*@ + @*clip(@, -@, @)", k, d, k, d, a, a);
+        if (class >= SMOOTH && kind < 5)
+            force = kind < 2   ? JOIN2("@*@ + @*@^3", "@*@ + @*pow(@, 3)", k, d, fixed(1, 5), d)
+                    : kind < 3 ? JOIN("@*sin(@)", k, d)
+                    : kind < 4 ? JOIN("(@ + @*cos(@*t))*@", k, a, fixed(1, 6), d)
+                               : JOIN("@*tanh(@)", k, d);
+        if (class == KINKED && kind >= 5 && kind < 8)
+            force = kind < 7 ? JOIN2("@*@*abs(@)", "@*@*fabs(@)", k, d, d)
+                             : JOIN2("@*max(@, 0)^2", "@*pow(fmax(@, 0), 2)", k, d);
+        if (second && chance(60))
 		force = JOIN("@ + @*@", force, factor(0.05, 1), between(i, p, 1));
 	else if (chance(8))             /* an inerter, or what the other's rate drags along */
 		force = JOIN("@ + @*@", force, fixed(0.05, 0.2),
@@ -460,11 +468,12 @@ static void drive_equations(void)
 	for (int i = 0; i < coords; i++) {
 		sum[i] = JOIN("@*@", coord[i].order == 1 && class != LINEAR ? factor(3, 6) : factor(0.5, 3),
 			derivative(i, -1, coord[i].order));
-		if (coord[i].order == 1 && i > 0 && coord[i - 1].order == 2 && motion(i) == motion(i - 1) && chance(25)) {
-			sum[i] = JOIN("@ - @", derivative(i, -1, 1), derivative(i - 1, -1, 1));
-			integrates[i] = true;
-		}
-	}
+                if (coord[i].order == 1 && i > 0 && coord[i - 1].order == 2 && motion(i) == motion(i - 1) &&
+                    chance(25)) {
+                    sum[i] = JOIN("@ - @", derivative(i, -1, 1), derivative(i - 1, -1, 1));
+                    integrates[i] = true;
+                }
+        }
 	for (int i = 1; i < coords; i++) {
 		const int p = chance(80) ? i - 1 : below(i);
 		if (chance(6) || integrates[i])
@@ -503,8 +512,9 @@ static void declare_drive(void)
 	for (int i = 0; i < coords; i++) {
 		coord[i].name = text("%s%d", (const char *const[]){ "x", "th_", "w" }[below(3)], i);
 		coord[i].order = first || chance(i ? 8 : 20) ? 1 : 2;
-		ratio[i] = copy(gears ? ratios[below(class == LINEAR ? 7 : 3)] : "1")     /* a gear stiffens by its ratio squared */;
-	}
+                ratio[i] = copy(gears ? ratios[below(class == LINEAR ? 7 : 3)]
+                                      : "1") /* a gear stiffens by its ratio squared */;
+        }
 }
 
 static void write_inner(void)
@@ -521,8 +531,11 @@ static char *matrix_text(int n, double on, double beside)
 	char *all = "[";
 	for (int r = 0; r < n; r++) {
 		for (int c = 0; c < n; c++)
-			add(&all, text("%s%g", c ? ", " : "", c == r ? on + r * 0.5 : c == r + 1 || r == c + 1 ? beside : 0));
-		add(&all, r + 1 < n ? "; " : "]");
+                    add(&all, text("%s%g", c ? ", " : "",
+                                   c == r                     ? on + r * 0.5
+                                   : c == r + 1 || r == c + 1 ? beside
+                                                              : 0));
+                add(&all, r + 1 < n ? "; " : "]");
 	}
 	return all;
 }
@@ -552,17 +565,24 @@ static void vector_equation(int i)
 	for (int r = 0; r < q->size; r++)
 		add(&shape, text("%s%d", r ? "; " : "", r % 3));
 	add(&spec_lets, text("matrix f%d = %s]\n", i, shape));
-	char *const extra = cubic ? text(" + 0.3*sin(%s)", q->name) : gap ? text(" + 3*deadzone(%s, -0.1, 0.2)", q->name) : "";
-	if (q->order == 2)
-		add(&spec_equations, text("%s%s'' + %g*%s' + K%d*%s%s = f%d*(%s)\n", mass ? text("M%d*", i) : "", q->name, c,
-			q->name, i, q->name, extra, i, f.spec));
-	else
-		add(&spec_equations, text("%s' = -K%d*%s%s + f%d*(%s)\n", q->name, i, q->name, cubic ? text(" - 0.3*sin(%s)",
-			q->name) : gap ? text(" - 3*deadzone(%s, -0.1, 0.2)", q->name) : "", i, f.spec));
-	for (int r = 0; r < q->size; r++) {
+        char *const extra = cubic ? text(" + 0.3*sin(%s)", q->name)
+                            : gap ? text(" + 3*deadzone(%s, -0.1, 0.2)", q->name)
+                                  : "";
+        if (q->order == 2)
+            add(&spec_equations, text("%s%s'' + %g*%s' + K%d*%s%s = f%d*(%s)\n", mass ? text("M%d*", i) : "", q->name,
+                                      c, q->name, i, q->name, extra, i, f.spec));
+        else
+            add(&spec_equations, text("%s' = -K%d*%s%s + f%d*(%s)\n", q->name, i, q->name,
+                                      cubic ? text(" - 0.3*sin(%s)", q->name)
+                                      : gap ? text(" - 3*deadzone(%s, -0.1, 0.2)", q->name)
+                                            : "",
+                                      i, f.spec));
+        for (int r = 0; r < q->size; r++) {
 		const char *const x = derivative(i, r, 0).c;
-		const char *const own = cubic ? text(" + 0.3*sin(%s)", x) : gap ? text(" + 3*deadzone(%s, -0.1, 0.2)", x) : "";
-		const char *const head = derivative(i, r, q->order).c;
+                const char *const own = cubic ? text(" + 0.3*sin(%s)", x)
+                                        : gap ? text(" + 3*deadzone(%s, -0.1, 0.2)", x)
+                                              : "";
+                const char *const head = derivative(i, r, q->order).c;
 		add_row(text("%g*%s + %s + %s%s - %d*(%s)", mass ? 1 + r * 0.5 : 1, head,
 			q->order == 2 ? text("%g*%s", c, derivative(i, r, 1).c) : "0.0",
 			row_times(i, r, 0, k, -1), own, r % 3, f.c));
@@ -575,16 +595,16 @@ static void sketch(int i)
 	const struct both m1 = factor(0.5, 3), m2 = factor(0.5, 3), k1 = factor(1, 40), k2 = factor(1, 10),
 		c = factor(0.05, 1), f = force();
 	const char *const a = coord[i].name, *const b = coord[i + 1].name;
-	add(&spec_equations, text("mass %s at %s\nmass %s at %s\nspring %s between %s, ground\n", m1.spec, a, m2.spec, b,
-		k1.spec, a));
-	add(&spec_equations, text("spring %s between %s, %s\ndamper %s between %s, %s\nforce %s on %s\n", k2.spec, a, b,
+        add(&spec_equations,
+            text("mass %s at %s\nmass %s at %s\nspring %s between %s, ground\n", m1.spec, a, m2.spec, b, k1.spec, a));
+        add(&spec_equations, text("spring %s between %s, %s\ndamper %s between %s, %s\nforce %s on %s\n", k2.spec, a, b,
 		c.spec, a, b, f.spec, b));
 	const struct both xa = derivative(i, -1, 0), va = derivative(i, -1, 1), xb = derivative(i + 1, -1, 0),
 		vb = derivative(i + 1, -1, 1);
-	add_row(text("%s*%s + %s*%s + %s*(%s - %s) + %s*(%s - %s)", m1.c, derivative(i, -1, 2).c, k1.c, xa.c, k2.c, xa.c,
-		xb.c, c.c, va.c, vb.c));
-	add_row(text("%s*%s + %s*(%s - %s) + %s*(%s - %s) - (%s)", m2.c, derivative(i + 1, -1, 2).c, k2.c, xb.c, xa.c, c.c,
-		vb.c, va.c, f.c));
+        add_row(text("%s*%s + %s*%s + %s*(%s - %s) + %s*(%s - %s)", m1.c, derivative(i, -1, 2).c, k1.c, xa.c, k2.c,
+                     xa.c, xb.c, c.c, va.c, vb.c));
+        add_row(text("%s*%s + %s*(%s - %s) + %s*(%s - %s) - (%s)", m2.c, derivative(i + 1, -1, 2).c, k2.c, xb.c, xa.c,
+                     c.c, vb.c, va.c, f.c));
 }
 
 /* ---- outputs ---- */
@@ -598,8 +618,9 @@ static void output(const char *spec, const char *c)
 static void any_output(int n)
 {
 	const int i = below(coords), component = any_component(i);
-	const struct both x = derivative(i, component, 0), a = derivative(i, component, coord[i].order), w = any_state();
-	struct both e;
+        const struct both x = derivative(i, component, 0), a = derivative(i, component, coord[i].order),
+                          w = any_state();
+        struct both e;
 	switch (below(9)) {
 	case 0: case 1: e = JOIN("@ + @*@", x, fixed(0.5, 2), w); break;
 	case 2: e = a; break;
@@ -622,9 +643,9 @@ static void write_outputs(void)
 	if (chance(30))
 		for (int i = 0; i < coords; i++) {
 			if (!coord[i].size || !chance(50)) {
-				const struct both x = derivative(i, any_component(i), coord[i].order == 2 ? below(2) : 0);
-				output(x.spec, x.c);
-				continue;
+                            const struct both x = derivative(i, any_component(i), coord[i].order == 2 ? below(2) : 0);
+                            output(x.spec, x.c);
+                            continue;
 			}
 			for (int r = 0; r < coord[i].size; r++)
 				add(&c_outputs, text("\tout[%d] = %s;\n", outputs++, derivative(i, r, 0).c));
@@ -647,11 +668,12 @@ static char *operator_statement(void)
 	if (class < SMOOTH || !chance(30))
 		return "";
 	const struct both x = any_state();
-	switch (drive == TURNS_FAR ? 1 : below(3)) {    /* where one of a drive's states is fixed, all are kept as written */
-	case 0: return text("operator at %s = %s\n", x.spec, chance(50) ? "0" : "0.2");
+        switch (drive == TURNS_FAR ? 1
+                                   : below(3)) { /* where one of a drive's states is fixed, all are kept as written */
+        case 0: return text("operator at %s = %s\n", x.spec, chance(50) ? "0" : "0.2");
 	case 1: return text("operator at t = 0.1\n");
 	default: return text("operator at %s = -0.3, 0, 0.3, 0.6\n", x.spec);
-	}
+        }
 }
 
 static char *options(void)
@@ -664,8 +686,9 @@ static char *options(void)
 	else if (!drive && chance(8))
 		add(&all, chance(70) ? " --scheme exact" : " --scheme pl");
 	if (class == LINEAR ? chance(30) : chance(2))
-		add(&all, text(" --form %s", (const char *const[]){ "direct", "delta", "kick-drift-kick", "auto" }[below(4)]));
-	if (class == LINEAR && states <= 16 && !tunable ? chance(18) : chance(1))
+            add(&all,
+                text(" --form %s", (const char *const[]){ "direct", "delta", "kick-drift-kick", "auto" }[below(4)]));
+        if (class == LINEAR && states <= 16 && !tunable ? chance(18) : chance(1))
 		add(&all, " --accuracy compensated");
 	if (class == LINEAR && !tunable ? chance(20) : chance(2))
 		add(&all, " --reduce");
@@ -681,10 +704,13 @@ static char *options(void)
 }
 
 /* Names that other libraries have taken too. */
-static const char *const odd[] = { "I", "complex", "NULL", "errno", "math_errhandling", "HUGE_VAL", "uint64_t", "x0",
-    "E", "e1", "lo", "work", "s",
-	"y", "u", "h", "k", "left", "part1", "size", "fabs", "M_PI", "i", "q1", "load1", "phase", "stdin", "isnan", "NAN",
-		"signal", "double_t", "a_dot" };
+static const char *const odd[] = { "I",        "complex",  "NULL",  "errno", "math_errhandling",
+                                   "HUGE_VAL", "uint64_t", "x0",    "E",     "e1",
+                                   "lo",       "work",     "s",     "y",     "u",
+                                   "h",        "k",        "left",  "part1", "size",
+                                   "fabs",     "M_PI",     "i",     "q1",    "load1",
+                                   "phase",    "stdin",    "isnan", "NAN",   "signal",
+                                   "double_t", "a_dot" };
 
 static void declare(void)
 {
@@ -734,10 +760,13 @@ static char *initial(void)
 		for (int primes = 0; primes < coord[i].order; primes++)
 			for (int r = 0; r < (coord[i].size ? coord[i].size : 1); r++)
 				if (drive == TURNS_FAR || (chance(70) && r < 3))
-					add(&all, text("%s%s = %.3f", *all ? ", " : "init ", derivative(i, coord[i].size ? r : -1, primes).spec,
-						(below(1201) - 600) * (primes ? 0.002 : drive && class != LINEAR ? 0.0003 : 0.001) +
-							(drive == TURNS_FAR ? motion(i) * (primes ? 100 : 1e4) : 0)));
-	return *all ? text("%s\n", all) : all;
+                                    add(&all, text("%s%s = %.3f", *all ? ", " : "init ",
+                                                   derivative(i, coord[i].size ? r : -1, primes).spec,
+                                                   (below(1201) - 600) * (primes                     ? 0.002
+                                                                          : drive && class != LINEAR ? 0.0003
+                                                                                                     : 0.001) +
+                                                       (drive == TURNS_FAR ? motion(i) * (primes ? 100 : 1e4) : 0)));
+        return *all ? text("%s\n", all) : all;
 }
 
 static void equations(void)
@@ -749,8 +778,9 @@ static void equations(void)
 	for (int i = 0; i < coords; i++)
 		if (coord[i].size)
 			vector_equation(i);
-		else if (i + 1 < coords && !coord[i + 1].size && coord[i].order == 2 && coord[i + 1].order == 2 && chance(20))
-			sketch(i++);
+                else if (i + 1 < coords && !coord[i + 1].size && coord[i].order == 2 && coord[i + 1].order == 2 &&
+                         chance(20))
+                    sketch(i++);
 		else
 			scalar_equation(i);
 }
@@ -779,7 +809,8 @@ static void write_spec(FILE *file, const char *of, const char *given, const char
 	for (int i = 0; i < inputs; i++)
 		fprintf(file, "input %s%s\n", input[i].name, input[i].ramp ? " hold first" : "");
 	fprintf(file, "%s%s%s%s%s", initial(), spec_lets, operator, spec_equations, spec_outputs);
-	fprintf(file, "step %s\n", (const char *const[]){ "0.01", "1/64", "0.0125", "0.02" }[below(class >= SMOOTH ? 3 : 4)]);
+        fprintf(file, "step %s\n",
+                (const char *const[]){ "0.01", "1/64", "0.0125", "0.02" }[below(class >= SMOOTH ? 3 : 4)]);
 }
 
 static void write_c(FILE *file, const char *given)
@@ -798,9 +829,11 @@ static void write_c(FILE *file, const char *given)
 	fprintf(file, "};\n\nvoid NAME(residual)(double t, const double *y, const double *u, const double *top, double "
 	    "*r)\n{\n%s%s", names, c_lets);
 	fprintf(file, "\t(void)t, (void)y, (void)u;\n%s}\n\n", c_rows);
-	fprintf(file, "void NAME(wanted)(double t, const double *y, const double *u, const double *top, double *out)\n{\n"
-	    "%s%s", names, c_lets);
-	fprintf(file, "\t(void)t, (void)y, (void)u, (void)top;\n");
+        fprintf(file,
+                "void NAME(wanted)(double t, const double *y, const double *u, const double *top, double *out)\n{\n"
+                "%s%s",
+                names, c_lets);
+        fprintf(file, "\t(void)t, (void)y, (void)u, (void)top;\n");
 	if (outputs)
 		fprintf(file, "%s}\n", c_outputs);
 	else

@@ -30,5 +30,6 @@ int main(void)
 	}
 	printf("# %d and %d crossings; outputs off by %.3g, between steps %.3g, at most 1e-10\n", (int)rig_crossed(&s),
 		(int)by_hand_crossed(&e), worst, early);
-	return worst <= 1e-10 && early <= 1e-10 && rig_crossed(&s) == by_hand_crossed(&e) && rig_crossed(&s) > 200 ? 0 : 1;
+        return worst <= 1e-10 && early <= 1e-10 && rig_crossed(&s) == by_hand_crossed(&e) && rig_crossed(&s) > 200 ? 0
+                                                                                                                   : 1;
 }

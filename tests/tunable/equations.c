@@ -4,9 +4,10 @@
  *
  *     equations [-n RANDOM] [-s SEED] [-v] MODEL.spec ...
  *
- * At random rational values the sums of products give a row over states, loads and inputs for each highest derivative; put into the equations
- * M q'' + C q' + K q = loads + inputs of the model that -D makes with these values, it has to fulfil them, and rows of outputs have to be equal.
- * Nothing is rounded.  Random specs write their factors with nested params, matrices, lets and sketches; none may be refused.
+ * At random rational values the sums of products give a row over states, loads and inputs for each highest derivative;
+ * put into the equations M q'' + C q' + K q = loads + inputs of the model that -D makes with these values, it has to
+ * fulfil them, and rows of outputs have to be equal. Nothing is rounded.  Random specs write their factors with nested
+ * params, matrices, lets and sketches; none may be refused.
  */
 #include "step/step.h"
 #include "algebra.h"
@@ -59,7 +60,9 @@ static const char *factor(int tunables)
 
 static const char *mass(int tunables)
 {
-    return pick(3) ? format("%d", 1 + pick(4)) : pick(2) ? name_of(tunables) : format("(%s + %s)", name_of(tunables), name_of(tunables));
+    return pick(3)   ? format("%d", 1 + pick(4))
+           : pick(2) ? name_of(tunables)
+                     : format("(%s + %s)", name_of(tunables), name_of(tunables));
 }
 
 static const char *random_text(uint64_t seed)
@@ -75,11 +78,12 @@ static const char *random_text(uint64_t seed)
     for (int i = 1; i < n; i++)
         coords = format("%s, x%d", coords, i + 1);
     coords = format("%s, z[2]", coords);
-    text = format("%s\nparam d0 = 3*%s, d1 = d0 + %s/2\nmatrix A = [%s, 1; 0, %s]\nmatrix B = A*A + [d0, 0; 1, 2]\n%s\ninput u\ninput v hold first\n", text, name_of(tunables),
-                  name_of(tunables), name_of(tunables), name_of(tunables), coords);
+    text = format("%s\nparam d0 = 3*%s, d1 = d0 + %s/2\nmatrix A = [%s, 1; 0, %s]\nmatrix B = A*A + [d0, 0; 1, "
+                  "2]\n%s\ninput u\ninput v hold first\n",
+                  text, name_of(tunables), name_of(tunables), name_of(tunables), name_of(tunables), coords);
     text = format("%slet e = %s*x1 - %s*x%d'\n%s\n", text, name_of(tunables), name_of(tunables), n, list);
-    text = format("%soutput o1 = %s*x1 + %s*x%d'\noutput o2 = x1'' - %s*t\noutput o3 = e + %s*u - %s*v'\n", text, factor(tunables), factor(tunables), n, factor(tunables),
-                  name_of(tunables), name_of(tunables));
+    text = format("%soutput o1 = %s*x1 + %s*x%d'\noutput o2 = x1'' - %s*t\noutput o3 = e + %s*u - %s*v'\n", text,
+                  factor(tunables), factor(tunables), n, factor(tunables), name_of(tunables), name_of(tunables));
     for (int i = 1; i <= n; i++) {
         text = format("%s%s*x%d''", text, mass(tunables), i);
         if (n > 1 && pick(3) == 0)
@@ -100,11 +104,13 @@ static const char *random_text(uint64_t seed)
         }
     }
     if (pick(2))
-        text = format("%s%sz'' + %s*A*z' + B*z = [%s; 1]*sin(2*t)\n", text, pick(2) ? "A*" : "", factor(tunables), factor(tunables));
+        text = format("%s%sz'' + %s*A*z' + B*z = [%s; 1]*sin(2*t)\n", text, pick(2) ? "A*" : "", factor(tunables),
+                      factor(tunables));
     else
         text = format("%sz'' + B*z = 0\n", text);
     if (pick(3) == 0)
-        text = format("%sspring %s between x1, ground\ndamper %s between x1, %s\n", text, factor(tunables), name_of(tunables), n == 1 ? "ground" : "x2");
+        text = format("%sspring %s between x1, ground\ndamper %s between x1, %s\n", text, factor(tunables),
+                      name_of(tunables), n == 1 ? "ground" : "x2");
     return format("%sstep 0.01\n", text);
 }
 
@@ -115,7 +121,8 @@ static struct model *model_of(const char *text, const struct spec *tunables, con
     struct request *request = NEW(struct request);
     for (int k = 0; tunables && k < tunables->tunables; k++) {
         ENLARGE(request->definition, (size_t)k + 1);
-        request->definition[request->definitions++] = format("%s=%s", tunables->tunable[k].symbol->name, mpq_get_str(NULL, 10, values[k]));
+        request->definition[request->definitions++] =
+            format("%s=%s", tunables->tunable[k].symbol->name, mpq_get_str(NULL, 10, values[k]));
     }
     struct spec *spec = spec_of("spec", text);
     struct model *model = spec ? model_build(spec, request) : NULL;
@@ -129,11 +136,13 @@ static mpq_t *rows_at(const struct tuning *t, const mpq_t *values)
     mpq_t *product = rationals((size_t)t->monomials + 1), *value = rationals((size_t)(t->rows * width));
     mpq_set_ui(product[0], 1, 1);
     for (int m = 0; m < t->monomials; m++)
-        (t->monomial[m].divides ? mpq_div : mpq_mul)(product[m + 1], product[t->monomial[m].from], values[t->monomial[m].param]);
+        (t->monomial[m].divides ? mpq_div : mpq_mul)(product[m + 1], product[t->monomial[m].from],
+                                                     values[t->monomial[m].param]);
     for (int i = 0; i < t->rows && !t->solves; i++)
         mpq_set_ui(value[i * width + t->x.size + i], 1, 1);
     for (int i = 0; i < t->terms; i++)
-        add_product(value[t->term[i].row * width + t->term[i].column], t->term[i].factor, product[t->term[i].monomial], false);
+        add_product(value[t->term[i].row * width + t->term[i].column], t->term[i].factor, product[t->term[i].monomial],
+                    false);
     return value;
 }
 
@@ -164,12 +173,14 @@ static bool solve(const struct tuning *t, mpq_t *value)
 }
 
 /* Left side of equation i in a column, highest derivatives from `value`; and its right side */
-static void sides(const struct linear *system, const struct tuning *t, const mpq_t *value, int i, int column, mpq_ptr left)
+static void sides(const struct linear *system, const struct tuning *t, const mpq_t *value, int i, int column,
+                  mpq_ptr left)
 {
     const int width = t->x.size + t->rows, n = system->n;
     mpq_set_ui(left, 0, 1);
     for (int j = 0; j < n; j++)
-        add_product(left, (system->velocity[j] >= 0 ? system->M : system->C)[i * n + j], value[j * width + column], false);
+        add_product(left, (system->velocity[j] >= 0 ? system->M : system->C)[i * n + j], value[j * width + column],
+                    false);
     if (column < system->states)
         mpq_add(left, left, (column < n ? system->K : system->C)[i * n + system->coord[column]]);
 }
@@ -177,7 +188,8 @@ static void sides(const struct linear *system, const struct tuning *t, const mpq
 static void compare(mpq_srcptr found, mpq_srcptr expected, const char *what, int row, int column)
 {
     if (!mpq_equal(found, expected))
-        complain(format("%s %d, column %d: found %s, expected %s", what, row, column, mpq_get_str(NULL, 10, found), mpq_get_str(NULL, 10, expected)));
+        complain(format("%s %d, column %d: found %s, expected %s", what, row, column, mpq_get_str(NULL, 10, found),
+                        mpq_get_str(NULL, 10, expected)));
 }
 
 /* The force on equation i in a column behind the states, and the factor of an output there */
@@ -188,7 +200,8 @@ static mpq_srcptr force_at(const struct linear *system, int column, int i, const
         for (int l = 0; l < system->loads; l++)
             for (int k = 0; k < system->load[l].columns; k++)
                 if (column-- == 0)
-                    return output ? output->load[l][k * system->segments + s] : system->load[l].force[k][s * system->n + i];
+                    return output ? output->load[l][k * system->segments + s]
+                                  : system->load[l].force[k][s * system->n + i];
     for (int u = 0; u < system->inputs; u++)
         for (int k = 0; k < (system->input[u].first_order ? 2 : 1); k++)
             if (column-- == 0)
@@ -212,7 +225,9 @@ static void compare_model(const struct model *there, const struct tuning *t, con
             compare(value[t->frequency[l] * width], system->load[l].wave->w, "frequency of load", l, 0);
     for (int o = 0; o < there->outputs; o++)
         for (int j = 0; j < t->x.size && t->output[o] >= 0; j++)
-            compare(value[t->output[o] * width + j], j < system->states ? there->output[o].state[j] : force_at(system, j, 0, &there->output[o]), there->output[o].name, o, j);
+            compare(value[t->output[o] * width + j],
+                    j < system->states ? there->output[o].state[j] : force_at(system, j, 0, &there->output[o]),
+                    there->output[o].name, o, j);
 }
 
 /* An output that is said to depend on no param */
@@ -221,7 +236,8 @@ static void compare_fixed(const struct model *a, const struct model *b, const st
     for (int o = 0; o < a->outputs; o++)
         for (int j = 0; j < t->x.size && t->output[o] < 0; j++)
             compare(j < a->system.states ? a->output[o].state[j] : force_at(&a->system, j, 0, &a->output[o]),
-                    j < a->system.states ? b->output[o].state[j] : force_at(&b->system, j, 0, &b->output[o]), "fixed output", o, j);
+                    j < a->system.states ? b->output[o].state[j] : force_at(&b->system, j, 0, &b->output[o]),
+                    "fixed output", o, j);
 }
 
 /* Some frequency is not above 0: the model there has turned its sine around, and the target refuses it. */

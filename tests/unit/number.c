@@ -416,7 +416,8 @@ static bool is_nearest(mpq_srcptr q, mpz_srcptr digits, long exponent)
     return nearest;
 }
 
-/* Odd denominators: half way between two integers lies none of these, and a half added to an integer lies just there. */
+/* Odd denominators: half way between two integers lies none of these, and a half added to an integer lies just there.
+ */
 static void enclosures_of_one_integer(void **state)
 {
     (void)state;

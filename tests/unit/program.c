@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Programs of steps broken by hand, each in one way, and recipes that ask for more than there is room for: each is told,
- * by the message that is meant; as they were built nothing is said of them. */
+/* Programs of steps broken by hand, each in one way, and recipes that ask for more than there is room for: each is
+ * told, by the message that is meant; as they were built nothing is said of them. */
 #include <stdarg.h>
 #include <stddef.h>
 #include <setjmp.h>
@@ -113,7 +113,10 @@ static void target_range(struct step *s) { s->program->assignment[1].target = 4;
 static void target_twice(struct step *s) { s->program->assignment[1].target = s->program->assignment[0].target; }
 static void operand_range(struct step *s) { s->program->assignment[1].term[0].operand.index = 4; }
 static void many_terms(struct step *s) { s->program->assignment[1].terms = 99; }
-static void state_unmarked(struct step *s) { s->program->reads[s->program->assignment[0].term[0].operand.index] = false; }
+static void state_unmarked(struct step *s)
+{
+    s->program->reads[s->program->assignment[0].term[0].operand.index] = false;
+}
 static void loads_unmarked(struct step *s) { memset(s->program->uses, 0, (size_t)s->branch->whole->columns); }
 static void carried(struct step *s) { s->program->assignment[0].carried = true; }
 static void tuned(struct step *s) { s->program->tuned = true; }
