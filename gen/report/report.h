@@ -8,7 +8,8 @@
 /* ---- report.c: poles and polynomials for a reader ---- */
 
 const char *pole_text(const struct pole_report *report);
-const char *pole_row(const struct pole_report *report, int width); /* the pole, in so many columns; frequency, damping */
+/* the pole, in so many columns; frequency, damping */
+const char *pole_row(const struct pole_report *report, int width);
 double growth_rate(const struct step *step);                /* [1/s] */
 const char *polynomial_text(int length, const mpq_t *c);    /* in s */
 const char *irrationals_text(const struct irrationals *used);
