@@ -203,29 +203,50 @@ void emit_take_back(const struct emitter *e)
 			    i, carry[i], i, carry[i]);
 }
 
+/* y = matrix s->y */
+static void emit_state_product(const struct emitter *e, const char *matrix)
+{
+	say(e, "    for (i = 0; i < $N_STATES; i++) {\n"
+	       "        y[i] = 0.0;\n"
+	       "        for (j = 0; j < $N_STATES; j++)\n"
+	       "            y[i] += %s[i][j] * s->y[j];\n"
+	       "    }\n",
+	    matrix);
+}
+
+static void emit_product(const struct emitter *e, const struct matrix_product *p)
+{
+	const char *segment = e->system->segments > 1 ? "s->segment" : "0";
+	const char *square = e->step->program->products_added ? spell(e, "$n_increment") : stepped_table(e, "Phi");
+	switch (p->kind) {
+	case OPERAND_STATE:
+		emit_state_product(e, square);
+		break;
+	case OPERAND_LOAD:
+		emit_columns(e, spell(e, "$n_load_factor[%s]", segment), "load", p->kind, p->columns);
+		break;
+	case OPERAND_INPUT:
+		emit_columns(e, stepped_table(e, "Gamma"), "input", p->kind, p->columns);
+		break;
+	}
+}
+
 /* A large model steps by loops over its tables: text that nobody would read is of no use. */
 static void emit_looped_step(const struct emitter *e)
 {
-	const struct table *table = e->step->branch->whole;
-	bool *loads = ARRAY(bool, (size_t)e->system->loads), delta = e->step->form == FORM_DELTA;
+	const struct program *program = e->step->program;
+	bool *loads = ARRAY(bool, (size_t)e->system->loads);
 	say(e, "    double y[$N_STATES];\n"
 	       "    int i, j;\n");
 	emit_set_aside(e);
 	for (int l = 0, column = 0; l < e->system->loads; column += e->system->load[l++].columns)
 		loads[l] = !is_forced(e->step, column) && !is_gone(e, l);
 	emit_load_states(e, loads, false);
-	say(e, "    for (i = 0; i < $N_STATES; i++) {\n"
-	       "        y[i] = 0.0;\n"
-	       "        for (j = 0; j < $N_STATES; j++)\n"
-	       "            y[i] += %s[i][j] * s->y[j];\n"
-	       "    }\n",
-	    delta ? format("%s_increment", e->name) : stepped_table(e, "Phi"));
-	const char *segment = e->system->segments > 1 ? "s->segment" : "0";
-	emit_columns(e, format("%s_load_factor[%s]", e->name, segment), "load", OPERAND_LOAD, table->columns);
-	emit_columns(e, stepped_table(e, "Gamma"), "input", OPERAND_INPUT, table->inputs);
+	for (int k = 0; k < program->products; k++)
+		emit_product(e, &program->product[k]);
 	say(e, "    for (i = 0; i < $N_STATES; i++)\n"
 	       "        s->y[i] %s y[i];\n",
-	    delta ? "+=" : "=");
+	    program->products_added ? "+=" : "=");
 	emit_take_back(e);
 }
 

@@ -290,54 +290,73 @@ static void add_response(struct filling *f, struct response *response, mpq_srcpt
 	mpq_set(f->response[f->responses++].start, start);
 }
 
-/* Rounds what `combine` adds: entries of e^{A tau} if the filling has them and they decide it; what vanishes at this
- * very step only residues decide. */
-static struct coefficient number_of(struct filling *f, bool two_words, void (*combine)(struct filling *f, int a, int b),
-				    int a, int b, const char *of)
+/* Two who answer what a number is made of: entries of e^{A tau} as a whole, or sums of residues. */
+enum sought { SOUGHT_STATE, SOUGHT_INPUT, SOUGHT_LOAD, SOUGHT_KERNEL, SOUGHT };
+typedef void answer(struct filling *f, int a, int b);
+
+static answer state_by_taylor, input_by_taylor, load_by_taylor, kernel_by_taylor;
+static answer state_by_residues, input_by_residues, load_by_residues, kernel_by_residues;
+static answer *const by_taylor[SOUGHT] = { state_by_taylor, input_by_taylor, load_by_taylor, kernel_by_taylor };
+static answer *const by_residues[SOUGHT] = { state_by_residues, input_by_residues, load_by_residues,
+					     kernel_by_residues };
+
+static struct number ask(struct filling *f, answer *const *answerer, enum sought what, int a, int b)
+{
+	f->entries = f->responses = 0;
+	answerer[what](f, a, b);
+	struct number number = { .row = f->row, .t = f->tau, .scale = f->scale, .less = f->less };
+	if (answerer == by_taylor) {
+		number.count = f->entries;
+		number.entry = f->entry;
+	} else {
+		number.count = f->responses;
+		number.list = f->response;
+	}
+	return number;
+}
+
+/* Rounded: from entries of e^{A tau} if the filling has them and they decide it; what vanishes at this very step only
+ * residues decide. */
+static struct coefficient number_of(struct filling *f, bool two_words, enum sought sought, int a, int b, const char *of)
 {
 	enum { TAYLOR_PRECISION = 2048 };
 	const char *what = format("the factor of %s in the step of %s", of, f->state_name[f->row]);
 	struct coefficient c;
-	bool isolated, by_series = f->exponentials > 0;
-	f->entries = f->responses = 0;
-	combine(f, a, b);
-	if (by_series) {
-		struct number number = { .count = f->entries,
-					 .entry = f->entry,
-					 .row = f->row,
-					 .scale = f->scale,
-					 .less = f->less };
+	bool isolated;
+	if (f->exponentials > 0) {
+		struct number number = ask(f, by_taylor, sought, a, b);
 		if (round_number(&number, two_words, TAYLOR_PRECISION, &c, &isolated) && isfinite(c.value))
 			return c;
-		int kept = f->exponentials;
-		f->exponentials = 0;
-		combine(f, a, b);
-		f->exponentials = kept;
 	}
-	struct number number = { .count = f->responses,
-				 .list = f->response,
-				 .t = f->tau,
-				 .scale = f->scale,
-				 .less = f->less };
+	struct number number = ask(f, by_residues, sought, a, b);
 	if (!round_number(&number, two_words, LIMIT_PRECISION, &c, &isolated))
 		undecided(f->model->asked.step_at, what, isolated);
 	check_range(f->model, &c, f->responses, f->response, what);
 	return c;
 }
 
+static void by_residues_from(struct filling *f, struct response *response)
+{
+	mpq_t start;
+	mpq_init(start);
+	add_response(f, response, start);
+	mpq_clear(start);
+}
+
+static void state_by_residues(struct filling *f, int state, int unused)
+{
+	(void)unused;
+	by_residues_from(f, response_of_state(f->resolvent, f->system, f->row, state));
+}
+
 /* The state itself, and what a scheme holds of it: -heldK q or -heldC v in the held terms */
-static void combine_state(struct filling *f, int state, int unused)
+static void state_by_taylor(struct filling *f, int state, int unused)
 {
 	(void)unused;
 	const struct linear *system = f->system;
 	const mpq_t *held = state < system->n ? system->heldK : system->heldC;
 	mpq_t weight;
 	mpq_init(weight);
-	if (!f->exponentials) {
-		add_response(f, response_of_state(f->resolvent, system, f->row, state), weight);
-		mpq_clear(weight);
-		return;
-	}
 	mpq_set_ui(weight, 1, 1);
 	add_entry(f, f->tau, state, weight);
 	for (int i = 0; i < system->n && held; i++) {
@@ -357,7 +376,7 @@ static struct coefficient increment_entry(struct filling *f, int j, bool two_wor
 	mpq_init(one);
 	mpq_set_ui(one, 1, 1);
 	f->less = f->row == j ? one : NULL;
-	struct coefficient c = number_of(f, two_words, combine_state, j, 0, f->state_name[j]);
+	struct coefficient c = number_of(f, two_words, SOUGHT_STATE, j, 0, f->state_name[j]);
 	f->less = NULL;
 	mpq_clear(one);
 	return c;
@@ -375,7 +394,7 @@ static struct coefficient drift_entry(struct filling *f, int j, bool two_words)
 	mpq_init(inverse);
 	mpq_inv(inverse, mass_of(f, j));
 	f->scale = inverse;
-	struct coefficient c = number_of(f, two_words, combine_state, f->system->velocity[j], 0,
+	struct coefficient c = number_of(f, two_words, SOUGHT_STATE, f->system->velocity[j], 0,
 					 f->state_name[f->system->velocity[j]]);
 	f->scale = NULL;
 	mpq_clear(inverse);
@@ -384,14 +403,8 @@ static struct coefficient drift_entry(struct filling *f, int j, bool two_words)
 
 static bool enclose_state(struct filling *f, int i, int j, int precision, mpfi_ptr value)
 {
-	f->entries = f->responses = 0;
 	f->row = i;
-	combine_state(f, j, 0);
-	struct number number = { .count = f->exponentials ? f->entries : f->responses,
-				 .list = f->response,
-				 .t = f->tau,
-				 .row = i };
-	number.entry = f->exponentials ? f->entry : NULL;
+	struct number number = ask(f, f->exponentials ? by_taylor : by_residues, SOUGHT_STATE, j, 0);
 	return enclose_number(&number, precision, value);
 }
 
@@ -481,17 +494,17 @@ static void fill_kicks(struct filling *f, struct table *table)
 			      "a factor of the form kick-drift-kick is beyond the range of %s", target_name());
 }
 
-/* A ramp from u0 to u1 over h: u0 (u - u'/h) + u1 u'/h */
-static void combine_input(struct filling *f, int input, int column)
+static void input_by_residues(struct filling *f, int input, int column)
 {
+	by_residues_from(f, response_of_input(f->resolvent, f->system, f->row, input, column, f->model->h));
+}
+
+/* A ramp from u0 to u1 over h: u0 (u - u'/h) + u1 u'/h */
+static void input_by_taylor(struct filling *f, int input, int column)
+{
+	int at = f->layout.input[input];
 	mpq_t weight;
 	mpq_init(weight);
-	if (!f->exponentials) {
-		add_response(f, response_of_input(f->resolvent, f->system, f->row, input, column, f->model->h), weight);
-		mpq_clear(weight);
-		return;
-	}
-	int at = f->layout.input[input];
 	mpq_set_ui(weight, 1, 1);
 	if (column == 0)
 		add_entry(f, f->tau, at, weight);
@@ -504,14 +517,17 @@ static void combine_input(struct filling *f, int input, int column)
 	mpq_clear(weight);
 }
 
-static void combine_load(struct filling *f, int load, int column)
+static void load_by_residues(struct filling *f, int load, int column)
+{
+	by_residues_from(f, response_of_load(f->resolvent, f->system, f->segment, f->row, load, column));
+}
+
+static void load_by_taylor(struct filling *f, int load, int column)
 {
 	mpq_t one;
 	mpq_init(one);
-	if (!f->exponentials)
-		add_response(f, response_of_load(f->resolvent, f->system, f->segment, f->row, load, column), one);
 	mpq_set_ui(one, 1, 1);
-	if (f->exponentials && f->layout.load[load] >= 0)
+	if (f->layout.load[load] >= 0)
 		add_entry(f, f->tau, f->layout.load[load] + column, one);
 	mpq_clear(one);
 }
@@ -550,25 +566,33 @@ static void add_impulse(struct filling *f, const struct kernel_part *part, mpq_s
 	mpq_clear(weight);
 }
 
-static void combine_kernel(struct filling *f, int index, int channel)
+static void kernel_by_residues(struct filling *f, int index, int channel)
 {
 	const struct kernel *kernel = &f->wanted->kernel[index];
-	mpq_t tau, start;
-	mpq_inits(tau, start, NULL);
+	mpq_t start;
+	mpq_init(start);
+	for (int k = 0; k < kernel->parts; k++) {
+		const struct kernel_part *part = &kernel->part[k];
+		mpq_mul(start, part->fraction, f->model->h);
+		mpq_sub(start, f->tau, start);
+		add_response(f, response_of_kernel(f->resolvent, f->system, f->row, channel, part, f->model->h), start);
+	}
+	mpq_clear(start);
+}
+
+static void kernel_by_taylor(struct filling *f, int index, int channel)
+{
+	const struct kernel *kernel = &f->wanted->kernel[index];
+	mpq_t tau;
+	mpq_init(tau);
 	for (int k = 0; k < kernel->parts; k++) {
 		const struct kernel_part *part = &kernel->part[k];
 		mpq_mul(tau, part->fraction, f->model->h);
-		mpq_sub(start, f->tau, tau);
-		if (!f->exponentials) {
-			add_response(f, response_of_kernel(f->resolvent, f->system, f->row, channel, part, f->model->h),
-				     start);
-			continue;
-		}
 		add_powers(f, part, tau, channel);
 		if (mpq_sgn(part->impulse) != 0)
 			add_impulse(f, part, tau, channel);
 	}
-	mpq_clears(tau, start, NULL);
+	mpq_clear(tau);
 }
 
 /* At tau = 0 an impulse is what it is. */
@@ -606,7 +630,7 @@ static void fill_row(struct filling *f, struct table *table)
 	int n = table->states, columns = table->columns, i = f->row;
 	f->segment = 0;
 	for (int j = 0; j < n && wanted->Phi; j++)
-		table->Phi[i * n + j] = number_of(f, wanted->two_words, combine_state, j, 0, f->state_name[j]);
+		table->Phi[i * n + j] = number_of(f, wanted->two_words, SOUGHT_STATE, j, 0, f->state_name[j]);
 	for (int j = 0; j < n && wanted->increments; j++)
 		table->increment[i * n + j] = i == j ? increment_entry(f, j, wanted->two_words) : table->Phi[i * n + j];
 	for (int j = 0; j < system->n && wanted->mass && i < system->n; j++)
@@ -614,20 +638,20 @@ static void fill_row(struct filling *f, struct table *table)
 	for (int j = 0, column = 0; j < system->inputs; j++)
 		for (int k = 0; k <= system->input[j].first_order; k++, column++)
 			table->input[i * table->inputs + column] =
-				number_of(f, wanted->two_words, combine_input, j, k, system->input[j].name);
+				number_of(f, wanted->two_words, SOUGHT_INPUT, j, k, system->input[j].name);
 	for (int j = 0; j < wanted->kernels; j++)
 		for (int e = 0; e < system->channels; e++)
 			table->kernel[j][i * system->channels + e] =
 				is_immediate(&wanted->kernel[j])
 					? immediate(f, &wanted->kernel[j], e)
-					: number_of(f, false, combine_kernel, j, e, format("leftover %d", e + 1));
+					: number_of(f, false, SOUGHT_KERNEL, j, e, format("leftover %d", e + 1));
 	for (f->segment = 0; f->segment < system->segments; f->segment++)
 		for (int l = 0, column = 0; l < system->loads; l++) {
 			bool known = f->segment > 0 && same_forces(system, l, f->segment - 1, f->segment);
 			for (int k = 0; k < system->load[l].columns; k++, column++) {
 				struct coefficient *here = &table->load[(f->segment * n + i) * columns + column];
 				*here = known ? here[-n * columns]
-					      : number_of(f, wanted->two_words, combine_load, l, k,
+					      : number_of(f, wanted->two_words, SOUGHT_LOAD, l, k,
 							  column_text(&system->load[l], k));
 			}
 		}
