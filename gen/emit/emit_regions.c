@@ -9,23 +9,6 @@ static const struct switching *regions_of(const struct emitter *e)
 
 /* ---- tables ---- */
 
-static const char **entry_names(const struct emitter *e)
-{
-	const struct layout *layout = &e->step->layout;
-	const char **name = ARRAY(const char *, (size_t)layout->size);
-	for (int i = 0; i < e->system->states; i++)
-		name[i] = e->model->state_name[i];
-	for (int l = 0; l < e->system->loads; l++)
-		for (int k = 0; k < e->system->load[l].columns && layout->load[l] >= 0; k++)
-			name[layout->load[l] + k] = column_text(&e->system->load[l], k);
-	for (int i = 0; i < e->system->inputs; i++) {
-		name[layout->input[i]] = e->system->input[i].name;
-		if (e->system->input[i].first_order)
-			name[layout->input[i] + 1] = format("%s'", e->system->input[i].name);
-	}
-	return name;
-}
-
 static const char **expression_names(const struct emitter *e)
 {
 	const struct switching *s = regions_of(e), *shown = e->step->shown->model->switching;
@@ -122,7 +105,7 @@ void emit_regions(const struct emitter *e)
 {
 	struct pieces pieces = pieces_of(e->step);
 	int size = e->step->layout.size, expressions = regions_of(e)->expressions;
-	const char **entry = entry_names(e), **expression = expression_names(e);
+	const char **entry = layout_names(&e->step->layout, e->system, e->model), **expression = expression_names(e);
 	const struct matrices all[] = {
 		{ "slopes", "x' = A x; x = states, load states, inputs", size, entry, slopes_of_piece },
 		{ "pieces", "e^{A d}, d = h 2^-halvings", size, entry, Phi_of_piece },

@@ -5,24 +5,12 @@
 /* ---- at ---- */
 
 /* Names of the entries of the series' vector; `slopes`: of the states' rows. */
+/* Rows of x' */
 static const char **series_names(const struct emitter *e)
 {
-	const struct layout *layout = &e->step->layout;
-	const char **name = ARRAY(const char *, (size_t)layout->size);
+	const char **name = layout_names(&e->step->layout, e->system, e->model);
 	for (int i = 0; i < e->system->states; i++)
-		name[i] = format("%s'", e->model->state_name[i]);
-	for (int i = 0; i < e->model->n && layout->held >= 0; i++)
-		name[layout->held + i] = format("held for %s", e->model->coord_name[i]);
-	for (int l = 0; l < e->system->loads; l++)
-		for (int k = 0; k < e->system->load[l].columns && layout->load[l] >= 0; k++)
-			name[layout->load[l] + k] = column_text(&e->system->load[l], k);
-	for (int i = 0; i < e->system->inputs; i++) {
-		name[layout->input[i]] = e->system->input[i].name;
-		if (e->system->input[i].first_order)
-			name[layout->input[i] + 1] = format("%s'", e->system->input[i].name);
-	}
-	for (int c = 0; c < e->system->channels * layout->powers; c++)
-		name[layout->channel + c] = format("leftover %d", c + 1);
+		name[i] = format("%s'", name[i]);
 	return name;
 }
 

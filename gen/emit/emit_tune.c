@@ -26,30 +26,12 @@ static const char *param_list(const struct emitter *e)
 }
 
 /* x1, x2, x1', x2', cos(5*t), sin(5*t), u */
-static const char **column_names(const struct emitter *e)
-{
-	const char **name = ARRAY(const char *, (size_t)step_columns(e));
-	int column = 0;
-	for (int i = 0; i < e->system->states; i++)
-		name[column++] = e->model->state_name[i];
-	for (int s = 0; s < e->system->segments; s++)
-		for (int l = 0; l < e->system->loads; l++)
-			for (int k = 0; k < e->system->load[l].columns; k++)
-				name[column++] = format("%s%s", column_text(&e->system->load[l], k),
-							s ? format(" (segment %d)", s) : "");
-	for (int i = 0; i < e->system->inputs; i++) {
-		name[column++] = e->system->input[i].name;
-		if (e->system->input[i].first_order)
-			name[column++] = format("%s'", e->system->input[i].name);
-	}
-	return name;
-}
 
 /* The same as a comment says it: the load states once, lines broken */
 static const char *column_list(const struct emitter *e)
 {
 	enum { WIDTH = 110 };
-	const char **name = column_names(e), *list = "", *line = "";
+	const char **name = layout_names(&e->model->tuning->x, e->system, e->model), *list = "", *line = "";
 	int states = e->system->states, loads = e->model->tuning->x.loads, segments = e->system->segments;
 	for (int i = 0; i < step_columns(e); i++) {
 		if (i >= states + loads && i < states + segments * loads)
@@ -272,7 +254,8 @@ static const char *term_note(const struct emitter *e, const struct tuned_term *t
 	bool left = term->column >= t->x.size;
 	if (term->row >= t->rows - t->frequencies)
 		return format("%s: %s", row_name(e, term->row), product_text(t, term));
-	const char *of = left ? row_name(e, term->column - t->x.size) : column_names(e)[term->column];
+	const char *of = left ? row_name(e, term->column - t->x.size)
+			      : layout_names(&e->model->tuning->x, e->system, e->model)[term->column];
 	const char *equation = format("equation %d, %s", term->row + 1, left ? "left" : "right");
 	const char *where = t->solves ? equation : row_name(e, term->row);
 	return format("%s: %s %s", where, product_text(t, term), of);

@@ -58,13 +58,13 @@ static void name_loads(const struct layout *x, const struct linear *system, cons
 					       s ? format(" (segment %d)", s) : "");
 }
 
-const char **layout_names(const struct layout *x, const struct linear *system, const char *const *state)
+const char **layout_names(const struct layout *x, const struct linear *system, const struct model *model)
 {
 	const char **name = ARRAY(const char *, (size_t)x->size);
 	for (int i = 0; i < system->states; i++)
-		name[i] = state[i];
+		name[i] = model->state_name[i];
 	for (int i = 0; i < system->n && x->held >= 0; i++)
-		name[x->held + i] = format("held for %s", state[i]);
+		name[x->held + i] = format("held for %s", model->coord_name[i]);
 	name_loads(x, system, name);
 	for (int i = 0; i < system->inputs; i++) {
 		name[x->input[i]] = system->input[i].name;

@@ -256,7 +256,7 @@ struct layout layout_of(const struct linear *system, int powers);   /* of loads 
 struct layout layout_with(const struct linear *system, int powers, const bool *needed); /* of loads those needed */
 /* states, all load states of all segments, inputs */
 struct layout layout_of_columns(const struct linear *system);
-const char **layout_names(const struct layout *layout, const struct linear *system, const char *const *state);
+const char **layout_names(const struct layout *layout, const struct linear *system, const struct model *model);
 mpq_t *augmented_matrix(const struct layout *layout, const struct linear *system, int segment); /* A of x' = A x */
 
 /* ---- spell.c: loads, forms and equations for a reader ---- */
