@@ -25,9 +25,7 @@ static const char *param_list(const struct emitter *e)
 	return list;
 }
 
-/* x1, x2, x1', x2', cos(5*t), sin(5*t), u */
-
-/* The same as a comment says it: the load states once, lines broken */
+/* Names of the columns as a comment says them: the load states once, lines broken */
 static const char *column_list(const struct emitter *e)
 {
 	enum { WIDTH = 110 };
