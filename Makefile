@@ -66,7 +66,7 @@ fuzz: all
 	ninja -C $(BUILD) fuzz_long
 	ninja -C $(BUILD) grammar_long
 
-# Does the suite that should notice a fault notice it?  150 faults, each put into a copy: tests/faults
+# Does the suite that should notice a fault notice it?  each is put into a copy: tests/faults
 faults: setup
 	sh tests/faults/faults.sh -j 2
 
