@@ -759,7 +759,8 @@ static void assert_constant(const char *what, int n, const struct form *form, mp
     constant_value(&collector, form, value);
     mpfr_sub_q(off, truth, value, MPFR_RNDN);
     if (!mpfr_zero_p(off) && mpfr_get_exp(off) > -250)
-        fail_msg("%s, %d (pi/12, or case) is %.17g, expected %.17g", what, n, mpq_get_d(value), mpfr_get_d(truth, MPFR_RNDN));
+        fail_msg("%s, %d (pi/12, or case) is %.17g, expected %.17g", what, n, mpq_get_d(value),
+                 mpfr_get_d(truth, MPFR_RNDN));
     mpq_clear(value);
     mpfr_clear(off);
 }

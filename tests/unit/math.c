@@ -861,7 +861,8 @@ static void residues_of_powers_of_time(void **state)
         struct response *response = response_of(scale, one_poly(), poly_shift(one_poly(), m));
         assert_true(response_exact(response, t, found));
         if (!mpq_equal(found, truth))
-            fail_msg("case %d: s^-%d at %g: %.17g, expected %.17g", n, m, mpq_get_d(t), mpq_get_d(found), mpq_get_d(truth));
+            fail_msg("case %d: s^-%d at %g: %.17g, expected %.17g", n, m, mpq_get_d(t), mpq_get_d(found),
+                     mpq_get_d(truth));
     }
     mpq_clears(scale, t, truth, found, NULL);
 }
@@ -1057,8 +1058,8 @@ static void taylor_of_known_eigenvalues(void **state)
         mpfr_clear(e[k]);
 }
 
-/* Of x' = [[0, 2^g], [-a b 2^-g, a + b]] x, a and b below 0 and rational, with few bits: there what the series leaves out
- * is more than what rounding does. With E the exponentials E11 = (a e^{b t} - b e^{a t})/(a - b) and
+/* Of x' = [[0, 2^g], [-a b 2^-g, a + b]] x, a and b below 0 and rational, with few bits: there what the series leaves
+ * out is more than what rounding does. With E the exponentials E11 = (a e^{b t} - b e^{a t})/(a - b) and
  * E12 = 2^g (e^{a t} - e^{b t})/(a - b), in states whose units differ by 2^g. */
 static void taylor_of_few_bits(void **state)
 {

@@ -583,8 +583,8 @@ static void a_close_pair_is_parted(void **state)
     mpq_clears(root[0], root[1], NULL);
 }
 
-/* Of two discs that do not meet, one touches the real axis, and its mirror image meets the other: these may be a pair of
- * conjugate roots, of which neither is real. */
+/* Of two discs that do not meet, one touches the real axis, and its mirror image meets the other: these may be a pair
+ * of conjugate roots, of which neither is real. */
 static void a_mirrored_disc_is_not_alone(void **state)
 {
     static const double center[2] = { 1.0 / 1024, -1.5 / 1024 }, radius[2] = { 1.1 / 1024, 0.3 / 1024 };
