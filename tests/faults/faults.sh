@@ -12,8 +12,8 @@
 #                            is not noticed
 #   # says: ...              what a user would see
 # Each is applied to a copy of the tree and taken out again; the suite must pass before and fail with it. --check: do
-# all apply? --refresh writes the patches anew where lines or files have moved. The copies stay in FOLDER, where there is
-# one, for the next time; no two runs at a time may share it.
+# all apply? --refresh writes the patches anew where lines or files have moved. The copies stay in FOLDER, where there
+# is one, for the next time; no two runs at a time may share it.
 set -u
 here=$(cd "$(dirname "$0")" && pwd) || exit 99
 root=$(cd "$here/../.." && pwd) || exit 99
