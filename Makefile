@@ -2,42 +2,74 @@
 # Thin: packages through apt, everything else through Meson.
 
 BUILD = build
-PACKAGES = gcc g++ clang make meson ninja-build pkgconf \
-	libgmp-dev libmpfr-dev libmpfi-dev libmpc-dev libgsl-dev \
-	libsundials-dev libcmocka-dev valgrind gnuplot-nox \
+# The command; then what the demo shows, what the charts draw with, and what the tests compare with and run on
+PACKAGES = gcc libc6-dev make meson ninja-build pkgconf libgmp-dev libmpfr-dev libmpfi-dev libmpc-dev libgsl-dev
+DEMO_PACKAGES = $(PACKAGES) libsundials-dev gnuplot-nox
+CHECK_PACKAGES = $(DEMO_PACKAGES) g++ clang libcmocka-dev valgrind \
 	gcc-arm-none-eabi libnewlib-arm-none-eabi qemu-system-arm
 
-.PHONY: all setup deps demo check bench charts charts-quick firmware-report fuzz accuracy faults install clean
+.PHONY: all setup deps demo-deps check-deps demo tests check check-long faults bench charts charts-quick firmware-report \
+	install clean
 
 all: setup
-	ninja -C $(BUILD)
-
-setup: deps
-	@test -f $(BUILD)/build.ninja || meson setup $(BUILD) >$(BUILD).log || { cat $(BUILD).log; exit 1; }
-	@rm -f $(BUILD).log
+	ninja -C $(BUILD) plgen
 
 # Asks apt only for what is not there.
+define need
+@missing=; for p in $(1); do \
+	dpkg-query -W -f='$${Status}' $$p 2>/dev/null | grep -q 'ok installed' || missing="$$missing $$p"; \
+done; \
+if [ -n "$$missing" ]; then \
+	echo "installing:$$missing"; \
+	root=; [ "$$(id -u)" = 0 ] || root=sudo; \
+	$$root apt-get update -q && \
+	$$root env DEBIAN_FRONTEND=noninteractive apt-get install -q -y --no-install-recommends $$missing; \
+fi
+endef
+
+# configure TEST,OPTIONS: the build folder, unless TEST finds in it what is wanted; what was set up before a package
+# came, once more
+define configure
+@if ! { $(1); } >/dev/null 2>&1; then \
+	again=; [ ! -f $(BUILD)/build.ninja ] || again=--reconfigure; \
+	meson setup $$again $(2) $(BUILD) >$(BUILD).log || { cat $(BUILD).log; exit 1; }; \
+	rm -f $(BUILD).log; \
+fi
+endef
+
 deps:
-	@missing=; for p in $(PACKAGES); do \
-		dpkg-query -W -f='$${Status}' $$p 2>/dev/null | grep -q 'ok installed' || missing="$$missing $$p"; \
-	done; \
-	if [ -n "$$missing" ]; then \
-		echo "installing:$$missing"; \
-		root=; [ "$$(id -u)" = 0 ] || root=sudo; \
-		$$root apt-get update -q && \
-		$$root env DEBIAN_FRONTEND=noninteractive apt-get install -q -y --no-install-recommends $$missing; \
-	fi
+	$(call need,$(PACKAGES))
+
+demo-deps:
+	$(call need,$(DEMO_PACKAGES))
+
+check-deps:
+	$(call need,$(CHECK_PACKAGES))
+
+setup: deps
+	$(call configure,test -f $(BUILD)/build.ninja)
 
 # Only what it shows: the tests are built by `make check`.
-demo: setup
+demo: demo-deps
+	$(call configure,ninja -C $(BUILD) -t query bench/demo_cvode)
 	ninja -C $(BUILD) plgen bench/demo_cvode
 	sh bench/demo/demo.sh $(BUILD)
 
-check: all
+# With every test: what is missing for one stops it here.
+tests: check-deps
+	$(call configure,test -f $(BUILD)/tests_enabled,-Dtests=enabled)
+	@touch $(BUILD)/tests_enabled
+
+check: tests
 	sh tests/check.sh $(BUILD)
 
+# What only long runs show: more random models, more seeds. Before a piece of work is called finished.
+check-long: tests
+	sh tests/check.sh $(BUILD) --suite long
+
 # Benchmarks: never part of a test.
-bench: all
+bench: tests
+	ninja -C $(BUILD) benchmarks
 	sh bench/generate.sh $(BUILD)
 	sh bench/growth.sh $(BUILD)
 	$(BUILD)/bench/apply
@@ -49,29 +81,20 @@ bench: all
 
 # Speed against accuracy, and stability where methods fail: charts/index.html with its pictures and tables. 20 minutes;
 # quick: 4.
-charts charts-quick: setup
+charts charts-quick: tests
 	ninja -C $(BUILD) charts
 	sh bench/charts/charts.sh $(BUILD) charts $(if $(findstring quick,$@),--quick)
 
 # Bytes, stack and instructions on emulated boards: doc/firmware.md
-firmware-report: setup
+firmware-report: tests
 	ninja -C $(BUILD) firmware_report
 
-# The long forms of what `make check` runs briefly.
-accuracy: all
-	$(BUILD)/tests/accuracy/bitwise -n 2000 tests/accuracy/exponentials.txt models/*.spec
-	ninja -C $(BUILD) long
-
-fuzz: all
-	ninja -C $(BUILD) fuzz_long
-	ninja -C $(BUILD) grammar_long
-
 # Does the suite that should notice a fault notice it?  each is put into a copy: tests/faults
-faults: setup
+faults: check-deps
 	sh tests/faults/faults.sh -j 2
 
 install: all
-	meson install -C $(BUILD)
+	meson install -C $(BUILD) --no-rebuild
 
 clean:
 	rm -rf $(BUILD) charts

@@ -1,16 +1,22 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# check.sh BUILD: runs every test and ends with one line that counts all cases.
+# check.sh BUILD [OPTION ...]: runs every test, or those that the options of `meson test` choose, says which cases were
+# skipped, and ends with one line that counts all cases.
 build=$1
-meson test -C "$build" --print-errorlogs
+shift
+meson test -C "$build" --print-errorlogs "$@"
 status=$?
 junit=$build/meson-logs/testlog.junit.xml
-sed -n '2s/.*<testsuites tests="\([0-9]*\)" errors="\([0-9]*\)" failures="\([0-9]*\)".*/\1 \2 \3/p' "$junit" >"$build/counts"
+sed -n '2s/.*<testsuites tests="\([0-9]*\)" errors="\([0-9]*\)" failures="\([0-9]*\)".*/\1 \2 \3/p' \
+	"$junit" >"$build/counts"
 read -r cases errors failures <"$build/counts" || { cases=1 errors=1 failures=0; }
 failed=$((errors + failures))
 # A test that died before it could count its cases is a failure too.
 if [ "$status" -ne 0 ] && [ "$failed" -eq 0 ]; then
 	failed=1
 fi
-echo "$((cases - errors - failures)) passed, $failed failed"
+grep '^ok.* # SKIP\|^1\.\.0 # SKIP' "$build/meson-logs/testlog.txt" >"$build/skipped"
+skipped=$(wc -l <"$build/skipped")
+[ "$skipped" -eq 0 ] || sed 's/^/skipped: /' "$build/skipped"
+echo "$((cases - errors - failures - skipped)) passed, $skipped skipped, $failed failed"
 [ "$status" -eq 0 ] && [ "$failed" -eq 0 ]

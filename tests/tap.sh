@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Sourced by tests that are shell scripts, once they have made their paths absolute: a folder of their own, which is the
 # current one and goes at the end, and results as TAP. What a command says goes to `log` there; a failure shows the head
-# of it. A script ends with `tap_end`.
+# of it. A script ends with `tap_end`. CASE=TEXT in the environment: only results whose name has TEXT in it are told and
+# counted.
 LC_ALL=C
 export LC_ALL
 work=$(mktemp -d "${TMPDIR:-/tmp}/plgen.XXXXXX") || exit 99
@@ -12,8 +13,17 @@ count=0
 failed=0
 : >log
 
+# chosen NAME: whether it is one of those that CASE asks for
+chosen() {
+	case $1 in
+		*"${CASE:-}"*) return 0 ;;
+	esac
+	return 1
+}
+
 # result STATUS NAME
 result() {
+	chosen "$2" || return 0
 	count=$((count + 1))
 	if [ "$1" -eq 0 ]; then
 		echo "ok $count - $2"
@@ -26,11 +36,29 @@ result() {
 
 # skip NAME WHY
 skip() {
+	chosen "$1" || return 0
 	count=$((count + 1))
 	echo "ok $count - $1 # SKIP $2"
 }
 
+# runtime_archive FOLDER: sets `archive` to the runtime as it comes from the build folder (PLRT), or makes it of
+# FOLDER/*.c
+runtime_archive() {
+	archive=${PLRT:-}
+	[ -z "$archive" ] || return 0
+	mkdir runtime_objects || exit 99
+	for file in "$1"/*.c; do
+		"${CC:-cc}" -std=c99 -O1 -I"$1" -c "$file" -o "runtime_objects/${file##*/}.o" || exit 99
+	done
+	archive=$PWD/runtime_objects/plrt.a
+	ar rcs "$archive" runtime_objects/*.o || exit 99
+}
+
 tap_end() {
+	if [ "$count" -eq 0 ]; then
+		echo "Bail out! no case ${CASE:-}"
+		exit 99
+	fi
 	echo "1..$count"
 	exit $failed
 }

@@ -4,13 +4,14 @@
 # compiled as its user would. Run at the top of the source tree. It keeps the options it was made with:
 # subject_options. What plgen refuses is a result too: its message goes to OUT.so.refused, no object is left, and the
 # exit status is 0.
+# CHARTS_OPTIMIZE: another level than -O2, where nothing is timed.
 #     -fno-semantic-interposition  gcc may inline subject_step into subject_run, as it does in a program
 #     no -march=native, no -ffast-math: for the peers neither
 set -e
 plgen=$1 out=$2 spec=$3
 shift 3
 cc=${CC:-cc}
-flags='-std=gnu11 -O2 -fPIC -fno-semantic-interposition'
+flags="-std=gnu11 ${CHARTS_OPTIMIZE:--O2} -fPIC -fno-semantic-interposition"
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 

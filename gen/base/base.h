@@ -132,6 +132,10 @@ bool   beyond_range(mpq_srcptr q);
 /* shortest; leaves the statement at a value beyond the range */
 const char *finite_text(struct place at, mpq_srcptr q);
 bool   round_enclosure(mpfi_srcptr x, double *d);           /* false: both ends do not round to one number */
+/* the same, to the nearest integer */
+bool   round_integer(mpfi_srcptr x, mpz_ptr n);
+/* to digits 2^exponent, so many bits; x is not 0 */
+bool   round_bits(mpfi_srcptr x, int bits, mpz_ptr digits, long *exponent);
 /* fewest digits that read back; a C literal, of type double */
 const char *shortest(double d);
 

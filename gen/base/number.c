@@ -89,6 +89,30 @@ bool round_enclosure(mpfi_srcptr x, double *d)
 	return *d == right;
 }
 
+bool round_integer(mpfi_srcptr x, mpz_ptr n)
+{
+	mpz_t right;
+	mpz_init(right);
+	mpfr_get_z(n, &x->left, MPFR_RNDN);
+	mpfr_get_z(right, &x->right, MPFR_RNDN);
+	bool decided = mpz_cmp(n, right) == 0;
+	mpz_clear(right);
+	return decided;
+}
+
+bool round_bits(mpfi_srcptr x, int bits, mpz_ptr digits, long *exponent)
+{
+	mpfr_t left, right;
+	mpfr_inits2(bits, left, right, NULL);
+	mpfr_set(left, &x->left, MPFR_RNDN);
+	mpfr_set(right, &x->right, MPFR_RNDN);
+	bool decided = !mpfr_zero_p(left) && mpfr_equal_p(left, right);
+	if (decided)
+		*exponent = mpfr_get_z_2exp(digits, left);
+	mpfr_clears(left, right, NULL);
+	return decided;
+}
+
 static bool reads_back(const char *text, double d)
 {
 	return target == &range_of_float ? strtof(text, NULL) == (float)d : strtod(text, NULL) == d;

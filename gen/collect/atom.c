@@ -134,7 +134,7 @@ static struct form *form_of_atom(struct collector *c, const struct node *node, s
 		}
 		wanted.node = node;
 		wanted.index = c->atoms->count++;
-		wanted.judged = NEW(struct judged);
+		wanted.judged = NEW(struct verdict);
 		*link = NEW(struct atom);
 		**link = wanted;
 	}

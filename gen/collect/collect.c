@@ -565,3 +565,9 @@ void forget_lets(const struct spec *spec)
 		if (s->kind == SYMBOL_LET)
 			s->progress = FRESH;
 }
+
+void param_value(const struct symbol *param, mpq_ptr value)
+{
+	struct collector collector = { .scheme = "exact" };
+	constant_value(&collector, param->collected->cell[0], value);
+}

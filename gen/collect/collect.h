@@ -123,7 +123,7 @@ bool oscillates(const struct wave *wave);
 /* ---- atom.c: what is not linear, as expressions that are shared wherever they are the same ---- */
 
 enum atom_kind { ATOM_PRODUCT, ATOM_RECIPROCAL, ATOM_POWER, ATOM_CALL, ATOM_COMPARE, ATOM_CHOOSE };
-struct judged { signed char piecewise, stepwise; }; /* 1 and -1: is_piecewise_form, is_stepwise; 0: not asked yet */
+struct verdict { signed char piecewise, stepwise; }; /* 1 and -1: is_piecewise_form, is_stepwise; 0: not asked yet */
 struct atom {
 	enum atom_kind kind;
 	enum function function;     /* of ATOM_CALL */
@@ -134,7 +134,7 @@ struct atom {
 	unsigned *exponent;         /* of ATOM_PRODUCT, one per factor */
 	bool time, input, state, velocity; /* what it depends on; a coordinate of first order counts as a velocity */
 	const struct basis *moves;  /* of that a coordinate, else an input; NULL: t alone */
-	struct judged *judged;      /* what was found out about it */
+	struct verdict *judged;      /* what was found out about it */
 	const struct node *node;    /* where it comes from */
 	int index;                  /* in the order of first appearance */
 	struct atom *next;
@@ -204,6 +204,7 @@ void check_breakpoints(struct collector *c, const struct node *node, struct form
 bool is_decided(const struct collector *c, int count, struct form *const *x);
 /* those, or what moves alike: max(x, x + 1) */
 bool is_decided_call(const struct collector *c, const struct node *node, struct form *const *x);
+void slope_between(const mpq_srcptr *point, mpq_ptr slope); /* point: x0, y0, x1, y1 */
 
 void narrow_span(struct collector *c, struct span span);
 bool holds_now(const struct collector *c, struct span span); /* in the collector's interval of time */
@@ -218,6 +219,16 @@ struct value {                      /* a scalar is 1 x 1 */
 struct value *collect(struct collector *collector, struct node *node);
 struct value *collect_constants(struct collector *collector, struct node *node);
 void collect_constant(struct collector *collector, struct node *node, mpq_ptr number);
+void param_value(const struct symbol *param, mpq_ptr value); /* collected before */
 void forget_lets(const struct spec *spec);
+
+/* ---- table.c: the straight pieces of a table() as numbers ---- */
+
+struct straight {                      /* y + slope (argument - x), where the argument is below `end` */
+	mpq_srcptr x, y, end;       /* end NULL: the last piece; the first and the last go on beyond the table */
+	mpq_t slope;
+};
+int pieces_of_atom(const struct atom *a, struct straight **list);     /* in order; returns how many */
+int pieces_of_call(const struct node *node, struct straight **list);
 
 #endif

@@ -81,9 +81,8 @@ _Noreturn void not_linear(const struct collector *c, const struct node *node, co
 		error(term->start, NULL, "term '%s' %s: there is no closed form", text_between(term->start, term->end),
 		      why);
 	const char *rewrite = rewrite_of(term);
-	error(term->start,
-	      format("%s%setd1, etdrk2, etdrk4, nc2, nc3, dq4, bm3 and pl are the schemes that could", rewrite,
-		     *rewrite ? "; " : ""),
+	error(term->start, format("%s%s%s and %s are the schemes that could", rewrite, *rewrite ? "; " : "",
+				  leaving_schemes(", "), holding_schemes()),
 	      "term '%s' %s: scheme %s cannot treat it", text_between(term->start, term->end), why, c->scheme);
 }
 

@@ -191,24 +191,31 @@ void check_breakpoints(struct collector *c, const struct node *node, struct form
 		error(node->child[1]->start, NULL, "the lower breakpoint is above the upper one");
 }
 
+void slope_between(const mpq_srcptr *point, mpq_ptr slope)
+{
+	mpq_t width;
+	mpq_init(width);
+	mpq_sub(slope, point[3], point[1]);
+	mpq_sub(width, point[2], point[0]);
+	mpq_div(slope, slope, width);
+	mpq_clear(width);
+}
+
 /* y0 + slope (x - x0) on the piece that holds x; extended by the end slopes */
 static struct form *tabulated(struct collector *c, const struct node *node, struct form *const *x)
 {
 	int points = (node->children - 1) / 2, left = 0;
-	mpq_t slope, width, *room = ARRAY(mpq_t, (size_t)node->children);
+	mpq_t slope, *room = ARRAY(mpq_t, (size_t)node->children);
 	mpq_srcptr *v = table_points(c, node, x, room);
-	mpq_inits(slope, width, NULL);
+	mpq_init(slope);
 	/* all breakpoints at the first sight */
 	for (int i = 1; i + 1 < points && (left == i - 1 || c->interval == 0); i++)
 		left = order_now(c, node, x[0], x[2 * i + 1]) > 0 ? i : left;
-	mpq_srcptr *p = v + 2 * left + 1;       /* x0, y0, x1, y1 */
-	mpq_sub(slope, p[3], p[1]);
-	mpq_sub(width, p[2], p[0]);
-	mpq_div(slope, slope, width);
+	slope_between(v + 2 * left + 1, slope);
 	struct form *value = form_sum(x[0], x[2 * left + 1], true), *piece = form_scale(value, slope);
 	form_free(value);
 	form_add_to(piece, x[2 * left + 2], NULL);
-	mpq_clears(slope, width, NULL);
+	mpq_clear(slope);
 	discard(v);
 	discard(room);
 	return piece;

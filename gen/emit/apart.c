@@ -92,9 +92,9 @@ void print_apart(FILE *to, const char *text, const char *name)
 		if (length)
 			end = behind_type(at, length);
 		if (length && !end && is_word(at, length, name) && !is_member(at, text) && !is_type(at + length))
-			fputs(other, to);
+			put(to, other, strlen(other));
 		else
-			fwrite(at, 1, (size_t)((end ? end : at + (length ? length : 1)) - at), to);
+			put(to, at, (size_t)((end ? end : at + (length ? length : 1)) - at));
 		at = end ? end : at + (length ? length : 1);
 	}
 }

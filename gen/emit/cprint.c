@@ -11,14 +11,22 @@ struct taken {
 	const char *name;
 	struct taken *next;
 };
-struct naming {                     /* the identifiers given away so far */
-	struct taken *taken[BUCKETS]; /* by name */
-	const char *name, *upper;   /* the model's: what begins with one of these and _ is generated */
+struct identifier {                 /* of a symbol; [1]: of its first derivative */
+	const char *name[2];
+	const char **component[2];  /* of a vector coordinate */
+	bool used[2];               /* by the expressions now being printed */
+};
+struct identifiers {
+	struct taken *taken[BUCKETS]; /* by name: those given away so far */
+	const char *model, *upper;  /* what begins with one of these and _ is generated */
+	int symbols;
+	struct identifier *symbol;  /* by the symbols' numbers */
 };
 
 /* What the generated functions use themselves. */
 static const char *const own_names[] = {
-	"s", "y", "t", "u", "out", "dydt", "residual", "growth", "factor", "left", "node", "which", "start", "slope", "excess", "now", "first",
+	"s", "y", "t", "u", "out", "dydt", "residual", "growth", "factor", "left", "node", "which", "start", "slope",
+	"excess", "now", "first",
 	"fabs", "fmin", "fmax", "pow"   /* of <math.h>, which no function of a spec is named after */
 };
 
@@ -34,50 +42,57 @@ static bool is_load_local(const char *name)
 	static const char *const stem[] = { "wave", "load", "part", "left", "flow", "stage", "driven", "accel" };
 	for (size_t i = 0; i < sizeof stem / sizeof *stem; i++) {
 		size_t length = strlen(stem[i]);
-		if (strncmp(name, stem[i], length) == 0 && name[length] && strspn(name + length, "0123456789") == strlen(name + length))
+		const char *number = strncmp(name, stem[i], length) == 0 ? name + length : "";
+		if (*number && strspn(number, "0123456789") == strlen(number))
 			return true;
 	}
 	return false;
 }
 
-static bool is_taken(const struct naming *naming, const char *name)
+static bool is_taken(const struct identifiers *c, const char *name)
 {
 	for (size_t i = 0; i < sizeof own_names / sizeof *own_names; i++)
 		if (strcmp(name, own_names[i]) == 0)
 			return true;
 	if (is_load_local(name))
 		return true;
-	for (const struct taken *t = naming->taken[name_hash(name) % BUCKETS]; t; t = t->next)
+	for (const struct taken *t = c->taken[name_hash(name) % BUCKETS]; t; t = t->next)
 		if (strcmp(name, t->name) == 0)
 			return true;
 	return false;
 }
 
-static bool is_generated(const struct naming *naming, const char *name)
+static bool is_generated(const struct identifiers *c, const char *name)
 {
-	return begins_with(name, naming->name) || begins_with(name, naming->upper);
+	return begins_with(name, c->model) || begins_with(name, c->upper);
 }
 
-static const char *claim(struct naming *naming, const char *wish)
+static const char *claim(struct identifiers *c, const char *wish)
 {
 	const char *name = may_be_macro(wish) ? format("v%s", wish) : wish;
-	while (is_generated(naming, name) || is_taken(naming, name) || may_be_macro(name))
-		name = is_generated(naming, name) ? format("v%s", name) : format("%s_", name);
-	struct taken **first = &naming->taken[name_hash(name) % BUCKETS], *taken = NEW(struct taken);
+	while (is_generated(c, name) || is_taken(c, name) || may_be_macro(name))
+		name = is_generated(c, name) ? format("v%s", name) : format("%s_", name);
+	struct taken **first = &c->taken[name_hash(name) % BUCKETS], *taken = NEW(struct taken);
 	*taken = (struct taken){ name, *first };
 	*first = taken;
 	return name;
 }
 
-/* C's name of a written state */
-const char *written_local(const struct model *written, int state)
+static const char *component_name(const struct identifiers *c, const struct symbol *s, int component, int order)
 {
-	int coord = written->system.coord[state];
+	return c->symbol[s->number].component[order][component];
+}
+
+const char *c_name(const struct identifiers *c, const struct symbol *s, int order)
+{
+	return c->symbol[s->number].name[order];
+}
+
+const char *written_local(const struct identifiers *c, const struct model *written, int state)
+{
+	int coord = written->system.coord[state], order = state >= written->n;
 	const struct symbol *s = written->frame.coord[coord];
-	bool velocity = state >= written->n;
-	if (s->length)
-		return (velocity ? s->c_component_dot : s->c_component)[coord - s->index];
-	return velocity ? s->c_dot : s->c_name;
+	return s->length ? component_name(c, s, coord - s->index, order) : c_name(c, s, order);
 }
 
 /* s'' as s_dot_dot, q[1] as q1, (a - b)' as a_from_b_dot; a factor in front goes */
@@ -100,31 +115,47 @@ static const char *identifier(const char *name)
 	return text;
 }
 
-void name_for_c(const struct model *model, const char *upper, const char **local)
+static void name_symbols(struct identifiers *c, const struct spec *spec)
 {
-	const struct spec *spec = model->spec;
-	struct naming all = { .name = model->name, .upper = upper }, *naming = &all;
-	for (struct symbol *s = spec->first; s; s = s->next)
+	for (const struct symbol *s = spec->first; s; s = s->next)
 		if (s->kind != SYMBOL_OUTPUT)
-			s->c_name = claim(naming, s->name);
-	for (struct symbol *s = spec->first; s; s = s->next) {
+			c->symbol[s->number].name[0] = claim(c, s->name);
+	for (const struct symbol *s = spec->first; s; s = s->next) {
+		struct identifier *own = &c->symbol[s->number];
 		if (s->kind == SYMBOL_COORD || s->kind == SYMBOL_INPUT)
-			s->c_dot = claim(naming, format("%s_dot", s->name));
-		s->c_component = ARRAY(const char *, (size_t)s->length);
-		s->c_component_dot = ARRAY(const char *, (size_t)s->length);
+			own->name[1] = claim(c, format("%s_dot", s->name));
+		for (int order = 0; order < 2; order++)
+			own->component[order] = ARRAY(const char *, (size_t)s->length);
 		for (int i = 0; i < s->length; i++) {
-			s->c_component[i] = claim(naming, format("%s%d", s->name, i + 1));
-			s->c_component_dot[i] = claim(naming, format("%s%d_dot", s->name, i + 1));
+			own->component[0][i] = claim(c, format("%s%d", s->name, i + 1));
+			own->component[1][i] = claim(c, format("%s%d_dot", s->name, i + 1));
 		}
 	}
+}
+
+/* The state that is a written one; -1: none is */
+static int place_of_written(const struct model *model, int state)
+{
+	if (model->reduction.place)
+		return model->reduction.place[state];
+	return model->relative ? relative_place(model, state) : state;
+}
+
+struct identifiers *identifiers_of(const struct model *model, const char *upper, const char **local)
+{
+	struct identifiers *c = NEW(struct identifiers);
+	*c = (struct identifiers){ .model = model->name, .upper = upper, .symbols = model->spec->symbols };
+	c->symbol = ARRAY(struct identifier, (size_t)c->symbols + 1);
+	name_symbols(c, model->spec);
 	for (int i = 0; i < model->written->system.states; i++) {
-		int place = model->reduction.place ? model->reduction.place[i] : model->relative ? relative_place(model, i) : i;
+		int place = place_of_written(model, i);
 		if (place >= 0)
-			local[place] = written_local(model->written, i);
+			local[place] = written_local(c, model->written, i);
 	}
 	for (int i = 0; i < model->system.states; i++)
 		if (!local[i])
-			local[i] = claim(naming, identifier(model->state_name[i]));
+			local[i] = claim(c, identifier(model->state_name[i]));
+	return c;
 }
 
 bool vanishes(const struct node *node)
@@ -158,36 +189,54 @@ static bool is_plain(const struct node *node)
 	return node->kind == NODE_NAME || node->kind == NODE_TIME || node->kind == NODE_NUMBER;
 }
 
-void mark_used(const struct node *node, bool *math)
+void forget_used(struct identifiers *c)
+{
+	for (int i = 0; i <= c->symbols; i++)
+		c->symbol[i].used[0] = c->symbol[i].used[1] = false;
+}
+
+bool is_used(const struct identifiers *c, const struct symbol *s, int order)
+{
+	return c->symbol[s->number].used[order];
+}
+
+static void mark_symbol(struct identifiers *c, const struct node *name, bool *math)
+{
+	const struct symbol *s = name->symbol;
+	bool *used = c->symbol[s->number].used, before = used[0];
+	used[0] = true;
+	used[1] = used[1] || (s->kind == SYMBOL_INPUT && name->primes);
+	if (!before && s->kind == SYMBOL_LET)
+		mark_used(c, s->value, math);
+}
+
+void mark_used(struct identifiers *c, const struct node *node, bool *math)
 {
 	if (vanishes(node))
 		return;
-	if (node->kind == NODE_NAME && node->symbol->kind == SYMBOL_INPUT && node->primes)
-		node->symbol->slope_used = true;
-	if (node->kind == NODE_NAME && !node->symbol->used) {
-		node->symbol->used = true;
-		if (node->symbol->kind == SYMBOL_LET)
-			mark_used(node->symbol->value, math);
-	}
+	if (node->kind == NODE_NAME)
+		mark_symbol(c, node, math);
 	if (node->kind == NODE_CALL)
 		*math = true;
 	if (node->kind == NODE_POWER && !(small_exponent(node->child[1]) && is_plain(node->child[0])))
 		*math = true;
-	const int read = node->kind == NODE_CALL && node->function == FN_TABLE ? 1 : node->children;  /* the points are printed as numbers */
+	bool table = node->kind == NODE_CALL && node->function == FN_TABLE; /* its points are printed as numbers */
+	const int read = table ? 1 : node->children;
 	for (int i = 0; i < read; i++)
-		mark_used(node->child[i], math);
+		mark_used(c, node->child[i], math);
 }
 
-/* ---- text; `tight` is the precedence that the surroundings need: 0 choice, 1 comparison, 2 sum, 3 product, 4 unary, 5 primary ---- */
+/* ---- text; `tight` is the precedence that the surroundings need: 0 choice, 1 comparison, 2 sum, 3 product, 4 unary,
+ * 5 primary ---- */
 
-static const char *text_of(const struct node *node, int tight);
+static const char *text_of(const struct identifiers *c, const struct node *node, int tight);
 
 static const char *enclose(bool needed, const char *text)
 {
 	return needed ? format("(%s)", text) : text;
 }
 
-static const char *sum_text(const struct node *node, int tight)
+static const char *sum_text(const struct identifiers *c, const struct node *node, int tight)
 {
 	const char *text = "";
 	int shown = 0;
@@ -195,7 +244,7 @@ static const char *sum_text(const struct node *node, int tight)
 	for (int i = 0; i < node->children; i++) {
 		if (vanishes(node->child[i]))
 			continue;
-		const char *term = text_of(node->child[i], 3);
+		const char *term = text_of(c, node->child[i], 3);
 		const char *sign = node->inverse[i] ? (shown ? " - " : "-") : shown ? " + " : "";
 		if (*term == '-' && *sign)
 			term = format("(%s)", term);
@@ -206,20 +255,20 @@ static const char *sum_text(const struct node *node, int tight)
 	return enclose(shown > 1 ? tight > 2 : leading_sign && tight > 3, text);
 }
 
-static const char *product_text(const struct node *node, int tight)
+static const char *product_text(const struct identifiers *c, const struct node *node, int tight)
 {
-	const char *text = text_of(node->child[0], 3);
+	const char *text = text_of(c, node->child[0], 3);
 	for (int i = 1; i < node->children; i++)
-		text = format("%s%s%s", text, node->inverse[i] ? "/" : "*", text_of(node->child[i], 4));
+		text = format("%s%s%s", text, node->inverse[i] ? "/" : "*", text_of(c, node->child[i], 4));
 	return enclose(tight > 3, text);
 }
 
-static const char *power_text(const struct node *node)
+static const char *power_text(const struct identifiers *c, const struct node *node)
 {
 	int exponent = small_exponent(node->child[1]);
-	const char *base = text_of(node->child[0], exponent && is_plain(node->child[0]) ? 5 : 0);
+	const char *base = text_of(c, node->child[0], exponent && is_plain(node->child[0]) ? 5 : 0);
 	if (!exponent || !is_plain(node->child[0]))
-		return format("pow(%s, %s)", base, text_of(node->child[1], 0));
+		return format("pow(%s, %s)", base, text_of(c, node->child[1], 0));
 	const char *text = base;
 	for (int i = 1; i < exponent; i++)
 		text = format("%s*%s", text, base);
@@ -227,95 +276,98 @@ static const char *power_text(const struct node *node)
 }
 
 /* min, max: two by two */
-static const char *fold_text(const char *function, const struct node *node)
+static const char *fold_text(const struct identifiers *c, const char *function, const struct node *node)
 {
-	const char *text = text_of(node->child[0], 0);
+	const char *text = text_of(c, node->child[0], 0);
 	for (int i = 1; i < node->children; i++)
-		text = format("%s(%s, %s)", function, text, text_of(node->child[i], 0));
+		text = format("%s(%s, %s)", function, text, text_of(c, node->child[i], 0));
 	return text;
 }
 
-static void point(const struct node *node, int index, mpq_ptr value)
-{
-	struct collector collector = { .scheme = "exact" };
-	collect_constant(&collector, node->child[index], value);
-}
-
 /* (x < x1 ? y0 + slope*(x - x0) : x < x2 ? ... ): one piece between each two points, the end ones extended */
-static const char *table_text(const struct node *node)
+static const char *table_text(const struct identifiers *c, const struct node *node)
 {
-	const char *x = text_of(node->child[0], 5), *text = "";
-	mpq_t x0, y0, x1, y1;
-	mpq_inits(x0, y0, x1, y1, NULL);
-	for (int k = 1; k + 3 < node->children; k += 2) {
-		point(node, k, x0);
-		point(node, k + 1, y0);
-		point(node, k + 2, x1);
-		point(node, k + 3, y1);
-		const char *condition = k + 5 < node->children ? format("%s < %s ? ", x, finite_text(node->at, x1)) : "";
-		mpq_sub(y1, y1, y0);
-		mpq_sub(x1, x1, x0);
-		mpq_div(y1, y1, x1);
-		text = format("%s%s%s%s + %s*(%s - %s)", text, *text ? " : " : "", condition, finite_text(node->at, y0), finite_text(node->at, y1), x,
-			      finite_text(node->at, x0));
+	const char *x = text_of(c, node->child[0], 5), *text = "";
+	struct straight *piece;
+	int pieces = pieces_of_call(node, &piece);
+	for (const struct straight *p = piece; p < piece + pieces; p++) {
+		const char *condition = p->end ? format("%s < %s ? ", x, finite_text(node->at, p->end)) : "";
+		text = format("%s%s%s%s + %s*(%s - %s)", text, *text ? " : " : "", condition,
+			      finite_text(node->at, p->y), finite_text(node->at, p->slope), x,
+			      finite_text(node->at, p->x));
 	}
-	mpq_clears(x0, y0, x1, y1, NULL);
 	return format("(%s)", text);
 }
 
-static const char *call_text(const struct node *node)
+static const char *sign_text(const struct identifiers *c, const struct node *operand)
+{
+	const char *x = text_of(c, operand, 2);
+	return format("(double)((%s > 0) - (%s < 0))", x, x);
+}
+
+static const char *clip_text(const struct identifiers *c, const struct node *node)
+{
+	const char *x = text_of(c, node->child[0], 0);
+	return format("fmin(fmax(%s, %s), %s)", x, text_of(c, node->child[1], 0), text_of(c, node->child[2], 0));
+}
+
+static const char *call_text(const struct identifiers *c, const struct node *node)
 {
 	if (node->function == FN_TABLE)
-		return table_text(node);
-	const char *x = text_of(node->child[0], 0);
+		return table_text(c, node);
+	const char *x = text_of(c, node->child[0], 0);
 	switch (node->function) {
 	case FN_ABS: return format("fabs(%s)", x);
-	case FN_SGN: return format("(double)((%s > 0) - (%s < 0))", text_of(node->child[0], 2), text_of(node->child[0], 2));
-	case FN_MIN: return fold_text("fmin", node);
-	case FN_MAX: return fold_text("fmax", node);
-	case FN_ATAN2: return format("atan2(%s, %s)", x, text_of(node->child[1], 0));
-	case FN_CLIP:
-		return format("fmin(fmax(%s, %s), %s)", x, text_of(node->child[1], 0), text_of(node->child[2], 0));
-	case FN_DEADZONE:
-		return format("(%s - fmin(fmax(%s, %s), %s))", text_of(node->child[0], 2), x, text_of(node->child[1], 0), text_of(node->child[2], 0));
+	case FN_SGN: return sign_text(c, node->child[0]);
+	case FN_MIN: return fold_text(c, "fmin", node);
+	case FN_MAX: return fold_text(c, "fmax", node);
+	case FN_ATAN2: return format("atan2(%s, %s)", x, text_of(c, node->child[1], 0));
+	case FN_CLIP: return clip_text(c, node);
+	case FN_DEADZONE: return format("(%s - %s)", text_of(c, node->child[0], 2), clip_text(c, node));
 	default: return format("%s(%s)", function_name(node->function), x);
 	}
 }
 
-static const char *choice_text(const struct node *node, int tight)
+static const char *choice_text(const struct identifiers *c, const struct node *node, int tight)
 {
-	return enclose(tight > 0, format("%s ? %s : %s", text_of(node->child[0], 1), text_of(node->child[1], 1), text_of(node->child[2], 0)));
+	const char *condition = text_of(c, node->child[0], 1);
+	const char *then = text_of(c, node->child[1], 1), *otherwise = text_of(c, node->child[2], 0);
+	return enclose(tight > 0, format("%s ? %s : %s", condition, then, otherwise));
 }
 
-static const char *name_text(const struct node *node)
+static const char *comparison_text(const struct identifiers *c, const struct node *node, int tight)
+{
+	static const char *const sign[] = { "<", "<=", ">", ">=", "==", "!=" };
+	const char *left = text_of(c, node->child[0], 2), *right = text_of(c, node->child[1], 2);
+	return enclose(tight > 1, format("%s %s %s", left, sign[node->comparison], right));
+}
+
+static const char *name_text(const struct identifiers *c, const struct node *node)
 {
 	const struct symbol *s = node->symbol;
-	if (node->component)
-		return (node->primes ? s->c_component_dot : s->c_component)[node->component - 1];
-	return node->primes ? s->c_dot : s->c_name;
+	int order = node->primes > 0;
+	return node->component ? component_name(c, s, node->component - 1, order) : c_name(c, s, order);
 }
 
-static const char *text_of(const struct node *node, int tight)
+static const char *text_of(const struct identifiers *c, const struct node *node, int tight)
 {
-	static const char *const comparisons[] = { "<", "<=", ">", ">=", "==", "!=" };
 	if (vanishes(node))
 		return "0.0";
 	switch (node->kind) {
 	case NODE_NUMBER:  return finite_text(node->at, node->number);
 	case NODE_PI:      return "3.141592653589793";
 	case NODE_TIME:    return "t";
-	case NODE_NAME:    return name_text(node);
-	case NODE_SUM:     return sum_text(node, tight);
-	case NODE_PRODUCT: return product_text(node, tight);
-	case NODE_POWER:   return power_text(node);
-	case NODE_CALL:    return call_text(node);
-	case NODE_CHOOSE:  return choice_text(node, tight);
-	default:
-		return enclose(tight > 1, format("%s %s %s", text_of(node->child[0], 2), comparisons[node->comparison], text_of(node->child[1], 2)));
+	case NODE_NAME:    return name_text(c, node);
+	case NODE_SUM:     return sum_text(c, node, tight);
+	case NODE_PRODUCT: return product_text(c, node, tight);
+	case NODE_POWER:   return power_text(c, node);
+	case NODE_CALL:    return call_text(c, node);
+	case NODE_CHOOSE:  return choice_text(c, node, tight);
+	default:           return comparison_text(c, node, tight);
 	}
 }
 
-const char *c_expression(const struct node *node)
+const char *c_expression(const struct identifiers *c, const struct node *node)
 {
-	return text_of(node, 2);
+	return text_of(c, node, 2);
 }

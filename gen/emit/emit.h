@@ -10,10 +10,12 @@
 struct emitter {
 	FILE *to;
 	const struct step *step;
+	const struct kind *kind;    /* of the step */
 	const struct model *model;
 	const struct linear *system;
 	const char *name, *upper;   /* scs, SCS */
 	const char *options;
+	struct identifiers *c;      /* of every symbol */
 	const char **local;         /* per state: the C local that holds it */
 	int phases, growths;        /* in the state */
 	int *phase, *growth;        /* per load: index of its phase and of its growth; -1: none */
@@ -22,6 +24,9 @@ struct emitter {
 };
 /* The only writer: a printf format in which $n is the model's name and $N the same in capitals, $$ a dollar. */
 void say(const struct emitter *e, const char *layout, ...) __attribute__((format(printf, 2, 3)));
+/* the same as text */
+const char *spell(const struct emitter *e, const char *layout, ...) __attribute__((format(printf, 2, 3)));
+void put(FILE *to, const char *text, size_t length);              /* of finished C, as it is */
 
 const char *tree(int terms, const char *const *term, int indent); /* a balanced sum */
 const char *scaled(double factor, const char *operand);           /* operand NULL: 1 */
@@ -43,16 +48,24 @@ void print_apart(FILE *to, const char *text, const char *name);
 
 /* ---- cprint.c: expressions as C ---- */
 
-/* gives every symbol and every state its C identifier */
-void name_for_c(const struct model *model, const char *upper, const char **local);
-const char *written_local(const struct model *written, int state); /* after that: of a written state */
-const char *c_expression(const struct node *node);          /* fit for a term of a sum; accelerations count as 0 */
+/* What every symbol is called in C; `local` receives the same of every state. */
+struct identifiers *identifiers_of(const struct model *model, const char *upper, const char **local);
+const char *c_name(const struct identifiers *c, const struct symbol *s, int order); /* of it, of its first derivative */
+const char *written_local(const struct identifiers *c, const struct model *written, int state); /* of a written state */
+/* fit for a term of a sum; accelerations count as 0 */
+const char *c_expression(const struct identifiers *c, const struct node *node);
 bool vanishes(const struct node *node);                     /* nothing is left when accelerations are 0 */
-/* flags the symbols that it needs; *math: it needs <math.h> */
-void mark_used(const struct node *node, bool *math);
+void forget_used(struct identifiers *c);
+/* the symbols that it needs; *math: it needs <math.h> */
+void mark_used(struct identifiers *c, const struct node *node, bool *math);
+/* since they were forgotten: it, its first derivative */
+bool is_used(const struct identifiers *c, const struct symbol *s, int order);
 
 /* ---- state.c: the state in emitted code ---- */
 
+bool has_jump(const struct emitter *e);
+const char *state_list(const struct model *model);                /* x, x' */
+const char *carried_text(const struct emitter *e);                /* the states that only add up */
 const struct model *speaker(const struct model *model);            /* over whose coordinates its forms are */
 const char *input_name(const struct emitter *e, int input, int order); /* the C name of an input, of its slope */
 const char *stepped_table(const struct emitter *e, const char *table); /* Phi or Gamma of the states as they are kept */
@@ -63,31 +76,143 @@ void emit_locals(const struct emitter *e, const bool *reads);     /* the states 
 void emit_raw_locals(const struct emitter *e, const bool *reads, bool changing);
 void emit_locals_of(const struct emitter *e, const bool *reads, const char *vector);
 const char *step_length(const struct emitter *e);                 /* NAME_H; of tunable models that of the instance s */
-void emit_store(const struct emitter *e, const char *vector, const char *indent); /* s->y from states */
+void emit_set_state(const struct emitter *e, const char *vector, const char *indent); /* s->y from states */
 /* s->y from states that are whole */
-void emit_state_forced(const struct emitter *e, const char *vector, const char *indent);
-void emit_load_state(const struct emitter *e, const char *vector);  /* states from s->y */
+void emit_set_forced_state(const struct emitter *e, const char *vector, const char *indent);
+void emit_get_state(const struct emitter *e, const char *vector);  /* states from s->y */
 /* the same, less their forced part where the step keeps them so */
-void emit_kept_state(const struct emitter *e, const char *vector);
+void emit_get_kept_state(const struct emitter *e, const char *vector);
+/* a table of what a step adds: the instance's own, or the model's */
+const char *of_step(const struct emitter *e, const char *table);
+
+/* ---- expression.c: forms with atoms as C ---- */
+
+struct writer;                      /* declares locals for what several places use as it goes */
+typedef const char *basis_writer(const struct emitter *e, const struct basis *basis); /* NULL: 1 */
+struct writer *writer_new(const struct emitter *e, basis_writer *basis_text, int count, const struct form *const *form);
+const char *write_form(struct writer *w, const struct form *form, int indent);
+
+/* ---- leftover.c: what a scheme leaves over, as a function ---- */
+
+bool many_operators(const struct emitter *e);
+bool any_of(const bool *flag, int count);
+bool reads_slope(const struct emitter *e, const struct reads *r); /* of an input */
+bool takes_slope(const struct emitter *e, const struct reads *r); /* also since ramps go on between nodes of a step */
+struct reads reads_of_leftover(const struct emitter *e);
+bool needs_node(const struct emitter *e, const struct reads *r);  /* it depends on time, of which there are several */
+/* What every function of a step is handed on: the operator, the node, the inputs */
+const char *leftover_parameters(const struct emitter *e, const struct reads *r, bool with_node);
+/* Where a call stands: in a step, whose own inputs are set up there; inside a function that got them; in the outputs */
+enum call_from { FROM_STEP, FROM_INSIDE, FROM_OUTPUTS };
+/* node NULL: none */
+const char *leftover_arguments(const struct emitter *e, const struct reads *r, const char *node, enum call_from from);
+const char *leftover_call(const struct emitter *e, const char *node, const char *state, const char *left,
+			  enum call_from from);
+const char *leftover_of_step(const struct emitter *e);            /* its call at the start of a step, into `left` */
+const char *leftover_of_outputs(const struct emitter *e);
+const char *basis_now(const struct emitter *e, const struct basis *basis); /* of states, inputs, load states, t */
+void emit_leftover(const struct emitter *e);
+
+/* ---- selection.c: which operator of a bank serves now ---- */
+
+void emit_selection(const struct emitter *e);
+const char *selection_call(const struct emitter *e);
+
+/* ---- loops.c: a step with a leftover that loops over its tables ---- */
+
+void emit_loop_tables(const struct emitter *e);
+const char *matrix_text(const struct emitter *e, const char *name); /* its first entry, of the operator that serves */
+const char *vector_name(int stage);
+bool flows_apart(const struct emitter *e);                        /* where a change of the loads may interrupt them */
+void emit_operands(const struct emitter *e);                      /* declares load, input, which the tables multiply */
+/* target = Phi y + loads + inputs over the time of table t; from rest: the loads and inputs alone */
+void emit_flow_loop(const struct emitter *e, int t, bool from_rest, const char *target, const char *margin);
+void emit_combination_loop(const struct emitter *e, const struct action *a);
+void emit_sum_loop(const struct emitter *e, const struct action *a);
+
+/* ---- predict.c: predictors of a quadrature ---- */
+
+void emit_predictor(const struct emitter *e);
+bool adds_driven(const struct emitter *e);                        /* loads or inputs have a part in them */
+
+/* ---- actions.c: the step of a scheme that leaves something over ---- */
+
+void emit_leftover_functions(const struct emitter *e);            /* what is left over; which operator serves */
+void emit_leftover_step(const struct emitter *e);
+void emit_samples(const struct emitter *e);                       /* start, slope: what leftovers read of ramps */
+
+/* ---- tuned_terms.c: factors that the instance has ---- */
+
+bool is_tuned_output(const struct emitter *e, const struct output *output); /* params change it */
 const char *tuned_factor(const struct emitter *e, int row, const struct operand *operand);
 const char *tuned_output(const struct emitter *e, const struct output *output); /* its sum; NULL: no param changes it */
 /* columns of x as in struct tuning */
 bool tuned_output_reads(const struct emitter *e, const struct output *output, int column);
 
-/* ---- left.c: forms with atoms as C ---- */
-
-struct writer;                      /* declares locals for what several places use as it goes */
-struct writer *writer_new(const struct emitter *e,
-			  const char *(*basis_text)(const struct emitter *, const struct basis *), int count,
-			  const struct form *const *form);
-const char *write_form(struct writer *w, const struct form *form, int indent);
-
 /* ---- selftest.c: reference states in closed form, for the target to step to ---- */
 
 void emit_selftest(const struct emitter *e, bool jumps);
 
-/* ---- emit.c, emit_step.c, emit_left.c, emit_out.c, emit_loads.c, emit_time.c, emit_tune.c, emit_rhs.c: a step as C
- * ---- */
+/* ---- kinds.c: what the C of a step has that depends on its kind, in the order of the C ---- */
+
+struct kind {
+	/* The comment at the top: what is approximated; before what a step costs; after it */
+	void (*banner)(const struct emitter *e);
+	const char *step_note;
+	void (*banner_more)(const struct emitter *e);
+	const char *no_jump;                            /* why there never is a NAME_jump; NULL: there may be one */
+	const char *(*no_at)(const struct step *step);  /* why there is no NAME_at; NULL: there is one */
+	/* The header: constants; types before that of the state; in it, before the inputs and at its end; functions */
+	void (*constants)(const struct emitter *e);
+	void (*types)(const struct emitter *e);
+	void (*coefficients)(const struct emitter *e);
+	void (*members)(const struct emitter *e);
+	bool keeps_status;                              /* else NAME_status looks at the state when it is asked */
+	const char *init_note, *status_note;
+	void (*declare_state)(const struct emitter *e); /* of what else the state has */
+	void (*declare_more)(const struct emitter *e);
+	/* The state */
+	bool own_factors;                               /* what depends on h is in s->coeffs; else in tables */
+	void (*start)(const struct emitter *e, const char *s); /* before the first set; s: "s->" or "s." */
+	bool places;                                    /* NAME_place(s) finds what follows from a state that was set */
+	/* Tables and functions */
+	bool (*reads_load)(const struct emitter *e, int load); /* elsewhere than in the system, leftovers, outputs */
+	bool (*reads_phi)(const struct step *step);     /* of what is kept, in a loop */
+	bool (*reads_gamma)(const struct step *step);
+	void (*tables)(const struct emitter *e);
+	void (*pass)(const struct emitter *e);          /* over what changes at a time, or when it is told to */
+	void (*step)(const struct emitter *e);
+	void (*held)(const struct emitter *e);          /* in at: what is held over the step */
+	void (*at)(const struct emitter *e);
+	/* The descriptor: functions that it names; its line of tunable params */
+	void (*wrappers)(const struct emitter *e);
+	void (*params)(const struct emitter *e);
+};
+const struct kind *row_of_kind(enum step_kind kind);
+
+/* ---- banner.c, declarations.c: what a header has ---- */
+
+void emit_banner(const struct emitter *e);
+void banner_linear(const struct emitter *e);                      /* what is approximated, of each kind */
+void banner_leftover(const struct emitter *e);
+void banner_regions(const struct emitter *e);
+void emit_declarations(const struct emitter *e, bool rhs);
+
+/* ---- kept.c: states as written, and as they are kept ---- */
+
+void emit_conversions(const struct emitter *e);
+
+/* ---- access.c: init, set, get, time, status ---- */
+
+void emit_access(const struct emitter *e);
+
+/* ---- descriptor.c: tables for all to read, and the descriptor ---- */
+
+void emit_phi(const struct emitter *e);
+void emit_gamma(const struct emitter *e);
+void emit_descriptor(const struct emitter *e);
+
+/* ---- emit.c, emit_step.c, emit_out.c, emit_loads.c, emit_time.c, emit_tune.c, emit_rhs.c: a step as C ---- */
 
 void emit_header(FILE *to, const struct step *step, const char *options, bool rhs);
 /* header_name NULL: all in one */
@@ -107,6 +232,7 @@ void emit_phase_rates(const struct emitter *e);                   /* rows of ini
 const char *phase_step_text(const struct emitter *e, int load);   /* in one step: a turn, as an initialiser */
 const char *growth_step_text(const struct emitter *e, int load);
 void emit_changes(const struct emitter *e);                       /* loads that change their formula: when */
+void emit_held_leftover(const struct emitter *e);                 /* which operator serves, and what is left over now */
 void emit_passing(const struct emitter *e);                       /* ... and pass(), across a change */
 /* declares i and load states; x[...] = what the series advances */
 void emit_series_vector(const struct emitter *e);
@@ -124,13 +250,6 @@ void emit_region_members(const struct emitter *e);
 void emit_region_start(const struct emitter *e);                  /* in set */
 void emit_region_step(const struct emitter *e);
 void emit_region_at(const struct emitter *e);
-void emit_leftover_functions(const struct emitter *e);            /* what is left over; which operator serves */
-void emit_leftover_step(const struct emitter *e);
-/* in terms of locals: states, inputs, load states, t */
-const char *basis_now(const struct emitter *e, const struct basis *basis);
-const char *leftover_of_step(const struct emitter *e);            /* its call at the start of a step, into `left` */
-const char *leftover_of_outputs(const struct emitter *e);
-void emit_samples(const struct emitter *e);                       /* start, slope: what leftovers read of ramps */
 /* Of models with tunable params: */
 void emit_coefficient_struct(const struct emitter *e);
 void emit_tuning_declarations(const struct emitter *e);
@@ -140,7 +259,6 @@ void banner_tuning(const struct emitter *e);
 void emit_nominal(const struct emitter *e);
 void emit_retune(const struct emitter *e);                        /* the equations, retune, use */
 void emit_tuned_at(const struct emitter *e);                      /* pass, from change to change of the loads; at */
-const char *selection_call(const struct emitter *e);              /* which operator of a bank serves now */
 /* phases and growths from the start of the step to each node */
 void emit_node_phases(const struct emitter *e, const bool *loads);
 void emit_out(const struct emitter *e);
@@ -149,6 +267,6 @@ int place_of_output(const struct model *model, const struct output *output);
 void emit_at(const struct emitter *e);
 void emit_jump(const struct emitter *e);
 void emit_rhs(const struct emitter *e);
-bool rhs_needs_math(const struct model *model);
+bool rhs_needs_math(const struct emitter *e);
 
 #endif

@@ -36,13 +36,8 @@ static const char *direct_term(const struct emitter *e, const struct output *out
 	const char *operand = load_operand(e, load, k);
 	if (!changes(factor, e->system->segments))
 		return scaled(round_rational(factor[0]), operand);
-	const char *text = format("%s_direct[s->segment][%d][%d]", e->name, place_of_output(e->model, output), column);
+	const char *text = spell(e, "$n_direct[s->segment][%d][%d]", place_of_output(e->model, output), column);
 	return operand ? format("%s * %s", text, operand) : text;
-}
-
-static bool is_tuned(const struct emitter *e, const struct output *output)
-{
-	return e->model->tuning && e->model->tuning->output[output - e->model->output] >= 0;
 }
 
 /* The output of a row of that table: NULL behind the last */
@@ -63,42 +58,47 @@ static int changing_rows(const struct emitter *e)
 	const struct output *output;
 	int rows = 0;
 	for (int o = 0; (output = output_of_row(e->model, o)) != NULL; o++)
-		for (int l = 0; l < system->loads && !is_tuned(e, output); l++)
+		for (int l = 0; l < system->loads && !is_tuned_output(e, output); l++)
 			for (int k = 0; k < system->load[l].columns; k++)
 				if (changes((const mpq_t *)output->load[l] + k * system->segments, system->segments))
 					rows = o < e->model->outputs ? e->model->outputs : o + 1;
 	return rows;
 }
 
-/* Factors of the load states, where one changes its formula, in the outputs, and in the derivatives that those read which
- * are not linear */
+/* Factors of the load states, where one changes its formula, in the outputs, and in the derivatives that those read
+ * which are not linear */
 static void emit_direct_factors(const struct emitter *e)
 {
 	const struct linear *system = e->system;
 	const int columns = load_columns(system), rows = changing_rows(e);
 	if (rows == 0)
 		return;
-	fprintf(e->to, "\nstatic const double %s_direct[%d][%s][%d] = {  /* factors of the load states in each segment of time */\n",
-		e->name, system->segments, rows == e->model->outputs ? format("%s_OUTPUTS", e->upper) : format("%d", rows), columns);
+	say(e, "\nstatic const double $n_direct[%d][%s][%d] = {  "
+	       "/* factors of the load states in each segment of time */\n",
+	       system->segments, rows == e->model->outputs ? spell(e, "$N_OUTPUTS") : format("%d", rows), columns);
 	for (int s = 0; s < system->segments; s++) {
-		fputs("  {\n", e->to);
+		say(e, "  {\n");
 		for (int o = 0; o < rows; o++) {
 			const struct output *output = output_of_row(e->model, o);
 			const char *row = "";
 			for (int l = 0; l < system->loads; l++)
-				for (int k = 0; k < system->load[l].columns; k++)
-					row = format("%s%s%s", row, *row ? ", " : "", shortest(round_rational(output->load[l][k * system->segments + s])));
-			fprintf(e->to, "    {%s},  /* %s%s */\n", row, o < e->model->outputs ? "" : "a highest derivative in ", output->name);
+				for (int k = 0; k < system->load[l].columns; k++) {
+					mpq_srcptr factor = output->load[l][k * system->segments + s];
+					row = format("%s%s%s", row, *row ? ", " : "", shortest(round_rational(factor)));
+				}
+			say(e, "    {%s},  /* %s%s */\n", row,
+			       o < e->model->outputs ? "" : "a highest derivative in ", output->name);
 		}
-		fputs("  },\n", e->to);
+		say(e, "  },\n");
 	}
-	fputs("};\n", e->to);
+	say(e, "};\n");
 }
 
 static double output_factor(const struct output *output, mpq_srcptr factor)
 {
 	if (beyond_range(factor))
-		error(output->value->start, NULL, "a factor of output '%s' is beyond the range of %s", output->name, target_name());
+		error(output->value->start, NULL, "a factor of output '%s' is beyond the range of %s", output->name,
+		      target_name());
 	return round_rational(factor);
 }
 
@@ -108,8 +108,8 @@ static const char *linear_output(const struct emitter *e, const struct output *o
 	const char *tuned = tuned_output(e, output);
 	if (tuned)
 		return tuned;
-	const char **term = ARRAY(const char *, (size_t)(system->states + load_columns(system) + 2 * system->inputs + e->model->channels + 1));
-	int terms = 0;
+	int most = system->states + load_columns(system) + 2 * system->inputs + e->model->channels, terms = 0;
+	const char **term = ARRAY(const char *, (size_t)most + 1);
 	for (int i = 0; i < system->states; i++)
 		if (mpq_sgn(output->state[i]) != 0)
 			term[terms++] = scaled(output_factor(output, output->state[i]), e->local[i]);
@@ -120,7 +120,8 @@ static const char *linear_output(const struct emitter *e, const struct output *o
 	for (int k = 0; k < 2; k++)
 		for (int i = 0; i < system->inputs; i++)
 			if (mpq_sgn(output->input[k][i]) != 0)
-				term[terms++] = scaled(output_factor(output, output->input[k][i]), format(k ? "s->slope[%d]" : "s->u[%d]", i));
+				term[terms++] = scaled(output_factor(output, output->input[k][i]),
+						       format(k ? "s->slope[%d]" : "s->u[%d]", i));
 	for (int c = 0; c < e->model->channels; c++)
 		if (mpq_sgn(output->channel[c]) != 0)
 			term[terms++] = scaled(output_factor(output, output->channel[c]), format("left[%d]", c));
@@ -138,12 +139,13 @@ static void mark_tuned_row(const struct emitter *e, const struct output *output,
 		needs->reads[i] = needs->reads[i] || tuned_output_reads(e, output, i);
 	for (int l = 0; l < e->system->loads; l++)
 		for (int k = 0; k < e->system->load[l].columns; k++, column++)
-			needs->loads[l] = needs->loads[l] || (load_operand(e, l, k) && tuned_output_reads(e, output, column));
+			if (load_operand(e, l, k) && tuned_output_reads(e, output, column))
+				needs->loads[l] = true;
 }
 
 static void mark_row(const struct emitter *e, const struct output *output, struct output_needs *needs)
 {
-	if (is_tuned(e, output)) {
+	if (is_tuned_output(e, output)) {
 		mark_tuned_row(e, output, needs);
 		return;
 	}
@@ -184,26 +186,31 @@ static void mark_output(const struct emitter *e, const struct output *output, st
 
 static void emit_input_locals(const struct emitter *e, const bool *wanted)
 {
-	for (const struct symbol *s = e->model->spec->first; s; s = s->next)
-		for (int k = 0; k < 2 && s->kind == SYMBOL_INPUT; k++)
-			if (wanted[s->index + k * e->system->inputs])
-				fprintf(e->to, "    const double %s = s->%s[%d];\n", k ? s->c_dot : s->c_name, k ? "slope" : "u", s->index);
+	for (int i = 0; i < e->system->inputs; i++) {
+		if (wanted[i])
+			say(e, "    const double %s = s->u[%d];\n", input_name(e, i, 0), i);
+		if (wanted[i + e->system->inputs])
+			say(e, "    const double %s = s->slope[%d];\n", input_name(e, i, 1), i);
+	}
 }
 
 void emit_out(const struct emitter *e)
 {
-	FILE *to = e->to;
 	const struct model *model = e->model;
 	if (model->declared_outputs)
 		emit_direct_factors(e);
-	fprintf(to, "\nvoid %s_out(const %s *s, double out[%s_OUTPUTS])\n{\n", e->name, e->name, e->upper);
+	say(e, "\nvoid $n_out(const $n *s, double out[$N_OUTPUTS])\n"
+	       "{\n");
 	if (!model->declared_outputs) {
-		fprintf(to, "    %s_get(s, out);\n}\n", e->name);
+		say(e, "    $n_get(s, out);\n"
+		       "}\n");
 		return;
 	}
 	const int coords = speaker(model)->n;
-	struct output_needs needs = { ARRAY(bool, (size_t)e->system->states), ARRAY(bool, (size_t)e->system->loads),
-				      ARRAY(bool, 2 * (size_t)e->system->inputs), ARRAY(bool, (size_t)coords), false, false };
+	struct output_needs needs = {
+		.reads = ARRAY(bool, (size_t)e->system->states), .loads = ARRAY(bool, (size_t)e->system->loads),
+		.inputs = ARRAY(bool, 2 * (size_t)e->system->inputs), .highest = ARRAY(bool, (size_t)coords)
+	};
 	const struct form **form = ARRAY(const struct form *, (size_t)model->outputs + 1);
 	int forms = 0;
 	for (int i = 0; i < model->outputs; i++) {
@@ -214,19 +221,22 @@ void emit_out(const struct emitter *e)
 	emit_locals(e, needs.reads);
 	emit_input_locals(e, needs.inputs);
 	if (needs.time)
-		fprintf(to, "    const double t = %s_time(s);\n", e->name);
+		say(e, "    const double t = $n_time(s);\n");
 	emit_load_states(e, needs.loads, needs.time);
 	if (needs.left)
-		fprintf(to, "    double left[%d];\n    %s\n", model->channels, leftover_of_outputs(e));
+		say(e, "    double left[%d];\n"
+		       "    %s\n", model->channels, leftover_of_outputs(e));
 	for (int k = 0; k < coords; k++)
 		if (needs.highest[k])
-			fprintf(to, "    const double accel%d = %s;  /* %s%.*s */\n", k + 1, linear_output(e, model->highest[k]), model->coord_name[k],
-				model->frame.coord[k]->highest, "''");
+			say(e, "    const double accel%d = %s;  /* %s%.*s */\n", k + 1,
+			       linear_output(e, model->highest[k]), model->coord_name[k],
+			       model->frame.coord[k]->highest, "''");
 	struct writer *writer = writer_new(e, basis_now, forms, form);
 	for (int i = 0; i < model->outputs; i++) {
 		const struct output *output = &model->output[i];
 		const char *text = output->left ? write_form(writer, output->left, 13) : linear_output(e, output);
-		fprintf(to, "    out[%d] = %s;  /* %s */\n", i, text, output->name);
+		say(e, "    out[%d] = %s;  /* %s */\n", i, text, output->name);
 	}
-	fputs("    (void)s;\n}\n", to);
+	say(e, "    (void)s;\n"
+	       "}\n");
 }

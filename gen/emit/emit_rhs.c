@@ -7,22 +7,15 @@
 /* Params that the equations name */
 static void emit_used_constants(const struct emitter *e)
 {
-	struct collector collector = { .scheme = "exact" };
 	mpq_t value;
 	mpq_init(value);
 	for (const struct symbol *s = e->model->spec->first; s; s = s->next) {
-		if (!s->used || s->kind != SYMBOL_PARAM)
+		if (!is_used(e->c, s, 0) || s->kind != SYMBOL_PARAM)
 			continue;
-		constant_value(&collector, s->collected->cell[0], value);
-		fprintf(e->to, "    const double %s = %s;\n", s->c_name, finite_text(s->at, value));
+		param_value(s, value);
+		say(e, "    const double %s = %s;\n", c_name(e->c, s, 0), finite_text(s->at, value));
 	}
 	mpq_clear(value);
-}
-
-static void clear_used(const struct spec *spec)
-{
-	for (struct symbol *s = spec->first; s; s = s->next)
-		s->used = s->slope_used = false;
 }
 
 static bool uses_time(const struct node *node);
@@ -36,7 +29,8 @@ static bool let_uses_time(struct symbol *let)
 
 static bool uses_time(const struct node *node)
 {
-	bool found = node->kind == NODE_TIME || (node->kind == NODE_NAME && node->symbol->kind == SYMBOL_LET && let_uses_time(node->symbol));
+	bool let = node->kind == NODE_NAME && node->symbol->kind == SYMBOL_LET;
+	bool found = node->kind == NODE_TIME || (let && let_uses_time(node->symbol));
 	for (int i = 0; i < node->children && !found; i++)
 		found = uses_time(node->child[i]);
 	return found;
@@ -63,9 +57,9 @@ static void mark_states(const struct model *written, const struct node *node, bo
 		mark_states(written, node->child[i], reads);
 }
 
-static const char *residual_text(const struct equation *equation)
+static const char *residual_text(const struct identifiers *c, const struct equation *equation)
 {
-	const char *left = c_expression(equation->left), *right = c_expression(equation->right);
+	const char *left = c_expression(c, equation->left), *right = c_expression(c, equation->right);
 	if (vanishes(equation->left))
 		return format("-(%s)", right);
 	return vanishes(equation->right) || strcmp(right, "0.0") == 0 ? left : format("%s - (%s)", left, right);
@@ -77,7 +71,7 @@ static void emit_unread_states(const struct emitter *e, bool read)
 	for (int i = 0; i < e->model->written->n; i++)
 		read = read || e->model->written->system.velocity[i] >= 0;
 	if (!read)
-		fputs("    (void)y;\n", e->to);
+		say(e, "    (void)y;\n");
 }
 
 /* ---- vectors and sketches: the collected equations ---- */
@@ -90,29 +84,26 @@ static const char *join(const char *left, const char *right)
 static const char *wave_expression(const struct basis *basis)
 {
 	const struct wave *wave = basis->wave;
-	const char *text = "", *phase = mpq_sgn(wave->p) ? format(" + %s", shortest(round_rational(wave->p))) : "";
+	const char *text = "", *p = shortest(round_rational(wave->p)), *w = shortest(round_rational(wave->w));
+	const char *phase = mpq_sgn(wave->p) ? format(" + %s", p) : "";
 	for (int k = 0; k < basis->power; k++)
 		text = join(text, "t");
 	if (mpq_sgn(wave->a) != 0)
 		text = join(text, format("exp(%s*t)", shortest(round_rational(wave->a))));
 	if (oscillates(wave))
-		text = join(text, format("%s(%s*t%s)", basis->sine ? "sin" : "cos", shortest(round_rational(wave->w)), phase));
+		text = join(text, format("%s(%s*t%s)", basis->sine ? "sin" : "cos", w, phase));
 	return text;
-}
-
-static bool is_highest(const struct emitter *e, const struct basis *basis)
-{
-	return basis->kind == BASIS_COORD && basis->order == e->model->written->frame.coord[basis->index]->highest;
 }
 
 static const char *basis_expression(const struct emitter *e, const struct basis *basis)
 {
+	const int *velocity = e->model->written->system.velocity;
 	switch (basis->kind) {
 	case BASIS_ONE:   return NULL;
 	case BASIS_PI:    return "3.141592653589793";
 	case BASIS_WAVE:  return wave_expression(basis);
 	case BASIS_INPUT: return format("u[%d]", basis->index + basis->order * e->system->inputs);
-	default:          return format("y[%d]", basis->order ? e->model->written->system.velocity[basis->index] : basis->index);
+	default:          return format("y[%d]", basis->order ? velocity[basis->index] : basis->index);
 	}
 }
 
@@ -120,10 +111,17 @@ static const char *collected_residual(const struct emitter *e, const struct form
 {
 	const char **term = ARRAY(const char *, (size_t)form->terms + 1);
 	int terms = 0;
-	for (int i = 0; i < form->terms; i++)
-		if (!is_highest(e, &form->term[i].basis))
-			term[terms++] = scaled(finite_number(e, form->term[i].factor), basis_expression(e, &form->term[i].basis));
+	for (int i = 0; i < form->terms; i++) {
+		const struct basis *basis = &form->term[i].basis;
+		if (!is_highest(e->model, basis))
+			term[terms++] = scaled(finite_number(e, form->term[i].factor), basis_expression(e, basis));
+	}
 	return terms ? tree(terms, term, 18) : "0.0";
+}
+
+static const struct node *side_of(const struct spec *spec, int equation, int side)
+{
+	return side ? spec->equation[equation].right : spec->equation[equation].left;
 }
 
 /* As text the equations are scalar; vectors and sketches exist only collected. */
@@ -133,15 +131,16 @@ static bool is_scalar_text(const struct model *model)
 		if (s->kind == SYMBOL_MATRIX || (s->kind == SYMBOL_COORD && s->length))
 			return false;
 	for (int i = 0; i < model->spec->equations; i++)
-		if (model->spec->equation[i].left->kind == NODE_MATRIX || model->spec->equation[i].right->kind == NODE_MATRIX)
-			return false;
+		for (int side = 0; side < 2; side++)
+			if (side_of(model->spec, i, side)->kind == NODE_MATRIX)
+				return false;
 	return model->spec->elements == 0 && model->spec->equations == model->n;
 }
 
 static bool reads_states(const struct emitter *e, const struct form *form)
 {
 	for (int i = 0; i < form->terms; i++)
-		if (form->term[i].basis.kind == BASIS_COORD && !is_highest(e, &form->term[i].basis))
+		if (form->term[i].basis.kind == BASIS_COORD && !is_highest(e->model, &form->term[i].basis))
 			return true;
 	return false;
 }
@@ -161,15 +160,6 @@ static bool any_wave(const struct model *model, bool *math)
 }
 
 /* ---- the same with atoms: for all time ---- */
-
-static const struct form *without_highest(const struct emitter *e, const struct form *form)
-{
-	struct form *rest = NEW(struct form);
-	for (int i = 0; i < form->terms; i++)
-		if (!is_highest(e, &form->term[i].basis))
-			rest = form_sum(rest, form_single(form->term[i].basis, form->term[i].factor), false);
-	return rest;
-}
 
 struct rhs_reading { bool time, math; };
 
@@ -206,32 +196,40 @@ static struct rhs_reading reading_of_rhs(const struct model *model)
 	return reading;
 }
 
+static void declare_residuals(const struct emitter *e, int count)
+{
+	say(e, "    double residual[%d];  /* left side minus right side, without the highest derivatives */\n", count);
+}
+
+/* What the function is handed and does not read */
+static void emit_unread(const struct emitter *e, bool time, bool inputs, bool states)
+{
+	if (!time)
+		say(e, "    (void)t;\n");
+	if (inputs)
+		say(e, "    (void)u;\n");
+	emit_unread_states(e, states);
+}
+
 static void emit_whole_residuals(const struct emitter *e)
 {
 	const struct model *model = e->model;
 	const struct form **form = whole_forms(model);
 	for (int i = 0; i < model->n; i++)
-		form[i] = without_highest(e, form[i]);
+		form[i] = without_highest(model, form[i]);
 	struct writer *writer = writer_new(e, basis_expression, model->n, form);
-	fprintf(e->to, "    double residual[%d];  /* left side minus right side, without the highest derivatives */\n", model->n);
+	declare_residuals(e, model->n);
 	for (int i = 0; i < model->n; i++) {
 		const char *text = write_form(writer, form[i], 18);
-		fprintf(e->to, "    residual[%d] = %s;\n", i, text);
+		say(e, "    residual[%d] = %s;\n", i, text);
 	}
-	if (!reading_of_rhs(model).time)
-		fputs("    (void)t;\n", e->to);
-	if (e->system->inputs)
-		fputs("    (void)u;\n", e->to);
 	const struct reads reads = reads_of(model, model->n, form);
-	bool read = false;
-	for (int i = 0; i < model->system.states; i++)
-		read = read || reads.state[i];
-	emit_unread_states(e, read);
+	emit_unread(e, reading_of_rhs(model).time, e->system->inputs > 0, any_of(reads.state, model->system.states));
 }
 
-bool rhs_needs_math(const struct model *any)
+bool rhs_needs_math(const struct emitter *e)
 {
-	const struct model *model = any->written;
+	const struct model *model = e->model->written;
 	bool math = false;
 	if (!is_scalar_text(model) && model->whole)
 		return reading_of_rhs(model).math;
@@ -239,106 +237,112 @@ bool rhs_needs_math(const struct model *any)
 		any_wave(model, &math);
 		return math;
 	}
-	clear_used(model->spec);
+	forget_used(e->c);
 	for (int i = 0; i < model->spec->equations; i++) {
-		mark_used(model->spec->equation[i].left, &math);
-		mark_used(model->spec->equation[i].right, &math);
+		mark_used(e->c, model->spec->equation[i].left, &math);
+		mark_used(e->c, model->spec->equation[i].right, &math);
 	}
 	return math;
 }
 
+/* if (t < ...) {, } else if ..., } else { */
+static void emit_segment(const struct emitter *e, int segment)
+{
+	if (segment + 1 < e->system->segments)
+		say(e, "    %sif (t < $n_change[%d].hi) {\n", segment ? "} else " : "", segment);
+	else
+		say(e, "    } else {\n");
+}
+
 static void emit_collected_residuals(const struct emitter *e)
 {
-	bool math = false, read = false;
-	fprintf(e->to, "    double residual[%d];  /* left side minus right side, without the highest derivatives */\n", e->model->written->n);
-	for (int segment = 0; segment < e->system->segments; segment++) {
-		if (e->system->segments > 1 && segment + 1 < e->system->segments)
-			fprintf(e->to, "    %sif (t < %s_change[%d].hi) {\n", segment ? "} else " : "", e->name, segment);
-		else if (e->system->segments > 1)
-			fputs("    } else {\n", e->to);
-		for (int i = 0; i < e->model->written->n; i++)
-			fprintf(e->to, "    %sresidual[%d] = %s;\n", e->system->segments > 1 ? "    " : "", i,
-				collected_residual(e, e->model->snapshot[segment].residual[i].form));
+	int rows = e->model->written->n, segments = e->system->segments;
+	bool math = false, several = segments > 1, read = false;
+	declare_residuals(e, rows);
+	for (int s = 0; s < segments; s++) {
+		const struct residual *residual = e->model->snapshot[s].residual;
+		if (several)
+			emit_segment(e, s);
+		for (int i = 0; i < rows; i++) {
+			const char *text = collected_residual(e, residual[i].form);
+			say(e, "    %sresidual[%d] = %s;\n", several ? "    " : "", i, text);
+			read = read || reads_states(e, residual[i].form);
+		}
 	}
-	if (e->system->segments > 1)
-		fputs("    }\n", e->to);
-	if (!any_wave(e->model->written, &math) && e->system->segments == 1)
-		fputs("    (void)t;\n", e->to);
-	if (e->system->inputs)
-		fputs("    (void)u;\n", e->to);
-	for (int i = 0; i < e->model->written->n * e->system->segments; i++)
-		read = read || reads_states(e, e->model->snapshot[i / e->model->written->n].residual[i % e->model->written->n].form);
-	emit_unread_states(e, read);
+	if (several)
+		say(e, "    }\n");
+	emit_unread(e, any_wave(e->model->written, &math) || several, e->system->inputs > 0, read);
 }
 
 /* ---- scalar equations: their own text ---- */
 
+/* Returns whether there is any */
+static bool emit_rhs_inputs(const struct emitter *e)
+{
+	bool inputs = false;
+	for (const struct symbol *s = e->model->spec->first; s; s = s->next) {
+		if (!is_used(e->c, s, 0) || s->kind != SYMBOL_INPUT)
+			continue;
+		say(e, "    const double %s = u[%d];\n", c_name(e->c, s, 0), s->index);
+		if (is_used(e->c, s, 1))
+			say(e, "    const double %s = u[%d];\n", c_name(e->c, s, 1), e->system->inputs + s->index);
+		say(e, "    (void)%s;\n", c_name(e->c, s, 0));
+		inputs = true;
+	}
+	return inputs;
+}
+
 static void emit_rhs_locals(const struct emitter *e, const bool *reads)
 {
-	const struct spec *spec = e->model->spec;
-	bool inputs = false;
 	emit_used_constants(e);
 	for (int i = 0; i < e->model->written->system.states; i++)
 		if (reads[i])
-			fprintf(e->to, "    const double %s = y[%d];\n", written_local(e->model->written, i), i);
-	for (const struct symbol *s = spec->first; s; s = s->next) {
-		if (s->used && s->kind == SYMBOL_INPUT)
-			fprintf(e->to, "    const double %s = u[%d];\n", s->c_name, s->index);
-		if (s->used && s->kind == SYMBOL_INPUT && s->slope_used)
-			fprintf(e->to, "    const double %s = u[%d];\n", s->c_dot, e->system->inputs + s->index);
-		if (s->used && s->kind == SYMBOL_INPUT)
-			fprintf(e->to, "    (void)%s;\n", s->c_name);
-		inputs = inputs || (s->used && s->kind == SYMBOL_INPUT);
-	}
-	if (e->system->inputs && !inputs)
-		fputs("    (void)u;\n", e->to);
-	for (const struct symbol *s = spec->first; s; s = s->next)
-		if (s->used && s->kind == SYMBOL_LET)
-			fprintf(e->to, "    const double %s = %s;\n", s->c_name, c_expression(s->value));
-}
-
-/* Highest derivatives: minus the residuals through W^-1, W what multiplies the highest derivatives. */
-static void emit_derivatives(const struct emitter *e)
-{
-	const struct linear *written = &e->model->written->system;
-	int n = written->n, column;
-	mpq_t *inverse = rationals((size_t)(n * n));
-	leading_inverse(written, inverse, &column);
-	for (int i = 0; i < n; i++)
-		if (written->velocity[i] >= 0)
-			fprintf(e->to, "    dydt[%d] = y[%d];\n", i, written->velocity[i]);
-	for (int i = 0; i < n; i++) {
-		const char **term = ARRAY(const char *, (size_t)n);
-		int terms = 0, state = written->velocity[i] >= 0 ? written->velocity[i] : i;
-		for (int j = 0; j < n; j++)
-			if (mpq_sgn(inverse[i * n + j]) != 0)
-				term[terms++] = scaled(-finite_number(e, inverse[i * n + j]), format("residual[%d]", j));
-		fprintf(e->to, "    dydt[%d] = %s;  /* the inverse mass matrix times them */\n", state, tree(terms, term, 12));
-	}
+			say(e, "    const double %s = y[%d];\n", written_local(e->c, e->model->written, i), i);
+	if (!emit_rhs_inputs(e) && e->system->inputs)
+		say(e, "    (void)u;\n");
+	for (const struct symbol *s = e->model->spec->first; s; s = s->next)
+		if (s->kind == SYMBOL_LET && is_used(e->c, s, 0))
+			say(e, "    const double %s = %s;\n", c_name(e->c, s, 0), c_expression(e->c, s->value));
 }
 
 static void emit_written_residuals(const struct emitter *e)
 {
 	const struct spec *spec = e->model->spec;
-	bool math = false, *reads = ARRAY(bool, (size_t)e->model->written->system.states), time = false;
-	clear_used(spec);
+	int states = e->model->written->system.states;
+	bool math = false, *reads = ARRAY(bool, (size_t)states), time = false;
+	forget_used(e->c);
 	for (int i = 0; i < spec->equations; i++)
 		for (int side = 0; side < 2; side++) {
-			const struct node *node = side ? spec->equation[i].right : spec->equation[i].left;
-			mark_used(node, &math);
+			const struct node *node = side_of(spec, i, side);
+			mark_used(e->c, node, &math);
 			mark_states(e->model->written, node, reads);
 			time = time || uses_time(node);
 		}
 	emit_rhs_locals(e, reads);
-	fprintf(e->to, "    double residual[%d];  /* left side minus right side, without the highest derivatives */\n", spec->equations);
+	declare_residuals(e, spec->equations);
 	for (int i = 0; i < spec->equations; i++)
-		fprintf(e->to, "    residual[%d] = %s;\n", i, residual_text(&spec->equation[i]));
-	if (!time)
-		fputs("    (void)t;\n", e->to);
-	bool read = false;
-	for (int i = 0; i < e->model->written->system.states; i++)
-		read = read || reads[i];
-	emit_unread_states(e, read);
+		say(e, "    residual[%d] = %s;\n", i, residual_text(e->c, &spec->equation[i]));
+	emit_unread(e, time, false, any_of(reads, states));
+}
+
+/* ---- the highest derivatives ---- */
+
+static void emit_derivatives(const struct emitter *e)
+{
+	const struct linear *written = &e->model->written->system;
+	const struct coefficient *factor = derivatives_of_residuals(e->model);
+	int n = written->n;
+	for (int i = 0; i < n; i++)
+		if (written->velocity[i] >= 0)
+			say(e, "    dydt[%d] = y[%d];\n", i, written->velocity[i]);
+	for (int i = 0; i < n; i++) {
+		const char **term = ARRAY(const char *, (size_t)n);
+		int terms = 0, state = written->velocity[i] >= 0 ? written->velocity[i] : i;
+		for (int j = 0; j < n; j++)
+			if (!factor[i * n + j].zero)
+				term[terms++] = scaled(factor[i * n + j].value, format("residual[%d]", j));
+		say(e, "    dydt[%d] = %s;  /* the inverse mass matrix times them */\n", state, tree(terms, term, 12));
+	}
 }
 
 void emit_rhs(const struct emitter *stepped)
@@ -348,8 +352,9 @@ void emit_rhs(const struct emitter *stepped)
 		e->model = e->model->written;
 		e->system = &e->model->system;
 	}
-	fputs("\n/* The equations as written, for checking against any ODE solver. */\n", e->to);
-	fprintf(e->to, "void %s_rhs(double t, const double y[], %sdouble dydt[])\n{\n", e->name, e->system->inputs ? "const double u[], " : "");
+	say(e, "\n/* The equations as written, for checking against any ODE solver. */\n"
+	       "void $n_rhs(double t, const double y[], %sdouble dydt[])\n"
+	       "{\n", e->system->inputs ? "const double u[], " : "");
 	if (is_scalar_text(e->model->written))
 		emit_written_residuals(e);
 	else if (e->model->whole)
@@ -357,5 +362,5 @@ void emit_rhs(const struct emitter *stepped)
 	else
 		emit_collected_residuals(e);
 	emit_derivatives(e);
-	fputs("}\n", e->to);
+	say(e, "}\n");
 }

@@ -27,11 +27,11 @@ static const char *operand_text(const struct emitter *e, const struct operand *o
 static const char *term_text(const struct emitter *e, const struct assignment *a, const struct product *p)
 {
 	const char *operand = operand_text(e, &p->operand);
-	if (e->step->program->tuned)
-		return operand ? format("%s * %s", tuned_factor(e, a->target, &p->operand), operand) : tuned_factor(e, a->target, &p->operand);
-	if (p->operand.kind != OPERAND_LOAD || e->system->segments == 1)
+	bool tuned = e->step->program->tuned;
+	if (!tuned && (p->operand.kind != OPERAND_LOAD || e->system->segments == 1))
 		return scaled(p->factor->value, operand);
-	const char *factor = format("factor[%d][%d]", a->target, p->operand.index);
+	const char *factor = tuned ? tuned_factor(e, a->target, &p->operand)
+				   : format("factor[%d][%d]", a->target, p->operand.index);
 	return operand ? format("%s * %s", factor, operand) : factor;
 }
 
@@ -58,22 +58,28 @@ static const char *second_sum_text(const struct emitter *e, const struct assignm
 static void emit_compensated(const struct emitter *e, const struct assignment *a, const char *target)
 {
 	const char *second = a->carried ? NULL : second_sum_text(e, a), *sum = sum_text(e, a, 14);
-	fprintf(e->to, "    %s = pl_accumulate(%s,  /* %s */\n              %s,\n              %s, &s->%s[%d]);\n", target, e->local[a->target],
-		e->model->state_name[a->target], sum, second ? second : "0.0", a->carried ? "carry" : "rest", a->carried ? e->step->carry[a->target] : a->target);
+	say(e, "    %s = pl_accumulate(%s,  /* %s */\n"
+	       "              %s,\n"
+	       "              %s, &s->%s[%d]);\n",
+	    target, e->local[a->target], e->model->state_name[a->target], sum, second ? second : "0.0",
+	    a->carried ? "carry" : "rest", a->carried ? e->step->carry[a->target] : a->target);
 }
 
 static void emit_assignment(const struct emitter *e, const struct assignment *a)
 {
 	const struct program *program = e->step->program;
-	const char *target = program->in_order ? e->local[a->target] : format("s->y[%d]", a->target), *name = e->model->state_name[a->target];
+	const char *target = program->in_order ? e->local[a->target] : format("s->y[%d]", a->target);
+	const char *old = e->local[a->target], *name = e->model->state_name[a->target];
 	if (program->compensated || a->carried)
 		emit_compensated(e, a, target);
 	else if (program->in_order)
-		fprintf(e->to, "    %s += %s;\n", target, sum_text(e, a, 10));
+		say(e, "    %s += %s;\n", target, sum_text(e, a, 10));
+	else if (a->added && a->terms > 1)
+		say(e, "    %s = %s + (%s);  /* %s */\n", target, old, sum_text(e, a, 14), name);
 	else if (a->added)
-		fprintf(e->to, a->terms > 1 ? "    %s = %s + (%s);  /* %s */\n" : "    %s = %s + %s;  /* %s */\n", target, e->local[a->target], sum_text(e, a, 14), name);
+		say(e, "    %s = %s + %s;  /* %s */\n", target, old, sum_text(e, a, 14), name);
 	else
-		fprintf(e->to, "    %s = %s;  /* %s */\n", target, sum_text(e, a, 14), name);
+		say(e, "    %s = %s;  /* %s */\n", target, sum_text(e, a, 14), name);
 }
 
 static bool *loads_of_step(const struct emitter *e)
@@ -89,8 +95,8 @@ static void emit_keep_inputs(const struct emitter *e)
 {
 	for (int i = 0; i < e->system->inputs; i++) {
 		if (e->system->input[i].first_order)
-			fprintf(e->to, "    s->slope[%d] = (u[%d] - s->u[%d]) / %s;\n", i, i, i, step_length(e));
-		fprintf(e->to, "    s->u[%d] = u[%d];\n", i, i);
+			say(e, "    s->slope[%d] = (u[%d] - s->u[%d]) / %s;\n", i, i, i, step_length(e));
+		say(e, "    s->u[%d] = u[%d];\n", i, i);
 	}
 }
 
@@ -106,24 +112,27 @@ static bool any_load_term(const struct program *program)
 static void emit_load_factors(const struct emitter *e)
 {
 	const struct table *table = e->step->branch->whole;
-	double *value = ARRAY(double, (size_t)(table->states * table->columns));
-	int columns = 0;
+	bool loops = e->step->program->loops;
+	int columns = 0, cells = table->states * table->columns;
+	double *value = ARRAY(double, (size_t)cells);
 	for (int k = 0; k < table->columns; k++)
-		columns += !e->step->program->loops || !is_forced(e->step, k);
+		columns += !loops || !is_forced(e->step, k);
 	if (columns == 0)
 		return;
-	fprintf(e->to, "\n/* Factors of the load states in each segment of time */\nstatic const double %s_load_factor[%d][%s_STATES][%d] = {\n",
-		e->name, e->system->segments, e->upper, columns);
+	say(e, "\n"
+	       "/* Factors of the load states in each segment of time */\n"
+	       "static const double $n_load_factor[%d][$N_STATES][%d] = {\n",
+	    e->system->segments, columns);
 	for (int s = 0; s < e->system->segments; s++) {
 		int count = 0;
-		for (int i = 0; i < table->states * table->columns; i++)
-			if (!e->step->program->loops || !is_forced(e->step, i % table->columns))
-				value[count++] = table->load[s * table->states * table->columns + i].value;
-		fputs("  {\n", e->to);
+		for (int i = 0; i < cells; i++)
+			if (!loops || !is_forced(e->step, i % table->columns))
+				value[count++] = table->load[s * cells + i].value;
+		say(e, "  {\n");
 		emit_number_rows(e, table->states, columns, value, e->model->state_name);
-		fputs("  },\n", e->to);
+		say(e, "  },\n");
 	}
-	fputs("};\n", e->to);
+	say(e, "};\n");
 }
 
 /* What --reduce has left nothing of for it to act on: it has no phase and no growth, and its factors are 0. */
@@ -141,60 +150,82 @@ static bool is_of_gone_load(const struct emitter *e, int column)
 	return is_gone(e, l);
 }
 
-/* vector[...] = the operands of the columns of a table; then y[i] += table[i][...] vector[...] */
-static void emit_columns(const struct emitter *e, const char *table, const char *vector, enum operand_kind kind, int columns)
+/* The operands of the columns of a table that the step reads; returns how many */
+static int read_columns(const struct emitter *e, enum operand_kind kind, int columns, const char **operand)
 {
 	int count = 0;
-	for (int k = 0; k < columns; k++)
-		count += kind != OPERAND_LOAD || !is_forced(e->step, k);
-	columns = count;
-	if (columns == 0)
-		return;
-	fprintf(e->to, "    const double %s[%d] = {", vector, columns);
-	for (int k = 0, shown = 0; shown < columns; k++) {
+	for (int k = 0; k < columns; k++) {
+		const char *text = operand_text(e, &(struct operand){ kind, k });
+		if (kind == OPERAND_LOAD && is_forced(e->step, k))
+			continue;
 		bool gone = kind == OPERAND_LOAD && is_of_gone_load(e, k);
-		const char *operand = operand_text(e, &(struct operand){ kind, k });
-		if (kind != OPERAND_LOAD || !is_forced(e->step, k))
-			fprintf(e->to, "%s%s", shown++ ? ", " : "", gone ? "0.0" : operand ? operand : "1.0");
+		operand[count++] = gone ? "0.0" : text ? text : "1.0";
 	}
-	fprintf(e->to, "};\n    for (i = 0; i < %s_STATES; i++)\n        for (j = 0; j < %d; j++)\n            y[i] += %s[i][j] * %s[j];\n", e->upper, columns,
-		table, vector);
+	return count;
+}
+
+/* vector[...] = the operands of the columns of a table; then y[i] += table[i][...] vector[...] */
+static void emit_columns(const struct emitter *e, const char *table, const char *vector, enum operand_kind kind,
+			 int columns)
+{
+	const char **operand = ARRAY(const char *, (size_t)columns);
+	int count = read_columns(e, kind, columns, operand);
+	if (count == 0)
+		return;
+	say(e, "    const double %s[%d] = {", vector, count);
+	for (int k = 0; k < count; k++)
+		say(e, "%s%s", k ? ", " : "", operand[k]);
+	say(e, "};\n"
+	       "    for (i = 0; i < $N_STATES; i++)\n"
+	       "        for (j = 0; j < %d; j++)\n"
+	       "            y[i] += %s[i][j] * %s[j];\n",
+	    count, table, vector);
 }
 
 void emit_set_aside(const struct emitter *e)
 {
+	const int *carry = e->step->carry;
 	for (int i = 0; i < e->system->states; i++)
-		if (e->step->carry[i] >= 0)
-			fprintf(e->to, "    const double far%d = s->y[%d];  /* nothing reads %s: over the step it is 0 */\n", e->step->carry[i], i, e->model->state_name[i]);
+		if (carry[i] >= 0)
+			say(e, "    const double far%d = s->y[%d];  /* nothing reads %s: over the step it is 0 */\n",
+			    carry[i], i, e->model->state_name[i]);
 	for (int i = 0; i < e->system->states; i++)
-		if (e->step->carry[i] >= 0)
-			fprintf(e->to, "    s->y[%d] = 0.0;\n", i);
+		if (carry[i] >= 0)
+			say(e, "    s->y[%d] = 0.0;\n", i);
 }
 
 void emit_take_back(const struct emitter *e)
 {
+	const int *carry = e->step->carry;
 	for (int i = 0; i < e->system->states; i++)
-		if (e->step->carry[i] >= 0)
-			fprintf(e->to, "    s->y[%d] = pl_accumulate(far%d, s->y[%d], 0.0, &s->carry[%d]);\n", i, e->step->carry[i], i, e->step->carry[i]);
+		if (carry[i] >= 0)
+			say(e, "    s->y[%d] = pl_accumulate(far%d, s->y[%d], 0.0, &s->carry[%d]);\n",
+			    i, carry[i], i, carry[i]);
 }
 
 /* A large model steps by loops over its tables: text that nobody would read is of no use. */
 static void emit_looped_step(const struct emitter *e)
 {
-	FILE *to = e->to;
-	const char *n = e->name, *N = e->upper;
 	const struct table *table = e->step->branch->whole;
-	bool *loads = ARRAY(bool, (size_t)e->system->loads);
-	fprintf(to, "    double y[%s_STATES];\n    int i, j;\n", N);
+	bool *loads = ARRAY(bool, (size_t)e->system->loads), delta = e->step->form == FORM_DELTA;
+	say(e, "    double y[$N_STATES];\n"
+	       "    int i, j;\n");
 	emit_set_aside(e);
 	for (int l = 0, column = 0; l < e->system->loads; column += e->system->load[l++].columns)
 		loads[l] = !is_forced(e->step, column) && !is_gone(e, l);
 	emit_load_states(e, loads, false);
-	fprintf(to, "    for (i = 0; i < %s_STATES; i++) {\n        y[i] = 0.0;\n        for (j = 0; j < %s_STATES; j++)\n", N, N);
-	fprintf(to, "            y[i] += %s[i][j] * s->y[j];\n    }\n", e->step->form == FORM_DELTA ? format("%s_increment", n) : stepped_table(e, "Phi"));
-	emit_columns(e, format("%s_load_factor[%s]", n, e->system->segments > 1 ? "s->segment" : "0"), "load", OPERAND_LOAD, table->columns);
+	say(e, "    for (i = 0; i < $N_STATES; i++) {\n"
+	       "        y[i] = 0.0;\n"
+	       "        for (j = 0; j < $N_STATES; j++)\n"
+	       "            y[i] += %s[i][j] * s->y[j];\n"
+	       "    }\n",
+	    delta ? format("%s_increment", e->name) : stepped_table(e, "Phi"));
+	const char *segment = e->system->segments > 1 ? "s->segment" : "0";
+	emit_columns(e, format("%s_load_factor[%s]", e->name, segment), "load", OPERAND_LOAD, table->columns);
 	emit_columns(e, stepped_table(e, "Gamma"), "input", OPERAND_INPUT, table->inputs);
-	fprintf(to, "    for (i = 0; i < %s_STATES; i++)\n        s->y[i] %s y[i];\n", N, e->step->form == FORM_DELTA ? "+=" : "=");
+	say(e, "    for (i = 0; i < $N_STATES; i++)\n"
+	       "        s->y[i] %s y[i];\n",
+	    delta ? "+=" : "=");
 	emit_take_back(e);
 }
 
@@ -209,19 +240,20 @@ static void emit_plain_step(const struct emitter *e)
 	emit_raw_locals(e, program->reads, program->in_order);
 	emit_load_states(e, loads_of_step(e), false);
 	if (e->system->segments > 1 && any_load_term(program) && !program->tuned)
-		fprintf(e->to, "    const double (*const factor)[%d] = %s_load_factor[s->segment];\n", e->step->branch->whole->columns, e->name);
+		say(e, "    const double (*const factor)[%d] = $n_load_factor[s->segment];\n",
+		    e->step->branch->whole->columns);
 	for (int i = 0; i < program->assignments; i++)
 		emit_assignment(e, &program->assignment[i]);
 	for (int i = 0; i < e->system->states && program->in_order; i++)
 		if (program->reads[i])
-			fprintf(e->to, "    s->y[%d] = %s;\n", i, e->local[i]);
+			say(e, "    s->y[%d] = %s;\n", i, e->local[i]);
 }
 
 void emit_step_end(const struct emitter *e)
 {
 	emit_keep_inputs(e);
 	emit_load_advance(e, NULL);
-	fputs("    s->k++;\n", e->to);
+	say(e, "    s->k++;\n");
 }
 
 const char *step_parameters(const struct emitter *e)
@@ -229,41 +261,66 @@ const char *step_parameters(const struct emitter *e)
 	return format("%s *s%s", e->name, e->system->inputs ? format(", const double u[%s_INPUTS]", e->upper) : "");
 }
 
-/* The forced part changes with the loads; pass() does that for the changes inside the step. */
-static void emit_forced_changes(const struct emitter *e, const char *u)
+/* Into y: the state after a step in which the loads change their formula, from pass() */
+static void emit_interrupted_step(const struct emitter *e, const char *segment, const char *result, const char *whole)
 {
-	const char *n = e->name, *changing = e->step->forced->changes ? format("        %s_rebase(s);\n", e->name) : "";
-	int changes = e->system->segments - 1;
-	fprintf(e->to, "    int segment = s->segment;\n    if (segment < %d && %s_until(s, segment) < %s) {\n", changes, n, step_length(e));
-	fprintf(e->to, "        double y[%s_STATES];\n        int i;\n        segment = %s_pass(s, %s%s, 0, y);\n", e->upper, n, u, step_length(e));
-	emit_store(e, "y", "        ");
-	fprintf(e->to, "    } else {\n        %s_plain_step(s%s);\n    }\n", n, *u ? ", u" : "");
+	const char *h = step_length(e), *u = e->system->inputs ? "u, " : "";
+	say(e, "    if (%s < %d && $n_until(s, %s) < %s) {\n"
+	       "        double y[$N_STATES];\n"
+	       "        int i;\n"
+	       "        %s$n_pass(s, %s%s, %sy);\n",
+	    segment, e->system->segments - 1, segment, h, result, u, h, whole);
+	emit_set_state(e, "y", "        ");
+	say(e, "    } else {\n"
+	       "        $n_plain_step(s%s);\n"
+	       "    }\n",
+	    e->system->inputs ? ", u" : "");
 	emit_step_end(e);
-	fprintf(e->to, "    s->segment = segment;\n    while (s->segment < %d && %s_until(s, s->segment) <= 1e-18 * %s) {\n%s        s->segment++;\n    }\n}\n", changes, n,
-		step_length(e), changing);
+}
+
+/* The forced part changes with the loads; pass() does that for the changes inside the step. */
+static void emit_forced_changes(const struct emitter *e)
+{
+	say(e, "    int segment = s->segment;\n");
+	emit_interrupted_step(e, "segment", "segment = ", "0, ");
+	say(e, "    s->segment = segment;\n"
+	       "    while (s->segment < %d && $n_until(s, s->segment) <= 1e-18 * %s) {\n",
+	    e->system->segments - 1, step_length(e));
+	if (e->step->forced->changes)
+		say(e, "        $n_rebase(s);\n");
+	say(e, "        s->segment++;\n"
+	       "    }\n");
+}
+
+static void emit_plain_changes(const struct emitter *e)
+{
+	emit_interrupted_step(e, "s->segment", "", "");
+	say(e, "    while (s->segment < %d && $n_until(s, s->segment) <= 1e-18 * %s)\n"
+	       "        s->segment++;\n",
+	    e->system->segments - 1, step_length(e));
 }
 
 static void emit_changing_step(const struct emitter *e)
 {
-	const char *n = e->name, *u = e->system->inputs ? "u, " : "";
-	int changes = e->system->segments - 1;
 	if (any_load_term(e->step->program) && !e->step->program->loops && !e->step->program->tuned)
 		emit_load_factors(e);
-	fprintf(e->to, "\nstatic void %s_plain_step(%s)\n{\n", e->name, step_parameters(e));
+	say(e, "\n"
+	       "static void $n_plain_step(%s)\n"
+	       "{\n",
+	    step_parameters(e));
 	emit_plain_step(e);
 	if (e->system->inputs)
-		fputs("    (void)u;\n", e->to);
-	fprintf(e->to, "}\n\nvoid %s_step(%s)\n{\n", n, step_parameters(e));
-	if (e->step->forced) {
-		emit_forced_changes(e, u);
-		return;
-	}
-	fprintf(e->to, "    if (s->segment < %d && %s_until(s, s->segment) < %s) {\n", changes, n, step_length(e));
-	fprintf(e->to, "        double y[%s_STATES];\n        int i;\n        %s_pass(s, %s%s, y);\n", e->upper, n, u, step_length(e));
-	emit_store(e, "y", "        ");
-	fprintf(e->to, "    } else {\n        %s_plain_step(s%s);\n    }\n", n, *u ? ", u" : "");
-	emit_step_end(e);
-	fprintf(e->to, "    while (s->segment < %d && %s_until(s, s->segment) <= 1e-18 * %s)\n        s->segment++;\n}\n", changes, n, step_length(e));
+		say(e, "    (void)u;\n");
+	say(e, "}\n"
+	       "\n"
+	       "void $n_step(%s)\n"
+	       "{\n",
+	    step_parameters(e));
+	if (e->step->forced)
+		emit_forced_changes(e);
+	else
+		emit_plain_changes(e);
+	say(e, "}\n");
 }
 
 /* Phi - I, for a step that loops */
@@ -273,9 +330,9 @@ static void emit_increments(const struct emitter *e)
 	double *value = ARRAY(double, (size_t)(n * n));
 	for (int i = 0; i < n * n; i++)
 		value[i] = e->step->branch->whole->increment[i].value;
-	fprintf(e->to, "\nstatic const double %s_increment[%s_STATES][%s_STATES] = {  /* Phi - I, rounded as it is */\n", e->name, e->upper, e->upper);
+	say(e, "\nstatic const double $n_increment[$N_STATES][$N_STATES] = {  /* Phi - I, rounded as it is */\n");
 	emit_number_rows(e, n, n, value, e->model->state_name);
-	fputs("};\n", e->to);
+	say(e, "};\n");
 }
 
 void emit_step(const struct emitter *e)
@@ -288,8 +345,11 @@ void emit_step(const struct emitter *e)
 		emit_changing_step(e);
 		return;
 	}
-	fprintf(e->to, "\nvoid %s_step(%s)\n{\n", e->name, step_parameters(e));
+	say(e, "\n"
+	       "void $n_step(%s)\n"
+	       "{\n",
+	    step_parameters(e));
 	emit_plain_step(e);
 	emit_step_end(e);
-	fputs("}\n", e->to);
+	say(e, "}\n");
 }

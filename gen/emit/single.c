@@ -1,28 +1,34 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The target float: what is printed for double, with every type, literal and function under its name for float. The numbers are
- * floats already: number.c rounds straight to the target's type. */
+/* The target float: what is printed for double, with every type, literal and function under its name for float. The
+ * numbers are floats already: number.c rounds straight to the target's type. */
 #include "emit/emit.h"
 
 #include <ctype.h>
 #include <string.h>
 
-/* Of the runtime and of <math.h>, with the name's part before the f; a function of <math.h> counts only where it is called. */
+/* Of the runtime and of <math.h>, with the name's part before the f; a function of <math.h> counts only where it is
+ * called. */
 static const struct name { const char *name, *stem; bool called; } names[] = {
-	{ "double", "", false },
-	{ "pl_turn", "pl_turn", false }, { "pl_turn_add", "pl_turn", false }, { "pl_turn_times", "pl_turn", false }, { "pl_turn_at", "pl_turn", false },
-	{ "pl_rate", "pl_rate", false }, { "pl_rate_of", "pl_rate", false }, { "pl_cossin", "pl_cossin", false },
-	{ "pl_growth", "pl_growth", false }, { "pl_growth_add", "pl_growth", false }, { "pl_growth_times", "pl_growth", false },
+	{ "double", "", false }, { "pl_turn", "pl_turn", false }, { "pl_turn_add", "pl_turn", false },
+	{ "pl_turn_times", "pl_turn", false }, { "pl_turn_at", "pl_turn", false }, { "pl_rate", "pl_rate", false },
+	{ "pl_rate_of", "pl_rate", false }, { "pl_cossin", "pl_cossin", false }, { "pl_growth", "pl_growth", false },
+	{ "pl_growth_add", "pl_growth", false }, { "pl_growth_times", "pl_growth", false },
 	{ "pl_growth_at", "pl_growth", false }, { "pl_growth_value", "pl_growth", false },
 	{ "pl_series", "pl_series", false }, { "pl_series_advance", "pl_series", false },
-	{ "pl_two", "pl_two", false }, { "pl_power_apply", "pl_power", false }, { "pl_until", "pl_until", false }, { "pl_accumulate", "pl_accumulate", false },
-	{ "pl_multiply", "pl_multiply", false }, { "pl_multiply_add", "pl_multiply", false }, { "pl_not_finite", "pl_not_finite", false },
-	{ "pl_term", "pl_term", false }, { "pl_equations", "pl_equations", false }, { "pl_equations_at", "pl_equations", false }, { "pl_increment", "pl_increment", false }, { "pl_ramp_before", "pl_ramp", false }, { "pl_ramp_cancels", "pl_ramp", false },
-	{ "pl_switching", "pl_switching", false }, { "pl_switching_start", "pl_switching", false }, { "pl_switching_step", "pl_switching", false },
-	{ "pl_switching_advance", "pl_switching", false }, { "pl_crossing", "pl_crossing", false }, { "pl_model", "pl_model", false },
-	{ "sin", "sin", true }, { "cos", "cos", true }, { "tan", "tan", true }, { "exp", "exp", true }, { "log", "log", true },
-	{ "sqrt", "sqrt", true }, { "fabs", "fabs", true }, { "sinh", "sinh", true }, { "cosh", "cosh", true }, { "tanh", "tanh", true },
-	{ "asin", "asin", true }, { "acos", "acos", true }, { "atan", "atan", true }, { "atan2", "atan2", true }, { "pow", "pow", true },
-	{ "fmin", "fmin", true }, { "fmax", "fmax", true }, { "copysign", "copysign", true }
+	{ "pl_two", "pl_two", false }, { "pl_power_apply", "pl_power", false }, { "pl_until", "pl_until", false },
+	{ "pl_accumulate", "pl_accumulate", false }, { "pl_multiply", "pl_multiply", false },
+	{ "pl_multiply_add", "pl_multiply", false }, { "pl_not_finite", "pl_not_finite", false },
+	{ "pl_term", "pl_term", false }, { "pl_equations", "pl_equations", false },
+	{ "pl_equations_at", "pl_equations", false }, { "pl_increment", "pl_increment", false },
+	{ "pl_ramp_before", "pl_ramp", false }, { "pl_ramp_cancels", "pl_ramp", false },
+	{ "pl_switching", "pl_switching", false }, { "pl_switching_start", "pl_switching", false },
+	{ "pl_switching_step", "pl_switching", false }, { "pl_switching_advance", "pl_switching", false },
+	{ "pl_crossing", "pl_crossing", false }, { "pl_model", "pl_model", false }, { "sin", "sin", true },
+	{ "cos", "cos", true }, { "tan", "tan", true }, { "exp", "exp", true }, { "log", "log", true },
+	{ "sqrt", "sqrt", true }, { "fabs", "fabs", true }, { "sinh", "sinh", true }, { "cosh", "cosh", true },
+	{ "tanh", "tanh", true }, { "asin", "asin", true }, { "acos", "acos", true }, { "atan", "atan", true },
+	{ "atan2", "atan2", true }, { "pow", "pow", true }, { "fmin", "fmin", true }, { "fmax", "fmax", true },
+	{ "copysign", "copysign", true }
 };
 
 static bool in_name(char c)
@@ -41,14 +47,20 @@ static const char *print_name(FILE *to, const char *text)
 		if (strlen(n->name) != length || memcmp(n->name, text, length) != 0 || (n->called && *end != '('))
 			continue;
 		size_t stem = strlen(n->stem);
-		if (stem == 0)
-			fputs("float", to);
-		else
-			fprintf(to, "%sf%.*s", n->stem, (int)(length - stem), text + stem);
+		put(to, stem ? n->stem : "float", stem ? stem : strlen("float"));
+		if (stem) {
+			put(to, "f", 1);
+			put(to, text + stem, length - stem);
+		}
 		return end;
 	}
-	fwrite(text, 1, length, to);
+	put(to, text, length);
 	return end;
+}
+
+static bool is_exponent_sign(const char *c, const char *number)
+{
+	return (*c == '-' || *c == '+') && c > number && c[-1] == 'e';
 }
 
 /* 0x1f has no exponent, 1e-5 has one */
@@ -56,9 +68,10 @@ static const char *print_number(FILE *to, const char *text)
 {
 	bool hexadecimal = text[0] == '0' && (text[1] == 'x' || text[1] == 'X'), real = false;
 	const char *end = text;
-	for (; in_name(*end) || *end == '.' || (!hexadecimal && (*end == '-' || *end == '+') && end > text && end[-1] == 'e'); end++)
+	for (; in_name(*end) || *end == '.' || (!hexadecimal && is_exponent_sign(end, text)); end++)
 		real = real || *end == '.' || (!hexadecimal && *end == 'e');
-	fprintf(to, "%.*s%s", (int)(end - text), text, real ? "f" : "");
+	put(to, text, (size_t)(end - text));
+	put(to, "f", real);
 	return end;
 }
 
@@ -66,7 +79,7 @@ static const char *print_until(FILE *to, const char *text, const char *close)
 {
 	const char *end = strstr(text + strlen(close), close);
 	end = end ? end + strlen(close) : text + strlen(text);
-	fwrite(text, 1, (size_t)(end - text), to);
+	put(to, text, (size_t)(end - text));
 	return end;
 }
 
@@ -82,5 +95,5 @@ void print_single(FILE *to, const char *text)
 		else if (in_name(*text))
 			text = print_name(to, text);
 		else
-			putc(*text++, to);
+			put(to, text++, 1);
 }

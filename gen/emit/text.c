@@ -35,7 +35,30 @@ void say(const struct emitter *e, const char *layout, ...)
 	discard(named);
 }
 
-/* (a + b) + (c + d): the shortest chain of dependent additions; lines break at the middle of what is too long for one. */
+const char *spell(const struct emitter *e, const char *layout, ...)
+{
+	char *named = strchr(layout, '$') ? with_names(e, layout) : NULL;
+	va_list arguments, again;
+	va_start(arguments, layout);
+	va_copy(again, arguments);
+	size_t size = (size_t)vsnprintf(NULL, 0, named ? named : layout, arguments) + 1;
+	char *text = ARRAY(char, size);
+	vsnprintf(text, size, named ? named : layout, again);
+	va_end(again);
+	va_end(arguments);
+	discard(named);
+	const char *result = format("%s", text);
+	discard(text);
+	return result;
+}
+
+void put(FILE *to, const char *text, size_t length)
+{
+	fwrite(text, 1, length, to);
+}
+
+/* (a + b) + (c + d): the shortest chain of dependent additions; lines break at the middle of what is too long for
+ * one. */
 const char *tree(int terms, const char *const *term, int indent)
 {
 	enum { WIDTH = 100 };
@@ -64,9 +87,7 @@ const char *scaled(double factor, const char *operand)
 
 double finite_number(const struct emitter *e, mpq_srcptr q)
 {
-	if (beyond_range(q))
-		error(e->model->asked.step_at, NULL, "a number of the equations is beyond the range of %s", target_name());
-	return round_rational(q);
+	return equation_number(e->model, q).value;
 }
 
 void emit_number_rows(const struct emitter *e, int rows, int columns, const double *value, const char *const *row_note)
@@ -75,7 +96,9 @@ void emit_number_rows(const struct emitter *e, int rows, int columns, const doub
 		say(e, "    {");
 		for (int j = 0; j < columns; j++) {
 			if (!isfinite(value[i * columns + j]))
-				error(e->model->asked.step_at, NULL, "a number in the row of %s is beyond the range of %s", row_note[i], target_name());
+				error(e->model->asked.step_at, NULL,
+				      "a number in the row of %s is beyond the range of %s", row_note[i],
+				      target_name());
 			say(e, "%s%s", j ? ", " : "", shortest(value[i * columns + j]));
 		}
 		say(e, "},  /* %s */\n", row_note[i]);

@@ -2,35 +2,78 @@
 /* The augmented state x, of which x' = A x: states, what a scheme holds, load states, inputs, channels. */
 #include "model/model.h"
 
-void series_place(struct series *series, const struct linear *system, int powers)
+static struct layout place(const struct linear *system, int powers, const bool *needed, int segments, bool held)
+{
+	struct layout x = { .size = system->states, .states = system->states, .held = -1, .segments = segments,
+			    .powers = powers };
+	if (held) {
+		x.held = x.size;
+		x.size += system->n;
+	}
+	x.first_load = x.size;
+	x.load = ARRAY(int, (size_t)system->loads);
+	for (int l = 0; l < system->loads; l++) {
+		x.load[l] = needed[l] ? x.first_load + x.loads : -1;
+		x.loads += needed[l] ? system->load[l].columns : 0;
+	}
+	x.size += segments * x.loads;
+	x.input = ARRAY(int, (size_t)system->inputs);
+	for (int i = 0; i < system->inputs; i++) {
+		x.input[i] = x.size;
+		x.size += system->input[i].first_order ? 2 : 1;
+	}
+	x.channel = x.size;
+	x.size += system->channels * powers;
+	return x;
+}
+
+struct layout layout_of(const struct linear *system, int powers)
 {
 	bool *acting = ARRAY(bool, (size_t)system->loads);
 	for (int l = 0; l < system->loads; l++)
 		acting[l] = load_acts(system, &system->load[l]);
-	series_place_loads(series, system, powers, acting);
+	return place(system, powers, acting, 1, system->heldK);
 }
 
-void series_place_loads(struct series *series, const struct linear *system, int powers, const bool *needed)
+struct layout layout_with(const struct linear *system, int powers, const bool *needed)
 {
-	series->size = system->states;
-	series->held = -1;
-	if (system->heldK) {
-		series->held = series->size;
-		series->size += system->n;
-	}
-	series->load = ARRAY(int, (size_t)system->loads);
-	for (int l = 0; l < system->loads; l++) {
-		series->load[l] = needed[l] ? series->size : -1;
-		series->size += needed[l] ? system->load[l].columns : 0;
-	}
-	series->input = ARRAY(int, (size_t)system->inputs);
+	return place(system, powers, needed, 1, system->heldK);
+}
+
+struct layout layout_of_columns(const struct linear *system)
+{
+	bool *all = ARRAY(bool, (size_t)system->loads);
+	for (int l = 0; l < system->loads; l++)
+		all[l] = true;
+	return place(system, 0, all, system->segments, false);
+}
+
+static void name_loads(const struct layout *x, const struct linear *system, const char **name)
+{
+	for (int s = 0; s < x->segments; s++)
+		for (int l = 0; l < system->loads; l++)
+			for (int k = 0; k < system->load[l].columns && x->load[l] >= 0; k++)
+				name[x->load[l] + s * x->loads + k] =
+					format("%s%s", column_text(&system->load[l], k),
+					       s ? format(" (segment %d)", s) : "");
+}
+
+const char **layout_names(const struct layout *x, const struct linear *system, const char *const *state)
+{
+	const char **name = ARRAY(const char *, (size_t)x->size);
+	for (int i = 0; i < system->states; i++)
+		name[i] = state[i];
+	for (int i = 0; i < system->n && x->held >= 0; i++)
+		name[x->held + i] = format("held for %s", state[i]);
+	name_loads(x, system, name);
 	for (int i = 0; i < system->inputs; i++) {
-		series->input[i] = series->size;
-		series->size += system->input[i].first_order ? 2 : 1;
+		name[x->input[i]] = system->input[i].name;
+		if (system->input[i].first_order)
+			name[x->input[i] + 1] = format("%s'", system->input[i].name);
 	}
-	series->channel = series->size;
-	series->powers = powers;
-	series->size += system->channels * powers;
+	for (int c = 0; c < system->channels * x->powers; c++)
+		name[x->channel + c] = format("leftover %d", c + 1);
+	return name;
 }
 
 /* (t^k e^{at} cos)' = k t^{k-1} e^{at} cos + a t^k e^{at} cos - w t^k e^{at} sin, and so for sin */
@@ -62,9 +105,9 @@ static void fill_force(mpq_t *A, int size, int at, const struct linear *system, 
 	}
 }
 
-mpq_t *series_matrix(const struct series *series, const struct linear *system, int segment)
+mpq_t *augmented_matrix(const struct layout *x, const struct linear *system, int segment)
 {
-	int n = system->n, size = series->size, states = system->states, column;
+	int n = system->n, size = x->size, states = system->states, column;
 	mpq_t *A = rationals((size_t)size * (size_t)size), *inverse = rationals((size_t)(n * n)),
 	      *unit = rationals((size_t)n);
 	mpq_t *own = state_matrix(system, false);
@@ -73,31 +116,31 @@ mpq_t *series_matrix(const struct series *series, const struct linear *system, i
 		for (int j = 0; j < states; j++)
 			mpq_set(A[i * size + j], own[i * states + j]);
 	rationals_free(own, (size_t)states * (size_t)states);
-	for (int i = 0; i < n && series->held >= 0; i++) {
+	for (int i = 0; i < n && x->held >= 0; i++) {
 		mpq_set_ui(unit[i], 1, 1);
-		fill_force(A, size, series->held + i, system, (const mpq_t *)inverse, (const mpq_t *)unit);
+		fill_force(A, size, x->held + i, system, (const mpq_t *)inverse, (const mpq_t *)unit);
 		mpq_set_ui(unit[i], 0, 1);
 	}
 	for (int l = 0; l < system->loads; l++) {
-		if (series->load[l] < 0)
+		if (x->load[l] < 0)
 			continue;
 		for (int k = 0; k < system->load[l].columns; k++)
-			fill_force(A, size, series->load[l] + k, system, (const mpq_t *)inverse,
+			fill_force(A, size, x->load[l] + k, system, (const mpq_t *)inverse,
 				   (const mpq_t *)system->load[l].force[k] + segment * n);
-		fill_load_rows(A, size, series->load[l], &system->load[l]);
+		fill_load_rows(A, size, x->load[l], &system->load[l]);
 	}
 	for (int i = 0; i < system->inputs; i++) {
-		int at = series->input[i];
+		int at = x->input[i];
 		fill_force(A, size, at, system, (const mpq_t *)inverse, (const mpq_t *)system->input[i].force[0]);
 		if (!system->input[i].first_order)
 			continue;
 		fill_force(A, size, at + 1, system, (const mpq_t *)inverse, (const mpq_t *)system->input[i].force[1]);
 		mpq_set_ui(A[at * size + at + 1], 1, 1);
 	}
-	for (int e = 0; e < system->channels && series->powers > 0; e++) {
-		int at = series->channel + e * series->powers;
+	for (int e = 0; e < system->channels && x->powers > 0; e++) {
+		int at = x->channel + e * x->powers;
 		fill_force(A, size, at, system, (const mpq_t *)inverse, (const mpq_t *)system->channel[e]);
-		for (int m = 1; m < series->powers; m++)
+		for (int m = 1; m < x->powers; m++)
 			mpq_set_ui(A[(at + m - 1) * size + at + m], 1, 1);
 	}
 	rationals_free(inverse, (size_t)(n * n));

@@ -119,9 +119,7 @@ static void choose_scheme(void *context)
 	}
 	const char *nearest = nearest_scheme(wanted);
 	b->collector.keep = KEEP_ALL;           /* whatever was meant: one message is enough */
-	error(at,
-	      nearest ? format("did you mean '%s'?", nearest)
-		      : "the schemes are exact, pl, etd1, etdrk2, etdrk4, nc2, nc3, dq4, bm3",
+	error(at, nearest ? format("did you mean '%s'?", nearest) : format("the schemes are %s", all_schemes(", ")),
 	      "unknown scheme '%s'", wanted);
 }
 

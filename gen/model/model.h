@@ -240,20 +240,22 @@ int blocks_of(const struct linear *system, struct block **blocks);
 
 /* ---- augmented.c: the augmented state ---- */
 
-struct series {                     /* x' = A x; x = state, held terms, constant load, cos and sin of each wave */
-	bool emitted;               /* max|pole| h <= 8 */
-	int size, degree, halvings;
+/* x = [states, held terms, load states, inputs, channels]; every column of a table or of tuned equations has its place here too */
+struct layout {
+	int size, states;
 	int held;                   /* index of the first held term, one per coordinate; -1: none */
-	int *load;                  /* index of the first state of each load; -1: it acts on nothing */
+	int first_load, loads;      /* index of the load states; how many, in one segment of time */
+	int segments;               /* of time that have load states of their own: 1, or all */
+	int *load;                  /* per load: index of its first state, in the first of them; -1: it has none */
 	int *input;                 /* index of each input (then of its slope, if of first order) */
 	/* index of the first leftover; each is a chain of so many integrators, its force the first */
 	int channel, powers;
 };
-void series_place(struct series *series, const struct linear *system, int powers); /* which entry of x is what */
-/* of loads those needed */
-void series_place_loads(struct series *series, const struct linear *system, int powers, const bool *needed);
-/* A in one segment of time */
-mpq_t *series_matrix(const struct series *series, const struct linear *system, int segment);
+struct layout layout_of(const struct linear *system, int powers);   /* of loads those that act */
+struct layout layout_with(const struct linear *system, int powers, const bool *needed); /* of loads those needed */
+struct layout layout_of_columns(const struct linear *system);       /* states, all load states of all segments, inputs */
+const char **layout_names(const struct layout *layout, const struct linear *system, const char *const *state);
+mpq_t *augmented_matrix(const struct layout *layout, const struct linear *system, int segment); /* A of x' = A x */
 
 /* ---- spell.c: loads, forms and equations for a reader ---- */
 
@@ -358,7 +360,7 @@ struct tuning {
 	int params;
 	const struct tunable *param;
 	mpq_t *nominal;             /* the spec's values */
-	int columns, loads;         /* of x; of the load states in one segment */
+	struct layout x;
 	int rows, outputs, frequencies; /* rows: of coordinates, such outputs, such frequencies */
 	int *output, *frequency;    /* per output, per load: its row, or -1: no param changes it */
 	bool solves;                /* there is a W, columns behind those of R; else it is the unit matrix */
@@ -372,5 +374,9 @@ struct tuning {
 };
 /* model->tuning, where something is tunable; false: it was said why not */
 bool find_tuning(struct model *model, const struct request *request);
+
+/* ---- stepped.c: the model that a step is built of ---- */
+
+struct model *stepped_model(struct model *model, struct spec *spec, const struct request *request); /* NULL: said why */
 
 #endif

@@ -349,8 +349,8 @@ static bool add_operator(struct building *b, const struct fixed *bank, int which
 	struct point_work point = { b, which, 0, NULL };
 	operator->C = model->system.C;
 	operator->K = model->system.K;
-	/* pl has an operator of its own */
-	operator->text = model->scheme == SCHEME_PL ? "" : point_text(b->spec, which);
+	/* what holds coupling terms has an operator of its own */
+	operator->text = scheme_row(model->scheme)->holds_coupling ? "" : point_text(b->spec, which);
 	mpq_init(operator->at);
 	if (!*operator->text)
 		return true;
@@ -373,7 +373,7 @@ static bool add_operator(struct building *b, const struct fixed *bank, int which
 void build_operators(struct building *b)
 {
 	struct model *model = b->model;
-	const struct fixed *bank = model->scheme == SCHEME_PL ? NULL : banked(b->spec);
+	const struct fixed *bank = scheme_row(model->scheme)->holds_coupling ? NULL : banked(b->spec);
 	if (!b->whole || !statement_guard(check_bank, b))
 		return;
 	bool good = true;

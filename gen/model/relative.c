@@ -418,7 +418,7 @@ static bool make_group(const struct model *model, const mpq_t *motion, mpq_t *we
 		return false;
 	if (!fixed_in_part(model, g))
 		return true;
-	if (model->operators > 0 && model->scheme != SCHEME_PL)
+	if (model->operators > 0 && !scheme_row(model->scheme)->holds_coupling)
 		say_warning(model->spec->operator_at, "fix all of them, or none",
 			    "the operator fixes some of the coordinates that may move as a whole: they are kept as "
 			    "written, and where they grow their differences lose digits");

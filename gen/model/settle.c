@@ -177,9 +177,8 @@ static void tell_atom(void *context)
 	bool changes = !atom;
 	atom = atom ? atom : first_atom(b, true);
 	const char *rewrite = changes ? input_rewrite : rewrite_of(atom->node);
-	error(atom->node->start,
-	      format("%s%setd1, etdrk2, etdrk4, nc2, nc3, dq4, bm3 and pl are the schemes that could", rewrite,
-		     *rewrite ? "; " : ""),
+	error(atom->node->start, format("%s%s%s and %s are the schemes that could", rewrite, *rewrite ? "; " : "",
+					leaving_schemes(", "), holding_schemes()),
 	      changes ? "switching beside loads that change their formula in time is not built yet: scheme exact "
 			"cannot treat '%s'"
 		      : "'%s' is not piecewise linear: scheme exact cannot treat it",
@@ -214,13 +213,13 @@ static bool settle_scheme(struct building *b)
 	struct model *model = b->model;
 	bool linear = is_linear(b);
 	if (!linear && !model->asked.scheme_at.source && !b->request->solution && !is_piecewise_linear(b)) {
-		model->scheme = SCHEME_ETDRK4;
+		model->scheme = default_scheme();
 		silent_guard(find_obstacle, b);
 	}
 	b->collector.scheme = scheme_name(model->scheme);
 	if (model->scheme == SCHEME_EXACT && b->request->loads_left) {
 		say_error(model->asked.scheme_at.source ? model->asked.scheme_at : b->spec->name_at,
-			  "etd1, etdrk2, etdrk4, nc2, nc3, dq4 and bm3 have; pl holds loads over a step",
+			  format("%s have; %s holds loads over a step", leaving_schemes(" and "), holding_schemes()),
 			  "--loads leftover needs a scheme with a quadrature: exact has none");
 		return false;
 	}

@@ -769,16 +769,12 @@ void judge_smoothness(struct building *b)
 
 int order_of_scheme(const struct model *model)
 {
-	static const int order[SCHEMES] = {
-		[SCHEME_PL] = 1,  [SCHEME_ETD1] = 1, [SCHEME_ETDRK2] = 2, [SCHEME_ETDRK4] = 4,
-		[SCHEME_NC2] = 4, [SCHEME_NC3] = 4,  [SCHEME_DQ4] = 4,    [SCHEME_BM3] = 4
-	};
-	return order[model->scheme];
+	return scheme_row(model->scheme)->order;
 }
 
 int order_that_holds(const struct model *model)
 {
-	int order = model->channels > 0 || model->scheme == SCHEME_PL ? order_of_scheme(model) : 0;
+	int order = model->channels > 0 || scheme_row(model->scheme)->holds_coupling ? order_of_scheme(model) : 0;
 	return loses_order(model) ? model->smooth.tenths / 10 : order;
 }
 

@@ -110,11 +110,11 @@ static void check_model(const struct model *model)
 static void check_kind(const struct model *model, const struct request *request)
 {
 	struct place at = model->spec->tunable[0].at;
-	if (model->switching || model->channels > 0 || model->scheme == SCHEME_PL)
-		error(at, "tunable params are for scheme exact and linear models",
-		      model->switching      ? "a piecewise-linear model cannot be retuned"
-		      : model->channels > 0 ? "a model with a leftover cannot be retuned"
-					    : "scheme pl cannot be retuned");
+	if (model->switching || model->channels > 0 || scheme_row(model->scheme)->holds_coupling)
+		error(at, "tunable params are for scheme exact and linear models", "%s cannot be retuned",
+		      model->switching      ? "a piecewise-linear model"
+		      : model->channels > 0 ? "a model with a leftover"
+					    : format("scheme %s", scheme_name(model->scheme)));
 	if (request->reduce)
 		error(at, NULL,
 		      "--reduce takes out what is not seen at the spec's values: it does not go with tunable params");
@@ -179,22 +179,22 @@ static int all_rows(const struct search *s)
 
 static int all_columns(const struct search *s)
 {
-	return s->tuning->columns + all_rows(s);
+	return s->tuning->x.size + all_rows(s);
 }
 
 static mpq_t *solved_entry(const struct search *s, mpq_t *entry, int row, int column)
 {
-	return &entry[row * s->tuning->columns + column];
+	return &entry[row * s->tuning->x.size + column];
 }
 
 static mpq_t *raw_entry(const struct search *s, mpq_t *entry, int row, int column)
 {
-	return &entry[all_rows(s) * s->tuning->columns + row * all_columns(s) + column];
+	return &entry[all_rows(s) * s->tuning->x.size + row * all_columns(s) + column];
 }
 
 static mpq_t *frequency_entry(const struct search *s, mpq_t *entry, int load)
 {
-	return &entry[all_rows(s) * (s->tuning->columns + all_columns(s)) + load];
+	return &entry[all_rows(s) * (s->tuning->x.size + all_columns(s)) + load];
 }
 
 /* Calls take(context, column, force) for what acts on the equations, in the order of the columns behind the states */
@@ -247,7 +247,7 @@ static void read_equations(struct reading *r)
 				(j < n ? system->K : system->C)[i * n + system->coord[j]]);
 		}
 		for (int j = 0; j < n; j++)
-			mpq_set(*raw_entry(s, r->entry, i, s->tuning->columns + j),
+			mpq_set(*raw_entry(s, r->entry, i, s->tuning->x.size + j),
 				(system->velocity[j] >= 0 ? system->M : system->C)[i * n + j]);
 	}
 	each_force(system, read_force, r);
@@ -276,16 +276,16 @@ static void part_output_row(const struct reading *r, int row, const struct outpu
 	const struct search *s = r->search;
 	mpq_t product;
 	mpq_init(product);
-	for (int j = 0; j < s->tuning->columns; j++)
+	for (int j = 0; j < s->tuning->x.size; j++)
 		mpq_set(*raw_entry(s, r->entry, row, j), *solved_entry(s, r->entry, row, j));
-	mpq_set_ui(*raw_entry(s, r->entry, row, s->tuning->columns + row), 1, 1);
+	mpq_set_ui(*raw_entry(s, r->entry, row, s->tuning->x.size + row), 1, 1);
 	for (int i = 0; output->form && i < output->form->terms; i++) {
 		const struct form_term *term = &output->form->term[i];
 		int coord = term->basis.index;
 		if (term->basis.kind != BASIS_COORD || term->basis.order < r->model->frame.coord[coord]->highest)
 			continue;
-		mpq_neg(*raw_entry(s, r->entry, row, s->tuning->columns + coord), term->factor);
-		for (int j = 0; j < s->tuning->columns; j++) {
+		mpq_neg(*raw_entry(s, r->entry, row, s->tuning->x.size + coord), term->factor);
+		for (int j = 0; j < s->tuning->x.size; j++) {
 			mpq_mul(product, term->factor, *solved_entry(s, r->entry, coord, j));
 			mpq_sub(*raw_entry(s, r->entry, row, j), *raw_entry(s, r->entry, row, j), product);
 		}
@@ -408,7 +408,7 @@ static void number_rows(struct search *s)
 	for (int o = 0; o < s->model->outputs; o++) {
 		bool changes = false;
 		for (int i = 1; i < s->points; i++)
-			for (int j = 0; j < t->columns; j++)
+			for (int j = 0; j < t->x.size; j++)
 				changes = changes || !mpq_equal(*solved_entry(s, s->seen[i], s->model->n + o, j),
 								*solved_entry(s, s->seen[0], s->model->n + o, j));
 		t->output[o] = changes ? t->rows++ : -1;
@@ -437,7 +437,7 @@ static int entry_row(const struct search *s, int row)
 /* Columns of W: a row for each row of the equations, those of outputs that stay as they are left out */
 static int entry_column(const struct search *s, int column)
 {
-	return column < s->tuning->columns ? column : s->tuning->columns + entry_row(s, column - s->tuning->columns);
+	return column < s->tuning->x.size ? column : s->tuning->x.size + entry_row(s, column - s->tuning->x.size);
 }
 
 struct entry {
@@ -474,7 +474,7 @@ static bool fit_frequencies(struct search *s, int *culprit)
 		if (row >= 0 && !fit_into(s, (const mpq_t *)frequency_entry(s, s->seen[0], l), row, 0, culprit))
 			return false;
 		if (row >= 0 && t->solves)
-			add_unit(t, row, t->columns + row);
+			add_unit(t, row, t->x.size + row);
 	}
 	return true;
 }
@@ -487,7 +487,7 @@ static bool fit_all(struct search *s, bool solved, int *culprit)
 	t->terms = t->monomials = 0;
 	mpq_t *first = s->seen[0];
 	for (int i = 0; i < rows; i++)
-		for (int j = 0; j < t->columns + (solved ? 0 : rows); j++) {
+		for (int j = 0; j < t->x.size + (solved ? 0 : rows); j++) {
 			mpq_t *entry = solved ? solved_entry(s, first, entry_row(s, i), j)
 					      : raw_entry(s, first, entry_row(s, i), entry_column(s, j));
 			if (!fit_into(s, (const mpq_t *)entry, i, j, culprit))
@@ -499,12 +499,12 @@ static bool fit_all(struct search *s, bool solved, int *culprit)
 static void mark_acting(struct search *s)
 {
 	struct tuning *t = s->tuning;
-	t->acts = ARRAY(bool, (size_t)(t->rows * t->columns));
+	t->acts = ARRAY(bool, (size_t)(t->rows * t->x.size));
 	for (int p = 0; p < s->points; p++)
 		for (int i = 0; i < t->rows - t->frequencies; i++)
-			for (int j = 0; j < t->columns; j++)
-				t->acts[i * t->columns + j] =
-					t->acts[i * t->columns + j] ||
+			for (int j = 0; j < t->x.size; j++)
+				t->acts[i * t->x.size + j] =
+					t->acts[i * t->x.size + j] ||
 					mpq_sgn(*solved_entry(s, s->seen[p], entry_row(s, i), j)) != 0;
 }
 
@@ -529,8 +529,7 @@ static void find(void *context)
 	spread_tuned(s->model->spec);
 	check_model(s->model);
 	for (int k = 0; k < t->params; k++)
-		constant_value(&(struct collector){ .scheme = "exact" }, t->param[k].symbol->collected->cell[0],
-			       t->nominal[k]);
+		param_value(t->param[k].symbol, t->nominal[k]);
 	for (int i = 0; i < FIT_POINTS; i++)
 		look(s, (const mpq_t *)scattered_values(t->params, i));
 	t->other = s->found;
@@ -559,9 +558,8 @@ bool find_tuning(struct model *model, const struct request *request)
 	t->params = spec->tunables;
 	t->param = spec->tunable;
 	t->nominal = rationals((size_t)t->params);
-	t->loads = load_columns(system);
-	t->columns = system->states + system->segments * t->loads + input_columns(system);
-	s.entries = all_rows(&s) * (t->columns + all_columns(&s)) + system->loads;
+	t->x = layout_of_columns(system);
+	s.entries = all_rows(&s) * (t->x.size + all_columns(&s)) + system->loads;
 	model->tuning = t;
 	return statement_guard(find, &s);
 }

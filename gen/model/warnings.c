@@ -206,14 +206,27 @@ struct softness {
 	const char *where;          /* and when; "": at rest */
 };
 
-/* What h^2 times the difference of squared frequencies costs in a thousand steps: growth in etd1, else the phase of a
- * Runge-Kutta scheme */
+/* What h^2 times the difference of squared frequencies costs in a thousand steps: growth, or the phase of a
+ * Runge-Kutta scheme; the first term of e^z that order p does not have is z^(p+1) / (p+1)! */
 static double drift_of_softness(const struct model *model, double difference)
 {
-	double h = nearest_double(model->h), d = difference * h * h;
-	return model->scheme == SCHEME_ETD1     ? 250 * d
-	       : model->scheme == SCHEME_ETDRK2 ? 1000 * pow(d, 1.5) / 6
-						: 1000 * pow(d, 2.5) / 120;
+	const struct scheme_row *scheme = scheme_row(model->scheme);
+	double h = nearest_double(model->h), d = difference * h * h, factorial = 1;
+	if (scheme->growth_divisor)
+		return 1000 * d / scheme->growth_divisor;
+	for (int k = 2; k <= scheme->order + 1; k++)
+		factorial *= k;
+	return 1000 * pow(d, (scheme->order + 1) / 2.0) / factorial;
+}
+
+/* What follows from a difference of squared frequencies */
+static const char *growth_text(const struct model *model, double difference)
+{
+	int divisor = scheme_row(model->scheme)->growth_divisor;
+	if (!divisor)
+		return "";
+	return format(", growing at up to %.3g 1/s in %s (h/%d times the difference)",
+		      nearest_double(model->h) / divisor * difference, scheme_name(model->scheme), divisor);
 }
 
 static bool is_told(const struct model *model, bool moved, double here, double there)
@@ -429,13 +442,9 @@ static void check_softness(struct jacobian *j)
 	mpq_clear(end);
 	if (worst.here <= worst.operator)
 		return;
-	double growth = nearest_double(model->h) / 4 * (worst.here - worst.operator);
-	const char *rate = model->scheme == SCHEME_ETD1
-				   ? format(", growing at up to %.3g 1/s in etd1 (h/4 times the difference)", growth)
-				   : "";
 	say_warning(b->spec->has_operator ? b->spec->operator_at : scheme_place(b),
 		    format("what is left over then drives the motion%s; fix the operator where the model is stiffest",
-			   rate),
+			   growth_text(model, worst.here - worst.operator)),
 		    "the linear operator is softer than the model gets: %sa squared frequency is %.4g 1/s^2, the "
 		    "operator's %.4g",
 		    worst.where, worst.here, worst.operator);
@@ -471,21 +480,23 @@ static void check_smoothness(const struct building *b)
 static void check_need(const struct building *b, bool left)
 {
 	const struct model *model = b->model;
-	if (b->spec->has_operator && (model->scheme <= SCHEME_PL || !left))
-		say_warning(b->spec->operator_at, NULL,
-			    model->scheme == SCHEME_PL
-				    ? "the operator has no effect: that of scheme pl is each coordinate's own terms"
-				    : "the operator has no effect: nothing is left over");
+	const struct scheme_row *scheme = scheme_row(model->scheme);
+	if (b->spec->has_operator && (!scheme->leaves || !left))
+		say_warning(b->spec->operator_at, NULL, "the operator has no effect: %s",
+			    scheme->holds_coupling
+				    ? format("that of scheme %s is each coordinate's own terms", scheme->name)
+				    : "nothing is left over");
 	if (left && !model->loads_left)
 		return;
-	if (model->scheme == SCHEME_PL && !model->loads_left)
+	if (scheme->holds_coupling && !model->loads_left)
 		say_warning(scheme_place(b), NULL,
-			    "scheme pl is of first order in h: this model is linear, and exact has no error");
-	else if (model->scheme > SCHEME_PL && is_linear(b))
+			    "scheme %s is of first order in h: this model is linear, and exact has no error",
+			    scheme->name);
+	else if (scheme->leaves && is_linear(b))
 		say_warning(scheme_place(b), NULL,
 			    left ? "scheme %s approximates the loads: this model is linear, and exact has no error"
 				 : "scheme %s has nothing to do: this model is linear, and exact covers it",
-			    scheme_name(model->scheme));
+			    scheme->name);
 }
 
 void warn(struct building *b)
@@ -498,10 +509,11 @@ void warn(struct building *b)
 			 text_between(model->obstacle->start, model->obstacle->end), model->obstacle_text);
 	check_need(b, left);
 	check_smoothness(b);
-	if (!left || model->scheme <= SCHEME_PL || is_linear(b) || !silent_guard(differentiate, &j))
+	const struct scheme_row *scheme = scheme_row(model->scheme);
+	if (!left || !scheme->leaves || is_linear(b) || !silent_guard(differentiate, &j))
 		return;
 	mpq_init(j.t);
-	if (model->scheme >= SCHEME_NC2)
+	if (scheme->predicts)
 		check_predictor(&j);
 	else
 		check_softness(&j);

@@ -97,7 +97,8 @@ static void check_number(struct token token)
 	bool exponent = (text[good] == 'e' || text[good] == 'E') && !is_letter(text[good + 1]);
 	bool hexadecimal = text[0] == '0' && (text[good] == 'x' || text[good] == 'X');
 	if (good > 0 && is_letter(text[good]) && text[good] != '_' && !exponent && !hexadecimal)
-		note = format("multiplication is written with *: %.*s*%.*s", (int)good, text, (int)(token.length - good), text + good);
+		note = format("multiplication is written with *: %.*s*%.*s", (int)good, text,
+			      (int)(token.length - good), text + good);
 	error(token.at, note, "malformed number '%.*s'", token.length > 60 ? 60 : (int)token.length, text);
 }
 
@@ -119,7 +120,10 @@ static void lex_string(struct token *token, const char *text)
 {
 	const char *end = strpbrk(text + 1, "\"\n");
 	if (!end || *end == '\n')
-		error(token->at, token->at.offset > 0 && (is_letter(text[-1]) || is_digit(text[-1])) ? "derivatives are written with single quotes: x', x''" : NULL,
+		error(token->at,
+		      token->at.offset > 0 && (is_letter(text[-1]) || is_digit(text[-1]))
+			      ? "derivatives are written with single quotes: x', x''"
+			      : NULL,
 		      "string without its closing quote");
 	token->kind = TOKEN_STRING;
 	token->length = (size_t)(end - text) + 1;
@@ -148,7 +152,9 @@ static const char *character_note(const char *text)
 
 static void lex_operator(struct token *token, const char *text)
 {
-	static const char *const operators[] = { "==", "!=", "<=", ">=", "+", "-", "*", "/", "^", "(", ")", "[", "]", ",", ";", "=", "<", ">", "?", ":" };
+	static const char *const operators[] = {
+		"==", "!=", "<=", ">=", "+", "-", "*", "/", "^", "(", ")", "[", "]", ",", ";", "=", "<", ">", "?", ":"
+	};
 	for (size_t i = 0; i < sizeof operators / sizeof *operators; i++)
 		if (strncmp(text, operators[i], strlen(operators[i])) == 0) {
 			token->kind = TOKEN_OPERATOR;

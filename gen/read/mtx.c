@@ -4,10 +4,8 @@
  *
  *     file = banner, size line, entries; one a line, lines that are blank or begin with % between them.
  *
- * Stricter than most readers where leniency would hide a mistake: one entry a line (an array written row by row would come
- * out transposed), no entry twice, and of a symmetric matrix the lower triangle only. */
-
-
+ * Stricter than most readers where leniency would hide a mistake: one entry a line (an array written row by row would
+ * come out transposed), no entry twice, and of a symmetric matrix the lower triangle only. */
 #include "read/read.h"
 
 #include <errno.h>
@@ -58,7 +56,11 @@ static struct source *load(const char *path, struct place at)
 	text[length] = 0;
 	const char *slash = strrchr(path, '/');
 	struct source *source = NEW(struct source);
-	*source = (struct source){ .name = format("%s", path), .base = format("%s", slash ? slash + 1 : path), .text = text, .length = length, .order = 1 };
+	*source = (struct source){ .name = format("%s", path),
+				   .base = format("%s", slash ? slash + 1 : path),
+				   .text = text,
+				   .length = length,
+				   .order = 1 };
 	return source;
 }
 
@@ -203,10 +205,13 @@ static void number(const struct reader *r, struct word word, mpq_ptr value)
 		error(word.at, NULL, "expected a value, found the end of the line");
 	if (!is_number(text + sign, word.length - sign, r->integer)) {
 		if (r->integer && is_number(text + sign, word.length - sign, false))
-			error(word.at, "the field in the first line should then be real", "expected an integer, found %s", shown(word));
+			error(word.at, "the field in the first line should then be real",
+			      "expected an integer, found %s", shown(word));
 		error(word.at, number_note(word), "malformed number %s", shown(word));
 	}
-	struct token token = { .kind = TOKEN_NUMBER, .at = { word.at.source, word.at.offset + sign }, .length = word.length - sign };
+	struct token token = { .kind = TOKEN_NUMBER,
+			       .at = { word.at.source, word.at.offset + sign },
+			       .length = word.length - sign };
 	lex_number(token, value);
 	if (*text == '-')
 		mpq_neg(value, value);
@@ -232,12 +237,14 @@ static void banner(struct reader *r)
 	static const char *const fields[] = { "real", "integer" };
 	enter_line(r, 0);
 	if (!is_word(next_word(r), "%%MatrixMarket"))
-		error((struct place){ r->source, 0 }, "the first line is, for example: %%MatrixMarket matrix coordinate real general",
-			"not a Matrix Market file");
+		error((struct place){ r->source, 0 },
+		      "the first line is, for example: %%MatrixMarket matrix coordinate real general",
+		      "not a Matrix Market file");
 	choice(r, "object", 1, objects, "only 'matrix' is read");
 	r->array = choice(r, "format", 2, formats, "the format is 'coordinate' or 'array'") == 1;
 	r->integer = choice(r, "field", 2, fields, "the field is 'real' or 'integer'") == 1;
-	r->symmetry = (enum symmetry)choice(r, "symmetry", 3, symmetry_name, "the symmetry is 'general', 'symmetric' or 'skew-symmetric'");
+	r->symmetry = (enum symmetry)choice(r, "symmetry", 3, symmetry_name,
+					    "the symmetry is 'general', 'symmetric' or 'skew-symmetric'");
 	expect_end(r, NULL, "the symmetry");
 }
 
@@ -264,7 +271,8 @@ static void size_line(struct reader *r)
 	int rows = size(r, "rows", note, &at);
 	int columns = size(r, "columns", note, &at);
 	if (r->symmetry != GENERAL && rows != columns)
-		error(at, NULL, "a %s matrix is square, but this one is %d x %d", symmetry_name[r->symmetry], rows, columns);
+		error(at, NULL, "a %s matrix is square, but this one is %d x %d", symmetry_name[r->symmetry], rows,
+		      columns);
 
 	size_t n = (size_t)rows, cells = n * (size_t)columns;
 	r->expected = r->symmetry == GENERAL ? cells : r->symmetry == SYMMETRIC ? n * (n + 1) / 2 : n * (n - 1) / 2;
@@ -272,7 +280,8 @@ static void size_line(struct reader *r)
 		struct word word = next_word(r);
 		size_t entries = whole_number(word, note, "the number of entries");
 		if (entries > r->expected)
-			error(word.at, NULL, "%s entries, but at most %zu have a place in this matrix", shown(word), r->expected);
+			error(word.at, NULL, "%s entries, but at most %zu have a place in this matrix", shown(word),
+			      r->expected);
 		r->expected = entries;
 	}
 	expect_end(r, note, "the sizes");
@@ -296,7 +305,8 @@ static int index_within(struct reader *r, const char *what, int count, struct pl
 	struct word word = next_word(r);
 	size_t index = whole_number(word, "an entry is: row column value", format("a %s", what));
 	if (index < 1 || index > (size_t)count)
-		error(word.at, index < 1 ? "rows and columns count from 1" : NULL, "%s %s is outside of 1 .. %d", what, shown(word), count);
+		error(word.at, index < 1 ? "rows and columns count from 1" : NULL, "%s %s is outside of 1 .. %d", what,
+		      shown(word), count);
 	*at = word.at;
 	return (int)index - 1;
 }
@@ -304,19 +314,23 @@ static int index_within(struct reader *r, const char *what, int count, struct pl
 static void check_triangle(const struct reader *r, int row, int column, struct place at)
 {
 	if (r->symmetry != GENERAL && row < column)
-		error(at, format("of a %s matrix the lower triangle is wanted, row >= column", symmetry_name[r->symmetry]),
-			"entry (%d, %d) is above the diagonal", row + 1, column + 1);
+		error(at,
+		      format("of a %s matrix the lower triangle is wanted, row >= column", symmetry_name[r->symmetry]),
+		      "entry (%d, %d) is above the diagonal", row + 1, column + 1);
 	if (r->symmetry == SKEW && row == column)
-		error(at, "the diagonal of a skew-symmetric matrix is 0 and is not written", "entry (%d, %d) is on the diagonal", row + 1, column + 1);
+		error(at, "the diagonal of a skew-symmetric matrix is 0 and is not written",
+		      "entry (%d, %d) is on the diagonal", row + 1, column + 1);
 }
 
 static void entry(struct reader *r, int row, int column, struct place at)
 {
 	int columns = r->matrix->columns;
-	size_t cell = (size_t)row * (size_t)columns + (size_t)column, mirror = (size_t)column * (size_t)columns + (size_t)row;
+	size_t cell = (size_t)row * (size_t)columns + (size_t)column,
+	       mirror = (size_t)column * (size_t)columns + (size_t)row;
 	mpq_t *value = r->matrix->cell;
 	if (r->given[cell])
-		error(at, format("the first is in line %zu", line_of(r, r->given[cell] - 1)), "second entry (%d, %d)", row + 1, column + 1);
+		error(at, format("the first is in line %zu", line_of(r, r->given[cell] - 1)), "second entry (%d, %d)",
+		      row + 1, column + 1);
 	r->given[cell] = at.offset + 1;
 	number(r, next_word(r), value[cell]);
 	if (r->symmetry != GENERAL && row != column) {
@@ -324,7 +338,8 @@ static void entry(struct reader *r, int row, int column, struct place at)
 		if (r->symmetry == SKEW)
 			mpq_neg(value[mirror], value[mirror]);
 	}
-	expect_end(r, r->array ? "one value a line, column by column" : "one entry a line: row column value", "the value");
+	expect_end(r, r->array ? "one value a line, column by column" : "one entry a line: row column value",
+		   "the value");
 	r->count++;
 }
 
@@ -332,7 +347,8 @@ static void entry(struct reader *r, int row, int column, struct place at)
 static void expect_entry(struct reader *r)
 {
 	if (!next_line(r))
-		error(place_end(r->source), NULL, "%zu of %zu entries are missing", r->expected - r->count, r->expected);
+		error(place_end(r->source), NULL, "%zu of %zu entries are missing", r->expected - r->count,
+		      r->expected);
 }
 
 static void coordinate_entries(struct reader *r)
@@ -349,11 +365,13 @@ static void coordinate_entries(struct reader *r)
 
 static void array_entries(struct reader *r)
 {
-	for (int column = 0; column < r->matrix->columns; column++)
-		for (int row = r->symmetry == GENERAL ? 0 : r->symmetry == SYMMETRIC ? column : column + 1; row < r->matrix->rows; row++) {
+	for (int column = 0; column < r->matrix->columns; column++) {
+		int first = r->symmetry == GENERAL ? 0 : r->symmetry == SYMMETRIC ? column : column + 1;
+		for (int row = first; row < r->matrix->rows; row++) {
 			expect_entry(r);
 			entry(r, row, column, (struct place){ r->source, r->position });
 		}
+	}
 }
 
 struct mtx *mtx_read(const char *path, struct place at)
@@ -366,7 +384,10 @@ struct mtx *mtx_read(const char *path, struct place at)
 	else
 		coordinate_entries(r);
 	if (next_line(r))
-		error(next_word(r).at, r->symmetry == GENERAL ? NULL : format("of a %s matrix the lower triangle is wanted", symmetry_name[r->symmetry]),
-			"more entries than the %zu that the size line announces", r->expected);
+		error(next_word(r).at,
+		      r->symmetry == GENERAL
+			      ? NULL
+			      : format("of a %s matrix the lower triangle is wanted", symmetry_name[r->symmetry]),
+		      "more entries than the %zu that the size line announces", r->expected);
 	return r->matrix;
 }

@@ -49,8 +49,10 @@ static bool decimal_comma(const struct parser *p)
 {
 	const char *text = p->lexer.source->text + p->token.at.offset;
 	size_t before = p->token.at.offset;
-	bool number = p->token.kind == TOKEN_NUMBER && before > 1 && text[-1] == ',' && text[-2] >= '0' && text[-2] <= '9';
-	return number || (is_op(p, ",") && before > 0 && text[-1] >= '0' && text[-1] <= '9' && text[1] >= '0' && text[1] <= '9');
+	bool number =
+		p->token.kind == TOKEN_NUMBER && before > 1 && text[-1] == ',' && text[-2] >= '0' && text[-2] <= '9';
+	return number ||
+	       (is_op(p, ",") && before > 0 && text[-1] >= '0' && text[-1] <= '9' && text[1] >= '0' && text[1] <= '9');
 }
 
 /* A name before a single =: the next definition of a list, its comma forgotten. */
@@ -81,7 +83,8 @@ static const char *stray_note(const struct parser *p)
 		return "each statement has its own line; the parts of one are separated by commas";
 	if (starts_definition(p))
 		return "definitions are separated by commas";
-	if (after_operand && ((p->token.kind == TOKEN_NAME && !is_place(p->token)) || p->token.kind == TOKEN_NUMBER || is_op(p, "(")))
+	if (after_operand &&
+	    ((p->token.kind == TOKEN_NAME && !is_place(p->token)) || p->token.kind == TOKEN_NUMBER || is_op(p, "(")))
 		return "multiplication is written with *";
 	if (is_op(p, "=="))
 		return "an equation has a single =";
@@ -131,11 +134,13 @@ static void add_child(struct node *node, struct node *child, bool inverse, struc
 		ENLARGE(node->inverse, room);
 		ENLARGE(node->operator, room);
 	}
-	bool many = node->kind == NODE_CALL && (node->function == FN_MIN || node->function == FN_MAX || node->function == FN_TABLE);
+	bool many = node->kind == NODE_CALL &&
+		    (node->function == FN_MIN || node->function == FN_MAX || node->function == FN_TABLE);
 	int inside = child->depth + 1 + (many ? node->children : 0);
 	node->depth = inside > node->depth ? inside : node->depth;
 	if (node->depth > LIMIT_DEPTH)
-		error(child->start, NULL, "operations inside each other, through params and lets, over the limit of %d", LIMIT_DEPTH);
+		error(child->start, NULL, "operations inside each other, through params and lets, over the limit of %d",
+		      LIMIT_DEPTH);
 	node->child[count] = child;
 	node->inverse[count] = inverse;
 	node->operator[count] = operator;
@@ -177,6 +182,7 @@ struct symbol *spec_find(const struct spec *spec, const char *name)
 /* Behind all others: of equal names the first is found. */
 static void add_symbol(struct spec *spec, struct symbol *symbol)
 {
+	symbol->number = ++spec->symbols;
 	*spec->last = symbol;
 	spec->last = &symbol->next;
 	struct symbol **link = &spec->bucket[name_hash(symbol->name) % BUCKETS];
@@ -196,7 +202,8 @@ static bool declared_later(const struct parser *p, const char *name)
 {
 	size_t length = strlen(name);
 	const char *rest = p->lexer.source->text + p->lexer.position;
-	for (const char *line = p->lexer.source->text + p->statement; line; line = strchr(line, '\n'), line = line ? line + 1 : NULL) {
+	for (const char *line = p->lexer.source->text + p->statement; line;
+	     line = strchr(line, '\n'), line = line ? line + 1 : NULL) {
 		line += strspn(line, " \t");
 		bool coord = begins(line, "coord") || begins(line, "input");
 		if (!coord && !begins(line, "param") && !begins(line, "let") && !begins(line, "matrix"))
@@ -204,7 +211,8 @@ static bool declared_later(const struct parser *p, const char *name)
 		for (const char *at = line + 3; *at && !strchr("\n#", *at); at++) {
 			size_t word = strspn(at, WORD);
 			const char *after = at + word + strspn(at + word, " \t");
-			if (word == length && at >= rest && strncmp(at, name, word) == 0 && (coord || (after[0] == '=' && after[1] != '=')))
+			if (word == length && at >= rest && strncmp(at, name, word) == 0 &&
+			    (coord || (after[0] == '=' && after[1] != '=')))
 				return true;
 			at += word > 0 ? word - 1 : 0;
 		}
@@ -215,7 +223,8 @@ static bool declared_later(const struct parser *p, const char *name)
 static _Noreturn void unknown_name(const struct parser *p, struct token token)
 {
 	if (declared_later(p, token.name))
-		error(token.at, "names are declared before use; this one is declared further down", "unknown name '%s'", token.name);
+		error(token.at, "names are declared before use; this one is declared further down", "unknown name '%s'",
+		      token.name);
 	error(token.at, spec_suggestion(p->spec, token.name), "unknown name '%s'", token.name);
 }
 
@@ -240,10 +249,13 @@ static int read_component(struct parser *p, int *primes, bool declared)
 	struct token token = take(p);
 	lex_number(token, number);
 	if (mpz_cmp_ui(mpq_denref(number), 1) != 0 || mpq_sgn(number) <= 0)
-		error(token.at, NULL, declared ? "a vector has a whole number of components, at least 1" : "components are numbered from 1");
+		error(token.at, NULL,
+		      declared ? "a vector has a whole number of components, at least 1"
+			       : "components are numbered from 1");
 	if (declared && mpq_cmp_ui(number, LIMIT_STATES, 1) > 0)
 		error(token.at, NULL, "more states than the limit of %d", LIMIT_STATES);
-	int component = mpq_cmp_ui(number, LIMIT_STATES, 1) > 0 ? LIMIT_STATES + 1 : (int)mpz_get_ui(mpq_numref(number));
+	int component =
+		mpq_cmp_ui(number, LIMIT_STATES, 1) > 0 ? LIMIT_STATES + 1 : (int)mpz_get_ui(mpq_numref(number));
 	mpq_clear(number);
 	expect_op(p, "]", "']'");
 	if (p->token.kind == TOKEN_OPERATOR && p->token.op[0] == '\'')
@@ -271,12 +283,14 @@ static struct node *resolve_name(struct parser *p, struct token token)
 	if (symbol->broken)
 		abandon();
 	if (symbol->kind == SYMBOL_OUTPUT)
-		error(token.at, "a shorthand for use in expressions is a let", "output '%s' cannot be used in an expression", token.name);
+		error(token.at, "a shorthand for use in expressions is a let",
+		      "output '%s' cannot be used in an expression", token.name);
 	if (token.primes > 0 && symbol->kind != SYMBOL_COORD && symbol->kind != SYMBOL_INPUT)
-		error(token.at, "only coordinates have derivatives", "%s '%s' has no derivative", kind_text(symbol), token.name);
-	if (token.primes > 0 && symbol->kind == SYMBOL_INPUT && !symbol->first_order)
-		error(token.at, format("input %s hold first ramps between samples and has one", token.name), "input '%s' is held over a step: it has no slope",
+		error(token.at, "only coordinates have derivatives", "%s '%s' has no derivative", kind_text(symbol),
 		      token.name);
+	if (token.primes > 0 && symbol->kind == SYMBOL_INPUT && !symbol->first_order)
+		error(token.at, format("input %s hold first ramps between samples and has one", token.name),
+		      "input '%s' is held over a step: it has no slope", token.name);
 	if (token.primes > 1 && symbol->kind == SYMBOL_INPUT)
 		error(token.at, NULL, "input '%s' has no second derivative", token.name);
 	check_component(symbol, component, token.at);
@@ -293,13 +307,15 @@ static struct node *resolve_name(struct parser *p, struct token token)
 
 static void check_arguments(const struct node *call)
 {
-	int wanted = call->function == FN_ATAN2 ? 2 : call->function == FN_DEADZONE || call->function == FN_CLIP ? 3 : 1;
+	bool three = call->function == FN_DEADZONE || call->function == FN_CLIP;
+	int wanted = call->function == FN_ATAN2 ? 2 : three ? 3 : 1;
 	bool open_ended = call->function == FN_MIN || call->function == FN_MAX || call->function == FN_TABLE;
 	if (call->function == FN_TABLE && call->children < 5)
 		error(call->at, "table(x; x0, y0; x1, y1; ...)", "a table needs at least two points");
 	if (open_ended ? call->children < 2 : call->children != wanted)
-		error(call->at, NULL, "%s takes %s%d argument%s, found %d", function_name(call->function), open_ended ? "at least " : "",
-		      open_ended ? 2 : wanted, wanted == 1 && !open_ended ? "" : "s", call->children);
+		error(call->at, NULL, "%s takes %s%d argument%s, found %d", function_name(call->function),
+		      open_ended ? "at least " : "", open_ended ? 2 : wanted, wanted == 1 && !open_ended ? "" : "s",
+		      call->children);
 }
 
 /* call: FUNCTION ( expression { , expression } )   |   table ( expression { ; expression , expression } ) */
@@ -310,14 +326,16 @@ static struct node *read_call(struct parser *p, struct token name, enum function
 	if (name.primes > 0)
 		error(name.at, NULL, "a function has no derivative here: '%s'", name.name);
 	if (!is_op(p, "("))
-		error(name.at, NULL, "'%s' is a function: expected '(' after it, found %s", name.name, token_text(p->token));
+		error(name.at, NULL, "'%s' is a function: expected '(' after it, found %s", name.name,
+		      token_text(p->token));
 	nest(p, name.at);
 	struct place separator = take(p).at;
 	add_child(call, read_expression(p), false, separator);
 	while (is_op(p, ",") || is_op(p, ";")) {
 		bool semicolon = is_op(p, ";");
 		if (semicolon != (function == FN_TABLE && call->children % 2 == 1))
-			unexpected(p, function == FN_TABLE ? "the points of a table as x; x0, y0; x1, y1" : "',' or ')'");
+			unexpected(p,
+				   function == FN_TABLE ? "the points of a table as x; x0, y0; x1, y1" : "',' or ')'");
 		separator = take(p).at;
 		add_child(call, read_expression(p), false, separator);
 	}
@@ -449,7 +467,8 @@ static struct node *read_unary(struct parser *p)
 }
 
 /* One level of left-associative operators, as one node with many children: long sums stay flat. */
-static struct node *read_chain(struct parser *p, enum node_kind kind, const char *plain, const char *inverse, struct node *(*read)(struct parser *))
+static struct node *read_chain(struct parser *p, enum node_kind kind, const char *plain, const char *inverse,
+			       struct node *(*read)(struct parser *))
 {
 	struct node *first = read(p);
 	if (!is_op(p, plain) && !is_op(p, inverse))
@@ -548,10 +567,13 @@ static struct symbol *declare(struct parser *p, struct token name, enum symbol_k
 	if (known && known->broken)
 		abandon();
 	if (known)
-		error(name.at, NULL, "'%s' is declared already, as %s %s", name.name, known->kind == SYMBOL_OUTPUT || known->kind == SYMBOL_INPUT ? "an" : "a", kind_text(known));
+		error(name.at, NULL, "'%s' is declared already, as %s %s", name.name,
+		      known->kind == SYMBOL_OUTPUT || known->kind == SYMBOL_INPUT ? "an" : "a", kind_text(known));
 	int *counts[] = { &spec->params, &spec->coords, &spec->lets, &spec->outputs, &spec->inputs, &spec->matrices };
 	struct symbol *symbol = NEW(struct symbol);
-	*symbol = (struct symbol){ .kind = kind, .name = name.name, .at = name.at, .statement = p->statement, .broken = broken };
+	*symbol = (struct symbol){
+		.kind = kind, .name = name.name, .at = name.at, .statement = p->statement, .broken = broken
+	};
 	symbol->index = broken ? -1 : (*counts[kind])++;
 	add_symbol(spec, symbol);
 	return symbol;
@@ -648,8 +670,9 @@ static bool take_word(struct parser *p, const char *word)
 	return true;
 }
 
-/* `hold first` at the end of a list, and nowhere else in it, holds for the whole list. Else it holds for the name before it, and whoever has
- * none is held: after the ramps only, where that cannot be taken for the other. `last`: of the list */
+/* `hold first` at the end of a list, and nowhere else in it, holds for the whole list. Else it holds for the name
+ * before it, and whoever has none is held: after the ramps only, where that cannot be taken for the other. `last`: of
+ * the list */
 static void apply_hold(struct parser *p, const struct symbol *last, int phrases)
 {
 	const struct symbol *held = NULL;
@@ -658,8 +681,9 @@ static void apply_hold(struct parser *p, const struct symbol *last, int phrases)
 		if (s->statement != p->statement)
 			continue;
 		if (s->first_order && held && !whole)
-			error(held->at, format("what is held goes last, or has a statement of its own: input %s", held->name),
-				"is '%s' held, or a ramp as '%s' is?", held->name, s->name);
+			error(held->at,
+			      format("what is held goes last, or has a statement of its own: input %s", held->name),
+			      "is '%s' held, or a ramp as '%s' is?", held->name, s->name);
 		held = s->first_order || held ? held : s;
 		s->first_order = s->first_order || whole;
 	}
@@ -676,7 +700,8 @@ static void read_input(struct parser *p)
 			continue;
 		input->first_order = take_word(p, "first");
 		if (!input->first_order)
-			error(p->token.at, "without 'hold first' an input is held from sample to sample", "expected 'first', found %s", token_text(p->token));
+			error(p->token.at, "without 'hold first' an input is held from sample to sample",
+			      "expected 'first', found %s", token_text(p->token));
 		phrases++;
 	} while (take_op(p, ","));
 	expect_end(p);
@@ -691,7 +716,8 @@ static void add_initial(struct parser *p, struct token name, struct symbol *coor
 		    (!component || !spec->initial[i].component || spec->initial[i].component == component))
 			error(name.at, NULL, "the initial value of %s is given already", token_text(name));
 	ENLARGE(spec->initial, (size_t)spec->initials + 1);
-	spec->initial[spec->initials++] = (struct initial){ name.at, p->statement, coord, name.primes, component, value };
+	spec->initial[spec->initials++] =
+		(struct initial){ name.at, p->statement, coord, name.primes, component, value };
 }
 
 /* init: init NAME [ ' ] = expression { , ... } */
@@ -709,7 +735,8 @@ static void read_init(struct parser *p)
 		if (!coord && !is_reserved(name.name))
 			unknown_name(p, name);
 		if (!coord || coord->kind != SYMBOL_COORD)
-			error(name.at, "initial values are for coordinates and their velocities", "'%s' is not a coordinate", name.name);
+			error(name.at, "initial values are for coordinates and their velocities",
+			      "'%s' is not a coordinate", name.name);
 		check_component(coord, component, name.at);
 		if (name.primes > 1)
 			error(name.at, NULL, "an acceleration has no initial value: it follows from the equations");
@@ -731,7 +758,9 @@ static struct symbol *read_plain_output(struct parser *p, struct token name)
 		if (s->kind == SYMBOL_OUTPUT && strcmp(s->name, shown) == 0)
 			error(name.at, NULL, "output '%s' is declared already", shown);
 	struct symbol *symbol = NEW(struct symbol);
-	*symbol = (struct symbol){ .kind = SYMBOL_OUTPUT, .name = shown, .at = name.at, .statement = p->statement, .value = value };
+	*symbol = (struct symbol){
+		.kind = SYMBOL_OUTPUT, .name = shown, .at = name.at, .statement = p->statement, .value = value
+	};
 	symbol->index = p->spec->outputs++;
 	value->end = p->end;
 	add_symbol(p->spec, symbol);
@@ -810,9 +839,11 @@ static struct fixed *read_fixed_name(struct parser *p)
 	struct node *name = time ? NULL : resolve_name(p, token);
 	struct symbol *symbol = time ? NULL : name->symbol;
 	if (symbol && symbol->kind != SYMBOL_COORD && symbol->kind != SYMBOL_LET)
-		error(token.at, "an operator fixes t, coordinates, their first derivatives and lets", "%s '%s' cannot be fixed", kind_text(symbol), symbol->name);
+		error(token.at, "an operator fixes t, coordinates, their first derivatives and lets",
+		      "%s '%s' cannot be fixed", kind_text(symbol), symbol->name);
 	if (token.primes > 1 || (name && name->primes > 1))
-		error(token.at, "an operator fixes t, coordinates, their first derivatives and lets", "an acceleration cannot be fixed");
+		error(token.at, "an operator fixes t, coordinates, their first derivatives and lets",
+		      "an acceleration cannot be fixed");
 	for (int i = 0; i < spec->fixeds; i++) {
 		const struct fixed *other = &spec->fixed[i];
 		bool same = other->symbol == symbol && (!name || (other->primes == name->primes &&
@@ -864,7 +895,8 @@ static void read_tunable(struct parser *p)
 		if (!symbol || symbol->broken || symbol->kind == SYMBOL_PARAM)
 			symbol = resolve_name(p, token)->symbol;
 		if (symbol->kind != SYMBOL_PARAM)
-			error(token.at, "a param is tunable, and nothing else", "%s '%s' is not a param", kind_text(symbol), symbol->name);
+			error(token.at, "a param is tunable, and nothing else", "%s '%s' is not a param",
+			      kind_text(symbol), symbol->name);
 		if (symbol->tuned)
 			error(token.at, NULL, "'%s' is tunable already", symbol->name);
 		if (spec->tunables == LIMIT_TUNABLES)
@@ -886,7 +918,8 @@ static struct node *read_coordinate(struct parser *p, bool ground)
 		unexpected(p, ground ? "a coordinate or ground" : "a coordinate");
 	struct node *node = resolve_name(p, take(p));
 	if (node->symbol->kind != SYMBOL_COORD || node->primes > 0 || (node->symbol->length && !node->component))
-		error(node->at, NULL, "expected a scalar coordinate or a component, found '%s'", text_between(node->start, node->end));
+		error(node->at, NULL, "expected a scalar coordinate or a component, found '%s'",
+		      text_between(node->start, node->end));
 	return node;
 }
 
@@ -909,7 +942,8 @@ static void read_element(struct parser *p, int kind)
 		element.from = element.to;
 		element.to = NULL;
 	}
-	if (!element.from || (element.to && element.from->symbol == element.to->symbol && element.from->component == element.to->component))
+	if (!element.from || (element.to && element.from->symbol == element.to->symbol &&
+			      element.from->component == element.to->component))
 		error(first.at, NULL, "it acts between a coordinate and itself");
 	expect_end(p);
 	element.end = p->end;
@@ -926,16 +960,16 @@ static const struct statement {
 	const char *word;
 	void (*read)(struct parser *);
 } statements[] = {
-	{ "model", read_model }, { "param", read_param }, { "coord", read_coord }, { "init", read_init }, { "let", read_let },
-	{ "output", read_output }, { "step", read_step }, { "scheme", read_scheme },
+	{ "model", read_model }, { "param", read_param }, { "coord", read_coord }, { "init", read_init },
+	{ "let", read_let }, { "output", read_output }, { "step", read_step }, { "scheme", read_scheme },
 	{ "input", read_input }, { "matrix", read_matrix_statement }, { "mass", read_mass }, { "spring", read_spring },
-	{ "damper", read_damper }, { "force", read_force }, { "operator", read_operator },
-	{ "tunable", read_tunable }
+	{ "damper", read_damper }, { "force", read_force }, { "operator", read_operator }, { "tunable", read_tunable }
 };
 
 static const struct statement *statement_of(struct token token)
 {
-	for (size_t i = 0; token.kind == TOKEN_NAME && token.primes == 0 && i < sizeof statements / sizeof *statements; i++)
+	for (size_t i = 0; token.kind == TOKEN_NAME && token.primes == 0 && i < sizeof statements / sizeof *statements;
+	     i++)
 		if (strcmp(token.name, statements[i].word) == 0)
 			return &statements[i];
 	return NULL;
@@ -979,7 +1013,8 @@ static void read_equation(struct parser *p)
 	spec->equation[spec->equations - 1] = equation;
 	equation.left = read_expression(p);
 	if (p->token.kind == TOKEN_END && equation.left->kind == NODE_COMPARE && equation.left->comparison == CMP_EQ)
-		error(equation.left->at, "an equation has a single =", "expected an operator or the '=' of the equation, found '=='");
+		error(equation.left->at, "an equation has a single =",
+		      "expected an operator or the '=' of the equation, found '=='");
 	if (!is_op(p, "="))
 		unexpected(p, "an operator or the '=' of the equation");
 	take(p);
@@ -999,7 +1034,8 @@ static void read_statement(void *context)
 	const struct statement *statement = statement_of(p->token);
 	if (!p->spec->name && !(statement && statement->read == read_model)) {
 		p->spec->name = "";             /* told once */
-		error(p->token.at, "a spec begins with its name: model NAME", "expected the statement 'model', found %s", token_text(p->token));
+		error(p->token.at, "a spec begins with its name: model NAME",
+		      "expected the statement 'model', found %s", token_text(p->token));
 	}
 	if (!p->spec->name)
 		p->spec->name = "";             /* should its statement fail, that is told */
@@ -1027,7 +1063,8 @@ static const struct statement *failed_statement(const struct parser *p, size_t f
 {
 	const char *text = p->lexer.source->text + from;
 	size_t length = strspn(text, WORD);
-	struct token token = { TOKEN_NAME, { p->lexer.source, from }, length, "", format("%.*s", (int)length, text), text[length] == '\'' };
+	struct token token = { TOKEN_NAME, { p->lexer.source, from }, length, "", format("%.*s", (int)length, text),
+			       text[length] == '\'' };
 	const struct statement *statement = statement_of(token);
 	*after = from + length;
 	if (statement || !resembles_statement(p->spec, token))
@@ -1049,8 +1086,8 @@ static void declare_what_failed(struct parser *p, size_t from)
 		if (s->statement == p->statement && (s->kind == SYMBOL_PARAM || s->kind == SYMBOL_MATRIX))
 			s->broken = true;
 	bool all = statement && (statement->read == read_coord || statement->read == read_input);
-	if (!statement || (!all && statement->read != read_param && statement->read != read_let && statement->read != read_output &&
-	     statement->read != read_matrix_statement))
+	if (!statement || (!all && statement->read != read_param && statement->read != read_let &&
+			   statement->read != read_output && statement->read != read_matrix_statement))
 		return;
 	bool listed = true;                     /* here a definition starts, even one without its = */
 	int depth = 0;
@@ -1067,7 +1104,9 @@ static void declare_what_failed(struct parser *p, size_t from)
 		bool defined = listed || (next[0] == '=' && next[1] != '=');
 		listed = false;
 		if ((all || defined) && !strchr("0123456789", text[i])) {
-			p->token = (struct token){ TOKEN_NAME, { p->lexer.source, i }, length, "", format("%.*s", (int)length, text + i), 0 };
+			p->token = (struct token){
+				TOKEN_NAME, { p->lexer.source, i }, length, "", format("%.*s", (int)length, text + i), 0
+			};
 			statement_guard(declare_broken, p);
 		}
 		i += length - 1;
@@ -1095,14 +1134,16 @@ struct spec *parse_spec(const struct source *source)
 		p.statement = from;
 		bool good = false;
 		if (unclosed != SIZE_MAX)
-			say_error((struct place){ source, unclosed }, NULL, "'%c' is not closed", source->text[unclosed]);
+			say_error((struct place){ source, unclosed }, NULL, "'%c' is not closed",
+				  source->text[unclosed]);
 		else
 			good = statement_guard(read_statement, &p);
 		if (!good)
 			declare_what_failed(&p, from);
 	}
 	if (!spec->name)
-		say_error(spec->end.offset ? spec->end : (struct place){ source, 0 }, "a spec begins with its name: model NAME",
+		say_error(spec->end.offset ? spec->end : (struct place){ source, 0 },
+			  "a spec begins with its name: model NAME",
 			  source->length ? "there is no statement in this file" : "the file is empty");
 	return spec;
 }

@@ -68,9 +68,7 @@ struct span { mpq_srcptr after, before; };   /* of time; NULL: no bound */
 enum symbol_kind { SYMBOL_PARAM, SYMBOL_COORD, SYMBOL_LET, SYMBOL_OUTPUT, SYMBOL_INPUT, SYMBOL_MATRIX };
 struct symbol {
 	enum symbol_kind kind;
-	bool used, slope_used;      /* by the expressions now being printed */
-	const char *c_name, *c_dot; /* C identifiers of it and of its first derivative */
-	const char **c_component, **c_component_dot; /* of a vector coordinate */
+	int number;                 /* 1, 2, ... in the order of declaration; 0: no statement declares it */
 	const char *name;
 	struct place at;
 	size_t statement;           /* offset of the statement that declares it */
@@ -128,7 +126,7 @@ struct spec {                       /* what the text says, names resolved, nothi
 	struct symbol *first, **last;   /* all symbols in the order of declaration */
 	struct symbol **bucket;         /* the same by name */
 	int components;                 /* of all coordinates together */
-	int params, coords, lets, outputs, inputs, matrices;
+	int symbols, params, coords, lets, outputs, inputs, matrices;
 	int equations;
 	struct equation *equation;
 	int elements;
@@ -178,21 +176,35 @@ struct mtx *mtx_read(const char *path, struct place at);    /* `at`: what names 
 /* ---- schemes.c: the schemes and the forms of a step ---- */
 
 enum step_form { FORM_AUTO, FORM_DIRECT, FORM_DELTA, FORM_KICK_DRIFT_KICK, STEP_FORMS };
+#define SCHEME(id, recipe, ...) SCHEME_##id,
 enum scheme {
-	SCHEME_EXACT,
-	SCHEME_PL,
-	SCHEME_ETD1,
-	SCHEME_ETDRK2,
-	SCHEME_ETDRK4,
-	SCHEME_NC2,
-	SCHEME_NC3,
-	SCHEME_DQ4,
-	SCHEME_BM3,
+#include "read/schemes.def"
 	SCHEMES
 };
+#undef SCHEME
+struct scheme_row {
+	const char *name;           /* as users write it */
+	int order;                  /* in h, where all is smooth; 0: exact */
+	const char *method;         /* what it does, for the banner; NULL: exact */
+	const char *citation;       /* of its recipe */
+	bool leaves;                /* a quadrature of its own treats what it leaves over */
+	bool by_default;            /* where exact is not possible and no scheme is asked for */
+	bool holds_coupling;        /* over the step: A is each coordinate's own terms, of linear models too */
+	bool holds_leftover;        /* over the step: there is a value of its order at any time between steps */
+	bool predicts;              /* the nodes by an explicit method, which bears no stiffness */
+	/* Stability: where the operator's squared frequencies are below the model's by d, the state grows at h d over
+	 * this; 0: its phase drifts, by the order. */
+	int growth_divisor;
+};
+const struct scheme_row *scheme_row(enum scheme scheme);
 const char *scheme_name(enum scheme scheme);
 bool scheme_of(const char *name, enum scheme *scheme);      /* false: there is none of this name */
 const char *nearest_scheme(const char *name);               /* or NULL */
+enum scheme default_scheme(void);                           /* with a leftover */
+const char *all_schemes(const char *separator);             /* their names */
+const char *leaving_schemes(const char *last);              /* of those with a quadrature: a, b<last>c */
+const char *holding_schemes(void);                          /* of those that hold coupling terms */
+const char *scheme_note(enum scheme scheme);                /* Scheme etd1, of first order in h: ... */
 const char *step_form_name(enum step_form form);
 bool step_form_of(const char *name, enum step_form *form);  /* false: there is none of this name */
 

@@ -4,19 +4,26 @@
 
 #include <string.h>
 
-static const char *const schemes[SCHEMES] = { "exact", "pl", "etd1", "etdrk2", "etdrk4", "nc2", "nc3", "dq4", "bm3" };
+#define SCHEME(id, recipe, ...) [SCHEME_##id] = { __VA_ARGS__ },
+static const struct scheme_row rows[SCHEMES] = {
+#include "read/schemes.def"
+};
+#undef SCHEME
+
+const struct scheme_row *scheme_row(enum scheme scheme)
+{
+	return &rows[scheme];
+}
 
 const char *scheme_name(enum scheme scheme)
 {
-	return schemes[scheme];
+	return rows[scheme].name;
 }
-
-static const char *const names[STEP_FORMS] = { "auto", "direct", "delta", "kick-drift-kick" };
 
 bool scheme_of(const char *name, enum scheme *scheme)
 {
 	for (int i = 0; i < SCHEMES; i++)
-		if (strcmp(name, schemes[i]) == 0) {
+		if (strcmp(name, rows[i].name) == 0) {
 			*scheme = (enum scheme)i;
 			return true;
 		}
@@ -25,8 +32,69 @@ bool scheme_of(const char *name, enum scheme *scheme)
 
 const char *nearest_scheme(const char *name)
 {
-	return nearest_name(name, SCHEMES, schemes);
+	const char *known[SCHEMES];
+	for (int i = 0; i < SCHEMES; i++)
+		known[i] = rows[i].name;
+	return nearest_name(name, SCHEMES, known);
 }
+
+enum scheme default_scheme(void)
+{
+	int i = 0;
+	while (!rows[i].by_default)
+		i++;
+	return (enum scheme)i;
+}
+
+/* ---- lists of them, in messages ---- */
+
+static bool is_any(const struct scheme_row *row) { return row->name; }
+static bool leaves(const struct scheme_row *row) { return row->leaves; }
+static bool holds(const struct scheme_row *row) { return row->holds_coupling; }
+
+/* a, b<last>c of those that are meant */
+static const char *listed(bool (*meant)(const struct scheme_row *), const char *separator, const char *last)
+{
+	const char *text = "", *before = "";
+	int left = 0;
+	for (int i = 0; i < SCHEMES; i++)
+		left += meant(&rows[i]);
+	for (int i = 0; i < SCHEMES; i++) {
+		if (!meant(&rows[i]))
+			continue;
+		text = format("%s%s%s", text, before, rows[i].name);
+		before = --left == 1 ? last : separator;
+	}
+	return text;
+}
+
+const char *all_schemes(const char *separator)
+{
+	return listed(is_any, separator, separator);
+}
+
+const char *leaving_schemes(const char *last)
+{
+	return listed(leaves, ", ", last);
+}
+
+const char *holding_schemes(void)
+{
+	return listed(holds, ", ", " and ");
+}
+
+const char *scheme_note(enum scheme scheme)
+{
+	enum { WORDS = 5 };
+	static const char *const ordinal[WORDS] = { "zeroth", "first", "second", "third", "fourth" };
+	const struct scheme_row *row = &rows[scheme];
+	return format("Scheme %s, of %s order in h: %s.", row->name,
+		      row->order < WORDS ? ordinal[row->order] : format("%dth", row->order), row->method);
+}
+
+/* ---- forms ---- */
+
+static const char *const names[STEP_FORMS] = { "auto", "direct", "delta", "kick-drift-kick" };
 
 const char *step_form_name(enum step_form form)
 {

@@ -57,8 +57,7 @@ static void person_poles(FILE *to, const struct model *model, const struct resol
 	int count = poles_of(model, resolvent, &pole);
 	fprintf(to, "    %-36s %-16s damping ratio\n", "pole [1/s]", "frequency [Hz]");
 	for (int i = 0; i < count; i++)
-		fprintf(to, "    %-36s %-16.8g %.8g\n", pole_text(&pole[i]), mpfr_get_d(pole[i].hertz, MPFR_RNDN),
-			mpfr_get_d(pole[i].damping_ratio, MPFR_RNDN));
+		fprintf(to, "    %s\n", pole_row(&pole[i], 36));
 }
 
 static void person_held(FILE *to, const struct step *step)
@@ -81,7 +80,7 @@ static void person_held(FILE *to, const struct step *step)
 		"It is of first order in h. Its modified equation y' = L y - (h/2) R L y (R: the held terms) has "
 		"growth rate\n"
 		"%.6g 1/s, the largest real part of its poles, at h = %s s.\n",
-		mpfr_get_d(step->growth, MPFR_RNDN), readable_text(step->model->h));
+		growth_rate(step), readable_text(step->model->h));
 }
 
 static void person_tuning(FILE *to, const struct tuning *t)
@@ -147,7 +146,7 @@ static void person_step(FILE *to, const struct step *step)
 			step->series.degree, 1 << step->series.halvings, step->series.halvings ? "s" : "");
 	else
 		fprintf(to, "%s_at is not emitted: %s.\n", model->name,
-			has_leftover(step) && !step->series.powers
+			has_leftover(step) && !step->layout.powers
 				? "between its steps the scheme has no values of its order"
 				: "the largest |pole| times h is above 8");
 }
@@ -157,7 +156,7 @@ static void person_step(FILE *to, const struct step *step)
 static void person_regions(FILE *to, const struct step *step)
 {
 	const struct switching *s = step->shown->model->switching;
-	long size = step->series.size, matrices = s->systems, degree = step->series.degree, pieces = 1;
+	long size = step->layout.size, matrices = s->systems, degree = step->series.degree, pieces = 1;
 	long bytes = 8 * (s->expressions * size + matrices * (2 * size * size + 3 * s->expressions * size)) +
 		     4 * (s->regions + s->expressions + matrices);
 	for (int k = 0; k < step->branches; k++)
@@ -200,7 +199,7 @@ static void person_split(FILE *to, const struct step *step)
 	for (int k = 0; k < model->operators; k++) {
 		const struct operator *operator = &model->operator[k];
 		if (!*operator->text) {
-			fputs(model->scheme == SCHEME_PL
+			fputs(scheme_row(model->scheme)->holds_coupling
 				      ? "A: each coordinate's own terms.\n"
 				      : "A: the linear terms with constant coefficients, as above.\n",
 			      to);
@@ -212,7 +211,7 @@ static void person_split(FILE *to, const struct step *step)
 			operator->text);
 		person_matrix(to, "C", model->n, (const mpq_t *)operator->C);
 		person_matrix(to, "K", model->n, (const mpq_t *)operator->K);
-		if (model->scheme != SCHEME_PL)
+		if (!scheme_row(model->scheme)->holds_coupling)
 			person_poles(to, model, step->shown->branch[k].resolvent);
 	}
 	if (step->branches > 1)
@@ -275,13 +274,13 @@ void explain_person(FILE *to, const struct step *step)
 		fprintf(to, "\nIrrational constants (%s) were taken as rationals of %d bits.\n", irrational,
 			IRRATIONAL_BITS);
 	fputc('\n', to);
-	if (model->scheme == SCHEME_PL)
+	if (scheme_row(model->scheme)->holds_coupling)
 		person_held(to, step);
 	if (model->switching)
 		person_regions(to, step);
 	else if (has_leftover(step))
 		person_split(to, step);
-	else if (model->scheme != SCHEME_PL)
+	else if (!scheme_row(model->scheme)->holds_coupling)
 		fputs("Nothing is approximated: every constant is its closed form, correctly rounded.\n", to);
 	if (model->written != model)
 		person_reduction(to, step);
@@ -503,8 +502,8 @@ void explain_json(FILE *to, const struct step *step)
 	json_poles(to, step);
 	json_matrix(to, "Phi", model->system.states, model->system.states, Phi);
 	json_loads(to, step);
-	if (model->scheme == SCHEME_PL)
-		fprintf(to, "  \"growth_rate\": %.17g,\n", mpfr_get_d(step->growth, MPFR_RNDN));
+	if (scheme_row(model->scheme)->holds_coupling)
+		fprintf(to, "  \"growth_rate\": %.17g,\n", growth_rate(step));
 	static const char *const smooth[] = { "smooth", "kink", "jump" };
 	fprintf(to, "  \"order\": %d,\n  \"smooth\": \"%s\",\n", order_that_holds(model), smooth[model->smooth.kind]);
 	if (step->model->switching)

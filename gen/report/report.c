@@ -18,6 +18,17 @@ const char *pole_text(const struct pole_report *r)
 	return r->multiplicity > 1 ? format("%s  (%d-fold)", text, r->multiplicity) : text;
 }
 
+const char *pole_row(const struct pole_report *r, int width)
+{
+	return format("%-*s %-16.8g %.8g", width, pole_text(r), mpfr_get_d(r->hertz, MPFR_RNDN),
+		      mpfr_get_d(r->damping_ratio, MPFR_RNDN));
+}
+
+double growth_rate(const struct step *step)
+{
+	return mpfr_get_d(step->growth, MPFR_RNDN);
+}
+
 const char *polynomial_text(int length, const mpq_t *c)
 {
 	const char *text = "";

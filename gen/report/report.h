@@ -8,10 +8,14 @@
 /* ---- report.c: poles and polynomials for a reader ---- */
 
 const char *pole_text(const struct pole_report *report);
+const char *pole_row(const struct pole_report *report, int width); /* the pole, in so many columns; frequency, damping */
+double growth_rate(const struct step *step);                /* [1/s] */
 const char *polynomial_text(int length, const mpq_t *c);    /* in s */
 const char *irrationals_text(const struct irrationals *used);
 
-/* ---- explain.c, solution.c ---- */
+/* ---- program.c, explain.c, solution.c ---- */
+
+void explain_program(FILE *to, const struct step *step);    /* what a step does, before it is C */
 
 void explain_person(FILE *to, const struct step *step);
 void explain_json(FILE *to, const struct step *step);

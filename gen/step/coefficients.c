@@ -238,7 +238,7 @@ struct filling {
 	const struct linear *system;
 	struct resolvent *resolvent;
 	const char **state_name;
-	struct series series;
+	struct layout layout;
 	int exponentials;           /* 0: residues */
 	struct exponential *exponential;
 	const struct wanted *wanted; /* the table being filled */
@@ -269,8 +269,8 @@ static struct taylor *taylor_at(const struct filling *f, mpq_srcptr tau)
 		if (!mpq_equal(f->exponential[i].tau, tau))
 			continue;
 		if (!*made)
-			*made = taylor_of(f->series.size,
-					  (const mpq_t *)series_matrix(&f->series, f->system, f->segment), tau);
+			*made = taylor_of(f->layout.size,
+					  (const mpq_t *)augmented_matrix(&f->layout, f->system, f->segment), tau);
 		return *made;
 	}
 	return NULL;
@@ -343,7 +343,7 @@ static void combine_state(struct filling *f, int state, int unused)
 	for (int i = 0; i < system->n && held; i++) {
 		mpq_neg(weight, held[i * system->n + system->coord[state]]);
 		if (mpq_sgn(weight) != 0)
-			add_entry(f, f->tau, f->series.held + i, weight);
+			add_entry(f, f->tau, f->layout.held + i, weight);
 	}
 	mpq_clear(weight);
 }
@@ -491,7 +491,7 @@ static void combine_input(struct filling *f, int input, int column)
 		mpq_clear(weight);
 		return;
 	}
-	int at = f->series.input[input];
+	int at = f->layout.input[input];
 	mpq_set_ui(weight, 1, 1);
 	if (column == 0)
 		add_entry(f, f->tau, at, weight);
@@ -511,8 +511,8 @@ static void combine_load(struct filling *f, int load, int column)
 	if (!f->exponentials)
 		add_response(f, response_of_load(f->resolvent, f->system, f->segment, f->row, load, column), one);
 	mpq_set_ui(one, 1, 1);
-	if (f->exponentials && f->series.load[load] >= 0)
-		add_entry(f, f->tau, f->series.load[load] + column, one);
+	if (f->exponentials && f->layout.load[load] >= 0)
+		add_entry(f, f->tau, f->layout.load[load] + column, one);
 	mpq_clear(one);
 }
 
@@ -530,7 +530,7 @@ static void add_powers(struct filling *f, const struct kernel_part *part, mpq_sr
 		}
 		mpq_mul(weight, part->power[m], scale);
 		if (mpq_sgn(weight) != 0)
-			add_entry(f, tau, f->series.channel + channel * f->series.powers + m, weight);
+			add_entry(f, tau, f->layout.channel + channel * f->layout.powers + m, weight);
 	}
 	mpq_clears(weight, scale, NULL);
 }
@@ -716,7 +716,7 @@ static struct table **tables_of_block(struct filling *f, int count, const struct
 	for (size_t i = 0; i < 4; i++)
 		mpq_init(f->response[i].start);
 	mpq_init(f->tau);
-	series_place(&f->series, system, longest_chain(count, wanted));
+	f->layout = layout_of(system, longest_chain(count, wanted));
 	if (system->states > LIMIT_RESIDUE_STATES) {
 		check_waves(f);
 		plan_exponentials(f, count, wanted);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What a step costs: evaluations of what is left over, load states. */
+/* What a step costs: evaluations of what is left over, load states, sums. */
 #include "step/step.h"
 
 static bool is_unit(mpq_srcptr factor)
@@ -81,4 +81,87 @@ void count_loads(struct program *program, const struct linear *system, bool sing
 				  program->growths * (single ? PL_GROWTHF_ADD : PL_GROWTH_ADD);
 	program->multiplications += program->wave_multiplications;
 	program->additions += program->wave_additions;
+}
+
+/* ---- the count of a program of actions ---- */
+
+struct tally {
+	const struct step *step;
+	struct program *program;
+	int *terms;                 /* per row of the sum being counted */
+};
+
+static void tally_matrix(struct tally *t, const struct coefficient *c, int columns)
+{
+	for (int i = 0; i < t->step->branch->system.states; i++)
+		for (int j = 0; j < columns; j++) {
+			double value = c[i * columns + j].value;
+			if (c[i * columns + j].zero && !t->program->loops)
+				continue;
+			t->terms[i]++;
+			t->program->multiplications += t->program->loops || (value != 1 && value != -1);
+		}
+}
+
+static void tally_flow(struct tally *t, const struct table *table)
+{
+	if (table->Phi)
+		tally_matrix(t, table->Phi, table->states);
+	tally_matrix(t, table->load, table->columns);
+	tally_matrix(t, table->input, table->inputs);
+}
+
+static void tally_sum(struct tally *t, const struct action *a)
+{
+	struct table *const *table = t->step->branch[0].table;
+	int rows = t->step->branch->system.states;
+	t->terms = ARRAY(int, (size_t)rows);
+	if (a->flow != NONE)
+		tally_flow(t, table[a->flow]);
+	for (int k = 0; k < a->kernels; k++)
+		tally_matrix(t, table[a->kernel[k].table]->kernel[a->kernel[k].kernel],
+			     t->step->branch->system.channels);
+	for (int i = 0; i < rows; i++)
+		t->program->additions += t->terms[i] + (a->plain != NONE) - (t->terms[i] > 0 || a->plain != NONE);
+}
+
+/* Three slopes beside the first, which all predictions of a step share, and the sums of Runge and Kutta */
+static void tally_prediction(struct tally *t, bool first)
+{
+	int rows = t->step->branch->system.states, slopes = first ? 4 : 3, n = t->step->branch->system.n;
+	int terms = n * (rows + t->step->branch->system.channels);
+	t->program->multiplications += slopes * terms + 4 * rows;
+	t->program->additions += slopes * terms + 6 * rows;
+}
+
+static int leftovers_evaluated(const struct program *program)
+{
+	int count = 0;
+	for (int i = 0; i < program->actions; i++)
+		count += program->action[i].kind == ACTION_LEFTOVER  ? 1
+			 : program->action[i].kind == ACTION_PREDICT ? 3
+								     : 0;
+	return count;
+}
+
+void count_program(const struct step *step, struct program *program)
+{
+	struct tally t = { step, program, NULL };
+	bool first = true;
+	struct cost left = leftover_cost(step);
+	for (int i = 0; i < program->actions; i++) {
+		const struct action *a = &program->action[i];
+		if (a->kind == ACTION_SUM)
+			tally_sum(&t, a);
+		if (a->kind == ACTION_COMBINE)
+			program->additions += step->branch->system.channels;
+		if (a->kind == ACTION_PREDICT) {
+			tally_prediction(&t, first);
+			first = false;
+		}
+	}
+	int count = leftovers_evaluated(program);
+	program->multiplications += count * left.multiplications;
+	program->additions += count * left.additions;
+	program->calls = count * left.calls;
 }

@@ -174,7 +174,8 @@ struct drift drift_of(const struct step *step)
 	struct drift drift = { 0, 0, false };
 	struct mode *eigenvalue, *pole;
 	mpz_t content;
-	if (step->program->loops || has_leftover(step) || step->model->switching || step->model->scheme == SCHEME_PL)
+	if (step->program->loops || has_leftover(step) || step->model->switching ||
+	    scheme_row(step->model->scheme)->holds_coupling)
 		return drift;
 	struct spectrum *map = spectrum_of(characteristic(step));
 	mpz_init(content);

@@ -153,11 +153,11 @@ struct course {
 
 struct flow { mpfr_t *E; };         /* of one segment of time: e^{A h} of the series' matrix */
 
-static bool make_flow(const struct step *step, const struct series *place, int segment, struct flow *flow)
+static bool make_flow(const struct step *step, const struct layout *place, int segment, struct flow *flow)
 {
 	int size = place->size;
 	struct taylor *taylor =
-		taylor_of(size, (const mpq_t *)series_matrix(place, &step->branch->system, segment), step->model->h);
+		taylor_of(size, (const mpq_t *)augmented_matrix(place, &step->branch->system, segment), step->model->h);
 	mpfi_t value;
 	if (!taylor_enclose(taylor, BITS))
 		return false;
@@ -192,7 +192,7 @@ static int segment_at(const struct linear *system, mpq_srcptr t)
 	return segment;
 }
 
-static bool note_course(const struct step *step, const struct series *place, const mpfr_t *x, struct course *c, int k)
+static bool note_course(const struct step *step, const struct layout *place, const mpfr_t *x, struct course *c, int k)
 {
 	int states = step->branch->system.states, columns = step->branch->whole->columns;
 	bool finite = true;
@@ -213,7 +213,7 @@ static bool note_course(const struct step *step, const struct series *place, con
 
 /* Step by step, from the spec's initial values, inputs 0; a change of formula is taken at the step after it: sizes
  * matter here. */
-static bool follow(const struct step *step, const struct series *place, struct course *c)
+static bool follow(const struct step *step, const struct layout *place, struct course *c)
 {
 	int size = place->size;
 	mpfr_t *x = ARRAY(mpfr_t, (size_t)size), *next = ARRAY(mpfr_t, (size_t)size);
@@ -278,9 +278,8 @@ static bool add_powers_of_phi(const struct step *step, struct course *c)
 
 static bool make_course(const struct step *step, struct course *c)
 {
-	struct series place;
 	size_t states = (size_t)step->branch->system.states, rows = STEPS + 1;
-	series_place(&place, &step->branch->system, 0);
+	struct layout place = layout_of(&step->branch->system, 0);
 	if (place.size > LIMIT_SIZE || step->branch->system.states > LIMIT_FORCED_STATES ||
 	    step->branch->system.segments > LIMIT_SEGMENTS)
 		return false;

@@ -53,7 +53,7 @@ static void largest_angle(const struct step *step, mpfr_ptr angle)
 	for (int k = 0; k < step->branches; k++)
 		larger_poles(angle, step->branch[k].resolvent);
 	for (int l = 0; l < step->branch->system.loads; l++)
-		if (step->series.load[l] >= 0)
+		if (step->layout.load[l] >= 0)
 			larger_wave(angle, step->branch->system.load[l].wave);
 	mpfr_mul_q(angle, angle, step->model->h, MPFR_RNDU);
 }
@@ -140,13 +140,12 @@ static void add_envelope(mpfr_t *A, int cells, const mpq_t *segment)
  * `last`. */
 int series_degree(const struct step *step, int from, int to, int halvings)
 {
-	const struct series *series = &step->series;
-	int size = series->size, cells = size * size, quiet = 0, k = 0;
+	int size = step->layout.size, cells = size * size, quiet = 0, k = 0;
 	mpfr_t *A = positive_numbers(cells), *term = positive_numbers(cells), *next = positive_numbers(cells),
 	       *first = positive_numbers(cells);
 	for (int o = from; o < to; o++)
 		for (int s = 0; s < step->branch->system.segments; s++) {
-			mpq_t *matrix = series_matrix(series, &step->branch[o].system, s);
+			mpq_t *matrix = augmented_matrix(&step->layout, &step->branch[o].system, s);
 			add_envelope(A, cells, (const mpq_t *)matrix);
 			rationals_free(matrix, (size_t)cells);
 		}
@@ -180,7 +179,7 @@ int series_halvings(const struct step *step, int operator)
 	mpfr_set_zero(angle, 1);
 	larger_poles(angle, step->branch[operator].resolvent);
 	for (int l = 0; l < step->branch->system.loads; l++)
-		if (step->series.load[l] >= 0)
+		if (step->layout.load[l] >= 0)
 			larger_wave(angle, step->branch->system.load[l].wave);
 	mpfr_mul_q(angle, angle, step->model->h, MPFR_RNDU);
 	for (; mpfr_cmp_ui(angle, 1) > 0 && halvings <= 30; halvings++)
@@ -195,7 +194,7 @@ void series_plan(struct step *step)
 	mpfr_t angle;
 	largest_angle(step, angle);
 	/* what is left over is held over the step, or there is none */
-	bool held = !has_leftover(step) || series->powers > 0;
+	bool held = !has_leftover(step) || step->layout.powers > 0;
 	series->emitted = held && mpfr_cmp_ui(angle, LIMIT_RADIANS) <= 0;
 	if (series->emitted || (step->branch->system.segments > 1 && mpfr_cmp_ui(angle, LIMIT_PARTS) <= 0)) {
 		for (series->halvings = 0; mpfr_cmp_ui(angle, 1) > 0; series->halvings++)

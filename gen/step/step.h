@@ -63,14 +63,15 @@ struct coefficient {
 /* What multiplies a leftover, as a sum of parts: at tau = fraction h, B the force of its channel,
  *     impulse e^{A tau} B + integral over 0..tau of e^{A (tau - s)} B (power[0] + power[1] s/h + power[2] (s/h)^2) ds
  * so h phi_k(A h) B is power k-1 over (k-1)!. The sum is rounded once. */
+enum { PART_POWERS = 3, KERNEL_PARTS = 2, TABLE_KERNELS = 4 };
 struct kernel_part {
-	mpq_t fraction, impulse, power[3];
+	mpq_t fraction, impulse, power[PART_POWERS];
 	int powers;
 };
 struct kernel {
 	const char *name;           /* b1 */
 	int parts;
-	struct kernel_part part[2];
+	struct kernel_part part[KERNEL_PARTS];
 };
 struct wanted {                     /* of one table */
 	mpq_t fraction;             /* its time, as a part of h */
@@ -79,7 +80,7 @@ struct wanted {                     /* of one table */
 	const mpq_t *mass;          /* kicks and drifts; one per coordinate, in units of the first; NULL: not wanted */
 	const char *name;           /* full, half */
 	int kernels;
-	struct kernel kernel[4];
+	struct kernel kernel[TABLE_KERNELS];
 };
 struct table {                      /* of one time: y(tau) = Phi y + sum of columns */
 	const struct wanted *wanted;
@@ -134,9 +135,14 @@ struct assignment {                 /* target <- sum of products */
 	int terms;
 	struct product *term;
 };
+struct matrix_product {             /* of a step that loops: a matrix times the vector of operands of this kind */
+	const struct coefficient *factor; /* states x columns; of loads: [segment of time][states x columns] */
+	enum operand_kind kind;
+	int columns;
+};
 /* A step of a scheme that leaves something over is a list of actions on vectors: stages are states (0: the state
  * itself), lefts are leftovers. */
-enum { STAGE_STATE = 0, NONE = -1 };
+enum { STAGE_STATE = 0, NONE = -1, SUM_KERNELS = 4 };
 struct action {
 	enum { ACTION_LEFTOVER, ACTION_COMBINE, ACTION_SUM, ACTION_PREDICT } kind;
 	int target;                 /* LEFTOVER, COMBINE: a left; SUM, PREDICT: a stage */
@@ -147,7 +153,7 @@ struct action {
 	int flow;                   /* SUM: table whose Phi, loads and inputs act on the state, or NONE */
 	int plain;                  /* SUM: stage added as it is, or NONE */
 	int kernels;                /* SUM: kernel of table times left, added */
-	struct { int table, kernel, left; } kernel[4];
+	struct { int table, kernel, left; } kernel[SUM_KERNELS];
 	const char *note;           /* a = F y + q1 r0 */
 };
 struct program {
@@ -162,6 +168,9 @@ struct program {
 	int wave_multiplications, wave_additions; /* for them, counted below too */
 	int multiplications, additions, calls; /* calls: of the model's own functions */
 	bool loops;                 /* over the tables, zeros included: a large model */
+	int products;               /* of a list that loops: what its assignments are rows of; loads that are forced are left out */
+	struct matrix_product product[3];
+	bool products_added;        /* to the state */
 	bool tuned;                 /* factors are read from the instance's coefficients */
 	int actions;                /* 0: assignments */
 	struct action *action;
@@ -194,8 +203,36 @@ struct branch {
 	struct table *whole;
 	int halvings;               /* of a region: log2 of the pieces of a step in which crossings are looked for */
 };
+struct series {                     /* of e^{A tau} x: the Taylor series behind NAME_at, and the pieces of regions */
+	bool emitted;               /* max|pole| h <= 8 */
+	int degree, halvings;
+};
+enum step_kind {                    /* what a step is made of */
+	KIND_LINEAR,                /* assignments, or loops over tables: nothing is left over */
+	KIND_TUNED,                 /* the same, its factors from the params that the instance has */
+	KIND_REGIONS,               /* the series of a region, and a search for crossings */
+	KIND_LEFTOVER,              /* a list of actions on stages and leftovers */
+	KINDS
+};
+/* Phases and growths of loads e^{at} cos(wt + p) in fixed point: 128 bits; for the target float 64, in `low` */
+struct fixed_point { uint64_t high, low; };
+struct advance {                    /* over some time tau; 0 where there is no w, no a */
+	struct fixed_point turn;          /* w tau / 2 pi in units of 2^-128 (2^-64), wrapped */
+	struct fixed_point growth;        /* a tau / ln 2 in units of 2^-112 (2^-48), two's complement; saturated */
+};
+struct rate {                       /* word[0] word[1] word[2] 2^exponent, as one number of 64 bits a word [1/s] */
+	int words;                  /* 3; for float 2 */
+	uint64_t word[3];
+	long exponent;
+};
+struct load_phase {                 /* of one load */
+	struct fixed_point start;         /* p / 2 pi, as a turn */
+	struct advance step, *node; /* over the step; from its start to each node of the program */
+	struct rate turns, growth;  /* |w| / 2 pi, |a| / ln 2 */
+};
 struct step {                       /* everything that is emitted for one model */
 	const struct model *model;
+	enum step_kind kind;
 	struct resolvent *written;  /* of the model as written: the report's poles, the closed form */
 	/* what users see of tables: over the states as written; itself, where those are stepped */
 	const struct step *shown;
@@ -212,10 +249,51 @@ struct step {                       /* everything that is emitted for one model 
 	struct forced *forced;      /* NAME keeps the state less this; NULL: as it is */
 	struct rounding rounding;
 	mpfr_t growth;              /* pl: 1/s, largest real part of the modified equation's poles (report only) */
+	struct layout layout;       /* of x */
 	struct series series;
+	struct load_phase *phase;   /* per load */
 };
-bool has_leftover(const struct step *step);                 /* or nothing is left over, and a step is assignments */
+enum step_kind kind_of_step(const struct model *model);
+bool has_leftover(const struct step *step);                 /* it is of that kind */
 void need_closed_form(const struct step *step);              /* leaves the statement where there is none */
+
+/* ---- check.c: between those who write programs and those who read them ---- */
+
+void program_check(const struct step *step);                /* a violation is an internal error, and leaves the statement */
+
+/* ---- recipe.c: what recipes are written in; one that asks for more than there is room for leaves the statement ---- */
+
+enum { RECIPE_TABLES = 8 };
+struct recipe {                     /* of one scheme, being written */
+	const struct step *step;
+	struct program *program;
+	int tables;
+	struct wanted table[RECIPE_TABLES];
+};
+_Noreturn void internal_error(const struct step *step, const char *what); /* a fault of this program's own */
+int  add_table(struct recipe *r, const char *name, long p, unsigned long q, bool Phi); /* at p/q of the step */
+/* h (c0 phi1 + c1 phi2 + 2 c2 phi3) of A h as the response to c0 + c1 s/h + c2 (s/h)^2, over p/q of the step */
+int  add_phi(struct recipe *r, int table, const char *name, long p, unsigned long q, int powers, const long *c);
+void add_phi_part(struct recipe *r, int table, int kernel, long p, unsigned long q, int powers, const long *c); /* added to that */
+int  add_weighted(struct recipe *r, int table, const char *name, long p, unsigned long q, long weight,
+		 unsigned long over); /* e^{A h p/q} h weight/over */
+int  add_node(struct recipe *r, long p, unsigned long q);   /* a time at which leftovers are evaluated */
+void need_loads_at(struct recipe *r, int node);
+int  new_stage(struct recipe *r);
+struct action *add_action(struct recipe *r, struct action action); /* valid until the next is added, as that of add_sum is */
+int  add_leftover(struct recipe *r, int node, int stage);
+int  add_combination(struct recipe *r, int plus, int minus, bool added);
+struct action *add_sum(struct recipe *r, int stage, int flow, int plain, const char *note);
+void times_left(struct recipe *r, struct action *sum, int table, int kernel, int left); /* one term more of the sum */
+
+/* ---- recipes.c: of each scheme ---- */
+
+void write_recipe(struct recipe *r);
+
+/* ---- held.c: what scheme pl holds over a step ---- */
+
+struct linear piecewise_laplace(const struct linear *written);
+struct linear modified_equation(const struct linear *written, const struct linear *split, mpq_srcptr h);
 
 /* ---- series.c: the Taylor series behind NAME_at ---- */
 
@@ -225,10 +303,60 @@ int  series_halvings(const struct step *step, int operator); /* of the time h, s
 /* for these operators, over h 2^-halvings */
 int  series_degree(const struct step *step, int first, int last, int halvings);
 
+/* ---- phases.c: phases and growths of loads in fixed point ---- */
+
+int  phase_bits(const struct step *step);                    /* 128, or 64, all behind the point */
+int  growth_bits(const struct step *step);                   /* 112, or 48: those behind the point */
+void plan_phases(struct step *step);                        /* step->phase; after the program, for its nodes */
+
+/* ---- slopes.c: A of x' = A x, rounded; x as in struct series ---- */
+
+struct load_slopes {                /* the columns of A that change from segment to segment of time */
+	int first, columns;         /* of x; first -1: no load acts */
+	double **segment;           /* states x columns [x/s]; 0 of loads that the step leaves out */
+};
+_Noreturn void tell_range(const struct step *step);          /* an error at the step: a number overflows */
+double number_in_range(const struct step *step, mpq_srcptr q); /* rounded, or told */
+double *slopes_of(const struct step *step, int branch);      /* size x size [x/s], loads as in the first segment; */
+							     /* infinite beyond the range */
+struct load_slopes load_slopes_of(const struct step *step);
+struct coefficient *held_forces_of(const struct step *step); /* n x states: what a scheme holds, as forces */
+
+/* ---- leap.c: the step as one matrix, for powers of it ---- */
+
+struct leap {                       /* x(t+h) = matrix x; x = states, then the load states that the step reads */
+	int size;
+	int *load;                  /* index of the first state of each load; -1: the step does not read it */
+};
+struct leap_entry {                 /* in a segment of time, in two words */
+	int segment, row, column;
+	struct coefficient value;
+};
+struct leap leap_of(const struct step *step);
+/* Beyond Phi, what is not 0; returns how many */
+int leap_entries_of(const struct step *step, const struct leap *leap, struct leap_entry **entry);
+
+/* ---- pieces.c: what a piecewise-linear model finds its crossings with ---- */
+
+struct region_piece {                      /* of a branch, d = h 2^-halvings long; x as in struct series */
+	double *slopes;             /* A of x' = A x, size x size [x/s] */
+	double *Phi;                /* e^{A d}, size x size */
+	double *slope;              /* slope . x is d/3 times the slope of each expression; expressions x size */
+	double *second, *fourth;    /* second . |x(0)|, fourth . |x(0)| bound, on 0 .. d, d^2/8 times the second and */
+				    /* d^4/384 times the fourth derivative of each; expressions x size */
+};
+struct pieces {
+	double *row;                /* of each expression: row . x, expressions x size */
+	double *breakpoint;         /* those of the first expression, rising; of the second; ... */
+	struct region_piece *piece;        /* per branch */
+};
+struct pieces pieces_of(const struct step *step);
+
 /* ---- cost.c: what a step costs ---- */
 
 struct cost { int multiplications, additions, calls; };
 struct cost leftover_cost(const struct step *step);         /* of one evaluation */
+void count_program(const struct step *step, struct program *program); /* of a step with a leftover, not its loads */
 /* what the load states of the columns in use cost */
 void count_loads(struct program *program, const struct linear *system, bool single);
 
@@ -264,6 +392,62 @@ const char *drift_text(const struct drift *drift);          /* over 1e9 steps */
 
 /* in its table: what vanishes at these values only is no zero */
 void mark_tuned_zeros(struct step *step);
+
+/* ---- exact.c: exact numbers of the equations that stand in the code as they are, each rounded once ---- */
+
+/* An error at the step where it is beyond the range */
+struct coefficient equation_number(const struct model *model, mpq_srcptr q);
+double time_in_step(const struct model *model, mpq_srcptr fraction);      /* a part of h [s] */
+struct slopes {                     /* y' = A y + B r: r is what is left over, or another force on the channels */
+	struct coefficient *A, *B;  /* states x states; states x channels */
+};
+struct slopes state_slopes(const struct step *step, int operator);
+
+/* ---- bank.c: what the leftovers of a bank's operators have in common ---- */
+
+struct excess {                     /* a linear term in which they differ: a coordinate or its velocity, on a channel */
+	int channel, coord, order;
+};
+struct bank {                       /* the leftover of an operator = common + sum of factor times term */
+	int count;                  /* 0: of one operator */
+	struct excess *excess;
+	double *factor;             /* [operator][excess] */
+	const struct form **common; /* per channel */
+};
+struct bank bank_of(const struct step *step);
+
+/* ---- closed.c: states in closed form for the self-test ---- */
+
+struct reference {                  /* from t = 0 on; inputs follow u = 1 - t/h; held, u = 1 */
+	int states, rows;           /* rows: fewer where the states leave the range */
+	const unsigned long *steps; /* per row: how many have been taken */
+	double *start, *value;      /* [states]; [row][states] */
+	double *between;            /* [states] at h/2, where NAME_at is there */
+	double *unit;               /* [states]: one in the last place of the largest value */
+};
+struct reference reference_of(const struct step *step);
+
+/* ---- tuned.c: what a model with tunable params keeps; columns as in struct tuning ---- */
+
+double *nominal_step(const struct step *step);              /* states x columns, of the spec's values */
+double *nominal_outputs(const struct step *step);           /* of outputs that depend on params: outputs x columns */
+struct fixed_slope {                /* an entry of A, x' = A x, that no param changes: velocities, how loads go on */
+	int row, column;
+	struct coefficient value;
+};
+int fixed_slopes(const struct step *step, struct fixed_slope **list);
+struct workspace {                  /* that the target computes coefficients in, in numbers of two words */
+	int width, work;            /* columns of the equations, W's among them; for products and exponentials */
+	int kilobytes;              /* of stack; frames of the calls not counted */
+};
+struct workspace workspace_of(const struct step *step);
+
+/* ---- written.c: the equations as written, for NAME_rhs ---- */
+
+bool is_highest(const struct model *model, const struct basis *basis); /* a coordinate's highest derivative */
+const struct form *without_highest(const struct model *model, const struct form *form);
+/* -W^-1, n x n: the highest derivatives are it times the residuals */
+struct coefficient *derivatives_of_residuals(const struct model *model);
 
 /* ---- scheme.c: the step of a model ---- */
 

@@ -434,6 +434,12 @@ static void write_kick_drift_kick(struct program *program, const struct step *st
 	}
 }
 
+static void add_product(struct program *program, const struct coefficient *factor, enum operand_kind kind, int columns)
+{
+	if (columns)
+		program->product[program->products++] = (struct matrix_product){ factor, kind, columns };
+}
+
 /* A large model loops over its tables, zeros included. */
 static void count_loops(struct program *program, const struct step *step)
 {
@@ -443,6 +449,10 @@ static void count_loops(struct program *program, const struct step *step)
 		columns += !is_forced(step, k);
 	int n = table->states, row = n + columns + table->inputs;
 	program->loops = true;
+	program->products_added = step->form == FORM_DELTA;
+	add_product(program, program->products_added ? table->increment : table->Phi, OPERAND_STATE, n);
+	add_product(program, table->load, OPERAND_LOAD, table->columns);
+	add_product(program, table->input, OPERAND_INPUT, table->inputs);
 	program->multiplications = n * row + program->wave_multiplications;
 	program->additions = n * row + program->wave_additions;
 }

@@ -7,19 +7,19 @@ static bool *couplings(const struct step *step)
 {
 	const struct tuning *t = step->model->tuning;
 	const struct linear *system = &step->branch->system;
-	int size = step->series.size, states = system->states;
-	mpq_t *A = series_matrix(&step->series, system, 0);
+	int size = step->layout.size, states = system->states;
+	mpq_t *A = augmented_matrix(&step->layout, system, 0);
 	bool *reads = ARRAY(bool, (size_t)(size * size));
 	for (int i = 0; i < size * size; i++)
 		reads[i] = mpq_sgn(A[i]) != 0;
 	for (int k = 0; k < system->n; k++) {
 		bool *row = reads + (system->velocity[k] >= 0 ? system->velocity[k] : k) * size;
-		for (int j = 0; j < t->columns; j++) {
-			bool load = j >= states && j < states + system->segments * t->loads;
-			int at = load         ? states + (j - states) % t->loads
+		for (int j = 0; j < t->x.size; j++) {
+			bool load = j >= states && j < states + system->segments * t->x.loads;
+			int at = load         ? states + (j - states) % t->x.loads
 				 : j < states ? j
-					      : j - (system->segments - 1) * t->loads;
-			row[at] = row[at] || t->acts[k * t->columns + j];
+					      : j - (system->segments - 1) * t->x.loads;
+			row[at] = row[at] || t->acts[k * t->x.size + j];
 		}
 	}
 	return reads;
@@ -28,7 +28,7 @@ static bool *couplings(const struct step *step)
 /* Reaching over any number of couplings */
 static bool *reach(const struct step *step)
 {
-	int size = step->series.size;
+	int size = step->layout.size;
 	bool *reads = couplings(step);
 	for (int k = 0; k < size; k++)
 		for (int i = 0; i < size; i++)
@@ -42,7 +42,7 @@ void mark_tuned_zeros(struct step *step)
 {
 	struct table *table = step->branch->whole;
 	const struct linear *system = &step->branch->system;
-	int n = table->states, size = step->series.size;
+	int n = table->states, size = step->layout.size;
 	const bool *reached = reach(step);
 	for (int i = 0; i < n; i++) {
 		const bool *row = reached + i * size;
@@ -57,7 +57,7 @@ void mark_tuned_zeros(struct step *step)
 		for (int input = 0, column = 0; input < system->inputs; input++)
 			for (int k = 0; k < (system->input[input].first_order ? 2 : 1); k++, column++)
 				table->input[i * table->inputs + column].zero =
-					!row[step->series.input[input]] &&
-					!(system->input[input].first_order && row[step->series.input[input] + 1]);
+					!row[step->layout.input[input]] &&
+					!(system->input[input].first_order && row[step->layout.input[input] + 1]);
 	}
 }

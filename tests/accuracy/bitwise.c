@@ -13,7 +13,8 @@
 #include <stdio.h>                      /* before gmp.h, which then declares gmp_fscanf */
 
 #include "bitwise_specs.h"
-#include "evaluator.h"
+#include "algebra.h"
+#include "cases.h"
 #include "report/report.h"
 #include "random_spec.h"
 #include "rationals.h"
@@ -21,7 +22,6 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/wait.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -52,15 +52,6 @@ static void compare(const char *what, double found, double expected)
         complain(what, format("found %a = %.17g, expected %a = %.17g", found, found, expected, expected));
 }
 
-static void show_spec(void)
-{
-    for (const char *line = trial.spec; *line;) {
-        const size_t length = strcspn(line, "\n");
-        printf("# | %.*s\n", (int)length, line);
-        line += length + (line[length] == '\n');
-    }
-}
-
 /* ---- the augmented matrix ---- */
 
 /* y = states, [held states,] loads, inputs (with their slopes); y' = A y in one segment of time, and e^{A h} X has the
@@ -70,37 +61,6 @@ struct augmented {
     size_t first_load, size, columns;   /* of A and of X */
     mpq_t *A, *X;
 };
-
-static void add_product(mpq_ptr sum, mpq_srcptr a, mpq_srcptr b, bool subtract)
-{
-    mpq_t product;
-    mpq_init(product);
-    mpq_mul(product, a, b);
-    (subtract ? mpq_sub : mpq_add)(sum, sum, product);
-    mpq_clear(product);
-}
-
-/* rows x width, its left square part made the identity */
-static void eliminate(size_t rows, size_t width, mpq_t *W)
-{
-    mpq_t factor;
-    mpq_init(factor);
-    for (size_t k = 0; k < rows; k++) {
-        size_t pivot = k;
-        while (mpq_sgn(W[pivot * width + k]) == 0)
-            pivot++;
-        for (size_t j = 0; j < width; j++)
-            mpq_swap(W[pivot * width + j], W[k * width + j]);
-        for (size_t j = width; j-- > k;)
-            mpq_div(W[k * width + j], W[k * width + j], W[k * width + k]);
-        for (size_t i = 0; i < rows; i++) {
-            mpq_set(factor, W[i * width + k]);
-            for (size_t j = k; i != k && j < width; j++)
-                add_product(W[i * width + j], factor, W[k * width + j], true);
-        }
-    }
-    mpq_clear(factor);
-}
 
 /* The highest derivative of each coordinate as a row: over the states (without sign), the load columns of one segment,
  * u and u' of every input.  Columns of M multiply accelerations; of a coordinate of first order the column of C
@@ -127,28 +87,13 @@ static mpq_t *highest_rows(const struct linear *system, int segment, size_t *wid
             for (int k = 0; k < 2; k++)
                 mpq_set(*right++, system->input[u].force[k][i]);
     }
-    eliminate(n, n + all, W);
+    if (!eliminate(n, n + all, W))
+        complain("masses", "the matrix of highest derivatives is singular");
     for (size_t i = 0; i < n; i++)
         for (size_t j = 0; j < all; j++)
             mpq_set(R[i * all + j], W[i * (n + all) + n + j]);
     *width = all;
     return R;
-}
-
-/* z = t^k e^{at} cos(wt+p) and sin, or t^k e^{at} alone: z' = a z + k (z of k - 1) -+ w (its partner) */
-static void fill_load_states(const struct load *load, size_t size, mpq_t *A)
-{
-    const bool turns = mpq_sgn(load->wave->w) != 0;
-    const size_t trig = turns ? 2 : 1;
-    for (size_t c = 0; c < (size_t)load->columns; c++) {
-        mpq_set(A[c * size + c], load->wave->a);
-        if (c >= trig)
-            mpq_set_ui(A[c * size + c - trig], c / trig, 1);
-        if (turns && c % 2 == 0)
-            mpq_neg(A[c * size + c + 1], load->wave->w);
-        if (turns && c % 2 == 1)
-            mpq_set(A[c * size + c - 1], load->wave->w);
-    }
 }
 
 static size_t input_states(const struct linear *system)
@@ -222,22 +167,6 @@ static struct augmented augment(const struct linear *system, int segment, bool p
 
 /* ---- zero at every tau: (A^k X)_ij = 0 for k < size (Cayley and Hamilton), modulo a prime of 61 bits ---- */
 
-static const uint64_t PRIME = (UINT64_C(1) << 61) - 1;
-
-static uint64_t times(uint64_t a, uint64_t b)
-{
-    return (uint64_t)((unsigned __int128)a * b % PRIME);
-}
-
-static uint64_t residue(mpq_srcptr q)
-{
-    uint64_t inverse = 1, power = mpz_fdiv_ui(mpq_denref(q), PRIME);
-    for (uint64_t e = PRIME - 2; e; e >>= 1, power = times(power, power))
-        if (e & 1)
-            inverse = times(inverse, power);
-    return times(mpz_fdiv_ui(mpq_numref(q), PRIME), inverse);
-}
-
 static bool *always_zero(const struct augmented *a)
 {
     const size_t n = a->size, m = a->columns;
@@ -282,24 +211,6 @@ static const evaluator_enclosure *enclosure(struct enclosures *e, int level)
         e->given_up[level] = evaluator_enclose((const mpq_t *)e->a->A, e->h, 512ul << level, e->level[level]) != 0;
     }
     return e->given_up[level] ? NULL : e->level[level];
-}
-
-/* x + (entry of E) factor */
-static void add_entry(mpfi_ptr x, const evaluator_enclosure *E, size_t entry, mpq_srcptr factor)
-{
-    mpfi_t term;
-    mpz_t end;
-    mpz_init(end);
-    mpfi_init2(term, mpfi_get_prec(x));
-    mpz_sub(end, E->mid[entry], E->radius);
-    mpfr_set_z_2exp(&term->left, end, E->exponent, MPFR_RNDD);
-    mpz_add(end, E->mid[entry], E->radius);
-    mpfr_set_z_2exp(&term->right, end, E->exponent, MPFR_RNDU);
-    if (mpq_cmp_ui(factor, 1, 1) != 0)
-        mpfi_mul_q(term, term, factor);
-    mpfi_add(x, x, term);
-    mpfi_clear(term);
-    mpz_clear(end);
 }
 
 static bool rounded(mpfi_ptr x, double *d)
@@ -428,39 +339,22 @@ static void compare_road(struct taylor *taylor, int i, int j, const char *what, 
 static void compare_roads(const struct step *step)
 {
     const struct linear *system = &step->branch->system;
-    const struct series *series = &step->series;
+    const struct layout *layout = &step->layout;
     const int n = system->states, columns = step->branch->whole->columns;
     if (n > LIMIT_RESIDUE_STATES || system->heldK)
         return;
-    struct taylor *taylor = taylor_of(series->size, (const mpq_t *)series_matrix(series, system, 0), step->model->h);
+    struct taylor *taylor = taylor_of(layout->size, (const mpq_t *)augmented_matrix(layout, system, 0), step->model->h);
     for (int i = 0; i < n; i++) {
         for (int j = 0; j < n; j++)
             compare_road(taylor, i, j, entry_name(step->model, (size_t)i, (size_t)j),
                          step->branch->whole->Phi[i * n + j].value);
         for (int l = 0, column = 0; l < system->loads; l++)
             for (int k = 0; k < system->load[l].columns; k++, column++)
-                if (series->load[l] >= 0)
-                    compare_road(taylor, i, series->load[l] + k,
+                if (layout->load[l] >= 0)
+                    compare_road(taylor, i, layout->load[l] + k,
                                  entry_name(step->model, (size_t)i, (size_t)(n + column)),
                                  step->branch->whole->load[i * columns + column].value);
     }
-}
-
-static const char *diagnostics(void)
-{
-    char *text = NULL;
-    size_t length;
-    FILE *to = open_memstream(&text, &length);
-    diagnostics_print(to);
-    fclose(to);
-    const char *copy = format("%s", text);
-    free(text);
-    return copy;
-}
-
-static const char *first_line(const char *text)
-{
-    return format("%.*s", (int)strcspn(text, "\n"), text);
 }
 
 /* A refused step is right if a factor is out of range, and if that is what was said. */
@@ -846,9 +740,7 @@ static void compare_solution(struct model *model, mpq_srcptr written_step)
 static struct model *model_of(const char *text)
 {
     static const struct request none;
-    struct source *source = NEW(struct source);
-    *source = (struct source){ .name = "spec", .base = "spec", .text = text, .length = strlen(text) };
-    struct model *model = model_build(parse_spec(source), &none);
+    struct model *model = model_build(spec_of("spec", text), &none);
     if (!model)
         complain("spec", format("not accepted: %s", first_line(diagnostics())));
     return model;
@@ -1179,61 +1071,32 @@ static void try_exact(const char *text)
 
 /* ---- the whole ---- */
 
-static char *read_text(const char *path)
-{
-    size_t length = 0, got;
-    FILE *f = fopen(path, "r");
-    if (!f) {
-        printf("Bail out! cannot read %s\n", path);
-        exit(1);
-    }
-    char *text = ARRAY(char, 4096);
-    while ((got = fread(text + length, 1, 4095, f)) > 0) {
-        length += got;
-        ENLARGE(text, length + 4096);
-    }
-    text[length] = 0;
-    fclose(f);
-    return text;
-}
+struct job {
+    void (*work)(void *context);
+    void *context;
+};
 
-static int number, failures;            /* of cases */
-
-static void report(bool good, const char *name)
+static bool try_case(void *context)
 {
-    failures += !good;
-    printf("%sok %d - %s\n", good ? "" : "not ", ++number, name);
-    fflush(stdout);
+    const struct job *job = context;
+    job->work(job->context);
+    if (trial.failed)
+        show_spec(trial.spec);
+    if (trial.failed > MISMATCHES_SHOWN)
+        printf("# %d failures in all\n", trial.failed);
+    if (trial.compared == 0)
+        puts("# nothing was compared");
+    if (trial.beyond)
+        printf("# times beyond the judge: %d\n", trial.beyond);
+    if (verbose)
+        printf("# %d numbers compared in %.2f s\n", trial.compared, (double)clock() / CLOCKS_PER_SEC);
+    return !trial.failed && trial.compared > 0;
 }
 
 static void run(const char *name, void (*work)(void *), void *context)
 {
-    int status;
-    fflush(stdout);
-    const pid_t child = fork();
-    if (child == 0) {
-        alarm(LONGEST_CASE);
-        work(context);
-        if (trial.failed)
-            show_spec();
-        if (trial.failed > MISMATCHES_SHOWN)
-            printf("# %d failures in all\n", trial.failed);
-        if (trial.compared == 0)
-            printf("# nothing was compared\n");
-        if (trial.beyond)
-            printf("# times beyond the judge: %d\n", trial.beyond);
-        if (verbose)
-            printf("# %d numbers compared in %.2f s\n", trial.compared, (double)clock() / CLOCKS_PER_SEC);
-        fflush(stdout);
-        _exit(trial.failed || trial.compared == 0);
-    }
-    if (child < 0 || waitpid(child, &status, 0) != child) {
-        puts("Bail out! cannot start a process");
-        exit(1);
-    }
-    if (WIFSIGNALED(status))
-        printf("# ended by signal %d%s\n", WTERMSIG(status), WTERMSIG(status) == SIGALRM ? ": took too long" : "");
-    report(WIFEXITED(status) && WEXITSTATUS(status) == 0, name);
+    struct job job = { work, context };
+    run_case(name, LONGEST_CASE, try_case, &job);
 }
 
 static void run_spec(void *text)
@@ -1293,10 +1156,8 @@ int main(int argc, char **argv)
     printf("1..%zu\n", matrices + (size_t)(argc - optind) + bitwise_spec_count + random_count + reduced_count);
     for (size_t i = 0; i < matrices; i++)
         run(format("matrix %s, tau = %s", matrix[i].name, exact_text(matrix[i].tau)), run_matrix, &matrix[i]);
-    for (int i = optind; i < argc; i++) {
-        const char *slash = strrchr(argv[i], '/');
-        run(slash ? slash + 1 : argv[i], run_spec, read_text(argv[i]));
-    }
+    for (int i = optind; i < argc; i++)
+        run(base_name(argv[i]), run_spec, read_text(argv[i]));
     static void (*const run_kind[])(void *) = { [PLAIN] = run_spec, [CRITICAL] = run_critical, [EXACT] = run_exact };
     for (size_t i = 0; i < bitwise_spec_count; i++)
         run(bitwise_specs[i].name, run_kind[bitwise_specs[i].kind], (void *)bitwise_specs[i].text);
@@ -1309,5 +1170,5 @@ int main(int argc, char **argv)
         run(format("reduced random model %lu", seed + i), run_reduction, &one);
     }
     memory_close();
-    return failures > 0;
+    return cases_failed() > 0;
 }

@@ -35,7 +35,8 @@ const struct bitwise_spec bitwise_specs[] = {
     { "critical damping of two", TWO "x1'' + 6*x1' + 9*x1 = 0\nx2'' + 6*x2' + 9*x2 = x1 + 2*x1'\n" STEP, PLAIN },
     { "defective complex pair", TWO "x1'' + 2*x1' + 5*x1 = 0\nx2'' + 2*x2' + 5*x2 = x1\n" STEP, PLAIN },
     { "complex pair four times, in a chain",
-      "model m\ncoord a, b, c, d\ninit a = 1\na'' + 2*a' + 5*a = 0\nb'' + 2*b' + 5*b = a\nc'' + 2*c' + 5*c = b\nd'' + 2*d' + 5*d = c\n" STEP,
+      "model m\ncoord a, b, c, d\ninit a = 1\na'' + 2*a' + 5*a = 0\nb'' + 2*b' + 5*b = a\nc'' + 2*c' + 5*c = b\n"
+      "d'' + 2*d' + 5*d = c\n" STEP,
       PLAIN },
 
     /* pole 0 */
@@ -46,7 +47,8 @@ const struct bitwise_spec bitwise_specs[] = {
     { "two masses free at both ends", TWO "x1'' + 50*x1 - 50*x2 = 0\nx2'' + 50*x2 - 50*x1 = 0\n" STEP, PLAIN },
     { "two masses free at both ends, damped, loaded",
       TWO
-      "2*x1'' + 0.1*x1' - 0.1*x2' + 50*x1 - 50*x2 = 1\n3*x2'' - 0.1*x1' + 0.1*x2' + 50*x2 - 50*x1 = cos(4*t + 1)\n" STEP,
+      "2*x1'' + 0.1*x1' - 0.1*x2' + 50*x1 - 50*x2 = 1\n"
+      "3*x2'' - 0.1*x1' + 0.1*x2' + 50*x2 - 50*x1 = cos(4*t + 1)\n" STEP,
       PLAIN },
     { "pole 0 four times", TWO "x1'' = 1\nx2'' = x1\n" STEP, EXACT },
     { "pole 0 six times", "model m\ncoord a, b, c\ninit a' = 1\na'' = 1\nb'' = a + 2*b'\nc'' = b - a'\n" STEP, PLAIN },
@@ -63,7 +65,8 @@ const struct bitwise_spec bitwise_specs[] = {
       PLAIN },
     { "coupled weakly: 1e-10", TWO "x1'' + 100*x1 - 1e-10*x2 = 0\nx2'' + 100*x2 - 1e-10*x1 = 0\n" STEP, PLAIN },
     { "poles about 2^-256 apart: sqrt(2)^2 beside 2",
-      "model m\nparam s = sqrt(2)\ncoord x1, x2\ninit x1 = 1\nx1'' + 2*s*x1' + 2*x1 = 0\nx2'' + 2*s*x2' + s^2*x2 = x1 + cos(s*t)\n" STEP,
+      "model m\nparam s = sqrt(2)\ncoord x1, x2\ninit x1 = 1\nx1'' + 2*s*x1' + 2*x1 = 0\n"
+      "x2'' + 2*s*x2' + s^2*x2 = x1 + cos(s*t)\n" STEP,
       PLAIN },
     { "undamped pairs about 2^-256 apart, and a load",
       TWO "x1'' + 2*x1 = 0\nx2'' + sqrt(2)^2*x2 = x1 + cos(sqrt(2)*t)\n" STEP, PLAIN },
@@ -100,7 +103,8 @@ const struct bitwise_spec bitwise_specs[] = {
     { "mass matrix with a diagonal entry of 0",
       TWO "x2'' + 30*x1 = cos(2*t)\nx1'' + 5*x2'' + 0.3*x2' + 20*x2 - x1 = 1\n" STEP, PLAIN },
     { "irrational parameters",
-      "model m\nparam f = 2, z = 0.02, w0 = 2*pi*f, k = sqrt(3), m2 = exp(1)/7\ncoord x1, x2\ninit x1 = sin(1), x2' = 1/3\n"
+      "model m\nparam f = 2, z = 0.02, w0 = 2*pi*f, k = sqrt(3), m2 = exp(1)/7\ncoord x1, x2\n"
+      "init x1 = sin(1), x2' = 1/3\n"
       "x1'' + 2*z*w0*x1' + w0^2*x1 - k*x2 = sqrt(2)*cos(w0*t + pi/6)\nm2*x2'' + k*(x2 - x1) = log(2)\n"
       "output x1, a = x2'', b = x1 - 2*x2 + 0.3*cos(w0*t) + 7*t - 1\nstep 1/(100*f)\n",
       PLAIN },
@@ -114,7 +118,8 @@ const struct bitwise_spec bitwise_specs[] = {
       "model m\ncoord a, b, c\ninit a = 1, c' = 1\na'' + a = 0\nb'' + 2*b = a + cos(t)\nc'' + 0.1*c' + 3*c = b'\n" STEP,
       PLAIN },
     { "four masses in a chain",
-      "model m\ncoord a, b, c, d\ninit a = 0.01, d' = 0.5\na'' + 200*a - 100*b = cos(10*t)\nb'' + 200*b - 100*a - 100*c + 0.1*b' = 0\n"
+      "model m\ncoord a, b, c, d\ninit a = 0.01, d' = 0.5\na'' + 200*a - 100*b = cos(10*t)\n"
+      "b'' + 200*b - 100*a - 100*c + 0.1*b' = 0\n"
       "c'' + 200*c - 100*b - 100*d = 0\n2*d'' + 200*d - 100*c = 1\n" STEP,
       PLAIN },
 
@@ -130,7 +135,8 @@ const struct bitwise_spec bitwise_specs[] = {
     { "damped resonance 1e-9 off",
       ONE "x'' + 2*x' + 26*x = exp(-1.000000001*t)*cos(5*t) + exp(-t)*cos(4.999999999*t)\n" STEP, PLAIN },
     { "damped resonance through sqrt",
-      "model m\nparam k = 3, c = 0.2, m0 = 2, a = c/(2*m0), w = sqrt(k/m0 - a^2)\ncoord x\ninit x = 0.1\nm0*x'' + c*x' + k*x = "
+      "model m\nparam k = 3, c = 0.2, m0 = 2, a = c/(2*m0), w = sqrt(k/m0 - a^2)\ncoord x\ninit x = 0.1\n"
+      "m0*x'' + c*x' + k*x = "
       "exp(-a*t)*cos(w*t)\n" STEP,
       PLAIN },
     { "damped resonance of a defective pair",
@@ -151,27 +157,33 @@ const struct bitwise_spec bitwise_specs[] = {
     { "pole -3 three times", "model m\ncoord a, b, c\ninit a = 1\na' + 3*a = 1\nb' + 3*b = a\nc' + 3*c = b\n" STEP,
       PLAIN },
     { "pole -3 four times, with its exponential",
-      "model m\ncoord a, b, c, d\ninit a = 1\na' + 3*a = t*exp(-3*t)\nb' + 3*b = a\nc' + 3*c = b - 2*a\nd' + 3*d = c\n" STEP,
+      "model m\ncoord a, b, c, d\ninit a = 1\na' + 3*a = t*exp(-3*t)\nb' + 3*b = a\nc' + 3*c = b - 2*a\n"
+      "d' + 3*d = c\n" STEP,
       PLAIN },
     { "pole -3 four times, twice two",
-      "model m\ncoord a, b, c, d\ninit a = 1, c = 2\na' + 3*a = 0\nb' + 3*b = a\nc' + 3*c = exp(-3*t)\nd' + 3*d = c\n" STEP,
+      "model m\ncoord a, b, c, d\ninit a = 1, c = 2\na' + 3*a = 0\nb' + 3*b = a\nc' + 3*c = exp(-3*t)\n"
+      "d' + 3*d = c\n" STEP,
       PLAIN },
     { "complex pair three times",
-      "model m\ncoord a, b, c\ninit a = 1\na'' + 2*a' + 5*a = exp(-t)*cos(2*t)\nb'' + 2*b' + 5*b = a\nc'' + 2*c' + 5*c = b\n" STEP,
+      "model m\ncoord a, b, c\ninit a = 1\na'' + 2*a' + 5*a = exp(-t)*cos(2*t)\nb'' + 2*b' + 5*b = a\n"
+      "c'' + 2*c' + 5*c = b\n" STEP,
       PLAIN },
 
     /* coordinates of first order */
     { "coil beside a mass",
-      "model m\ncoord x, i\ninit x = 0.01, i = 2\n2*x'' + 0.3*x' + 50*x = 0.7*i\n0.05*i' + 4*i + 0.7*x' = cos(20*t)\noutput x, i, a "
+      "model m\ncoord x, i\ninit x = 0.01, i = 2\n2*x'' + 0.3*x' + 50*x = 0.7*i\n0.05*i' + 4*i + 0.7*x' = cos(20*t)\n"
+      "output x, i, a "
       "= x'', d = i'\n" STEP,
       PLAIN },
     { "coil and a held voltage, integrating controller",
-      "model m\ncoord i, x, e\ninput u\nx'' + 0.1*x' + 9*x = 2*i - e\n0.02*i' + 3*i + 2*x' = u\ne' = x - u\noutput x, f = x'' + u, "
+      "model m\ncoord i, x, e\ninput u\nx'' + 0.1*x' + 9*x = 2*i - e\n0.02*i' + 3*i + 2*x' = u\ne' = x - u\n"
+      "output x, f = x'' + u, "
       "e'\n" STEP,
       PLAIN },
     { "Maxwell element", "model m\ncoord x, f\nx'' + 10*x + f = sin(3*t)\nf' + 4*f = 7*x'\ninit x = 1\n" STEP, PLAIN },
     { "Maxwell element with a coordinate of its own",
-      "model m\ncoord x, y\ninit x = 1\nmass 2 at x\nspring 30 between x, ground\nspring 5 between x, y\ndamper 0.4 between y, "
+      "model m\ncoord x, y\ninit x = 1\nmass 2 at x\nspring 30 between x, ground\nspring 5 between x, y\n"
+      "damper 0.4 between y, "
       "ground\n" STEP,
       PLAIN },
     { "integrator", "model m\ncoord x\ninput u hold first\nx' = u + 2*u' + t\n" STEP, EXACT },
@@ -187,7 +199,8 @@ const struct bitwise_spec bitwise_specs[] = {
     { "held", ONE "input u\nx'' + 0.2*x' + 25*x = u\noutput x, a = x'' + 3*u\n" STEP, PLAIN },
     { "ramp with its slope, and held",
       TWO
-      "input u hold first\ninput v\nx1'' + 0.2*x1' + 25*x1 - 5*x2 = u + 0.1*u'\nx2'' + 9*x2 - 5*x1 = v - 2*u\noutput x1, a = x2'' + "
+      "input u hold first\ninput v\nx1'' + 0.2*x1' + 25*x1 - 5*x2 = u + 0.1*u'\nx2'' + 9*x2 - 5*x1 = v - 2*u\n"
+      "output x1, a = x2'' + "
       "u'\n" STEP,
       PLAIN },
     { "free mass with a ramp: all exact", ONE "input u hold first\nx'' = u\n" STEP, EXACT },
@@ -208,92 +221,144 @@ const struct bitwise_spec bitwise_specs[] = {
     { "resonance switched on", ONE "x'' + 25*x = t > 0.17 ? cos(5*t) : 0\n" STEP, PLAIN },
     { "change in an equation and a sketch",
       TWO
-      "x1'' + 9*x1 - 4*x2 = t < 0.5 ? 1 : 0\nx2'' + 0.1*x2' + 9*x2 - 4*x1 = t < 0.5 ? exp(-t) : cos(t)\nforce abs(t - 0.3) on x2\n" STEP,
+      "x1'' + 9*x1 - 4*x2 = t < 0.5 ? 1 : 0\nx2'' + 0.1*x2' + 9*x2 - 4*x1 = t < 0.5 ? exp(-t) : cos(t)\n"
+      "force abs(t - 0.3) on x2\n" STEP,
       PLAIN },
     { "changes on a coordinate of first order",
       "model m\ncoord z, x\nz' + 2*z = t < 0.3 ? 1 : exp(-2*t)\nx'' + 4*x = z\n" STEP, PLAIN },
 
     /* matrices, by residues (12 states) and by Taylor series (beyond) */
     { "dense masses, 2",
-      "model m\nmatrix M = [3, 0.1; 0.1, 4]\nmatrix K = [200, -100; -100, 200]\ncoord q[2]\ninit q[1] = 0.01, q[2]' = -0.3\nM*q'' + "
+      "model m\nmatrix M = [3, 0.1; 0.1, 4]\nmatrix K = [200, -100; -100, 200]\ncoord q[2]\n"
+      "init q[1] = 0.01, q[2]' = -0.3\nM*q'' + "
       "K*q = [1; 0]*cos(2*t) + [0; -2]\n" STEP,
       PLAIN },
     { "dense masses, 3",
-      "model m\nmatrix M = [3, 0.1, 0.1; 0.1, 4, 0.3; 0.1, 0.3, 5]\nmatrix K = [200, -100, 0; -100, 200, -100; 0, -100, 200]\ncoord "
+      "model m\nmatrix M = [3, 0.1, 0.1; 0.1, 4, 0.3; 0.1, 0.3, 5]\n"
+      "matrix K = [200, -100, 0; -100, 200, -100; 0, -100, 200]\ncoord "
       "q[3]\ninit q[1] = 0.01, q[2]' = -0.3\nM*q'' + K*q = [1; 0; 0]*cos(2*t) + [0; 0; -2]\n" STEP,
       PLAIN },
     { "six in a chain, damped, loaded",
-      "model m\nmatrix M = [1, 0, 0, 0, 0, 0; 0, 1, 0, 0, 0, 0; 0, 0, 1, 0, 0, 0; 0, 0, 0, 1, 0, 0; 0, 0, 0, 0, 1, 0; 0, 0, 0, 0, 0, "
-      "1]\nmatrix K = [200, -100, 0, 0, 0, 0; -100, 200, -100, 0, 0, 0; 0, -100, 200, -100, 0, 0; 0, 0, -100, 200, -100, 0; 0, 0, 0, "
-      "-100, 200, -100; 0, 0, 0, 0, -100, 200]\nmatrix C = 0.1*M + 0.001*K\ncoord q[6]\ninit q[1] = 0.01, q[2]' = -0.3\nM*q'' + C*q' "
+      "model m\n"
+      "matrix M = [1, 0, 0, 0, 0, 0; 0, 1, 0, 0, 0, 0; 0, 0, 1, 0, 0, 0; 0, 0, 0, 1, 0, 0; 0, 0, 0, 0, 1, 0; 0, 0, 0, "
+      "0, 0, "
+      "1]\n"
+      "matrix K = [200, -100, 0, 0, 0, 0; -100, 200, -100, 0, 0, 0; 0, -100, 200, -100, 0, 0; 0, 0, -100, 200, -100, "
+      "0; 0, 0, 0, "
+      "-100, 200, -100; 0, 0, 0, 0, -100, 200]\nmatrix C = 0.1*M + 0.001*K\ncoord q[6]\n"
+      "init q[1] = 0.01, q[2]' = -0.3\nM*q'' + C*q' "
       "+ K*q = [1; 0; 0; 0; 0; 0]*cos(3*t) + [0; 0; 0; 2; 0; 0]*t*exp(-t)\n" STEP,
       PLAIN },
     { "seven in a chain, damped, loaded",
-      "model m\nmatrix M = [1, 0, 0, 0, 0, 0, 0; 0, 1, 0, 0, 0, 0, 0; 0, 0, 1, 0, 0, 0, 0; 0, 0, 0, 1, 0, 0, 0; 0, 0, 0, 0, 1, 0, 0; "
-      "0, 0, 0, 0, 0, 1, 0; 0, 0, 0, 0, 0, 0, 1]\nmatrix K = [200, -100, 0, 0, 0, 0, 0; -100, 200, -100, 0, 0, 0, 0; 0, -100, 200, "
-      "-100, 0, 0, 0; 0, 0, -100, 200, -100, 0, 0; 0, 0, 0, -100, 200, -100, 0; 0, 0, 0, 0, -100, 200, -100; 0, 0, 0, 0, 0, -100, "
-      "200]\nmatrix C = 0.1*M + 0.001*K\ncoord q[7]\ninit q[1] = 0.01, q[2]' = -0.3\nM*q'' + C*q' + K*q = [1; 0; 0; 0; 0; 0; "
+      "model m\n"
+      "matrix M = [1, 0, 0, 0, 0, 0, 0; 0, 1, 0, 0, 0, 0, 0; 0, 0, 1, 0, 0, 0, 0; 0, 0, 0, 1, 0, 0, 0; 0, 0, 0, 0, 1, "
+      "0, 0; "
+      "0, 0, 0, 0, 0, 1, 0; 0, 0, 0, 0, 0, 0, 1]\n"
+      "matrix K = [200, -100, 0, 0, 0, 0, 0; -100, 200, -100, 0, 0, 0, 0; 0, -100, 200, "
+      "-100, 0, 0, 0; 0, 0, -100, 200, -100, 0, 0; 0, 0, 0, -100, 200, -100, 0; 0, 0, 0, 0, -100, 200, -100; 0, 0, 0, "
+      "0, 0, -100, "
+      "200]\nmatrix C = 0.1*M + 0.001*K\ncoord q[7]\ninit q[1] = 0.01, q[2]' = -0.3\n"
+      "M*q'' + C*q' + K*q = [1; 0; 0; 0; 0; 0; "
       "0]*cos(3*t) + [0; 0; 0; 2; 0; 0; 0]*t*exp(-t)\n" STEP,
       PLAIN },
     { "seven at resonance, repeated and undamped",
-      "model m\nmatrix M = [1, 0, 0, 0, 0, 0, 0; 0, 1, 0, 0, 0, 0, 0; 0, 0, 1, 0, 0, 0, 0; 0, 0, 0, 1, 0, 0, 0; 0, 0, 0, 0, 1, 0, 0; "
-      "0, 0, 0, 0, 0, 1, 0; 0, 0, 0, 0, 0, 0, 1]\nmatrix K = [25, 0, 0, 0, 0, 0, 0; 0, 25, 0, 0, 0, 0, 0; 0, 0, 25, 0, 0, 0, 0; 0, "
-      "0, 0, 25, 0, 0, 0; 0, 0, 0, 0, 25, 0, 0; 0, 0, 0, 0, 0, 25, 0; 0, 0, 0, 0, 0, 0, 25]\ncoord q[7]\ninit q[1] = 0.01, q[2]' = "
+      "model m\n"
+      "matrix M = [1, 0, 0, 0, 0, 0, 0; 0, 1, 0, 0, 0, 0, 0; 0, 0, 1, 0, 0, 0, 0; 0, 0, 0, 1, 0, 0, 0; 0, 0, 0, 0, 1, "
+      "0, 0; "
+      "0, 0, 0, 0, 0, 1, 0; 0, 0, 0, 0, 0, 0, 1]\n"
+      "matrix K = [25, 0, 0, 0, 0, 0, 0; 0, 25, 0, 0, 0, 0, 0; 0, 0, 25, 0, 0, 0, 0; 0, "
+      "0, 0, 25, 0, 0, 0; 0, 0, 0, 0, 25, 0, 0; 0, 0, 0, 0, 0, 25, 0; 0, 0, 0, 0, 0, 0, 25]\ncoord q[7]\n"
+      "init q[1] = 0.01, q[2]' = "
       "-0.3\nM*q'' + K*q = [1; 0; 0; 0; 1; 0; 0]*cos(5*t) + [0; 0; 0; 0; 0; 0; 1]*t\n" STEP,
       PLAIN },
     { "seven free at both ends, ramp input",
-      "model m\nmatrix M = [1, 0, 0, 0, 0, 0, 0; 0, 2, 0, 0, 0, 0, 0; 0, 0, 3, 0, 0, 0, 0; 0, 0, 0, 1, 0, 0, 0; 0, 0, 0, 0, 2, 0, 0; "
-      "0, 0, 0, 0, 0, 3, 0; 0, 0, 0, 0, 0, 0, 1]\nmatrix K = [50, -50, 0, 0, 0, 0, 0; -50, 100, -50, 0, 0, 0, 0; 0, -50, 100, -50, "
-      "0, 0, 0; 0, 0, -50, 100, -50, 0, 0; 0, 0, 0, -50, 100, -50, 0; 0, 0, 0, 0, -50, 100, -50; 0, 0, 0, 0, 0, -50, 50]\ncoord "
-      "q[7]\ninput u hold first\ninput v\ninit q[1] = 0.01, q[2]' = -0.3\nM*q'' + K*q = [1; 0; 0; 0; 0; 0; 0]*u + [0; 0; 0; 0; 0; 0; "
+      "model m\n"
+      "matrix M = [1, 0, 0, 0, 0, 0, 0; 0, 2, 0, 0, 0, 0, 0; 0, 0, 3, 0, 0, 0, 0; 0, 0, 0, 1, 0, 0, 0; 0, 0, 0, 0, 2, "
+      "0, 0; "
+      "0, 0, 0, 0, 0, 3, 0; 0, 0, 0, 0, 0, 0, 1]\n"
+      "matrix K = [50, -50, 0, 0, 0, 0, 0; -50, 100, -50, 0, 0, 0, 0; 0, -50, 100, -50, "
+      "0, 0, 0; 0, 0, -50, 100, -50, 0, 0; 0, 0, 0, -50, 100, -50, 0; 0, 0, 0, 0, -50, 100, -50; 0, 0, 0, 0, 0, -50, "
+      "50]\ncoord "
+      "q[7]\ninput u hold first\ninput v\ninit q[1] = 0.01, q[2]' = -0.3\n"
+      "M*q'' + K*q = [1; 0; 0; 0; 0; 0; 0]*u + [0; 0; 0; 0; 0; 0; "
       "1]*v\n" STEP,
       PLAIN },
     { "eight with dense masses and three loads",
-      "model m\nmatrix M = [3, 0.1, 0.1, 0.1, 0.1, 0.1, 0.1, 0.1; 0.1, 4, 0.3, 0.4, 0.5, 0.1, 0.2, 0.3; 0.1, 0.3, 5, 0.2, 0.4, 0.1, "
-      "0.3, 0.5; 0.1, 0.4, 0.2, 6, 0.3, 0.1, 0.4, 0.2; 0.1, 0.5, 0.4, 0.3, 7, 0.1, 0.5, 0.4; 0.1, 0.1, 0.1, 0.1, 0.1, 8, 0.1, 0.1; "
-      "0.1, 0.2, 0.3, 0.4, 0.5, 0.1, 9, 0.3; 0.1, 0.3, 0.5, 0.2, 0.4, 0.1, 0.3, 10]\nmatrix K = [200, -100, 0, 0, 0, 0, 0, 0; -100, "
-      "200, -100, 0, 0, 0, 0, 0; 0, -100, 200, -100, 0, 0, 0, 0; 0, 0, -100, 200, -100, 0, 0, 0; 0, 0, 0, -100, 200, -100, 0, 0; 0, "
-      "0, 0, 0, -100, 200, -100, 0; 0, 0, 0, 0, 0, -100, 200, -100; 0, 0, 0, 0, 0, 0, -100, 200]\ncoord q[8]\ninit q[1] = 0.01, "
-      "q[2]' = -0.3\nM*q'' + K*q = [1; 0; 0; 0; 0; 0; 0; 0]*cos(3*t + 0.2) + [0; 0; 0; 2; 0; 0; 0; 0]*exp(-t/2)*sin(t) + [0; 0; 0; "
+      "model m\n"
+      "matrix M = [3, 0.1, 0.1, 0.1, 0.1, 0.1, 0.1, 0.1; 0.1, 4, 0.3, 0.4, 0.5, 0.1, 0.2, 0.3; 0.1, 0.3, 5, 0.2, 0.4, "
+      "0.1, "
+      "0.3, 0.5; 0.1, 0.4, 0.2, 6, 0.3, 0.1, 0.4, 0.2; 0.1, 0.5, 0.4, 0.3, 7, 0.1, 0.5, 0.4; 0.1, 0.1, 0.1, 0.1, 0.1, "
+      "8, 0.1, 0.1; "
+      "0.1, 0.2, 0.3, 0.4, 0.5, 0.1, 9, 0.3; 0.1, 0.3, 0.5, 0.2, 0.4, 0.1, 0.3, 10]\n"
+      "matrix K = [200, -100, 0, 0, 0, 0, 0, 0; -100, "
+      "200, -100, 0, 0, 0, 0, 0; 0, -100, 200, -100, 0, 0, 0, 0; 0, 0, -100, 200, -100, 0, 0, 0; 0, 0, 0, -100, 200, "
+      "-100, 0, 0; 0, "
+      "0, 0, 0, -100, 200, -100, 0; 0, 0, 0, 0, 0, -100, 200, -100; 0, 0, 0, 0, 0, 0, -100, 200]\ncoord q[8]\n"
+      "init q[1] = 0.01, "
+      "q[2]' = -0.3\n"
+      "M*q'' + K*q = [1; 0; 0; 0; 0; 0; 0; 0]*cos(3*t + 0.2) + [0; 0; 0; 2; 0; 0; 0; 0]*exp(-t/2)*sin(t) + [0; 0; 0; "
       "0; 0; 0; 0; 1]*t^3\n" STEP,
       PLAIN },
     { "eight, damped, held input, a change in time",
-      "model m\nmatrix M = [1, 0, 0, 0, 0, 0, 0, 0; 0, 1, 0, 0, 0, 0, 0, 0; 0, 0, 1, 0, 0, 0, 0, 0; 0, 0, 0, 1, 0, 0, 0, 0; 0, 0, 0, "
-      "0, 1, 0, 0, 0; 0, 0, 0, 0, 0, 1, 0, 0; 0, 0, 0, 0, 0, 0, 1, 0; 0, 0, 0, 0, 0, 0, 0, 1]\nmatrix K = [200, -100, 0, 0, 0, 0, 0, "
-      "0; -100, 200, -100, 0, 0, 0, 0, 0; 0, -100, 200, -100, 0, 0, 0, 0; 0, 0, -100, 200, -100, 0, 0, 0; 0, 0, 0, -100, 200, -100, "
-      "0, 0; 0, 0, 0, 0, -100, 200, -100, 0; 0, 0, 0, 0, 0, -100, 200, -100; 0, 0, 0, 0, 0, 0, -100, 200]\nmatrix C = 0.02*K\ncoord "
-      "q[8]\ninput u\ninit q[1] = 0.01, q[2]' = -0.3\nM*q'' + C*q' + K*q = [1; 0; 0; 0; 0; 0; 0; 0]*u + [0; 0; 0; 0; 0; 0; 0; 1]*(t "
+      "model m\n"
+      "matrix M = [1, 0, 0, 0, 0, 0, 0, 0; 0, 1, 0, 0, 0, 0, 0, 0; 0, 0, 1, 0, 0, 0, 0, 0; 0, 0, 0, 1, 0, 0, 0, 0; 0, "
+      "0, 0, "
+      "0, 1, 0, 0, 0; 0, 0, 0, 0, 0, 1, 0, 0; 0, 0, 0, 0, 0, 0, 1, 0; 0, 0, 0, 0, 0, 0, 0, 1]\n"
+      "matrix K = [200, -100, 0, 0, 0, 0, 0, "
+      "0; -100, 200, -100, 0, 0, 0, 0, 0; 0, -100, 200, -100, 0, 0, 0, 0; 0, 0, -100, 200, -100, 0, 0, 0; 0, 0, 0, "
+      "-100, 200, -100, "
+      "0, 0; 0, 0, 0, 0, -100, 200, -100, 0; 0, 0, 0, 0, 0, -100, 200, -100; 0, 0, 0, 0, 0, 0, -100, 200]\n"
+      "matrix C = 0.02*K\ncoord "
+      "q[8]\ninput u\ninit q[1] = 0.01, q[2]' = -0.3\n"
+      "M*q'' + C*q' + K*q = [1; 0; 0; 0; 0; 0; 0; 0]*u + [0; 0; 0; 0; 0; 0; 0; 1]*(t "
       "< 0.3 ? t : exp(-t))\n" STEP,
       PLAIN },
     { "seven masses and a coil",
-      "model m\nmatrix K = [80, -40, 0, 0, 0, 0, 0; -40, 80, -40, 0, 0, 0, 0; 0, -40, 80, -40, 0, 0, 0; 0, 0, -40, 80, -40, 0, 0; 0, "
-      "0, 0, -40, 80, -40, 0; 0, 0, 0, 0, -40, 80, -40; 0, 0, 0, 0, 0, -40, 80]\ncoord q[7], i\ninit i = 1\nq'' + K*q = [0; 0; 1; 0; "
+      "model m\n"
+      "matrix K = [80, -40, 0, 0, 0, 0, 0; -40, 80, -40, 0, 0, 0, 0; 0, -40, 80, -40, 0, 0, 0; 0, 0, -40, 80, -40, 0, "
+      "0; 0, "
+      "0, 0, -40, 80, -40, 0; 0, 0, 0, 0, -40, 80, -40; 0, 0, 0, 0, 0, -40, 80]\ncoord q[7], i\ninit i = 1\n"
+      "q'' + K*q = [0; 0; 1; 0; "
       "0; 0; 0]*i\n0.1*i' + i + q[3]' = cos(2*t)\n" STEP,
       PLAIN },
     { "fourteen of first order, pole -1 fourteen times",
-      "model m\nmatrix A = [-1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0; 1, -1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0; 0, 1, -1, 0, 0, 0, "
-      "0, 0, 0, 0, 0, 0, 0, 0; 0, 0, 1, -1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0; 0, 0, 0, 1, -1, 0, 0, 0, 0, 0, 0, 0, 0, 0; 0, 0, 0, 0, 1, "
-      "-1, 0, 0, 0, 0, 0, 0, 0, 0; 0, 0, 0, 0, 0, 1, -1, 0, 0, 0, 0, 0, 0, 0; 0, 0, 0, 0, 0, 0, 1, -1, 0, 0, 0, 0, 0, 0; 0, 0, 0, 0, "
-      "0, 0, 0, 1, -1, 0, 0, 0, 0, 0; 0, 0, 0, 0, 0, 0, 0, 0, 1, -1, 0, 0, 0, 0; 0, 0, 0, 0, 0, 0, 0, 0, 0, 1, -1, 0, 0, 0; 0, 0, 0, "
-      "0, 0, 0, 0, 0, 0, 0, 1, -1, 0, 0; 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1, -1, 0; 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1, "
+      "model m\n"
+      "matrix A = [-1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0; 1, -1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0; 0, 1, -1, 0, "
+      "0, 0, "
+      "0, 0, 0, 0, 0, 0, 0, 0; 0, 0, 1, -1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0; 0, 0, 0, 1, -1, 0, 0, 0, 0, 0, 0, 0, 0, 0; "
+      "0, 0, 0, 0, 1, "
+      "-1, 0, 0, 0, 0, 0, 0, 0, 0; 0, 0, 0, 0, 0, 1, -1, 0, 0, 0, 0, 0, 0, 0; 0, 0, 0, 0, 0, 0, 1, -1, 0, 0, 0, 0, 0, "
+      "0; 0, 0, 0, 0, "
+      "0, 0, 0, 1, -1, 0, 0, 0, 0, 0; 0, 0, 0, 0, 0, 0, 0, 0, 1, -1, 0, 0, 0, 0; 0, 0, 0, 0, 0, 0, 0, 0, 0, 1, -1, 0, "
+      "0, 0; 0, 0, 0, "
+      "0, 0, 0, 0, 0, 0, 0, 1, -1, 0, 0; 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1, -1, 0; 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, "
+      "0, 1, "
       "-1]\ncoord z[14]\ninit z[1] = 1\nz' = A*z + [1; 0; 0; 0; 0; 0; 0; 0; 0; 0; 0; 0; 0; 0]*exp(-t)\n" STEP,
       PLAIN },
     { "seven overdamped and unstable",
-      "model m\nmatrix M = [1, 0, 0, 0, 0, 0, 0; 0, 1, 0, 0, 0, 0, 0; 0, 0, 1, 0, 0, 0, 0; 0, 0, 0, 1, 0, 0, 0; 0, 0, 0, 0, 1, 0, 0; "
-      "0, 0, 0, 0, 0, 1, 0; 0, 0, 0, 0, 0, 0, 1]\nmatrix K = [1e5, 0, 0, 0, 0, 0, 0; 0, -0.25, 0, 0, 0, 0, 0; 0, 0, 1e-18, 0, 0, 0, "
-      "0; 0, 0, 0, 4, 0, 0, 0; 0, 0, 0, 0, 1, 0, 0; 0, 0, 0, 0, 0, 1e-6, 0; 0, 0, 0, 0, 0, 0, 0]\nmatrix C = [100000000.001, 0, 0, "
-      "0, 0, 0, 0; 0.001, 0, 0, 0, 0, 0, 0; 0, 0.001, 0, 0, 0, 0, 0; 0, 0, 0.001, 4, 0, 0, 0; 0, 0, 0, 0.001, -0.3, 0, 0; 0, 0, 0, "
-      "0, 0.001, 0, 0; 0, 0, 0, 0, 0, 0.001, 3]\ncoord q[7]\ninit q[1] = 0.01, q[2]' = -0.3\nM*q'' + C*q' + K*q = [0; 1; 0; 0; 0; 0; "
+      "model m\n"
+      "matrix M = [1, 0, 0, 0, 0, 0, 0; 0, 1, 0, 0, 0, 0, 0; 0, 0, 1, 0, 0, 0, 0; 0, 0, 0, 1, 0, 0, 0; 0, 0, 0, 0, 1, "
+      "0, 0; "
+      "0, 0, 0, 0, 0, 1, 0; 0, 0, 0, 0, 0, 0, 1]\n"
+      "matrix K = [1e5, 0, 0, 0, 0, 0, 0; 0, -0.25, 0, 0, 0, 0, 0; 0, 0, 1e-18, 0, 0, 0, "
+      "0; 0, 0, 0, 4, 0, 0, 0; 0, 0, 0, 0, 1, 0, 0; 0, 0, 0, 0, 0, 1e-6, 0; 0, 0, 0, 0, 0, 0, 0]\n"
+      "matrix C = [100000000.001, 0, 0, "
+      "0, 0, 0, 0; 0.001, 0, 0, 0, 0, 0, 0; 0, 0.001, 0, 0, 0, 0, 0; 0, 0, 0.001, 4, 0, 0, 0; 0, 0, 0, 0.001, -0.3, "
+      "0, 0; 0, 0, 0, "
+      "0, 0.001, 0, 0; 0, 0, 0, 0, 0, 0.001, 3]\ncoord q[7]\ninit q[1] = 0.01, q[2]' = -0.3\n"
+      "M*q'' + C*q' + K*q = [0; 1; 0; 0; 0; 0; "
       "0]\n" STEP,
       PLAIN },
 
     /* sketches */
     { "three masses, a relative damper, forces",
-      "model m\ncoord a, b, c\ninit b = 1\nmass 2 at a\nmass 1 at b\nmass 0.5 at c\nspring 30 between a, b\nspring 30 between b, "
+      "model m\ncoord a, b, c\ninit b = 1\nmass 2 at a\nmass 1 at b\nmass 0.5 at c\nspring 30 between a, b\n"
+      "spring 30 between b, "
       "c\nspring 10 between a, ground\ndamper 0.2 between a, c\nforce 3*cos(4*t) on c\nforce t^2 on a\n" STEP,
       PLAIN },
     { "sketch beside equations, with an input",
-      "model m\ncoord a, b\ninput u hold first\nmass 2 at a\n2*a'' + b'' + 3*a = 0\nmass 1 at b\nspring 40 between a, b\nforce 2*u "
+      "model m\ncoord a, b\ninput u hold first\nmass 2 at a\n2*a'' + b'' + 3*a = 0\nmass 1 at b\n"
+      "spring 40 between a, b\nforce 2*u "
       "on b\n" STEP,
       PLAIN },
 };

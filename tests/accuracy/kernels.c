@@ -12,7 +12,9 @@
  * of what each scheme needs, after Cox and Matthews 2002 and Liu, Wang, Li and Yi 2022.  Each case runs in a process of
  * its own.
  */
-#include "evaluator.h"
+#include "algebra.h"
+#include "cases.h"
+#include "drawn.h"
 #include "step/step.h"
 #include "random_spec.h"
 
@@ -20,7 +22,6 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/resource.h>
-#include <sys/wait.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -48,15 +49,6 @@ static void complain(const char *what, const char *message)
                message);
 }
 
-static void show_spec(void)
-{
-    for (const char *line = trial.spec; *line;) {
-        const size_t length = strcspn(line, "\n");
-        printf("# | %.*s\n", (int)length, line);
-        line += length + (line[length] == '\n');
-    }
-}
-
 /* ---- the plant: one operator in one segment of time, as x' = A x ---- */
 
 /* x = states, [held states,] loads, inputs (with their slopes), then for each channel a chain u0' = u1, u1' = u2, u2' =
@@ -67,40 +59,6 @@ struct plant {
     size_t load_at, input_at, channel_at, size;
     mpq_t *A, *B;                       /* B: channels x size, 0 beyond the states */
 };
-
-static void add_product(mpq_ptr sum, mpq_srcptr a, mpq_srcptr b, bool subtract)
-{
-    mpq_t product;
-    mpq_init(product);
-    mpq_mul(product, a, b);
-    (subtract ? mpq_sub : mpq_add)(sum, sum, product);
-    mpq_clear(product);
-}
-
-/* rows x width, its left square part made the identity; false: it is singular */
-static bool eliminate(size_t rows, size_t width, mpq_t *W)
-{
-    mpq_t factor;
-    mpq_init(factor);
-    for (size_t k = 0; k < rows; k++) {
-        size_t pivot = k;
-        while (pivot < rows && mpq_sgn(W[pivot * width + k]) == 0)
-            pivot++;
-        if (pivot == rows)
-            return false;
-        for (size_t j = 0; j < width; j++)
-            mpq_swap(W[pivot * width + j], W[k * width + j]);
-        for (size_t j = width; j-- > k;)
-            mpq_div(W[k * width + j], W[k * width + j], W[k * width + k]);
-        for (size_t i = 0; i < rows; i++) {
-            mpq_set(factor, W[i * width + k]);
-            for (size_t j = k; i != k && j < width && mpq_sgn(factor); j++)
-                add_product(W[i * width + j], factor, W[k * width + j], true);
-        }
-    }
-    mpq_clear(factor);
-    return true;
-}
 
 /* The highest derivative of each coordinate: over the states, without sign, the load columns, u and u' of every input,
  * the channels. A coordinate of first order is solved for its derivative, whose factor stands in C and is no part of an
@@ -140,22 +98,6 @@ static mpq_t *highest_rows(const struct model *model, int which, int segment, si
             mpq_set(R[i * all + j], W[i * (n + all) + n + j]);
     *width = all;
     return R;
-}
-
-/* z = t^k e^{at} cos(wt+p) and sin, or t^k e^{at} alone: z' = a z + k (z of k - 1) -+ w (its partner) */
-static void fill_load(const struct load *load, size_t size, mpq_t *A)
-{
-    const bool turns = mpq_sgn(load->wave->w) != 0;
-    const size_t pair = turns ? 2 : 1;
-    for (size_t c = 0; c < (size_t)load->columns; c++) {
-        mpq_set(A[c * size + c], load->wave->a);
-        if (c >= pair)
-            mpq_set_ui(A[c * size + c - pair], c / pair, 1);
-        if (turns && c % 2 == 0)
-            mpq_neg(A[c * size + c + 1], load->wave->w);
-        if (turns && c % 2 == 1)
-            mpq_set(A[c * size + c - 1], load->wave->w);
-    }
 }
 
 static void fill_row(const struct model *model, const struct plant *p, size_t i, const mpq_t *right)
@@ -202,7 +144,7 @@ static bool make_plant(struct plant *p, const struct model *model, int which, in
     for (size_t i = 0; i < (size_t)system->n; i++)
         fill_row(model, p, i, R + i * width);
     for (size_t at = p->load_at, l = 0; l < (size_t)system->loads; at += (size_t)system->load[l++].columns)
-        fill_load(&system->load[l], p->size, p->A + at * p->size + at);
+        fill_load_states(&system->load[l], p->size, p->A + at * p->size + at);
     for (size_t u = 0, at = p->input_at; u < (size_t)system->inputs; at += system->input[u++].first_order ? 2 : 1)
         if (system->input[u].first_order)
             mpq_set_ui(p->A[at * p->size + at + 1], 1, 1);
@@ -277,23 +219,7 @@ static struct part *add_part(struct judge *judge, struct column *column, mpq_src
 }
 
 /* By Cayley and Hamilton (e^{A tau} w)_i is zero at every tau if (A^k w)_i = 0 for k < n, a polynomial in tau if for n
- * <= k < 2n: here modulo a prime of 61 bits. */
-static const uint64_t PRIME = (UINT64_C(1) << 61) - 1;
-
-static uint64_t times(uint64_t a, uint64_t b)
-{
-    return (uint64_t)((unsigned __int128)a * b % PRIME);
-}
-
-static uint64_t residue(mpq_srcptr q)
-{
-    uint64_t inverse = 1, power = mpz_fdiv_ui(mpq_denref(q), PRIME);
-    for (uint64_t e = PRIME - 2; e && power != 1; e >>= 1, power = times(power, power))
-        if (e & 1)
-            inverse = times(inverse, power);
-    return times(mpz_fdiv_ui(mpq_numref(q), PRIME), inverse);
-}
-
+ * <= k < 2n. */
 static void screen(const struct judge *judge, struct part *part)
 {
     const size_t n = judge->plant.size, states = judge->plant.states;
@@ -369,23 +295,6 @@ static void find_polynomials(const struct judge *judge, struct part *part)
         mpq_mul(weight, weight, next[0]);
     }
     mpq_clear(weight);
-}
-
-/* x + (entry of E) factor */
-static void add_entry(mpfi_ptr x, const evaluator_enclosure *E, size_t entry, mpq_srcptr factor)
-{
-    mpfi_t term;
-    mpz_t end;
-    mpz_init(end);
-    mpfi_init2(term, mpfi_get_prec(x));
-    mpz_sub(end, E->mid[entry], E->radius);
-    mpfr_set_z_2exp(&term->left, end, E->exponent, MPFR_RNDD);
-    mpz_add(end, E->mid[entry], E->radius);
-    mpfr_set_z_2exp(&term->right, end, E->exponent, MPFR_RNDU);
-    mpfi_mul_q(term, term, factor);
-    mpfi_add(x, x, term);
-    mpfi_clear(term);
-    mpz_clear(end);
 }
 
 /* The number of row i; false: the judge has no enclosure so narrow */
@@ -837,23 +746,17 @@ static void compare_segment(const struct model *model, const struct step *step, 
 }
 
 /* The first error that was said; warnings come before it. */
-static const char *diagnostics(void)
+/* What was the first error */
+static const char *first_error(void)
 {
-    char *text = NULL;
-    size_t length;
-    FILE *to = open_memstream(&text, &length);
-    diagnostics_print(to);
-    fclose(to);
-    const char *error = strstr(text, ": error: ");
-    const char *copy = error ? format("%.*s", (int)strcspn(error + 2, "\n"), error + 2) : "no reason was given";
-    free(text);
-    return copy;
+    const char *error = strstr(diagnostics(), ": error: ");
+    return error ? first_line(error + 2) : "no reason was given";
 }
 
 /* A step is refused rightly if e^{A h}, or what a load or an input gives, is beyond the range. */
 static void check_refusal(const struct model *model)
 {
-    const char *said = diagnostics();
+    const char *said = first_error();
     bool overflow = false;
     mpq_t one;
     mpfi_t x;
@@ -882,11 +785,9 @@ static void check_refusal(const struct model *model)
 static struct model *model_of(const char *scheme)
 {
     const struct request request = { .scheme = scheme, .loads_left = trial.loads_left };
-    struct source *source = NEW(struct source);
-    *source = (struct source){ .name = trial.path, .base = "spec", .text = trial.spec, .length = strlen(trial.spec) };
-    struct model *model = model_build(parse_spec(source), &request);
+    struct model *model = model_build(spec_of(trial.path, trial.spec), &request);
     if (!model)
-        complain("not accepted: ", diagnostics());
+        complain("not accepted: ", first_error());
     else if (model->channels == 0)
         complain("", "nothing is left over");
     return model && model->channels ? model : NULL;
@@ -981,10 +882,12 @@ static const struct { const char *name, *text;
     { "first order, pole 0", ONE "x' + x^3 = 1\nstep 0.1\n" },
     { "first order, three in a row", THREE "x' + x + x^2 = 0\n2*y' + y = x\nz' + z/2 - z*x = y\nstep 0.1\n" },
     { "first order beside a mass",
-      "model m\ncoord x, f, T\ninit x = 0.1, f = 0.5, T = 0.3\n2*x'' + 30*x + f = 3*cos(4*t)\nf'/50 + f/4 + 0.05*f^3 = x'\n"
+      "model m\ncoord x, f, T\ninit x = 0.1, f = 0.5, T = 0.3\n2*x'' + 30*x + f = 3*cos(4*t)\n"
+      "f'/50 + f/4 + 0.05*f^3 = x'\n"
       "T' + 0.5*T = 0.2 + 0.1*f^2\nstep 0.02\n" },
     { "first order beside a mass, with an operator",
-      "model m\ncoord x, f, T\ninit x = 0.1, f = 0.5, T = 0.3\n2*x'' + 30*x + f = 3*cos(4*t)\nf'/50 + f/4 + 0.05*f^3 = x'\n"
+      "model m\ncoord x, f, T\ninit x = 0.1, f = 0.5, T = 0.3\n2*x'' + 30*x + f = 3*cos(4*t)\n"
+      "f'/50 + f/4 + 0.05*f^3 = x'\n"
       "T' + 0.5*T = 0.2 + 0.1*f^2\noperator at x = 0.1, f = 0.5\nstep 0.02\n" },
     { "first order, mixed derivatives",
       TWO "3*x' + 2*y' + x + x^3 = sin(2*t)\nx' - 5*y' - y + 0.1*x*y = 0\nstep 0.1\n" },
@@ -995,7 +898,8 @@ static const struct { const char *name, *text;
           "0.5*x'' + y'' + 0.2*y' - 0.4*(x' - y')^3 + 20*y - 5*(x - y)^3 + 0.3*x*y' = 0\nstep 0.02\n" },
     { "shared inertia, with an operator", TWO
       "2*x'' + 0.5*y'' + 0.1*x' + 0.4*(x' - y')^3 + 30*x + 5*(x - y)^3 = sin(3*t)\n"
-      "0.5*x'' + y'' + 0.2*y' - 0.4*(x' - y')^3 + 20*y - 5*(x - y)^3 + 0.3*x*y' = 0\noperator at x = 0.5, y = -0.2, x' = 1, y' = 0\nstep 0.02\n" },
+      "0.5*x'' + y'' + 0.2*y' - 0.4*(x' - y')^3 + 20*y - 5*(x - y)^3 + 0.3*x*y' = 0\n"
+      "operator at x = 0.5, y = -0.2, x' = 1, y' = 0\nstep 0.02\n" },
     { "independent blocks, coupled by the leftover alone",
       THREE "x'' + 4*x + x*y = 0\ny'' + 0.1*y' + 9*y + y*z = cos(2*t)\nz' + z = x^2\nstep 0.1\n" },
     { "independent blocks, one without a leftover",
@@ -1004,7 +908,8 @@ static const struct { const char *name, *text;
     { "a load that changes its formula",
       ONE "x'' + 0.2*x' + 4*x + x^3 = (t < 0.605 ? 10*sin(pi*t/0.605) : 0)\nstep 0.01\n" },
     { "loads in three segments of time", TWO
-      "x'' + 0.2*x' + 4*x - y + x^3 = (t < 0.3 ? 2*t : t < 1 ? exp(-t) : cos(5*t))\ny'' + 9*y - x + y^3 = 1\nstep 0.05\n" },
+      "x'' + 0.2*x' + 4*x - y + x^3 = (t < 0.3 ? 2*t : t < 1 ? exp(-t) : cos(5*t))\ny'' + 9*y - x + y^3 = 1\n"
+      "step 0.05\n" },
     { "powers, growths and waves",
       ONE "x'' + 0.2*x' + 4*x + x^3 = t^3 + t*exp(-0.2*t)*cos(2*t + 0.3) + exp(0.1*t) - 2\nstep 0.05\n" },
     { "waves that the leftover alone reads",
@@ -1019,7 +924,8 @@ static const struct { const char *name, *text;
     { "a ramp on a free mass",
       "model m\ncoord x\ninput u hold first\ninit x = 0.1\n3*x'' + sin(x) = u + 0.1*u'\nstep 0.3\n" },
     { "held beside ramped, and a first order",
-      "model m\ncoord x, T\ninput u\ninput v hold first\ninit x = 0.1\nx'' + 3*x + T*x = u - 2*v\nT' + 0.1*T + x*T = v + v'\nstep 0.1\n" },
+      "model m\ncoord x, T\ninput u\ninput v hold first\ninit x = 0.1\nx'' + 3*x + T*x = u - 2*v\n"
+      "T' + 0.1*T + x*T = v + v'\nstep 0.1\n" },
     { "a bank of three",
       TWO "let w = 6*(1 - exp(-t))\nlet a = 6*exp(-t)\nx'' + 0.1*x' + (40 - w^2)*x - 2*w*y' - a*y = 0\n"
           "y'' + 0.1*y' + (60 - w^2)*y + 2*w*x' + a*x = 3*cos(2*t)\noperator at w = 0, 2, 4\nstep 0.02\n" },
@@ -1041,19 +947,6 @@ static const struct { const char *name, *text;
 enum { SPECS = sizeof specs / sizeof *specs };
 
 /* ---- random models: linear ones with springs, dampers and products added ---- */
-
-static uint64_t state;
-
-static unsigned below(unsigned n)
-{
-    state = state * UINT64_C(6364136223846793005) + UINT64_C(1442695040888963407);
-    return (unsigned)(state >> 33) % n;
-}
-
-static bool chance(unsigned percent)
-{
-    return below(100) < percent;
-}
 
 /* 1 to 9 digits times 10^(low..high) */
 static char *number(int low, int high)
@@ -1096,7 +989,7 @@ static char *random_text(uint64_t seed)
 {
     const char *linear = random_spec(seed), *step = strstr(linear, "\nstep ");
     unsigned n = 1;
-    state = seed * UINT64_C(0x9e3779b97f4a7c15) + 5;
+    random_state = seed * UINT64_C(0x9e3779b97f4a7c15) + 5;
     below(2);
     while (strstr(linear, format(", x%u", n + 1)))
         n++;
@@ -1107,7 +1000,7 @@ static char *random_text(uint64_t seed)
 /* A chain of 7 or 8, beyond the residues, free or held, damped or not, with a load and an input */
 static char *large_text(uint64_t seed)
 {
-    state = seed * UINT64_C(0xd1342543de82ef95) + 11;
+    random_state = seed * UINT64_C(0xd1342543de82ef95) + 11;
     below(2);
     const unsigned n = 7 + below(2), first = chance(30) ? 1 + below(n) : 0;
     const bool damped = chance(50), free_ends = chance(40), ramp = chance(40), load = chance(60);
@@ -1128,58 +1021,26 @@ static char *large_text(uint64_t seed)
 
 /* ---- the whole ---- */
 
-static int cases, failures;
+static bool try_case(void *text)
+{
+    setrlimit(RLIMIT_AS, &(struct rlimit){ LARGEST_CASE, LARGEST_CASE });
+    try_spec(text);
+    if (trial.failed)
+        show_spec(trial.spec);
+    if (trial.failed > MISMATCHES_SHOWN)
+        printf("# %d failures in all\n", trial.failed);
+    if (trial.compared == 0)
+        puts("# nothing was compared");
+    if (verbose)
+        printf("# %d numbers compared in %.2f s; steps refused %d, too small to be told from 0: %d\n", trial.compared,
+               (double)clock() / CLOCKS_PER_SEC, trial.refused, trial.unsettled);
+    return !trial.failed && trial.compared > 0;
+}
 
 static void run(const char *name, const char *path, const char *text)
 {
-    int status;
-    fflush(stdout);
-    const pid_t child = fork();
-    if (child == 0) {
-        alarm(LONGEST_CASE);
-        setrlimit(RLIMIT_AS, &(struct rlimit){ LARGEST_CASE, LARGEST_CASE });
-        trial.path = path;
-        try_spec(text);
-        if (trial.failed)
-            show_spec();
-        if (trial.failed > MISMATCHES_SHOWN)
-            printf("# %d failures in all\n", trial.failed);
-        if (trial.compared == 0)
-            puts("# nothing was compared");
-        if (verbose)
-            printf("# %d numbers compared in %.2f s; steps refused %d, too small to be told from 0: %d\n",
-                   trial.compared, (double)clock() / CLOCKS_PER_SEC, trial.refused, trial.unsettled);
-        fflush(stdout);
-        _exit(trial.failed || trial.compared == 0);
-    }
-    if (child < 0 || waitpid(child, &status, 0) != child) {
-        puts("Bail out! cannot start a process");
-        exit(1);
-    }
-    if (WIFSIGNALED(status))
-        printf("# ended by signal %d%s\n", WTERMSIG(status), WTERMSIG(status) == SIGALRM ? ": took too long" : "");
-    const bool good = WIFEXITED(status) && WEXITSTATUS(status) == 0;
-    failures += !good;
-    printf("%sok %d - %s\n", good ? "" : "not ", ++cases, name);
-    fflush(stdout);
-}
-
-static char *read_text(const char *path)
-{
-    size_t length = 0, got;
-    FILE *f = fopen(path, "r");
-    if (!f) {
-        printf("Bail out! cannot read %s\n", path);
-        exit(1);
-    }
-    char *text = ARRAY(char, 4096);
-    while ((got = fread(text + length, 1, 4095, f)) > 0) {
-        length += got;
-        ENLARGE(text, length + 4096);
-    }
-    text[length] = 0;
-    fclose(f);
-    return text;
+    trial.path = path;
+    run_case(name, LONGEST_CASE, try_case, (void *)text);
 }
 
 int main(int argc, char **argv)
@@ -1201,10 +1062,8 @@ int main(int argc, char **argv)
     }
     memory_open();
     printf("1..%lu\n", (unsigned long)(argc - optind) + SPECS + random_count + large_count);
-    for (int i = optind; i < argc; i++) {
-        const char *slash = strrchr(argv[i], '/');
-        run(slash ? slash + 1 : argv[i], argv[i], read_text(argv[i]));
-    }
+    for (int i = optind; i < argc; i++)
+        run(base_name(argv[i]), argv[i], read_text(argv[i]));
     for (int i = 0; i < SPECS; i++)
         run(specs[i].name, "spec", specs[i].text);
     for (unsigned long i = 0; i < random_count; i++)
@@ -1212,5 +1071,5 @@ int main(int argc, char **argv)
     for (unsigned long i = 0; i < large_count; i++)
         run(format("large random model %lu", seed + i), "spec", large_text(seed + i));
     memory_close();
-    return failures > 0;
+    return cases_failed() > 0;
 }

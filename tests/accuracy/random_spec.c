@@ -1,24 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "random_spec.h"
+#include "drawn.h"
 
 #include "step/step.h"
 
 #include <string.h>
 
 enum { LARGEST = 4 };
-
-static uint64_t state;
-
-static unsigned below(unsigned n)
-{
-    state = state * UINT64_C(6364136223846793005) + UINT64_C(1442695040888963407);
-    return (unsigned)(state >> 33) % n;
-}
-
-static bool chance(unsigned percent)
-{
-    return below(100) < percent;
-}
 
 /* 1 to 17 digits, first not 0, times 10^(low..high); a third are as short as a person would write them */
 static char *number(int low, int high)
@@ -183,7 +171,7 @@ static char *finish(const struct equations *e, char *text, bool held, bool ramp,
 char *random_spec(uint64_t seed)
 {
     struct equations e = { .n = 1 };
-    state = seed * UINT64_C(0x9e3779b97f4a7c15) + 1;
+    random_state = seed * UINT64_C(0x9e3779b97f4a7c15) + 1;
     below(2);
     e.n += (int)below(LARGEST);
     const bool mixed = chance(30), held = chance(15), ramp = chance(15), changes = chance(12);
@@ -297,7 +285,7 @@ char *random_symmetric_spec(uint64_t seed)
 {
     static char *(*const kinds[])(struct equations *) = { mirrored, doubled, summed, driven };
     struct equations e = { .n = 1 };
-    state = seed * UINT64_C(0xd1342543de82ef95) + 7;
+    random_state = seed * UINT64_C(0xd1342543de82ef95) + 7;
     below(2);
     char *outputs = kinds[below(4)](&e);
     const bool held = chance(20), ramp = chance(20), changes = chance(15);

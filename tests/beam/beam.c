@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The matrices of the rotating beam by other roads: quadrature of the shape functions, closed forms of beams and bars, and the
- * published frequencies of a rotating cantilever.
+/* The matrices of the rotating beam by other roads: quadrature of the shape functions, closed forms of beams and bars,
+ * and the published frequencies of a rotating cantilever.
  *
  *     beam COMMITTED DEFAULT SLENDER       (prefixes of files, see meson.build)
  */
@@ -183,15 +183,16 @@ static double static_stretch(const struct beam *b, gsl_matrix *k, double w)
 	return tip;
 }
 
-/* E u'' + rho w^2 (x + u) = 0: u(L) = tan(b L)/b - L, b = w sqrt(rho/E).  Without the u in the field it is rho w^2 L^3/(3E), and
- * linear elements are exact at their nodes. */
+/* E u'' + rho w^2 (x + u) = 0: u(L) = tan(b L)/b - L, b = w sqrt(rho/E).  Without the u in the field it is rho w^2
+ * L^3/(3E), and linear elements are exact at their nodes. */
 static void stretch(const struct beam *b, double w)
 {
 	const double simple = b->rho * w * w * b->L * b->L * b->L / (3 * b->E);
 	const double beta = w * sqrt(b->rho / b->E), full = tan(beta * b->L) / beta - b->L;
 	const double found = static_stretch(b, effective_stiffness(b, 0), w);
 	const double with_field = static_stretch(b, effective_stiffness(b, w), w);
-	ok(close_to(found, simple, 1e-12 * simple, "stretch"), "%s, w = %g: stretch rho w^2 L^3/(3E) = %.9g m", b->name, w, simple);
+	ok(close_to(found, simple, 1e-12 * simple, "stretch"), "%s, w = %g: stretch rho w^2 L^3/(3E) = %.9g m", b->name, w,
+		simple);
 	ok(close_to(with_field, full, 2e-6 * full, "stretch"), "%s, w = %g: with its own field, %.9g m", b->name, w, full);
 }
 
@@ -252,7 +253,8 @@ static void axial(const struct beam *b, const gsl_vector *w)
 
 static void largest(const gsl_vector *w)
 {
-	ok(close_to(gsl_vector_get(w, w->size - 1), 10423, 0.5, "largest frequency"), "default beam: largest frequency 10423 rad/s");
+	ok(close_to(gsl_vector_get(w, w->size - 1), 10423, 0.5, "largest frequency"),
+		"default beam: largest frequency 10423 rad/s");
 }
 
 /* ---- rotation ---- */
@@ -299,7 +301,8 @@ static void chordwise(const struct beam *b)
 	for (size_t i = 0; i < sizeof published / sizeof *published; i++) {
 		const double found = rotating_frequency(b, published[i].speed);
 		ok(close_to(found, published[i].frequency, 1e-3 * published[i].frequency, "frequency"),
-			"%s at speed %g: first chordwise frequency %.5f, published %.4f", b->name, published[i].speed, found, published[i].frequency);
+			"%s at speed %g: first chordwise frequency %.5f, published %.4f", b->name, published[i].speed, found,
+				published[i].frequency);
 	}
 }
 

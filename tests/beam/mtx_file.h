@@ -5,6 +5,7 @@
 
 #include <gsl/gsl_matrix.h>
 
-gsl_matrix *mtx_file(const char *prefix, const char *name);     /* PREFIXNAME.mtx; what is wrong with it ends the test */
+/* PREFIXNAME.mtx; what is wrong with it ends the test */
+gsl_matrix *mtx_file(const char *prefix, const char *name);
 
 #endif

@@ -1,6 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# charts.sh BUILD ROOT: a quick run of all charts; its tables, orders and failures, its pictures and its page. Times are never looked at.
+# charts.sh BUILD ROOT: a quick run of all charts; its tables, orders and failures, its pictures and its page. Times are
+# never looked at.
 set -u
 build=$1 root=$2
 here=$root/tests/charts
@@ -48,7 +49,8 @@ awk -v list="$here/methods.list" -f "$csv" -f "$here/hard.awk" "$out/hard.csv" >
 result $? "hard.csv: every method on every case, each failure with its word"
 awk -f "$csv" -f "$here/orders.awk" "$out/convergence_orders.csv" >"$log" 2>&1
 result $? "convergence_orders.csv: orders within 0.15"
-awk -f "$csv" -f bench/charts/break_even.awk "$here/break_even/generation.csv" "$here/break_even/precision.csv" >"$work/break_even.csv" 2>&1
+awk -f "$csv" -f bench/charts/break_even.awk "$here/break_even/generation.csv" \
+    "$here/break_even/precision.csv" >"$work/break_even.csv" 2>&1
 diff "$work/break_even.csv" "$here/break_even/expect.csv" >"$log" 2>&1
 result $? "break-even of given times: as worked out by hand"
 awk -f "$csv" -f "$here/break_even/check.awk" "$out/break_even.csv" >"$log" 2>&1
@@ -68,7 +70,8 @@ for file in "$out"/*.svg; do
         [ "$(dd if="$out/$name.png" bs=1 skip=1 count=3 2>/dev/null)" = PNG ] || echo "$name.png is none"
         grep -q "src=\"$name.svg\"" "$out/index.html" || echo "the page does not show $name.svg"
         # Of what is drawn at least one line or mark
-        grep -q -e '<path stroke' -e '<use ' -e "<path.*stroke='" -e '<polygon' -e '<circle' "$file" || echo "$name.svg is empty"
+        grep -q -e '<path stroke' -e '<use ' -e "<path.*stroke='" -e '<polygon' -e '<circle' "$file" ||
+            echo "$name.svg is empty"
     } >"$log" 2>&1
     [ ! -s "$log" ]
     result $? "$name: a picture in both forms, on the page"
@@ -104,7 +107,8 @@ for name in quality convergence hard; do
 done
 "$build/bench/charts/precision" --quick "$out/variants" "$work/again/precision.csv" pendulum scs >"$log" 2>&1 &&
     awk -v without="^ns_" -f "$csv" -f "$here/columns.awk" "$work/again/precision.csv" >"$work/second" &&
-    awk -v without="^ns_" -f "$csv" -f "$here/columns.awk" "$out/precision.csv" | grep -e '^model' -e '^pendulum,' -e '^scs,' >"$work/first" &&
+    awk -v without="^ns_" -f "$csv" -f "$here/columns.awk" "$out/precision.csv" |
+        grep -e '^model' -e '^pendulum,' -e '^scs,' >"$work/first" &&
     cmp "$work/first" "$work/second" >>"$log" 2>&1
 result $? "precision.csv: the same but for times"
 

@@ -7,7 +7,10 @@ NR == 1 { read_head($0, column); next }
 	method = row[column["method"]]; value = row[column["largest"]]
 	if (row[column["model"]] != "scs" || method !~ /^exact/ || method ~ /float/ || value == "refused") next
 	count++
-	if (!is_number(value) || value + 0 > 1e-11) { print method " on scs: found " value ", expected 0, tolerance 1e-11"; bad = 1 }
+	if (!is_number(value) || value + 0 > 1e-11) {
+		print method " on scs: found " value ", expected 0, tolerance 1e-11"
+		bad = 1
+	}
 }
 END {
 	if (count == 0) { print "no exact form on scs"; bad = 1 }

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# awk -v list=methods.list -f csv.awk -f hard.awk hard.csv: every method of the list, naive residues and ours on each of the 12 cases;
-# a cell without a number has its word, one with a number the word that goes with it; known failures are told as such, and exact has none.
+# awk -v list=methods.list -f csv.awk -f hard.awk hard.csv: every method of the list, naive residues and ours on each of
+# the 12 cases; a cell without a number has its word, one with a number the word that goes with it; known failures are
+# told as such, and exact has none.
 BEGIN {
 	while ((getline line < list) > 0) {
 		sub(/^[a-z]* /, "", line)
@@ -17,13 +18,18 @@ NR == 1 { read_head($0, column); next }
 	cases[of] = 1
 	seen[of, method] = 1
 	words[of, method] = words[of, method] " " word ";"
-	if (error == "failed" ? word !~ /^(diverged|gave up|refused|linear only|as exact)$/ : !is_number(error) || word != (error + 0 < 1e-3 ? "ok" : error + 0 < 0.1 ? "poor" : "wrong")) {
+	grade = error + 0 < 1e-3 ? "ok" : error + 0 < 0.1 ? "poor" : "wrong"
+	if (error == "failed" ? word !~ /^(diverged|gave up|refused|linear only|as exact)$/ : \
+	    !is_number(error) || word != grade) {
 		print of ", " method ": error " error ", word " word
 		bad = 1
 	}
 	if (method == "exact" && word != "refused") {
 		limit = of == "grazing contact" ? 1e-7 : of ~ /^stiff/ ? 1e-8 : 1e-9
-		if (error + 0 > limit || error == "failed") { print of ", exact: found " error ", expected 0, tolerance " limit; bad = 1 }
+		if (error + 0 > limit || error == "failed") {
+			print of ", exact: found " error ", expected 0, tolerance " limit
+			bad = 1
+		}
 	}
 }
 function known(of, method, pattern) {

@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# awk -v list=methods.list -f csv.awk -f methods.awk precision.csv: every model of a quick run has every method of the list (propagators
-# only where it is linear) and of ours those that there are for it; each row has numbers, or a word and the flag `failed`.
+# awk -v list=methods.list -f csv.awk -f methods.awk precision.csv: every model of a quick run has every
+# method of the list (propagators only where it is linear) and of ours those that there are for it; each row has
+# numbers, or a word and the flag `failed`.
 function ours_of(model) {
-	if (model == "scs") return "exact;exact, direct;exact, delta;exact, kick-drift-kick;exact, compensated;exact, float;exact, float, delta;exact, float, kick-drift-kick;exact, float, compensated;pl"
+	if (model == "scs") return "exact;exact, direct;exact, delta;exact, kick-drift-kick;exact, compensated;exact, float;" \
+		"exact, float, delta;exact, float, kick-drift-kick;exact, float, compensated;pl"
 	if (model == "gear1") return "exact;etd1;etdrk2;etdrk4;nc2;nc3;dq4;bm3"
 	return "pl;etd1;etdrk2;etdrk4;nc2;nc3;dq4;bm3"
 }
@@ -31,14 +33,21 @@ NR == 1 { read_head($0, column); next }
 			row[column["history_s"]] " s, the whole history"
 		bad = 1
 	}
-	if (row[column["failed"]] == 0 && row[column["truth_agreement"]] + 0 > 1e-11) { print model ": two roads to what is true are " row[column["truth_agreement"]] " apart, tolerance 1e-11"; bad = 1 }
+	apart = row[column["truth_agreement"]]
+	if (row[column["failed"]] == 0 && apart + 0 > 1e-11) {
+		print model ": two roads to what is true are " apart " apart, tolerance 1e-11"
+		bad = 1
+	}
 }
 END {
 	models = split("pendulum beam4 gear1 scs", model_list, " ")
 	for (m = 1; m <= models; m++) {
 		model = model_list[m]
 		for (method in family_of)
-			if ((family_of[method] != "propagator" || model == "scs") && !((model, method) in seen)) { print model ": no " method; bad = 1 }
+			if ((family_of[method] != "propagator" || model == "scs") && !((model, method) in seen)) {
+				print model ": no " method
+				bad = 1
+			}
 		n = split(ours_of(model), ours, ";")
 		for (k = 1; k <= n; k++)
 			if (!((model, ours[k]) in seen)) { print model ": no " ours[k]; bad = 1 }

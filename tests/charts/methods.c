@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* methods VARIANTS: the methods that the charts compare are what they are called: those with a fixed step have their order, on an
- * equation that is not linear and on linear ones; plgen's exact step has no error but rounding. And what is timed is whole
- * histories. VARIANTS: what methods.sh made. */
+/* methods VARIANTS: the methods that the charts compare are what they are called: those with a fixed step have their
+ * order, on an equation that is not linear and on linear ones; plgen's exact step has no error but rounding. And what
+ * is timed is whole histories. VARIANTS: what methods.sh made. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -25,7 +25,8 @@ static double error_at_ends(struct run *run, const struct truth *truth)
 static void check_order(const char *name, const char *model, double expected, double coarse, double fine)
 {
 	const double order = log2(coarse / fine);
-	ok(close_to(order, expected, order_tolerance, "errors %.6g and %.6g: order", coarse, fine), "%s on %s: order %g", name, model, expected);
+	ok(close_to(order, expected, order_tolerance, "errors %.6g and %.6g: order", coarse, fine), "%s on %s: order %g",
+		name, model, expected);
 }
 
 /* Parts of a unit where errors fall as their order says: small enough, and far above rounding */
@@ -44,7 +45,8 @@ static void check_fixed(struct problem *p)
 	}
 }
 
-static struct run *open_variant(const struct method *m, const struct problem *p, const char *folder, const char *name, int parts)
+static struct run *open_variant(const struct method *m, const struct problem *p, const char *folder, const char *name,
+    int parts)
 {
 	char file[4096];
 	snprintf(file, sizeof file, "%s/%s-%s-%d.so", folder, name, m->name, parts);
@@ -64,7 +66,8 @@ static void check_schemes(struct problem *p, const char *folder, const char *nam
 		const struct method *m = &schemes[k].method;
 		if (p->linear && strcmp(m->name, "pl") != 0)
 			continue;
-		struct run *coarse = open_variant(m, p, folder, name, schemes[k].parts), *fine = open_variant(m, p, folder, name, 2 * schemes[k].parts);
+		struct run *coarse = open_variant(m, p, folder, name, schemes[k].parts),
+			*fine = open_variant(m, p, folder, name, 2 * schemes[k].parts);
 		check_order(m->name, p->name, m->order, error_at_ends(coarse, truth), error_at_ends(fine, truth));
 	}
 }
@@ -76,7 +79,8 @@ static void check_exact(struct problem *p, const char *folder, const char *name)
 	const struct truth *truth = truth_of(p);
 	struct run *run = open_variant(&exact, p, folder, name, 1);
 	const struct error e = run ? error_of(run, truth) : (struct error){ .failed = true };
-	ok(close_to(e.failed ? NAN : e.largest, 0, 1e-11, "largest error of exact on %s", name), "exact on %s: below 1e-11 over 30 s", name);
+	ok(close_to(e.failed ? NAN : e.largest, 0, 1e-11, "largest error of exact on %s", name),
+		"exact on %s: below 1e-11 over 30 s", name);
 	if (run)
 		run->close(run);
 }
@@ -125,8 +129,8 @@ static void check_walk(int units)
 	ok(samples.count >= 3, "%d samples of %d units, at least 3", samples.count, units);
 }
 
-/* Right-hand sides of the last sample, from its start on, against those of a pass a unit at a time: a history whose jumps
- * cost most of it. Of its first tenth for comparison */
+/* Right-hand sides of the last sample, from its start on, against those of a pass a unit at a time: a history whose
+ * jumps cost most of it. Of its first tenth for comparison */
 static void check_evaluations(const struct problem *p, const char *name)
 {
 	const struct method *m = method_find(name);
@@ -158,7 +162,8 @@ int main(int argc, char **argv)
 		return 2;
 	}
 	const char *folder = argv[1];
-	struct problem *pendulum = load(folder, "pendulum", 0.4, 10, false, 0), *forced = load(folder, "sdcsf", 0.2, 10, true, 5);
+	struct problem *pendulum = load(folder, "pendulum", 0.4, 10, false, 0),
+		*forced = load(folder, "sdcsf", 0.2, 10, true, 5);
 	check_fixed(pendulum);
 	check_fixed(forced);
 	check_schemes(pendulum, folder, "pendulum");

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# awk -f csv.awk -f orders.awk convergence_orders.csv: at 0.6 s the order from the last two N, and exact has rounding alone.
+# awk -f csv.awk -f orders.awk convergence_orders.csv: at 0.6 s the order from the last two N, and exact has rounding
+# alone.
 NR == 1 { read_head($0, column); next }
 {
 	split("", row)
@@ -8,7 +9,8 @@ NR == 1 { read_head($0, column); next }
 	count++
 	expected = row[column["order_expected"]]; found = row[column["order_at_last"]]
 	name = row[column["method"]] " on " row[column["system"]]
-	if (expected == "exact" ? found != "rounding" : !is_number(found) || found - expected > 0.15 || expected - found > 0.15) {
+	if (expected == "exact" ? found != "rounding" : \
+	    !is_number(found) || found - expected > 0.15 || expected - found > 0.15) {
 		print name ": found " found ", expected " expected ", tolerance 0.15"
 		bad = 1
 	}

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* scales: the scales that the tolerances of adaptive integrators stand on are those of the motion. Standard input has a
  * line for each problem, from `precision --scales` and `hard --scales`: name, shared object, unit [s], units, largest
- * |coordinate|, largest |velocity|. The other road: CVODE's BDF on NAME_rhs, whose largest values over its own steps must
- * be within a factor of 2. Its tolerances know nothing of the motion: 1e-6 relative, 1e-9 absolute. */
+ * |coordinate|, largest |velocity|. The other road: CVODE's BDF on NAME_rhs, whose largest values over its own steps
+ * must be within a factor of 2. Its tolerances know nothing of the motion: 1e-6 relative, 1e-9 absolute. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# scales.sh BUILD SCALES ROOT: the scales of every model and hard case of the charts, over their whole histories, held by
-# the program scales.
+# scales.sh BUILD SCALES ROOT: the scales of every model and hard case of the charts, over their whole histories, held
+# by the program scales.
 set -e
 absolute() {
     case $1 in

@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Flags under which the arithmetic is not what it is written to be are refused by name, when code or runtime is compiled; where they do no harm
-# they are not.
+# Flags under which the arithmetic is not what it is written to be are refused by name, when code or runtime is
+# compiled; where they do no harm they are not.
 #
 #     flags.sh PLGEN SOURCE_ROOT
 #
@@ -39,7 +39,8 @@ compile() {
         *) language=-std=c99 ;;
     esac
     # shellcheck disable=SC2086
-    "$1" $language -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wno-ignored-optimization-argument $2 -I"$root/runtime" -c "$3" -o out.o
+    "$1" $language -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wno-ignored-optimization-argument $2 \
+        -I"$root/runtime" -c "$3" -o out.o
 }
 
 # refused COMPILER FLAGS WORDS FILES: none of the files compiles, and each is told why
@@ -102,16 +103,20 @@ for compiler in clang clang++; do
 done
 # gcc before 12 has no macro for -fassociative-math.
 for compiler in gcc g++; do
-    refused $compiler '-O2 -funsafe-math-optimizations -U__ASSOCIATIVE_MATH__ -U__RECIPROCAL_MATH__ -U__GNUC__ -D__GNUC__=11' 'funsafe.math.optimizations' \
+    refused $compiler \
+        '-O2 -funsafe-math-optimizations -U__ASSOCIATIVE_MATH__ -U__RECIPROCAL_MATH__ -U__GNUC__ -D__GNUC__=11' \
+        'funsafe.math.optimizations' \
         "$doubles $floats"
     accepted $compiler '-O2 -U__GNUC__ -D__GNUC__=11' "$doubles $floats"
 done
 # A compiler that has no static assertion: the name of an array says it.
-refused gcc '-O2 -U__GNUC__ -fsingle-precision-constant' 'pl_refuses_fsingle_precision_constant_and_doubles_of_32_bits' "$doubles"
+refused gcc '-O2 -U__GNUC__ -fsingle-precision-constant' \
+    'pl_refuses_fsingle_precision_constant_and_doubles_of_32_bits' "$doubles"
 accepted gcc '-O2 -U__GNUC__' "$doubles $floats"
 
 # A double of 32 bits: of models in float nothing is double.
-"${CC:-cc}" -std=c11 -E -P -I"$root/runtime" double.c 2>log | sed 's/\<double\>/float/g; s/sizeof(1\.0)/sizeof(1.0f)/' >narrow.c
+"${CC:-cc}" -std=c11 -E -P -I"$root/runtime" double.c 2>log |
+    sed 's/\<double\>/float/g; s/sizeof(1\.0)/sizeof(1.0f)/' >narrow.c
 "${CC:-cc}" -std=c11 -w -c narrow.c -o out.o >said 2>&1
 [ $? -ne 0 ] && grep -q 'error.*32 bits' said
 status=$?

@@ -1,7 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Recorded inputs through runtime/host/plmain.c: row k is the sample at t = k h.  Against the closed form of the same model with the record written
-# into its equations, as a table in time for a ramp and as a change of formula at every sample for an input that is held.  And what plmain says.
+# Recorded inputs through runtime/host/plmain.c: row k is the sample at t = k h.  Against the closed form of the same
+# model with the record written into its equations, as a table in time for a ramp and as a change of formula at every
+# sample for an input that is held.  And what plmain says.
 #
 #     record.sh PLGEN SOURCE_ROOT
 set -u
@@ -10,41 +11,47 @@ root=$2
 case $plgen in /*) ;; *) plgen=$PWD/$plgen ;; esac
 . "${0%/*}/../tap.sh"
 
-for file in "$root"/runtime/*.c; do
-    "${CC:-cc}" -std=c99 -O1 -I"$root/runtime" -c "$file" -o "runtime_${file##*/}.o" || exit 99
-done
+runtime_archive "$root/runtime"
 
 # driver FILE.c NAME PROGRAM [FLAGS]
 driver() {
     # shellcheck disable=SC2086
-    "${CC:-cc}" -std=c99 -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Werror ${4-} -I"$root/runtime" "$root/runtime/host/plmain.c" "$1" runtime_*.o "-DMODEL=$2" -lm -o "$3" >>log 2>&1
+    "${CC:-cc}" -std=c99 -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Werror ${4-} -I"$root/runtime" \
+        "$root/runtime/host/plmain.c" "$1" "$archive" "-DMODEL=$2" -lm -o "$3" >>log 2>&1
 }
 
 # 41 samples of two inputs, 0.05 s apart, neither 0 at the start
-awk 'BEGIN { print "u,v"; for (k = 0; k <= 40; k++) printf "%d,%d\n", (k * 37 + 11) % 23 - 8, (k * 53 + 5) % 29 - 20 }' >rows.csv
+awk 'BEGIN { print "u,v"; for (k = 0; k <= 40; k++) printf "%d,%d\n", (k * 37 + 11) % 23 - 8,
+    (k * 53 + 5) % 29 - 20 }' >rows.csv
 
 # as_load COLUMN RAMP: the record as an expression of t
 as_load() {
     awk -F, -v column="$1" -v ramp="$2" 'NR > 1 { u[n++] = $column }
         END { if (ramp) { printf "table(t"; for (k = 0; k < n; k++) printf "; %d/20, %d", k, u[k]; printf ")" }
-              else { for (k = 0; k < n - 1; k++) printf "(t < %d/20 ? %d : ", k + 1, u[k]; printf "%d", u[n - 1]; for (k = 0; k < n - 1; k++) printf ")" } }' rows.csv
+              else { for (k = 0; k < n - 1; k++) printf "(t < %d/20 ? %d : ", k + 1, u[k]; printf "%d", u[n - 1];
+                  for (k = 0; k < n - 1; k++) printf ")" } }' rows.csv
 }
 
 # spec DECLARATION OUTPUTS [SLOPES]
 spec() {
     printf 'model rec\ncoord x, y\n%b\ninit x = 0.5\n' "$1"
-    printf "2*x'' + 0.4*x' + 30*x - 5*y = 3*u + 0.7*v%s\ny'' + 0.2*y' + 12*y - 5*x = v - u\noutput x, y%s\nstep 0.05\n" "${3-}" "$2"
+    printf "2*x'' + 0.4*x' + 30*x - 5*y = 3*u + 0.7*v%s\ny'' + 0.2*y' + 12*y - 5*x = v - u\n" "${3-}"
+    printf 'output x, y%s\nstep 0.05\n' "$2"
 }
 
 # near FOUND EXPECTED BOUND: each column within BOUND of its largest value
 near() {
     awk -F, -v bound="$3" '
-        FNR == NR { rows = FNR; for (i = 1; i <= NF; i++) { e[FNR, i] = $i; v = $i < 0 ? -$i : +$i; if (FNR > 1 && v > most[i]) most[i] = v } columns = NF; next }
+        FNR == NR { rows = FNR; for (i = 1; i <= NF; i++) { e[FNR, i] = $i; v = $i < 0 ? -$i : +$i;
+            if (FNR > 1 && v > most[i]) most[i] = v } columns = NF; next }
         FNR == 1 { next }
         { if (NF != columns) { print "row " FNR ": found " NF " columns, expected " columns; bad = 1 }
           for (i = 1; i <= NF; i++) { d = $i - e[FNR, i]; if (d < 0) d = -d
-              if (!(d <= bound * most[i]) && shown++ < 5) { print "row " FNR " column " i ": found " $i ", expected " e[FNR, i] ", tolerance " bound * most[i]; bad = 1 } } last = FNR }
-        END { if (last != rows || rows < 42) { print "rows: found " last ", expected " rows ", 42 or more"; bad = 1 } exit bad ? 1 : 0 }' "$2" "$1" >>log 2>&1
+              if (!(d <= bound * most[i]) && shown++ < 5) {
+                  print "row " FNR " column " i ": found " $i ", expected " e[FNR, i] ", tolerance " bound * most[i];
+                  bad = 1 } } last = FNR }
+        END { if (last != rows || rows < 42) { print "rows: found " last ", expected " rows ", 42 or more";
+            bad = 1 } exit bad ? 1 : 0 }' "$2" "$1" >>log 2>&1
 }
 
 # form TITLE STATEMENTS RAMP_U RAMP_V COLUMNS
@@ -57,7 +64,8 @@ form() {
     # the slope of a table, by hand
     by_slope=$slopes
     if [ -n "$slopes" ]; then
-        by_slope=$(awk -F, 'NR > 1 { u[n++] = $1 } END { printf " + 0.3*"; for (k = 0; k < n - 2; k++) printf "(t < %d/20 ? %d : ", k + 1, 20 * (u[k + 1] - u[k])
+        by_slope=$(awk -F, 'NR > 1 { u[n++] = $1 } END { printf " + 0.3*";
+            for (k = 0; k < n - 2; k++) printf "(t < %d/20 ? %d : ", k + 1, 20 * (u[k + 1] - u[k])
             printf "%d", 20 * (u[n - 1] - u[n - 2]); for (k = 0; k < n - 2; k++) printf ")" }' rows.csv)
     fi
     { spec "let u = $(as_load 1 "$3")\nlet v = $(as_load 2 "$4")" "$outputs" "$by_slope"; } >closed.spec
@@ -71,15 +79,18 @@ form() {
         for options in '' '--accuracy compensated'; do
             : >log
             # shellcheck disable=SC2086
-            "$plgen" --real $real $options rec.spec >rec.c 2>>log && driver rec.c rec rec "$flags" && ./rec 2 <rows.csv >found.csv 2>>log && near found.csv expected.csv $bound
-            result $? "$1, $real${options:+, compensated}: 40 steps of the record are its closed form within $bound of the largest value"
+            "$plgen" --real $real $options rec.spec >rec.c 2>>log && driver rec.c rec rec "$flags" &&
+                ./rec 2 <rows.csv >found.csv 2>>log && near found.csv expected.csv $bound
+            result $? "$1, $real${options:+, compensated}: 40 steps of the record are its closed form \
+within $bound of the largest value"
         done
     done
     "$plgen" --header rec.spec >log && grep -q "rec_Gamma\[REC_STATES\]\[$5\];" log
     result $? "$1: Gamma has $5 columns"
     sed 's/^step/tunable k\nstep/; s/^coord/param k = 30\ncoord/; s/30\*x/k*x/' rec.spec >tuned.spec
     : >log
-    "$plgen" tuned.spec >rec.c 2>>log && driver rec.c rec rec && ./rec 2 <rows.csv >found.csv 2>>log && near found.csv expected.csv 1e-13
+    "$plgen" tuned.spec >rec.c 2>>log && driver rec.c rec rec && ./rec 2 <rows.csv >found.csv 2>>log &&
+        near found.csv expected.csv 1e-13
     result $? "$1, tunable: the same"
 }
 
@@ -95,7 +106,8 @@ form 'input u, v' 'input u, v' 0 0 2
 says() {
     head -n "$4" rows.csv | ./rec 2 >found.csv 2>log
     status=$?
-    [ $status -eq "$2" ] && { [ -z "$3" ] && [ ! -s log ] || grep -q -e "${3:-.}" log; } && [ "$(wc -l <found.csv)" -eq "$5" ]
+    [ $status -eq "$2" ] && { [ -z "$3" ] && [ ! -s log ] || grep -q -e "${3:-.}" log; } &&
+        [ "$(wc -l <found.csv)" -eq "$5" ]
     status=$?
     echo "$(wc -l <found.csv) lines, expected $5; expected '$3'" >>log
     result $status "$1"
@@ -117,8 +129,9 @@ says 'ramps: not even the first' 1 'expected row 0, of t = 0, found' 1 0
 # ---- where the state is before the first step ----
 
 # In contact from the start on, and so not crossed into: as the same model with the sample as a param.
-printf "model touch\ncoord x\ninput u hold first\nx'' + 0.2*x' + 4*x + 10*max(x - u, 0) = 0\noutput x\nstep 0.05\n" >touch.spec
-printf "model fixed\nparam u = -1\ncoord x\nx'' + 0.2*x' + 4*x + 10*max(x - u, 0) = 0\noutput x\nstep 0.05\n" >fixed.spec
+for model in 'touch\ncoord x\ninput u hold first' 'fixed\nparam u = -1\ncoord x'; do
+    printf "model %b\nx'' + 0.2*x' + 4*x + 10*max(x - u, 0) = 0\noutput x\nstep 0.05\n" "$model" >"${model%%\\*}.spec"
+done
 cat >touch.c <<'EOF'
 #include "touch_pl.h"
 #include "fixed_pl.h"
@@ -135,7 +148,8 @@ int main(void)
     for (k = 0; k < 200; k++) {
         const double d = s.y[0] - f.y[0];
         if (touch_crossed(&s) != fixed_crossed(&f) || !(d < 1e-12 && d > -1e-12)) {
-            printf("step %d: crossed %d, x = %.17g; expected %d, %.17g\n", k, (int)touch_crossed(&s), s.y[0], (int)fixed_crossed(&f), f.y[0]);
+            printf("step %d: crossed %d, x = %.17g; expected %d, %.17g\n", k, (int)touch_crossed(&s), s.y[0],
+                (int)fixed_crossed(&f), f.y[0]);
             bad = 1;
             break;
         }
@@ -147,7 +161,7 @@ int main(void)
 }
 EOF
 "$plgen" -o touch_pl.c touch.spec 2>log && "$plgen" -o fixed_pl.c fixed.spec 2>>log &&
-    "${CC:-cc}" -std=c99 -I"$root/runtime" touch.c touch_pl.c fixed_pl.c runtime_*.o -o touch >>log 2>&1 && ./touch >>log
+    "${CC:-cc}" -std=c99 -I"$root/runtime" touch.c touch_pl.c fixed_pl.c "$archive" -o touch >>log 2>&1 && ./touch >>log
 result $? 'piecewise linear: held before the first step, the sample decides the region, and nothing is crossed'
 
 # ---- the other type; times ----
@@ -161,7 +175,9 @@ for real in double float; do
     "$plgen" --real $real two.spec >two.c && driver two.c two two "$other" && ./two 1 >found.csv 2>said
     status=$?
     cat said >>log
-    [ $status -eq 2 ] && [ ! -s found.csv ] && grep -q "^two: error: plmain.c was compiled $is -DFLOAT, and the model is in $real$" said && grep -q 'note: -DFLOAT is for' said
+    [ $status -eq 2 ] && [ ! -s found.csv ] &&
+        grep -q "^two: error: plmain.c was compiled $is -DFLOAT, and the model is in $real$" said &&
+        grep -q 'note: -DFLOAT is for' said
     result $? "plmain compiled $is -DFLOAT, a model in $real: told"
     sed '/tunable/d' two.spec >fixed.spec       # its time is k/100, not k times what h was rounded to
     own=-DFLOAT
@@ -169,7 +185,8 @@ for real in double float; do
     "$plgen" --real $real fixed.spec >two.c && driver two.c two two "$own" && ./two 2 >found.csv 2>>log
     awk -F, 'NR > 1 { t = NR - 2; want = int(t / 100); rest = t % 100
         if (rest) { want = want "." (rest < 10 ? "0" rest : rest); sub(/0$/, "", want) }
-        if ($1 != want && shown++ < 5) print "row " NR ": found " $1 ", expected " want } END { if (NR != 202) print NR " lines, expected 202" }' found.csv >log
+        if ($1 != want && shown++ < 5) print "row " NR ": found " $1 ", expected " want } END {
+            if (NR != 202) print NR " lines, expected 202" }' found.csv >log
     [ ! -s log ]
     result $? "times of $real in as few digits as read back the same"
 done
@@ -180,7 +197,8 @@ awk '/^    model two/ { on = 1 } on && !/^(    |$)/ { exit } on { print substr($
 line=$(sed -n 's/^    \(gnuplot .*\)/\1/p' "$root/README.md")
 if command -v gnuplot >/dev/null 2>&1; then
     : >log
-    "$plgen" two.spec >two.c 2>>log && driver two.c two two && ./two 30 >two.csv 2>>log && [ "$(wc -l <two.csv)" -eq 3002 ] &&
+    "$plgen" two.spec >two.c 2>>log && driver two.c two two && ./two 30 >two.csv 2>>log &&
+        [ "$(wc -l <two.csv)" -eq 3002 ] &&
         sh -c "$line" >>log 2>&1 && [ "$(grep -c '<path' two.svg)" -ge 1 ] && [ "$(wc -c <two.svg)" -gt 20000 ]
     result $? 'README: the spec, stepped and drawn with the gnuplot that is there'
 else

@@ -1,12 +1,13 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# A model may bear the name of anything that its C has locals for: no -Wshadow, and no other warning, as C99 and as C++17.
+# A model may bear the name of anything that its C has locals for: no -Wshadow, and no other warning, as C99 and as
+# C++17.
 #
 #     shadow.sh PLGEN SOURCE_ROOT
 #
-# Every identifier in the C of a model, taken as the name of that model.  The compilers are those of GCCS and CLANGS (default:
-# gcc g++, clang clang++), all four for the first model, for the others gcc's C and clang's C++; what is not installed is
-# skipped.
+# Every identifier in the C of a model, taken as the name of that model.  The compilers are those of GCCS and CLANGS
+# (default: gcc g++, clang clang++), all four for the first model, for the others gcc's C and clang's C++; what is not
+# installed is skipped.
 set -u
 plgen=$1
 root=$2
@@ -23,14 +24,17 @@ warnings='-Wall -Wextra -Wpedantic -Wconversion -Wdouble-promotion -Wshadow -Wer
     echo "${clangs% *} -std=c99"
 } >compilers
 
-# words FILE.c: the identifiers outside comments, strings and lines of the preprocessor, but for those that begin with the model's name,
-# and functions of <math.h>
+# words FILE.c: the identifiers outside comments, strings and lines of the preprocessor, but for those that begin with
+# the model's name, and functions of <math.h>
 words() {
     awk '{ text = text $0 "\n" }
          END { while ((i = index(text, "/*")) > 0) {
-                   printf "%s", substr(text, 1, i - 1); text = substr(text, i + 2); text = substr(text, index(text, "*/") + 2) }
-               printf "%s", text }' "$1" | sed -e 's/"[^"]*"//g' -e '/^#/d' | tr -c 'A-Za-z0-9_' '\n' | grep '^[A-Za-z]' |
-        grep -v -i -e '^v\{0,1\}neutral' -e '^pl_' -e '^\(a\{0,1\}\(sin\|cos\|tan\)h\{0,1\}\|exp\|log\|sqrt\|fabs\|pow\|fmin\|fmax\|atan2\)f$' | sort -u
+                   printf "%s", substr(text, 1, i - 1); text = substr(text, i + 2);
+                       text = substr(text, index(text, "*/") + 2) }
+               printf "%s", text }' "$1" | sed -e 's/"[^"]*"//g' -e '/^#/d' | tr -c 'A-Za-z0-9_' '\n' |
+                   grep '^[A-Za-z]' |
+        grep -v -i -e '^v\{0,1\}neutral' -e '^pl_' \
+            -e '^\(a\{0,1\}\(sin\|cos\|tan\)h\{0,1\}\|exp\|log\|sqrt\|fabs\|pow\|fmin\|fmax\|atan2\)f$' | sort -u
 }
 
 # shadows TITLE LEAST SPEC OPTIONS: under each name that plgen takes, at least so many
@@ -73,11 +77,14 @@ shadows 'a leftover of ramps, with nodes' 20 "$root/tests/leftover/ramped.spec" 
 
 # ---- they do what the model does under another name ----
 
+runtime_archive "$root/runtime"
 for name in s y x i out tau; do
     : >log
     for n in neutral $name; do
         "$plgen" --prefix $n "$root/tests/emitted/linear/ramps.spec" >ran.c 2>>log &&
-            "${CC:-cc}" -std=c99 -I"$root/runtime" -DMODEL=$n "$root/runtime/host/plmain.c" ran.c "$root"/runtime/*.c -o ran 2>>log && ./ran 2 >$n.csv 2>>log || echo "$n" >>log
+            "${CC:-cc}" -std=c99 -I"$root/runtime" -DMODEL=$n "$root/runtime/host/plmain.c" ran.c "$archive" \
+                -o ran 2>>log &&
+            ./ran 2 >$n.csv 2>>log || echo "$n" >>log
     done
     cmp "$name.csv" neutral.csv >>log 2>&1 && [ ! -s log ]
     result $? "a model called $name runs as another"

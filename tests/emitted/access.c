@@ -22,7 +22,8 @@ static bool same(const double *found, const double *expected, int count, double 
 {
     bool good = true;
     for (int i = 0; i < count; i++)
-        good = close_to(found[i], expected[i], tolerance * fabs(expected[i]), "%s, step %d, entry %d", what, k, i) && good;
+        good = close_to(found[i], expected[i], tolerance * fabs(expected[i]), "%s, step %d, entry %d", what, k, i) &&
+            good;
     return good;
 }
 
@@ -41,11 +42,13 @@ static bool names_are(const char *const *found, const char *const *expected, int
 
 static void descriptor(const pl_model *m, const struct equations *e)
 {
-    ok(m->states == e->states && m->inputs == 0 && m->outputs == e->outputs, "%s: numbers of states, inputs, outputs", m->name);
+    ok(m->states == e->states && m->inputs == 0 && m->outputs == e->outputs, "%s: numbers of states, inputs, outputs",
+        m->name);
     ok(close_to(m->h, nearest_double(e->h), 0, "h"), "%s: h is the double nearest to the spec's step", m->name);
     ok(names_are(m->state_names, e->state_names, e->states) && names_are(m->output_names, e->output_names, e->outputs),
        "%s: names of states and outputs", m->name);
-    ok(m->init && m->set && m->get && m->time && m->step && m->out && m->run && m->at && m->jump, "%s: no function is missing", m->name);
+    ok(m->init && m->set && m->get && m->time && m->step && m->out && m->run && m->at && m->jump,
+        "%s: no function is missing", m->name);
 }
 
 /* ---- init, get, set ---- */
@@ -59,7 +62,8 @@ static void initial(const pl_model *m, const struct equations *e)
     memset(state, 0xA5, m->size);       /* init must not lean on what was there */
     m->init(state);
     m->get(state, y);
-    ok(same(y, expected, m->states, 0, "init", 0) && m->time(state) == 0, "%s: init gives t = 0 and the spec's initial values", m->name);
+    ok(same(y, expected, m->states, 0, "init", 0) && m->time(state) == 0,
+        "%s: init gives t = 0 and the spec's initial values", m->name);
     free(state);
 }
 
@@ -73,12 +77,13 @@ static void get_what_was_set(const pl_model *m)
     m->run(state, 3, NULL, NULL);
     m->set(state, 12.34, set);
     m->get(state, y);
-    ok(same(y, set, m->states, 0, "get after set", 0) && m->time(state) == 12.34, "%s: get and time give what was set", m->name);
+    ok(same(y, set, m->states, 0, "get after set", 0) && m->time(state) == 12.34, "%s: get and time give what was set",
+        m->name);
     free(state);
 }
 
-/* Set to where another instance stands: both go the same way.  The time that is set is the double nearest to k h, so a load's phase is off
- * by half a unit in its last place; without loads nothing is. */
+/* Set to where another instance stands: both go the same way.  The time that is set is the double nearest to k h, so a
+ * load's phase is off by half a unit in its last place; without loads nothing is. */
 static void set_and_step(const pl_model *m, const struct equations *e)
 {
     enum { BEFORE = 137, AFTER = 400 };
@@ -97,10 +102,12 @@ static void set_and_step(const pl_model *m, const struct equations *e)
         m->get(placed, z);
         for (int i = 0; i < m->states; i++) {
             largest[i] = fmax(largest[i], fabs(y[i]));
-            good = close_to(z[i], y[i], e->load == WAVE ? 1e-14 * largest[i] : 0, "after set, step %d, %s", k, m->state_names[i]) && good;
+            good = close_to(z[i], y[i], e->load == WAVE ? 1e-14 * largest[i] : 0, "after set, step %d, %s", k,
+                m->state_names[i]) && good;
             worst = fmax(worst, fabs(z[i] - y[i]) / fmax(largest[i], 1e-300));
         }
-        good = close_to(m->time(placed), m->time(walked), 4e-16 * m->time(walked), "time after set, step %d", k) && good;
+        good = close_to(m->time(placed), m->time(walked), 4e-16 * m->time(walked), "time after set, step %d", k) &&
+            good;
     }
     note("%s: largest difference after set %.3g", m->name, worst);
     ok(good, "%s: set to another instance's time and state, it goes the same way", m->name);

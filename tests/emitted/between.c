@@ -79,7 +79,8 @@ static bool state_agrees(struct subject *s, const void *state, const mpq_t *x, c
             double scale = 0;
             for (int j = 0; j < e->size; j++)
                 scale += s->most[i * e->size + j] * fabs(mpq_get_d(x[j]));
-            good = close_to(found[i], expected[i], bound * DBL_EPSILON * scale, "%s from %s %d, tau = h %d/%d, %s", s->model->name, which, k,
+            good = close_to(found[i], expected[i], bound * DBL_EPSILON * scale, "%s from %s %d, tau = h %d/%d, %s",
+                s->model->name, which, k,
                             p, POINTS - 1, s->model->state_names[i]) && good;
             if (scale > 0)
                 s->worst = fmax(s->worst, fabs(found[i] - expected[i]) / (DBL_EPSILON * scale));
@@ -184,7 +185,8 @@ static void judge(const pl_model *model, struct equations *e, bool held)
     ok(from_run(&s, held), "%s: at, from states of the run, within %g eps", model->name, bound);
     ok(from_units(&s, held), "%s: at, from unit vectors, within %g eps", model->name, bound);
     ok(changes_nothing(&s), "%s: at changes nothing", model->name);
-    note("%s: worst error %.3g eps sum_j max|E_ij| |x_j|; %d of %d values correctly rounded", model->name, s.worst, s.exact, s.points);
+    note("%s: worst error %.3g eps sum_j max|E_ij| |x_j|; %d of %d values correctly rounded", model->name, s.worst,
+        s.exact, s.points);
     equations_free(e);
 }
 

@@ -81,8 +81,9 @@ static void set_exactly(mpq_t to, mpfr_t x, int sign)
         mpq_neg(to, to);
 }
 
-/* Per unit mass of its own: floor'' + 2 zeta w0 floor' + w0^2 floor + mu (wd^2 r + 2 zd wd r') = F/m sin(w0 t), absorber'' = wd^2 r + 2 zd wd r',
- * r = floor - absorber, zeta = 1/100, mu = 1/50, w0 = 4 pi, wd = w0/(1+mu), zd = sqrt(3 mu/(8 (1+mu)^3)), F/m = 400/20000. */
+/* Per unit mass of its own: floor'' + 2 zeta w0 floor' + w0^2 floor + mu (wd^2 r + 2 zd wd r') = F/m sin(w0 t),
+ * absorber'' = wd^2 r + 2 zd wd r', r = floor - absorber, zeta = 1/100, mu = 1/50, w0 = 4 pi, wd = w0/(1+mu), zd =
+ * sqrt(3 mu/(8 (1+mu)^3)), F/m = 400/20000. */
 static void tuned_floor(struct equations *e)
 {
     mpfr_t w0, wd2, d, x;

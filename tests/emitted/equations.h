@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The equations of the models, written a second time by hand: x' = A x in exact rationals, x = states, then what acts on them. */
+/* The equations of the models, written a second time by hand: x' = A x in exact rationals, x = states, then what
+ * acts on them. */
 #ifndef EQUATIONS_H
 #define EQUATIONS_H
 

@@ -24,10 +24,12 @@ static const struct {
 } runs[RUNS] = {{&scs_pl_100_model, 100}, {&scs_pl_200_model, 200}, {&scs_pl_400_model, 400}, {&scs_pl_500_model, 500},
                 {&scs_pl_1000_model, 1000}};
 
-/* at t = 0.6, against the normal modes of scs: displacements over the first one's amplitude, velocities over 17.3 times it */
+/* at t = 0.6, against the normal modes of scs: displacements over the first one's amplitude, velocities over 17.3
+ * times it */
 static double error_of(int run)
 {
-    const double t = 0.6, fast = sqrt(300), p = 0.005 * cos(10 * t), q = 0.005 * cos(fast * t), dp = -0.05 * sin(10 * t),
+    const double t = 0.6, fast = sqrt(300), p = 0.005 * cos(10 * t), q = 0.005 * cos(fast * t),
+        dp = -0.05 * sin(10 * t),
                  dq = -0.005 * fast * sin(fast * t);
     const double exact[4] = {p + q, p - q, dp + dq, dp - dq}, unit[4] = {0.01, 0.01, 0.01 * fast, 0.01 * fast};
     union {
@@ -72,7 +74,8 @@ static double spectral_radius(const double *Phi, size_t n)
         gsl_matrix_set(A, i / n, i % n, Phi[i]);
     gsl_eigen_nonsymm(A, eigenvalue, work);
     for (size_t i = 0; i < n; i++)
-        radius = fmax(radius, hypot(GSL_REAL(gsl_vector_complex_get(eigenvalue, i)), GSL_IMAG(gsl_vector_complex_get(eigenvalue, i))));
+        radius = fmax(radius,
+            hypot(GSL_REAL(gsl_vector_complex_get(eigenvalue, i)), GSL_IMAG(gsl_vector_complex_get(eigenvalue, i))));
     gsl_eigen_nonsymm_free(work);
     gsl_vector_complex_free(eigenvalue);
     gsl_matrix_free(A);

@@ -74,14 +74,16 @@ static bool read_solution(const char *path)
     return good && rows > 1;
 }
 
-static double worst;                    /* difference over the largest value of its column, since the last time it was told */
+/* difference over the largest value of its column, since the last time it was told */
+static double worst;
 
 static bool row_agrees(const double *out, size_t k, const char *how)
 {
     bool good = true;
     for (int i = 0; i < outputs; i++) {
         const double expected = solution[k * (size_t)outputs + (size_t)i];
-        good = close_to(out[i], expected, 1e-12 * largest[i], "%s, row %zu, %s", how, k, model->output_names[i]) && good;
+        good = close_to(out[i], expected, 1e-12 * largest[i], "%s, row %zu, %s", how, k, model->output_names[i]) &&
+            good;
         worst = fmax(worst, fabs(out[i] - expected) / largest[i]);
     }
     return good;
@@ -155,7 +157,8 @@ static void one_by_run(void)
         model->step(state, NULL);
         model->out(state, a);
         for (int i = 0; i < outputs; i++)
-            good = close_to(b[i], a[i], 2 * unit_in_the_last_place(a[i]), "one step, row %zu, %s", k, model->output_names[i]) && good;
+            good = close_to(b[i], a[i], 2 * unit_in_the_last_place(a[i]), "one step, row %zu, %s", k,
+                model->output_names[i]) && good;
     }
     ok(good, "%s: one step by run is one by step, within 2 units in the last place", model->name);
     free(other);
@@ -174,7 +177,8 @@ static void run_blind(const double *run)
     model->run(state, rows - 1 - rows / 3, NULL, NULL);
     model->out(state, out);
     for (int i = 0; i < outputs; i++)
-        good = close_to(out[i], run[(rows - 1) * (size_t)outputs + (size_t)i], 0, "run to NULL, %s", model->output_names[i]) && good;
+        good = close_to(out[i], run[(rows - 1) * (size_t)outputs + (size_t)i], 0, "run to NULL, %s",
+            model->output_names[i]) && good;
     good = close_to(model->time(state), times[rows - 1], 0, "time") && good;
     ok(good, "%s: run without rows, in parts, ends where run with rows does", model->name);
     free(out);

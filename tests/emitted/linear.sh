@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# The models of linear/: what plgen emits compiles without a warning, as C99 and as C++17, needs nothing but the runtime, and runs,
-# with samples on standard input too; names that the emitted C might use itself.
+# The models of linear/: what plgen emits compiles without a warning, as C99 and as C++17, needs nothing but the
+# runtime, and runs, with samples on standard input too; names that the emitted C might use itself.
 #
 #     linear.sh specs|names PLGEN LINEAR_INPUTS SOURCE_ROOT
 #
@@ -42,7 +42,8 @@ only_runtime() {    # only_runtime OBJECT: does it name anything but pl_*, memcp
     [ ! -s log ]
 }
 
-# same_columns FOUND.csv EXPECTED.csv: same header, same number of rows, every value within 1e-11 of its column's largest
+# same_columns FOUND.csv EXPECTED.csv: same header, same number of rows, every value within 1e-11 of its column's
+# largest
 same_columns() {
     awk -F, '
         FNR == NR { expected[FNR] = $0; rows = FNR
@@ -55,16 +56,15 @@ same_columns() {
               d = $i - e[i]; if (d < 0) d = -d
               if (!(d <= 1e-11 * most[i]) && ++bad < 10)
                   print "row " FNR " column " i ": found " $i ", expected " e[i] ", tolerance " 1e-11 * most[i] } }
-        END { if (FNR != rows) { print "rows: found " FNR ", expected " rows; bad = 1 }; exit bad ? 1 : 0 }' "$2" "$1" >>log 2>&1
+        END { if (FNR != rows) { print "rows: found " FNR ", expected " rows; bad = 1 };
+            exit bad ? 1 : 0 }' "$2" "$1" >>log 2>&1
 }
 
-for f in "$root"/runtime/*.c; do
-    ${CC:-cc} -O1 -I"$root/runtime" -c "$f" -o "runtime_$(basename "$f" .c).o" || exit 99
-done
+runtime_archive "$root/runtime"
 
 driver() {          # driver FILE.c NAME PROGRAM [LIBRARIES]
     # shellcheck disable=SC2086
-    ${CC:-cc} -I"$root/runtime" "$root/runtime/host/plmain.c" "$1" runtime_*.o "-DMODEL=$2" ${4-} -o "$3" >>log 2>&1
+    ${CC:-cc} -I"$root/runtime" "$root/runtime/host/plmain.c" "$1" "$archive" "-DMODEL=$2" ${4-} -o "$3" >>log 2>&1
 }
 
 # ---- every spec ----
@@ -81,7 +81,8 @@ for spec in "$root"/tests/emitted/linear/*.spec; do
             *) options=--$kind ;;
         esac
         mkdir -p "$kind"
-        "$plgen" $options "$spec" >"$kind/$m.std.c" 2>log && "$plgen" $options -o "$kind/$m.c" "$spec" 2>>log && [ ! -s log ] &&
+        "$plgen" $options "$spec" >"$kind/$m.std.c" 2>log && "$plgen" $options -o "$kind/$m.c" "$spec" 2>>log &&
+            [ ! -s log ] &&
             "$plgen" $options --header "$spec" | cmp - "$kind/$m.h" >>log 2>&1
         status=$?
         result $status "$m, $kind: plgen writes it to standard output and to files, and says nothing"
@@ -97,17 +98,19 @@ for spec in "$root"/tests/emitted/linear/*.spec; do
         : >log
         while read -r compiler options; do
             # shellcheck disable=SC2086
-            $compiler $warnings -O1 -ffreestanding -I"$root/runtime" $options -c "$kind/$m.std.c" -o nm.o >>log 2>&1 && only_runtime nm.o || status=1
+            $compiler $warnings -O1 -ffreestanding -I"$root/runtime" $options -c "$kind/$m.std.c" -o nm.o >>log 2>&1 &&
+                only_runtime nm.o || status=1
         done <compilers
         result $status "$m, $kind: standard output compiles, freestanding, needs the runtime, memcpy and memset at most"
         if [ -z "$inputs_of" ]; then
             : >log
-            driver "$kind/$m.std.c" "$m" one && ./one 10 >found.csv 2>>log && "$plgen" --solution 10 "$spec" >expected.csv 2>>log &&
-                same_columns found.csv expected.csv
+            [ -s "$m.csv" ] || "$plgen" --solution 10 "$spec" >"$m.csv" 2>>log
+            driver "$kind/$m.std.c" "$m" one && ./one 10 >found.csv 2>>log && same_columns found.csv "$m.csv"
             result $? "$m, $kind: the driver's 10 s agree with --solution of the whole model"
         else
             : >log
-            driver "$kind/$m.std.c" "$m" one && "$inputs" samples 501 >samples.csv && ./one 10 <samples.csv >found.csv 2>>log &&
+            driver "$kind/$m.std.c" "$m" one && "$inputs" samples 501 >samples.csv &&
+                ./one 10 <samples.csv >found.csv 2>>log &&
                 "$inputs" expected "$m" 500 >expected.csv
             status=$?
             if [ $status -eq 0 ] && [ $kind = plain ]; then
@@ -144,7 +147,8 @@ right() {
     [ $status -eq 0 ] || return
     compiles collide.c "$3: compiles"
     : >log
-    "$plgen" --solution 1 "$1" >expected.csv 2>>log && driver collide.c "$2" m -lm && ./m 1 >found.csv 2>>log && same_columns found.csv expected.csv
+    "$plgen" --solution 1 "$1" >expected.csv 2>>log && driver collide.c "$2" m -lm && ./m 1 >found.csv 2>>log &&
+        same_columns found.csv expected.csv
     result $? "$3: runs right, in the compiler's own dialect"
 }
 
@@ -183,10 +187,12 @@ EOF
     status=$?
     result $status "inputs $names: plgen takes them"
     [ $status -eq 0 ] && compiles collide.c "inputs $names: compiles"
-    sed "s/\\b$a\\b/n1/g; s/\\b$b\\b/n2/g; s/\\b$c\\b/n3/g; s/\\b$d\\b/n4/g; s/\\b$e\\b/n5/g; s/\\b$f\\b/n6/g" names.spec >neutral.spec
+    sed "s/\\b$a\\b/n1/g; s/\\b$b\\b/n2/g; s/\\b$c\\b/n3/g; s/\\b$d\\b/n4/g; s/\\b$e\\b/n5/g; s/\\b$f\\b/n6/g" \
+        names.spec >neutral.spec
     "$inputs" samples 303 | sed 1d | paste -d, - - - >samples.csv
     : >log
-    "$plgen" neutral.spec >neutral.c 2>>log && driver collide.c any m -lm && driver neutral.c any n && ./m 1 <samples.csv >found.csv 2>>log &&
+    "$plgen" neutral.spec >neutral.c 2>>log && driver collide.c any m -lm && driver neutral.c any n &&
+        ./m 1 <samples.csv >found.csv 2>>log &&
         ./n 1 <samples.csv >expected.csv 2>>log && cmp found.csv expected.csv >>log 2>&1
     result $? "inputs $names: runs as with other names"
 done <<'EOF'
@@ -200,7 +206,8 @@ Gamma slope hold_u before load residual
 EOF
 
 for name in s u t0; do
-    printf "model any\ncoord x\ninput %s, w hold first\nx'' + 4*x = %s + w\noutput x, b = x'' + %s\nstep 0.01\n" $name $name $name >names.spec
+    printf "model any\ncoord x\ninput %s, w hold first\nx'' + 4*x = %s + w\noutput x, b = x'' + %s\nstep 0.01\n" $name \
+        $name $name >names.spec
     "$plgen" --rhs names.spec >collide.c 2>log
     result $? "input $name: plgen takes it"
     compiles collide.c "input $name: compiles"

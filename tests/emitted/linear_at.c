@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* NAME_at and NAME_set of models with every kind of load, and across changes of the loads, against the reference by hand:
+/* NAME_at and NAME_set of models with every kind of load, and across changes of the loads, against the reference by
+ * hand:
  *
- *     |error_i| <= 16 eps sum_j max |E_ij| |x_j|,  max over 0 .. h and over the formulas met, x = y and the loads, eps = 2^-52
+ * |error_i| <= 16 eps sum_j max |E_ij| |x_j|, max over 0 .. h and over the formulas met, x = y and the loads, eps =
+ * 2^-52
  *
  * and steps from any time: past the changes, between them, before 0. */
 #include "equations.h"
@@ -67,7 +69,8 @@ static bool from_state(struct subject *s, const void *state, const mpq_t t)
         s->model->at(state, NULL, tau, found);
         for (int i = 0; i < s->r->states; i++) {
             const double expected = mpfr_get_d(x[i], MPFR_RNDN);
-            good = close_to(found[i], expected, bound * DBL_EPSILON * scale[i], "%s, t = %g, tau = h %d/%d, %s", s->model->name, mpq_get_d(t), p,
+            good = close_to(found[i], expected, bound * DBL_EPSILON * scale[i], "%s, t = %g, tau = h %d/%d, %s",
+                s->model->name, mpq_get_d(t), p,
                             POINTS, s->model->state_names[i]) && good;
             if (scale[i] > 0)
                 s->worst = fmax(s->worst, fabs(found[i] - expected) / (DBL_EPSILON * scale[i]));
@@ -140,10 +143,12 @@ static void judge_set(const char *name, const char *h, double from, int n)
         for (int i = 0; i < r->states; i++) {
             const double expected = mpfr_get_d(x[i], MPFR_RNDN);
             most[i] = fmax(most[i], fabs(expected));
-            good = close_to(found[i], expected, 1e-13 * most[i], "%s set to %g, step %d, %s", name, from, k, model->state_names[i]) && good;
+            good = close_to(found[i], expected, 1e-13 * most[i], "%s set to %g, step %d, %s", name, from, k,
+                model->state_names[i]) && good;
             worst = fmax(worst, fabs(found[i] - expected) / most[i]);
         }
-        good = close_to(model->time(state), nearest_double(t[0]), 2 * DBL_EPSILON * fmax(fabs(from), fabs(mpq_get_d(t[0]))), "time") && good;
+        good = close_to(model->time(state), nearest_double(t[0]),
+            2 * DBL_EPSILON * fmax(fabs(from), fabs(mpq_get_d(t[0]))), "time") && good;
     }
     ok(good, "%s set to %.17g, %d steps, within 1e-13 of the largest value", name, from, n);
     note("%s set to %g: largest difference %.3g", name, from, worst);
@@ -161,7 +166,8 @@ int main(void)
     judge_at("growing", "1/20");
     judge_at("ramps", "1/20");
     judge_at("pulse", "1/100");
-    static const double times[] = {0, 0.595, 0.6, 0.59999999999999998 + 1e-9, 0.999, 1, 1.001, 1.003, 1.004, 1.0074999, 1.0075, 2, 1000, -0.005, -3.7};
+    static const double times[] = {0, 0.595, 0.6, 0.59999999999999998 + 1e-9, 0.999, 1, 1.001, 1.003, 1.004, 1.0074999,
+        1.0075, 2, 1000, -0.005, -3.7};
     for (int i = 0; i < (int)(sizeof times / sizeof *times); i++)
         judge_set("pulse", "1/100", times[i], times[i] < -1 ? 600 : 150);
     judge_set("growing", "1/20", -10, 300);

@@ -68,7 +68,8 @@ static bool agrees(const double *out, size_t k, const char *how)
     bool good = true;
     for (int i = 0; i < outputs; i++) {
         const size_t at = k * (size_t)outputs + (size_t)i;
-        good = close_to(out[i], solution[at], tolerance * most[at], "%s to %zu, %s", how, k, model->output_names[i]) && good;
+        good = close_to(out[i], solution[at], tolerance * most[at], "%s to %zu, %s", how, k, model->output_names[i]) &&
+            good;
         if (most[at] > 0)
             worst = fmax(worst, fabs(out[i] - solution[at]) / most[at]);
     }
@@ -94,7 +95,8 @@ int main(int argc, char **argv)
         return tap_end();
     const size_t n = (size_t)outputs;
     void *s = need(calloc(1, model->size));
-    double *out = need(calloc(rows * n, sizeof *out)), *y = need(calloc((size_t)model->states * 2, sizeof *y)), *next = y + model->states;
+    double *out = need(calloc(rows * n, sizeof *out)), *y = need(calloc((size_t)model->states * 2, sizeof *y)),
+        *next = y + model->states;
     double *scale = need(calloc((size_t)model->states, sizeof *scale));
 
     bool good = true, on_time = true, ends = true, starts = true;
@@ -110,7 +112,8 @@ int main(int argc, char **argv)
         if (model->at) {
             if (k > 0)
                 for (int i = 0; i < model->states; i++) {
-                    ends = close_to(y[i], next[i], tolerance * scale[i], "at h after step %zu, %s", k - 1, model->state_names[i]) && ends;
+                    ends = close_to(y[i], next[i], tolerance * scale[i], "at h after step %zu, %s", k - 1,
+                        model->state_names[i]) && ends;
                     gap = scale[i] > 0 ? fmax(gap, fabs(y[i] - next[i]) / scale[i]) : gap;
                 }
             model->at(s, NULL, 0, y);

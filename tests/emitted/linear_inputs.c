@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Sampled inputs, held and as ramps, over 10,000 random samples against a recurrence with e^{A h} of the augmented matrix to 300 bits.
+/* Sampled inputs, held and as ramps, over 10,000 random samples against a recurrence with e^{A h} of the augmented
+ * matrix to 300 bits.
  *
  *     linear_inputs                       the tests
  *     linear_inputs samples N             N random samples as CSV
@@ -132,7 +133,8 @@ static struct run referred(const struct subject *s, const struct reference *r, d
     return run;
 }
 
-static bool near(const double *found, const double *expected, const double *most, int n, double *worst, const char *what, int k)
+static bool near(const double *found, const double *expected, const double *most, int n, double *worst,
+    const char *what, int k)
 {
     bool good = true;
     for (int i = 0; i < n; i++) {
@@ -223,7 +225,8 @@ static void between(const struct subject *s, const struct reference *r, const st
         memcpy(before, state, m->size);
         m->at(state, u[k], tau, found);
         good = memcmp(before, state, m->size) == 0 && good;
-        /* the states of this run are those of the reference but for rounding: 16 eps of the largest value is generous here */
+        /* the states of this run are those of the reference but for rounding: 16 eps of the largest value is
+         * generous here */
         for (int i = 0; i < 4; i++) {
             good = close_to(found[i], expected[i], 16 * DBL_EPSILON * run->most_y[i], "at %d, %d", k, i) && good;
             worst = fmax(worst, fabs(found[i] - expected[i]) / (DBL_EPSILON * run->most_y[i]));

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Jumps of 10^3, 10^9 and 10^12 steps against the reference by hand: within 1e-13 of the largest component, velocities over w,
- * while |Re p| n h <= 5; and the phase of a cosine load after 10^9 steps, within 1e-12. */
+/* Jumps of 10^3, 10^9 and 10^12 steps against the reference by hand: within 1e-13 of the largest component, velocities
+ * over w, while |Re p| n h <= 5; and the phase of a cosine load after 10^9 steps, within 1e-12. */
 #include "equations.h"
 #include "linear.h"
 #include "reference.h"
@@ -35,7 +35,8 @@ static void jump(const char *name, uint64_t n)
     bool good = true;
     for (int i = 0; i < 4; i++) {
         const double scale = largest * (i < 2 ? 1 : w);
-        good = close_to(y[i], expected[i], 1e-13 * scale, "%s, jump of %.0e, %s", name, (double)n, model->state_names[i]) && good;
+        good = close_to(y[i], expected[i], 1e-13 * scale, "%s, jump of %.0e, %s", name, (double)n,
+            model->state_names[i]) && good;
         worst = fmax(worst, fabs(y[i] - expected[i]) / scale);
     }
     good = close_to(model->time(state), nearest_double(t[1]), 0, "time") && good;

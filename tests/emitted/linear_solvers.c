@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* NAME_rhs of every linear model, by CVODE at rtol 1e-10, against the steps: within 1e-7 of the largest value so far, over 30 s.
- * The solver restarts where the loads change their formula, and where inputs get a new sample. */
+/* NAME_rhs of every linear model, by CVODE at rtol 1e-10, against the steps: within 1e-7 of the largest value so far,
+ * over 30 s. The solver restarts where the loads change their formula, and where inputs get a new sample. */
 #include "linear.h"
 #include "tap.h"
 
@@ -67,7 +67,8 @@ static bool advance(struct subject *s, double from, double to)
             at_change = at_change || s->change[i] == from;
         if (at_change)
             good = CVodeReInit(s->cvode, from, s->y) == CV_SUCCESS;
-        good = good && CVodeSetStopTime(s->cvode, goal) == CV_SUCCESS && CVode(s->cvode, goal, s->y, &t, CV_NORMAL) >= 0;
+        good = good && CVodeSetStopTime(s->cvode, goal) == CV_SUCCESS &&
+            CVode(s->cvode, goal, s->y, &t, CV_NORMAL) >= 0;
         from = goal;
     }
     return good;
@@ -94,7 +95,8 @@ static void judge(struct subject *s)
         N_VGetArrayPointer(absolute)[i] = relative * 1e-2 * (scale > 0 ? scale : 1);
     s->cvode = CVodeCreate(CV_ADAMS, context);
     bool good = CVodeInit(s->cvode, slope, 0, s->y) == CV_SUCCESS && CVodeSetUserData(s->cvode, s) == CV_SUCCESS &&
-                CVodeSVtolerances(s->cvode, relative, absolute) == CV_SUCCESS && CVodeSetLinearSolver(s->cvode, solver, J) == CV_SUCCESS &&
+                CVodeSVtolerances(s->cvode, relative, absolute) == CV_SUCCESS &&
+                    CVodeSetLinearSolver(s->cvode, solver, J) == CV_SUCCESS &&
                 CVodeSetMaxNumSteps(s->cvode, MOST_STEPS) == CV_SUCCESS;
     unsigned seed = 1;
     for (int row = 0; row < rows && good; row++) {
@@ -120,7 +122,8 @@ static void judge(struct subject *s)
         memcpy(s->start, target, sizeof target);
         good = advance(s, s->t0, (row + 1) * every * m->h);
         for (int i = 0; i < m->states; i++) {
-            good = close_to(N_VGetArrayPointer(s->y)[i], y[i], tolerance * most[i], "%s, row %d, %s", m->name, row, m->state_names[i]) && good;
+            good = close_to(N_VGetArrayPointer(s->y)[i], y[i], tolerance * most[i], "%s, row %d, %s", m->name, row,
+                m->state_names[i]) && good;
             if (most[i] > 0)
                 worst = fmax(worst, fabs(N_VGetArrayPointer(s->y)[i] - y[i]) / most[i]);
         }
@@ -162,6 +165,7 @@ int main(void)
     judge(&(struct subject){.model = &ramped2_model, .rhs_sampled = ramped2_rhs, .ramp = {true, false}});
     judge(&(struct subject){.model = &first2_model, .rhs_sampled = first2_rhs, .ramp = {true, true}});
     static const double switched_changes[] = {0.305, 1.111, 1.117};
-    judge(&(struct subject){.model = &switched_model, .rhs_sampled = switched_rhs, .ramp = {true, false}, .change = switched_changes, .changes = 3});
+    judge(&(struct subject){.model = &switched_model, .rhs_sampled = switched_rhs, .ramp = {true, false},
+        .change = switched_changes, .changes = 3});
     return tap_end();
 }

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Outputs against their definitions, evaluated here from the states and from NAME_rhs: 1e-12 of the terms that they are sums of. */
+/* Outputs against their definitions, evaluated here from the states and from NAME_rhs: 1e-12 of the terms that they
+ * are sums of. */
 #include "quarter_car_pl.h"
 #include "tap.h"
 #include "tuned_floor_pl.h"
@@ -53,7 +54,8 @@ static void car(void)
 
 static void floor_and_absorber(void)
 {
-    const double pi = 3.14159265358979323846, m = 20000, mu = 0.02, w0 = 4 * pi, wd = w0 / 1.02, zd = sqrt(3 * mu / (8 * 1.02 * 1.02 * 1.02));
+    const double pi = 3.14159265358979323846, m = 20000, mu = 0.02, w0 = 4 * pi, wd = w0 / 1.02,
+        zd = sqrt(3 * mu / (8 * 1.02 * 1.02 * 1.02));
     const double k0 = m * w0 * w0, c0 = 2 * 0.01 * w0 * m, kd = mu * m * wd * wd, cd = 2 * mu * m * wd * zd;
     bool good = true;
     tuned_floor s;
@@ -63,9 +65,11 @@ static void floor_and_absorber(void)
         tuned_floor_get(&s, y);
         tuned_floor_out(&s, out);
         tuned_floor_rhs(tuned_floor_time(&s), y, slope);
-        const double force = 400 * sin(2 * pi * ((2 * k) % 100 / 100.0));       /* two turns a second: 100 steps are whole turns */
+        /* two turns a second: 100 steps are whole turns */
+        const double force = 400 * sin(2 * pi * ((2 * k) % 100 / 100.0));
         const double relative = kd * (y[0] - y[1]) + cd * (y[2] - y[3]);
-        const double terms = (400 + k0 * fabs(y[0]) + c0 * fabs(y[2]) + kd * (fabs(y[0]) + fabs(y[1])) + cd * (fabs(y[2]) + fabs(y[3]))) / m;
+        const double terms = (400 + k0 * fabs(y[0]) + c0 * fabs(y[2]) + kd * (fabs(y[0]) + fabs(y[1])) +
+            cd * (fabs(y[2]) + fabs(y[3]))) / m;
         good = is(out[0], 1000 * y[0], 1000 * fabs(y[0]), "floor_mm", k) && good;
         good = is(out[1], 1000 * (y[1] - y[0]), 1000 * (fabs(y[1]) + fabs(y[0])), "stroke_mm", k) && good;
         good = is(out[2], slope[2], terms, "acceleration, from rhs", k) && good;

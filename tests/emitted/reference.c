@@ -11,8 +11,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Entries after the states, with their own rows: "1"; "t" after 1; "tt" after t; "cA,W sA,W" e^{A t} cos(W t) and sin, W with "pi" in front
- * is multiplied by pi; "u v" inputs and "p q" their slopes. */
+/* Entries after the states, with their own rows: "1"; "t" after 1; "tt" after t; "cA,W sA,W" e^{A t} cos(W t) and sin,
+ * W with "pi" in front is multiplied by pi; "u v" inputs and "p q" their slopes. */
 static const struct reference_table {
     const char *name;
     int states;
@@ -26,7 +26,8 @@ static const struct reference_table {
      {"0 1 0 0  -10 -2 4 0"}},
     {"ramps", 4, NULL, "1 t tt", "",
      {"0 0 1 0 0 0 0  0 0 0 1 0 0 0  0 0 0 0 0 2/3 -1/12  0 -9 0 -2/5 1 -1 1"}},
-    {"vector3", 6, "1 0 0 0 0 0  0 1 0 0 0 0  0 0 1 0 0 0  0 0 0 3 0.5 0.25  0 0 0 0.5 2 0.5  0 0 0 0.25 0.5 1", "c0,3 s0,3", "",
+    {"vector3", 6, "1 0 0 0 0 0  0 1 0 0 0 0  0 0 1 0 0 0  0 0 0 3 0.5 0.25  0 0 0 0.5 2 0.5  0 0 0 0.25 0.5 1",
+        "c0,3 s0,3", "",
      {"0 0 0 1 0 0 0 0  0 0 0 0 1 0 0 0  0 0 0 0 0 1 0 0 "
       "-70 30 5  -0.85 0.275 0.0375  0 1 "
       "30 -60 20  0.275 -0.7 0.175  0 0 "

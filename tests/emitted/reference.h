@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The linear models of this folder, their equations written a second time by hand: x' = A x in rationals, x = states, then loads
- * and inputs; A may change in time.  Carried on with e^{A tau} of the second evaluator, 300 bits. */
+/* The linear models of this folder, their equations written a second time by hand: x' = A x in rationals, x = states,
+ * then loads and inputs; A may change in time.  Carried on with e^{A tau} of the second evaluator, 300 bits. */
 #ifndef REFERENCE_H
 #define REFERENCE_H
 

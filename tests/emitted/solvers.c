@@ -105,7 +105,8 @@ static double by_cvode(const struct history *h, double relative)
     SUNLinearSolver solver = SUNLinSol_Dense(y, J, context);
     void *cvode = CVodeCreate(CV_ADAMS, context);
     bool good = CVodeInit(cvode, slope, 0, y) == CV_SUCCESS && CVodeSetUserData(cvode, &from) == CV_SUCCESS &&
-                CVodeSVtolerances(cvode, relative, tolerance) == CV_SUCCESS && CVodeSetLinearSolver(cvode, solver, J) == CV_SUCCESS &&
+                CVodeSVtolerances(cvode, relative, tolerance) == CV_SUCCESS &&
+                    CVodeSetLinearSolver(cvode, solver, J) == CV_SUCCESS &&
                 CVodeSetMaxNumSteps(cvode, MOST_STEPS) == CV_SUCCESS;
     double worst = 0, t = 0;
     long steps = 0;
@@ -125,8 +126,8 @@ static double by_cvode(const struct history *h, double relative)
     return good ? worst : NAN;
 }
 
-/* ARKODE adds its steps up in double.  Over 30 s that rounding is a phase error (2e-10 in scs_weak), so each stretch between two
- * compared rows has its own time from 0, and starts with the last step size. */
+/* ARKODE adds its steps up in double.  Over 30 s that rounding is a phase error (2e-10 in scs_weak), so each stretch
+ * between two compared rows has its own time from 0, and starts with the last step size. */
 static double by_arkode(const struct history *h, double relative)
 {
     struct equations_from from = {h->of, 0};
@@ -134,17 +135,21 @@ static double by_arkode(const struct history *h, double relative)
     SUNContext_Create(NULL, &context);
     N_Vector y = start_of(h, context), tolerance = absolute_tolerance(h, relative, context);
     void *arkode = ERKStepCreate(slope, 0, y, context);
-    bool good = ERKStepSetUserData(arkode, &from) == ARK_SUCCESS && ERKStepSVtolerances(arkode, relative, tolerance) == ARK_SUCCESS &&
-                ERKStepSetTableNum(arkode, ARKODE_FEHLBERG_13_7_8) == ARK_SUCCESS && ERKStepSetMaxNumSteps(arkode, MOST_STEPS) == ARK_SUCCESS;
+    bool good = ERKStepSetUserData(arkode, &from) == ARK_SUCCESS &&
+        ERKStepSVtolerances(arkode, relative, tolerance) == ARK_SUCCESS &&
+                ERKStepSetTableNum(arkode, ARKODE_FEHLBERG_13_7_8) == ARK_SUCCESS &&
+                    ERKStepSetMaxNumSteps(arkode, MOST_STEPS) == ARK_SUCCESS;
     const double stretch = h->every * h->of->model->h;
     double worst = 0, t = 0;
     long steps = 0;
     for (int row = 1; row <= h->rows && good; row++) {
         double size = 0;
         from.t0 = (row - 1) * stretch;
-        good = row == 1 || (ERKStepGetCurrentStep(arkode, &size) == ARK_SUCCESS && ERKStepReset(arkode, 0, y) == ARK_SUCCESS &&
+        good = row == 1 ||
+            (ERKStepGetCurrentStep(arkode, &size) == ARK_SUCCESS && ERKStepReset(arkode, 0, y) == ARK_SUCCESS &&
                             ERKStepSetInitStep(arkode, size) == ARK_SUCCESS);
-        good = good && ERKStepSetStopTime(arkode, stretch) == ARK_SUCCESS && ERKStepEvolve(arkode, stretch, y, &t, ARK_NORMAL) >= 0;
+        good = good && ERKStepSetStopTime(arkode, stretch) == ARK_SUCCESS &&
+            ERKStepEvolve(arkode, stretch, y, &t, ARK_NORMAL) >= 0;
         worst = fmax(worst, difference(h, row, y));
     }
     ERKStepGetNumSteps(arkode, &steps);
@@ -167,11 +172,14 @@ static void judge(const struct emitted *of)
     const char *name = of->model->name;
     const double loose = by_cvode(&h, 1e-8), middle = by_cvode(&h, 1e-10), tight = by_cvode(&h, 1e-12);
     ok(close_to(middle, 0, 1e-7, "%s, CVODE", name), "%s: CVODE at rtol 1e-10 agrees within 1e-7 over 30 s", name);
-    ok(falls(loose, middle) && falls(middle, tight), "%s: the difference to CVODE falls with its tolerance: %.3g, %.3g, %.3g", name,
+    ok(falls(loose, middle) && falls(middle, tight),
+        "%s: the difference to CVODE falls with its tolerance: %.3g, %.3g, %.3g", name,
        loose, middle, tight);
     const double coarse = by_arkode(&h, 1e-7), fine = by_arkode(&h, 1e-10), finest = by_arkode(&h, 1e-13);
-    ok(close_to(finest, 0, 1e-10, "%s, ARKODE", name), "%s: ARKODE of order 8 at rtol 1e-13 agrees within 1e-10 over 30 s", name);
-    ok(falls(coarse, fine) && falls(fine, finest), "%s: the difference to ARKODE falls with its tolerance: %.3g, %.3g, %.3g", name,
+    ok(close_to(finest, 0, 1e-10, "%s, ARKODE", name),
+        "%s: ARKODE of order 8 at rtol 1e-13 agrees within 1e-10 over 30 s", name);
+    ok(falls(coarse, fine) && falls(fine, finest),
+        "%s: the difference to ARKODE falls with its tolerance: %.3g, %.3g, %.3g", name,
        coarse, fine, finest);
     free(h.y);
     free(h.largest);

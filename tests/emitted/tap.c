@@ -4,18 +4,34 @@
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
 
 static int results, failures, complaints;
+
+/* Whether a result is one of those that CASE=TEXT in the environment asks for: those with TEXT in their name */
+static bool chosen(const char *name, va_list arguments)
+{
+    const char *part = getenv("CASE");
+    char whole[1000];
+    va_list again;
+    va_copy(again, arguments);
+    vsnprintf(whole, sizeof whole, name, again);
+    va_end(again);
+    return !part || strstr(whole, part);
+}
 
 bool ok(bool good, const char *name, ...)
 {
     va_list arguments;
     va_start(arguments, name);
-    printf("%s %d - ", good ? "ok" : "not ok", ++results);
-    vprintf(name, arguments);
-    putchar('\n');
+    if (chosen(name, arguments)) {
+        printf("%s %d - ", good ? "ok" : "not ok", ++results);
+        vprintf(name, arguments);
+        putchar('\n');
+        failures += !good;
+    }
     va_end(arguments);
-    failures += !good;
     complaints = 0;
     return good;
 }
@@ -40,13 +56,18 @@ bool close_to(double found, double expected, double tolerance, const char *what,
         fputs("# ", stdout);
         vprintf(what, arguments);
         va_end(arguments);
-        printf(": found %.17g, expected %.17g, difference %.3g, tolerance %.3g\n", found, expected, found - expected, tolerance);
+        printf(": found %.17g, expected %.17g, difference %.3g, tolerance %.3g\n", found, expected, found - expected,
+            tolerance);
     }
     return good;
 }
 
 int tap_end(void)
 {
+    if (results == 0) {
+        puts("Bail out! no case");
+        return 99;
+    }
     printf("1..%d\n", results);
     return failures != 0;
 }

@@ -70,15 +70,18 @@ static void scs_closed_form(void)
 static void linear2dof_closed_form(void)
 {
     const long double a = sqrtl(2), b = sqrtl(5);
-    const double largest[] = {10.0 / 3, 6, 5.0 / 3 * sqrt(2) + 2.0 / 3 * sqrt(5), 5.0 / 3 * sqrt(2) + 4.0 / 3 * sqrt(5)};
+    const double largest[] = {10.0 / 3, 6, 5.0 / 3 * sqrt(2) + 2.0 / 3 * sqrt(5),
+        5.0 / 3 * sqrt(2) + 4.0 / 3 * sqrt(5)};
     double worst = 0;
     bool good = true;
     linear2dof s;
     linear2dof_init(&s);
     for (int k = 0; k <= 50; k++, linear2dof_step(&s)) {
         const long double t = k / 5.0L;
-        const long double y[] = {1 - 5 / 3.0L * cosl(a * t) + 2 / 3.0L * cosl(b * t), 3 - 5 / 3.0L * cosl(a * t) - 4 / 3.0L * cosl(b * t),
-                                 5 / 3.0L * a * sinl(a * t) - 2 / 3.0L * b * sinl(b * t), 5 / 3.0L * a * sinl(a * t) + 4 / 3.0L * b * sinl(b * t)};
+        const long double y[] = {1 - 5 / 3.0L * cosl(a * t) + 2 / 3.0L * cosl(b * t),
+            3 - 5 / 3.0L * cosl(a * t) - 4 / 3.0L * cosl(b * t),
+                                 5 / 3.0L * a * sinl(a * t) - 2 / 3.0L * b * sinl(b * t),
+                                     5 / 3.0L * a * sinl(a * t) + 4 / 3.0L * b * sinl(b * t)};
         for (int i = 0; i < 4; i++) {
             good = close_to(s.y[i], (double)y[i], 1e-13 * largest[i], "entry %d, step %d", i, k) && good;
             worst = fmax(worst, fabs(s.y[i] - (double)y[i]) / largest[i]);

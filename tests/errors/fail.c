@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Loaded before the C library: the FAIL_AT-th call of the kind FAIL_KIND fails, memory or write, and is counted in the file FAIL_COUNT. */
+/* Loaded before the C library: the FAIL_AT-th call of the kind FAIL_KIND fails, memory or write, and is counted in the
+ * file FAIL_COUNT. */
 #define _GNU_SOURCE
 #include <dlfcn.h>
 #include <errno.h>

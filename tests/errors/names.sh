@@ -56,9 +56,9 @@ result 1 "models of every kind: $(wc -l < suffixes) suffixes"
 
 : > headers.c
 for header in aio complex ctype dirent dlfcn errno fcntl fenv float fnmatch ftw glob iconv inttypes langinfo limits \
-	locale math mqueue netdb poll pthread pwd regex sched search semaphore setjmp signal spawn stdarg stdatomic stddef stdint \
-	stdio stdlib string strings sys/mman sys/resource sys/select sys/sem sys/socket sys/stat sys/time sys/types sys/wait \
-	syslog termios threads time uchar unistd wchar wctype fts obstack envz sys/inotify sys/epoll; do
+	locale math mqueue netdb poll pthread pwd regex sched search semaphore setjmp signal spawn stdarg stdatomic stddef \
+	stdint stdio stdlib string strings sys/mman sys/resource sys/select sys/sem sys/socket sys/stat sys/time sys/types \
+	sys/wait syslog termios threads time uchar unistd wchar wctype fts obstack envz sys/inotify sys/epoll; do
 	printf '#include <%s.h>\n' "$header" > one.c
 	"$@" -std=gnu11 -E one.c > log 2>&1 && cat one.c >> headers.c
 done

@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 #
 # torture.sh PLGEN LIBRARY EACH SPEC...: each EACH-th allocation and every write of the generator fails once, in turn
-# (LIBRARY: fail.c). It exits 1 with a message, leaves the header and the C of before or of now, never a part of one, and
-# no temporaries.
+# (LIBRARY: fail.c). It exits 1 with a message, leaves the header and the C of before or of now, never a part of one,
+# and no temporaries.
 set -u
 plgen=$1
 library=$2

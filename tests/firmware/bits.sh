@@ -38,10 +38,11 @@ link "$work/image.elf" "$work"/*.o || exit 99
 
 "$host" "$6" >"$work/expected" || exit 99
 # Many times what the slowest takes
-emulate "${FIRMWARE_TIMEOUT:-240}" "$work/image.elf" >"$work/found"
+emulate "${FIRMWARE_TIMEOUT:-4800}" "$work/image.elf" >"$work/found"
 status=$?
 
-# A result for each variant, one for the stack, which on a small board must not reach the variables, and one for the end.
+# A result for each variant, one for the stack, which on a small board must not reach the variables, and one for the
+# end.
 awk -v board="$name" -v steps="$6" -v status=$status '
     FNR == NR { if (!($1 in lines)) order[++n] = $1
                 expected[$1 " " $2] = $0; lines[$1] = lines[$1] "|" $1 " " $2; next }
@@ -54,12 +55,14 @@ awk -v board="$name" -v steps="$6" -v status=$status '
             for (j = 2; j <= m; j++)
                 if (found[key[j]] != expected[key[j]] && bad++ == 0)
                     said = "# found    " found[key[j]] "\n# expected " expected[key[j]]
-            print (bad ? "not ok " : "ok ") i " - " board ", " order[i] ": the bits of this host, " m - 1 " lines, up to " steps " steps"
+            print (bad ? "not ok " : "ok ") i " - " board ", " order[i] ": the bits of this host, " \
+                m - 1 " lines, up to " steps " steps"
             if (bad) print said "\n# " bad " of " m - 1 " lines differ"
             failed += bad != 0
         }
         good = used > 0 && used < room
-        print (good ? "ok " : "not ok ") n + 1 " - " board ": stack " used + 0 " bytes, of at least " room + 0 " that are there"
+        print (good ? "ok " : "not ok ") n + 1 " - " board ": stack " used + 0 " bytes, of at least " \
+            room + 0 " that are there"
         failed += !good
         good = status == 0 && last == "end"
         print (good ? "ok " : "not ok ") n + 2 " - " board ": the image runs to its end"

@@ -1,6 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# The example of doc/firmware/ as its Makefile builds it, run on emulated boards; the snippet that counts cycles, compiled.
+# The example of doc/firmware/ as its Makefile builds it, run on emulated boards; the snippet that counts cycles,
+# compiled.
 #
 #     example.sh PLGEN SOURCE_ROOT
 set -u
@@ -16,7 +17,8 @@ fi
 work=$(mktemp -d "${TMPDIR:-/tmp}/example.XXXXXX") || exit 99
 trap 'rm -rf "$work"' EXIT
 trap 'exit 99' HUP INT TERM
-cp "$root/doc/firmware/main.c" "$root/doc/firmware/board.h" "$root/doc/firmware/cycles.h" "$root/doc/firmware/Makefile" "$work"
+cp "$root/doc/firmware/main.c" "$root/doc/firmware/board.h" "$root/doc/firmware/cycles.h" \
+    "$root/doc/firmware/Makefile" "$work"
 cd "$work" || exit 99
 count=0
 failed=0
@@ -36,13 +38,15 @@ for name in m4f m3 m0; do
     board $name
     clock=25000000
     [ $name != m0 ] || clock=16000000
-    drivers="$firmware/start.c $firmware/semihosting.c $firmware/digits.c $firmware/example_board.c -I$firmware -DBOARD_CLOCK_HZ=${clock}u -Werror"
+    drivers="$firmware/start.c $firmware/semihosting.c $firmware/digits.c $firmware/example_board.c"
+    drivers="$drivers -I$firmware -DBOARD_CLOCK_HZ=${clock}u -Werror"
     # Not the flags of a make that runs this test
-    MAKEFLAGS= make -s firmware.elf PLGEN="$plgen" RUNTIME="$root/runtime" SPEC="$root/models/quarter_car.spec" CPU="$cpu" \
+    MAKEFLAGS= make -s firmware.elf PLGEN="$plgen" RUNTIME="$root/runtime" SPEC="$root/models/quarter_car.spec" \
+        CPU="$cpu" \
         BOARD="$drivers -nostartfiles -L$firmware -T $script" >log 2>&1 && [ ! -s log ]
     result $? "$name: the example builds with the lines of its Makefile, without a warning"
     # An instruction every 16 ns, whatever the host: 62500 in a millisecond.
-    emulate 60 firmware.elf -icount shift=4,align=off,sleep=off >out
+    emulate 1200 firmware.elf -icount shift=4,align=off,sleep=off >out
     status=$?
     {
         echo "status $status; time [ms], ticks, micrometres off with corrections, without:"
@@ -50,8 +54,10 @@ for name in m4f m3 m0; do
     } >log
     [ $status -eq 0 ] && awk 'NF != 4 || $1 != $2 || $2 != 50 * NR { bad = 1 } END { exit bad || NR != 20 }' out
     result $? "$name: 1000 ticks, and the model keeps their time"
-    # Without corrections 0.2 s on, as the body swings; with them at the end less than what float keeps of 5 cm in so many steps
-    awk '$2 == 200 { early = $4 } { corrected = $3; alone = $4 } END { exit !(early >= 5000 && alone >= 500 && corrected <= 1) }' out
+    # Without corrections 0.2 s on, as the body swings; with them at the end less than what float keeps of 5 cm in so
+    # many steps
+    awk '$2 == 200 { early = $4 } { corrected = $3; alone = $4 } END { exit !(early >= 5000 && alone >= 500 &&
+        corrected <= 1) }' out
     result $? "$name: measurements bring the model to the car"
     mv out "out.$name"
     rm -f firmware.elf quarter_car_pl.?
@@ -61,7 +67,8 @@ for folder in models runtime tests; do
     ln -s "$root/$folder" tree/$folder
 done
 cp main.c board.h Makefile tree/doc/firmware
-MAKEFLAGS= make -s -C tree/doc/firmware PLGEN="$plgen" >log 2>&1 && board m4f && emulate 60 tree/doc/firmware/firmware.elf -icount shift=4,align=off,sleep=off >out 2>>log
+MAKEFLAGS= make -s -C tree/doc/firmware PLGEN="$plgen" >log 2>&1 && board m4f &&
+    emulate 1200 tree/doc/firmware/firmware.elf -icount shift=4,align=off,sleep=off >out 2>>log
 diff out out.m4f >>log
 result $? 'the Makefile as it stands builds what runs on the M4F'
 : >log
@@ -69,11 +76,18 @@ diff out.m4f out.m3 >>log && diff out.m4f out.m0 >>log
 result $? 'all boards say the same'
 
 echo '#include "cycles.h"
-uint32_t spent(void (*f)(void)); uint32_t spent(void (*f)(void)) { const uint32_t before = (cycles_start(), cycles()); f(); return cycles() - before; }' >cycles.c
+uint32_t spent(void (*f)(void));
+uint32_t spent(void (*f)(void))
+{
+    const uint32_t before = (cycles_start(), cycles());
+    f();
+    return cycles() - before;
+}' >cycles.c
 for name in m3 m4f m7; do
     board $name
     # shellcheck disable=SC2086
-    $arm-gcc $optimize $cpu -Wall -Wextra -Wpedantic -Wconversion -Werror -c cycles.c >log 2>&1 && $arm-objdump -d cycles.o | grep -q 'ldr.*\[' >>log
+    $arm-gcc $optimize $cpu -Wall -Wextra -Wpedantic -Wconversion -Werror -c cycles.c >log 2>&1 &&
+        $arm-objdump -d cycles.o | grep -q 'ldr.*\[' >>log
     result $? "$name: the snippet that counts cycles compiles"
 done
 board m0

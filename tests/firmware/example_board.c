@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A board for the example of doc/firmware/, without a car: the true one is a model that started elsewhere, and the sensor tells its travel every
- * 10 ms.  Printed, in micrometres: how far the body of the corrected model is from the true one, and how far it is without corrections. */
+/* A board for the example of doc/firmware/, without a car: the true one is a model that started elsewhere, and the
+ * sensor tells its travel every 10 ms. Printed, in micrometres: how far the body of the corrected model is from the
+ * true one, and how far it is without corrections. */
 #include "board.h"
 
 #include "port.h"

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* For every variant a line NAME SIZE TICKS MOST STACK: sizeof the state; SysTick's ticks over 200 steps and in the longest of them, one call
- * of an empty function each taken off; the bytes of stack that those steps have written to.  Under QEMU's -icount, SysTick counts
- * instructions.  At the end the same for one multiplication and one addition.
- * What has tunable params gets lines NAME_retune SIZE TICKS MOST STACK TIMES: sizeof the coefficients; ticks over 4 retunes, and in the
- * longest of them; how many times the spec's step h is. */
+/* For every variant a line NAME SIZE TICKS MOST STACK: sizeof the state; SysTick's ticks over 200 steps and in the
+ * longest of them, one call of an empty function each taken off; the bytes of stack that those steps have written to.
+ * Under QEMU's -icount, SysTick counts instructions.  At the end the same for one multiplication and one addition.
+ * What has tunable params gets lines NAME_retune SIZE TICKS MOST STACK TIMES: sizeof the coefficients; ticks over 4
+ * retunes, and in the longest of them; how many times the spec's step h is. */
 #include "port.h"
 #include "variant.h"
 
@@ -84,7 +84,8 @@ static void retune(void *r_)
     int i;
     for (i = 0; i < PARAMS; i++) {
         r->random = r->random * 1664525u + 1013904223u;
-        params[i] = r->variant->model->param_values[i] * ((real)1 + (real)(int32_t)r->random * (real)(3.0 / 16 / 2147483648.0));
+        params[i] = r->variant->model->param_values[i] *
+            ((real)1 + (real)(int32_t)r->random * (real)(3.0 / 16 / 2147483648.0));
     }
     if (r->variant->tuning->retune(coeffs, params, r->h) != 0)
         stop(4);

@@ -1,8 +1,9 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# What plgen emits, and the runtime, as a firmware project builds them: without a warning; calling nothing but the runtime, libgcc, memcpy
-# and memset (and <math.h> where the model itself has such a function); no variable that outlives a call, no array of variable length, no
-# recursion, a stack that is known when it is compiled; in float no double.
+# What plgen emits, and the runtime, as a firmware project builds them: without a warning; calling nothing but the
+# runtime, libgcc, memcpy and memset (and <math.h> where the model itself has such a function); no variable that
+# outlives a call, no array of variable length, no recursion, a stack that is known when it is compiled; in float no
+# double.
 #
 #     freestanding.sh BOARD SOURCE_ROOT MODELS_double.c MODELS_float.c ...
 set -u
@@ -35,7 +36,8 @@ result() {          # result STATUS TITLE: what was wrong is in $work/log
 
 # shellcheck disable=SC2086
 library() {         # library FILE: what it defines
-    $arm-nm --defined-only "$($arm-gcc $cpu -print-file-name="$1")" 2>/dev/null | awk 'NF == 3 && $2 ~ /[TWR]/ { print $3 }'
+    $arm-nm --defined-only "$($arm-gcc $cpu -print-file-name="$1")" 2>/dev/null | awk 'NF == 3 && $2 ~ /[TWR]/ {
+        print $3 }'
 }
 { library libgcc.a; echo memcpy; echo memset; } >"$work/allowed"
 { library libm.a; cat "$work/allowed"; } >"$work/allowed_math"
@@ -46,12 +48,16 @@ builds() {
     promotion=
     [ "$3" = double ] || promotion='-Wdouble-promotion -DREAL_FLOAT'
     # shellcheck disable=SC2086
-    (cd "$work" && $arm-gcc $optimize -ffreestanding -nostdlib $warnings $promotion $cpu -fstack-usage -fcallgraph-info=su -I"$root/runtime" -I"$firmware" \
+    (cd "$work" &&
+        $arm-gcc $optimize -ffreestanding -nostdlib $warnings $promotion $cpu -fstack-usage -fcallgraph-info=su \
+        -I"$root/runtime" -I"$firmware" \
         -c "$1" -o "$2.o") >"$work/log" 2>&1
     result $? "$2 builds without a warning"
     # The calls as written, which are the same for every board: optimization makes loops of some that are recursive.
     # shellcheck disable=SC2086
-    [ "$name" != m0 ] || (cd "$work" && $arm-gcc -std=c99 -O0 -w $cpu ${promotion#* } -fcallgraph-info -I"$root/runtime" -I"$firmware" -S "$1" -o "$2.written.s")
+    [ "$name" != m0 ] || (cd "$work" &&
+        $arm-gcc -std=c99 -O0 -w $cpu ${promotion#* } -fcallgraph-info -I"$root/runtime" -I"$firmware" -S "$1" \
+        -o "$2.written.s")
     [ -f "$work/$2.o" ] || return
     list=$work/allowed
     ! grep -q '^#include <math.h>' "$1" || list=${list}_math
@@ -86,8 +92,10 @@ for source; do
     builds "$source" "$model" "${model##*_}"
 done
 
-# The calls of all objects together are a graph without a cycle: tsort names one where it is, except a function that calls itself.
-cat "$work"/*.ci | sed -n 's/^edge: { sourcename: "\([^"]*\)" targetname: "\([^"]*\)".*/\1 \2/p' | sort -u >"$work/calls"
+# The calls of all objects together are a graph without a cycle: tsort names one where it is, except a function that
+# calls itself.
+cat "$work"/*.ci | sed -n 's/^edge: { sourcename: "\([^"]*\)" targetname: "\([^"]*\)".*/\1 \2/p' |
+    sort -u >"$work/calls"
 tsort "$work/calls" 2>"$work/log" >/dev/null
 awk '$1 == $2 { print "recursive: " $1 }' "$work/calls" >>"$work/log"
 [ ! -s "$work/log" ] && [ -s "$work/calls" ]

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* All that the test programs ask of where they run: a board under a debugger or emulator (semihosting.c), or a host (host.c). */
+/* All that the test programs ask of where they run: a board under a debugger or emulator (semihosting.c), or a host
+ * (host.c). */
 #ifndef PORT_H
 #define PORT_H
 

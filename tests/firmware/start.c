@@ -2,7 +2,8 @@
 /* From reset to main on a Cortex-M without any operating system: what most vendors' start-up files do. */
 #include <stdint.h>
 
-extern uint32_t stack_top[], data_start[], data_end[], data_image[], bss_start[], bss_end[]; /* from the linker script */
+/* from the linker script */
+extern uint32_t stack_top[], data_start[], data_end[], data_image[], bss_start[], bss_end[];
 
 int main(void);
 void stop(int status); /* ends the program, or waits for ever */
@@ -37,4 +38,5 @@ __attribute__((weak)) void SysTick_Handler(void)
 
 /* The first words of flash: initial stack pointer, then where to go for each exception of the core. */
 __attribute__((section(".vectors"), used)) static void (*const vectors[16])(void) = {
-    (void (*)(void))stack_top, reset, fault, fault, fault, fault, fault, 0, 0, 0, 0, fault, fault, 0, fault, SysTick_Handler};
+    (void (*)(void))stack_top, reset, fault, fault, fault, fault, fault, 0, 0, 0, 0, fault, fault, 0, fault,
+        SysTick_Handler};

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Steps every variant from its initial values and prints its bits on the way: states, time, outputs.  Then between two steps, after a
- * jump, and what its selftest says, as far as it has these.  What has tunable params is retuned on the way, and its coefficients printed.
- * Compiled once for double and once, with REAL_FLOAT, for float; steps_main.c calls both. */
+/* Steps every variant from its initial values and prints its bits on the way: states, time, outputs.  Then between two
+ * steps, after a jump, and what its selftest says, as far as it has these.  What has tunable params is retuned on the
+ * way, and its coefficients printed. Compiled once for double and once, with REAL_FLOAT, for float; steps_main.c
+ * calls both. */
 #include "variant.h"
 
 #include "port.h"
@@ -55,8 +56,9 @@ static const real *sample(uint32_t k)
     return u;
 }
 
-/* Factors on params and step.  Of retuned (m2, k2, c1) the first put two real poles 9e-8/s apart, of 12/s (7e-3/s in float); the second
- * make its largest |pole| h 5, so that A h is taken in two words; the third do both; the fourth make |pole| h 70. */
+/* Factors on params and step.  Of retuned (m2, k2, c1) the first put two real poles 9e-8/s apart, of 12/s (7e-3/s in
+ * float); the second make its largest |pole| h 5, so that A h is taken in two words; the third do both; the fourth
+ * make |pole| h 70. */
 enum { PARAMS = 3, TUNINGS = 5 };
 static const struct {
     real param[PARAMS], h;
@@ -88,7 +90,8 @@ static void retune(const struct variant *v, void *state, int number)
     v->tuning->use(state, coeffs);
 }
 
-/* What is refused: no step, no mass, a mass that is infinite, a step of infinitely many.  No refusal may change the coefficients. */
+/* What is refused: no step, no mass, a mass that is infinite, a step of infinitely many. No refusal may change the
+ * coefficients. */
 static void refuse(const struct variant *v)
 {
     const real_model *const m = v->model;

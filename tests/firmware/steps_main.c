@@ -7,8 +7,8 @@ extern uint32_t bss_end[], stack_top[]; /* from the linker script */
 
 enum { PAINTED = 16384 };
 
-/* Words between the variables and the stack pointer get a pattern, as many as fit or the highest PAINTED bytes; those that lose it
- * have been used. */
+/* Words between the variables and the stack pointer get a pattern, as many as fit or the highest PAINTED bytes; those
+ * that lose it have been used. */
 int main(void)
 {
     volatile uint32_t *from, *top, *p;

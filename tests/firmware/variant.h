@@ -35,8 +35,10 @@ struct variant {
 /* Every function that takes the state, or coefficients, takes a pointer: the cast hides only to what. */
 #define VARIANT(name) {&name##_model, name##_selftest, (void (*)(void *))(void (*)(void))name##_step, 0}
 #define UNTESTED(name) {&name##_model, 0, (void (*)(void *))(void (*)(void))name##_step, 0}
-#define TUNABLE(name) {&name##_model, name##_selftest, (void (*)(void *))(void (*)(void))name##_step, &(const struct tuning){ \
-    (int (*)(void *, const real *, real))(void (*)(void))name##_retune, (void (*)(void *, const void *))(void (*)(void))name##_use, \
+#define TUNABLE(name) {&name##_model, name##_selftest, (void (*)(void *))(void (*)(void))name##_step, \
+    &(const struct tuning){ \
+    (int (*)(void *, const real *, real))(void (*)(void))name##_retune, \
+    (void (*)(void *, const void *))(void (*)(void))name##_use, \
     sizeof name##_nominal, (int)((offsetof(name##_coeffs, out) + sizeof name##_nominal.out) / sizeof(real))}}
 
 extern const struct variant OF_REAL(variants)[]; /* up to one without a model */

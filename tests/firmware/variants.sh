@@ -1,9 +1,11 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# variants.sh PLGEN MODELS_FOLDER REAL OUT.c LIST ...: every variant of the lists as one C file, with a table of them at its end.
+# variants.sh PLGEN MODELS_FOLDER REAL OUT.c LIST ...: every variant of the lists as one C file, with a table of them at
+# its end.
 #
-# A line of a list is `NAME MODEL [OPTION ...]`, with options for plgen; as the first of them `untested` for what can have no selftest, or
-# `tunable` for what has tunable params and outputs that depend on them.  A model that is not in the folder is in this one.
+# A line of a list is `NAME MODEL [OPTION ...]`, with options for plgen; as the first of them `untested` for what can
+# have no selftest, or `tunable` for what has tunable params and outputs that depend on them.  A model that is not in
+# the folder is in this one.
 set -eu
 plgen=$1
 folder=$2
@@ -22,7 +24,9 @@ while read -r name model options; do
 done <"$out.lines"
 {
     echo 'const struct variant variants_'"$real"'[] = {'
-    sed "s/\([^ ]*\) [^ ]* untested.*/    UNTESTED(\1_$real),/; t; s/\([^ ]*\) [^ ]* tunable.*/    TUNABLE(\1_$real),/; t; s/ .*//; s/.*/    VARIANT(&_$real),/" "$out.lines"
+    sed -e "s/\([^ ]*\) [^ ]* untested.*/    UNTESTED(\1_$real),/; t" \
+        -e "s/\([^ ]*\) [^ ]* tunable.*/    TUNABLE(\1_$real),/; t" \
+        -e "s/ .*//; s/.*/    VARIANT(&_$real),/" "$out.lines"
     echo '    {0, 0, 0, 0}};'
 } >>"$out.part"
 rm "$out.lines"

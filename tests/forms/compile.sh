@@ -1,12 +1,12 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# What plgen emits in every form, for double and for float: it compiles without a warning, as C99 and as C++17; float code names no double
-# and does nothing with one.
+# What plgen emits in every form, for double and for float: it compiles without a warning, as C99 and as C++17; float
+# code names no double and does nothing with one.
 #
 #     compile.sh PLGEN SOURCE_ROOT VARIANTS_double.c VARIANTS_float.c
 #
-# The last two are what variants.sh makes, beside their headers: every linear model in every form.  The compilers are those of GCCS and
-# CLANGS (default: gcc g++, clang clang++); what is not installed is skipped.
+# The last two are what variants.sh makes, beside their headers: every linear model in every form.  The compilers are
+# those of GCCS and CLANGS (default: gcc g++, clang clang++); what is not installed is skipped.
 set -u
 plgen=$1
 root=$2
@@ -35,7 +35,8 @@ compiles() {
             continue
         fi
         # shellcheck disable=SC2086
-        "$compiler" $warnings -I"$root/runtime" -I"$root/tests/forms" -I"${1%/*}" ${3-} $options -c "$1" -o out.o >log 2>&1
+        "$compiler" $warnings -I"$root/runtime" -I"$root/tests/forms" -I"${1%/*}" ${3-} $options -c "$1" \
+            -o out.o >log 2>&1
         result $? "$2, $compiler ${options%% *}"
     done <compilers
 }
@@ -43,7 +44,8 @@ compiles() {
 without_comments() {
     awk '{ text = text $0 "\n" }
          END { while ((i = index(text, "/*")) > 0) {
-                   printf "%s", substr(text, 1, i - 1); text = substr(text, i + 2); text = substr(text, index(text, "*/") + 2) }
+                   printf "%s", substr(text, 1, i - 1); text = substr(text, i + 2);
+                       text = substr(text, index(text, "*/") + 2) }
                printf "%s", text }' "$1"
 }
 
@@ -54,7 +56,8 @@ no_double() {
         grep -n -w double text
         grep -n -E '(^|[^A-Za-z0-9_.])([0-9]+\.[0-9]*|\.[0-9]+)(e[-+]?[0-9]+)?([^0-9.ef]|$)' text
         grep -n -E '(^|[^A-Za-z0-9_.])[0-9]+e[-+]?[0-9]+([^0-9f]|$)' text
-        grep -n -E '(^|[^A-Za-z0-9_])(sin|cos|tan|exp|log|sqrt|fabs|sinh|cosh|tanh|asin|acos|atan|atan2|pow|fmin|fmax|copysign) *\(' text
+        functions='sin|cos|tan|exp|log|sqrt|fabs|sinh|cosh|tanh|asin|acos|atan|atan2|pow|fmin|fmax|copysign'
+        grep -n -E "(^|[^A-Za-z0-9_])($functions) *\\(" text
     } >log
     [ ! -s log ]
     result $? "$2: no double in the text"
@@ -64,14 +67,18 @@ no_double() {
 no_double_instruction() {
     for compiler in "${GCCS:-gcc}" "${CLANGS:-clang}"; do
         compiler=${compiler% *}
-        if ! command -v "$compiler" >/dev/null 2>&1 || ! command -v objdump >/dev/null 2>&1 || [ "$(uname -m)" != x86_64 ]; then
+        if ! command -v "$compiler" >/dev/null 2>&1 || ! command -v objdump >/dev/null 2>&1 ||
+            [ "$(uname -m)" != x86_64 ]; then
             skip "$2, $compiler" 'no such compiler, no objdump, or another processor'
             continue
         fi
         # shellcheck disable=SC2086
-        "$compiler" -std=c99 -O2 -I"$root/runtime" -I"$root/tests/forms" -I"${1%/*}" ${3-} -c "$1" -o out.o >log 2>&1 && objdump -d out.o >code
+        "$compiler" -std=c99 -O2 -I"$root/runtime" -I"$root/tests/forms" -I"${1%/*}" ${3-} -c "$1" -o out.o >log 2>&1 &&
+            objdump -d out.o >code
         status=$?
-        grep -E '[[:space:]]v?((add|sub|mul|div|sqrt|min|max|u?comi|round|cmp[a-z]*)[sp]d|cvt[a-z0-9]*[sp]d[a-z0-9]*|f(ld|st|add|sub|mul|div|ild)[a-z]*)[[:space:]]' code >>log
+        sse='(add|sub|mul|div|sqrt|min|max|u?comi|round|cmp[a-z]*)[sp]d|cvt[a-z0-9]*[sp]d[a-z0-9]*'
+        x87='f(ld|st|add|sub|mul|div|ild)[a-z]*'
+        grep -E "[[:space:]]v?($sse|$x87)[[:space:]]" code >>log
         grep -q -E '[[:space:]]v?[a-z]*[sp]s[[:space:]]' code || echo 'nothing of float either' >>log
         [ $status -eq 0 ] && [ ! -s log ]
         result $? "$2: no instruction of double, $compiler"
@@ -95,7 +102,8 @@ for m in $leftover $switching; do
     no_double "$m.c" "$m in float"
     no_double_instruction "$work/$m.c" "$m in float"
     # shellcheck disable=SC2086
-    "$plgen" --real float --rhs -o "apart_$m.c" "$root/models/$m.spec" >log 2>&1 && "$plgen" --real float --rhs --header "$root/models/$m.spec" >"header.h" 2>>log &&
+    "$plgen" --real float --rhs -o "apart_$m.c" "$root/models/$m.spec" >log 2>&1 &&
+        "$plgen" --real float --rhs --header "$root/models/$m.spec" >"header.h" 2>>log &&
         cmp "apart_$m.h" header.h >>log 2>&1 && grep -q "^#include \"apart_$m.h\"\$" "apart_$m.c" &&
         "${CC:-cc}" -std=c99 $warnings -I"$root/runtime" -I. -fsyntax-only "apart_$m.c" >>log 2>&1
     result $? "$m in float: -o writes C and header, --header the same header"
@@ -112,7 +120,10 @@ done
 # ---- the runtime for float ----
 
 for f in "$root"/runtime/*f.c; do
-    case ${f##*/} in turnsf.c | seriesf.c | powerf.c | untilf.c | growthf.c | applyf.c | crossingsf.c) no_double_instruction "$f" "runtime ${f##*/}" ;; esac
+    case ${f##*/} in
+        turnsf.c | seriesf.c | powerf.c | untilf.c | growthf.c | applyf.c | crossingsf.c)
+            no_double_instruction "$f" "runtime ${f##*/}" ;;
+    esac
 done
 
 # ---- --explain=json ----
@@ -122,7 +133,8 @@ explained() {
     spec=$1
     wanted="\"form\": \"$2\",\"accuracy\": \"$3\",\"real\": \"$4\","
     shift 4
-    "$plgen" --explain=json "$@" "$root/models/$spec.spec" 2>log | sed -n 's/^  \("\(form\|accuracy\|real\)": .*\)/\1/p' | tr -d '\n' >found
+    "$plgen" --explain=json "$@" "$root/models/$spec.spec" 2>log |
+        sed -n 's/^  \("\(form\|accuracy\|real\)": .*\)/\1/p' | tr -d '\n' >found
     [ "$(cat found)" = "$wanted" ]
     status=$?
     echo "found $(cat found), expected $wanted" >log

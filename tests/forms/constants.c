@@ -8,6 +8,8 @@
  * Phi, Gamma, increment and load_factor.  What they ought to be says the judge (judge.h).  Each variant runs in a process of its own.
  */
 #include "judge.h"
+#include "cases.h"
+#include "drawn.h"
 #include "random_spec.h"
 
 #include <ctype.h>
@@ -49,22 +51,8 @@ static const struct relative *kept;
 static struct model *model_of(const char *text, const struct variant *v)
 {
     struct request *request = NEW(struct request);
-    struct source *source = NEW(struct source);
     *request = (struct request){ .form = v->form, .compensated = v->compensated, .single = v->single, .relative = kept };
-    *source = (struct source){ .name = "spec", .base = "spec", .text = text, .length = strlen(text) };
-    return model_build(parse_spec(source), request);
-}
-
-/* The first line of what was said */
-static const char *diagnostics(void)
-{
-    char *text = NULL;
-    size_t length = 0;
-    FILE *to = open_memstream(&text, &length);
-    diagnostics_print(to);
-    fclose(to);
-    text[strcspn(text, "\n")] = 0;
-    return text;
+    return model_build(spec_of("spec", text), request);
 }
 
 /* ---- what should stand there ---- */
@@ -93,7 +81,7 @@ struct wanting {
     struct list *list, low;         /* second words wait for the end of their sum */
 };
 
-static void want(struct wanting *w, const struct ruling *number, bool alone, bool second, const char *what)
+static void want(struct wanting *w, const struct judged_number *number, bool alone, bool second, const char *what)
 {
     double value, low;
     if (number->zero)
@@ -119,7 +107,7 @@ static const char *state_name(const struct wanting *w, int state)
     return w->model->state_name[state];
 }
 
-static void want_places(struct wanting *w, const struct ruling *row, const char *what, const char *target)
+static void want_places(struct wanting *w, const struct judged_number *row, const char *what, const char *target)
 {
     for (int k = 0; k < w->judge->system->n; k++)
         want(w, &row[k], false, w->variant->compensated, format("%s of %s in %s", what, state_name(w, k), target));
@@ -134,7 +122,7 @@ static void want_loads_and_inputs(struct wanting *w, int i)
         for (int k = 0; k < system->load[l].columns; k++, column++) {
             const struct wave *wave = system->load[l].wave;
             const bool constant = k == 0 && !mpq_sgn(wave->a) && !mpq_sgn(wave->w);
-            const struct ruling *number = &j->step[i * j->columns + j->states + column];
+            const struct judged_number *number = &j->step[i * j->columns + j->states + column];
             if (!changes)
                 want(w, number, constant, w->variant->compensated, format("load column %d in %s", column, state_name(w, i)));
         }
@@ -149,7 +137,7 @@ static void want_rows(struct wanting *w)
     const struct judge *j = w->judge;
     const struct linear *system = j->system;
     for (int i = 0; i < j->states; i++) {
-        const struct ruling *row = w->variant->form == FORM_DIRECT ? &j->step[i * j->columns] : &j->increment[i * j->states];
+        const struct judged_number *row = w->variant->form == FORM_DIRECT ? &j->step[i * j->columns] : &j->increment[i * j->states];
         if (w->variant->form == FORM_DIRECT) {
             for (int k = 0; k < system->n; k++)
                 want(w, &row[k], false, false, format("factor of %s in %s", state_name(w, k), state_name(w, i)));
@@ -302,7 +290,7 @@ static void drop_zeros(struct list *list)
     list->count = left;
 }
 
-static void want_table_entry(struct wanting *w, const struct ruling *number, const char *what)
+static void want_table_entry(struct wanting *w, const struct judged_number *number, const char *what)
 {
     double value, low;
     if (!judge_words(number, w->variant->single, &value, &low))
@@ -310,7 +298,7 @@ static void want_table_entry(struct wanting *w, const struct ruling *number, con
     append(w->list, value, what);
 }
 
-static void compare_table(const char *code, struct wanting *w, const char *table, int segment, int from, int to, const struct ruling *numbers, int width)
+static void compare_table(const char *code, struct wanting *w, const char *table, int segment, int from, int to, const struct judged_number *numbers, int width)
 {
     struct list found = { 0 }, expected = { 0 };
     w->list = &expected;
@@ -403,7 +391,7 @@ static void try_variant(const char *text, const struct judge *j, const struct va
     const struct model *model = model_of(text, v);
     if (!model) {
         if (!v->single)
-            complain(format("not accepted: %s", diagnostics()));
+            complain(format("not accepted: %s", first_line(diagnostics())));
         return;                         /* beyond the range of float, say */
     }
     if (v->compensated && j->states > LIMIT_UNROLLED_STATES)
@@ -411,7 +399,7 @@ static void try_variant(const char *text, const struct judge *j, const struct va
     const bool may = v->form != FORM_KICK_DRIFT_KICK || may_kick(j);
     const struct step *step = step_build(model);
     if (!step) {
-        const char *said = diagnostics();
+        const char *said = first_line(diagnostics());
         const bool beyond = strstr(said, "beyond the range of") && overflows(j, v->single);
         trial.compared += beyond;
         if (may && !strstr(said, "times h is above 2.5") && !beyond)
@@ -428,7 +416,7 @@ static void try_variant(const char *text, const struct judge *j, const struct va
     const bool emitted = statement_guard(emit, &e);
     fclose(e.to);
     if (!emitted) {
-        const char *said = diagnostics();
+        const char *said = first_line(diagnostics());
         if (!v->single || !strstr(said, "beyond the range of float"))
             complain(format("not emitted: %s", said));
         return;
@@ -483,7 +471,7 @@ static bool try_spec(const char *text)
     bool good = true, compared = false;
     const struct model *model = model_of(text, &variants[0]);
     if (!model) {
-        printf("# not accepted: %s\n", diagnostics());
+        printf("# not accepted: %s\n", first_line(diagnostics()));
         return false;
     }
     const struct judge *judge = judge_of(&model->system, model->h);
@@ -506,18 +494,10 @@ static bool try_spec(const char *text)
 
 /* ---- undamped systems ---- */
 
-static uint64_t state;
-
-static uint64_t below(uint64_t n)
-{
-    state = state * UINT64_C(6364136223846793005) + UINT64_C(1442695040888963407);
-    return (state >> 33) % n;
-}
-
 /* A decimal with few or many digits and its value */
 static double decimal(int least, int most, const char **text)
 {
-    const int exponent = least + (int)below((uint64_t)(most - least + 1));
+    const int exponent = least + (int)below((unsigned)(most - least + 1));
     *text = below(2) ? format("%.*fe%d", (int)below(3), 1 + (double)below(9000) / 1000, exponent)
                      : format("%.15ge%d", 1 + (double)below(1u << 30) / (double)(1u << 27), exponent);
     return strtod(*text, NULL);
@@ -527,7 +507,7 @@ static double decimal(int least, int most, const char **text)
  * inputs where masses are equal.  |pole| h is between 1e-6 and 2.4 by Gershgorin's bound. */
 static const char *undamped_spec(uint64_t seed)
 {
-    state = seed * UINT64_C(0x9e3779b97f4a7c15) + 7;
+    random_state = seed * UINT64_C(0x9e3779b97f4a7c15) + 7;
     below(2);
     const int n = seed % 15 == 0 ? 7 + (int)below(2) : 1 + (int)below(4);
     const bool equal = below(2), grounded = below(3) > 0, loaded = equal && below(3) == 0, sampled = equal && below(4) == 0;
@@ -614,43 +594,12 @@ static const char *twice_spec(const struct twice *t)
 
 /* ---- the whole ---- */
 
-static const char *read_text(const char *path)
-{
-    size_t length = 0, got;
-    FILE *f = fopen(path, "r");
-    if (!f) {
-        printf("Bail out! cannot read %s\n", path);
-        exit(1);
-    }
-    char *text = ARRAY(char, 4096);
-    while ((got = fread(text + length, 1, 4095, f)) > 0) {
-        length += got;
-        ENLARGE(text, length + 4096);
-    }
-    text[length] = 0;
-    fclose(f);
-    return text;
-}
-
-static int number, failures;
-
-static void show_spec(const char *line)
-{
-    while (*line) {
-        const size_t length = strcspn(line, "\n");
-        printf("# | %.*s\n", (int)length, line);
-        line += length + (line[length] == '\n');
-    }
-}
-
 static void run(const char *name, const char *text)
 {
     const bool good = try_spec(text);
-    failures += !good;
     if (!good)
         show_spec(text);
-    printf("%sok %d - %s\n", good ? "" : "not ", ++number, name);
-    fflush(stdout);
+    report_case(name, good);
 }
 
 int main(int argc, char **argv)
@@ -670,10 +619,8 @@ int main(int argc, char **argv)
     }
     memory_open();
     printf("1..%lu\n", (unsigned long)(argc - optind) + TWICE + random_count + undamped_count);
-    for (int i = optind; i < argc; i++) {
-        const char *slash = strrchr(argv[i], '/');
-        run(slash ? slash + 1 : argv[i], read_text(argv[i]));
-    }
+    for (int i = optind; i < argc; i++)
+        run(base_name(argv[i]), read_text(argv[i]));
     for (int i = 0; i < TWICE; i++)
         run(format("rounded once: %s", twice[i].name), twice_spec(&twice[i]));
     for (unsigned long i = 0; i < undamped_count; i++)
@@ -681,5 +628,5 @@ int main(int argc, char **argv)
     for (unsigned long i = 0; i < random_count; i++)
         run(format("random model %lu", seed + i), random_spec(seed + i));
     memory_close();
-    return failures > 0;
+    return cases_failed() > 0;
 }

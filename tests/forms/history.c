@@ -1,12 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * history MODEL STEPS.csv PARTS.csv: a model in each of its forms, over 1000 steps, against its closed form; and what the functions
- * of one model owe each other.  STEPS.csv has the states at every step, PARTS.csv at every quarter of the first 100.
+ * history MODEL STEPS.csv PARTS.csv: a model in each of its forms, over 1000 steps, against its closed form; and what
+ * the functions of one model owe each other. STEPS.csv has the states at every step, PARTS.csv at every quarter of the
+ * first 100.
  *
- * Tolerances.  u is half a unit in the last place of 1, W_i the largest |y_i| of the closed form, n the states, a the largest |pole| h.
- * A step of the form direct rounds n products and their sum, each within u of what a state is made of: (n + 4) u W a step.  The
- * others round the sum with the old state, u W, and increments that are a W in size: (1 + (n + 4) a) u W.  Compensated, what the sum
- * loses is kept: (n + 4) a u W.  Errors of steps add up, at worst, and one of u W is there at the start.
+ * Tolerances.  u is half a unit in the last place of 1, W_i the largest |y_i| of the closed form, n the states, a the
+ * largest |pole| h. A step of the form direct rounds n products and their sum, each within u of what a state is made
+ * of: (n + 4) u W a step.  The others round the sum with the old state, u W, and increments that are a W in size: (1 +
+ * (n + 4) a) u W. Compensated, what the sum loses is kept: (n + 4) a u W. Errors of steps add up, at worst, and one of
+ * u W is there at the start.
  */
 #include VARIANTS_H
 #include "tap.h"
@@ -89,7 +91,8 @@ static bool close_states(const real *y, const double *expected, double k, const 
 {
     bool good = true;
     for (int i = 0; i < m->states; i++)
-        good = close_to((double)y[i], expected[i], tolerance(i, k), "%s, %s, step %g", what, m->state_names[i], k) && good;
+        good = close_to((double)y[i], expected[i], tolerance(i, k), "%s, %s, step %g", what, m->state_names[i], k) &&
+            good;
     return good;
 }
 
@@ -125,7 +128,8 @@ static void try_at(void)
         for (int p = 0; p <= PARTS; p++) {
             m->at(&s, sample(k), m->h * (real)p / PARTS, y);
             /* one more rounding of all that a series adds up */
-            good = close_states(y, parts[k * PARTS + p], k + 1 + m->states * (1 + angle) / (direct ? m->states : 1 + angle), "at") && good;
+            good = close_states(y, parts[k * PARTS + p],
+                k + 1 + m->states * (1 + angle) / (direct ? m->states : 1 + angle), "at") && good;
         }
         m->step(&s, sample(k));
     }
@@ -151,7 +155,8 @@ static void try_run(void)
             double largest = 0;
             for (int j = 0; j <= k; j++)
                 largest = fmax(largest, fabs((double)all[j * m->outputs + i]));
-            good = close_to((double)all[k * m->outputs + i], (double)out[i], 2 * EPSILON * (k + 1) * largest, "run, %s, step %d", m->output_names[i], k + 1) && good;
+            good = close_to((double)all[k * m->outputs + i], (double)out[i], 2 * EPSILON * (k + 1) * largest,
+                "run, %s, step %d", m->output_names[i], k + 1) && good;
         }
     }
     ok(good && m->time(&s) == m->time(&r), "%s: run against step", m->name);
@@ -165,7 +170,8 @@ static void try_run(void)
     m->get(&r, y[1]);
     good = true;
     for (int i = 0; i < m->states; i++)
-        good = close_to((double)y[1][i], (double)y[0][i], 2 * EPSILON * (RUN + 7) * widest[i], "run without rows, %s", m->state_names[i]) && good;
+        good = close_to((double)y[1][i], (double)y[0][i], 2 * EPSILON * (RUN + 7) * widest[i], "run without rows, %s",
+            m->state_names[i]) && good;
     ok(good, "%s: run without rows goes on from there", m->name);
 }
 
@@ -192,7 +198,8 @@ static void try_jump(void)
         /* the jump itself is right to one rounding; steps are within the history's tolerance */
         good = close_states(y, steps[1 + leaps[l]], 3, "jump") && good;
         for (int i = 0; i < m->states; i++)
-            good = close_to((double)y[i], (double)z[i], tolerance(i, 3) + tolerance(i, leaps[l] + 1), "jump against %d steps, %s", leaps[l], m->state_names[i]) && good;
+            good = close_to((double)y[i], (double)z[i], tolerance(i, 3) + tolerance(i, leaps[l] + 1),
+                "jump against %d steps, %s", leaps[l], m->state_names[i]) && good;
         good = good && m->time(&s) == m->time(&stepped);
         m->step(&s, NULL);              /* and on from there */
         m->get(&s, y);
@@ -237,12 +244,15 @@ static void try_get_after_set(void)
             const bool velocity = i >= m->states / 2;
             other += memcmp(&y[i], &z[i], sizeof(real)) != 0;
             if (momenta && velocity)
-                good = close_to((double)z[i], (double)y[i], (double)unit_of(y[i]), "get after set, %s", m->state_names[i]) && good;
+                good = close_to((double)z[i], (double)y[i], (double)unit_of(y[i]), "get after set, %s",
+                    m->state_names[i]) && good;
             else
-                good = close_to((double)z[i], (double)y[i], memcmp(&y[i], &z[i], sizeof(real)) ? -1 : 0, "get after set, %s", m->state_names[i]) && good;
+                good = close_to((double)z[i], (double)y[i], memcmp(&y[i], &z[i], sizeof(real)) ? -1 : 0,
+                    "get after set, %s", m->state_names[i]) && good;
         }
     }
-    ok(good, "%s: get after set gives the same%s (%d of %d others)", m->name, momenta ? " within 1 unit in the last place" : "", other, 2000 * m->states);
+    ok(good, "%s: get after set gives the same%s (%d of %d others)", m->name,
+        momenta ? " within 1 unit in the last place" : "", other, 2000 * m->states);
 }
 
 /* A copy is the whole state. */
@@ -316,7 +326,8 @@ int main(int argc, char **argv)
         m = v->model;
         direct = f == 0;
         compensated = strstr(forms[f], "compensated") != NULL;
-        momenta = !direct && (strcmp(name, "loose") == 0 || (strstr(forms[f], "kick") && strcmp(name, "masses") == 0)); /* or a sum of velocities */
+        /* or a sum of velocities */
+        momenta = !direct && (strcmp(name, "loose") == 0 || (strstr(forms[f], "kick") && strcmp(name, "masses") == 0));
         try_history();
         try_at();
         try_run();

@@ -21,7 +21,8 @@ static void mark_blocks(struct judge *j)
                 for (int b = 0; b < n; b++) {
                     const int p = e * n + a, q = e * n + b;
                     if ((mpq_sgn(system->M[p]) || mpq_sgn(system->C[p]) || mpq_sgn(system->K[p])) &&
-                        (mpq_sgn(system->M[q]) || mpq_sgn(system->C[q]) || mpq_sgn(system->K[q])) && j->block[a] < j->block[b])
+                        (mpq_sgn(system->M[q]) || mpq_sgn(system->C[q]) || mpq_sgn(system->K[q])) &&
+                            j->block[a] < j->block[b])
                         j->block[b] = j->block[a];
                 }
 }
@@ -174,7 +175,8 @@ static void take_entry(mpfi_ptr x, const evaluator_enclosure *E, int i, int k)
 }
 
 /* One column of e^{A h} X: a state, a load, an input (held: u; a ramp: its values before and after) */
-static void take_column(const struct judge *j, const struct flow *f, const evaluator_enclosure *E, int i, int column, mpfi_ptr x)
+static void take_column(const struct judge *j, const struct flow *f, const evaluator_enclosure *E, int i, int column,
+    mpfi_ptr x)
 {
     const struct linear *system = j->system;
     int u = 0, part = column - j->states - j->loads;
@@ -226,7 +228,7 @@ static void fill_segment(struct judge *j, int segment)
         }
         for (int i = 0; i < j->states; i++)
             for (int k = 0; k < j->columns; k++) {
-                struct ruling *number = &j->step[(segment * j->states + i) * j->columns + k];
+                struct judged_number *number = &j->step[(segment * j->states + i) * j->columns + k];
                 number->zero = !column_reaches(j, &f, reach, i, k);
                 take_column(j, &f, &E, i, k, number->x);
                 if (mpfi_has_zero(number->x) && !number->zero) {
@@ -235,7 +237,7 @@ static void fill_segment(struct judge *j, int segment)
                 }
                 if (segment || k >= j->states)
                     continue;
-                struct ruling *increment = &j->increment[i * j->states + k];
+                struct judged_number *increment = &j->increment[i * j->states + k];
                 mpfi_set_prec(increment->x, mpfi_get_prec(number->x));
                 mpfi_sub_ui(increment->x, number->x, i == k);
                 increment->zero = number->zero && i != k;
@@ -307,7 +309,7 @@ static void fill_kicks(struct judge *j)
     solve_intervals(n, L, R);
     for (int i = 0; i < n * n; i++) {
         const bool apart = j->block[i / n] != j->block[i % n];
-        const struct ruling *Phi_12 = &j->step[(i / n) * j->columns + system->velocity[i % n]];
+        const struct judged_number *Phi_12 = &j->step[(i / n) * j->columns + system->velocity[i % n]];
         mpq_div(mass, system->M[i / n * (n + 1)], system->M[0]);
         mpfi_mul_q(R[i], R[i], mass);
         mpfi_set_prec(j->kick[i].x, mpfi_get_prec(R[i]));
@@ -321,9 +323,9 @@ static void fill_kicks(struct judge *j)
     evaluator_enclosure_clear(&E);
 }
 
-static struct ruling *numbers(int count)
+static struct judged_number *numbers(int count)
 {
-    struct ruling *x = ARRAY(struct ruling, (size_t)count);
+    struct judged_number *x = ARRAY(struct judged_number, (size_t)count);
     for (int i = 0; i < count; i++)
         mpfi_init2(x[i].x, BITS);
     return x;
@@ -375,7 +377,7 @@ static bool is_narrow(mpfi_srcptr rest, double value)
     return narrow;
 }
 
-bool judge_words(const struct ruling *number, bool single, double *value, double *low)
+bool judge_words(const struct judged_number *number, bool single, double *value, double *low)
 {
     bool good;
     mpfi_t rest;

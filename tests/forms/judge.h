@@ -7,7 +7,7 @@
 #include "emit/emit.h"
 
 /* A number in intervals, and whether it is 0: no path leads from its column to its row, or 4096 bits show nothing there. */
-struct ruling {
+struct judged_number {
     mpfi_t x;
     bool zero;
 };
@@ -17,13 +17,13 @@ struct judge {
     int states, loads, inputs, columns;     /* columns = states + loads + inputs */
     bool undamped;                          /* kick-drift-kick may be asked for */
     int *block;                             /* per coordinate */
-    struct ruling *step;                    /* [segment][states x columns] */
-    struct ruling *increment;               /* states x states */
-    struct ruling *drift, *kick;            /* coordinates x coordinates, where undamped */
+    struct judged_number *step;                    /* [segment][states x columns] */
+    struct judged_number *increment;               /* states x states */
+    struct judged_number *drift, *kick;            /* coordinates x coordinates, where undamped */
 };
 struct judge *judge_of(const struct linear *system, mpq_srcptr h);
 
 /* Correctly rounded, and what is left of it correctly rounded; a double holds both.  false: the judge cannot decide. */
-bool judge_words(const struct ruling *number, bool single, double *value, double *low);
+bool judge_words(const struct judged_number *number, bool single, double *value, double *low);
 
 #endif

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* load_specs FIRST LAST [SEED]: writes FIRST.spec ... into the working directory, each a random model with loads t^k e^{a t} cos(w t + p), k up to 4, |w h| from
- * 1e-3 to 30: springs and dampers in a chain, some of them free, undamped, with a coordinate of first order, an input, initial values or
- * loads that change their formula. */
+/* load_specs FIRST LAST [SEED]: writes FIRST.spec ... into the working directory, each a random model with loads t^k
+ * e^{a t} cos(w t + p), k up to 4, |w h| from 1e-3 to 30: springs and dampers in a chain, some of them free, undamped,
+ * with a coordinate of first order, an input, initial values or loads that change their formula. */
 #include <math.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -46,7 +46,8 @@ static void write_load(FILE *to, double h)
 
 static void write_model(FILE *to, int number)
 {
-    const int n = 1 + below(4), grounded = below(5) > 0, damped = below(4) > 0, loaded = below(n), lag = below(6) == 0, input = below(6) == 0;
+    const int n = 1 + below(4), grounded = below(5) > 0, damped = below(4) > 0, loaded = below(n), lag = below(6) == 0,
+        input = below(6) == 0;
     const double h = scale(1e-3, 0.1), stiffness = pow(scale(1e-2, 1.0) / h, 2.0);
     int i;
     fprintf(to, "model m%d\ncoord x1", number);

@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* loads FOLDER: models with loads, in double and in float, beside FOLDER/NAME.csv, their closed form at every step.
  *
- * Over 1000 steps every output stays within 1e-12, in float 2e-4, of its largest value; so it does after a jump to the end, after NAME_at to the end of a
- * step. From a state set on the way, itself rounded, it stays as near to the largest number of all. Where outputs are states, nothing is further off than what plgen states, and what is set is
- * read again. */
+ * Over 1000 steps every output stays within 1e-12, in float 2e-4, of its largest value; so it does after a jump to the
+ * end, after NAME_at to the end of a step. From a state set on the way, itself rounded, it stays as near to the largest
+ * number of all. Where outputs are states, nothing is further off than what plgen states, and what is set is read
+ * again. */
 #include "plrt.h"
 #include "tap.h"
 
@@ -55,7 +56,8 @@ static void compare(const double *y, int row, int columns, double least, struct 
 {
     int i;
     for (i = 0; i < columns; i++) {
-        const double off = largest[i] > least ? fabs(y[i] - truth[row][i]) / largest[i] : fabs(y[i]) <= 2 * least ? 0 : INFINITY;
+        const double off = largest[i] > least ? fabs(y[i] - truth[row][i]) / largest[i] : fabs(y[i]) <= 2 * least ? 0
+            : INFINITY;
         if (!(off <= worst->off)) {
             worst->off = off;
             worst->which = i;
@@ -66,7 +68,8 @@ static void compare(const double *y, int row, int columns, double least, struct 
 
 static void judge(const char *name, const char *what, struct worst worst, double bound)
 {
-    ok(worst.off <= bound, "%s, %s: number %d off by %.2g of its largest value at step %d, at most %.2g", name, what, worst.which + 1, worst.off, worst.row, bound);
+    ok(worst.off <= bound, "%s, %s: number %d off by %.2g of its largest value at step %d, at most %.2g", name, what,
+        worst.which + 1, worst.off, worst.row, bound);
 }
 
 /* A model of either type, its numbers as doubles */
@@ -156,9 +159,11 @@ static bool jump(struct subject *m, int steps)
 
 static void run(struct subject *m, double stated)
 {
-    const int states = m->model ? m->model->states : m->modelf->states, outputs = m->model ? m->model->outputs : m->modelf->outputs;
+    const int states = m->model ? m->model->states : m->modelf->states,
+        outputs = m->model ? m->model->outputs : m->modelf->outputs;
     const char *name = m->model ? m->model->name : m->modelf->name;
-    const double limit = m->model ? 1e-12 : 2e-4, unit = m->model ? 0x1p-53 : 0x1p-24, least = m->model ? 1e-300 : 1e-30, h = m->model ? m->model->h : (double)m->modelf->h;
+    const double limit = m->model ? 1e-12 : 2e-4, unit = m->model ? 0x1p-53 : 0x1p-24,
+        least = m->model ? 1e-300 : 1e-30, h = m->model ? m->model->h : (double)m->modelf->h;
     double y[COLUMNS], again[COLUMNS], scale = 0, off = 0;
     struct worst steps = {0, 0, 0}, jumped = steps, reached = steps;
     int k, i, wrong = 0;
@@ -207,7 +212,8 @@ int main(int argc, char **argv)
     int i;
     for (i = 0; i < count && argc > 1; i++) {
         const struct load_model *m = &load_models[i];
-        struct subject wide = {m->model, NULL, malloc(m->model->size)}, narrow = {NULL, m->modelf, malloc(m->modelf->size)};
+        struct subject wide = {m->model, NULL, malloc(m->model->size)},
+            narrow = {NULL, m->modelf, malloc(m->modelf->size)};
         if (ok(read_truth(argv[1], m->name, m->model->outputs), "%s: its closed form", m->name)) {
             run(&wide, m->bound);
             run(&narrow, m->boundf);

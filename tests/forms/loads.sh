@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Models with loads, stepped in double and in float beside their closed form: what rounding takes (loads.c). Random ones, and some in which what the
-# step loses to a load is far larger than what the load leaves in a state.
+# Models with loads, stepped in double and in float beside their closed form: what rounding takes (loads.c). Random
+# ones, and some in which what the step loses to a load is far larger than what the load leaves in a state.
 #
 #     loads.sh PLGEN SOURCE_ROOT LOAD_SPECS [FIRST LAST [SEED]]
 set -u
@@ -15,7 +15,14 @@ last=${5-8}
 seed=${6-1}
 . "${0%/*}/../tap.sh"
 echo '#include <math.h>' >models.c
-echo 'static const struct load_model { const char *name; const pl_model *model; const pl_modelf *modelf; double bound, boundf; } load_models[] = {' >table
+cat >table <<'EOF'
+static const struct load_model {
+    const char *name;
+    const pl_model *model;
+    const pl_modelf *modelf;
+    double bound, boundf;
+} load_models[] = {
+EOF
 
 # stated FILE: the bound in its banner
 stated() {
@@ -28,7 +35,8 @@ add() {
 	shift
 	h=$(sed -n 's/^step //p' "$name.spec")
 	sed -e '/^input/d' -e '/^tunable/d' -e 's/= u + /= /' "$name.spec" >closed.spec
-	"$plgen" --prefix "d$name" "$@" "$name.spec" >d.c 2>log && "$plgen" --real float --prefix "f$name" "$@" "$name.spec" >f.c 2>>log &&
+	"$plgen" --prefix "d$name" "$@" "$name.spec" >d.c 2>log &&
+		"$plgen" --real float --prefix "f$name" "$@" "$name.spec" >f.c 2>>log &&
 		"$plgen" --solution "1000*$h" closed.spec >"$name.csv" 2>>log || {
 		result 1 "$name"
 		tap_end
@@ -98,32 +106,37 @@ cat >loose.spec <<-END
 	step 0.01
 END
 add loose
-sed -e 's/^model loose/model loose_passing/' -e 's/t^4\*cos(900\*t)/(t < 4.56 ? t^4*cos(900*t) : 1.000001*t^4*cos(900*t))/' loose.spec >loose_passing.spec
+sed -e 's/^model loose/model loose_passing/' \
+	-e 's/t^4\*cos(900\*t)/(t < 4.56 ? t^4*cos(900*t) : 1.000001*t^4*cos(900*t))/' loose.spec >loose_passing.spec
 add loose_passing
 awk 'BEGIN {
 	print "model large"
 	for (i = 1; i <= 10; i++) printf "%s%s", (i == 1 ? "coord x" : ", x"), i
 	print ""
 	for (i = 1; i <= 10; i++)
-		printf "x%d%s + 0.05*x%d%s + 3*x%d%s%s = %s\n", i, "\047\047", i, "\047", i, (i == 1 ? "" : " - x" i - 1), (i == 10 ? "" : " - x" i + 1), (i == 1 ? "t^3*cos(700*t)" : 0)
+		printf "x%d%s + 0.05*x%d%s + 3*x%d%s%s = %s\n", i, "\047\047", i, "\047", i, (i == 1 ? "" : " - x" i - 1),
+			(i == 10 ? "" : " - x" i + 1), (i == 1 ? "t^3*cos(700*t)" : 0)
 	print "step 0.01"
 }' >large.spec
 add large
-sed -e 's/^model large/model large_passing/' -e 's/= t^3.*/= t^3*cos(700*t) + (t < 2.5 ? 0 : 1e-8*(t - 2.5))/' large.spec >large_passing.spec
+sed -e 's/^model large/model large_passing/' -e 's/= t^3.*/= t^3*cos(700*t) + (t < 2.5 ? 0 : 1e-8*(t - 2.5))/' \
+	large.spec >large_passing.spec
 add large_passing --form delta
 
+runtime_archive "$root/runtime"
 echo '};' >>table
 cat models.c table >load_models.h
 for compiler in "${CC:-cc} -std=c99" "clang -std=c99" "g++ -std=c++17 -x c++"; do
 	command -v "${compiler%% *}" >/dev/null || continue
 	# shellcheck disable=SC2086
-	$compiler -fsyntax-only -Wall -Wextra -Wpedantic -Wconversion -Wdouble-promotion -Wshadow -Werror -I"$root/runtime" models.c >log 2>&1 || {
+	$compiler -fsyntax-only -Wall -Wextra -Wpedantic -Wconversion -Wdouble-promotion -Wshadow -Werror -I"$root/runtime" \
+		models.c >log 2>&1 || {
 		result 1 "$compiler"
 		tap_end
 	}
 done
-"${CC:-cc}" -O1 -I"$root/runtime" -I"$root/tests/emitted" -I. -o program "$root/tests/forms/loads.c" \
-	"$root/tests/emitted/tap.c" "$root"/runtime/*.c -lm >log 2>&1 || {
+"${CC:-cc}" -O0 -I"$root/runtime" -I"$root/tests/emitted" -I. -o program "$root/tests/forms/loads.c" \
+	"$root/tests/emitted/tap.c" "$archive" -lm >log 2>&1 || {
 	result 1 'the models compile'
 	tap_end
 }

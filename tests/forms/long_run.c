@@ -1,12 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * long_run [STEPS]: energy, decay and momentum over many steps (a million; the issue's figures are those of long_run 100000000).
+ * long_run [STEPS]: energy, decay and momentum over many steps (a million; the issue's figures are those of long_run
+ * 100000000).
  *
- * Bounds for 1e8 steps are the issue's.  Energy of scs, relative: in float at h = 1e-4 below 1e-3, compensated below 3e-6; in double
- * at h = 0.01 below 2e-12, compensated below 1e-12.  Decay of scs with dampers of 1e-6 in float: within 5 %, compensated 1 %.
- * Over n steps rounding at random makes sqrt(n / 1e8) of it, twice that at most; and the reading of the state rounds once more: 8 half
- * units in the last place of 1.  The form delta, not compensated, loses as much as its rounded factors do: each changes the energy by less than a
- * half unit in the last place of (|pole| h)^2 a step.  The form direct has no bound: it is the one that gains energy.
+ * Bounds for 1e8 steps are the issue's.  Energy of scs, relative: in float at h = 1e-4 below 1e-3, compensated below
+ * 3e-6; in double at h = 0.01 below 2e-12, compensated below 1e-12.  Decay of scs with dampers of 1e-6 in float: within
+ * 5 %, compensated 1 %. Over n steps rounding at random makes sqrt(n / 1e8) of it, twice that at most; and the reading
+ * of the state rounds once more: 8 half units in the last place of 1.  The form delta, not compensated, loses as much
+ * as its rounded factors do: each changes the energy by less than a half unit in the last place of (|pole| h)^2 a step.
+ * The form direct has no bound: it is the one that gains energy.
  */
 #include VARIANTS_H
 #include "tap.h"
@@ -68,8 +70,10 @@ static void try_energy(int form)
         return;
     }
     const double angle = 10 * sqrt(3) * (double)m->h;
-    const double bound = part_of(energy_bound[in_two_words[form]]) + (form == DELTA ? n * EPSILON / 2 * angle * angle : 0);
-    ok(close_to(worst, 0, bound, "relative energy"), "%s, %g steps of %g s: energy within %.2g, bound %.2g, at the end %+.2g", m->name, n,
+    const double bound = part_of(energy_bound[in_two_words[form]]) + (form == DELTA ? n * EPSILON / 2 * angle * angle
+        : 0);
+    ok(close_to(worst, 0, bound, "relative energy"),
+        "%s, %g steps of %g s: energy within %.2g, bound %.2g, at the end %+.2g", m->name, n,
        (double)m->h, worst, bound, last);
 }
 
@@ -99,13 +103,18 @@ static void try_decay(int form)
     for (int i = 0; i < 2; i++) {
         const double lost = -log(after[i] / before[i]), expected = damping[i] * n * (double)m->h;
         if (form == DIRECT) {
-            note("%s, %g steps of %g s, mode %d: decay %.4g, expected %.4g (the form without a bound)", m->name, n, (double)m->h, i + 1, lost, expected);
+            note("%s, %g steps of %g s, mode %d: decay %.4g, expected %.4g (the form without a bound)", m->name, n,
+                (double)m->h, i + 1, lost, expected);
             continue;
         }
-        const double angle = 10 * sqrt(2 * i + 1) * (double)m->h, strayed = form == DELTA ? n * EPSILON / 2 * angle * angle : 0;
-        const bool all = n >= 1e8 && m->h < 1e-3;       /* else what is lost is less than what rounding may add, or all but exact */
-        const double bound = all ? decay_bound[in_two_words[form]] * expected : part_of(energy_bound[in_two_words[form]]) + strayed + damping[i] / 10;
-        ok(close_to(lost, expected, bound, "decay of mode %d", i + 1), "%s, %g steps of %g s, mode %d: decay %.6g, expected %.6g, bound %.2g, %+.3g %%",
+        const double angle = 10 * sqrt(2 * i + 1) * (double)m->h,
+            strayed = form == DELTA ? n * EPSILON / 2 * angle * angle : 0;
+        /* else what is lost is less than what rounding may add, or all but exact */
+        const bool all = n >= 1e8 && m->h < 1e-3;
+        const double bound = all ? decay_bound[in_two_words[form]] * expected
+            : part_of(energy_bound[in_two_words[form]]) + strayed + damping[i] / 10;
+        ok(close_to(lost, expected, bound, "decay of mode %d", i + 1),
+            "%s, %g steps of %g s, mode %d: decay %.6g, expected %.6g, bound %.2g, %+.3g %%",
            m->name, n, (double)m->h, i + 1, lost, expected, bound, 100 * (lost / expected - 1));
     }
 }
@@ -140,7 +149,8 @@ static void try_momentum(int form)
         return;
     }
     const double bound = 2 * EPSILON;
-    ok(close_to(worst, 0, bound, "momentum of the sizes of its parts"), "%s, %g steps of %g s: momentum within %.2g of its parts, up to %.3g times it; bound %.2g",
+    ok(close_to(worst, 0, bound, "momentum of the sizes of its parts"),
+        "%s, %g steps of %g s: momentum within %.2g of its parts, up to %.3g times it; bound %.2g",
        m->name, n, (double)m->h, worst, largest, bound);
 }
 

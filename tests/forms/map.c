@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * The map of the emitted step itself: its code compiled with a type of 113 bits, in which products and sums of its constants are
- * exact or nearly so, and run on unit vectors.  Its eigenvalues are set against e^{p h} of the poles, known by hand.
+ * The map of the emitted step itself: its code compiled with a type of 113 bits, in which products and sums of its
+ * constants are exact or nearly so, and run on unit vectors. Its eigenvalues are set against e^{p h} of the poles,
+ * known by hand.
  */
 #include "tap.h"
 
@@ -168,14 +169,18 @@ static void try_eigenvalues(const struct map *map, const wide c[N + 1])
             amplitude = (double)ratio.re;
         phase = fmax(phase, fabs((double)ratio.im));
         if (p.re != 0 && !strstr(map->name, "direct"))  /* the issue's */
-            rates = close_to((double)(p.re + ratio.re / h), (double)p.re, 0.01 * fabs((double)p.re), "%s: decay rate of mode %d", map->name, mode + 1) && rates;
+            rates = close_to((double)(p.re + ratio.re / h), (double)p.re, 0.01 * fabs((double)p.re),
+                "%s: decay rate of mode %d", map->name, mode + 1) && rates;
     }
     if (strstr(map->name, "light") && !strstr(map->name, "direct"))
-        ok(rates, "%s: the map's decay rates are within 1 %% (%.2g of them)", map->name, fabs(amplitude / (double)(pole_of(map->name, 0).re * h)));
+        ok(rates, "%s: the map's decay rates are within 1 %% (%.2g of them)", map->name,
+            fabs(amplitude / (double)(pole_of(map->name, 0).re * h)));
     if (strstr(map->name, "kick"))
-        ok(close_to(amplitude, 0, 1e-28, "%s: amplitude", map->name), "%s: the map's eigenvalues are of size 1", map->name);
+        ok(close_to(amplitude, 0, 1e-28, "%s: amplitude", map->name), "%s: the map's eigenvalues are of size 1",
+            map->name);
     if (isnan(map->amplitude)) {
-        note("%s: --explain=json says nothing of drift; amplitude %.3g, phase %.3g per step", map->name, amplitude, phase);
+        note("%s: --explain=json says nothing of drift; amplitude %.3g, phase %.3g per step", map->name, amplitude,
+            phase);
         return;
     }
     if (strstr(map->name, "pair") && strstr(map->name, "direct"))
@@ -193,22 +198,25 @@ static void try_symplectic(const struct map *map, wide D[N][N])
         for (int b = 0; b < N; b++) {
             wide area = 0;
             for (int i = 0; i < N / 2; i++)
-                area += (D[i][a] + (i == a)) * (D[i + N / 2][b] + (i + N / 2 == b)) - (D[i + N / 2][a] + (i + N / 2 == a)) * (D[i][b] + (i == b));
+                area += (D[i][a] + (i == a)) * (D[i + N / 2][b] + (i + N / 2 == b)) -
+                    (D[i + N / 2][a] + (i + N / 2 == a)) * (D[i][b] + (i == b));
             const double expected = b == a + N / 2 ? 1 : a == b + N / 2 ? -1 : 0;
             good = close_to((double)(area - expected), 0, 1e-30, "%s: area %d, %d", map->name, a, b) && good;
         }
     ok(good, "%s: the map is symplectic", map->name);
 }
 
-/* Of pair the centre and the distance are kept, then their rates: a displacement of both, and what they move with, meet no force; nothing
- * acts on the centre's velocity, and nothing of the centre on the distance. */
+/* Of pair the centre and the distance are kept, then their rates: a displacement of both, and what they move with, meet
+ * no force; nothing acts on the centre's velocity, and nothing of the centre on the distance. */
 static void try_rigid(const struct map *map, wide D[N][N])
 {
     bool good = true;
     for (int i = 0; i < N; i++)
-        good = close_to((double)D[i][0], 0, 0, "%s: what a displacement of both does to state %d", map->name, i) && good;
+        good = close_to((double)D[i][0], 0, 0, "%s: what a displacement of both does to state %d", map->name, i) &&
+            good;
     good = close_to((double)D[1][2], 0, 0, "%s: what the centre's velocity does to the distance", map->name) && good;
-    good = close_to((double)D[3][2], 0, 0, "%s: what the centre's velocity does to the rate of the distance", map->name) && good;
+    good = close_to((double)D[3][2], 0, 0, "%s: what the centre's velocity does to the rate of the distance",
+        map->name) && good;
     ok(good, "%s: a displacement of both stays as it is", map->name);
     good = true;
     for (int j = 0; j < N; j++)

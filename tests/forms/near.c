@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * near > DOUBLE, near DOUBLE: models with a leftover and with switching in float beside the same in double.  Without a file this
- * writes the states of the one, as hexadecimal fractions; the other compares its own with them.
+ * near > DOUBLE, near DOUBLE: models with a leftover and with switching in float beside the same in double.  Without a
+ * file this writes the states of the one, as hexadecimal fractions; the other compares its own with them.
  *
- * u is half a unit in the last place of 1 in float, W_i the largest |y_i|, Phi the transfer matrix of a step (of the linear operator).
- * A step rounds sums of Phi_ij y_j, and the next carries that on: with S = |Phi| |Phi| W, at least W, (8 + 2 k) u S_i after k steps.
- * At the stop of two_masses what is early or late by little hits a spring 50 times as stiff: 20 times that.
+ * u is half a unit in the last place of 1 in float, W_i the largest |y_i|, Phi the transfer matrix of a step (of the
+ * linear operator). A step rounds sums of Phi_ij y_j, and the next carries that on: with S = |Phi| |Phi| W, at least W,
+ * (8 + 2 k) u S_i after k steps. At the stop of two_masses what is early or late by little hits a spring 50 times as
+ * stiff: 20 times that.
  */
 #include VARIANTS_H
 #include "tap.h"
@@ -74,8 +75,10 @@ static void compare(const struct variant *v, FILE *f)
     carry(v, widest);
     for (int k = 0; k <= STEPS; k++)
         for (int i = 0; i < m->states; i++) {
-            const double tolerance = FLT_EPSILON / 2 * widest[i] * (8 + 2 * k) * (strncmp(name, "two_masses", 10) == 0 ? 20 : 1);
-            good = close_to(history[k][i], expected[k][i], tolerance, "%s, %s, step %d", m->name, m->state_names[i], k) && good;
+            const double tolerance = FLT_EPSILON / 2 * widest[i] * (8 + 2 * k) * (strncmp(name, "two_masses", 10) == 0
+                ? 20 : 1);
+            good = close_to(history[k][i], expected[k][i], tolerance, "%s, %s, step %d", m->name, m->state_names[i],
+                k) && good;
             worst = fmax(worst, fabs(history[k][i] - expected[k][i]) / tolerance);
         }
     ok(good, "%s: %d steps in float beside double, %.2f of the tolerance", m->name, STEPS, worst);

@@ -1,6 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# archive.sh SOURCE OUT_GCC OUT_CLANG: drive.c, CVODE's wrapper and the runtime, with sanitizers, as one archive for each compiler.
+# archive.sh SOURCE OUT_GCC OUT_CLANG: drive.c, CVODE's wrapper and the runtime, with sanitizers, as one archive for
+# each compiler.
 set -eu
 source=$1
 work=$(mktemp -d "${TMPDIR:-/tmp}/plgen.XXXXXX")
@@ -14,7 +15,8 @@ make_archive() { # CC OUT
 	mkdir "$work/$cc"
 	(
 		cd "$work/$cc"
-		"$cc" -std=gnu11 -O1 -fsanitize=address,undefined -fno-sanitize-recover=all -I"$source/runtime" -I"$source/tests/leftover" -c "$source"/runtime/*.c "$source/tests/fuzz/drive.c"
+		"$cc" -std=gnu11 -O1 -fsanitize=address,undefined -fno-sanitize-recover=all -I"$source/runtime" \
+			-I"$source/tests/leftover" -c "$source"/runtime/*.c "$source/tests/fuzz/drive.c"
 		"$cc" -std=gnu11 -O1 -I"$source/tests/leftover" -c "$source/tests/leftover/truth.c"
 		rm -f "$out"
 		ar rcsD "$out" ./*.o

@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Sourced by grammar.sh and ../combinations/combinations.sh, with $plgen, $source (the project) and $folder (of the archives that
-# archive.sh makes) set and $work the current folder: specs become C, many of them one program, each run by drive.c.
+# Sourced by grammar.sh and ../combinations/combinations.sh, with $plgen, $source (the project) and $folder (of the
+# archives that archive.sh makes) set and $work the current folder: specs become C, many of them one program, each run
+# by drive.c.
 #
 #     batch_new               no models
-#     batch_add ID SPEC       SPEC's lines of comment name its options, as grammar.c has them; ID.again.c: its second writing, if it is there
+#     batch_add ID SPEC       SPEC's lines of comment name its options, as grammar.c has them; ID.again.c: its second
+#     writing, if it is there
 #                             what is wrong goes to ID.wrong; `said` becomes made, refused or broken
 #     batch_build             compiles and links
 #     batch_run ID            the same for its run
@@ -29,7 +31,7 @@ head_of() { # SPEC WHAT
 # make_c ID SPEC OPTIONS: 0, or the status of plgen, in which case ID.said has its words
 make_c() {
 	# shellcheck disable=SC2086
-	timeout 60 "$plgen" --rhs --prefix "$1" $3 -o "$1.c" "$2" >"$1.out" 2>"$1.said" </dev/null
+	timeout 1200 "$plgen" --rhs --prefix "$1" $3 -o "$1.c" "$2" >"$1.out" 2>"$1.said" </dev/null
 }
 
 # what plgen said with this status: nothing if all is as it should be
@@ -40,7 +42,7 @@ why_refused() { # ID STATUS
 			elif ! grep -q -E -f "$source/tests/fuzz/refusals.list" "$1.said"; then
 				echo "status $2: $(grep -m 1 ': error: ' "$1.said")"
 			fi ;;
-		124) echo 'plgen takes over 60 s' ;;
+		124) echo 'plgen takes over 1200 s' ;;
 		*) echo "plgen ends with status $2: $(grep -m 3 -e 'ERROR' -e 'runtime error' "$1.said" | tr '\n' ' ')" ;;
 	esac
 }
@@ -70,7 +72,8 @@ batch_add() {
 		return
 	fi
 	# the plain model: no state left out, in double
-	plain=$(printf '%s\n' "$given" | awk '{ for (i = 1; i < NF; i++) if ($i == "-D" || $i == "--step") printf " %s %s", $i, $(i + 1) }')
+	plain=$(printf '%s\n' "$given" | awk '{ for (i = 1; i < NF; i++) if ($i == "-D" || $i == "--step") printf " %s %s",
+		$i, $(i + 1) }')
 	whole=$id
 	code="$id.c"
 	case $given in
@@ -85,7 +88,8 @@ batch_add() {
 	tuned=
 	if [ -n "$retune" ]; then
 		tuned=t$id
-		if ! make_c "$tuned" "$spec" "$(printf '%s\n' "$retune" | sed 's/ step=/ --step /; s/ \([A-Za-z_0-9]*=\)/ -D \1/g')"; then
+		if ! make_c "$tuned" "$spec" \
+			"$(printf '%s\n' "$retune" | sed 's/ step=/ --step /; s/ \([A-Za-z_0-9]*=\)/ -D \1/g')"; then
 			echo "with other params: $(grep -m 1 error "$tuned.said")" >"$id.wrong"
 			return
 		fi
@@ -96,7 +100,7 @@ batch_add() {
 	if [ "$scheme" = exact ] && ! grep -q 'INPUTS = [1-9]' "$id.h" && ! grep -q 'piecewise linear' "$id.c"; then
 		horizon=$(sed -n "s/^#define [A-Z0-9_]*_H \([-0-9.e]*\).*/\1/p" "$whole.h" | awk '{ printf "%.17g", 32.5 * $1 }')
 		# shellcheck disable=SC2086
-		timeout 60 "$plgen" --solution "$horizon" $plain "$spec" >"$id.csv" 2>"$id.said" </dev/null
+		timeout 1200 "$plgen" --solution "$horizon" $plain "$spec" >"$id.csv" 2>"$id.said" </dev/null
 		status=$?
 		if [ $status -eq 0 ]; then
 			solution="\"$id.csv\""
@@ -133,7 +137,9 @@ batch_add() {
 				echo "void ${id}_$function(double t, const double *y, const double *u, const double *top, double *out);"
 			done
 		fi
-		echo "SUBJECT {\"$id\", $model, &${whole}_model, ${whole}_slopes, \"$scheme\", \"$class\", \"$(head_of "$spec" changes)\", $solution, $selftest," \
+		changes=$(head_of "$spec" changes)
+		echo "SUBJECT {\"$id\", $model, &${whole}_model, ${whole}_slopes, \"$scheme\", \"$class\", \"$changes\"," \
+			"$solution, $selftest," \
 			"$again, ${tuned:+&}${tuned:-NULL}${tuned:+_model}, \"$retune\"},"
 	} >"$id.subject"
 	printf '%s\n' "$id" >>"subjects_$cc.list"
@@ -185,8 +191,10 @@ batch_build() {
 			[ -f "$id.again.c" ] && objects="$objects $id.again.o"
 		done <"compiled_$cc.list"
 		# shellcheck disable=SC2086
-		$cc -std=gnu11 -O1 -w $sanitizers -I. -I"$source/runtime" -I"$source/tests/fuzz" "subjects_$cc.c" $objects "$folder/drive_$cc.a" \
-			-lsundials_cvode -lsundials_arkode -lsundials_nvecserial -lm -o "batch_$cc" >"link_$cc.said" 2>&1 || sed 's/^/# /' "link_$cc.said" | head -n 20
+		$cc -std=gnu11 -O1 -w $sanitizers -I. -I"$source/runtime" -I"$source/tests/fuzz" "subjects_$cc.c" $objects \
+			"$folder/drive_$cc.a" \
+			-lsundials_cvode -lsundials_arkode -lsundials_nvecserial -lm -o "batch_$cc" >"link_$cc.said" 2>&1 ||
+				sed 's/^/# /' "link_$cc.said" | head -n 20
 	done
 }
 
@@ -198,11 +206,12 @@ batch_run() {
 		echo "$cc: the program does not link" >"$id.wrong"
 		return
 	fi
-	timeout 60 "./batch_$cc" "$id" >"$id.ran" 2>"$id.err" </dev/null
+	timeout 1200 "./batch_$cc" "$id" >"$id.ran" 2>"$id.err" </dev/null
 	status=$?
 	if [ $status -ne 0 ]; then
 		{
-			[ $status -le 1 ] || echo "$cc: ends with status $status: $(grep -m 2 -e ERROR -e 'runtime error' "$id.err" | tr '\n' ' ')"
+			[ $status -le 1 ] ||
+				echo "$cc: ends with status $status: $(grep -m 2 -e ERROR -e 'runtime error' "$id.err" | tr '\n' ' ')"
 			head -n 6 "$id.ran"
 		} >"$id.wrong"
 	fi

@@ -1,14 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* drive NAME: one of the subjects, by every function that its descriptor has, against CVODE on NAME_rhs, the closed form,
- * and the spec's second writing.  Prints what differs, both values, and ends with 1; else a line of the largest differences.
+/* drive NAME: one of the subjects, by every function that its descriptor has, against CVODE on NAME_rhs, the closed
+ * form, and the spec's second writing. Prints what differs, both values, and ends with 1; else a line of the largest
+ * differences.
  *
  * Bounds, over the largest value of any state in the run (of an output: of any output, or state):
- *     states against CVODE, rtol 1e-10   exact 1e-6; a smooth leftover 1e-4, 3e-3 and 5e-2 in order 4, 2 and 1; with kinks
+ * states against CVODE, rtol 1e-10 exact 1e-6; a smooth leftover 1e-4, 3e-3 and 5e-2 in order 4, 2 and 1; with kinks
  *                                        1e-2, in order 1 5e-2
  *     the closed form                    1e-12 per step; of an output named inner... over its own largest value, or 1
  *     rhs, outputs against the second writing    1e-10, of the largest slope or output
  *     jump, set, retune                  1e-12 per step; run, restore: to the last bit; at(0), at(h): 1e-12
- *     selftest                           100 units in the last place; 1000 at velocities that damping wears down slowly from 100,
+ * selftest 100 units in the last place; 1000 at velocities that damping wears down slowly from 100,
  *                                        where all steps round alike
  * In float 2e-5 per step for what is 1e-12 in double, and at least 2e-3 beside CVODE. */
 #include "drive.h"
@@ -26,7 +27,8 @@ enum { MOST = 80, STEPS = 32, LATER = 12 };
 static const struct subject *of;
 static int states, inputs, outputs, complaints;
 static double h, size, out_size;        /* step; of the largest state and output in the run */
-static double own[MOST];                /* of an output that is judged by itself, at least 1; else of any output or state */
+/* of an output that is judged by itself, at least 1; else of any output or state */
+static double own[MOST];
 static bool in_float;
 static double worst_truth, worst_solution;
 
@@ -458,7 +460,8 @@ static void judge_steps(void *s, int from, int steps, double step, struct row *f
 		for (int i = 0; i < inputs; i++)
 			u[i] = ramps[i] ? sampled[i] : u[i];
 		if (all && of->wanted && !at_a_change(t + step) && !(in_float && size > 1e3) && highest(t + step, found, u, top)) {
-			of->wanted(model_time(s), found, u, top, expected);     /* at the model's own states: of large ones a float tells no differences */
+			/* at the model's own states: of large ones a float tells no differences */
+			of->wanted(model_time(s), found, u, top, expected);
 			for (int i = 0; i < outputs; i++)
 				good = near(seen[i], expected[i], (in_float ? 1e-4 : 1e-10) * fmax(out_size, size), "output of these states",
 					t + step, output_name(i)) && good;
@@ -467,7 +470,8 @@ static void judge_steps(void *s, int from, int steps, double step, struct row *f
 			of->wanted(t + step, y, u, top, expected);              /* at CVODE's */
 			for (int i = 0; i < outputs; i++)
 				if (strncmp(output_name(i), "inner", 5) == 0 && !is(of->scheme, "pl"))
-					good = near(seen[i], expected[i], fmax(10 * bound(), 1e-4) * own[i], "output against CVODE", t + step, output_name(i)) && good;
+					good = near(seen[i], expected[i], fmax(10 * bound(), 1e-4) * own[i], "output against CVODE",
+						t + step, output_name(i)) && good;
 		} else if (!all && !at_a_change(t + step)) {
 			of->whole->set(w, t + step, y);
 			of->whole->out(w, expected);
@@ -508,7 +512,8 @@ static void judge_solution(void)
 		bool good = near(row[k].t, t, in_float ? 1e-6 : 1e-13, "time", t, "t");
 		for (int i = 0; i < outputs; i++) {
 			const double expected = strtod(p + 1, &p);
-			good = near(row[k].out[i], expected, rounding(k) * own[i], "output against the closed form", t, output_name(i)) && good;
+			good = near(row[k].out[i], expected, rounding(k) * own[i], "output against the closed form", t,
+				output_name(i)) && good;
 			worst_solution = fmax(worst_solution, fabs(row[k].out[i] - expected) / own[i]);
 		}
 		if (!good)

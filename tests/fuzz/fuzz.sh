@@ -35,7 +35,7 @@ check()         # STATUS: prints what is wrong
 	   grep -q ': error: ' "$work/err" || echo 'status 1 without a message' ;;
 	2) [ -s "$work/out" ] && echo 'output with status 2'
 	   grep -q '^plgen: error: ' "$work/err" || echo 'status 2 without a message' ;;
-	124) echo 'takes over 30 s' ;;
+	124) echo 'takes over 600 s' ;;
 	*) echo "exit status $1" ;;
 	esac
 	grep -q 'Sanitizer\|runtime error' "$work/err" && echo 'the sanitizer complains'
@@ -91,7 +91,7 @@ while [ "$seed" -lt $((first + count)) ]; do
 	while [ "$seed" -lt "$end" ]; do
 		"$mutate" "$seed" "$good"/*.spec -- "$bad"/*/*.spec > "$work/in.spec" || exit 1
 		options "$seed"
-		timeout 30 "$plgen" $arguments "$work/in.spec" > "$work/out" 2> "$work/err" < /dev/null
+		timeout 600 "$plgen" $arguments "$work/in.spec" > "$work/out" 2> "$work/err" < /dev/null
 		why=$(check $?)
 		if [ -n "$why" ]; then
 			failed=$((failed + 1))

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* grammar SEED SPEC [C]: a valid spec of a small model, and what it says once more as C, both written from one tree of random choices; the
- * same for the same seed.  Lines of comment at its head are for grammar.sh:
+/* grammar SEED SPEC [C]: a valid spec of a small model, and what it says once more as C, both written from one tree of
+ * random choices; the same for the same seed.  Lines of comment at its head are for grammar.sh:
  *     # options: of plgen, besides --rhs and --prefix
  *     # class: linear, piecewise (linear in each region), smooth or kinked (a leftover; kinked: a slope of it jumps)
  *     # changes: times at which a load changes its formula [s]
@@ -95,7 +95,8 @@ static struct both join2(const char *spec, const char *c, int count, const struc
 	return (struct both){ copy(line[0]), copy(line[1]) };
 }
 
-#define JOIN2(spec, c, ...) join2(spec, c, (int)(sizeof(struct both[]){ __VA_ARGS__ } / sizeof(struct both)), (struct both[]){ __VA_ARGS__ })
+#define JOIN2(spec, c, ...) \
+	join2(spec, c, (int)(sizeof(struct both[]){ __VA_ARGS__ } / sizeof(struct both)), (struct both[]){ __VA_ARGS__ })
 #define JOIN(form, ...) JOIN2(form, form, __VA_ARGS__)
 
 /* ---- what is declared ---- */
@@ -116,7 +117,8 @@ static int params;
 static char changes[400];
 static enum { LINEAR, PIECEWISE, SMOOTH, KINKED } class;
 static bool tunable;
-static enum { GROUNDED, TURNS, TURNS_FAR } drive;  /* may it move as a whole; and has it done so: positions of 1e4, velocities of 100 */
+/* may it move as a whole; and has it done so: positions of 1e4, velocities of 100 */
+static enum { GROUNDED, TURNS, TURNS_FAR } drive;
 static char *ratio[MOST_COORDS];                /* how far each coordinate moves then */
 static char *spec_lets = "", *c_lets = "";
 static char *spec_equations = "", *c_rows = "";
@@ -137,8 +139,10 @@ static struct both derivative(int which, int component, int primes)
 {
 	const struct coord *x = &coord[which];
 	const int i = component < 0 ? 0 : component;
-	char *const spec = component < 0 ? text("%s%.*s", x->name, primes, "''") : text("%s[%d]%.*s", x->name, component + 1, primes, "''");
-	return (struct both){ spec, primes == x->order ? text("top[%d]", x->top + i) : text("y[%d]", (primes ? x->velocity : x->first) + i) };
+	char *const spec = component < 0 ? text("%s%.*s", x->name, primes, "''") : text("%s[%d]%.*s", x->name,
+		component + 1, primes, "''");
+	return (struct both){ spec, primes == x->order ? text("top[%d]", x->top + i)
+		: text("y[%d]", (primes ? x->velocity : x->first) + i) };
 }
 
 static int any_component(int which)
@@ -281,11 +285,15 @@ static struct both regional(int depth)
 	case 3: return JOIN2("@*min(@, @)", "@*fmin(@, @)", k, e, a);
 	case 4: return JOIN2("@*abs(@)", "@*fabs(@)", k, e);
 	case 5: return JOIN("(@ > @ ? @*(@ - @) : 0)", e, a, k, e, a);
-	case 6: return velocity(&v) ? JOIN("(@ > 0 ? @*@ : @*@)", v, fixed(0.1, 2), v, fixed(0.1, 2), v) : JOIN2("@*abs(@)", "@*fabs(@)", k, e);
-	case 7: return JOIN2("table(@; -1, @; -0.1, 0; 0.2, @)", "table3(@, -1, @, -0.1, 0, 0.2, @)", e, fixed(-3, -1), fixed(1, 3));
-	case 8: return JOIN2("@*sgn(@ - @)", "@*sgn(@ - @)", fixed(0.05, 0.5), position(), fixed(0.001, 0.002));    /* nothing rests there */
+	case 6: return velocity(&v) ? JOIN("(@ > 0 ? @*@ : @*@)", v, fixed(0.1, 2), v, fixed(0.1, 2), v)
+		: JOIN2("@*abs(@)", "@*fabs(@)", k, e);
+	case 7: return JOIN2("table(@; -1, @; -0.1, 0; 0.2, @)", "table3(@, -1, @, -0.1, 0, 0.2, @)", e, fixed(-3, -1),
+		fixed(1, 3));
+	/* nothing rests there */
+	case 8: return JOIN2("@*sgn(@ - @)", "@*sgn(@ - @)", fixed(0.05, 0.5), position(), fixed(0.001, 0.002));
 	case 9: return depth > 0 ? JOIN("(@ - @)", regional(depth - 1), regional(0)) : JOIN("deadzone(@, -@, @)", e, a, a);
-	case 10: return JOIN2("deadzone(max(@, 0), @, @)", "deadzone(fmax(@, 0), @, @)", e, fixed(0.01, 0.1), fixed(0.11, 0.3));
+	case 10: return JOIN2("deadzone(max(@, 0), @, @)", "deadzone(fmax(@, 0), @, @)", e, fixed(0.01, 0.1),
+		fixed(0.11, 0.3));
 	default: return JOIN2("@*max(@, @)", "@*fmax(@, @)", k, e, position());
 	}
 }
@@ -420,7 +428,8 @@ static struct both shaft(int i, int p, bool second)
 	struct both force = JOIN("@*@", k, d);
 	const int kind = below(10);
 	if (class == PIECEWISE && kind < 6)
-		force = kind < 2 ? JOIN("@*deadzone(@, -@, @)", k, d, a, fixed(0.05, 0.3)) : kind < 3 ? JOIN2("@*max(@ - @, 0)", "@*fmax(@ - @, 0)", k, d, a)
+		force = kind < 2 ? JOIN("@*deadzone(@, -@, @)", k, d, a, fixed(0.05, 0.3)) : kind < 3 ? JOIN2("@*max(@ - @, 0)",
+			"@*fmax(@ - @, 0)", k, d, a)
 			: kind < 4 ? JOIN2("table(@; -1, -@; -0.1, 0; 0.2, @)", "table3(@, -1, -@, -0.1, 0, 0.2, @)", d, k, a)
 			: kind < 5 ? JOIN2("@*(@ + abs(@))", "@*(@ + fabs(@))", k, d, d) : JOIN("@*@ + @*clip(@, -@, @)", k, d, k, d, a, a);
 	if (class >= SMOOTH && kind < 5)
@@ -431,7 +440,8 @@ static struct both shaft(int i, int p, bool second)
 	if (second && chance(60))
 		force = JOIN("@ + @*@", force, factor(0.05, 1), between(i, p, 1));
 	else if (chance(8))             /* an inerter, or what the other's rate drags along */
-		force = JOIN("@ + @*@", force, fixed(0.05, 0.2), between(i, p, coord[i].order < coord[p].order ? coord[i].order : coord[p].order));
+		force = JOIN("@ + @*@", force, fixed(0.05, 0.2),
+			between(i, p, coord[i].order < coord[p].order ? coord[i].order : coord[p].order));
 	return force;
 }
 
@@ -448,7 +458,8 @@ static void drive_equations(void)
 	struct both sum[MOST_COORDS];
 	bool integrates[MOST_COORDS] = { false };
 	for (int i = 0; i < coords; i++) {
-		sum[i] = JOIN("@*@", coord[i].order == 1 && class != LINEAR ? factor(3, 6) : factor(0.5, 3), derivative(i, -1, coord[i].order));
+		sum[i] = JOIN("@*@", coord[i].order == 1 && class != LINEAR ? factor(3, 6) : factor(0.5, 3),
+			derivative(i, -1, coord[i].order));
 		if (coord[i].order == 1 && i > 0 && coord[i - 1].order == 2 && motion(i) == motion(i - 1) && chance(25)) {
 			sum[i] = JOIN("@ - @", derivative(i, -1, 1), derivative(i - 1, -1, 1));
 			integrates[i] = true;
@@ -469,7 +480,8 @@ static void drive_equations(void)
 		}
 		sum[i] = JOIN("@ + @", sum[i], f);
 		if (!integrates[p] && chance(92))
-			sum[p] = motion(i) == motion(p) ? JOIN("@ - (@)", sum[p], f) : JOIN("@ - @*(@)", sum[p], same(text("%.10g", motion(i) / motion(p))), f);
+			sum[p] = motion(i) == motion(p) ? JOIN("@ - (@)", sum[p], f) : JOIN("@ - @*(@)", sum[p],
+				same(text("%.10g", motion(i) / motion(p))), f);
 		if (inners < 4 && !strstr(f.c, "top[")) {
 			const struct both seen = chance(50) ? d : f;
 			add(&spec_inner, text("output inner%d = %s\n", inners, seen.spec));
@@ -479,7 +491,8 @@ static void drive_equations(void)
 	if (chance(12) && coord[0].order == 2)
 		sum[0] = JOIN("@ + @*@", sum[0], fixed(0.01, 0.1), derivative(0, -1, 1));
 	for (int i = 0; i < coords; i++)
-		equation(sum[i], chance(60) ? drive_load() : coord[i].order == 1 && drive == TURNS_FAR ? same(text("%g", 100 * motion(i))) : same("0"));
+		equation(sum[i], chance(60) ? drive_load() : coord[i].order == 1 &&
+			drive == TURNS_FAR ? same(text("%g", 100 * motion(i))) : same("0"));
 }
 
 static void declare_drive(void)
@@ -528,7 +541,8 @@ static void vector_equation(int i)
 {
 	const struct coord *q = &coord[i];
 	const double k = 4 + below(8), c = 0.25 * below(4);
-	const bool cubic = (class == SMOOTH || class == KINKED) && chance(50), mass = chance(50) && q->order == 2, loaded = chance(70);
+	const bool cubic = (class == SMOOTH || class == KINKED) && chance(50), mass = chance(50) && q->order == 2,
+		loaded = chance(70);
 	const bool gap = class == PIECEWISE && chance(40) && q->size <= 4;
 	const struct both f = loaded ? force() : same("0");
 	add(&spec_lets, text("matrix K%d = %s\n", i, matrix_text(q->size, k, -1)));
@@ -540,14 +554,17 @@ static void vector_equation(int i)
 	add(&spec_lets, text("matrix f%d = %s]\n", i, shape));
 	char *const extra = cubic ? text(" + 0.3*sin(%s)", q->name) : gap ? text(" + 3*deadzone(%s, -0.1, 0.2)", q->name) : "";
 	if (q->order == 2)
-		add(&spec_equations, text("%s%s'' + %g*%s' + K%d*%s%s = f%d*(%s)\n", mass ? text("M%d*", i) : "", q->name, c, q->name, i, q->name, extra, i, f.spec));
+		add(&spec_equations, text("%s%s'' + %g*%s' + K%d*%s%s = f%d*(%s)\n", mass ? text("M%d*", i) : "", q->name, c,
+			q->name, i, q->name, extra, i, f.spec));
 	else
-		add(&spec_equations, text("%s' = -K%d*%s%s + f%d*(%s)\n", q->name, i, q->name, cubic ? text(" - 0.3*sin(%s)", q->name) : gap ? text(" - 3*deadzone(%s, -0.1, 0.2)", q->name) : "", i, f.spec));
+		add(&spec_equations, text("%s' = -K%d*%s%s + f%d*(%s)\n", q->name, i, q->name, cubic ? text(" - 0.3*sin(%s)",
+			q->name) : gap ? text(" - 3*deadzone(%s, -0.1, 0.2)", q->name) : "", i, f.spec));
 	for (int r = 0; r < q->size; r++) {
 		const char *const x = derivative(i, r, 0).c;
 		const char *const own = cubic ? text(" + 0.3*sin(%s)", x) : gap ? text(" + 3*deadzone(%s, -0.1, 0.2)", x) : "";
 		const char *const head = derivative(i, r, q->order).c;
-		add_row(text("%g*%s + %s + %s%s - %d*(%s)", mass ? 1 + r * 0.5 : 1, head, q->order == 2 ? text("%g*%s", c, derivative(i, r, 1).c) : "0.0",
+		add_row(text("%g*%s + %s + %s%s - %d*(%s)", mass ? 1 + r * 0.5 : 1, head,
+			q->order == 2 ? text("%g*%s", c, derivative(i, r, 1).c) : "0.0",
 			row_times(i, r, 0, k, -1), own, r % 3, f.c));
 	}
 }
@@ -555,13 +572,19 @@ static void vector_equation(int i)
 /* Two masses from a sketch. */
 static void sketch(int i)
 {
-	const struct both m1 = factor(0.5, 3), m2 = factor(0.5, 3), k1 = factor(1, 40), k2 = factor(1, 10), c = factor(0.05, 1), f = force();
+	const struct both m1 = factor(0.5, 3), m2 = factor(0.5, 3), k1 = factor(1, 40), k2 = factor(1, 10),
+		c = factor(0.05, 1), f = force();
 	const char *const a = coord[i].name, *const b = coord[i + 1].name;
-	add(&spec_equations, text("mass %s at %s\nmass %s at %s\nspring %s between %s, ground\n", m1.spec, a, m2.spec, b, k1.spec, a));
-	add(&spec_equations, text("spring %s between %s, %s\ndamper %s between %s, %s\nforce %s on %s\n", k2.spec, a, b, c.spec, a, b, f.spec, b));
-	const struct both xa = derivative(i, -1, 0), va = derivative(i, -1, 1), xb = derivative(i + 1, -1, 0), vb = derivative(i + 1, -1, 1);
-	add_row(text("%s*%s + %s*%s + %s*(%s - %s) + %s*(%s - %s)", m1.c, derivative(i, -1, 2).c, k1.c, xa.c, k2.c, xa.c, xb.c, c.c, va.c, vb.c));
-	add_row(text("%s*%s + %s*(%s - %s) + %s*(%s - %s) - (%s)", m2.c, derivative(i + 1, -1, 2).c, k2.c, xb.c, xa.c, c.c, vb.c, va.c, f.c));
+	add(&spec_equations, text("mass %s at %s\nmass %s at %s\nspring %s between %s, ground\n", m1.spec, a, m2.spec, b,
+		k1.spec, a));
+	add(&spec_equations, text("spring %s between %s, %s\ndamper %s between %s, %s\nforce %s on %s\n", k2.spec, a, b,
+		c.spec, a, b, f.spec, b));
+	const struct both xa = derivative(i, -1, 0), va = derivative(i, -1, 1), xb = derivative(i + 1, -1, 0),
+		vb = derivative(i + 1, -1, 1);
+	add_row(text("%s*%s + %s*%s + %s*(%s - %s) + %s*(%s - %s)", m1.c, derivative(i, -1, 2).c, k1.c, xa.c, k2.c, xa.c,
+		xb.c, c.c, va.c, vb.c));
+	add_row(text("%s*%s + %s*(%s - %s) + %s*(%s - %s) - (%s)", m2.c, derivative(i + 1, -1, 2).c, k2.c, xb.c, xa.c, c.c,
+		vb.c, va.c, f.c));
 }
 
 /* ---- outputs ---- */
@@ -658,8 +681,10 @@ static char *options(void)
 }
 
 /* Names that other libraries have taken too. */
-static const char *const odd[] = { "I", "complex", "NULL", "errno", "math_errhandling", "HUGE_VAL", "uint64_t", "x0", "E", "e1", "lo", "work", "s",
-	"y", "u", "h", "k", "left", "part1", "size", "fabs", "M_PI", "i", "q1", "load1", "phase", "stdin", "isnan", "NAN", "signal", "double_t", "a_dot" };
+static const char *const odd[] = { "I", "complex", "NULL", "errno", "math_errhandling", "HUGE_VAL", "uint64_t", "x0",
+    "E", "e1", "lo", "work", "s",
+	"y", "u", "h", "k", "left", "part1", "size", "fabs", "M_PI", "i", "q1", "load1", "phase", "stdin", "isnan", "NAN",
+		"signal", "double_t", "a_dot" };
 
 static void declare(void)
 {
@@ -710,7 +735,8 @@ static char *initial(void)
 			for (int r = 0; r < (coord[i].size ? coord[i].size : 1); r++)
 				if (drive == TURNS_FAR || (chance(70) && r < 3))
 					add(&all, text("%s%s = %.3f", *all ? ", " : "init ", derivative(i, coord[i].size ? r : -1, primes).spec,
-						(below(1201) - 600) * (primes ? 0.002 : drive && class != LINEAR ? 0.0003 : 0.001) + (drive == TURNS_FAR ? motion(i) * (primes ? 100 : 1e4) : 0)));
+						(below(1201) - 600) * (primes ? 0.002 : drive && class != LINEAR ? 0.0003 : 0.001) +
+							(drive == TURNS_FAR ? motion(i) * (primes ? 100 : 1e4) : 0)));
 	return *all ? text("%s\n", all) : all;
 }
 
@@ -769,9 +795,11 @@ static void write_c(FILE *file, const char *given)
 	for (int i = 0; i < coords; i++)
 		for (int r = 0; r < (coord[i].size ? coord[i].size : 1); r++)
 			fprintf(file, ", %d", coord[i].order);
-	fprintf(file, "};\n\nvoid NAME(residual)(double t, const double *y, const double *u, const double *top, double *r)\n{\n%s%s", names, c_lets);
+	fprintf(file, "};\n\nvoid NAME(residual)(double t, const double *y, const double *u, const double *top, double "
+	    "*r)\n{\n%s%s", names, c_lets);
 	fprintf(file, "\t(void)t, (void)y, (void)u;\n%s}\n\n", c_rows);
-	fprintf(file, "void NAME(wanted)(double t, const double *y, const double *u, const double *top, double *out)\n{\n%s%s", names, c_lets);
+	fprintf(file, "void NAME(wanted)(double t, const double *y, const double *u, const double *top, double *out)\n{\n"
+	    "%s%s", names, c_lets);
 	fprintf(file, "\t(void)t, (void)y, (void)u, (void)top;\n");
 	if (outputs)
 		fprintf(file, "%s}\n", c_outputs);

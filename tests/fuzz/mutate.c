@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* mutate SEED GOOD... -- BAD...: a spec made by accident from good and bad ones, mostly good; the same for the same seed
- * and files. */
+/* mutate SEED GOOD... -- BAD...: a spec made by accident from good and bad ones, mostly good; the same for the same
+ * seed and files. */
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -129,43 +129,71 @@ static void splice_token(struct text *text, const struct text *other)
 static void insert_word(struct text *text)
 {
 	static const char *const word[] = {
-		"model", "param ", "coord ", "init ", "let ", "output ", "step ", "scheme pl\n", "input u\n", "sin(", "cos(", "exp(", "log(", "sqrt(", "abs(",
-		"atan2(", "min(", "clip(", "deadzone(", "table(", "pi", "t", "x''", "x1'", "1/0", "0^0", "^-1", "^0.5", "^2^3", "''", "(", ")", "((((((((", "))))))))",
+		"model", "param ", "coord ", "init ", "let ", "output ", "step ", "scheme pl\n", "input u\n", "sin(", "cos(",
+			"exp(", "log(", "sqrt(", "abs(",
+		"atan2(", "min(", "clip(", "deadzone(", "table(", "pi", "t", "x''", "x1'", "1/0", "0^0", "^-1", "^0.5", "^2^3",
+			"''", "(", ")", "((((((((", "))))))))",
 		"?", "? 1 : 0", "==", "<= ", "1e9999", "1e-9999", "1e308", "-", "- - - -", "# ", "\"", ",", ";", "= 0", "0*", "*t",
-		"matrix ", "input u hold first\n", "hold first", "mass 1 at ", "spring 3 between ", "damper 0.1 between ", "force ", ", ground", " on ", "u", "u'", "q[2]", "q[2]'", "[2]", "[1",
-		"[2, -1; -1, 2]", "[1; 2]", "*[", "]", "t < 1 ? ", " : 0", "t^3", "t^33", "t*", "exp(-2*t)", "exp(t)*cos(3*t)", "table(t; 0, 0; 1, 2; 3, 1)", "abs(t - 1)", "max(t, 0.005)", "\"mtx_good.mtx\"",
-		"operator at ", "at x = 0", ", x' = 1", ", t = 2", ", 0, 4, 8", "scheme etdrk4\n", "scheme nc3\n", "scheme bm3\n", "etd1", "etdrk2", "nc2", "dq4", "x^3", "*x^2", "*x1*x2", "*x'", "*u",
-		"tan(", "sgn(", "sinh(", "cosh(", "tanh(", "asin(", "acos(", "atan(", "max(", "table(x; -1, 2; 0, 0; 1, 3)", "clip(x1, -0.1, 0.1)", "deadzone(x', -1, 1)", "1/x", "x^-1", "x^x", "x^1.5",
-		"x > 0 ? x : 0", "x' < t ? 1 : ", "sqrt(x^2 + 1)", "atan2(x, x')", "min(x, t)", "cos(t)*x", "x*x''", "sin(x'')", "\n", "\r\n", "\xef\xbb\xbf", "\xcf\x89"
+		"matrix ", "input u hold first\n", "hold first", "mass 1 at ", "spring 3 between ", "damper 0.1 between ",
+			"force ", ", ground", " on ", "u", "u'", "q[2]", "q[2]'", "[2]", "[1",
+		"[2, -1; -1, 2]", "[1; 2]", "*[", "]", "t < 1 ? ", " : 0", "t^3", "t^33", "t*", "exp(-2*t)", "exp(t)*cos(3*t)",
+			"table(t; 0, 0; 1, 2; 3, 1)", "abs(t - 1)", "max(t, 0.005)", "\"mtx_good.mtx\"",
+		"operator at ", "at x = 0", ", x' = 1", ", t = 2", ", 0, 4, 8", "scheme etdrk4\n", "scheme nc3\n",
+			"scheme bm3\n", "etd1", "etdrk2", "nc2", "dq4", "x^3", "*x^2", "*x1*x2", "*x'", "*u",
+		"tan(", "sgn(", "sinh(", "cosh(", "tanh(", "asin(", "acos(", "atan(", "max(", "table(x; -1, 2; 0, 0; 1, 3)",
+			"clip(x1, -0.1, 0.1)", "deadzone(x', -1, 1)", "1/x", "x^-1", "x^x", "x^1.5",
+		"x > 0 ? x : 0", "x' < t ? 1 : ", "sqrt(x^2 + 1)", "atan2(x, x')", "min(x, t)", "cos(t)*x", "x*x''", "sin(x'')",
+			"\n", "\r\n", "\xef\xbb\xbf", "\xcf\x89"
 	};
 	size_t at, choice = below(sizeof word / sizeof *word);
 	token(text, &at);
 	replace(text, at, 0, word[choice], strlen(word[choice]));
 }
 
-/* A whole statement, at the start of a line. Most name what they need, so that a spec stays good more often than by splicing. */
+/* A whole statement, at the start of a line. Most name what they need, so that a spec stays good more often than by
+ * splicing. */
 static void insert_statement(struct text *text)
 {
 	static const char *const statement[] = {
-		"coord q[2]\n", "coord q[3], z\n", "q'' + q = 0\n", "q' + q = 0\n", "M*q'' + C*q' + K*q = f*cos(w*t)\n", "q' = K*q + f*u\n", "z' + z = x\n", "z'' + z = q[1]\n",
-		"coord z\n", "coord z\nz' = -z\n", "coord z\nz' + 2*z = x1\n", "coord q[2]\nmatrix K = [2, -1; -1, 2]\nq'' + K*q = 0\n", "coord q[2]\nmatrix K = [2, -1; -1, 2], f = [1; t]\nq' + K*q = f\n",
-		"coord q[2]\nmatrix K = \"mtx_good.mtx\", M = 3*K + K*K\nM*q'' + 0.1*K*q' + K*q = [1; 0]*(t < 0.005 ? sin(t) : 0)\n", "matrix K = \"mtx_good.mtx\"\n",
-		"matrix M = [1, 0; 0, 2]\n", "matrix f = [1; 0]\n", "matrix C = 0.1*M + 0.01*K\n", "init q[2] = 1, q[1]' = 2\n", "init q = [1; 2]\n", "output q, q'\n", "output s = [1, 1]*q\n",
-		"output q''\n", "output x1''\n", "output a = 2*x1'' - u + t\n", "output x1, s = x1 + x2\n", "output e = x1^2 + sin(x2)\n", "output d = t < 0.015 ? x1 : x2\n",
-		"input u\n", "input u hold first\n", "input u hold first, v\n", "input u\ncoord z\nz'' + 4*z = u\noutput z''\n", "input u hold first\ncoord z\nz'' + 4*z = 3*u + u'\n",
-		"mass 1 at x\n", "mass m1 at x1\n", "mass 2 at q[2]\n", "spring k1 between x1, ground\n", "spring 3 between x, y\n", "damper 0.2 between x1, x2\n", "force cos(3*t) on x1\n",
-		"force u on x1\n", "coord z\nmass 1 at z\nspring 100 between z, ground\nforce exp(-t) on z\n", "coord z\ndamper 1 between z, x1\nspring 2 between z, ground\n",
-		"let s = t < 0.015 ? 10*sin(pi*t/0.6) : 0\n", "let s = table(t; 0, 0; 0.013, 2; 0.025, 1)\n", "let s = t^3*exp(-2*t)*cos(3*t)\n", "coord z\nz'' = s\n", "coord z\nz'' + 25*z = t*cos(5*t)\n",
+		"coord q[2]\n", "coord q[3], z\n", "q'' + q = 0\n", "q' + q = 0\n", "M*q'' + C*q' + K*q = f*cos(w*t)\n",
+			"q' = K*q + f*u\n", "z' + z = x\n", "z'' + z = q[1]\n",
+		"coord z\n", "coord z\nz' = -z\n", "coord z\nz' + 2*z = x1\n",
+			"coord q[2]\nmatrix K = [2, -1; -1, 2]\nq'' + K*q = 0\n",
+			"coord q[2]\nmatrix K = [2, -1; -1, 2], f = [1; t]\nq' + K*q = f\n",
+		"coord q[2]\nmatrix K = \"mtx_good.mtx\", M = 3*K + K*K\n"
+			"M*q'' + 0.1*K*q' + K*q = [1; 0]*(t < 0.005 ? sin(t) : 0)\n",
+		"matrix K = \"mtx_good.mtx\"\n",
+		"matrix M = [1, 0; 0, 2]\n", "matrix f = [1; 0]\n", "matrix C = 0.1*M + 0.01*K\n", "init q[2] = 1, q[1]' = 2\n",
+			"init q = [1; 2]\n", "output q, q'\n", "output s = [1, 1]*q\n",
+		"output q''\n", "output x1''\n", "output a = 2*x1'' - u + t\n", "output x1, s = x1 + x2\n",
+			"output e = x1^2 + sin(x2)\n", "output d = t < 0.015 ? x1 : x2\n",
+		"input u\n", "input u hold first\n", "input u hold first, v\n", "input u\ncoord z\nz'' + 4*z = u\noutput z''\n",
+			"input u hold first\ncoord z\nz'' + 4*z = 3*u + u'\n",
+		"mass 1 at x\n", "mass m1 at x1\n", "mass 2 at q[2]\n", "spring k1 between x1, ground\n",
+			"spring 3 between x, y\n", "damper 0.2 between x1, x2\n", "force cos(3*t) on x1\n",
+		"force u on x1\n", "coord z\nmass 1 at z\nspring 100 between z, ground\nforce exp(-t) on z\n",
+			"coord z\ndamper 1 between z, x1\nspring 2 between z, ground\n",
+		"let s = t < 0.015 ? 10*sin(pi*t/0.6) : 0\n", "let s = table(t; 0, 0; 0.013, 2; 0.025, 1)\n",
+			"let s = t^3*exp(-2*t)*cos(3*t)\n", "coord z\nz'' = s\n", "coord z\nz'' + 25*z = t*cos(5*t)\n",
 		"coord z\nz'' + 25*z = clip(t, 0.002, 0.0133) + max(0, t - 0.01)\n", "scheme pl\n", "scheme exact\n",
 		"scheme etd1\n", "scheme etdrk2\n", "scheme etdrk4\n", "scheme nc2\n", "scheme nc3\n", "scheme dq4\n", "scheme bm3\n",
-		"operator at x = 0\n", "operator at x = 2, x' = 0\n", "operator at t = pi/2\n", "operator at x = 0, y = 1, t = 3\n", "operator at x1 = 0, x2' = 1\n", "operator at q = 0\n",
-		"operator at q[1] = 1, q[2] = 2\n", "operator at w = 0, 4, 8, 15\n", "operator at t = 0, 0.01, 0.02\n", "operator at x = -1, 0, 1, x' = 2\n",
-		"let w = 3*t\noperator at w = 0, 0.01, 0.02\n", "let w = x^2 + t\noperator at w = 1\n", "let w = t < 0.01 ? t : 0.01\noperator at w = 0.005, 0.01\n",
-		"coord z\nz'' + z + z^3 = cos(2*t)\n", "coord z\nz'' + sin(z) = 0\n", "coord z\nz'' - 5*(1 - z^2)*z' + z = 0\n", "coord z\nz' = -z^2 + x\n", "coord z\nz'' + (1 - cos(2*t))*z = 0\n",
-		"input u\ncoord z\nz'' + z + z^3 = u\n", "input u hold first\ncoord z\nz'' + z*u + abs(z) = u'\n", "coord z\nz'' + tanh(20*z') + 4*z = exp(-t)\noutput z''\n",
-		"coord q[2]\nmatrix K = [2, -1; -1, 2]\nq'' + K*q + 0.1*q^3 = [1; 0]*cos(t)\n", "coord q[2], z\nmatrix K = [2, -1; -1, 2]\nlet w = sin(t)\nq'' + (K + w^2*K)*q + sin(q) = 0\nz'' + z = abs(z) + q[1]*q[2]\n",
-		"coord z\nz'' + z = min(z, 0.1) + table(z; 0, 0; 1, 2) + clip(z', -1, 1)*deadzone(z, -0.1, 0.1)\n", "coord z\ninit z = 1\nz'' + 1/z + log(z) + sqrt(z) + z^1.5 = 0\n",
-		"coord z\nmass 1 at z\nspring 2 between z, ground\nforce -z^3 - sgn(z') on z\n", "coord z\nz'' = z > t ? -z^2 : z*t\n", "let p = x^2\nlet r = p^2 + sin(p)\n", "force -x1^3 on x1\n"
+		"operator at x = 0\n", "operator at x = 2, x' = 0\n", "operator at t = pi/2\n",
+			"operator at x = 0, y = 1, t = 3\n", "operator at x1 = 0, x2' = 1\n", "operator at q = 0\n",
+		"operator at q[1] = 1, q[2] = 2\n", "operator at w = 0, 4, 8, 15\n", "operator at t = 0, 0.01, 0.02\n",
+			"operator at x = -1, 0, 1, x' = 2\n",
+		"let w = 3*t\noperator at w = 0, 0.01, 0.02\n", "let w = x^2 + t\noperator at w = 1\n",
+			"let w = t < 0.01 ? t : 0.01\noperator at w = 0.005, 0.01\n",
+		"coord z\nz'' + z + z^3 = cos(2*t)\n", "coord z\nz'' + sin(z) = 0\n", "coord z\nz'' - 5*(1 - z^2)*z' + z = 0\n",
+			"coord z\nz' = -z^2 + x\n", "coord z\nz'' + (1 - cos(2*t))*z = 0\n",
+		"input u\ncoord z\nz'' + z + z^3 = u\n", "input u hold first\ncoord z\nz'' + z*u + abs(z) = u'\n",
+			"coord z\nz'' + tanh(20*z') + 4*z = exp(-t)\noutput z''\n",
+		"coord q[2]\nmatrix K = [2, -1; -1, 2]\nq'' + K*q + 0.1*q^3 = [1; 0]*cos(t)\n",
+			"coord q[2], z\nmatrix K = [2, -1; -1, 2]\nlet w = sin(t)\nq'' + (K + w^2*K)*q + sin(q) = 0\n"
+			    "z'' + z = abs(z) + q[1]*q[2]\n",
+		"coord z\nz'' + z = min(z, 0.1) + table(z; 0, 0; 1, 2) + clip(z', -1, 1)*deadzone(z, -0.1, 0.1)\n",
+			"coord z\ninit z = 1\nz'' + 1/z + log(z) + sqrt(z) + z^1.5 = 0\n",
+		"coord z\nmass 1 at z\nspring 2 between z, ground\nforce -z^3 - sgn(z') on z\n",
+			"coord z\nz'' = z > t ? -z^2 : z*t\n", "let p = x^2\nlet r = p^2 + sin(p)\n", "force -x1^3 on x1\n"
 	};
 	size_t at, choice = below(sizeof statement / sizeof *statement);
 	line(text, &at);
@@ -194,8 +222,10 @@ static void splice_line(struct text *text, const struct text *other)
 static void blow_number(struct text *text)
 {
 	static const char *const number[] = {
-		"0", "-1", "1e300", "1e-300", "1e9999", "1e-9999", "1e99999", "99999999999999999999999999", "0.1000000000000000000000000000000001", "1.2.3", "1e",
-		"2^1000", "2^-1000", "2^2000000", "pi", "sqrt(2)", "exp(50)", "1/3", "(1/7)^30", "0.0", "-0", "1e5", "1e-5", "4503599627370497", "2147483648", "18446744073709551616"
+		"0", "-1", "1e300", "1e-300", "1e9999", "1e-9999", "1e99999", "99999999999999999999999999",
+			"0.1000000000000000000000000000000001", "1.2.3", "1e",
+		"2^1000", "2^-1000", "2^2000000", "pi", "sqrt(2)", "exp(50)", "1/3", "(1/7)^30", "0.0", "-0", "1e5", "1e-5",
+			"4503599627370497", "2147483648", "18446744073709551616"
 	};
 	size_t choice = below(sizeof number / sizeof *number);
 	for (int tries = 0; tries < 50; tries++) {

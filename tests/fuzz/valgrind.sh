@@ -1,8 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 #
-# valgrind.sh PLGEN SPEC...: each spec, good or bad, under valgrind, as TAP: no invalid access, no use of what was never set,
-# nothing leaked.
+# valgrind.sh PLGEN SPEC...: each spec, good or bad, under valgrind, as TAP: no invalid access, no use of what was never
+# set, nothing leaked.
 set -u
 plgen=$1
 shift
@@ -18,7 +18,8 @@ number=0
 failed=0
 for spec; do
 	number=$((number + 1))
-	valgrind -q --leak-check=full --show-leak-kinds=all --errors-for-leak-kinds=all --error-exitcode=9 --log-file="$work/log" \
+	valgrind -q --leak-check=full --show-leak-kinds=all --errors-for-leak-kinds=all --error-exitcode=9 \
+		--log-file="$work/log" \
 		"$plgen" --rhs "$spec" > "$work/out" 2> "$work/err" < /dev/null
 	status=$?
 	if [ "$status" -le 1 ] && ! [ -s "$work/log" ]; then

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The rotating beam of Fang, Wang and Guo: its equations by hand, its solution by ARKODE on NAME_rhs (implicit: the orders of BDF that
- * are accurate enough are unstable for its undamped high frequencies), and what the choice of the operator does to the schemes. */
+/* The rotating beam of Fang, Wang and Guo: its equations by hand, its solution by ARKODE on NAME_rhs (implicit: the
+ * orders of BDF that are accurate enough are unstable for its undamped high frequencies), and what the choice of the
+ * operator does to the schemes. */
 #include "beam_variants.h"
 #include "cantilever.h"
 #include "tap.h"
@@ -12,7 +13,8 @@ enum { SECONDS = 50, PER_SECOND = 10, ROWS = SECONDS * PER_SECOND, N = CANTILEVE
 
 static const double spin_up = 15;           /* [s] */
 static const double gone = 1000;            /* a deflection [m] that tells divergence: the beam is 8 m long */
-static const double seen = 0.1;             /* a deflection [m] after the spin-up that a plot shows: the true one is below 0.015 */
+/* a deflection [m] after the spin-up that a plot shows: the true one is below 0.015 */
+static const double seen = 0.1;
 
 typedef void right_side(double t, const double *y, double *dydt);
 
@@ -52,7 +54,8 @@ static void as_written(const struct truth_of *b)
             most[i] = fmax(most[i], fabs((double)expected[i]));
             if (point < 0)
                 continue;
-            good = close_to(dydt[i], (double)expected[i], 1e-13 * most[i], "%s_rhs, t = %g, entry %d", b->name, t, i) && good;
+            good = close_to(dydt[i], (double)expected[i], 1e-13 * most[i], "%s_rhs, t = %g, entry %d", b->name, t, i) &&
+                good;
             worst = fmax(worst, fabs(dydt[i] - (double)expected[i]) / most[i]);
         }
     }
@@ -101,7 +104,8 @@ static void solve(struct truth_of *b)
             b->stretch[k / FINE] = y[CANTILEVER_STRETCH];
         }
     }
-    ok(good, "%s: a solution by ARKODE (minimum %.7g m at %.5g s, then up to %.4g m)", b->name, b->least, b->when, b->late);
+    ok(good, "%s: a solution by ARKODE (minimum %.7g m at %.5g s, then up to %.4g m)", b->name, b->least, b->when,
+        b->late);
     truth_free(solver);
 }
 
@@ -112,11 +116,13 @@ static void known(const struct truth_of *b, double least, double half_unit, doub
     double mean = 0;
     for (int row = 20 * PER_SECOND; row < ROWS; row++)
         mean += b->stretch[row] / (ROWS - 20 * PER_SECOND);
-    ok(close_to(b->least, least, half_unit, "least deflection"), "%s: least deflection %.7g m, known %g m", b->name, b->least, least);
+    ok(close_to(b->least, least, half_unit, "least deflection"), "%s: least deflection %.7g m, known %g m", b->name,
+        b->least, least);
     ok(close_to(b->when, when, 0.005, "when"), "%s: at %.5g s, known %g s", b->name, b->when, when);
     if (late > 0)
         ok(close_to(b->late, late, 0.00005, "later"), "%s: then up to %.4g m, known %g m", b->name, b->late, late);
-    ok(close_to(mean, stretch, 0.002 * stretch, "stretch"), "%s: mean stretch %.5g m, rho w^2 L^3/(3 E) = %.5g m", b->name, mean, stretch);
+    ok(close_to(mean, stretch, 0.002 * stretch, "stretch"), "%s: mean stretch %.5g m, rho w^2 L^3/(3 E) = %.5g m",
+        b->name, mean, stretch);
 }
 
 /* ---- runs ---- */
@@ -151,7 +157,8 @@ static struct run run_of(const char *name, const struct truth_of *b)
             r.last = fmax(r.last, tip);
     }
     free(state);
-    note("%s, h = %g: largest error %.3g m, seen %.3g s, gone %.3g s, up to %.3g m early, %.3g m at last", name, m->h, r.error, r.seen,
+    note("%s, h = %g: largest error %.3g m, seen %.3g s, gone %.3g s, up to %.3g m early, %.3g m at last", name, m->h,
+        r.error, r.seen,
          r.gone, r.early, r.last);
     return r;
 }
@@ -161,7 +168,8 @@ static struct truth_of beam15 = {.name = "beam15", .Om = 15, .rhs = beam15_bank_
 
 static void diverges(const struct run *r, const char *name, double when, double tolerance)
 {
-    ok(close_to(r->gone, when, tolerance, "%s: gone", name), "%s: diverges (seen at %.3g s, gone at %.3g s; known near %g s)", name, r->seen,
+    ok(close_to(r->gone, when, tolerance, "%s: gone", name),
+        "%s: diverges (seen at %.3g s, gone at %.3g s; known near %g s)", name, r->seen,
        r->gone, when);
 }
 
@@ -171,8 +179,9 @@ static void bounded(const struct run *r, const char *name, double most)
     ok(!isfinite(r->seen) && r->last <= most, "%s: bounded (last up to %.4g m, bound %.4g m)", name, r->last, most);
 }
 
-/* etd1 at Om = 4, by the speed at which the operator is taken: too soft an operator makes it grow, too stiff a one decay.  The known
- * times are read from plots.  At h = 0.1 the deflection passes 1000 m six seconds before "near 30 s". */
+/* etd1 at Om = 4, by the speed at which the operator is taken: too soft an operator makes it grow, too stiff a one
+ * decay. The known times are read from plots. At h = 0.1 the deflection passes 1000 m six seconds before "near 30
+ * s". */
 static void operators(void)
 {
     static const double h[] = {0.1, 0.01, 0.001};
@@ -191,12 +200,16 @@ static void operators(void)
                 bounded(&r[w], what, beam4.late);
         }
         if (step < 2) {
-            ok(r[3].last > 2 * r[3].early && r[3].seen > r[2].seen, "etd1, h = %g, A(3): grows (from %.3g m to %.3g m)", h[step], r[3].early, r[3].last);
-            ok(r[5].last < 0.95 * r[5].early && r[6].last < 0.95 * r[6].early, "etd1, h = %g, A(5) and A(6): decay (%.3g to %.3g m, %.3g to %.3g m)",
+            ok(r[3].last > 2 * r[3].early && r[3].seen > r[2].seen, "etd1, h = %g, A(3): grows (from %.3g m to %.3g m)",
+                h[step], r[3].early, r[3].last);
+            ok(r[5].last < 0.95 * r[5].early && r[6].last < 0.95 * r[6].early,
+                "etd1, h = %g, A(5) and A(6): decay (%.3g to %.3g m, %.3g to %.3g m)",
                h[step], r[5].early, r[5].last, r[6].early, r[6].last);
         } else {
-            ok(r[2].last > 5 * r[2].early && r[2].last < 0.1, "etd1, h = 0.001, A(2): visibly growing (from %.3g m to %.3g m)", r[2].early, r[2].last);
-            ok(r[3].last > 1.003 * beam4.late && r[3].last < 1.1 * beam4.late, "etd1, h = 0.001, A(3): only just (%.5g m, true %.5g m)", r[3].last,
+            ok(r[2].last > 5 * r[2].early && r[2].last < 0.1,
+                "etd1, h = 0.001, A(2): visibly growing (from %.3g m to %.3g m)", r[2].early, r[2].last);
+            ok(r[3].last > 1.003 * beam4.late && r[3].last < 1.1 * beam4.late,
+                "etd1, h = 0.001, A(3): only just (%.5g m, true %.5g m)", r[3].last,
                beam4.late);
         }
     }
@@ -220,7 +233,8 @@ static void long_runs(void)
                     good = close_to(y[TIP], 0, beam4.late, "A(%d), t = %g: tip", w, (double)row / PER_SECOND) && good;
                 last = row > rows - 100 * PER_SECOND ? fmax(last, fabs(y[TIP])) : 0;
             }
-            ok(good && m->status(state) == 0, "etd1, h = %g, A(%d): bounded for 2,000 s (last up to %.3g m)", m->h, w, last);
+            ok(good && m->status(state) == 0, "etd1, h = %g, A(%d): bounded for 2,000 s (last up to %.3g m)", m->h, w,
+                last);
             free(state);
         }
     }
@@ -250,13 +264,17 @@ static void full_speed(void)
         bank[i] = run_of(name, &beam15);
         bounded(&bank[i], name, beam15.late);
         const double best = fmin(fmin(at_rest[i].error, at_speed[i].error), between[i].error);
-        ok(bank[i].error <= best, "Om = 15, %s: the bank (error %.3g m) is at least as accurate as the best single operator (%.3g m)", schemes[i],
+        ok(bank[i].error <= best, "Om = 15, %s: the bank (error %.3g m) is at least as accurate as the best single "
+            "operator (%.3g m)", schemes[i],
            bank[i].error, best);
     }
-    ok(at_rest[0].gone < at_rest[1].gone && at_rest[1].gone < at_rest[2].gone, "Om = 15, A(0): etd1 goes first, etdrk4 last");
-    ok(at_speed[1].error < at_speed[2].error, "Om = 15, A(15), h = 0.01: etdrk2 (%.3g m) better than etdrk4 (%.3g m)", at_speed[1].error,
+    ok(at_rest[0].gone < at_rest[1].gone && at_rest[1].gone < at_rest[2].gone,
+        "Om = 15, A(0): etd1 goes first, etdrk4 last");
+    ok(at_speed[1].error < at_speed[2].error, "Om = 15, A(15), h = 0.01: etdrk2 (%.3g m) better than etdrk4 (%.3g m)",
+        at_speed[1].error,
        at_speed[2].error);
-    ok(fine[2].error < fine[1].error / 50, "Om = 15, A(15), h = 0.001: etdrk4 (%.3g m) leads etdrk2 (%.3g m)", fine[2].error, fine[1].error);
+    ok(fine[2].error < fine[1].error / 50, "Om = 15, A(15), h = 0.001: etdrk4 (%.3g m) leads etdrk2 (%.3g m)",
+        fine[2].error, fine[1].error);
 }
 
 /* The figures of the two schemes with the loads left to them; exact loads are better. */
@@ -268,7 +286,8 @@ static void known_errors(void)
             char name[50];
             snprintf(name, sizeof name, "beam15_left_%s_%d", schemes[i + 1], step);
             const struct run r = run_of(name, &beam15);
-            ok(close_to(r.error, known_error[i][step], 0.04 * known_error[i][step], "%s", name), "%s: loads left to the scheme: error %.3g m, known %.2g m",
+            ok(close_to(r.error, known_error[i][step], 0.04 * known_error[i][step], "%s", name),
+                "%s: loads left to the scheme: error %.3g m, known %.2g m",
                name, r.error, known_error[i][step]);
             snprintf(name, sizeof name, "beam15_A15_%s_%d", schemes[i + 1], step);
             const struct run exact = run_of(name, &beam15);
@@ -288,7 +307,8 @@ static void slow(void)
         snprintf(name, sizeof name, "beam4_bank_%s_0", schemes[i]);
         const struct run bank = run_of(name, &beam4);
         bounded(&bank, name, 1.001 * beam4.late);
-        ok(bank.error <= one.error, "Om = 4, %s: the bank (error %.3g m) is at least as accurate as A(4) (%.3g m)", schemes[i], bank.error, one.error);
+        ok(bank.error <= one.error, "Om = 4, %s: the bank (error %.3g m) is at least as accurate as A(4) (%.3g m)",
+            schemes[i], bank.error, one.error);
     }
 }
 

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* etd1 at Om = 4 and h = 0.0001, the operator at each speed: within 50 s a plot shows nothing of what grows; 500,000 steps each. */
+/* etd1 at Om = 4 and h = 0.0001, the operator at each speed: within 50 s a plot shows nothing of what grows; 500,000
+ * steps each. */
 #include "beam_long_variants.h"
 #include "cantilever.h"
 #include "tap.h"
@@ -22,7 +23,8 @@ int main(void)
                 most = fmax(most, fabs(y[CANTILEVER_TIP]));
         }
         const bool good = close_to(least, -0.534406, 1e-4, "A(%d): least deflection", w);
-        ok(close_to(most, 0.0083, 1e-4, "A(%d): later", w) && good, "A(%d): least deflection %.6g m, then up to %.4g m", w, least, most);
+        ok(close_to(most, 0.0083, 1e-4, "A(%d): later", w) && good, "A(%d): least deflection %.6g m, then up to %.4g m",
+            w, least, most);
         free(state);
     }
     return tap_end();

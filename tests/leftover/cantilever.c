@@ -7,11 +7,14 @@
 
 enum { ELEMENTS = 5, N = CANTILEVER_DOF, NODE = 3, FULL = N + NODE };
 
-static const real length = 8, area = 7.2968e-5L, inertia = 8.2189e-9L, density = 2.7667e3L, young = 6.8952e10L;     /* m, m^2, m^4, kg/m^3, Pa */
+/* m, m^2, m^4, kg/m^3, Pa */
+static const real length = 8, area = 7.2968e-5L, inertia = 8.2189e-9L, density = 2.7667e3L, young = 6.8952e10L;
 
 /* Gauss-Legendre on [0, 1], exact to degree 9. */
-static const real nodes[] = {0.04691007703066800360L, 0.23076534494715845448L, 0.5L, 0.76923465505284154552L, 0.95308992296933199640L};
-static const real weights[] = {0.11846344252809454376L, 0.23931433524968323402L, 0.28444444444444444444L, 0.23931433524968323402L,
+static const real nodes[] = {0.04691007703066800360L, 0.23076534494715845448L, 0.5L, 0.76923465505284154552L,
+    0.95308992296933199640L};
+static const real weights[] = {0.11846344252809454376L, 0.23931433524968323402L, 0.28444444444444444444L,
+    0.23931433524968323402L,
                                0.11846344252809454376L};
 
 /* Products of the inverse mass matrix with the others. */
@@ -25,10 +28,12 @@ struct integrals {
     real M[FULL][FULL], K[FULL][FULL], G[FULL][FULL], D[FULL][FULL], fu[FULL], fw[FULL];
 };
 
-/* Shape functions at s = (x - x0)/l: of u in [0], of v in [1], v' in [2], v'' in [3], u' in [4]; by the six dofs of an element. */
+/* Shape functions at s = (x - x0)/l: of u in [0], of v in [1], v' in [2], v'' in [3], u' in [4]; by the six dofs of
+ * an element. */
 static void shapes(real s, real l, real shape[5][6])
 {
-    const real v[4] = {1 - 3 * s * s + 2 * s * s * s, l * (s - 2 * s * s + s * s * s), 3 * s * s - 2 * s * s * s, l * (s * s * s - s * s)};
+    const real v[4] = {1 - 3 * s * s + 2 * s * s * s, l * (s - 2 * s * s + s * s * s), 3 * s * s - 2 * s * s * s,
+        l * (s * s * s - s * s)};
     const real dv[4] = {(6 * s * s - 6 * s) / l, 1 - 4 * s + 3 * s * s, (6 * s - 6 * s * s) / l, 3 * s * s - 2 * s};
     const real ddv[4] = {(12 * s - 6) / (l * l), (6 * s - 4) / l, (6 - 12 * s) / (l * l), (6 * s - 2) / l};
     memset(shape, 0, 5 * 6 * sizeof(real));

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The rotating beam by hand: five elements, every matrix by quadrature of its definition (its spec has them from closed formulas).
+/* The rotating beam by hand: five elements, every matrix by quadrature of its definition (its spec has them from closed
+ * formulas).
  *     M q'' + 2 w G q' + (K + w^2 (D - M) + w' G) q = w^2 fu - w' fw
  * States: q (u, v, dv/dx of nodes 1 .. 5), then q'. */
 #ifndef CANTILEVER_H

@@ -11,7 +11,8 @@ static const double tolerance = 3e-13;      /* of the largest value of the compo
 
 static void judge(const char *name, const char *scheme)
 {
-    const pl_model *one = variant_of(covered, "%s_exact_0", name)->model, *other = variant_of(covered, "%s_%s_0", name, scheme)->model;
+    const pl_model *one = variant_of(covered, "%s_exact_0", name)->model,
+        *other = variant_of(covered, "%s_%s_0", name, scheme)->model;
     void *a = calloc(1, one->size), *b = calloc(1, other->size);
     double most[MOST] = {0}, difference[MOST] = {0}, worst = 0;
     unsigned seed = 1;
@@ -43,11 +44,12 @@ static void judge(const char *name, const char *scheme)
     free(b);
 }
 
-/* pl is etd1 whose operator has each coordinate's own terms: to the last bit where both leave the same over; to rounding where the
- * coupling is linear, and pl has folded its factor into the tables. */
+/* pl is etd1 whose operator has each coordinate's own terms: to the last bit where both leave the same over; to
+ * rounding where the coupling is linear, and pl has folded its factor into the tables. */
 static void piecewise_laplace(void)
 {
-    const pl_model *etd1 = variant_of(covered, "scs_max_etd1_0")->model, *pl = variant_of(covered, "scs_max_pl_0")->model;
+    const pl_model *etd1 = variant_of(covered, "scs_max_etd1_0")->model,
+        *pl = variant_of(covered, "scs_max_pl_0")->model;
     const pl_model *linear = variant_of(covered, "scs_pl_0")->model;
     void *a = calloc(1, etd1->size), *b = calloc(1, pl->size), *c = calloc(1, linear->size);
     bool same = true, near = true;
@@ -78,7 +80,8 @@ static void piecewise_laplace(void)
 int main(void)
 {
     piecewise_laplace();
-    static const char *const names[] = {"scs", "sdcs", "sdcsf", "quarter_car", "linear2dof", "vector3", "maxwell", "resonance", "pulse",
+    static const char *const names[] = {"scs", "sdcs", "sdcsf", "quarter_car", "linear2dof", "vector3", "maxwell",
+        "resonance", "pulse",
                                         "held2", "ramped2", "first2", "switched"};
     static const char *const schemes[] = {"etd1", "etdrk2", "etdrk4", "nc2", "nc3", "dq4", "bm3"};
     for (size_t i = 0; i < sizeof names / sizeof *names; i++)

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The pendulum x'' + sin x = 0 from rest at x0, 0 < x0 < pi, in closed form: sin(x/2) = k sn(t + K), x' = 2 k cn(t + K), k = sin(x0/2). */
+/* The pendulum x'' + sin x = 0 from rest at x0, 0 < x0 < pi, in closed form: sin(x/2) = k sn(t + K), x' = 2 k cn(t +
+ * K), k = sin(x0/2). */
 #ifndef ELLIPTIC_H
 #define ELLIPTIC_H
 

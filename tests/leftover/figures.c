@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The precise-integration schemes on two systems of their source: the largest errors over 10 s, and bm3 the best of its four. */
+/* The precise-integration schemes on two systems of their source: the largest errors over 10 s, and bm3 the best of
+ * its four. */
 #include "elliptic.h"
 #include "figures_variants.h"
 #include "tap.h"
@@ -47,10 +48,12 @@ static void judge(const char *name, int variant, solution *x, const double figur
     for (int i = 0; i < FOUR; i++) {
         const double half_unit = pow(10, floor(log10(figure[i])) + log10(unit));
         error[i] = largest_error(variant_of(figures, "%s_%s_%d", name, schemes[i], variant)->model, x);
-        ok(close_to(error[i], figure[i], half_unit, "%s, %s", name, schemes[i]), "%s, %s: largest error %.3e, known %.2e", name, schemes[i],
+        ok(close_to(error[i], figure[i], half_unit, "%s, %s", name, schemes[i]),
+            "%s, %s: largest error %.3e, known %.2e", name, schemes[i],
            error[i], figure[i]);
     }
-    ok(error[3] < error[0] && error[3] < error[1] && error[3] < error[2], "%s: bm3 is the best of its four (%.3g, %.3g, %.3g, %.3g)", name,
+    ok(error[3] < error[0] && error[3] < error[1] && error[3] < error[2],
+        "%s: bm3 is the best of its four (%.3g, %.3g, %.3g, %.3g)", name,
        error[0], error[1], error[2], error[3]);
 }
 

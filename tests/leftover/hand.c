@@ -291,7 +291,8 @@ static void etd(const struct hand *p, const struct tables *T, real t, real *w)
     kick(p, T->p[2], -1, rc, w);
 }
 
-/* One classical Runge-Kutta step over c h of z' = A z + r(t, z + q), z(t) = y: q answers loads and inputs from rest, exactly. */
+/* One classical Runge-Kutta step over c h of z' = A z + r(t, z + q), z(t) = y: q answers loads and inputs from rest,
+ * exactly. */
 static void predict(const struct hand *p, const struct tables *T, real t, const real *w, int node, real *at)
 {
     const struct system *s = p->system;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The schemes with a leftover a second time, by hand: in long double, on equations written by hand.  Loads and inputs are
- * carried as further entries of w, so that e^{A tau} w is their exact response too. */
+/* The schemes with a leftover a second time, by hand: in long double, on equations written by hand.  Loads and inputs
+ * are carried as further entries of w, so that e^{A tau} w is their exact response too. */
 #ifndef HAND_H
 #define HAND_H
 
@@ -12,9 +12,11 @@ struct system {
     const char *name;
     int states, loads, inputs;
     real start[HAND_MOST];                  /* the spec's initial state */
-    void (*equations)(real t, const real *y, const real *u, real *dydt);    /* as written; u: inputs, then their slopes */
+    /* as written; u: inputs, then their slopes */
+    void (*equations)(real t, const real *y, const real *u, real *dydt);
     void (*loads_at)(real t, real *z);      /* load states; NULL where there are none */
-    void (*linear)(const struct system *s, int which, real *A);     /* size x size, zeroed before: operator, columns and rows of the loads */
+    /* size x size, zeroed before: operator, columns and rows of the loads */
+    void (*linear)(const struct system *s, int which, real *A);
     int operators;                          /* of a bank; 0 counts as 1 */
     int (*choose)(real t, const real *y);   /* which of them a step from there takes; NULL: the first */
 };

@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# The emitted C of models with a leftover: no warning in any compiler, the same bytes twice, nothing from <math.h> that the model does not
-# call; and what plgen says while it makes them.
+# The emitted C of models with a leftover: no warning in any compiler, the same bytes twice, nothing from <math.h> that
+# the model does not call; and what plgen says while it makes them.
 #
 #     leftover.sh PLGEN SOURCE_ROOT NAME_variants.c ...
 set -u
@@ -27,7 +27,8 @@ warnings='-Wall -Wextra -Wpedantic -Wconversion -Wdouble-promotion -Wshadow -Wer
 
 for file in $files; do
     name=${file##*/}
-    for compiler in 'gcc -std=c99 -O1 -c -o object.o' 'clang -std=c99 -fsyntax-only' 'g++ -std=c++17 -fsyntax-only -x c++' \
+    for compiler in 'gcc -std=c99 -O1 -c -o object.o' 'clang -std=c99 -fsyntax-only' \
+        'g++ -std=c++17 -fsyntax-only -x c++' \
         'clang++ -std=c++17 -fsyntax-only -x c++'; do
         if ! command -v "${compiler%% *}" >/dev/null 2>&1; then
             count=$((count + 1))
@@ -68,7 +69,8 @@ while read -r kind; do
     : >all.c
     : >said
     for scheme in etd1 etdrk2 etdrk4 nc2 dq4 bm3; do
-        "$plgen" --rhs --prefix "kind_$scheme" --scheme "$scheme" kind.spec 2>log >>all.c || { status=1; cat log >>said; }
+        "$plgen" --rhs --prefix "kind_$scheme" --scheme "$scheme" kind.spec 2>log >>all.c ||
+            { status=1; cat log >>said; }
     done
     for compiler in 'gcc -std=c99' 'clang -std=c99' 'g++ -std=c++17 -x c++'; do
         command -v "${compiler%% *}" >/dev/null 2>&1 || continue
@@ -84,7 +86,8 @@ done <kinds
 for file in $files; do
     name=${file##*/}
     list=${name%_variants.c}
-    "$here/variants.sh" "$plgen" "$here/$list.list" "$work/$name" "$work/${name%.c}.h" "$here" "$root/models" "$root/tests/emitted/linear" >log 2>&1 &&
+    "$here/variants.sh" "$plgen" "$here/$list.list" "$work/$name" "$work/${name%.c}.h" "$here" "$root/models" \
+        "$root/tests/emitted/linear" >log 2>&1 &&
         cmp "$file" "$work/$name" >>log 2>&1 && cmp "${file%.c}.h" "$work/${name%.c}.h" >>log 2>&1
     result $? "$list: the same bytes twice"
 done
@@ -157,7 +160,8 @@ says "$root/models/duffing.spec" softer
 # notes SPEC TERM: without a scheme, one note and nothing else, on the term that kept it from exact steps
 notes()
 {
-    "$plgen" "$1" >out.c 2>log && [ "$(grep -c 'note:' log)" -eq 1 ] && ! grep -q 'warning:' log && grep -q -F "note: scheme etdrk4, not exact: '$2'" log
+    "$plgen" "$1" >out.c 2>log && [ "$(grep -c 'note:' log)" -eq 1 ] && ! grep -q 'warning:' log &&
+        grep -q -F "note: scheme etdrk4, not exact: '$2'" log
     result $? "${1##*/}: notes that $2 stands in the way of exact"
 }
 notes "$root/models/vanderpol.spec" "mu*(1 - x^2)*x'"
@@ -169,7 +173,8 @@ orders()
 {
     status=0
     "$plgen" --explain=json --scheme "$2" "$1" >out 2>log || status=1
-    grep -q -x "  \"order\": $3," out && grep -q -x "  \"smooth\": \"$4\"," out || { grep -e '"order"' -e '"smooth"' out >log; status=1; }
+    grep -q -x "  \"order\": $3," out && grep -q -x "  \"smooth\": \"$4\"," out ||
+        { grep -e '"order"' -e '"smooth"' out >log; status=1; }
     for option in --explain --rhs; do
         "$plgen" $option --scheme "$2" "$1" >out 2>/dev/null || status=1
         if [ -n "$5" ]; then

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Measured orders: the largest error of a run when the step is halved three times, against elliptic functions (pendulum) or
- * ARKODE's order 8 at 1e-13 on the equations by hand. */
+/* Measured orders: the largest error of a run when the step is halved three times, against elliptic functions
+ * (pendulum) or ARKODE's order 8 at 1e-13 on the equations by hand. */
 #include "elliptic.h"
 #include "orders_variants.h"
 #include "systems.h"
@@ -65,15 +65,18 @@ static void judge(const struct system *s, int rows, const char *scheme, int orde
     for (int i = 1; i < HALVINGS; i++) {
         if (error[i] < floor_of(variant_of(orders, "%s_%s_%d", s->name, scheme, i)->model, rows))
             continue;
-        good = close_to(log2(error[i - 1] / error[i]), order, 0.1, "%s, %s: slope from %.3g to %.3g", s->name, scheme, error[i - 1], error[i]) && good;
+        good = close_to(log2(error[i - 1] / error[i]), order, 0.1, "%s, %s: slope from %.3g to %.3g", s->name, scheme,
+            error[i - 1], error[i]) && good;
         measured++;
     }
-    ok(good && measured >= 2, "%s, %s: order %d (errors %.3g, %.3g, %.3g, %.3g)", s->name, scheme, order, error[0], error[1], error[2], error[3]);
+    ok(good && measured >= 2, "%s, %s: order %d (errors %.3g, %.3g, %.3g, %.3g)", s->name, scheme, order, error[0],
+        error[1], error[2], error[3]);
 }
 
 int main(void)
 {
-    static const struct { const char *name; int seconds; } runs[] = {{"pendulum", 10}, {"vanderpol", 20}, {"quad2dof", 10}, {"duffing", 5}};
+    static const struct { const char *name; int seconds; } runs[] = {{"pendulum", 10}, {"vanderpol", 20},
+        {"quad2dof", 10}, {"duffing", 5}};
     static const struct { const char *scheme; int order; } schemes[] = {
         {"etd1", 1}, {"etdrk2", 2}, {"etdrk4", 4}, {"nc2", 4}, {"nc3", 4}, {"dq4", 4}, {"bm3", 4}};
     for (size_t i = 0; i < sizeof runs / sizeof *runs; i++) {

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The orders that are left where something is not smooth, as plgen states them: fitted over sixteen steps, as a single crossing errs by where it
- * falls in its step. Against scheme exact, which finds the crossings of what is piecewise linear, or CVODE at 1e-12. */
+/* The orders that are left where something is not smooth, as plgen states them: fitted over sixteen steps, as a single
+ * crossing errs by where it falls in its step. Against scheme exact, which finds the crossings of what is piecewise
+ * linear, or CVODE at 1e-12. */
 #include "smooth_variants.h"
 #include "tap.h"
 #include "truth.h"
@@ -76,7 +77,8 @@ static void judge(const char *name, const double *truth, double order)
     for (int k = 0; k < 2; k++) {
         double first = 0, last = 0;
         const double found = fitted_order(name, schemes[k], truth, &first, &last);
-        ok(fabs(found - order) < 0.5, "%s, %s: order %.3g, fitted %.3g (errors %.3g ... %.3g)", name, schemes[k], order, found, first, last);
+        ok(fabs(found - order) < 0.5, "%s, %s: order %.3g, fitted %.3g (errors %.3g ... %.3g)", name, schemes[k], order,
+            found, first, last);
     }
 }
 
@@ -92,7 +94,8 @@ int main(void)
     }
     for (size_t i = 0; i < sizeof solved / sizeof *solved; i++) {
         double y[2] = {solved[i].start[0], solved[i].start[1]};
-        ok(follow(solved[i].early, 0, 1.2345678, y) && follow(solved[i].late, 1.2345678, END, y), "%s: a solution to compare with", solved[i].name);
+        ok(follow(solved[i].early, 0, 1.2345678, y) && follow(solved[i].late, 1.2345678, END, y),
+            "%s: a solution to compare with", solved[i].name);
         judge(solved[i].name, y, solved[i].order);
     }
     return tap_end();

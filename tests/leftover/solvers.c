@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* NAME_rhs, the equations as written, against equations by hand at random points; and its solution by CVODE against the steps,
- * with inputs too (the solver restarts at each sample). */
+/* NAME_rhs, the equations as written, against equations by hand at random points; and its solution by CVODE against the
+ * steps, with inputs too (the solver restarts at each sample). */
 #include "solvers_variants.h"
 #include "systems.h"
 #include "tap.h"
@@ -20,7 +20,8 @@ struct subject {
     void (*by_hand)(real t, const real *y, const real *u, real *dydt);
     enum solver solver;
     bool ramp;
-    double seconds, change, tolerance;      /* change: a time at which a load changes; tolerance over the largest value */
+    /* change: a time at which a load changes; tolerance over the largest value */
+    double seconds, change, tolerance;
     double size[MOST];                      /* of random states */
 };
 
@@ -59,7 +60,8 @@ static void as_written(const struct subject *s)
             most[i] = fmax(most[i], fabs((double)expected[i]));
             if (point < 0)
                 continue;
-            good = close_to(dydt[i], (double)expected[i], rounding * most[i], "%s_rhs, d %s/dt", m->name, m->state_names[i]) && good;
+            good = close_to(dydt[i], (double)expected[i], rounding * most[i], "%s_rhs, d %s/dt", m->name,
+                m->state_names[i]) && good;
             worst = fmax(worst, fabs(dydt[i] - (double)expected[i]) / most[i]);
         }
     }
@@ -72,7 +74,8 @@ static bool advance(const struct subject *s, struct truth *solver, double from, 
     const int inputs = s->of->model->inputs;
     if (!(s->change > from && s->change < to))
         return truth_advance(solver, from, to, inputs, u, y);
-    return truth_advance(solver, from, nextafter(s->change, 0), inputs, u, y) && truth_advance(solver, s->change, to, inputs, u, y);
+    return truth_advance(solver, from, nextafter(s->change, 0), inputs, u, y) &&
+        truth_advance(solver, s->change, to, inputs, u, y);
 }
 
 /* Rows where the two are compared: each sample, or half a second without inputs. */
@@ -112,11 +115,13 @@ static void by_solver(const struct subject *s)
         good = advance(s, solver, from, to, u, y);
         for (int i = 0; i < m->states; i++) {
             most[i] = fmax(most[i], fabs(x[i]));
-            good = close_to(x[i], y[i], s->tolerance * most[i], "%s, t = %g, %s", m->name, to, m->state_names[i]) && good;
+            good = close_to(x[i], y[i], s->tolerance * most[i], "%s, t = %g, %s", m->name, to, m->state_names[i]) &&
+                good;
             worst = fmax(worst, fabs(x[i] - y[i]) / most[i]);
         }
     }
-    ok(good, "%s: CVODE at rtol %.0e agrees within %.0e over %g s (largest difference %.2g)", m->name, relative, s->tolerance, s->seconds, worst);
+    ok(good, "%s: CVODE at rtol %.0e agrees within %.0e over %g s (largest difference %.2g)", m->name, relative,
+        s->tolerance, s->seconds, worst);
     truth_free(solver);
     free(state);
 }
@@ -125,7 +130,8 @@ static void knock(real t, const real *y, const real *u, real *dydt)
 {
     (void)u;
     dydt[0] = y[1];
-    dydt[1] = (t < 0.605L ? 10 * sinl(3.14159265358979323846264338327950288L * t / 0.605L) : 0) - 0.2L * y[1] - 4 * y[0] - y[0] * y[0] * y[0];
+    dydt[1] = (t < 0.605L ? 10 * sinl(3.14159265358979323846264338327950288L * t / 0.605L) : 0) - 0.2L * y[1] -
+        4 * y[0] - y[0] * y[0] * y[0];
 }
 
 static void gated(real t, const real *y, const real *u, real *dydt)
@@ -155,30 +161,38 @@ static void judge(const char *name, struct subject s)
 int main(void)
 {
     judge("pendulum", (struct subject){.rhs = pendulum_0_rhs, .solver = CVODE_ADAMS, .seconds = 30, .tolerance = 1e-8});
-    judge("vanderpol", (struct subject){.rhs = vanderpol_0_rhs, .solver = CVODE_ADAMS, .seconds = 30, .tolerance = 1e-7});
-    judge("vanderpol_stiff", (struct subject){.rhs = vanderpol_stiff_0_rhs, .solver = CVODE_BDF, .seconds = 75, .tolerance = 1e-7});
+    judge("vanderpol", (struct subject){.rhs = vanderpol_0_rhs, .solver = CVODE_ADAMS, .seconds = 30,
+        .tolerance = 1e-7});
+    judge("vanderpol_stiff", (struct subject){.rhs = vanderpol_stiff_0_rhs, .solver = CVODE_BDF, .seconds = 75,
+        .tolerance = 1e-7});
     judge("quad2dof", (struct subject){.rhs = quad2dof_0_rhs, .solver = CVODE_ADAMS, .seconds = 30, .tolerance = 1e-7});
     judge("duffing", (struct subject){.rhs = duffing_0_rhs, .solver = CVODE_ADAMS, .seconds = 30, .tolerance = 1e-7});
     judge("mathieu", (struct subject){.rhs = mathieu_0_rhs, .solver = CVODE_ADAMS, .seconds = 30, .tolerance = 1e-7});
     judge("held", (struct subject){.rhs_sampled = held_0_rhs, .solver = CVODE_ADAMS, .seconds = 5, .tolerance = 1e-6});
-    judge("ramped", (struct subject){.rhs_sampled = ramped_0_rhs, .solver = CVODE_ADAMS, .ramp = true, .seconds = 5, .tolerance = 1e-6});
+    judge("ramped", (struct subject){.rhs_sampled = ramped_0_rhs, .solver = CVODE_ADAMS, .ramp = true, .seconds = 5,
+        .tolerance = 1e-6});
     judge("thermal", (struct subject){.rhs = thermal_0_rhs, .solver = CVODE_ADAMS, .seconds = 10, .tolerance = 1e-6});
     judge("coupled", (struct subject){.rhs = coupled_0_rhs, .solver = CVODE_ADAMS, .seconds = 10, .tolerance = 1e-6});
     judge("rotor", (struct subject){.rhs = rotor_0_rhs, .solver = CVODE_ADAMS, .seconds = 10, .tolerance = 1e-6});
-    judge("functions", (struct subject){.rhs = functions_0_rhs, .solver = CVODE_ADAMS, .seconds = 5, .tolerance = 1e-5});
-    static const struct { const char *name; double tolerance; } knocks[] = {{"knock_etd1", 0.05}, {"knock_etdrk2", 2e-4}, {"knock_etdrk4", 1e-7},
+    judge("functions", (struct subject){.rhs = functions_0_rhs, .solver = CVODE_ADAMS, .seconds = 5,
+        .tolerance = 1e-5});
+    static const struct { const char *name; double tolerance; } knocks[] = {{"knock_etd1", 0.05},
+        {"knock_etdrk2", 2e-4}, {"knock_etdrk4", 1e-7},
         {"knock_nc2", 1e-7}, {"knock_nc3", 1e-7}, {"knock_dq4", 1e-7}, {"knock_bm3", 1e-7}};
     for (size_t i = 0; i < sizeof knocks / sizeof *knocks; i++)
-        judge(knocks[i].name, (struct subject){.rhs = knock_etdrk4_0_rhs, .by_hand = knock, .solver = CVODE_ADAMS, .seconds = 10,
+        judge(knocks[i].name, (struct subject){.rhs = knock_etdrk4_0_rhs, .by_hand = knock, .solver = CVODE_ADAMS,
+            .seconds = 10,
                                                .change = 0.605, .tolerance = knocks[i].tolerance});
     /* what the input's gate lets through is left over, so a step at the gate sees both sides of the jump: h/6 of it */
     static const char *const gates[] = {"gated_etdrk4", "gated_bm3"};
     for (int i = 0; i < 2; i++)
-        judge(gates[i], (struct subject){.rhs_sampled = gated_etdrk4_0_rhs, .by_hand = gated, .solver = CVODE_ADAMS, .seconds = 5,
+        judge(gates[i], (struct subject){.rhs_sampled = gated_etdrk4_0_rhs, .by_hand = gated, .solver = CVODE_ADAMS,
+            .seconds = 5,
                                          .tolerance = 5e-3});
     static const char *const mixtures[] = {"mixed_etdrk4", "mixed_bm3"};
     for (int i = 0; i < 2; i++)
-        judge(mixtures[i], (struct subject){.rhs = mixed_etdrk4_0_rhs, .by_hand = mixed, .solver = CVODE_ADAMS, .seconds = 3, .change = 0.305,
+        judge(mixtures[i], (struct subject){.rhs = mixed_etdrk4_0_rhs, .by_hand = mixed, .solver = CVODE_ADAMS,
+            .seconds = 3, .change = 0.305,
                                             .tolerance = 1e-6});
     return tap_end();
 }

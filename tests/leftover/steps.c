@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Each step of the emitted code against the same scheme by hand, from the same state: every scheme, every kind of model. */
+/* Each step of the emitted code against the same scheme by hand, from the same state: every scheme, every kind of
+ * model. */
 #include "steps_variants.h"
 #include "systems.h"
 #include "tap.h"
@@ -73,7 +74,8 @@ static bool outputs(const struct subject *a, const void *state, real t, const re
         if (strcmp(name, m->state_names[i % m->states]) == 0 && i < m->states)
             good = close_to(out[i], (double)y[i], 0, "%s, t = %g, output %s", m->name, (double)t, name) && good;
         else if (acceleration)
-            good = close_to(out[i], (double)dydt[name[1] == 'x' ? 2 : 3], 1e-12 * (1 + (double)(fabsl(dydt[2]) + fabsl(dydt[3]))),
+            good = close_to(out[i], (double)dydt[name[1] == 'x' ? 2 : 3],
+                1e-12 * (1 + (double)(fabsl(dydt[2]) + fabsl(dydt[3]))),
                             "%s, t = %g, output %s", m->name, (double)t, name) && good;
     }
     return good;
@@ -109,7 +111,8 @@ static bool run(struct subject *a, double t0, int count, const double *from)
         inputs_of(s, a->ramp, m->h, u, k, w);
         hand_step(p, t0 + k * a->h, w, y);
         for (int i = 0; i < s->states; i++) {
-            good = close_to(history[k + 1][i], (double)y[i], tolerance * a->most[i], "%s, step %d, %s", m->name, k + 1, m->state_names[i]) && good;
+            good = close_to(history[k + 1][i], (double)y[i], tolerance * a->most[i], "%s, step %d, %s", m->name, k + 1,
+                m->state_names[i]) && good;
             a->worst = fmax(a->worst, fabs(history[k + 1][i] - (double)y[i]) / a->most[i]);
         }
         m->run(state, 1, s->inputs ? u[k] : NULL, NULL);
@@ -119,7 +122,8 @@ static bool run(struct subject *a, double t0, int count, const double *from)
             w[i] = u[k][i];
         good = outputs(a, state, t0 + (k + 1) * a->h, y, w) && good;
     }
-    good = close_to(m->time(state), t0 + count * (double)a->h, 4e-16 * (t0 + count * m->h), "%s: time", m->name) && good;
+    good = close_to(m->time(state), t0 + count * (double)a->h, 4e-16 * (t0 + count * m->h), "%s: time", m->name) &&
+        good;
     free(state);
     hand_free(p);
     return good;
@@ -127,11 +131,13 @@ static bool run(struct subject *a, double t0, int count, const double *from)
 
 static void judge(const struct system *s, const char *scheme)
 {
-    const pl_model *m = (is_pl(s) ? variant_of(steps, "%s_0", s->name) : variant_of(steps, "%s_%s_0", s->name, scheme))->model;
+    const pl_model *m = (is_pl(s) ? variant_of(steps, "%s_0", s->name) : variant_of(steps, "%s_%s_0", s->name,
+        scheme))->model;
     /* a step such as 0.1 is exactly this decimal */
     struct subject a = {.system = s, .scheme = scheme, .m = m, .ramp = is_ramped(s), .h = 1 / roundl(1 / (real)m->h)};
     double y[HAND_MOST], other[HAND_MOST];
-    if (!ok(m->states == s->states && m->inputs == s->inputs && !m->jump && m->status && (m->at != NULL) == (strcmp(scheme, "etd1") == 0),
+    if (!ok(m->states == s->states && m->inputs == s->inputs && !m->jump && m->status &&
+        (m->at != NULL) == (strcmp(scheme, "etd1") == 0),
             "%s: states, inputs, and which functions there are", m->name))
         return;
     void *state = calloc(1, m->size);
@@ -144,7 +150,8 @@ static void judge(const struct system *s, const char *scheme)
     }
     free(state);
     good = run(&a, 0, STEPS, NULL) && good;
-    ok(good && a.worst <= tolerance, "%s: %d steps as by hand, each within %.0e (largest difference %.2g)", m->name, STEPS, tolerance, a.worst);
+    ok(good && a.worst <= tolerance, "%s: %d steps as by hand, each within %.0e (largest difference %.2g)", m->name,
+        STEPS, tolerance, a.worst);
     a.worst = 0;
     good = run(&a, 3.75, 20, other);
     ok(good, "%s: so from another state at 3.75 s (largest difference %.2g)", m->name, a.worst);
@@ -153,7 +160,8 @@ static void judge(const struct system *s, const char *scheme)
 /* Between two steps of etd1 and pl what is left over is held, so NAME_at is etd1 over a part of the step. */
 static void between(const struct system *s)
 {
-    const pl_model *m = (is_pl(s) ? variant_of(steps, "%s_0", s->name) : variant_of(steps, "%s_etd1_0", s->name))->model;
+    const pl_model *m = (is_pl(s) ? variant_of(steps, "%s_0", s->name) : variant_of(steps, "%s_etd1_0",
+        s->name))->model;
     const real h = 1 / roundl(1 / (real)m->h);
     const bool ramp = is_ramped(s);
     enum { PARTS = 4, FEW = 40 };
@@ -179,7 +187,8 @@ static void between(const struct system *s)
             m->at(state, s->inputs ? u[k] : NULL, (double)(h * part / PARTS), found);
             for (int i = 0; i < s->states; i++) {
                 most[i] = fmax(most[i], fabs((double)expected[i]));
-                good = close_to(found[i], (double)expected[i], 1e-14 * most[i] + 1e-17, "%s, step %d, %d parts of four, %s", m->name, k, part,
+                good = close_to(found[i], (double)expected[i], 1e-14 * most[i] + 1e-17,
+                    "%s, step %d, %d parts of four, %s", m->name, k, part,
                                 m->state_names[i]) && good;
                 worst = fmax(worst, fabs(found[i] - (double)expected[i]) / fmax(most[i], 1e-3));
             }
@@ -187,7 +196,8 @@ static void between(const struct system *s)
         m->step(state, s->inputs ? u[k] : NULL);
         m->get(state, next);
         for (int i = 0; i < s->states; i++)
-            good = close_to(found[i], next[i], 1e-14 * most[i] + 1e-17, "%s, step %d, h against the step, %s", m->name, k, m->state_names[i]) && good;
+            good = close_to(found[i], next[i], 1e-14 * most[i] + 1e-17, "%s, step %d, h against the step, %s", m->name,
+                k, m->state_names[i]) && good;
     }
     ok(good, "%s: between steps as by hand (largest difference %.2g)", m->name, worst);
     for (int part = 0; part <= PARTS; part++)
@@ -225,7 +235,8 @@ static void transfer(const struct system *s)
     for (int i = 0; i < n && good; i++) {
         for (int j = 0; j < n; j++) {
             const double entry = (double)hand_flow(p, 0)[i * size + j];
-            good = close_to(v->Phi[i * n + j], entry, 1e-14 * fabs(entry) + 1e-17, "%s: Phi[%d][%d]", s->name, i, j) && good;
+            good = close_to(v->Phi[i * n + j], entry, 1e-14 * fabs(entry) + 1e-17, "%s: Phi[%d][%d]", s->name, i, j) &&
+                good;
         }
     }
     ok(good, "%s: Phi is e^{Ah}", s->name);

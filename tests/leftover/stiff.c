@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The stiff oscillator of van der Pol (mu = 100) from (2, 0), with the Jacobian at the start as operator: the etd family stays stable at
- * every step, the precise-integration schemes fail where their explicit predictor does; the implicit trapezoid beside them.
- * 400 s; but etdrk4 at 0.1 and 0.05 only to the first jump, 80 s.  Behind it x is no longer near the start, the run becomes a matter of chance,
- * and of forty starts within 4e-8 of (2, 0) sixteen to nineteen leave all bounds between 150 s and 1000 s. */
+/* The stiff oscillator of van der Pol (mu = 100) from (2, 0), with the Jacobian at the start as operator: the etd
+ * family stays stable at every step, the precise-integration schemes fail where their explicit predictor does; the
+ * implicit trapezoid beside them. 400 s; but etdrk4 at 0.1 and 0.05 only to the first jump, 80 s.  Behind it x is no
+ * longer near the start, the run becomes a matter of chance, and of forty starts within 4e-8 of (2, 0) sixteen to
+ * nineteen leave all bounds between 150 s and 1000 s. */
 #include "stiff_variants.h"
 #include "tap.h"
 
@@ -84,7 +85,8 @@ static struct run of(const char *scheme, int variant, double seconds, int *statu
 {
     const pl_model *m = variant_of(stiff, "vanderpol_stiff_%s_%d", scheme, variant)->model;
     const struct run r = emitted(m, seconds, status);
-    note("%s, h = %g: largest |x| %.6g, period %.5g, to %.5g s, status %d", scheme, m->h, r.most, r.period, r.ended, *status);
+    note("%s, h = %g: largest |x| %.6g, period %.5g, to %.5g s, status %d", scheme, m->h, r.most, r.period, r.ended,
+        *status);
     return r;
 }
 
@@ -92,7 +94,8 @@ static void stable(const char *scheme, int variant, double seconds)
 {
     int status;
     const struct run r = of(scheme, variant, seconds, &status);
-    const bool good = close_to(r.most, 2, bound - 2, "%s: largest |x|", scheme) && close_to(r.ended, seconds, 1e-6, "%s: end", scheme);
+    const bool good = close_to(r.most, 2, bound - 2, "%s: largest |x|", scheme) &&
+        close_to(r.ended, seconds, 1e-6, "%s: end", scheme);
     ok(good && status == 0, "%s, variant %d: bounded over %g s", scheme, variant, seconds);
 }
 
@@ -108,7 +111,8 @@ static void accurate(const char *scheme, int variant, double tolerance)
 {
     int status;
     const struct run r = of(scheme, variant, SECONDS, &status);
-    ok(close_to(r.period, true_period, tolerance, "%s: period", scheme), "%s, h = 0.001: the period of the oscillation, %.6g s", scheme, r.period);
+    ok(close_to(r.period, true_period, tolerance, "%s: period", scheme),
+        "%s, h = 0.001: the period of the oscillation, %.6g s", scheme, r.period);
 }
 
 int main(void)
@@ -134,6 +138,7 @@ int main(void)
         note("implicit trapezoid, h = %g: largest |x| %.6g, period %.5g", h[i], r.most, r.period);
         ok(isfinite(r.most), "implicit trapezoid, h = %g: stable, as it is at every step", h[i]);
     }
-    ok(close_to(r.period, true_period, 0.3, "trapezoid: period"), "implicit trapezoid, h = 0.001: the period of the oscillation");
+    ok(close_to(r.period, true_period, 0.3, "trapezoid: period"),
+        "implicit trapezoid, h = 0.001: the period of the oscillation");
     return tap_end();
 }

@@ -179,7 +179,8 @@ static void coupled(real t, const real *y, const real *u, real *dydt)
     const real x = y[0], q = y[1], v = y[2], p = y[3];
     (void)u;
     const real spring = 5 * powl(x - q, 3), damper = 0.4L * powl(v - p, 3);
-    const real a = sinl(3 * t) - (0.1L * v + damper + 30 * x + spring), b = damper + spring - 0.2L * p - 20 * q - 0.3L * x * p;
+    const real a = sinl(3 * t) - (0.1L * v + damper + 30 * x + spring),
+        b = damper + spring - 0.2L * p - 20 * q - 0.3L * x * p;
     dydt[0] = v;
     dydt[1] = p;
     dydt[2] = (a - 0.5L * b) / 1.75L;                   /* the inverse of [2, 0.5; 0.5, 1] */
@@ -303,7 +304,8 @@ static void growth_linear(const struct system *s, int which, real *A)
     static const struct { int row, column; real value; } entries[] = {
         {2, Z + 2, 0.3L}, {2, Z + 5, 0.1L}, {3, Z + 6, 1}, {3, Z + 4, -1.5L},
         {Z, Z, -0.2L}, {Z, Z + 1, -2}, {Z + 1, Z, 2}, {Z + 1, Z + 1, -0.2L},
-        {Z + 2, Z, 1}, {Z + 2, Z + 2, -0.2L}, {Z + 2, Z + 3, -2}, {Z + 3, Z + 1, 1}, {Z + 3, Z + 2, 2}, {Z + 3, Z + 3, -0.2L},
+        {Z + 2, Z, 1}, {Z + 2, Z + 2, -0.2L}, {Z + 2, Z + 3, -2}, {Z + 3, Z + 1, 1}, {Z + 3, Z + 2, 2},
+            {Z + 3, Z + 3, -0.2L},
         {Z + 5, Z + 4, 1}, {Z + 6, Z + 6, 0.1L}};
     at_origin(s, which, A);
     for (size_t i = 0; i < sizeof entries / sizeof *entries; i++)
@@ -317,9 +319,11 @@ enum { MASSES = 8 };
 /* x <- M^-1 x; M has blocks of two at most */
 static void chain_inverse(real *x)
 {
-    static const real block[4][3] = {{2, 0.3L, 1.5L}, {1, 0.2L, 1}, {1, 0, 1.2L}, {0.8L, 0.1L, 1}};    /* a, b, d of [a, b; b, d] */
+    /* a, b, d of [a, b; b, d] */
+    static const real block[4][3] = {{2, 0.3L, 1.5L}, {1, 0.2L, 1}, {1, 0, 1.2L}, {0.8L, 0.1L, 1}};
     for (int i = 0; i < 4; i++) {
-        const real a = block[i][0], b = block[i][1], d = block[i][2], det = a * d - b * b, p = x[2 * i], q = x[2 * i + 1];
+        const real a = block[i][0], b = block[i][1], d = block[i][2], det = a * d - b * b, p = x[2 * i],
+            q = x[2 * i + 1];
         x[2 * i] = (d * p - b * q) / det;
         x[2 * i + 1] = (a * q - b * p) / det;
     }
@@ -339,7 +343,8 @@ static void chain(real t, const real *y, const real *u, real *dydt)
     real *a = dydt + MASSES;
     for (int i = 0; i < MASSES; i++) {
         dydt[i] = v[i];
-        a[i] = chain_f[i] * (cosl(3 * t) + 0.5L * v[1] * y[0]) + chain_b[i] * u[0] - 0.001L * chain_K(v, i) - chain_K(y, i) -
+        a[i] = chain_f[i] * (cosl(3 * t) + 0.5L * v[1] * y[0]) + chain_b[i] * u[0] - 0.001L * chain_K(v, i) - chain_K(y,
+            i) -
                30 * (y[i] - sinl(y[i])) - t * y[i];
     }
     chain_inverse(a);
@@ -403,12 +408,16 @@ static void functions(real t, const real *y, const real *u, real *dydt)
     dydt[0] = y[3];
     dydt[1] = y[4];
     dydt[2] = y[5];
-    dydt[3] = -(4 * a + 0.3L * sinl(b) * cosl(a) + 0.1L * tanl(b / 2) + 0.2L * expl(-a * a) - logl(2 + b) + 0.1L * fabsl(da) * da +
+    dydt[3] = -(4 * a + 0.3L * sinl(b) * cosl(a) + 0.1L * tanl(b / 2) + 0.2L * expl(-a * a) - logl(2 + b) +
+        0.1L * fabsl(da) * da +
                 0.1L * powl(2 + a, 1.5L));
-    dydt[4] = -(9 * b + sqrtl(2 + a) + 0.3L * fabsl(b + 3) * a + 0.2L * sign(b - 3) + sinhl(0.3L * a) - coshl(0.2L * b) + tanhl(c) +
+    dydt[4] = -(9 * b + sqrtl(2 + a) + 0.3L * fabsl(b + 3) * a + 0.2L * sign(b - 3) + sinhl(0.3L * a) -
+        coshl(0.2L * b) + tanhl(c) +
                 (a > b ? a * a : a * b) + 1 / (1 + a * a));
-    dydt[5] = -(c + asinl(0.2L * a) + 0.2L * acosl(0.1L * b) + atanl(c) / 5 + 0.3L * atan2l(a + 3, b + 2) + 0.2L * fminl(a, b) * c - 0.2L * fmaxl(b, c) * a +
-                deadzone(c, -0.5L, 0.5L) * a + 0.3L * fminl(0.4L, fmaxl(-0.3L, a)) * b + 0.1L * table_of_spec(b) * c + 0.1L * powl(2, a));
+    dydt[5] = -(c + asinl(0.2L * a) + 0.2L * acosl(0.1L * b) + atanl(c) / 5 + 0.3L * atan2l(a + 3,
+        b + 2) + 0.2L * fminl(a, b) * c - 0.2L * fmaxl(b, c) * a +
+                deadzone(c, -0.5L, 0.5L) * a + 0.3L * fminl(0.4L, fmaxl(-0.3L, a)) * b + 0.1L * table_of_spec(b) * c +
+                    0.1L * powl(2, a));
 }
 
 static void functions_linear(const struct system *s, int which, real *A)
@@ -453,44 +462,61 @@ static void thermal_own(const struct system *s, int which, real *A)
 
 const struct system systems[] = {
     {.name = "pendulum", .states = 2, .start = {1.0472L}, .equations = pendulum, .linear = at_origin},
-    {.name = "pendulum_bank", .states = 2, .start = {1.0472L}, .equations = pendulum, .linear = pendulum_bank_linear, .operators = 2,
+    {.name = "pendulum_bank", .states = 2, .start = {1.0472L}, .equations = pendulum, .linear = pendulum_bank_linear,
+        .operators = 2,
      .choose = pendulum_bank_choose},
     {.name = "vanderpol", .states = 2, .start = {2}, .equations = vanderpol, .linear = at_origin},
     {.name = "vanderpol_stiff", .states = 2, .start = {2}, .equations = vanderpol_stiff, .linear = at_start},
     {.name = "quad2dof", .states = 4, .start = {0.1L, 0.1L}, .equations = quad2dof, .linear = at_origin},
-    {.name = "duffing", .states = 2, .loads = 2, .start = {1}, .equations = duffing, .loads_at = duffing_loads, .linear = duffing_linear},
+    {.name = "duffing", .states = 2, .loads = 2, .start = {1}, .equations = duffing, .loads_at = duffing_loads,
+        .linear = duffing_linear},
     {.name = "duffing_left", .states = 2, .start = {1}, .equations = duffing, .linear = at_origin},
     {.name = "mathieu", .states = 2, .start = {1}, .equations = mathieu, .linear = mathieu_linear},
     {.name = "mathieu_default", .states = 2, .start = {1}, .equations = mathieu, .linear = mathieu_linear},
-    {.name = "mathieu_bank", .states = 2, .start = {1}, .equations = mathieu, .linear = mathieu_bank_linear, .operators = 4,
+    {.name = "mathieu_bank", .states = 2, .start = {1}, .equations = mathieu, .linear = mathieu_bank_linear,
+        .operators = 4,
      .choose = mathieu_bank_choose},
     {.name = "held", .states = 4, .inputs = 2, .start = {0.3L, 0, 0, -0.2L}, .equations = held, .linear = at_origin},
-    {.name = "ramped", .states = 4, .inputs = 2, .start = {0.1L, 0, 0, -0.2L}, .equations = ramped, .linear = at_origin},
-    {.name = "thermal", .states = 4, .loads = 3, .start = {0.1L, 0.5L, 0.3L, 0}, .equations = thermal, .loads_at = thermal_loads,
+    {.name = "ramped", .states = 4, .inputs = 2, .start = {0.1L, 0, 0, -0.2L}, .equations = ramped,
+        .linear = at_origin},
+    {.name = "thermal", .states = 4, .loads = 3, .start = {0.1L, 0.5L, 0.3L, 0}, .equations = thermal,
+        .loads_at = thermal_loads,
      .linear = thermal_linear},
-    {.name = "coupled", .states = 4, .loads = 2, .start = {0.5L, -0.2L, 1, 0}, .equations = coupled, .loads_at = coupled_loads,
+    {.name = "coupled", .states = 4, .loads = 2, .start = {0.5L, -0.2L, 1, 0}, .equations = coupled,
+        .loads_at = coupled_loads,
      .linear = coupled_linear},
-    {.name = "coupled_at", .states = 4, .loads = 2, .start = {0.5L, -0.2L, 1, 0}, .equations = coupled, .loads_at = coupled_loads,
+    {.name = "coupled_at", .states = 4, .loads = 2, .start = {0.5L, -0.2L, 1, 0}, .equations = coupled,
+        .loads_at = coupled_loads,
      .linear = coupled_at_linear},
-    {.name = "coupled_part", .states = 4, .loads = 2, .start = {0.5L, -0.2L, 1, 0}, .equations = coupled, .loads_at = coupled_loads,
+    {.name = "coupled_part", .states = 4, .loads = 2, .start = {0.5L, -0.2L, 1, 0}, .equations = coupled,
+        .loads_at = coupled_loads,
      .linear = coupled_part_linear},
-    {.name = "rotor", .states = 4, .loads = 2, .start = {0.3L, -0.1L, 0, 0.5L}, .equations = rotor, .loads_at = rotor_loads,
+    {.name = "rotor", .states = 4, .loads = 2, .start = {0.3L, -0.1L, 0, 0.5L}, .equations = rotor,
+        .loads_at = rotor_loads,
      .linear = rotor_linear, .operators = 4, .choose = rotor_choose},
     {.name = "held_pl", .states = 4, .inputs = 2, .start = {0.3L, 0, 0, -0.2L}, .equations = held, .linear = held_own},
-    {.name = "ramped_pl", .states = 4, .inputs = 2, .start = {0.1L, 0, 0, -0.2L}, .equations = ramped, .linear = held_own},
-    {.name = "coupled_pl", .states = 4, .loads = 2, .start = {0.5L, -0.2L, 1, 0}, .equations = coupled, .loads_at = coupled_loads,
+    {.name = "ramped_pl", .states = 4, .inputs = 2, .start = {0.1L, 0, 0, -0.2L}, .equations = ramped,
+        .linear = held_own},
+    {.name = "coupled_pl", .states = 4, .loads = 2, .start = {0.5L, -0.2L, 1, 0}, .equations = coupled,
+        .loads_at = coupled_loads,
      .linear = coupled_own},
-    {.name = "thermal_pl", .states = 4, .loads = 3, .start = {0.1L, 0.5L, 0.3L, 0}, .equations = thermal, .loads_at = thermal_loads,
+    {.name = "thermal_pl", .states = 4, .loads = 3, .start = {0.1L, 0.5L, 0.3L, 0}, .equations = thermal,
+        .loads_at = thermal_loads,
      .linear = thermal_own},
-    {.name = "growth", .states = 4, .loads = 7, .start = {0.2L, 0, 0, 0.3L}, .equations = growth, .loads_at = growth_loads,
+    {.name = "growth", .states = 4, .loads = 7, .start = {0.2L, 0, 0, 0.3L}, .equations = growth,
+        .loads_at = growth_loads,
      .linear = growth_linear},
     {.name = "growth_left", .states = 4, .start = {0.2L, 0, 0, 0.3L}, .equations = growth, .linear = at_origin},
-    {.name = "chain", .states = 16, .loads = 2, .inputs = 1, .start = {0.3L, 0, 0, 0, -0.2L, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1}, .equations = chain,
+    {.name = "chain", .states = 16, .loads = 2, .inputs = 1,
+        .start = {0.3L, 0, 0, 0, -0.2L, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1}, .equations = chain,
      .loads_at = chain_loads, .linear = chain_linear},
-    {.name = "chain_bank", .states = 16, .loads = 2, .inputs = 1, .start = {0.3L, 0, 0, 0, -0.2L, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1},
+    {.name = "chain_bank", .states = 16, .loads = 2, .inputs = 1,
+        .start = {0.3L, 0, 0, 0, -0.2L, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1},
      .equations = chain, .loads_at = chain_loads, .linear = chain_linear, .operators = 3, .choose = chain_choose},
-    {.name = "functions", .states = 6, .start = {0.1L, 0.2L, 0.3L, 0.2L, 0, 0.1L}, .equations = functions, .linear = functions_linear},
-    {.name = "functions_at", .states = 6, .start = {0.1L, 0.2L, 0.3L, 0.2L, 0, 0.1L}, .equations = functions, .linear = at_start},
+    {.name = "functions", .states = 6, .start = {0.1L, 0.2L, 0.3L, 0.2L, 0, 0.1L}, .equations = functions,
+        .linear = functions_linear},
+    {.name = "functions_at", .states = 6, .start = {0.1L, 0.2L, 0.3L, 0.2L, 0, 0.1L}, .equations = functions,
+        .linear = at_start},
 };
 
 const int systems_count = sizeof systems / sizeof *systems;

@@ -43,7 +43,8 @@ static int slope(realtype tau, N_Vector y, N_Vector dydt, void *from)
 }
 
 /* Of a system that is affine in y: its columns are differences of slopes, but for rounding exact. */
-static int affine_jacobian(realtype tau, N_Vector at, N_Vector f_at, SUNMatrix J, void *from, N_Vector y, N_Vector f0, N_Vector f)
+static int affine_jacobian(realtype tau, N_Vector at, N_Vector f_at, SUNMatrix J, void *from, N_Vector y, N_Vector f0,
+    N_Vector f)
 {
     const struct truth *t = from;
     (void)at, (void)f_at;
@@ -137,9 +138,11 @@ static bool by_others(struct truth *t, bool anew, double *reached)
 {
     const double goal = t->to - t->begun;
     if (t->solver == ARKODE_AFFINE)
-        return (!anew || ARKStepReset(t->memory, 0, t->y) == ARK_SUCCESS) && ARKStepSetStopTime(t->memory, goal) == ARK_SUCCESS &&
+        return (!anew || ARKStepReset(t->memory, 0, t->y) == ARK_SUCCESS) &&
+            ARKStepSetStopTime(t->memory, goal) == ARK_SUCCESS &&
                ARKStepEvolve(t->memory, goal, t->y, reached, ARK_NORMAL) >= 0;
-    return (!anew || CVodeReInit(t->memory, 0, t->y) == CV_SUCCESS) && CVodeSetStopTime(t->memory, goal) == CV_SUCCESS &&
+    return (!anew || CVodeReInit(t->memory, 0, t->y) == CV_SUCCESS) &&
+        CVodeSetStopTime(t->memory, goal) == CV_SUCCESS &&
            CVode(t->memory, goal, t->y, reached, CV_NORMAL) >= 0;
 }
 

@@ -23,8 +23,9 @@ struct truth;
 struct truth *truth_new(int n, slopes *f, const void *of, enum solver solver, double relative, const double *scale);
 void truth_free(struct truth *t);
 
-/* y <- the state at the time `to`, from y at the time `from`.  Without inputs all but ARKODE_EXPLICIT go on from their own last state
- * where `from` is the last `to`; else the solver begins anew, so nothing need be smooth at `from`.  u0: inputs at `from`, then their slopes. */
+/* y <- the state at the time `to`, from y at the time `from`.  Without inputs all but ARKODE_EXPLICIT go on from their
+ * own last state where `from` is the last `to`; else the solver begins anew, so nothing need be smooth at `from`.
+ * u0: inputs at `from`, then their slopes. */
 bool truth_advance(struct truth *t, double from, double to, int inputs, const double *u0, double *y);
 
 /* `slopes` of a struct system. */

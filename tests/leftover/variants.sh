@@ -4,8 +4,9 @@
 #
 #     variants.sh PLGEN LIST NAME_variants.c NAME_variants.h FOLDER ...
 #
-# A line of LIST is `NAME SCHEMES STEPS [OPTION ...]`: NAME.spec is looked for in the folders, in their order, and becomes the models
-# NAME_SCHEME_0, NAME_SCHEME_1, ... for each of its steps ('-': the spec's own scheme, the spec's own step).  Options:
+# A line of LIST is `NAME SCHEMES STEPS [OPTION ...]`: NAME.spec is looked for in the folders, in their order, and
+# becomes the models NAME_SCHEME_0, NAME_SCHEME_1, ... for each of its steps ('-': the spec's own scheme, the spec's own
+# step).  Options:
 #     as=PREFIX       PREFIX instead of NAME in the names
 #     at=TEXT         `operator at TEXT` instead of the spec's own operator ('_' is a blank); at=none: no such statement
 #     anything else   for plgen
@@ -65,7 +66,8 @@ grep -v -e '^#' -e '^$' "$list" | while read -r name schemes steps options; do
             fi
             [ "$step" = - ] || choice="$choice --step $step"
             # shellcheck disable=SC2086
-            "$plgen" --rhs $choice $given -o "$work/$prefix.c" "$spec" 2>"$work/said" || { cat "$work/said" >&2; exit 1; }
+            "$plgen" --rhs $choice $given -o "$work/$prefix.c" "$spec" 2>"$work/said" ||
+                { cat "$work/said" >&2; exit 1; }
             cat "$work/$prefix.h" >>"$work/headers"
             grep -v '^#include "'"$prefix"'.h"$' "$work/$prefix.c" >>"$work/bodies"
             echo "$prefix" >>"$work/names"

@@ -15,7 +15,8 @@ struct expected {
     const char *model;
     uint64_t steps;
     double torque, speed;                   /* in the end; [1/s] */
-    double offset;                          /* of the place from speed times time: the centre started at 0, and the springs are wound */
+    /* of the place from speed times time: the centre started at 0, and the springs are wound */
+    double offset;
 };
 
 static const struct expected expected[] = {
@@ -52,7 +53,8 @@ static void check(const struct variant *v, const struct expected *e, uint64_t ti
     close_to(worst, 0, single ? 1e-5 : 1e-13, "%s, %s: the torque's largest error relative to it", m->name, TYPE);
     ok(worst <= (single ? 1e-5 : 1e-13), "%s, %s: torque within %.2g of its size", m->name, TYPE, worst);
     const double far = e->speed * (double)steps * m->h, place = far + e->offset;
-    ok(close_to((double)out[1], place, (single ? 1e-6 : 1e-14) * far, "%s, %s: place", m->name, TYPE), "%s, %s: place after %.3g steps", m->name, TYPE,
+    ok(close_to((double)out[1], place, (single ? 1e-6 : 1e-14) * far, "%s, %s: place", m->name, TYPE),
+        "%s, %s: place after %.3g steps", m->name, TYPE,
        (double)steps);
     free(s);
 }

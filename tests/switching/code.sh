@@ -27,7 +27,8 @@ compiled() {
     name=$1
     file=$2
     shift 2
-    for compiler in 'gcc -std=c99 -O2 -c -o object.o' 'clang -std=c99 -fsyntax-only' 'g++ -std=c++17 -fsyntax-only -x c++' \
+    for compiler in 'gcc -std=c99 -O1 -c -o object.o' 'clang -std=c99 -fsyntax-only' \
+        'g++ -std=c++17 -fsyntax-only -x c++' \
         'clang++ -std=c++17 -fsyntax-only -x c++'; do
         if ! command -v "${compiler%% *}" >/dev/null 2>&1; then
             count=$((count + 1))
@@ -44,7 +45,8 @@ for file in $files; do
     compiled "${file##*/}" "$file" -I"$here" -I"${file%/*}"
     name=${file##*/}
     list=${name%_variants.c}
-    "$here/variants.sh" "$plgen" "$here/$list.list" "$work/$name" "$work/${name%.c}.h" "$here" "$root/models" >log 2>&1 &&
+    "$here/variants.sh" "$plgen" "$here/$list.list" "$work/$name" "$work/${name%.c}.h" "$here" \
+        "$root/models" >log 2>&1 &&
         cmp "$file" "$work/$name" >>log 2>&1 && cmp "${file%.c}.h" "$work/${name%.c}.h" >>log 2>&1
     result $? "$list: the same bytes twice"
 done
@@ -76,7 +78,8 @@ while read -r kind; do
     number=$((number + 1))
     { echo 'model kind'; printf '%s\n' "$kind; step 0.01; scheme exact" | tr ';' '\n' | sed 's/^ *//'; } >kind.spec
     # ';' divides the points of a table and rows of a matrix too: those lines are joined again
-    awk '{ line = line $0; open = gsub(/[([]/, "&", line) - gsub(/[])]/, "&", line); if (open > 0) { line = line "; "; next } print line; line = "" }' \
+    awk '{ line = line $0; open = gsub(/[([]/, "&", line) - gsub(/[])]/, "&", line); if (open > 0) { line = line "; ";
+        next } print line; line = "" }' \
         kind.spec >joined.spec
     : >log
     status=0
@@ -102,7 +105,8 @@ code()
 
 while IFS='|' read -r product branches; do
     : >log
-    code "$product" >product.c && code "$branches" >branches.c && [ -s product.c ] && cmp product.c branches.c >>log 2>&1 && [ ! -s log ]
+    code "$product" >product.c && code "$branches" >branches.c && [ -s product.c ] &&
+        cmp product.c branches.c >>log 2>&1 && [ ! -s log ]
     result $? "$product: as $branches"
 done <<'END'
 x'' + (x' > 0 ? 2 : 3)*x' + x = 0|x'' + (x' > 0 ? 2*x' : 3*x') + x = 0
@@ -117,7 +121,8 @@ END
 
 for name in gear1 gear2 gear3 bilinear stop two_masses quarter_car_bumps; do
     status=1
-    if "$plgen" -o model.c "$root/models/$name.spec" >log 2>&1 && gcc -std=c99 -O1 -fno-builtin -I"$root/runtime" -c model.c -o model.o >>log 2>&1; then
+    if "$plgen" -o model.c "$root/models/$name.spec" >log 2>&1 &&
+        gcc -std=c99 -O1 -fno-builtin -I"$root/runtime" -c model.c -o model.o >>log 2>&1; then
         nm -u model.o | awk '{ print $NF }' | grep -v -E '^(pl_[a-z_]*|memcpy|memset|_GLOBAL_OFFSET_TABLE_)$' >>log
         ! grep -q '<math\.h>' model.c model.h && [ ! -s log ]
         status=$?
@@ -132,14 +137,16 @@ result $? "crossings.c: freestanding"
 # ---- expressions as written; what a run that ends early says ----
 
 "$plgen" --explain "$here/bump.spec" 2>&1 | grep '^    expression' >log
-printf '    expression 0: -w + x, breakpoints 0.1, 0.2\n    expression 1: 3*y, breakpoints 3, 6, 15\n' | diff - log >>log 2>&1
+printf '    expression 0: -w + x, breakpoints 0.1, 0.2\n    expression 1: 3*y, breakpoints 3, 6, 15\n' |
+    diff - log >>log 2>&1
 result $? 'bump: sign and scale of expressions as first written'
 
+runtime_archive "$root/runtime"
 # told SPEC T MESSAGE: plmain ends with status 1 and this message, whatever the time in it
 told() {
     name=$(sed -n 's/^model //p' "$1")
-    "$plgen" -o told.c "$1" >log 2>&1 && gcc -std=c99 $warnings -I"$root/runtime" -DMODEL="$name" told.c "$root"/runtime/*.c \
-        "$root/runtime/host/plmain.c" -o told >>log 2>&1
+    "$plgen" -o told.c "$1" >log 2>&1 && gcc -std=c99 $warnings -I"$root/runtime" -DMODEL="$name" told.c \
+        "$root/runtime/host/plmain.c" "$archive" -o told >>log 2>&1
     ./told "$2" >rows 2>message
     status=$?
     sed 's/t = [^:]*:/t = ...:/' message >>log

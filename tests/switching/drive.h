@@ -23,7 +23,8 @@ void run_step(struct run *r, const double *u);
 void run_until(struct run *r, double t);                                /* no inputs; t: a multiple of the step */
 void run_state(const struct run *r, double *y);
 
-/* Steps without inputs up to t (a multiple of the step), noting the times of crossings since 0; how many. At most `most`. */
+/* Steps without inputs up to t (a multiple of the step), noting the times of crossings since 0; how many. At most
+ * `most`. */
 int run_crossings(struct run *r, double t, int most, double *time, pl_crossing *crossing);
 
 #endif

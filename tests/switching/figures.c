@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Values that do not depend on the step: of the gears, to ten digits and by hand; of a bilinear oscillator and of a mass against a
- * stop, in closed form. */
+/* Values that do not depend on the step: of the gears, to ten digits and by hand; of a bilinear oscillator and of a
+ * mass against a stop, in closed form. */
 #include "drive.h"
 #include "figures_variants.h"
 #include "hand.h"
@@ -13,13 +13,15 @@
 /* deadzone(x, -b, b) is two stops. */
 static struct hand_system gear1(real eta)
 {
-	return (struct hand_system){ .n = 1, .stops = 2, .C = { { 0.1L } }, .f0 = { 0.1L }, .fa = { 0.05L }, .w = eta, .start = { 1.1L },
+	return (struct hand_system){ .n = 1, .stops = 2, .C = { { 0.1L } }, .f0 = { 0.1L }, .fa = { 0.05L }, .w = eta,
+		.start = { 1.1L },
 		.stop = { { { 1 }, { 1 }, 1, 0, 1, 0, 0 }, { { -1 }, { -1 }, 1, 0, 1, 0, 0 } } };
 }
 
 static struct hand_system gear2(void)
 {
-	return (struct hand_system){ .n = 2, .stops = 2, .K = { { 0, -0.5L }, { 0, 1 } }, .C = { { 0.1L, -0.05L }, { -0.05L, 0.1L } },
+	return (struct hand_system){ .n = 2, .stops = 2, .K = { { 0, -0.5L }, { 0, 1 } },
+		.C = { { 0.1L, -0.05L }, { -0.05L, 0.1L } },
 		.f0 = { 0.1L, 0.05L }, .fa = { 0.05L, 0 }, .w = 0.8L, .start = { 1.2L, 0.1L },
 		.stop = { { { 1, 0 }, { 1, -0.5L }, 1, 0, 1, 0, 0 }, { { -1, 0 }, { -1, 0.5L }, 1, 0, 1, 0, 0 } } };
 }
@@ -70,22 +72,26 @@ static void gear_at(const struct gear *g, const struct hand_system *system, int 
 	run_until(&r, g->seconds);
 	run_state(&r, y);
 	for (int i = 0; i < g->values; i++)
-		good = close_to(y[i], g->value[i], g->tolerance * fabs(g->value[i]), "%s, h = %g, %s", g->name, m->h, m->state_names[i]) && good;
+		good = close_to(y[i], g->value[i], g->tolerance * fabs(g->value[i]), "%s, h = %g, %s", g->name, m->h,
+			m->state_names[i]) && good;
 	if (g->values)
 		ok(good, "%s, h = %g: ten digits of the known values at t = %g", g->name, m->h, g->seconds);
 	if (g->crossings >= 0)
-		ok(close_to((double)of->crossed(r.state), (double)g->crossings, 0, "changes of region"), "%s, h = %g: %ld changes of region", g->name, m->h,
+		ok(close_to((double)of->crossed(r.state), (double)g->crossings, 0, "changes of region"),
+			"%s, h = %g: %ld changes of region", g->name, m->h,
 		   g->crossings);
 	hand_start(system, &by_hand);
 	hand_reference(system, &by_hand, g->seconds);
 	good = true;
 	for (int i = 0; i < m->states; i++) {
 		const double size = i < system->n ? 1 : 0.5;
-		good = close_to(y[i], (double)by_hand.y[i], 2e-12 * size, "%s, h = %g, %s by hand", g->name, m->h, m->state_names[i]) && good;
+		good = close_to(y[i], (double)by_hand.y[i], 2e-12 * size, "%s, h = %g, %s by hand", g->name, m->h,
+			m->state_names[i]) && good;
 		worst = fmax(worst, fabs(y[i] - (double)by_hand.y[i]));
 	}
 	good = close_to((double)of->crossed(r.state), (double)by_hand.crossings, 0, "changes of region by hand") && good;
-	ok(good, "%s, h = %g: by hand, %ld changes of region (largest difference %.2g)", g->name, m->h, by_hand.crossings, worst);
+	ok(good, "%s, h = %g: by hand, %ld changes of region (largest difference %.2g)", g->name, m->h, by_hand.crossings,
+		worst);
 	ok(m->status(r.state) == 0, "%s, h = %g: status 0", g->name, m->h);
 	run_free(&r);
 }
@@ -117,18 +123,22 @@ static void bilinear(int step)
 	bool good = close_to(count, 2 * PERIODS, 0, "crossings");
 	double worst = 0;
 	for (int i = 0; i + 2 < count; i++) {
-		good = close_to(time[i + 2] - time[i], period, 1e-12 * period, "h = %g, period from crossing %d", of->model->h, i) && good;
-		good = close_to(time[i + 1] - time[i], crossing[i].upward ? up : down, 1e-12 * period, "h = %g, crossing %d to the next", of->model->h, i) && good;
+		good = close_to(time[i + 2] - time[i], period, 1e-12 * period, "h = %g, period from crossing %d", of->model->h,
+			i) && good;
+		good = close_to(time[i + 1] - time[i], crossing[i].upward ? up : down, 1e-12 * period,
+			"h = %g, crossing %d to the next", of->model->h, i) && good;
 		worst = fmax(worst, fabs(time[i + 2] - time[i] - period));
 	}
-	ok(good, "bilinear, h = %g: period pi/w1 + pi/w2 over %d periods (largest difference %.2g)", of->model->h, PERIODS, worst);
+	ok(good, "bilinear, h = %g: period pi/w1 + pi/w2 over %d periods (largest difference %.2g)", of->model->h, PERIODS,
+		worst);
 	good = close_to(time[0], up, 1e-13, "first crossing") && close_to(crossing[0].upward, 0, 0, "its direction");
 	for (int i = 1; i < count; i++)
 		good = close_to(crossing[i].upward, !crossing[i - 1].upward, 0, "direction of crossing %d", i) && good;
 	ok(good, "bilinear, h = %g: up and down in turn", of->model->h);
 	run_state(&r, y);                       /* after 20 periods: x = sin(w2 (t - 20 T))/w2 */
 	const double t = of->model->time(r.state) - PERIODS * period;
-	ok(close_to(y[0], sin(5 * t) / 5, 1e-12, "x") && close_to(y[1], cos(5 * t), 1e-12, "x'"), "bilinear, h = %g: state after %d periods", of->model->h,
+	ok(close_to(y[0], sin(5 * t) / 5, 1e-12, "x") && close_to(y[1], cos(5 * t), 1e-12, "x'"),
+		"bilinear, h = %g: state after %d periods", of->model->h,
 	   PERIODS);
 	run_free(&r);
 }
@@ -148,24 +158,29 @@ static void stop(int step)
 	const double whole = floor(peak / m->h);
 	m->run(at, (size_t)whole, NULL, NULL);
 	m->at(at, NULL, peak - whole * m->h, y);
-	ok(close_to(1e6 * y[0], most, 1e-9 * most, "h = %g, force", m->h), "stop, h = %g: largest force %.10g N", m->h, 1e6 * y[0]);
-	ok(close_to(1e6 * y[0], 1e6 / w, 1e-13 * most, "force") && close_to(y[1], 0, 1e-13, "speed there"), "stop, h = %g: where the speed is 0", m->h);
+	ok(close_to(1e6 * y[0], most, 1e-9 * most, "h = %g, force", m->h), "stop, h = %g: largest force %.10g N", m->h,
+		1e6 * y[0]);
+	ok(close_to(1e6 * y[0], 1e6 / w, 1e-13 * most, "force") && close_to(y[1], 0, 1e-13, "speed there"),
+		"stop, h = %g: where the speed is 0", m->h);
 	m->set(at, 0, y);
 	m->out(at, out);
 	ok(close_to(out[2], 1e6 * y[0], 1e-15 * most, "output push"), "stop, h = %g: the force as an output", m->h);
 	ok(close_to(of->region(r.state), 1, 0, "region"), "stop, h = %g: it starts in touch, since it moves in", m->h);
 	const int count = run_crossings(&r, 0.1, 4, time, crossing);
 	ok(close_to(count, 1, 0, "crossings") && close_to(crossing[0].upward, 0, 0, "direction") &&
-	   close_to(time[0], lasts, 1e-15, "h = %g, contact lasts", m->h), "stop, h = %g: contact lasts %.17g s", m->h, time[0]);
+	   close_to(time[0], lasts, 1e-15, "h = %g, contact lasts", m->h), "stop, h = %g: contact lasts %.17g s", m->h,
+	   	time[0]);
 	run_state(&r, y);
 	const double tau = 0.1 - acos(-1) / w;
-	ok(close_to(y[0], -sin(10 * tau) / 10, 1e-13, "x") && close_to(y[1], -cos(10 * tau), 1e-13, "x'"), "stop, h = %g: the speed is kept", m->h);
+	ok(close_to(y[0], -sin(10 * tau) / 10, 1e-13, "x") && close_to(y[1], -cos(10 * tau), 1e-13, "x'"),
+		"stop, h = %g: the speed is kept", m->h);
 	/* ten contacts, still at that speed: energy */
 	const int more = run_crossings(&r, 10, 0, time, crossing);
 	(void)more;
 	run_state(&r, y);
 	const double energy = y[1] * y[1] + (y[0] > 0 ? 10100 : 100) * y[0] * y[0];
-	ok(close_to(energy, 1, 1e-12, "h = %g, energy over that of the start", m->h), "stop, h = %g: energy kept over %d changes", m->h, (int)of->crossed(r.state));
+	ok(close_to(energy, 1, 1e-12, "h = %g, energy over that of the start", m->h),
+		"stop, h = %g: energy kept over %d changes", m->h, (int)of->crossed(r.state));
 	free(at);
 	run_free(&r);
 }

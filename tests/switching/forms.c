@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The same stop in all its forms; dampers that switch with the velocity; stops whose force jumps; and what never stops switching.
- * Beside them the equations as written, in long double, by the classical Runge-Kutta method cut at the crossings that the model found. */
+/* The same stop in all its forms; dampers that switch with the velocity; stops whose force jumps; and what never stops
+ * switching. Beside them the equations as written, in long double, by the classical Runge-Kutta method cut at the
+ * crossings that the model found. */
 #include "drive.h"
 #include "forms_variants.h"
 #include "tap.h"
@@ -26,10 +27,12 @@ static void same_forms(void)
 			run_state(&r, found);
 			bool good = true;
 			for (int i = 0; i < 4; i++) {
-				good = close_to(found[i], expected[i], 1e-11, "form_%s, h = %g, %s", forms[f], r.of->model->h, r.of->model->state_names[i]) && good;
+				good = close_to(found[i], expected[i], 1e-11, "form_%s, h = %g, %s", forms[f], r.of->model->h,
+					r.of->model->state_names[i]) && good;
 				worst = fmax(worst, fabs(found[i] - expected[i]));
 			}
-			good = close_to((double)r.of->crossed(r.state), (double)plain.of->crossed(plain.state), 0, "form_%s: crossings", forms[f]) && good;
+			good = close_to((double)r.of->crossed(r.state), (double)plain.of->crossed(plain.state), 0,
+				"form_%s: crossings", forms[f]) && good;
 			good = close_to(r.of->model->status(r.state), 0, 0, "form_%s: status", forms[f]) && good;
 			ok(good, "form_%s, h = %g: as the table, %d crossings (largest difference %.2g)", forms[f], r.of->model->h,
 			   (int)plain.of->crossed(plain.state), worst);
@@ -66,7 +69,8 @@ static void runge_kutta(force *f, real *t, real *y, real to, bool in)
 	for (long k = 0; k < steps; k++) {
 		const real x = y[0], v = y[1], now = *t + k * h;
 		const real a1 = f(now, x, v, in), v2 = v + h / 2 * a1, a2 = f(now + h / 2, x + h / 2 * v, v2, in);
-		const real v3 = v + h / 2 * a2, a3 = f(now + h / 2, x + h / 2 * v2, v3, in), v4 = v + h * a3, a4 = f(now + h, x + h * v3, v4, in);
+		const real v3 = v + h / 2 * a2, a3 = f(now + h / 2, x + h / 2 * v2, v3, in), v4 = v + h * a3,
+			a4 = f(now + h, x + h * v3, v4, in);
 		y[0] = x + h / 6 * (v + 2 * v2 + 2 * v3 + v4);
 		y[1] = v + h / 6 * (a1 + 2 * a2 + 2 * a3 + a4);
 	}
@@ -93,11 +97,13 @@ static void by_hand(const char *name, int step, force *f, bool velocity, double 
 	runge_kutta(f, &t, y, end, in);
 	run_state(&r, found);
 	for (int i = 0; i < 2; i++)
-		good = close_to(found[i], (double)y[i], 1e-9, "%s, h = %g: %s", name, r.of->model->h, r.of->model->state_names[i]) && good;
+		good = close_to(found[i], (double)y[i], 1e-9, "%s, h = %g: %s", name, r.of->model->h,
+			r.of->model->state_names[i]) && good;
 	if (!velocity)
 		good = close_to(in, y[0] > at, 0, "%s: in touch at the end", name) && good;
 	good = close_to(r.of->model->status(r.state), 0, 0, "%s: status", name) && good;
-	ok(good, "%s, h = %g: by hand, %d crossings (off by %.2g and %.2g)", name, r.of->model->h, count, fabs(found[0] - (double)y[0]),
+	ok(good, "%s, h = %g: by hand, %d crossings (off by %.2g and %.2g)", name, r.of->model->h, count,
+		fabs(found[0] - (double)y[0]),
 	   fabs(found[1] - (double)y[1]));
 	run_free(&r);
 }
@@ -132,8 +138,10 @@ static void chatter(int step)
 			counted = crossing[i].time >= (i ? crossing[i - 1].time : 0) && crossing[i].time <= m->h;
 		longest = found > longest ? found : longest;
 	}
-	note("chatter, h = %g: %d crossings, at most %d in a step, ends at x = %.3g, x' = %.3g", m->h, (int)of->crossed(r.state), longest, y[0], y[1]);
-	ok(close_to(m->status(r.state) & PL_TOO_MANY_EVENTS, PL_TOO_MANY_EVENTS, 0, "status"), "chatter, h = %g: the status says so, and stays", m->h);
+	note("chatter, h = %g: %d crossings, at most %d in a step, ends at x = %.3g, x' = %.3g", m->h,
+		(int)of->crossed(r.state), longest, y[0], y[1]);
+	ok(close_to(m->status(r.state) & PL_TOO_MANY_EVENTS, PL_TOO_MANY_EVENTS, 0, "status"),
+		"chatter, h = %g: the status says so, and stays", m->h);
 	ok(!(m->status(r.state) & PL_NOT_FINITE), "chatter, h = %g: but it is finite", m->h);
 	ok(finite, "chatter, h = %g: all is finite and bounded", m->h);
 	ok(counted, "chatter, h = %g: no more crossings in a step than there is room for, in order", m->h);

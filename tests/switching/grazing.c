@@ -10,12 +10,14 @@
 
 enum { SIZES = 5, PERIODS = 3, MOST = 2 * PERIODS + 10 };
 
-/* Contacts at the speed v: x = b + v/w sin(w t) with w^2 = 1 + ks, about its own place of rest b/w^2: up to the phase both parts are known */
+/* Contacts at the speed v: x = b + v/w sin(w t) with w^2 = 1 + ks, about its own place of rest b/w^2: up to the
+ * phase both parts are known */
 static void graze(const char *name, double b, int step, double p)
 {
 	const struct variant *of = variant_of(grazing_table, "%s_%d", name, step);
 	const double h = of->model->h, a = b * (1 + p), speed = b * sqrt(p * (2 + p));
-	const double outside = acos(-1) + 2 * atan2(b, speed);  /* from leaving b to being back there: half a turn and what is beyond it */
+	/* from leaving b to being back there: half a turn and what is beyond it */
+	const double outside = acos(-1) + 2 * atan2(b, speed);
 	const double from = asin(fmin(b / a, 1));
 	/* inside: x = c + r cos(w s), c = 10/11 b, from x = b at the speed up to x = b again */
 	const double w = sqrt(11), c = b - b / 11, inside = 2 * atan2(speed / w, b - c) / w, period = outside + inside;
@@ -31,7 +33,8 @@ static void graze(const char *name, double b, int step, double p)
 	for (int i = 0; i < count && i < expected; i++) {
 		const double at = from + i / 2 * period + (i % 2 ? inside : 0), off = (5e-15 + 1.2e-16 * end / h) * (1 + b / speed);
 		good = close_to(time[i], at, off, "%s, h = %g, beyond by %g: crossing %d", name, h, p, i) && good;
-		good = close_to(crossing[i].upward, i % 2 == 0, 0, "%s, h = %g, beyond by %g: direction of crossing %d", name, h, p, i) && good;
+		good = close_to(crossing[i].upward, i % 2 == 0, 0, "%s, h = %g, beyond by %g: direction of crossing %d", name,
+			h, p, i) && good;
 	}
 	good = close_to(of->model->status(r.state), 0, 0, "status") && good;
 	run_state(&r, y);
@@ -54,14 +57,16 @@ static void graze_moving(int step, double p)
 	const int count = run_crossings(&r, ceil(4 / h) * h, MOST, time, crossing), expected = p > 0 ? 2 : 0;
 	bool good = close_to(count, expected, 0, "moving, h = %g, beyond by %g: crossings", h, p);
 	if (count && expected)
-		good = close_to(time[0], quarter - reach, 1e-14 / sqrt(2 * p) + 1e-14, "moving, h = %g, beyond by %g: first crossing", h, p) && good;
+		good = close_to(time[0], quarter - reach, 1e-14 / sqrt(2 * p) + 1e-14,
+			"moving, h = %g, beyond by %g: first crossing", h, p) && good;
 	ok(good, "moving stop, h = %g, beyond by %g: %d crossings", h, p, expected);
 	run_free(&r);
 }
 
 static void grazes(void)
 {
-	static const double beyond[] = { 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 0, -1e-16, -1e-10, -1e-6, -1e-2 };
+	static const double beyond[] = { 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 0, -1e-16, -1e-10, -1e-6,
+		-1e-2 };
 	for (int step = 0; step < SIZES; step++)
 		for (size_t i = 0; i < sizeof beyond / sizeof *beyond; i++) {
 			graze("graze", 1, step, beyond[i]);
@@ -71,7 +76,8 @@ static void grazes(void)
 		}
 }
 
-/* x'' + x = 1 + f + j t outside, x'' + 11 x = 11 + f + j t inside; z = x - 1 from 0 at the speed v, while it stays on its side */
+/* x'' + x = 1 + f + j t outside, x'' + 11 x = 11 + f + j t inside; z = x - 1 from 0 at the speed v, while it stays
+ * on its side */
 static void start(const char *name, double v, double f, double j, int side)
 {
 	for (int step = 0; step < 2; step++) {
@@ -88,7 +94,8 @@ static void start(const char *name, double v, double f, double j, int side)
 		const double z = (f + j * t) / (w * w) - f / (w * w) * cos(w * t) + (v - j / (w * w)) / w * sin(w * t);
 		good = close_to(found[0], 1 + z, 1e-14, "%s, speed %g, h = %g: x", name, v, of->model->h) && good;
 		good = close_to((double)of->crossed(r.state), 0, 0, "%s, speed %g, h = %g: crossings", name, v, of->model->h) && good;
-		ok(good, "%s, speed %g, h = %g: starts %s", name, v, of->model->h, side > 0 ? "in" : side < 0 ? "out" : "at rest, and stays");
+		ok(good, "%s, speed %g, h = %g: starts %s", name, v, of->model->h,
+			side > 0 ? "in" : side < 0 ? "out" : "at rest, and stays");
 		run_free(&r);
 	}
 }

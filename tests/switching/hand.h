@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Masses, springs and stops by hand, in long double: x'' = -K x - C x' + f0 + fa cos(w t) - stops, stepped by Taylor series between
- * crossings that are sought the way others do it, by signs at the ends of steps, which shows what that test misses. With short steps,
- * cut where a stop is nearest, nothing is missed: the reference. */
+/* Masses, springs and stops by hand, in long double: x'' = -K x - C x' + f0 + fa cos(w t) - stops, stepped by Taylor
+ * series between crossings that are sought the way others do it, by signs at the ends of steps, which shows what that
+ * test misses. With short steps, cut where a stop is nearest, nothing is missed: the reference. */
 #ifndef HAND_H
 #define HAND_H
 
@@ -33,7 +33,8 @@ struct hand_state {
 void hand_start(const struct hand_system *s, struct hand_state *now);
 void hand_step(const struct hand_system *s, struct hand_state *now, real h);
 void hand_until(const struct hand_system *s, struct hand_state *now, real t, real h);    /* equal steps of at most h */
-void hand_reference(const struct hand_system *s, struct hand_state *now, real t);        /* short steps, cut where a stop is nearest */
+/* short steps, cut where a stop is nearest */
+void hand_reference(const struct hand_system *s, struct hand_state *now, real t);
 real hand_distance(const struct hand_system *s, int stop, const real *y, real t);
 
 #endif

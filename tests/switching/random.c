@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Random systems with stops, at steps so long that several crossings fall into one, against the same model at a hundredth of the
- * step and against the system by hand in long double. Beside it, what the sign test at the ends of the same steps misses.
+/* Random systems with stops, at steps so long that several crossings fall into one, against the same model at a
+ * hundredth of the step and against the system by hand in long double. Beside it, what the sign test at the ends of the
+ * same steps misses.
  *
  * The models are in the header VARIANTS and in TABLE, their kind and seeds in KIND, FIRST and COUNT. */
 #include "drive.h"
@@ -51,7 +52,8 @@ static struct hand_state by_signs(const struct hand_system *s, real h)
 	return now;
 }
 
-static bool at_step(const struct hand_system *s, unsigned seed, int step, const struct run *fine, const double *y, double size)
+static bool at_step(const struct hand_system *s, unsigned seed, int step, const struct run *fine, const double *y,
+    double size)
 {
 	const struct variant *of = variant_of(TABLE, KIND "%u_%d", seed, step);
 	struct run r = run_new(of);
@@ -62,7 +64,8 @@ static bool at_step(const struct hand_system *s, unsigned seed, int step, const 
 	const double off = apart(s, found, y, size);
 	sums.worst = fmax(sums.worst, off);
 	const bool state_good = close_to(off, 0, tolerance, KIND " %u, h = %g: end state, h = 0.005", seed, steps[step]);
-	const bool count_good = close_to((double)of->crossed(r.state), (double)fine->of->crossed(fine->state), 0, KIND " %u, h = %g: crossings", seed, steps[step]);
+	const bool count_good = close_to((double)of->crossed(r.state), (double)fine->of->crossed(fine->state), 0,
+		KIND " %u, h = %g: crossings", seed, steps[step]);
 	const bool status_good = close_to(of->model->status(r.state), 0, 0, KIND " %u, h = %g: status", seed, steps[step]);
 	sums.states[step] += !state_good;
 	sums.counts[step] += !count_good;
@@ -103,10 +106,12 @@ int main(void)
 	setvbuf(stdout, NULL, _IOLBF, 0);
 	for (unsigned seed = FIRST; seed < FIRST + COUNT; seed++)
 		one(seed);
-	note(KIND ": %d systems, %ld crossings in %d time units; end states off by at most %.2g at long steps, %.2g by hand", sums.systems, sums.crossings,
+	note(KIND ": %d systems, %ld crossings in %d time units; end states off by at most %.2g at long steps, %.2g by "
+	    "hand", sums.systems, sums.crossings,
 	     SECONDS, sums.worst, sums.worst_by_hand);
 	for (int step = 0; step < STEPS; step++)
-		note("h = %-3g here: %d wrong states, %d wrong counts; signs at the ends of steps: %d wrong states, %d wrong counts", steps[step], sums.states[step],
+		note("h = %-3g here: %d wrong states, %d wrong counts; signs at the ends of steps: %d wrong states, %d wrong "
+		    "counts", steps[step], sums.states[step],
 		     sums.counts[step], sums.sign_states[step], sums.sign_counts[step]);
 	return tap_end();
 }

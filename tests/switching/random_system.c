@@ -116,7 +116,8 @@ static void print_stop(FILE *to, const struct hand_system *s, int j, int form)
 {
 	const struct hand_stop *p = &s->stop[j];
 	const int first = p->c != 0 && form < 6 ? 6 + form % 2 : form;
-	static const char *const forms[] = { "max(d%d, 0)", "0.5*(d%d + abs(d%d))", "-min(-d%d, 0)", "table(d%d; -1, 0; 0, 0; 1, 1)",
+	static const char *const forms[] = { "max(d%d, 0)", "0.5*(d%d + abs(d%d))", "-min(-d%d, 0)",
+		"table(d%d; -1, 0; 0, 0; 1, 1)",
 		"(d%d - clip(d%d, -1e9, 0))", "deadzone(d%d, -1e9, 0)" };
 	fprintf(to, "let d%d = 0", j + 1);
 	print_linear(to, s, p->row, "");

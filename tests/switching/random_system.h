@@ -9,7 +9,8 @@
 
 struct hand_system random_system(unsigned seed);
 
-/* Two crossings close together in one step: a stop that is reached and left within a fraction of a step, at a seed's depth */
+/* Two crossings close together in one step: a stop that is reached and left within a fraction of a step, at a seed's
+ * depth */
 struct hand_system adversarial_system(unsigned seed);
 
 /* The system as a spec, in a form of the stops that the seed chooses */

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What a caller may rely on beside the values: the same from step, run and at, from a saved state, and from a state set at a later time;
- * crossings in order and counted; simultaneous crossings. */
+/* What a caller may rely on beside the values: the same from step, run and at, from a saved state, and from a state set
+ * at a later time; crossings in order and counted; simultaneous crossings. */
 #include "drive.h"
 #include "state_variants.h"
 #include "tap.h"
@@ -16,11 +16,13 @@ static double sample(int k)
 	return sin(0.7 * k) + 0.3 * cos(3.1 * k);
 }
 
-static bool same(const pl_model *m, const double *found, const double *expected, int n, double tolerance, const char *what, int k)
+static bool same(const pl_model *m, const double *found, const double *expected, int n, double tolerance,
+    const char *what, int k)
 {
 	bool good = true;
 	for (int i = 0; i < n; i++)
-		good = close_to(found[i], expected[i], tolerance, "%s, h = %g, after %d steps: %s %d", m->name, m->h, k, what, i) && good;
+		good = close_to(found[i], expected[i], tolerance, "%s, h = %g, after %d steps: %s %d", m->name, m->h, k, what,
+			i) && good;
 	return good;
 }
 
@@ -53,7 +55,8 @@ static void functions(const struct variant *of)
 		total += (uint64_t)found;
 		for (int i = 0; i < found; i++)
 			listed = crossing[i].time >= (i ? crossing[i - 1].time : 0) && crossing[i].time <= m->h && listed;
-		listed = close_to((double)of->crossed(one), (double)total, 0, "%s, h = %g: crossings listed so far", m->name, m->h) && listed;
+		listed = close_to((double)of->crossed(one), (double)total, 0, "%s, h = %g: crossings listed so far", m->name,
+			m->h) && listed;
 		double after[MOST_STATES];
 		m->get(one, after);
 		ats = same(m, x, after, m->states, 1e-13, "at h, state", k) && ats;
@@ -71,14 +74,16 @@ static void functions(const struct variant *of)
 	ok(copies, "%s, h = %g: at changes nothing", m->name, m->h);
 	ok(listed, "%s, h = %g: %d crossings, listed in order", m->name, m->h, (int)total);
 	ok(parts, "%s, h = %g: set in the middle of a step", m->name, m->h);
-	ok(of->crossed(many) == of->crossed(one) && of->region(many) == of->region(one), "%s, h = %g: region and count of run", m->name, m->h);
+	ok(of->crossed(many) == of->crossed(one) && of->region(many) == of->region(one),
+		"%s, h = %g: region and count of run", m->name, m->h);
 	/* back to what was saved, and on again */
 	double again[MOST_STATES];
 	memcpy(many, saved, m->size);
 	m->step(many, m->inputs ? &u[STEPS - 1] : NULL);
 	m->get(many, again);
 	m->get(one, x);
-	ok(memcmp(again, x, (size_t)m->states * sizeof *x) == 0 && of->crossed(many) == of->crossed(one), "%s, h = %g: restored by assignment", m->name, m->h);
+	ok(memcmp(again, x, (size_t)m->states * sizeof *x) == 0 && of->crossed(many) == of->crossed(one),
+		"%s, h = %g: restored by assignment", m->name, m->h);
 	/* what is not finite */
 	for (int i = 0; i < m->states; i++)
 		again[i] = 0;
@@ -99,7 +104,8 @@ static void functions(const struct variant *of)
 
 static void twins(int step)
 {
-	struct run two = run_new(variant_of(state_table, "twins_%d", step)), one = run_new(variant_of(state_table, "twin_%d", step));
+	struct run two = run_new(variant_of(state_table, "twins_%d", step)),
+		one = run_new(variant_of(state_table, "twin_%d", step));
 	double x[4], y[2];
 	bool good = true;
 	while (one.steps * one.of->model->h < 30) {
@@ -112,7 +118,8 @@ static void twins(int step)
 	}
 	ok(good, "twins, h = %g: as one alone", one.of->model->h);
 	ok(two.of->model->status(two.state) == 0, "twins, h = %g: status 0", one.of->model->h);
-	note("twins, h = %g: %d crossings, one alone %d", one.of->model->h, (int)two.of->crossed(two.state), (int)one.of->crossed(one.state));
+	note("twins, h = %g: %d crossings, one alone %d", one.of->model->h, (int)two.of->crossed(two.state),
+		(int)one.of->crossed(one.state));
 	run_free(&two);
 	run_free(&one);
 }
@@ -136,11 +143,13 @@ static void bump(void)
 				continue;
 			const double at = crossing[i].breakpoint ? 0.2 : 0.1;   /* of x - w: the second is 2 w - 2 x at -0.4 */
 			const bool up = before[0] - w[0] < at;
-			good = close_to(crossing[i].upward, up, 0, "bump, step %d: x - w from %g to %g through %g, upward", k, before[0] - w[0], after[0] - w[0], at) && good;
+			good = close_to(crossing[i].upward, up, 0, "bump, step %d: x - w from %g to %g through %g, upward", k,
+				before[0] - w[0], after[0] - w[0], at) && good;
 			passed[crossing[i].upward]++;
 		}
 	}
-	ok(good && passed[0] > 0 && passed[1] > 0, "bump: x - w passes 0.1 and 0.2 %d times upward, %d times downward, each told so", passed[1], passed[0]);
+	ok(good && passed[0] > 0 && passed[1] > 0,
+		"bump: x - w passes 0.1 and 0.2 %d times upward, %d times downward, each told so", passed[1], passed[0]);
 	run_free(&r);
 }
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Free drives with gaps that turn for a long time, in the type that the model was made in: -DFLOAT for float; -DKIND says which.
- * The torque is that of the drive at rest, momentum is that of the start. */
+/* Free drives with gaps that turn for a long time, in the type that the model was made in: -DFLOAT for float; -DKIND
+ * says which. The torque is that of the drive at rest, momentum is that of the start. */
 #include "model.h"
 #if KIND == 3
 #define rig gear3

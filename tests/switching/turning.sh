@@ -14,9 +14,7 @@ here=$root/tests/switching
 warnings='-Wall -Wextra -Wpedantic -Wconversion -Wdouble-promotion -Wshadow -Werror'
 . "${0%/*}/../tap.sh"
 
-for file in "$root"/runtime/*.c; do
-    gcc -std=c99 -O2 -I"$root/runtime" -c "$file" || exit 99
-done
+runtime_archive "$root/runtime"
 
 # turns KIND SPEC WHAT
 turns() {
@@ -24,7 +22,8 @@ turns() {
         [ $real = float ] && define=-DFLOAT || define=
         # shellcheck disable=SC2086
         "$plgen" --real $real -o model.c "$2" >log 2>&1 &&
-            gcc -std=c99 -O2 $warnings $define -DKIND="$1" -I"$root/runtime" -I. "$here/turning.c" model.c ./*.o -lm -o turning >>log 2>&1 &&
+            gcc -std=c99 -O2 $warnings $define -DKIND="$1" -I"$root/runtime" -I. "$here/turning.c" model.c "$archive" \
+                -lm -o turning >>log 2>&1 &&
             ./turning >>log 2>&1
         result $? "$3, $real"
         grep '^# ' log
@@ -35,8 +34,10 @@ turns 1 "$here/drive_free.spec" 'a drive with a gap: torque and speed over 10^7 
 turns 2 "$here/three_free.spec" 'three inertias with gaps: momentum over 2 10^5 steps'
 turns 3 "$root/models/gear3.spec" 'gear3 turning at 100: its meshes as at rest, over 2 10^5 steps'
 
-"$plgen" -o model.c "$here/drive_free.spec" >log 2>&1 && "$plgen" --prefix by_hand -o by_hand.c "$here/drive_by_hand.spec" >>log 2>&1 &&
-    gcc -std=c99 -O2 $warnings -I"$root/runtime" -I. "$here/turning_by_hand.c" model.c by_hand.c ./*.o -lm -o by_hand >>log 2>&1 &&
+"$plgen" -o model.c "$here/drive_free.spec" >log 2>&1 &&
+    "$plgen" --prefix by_hand -o by_hand.c "$here/drive_by_hand.spec" >>log 2>&1 &&
+    gcc -std=c99 -O2 $warnings -I"$root/runtime" -I. "$here/turning_by_hand.c" model.c by_hand.c "$archive" -lm \
+        -o by_hand >>log 2>&1 &&
     ./by_hand >>log 2>&1
 result $? 'a drive with a gap: as in twist and mean by hand'
 grep '^# ' log

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A free drive against the same drive in twist and mean by hand: outputs and crossings, while drive and load change. Each crossing makes
- * a difference about 1.2 times as large, so that rounding in another order shows after some hundred: 229 are looked at. */
+/* A free drive against the same drive in twist and mean by hand: outputs and crossings, while drive and load change.
+ * Each crossing makes a difference about 1.2 times as large, so that rounding in another order shows after some
+ * hundred: 229 are looked at. */
 #include "model.h"
 #include "by_hand.h"
 
@@ -27,6 +28,7 @@ int main(void)
 		for (int i = 0; i < 3; i++)
 			worst = fmax(worst, fabs(a[i] - b[i]) / size[i]);
 	}
-	printf("# %d and %d crossings; outputs off by %.3g, between steps %.3g, at most 1e-10\n", (int)rig_crossed(&s), (int)by_hand_crossed(&e), worst, early);
+	printf("# %d and %d crossings; outputs off by %.3g, between steps %.3g, at most 1e-10\n", (int)rig_crossed(&s),
+		(int)by_hand_crossed(&e), worst, early);
 	return worst <= 1e-10 && early <= 1e-10 && rig_crossed(&s) == by_hand_crossed(&e) && rig_crossed(&s) > 200 ? 0 : 1;
 }

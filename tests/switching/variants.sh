@@ -4,8 +4,8 @@
 #
 #     variants.sh PLGEN LIST NAME_variants.c NAME_variants.h FOLDER ...
 #
-# A line of LIST is `NAME STEPS [OPTION ...]`: NAME.spec is looked for in the folders, in their order, and becomes the models
-# NAME_0, NAME_1, ... for each of its steps ('-': the spec's own step).  Options:
+# A line of LIST is `NAME STEPS [OPTION ...]`: NAME.spec is looked for in the folders, in their order, and becomes the
+# models NAME_0, NAME_1, ... for each of its steps ('-': the spec's own step).  Options:
 #     as=PREFIX       PREFIX instead of NAME in the names
 #     edit=SCRIPT     the spec after `sed SCRIPT`
 #     anything else   for plgen

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * Instances of models with tunable params beside code that plgen made with these values in the first place (tuned.sh: there, plain):
- * after a change of params and step, mid-run changes and back, copies, two instances, refused values, the descriptor.
+ * Instances of models with tunable params beside code that plgen made with these values in the first place (tuned.sh:
+ * there, plain): after a change of params and step, mid-run changes and back, copies, two instances, refused values,
+ * the descriptor.
  */
 #include "../emitted/tap.h"
 #include "tuned.h"
@@ -39,8 +40,10 @@ static bool same_coeffs(const struct tuned *m, const void *a, const void *b)
     const size_t row = (size_t)m->columns * sizeof(real), word = sizeof(real) == 8 ? 16 : 8;
     const struct {
         size_t at, length;
-    } member[] = {{m->h, sizeof(real)}, {m->params, (size_t)m->model->params * sizeof(real)}, {m->step, (size_t)m->step_entries * row},
-                  {m->out, (size_t)m->out_entries * row}, {m->phase_step, (size_t)m->phase_step_entries * word}, {m->growth_step, (size_t)m->growth_step_entries * word}};
+    } member[] = {{m->h, sizeof(real)}, {m->params, (size_t)m->model->params * sizeof(real)},
+        {m->step, (size_t)m->step_entries * row},
+                  {m->out, (size_t)m->out_entries * row}, {m->phase_step, (size_t)m->phase_step_entries * word},
+                      {m->growth_step, (size_t)m->growth_step_entries * word}};
     for (size_t i = 0; i < sizeof member / sizeof *member; i++)
         if (memcmp((const char *)a + member[i].at, (const char *)b + member[i].at, member[i].length) != 0)
             return false;
@@ -119,7 +122,8 @@ static void compare_now(struct run *r, const real_model *a, const void *s, const
     r->time = fmax(r->time, p == q ? 0 : fabs(p - q) / (EPSILON * fabs(q)));
 }
 
-static void compare_between(struct run *r, const real_model *a, const void *s, const real_model *b, const void *t, const real *u, real h)
+static void compare_between(struct run *r, const real_model *a, const void *s, const real_model *b, const void *t,
+    const real *u, real h)
 {
     static const double part[] = {0, 1e-9, 0.125, 0.3, 0.5, 0.77, 1};
     real y[STATES], z[STATES];
@@ -134,7 +138,8 @@ static void compare_between(struct run *r, const real_model *a, const void *s, c
     }
 }
 
-static void step_both(struct run *r, const real_model *a, void *s, const real_model *b, void *t, int first, int steps, real h)
+static void step_both(struct run *r, const real_model *a, void *s, const real_model *b, void *t, int first, int steps,
+    real h)
 {
     for (int k = first; k < first + steps; k++) {
         const real *u = samples(a, k);
@@ -157,9 +162,12 @@ static void judge(const struct run *r, const struct tuned *m, int steps, const c
             at = i;
         }
     }
-    if (!ok(worst <= BOUND && r->time <= 4 && r->between >= 7, TYPE ", %s: %s, %d steps", m->name, what, steps) || getenv("NOTES"))
-        note("off by %.3g epsilons of the largest (%s %d: %.17g of %.17g); times %.3g epsilons; %d times between steps", worst,
-             at < STATES ? "state" : "output", at < STATES ? at : at - STATES, r->off[at], r->size[at], r->time, r->between);
+    if (!ok(worst <= BOUND && r->time <= 4 && r->between >= 7, TYPE ", %s: %s, %d steps", m->name, what, steps) ||
+        getenv("NOTES"))
+        note("off by %.3g epsilons of the largest (%s %d: %.17g of %.17g); times %.3g epsilons; %d times between steps",
+            worst,
+             at < STATES ? "state" : "output", at < STATES ? at : at - STATES, r->off[at], r->size[at], r->time,
+                 r->between);
 }
 
 /* t as s is: state, time, and of ramps the sample before and the slope of the last step, which steps leave there */
@@ -186,7 +194,8 @@ static void check_there(const struct tuned *m)
     m->model->init(&s);
     m->there->init(&t);
     const int status = m->retune(&coeffs, params, h);
-    ok(status == 0 && (double)h == (double)m->there->h, TYPE ", %s: retune, status %d, h %.17g as in code made with it, %.17g", m->name, status, (double)h,
+    ok(status == 0 && (double)h == (double)m->there->h,
+        TYPE ", %s: retune, status %d, h %.17g as in code made with it, %.17g", m->name, status, (double)h,
        (double)m->there->h);
     m->use(&s, &coeffs);
     compare_now(&r, m->model, &s, m->there, &t);
@@ -210,7 +219,8 @@ static void check_midway(const struct tuned *m)
     const real before = m->model->time(&s);
     m->retune(&coeffs, params, h);
     m->use(&s, &coeffs);
-    ok(before == m->model->time(&s), TYPE ", %s: time stays: %.17g before, %.17g after", m->name, (double)before, (double)m->model->time(&s));
+    ok(before == m->model->time(&s), TYPE ", %s: time stays: %.17g before, %.17g after", m->name, (double)before,
+        (double)m->model->time(&s));
     follow(m->model, &s, m->model->h, m->there, &t, PART - 1);
     compare_now(&second, m->model, &s, m->there, &t);
     step_both(&second, m->model, &s, m->there, &t, PART, PART, h);
@@ -276,13 +286,16 @@ static void refuse(const struct tuned *m, const real *params, real h, int expect
     memcpy(&coeffs, m->nominal, m->size);
     memcpy(&kept, &coeffs, m->size);
     const int status = m->retune(&coeffs, params, h);
-    ok(status == expected && same_coeffs(m, &coeffs, &kept), TYPE ", %s, %s: status %d, expected %d, coefficients %s", m->name, what, status, expected,
+    ok(status == expected && same_coeffs(m, &coeffs, &kept), TYPE ", %s, %s: status %d, expected %d, coefficients %s",
+        m->name, what, status, expected,
        same_coeffs(m, &coeffs, &kept) ? "as they were" : "changed");
     m->model->init(&s);
     m->model->step(&s, samples(m->model, 3));
     memcpy(&before, &s, sizeof s);
     const int other = m->model->retune(&s, params, h);
-    ok(other == expected && same_instance(m->model, &s, &before) && same_coeffs(m, s.byte + m->place, before.byte + m->place), TYPE ", %s, %s: the descriptor's: status %d, expected %d, instance %s", m->name, what, other,
+    ok(other == expected && same_instance(m->model, &s, &before) &&
+        same_coeffs(m, s.byte + m->place, before.byte + m->place),
+        TYPE ", %s, %s: the descriptor's: status %d, expected %d, instance %s", m->name, what, other,
        expected, same_instance(m->model, &s, &before) ? "as it was" : "changed");
 }
 
@@ -314,7 +327,8 @@ static int index_of(const struct tuned *m, const char *name)
     return 0;
 }
 
-/* No inverse of the mass matrix: where the target solves, and where the generator has done so, which then divides by 0 */
+/* No inverse of the mass matrix: where the target solves, and where the generator has done so, which then divides by
+ * 0 */
 static void check_singular(const struct tuned *m)
 {
     real params[PARAMS];
@@ -350,11 +364,14 @@ static void check_start(const struct tuned *m)
     static instance s;
     m->model->init(&s);
     ok(same_coeffs(m, s.byte + m->place, m->nominal), TYPE ", %s: init takes the nominal coefficients", m->name);
-    ok(m->model->size <= ROOM && m->model->h == m->plain->h && m->model->states == m->plain->states && m->model->states <= STATES && m->model->outputs <= OUTPUTS
+    ok(m->model->size <= ROOM && m->model->h == m->plain->h && m->model->states == m->plain->states &&
+        m->model->states <= STATES && m->model->outputs <= OUTPUTS
        && m->model->inputs <= INPUTS && m->model->params <= PARAMS && !m->plain->retune && m->plain->params == 0,
        TYPE ", %s: the descriptor, and that of the spec without tunable", m->name);
-    ok(memcmp((const char *)m->nominal + m->params, m->model->param_values, (size_t)m->model->params * sizeof(real)) == 0
-       && memcmp((const char *)m->nominal + m->h, &m->model->h, sizeof(real)) == 0, TYPE ", %s: nominal params and h are those of the descriptor", m->name);
+    ok(memcmp((const char *)m->nominal + m->params, m->model->param_values,
+        (size_t)m->model->params * sizeof(real)) == 0
+       && memcmp((const char *)m->nominal + m->h, &m->model->h, sizeof(real)) == 0,
+           TYPE ", %s: nominal params and h are those of the descriptor", m->name);
 }
 
 /* The descriptor's retune does what retune and use do. */
@@ -376,7 +393,8 @@ static void check_descriptor(const struct tuned *m)
         m->model->step(&s, samples(m->model, k));
         m->model->step(&t, samples(m->model, k));
     }
-    ok(status == 0 && same_instance(m->model, &s, &t), TYPE ", %s: the descriptor's retune as retune and use, status %d", m->name, status);
+    ok(status == 0 && same_instance(m->model, &s, &t),
+        TYPE ", %s: the descriptor's retune as retune and use, status %d", m->name, status);
 }
 
 /* A load that the params take away leaves exact zeros. */
@@ -396,7 +414,8 @@ static void check_no_load(const struct tuned *m)
     ok(status == 0 && most == 0, TYPE ", %s: F = 0: status %d, largest factor of the load %g", m->name, status, most);
 }
 
-/* Phases go on from where they are. Those of sweep all belong to f, so at time t they are those of its double at t/2. */
+/* Phases go on from where they are. Those of sweep all belong to f, so at time t they are those of its double at
+ * t/2. */
 static void check_sweep(const struct tuned *m)
 {
     enum { PART = 200 };
@@ -435,7 +454,8 @@ int main(void)
     for (const struct tuned *m = tuned; m->name; m++) {
         check_start(m);
         check_there(m);
-        if (!strstr(m->name, "sweep") && !strstr(m->name, "drive")) /* there the phases at a time depend on what was before */
+        /* there the phases at a time depend on what was before */
+        if (!strstr(m->name, "sweep") && !strstr(m->name, "drive"))
             check_midway(m);
         check_sweep(m);
         check_in_place(m);

@@ -4,24 +4,23 @@
  *
  *     coefficients [-n SETS] [-m SETS] [-s SEED] [-v] MODEL.spec ...
  *
- * n sets of params for each family of pair.spec, m for each other model.  The generator builds each model anew from the spec without its
- * statement `tunable`, with the values as -D and --step, all exact.  Bounds, in units in the last place (ulp):
- *     states x states    16 ulp of the largest entry of Phi
- *     a load, an input   16 ulp of the largest entry of its column, in each segment of time
- *     outputs            16 ulp of the largest factor of the row
- *     phases, growths    bit for bit; where a frequency is 2 pi f, within 2^-104, in floats 2^-45 of itself
- * NAME_nominal is what the generator has for the spec's values, bit for bit.
- * The largest met is printed for each family; for states also in ulp of the largest entry of Phi - I, for ramps in ulp of the largest entry
- * of both columns.
+ * n sets of params for each family of pair.spec, m for each other model.  The generator builds each model anew from the
+ * spec without its statement `tunable`, with the values as -D and --step, all exact.  Bounds, in units in the last
+ * place (ulp): states x states    16 ulp of the largest entry of Phi a load, an input   16 ulp of the largest entry of
+ * its column, in each segment of time outputs            16 ulp of the largest factor of the row phases, growths    bit
+ * for bit; where a frequency is 2 pi f, within 2^-104, in floats 2^-45 of itself NAME_nominal is what the generator has
+ * for the spec's values, bit for bit. The largest met is printed for each family; for states also in ulp of the largest
+ * entry of Phi - I, for ramps in ulp of the largest entry of both columns.
  */
 #include "emit/emit.h"
 #include "tuned.h"
+#include "cases.h"
+#include "drawn.h"
 
 #include <ctype.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 enum { MISMATCHES_SHOWN = 10 };
@@ -34,17 +33,9 @@ enum { BITS = 53 };
 
 /* ---- random values ---- */
 
-static uint64_t state;
-
-static uint64_t below(uint64_t n)
-{
-    state = state * UINT64_C(6364136223846793005) + UINT64_C(1442695040888963407);
-    return (state >> 33) % n;
-}
-
 static double uniform(void)
 {
-    return ((double)below(UINT64_C(1) << 30) + 0.5) / 0x1p30;
+    return ((double)below(1u << 30) + 0.5) / 0x1p30;
 }
 
 /* 10^a to 10^b, evenly in its logarithm; now and then with few bits, as one would write it */
@@ -202,15 +193,21 @@ static real family_units(real *p)
 static const struct family {
     const char *name;
     real (*draw)(real *p);              /* returns h */
-} families[] = {
-    {"general", family_general}, {"undamped", family_undamped}, {"overdamped", family_overdamped}, {"near critical damping", family_critical},
-    {"nearly equal modes", family_equal}, {"a rigid body", family_rigid}, {"without springs", family_free}, {"|p| h 10 to 100", family_long_steps},
-    {"|p| h below 0.01", family_short_steps}, {"stiff", family_stiff},
-    {"other units", family_units}
-};
+} families[] = {{"general", family_general},
+                {"undamped", family_undamped},
+                {"overdamped", family_overdamped},
+                {"near critical damping", family_critical},
+                {"nearly equal modes", family_equal},
+                {"a rigid body", family_rigid},
+                {"without springs", family_free},
+                {"|p| h 10 to 100", family_long_steps},
+                {"|p| h below 0.01", family_short_steps},
+                {"stiff", family_stiff},
+                {"other units", family_units}};
 enum { FAMILIES = sizeof families / sizeof *families };
 
-/* Of any model: each param within a factor of 8 of the spec's value; h up to 40 times the spec's, or up to that and some signs changed */
+/* Of any model: each param within a factor of 8 of the spec's value; h up to 40 times the spec's, or up to that and
+ * some signs changed */
 static real draw_near(const struct tuned *m, real *p)
 {
     const bool odd = below(4) == 0;
@@ -224,11 +221,11 @@ static const struct known {
     const char *name;
     double h, value[LIMIT_TUNABLES];
 } known[] = {
-    /* ramps whose value before the step has what is left of two larger numbers: in one word, 28 and 256 ulp, in floats 19 and 206 */
+    /* ramps whose value before the step has what is left of two larger numbers: in one word, 28 and 256 ulp, in floats
+       19 and 206 */
     {"held", 0x1.bbae5cp-6, {0x1.955db4p+2, 0x1.30045p+4, 0x1.08p+1, 0x1.9p+5, 0x1.6p-1}},
     {"held", 0x1.bbae5b0a1cd08p-6, {0x1.955db4811cc5p+2, 0x1.300450ac6c6f3p+4, 0x1.08p+1, 0x1.9p+5, 0x1.6p-1}},
-    {"sketch", 0x1.aa943ap-6, {0x1.068p+11, 0x1.65cc4cp+4, 0x1.4b4c34p+14, 0x1.c2443ep+11, 0x1.1c4efep+16}}
-};
+    {"sketch", 0x1.aa943ap-6, {0x1.068p+11, 0x1.65cc4cp+4, 0x1.4b4c34p+14, 0x1.c2443ep+11, 0x1.1c4efep+16}}};
 enum { KNOWN = sizeof known / sizeof *known };
 
 /* ---- the generator's own ---- */
@@ -241,24 +238,6 @@ static const char *exact(real x)
     return mpq_get_str(NULL, 10, q);
 }
 
-static const char *diagnostics(void)
-{
-    char *text = NULL;
-    size_t length = 0;
-    FILE *to = open_memstream(&text, &length);
-    diagnostics_print(to);
-    fclose(to);
-    text[strcspn(text, "\n")] = 0;
-    return text;
-}
-
-static struct spec *spec_of(const char *text)
-{
-    struct source *source = NEW(struct source);
-    *source = (struct source){ .name = "spec", .base = "spec", .text = text, .length = strlen(text) };
-    return parse_spec(source);
-}
-
 /* The spec, tunable params and all, and the coordinates that its target keeps, whatever they are */
 static char whole[1 << 14];
 static const struct relative *kept;
@@ -266,7 +245,7 @@ static const struct relative *kept;
 static void find_kept(void)
 {
     struct request *request = NEW(struct request);
-    struct model *model = model_build(spec_of(format("%s", whole)), request);
+    struct model *model = model_build(spec_of("spec", format("%s", whole)), request);
     kept = model && find_tuning(model, request) ? relative_of(model) : NULL;
 }
 
@@ -274,11 +253,14 @@ static void find_kept(void)
 static const struct step *generator(const struct tuned *m, const char *text, const real *p, real h)
 {
     struct request *request = NEW(struct request);
-    *request = (struct request){ .relative = kept, .form = m->direct ? FORM_DIRECT : FORM_DELTA, .single = BITS == 24, .step = p ? exact(h) : NULL };
+    *request = (struct request){.relative = kept,
+                                .form = m->direct ? FORM_DIRECT : FORM_DELTA,
+                                .single = BITS == 24,
+                                .step = p ? exact(h) : NULL};
     request->definition = ARRAY(const char *, (size_t)m->model->params);
     for (int k = 0; k < m->model->params && p; k++)
         request->definition[request->definitions++] = format("%s=%s", m->model->param_names[k], exact(p[k]));
-    struct spec *spec = spec_of(text);
+    struct spec *spec = spec_of("spec", text);
     struct model *model = spec ? model_build(spec, request) : NULL;
     return model ? step_build(model) : NULL;
 }
@@ -330,7 +312,8 @@ static void compare(double *most, double found, double expected, double largest,
     if (!(error <= *most))
         *most = error;
     if (!(error <= bound))
-        complain(format("%s [%d][%d]: found %.17g, expected %.17g, off by %.3g ulp of %.17g", what, i, j, found, expected, error, largest));
+        complain(format("%s [%d][%d]: found %.17g, expected %.17g, off by %.3g ulp of %.17g", what, i, j, found,
+                        expected, error, largest));
 }
 
 static const real *row_of(const struct tuned *m, const char *coeffs, size_t member, int row)
@@ -360,7 +343,8 @@ static void compare_states(const struct tuned *m, const char *coeffs, const stru
 }
 
 /* A column of factors: one row for each state */
-static void compare_column(const struct tuned *m, const char *coeffs, double *most, const struct coefficient *from, int stride, int column, const char *what)
+static void compare_column(const struct tuned *m, const char *coeffs, double *most, const struct coefficient *from,
+                           int stride, int column, const char *what)
 {
     double largest = 0;
     for (int i = 0; i < m->step_entries; i++)
@@ -370,7 +354,8 @@ static void compare_column(const struct tuned *m, const char *coeffs, double *mo
 }
 
 /* Both columns of a ramp against the largest of both: not judged, only printed */
-static void measure_ramp(const struct tuned *m, const char *coeffs, const struct coefficient *from, int stride, int column)
+static void measure_ramp(const struct tuned *m, const char *coeffs, const struct coefficient *from, int stride,
+                         int column)
 {
     double largest = 0, off = 0;
     for (int i = 0; i < m->step_entries; i++)
@@ -382,12 +367,14 @@ static void measure_ramp(const struct tuned *m, const char *coeffs, const struct
         met.ramps = fmax(met.ramps, off / ulp(largest));
 }
 
-static void compare_columns(const struct tuned *m, const char *coeffs, const struct table *table, const struct linear *system)
+static void compare_columns(const struct tuned *m, const char *coeffs, const struct table *table,
+                            const struct linear *system)
 {
     int column = table->states;
     for (int s = 0; s < system->segments; s++)
         for (int k = 0; k < table->columns; k++)
-            compare_column(m, coeffs, &met.loads, table->load + s * table->states * table->columns + k, table->columns, column++, "load");
+            compare_column(m, coeffs, &met.loads, table->load + s * table->states * table->columns + k, table->columns,
+                           column++, "load");
     for (int i = 0, k = 0; i < system->inputs; i++) {
         if (system->input[i].first_order)
             measure_ramp(m, coeffs, table->input + k, table->inputs, column);
@@ -436,7 +423,8 @@ static void compare_outputs(const struct tuned *m, const char *coeffs, const str
         for (int j = 0; j < m->columns; j++)
             largest = fmax(largest, fabs(row[j]));
         for (int j = 0; j < m->columns && at < m->out_entries; j++)
-            compare(&met.outputs, (double)row_of(m, coeffs, m->out, at)[j], row[j], largest, step->model->output[o].name, at, j);
+            compare(&met.outputs, (double)row_of(m, coeffs, m->out, at)[j], row[j], largest,
+                    step->model->output[o].name, at, j);
         at++;
     }
     if (at != m->out_entries)
@@ -454,7 +442,8 @@ static int integers_of(const char *text, uint64_t *word)
     return count;
 }
 
-/* A frequency 2 pi f is known in two words on the target: a phase of sweep may be off by 2^-104 of itself, in floats 2^-45. */
+/* A frequency 2 pi f is known in two words on the target: a phase of sweep may be off by 2^-104 of itself, in floats
+ * 2^-45. */
 static bool nearly(const uint64_t *found, const uint64_t *expected, int words)
 {
     mpz_t a, b;
@@ -481,7 +470,8 @@ static void compare_words(const char *coeffs, size_t place, int index, const cha
     memcpy(found, coeffs + place + (size_t)(index * words) * sizeof *word, (size_t)words * sizeof *word);
     met.compared++;
     if (memcmp(found, word, (size_t)words * sizeof *word) != 0 && !nearly(found, word, words))
-        complain(format("%s %d: found %016llx %016llx, expected %s", what, index, (unsigned long long)found[0], (unsigned long long)found[words - 1], text));
+        complain(format("%s %d: found %016llx %016llx, expected %s", what, index, (unsigned long long)found[0],
+                        (unsigned long long)found[words - 1], text));
 }
 
 static void compare_loads(const struct tuned *m, const char *coeffs, const struct step *step)
@@ -496,7 +486,8 @@ static void compare_loads(const struct tuned *m, const char *coeffs, const struc
             compare_words(coeffs, m->growth_step, growths++, growth_step_text(&e, l), "growth");
     }
     if (phases != m->phase_step_entries || growths != m->growth_step_entries)
-        complain(format("%d phases and %d growths, expected %d and %d", m->phase_step_entries, m->growth_step_entries, phases, growths));
+        complain(format("%d phases and %d growths, expected %d and %d", m->phase_step_entries, m->growth_step_entries,
+                        phases, growths));
 }
 
 /* Whether any param changes the row of an output: from the spec and from values that are all different */
@@ -527,7 +518,7 @@ static void try_values(const struct tuned *m, const char *text, const bool *vari
     h_now = h;
     const struct step *step = generator(m, text, p, h);
     if (!step) {
-        complain(format("the generator refuses it: %s", diagnostics()));
+        complain(format("the generator refuses it: %s", first_line(diagnostics())));
         return;
     }
     const int status = m->retune(coeffs, p, h);
@@ -548,7 +539,8 @@ static void try_values(const struct tuned *m, const char *text, const bool *vari
     if (m->out_entries > 0)
         compare_outputs(m, coeffs, step, varies);
     compare_loads(m, coeffs, step);
-    if (memcmp(coeffs + m->params, p, (size_t)m->model->params * sizeof *p) != 0 || memcmp(coeffs + m->h, &h, sizeof h) != 0)
+    if (memcmp(coeffs + m->params, p, (size_t)m->model->params * sizeof *p) != 0 ||
+        memcmp(coeffs + m->h, &h, sizeof h) != 0)
         complain("params and h are not those given");
 }
 
@@ -556,14 +548,15 @@ static void try_values(const struct tuned *m, const char *text, const bool *vari
 
 static bool verbose;
 
-static void finish(const char *name, unsigned long sets, int number)
+static void finish(const char *name)
 {
-    const bool good = met.failed == 0 && met.compared > 0;
-    printf("# %s: states %.2f ulp of Phi, %.2f of Phi - I; loads %.2f, inputs %.2f (a ramp's two as one: %.2f), outputs %.2f; |p| h %.2g to %.3g; %d numbers\n", name, met.states,
-           met.increment, met.loads, met.inputs, met.ramps, met.outputs, met.least_angle, met.most_angle, met.compared);
+    printf("# %s: states %.2f ulp of Phi, %.2f of Phi - I; loads %.2f, inputs %.2f (a ramp's two as one: %.2f), "
+           "outputs %.2f; "
+           "|p| h %.2g to %.3g; %d numbers\n",
+           name, met.states, met.increment, met.loads, met.inputs, met.ramps, met.outputs, met.least_angle,
+           met.most_angle, met.compared);
     if (met.failed > MISMATCHES_SHOWN)
         printf("# %s: %d failures in all\n", name, met.failed);
-    printf("%sok %d - " TYPE ", %s: %s\n", good ? "" : "not ", number, name, sets ? format("%lu sets of params", sets) : "nominal coefficients, bit for bit");
 }
 
 static char *text_of(const char *path)
@@ -592,7 +585,8 @@ static const struct tuned *tuned_of(const char *path, bool direct)
     const char *base = strrchr(path, '/') ? strrchr(path, '/') + 1 : path;
     for (const struct tuned *m = tuned; m->name; m++) {
         const char *name = m->name + (m->direct ? strlen("direct_") : 0);
-        if (!m->direct == !direct && strlen(base) == strlen(name) + strlen(".spec") && strncmp(base, name, strlen(name)) == 0)
+        if (!m->direct == !direct && strlen(base) == strlen(name) + strlen(".spec") &&
+            strncmp(base, name, strlen(name)) == 0)
             return m;
     }
     printf("Bail out! %s is not in the table\n", path);
@@ -612,7 +606,7 @@ static void try_batch(const struct batch *b)
 {
     real p[LIMIT_TUNABLES];
     for (unsigned long k = 0; k < b->sets; k++) {
-        state = (b->seed + k) * UINT64_C(0x9e3779b97f4a7c15) + 7;
+        random_state = (b->seed + k) * UINT64_C(0x9e3779b97f4a7c15) + 7;
         below(2);
         const real h = b->family ? b->family->draw(p) : draw_near(b->m, p);
         const int before = met.failed;
@@ -644,29 +638,23 @@ static void try_nominal(const struct batch *b)
     compare_loads(m, m->nominal, step);
 }
 
-static int number, failures;
-
-/* In a process of its own: the generator gives nothing back before it ends, and what it refuses once stays refused. */
-static void run(const struct batch *b)
+static const char *name_of(const struct batch *b)
 {
-    const char *name = b->family ? format("%s, %s", b->m->name, b->family->name) : b->m->name;
-    int status;
-    fflush(stdout);
-    const pid_t child = fork();
-    number++;
-    if (child == 0) {
-        (b->sets ? try_batch : try_nominal)(b);
-        finish(name, b->sets, number);
-        fflush(stdout);
-        _exit(met.failed > 0 || met.compared == 0);
-    }
-    if (child < 0 || waitpid(child, &status, 0) != child) {
-        puts("Bail out! cannot start a process");
-        exit(1);
-    }
-    if (!WIFEXITED(status))
-        printf("not ok %d - " TYPE ", %s: ended by signal %d\n", number, name, WTERMSIG(status));
-    failures += !WIFEXITED(status) || WEXITSTATUS(status) != 0;
+    return b->family ? format("%s, %s", b->m->name, b->family->name) : b->m->name;
+}
+
+static bool try_case(void *context)
+{
+    const struct batch *b = context;
+    (b->sets ? try_batch : try_nominal)(b);
+    finish(name_of(b));
+    return met.failed == 0 && met.compared > 0;
+}
+
+static void run(struct batch *b)
+{
+    const char *what = b->sets ? format("%lu sets of params", b->sets) : "nominal coefficients, bit for bit";
+    run_case(format(TYPE ", %s: %s", name_of(b), what), 0, try_case, b);
 }
 
 int main(int argc, char **argv)
@@ -710,6 +698,6 @@ int main(int argc, char **argv)
         run(&b);
     }
     memory_close();
-    printf("1..%d\n", number);
-    return failures > 0;
+    printf("1..%d\n", cases_reported());
+    return cases_failed() > 0;
 }

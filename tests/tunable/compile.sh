@@ -1,8 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# What plgen emits for models with tunable params, for double and for float, in the forms delta and direct: it compiles without a warning, as C99
-# and as C++17; the same bytes twice; no double in floats; no libm, no allocation, nothing but the runtime called.  And runtime/host/plmain.c:
-# NAME=VALUE arguments, and what is said of bad ones.
+# What plgen emits for models with tunable params, for double and for float, in the forms delta and direct: it compiles
+# without a warning, as C99 and as C++17; the same bytes twice; no double in floats; no libm, no allocation, nothing but
+# the runtime called.  And runtime/host/plmain.c: NAME=VALUE arguments, and what is said of bad ones.
 #
 #     compile.sh PLGEN SOURCE_ROOT MODEL.spec ...
 #
@@ -49,7 +49,8 @@ compiles() {
 
 # What a file calls beyond its own: of the runtime, and memcpy or memset, which a compiler makes of assignments
 calls_only_the_runtime() {
-    nm -u "$1" | awk '{print $NF}' | grep -v -e '^pl_' -e '^memcpy$' -e '^memset$' -e '^_GLOBAL_OFFSET_TABLE_$' -e '^__stack_chk_fail$' >log
+    nm -u "$1" | awk '{print $NF}' | grep -v -e '^pl_' -e '^memcpy$' -e '^memset$' -e '^_GLOBAL_OFFSET_TABLE_$' \
+        -e '^__stack_chk_fail$' >log
     [ ! -s log ]
 }
 
@@ -85,15 +86,14 @@ done
 # -o: header and C apart
 for spec in $specs; do
     name=$(basename "$spec" .spec)
-    "$plgen" -o "$name.c" "$spec" >log 2>&1 && "${CC:-cc}" -std=c99 $warnings -I"$root/runtime" -c "$name.c" -o apart.o >>log 2>&1
+    "$plgen" -o "$name.c" "$spec" >log 2>&1 &&
+        "${CC:-cc}" -std=c99 $warnings -I"$root/runtime" -c "$name.c" -o apart.o >>log 2>&1
     result $? "$name: -o writes C and header"
 done
 
 # ---- the driver for hosts ----
 
-for file in "$root"/runtime/*.c; do
-    "${CC:-cc}" -std=c99 -O1 -I"$root/runtime" -c "$file" -o "runtime_${file##*/}.o" || echo "# ${file##*/} does not compile"
-done
+runtime_archive "$root/runtime"
 # shellcheck disable=SC2086
 for real in double float; do
     define=
@@ -109,7 +109,9 @@ for real in double float; do
             else
                 "$plgen" --real $real "$spec" >drive.c 2>log
             fi
-            "${CC:-cc}" -std=c99 $warnings $define -DMODEL=$name -I"$root/runtime" "$root/runtime/host/plmain.c" drive.c runtime_*.o -o "run_$name$suffix$other" >>log 2>&1
+            "${CC:-cc}" -std=c99 $warnings $define -DMODEL=$name -I"$root/runtime" "$root/runtime/host/plmain.c" \
+                drive.c \
+                "$archive" -o "run_$name$suffix$other" >>log 2>&1
             result $? "plmain of $name, $real${other:+, with the values as -D}"
         done
     done
@@ -117,32 +119,40 @@ done
 
 # as_arguments NAME: the values of `#there` as NAME=VALUE
 as_arguments() {
-    sed -n 's/^#there //p' "$(echo "$specs" | tr ' ' '\n' | grep "/$1.spec\$")" | sed -e 's/-D //g' -e 's/--step /step=/' | tr ' ' '\n' |
+    sed -n 's/^#there //p' "$(echo "$specs" | tr ' ' '\n' | grep "/$1.spec\$")" |
+        sed -e 's/-D //g' -e 's/--step /step=/' | tr ' ' '\n' |
         awk -F= '{ n = split($2, part, "/"); printf "%s=%.17g ", $1, n == 2 ? part[1] / part[2] : $2 }'
 }
 
 # near FOUND EXPECTED BOUND: CSV of the same shape, each column within BOUND of its largest
 near() {
-    awk -F, -v bound="$3" 'NR == FNR { for (i = 1; i <= NF; i++) { cell[FNR, i] = $i; if (FNR > 1 && $i * $i > most[i] * most[i]) most[i] = $i } rows = FNR; columns = NF; next }
+    awk -F, -v bound="$3" 'NR == FNR { for (i = 1; i <= NF; i++) { cell[FNR, i] = $i;
+        if (FNR > 1 && $i * $i > most[i] * most[i]) most[i] = $i } rows = FNR; columns = NF; next }
         FNR == 1 { if ($0 == "" || NF != columns) { print "another header"; bad = 1 } next }
-        { for (i = 1; i <= NF; i++) { off = $i - cell[FNR, i]; if (off < 0) off = -off; if (!(off <= bound * (most[i] < 0 ? -most[i] : most[i])))
-              { if (shown++ < 5) printf "line %d, column %d: found %s, expected %s\n", FNR, i, cell[FNR, i], $i; bad = 1 } } last = FNR }
-        END { if (last != rows || rows < 20) { printf "%d lines, expected %d\n", rows, last; bad = 1 } exit bad }' "$1" "$2"
+        { for (i = 1; i <= NF; i++) { off = $i - cell[FNR, i]; if (off < 0) off = -off;
+            if (!(off <= bound * (most[i] < 0 ? -most[i] : most[i])))
+              { if (shown++ < 5) printf "line %d, column %d: found %s, expected %s\n", FNR, i, cell[FNR, i], $i;
+                  bad = 1 } } last = FNR }
+        END { if (last != rows || rows < 20) { printf "%d lines, expected %d\n", rows, last;
+            bad = 1 } exit bad }' "$1" "$2"
 }
 
-awk 'BEGIN { print "u,floor"; for (i = 0; i < 400; i++) printf "%.6f,%.6f\n", (i * 37 % 101) / 50 - 1, (i * 53 % 89) / 44 - 1 }' >samples.csv
+awk 'BEGIN { print "u,floor"; for (i = 0; i < 400; i++) printf "%.6f,%.6f\n", (i * 37 % 101) / 50 - 1,
+    (i * 53 % 89) / 44 - 1 }' >samples.csv
 for real in double float; do
     suffix=
     bound=1e-13
     [ $real = float ] && suffix=f bound=1e-4
     for name in pair held; do
         # shellcheck disable=SC2046
-        ./run_$name$suffix 1 $(as_arguments $name) <samples.csv >found.csv 2>log && ./run_$name${suffix}plain 1 <samples.csv >expected.csv 2>>log &&
+        ./run_$name$suffix 1 $(as_arguments $name) <samples.csv >found.csv 2>log &&
+            ./run_$name${suffix}plain 1 <samples.csv >expected.csv 2>>log &&
             near found.csv expected.csv $bound >>log
         result $? "plmain: $name with NAME=VALUE as code made with these values, $real"
     done
 done
-./run_pair 0.5 >plain.csv 2>log && ./run_pair 0.5 m1=1 step=0.0078125 >given.csv 2>>log && near given.csv plain.csv 1e-13 >>log
+./run_pair 0.5 >plain.csv 2>log && ./run_pair 0.5 m1=1 step=0.0078125 >given.csv 2>>log &&
+    near given.csv plain.csv 1e-13 >>log
 result $? 'plmain: the values that it has'
 
 # refused MESSAGE STATUS ARGUMENT ...: the first line of standard error; nothing on standard output
@@ -176,7 +186,8 @@ refused 'pair: error: with these values the numbers of the step are not finite' 
 refused 'pair: error: with these values the mass matrix has no inverse' 1 1 m1=0
 ./run_pair >out.csv 2>log
 status=$?
-[ $status -eq 2 ] && [ ! -s out.csv ] && grep -q '^usage: .* T \[NAME=VALUE \.\.\.\] > out.csv$' log && grep -q '^    k1=100$' log && grep -q '^    step=0.0078125$' log
+[ $status -eq 2 ] && [ ! -s out.csv ] && grep -q '^usage: .* T \[NAME=VALUE \.\.\.\] > out.csv$' log &&
+    grep -q '^    k1=100$' log && grep -q '^    step=0.0078125$' log
 result $? 'plmain: usage lists the params and the step with their values'
 ./run_heldplain 1 m=3 <samples.csv >out.csv 2>log
 status=$?

@@ -9,10 +9,12 @@
  * Nothing is rounded.  Random specs write their factors with nested params, matrices, lets and sketches; none may be refused.
  */
 #include "step/step.h"
+#include "algebra.h"
+#include "cases.h"
+#include "drawn.h"
 
 #include <stdlib.h>
 #include <string.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 enum { POINTS = 3 };
@@ -26,44 +28,30 @@ static void complain(const char *what)
         printf("# %s\n", what);
 }
 
-static const char *first_diagnostic(void)
-{
-    char *text = NULL;
-    size_t length = 0;
-    FILE *to = open_memstream(&text, &length);
-    diagnostics_print(to);
-    fclose(to);
-    text[strcspn(text, "\n")] = 0;
-    return text;
-}
-
 /* ---- random specs ---- */
 
-static uint64_t state;
-
-static int below(int n)
+static int pick(int n)
 {
-    state = state * UINT64_C(6364136223846793005) + UINT64_C(1442695040888963407);
-    return (int)((state >> 33) % (uint64_t)n);
+    return (int)below((unsigned)n);
 }
 
 static const char *name_of(int tunables)
 {
-    return format("p%d", below(tunables));
+    return format("p%d", pick(tunables));
 }
 
 /* A factor: few products, few powers */
 static const char *factor(int tunables)
 {
-    switch (below(10)) {
-    case 0: return format("%d", 1 + below(9));
+    switch (pick(10)) {
+    case 0: return format("%d", 1 + pick(9));
     case 1: return format("%s*%s", name_of(tunables), name_of(tunables));
-    case 2: return format("(%s + %d.5)", name_of(tunables), below(4));
-    case 3: return format("%d/%s", 1 + below(5), name_of(tunables));
+    case 2: return format("(%s + %d.5)", name_of(tunables), pick(4));
+    case 3: return format("%d/%s", 1 + pick(5), name_of(tunables));
     case 4: return format("%s/%s", name_of(tunables), name_of(tunables));
     case 5: return format("(%s - 0.25*%s)", name_of(tunables), name_of(tunables));
     case 6: return format("%s^2", name_of(tunables));
-    case 7: return format("d%d", below(2));
+    case 7: return format("d%d", pick(2));
     case 8: return format("%s*d1", name_of(tunables));
     default: return name_of(tunables);
     }
@@ -71,17 +59,17 @@ static const char *factor(int tunables)
 
 static const char *mass(int tunables)
 {
-    return below(3) ? format("%d", 1 + below(4)) : below(2) ? name_of(tunables) : format("(%s + %s)", name_of(tunables), name_of(tunables));
+    return pick(3) ? format("%d", 1 + pick(4)) : pick(2) ? name_of(tunables) : format("(%s + %s)", name_of(tunables), name_of(tunables));
 }
 
 static const char *random_text(uint64_t seed)
 {
-    state = seed * UINT64_C(0x9e3779b97f4a7c15) + 7;
-    below(2);
-    const int n = 1 + below(3), tunables = 1 + below(4);
+    random_state = seed * UINT64_C(0x9e3779b97f4a7c15) + 7;
+    pick(2);
+    const int n = 1 + pick(3), tunables = 1 + pick(4);
     const char *text = "model any\nparam p0 = 2", *coords = "coord x1", *list = "tunable p0";
     for (int k = 1; k < tunables; k++) {
-        text = format("%s, p%d = %d.%d", text, k, 1 + below(20), below(10));
+        text = format("%s, p%d = %d.%d", text, k, 1 + pick(20), pick(10));
         list = format("%s, p%d", list, k);
     }
     for (int i = 1; i < n; i++)
@@ -94,28 +82,28 @@ static const char *random_text(uint64_t seed)
                   name_of(tunables), name_of(tunables));
     for (int i = 1; i <= n; i++) {
         text = format("%s%s*x%d''", text, mass(tunables), i);
-        if (n > 1 && below(3) == 0)
+        if (n > 1 && pick(3) == 0)
             text = format("%s + 0.3*%s*x%d''", text, mass(tunables), i % n + 1);
         for (int j = 1; j <= n; j++) {
-            if (below(2))
+            if (pick(2))
                 text = format("%s + %s*x%d", text, factor(tunables), j);
-            if (below(3) == 0)
+            if (pick(3) == 0)
                 text = format("%s - %s*x%d'", text, factor(tunables), j);
         }
-        text = format("%s = %s", text, below(3) ? "0" : "e");
-        switch (below(5)) {
-        case 0: text = format("%s + %s*cos(%d*t)\n", text, factor(tunables), 1 + below(3)); break;
+        text = format("%s = %s", text, pick(3) ? "0" : "e");
+        switch (pick(5)) {
+        case 0: text = format("%s + %s*cos(%d*t)\n", text, factor(tunables), 1 + pick(3)); break;
         case 1: text = format("%s + %s*u - v*%s\n", text, factor(tunables), factor(tunables)); break;
         case 2: text = format("%s + (t < 1 ? %s*t : 3)\n", text, factor(tunables)); break;
         case 3: text = format("%s + %s*v'\n", text, name_of(tunables)); break;
         default: text = format("%s + exp(-t)*%s\n", text, factor(tunables));
         }
     }
-    if (below(2))
-        text = format("%s%sz'' + %s*A*z' + B*z = [%s; 1]*sin(2*t)\n", text, below(2) ? "A*" : "", factor(tunables), factor(tunables));
+    if (pick(2))
+        text = format("%s%sz'' + %s*A*z' + B*z = [%s; 1]*sin(2*t)\n", text, pick(2) ? "A*" : "", factor(tunables), factor(tunables));
     else
         text = format("%sz'' + B*z = 0\n", text);
-    if (below(3) == 0)
+    if (pick(3) == 0)
         text = format("%sspring %s between x1, ground\ndamper %s between x1, %s\n", text, factor(tunables), name_of(tunables), n == 1 ? "ground" : "x2");
     return format("%sstep 0.01\n", text);
 }
@@ -125,62 +113,51 @@ static const char *random_text(uint64_t seed)
 static struct model *model_of(const char *text, const struct spec *tunables, const mpq_t *values)
 {
     struct request *request = NEW(struct request);
-    struct source *source = NEW(struct source);
-    *source = (struct source){ .name = "spec", .base = "spec", .text = text, .length = strlen(text) };
     for (int k = 0; tunables && k < tunables->tunables; k++) {
         ENLARGE(request->definition, (size_t)k + 1);
         request->definition[request->definitions++] = format("%s=%s", tunables->tunable[k].symbol->name, mpq_get_str(NULL, 10, values[k]));
     }
-    struct spec *spec = parse_spec(source);
+    struct spec *spec = spec_of("spec", text);
     struct model *model = spec ? model_build(spec, request) : NULL;
     return model && (tunables || find_tuning(model, request)) ? model : NULL;
-}
-
-static void add_product(mpq_ptr sum, mpq_srcptr a, mpq_srcptr b)
-{
-    mpq_t product;
-    mpq_init(product);
-    mpq_mul(product, a, b);
-    mpq_add(sum, sum, product);
-    mpq_clear(product);
 }
 
 /* [R | W] at these values, rows x (columns + rows); without W the unit matrix stands there. */
 static mpq_t *rows_at(const struct tuning *t, const mpq_t *values)
 {
-    const int width = t->columns + t->rows;
+    const int width = t->x.size + t->rows;
     mpq_t *product = rationals((size_t)t->monomials + 1), *value = rationals((size_t)(t->rows * width));
     mpq_set_ui(product[0], 1, 1);
     for (int m = 0; m < t->monomials; m++)
         (t->monomial[m].divides ? mpq_div : mpq_mul)(product[m + 1], product[t->monomial[m].from], values[t->monomial[m].param]);
     for (int i = 0; i < t->rows && !t->solves; i++)
-        mpq_set_ui(value[i * width + t->columns + i], 1, 1);
+        mpq_set_ui(value[i * width + t->x.size + i], 1, 1);
     for (int i = 0; i < t->terms; i++)
-        add_product(value[t->term[i].row * width + t->term[i].column], t->term[i].factor, product[t->term[i].monomial]);
+        add_product(value[t->term[i].row * width + t->term[i].column], t->term[i].factor, product[t->term[i].monomial], false);
     return value;
 }
 
 /* W^-1 R by Gauss and Jordan; false: singular */
 static bool solve(const struct tuning *t, mpq_t *value)
 {
-    const int width = t->columns + t->rows;
+    const int width = t->x.size + t->rows;
     mpq_t factor;
     mpq_init(factor);
     for (int k = 0; k < t->rows; k++) {
         int pivot = k;
-        while (pivot < t->rows && mpq_sgn(value[pivot * width + t->columns + k]) == 0)
+        while (pivot < t->rows && mpq_sgn(value[pivot * width + t->x.size + k]) == 0)
             pivot++;
         if (pivot == t->rows)
             return false;
         for (int j = 0; j < width; j++)
             mpq_swap(value[pivot * width + j], value[k * width + j]);
-        mpq_inv(factor, value[k * width + t->columns + k]);
+        mpq_inv(factor, value[k * width + t->x.size + k]);
         for (int j = 0; j < width; j++)
             mpq_mul(value[k * width + j], value[k * width + j], factor);
         for (int i = 0; i < t->rows; i++) {
-            mpq_neg(factor, value[i * width + t->columns + k]);
+            mpq_neg(factor, value[i * width + t->x.size + k]);
             for (int j = 0; i != k && j < width; j++)
-                add_product(value[i * width + j], factor, value[k * width + j]);
+                add_product(value[i * width + j], factor, value[k * width + j], false);
         }
     }
     return true;
@@ -189,10 +166,10 @@ static bool solve(const struct tuning *t, mpq_t *value)
 /* Left side of equation i in a column, highest derivatives from `value`; and its right side */
 static void sides(const struct linear *system, const struct tuning *t, const mpq_t *value, int i, int column, mpq_ptr left)
 {
-    const int width = t->columns + t->rows, n = system->n;
+    const int width = t->x.size + t->rows, n = system->n;
     mpq_set_ui(left, 0, 1);
     for (int j = 0; j < n; j++)
-        add_product(left, (system->velocity[j] >= 0 ? system->M : system->C)[i * n + j], value[j * width + column]);
+        add_product(left, (system->velocity[j] >= 0 ? system->M : system->C)[i * n + j], value[j * width + column], false);
     if (column < system->states)
         mpq_add(left, left, (column < n ? system->K : system->C)[i * n + system->coord[column]]);
 }
@@ -222,11 +199,11 @@ static mpq_srcptr force_at(const struct linear *system, int column, int i, const
 static void compare_model(const struct model *there, const struct tuning *t, const mpq_t *value)
 {
     const struct linear *system = &there->system;
-    const int width = t->columns + t->rows;
+    const int width = t->x.size + t->rows;
     mpq_t left, zero;
     mpq_inits(left, zero, NULL);
     for (int i = 0; i < system->n; i++)
-        for (int j = 0; j < t->columns; j++) {
+        for (int j = 0; j < t->x.size; j++) {
             sides(system, t, value, i, j, left);
             compare(left, j < system->states ? zero : force_at(system, j, i, NULL), "equation", i, j);
         }
@@ -234,7 +211,7 @@ static void compare_model(const struct model *there, const struct tuning *t, con
         if (t->frequency[l] >= 0)
             compare(value[t->frequency[l] * width], system->load[l].wave->w, "frequency of load", l, 0);
     for (int o = 0; o < there->outputs; o++)
-        for (int j = 0; j < t->columns && t->output[o] >= 0; j++)
+        for (int j = 0; j < t->x.size && t->output[o] >= 0; j++)
             compare(value[t->output[o] * width + j], j < system->states ? there->output[o].state[j] : force_at(system, j, 0, &there->output[o]), there->output[o].name, o, j);
 }
 
@@ -242,7 +219,7 @@ static void compare_model(const struct model *there, const struct tuning *t, con
 static void compare_fixed(const struct model *a, const struct model *b, const struct tuning *t)
 {
     for (int o = 0; o < a->outputs; o++)
-        for (int j = 0; j < t->columns && t->output[o] < 0; j++)
+        for (int j = 0; j < t->x.size && t->output[o] < 0; j++)
             compare(j < a->system.states ? a->output[o].state[j] : force_at(&a->system, j, 0, &a->output[o]),
                     j < a->system.states ? b->output[o].state[j] : force_at(&b->system, j, 0, &b->output[o]), "fixed output", o, j);
 }
@@ -251,7 +228,7 @@ static void compare_fixed(const struct model *a, const struct model *b, const st
 static bool turned(const struct model *model, const struct tuning *t, const mpq_t *value)
 {
     for (int l = 0; l < model->system.loads; l++)
-        if (t->frequency[l] >= 0 && mpq_sgn(value[t->frequency[l] * (t->columns + t->rows)]) <= 0)
+        if (t->frequency[l] >= 0 && mpq_sgn(value[t->frequency[l] * (t->x.size + t->rows)]) <= 0)
             return true;
     return false;
 }
@@ -260,14 +237,14 @@ static int try_text(const char *text)
 {
     const struct model *model = model_of(text, NULL, NULL);
     if (!model) {
-        printf("# %s\n", first_diagnostic());
+        printf("# %s\n", first_line(diagnostics()));
         return 1;
     }
     const struct tuning *t = model->tuning;
     for (int p = 0; p < POINTS; p++) {
         mpq_t *values = rationals((size_t)t->params);
         for (int k = 0; k < t->params; k++) {
-            mpq_set_si(values[k], (1 + below(2000)) * (below(4) ? 1 : -1), (unsigned)(1 + below(60)));
+            mpq_set_si(values[k], (1 + pick(2000)) * (pick(4) ? 1 : -1), (unsigned)(1 + pick(60)));
             mpq_canonicalize(values[k]);
         }
         const struct model *there = model_of(text, model->spec, (const mpq_t *)values);
@@ -285,51 +262,15 @@ static int try_text(const char *text)
 
 /* ---- the whole ---- */
 
-static int number, failures;
-
-static void show(const char *line)
+static bool try_case(void *text)
 {
-    while (*line) {
-        const size_t length = strcspn(line, "\n");
-        printf("# | %.*s\n", (int)length, line);
-        line += length + (line[length] == '\n');
-    }
+    return try_text(text) == 0;
 }
 
-/* In a process of its own: what is refused once stays refused. */
 static void run(const char *name, const char *text)
 {
-    int status;
-    fflush(stdout);
-    const pid_t child = fork();
-    if (child == 0) {
-        const int result = try_text(text);
-        fflush(stdout);
-        _exit(result);
-    }
-    if (child < 0 || waitpid(child, &status, 0) != child) {
-        puts("Bail out! cannot start a process");
-        exit(1);
-    }
-    const bool good = WIFEXITED(status) && WEXITSTATUS(status) == 0;
-    if (WIFSIGNALED(status))
-        printf("# ended by signal %d\n", WTERMSIG(status));
-    failures += !good;
-    if (!good || verbose)
-        show(text);
-    printf("%sok %d - %s\n", good ? "" : "not ", ++number, name);
-}
-
-static const char *read_text(const char *path)
-{
-    char *text = ARRAY(char, 1 << 14);
-    FILE *f = fopen(path, "r");
-    if (!f || fread(text, 1, (1 << 14) - 1, f) == 0) {
-        printf("Bail out! cannot read %s\n", path);
-        exit(1);
-    }
-    fclose(f);
-    return text;
+    if (!run_case(name, 0, try_case, (void *)text) || verbose)
+        show_spec(text);
 }
 
 int main(int argc, char **argv)
@@ -347,10 +288,10 @@ int main(int argc, char **argv)
     }
     memory_open();
     for (int i = optind; i < argc; i++)
-        run(strrchr(argv[i], '/') ? strrchr(argv[i], '/') + 1 : argv[i], read_text(argv[i]));
+        run(base_name(argv[i]), read_text(argv[i]));
     for (unsigned long i = 0; i < count; i++)
         run(format("random model %lu", seed + i), random_text(seed + i));
-    printf("1..%d\n", number);
+    printf("1..%d\n", cases_reported());
     memory_close();
-    return failures > 0;
+    return cases_failed() > 0;
 }

@@ -4,8 +4,9 @@
 #
 #     tuned.sh PLGEN REAL CODE.c HEADER.h MODEL.spec ...
 #
-# Each is there as NAME and, with --form direct, as direct_NAME; as plain_NAME and plain_direct_NAME: the same spec without `tunable`; and
-# where its line `#there OPTION ...` gives other values, with these as there_NAME and there_direct_NAME, again without `tunable`.
+# Each is there as NAME and, with --form direct, as direct_NAME; as plain_NAME and plain_direct_NAME: the same spec
+# without `tunable`; and where its line `#there OPTION ...` gives other values, with these as there_NAME and
+# there_direct_NAME, again without `tunable`.
 set -eu
 LC_ALL=C
 export LC_ALL
@@ -29,7 +30,8 @@ make() {
     from=$1
     prefix=$2
     shift 2
-    "$plgen" --real "$real" --prefix "$prefix" "$@" -o "$work/$prefix.c" "$from" 2>"$work/said" || { cat "$work/said" >&2; exit 1; }
+    "$plgen" --real "$real" --prefix "$prefix" "$@" -o "$work/$prefix.c" "$from" 2>"$work/said" ||
+        { cat "$work/said" >&2; exit 1; }
     cat "$work/$prefix.h" >>"$work/headers"
     grep -v '^#include "'"$prefix"'.h"$' "$work/$prefix.c" >>"$work/bodies"
 }
@@ -42,11 +44,18 @@ has() {
 
 # entry NAME PLAIN THERE FORM: what tuned.h says of one
 entry() {
-    echo "static int $1_any_coeffs(void *c, const real *params, real h) { return $1_retune(($1_coeffs *)c, params, h); }" >>"$work/bodies"
+    {
+        echo "static int $1_any_coeffs(void *c, const real *params, real h)"
+        echo "{"
+        echo "    return $1_retune(($1_coeffs *)c, params, h);"
+        echo "}"
+    } >>"$work/bodies"
     echo "static void $1_any_use(void *s, const void *c) { $1_use(($1 *)s, (const $1_coeffs *)c); }" >>"$work/bodies"
     {
-        echo "    {\"$1\", &$1_model, &$2_model, $3, \"$there\", $4, sizeof($1_coeffs), offsetof($1, coeffs), &$1_nominal, $1_any_coeffs, $1_any_use,"
-        echo "    .h = offsetof($1_coeffs, h), .params = offsetof($1_coeffs, params), .columns = (int)(sizeof $1_nominal.step[0] / sizeof $1_nominal.step[0][0]),"
+        echo "    {\"$1\", &$1_model, &$2_model, $3, \"$there\", $4, sizeof($1_coeffs), offsetof($1, coeffs),"
+        echo "    &$1_nominal, $1_any_coeffs, $1_any_use,"
+        echo "    .h = offsetof($1_coeffs, h), .params = offsetof($1_coeffs, params),"
+        echo "    .columns = (int)(sizeof $1_nominal.step[0] / sizeof $1_nominal.step[0][0]),"
         has "$1" step
         has "$1" out
         has "$1" phase_step

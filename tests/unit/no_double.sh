@@ -28,12 +28,14 @@ result() {
     fi
 }
 
+arithmetic='(add|sub|mul|div|max|min|sqrt|u?comi|and|andn|xor|f?n?m(add|sub)[0-9]*|cmp[a-z]*)'
+conversion='cvt[a-z0-9]*[sp]d[a-z0-9]*'
+stack='f(ld|ild|st|stp|add|mul|div|sub)[a-z]*'
+
 # doubles COMPILER LEVEL PIECE: are there instructions for doubles in runtime/PIECE.c?  They are in $work/found.
 doubles() {
     "$1" -std=c99 "$2" -c "$runtime/$3.c" -o "$work/piece.o" 2>"$work/found" || return 0
-    objdump -d "$work/piece.o" |
-        grep -w -E 'v?((add|sub|mul|div|max|min|sqrt|u?comi|and|andn|xor|f?n?m(add|sub)[0-9]*|cmp[a-z]*)[sp]d|cvt[a-z0-9]*[sp]d[a-z0-9]*)|f(ld|ild|st|stp|add|mul|div|sub)[a-z]*' \
-            >"$work/found"
+    objdump -d "$work/piece.o" | grep -w -E "v?($arithmetic[sp]d|$conversion)|$stack" >"$work/found"
 }
 
 for compiler; do

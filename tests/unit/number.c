@@ -381,12 +381,104 @@ static void all_of_it_for_float(void **state)
     mpq_clear(third);
 }
 
+/* x encloses q by 2^-bits on either side */
+static void enclose(mpq_srcptr q, long bits, mpfi_ptr x)
+{
+    mpq_t end, width;
+    mpq_inits(end, width, NULL);
+    mpq_set_ui(width, 1, 1);
+    if (bits >= 0)
+        mpq_div_2exp(width, width, (mp_bitcnt_t)bits);
+    else
+        mpq_mul_2exp(width, width, (mp_bitcnt_t)-bits);
+    mpq_sub(end, q, width);
+    mpfr_set_q(&x->left, end, MPFR_RNDD);
+    mpq_add(end, q, width);
+    mpfr_set_q(&x->right, end, MPFR_RNDU);
+    mpq_clears(end, width, NULL);
+}
+
+/* Is |q - digits 2^exponent| at most half of 2^exponent? */
+static bool is_nearest(mpq_srcptr q, mpz_srcptr digits, long exponent)
+{
+    mpq_t scaled, difference;
+    mpq_inits(scaled, difference, NULL);
+    if (exponent >= 0)
+        mpq_div_2exp(scaled, q, (mp_bitcnt_t)exponent);
+    else
+        mpq_mul_2exp(scaled, q, (mp_bitcnt_t)-exponent);
+    mpq_set_z(difference, digits);
+    mpq_sub(difference, scaled, difference);
+    mpq_mul_2exp(difference, difference, 1);
+    mpq_abs(difference, difference);
+    bool nearest = mpq_cmp_ui(difference, 1, 1) <= 0;
+    mpq_clears(scaled, difference, NULL);
+    return nearest;
+}
+
+/* Odd denominators: half way between two integers lies none of these, and a half added to an integer lies just there. */
+static void enclosures_of_one_integer(void **state)
+{
+    (void)state;
+    mpq_t q;
+    mpz_t found;
+    mpfi_t x;
+    mpq_init(q);
+    mpz_init(found);
+    mpfi_init2(x, 200);
+    for (int n = 0; n < CASES; n++) {
+        bool middle = draw(3) == 0;
+        mpq_set_si(q, middle ? 2 * draw_integer(1000000) + 1 : draw_integer(1000000), middle ? 2 : 1 + 2 * draw(500));
+        mpq_canonicalize(q);
+        enclose(q, 40, x);
+        bool one = round_integer(x, found);
+        if (one == middle || (one && !is_nearest(q, found, 0)))
+            fail_msg("case %d, around %s: %s integer, %s; expected %s", n, mpq_get_str(NULL, 10, q), one ? "one" : "no",
+                mpz_get_str(NULL, 10, found), middle ? "none" : "one, the nearest");
+    }
+    mpq_clear(q);
+    mpz_clear(found);
+    mpfi_clear(x);
+}
+
+/* An odd integer of one bit more than asked for lies half way; fractions of odd denominators do not. */
+static void enclosures_of_so_many_bits(void **state)
+{
+    (void)state;
+    mpq_t q;
+    mpz_t found;
+    mpfi_t x;
+    mpq_init(q);
+    mpz_init(found);
+    mpfi_init2(x, 400);
+    for (int n = 0; n < CASES; n++) {
+        bool middle = draw(3) == 0;
+        int bits = middle ? 20 : 64 * (2 + (int)draw(2)), shift = (int)draw(200);
+        long exponent = 0;
+        mpq_set_ui(q, middle ? 1048577 + 2 * draw(524288) : 1 + draw(1000000), middle ? 1 : 3 + 2 * draw(500));
+        mpq_canonicalize(q);
+        mpq_mul_2exp(q, q, (mp_bitcnt_t)shift);
+        enclose(q, bits + 40 - shift, x);
+        bool exact = mpz_cmp_ui(mpq_denref(q), 1) == 0, one = round_bits(x, bits, found, &exponent);
+        bool full = one && mpz_sizeinbase(found, 2) == (size_t)bits;
+        if (one == middle || (one && (!full || !is_nearest(q, found, exponent))))
+            fail_msg("case %d, %d bits around %s (%s): %s 2^%ld; expected %s", n, bits, mpq_get_str(NULL, 10, q),
+                exact ? "an integer" : "a fraction", one ? mpz_get_str(NULL, 10, found) : "none", exponent,
+                middle ? "none" : "the nearest");
+    }
+    mpq_clear(q);
+    mpz_clear(found);
+    mpfi_clear(x);
+}
+
 int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(rounded_to_nearest),
         cmocka_unit_test(ends_of_the_range),
         cmocka_unit_test(enclosures_of_one_number),
+        cmocka_unit_test(enclosures_of_one_integer),
+        cmocka_unit_test(enclosures_of_so_many_bits),
         cmocka_unit_test(shortest_texts),
         cmocka_unit_test(exact_texts),
         cmocka_unit_test(beyond_the_range_is_told),

@@ -13,9 +13,8 @@ struct part {                       /* a sum of several terms inside atoms */
 	const char *let;
 };
 struct writer {
-	FILE *to;
 	const struct emitter *e;
-	const char *(*basis_text)(const struct emitter *e, const struct basis *basis);
+	basis_writer *basis_text;
 	int atoms;
 	int *uses;                  /* per atom */
 	const char **name, **let;   /* per atom: the local that holds it; the let that it is */
@@ -61,12 +60,6 @@ static void count_form(struct writer *w, const struct form *form)
 	}
 }
 
-static bool equal_forms(const struct form *a, const struct form *b)
-{
-	const struct form *difference = form_sum(a, b, true);
-	return difference->terms == 0;
-}
-
 /* A let is what its value is in the equations for all time. */
 static void name_lets(struct writer *w)
 {
@@ -75,19 +68,18 @@ static void name_lets(struct writer *w)
 			continue;
 		const struct form_term *only = s->whole->terms == 1 ? s->whole->term : NULL;
 		if (only && only->basis.atom && mpq_cmp_ui(only->factor, 1, 1) == 0)
-			w->let[only->basis.atom->index] = s->c_name;
+			w->let[only->basis.atom->index] = c_name(w->e->c, s, 0);
 		for (int i = 0; i < w->parts && s->whole->terms > 1; i++)
-			if (equal_forms(w->part[i].form, s->whole))
-				w->part[i].let = s->c_name;
+			if (same_form(w->part[i].form, s->whole))
+				w->part[i].let = c_name(w->e->c, s, 0);
 	}
 }
 
-struct writer *writer_new(const struct emitter *e, const char *(*basis_text)(const struct emitter *, const struct basis *), int count,
-			  const struct form *const *form)
+struct writer *writer_new(const struct emitter *e, basis_writer *basis_text, int count, const struct form *const *form)
 {
 	struct writer *w = NEW(struct writer);
 	int atoms = atoms_count(e->model->atoms);
-	*w = (struct writer){ .to = e->to, .e = e, .basis_text = basis_text, .atoms = atoms };
+	*w = (struct writer){ .e = e, .basis_text = basis_text, .atoms = atoms };
 	w->uses = ARRAY(int, (size_t)atoms);
 	w->name = ARRAY(const char *, (size_t)atoms);
 	w->let = ARRAY(const char *, (size_t)atoms);
@@ -104,7 +96,7 @@ static const char *atom_text(struct writer *w, const struct atom *a);
 static const char *declare(struct writer *w, const char *let, const char *text)
 {
 	const char *name = let ? let : format("part%d", ++w->locals);
-	fprintf(w->to, "    const double %s = %s;\n", name, text);
+	say(w->e, "    const double %s = %s;\n", name, text);
 	return name;
 }
 
@@ -134,7 +126,8 @@ static const char *operand_text(struct writer *w, const struct form *form)
 	const char *text = write_form(w, form, INDENT);
 	if (part && (part->uses > 1 || part->let))
 		return part->name = declare(w, part->let, text);
-	return form->terms == 0 || (only && only->basis.kind <= BASIS_PI && mpq_sgn(only->factor) > 0) ? text : format("(%s)", text);
+	bool number = only && only->basis.kind <= BASIS_PI && mpq_sgn(only->factor) > 0;
+	return form->terms == 0 || number ? text : format("(%s)", text);
 }
 
 static bool is_word(const char *text)
@@ -162,8 +155,10 @@ static const char *argument_text(struct writer *w, const struct form *form)
 /* base^n with few multiplications; base is a name */
 static const char *power_text(struct writer *w, const char *base, unsigned n)
 {
+	if (n == 1)
+		return base;
 	if (n <= 3)
-		return n == 1 ? base : n == 2 ? format("%s * %s", base, base) : format("%s * %s * %s", base, base, base);
+		return n == 2 ? format("%s * %s", base, base) : format("%s * %s * %s", base, base, base);
 	const char *half = declare(w, NULL, power_text(w, base, n / 2));
 	return format(n % 2 ? "%s * %s * %s" : "%s * %s", half, half, base);
 }
@@ -178,10 +173,10 @@ static const char *product_text(struct writer *w, const struct atom *a)
 {
 	const char *above = "", *below = "";
 	for (int i = 0; i < a->operands; i++) {
-		const struct form *divisor = divisor_of(a->operand[i]);
-		const struct form *base = divisor && !w->name[a->operand[i]->term[0].basis.index] ? divisor : a->operand[i];
-		bool inverse = base == divisor;
-		const char *power = a->exponent[i] > 1 ? power_text(w, word_of(w, base), a->exponent[i]) : operand_text(w, base);
+		const struct form *operand = a->operand[i], *divisor = divisor_of(operand);
+		const struct form *base = divisor && !w->name[operand->term[0].basis.index] ? divisor : operand;
+		bool inverse = base == divisor, several = a->exponent[i] > 1;
+		const char *power = several ? power_text(w, word_of(w, base), a->exponent[i]) : operand_text(w, base);
 		if (inverse)
 			below = format("%s / %s", below, is_word(power) ? power : format("(%s)", power));
 		else
@@ -194,22 +189,14 @@ static const char *product_text(struct writer *w, const struct atom *a)
 static const char *table_text(struct writer *w, const struct atom *a)
 {
 	const char *x = word_of(w, a->operand[0]), *text = "";
-	struct collector collector = { .scheme = "exact" };
-	mpq_t p[4];
-	for (int k = 0; k < 4; k++)
-		mpq_init(p[k]);
-	for (int i = 1; i + 3 < a->operands; i += 2) {
-		for (int k = 0; k < 4; k++)
-			constant_value(&collector, a->operand[i + k], p[k]);
-		const char *condition = i + 5 < a->operands ? format("%s < %s ? ", x, shortest(finite_number(w->e, p[2]))) : "";
-		mpq_sub(p[3], p[3], p[1]);
-		mpq_sub(p[2], p[2], p[0]);
-		mpq_div(p[3], p[3], p[2]);
-		text = format("%s%s%s%s + %s * (%s - %s)", text, *text ? " : " : "", condition, shortest(finite_number(w->e, p[1])),
-			      shortest(finite_number(w->e, p[3])), x, shortest(finite_number(w->e, p[0])));
+	struct straight *piece;
+	int pieces = pieces_of_atom(a, &piece);
+	for (const struct straight *p = piece; p < piece + pieces; p++) {
+		const char *condition = p->end ? format("%s < %s ? ", x, shortest(finite_number(w->e, p->end))) : "";
+		text = format("%s%s%s%s + %s * (%s - %s)", text, *text ? " : " : "", condition,
+			      shortest(finite_number(w->e, p->y)), shortest(finite_number(w->e, p->slope)), x,
+			      shortest(finite_number(w->e, p->x)));
 	}
-	for (int k = 0; k < 4; k++)
-		mpq_clear(p[k]);
 	return format("(%s)", text);
 }
 
@@ -244,8 +231,9 @@ static const char *call_text(struct writer *w, const struct atom *a)
 		x = word_of(w, a->operand[0]);
 		low = word_of(w, a->operand[1]);
 		high = word_of(w, a->operand[2]);
-		return a->function == FN_CLIP ? format("(%s < %s ? %s : %s > %s ? %s : %s)", x, low, low, x, high, high, x)
-					      : format("(%s < %s ? %s - %s : %s > %s ? %s - %s : 0.0)", x, low, x, low, x, high, x, high);
+		if (a->function == FN_CLIP)
+			return format("(%s < %s ? %s : %s > %s ? %s : %s)", x, low, low, x, high, high, x);
+		return format("(%s < %s ? %s - %s : %s > %s ? %s - %s : 0.0)", x, low, x, low, x, high, x, high);
 	default: return format("%s(%s)", function_name(a->function), argument_text(w, a->operand[0]));
 	}
 }
@@ -257,12 +245,18 @@ static const char *comparison_text(struct writer *w, const struct atom *a)
 	return format("%s %s %s", left, sign[a->comparison], argument_text(w, a->operand[1]));
 }
 
+static const char *condition_text(struct writer *w, const struct form *condition)
+{
+	const struct form_term *only = condition->terms == 1 ? condition->term : NULL;
+	const struct atom *atom = only && mpq_cmp_ui(only->factor, 1, 1) == 0 ? only->basis.atom : NULL;
+	if (atom && atom->kind == ATOM_COMPARE)
+		return comparison_text(w, atom);
+	return format("%s != 0.0", operand_text(w, condition));
+}
+
 static const char *choice_text(struct writer *w, const struct atom *a)
 {
-	const struct form *condition = a->operand[0];
-	const struct atom *comparison = condition->terms == 1 && mpq_cmp_ui(condition->term[0].factor, 1, 1) == 0 ? condition->term[0].basis.atom : NULL;
-	const char *text = comparison && comparison->kind == ATOM_COMPARE ? comparison_text(w, comparison) : format("%s != 0.0", operand_text(w, condition));
-	const char *first = argument_text(w, a->operand[1]);
+	const char *text = condition_text(w, a->operand[0]), *first = argument_text(w, a->operand[1]);
 	return format("(%s ? %s : %s)", text, first, argument_text(w, a->operand[2]));
 }
 

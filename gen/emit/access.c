@@ -1,0 +1,211 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* init, set, get, time, status, hold. */
+#include "emit/emit.h"
+
+static void emit_values(const struct emitter *e, const mpq_t *value)
+{
+	for (int i = 0; i < e->system->states; i++)
+		say(e, "%s%s", i ? ", " : "", shortest(round_rational(value[i])));
+	say(e, "};");
+}
+
+static void emit_init(const struct emitter *e)
+{
+	const struct model *model = e->model;
+	say(e, "\nvoid $n_init($n *s)\n"
+	       "{\n"
+	       "    static const double start[$N_STATES] = {");
+	emit_values(e, (const mpq_t *)model->initial);
+	if (model->relative) {
+		say(e, "  /* %s */\n"
+		       "    static const double set[$N_STATES] = {", state_list(model));
+		emit_values(e, (const mpq_t *)model->written->initial);
+	}
+	say(e, "\n");
+	e->kind->start(e, "s->");
+	for (int i = 0; i < e->system->inputs; i++) {
+		say(e, "    s->u[%d] = 0.0;\n", i);
+		if (e->ramps)
+			say(e, "    s->slope[%d] = 0.0;\n", i);
+	}
+	say(e, "    $n_%s, start);\n"
+	       "}\n", model->relative ? "begin(s, 0.0, set" : "set(s, 0.0");
+}
+
+/* ---- set ---- */
+
+/* A state at the place of s->y: what else of the instance follows from it and from t */
+static void emit_rest_of_state(const struct emitter *e)
+{
+	say(e, "    s->t0 = t;\n"
+	       "    s->k = 0;\n");
+	if (e->kind->keeps_status)
+		say(e, "    s->status = 0;\n");
+	emit_load_set(e);
+	if (e->system->segments > 1)
+		say(e, "    for (s->segment = 0; s->segment < %d && $n_until(s, s->segment) <= 1e-18 * %s;)\n"
+		       "        s->segment++;\n", e->system->segments - 1, step_length(e));
+	if (e->step->forced)
+		emit_set_forced_state(e, e->model->relative ? "x" : "y", "    ");
+	if (e->kind->places)
+		say(e, "    $n_place(s);\n");
+	say(e, "}\n");
+}
+
+static void emit_set_as_written(const struct emitter *e)
+{
+	emit_init(e);
+	if (e->step->forced)
+		emit_forced(e);
+	say(e, "\nvoid $n_set($n *s, double t, const double y[$N_STATES])\n"
+	       "{\n"
+	       "    int i;\n");
+	if (e->step->forced)
+		say(e, "    double now[$N_STATES];\n");
+	else
+		emit_set_state(e, "y", "    ");
+	emit_rest_of_state(e);
+}
+
+/* What is kept has been rounded to momenta: its gains count from there. */
+static void emit_origin_of_momenta(const struct emitter *e)
+{
+	for (int i = 0; i < e->system->states; i++)
+		if (factor_of_momentum(e, i))
+			say(e, "    s->from[%d] = s->y[%d] / %s;\n", i, i, factor_of_momentum(e, i));
+}
+
+static void emit_set_over_relative(const struct emitter *e)
+{
+	emit_conversions(e);
+	if (e->step->forced)
+		emit_forced(e);
+	say(e, "\n/* From the states as written, and as they are kept */\n"
+	       "static void $n_begin($n *s, double t, const double y[$N_STATES], const double x[$N_STATES])\n"
+	       "{\n"
+	       "    int i;\n");
+	if (e->step->forced)
+		say(e, "    double now[$N_STATES];\n");
+	say(e, "    for (i = 0; i < $N_STATES; i++) {\n"
+	       "        s->set[i] = y[i];\n"
+	       "        s->from[i] = x[i];\n"
+	       "    }\n");
+	if (!e->step->forced) {
+		emit_set_state(e, "x", "    ");
+		emit_origin_of_momenta(e);
+	}
+	emit_rest_of_state(e);
+	emit_init(e);
+	say(e, "\nvoid $n_set($n *s, double t, const double y[$N_STATES])\n"
+	       "{\n"
+	       "    double x[$N_STATES];\n"
+	       "    $n_keep(y, x);\n"
+	       "    $n_begin(s, t, y, x);\n"
+	       "}\n");
+}
+
+/* ---- get ---- */
+
+static void emit_get_as_written(const struct emitter *e)
+{
+	say(e, "\nvoid $n_get(const $n *s, double y[$N_STATES])\n"
+	       "{\n"
+	       "    int i;\n");
+	emit_get_state(e, "y");
+	say(e, "}\n");
+}
+
+static void emit_get_over_relative(const struct emitter *e)
+{
+	say(e, "\nvoid $n_get(const $n *s, double y[$N_STATES])\n"
+	       "{\n"
+	       "    int i;\n"
+	       "    double x[$N_STATES];\n");
+	emit_get_state(e, "x");
+	say(e, "    $n_written(s, x, y);\n"
+	       "}\n");
+}
+
+/* Outputs read what is kept, its forced part added, too: a function of its own */
+static void emit_get_over_forced(const struct emitter *e)
+{
+	say(e, "\n/* The states as they are kept, their forced part added */\n"
+	       "static void $n_kept(const $n *s, double x[$N_STATES])\n"
+	       "{\n"
+	       "    int i;\n");
+	emit_get_state(e, "x");
+	say(e, "}\n"
+	       "\nvoid $n_get(const $n *s, double y[$N_STATES])\n"
+	       "{\n"
+	       "    double x[$N_STATES];\n"
+	       "    $n_kept(s, x);\n"
+	       "    $n_written(s, x, y);\n"
+	       "}\n");
+}
+
+/* ---- time, status, hold ---- */
+
+/* k h: of the spec's step p/q, with p and q exact, it is one rounding away from the exact time while k p < 2^53. */
+static const char *elapsed_text(const struct emitter *e)
+{
+	mpz_srcptr p = mpq_numref(e->model->h), q = mpq_denref(e->model->h);
+	size_t bits = mpz_sizeinbase(p, 2), divisor_bits = mpz_sizeinbase(q, 2);
+	bool single = e->model->asked.single;
+	bool short_fraction = bits <= (single ? 12 : 40) && divisor_bits <= (single ? 24 : 53);
+	if (e->kind->own_factors || !short_fraction)
+		return format("(double)s->k * %s", step_length(e));
+	const char *factor = mpz_cmp_ui(p, 1) == 0 ? "" : format(" * %s", shortest(mpz_get_d(p)));
+	const char *divisor = mpz_cmp_ui(q, 1) == 0 ? "" : format(" / %s", shortest(mpz_get_d(q)));
+	return format("(double)s->k%s%s", factor, divisor);
+}
+
+static void emit_time(const struct emitter *e)
+{
+	say(e, "\ndouble $n_time(const $n *s)\n"
+	       "{\n"
+	       "    return s->t0 + %s;\n"
+	       "}\n", elapsed_text(e));
+}
+
+/* Where a step keeps none, from the state, in both words where it has two: a step has nothing to do for it. */
+static void emit_status(const struct emitter *e)
+{
+	bool written = e->step->momenta || e->model->relative;  /* s->y is not the state */
+	say(e, "\nint $n_status(const $n *s)\n"
+	       "{\n");
+	if (e->kind->keeps_status) {
+		say(e, "    return s->status;\n"
+		       "}\n");
+		return;
+	}
+	if (written)
+		say(e, "    double y[$N_STATES];\n"
+		       "    $n_get(s, y);\n");
+	say(e, "    return pl_not_finite(%s, $N_STATES)%s;\n"
+	       "}\n", written ? "y" : "s->y",
+	       e->step->program->compensated ? spell(e, " | pl_not_finite(s->rest, $N_STATES)") : "");
+}
+
+static void emit_hold(const struct emitter *e)
+{
+	say(e, "\nvoid $n_hold($n *s, const double u[$N_INPUTS])\n"
+	       "{\n"
+	       "    int i;\n"
+	       "    for (i = 0; i < $N_INPUTS; i++)\n"
+	       "        s->u[i] = u[i];\n");
+	if (e->kind->places)
+		say(e, "    if (s->k == 0)\n"
+		       "        $n_place(s);\n");
+	say(e, "}\n");
+}
+
+void emit_access(const struct emitter *e)
+{
+	bool relative = e->model->relative != NULL;
+	(relative ? emit_set_over_relative : emit_set_as_written)(e);
+	(relative ? (e->step->forced ? emit_get_over_forced : emit_get_over_relative) : emit_get_as_written)(e);
+	emit_time(e);
+	emit_status(e);
+	if (e->ramps)
+		emit_hold(e);
+}

@@ -1,0 +1,287 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The step of a scheme that leaves something over: its program's actions on vectors, unrolled or as loops. */
+#include "emit/emit.h"
+
+/* ---- sums and combinations, unrolled ---- */
+
+static void emit_combination(const struct emitter *e, const struct action *a)
+{
+	for (int c = 0; c < e->model->channels; c++) {
+		if (a->minus == NONE)
+			say(e, "    left%d[%d] = 2.0 * left%d[%d];\n", a->target, c, a->plus, c);
+		else
+			say(e, "    left%d[%d] = left%d[%d] %c left%d[%d];\n", a->target, c, a->plus, c,
+			    a->added ? '+' : '-', a->minus, c);
+	}
+}
+
+/* y(tau) of a table, with Phi y or from rest */
+static int add_flow_terms(const struct emitter *e, const struct table *table, bool from_rest, int row,
+			  const char **term)
+{
+	int terms = 0;
+	for (int j = 0; j < table->states && table->Phi && !from_rest; j++)
+		if (!table->Phi[row * table->states + j].zero)
+			term[terms++] = scaled(table->Phi[row * table->states + j].value, e->local[j]);
+	for (int k = 0; k < table->columns; k++)
+		if (!table->load[row * table->columns + k].zero)
+			term[terms++] = scaled(table->load[row * table->columns + k].value, column_operand(e, k));
+	for (int k = 0; k < table->inputs; k++)
+		if (!table->input[row * table->inputs + k].zero)
+			term[terms++] = scaled(table->input[row * table->inputs + k].value, input_operand(e, k));
+	return terms;
+}
+
+static int add_kernel_terms(const struct emitter *e, const struct action *a, int row, const char **term)
+{
+	int terms = 0, channels = e->model->channels;
+	for (int k = 0; k < a->kernels; k++) {
+		const struct table *table = e->step->branch[0].table[a->kernel[k].table];
+		const struct coefficient *factor = table->kernel[a->kernel[k].kernel] + row * channels;
+		for (int c = 0; c < channels; c++)
+			if (!factor[c].zero)
+				term[terms++] = scaled(factor[c].value, format("left%d[%d]", a->kernel[k].left, c));
+	}
+	return terms;
+}
+
+static const char **room_for_terms(const struct emitter *e)
+{
+	const struct table *table = e->step->branch->whole;
+	return ARRAY(const char *, (size_t)(table->states + table->columns + table->inputs + 4 * table->channels + 2));
+}
+
+static void emit_sum(const struct emitter *e, const struct action *a)
+{
+	for (int i = 0; i < e->system->states; i++) {
+		const char **term = room_for_terms(e);
+		int terms = a->flow != NONE ? add_flow_terms(e, e->step->branch[0].table[a->flow], false, i, term) : 0;
+		if (a->plain != NONE)
+			term[terms++] = format("stage%d[%d]", a->plain, i);
+		terms += add_kernel_terms(e, a, i, term + terms);
+		const char *target = a->target == STAGE_STATE ? "s->y" : vector_name(a->target);
+		say(e, "    %s[%d] = %s;\n", target, i, terms ? tree(terms, term, 14) : "0.0");
+	}
+}
+
+/* ---- actions ---- */
+
+static void emit_prediction(const struct emitter *e, const struct action *a)
+{
+	struct reads r = reads_of_leftover(e);
+	const char *nodes = needs_node(e, &r) ? format(", %d, %d", a->half, a->node) : "";
+	const char *parts = adds_driven(e) ? format(", driven%d, driven%d", a->half, a->node) : "";
+	const char *tau = shortest(time_in_step(e->model, e->step->program->node[a->node]));
+	say(e, "    $n_predict(%s%s, %s, first%s, stage%d);\n", leftover_arguments(e, &r, NULL, FROM_STEP), nodes, tau,
+	    parts, a->target);
+}
+
+static void emit_evaluation(const struct emitter *e, const struct action *a)
+{
+	const char *state = a->from == STAGE_STATE ? "s->y" : vector_name(a->from);
+	say(e, "    %s\n", leftover_call(e, format("%d", a->node), state, format("left%d", a->target), FROM_STEP));
+	if (a->target == 0 && e->step->program->predicts)
+		say(e, "    $n_slope_of(%ss->y, left0, first);\n", many_operators(e) ? "which, " : "");
+}
+
+static void emit_action(const struct emitter *e, const struct action *a)
+{
+	bool loops = e->step->program->loops;
+	switch (a->kind) {
+	case ACTION_LEFTOVER:
+		emit_evaluation(e, a);
+		break;
+	case ACTION_COMBINE:
+		(loops ? emit_combination_loop : emit_combination)(e, a);
+		break;
+	case ACTION_SUM:
+		say(e, "    /* %s */\n", a->note);
+		(loops ? emit_sum_loop : emit_sum)(e, a);
+		break;
+	case ACTION_PREDICT:
+		emit_prediction(e, a);
+		break;
+	}
+}
+
+/* ---- what the step declares ---- */
+
+static void declare_vectors(const struct emitter *e)
+{
+	const struct program *program = e->step->program;
+	const char *list = "";
+	for (int i = 1; i <= program->stages; i++)
+		list = format("%s%sstage%d[%s_STATES]", list, *list ? ", " : "", i, e->upper);
+	if (program->loops)
+		list = format("%s%snext[%s_STATES]", list, *list ? ", " : "", e->upper);
+	if (program->predicts)
+		list = format("%s%sfirst[%s_STATES]", list, *list ? ", " : "", e->upper);
+	for (int t = 0; t < e->step->tables && flows_apart(e); t++)
+		if (e->step->branch[0].table[t]->Phi)
+			list = format("%s, flow%d[%s_STATES]", list, t, e->upper);
+	for (int i = 0; i < program->nodes; i++)
+		if (program->node_table[i] != NONE)
+			list = format("%s, driven%d[%s_STATES]", list, i, e->upper);
+	if (*list)
+		say(e, "    double %s;\n", list);
+	say(e, "    double ");
+	for (int i = 0; i < program->lefts; i++)
+		say(e, "%sleft%d[%d]", i ? ", " : "", i, e->model->channels);
+	say(e, program->loops ? ";\n    int i;\n" : ";\n");
+}
+
+void emit_samples(const struct emitter *e)
+{
+	struct reads r = reads_of_leftover(e), chosen = r;
+	bool selected = many_operators(e);
+	if (selected)
+		chosen = reads_of(e->model, 1, &e->model->selector);
+	int inputs = e->system->inputs;
+	const char *start = "", *slope = "";
+	for (int i = 0; i < inputs; i++) {
+		bool ramp = e->system->input[i].first_order;
+		const char *rate = ramp ? format("(u[%d] - s->u[%d]) / %s_H", i, i, e->upper) : "0.0";
+		start = format("%s%s%s[%d]", start, i ? ", " : "", ramp ? "s->u" : "u", i);
+		slope = format("%s%s%s", slope, i ? ", " : "", rate);
+	}
+	if (e->ramps && (any_of(r.input, inputs) || (selected && any_of(chosen.input, inputs))))
+		say(e, "    const double start[$N_INPUTS] = {%s};\n", start);
+	if (takes_slope(e, &r) || (selected && takes_slope(e, &chosen)))
+		say(e, "    const double slope[$N_INPUTS] = {%s};\n", slope);
+}
+
+/* ---- what the loads and inputs add ---- */
+
+/* From rest up to each node of the predictors */
+static void emit_driven(const struct emitter *e)
+{
+	const struct program *program = e->step->program;
+	for (int i = 0; i < program->nodes; i++) {
+		int t = program->node_table[i];
+		if (t == NONE)
+			continue;
+		if (program->loops) {
+			emit_flow_loop(e, t, true, format("driven%d", i), flows_apart(e) ? "        " : "    ");
+			continue;
+		}
+		for (int row = 0; row < e->system->states; row++) {
+			const char **term = room_for_terms(e);
+			int terms = add_flow_terms(e, e->step->branch[0].table[t], true, row, term);
+			say(e, "    driven%d[%d] = %s;\n", i, row, terms ? tree(terms, term, 16) : "0.0");
+		}
+	}
+}
+
+static const char *time_of(const struct emitter *e, mpq_srcptr fraction)
+{
+	bool whole = mpq_cmp_ui(fraction, 1, 1) == 0;
+	return whole ? format("%s_H", e->upper) : shortest(time_in_step(e->model, fraction));
+}
+
+/* Across a change of the loads */
+static void emit_passes(const struct emitter *e)
+{
+	const struct program *program = e->step->program;
+	const char *which = many_operators(e) ? "which, " : "", *u = e->system->inputs ? "u, " : "";
+	const char *more = format("%s%s%s", which, u, e->step->layout.powers ? "NULL, " : "");
+	if (adds_driven(e))
+		say(e, "        $n rest = *s;\n"
+		       "        for (i = 0; i < $N_STATES; i++)\n"
+		       "            rest.y[i] = 0.0;\n");
+	for (int t = 0; t < e->step->tables; t++) {
+		const struct table *table = e->step->branch[0].table[t];
+		if (table->Phi)
+			say(e, "        $n_pass(s, %s%s, flow%d);\n", more, time_of(e, table->wanted->fraction), t);
+	}
+	for (int i = 0; i < program->nodes; i++)
+		if (program->node_table[i] != NONE)
+			say(e, "        $n_pass(&rest, %s%s, driven%d);\n", more, time_of(e, program->node[i]), i);
+}
+
+static void emit_flows_apart(const struct emitter *e)
+{
+	int last = e->system->segments - 1;
+	say(e, "    if (s->segment < %d && $n_until(s, s->segment) < $N_H) {\n", last);
+	emit_passes(e);
+	say(e, "    } else {\n");
+	for (int t = 0; t < e->step->tables; t++)
+		if (e->step->branch[0].table[t]->Phi)
+			emit_flow_loop(e, t, false, format("flow%d", t), "        ");
+	emit_driven(e);
+	say(e, "    }\n");
+}
+
+/* ---- the whole ---- */
+
+/* Loads whose states the step reads: loops read all of those that act, sums not the constant 1 */
+static bool *acting_loads(const struct emitter *e)
+{
+	const struct linear *system = e->system;
+	bool *acting = ARRAY(bool, (size_t)system->loads);
+	for (int l = 0; l < system->loads; l++)
+		for (int k = 0; k < system->load[l].columns; k++) {
+			bool read = e->step->program->loops || load_operand(e, l, k);
+			for (int i = 0; i < system->segments * system->n && read; i++)
+				acting[l] = acting[l] || mpq_sgn(system->load[l].force[k][i]) != 0;
+		}
+	return acting;
+}
+
+static bool *states_read(const struct emitter *e)
+{
+	bool *read = ARRAY(bool, (size_t)e->system->states);
+	for (int t = 0; t < e->step->tables; t++) {
+		const struct table *table = e->step->branch[0].table[t];
+		for (int i = 0; i < table->states && table->Phi; i++)
+			for (int j = 0; j < table->states; j++)
+				read[j] = read[j] || !table->Phi[i * table->states + j].zero;
+	}
+	return read;
+}
+
+void emit_leftover_functions(const struct emitter *e)
+{
+	emit_leftover(e);
+	if (many_operators(e))
+		emit_selection(e);
+}
+
+static void emit_operands_of_step(const struct emitter *e)
+{
+	bool loops = e->step->program->loops;
+	if (!loops)
+		emit_locals(e, states_read(e));
+	emit_load_states(e, acting_loads(e), false);
+	emit_samples(e);
+	if (many_operators(e))
+		say(e, "    const int which = %s;\n", selection_call(e));
+	if (loops)
+		emit_operands(e);
+}
+
+void emit_leftover_step(const struct emitter *e)
+{
+	const struct program *program = e->step->program;
+	if (program->loops)
+		emit_loop_tables(e);
+	if (program->predicts)
+		emit_predictor(e);
+	say(e, "\nvoid $n_step(%s)\n"
+	       "{\n", step_parameters(e));
+	emit_set_aside(e);
+	emit_operands_of_step(e);
+	declare_vectors(e);
+	if (flows_apart(e))
+		emit_flows_apart(e);
+	else
+		emit_driven(e);
+	for (int i = 0; i < program->actions; i++)
+		emit_action(e, &program->action[i]);
+	emit_take_back(e);
+	emit_step_end(e);
+	say(e, "    s->status |= pl_not_finite(s->y, $N_STATES);\n");
+	if (e->system->segments > 1)
+		say(e, "    while (s->segment < %d && $n_until(s, s->segment) <= 1e-18 * $N_H)\n"
+		       "        s->segment++;\n", e->system->segments - 1);
+	say(e, "}\n");
+}

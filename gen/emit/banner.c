@@ -1,0 +1,263 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The comment at the top: the equations, the poles, what the scheme does, what a step costs. */
+#include "emit/emit.h"
+
+#include <string.h>
+
+static const char *printable(const char *text)
+{
+	char *clean = format("%s", text);
+	for (char *c = clean; *c; c++) {
+		bool mark = c > clean && ((c[-1] == '*' && *c == '/') || (c[-1] == '/' && *c == '*'));
+		if (mark || (unsigned char)*c < ' ' || *c == 127)
+			*c = '?';               /* a comment in an option neither ends nor opens ours */
+	}
+	return clean;
+}
+
+static void banner_equations(const struct emitter *e)
+{
+	const struct spec *spec = e->model->spec;
+	for (int i = 0; i < spec->equations; i++)
+		say(e, " *     %s\n", text_between(spec->equation[i].at, spec->equation[i].end));
+	for (int i = 0; i < spec->elements; i++)
+		say(e, " *     %s\n", text_between(spec->element[i].at, spec->element[i].end));
+}
+
+static void banner_poles(const struct emitter *e)
+{
+	int length = resolvent_determinant(e->step->written)->length;
+	mpq_t *B = rationals((size_t)length);
+	characteristic_polynomial(e->step->written, B);
+	say(e, " *\n"
+	       " *     B(s) = %s\n", polynomial_text(length, (const mpq_t *)B));
+	struct pole_report *pole;
+	int count = poles_of(e->model, e->step->written, &pole);
+	say(e, " *     %-34s %-16s damping ratio\n", "pole [1/s]", "frequency [Hz]");
+	for (int i = 0; i < count; i++)
+		say(e, " *     %s\n", pole_row(&pole[i], 34));
+}
+
+/* What the scheme is; nothing of exact */
+static void banner_scheme(const struct emitter *e)
+{
+	const struct model *shown = e->step->shown->model;
+	if (e->model->scheme != SCHEME_EXACT)
+		say(e, " * %s\n", scheme_note(e->model->scheme));
+	if (loses_order(shown))
+		say(e, " * So where all is smooth; here of order %s at most: %s.\n", order_text(shown),
+		    printable(smoothness_text(shown)));
+}
+
+/* What holding the coupling terms does */
+static void banner_growth(const struct emitter *e)
+{
+	if (!scheme_row(e->model->scheme)->holds_coupling)
+		return;
+	say(e, " * Each constant is its closed form, correctly rounded.\n"
+	       " * The modified equation of its linear part grows at %.3g 1/s "
+	       "(largest real part of its poles; the poles above are exact).\n", growth_rate(e->step));
+}
+
+void banner_linear(const struct emitter *e)
+{
+	banner_scheme(e);
+	if (!scheme_row(e->model->scheme)->holds_coupling)
+		say(e, " * %sothing is approximated; each constant is its closed form, correctly rounded.\n",
+		    e->model->scheme == SCHEME_EXACT ? "Scheme exact: n" : "Nothing is left over: n");
+	banner_growth(e);
+}
+
+/* One line for each equation that has a leftover, as far as they are few and short */
+static void banner_left(const struct emitter *e, const struct model *model)
+{
+	enum { SHOWN = 6, WIDTH = 90 };
+	for (int c = 0; c < model->channels && c < SHOWN; c++) {
+		const char *text = form_text(model, model->operator[0].left[c]);
+		say(e, " *     %.*s%s  in the equation of %s\n", WIDTH, printable(text),
+		    strlen(text) > WIDTH ? " ..." : "",
+		    model->coord_name[coordinate_of_row(model, model->channel_row[c])]);
+	}
+	if (model->channels > SHOWN)
+		say(e, " *     and so in %d more equations\n", model->channels - SHOWN);
+}
+
+static const char *operator_text(const struct model *model)
+{
+	if (*model->operator[0].text)
+		return format("equations' Jacobian at %s", model->operator[0].text);
+	bool own = scheme_row(model->scheme)->holds_coupling;
+	return own ? "own terms of each coordinate" : "linear terms with constant coefficients";
+}
+
+void banner_leftover(const struct emitter *e)
+{
+	const struct model *model = e->step->shown->model;
+	banner_scheme(e);
+	say(e, " * y' = A y + loads + inputs + r(t, y). A: the %s%s.\n", operator_text(model),
+	    e->step->branches > 1 ? format(", and so on: %d operators", e->step->branches) : "");
+	say(e, " * Exact: A%s, each constant correctly rounded; approximated: r, which is\n",
+	    model->loads_left ? " and the inputs" : ", the loads and the inputs");
+	banner_left(e, model);
+	banner_growth(e);
+}
+
+/* Regions, and what each expression is compared with */
+void banner_regions(const struct emitter *e)
+{
+	const struct model *model = e->step->shown->model;
+	const struct switching *s = model->switching;
+	say(e, " * Scheme exact: nothing is approximated. "
+	       "The equations are piecewise linear: %d regions, %d different, in each of which\n"
+	       " * every constant is its closed form, correctly rounded; "
+	       "crossings inside a step are found in order, to rounding.\n", possible_regions(s), s->systems);
+	for (int i = 0; i < s->expressions; i++) {
+		const char *at = "";
+		for (int k = 0; k < s->expression[i].breaks; k++)
+			at = format("%s%s%s", at, k ? ", " : "", readable_text(s->expression[i].at[k]));
+		say(e, " *     expression %d: %s, at %s\n", i, printable(form_text(model, s->expression[i].form)), at);
+	}
+	say(e, " * The poles above are those of the terms that are linear everywhere.\n"
+	       " * A region's number is the sum of its intervals, "
+	       "each times the product of the numbers of intervals before it.\n");
+}
+
+static void banner_irrationals(const struct emitter *e)
+{
+	const char *which = irrationals_text(&e->model->irrationals);
+	if (*which)
+		say(e, " * Irrational constants (%s) were taken as rationals of %d bits.\n", which, IRRATIONAL_BITS);
+}
+
+/* ; X = 0.5*x1 + 0.5*x2 */
+static const char *centre_text(const struct relative *r)
+{
+	const char *text = "";
+	for (int j = 0; j < r->written->n; j++)
+		for (int k = 0; r->link[j].kind == LINK_CENTRE && k < r->written->n; k++)
+			if (mpq_sgn(r->link[j].weight[k]) != 0)
+				text = format("%s%s%s*%s", text, *text ? " + " : format("; %s = ", r->name[j]),
+					      readable_text(r->link[j].weight[k]), r->written->coord_name[k]);
+	return text;
+}
+
+/* What is kept in the place of positions that only differences of matter */
+static void banner_relative(const struct emitter *e)
+{
+	const struct relative *r = e->model->relative;
+	const char *list = "", *centre = centre_text(r);
+	for (int j = 0; j < r->written->n; j++)
+		if (r->link[j].kind != LINK_NONE)
+			list = format("%s%s%s", list, *list ? ", " : "", r->name[j]);
+	say(e, " * What may move as a whole is kept apart from what moves in it: %s%s.\n", list, centre);
+	if (*centre)
+		say(e, " * Only loads and inputs act on a centre; nothing that rounds inside changes its velocity.\n");
+}
+
+/* What the form does to rounding, and what rounding has done to its constants */
+static void banner_form(const struct emitter *e)
+{
+	static const char *const kept[STEP_FORMS] = {
+		[FORM_DELTA] = "Delta: y += (Phi - I) y, Phi - I rounded relative to itself",
+		[FORM_KICK_DRIFT_KICK] = "Kick, drift, kick: p += X q; q += S p; p += X q, "
+					 "S and X symmetric: symplectic whatever their rounding"
+	};
+	struct drift drift = drift_of(e->step);
+	if (kept[e->step->form])
+		say(e, " * %s%s.\n", kept[e->step->form], e->step->program->compensated
+		    ? "; factors in two words,\n * and what rounding takes from the state is kept in rest" : "");
+	if (e->model->relative)
+		banner_relative(e);
+	if (e->step->carries)
+		say(e, " * Nothing leads back from %s: what rounding takes from %s is carried on.\n",
+		       carried_text(e), e->step->carries > 1 ? "each" : "it");
+	if (drift.known)
+		say(e, " * %s.\n", drift_text(&drift));
+	if (e->step->rounding.known)
+		say(e, " * %s.\n", rounding_text(e->step));
+	if (e->model->asked.single)
+		say(e, " * Numbers and arithmetic are float; each constant is rounded to it once.\n");
+}
+
+/* What is left out of the step, and what it costs where it comes back */
+static void banner_forced(const struct emitter *e)
+{
+	enum { SHOWN = 4 };
+	const struct forced *forced = e->step->forced;
+	const char *list = "";
+	int count = 0;
+	for (int l = 0; l < e->system->loads; l++) {
+		const struct load *load = &e->system->load[l];
+		if (forced->load[l] && count++ < SHOWN)
+			list = format("%s%s%s", list, *list ? ", " : "",
+				      column_text(load, load->columns - 1 - oscillates(load->wave)));
+	}
+	say(e, " * The step would round to what %s%s drive%s: "
+	       "the state is kept less their forced part, which is added where it is\n"
+	       " * read (get, out, at): %d multiplications, %d additions.\n", list,
+	       count > SHOWN ? format(" and %d more loads", count - SHOWN) : "", count == 1 ? "s" : "",
+	       forced->multiplications, forced->additions);
+}
+
+static void banner_cost(const struct emitter *e)
+{
+	const struct program *program = e->step->program;
+	say(e, "%s * One step of h = %s s, form %s: %d multiplications, %d additions", e->kind->step_note,
+	    readable_text(e->model->h), form_text_of(e->step), program->multiplications, program->additions);
+	if (program->wave_multiplications)
+		say(e, ", %d of them and %d for the functions of the loads", program->wave_multiplications,
+		    program->wave_additions);
+	if (program->calls)
+		say(e, ", %d calls of the model's own functions", program->calls);
+	say(e, ".\n");
+}
+
+static void banner_state(const struct emitter *e)
+{
+	int changes = e->system->segments - 1;
+	say(e, " * State y = %s.\n", state_list(e->step->shown->model));
+	for (int i = 0; i < e->system->inputs; i++)
+		say(e, " * Input %s: %s.\n", e->system->input[i].name, e->system->input[i].first_order
+		    ? "a ramp from sample to sample; u is its value at the end of the step" : "held over the step");
+	if (changes > 0)
+		say(e, " * The loads change their formula %d time%s; "
+		       "a step across a change is exact too, by a series that stops there.\n", changes,
+		    changes > 1 ? "s" : "");
+	if (e->model->reduction.dropped)
+		say(e, " * Reduced to what the outputs can see: %d of %d states.\n", e->system->states,
+		    e->model->written->system.states);
+}
+
+/* Functions that there are not, and why; what one of them needs */
+static void banner_functions(const struct emitter *e)
+{
+	const char *no_at = e->kind->no_at(e->step);
+	int states = e->system->states;
+	if (has_jump(e) && states > 12)
+		say(e, " * $n_jump needs some %d KB of stack.\n", 1 + 32 * states * states / 1024);
+	if (!has_jump(e))
+		say(e, " * There is no $n_jump: %s.\n",
+		    e->kind->no_jump ? e->kind->no_jump : "the samples to come are not known");
+	if (no_at)
+		say(e, " * There is no $n_at: %s.\n", no_at);
+}
+
+void emit_banner(const struct emitter *e)
+{
+	say(e, "/* $n: made by plgen " PLGEN_VERSION " from %s%s%s; do not edit.\n"
+	       " * SPDX-License-Identifier: MIT-0\n"
+	       " *\n", printable(e->model->spec->source->base), *e->options ? " with " : "", printable(e->options));
+	banner_equations(e);
+	banner_poles(e);
+	say(e, " *\n");
+	e->kind->banner(e);
+	banner_irrationals(e);
+	banner_cost(e);
+	banner_form(e);
+	if (e->step->forced)
+		banner_forced(e);
+	e->kind->banner_more(e);
+	banner_state(e);
+	banner_functions(e);
+	say(e, " */\n");
+}

@@ -1,0 +1,136 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What a header has: the struct of the state, the functions. */
+#include "emit/emit.h"
+
+/* One declaration, its comment at a common column. */
+static void declare(const struct emitter *e, const char *text, const char *comment)
+{
+	if (*comment)
+		say(e, "%-76s  /* %s */\n", text, comment);
+	else
+		say(e, "%s\n", text);
+}
+
+static void emit_state_struct(const struct emitter *e)
+{
+	const char *first = e->model->coord_name[0];
+	const char *momenta = e->step->momenta ? format("; velocities times mass / mass of %s", first) : "";
+	say(e, "typedef struct $n $n;  /* copy it to save, assign it to restore */\n"
+	       "struct $n {\n"
+	       "    double y[$N_STATES];  /* %s%s%s */\n", state_list(e->model), momenta,
+	       e->step->forced ? "; less their forced part" : "");
+	if (e->step->program->compensated)
+		say(e, "    double rest[$N_STATES];  /* what rounding took from y so far */\n");
+	else if (e->step->forced)
+		say(e, "    double rest[$N_STATES];  /* what rounding took from y at the last set */\n");
+	if (e->step->carries)
+		say(e, "    double carry[%d];      /* what rounding took from %s so far */\n", e->step->carries,
+		       carried_text(e));
+	if (e->model->relative)
+		say(e, "    double set[$N_STATES], from[$N_STATES];  "
+		       "/* at the last set: the states as written, and as they are kept */\n");
+	e->kind->coefficients(e);
+	if (e->system->inputs)
+		say(e, "    double u[$N_INPUTS];  /* the last sample */\n");
+	if (e->ramps)
+		say(e, "    double slope[$N_INPUTS];  /* of the inputs over the last step [1/s] */\n");
+	emit_load_members(e);
+	if (e->system->segments > 1)
+		say(e, "    int segment;          /* of time: how many changes of the loads are past */\n");
+	say(e, "    double t0;            /* [s]; time is t0 + k h */\n"
+	       "    uint64_t k;           /* steps since then */\n");
+	e->kind->members(e);
+	if (e->kind->keeps_status)
+		say(e, "    int status;           /* sticky: 0, or what pl_status names */\n");
+	say(e, "};\n\n");
+}
+
+static void declare_state_functions(const struct emitter *e)
+{
+	declare(e, spell(e, "void   $n_init($n *s);"), e->kind->init_note);
+	declare(e, spell(e, "void   $n_set($n *s, double t, const double y[$N_STATES]);"), "any state at any time [s]");
+	declare(e, spell(e, "void   $n_get(const $n *s, double y[$N_STATES]);"), "");
+	declare(e, spell(e, "double $n_time(const $n *s);"), "[s]");
+	declare(e, spell(e, "int    $n_status(const $n *s);"), e->kind->status_note);
+	e->kind->declare_state(e);
+	if (e->ramps)
+		declare(e, spell(e, "void   $n_hold($n *s, const double u[$N_INPUTS]);"), "the previous sample");
+}
+
+static void declare_driven_step(const struct emitter *e)
+{
+	declare(e, spell(e, "void   $n_step($n *s, const double u[$N_INPUTS]);"),
+		e->ramps ? "one step of h; a ramp ends at u" : "one step of h with u held");
+	declare(e, spell(e, "void   $n_out(const $n *s, double out[$N_OUTPUTS]);"), "outputs now");
+	declare(e, spell(e, "void   $n_run($n *s, size_t n, const double *u, double *out);"),
+		"n steps, n rows of u; out: n rows, or NULL");
+	if (e->step->series.emitted)
+		declare(e, spell(e, "void   $n_at(const $n *s, const double u[$N_INPUTS], "
+				    "double tau, double y[$N_STATES]);"), "tau after now, 0 <= tau <= h");
+}
+
+static void declare_free_step(const struct emitter *e)
+{
+	declare(e, spell(e, "void   $n_step($n *s);"), "one step of h");
+	declare(e, spell(e, "void   $n_out(const $n *s, double out[$N_OUTPUTS]);"), "outputs now");
+	declare(e, spell(e, "void   $n_run($n *s, size_t n, double *out);"),
+		"n steps; out: n rows of outputs, or NULL");
+	if (e->step->series.emitted)
+		declare(e, spell(e, "void   $n_at(const $n *s, double tau, double y[$N_STATES]);"),
+			"tau after now, 0 <= tau <= h");
+}
+
+static void declare_checks(const struct emitter *e, bool rhs)
+{
+	const char *note = e->ramps ? "as written; u: inputs, then their slopes" : "the equations as written";
+	if (e->model->reduction.place)
+		note = format("as written; y: all %d written states", e->model->written->system.states);
+	if (rhs)
+		declare(e, spell(e, "void   $n_rhs(double t, const double y[], %sdouble dydt[]);",
+				 e->system->inputs ? "const double u[], " : ""), note);
+	if (e->model->asked.selftest)
+		declare(e, spell(e, "double $n_selftest(void);"),
+			"largest deviation from the closed form, in units in the last place");
+}
+
+static void declare_tables(const struct emitter *e)
+{
+	declare(e, spell(e, "extern const double $n_Phi[$N_STATES][$N_STATES];"), "y(t+h) = Phi y(t) + ...");
+	if (e->system->inputs)
+		declare(e, spell(e, "extern const double $n_Gamma[$N_STATES][%d];", input_columns(e->system)),
+			e->ramps ? "... + Gamma u; of a ramp: before, after" : "... + Gamma u");
+	declare(e, spell(e, "extern const pl_model $n_model;"), "");
+}
+
+static void emit_functions(const struct emitter *e, bool rhs)
+{
+	declare_state_functions(e);
+	(e->system->inputs ? declare_driven_step : declare_free_step)(e);
+	if (has_jump(e))
+		declare(e, spell(e, "void   $n_jump($n *s, uint64_t n);"), "as n steps would, in log n time");
+	e->kind->declare_more(e);
+	declare_checks(e, rhs);
+	declare_tables(e);
+}
+
+void emit_declarations(const struct emitter *e, bool rhs)
+{
+	say(e, "#ifndef $N_DECLARED\n"
+	       "#define $N_DECLARED\n"
+	       "\n%s#include \"plrt.h\"\n"
+	       "\n#ifdef __cplusplus\n"
+	       "extern \"C\" {\n"
+	       "#endif\n"
+	       "\n", e->model->asked.single ? "#define PL_FLOAT_ONLY\n" : "");
+	say(e, "enum { $N_STATES = %d, $N_INPUTS = %d, $N_OUTPUTS = %d };\n", e->system->states, e->system->inputs,
+	       e->model->outputs);
+	e->kind->constants(e);
+	say(e, "#define $N_H %s  /* step [s] */\n\n", shortest(round_rational(e->model->h)));
+	e->kind->types(e);
+	emit_state_struct(e);
+	emit_functions(e, rhs);
+	say(e, "\n#ifdef __cplusplus\n"
+	       "}\n"
+	       "#endif\n"
+	       "\n#endif\n");
+}

@@ -1,0 +1,124 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Tables that everyone may read, and the descriptor: the same functions for programs that drive any model. */
+#include "emit/emit.h"
+
+#include <string.h>
+
+static void emit_matrix(const struct emitter *e, const struct step *step, const char *declaration)
+{
+	int n = e->system->states;
+	double *value = ARRAY(double, (size_t)(n * n));
+	for (int i = 0; i < n * n; i++)
+		value[i] = step->branch->whole->Phi[i].value;
+	say(e, "\n%s[$N_STATES][$N_STATES] = {  /* columns: %s */\n", declaration, state_list(step->model));
+	emit_number_rows(e, n, n, value, step->model->state_name);
+	say(e, "};\n");
+}
+
+/* Of the states as written; of those that are kept where a function reads it */
+void emit_phi(const struct emitter *e)
+{
+	emit_matrix(e, e->step->shown, spell(e, "const double $n_Phi"));
+	if (e->model->relative && (has_jump(e) || e->kind->reads_phi(e->step)))
+		emit_matrix(e, e->step, format("static const double %s", stepped_table(e, "Phi")));
+}
+
+static void emit_input_matrix(const struct emitter *e, const struct step *step, const char *declaration)
+{
+	const struct table *table = step->branch->whole;
+	double *value = ARRAY(double, (size_t)(table->states * table->inputs));
+	for (int i = 0; i < table->states * table->inputs; i++)
+		value[i] = table->input[i].value;
+	say(e, "\n%s[$N_STATES][%d] = {\n", declaration, table->inputs);
+	emit_number_rows(e, table->states, table->inputs, value, step->model->state_name);
+	say(e, "};\n");
+}
+
+void emit_gamma(const struct emitter *e)
+{
+	emit_input_matrix(e, e->step->shown, spell(e, "const double $n_Gamma"));
+	if (e->model->relative && e->kind->reads_gamma(e->step))
+		emit_input_matrix(e, e->step, format("static const double %s", stepped_table(e, "Gamma")));
+}
+
+static void emit_wrapper(const struct emitter *e, const char *result, const char *function, const char *parameters,
+			 const char *arguments, bool is_const)
+{
+	/* the tag: a parameter may bear the name */
+	const char *state = format(is_const ? "const struct %s" : "struct %s", e->name);
+	say(e, "static %s $n_any_%s(%svoid *s%s) { %s$n_%s((%s *)s%s); }\n", result, function,
+	       is_const ? "const " : "", parameters,
+	       *result != 'v' ? "return " : !e->system->inputs && strstr(parameters, "*u") ? "(void)u; " : "",
+	       function, state, arguments);
+}
+
+static void emit_start_samples(const struct emitter *e)
+{
+	say(e, "static const int $n_start_samples[] = {");
+	for (int i = 0; i < e->system->inputs; i++)
+		say(e, "%s%d", i ? ", " : "", e->system->input[i].first_order);
+	say(e, "};\n");
+}
+
+static void emit_names(const struct emitter *e)
+{
+	const struct model *model = e->model;
+	const char **output = ARRAY(const char *, (size_t)model->outputs);
+	const char **input = ARRAY(const char *, (size_t)e->system->inputs);
+	for (int i = 0; i < model->outputs; i++)
+		output[i] = model->output[i].name;
+	for (int i = 0; i < e->system->inputs; i++)
+		input[i] = e->system->input[i].name;
+	emit_name_list(e, "state_names", e->system->states, e->step->shown->model->state_name);
+	if (e->system->inputs) {
+		emit_name_list(e, "input_names", e->system->inputs, input);
+		emit_start_samples(e);
+	}
+	emit_name_list(e, "output_names", model->outputs, output);
+}
+
+static void emit_wrappers(const struct emitter *e)
+{
+	bool inputs = e->system->inputs > 0;
+	emit_wrapper(e, "void", "init", "", "", false);
+	emit_wrapper(e, "void", "set", ", double t, const double *y", ", t, y", false);
+	emit_wrapper(e, "void", "get", ", double *y", ", y", true);
+	emit_wrapper(e, "double", "time", "", "", true);
+	emit_wrapper(e, "void", "step", ", const double *u", inputs ? ", u" : "", false);
+	emit_wrapper(e, "void", "out", ", double *out", ", out", true);
+	emit_wrapper(e, "void", "run", ", size_t n, const double *u, double *out", inputs ? ", n, u, out" : ", n, out",
+		     false);
+	if (e->step->series.emitted)
+		emit_wrapper(e, "void", "at", ", const double *u, double tau, double *y",
+			     inputs ? ", u, tau, y" : ", tau, y", true);
+	if (has_jump(e))
+		emit_wrapper(e, "void", "jump", ", uint64_t n", ", n", false);
+	emit_wrapper(e, "int", "status", "", "", true);
+	e->kind->wrappers(e);
+	if (e->ramps)
+		emit_wrapper(e, "void", "hold", ", const double *u", ", u", false);
+}
+
+/* The name of what there is in some models only */
+static const char *name_if(const struct emitter *e, bool there, const char *name)
+{
+	return there ? spell(e, "$n_%s", name) : "NULL";
+}
+
+void emit_descriptor(const struct emitter *e)
+{
+	bool inputs = e->system->inputs > 0;
+	say(e, "\n/* The same functions for programs that drive any model. */\n\n");
+	emit_names(e);
+	say(e, "\n");
+	emit_wrappers(e);
+	say(e, "\nconst pl_model $n_model = {\n"
+	       "    \"$n\", sizeof(struct $n), $N_STATES, $N_INPUTS, $N_OUTPUTS, sizeof(double), $N_H,\n"
+	       "    $n_state_names, %s, $n_output_names,\n"
+	       "    $n_any_init, $n_any_set, $n_any_get, $n_any_time, $n_any_step,\n"
+	       "    $n_any_out, $n_any_run, %s, %s, $n_any_status,\n", name_if(e, inputs, "input_names"),
+	       name_if(e, e->step->series.emitted, "any_at"), name_if(e, has_jump(e), "any_jump"));
+	e->kind->params(e);
+	say(e, "    %s, %s\n"
+	       "};\n", name_if(e, e->ramps, "any_hold"), name_if(e, inputs, "start_samples"));
+}

@@ -1,0 +1,278 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What the C of each kind of step has: a row of functions for each. */
+#include "emit/emit.h"
+
+static void nothing(const struct emitter *e)
+{
+	(void)e;
+}
+
+static void no_start(const struct emitter *e, const char *s)
+{
+	(void)e;
+	(void)s;
+}
+
+static bool never(const struct step *step)
+{
+	(void)step;
+	return false;
+}
+
+/* ---- linear ---- */
+
+static bool loops(const struct step *step)
+{
+	return step->program->loops;
+}
+
+static bool loops_over_phi(const struct step *step)
+{
+	return step->program->loops && step->form == FORM_DIRECT;
+}
+
+static const char *far_pole(const struct step *step)
+{
+	return step->series.emitted ? NULL : "the largest |pole| times h is above 8";
+}
+
+static bool no_further_load(const struct emitter *e, int load)
+{
+	(void)e;
+	(void)load;
+	return false;
+}
+
+static void emit_times_of_changes(const struct emitter *e)
+{
+	if (e->system->segments > 1)
+		emit_changes(e);
+}
+
+static void emit_pass_of_changes(const struct emitter *e)
+{
+	if (e->system->segments > 1)
+		emit_passing(e);
+}
+
+static void emit_no_params(const struct emitter *e)
+{
+	say(e, "    0, NULL, NULL, NULL,\n");
+}
+
+static const struct kind linear = {
+	.banner = banner_linear,
+	.step_note = "",
+	.banner_more = nothing,
+	.no_at = far_pole,
+	.constants = nothing,
+	.types = nothing,
+	.coefficients = nothing,
+	.members = nothing,
+	.init_note = "t = 0, the spec's initial values",
+	.status_note = "0, or PL_NOT_FINITE: a state is infinite or not a number",
+	.declare_state = nothing,
+	.declare_more = nothing,
+	.start = no_start,
+	.reads_load = no_further_load,
+	.reads_phi = loops_over_phi,
+	.reads_gamma = loops,
+	.tables = emit_times_of_changes,
+	.pass = emit_pass_of_changes,
+	.step = emit_step,
+	.held = nothing,
+	.at = emit_at,
+	.wrappers = nothing,
+	.params = emit_no_params
+};
+
+/* ---- tuned: a linear step whose factors the instance has ---- */
+
+static bool any_load(const struct emitter *e, int load)
+{
+	(void)e;
+	(void)load;
+	return true;
+}
+
+static void emit_own_coefficients(const struct emitter *e)
+{
+	say(e, "    $n_coeffs coeffs;    /* its own */\n");
+}
+
+static void emit_nominal_start(const struct emitter *e, const char *s)
+{
+	say(e, "    %scoeffs = $n_nominal;\n", s);
+}
+
+static void emit_tuned_tables(const struct emitter *e)
+{
+	emit_nominal(e);
+	emit_times_of_changes(e);
+}
+
+static void emit_tuned_params(const struct emitter *e)
+{
+	say(e, "    $N_PARAMS, $n_param_names, $n_nominal.params, $n_any_retune,\n");
+}
+
+static const struct kind tuned = {
+	.banner = banner_linear,
+	.step_note = "",
+	.banner_more = banner_tuning,
+	.no_jump = "retuned coefficients have one word",
+	.no_at = far_pole,
+	.constants = nothing,
+	.types = emit_coefficient_struct,
+	.coefficients = emit_own_coefficients,
+	.members = nothing,
+	.init_note = "first: t = 0, the spec's initial values and coefficients",
+	.status_note = "0, or PL_NOT_FINITE: a state is infinite or not a number",
+	.declare_state = nothing,
+	.declare_more = emit_tuning_declarations,
+	.own_factors = true,
+	.start = emit_nominal_start,
+	.reads_load = any_load,
+	.reads_phi = loops_over_phi,
+	.reads_gamma = loops,
+	.tables = emit_tuned_tables,
+	.pass = emit_retune,
+	.step = emit_step,
+	.held = nothing,
+	.at = emit_tuned_at,
+	.wrappers = emit_tuning_wrapper,
+	.params = emit_tuned_params
+};
+
+/* ---- regions ---- */
+
+static bool regions_read_load(const struct emitter *e, int load)
+{
+	const struct switching *s = e->model->switching;
+	bool reads = false;
+	for (int x = 0; x < s->expressions; x++)
+		for (int k = 0; k < e->system->load[load].columns; k++)
+			reads = reads || mpq_sgn(s->expression[x].row->load[load][k]) != 0;
+	for (int x = 0; x < s->systems; x++)
+		reads = reads || load_acts(&s->system[x], &s->system[x].load[load]);
+	return reads;
+}
+
+static void emit_event_limit(const struct emitter *e)
+{
+	say(e, "enum { $N_MAX_EVENTS = %d };  /* crossings in a step */\n", MAX_EVENTS);
+}
+
+static void emit_region_tables(const struct emitter *e)
+{
+	emit_times_of_changes(e);
+	emit_regions(e);
+	emit_region_start(e);
+}
+
+/* Does an output read an acceleration that something left over acts on? */
+static bool reads_channels(const struct model *model)
+{
+	bool any = false;
+	for (int i = 0; i < model->outputs + model->n; i++) {
+		const struct output *output =
+			i < model->outputs ? &model->output[i] : model->highest[i - model->outputs];
+		for (int c = 0; output && c < model->channels; c++)
+			any = any || mpq_sgn(output->channel[c]) != 0;
+	}
+	return any;
+}
+
+static void emit_regions_step(const struct emitter *e)
+{
+	if (reads_channels(e->model))
+		emit_leftover_functions(e);
+	emit_region_step(e);
+}
+
+static const struct kind regions = {
+	.banner = banner_regions,
+	.step_note = " * A step that stays clear of every breakpoint, in a region whose piece is the step:\n",
+	.banner_more = nothing,
+	.no_jump = "crossings are found step by step",
+	.no_at = far_pole,
+	.constants = emit_event_limit,
+	.types = nothing,
+	.coefficients = nothing,
+	.members = emit_region_members,
+	.keeps_status = true,
+	.init_note = "t = 0, the spec's initial values",
+	.status_note = "0, or bits: PL_NOT_FINITE, PL_TOO_MANY_EVENTS",
+	.declare_state = emit_region_declarations,
+	.declare_more = nothing,
+	.start = no_start,
+	.places = true,
+	.reads_load = regions_read_load,
+	.reads_phi = never,
+	.reads_gamma = never,
+	.tables = emit_region_tables,
+	.pass = emit_pass_of_changes,
+	.step = emit_regions_step,
+	.held = nothing,
+	.at = emit_region_at,
+	.wrappers = nothing,
+	.params = emit_no_params
+};
+
+/* ---- leftover: a list of actions ---- */
+
+static bool flows_whole(const struct step *step)
+{
+	const struct program *program = step->program;
+	bool whole = false;
+	for (int i = 0; i < program->actions; i++)
+		whole = whole || program->action[i].flow == 0;
+	return whole && program->loops;
+}
+
+static const char *no_values_between(const struct step *step)
+{
+	return step->layout.powers ? far_pole(step) : "between its steps the scheme has no values of its order";
+}
+
+static void emit_actions_step(const struct emitter *e)
+{
+	emit_leftover_functions(e);
+	emit_leftover_step(e);
+}
+
+static const struct kind leftover = {
+	.banner = banner_leftover,
+	.step_note = "",
+	.banner_more = nothing,
+	.no_jump = "what is left over is not linear in the state",
+	.no_at = no_values_between,
+	.constants = nothing,
+	.types = nothing,
+	.coefficients = nothing,
+	.members = nothing,
+	.keeps_status = true,
+	.init_note = "t = 0, the spec's initial values",
+	.status_note = "0, or PL_NOT_FINITE once a step has left the finite numbers",
+	.declare_state = nothing,
+	.declare_more = nothing,
+	.start = no_start,
+	.reads_load = no_further_load,
+	.reads_phi = flows_whole,
+	.reads_gamma = never,
+	.tables = emit_times_of_changes,
+	.pass = emit_pass_of_changes,
+	.step = emit_actions_step,
+	.held = emit_held_leftover,
+	.at = emit_at,
+	.wrappers = nothing,
+	.params = emit_no_params
+};
+
+const struct kind *row_of_kind(enum step_kind kind)
+{
+	static const struct kind *const row[KINDS] = {
+		[KIND_LINEAR] = &linear, [KIND_TUNED] = &tuned, [KIND_REGIONS] = &regions, [KIND_LEFTOVER] = &leftover
+	};
+	return row[kind];
+}

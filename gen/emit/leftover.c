@@ -1,0 +1,244 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What a scheme leaves over as a function of the state: what it reads, how it is called, its text. */
+#include "emit/emit.h"
+
+#include <string.h>
+
+/* ---- what the leftover reads, and how it is called ---- */
+
+bool many_operators(const struct emitter *e)
+{
+	return e->model->operators > 1;
+}
+
+bool any_of(const bool *flag, int count)
+{
+	for (int i = 0; i < count; i++)
+		if (flag[i])
+			return true;
+	return false;
+}
+
+bool reads_slope(const struct emitter *e, const struct reads *r)
+{
+	return any_of(r->input + e->system->inputs, e->system->inputs);
+}
+
+/* The value of a ramp, which differs from one time in a step to another */
+static bool reads_ramp(const struct emitter *e, const struct reads *r)
+{
+	for (int i = 0; i < e->system->inputs; i++)
+		if (e->system->input[i].first_order && r->input[i])
+			return true;
+	return false;
+}
+
+bool takes_slope(const struct emitter *e, const struct reads *r)
+{
+	return reads_slope(e, r) || (reads_ramp(e, r) && e->step->program->nodes > 1);
+}
+
+struct reads reads_of_leftover(const struct emitter *e)
+{
+	int channels = e->model->channels, all = channels * e->model->operators;
+	const struct form **form = ARRAY(const struct form *, (size_t)all + 1);
+	for (int k = 0; k < e->model->operators; k++)
+		for (int c = 0; c < channels; c++)
+			form[k * channels + c] = e->model->operator[k].left[c];
+	return reads_of(e->model, all, form);
+}
+
+bool needs_node(const struct emitter *e, const struct reads *r)
+{
+	return e->step->program->nodes > 1 && (r->time || any_of(r->load, e->system->loads) || reads_ramp(e, r));
+}
+
+const char *leftover_parameters(const struct emitter *e, const struct reads *r, bool with_node)
+{
+	const char *text = format("const %s *s", e->name);
+	if (many_operators(e))
+		text = format("%s, int which", text);
+	if (with_node)
+		text = format("%s, int node", text);
+	if (any_of(r->input, e->system->inputs))
+		text = format("%s, const double u[]", text);
+	if (takes_slope(e, r))
+		text = format("%s, const double slope[]", text);
+	return text;
+}
+
+const char *leftover_arguments(const struct emitter *e, const struct reads *r, const char *node, enum call_from from)
+{
+	static const char *const u[] = { "u", "u", "s->u" }, *const slope[] = { "slope", "slope", "s->slope" };
+	const char *text = "s";
+	if (many_operators(e))
+		text = format("%s, %s", text, from == FROM_OUTPUTS ? "0" : "which");
+	if (node)
+		text = format("%s, %s", text, node);
+	if (any_of(r->input, e->system->inputs))
+		text = format("%s, %s", text, from == FROM_STEP && e->ramps ? "start" : u[from]);
+	if (takes_slope(e, r))
+		text = format("%s, %s", text, slope[from]);
+	return text;
+}
+
+const char *leftover_call(const struct emitter *e, const char *node, const char *state, const char *left,
+			  enum call_from from)
+{
+	struct reads r = reads_of_leftover(e);
+	const char *arguments = leftover_arguments(e, &r, needs_node(e, &r) ? node : NULL, from);
+	return format("%s_leftover(%s, %s, %s);", e->name, arguments, state, left);
+}
+
+const char *leftover_of_step(const struct emitter *e)
+{
+	return leftover_call(e, "0", "s->y", "left", FROM_STEP);
+}
+
+const char *leftover_of_outputs(const struct emitter *e)
+{
+	return leftover_call(e, "0", "s->y", "left", FROM_OUTPUTS);
+}
+
+/* ---- its text ---- */
+
+static int load_of_wave(const struct emitter *e, const struct wave *wave)
+{
+	int l = 0;
+	while (e->system->load[l].wave != wave)
+		l++;
+	return l;
+}
+
+static const char *coordinate_now(const struct emitter *e, const struct basis *basis)
+{
+	const struct model *written = speaker(e->model);
+	if (basis->order > 0 && basis->order >= written->frame.coord[basis->index]->highest)
+		return format("accel%d", basis->index + 1);
+	int state = basis->order ? written->system.velocity[basis->index] : basis->index;
+	return e->local[e->model->reduction.place ? e->model->reduction.place[state] : state];
+}
+
+const char *basis_now(const struct emitter *e, const struct basis *basis)
+{
+	const char *text = "t";
+	int l;
+	switch (basis->kind) {
+	case BASIS_ONE:   return NULL;
+	case BASIS_PI:    return "3.141592653589793";
+	case BASIS_COORD: return coordinate_now(e, basis);
+	case BASIS_INPUT: return input_name(e, basis->index, basis->order);
+	default: break;
+	}
+	if (is_polynomial(basis->wave)) {
+		for (int k = 1; k < basis->power; k++)
+			text = format("%s * t", text);
+		return text;
+	}
+	l = load_of_wave(e, basis->wave);
+	return format("load%d[%d]", l + 1, oscillates(basis->wave) ? 2 * basis->power + basis->sine : basis->power);
+}
+
+/* ---- a bank: linear terms that differ from operator to operator ---- */
+
+static void emit_excess(const struct emitter *e, const struct bank *bank)
+{
+	say(e, "\n/* What the linear terms of the equations exceed those of each operator by */\n"
+	       "static const double $n_excess[%d][%d] = {\n", e->model->operators, bank->count);
+	for (int k = 0; k < e->model->operators; k++) {
+		const double *factor = bank->factor + k * bank->count;
+		say(e, "    {");
+		for (int i = 0; i < bank->count; i++)
+			say(e, "%s%s", i == 0 ? "" : i % 6 ? ", " : ",\n     ", shortest(factor[i]));
+		say(e, "},  /* %s */\n", e->model->operator[k].text);
+	}
+	say(e, "};\n");
+}
+
+static const char *with_excess(const struct emitter *e, int channel, const char *text, const struct bank *bank)
+{
+	const char **term = ARRAY(const char *, (size_t)bank->count + 1);
+	int terms = 0;
+	for (int i = 0; i < bank->count; i++) {
+		const struct excess *excess = &bank->excess[i];
+		struct basis basis = { .kind = BASIS_COORD, .index = excess->coord, .order = excess->order };
+		if (excess->channel == channel)
+			term[terms++] = format("excess[%d] * %s", i, basis_now(e, &basis));
+	}
+	if (terms == 0)
+		return text;
+	const char *sum = tree(terms, term, 15);
+	return strcmp(text, "0.0") == 0 ? sum : format("(%s)\n           + (%s)", text, sum);
+}
+
+/* ---- the function ---- */
+
+static void emit_nodes(const struct emitter *e, const struct reads *r)
+{
+	const struct program *program = e->step->program;
+	if (r->time || reads_ramp(e, r)) {
+		say(e, "\nstatic const double $n_node[%d] = {", program->nodes);
+		for (int i = 0; i < program->nodes; i++)
+			say(e, "%s%s", i ? ", " : "", shortest(time_in_step(e->model, program->node[i])));
+		say(e, "};  /* times after the start of the step [s] */\n");
+	}
+	if (any_of(r->load, e->system->loads))
+		emit_node_phases(e, r->load);
+}
+
+static void emit_leftover_locals(const struct emitter *e, const struct reads *r, bool node)
+{
+	emit_locals_of(e, r->state, "y");
+	if (r->time)
+		say(e, "    const double t = $n_time(s)%s;\n", node ? format(" + %s_node[node]", e->name) : "");
+	for (int i = 0; i < e->system->inputs; i++) {
+		bool ramp = node && e->system->input[i].first_order;
+		const char *more = ramp ? format(" + %s_node[node] * slope[%d]", e->name, i) : "";
+		if (r->input[i])
+			say(e, "    const double %s = u[%d]%s;\n", input_name(e, i, 0), i, more);
+		if (r->input[e->system->inputs + i])
+			say(e, "    const double %s = slope[%d];\n", input_name(e, i, 1), i);
+	}
+	struct emitter here = *e;
+	here.at_node = node;
+	emit_load_states(&here, r->load, true);
+}
+
+static const char *name_of_channel(const struct emitter *e, int channel)
+{
+	return e->model->coord_name[coordinate_of_row(e->model, e->model->channel_row[channel])];
+}
+
+static void emit_lefts(const struct emitter *e, const struct bank *bank)
+{
+	struct writer *writer = writer_new(e, basis_now, e->model->channels, bank->common);
+	for (int c = 0; c < e->model->channels; c++) {
+		const char *text = write_form(writer, bank->common[c], 15);
+		say(e, "    left[%d] = %s;  /* %s */\n", c, with_excess(e, c, text, bank), name_of_channel(e, c));
+	}
+}
+
+void emit_leftover(const struct emitter *e)
+{
+	struct reads r = reads_of_leftover(e);
+	struct bank bank = bank_of(e->step);
+	bool node = needs_node(e, &r);
+	if (node)
+		emit_nodes(e, &r);
+	if (bank.count)
+		emit_excess(e, &bank);
+	say(e, "\n/* What is left over at state y: a force on each equation that has some */\n"
+	       "static void $n_leftover(%s, const double y[$N_STATES], double left[%d])\n"
+	       "{\n", leftover_parameters(e, &r, node), e->model->channels);
+	emit_leftover_locals(e, &r, node);
+	if (bank.count)
+		say(e, "    const double *const excess = $n_excess[which];\n");
+	emit_lefts(e, &bank);
+	if (!r.time && !any_of(r.load, e->system->loads))
+		say(e, "    (void)s;\n");
+	if (many_operators(e) && !bank.count)
+		say(e, "    (void)which;\n");
+	if (!any_of(r.state, e->system->states))
+		say(e, "    (void)y;\n");
+	say(e, "}\n");
+}

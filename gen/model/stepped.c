@@ -1,0 +1,63 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Which model is stepped: that of the equations, or one over coordinates that part what moves as a whole. */
+#include "model/model.h"
+
+/* The coordinate from which all of its group are measured */
+static int root_of(const struct relative *r, int coord)
+{
+	while (r->link[coord].kind == LINK_PARENT)
+		coord = r->link[coord].from;
+	return coord;
+}
+
+/* The coordinates kept from `first` on that move as a whole with it; NULL: there are no others */
+static const char *kept_with(const struct model *model, const struct relative *r, int first)
+{
+	const char *names = model->written->coord_name[first];
+	int count = 1;
+	for (int j = first + 1; j < model->written->n; j++)
+		if (model->reduction.place[first] >= 0 && model->reduction.place[j] >= 0 && root_of(r, first) == root_of(r, j)) {
+			names = format("%s, %s", names, model->written->coord_name[j]);
+			count++;
+		}
+	return count > 1 ? names : NULL;
+}
+
+/* Positions that a reduced model keeps as they are written, though they may move as a whole */
+static void warn_of_kept(const struct model *model)
+{
+	const struct relative *r = relative_of(model->written);
+	const char *names = NULL;
+	for (int i = 0; r && i < model->written->n && !names; i++)
+		names = kept_with(model, r, i);
+	if (names)
+		say_warning(model->spec->name_at, "without --reduce differences are states of their own",
+			    "the reduced model keeps %s, which may move as a whole: where they grow, their differences lose "
+			    "digits", names);
+}
+
+/* The model over coordinates that part what moves as a whole from what moves in it, where there are such; else itself */
+struct model *stepped_model(struct model *model, struct spec *spec, const struct request *request)
+{
+	struct request again = *request;
+	if (model->written != model) {
+		warn_of_kept(model);
+		return model;
+	}
+	again.relative = relative_of(model);
+	if (!again.relative)
+		return model;
+	if (scheme_row(model->scheme)->holds_coupling) {
+		say_warning(model->asked.scheme_at.source ? model->asked.scheme_at : spec->name_at,
+			    "any other scheme steps differences as states of their own",
+			    "%s keeps coordinates as they are written, and some may move as a whole: where they grow, "
+			    "their differences lose digits", scheme_name(model->scheme));
+		return model;
+	}
+	again.reduce = again.reduce && !model->reduction.irreducible;
+	struct model *relative = model_build(spec, &again);
+	if (!relative || !find_tuning(relative, &again))
+		return NULL;
+	relative->reduction.irreducible = model->reduction.irreducible;
+	return relative;
+}

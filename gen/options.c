@@ -1,0 +1,295 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The command line: options as a table, from which usage is written, and what goes together. */
+#define _GNU_SOURCE     /* getopt_long */
+#include "command.h"
+
+#include <getopt.h>
+#include <stdlib.h>
+#include <string.h>
+
+static _Noreturn void wrong_usage(const char *message)
+{
+	fprintf(stderr, "plgen: error: %s\nnote: plgen --help lists the options\n", message);
+	exit(2);
+}
+
+/* ---- what each option sets ---- */
+
+static void note_in_banner(struct options *options, const char *option)
+{
+	options->banner = format("%s%s%s", options->banner, *options->banner ? " " : "", option);
+}
+
+static void set_print(struct options *options, enum print print)
+{
+	if (options->print != PRINT_C)
+		wrong_usage("--header, --explain and --solution exclude each other");
+	options->print = print;
+}
+
+/* Of an option with two values: is it the second? */
+static bool is_second(const char *option, const char *value, const char *first, const char *second)
+{
+	if (strcmp(value, first) != 0 && strcmp(value, second) != 0)
+		wrong_usage(format("%s takes %s or %s, found '%s'", option, first, second, value));
+	return strcmp(value, second) == 0;
+}
+
+static void take_output(struct options *options, const char *value) { options->output = value; }
+static void take_header(struct options *options, const char *value) { (void)value; set_print(options, PRINT_HEADER); }
+static void take_rhs(struct options *options, const char *value) { (void)value; options->rhs = true; }
+static void take_step(struct options *options, const char *value) { options->request.step = value; }
+static void take_scheme(struct options *options, const char *value) { options->request.scheme = value; }
+static void take_prefix(struct options *options, const char *value) { options->request.prefix = value; }
+static void take_depfile(struct options *options, const char *value) { options->depfile = value; }
+
+static void take_explain(struct options *options, const char *value)
+{
+	if (value && strcmp(value, "json") != 0 && strcmp(value, "program") != 0)
+		wrong_usage(format("--explain takes nothing, =json or =program, found '%s'", value));
+	set_print(options, !value ? PRINT_EXPLAIN : strcmp(value, "json") == 0 ? PRINT_JSON : PRINT_PROGRAM);
+}
+
+static void take_solution(struct options *options, const char *value)
+{
+	set_print(options, PRINT_SOLUTION);
+	options->solution = value;
+	options->request.solution = true;
+}
+
+static void take_real(struct options *options, const char *value)
+{
+	options->request.single = is_second("--real", value, "double", "float");
+}
+
+static void take_form(struct options *options, const char *value)
+{
+	if (!step_form_of(value, &options->request.form))
+		wrong_usage(format("--form takes auto, direct, delta or kick-drift-kick, found '%s'", value));
+}
+
+static void take_accuracy(struct options *options, const char *value)
+{
+	if (strcmp(value, "compensated") != 0)
+		wrong_usage(format("--accuracy takes compensated, found '%s'", value));
+	options->request.compensated = true;
+}
+
+static void take_loads(struct options *options, const char *value)
+{
+	options->request.loads_left = is_second("--loads", value, "exact", "leftover");
+}
+
+static void take_definition(struct options *options, const char *value)
+{
+	struct request *request = &options->request;
+	const char *equals = strchr(value, '=');
+	if (!equals || equals == value || equals[1] == 0)
+		wrong_usage(format("-D takes NAME=EXPR, found '%s'", value));
+	ENLARGE(request->definition, (size_t)request->definitions + 1);
+	request->definition[request->definitions++] = value;
+	note_in_banner(options, format("-D %s", value));
+}
+
+static void take_reduce(struct options *options, const char *value)
+{
+	(void)value;
+	options->request.reduce = true;
+	note_in_banner(options, "--reduce");
+}
+
+static void take_selftest(struct options *options, const char *value)
+{
+	(void)value;
+	options->request.selftest = true;
+}
+
+static void print_usage(struct options *options, const char *value);
+
+static void print_version(struct options *options, const char *value)
+{
+	(void)options;
+	(void)value;
+	fputs("plgen " PLGEN_VERSION "\n", stdout);
+	exit(0);
+}
+
+/* ---- the options, in the order of usage ---- */
+
+static const struct row {
+	const char *name;               /* of one letter: -o; else --name */
+	const char *argument;           /* in brackets: optional; NULL: none */
+	const char *help;               /* NULL: of the last line, which lists those that need no words */
+	void (*take)(struct options *options, const char *value); /* NULL: a line of usage only */
+	const char *(*values)(const char *separator); /* closes the help */
+} rows[] = {
+	{ "o", "FILE.c", "write FILE.c and the header FILE.h beside it", take_output, NULL },
+	{ "header", NULL, "print the header instead of the C", take_header, NULL },
+	{ "explain", "[=json]", "print what was derived: matrices, B(s), poles, Phi, cost", take_explain, NULL },
+	{ "explain", "=program", "print what a step does, before it is C", NULL, NULL },
+	{ "solution", "T", "print the closed-form solution at every step up to T as CSV", take_solution, NULL },
+	{ "rhs", NULL, "also emit NAME_rhs: the equations as written", take_rhs, NULL },
+	{ "step", "EXPR", "instead of the spec's step", take_step, NULL },
+	{ "scheme", "NAME", "instead of the spec's: ", take_scheme, all_schemes },
+	{ "real", "float", "numbers and arithmetic of type float (default: double)", take_real, NULL },
+	{ "form", "NAME", "of a linear step: auto direct delta kick-drift-kick", take_form, NULL },
+	{ "accuracy", "compensated", "two-word factors, and what rounding takes from the state is kept",
+	  take_accuracy, NULL },
+	{ "loads", "leftover", "leave known loads to the scheme's quadrature (default: exact)", take_loads, NULL },
+	{ "D", "NAME=EXPR", "another value for a param; EXPR may use the spec's params", take_definition, NULL },
+	{ "prefix", "NAME", "instead of the model's name for everything generated", take_prefix, NULL },
+	{ "reduce", NULL, "leave out what the outputs cannot see", take_reduce, NULL },
+	{ "depfile", "FILE", "also write a make/ninja dependency file", take_depfile, NULL },
+	{ "selftest", NULL, "also emit NAME_selftest: steps against the closed form", take_selftest, NULL },
+	{ "help", NULL, NULL, print_usage, NULL },
+	{ "version", NULL, NULL, print_version, NULL }
+};
+/* LONG + its row is what getopt_long returns for a long option. */
+enum { ROWS = sizeof rows / sizeof *rows, LONG = 256 };
+
+static bool is_short(const struct row *row)
+{
+	return !row->name[1];
+}
+
+static int values_of(const struct row *row)
+{
+	return !row->argument ? no_argument : row->argument[0] == '[' ? optional_argument : required_argument;
+}
+
+/* ---- usage ---- */
+
+static void print_row(const struct row *row)
+{
+	const char *argument = row->argument ? row->argument : "", *space = strchr("[=", *argument) ? "" : " ";
+	const char *option = format("%s%s%s%s", is_short(row) ? "-" : "--", row->name, space, argument);
+	printf("  %-19s%s%s%s\n", option, strlen(option) < 19 ? " " : "   ", row->help,
+	       row->values ? row->values(" ") : "");
+}
+
+static _Noreturn void print_usage(struct options *options, const char *value)
+{
+	const char *rest = "";
+	(void)options;
+	(void)value;
+	fputs("usage: plgen [options] MODEL.spec      ('-' reads standard input)\n\n"
+	      "Reads the equations of a vibration model and writes C that steps it to standard output.\n\n", stdout);
+	for (int i = 0; i < ROWS; i++)
+		if (rows[i].help)
+			print_row(&rows[i]);
+		else
+			rest = format("%s%s--%s", rest, *rest ? ", " : "", rows[i].name);
+	printf("  %s\n\n"
+	       "Exit status: 0 done; 1 the spec is wrong or a file cannot be read or written; 2 the command line is "
+	       "wrong.\n",
+	       rest);
+	exit(0);
+}
+
+/* ---- the line ---- */
+
+/* For getopt_long: ":o:D:", and the long options */
+static const char *fill_known(struct option *known)
+{
+	const char *letters = ":";
+	for (int i = 0; i < ROWS; i++) {
+		const struct row *row = &rows[i];
+		if (row->take && is_short(row))
+			letters = format("%s%s%s", letters, row->name, row->argument ? ":" : "");
+		else if (row->take)
+			*known++ = (struct option){ row->name, values_of(row), NULL, LONG + i };
+	}
+	return letters;
+}
+
+static const struct row *row_of(int option)
+{
+	if (option >= LONG)
+		return &rows[option - LONG];
+	for (int i = 0; i < ROWS; i++)
+		if (is_short(&rows[i]) && rows[i].name[0] == option)
+			return &rows[i];
+	return NULL;
+}
+
+/* `word` is where getopt_long stood: of a long option it does not say more. */
+static _Noreturn void not_taken(int option, const char *word)
+{
+	bool letter = optopt > 0 && optopt < LONG;
+	const char *shown = letter ? format("-%c", optopt) : format("'%s'", word);
+	if (option == ':')
+		wrong_usage(format("option %s needs a value", shown));
+	wrong_usage(letter ? format("unknown option '%s'", shown)
+			   : format("unknown option or surplus value: %s", shown));
+}
+
+static void take_all(int argc, char **argv, struct options *options)
+{
+	struct option known[ROWS + 1] = { 0 };
+	const char *letters = fill_known(known);
+	int option;
+	opterr = 0;
+	for (int before = optind; (option = getopt_long(argc, argv, letters, known, NULL)) != -1; before = optind) {
+		if (option == '?' || option == ':')
+			not_taken(option, argv[before]);
+		row_of(option)->take(options, optarg);
+	}
+	if (optind == argc)
+		wrong_usage("no spec is given");
+	if (optind + 1 < argc)
+		wrong_usage(format("one spec at a time: surplus argument '%s'", argv[optind + 1]));
+	options->spec = argv[optind];
+}
+
+/* Those that change the model come as they are given; these in one order, so that they are told alike. */
+static void note_all(struct options *options)
+{
+	const struct request *request = &options->request;
+	if (request->scheme)
+		note_in_banner(options, format("--scheme %s", request->scheme));
+	if (request->step)
+		note_in_banner(options, format("--step %s", request->step));
+	if (request->prefix)
+		note_in_banner(options, format("--prefix %s", request->prefix));
+	if (request->loads_left)
+		note_in_banner(options, "--loads leftover");
+	if (request->single)
+		note_in_banner(options, "--real float");
+	if (request->form != FORM_AUTO)
+		note_in_banner(options, format("--form %s", step_form_name(request->form)));
+	if (request->compensated)
+		note_in_banner(options, "--accuracy compensated");
+	if (request->selftest)
+		note_in_banner(options, "--selftest");
+	if (options->rhs)
+		note_in_banner(options, "--rhs");
+}
+
+static void find_header(struct options *options)
+{
+	size_t length = options->output ? strlen(options->output) : 0;
+	if (!options->output || options->print != PRINT_C)
+		return;
+	if (length < 3 || strcmp(options->output + length - 2, ".c") != 0)
+		wrong_usage(format("-o takes the name of a C file, FILE.c, found '%s'", options->output));
+	options->header = format("%.*s.h", (int)length - 2, options->output);
+}
+
+static void check_names(const struct options *options)
+{
+	const char *path[] = { options->spec, options->output, options->header, options->depfile };
+	for (int i = 0; i < 4; i++)
+		for (int j = i + 1; j < 4; j++)
+			if (path[i] && path[j] && same_file(path[i], path[j]))
+				wrong_usage(format("'%s' would be written over: each file needs a name of its own",
+						   path[i]));
+}
+
+void read_options(int argc, char **argv, struct options *options)
+{
+	options->banner = "";
+	take_all(argc, argv, options);
+	note_all(options);
+	find_header(options);
+	check_names(options);
+}

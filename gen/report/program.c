@@ -1,0 +1,307 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The program of a step as text: what emitters print as C, before they do. */
+#include "report/report.h"
+
+#include <string.h>
+
+/* ---- tables and kernels ---- */
+
+/* p/q h, or h */
+static const char *time_text(mpq_srcptr fraction)
+{
+	return mpq_sgn(fraction) == 0		 ? "0"
+	       : mpq_cmp_ui(fraction, 1, 1) == 0 ? "h"
+						 : format("%s h", exact_text(fraction));
+}
+
+/* 1 - 3 (s/h) + 2 (s/h)^2 */
+static const char *powers_text(const struct kernel_part *part)
+{
+	static const char *const power[PART_POWERS] = { "", " s/h", " (s/h)^2" };
+	const char *text = "";
+	mpq_t size;
+	mpq_init(size);
+	for (int m = 0; m < part->powers; m++) {
+		int sign = mpq_sgn(part->power[m]);
+		mpq_abs(size, part->power[m]);
+		if (sign != 0)
+			text = format("%s%s%s%s", text,
+				      sign < 0 ? (*text ? " - " : "-")
+				      : *text  ? " + "
+					       : "",
+				      exact_text(size), power[m]);
+	}
+	mpq_clear(size);
+	return text;
+}
+
+/* What a unit leftover adds: e^{A tau} B times a number, the response to a force over a part of the step */
+static const char *kernel_text(const struct kernel *kernel)
+{
+	const char *text = "";
+	for (int i = 0; i < kernel->parts; i++) {
+		const struct kernel_part *part = &kernel->part[i];
+		const char *time = time_text(part->fraction), *plus = *text ? ", plus " : "";
+		const char *at = mpq_sgn(part->fraction) == 0 ? "" : format("e^{A tau}, tau = %s, times ", time);
+		if (mpq_sgn(part->impulse) != 0)
+			text = format("%s%s%s%s s B", text, plus, at, exact_text(part->impulse));
+		else
+			text = format("%s%sresponse to B (%s) from s = 0 to %s", text, plus, powers_text(part), time);
+	}
+	return text;
+}
+
+static void print_table(FILE *to, const struct table *table)
+{
+	const struct wanted *wanted = table->wanted;
+	fprintf(to, "    %s: tau = %s;", wanted->name, time_text(wanted->fraction));
+	if (table->Phi)
+		fprintf(to, " Phi %d x %d,", table->states, table->states);
+	if (table->increment)
+		fprintf(to, " Phi - I,");
+	if (table->kick)
+		fprintf(to, " kicks and drifts,");
+	fprintf(to, " %d load column%s, %d input column%s\n", table->columns, table->columns == 1 ? "" : "s",
+		table->inputs, table->inputs == 1 ? "" : "s");
+	for (int k = 0; k < wanted->kernels; k++)
+		fprintf(to, "        %s (%d x %d): %s\n", wanted->kernel[k].name, table->states, table->channels,
+			kernel_text(&wanted->kernel[k]));
+}
+
+static void print_tables(FILE *to, const struct step *step)
+{
+	fprintf(to, "Tables%s:\n", step->branches > 1 ? format(", of each of %d operators", step->branches) : "");
+	for (int t = 0; t < step->tables; t++)
+		print_table(to, step->branch->table[t]);
+}
+
+/* ---- a list of actions ---- */
+
+static const char *stage_text(int stage)
+{
+	return stage == STAGE_STATE ? "y" : format("stage%d", stage);
+}
+
+/* t, t + h/2 */
+static const char *node_text(const struct program *program, int node)
+{
+	return mpq_sgn(program->node[node]) == 0 ? "t" : format("t + %s", time_text(program->node[node]));
+}
+
+static const char *sum_text(const struct step *step, const struct action *a)
+{
+	struct table *const *table = step->branch->table;
+	const char *text = a->plain == NONE ? "" : stage_text(a->plain);
+	if (a->flow != NONE) {
+		const struct table *flow = table[a->flow];
+		text = format("%s%s%s.Phi y%s%s", text, *text ? " + " : "", flow->wanted->name,
+			      flow->columns ? " + loads" : "", flow->inputs ? " + inputs" : "");
+	}
+	for (int k = 0; k < a->kernels; k++) {
+		const struct wanted *wanted = table[a->kernel[k].table]->wanted;
+		text = format("%s%s%s.%s left%d", text, *text ? " + " : "", wanted->name,
+			      wanted->kernel[a->kernel[k].kernel].name, a->kernel[k].left);
+	}
+	return text;
+}
+
+static const char *combination_text(const struct action *a)
+{
+	if (a->minus == NONE)
+		return format("2 left%d", a->plus);
+	return format("left%d %c left%d", a->plus, a->added ? '+' : '-', a->minus);
+}
+
+static void print_action(FILE *to, const struct step *step, const struct action *a)
+{
+	const struct program *program = step->program;
+	switch (a->kind) {
+	case ACTION_LEFTOVER:
+		fprintf(to, "    left%d = r(%s, %s)\n", a->target, node_text(program, a->node), stage_text(a->from));
+		break;
+	case ACTION_COMBINE:
+		fprintf(to, "    left%d = %s\n", a->target, combination_text(a));
+		break;
+	case ACTION_SUM:
+		fprintf(to, "    # %s\n    %s = %s\n", a->note, stage_text(a->target), sum_text(step, a));
+		break;
+	case ACTION_PREDICT:
+		fprintf(to, "    %s = RK4 from y to %s, by way of %s\n", stage_text(a->target),
+			node_text(program, a->node), node_text(program, a->half));
+		break;
+	}
+}
+
+static void print_nodes(FILE *to, const struct step *step)
+{
+	const struct program *program = step->program;
+	fputs("Nodes:", to);
+	for (int i = 0; i < program->nodes; i++) {
+		int table = program->node_table[i];
+		const char *loads =
+			table == NONE ? "" : format(" (loads: %s)", step->branch->table[table]->wanted->name);
+		fprintf(to, "%s %s%s", i ? "," : "", node_text(program, i), loads);
+	}
+	fprintf(to, "\nStages: %d; leftovers: %d, each of %d number%s\n", program->stages, program->lefts,
+		step->branch->system.channels, step->branch->system.channels == 1 ? "" : "s");
+}
+
+static void print_actions(FILE *to, const struct step *step)
+{
+	const struct program *program = step->program;
+	print_tables(to, step);
+	print_nodes(to, step);
+	fprintf(to, "Actions%s:\n", program->loops ? ", in loops over the tables" : "");
+	for (int i = 0; i < program->actions; i++)
+		print_action(to, step, &program->action[i]);
+}
+
+/* ---- a list of assignments ---- */
+
+/* A state that is a difference stands in brackets */
+static const char *state_text(const struct step *step, int state)
+{
+	const char *name = step->model->state_name[state];
+	return strchr(name, ' ') && name[0] != '(' ? format("(%s)", name) : name;
+}
+
+static const char *load_column_text(const struct linear *system, int column)
+{
+	int load = 0;
+	while (column >= system->load[load].columns)
+		column -= system->load[load++].columns;
+	return column_text(&system->load[load], column);
+}
+
+/* u as it is held; of first order, at the start of the step or at its end */
+static const char *input_column_text(const struct step *step, int column)
+{
+	const struct linear *system = &step->branch->system;
+	for (int i = 0; i < system->inputs; column -= system->input[i++].first_order ? 2 : 1)
+		if (column < (system->input[i].first_order ? 2 : 1))
+			return format("%s%s", system->input[i].name,
+				      !system->input[i].first_order ? "" : column ? "(end)" : "(start)");
+	return "";
+}
+
+static const char *operand_text(const struct step *step, const struct operand *operand)
+{
+	switch (operand->kind) {
+	case OPERAND_STATE: return state_text(step, operand->index);
+	case OPERAND_LOAD:  return load_column_text(&step->branch->system, operand->index);
+	default:            return input_column_text(step, operand->index);
+	}
+}
+
+static void print_assignment(FILE *to, const struct step *step, const struct assignment *a)
+{
+	fprintf(to, "    %s %s", state_text(step, a->target), a->added ? "+=" : "=");
+	for (int k = 0; k < a->terms; k++) {
+		const struct product *p = &a->term[k];
+		const char *factor = shortest(p->factor->value);
+		if (step->program->compensated && has_second_word(p, &step->branch->system))
+			factor = format("(%s + %s)", factor, shortest(p->factor->low));
+		fprintf(to, "%s %s*%s", k ? " +" : "", factor, operand_text(step, &p->operand));
+	}
+	fprintf(to, "%s%s\n", a->terms ? "" : " 0", a->carried ? "        # what rounding takes is kept" : "");
+}
+
+static void print_products(FILE *to, const struct step *step)
+{
+	static const char *const operands[] = {
+		[OPERAND_STATE] = "y", [OPERAND_LOAD] = "loads", [OPERAND_INPUT] = "inputs"
+	};
+	const struct program *program = step->program;
+	const struct table *whole = step->branch->whole;
+	fprintf(to, "A loop over all states:\n    y %s", program->products_added ? "+=" : "=");
+	for (int k = 0; k < program->products; k++) {
+		const struct matrix_product *p = &program->product[k];
+		const char *name = p->factor == whole->increment ? "(Phi - I)"
+				   : p->factor == whole->Phi	 ? "Phi"
+								 : "columns";
+		fprintf(to, "%s %s %d x %d times %s", k ? " +" : "", name, whole->states, p->columns,
+			operands[p->kind]);
+	}
+	fputc('\n', to);
+}
+
+static void print_list(FILE *to, const struct step *step)
+{
+	const struct program *program = step->program;
+	print_tables(to, step);
+	if (program->tuned)
+		fputs("Factors are read from the instance; these are of the spec's values.\n", to);
+	if (step->branch->system.segments > 1)
+		fprintf(to, "Factors of loads change %d time%s; these are those before.\n",
+			step->branch->system.segments - 1, step->branch->system.segments == 2 ? "" : "s");
+	if (program->loops) {
+		print_products(to, step);
+		return;
+	}
+	fprintf(to, "Assignments, %s%s:\n",
+		program->in_order ? "in order: each reads what those before it have left"
+				  : "all of which read the old state",
+		step->momenta ? "; velocities are kept as momenta" : "");
+	for (int i = 0; i < program->assignments; i++)
+		print_assignment(to, step, &program->assignment[i]);
+}
+
+/* ---- regions ---- */
+
+static void print_regions(FILE *to, const struct step *step)
+{
+	const struct switching *s = step->model->switching;
+	fprintf(to,
+		"Actions, from piece to piece d of the step:\n"
+		"    y = piece.Phi y + loads + piece.held u + piece.ramp u'\n"
+		"    where %s passes a breakpoint: the Taylor series of y, of degree %d, to there; then the next "
+		"region\n",
+		s->expressions == 1 ? "the expression" : format("one of %d expressions", s->expressions),
+		step->series.degree);
+	for (int k = 0; k < step->branches; k++) {
+		fprintf(to, "Matrix %d, %s:\n", k,
+			step->branch[k].halvings ? format("pieces of h/%ld", 1l << step->branch[k].halvings)
+						 : "one piece");
+		print_table(to, step->branch[k].table[0]);
+	}
+}
+
+/* ---- the whole ---- */
+
+static void print_reads(FILE *to, const struct step *step)
+{
+	const struct program *program = step->program;
+	const char *states = "", *loads = "";
+	for (int i = 0; i < step->branch->whole->states; i++)
+		if (program->reads[i])
+			states = format("%s%s %s", states, *states ? "," : "", state_text(step, i));
+	for (int k = 0; k < step->branch->whole->columns; k++)
+		if (program->uses[k])
+			loads = format("%s%s %s", loads, *loads ? "," : "", load_column_text(&step->branch->system, k));
+	if (step->model->switching || has_leftover(step))
+		states = " all states";
+	fprintf(to, "Reads:%s%s%s\n", *states ? states : " no state", *loads ? "; loads" : "", loads);
+}
+
+static const char *kind_text(const struct step *step)
+{
+	return step->model->switching ? "regions" : has_leftover(step) ? "with a leftover"
+	       : step->program->tuned ? "linear, tunable" : "linear";
+}
+
+void explain_program(FILE *to, const struct step *step)
+{
+	const struct program *program = step->program;
+	fprintf(to, "Program of a step of %s: %s; scheme %s, form %s, h = %s s\n", step->model->name, kind_text(step),
+		scheme_name(step->model->scheme), form_text_of(step), readable_text(step->model->h));
+	if (step->model->switching)
+		print_regions(to, step);
+	else if (has_leftover(step))
+		print_actions(to, step);
+	else
+		print_list(to, step);
+	print_reads(to, step);
+	fprintf(to, "Cost: %d multiplications, %d additions, %d calls%s\n", program->multiplications,
+		program->additions, program->calls,
+		step->forced ? "; the state is kept less what its loads sustain" : "");
+}

@@ -1,0 +1,255 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What every program of a step keeps to, whichever scheme wrote it: emitters and the report take it as given. Each
+ * stage and each leftover is written once, and before it is read; what is named is there. */
+#include "step/step.h"
+
+struct check {
+	const struct step *step;
+	const struct program *program;
+	bool *stage, *left;         /* is it written? Stage 0 is the state that the step starts from */
+	bool ended;                 /* the state after the step is written */
+	const char *where;          /* action 3, assignment 2; for messages */
+};
+
+static void need(const struct check *c, bool good, const char *what)
+{
+	if (!good)
+		internal_error(c->step, format("%s: %s", c->where, what));
+}
+
+static bool among(int index, int count)
+{
+	return index >= 0 && index < count;
+}
+
+/* ---- tables ---- */
+
+static void check_table(const struct check *c, const struct table *table)
+{
+	need(c, table && table->wanted, "a table is not there");
+	need(c, !table->wanted->Phi || table->Phi, "a table without its Phi");
+	need(c, !table->columns || table->load, "a table without the columns of its loads");
+	need(c, !table->inputs || table->input, "a table without the columns of its inputs");
+	need(c, among(table->wanted->kernels, TABLE_KERNELS + 1), "a table with more kernels than the limit");
+	for (int k = 0; k < table->wanted->kernels; k++)
+		need(c, table->kernel[k], "a table without one of its kernels");
+}
+
+static void check_tables(struct check *c)
+{
+	const struct step *step = c->step;
+	c->where = "tables";
+	need(c, step->branches > 0 && step->tables > 0, "there are none");
+	for (int k = 0; k < step->branches; k++) {
+		need(c, step->branch[k].table, "a branch without tables");
+		for (int t = 0; t < step->tables; t++)
+			check_table(c, step->branch[k].table[t]);
+	}
+	check_table(c, step->branch->whole);
+}
+
+/* ---- a list of assignments ---- */
+
+static int operands_of(const struct table *table, enum operand_kind kind)
+{
+	return kind == OPERAND_STATE ? table->states : kind == OPERAND_LOAD ? table->columns : table->inputs;
+}
+
+static void check_operand(const struct check *c, const struct product *p)
+{
+	const struct table *table = c->step->branch->whole;
+	int columns = operands_of(table, p->operand.kind);
+	need(c, p->factor, "a term without its factor");
+	need(c, among(p->operand.index, columns), "a term whose operand is out of range");
+	if (p->operand.kind == OPERAND_STATE)
+		need(c, c->program->reads[p->operand.index], "a state is read that is not marked as read");
+	if (p->operand.kind == OPERAND_LOAD)
+		need(c, c->program->uses[p->operand.index], "a load is read that is not marked as used");
+}
+
+static void check_assignment(const struct check *c, const struct assignment *a)
+{
+	const struct table *table = c->step->branch->whole;
+	need(c, among(a->target, table->states), "its target is out of range");
+	need(c, among(a->terms, table->states + table->columns + table->inputs + 1),
+	     "its number of terms is out of range");
+	need(c, !a->added || c->program->reads[a->target], "it adds to a state that is not marked as read");
+	need(c, !a->carried || c->step->carry[a->target] >= 0,
+	     "it carries what rounding takes, and there is no place for that");
+	for (int k = 0; k < a->terms; k++)
+		check_operand(c, &a->term[k]);
+}
+
+/* Its factors stand in a matrix of the table, whose columns are all there. */
+static void check_product(const struct check *c, const struct matrix_product *p)
+{
+	const struct table *table = c->step->branch->whole;
+	need(c, p->factor, "a matrix is not there");
+	need(c, p->columns == operands_of(table, p->kind), "a matrix with columns for another number of operands");
+}
+
+static void check_list(struct check *c)
+{
+	const struct program *program = c->program;
+	bool *written = ARRAY(bool, (size_t)c->step->branch->whole->states);
+	for (int i = 0; i < program->assignments; i++) {
+		const struct assignment *a = &program->assignment[i];
+		c->where = format("assignment %d", i);
+		check_assignment(c, a);
+		need(c, program->in_order || !written[a->target], "its target is written before");
+		written[a->target] = true;
+	}
+	c->where = "loops";
+	need(c, program->loops == (program->products > 0), "a step loops over matrices, or it has none");
+	for (int k = 0; k < program->products; k++)
+		check_product(c, &program->product[k]);
+	need(c, !program->loops || !(program->in_order || program->compensated),
+	     "a step of a form that is not built with loops");
+	need(c, !program->tuned || c->step->model->tuning, "factors of tunable params, and there are none");
+}
+
+/* ---- a list of actions ---- */
+
+static void check_stage_read(const struct check *c, int stage)
+{
+	need(c, among(stage, c->program->stages + 1), "it reads a stage that is out of range");
+	need(c, c->stage[stage], "it reads a stage that is not written");
+}
+
+static void check_left_read(const struct check *c, int left)
+{
+	need(c, among(left, c->program->lefts), "it reads a leftover that is out of range");
+	need(c, c->left[left], "it reads a leftover that is not written");
+}
+
+static void check_left_target(struct check *c, int left)
+{
+	need(c, among(left, c->program->lefts), "its target is no leftover");
+	need(c, !c->left[left], "its target is written before");
+	c->left[left] = true;
+}
+
+/* The state is written last: what reads it means its old value. */
+static void check_stage_target(struct check *c, int stage)
+{
+	need(c, among(stage, c->program->stages + 1), "its target is no stage");
+	need(c, stage == STAGE_STATE || !c->stage[stage], "its target is written before");
+	c->stage[stage] = true;
+	c->ended = stage == STAGE_STATE;
+}
+
+static void check_node(const struct check *c, int node)
+{
+	need(c, among(node, c->program->nodes), "its node is out of range");
+}
+
+static void check_sum(struct check *c, const struct action *a)
+{
+	struct table *const *table = c->step->branch->table;
+	need(c, a->flow == NONE || among(a->flow, c->step->tables), "its table is out of range");
+	need(c, a->flow == NONE || table[a->flow]->Phi, "its table has no Phi");
+	need(c, among(a->kernels, SUM_KERNELS + 1), "it has more kernels than the limit");
+	need(c, a->flow != NONE || a->plain != NONE || a->kernels > 0, "a sum of nothing");
+	if (a->plain != NONE)
+		check_stage_read(c, a->plain);
+	for (int k = 0; k < a->kernels; k++) {
+		need(c, among(a->kernel[k].table, c->step->tables), "the table of a kernel is out of range");
+		need(c, among(a->kernel[k].kernel, table[a->kernel[k].table]->wanted->kernels),
+		     "a kernel is out of range");
+		check_left_read(c, a->kernel[k].left);
+	}
+	check_stage_target(c, a->target);
+}
+
+/* It starts with the leftover that was evaluated first. */
+static void check_prediction(struct check *c, const struct action *a)
+{
+	need(c, c->program->predicts, "a prediction in a step that is not marked for them");
+	check_left_read(c, 0);
+	check_node(c, a->node);
+	check_node(c, a->half);
+	check_stage_target(c, a->target);
+}
+
+static void check_action(struct check *c, const struct action *a)
+{
+	need(c, !c->ended, "it comes after the state is written");
+	switch (a->kind) {
+	case ACTION_LEFTOVER:
+		check_node(c, a->node);
+		check_stage_read(c, a->from);
+		check_left_target(c, a->target);
+		break;
+	case ACTION_COMBINE:
+		check_left_read(c, a->plus);
+		if (a->minus != NONE)
+			check_left_read(c, a->minus);
+		check_left_target(c, a->target);
+		break;
+	case ACTION_SUM:
+		check_sum(c, a);
+		break;
+	case ACTION_PREDICT:
+		check_prediction(c, a);
+		break;
+	default:
+		need(c, false, "an action of no known kind");
+	}
+}
+
+static void check_nodes(struct check *c)
+{
+	const struct program *program = c->program;
+	c->where = "nodes";
+	need(c, program->nodes > 0 && mpq_sgn(program->node[0]) == 0, "the first is not 0");
+	for (int i = 0; i < program->nodes; i++) {
+		int table = program->node_table[i];
+		need(c, mpq_sgn(program->node[i]) >= 0 && mpq_cmp_ui(program->node[i], 1, 1) <= 0,
+		     "one is outside the step");
+		need(c, table == NONE || among(table, c->step->tables), "the table of one is out of range");
+	}
+}
+
+static void check_actions(struct check *c)
+{
+	const struct program *program = c->program;
+	check_nodes(c);
+	c->stage = ARRAY(bool, (size_t)program->stages + 1);
+	c->left = ARRAY(bool, (size_t)program->lefts);
+	c->stage[STAGE_STATE] = true;
+	for (int i = 0; i < program->actions; i++) {
+		c->where = format("action %d", i);
+		check_action(c, &program->action[i]);
+	}
+	c->where = "actions";
+	need(c, c->ended, "the state is never written");
+}
+
+/* ---- regions ---- */
+
+static void check_regions(struct check *c)
+{
+	const struct step *step = c->step;
+	c->where = "regions";
+	need(c, step->branches == step->model->switching->systems, "one without its tables");
+	need(c, step->series.emitted && step->series.degree > 0, "they have no series to find crossings by");
+	for (int k = 0; k < step->branches; k++) {
+		const struct wanted *wanted = step->branch[k].table[0]->wanted;
+		need(c, among(step->branch[k].halvings, LIMIT_PIECES + 1), "pieces of a step that are out of range");
+		need(c, wanted->kernels == 2, "a table without what inputs add, held and as ramps");
+	}
+}
+
+void program_check(const struct step *step)
+{
+	struct check c = { .step = step, .program = step->program, .where = "program" };
+	need(&c, step->program, "there is none");
+	check_tables(&c);
+	need(&c, step->program->reads && step->program->uses, "it does not say what it reads");
+	if (step->model->switching)
+		check_regions(&c);
+	else if (has_leftover(step))
+		check_actions(&c);
+	else
+		check_list(&c);
+}

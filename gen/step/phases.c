@@ -1,0 +1,173 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Loads on the target: phases as turns, growths as exponents of 2, in fixed point, so that they add up without error
+ * however long a run is. Quotients by pi and ln 2 are irrational: each is enclosed ever more tightly until both ends
+ * round to the same bits (Ziv). */
+#include "step/step.h"
+
+enum { GUARD_BITS = 64, GROWTH_INTEGER_BITS = 16 };  /* of a growth, its sign among them */
+enum unit { TURN, OCTAVE };         /* 2 pi, ln 2: what an angle is divided by, and the logarithm of a growth */
+
+/* Bits in front of the point, at most; below 0: none */
+static long bits_above(mpq_srcptr q)
+{
+	return (long)mpz_sizeinbase(mpq_numref(q), 2) - (long)mpz_sizeinbase(mpq_denref(q), 2) + 1;
+}
+
+/* q / unit, enclosed with x's precision */
+static void divide_by_unit(mpq_srcptr q, enum unit unit, mpfi_ptr x)
+{
+	mpfi_t divisor;
+	mpfi_init2(divisor, mpfi_get_prec(x));
+	if (unit == TURN)
+		mpfi_const_pi(divisor);
+	else
+		mpfi_const_log2(divisor);
+	if (unit == TURN)
+		mpfi_mul_2ui(divisor, divisor, 1);
+	mpfi_set_q(x, q);
+	mpfi_div(x, x, divisor);
+	mpfi_clear(divisor);
+}
+
+static _Noreturn void undecided(const struct step *step, mpq_srcptr q, enum unit unit, long precision)
+{
+	error(step->model->asked.step_at, NULL, "%s / %s is not decided with %ld bits", readable_text(q),
+	      unit == TURN ? "(2*pi)" : "ln 2", precision);
+}
+
+/* The integer nearest to 2^fraction q / unit */
+static void nearest_multiple(const struct step *step, mpq_srcptr q, enum unit unit, int fraction, mpz_ptr nearest)
+{
+	long above = bits_above(q), precision = fraction + (above > 0 ? above : 0) + GUARD_BITS;
+	long limit = 2 * precision + LIMIT_PRECISION;
+	bool decided = false;
+	mpfi_t x;
+	mpfi_init2(x, precision);
+	for (; !decided && precision <= limit; precision *= 2) {
+		mpfi_set_prec(x, precision);
+		divide_by_unit(q, unit, x);
+		mpfi_mul_2ui(x, x, (unsigned long)fraction);
+		decided = round_integer(x, nearest);
+	}
+	mpfi_clear(x);
+	if (!decided)
+		undecided(step, q, unit, limit);
+}
+
+/* An exponent beyond any number of the target is saturated, not wrapped. */
+static void saturate(mpz_ptr n, int bits)
+{
+	mpz_t most;
+	mpz_init(most);
+	mpz_ui_pow_ui(most, 2, (unsigned long)bits - 1);
+	mpz_sub_ui(most, most, 1);
+	if (mpz_cmpabs(n, most) > 0)
+		mpz_mul_si(n, most, mpz_sgn(n));
+	mpz_clear(most);
+}
+
+/* q / unit as so many bits with `fraction` of them behind the point, wrapped */
+static struct fixed_point fixed_from(const struct step *step, mpq_srcptr q, enum unit unit, int bits, int fraction)
+{
+	mpz_t whole, part;
+	struct fixed_point x;
+	mpz_inits(whole, part, NULL);
+	nearest_multiple(step, q, unit, fraction, whole);
+	if (unit == OCTAVE)
+		saturate(whole, bits);
+	mpz_fdiv_r_2exp(whole, whole, (mp_bitcnt_t)bits);
+	mpz_fdiv_r_2exp(part, whole, 64);
+	x.low = mpz_get_ui(part);
+	mpz_fdiv_q_2exp(part, whole, 64);
+	x.high = mpz_get_ui(part);
+	mpz_clears(whole, part, NULL);
+	return x;
+}
+
+int phase_bits(const struct step *step)
+{
+	return step->model->asked.single ? 64 : 128;
+}
+
+int growth_bits(const struct step *step)
+{
+	return phase_bits(step) - GROWTH_INTEGER_BITS;
+}
+
+static struct fixed_point turn_of(const struct step *step, mpq_srcptr angle)
+{
+	return fixed_from(step, angle, TURN, phase_bits(step), phase_bits(step));
+}
+
+static struct advance advance_over(const struct step *step, const struct wave *wave, mpq_srcptr seconds)
+{
+	struct advance advance = { 0 };
+	mpq_t product;
+	mpq_init(product);
+	if (oscillates(wave)) {
+		mpq_mul(product, wave->w, seconds);
+		advance.turn = turn_of(step, product);
+	}
+	if (mpq_sgn(wave->a) != 0) {
+		mpq_mul(product, wave->a, seconds);
+		advance.growth = fixed_from(step, product, OCTAVE, phase_bits(step), growth_bits(step));
+	}
+	mpq_clear(product);
+	return advance;
+}
+
+static struct rate rate_of(const struct step *step, mpq_srcptr q, enum unit unit)
+{
+	struct rate rate = { .words = phase_bits(step) == 64 ? 2 : 3 };
+	int bits = 64 * rate.words;
+	long precision = bits + GUARD_BITS, limit = 2 * precision + LIMIT_PRECISION;
+	bool decided = false;
+	mpz_t word, digits;
+	mpfi_t x;
+	mpz_inits(word, digits, NULL);
+	mpfi_init2(x, precision);
+	for (; !decided && precision <= limit; precision *= 2) {
+		mpfi_set_prec(x, precision);
+		divide_by_unit(q, unit, x);
+		mpfi_abs(x, x);
+		decided = round_bits(x, bits, digits, &rate.exponent);
+	}
+	if (!decided)
+		undecided(step, q, unit, limit);
+	for (int k = 0; k < rate.words; k++) {
+		mpz_fdiv_q_2exp(word, digits, (mp_bitcnt_t)(rate.words - 1 - k) * 64);
+		mpz_fdiv_r_2exp(word, word, 64);
+		rate.word[k] = mpz_get_ui(word);
+	}
+	mpz_clears(word, digits, NULL);
+	mpfi_clear(x);
+	return rate;
+}
+
+static struct load_phase phase_of(const struct step *step, const struct wave *wave)
+{
+	struct load_phase phase = { .step = advance_over(step, wave, step->model->h) };
+	if (oscillates(wave)) {
+		phase.start = turn_of(step, wave->p);
+		phase.turns = rate_of(step, wave->w, TURN);
+	}
+	if (mpq_sgn(wave->a) != 0)
+		phase.growth = rate_of(step, wave->a, OCTAVE);
+	mpq_t seconds;
+	mpq_init(seconds);
+	phase.node = ARRAY(struct advance, (size_t)step->program->nodes);
+	for (int i = 0; i < step->program->nodes; i++) {
+		mpq_mul(seconds, step->program->node[i], step->model->h);
+		phase.node[i] = advance_over(step, wave, seconds);
+	}
+	mpq_clear(seconds);
+	return phase;
+}
+
+void plan_phases(struct step *step)
+{
+	const struct linear *system = &step->branch->system;
+	step->phase = ARRAY(struct load_phase, (size_t)system->loads);
+	for (int l = 0; l < system->loads; l++)
+		step->phase[l] = phase_of(step, system->load[l].wave);
+}

@@ -1,0 +1,91 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A of x' = A x as the target's numbers: of each operator, of each segment of time, and what a scheme holds. */
+#include "step/step.h"
+
+void tell_range(const struct step *step)
+{
+	error(step->model->asked.step_at, NULL, "a number of the equations is beyond the range of %s", target_name());
+}
+
+double number_in_range(const struct step *step, mpq_srcptr q)
+{
+	if (beyond_range(q))
+		tell_range(step);
+	return round_rational(q);
+}
+
+double *slopes_of(const struct step *step, int branch)
+{
+	size_t cells = (size_t)step->layout.size * (size_t)step->layout.size;
+	mpq_t *exact = augmented_matrix(&step->layout, &step->branch[branch].system, 0);
+	double *A = ARRAY(double, cells);
+	for (size_t i = 0; i < cells; i++)
+		A[i] = round_rational(exact[i]);
+	rationals_free(exact, cells);
+	return A;
+}
+
+/* The entries of x that are load states; they stand together. */
+static struct load_slopes place_of_loads(const struct step *step)
+{
+	const struct linear *system = &step->branch->system;
+	struct load_slopes place = { .first = -1 };
+	for (int l = 0; l < system->loads; l++) {
+		int at = step->layout.load[l];
+		if (at < 0)
+			continue;
+		place.first = place.first < 0 ? at : place.first;
+		place.columns += system->load[l].columns;
+	}
+	return place;
+}
+
+/* Does this entry of x belong to a load that the step leaves out? */
+static bool is_left_out(const struct step *step, int entry)
+{
+	const struct linear *system = &step->branch->system;
+	for (int l = 0; step->forced && l < system->loads; l++) {
+		int from = step->layout.load[l];
+		if (step->forced->load[l] && entry >= from && entry < from + system->load[l].columns)
+			return true;
+	}
+	return false;
+}
+
+static double *load_slopes_in(const struct step *step, const struct load_slopes *place, int segment)
+{
+	int states = step->branch->system.states, size = step->layout.size;
+	mpq_t *exact = augmented_matrix(&step->layout, &step->branch->system, segment);
+	double *value = ARRAY(double, (size_t)states * (size_t)place->columns);
+	for (int j = 0; j < place->columns; j++)
+		for (int i = 0; i < states && !is_left_out(step, place->first + j); i++)
+			value[i * place->columns + j] = round_rational(exact[i * size + place->first + j]);
+	rationals_free(exact, (size_t)size * (size_t)size);
+	return value;
+}
+
+struct load_slopes load_slopes_of(const struct step *step)
+{
+	struct load_slopes slopes = place_of_loads(step);
+	int segments = step->branch->system.segments;
+	slopes.segment = ARRAY(double *, (size_t)segments);
+	for (int s = 0; s < segments && slopes.first >= 0; s++)
+		slopes.segment[s] = load_slopes_in(step, &slopes, s);
+	return slopes;
+}
+
+/* -heldK q - heldC v */
+struct coefficient *held_forces_of(const struct step *step)
+{
+	const struct linear *system = &step->branch->system;
+	int n = system->n;
+	struct coefficient *force = ARRAY(struct coefficient, (size_t)n * (size_t)system->states);
+	for (int i = 0; i < n; i++)
+		for (int j = 0; j < system->states; j++) {
+			mpq_srcptr held = (j < n ? system->heldK : system->heldC)[i * n + system->coord[j]];
+			struct coefficient *c = &force[i * system->states + j];
+			c->zero = mpq_sgn(held) == 0;
+			c->value = c->zero ? 0 : -number_in_range(step, held);
+		}
+	return force;
+}
