@@ -89,7 +89,7 @@ charts charts-quick: tests
 firmware-report: tests
 	ninja -C $(BUILD) firmware_report
 
-# Does the suite that should notice a fault notice it?  150 faults, each put into a copy: tests/faults
+# Does the suite that should notice a fault notice it?  each is put into a copy: tests/faults
 faults: check-deps
 	sh tests/faults/faults.sh -j 2
 

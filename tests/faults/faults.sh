@@ -1,15 +1,19 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 #
-# faults.sh [-j COPIES] [-w FOLDER] [--check | --refresh] [NAME ...]: faults of which a suite is known to notice them, all or those named.
+# faults.sh [-j COPIES] [-w FOLDER] [--check | --refresh] [NAME ...]: faults of which a suite is known to notice them,
+# all or those named.
 # Each NAME.patch beside this script changes one file of gen or runtime. Its head says:
 #   # suite: TEST            the meson test that has to fail
-#   # run: PROGRAM ARGUMENT  only this of it, where the whole takes long: the program by its path in the build folder, run in the root of the tree
+#   # run: PROGRAM ARGUMENT  only this of it, where the whole takes long: the program by its path in the build folder,
+#                            run in the root of the tree
 #   # case: ARGUMENT ...     or this is appended to the command of the test
-#   # notice: build          plgen may stop while it writes what the suite is made of; otherwise what does not build is not noticed
+#   # notice: build          plgen may stop while it writes what the suite is made of; otherwise what does not build
+#                            is not noticed
 #   # says: ...              what a user would see
-# Each is applied to a copy of the tree and taken out again; the suite must pass before and fail with it. --check: do all apply?
-# --refresh writes the patches anew where lines or files have moved. The copies stay in FOLDER, where there is one, for the next time.
+# Each is applied to a copy of the tree and taken out again; the suite must pass before and fail with it. --check: do
+# all apply? --refresh writes the patches anew where lines or files have moved. The copies stay in FOLDER, where there
+# is one, for the next time; no two runs at a time may share it.
 set -u
 here=$(cd "$(dirname "$0")" && pwd) || exit 99
 root=$(cd "$here/../.." && pwd) || exit 99
@@ -95,7 +99,8 @@ check_all()
 	for name; do
 		number=$((number + 1))
 		why=
-		[ -n "$(head_of "$name" suite)" ] && [ -n "$(head_of "$name" says)" ] || why='its head has no suite, or says nothing'
+		[ -n "$(head_of "$name" suite)" ] || why='its head names no suite'
+		[ -n "$(head_of "$name" says)" ] || why='its head says nothing'
 		[ -n "$(file_of "$root" "$name")" ] || why='it applies to no file'
 		if [ -z "$why" ]; then
 			echo "ok $number - $name"
@@ -147,7 +152,8 @@ run_suite()
 		(cd "$1" && eval "timeout 300 build/$program") >>"$3" 2>&1 && return 0
 		return 1
 	fi
-	timeout 600 meson test -C "$1/build" --timeout-multiplier 5 --print-errorlogs "$suite" --test-args="$(head_of "$2" case)" >>"$3" 2>&1
+	timeout 600 meson test -C "$1/build" --timeout-multiplier 5 --print-errorlogs "$suite" \
+		--test-args="$(head_of "$2" case)" >>"$3" 2>&1
 	case $? in
 	0) return 0 ;;
 	125) return 2 ;;
@@ -158,7 +164,8 @@ run_suite()
 # passes_without COPY NAME: once for each way to call a suite
 passes_without()
 {
-	key=$(printf '%s' "$(head_of "$2" suite)$(head_of "$2" run)$(head_of "$2" case)" | tr -c 'a-zA-Z0-9_.-' '_')
+	key=$(head_of "$2" 'suite' && head_of "$2" run && head_of "$2" case)
+	key=$(printf '%s' "$key" | tr -c 'a-zA-Z0-9_.-' '_')
 	if [ ! -f "$work/passed.$key" ]; then
 		run_suite "$1" "$2" "$1.log" || return 1
 		: >"$work/passed.$key"
@@ -175,7 +182,7 @@ verdict()
 	run_suite "$1" "$2" "$1.log"
 	case $?$(head_of "$2" notice) in
 	1 | 1build) echo noticed ;;
-	2build) if [ -n "$(find "$1/build/plgen" -newer "$1.kept")" ]; then echo noticed; else echo "DOES NOT COMPILE"; fi ;;
+	2build) [ -n "$(find "$1/build/plgen" -newer "$1.kept")" ] && echo noticed || echo "DOES NOT COMPILE" ;;
 	2) echo "DOES NOT BUILD" ;;
 	*) echo "NOT NOTICED" ;;
 	esac

@@ -1059,8 +1059,8 @@ static void taylor_of_known_eigenvalues(void **state)
 }
 
 /* Of x' = [[0, 2^g], [-a b 2^-g, a + b]] x, a and b below 0 and rational, with few bits: there what the series leaves
- * out is more than what rounding does. With E the exponentials E11 = (a e^{b t} - b e^{a t})/(a - b) and E12 = 2^g
- * (e^{a t} - e^{b t})/(a - b), in states whose units differ by 2^g. */
+ * out is more than what rounding does. With E the exponentials E11 = (a e^{b t} - b e^{a t})/(a - b) and
+ * E12 = 2^g (e^{a t} - e^{b t})/(a - b), in states whose units differ by 2^g. */
 static void taylor_of_few_bits(void **state)
 {
     mpq_t a, b, tau, factor, none;
