@@ -8,8 +8,8 @@ DEMO_PACKAGES = $(PACKAGES) libsundials-dev gnuplot-nox
 CHECK_PACKAGES = $(DEMO_PACKAGES) g++ clang libcmocka-dev valgrind \
 	gcc-arm-none-eabi libnewlib-arm-none-eabi qemu-system-arm
 
-.PHONY: all setup deps demo-deps check-deps demo tests check check-long faults bench charts charts-quick firmware-report \
-	install clean
+.PHONY: all setup deps demo-deps check-deps demo tests check check-long faults bench charts charts-quick \
+	firmware-report install clean
 
 all: setup
 	ninja -C $(BUILD) plgen

@@ -367,8 +367,8 @@ static void begin_model(struct building *b)
 	b->polynomial = wave_of(&b->collector, zero, zero, zero);
 }
 
-/* Params, equations and outputs as forms; initial values and the step. With values of the tunable params no more than the
- * equations: what nothing reads may not be defined there. */
+/* Params, equations and outputs as forms; initial values and the step. With values of the tunable params no more than
+ * the equations: what nothing reads may not be defined there. */
 static void collect_model(struct building *b)
 {
 	struct model *model = b->model;

@@ -7,14 +7,16 @@ BEGIN {
 		sub(/^[a-z]* /, "", line)
 		wanted[line] = 1
 	}
-	wanted["naive residues"] = wanted["exact"] = wanted["exact, compensated"] = wanted["exact, float"] = wanted["pl"] = 1
+	wanted["naive residues"] = wanted["exact"] = wanted["exact, compensated"] = wanted["exact, float"] = \
+		wanted["pl"] = 1
 	wanted["etd1"] = wanted["etdrk2"] = wanted["etdrk4"] = wanted["bm3"] = 1
 }
 NR == 1 { read_head($0, column); next }
 {
 	split("", row)
 	split_row($0, row)
-	of = row[column["case"]]; method = row[column["method"]]; error = row[column["error"]]; word = row[column["word"]]
+	of = row[column["case"]]; method = row[column["method"]]; error = row[column["error"]];
+	word = row[column["word"]]
 	cases[of] = 1
 	seen[of, method] = 1
 	words[of, method] = words[of, method] " " word ";"
@@ -33,7 +35,8 @@ NR == 1 { read_head($0, column); next }
 	}
 }
 function known(of, method, pattern) {
-	if (words[of, method] !~ pattern) { print of ", " method ": found" words[of, method] " expected " pattern; bad = 1 }
+	if (words[of, method] !~ pattern) { print of ", " method ": found" words[of, method] " expected " pattern;
+		bad = 1 }
 }
 END {
 	for (of in cases) {

@@ -3,7 +3,8 @@
 # method of the list (propagators only where it is linear) and of ours those that there are for it; each row has
 # numbers, or a word and the flag `failed`.
 function ours_of(model) {
-	if (model == "scs") return "exact;exact, direct;exact, delta;exact, kick-drift-kick;exact, compensated;exact, float;" \
+	if (model == "scs")
+		return "exact;exact, direct;exact, delta;exact, kick-drift-kick;exact, compensated;exact, float;" \
 		"exact, float, delta;exact, float, kick-drift-kick;exact, float, compensated;pl"
 	if (model == "gear1") return "exact;etd1;etdrk2;etdrk4;nc2;nc3;dq4;bm3"
 	return "pl;etd1;etdrk2;etdrk4;nc2;nc3;dq4;bm3"
@@ -24,12 +25,15 @@ NR == 1 { read_head($0, column); next }
 	seen[model, method] = 1
 	for (e = 1; e <= 5; e++) {
 		value = row[column[errors[e]]]
-		good = row[column["failed"]] == 0 ? is_number(value) && value >= 0 : value ~ /^(failed|refused|diverged|nan)$/
-		if (!good) { print model ", " method ": " errors[e] " is " value ", failed " row[column["failed"]]; bad = 1 }
+		good = row[column["failed"]] == 0 ? is_number(value) &&
+			value >= 0 : value ~ /^(failed|refused|diverged|nan)$/
+		if (!good) { print model ", " method ": " errors[e] " is " value ", failed " row[column["failed"]];
+			bad = 1 }
 	}
 	timed = row[column["ns_units"]] * row[column["unit_s"]]
 	if (is_number(row[column["ns_median"]]) && timed != row[column["history_s"]]) {
-		print model ", " method ": timed over " row[column["ns_units"]] " units of " row[column["unit_s"]] " s, expected " \
+		print model ", " method ": timed over " row[column["ns_units"]] " units of " \
+			row[column["unit_s"]] " s, expected " \
 			row[column["history_s"]] " s, the whole history"
 		bad = 1
 	}

@@ -56,8 +56,10 @@ result 1 "models of every kind: $(wc -l < suffixes) suffixes"
 
 : > headers.c
 for header in aio complex ctype dirent dlfcn errno fcntl fenv float fnmatch ftw glob iconv inttypes langinfo limits \
-	locale math mqueue netdb poll pthread pwd regex sched search semaphore setjmp signal spawn stdarg stdatomic stddef \
-	stdint stdio stdlib string strings sys/mman sys/resource sys/select sys/sem sys/socket sys/stat sys/time sys/types \
+	locale math mqueue netdb poll pthread pwd regex sched search semaphore setjmp signal spawn stdarg stdatomic \
+		stddef \
+	stdint stdio stdlib string strings sys/mman sys/resource sys/select sys/sem sys/socket sys/stat sys/time \
+		sys/types \
 	sys/wait syslog termios threads time uchar unistd wchar wctype fts obstack envz sys/inotify sys/epoll; do
 	printf '#include <%s.h>\n' "$header" > one.c
 	"$@" -std=gnu11 -E one.c > log 2>&1 && cat one.c >> headers.c
@@ -76,7 +78,8 @@ awk 'NR == FNR { suffix[$1]; next }
 [ -s met ] || echo 'no identifier of the library ends as generated ones do' > wrong
 while read -r name meets; do
 	case $name in [!a-z]*) continue ;; esac
-	"$plgen" --prefix "$name" inputs.spec > out 2> log && echo "a model may be called $name, which meets $meets" >> wrong
+	"$plgen" --prefix "$name" inputs.spec > out 2> log &&
+		echo "a model may be called $name, which meets $meets" >> wrong
 done < met
 result 2 "$(wc -l < met) identifiers of the library that end as generated ones do"
 
@@ -98,7 +101,8 @@ for name in sinf FILE strdup signgam errno stdin stdout EOF NAN FP_NAN HUGE_VAL 
 		printf "%s'' + sin(%s)*other = NAN_\nother'' + INFINITY_*other = 0\n" "$name" "$name"
 		printf "output o = sqrt(%s)\nstep 0.1\n" "$name"
 	} > name.spec
-	"$plgen" --rhs name.spec > name.c 2> log || { grep -q 'reserved\|is kept' log || head -n 2 log >> wrong; continue; }
+	"$plgen" --rhs name.spec > name.c 2> log || { grep -q 'reserved\|is kept' log ||
+		head -n 2 log >> wrong; continue; }
 	for flags in -std=c99 -std=gnu11 '-x c++ -std=c++20'; do
 		# shellcheck disable=SC2086
 		"$@" -Wall -Wextra -Wshadow -Werror $flags -I"$runtime" -c name.c -o name.o > log 2>&1 ||

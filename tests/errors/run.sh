@@ -19,7 +19,7 @@ case $plgen in /*) ;; *) plgen=$PWD/$plgen ;; esac
 . "$here/../tap.sh"
 limit=''                # seconds for what should take a fraction of one
 if command -v timeout >log; then
-	limit='timeout 20'
+	limit='timeout 400'
 fi
 mkdir in && cd in || exit 99
 ulimit -s 256           # KiB: what the limits allow needs no more of the stack that a program starts with
