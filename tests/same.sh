@@ -1,8 +1,9 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# same.sh OLD NEW: do two builds of plgen say the same, byte for byte?  C, header, --explain, --solution of every model and every spec of
-# the tests under the options below, and what is said of every case of tests/errors: exit status, standard output and standard error.
-# OLD or NEW may be a file of sums that `same.sh PLGEN >SUMS` has written before.  Ends with a line that counts; lists what differs.
+# same.sh OLD NEW: do two builds of plgen say the same, byte for byte?  C, header, --explain, --solution of every
+# model and every spec of the tests under the options below, and what is said of every case of tests/errors: exit
+# status, standard output and standard error. OLD or NEW may be a file of sums that `same.sh PLGEN >SUMS` has written
+# before.  Ends with a line that counts; lists what differs.
 set -u
 tests=$(cd "$(dirname "$0")" && pwd)
 work=$(mktemp -d "${TMPDIR:-/tmp}/plgen.XXXXXX") || exit 99
@@ -30,7 +31,8 @@ each='--header
 --step 1/100 --selftest --real float'
 
 commands() {
-	find "$tests/../models" "$tests" -name '*.spec' | grep -v '/errors/' | LC_ALL=C sort | while IFS= read -r spec; do
+	find "$tests/../models" "$tests" -name '*.spec' | grep -v '/errors/' | LC_ALL=C sort |
+		while IFS= read -r spec; do
 		printf '%s\n' "$each" | while IFS= read -r options; do
 			printf '%s|%s|%s\n' "${spec%/*}" "${spec##*/}" "$options"
 		done
@@ -76,7 +78,8 @@ sums() {
 	if [ -x "$1" ]; then
 		plgen=$(cd "$(dirname "$1")" && pwd)/$(basename "$1")
 		mkdir -p "$work/runs"
-		xargs -d '\n' -P "$(nproc)" -I '{}' sh "$work/one.sh" "$plgen" '{}' "$work/runs" <"$work/commands" | LC_ALL=C sort -k 2 >"$2"
+		xargs -d '\n' -P "$(nproc)" -I '{}' sh "$work/one.sh" "$plgen" '{}' "$work/runs" <"$work/commands" |
+			LC_ALL=C sort -k 2 >"$2"
 	else
 		cp "$1" "$2"
 	fi

@@ -318,7 +318,8 @@ MAKE
 	run "$plgen" -o 'a b/m.c' --depfile odd.d 'a b/my #1 $model.spec'
 	need_status 0
 	make -n -d -f odd.d 'a b/m.c' > make.out 2>&1
-	grep -q "Considering target file 'a b/my #1 \$model.spec'" make.out || wrong "make reads other names: $(cat odd.d)"
+	grep -q "Considering target file 'a b/my #1 \$model.spec'" make.out ||
+		wrong "make reads other names: $(cat odd.d)"
 	result 'blanks, # and $ in a depfile'
 else
 	skip 'make follows the depfile' 'no make'
@@ -393,7 +394,8 @@ run "$plgen" --step 0.012 -o pair/a.c model.spec       # a header of the same le
 cp pair/first.c pair/a.c
 if command -v "${CC:-cc}" > make.path 2>&1; then
 	"${CC:-cc}" -fsyntax-only -I"$runtime" plain/m.c > out 2>&1 || wrong "a pair does not compile: $(head -n 3 out)"
-	"${CC:-cc}" -fsyntax-only -I"$runtime" pair/a.c > out 2>&1 && wrong 'C beside the header of another step compiles'
+	"${CC:-cc}" -fsyntax-only -I"$runtime" pair/a.c > out 2>&1 &&
+		wrong 'C beside the header of another step compiles'
 	grep -q 'were not made together' out || wrong "another message: $(head -n 3 out)"
 	result 'C and header of two runs do not compile'
 else

@@ -67,9 +67,11 @@ for spec in "$@"; do
 				continue
 			fi
 			[ "$status" -eq 1 ] || complain "status $status, expected 1"
-			[ "$(grep -c 'error: \(out of memory\|cannot \)' ../stderr)" -eq 1 ] || complain "message: $(head -n 2 ../stderr)"
+			[ "$(grep -c 'error: \(out of memory\|cannot \)' ../stderr)" -eq 1 ] ||
+				complain "message: $(head -n 2 ../stderr)"
 			[ -s ../stdout ] && complain 'standard output is not empty'
-			[ "$(ls -A ../out | tr '\n' ' ')" = 'm.c m.h ' ] || complain "files: $(ls -A ../out | tr '\n' ' ')"
+			[ "$(ls -A ../out | tr '\n' ' ')" = 'm.c m.h ' ] ||
+				complain "files: $(ls -A ../out | tr '\n' ' ')"
 			whole m.c
 			whole m.h
 			rm -f ../out/*

@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Measures every form of every linear model on an emulated Cortex-M0 and M4F, and retuning where params are tunable, and writes what
-# doc/firmware.md shows of it.
+# Measures every form of every linear model on an emulated Cortex-M0 and M4F, and retuning where params are tunable,
+# and writes what doc/firmware.md shows of it.
 #
 #     report.sh SOURCE_ROOT DOC_FOLDER ALL_double.c ALL_float.c MODEL_double.c MODEL_float.c ...
 #
@@ -43,7 +43,8 @@ for name in m0 m4f; do
         for f in "$root"/runtime/*.c; do compile "$f" "$of/runtime_$(basename "$f" .c)" -fcallgraph-info=su; done
         for f; do
             case $f in /*) ;; *) f=$PWD/$f ;; esac
-            case $f in *_$real.c) (cd "$work" && compile "$f" other -fcallgraph-info=su && mv other.ci "$of/other_$(basename "$f" .c).ci") ;; esac
+            case $f in *_$real.c) (cd "$work" && compile "$f" other -fcallgraph-info=su &&
+            	mv other.ci "$of/other_$(basename "$f" .c).ci") ;; esac
         done
         awk -f "$firmware/stack.awk" "$of"/*.ci | sort >"$work/stack.$name.$real"
         link "$of/image.elf" "$of"/*.o
@@ -65,7 +66,8 @@ for name in m0 m4f; do
         # Bytes of a retune itself, and of a program that has it beside init, step and get
         sed -n 's/_retune .*//p' "$of/out" | uniq | while read -r variant; do
             bytes=$($arm-nm -S "$of/image.elf" | awk -v f="${variant}_retune" '$4 == f { print $2 }')
-            link "$of/one.elf" -Wl,-e,"${variant}_step" -Wl,-u,"${variant}_init" -Wl,-u,"${variant}_get" -Wl,-u,"${variant}_retune" -Wl,-u,"${variant}_use" \
+            link "$of/one.elf" -Wl,-e,"${variant}_step" -Wl,-u,"${variant}_init" -Wl,-u,"${variant}_get" \
+            	-Wl,-u,"${variant}_retune" -Wl,-u,"${variant}_use" \
                 "$of/models.o" "$of"/runtime_*.o
             echo "$variant $((0x$bytes)) $($arm-size "$of/one.elf" | awk 'NR == 2 { print $1 + $2 }')"
         done >"$of/retune_bytes"
@@ -85,7 +87,8 @@ done
                     if (split(line, field, " ") != 5) continue
                     ram[field[1]] = field[2]
                     # One instruction of the empty function came off with its call.
-                    figures[board, field[1]] = field[5] "," int(field[3] / 200 / ticks + 1.5) "," int(field[4] / ticks + 1.5)
+                    figures[board, field[1]] = field[5] "," int(field[3] / 200 / ticks + 1.5) "," int(field[4] / ticks \
+                    	+ 1.5)
                 }
                 file = folder "/" board "." real "/bytes"
                 while ((getline line <file) > 0) {
@@ -104,8 +107,10 @@ done
                 return (total[what] - total["draw"]) / 200 / 16.384
             }
             function row(variant, what, multiplications, additions) {
-                return what "," real "," multiplications "," additions "," ram[variant] "," bytes["m0", variant] "," figures["m0", variant] "," \
-                    int(multiplications * multiply + additions * add + 0.5) "," bytes["m4f", variant] "," figures["m4f", variant] "\n"
+                return what "," real "," multiplications "," additions "," ram[variant] "," bytes["m0", variant] "," \
+                	figures["m0", variant] "," \
+                    int(multiplications * multiply + additions * add + 0.5) "," bytes["m4f", variant] "," \
+                    	figures["m4f", variant] "\n"
             }
             BEGIN { read_board("m0", 16.384); read_board("m4f", 25.6); multiply = cost("multiply"); add = cost("add") }
             /^\/\* [a-z0-9_]*: made by plgen/ {
@@ -155,7 +160,8 @@ done
                         if (board == "m0")
                             times[variant, ++many[variant]] = field[6]
                         size[variant] = field[2]
-                        figures[board, variant, field[6]] = bytes[variant] "," field[5] "," int(field[3] / 4 / ticks + 0.5) "," int(field[4] / ticks + 0.5)
+                        figures[board, variant, field[6]] = bytes[variant] "," field[5] "," int(field[3] / 4 / ticks + \
+                        	0.5) "," int(field[4] / ticks + 0.5)
                     }
             }
             BEGIN { read_board("m0", 16.384); read_board("m4f", 25.6) }
@@ -171,7 +177,8 @@ done
                 match($0, /form [a-z-]*/)
                 form = substr($0, RSTART + 5, RLENGTH - 5)
                 for (i = 1; i <= many[variant]; i++)
-                    printf "%s,%s,%s,%d,%.2g,%s,%s\n", model, form, real, size[variant], 6.283185307 * pole * $7 * times[variant, i],
+                    printf "%s,%s,%s,%d,%.2g,%s,%s\n", model, form, real, size[variant], 6.283185307 * pole * $7 * \
+                    	times[variant, i],
                         figures["m0", variant, times[variant, i]], figures["m4f", variant, times[variant, i]]
             }' "$models"
     done
@@ -194,7 +201,8 @@ done
     echo '| model | form | | operations | RAM | M0: step | flash | stack | instr. | M4F: step | flash | stack | instr. |'
     echo '| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |'
     awk -F, 'NR > 1 { form = $2 ($3 == "compensated" ? ", two words" : "")
-                      print "| " $1 " | " form " | " $4 " | " $5 " + " $6 " | " $7 " | " $8 " | " $9 " | " $10 " | " $11 " | " $14 " | " $15 " | " $16 " | " $17 " |" }' "$doc/firmware/figures.csv"
+                      print "| " $1 " | " form " | " $4 " | " $5 " + " $6 " | " $7 " | " $8 " | " $9 " | " $10 " | " \
+                      	$11 " | " $14 " | " $15 " | " $16 " | " $17 " |" }' "$doc/firmware/figures.csv"
 } >"$work/figures"
 {
     echo '| | M0: own | deepest | M4F: own | deepest |'
@@ -209,8 +217,10 @@ done
              function of(table, f) { return f in table ? table[f] : "" }
              END { for (i = 1; i <= n; i++) {
                        m = order[i]
-                       print "| " m " | " of(m0, m "_step") " | " of(m0, m "_at") " | " of(m0, m "_jump") " | " of(m0, m "_retune") " | " of(m0, m "_selftest") " | " \
-                           of(m4f, m "_step") " | " of(m4f, m "_at") " | " of(m4f, m "_jump") " | " of(m4f, m "_retune") " | " of(m4f, m "_selftest") " |" } }' "$doc/firmware/stack.csv"
+                       print "| " m " | " of(m0, m "_step") " | " of(m0, m "_at") " | " of(m0, m "_jump") " | " of(m0, \
+                       	m "_retune") " | " of(m0, m "_selftest") " | " \
+                           of(m4f, m "_step") " | " of(m4f, m "_at") " | " of(m4f, m "_jump") " | " of(m4f, m \
+                           	"_retune") " | " of(m4f, m "_selftest") " |" } }' "$doc/firmware/stack.csv"
 } >"$work/model_stack"
 {
     echo '| model | form | | RAM | \|pole\| h | M0: retune | flash | stack | instr. | M4F: retune | flash | stack | instr. |'
@@ -223,14 +233,17 @@ for name in m0 m4f; do
     [ $name = m0 ] || ticks=25.6
     for real in double float; do
         awk -v ticks=$ticks -v what="$name, $real" '{ total[$1] = $3 }
-            END { printf "| %s | %.0f | %.0f |\n", what, (total["multiply"] - total["draw"]) / 200 / ticks, (total["add"] - total["draw"]) / 200 / ticks }' "$work/$name.$real/out"
+            END { printf "| %s | %.0f | %.0f |\n", what, (total["multiply"] - total["draw"]) / 200 / ticks, \
+            	(total["add"] - total["draw"]) / 200 / ticks }' "$work/$name.$real/out"
     done
 done >"$work/soft.rows"
-{ echo '| | multiplication | addition |'; echo '| --- | --- | --- |'; sed 's/^| m0/| M0/; s/^| m4f/| M4F/' "$work/soft.rows"; } >"$work/operations"
+{ echo '| | multiplication | addition |'; echo '| --- | --- | --- |'; sed 's/^| m0/| M0/; s/^| m4f/| M4F/' \
+	"$work/soft.rows"; } >"$work/operations"
 
 # Between <!-- table NAME --> and <!-- end --> stands table NAME.
 awk -v folder="$work" '
     /^<!-- end -->/ { inside = 0 }
     !inside { print }
-    /^<!-- table / { inside = 1; print ""; while ((getline line <(folder "/" $3)) > 0) print line; print "" }' "$doc/firmware.md" >"$work/firmware.md"
+    /^<!-- table / { inside = 1; print ""; while ((getline line <(folder "/" $3)) > 0) print line; print "" \
+    	}' "$doc/firmware.md" >"$work/firmware.md"
 cp "$work/firmware.md" "$doc/firmware.md"

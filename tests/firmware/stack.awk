@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Reads call graphs of gcc's -fcallgraph-info=su and prints FUNCTION OWN DEEPEST for what the objects offer: the bytes of
-# its frame, and with those of all that it calls in turn.  What no graph tells of, libgcc above all, counts as 0.
+# Reads call graphs of gcc's -fcallgraph-info=su and prints FUNCTION OWN DEEPEST for what the objects offer: the bytes
+# of its frame, and with those of all that it calls in turn.  What no graph tells of, libgcc above all, counts as 0.
 /^node:/ {
     split($0, quoted, "\"")
     title = quoted[2]

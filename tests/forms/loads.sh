@@ -102,7 +102,8 @@ cat >loose.spec <<-END
 	a'' + 0.1*(a' - b') + (a - b) = t^4*cos(900*t)
 	b'' + 0.1*(b' - a') + (b - a) + 2*(b - c) = -t^4*cos(900*t)
 	c'' + 2*(c - b) = 0
-	output r = a - b, q = b - c, r_rate = a' - b', q_rate = b' - c', centre = (a + b + c)/3, centre_rate = (a' + b' + c')/3
+	output r = a - b, q = b - c, r_rate = a' - b', q_rate = b' - c'
+	output centre = (a + b + c)/3, centre_rate = (a' + b' + c')/3
 	step 0.01
 END
 add loose
@@ -114,7 +115,8 @@ awk 'BEGIN {
 	for (i = 1; i <= 10; i++) printf "%s%s", (i == 1 ? "coord x" : ", x"), i
 	print ""
 	for (i = 1; i <= 10; i++)
-		printf "x%d%s + 0.05*x%d%s + 3*x%d%s%s = %s\n", i, "\047\047", i, "\047", i, (i == 1 ? "" : " - x" i - 1),
+		printf "x%d%s + 0.05*x%d%s + 3*x%d%s%s = %s\n", i, "\047\047", i, "\047", i,
+			(i == 1 ? "" : " - x" i - 1),
 			(i == 10 ? "" : " - x" i + 1), (i == 1 ? "t^3*cos(700*t)" : 0)
 	print "step 0.01"
 }' >large.spec
@@ -129,7 +131,8 @@ cat models.c table >load_models.h
 for compiler in "${CC:-cc} -std=c99" "clang -std=c99" "g++ -std=c++17 -x c++"; do
 	command -v "${compiler%% *}" >/dev/null || continue
 	# shellcheck disable=SC2086
-	$compiler -fsyntax-only -Wall -Wextra -Wpedantic -Wconversion -Wdouble-promotion -Wshadow -Werror -I"$root/runtime" \
+	$compiler -fsyntax-only -Wall -Wextra -Wpedantic -Wconversion -Wdouble-promotion -Wshadow \
+		-Werror -I"$root/runtime" \
 		models.c >log 2>&1 || {
 		result 1 "$compiler"
 		tap_end

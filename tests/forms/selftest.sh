@@ -31,7 +31,8 @@ values() {
 
 # constants FILE: those of its step, each once, from 1e-5 on: what is smaller adds less than rounding to a step of float
 constants() {
-	sed -n '/^void subject_step/,/^}/p' "$1" | sed 's,/\*.*\*/,,' | grep -o -E '[0-9]\.[0-9]{4,}(e-?[0-9]+)?f?' | sort -u |
+	sed -n '/^void subject_step/,/^}/p' "$1" | sed 's,/\*.*\*/,,' | grep -o -E '[0-9]\.[0-9]{4,}(e-?[0-9]+)?f?' |
+		sort -u |
 		awk '$1 + 0 >= 1e-5'
 }
 
@@ -58,7 +59,8 @@ for spec in models/scs models/sdcsf tests/forms/damped_ramped; do
 		while read -r number; do
 			wrong=$(damaged "$number")
 			echo "$number as $wrong" >>changes
-			awk -v from="$number" -v to="$wrong" '{ while (i = index($0, from)) { out = out substr($0, 1, i - 1) to;
+			awk -v from="$number" -v to="$wrong" \
+				'{ while (i = index($0, from)) { out = out substr($0, 1, i - 1) to;
 				$0 = substr($0, i + length(from)) } print out $0; out = "" }' good.c >bad.c
 			subject bad.c
 		done <numbers
@@ -74,7 +76,8 @@ done
 for spec in reduce_highest_good reduce_loops_good; do
 	for type in double float; do
 		rm -f reduced.c
-		"$plgen" --prefix subject --selftest --reduce --real "$type" "$root/tests/errors/schemes/$spec.spec" >reduced.c 2>log
+		"$plgen" --prefix subject --selftest --reduce --real "$type" "$root/tests/errors/schemes/$spec.spec" \
+			>reduced.c 2>log
 		subjects
 		subject reduced.c
 		value=$(values)

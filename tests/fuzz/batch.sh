@@ -98,7 +98,8 @@ batch_add() {
 	scheme=$(sed -n 's/^ \* Scheme \([a-z0-9]*\).*/\1/p' "$id.c" | head -n 1)
 	solution=NULL
 	if [ "$scheme" = exact ] && ! grep -q 'INPUTS = [1-9]' "$id.h" && ! grep -q 'piecewise linear' "$id.c"; then
-		horizon=$(sed -n "s/^#define [A-Z0-9_]*_H \([-0-9.e]*\).*/\1/p" "$whole.h" | awk '{ printf "%.17g", 32.5 * $1 }')
+		horizon=$(sed -n "s/^#define [A-Z0-9_]*_H \([-0-9.e]*\).*/\1/p" "$whole.h" |
+			awk '{ printf "%.17g", 32.5 * $1 }')
 		# shellcheck disable=SC2086
 		timeout 1200 "$plgen" --solution "$horizon" $plain "$spec" >"$id.csv" 2>"$id.said" </dev/null
 		status=$?
@@ -161,8 +162,10 @@ compile() {
 			continue
 		fi
 		if [ -f "$id.again.c" ]; then
-			$cc -std=gnu11 -O1 -I"$source/tests/fuzz" -c "$id.again.made.c" -o "$id.again.o" 2>"$id.cc_said" ||
-				{ { echo "$cc: the second writing does not compile"; grep -m 3 error "$id.cc_said"; } >"$id.wrong"; continue; }
+			$cc -std=gnu11 -O1 -I"$source/tests/fuzz" -c "$id.again.made.c" -o "$id.again.o" \
+				2>"$id.cc_said" ||
+				{ { echo "$cc: the second writing does not compile"; grep -m 3 error "$id.cc_said"; } \
+					>"$id.wrong"; continue; }
 		fi
 		echo "$id" >>"compiled_$cc.list"
 	done <"subjects_$cc.list"
@@ -191,9 +194,11 @@ batch_build() {
 			[ -f "$id.again.c" ] && objects="$objects $id.again.o"
 		done <"compiled_$cc.list"
 		# shellcheck disable=SC2086
-		$cc -std=gnu11 -O1 -w $sanitizers -I. -I"$source/runtime" -I"$source/tests/fuzz" "subjects_$cc.c" $objects \
+		$cc -std=gnu11 -O1 -w $sanitizers -I. -I"$source/runtime" -I"$source/tests/fuzz" "subjects_$cc.c" \
+			$objects \
 			"$folder/drive_$cc.a" \
-			-lsundials_cvode -lsundials_arkode -lsundials_nvecserial -lm -o "batch_$cc" >"link_$cc.said" 2>&1 ||
+			-lsundials_cvode -lsundials_arkode -lsundials_nvecserial -lm -o "batch_$cc" >"link_$cc.said" \
+				2>&1 ||
 				sed 's/^/# /' "link_$cc.said" | head -n 20
 	done
 }

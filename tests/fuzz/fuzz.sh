@@ -1,10 +1,10 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 #
-# fuzz.sh PLGEN MUTATE FIRST COUNT GOOD BAD: mutated specs FIRST to FIRST+COUNT-1 through PLGEN (built with sanitizers), as
-# TAP, one line for each hundred. They are made from the specs in the folders GOOD (drawn more often) and BAD/*. What
-# fails is kept if KEEP names a folder. With CHECK_C (a compiler and its options) the C is compiled as well. Every finding
-# belongs into ../errors as a case of its own.
+# fuzz.sh PLGEN MUTATE FIRST COUNT GOOD BAD: mutated specs FIRST to FIRST+COUNT-1 through PLGEN (built with
+# sanitizers), as TAP, one line for each hundred. They are made from the specs in the folders GOOD (drawn more often)
+# and BAD/*. What fails is kept if KEEP names a folder. With CHECK_C (a compiler and its options) the C is compiled as
+# well. Every finding belongs into ../errors as a case of its own.
 set -u
 plgen=$1
 mutate=$2

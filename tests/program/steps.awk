@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Reads the closed form as CSV, then the text of --explain=program, whose assignments it does `steps` times from the first
-# row on; every state that both name must then be within 1e-13 of its largest value. Velocities that are no column of the
-# CSV start from 0.
+# Reads the closed form as CSV, then the text of --explain=program, whose assignments it does `steps` times from the
+# first row on; every state that both name must then be within 1e-13 of its largest value. Velocities that are no
+# column of the CSV start from 0.
 FNR == 1 {
 	file++
 }
@@ -40,7 +40,8 @@ file == 1 {
 function sum(a,   k, total) {
 	total = 0
 	for (k = 1; k <= terms[a]; k++)
-		total += factor[a, k] * (operand[a, k] == "1" ? 1 : in_order ? state[operand[a, k]] : old[operand[a, k]])
+		total += factor[a, k] * (operand[a, k] == "1" ? 1 : in_order ? state[operand[a, k]] : old[operand[a,
+			k]])
 	return total
 }
 
@@ -59,7 +60,8 @@ END {
 		error = state[name[i]] - last[i]
 		error = error < 0 ? -error : error
 		compared++
-		printf "%s %.17g, closed form %.17g, difference %.3g of %.3g\n", name[i], state[name[i]], last[i], error, largest[name[i]]
+		printf "%s %.17g, closed form %.17g, difference %.3g of %.3g\n", name[i], state[name[i]], last[i],
+			error, largest[name[i]]
 		if (!(error <= 1e-13 * largest[name[i]]))
 			bad = 1
 	}

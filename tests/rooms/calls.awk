@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Reads `nm -A` of the generator's objects; rooms="base math ..." in their order. Prints calls from a room to a later one, and circles of files.
+# Reads `nm -A` of the generator's objects; rooms="base math ..." in their order. Prints calls from a room to a later
+# one, and circles of files.
 
 # gen_emit_state.c.o: emit/state; gen_main.c.o: main, which stands after all rooms
 function file_of(object,   name) {
@@ -15,7 +16,8 @@ function place_of(file,   parts) {
 	return split(file, parts, "/") == 2 ? place[parts[1]] : count + 1
 }
 
-# A circle is what is left when files that call nothing left are taken away, again and again, and then files that nothing left calls.
+# A circle is what is left when files that call nothing left are taken away, again and again, and then files that
+# nothing left calls.
 function reduce(forwards,   again, a, b, bound) {
 	do {
 		again = 0

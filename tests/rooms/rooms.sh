@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# rooms.sh SOURCE_ROOT LIBRARY PLGEN: who may call whom in the generator, read from the objects of its library, from those that stand
-# beside the program, and from its headers.
+# rooms.sh SOURCE_ROOT LIBRARY PLGEN: who may call whom in the generator, read from the objects of its library, from
+# those that stand beside the program, and from its headers.
 set -u
 root=$(cd "$1" && pwd) || exit 99
 listing=$(nm -A "$2" "$3".p/*.o)
