@@ -77,7 +77,9 @@ done
 # ---- figures.csv ----
 
 {
-    echo model,form,accuracy,real,multiplications,additions,ram,m0_step_bytes,m0_flash,m0_stack,m0_instructions,m0_most,m0_soft_float,m4f_step_bytes,m4f_flash,m4f_stack,m4f_instructions,m4f_most
+    printf '%s,' model form accuracy real multiplications additions ram m0_step_bytes m0_flash m0_stack \
+        m0_instructions m0_most m0_soft_float m4f_step_bytes m4f_flash m4f_stack m4f_instructions
+    echo m4f_most
     for real in double float; do
         [ $real = double ] && models=$double || models=$float
         awk -v real=$real -v folder="$work" '
@@ -139,7 +141,9 @@ done
 # ---- retune.csv ----
 
 {
-    echo model,form,real,coefficients,pole_h,m0_retune_bytes,m0_flash,m0_flash_more,m0_stack,m0_instructions,m0_most,m4f_retune_bytes,m4f_flash,m4f_flash_more,m4f_stack,m4f_instructions,m4f_most
+    printf '%s,' model form real coefficients pole_h m0_retune_bytes m0_flash m0_flash_more m0_stack m0_instructions \
+        m0_most m4f_retune_bytes m4f_flash m4f_flash_more m4f_stack m4f_instructions
+    echo m4f_most
     for real in double float; do
         [ $real = double ] && models=$double || models=$float
         awk -v real=$real -v folder="$work" '
@@ -198,7 +202,8 @@ done
 {
     echo "\`$arm-gcc\` $($arm-gcc -dumpfullversion), \`-O2 -ffp-contract=off\`:"
     echo
-    echo '| model | form | | operations | RAM | M0: step | flash | stack | instr. | M4F: step | flash | stack | instr. |'
+    echo '| model | form | | operations | RAM | M0: step | flash | stack | instr. | M4F: step |' \
+        'flash | stack | instr. |'
     echo '| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |'
     awk -F, 'NR > 1 { form = $2 ($3 == "compensated" ? ", two words" : "")
                       print "| " $1 " | " form " | " $4 " | " $5 " + " $6 " | " $7 " | " $8 " | " $9 " | " $10 " | " \
@@ -212,7 +217,8 @@ done
 {
     echo '| | M0: step | at | jump | retune | selftest | M4F: step | at | jump | retune | selftest |'
     echo '| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |'
-    awk -F, '$1 ~ /_step$/ && $1 !~ /^pl_|_(direct|delta|delta_two|kick_two)_(double|float)_step$/ { model = $1; sub(/_step$/, "", model); order[++n] = model }
+    awk -F, '$1 ~ /_step$/ && $1 !~ /^pl_|_(direct|delta|delta_two|kick_two)_(double|float)_step$/ {
+            model = $1; sub(/_step$/, "", model); order[++n] = model }
              { m0[$1] = $3; m4f[$1] = $5 }
              function of(table, f) { return f in table ? table[f] : "" }
              END { for (i = 1; i <= n; i++) {
@@ -223,9 +229,11 @@ done
                            	"_retune") " | " of(m4f, m "_selftest") " |" } }' "$doc/firmware/stack.csv"
 } >"$work/model_stack"
 {
-    echo '| model | form | | RAM | \|pole\| h | M0: retune | flash | stack | instr. | M4F: retune | flash | stack | instr. |'
+    echo '| model | form | | RAM | \|pole\| h | M0: retune | flash | stack | instr. | M4F: retune | flash |' \
+        'stack | instr. |'
     echo '| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |'
-    awk -F, 'NR > 1 { print "| " $1 " | " $2 " | " $3 " | " $4 " | " $5 " | " $6 " | +" $8 " | " $9 " | " $10 " | " $12 " | +" $14 " | " $15 " | " $16 " |" }' "$doc/firmware/retune.csv"
+    awk -F, 'NR > 1 { print "| " $1 " | " $2 " | " $3 " | " $4 " | " $5 " | " $6 " | +" $8 " | " $9 " | " $10 " | " \
+        $12 " | +" $14 " | " $15 " | " $16 " |" }' "$doc/firmware/retune.csv"
 } >"$work/retune"
 # One multiplication and one addition of soft float, calls included
 for name in m0 m4f; do

@@ -43,16 +43,19 @@ why_refused() { # ID STATUS
 				echo "status $2: $(grep -m 1 ': error: ' "$1.said")"
 			fi ;;
 		124) echo 'plgen takes over 1200 s' ;;
-		*) echo "plgen ends with status $2: $(grep -m 3 -e 'ERROR' -e 'runtime error' "$1.said" | tr '\n' ' ')" ;;
+		*) echo "plgen ends with status $2: $(grep -m 3 -e 'ERROR' -e 'runtime error' "$1.said" |
+			tr '\n' ' ')" ;;
 	esac
 }
 
 # slopes ID: a function of one form around ID_rhs
 slopes() {
 	if grep -q "_rhs(double t, const double y\[\], double" "$1.h"; then
-		echo "static void $1_slopes(double t, const double *y, const double *u, double *d) { (void)u; $1_rhs(t, y, d); }"
+		echo "static void $1_slopes(double t, const double *y, const double *u, double *d)"
+		echo "{ (void)u; $1_rhs(t, y, d); }"
 	else
-		echo "static void $1_slopes(double t, const double *y, const double *u, double *d) { $1_rhs(t, y, u, d); }"
+		echo "static void $1_slopes(double t, const double *y, const double *u, double *d)"
+		echo "{ $1_rhs(t, y, u, d); }"
 	fi
 }
 
@@ -72,7 +75,8 @@ batch_add() {
 		return
 	fi
 	# the plain model: no state left out, in double
-	plain=$(printf '%s\n' "$given" | awk '{ for (i = 1; i < NF; i++) if ($i == "-D" || $i == "--step") printf " %s %s",
+	plain=$(printf '%s\n' "$given" |
+		awk '{ for (i = 1; i < NF; i++) if ($i == "-D" || $i == "--step") printf " %s %s",
 		$i, $(i + 1) }')
 	whole=$id
 	code="$id.c"
@@ -135,11 +139,13 @@ batch_add() {
 		if [ "$again" != 'NULL, NULL, NULL' ]; then
 			echo "extern const int ${id}_coords[];"
 			for function in residual wanted; do
-				echo "void ${id}_$function(double t, const double *y, const double *u, const double *top, double *out);"
+				echo "void ${id}_$function(double t, const double *y, const double *u, const double *top,"
+				echo "double *out);"
 			done
 		fi
 		changes=$(head_of "$spec" changes)
-		echo "SUBJECT {\"$id\", $model, &${whole}_model, ${whole}_slopes, \"$scheme\", \"$class\", \"$changes\"," \
+		echo "SUBJECT {\"$id\", $model, &${whole}_model, ${whole}_slopes, \"$scheme\", \"$class\"," \
+			"\"$changes\"," \
 			"$solution, $selftest," \
 			"$again, ${tuned:+&}${tuned:-NULL}${tuned:+_model}, \"$retune\"},"
 	} >"$id.subject"
