@@ -139,7 +139,8 @@ batch_add() {
 		if [ "$again" != 'NULL, NULL, NULL' ]; then
 			echo "extern const int ${id}_coords[];"
 			for function in residual wanted; do
-				echo "void ${id}_$function(double t, const double *y, const double *u, const double *top,"
+				echo "void ${id}_$function(double t, const double *y, const double *u,"
+				echo "const double *top,"
 				echo "double *out);"
 			done
 		fi
@@ -222,7 +223,8 @@ batch_run() {
 	if [ $status -ne 0 ]; then
 		{
 			[ $status -le 1 ] ||
-				echo "$cc: ends with status $status: $(grep -m 2 -e ERROR -e 'runtime error' "$id.err" | tr '\n' ' ')"
+				said=$(grep -m 2 -e ERROR -e 'runtime error' "$id.err" | tr '\n' ' ')
+				echo "$cc: ends with status $status: $said"
 			head -n 6 "$id.ran"
 		} >"$id.wrong"
 	fi
