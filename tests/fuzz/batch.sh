@@ -222,9 +222,10 @@ batch_run() {
 	status=$?
 	if [ $status -ne 0 ]; then
 		{
-			[ $status -le 1 ] ||
+			if [ $status -gt 1 ]; then
 				said=$(grep -m 2 -e ERROR -e 'runtime error' "$id.err" | tr '\n' ' ')
 				echo "$cc: ends with status $status: $said"
+			fi
 			head -n 6 "$id.ran"
 		} >"$id.wrong"
 	fi
