@@ -17,6 +17,6 @@ if [ "$status" -ne 0 ] && [ "$failed" -eq 0 ]; then
 fi
 grep '^ok.* # SKIP\|^1\.\.0 # SKIP' "$build/meson-logs/testlog.txt" >"$build/skipped"
 skipped=$(wc -l <"$build/skipped")
-[ "$skipped" -eq 0 ] || sed 's/^/skipped: /' "$build/skipped"
-echo "$((cases - errors - failures - skipped)) passed, $skipped skipped, $failed failed"
+[ "$skipped" -eq 0 ] || { sed 's/^/skipped: /' "$build/skipped"; echo "$skipped skipped"; }
+echo "$((cases - errors - failures - skipped)) passed, $failed failed"
 [ "$status" -eq 0 ] && [ "$failed" -eq 0 ]
