@@ -203,7 +203,7 @@ static void banner_cost(const struct emitter *e)
 {
 	const struct program *program = e->step->program;
 	say(e, "%s * One step of h = %s s, form %s: %d multiplications, %d additions", e->kind->step_note,
-	    readable_text(e->model->h), form_text_of(e->step), program->multiplications, program->additions);
+	    readable_text(e->model->h), step_form_text(e->step), program->multiplications, program->additions);
 	if (program->wave_multiplications)
 		say(e, ", %d of them and %d for the functions of the loads", program->wave_multiplications,
 		    program->wave_additions);

@@ -107,7 +107,7 @@ static void person_step(FILE *to, const struct step *step)
 {
 	const struct model *model = step->shown->model;
 	const struct program *program = step->program;
-	fprintf(to, "Step: form %s, h = %s s; %d multiplications, %d additions", form_text_of(step),
+	fprintf(to, "Step: form %s, h = %s s; %d multiplications, %d additions", step_form_text(step),
 		readable_text(model->h), program->multiplications, program->additions);
 	if (program->wave_multiplications)
 		fprintf(to, " (%d and %d of them for the functions of the loads)", program->wave_multiplications,

@@ -293,7 +293,7 @@ void explain_program(FILE *to, const struct step *step)
 {
 	const struct program *program = step->program;
 	fprintf(to, "Program of a step of %s: %s; scheme %s, form %s, h = %s s\n", step->model->name, kind_text(step),
-		scheme_name(step->model->scheme), form_text_of(step), readable_text(step->model->h));
+		scheme_name(step->model->scheme), step_form_text(step), readable_text(step->model->h));
 	if (step->model->switching)
 		print_regions(to, step);
 	else if (has_leftover(step))

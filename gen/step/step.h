@@ -374,7 +374,7 @@ const char *rounding_text(const struct step *step);
 
 /* ---- stepform.c: a linear step as direct, delta or kick-drift-kick ---- */
 
-const char *form_text_of(const struct step *step);          /* delta, compensated */
+const char *step_form_text(const struct step *step);          /* delta, compensated */
 void choose_form(struct step *step);                        /* leaves the statement where the one asked for cannot be */
 void need_direct(const struct step *step);                  /* the same where another than direct is asked for */
 /* before its program; none where all of the state is compensated */

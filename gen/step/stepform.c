@@ -12,7 +12,7 @@
 
 #include <string.h>
 
-const char *form_text_of(const struct step *step)
+const char *step_form_text(const struct step *step)
 {
 	return format("%s%s", step_form_name(step->form), step->program->compensated ? ", compensated" : "");
 }
