@@ -193,8 +193,8 @@ done
 
 # ---- the lines of README.md ----
 
-awk '/^    model two/ { on = 1 } on && !/^(    |$)/ { exit } on { print substr($0, 5) }' "$root/README.md" >two.spec
-line=$(sed -n 's/^    \(gnuplot .*\)/\1/p' "$root/README.md")
+awk '/^model two/ { on = 1 } on && /^```/ { exit } on' "$root/README.md" >two.spec
+line=$(sed -n 's/^\(gnuplot .*\)/\1/p' "$root/README.md")
 if command -v gnuplot >/dev/null 2>&1; then
     : >log
     "$plgen" two.spec >two.c 2>>log && driver two.c two two && ./two 30 >two.csv 2>>log &&
