@@ -14,6 +14,7 @@ root=$2
 case $plgen in /*) ;; *) plgen=$PWD/$plgen ;; esac
 warnings='-Wall -Wextra -Wpedantic -Wconversion -Wdouble-promotion -Wshadow -Werror'
 . "${0%/*}/../tap.sh"
+. "${0%/*}/../compilers.sh"
 
 {
     gccs=${GCCS:-gcc g++}
@@ -62,8 +63,9 @@ shadows() {
             skip "$title, $compiler" "$compiler is not installed"
             continue
         fi
-        # shellcheck disable=SC2086
-        "$compiler" $warnings -I"$root/runtime" -fsyntax-only $options ./*_named.c >log 2>&1
+        # shellcheck disable=SC2046,SC2086
+        "$compiler" $warnings -I"$root/runtime" -fsyntax-only $(ahead "$compiler" ./neutral_named.c) $options \
+            ./*_named.c >log 2>&1
         result $? "$title: under each of them it compiles without a warning, $compiler"
     done <compilers
     head -n 2 compilers >few && mv few compilers
