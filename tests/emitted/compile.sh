@@ -64,11 +64,12 @@ compiles() {
     done <compilers
 }
 
-# all_compile FILE.c NAME: without code, as one result; C and C++, by gcc and by clang
+# all_compile FILE.c NAME [CHOICE]: without code, as one result; C and C++, by gcc and by clang, or what CHOICE prints
+# of the compilers
 all_compile() {
     status=0
     : >log
-    by_turns compilers >some
+    ${3:-by_turns} compilers >some
     while read -r compiler options; do
         installed "$compiler" || continue
         # shellcheck disable=SC2046,SC2086
@@ -286,6 +287,17 @@ done
 
 # ---- names ----
 
+# one_by_turns FILE: of its lines but the first, gcc, which compiles what runs, one; with LONG all
+one_by_turns() {
+    if long; then
+        cat "$1"
+    else
+        next=$(((next + 1) % 3))
+        sed -n "$((next + 2))p" "$1"
+    fi
+}
+next=0
+
 # right FILE.spec NAME TITLE: it compiles everywhere, and what its driver says is what --solution says
 right() {
     : >log
@@ -293,10 +305,10 @@ right() {
     status=$?
     result $status "$3: plgen takes it"
     [ $status -eq 0 ] || return
-    all_compile collide.c "$3: compiles"
+    all_compile collide.c "$3: compiles" one_by_turns
     : >log
-    "$plgen" --solution 1 "$1" >expected.csv 2>>log && driver collide.c "$2" m '' -lm && ./m 1 >found.csv 2>>log &&
-        same_columns found.csv expected.csv
+    "$plgen" --solution 1 "$1" >expected.csv 2>>log && driver collide.c "$2" m "$warnings" -lm &&
+        ./m 1 >found.csv 2>>log && same_columns found.csv expected.csv
     result $? "$3: runs right, in the compiler's own dialect"
 }
 
@@ -404,11 +416,14 @@ int main(void)
 }
 EOF
 
-# probe SPEC NAME OUT.csv: in the compiler's own dialect, as a user would
+# one object for all: the linker gives it the names of the model
+"${CC:-cc}" -I"$root/runtime" -DPROBE=PROBED -c probe.c 2>log || exit 99
+
+# probe FILE.c NAME OUT.csv: in the compiler's own dialect, as a user would
 probe() {
     # shellcheck disable=SC2086
-    "$plgen" --rhs --prefix "$2" "$1" >probed.c 2>>log &&
-        ${CC:-cc} -I"$root/runtime" "-DPROBE=$2" probe.c probed.c "$archive" -lm -o probed >>log 2>&1 && ./probed >"$3"
+    ${CC:-cc} $warnings -I"$root/runtime" probe.o "$1" "$archive" -lm \
+        "-Wl,--defsym=PROBED_model=$2_model,--defsym=PROBED_rhs=$2_rhs" -o probed >>log 2>&1 && ./probed >"$3"
 }
 
 # alike NAME NEUTRAL.spec TITLE: names.spec compiles everywhere and does what NEUTRAL.spec does
@@ -417,11 +432,12 @@ alike() {
     status=$?
     result $status "$3: plgen takes it"
     [ $status -eq 0 ] || return
-    all_compile collide.c "$3: compiles"
+    all_compile collide.c "$3: compiles" one_by_turns
     : >log
     # the same neutral model often
-    cmp -s "$2" probed.spec || { probe "$2" probe probed.csv && cp "$2" probed.spec; }
-    probe names.spec "$1" found.csv && cmp -s "$2" probed.spec && same_columns found.csv probed.csv
+    cmp -s "$2" probed.spec || { "$plgen" --rhs --prefix probe "$2" >probed.c 2>>log &&
+        probe probed.c probe probed.csv && cp "$2" probed.spec; }
+    probe collide.c "$1" found.csv && cmp -s "$2" probed.spec && same_columns found.csv probed.csv
     result $? "$3: runs right, in the compiler's own dialect"
 }
 
