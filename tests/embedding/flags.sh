@@ -32,18 +32,22 @@ grep -l 'include "two\.h"' "$root"/runtime/*.c | sed 's,.*/,,' | tr '\n' ' ' >lo
 [ "$(cat log)" = 'power.c retune.c until.c ' ]
 result $? 'power.c, retune.c and until.c go through two.h'
 
-# compile COMPILER FLAGS FILE ...: without code, for what is refused is so by macros; C++ as such
+# compile COMPILER FLAGS FILE ...: C++ as such; by clang, which refuses some flags only then, with code
 compile() {
     case $1 in
         *++) language='-x c++ -std=c++17' ;;
         *) language=-std=c99 ;;
+    esac
+    case $1 in
+        clang*) code=-c ;;
+        *) code=-fsyntax-only ;;
     esac
     with=$1
     flags=$2
     shift 2
     # shellcheck disable=SC2086
     "$with" $language -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wno-ignored-optimization-argument $flags \
-        -I"$root/runtime" -fsyntax-only "$@"
+        -I"$root/runtime" $code "$@"
 }
 
 # refused COMPILER FLAGS WORDS FILES: none of the files compiles, and each is told why
