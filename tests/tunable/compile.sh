@@ -33,25 +33,30 @@ warnings='-Wall -Wextra -Wpedantic -Wconversion -Wdouble-promotion -Wshadow -Wer
 compiles() {
     what=$1
     shift
+    cat "$@" >all.c
     while read -r compiler options; do
         if ! command -v "$compiler" >/dev/null 2>&1; then
             skip "$what, $compiler" "$compiler is not installed"
             continue
         fi
-        status=0
-        # by gcc objects, whose names are looked at, optimised in one form; by clang too with LONG=1
-        case $compiler,$what in
-            *clang,*) long || options="$options -O0 -fsyntax-only" ;;
-            *,*direct) long || options="$options -O0" ;;
-        esac
+        # by gcc each becomes an object, whose names are looked at, optimised in one form; for the others they are one
+        # file without code, but with LONG=1
+        these=$*
+        if ! long; then
+            case $compiler,$what in
+                *clang* | *++*) options="$options -O0 -fsyntax-only" these=all.c ;;
+                *,*direct) options="$options -O0" ;;
+            esac
+        fi
         # shellcheck disable=SC2086
-        "$compiler" $warnings -I"$root/runtime" $options -c "$@" >log 2>&1 || status=1
-        result $status "$what, $compiler ${options%% *}"
+        "$compiler" $warnings -I"$root/runtime" $options -c $these >log 2>&1
+        result $? "$what, $compiler ${options%% *}"
     done <compilers
 }
 
 # What a file calls beyond its own: of the runtime, and memcpy or memset, which a compiler makes of assignments
 calls_only_the_runtime() {
+    [ -s "$1" ] || return 1
     nm -u "$1" | awk '{print $NF}' | grep -v -e '^pl_' -e '^memcpy$' -e '^memset$' -e '^_GLOBAL_OFFSET_TABLE_$' \
         -e '^__stack_chk_fail$' >log
     [ ! -s log ]
