@@ -108,7 +108,7 @@ looks() {
         [ $real = double ] || own=-DFLOAT
         # shellcheck disable=SC2086
         "$plgen" --prefix linear --real $real "$@" -o linear_pl.c "$spec" 2>log &&
-            "${CC:-cc}" -std=c99 -O1 $flags $own -I"$root/runtime" look.c linear_pl.c "$archive" -lm \
+            "${CC:-cc}" -std=c99 -O0 $flags $own -I"$root/runtime" look.c linear_pl.c "$archive" -lm \
                 -o look >>log 2>&1 &&
                 ./look >>log
         result $? "$title, $real: status is what the state says"

@@ -6,6 +6,8 @@
 #
 # SOLUTIONS is a folder with MODEL_solution.csv, of --solution 30.
 #
+# With LONG=1 every file with code for every compiler (see compilers.sh).
+#
 # The compilers are those of GCCS and CLANGS (default: gcc g++, clang clang++); what is not installed is skipped.
 set -u
 plgen=$1
@@ -23,6 +25,7 @@ case $solutions in
 esac
 warnings='-Wall -Wextra -Wpedantic -Wconversion -Wdouble-promotion -Wshadow -Werror'
 . "${0%/*}/../tap.sh"
+. "${0%/*}/../compilers.sh"
 
 installed() {
     command -v "$1" >/dev/null 2>&1
@@ -36,36 +39,49 @@ languages() {
     done
 }
 
+languages >compilers
+
+# effort COMPILER FILE.c [OPTIONS]: what it is to make of the file; gcc warns as an optimiser does of standard output
+effort() {
+    if long || [ "${1##*/} ${2##*/}" = "gcc stdout.c" ]; then
+        echo "-O1 -c -o ${2%.c}.o"
+    else
+        without_code "$1"
+        [ -n "${3-}" ] || ahead "$1" "$2"
+    fi
+}
+
 # compiles FILE.c NAME [OPTIONS]: one result for each compiler and language
 compiles() {
-    languages >compilers
     while read -r compiler options; do
         if ! installed "$compiler"; then
             skip "$2, $compiler" "$compiler is not installed"
             continue
         fi
-        # shellcheck disable=SC2086
-        $compiler $warnings -O1 -I"$root/runtime" ${3-} -c $options "$1" -o "${1%.c}.o" >log 2>&1
+        # shellcheck disable=SC2046,SC2086
+        $compiler $warnings -I"$root/runtime" ${3-} $(effort "$compiler" "$1" "${3-}") $options "$1" >log 2>&1
         result $? "$2, $compiler $options"
     done <compilers
 }
 
-# all_compile FILE.c NAME: the same without code, as one result
+# all_compile FILE.c NAME [CHOICE]: without code, as one result; C and C++, by gcc and by clang, or what CHOICE prints
+# of the compilers
 all_compile() {
     status=0
     : >log
-    languages >compilers
+    ${3:-by_turns} compilers >some
     while read -r compiler options; do
         installed "$compiler" || continue
-        # shellcheck disable=SC2086
-        $compiler $warnings -I"$root/runtime" -fsyntax-only $options "$1" >>log 2>&1 || status=1
-    done <compilers
+        # shellcheck disable=SC2046,SC2086
+        $compiler $warnings -I"$root/runtime" -fsyntax-only $(ahead "$compiler" "$1") $options "$1" >>log 2>&1 ||
+            status=1
+    done <some
     result $status "$2"
 }
 
-# only_runtime OBJECT: does nm -u name anything but pl_*, memcpy, memset?
+# only_runtime NAMES: does nm -u name anything but pl_*, memcpy, memset?
 only_runtime() {
-    nm -u "$1" | awk '{ print $NF }' | grep -v -E '^(pl_[a-z_]*|memcpy|memset)$' >log
+    awk '$1 == "U" { print $NF }' "$1" | grep -v -E '^(pl_[a-z_]*|memcpy|memset)$' >log
     [ ! -s log ]
 }
 
@@ -129,25 +145,38 @@ for f in "$root"/runtime/*.c; do
     compiles "$f.c" "runtime: $f.c" '-ffreestanding'
 done
 
+mkdir runtime models
+for m in $models; do cp "$m/stdout.c" "models/$m.c"; done
+for f in $runtime; do cp "$f.c" "runtime/$f.c"; done
+
+# needs FOLDER TITLE NAME ...: do these files of the folder need the runtime, memcpy and memset at most?
+needs() {
+    folder=$1
+    title=$2
+    shift 2
+    rm -f "$folder"/*.o
+    # shellcheck disable=SC2046
+    (cd "$folder" && "$compiler" -std=c99 "$level" -I"$root/runtime" -c $(printf '%s.c\n' "$@")) >said 2>&1
+    status=$?
+    nm -u "$folder"/*.o >names && only_runtime names || status=1
+    cat said >>log
+    result $status "$title, $compiler $level"
+}
+
+number=0        # every file at one of the levels by each compiler, with LONG at all
 for pair in "${GCCS:-gcc g++}" "${CLANGS:-clang clang++}"; do
     compiler=${pair% *}
     for level in -O0 -O2 -Os; do
+        number=$((number + 1))
         if ! installed "$compiler"; then
             skip "nm, $compiler $level" "$compiler is not installed"
             continue
         fi
-        status=0
-        for f in $runtime; do
-            "$compiler" -std=c99 "$level" -I"$root/runtime" -c "$f.c" -o "$f.o" && only_runtime "$f.o" || status=1
-        done
-        result $status "runtime: needs memcpy and memset at most, $compiler $level"
-        status=0
-        for m in $models; do
-            "$compiler" -std=c99 "$level" -I"$root/runtime" -c "$m/stdout.c" -o "$m/nm.o" && only_runtime "$m/nm.o" ||
-                status=1
-            [ $status -eq 0 ] || break
-        done
-        result $status "models without --rhs: need the runtime, memcpy and memset at most, $compiler $level"
+        # shellcheck disable=SC2046,SC2086
+        needs runtime 'runtime: needs memcpy and memset at most' $(third $((number + number / 4)) $runtime)
+        # shellcheck disable=SC2046,SC2086
+        needs models 'models without --rhs: need the runtime, memcpy and memset at most' \
+            $(third $((number + number / 4)) $models)
     done
 done
 
@@ -188,6 +217,18 @@ EOF
     for m in $models; do printf '    std::printf("%%.17g\\n", last(%s_init, %s_step, %s_model));\n' "$m" "$m" "$m"; done
     printf '    return 0;\n}\n'
 } >main.cpp
+# step_of MODEL
+step_of() {
+    "$plgen" --explain=json "$root/models/$1.spec" | sed -n 's/^ *"step": \(.*\),$/\1/p'
+}
+
+for m in $models; do
+    : >log
+    driver "$m/stdout.c" "$m" "$m/one" "-std=c99 $warnings"
+    cp log "$m/said"
+    h=$(step_of "$m") && "$m/one" "$(awk "BEGIN { print 100 * $h }")" | tail -n 1 | cut -d, -f2
+done >expected
+mkdir program_c
 for pair in "${GCCS:-gcc g++}" "${CLANGS:-clang clang++}"; do
     c=${pair% *}
     cpp=${pair#* }
@@ -195,32 +236,19 @@ for pair in "${GCCS:-gcc g++}" "${CLANGS:-clang clang++}"; do
         skip "C++ program, $cpp" "$cpp is not installed"
         continue
     fi
-    objects=
     includes=
-    status=0
-    : >log
+    sources=
     for m in $models; do
-        "$c" -std=c99 -I"$root/runtime" -c "$m/$m.c" -o "$m/$m.o" >>log 2>&1 || status=1
-        objects="$objects $m/$m.o"
+        sources="$sources ../$m/$m.c"
         includes="$includes -I$m"
     done
-    for f in $runtime; do
-        "$c" -std=c99 -I"$root/runtime" -c "$f.c" -o "$f.o" >>log 2>&1 || status=1
-        objects="$objects $f.o"
-    done
+    long && for f in $runtime; do sources="$sources ../$f.c"; done
     # shellcheck disable=SC2086
-    [ $status -eq 0 ] &&
-        "$cpp" -std=c++17 $warnings -I"$root/runtime" $includes main.cpp $objects -o program >>log 2>&1 &&
+    (cd program_c && "$c" -std=c99 -I"$root/runtime" -c $sources) >log 2>&1 &&
+        "$cpp" -std=c++17 $warnings -I"$root/runtime" $includes main.cpp program_c/*.o "$archive" \
+            -o program >>log 2>&1 &&
         ./program >values 2>>log
     result $? "all models link into one C++ program, which runs, $cpp"
-    {
-        for m in $models; do
-            : >log
-            driver "$m/stdout.c" "$m" one &&
-                h=$("$plgen" --explain=json "$root/models/$m.spec" | sed -n 's/^ *"step": \(.*\),$/\1/p') &&
-                ./one "$(awk "BEGIN { print 100 * $h }")" | tail -n 1 | cut -d, -f2
-        done
-    } >expected
     diff values expected >log 2>&1
     result $? "its values are those of the models one by one, $cpp"
 done
@@ -228,12 +256,12 @@ done
 # ---- the driver ----
 
 for m in $models; do
-    : >log
-    driver "$m/stdout.c" "$m" m "-std=c99 $warnings" && ./m 30 >found.csv 2>>log &&
+    cp "$m/said" log
+    "$m/one" 30 >found.csv 2>>log &&
         same_columns found.csv "$solutions/${m}_solution.csv"
     result $? "$m: the driver's 30 s agree with --solution 30"
     rows=$(($(wc -l <found.csv) - 1))
-    h=$("$plgen" --explain=json "$root/models/$m.spec" | sed -n 's/^ *"step": \(.*\),$/\1/p')
+    h=$(step_of "$m")
     expected=$(awk "BEGIN { printf \"%d\", 30 / $h + 1.5 }")
     echo "found $rows rows, expected $expected" >log
     [ "$rows" -eq "$expected" ]
@@ -259,6 +287,17 @@ done
 
 # ---- names ----
 
+# one_by_turns FILE: of its lines but the first, gcc, which compiles what runs, one; with LONG all
+one_by_turns() {
+    if long; then
+        cat "$1"
+    else
+        next=$(((next + 1) % 3))
+        sed -n "$((next + 2))p" "$1"
+    fi
+}
+next=0
+
 # right FILE.spec NAME TITLE: it compiles everywhere, and what its driver says is what --solution says
 right() {
     : >log
@@ -266,10 +305,10 @@ right() {
     status=$?
     result $status "$3: plgen takes it"
     [ $status -eq 0 ] || return
-    all_compile collide.c "$3: compiles"
+    all_compile collide.c "$3: compiles" one_by_turns
     : >log
-    "$plgen" --solution 1 "$1" >expected.csv 2>>log && driver collide.c "$2" m '' -lm && ./m 1 >found.csv 2>>log &&
-        same_columns found.csv expected.csv
+    "$plgen" --solution 1 "$1" >expected.csv 2>>log && driver collide.c "$2" m "$warnings" -lm &&
+        ./m 1 >found.csv 2>>log && same_columns found.csv expected.csv
     result $? "$3: runs right, in the compiler's own dialect"
 }
 
@@ -377,11 +416,14 @@ int main(void)
 }
 EOF
 
-# probe SPEC NAME OUT.csv: in the compiler's own dialect, as a user would
+# one object for all: the linker gives it the names of the model
+"${CC:-cc}" -I"$root/runtime" -DPROBE=PROBED -c probe.c 2>log || exit 99
+
+# probe FILE.c NAME OUT.csv: in the compiler's own dialect, as a user would
 probe() {
     # shellcheck disable=SC2086
-    "$plgen" --rhs --prefix "$2" "$1" >probed.c 2>>log &&
-        ${CC:-cc} -I"$root/runtime" "-DPROBE=$2" probe.c probed.c "$archive" -lm -o probed >>log 2>&1 && ./probed >"$3"
+    ${CC:-cc} $warnings -I"$root/runtime" probe.o "$1" "$archive" -lm \
+        "-Wl,--defsym=PROBED_model=$2_model,--defsym=PROBED_rhs=$2_rhs" -o probed >>log 2>&1 && ./probed >"$3"
 }
 
 # alike NAME NEUTRAL.spec TITLE: names.spec compiles everywhere and does what NEUTRAL.spec does
@@ -390,11 +432,12 @@ alike() {
     status=$?
     result $status "$3: plgen takes it"
     [ $status -eq 0 ] || return
-    all_compile collide.c "$3: compiles"
+    all_compile collide.c "$3: compiles" one_by_turns
     : >log
     # the same neutral model often
-    cmp -s "$2" probed.spec || { probe "$2" probe probed.csv && cp "$2" probed.spec; }
-    probe names.spec "$1" found.csv && cmp -s "$2" probed.spec && same_columns found.csv probed.csv
+    cmp -s "$2" probed.spec || { "$plgen" --rhs --prefix probe "$2" >probed.c 2>>log &&
+        probe probed.c probe probed.csv && cp "$2" probed.spec; }
+    probe collide.c "$1" found.csv && cmp -s "$2" probed.spec && same_columns found.csv probed.csv
     result $? "$3: runs right, in the compiler's own dialect"
 }
 

@@ -5,6 +5,8 @@
 #
 #     linear.sh specs|names PLGEN LINEAR_INPUTS SOURCE_ROOT
 #
+# Each file goes to two of the four compilers by turns, with LONG=1 to all (see compilers.sh).
+#
 # The compilers are those of GCCS and CLANGS (default: gcc g++, clang clang++); what is not installed is skipped.
 set -u
 part=$1
@@ -20,20 +22,28 @@ inputs=$(absolute "$2")
 root=$(absolute "$3")
 warnings='-Wall -Wextra -Wpedantic -Wconversion -Wdouble-promotion -Wshadow -Werror'
 . "${0%/*}/../tap.sh"
+. "${0%/*}/../compilers.sh"
 
 for pair in "${GCCS:-gcc g++}" "${CLANGS:-clang clang++}"; do
-    command -v "${pair% *}" >/dev/null 2>&1 && echo "${pair% *} -std=c99"
-    command -v "${pair#* }" >/dev/null 2>&1 && echo "${pair#* } -std=c++17 -x c++"
+    echo "${pair% *} -std=c99"
+    echo "${pair#* } -std=c++17 -x c++"
 done >compilers
 
-# compiles FILE.c NAME [OPTIONS]: with every compiler, as one result
+installed() {
+    command -v "$1" >/dev/null 2>&1
+}
+
+# compiles FILE.c NAME: as C and as C++, by gcc and by clang, as one result
 compiles() {
     status=0
     : >log
+    by_turns compilers >some
     while read -r compiler options; do
-        # shellcheck disable=SC2086
-        $compiler $warnings -I"$root/runtime" ${3--fsyntax-only} $options "$1" >>log 2>&1 || status=1
-    done <compilers
+        installed "$compiler" || continue
+        # shellcheck disable=SC2046,SC2086
+        $compiler $warnings -I"$root/runtime" -fsyntax-only $(ahead "$compiler" "$1") $options "$1" >>log 2>&1 ||
+            status=1
+    done <some
     result $status "$2"
 }
 
@@ -96,11 +106,13 @@ for spec in "$root"/tests/emitted/linear/*.spec; do
         [ $kind = reduce ] || compiles "$kind/twice.c" "$m, $kind: the header stands alone, twice"
         status=0
         : >log
+        by_turns compilers >some
         while read -r compiler options; do
+            installed "$compiler" || continue
             # shellcheck disable=SC2086
             $compiler $warnings -O1 -ffreestanding -I"$root/runtime" $options -c "$kind/$m.std.c" -o nm.o >>log 2>&1 &&
                 only_runtime nm.o || status=1
-        done <compilers
+        done <some
         result $status "$m, $kind: standard output compiles, freestanding, needs the runtime, memcpy and memset at most"
         if [ -z "$inputs_of" ]; then
             : >log

@@ -47,7 +47,7 @@ for status in "$folder"/*.status "$folder"/*/*.status; do
 	fi
 	# shellcheck disable=SC2086
 	if "$plgen" $arguments "$name.spec" > "$name.c" 2> "$work/messages" < /dev/null &&
-	   "$@" -std=c99 $warnings -I"$runtime" -c "$name.c" -o "$name.o" 2> "$work/messages"; then
+	   "$@" -std=c99 $warnings -I"$runtime" -O0 -S "$name.c" -o /dev/null 2> "$work/messages"; then
 		echo "ok $number - $name"
 	else
 		failed=$((failed + 1))

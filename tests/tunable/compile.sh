@@ -20,6 +20,7 @@ for spec; do
 done
 warnings='-Wall -Wextra -Wpedantic -Wconversion -Wdouble-promotion -Wshadow -Werror'
 . "${0%/*}/../tap.sh"
+. "${0%/*}/../compilers.sh"
 
 {
     for pair in "${GCCS:-gcc g++}" "${CLANGS:-clang clang++}"; do
@@ -32,28 +33,36 @@ warnings='-Wall -Wextra -Wpedantic -Wconversion -Wdouble-promotion -Wshadow -Wer
 compiles() {
     what=$1
     shift
+    cat "$@" >all.c
     while read -r compiler options; do
         if ! command -v "$compiler" >/dev/null 2>&1; then
             skip "$what, $compiler" "$compiler is not installed"
             continue
         fi
-        : >log
-        status=0
-        for file; do
-            # shellcheck disable=SC2086
-            "$compiler" $warnings -I"$root/runtime" $options -c "$file" -o "$file.o" >>log 2>&1 || status=1
-        done
-        result $status "$what, $compiler ${options%% *}"
+        # by gcc each becomes an object, whose names are looked at, optimised in one form; for the others they are one
+        # file without code, but with LONG=1
+        these=$*
+        if ! long; then
+            case $compiler,$what in
+                *clang* | *++*) options="$options -O0 -fsyntax-only" these=all.c ;;
+                *,*direct) options="$options -O0" ;;
+            esac
+        fi
+        # shellcheck disable=SC2086
+        "$compiler" $warnings -I"$root/runtime" $options -c $these >log 2>&1
+        result $? "$what, $compiler ${options%% *}"
     done <compilers
 }
 
 # What a file calls beyond its own: of the runtime, and memcpy or memset, which a compiler makes of assignments
 calls_only_the_runtime() {
+    [ -s "$1" ] || return 1
     nm -u "$1" | awk '{print $NF}' | grep -v -e '^pl_' -e '^memcpy$' -e '^memset$' -e '^_GLOBAL_OFFSET_TABLE_$' \
         -e '^__stack_chk_fail$' >log
     [ ! -s log ]
 }
 
+number=0
 for real in double float; do
     for form in delta direct; do
         files=
@@ -61,9 +70,14 @@ for real in double float; do
         for spec in $specs; do
             name=$(basename "$spec" .spec)
             "$plgen" --real $real --form $form "$spec" >"${name}_$real$form.c" 2>>said || said=1
-            "$plgen" --real $real --form $form "$spec" >again.c 2>>said
-            cmp "${name}_$real$form.c" again.c >>said 2>&1 || said=1
             files="$files ${name}_$real$form.c"
+        done
+        # each of them twice in one of three forms, with LONG=1 in all
+        number=$((number + 1))
+        # shellcheck disable=SC2046,SC2086
+        for spec in $(third $number $specs); do
+            name=$(basename "$spec" .spec)
+            "$plgen" --real $real --form $form "$spec" 2>>said | cmp - "${name}_$real$form.c" >>said 2>&1 || said=1
         done
         cp said log
         [ $said -eq 0 ] && [ ! -s said ]
@@ -72,7 +86,7 @@ for real in double float; do
         compiles "$real, $form" $files
         called=0
         for file in $files; do
-            calls_only_the_runtime "$file.o" || called=1
+            calls_only_the_runtime "${file%.c}.o" || called=1
         done
         result $called "$real, $form: calls nothing but the runtime"
         [ $real = double ] && continue
@@ -87,7 +101,7 @@ done
 for spec in $specs; do
     name=$(basename "$spec" .spec)
     "$plgen" -o "$name.c" "$spec" >log 2>&1 &&
-        "${CC:-cc}" -std=c99 $warnings -I"$root/runtime" -c "$name.c" -o apart.o >>log 2>&1
+        "${CC:-cc}" -std=c99 $warnings -I"$root/runtime" -O0 -S "$name.c" -o apart.s >>log 2>&1
     result $? "$name: -o writes C and header"
 done
 

@@ -1,0 +1,56 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Sourced after tap.sh by tests that compile what plgen emits. LONG=1 in the environment (`make check-long`): everything
+# with every compiler; without it no more than shows a warning, and what is alike goes to two of the four by turns.
+
+long() {
+	[ -n "${LONG:-}" ]
+}
+
+# ahead COMPILER FILE: an option that has C++ take <math.h>, most of its work, from one precompiled copy. Only where
+# FILE includes it: no other may see its names.
+ahead() {
+	case $1 in
+		*++*) ;;
+		*) return 0 ;;
+	esac
+	grep -q '^#include <math\.h>' "$2" || return 0
+	if [ ! -e "$work/ahead/${1##*/}.h" ]; then
+		mkdir -p "$work/ahead"
+		echo '#include <math.h>' >"$work/ahead/${1##*/}.h"
+		"$1" -std=c++17 -x c++-header "$work/ahead/${1##*/}.h" -o "$work/ahead/${1##*/}.h.gch"
+	fi
+	echo "-include $work/ahead/${1##*/}.h"
+}
+
+# without_code COMPILER: options that warn as long as that takes; gcc says of some things that they are unused only when
+# it writes code
+without_code() {
+	case $1 in
+		*clang*) echo '-fsyntax-only' ;;
+		*) echo '-O0 -S -o /dev/null' ;;
+	esac
+}
+
+# by_turns FILE: of its lines, gcc, g++, clang, clang++, by turns gcc and clang++ or g++ and clang; with LONG all
+turn=0
+by_turns() {
+	turn=$((1 - turn))
+	if long; then
+		cat "$1"
+	elif [ $turn -eq 1 ]; then
+		sed -n '1p; 4p' "$1"
+	else
+		sed -n '2p; 3p' "$1"
+	fi
+}
+
+# third NUMBER WORD ...: every third word, the first of them that with this number from 0; with LONG all
+third() {
+	from=$1
+	shift
+	long && from=
+	for word; do
+		[ -n "$from" ] && [ $((from % 3)) -ne 0 ] || echo "$word"
+		[ -z "$from" ] || from=$((from + 2))
+	done
+}
