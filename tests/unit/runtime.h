@@ -50,4 +50,10 @@ static inline uint64_t random_word(void)
     return seed * 0x2545F4914F6CDD1Du;
 }
 
+/* How many samples to draw, of `all`: every one in the long form (LONG in the environment), else a tenth. */
+static inline long samples(long all)
+{
+    return getenv("LONG") ? all : all / 10;
+}
+
 #endif

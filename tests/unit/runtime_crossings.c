@@ -552,7 +552,7 @@ static void all_roots_of_a_load(void **state)
     static const double from[8] = {0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0};
     int trial, i;
     (void)state;
-    for (trial = 0; trial < 3000; trial++) {
+    for (trial = 0; trial < samples(3000); trial++) {
         const int roots = 1 + trial % 5;
         const double apart = pow(10.0, -uniform(1.0, 4.0));
         double root[5], v = 0.0, last = 0.0;
@@ -1177,12 +1177,12 @@ static int differs(const model *s, const tracer *t, double tolerance, double *wo
     return wrong;
 }
 
-/* CROSSINGS_SYSTEMS: how many, 100 unless told */
+/* CROSSINGS_SYSTEMS: how many, unless told 100, in the short form 10 */
 static void random_systems(void **state)
 {
     static const double steps_of[] = {0.5, 1.0, 2.0, 4.0};
     const char *told = getenv("CROSSINGS_SYSTEMS");
-    const int systems = told ? atoi(told) : 100;
+    const int systems = told ? atoi(told) : (int)samples(100);
     int by_signs[4] = {0, 0, 0, 0}, i, k;
     double worst = 0.0;
     uint64_t crossings = 0;

@@ -146,7 +146,7 @@ static void sums_are_exact_or_saturate(void **state)
     int i;
     (void)state;
     mpz_inits(x, y, NULL);
-    for (i = 0; i < 100000; i++) {
+    for (i = 0; i < samples(100000); i++) {
         const pl_growth a = random_growth(), b = random_growth();
         set_words(x, a);
         set_words(y, b);
@@ -169,7 +169,7 @@ static void multiples_are_exact_or_saturate(void **state)
     int i;
     (void)state;
     mpz_init(x);
-    for (i = 0; i < 100000; i++) {
+    for (i = 0; i < samples(100000); i++) {
         const pl_growth a = random_growth();
         const uint64_t n = random_word() >> (random_word() & 63);
         set_words(x, a);
@@ -359,11 +359,12 @@ static void additions_do_not_drift(void **state)
 {
     const volatile pl_growth step = GROWTH_BITS == 48 ? units(-123457) : growth(-1, 0xFFFFFFFF00000001u);
     pl_growth a = integer(START); /* `step` is read anew each time: no compiler multiplies instead */
+    const long steps = samples(STEPS);
     long n;
     (void)state;
-    for (n = 0; n < STEPS; n++)
+    for (n = 0; n < steps; n++)
         a = pl_growth_add(a, step);
-    assert_growth(a, pl_growth_add(integer(START), pl_growth_times(step, STEPS)), "sum of all steps");
+    assert_growth(a, pl_growth_add(integer(START), pl_growth_times(step, (uint64_t)steps)), "sum of all steps");
 }
 
 static void integers_are_exact(void **state)
@@ -440,13 +441,13 @@ static void powers_of_2(void **state)
     long i;
     (void)state;
     mpfr_inits2(160, x, exact, (mpfr_ptr)0);
-    for (i = 0; i < 400000; i++)
+    for (i = 0; i < samples(400000); i++)
         assert_value(between(LEAST - 6, BEYOND + 2), x, exact);
-    for (i = 0; i < 300000; i++)
+    for (i = 0; i < samples(300000); i++)
         assert_value(between(-1, 1), x, exact);
-    for (i = 0; i < 200000; i++)
+    for (i = 0; i < samples(200000); i++)
         assert_value(between(LEAST - 3, NORMAL + 1), x, exact); /* subnormal results */
-    for (i = 0; i < 100000; i++) {
+    for (i = 0; i < samples(100000); i++) {
         const pl_growth edge = integer(edges[(size_t)i % (sizeof edges / sizeof edges[0])]);
         const uint64_t off = random_word() >> (random_word() % 49 + 15);
         const pl_growth beside = growth((int64_t)off, random_word()), below = pl_growth_add(negated(beside), units(-1));

@@ -262,7 +262,7 @@ static void masses_without_loads(int count, double least_damping, double most_da
                                  const char *family)
 {
     int i;
-    for (i = 0; i < count; i++) {
+    for (i = 0; i < samples(count); i++) {
         const int masses = 1 + (i % 4 != 0);
         system_of s;
         double fastest;
@@ -458,7 +458,7 @@ static void loads(void **state)
     (void)state;
     drawn = 6;
     for (load = 0; load < LOADS; load++) {
-        for (i = 0; i < 300; i++) {
+        for (i = 0; i < samples(300); i++) {
             const int masses = 1 + below(2);
             const double from = i % 3 == 0 ? -20.0 : -2.0, to = i % 3 == 0 ? -2.0 : i % 3 == 1 ? 3.0 : FARTHEST;
             int used;
@@ -775,7 +775,7 @@ static void equations(void **state)
     (void)state;
     drawn = 8;
     for (solves = 0; solves <= 1; solves++) {
-        for (i = 0; i < 2000; i++) {
+        for (i = 0; i < samples(2000); i++) {
             case_of c;
             start_case(&c, 1 + below(ROWS), 1 + below(COLUMNS), solves);
             random_products(&c);
@@ -801,7 +801,7 @@ static void nearly_singular(void **state)
     int i, row, column;
     (void)state;
     drawn = 9;
-    for (i = 0; i < 500; i++) {
+    for (i = 0; i < samples(500); i++) {
         case_of c;
         const int n = 2 + below(ROWS - 1);
         start_case(&c, n, 3, 1);

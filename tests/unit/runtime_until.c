@@ -74,7 +74,7 @@ static void changes_inside_a_step(void **state)
     int i, sign;
     (void)state;
     mpfr_inits2(BITS, v, t, (mpfr_ptr)0);
-    for (i = 0; i < 300000; i++) {
+    for (i = 0; i < samples(300000); i++) {
         const uint64_t k = random_word() >> 1 >> (random_word() % 63);
         const real t0 = i % 3 ? (real)(random_number(-20, 20) * (i % 3 - 1.5)) : 0;
         pl_two h, change;
