@@ -93,7 +93,10 @@ fi
 [ $# -eq 2 ] || { echo 'usage: same.sh OLD NEW, or same.sh PLGEN' >&2; exit 2; }
 sums "$1" "$work/old"
 sums "$2" "$work/new"
-LC_ALL=C join -v 1 -t ! "$work/old" "$work/new" >"$work/differ"
+for side in old new; do
+	LC_ALL=C sort "$work/$side" >"$work/$side.sorted"
+done
+LC_ALL=C comm -13 "$work/old.sorted" "$work/new.sorted" >"$work/differ"
 cut -d ' ' -f 2- "$work/differ" | head -n 50
 count=$(wc -l <"$work/new")
 differ=$(wc -l <"$work/differ")
