@@ -1,4 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
+# shellcheck shell=sh disable=SC2154
 # Sourced after tap.sh by tests that compile what plgen emits. LONG=1 in the environment (`make check-long`): everything
 # with every compiler; without it no more than shows a warning, and what is alike goes to two of the four by turns.
 

@@ -47,11 +47,13 @@ compiles() {
 }
 
 without_comments() {
-    awk '{ text = text $0 "\n" }
-         END { while ((i = index(text, "/*")) > 0) {
-                   printf "%s", substr(text, 1, i - 1); text = substr(text, i + 2);
-                       text = substr(text, index(text, "*/") + 2) }
-               printf "%s", text }' "$1"
+    awk '{ line = $0
+           for (;;) {
+               if (inside) { if (!(i = index(line, "*/"))) next; line = substr(line, i + 2); inside = 0 }
+               if (!(i = index(line, "/*"))) break
+               printf "%s", substr(line, 1, i - 1); line = substr(line, i + 2); inside = 1
+           }
+           print line }' "$1"
 }
 
 # no_double FILE.c NAME: no word double, no literal or function of that type
