@@ -18,8 +18,8 @@ case $float in /*) ;; *) float=$PWD/$float ;; esac
 warnings='-Wall -Wextra -Wpedantic -Wconversion -Wdouble-promotion -Wshadow -Werror'
 leftover='pendulum duffing vanderpol beam4'
 switching='gear1 two_masses quarter_car_bumps'
-. "${0%/*}/../tap.sh"
 . "${0%/*}/../compilers.sh"
+. "${0%/*}/../tap.sh"
 
 {
     for pair in "${GCCS:-gcc g++}" "${CLANGS:-clang clang++}"; do
