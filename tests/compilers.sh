@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Sourced after tap.sh by tests that compile what plgen emits. LONG=1 in the environment (`make check-long`): everything
+# shellcheck shell=sh disable=SC2154
+# Sourced before tap.sh by tests that compile what plgen emits. LONG=1 in the environment (`make check-long`): everything
 # with every compiler; without it no more than shows a warning, and what is alike goes to two of the four by turns.
 
 long() {

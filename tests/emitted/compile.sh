@@ -24,8 +24,8 @@ case $solutions in
     *) solutions=$PWD/$solutions ;;
 esac
 warnings='-Wall -Wextra -Wpedantic -Wconversion -Wdouble-promotion -Wshadow -Werror'
-. "${0%/*}/../tap.sh"
 . "${0%/*}/../compilers.sh"
+. "${0%/*}/../tap.sh"
 
 installed() {
     command -v "$1" >/dev/null 2>&1

@@ -21,8 +21,8 @@ plgen=$(absolute "$1")
 inputs=$(absolute "$2")
 root=$(absolute "$3")
 warnings='-Wall -Wextra -Wpedantic -Wconversion -Wdouble-promotion -Wshadow -Werror'
-. "${0%/*}/../tap.sh"
 . "${0%/*}/../compilers.sh"
+. "${0%/*}/../tap.sh"
 
 for pair in "${GCCS:-gcc g++}" "${CLANGS:-clang clang++}"; do
     echo "${pair% *} -std=c99"

@@ -18,8 +18,8 @@ case $float in /*) ;; *) float=$PWD/$float ;; esac
 warnings='-Wall -Wextra -Wpedantic -Wconversion -Wdouble-promotion -Wshadow -Werror'
 leftover='pendulum duffing vanderpol beam4'
 switching='gear1 two_masses quarter_car_bumps'
-. "${0%/*}/../tap.sh"
 . "${0%/*}/../compilers.sh"
+. "${0%/*}/../tap.sh"
 
 {
     for pair in "${GCCS:-gcc g++}" "${CLANGS:-clang clang++}"; do
@@ -47,11 +47,13 @@ compiles() {
 }
 
 without_comments() {
-    awk '{ text = text $0 "\n" }
-         END { while ((i = index(text, "/*")) > 0) {
-                   printf "%s", substr(text, 1, i - 1); text = substr(text, i + 2);
-                       text = substr(text, index(text, "*/") + 2) }
-               printf "%s", text }' "$1"
+    awk '{ line = $0
+           for (;;) {
+               if (inside) { if (!(i = index(line, "*/"))) next; line = substr(line, i + 2); inside = 0 }
+               if (!(i = index(line, "/*"))) break
+               printf "%s", substr(line, 1, i - 1); line = substr(line, i + 2); inside = 1
+           }
+           print line }' "$1"
 }
 
 # no_double FILE.c NAME: no word double, no literal or function of that type

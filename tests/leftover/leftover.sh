@@ -21,8 +21,8 @@ for file; do
 done
 here=$root/tests/leftover
 warnings='-Wall -Wextra -Wpedantic -Wconversion -Wdouble-promotion -Wshadow -Werror'
-. "${0%/*}/../tap.sh"
 . "${0%/*}/../compilers.sh"
+. "${0%/*}/../tap.sh"
 
 # ---- compilers ----
 

@@ -20,8 +20,8 @@ for file; do
 done
 here=$root/tests/switching
 warnings='-Wall -Wextra -Wpedantic -Wconversion -Wdouble-promotion -Wshadow -Werror'
-. "${0%/*}/../tap.sh"
 . "${0%/*}/../compilers.sh"
+. "${0%/*}/../tap.sh"
 
 # options_of COMPILER FILE: code, for the warnings that take an optimiser, of every kind of model but not of each of
 # their variants; with LONG=1 of all

@@ -19,8 +19,8 @@ for spec; do
     specs="$specs $spec"
 done
 warnings='-Wall -Wextra -Wpedantic -Wconversion -Wdouble-promotion -Wshadow -Werror'
-. "${0%/*}/../tap.sh"
 . "${0%/*}/../compilers.sh"
+. "${0%/*}/../tap.sh"
 
 {
     for pair in "${GCCS:-gcc g++}" "${CLANGS:-clang clang++}"; do
