@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# scales.sh BUILD SCALES ROOT: the scales of every model and hard case of the charts, over their whole histories, held
-# by the program scales.
+# scales.sh BUILD SCALES ROOT [--quick]: the scales of every model and hard case of the charts, over their whole
+# histories or those of the quick run, held by the program scales.
 set -e
 absolute() {
     case $1 in
@@ -9,7 +9,7 @@ absolute() {
         *) echo "$PWD/$1" ;;
     esac
 }
-build=$(absolute "$1") program=$(absolute "$2") root=$3
+build=$(absolute "$1") program=$(absolute "$2") root=$3 quick=${4:-}
 charts=$build/bench/charts
 work=$(mktemp -d "${TMPDIR:-/tmp}/scales.XXXXXX") || exit 99
 trap 'rm -rf "$work"' EXIT
@@ -21,7 +21,7 @@ mkdir "$work/hard"
     xargs -P 2 -L 1 bench/charts/variant.sh "$build/plgen"
 sh bench/charts/hard.sh "$build/plgen" "$work/hard" problems
 {
-    "$charts/precision" --scales "$work" && "$charts/hard" --scales "$work/hard"
+    "$charts/precision" --scales $quick "$work" && "$charts/hard" --scales $quick "$work/hard"
 } >"$work/scales" 2>"$work/said" || { status=$?; sed 's/^/# /' "$work/said"; exit $status; }
 models=$(awk 'END { print NR }' "$work/scales")
 [ "$models" -eq 29 ] || { echo "Bail out! $models models and cases, expected 17 and 12"; exit 1; }
