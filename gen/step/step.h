@@ -357,8 +357,6 @@ struct pieces pieces_of(const struct step *step);
 
 /* ---- cost.c: what a step costs ---- */
 
-struct cost { int multiplications, additions, calls; };
-struct cost leftover_cost(const struct step *step);         /* of one evaluation */
 void count_program(const struct step *step, struct program *program); /* of a step with a leftover, not its loads */
 /* what the load states of the columns in use cost */
 void count_loads(struct program *program, const struct linear *system, bool single);
