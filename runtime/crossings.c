@@ -302,8 +302,7 @@ static void look_beyond(beyond *f, const real *e, real sign, real b, real terms)
     f->noise = noise_of(terms + magnitude(sign * b) + f->reach);
 }
 
-/* The root between a, where g < 0, and z, where g > 0; g rises all the way.  Newton's method, safeguarded by halving.
- */
+/* The root between a, where g < 0, and z, where g > 0; g rises all the way.  Newton's method, kept safe by halving. */
 static real root_between(const beyond *f, point a, point z)
 {
     const real enough = SHORT; /* the step after that would be below rounding */

@@ -32,8 +32,7 @@ extern "C" {
 
 /* ---- what the arithmetic needs of the compiler --------------------------------------------------------------- */
 
-/* y + (Phi - I) y as Phi y, or the error of a sum as 0: so a compiler may read it that takes additions for associative.
- */
+/* y + (Phi - I) y as Phi y, or the error of a sum as 0: a compiler that takes additions for associative may read so. */
 #if defined __FAST_MATH__ || defined __ASSOCIATIVE_MATH__ || defined __RECIPROCAL_MATH__ || defined _M_FP_FAST
 #error "sums and quotients have to stay as they are written: compile it without -ffast-math, -Ofast, \
 -funsafe-math-optimizations, -fassociative-math, -freciprocal-math, /fp:fast"
@@ -233,8 +232,7 @@ pl_growthf pl_growthf_at(const pl_ratef *rate, int negative, float t);
  * included; exactly 2^k at an integer k; 0 from 2^-150 down, infinite from 2^128 up. */
 float pl_growthf_value(pl_growthf a);
 
-/* What one pl_growthf_value costs: seven products of 32-bit integers and nine additions of integers; nothing in floats.
- */
+/* What one pl_growthf_value costs: seven products of 32-bit integers and nine additions of integers; no floats. */
 enum { PL_GROWTHF_MUL = 7, PL_GROWTHF_ADD = 9 };
 
 /* ---- series.c: between two steps ------------------------------------------------------------------------- */
@@ -436,8 +434,7 @@ void pl_switchingf_advance(const pl_switchingf *m, float tau, float *x, pl_conta
 
 /* ---- retune.c: coefficients from other params --------------------------------------------------------------- */
 
-/* A product of params: an earlier one times a param, or divided by it.  Product 0 is 1; a list of these makes 1, 2, ...
- */
+/* A product of params: an earlier one times a param, or divided by it.  Product 0 is 1; a list makes 1, 2, ... */
 typedef struct pl_monomial {
     int from;    /* an earlier product */
     int param;
@@ -529,8 +526,8 @@ float pl_rampf_before(pl_twof whole, pl_twof slope, float h);
 
 /* ---- rate.c: frequencies from other params -------------------------------------------------------------------- */
 
-/* w / (2 pi), w >= 0 an angular frequency [rad/s]: off by less than 2^-115 of itself, beside what two words leave of w.
- */
+/* w / (2 pi), w >= 0 an angular frequency [rad/s]: off by less than 2^-115 of itself, beside what two words
+ * leave of w. */
 pl_rate pl_rate_of(pl_two w);
 pl_ratef pl_ratef_of(pl_twof w); /* 2^-86 */
 

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Forms: sums of rational factors times basis elements: 1, pi, waves (t^k e^{at} cos or sin), inputs, coordinates and
- * their derivatives. pi stays a basis element until it meets another factor, so that quarter turns are decided exactly.
- */
+ * their derivatives. pi stays a basis element until it meets another factor: quarter turns are decided exactly. */
 #include "collect/collect.h"
 
 #include <string.h>

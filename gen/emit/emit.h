@@ -262,8 +262,6 @@ void emit_tuned_at(const struct emitter *e);                      /* pass, from 
 /* phases and growths from the start of the step to each node */
 void emit_node_phases(const struct emitter *e, const bool *loads);
 void emit_out(const struct emitter *e);
-/* A number for each output, then for each highest derivative that outputs which are not linear read */
-int place_of_output(const struct model *model, const struct output *output);
 void emit_at(const struct emitter *e);
 void emit_jump(const struct emitter *e);
 void emit_rhs(const struct emitter *e);

@@ -18,7 +18,8 @@ static bool any_factor(const struct emitter *e, const struct output *output, int
 	return false;
 }
 
-int place_of_output(const struct model *model, const struct output *output)
+/* A number for each output, then for each highest derivative that outputs which are not linear read */
+static int place_of_output(const struct model *model, const struct output *output)
 {
 	int row = model->outputs;
 	for (int k = 0; model->highest && k < model->n; k++) {

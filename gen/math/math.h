@@ -97,8 +97,8 @@ struct response {                   /* scale * N/D, N and D coprime */
 	int precision;
 };
 struct response *response_of(mpq_srcptr scale, struct poly N, struct poly D);
-/* True if the value at tau is rational: then `exact` is it. False: it is transcendental and response_enclose converges.
- */
+/* True if the value at tau is rational: then `exact` is it. False: it is transcendental, and response_enclose
+ * converges. */
 bool response_exact(struct response *response, mpq_srcptr tau, mpq_ptr exact);
 /* false: poles not isolated */
 bool response_enclose(struct response *response, mpq_srcptr tau, int precision, mpfi_ptr value);

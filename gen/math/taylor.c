@@ -473,8 +473,8 @@ struct plan {
 	struct magnitude tail;      /* of D^-1 e^B D */
 };
 
-/* The least m with b^m/m! < 2^bits and b <= (m + 1)/2, and 2 b^m/m!, which then bounds the tail; 0: none within reason
- */
+/* The least m with b^m/m! < 2^bits and b <= (m + 1)/2, and 2 b^m/m!, which then bounds the tail; 0: none in
+ * reason */
 static int series_length(struct magnitude b, long bits, struct magnitude *tail)
 {
 	struct magnitude term = magnitude(1, 0);
@@ -661,8 +661,7 @@ static void add_tail(const struct taylor *t, struct magnitude tail, struct balls
 		}
 }
 
-/* Keeps exponents far from the limits of a long: what is tiny becomes 0 with a radius. False: something is too large.
- */
+/* Keeps exponents far from the limits of a long: what is tiny becomes 0 with a radius. False: some are too large. */
 static bool keep_in_range(struct balls *U, size_t cells)
 {
 	for (size_t i = 0; i < cells; i++) {

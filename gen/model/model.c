@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* From a parsed spec to a model: params, scheme, step and initial values here; equations.c and outputs.c do the rest.
- */
+/* From a parsed spec to a model: params, scheme, step and initial values here, the rest by the files before it. */
 #include "model/model.h"
 
 #include <string.h>

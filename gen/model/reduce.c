@@ -112,8 +112,7 @@ static mpq_t *force_column(const struct linear *written, const mpq_t *inverse, c
 	return column;
 }
 
-/* Does no load and no input act on row . y' directly? Then (row A) y is the derivative of row y, and may be named so.
- */
+/* Does no load and no input act on row . y' directly? Then (row A) y is the derivative of row y, and named so. */
 static bool unforced(const struct linear *written, const mpq_t *inverse, const mpq_t *row)
 {
 	bool free = true;

@@ -39,8 +39,7 @@ static void warn_of_kept(const struct model *model)
 			    names);
 }
 
-/* The model over coordinates that part what moves as a whole from what moves in it, where there are such; else itself
- */
+/* The model over coordinates that part what moves as a whole from what moves in it; itself, where nothing does */
 struct model *stepped_model(struct model *model, struct spec *spec, const struct request *request)
 {
 	struct request again = *request;

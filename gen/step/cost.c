@@ -7,6 +7,7 @@ static bool is_unit(mpq_srcptr factor)
 	return mpz_cmpabs_ui(mpq_numref(factor), 1) == 0 && mpz_cmp_ui(mpq_denref(factor), 1) == 0;
 }
 
+struct cost { int multiplications, additions, calls; };
 struct counting {
 	struct cost cost;
 	bool *seen;                 /* per atom */
@@ -50,7 +51,8 @@ static void cost_form(struct counting *c, const struct form *form)
 	}
 }
 
-struct cost leftover_cost(const struct step *step)
+/* Of one evaluation */
+static struct cost leftover_cost(const struct step *step)
 {
 	const struct model *model = step->model;
 	struct counting c = { .seen = ARRAY(bool, (size_t)atoms_count(model->atoms)) };

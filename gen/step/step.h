@@ -101,8 +101,7 @@ struct coefficient started_value(int count, const struct started *list, mpq_srcp
 				 const char *what);
 struct coefficient response_value(struct response *response, mpq_srcptr tau, bool two_words, struct place at,
 				  const char *what);
-/* Block by block; by residues, beyond LIMIT_RESIDUE_STATES states by Taylor series. `resolvent` is that of the whole.
- */
+/* Block by block; by residues, beyond LIMIT_RESIDUE_STATES states by Taylor series. `resolvent`: of the whole */
 struct table **tables_of(const struct model *model, struct resolvent *resolvent, const struct linear *system, int count,
 			 const struct wanted *wanted);
 
@@ -263,8 +262,7 @@ void need_closed_form(const struct step *step);              /* leaves the state
 /* a violation is an internal error, and leaves the statement */
 void program_check(const struct step *step);
 
-/* ---- recipe.c: what recipes are written in; one that asks for more than there is room for leaves the statement ----
- */
+/* ---- recipe.c: what recipes are written in; one that asks for more than there is room for is refused ---- */
 
 enum { RECIPE_TABLES = 8 };
 struct recipe {                     /* of one scheme, being written */
@@ -314,7 +312,7 @@ int  phase_bits(const struct step *step);                    /* 128, or 64, all 
 int  growth_bits(const struct step *step);                   /* 112, or 48: those behind the point */
 void plan_phases(struct step *step);                        /* step->phase; after the program, for its nodes */
 
-/* ---- slopes.c: A of x' = A x, rounded; x as in struct series ---- */
+/* ---- slopes.c: A of x' = A x, rounded; x as in struct layout ---- */
 
 struct load_slopes {                /* the columns of A that change from segment to segment of time */
 	int first, columns;         /* of x; first -1: no load acts */
@@ -343,7 +341,7 @@ int leap_entries_of(const struct step *step, const struct leap *leap, struct lea
 
 /* ---- pieces.c: what a piecewise-linear model finds its crossings with ---- */
 
-struct region_piece {                      /* of a branch, d = h 2^-halvings long; x as in struct series */
+struct region_piece {               /* of a branch, d = h 2^-halvings long; x as in struct layout */
 	double *slopes;             /* A of x' = A x, size x size [x/s] */
 	double *Phi;                /* e^{A d}, size x size */
 	double *slope;              /* slope . x is d/3 times the slope of each expression; expressions x size */
@@ -359,8 +357,6 @@ struct pieces pieces_of(const struct step *step);
 
 /* ---- cost.c: what a step costs ---- */
 
-struct cost { int multiplications, additions, calls; };
-struct cost leftover_cost(const struct step *step);         /* of one evaluation */
 void count_program(const struct step *step, struct program *program); /* of a step with a leftover, not its loads */
 /* what the load states of the columns in use cost */
 void count_loads(struct program *program, const struct linear *system, bool single);
