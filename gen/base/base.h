@@ -127,6 +127,7 @@ void   target_float(void);
 const char *target_name(void);
 /* nearest of the target's numbers; +-HUGE_VAL beyond the range */
 double round_rational(mpq_srcptr q);
+double rounding_rest(mpq_srcptr q);                         /* what that leaves out of q, rounded */
 double nearest_double(mpq_srcptr q);                        /* whatever the target */
 bool   beyond_range(mpq_srcptr q);
 /* shortest; leaves the statement at a value beyond the range */

@@ -70,6 +70,17 @@ static double round_bound(mpfr_srcptr bound)
 	return d;
 }
 
+double rounding_rest(mpq_srcptr q)
+{
+	mpq_t rest;
+	mpq_init(rest);
+	mpq_set_d(rest, round_rational(q));
+	mpq_sub(rest, q, rest);
+	double low = round_rational(rest);
+	mpq_clear(rest);
+	return low;
+}
+
 bool beyond_range(mpq_srcptr q)
 {
 	return isinf(round_rational(q));

@@ -223,7 +223,7 @@ void emit_changes(const struct emitter *e)
 	       "static const pl_two $n_change[%d] = {  /* [s]: where loads change their formula */\n",
 	    e->system->segments - 1);
 	for (int i = 0; i < e->system->segments - 1; i++) {
-		number_in_range(e->step, e->system->change[i]);
+		finite_number(e, e->system->change[i]);
 		say(e, "    %s,\n", two_text(e->system->change[i]));
 	}
 	say(e, "};\n"

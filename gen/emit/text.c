@@ -115,13 +115,7 @@ void emit_name_list(const struct emitter *e, const char *array, int count, const
 
 const char *low_text(mpq_srcptr q)
 {
-	mpq_t rest;
-	mpq_init(rest);
-	mpq_set_d(rest, round_rational(q));
-	mpq_sub(rest, q, rest);
-	const char *text = shortest(round_rational(rest));
-	mpq_clear(rest);
-	return text;
+	return shortest(rounding_rest(q));
 }
 
 const char *two_text(mpq_srcptr q)

@@ -6,14 +6,7 @@ struct coefficient equation_number(const struct model *model, mpq_srcptr q)
 {
 	if (beyond_range(q))
 		error(model->asked.step_at, NULL, "a number of the equations is beyond the range of %s", target_name());
-	struct coefficient number = { .value = round_rational(q), .zero = mpq_sgn(q) == 0 };
-	mpq_t rest;
-	mpq_init(rest);
-	mpq_set_d(rest, number.value);
-	mpq_sub(rest, q, rest);
-	number.low = round_rational(rest);
-	mpq_clear(rest);
-	return number;
+	return (struct coefficient){ .value = round_rational(q), .low = rounding_rest(q), .zero = mpq_sgn(q) == 0 };
 }
 
 double time_in_step(const struct model *model, mpq_srcptr fraction)

@@ -99,14 +99,14 @@ static void fill_row(const struct step *step, const struct output *expression, d
 	const struct layout *layout = &step->layout;
 	const struct linear *system = &step->branch->system;
 	for (int i = 0; i < system->states; i++)
-		row[i] = number_in_range(step, expression->state[i]);
+		row[i] = equation_number(step->model, expression->state[i]).value;
 	for (int l = 0; l < system->loads; l++)
 		for (int k = 0; k < system->load[l].columns && layout->load[l] >= 0; k++)
-			row[layout->load[l] + k] = number_in_range(step, expression->load[l][k]);
+			row[layout->load[l] + k] = equation_number(step->model, expression->load[l][k]).value;
 	for (int i = 0; i < system->inputs; i++) {
-		row[layout->input[i]] = number_in_range(step, expression->input[0][i]);
+		row[layout->input[i]] = equation_number(step->model, expression->input[0][i]).value;
 		if (system->input[i].first_order)
-			row[layout->input[i] + 1] = number_in_range(step, expression->input[1][i]);
+			row[layout->input[i] + 1] = equation_number(step->model, expression->input[1][i]).value;
 	}
 }
 
@@ -128,7 +128,7 @@ static double *breakpoints_of(const struct step *step)
 	double *breakpoint = ARRAY(double, (size_t)count), *next = breakpoint;
 	for (int i = 0; i < s->expressions; i++)
 		for (int k = 0; k < s->expression[i].breaks; k++)
-			*next++ = number_in_range(step, s->expression[i].at[k]);
+			*next++ = equation_number(step->model, s->expression[i].at[k]).value;
 	return breakpoint;
 }
 

@@ -7,13 +7,6 @@ void tell_range(const struct step *step)
 	error(step->model->asked.step_at, NULL, "a number of the equations is beyond the range of %s", target_name());
 }
 
-double number_in_range(const struct step *step, mpq_srcptr q)
-{
-	if (beyond_range(q))
-		tell_range(step);
-	return round_rational(q);
-}
-
 double *slopes_of(const struct step *step, int branch)
 {
 	size_t cells = (size_t)step->layout.size * (size_t)step->layout.size;
@@ -85,7 +78,7 @@ struct coefficient *held_forces_of(const struct step *step)
 			mpq_srcptr held = (j < n ? system->heldK : system->heldC)[i * n + system->coord[j]];
 			struct coefficient *c = &force[i * system->states + j];
 			c->zero = mpq_sgn(held) == 0;
-			c->value = c->zero ? 0 : -number_in_range(step, held);
+			c->value = c->zero ? 0 : -equation_number(step->model, held).value;
 		}
 	return force;
 }

@@ -319,7 +319,6 @@ struct load_slopes {                /* the columns of A that change from segment
 	double **segment;           /* states x columns [x/s]; 0 of loads that the step leaves out */
 };
 _Noreturn void tell_range(const struct step *step);          /* an error at the step: a number overflows */
-double number_in_range(const struct step *step, mpq_srcptr q); /* rounded, or told */
 double *slopes_of(const struct step *step, int branch);      /* size x size [x/s], loads as in the first segment; */
 							     /* infinite beyond the range */
 struct load_slopes load_slopes_of(const struct step *step);
