@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # shellcheck shell=sh disable=SC2154
-# Sourced before tap.sh by tests that compile what plgen emits. LONG=1 in the environment (`make check-long`): everything
-# with every compiler; without it no more than shows a warning, and what is alike goes to two of the four by turns.
+# Sourced before tap.sh by tests that compile what plgen emits. LONG=1 in the environment (`make check-long`):
+# everything with every compiler; without it no more than shows a warning, and what is alike goes to two of the four
+# by turns.
 
 long() {
 	[ -n "${LONG:-}" ]
