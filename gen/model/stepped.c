@@ -34,8 +34,7 @@ static void warn_of_kept(const struct model *model)
 	if (names)
 		say_warning(model->spec->name_at, "without --reduce differences are states of their own",
 			    "the reduced model keeps %s, which may move as a whole: where they grow, their differences "
-			    "lose "
-			    "digits",
+			    "lose digits",
 			    names);
 }
 
