@@ -38,12 +38,31 @@ static void banner_poles(const struct emitter *e)
 		say(e, " *     %s\n", pole_row(&pole[i], 34));
 }
 
+/* One sentence, its lines broken between words */
+static void banner_sentence(const struct emitter *e, const char *text)
+{
+	enum { WIDTH = 110 };
+	size_t column = 2;
+	say(e, " *");
+	while (*text) {
+		size_t word = strcspn(text, " ");
+		if (column + 1 + word > WIDTH) {
+			say(e, "\n *");
+			column = 2;
+		}
+		say(e, " %.*s", (int)word, text);
+		column += 1 + word;
+		text += word + strspn(text + word, " ");
+	}
+	say(e, "\n");
+}
+
 /* What the scheme is; nothing of exact */
 static void banner_scheme(const struct emitter *e)
 {
 	const struct model *shown = e->step->shown->model;
 	if (e->model->scheme != SCHEME_EXACT)
-		say(e, " * %s\n", scheme_note(e->model->scheme));
+		banner_sentence(e, scheme_note(e->model->scheme));
 	if (loses_order(shown))
 		say(e, " * So where all is smooth; here of order %s at most: %s.\n", order_text(shown),
 		    printable(smoothness_text(shown)));
