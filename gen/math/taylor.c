@@ -917,25 +917,10 @@ static bool *find_survivors(const struct taylor *t)
 	return survivor;
 }
 
-static mpz_t *integers(int count)
-{
-	mpz_t *z = ARRAY(mpz_t, (size_t)count);
-	for (int i = 0; i < count; i++)
-		mpz_init(z[i]);
-	return z;
-}
-
-static void clear_integers(mpz_t *z, int count)
-{
-	for (int i = 0; i < count; i++)
-		mpz_clear(z[i]);
-	release(z);
-}
-
 /* The block of A over S as integers over their common denominator */
 static mpz_t *integer_block(const struct taylor *t, int N, const int *state, mpz_ptr denominator)
 {
-	mpz_t *block = integers(N * N);
+	mpz_t *block = integers((size_t)N * (size_t)N);
 	mpz_set_ui(denominator, 1);
 	for (int a = 0; a < N; a++)
 		for (int b = 0; b < N; b++)
@@ -1017,7 +1002,7 @@ static int keep_zeros(struct exact_row *found, mpz_t *row)
 static void find_row(const struct taylor *t, struct exact_row *found)
 {
 	int N = found->N, left = 1;
-	mpz_t denominator, *block, *row = integers(N), *next = integers(N);
+	mpz_t denominator, *block, *row = integers((size_t)N), *next = integers((size_t)N);
 	mpq_t weight;
 	mpz_init(denominator);
 	mpq_init(weight);
@@ -1036,9 +1021,9 @@ static void find_row(const struct taylor *t, struct exact_row *found)
 			next_weight(weight, t->tau, k, denominator);
 		add_power(found, row, weight);
 	}
-	clear_integers(block, N * N);
-	clear_integers(row, N);
-	clear_integers(next, N);
+	integers_free(block, (size_t)N * (size_t)N);
+	integers_free(row, (size_t)N);
+	integers_free(next, (size_t)N);
 	mpz_clear(denominator);
 	mpq_clear(weight);
 }
