@@ -192,8 +192,8 @@ void rational_subtract_row(int n, mpq_t *target, const mpq_t *row, mpq_srcptr fa
 	mpq_clear(product);
 }
 
-/* Rows of A and columns of B as integers: each entry is reduced once. */
-void rational_product(int rows, int inner, int columns, const mpq_t *A, const mpq_t *B, mpq_t *AB)
+/* Rows of A and columns of B as integers */
+void unreduced_product(int rows, int inner, int columns, const mpq_t *A, const mpq_t *B, mpq_t *AB)
 {
 	size_t wide = (size_t)inner * (size_t)columns;
 	mpz_t *row = integers((size_t)inner), *column = integers(wide), *scale = integers((size_t)columns), common;
@@ -209,11 +209,17 @@ void rational_product(int rows, int inner, int columns, const mpq_t *A, const mp
 				if (mpz_sgn(row[k]) != 0 && mpz_sgn(column[j * inner + k]) != 0)
 					mpz_addmul(mpq_numref(sum), row[k], column[j * inner + k]);
 			mpz_mul(mpq_denref(sum), common, scale[j]);
-			mpq_canonicalize(sum);
 		}
 	}
 	mpz_clear(common);
 	integers_free(row, (size_t)inner);
 	integers_free(column, wide);
 	integers_free(scale, (size_t)columns);
+}
+
+void rational_product(int rows, int inner, int columns, const mpq_t *A, const mpq_t *B, mpq_t *AB)
+{
+	unreduced_product(rows, inner, columns, A, B, AB);
+	for (int i = 0; i < rows * columns; i++)
+		mpq_canonicalize(AB[i]);
 }
