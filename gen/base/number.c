@@ -129,14 +129,32 @@ static bool reads_back(const char *text, double d)
 	return target == &range_of_float ? strtof(text, NULL) == (float)d : strtod(text, NULL) == d;
 }
 
+static bool digits_do(double d, int digits, char text[static 64])
+{
+	snprintf(text, 64, "%.*g", digits, d);
+	return digits == target->digits || reads_back(text, d);
+}
+
+/* What rounds to d lies around it as far below as above, except at a power of two: so where some digits do, more do. */
+static int fewest_digits(double d, char text[static 64])
+{
+	enum { COMPUTED = 2 };          /* almost all that is computed takes the last two */
+	int exponent, least = 1, most = target->digits;
+	bool alike = fabs(frexp(d, &exponent)) != 0.5;
+	while (least < most) {
+		int middle = !alike ? least : most == target->digits && least == 1 ? most - COMPUTED : (least + most) / 2;
+		if (digits_do(d, middle, text))
+			most = middle;
+		else
+			least = middle + 1;
+	}
+	return least;
+}
+
 const char *shortest(double d)
 {
 	char text[64];
-	for (int digits = 1; digits <= target->digits; digits++) {
-		snprintf(text, sizeof text, "%.*g", digits, d);
-		if (reads_back(text, d))
-			break;
-	}
+	digits_do(d, fewest_digits(d, text), text);
 	char *exponent = strchr(text, 'e');
 	if (!exponent)
 		return strchr(text, '.') ? format("%s", text) : format("%s.0", text);

@@ -5,10 +5,21 @@
 
 #include "base/base.h"
 
-/* ---- matrix.c: rational matrices ---- */
+/* ---- matrix.c: rational matrices, and integer ones ---- */
+
+/* The block of each row (0 .. n-1) and column (n .. 2n-1) of an n x n matrix, numbered in the order of their first
+ * columns; how many there are: rows and columns that have nothing in common with those of others */
+int  matrix_blocks(int n, const bool *filled, int *block);
+mpz_t *integers(size_t count);                              /* initialised to 0 */
+void integers_free(mpz_t *z, size_t count);
+/* Fraction-free elimination (Bareiss): on W of width n the determinant; on [W | I], after Jordan, also adj W in the
+ * place of I. False at a singular matrix: *column depends on those before it. */
+bool bareiss(int n, int width, mpz_t *W, mpz_ptr det, int *column);
 
 bool rational_inverse(int n, const mpq_t *A, mpq_t *inverse, int *column); /* false: singular, *column free */
 void rational_subtract_row(int n, mpq_t *target, const mpq_t *row, mpq_srcptr factor); /* target - factor row */
+/* numerators and denominators that may have factors in common: for who only rounds them */
+void unreduced_product(int rows, int inner, int columns, const mpq_t *A, const mpq_t *B, mpq_t *AB);
 void rational_product(int rows, int inner, int columns, const mpq_t *A, const mpq_t *B, mpq_t *AB);
 
 /* ---- poly.c: polynomials over Z, constant term first ---- */

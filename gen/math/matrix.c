@@ -2,44 +2,181 @@
 /* Rational matrices. */
 #include "math/math.h"
 
-/* Gauss and Jordan on [A | I]. */
+/* ---- blocks: rows and columns that have nothing in common with the others ---- */
+
+static int root_of(int *parent, int i)
+{
+	while (parent[i] != i)
+		i = parent[i] = parent[parent[i]];
+	return i;
+}
+
+int matrix_blocks(int n, const bool *filled, int *block)
+{
+	int count = 0, *parent = ARRAY(int, 2 * (size_t)n);
+	for (int i = 0; i < 2 * n; i++)
+		parent[i] = i;
+	for (int cell = 0; cell < n * n; cell++)
+		if (filled[cell])
+			parent[root_of(parent, cell / n)] = root_of(parent, n + cell % n);
+	for (int i = 0; i < 2 * n; i++)
+		block[i] = -1;
+	for (int j = 0; j < n; j++)
+		if (block[root_of(parent, n + j)] < 0)
+			block[root_of(parent, n + j)] = count++;
+	for (int i = 0; i < 2 * n; i++)
+		block[i] = block[root_of(parent, i)];
+	discard(parent);
+	return count;
+}
+
+/* ---- integers over a common denominator: sums of products need no gcds ---- */
+
+mpz_t *integers(size_t count)
+{
+	mpz_t *z = ARRAY(mpz_t, count);
+	for (size_t i = 0; i < count; i++)
+		mpz_init(z[i]);
+	return z;
+}
+
+void integers_free(mpz_t *z, size_t count)
+{
+	for (size_t i = 0; i < count; i++)
+		mpz_clear(z[i]);
+	discard(z);
+}
+
+/* z <- scale q, `stride` apart in q */
+static void to_integers(int count, const mpq_t *q, int stride, mpz_ptr scale, mpz_t *z)
+{
+	mpz_set_ui(scale, 1);
+	for (int i = 0; i < count; i++)
+		if (mpz_cmp_ui(mpq_denref(q[i * stride]), 1) != 0)
+			mpz_lcm(scale, scale, mpq_denref(q[i * stride]));
+	for (int i = 0; i < count; i++) {
+		mpz_divexact(z[i], scale, mpq_denref(q[i * stride]));
+		mpz_mul(z[i], z[i], mpq_numref(q[i * stride]));
+	}
+}
+
+/* ---- elimination ---- */
+
+/* row <- (pivot row - factor pivot_row) / previous; most of the way most cells of a chain are 0 */
+static void bareiss_row(int from, int width, mpz_t *row, const mpz_t *pivot_row, mpz_srcptr pivot, mpz_srcptr factor,
+			mpz_srcptr previous)
+{
+	for (int j = from; j < width; j++) {
+		bool taken = mpz_sgn(factor) != 0 && mpz_sgn(pivot_row[j]) != 0;
+		if (!taken && mpz_sgn(row[j]) == 0)
+			continue;
+		mpz_mul(row[j], row[j], pivot);
+		if (taken)
+			mpz_submul(row[j], factor, pivot_row[j]);
+		mpz_divexact(row[j], row[j], previous);
+	}
+}
+
+bool bareiss(int n, int width, mpz_t *W, mpz_ptr det, int *column)
+{
+	int sign = 1, k = 0;
+	mpz_t previous, factor;
+	mpz_init_set_ui(previous, 1);
+	mpz_init(factor);
+	for (; k < n; k++) {
+		int row = k;
+		while (row < n && mpz_sgn(W[row * width + k]) == 0)
+			row++;
+		if (row == n)
+			break;
+		sign = row == k ? sign : -sign;
+		for (int j = 0; j < width && row != k; j++)
+			mpz_swap(W[row * width + j], W[k * width + j]);
+		for (int i = width > n ? 0 : k + 1; i < n; i++) {     /* for the determinant alone, Gauss will do */
+			mpz_set(factor, W[i * width + k]);
+			if (i != k)
+				bareiss_row(width > n ? 0 : k, width, W + i * width, (const mpz_t *)W + k * width,
+					    W[k * width + k], factor, previous);
+		}
+		mpz_set(previous, W[k * width + k]);
+	}
+	(sign < 0 ? mpz_neg : mpz_set)(det, previous);
+	for (int i = 0; i < n * width && sign < 0; i++)
+		mpz_neg(W[i], W[i]);
+	mpz_clears(previous, factor, NULL);
+	*column = k;
+	return k == n;
+}
+
+struct members {                    /* the rows and columns of one block */
+	int rows, columns, *row, *column;
+};
+
+static struct members members_of(int n, const int *block, int which)
+{
+	struct members m = { 0, 0, ARRAY(int, (size_t)n), ARRAY(int, (size_t)n) };
+	for (int i = 0; i < n; i++) {
+		if (block[i] == which)
+			m.row[m.rows++] = i;
+		if (block[n + i] == which)
+			m.column[m.columns++] = i;
+	}
+	return m;
+}
+
+/* The block at these rows and columns: with R A = W for integers W, A^-1 = W^-1 R. As many rows as columns, zeros where
+ * there are fewer: *free is the first column that depends on those before it; -1: none does. */
+static void block_inverse(int n, const mpq_t *A, const struct members *m, mpq_t *inverse, int *free)
+{
+	int size = m->columns, width = 2 * size, dependent;
+	mpz_t *W = integers((size_t)size * (size_t)width), *scale = integers((size_t)size), det;
+	mpq_t *row = rationals((size_t)size);
+	mpz_init(det);
+	for (int i = 0; i < size; i++) {
+		for (int j = 0; j < size && i < m->rows; j++)
+			mpq_set(row[j], A[m->row[i] * n + m->column[j]]);
+		if (i < m->rows)
+			to_integers(size, (const mpq_t *)row, 1, scale[i], W + i * width);
+		mpz_set_ui(W[i * width + size + i], 1);
+	}
+	bool regular = bareiss(size, width, W, det, &dependent);
+	*free = regular ? -1 : m->column[dependent];
+	for (int i = 0; i < size && regular; i++)
+		for (int j = 0; j < size; j++) {
+			mpq_ptr cell = inverse[m->column[i] * n + m->row[j]];
+			mpz_mul(mpq_numref(cell), W[i * width + size + j], scale[j]);
+			mpz_set(mpq_denref(cell), det);
+			mpq_canonicalize(cell);
+		}
+	mpz_clear(det);
+	integers_free(W, (size_t)size * (size_t)width);
+	integers_free(scale, (size_t)size);
+	rationals_free(row, (size_t)size);
+}
+
 bool rational_inverse(int n, const mpq_t *A, mpq_t *inverse, int *column)
 {
-	int width = 2 * n;
-	mpq_t *W = rationals((size_t)(n * width)), pivot;
-	mpq_init(pivot);
-	for (int i = 0; i < n; i++) {
-		for (int j = 0; j < n; j++)
-			mpq_set(W[i * width + j], A[i * n + j]);
-		mpq_set_ui(W[i * width + n + i], 1, 1);
+	bool *filled = ARRAY(bool, (size_t)n * (size_t)n);
+	int *block = ARRAY(int, 2 * (size_t)n), first = n;
+	for (int i = 0; i < n * n; i++) {
+		filled[i] = mpq_sgn(A[i]) != 0;
+		mpq_set_ui(inverse[i], 0, 1);
 	}
-	for (int k = 0; k < n; k++) {
-		int row = k;
-		while (row < n && mpq_sgn(W[row * width + k]) == 0)
-			row++;
-		if (row == n) {
-			*column = k;
-			mpq_clear(pivot);
-			rationals_free(W, (size_t)(n * width));
-			return false;
-		}
-		for (int j = 0; j < width; j++)
-			mpq_swap(W[row * width + j], W[k * width + j]);
-		mpq_inv(pivot, W[k * width + k]);
-		for (int j = 0; j < width; j++)
-			mpq_mul(W[k * width + j], W[k * width + j], pivot);
-		for (int i = 0; i < n; i++) {
-			mpq_set(pivot, W[i * width + k]);
-			if (i != k && mpq_sgn(pivot) != 0)
-				rational_subtract_row(width, W + i * width, (const mpq_t *)W + k * width, pivot);
-		}
+	int blocks = matrix_blocks(n, filled, block);
+	for (int b = 0; b < blocks; b++) {
+		struct members m = members_of(n, block, b);
+		int free = -1;
+		if (m.rows <= m.columns)        /* else another has fewer rows than columns */
+			block_inverse(n, A, &m, inverse, &free);
+		first = free >= 0 && free < first ? free : first;
+		discard(m.row);
+		discard(m.column);
 	}
-	for (int i = 0; i < n; i++)
-		for (int j = 0; j < n; j++)
-			mpq_set(inverse[i * n + j], W[i * width + n + j]);
-	mpq_clear(pivot);
-	rationals_free(W, (size_t)(n * width));
-	return true;
+	discard(filled);
+	discard(block);
+	if (first < n)
+		*column = first;
+	return first == n;
 }
 
 void rational_subtract_row(int n, mpq_t *target, const mpq_t *row, mpq_srcptr factor)
@@ -55,19 +192,34 @@ void rational_subtract_row(int n, mpq_t *target, const mpq_t *row, mpq_srcptr fa
 	mpq_clear(product);
 }
 
+/* Rows of A and columns of B as integers */
+void unreduced_product(int rows, int inner, int columns, const mpq_t *A, const mpq_t *B, mpq_t *AB)
+{
+	size_t wide = (size_t)inner * (size_t)columns;
+	mpz_t *row = integers((size_t)inner), *column = integers(wide), *scale = integers((size_t)columns), common;
+	mpz_init(common);
+	for (int j = 0; j < columns; j++)
+		to_integers(inner, B + j, columns, scale[j], column + j * inner);
+	for (int i = 0; i < rows; i++) {
+		to_integers(inner, A + i * inner, 1, common, row);
+		for (int j = 0; j < columns; j++) {
+			mpq_ptr sum = AB[i * columns + j];
+			mpz_set_ui(mpq_numref(sum), 0);
+			for (int k = 0; k < inner; k++)
+				if (mpz_sgn(row[k]) != 0 && mpz_sgn(column[j * inner + k]) != 0)
+					mpz_addmul(mpq_numref(sum), row[k], column[j * inner + k]);
+			mpz_mul(mpq_denref(sum), common, scale[j]);
+		}
+	}
+	mpz_clear(common);
+	integers_free(row, (size_t)inner);
+	integers_free(column, wide);
+	integers_free(scale, (size_t)columns);
+}
+
 void rational_product(int rows, int inner, int columns, const mpq_t *A, const mpq_t *B, mpq_t *AB)
 {
-	mpq_t product;
-	mpq_init(product);
+	unreduced_product(rows, inner, columns, A, B, AB);
 	for (int i = 0; i < rows * columns; i++)
-		mpq_set_ui(AB[i], 0, 1);
-	for (int i = 0; i < rows; i++)
-		for (int k = 0; k < inner; k++)         /* by rows: most factors of large matrices are 0 */
-			for (int j = 0; j < columns && mpq_sgn(A[i * inner + k]) != 0; j++) {
-				if (mpq_sgn(B[k * columns + j]) == 0)
-					continue;
-				mpq_mul(product, A[i * inner + k], B[k * columns + j]);
-				mpq_add(AB[i * columns + j], AB[i * columns + j], product);
-			}
-	mpq_clear(product);
+		mpq_canonicalize(AB[i]);
 }

@@ -31,51 +31,6 @@ static void evaluate(struct poly p, long point, mpz_ptr value)
 	}
 }
 
-/* Fraction-free elimination (Bareiss): on W of width n the determinant; on [W | I], after Jordan, also adj W in the
- * place of I. False at a singular matrix. */
-static bool bareiss(int n, int width, mpz_t *W, mpz_ptr det)
-{
-	int sign = 1;
-	mpz_t previous, keep;
-	mpz_init_set_ui(previous, 1);
-	mpz_init(keep);
-	bool regular = true;
-	for (int k = 0; k < n && regular; k++) {
-		int row = k;
-		while (row < n && mpz_sgn(W[row * width + k]) == 0)
-			row++;
-		regular = row < n;
-		if (!regular)
-			break;
-		if (row != k) {
-			sign = -sign;
-			for (int j = 0; j < width; j++)
-				mpz_swap(W[row * width + j], W[k * width + j]);
-		}
-		for (int i = width > n ? 0 : k + 1; i < n; i++) {     /* for the determinant alone, Gauss will do */
-			if (i == k)
-				continue;
-			mpz_set(keep, W[i * width + k]);
-			for (int j = width > n ? 0 : k; j < width; j++) {
-				bool taken = mpz_sgn(keep) != 0 && mpz_sgn(W[k * width + j]) != 0;
-				if (!taken && mpz_sgn(W[i * width + j]) == 0)
-					continue;               /* chains: most of the way most cells are 0 */
-				mpz_mul(W[i * width + j], W[i * width + j], W[k * width + k]);
-				if (taken)
-					mpz_submul(W[i * width + j], keep, W[k * width + j]);
-				mpz_divexact(W[i * width + j], W[i * width + j], previous);
-			}
-		}
-		mpz_set(previous, W[k * width + k]);
-	}
-	(sign < 0 ? mpz_neg : mpz_set)(det, previous);
-	if (sign < 0)
-		for (int i = 0; i < n * width; i++)
-			mpz_neg(W[i], W[i]);
-	mpz_clears(previous, keep, NULL);
-	return regular;
-}
-
 /* det and adj of P at one point; false if P is singular there */
 static bool sample(struct polymat P, long point, mpz_ptr det, mpz_t *adj)
 {
@@ -89,7 +44,8 @@ static bool sample(struct polymat P, long point, mpz_ptr det, mpz_t *adj)
 			else
 				mpz_set_ui(W[i * width + j], j - n == i);
 		}
-	bool regular = bareiss(n, width, W, det);
+	int column;
+	bool regular = bareiss(n, width, W, det, &column);
 	for (int i = 0; i < n && regular && adj; i++)
 		for (int j = 0; j < n; j++) {
 			mpz_init_set(adj[i * n + j], W[i * width + n + j]);
@@ -131,32 +87,15 @@ static struct poly interpolate(int count, const long *point, const mpz_t *value)
 	return p;
 }
 
-/* ---- blocks: rows and columns that have nothing in common with the others ---- */
+/* ---- blocks ---- */
 
-static int root_of(int *parent, int i)
-{
-	while (parent[i] != i)
-		i = parent[i] = parent[parent[i]];
-	return i;
-}
-
-/* The block of each row (0 .. n-1) and column (n .. 2n-1), numbered in the order of their first columns; how many there
- * are */
 static int find_blocks(struct polymat P, int *block)
 {
-	int n = P.n, count = 0, *parent = ARRAY(int, 2 * (size_t)n);
-	for (int i = 0; i < 2 * n; i++)
-		parent[i] = i;
-	for (int cell = 0; cell < n * n; cell++)
-		if (P.cell[cell].length > 0)
-			parent[root_of(parent, cell / n)] = root_of(parent, n + cell % n);
-	for (int i = 0; i < 2 * n; i++)
-		block[i] = -1;
-	for (int j = 0; j < n; j++)
-		if (block[root_of(parent, n + j)] < 0)
-			block[root_of(parent, n + j)] = count++;
-	for (int i = 0; i < 2 * n; i++)
-		block[i] = block[root_of(parent, i)];
+	bool *filled = ARRAY(bool, (size_t)P.n * (size_t)P.n);
+	for (int cell = 0; cell < P.n * P.n; cell++)
+		filled[cell] = P.cell[cell].length > 0;
+	int count = matrix_blocks(P.n, filled, block);
+	discard(filled);
 	return count;
 }
 

@@ -29,14 +29,6 @@ static const long LARGEST_EXPONENT = 1L << 56;      /* bits; entries below 2^-th
 
 _Static_assert(sizeof(mp_limb_t) == 8 && GMP_NAIL_BITS == 0, "limbs are 64 bits");
 
-/* Gives an array back, by the way that GMP's own blocks go; what is not given back stays until the program ends. */
-static void release(void *block)
-{
-	void (*give_back)(void *, size_t);
-	mp_get_memory_functions(NULL, NULL, &give_back);
-	give_back(block, 0);
-}
-
 /* ---- magnitudes: upper bounds m 2^e, 2^23 <= m < 2^24 or m = 0; every operation rounds up ---- */
 
 struct magnitude {
@@ -120,25 +112,47 @@ struct balls {                      /* a matrix, or a few scalars; row-major */
 	signed char *sign;
 	struct magnitude *radius;
 	struct magnitude *size;     /* >= |middle| + radius; m = 0: the entry is exactly 0 */
+	int n;                      /* of a matrix: where its rows are not exactly 0, */
+	int *count, *column;        /* so many columns of each, n places for each */
 };
 
-static void balls_init(struct balls *x, size_t count, int limbs)
+static void scalars_init(struct balls *x, size_t count, int limbs)
 {
 	*x = (struct balls){ limbs,
 			     ARRAY(mp_limb_t, count * (size_t)limbs),
 			     ARRAY(long, count),
 			     ARRAY(signed char, count),
 			     ARRAY(struct magnitude, count),
-			     ARRAY(struct magnitude, count) };
+			     ARRAY(struct magnitude, count),
+			     0, NULL, NULL };
+}
+
+static void matrix_init(struct balls *x, int n, int limbs)
+{
+	scalars_init(x, (size_t)n * (size_t)n, limbs);
+	x->n = n;
+	x->count = ARRAY(int, (size_t)n);
+	x->column = ARRAY(int, (size_t)n * (size_t)n);
 }
 
 static void balls_clear(struct balls *x)
 {
-	release(x->limb);
-	release(x->exponent);
-	release(x->sign);
-	release(x->radius);
-	release(x->size);
+	discard(x->limb);
+	discard(x->exponent);
+	discard(x->sign);
+	discard(x->radius);
+	discard(x->size);
+	discard(x->count);
+	discard(x->column);
+}
+
+static void find_pattern(struct balls *x, int row)
+{
+	int count = 0;
+	for (int j = 0; j < x->n; j++)
+		if (x->size[row * x->n + j].m)
+			x->column[row * x->n + count++] = j;
+	x->count[row] = count;
 }
 
 static mp_limb_t *limbs_of(const struct balls *x, size_t at)
@@ -193,125 +207,174 @@ static void ball_set_rational(struct balls *x, size_t at, mpq_srcptr q, long hal
 	mpz_clears(middle, scaled, NULL);
 }
 
-/* ---- sums of products: the one operation ---- */
+/* ---- a row of sums of products: the one operation ---- */
 
-struct sum {
-	int limbs, terms, errors;
-	long top, error_top;        /* largest exponents among them */
-	struct term { const mp_limb_t *x, *y; long exponent; bool minus; } *term;
-	struct magnitude *error;    /* not normalised: m < 2^48 */
+struct row {
+	int n, limbs, parts;
+	struct part {               /* x[at] times a row of y, which begins at `offset` */
+		const struct balls *x, *y;
+		size_t at;
+		ptrdiff_t offset;
+		int count;
+		const int *column;
+	} *part;
+	struct cell {               /* of each sum: largest exponents of its products, of what radii make */
+		long top, error_top;
+		uint64_t terms, error;
+	} *cell;
 	mp_limb_t *accumulator, *product;
+	int unit;                   /* a column, as a pattern */
 };
 
-static void sum_init(struct sum *sum, int capacity, int limbs)
+static void row_init(struct row *row, int n, int capacity, int limbs)
 {
-	*sum = (struct sum){ .limbs = limbs,
-			     .top = LONG_MIN,
-			     .error_top = LONG_MIN,
-			     .term = ARRAY(struct term, (size_t)capacity),
-			     .error = ARRAY(struct magnitude, 2 * (size_t)capacity),
-			     .accumulator = ARRAY(mp_limb_t, (size_t)limbs + 2),
+	*row = (struct row){ .n = n,
+			     .limbs = limbs,
+			     .part = ARRAY(struct part, (size_t)capacity),
+			     .cell = ARRAY(struct cell, (size_t)n),
+			     .accumulator = ARRAY(mp_limb_t, (size_t)n * ((size_t)limbs + 2)),
 			     .product = ARRAY(mp_limb_t, 2 * (size_t)limbs) };
 }
 
-static void sum_clear(struct sum *sum)
+static void row_clear(struct row *row)
 {
-	release(sum->term);
-	release(sum->error);
-	release(sum->accumulator);
-	release(sum->product);
+	discard(row->part);
+	discard(row->cell);
+	discard(row->accumulator);
+	discard(row->product);
 }
 
-static void sum_error(struct sum *sum, struct magnitude a, struct magnitude b)
+/* += x[at] times row i of y; the radii grow by (|x| + r_x) r_y + r_x |y| */
+static void add_part(struct row *row, const struct balls *x, size_t at, const struct balls *y, int i)
 {
-	if (a.m == 0 || b.m == 0)
+	row->part[row->parts++] = (struct part){ .x = x, .y = y, .at = at, .offset = (ptrdiff_t)i * y->n,
+						 .count = y->count[i], .column = y->column + (ptrdiff_t)i * y->n };
+}
+
+/* += x[at] y[b] in column j alone */
+static void add_one(struct row *row, const struct balls *x, size_t at, const struct balls *y, size_t b, int j)
+{
+	row->unit = j;
+	row->part[row->parts++] = (struct part){ .x = x, .y = y, .at = at, .offset = (ptrdiff_t)b - j, .count = 1,
+						 .column = &row->unit };
+}
+
+static void lift(long *top, long exponent)
+{
+	*top = exponent > *top ? exponent : *top;
+}
+
+static void find_tops(struct row *row, const struct part *p)
+{
+	struct magnitude size = p->x->size[p->at], radius = p->x->radius[p->at];
+	const struct balls *y = p->y;
+	bool product = p->x->sign[p->at] != 0;
+	for (int k = 0; k < p->count; k++) {
+		struct cell *cell = &row->cell[p->column[k]];
+		ptrdiff_t b = p->offset + p->column[k];
+		if (product && y->sign[b]) {
+			lift(&cell->top, p->x->exponent[p->at] + y->exponent[b]);
+			cell->terms++;
+		}
+		if (y->radius[b].m)
+			lift(&cell->error_top, size.e + y->radius[b].e);
+		if (radius.m)
+			lift(&cell->error_top, radius.e + y->size[b].e);
+	}
+}
+
+/* Each shift rounds up; < 2^48 per error, fewer than 2^16 errors */
+static void add_error(struct cell *cell, struct magnitude a, struct magnitude b)
+{
+	if (!a.m || !b.m)
 		return;
-	sum->error[sum->errors++] = (struct magnitude){ a.m * b.m, a.e + b.e };
-	if (a.e + b.e > sum->error_top)
-		sum->error_top = a.e + b.e;
+	long gap = cell->error_top - (a.e + b.e);
+	cell->error += (gap < LIMB ? a.m * b.m >> gap : 0) + 1;
 }
 
-/* += x y; the radius grows by (|x| + r_x) r_y + r_x |y| */
-static void sum_product(struct sum *sum, const struct balls *x, size_t a, const struct balls *y, size_t b)
+/* at[0 .. rest-1] +- x[0 .. length-1] */
+static void add_limbs(mp_limb_t *at, int rest, const mp_limb_t *x, int length, bool minus)
 {
-	if (x->sign[a] && y->sign[b]) {
-		long exponent = x->exponent[a] + y->exponent[b];
-		sum->term[sum->terms++] =
-			(struct term){ limbs_of(x, a), limbs_of(y, b), exponent, x->sign[a] != y->sign[b] };
-		if (exponent > sum->top)
-			sum->top = exponent;
+	mp_limb_t carry = (minus ? mpn_sub_n : mpn_add_n)(at, at, x, length);
+	for (int i = length; i < rest && carry; i++) {
+		mp_limb_t before = at[i];
+		at[i] = minus ? before - 1 : before + 1;
+		carry = minus ? before == 0 : at[i] == 0;
 	}
-	sum_error(sum, x->size[a], y->radius[b]);
-	sum_error(sum, x->radius[a], y->size[b]);
 }
 
-/* What the radii of the operands make; each shift rounds up. */
-static struct magnitude inherited_error(const struct sum *sum)
-{
-	uint64_t total = 0;             /* < 2^48 per error, fewer than 2^16 errors */
-	for (int k = 0; k < sum->errors; k++) {
-		long gap = sum->error_top - sum->error[k].e;
-		total += (gap < LIMB ? sum->error[k].m >> gap : 0) + 1;
-	}
-	return magnitude(total, total ? sum->error_top : 0);
-}
-
-/* The products go into a window of limbs + 1 digits below 2^(64 top), with one digit above for carries and sign. A
+/* The products go into windows of limbs + 1 digits below 2^(64 top), with one digit above for carries and sign. A
  * product that starts g digits below the top needs only the first limbs + 1 - g digits of its factors: cutting each
  * factor costs less than one unit of the window's last digit, cutting the product another. */
-static void accumulate(struct sum *sum)
+static void add_products(struct row *row, const struct part *p)
 {
-	int window = sum->limbs + 1;
-	mp_limb_t *accumulator = sum->accumulator;
-	memset(accumulator, 0, ((size_t)window + 1) * sizeof(mp_limb_t));
-	for (int k = 0; k < sum->terms; k++) {
-		const struct term *term = &sum->term[k];
-		if (sum->top - term->exponent >= window)
+	struct magnitude size = p->x->size[p->at], radius = p->x->radius[p->at];
+	int limbs = row->limbs, window = limbs + 1, sign = p->x->sign[p->at];
+	const mp_limb_t *x = limbs_of(p->x, p->at);
+	const struct balls *y = p->y;
+	for (int k = 0; k < p->count; k++) {
+		int j = p->column[k];
+		ptrdiff_t b = p->offset + j;
+		struct cell *cell = &row->cell[j];
+		add_error(cell, size, y->radius[b]);
+		add_error(cell, radius, y->size[b]);
+		if (!sign || !y->sign[b])
+			continue;
+		long gap = cell->top - (p->x->exponent[p->at] + y->exponent[b]);
+		if (gap >= window)
 			continue;       /* below one unit */
-		int room = window - (int)(sum->top - term->exponent);
-		int digits = room < sum->limbs ? room : sum->limbs, length = 2 * digits < room ? 2 * digits : room;
-		mpn_mul_n(sum->product, term->x + sum->limbs - digits, term->y + sum->limbs - digits, digits);
-		mp_limb_t *at = accumulator + room - length;
-		int rest = window + 1 - room + length;
-		if (term->minus)
-			mpn_sub(at, at, rest, sum->product + 2 * digits - length, length);
-		else
-			mpn_add(at, at, rest, sum->product + 2 * digits - length, length);
+		int room = window - (int)gap, digits = room < limbs ? room : limbs;
+		int length = 2 * digits < room ? 2 * digits : room;
+		mpn_mul_n(row->product, x + limbs - digits, limbs_of(y, (size_t)b) + limbs - digits, digits);
+		add_limbs(row->accumulator + j * (window + 1) + room - length, window + 1 - room + length,
+			  row->product + 2 * digits - length, length, sign != y->sign[b]);
 	}
 }
 
-/* x[at] <- the sum, which is empty afterwards. Radius: inherited, 3 units of the window per product, 1 unit of the
- * result. */
-static void sum_finish(struct sum *sum, struct balls *x, size_t at)
+/* z[at] <- the sum. Radius: inherited, 3 units of the window per product, 1 unit of the result. */
+static void round_sum(const struct row *row, int j, struct balls *z, size_t at)
 {
-	int limbs = sum->limbs, window = limbs + 1;
-	x->radius[at] = inherited_error(sum);
-	x->sign[at] = 0;
-	if (sum->terms) {
-		accumulate(sum);
-		mp_limb_t *accumulator = sum->accumulator, *result = limbs_of(x, at);
-		bool minus = accumulator[window] >> (LIMB - 1);
-		if (minus)
-			mpn_neg(accumulator, accumulator, window + 1);
-		int used = window + 1;
-		while (used > 0 && accumulator[used - 1] == 0)
-			used--;
-		if (used > 0) {
-			int kept = used < limbs ? used : limbs;
-			memset(result, 0, (size_t)(limbs - kept) * sizeof(mp_limb_t));
-			memcpy(result + limbs - kept, accumulator + used - kept, (size_t)kept * sizeof(mp_limb_t));
-			x->sign[at] = minus ? -1 : 1;
-			x->exponent[at] = sum->top - window + used;
-			if (used > limbs)
-				x->radius[at] =
-					magnitude_add(x->radius[at], magnitude(1, LIMB * (x->exponent[at] - limbs)));
-		}
-		x->radius[at] =
-			magnitude_add(x->radius[at], magnitude(3 * (uint64_t)sum->terms, LIMB * (sum->top - window)));
+	const struct cell *cell = &row->cell[j];
+	int limbs = row->limbs, window = limbs + 1, used = window + 1;
+	mp_limb_t *accumulator = row->accumulator + j * (window + 1), *result = limbs_of(z, at);
+	bool minus = accumulator[window] >> (LIMB - 1);
+	if (minus)
+		mpn_neg(accumulator, accumulator, window + 1);
+	while (used > 0 && accumulator[used - 1] == 0)
+		used--;
+	if (used > 0) {
+		int kept = used < limbs ? used : limbs;
+		memset(result, 0, (size_t)(limbs - kept) * sizeof(mp_limb_t));
+		memcpy(result + limbs - kept, accumulator + used - kept, (size_t)kept * sizeof(mp_limb_t));
+		z->sign[at] = minus ? -1 : 1;
+		z->exponent[at] = cell->top - window + used;
+		if (used > limbs)
+			z->radius[at] = magnitude_add(z->radius[at], magnitude(1, LIMB * (z->exponent[at] - limbs)));
 	}
-	update_size(x, at);
-	sum->terms = sum->errors = 0;
-	sum->top = sum->error_top = LONG_MIN;
+	z->radius[at] = magnitude_add(z->radius[at], magnitude(3 * cell->terms, LIMB * (cell->top - window)));
+}
+
+/* Row i of z <- the sums, which are empty afterwards */
+static void row_finish(struct row *row, struct balls *z, int i)
+{
+	for (int j = 0; j < row->n; j++)
+		row->cell[j] = (struct cell){ LONG_MIN, LONG_MIN, 0, 0 };
+	memset(row->accumulator, 0, (size_t)row->n * ((size_t)row->limbs + 2) * sizeof(mp_limb_t));
+	for (int k = 0; k < row->parts; k++)
+		find_tops(row, &row->part[k]);
+	for (int k = 0; k < row->parts; k++)
+		add_products(row, &row->part[k]);
+	for (int j = 0; j < row->n; j++) {
+		size_t at = (size_t)(i * row->n + j);
+		struct cell *cell = &row->cell[j];
+		z->radius[at] = magnitude(cell->error, cell->error ? cell->error_top : 0);
+		z->sign[at] = 0;
+		if (cell->terms)
+			round_sum(row, j, z, at);
+		update_size(z, at);
+	}
+	find_pattern(z, i);
+	row->parts = 0;
 }
 
 /* ---- the problem and its plan ---- */
@@ -439,8 +502,8 @@ static void find_distances(struct taylor *t)
 			for (int q = k; q <= LARGEST_BLOCK; q++)    /* later powers: as this one, until known */
 				t->density[q] = count;
 	}
-	release(power);
-	release(next);
+	discard(power);
+	discard(next);
 }
 
 struct taylor *taylor_of(int n, const mpq_t *A, mpq_srcptr tau)
@@ -528,47 +591,23 @@ static bool find_plan(const struct taylor *t, long bits, struct plan *best)
 
 /* ---- the exponential ---- */
 
-/* Where row i of x is not exactly 0 */
-static int row_pattern(const struct balls *x, int n, int i, int *column)
+static void multiply(struct row *row, struct balls *z, const struct balls *x, const struct balls *y)
 {
-	int count = 0;
-	for (int j = 0; j < n; j++)
-		if (x->size[i * n + j].m)
-			column[count++] = j;
-	return count;
-}
-
-struct work {                       /* what one evaluation needs beside its matrices */
-	int n, limbs;
-	struct sum sum;
-	int *column;
-};
-
-static void sum_row_times_column(struct work *w, const struct balls *x, const struct balls *y, int i, int j, int count)
-{
-	for (int k = 0; k < count; k++) {
-		int m = w->column[k];
-		sum_product(&w->sum, x, (size_t)(i * w->n + m), y, (size_t)(m * w->n + j));
-	}
-}
-
-static void multiply(struct work *w, struct balls *z, const struct balls *x, const struct balls *y)
-{
-	for (int i = 0; i < w->n; i++) {
-		int count = row_pattern(x, w->n, i, w->column);
-		for (int j = 0; j < w->n; j++) {
-			sum_row_times_column(w, x, y, i, j, count);
-			sum_finish(&w->sum, z, (size_t)(i * w->n + j));
+	for (int i = 0; i < x->n; i++) {
+		for (int k = 0; k < x->count[i]; k++) {
+			int m = x->column[i * x->n + k];
+			add_part(row, x, (size_t)(i * x->n + m), y, m);
 		}
+		row_finish(row, z, i);
 	}
 }
 
 /* z <- c x, for the scalar c[at] */
-static void scale(struct work *w, struct balls *z, const struct balls *c, size_t at, const struct balls *x)
+static void scale(struct row *row, struct balls *z, const struct balls *c, size_t at, const struct balls *x)
 {
-	for (int i = 0; i < w->n * w->n; i++) {
-		sum_product(&w->sum, c, at, x, (size_t)i);
-		sum_finish(&w->sum, z, (size_t)i);
+	for (int i = 0; i < x->n; i++) {
+		add_part(row, c, at, x, i);
+		row_finish(row, z, i);
 	}
 }
 
@@ -591,21 +630,18 @@ static void block_factors(struct balls *c, int q, int j)
 }
 
 /* U_j = sum_{r<q} c_r B^r + c_q B^q U_{j+1}; `leading` is c_q B^q, `after` is U_{j+1}, both NULL in the last block */
-static void sum_block(struct work *w, struct balls *U, int q, const struct balls *c, const struct balls *power,
+static void sum_block(struct row *row, struct balls *U, int q, const struct balls *c, const struct balls *power,
 		      const struct balls *leading, const struct balls *after)
 {
-	for (int i = 0; i < w->n; i++) {
-		int count = leading ? row_pattern(leading, w->n, i, w->column) : 0;
-		for (int j = 0; j < w->n; j++) {
-			size_t at = (size_t)(i * w->n + j);
-			if (count)
-				sum_row_times_column(w, leading, after, i, j, count);
-			if (i == j)
-				sum_product(&w->sum, c, 0, c, 0);       /* c_0 = 1 */
-			for (int r = 1; r < q; r++)
-				sum_product(&w->sum, c, (size_t)r, &power[r], at);
-			sum_finish(&w->sum, U, at);
+	for (int i = 0; i < U->n; i++) {
+		for (int k = 0; leading && k < leading->count[i]; k++) {
+			int m = leading->column[i * U->n + k];
+			add_part(row, leading, (size_t)(i * U->n + m), after, m);
 		}
+		add_one(row, c, 0, c, 0, i);    /* c_0 = 1 */
+		for (int r = 1; r < q; r++)
+			add_part(row, c, (size_t)r, &power[r], i);
+		row_finish(row, U, i);
 	}
 }
 
@@ -617,33 +653,35 @@ static void swap(struct balls *x, struct balls *y)
 }
 
 /* e^B without its tail: U_0; `other` is room for a matrix */
-static void sum_series(struct work *w, const struct taylor *t, const struct plan *plan, struct balls *U,
+static void sum_series(struct row *row, const struct taylor *t, const struct plan *plan, struct balls *U,
 		       struct balls *other)
 {
-	int n = w->n, q = plan->block;
+	int n = t->n, q = plan->block;
 	size_t cells = (size_t)n * (size_t)n;
 	struct balls *power = ARRAY(struct balls, (size_t)q + 1), leading, c;   /* power[r] = B^r, r >= 1 */
 	for (int r = 1; r <= q; r++)
-		balls_init(&power[r], cells, w->limbs);
-	balls_init(&leading, cells, w->limbs);
-	balls_init(&c, (size_t)q + 1, w->limbs);
+		matrix_init(&power[r], n, row->limbs);
+	matrix_init(&leading, n, row->limbs);
+	scalars_init(&c, (size_t)q + 1, row->limbs);
 	for (size_t i = 0; i < cells; i++)
 		ball_set_rational(&power[1], i, t->B[i], plan->halvings);
+	for (int i = 0; i < n; i++)
+		find_pattern(&power[1], i);
 	for (int r = 2; r <= q; r++)
-		multiply(w, &power[r], &power[1], &power[r - 1]);
+		multiply(row, &power[r], &power[1], &power[r - 1]);
 	for (int j = plan->blocks - 1; j >= 0; j--) {
 		bool last = j == plan->blocks - 1;
 		block_factors(&c, q, j);
 		if (!last)
-			scale(w, &leading, &c, (size_t)q, &power[q]);
-		sum_block(w, other, q, &c, power, last ? NULL : &leading, last ? NULL : U);
+			scale(row, &leading, &c, (size_t)q, &power[q]);
+		sum_block(row, other, q, &c, power, last ? NULL : &leading, last ? NULL : U);
 		swap(U, other);
 	}
 	for (int r = 1; r <= q; r++)
 		balls_clear(&power[r]);
 	balls_clear(&leading);
 	balls_clear(&c);
-	release(power);
+	discard(power);
 }
 
 /* The tail: (d_i/d_j) times that of D^-1 e^B D, where a path leads from i to j */
@@ -659,6 +697,8 @@ static void add_tail(const struct taylor *t, struct magnitude tail, struct balls
 				update_size(U, at);
 			}
 		}
+	for (int i = 0; i < t->n; i++)
+		find_pattern(U, i);
 }
 
 /* Keeps exponents far from the limits of a long: what is tiny becomes 0 with a radius. False: some are too large. */
@@ -686,21 +726,20 @@ static bool exponential(const struct taylor *t, const struct plan *plan, int lim
 	int n = t->n;
 	size_t cells = (size_t)n * (size_t)n;
 	struct balls other;
-	struct work w = { .n = n, .limbs = limbs, .column = ARRAY(int, (size_t)n) };
-	sum_init(&w.sum, n + LARGEST_BLOCK + 1, limbs);
-	balls_init(U, cells, limbs);
-	balls_init(&other, cells, limbs);
-	sum_series(&w, t, plan, U, &other);
+	struct row row;
+	row_init(&row, n, n + LARGEST_BLOCK + 1, limbs);
+	matrix_init(U, n, limbs);
+	matrix_init(&other, n, limbs);
+	sum_series(&row, t, plan, U, &other);
 	add_tail(t, plan->tail, U);
 	bool in_range = keep_in_range(U, cells);
 	for (long k = 0; k < plan->halvings && in_range; k++) {
-		multiply(&w, &other, U, U);
+		multiply(&row, &other, U, U);
 		swap(U, &other);
 		in_range = keep_in_range(U, cells);
 	}
 	balls_clear(&other);
-	sum_clear(&w.sum);
-	release(w.column);
+	row_clear(&row);
 	return in_range;
 }
 
@@ -877,7 +916,7 @@ static void modular_power(int n, uint64_t prime, const uint64_t *A, int exponent
 		else
 			memcpy(power, next, cells * sizeof *power);
 	}
-	release(next);
+	discard(next);
 }
 
 static bool *find_survivors(const struct taylor *t)
@@ -909,33 +948,18 @@ static bool *find_survivors(const struct taylor *t)
 				}
 		}
 	}
-	release(A);
-	release(power);
-	release(row);
-	release(sum);
-	release(state);
+	discard(A);
+	discard(power);
+	discard(row);
+	discard(sum);
+	discard(state);
 	return survivor;
-}
-
-static mpz_t *integers(int count)
-{
-	mpz_t *z = ARRAY(mpz_t, (size_t)count);
-	for (int i = 0; i < count; i++)
-		mpz_init(z[i]);
-	return z;
-}
-
-static void clear_integers(mpz_t *z, int count)
-{
-	for (int i = 0; i < count; i++)
-		mpz_clear(z[i]);
-	release(z);
 }
 
 /* The block of A over S as integers over their common denominator */
 static mpz_t *integer_block(const struct taylor *t, int N, const int *state, mpz_ptr denominator)
 {
-	mpz_t *block = integers(N * N);
+	mpz_t *block = integers((size_t)N * (size_t)N);
 	mpz_set_ui(denominator, 1);
 	for (int a = 0; a < N; a++)
 		for (int b = 0; b < N; b++)
@@ -1017,7 +1041,7 @@ static int keep_zeros(struct exact_row *found, mpz_t *row)
 static void find_row(const struct taylor *t, struct exact_row *found)
 {
 	int N = found->N, left = 1;
-	mpz_t denominator, *block, *row = integers(N), *next = integers(N);
+	mpz_t denominator, *block, *row = integers((size_t)N), *next = integers((size_t)N);
 	mpq_t weight;
 	mpz_init(denominator);
 	mpq_init(weight);
@@ -1036,9 +1060,9 @@ static void find_row(const struct taylor *t, struct exact_row *found)
 			next_weight(weight, t->tau, k, denominator);
 		add_power(found, row, weight);
 	}
-	clear_integers(block, N * N);
-	clear_integers(row, N);
-	clear_integers(next, N);
+	integers_free(block, (size_t)N * (size_t)N);
+	integers_free(row, (size_t)N);
+	integers_free(next, (size_t)N);
 	mpz_clear(denominator);
 	mpq_clear(weight);
 }
@@ -1059,10 +1083,10 @@ static void exact_row_clear(struct exact_row *found)
 {
 	for (int a = 0; a < found->N; a++)
 		mpq_clear(found->value[a]);
-	release(found->value);
-	release(found->polynomial);
-	release(found->state);
-	release(found);
+	discard(found->value);
+	discard(found->polynomial);
+	discard(found->state);
+	discard(found);
 }
 
 /* From the row as found for the same S; sets `exact` if the entry is a polynomial */
@@ -1095,6 +1119,6 @@ bool taylor_exact(struct taylor *t, int i, int j, mpq_ptr exact)
 	if (cycle && !t->survivor)
 		t->survivor = find_survivors(t);
 	bool polynomial = (!cycle || t->survivor[i * t->n + j]) && polynomial_entry(t, i, j, N, state, cycle, exact);
-	release(state);
+	discard(state);
 	return polynomial;
 }

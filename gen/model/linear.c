@@ -38,16 +38,56 @@ struct linear first_order_system(int n, const mpq_t *A)
 	return system;
 }
 
+static bool same_rationals(size_t count, const mpq_t *a, const mpq_t *b)
+{
+	for (size_t i = 0; i < count; i++)
+		if (!mpq_equal(a[i], b[i]))
+			return false;
+	return true;
+}
+
+static mpq_t *copied(size_t count, const mpq_t *q)
+{
+	mpq_t *copy = rationals(count);
+	for (size_t i = 0; i < count; i++)
+		mpq_set(copy[i], q[i]);
+	return copy;
+}
+
+static mpq_t *leading_matrix(const struct linear *system)
+{
+	size_t n = (size_t)system->n;
+	mpq_t *W = rationals(n * n);
+	for (size_t i = 0; i < n * n; i++)
+		mpq_set(W[i], (system->velocity[i % n] >= 0 ? system->M : system->C)[i]);
+	return W;
+}
+
+/* The last one is kept: most stages ask for that of the same masses. */
 bool leading_inverse(const struct linear *system, mpq_t *inverse, int *column)
 {
-	int n = system->n;
-	mpq_t *W = rationals((size_t)n * (size_t)n);
-	for (int i = 0; i < n; i++)
-		for (int j = 0; j < n; j++)
-			mpq_set(W[i * n + j], (system->velocity[j] >= 0 ? system->M : system->C)[i * n + j]);
-	bool regular = rational_inverse(n, (const mpq_t *)W, inverse, column);
-	rationals_free(W, (size_t)n * (size_t)n);
-	return regular;
+	static struct { int n; mpq_t *W, *inverse; } last;
+	size_t cells = (size_t)system->n * (size_t)system->n;
+	mpq_t *W = leading_matrix(system);
+	bool known = last.n == system->n && same_rationals(cells, (const mpq_t *)last.W, (const mpq_t *)W);
+	if (!known && !rational_inverse(system->n, (const mpq_t *)W, inverse, column)) {
+		rationals_free(W, cells);
+		return false;
+	}
+	if (known) {
+		for (size_t i = 0; i < cells; i++)
+			mpq_set(inverse[i], last.inverse[i]);
+		rationals_free(W, cells);
+		return true;
+	}
+	if (last.n > 0) {
+		rationals_free(last.W, (size_t)last.n * (size_t)last.n);
+		rationals_free(last.inverse, (size_t)last.n * (size_t)last.n);
+	}
+	last.n = system->n;
+	last.W = W;
+	last.inverse = copied(cells, (const mpq_t *)inverse);
+	return true;
 }
 
 /* What multiplies a state in the equations; with the held terms of a scheme, or only those. */

@@ -133,8 +133,11 @@ static bool stiffness(const struct linear *system, double *value)
 	mpq_t *inverse = rationals((size_t)(n * n)), *product = rationals((size_t)(n * n));
 	if (!leading_inverse(system, inverse, &column))
 		return false;
-	rational_product(n, n, n, (const mpq_t *)inverse, (const mpq_t *)system->K, product);
-	return eigenvalues(n, (const mpq_t *)product, false, value);
+	unreduced_product(n, n, n, (const mpq_t *)inverse, (const mpq_t *)system->K, product);
+	bool found = eigenvalues(n, (const mpq_t *)product, false, value);
+	rationals_free(inverse, (size_t)(n * n));
+	rationals_free(product, (size_t)(n * n));
+	return found;
 }
 
 static double fastest_pole(const struct linear *system)
