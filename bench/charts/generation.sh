@@ -19,6 +19,7 @@ if [ "$1" = --quick ]; then
 	runs=3
 	shift
 fi
+[ -z "${CHARTS_ONCE:-}" ] || runs=1
 build=$1 folder=$2
 compiler=$(command -v "${CC:-cc}")
 work=$(mktemp -d)

@@ -61,18 +61,15 @@ for header in aio complex ctype dirent dlfcn errno fcntl fenv float fnmatch ftw 
 	stdint stdio stdlib string strings sys/mman sys/resource sys/select sys/sem sys/socket sys/stat sys/time \
 		sys/types \
 	sys/wait syslog termios threads time uchar unistd wchar wctype fts obstack envz sys/inotify sys/epoll; do
-	printf '#include <%s.h>\n' "$header" > one.c
-	"$@" -std=gnu11 -E one.c > log 2>&1 && cat one.c >> headers.c
+	printf '#if __has_include(<%s.h>)\n#include <%s.h>\n#endif\n' "$header" "$header" >> headers.c
 done
 { "$@" -D_GNU_SOURCE -std=gnu11 -E -P headers.c; "$@" -D_GNU_SOURCE -std=gnu11 -E -dM headers.c; } 2> log |
 	grep -o -E '\b[A-Za-z][A-Za-z0-9_]*\b' | sort -u > identifiers
 : > wrong
 awk 'NR == FNR { suffix[$1]; next }
 {
-	for (s in suffix) {
-		n = length($1) - length(s)
-		if (n > 0 && substr($1, n + 1) == s) print tolower(substr($1, 1, n)), $1
-	}
+	for (n = 2; n <= length($1); n++)
+		if (substr($1, n) in suffix) print tolower(substr($1, 1, n - 1)), $1
 }
 ' suffixes identifiers | sort -u > met
 [ -s met ] || echo 'no identifier of the library ends as generated ones do' > wrong
@@ -105,7 +102,7 @@ for name in sinf FILE strdup signgam errno stdin stdout EOF NAN FP_NAN HUGE_VAL 
 		head -n 2 log >> wrong; continue; }
 	for flags in -std=c99 -std=gnu11 '-x c++ -std=c++20'; do
 		# shellcheck disable=SC2086
-		"$@" -Wall -Wextra -Wshadow -Werror $flags -I"$runtime" -c name.c -o name.o > log 2>&1 ||
+		"$@" -Wall -Wextra -Wshadow -Werror $flags -I"$runtime" -fsyntax-only name.c > log 2>&1 ||
 			echo "coordinate $name, $flags: $(grep -m 1 error: log)" >> wrong
 	done
 done
