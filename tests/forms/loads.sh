@@ -11,7 +11,7 @@ specs=$3
 case $plgen in /*) ;; *) plgen=$PWD/$plgen ;; esac
 case $specs in /*) ;; *) specs=$PWD/$specs ;; esac
 first=${4-1}
-last=${5-8}
+last=${5-3}
 seed=${6-1}
 . "${0%/*}/../tap.sh"
 echo '#include <math.h>' >models.c
