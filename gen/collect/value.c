@@ -3,6 +3,16 @@
  * form is not defined its number is NaN. */
 #include "collect/collect.h"
 
+enum { KEPT_WAVES = 64 };
+
+struct kept_wave {
+	const struct wave *wave;    /* NULL: none yet */
+	int power;
+	bool sine;
+	unsigned time;              /* at which its value was found */
+	mpfr_t value;
+};
+
 struct sample {
 	void (*leaf)(void *context, const struct basis *basis, mpfr_ptr value);
 	void *context;
@@ -12,6 +22,8 @@ struct sample {
 	int atoms;
 	mpfr_t *value;              /* per atom */
 	unsigned *age, now;         /* at which point its value was found; the point */
+	unsigned time;              /* counts the times that differ */
+	struct kept_wave wave[KEPT_WAVES];
 };
 
 struct sample *sample_new(int precision, void (*leaf)(void *context, const struct basis *basis, mpfr_ptr value),
@@ -30,6 +42,8 @@ long sample_work(const struct sample *s)
 
 void sample_at(struct sample *s, mpfr_srcptr t)
 {
+	if (!mpfr_equal_p(s->t, t))
+		s->time++;
 	mpfr_set(s->t, t, MPFR_RNDN);
 	s->now++;
 }
@@ -51,6 +65,24 @@ static void wave_value(struct sample *s, const struct basis *basis, mpfr_ptr val
 		mpfr_mul(value, value, part, MPFR_RNDN);
 	}
 	mpfr_clear(part);
+}
+
+/* Most forms of a model read the same few waves. */
+static void kept_wave_value(struct sample *s, const struct basis *basis, mpfr_ptr value)
+{
+	uintptr_t hash = (uintptr_t)basis->wave / 16 + 2 * (uintptr_t)basis->power + basis->sine;
+	struct kept_wave *kept = &s->wave[hash % KEPT_WAVES];
+	bool same = kept->wave == basis->wave && kept->power == basis->power && kept->sine == basis->sine;
+	if (!same || kept->time != s->time) {
+		if (!kept->wave)
+			mpfr_init2(kept->value, s->precision);
+		wave_value(s, basis, kept->value);
+		kept->wave = basis->wave;
+		kept->power = basis->power;
+		kept->sine = basis->sine;
+		kept->time = s->time;
+	}
+	mpfr_set(value, kept->value, MPFR_RNDN);
 }
 
 static void product_value(struct sample *s, const struct atom *a, mpfr_ptr value)
@@ -172,7 +204,7 @@ void sample_form(struct sample *s, const struct form *form, mpfr_ptr total)
 		else if (basis->kind == BASIS_PI)
 			mpfr_const_pi(term, MPFR_RNDN);
 		else if (basis->kind == BASIS_WAVE)
-			wave_value(s, basis, term);
+			kept_wave_value(s, basis, term);
 		else if (basis->kind == BASIS_ATOM)
 			mpfr_set(term, atom_value(s, basis->atom), MPFR_RNDN);
 		else

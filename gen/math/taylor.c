@@ -381,6 +381,7 @@ static void row_finish(struct row *row, struct balls *z, int i)
 
 struct taylor {
 	int n;
+	struct taylor *half;        /* the same A at half the time: this is its square; NULL: a series */
 	mpq_t *B;                   /* A tau */
 	mpq_t *A, tau;
 	struct magnitude *B_size;
@@ -527,6 +528,15 @@ struct taylor *taylor_of(int n, const mpq_t *A, mpq_srcptr tau)
 	balance(t);
 	find_norm(t);
 	find_distances(t);
+	return t;
+}
+
+struct taylor *taylor_doubled(struct taylor *half)
+{
+	struct taylor *t = NEW(struct taylor);
+	*t = (struct taylor){ .n = half->n, .half = half, .A = half->A, .distance = half->distance };
+	mpq_init(t->tau);
+	mpq_add(t->tau, half->tau, half->tau);
 	return t;
 }
 
@@ -754,6 +764,35 @@ static long bits_known(const struct balls *U, size_t cells)
 	return radius.m ? magnitude_log(size) - magnitude_log(radius) - 2 : LONG_MAX;
 }
 
+/* U, which is initialised here, by a series; false: beyond its limits */
+static bool enclose_by_series(struct taylor *t, long bits, struct balls *U)
+{
+	struct plan plan = { 0 };
+	int limbs = (int)((bits + LIMB - 1) / LIMB) + 1;
+	if (!find_plan(t, LIMB * (limbs - 1), &plan))
+		return false;
+	if (exponential(t, &plan, limbs, U))
+		return true;
+	balls_clear(U);
+	return false;
+}
+
+/* The same as the square of what it is at half the time */
+static bool enclose_by_half(struct taylor *t, long bits, struct balls *U)
+{
+	struct row row;
+	if (!taylor_enclose(t->half, (int)bits))
+		return false;
+	row_init(&row, t->n, t->n, t->half->value.limbs);
+	matrix_init(U, t->n, t->half->value.limbs);
+	multiply(&row, U, &t->half->value, &t->half->value);
+	row_clear(&row);
+	if (keep_in_range(U, (size_t)t->n * (size_t)t->n))
+		return true;
+	balls_clear(U);
+	return false;
+}
+
 bool taylor_enclose(struct taylor *t, int precision)
 {
 	enum { SPARE = 8 };
@@ -763,15 +802,9 @@ bool taylor_enclose(struct taylor *t, int precision)
 	if (!t->loss)
 		t->loss = 2 * SPARE + (t->norm.m && magnitude_log(t->norm) > 0 ? 2 * magnitude_log(t->norm) : 0);
 	while (precision + t->loss <= LARGEST_WORK) {
-		struct plan plan = { 0 };
 		struct balls U;
-		int limbs = (int)((precision + t->loss + LIMB - 1) / LIMB) + 1;
-		if (!find_plan(t, LIMB * (limbs - 1), &plan))
+		if (!(t->half ? enclose_by_half : enclose_by_series)(t, precision + t->loss, &U))
 			return false;
-		if (!exponential(t, &plan, limbs, &U)) {
-			balls_clear(&U);
-			return false;
-		}
 		long known = bits_known(&U, cells);
 		if (known >= precision) {
 			if (t->precision)
@@ -831,6 +864,14 @@ void taylor_entry(const struct taylor *t, int i, int j, mpfi_ptr value)
 static bool leads(const struct taylor *t, int i, int j)
 {
 	return t->distance[i * t->n + j] >= 0;
+}
+
+/* What does not depend on the time is found once. */
+static struct taylor *shortest_time(struct taylor *t)
+{
+	while (t->half)
+		t = t->half;
+	return t;
 }
 
 static bool *find_cyclic(const struct taylor *t)
@@ -1111,13 +1152,14 @@ bool taylor_exact(struct taylor *t, int i, int j, mpq_ptr exact)
 	mpq_set_ui(exact, mpq_sgn(t->tau) == 0 && i == j, 1);
 	if (!leads(t, i, j) || mpq_sgn(t->tau) == 0)
 		return true;
+	struct taylor *first = shortest_time(t);
 	if (!t->cyclic)
-		t->cyclic = find_cyclic(t);
+		t->cyclic = first->cyclic = first->cyclic ? first->cyclic : find_cyclic(first);
 	int *state = ARRAY(int, (size_t)t->n);
 	bool cycle;
 	int N = walked_states(t, i, j, state, &cycle);
 	if (cycle && !t->survivor)
-		t->survivor = find_survivors(t);
+		t->survivor = first->survivor = first->survivor ? first->survivor : find_survivors(first);
 	bool polynomial = (!cycle || t->survivor[i * t->n + j]) && polynomial_entry(t, i, j, N, state, cycle, exact);
 	discard(state);
 	return polynomial;

@@ -35,6 +35,17 @@ struct layout layout_of(const struct linear *system, int powers)
 	return place(system, powers, acting, 1, system->heldK);
 }
 
+struct layout layout_of_segments(const struct linear *system, int powers)
+{
+	struct layout one = layout_of(system, powers);
+	if (system->segments * one.loads > one.size)
+		return one;
+	bool *acting = ARRAY(bool, (size_t)system->loads);
+	for (int l = 0; l < system->loads; l++)
+		acting[l] = one.load[l] >= 0;
+	return place(system, powers, acting, system->segments, system->heldK);
+}
+
 struct layout layout_with(const struct linear *system, int powers, const bool *needed)
 {
 	return place(system, powers, needed, 1, system->heldK);
@@ -105,6 +116,15 @@ static void fill_force(mpq_t *A, int size, int at, const struct linear *system, 
 	}
 }
 
+static void fill_load(mpq_t *A, const struct layout *x, const struct linear *system, const mpq_t *inverse, int load,
+		      int at, int segment)
+{
+	for (int k = 0; k < system->load[load].columns; k++)
+		fill_force(A, x->size, at + k, system, inverse,
+			   (const mpq_t *)system->load[load].force[k] + segment * system->n);
+	fill_load_rows(A, x->size, at, &system->load[load]);
+}
+
 mpq_t *augmented_matrix(const struct layout *x, const struct linear *system, int segment)
 {
 	int n = system->n, size = x->size, states = system->states, column;
@@ -121,14 +141,10 @@ mpq_t *augmented_matrix(const struct layout *x, const struct linear *system, int
 		fill_force(A, size, x->held + i, system, (const mpq_t *)inverse, (const mpq_t *)unit);
 		mpq_set_ui(unit[i], 0, 1);
 	}
-	for (int l = 0; l < system->loads; l++) {
-		if (x->load[l] < 0)
-			continue;
-		for (int k = 0; k < system->load[l].columns; k++)
-			fill_force(A, size, x->load[l] + k, system, (const mpq_t *)inverse,
-				   (const mpq_t *)system->load[l].force[k] + segment * n);
-		fill_load_rows(A, size, x->load[l], &system->load[l]);
-	}
+	for (int l = 0; l < system->loads; l++)
+		for (int s = 0; s < x->segments && x->load[l] >= 0; s++)
+			fill_load(A, x, system, (const mpq_t *)inverse, l, x->load[l] + s * x->loads,
+				  x->segments > 1 ? s : segment);
 	for (int i = 0; i < system->inputs; i++) {
 		int at = x->input[i];
 		fill_force(A, size, at, system, (const mpq_t *)inverse, (const mpq_t *)system->input[i].force[0]);

@@ -253,11 +253,14 @@ struct layout {
 	int channel, powers;
 };
 struct layout layout_of(const struct linear *system, int powers);   /* of loads those that act */
+/* the same, in all segments of time where that is at most twice as large */
+struct layout layout_of_segments(const struct linear *system, int powers);
 struct layout layout_with(const struct linear *system, int powers, const bool *needed); /* of loads those needed */
 /* states, all load states of all segments, inputs */
 struct layout layout_of_columns(const struct linear *system);
 const char **layout_names(const struct layout *layout, const struct linear *system, const struct model *model);
-mpq_t *augmented_matrix(const struct layout *layout, const struct linear *system, int segment); /* A of x' = A x */
+/* A of x' = A x; `segment` where the layout is of one */
+mpq_t *augmented_matrix(const struct layout *layout, const struct linear *system, int segment);
 
 /* ---- spell.c: loads, forms and equations for a reader ---- */
 

@@ -262,18 +262,34 @@ static const mpq_t *impulse_of(struct filling *f, int channel)
 	return (const mpq_t *)f->impulse[channel];
 }
 
+static struct exponential *exponential_at(const struct filling *f, mpq_srcptr tau)
+{
+	for (int i = 0; i < f->exponentials; i++)
+		if (mpq_equal(f->exponential[i].tau, tau))
+			return &f->exponential[i];
+	return NULL;
+}
+
+/* Where half the time is asked for too, the square of what is found there */
 static struct taylor *taylor_at(const struct filling *f, mpq_srcptr tau)
 {
-	for (int i = 0; i < f->exponentials; i++) {
-		struct taylor **made = &f->exponential[i].segment[f->segment];
-		if (!mpq_equal(f->exponential[i].tau, tau))
-			continue;
-		if (!*made)
-			*made = taylor_of(f->layout.size,
-					  (const mpq_t *)augmented_matrix(&f->layout, f->system, f->segment), tau);
-		return *made;
+	struct exponential *here = exponential_at(f, tau);
+	int segment = f->layout.segments > 1 ? 0 : f->segment;
+	if (here->segment[segment])
+		return here->segment[segment];
+	mpq_t half;
+	mpq_init(half);
+	mpq_div_2exp(half, tau, 1);
+	if (mpq_sgn(half) > 0 && exponential_at(f, half)) {
+		here->segment[segment] = taylor_doubled(taylor_at(f, half));
+	} else {
+		size_t cells = (size_t)f->layout.size * (size_t)f->layout.size;
+		mpq_t *A = augmented_matrix(&f->layout, f->system, segment);
+		here->segment[segment] = taylor_of(f->layout.size, (const mpq_t *)A, tau);
+		rationals_free(A, cells);
 	}
-	return NULL;
+	mpq_clear(half);
+	return here->segment[segment];
 }
 
 static void add_entry(struct filling *f, mpq_srcptr tau, int column, mpq_srcptr weight)
@@ -528,7 +544,9 @@ static void load_by_taylor(struct filling *f, int load, int column)
 	mpq_init(one);
 	mpq_set_ui(one, 1, 1);
 	if (f->layout.load[load] >= 0)
-		add_entry(f, f->tau, f->layout.load[load] + column, one);
+		add_entry(f, f->tau,
+			  f->layout.load[load] + column + (f->layout.segments > 1 ? f->segment * f->layout.loads : 0),
+			  one);
 	mpq_clear(one);
 }
 
@@ -740,7 +758,7 @@ static struct table **tables_of_block(struct filling *f, int count, const struct
 	for (size_t i = 0; i < 4; i++)
 		mpq_init(f->response[i].start);
 	mpq_init(f->tau);
-	f->layout = layout_of(system, longest_chain(count, wanted));
+	f->layout = layout_of_segments(system, longest_chain(count, wanted));
 	if (system->states > LIMIT_RESIDUE_STATES) {
 		check_waves(f);
 		plan_exponentials(f, count, wanted);
