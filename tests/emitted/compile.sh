@@ -41,17 +41,17 @@ languages() {
 
 languages >compilers
 
-# effort COMPILER FILE.c [OPTIONS]: what it is to make of the file; gcc warns as an optimiser does of standard output
+# effort COMPILER FILE.c: what it is to make of the file; gcc warns as an optimiser does of standard output
 effort() {
     if long || [ "${1##*/} ${2##*/}" = "gcc stdout.c" ]; then
         echo "-O1 -c -o ${2%.c}.o"
     else
         without_code "$1"
-        [ -n "${3-}" ] || ahead "$1" "$2"
+        ahead "$1" "$2"
     fi
 }
 
-# compiles FILE.c NAME [OPTIONS]: one result for each compiler and language
+# compiles FILE.c NAME: one result for each compiler and language
 compiles() {
     while read -r compiler options; do
         if ! installed "$compiler"; then
@@ -59,13 +59,13 @@ compiles() {
             continue
         fi
         # shellcheck disable=SC2046,SC2086
-        $compiler $warnings -I"$root/runtime" ${3-} $(effort "$compiler" "$1" "${3-}") $options "$1" >log 2>&1
+        $compiler $warnings -I"$root/runtime" $(effort "$compiler" "$1") $options "$1" >log 2>&1
         result $? "$2, $compiler $options"
     done <compilers
 }
 
-# all_compile FILE.c NAME [CHOICE]: without code, as one result; C and C++, by gcc and by clang, or what CHOICE prints
-# of the compilers
+# all_compile FILE.c NAME [CHOICE [OPTIONS]]: without code, as one result; C and C++, by gcc and by clang, or what CHOICE
+# prints of the compilers
 all_compile() {
     status=0
     : >log
@@ -73,8 +73,8 @@ all_compile() {
     while read -r compiler options; do
         installed "$compiler" || continue
         # shellcheck disable=SC2046,SC2086
-        $compiler $warnings -I"$root/runtime" -fsyntax-only $(ahead "$compiler" "$1") $options "$1" >>log 2>&1 ||
-            status=1
+        $compiler $warnings -I"$root/runtime" ${4-} -fsyntax-only $([ -n "${4-}" ] || ahead "$compiler" "$1") \
+            $options "$1" >>log 2>&1 || status=1
     done <some
     result $status "$2"
 }
@@ -123,7 +123,7 @@ for m in $models; do
     result $? "$m: --header is FILE.h"
     for kind in "$m" "$m.rhs"; do
         compiles "$kind/stdout.c" "$kind: standard output"
-        compiles "$kind/$m.c" "$kind: -o FILE.c with FILE.h"
+        all_compile "$kind/$m.c" "$kind: -o FILE.c with FILE.h"
         grep -q '^#include "'"$m"'.h"$' "$kind/$m.c" && [ -s "$kind/$m.h" ]
         result $? "$kind: FILE.c includes FILE.h"
         # the header by itself, twice, and together with the complete C
@@ -132,7 +132,7 @@ for m in $models; do
         printf '#include "%s.h"\n#include "stdout.c"\n' "$m" >"$kind/both.c"
         all_compile "$kind/both.c" "$kind: the C on standard output repeats the header under the same guard"
     done
-    compiles "$m/stdout.c" "$m: freestanding" '-ffreestanding'
+    all_compile "$m/stdout.c" "$m: freestanding" by_turns -ffreestanding
 done
 
 # ---- the runtime ----
@@ -142,7 +142,7 @@ for f in "$root"/runtime/*.c; do
     f=$(basename "$f" .c)
     runtime="$runtime $f"
     cp "$root/runtime/$f.c" "$f.c"
-    compiles "$f.c" "runtime: $f.c" '-ffreestanding'
+    all_compile "$f.c" "runtime: $f.c" by_turns -ffreestanding
 done
 
 mkdir runtime models

@@ -15,9 +15,9 @@ make_archive() { # CC OUT
 	mkdir "$work/$cc"
 	(
 		cd "$work/$cc"
-		"$cc" -std=gnu11 -O1 -fsanitize=address,undefined -fno-sanitize-recover=all -I"$source/runtime" \
+		"$cc" -std=gnu11 -O0 -fsanitize=address,undefined -fno-sanitize-recover=all -I"$source/runtime" \
 			-I"$source/tests/leftover" -c "$source"/runtime/*.c "$source/tests/fuzz/drive.c"
-		"$cc" -std=gnu11 -O1 -I"$source/tests/leftover" -c "$source/tests/leftover/truth.c"
+		"$cc" -std=gnu11 -O0 -I"$source/tests/leftover" -c "$source/tests/leftover/truth.c"
 		rm -f "$out"
 		ar rcsD "$out" ./*.o
 	)
