@@ -69,6 +69,17 @@ void rectangle_mul(struct rectangle *z, const struct rectangle *a, const struct 
 	scratch_clear(&s);
 }
 
+/* Re a b; may be a part of a */
+void rectangle_real_product(mpfi_ptr re, const struct rectangle *a, const struct rectangle *b)
+{
+	mpfi_t other;
+	mpfi_init2(other, mpfi_get_prec(re));
+	product(other, a->im, b->im);
+	product(re, a->re, b->re);
+	mpfi_sub(re, re, other);
+	mpfi_clear(other);
+}
+
 void rectangle_div(struct rectangle *z, const struct rectangle *a, const struct rectangle *b)
 {
 	struct rectangle conjugate;
