@@ -1,39 +1,43 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Every chunk is kept in one ring and given back when the program ends. GMP, MPFR and MPFI free as they go; the
- * generator's own structures do not, so no stage needs to know who else still looks at them. What is held is counted,
- * as are the terms that were made: two budgets, looked at where the generator itself asks for memory, never inside GMP.
- * They are counts, so that a spec is within them on every machine or on none. */
+/* What is asked for is kept and given back when the program ends. GMP, MPFR and MPFI free as they go; the generator's
+ * own structures do not, so no stage needs to know who else still looks at them. Small blocks are cut from slabs, and
+ * go back to a list of their size; the others are chunks of malloc, in one ring. What is held is counted, as are the
+ * terms that were made: two budgets, looked at where the generator itself asks for memory, never inside GMP. They are
+ * counts, so that a spec is within them on every machine or on none. */
 #include "base/base.h"
 
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 
-union chunk {
-	struct { union chunk *before, *after; size_t size; } ring;
-	max_align_t align;
+struct chunk {
+	_Alignas(max_align_t) struct chunk *before;
+	struct chunk *after;
+	size_t unused, size;
 };
+struct cell {                       /* of a slab; its block begins after it */
+	_Alignas(max_align_t) struct cell *next;        /* where it is free */
+	size_t size;
+};
+struct slab {
+	_Alignas(max_align_t) struct slab *before;
+};
+_Static_assert(offsetof(struct chunk, size) + sizeof(size_t) == sizeof(struct chunk), "size stands before its block");
+_Static_assert(offsetof(struct cell, size) + sizeof(size_t) == sizeof(struct cell), "size stands before its block");
 
-static union chunk ring;
+#ifdef __SANITIZE_ADDRESS__
+enum { SMALL = 0 };                 /* so that every block is watched */
+#else
+enum { SMALL = 512 };               /* bytes of a block, at most, that a slab holds */
+#endif
+enum { CELL = sizeof(struct cell), KINDS = SMALL / CELL + 1, SLAB = 1 << 18 };
+
+static struct chunk ring;
+static struct slab *slabs;
+static struct cell *free_cells[KINDS];   /* blocks of up to so many times CELL */
+static char *uncut, *end_of_slab;
 static size_t held, terms;          /* bytes now; terms so far */
 static bool over;                   /* a budget is spent, and that is being told */
-
-static void link_block(union chunk *chunk, size_t size)
-{
-	chunk->ring.size = size;
-	held += size;
-	chunk->ring.before = &ring;
-	chunk->ring.after = ring.ring.after;
-	chunk->ring.after->ring.before = chunk;
-	ring.ring.after = chunk;
-}
-
-static void unlink_block(union chunk *chunk)
-{
-	held -= chunk->ring.size;
-	chunk->ring.before->ring.after = chunk->ring.after;
-	chunk->ring.after->ring.before = chunk->ring.before;
-}
 
 static _Noreturn void out_of_memory(void)
 {
@@ -41,26 +45,116 @@ static _Noreturn void out_of_memory(void)
 	exit(1);
 }
 
-static void *ring_new(size_t size)
+static size_t *size_of(void *block)
 {
-	union chunk *chunk = size > SIZE_MAX - sizeof *chunk ? NULL : malloc(sizeof *chunk + size);
+	return (size_t *)block - 1;
+}
+
+static size_t kind_of(size_t size)
+{
+	return (size + CELL - 1) / CELL;
+}
+
+static void *cut_cell(size_t kind)
+{
+	size_t length = (kind + 1) * CELL;
+	if ((size_t)(end_of_slab - uncut) < length) {
+		struct slab *slab = malloc(SLAB);
+		if (!slab)
+			out_of_memory();
+		slab->before = slabs;
+		slabs = slab;
+		uncut = (char *)(slab + 1);
+		end_of_slab = (char *)slab + SLAB;
+	}
+	struct cell *cell = (struct cell *)uncut;
+	uncut += length;
+	return cell + 1;
+}
+
+static void *new_cell(size_t size)
+{
+	size_t kind = kind_of(size);
+	struct cell *cell = free_cells[kind];
+	if (!cell)
+		return cut_cell(kind);
+	free_cells[kind] = cell->next;
+	return cell + 1;
+}
+
+static void link_chunk(struct chunk *chunk)
+{
+	chunk->before = &ring;
+	chunk->after = ring.after;
+	chunk->after->before = chunk;
+	ring.after = chunk;
+}
+
+static void unlink_chunk(struct chunk *chunk)
+{
+	chunk->before->after = chunk->after;
+	chunk->after->before = chunk->before;
+}
+
+static void *new_chunk(size_t size)
+{
+	struct chunk *chunk = size > SIZE_MAX - sizeof *chunk ? NULL : malloc(sizeof *chunk + size);
 	if (!chunk)
 		out_of_memory();
-	link_block(chunk, sizeof *chunk + size);
+	link_chunk(chunk);
 	return chunk + 1;
+}
+
+static void *ring_new(size_t size)
+{
+	void *block = size <= SMALL ? new_cell(size) : new_chunk(size);
+	*size_of(block) = size;
+	held += sizeof(struct chunk) + size;     /* however it is kept */
+	return block;
+}
+
+static void give_back(void *block)
+{
+	size_t size = *size_of(block);
+	held -= sizeof(struct chunk) + size;
+	if (size <= SMALL) {
+		struct cell *cell = (struct cell *)block - 1;
+		cell->next = free_cells[kind_of(size)];
+		free_cells[kind_of(size)] = cell;
+	} else {
+		unlink_chunk((struct chunk *)block - 1);
+		free((struct chunk *)block - 1);
+	}
+}
+
+static void *move_block(void *old, size_t size)
+{
+	size_t before = *size_of(old);
+	void *block = ring_new(size);
+	memcpy(block, old, before < size ? before : size);
+	give_back(old);
+	return block;
 }
 
 static void *ring_resize(void *old, size_t size)
 {
 	if (!old)
 		return ring_new(size);
-	union chunk *chunk = (union chunk *)old - 1;
-	unlink_block(chunk);
-	chunk = size > SIZE_MAX - sizeof *chunk ? NULL : realloc(chunk, sizeof *chunk + size);
-	if (!chunk)
-		out_of_memory();
-	link_block(chunk, sizeof *chunk + size);
-	return chunk + 1;
+	size_t before = *size_of(old);
+	if (before <= SMALL ? size > SMALL || kind_of(before) != kind_of(size) : size <= SMALL)
+		return move_block(old, size);
+	if (before > SMALL) {
+		struct chunk *chunk = (struct chunk *)old - 1;
+		unlink_chunk(chunk);
+		chunk = size > SIZE_MAX - sizeof *chunk ? NULL : realloc(chunk, sizeof *chunk + size);
+		if (!chunk)
+			out_of_memory();
+		link_chunk(chunk);
+		old = chunk + 1;
+	}
+	held += size - before;
+	*size_of(old) = size;
+	return old;
 }
 
 static void *gmp_resize(void *old, size_t old_size, size_t size)
@@ -72,24 +166,29 @@ static void *gmp_resize(void *old, size_t old_size, size_t size)
 static void gmp_free(void *old, size_t size)
 {
 	(void)size;
-	unlink_block((union chunk *)old - 1);
-	free((union chunk *)old - 1);
+	give_back(old);
 }
 
 void memory_open(void)
 {
-	ring.ring.before = ring.ring.after = &ring;
+	ring.before = ring.after = &ring;
 	mp_set_memory_functions(ring_new, gmp_resize, gmp_free);
 }
 
 void memory_close(void)
 {
 	mpfr_free_cache();
-	for (union chunk *chunk = ring.ring.after, *after; chunk != &ring; chunk = after) {
-		after = chunk->ring.after;
+	for (struct chunk *chunk = ring.after, *after; chunk != &ring; chunk = after) {
+		after = chunk->after;
 		free(chunk);
 	}
-	ring.ring.before = ring.ring.after = &ring;
+	ring.before = ring.after = &ring;
+	for (struct slab *before; slabs; slabs = before) {
+		before = slabs->before;
+		free(slabs);
+	}
+	memset(free_cells, 0, sizeof free_cells);
+	uncut = end_of_slab = NULL;
 }
 
 static void stop(const char *message)

@@ -33,23 +33,50 @@ static void product(mpfi_ptr z, mpfi_srcptr a, mpfi_srcptr b)
 		mpfi_mul(z, a, b);
 }
 
+struct scratch { mpfi_t re, im, other; };
+
+static void scratch_init(struct scratch *s, int precision)
+{
+	mpfi_init2(s->re, precision);
+	mpfi_init2(s->im, precision);
+	mpfi_init2(s->other, precision);
+}
+
+static void scratch_clear(struct scratch *s)
+{
+	mpfi_clear(s->re);
+	mpfi_clear(s->im);
+	mpfi_clear(s->other);
+}
+
+static void multiply(struct rectangle *z, const struct rectangle *a, const struct rectangle *b, struct scratch *s)
+{
+	product(s->re, a->re, b->re);
+	product(s->other, a->im, b->im);
+	mpfi_sub(s->re, s->re, s->other);
+	product(s->im, a->re, b->im);
+	product(s->other, a->im, b->re);
+	mpfi_add(s->im, s->im, s->other);
+	mpfi_swap(z->re, s->re);
+	mpfi_swap(z->im, s->im);
+}
+
 void rectangle_mul(struct rectangle *z, const struct rectangle *a, const struct rectangle *b)
 {
-	mpfi_t re, im, other;
-	int precision = (int)mpfi_get_prec(z->re);
-	mpfi_init2(re, precision);
-	mpfi_init2(im, precision);
-	mpfi_init2(other, precision);
-	product(re, a->re, b->re);
+	struct scratch s;
+	scratch_init(&s, (int)mpfi_get_prec(z->re));
+	multiply(z, a, b, &s);
+	scratch_clear(&s);
+}
+
+/* Re a b; may be a part of a */
+void rectangle_real_product(mpfi_ptr re, const struct rectangle *a, const struct rectangle *b)
+{
+	mpfi_t other;
+	mpfi_init2(other, mpfi_get_prec(re));
 	product(other, a->im, b->im);
+	product(re, a->re, b->re);
 	mpfi_sub(re, re, other);
-	product(im, a->re, b->im);
-	product(other, a->im, b->re);
-	mpfi_add(im, im, other);
-	mpfi_set(z->re, re);
-	mpfi_set(z->im, im);
-	mpfi_clear(re);
-	mpfi_clear(im);
 	mpfi_clear(other);
 }
 
@@ -101,10 +128,13 @@ void rectangle_exp(struct rectangle *z, const struct rectangle *a, mpq_srcptr ta
 /* p(a) by Horner's rule */
 void rectangle_evaluate(struct rectangle *z, struct poly p, const struct rectangle *a)
 {
+	struct scratch s;
+	scratch_init(&s, (int)mpfi_get_prec(z->re));
 	mpfi_set_ui(z->re, 0);
 	mpfi_set_ui(z->im, 0);
 	for (int k = p.length - 1; k >= 0; k--) {
-		rectangle_mul(z, z, a);
+		multiply(z, z, a, &s);
 		mpfi_add_z(z->re, z->re, p.c[k]);
 	}
+	scratch_clear(&s);
 }

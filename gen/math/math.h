@@ -71,6 +71,7 @@ void rectangle_clear(struct rectangle *z);
 void rectangle_set(struct rectangle *z, const struct rectangle *a);
 void rectangle_sub(struct rectangle *z, const struct rectangle *a, const struct rectangle *b);
 void rectangle_mul(struct rectangle *z, const struct rectangle *a, const struct rectangle *b);
+void rectangle_real_product(mpfi_ptr re, const struct rectangle *a, const struct rectangle *b);
 void rectangle_div(struct rectangle *z, const struct rectangle *a, const struct rectangle *b);
 void rectangle_exp(struct rectangle *z, const struct rectangle *a, mpq_srcptr tau);         /* e^{a tau} */
 void rectangle_evaluate(struct rectangle *z, struct poly p, const struct rectangle *a);     /* p(a); z is not a */

@@ -10,7 +10,7 @@
 #include <math.h>
 #include <mpc.h>
 
-enum { START_BITS = 64, GUARD_BITS = 32, SWEEPS = 40, LIMIT_ITERATION_BITS = 1 << 16 };
+enum { START_BITS = 64, RADIUS_BITS = 64, GUARD_BITS = 32, SWEEPS = 40, LIMIT_ITERATION_BITS = 1 << 16 };
 
 struct iteration {                  /* of one factor */
 	int degree, bits;
@@ -306,13 +306,44 @@ static void distance(mpfi_ptr value, const struct rectangle *a, const struct rec
 	rectangle_clear(&difference);
 }
 
+/* |a - b|^2 for points: the differences to all their bits, their squares to few */
+static void squared_distance(mpfi_ptr value, const struct rectangle *a, const struct rectangle *b, mpfi_ptr difference,
+			     mpfi_ptr square)
+{
+	mpfi_sub(difference, a->re, b->re);
+	mpfi_sqr(value, difference);
+	mpfi_sub(difference, a->im, b->im);
+	mpfi_sqr(square, difference);
+	mpfi_add(value, value, square);
+}
+
+/* prod |z_i - z_j| */
+static void product_of_distances(const struct iteration *it, int i, mpfi_ptr product)
+{
+	mpfi_t difference, square, gap;
+	mpfi_init2(difference, it->bits);
+	mpfi_init2(square, RADIUS_BITS);
+	mpfi_init2(gap, RADIUS_BITS);
+	mpfi_set_ui(product, 1);
+	for (int j = 0; j < it->degree; j++) {
+		if (j == i)
+			continue;
+		squared_distance(gap, &it->center[i], &it->center[j], difference, square);
+		mpfi_mul(product, product, gap);
+	}
+	mpfi_sqrt(product, product);
+	mpfi_clear(difference);
+	mpfi_clear(square);
+	mpfi_clear(gap);
+}
+
 static void find_discs(struct poly g, struct iteration *it)
 {
 	struct rectangle value;
-	mpfi_t radius, gap;
+	mpfi_t radius, gaps;
 	rectangle_init(&value, it->bits);
-	mpfi_init2(radius, it->bits);
-	mpfi_init2(gap, it->bits);
+	mpfi_init2(radius, RADIUS_BITS);
+	mpfi_init2(gaps, RADIUS_BITS);
 	for (int i = 0; i < it->degree; i++) {
 		mpfi_set_prec(it->center[i].re, it->bits);
 		mpfi_set_prec(it->center[i].im, it->bits);
@@ -324,18 +355,14 @@ static void find_discs(struct poly g, struct iteration *it)
 		mpfi_hypot(radius, value.re, value.im);
 		mpfi_mul_ui(radius, radius, (unsigned long)it->degree);
 		mpfi_div_z(radius, radius, g.c[it->degree]);
-		for (int j = 0; j < it->degree; j++) {
-			if (j == i)
-				continue;
-			distance(gap, &it->center[i], &it->center[j]);
-			mpfi_div(radius, radius, gap);
-		}
+		product_of_distances(it, i, gaps);
+		mpfi_div(radius, radius, gaps);
 		mpfi_get_right(it->radius[i], radius);
 		mpfr_abs(it->radius[i], it->radius[i], MPFR_RNDU);
 	}
 	rectangle_clear(&value);
 	mpfi_clear(radius);
-	mpfi_clear(gap);
+	mpfi_clear(gaps);
 }
 
 static bool small_enough(const struct iteration *it, int i, int precision)
@@ -349,22 +376,38 @@ static bool small_enough(const struct iteration *it, int i, int precision)
 	return small;
 }
 
+/* Are a and b or -b (`mirrored`) further apart than that? Rounded down, so that true is certain. */
+static bool apart(mpfr_srcptr a, mpfr_srcptr b, bool mirrored, mpfr_srcptr than)
+{
+	mpfr_t gap;
+	mpfr_init2(gap, RADIUS_BITS);
+	(mirrored ? mpfr_add : mpfr_sub)(gap, a, b, MPFR_RNDZ);
+	bool further = mpfr_cmpabs(gap, than) > 0;
+	mpfr_clear(gap);
+	return further;
+}
+
 /* Does disc i, mirrored in the real axis (flip_im) or the imaginary one (flip_re), meet disc j? */
 static bool discs_meet(const struct iteration *it, int i, int j, bool flip_re, bool flip_im)
 {
 	struct rectangle mirrored;
 	mpfi_t gap;
 	mpfr_t sum;
+	mpfr_init2(sum, RADIUS_BITS);
+	mpfr_add(sum, it->radius[i], it->radius[j], MPFR_RNDU);
+	if (apart(mpc_realref(it->z[i]), mpc_realref(it->z[j]), flip_re, sum) ||
+	    apart(mpc_imagref(it->z[i]), mpc_imagref(it->z[j]), flip_im, sum)) {
+		mpfr_clear(sum);
+		return false;
+	}
 	rectangle_init(&mirrored, it->bits);
 	mpfi_init2(gap, it->bits);
-	mpfr_init2(sum, it->bits);
 	rectangle_set(&mirrored, &it->center[i]);
 	if (flip_re)
 		mpfi_neg(mirrored.re, mirrored.re);
 	if (flip_im)
 		mpfi_neg(mirrored.im, mirrored.im);
 	distance(gap, &mirrored, &it->center[j]);
-	mpfr_add(sum, it->radius[i], it->radius[j], MPFR_RNDU);
 	bool meet = !mpfr_greater_p(&gap->left, sum);
 	rectangle_clear(&mirrored);
 	mpfi_clear(gap);

@@ -5,14 +5,19 @@
  * enclosed. */
 #include "math/math.h"
 
-enum { GUARD_BITS = 32 };
+enum {
+	GUARD_BITS = 32,
+	LONGEST_STRIDE = 32             /* products of exponentials in a row: turned rectangles widen by up to sqrt 2 each */
+};
 
 struct growth {                     /* what all responses with one denominator share, for one precision */
 	int precision;
 	struct rectangle ***series; /* [factor][pole][k]: v_k */
-	mpq_t tau;
+	mpq_t tau, stride;          /* of `exponential`; what it was moved by last */
 	int exponential_precision;  /* of `exponential`, at tau; 0: none */
 	struct rectangle **exponential;
+	struct rectangle **over_stride;     /* e^{p stride}; NULL: not asked for twice in a row */
+	int strides;                /* from an exponential that was found directly */
 };
 
 /* ---- exact parts ---- */
@@ -168,7 +173,7 @@ static struct growth *denominator_series(struct spectrum *spectrum, int precisio
 		return growth;
 	growth = spectrum->growth = NEW(struct growth);
 	growth->precision = precision;
-	mpq_init(growth->tau);
+	mpq_inits(growth->tau, growth->stride, NULL);
 	growth->series = ARRAY(struct rectangle **, (size_t)spectrum->factors);
 	growth->exponential = ARRAY(struct rectangle *, (size_t)spectrum->factors);
 	for (int f = 0; f < spectrum->factors; f++) {
@@ -186,15 +191,67 @@ static struct growth *denominator_series(struct spectrum *spectrum, int precisio
 	return growth;
 }
 
-static void find_exponentials(struct spectrum *spectrum, struct growth *growth, mpq_srcptr tau)
+static void exponentials_at(const struct spectrum *spectrum, mpq_srcptr tau, struct rectangle **exponential)
 {
-	if (growth->exponential_precision && mpq_equal(growth->tau, tau))
-		return;
-	growth->exponential_precision = growth->precision;
-	mpq_set(growth->tau, tau);
 	for (int f = 0; f < spectrum->factors; f++)
 		for (int i = 0; i < spectrum->poles[f]; i++)
-			rectangle_exp(&growth->exponential[f][i], &spectrum->pole[f][i].at, tau);
+			rectangle_exp(&exponential[f][i], &spectrum->pole[f][i].at, tau);
+}
+
+static struct rectangle **room_for_exponentials(const struct spectrum *spectrum, int precision)
+{
+	struct rectangle **room = ARRAY(struct rectangle *, (size_t)spectrum->factors);
+	for (int f = 0; f < spectrum->factors; f++)
+		room[f] = rectangles(spectrum->poles[f], precision);
+	return room;
+}
+
+/* At equal distances, as rows of a solution are: by products */
+static void move_exponentials(const struct spectrum *spectrum, struct growth *growth)
+{
+	if (!growth->over_stride) {
+		growth->over_stride = room_for_exponentials(spectrum, growth->precision + GUARD_BITS);
+		exponentials_at(spectrum, growth->stride, growth->over_stride);
+	}
+	for (int f = 0; f < spectrum->factors; f++)
+		for (int i = 0; i < spectrum->poles[f]; i++)
+			rectangle_mul(&growth->exponential[f][i], &growth->exponential[f][i],
+				      &growth->over_stride[f][i]);
+	growth->strides++;
+}
+
+static void clear_stride(const struct spectrum *spectrum, struct growth *growth)
+{
+	for (int f = 0; f < spectrum->factors && growth->over_stride; f++) {
+		for (int i = 0; i < spectrum->poles[f]; i++)
+			rectangle_clear(&growth->over_stride[f][i]);
+		discard(growth->over_stride[f]);
+	}
+	discard(growth->over_stride);
+	growth->over_stride = NULL;
+}
+
+static void find_exponentials(struct spectrum *spectrum, struct growth *growth, mpq_srcptr tau)
+{
+	bool first = growth->exponential_precision == 0;
+	if (!first && mpq_equal(growth->tau, tau))
+		return;
+	mpq_t stride;
+	mpq_init(stride);
+	mpq_sub(stride, tau, growth->tau);
+	bool again = !first && mpq_equal(stride, growth->stride);
+	if (again && growth->strides < LONGEST_STRIDE) {
+		move_exponentials(spectrum, growth);
+	} else {
+		exponentials_at(spectrum, tau, growth->exponential);
+		growth->strides = 0;
+	}
+	if (!again)
+		clear_stride(spectrum, growth);
+	mpq_set(growth->stride, stride);
+	mpq_set(growth->tau, tau);
+	mpq_clear(stride);
+	growth->exponential_precision = growth->precision;
 }
 
 /* a_k of one pole, written so that a[k] multiplies tau^k/k! */
@@ -241,7 +298,8 @@ static void add_residue(const struct pole *pole, int m, const struct rectangle *
 	mpq_t power;
 	rectangle_init(&total, precision);
 	mpq_init(power);
-	for (int k = m - 1; k >= 0; k--) {      /* Horner: (a_{m-1} tau/(m-1) + a_{m-2}) tau/(m-2) ... */
+	rectangle_set(&total, &a[m - 1]);
+	for (int k = m - 2; k >= 0; k--) {      /* Horner: (a_{m-1} tau/(m-1) + a_{m-2}) tau/(m-2) ... */
 		mpq_set_ui(power, 1, (unsigned long)k + 1);
 		mpq_mul(power, power, tau);
 		mpfi_mul_q(total.re, total.re, power);
@@ -249,9 +307,9 @@ static void add_residue(const struct pole *pole, int m, const struct rectangle *
 		mpfi_add(total.re, total.re, a[k].re);
 		mpfi_add(total.im, total.im, a[k].im);
 	}
-	rectangle_mul(&total, &total, exponential);
+	rectangle_real_product(total.re, &total, exponential);
 	if (!pole->real)
-		mpfi_mul_ui(total.re, total.re, 2);
+		mpfi_mul_2ui(total.re, total.re, 1);
 	mpfi_add(sum, sum, total.re);
 	rectangle_clear(&total);
 	mpq_clear(power);
