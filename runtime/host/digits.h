@@ -22,7 +22,7 @@ typedef struct digits_pair {
 
 enum { DIGITS_LEAST_POWER = -292, DIGITS_MOST_POWER = 324 }; /* what a double may ask for */
 
-/* Of 10^k the first 128 bits, rounded down, plus 1: 10^k is in ((hi lo) - 1, (hi lo)) 2^(digits_log2 - 127). */
+/* Of 10^k the first 128 bits, rounded down, plus 1: 10^k is in [(hi lo) - 1, (hi lo)) 2^(digits_log2 - 127). */
 static digits_pair digits_power[DIGITS_MOST_POWER - DIGITS_LEAST_POWER + 1];
 
 /* floor(log2 10^k), |k| <= 1233 */
@@ -215,9 +215,11 @@ static inline digits_decimal digits_shortest(double value, int is_float)
 /* The last `count` digits, eight at a time and of these two, so that divisions are of 32 bits */
 static inline void digits_put(char *to, uint64_t digits, int count)
 {
-    static const char pairs[] = "0001020304050607080910111213141516171819202122232425262728293031323334353637383940414243"
-                                "4445464748495051525354555657585960616263646566676869707172737475767778798081828384858687"
-                                "888990919293949596979899";
+    static const char pairs[] = "0001020304050607080910111213141516171819"
+                                "2021222324252627282930313233343536373839"
+                                "4041424344454647484950515253545556575859"
+                                "6061626364656667686970717273747576777879"
+                                "8081828384858687888990919293949596979899";
     while (count > 0) {
         uint32_t eight = (uint32_t)(digits % 100000000);
         const int first = count > 8 ? count - 8 : 0;
@@ -326,7 +328,7 @@ static inline double digits_read(const char *text, char **end)
             continue;
         }
         digits = 10 * digits + (uint64_t)(*p - '0');
-        significant += digits != 0;
+        significant += significant != 0 || *p != '0';
         exponent -= point;
         if (++read > 400 || significant > 19)
             return strtod(text, end);
