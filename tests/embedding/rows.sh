@@ -110,7 +110,8 @@ full() {
     ./run "$@" >/dev/full 2>log
     status=$?
     echo "status $status, expected 1" >>log
-    [ $status -eq 1 ] && [ "$(head -n 1 log)" = 'rows: error: cannot write to standard output: No space left on device' ]
+    [ $status -eq 1 ] &&
+        [ "$(head -n 1 log)" = 'rows: error: cannot write to standard output: No space left on device' ]
     result $? "nothing can be written: $title"
 }
 if [ -c /dev/full ]; then
