@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The border: exact and enclosed numbers become the target's numbers here, and these and rationals become text. */
 #include "base/base.h"
+#include "host/digits.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -11,10 +12,9 @@ struct range {
 	const char *name;
 	int bits;
 	mpfr_exp_t least, most;         /* of the smallest subnormal number, of the largest number */
-	int digits;                     /* that always read back */
 };
-static const struct range range_of_double = { "double", 53, -1073, 1024, 17 },
-			  range_of_float = { "float", 24, -148, 128, 9 };
+static const struct range range_of_double = { "double", 53, -1073, 1024 },
+			  range_of_float = { "float", 24, -148, 128 };
 static const struct range *target = &range_of_double;
 
 void target_float(void)
@@ -124,37 +124,11 @@ bool round_bits(mpfi_srcptr x, int bits, mpz_ptr digits, long *exponent)
 	return decided;
 }
 
-static bool reads_back(const char *text, double d)
-{
-	return target == &range_of_float ? strtof(text, NULL) == (float)d : strtod(text, NULL) == d;
-}
-
-static bool digits_do(double d, int digits, char text[static 64])
-{
-	snprintf(text, 64, "%.*g", digits, d);
-	return digits == target->digits || reads_back(text, d);
-}
-
-/* What rounds to d lies around it as far below as above, except at a power of two: so where some digits do, more do. */
-static int fewest_digits(double d, char text[static 64])
-{
-	enum { COMPUTED = 2 };          /* almost all that is computed takes the last two */
-	int exponent, least = 1, most = target->digits;
-	bool alike = fabs(frexp(d, &exponent)) != 0.5;
-	while (least < most) {
-		int middle = !alike ? least : most == target->digits && least == 1 ? most - COMPUTED : (least + most) / 2;
-		if (digits_do(d, middle, text))
-			most = middle;
-		else
-			least = middle + 1;
-	}
-	return least;
-}
-
 const char *shortest(double d)
 {
-	char text[64];
-	digits_do(d, fewest_digits(d, text), text);
+	char text[32];
+	text[0] = '-';
+	*digits_text(text + (signbit(d) != 0), digits_shortest(d, target == &range_of_float), 0) = 0;
 	char *exponent = strchr(text, 'e');
 	if (!exponent)
 		return strchr(text, '.') ? format("%s", text) : format("%s.0", text);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT-0 */
-/* A driver for hosts: runs one model and writes its outputs as CSV.
+/* A driver for hosts: runs one model and writes its outputs as CSV, or as they are.
  *
  *     cc -Iruntime runtime/host/plmain.c model_pl.c runtime/turns.c ... -DMODEL=scs -o m
  *     ./m 30 < inputs.csv > out.csv
@@ -7,12 +7,17 @@
  * A model made with --real float is compiled with -DFLOAT too.  Tunable params, and the step, take other values on the
  * command line: ./m 30 k2=60 step=0.005.
  *
- * One row at every step k*h <= T, from t = 0 on.  A model with inputs reads a record of them from standard input: rows
+ * One row at every step k*h <= T, from t = 0 on: t and the outputs, in as few digits as read back the same.  --raw: the
+ * same numbers as binary in the machine's order of bytes, doubles or with -DFLOAT floats, without the line of names.
+ *
+ * A model with inputs reads a record of them from standard input: rows
  * of as many numbers as inputs, separated by commas; a first line that gives the inputs' names may precede them.  Row
  * k, the first being row 0, is the sample at k h: of an input that is held it acts from k h to (k + 1) h, one with
  * `hold first` goes straight from it to row k + 1.  So n steps take n rows, and where an input is a ramp n + 1. A run
  * that leaves the finite numbers ends there, with exit status 1 and the rows before it written. */
 #include "plrt.h"
+#include "digits.h"
+#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -26,11 +31,11 @@
 #ifdef FLOAT
 typedef float real;
 typedef pl_modelf descriptor;
-enum { SHORT_DIGITS = 6, DIGITS = 9, BITS = 24 };
+enum { PLACES = 6, BITS = 24 };
 #else
 typedef double real;
 typedef pl_model descriptor;
-enum { SHORT_DIGITS = 15, DIGITS = 17, BITS = 53 };
+enum { PLACES = 15, BITS = 53 };
 #endif
 
 extern const descriptor DESCRIPTOR(MODEL);
@@ -62,15 +67,35 @@ static void *need(void *memory)
     return memory;
 }
 
-/* With as few digits as read back the same: SHORT_DIGITS are never too many. */
+static void fail_write(void)
+{
+    fprintf(stderr, "%s: error: cannot write to standard output", model->name);
+    if (errno != 0)
+        fprintf(stderr, ": %s", strerror(errno));
+    fprintf(stderr, "\n");
+    exit(1);
+}
+
+/* ---- numbers as text ---- */
+
+enum { LONGEST = 26 }; /* characters of a number, its sign and a comma */
+
+/* In as few digits as read back the same; returns the end, no NUL */
+static char *put_shortest(char *to, real value)
+{
+    if (value - value != 0)
+        return to + sprintf(to, "%g", (double)value);
+    if (value < 0 || (value == 0 && 1 / value < 0)) {
+        *to++ = '-';
+        value = -value;
+    }
+    return digits_text(to, digits_shortest((double)value, sizeof value == sizeof(float)), PLACES);
+}
+
 static void print_shortest(FILE *to, real value)
 {
-    char text[40];
-    int digits = SHORT_DIGITS;
-    do
-        sprintf(text, "%.*g", digits, (double)value);
-    while ((real)strtod(text, NULL) != value && digits++ < DIGITS);
-    fputs(text, to);
+    char text[LONGEST];
+    fwrite(text, 1, (size_t)(put_shortest(text, value) - text), to);
 }
 
 /* ---- the samples on standard input ---- */
@@ -194,7 +219,7 @@ static int read_sample(samples *in, real *u)
     p = in->line;
     for (i = 0; i < model->inputs; i++) {
         p = skip_blanks(p);
-        u[i] = (real)strtod(p, &end);
+        u[i] = (real)digits_read(p, &end);
         if (end == p)
             bad_input(in, (size_t)(p - in->line), "expected a number");
         if (u[i] - u[i] != 0)
@@ -219,16 +244,43 @@ static void print_header(void)
     printf("\n");
 }
 
-static void print_row(const void *state, real *out)
+/* t and the outputs, and their text */
+typedef struct row {
+    real *value;
+    char *text;
+    int raw;
+} row;
+
+static row new_row(int raw)
 {
+    const size_t columns = (size_t)model->outputs + 1;
+    row r;
+    r.value = (real *)need(malloc(columns * sizeof *r.value));
+    r.text = (char *)need(malloc(columns * LONGEST));
+    r.raw = raw;
+    return r;
+}
+
+static void write_row(const row *r, const void *state)
+{
+    size_t written, length;
+    char *end = r->text;
     int i;
-    model->out(state, out);
-    print_shortest(stdout, model->time(state));
-    for (i = 0; i < model->outputs; i++)
-        printf(",%.*g", DIGITS, (double)out[i]);
-    printf("\n");
-    if (ferror(stdout))
-        fail("cannot write to standard output");
+    r->value[0] = model->time(state);
+    model->out(state, r->value + 1);
+    if (r->raw) {
+        length = (size_t)(model->outputs + 1) * sizeof *r->value;
+        written = fwrite(r->value, 1, length, stdout);
+    } else {
+        for (i = 0; i <= model->outputs; i++) {
+            end = put_shortest(end, r->value[i]);
+            *end++ = i < model->outputs ? ',' : '\n';
+        }
+        length = (size_t)(end - r->text);
+        written = fwrite(r->text, 1, length, stdout);
+    }
+    if (written != length)
+        fail_write();
 }
 
 /* After a step: what a model has a status for ends the run, at the time that the step led to. */
@@ -238,7 +290,7 @@ static void check_status(const void *state)
     if (status == 0)
         return;
     if (fflush(stdout) != 0)
-        fail("cannot write to standard output");
+        fail_write();
     fprintf(stderr, "%s: error: t = ", model->name);
     print_shortest(stderr, model->time(state));
     fprintf(stderr, ":");
@@ -268,7 +320,7 @@ static uint64_t steps_until(double end, double h)
 static void usage(const char *program)
 {
     int i;
-    fprintf(stderr, "usage: %s T%s %s> out.csv\n    T: time of the end [s]; the step is ", program,
+    fprintf(stderr, "usage: %s [--raw] T%s %s> out.csv\n    T: time of the end [s]; the step is ", program,
             model->retune != NULL ? " [NAME=VALUE ...]" : "", model->inputs > 0 ? "< inputs.csv " : "");
     print_shortest(stderr, model->h);
     fprintf(stderr, " s\n");
@@ -346,36 +398,36 @@ static void retune(void *state, const real *params, real h)
 }
 
 /* u for step k: of inputs that are held from the row before, of ramps from the one read now, where there are any */
-static void next_sample(samples *in, real *row, real *u, uint64_t k, uint64_t steps, double h)
+static void next_sample(samples *in, real *sample, real *u, uint64_t k, uint64_t steps, double h)
 {
     const int ramps = has_ramps();
     int i;
     for (i = 0; i < model->inputs; i++)
-        u[i] = row[i];
-    if (!read_sample(in, row))
+        u[i] = sample[i];
+    if (!read_sample(in, sample))
         too_few(in, ramps ? k + 1 : k, steps, h);
     for (i = 0; i < model->inputs; i++)
         if (!ramps || model->start_samples[i] > 0)
-            u[i] = row[i];
+            u[i] = sample[i];
 }
 
 /* The names, and what ramps start from */
-static void begin_samples(samples *in, void *state, real *row, uint64_t steps, double h)
+static void begin_samples(samples *in, void *state, real *sample, uint64_t steps, double h)
 {
     read_header(in);
     if (!has_ramps())
         return;
-    if (!read_sample(in, row))
+    if (!read_sample(in, sample))
         too_few(in, 0, steps, h);
-    model->hold(state, row);
+    model->hold(state, sample);
 }
 
-static void run(double end, int count, char **text, const char *program)
+static void run(double end, int raw, int count, char **text, const char *program)
 {
     void *state = need(malloc(model->size));
-    real *out = (real *)need(malloc(sizeof *out * (size_t)(model->outputs + 1)));
+    row r = new_row(raw);
     real *u = (real *)need(malloc(sizeof *u * (size_t)(model->inputs + 1)));
-    real *row = (real *)need(calloc((size_t)(model->inputs + 1), sizeof *row));
+    real *sample = (real *)need(calloc((size_t)(model->inputs + 1), sizeof *sample));
     real *params = (real *)need(malloc(sizeof *params * (size_t)(model->params + 1)));
     samples in = {NULL, 256, 0, 0, 0};
     real h;
@@ -388,31 +440,46 @@ static void run(double end, int count, char **text, const char *program)
         retune(state, params, h);
     steps = steps_until(end, (double)h);
     if (rows_for(steps) > 0 && model->inputs > 0)
-        begin_samples(&in, state, row, steps, (double)h);
-    print_header();
-    print_row(state, out);
+        begin_samples(&in, state, sample, steps, (double)h);
+    if (!raw)
+        print_header();
+    write_row(&r, state);
     for (k = 0; k < steps; k++) {
         if (model->inputs > 0)
-            next_sample(&in, row, u, k, steps, (double)h);
+            next_sample(&in, sample, u, k, steps, (double)h);
         model->step(state, model->inputs > 0 ? u : NULL);
         check_status(state);
-        print_row(state, out);
+        write_row(&r, state);
     }
     free(in.line);
     free(params);
-    free(row);
+    free(sample);
     free(u);
-    free(out);
+    free(r.text);
+    free(r.value);
     free(state);
+}
+
+/* Is --raw among the arguments?  It goes from them. */
+static int take_raw(int *argc, char **argv)
+{
+    int i, kept = 1;
+    for (i = 1; i < *argc; i++)
+        if (strcmp(argv[i], "--raw") != 0)
+            argv[kept++] = argv[i];
+    i = *argc > kept;
+    *argc = kept < *argc ? kept : *argc;
+    return i;
 }
 
 int main(int argc, char **argv)
 {
+    const int raw = take_raw(&argc, argv);
     double end;
     check_type();
     end = end_of_run(argc, argv);
-    run(end, argc - 2, argv + 2, argv[0]);
-    if (fclose(stdout) != 0)
-        fail("cannot write to standard output");
+    run(end, raw, argc - 2, argv + 2, argv[0]);
+    if (ferror(stdout) || fclose(stdout) != 0)
+        fail_write();
     return 0;
 }

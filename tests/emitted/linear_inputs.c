@@ -268,12 +268,22 @@ static void by_gamma(const struct subject *s, const struct reference *r)
     free_floats(E, SIZE * SIZE);
 }
 
+/* By printf and strtod: 15 digits are never too many */
+static void print_shortest(double value, const char *before)
+{
+    char text[40];
+    int digits = 15;
+    do
+        snprintf(text, sizeof text, "%.*g", digits, value);
+    while (strtod(text, NULL) != value && digits++ < 17);
+    printf("%s%s", before, text);
+}
+
 /* Row k is the sample at k h: held over step k, or where a ramp starts it. */
 static void expected_rows(const pl_model *m, int n, double (*u)[2])
 {
     void *state = calloc(1, m->size);
     double out[OUTPUTS], now[2];
-    char t[40];
     printf("t");
     for (int i = 0; i < m->outputs; i++)
         printf(",%s", m->output_names[i]);
@@ -283,14 +293,9 @@ static void expected_rows(const pl_model *m, int n, double (*u)[2])
         m->hold(state, u[0]);
     for (int k = 0; k <= n; k++) {
         m->out(state, out);
-        for (int digits = 1; digits <= 17; digits++) {
-            snprintf(t, sizeof t, "%.*g", digits, m->time(state));
-            if (strtod(t, NULL) == m->time(state) && strchr(t, 'e') == NULL)
-                break;
-        }
-        printf("%s", t);
+        print_shortest(m->time(state), "");
         for (int i = 0; i < m->outputs; i++)
-            printf(",%.17g", out[i]);
+            print_shortest(out[i], ",");
         printf("\n");
         for (int i = 0; i < 2; i++)
             now[i] = u[k + m->start_samples[i]][i];

@@ -214,17 +214,14 @@ static int digits_of(const char *text)
     return digits - zeros;
 }
 
-/* A decimal of so many digits, the nearest or one beside it, that reads back as d; NULL: there is none. At powers of
- * two, below which numbers lie closer, one farther off may read back: only the nearest is looked for there. */
+/* A decimal of so many digits, the nearest or one beside it, that reads back as d; NULL: there is none */
 static const char *shorter_text(double d, int digits)
 {
-    int exponent;
-    bool power = fabs(frexp(d, &exponent)) == 0.5;
     char text[64];
     if (digits < 1)
         return NULL;
     snprintf(text, sizeof text, "%.*e", digits - 1, d);
-    for (long step = power ? 0 : -1; step <= (power ? 0 : 1); step++) {
+    for (long step = -1; step <= 1; step++) {
         char *e = strchr(text, 'e'), mantissa[64] = "";
         for (const char *at = text; at < e; at++)
             if (*at != '.')
