@@ -67,6 +67,8 @@ static double *whole_of(const struct region_piece *piece)  { return piece->whole
 static double *off_of(const struct region_piece *piece)    { return piece->off; }
 static double *still_of(const struct region_piece *piece)  { return piece->still; }
 static double *slack_of(const struct region_piece *piece)  { return piece->slack; }
+static double *turn_of(const struct region_piece *piece)   { return piece->turn; }
+static double *bend_of(const struct region_piece *piece)   { return piece->bend; }
 static double *slopes_of_x(const struct region_piece *piece) { return piece->slopes; }
 
 static struct tables still_tables(const struct emitter *e, const struct pieces *p)
@@ -169,9 +171,14 @@ void emit_swift_tables(const struct emitter *e, const struct pieces *p, const ch
 	int n = expressions_of(e);
 	struct tables whole = tables_of_pieces(e, p, "", e->step->layout.size, whole_of),
 		      off = tables_of_pieces(e, p, "", n, off_of), slack = tables_of_pieces(e, p, "", n, slack_of);
-	if (any_pieces(e))
+	if (any_pieces(e)) {
+		struct tables turn = tables_of_pieces(e, p, "", n, turn_of),
+			      bend = tables_of_pieces(e, p, "", n, bend_of);
 		emit_of_each(e, &whole, "whole", "e^{A h}",
 			     layout_names(&e->step->layout, e->system, e->model));
+		emit_of_each(e, &turn, "whole_lean", "lean over h", expression);
+		emit_of_each(e, &bend, "whole_sway", "sway over h", expression);
+	}
 	emit_of_each(e, &off, "off", "times |x|: how far each expression is off its chord over h, at most", expression);
 	emit_still(e, p);
 	emit_of_each(e, &slack, "slack", "times |x|: what h e' is off the slope of its polynomial, at most",
@@ -296,33 +303,58 @@ static void emit_polynomials(const struct emitter *e, const struct pieces *p)
 	    terms, size, size, size, size, size, terms - 2, terms - 1, terms - 4, size, size);
 }
 
+/* sum of |g[k + 2]| r^k, of k + 2 times that for `slopes`; lines of a function */
+static void emit_sizes(const struct emitter *e, int terms, const char *sum, const char *r, bool slopes)
+{
+	const char *factor = slopes ? "(double)(k + 2) * " : "", *next = slopes ? "(double)(k + 3) * " : "";
+	say(e, "    for (k = %d; k >= 0; k -= 2) {\n"
+	       "        even = even * (%s * %s) + %spl_magnitude(g[k + 2]);\n"
+	       "        odd = odd * (%s * %s) + %spl_magnitude(g[k + 3]);\n"
+	       "    }\n"
+	       "    %s = even + %s * odd;\n",
+	    terms - 4, r, r, factor, r, r, next, sum, r);
+}
+
 static void emit_root(const struct emitter *e, const struct pieces *p)
 {
 	int terms = p->degree + 1;
 	say(e, "\n"
-	       "/* Where g rises through 0 for 0 < s < 1; 2: that is not certain.  Its slope is above `least` all the way, so\n"
-	       " * there is one root, and |g''| below `bend`.  Two steps of Newton's method, from the inverse's series. */\n"
-	       "static double $n_root(const double g[%d], double least, double bend)\n"
+	       "/* Where g rises through 0 for 0 < s < 1 first; 2: that is not certain.  Up to `most` its slope is above `least`\n"
+	       " * by the sizes of its other coefficients, and |g''| below `bend`: there is one root.  Two steps of Newton's\n"
+	       " * method from the series of the inverse.  slack: what g' may be off by; g > 0 at 1 is known. */\n"
+	       "static double $n_root(const double g[%d], double slack)\n"
 	       "{\n"
 	       "    const double q = g[2] / g[1], w = -g[0] / g[1];\n"
-	       "    double z = w * (1.0 - q * w * (1.0 - 2.0 * q * w)), miss = 0.0;\n"
-	       "    int i, k;\n"
+	       "    const double guess = w * (1.0 - q * w * (1.0 - 2.0 * q * w)), most = guess < 0.99 ? guess + 0.01 : 1.0;\n"
+	       "    double z = guess, last = guess, miss = 0.0, even = 0.0, odd = 0.0, least, bend = 0.0;\n"
+	       "    int i, k;\n", terms);
+	emit_sizes(e, terms, "least", "most", true);
+	say(e, "    least = g[1] - slack - most * least;\n"
+	       "    for (k = 2; k < %d; k++)\n"
+	       "        bend += (double)(k * (k - 1)) * pl_magnitude(g[k]);\n"
 	       "    for (i = 0; i < 2; i++) {\n"
 	       "        const double zz = z * z;\n"
-	       "        double even = g[%d], odd = g[%d], even_slope = %d.0 * g[%d], odd_slope = 0.0;\n"
+	       "        double even_slope = %d.0 * g[%d], odd_slope = 0.0;\n"
+	       "        even = g[%d];\n"
+	       "        odd = g[%d];\n"
 	       "        for (k = %d; k >= 0; k -= 2) {\n"
 	       "            even = even * zz + g[k];\n"
 	       "            odd = odd * zz + g[k + 1];\n"
 	       "            even_slope = even_slope * zz + (double)(k + 1) * g[k + 1];\n"
 	       "            odd_slope = odd_slope * zz + (double)(k + 2) * g[k + 2];\n"
 	       "        }\n"
-	       "        miss = even + z * odd;  /* the root is within |miss|/least */\n"
+	       "        miss = even + z * odd;\n"
+	       "        last = z;\n"
 	       "        z -= miss / (even_slope + z * odd_slope);\n"
-	       "    }\n"
-	       "    miss *= miss;  /* and then within bend/2 of that squared, over least */\n"
-	       "    return bend * miss < least * least * least * 2.220446049250313e-16 && z > 0.0 && z < 1.0 ? z : 2.0;\n"
-	       "}\n",
-	    terms, terms - 2, terms - 1, terms - 1, terms - 1, terms - 4);
+	       "    }\n",
+	    terms, terms - 1, terms - 1, terms - 2, terms - 1, terms - 4);
+	say(e, "    if (!(least > 0.0 && last > 0.0 && last <= most && z > 0.0 && z < 1.0))\n"
+	       "        return 2.0;\n"
+	       "    if (most < 1.0 && !(least * (most - last) > -miss))\n"
+	       "        return 2.0;\n"
+	       "    /* the root is within |miss|/least of the last but one, and z within bend/(2 least) times that squared */\n"
+	       "    return bend * (miss * miss) < least * least * least * 2.220446049250313e-16 ? z : 2.0;\n"
+	       "}\n");
 }
 
 /* off[i], from x */
@@ -375,107 +407,149 @@ static const char *size_of_x(const struct emitter *e, const struct pieces *p, co
 	return tree(terms, term, indent);
 }
 
-/* The first part: which expression is passed, and where */
-static void emit_cross_search(const struct emitter *e, const struct pieces *p)
+/* Which expressions are not seen to be clear */
+static void emit_near(const struct emitter *e, const struct pieces *p)
 {
-	int size = e->step->layout.size, terms = p->degree + 1, n = expressions_of(e);
-	const char **magnitude = places(e, "pl_magnitude(x[%d])");
+	int size = e->step->layout.size, n = expressions_of(e);
+	const char *whole = any_pieces(e) ? "whole_" : "";
 	say(e, "\n"
-	       "/* The only expression that is not clear over h, and leaves its interval for good on the way: where, or 2 */\n"
-	       "static double $n_find(int region, int which, const double x[%d], double c[%d][%d], int *passed, int *up)\n"
+	       "/* How many expressions are not seen to be clear over h, from x to end; the last of them.  By chords, then by\n"
+	       " * cubics, which lie within their Bezier points */\n"
+	       "static int $n_near(int region, int which, const double x[%d], const double end[%d], int *last)\n"
 	       "{\n"
-	       "    double end[%d], off[%d], g[%d], sign, b, slack = 0.0, terms = 0.0, reach = 0.0, more = 0.0, bend = 0.0;\n"
-	       "    double from, to;\n"
-	       "    int i, k, near = 0;\n"
-	       "    $n_advance(which, x, end);\n"
+	       "    double off[%d];\n"
+	       "    int i, j, near = 0;\n"
 	       "    $n_bounds(which, x, off);\n"
-	       "    for (i = 0; i < %d; i++)\n"
-	       "        if (!$n_stays(region, i, $n_expression(i, x), $n_expression(i, end), off[i])) {\n"
-	       "            *passed = i;\n"
-	       "            near++;\n"
+	       "    for (i = 0; i < %d; i++) {\n"
+	       "        const double from = $n_expression(i, x), to = $n_expression(i, end);\n"
+	       "        double leaving = from, arriving = to, sway = 0.0;\n"
+	       "        if ($n_stays(region, i, from, to, off[i]))\n"
+	       "            continue;\n",
+	    size, size, n, n);
+	say(e, "        for (j = 0; j < %d; j++) {\n"
+	       "            leaving += $n_%slean[which][i][j] * x[j];\n"
+	       "            arriving -= $n_%slean[which][i][j] * end[j];\n"
+	       "            sway += $n_%ssway[which][i][j] * pl_magnitude(x[j]);\n"
 	       "        }\n"
-	       "    if (near != 1 || !(%s < %s))\n"
-	       "        return 2.0;\n",
-	    size, terms, size, size, n, terms, n, size_of_x(e, p, magnitude, 24), shortest(p->large));
-	say(e, "    i = *passed;\n"
-	       "    from = $n_expression(i, x);\n"
-	       "    to = $n_expression(i, end);\n"
-	       "    *up = to > $n_within[region][i][1];\n"
-	       "    sign = *up ? 1.0 : -1.0;\n"
-	       "    b = $n_within[region][i][*up];\n"
-	       "    if ($n_next[region][i][*up] < 0 || !(*up ? from > $n_within[region][i][0] : from < $n_within[region][i][1]))\n"
-	       "        return 2.0;\n"
-	       "    $n_expand(which, x, c);\n"
-	       "    for (k = 0; k < %d; k++)\n"
-	       "        g[k] = sign * $n_expression(i, c[k]);\n"
-	       "    g[0] = sign * (from - b);\n"
-	       "    for (k = 2; k < %d; k++) {\n"
-	       "        const double a = (double)k * pl_magnitude(g[k]);\n"
-	       "        reach += pl_magnitude(g[k]);\n"
-	       "        more += a;\n"
-	       "        bend += (double)(k - 1) * a;\n"
+	       "        if ($n_stays(region, i, from, to, sway) && $n_stays(region, i, leaving, arriving, sway))\n"
+	       "            continue;\n"
+	       "        *last = i;\n"
+	       "        near++;\n"
 	       "    }\n"
-	       "    for (k = 0; k < %d; k++) {\n"
-	       "        slack += $n_slack[which][i][k] * pl_magnitude(x[k]);\n"
-	       "        terms += pl_magnitude($n_row[i][k] * x[k]);\n"
-	       "    }\n"
-	       "    reach = 1.7763568394002505e-15 * (terms + pl_magnitude(b) + pl_magnitude(g[1]) + reach);\n"
-	       "    if (!(g[0] < -reach && sign * (to - b) > reach && g[1] > more + slack))\n"
-	       "        return 2.0;\n"
-	       "    return $n_root(g, g[1] - more - slack, bend);\n"
+	       "    return near;\n"
 	       "}\n",
-	    terms, terms, size);
+	    size, whole, whole, whole);
+	(void)p;
 }
 
-/* The second: what follows it crosses nothing more */
+/* Where one expression leaves its interval */
+static void emit_leaves(const struct emitter *e, const struct pieces *p)
+{
+	int size = e->step->layout.size, terms = p->degree + 1;
+	say(e, "\n"
+	       "/* Where expression i, which is `to` after h, first passes the upper or the lower end of its interval; 2: that is\n"
+	       " * not certain.  c: the coefficients of x(s) */\n"
+	       "static double $n_leaves(int region, int which, int i, int up, const double x[%d], double c[%d][%d], double to)\n"
+	       "{\n"
+	       "    const double sign = up ? 1.0 : -1.0, b = $n_within[region][i][up], from = $n_expression(i, x);\n"
+	       "    double g[%d], noise = pl_magnitude(b), slack = 0.0;\n"
+	       "    int k;\n"
+	       "    if ($n_next[region][i][up] < 0 ||\n"
+	       "        !(up ? from > $n_within[region][i][0] : from < $n_within[region][i][1]))\n"
+	       "        return 2.0;\n"
+	       "    g[0] = sign * (from - b);\n"
+	       "    for (k = 1; k < %d; k++) {\n"
+	       "        g[k] = sign * $n_expression(i, c[k]);\n"
+	       "        noise += pl_magnitude(g[k]);\n"
+	       "    }\n",
+	    size, terms, size, terms, terms);
+	say(e, "    for (k = 0; k < %d; k++) {\n"
+	       "        slack += $n_slack[which][i][k] * pl_magnitude(x[k]);\n"
+	       "        noise += pl_magnitude($n_row[i][k] * x[k]);\n"
+	       "    }\n"
+	       "    noise *= 1.7763568394002505e-15;  /* 8 DBL_EPSILON, as in the search */\n"
+	       "    return g[0] < -noise && sign * (to - b) > noise && g[1] > 0.0 ? $n_root(g, slack) : 2.0;\n"
+	       "}\n", size);
+}
+
+/* Behind a crossing */
+static void emit_moves_on(const struct emitter *e, const struct pieces *p)
+{
+	int size = e->step->layout.size, terms = p->degree + 1, n = expressions_of(e);
+	say(e, "\n"
+	       "/* Whether it is certain that nothing is passed from x on over h times `rest`: not what was passed just now, since\n"
+	       " * (e - b)/s stays beside 0, and nothing else.  c: the coefficients of x(s) */\n"
+	       "static int $n_moves_on(int region, int which, int passed, int up, const double x[%d], double c[%d][%d],\n"
+	       "                       double rest, const double end[%d])\n"
+	       "{\n"
+	       "    double g[%d], off[%d], slack = 0.0, even = 0.0, odd = 0.0, more;\n"
+	       "    int i, k;\n"
+	       "    for (k = 1; k < %d; k++)\n"
+	       "        g[k] = $n_expression(passed, c[k]);\n"
+	       "    for (k = 0; k < %d; k++)\n"
+	       "        slack += $n_slack[which][passed][k] * pl_magnitude(x[k]);\n",
+	    size, terms, size, size, terms, n, terms, size);
+	emit_sizes(e, terms, "more", "rest", false);
+	say(e, "    if (!((up ? g[1] : -g[1]) > rest * more + slack))\n"
+	       "        return 0;\n"
+	       "    $n_bounds(which, x, off);\n"
+	       "    for (i = 0; i < %d; i++) {\n"
+	       "        const double from = $n_expression(i, x), to = $n_expression(i, end), sag = off[i] * (rest * rest);\n"
+	       "        if (i == passed ? !(up ? (from > to ? from : to) + sag < $n_within[region][i][1]\n"
+	       "                               : (from < to ? from : to) - sag > $n_within[region][i][0])\n"
+	       "                        : !$n_stays(region, i, from, to, sag))\n"
+	       "            return 0;\n"
+	       "    }\n"
+	       "    return %s < %s;\n"
+	       "}\n",
+	    n, size_of_x(e, p, places(e, "pl_magnitude(end[%d])"), 12), shortest(p->large));
+}
+
 static void emit_cross(const struct emitter *e, const struct pieces *p)
 {
-	int size = e->step->layout.size, terms = p->degree + 1, n = expressions_of(e), states = e->system->states;
+	int size = e->step->layout.size, terms = p->degree + 1;
 	say(e, "\n"
-	       "/* x over h where it is certain that one breakpoint is passed and once: 1.  Else 0, and nothing has changed. */\n"
+	       "/* x over h where it is certain that nothing is passed, or one breakpoint once: 1.  Else 0, and nothing has\n"
+	       " * changed. */\n"
 	       "static int $n_cross($n *s, double x[%d])\n"
 	       "{\n"
-	       "    double c[%d][%d], y[%d], end[%d], off[%d], z, slope, more = 0.0, slack = 0.0;\n"
-	       "    int i, k, passed = 0, up = 0, next, which, clear = 1;\n"
-	       "    z = $n_find(s->contact.region, s->contact.matrix, x, c, &passed, &up);\n"
-	       "    if (z > 1.0)\n"
+	       "    const int region = s->contact.region, which = s->contact.matrix;\n"
+	       "    double c[%d][%d], y[%d], end[%d], z, to;\n"
+	       "    int i, passed = 0, up, next, near;\n"
+	       "    if (!(%s < %s))\n"
 	       "        return 0;\n"
-	       "    $n_sum_up(c, z, y);\n"
-	       "    next = $n_next[s->contact.region][passed][up];\n"
-	       "    which = $n_matrix[next];\n"
-	       "    $n_expand(which, y, c);\n"
-	       "    $n_sum_up(c, 1.0 - z, end);\n"
-	       "    $n_bounds(which, y, off);\n",
-	    size, terms, size, size, size, n);
-	say(e, "    for (k = 2; k < %d; k++)\n"
-	       "        more += (double)k * pl_magnitude($n_expression(passed, c[k]));\n"
-	       "    for (k = 0; k < %d; k++)\n"
-	       "        slack += $n_slack[which][passed][k] * pl_magnitude(y[k]);\n"
-	       "    slope = $n_expression(passed, c[1]);\n"
-	       "    clear = (up ? slope : -slope) > more + slack;  /* it moves on */\n"
-	       "    for (i = 0; i < %d; i++) {\n"
-	       "        const double to = $n_expression(i, end);\n"
-	       "        if (i == passed)\n"
-	       "            clear = clear && (up ? to < $n_within[next][i][1] : to > $n_within[next][i][0]);\n"
-	       "        else\n"
-	       "            clear = clear && $n_stays(next, i, $n_expression(i, y), to, off[i]);\n"
-	       "    }\n"
-	       "    if (!clear || !(%s < %s))\n"
+	       "    $n_advance(which, x, end);\n"
+	       "    near = $n_near(region, which, x, end, &passed);\n"
+	       "    if (near > 1)\n"
 	       "        return 0;\n",
-	    terms, size, n, size_of_x(e, p, places(e, "pl_magnitude(end[%d])"), 24), shortest(p->large));
-	say(e, "    s->crossing[0].time = z * $N_H;\n"
-	       "    s->crossing[0].expression = passed;\n"
-	       "    s->crossing[0].breakpoint = next / $n_stride[passed] %% ($n_breaks[passed] + 1) - up;\n"
-	       "    s->crossing[0].upward = up;\n"
-	       "    s->contact.crossings = 1;\n"
-	       "    s->contact.total++;\n"
-	       "    s->contact.region = next;\n"
-	       "    s->contact.matrix = which;\n"
+	    size, terms, size, size, size, size_of_x(e, p, places(e, "pl_magnitude(x[%d])"), 10),
+	    shortest(p->large));
+	say(e, "    if (near) {\n"
+	       "        to = $n_expression(passed, end);\n"
+	       "        up = to > $n_within[region][passed][1];\n"
+	       "        $n_expand(which, x, c);\n"
+	       "        z = $n_leaves(region, which, passed, up, x, c, to);\n"
+	       "        if (z > 1.0)\n"
+	       "            return 0;\n"
+	       "        $n_sum_up(c, z, y);\n"
+	       "        next = $n_next[region][passed][up];\n"
+	       "        $n_expand($n_matrix[next], y, c);\n"
+	       "        $n_sum_up(c, 1.0 - z, end);\n"
+	       "        if (!$n_moves_on(next, $n_matrix[next], passed, up, y, c, 1.0 - z, end))\n"
+	       "            return 0;\n");
+	say(e, "        s->crossing[0].time = z * $N_H;\n"
+	       "        s->crossing[0].expression = passed;\n"
+	       "        s->crossing[0].breakpoint = next / $n_stride[passed] %% ($n_breaks[passed] + 1) - up;\n"
+	       "        s->crossing[0].upward = up;\n"
+	       "        s->contact.total++;\n"
+	       "        s->contact.region = next;\n"
+	       "        s->contact.matrix = $n_matrix[next];\n"
+	       "    }\n"
+	       "    s->contact.crossings = near;\n"
 	       "    for (i = 0; i < %d; i++)\n"
 	       "        x[i] = end[i];\n"
 	       "    return 1;\n"
-	       "}\n",
-	    states);
+	       "}\n", e->system->states);
 }
 
 void emit_swift_functions(const struct emitter *e)
@@ -487,7 +561,9 @@ void emit_swift_functions(const struct emitter *e)
 	emit_root(e, &pieces);
 	emit_bounds(e, &pieces);
 	emit_whole(e, &pieces);
-	emit_cross_search(e, &pieces);
+	emit_near(e, &pieces);
+	emit_leaves(e, &pieces);
+	emit_moves_on(e, &pieces);
 	emit_cross(e, &pieces);
 }
 

@@ -331,6 +331,8 @@ static void fill_whole(const struct step *step, const struct pieces *pieces, int
 	struct growth growth = growth_of(size, piece->slopes, h);
 	piece->whole = Phi_of(step, step->branch[branch].whole, 0);
 	piece->off = bound_rows(step, pieces, piece->slopes, &growth, 2, h * h / 8);
+	piece->turn = slope_rows(step, pieces, piece->slopes, h / 3);
+	piece->bend = bound_rows(step, pieces, piece->slopes, &growth, 4, h * h * h * h / 384);
 	piece->still = ARRAY(double, (size_t)expressions);
 	for (int i = 0; i < expressions; i++)
 		fold_loads(step, piece->off + i * size, &piece->still[i]);

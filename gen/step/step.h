@@ -352,8 +352,9 @@ struct region_piece {               /* of a branch, d = h 2^-halvings long; x as
 	double *second, *fourth;    /* second . |x(0)|, fourth . |x(0)| bound, on 0 .. d, d^2/8 times the second and */
 				    /* d^4/384 times the fourth derivative of each; expressions x size */
 	/* Where a step is swift: e^{A h}; over h, each expression is off its chord by at most off . |x(0)| + still, and
-	 * its slope off that of its Taylor polynomial by at most slack . |x(0)| / h */
-	double *whole, *off, *still, *slack;
+	 * its slope off that of its Taylor polynomial by at most slack . |x(0)| / h; turn and bend are slope and fourth
+	 * over h */
+	double *whole, *off, *still, *slack, *turn, *bend;
 };
 struct pieces {
 	double *row;                /* of each expression: row . x, expressions x size */
