@@ -338,6 +338,31 @@ void pl_multiplyf(int rows, int columns, const float *table, const float *x, flo
 void pl_multiplyf_add(int rows, int columns, const float *table, const float *x, float *y);
 int pl_not_finitef(const float *y, int n);
 
+/* |a| */
+static inline double pl_magnitude(double a)
+{
+#ifdef __GNUC__
+    return __builtin_fabs(a);
+#else
+    return a < 0.0 ? -a : a;
+#endif
+}
+static inline float pl_magnitudef(float a)
+{
+#ifdef __GNUC__
+    return __builtin_fabsf(a);
+#else
+    return a < 0 ? -a : a;
+#endif
+}
+
+/* Of a function that is called rarely: apart from its caller, which is not to keep registers for it */
+#ifdef __GNUC__
+#define PL_APART __attribute__((noinline))
+#else
+#define PL_APART
+#endif
+
 /* ---- crossings.c: piecewise-linear models ------------------------------------------------------------------- */
 
 /* x' = A x with another constant A in each region.  x holds the model's own states, then what carries its loads (1, t,

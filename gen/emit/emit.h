@@ -250,6 +250,10 @@ void emit_region_members(const struct emitter *e);
 void emit_region_start(const struct emitter *e);                  /* in set */
 void emit_region_step(const struct emitter *e);
 void emit_region_at(const struct emitter *e);
+/* emit_swift.c: of a step that is swift; `expression`: names */
+void emit_swift_tables(const struct emitter *e, const struct pieces *p, const char *const *expression);
+void emit_swift_functions(const struct emitter *e);               /* NAME_cross and what it calls */
+void emit_swift_step(const struct emitter *e);                    /* states and loads are in locals */
 /* Of models with tunable params: */
 void emit_coefficient_struct(const struct emitter *e);
 void emit_tuning_declarations(const struct emitter *e);

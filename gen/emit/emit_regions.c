@@ -119,6 +119,8 @@ void emit_regions(const struct emitter *e)
 	for (size_t i = 0; i < sizeof all / sizeof *all; i++)
 		emit_matrices(e, &pieces, &all[i]);
 	emit_switching(e);
+	if (e->step->swift)
+		emit_swift_tables(e, &pieces, expression);
 }
 
 /* ---- in the model's own functions ---- */
@@ -218,24 +220,79 @@ static void emit_region_questions(const struct emitter *e)
 	       "}\n");
 }
 
-void emit_region_step(const struct emitter *e)
+/* By the search, from x; `i` is declared */
+static void emit_search(const struct emitter *e)
 {
-	say(e, "\n"
-	       "void $n_step(%s)\n"
-	       "{\n"
-	       "    int i;\n",
-	    step_parameters(e));
+	say(e, "    pl_switching_step(&$n_switching, x, &s->contact, s->crossing, work);\n"
+	       "    for (i = 0; i < $N_STATES; i++)\n"
+	       "        s->y[i] = x[i];\n");
+}
+
+static void emit_status(const struct emitter *e)
+{
+	say(e, "    s->status |= s->contact.status | pl_not_finite(s->y, $N_STATES);\n");
+}
+
+static void emit_searched_step(const struct emitter *e)
+{
+	say(e, "    int i;\n");
 	declare_room(e);
 	emit_set_aside(e);
 	emit_load_states(e, needed_loads(e), false);
 	emit_x(e, true);
-	say(e, "    pl_switching_step(&$n_switching, x, &s->contact, s->crossing, work);\n"
-	       "    for (i = 0; i < $N_STATES; i++)\n"
-	       "        s->y[i] = x[i];\n");
+	emit_search(e);
 	emit_take_back(e);
 	emit_step_end(e);
-	say(e, "    s->status |= s->contact.status | pl_not_finite(s->y, $N_STATES);\n"
-	       "}\n");
+	emit_status(e);
+}
+
+/* What is not seen to be clear: one crossing, or a search */
+static void emit_pass_of_step(const struct emitter *e)
+{
+	int size = e->step->layout.size;
+	emit_swift_functions(e);
+	say(e, "\n"
+	       "static PL_APART void $n_pass($n *s, double x[%d])\n"
+	       "{\n"
+	       "    double work[PL_SWITCHING_WORK(%d, %d, %d)];\n"
+	       "    int i;\n"
+	       "    if ($n_cross(s, x)) {\n"
+	       "        for (i = 0; i < $N_STATES; i++)\n"
+	       "            s->y[i] = x[i];\n"
+	       "        return;\n"
+	       "    }\n",
+	    size, size, regions_of(e)->expressions, e->step->series.degree);
+	emit_search(e);
+	emit_status(e);
+	say(e, "}\n");
+}
+
+static void emit_whole_step(const struct emitter *e)
+{
+	bool *all = ARRAY(bool, (size_t)e->system->states);
+	for (int i = 0; i < e->system->states; i++)
+		all[i] = true;
+	emit_set_aside(e);
+	emit_raw_locals(e, all, false);
+	emit_load_states(e, needed_loads(e), false);
+	emit_swift_step(e);
+	emit_take_back(e);
+	emit_step_end(e);
+}
+
+void emit_region_step(const struct emitter *e)
+{
+	if (e->step->swift)
+		emit_pass_of_step(e);
+	say(e, "\n"
+	       "void $n_step(%s)\n"
+	       "{\n",
+	    step_parameters(e));
+	if (e->step->swift)
+		emit_whole_step(e);
+	else
+		emit_searched_step(e);
+	say(e, "}\n");
 	emit_region_questions(e);
 }
 

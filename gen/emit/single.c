@@ -18,6 +18,7 @@ static const struct name { const char *name, *stem; bool called; } names[] = {
 	{ "pl_two", "pl_two", false }, { "pl_power_apply", "pl_power", false }, { "pl_until", "pl_until", false },
 	{ "pl_accumulate", "pl_accumulate", false }, { "pl_multiply", "pl_multiply", false },
 	{ "pl_multiply_add", "pl_multiply", false }, { "pl_not_finite", "pl_not_finite", false },
+	{ "pl_magnitude", "pl_magnitude", false },
 	{ "pl_term", "pl_term", false }, { "pl_equations", "pl_equations", false },
 	{ "pl_equations_at", "pl_equations", false }, { "pl_increment", "pl_increment", false },
 	{ "pl_ramp_before", "pl_ramp", false }, { "pl_ramp_cancels", "pl_ramp", false },

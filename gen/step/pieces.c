@@ -67,13 +67,13 @@ static void fill_state_rows(const struct step *step, const struct table *table, 
 	}
 }
 
-static double *Phi_of(const struct step *step, int branch)
+/* Over h 2^-halvings, from its table */
+static double *Phi_of(const struct step *step, const struct table *table, int halvings)
 {
-	const struct table *table = step->branch[branch].table[0];
 	double *Phi = ARRAY(double, (size_t)step->layout.size * (size_t)step->layout.size);
 	mpq_t d;
 	mpq_init(d);
-	mpq_div_2exp(d, step->model->h, (mp_bitcnt_t)step->branch[branch].halvings);
+	mpq_div_2exp(d, step->model->h, (mp_bitcnt_t)halvings);
 	fill_state_rows(step, table, Phi);
 	fill_inputs(step, table, Phi);
 	fill_load_states(step, d, Phi);
@@ -238,15 +238,156 @@ static void fill_bounds(const struct step *step, const struct pieces *pieces, in
 	discard(growth.most);
 }
 
+/* ---- a step over the whole of h, which most often is seen in a line to stay clear ---- */
+
+/* The least and the largest that each expression may be: region by region, expressions of each */
+static void fill_intervals(const struct step *step, struct pieces *pieces)
+{
+	const struct switching *s = step->model->switching;
+	size_t cells = (size_t)s->regions * (size_t)s->expressions;
+	double open = step->model->asked.single ? 0x1p120 : 0x1p1000;
+	pieces->low = ARRAY(double, cells);
+	pieces->high = ARRAY(double, cells);
+	for (int r = 0; r < s->regions; r++)
+		for (int i = 0, first = 0; i < s->expressions; first += s->expression[i++].breaks) {
+			int interval = interval_of(s, r, i), cell = r * s->expressions + i;
+			const double *at = pieces->breakpoint + first + interval;
+			pieces->low[cell] = interval > 0 ? at[-1] : -open;
+			pieces->high[cell] = interval < s->expression[i].breaks ? at[0] : open;
+		}
+}
+
+/* 1, or cos and sin of one angle: never above 1 */
+static bool is_bounded(const struct step *step, int load)
+{
+	const struct load *l = &step->branch->system.load[load];
+	return step->layout.load[load] >= 0 && l->powers == 1 && mpq_sgn(l->wave->a) == 0;
+}
+
+static bool *bounded_entries(const struct step *step)
+{
+	bool *bounded = ARRAY(bool, (size_t)step->layout.size);
+	for (int l = 0; l < step->branch->system.loads; l++)
+		for (int k = 0; k < step->branch->system.load[l].columns && is_bounded(step, l); k++)
+			bounded[step->layout.load[l] + k] = true;
+	return bounded;
+}
+
+/* What such loads add to a bound is a number: it goes to `still`, and their places become 0. */
+static void fold_loads(const struct step *step, double *bound, double *still)
+{
+	for (int l = 0; l < step->branch->system.loads; l++) {
+		const struct load *load = &step->branch->system.load[l];
+		double *at = bound + step->layout.load[l];
+		if (!is_bounded(step, l))
+			continue;
+		*still += load->columns == 2 ? hypot(at[0], at[1]) : at[0];
+		for (int k = 0; k < load->columns; k++)
+			at[k] = 0;
+	}
+	*still *= step->model->asked.single ? 1 + ldexp(1, -22) : 1 + 1e-9;
+}
+
+/* |e'|/h of what a Taylor polynomial of this degree leaves out of it over 0 .. h, and what rounding may add to its
+ * terms, whose chains are as long as their order */
+static void add_slack(int size, const double *A, double h, int degree, double epsilon, double *term, double *slack)
+{
+	enum { FURTHER = 40 };
+	double *next = ARRAY(double, (size_t)size);
+	for (int k = 1; k <= degree + FURTHER; k++) {
+		for (int j = 0; j < size; j++) {
+			next[j] = 0;
+			for (int m = 0; m < size; m++)
+				next[j] += term[m] * fabs(A[m * size + j]) * h / k;
+		}
+		for (int j = 0; j < size; j++) {
+			double part = k > degree ? 1 : epsilon * (k + 1) * (size + 2);
+			slack[j] += part * k * next[j] * (1 + 1e-9);
+			term[j] = next[j];
+		}
+	}
+	discard(next);
+}
+
+static double *slack_rows(const struct step *step, const struct pieces *pieces, const double *A)
+{
+	int size = step->layout.size, expressions = step->model->switching->expressions;
+	double *slack = ARRAY(double, (size_t)(expressions * size)), *term = ARRAY(double, (size_t)size);
+	double epsilon = ldexp(1, step->model->asked.single ? -23 : -52);
+	for (int i = 0; i < expressions; i++) {
+		for (int j = 0; j < size; j++)
+			term[j] = fabs(pieces->row[i * size + j]);
+		add_slack(size, A, round_rational(step->model->h), pieces->degree, epsilon, term, slack + i * size);
+	}
+	discard(term);
+	return slack;
+}
+
+static void fill_whole(const struct step *step, const struct pieces *pieces, int branch)
+{
+	struct region_piece *piece = &pieces->piece[branch];
+	int size = step->layout.size, expressions = step->model->switching->expressions;
+	double h = round_rational(step->model->h);
+	struct growth growth = growth_of(size, piece->slopes, h);
+	piece->whole = Phi_of(step, step->branch[branch].whole, 0);
+	piece->off = bound_rows(step, pieces, piece->slopes, &growth, 2, h * h / 8);
+	piece->turn = slope_rows(step, pieces, piece->slopes, h / 3);
+	piece->bend = bound_rows(step, pieces, piece->slopes, &growth, 4, h * h * h * h / 384);
+	piece->still = ARRAY(double, (size_t)expressions);
+	for (int i = 0; i < expressions; i++)
+		fold_loads(step, piece->off + i * size, &piece->still[i]);
+	piece->slack = slack_rows(step, pieces, piece->slopes);
+	discard(growth.E);
+	discard(growth.most);
+}
+
+/* Below this size of all entries of x together, no number of a step overflows */
+static double largest_of(const struct step *step, const struct pieces *pieces)
+{
+	int cells = step->layout.size * step->layout.size;
+	double factor = 1;
+	for (int k = 0; k < step->branches; k++)
+		for (int i = 0; i < cells; i++)
+			factor = fmax(factor, fabs(pieces->piece[k].whole[i]));
+	return ldexp(1, (step->model->asked.single ? 60 : 500) - ilogb(factor));
+}
+
+/* h/k, k = 1 .. degree */
+static double *parts_of_step(const struct step *step)
+{
+	double *part = ARRAY(double, (size_t)step->swift_degree + 1);
+	mpq_t fraction;
+	mpq_init(fraction);
+	for (int k = 1; k <= step->swift_degree; k++) {
+		mpq_set_ui(fraction, 1, (unsigned long)k);
+		part[k] = time_in_step(step->model, fraction);
+	}
+	mpq_clear(fraction);
+	return part;
+}
+
+static void fill_swift(const struct step *step, struct pieces *pieces)
+{
+	pieces->degree = step->swift_degree;
+	pieces->part = parts_of_step(step);
+	pieces->bounded = bounded_entries(step);
+	fill_intervals(step, pieces);
+	for (int k = 0; k < step->branches; k++)
+		fill_whole(step, pieces, k);
+	pieces->large = largest_of(step, pieces);
+}
+
 struct pieces pieces_of(const struct step *step)
 {
-	struct pieces pieces = { rows_of(step), breakpoints_of(step),
-				 ARRAY(struct region_piece, (size_t)step->branches) };
+	struct pieces pieces = { .row = rows_of(step), .breakpoint = breakpoints_of(step),
+				 .piece = ARRAY(struct region_piece, (size_t)step->branches) };
 	for (int k = 0; k < step->branches; k++)
 		pieces.piece[k].slopes = finite_slopes(step, k);
 	for (int k = 0; k < step->branches; k++)
-		pieces.piece[k].Phi = Phi_of(step, k);
+		pieces.piece[k].Phi = Phi_of(step, step->branch[k].table[0], step->branch[k].halvings);
 	for (int k = 0; k < step->branches; k++)
 		fill_bounds(step, &pieces, k);
+	if (step->swift)
+		fill_swift(step, &pieces);
 	return pieces;
 }

@@ -139,6 +139,39 @@ static struct wanted *wanted_piece(const struct step *step, int halvings)
 	return r->table;
 }
 
+/* Over the whole of h, without pieces: where the fastest pole turns by 2 at most, and the code is a page */
+static bool is_swift(const struct step *step)
+{
+	enum { TERMS = 400, BOUNDS = 1024 };
+	const struct switching *s = step->model->switching;
+	bool swift = !step->model->asked.single && s->regions * s->expressions <= BOUNDS &&
+		     step->layout.size * (step->layout.states + s->expressions) <= TERMS;
+	for (int k = 0; k < step->branches; k++)
+		swift = swift && step->branch[k].halvings <= 1;
+	return swift;
+}
+
+/* Tables over the whole of h, of a region that has pieces of half of it */
+static void plan_whole(struct step *step, int k)
+{
+	struct branch *b = &step->branch[k];
+	if (b->halvings == 0)
+		b->whole = b->table[0];
+	else if (b->halvings == 1 && k > 0)
+		b->whole = tables_of(step->model, b->resolvent, &b->system, 1, wanted_piece(step, 0))[0];
+}
+
+static void plan_swift(struct step *step)
+{
+	bool any = false;
+	step->swift = is_swift(step);
+	for (int k = 0; k < step->branches; k++)
+		any = any || step->branch[k].halvings > 0;
+	if (step->swift)
+		/* terms come in fours */
+		step->swift_degree = 3 | (any ? series_degree(step, 0, step->branches, 0) : step->series.degree);
+}
+
 static void plan_region(struct step *step, int k)
 {
 	step->branch[k].halvings = series_halvings(step, k);
@@ -149,6 +182,7 @@ static void plan_region(struct step *step, int k)
 	struct linear *system = &step->branch[k].system;
 	step->branch[k].table = tables_of(step->model, step->branch[k].resolvent, system, 1,
 					  wanted_piece(step, step->branch[k].halvings));
+	plan_whole(step, k);
 	system->channels = 0;
 	int degree = series_degree(step, k, k + 1, step->branch[k].halvings);
 	step->series.degree = degree > step->series.degree ? degree : step->series.degree;
@@ -174,6 +208,7 @@ static void build_regions_step(struct step *step)
 	step->series.emitted = true;
 	for (int k = 0; k < step->branches; k++)
 		plan_region(step, k);
+	plan_swift(step);
 }
 
 static void build_with_leftover(struct step *step)

@@ -199,7 +199,8 @@ struct branch {
 	struct linear system;       /* with what the scheme holds taken out of C and K */
 	struct resolvent *resolvent; /* of `system` */
 	struct table **table;
-	/* of the whole step: the first; of regions, whose tables are of pieces, that of the first region only */
+	/* of the whole step: the first; of regions, whose tables are of pieces, that of the first region, and of all
+	 * where a step is swift */
 	struct table *whole;
 	int halvings;               /* of a region: log2 of the pieces of a step in which crossings are looked for */
 };
@@ -251,6 +252,10 @@ struct step {                       /* everything that is emitted for one model 
 	mpfr_t growth;              /* pl: 1/s, largest real part of the modified equation's poles (report only) */
 	struct layout layout;       /* of x */
 	struct series series;
+	/* of regions: a step looks over the whole of h whether it is clear, and for one crossing; by Taylor
+	 * polynomials of this degree */
+	bool swift;
+	int swift_degree;
 	struct load_phase *phase;   /* per load */
 };
 enum step_kind kind_of_step(const struct model *model);
@@ -346,11 +351,21 @@ struct region_piece {               /* of a branch, d = h 2^-halvings long; x as
 	double *slope;              /* slope . x is d/3 times the slope of each expression; expressions x size */
 	double *second, *fourth;    /* second . |x(0)|, fourth . |x(0)| bound, on 0 .. d, d^2/8 times the second and */
 				    /* d^4/384 times the fourth derivative of each; expressions x size */
+	/* Where a step is swift: e^{A h}; over h, each expression is off its chord by at most off . |x(0)| + still, and
+	 * its slope off that of its Taylor polynomial by at most slack . |x(0)| / h; turn and bend are slope and fourth
+	 * over h */
+	double *whole, *off, *still, *slack, *turn, *bend;
 };
 struct pieces {
 	double *row;                /* of each expression: row . x, expressions x size */
 	double *breakpoint;         /* those of the first expression, rising; of the second; ... */
 	struct region_piece *piece;        /* per branch */
+	/* Where a step is swift: */
+	double *low, *high;         /* bounds of each expression in each region: regions x expressions */
+	bool *bounded;              /* per entry of x: never above 1, and part of `still` */
+	double large;               /* no number of a step overflows where |x| is smaller, other entries summed */
+	int degree;
+	double *part;               /* h/k, k = 1 .. degree */
 };
 struct pieces pieces_of(const struct step *step);
 

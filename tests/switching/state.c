@@ -5,6 +5,7 @@
 #include "state_variants.h"
 #include "tap.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -20,10 +21,13 @@ static bool same(const pl_model *m, const double *found, const double *expected,
     const char *what, int k)
 {
 	bool good = true;
-	for (int i = 0; i < n; i++)
-            good = close_to(found[i], expected[i], tolerance, "%s, h = %g, after %d steps: %s %d", m->name, m->h, k,
+	for (int i = 0; i < n; i++) {
+            /* what is summed in another order is off by rounding, which is more where the state has grown large */
+            const double rounding = 4 * DBL_EPSILON * fabs(expected[i]);
+            good = close_to(found[i], expected[i], fmax(tolerance, rounding), "%s, h = %g, after %d steps: %s %d", m->name, m->h, k,
                             what, i) &&
                    good;
+        }
         return good;
 }
 

@@ -1,0 +1,654 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Regions: a step that stays clear of every breakpoint as sums with a bound for each expression, and a crossing that is
+ * the only one of a step by the Taylor polynomials of the entries of x. All else is left to the runtime's search. */
+#include "emit/emit.h"
+
+#include <string.h>
+
+static int expressions_of(const struct emitter *e)
+{
+	return e->model->switching->expressions;
+}
+
+/* ---- what stands at an entry of tables that there are one of for each matrix ---- */
+
+struct tables {
+	const char *text;           /* of one of them: [row][column] follows */
+	int rows, columns;
+	double **value;             /* per branch */
+};
+
+static bool acts_at(const struct emitter *e, const struct tables *t, int row, int column)
+{
+	bool any = false;
+	for (int k = 0; k < e->step->branches; k++)
+		any = any || t->value[k][row * t->columns + column] != 0;
+	return any;
+}
+
+/* A number where all agree */
+static const char *entry_times(const struct emitter *e, const struct tables *t, int row, int column,
+			       const char *operand)
+{
+	int at = row * t->columns + column;
+	bool same = true;
+	for (int k = 1; k < e->step->branches; k++)
+		same = same && t->value[k][at] == t->value[0][at];
+	if (same)
+		return scaled(t->value[0][at], operand);
+	const char *text = format("%s[%d][%d]", t->text, row, column);
+	return operand ? format("%s * %s", text, operand) : text;
+}
+
+/* Sum of a row over the operands of its columns; further: a term more, or NULL */
+static const char *row_text(const struct emitter *e, const struct tables *t, int row, const char *const *operand,
+			    const char *further, int indent)
+{
+	const char **term = ARRAY(const char *, (size_t)t->columns + 1);
+	int terms = 0;
+	for (int j = 0; j < t->columns; j++)
+		if (operand[j] && acts_at(e, t, row, j))
+			term[terms++] = entry_times(e, t, row, j, *operand[j] ? operand[j] : NULL);
+	if (further)
+		term[terms++] = further;
+	return terms ? tree(terms, term, indent) : "0.0";
+}
+
+static struct tables tables_of_pieces(const struct emitter *e, const struct pieces *p, const char *text, int rows,
+				      double *(*of)(const struct region_piece *))
+{
+	struct tables t = { text, rows, e->step->layout.size, ARRAY(double *, (size_t)e->step->branches) };
+	for (int k = 0; k < e->step->branches; k++)
+		t.value[k] = of(&p->piece[k]);
+	return t;
+}
+
+static double *whole_of(const struct region_piece *piece)  { return piece->whole; }
+static double *off_of(const struct region_piece *piece)    { return piece->off; }
+static double *still_of(const struct region_piece *piece)  { return piece->still; }
+static double *slack_of(const struct region_piece *piece)  { return piece->slack; }
+static double *turn_of(const struct region_piece *piece)   { return piece->turn; }
+static double *bend_of(const struct region_piece *piece)   { return piece->bend; }
+static double *slopes_of_x(const struct region_piece *piece) { return piece->slopes; }
+
+static struct tables still_tables(const struct emitter *e, const struct pieces *p)
+{
+	struct tables t = { spell(e, "$n_still[which]"), 1, expressions_of(e),
+			    ARRAY(double *, (size_t)e->step->branches) };
+	for (int k = 0; k < e->step->branches; k++)
+		t.value[k] = still_of(&p->piece[k]);
+	return t;
+}
+
+/* The largest that an expression may be off its chord: `size` of the entries of x that are not bounded */
+static const char *off_text(const struct emitter *e, const struct pieces *p, int expression, const char *const *size,
+			    int indent)
+{
+	struct tables off = tables_of_pieces(e, p, spell(e, "$n_off[which]"), expressions_of(e), off_of),
+		      still = still_tables(e, p);
+	int at = expression;
+	bool same = true, any = false;
+	for (int k = 0; k < e->step->branches; k++) {
+		same = same && still.value[k][at] == still.value[0][at];
+		any = any || still.value[k][at] != 0;
+	}
+	const char *further = !any ? NULL : same ? shortest(still.value[0][at])
+						 : spell(e, "$n_still[which][%d]", at);
+	return row_text(e, &off, expression, size, further, indent);
+}
+
+/* ---- tables ---- */
+
+static void emit_of_each(const struct emitter *e, const struct tables *t, const char *name, const char *note,
+			 const char *const *row_name)
+{
+	say(e, "\n"
+	       "static const double $n_%s[%d][%d][%d] = {  /* %s */\n",
+	    name, e->step->branches, t->rows, t->columns, note);
+	for (int k = 0; k < e->step->branches; k++) {
+		say(e, "  {\n");
+		emit_number_rows(e, t->rows, t->columns, t->value[k], row_name);
+		say(e, "  },\n");
+	}
+	say(e, "};\n");
+}
+
+static bool any_pieces(const struct emitter *e)
+{
+	bool any = false;
+	for (int k = 0; k < e->step->branches; k++)
+		any = any || e->step->branch[k].halvings > 0;
+	return any;
+}
+
+static void emit_still(const struct emitter *e, const struct pieces *p)
+{
+	int expressions = expressions_of(e);
+	say(e, "\n"
+	       "static const double $n_still[%d][%d] = {  /* what 1, cos and sin add to that, at most */\n",
+	    e->step->branches, expressions);
+	for (int k = 0; k < e->step->branches; k++)
+		for (int i = 0; i < expressions; i++)
+			say(e, "%s%s%s", i == 0 ? "    {" : ", ", shortest(p->piece[k].still[i]),
+			    i == expressions - 1 ? "},\n" : "");
+	say(e, "};\n");
+}
+
+/* Region by region: what each expression is between, and the regions below and above; -1: none that can occur */
+static void emit_neighbours(const struct emitter *e, const struct pieces *p)
+{
+	const struct switching *s = e->model->switching;
+	int n = s->expressions;
+	say(e, "\n"
+	       "static const double $n_within[%d][%d][2] = {  /* what each expression is between in each region */\n",
+	    s->regions, n);
+	for (int r = 0; r < s->regions; r++)
+		for (int i = 0; i < n; i++)
+			say(e, "%s{%s, %s}%s", i == 0 ? "    {" : ", ", shortest(p->low[r * n + i]),
+			    shortest(p->high[r * n + i]), i == n - 1 ? "},\n" : "");
+	say(e, "};\n"
+	       "\n"
+	       "static const int $n_next[%d][%d][2] = {  /* regions below and above; -1: none that can occur */\n",
+	    s->regions, n);
+	for (int r = 0; r < s->regions; r++)
+		for (int i = 0; i < n; i++) {
+			int interval = interval_of(s, r, i), stride = s->expression[i].stride;
+			bool below = interval > 0 && s->region[r - stride].possible,
+			     above = interval < s->expression[i].breaks && s->region[r + stride].possible;
+			say(e, "%s{%d, %d}%s", i == 0 ? "    {" : ", ", below ? r - stride : -1,
+			    above ? r + stride : -1, i == n - 1 ? "},\n" : "");
+		}
+	say(e, "};\n"
+	       "\n"
+	       "static const int $n_stride[] = {");
+	for (int i = 0; i < n; i++)
+		say(e, "%s%d", i ? ", " : "", s->expression[i].stride);
+	say(e, "};\n");
+}
+
+void emit_swift_tables(const struct emitter *e, const struct pieces *p, const char *const *expression)
+{
+	int n = expressions_of(e);
+	struct tables whole = tables_of_pieces(e, p, "", e->step->layout.size, whole_of),
+		      off = tables_of_pieces(e, p, "", n, off_of), slack = tables_of_pieces(e, p, "", n, slack_of);
+	if (any_pieces(e)) {
+		struct tables turn = tables_of_pieces(e, p, "", n, turn_of),
+			      bend = tables_of_pieces(e, p, "", n, bend_of);
+		emit_of_each(e, &whole, "whole", "e^{A h}",
+			     layout_names(&e->step->layout, e->system, e->model));
+		emit_of_each(e, &turn, "whole_lean", "lean over h", expression);
+		emit_of_each(e, &bend, "whole_sway", "sway over h", expression);
+	}
+	emit_of_each(e, &off, "off", "times |x|: how far each expression is off its chord over h, at most", expression);
+	emit_still(e, p);
+	emit_of_each(e, &slack, "slack", "times |x|: what h e' is off the slope of its polynomial, at most",
+		     expression);
+	emit_neighbours(e, p);
+}
+
+/* ---- one crossing ---- */
+
+static const char **places(const struct emitter *e, const char *layout)
+{
+	const char **text = ARRAY(const char *, (size_t)e->step->layout.size);
+	for (int j = 0; j < e->step->layout.size; j++)
+		text[j] = format(layout, j);
+	return text;
+}
+
+/* "" where x is 1 */
+static const char **entries(const struct emitter *e, const char *layout)
+{
+	const char **text = places(e, layout);
+	for (int l = 0; l < e->system->loads; l++)
+		if (e->step->layout.load[l] >= 0 && !load_operand(e, l, 0))
+			text[e->step->layout.load[l]] = "";
+	return text;
+}
+
+static const char *expression_text(const struct emitter *e, const struct pieces *p, int expression,
+				   const char *const *operand, int indent)
+{
+	int size = e->step->layout.size, terms = 0;
+	const char **term = ARRAY(const char *, (size_t)size);
+	for (int j = 0; j < size; j++) {
+		double factor = p->row[expression * size + j];
+		if (factor != 0)
+			term[terms++] = scaled(factor, *operand[j] ? operand[j] : NULL);
+	}
+	return terms ? tree(terms, term, indent) : "0.0";
+}
+
+static void emit_expression(const struct emitter *e, const struct pieces *p)
+{
+	int size = e->step->layout.size, n = expressions_of(e);
+	say(e, "\n"
+	       "static double $n_expression(int i, const double x[%d])\n"
+	       "{\n", size);
+	if (n == 1) {
+		say(e, "    (void)i;\n"
+		       "    return %s;\n", expression_text(e, p, 0, places(e, "x[%d]"), 11));
+	} else {
+		struct tables rows = { spell(e, "$n_row"), n, size, NULL };
+		const char **term = ARRAY(const char *, (size_t)size);
+		int terms = 0;
+		for (int j = 0; j < size; j++) {
+			bool any = false;
+			for (int i = 0; i < n; i++)
+				any = any || p->row[i * size + j] != 0;
+			if (any)
+				term[terms++] = format("%s[i][%d] * x[%d]", rows.text, j, j);
+		}
+		say(e, "    return %s;\n", terms ? tree(terms, term, 11) : "0.0");
+	}
+	say(e, "}\n");
+}
+
+static void emit_expand(const struct emitter *e, const struct pieces *p)
+{
+	int size = e->step->layout.size, terms = p->degree + 1;
+	struct tables A = tables_of_pieces(e, p, "A", size, slopes_of_x);
+	const char **a = places(e, "a%d");
+	say(e, "\n"
+	       "/* The coefficients of x(s) = e^{A h s} x */\n"
+	       "static void $n_expand(int which, const double x[%d], double c[%d][%d])\n"
+	       "{\n"
+	       "    static const double part[%d] = {  /* h/k */\n"
+	       "        0.0", size, terms, size, terms);
+	for (int k = 1; k < terms; k++)
+		say(e, "%s%s", k % 5 ? ", " : ",\n        ", shortest(p->part[k]));
+	say(e, "\n"
+	       "    };\n"
+	       "    const double (*const A)[%d] = $n_slopes[which];\n"
+	       "    int k;\n", size);
+	for (int j = 0; j < size; j++)
+		say(e, "%s%s = x[%d]%s", j ? ", " : "    double ", a[j], j, j == size - 1 ? ";\n" : "");
+	for (int j = 0; j < size; j++)
+		say(e, "    c[0][%d] = %s;\n", j, a[j]);
+	say(e, "    for (k = 1; k < %d; k++) {\n", terms);
+	for (int i = 0; i < size; i++) {
+		const char *sum = row_text(e, &A, i, a, NULL, 30);
+		say(e, "        const double b%d = %s;\n", i,
+		    strcmp(sum, "0.0") == 0 ? sum : format("part[k] * (%s)", sum));
+	}
+	for (int i = 0; i < size; i++)
+		say(e, "        c[k][%d] = a%d = b%d;\n", i, i, i);
+	say(e, "    }\n"
+	       "    (void)A;\n"
+	       "}\n");
+}
+
+static void emit_polynomials(const struct emitter *e, const struct pieces *p)
+{
+	int size = e->step->layout.size, terms = p->degree + 1;
+	say(e, "\n"
+	       "/* x(s) */\n"
+	       "static void $n_sum_up(double c[%d][%d], double s, double x[%d])\n"
+	       "{\n"
+	       "    const double ss = s * s;\n"
+	       "    double even[%d], odd[%d];\n"
+	       "    int i, k;\n"
+	       "    for (i = 0; i < %d; i++) {\n"
+	       "        even[i] = c[%d][i];\n"
+	       "        odd[i] = c[%d][i];\n"
+	       "    }\n"
+	       "    for (k = %d; k >= 0; k -= 2)\n"
+	       "        for (i = 0; i < %d; i++) {\n"
+	       "            even[i] = even[i] * ss + c[k][i];\n"
+	       "            odd[i] = odd[i] * ss + c[k + 1][i];\n"
+	       "        }\n"
+	       "    for (i = 0; i < %d; i++)\n"
+	       "        x[i] = even[i] + s * odd[i];\n"
+	       "}\n",
+	    terms, size, size, size, size, size, terms - 2, terms - 1, terms - 4, size, size);
+}
+
+/* sum of |g[k + 2]| r^k, of k + 2 times that for `slopes`; lines of a function */
+static void emit_sizes(const struct emitter *e, int terms, const char *sum, const char *r, bool slopes)
+{
+	const char *factor = slopes ? "(double)(k + 2) * " : "", *next = slopes ? "(double)(k + 3) * " : "";
+	say(e, "    for (k = %d; k >= 0; k -= 2) {\n"
+	       "        even = even * (%s * %s) + %spl_magnitude(g[k + 2]);\n"
+	       "        odd = odd * (%s * %s) + %spl_magnitude(g[k + 3]);\n"
+	       "    }\n"
+	       "    %s = even + %s * odd;\n",
+	    terms - 4, r, r, factor, r, r, next, sum, r);
+}
+
+static void emit_root(const struct emitter *e, const struct pieces *p)
+{
+	int terms = p->degree + 1;
+	say(e, "\n"
+	       "/* Where g rises through 0 for 0 < s < 1 first; 2: that is not certain.  Up to `most` its slope is above `least`\n"
+	       " * by the sizes of its other coefficients, and |g''| below `bend`: there is one root.  Two steps of Newton's\n"
+	       " * method from the series of the inverse.  slack: what g' may be off by; g > 0 at 1 is known. */\n"
+	       "static double $n_root(const double g[%d], double slack)\n"
+	       "{\n"
+	       "    const double q = g[2] / g[1], w = -g[0] / g[1];\n"
+	       "    const double guess = w * (1.0 - q * w * (1.0 - 2.0 * q * w)), most = guess < 0.99 ? guess + 0.01 : 1.0;\n"
+	       "    double z = guess, last = guess, miss = 0.0, even = 0.0, odd = 0.0, least, bend = 0.0;\n"
+	       "    int i, k;\n", terms);
+	emit_sizes(e, terms, "least", "most", true);
+	say(e, "    least = g[1] - slack - most * least;\n"
+	       "    for (k = 2; k < %d; k++)\n"
+	       "        bend += (double)(k * (k - 1)) * pl_magnitude(g[k]);\n"
+	       "    for (i = 0; i < 2; i++) {\n"
+	       "        const double zz = z * z;\n"
+	       "        double even_slope = %d.0 * g[%d], odd_slope = 0.0;\n"
+	       "        even = g[%d];\n"
+	       "        odd = g[%d];\n"
+	       "        for (k = %d; k >= 0; k -= 2) {\n"
+	       "            even = even * zz + g[k];\n"
+	       "            odd = odd * zz + g[k + 1];\n"
+	       "            even_slope = even_slope * zz + (double)(k + 1) * g[k + 1];\n"
+	       "            odd_slope = odd_slope * zz + (double)(k + 2) * g[k + 2];\n"
+	       "        }\n"
+	       "        miss = even + z * odd;\n"
+	       "        last = z;\n"
+	       "        z -= miss / (even_slope + z * odd_slope);\n"
+	       "    }\n",
+	    terms, terms - 1, terms - 1, terms - 2, terms - 1, terms - 4);
+	say(e, "    if (!(least > 0.0 && last > 0.0 && last <= most && z > 0.0 && z < 1.0))\n"
+	       "        return 2.0;\n"
+	       "    if (most < 1.0 && !(least * (most - last) > -miss))\n"
+	       "        return 2.0;\n"
+	       "    /* the root is within |miss|/least of the last but one, and z within bend/(2 least) times that squared */\n"
+	       "    return bend * (miss * miss) < least * least * least * 2.220446049250313e-16 ? z : 2.0;\n"
+	       "}\n");
+}
+
+/* off[i], from x */
+static void emit_bounds(const struct emitter *e, const struct pieces *p)
+{
+	int n = expressions_of(e);
+	const char **size = entries(e, "pl_magnitude(x[%d])");
+	say(e, "\n"
+	       "/* How far each expression is off its chord over h or less, at most */\n"
+	       "static void $n_bounds(int which, const double x[%d], double off[%d])\n"
+	       "{\n", e->step->layout.size, n);
+	for (int i = 0; i < n; i++)
+		say(e, "    off[%d] = %s;\n", i, off_text(e, p, i, size, 13));
+	say(e, "    (void)which;\n"
+	       "    (void)x;\n"
+	       "}\n"
+	       "\n"
+	       "static int $n_stays(int region, int i, double from, double to, double off)\n"
+	       "{\n"
+	       "    return (from < to ? from : to) - off > $n_within[region][i][0] &&\n"
+	       "           (from > to ? from : to) + off < $n_within[region][i][1];\n"
+	       "}\n");
+}
+
+/* Into end[]: Phi x over h */
+static void emit_whole(const struct emitter *e, const struct pieces *p)
+{
+	int size = e->step->layout.size;
+	struct tables whole = tables_of_pieces(e, p, "factor", size, whole_of);
+	const char **x = entries(e, "x[%d]");
+	say(e, "\n"
+	       "/* e^{A h} x */\n"
+	       "static void $n_advance(int which, const double x[%d], double end[%d])\n"
+	       "{\n"
+	       "    const double (*const factor)[%d] = $n_%s[which];\n",
+	    size, size, size, any_pieces(e) ? "whole" : "pieces");
+	for (int i = 0; i < size; i++)
+		say(e, "    end[%d] = %s;\n", i, row_text(e, &whole, i, x, NULL, 13));
+	say(e, "    (void)factor;\n"
+	       "}\n");
+}
+
+static const char *size_of_x(const struct emitter *e, const struct pieces *p, const char *const *size, int indent)
+{
+	const char **term = ARRAY(const char *, (size_t)e->step->layout.size);
+	int terms = 0;
+	for (int j = 0; j < e->step->layout.size; j++)
+		if (!p->bounded[j])
+			term[terms++] = size[j];
+	return tree(terms, term, indent);
+}
+
+/* Which expressions are not seen to be clear */
+static void emit_near(const struct emitter *e, const struct pieces *p)
+{
+	int size = e->step->layout.size, n = expressions_of(e);
+	const char *whole = any_pieces(e) ? "whole_" : "";
+	say(e, "\n"
+	       "/* How many expressions are not seen to be clear over h, from x to end; the last of them.  By chords, then by\n"
+	       " * cubics, which lie within their Bezier points */\n"
+	       "static int $n_near(int region, int which, const double x[%d], const double end[%d], int *last)\n"
+	       "{\n"
+	       "    double off[%d];\n"
+	       "    int i, j, near = 0;\n"
+	       "    $n_bounds(which, x, off);\n"
+	       "    for (i = 0; i < %d; i++) {\n"
+	       "        const double from = $n_expression(i, x), to = $n_expression(i, end);\n"
+	       "        double leaving = from, arriving = to, sway = 0.0;\n"
+	       "        if ($n_stays(region, i, from, to, off[i]))\n"
+	       "            continue;\n",
+	    size, size, n, n);
+	say(e, "        for (j = 0; j < %d; j++) {\n"
+	       "            leaving += $n_%slean[which][i][j] * x[j];\n"
+	       "            arriving -= $n_%slean[which][i][j] * end[j];\n"
+	       "            sway += $n_%ssway[which][i][j] * pl_magnitude(x[j]);\n"
+	       "        }\n"
+	       "        if ($n_stays(region, i, from, to, sway) && $n_stays(region, i, leaving, arriving, sway))\n"
+	       "            continue;\n"
+	       "        *last = i;\n"
+	       "        near++;\n"
+	       "    }\n"
+	       "    return near;\n"
+	       "}\n",
+	    size, whole, whole, whole);
+	(void)p;
+}
+
+/* Where one expression leaves its interval */
+static void emit_leaves(const struct emitter *e, const struct pieces *p)
+{
+	int size = e->step->layout.size, terms = p->degree + 1;
+	say(e, "\n"
+	       "/* Where expression i, which is `to` after h, first passes the upper or the lower end of its interval; 2: that is\n"
+	       " * not certain.  c: the coefficients of x(s) */\n"
+	       "static double $n_leaves(int region, int which, int i, int up, const double x[%d], double c[%d][%d], double to)\n"
+	       "{\n"
+	       "    const double sign = up ? 1.0 : -1.0, b = $n_within[region][i][up], from = $n_expression(i, x);\n"
+	       "    double g[%d], noise = pl_magnitude(b), slack = 0.0;\n"
+	       "    int k;\n"
+	       "    if ($n_next[region][i][up] < 0 ||\n"
+	       "        !(up ? from > $n_within[region][i][0] : from < $n_within[region][i][1]))\n"
+	       "        return 2.0;\n"
+	       "    g[0] = sign * (from - b);\n"
+	       "    for (k = 1; k < %d; k++) {\n"
+	       "        g[k] = sign * $n_expression(i, c[k]);\n"
+	       "        noise += pl_magnitude(g[k]);\n"
+	       "    }\n",
+	    size, terms, size, terms, terms);
+	say(e, "    for (k = 0; k < %d; k++) {\n"
+	       "        slack += $n_slack[which][i][k] * pl_magnitude(x[k]);\n"
+	       "        noise += pl_magnitude($n_row[i][k] * x[k]);\n"
+	       "    }\n"
+	       "    noise *= 1.7763568394002505e-15;  /* 8 DBL_EPSILON, as in the search */\n"
+	       "    return g[0] < -noise && sign * (to - b) > noise && g[1] > 0.0 ? $n_root(g, slack) : 2.0;\n"
+	       "}\n", size);
+}
+
+/* Behind a crossing */
+static void emit_moves_on(const struct emitter *e, const struct pieces *p)
+{
+	int size = e->step->layout.size, terms = p->degree + 1, n = expressions_of(e);
+	say(e, "\n"
+	       "/* Whether it is certain that nothing is passed from x on over h times `rest`: not what was passed just now, since\n"
+	       " * (e - b)/s stays beside 0, and nothing else.  c: the coefficients of x(s) */\n"
+	       "static int $n_moves_on(int region, int which, int passed, int up, const double x[%d], double c[%d][%d],\n"
+	       "                       double rest, const double end[%d])\n"
+	       "{\n"
+	       "    double g[%d], off[%d], slack = 0.0, even = 0.0, odd = 0.0, more;\n"
+	       "    int i, k;\n"
+	       "    for (k = 1; k < %d; k++)\n"
+	       "        g[k] = $n_expression(passed, c[k]);\n"
+	       "    for (k = 0; k < %d; k++)\n"
+	       "        slack += $n_slack[which][passed][k] * pl_magnitude(x[k]);\n",
+	    size, terms, size, size, terms, n, terms, size);
+	emit_sizes(e, terms, "more", "rest", false);
+	say(e, "    if (!((up ? g[1] : -g[1]) > rest * more + slack))\n"
+	       "        return 0;\n"
+	       "    $n_bounds(which, x, off);\n"
+	       "    for (i = 0; i < %d; i++) {\n"
+	       "        const double from = $n_expression(i, x), to = $n_expression(i, end), sag = off[i] * (rest * rest);\n"
+	       "        if (i == passed ? !(up ? (from > to ? from : to) + sag < $n_within[region][i][1]\n"
+	       "                               : (from < to ? from : to) - sag > $n_within[region][i][0])\n"
+	       "                        : !$n_stays(region, i, from, to, sag))\n"
+	       "            return 0;\n"
+	       "    }\n"
+	       "    return %s < %s;\n"
+	       "}\n",
+	    n, size_of_x(e, p, places(e, "pl_magnitude(end[%d])"), 12), shortest(p->large));
+}
+
+static void emit_cross(const struct emitter *e, const struct pieces *p)
+{
+	int size = e->step->layout.size, terms = p->degree + 1;
+	say(e, "\n"
+	       "/* x over h where it is certain that nothing is passed, or one breakpoint once: 1.  Else 0, and nothing has\n"
+	       " * changed. */\n"
+	       "static int $n_cross($n *s, double x[%d])\n"
+	       "{\n"
+	       "    const int region = s->contact.region, which = s->contact.matrix;\n"
+	       "    double c[%d][%d], y[%d], end[%d], z, to;\n"
+	       "    int i, passed = 0, up, next, near;\n"
+	       "    if (!(%s < %s))\n"
+	       "        return 0;\n"
+	       "    $n_advance(which, x, end);\n"
+	       "    near = $n_near(region, which, x, end, &passed);\n"
+	       "    if (near > 1)\n"
+	       "        return 0;\n",
+	    size, terms, size, size, size, size_of_x(e, p, places(e, "pl_magnitude(x[%d])"), 10),
+	    shortest(p->large));
+	say(e, "    if (near) {\n"
+	       "        to = $n_expression(passed, end);\n"
+	       "        up = to > $n_within[region][passed][1];\n"
+	       "        $n_expand(which, x, c);\n"
+	       "        z = $n_leaves(region, which, passed, up, x, c, to);\n"
+	       "        if (z > 1.0)\n"
+	       "            return 0;\n"
+	       "        $n_sum_up(c, z, y);\n"
+	       "        next = $n_next[region][passed][up];\n"
+	       "        $n_expand($n_matrix[next], y, c);\n"
+	       "        $n_sum_up(c, 1.0 - z, end);\n"
+	       "        if (!$n_moves_on(next, $n_matrix[next], passed, up, y, c, 1.0 - z, end))\n"
+	       "            return 0;\n");
+	say(e, "        s->crossing[0].time = z * $N_H;\n"
+	       "        s->crossing[0].expression = passed;\n"
+	       "        s->crossing[0].breakpoint = next / $n_stride[passed] %% ($n_breaks[passed] + 1) - up;\n"
+	       "        s->crossing[0].upward = up;\n"
+	       "        s->contact.total++;\n"
+	       "        s->contact.region = next;\n"
+	       "        s->contact.matrix = $n_matrix[next];\n"
+	       "    }\n"
+	       "    s->contact.crossings = near;\n"
+	       "    for (i = 0; i < %d; i++)\n"
+	       "        x[i] = end[i];\n"
+	       "    return 1;\n"
+	       "}\n", e->system->states);
+}
+
+void emit_swift_functions(const struct emitter *e)
+{
+	struct pieces pieces = pieces_of(e->step);
+	emit_expression(e, &pieces);
+	emit_expand(e, &pieces);
+	emit_polynomials(e, &pieces);
+	emit_root(e, &pieces);
+	emit_bounds(e, &pieces);
+	emit_whole(e, &pieces);
+	emit_near(e, &pieces);
+	emit_leaves(e, &pieces);
+	emit_moves_on(e, &pieces);
+	emit_cross(e, &pieces);
+}
+
+/* ---- the step ---- */
+
+/* Of each entry of x, "" of 1; slopes of ramps in locals */
+static const char **operands(const struct emitter *e)
+{
+	const struct layout *layout = &e->step->layout;
+	const char **text = entries(e, "x[%d]");
+	for (int i = 0; i < e->system->states; i++)
+		text[i] = e->local[i];
+	for (int l = 0; l < e->system->loads; l++)
+		for (int k = 0; k < e->system->load[l].columns && layout->load[l] >= 0; k++)
+			if (load_operand(e, l, k))
+				text[layout->load[l] + k] = load_operand(e, l, k);
+	for (int i = 0; i < e->system->inputs; i++) {
+		bool ramp = e->system->input[i].first_order;
+		text[layout->input[i]] = format(ramp ? "s->u[%d]" : "u[%d]", i);
+		if (ramp)
+			text[layout->input[i] + 1] = format("part%d", i);
+	}
+	return text;
+}
+
+static bool is_read_at_end(const struct pieces *p, int size, int expressions, int entry)
+{
+	bool read = false;
+	for (int i = 0; i < expressions; i++)
+		read = read || p->row[i * size + entry] != 0;
+	return read;
+}
+
+static void emit_ends(const struct emitter *e, const struct pieces *p, const char *const *x)
+{
+	int size = e->step->layout.size;
+	struct tables whole = tables_of_pieces(e, p, "factor", size, whole_of);
+	const char **name = layout_names(&e->step->layout, e->system, e->model);
+	for (int i = 0; i < size; i++)
+		if (i < e->system->states || is_read_at_end(p, size, expressions_of(e), i))
+			say(e, "    const double end%d = %s;  /* %s */\n", i, row_text(e, &whole, i, x, NULL, 22),
+			    name[i]);
+}
+
+/* Each expression at the start, at the end, and how far it may be off the chord between */
+static void emit_chords(const struct emitter *e, const struct pieces *p, const char *const *x)
+{
+	int size = e->step->layout.size;
+	const char **magnitude = ARRAY(const char *, (size_t)size), **end = entries(e, "end%d");
+	for (int j = 0; j < size; j++)
+		magnitude[j] = *x[j] ? format("pl_magnitude(%s)", x[j]) : "";
+	for (int i = 0; i < expressions_of(e); i++) {
+		say(e, "    const double from%d = %s;\n", i, expression_text(e, p, i, x, 24));
+		say(e, "    const double to%d = %s;\n", i, expression_text(e, p, i, end, 24));
+		say(e, "    const double off%d = %s;\n", i, off_text(e, p, i, magnitude, 24));
+	}
+	say(e, "    if (%s < %s", size_of_x(e, p, magnitude, 12), shortest(p->large));
+	for (int i = 0; i < expressions_of(e); i++)
+		say(e, " &&\n"
+		       "        (from%d < to%d ? from%d : to%d) - off%d > $n_within[s->contact.region][%d][0] &&\n"
+		       "        (from%d > to%d ? from%d : to%d) + off%d < $n_within[s->contact.region][%d][1]",
+		    i, i, i, i, i, i, i, i, i, i, i, i);
+	say(e, ") {\n");
+}
+
+void emit_swift_step(const struct emitter *e)
+{
+	struct pieces pieces = pieces_of(e->step);
+	const struct layout *layout = &e->step->layout;
+	const char **x = operands(e);
+	say(e, "    const int which = s->contact.matrix;\n"
+	       "    const double (*const factor)[%d] = $n_%s[which];\n", layout->size,
+	    any_pieces(e) ? "whole" : "pieces");
+	for (int i = 0; i < e->system->inputs; i++)
+		if (e->system->input[i].first_order)
+			say(e, "    const double part%d = (u[%d] - s->u[%d]) / $N_H;  /* its slope */\n", i, i, i);
+	emit_ends(e, &pieces, x);
+	emit_chords(e, &pieces, x);
+	for (int i = 0; i < e->system->states; i++)
+		say(e, "        s->y[%d] = end%d;\n", i, i);
+	say(e, "        s->contact.crossings = 0;\n"
+	       "    } else {\n"
+	       "        double now[%d];\n", layout->size);
+	for (int j = 0; j < layout->size; j++)
+		say(e, "        now[%d] = %s;\n", j, *x[j] ? x[j] : "1.0");
+	say(e, "        $n_pass(s, now);\n"
+	       "    }\n");
+}
