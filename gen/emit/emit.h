@@ -217,6 +217,11 @@ void emit_groups(const struct emitter *e);                        /* tables and 
 bool rows_read_changing_loads(const struct emitter *e);           /* the factors are read from a table */
 void emit_looped_step(const struct emitter *e);
 
+/* ---- emit_modal.c: a step of modes ---- */
+
+void emit_modes(const struct emitter *e);                         /* tables; nothing of other forms */
+void emit_modal_step(const struct emitter *e);
+
 /* ---- emit.c, emit_step.c, emit_out.c, emit_loads.c, emit_time.c, emit_tune.c, emit_rhs.c: a step as C ---- */
 
 void emit_header(FILE *to, const struct step *step, const char *options, bool rhs);

@@ -397,6 +397,10 @@ void emit_looped_step(const struct emitter *e)
 {
 	static const char *const kind[] = { [GROUP_ALIKE] = "alike", [GROUP_COLUMNS] = "columns" };
 	const struct program *program = e->step->program;
+	if (e->step->modal) {
+		emit_modal_step(e);
+		return;
+	}
 	for (int k = 0; k < program->groups; k++)
 		if (program->group[k].kind != GROUP_ROWS)
 			emit_group_call(e, &program->group[k], k);

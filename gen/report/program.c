@@ -241,7 +241,11 @@ static bool is_of_group(const struct group *g, int state)
 static void print_groups(FILE *to, const struct step *step)
 {
 	const struct program *program = step->program;
-	fprintf(to, "Independent blocks, all of which read the old state:\n");
+	if (step->modal)
+		fprintf(to, "Modes: %d pairs of real and imaginary part, turned and damped; %d that are real\n",
+			step->modal->pairs, step->modal->reals);
+	else
+		fprintf(to, "Independent blocks, all of which read the old state:\n");
 	for (int k = 0; k < program->groups; k++) {
 		const struct group *g = &program->group[k];
 		if (g->kind != GROUP_ROWS)

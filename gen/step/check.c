@@ -120,8 +120,8 @@ static void check_list(struct check *c)
 		written[a->target] = true;
 	}
 	c->where = "loops";
-	need(c, program->loops == (program->groups > 0), "a step loops over groups of blocks, or it has none");
-	if (program->loops)
+	need(c, program->loops == (program->groups > 0 || c->step->modal), "a step loops over groups, or it has none");
+	if (program->groups)
 		check_groups(c);
 	need(c, !program->loops || !(program->in_order || program->compensated),
 	     "a step of a form that is not built with loops");

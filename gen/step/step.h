@@ -248,8 +248,9 @@ struct step {                       /* everything that is emitted for one model 
 	struct branch *branch;
 	int tables;                 /* of each; 1 where nothing is left over */
 	struct program *program;
-	enum step_form form;        /* FORM_DIRECT, FORM_DELTA or FORM_KICK_DRIFT_KICK */
+	enum step_form form;        /* any but FORM_AUTO */
 	const mpq_t *mass;          /* of kick-drift-kick, per coordinate; in units of the first */
+	struct modal *modal;        /* NAME keeps modal states; NULL: of another form */
 	bool momenta;               /* NAME keeps mass times velocity, since not all masses are equal */
 	/* states that nothing leads back from, which only add up: index of what rounding takes from each; -1: of
 	 * others */
@@ -401,10 +402,25 @@ bool group_acts(const struct step *step, const struct group *g, int row, const s
 struct drift {                      /* per step, of the mode where it is largest */
 	double amplitude;           /* ln|z| - Re p h */
 	double phase;               /* |arg z - Im p h| [rad] */
-	bool known;                 /* nothing is left over, and the step does not loop over tables */
+	bool known;                 /* nothing is left over, and the step does not loop over Phi */
 };
 struct drift drift_of(const struct step *step);
 const char *drift_text(const struct drift *drift);          /* over 1e9 steps */
+
+/* ---- modal.c: a step of modes instead of states ---- */
+
+struct modal {                      /* modal states: the real parts of the pairs, their imaginary parts, what is real */
+	int states, pairs, reals, loads, inputs;
+	double *turn;               /* e^{p h}, as the modal states stand */
+	double *to, *from;          /* modal states from states, and back; states x states */
+	double *load, *input;       /* what a step adds; states x columns */
+	double *output;             /* outputs x states: what of them is linear; NULL: they are the states */
+	struct drift drift;
+	double condition;           /* what rounding gains that goes through both, 1 at best */
+};
+const char *modal_objection(const struct step *step);        /* what stands against it; NULL: nothing */
+struct modal *modal_of(const struct step *step);             /* NULL: a number is not decided */
+void plan_modal(struct step *step);                          /* where it is asked for, or cheaper and as exact */
 
 /* ---- tuned_zeros.c: factors that are 0 whatever the tunable params are ---- */
 

@@ -159,7 +159,9 @@ static enum step_form best_form(struct step *step)
 void choose_form(struct step *step)
 {
 	const struct model *model = step->model;
-	step->form = model->asked.form == FORM_AUTO ? best_form(step) : model->asked.form;
+	step->form = model->asked.form == FORM_AUTO ? best_form(step)
+		     : model->asked.form == FORM_MODAL ? FORM_DIRECT  /* until plan_modal */
+						       : model->asked.form;
 	if (model->asked.form == FORM_KICK_DRIFT_KICK) {
 		const char *objection = kick_objection(step);
 		if (objection)
