@@ -65,7 +65,7 @@ static void take_real(struct options *options, const char *value)
 static void take_form(struct options *options, const char *value)
 {
 	if (!step_form_of(value, &options->request.form))
-		wrong_usage(format("--form takes auto, direct, delta or kick-drift-kick, found '%s'", value));
+		wrong_usage(format("--form takes auto, direct, delta, kick-drift-kick or modal, found '%s'", value));
 }
 
 static void take_accuracy(struct options *options, const char *value)
@@ -132,7 +132,7 @@ static const struct row {
 	{ "step", "EXPR", "instead of the spec's step", take_step, NULL },
 	{ "scheme", "NAME", "instead of the spec's: ", take_scheme, all_schemes },
 	{ "real", "float", "numbers and arithmetic of type float (default: double)", take_real, NULL },
-	{ "form", "NAME", "of a linear step: auto direct delta kick-drift-kick", take_form, NULL },
+	{ "form", "NAME", "of a linear step: auto direct delta kick-drift-kick modal", take_form, NULL },
 	{ "accuracy", "compensated", "two-word factors, and what rounding takes from the state is kept",
 	  take_accuracy, NULL },
 	{ "loads", "leftover", "leave known loads to the scheme's quadrature (default: exact)", take_loads, NULL },

@@ -173,6 +173,23 @@ static void banner_relative(const struct emitter *e)
 		say(e, " * Only loads and inputs act on a centre; nothing that rounds inside changes its velocity.\n");
 }
 
+/* What modes cost, and what their arithmetic loses */
+static void banner_modes(const struct emitter *e)
+{
+	const struct modal *modal = e->step->modal;
+	const char *unit = e->model->asked.single ? "2^-24" : "2^-53";
+	say(e, " * Modal: %d pairs of modes turned and damped, %d real ones%s; residues enclosed, each number rounded "
+	       "once.\n", modal->pairs, modal->reals, e->model->asked.form == FORM_AUTO
+	       ? "; the cheapest for so few outputs (--form delta or direct steps the states)" : "");
+	if (modal->output)
+		say(e, " * A row of outputs: %d multiplications.\n", e->system->states * e->model->outputs);
+	say(e, " * A step rounds a mode by 3 %s of its amplitude at most, what it reads of loads and inputs apart; "
+	       "an output by\n"
+	       " * %d %s of the sum of its modes' sizes. States become modes in set and states again in get: of what a\n"
+	       " * state itself has in the modes, which is up to %.3g times its size, %d %s are rounding.\n",
+	    unit, e->system->states / 8 + 5, unit, modal->condition, 2 * (e->system->states / 8 + 5), unit);
+}
+
 /* What the form does to rounding, and what rounding has done to its constants */
 static void banner_form(const struct emitter *e)
 {
@@ -185,6 +202,8 @@ static void banner_form(const struct emitter *e)
 	if (kept[e->step->form])
 		say(e, " * %s%s.\n", kept[e->step->form], e->step->program->compensated
 		    ? "; factors in two words,\n * and what rounding takes from the state is kept in rest" : "");
+	if (e->step->modal)
+		banner_modes(e);
 	if (e->model->relative)
 		banner_relative(e);
 	if (e->step->carries)

@@ -37,8 +37,6 @@ static void emit_input_matrix(const struct emitter *e, const struct step *step, 
 void emit_gamma(const struct emitter *e)
 {
 	emit_input_matrix(e, e->step->shown, spell(e, "const double $n_Gamma"));
-	if (e->model->relative && e->kind->reads_gamma(e->step))
-		emit_input_matrix(e, e->step, format("static const double %s", stepped_table(e, "Gamma")));
 }
 
 static void emit_wrapper(const struct emitter *e, const char *result, const char *function, const char *parameters,

@@ -174,6 +174,7 @@ void emit_code(FILE *to, const struct step *step, const char *options, const cha
 		emit_declarations(e, rhs);
 	emit_includes(e, rhs);
 	emit_all_tables(e);
+	emit_modes(e);
 	emit_access(e);
 	e->kind->pass(e);
 	e->kind->step(e);

@@ -178,7 +178,6 @@ struct kind {
 	/* Tables and functions */
 	bool (*reads_load)(const struct emitter *e, int load); /* elsewhere than in the system, leftovers, outputs */
 	bool (*reads_phi)(const struct step *step);     /* of what is kept, in a loop */
-	bool (*reads_gamma)(const struct step *step);
 	void (*tables)(const struct emitter *e);
 	void (*pass)(const struct emitter *e);          /* over what changes at a time, or when it is told to */
 	void (*step)(const struct emitter *e);
@@ -212,6 +211,17 @@ void emit_phi(const struct emitter *e);
 void emit_gamma(const struct emitter *e);
 void emit_descriptor(const struct emitter *e);
 
+/* ---- emit_large.c: the step of a large model ---- */
+
+void emit_groups(const struct emitter *e);                        /* tables and functions of its independent blocks */
+bool rows_read_changing_loads(const struct emitter *e);           /* the factors are read from a table */
+void emit_looped_step(const struct emitter *e);
+
+/* ---- emit_modal.c: a step of modes ---- */
+
+void emit_modes(const struct emitter *e);                         /* tables; nothing of other forms */
+void emit_modal_step(const struct emitter *e);
+
 /* ---- emit.c, emit_step.c, emit_out.c, emit_loads.c, emit_time.c, emit_tune.c, emit_rhs.c: a step as C ---- */
 
 void emit_header(FILE *to, const struct step *step, const char *options, bool rhs);
@@ -236,6 +246,8 @@ void emit_held_leftover(const struct emitter *e);                 /* which opera
 void emit_passing(const struct emitter *e);                       /* ... and pass(), across a change */
 /* declares i and load states; x[...] = what the series advances */
 void emit_series_vector(const struct emitter *e);
+const char *step_operand(const struct emitter *e, const struct operand *operand); /* NULL: the constant 1 */
+void emit_assignment(const struct emitter *e, const struct assignment *a);
 /* in a step that is no list of assignments: what only adds up is 0 over it */
 void emit_set_aside(const struct emitter *e);
 void emit_take_back(const struct emitter *e);

@@ -103,6 +103,16 @@ static double output_factor(const struct output *output, mpq_srcptr factor)
 	return round_rational(factor);
 }
 
+/* Its part of the states is a row over the modes. */
+static bool seen_of_modes(const struct emitter *e, const struct output *output)
+{
+	const struct model *model = e->model;
+	bool any = false;
+	for (int i = 0; i < e->system->states; i++)
+		any = any || mpq_sgn(output->state[i]) != 0;
+	return any && e->step->modal && output >= model->output && output < model->output + model->outputs;
+}
+
 static const char *linear_output(const struct emitter *e, const struct output *output)
 {
 	const struct linear *system = e->system;
@@ -111,7 +121,10 @@ static const char *linear_output(const struct emitter *e, const struct output *o
 		return tuned;
 	int most = system->states + load_columns(system) + 2 * system->inputs + e->model->channels, terms = 0;
 	const char **term = ARRAY(const char *, (size_t)most + 1);
-	for (int i = 0; i < system->states; i++)
+	const bool modes = seen_of_modes(e, output);
+	if (modes)
+		term[terms++] = spell(e, "$n_dot($n_seen[%d], s->y)", (int)(output - e->model->output));
+	for (int i = 0; i < system->states && !modes; i++)
 		if (mpq_sgn(output->state[i]) != 0)
 			term[terms++] = scaled(output_factor(output, output->state[i]), e->local[i]);
 	for (int l = 0, column = 0; l < system->loads; l++)
@@ -150,7 +163,7 @@ static void mark_row(const struct emitter *e, const struct output *output, struc
 		mark_tuned_row(e, output, needs);
 		return;
 	}
-	for (int i = 0; i < e->system->states; i++)
+	for (int i = 0; i < e->system->states && !seen_of_modes(e, output); i++)
 		needs->reads[i] = needs->reads[i] || mpq_sgn(output->state[i]) != 0;
 	for (int l = 0; l < e->system->loads; l++)
 		for (int k = 0; k < e->system->load[l].columns; k++)

@@ -14,7 +14,7 @@ const char *input_operand(const struct emitter *e, int column)
 	return NULL;
 }
 
-static const char *operand_text(const struct emitter *e, const struct operand *operand)
+const char *step_operand(const struct emitter *e, const struct operand *operand)
 {
 	switch (operand->kind) {
 	case OPERAND_STATE: return e->local[operand->index];
@@ -26,7 +26,7 @@ static const char *operand_text(const struct emitter *e, const struct operand *o
 /* A load that changes has its factors in a table, one row for each segment of time. */
 static const char *term_text(const struct emitter *e, const struct assignment *a, const struct product *p)
 {
-	const char *operand = operand_text(e, &p->operand);
+	const char *operand = step_operand(e, &p->operand);
 	bool tuned = e->step->program->tuned;
 	if (!tuned && (p->operand.kind != OPERAND_LOAD || e->system->segments == 1))
 		return scaled(p->factor->value, operand);
@@ -50,7 +50,7 @@ static const char *second_sum_text(const struct emitter *e, const struct assignm
 	int terms = 0;
 	for (int k = 0; k < a->terms; k++)
 		if (has_second_word(&a->term[k], e->system))
-			term[terms++] = scaled(a->term[k].factor->low, operand_text(e, &a->term[k].operand));
+			term[terms++] = scaled(a->term[k].factor->low, step_operand(e, &a->term[k].operand));
 	return terms ? tree(terms, term, 14) : NULL;
 }
 
@@ -65,7 +65,7 @@ static void emit_compensated(const struct emitter *e, const struct assignment *a
 	    a->carried ? "carry" : "rest", a->carried ? e->step->carry[a->target] : a->target);
 }
 
-static void emit_assignment(const struct emitter *e, const struct assignment *a)
+void emit_assignment(const struct emitter *e, const struct assignment *a)
 {
 	const struct program *program = e->step->program;
 	const char *target = program->in_order ? e->local[a->target] : format("s->y[%d]", a->target);
@@ -112,74 +112,20 @@ static bool any_load_term(const struct program *program)
 static void emit_load_factors(const struct emitter *e)
 {
 	const struct table *table = e->step->branch->whole;
-	bool loops = e->step->program->loops;
-	int columns = 0, cells = table->states * table->columns;
+	int cells = table->states * table->columns;
 	double *value = ARRAY(double, (size_t)cells);
-	for (int k = 0; k < table->columns; k++)
-		columns += !loops || !is_forced(e->step, k);
-	if (columns == 0)
-		return;
 	say(e, "\n"
 	       "/* Factors of the load states in each segment of time */\n"
 	       "static const double $n_load_factor[%d][$N_STATES][%d] = {\n",
-	    e->system->segments, columns);
+	    e->system->segments, table->columns);
 	for (int s = 0; s < e->system->segments; s++) {
-		int count = 0;
 		for (int i = 0; i < cells; i++)
-			if (!loops || !is_forced(e->step, i % table->columns))
-				value[count++] = table->load[s * cells + i].value;
+			value[i] = table->load[s * cells + i].value;
 		say(e, "  {\n");
-		emit_number_rows(e, table->states, columns, value, e->model->state_name);
+		emit_number_rows(e, table->states, table->columns, value, e->model->state_name);
 		say(e, "  },\n");
 	}
 	say(e, "};\n");
-}
-
-/* What --reduce has left nothing of for it to act on: it has no phase and no growth, and its factors are 0. */
-static bool is_gone(const struct emitter *e, int load)
-{
-	const struct wave *wave = e->system->load[load].wave;
-	return (oscillates(wave) && e->phase[load] < 0) || (mpq_sgn(wave->a) != 0 && e->growth[load] < 0);
-}
-
-static bool is_of_gone_load(const struct emitter *e, int column)
-{
-	int l = 0;
-	for (; column >= e->system->load[l].columns; l++)
-		column -= e->system->load[l].columns;
-	return is_gone(e, l);
-}
-
-/* The operands of the columns of a table that the step reads; returns how many */
-static int read_columns(const struct emitter *e, enum operand_kind kind, int columns, const char **operand)
-{
-	int count = 0;
-	for (int k = 0; k < columns; k++) {
-		const char *text = operand_text(e, &(struct operand){ kind, k });
-		if (kind == OPERAND_LOAD && is_forced(e->step, k))
-			continue;
-		bool gone = kind == OPERAND_LOAD && is_of_gone_load(e, k);
-		operand[count++] = gone ? "0.0" : text ? text : "1.0";
-	}
-	return count;
-}
-
-/* vector[...] = the operands of the columns of a table; then y[i] += table[i][...] vector[...] */
-static void emit_columns(const struct emitter *e, const char *table, const char *vector, enum operand_kind kind,
-			 int columns)
-{
-	const char **operand = ARRAY(const char *, (size_t)columns);
-	int count = read_columns(e, kind, columns, operand);
-	if (count == 0)
-		return;
-	say(e, "    const double %s[%d] = {", vector, count);
-	for (int k = 0; k < count; k++)
-		say(e, "%s%s", k ? ", " : "", operand[k]);
-	say(e, "};\n"
-	       "    for (i = 0; i < $N_STATES; i++)\n"
-	       "        for (j = 0; j < %d; j++)\n"
-	       "            y[i] += %s[i][j] * %s[j];\n",
-	    count, table, vector);
 }
 
 void emit_set_aside(const struct emitter *e)
@@ -203,58 +149,12 @@ void emit_take_back(const struct emitter *e)
 			    i, carry[i], i, carry[i]);
 }
 
-/* y = matrix s->y */
-static void emit_state_product(const struct emitter *e, const char *matrix)
-{
-	say(e, "    for (i = 0; i < $N_STATES; i++) {\n"
-	       "        y[i] = 0.0;\n"
-	       "        for (j = 0; j < $N_STATES; j++)\n"
-	       "            y[i] += %s[i][j] * s->y[j];\n"
-	       "    }\n",
-	    matrix);
-}
-
-static void emit_product(const struct emitter *e, const struct matrix_product *p)
-{
-	const char *segment = e->system->segments > 1 ? "s->segment" : "0";
-	const char *square = e->step->program->products_added ? spell(e, "$n_increment") : stepped_table(e, "Phi");
-	switch (p->kind) {
-	case OPERAND_STATE:
-		emit_state_product(e, square);
-		break;
-	case OPERAND_LOAD:
-		emit_columns(e, spell(e, "$n_load_factor[%s]", segment), "load", p->kind, p->columns);
-		break;
-	case OPERAND_INPUT:
-		emit_columns(e, stepped_table(e, "Gamma"), "input", p->kind, p->columns);
-		break;
-	}
-}
-
-/* A large model steps by loops over its tables: text that nobody would read is of no use. */
-static void emit_looped_step(const struct emitter *e)
-{
-	const struct program *program = e->step->program;
-	bool *loads = ARRAY(bool, (size_t)e->system->loads);
-	say(e, "    double y[$N_STATES];\n"
-	       "    int i, j;\n");
-	emit_set_aside(e);
-	for (int l = 0, column = 0; l < e->system->loads; column += e->system->load[l++].columns)
-		loads[l] = !is_forced(e->step, column) && !is_gone(e, l);
-	emit_load_states(e, loads, false);
-	for (int k = 0; k < program->products; k++)
-		emit_product(e, &program->product[k]);
-	say(e, "    for (i = 0; i < $N_STATES; i++)\n"
-	       "        s->y[i] %s y[i];\n",
-	    program->products_added ? "+=" : "=");
-	emit_take_back(e);
-}
-
 /* A step that no change of the loads interrupts */
 static void emit_plain_step(const struct emitter *e)
 {
 	const struct program *program = e->step->program;
 	if (program->loops) {
+		emit_load_states(e, loads_of_step(e), false);
 		emit_looped_step(e);
 		return;
 	}
@@ -323,7 +223,8 @@ static void emit_plain_changes(const struct emitter *e)
 
 static void emit_changing_step(const struct emitter *e)
 {
-	if (any_load_term(e->step->program) && !e->step->program->loops && !e->step->program->tuned)
+	const struct program *program = e->step->program;
+	if (program->loops ? rows_read_changing_loads(e) : any_load_term(program) && !program->tuned)
 		emit_load_factors(e);
 	say(e, "\n"
 	       "static void $n_plain_step(%s)\n"
@@ -344,24 +245,9 @@ static void emit_changing_step(const struct emitter *e)
 	say(e, "}\n");
 }
 
-/* Phi - I, for a step that loops */
-static void emit_increments(const struct emitter *e)
-{
-	int n = e->system->states;
-	double *value = ARRAY(double, (size_t)(n * n));
-	for (int i = 0; i < n * n; i++)
-		value[i] = e->step->branch->whole->increment[i].value;
-	say(e, "\nstatic const double $n_increment[$N_STATES][$N_STATES] = {  /* Phi - I, rounded as it is */\n");
-	emit_number_rows(e, n, n, value, e->model->state_name);
-	say(e, "};\n");
-}
-
 void emit_step(const struct emitter *e)
 {
-	if (e->step->program->loops && e->step->form == FORM_DELTA)
-		emit_increments(e);
-	if (e->step->program->loops && e->step->branch->whole->columns)
-		emit_load_factors(e);
+	emit_groups(e);
 	if (e->system->segments > 1) {
 		emit_changing_step(e);
 		return;

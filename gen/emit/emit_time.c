@@ -378,7 +378,7 @@ static void emit_leap_from_velocities(const struct emitter *e)
 
 static void emit_leap_start(const struct emitter *e)
 {
-	if (e->step->momenta) {
+	if (e->step->momenta || e->step->modal) {
 		emit_leap_from_velocities(e);
 		return;
 	}
@@ -396,7 +396,7 @@ static void emit_leap_start(const struct emitter *e)
 
 static void emit_leap_end(const struct emitter *e)
 {
-	if (e->step->momenta) {
+	if (e->step->momenta || e->step->modal) {
 		say(e, "    for (i = 0; i < $N_STATES; i++)\n"
 		       "        y[i] = x[i].hi;\n");
 		emit_set_state(e, "y", "    ");
@@ -426,7 +426,7 @@ static void emit_leap(const struct emitter *e, const char *declaration)
 	       "{\n"
 	       "    pl_two power[%d], work[%d], x[%d], w[%d];\n",
 	    declaration, size * size, size * size, size, size);
-	if (e->step->momenta)
+	if (e->step->momenta || e->step->modal)
 		say(e, "    double y[$N_STATES];\n");
 	emit_load_states(e, wanted_loads(e, leap.load), false);
 	say(e, "    int i, j;\n");

@@ -21,16 +21,6 @@ static bool never(const struct step *step)
 
 /* ---- linear ---- */
 
-static bool loops(const struct step *step)
-{
-	return step->program->loops;
-}
-
-static bool loops_over_phi(const struct step *step)
-{
-	return step->program->loops && step->form == FORM_DIRECT;
-}
-
 static const char *far_pole(const struct step *step)
 {
 	return step->series.emitted ? NULL : "the largest |pole| times h is above 8";
@@ -75,8 +65,7 @@ static const struct kind linear = {
 	.declare_more = nothing,
 	.start = no_start,
 	.reads_load = no_further_load,
-	.reads_phi = loops_over_phi,
-	.reads_gamma = loops,
+	.reads_phi = never,
 	.tables = emit_times_of_changes,
 	.pass = emit_pass_of_changes,
 	.step = emit_step,
@@ -133,8 +122,7 @@ static const struct kind tuned = {
 	.own_factors = true,
 	.start = emit_nominal_start,
 	.reads_load = any_load,
-	.reads_phi = loops_over_phi,
-	.reads_gamma = loops,
+	.reads_phi = never,
 	.tables = emit_tuned_tables,
 	.pass = emit_retune,
 	.step = emit_step,
@@ -209,7 +197,6 @@ static const struct kind regions = {
 	.places = true,
 	.reads_load = regions_read_load,
 	.reads_phi = never,
-	.reads_gamma = never,
 	.tables = emit_region_tables,
 	.pass = emit_pass_of_changes,
 	.step = emit_regions_step,
@@ -259,7 +246,6 @@ static const struct kind leftover = {
 	.start = no_start,
 	.reads_load = no_further_load,
 	.reads_phi = flows_whole,
-	.reads_gamma = never,
 	.tables = emit_times_of_changes,
 	.pass = emit_pass_of_changes,
 	.step = emit_actions_step,

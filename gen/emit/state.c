@@ -71,7 +71,7 @@ static void write_locals(const struct emitter *e, const bool *reads, const char 
 			 bool velocities)
 {
 	const char *list = "";
-	bool forced = velocities && e->step->forced;    /* then the vector is whole */
+	bool forced = velocities && (e->step->forced || e->step->modal);        /* then the vector is whole */
 	for (int i = 0; i < e->system->states; i++) {
 		const char *mass = velocities && !forced ? factor_of_momentum(e, i) : NULL;
 		if (reads[i])
@@ -86,10 +86,11 @@ void emit_locals(const struct emitter *e, const bool *reads)
 	bool any = false;
 	for (int i = 0; i < e->system->states; i++)
 		any = any || reads[i];
-	if (e->step->forced && any)
+	bool whole = e->step->forced || e->step->modal;
+	if (whole && any)
 		say(e, "    double now[$N_STATES];\n"
 		       "    $n_%s(s, now);\n", e->model->relative ? "kept" : "get");
-	write_locals(e, reads, "const double", e->step->forced ? "now" : "s->y", true);
+	write_locals(e, reads, "const double", whole ? "now" : "s->y", true);
 }
 
 void emit_raw_locals(const struct emitter *e, const bool *reads, bool changing)
@@ -116,6 +117,11 @@ const char *of_step(const struct emitter *e, const char *table)
 void emit_set_state(const struct emitter *e, const char *vector, const char *indent)
 {
 	bool rest = e->step->program->compensated;
+	if (e->step->modal) {
+		say(e, "%sfor (i = 0; i < $N_STATES; i++)\n"
+		       "%s    s->y[i] = $n_dot($n_to_modes[i], %s);\n", indent, indent, vector);
+		return;
+	}
 	say(e, "%sfor (i = 0; i < $N_STATES; i++)%s\n"
 	       "%s    s->y[i] = %s[i];\n", indent, rest ? " {" : "", indent, vector);
 	if (rest)
@@ -159,6 +165,11 @@ void emit_get_state(const struct emitter *e, const char *vector)
 
 void emit_get_kept_state(const struct emitter *e, const char *vector)
 {
+	if (e->step->modal) {
+		say(e, "    for (i = 0; i < $N_STATES; i++)\n"
+		       "        %s[i] = $n_dot($n_from_modes[i], s->y);\n", vector);
+		return;
+	}
 	say(e, "    for (i = 0; i < $N_STATES; i++)\n"
 	       "        %s[i] = s->y[i];\n", vector);
 	for (int i = 0; i < e->system->states; i++)

@@ -175,7 +175,7 @@ struct mtx *mtx_read(const char *path, struct place at);    /* `at`: what names 
 
 /* ---- schemes.c: the schemes and the forms of a step ---- */
 
-enum step_form { FORM_AUTO, FORM_DIRECT, FORM_DELTA, FORM_KICK_DRIFT_KICK, STEP_FORMS };
+enum step_form { FORM_AUTO, FORM_DIRECT, FORM_DELTA, FORM_KICK_DRIFT_KICK, FORM_MODAL, STEP_FORMS };
 #define SCHEME(id, recipe, ...) SCHEME_##id,
 enum scheme {
 #include "read/schemes.def"

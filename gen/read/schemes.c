@@ -94,7 +94,7 @@ const char *scheme_note(enum scheme scheme)
 
 /* ---- forms ---- */
 
-static const char *const names[STEP_FORMS] = { "auto", "direct", "delta", "kick-drift-kick" };
+static const char *const names[STEP_FORMS] = { "auto", "direct", "delta", "kick-drift-kick", "modal" };
 
 const char *step_form_name(enum step_form form)
 {

@@ -206,23 +206,54 @@ static void print_assignment(FILE *to, const struct step *step, const struct ass
 	fprintf(to, "%s%s\n", a->terms ? "" : " 0", a->carried ? "        # what rounding takes is kept" : "");
 }
 
-static void print_products(FILE *to, const struct step *step)
+static const char *states_of_group(const struct step *step, const struct group *g, int block)
 {
-	static const char *const operands[] = {
-		[OPERAND_STATE] = "y", [OPERAND_LOAD] = "loads", [OPERAND_INPUT] = "inputs"
-	};
-	const struct program *program = step->program;
-	const struct table *whole = step->branch->whole;
-	fprintf(to, "A loop over all states:\n    y %s", program->products_added ? "+=" : "=");
-	for (int k = 0; k < program->products; k++) {
-		const struct matrix_product *p = &program->product[k];
-		const char *name = p->factor == whole->increment ? "(Phi - I)"
-				   : p->factor == whole->Phi	 ? "Phi"
-								 : "columns";
-		fprintf(to, "%s %s %d x %d times %s", k ? " +" : "", name, whole->states, p->columns,
-			operands[p->kind]);
-	}
+	enum { SHOWN = 4 };
+	const char *text = "";
+	for (int i = 0; i < g->states && i < SHOWN; i++)
+		text = format("%s%s%s", text, i ? ", " : "", state_text(step, g->state[i * g->blocks + block]));
+	return g->states > SHOWN ? format("%s, ...", text) : text;
+}
+
+static void print_group(FILE *to, const struct step *step, const struct group *g)
+{
+	const int acting = g->loads + g->inputs;
+	const char *added = step->program->products_added ? "y += (Phi - I) y" : "y = Phi y";
+	if (g->kind == GROUP_COLUMNS)
+		fprintf(to, "    %s of %d states by columns", added, g->states);
+	else if (g->kind == GROUP_ALIKE)
+		fprintf(to, "    %s of %d blocks alike of %d states, in a loop", added, g->blocks, g->states);
+	fprintf(to, acting ? ", %d column%s of loads and inputs: " : ": ", acting, acting == 1 ? "" : "s");
+	fputs(states_of_group(step, g, 0), to);
+	if (g->blocks > 1)
+		fprintf(to, " to %s", states_of_group(step, g, g->blocks - 1));
 	fputc('\n', to);
+}
+
+static bool is_of_group(const struct group *g, int state)
+{
+	for (int i = 0; i < g->states * g->blocks; i++)
+		if (g->state[i] == state)
+			return true;
+	return false;
+}
+
+static void print_groups(FILE *to, const struct step *step)
+{
+	const struct program *program = step->program;
+	if (step->modal)
+		fprintf(to, "Modes: %d pairs of real and imaginary part, turned and damped; %d that are real\n",
+			step->modal->pairs, step->modal->reals);
+	else
+		fprintf(to, "Independent blocks, all of which read the old state:\n");
+	for (int k = 0; k < program->groups; k++) {
+		const struct group *g = &program->group[k];
+		if (g->kind != GROUP_ROWS)
+			print_group(to, step, g);
+		for (int i = 0; i < program->assignments && g->kind == GROUP_ROWS; i++)
+			if (is_of_group(g, program->assignment[i].target))
+				print_assignment(to, step, &program->assignment[i]);
+	}
 }
 
 static void print_list(FILE *to, const struct step *step)
@@ -235,7 +266,7 @@ static void print_list(FILE *to, const struct step *step)
 		fprintf(to, "Factors of loads change %d time%s; these are those before.\n",
 			step->branch->system.segments - 1, step->branch->system.segments == 2 ? "" : "s");
 	if (program->loops) {
-		print_products(to, step);
+		print_groups(to, step);
 		return;
 	}
 	fprintf(to, "Assignments, %s%s:\n",

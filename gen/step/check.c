@@ -80,12 +80,32 @@ static void check_assignment(const struct check *c, const struct assignment *a)
 		check_operand(c, &a->term[k]);
 }
 
-/* Its factors stand in a matrix of the table, whose columns are all there. */
-static void check_product(const struct check *c, const struct matrix_product *p)
+static void check_group(const struct check *c, const struct group *g, bool *stepped)
 {
 	const struct table *table = c->step->branch->whole;
-	need(c, p->factor, "a matrix is not there");
-	need(c, p->columns == operands_of(table, p->kind), "a matrix with columns for another number of operands");
+	need(c, g->kind == GROUP_ALIKE || g->blocks == 1, "several blocks where there is one");
+	for (int i = 0; i < g->states * g->blocks; i++) {
+		need(c, among(g->state[i], table->states), "a state that is out of range");
+		need(c, !stepped[g->state[i]], "a state is stepped twice");
+		stepped[g->state[i]] = true;
+	}
+	for (int k = 0; k < g->loads; k++)
+		need(c, among(g->load[k], table->columns), "a load that is out of range");
+	for (int k = 0; k < g->inputs; k++)
+		need(c, among(g->input[k], table->inputs), "an input that is out of range");
+}
+
+/* Every state stands in one group, and nothing acts from the one on the other. */
+static void check_groups(struct check *c)
+{
+	const struct table *table = c->step->branch->whole;
+	bool *stepped = ARRAY(bool, (size_t)table->states);
+	for (int k = 0; k < c->program->groups; k++) {
+		c->where = format("group %d", k);
+		check_group(c, &c->program->group[k], stepped);
+	}
+	for (int i = 0; i < table->states; i++)
+		need(c, stepped[i], "a state is not stepped");
 }
 
 static void check_list(struct check *c)
@@ -100,9 +120,9 @@ static void check_list(struct check *c)
 		written[a->target] = true;
 	}
 	c->where = "loops";
-	need(c, program->loops == (program->products > 0), "a step loops over matrices, or it has none");
-	for (int k = 0; k < program->products; k++)
-		check_product(c, &program->product[k]);
+	need(c, program->loops == (program->groups > 0 || c->step->modal), "a step loops over groups, or it has none");
+	if (program->groups)
+		check_groups(c);
 	need(c, !program->loops || !(program->in_order || program->compensated),
 	     "a step of a form that is not built with loops");
 	need(c, !program->tuned || c->step->model->tuning, "factors of tunable params, and there are none");

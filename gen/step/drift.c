@@ -174,6 +174,8 @@ struct drift drift_of(const struct step *step)
 	struct drift drift = { 0, 0, false };
 	struct mode *eigenvalue, *pole;
 	mpz_t content;
+	if (step->modal)
+		return step->modal->drift;
 	if (step->program->loops || has_leftover(step) || step->model->switching ||
 	    scheme_row(step->model->scheme)->holds_coupling)
 		return drift;

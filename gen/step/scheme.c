@@ -108,6 +108,9 @@ static void build_exact(struct step *step)
 		mark_tuned_zeros(step);
 	find_carries(step);
 	step->program = linear_program(step);
+	plan_modal(step);
+	if (step->modal)
+		return;
 	plan_forced(step);
 	if (step->forced)
 		step->program = linear_program(step);

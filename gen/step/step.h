@@ -134,10 +134,18 @@ struct assignment {                 /* target <- sum of products */
 	int terms;
 	struct product *term;
 };
-struct matrix_product {             /* of a step that loops: a matrix times the vector of operands of this kind */
-	const struct coefficient *factor; /* states x columns; of loads: [segment of time][states x columns] */
-	enum operand_kind kind;
-	int columns;
+/* Of a step that loops: independent blocks that are stepped in one way */
+enum group_kind {
+	GROUP_ROWS,                 /* one small block: its assignments */
+	GROUP_ALIKE,                /* small ones of one shape, each with factors of its own: one loop over them */
+	GROUP_COLUMNS               /* one block: a matrix by its columns */
+};
+struct group {
+	enum group_kind kind;
+	int states, blocks;         /* states of a block; how many blocks there are */
+	int *state;                 /* [states][blocks]: which it is; all blocks alike but for where they start */
+	int loads, *load;           /* columns of loads that act on it, */
+	int inputs, *input;         /* and of inputs */
 };
 /* A step of a scheme that leaves something over is a list of actions on vectors: stages are states (0: the state
  * itself), lefts are leftovers. */
@@ -166,10 +174,10 @@ struct program {
 	int oscillators, growths;   /* cos/sin pairs and exponentials evaluated per step */
 	int wave_multiplications, wave_additions; /* for them, counted below too */
 	int multiplications, additions, calls; /* calls: of the model's own functions */
-	bool loops;                 /* over the tables, zeros included: a large model */
-	/* of a list that loops: what its assignments are rows of; loads that are forced are left out */
-	int products;
-	struct matrix_product product[3];
+	bool loops;                 /* over tables: a large model */
+	/* of a list that loops: how its assignments are done, by blocks */
+	int groups;
+	struct group *group;
 	bool products_added;        /* to the state */
 	bool tuned;                 /* factors are read from the instance's coefficients */
 	int actions;                /* 0: assignments */
@@ -241,8 +249,9 @@ struct step {                       /* everything that is emitted for one model 
 	struct branch *branch;
 	int tables;                 /* of each; 1 where nothing is left over */
 	struct program *program;
-	enum step_form form;        /* FORM_DIRECT, FORM_DELTA or FORM_KICK_DRIFT_KICK */
+	enum step_form form;        /* any but FORM_AUTO */
 	const mpq_t *mass;          /* of kick-drift-kick, per coordinate; in units of the first */
+	struct modal *modal;        /* NAME keeps modal states; NULL: of another form */
 	bool momenta;               /* NAME keeps mass times velocity, since not all masses are equal */
 	/* states that nothing leads back from, which only add up: index of what rounding takes from each; -1: of
 	 * others */
@@ -392,16 +401,41 @@ void find_carries(struct step *step);
 struct program *linear_program(const struct step *step);    /* from its table */
 /* in the code: loads that change have none */
 bool has_second_word(const struct product *p, const struct linear *system);
+bool is_constant_column(const struct linear *system, int column); /* of the loads: it is 1 */
+
+/* ---- large.c: a large step by its independent blocks ---- */
+
+void find_groups(struct program *program, const struct step *step);     /* and what they cost */
+/* of a block's row; a state is one of the block */
+const struct coefficient *group_factor(const struct step *step, const struct group *g, int row, int block,
+				       const struct operand *operand, int segment);
+/* In some segment of time, of some block: else it leaves no trace. */
+bool group_acts(const struct step *step, const struct group *g, int row, const struct operand *operand);
 
 /* ---- drift.c: what the rounding of its constants does to a linear step ---- */
 
 struct drift {                      /* per step, of the mode where it is largest */
 	double amplitude;           /* ln|z| - Re p h */
 	double phase;               /* |arg z - Im p h| [rad] */
-	bool known;                 /* nothing is left over, and the step does not loop over tables */
+	bool known;                 /* nothing is left over, and the step does not loop over Phi */
 };
 struct drift drift_of(const struct step *step);
 const char *drift_text(const struct drift *drift);          /* over 1e9 steps */
+
+/* ---- modal.c: a step of modes instead of states ---- */
+
+struct modal {                      /* modal states: the real parts of the pairs, their imaginary parts, what is real */
+	int states, pairs, reals, loads, inputs;
+	double *turn;               /* e^{p h}, as the modal states stand */
+	double *to, *from;          /* modal states from states, and back; states x states */
+	double *load, *input;       /* what a step adds; states x columns */
+	double *output;             /* outputs x states: what of them is linear; NULL: they are the states */
+	struct drift drift;
+	double condition;           /* what rounding gains that goes through both, 1 at best */
+};
+const char *modal_objection(const struct step *step);        /* what stands against it; NULL: nothing */
+struct modal *modal_of(const struct step *step);             /* NULL: a number is not decided */
+void plan_modal(struct step *step);                          /* where it is asked for, or cheaper and as exact */
 
 /* ---- tuned_zeros.c: factors that are 0 whatever the tunable params are ---- */
 

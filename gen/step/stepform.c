@@ -159,7 +159,9 @@ static enum step_form best_form(struct step *step)
 void choose_form(struct step *step)
 {
 	const struct model *model = step->model;
-	step->form = model->asked.form == FORM_AUTO ? best_form(step) : model->asked.form;
+	step->form = model->asked.form == FORM_AUTO ? best_form(step)
+		     : model->asked.form == FORM_MODAL ? FORM_DIRECT  /* until plan_modal */
+						       : model->asked.form;
 	if (model->asked.form == FORM_KICK_DRIFT_KICK) {
 		const char *objection = kick_objection(step);
 		if (objection)
@@ -294,16 +296,18 @@ static bool is_identity(const struct assignment *a)
 	       a->term[0].factor->value == 1;
 }
 
-/* A load that is added as it is */
-static bool is_constant_load(const struct product *p, const struct linear *system)
+bool is_constant_column(const struct linear *system, int column)
 {
-	int column = p->operand.index;
-	if (p->operand.kind != OPERAND_LOAD)
-		return false;
 	for (int l = 0; l < system->loads && column >= 0; column -= system->load[l++].columns)
 		if (column == 0 && is_polynomial(system->load[l].wave))
 			return true;
 	return false;
+}
+
+/* A load that is added as it is */
+static bool is_constant_load(const struct product *p, const struct linear *system)
+{
+	return p->operand.kind == OPERAND_LOAD && is_constant_column(system, p->operand.index);
 }
 
 static bool is_unit(const struct product *p, const struct linear *system)
@@ -434,29 +438,6 @@ static void write_kick_drift_kick(struct program *program, const struct step *st
 	}
 }
 
-static void add_product(struct program *program, const struct coefficient *factor, enum operand_kind kind, int columns)
-{
-	if (columns)
-		program->product[program->products++] = (struct matrix_product){ factor, kind, columns };
-}
-
-/* A large model loops over its tables, zeros included. */
-static void count_loops(struct program *program, const struct step *step)
-{
-	const struct table *table = step->branch->whole;
-	int columns = 0;
-	for (int k = 0; k < table->columns; k++)
-		columns += !is_forced(step, k);
-	int n = table->states, row = n + columns + table->inputs;
-	program->loops = true;
-	program->products_added = step->form == FORM_DELTA;
-	add_product(program, program->products_added ? table->increment : table->Phi, OPERAND_STATE, n);
-	add_product(program, table->load, OPERAND_LOAD, table->columns);
-	add_product(program, table->input, OPERAND_INPUT, table->inputs);
-	program->multiplications = n * row + program->wave_multiplications;
-	program->additions = n * row + program->wave_additions;
-}
-
 struct program *linear_program(const struct step *step)
 {
 	const struct table *table = step->branch->whole;
@@ -472,7 +453,10 @@ struct program *linear_program(const struct step *step)
 	else
 		write_kick_drift_kick(program, step);
 	count(program, &step->branch->system, step->model->asked.single);
-	if (table->states > LIMIT_UNROLLED_STATES)
-		count_loops(program, step);
+	if (table->states > LIMIT_UNROLLED_STATES) {
+		program->loops = true;
+		program->products_added = step->form == FORM_DELTA;
+		find_groups(program, step);
+	}
 	return program;
 }

@@ -1,0 +1,414 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The step of a large model by its independent blocks: rows as everywhere; a loop over blocks that are alike; the
+ * columns of a large block's matrix, summed in a form that compilers make vectors of. */
+#include "emit/emit.h"
+
+enum {
+	ROW_MULTIPLE = 8,           /* columns are as long: no vector has a rest */
+	COLUMNS_AT_ONCE = 4
+};
+
+static int padded(int count, int multiple)
+{
+	return (count + multiple - 1) / multiple * multiple;
+}
+
+static bool changes(const struct emitter *e, const struct group *g)
+{
+	return e->system->segments > 1 && g->loads > 0;
+}
+
+/* Loads and inputs: those of a group are handed to its function in one vector. */
+static int acting(const struct group *g)
+{
+	return g->loads + g->inputs;
+}
+
+static struct operand acting_operand(const struct group *g, int k)
+{
+	return k < g->loads ? (struct operand){ OPERAND_LOAD, g->load[k] }
+			    : (struct operand){ OPERAND_INPUT, g->input[k - g->loads] };
+}
+
+static double group_number(const struct emitter *e, const struct group *g, int row, int block,
+			const struct operand *operand, int segment)
+{
+	return group_factor(e->step, g, row, block, operand, segment)->value;
+}
+
+static const char *matrix_name(const struct emitter *e)
+{
+	return e->step->program->products_added ? "Phi - I" : "Phi";
+}
+
+static const char *name_of_column(const struct emitter *e, const struct operand *operand)
+{
+	if (operand->kind == OPERAND_INPUT)
+		return "an input";
+	int load = 0, column = operand->index;
+	while (column >= e->system->load[load].columns)
+		column -= e->system->load[load++].columns;
+	return column_text(&e->system->load[load], column);
+}
+
+/* ---- a large block by its columns ---- */
+
+/* One column of the table: its factors row by row, 0 behind the last */
+static void fill_column(const struct emitter *e, const struct group *g, const struct operand *operand, int segment,
+			double *value)
+{
+	for (int i = 0; i < g->states; i++)
+		value[i] = group_number(e, g, i, 0, operand, segment);
+}
+
+static void emit_column_table(const struct emitter *e, const struct group *g, int index)
+{
+	const int rows = padded(g->states, ROW_MULTIPLE), first = changes(e, g) ? g->loads : 0;
+	const int operands = g->states + acting(g) - first, columns = padded(operands, COLUMNS_AT_ONCE);
+	double *value = ARRAY(double, (size_t)(rows * columns));
+	const char **note = ARRAY(const char *, (size_t)columns);
+	for (int k = 0; k < columns; k++) {
+		const struct operand operand = k < g->states ? (struct operand){ OPERAND_STATE, k }
+					       : k < operands ? acting_operand(g, first + k - g->states)
+							      : (struct operand){ 0 };
+		note[k] = k < g->states ? e->model->state_name[g->state[k]]
+			  : k < operands ? name_of_column(e, &operand) : "none";
+		if (k < operands)
+			fill_column(e, g, &operand, 0, &value[k * rows]);
+	}
+	say(e, "\n"
+	       "/* %s by columns%s, each padded to %d rows */\n"
+	       "static const double $n_columns%d[%d][%d] = {\n",
+	    matrix_name(e), acting(g) > first ? ", then those of what acts on it" : "", rows, index, columns, rows);
+	emit_number_rows(e, columns, rows, value, note);
+	say(e, "};\n");
+}
+
+static void emit_changing_columns(const struct emitter *e, const struct group *g, int index)
+{
+	const int rows = padded(g->states, ROW_MULTIPLE), columns = padded(g->loads, COLUMNS_AT_ONCE);
+	const char **note = ARRAY(const char *, (size_t)columns);
+	say(e, "\n"
+	       "/* The columns of its loads, in each segment of time */\n"
+	       "static const double $n_loads%d[%d][%d][%d] = {\n",
+	    index, e->system->segments, columns, rows);
+	for (int s = 0; s < e->system->segments; s++) {
+		double *value = ARRAY(double, (size_t)(rows * columns));
+		for (int k = 0; k < columns; k++) {
+			const struct operand operand = { OPERAND_LOAD, k < g->loads ? g->load[k] : 0 };
+			note[k] = k < g->loads ? name_of_column(e, &operand) : "none";
+			if (k < g->loads)
+				fill_column(e, g, &operand, s, &value[k * rows]);
+		}
+		say(e, "  {\n");
+		emit_number_rows(e, columns, rows, value, note);
+		say(e, "  },\n");
+	}
+	say(e, "};\n");
+}
+
+/* z += table times x */
+static void emit_column_sums(const struct emitter *e, const char *table, const char *x, int rows, int columns)
+{
+	say(e, "    for (j = 0; j < %d; j += %d) {\n"
+	       "        const double *const a = %s[j], *const b = %s[j + 1];\n"
+	       "        const double *const c = %s[j + 2], *const d = %s[j + 3];\n"
+	       "        const double p = %s[j], q = %s[j + 1], r = %s[j + 2], w = %s[j + 3];\n"
+	       "        for (i = 0; i < %d; i++)\n"
+	       "            z[i] += (a[i] * p + b[i] * q) + (c[i] * r + d[i] * w);\n"
+	       "    }\n",
+	    columns, COLUMNS_AT_ONCE, table, table, table, table, x, x, x, x, rows);
+}
+
+static bool in_a_row(const struct group *g)
+{
+	for (int i = 1; i < g->states; i++)
+		if (g->state[i] != g->state[0] + i)
+			return false;
+	return true;
+}
+
+static void emit_places(const struct emitter *e, const char *name, int index, int count, const int *place)
+{
+	say(e, "\nstatic const unsigned short $n_%s%d[%d] = {", name, index, count);
+	for (int i = 0; i < count; i++)
+		say(e, "%s%d", !i ? "" : i % 20 ? ", " : ",\n    ", place[i]);
+	say(e, "};\n");
+}
+
+static const char *place_of_row(const struct emitter *e, const struct group *g, int index)
+{
+	if (!in_a_row(g))
+		return spell(e, "$n_states%d[i]", index);
+	return g->state[0] ? format("%d + i", g->state[0]) : "i";
+}
+
+static void emit_parameters(const struct emitter *e, const struct group *g, const char *kind, int index)
+{
+	say(e, "\nstatic void $n_%s%d_step($n *s%s)\n"
+	       "{\n", kind, index, acting(g) ? format(", const double act[%d]", acting(g)) : "");
+}
+
+/* act[from ...] to x[to ...], and 0 up to the end */
+static void emit_acting(const struct emitter *e, const char *x, int to, int from, int count, int end)
+{
+	if (count > 0)
+		say(e, "    for (i = 0; i < %d; i++)\n"
+		       "        %s[%s] = act[%s];\n",
+		    count, x, to ? format("%d + i", to) : "i", from ? format("%d + i", from) : "i");
+	for (int k = to + count; k < end; k++)
+		say(e, "    %s[%d] = 0.0;\n", x, k);
+}
+
+static void emit_columns_function(const struct emitter *e, const struct group *g, int index)
+{
+	const int rows = padded(g->states, ROW_MULTIPLE), first = changes(e, g) ? g->loads : 0;
+	const int operands = g->states + acting(g) - first, columns = padded(operands, COLUMNS_AT_ONCE);
+	const int loads = padded(first, COLUMNS_AT_ONCE);
+	const char *place = place_of_row(e, g, index);
+	emit_parameters(e, g, "columns", index);
+	say(e, "    double x[%d], z[%d];\n", columns, rows);
+	if (loads)
+		say(e, "    const double (*const changing)[%d] = $n_loads%d[s->segment];\n"
+		       "    double load[%d];\n", rows, index, loads);
+	say(e, "    int i, j;\n"
+	       "    for (i = 0; i < %d; i++)\n"
+	       "        x[i] = s->y[%s];\n",
+	    g->states, place);
+	emit_acting(e, "x", g->states, first, operands - g->states, columns);
+	emit_acting(e, "load", 0, 0, first, loads);
+	say(e, "    for (i = 0; i < %d; i++)\n"
+	       "        z[i] = 0.0;\n",
+	    rows);
+	emit_column_sums(e, spell(e, "$n_columns%d", index), "x", rows, columns);
+	if (loads)
+		emit_column_sums(e, "changing", "load", rows, loads);
+	say(e, "    for (i = 0; i < %d; i++)\n"
+	       "        s->y[%s] %s z[i];\n"
+	       "}\n",
+	    g->states, place, e->step->program->products_added ? "+=" : "=");
+}
+
+/* ---- blocks that are alike ---- */
+
+/* The terms of a row; one that acts on some block has a place in the table. */
+struct alike_term {
+	int row;
+	struct operand operand;
+	int acting;                 /* place among what acts; -1: a state of the block */
+};
+
+static int alike_terms(const struct emitter *e, const struct group *g, int row, bool changing, struct alike_term *term)
+{
+	int terms = 0;
+	for (int k = 0; k < g->states + acting(g); k++) {
+		const int act = k - g->states;
+		const struct operand operand = act < 0 ? (struct operand){ OPERAND_STATE, k } : acting_operand(g, act);
+		const bool other = operand.kind == OPERAND_LOAD && changes(e, g);
+		if (other == changing && group_acts(e->step, g, row, &operand))
+			term[terms++] = (struct alike_term){ row, operand, act < 0 ? -1 : act };
+	}
+	return terms;
+}
+
+static int all_terms(const struct emitter *e, const struct group *g, bool changing, struct alike_term *term)
+{
+	int terms = 0;
+	for (int i = 0; i < g->states; i++)
+		terms += alike_terms(e, g, i, changing, term + terms);
+	return terms;
+}
+
+static void emit_alike_rows(const struct emitter *e, const struct group *g, int terms, const struct alike_term *term,
+			    int segment)
+{
+	double *value = ARRAY(double, (size_t)(terms * g->blocks));
+	const char **note = ARRAY(const char *, (size_t)terms);
+	for (int k = 0; k < terms; k++) {
+		const struct operand *operand = &term[k].operand;
+		const char *by = operand->kind == OPERAND_STATE
+					 ? e->model->state_name[g->state[operand->index * g->blocks]]
+					 : name_of_column(e, operand);
+		note[k] = format("%s by %s, and so on", e->model->state_name[g->state[term[k].row * g->blocks]], by);
+		for (int b = 0; b < g->blocks; b++)
+			value[k * g->blocks + b] = group_number(e, g, term[k].row, b, operand, segment);
+	}
+	emit_number_rows(e, terms, g->blocks, value, note);
+}
+
+static void emit_alike_tables(const struct emitter *e, const struct group *g, int index)
+{
+	struct alike_term *term = ARRAY(struct alike_term, (size_t)(g->states * (g->states + acting(g))));
+	int terms = all_terms(e, g, false, term);
+	if (terms) {
+		say(e, "\n"
+		       "/* %s of %d independent blocks alike: each term of theirs, block by block */\n"
+		       "static const double $n_alike%d[%d][%d] = {\n",
+		    matrix_name(e), g->blocks, index, terms, g->blocks);
+		emit_alike_rows(e, g, terms, term, 0);
+		say(e, "};\n");
+	}
+	terms = all_terms(e, g, true, term);
+	if (!terms)
+		return;
+	say(e, "\n"
+	       "/* What their loads add, in each segment of time */\n"
+	       "static const double $n_loads%d[%d][%d][%d] = {\n",
+	    index, e->system->segments, terms, g->blocks);
+	for (int s = 0; s < e->system->segments; s++) {
+		say(e, "  {\n");
+		emit_alike_rows(e, g, terms, term, s);
+		say(e, "  },\n");
+	}
+	say(e, "};\n");
+}
+
+/* From one block to the next; 0: at no constant distance */
+static int stride_of(const struct group *g)
+{
+	const int stride = g->state[1] - g->state[0];
+	for (int b = 1; b < g->blocks; b++)
+		if (g->state[b] - g->state[b - 1] != stride)
+			return 0;
+	return stride;
+}
+
+static const char *place_of_block(const struct emitter *e, const struct group *g, int row, int index)
+{
+	const int stride = stride_of(g), offset = stride ? g->state[row * g->blocks]
+							  : g->state[row * g->blocks] - g->state[0];
+	const char *block = stride == 0 ? spell(e, "$n_first%d[i]", index)
+			    : stride == 1 ? "i" : format("%d * i", stride);
+	return offset ? format("%d + %s", offset, block) : block;
+}
+
+static const char *alike_row(const struct emitter *e, const struct group *g, int row, int index, int *count)
+{
+	struct alike_term *term = ARRAY(struct alike_term, (size_t)(g->states + acting(g)));
+	const char **text = ARRAY(const char *, 2 * (size_t)(g->states + acting(g)));
+	int terms = 0;
+	for (int changing = 0; changing < 2; changing++) {
+		const int here = alike_terms(e, g, row, changing, term);
+		for (int k = 0; k < here; k++) {
+			const char *factor = changing ? format("changing[%d][i]", count[1]++)
+						      : spell(e, "$n_alike%d[%d][i]", index, count[0]++);
+			text[terms++] = format("%s * %s%d", factor, term[k].acting < 0 ? "y" : "act",
+					       term[k].acting < 0 ? term[k].operand.index : term[k].acting);
+		}
+	}
+	return terms ? tree(terms, text, 22) : NULL;
+}
+
+static void emit_alike_function(const struct emitter *e, const struct group *g, int index)
+{
+	int count[2] = { 0, 0 };
+	const bool added = e->step->program->products_added;
+	emit_parameters(e, g, "alike", index);
+	if (changes(e, g))
+		say(e, "    const double (*const changing)[%d] = $n_loads%d[s->segment];\n", g->blocks, index);
+	for (int k = 0; k < acting(g); k++)
+		say(e, "    const double act%d = act[%d];\n", k, k);
+	say(e, "    int i;\n"
+	       "    for (i = 0; i < %d; i++) {\n",
+	    g->blocks);
+	for (int row = 0; row < g->states; row++)
+		say(e, "        const double y%d = s->y[%s];\n", row, place_of_block(e, g, row, index));
+	for (int row = 0; row < g->states; row++) {
+		const char *sum = alike_row(e, g, row, index, count);
+		say(e, "        s->y[%s] = ", place_of_block(e, g, row, index));
+		if (added && sum)
+			say(e, "y%d + (%s);\n", row, sum);
+		else
+			say(e, "%s;\n", sum ? sum : added ? format("y%d", row) : "0.0");
+	}
+	say(e, "    }\n"
+	       "}\n");
+}
+
+/* ---- the whole ---- */
+
+static void emit_group(const struct emitter *e, const struct group *g, int index)
+{
+	if (g->kind == GROUP_COLUMNS) {
+		if (!in_a_row(g))
+			emit_places(e, "states", index, g->states, g->state);
+		emit_column_table(e, g, index);
+		if (changes(e, g))
+			emit_changing_columns(e, g, index);
+		emit_columns_function(e, g, index);
+	}
+	if (g->kind == GROUP_ALIKE) {
+		if (!stride_of(g))
+			emit_places(e, "first", index, g->blocks, g->state);
+		emit_alike_tables(e, g, index);
+		emit_alike_function(e, g, index);
+	}
+}
+
+bool rows_read_changing_loads(const struct emitter *e)
+{
+	const struct program *program = e->step->program;
+	for (int k = 0; k < program->groups; k++)
+		if (program->group[k].kind == GROUP_ROWS && changes(e, &program->group[k]))
+			return true;
+	return false;
+}
+
+void emit_groups(const struct emitter *e)
+{
+	for (int k = 0; k < e->step->program->groups; k++)
+		emit_group(e, &e->step->program->group[k], k);
+}
+
+static void emit_group_call(const struct emitter *e, const struct group *g, int index)
+{
+	if (acting(g)) {
+		say(e, "    const double driven%d[%d] = {", index, acting(g));
+		for (int k = 0; k < acting(g); k++) {
+			const struct operand operand = acting_operand(g, k);
+			const char *text = step_operand(e, &operand);
+			say(e, "%s%s", k ? ", " : "", text ? text : "1.0");
+		}
+		say(e, "};\n");
+	}
+}
+
+/* The rows' states under their names; the rows of all groups are done at once */
+static void emit_group_rows(const struct emitter *e)
+{
+	const struct program *program = e->step->program;
+	const int states = e->system->states;
+	bool *stepped = ARRAY(bool, (size_t)states), *reads = ARRAY(bool, (size_t)states);
+	for (int k = 0; k < program->groups; k++)
+		for (int i = 0; i < program->group[k].states && program->group[k].kind == GROUP_ROWS; i++)
+			stepped[program->group[k].state[i]] = true;
+	for (int i = 0; i < states; i++)
+		reads[i] = stepped[i] && program->reads[i];
+	emit_raw_locals(e, reads, false);
+	if (rows_read_changing_loads(e))
+		say(e, "    const double (*const factor)[%d] = $n_load_factor[s->segment];\n",
+		    e->step->branch->whole->columns);
+	for (int i = 0; i < program->assignments; i++)
+		if (stepped[program->assignment[i].target])
+			emit_assignment(e, &program->assignment[i]);
+}
+
+void emit_looped_step(const struct emitter *e)
+{
+	static const char *const kind[] = { [GROUP_ALIKE] = "alike", [GROUP_COLUMNS] = "columns" };
+	const struct program *program = e->step->program;
+	if (e->step->modal) {
+		emit_modal_step(e);
+		return;
+	}
+	for (int k = 0; k < program->groups; k++)
+		if (program->group[k].kind != GROUP_ROWS)
+			emit_group_call(e, &program->group[k], k);
+	emit_group_rows(e);
+	emit_set_aside(e);
+	for (int k = 0; k < program->groups; k++)
+		if (program->group[k].kind != GROUP_ROWS)
+			say(e, "    $n_%s%d_step(s%s);\n", kind[program->group[k].kind], k,
+			    acting(&program->group[k]) ? format(", driven%d", k) : "");
+	emit_take_back(e);
+}

@@ -1,0 +1,796 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The form modal: a step of modes instead of states. Each pole p of the upper half plane has one complex number z =
+ * w . y, of which a step is z <- e^{p h} z + loads; y = 2 Re sum of v z. v and w are the parts of the residue v w^T of
+ * (s I - A)^-1 at p: P(p) v = 0, u^T P(p) = 0, and over the coordinates and their velocities
+ *
+ *     v = (v, p v),   w = (u^T (M p + C), u^T M) / d,   d = u^T P'(p) v = u^T (2 M p + C) v
+ *
+ * all enclosed, and each number rounded once. v is scaled to 1 in its largest coordinate, so z is in units of one. */
+#include "step/step.h"
+
+#include <math.h>
+
+enum {
+	MODE_BITS = 320,            /* of the first enclosure; doubled while a number is not decided */
+	MODE_LIMIT = 2560,
+	NOTHING = 160               /* below 2^-160 of the largest in its vector, a part counts as 0 */
+};
+
+/* ---- what stands against it ---- */
+
+static bool simple_poles(const struct block *block)
+{
+	mpz_t content;
+	mpz_init(content);
+	struct resolvent *resolvent = resolvent_of(&block->system);
+	const struct spectrum *spectrum = spectrum_of(poly_primitive(*resolvent_determinant(resolvent), content));
+	mpz_clear(content);
+	bool simple = spectrum->zero <= 1;
+	for (int f = 0; f < spectrum->factors; f++)
+		simple = simple && spectrum->factor[f].multiplicity == 1;
+	return simple;
+}
+
+static const char *objection_of_loads(const struct linear *system)
+{
+	if (system->segments > 1)
+		return "loads change their formula";
+	for (int l = 0; l < system->loads; l++)
+		if (load_acts(system, &system->load[l]) && system->load[l].powers > 1)
+			return "a load has a power of t";
+	return NULL;
+}
+
+const char *modal_objection(const struct step *step)
+{
+	const struct linear *system = &step->branch->system;
+	const struct model *model = step->model;
+	struct block *block;
+	if (system->heldK)
+		return "the scheme holds terms over the step";
+	if (model->tuning)
+		return "there are tunable params: the target computes e^{A h}, and no poles";
+	if (model->relative)
+		return "what moves as a whole has a repeated pole, and is kept apart";
+	if (model->asked.compensated)
+		return "--accuracy compensated takes the form delta or kick-drift-kick";
+	if (objection_of_loads(system))
+		return objection_of_loads(system);
+	int blocks = blocks_of(system, &block);
+	for (int b = 0; b < blocks; b++)
+		if (!simple_poles(&block[b]))
+			return "a pole is repeated";
+	return NULL;
+}
+
+/* ---- complex vectors, enclosed ---- */
+
+static struct rectangle *rectangles(int count, int precision)
+{
+	struct rectangle *z = ARRAY(struct rectangle, (size_t)count);
+	for (int i = 0; i < count; i++)
+		rectangle_init(&z[i], precision);
+	return z;
+}
+
+static void rectangles_free(struct rectangle *z, int count)
+{
+	for (int i = 0; i < count; i++)
+		rectangle_clear(&z[i]);
+	discard(z);
+}
+
+static bool exactly_zero(const struct rectangle *z)
+{
+	return mpfi_is_zero(z->re) && mpfi_is_zero(z->im);
+}
+
+#define NO_SIZE (-(1L << 60))
+
+/* About log2 of its size */
+static long part_size(mpfi_srcptr x)
+{
+	mpfr_srcptr end = mpfr_cmpabs(&x->left, &x->right) > 0 ? &x->left : &x->right;
+	return mpfr_regular_p(end) ? (long)mpfr_get_exp(end) : mpfr_zero_p(end) ? NO_SIZE : -NO_SIZE;
+}
+
+static long size_of(const struct rectangle *z)
+{
+	const long re = part_size(z->re), im = part_size(z->im);
+	return re > im ? re : im;
+}
+
+/* z + a b */
+static void add_product(struct rectangle *z, const struct rectangle *a, const struct rectangle *b)
+{
+	struct rectangle product;
+	if (exactly_zero(a) || exactly_zero(b))
+		return;
+	rectangle_init(&product, (int)mpfi_get_prec(z->re));
+	rectangle_mul(&product, a, b);
+	mpfi_add(z->re, z->re, product.re);
+	mpfi_add(z->im, z->im, product.im);
+	rectangle_clear(&product);
+}
+
+/* z + factor a */
+static void add_scaled(struct rectangle *z, const struct rectangle *a, mpq_srcptr factor)
+{
+	mpfi_t part;
+	if (mpq_sgn(factor) == 0)
+		return;
+	mpfi_init2(part, mpfi_get_prec(z->re));
+	mpfi_mul_q(part, a->re, factor);
+	mpfi_add(z->re, z->re, part);
+	mpfi_mul_q(part, a->im, factor);
+	mpfi_add(z->im, z->im, part);
+	mpfi_clear(part);
+}
+
+/* ---- null vectors of P(p) ---- */
+
+/* M p^2 + C p + K, its transpose where wanted */
+static struct rectangle *stiffness_at(const struct linear *system, const struct rectangle *p, bool transposed)
+{
+	const int n = system->n, precision = (int)mpfi_get_prec(p->re);
+	struct rectangle *P = rectangles(n * n, precision), square;
+	rectangle_init(&square, precision);
+	rectangle_mul(&square, p, p);
+	for (int i = 0; i < n; i++)
+		for (int j = 0; j < n; j++) {
+			struct rectangle *cell = &P[transposed ? j * n + i : i * n + j];
+			mpfi_set_q(cell->re, system->K[i * n + j]);
+			add_scaled(cell, p, system->C[i * n + j]);
+			add_scaled(cell, &square, system->M[i * n + j]);
+		}
+	rectangle_clear(&square);
+	return P;
+}
+
+/* The largest that is left, to row and column k; false: there may be none */
+static bool bring_pivot(int n, struct rectangle *P, int k, int *column)
+{
+	int row = k, col = k;
+	for (int i = k; i < n; i++)
+		for (int j = k; j < n; j++)
+			if (size_of(&P[i * n + j]) > size_of(&P[row * n + col])) {
+				row = i;
+				col = j;
+			}
+	for (int j = 0; j < n; j++) {
+		struct rectangle swap = P[k * n + j];
+		P[k * n + j] = P[row * n + j];
+		P[row * n + j] = swap;
+	}
+	for (int i = 0; i < n; i++) {
+		struct rectangle swap = P[i * n + k];
+		P[i * n + k] = P[i * n + col];
+		P[i * n + col] = swap;
+	}
+	const int swap = column[k];
+	column[k] = column[col];
+	column[col] = swap;
+	return !mpfi_has_zero(P[k * n + k].re) || !mpfi_has_zero(P[k * n + k].im);
+}
+
+static void eliminate(int n, struct rectangle *P, int k)
+{
+	struct rectangle factor;
+	rectangle_init(&factor, (int)mpfi_get_prec(P->re));
+	for (int i = k + 1; i < n; i++) {
+		if (exactly_zero(&P[i * n + k]))
+			continue;
+		rectangle_div(&factor, &P[i * n + k], &P[k * n + k]);
+		mpfi_neg(factor.re, factor.re);
+		mpfi_neg(factor.im, factor.im);
+		for (int j = k + 1; j < n; j++)
+			add_product(&P[i * n + j], &factor, &P[k * n + j]);
+	}
+	rectangle_clear(&factor);
+}
+
+/* v of P v = 0, P of rank n - 1, destroyed; false: not enough bits */
+static bool null_vector(int n, struct rectangle *P, struct rectangle *v)
+{
+	int *column = ARRAY(int, (size_t)n);
+	bool good = true;
+	for (int i = 0; i < n; i++)
+		column[i] = i;
+	for (int k = 0; k < n - 1 && good; k++) {
+		good = bring_pivot(n, P, k, column);
+		if (good)
+			eliminate(n, P, k);
+	}
+	mpfi_set_ui(v[column[n - 1]].re, 1);
+	mpfi_set_ui(v[column[n - 1]].im, 0);
+	for (int k = n - 2; k >= 0 && good; k--) {
+		struct rectangle *sum = &v[column[k]];
+		mpfi_set_ui(sum->re, 0);
+		mpfi_set_ui(sum->im, 0);
+		for (int j = k + 1; j < n; j++)
+			add_product(sum, &P[k * n + j], &v[column[j]]);
+		rectangle_div(sum, sum, &P[k * n + k]);
+		mpfi_neg(sum->re, sum->re);
+		mpfi_neg(sum->im, sum->im);
+	}
+	discard(column);
+	return good;
+}
+
+static bool is_symmetric(const struct linear *system)
+{
+	const int n = system->n;
+	bool same = true;
+	for (int i = 0; i < n; i++)
+		for (int j = 0; j < i && same; j++)
+			same = mpq_equal(system->M[i * n + j], system->M[j * n + i]) &&
+			       mpq_equal(system->C[i * n + j], system->C[j * n + i]) &&
+			       mpq_equal(system->K[i * n + j], system->K[j * n + i]);
+	return same;
+}
+
+/* The largest becomes 1. */
+static void scale_to_largest(int n, struct rectangle *v)
+{
+	struct rectangle largest;
+	int at = 0;
+	for (int i = 1; i < n; i++)
+		at = size_of(&v[i]) > size_of(&v[at]) ? i : at;
+	rectangle_init(&largest, (int)mpfi_get_prec(v->re));
+	rectangle_set(&largest, &v[at]);
+	for (int i = 0; i < n; i++)
+		rectangle_div(&v[i], &v[i], &largest);
+	mpfi_set_ui(v[at].re, 1);
+	mpfi_set_ui(v[at].im, 0);
+	rectangle_clear(&largest);
+}
+
+/* ---- one mode ---- */
+
+struct mode_vectors {
+	int states, precision;
+	struct rectangle p, power;  /* e^{p h} */
+	struct rectangle *u;        /* per equation, over d: what a force gives */
+	struct rectangle *v, *w;    /* per state of the block */
+};
+
+static bool null_vectors(const struct linear *system, const struct mode_vectors *m)
+{
+	const int n = system->n;
+	struct rectangle *P = stiffness_at(system, &m->p, false);
+	bool good = null_vector(n, P, m->v);
+	rectangles_free(P, n * n);
+	if (!good)
+		return false;
+	scale_to_largest(n, m->v);
+	if (is_symmetric(system)) {
+		for (int i = 0; i < n; i++)
+			rectangle_set(&m->u[i], &m->v[i]);
+		return true;
+	}
+	P = stiffness_at(system, &m->p, true);
+	good = null_vector(n, P, m->u);
+	rectangles_free(P, n * n);
+	return good;
+}
+
+/* row j of factor M p + C, times u: u^T (factor M p + C) */
+static void weigh(const struct linear *system, const struct mode_vectors *m, const mpq_t *A, struct rectangle *row)
+{
+	const int n = system->n;
+	for (int j = 0; j < n; j++)
+		for (int i = 0; i < n; i++)
+			add_scaled(&row[j], &m->u[i], A[i * n + j]);
+}
+
+/* u over d; w; velocities of v */
+static bool complete_vectors(const struct linear *system, const struct mode_vectors *m)
+{
+	const int n = system->n, precision = m->precision;
+	struct rectangle *mass = rectangles(n, precision), *damping = rectangles(n, precision), d;
+	rectangle_init(&d, precision);
+	weigh(system, m, (const mpq_t *)system->M, mass);
+	weigh(system, m, (const mpq_t *)system->C, damping);
+	for (int j = 0; j < n; j++) {
+		struct rectangle *row = &m->w[j];
+		add_product(row, &mass[j], &m->p);
+		mpfi_add(row->re, row->re, damping[j].re);
+		mpfi_add(row->im, row->im, damping[j].im);
+		add_product(&d, row, &m->v[j]);
+	}
+	/* d = (M p + C) v + M p v */
+	for (int j = 0; j < n; j++) {
+		struct rectangle again;
+		rectangle_init(&again, precision);
+		rectangle_mul(&again, &mass[j], &m->p);
+		add_product(&d, &again, &m->v[j]);
+		rectangle_clear(&again);
+	}
+	const bool good = !mpfi_has_zero(d.re) || !mpfi_has_zero(d.im);
+	for (int j = 0; j < n && good; j++) {
+		rectangle_div(&m->w[j], &m->w[j], &d);
+		rectangle_div(&m->u[j], &m->u[j], &d);
+		if (system->velocity[j] < 0)
+			continue;
+		rectangle_div(&m->w[system->velocity[j]], &mass[j], &d);
+		rectangle_mul(&m->v[system->velocity[j]], &m->v[j], &m->p);
+	}
+	rectangles_free(mass, n);
+	rectangles_free(damping, n);
+	rectangle_clear(&d);
+	return good;
+}
+
+static long rational_size(mpq_srcptr q)
+{
+	return (long)mpz_sizeinbase(mpq_numref(q), 2) - (long)mpz_sizeinbase(mpq_denref(q), 2);
+}
+
+/* z + sum of factor times part; the size of the largest term, beside which a sum may be nothing */
+static long add_terms(int count, const struct rectangle *part, const mpq_t *factor, const int *place,
+		      struct rectangle *z)
+{
+	long largest = NO_SIZE;
+	for (int i = 0; i < count; i++) {
+		mpq_srcptr q = factor[place ? place[i] : i];
+		const long size = mpq_sgn(q) ? size_of(&part[i]) + rational_size(q) : NO_SIZE;
+		add_scaled(z, &part[i], q);
+		largest = size > largest ? size : largest;
+	}
+	return largest;
+}
+
+/* u^T force / d */
+static long driven(const struct linear *system, const struct mode_vectors *m, const mpq_t *force, struct rectangle *z)
+{
+	return add_terms(system->n, m->u, force, NULL, z);
+}
+
+/* integral over 0..h of e^{p (h-s)} e^{q s} ds = (e^{q h} - e^{p h}) / (q - p); false: q may be p */
+static bool convolve(const struct mode_vectors *m, mpq_srcptr h, const struct rectangle *q, struct rectangle *z)
+{
+	struct rectangle difference;
+	rectangle_init(&difference, m->precision);
+	rectangle_sub(&difference, q, &m->p);
+	const bool good = !mpfi_has_zero(difference.re) || !mpfi_has_zero(difference.im);
+	if (good) {
+		rectangle_exp(z, q, h);
+		rectangle_sub(z, z, &m->power);
+		rectangle_div(z, z, &difference);
+	}
+	rectangle_clear(&difference);
+	return good;
+}
+
+/* The integrals of e^{p (h-s)} and of s e^{p (h-s)} over the step */
+static void convolve_ramp(const struct mode_vectors *m, mpq_srcptr h, struct rectangle *held, struct rectangle *ramp)
+{
+	if (mpfi_is_zero(m->p.re) && mpfi_is_zero(m->p.im)) {
+		mpfi_set_q(held->re, h);
+		mpfi_set_ui(held->im, 0);
+		mpfi_mul_q(ramp->re, held->re, h);
+		mpfi_div_ui(ramp->re, ramp->re, 2);
+		mpfi_set_ui(ramp->im, 0);
+		return;
+	}
+	rectangle_set(held, &m->power);
+	mpfi_sub_ui(held->re, held->re, 1);
+	rectangle_div(held, held, &m->p);
+	rectangle_set(ramp, held);
+	mpfi_sub_q(ramp->re, ramp->re, h);
+	rectangle_div(ramp, ramp, &m->p);
+}
+
+/* ---- rounded ---- */
+
+static bool round_part(mpfi_srcptr x, long largest, double *value)
+{
+	if (round_enclosure(x, value))
+		return isfinite(*value);
+	*value = 0;
+	return part_size(x) < largest - NOTHING;
+}
+
+struct modes {                      /* being filled */
+	const struct step *step;
+	struct modal *modal;
+	const struct block *block;
+	int re, im;                 /* modal states of the mode; im -1: its pole is real */
+};
+
+/* To the rows of the mode; `twice`: it stands for its conjugate as well */
+static bool put_rows(const struct modes *f, const struct rectangle *z, long largest, double *table, int columns,
+		     int column)
+{
+	return round_part(z->re, largest, &table[f->re * columns + column]) &&
+	       (f->im < 0 || round_part(z->im, largest, &table[f->im * columns + column]));
+}
+
+/* 2 Re (v z) = 2 Re v re - 2 Im v im */
+static bool put_columns(const struct modes *f, const struct rectangle *v, long largest, double *row)
+{
+	bool good = round_part(v->re, largest, &row[f->re]);
+	if (f->im < 0 || !good)
+		return good;
+	good = round_part(v->im, largest, &row[f->im]);
+	row[f->re] *= 2;
+	row[f->im] *= -2;
+	if (row[f->im] == 0)
+		row[f->im] = 0;
+	return good && isfinite(row[f->re]) && isfinite(row[f->im]);
+}
+
+static long largest_of(const struct rectangle *z, int from, int to)
+{
+	long largest = NO_SIZE;
+	for (int i = from; i < to; i++)
+		largest = size_of(&z[i]) > largest ? size_of(&z[i]) : largest;
+	return largest;
+}
+
+static bool put_vectors(const struct modes *f, const struct mode_vectors *m)
+{
+	const struct linear *system = &f->block->system;
+	const int n = f->modal->states, split = system->n;
+	bool good = true;
+	for (int i = 0; i < m->states && good; i++) {
+		const int state = f->block->state[i], from = i < split ? 0 : split, to = i < split ? split : m->states;
+		good = put_rows(f, &m->w[i], largest_of(m->w, from, to), f->modal->to, n, state) &&
+		       put_columns(f, &m->v[i], largest_of(m->v, from, to), &f->modal->from[state * n]);
+	}
+	return good;
+}
+
+static bool put_outputs(const struct modes *f, const struct mode_vectors *m)
+{
+	const struct model *model = f->step->model;
+	bool good = true;
+	for (int o = 0; o < model->outputs && f->modal->output && good; o++) {
+		struct rectangle sum;
+		rectangle_init(&sum, m->precision);
+		const long largest =
+			add_terms(m->states, m->v, (const mpq_t *)model->output[o].state, f->block->state, &sum);
+		good = put_columns(f, &sum, largest, &f->modal->output[o * f->modal->states]);
+		rectangle_clear(&sum);
+	}
+	return good;
+}
+
+static bool put_inputs(const struct modes *f, const struct mode_vectors *m)
+{
+	const struct linear *system = &f->block->system;
+	mpq_srcptr h = f->step->model->h;
+	mpq_t rate;
+	struct rectangle held, ramp, force, slope, z;
+	struct rectangle *all[] = { &held, &ramp, &force, &slope, &z };
+	bool good = true;
+	mpq_init(rate);
+	mpq_inv(rate, h);
+	for (int i = 0; i < 5; i++)
+		rectangle_init(all[i], m->precision);
+	convolve_ramp(m, h, &held, &ramp);
+	for (int k = 0, column = 0; k < system->inputs && good; column += system->input[k++].first_order ? 2 : 1) {
+		for (int i = 2; i < 5; i++)
+			mpfi_set_ui(all[i]->re, 0), mpfi_set_ui(all[i]->im, 0);
+		long largest = driven(system, m, (const mpq_t *)system->input[k].force[0], &force);
+		const long other = driven(system, m, (const mpq_t *)system->input[k].force[1], &slope);
+		largest = (other > largest ? other : largest) + size_of(&held);
+		if (!system->input[k].first_order) {
+			rectangle_mul(&z, &force, &held);
+			good = put_rows(f, &z, largest, f->modal->input, f->modal->inputs, column);
+			continue;
+		}
+		/* u0 (1 - s/h) + u1 s/h, and its slope (u1 - u0)/h */
+		rectangle_mul(&z, &force, &ramp);
+		add_product(&z, &slope, &held);
+		mpfi_mul_q(z.re, z.re, rate);
+		mpfi_mul_q(z.im, z.im, rate);
+		good = put_rows(f, &z, largest, f->modal->input, f->modal->inputs, column + 1);
+		mpfi_neg(z.re, z.re);
+		mpfi_neg(z.im, z.im);
+		add_product(&z, &force, &held);
+		good = good && put_rows(f, &z, largest, f->modal->input, f->modal->inputs, column);
+	}
+	for (int i = 0; i < 5; i++)
+		rectangle_clear(all[i]);
+	mpq_clear(rate);
+	return good;
+}
+
+/* e^{(a + iw) s} and its conjugate, turned: the load's cosine and sine, in the mode */
+static bool put_oscillation(const struct modes *f, const struct mode_vectors *m, const struct load *load, int column)
+{
+	const struct linear *system = &f->block->system;
+	struct rectangle q, plus, minus, cosine, sine, force[2], z;
+	struct rectangle *all[] = { &q, &plus, &minus, &cosine, &sine, &force[0], &force[1], &z };
+	for (int i = 0; i < 8; i++)
+		rectangle_init(all[i], m->precision);
+	mpfi_set_q(q.re, load->wave->a);
+	mpfi_set_q(q.im, load->wave->w);
+	bool good = convolve(m, f->step->model->h, &q, &plus);
+	mpfi_neg(q.im, q.im);
+	good = good && convolve(m, f->step->model->h, &q, &minus);
+	long largest = NO_SIZE;
+	for (int k = 0; k < 2; k++) {
+		const long size = driven(system, m, (const mpq_t *)load->force[k], &force[k]) + size_of(&plus);
+		largest = size > largest ? size : largest;
+	}
+	if (good) {                     /* cos = (plus + minus)/2, sin = (plus - minus)/(2 i) */
+		mpfi_add(cosine.re, plus.re, minus.re);
+		mpfi_add(cosine.im, plus.im, minus.im);
+		mpfi_sub(sine.re, plus.im, minus.im);
+		mpfi_sub(sine.im, minus.re, plus.re);
+		for (int i = 3; i < 5; i++) {
+			mpfi_div_ui(all[i]->re, all[i]->re, 2);
+			mpfi_div_ui(all[i]->im, all[i]->im, 2);
+		}
+		rectangle_mul(&z, &force[0], &cosine);
+		add_product(&z, &force[1], &sine);
+		good = put_rows(f, &z, largest, f->modal->load, f->modal->loads, column);
+		rectangle_mul(&z, &force[1], &cosine);
+		mpfi_neg(sine.re, sine.re);
+		mpfi_neg(sine.im, sine.im);
+		add_product(&z, &force[0], &sine);
+		good = good && put_rows(f, &z, largest, f->modal->load, f->modal->loads, column + 1);
+	}
+	for (int i = 0; i < 8; i++)
+		rectangle_clear(all[i]);
+	return good;
+}
+
+/* e^{a s}, a constant where a is 0 */
+static bool put_growth(const struct modes *f, const struct mode_vectors *m, const struct load *load, int column)
+{
+	struct rectangle q, z, ramp, force;
+	struct rectangle *all[] = { &q, &z, &ramp, &force };
+	bool good = true;
+	for (int i = 0; i < 4; i++)
+		rectangle_init(all[i], m->precision);
+	mpfi_set_q(q.re, load->wave->a);
+	if (mpq_sgn(load->wave->a) == 0)
+		convolve_ramp(m, f->step->model->h, &z, &ramp);
+	else
+		good = convolve(m, f->step->model->h, &q, &z);
+	const long largest = driven(&f->block->system, m, (const mpq_t *)load->force[0], &force) + size_of(&z);
+	rectangle_mul(&z, &z, &force);
+	good = good && put_rows(f, &z, largest, f->modal->load, f->modal->loads, column);
+	for (int i = 0; i < 4; i++)
+		rectangle_clear(all[i]);
+	return good;
+}
+
+static bool put_loads(const struct modes *f, const struct mode_vectors *m)
+{
+	const struct linear *system = &f->block->system;
+	bool good = true;
+	for (int l = 0, column = 0; l < system->loads && good; column += system->load[l++].columns) {
+		const struct load *load = &system->load[l];
+		if (!load_acts(system, load))
+			continue;
+		good = (oscillates(load->wave) ? put_oscillation : put_growth)(f, m, load, column);
+	}
+	return good;
+}
+
+/* What the rounding of e^{p h} does to the mode in a step: rounded / e^{p h} - 1 */
+static void measure_drift(const struct modes *f, const struct mode_vectors *m)
+{
+	struct drift *drift = &f->modal->drift;
+	struct rectangle z;
+	rectangle_init(&z, m->precision);
+	mpfi_set_d(z.re, f->modal->turn[f->re]);
+	mpfi_set_d(z.im, f->im < 0 ? 0 : f->modal->turn[f->im]);
+	if (!mpfi_has_zero(m->power.re) || !mpfi_has_zero(m->power.im)) {
+		rectangle_div(&z, &z, &m->power);
+		mpfi_sub_ui(z.re, z.re, 1);
+		const double size = mpfi_get_d(z.re), angle = fabs(mpfi_get_d(z.im));
+		drift->amplitude = fabs(size) > fabs(drift->amplitude) ? size : drift->amplitude;
+		drift->phase = angle > drift->phase ? angle : drift->phase;
+	}
+	drift->known = true;
+	rectangle_clear(&z);
+}
+
+/* e^{p h} */
+static bool put_power(const struct modes *f, const struct mode_vectors *m)
+{
+	double *turn = f->modal->turn;
+	return round_part(m->power.re, size_of(&m->power), &turn[f->re]) &&
+	       (f->im < 0 || round_part(m->power.im, size_of(&m->power), &turn[f->im]));
+}
+
+static bool put_mode(const struct modes *f, const struct pole *pole, int precision)
+{
+	const struct linear *system = &f->block->system;
+	struct mode_vectors m = { .states = system->states, .precision = precision };
+	rectangle_init(&m.p, precision);
+	rectangle_init(&m.power, precision);
+	if (pole)
+		rectangle_set(&m.p, &pole->at);
+	rectangle_exp(&m.power, &m.p, f->step->model->h);
+	m.u = rectangles(system->n, precision);
+	m.v = rectangles(m.states, precision);
+	m.w = rectangles(m.states, precision);
+	const bool good = null_vectors(system, &m) && complete_vectors(system, &m) && put_power(f, &m) &&
+			  put_vectors(f, &m) && put_outputs(f, &m) && put_inputs(f, &m) && put_loads(f, &m);
+	if (good)
+		measure_drift(f, &m);
+	rectangles_free(m.u, system->n);
+	rectangles_free(m.v, m.states);
+	rectangles_free(m.w, m.states);
+	rectangle_clear(&m.p);
+	rectangle_clear(&m.power);
+	return good;
+}
+
+/* ---- all of them ---- */
+
+/* Pairs first, then what is real: so one loop turns all pairs. */
+static void count_modes(struct modal *modal, struct spectrum *const *spectrum, int blocks)
+{
+	for (int b = 0; b < blocks; b++) {
+		modal->reals += spectrum[b]->zero;
+		for (int f = 0; f < spectrum[b]->factors; f++)
+			for (int i = 0; i < spectrum[b]->poles[f]; i++)
+				*(spectrum[b]->pole[f][i].real ? &modal->reals : &modal->pairs) += 1;
+	}
+}
+
+static bool fill_mode(struct modes *f, struct spectrum *spectrum, int factor, int i, int *pair, int *real)
+{
+	const bool is_real = factor < 0 || spectrum->pole[factor][i].real;
+	f->re = is_real ? 2 * f->modal->pairs + (*real)++ : (*pair)++;
+	f->im = is_real ? -1 : f->modal->pairs + f->re;
+	progress("modes of the step", *pair + *real - 1, f->modal->pairs + f->modal->reals);
+	for (int precision = MODE_BITS; precision <= MODE_LIMIT; precision *= 2)
+		if (spectrum_refine(spectrum, precision) &&
+		    put_mode(f, factor < 0 ? NULL : &spectrum->pole[factor][i], precision))
+			return true;
+	return false;
+}
+
+/* What states lose that become modes and states again: the largest sum over the modes of |v_i w_i|, 1 at best */
+static double condition_of(const struct modal *modal)
+{
+	const int n = modal->states;
+	double largest = 0;
+	for (int i = 0; i < n; i++) {
+		double sum = 0;
+		for (int k = 0; k < n; k++) {
+			const bool pair = k < modal->pairs;
+			const int other = pair ? modal->pairs + k : k;
+			if (k >= modal->pairs && k < 2 * modal->pairs)
+				continue;
+			const double v = pair ? hypot(modal->from[i * n + k], modal->from[i * n + other])
+					      : fabs(modal->from[i * n + k]);
+			const double w = pair ? hypot(modal->to[k * n + i], modal->to[other * n + i])
+					      : fabs(modal->to[k * n + i]);
+			sum += v * w;
+		}
+		largest = sum > largest ? sum : largest;
+	}
+	return largest;
+}
+
+static struct modal *modal_new(const struct step *step)
+{
+	const struct linear *system = &step->branch->system;
+	struct modal *modal = NEW(struct modal);
+	const size_t n = (size_t)system->states;
+	modal->states = system->states;
+	modal->loads = load_columns(system);
+	modal->inputs = input_columns(system);
+	modal->turn = ARRAY(double, n);
+	modal->to = ARRAY(double, n * n);
+	modal->from = ARRAY(double, n * n);
+	modal->load = ARRAY(double, n * (size_t)modal->loads);
+	modal->input = ARRAY(double, n * (size_t)modal->inputs);
+	if (step->model->declared_outputs)
+		modal->output = ARRAY(double, n * (size_t)step->model->outputs);
+	return modal;
+}
+
+struct modal *modal_of(const struct step *step)
+{
+	struct block *block;
+	const int blocks = blocks_of(&step->branch->system, &block);
+	struct spectrum **spectrum = ARRAY(struct spectrum *, (size_t)blocks);
+	struct modal *modal = modal_new(step);
+	struct modes f = { .step = step, .modal = modal };
+	int pair = 0, real = 0;
+	bool good = true;
+	mpz_t content;
+	mpz_init(content);
+	for (int b = 0; b < blocks && good; b++) {
+		struct resolvent *resolvent = resolvent_of(&block[b].system);
+		spectrum[b] = spectrum_of(poly_primitive(*resolvent_determinant(resolvent), content));
+		good = spectrum_refine(spectrum[b], MODE_BITS);
+	}
+	mpz_clear(content);
+	if (good)
+		count_modes(modal, spectrum, blocks);
+	for (int b = 0; b < blocks && good; b++) {
+		f.block = &block[b];
+		for (int i = 0; i < spectrum[b]->zero && good; i++)
+			good = fill_mode(&f, spectrum[b], -1, 0, &pair, &real);
+		for (int k = 0; k < spectrum[b]->factors && good; k++)
+			for (int i = 0; i < spectrum[b]->poles[k] && good; i++)
+				good = fill_mode(&f, spectrum[b], k, i, &pair, &real);
+	}
+	progress_end();
+	if (good)
+		modal->condition = condition_of(modal);
+	return good ? modal : NULL;
+}
+
+/* ---- the choice ---- */
+
+static int driven_terms(const struct modal *modal)
+{
+	int terms = 0;
+	for (int i = 0; i < modal->states * modal->loads; i++)
+		terms += modal->load[i] != 0;
+	for (int i = 0; i < modal->states * modal->inputs; i++)
+		terms += modal->input[i] != 0;
+	return terms;
+}
+
+static struct program *modal_program(const struct step *step)
+{
+	const struct modal *modal = step->modal;
+	struct program *program = NEW(struct program);
+	const int terms = driven_terms(modal);
+	*program = *step->program;
+	program->loops = true;
+	program->products_added = false;
+	program->groups = 0;
+	program->multiplications = 4 * modal->pairs + modal->reals + terms + program->wave_multiplications;
+	program->additions = 2 * modal->pairs + terms + program->wave_additions;
+	return program;
+}
+
+static bool only_linear_outputs(const struct model *model)
+{
+	bool linear = model->declared_outputs;
+	for (int i = 0; i < model->outputs; i++)
+		linear = linear && !model->output[i].left;
+	return linear;
+}
+
+/* The cost of a step and its outputs is less than half of what it is now. */
+static bool is_cheaper(const struct step *step)
+{
+	const int states = step->branch->system.states;
+	const int modal = (2 + step->model->outputs + input_columns(&step->branch->system) +
+			   load_columns(&step->branch->system)) * states;
+	return 2 * modal < step->program->multiplications;
+}
+
+static void take_modal(struct step *step, struct modal *modal)
+{
+	step->modal = modal;
+	step->form = FORM_MODAL;
+	step->program = modal_program(step);
+	step->carries = 0;
+	for (int i = 0; i < modal->states; i++)
+		step->carry[i] = -1;
+}
+
+void plan_modal(struct step *step)
+{
+	enum { AS_EXACT = 8 };          /* what states may lose that become modes, where nobody asked for them */
+	const struct model *model = step->model;
+	const bool asked = model->asked.form == FORM_MODAL;
+	const bool wanted = model->asked.form == FORM_AUTO && step->branch->system.states > LIMIT_UNROLLED_STATES &&
+			    only_linear_outputs(model) && step->program->loops && is_cheaper(step);
+	if (!asked && !wanted)
+		return;
+	const char *objection = modal_objection(step);
+	struct modal *modal = objection ? NULL : modal_of(step);
+	if (asked && !modal)
+		error(model->asked.form_at, "forms: direct, delta, kick-drift-kick",
+		      "the form modal cannot step this model: %s",
+		      objection ? objection : "two poles, or a pole and a load, are too close");
+	if (modal && (asked || modal->condition <= AS_EXACT))
+		take_modal(step, modal);
+}
