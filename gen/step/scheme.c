@@ -107,10 +107,12 @@ static void build_exact(struct step *step)
 	if (step->model->tuning)
 		mark_tuned_zeros(step);
 	find_carries(step);
+	plan_anchors(step);
 	step->program = linear_program(step);
 	plan_forced(step);
 	if (step->forced)
 		step->program = linear_program(step);
+	fill_anchors(step);
 }
 
 static bool *loads_of_regions(const struct step *step)
@@ -189,7 +191,7 @@ static void build_with_leftover(struct step *step)
 	step->program->loops = !is_page(step);
 	mark_loads(step, step->program);
 	count_program(step, step->program);
-	count_loads(step->program, &step->branch->system, step->model->asked.single);
+	count_loads(step->program, step);
 }
 
 /* Of tunable models: no Taylor series in the step's own time, but e^{A tau} at any, of every load */
@@ -258,6 +260,7 @@ struct step *step_build(const struct model *model)
 	*plain = *model->written;
 	plain->asked.form = FORM_DIRECT;
 	plain->asked.compensated = plain->asked.selftest = false;
+	plain->asked.anchors = 1;
 	step->shown = step_build(plain);
 	return step->shown ? step : NULL;
 }

@@ -1,0 +1,346 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Loads by anchors. The functions of a load, cos, sin and e^{at}, are evaluated every so many steps only, from its phase
+ * and growth in fixed point. In the steps between, what the load adds to a state is
+ *
+ *   L z(t_a + l h) = (L E_l) z(t_a)
+ *
+ * with L the load's columns of the step, z its states and E_l how they go on in l steps. So L E_l, for each l, is a table
+ * of constants, each enclosed and rounded once (Ziv); nothing is added up from step to step, and nothing accumulates. */
+#include "step/step.h"
+
+#include <math.h>
+
+enum {
+	ANCHOR_STEPS = 32,          /* from anchor to anchor, where the table is small */
+	FEWEST_STEPS = 8,           /* below, functions in every step are about as good */
+	TABLE_NUMBERS = 2048,       /* of a table that the cache shares with other data: 16 KB */
+	MOST_GROWTH = 16,           /* |a| l h: near the ends of the range an anchor leaves it before its load does */
+	FIRST_PRECISION = 128,
+	TAYLOR_PRECISION = 2048     /* beyond, residues */
+};
+
+/* ---- which loads, and how many steps ---- */
+
+/* What stands against anchors; NULL: nothing */
+static const char *objection(const struct step *step)
+{
+	if (step->model->asked.single)
+		return "float: phases of 64 bits and their functions are cheap, tables are not";
+	if (step->kind == KIND_TUNED)
+		return "tunable params: the target would have to make the tables";
+	if (step->kind == KIND_REGIONS)
+		return "a piecewise-linear step: it needs the loads in each piece";
+	if (step->kind == KIND_LEFTOVER)
+		return "a step with a leftover";
+	if (step->branch->system.segments > 1)
+		return "loads that change their formula in time";
+	if (step->branch->system.states > LIMIT_UNROLLED_STATES)
+		return format("more than %d states", LIMIT_UNROLLED_STATES);
+	return NULL;
+}
+
+static bool moves(const struct step *step, int state, int first, int columns)
+{
+	const struct table *table = step->branch->whole;
+	bool any = false;
+	for (int k = first; k < first + columns; k++)
+		any = any || !table->load[state * table->columns + k].zero;
+	return any;
+}
+
+/* Its rows: of the states that the load moves in a step, every column of it */
+static void add_terms(struct anchors *anchors, const struct step *step, int first, int columns)
+{
+	for (int i = 0; i < step->branch->whole->states; i++)
+		for (int k = first; k < first + columns && moves(step, i, first, columns); k++) {
+			ENLARGE(anchors->term, (size_t)anchors->terms + 1);
+			anchors->term[anchors->terms++] = (struct anchored_term){ i, k };
+		}
+}
+
+static void list_terms(struct anchors *anchors, const struct step *step, bool forced_too)
+{
+	const struct linear *system = &step->branch->system;
+	anchors->terms = 0;
+	for (int l = 0, first = 0; l < system->loads; first += system->load[l++].columns)
+		if (anchors->load[l] && (forced_too || !is_forced(step, first)))
+			add_terms(anchors, step, first, system->load[l].columns);
+}
+
+/* The fastest growth or decay of a load in a step */
+static double growth_in_step(const struct step *step)
+{
+	const struct linear *system = &step->branch->system;
+	double most = 0;
+	for (int l = 0; l < system->loads; l++)
+		most = fmax(most, fabs(mpq_get_d(system->load[l].wave->a)));
+	return most * mpq_get_d(step->model->h);
+}
+
+static int chosen_steps(const struct step *step, const struct anchors *anchors)
+{
+	int words = step->model->asked.compensated ? 2 : 1, steps = ANCHOR_STEPS;
+	while (steps >= FEWEST_STEPS && (steps * anchors->terms * words > TABLE_NUMBERS ||
+					 (steps - 1) * growth_in_step(step) > MOST_GROWTH))
+		steps /= 2;
+	return steps >= FEWEST_STEPS ? steps : 1;
+}
+
+static void refuse_growth(const struct step *step)
+{
+	int steps = step->model->asked.anchors;
+	if ((steps - 1) * growth_in_step(step) > MOST_GROWTH)
+		error((struct place){ source_argument("--anchors"), 0 }, "fewer steps would do",
+		      "--anchors %d: a load changes by more than e^%d from anchor to anchor", steps, MOST_GROWTH);
+}
+
+void plan_anchors(struct step *step)
+{
+	int asked = step->model->asked.anchors;
+	const char *against = objection(step);
+	if (asked > 1 && against)
+		error((struct place){ source_argument("--anchors"), 0 }, NULL, "--anchors %d does not go with %s", asked,
+		      against);
+	if (asked == 1 || against)
+		return;
+	struct anchors *anchors = NEW(struct anchors);
+	const struct linear *system = &step->branch->system;
+	anchors->load = ARRAY(bool, (size_t)system->loads);
+	for (int l = 0; l < system->loads; l++)
+		anchors->load[l] = !is_polynomial(system->load[l].wave) && load_acts(system, &system->load[l]);
+	list_terms(anchors, step, true);
+	if (anchors->terms == 0)
+		return;
+	if (asked)
+		refuse_growth(step);
+	anchors->steps = asked ? asked : chosen_steps(step, anchors);
+	step->anchors = anchors->steps > 1 ? anchors : NULL;
+}
+
+int anchored_term(const struct step *step, int state, int column)
+{
+	for (int k = 0; step->anchors && k < step->anchors->terms; k++)
+		if (step->anchors->term[k].state == state && step->anchors->term[k].column == column)
+			return k;
+	return -1;
+}
+
+/* ---- E_l: how a load's states go on ---- */
+
+/* e^{a tau} cos(w tau) and sin, enclosed with the precision of z */
+static void enclose_turn(const struct wave *wave, mpq_srcptr tau, mpfi_t z[2])
+{
+	mpq_t product;
+	mpfi_t x;
+	mpq_init(product);
+	mpfi_init2(x, mpfi_get_prec(z[0]));
+	mpq_mul(product, wave->w, tau);
+	mpfi_set_q(x, product);
+	mpfi_cos(z[0], x);
+	mpfi_sin(z[1], x);
+	mpq_mul(product, wave->a, tau);
+	mpfi_set_q(x, product);
+	mpfi_exp(x, x);
+	mpfi_mul(z[0], z[0], x);
+	mpfi_mul(z[1], z[1], x);
+	mpfi_clear(x);
+	mpq_clear(product);
+}
+
+/* binomial(k, j) tau^(k-j) */
+static void power_of_time(int k, int j, mpq_srcptr tau, mpq_ptr value)
+{
+	mpz_t binomial;
+	mpz_init(binomial);
+	mpz_bin_uiui(binomial, (unsigned long)k, (unsigned long)j);
+	mpq_set_z(value, binomial);
+	for (int i = j; i < k; i++)
+		mpq_mul(value, value, tau);
+	mpz_clear(binomial);
+}
+
+/* ---- L: a load's columns of the step, enclosed ---- */
+
+struct block_source {                     /* of a block */
+	const struct linear *system;
+	struct resolvent *resolvent;
+	struct taylor *taylor;      /* NULL: residues */
+	struct layout layout;
+};
+struct row {                        /* what a load adds to a state: each column exact, or a response, or an entry */
+	struct block_source *source;
+	int state, load, columns;   /* of the block */
+	struct response **response; /* NULL: not asked for */
+	mpq_srcptr h;
+};
+
+static struct block_source source_of_block(const struct step *step, const struct linear *system)
+{
+	bool whole = system->states == step->branch->system.states;
+	struct block_source source = { .system = system,
+				 .resolvent = whole ? step->branch->resolvent : resolvent_of(system),
+				 .layout = layout_of(system, 0) };
+	if (system->states > LIMIT_RESIDUE_STATES)
+		source.taylor = taylor_of(source.layout.size,
+					  (const mpq_t *)augmented_matrix(&source.layout, system, 0), step->model->h);
+	return source;
+}
+
+static bool enclose_by_residues(struct row *row, int column, int precision, mpfi_ptr value)
+{
+	mpq_t exact;
+	struct response **response = &row->response[column];
+	mpq_init(exact);
+	if (!*response)
+		*response = response_of_load(row->source->resolvent, row->source->system, 0, row->state, row->load,
+					     column);
+	bool rational = response_exact(*response, row->h, exact);
+	if (rational)
+		mpfi_set_q(value, exact);
+	mpq_clear(exact);
+	return rational || response_enclose(*response, row->h, precision, value);
+}
+
+static bool enclose_column(struct row *row, int column, int precision, mpfi_ptr value)
+{
+	const struct block_source *source = row->source;
+	mpfi_set_prec(value, precision);
+	if (!source->taylor || precision > TAYLOR_PRECISION)
+		return enclose_by_residues(row, column, precision, value);
+	if (!taylor_enclose(source->taylor, precision))
+		return false;
+	taylor_entry(source->taylor, row->state, source->layout.load[row->load] + column, value);
+	return true;
+}
+
+/* ---- L E_l, rounded ---- */
+
+/* sum = column `from` of L E_l: t^k cos from t^j, j <= k; cos(x + w tau) = cos x cos(w tau) - sin x sin(w tau) */
+static bool enclose_turned(struct row *row, mpq_srcptr tau, int from, int precision, mpfi_ptr sum)
+{
+	const struct wave *wave = row->source->system->load[row->load].wave;
+	int trig = oscillates(wave) ? 2 : 1;
+	mpfi_t z[2], value;
+	mpq_t power;
+	bool good = true;
+	mpfi_init2(z[0], precision);
+	mpfi_init2(z[1], precision);
+	mpfi_init2(value, precision);
+	mpq_init(power);
+	enclose_turn(wave, tau, z);
+	mpfi_set_prec(sum, precision);
+	mpfi_set_ui(sum, 0);
+	for (int to = from / trig * trig; to < row->columns && good; to++) {
+		bool same = to % trig == from % trig;
+		good = enclose_column(row, to, precision, value);
+		mpfi_mul(value, value, z[!same]);
+		power_of_time(to / trig, from / trig, tau, power);
+		mpfi_mul_q(value, value, power);
+		(same || to % trig ? mpfi_add : mpfi_sub)(sum, sum, value);
+	}
+	mpfi_clear(z[0]);
+	mpfi_clear(z[1]);
+	mpfi_clear(value);
+	mpq_clear(power);
+	return good;
+}
+
+/* Both words; false: it is not decided with so many bits. What is 0 is so, once it is too small for the range. */
+static bool round_turned(struct row *row, mpq_srcptr tau, int from, int precision, struct coefficient *c)
+{
+	mpfi_t x;
+	mpfi_init2(x, precision);
+	bool decided = enclose_turned(row, tau, from, precision, x) && round_enclosure(x, &c->value);
+	if (decided && isfinite(c->value)) {
+		mpfi_sub_d(x, x, c->value);
+		decided = round_enclosure(x, &c->low);
+	}
+	mpfi_clear(x);
+	return decided;
+}
+
+static void fill_term(const struct step *step, struct row *row, mpq_srcptr tau, int from, struct coefficient *c)
+{
+	int precision = FIRST_PRECISION;
+	while (precision <= LIMIT_PRECISION && !round_turned(row, tau, from, precision, c))
+		precision *= 2;
+	if (precision > LIMIT_PRECISION || !isfinite(c->value))
+		error(step->model->asked.step_at, "--anchors 1 may do", "what a load adds so many steps after an anchor "
+		      "is %s", precision > LIMIT_PRECISION ? format("not decided with %d bits", LIMIT_PRECISION)
+							   : format("beyond the range of %s", target_name()));
+}
+
+/* The terms of one state and one load, which stand together, after any number of steps */
+static void fill_row(const struct step *step, struct block_source *source, int state, int load, int term)
+{
+	struct anchors *anchors = step->anchors;
+	int columns = source->system->load[load].columns;
+	struct row row = { source, state, load, columns, ARRAY(struct response *, (size_t)columns), step->model->h };
+	mpq_t tau;
+	mpq_init(tau);
+	for (int l = 0; l < anchors->steps; l++) {
+		mpq_set_si(tau, l, 1);
+		mpq_mul(tau, tau, step->model->h);
+		for (int k = 0; k < columns; k++)
+			fill_term(step, &row, tau, k, &anchors->factor[l * anchors->terms + term + k]);
+	}
+	mpq_clear(tau);
+}
+
+static void fill_block(const struct step *step, const struct block *block)
+{
+	const struct linear *system = &step->branch->system;
+	struct block_source source = source_of_block(step, &block->system);
+	int first;
+	for (int i = 0; i < block->system.states; i++)
+		for (int k = 0; k < step->anchors->terms; k++) {
+			const struct anchored_term *term = &step->anchors->term[k];
+			int load = load_of_column(system, term->column, &first);
+			if (term->state == block->state[i] && term->column == first)
+				fill_row(step, &source, i, load, k);
+		}
+}
+
+/* e^{a l h} cos(w l h) and sin: what turns the load states of an anchor into those of now */
+static void fill_turns(const struct step *step, int load)
+{
+	struct anchors *anchors = step->anchors;
+	mpq_t tau;
+	mpfi_t z[2];
+	mpq_init(tau);
+	mpfi_init(z[0]);
+	mpfi_init(z[1]);
+	for (int l = 0; l < anchors->steps; l++) {
+		double *turn = &anchors->turn[2 * (load * anchors->steps + l)];
+		mpq_set_si(tau, l, 1);
+		mpq_mul(tau, tau, step->model->h);
+		for (int precision = FIRST_PRECISION; precision <= LIMIT_PRECISION; precision *= 2) {
+			mpfi_set_prec(z[0], precision);
+			mpfi_set_prec(z[1], precision);
+			enclose_turn(step->branch->system.load[load].wave, tau, z);
+			if (round_enclosure(z[0], &turn[0]) && round_enclosure(z[1], &turn[1]))
+				break;
+		}
+	}
+	mpfi_clear(z[0]);
+	mpfi_clear(z[1]);
+	mpq_clear(tau);
+}
+
+void fill_anchors(struct step *step)
+{
+	const struct linear *system = &step->branch->system;
+	struct anchors *anchors = step->anchors;
+	struct block *block;
+	if (!anchors)
+		return;
+	list_terms(anchors, step, false);
+	anchors->factor = ARRAY(struct coefficient, (size_t)(anchors->steps * anchors->terms));
+	anchors->turn = ARRAY(double, 2 * (size_t)(anchors->steps * system->loads));
+	int blocks = blocks_of(system, &block);
+	for (int b = 0; b < blocks; b++)
+		fill_block(step, &block[b]);
+	for (int l = 0; l < system->loads; l++)
+		if (is_anchored(step, l))
+			fill_turns(step, l);
+}
