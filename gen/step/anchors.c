@@ -24,18 +24,19 @@ enum {
 /* What stands against anchors; NULL: nothing */
 static const char *objection(const struct step *step)
 {
+	static const char *const of_kind[KINDS] = {
+		[KIND_TUNED] = "tunable params: the target would have to make the tables",
+		[KIND_REGIONS] = "regions: crossings need the loads at any time",
+		[KIND_LEFTOVER] = "a leftover: the scheme needs the loads between steps"
+	};
+	if (of_kind[step->kind])
+		return of_kind[step->kind];
 	if (step->model->asked.single)
-		return "float: phases of 64 bits and their functions are cheap, tables are not";
-	if (step->kind == KIND_TUNED)
-		return "tunable params: the target would have to make the tables";
-	if (step->kind == KIND_REGIONS)
-		return "a piecewise-linear step: it needs the loads in each piece";
-	if (step->kind == KIND_LEFTOVER)
-		return "a step with a leftover";
+		return "--real float: there functions are cheap, and memory is short";
 	if (step->branch->system.segments > 1)
 		return "loads that change their formula in time";
 	if (step->branch->system.states > LIMIT_UNROLLED_STATES)
-		return format("more than %d states", LIMIT_UNROLLED_STATES);
+		return format("more than %d states: the step loops over its tables", LIMIT_UNROLLED_STATES);
 	return NULL;
 }
 
@@ -68,52 +69,82 @@ static void list_terms(struct anchors *anchors, const struct step *step, bool fo
 }
 
 /* The fastest growth or decay of a load in a step */
-static double growth_in_step(const struct step *step)
+static double growth_in_step(const struct step *step, const struct anchors *anchors)
 {
 	const struct linear *system = &step->branch->system;
 	double most = 0;
 	for (int l = 0; l < system->loads; l++)
-		most = fmax(most, fabs(mpq_get_d(system->load[l].wave->a)));
+		if (anchors->load[l])
+			most = fmax(most, fabs(mpq_get_d(system->load[l].wave->a)));
 	return most * mpq_get_d(step->model->h);
 }
 
-static int chosen_steps(const struct step *step, const struct anchors *anchors)
+static bool is_steady(const struct step *step, const struct anchors *anchors, int steps)
 {
-	int words = step->model->asked.compensated ? 2 : 1, steps = ANCHOR_STEPS;
-	while (steps >= FEWEST_STEPS && (steps * anchors->terms * words > TABLE_NUMBERS ||
-					 (steps - 1) * growth_in_step(step) > MOST_GROWTH))
-		steps /= 2;
-	return steps >= FEWEST_STEPS ? steps : 1;
+	return (steps - 1) * growth_in_step(step, anchors) <= MOST_GROWTH;
 }
 
-static void refuse_growth(const struct step *step)
+static bool fits(const struct step *step, const struct anchors *anchors, int steps)
+{
+	return steps * anchors->terms * (step->model->asked.compensated ? 2 : 1) <= TABLE_NUMBERS;
+}
+
+static _Noreturn void refuse(const struct step *step, const char *why)
 {
 	int steps = step->model->asked.anchors;
-	if ((steps - 1) * growth_in_step(step) > MOST_GROWTH)
-		error((struct place){ source_argument("--anchors"), 0 }, "fewer steps would do",
-		      "--anchors %d: a load changes by more than e^%d from anchor to anchor", steps, MOST_GROWTH);
+	error((struct place){ source_argument(format("%d", steps)), 0 }, NULL, "--anchors %d does not go with %s",
+	      steps, why);
+}
+
+/* As many as were asked for, or as are good; 1: what stands against more is said */
+static int chosen_steps(struct step *step, const struct anchors *anchors)
+{
+	int asked = step->model->asked.anchors, steps = asked ? asked : ANCHOR_STEPS;
+	if (asked && !is_steady(step, anchors, asked))
+		refuse(step, format("a load that changes by more than e^%d between anchors", MOST_GROWTH));
+	while (!asked && steps >= FEWEST_STEPS && !(fits(step, anchors, steps) && is_steady(step, anchors, steps)))
+		steps /= 2;
+	if (steps >= FEWEST_STEPS || asked)
+		return steps;
+	step->no_anchors = fits(step, anchors, FEWEST_STEPS) ? "a load changes too much from step to step"
+							     : "tables would be large";
+	return 1;
+}
+
+static struct anchors *anchors_of(const struct step *step)
+{
+	const struct linear *system = &step->branch->system;
+	struct anchors *anchors = NEW(struct anchors);
+	anchors->load = ARRAY(bool, (size_t)system->loads);
+	for (int l = 0; l < system->loads; l++)
+		anchors->load[l] = !is_polynomial(system->load[l].wave) && load_acts(system, &system->load[l]);
+	return anchors;
+}
+
+static bool any_load(const struct step *step, const struct anchors *anchors)
+{
+	bool any = false;
+	for (int l = 0; l < step->branch->system.loads; l++)
+		any = any || anchors->load[l];
+	return any;
+}
+
+void check_anchors(struct step *step)
+{
+	const char *against = objection(step);
+	if (against && step->model->asked.anchors > 1)
+		refuse(step, against);
+	if (any_load(step, anchors_of(step)))
+		step->no_anchors = step->model->asked.anchors == 1 ? "--anchors 1" : against;
 }
 
 void plan_anchors(struct step *step)
 {
-	int asked = step->model->asked.anchors;
-	const char *against = objection(step);
-	if (asked > 1 && against)
-		error((struct place){ source_argument("--anchors"), 0 }, NULL, "--anchors %d does not go with %s", asked,
-		      against);
-	if (asked == 1 || against)
+	struct anchors *anchors = anchors_of(step);
+	if (step->no_anchors || step->model->asked.anchors == 1 || objection(step) || !any_load(step, anchors))
 		return;
-	struct anchors *anchors = NEW(struct anchors);
-	const struct linear *system = &step->branch->system;
-	anchors->load = ARRAY(bool, (size_t)system->loads);
-	for (int l = 0; l < system->loads; l++)
-		anchors->load[l] = !is_polynomial(system->load[l].wave) && load_acts(system, &system->load[l]);
 	list_terms(anchors, step, true);
-	if (anchors->terms == 0)
-		return;
-	if (asked)
-		refuse_growth(step);
-	anchors->steps = asked ? asked : chosen_steps(step, anchors);
+	anchors->steps = chosen_steps(step, anchors);
 	step->anchors = anchors->steps > 1 ? anchors : NULL;
 }
 

@@ -240,6 +240,7 @@ static void build(void *context)
 	take_operators(step);
 	if (scheme_row(model->scheme)->holds_coupling)
 		find_growth(step);
+	check_anchors(step);
 	build_kind[step->kind](step);
 	if (model->asked.selftest)
 		need_closed_form(step);

@@ -258,6 +258,7 @@ struct step {                       /* everything that is emitted for one model 
 	 * others */
 	int carries, *carry;
 	struct anchors *anchors;    /* NULL: functions of loads in every step */
+	const char *no_anchors;     /* why, where a load has some; NULL: there are anchors, or none has */
 	struct forced *forced;      /* NAME keeps the state less this; NULL: as it is */
 	struct rounding rounding;
 	mpfr_t growth;              /* pl: 1/s, largest real part of the modified equation's poles (report only) */
@@ -385,7 +386,8 @@ const char *rounding_text(const struct step *step);
 
 /* ---- anchors.c: functions of loads every so many steps, tables between ---- */
 
-void plan_anchors(struct step *step);                       /* after its table; leaves the statement where it cannot */
+void check_anchors(struct step *step);                      /* leaves the statement where they are asked for in vain */
+void plan_anchors(struct step *step);                       /* after its table */
 void fill_anchors(struct step *step);                       /* after its forced part is chosen */
 int anchored_term(const struct step *step, int state, int column);   /* its index; -1: it is none */
 
