@@ -49,23 +49,23 @@ static bool moves(const struct step *step, int state, int first, int columns)
 	return any;
 }
 
-/* Its rows: of the states that the load moves in a step, every column of it */
-static void add_terms(struct anchors *anchors, const struct step *step, int first, int columns)
+/* Of the states that a load moves in a step, every column of it */
+static void add_terms(struct anchors *anchors, int state, int first, int columns)
 {
-	for (int i = 0; i < step->branch->whole->states; i++)
-		for (int k = first; k < first + columns && moves(step, i, first, columns); k++) {
-			ENLARGE(anchors->term, (size_t)anchors->terms + 1);
-			anchors->term[anchors->terms++] = (struct anchored_term){ i, k };
-		}
+	ENLARGE(anchors->term, (size_t)(anchors->terms + columns));
+	for (int k = 0; k < columns; k++)
+		anchors->term[anchors->terms++] = (struct anchored_term){ state, first + k };
 }
 
 static void list_terms(struct anchors *anchors, const struct step *step, bool forced_too)
 {
 	const struct linear *system = &step->branch->system;
 	anchors->terms = 0;
-	for (int l = 0, first = 0; l < system->loads; first += system->load[l++].columns)
-		if (anchors->load[l] && (forced_too || !is_forced(step, first)))
-			add_terms(anchors, step, first, system->load[l].columns);
+	for (int i = 0; i < system->states; i++)
+		for (int l = 0, first = 0; l < system->loads; first += system->load[l++].columns)
+			if (anchors->load[l] && (forced_too || !is_forced(step, first)) &&
+			    moves(step, i, first, system->load[l].columns))
+				add_terms(anchors, i, first, system->load[l].columns);
 }
 
 /* The fastest growth or decay of a load in a step */

@@ -331,6 +331,64 @@ static struct judged_number *numbers(int count)
     return x;
 }
 
+/* How load states go on by themselves: the corner of A that is theirs */
+static mpq_t *load_matrix(const struct judge *j)
+{
+    struct flow f = flow_of(j, 0);
+    mpq_t *A = rationals((size_t)(j->loads * j->loads));
+    for (int i = 0; i < j->loads * j->loads; i++)
+        mpq_set(A[i], f.A[(f.first_load + i / j->loads) * f.size + f.first_load + i % j->loads]);
+    return A;
+}
+
+/* The columns of the step times e^{A l h} of the loads alone */
+static void fill_turned(struct judge *j, const mpq_t *A, int l)
+{
+    struct judged_number *turned = j->turned + l * j->states * j->loads;
+    evaluator_enclosure E;
+    mpfi_t x;
+    mpq_t tau;
+    mpfi_init2(x, MORE_BITS);
+    mpq_init(tau);
+    mpq_set_si(tau, l, 1);
+    mpq_mul(tau, tau, j->h);
+    evaluator_enclosure_init(&E, (size_t)j->loads);
+    if (evaluator_enclose(A, tau, BITS, &E)) {
+        printf("# the judge gives up\n");
+        exit(1);
+    }
+    for (int i = 0; i < j->states; i++)
+        for (int k = 0; k < j->loads; k++) {
+            struct judged_number *number = &turned[i * j->loads + k];
+            mpfi_set_prec(number->x, MORE_BITS);
+            mpfi_set_ui(number->x, 0);
+            for (int m = 0; m < j->loads; m++) {
+                const struct judged_number *column = &j->step[i * j->columns + j->states + m];
+                take_entry(x, &E, m, k);
+                mpfi_mul(x, x, column->x);
+                if (!column->zero)
+                    mpfi_add(number->x, number->x, x);
+            }
+        }
+    evaluator_enclosure_clear(&E);
+    mpfi_clear(x);
+    mpq_clear(tau);
+}
+
+static void fill_turns(struct judge *j)
+{
+    const mpq_t *A = (const mpq_t *)load_matrix(j);
+    j->turned = numbers(JUDGED_TURNS * j->states * j->loads);
+    for (int i = 0; i < j->states * j->loads; i++) {
+        const struct judged_number *now = &j->step[i / j->loads * j->columns + j->states + i % j->loads];
+        mpfi_set_prec(j->turned[i].x, mpfi_get_prec(now->x));
+        mpfi_set(j->turned[i].x, now->x);
+        j->turned[i].zero = now->zero;
+    }
+    for (int l = 1; l < JUDGED_TURNS; l++)
+        fill_turned(j, A, l);
+}
+
 struct judge *judge_of(const struct linear *system, mpq_srcptr h)
 {
     struct judge *j = NEW(struct judge);
@@ -345,6 +403,8 @@ struct judge *judge_of(const struct linear *system, mpq_srcptr h)
     j->increment = numbers(j->states * j->states);
     for (int s = 0; s < system->segments; s++)
         fill_segment(j, s);
+    if (j->loads && system->segments == 1 && j->states <= LIMIT_UNROLLED_STATES)
+        fill_turns(j);
     if (j->undamped) {
         j->kick = numbers(system->n * system->n);
         j->drift = numbers(system->n * system->n);
