@@ -158,24 +158,50 @@ int anchored_term(const struct step *step, int state, int column)
 
 /* ---- E_l: how a load's states go on ---- */
 
-/* e^{a tau} cos(w tau) and sin, enclosed with the precision of z */
-static void enclose_turn(const struct wave *wave, mpq_srcptr tau, mpfi_t z[2])
+struct turn {                       /* e^{a tau} cos(w tau) and sin */
+	mpq_t tau;
+	int precision;              /* 0: not asked for */
+	mpfi_t z[2];
+};
+
+/* e^{a tau} cos(w tau) and sin; kept, since all states that the load moves ask for it */
+static void enclose_turn(const struct wave *wave, struct turn *turn, int precision)
 {
 	mpq_t product;
 	mpfi_t x;
+	if (turn->precision == precision)
+		return;
+	turn->precision = precision;
+	mpfi_set_prec(turn->z[0], precision);
+	mpfi_set_prec(turn->z[1], precision);
 	mpq_init(product);
-	mpfi_init2(x, mpfi_get_prec(z[0]));
-	mpq_mul(product, wave->w, tau);
+	mpfi_init2(x, precision);
+	mpq_mul(product, wave->w, turn->tau);
 	mpfi_set_q(x, product);
-	mpfi_cos(z[0], x);
-	mpfi_sin(z[1], x);
-	mpq_mul(product, wave->a, tau);
+	mpfi_cos(turn->z[0], x);
+	mpfi_sin(turn->z[1], x);
+	mpq_mul(product, wave->a, turn->tau);
 	mpfi_set_q(x, product);
 	mpfi_exp(x, x);
-	mpfi_mul(z[0], z[0], x);
-	mpfi_mul(z[1], z[1], x);
+	mpfi_mul(turn->z[0], turn->z[0], x);
+	mpfi_mul(turn->z[1], turn->z[1], x);
 	mpfi_clear(x);
 	mpq_clear(product);
+}
+
+/* Over 0, 1, ... steps */
+static struct turn *turns_of(const struct step *step)
+{
+	int steps = step->anchors->steps;
+	struct turn *turn = ARRAY(struct turn, (size_t)steps);
+	for (int l = 0; l < steps; l++) {
+		mpq_init(turn[l].tau);
+		mpq_set_si(turn[l].tau, l, 1);
+		mpq_mul(turn[l].tau, turn[l].tau, step->model->h);
+		mpfi_init(turn[l].z[0]);
+		mpfi_init(turn[l].z[1]);
+	}
+	return turn;
 }
 
 /* binomial(k, j) tau^(k-j) */
@@ -192,16 +218,21 @@ static void power_of_time(int k, int j, mpq_srcptr tau, mpq_ptr value)
 
 /* ---- L: a load's columns of the step, enclosed ---- */
 
-struct block_source {                     /* of a block */
+struct block_source {               /* of a block */
 	const struct linear *system;
 	struct resolvent *resolvent;
 	struct taylor *taylor;      /* NULL: residues */
 	struct layout layout;
 };
-struct row {                        /* what a load adds to a state: each column exact, or a response, or an entry */
+struct column {                     /* of L, in one row */
+	int precision;              /* 0: not asked for */
+	mpfi_t value;
+	struct response *response;
+};
+struct row {                        /* what a load adds to a state */
 	struct block_source *source;
 	int state, load, columns;   /* of the block */
-	struct response **response; /* NULL: not asked for */
+	struct column *column;
 	mpq_srcptr h;
 };
 
@@ -209,79 +240,83 @@ static struct block_source source_of_block(const struct step *step, const struct
 {
 	bool whole = system->states == step->branch->system.states;
 	struct block_source source = { .system = system,
-				 .resolvent = whole ? step->branch->resolvent : resolvent_of(system),
-				 .layout = layout_of(system, 0) };
+				       .resolvent = whole ? step->branch->resolvent : resolvent_of(system),
+				       .layout = layout_of(system, 0) };
 	if (system->states > LIMIT_RESIDUE_STATES)
 		source.taylor = taylor_of(source.layout.size,
 					  (const mpq_t *)augmented_matrix(&source.layout, system, 0), step->model->h);
 	return source;
 }
 
-static bool enclose_by_residues(struct row *row, int column, int precision, mpfi_ptr value)
+static bool enclose_by_residues(struct row *row, int k, int precision)
 {
 	mpq_t exact;
-	struct response **response = &row->response[column];
+	struct column *column = &row->column[k];
 	mpq_init(exact);
-	if (!*response)
-		*response = response_of_load(row->source->resolvent, row->source->system, 0, row->state, row->load,
-					     column);
-	bool rational = response_exact(*response, row->h, exact);
+	if (!column->response)
+		column->response = response_of_load(row->source->resolvent, row->source->system, 0, row->state,
+						    row->load, k);
+	bool rational = response_exact(column->response, row->h, exact);
 	if (rational)
-		mpfi_set_q(value, exact);
+		mpfi_set_q(column->value, exact);
 	mpq_clear(exact);
-	return rational || response_enclose(*response, row->h, precision, value);
+	return rational || response_enclose(column->response, row->h, precision, column->value);
 }
 
-static bool enclose_column(struct row *row, int column, int precision, mpfi_ptr value)
+static bool enclose_column(struct row *row, int k, int precision)
 {
 	const struct block_source *source = row->source;
-	mpfi_set_prec(value, precision);
-	if (!source->taylor || precision > TAYLOR_PRECISION)
-		return enclose_by_residues(row, column, precision, value);
-	if (!taylor_enclose(source->taylor, precision))
-		return false;
-	taylor_entry(source->taylor, row->state, source->layout.load[row->load] + column, value);
-	return true;
+	struct column *column = &row->column[k];
+	if (column->precision == precision)
+		return true;
+	column->precision = 0;
+	mpfi_set_prec(column->value, precision);
+	bool good;
+	if (!source->taylor || precision > TAYLOR_PRECISION) {
+		good = enclose_by_residues(row, k, precision);
+	} else {
+		good = taylor_enclose(source->taylor, precision);
+		if (good)
+			taylor_entry(source->taylor, row->state, source->layout.load[row->load] + k, column->value);
+	}
+	column->precision = good ? precision : 0;
+	return good;
 }
 
 /* ---- L E_l, rounded ---- */
 
 /* sum = column `from` of L E_l: t^k cos from t^j, j <= k; cos(x + w tau) = cos x cos(w tau) - sin x sin(w tau) */
-static bool enclose_turned(struct row *row, mpq_srcptr tau, int from, int precision, mpfi_ptr sum)
+static bool enclose_turned(struct row *row, struct turn *turn, int from, int precision, mpfi_ptr sum)
 {
 	const struct wave *wave = row->source->system->load[row->load].wave;
 	int trig = oscillates(wave) ? 2 : 1;
-	mpfi_t z[2], value;
+	mpfi_t value;
 	mpq_t power;
 	bool good = true;
-	mpfi_init2(z[0], precision);
-	mpfi_init2(z[1], precision);
 	mpfi_init2(value, precision);
 	mpq_init(power);
-	enclose_turn(wave, tau, z);
+	enclose_turn(wave, turn, precision);
 	mpfi_set_prec(sum, precision);
 	mpfi_set_ui(sum, 0);
 	for (int to = from / trig * trig; to < row->columns && good; to++) {
 		bool same = to % trig == from % trig;
-		good = enclose_column(row, to, precision, value);
-		mpfi_mul(value, value, z[!same]);
-		power_of_time(to / trig, from / trig, tau, power);
+		good = enclose_column(row, to, precision);
+		mpfi_mul(value, row->column[to].value, turn->z[!same]);
+		power_of_time(to / trig, from / trig, turn->tau, power);
 		mpfi_mul_q(value, value, power);
 		(same || to % trig ? mpfi_add : mpfi_sub)(sum, sum, value);
 	}
-	mpfi_clear(z[0]);
-	mpfi_clear(z[1]);
 	mpfi_clear(value);
 	mpq_clear(power);
 	return good;
 }
 
 /* Both words; false: it is not decided with so many bits. What is 0 is so, once it is too small for the range. */
-static bool round_turned(struct row *row, mpq_srcptr tau, int from, int precision, struct coefficient *c)
+static bool round_turned(struct row *row, struct turn *turn, int from, int precision, struct coefficient *c)
 {
 	mpfi_t x;
 	mpfi_init2(x, precision);
-	bool decided = enclose_turned(row, tau, from, precision, x) && round_enclosure(x, &c->value);
+	bool decided = enclose_turned(row, turn, from, precision, x) && round_enclosure(x, &c->value);
 	if (decided && isfinite(c->value)) {
 		mpfi_sub_d(x, x, c->value);
 		decided = round_enclosure(x, &c->low);
@@ -290,10 +325,10 @@ static bool round_turned(struct row *row, mpq_srcptr tau, int from, int precisio
 	return decided;
 }
 
-static void fill_term(const struct step *step, struct row *row, mpq_srcptr tau, int from, struct coefficient *c)
+static void fill_term(const struct step *step, struct row *row, struct turn *turn, int from, struct coefficient *c)
 {
 	int precision = FIRST_PRECISION;
-	while (precision <= LIMIT_PRECISION && !round_turned(row, tau, from, precision, c))
+	while (precision <= LIMIT_PRECISION && !round_turned(row, turn, from, precision, c))
 		precision *= 2;
 	if (precision > LIMIT_PRECISION || !isfinite(c->value))
 		error(step->model->asked.step_at, "--anchors 1 may do", "what a load adds so many steps after an anchor "
@@ -302,23 +337,22 @@ static void fill_term(const struct step *step, struct row *row, mpq_srcptr tau, 
 }
 
 /* The terms of one state and one load, which stand together, after any number of steps */
-static void fill_row(const struct step *step, struct block_source *source, int state, int load, int term)
+static void fill_row(const struct step *step, struct block_source *source, int state, int load, struct turn *turn,
+		     int term)
 {
 	struct anchors *anchors = step->anchors;
 	int columns = source->system->load[load].columns;
-	struct row row = { source, state, load, columns, ARRAY(struct response *, (size_t)columns), step->model->h };
-	mpq_t tau;
-	mpq_init(tau);
-	for (int l = 0; l < anchors->steps; l++) {
-		mpq_set_si(tau, l, 1);
-		mpq_mul(tau, tau, step->model->h);
+	struct row row = { source, state, load, columns, ARRAY(struct column, (size_t)columns), step->model->h };
+	for (int k = 0; k < columns; k++)
+		mpfi_init(row.column[k].value);
+	for (int l = 0; l < anchors->steps; l++)
 		for (int k = 0; k < columns; k++)
-			fill_term(step, &row, tau, k, &anchors->factor[l * anchors->terms + term + k]);
-	}
-	mpq_clear(tau);
+			fill_term(step, &row, &turn[l], k, &anchors->factor[l * anchors->terms + term + k]);
+	for (int k = 0; k < columns; k++)
+		mpfi_clear(row.column[k].value);
 }
 
-static void fill_block(const struct step *step, const struct block *block)
+static void fill_block(const struct step *step, const struct block *block, struct turn *const *turn)
 {
 	const struct linear *system = &step->branch->system;
 	struct block_source source = source_of_block(step, &block->system);
@@ -328,34 +362,18 @@ static void fill_block(const struct step *step, const struct block *block)
 			const struct anchored_term *term = &step->anchors->term[k];
 			int load = load_of_column(system, term->column, &first);
 			if (term->state == block->state[i] && term->column == first)
-				fill_row(step, &source, i, load, k);
+				fill_row(step, &source, i, load, turn[load], k);
 		}
 }
 
-/* e^{a l h} cos(w l h) and sin: what turns the load states of an anchor into those of now */
-static void fill_turns(const struct step *step, int load)
+/* What turns the load states of an anchor into those of now */
+static void fill_turn(const struct wave *wave, struct turn *turn, double value[2])
 {
-	struct anchors *anchors = step->anchors;
-	mpq_t tau;
-	mpfi_t z[2];
-	mpq_init(tau);
-	mpfi_init(z[0]);
-	mpfi_init(z[1]);
-	for (int l = 0; l < anchors->steps; l++) {
-		double *turn = &anchors->turn[2 * (load * anchors->steps + l)];
-		mpq_set_si(tau, l, 1);
-		mpq_mul(tau, tau, step->model->h);
-		for (int precision = FIRST_PRECISION; precision <= LIMIT_PRECISION; precision *= 2) {
-			mpfi_set_prec(z[0], precision);
-			mpfi_set_prec(z[1], precision);
-			enclose_turn(step->branch->system.load[load].wave, tau, z);
-			if (round_enclosure(z[0], &turn[0]) && round_enclosure(z[1], &turn[1]))
-				break;
-		}
+	bool decided = false;
+	for (int precision = FIRST_PRECISION; precision <= LIMIT_PRECISION && !decided; precision *= 2) {
+		enclose_turn(wave, turn, precision);
+		decided = round_enclosure(turn->z[0], &value[0]) && round_enclosure(turn->z[1], &value[1]);
 	}
-	mpfi_clear(z[0]);
-	mpfi_clear(z[1]);
-	mpq_clear(tau);
 }
 
 void fill_anchors(struct step *step)
@@ -363,15 +381,18 @@ void fill_anchors(struct step *step)
 	const struct linear *system = &step->branch->system;
 	struct anchors *anchors = step->anchors;
 	struct block *block;
+	struct turn **turn = ARRAY(struct turn *, (size_t)system->loads);
 	if (!anchors)
 		return;
 	list_terms(anchors, step, false);
 	anchors->factor = ARRAY(struct coefficient, (size_t)(anchors->steps * anchors->terms));
 	anchors->turn = ARRAY(double, 2 * (size_t)(anchors->steps * system->loads));
+	for (int l = 0; l < system->loads; l++) {
+		turn[l] = is_anchored(step, l) ? turns_of(step) : NULL;
+		for (int k = 0; turn[l] && k < anchors->steps; k++)
+			fill_turn(system->load[l].wave, &turn[l][k], &anchors->turn[2 * (l * anchors->steps + k)]);
+	}
 	int blocks = blocks_of(system, &block);
 	for (int b = 0; b < blocks; b++)
-		fill_block(step, &block[b]);
-	for (int l = 0; l < system->loads; l++)
-		if (is_anchored(step, l))
-			fill_turns(step, l);
+		fill_block(step, &block[b], turn);
 }

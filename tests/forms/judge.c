@@ -341,52 +341,60 @@ static mpq_t *load_matrix(const struct judge *j)
     return A;
 }
 
-/* The columns of the step times e^{A l h} of the loads alone */
-static void fill_turned(struct judge *j, const mpq_t *A, int l)
+/* target <- A B, of which A has so many rows and B and the target so many columns, here and there */
+static void multiply(int rows, int n, const mpfi_t *A, const mpfi_t *B, mpfi_t *target)
 {
-    struct judged_number *turned = j->turned + l * j->states * j->loads;
-    evaluator_enclosure E;
-    mpfi_t x;
-    mpq_t tau;
-    mpfi_init2(x, MORE_BITS);
-    mpq_init(tau);
-    mpq_set_si(tau, l, 1);
-    mpq_mul(tau, tau, j->h);
-    evaluator_enclosure_init(&E, (size_t)j->loads);
-    if (evaluator_enclose(A, tau, BITS, &E)) {
+    mpfi_t product;
+    mpfi_init2(product, 2 * BITS);
+    for (int i = 0; i < rows * n; i++) {
+        mpfi_set_ui(target[i], 0);
+        for (int m = 0; m < n; m++) {
+            mpfi_mul(product, A[i / n * n + m], B[m * n + i % n]);
+            mpfi_add(target[i], target[i], product);
+        }
+    }
+    mpfi_clear(product);
+}
+
+static mpfi_t *intervals(int count)
+{
+    mpfi_t *x = ARRAY(mpfi_t, (size_t)count);
+    for (int i = 0; i < count; i++)
+        mpfi_init2(x[i], 2 * BITS);
+    return x;
+}
+
+/* The columns of the loads; then each time what they are times e^{A h} of the loads alone */
+static void fill_turns(struct judge *j)
+{
+    const int n = j->loads, cells = j->states * n;
+    mpfi_t *E = intervals(n * n), *now = intervals(cells), *next = intervals(cells);
+    evaluator_enclosure enclosure;
+    evaluator_enclosure_init(&enclosure, (size_t)n);
+    if (evaluator_enclose((const mpq_t *)load_matrix(j), j->h, BITS, &enclosure)) {
         printf("# the judge gives up\n");
         exit(1);
     }
-    for (int i = 0; i < j->states; i++)
-        for (int k = 0; k < j->loads; k++) {
-            struct judged_number *number = &turned[i * j->loads + k];
-            mpfi_set_prec(number->x, MORE_BITS);
-            mpfi_set_ui(number->x, 0);
-            for (int m = 0; m < j->loads; m++) {
-                const struct judged_number *column = &j->step[i * j->columns + j->states + m];
-                take_entry(x, &E, m, k);
-                mpfi_mul(x, x, column->x);
-                if (!column->zero)
-                    mpfi_add(number->x, number->x, x);
-            }
-        }
-    evaluator_enclosure_clear(&E);
-    mpfi_clear(x);
-    mpq_clear(tau);
-}
-
-static void fill_turns(struct judge *j)
-{
-    const mpq_t *A = (const mpq_t *)load_matrix(j);
-    j->turned = numbers(JUDGED_TURNS * j->states * j->loads);
-    for (int i = 0; i < j->states * j->loads; i++) {
-        const struct judged_number *now = &j->step[i / j->loads * j->columns + j->states + i % j->loads];
-        mpfi_set_prec(j->turned[i].x, mpfi_get_prec(now->x));
-        mpfi_set(j->turned[i].x, now->x);
-        j->turned[i].zero = now->zero;
+    for (int i = 0; i < n * n; i++)
+        take_entry(E[i], &enclosure, i / n, i % n);
+    for (int i = 0; i < cells; i++) {
+        const struct judged_number *column = &j->step[i / n * j->columns + j->states + i % n];
+        if (!column->zero)
+            mpfi_set(now[i], column->x);
+        else
+            mpfi_set_ui(now[i], 0);
     }
-    for (int l = 1; l < JUDGED_TURNS; l++)
-        fill_turned(j, A, l);
+    j->turned = numbers(JUDGED_TURNS * cells);
+    for (int l = 0; l < JUDGED_TURNS; l++) {
+        for (int i = 0; i < cells; i++) {
+            mpfi_set_prec(j->turned[l * cells + i].x, 2 * BITS);
+            mpfi_set(j->turned[l * cells + i].x, now[i]);
+        }
+        multiply(j->states, n, (const mpfi_t *)now, (const mpfi_t *)E, next);
+        for (int i = 0; i < cells; i++)
+            mpfi_swap(now[i], next[i]);
+    }
+    evaluator_enclosure_clear(&enclosure);
 }
 
 struct judge *judge_of(const struct linear *system, mpq_srcptr h)
