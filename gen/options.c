@@ -80,6 +80,15 @@ static void take_loads(struct options *options, const char *value)
 	options->request.loads_left = is_second("--loads", value, "exact", "leftover");
 }
 
+static void take_anchors(struct options *options, const char *value)
+{
+	char *end;
+	long steps = strtol(value, &end, 10);
+	if (*value < '0' || *value > '9' || *end || steps < 1 || steps > MOST_ANCHORED)
+		wrong_usage(format("--anchors takes a number of steps, 1 to %d, found '%s'", MOST_ANCHORED, value));
+	options->request.anchors = (int)steps;
+}
+
 static void take_definition(struct options *options, const char *value)
 {
 	struct request *request = &options->request;
@@ -136,6 +145,7 @@ static const struct row {
 	{ "accuracy", "compensated", "two-word factors, and what rounding takes from the state is kept",
 	  take_accuracy, NULL },
 	{ "loads", "leftover", "leave known loads to the scheme's quadrature (default: exact)", take_loads, NULL },
+	{ "anchors", "N", "cos, sin, exp of loads every N steps, tables between; 1: every step", take_anchors, NULL },
 	{ "D", "NAME=EXPR", "another value for a param; EXPR may use the spec's params", take_definition, NULL },
 	{ "prefix", "NAME", "instead of the model's name for everything generated", take_prefix, NULL },
 	{ "reduce", NULL, "leave out what the outputs cannot see", take_reduce, NULL },
@@ -259,6 +269,8 @@ static void note_all(struct options *options)
 		note_in_banner(options, format("--form %s", step_form_name(request->form)));
 	if (request->compensated)
 		note_in_banner(options, "--accuracy compensated");
+	if (request->anchors)
+		note_in_banner(options, format("--anchors %d", request->anchors));
 	if (request->selftest)
 		note_in_banner(options, "--selftest");
 	if (options->rhs)

@@ -242,12 +242,20 @@ static void banner_cost(const struct emitter *e)
 	const struct program *program = e->step->program;
 	say(e, "%s * One step of h = %s s, form %s: %d multiplications, %d additions", e->kind->step_note,
 	    readable_text(e->model->h), step_form_text(e->step), program->multiplications, program->additions);
-	if (program->wave_multiplications)
+	if (e->step->anchors)
+		say(e, ";\n * every %d steps, for the functions of the loads, %d and %d more",
+		    e->step->anchors->steps, program->wave_multiplications, program->wave_additions);
+	else if (program->wave_multiplications)
 		say(e, ", %d of them and %d for the functions of the loads", program->wave_multiplications,
 		    program->wave_additions);
 	if (program->calls)
 		say(e, ", %d calls of the model's own functions", program->calls);
 	say(e, ".\n");
+	if (e->step->anchors && e->step->anchors->terms)
+		say(e, " * What loads add in the steps between comes from a table of %zu bytes, each number correctly "
+		       "rounded.\n",
+		    8 * (size_t)(e->step->anchors->steps * e->step->anchors->terms) *
+			    (program->compensated ? 2 : 1));
 }
 
 static void banner_state(const struct emitter *e)

@@ -35,28 +35,6 @@ static bool leftovers_read(const struct model *model, const struct wave *wave)
 	return search.found;
 }
 
-static bool row_reads(const struct linear *system, const struct output *row, int load)
-{
-	bool reads = false;
-	for (int k = 0; k < system->load[load].columns * system->segments; k++)
-		reads = reads || mpq_sgn(row->load[load][k]) != 0;
-	return reads;
-}
-
-static bool outputs_read(const struct emitter *e, int load)
-{
-	const struct model *model = e->model;
-	bool read = false;
-	for (int o = 0; o < model->outputs; o++) {
-		const struct form *left = model->output[o].left;
-		read = read || (left && reads_of(speaker(model), 1, &left).load[load]);
-		read = read || row_reads(e->system, &model->output[o], load);
-	}
-	for (int i = 0; model->highest && i < model->n; i++)
-		read = read || (model->highest[i] && row_reads(e->system, model->highest[i], load));
-	return read;
-}
-
 static bool load_is_needed(const struct emitter *e, int load)
 {
 	return e->kind->reads_load(e, load) || load_acts(e->system, &e->system->load[load]) ||
@@ -67,11 +45,14 @@ static void number_loads(struct emitter *e)
 {
 	e->phase = ARRAY(int, (size_t)e->system->loads);
 	e->growth = ARRAY(int, (size_t)e->system->loads);
+	e->anchor = ARRAY(int, (size_t)e->system->loads);
 	for (int l = 0; l < e->system->loads; l++) {
 		const struct wave *wave = e->system->load[l].wave;
 		bool needed = load_is_needed(e, l);
 		e->phase[l] = needed && oscillates(wave) ? e->phases++ : -1;
 		e->growth[l] = needed && mpq_sgn(wave->a) != 0 ? e->growths++ : -1;
+		e->anchor[l] = is_anchored(e->step, l) ? e->anchored : -1;
+		e->anchored += is_anchored(e->step, l) ? e->system->load[l].columns : 0;
 	}
 }
 
@@ -141,6 +122,7 @@ static void emit_all_tables(const struct emitter *e)
 	if (e->system->inputs)
 		emit_gamma(e);
 	emit_load_tables(e);
+	emit_anchor_tables(e);
 	e->kind->tables(e);
 }
 

@@ -20,6 +20,9 @@ struct emitter {
 	int phases, growths;        /* in the state */
 	int *phase, *growth;        /* per load: index of its phase and of its growth; -1: none */
 	bool ramps;                 /* some input is of first order */
+	int anchored;               /* load states in the state, at the last anchor */
+	int *anchor;                /* per load: index of its first there; -1: none */
+	bool at_anchor;             /* load states are written where the anchor keeps them */
 	bool at_node;               /* load states are those at `node` of the step, not at its start */
 };
 /* The only writer: a printf format in which $n is the model's name and $N the same in capitals, $$ a dollar. */
@@ -222,7 +225,8 @@ void emit_looped_step(const struct emitter *e);
 void emit_modes(const struct emitter *e);                         /* tables; nothing of other forms */
 void emit_modal_step(const struct emitter *e);
 
-/* ---- emit.c, emit_step.c, emit_out.c, emit_loads.c, emit_time.c, emit_tune.c, emit_rhs.c: a step as C ---- */
+/* ---- emit.c, emit_step.c, emit_out.c, emit_loads.c, emit_forced.c, emit_anchors.c, emit_time.c, emit_tune.c,
+ * emit_rhs.c: a step as C ---- */
 
 void emit_header(FILE *to, const struct step *step, const char *options, bool rhs);
 /* header_name NULL: all in one */
@@ -234,6 +238,16 @@ void emit_load_set(const struct emitter *e);
 void emit_load_advance(const struct emitter *e, const char *steps); /* `steps` NULL: one */
 /* declares load1[...] for the loads wanted */
 void emit_load_states(const struct emitter *e, const bool *loads, bool time_is_there);
+void emit_load_array(const struct emitter *e, int load);          /* load1[2], what its states are called */
+const char *load_cell(const struct emitter *e, int load, int column); /* load1[0]; in the anchor s->anchor[0] */
+void emit_load_functions(const struct emitter *e, int load);      /* its states, from its phase and growth */
+void emit_load_powers(const struct emitter *e, int load);         /* those with t, from those without */
+bool outputs_read(const struct emitter *e, int load);
+void emit_anchor_tables(const struct emitter *e);                 /* of anchors: tables, and NAME_anchor */
+void emit_anchor_members(const struct emitter *e);
+/* as emit_load_states, in a step: at the anchor, to be multiplied with turned[...]; elsewhere: of now */
+void emit_anchored_loads(const struct emitter *e, const bool *loads);
+void emit_turned_loads(const struct emitter *e, const bool *loads, bool time_is_there);
 void emit_forced(const struct emitter *e);                        /* NAME_forced: what is not kept of the state */
 const char *load_operand(const struct emitter *e, int load, int column); /* NULL: the constant 1 */
 const char *column_operand(const struct emitter *e, int column);

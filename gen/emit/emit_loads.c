@@ -155,10 +155,11 @@ void emit_load_tables(const struct emitter *e)
 
 void emit_load_members(const struct emitter *e)
 {
+	const char *when = e->step->anchors ? " at the anchor" : "";
 	if (e->phases)
-		say(e, "    pl_turn phase[%d];    /* of the loads */\n", e->phases);
+		say(e, "    pl_turn phase[%d];    /* of the loads%s */\n", e->phases, when);
 	if (e->growths)
-		say(e, "    pl_growth growth[%d]; /* of the loads */\n", e->growths);
+		say(e, "    pl_growth growth[%d]; /* of the loads%s */\n", e->growths, when);
 }
 
 void emit_load_set(const struct emitter *e)
@@ -212,41 +213,76 @@ const char *column_operand(const struct emitter *e, int column)
 	return load_operand(e, l, column);
 }
 
+/* s->phase[i] or s->growth[i], and what it has gained since: up to the node, or from the anchor up to now */
+static const char *now_of(const struct emitter *e, const char *what, const char *type, int i)
+{
+	const char *kept = format("s->%s[%d]", what, i);
+	if (e->at_node)
+		return format("%s_add(%s, %s_node_%s[node][%d])", type, kept, e->name, what, i);
+	if (!e->step->anchors || e->at_anchor)
+		return kept;
+	return format("%s_add(%s, %s_times(%s_%s_step[%d], s->since))", type, kept, type, e->name, what, i);
+}
+
 static const char *phase_now(const struct emitter *e, int i)
 {
-	const char *layout = e->at_node ? "pl_turn_add(s->phase[%d], %s_node_phase[node][%d])" : "s->phase[%d]";
-	return format(layout, i, e->name, i);
+	return now_of(e, "phase", "pl_turn", i);
 }
 
 static const char *growth_now(const struct emitter *e, int i)
 {
-	const char *layout = e->at_node ? "pl_growth_add(s->growth[%d], %s_node_growth[node][%d])" : "s->growth[%d]";
-	return format(layout, i, e->name, i);
+	return now_of(e, "growth", "pl_growth", i);
+}
+
+const char *load_cell(const struct emitter *e, int load, int column)
+{
+	return e->at_anchor ? format("s->anchor[%d]", e->anchor[load] + column)
+			    : format("load%d[%d]", load + 1, column);
+}
+
+void emit_load_array(const struct emitter *e, int l)
+{
+	const struct load *load = &e->system->load[l];
+	say(e, "    double load%d[%d];  /* %s", l + 1, load->columns, column_text(load, 0));
+	for (int k = 1; k < load->columns; k++)
+		say(e, ", %s", column_text(load, k));
+	say(e, " */\n");
+}
+
+void emit_load_powers(const struct emitter *e, int l)
+{
+	const struct load *load = &e->system->load[l];
+	int trig = oscillates(load->wave) ? 2 : 1;
+	for (int k = trig; k < load->columns; k++)
+		say(e, "    %s = t * %s;\n", load_cell(e, l, k), load_cell(e, l, k - trig));
+}
+
+void emit_load_functions(const struct emitter *e, int l)
+{
+	const struct load *load = &e->system->load[l];
+	bool turns = oscillates(load->wave), grows = e->growth[l] >= 0;
+	const char *pair = e->at_anchor ? format("&%s", load_cell(e, l, 0)) : format("load%d", l + 1);
+	if (turns)
+		say(e, "    pl_cossin(%s, %s);\n", phase_now(e, e->phase[l]), pair);
+	if (turns && grows)
+		say(e, "    growth = pl_growth_value(%s);\n"
+		       "    %s *= growth;\n"
+		       "    %s *= growth;\n",
+		    growth_now(e, e->growth[l]), load_cell(e, l, 0), load_cell(e, l, 1));
+	else if (!turns)
+		say(e, "    %s = %s;\n", load_cell(e, l, 0),
+		    grows ? format("pl_growth_value(%s)", growth_now(e, e->growth[l])) : "1.0");
+	emit_load_powers(e, l);
 }
 
 /* t^k and e^{at} and cos, sin from their parts: load[0] (and [1]), then each power from the one before */
 static void emit_one_load(const struct emitter *e, int l)
 {
 	const struct load *load = &e->system->load[l];
-	int trig = oscillates(load->wave) ? 2 : 1, number = l + 1;
 	if (is_polynomial(load->wave) && load->powers <= 2)
 		return;                         /* 1 and t need no array */
-	say(e, "    double load%d[%d];  /* %s", number, load->columns, column_text(load, 0));
-	for (int k = 1; k < load->columns; k++)
-		say(e, ", %s", column_text(load, k));
-	say(e, " */\n");
-	if (trig == 2)
-		say(e, "    pl_cossin(%s, load%d);\n", phase_now(e, e->phase[l]), number);
-	if (trig == 2 && e->growth[l] >= 0)
-		say(e, "    growth = pl_growth_value(%s);\n"
-		       "    load%d[0] *= growth;\n"
-		       "    load%d[1] *= growth;\n",
-		    growth_now(e, e->growth[l]), number, number);
-	else if (trig == 1)
-		say(e, "    load%d[0] = %s;\n", number,
-		    e->growth[l] >= 0 ? format("pl_growth_value(%s)", growth_now(e, e->growth[l])) : "1.0");
-	for (int k = trig; k < load->columns; k++)
-		say(e, "    load%d[%d] = t * load%d[%d];\n", number, k, number, k - trig);
+	emit_load_array(e, l);
+	emit_load_functions(e, l);
 }
 
 void emit_load_states(const struct emitter *e, const bool *loads, bool time_is_there)
@@ -263,101 +299,4 @@ void emit_load_states(const struct emitter *e, const bool *loads, bool time_is_t
 	for (int l = 0; l < e->system->loads; l++)
 		if (loads[l] && !is_plain_constant(&e->system->load[l]))
 			emit_one_load(e, l);
-}
-
-/* ---- the forced part ---- */
-
-/* A factor of a load state; where formulas change, its place in the table forced_part[segment][state][column] */
-static const char *forced_term(const struct emitter *e, int state, int column)
-{
-	const struct table *table = e->step->branch->whole;
-	const char *operand = column_operand(e, column);
-	if (e->system->segments == 1)
-		return scaled(e->step->forced->part[state * table->columns + column].value, operand);
-	const char *text = format("%s_forced_part[s->segment][%d][%d]", e->name, state, column);
-	return operand ? format("%s * %s", text, operand) : text;
-}
-
-static bool forces(const struct emitter *e, int state, int column)
-{
-	const struct table *table = e->step->branch->whole;
-	bool any = false;
-	for (int s = 0; s < e->system->segments && is_forced(e->step, column); s++)
-		any = any || e->step->forced->part[(s * table->states + state) * table->columns + column].value != 0;
-	return any;
-}
-
-/* [segment][state][column] */
-static void print_forced(const struct emitter *e, const char *name, const char *what, int segments,
-			 const struct coefficient *factor)
-{
-	const struct table *table = e->step->branch->whole;
-	int cells = table->states * table->columns;
-	double *value = ARRAY(double, (size_t)cells);
-	say(e, "\nstatic const double $n_%s[%d][$N_STATES][%d] = {  /* %s */\n", name, segments, table->columns, what);
-	for (int s = 0; s < segments; s++) {
-		for (int i = 0; i < cells; i++)
-			value[i] = is_forced(e->step, i % table->columns) ? factor[s * cells + i].value : 0;
-		say(e, "  {\n");
-		emit_number_rows(e, table->states, table->columns, value, e->model->state_name);
-		say(e, "  },\n");
-	}
-	say(e, "};\n");
-}
-
-/* A change at the end of a step */
-static void emit_rebase(const struct emitter *e)
-{
-	int count = e->step->branch->whole->columns;
-	say(e, "\n"
-	       "static void $n_rebase($n *s)\n"
-	       "{\n");
-	emit_load_states(e, e->step->forced->load, false);
-	say(e, "    const double load[%d] = {", count);
-	for (int k = 0; k < count; k++) {
-		const char *operand = is_forced(e->step, k) ? column_operand(e, k) : "0.0";
-		say(e, "%s%s", k ? ", " : "", operand ? operand : "1.0");
-	}
-	say(e, "};\n"
-	       "    int i, j;\n"
-	       "    for (i = 0; i < $N_STATES; i++)\n"
-	       "        for (j = 0; j < %d; j++)\n"
-	       "            s->y[i] += $n_forced_change[s->segment][i][j] * load[j];\n"
-	       "}\n",
-	    count);
-}
-
-static void emit_forced_tables(const struct emitter *e)
-{
-	const struct forced *forced = e->step->forced;
-	int segments = e->system->segments;
-	if (segments > 1)
-		print_forced(e, "forced_part", "factors of the load states in each segment of time", segments,
-			     forced->part);
-	if (forced->changes) {
-		print_forced(e, "forced_change", "what they lose from each to the next", segments - 1, forced->change);
-		emit_rebase(e);
-	}
-}
-
-void emit_forced(const struct emitter *e)
-{
-	const struct table *table = e->step->branch->whole;
-	const char **term = ARRAY(const char *, (size_t)table->columns);
-	emit_forced_tables(e);
-	say(e, "\n"
-	       "/* What the loads that the step leaves out sustain now */\n"
-	       "static void $n_forced(const $n *s, double now[$N_STATES])\n"
-	       "{\n");
-	emit_load_states(e, e->step->forced->load, false);
-	for (int i = 0; i < table->states; i++) {
-		int terms = 0;
-		for (int k = 0; k < table->columns; k++)
-			if (forces(e, i, k))
-				term[terms++] = forced_term(e, i, k);
-		say(e, "    now[%d] = %s;  /* %s */\n", i, terms ? tree(terms, term, 13) : "0.0",
-		    e->model->state_name[i]);
-	}
-	say(e, "    (void)s;\n"
-	       "}\n");
 }

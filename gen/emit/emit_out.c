@@ -236,7 +236,7 @@ void emit_out(const struct emitter *e)
 	emit_input_locals(e, needs.inputs);
 	if (needs.time)
 		say(e, "    const double t = $n_time(s);\n");
-	emit_load_states(e, needs.loads, needs.time);
+	emit_turned_loads(e, needs.loads, needs.time);
 	if (needs.left)
 		say(e, "    double left[%d];\n"
 		       "    %s\n", model->channels, leftover_of_outputs(e));

@@ -28,6 +28,9 @@ static const char *term_text(const struct emitter *e, const struct assignment *a
 {
 	const char *operand = step_operand(e, &p->operand);
 	bool tuned = e->step->program->tuned;
+	int turned = p->operand.kind == OPERAND_LOAD ? anchored_term(e->step, a->target, p->operand.index) : -1;
+	if (turned >= 0)
+		return format("turned[%d] * %s", turned, operand);
 	if (!tuned && (p->operand.kind != OPERAND_LOAD || e->system->segments == 1))
 		return scaled(p->factor->value, operand);
 	const char *factor = tuned ? tuned_factor(e, a->target, &p->operand)
@@ -43,14 +46,23 @@ static const char *sum_text(const struct emitter *e, const struct assignment *a,
 	return a->terms ? tree(a->terms, term, indent) : "0.0";
 }
 
+static const char *second_term_text(const struct emitter *e, const struct assignment *a, const struct product *p)
+{
+	const char *operand = operand_text(e, &p->operand);
+	int turned = p->operand.kind == OPERAND_LOAD ? anchored_term(e->step, a->target, p->operand.index) : -1;
+	if (turned >= 0)
+		return format("turned[%d] * %s", e->step->anchors->terms + turned, operand);
+	return scaled(p->factor->low, operand);
+}
+
 /* The factors' second words; NULL: there are none */
 static const char *second_sum_text(const struct emitter *e, const struct assignment *a)
 {
 	const char **term = ARRAY(const char *, (size_t)a->terms + 1);
 	int terms = 0;
 	for (int k = 0; k < a->terms; k++)
-		if (has_second_word(&a->term[k], e->system))
-			term[terms++] = scaled(a->term[k].factor->low, step_operand(e, &a->term[k].operand));
+		if (has_second_word(&a->term[k], e->step))
+			term[terms++] = second_term_text(e, a, &a->term[k]);
 	return terms ? tree(terms, term, 14) : NULL;
 }
 
@@ -159,7 +171,7 @@ static void emit_plain_step(const struct emitter *e)
 		return;
 	}
 	emit_raw_locals(e, program->reads, program->in_order);
-	emit_load_states(e, loads_of_step(e), false);
+	emit_anchored_loads(e, loads_of_step(e));
 	if (e->system->segments > 1 && any_load_term(program) && !program->tuned)
 		say(e, "    const double (*const factor)[%d] = $n_load_factor[s->segment];\n",
 		    e->step->branch->whole->columns);
@@ -173,8 +185,13 @@ static void emit_plain_step(const struct emitter *e)
 void emit_step_end(const struct emitter *e)
 {
 	emit_keep_inputs(e);
-	emit_load_advance(e, NULL);
+	if (!e->step->anchors)
+		emit_load_advance(e, NULL);
 	say(e, "    s->k++;\n");
+	if (e->step->anchors)
+		say(e, "    if (++s->since == %d)\n"
+		       "        $n_anchor(s);\n",
+		    e->step->anchors->steps);
 }
 
 const char *step_parameters(const struct emitter *e)

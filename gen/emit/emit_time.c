@@ -439,8 +439,10 @@ static void emit_leap(const struct emitter *e, const char *declaration)
 	say(e, "    pl_power_apply(%d, power, work, x, w, n);\n", size);
 	emit_leap_end(e);
 	emit_load_advance(e, "n");
-	say(e, "    s->k += n;\n"
-	       "}\n");
+	say(e, "    s->k += n;\n");
+	if (e->step->anchors)
+		say(e, "    $n_anchor(s);\n");
+	say(e, "}\n");
 }
 
 void emit_jump(const struct emitter *e)

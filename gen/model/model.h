@@ -80,6 +80,7 @@ struct request {                    /* what the user asks for on the command lin
 	bool single;                /* the target's numbers are floats */
 	bool selftest;              /* NAME_selftest */
 	enum step_form form;
+	int anchors;                /* steps from one evaluation of a load's functions to the next; 0: as it is best */
 	bool solution;              /* the closed form is wanted, whatever the scheme */
 	int definitions;
 	const char **definition;    /* NAME=EXPR */

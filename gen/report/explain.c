@@ -109,9 +109,13 @@ static void person_step(FILE *to, const struct step *step)
 	const struct program *program = step->program;
 	fprintf(to, "Step: form %s, h = %s s; %d multiplications, %d additions", step_form_text(step),
 		readable_text(model->h), program->multiplications, program->additions);
-	if (program->wave_multiplications)
-		fprintf(to, " (%d and %d of them for the functions of the loads)", program->wave_multiplications,
-			program->wave_additions);
+	if (step->anchors)
+		fprintf(to, "; every %d steps, for the functions of the loads, %d and %d more", step->anchors->steps,
+			program->wave_multiplications, program->wave_additions);
+	else if (program->wave_multiplications)
+		fprintf(to, " (%d and %d of them for the functions of the loads%s%s)", program->wave_multiplications,
+			program->wave_additions, step->no_anchors ? "; no anchors with " : "",
+			step->no_anchors ? step->no_anchors : "");
 	if (program->calls)
 		fprintf(to, ", %d calls of the model's own functions", program->calls);
 	if (step->model->relative) {

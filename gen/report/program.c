@@ -199,7 +199,7 @@ static void print_assignment(FILE *to, const struct step *step, const struct ass
 	for (int k = 0; k < a->terms; k++) {
 		const struct product *p = &a->term[k];
 		const char *factor = shortest(p->factor->value);
-		if (step->program->compensated && has_second_word(p, &step->branch->system))
+		if (step->program->compensated && has_second_word(p, step))
 			factor = format("(%s + %s)", factor, shortest(p->factor->low));
 		fprintf(to, "%s %s*%s", k ? " +" : "", factor, operand_text(step, &p->operand));
 	}

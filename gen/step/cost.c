@@ -61,28 +61,58 @@ static struct cost leftover_cost(const struct step *step)
 	return c.cost;
 }
 
-/* What the load states of the columns in use cost */
-void count_loads(struct program *program, const struct linear *system, bool single)
+static bool is_used(const struct program *program, const struct load *load, int column)
 {
+	bool used = false;
+	for (int k = 0; k < load->columns; k++)
+		used = used || program->uses[column + k];
+	return used;
+}
+
+/* Powers of t times functions, and growths times cos and sin */
+static int products_of_load(const struct load *load)
+{
+	bool grows = mpq_sgn(load->wave->a) != 0;
+	return oscillates(load->wave) ? 2 * (load->powers - 1) + 2 * grows
+	       : load->powers > 1     ? load->powers - 2 + grows
+				      : 0;
+}
+
+void count_loads(struct program *program, const struct step *step)
+{
+	const struct linear *system = &step->branch->system;
+	bool single = step->model->asked.single;
+	int anchored = 0;
 	for (int l = 0, column = 0; l < system->loads; column += system->load[l++].columns) {
 		const struct load *load = &system->load[l];
-		bool used = false;
-		for (int k = 0; k < load->columns; k++)
-			used = used || program->uses[column + k];
-		bool grows = used && mpq_sgn(load->wave->a) != 0, turns = used && oscillates(load->wave);
-		program->oscillators += turns;
-		program->growths += grows;
-		program->multiplications += !used              ? 0
-					    : turns            ? 2 * (load->powers - 1) + 2 * grows
-					    : load->powers > 1 ? load->powers - 2 + grows
-							       : 0;
+		if (!is_used(program, load, column) && !is_anchored(step, l))
+			continue;
+		program->oscillators += oscillates(load->wave);
+		program->growths += mpq_sgn(load->wave->a) != 0;
+		*(is_anchored(step, l) ? &anchored : &program->multiplications) += products_of_load(load);
 	}
 	program->wave_multiplications = program->oscillators * (single ? PL_COSSINF_MUL : PL_COSSIN_MUL) +
-					program->growths * (single ? PL_GROWTHF_MUL : PL_GROWTH_MUL);
+					program->growths * (single ? PL_GROWTHF_MUL : PL_GROWTH_MUL) + anchored;
 	program->wave_additions = program->oscillators * (single ? PL_COSSINF_ADD : PL_COSSIN_ADD) +
 				  program->growths * (single ? PL_GROWTHF_ADD : PL_GROWTH_ADD);
+	if (step->anchors)
+		return;
 	program->multiplications += program->wave_multiplications;
 	program->additions += program->wave_additions;
+}
+
+void count_turned_loads(struct program *program, const struct step *step)
+{
+	const struct linear *system = &step->branch->system;
+	for (int l = 0, column = 0; l < system->loads; column += system->load[l++].columns) {
+		const struct load *load = &system->load[l];
+		if (!is_used(program, load, column))
+			continue;
+		bool turns = oscillates(load->wave), turned = is_anchored(step, l);
+		program->multiplications += turned ? (turns ? 4 : 1) + (turns ? 2 : 1) * (load->powers - 1)
+						   : products_of_load(load);
+		program->additions += turned && turns ? 2 : 0;
+	}
 }
 
 /* ---- the count of a program of actions ---- */

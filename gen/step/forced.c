@@ -18,6 +18,7 @@ enum {
 	LIMIT_FORCED_STATES = 32,
 	LIMIT_SOLVED = 48,
 	LIMIT_SEGMENTS = 16,
+	TURNING = 3,                /* roundings where a load state is turned from its anchor */
 	FEW_LOADS = 8
 };
 
@@ -317,27 +318,53 @@ static double load_roundings(const struct reckoning *r, int column)
 	return 2 + 3 * (mpq_sgn(load->wave->a) != 0) + 4 * (at / (oscillates(load->wave) ? 2 : 1));
 }
 
-static void reckon_product(struct reckoning *r, int row, const struct product *p)
+/* A load with an anchor comes from cos and sin there together: what counts is how large they are together, in `value`,
+ * a vector over the columns */
+static double size_of(const struct reckoning *r, int column, double value, double partner)
+{
+	const struct load *load = &r->step->branch->system.load[r->load_of[column]];
+	bool pair = is_anchored(r->step, r->load_of[column]) && oscillates(load->wave);
+	return pair ? hypot(value, partner) : fabs(value);
+}
+
+/* The other one of cos and sin */
+static int partner_of(const struct reckoning *r, int column)
+{
+	int first = first_column(&r->step->branch->system, r->load_of[column]);
+	return oscillates(r->step->branch->system.load[r->load_of[column]].wave) ? first + ((column - first) ^ 1)
+										 : column;
+}
+
+/* Of a load state */
+static double load_size(const struct reckoning *r, int column)
+{
+	const double *z = r->course->z + r->k * r->step->branch->whole->columns;
+	return size_of(r, column, z[column], z[partner_of(r, column)]);
+}
+
+static void reckon_load(struct reckoning *r, int row, int column)
 {
 	const struct table *table = r->step->branch->whole;
-	double factor = p->factor->value, x, error = 0;
-	if (p->operand.kind == OPERAND_INPUT)
+	const struct coefficient *factor =
+		table->load + (r->course->segment[r->k] * table->states + row) * table->columns;
+	double z = load_size(r, column), value = factor[column].value;
+	double most = size_of(r, column, value, factor[partner_of(r, column)].value);
+	r->sum.value += value * r->course->z[r->k * table->columns + column];
+	r->sum.error += most * load_roundings(r, column) * z;
+	r->size += most * z;
+}
+
+static void reckon_product(struct reckoning *r, int row, const struct product *p)
+{
+	double factor = p->factor->value;
+	if (p->operand.kind == OPERAND_LOAD && !(r->forced && r->forced->load[r->load_of[p->operand.index]]))
+		reckon_load(r, row, p->operand.index);
+	if (p->operand.kind != OPERAND_STATE)
 		return;
-	if (p->operand.kind == OPERAND_LOAD) {
-		if (r->forced && r->forced->load[r->load_of[p->operand.index]])
-			return;
-		factor = table->load[(r->course->segment[r->k] * table->states + row) * table->columns +
-				     p->operand.index]
-				 .value;
-		x = r->course->z[r->k * table->columns + p->operand.index];
-		error = load_roundings(r, p->operand.index) * fabs(x);
-	} else {
-		x = r->from[p->operand.index].value;
-		error = r->from[p->operand.index].error;
-	}
-	r->sum.value += factor * x;
-	r->sum.error += fabs(factor) * error;
-	r->size += fabs(factor * x);
+	const struct rounded *x = &r->from[p->operand.index];
+	r->sum.value += factor * x->value;
+	r->sum.error += fabs(factor) * x->error;
+	r->size += fabs(factor * x->value);
 }
 
 static int levels(int terms)
@@ -382,7 +409,9 @@ static double part_of(const struct reckoning *r, int state, bool sizes)
 		double term = (c->value + c->low) * r->course->z[r->k * table->columns + column];
 		/* of a factor, perhaps to 0 */
 		double lost = fabs(c->low * r->course->z[r->k * table->columns + column]) / unit_of(r->step);
-		sum += sizes ? fabs(term) * (2 + levels(table->columns) + load_roundings(r, column)) + lost : term;
+		int roundings = 2 + levels(table->columns) + (is_anchored(r->step, r->load_of[column]) ? TURNING : 0);
+		double most = fabs(c->value) * load_size(r, column);
+		sum += sizes ? most * (roundings + load_roundings(r, column)) + lost : term;
 	}
 	return sum;
 }
@@ -475,7 +504,7 @@ static void count_forced(const struct step *step, struct forced *forced)
 				program.multiplications += !(j == 0 && is_polynomial(system->load[l].wave)) &&
 							   c->value != 1 && c->value != -1;
 			}
-	count_loads(&program, system, step->model->asked.single);
+	(step->anchors ? count_turned_loads : count_loads)(&program, step);
 	forced->multiplications = program.multiplications;
 	forced->additions = program.additions;
 	for (int i = 0; i < (system->segments - 1) * system->states * columns; i++)
@@ -542,15 +571,6 @@ void plan_forced(struct step *step)
 	}
 	if (any)
 		choose_loads(step, &course, forced, able);
-}
-
-bool is_forced(const struct step *step, int column)
-{
-	const struct linear *system = &step->branch->system;
-	for (int l = 0; l < system->loads; column -= system->load[l++].columns)
-		if (column < system->load[l].columns)
-			return step->forced && step->forced->load[l];
-	return false;
 }
 
 const char *rounding_text(const struct step *step)

@@ -11,6 +11,28 @@ enum step_kind kind_of_step(const struct model *model)
 	return model->channels > 0 ? KIND_LEFTOVER : KIND_LINEAR;
 }
 
+bool is_anchored(const struct step *step, int load)
+{
+	return step->anchors && step->anchors->load[load];
+}
+
+int load_of_column(const struct linear *system, int column, int *first)
+{
+	int l = 0;
+	for (*first = 0; column >= *first + system->load[l].columns; l++)
+		*first += system->load[l].columns;
+	return l;
+}
+
+bool is_forced(const struct step *step, int column)
+{
+	const struct linear *system = &step->branch->system;
+	for (int l = 0; l < system->loads; column -= system->load[l++].columns)
+		if (column < system->load[l].columns)
+			return step->forced && step->forced->load[l];
+	return false;
+}
+
 bool has_leftover(const struct step *step)
 {
 	return step->kind == KIND_LEFTOVER;

@@ -107,6 +107,7 @@ static void build_exact(struct step *step)
 	if (step->model->tuning)
 		mark_tuned_zeros(step);
 	find_carries(step);
+	plan_anchors(step);
 	step->program = linear_program(step);
 	plan_modal(step);
 	if (step->modal)
@@ -114,6 +115,7 @@ static void build_exact(struct step *step)
 	plan_forced(step);
 	if (step->forced)
 		step->program = linear_program(step);
+	fill_anchors(step);
 }
 
 static bool *loads_of_regions(const struct step *step)
@@ -227,7 +229,7 @@ static void build_with_leftover(struct step *step)
 	step->program->loops = !is_page(step);
 	mark_loads(step, step->program);
 	count_program(step, step->program);
-	count_loads(step->program, &step->branch->system, step->model->asked.single);
+	count_loads(step->program, step);
 }
 
 /* Of tunable models: no Taylor series in the step's own time, but e^{A tau} at any, of every load */
@@ -276,6 +278,7 @@ static void build(void *context)
 	take_operators(step);
 	if (scheme_row(model->scheme)->holds_coupling)
 		find_growth(step);
+	check_anchors(step);
 	build_kind[step->kind](step);
 	if (model->asked.selftest)
 		need_closed_form(step);
@@ -296,6 +299,7 @@ struct step *step_build(const struct model *model)
 	*plain = *model->written;
 	plain->asked.form = FORM_DIRECT;
 	plain->asked.compensated = plain->asked.selftest = false;
+	plain->asked.anchors = 1;
 	step->shown = step_build(plain);
 	return step->shown ? step : NULL;
 }

@@ -172,7 +172,8 @@ struct program {
 	bool *reads;                /* per state: whether its old value is read */
 	bool *uses;                 /* per column of the loads */
 	int oscillators, growths;   /* cos/sin pairs and exponentials evaluated per step */
-	int wave_multiplications, wave_additions; /* for them, counted below too */
+	/* for them: counted below too, or beside it what comes at each anchor */
+	int wave_multiplications, wave_additions;
 	int multiplications, additions, calls; /* calls: of the model's own functions */
 	bool loops;                 /* over tables: a large model */
 	/* of a list that loops: how its assignments are done, by blocks */
@@ -195,6 +196,16 @@ struct forced {
 	struct coefficient *change; /* the same, from each segment to the next: what the state gains that is kept */
 	bool changes;               /* any of it */
 	int multiplications, additions; /* to add it */
+};
+enum { MOST_ANCHORED = 256 };       /* steps from one anchor to the next */
+struct anchored_term { int state, column; };
+struct anchors {                    /* load states at an anchor, and tables for the steps to the next */
+	int steps;                  /* from one to the next */
+	bool *load;                 /* per load: an anchor keeps its states */
+	int terms;                  /* of a step: by state, then by column of a load */
+	struct anchored_term *term;
+	struct coefficient *factor; /* [steps since the anchor][term]: of the load state there */
+	double *turn;               /* [load][steps since][2]: e^{a l h} cos(w l h) and sin */
 };
 struct rounding {                   /* a bound over the first steps from the initial values, inputs 0 */
 	bool known;
@@ -256,6 +267,8 @@ struct step {                       /* everything that is emitted for one model 
 	/* states that nothing leads back from, which only add up: index of what rounding takes from each; -1: of
 	 * others */
 	int carries, *carry;
+	struct anchors *anchors;    /* NULL: functions of loads in every step */
+	const char *no_anchors;     /* why, where a load has some; NULL: there are anchors, or none has */
 	struct forced *forced;      /* NAME keeps the state less this; NULL: as it is */
 	struct rounding rounding;
 	mpfr_t growth;              /* pl: 1/s, largest real part of the modified equation's poles (report only) */
@@ -268,6 +281,9 @@ struct step {                       /* everything that is emitted for one model 
 	struct load_phase *phase;   /* per load */
 };
 enum step_kind kind_of_step(const struct model *model);
+bool is_anchored(const struct step *step, int load);        /* its functions are evaluated at anchors only */
+int load_of_column(const struct linear *system, int column, int *first); /* *first: the first column of that load */
+bool is_forced(const struct step *step, int column);         /* is this load state's load left out of the step? */
 bool has_leftover(const struct step *step);                 /* it is of that kind */
 void need_closed_form(const struct step *step);              /* leaves the statement where there is none */
 
@@ -381,15 +397,23 @@ struct pieces pieces_of(const struct step *step);
 /* ---- cost.c: what a step costs ---- */
 
 void count_program(const struct step *step, struct program *program); /* of a step with a leftover, not its loads */
-/* what the load states of the columns in use cost */
-void count_loads(struct program *program, const struct linear *system, bool single);
+/* what the load states of the columns in use cost; where there are anchors, at each of them */
+void count_loads(struct program *program, const struct step *step);
+/* ... and to turn them into those of now */
+void count_turned_loads(struct program *program, const struct step *step);
 
 /* ---- forced.c: what rounding does to a step with loads ---- */
 
 /* its rounding; its forced part, where the bound is the better for it */
 void plan_forced(struct step *step);
-bool is_forced(const struct step *step, int column);         /* is this load state's load left out of the step? */
 const char *rounding_text(const struct step *step);
+
+/* ---- anchors.c: functions of loads every so many steps, tables between ---- */
+
+void check_anchors(struct step *step);                      /* leaves the statement where they are asked for in vain */
+void plan_anchors(struct step *step);                       /* after its table */
+void fill_anchors(struct step *step);                       /* after its forced part is chosen */
+int anchored_term(const struct step *step, int state, int column);   /* its index; -1: it is none */
 
 /* ---- stepform.c: a linear step as direct, delta or kick-drift-kick ---- */
 
@@ -400,7 +424,7 @@ void need_direct(const struct step *step);                  /* the same where an
 void find_carries(struct step *step);
 struct program *linear_program(const struct step *step);    /* from its table */
 /* in the code: loads that change have none */
-bool has_second_word(const struct product *p, const struct linear *system);
+bool has_second_word(const struct product *p, const struct step *step);
 bool is_constant_column(const struct linear *system, int column); /* of the loads: it is 1 */
 
 /* ---- large.c: a large step by its independent blocks ---- */

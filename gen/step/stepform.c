@@ -276,13 +276,18 @@ static void add_term(struct assignment *a, const struct coefficient *factor, enu
 	a->term[a->terms++] = (struct product){ factor, { kind, index } };
 }
 
-/* A load that acts in some segment of time */
+/* A load that acts in some segment of time; of one with anchors, all columns where one acts */
 static void add_load_term(struct assignment *a, const struct step *step, int row, int column)
 {
+	const struct linear *system = &step->branch->system;
 	const struct table *table = step->branch->whole;
+	int first, load = load_of_column(system, column, &first), last = first + system->load[load].columns - 1;
 	bool any = false;
-	for (int s = 0; s < step->branch->system.segments; s++)
-		any = any || !table->load[(s * table->states + row) * table->columns + column].zero;
+	if (!is_anchored(step, load))
+		first = last = column;
+	for (int s = 0; s < system->segments; s++)
+		for (int k = first; k <= last; k++)
+			any = any || !table->load[(s * table->states + row) * table->columns + k].zero;
 	if (any && !is_forced(step, column))
 		a->term[a->terms++] =
 			(struct product){ &table->load[row * table->columns + column], { OPERAND_LOAD, column } };
@@ -310,37 +315,45 @@ static bool is_constant_load(const struct product *p, const struct linear *syste
 	return p->operand.kind == OPERAND_LOAD && is_constant_column(system, p->operand.index);
 }
 
-static bool is_unit(const struct product *p, const struct linear *system)
+static bool is_turned(const struct product *p, const struct step *step)
 {
-	double value = p->factor->value;
-	return value == 1 || value == -1 || is_constant_load(p, system);
+	int first;
+	return p->operand.kind == OPERAND_LOAD &&
+	       is_anchored(step, load_of_column(&step->branch->system, p->operand.index, &first));
 }
 
-static void count_term(struct program *program, const struct product *p, const struct linear *system)
+static bool is_unit(const struct product *p, const struct step *step)
 {
-	program->multiplications += program->tuned ? !is_constant_load(p, system) : !is_unit(p, system);
+	double value = p->factor->value;
+	return ((value == 1 || value == -1) && !is_turned(p, step)) || is_constant_load(p, &step->branch->system);
+}
+
+static void count_term(struct program *program, const struct product *p, const struct step *step)
+{
+	program->multiplications += program->tuned ? !is_constant_load(p, &step->branch->system) : !is_unit(p, step);
 	if (p->operand.kind == OPERAND_STATE)
 		program->reads[p->operand.index] = true;
 	if (p->operand.kind == OPERAND_LOAD)
 		program->uses[p->operand.index] = true;
 }
 
-bool has_second_word(const struct product *p, const struct linear *system)
+bool has_second_word(const struct product *p, const struct step *step)
 {
-	return p->factor->low != 0 && (p->operand.kind != OPERAND_LOAD || system->segments == 1);
+	return is_turned(p, step) ||
+	       (p->factor->low != 0 && (p->operand.kind != OPERAND_LOAD || step->branch->system.segments == 1));
 }
 
 /* pl_accumulate in place of the last addition, and the sum of the factors' second words */
-static void count_compensation(struct program *program, const struct assignment *a, const struct linear *system)
+static void count_compensation(struct program *program, const struct assignment *a, const struct step *step)
 {
 	int seconds = 0;
 	for (int k = 0; k < a->terms; k++)
-		seconds += has_second_word(&a->term[k], system);
+		seconds += has_second_word(&a->term[k], step);
 	program->multiplications += seconds;
 	program->additions += PL_ACCUMULATE_ADD - 1 + (seconds > 0 ? seconds - 1 : 0);
 }
 
-static void count(struct program *program, const struct linear *system, bool single)
+static void count(struct program *program, const struct step *step)
 {
 	for (int i = 0; i < program->assignments; i++) {
 		const struct assignment *a = &program->assignment[i];
@@ -348,13 +361,13 @@ static void count(struct program *program, const struct linear *system, bool sin
 		if (a->added)
 			program->reads[a->target] = true;
 		for (int k = 0; k < a->terms; k++)
-			count_term(program, &a->term[k], system);
+			count_term(program, &a->term[k], step);
 		if (program->compensated)
-			count_compensation(program, a, system);
+			count_compensation(program, a, step);
 		else if (a->carried)
 			program->additions += PL_ACCUMULATE_ADD - 1;
 	}
-	count_loads(program, system, single);
+	count_loads(program, step);
 }
 
 static struct assignment *new_assignment(struct program *program, const struct step *step, int target, bool added)
@@ -452,7 +465,7 @@ struct program *linear_program(const struct step *step)
 		write_delta(program, step);
 	else
 		write_kick_drift_kick(program, step);
-	count(program, &step->branch->system, step->model->asked.single);
+	count(program, step);
 	if (table->states > LIMIT_UNROLLED_STATES) {
 		program->loops = true;
 		program->products_added = step->form == FORM_DELTA;

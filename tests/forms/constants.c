@@ -6,7 +6,7 @@
  *     constants [-n RANDOM] [-u UNDAMPED] [-s SEED] [-v] MODEL.spec ...
  *
  * The numbers are read from the C that is emitted: those of the step's own sums in the order in which they stand there,
- * and the tables Phi, Gamma, increment and load_factor.  What they ought to be says the judge (judge.h).  Each variant
+ * and the tables Phi, Gamma, increment, load_factor and turned.  What they ought to be says the judge (judge.h).  Each variant
  * runs in a process of its own.
  */
 #include "judge.h"
@@ -80,6 +80,7 @@ static void append(struct list *list, double value, const char *what)
 
 struct wanting {
     const struct judge *judge;
+    const struct step *step;
     const struct model *model;
     const struct variant *variant;
     struct list *list, low;         /* second words wait for the end of their sum */
@@ -127,7 +128,7 @@ static void want_loads_and_inputs(struct wanting *w, int i)
             const struct wave *wave = system->load[l].wave;
             const bool constant = k == 0 && !mpq_sgn(wave->a) && !mpq_sgn(wave->w);
             const struct judged_number *number = &j->step[i * j->columns + j->states + column];
-            if (!changes)
+            if (!changes && !is_anchored(w->step, l))
                 want(w, number, constant, w->variant->compensated,
                      format("load column %d in %s", column, state_name(w, i)));
         }
@@ -365,10 +366,58 @@ static void compare_columns(const char *code, const struct wanting *of, const st
     compare_lists("columns of loads", &found, &expected);
 }
 
+/* Does a load move a state in a step? */
+static bool load_moves(const struct judge *j, int i, int first, int columns)
+{
+    bool any = false;
+    for (int k = 0; k < columns; k++)
+        any = any || !j->step[i * j->columns + j->states + first + k].zero;
+    return any;
+}
+
+/* In each step after an anchor: every column of every load in the states that it moves; then their second words */
+static void want_turned(struct wanting *w, int l)
+{
+    const struct judge *j = w->judge;
+    const struct linear *system = j->system;
+    struct list low = { 0 };
+    for (int i = 0; i < j->states; i++)
+        for (int m = 0, column = 0; m < system->loads; column += system->load[m++].columns)
+            for (int k = 0; k < system->load[m].columns; k++) {
+                const struct judged_number *number = &j->turned[(l * j->states + i) * j->loads + column + k];
+                const char *what = format("load column %d in %s, %d steps after", column + k, state_name(w, i), l);
+                double value, second;
+                if (!is_anchored(w->step, m) || is_forced(w->step, column) ||
+                    !load_moves(j, i, column, system->load[m].columns))
+                    continue;
+                if (!judge_words(number, w->variant->single, &value, &second))
+                    complain(format("%s: the judge cannot decide it", what));
+                append(w->list, value, what);
+                append(&low, second, format("second word of %s", what));
+            }
+    for (int k = 0; k < low.count && w->variant->compensated; k++)
+        append(w->list, low.value[k], low.what[k]);
+}
+
+static void compare_turned(const char *code, struct wanting *w)
+{
+    struct list found = { 0 }, expected = { 0 };
+    const int steps = w->step->anchors->steps;
+    if (steps > JUDGED_TURNS) {
+        complain(format("%d steps between anchors, the judge knows %d", steps, JUDGED_TURNS));
+        return;
+    }
+    w->list = &expected;
+    for (int l = 0; l < steps; l++)
+        want_turned(w, l);
+    read_table(code, w->model->name, "turned", w->variant->single, &found);
+    compare_lists("turned", &found, &expected);
+}
+
 static void compare_code(const char *code, const struct step *step, const struct judge *j, const struct variant *v)
 {
     struct list found = { 0 }, expected = { 0 };
-    struct wanting w = { .judge = j, .model = step->model, .variant = v, .list = &expected };
+    struct wanting w = { .judge = j, .step = step, .model = step->model, .variant = v, .list = &expected };
     if (j->states > LIMIT_UNROLLED_STATES) {
         for (int k = 0; k < step->program->groups; k++)
             if (step->program->group[k].kind == GROUP_COLUMNS)
@@ -383,6 +432,8 @@ static void compare_code(const char *code, const struct step *step, const struct
         drop_zeros(&expected);
         compare_lists("step", &found, &expected);
     }
+    if (step->anchors && step->anchors->terms)
+        compare_turned(code, &w);
     if (kept)
         return;                             /* Phi and Gamma are of the states as written */
     compare_table(code, &w, "Phi", 0, 0, j->states, j->step, j->columns);

@@ -331,6 +331,72 @@ static struct judged_number *numbers(int count)
     return x;
 }
 
+/* How load states go on by themselves: the corner of A that is theirs */
+static mpq_t *load_matrix(const struct judge *j)
+{
+    struct flow f = flow_of(j, 0);
+    mpq_t *A = rationals((size_t)(j->loads * j->loads));
+    for (int i = 0; i < j->loads * j->loads; i++)
+        mpq_set(A[i], f.A[(f.first_load + i / j->loads) * f.size + f.first_load + i % j->loads]);
+    return A;
+}
+
+/* target <- A B, of which A has so many rows and B and the target so many columns, here and there */
+static void multiply(int rows, int n, const mpfi_t *A, const mpfi_t *B, mpfi_t *target)
+{
+    mpfi_t product;
+    mpfi_init2(product, 2 * BITS);
+    for (int i = 0; i < rows * n; i++) {
+        mpfi_set_ui(target[i], 0);
+        for (int m = 0; m < n; m++) {
+            mpfi_mul(product, A[i / n * n + m], B[m * n + i % n]);
+            mpfi_add(target[i], target[i], product);
+        }
+    }
+    mpfi_clear(product);
+}
+
+static mpfi_t *intervals(int count)
+{
+    mpfi_t *x = ARRAY(mpfi_t, (size_t)count);
+    for (int i = 0; i < count; i++)
+        mpfi_init2(x[i], 2 * BITS);
+    return x;
+}
+
+/* The columns of the loads; then each time what they are times e^{A h} of the loads alone */
+static void fill_turns(struct judge *j)
+{
+    const int n = j->loads, cells = j->states * n;
+    mpfi_t *E = intervals(n * n), *now = intervals(cells), *next = intervals(cells);
+    evaluator_enclosure enclosure;
+    evaluator_enclosure_init(&enclosure, (size_t)n);
+    if (evaluator_enclose((const mpq_t *)load_matrix(j), j->h, BITS, &enclosure)) {
+        printf("# the judge gives up\n");
+        exit(1);
+    }
+    for (int i = 0; i < n * n; i++)
+        take_entry(E[i], &enclosure, i / n, i % n);
+    for (int i = 0; i < cells; i++) {
+        const struct judged_number *column = &j->step[i / n * j->columns + j->states + i % n];
+        if (!column->zero)
+            mpfi_set(now[i], column->x);
+        else
+            mpfi_set_ui(now[i], 0);
+    }
+    j->turned = numbers(JUDGED_TURNS * cells);
+    for (int l = 0; l < JUDGED_TURNS; l++) {
+        for (int i = 0; i < cells; i++) {
+            mpfi_set_prec(j->turned[l * cells + i].x, 2 * BITS);
+            mpfi_set(j->turned[l * cells + i].x, now[i]);
+        }
+        multiply(j->states, n, (const mpfi_t *)now, (const mpfi_t *)E, next);
+        for (int i = 0; i < cells; i++)
+            mpfi_swap(now[i], next[i]);
+    }
+    evaluator_enclosure_clear(&enclosure);
+}
+
 struct judge *judge_of(const struct linear *system, mpq_srcptr h)
 {
     struct judge *j = NEW(struct judge);
@@ -345,6 +411,8 @@ struct judge *judge_of(const struct linear *system, mpq_srcptr h)
     j->increment = numbers(j->states * j->states);
     for (int s = 0; s < system->segments; s++)
         fill_segment(j, s);
+    if (j->loads && system->segments == 1 && j->states <= LIMIT_UNROLLED_STATES)
+        fill_turns(j);
     if (j->undamped) {
         j->kick = numbers(system->n * system->n);
         j->drift = numbers(system->n * system->n);

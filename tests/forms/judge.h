@@ -23,7 +23,10 @@ struct judge {
     struct judged_number *step;                    /* [segment][states x columns] */
     struct judged_number *increment;               /* states x states */
     struct judged_number *drift, *kick;            /* coordinates x coordinates, where undamped */
+    /* [steps][states x loads]: what a load adds in the step so many steps after; NULL: nothing, or it changes */
+    struct judged_number *turned;
 };
+enum { JUDGED_TURNS = 32 };
 struct judge *judge_of(const struct linear *system, mpq_srcptr h);
 
 /* Correctly rounded, and what is left of it correctly rounded; a double holds both.  false: the judge cannot decide. */

@@ -1,0 +1,98 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The forced part of loads that the step leaves out: NAME_forced, and its tables where they change their formula. */
+#include "emit/emit.h"
+
+/* A factor of a load state; where formulas change, its place in the table forced_part[segment][state][column] */
+static const char *forced_term(const struct emitter *e, int state, int column)
+{
+	const struct table *table = e->step->branch->whole;
+	const char *operand = column_operand(e, column);
+	if (e->system->segments == 1)
+		return scaled(e->step->forced->part[state * table->columns + column].value, operand);
+	const char *text = format("%s_forced_part[s->segment][%d][%d]", e->name, state, column);
+	return operand ? format("%s * %s", text, operand) : text;
+}
+
+static bool forces(const struct emitter *e, int state, int column)
+{
+	const struct table *table = e->step->branch->whole;
+	bool any = false;
+	for (int s = 0; s < e->system->segments && is_forced(e->step, column); s++)
+		any = any || e->step->forced->part[(s * table->states + state) * table->columns + column].value != 0;
+	return any;
+}
+
+/* [segment][state][column] */
+static void print_forced(const struct emitter *e, const char *name, const char *what, int segments,
+			 const struct coefficient *factor)
+{
+	const struct table *table = e->step->branch->whole;
+	int cells = table->states * table->columns;
+	double *value = ARRAY(double, (size_t)cells);
+	say(e, "\nstatic const double $n_%s[%d][$N_STATES][%d] = {  /* %s */\n", name, segments, table->columns, what);
+	for (int s = 0; s < segments; s++) {
+		for (int i = 0; i < cells; i++)
+			value[i] = is_forced(e->step, i % table->columns) ? factor[s * cells + i].value : 0;
+		say(e, "  {\n");
+		emit_number_rows(e, table->states, table->columns, value, e->model->state_name);
+		say(e, "  },\n");
+	}
+	say(e, "};\n");
+}
+
+/* A change at the end of a step */
+static void emit_rebase(const struct emitter *e)
+{
+	int count = e->step->branch->whole->columns;
+	say(e, "\n"
+	       "static void $n_rebase($n *s)\n"
+	       "{\n");
+	emit_load_states(e, e->step->forced->load, false);
+	say(e, "    const double load[%d] = {", count);
+	for (int k = 0; k < count; k++) {
+		const char *operand = is_forced(e->step, k) ? column_operand(e, k) : "0.0";
+		say(e, "%s%s", k ? ", " : "", operand ? operand : "1.0");
+	}
+	say(e, "};\n"
+	       "    int i, j;\n"
+	       "    for (i = 0; i < $N_STATES; i++)\n"
+	       "        for (j = 0; j < %d; j++)\n"
+	       "            s->y[i] += $n_forced_change[s->segment][i][j] * load[j];\n"
+	       "}\n",
+	    count);
+}
+
+static void emit_forced_tables(const struct emitter *e)
+{
+	const struct forced *forced = e->step->forced;
+	int segments = e->system->segments;
+	if (segments > 1)
+		print_forced(e, "forced_part", "factors of the load states in each segment of time", segments,
+			     forced->part);
+	if (forced->changes) {
+		print_forced(e, "forced_change", "what they lose from each to the next", segments - 1, forced->change);
+		emit_rebase(e);
+	}
+}
+
+void emit_forced(const struct emitter *e)
+{
+	const struct table *table = e->step->branch->whole;
+	const char **term = ARRAY(const char *, (size_t)table->columns);
+	emit_forced_tables(e);
+	say(e, "\n"
+	       "/* What the loads that the step leaves out sustain now */\n"
+	       "static void $n_forced(const $n *s, double now[$N_STATES])\n"
+	       "{\n");
+	emit_turned_loads(e, e->step->forced->load, false);
+	for (int i = 0; i < table->states; i++) {
+		int terms = 0;
+		for (int k = 0; k < table->columns; k++)
+			if (forces(e, i, k))
+				term[terms++] = forced_term(e, i, k);
+		say(e, "    now[%d] = %s;  /* %s */\n", i, terms ? tree(terms, term, 13) : "0.0",
+		    e->model->state_name[i]);
+	}
+	say(e, "    (void)s;\n"
+	       "}\n");
+}

@@ -1,0 +1,398 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Loads by anchors. The functions of a load, cos, sin and e^{at}, are evaluated every so many steps only, from its phase
+ * and growth in fixed point. In the steps between, what the load adds to a state is
+ *
+ *   L z(t_a + l h) = (L E_l) z(t_a)
+ *
+ * with L the load's columns of the step, z its states and E_l how they go on in l steps. So L E_l, for each l, is a table
+ * of constants, each enclosed and rounded once (Ziv); nothing is added up from step to step, and nothing accumulates. */
+#include "step/step.h"
+
+#include <math.h>
+
+enum {
+	ANCHOR_STEPS = 32,          /* from anchor to anchor, where the table is small */
+	FEWEST_STEPS = 8,           /* below, functions in every step are about as good */
+	TABLE_NUMBERS = 2048,       /* of a table that the cache shares with other data: 16 KB */
+	MOST_GROWTH = 16,           /* |a| l h: near the ends of the range an anchor leaves it before its load does */
+	FIRST_PRECISION = 128,
+	TAYLOR_PRECISION = 2048     /* beyond, residues */
+};
+
+/* ---- which loads, and how many steps ---- */
+
+/* What stands against anchors; NULL: nothing */
+static const char *objection(const struct step *step)
+{
+	static const char *const of_kind[KINDS] = {
+		[KIND_TUNED] = "tunable params: the target would have to make the tables",
+		[KIND_REGIONS] = "regions: crossings need the loads at any time",
+		[KIND_LEFTOVER] = "a leftover: the scheme needs the loads between steps"
+	};
+	if (of_kind[step->kind])
+		return of_kind[step->kind];
+	if (step->model->asked.single)
+		return "--real float: there functions are cheap, and memory is short";
+	if (step->branch->system.segments > 1)
+		return "loads that change their formula in time";
+	if (step->branch->system.states > LIMIT_UNROLLED_STATES)
+		return format("more than %d states: the step loops over its tables", LIMIT_UNROLLED_STATES);
+	return NULL;
+}
+
+static bool moves(const struct step *step, int state, int first, int columns)
+{
+	const struct table *table = step->branch->whole;
+	bool any = false;
+	for (int k = first; k < first + columns; k++)
+		any = any || !table->load[state * table->columns + k].zero;
+	return any;
+}
+
+/* Of the states that a load moves in a step, every column of it */
+static void add_terms(struct anchors *anchors, int state, int first, int columns)
+{
+	ENLARGE(anchors->term, (size_t)(anchors->terms + columns));
+	for (int k = 0; k < columns; k++)
+		anchors->term[anchors->terms++] = (struct anchored_term){ state, first + k };
+}
+
+static void list_terms(struct anchors *anchors, const struct step *step, bool forced_too)
+{
+	const struct linear *system = &step->branch->system;
+	anchors->terms = 0;
+	for (int i = 0; i < system->states; i++)
+		for (int l = 0, first = 0; l < system->loads; first += system->load[l++].columns)
+			if (anchors->load[l] && (forced_too || !is_forced(step, first)) &&
+			    moves(step, i, first, system->load[l].columns))
+				add_terms(anchors, i, first, system->load[l].columns);
+}
+
+/* The fastest growth or decay of a load in a step */
+static double growth_in_step(const struct step *step, const struct anchors *anchors)
+{
+	const struct linear *system = &step->branch->system;
+	double most = 0;
+	for (int l = 0; l < system->loads; l++)
+		if (anchors->load[l])
+			most = fmax(most, fabs(mpq_get_d(system->load[l].wave->a)));
+	return most * mpq_get_d(step->model->h);
+}
+
+static bool is_steady(const struct step *step, const struct anchors *anchors, int steps)
+{
+	return (steps - 1) * growth_in_step(step, anchors) <= MOST_GROWTH;
+}
+
+static bool fits(const struct step *step, const struct anchors *anchors, int steps)
+{
+	return steps * anchors->terms * (step->model->asked.compensated ? 2 : 1) <= TABLE_NUMBERS;
+}
+
+static _Noreturn void refuse(const struct step *step, const char *why)
+{
+	int steps = step->model->asked.anchors;
+	error((struct place){ source_argument(format("%d", steps)), 0 }, NULL, "--anchors %d does not go with %s",
+	      steps, why);
+}
+
+/* As many as were asked for, or as are good; 1: what stands against more is said */
+static int chosen_steps(struct step *step, const struct anchors *anchors)
+{
+	int asked = step->model->asked.anchors, steps = asked ? asked : ANCHOR_STEPS;
+	if (asked && !is_steady(step, anchors, asked))
+		refuse(step, format("a load that changes by more than e^%d between anchors", MOST_GROWTH));
+	while (!asked && steps >= FEWEST_STEPS && !(fits(step, anchors, steps) && is_steady(step, anchors, steps)))
+		steps /= 2;
+	if (steps >= FEWEST_STEPS || asked)
+		return steps;
+	step->no_anchors = fits(step, anchors, FEWEST_STEPS) ? "a load changes too much from step to step"
+							     : "tables would be large";
+	return 1;
+}
+
+static struct anchors *anchors_of(const struct step *step)
+{
+	const struct linear *system = &step->branch->system;
+	struct anchors *anchors = NEW(struct anchors);
+	anchors->load = ARRAY(bool, (size_t)system->loads);
+	for (int l = 0; l < system->loads; l++)
+		anchors->load[l] = !is_polynomial(system->load[l].wave) && load_acts(system, &system->load[l]);
+	return anchors;
+}
+
+static bool any_load(const struct step *step, const struct anchors *anchors)
+{
+	bool any = false;
+	for (int l = 0; l < step->branch->system.loads; l++)
+		any = any || anchors->load[l];
+	return any;
+}
+
+void check_anchors(struct step *step)
+{
+	const char *against = objection(step);
+	if (against && step->model->asked.anchors > 1)
+		refuse(step, against);
+	if (any_load(step, anchors_of(step)))
+		step->no_anchors = step->model->asked.anchors == 1 ? "--anchors 1" : against;
+}
+
+void plan_anchors(struct step *step)
+{
+	struct anchors *anchors = anchors_of(step);
+	if (step->no_anchors || step->model->asked.anchors == 1 || objection(step) || !any_load(step, anchors))
+		return;
+	list_terms(anchors, step, true);
+	anchors->steps = chosen_steps(step, anchors);
+	step->anchors = anchors->steps > 1 ? anchors : NULL;
+}
+
+int anchored_term(const struct step *step, int state, int column)
+{
+	for (int k = 0; step->anchors && k < step->anchors->terms; k++)
+		if (step->anchors->term[k].state == state && step->anchors->term[k].column == column)
+			return k;
+	return -1;
+}
+
+/* ---- E_l: how a load's states go on ---- */
+
+struct turn {                       /* e^{a tau} cos(w tau) and sin */
+	mpq_t tau;
+	int precision;              /* 0: not asked for */
+	mpfi_t z[2];
+};
+
+/* e^{a tau} cos(w tau) and sin; kept, since all states that the load moves ask for it */
+static void enclose_turn(const struct wave *wave, struct turn *turn, int precision)
+{
+	mpq_t product;
+	mpfi_t x;
+	if (turn->precision == precision)
+		return;
+	turn->precision = precision;
+	mpfi_set_prec(turn->z[0], precision);
+	mpfi_set_prec(turn->z[1], precision);
+	mpq_init(product);
+	mpfi_init2(x, precision);
+	mpq_mul(product, wave->w, turn->tau);
+	mpfi_set_q(x, product);
+	mpfi_cos(turn->z[0], x);
+	mpfi_sin(turn->z[1], x);
+	mpq_mul(product, wave->a, turn->tau);
+	mpfi_set_q(x, product);
+	mpfi_exp(x, x);
+	mpfi_mul(turn->z[0], turn->z[0], x);
+	mpfi_mul(turn->z[1], turn->z[1], x);
+	mpfi_clear(x);
+	mpq_clear(product);
+}
+
+/* Over 0, 1, ... steps */
+static struct turn *turns_of(const struct step *step)
+{
+	int steps = step->anchors->steps;
+	struct turn *turn = ARRAY(struct turn, (size_t)steps);
+	for (int l = 0; l < steps; l++) {
+		mpq_init(turn[l].tau);
+		mpq_set_si(turn[l].tau, l, 1);
+		mpq_mul(turn[l].tau, turn[l].tau, step->model->h);
+		mpfi_init(turn[l].z[0]);
+		mpfi_init(turn[l].z[1]);
+	}
+	return turn;
+}
+
+/* binomial(k, j) tau^(k-j) */
+static void power_of_time(int k, int j, mpq_srcptr tau, mpq_ptr value)
+{
+	mpz_t binomial;
+	mpz_init(binomial);
+	mpz_bin_uiui(binomial, (unsigned long)k, (unsigned long)j);
+	mpq_set_z(value, binomial);
+	for (int i = j; i < k; i++)
+		mpq_mul(value, value, tau);
+	mpz_clear(binomial);
+}
+
+/* ---- L: a load's columns of the step, enclosed ---- */
+
+struct block_source {               /* of a block */
+	const struct linear *system;
+	struct resolvent *resolvent;
+	struct taylor *taylor;      /* NULL: residues */
+	struct layout layout;
+};
+struct column {                     /* of L, in one row */
+	int precision;              /* 0: not asked for */
+	mpfi_t value;
+	struct response *response;
+};
+struct row {                        /* what a load adds to a state */
+	struct block_source *source;
+	int state, load, columns;   /* of the block */
+	struct column *column;
+	mpq_srcptr h;
+};
+
+static struct block_source source_of_block(const struct step *step, const struct linear *system)
+{
+	bool whole = system->states == step->branch->system.states;
+	struct block_source source = { .system = system,
+				       .resolvent = whole ? step->branch->resolvent : resolvent_of(system),
+				       .layout = layout_of(system, 0) };
+	if (system->states > LIMIT_RESIDUE_STATES)
+		source.taylor = taylor_of(source.layout.size,
+					  (const mpq_t *)augmented_matrix(&source.layout, system, 0), step->model->h);
+	return source;
+}
+
+static bool enclose_by_residues(struct row *row, int k, int precision)
+{
+	mpq_t exact;
+	struct column *column = &row->column[k];
+	mpq_init(exact);
+	if (!column->response)
+		column->response = response_of_load(row->source->resolvent, row->source->system, 0, row->state,
+						    row->load, k);
+	bool rational = response_exact(column->response, row->h, exact);
+	if (rational)
+		mpfi_set_q(column->value, exact);
+	mpq_clear(exact);
+	return rational || response_enclose(column->response, row->h, precision, column->value);
+}
+
+static bool enclose_column(struct row *row, int k, int precision)
+{
+	const struct block_source *source = row->source;
+	struct column *column = &row->column[k];
+	if (column->precision == precision)
+		return true;
+	column->precision = 0;
+	mpfi_set_prec(column->value, precision);
+	bool good;
+	if (!source->taylor || precision > TAYLOR_PRECISION) {
+		good = enclose_by_residues(row, k, precision);
+	} else {
+		good = taylor_enclose(source->taylor, precision);
+		if (good)
+			taylor_entry(source->taylor, row->state, source->layout.load[row->load] + k, column->value);
+	}
+	column->precision = good ? precision : 0;
+	return good;
+}
+
+/* ---- L E_l, rounded ---- */
+
+/* sum = column `from` of L E_l: t^k cos from t^j, j <= k; cos(x + w tau) = cos x cos(w tau) - sin x sin(w tau) */
+static bool enclose_turned(struct row *row, struct turn *turn, int from, int precision, mpfi_ptr sum)
+{
+	const struct wave *wave = row->source->system->load[row->load].wave;
+	int trig = oscillates(wave) ? 2 : 1;
+	mpfi_t value;
+	mpq_t power;
+	bool good = true;
+	mpfi_init2(value, precision);
+	mpq_init(power);
+	enclose_turn(wave, turn, precision);
+	mpfi_set_prec(sum, precision);
+	mpfi_set_ui(sum, 0);
+	for (int to = from / trig * trig; to < row->columns && good; to++) {
+		bool same = to % trig == from % trig;
+		good = enclose_column(row, to, precision);
+		mpfi_mul(value, row->column[to].value, turn->z[!same]);
+		power_of_time(to / trig, from / trig, turn->tau, power);
+		mpfi_mul_q(value, value, power);
+		(same || to % trig ? mpfi_add : mpfi_sub)(sum, sum, value);
+	}
+	mpfi_clear(value);
+	mpq_clear(power);
+	return good;
+}
+
+/* Both words; false: it is not decided with so many bits. What is 0 is so, once it is too small for the range. */
+static bool round_turned(struct row *row, struct turn *turn, int from, int precision, struct coefficient *c)
+{
+	mpfi_t x;
+	mpfi_init2(x, precision);
+	bool decided = enclose_turned(row, turn, from, precision, x) && round_enclosure(x, &c->value);
+	if (decided && isfinite(c->value)) {
+		mpfi_sub_d(x, x, c->value);
+		decided = round_enclosure(x, &c->low);
+	}
+	mpfi_clear(x);
+	return decided;
+}
+
+static void fill_term(const struct step *step, struct row *row, struct turn *turn, int from, struct coefficient *c)
+{
+	int precision = FIRST_PRECISION;
+	while (precision <= LIMIT_PRECISION && !round_turned(row, turn, from, precision, c))
+		precision *= 2;
+	if (precision > LIMIT_PRECISION || !isfinite(c->value))
+		error(step->model->asked.step_at, "--anchors 1 may do", "what a load adds so many steps after an anchor "
+		      "is %s", precision > LIMIT_PRECISION ? format("not decided with %d bits", LIMIT_PRECISION)
+							   : format("beyond the range of %s", target_name()));
+}
+
+/* The terms of one state and one load, which stand together, after any number of steps */
+static void fill_row(const struct step *step, struct block_source *source, int state, int load, struct turn *turn,
+		     int term)
+{
+	struct anchors *anchors = step->anchors;
+	int columns = source->system->load[load].columns;
+	struct row row = { source, state, load, columns, ARRAY(struct column, (size_t)columns), step->model->h };
+	for (int k = 0; k < columns; k++)
+		mpfi_init(row.column[k].value);
+	for (int l = 0; l < anchors->steps; l++)
+		for (int k = 0; k < columns; k++)
+			fill_term(step, &row, &turn[l], k, &anchors->factor[l * anchors->terms + term + k]);
+	for (int k = 0; k < columns; k++)
+		mpfi_clear(row.column[k].value);
+}
+
+static void fill_block(const struct step *step, const struct block *block, struct turn *const *turn)
+{
+	const struct linear *system = &step->branch->system;
+	struct block_source source = source_of_block(step, &block->system);
+	int first;
+	for (int i = 0; i < block->system.states; i++)
+		for (int k = 0; k < step->anchors->terms; k++) {
+			const struct anchored_term *term = &step->anchors->term[k];
+			int load = load_of_column(system, term->column, &first);
+			if (term->state == block->state[i] && term->column == first)
+				fill_row(step, &source, i, load, turn[load], k);
+		}
+}
+
+/* What turns the load states of an anchor into those of now */
+static void fill_turn(const struct wave *wave, struct turn *turn, double value[2])
+{
+	bool decided = false;
+	for (int precision = FIRST_PRECISION; precision <= LIMIT_PRECISION && !decided; precision *= 2) {
+		enclose_turn(wave, turn, precision);
+		decided = round_enclosure(turn->z[0], &value[0]) && round_enclosure(turn->z[1], &value[1]);
+	}
+}
+
+void fill_anchors(struct step *step)
+{
+	const struct linear *system = &step->branch->system;
+	struct anchors *anchors = step->anchors;
+	struct block *block;
+	struct turn **turn = ARRAY(struct turn *, (size_t)system->loads);
+	if (!anchors)
+		return;
+	list_terms(anchors, step, false);
+	anchors->factor = ARRAY(struct coefficient, (size_t)(anchors->steps * anchors->terms));
+	anchors->turn = ARRAY(double, 2 * (size_t)(anchors->steps * system->loads));
+	for (int l = 0; l < system->loads; l++) {
+		turn[l] = is_anchored(step, l) ? turns_of(step) : NULL;
+		for (int k = 0; turn[l] && k < anchors->steps; k++)
+			fill_turn(system->load[l].wave, &turn[l][k], &anchors->turn[2 * (l * anchors->steps + k)]);
+	}
+	int blocks = blocks_of(system, &block);
+	for (int b = 0; b < blocks; b++)
+		fill_block(step, &block[b], turn);
+}
