@@ -243,6 +243,7 @@ static void build(void *context)
 		need_closed_form(step);
 	program_check(step);
 	plan_phases(step);
+	plan_rows(step);
 }
 
 struct step *step_build(const struct model *model)
@@ -258,6 +259,7 @@ struct step *step_build(const struct model *model)
 	*plain = *model->written;
 	plain->asked.form = FORM_DIRECT;
 	plain->asked.compensated = plain->asked.selftest = false;
+	plain->asked.rows = 1;
 	step->shown = step_build(plain);
 	return step->shown ? step : NULL;
 }
