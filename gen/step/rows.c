@@ -140,46 +140,68 @@ static double number_of(const struct step *step, const struct share *share, int 
 /* ---- the tables of a block ---- */
 
 typedef struct share share_maker(const struct step *step, const struct output *output, int index);
+struct asked {                      /* a column to be, or a sample */
+	struct operand operand;
+	struct share *share;        /* per output */
+	double *value;              /* [row][output] */
+};
+struct asking {
+	const struct step *step;
+	const struct rows *rows;
+	int count;
+	struct asked *asked;
+};
 
-/* [row][output] */
-static double *numbers_of(const struct step *step, const struct rows *rows, share_maker *share_of, int index)
+static void ask(struct asking *a, enum operand_kind kind, int index, share_maker *share_of, int source)
 {
-	double *value = ARRAY(double, (size_t)(rows->count * rows->outputs));
-	struct share *share = ARRAY(struct share, (size_t)rows->outputs);
-	for (int o = 0; o < rows->outputs; o++)
-		share[o] = share_of(step, &step->model->output[o], index);
-	for (int l = 0; l < rows->count; l++)
-		for (int o = 0; o < rows->outputs; o++)
-			value[l * rows->outputs + o] = number_of(step, &share[o], l + 1);
-	return value;
+	int outputs = a->rows->outputs;
+	struct asked *asked = &a->asked[a->count++];
+	*asked = (struct asked){ { kind, index }, ARRAY(struct share, (size_t)outputs),
+				 ARRAY(double, (size_t)(a->rows->count * outputs)) };
+	for (int o = 0; o < outputs; o++)
+		asked->share[o] = share_of(a->step, &a->step->model->output[o], source);
 }
 
-static void add_column(const struct step *step, struct rows *rows, share_maker *share_of, struct operand operand,
-		       int index)
+/* Row by row: what poles give at one time serves every column. */
+static void answer_all(const struct asking *a)
 {
-	double *value = numbers_of(step, rows, share_of, index);
+	int outputs = a->rows->outputs;
+	for (int l = 0; l < a->rows->count; l++)
+		for (int k = 0; k < a->count; k++)
+			for (int o = 0; o < outputs; o++)
+				a->asked[k].value[l * outputs + o] = number_of(a->step, &a->asked[k].share[o], l + 1);
+}
+
+static void keep_column(struct rows *rows, const struct asked *asked)
+{
 	bool any = false;
 	for (int i = 0; i < rows->count * rows->outputs; i++)
-		any = any || value[i] != 0;
+		any = any || asked->value[i] != 0;
 	if (any)
-		rows->column[rows->columns++] = (struct row_column){ operand, value };
+		rows->column[rows->columns++] = (struct row_column){ asked->operand, asked->value };
 }
 
 static void fill_columns(const struct step *step, struct rows *rows)
 {
 	const struct linear *system = &step->branch->system;
-	int loads = load_columns(system);
-	rows->column = ARRAY(struct row_column, (size_t)(system->states + loads + system->inputs));
+	int loads = load_columns(system), held = held_columns(system), columns = system->states + loads + held;
+	struct asking a = { step, rows, 0, ARRAY(struct asked, (size_t)(columns + system->inputs)) };
 	for (int j = 0; j < system->states; j++)
-		add_column(step, rows, share_of_state, (struct operand){ OPERAND_STATE, j }, j);
+		ask(&a, OPERAND_STATE, j, share_of_state, j);
 	for (int k = 0; k < loads; k++)
-		add_column(step, rows, share_of_load, (struct operand){ OPERAND_LOAD, k }, k);
+		ask(&a, OPERAND_LOAD, k, share_of_load, k);
 	for (int i = 0, column = 0; i < system->inputs; i++)
 		if (system->input[i].first_order)
-			add_column(step, rows, share_of_sample_before, (struct operand){ OPERAND_INPUT, column++ }, i);
+			ask(&a, OPERAND_INPUT, column++, share_of_sample_before, i);
+	for (int i = 0; i < system->inputs; i++)
+		ask(&a, OPERAND_INPUT, held + i, share_of_sample, i);
+	answer_all(&a);
+	rows->column = ARRAY(struct row_column, (size_t)columns + 1);
+	for (int k = 0; k < columns; k++)
+		keep_column(rows, &a.asked[k]);
 	rows->sample = ARRAY(double *, (size_t)system->inputs);
 	for (int i = 0; i < system->inputs; i++)
-		rows->sample[i] = numbers_of(step, rows, share_of_sample, i);
+		rows->sample[i] = a.asked[columns + i].value;
 }
 
 /* ---- the step of K h ---- */
@@ -247,6 +269,12 @@ static int group_of(const struct step *step, int count, int outputs)
 	while (group * outputs < LANES || group * outputs % (LANES / 2))
 		group *= 2;
 	return count % group ? count : group;
+}
+
+/* A sample of an input costs the more the more rows come after it; what loads cost once in a block, the less. */
+static int best_rows(const struct step *step)
+{
+	return step->branch->system.inputs ? 8 : step->program->wave_multiplications ? 64 : 32;
 }
 
 /* Kicks are as S^-1: a step of K h has to be far from where S vanishes. */
@@ -319,7 +347,7 @@ void plan_rows(struct step *step)
 	step->no_rows = rows_objection(step);
 	if (step->no_rows)
 		return;
-	int wish = asked ? asked : step->branch->system.inputs ? 8 : 32;
+	int wish = asked ? asked : best_rows(step);
 	for (int count = most_rows(step, wish); count >= (asked ? asked : FEWEST) && !step->rows; count /= 2)
 		try_rows(step, count);
 	if (!step->rows)

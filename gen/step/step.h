@@ -474,7 +474,6 @@ struct rows {
 	double **sample;            /* per input: the outputs at the end of its step, after one more, ...: [row][output] */
 	/* The step of `count` h. Columns of inputs: those of ramps before the block, then each of its samples */
 	struct step *block;
-	int multiplications;        /* for the numbers of a block */
 };
 int  held_columns(const struct linear *system);              /* ramps: the samples before the block */
 void plan_rows(struct step *step);                           /* step->rows; last, since it is a step of its own */
