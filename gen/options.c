@@ -113,6 +113,15 @@ static void take_selftest(struct options *options, const char *value)
 	options->request.selftest = true;
 }
 
+static void take_rows(struct options *options, const char *value)
+{
+	char *end;
+	long rows = strtol(value, &end, 10);
+	if (*end || end == value || rows < 1 || rows > LIMIT_BLOCK_ROWS)
+		wrong_usage(format("--rows takes a number from 1 to %d, found '%s'", LIMIT_BLOCK_ROWS, value));
+	options->request.rows = (int)rows;
+}
+
 static void print_usage(struct options *options, const char *value);
 
 static void print_version(struct options *options, const char *value)
@@ -149,6 +158,7 @@ static const struct row {
 	{ "D", "NAME=EXPR", "another value for a param; EXPR may use the spec's params", take_definition, NULL },
 	{ "prefix", "NAME", "instead of the model's name for everything generated", take_prefix, NULL },
 	{ "reduce", NULL, "leave out what the outputs cannot see", take_reduce, NULL },
+	{ "rows", "K", "in a block of NAME_run; 1: step by step (default: by the model's size)", take_rows, NULL },
 	{ "depfile", "FILE", "also write a make/ninja dependency file", take_depfile, NULL },
 	{ "selftest", NULL, "also emit NAME_selftest: steps against the closed form", take_selftest, NULL },
 	{ "help", NULL, NULL, print_usage, NULL },
@@ -271,6 +281,8 @@ static void note_all(struct options *options)
 		note_in_banner(options, "--accuracy compensated");
 	if (request->anchors)
 		note_in_banner(options, format("--anchors %d", request->anchors));
+	if (request->rows)
+		note_in_banner(options, format("--rows %d", request->rows));
 	if (request->selftest)
 		note_in_banner(options, "--selftest");
 	if (options->rhs)

@@ -48,6 +48,15 @@ extern "C" {
 #define PL_ASSERT(condition, name, text) extern char name[(condition) ? 1 : -1] /* `name` says what `text` does */
 #endif
 
+/* What this points at is reached in no other way. */
+#if defined __GNUC__ || defined _MSC_VER
+#define PL_RESTRICT __restrict
+#elif defined __cplusplus
+#define PL_RESTRICT
+#else
+#define PL_RESTRICT restrict
+#endif
+
 /* Compilers that know the flags but have no macro for them.  clang sees it when it optimizes, which is when it matters;
  * the function is empty otherwise. */
 #if defined __clang__ && defined __OPTIMIZE__ && defined __has_attribute

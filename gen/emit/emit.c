@@ -99,23 +99,6 @@ static void emit_includes(const struct emitter *e, bool rhs)
 		       "#endif\n", e->model->asked.single ? "F" : "");
 }
 
-static void emit_run(const struct emitter *e)
-{
-	bool inputs = e->system->inputs > 0;
-	say(e, "\nvoid $n_run($n *s, size_t n, %sdouble *out)\n"
-	       "{\n"
-	       "    for (; n > 0; n--) {\n"
-	       "        $n_step(s%s);\n", inputs ? "const double *u, " : "", inputs ? ", u" : "");
-	if (inputs)
-		say(e, "        u += $N_INPUTS;\n");
-	say(e, "        if (out) {\n"
-	       "            $n_out(s, out);\n"
-	       "            out += $N_OUTPUTS;\n"
-	       "        }\n"
-	       "    }\n"
-	       "}\n");
-}
-
 static void emit_all_tables(const struct emitter *e)
 {
 	emit_phi(e);

@@ -23,6 +23,7 @@ struct emitter {
 	int anchored;               /* load states in the state, at the last anchor */
 	int *anchor;                /* per load: index of its first there; -1: none */
 	bool at_anchor;             /* load states are written where the anchor keeps them */
+	const char **sample;        /* of a block of steps: per column of its inputs; NULL: of one step */
 	bool at_node;               /* load states are those at `node` of the step, not at its start */
 };
 /* The only writer: a printf format in which $n is the model's name and $N the same in capitals, $$ a dollar. */
@@ -225,8 +226,7 @@ void emit_looped_step(const struct emitter *e);
 void emit_modes(const struct emitter *e);                         /* tables; nothing of other forms */
 void emit_modal_step(const struct emitter *e);
 
-/* ---- emit.c, emit_step.c, emit_out.c, emit_loads.c, emit_forced.c, emit_anchors.c, emit_time.c, emit_tune.c,
- * emit_rhs.c: a step as C ---- */
+/* ---- emit.c, emit_step.c, emit_out.c, emit_run.c, emit_loads.c, emit_forced.c, emit_anchors.c, emit_time.c, emit_tune.c, emit_rhs.c: a step as C ---- */
 
 void emit_header(FILE *to, const struct step *step, const char *options, bool rhs);
 /* header_name NULL: all in one */
@@ -267,6 +267,9 @@ void emit_set_aside(const struct emitter *e);
 void emit_take_back(const struct emitter *e);
 void emit_hand_over(const struct emitter *e);                     /* in at: y from the states in x */
 void emit_step(const struct emitter *e);
+/* as its program says, from the locals into s->y, or where it is in order into the locals */
+void emit_assignment(const struct emitter *e, const struct assignment *a);
+void emit_keep_inputs(const struct emitter *e, int samples);      /* of u, which has those of so many steps */
 void emit_step_end(const struct emitter *e);                      /* samples, phases and time move on */
 const char *step_parameters(const struct emitter *e);
 const char *input_operand(const struct emitter *e, int column);
@@ -292,6 +295,7 @@ void emit_tuned_at(const struct emitter *e);                      /* pass, from 
 /* phases and growths from the start of the step to each node */
 void emit_node_phases(const struct emitter *e, const bool *loads);
 void emit_out(const struct emitter *e);
+void emit_run(const struct emitter *e);
 void emit_at(const struct emitter *e);
 void emit_jump(const struct emitter *e);
 void emit_rhs(const struct emitter *e);

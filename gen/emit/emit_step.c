@@ -5,6 +5,8 @@
 /* Held: the sample that the step is given. A ramp: the previous sample, then the one given. */
 const char *input_operand(const struct emitter *e, int column)
 {
+	if (e->sample)
+		return e->sample[column];
 	for (int i = 0; i < e->system->inputs; i++) {
 		int columns = e->system->input[i].first_order ? 2 : 1;
 		if (column < columns)
@@ -103,12 +105,14 @@ static bool *loads_of_step(const struct emitter *e)
 	return wanted;
 }
 
-static void emit_keep_inputs(const struct emitter *e)
+void emit_keep_inputs(const struct emitter *e, int samples)
 {
-	for (int i = 0; i < e->system->inputs; i++) {
+	int inputs = e->system->inputs, last = (samples - 1) * inputs;
+	for (int i = 0; i < inputs; i++) {
+		const char *before = samples > 1 ? format("u[%d]", last - inputs + i) : format("s->u[%d]", i);
 		if (e->system->input[i].first_order)
-			say(e, "    s->slope[%d] = (u[%d] - s->u[%d]) / %s;\n", i, i, i, step_length(e));
-		say(e, "    s->u[%d] = u[%d];\n", i, i);
+			say(e, "    s->slope[%d] = (u[%d] - %s) / %s;\n", i, last + i, before, step_length(e));
+		say(e, "    s->u[%d] = u[%d];\n", i, last + i);
 	}
 }
 
@@ -184,7 +188,7 @@ static void emit_plain_step(const struct emitter *e)
 
 void emit_step_end(const struct emitter *e)
 {
-	emit_keep_inputs(e);
+	emit_keep_inputs(e, 1);
 	if (!e->step->anchors)
 		emit_load_advance(e, NULL);
 	say(e, "    s->k++;\n");

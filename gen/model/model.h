@@ -79,6 +79,7 @@ struct request {                    /* what the user asks for on the command lin
 	bool compensated;           /* two-word arithmetic */
 	bool single;                /* the target's numbers are floats */
 	bool selftest;              /* NAME_selftest */
+	int rows;                   /* in a block of NAME_run; 0: as many as serve best, 1: no blocks */
 	enum step_form form;
 	int anchors;                /* steps from one evaluation of a load's functions to the next; 0: as it is best */
 	bool solution;              /* the closed form is wanted, whatever the scheme */

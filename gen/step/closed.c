@@ -7,17 +7,6 @@
 static const unsigned long steps[] = { 1, 2, 3, 5, 10, 20, 50, 100 };
 enum { ROWS = sizeof steps / sizeof steps[0] };
 
-/* The state itself as an output */
-static struct output state_output(const struct linear *system, int state)
-{
-	struct output output = { .state = rationals((size_t)system->states) };
-	output.load = ARRAY(mpq_t *, (size_t)system->loads);
-	for (int l = 0; l < system->loads; l++)
-		output.load[l] = rationals((size_t)system->load[l].columns * (size_t)system->segments);
-	mpq_set_ui(output.state[state], 1, 1);
-	return output;
-}
-
 /* 1, -3/4, 5/8, -9/16, ...: no two alike, none of them rounded */
 static void start_value(int state, mpq_ptr value)
 {
@@ -37,7 +26,7 @@ static struct closed_form closed_form_of(const struct step *step, int state, con
 {
 	const struct linear *system = &step->branch->system;
 	struct resolvent *resolvent = step->branch->resolvent;
-	struct output output = state_output(system, state);
+	struct output output = state_as_output(system, state);
 	struct closed_form form;
 	form.count = responses_of_output(resolvent, system, start, &output, &form.list);
 	ENLARGE(form.list, (size_t)form.count + (size_t)system->inputs);
@@ -74,7 +63,7 @@ static bool fill_row(const struct step *step, const struct closed_form *form, mp
 	struct place at = step->model->asked.step_at;
 	bool finite = true;
 	for (int i = 0; i < step->branch->system.states; i++) {
-		row[i] = started_value(form[i].count, form[i].list, t, at, "a value of the self-test").value;
+		row[i] = started_value(form[i].count, form[i].list, t, false, at, "a value of the self-test").value;
 		finite = finite && isfinite(row[i]);
 	}
 	return finite;

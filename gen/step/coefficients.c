@@ -192,12 +192,13 @@ static bool round_number(const struct number *n, bool two_words, int limit, stru
 	return decided;
 }
 
-struct coefficient started_value(int count, const struct started *list, mpq_srcptr t, struct place at, const char *what)
+struct coefficient started_value(int count, const struct started *list, mpq_srcptr t, bool two_words, struct place at,
+				 const char *what)
 {
 	struct number number = { .count = count, .list = list, .t = t };
 	struct coefficient c;
 	bool isolated;
-	if (!round_number(&number, false, LIMIT_PRECISION, &c, &isolated))
+	if (!round_number(&number, two_words, LIMIT_PRECISION, &c, &isolated))
 		undecided(at, what, isolated);
 	return c;
 }

@@ -132,6 +132,8 @@ static bool fill_forced(const struct linear *system, int l, struct forced *force
 			if (beyond_range(P[i]))
 				return false;
 			forced->part[cell] = rounded(P[i]);
+			if (s == 0)
+				mpq_set(forced->exact[cell], P[i]);
 			if (!before)
 				continue;
 			mpq_sub(before[i], before[i], P[i]);
@@ -563,6 +565,7 @@ void plan_forced(struct step *step)
 	forced->load = ARRAY(bool, (size_t)system->loads);
 	forced->part =
 		ARRAY(struct coefficient, (size_t)(system->segments * system->states * step->branch->whole->columns));
+	forced->exact = rationals((size_t)(system->states * step->branch->whole->columns));
 	forced->change =
 		ARRAY(struct coefficient, (size_t)(system->segments * system->states * step->branch->whole->columns));
 	for (int l = 0; l < system->loads; l++) {

@@ -187,6 +187,64 @@ void load_state(const struct load *load, int column, mpq_srcptr t, mpq_ptr z)
 	mpq_clear(factor);
 }
 
+/* ---- an output after some time, from what there is at its start ---- */
+
+struct output state_as_output(const struct linear *system, int state)
+{
+	struct output output = { .state = rationals((size_t)system->states) };
+	output.load = ARRAY(mpq_t *, (size_t)system->loads);
+	for (int l = 0; l < system->loads; l++)
+		output.load[l] = rationals((size_t)system->load[l].columns * (size_t)system->segments);
+	for (int k = 0; k < 2; k++)
+		output.input[k] = rationals((size_t)system->inputs);
+	mpq_set_ui(output.state[state], 1, 1);
+	return output;
+}
+
+struct response *output_of_states(struct resolvent *r, const struct output *output, const mpq_t *initial)
+{
+	return image_of(r, &(struct question){ initial, 0, NULL, (const mpq_t *)output->state });
+}
+
+/* Of the first segment of time, the load's own part in the output included */
+struct response *output_of_load(struct resolvent *r, const struct linear *system, const struct output *output, int l,
+				int column, const mpq_t *initial)
+{
+	const struct load *load = &system->load[l];
+	struct excitation e = excitation_new(system->n, load->wave->a, load->wave->w, load->powers);
+	mpq_t one;
+	mpq_init(one);
+	mpq_set_ui(one, 1, 1);
+	add_load(&e, system, 0, load, (const mpq_t *)output->load[l], column, one);
+	mpq_clear(one);
+	return image_of(r, &(struct question){ initial, 1, &e, (const mpq_t *)output->state });
+}
+
+/* u = value + slope tau, u' = slope: its force, and its own part in the output */
+struct response *output_of_input(struct resolvent *r, const struct linear *system, const struct output *output,
+				 int index, mpq_srcptr value, mpq_srcptr slope)
+{
+	const struct input *input = &system->input[index];
+	int n = system->n;
+	struct excitation e = excitation_new(n, NULL, NULL, 2);
+	mpq_t part;
+	mpq_init(part);
+	for (int k = 0; k < n; k++) {
+		mpq_mul(e.force[k], input->force[0][k], value);
+		mpq_mul(e.force[2 * n + k], input->force[0][k], slope);
+		if (input->first_order) {
+			mpq_mul(part, input->force[1][k], slope);
+			mpq_add(e.force[k], e.force[k], part);
+		}
+	}
+	mpq_mul(e.direct[0], output->input[0][index], value);
+	mpq_mul(part, output->input[1][index], slope);
+	mpq_add(e.direct[0], e.direct[0], part);
+	mpq_mul(e.direct[2], output->input[0][index], slope);
+	mpq_clear(part);
+	return image_of(r, &(struct question){ NULL, 1, &e, (const mpq_t *)output->state });
+}
+
 /* All loads of one segment from time t on, times `sign` */
 static void add_loads(struct excitation *e, const struct linear *system, const struct output *output, int segment,
 		      mpq_srcptr t, int sign)

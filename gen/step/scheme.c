@@ -284,6 +284,7 @@ static void build(void *context)
 		need_closed_form(step);
 	program_check(step);
 	plan_phases(step);
+	plan_rows(step);
 }
 
 struct step *step_build(const struct model *model)
@@ -299,7 +300,7 @@ struct step *step_build(const struct model *model)
 	*plain = *model->written;
 	plain->asked.form = FORM_DIRECT;
 	plain->asked.compensated = plain->asked.selftest = false;
-	plain->asked.anchors = 1;
+	plain->asked.anchors = plain->asked.rows = 1;
 	step->shown = step_build(plain);
 	return step->shown ? step : NULL;
 }

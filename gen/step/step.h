@@ -50,6 +50,14 @@ struct started {                    /* a response that starts at a time of its o
 /* output(t) from t = 0 as a sum of responses; returns how many */
 int responses_of_output(struct resolvent *r, const struct linear *system, const mpq_t *initial,
 			const struct output *output, struct started **list);
+struct output state_as_output(const struct linear *system, int state); /* read alone */
+/* what an output is after tau: from these states alone; from a load state 1, and these states (NULL: 0), in the first
+ * segment of time; of an input u = value + slope tau, from rest */
+struct response *output_of_states(struct resolvent *r, const struct output *output, const mpq_t *initial);
+struct response *output_of_load(struct resolvent *r, const struct linear *system, const struct output *output, int load,
+				int column, const mpq_t *initial);
+struct response *output_of_input(struct resolvent *r, const struct linear *system, const struct output *output,
+				 int input, mpq_srcptr value, mpq_srcptr slope);
 /* its value, rational or the nearest of 256 bits */
 void load_state(const struct load *load, int column, mpq_srcptr t, mpq_ptr z);
 
@@ -97,7 +105,7 @@ struct table {                      /* of one time: y(tau) = Phi y + sum of colu
 void check_pole_size(const struct model *model, const struct resolvent *resolvent);
 /* Rounded, infinite beyond the range; `at` and `what` name it where it cannot be decided. */
 /* their sum */
-struct coefficient started_value(int count, const struct started *list, mpq_srcptr t, struct place at,
+struct coefficient started_value(int count, const struct started *list, mpq_srcptr t, bool two_words, struct place at,
 				 const char *what);
 struct coefficient response_value(struct response *response, mpq_srcptr tau, bool two_words, struct place at,
 				  const char *what);
@@ -193,6 +201,7 @@ struct program {
 struct forced {
 	bool *load;                 /* per load: one of them; then the step is without it */
 	struct coefficient *part;   /* [segment of time][states x load columns] */
+	mpq_t *exact;               /* the same in the first segment */
 	struct coefficient *change; /* the same, from each segment to the next: what the state gains that is kept */
 	bool changes;               /* any of it */
 	int multiplications, additions; /* to add it */
@@ -279,6 +288,8 @@ struct step {                       /* everything that is emitted for one model 
 	bool swift;
 	int swift_degree;
 	struct load_phase *phase;   /* per load */
+	struct rows *rows;          /* NAME_run in blocks of rows; NULL: step by step */
+	const char *no_rows;        /* why it is so, where a reader would ask */
 };
 enum step_kind kind_of_step(const struct model *model);
 bool is_anchored(const struct step *step, int load);        /* its functions are evaluated at anchors only */
@@ -521,6 +532,24 @@ bool is_highest(const struct model *model, const struct basis *basis); /* a coor
 const struct form *without_highest(const struct model *model, const struct form *form);
 /* -W^-1, n x n: the highest derivatives are it times the residuals */
 struct coefficient *derivatives_of_residuals(const struct model *model);
+
+/* ---- rows.c: outputs after several steps, from what stands at the start of a block of them ---- */
+
+struct row_column {                 /* of a block: what this gives every number of it */
+	struct operand operand;     /* a state, a load state; an input: the sample before the block */
+	double *value;              /* [row][output] */
+};
+struct rows {
+	int count, outputs;         /* rows in a block; numbers in a row */
+	int columns;                /* those that give something */
+	struct row_column *column;
+	int group;                  /* rows that are summed side by side, so that samples after all of them are left out */
+	double **sample;            /* per input: the outputs at the end of its step, after one more, ...: [row][output] */
+	/* The step of `count` h. Columns of inputs: those of ramps before the block, then each of its samples */
+	struct step *block;
+};
+int  held_columns(const struct linear *system);              /* ramps: the samples before the block */
+void plan_rows(struct step *step);                           /* step->rows; last, since it is a step of its own */
 
 /* ---- scheme.c: the step of a model ---- */
 

@@ -1,0 +1,275 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* NAME_run: many steps, outputs after each. In blocks of rows where there is a table for them. */
+#include "emit/emit.h"
+
+#include <string.h>
+
+/* ---- step by step ---- */
+
+static void emit_steps(const struct emitter *e)
+{
+	bool inputs = e->system->inputs > 0;
+	say(e, "    for (; n > 0; n--) {\n"
+	       "        $n_step(s%s);\n", inputs ? ", u" : "");
+	if (inputs)
+		say(e, "        u += $N_INPUTS;\n");
+	say(e, "        if (out) {\n"
+	       "            $n_out(s, out);\n"
+	       "            out += $N_OUTPUTS;\n"
+	       "        }\n"
+	       "    }\n");
+}
+
+/* ---- the tables of a block ---- */
+
+/* Numbers of one column: a line for each row of outputs, after so many zeros */
+static void emit_column(const struct emitter *e, const double *value, int zeros, int rows, const char *of)
+{
+	enum { WIDTH = 100 };
+	int outputs = e->step->rows->outputs, width = 6;
+	say(e, "    {  /* %s */\n     ", of);
+	for (int i = -zeros; i < rows * outputs; i++) {
+		const char *number = i < 0 ? "0.0" : shortest(value[i]);
+		int length = (int)strlen(number) + 2;
+		bool breaks = width + length > WIDTH;
+		say(e, "%s%s,", breaks ? "\n      " : " ", number);
+		width = (breaks ? 6 : width) + length;
+	}
+	say(e, "\n    },\n");
+}
+
+static const char *operand_name(const struct emitter *e, const struct operand *operand)
+{
+	const struct linear *system = e->system;
+	int column = operand->index, l = 0;
+	if (operand->kind == OPERAND_STATE)
+		return e->model->state_name[column];
+	for (; operand->kind == OPERAND_LOAD && column >= system->load[l].columns; l++)
+		column -= system->load[l].columns;
+	if (operand->kind == OPERAND_LOAD)
+		return column_text(&system->load[l], column);
+	for (; !system->input[l].first_order || column-- > 0;)
+		l++;
+	return format("%s before the block", system->input[l].name);
+}
+
+/* Zeros before the first number of a sample: the rows before it in its group */
+static int zeros_of(const struct rows *rows)
+{
+	return (rows->group - 1) * rows->outputs;
+}
+
+static void emit_row_tables(const struct emitter *e)
+{
+	const struct rows *rows = e->step->rows;
+	int numbers = rows->count * rows->outputs, inputs = e->system->inputs;
+	say(e, "\nenum { $N_ROWS = %d };  /* in a block of $n_run */\n", rows->count);
+	if (rows->columns) {
+		say(e, "\n/* The outputs after 1, 2, ... %d steps, from what there is at the start of a block */\n"
+		       "static const double $n_row[%d][%d] = {\n", rows->count, rows->columns, numbers);
+		for (int k = 0; k < rows->columns; k++)
+			emit_column(e, rows->column[k].value, 0, rows->count,
+				    operand_name(e, &rows->column[k].operand));
+		say(e, "};\n");
+	}
+	if (!inputs)
+		return;
+	say(e, "\n/* And from each sample, at the end of its step, after one more, ...; before that nothing */\n"
+	       "static const double $n_sample_row[%d][%d] = {\n", inputs, numbers + zeros_of(rows));
+	for (int i = 0; i < inputs; i++)
+		emit_column(e, rows->sample[i], zeros_of(rows), rows->count, e->system->input[i].name);
+	say(e, "};\n");
+}
+
+/* ---- its numbers ---- */
+
+/* The rows of a group, from `first` on: what stands at the block's start, and the samples up to its last row */
+static const char *group_text(const struct emitter *e, int first)
+{
+	const struct rows *rows = e->step->rows;
+	int inputs = e->system->inputs, last = first + rows->group, terms = 0;
+	const char **term = ARRAY(const char *, (size_t)(rows->columns + inputs * last) + 1);
+	const char *at = first ? format("cell + %d", first * rows->outputs) : "cell";
+	for (int k = 0; k < rows->columns; k++)
+		term[terms++] = format("%s_row[%d][%s] * start[%d]", e->name, k, at, k);
+	for (int j = 0; j < last && inputs; j++)
+		for (int i = 0; i < inputs; i++) {
+			int shift = (first - j) * rows->outputs + zeros_of(rows);
+			const char *place = shift ? format("cell + %d", shift) : "cell";
+			term[terms++] = format("%s_sample_row[%d][%s] * u[%d]", e->name, i, place, j * inputs + i);
+		}
+	return terms ? tree(terms, term, 21) : "0.0";
+}
+
+/* A function of its own: out is nothing else's there, so that several numbers are computed at a time. */
+static void emit_rows(const struct emitter *e)
+{
+	const struct rows *rows = e->step->rows;
+	int samples = rows->count * e->system->inputs;
+	say(e, "\n/* The outputs of a block from what there is at its start%s */\n"
+	       "static void $n_rows(const double start[%d]%s, double *PL_RESTRICT out)\n"
+	       "{\n"
+	       "    int cell;\n", samples ? " and its samples" : "", rows->columns ? rows->columns : 1,
+	    samples ? format(", const double u[%d]", samples) : "");
+	for (int first = 0; first < rows->count; first += rows->group) {
+		say(e, "    for (cell = 0; cell < %d; cell++)\n", rows->group * rows->outputs);
+		say(e, "        out[cell%s] = %s;\n", first ? format(" + %d", first * rows->outputs) : "",
+		    group_text(e, first));
+	}
+	say(e, "%s}\n", rows->columns ? "" : "    (void)start;\n");
+}
+
+/* ---- a block ---- */
+
+/* Per column of the step of a block */
+static const char **sample_names(const struct emitter *e)
+{
+	const struct linear *system = e->system;
+	int held = held_columns(system), count = e->step->rows->count * system->inputs;
+	const char **name = ARRAY(const char *, (size_t)(held + count) + 1);
+	for (int i = 0, column = 0; i < system->inputs; i++)
+		if (system->input[i].first_order)
+			name[column++] = format("before%d", i + 1);
+	for (int k = 0; k < count; k++)
+		name[held + k] = format("u[%d]", k);
+	return name;
+}
+
+/* {..., ..., ...} */
+static void emit_list(const struct emitter *e, const char *name, int count, const char *const *text)
+{
+	enum { WIDTH = 100 };
+	int width = (int)strlen(name) + 24;
+	say(e, "    const double %s[%d] = {", name, count);
+	for (int k = 0; k < count; k++) {
+		int length = (int)strlen(text[k]) + 2;
+		bool breaks = width + length > WIDTH;
+		say(e, "%s%s%s", k ? "," : "", breaks ? "\n        " : k ? " " : "", text[k]);
+		width = (breaks ? 8 : width) + length;
+	}
+	say(e, "};\n");
+}
+
+/* Samples are read before out is written, which may be in their place. */
+static void emit_sample_locals(const struct emitter *e)
+{
+	int count = e->step->rows->count * e->system->inputs;
+	const char **text = ARRAY(const char *, (size_t)count + 1);
+	for (int k = 0; k < count; k++)
+		text[k] = format("samples[%d]", k);
+	if (count)
+		emit_list(e, "u", count, text);
+	for (int i = 0; i < e->system->inputs; i++)
+		if (e->system->input[i].first_order)
+			say(e, "    const double before%d = s->u[%d];\n", i + 1, i);
+}
+
+static const char *row_operand(const struct emitter *e, const struct operand *operand)
+{
+	const char *text = operand->kind == OPERAND_STATE ? e->local[operand->index] :
+			   operand->kind == OPERAND_LOAD ? column_operand(e, operand->index) :
+			   e->sample[operand->index];
+	return text ? text : "1.0";
+}
+
+static void emit_start(const struct emitter *e)
+{
+	const struct rows *rows = e->step->rows;
+	const char **text = ARRAY(const char *, (size_t)rows->columns + 1);
+	for (int k = 0; k < rows->columns; k++)
+		text[k] = row_operand(e, &rows->column[k].operand);
+	text[0] = rows->columns ? text[0] : "0.0";
+	emit_list(e, "start", rows->columns ? rows->columns : 1, text);
+}
+
+static void mark_operand(const struct emitter *e, const struct operand *operand, bool *reads, bool *loads)
+{
+	int column = operand->index, l = 0;
+	if (operand->kind == OPERAND_STATE)
+		reads[column] = true;
+	for (; operand->kind == OPERAND_LOAD && column >= e->system->load[l].columns; l++)
+		column -= e->system->load[l].columns;
+	if (operand->kind == OPERAND_LOAD && load_operand(e, l, column))
+		loads[l] = true;
+}
+
+static void emit_block_locals(const struct emitter *e)
+{
+	const struct rows *rows = e->step->rows;
+	const struct program *program = e->step->program;
+	bool *reads = ARRAY(bool, (size_t)e->system->states), *loads = ARRAY(bool, (size_t)e->system->loads);
+	for (int k = 0; k < rows->columns; k++)
+		mark_operand(e, &rows->column[k].operand, reads, loads);
+	for (int k = 0; k < e->system->states; k++)
+		reads[k] = reads[k] || program->reads[k];
+	for (int k = 0; k < load_columns(e->system); k++)
+		if (program->uses[k])
+			mark_operand(e, &(struct operand){ OPERAND_LOAD, k }, reads, loads);
+	emit_raw_locals(e, reads, program->in_order);
+	emit_sample_locals(e);
+	emit_load_states(e, loads, false);
+	emit_start(e);
+}
+
+static void emit_block_step(const struct emitter *e)
+{
+	const struct program *program = e->step->program;
+	for (int i = 0; i < program->assignments; i++)
+		emit_assignment(e, &program->assignment[i]);
+	for (int i = 0; i < e->system->states && program->in_order; i++)
+		if (program->reads[i])
+			say(e, "    s->y[%d] = %s;\n", i, e->local[i]);
+}
+
+/* The step of K h comes before the rows, which do not wait for it: the next block begins as soon as it can. */
+static void emit_block(const struct emitter *e)
+{
+	struct emitter block = *e;
+	bool inputs = e->system->inputs > 0;
+	block.step = e->step->rows->block;
+	block.sample = sample_names(e);
+	emit_rows(e);
+	say(e, "\n/* $N_ROWS steps as one, and the outputs after each unless out is NULL */\n"
+	       "static void $n_block($n *s%s, double *out)\n"
+	       "{\n", inputs ? ", const double *samples" : "");
+	emit_block_locals(&block);
+	emit_block_step(&block);
+	if (inputs)
+		emit_keep_inputs(e, e->step->rows->count);
+	emit_load_advance(e, spell(e, "$N_ROWS"));
+	say(e, "    s->k += $N_ROWS;\n"
+	       "    if (out)\n"
+	       "        $n_rows(start, %sout);\n"
+	       "}\n", inputs ? "u, " : "");
+}
+
+/* The state is a local over all blocks. */
+static void emit_blocks(const struct emitter *e)
+{
+	bool inputs = e->system->inputs > 0;
+	say(e, "    if (n >= $N_ROWS) {\n"
+	       "        $n now = *s;\n"
+	       "        for (; n >= $N_ROWS; n -= $N_ROWS) {\n"
+	       "            $n_block(&now, %sout);\n", inputs ? "u, " : "");
+	if (inputs)
+		say(e, "            u += $N_ROWS * $N_INPUTS;\n");
+	say(e, "            if (out)\n"
+	       "                out += $N_ROWS * $N_OUTPUTS;\n"
+	       "        }\n"
+	       "        *s = now;\n"
+	       "    }\n");
+}
+
+void emit_run(const struct emitter *e)
+{
+	if (e->step->rows) {
+		emit_row_tables(e);
+		emit_block(e);
+	}
+	say(e, "\nvoid $n_run($n *s, size_t n, %sdouble *out)\n"
+	       "{\n", e->system->inputs ? "const double *u, " : "");
+	if (e->step->rows)
+		emit_blocks(e);
+	emit_steps(e);
+	say(e, "}\n");
+}

@@ -1,0 +1,124 @@
+#!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
+# rows.sh PLGEN SOURCE_ROOT: NAME_run in blocks of rows against NAME_step, for every number of steps from none to three
+# blocks and one: models and forms of the step in double and float, as two programs.
+set -u
+absolute() {
+    case $1 in
+        /*) echo "$1" ;;
+        *) echo "$PWD/$1" ;;
+    esac
+}
+plgen=$(absolute "$1")
+root=$(absolute "$2")
+. "${0%/*}/../tap.sh"
+runtime_archive "$root/runtime"
+
+# A load far above the poles, whose forced part the state is kept without
+cat >forced.spec <<'EOF'
+model forced
+coord x, y
+init x = 1e-6
+x'' + 0.1*x' + 30*x - 10*y = 1e5*cos(4000*t + 0.3) + exp(-t)
+y'' + 0.1*y' + 30*y - 10*x = 0
+output x, y, a = x''
+step 0.01
+EOF
+# What may move as a whole: kept as a difference and a centre
+cat >rigid.spec <<'EOF'
+model rigid
+coord a, b
+input u
+init a = 1000, a' = 3
+2*a'' + 5*(a' - b') + 70*(a - b) = u
+3*b'' + 5*(b' - a') + 70*(b - a) = 0
+output stretch = a - b, v = b', a
+step 0.02
+EOF
+# Nothing but what adds up, and an output that is in the place of its input
+cat >sum.spec <<'EOF'
+model sum
+coord x, v
+input u hold first
+x' = v
+v' = u
+output y = x + 0.25*u + 0.5*u'
+step 0.125
+EOF
+
+: >list
+emitted=$root/tests/emitted/linear
+# NAME ROWS SPEC OPTIONS: ROWS: what the table should have; 0: none
+while read -r name rows spec options; do
+    case $spec in
+        models/*) file=$root/$spec ;;
+        linear/*) file=$emitted/${spec#linear/} ;;
+        *) file=$spec ;;
+    esac
+    # shellcheck disable=SC2086
+    "$plgen" $options --prefix "$name" "$file" >"$name.c" 2>log || { result 1 "$name is written"; continue; }
+    type=double
+    case $options in *float*) type=float ;; esac
+    echo "$name $rows $type" >>list
+    found=$(sed -n 's/^enum { [A-Z0-9_]*_ROWS = \([0-9]*\) }.*/\1/p' "$name.c")
+    echo "found ${found:-0} rows, expected $rows" >log
+    [ "${found:-0}" = "$rows" ]
+    result $? "$name: $rows rows in a block"
+done <<'EOF'
+sdcs 32 models/sdcs.spec
+sdcs_direct 32 models/sdcs.spec --form direct
+sdcs_two 32 models/sdcs.spec --accuracy compensated
+scs 12 models/scs.spec
+scs_two 12 models/scs.spec --accuracy compensated
+scs_delta 64 models/scs.spec --form delta --rows 64
+masses 4 linear/reduced.spec --rows 4
+sdcsf 64 models/sdcsf.spec
+sdcsf_two 7 models/sdcsf.spec --accuracy compensated --rows 7
+tuned_floor 64 models/tuned_floor.spec
+forced 64 forced.spec
+forced_two 8 forced.spec --accuracy compensated --rows 8
+growing 64 linear/growing.spec
+product 32 linear/product.spec
+ramps 32 linear/ramps.spec
+resonance 64 linear/resonance.spec
+maxwell 9 linear/maxwell.spec --rows 9
+vector3 16 linear/vector3.spec --rows 16
+reduced 16 linear/reduced.spec --reduce --rows 16
+held2 5 linear/held2.spec --rows 5
+ramped2 6 linear/ramped2.spec --rows 6
+ramped2_two 8 linear/ramped2.spec --accuracy compensated --rows 8
+first2 8 linear/first2.spec --rows 8
+rigid 8 rigid.spec --rows 8
+sum 8 sum.spec
+changing 0 linear/switched.spec
+by_steps 0 models/sdcs.spec --rows 1
+f_sdcs 0 models/sdcs.spec --real float
+f_sdcsf 16 models/sdcsf.spec --real float --rows 16
+f_scs 8 models/scs.spec --real float --rows 8
+f_ramps 8 linear/ramps.spec --real float --rows 8
+f_first2 8 linear/first2.spec --real float --rows 8
+EOF
+
+for type in double float; do
+    # All in one file: a compiler that starts once
+    awk -v type=$type '$3 == type { print $1 ".c" }' list | xargs cat >"$type.c"
+    awk -v type=$type '$3 == type { print "X(" $1 ", " $2 ")" }' list >"models_$type.h"
+    [ $type = double ] && real= || real=-DREAL_FLOAT
+    # shellcheck disable=SC2086
+    ${CC:-cc} -O0 -w $real "-DMODELS=\"models_$type.h\"" "-DCODE=\"$type.c\"" -I. -I"$root/runtime" \
+        "$root/tests/emitted/rows.c" "$archive" -lm -o "rows_$type" >log 2>&1
+    result $? "$type: compiles"
+    : >log
+    ./"rows_$type" >found 2>&1
+    status=$?
+    while IFS= read -r line; do
+        case $line in
+            'ok '*) : >log; result 0 "${line#ok }" ;;
+            'not ok '*) result 1 "${line#not ok }"; : >log ;;
+            *) echo "$line" >>log ;;
+        esac
+    done <found
+    grep -q '^ok all' found && [ $status -eq 0 ]
+    result $? "$type: the program came to its end"
+done
+tap_end
