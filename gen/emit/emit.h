@@ -226,7 +226,8 @@ void emit_looped_step(const struct emitter *e);
 void emit_modes(const struct emitter *e);                         /* tables; nothing of other forms */
 void emit_modal_step(const struct emitter *e);
 
-/* ---- emit.c, emit_step.c, emit_out.c, emit_run.c, emit_loads.c, emit_forced.c, emit_anchors.c, emit_time.c, emit_tune.c, emit_rhs.c: a step as C ---- */
+/* ---- emit.c, emit_step.c, emit_out.c, emit_run.c, emit_loads.c, emit_forced.c, emit_anchors.c, emit_time.c,
+ * emit_tune.c, emit_rhs.c: a step as C ---- */
 
 void emit_header(FILE *to, const struct step *step, const char *options, bool rhs);
 /* header_name NULL: all in one */
@@ -247,6 +248,7 @@ void emit_anchor_tables(const struct emitter *e);                 /* of anchors:
 void emit_anchor_members(const struct emitter *e);
 /* as emit_load_states, in a step: at the anchor, to be multiplied with turned[...]; elsewhere: of now */
 void emit_anchored_loads(const struct emitter *e, const bool *loads);
+void emit_loads_at_anchor(const struct emitter *e, const bool *loads);    /* where one stands now */
 void emit_turned_loads(const struct emitter *e, const bool *loads, bool time_is_there);
 void emit_forced(const struct emitter *e);                        /* NAME_forced: what is not kept of the state */
 const char *load_operand(const struct emitter *e, int load, int column); /* NULL: the constant 1 */

@@ -136,16 +136,10 @@ void emit_anchor_members(const struct emitter *e)
 
 /* ---- load states from an anchor ---- */
 
-void emit_anchored_loads(const struct emitter *e, const bool *loads)
+/* Declares those of the anchor, and all others; returns whether there are any of the first */
+static bool emit_values_at_anchor(const struct emitter *e, const bool *loads)
 {
 	bool *others = ARRAY(bool, (size_t)e->system->loads), any = false;
-	for (int l = 0; l < e->system->loads; l++) {
-		bool anchored = loads[l] && is_anchored(e->step, l);
-		any = any || anchored;
-		others[l] = loads[l] && !anchored;
-	}
-	if (any)
-		say(e, "    const double *const turned = $n_turned[s->since];\n");
 	for (int l = 0; l < e->system->loads; l++) {
 		const struct load *load = &e->system->load[l];
 		const char *cells = "", *names = "";
@@ -153,11 +147,25 @@ void emit_anchored_loads(const struct emitter *e, const bool *loads)
 			cells = format("%s%ss->anchor[%d]", cells, k ? ", " : "", e->anchor[l] + k);
 			names = format("%s%s%s", names, k ? ", " : "", column_text(load, k));
 		}
+		others[l] = loads[l] && !is_anchored(e->step, l);
+		any = any || (loads[l] && !others[l]);
 		if (loads[l] && !others[l])
 			say(e, "    const double load%d[%d] = {%s};  /* %s at the anchor */\n", l + 1, load->columns,
 			    cells, names);
 	}
 	emit_load_states(e, others, false);
+	return any;
+}
+
+void emit_loads_at_anchor(const struct emitter *e, const bool *loads)
+{
+	emit_values_at_anchor(e, loads);
+}
+
+void emit_anchored_loads(const struct emitter *e, const bool *loads)
+{
+	if (emit_values_at_anchor(e, loads))
+		say(e, "    const double *const turned = $n_turned[s->since];\n");
 }
 
 /* e^{a tau} cos(x + w tau), sin likewise, from those at the anchor */

@@ -193,7 +193,8 @@ static void mark_operand(const struct emitter *e, const struct operand *operand,
 		loads[l] = true;
 }
 
-static void emit_block_locals(const struct emitter *e)
+/* e: of the block's step; where loads have anchors, one stands at the start of a block. */
+static void emit_block_locals(const struct emitter *e, const struct emitter *of_step)
 {
 	const struct rows *rows = e->step->rows;
 	const struct program *program = e->step->program;
@@ -207,7 +208,10 @@ static void emit_block_locals(const struct emitter *e)
 			mark_operand(e, &(struct operand){ OPERAND_LOAD, k }, reads, loads);
 	emit_raw_locals(e, reads, program->in_order);
 	emit_sample_locals(e);
-	emit_load_states(e, loads, false);
+	if (of_step->step->anchors)
+		emit_loads_at_anchor(of_step, loads);
+	else
+		emit_load_states(e, loads, false);
 	emit_start(e);
 }
 
@@ -232,13 +236,17 @@ static void emit_block(const struct emitter *e)
 	say(e, "\n/* $N_ROWS steps as one, and the outputs after each unless out is NULL */\n"
 	       "static void $n_block($n *s%s, double *out)\n"
 	       "{\n", inputs ? ", const double *samples" : "");
-	emit_block_locals(&block);
+	emit_block_locals(&block, e);
 	emit_block_step(&block);
 	if (inputs)
 		emit_keep_inputs(e, e->step->rows->count);
-	emit_load_advance(e, spell(e, "$N_ROWS"));
-	say(e, "    s->k += $N_ROWS;\n"
-	       "    if (out)\n"
+	if (!e->step->anchors)
+		emit_load_advance(e, spell(e, "$N_ROWS"));
+	say(e, "    s->k += $N_ROWS;\n");
+	if (e->step->anchors)
+		say(e, "    s->since = $N_ROWS;\n"
+		       "    $n_anchor(s);\n");
+	say(e, "    if (out)\n"
 	       "        $n_rows(start, %sout);\n"
 	       "}\n", inputs ? "u, " : "");
 }
@@ -248,8 +256,10 @@ static void emit_blocks(const struct emitter *e)
 {
 	bool inputs = e->system->inputs > 0;
 	say(e, "    if (n >= $N_ROWS) {\n"
-	       "        $n now = *s;\n"
-	       "        for (; n >= $N_ROWS; n -= $N_ROWS) {\n"
+	       "        $n now = *s;\n");
+	if (e->step->anchors)
+		say(e, "        $n_anchor(&now);\n");
+	say(e, "        for (; n >= $N_ROWS; n -= $N_ROWS) {\n"
 	       "            $n_block(&now, %sout);\n", inputs ? "u, " : "");
 	if (inputs)
 		say(e, "            u += $N_ROWS * $N_INPUTS;\n");

@@ -50,7 +50,7 @@ static const char *sum_text(const struct emitter *e, const struct assignment *a,
 
 static const char *second_term_text(const struct emitter *e, const struct assignment *a, const struct product *p)
 {
-	const char *operand = operand_text(e, &p->operand);
+	const char *operand = step_operand(e, &p->operand);
 	int turned = p->operand.kind == OPERAND_LOAD ? anchored_term(e->step, a->target, p->operand.index) : -1;
 	if (turned >= 0)
 		return format("turned[%d] * %s", e->step->anchors->terms + turned, operand);

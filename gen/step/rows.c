@@ -89,24 +89,16 @@ static struct share share_of_state(const struct step *step, const struct output 
 	return share;
 }
 
-static int load_of_column(const struct linear *system, int *column)
-{
-	int l = 0;
-	for (; *column >= system->load[l].columns; l++)
-		*column -= system->load[l].columns;
-	return l;
-}
-
 /* Of a load that the step leaves out, the forced part starts with it. */
 static struct share share_of_load(const struct step *step, const struct output *output, int column)
 {
 	const struct linear *system = &step->branch->system;
 	struct share share = { 0 };
-	int columns = load_columns(system), own = column, l = load_of_column(system, &own);
+	int first, columns = load_columns(system), l = load_of_column(system, column, &first);
 	mpq_t *initial = is_forced(step, column) ? rationals((size_t)system->states) : NULL;
 	for (int i = 0; i < system->states && initial; i++)
 		mpq_set(initial[i], step->forced->exact[i * columns + column]);
-	add_started(&share, output_of_load(step->branch->resolvent, system, output, l, own, (const mpq_t *)initial), 0,
+	add_started(&share, output_of_load(step->branch->resolvent, system, output, l, column - first, (const mpq_t *)initial), 0,
 		    step->model->h);
 	return share;
 }
@@ -241,6 +233,7 @@ static struct step *block_of(const struct step *step, int count)
 	*system = step->branch->system;
 	system->inputs = 0;
 	*block = *step;
+	block->anchors = NULL;          /* an anchor stands where a block starts */
 	block->branch = NEW(struct branch);
 	*block->branch = *step->branch;
 	block->branch->whole = tables_of(step->model, step->branch->resolvent, system, 1, wanted)[0];
