@@ -107,6 +107,7 @@ struct response {                   /* scale * N/D, N and D coprime */
 	mpq_t *at_zero;             /* residue at 0 as a polynomial in tau: zero-th coefficient first */
 	struct rectangle ***residue; /* [factor][pole][k], for `precision` bits */
 	int precision;
+	mpq_t last;                 /* time at which it was enclosed last */
 };
 struct response *response_of(mpq_srcptr scale, struct poly N, struct poly D);
 /* True if the value at tau is rational: then `exact` is it. False: it is transcendental, and response_enclose

@@ -7,17 +7,24 @@
 
 enum {
 	GUARD_BITS = 32,
-	LONGEST_STRIDE = 32             /* products of exponentials in a row: turned rectangles widen by up to sqrt 2 each */
+	LONGEST_COURSE = 32,            /* products of exponentials in a row: turned rectangles widen by up to sqrt 2 */
+	LIMIT_COURSES = 128
 };
 
+struct course {                     /* e^{p tau} at every pole, moved on in equal steps */
+	mpq_t tau;
+	struct rectangle **exponential;
+	int products;               /* since it was found directly */
+	unsigned long used;         /* when it was asked for last */
+};
 struct growth {                     /* what all responses with one denominator share, for one precision */
 	int precision;
 	struct rectangle ***series; /* [factor][pole][k]: v_k */
-	mpq_t tau, stride;          /* of `exponential`; what it was moved by last */
-	int exponential_precision;  /* of `exponential`, at tau; 0: none */
-	struct rectangle **exponential;
-	struct rectangle **over_stride;     /* e^{p stride}; NULL: not asked for twice in a row */
-	int strides;                /* from an exponential that was found directly */
+	int courses;
+	struct course *course;
+	unsigned long asked;        /* how often */
+	mpq_t stride;               /* by which the last one moved */
+	struct rectangle **over_stride;     /* e^{p stride}; NULL: not asked for yet */
 };
 
 /* ---- exact parts ---- */
@@ -79,7 +86,7 @@ struct response *response_of(mpq_srcptr scale, struct poly N, struct poly D)
 {
 	struct response *response = NEW(struct response);
 	mpq_t content;
-	mpq_inits(content, response->scale, NULL);
+	mpq_inits(content, response->scale, response->last, NULL);
 	if (N.length > 0) {
 		struct poly common = poly_gcd(N, D);
 		N = poly_primitive(poly_divide(N, common), mpq_numref(content));
@@ -173,13 +180,12 @@ static struct growth *denominator_series(struct spectrum *spectrum, int precisio
 		return growth;
 	growth = spectrum->growth = NEW(struct growth);
 	growth->precision = precision;
-	mpq_inits(growth->tau, growth->stride, NULL);
+	growth->course = ARRAY(struct course, LIMIT_COURSES);
+	mpq_init(growth->stride);
 	growth->series = ARRAY(struct rectangle **, (size_t)spectrum->factors);
-	growth->exponential = ARRAY(struct rectangle *, (size_t)spectrum->factors);
 	for (int f = 0; f < spectrum->factors; f++) {
 		int m = spectrum->factor[f].multiplicity;
 		growth->series[f] = ARRAY(struct rectangle *, (size_t)spectrum->poles[f]);
-		growth->exponential[f] = rectangles(spectrum->poles[f], precision + GUARD_BITS);
 		for (int i = 0; i < spectrum->poles[f]; i++)
 			growth->series[f][i] = rectangles(m, precision + GUARD_BITS);
 		for (int k = 0; k < m; k++) {
@@ -206,8 +212,60 @@ static struct rectangle **room_for_exponentials(const struct spectrum *spectrum,
 	return room;
 }
 
-/* At equal distances, as rows of a solution are: by products */
-static void move_exponentials(const struct spectrum *spectrum, struct growth *growth)
+static void clear_exponentials(const struct spectrum *spectrum, struct rectangle **exponential)
+{
+	for (int f = 0; f < spectrum->factors && exponential; f++) {
+		for (int i = 0; i < spectrum->poles[f]; i++)
+			rectangle_clear(&exponential[f][i]);
+		discard(exponential[f]);
+	}
+	discard(exponential);
+}
+
+static struct course *course_at(const struct growth *growth, mpq_srcptr tau)
+{
+	for (int i = 0; i < growth->courses; i++)
+		if (mpq_equal(growth->course[i].tau, tau))
+			return &growth->course[i];
+	return NULL;
+}
+
+static struct course *longest_unused(const struct growth *growth)
+{
+	struct course *oldest = growth->course;
+	for (int i = 1; i < growth->courses; i++)
+		if (growth->course[i].used < oldest->used)
+			oldest = &growth->course[i];
+	return oldest;
+}
+
+static struct course *new_course(const struct spectrum *spectrum, struct growth *growth)
+{
+	if (growth->courses == LIMIT_COURSES)
+		return longest_unused(growth);
+	struct course *course = &growth->course[growth->courses++];
+	mpq_init(course->tau);
+	course->exponential = room_for_exponentials(spectrum, growth->precision + GUARD_BITS);
+	return course;
+}
+
+/* False: this is another stride than the last */
+static bool same_stride(const struct spectrum *spectrum, struct growth *growth, mpq_srcptr from, mpq_srcptr to)
+{
+	mpq_t stride;
+	mpq_init(stride);
+	mpq_sub(stride, to, from);
+	bool same = mpq_equal(stride, growth->stride);
+	if (!same) {
+		clear_exponentials(spectrum, growth->over_stride);
+		growth->over_stride = NULL;
+		mpq_set(growth->stride, stride);
+	}
+	mpq_clear(stride);
+	return same;
+}
+
+static void move_course(const struct spectrum *spectrum, struct growth *growth, struct course *course)
 {
 	if (!growth->over_stride) {
 		growth->over_stride = room_for_exponentials(spectrum, growth->precision + GUARD_BITS);
@@ -215,43 +273,29 @@ static void move_exponentials(const struct spectrum *spectrum, struct growth *gr
 	}
 	for (int f = 0; f < spectrum->factors; f++)
 		for (int i = 0; i < spectrum->poles[f]; i++)
-			rectangle_mul(&growth->exponential[f][i], &growth->exponential[f][i],
+			rectangle_mul(&course->exponential[f][i], &course->exponential[f][i],
 				      &growth->over_stride[f][i]);
-	growth->strides++;
+	course->products++;
 }
 
-static void clear_stride(const struct spectrum *spectrum, struct growth *growth)
+/* At tau, by who asked at `last` before: at equal distances, as the rows of a solution are, by products */
+static struct rectangle **exponentials_of(const struct spectrum *spectrum, struct growth *growth, mpq_srcptr last,
+					  mpq_srcptr tau)
 {
-	for (int f = 0; f < spectrum->factors && growth->over_stride; f++) {
-		for (int i = 0; i < spectrum->poles[f]; i++)
-			rectangle_clear(&growth->over_stride[f][i]);
-		discard(growth->over_stride[f]);
+	struct course *course = course_at(growth, tau);
+	if (!course) {
+		course = course_at(growth, last);
+		if (course && same_stride(spectrum, growth, last, tau) && course->products < LONGEST_COURSE) {
+			move_course(spectrum, growth, course);
+		} else {
+			course = course ? course : new_course(spectrum, growth);
+			exponentials_at(spectrum, tau, course->exponential);
+			course->products = 0;
+		}
+		mpq_set(course->tau, tau);
 	}
-	discard(growth->over_stride);
-	growth->over_stride = NULL;
-}
-
-static void find_exponentials(struct spectrum *spectrum, struct growth *growth, mpq_srcptr tau)
-{
-	bool first = growth->exponential_precision == 0;
-	if (!first && mpq_equal(growth->tau, tau))
-		return;
-	mpq_t stride;
-	mpq_init(stride);
-	mpq_sub(stride, tau, growth->tau);
-	bool again = !first && mpq_equal(stride, growth->stride);
-	if (again && growth->strides < LONGEST_STRIDE) {
-		move_exponentials(spectrum, growth);
-	} else {
-		exponentials_at(spectrum, tau, growth->exponential);
-		growth->strides = 0;
-	}
-	if (!again)
-		clear_stride(spectrum, growth);
-	mpq_set(growth->stride, stride);
-	mpq_set(growth->tau, tau);
-	mpq_clear(stride);
-	growth->exponential_precision = growth->precision;
+	course->used = ++growth->asked;
+	return course->exponential;
 }
 
 /* a_k of one pole, written so that a[k] multiplies tau^k/k! */
@@ -321,7 +365,8 @@ bool response_enclose(struct response *response, mpq_srcptr tau, int precision, 
 	if (!spectrum_refine(spectrum, precision))
 		return false;
 	struct growth *growth = denominator_series(spectrum, precision);
-	find_exponentials(spectrum, growth, tau);
+	struct rectangle **exponential = exponentials_of(spectrum, growth, response->last, tau);
+	mpq_set(response->last, tau);
 	find_residues(response, precision);
 	mpq_t exact;
 	mpq_init(exact);
@@ -331,7 +376,7 @@ bool response_enclose(struct response *response, mpq_srcptr tau, int precision, 
 	for (int f = 0; f < spectrum->factors; f++)
 		for (int i = 0; i < spectrum->poles[f]; i++)
 			add_residue(&spectrum->pole[f][i], spectrum->factor[f].multiplicity, response->residue[f][i],
-				    &growth->exponential[f][i], tau, value);
+				    &exponential[f][i], tau, value);
 	mpfi_mul_q(value, value, response->scale);
 	mpq_clear(exact);
 	return true;
