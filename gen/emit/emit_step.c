@@ -107,7 +107,7 @@ static void emit_keep_inputs(const struct emitter *e)
 {
 	for (int i = 0; i < e->system->inputs; i++) {
 		if (e->system->input[i].first_order)
-			say(e, "    s->slope[%d] = (u[%d] - s->u[%d]) / %s;\n", i, i, i, step_length(e));
+			say(e, "    s->slope[%d] = %s;\n", i, ramp_slope(e, i));
 		say(e, "    s->u[%d] = u[%d];\n", i, i);
 	}
 }
