@@ -140,7 +140,7 @@ void emit_samples(const struct emitter *e)
 	const char *start = "", *slope = "";
 	for (int i = 0; i < inputs; i++) {
 		bool ramp = e->system->input[i].first_order;
-		const char *rate = ramp ? format("(u[%d] - s->u[%d]) / %s_H", i, i, e->upper) : "0.0";
+		const char *rate = ramp ? ramp_slope(e, i) : "0.0";
 		start = format("%s%s%s[%d]", start, i ? ", " : "", ramp ? "s->u" : "u", i);
 		slope = format("%s%s%s", slope, i ? ", " : "", rate);
 	}

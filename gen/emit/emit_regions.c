@@ -156,7 +156,7 @@ static void emit_inputs_in_x(const struct emitter *e, bool step)
 		int at = e->step->layout.input[i];
 		say(e, "    x[%d] = %s[%d];\n", at, step && !ramp ? "u" : "s->u", i);
 		if (ramp && step)
-			say(e, "    x[%d] = (u[%d] - s->u[%d]) / $N_H;\n", at + 1, i, i);
+			say(e, "    x[%d] = %s;\n", at + 1, ramp_slope(e, i));
 		else if (ramp)
 			say(e, "    x[%d] = 0.0;\n", at + 1);
 	}

@@ -55,7 +55,7 @@ static void store_inputs(const struct emitter *e, const int *index)
 		bool ramp = e->system->input[i].first_order;
 		say(e, "    x[%d] = %s[%d];\n", index[i], ramp ? "s->u" : "u", i);
 		if (ramp)
-			say(e, "    x[%d] = (u[%d] - s->u[%d]) / %s;\n", index[i] + 1, i, i, step_length(e));
+			say(e, "    x[%d] = %s;\n", index[i] + 1, ramp_slope(e, i));
 	}
 }
 

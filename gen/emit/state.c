@@ -130,6 +130,25 @@ const char *step_length(const struct emitter *e)
 	return e->kind->own_factors ? "s->coeffs.h" : spell(e, "$N_H");
 }
 
+/* 1/h is rounded once, as h is: a product with it is as good as a quotient by that, and cheaper. */
+const char *slope_between(const struct emitter *e, const char *to, const char *from)
+{
+	const char *gain = format("(%s - %s)", to, from);
+	mpq_t rate;
+	mpq_init(rate);
+	mpq_inv(rate, e->model->h);
+	bool quotient = e->kind->own_factors || beyond_range(rate);
+	const char *text = quotient ? format("%s / %s", gain, step_length(e))
+				    : format("%s * %s", gain, shortest(round_rational(rate)));
+	mpq_clear(rate);
+	return text;
+}
+
+const char *ramp_slope(const struct emitter *e, int input)
+{
+	return slope_between(e, format("u[%d]", input), format("s->u[%d]", input));
+}
+
 const char *of_step(const struct emitter *e, const char *table)
 {
 	return e->kind->own_factors ? format("s->coeffs.%s", table) : spell(e, "$n_%s", table);
