@@ -274,6 +274,18 @@ static void banner_state(const struct emitter *e)
 		    e->model->written->system.states);
 }
 
+/* How NAME_run goes, where it has a choice */
+static void banner_run(const struct emitter *e)
+{
+	const struct rows *rows = e->step->rows;
+	if (rows)
+		say(e, " * $n_run takes %d rows at a time, each from the state at the start of its block: "
+		       "tables of %d numbers.\n",
+		    rows->count, (rows->columns + e->system->inputs) * rows->count * rows->outputs);
+	else if (e->step->no_rows)
+		say(e, " * $n_run goes step by step, without blocks of rows: %s.\n", e->step->no_rows);
+}
+
 /* Functions that there are not, and why; what one of them needs */
 static void banner_functions(const struct emitter *e)
 {
@@ -304,6 +316,7 @@ void emit_banner(const struct emitter *e)
 		banner_forced(e);
 	e->kind->banner_more(e);
 	banner_state(e);
+	banner_run(e);
 	banner_functions(e);
 	say(e, " */\n");
 }

@@ -80,7 +80,7 @@ void emit_locals(const struct emitter *e, const bool *reads);     /* the states 
 void emit_raw_locals(const struct emitter *e, const bool *reads, bool changing);
 void emit_locals_of(const struct emitter *e, const bool *reads, const char *vector);
 const char *step_length(const struct emitter *e);                 /* NAME_H; of tunable models that of the instance s */
-const char *slope_between(const struct emitter *e, const char *to, const char *from); /* samples a step apart */
+const char *slope_of_samples(const struct emitter *e, const char *to, const char *from); /* samples a step apart */
 const char *ramp_slope(const struct emitter *e, int input);       /* of an input that ramps to u over the step */
 void emit_set_state(const struct emitter *e, const char *vector, const char *indent); /* s->y from states */
 /* s->y from states that are whole */

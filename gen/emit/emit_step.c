@@ -111,7 +111,7 @@ void emit_keep_inputs(const struct emitter *e, int samples)
 	for (int i = 0; i < inputs; i++) {
 		const char *before = samples > 1 ? format("u[%d]", last - inputs + i) : format("s->u[%d]", i);
 		if (e->system->input[i].first_order)
-			say(e, "    s->slope[%d] = %s;\n", i, slope_between(e, format("u[%d]", last + i), before));
+			say(e, "    s->slope[%d] = %s;\n", i, slope_of_samples(e, format("u[%d]", last + i), before));
 		say(e, "    s->u[%d] = u[%d];\n", i, last + i);
 	}
 }

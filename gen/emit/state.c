@@ -131,7 +131,7 @@ const char *step_length(const struct emitter *e)
 }
 
 /* 1/h is rounded once, as h is: a product with it is as good as a quotient by that, and cheaper. */
-const char *slope_between(const struct emitter *e, const char *to, const char *from)
+const char *slope_of_samples(const struct emitter *e, const char *to, const char *from)
 {
 	const char *gain = format("(%s - %s)", to, from);
 	mpq_t rate;
@@ -146,7 +146,7 @@ const char *slope_between(const struct emitter *e, const char *to, const char *f
 
 const char *ramp_slope(const struct emitter *e, int input)
 {
-	return slope_between(e, format("u[%d]", input), format("s->u[%d]", input));
+	return slope_of_samples(e, format("u[%d]", input), format("s->u[%d]", input));
 }
 
 const char *of_step(const struct emitter *e, const char *table)

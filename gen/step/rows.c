@@ -316,6 +316,8 @@ static bool try_rows(struct step *step, int count)
 static const char *rows_objection(const struct step *step)
 {
 	const struct model *model = step->model;
+	if (step->kind != KIND_LINEAR && step->kind != KIND_TUNED)
+		return "they are of a linear step";
 	if (step->branch->system.heldK)
 		return "the scheme holds terms over each step";
 	if (model->tuning)
@@ -332,17 +334,18 @@ static const char *rows_objection(const struct step *step)
 	return NULL;
 }
 
+/* In float they are made where they are asked for: tables are larger than all the code of a small board's model. */
 void plan_rows(struct step *step)
 {
-	int asked = step->model->asked.rows;
-	if (step->kind != KIND_LINEAR || asked == 1 || (!asked && step->model->asked.single))
+	const struct request *asked = &step->model->asked;
+	if (asked->rows == 1 || (!asked->rows && (asked->single || step->kind != KIND_LINEAR)))
 		return;
 	step->no_rows = rows_objection(step);
 	if (step->no_rows)
 		return;
-	int wish = asked ? asked : best_rows(step);
-	for (int count = most_rows(step, wish); count >= (asked ? asked : FEWEST) && !step->rows; count /= 2)
+	int wish = asked->rows ? asked->rows : best_rows(step);
+	for (int count = most_rows(step, wish); count >= (asked->rows ? wish : FEWEST) && !step->rows; count /= 2)
 		try_rows(step, count);
 	if (!step->rows)
-		step->no_rows = asked ? format("%d are too many for it", asked) : "they would not be faster";
+		step->no_rows = asked->rows ? format("%d are too many for it", wish) : "they would not be faster";
 }

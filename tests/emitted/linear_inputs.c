@@ -279,6 +279,58 @@ static void print_shortest(double value, const char *before)
     printf("%s%s", before, text);
 }
 
+/* Blocks of rows, bit for bit: from one state, one sample or one sample before that is 1, all else 0, every number of a
+ * row is what its table has. */
+enum { ROWS = 8, ONES = 4 + 2 + 2 * ROWS };
+
+static void start_one(const struct subject *s, const struct reference *r, int one, void *state, double (*u)[2],
+    mpfr_t *x)
+{
+    double y[4] = {0}, before[2] = {0};
+    mpq_t *t = new_rationals(1);
+    memset(u, 0, ROWS * sizeof *u);
+    if (one < 4)
+        y[one] = 1;
+    else if (one < 6)
+        before[one - 4] = 1;
+    else
+        u[(one - 6) / 2][one % 2] = 1;
+    s->model->init(state);
+    s->model->set(state, 0, y);
+    s->hold(state, before);
+    reference_start(r, t[0], y, x);
+    set_inputs(s, before, u[0], x);
+    free_rationals(t, 1);
+}
+
+static void by_rows(const struct subject *s, const struct reference *r)
+{
+    void *state = calloc(1, s->model->size);
+    mpfr_t *x = new_floats(SIZE), *E = new_floats(SIZE * SIZE);
+    mpq_t *h = new_rationals(1);
+    double u[ROWS][2], rows[ROWS][OUTPUTS], expected[OUTPUTS];
+    bool good = true;
+    mpq_set_ui(h[0], 1, 50);
+    reference_matrix(r, 0, h[0], E);
+    for (int one = 0; one < ONES; one++) {
+        start_one(s, r, one, state, u, x);
+        s->model->run(state, ROWS, u[0], rows[0]);
+        for (int k = 0; k < ROWS; k++) {
+            if (k > 0)
+                set_inputs(s, u[k - 1], u[k], x);
+            reference_apply(r, E, x);
+            outputs_of(r, x, expected);
+            for (int i = 0; i < OUTPUTS; i++)
+                good = close_to(rows[k][i], expected[i], 0, "row %d, output %d, one %d", k, i, one) && good;
+        }
+    }
+    ok(good, "%s: rows of a block, bit for bit", s->model->name);
+    free_rationals(h, 1);
+    free_floats(x, SIZE);
+    free_floats(E, SIZE * SIZE);
+    free(state);
+}
+
 /* Row k is the sample at k h: held over step k, or where a ramp starts it. */
 static void expected_rows(const pl_model *m, int n, double (*u)[2])
 {
@@ -328,6 +380,7 @@ int main(int argc, char **argv)
         held_sample(s, &run, u);
         between(s, r, &run, u);
         by_gamma(s, r);
+        by_rows(s, r);
         free(run.y);
         free(run.out);
         reference_free(r);

@@ -14,14 +14,24 @@ root=$(absolute "$2")
 . "${0%/*}/../tap.sh"
 runtime_archive "$root/runtime"
 
-# A load far above the poles, whose forced part the state is kept without
+# Loads far above the poles, whose forced part the state is kept without; and over differences
 cat >forced.spec <<'EOF'
 model forced
 coord x, y
-init x = 1e-6
-x'' + 0.1*x' + 30*x - 10*y = 1e5*cos(4000*t + 0.3) + exp(-t)
-y'' + 0.1*y' + 30*y - 10*x = 0
+init x = 1e-3
+x'' + 0.1*x' + 30*x - 10*y = 30*t^2*cos(900*t) + exp(-t)
+y'' + 0.1*y' + 30*y - 10*x = -40*cos(960*t)
 output x, y, a = x''
+step 0.01
+EOF
+cat >loose.spec <<'EOF'
+model loose
+coord x0, x1, x2
+init x1 = 0.1, x2 = -0.2, x0' = 1
+2*x0'' + 120*(x0 - x1) = 0
+0.5*x1'' + 120*(x1 - x0) + 10*(x1 - x2) = 30*t^2*cos(900*t)
+x2'' + 10*(x2 - x1) = -40*cos(960*t)
+output o = x2 - x1, p = x2, v = x1'
 step 0.01
 EOF
 # What may move as a whole: kept as a difference and a centre
@@ -76,6 +86,7 @@ sdcsf 64 models/sdcsf.spec
 sdcsf_two 7 models/sdcsf.spec --accuracy compensated --rows 7
 tuned_floor 64 models/tuned_floor.spec
 forced 64 forced.spec
+loose 8 loose.spec --rows 8
 forced_two 8 forced.spec --accuracy compensated --rows 8
 growing 64 linear/growing.spec
 product 32 linear/product.spec

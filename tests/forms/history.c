@@ -136,28 +136,28 @@ static void try_at(void)
     ok(good, "%s: at, against the closed form", m->name);
 }
 
-/* Within 2 units in the last place per step of what step gives */
+/* Within 2 units in the last place per step of what step gives, of the largest value: a row is a sum of products of the
+ * state's size, whatever they leave at first */
 static void try_run(void)
 {
     enum { RUN = 300 };
     union object s, r;
     real u[RUN], all[RUN * LARGEST], out[LARGEST];
+    double largest[LARGEST] = {0};
     bool good = true;
     m->init(&s);
     m->init(&r);
     for (int k = 0; k < RUN; k++)
         u[k] = *sample(k);
     m->run(&r, RUN, u, all);
+    for (int k = 0; k < RUN * m->outputs; k++)
+        largest[k % m->outputs] = fmax(largest[k % m->outputs], fabs((double)all[k]));
     for (int k = 0; k < RUN; k++) {
         m->step(&s, sample(k));
         m->out(&s, out);
-        for (int i = 0; i < m->outputs; i++) {
-            double largest = 0;
-            for (int j = 0; j <= k; j++)
-                largest = fmax(largest, fabs((double)all[j * m->outputs + i]));
-            good = close_to((double)all[k * m->outputs + i], (double)out[i], 2 * EPSILON * (k + 1) * largest,
+        for (int i = 0; i < m->outputs; i++)
+            good = close_to((double)all[k * m->outputs + i], (double)out[i], 2 * EPSILON * (k + 1) * largest[i],
                 "run, %s, step %d", m->output_names[i], k + 1) && good;
-        }
     }
     ok(good && m->time(&s) == m->time(&r), "%s: run against step", m->name);
     for (int k = 0; k < 7; k++)
