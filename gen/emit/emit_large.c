@@ -128,11 +128,13 @@ static bool in_a_row(const struct group *g)
 	return true;
 }
 
-static void emit_places(const struct emitter *e, const char *name, int index, int count, const int *place)
+/* Where the states of the blocks stand in y, [state][block] */
+static void emit_places(const struct emitter *e, const struct group *g, int index)
 {
-	say(e, "\nstatic const unsigned short $n_%s%d[%d] = {", name, index, count);
+	const int count = g->states * g->blocks;
+	say(e, "\nstatic const unsigned short $n_states%d[%d] = {", index, count);
 	for (int i = 0; i < count; i++)
-		say(e, "%s%d", !i ? "" : i % 20 ? ", " : ",\n    ", place[i]);
+		say(e, "%s%d", !i ? "" : i % 20 ? ", " : ",\n    ", g->state[i]);
 	say(e, "};\n");
 }
 
@@ -263,23 +265,22 @@ static void emit_alike_tables(const struct emitter *e, const struct group *g, in
 	say(e, "};\n");
 }
 
-/* From one block to the next; 0: at no constant distance */
-static int stride_of(const struct group *g)
+/* Of a row, from one block to the next; 0: at no constant distance */
+static int stride_of(const struct group *g, int row)
 {
-	const int stride = g->state[1] - g->state[0];
+	const int *state = &g->state[row * g->blocks], stride = state[1] - state[0];
 	for (int b = 1; b < g->blocks; b++)
-		if (g->state[b] - g->state[b - 1] != stride)
+		if (state[b] - state[b - 1] != stride)
 			return 0;
 	return stride;
 }
 
 static const char *place_of_block(const struct emitter *e, const struct group *g, int row, int index)
 {
-	const int stride = stride_of(g), offset = stride ? g->state[row * g->blocks]
-							  : g->state[row * g->blocks] - g->state[0];
-	const char *block = stride == 0 ? spell(e, "$n_first%d[i]", index)
-			    : stride == 1 ? "i" : format("%d * i", stride);
-	return offset ? format("%d + %s", offset, block) : block;
+	const int stride = stride_of(g, row), first = stride ? g->state[row * g->blocks] : row * g->blocks;
+	const char *block = stride > 1 ? format("%d * i", stride) : "i";
+	const char *place = first ? format("%d + %s", first, block) : block;
+	return stride ? place : spell(e, "$n_states%d[%s]", index, place);
 }
 
 static const char *alike_row(const struct emitter *e, const struct group *g, int row, int index, int *count)
@@ -331,15 +332,18 @@ static void emit_group(const struct emitter *e, const struct group *g, int index
 {
 	if (g->kind == GROUP_COLUMNS) {
 		if (!in_a_row(g))
-			emit_places(e, "states", index, g->states, g->state);
+			emit_places(e, g, index);
 		emit_column_table(e, g, index);
 		if (changes(e, g))
 			emit_changing_columns(e, g, index);
 		emit_columns_function(e, g, index);
 	}
 	if (g->kind == GROUP_ALIKE) {
-		if (!stride_of(g))
-			emit_places(e, "first", index, g->blocks, g->state);
+		for (int row = 0, told = 0; row < g->states && !told; row++) {
+			told = stride_of(g, row) == 0;
+			if (told)
+				emit_places(e, g, index);
+		}
 		emit_alike_tables(e, g, index);
 		emit_alike_function(e, g, index);
 	}

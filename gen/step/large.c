@@ -92,13 +92,11 @@ static int operands_of(const struct step *step, const struct group *g)
 	return g->states + step->branch->whole->columns + step->branch->whole->inputs;
 }
 
-/* The same factors are 0, and it lies at one distance from the other. */
+/* The same factors are 0. */
 static bool is_alike(const struct step *step, const struct group *a, const struct group *b)
 {
 	bool alike = a->states == b->states;
 	for (int i = 0; alike && i < a->states; i++) {
-		alike = b->state[i] - b->state[0] == a->state[i] - a->state[0] &&
-			(step->carry[a->state[i]] >= 0) == (step->carry[b->state[i]] >= 0);
 		for (int k = 0; alike && k < operands_of(step, a); k++) {
 			const struct operand operand = operand_of_column(step, a, k);
 			alike = group_acts(step, a, i, &operand) == group_acts(step, b, i, &operand);

@@ -151,7 +151,7 @@ enum group_kind {
 struct group {
 	enum group_kind kind;
 	int states, blocks;         /* states of a block; how many blocks there are */
-	int *state;                 /* [states][blocks]: which it is; all blocks alike but for where they start */
+	int *state;                 /* [states][blocks]: which it is */
 	int loads, *load;           /* columns of loads that act on it, */
 	int inputs, *input;         /* and of inputs */
 };
