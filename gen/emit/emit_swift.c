@@ -26,16 +26,21 @@ static bool acts_at(const struct emitter *e, const struct tables *t, int row, in
 	return any;
 }
 
-/* A number where all agree */
-static const char *entry_times(const struct emitter *e, const struct tables *t, int row, int column,
-			       const char *operand)
+static bool agree_at(const struct emitter *e, const struct tables *t, int row, int column)
 {
 	int at = row * t->columns + column;
 	bool same = true;
 	for (int k = 1; k < e->step->branches; k++)
 		same = same && t->value[k][at] == t->value[0][at];
-	if (same)
-		return scaled(t->value[0][at], operand);
+	return same;
+}
+
+/* A number where all agree */
+static const char *entry_times(const struct emitter *e, const struct tables *t, int row, int column,
+			       const char *operand)
+{
+	if (agree_at(e, t, row, column))
+		return scaled(t->value[0][row * t->columns + column], operand);
 	const char *text = format("%s[%d][%d]", t->text, row, column);
 	return operand ? format("%s * %s", text, operand) : text;
 }
@@ -69,7 +74,7 @@ static double *still_of(const struct region_piece *piece)  { return piece->still
 static double *slack_of(const struct region_piece *piece)  { return piece->slack; }
 static double *turn_of(const struct region_piece *piece)   { return piece->turn; }
 static double *bend_of(const struct region_piece *piece)   { return piece->bend; }
-static double *slopes_of_x(const struct region_piece *piece) { return piece->slopes; }
+static double *turns_of(const struct region_piece *piece)  { return piece->turns; }
 
 static struct tables still_tables(const struct emitter *e, const struct pieces *p)
 {
@@ -244,69 +249,111 @@ static void emit_expression(const struct emitter *e, const struct pieces *p)
 	say(e, "}\n");
 }
 
+/* Entries of h A that differ from matrix to matrix: locals, and their text */
+static void emit_turns(const struct emitter *e, const struct tables *t)
+{
+	for (int i = 0; i < t->rows; i++)
+		for (int j = 0; j < t->columns; j++)
+			if (acts_at(e, t, i, j) && !agree_at(e, t, i, j))
+				say(e, "    const double h%d_%d = $N_H * $n_slopes[which][%d][%d];\n", i, j, i, j);
+}
+
+static const char *turn_times(const struct emitter *e, const struct tables *t, int i, int j)
+{
+	const char *a = format("a%d", j);
+	return agree_at(e, t, i, j) ? scaled(t->value[0][i * t->columns + j], a) : format("h%d_%d * %s", i, j, a);
+}
+
+/* Velocities are added last: positions and loads are there before them, so that a chain has one product and one sum an
+ * order. */
+static const char *turned_row(const struct emitter *e, const struct tables *t, int row)
+{
+	const char **early = ARRAY(const char *, (size_t)t->columns), **late = ARRAY(const char *, (size_t)t->columns);
+	int earlies = 0, lates = 0;
+	for (int j = 0; j < t->columns; j++) {
+		if (!acts_at(e, t, row, j))
+			continue;
+		bool velocity = j >= e->system->n && j < e->system->states;
+		if (velocity)
+			late[lates++] = turn_times(e, t, row, j);
+		else
+			early[earlies++] = turn_times(e, t, row, j);
+	}
+	if (earlies && lates)
+		return format("(%s)\n                          + (%s)", tree(earlies, early, 26), tree(lates, late, 28));
+	return earlies ? tree(earlies, early, 25) : lates ? tree(lates, late, 25) : "0.0";
+}
+
+static void emit_weights(const struct emitter *e, const struct pieces *p)
+{
+	int terms = p->degree + 1;
+	say(e, "\n"
+	       "static const double $n_weight[%d] = {  /* 1/k! */\n"
+	       "    1.0", terms);
+	for (int k = 1; k < terms; k++)
+		say(e, "%s%s", k % 4 ? ", " : ",\n    ", shortest(p->weight[k]));
+	say(e, "\n"
+	       "};\n"
+	       "static const double $n_order[%d] = {", terms);
+	for (int k = 0; k < terms; k++)
+		say(e, "%s%d.0", k ? ", " : "", k);
+	say(e, "};\n");
+}
+
 static void emit_expand(const struct emitter *e, const struct pieces *p)
 {
 	int size = e->step->layout.size, terms = p->degree + 1;
-	struct tables A = tables_of_pieces(e, p, "A", size, slopes_of_x);
-	const char **a = places(e, "a%d");
+	struct tables turns = tables_of_pieces(e, p, "", size, turns_of);
+	emit_weights(e, p);
 	say(e, "\n"
-	       "/* The coefficients of x(s) = e^{A h s} x */\n"
+	       "/* The coefficients of x(s) = e^{A h s} x: its derivatives, times 1/k! */\n"
 	       "static void $n_expand(int which, const double x[%d], double c[%d][%d])\n"
-	       "{\n"
-	       "    static const double part[%d] = {  /* h/k */\n"
-	       "        0.0", size, terms, size, terms);
-	for (int k = 1; k < terms; k++)
-		say(e, "%s%s", k % 5 ? ", " : ",\n        ", shortest(p->part[k]));
-	say(e, "\n"
-	       "    };\n"
-	       "    const double (*const A)[%d] = $n_slopes[which];\n"
-	       "    int k;\n", size);
+	       "{\n", size, terms, size);
+	emit_turns(e, &turns);
 	for (int j = 0; j < size; j++)
-		say(e, "%s%s = x[%d]%s", j ? ", " : "    double ", a[j], j, j == size - 1 ? ";\n" : "");
+		say(e, "%sa%d = x[%d]%s", j ? ", " : "    double ", j, j, j == size - 1 ? ";\n" : "");
+	say(e, "    int k;\n");
 	for (int j = 0; j < size; j++)
-		say(e, "    c[0][%d] = %s;\n", j, a[j]);
-	say(e, "    for (k = 1; k < %d; k++) {\n", terms);
-	for (int i = 0; i < size; i++) {
-		const char *sum = row_text(e, &A, i, a, NULL, 30);
-		say(e, "        const double b%d = %s;\n", i,
-		    strcmp(sum, "0.0") == 0 ? sum : format("part[k] * (%s)", sum));
-	}
+		say(e, "    c[0][%d] = a%d;\n", j, j);
+	say(e, "    for (k = 1; k < %d; k++) {\n"
+	       "        const double weight = $n_weight[k];\n", terms);
 	for (int i = 0; i < size; i++)
-		say(e, "        c[k][%d] = a%d = b%d;\n", i, i, i);
+		say(e, "        const double b%d = %s;\n", i, turned_row(e, &turns, i));
+	for (int i = 0; i < size; i++)
+		say(e, "        a%d = b%d;\n"
+		       "        c[k][%d] = weight * b%d;\n", i, i, i, i);
 	say(e, "    }\n"
-	       "    (void)A;\n"
+	       "    (void)which;\n"
 	       "}\n");
 }
 
-static void emit_polynomials(const struct emitter *e, const struct pieces *p)
+/* x(s): of `count` of its entries */
+static void emit_polynomial(const struct emitter *e, const struct pieces *p, const char *name, int count)
 {
 	int size = e->step->layout.size, terms = p->degree + 1;
 	say(e, "\n"
-	       "/* x(s) */\n"
-	       "static void $n_sum_up(double c[%d][%d], double s, double x[%d])\n"
+	       "/* x(s)%s */\n"
+	       "static void $n_%s(double c[%d][%d], double s, double x[%d])\n"
 	       "{\n"
-	       "    const double ss = s * s;\n"
-	       "    double even[%d], odd[%d];\n"
-	       "    int i, k;\n"
-	       "    for (i = 0; i < %d; i++) {\n"
-	       "        even[i] = c[%d][i];\n"
-	       "        odd[i] = c[%d][i];\n"
-	       "    }\n"
-	       "    for (k = %d; k >= 0; k -= 2)\n"
-	       "        for (i = 0; i < %d; i++) {\n"
-	       "            even[i] = even[i] * ss + c[k][i];\n"
-	       "            odd[i] = odd[i] * ss + c[k + 1][i];\n"
-	       "        }\n"
-	       "    for (i = 0; i < %d; i++)\n"
-	       "        x[i] = even[i] + s * odd[i];\n"
-	       "}\n",
-	    terms, size, size, size, size, size, terms - 2, terms - 1, terms - 4, size, size);
+	       "    const double ss = s * s;\n", count < size ? ", the states" : "", name, terms, size, size);
+	for (int i = 0; i < count; i++)
+		say(e, "    double even%d = c[%d][%d], odd%d = c[%d][%d];\n", i, terms - 2, i, i, terms - 1, i);
+	say(e, "    int k;\n"
+	       "    for (k = %d; k >= 0; k -= 2) {\n", terms - 4);
+	for (int i = 0; i < count; i++)
+		say(e, "        even%d = even%d * ss + c[k][%d];\n"
+		       "        odd%d = odd%d * ss + c[k + 1][%d];\n", i, i, i, i, i, i);
+	say(e, "    }\n");
+	for (int i = 0; i < count; i++)
+		say(e, "    x[%d] = even%d + s * odd%d;\n", i, i, i);
+	say(e, "}\n");
 }
 
 /* sum of |g[k + 2]| r^k, of k + 2 times that for `slopes`; lines of a function */
 static void emit_sizes(const struct emitter *e, int terms, const char *sum, const char *r, bool slopes)
 {
-	const char *factor = slopes ? "(double)(k + 2) * " : "", *next = slopes ? "(double)(k + 3) * " : "";
+	const char *factor = slopes ? spell(e, "$n_order[k + 2] * ") : "",
+		   *next = slopes ? spell(e, "$n_order[k + 3] * ") : "";
 	say(e, "    for (k = %d; k >= 0; k -= 2) {\n"
 	       "        even = even * (%s * %s) + %spl_magnitude(g[k + 2]);\n"
 	       "        odd = odd * (%s * %s) + %spl_magnitude(g[k + 3]);\n"
@@ -331,7 +378,7 @@ static void emit_root(const struct emitter *e, const struct pieces *p)
 	emit_sizes(e, terms, "least", "most", true);
 	say(e, "    least = g[1] - slack - most * least;\n"
 	       "    for (k = 2; k < %d; k++)\n"
-	       "        bend += (double)(k * (k - 1)) * pl_magnitude(g[k]);\n"
+	       "        bend += $n_order[k] * $n_order[k - 1] * pl_magnitude(g[k]);\n"
 	       "    for (i = 0; i < 2; i++) {\n"
 	       "        const double zz = z * z;\n"
 	       "        double even_slope = %d.0 * g[%d], odd_slope = 0.0;\n"
@@ -340,8 +387,8 @@ static void emit_root(const struct emitter *e, const struct pieces *p)
 	       "        for (k = %d; k >= 0; k -= 2) {\n"
 	       "            even = even * zz + g[k];\n"
 	       "            odd = odd * zz + g[k + 1];\n"
-	       "            even_slope = even_slope * zz + (double)(k + 1) * g[k + 1];\n"
-	       "            odd_slope = odd_slope * zz + (double)(k + 2) * g[k + 2];\n"
+	       "            even_slope = even_slope * zz + $n_order[k + 1] * g[k + 1];\n"
+	       "            odd_slope = odd_slope * zz + $n_order[k + 2] * g[k + 2];\n"
 	       "        }\n"
 	       "        miss = even + z * odd;\n"
 	       "        last = z;\n"
@@ -557,7 +604,7 @@ void emit_swift_functions(const struct emitter *e)
 	struct pieces pieces = pieces_of(e->step);
 	emit_expression(e, &pieces);
 	emit_expand(e, &pieces);
-	emit_polynomials(e, &pieces);
+	emit_polynomial(e, &pieces, "sum_up", e->step->layout.size);
 	emit_root(e, &pieces);
 	emit_bounds(e, &pieces);
 	emit_whole(e, &pieces);

@@ -323,6 +323,20 @@ static double *slack_rows(const struct step *step, const struct pieces *pieces, 
 	return slack;
 }
 
+/* h A, rounded once */
+static double *turns_of(const struct step *step, int branch)
+{
+	size_t cells = (size_t)step->layout.size * (size_t)step->layout.size;
+	mpq_t *exact = augmented_matrix(&step->layout, &step->branch[branch].system, 0);
+	double *turns = ARRAY(double, cells);
+	for (size_t i = 0; i < cells; i++) {
+		mpq_mul(exact[i], exact[i], step->model->h);
+		turns[i] = round_rational(exact[i]);
+	}
+	rationals_free(exact, cells);
+	return turns;
+}
+
 static void fill_whole(const struct step *step, const struct pieces *pieces, int branch)
 {
 	struct region_piece *piece = &pieces->piece[branch];
@@ -336,6 +350,7 @@ static void fill_whole(const struct step *step, const struct pieces *pieces, int
 	piece->still = ARRAY(double, (size_t)expressions);
 	for (int i = 0; i < expressions; i++)
 		fold_loads(step, piece->off + i * size, &piece->still[i]);
+	piece->turns = turns_of(step, branch);
 	piece->slack = slack_rows(step, pieces, piece->slopes);
 	discard(growth.E);
 	discard(growth.most);
@@ -352,24 +367,25 @@ static double largest_of(const struct step *step, const struct pieces *pieces)
 	return ldexp(1, (step->model->asked.single ? 60 : 500) - ilogb(factor));
 }
 
-/* h/k, k = 1 .. degree */
-static double *parts_of_step(const struct step *step)
+/* 1/k!, k = 0 .. degree */
+static double *weights_of(const struct step *step)
 {
-	double *part = ARRAY(double, (size_t)step->swift_degree + 1);
-	mpq_t fraction;
-	mpq_init(fraction);
-	for (int k = 1; k <= step->swift_degree; k++) {
-		mpq_set_ui(fraction, 1, (unsigned long)k);
-		part[k] = time_in_step(step->model, fraction);
+	double *weight = ARRAY(double, (size_t)step->swift_degree + 1);
+	mpq_t factorial;
+	mpq_init(factorial);
+	for (int k = 0; k <= step->swift_degree; k++) {
+		mpz_fac_ui(mpq_denref(factorial), (unsigned long)k);
+		mpz_set_ui(mpq_numref(factorial), 1);
+		weight[k] = round_rational(factorial);
 	}
-	mpq_clear(fraction);
-	return part;
+	mpq_clear(factorial);
+	return weight;
 }
 
 static void fill_swift(const struct step *step, struct pieces *pieces)
 {
 	pieces->degree = step->swift_degree;
-	pieces->part = parts_of_step(step);
+	pieces->weight = weights_of(step);
 	pieces->bounded = bounded_entries(step);
 	fill_intervals(step, pieces);
 	for (int k = 0; k < step->branches; k++)

@@ -391,6 +391,7 @@ struct region_piece {               /* of a branch, d = h 2^-halvings long; x as
 	 * its slope off that of its Taylor polynomial by at most slack . |x(0)| / h; turn and bend are slope and fourth
 	 * over h */
 	double *whole, *off, *still, *slack, *turn, *bend;
+	double *turns;              /* h A */
 };
 struct pieces {
 	double *row;                /* of each expression: row . x, expressions x size */
@@ -401,7 +402,7 @@ struct pieces {
 	bool *bounded;              /* per entry of x: never above 1, and part of `still` */
 	double large;               /* no number of a step overflows where |x| is smaller, other entries summed */
 	int degree;
-	double *part;               /* h/k, k = 1 .. degree */
+	double *weight;             /* 1/k!, k = 0 .. degree */
 };
 struct pieces pieces_of(const struct step *step);
 
