@@ -109,6 +109,8 @@ static void emit_functions(const struct emitter *e, bool rhs)
 	if (has_jump(e))
 		declare(e, spell(e, "void   $n_jump($n *s, uint64_t n);"), "as n steps would, in log n time");
 	e->kind->declare_more(e);
+	if (e->model->asked.batch)
+		emit_batch_declarations(e);
 	declare_checks(e, rhs);
 	declare_tables(e);
 }

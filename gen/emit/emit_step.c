@@ -82,7 +82,7 @@ static void emit_assignment(const struct emitter *e, const struct assignment *a)
 		say(e, "    %s = %s;  /* %s */\n", target, sum_text(e, a, 14), name);
 }
 
-static bool *loads_of_step(const struct emitter *e)
+bool *loads_of_step(const struct emitter *e)
 {
 	bool *wanted = ARRAY(bool, (size_t)e->system->loads);
 	for (int l = 0, column = 0; l < e->system->loads; l++)

@@ -79,6 +79,7 @@ struct request {                    /* what the user asks for on the command lin
 	bool compensated;           /* two-word arithmetic */
 	bool single;                /* the target's numbers are floats */
 	bool selftest;              /* NAME_selftest */
+	bool batch;                 /* NAME_batch */
 	enum step_form form;
 	bool solution;              /* the closed form is wanted, whatever the scheme */
 	int definitions;

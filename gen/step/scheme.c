@@ -241,6 +241,8 @@ static void build(void *context)
 	build_kind[step->kind](step);
 	if (model->asked.selftest)
 		need_closed_form(step);
+	if (model->asked.batch)
+		need_batch(step);
 	program_check(step);
 	plan_phases(step);
 }
@@ -257,7 +259,7 @@ struct step *step_build(const struct model *model)
 	struct model *plain = NEW(struct model);
 	*plain = *model->written;
 	plain->asked.form = FORM_DIRECT;
-	plain->asked.compensated = plain->asked.selftest = false;
+	plain->asked.compensated = plain->asked.selftest = plain->asked.batch = false;
 	step->shown = step_build(plain);
 	return step->shown ? step : NULL;
 }

@@ -449,6 +449,10 @@ const struct form *without_highest(const struct model *model, const struct form 
 /* -W^-1, n x n: the highest derivatives are it times the residuals */
 struct coefficient *derivatives_of_residuals(const struct model *model);
 
+/* ---- batch.c: many instances in one call ---- */
+
+void need_batch(const struct step *step);                   /* leaves the statement where the model has none */
+
 /* ---- scheme.c: the step of a model ---- */
 
 struct step *step_build(const struct model *model);         /* NULL: it was said why */
