@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT-0 */
-/* pllanes.h: several numbers side by side, as many as the machine adds in one instruction; for NAME_batch, in which each
- * lane is an instance.  With gcc and clang `+ - *` act on all lanes, and a single number on each of them; elsewhere, and
- * where the machine has no vectors, there is one lane, a plain number, and the same text computes with that.  Which
- * instructions there are says the compiler's command line (-march=native). */
+/* pllanes.h: several numbers side by side, as many as the machine adds in one instruction; for NAME_batch, in which
+ * each lane is an instance.  With gcc and clang `+ - *` act on all lanes, and a single number on each of them;
+ * elsewhere, and where the machine has no vectors, there is one lane, a plain number, and the same text computes with
+ * that.  Which instructions there are says the compiler's command line (-march=native). */
 #ifndef PLLANES_H
 #define PLLANES_H
 

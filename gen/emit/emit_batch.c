@@ -192,9 +192,10 @@ static void declare_instances(const struct emitter *e, const struct batch *b)
 	       "    size_t count;\n"
 	       "    double *y;        /* [$N_BATCH_ROWS][count]: of each %s, as in struct $n */\n", row_list(e));
 	if (b->factors)
-		say(e, "    double *factors;  /* [$N_BATCH_FACTORS][count]: its own, by $n_batch_use; NULL: all have those of "
-		       "shared */\n");
-	say(e, "    double *peak;     /* [$N_OUTPUTS][count]: the largest |output| at ends of steps; NULL: not kept */\n"
+		say(e, "    double *factors;  /* [$N_BATCH_FACTORS][count]: its own, by $n_batch_use; NULL: all have "
+		       "those of shared */\n");
+	say(e, "    double *peak;     /* [$N_OUTPUTS][count]: the largest |output| at ends of steps; "
+	       "NULL: not kept */\n"
 	       "    $n shared;        /* what all share: time%s%s; its states are not used */\n"
 	       "} $n_instances;\n", e->system->inputs ? ", the last sample" : "",
 	    e->phases || e->growths ? ", phases of loads" : "");
@@ -210,7 +211,7 @@ void emit_batch_declarations(const struct emitter *e)
 	say(e, "void   $n_batch_set($n_instances *b, size_t j, const double y[$N_STATES]);  /* of instance j, now */\n"
 	       "void   $n_batch_get(const $n_instances *b, size_t j, double y[$N_STATES]);\n");
 	if (b.factors)
-		say(e, "/* Instance j goes on with c; PL_NO_STEP: its h is not that of b->shared, or b has no factors */\n"
+		say(e, "/* Instance j goes on with c; PL_NO_STEP: its h is not that of shared, or b has no factors */\n"
 		       "int    $n_batch_use($n_instances *b, size_t j, const $n_coeffs *c);\n");
 	say(e, "/* n steps%s; out: [n][$N_OUTPUTS][count], or NULL */\n"
 	       "void   $n_batch($n_instances *b, size_t n, %sdouble *out);\n\n",
@@ -592,7 +593,8 @@ static void say_rows(const struct emitter *e, bool into)
 	int count = members_of(e, member), row = 0;
 	for (int i = 0; i < count; i++) {
 		const char *from = row ? format("(%d + i)", row) : "i";
-		const char *there = format("b->y[%s * b->count + j]", from), *here = format("one.%s[i]", member[i].name);
+		const char *there = format("b->y[%s * b->count + j]", from);
+		const char *here = format("one.%s[i]", member[i].name);
 		say(e, "    for (i = 0; i < %d; i++)\n"
 		       "        %s = %s;\n", member[i].rows, into ? there : here, into ? here : there);
 		row += member[i].rows;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* NAME_batch against NAME_step of each instance alone: states, outputs and peaks, with counts of instances that fill no
- * group of lanes, and steps in several calls. -DTUNED: with coefficients of its own in each instance. The sums are the
- * same, so are the bits; where the compiler contracts products, 2 units in the last place of the largest value a step. */
+ * group of lanes, and steps in several calls. -DTUNED: with coefficients of its own in each instance. The sums are
+ * the same, so are the bits; where products are contracted, 2 units in the last place of the largest value a step. */
 #include "m.h"
 
 #include <math.h>
