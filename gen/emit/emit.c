@@ -84,7 +84,7 @@ static struct emitter emitter_new(FILE *to, const struct step *step, const char 
 	};
 	number_loads(&e);
 	for (int i = 0; i < e.system->inputs; i++)
-		e.ramps = e.ramps || e.system->input[i].first_order;
+		e.ramps = e.ramps || e.system->input[i].hold;
 	e.local = ARRAY(const char *, (size_t)e.system->states);
 	e.c = identifiers_of(step->model, e.upper, e.local);
 	return e;

@@ -248,6 +248,8 @@ void emit_series_vector(const struct emitter *e);
 void emit_set_aside(const struct emitter *e);
 void emit_take_back(const struct emitter *e);
 void emit_hand_over(const struct emitter *e);                     /* in at: y from the states in x */
+void emit_next_tap(const struct emitter *e, int input);           /* u is the next of its samples */
+int most_taps_before(const struct emitter *e);                     /* samples kept of an input; 0: the last alone */
 bool *loads_of_step(const struct emitter *e);                    /* per load: its states are read */
 void emit_step(const struct emitter *e);
 void emit_step_end(const struct emitter *e);                      /* samples, phases and time move on */

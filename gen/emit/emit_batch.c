@@ -66,8 +66,8 @@ static bool reads_input(const struct emitter *e, const struct output *output, in
 		return mpq_sgn(output->input[slope][i]) != 0;
 	int column = e->system->states + load_columns(e->system);
 	for (int k = 0; k < i; k++)
-		column += e->system->input[k].first_order ? 2 : 1;
-	return (slope == 0 || e->system->input[i].first_order) && tuned_output_reads(e, output, column + slope);
+		column += e->system->input[k].hold + 1;
+	return (slope == 0 || e->system->input[i].hold) && tuned_output_reads(e, output, column + slope);
 }
 
 static void share_operands_of_output(struct batch *b, const struct output *output)
@@ -361,7 +361,7 @@ static int add_input_terms(struct batch *b, const struct output *output, const c
 			if (reads_input(b->e, output, i, k))
 				term[terms++] = output_term(b, output, column + k, output->input[k][i],
 							    shared_place(b->input[1][2 * i + k]));
-		column += system->input[i].first_order ? 2 : 1;
+		column += system->input[i].hold + 1;
 	}
 	return terms;
 }

@@ -38,8 +38,8 @@ const char *tuned_output(const struct emitter *e, const struct output *output)
 	for (int k = 0; k < t->x.loads; k++)
 		operand[states + k] = column_operand(e, k);
 	for (int i = 0, column = states + t->x.loads; i < system->inputs; i++)
-		for (int k = 0; k < (system->input[i].first_order ? 2 : 1); k++)
-			operand[column++] = format(k ? "s->slope[%d]" : "s->u[%d]", i);
+		for (int k = 0; k <= system->input[i].hold; k++)
+			operand[column++] = format(k ? "s->slope[%d]" : "s->u[%d]", i); /* none reads further */
 	for (int j = 0; j < states + t->x.loads + input_columns(system); j++)
 		if (tuned_output_reads(e, output, j)) {
 			const char *factor = tuned_output_factor(e, output, j);

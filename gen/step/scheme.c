@@ -235,6 +235,7 @@ static void build(void *context)
 	step->form = FORM_DIRECT;
 	step->written = resolvent_of(&model->written->system);
 	check_pole_size(model, step->written);
+	check_holds(step);
 	take_operators(step);
 	if (scheme_row(model->scheme)->holds_coupling)
 		find_growth(step);

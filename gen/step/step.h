@@ -449,6 +449,15 @@ const struct form *without_highest(const struct model *model, const struct form 
 /* -W^-1, n x n: the highest derivatives are it times the residuals */
 struct coefficient *derivatives_of_residuals(const struct model *model);
 
+/* ---- hold.c: what inputs do between samples ---- */
+
+void tap_weight(int hold, int power, int tap, mpq_ptr weight);     /* of (s/h)^power in that of a tap */
+void tap_derivative(int hold, int power, int tap, mpq_srcptr h, mpq_ptr derivative); /* at the step's start */
+void tap_slope(int hold, int tap, mpq_ptr slope);            /* h u' at the step's end, per tap */
+const char *hold_name(int hold);                             /* first, third, ... */
+int samples_ahead(int hold);                                 /* that an input has had when the first step comes */
+void check_holds(const struct step *step);                   /* leaves the statement where one cannot be */
+
 /* ---- batch.c: many instances in one call ---- */
 
 void need_batch(const struct step *step);                   /* leaves the statement where the model has none */
