@@ -122,6 +122,12 @@ static void take_rows(struct options *options, const char *value)
 	options->request.rows = (int)rows;
 }
 
+static void take_batch(struct options *options, const char *value)
+{
+	(void)value;
+	options->request.batch = true;
+}
+
 static void print_usage(struct options *options, const char *value);
 
 static void print_version(struct options *options, const char *value)
@@ -161,6 +167,7 @@ static const struct row {
 	{ "rows", "K", "in a block of NAME_run; 1: step by step (default: by the model's size)", take_rows, NULL },
 	{ "depfile", "FILE", "also write a make/ninja dependency file", take_depfile, NULL },
 	{ "selftest", NULL, "also emit NAME_selftest: steps against the closed form", take_selftest, NULL },
+	{ "batch", NULL, "also emit NAME_batch: many instances of a linear model in one call", take_batch, NULL },
 	{ "help", NULL, NULL, print_usage, NULL },
 	{ "version", NULL, NULL, print_version, NULL }
 };

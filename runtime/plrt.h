@@ -597,7 +597,8 @@ typedef struct pl_model {
     const int
         *start_samples; /* of each input: how many it has had when the first step comes.  0: held, so row k of a
                          * record acts from k h to (k + 1) h; 1: a ramp, so row 0 is the sample at t = 0, which
-                         * `hold` takes, and row k + 1 that at the end of step k.  NULL where there are no inputs */
+                         * `hold` takes, and row k + 1 that at the end of step k; m > 1: `hold` takes rows 0 to
+                         * m - 1 one after the other, step k row k + m.  NULL where there are no inputs */
 } pl_model;
 
 /* The same of a model in float. */

@@ -27,6 +27,8 @@ static void emit_init(const struct emitter *e)
 		say(e, "    s->u[%d] = 0.0;\n", i);
 		if (e->ramps)
 			say(e, "    s->slope[%d] = 0.0;\n", i);
+		for (int c = 0; c < e->system->input[i].hold && e->system->input[i].hold > 1; c++)
+			say(e, "    s->past[%d][%d] = 0.0;\n", i, c);
 	}
 	say(e, "    $n_%s, start);\n"
 	       "}\n", model->relative ? "begin(s, 0.0, set" : "set(s, 0.0");
@@ -189,8 +191,25 @@ static void emit_status(const struct emitter *e)
 	       e->step->program->compensated ? spell(e, " | pl_not_finite(s->rest, $N_STATES)") : "");
 }
 
+/* Where an input has several samples before the next */
+static void emit_hold_taps(const struct emitter *e)
+{
+	say(e, "\nvoid $n_hold($n *s, const double u[$N_INPUTS])\n"
+	       "{\n");
+	for (int i = 0; i < e->system->inputs; i++)
+		if (e->system->input[i].hold > 1)
+			emit_next_tap(e, i);
+		else
+			say(e, "    s->u[%d] = u[%d];\n", i, i);
+	say(e, "}\n");
+}
+
 static void emit_hold(const struct emitter *e)
 {
+	if (most_taps_before(e)) {
+		emit_hold_taps(e);
+		return;
+	}
 	say(e, "\nvoid $n_hold($n *s, const double u[$N_INPUTS])\n"
 	       "{\n"
 	       "    int i;\n"

@@ -139,7 +139,7 @@ void emit_samples(const struct emitter *e)
 	int inputs = e->system->inputs;
 	const char *start = "", *slope = "";
 	for (int i = 0; i < inputs; i++) {
-		bool ramp = e->system->input[i].first_order;
+		bool ramp = e->system->input[i].hold;
 		const char *rate = ramp ? ramp_slope(e, i) : "0.0";
 		start = format("%s%s%s[%d]", start, i ? ", " : "", ramp ? "s->u" : "u", i);
 		slope = format("%s%s%s", slope, i ? ", " : "", rate);

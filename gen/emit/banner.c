@@ -258,13 +258,21 @@ static void banner_cost(const struct emitter *e)
 			    (program->compensated ? 2 : 1));
 }
 
+static const char *input_text(int hold)
+{
+	if (hold > 1)
+		return format("between samples a polynomial of degree %d through the %d around the step; u is the one"
+			      "\n *     %d h after its end, and n steps need those up to n + %d",
+			      hold, hold + 1, (hold - 1) / 2, (hold - 1) / 2);
+	return hold ? "a ramp from sample to sample; u is its value at the end of the step" : "held over the step";
+}
+
 static void banner_state(const struct emitter *e)
 {
 	int changes = e->system->segments - 1;
 	say(e, " * State y = %s.\n", state_list(e->step->shown->model));
 	for (int i = 0; i < e->system->inputs; i++)
-		say(e, " * Input %s: %s.\n", e->system->input[i].name, e->system->input[i].first_order
-		    ? "a ramp from sample to sample; u is its value at the end of the step" : "held over the step");
+		say(e, " * Input %s: %s.\n", e->system->input[i].name, input_text(e->system->input[i].hold));
 	if (changes > 0)
 		say(e, " * The loads change their formula %d time%s; "
 		       "a step across a change is exact too, by a series that stops there.\n", changes,

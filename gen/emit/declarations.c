@@ -31,7 +31,11 @@ static void emit_state_struct(const struct emitter *e)
 		       "/* at the last set: the states as written, and as they are kept */\n");
 	e->kind->coefficients(e);
 	if (e->system->inputs)
-		say(e, "    double u[$N_INPUTS];  /* the last sample */\n");
+		say(e, "    double u[$N_INPUTS];  /* the %s */\n",
+		    most_taps_before(e) ? "sample now" : "last sample");
+	if (most_taps_before(e))
+		say(e, "    double past[$N_INPUTS][%d];  /* samples before the next: those at and around now */\n",
+		    most_taps_before(e));
 	if (e->ramps)
 		say(e, "    double slope[$N_INPUTS];  /* of the inputs over the last step [1/s] */\n");
 	emit_load_members(e);
@@ -55,12 +59,14 @@ static void declare_state_functions(const struct emitter *e)
 	declare(e, spell(e, "int    $n_status(const $n *s);"), e->kind->status_note);
 	e->kind->declare_state(e);
 	if (e->ramps)
-		declare(e, spell(e, "void   $n_hold($n *s, const double u[$N_INPUTS]);"), "the previous sample");
+		declare(e, spell(e, "void   $n_hold($n *s, const double u[$N_INPUTS]);"),
+			most_taps_before(e) ? "the next sample, no step" : "the previous sample");
 }
 
 static void declare_driven_step(const struct emitter *e)
 {
 	declare(e, spell(e, "void   $n_step($n *s, const double u[$N_INPUTS]);"),
+		most_taps_before(e) ? "one step of h; u: the next sample" :
 		e->ramps ? "one step of h; a ramp ends at u" : "one step of h with u held");
 	declare(e, spell(e, "void   $n_out(const $n *s, double out[$N_OUTPUTS]);"), "outputs now");
 	declare(e, spell(e, "void   $n_run($n *s, size_t n, const double *u, double *out);"),
@@ -99,6 +105,7 @@ static void declare_tables(const struct emitter *e)
 	declare(e, spell(e, "extern const double $n_Phi[$N_STATES][$N_STATES];"), "y(t+h) = Phi y(t) + ...");
 	if (e->system->inputs)
 		declare(e, spell(e, "extern const double $n_Gamma[$N_STATES][%d];", input_columns(e->system)),
+			most_taps_before(e) ? "... + Gamma u; of an input: its samples around the step" :
 			e->ramps ? "... + Gamma u; of a ramp: before, after" : "... + Gamma u");
 	declare(e, spell(e, "extern const pl_model $n_model;"), "");
 }
@@ -110,6 +117,8 @@ static void emit_functions(const struct emitter *e, bool rhs)
 	if (has_jump(e))
 		declare(e, spell(e, "void   $n_jump($n *s, uint64_t n);"), "as n steps would, in log n time");
 	e->kind->declare_more(e);
+	if (e->model->asked.batch)
+		emit_batch_declarations(e);
 	declare_checks(e, rhs);
 	declare_tables(e);
 }

@@ -54,7 +54,7 @@ static void emit_start_samples(const struct emitter *e)
 {
 	say(e, "static const int $n_start_samples[] = {");
 	for (int i = 0; i < e->system->inputs; i++)
-		say(e, "%s%d", i ? ", " : "", e->system->input[i].first_order);
+		say(e, "%s%d", i ? ", " : "", samples_ahead(e->system->input[i].hold));
 	say(e, "};\n");
 }
 

@@ -65,7 +65,7 @@ static struct emitter emitter_new(FILE *to, const struct step *step, const char 
 	};
 	number_loads(&e);
 	for (int i = 0; i < e.system->inputs; i++)
-		e.ramps = e.ramps || e.system->input[i].first_order;
+		e.ramps = e.ramps || e.system->input[i].hold;
 	e.local = ARRAY(const char *, (size_t)e.system->states);
 	e.c = identifiers_of(step->model, e.upper, e.local);
 	return e;
@@ -92,6 +92,8 @@ static void emit_includes(const struct emitter *e, bool rhs)
 {
 	if (forms_need_math(e) || (rhs && rhs_needs_math(e)))
 		say(e, "\n#include <math.h>\n");
+	if (e->model->asked.batch)
+		say(e, "\n#include \"pllanes.h\"\n");
 	if (e->step->program->compensated || e->step->carries)
 		say(e, "\n#if PL_EXCESS_PRECISION%s\n"
 		       "#error \"two-word arithmetic needs sums that have the bits of their type: "
@@ -116,6 +118,8 @@ static void emit_further_functions(const struct emitter *e, bool rhs)
 		e->kind->at(e);
 	if (has_jump(e))
 		emit_jump(e);
+	if (e->model->asked.batch)
+		emit_batch(e);
 	if (e->model->asked.selftest)
 		emit_selftest(e, has_jump(e));
 	if (rhs)

@@ -155,6 +155,14 @@ const char *tuned_output(const struct emitter *e, const struct output *output); 
 /* columns of x as in struct tuning */
 bool tuned_output_reads(const struct emitter *e, const struct output *output, int column);
 
+/* The place of an output's factor of a column of x */
+const char *tuned_output_factor(const struct emitter *e, const struct output *output, int column);
+
+/* ---- emit_batch.c: many instances in one call ---- */
+
+void emit_batch_declarations(const struct emitter *e);
+void emit_batch(const struct emitter *e);
+
 /* ---- selftest.c: reference states in closed form, for the target to step to ---- */
 
 void emit_selftest(const struct emitter *e, bool jumps);
@@ -270,6 +278,9 @@ void emit_assignment(const struct emitter *e, const struct assignment *a);
 void emit_set_aside(const struct emitter *e);
 void emit_take_back(const struct emitter *e);
 void emit_hand_over(const struct emitter *e);                     /* in at: y from the states in x */
+void emit_next_tap(const struct emitter *e, int input);           /* u is the next of its samples */
+int most_taps_before(const struct emitter *e);                     /* samples kept of an input; 0: the last alone */
+bool *loads_of_step(const struct emitter *e);                    /* per load: its states are read */
 void emit_step(const struct emitter *e);
 /* as its program says, from the locals into s->y, or where it is in order into the locals */
 void emit_assignment(const struct emitter *e, const struct assignment *a);

@@ -152,7 +152,7 @@ static bool *needed_loads(const struct emitter *e)
 static void emit_inputs_in_x(const struct emitter *e, bool step)
 {
 	for (int i = 0; i < e->system->inputs; i++) {
-		bool ramp = e->system->input[i].first_order;
+		bool ramp = e->system->input[i].hold;
 		int at = e->step->layout.input[i];
 		say(e, "    x[%d] = %s[%d];\n", at, step && !ramp ? "u" : "s->u", i);
 		if (ramp && step)

@@ -48,7 +48,7 @@ static const char *operand_name(const struct emitter *e, const struct operand *o
 		column -= system->load[l].columns;
 	if (operand->kind == OPERAND_LOAD)
 		return column_text(&system->load[l], column);
-	for (; !system->input[l].first_order || column-- > 0;)
+	for (; !system->input[l].hold || column-- > 0;)
 		l++;
 	return format("%s before the block", system->input[l].name);
 }
@@ -128,7 +128,7 @@ static const char **sample_names(const struct emitter *e)
 	int held = held_columns(system), count = e->step->rows->count * system->inputs;
 	const char **name = ARRAY(const char *, (size_t)(held + count) + 1);
 	for (int i = 0, column = 0; i < system->inputs; i++)
-		if (system->input[i].first_order)
+		if (system->input[i].hold)
 			name[column++] = format("before%d", i + 1);
 	for (int k = 0; k < count; k++)
 		name[held + k] = format("u[%d]", k);
@@ -160,7 +160,7 @@ static void emit_sample_locals(const struct emitter *e)
 	if (count)
 		emit_list(e, "u", count, text);
 	for (int i = 0; i < e->system->inputs; i++)
-		if (e->system->input[i].first_order)
+		if (e->system->input[i].hold)
 			say(e, "    const double before%d = s->u[%d];\n", i + 1, i);
 }
 

@@ -2,15 +2,23 @@
 /* A step program as C: sums over the old state, or for a large model loops over its tables. */
 #include "emit/emit.h"
 
-/* Held: the sample that the step is given. A ramp: the previous sample, then the one given. */
+static const char *tap_text(const struct emitter *e, int input, int tap)
+{
+	int hold = e->system->input[input].hold;
+	if (tap == hold)
+		return format("u[%d]", input);
+	return hold == 1 ? format("s->u[%d]", input) : format("s->past[%d][%d]", input, tap);
+}
+
+/* Held: the sample that the step is given. A ramp: the previous sample, then the one given; further taps likewise. */
 const char *input_operand(const struct emitter *e, int column)
 {
 	if (e->sample)
 		return e->sample[column];
 	for (int i = 0; i < e->system->inputs; i++) {
-		int columns = e->system->input[i].first_order ? 2 : 1;
+		int columns = e->system->input[i].hold + 1;
 		if (column < columns)
-			return format(columns == 2 && column == 0 ? "s->u[%d]" : "u[%d]", i);
+			return tap_text(e, i, column);
 		column -= columns;
 	}
 	return NULL;
@@ -96,7 +104,7 @@ void emit_assignment(const struct emitter *e, const struct assignment *a)
 		say(e, "    %s = %s;  /* %s */\n", target, sum_text(e, a, 14), name);
 }
 
-static bool *loads_of_step(const struct emitter *e)
+bool *loads_of_step(const struct emitter *e)
 {
 	bool *wanted = ARRAY(bool, (size_t)e->system->loads);
 	for (int l = 0, column = 0; l < e->system->loads; l++)
@@ -105,12 +113,45 @@ static bool *loads_of_step(const struct emitter *e)
 	return wanted;
 }
 
+/* The slope at the end of the step of an input that goes through further taps, where something reads it */
+static void emit_tap_slope(const struct emitter *e, int input)
+{
+	int hold = e->system->input[input].hold, terms = 0;
+	const char **term = ARRAY(const char *, (size_t)hold + 1);
+	mpq_t slope;
+	if (!reads_input_slope(e->model, input))
+		return;
+	mpq_init(slope);
+	for (int c = 0; c <= hold; c++) {
+		tap_slope(hold, c, slope);
+		if (mpq_sgn(slope) != 0)
+			term[terms++] = scaled(round_rational(slope), tap_text(e, input, c));
+	}
+	mpq_clear(slope);
+	say(e, "    s->slope[%d] = (%s) / %s;\n", input, tree(terms, term, 18), step_length(e));
+}
+
+void emit_next_tap(const struct emitter *e, int input)
+{
+	int hold = e->system->input[input].hold;
+	for (int c = 0; c + 1 < hold; c++)
+		say(e, "    s->past[%d][%d] = s->past[%d][%d];\n", input, c, input, c + 1);
+	say(e, "    s->past[%d][%d] = u[%d];\n"
+	       "    s->u[%d] = s->past[%d][%d];\n", input, hold - 1, input, input, input, (hold - 1) / 2);
+}
+
+/* `samples` steps at once: of inputs that are held or ramp */
 void emit_keep_inputs(const struct emitter *e, int samples)
 {
 	int inputs = e->system->inputs, last = (samples - 1) * inputs;
 	for (int i = 0; i < inputs; i++) {
 		const char *before = samples > 1 ? format("u[%d]", last - inputs + i) : format("s->u[%d]", i);
-		if (e->system->input[i].first_order)
+		if (e->system->input[i].hold > 1) {
+			emit_tap_slope(e, i);
+			emit_next_tap(e, i);
+			continue;
+		}
+		if (e->system->input[i].hold)
 			say(e, "    s->slope[%d] = %s;\n", i, slope_of_samples(e, format("u[%d]", last + i), before));
 		say(e, "    s->u[%d] = u[%d];\n", i, last + i);
 	}

@@ -628,7 +628,7 @@ static const char **operands(const struct emitter *e)
 			if (load_operand(e, l, k))
 				text[layout->load[l] + k] = load_operand(e, l, k);
 	for (int i = 0; i < e->system->inputs; i++) {
-		bool ramp = e->system->input[i].first_order;
+		bool ramp = e->system->input[i].hold;
 		text[layout->input[i]] = format(ramp ? "s->u[%d]" : "u[%d]", i);
 		if (ramp)
 			text[layout->input[i] + 1] = format("part%d", i);
@@ -685,7 +685,7 @@ void emit_swift_step(const struct emitter *e)
 	       "    const double (*const factor)[%d] = $n_%s[which];\n", layout->size,
 	    any_pieces(e) ? "whole" : "pieces");
 	for (int i = 0; i < e->system->inputs; i++)
-		if (e->system->input[i].first_order)
+		if (e->system->input[i].hold)
 			say(e, "    const double part%d = (u[%d] - s->u[%d]) / $N_H;  /* its slope */\n", i, i, i);
 	emit_ends(e, &pieces, x);
 	emit_chords(e, &pieces, x);

@@ -49,10 +49,37 @@ static bool *wanted_loads(const struct emitter *e, const int *index)
 	return wanted;
 }
 
+/* An input and its derivatives at the start of the step */
+static void store_derivatives(const struct emitter *e, int input, int at)
+{
+	int hold = e->system->input[input].hold, before = 0;
+	const char **term = ARRAY(const char *, (size_t)hold + 1), *over = "";
+	mpq_t weight, one;
+	mpq_inits(weight, one, NULL);
+	mpq_set_ui(one, 1, 1);
+	for (int i = 0; i < input; i++)
+		before += e->system->input[i].hold + 1;
+	for (int m = 0; m <= hold; m++) {
+		int terms = 0;
+		for (int c = 0; c <= hold; c++) {
+			tap_derivative(hold, m, c, one, weight);
+			if (mpq_sgn(weight) != 0)
+				term[terms++] = scaled(round_rational(weight), input_operand(e, before + c));
+		}
+		say(e, "    x[%d] = (%s)%s;\n", at + m, tree(terms, term, 13), over);
+		over = format("%s / %s", over, step_length(e));
+	}
+	mpq_clears(weight, one, NULL);
+}
+
 static void store_inputs(const struct emitter *e, const int *index)
 {
 	for (int i = 0; i < e->system->inputs; i++) {
-		bool ramp = e->system->input[i].first_order;
+		bool ramp = e->system->input[i].hold;
+		if (e->system->input[i].hold > 1) {
+			store_derivatives(e, i, index[i]);
+			continue;
+		}
 		say(e, "    x[%d] = %s[%d];\n", index[i], ramp ? "s->u" : "u", i);
 		if (ramp)
 			say(e, "    x[%d] = %s;\n", index[i] + 1, ramp_slope(e, i));

@@ -358,13 +358,50 @@ static void emit_slopes(const struct emitter *e)
 
 /* ---- retune, use ---- */
 
+/* Of an input that goes through further taps: D's columns of its derivatives, by what each tap gives these */
+static void emit_tap_factors(const struct emitter *e, int input, const char *D, int at, int column)
+{
+	int hold = e->system->input[input].hold;
+	const char **term = ARRAY(const char *, (size_t)hold + 1);
+	mpq_t weight, one;
+	mpq_inits(weight, one, NULL);
+	mpq_set_ui(one, 1, 1);
+	for (int c = 0; c <= hold; c++) {
+		int terms = 0;
+		for (int m = 0; m <= hold; m++) {
+			tap_derivative(hold, m, c, one, weight);
+			const char *entry = m ? format("%s[i][%d].hi / power[%d]", D, at + m, m - 1)
+					      : format("%s[i][%d].hi", D, at);
+			if (mpq_sgn(weight) != 0)
+				term[terms++] = scaled(round_rational(weight), entry);
+		}
+		say(e, "        c->step[i][%d] = %s;\n", column + c, tree(terms, term, 27));
+	}
+	mpq_clears(weight, one, NULL);
+}
+
+/* Powers of h that these are divided by */
+static void emit_powers_of_h(const struct emitter *e)
+{
+	int most = most_taps_before(e);
+	if (!most)
+		return;
+	say(e, "    double power[%d];  /* h, h^2, ... */\n"
+	       "    power[0] = h;\n"
+	       "    for (i = 1; i < %d; i++)\n"
+	       "        power[i] = power[i - 1] * h;\n", most, most);
+}
+
 /* The columns of inputs in c->step, from D */
 static void emit_input_factors(const struct emitter *e, const char *D)
 {
 	int column = e->system->states + e->system->segments * e->model->tuning->x.loads;
 	for (int i = 0; i < e->system->inputs; i++) {
 		int at = e->step->layout.input[i];
-		if (e->system->input[i].first_order) {
+		if (e->system->input[i].hold > 1) {
+			emit_tap_factors(e, i, D, at, column);
+			column += e->system->input[i].hold + 1;
+		} else if (e->system->input[i].hold) {
 			say(e, "        c->step[i][%d] = pl_ramp_before(%s[i][%d], %s[i][%d], h);\n"
 			       "        c->step[i][%d] = %s[i][%d].hi / h;\n", column, D, at, D, at + 1, column + 1, D,
 			    at + 1);
@@ -380,6 +417,7 @@ static void emit_take_factors(const struct emitter *e)
 	int loads = e->model->tuning->x.loads;
 	bool segments = e->system->segments > 1;
 	const char *D = segments ? "D[0]" : "D";
+	emit_powers_of_h(e);
 	const char *columns = segments ? format("%s_STATES", e->upper) : format("%d", e->system->states + loads);
 	say(e, "    for (i = 0; i < $N_STATES; i++) {\n"
 	       "        for (j = 0; j < %s; j++)\n"
@@ -427,7 +465,7 @@ static void emit_increment(const struct emitter *e, const char *D)
 	for (int i = 0; i < e->system->inputs; i++) {
 		int at = e->step->layout.input[i];
 		const char *one = format("pl_ramp_cancels(%d, %s_STATES, %s, %d, h)", size, e->upper, D, at);
-		if (e->system->input[i].first_order)
+		if (e->system->input[i].hold == 1)
 			cancels = format("%s%s%s", cancels, *cancels ? " || " : "", one);
 	}
 	say(e, "        status = pl_increment(%d, $N_STATES, A[0], h, 1, %s, work);\n", size, D);

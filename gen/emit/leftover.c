@@ -28,7 +28,7 @@ bool reads_slope(const struct emitter *e, const struct reads *r)
 static bool reads_ramp(const struct emitter *e, const struct reads *r)
 {
 	for (int i = 0; i < e->system->inputs; i++)
-		if (e->system->input[i].first_order && r->input[i])
+		if (e->system->input[i].hold && r->input[i])
 			return true;
 	return false;
 }
@@ -192,7 +192,7 @@ static void emit_leftover_locals(const struct emitter *e, const struct reads *r,
 	if (r->time)
 		say(e, "    const double t = $n_time(s)%s;\n", node ? format(" + %s_node[node]", e->name) : "");
 	for (int i = 0; i < e->system->inputs; i++) {
-		bool ramp = node && e->system->input[i].first_order;
+		bool ramp = node && e->system->input[i].hold;
 		const char *more = ramp ? format(" + %s_node[node] * slope[%d]", e->name, i) : "";
 		if (r->input[i])
 			say(e, "    const double %s = u[%d]%s;\n", input_name(e, i, 0), i, more);

@@ -13,7 +13,7 @@ static void emit_values(const struct emitter *e, int count, const double *value)
 static void emit_sample(const struct emitter *e, const char *indent, const char *ramp)
 {
 	for (int i = 0; i < e->system->inputs; i++)
-		say(e, "%su[%d] = %s;\n", indent, i, e->system->input[i].first_order ? ramp : "1.0");
+		say(e, "%su[%d] = %s;\n", indent, i, e->system->input[i].hold ? ramp : "1.0");
 }
 
 static void emit_begin(const struct emitter *e)

@@ -51,6 +51,16 @@ const char *carried_text(const struct emitter *e)
 	return list;
 }
 
+int most_taps_before(const struct emitter *e)
+{
+	int most = 0;
+	for (int i = 0; i < e->system->inputs; i++) {
+		int hold = e->system->input[i].hold;
+		most = hold > 1 && hold > most ? hold : most;
+	}
+	return most;
+}
+
 const char *input_name(const struct emitter *e, int input, int order)
 {
 	for (const struct symbol *s = e->model->spec->first; s; s = s->next)

@@ -30,7 +30,7 @@ const char *tuned_output(const struct emitter *e, const struct output *output)
 	const struct linear *system = e->system;
 	if (!is_tuned_output(e, output))
 		return NULL;
-	int row = t->output[output - e->model->output], states = system->states, terms = 0;
+	int states = system->states, terms = 0;
 	const char **term = ARRAY(const char *, (size_t)t->x.size + 1);
 	const char **operand = ARRAY(const char *, (size_t)t->x.size);
 	for (int i = 0; i < states; i++)
@@ -38,14 +38,19 @@ const char *tuned_output(const struct emitter *e, const struct output *output)
 	for (int k = 0; k < t->x.loads; k++)
 		operand[states + k] = column_operand(e, k);
 	for (int i = 0, column = states + t->x.loads; i < system->inputs; i++)
-		for (int k = 0; k < (system->input[i].first_order ? 2 : 1); k++)
-			operand[column++] = format(k ? "s->slope[%d]" : "s->u[%d]", i);
+		for (int k = 0; k <= system->input[i].hold; k++)
+			operand[column++] = format(k ? "s->slope[%d]" : "s->u[%d]", i); /* none reads further */
 	for (int j = 0; j < states + t->x.loads + input_columns(system); j++)
 		if (tuned_output_reads(e, output, j)) {
-			const char *factor = tuned_entry(e, "out", row - e->model->n, j);
+			const char *factor = tuned_output_factor(e, output, j);
 			term[terms++] = operand[j] ? format("%s * %s", factor, operand[j]) : factor;
 		}
 	return terms ? tree(terms, term, 13) : "0.0";
+}
+
+const char *tuned_output_factor(const struct emitter *e, const struct output *output, int column)
+{
+	return tuned_entry(e, "out", e->model->tuning->output[output - e->model->output] - e->model->n, column);
 }
 
 bool tuned_output_reads(const struct emitter *e, const struct output *output, int column)

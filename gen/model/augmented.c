@@ -20,7 +20,7 @@ static struct layout place(const struct linear *system, int powers, const bool *
 	x.input = ARRAY(int, (size_t)system->inputs);
 	for (int i = 0; i < system->inputs; i++) {
 		x.input[i] = x.size;
-		x.size += system->input[i].first_order ? 2 : 1;
+		x.size += system->input[i].hold + 1;
 	}
 	x.channel = x.size;
 	x.size += system->channels * powers;
@@ -79,8 +79,8 @@ const char **layout_names(const struct layout *x, const struct linear *system, c
 	name_loads(x, system, name);
 	for (int i = 0; i < system->inputs; i++) {
 		name[x->input[i]] = system->input[i].name;
-		if (system->input[i].first_order)
-			name[x->input[i] + 1] = format("%s'", system->input[i].name);
+		for (int m = 1; m <= system->input[i].hold; m++)
+			name[x->input[i] + m] = format("%s'", name[x->input[i] + m - 1]);
 	}
 	for (int c = 0; c < system->channels * x->powers; c++)
 		name[x->channel + c] = format("leftover %d", c + 1);
@@ -148,10 +148,11 @@ mpq_t *augmented_matrix(const struct layout *x, const struct linear *system, int
 	for (int i = 0; i < system->inputs; i++) {
 		int at = x->input[i];
 		fill_force(A, size, at, system, (const mpq_t *)inverse, (const mpq_t *)system->input[i].force[0]);
-		if (!system->input[i].first_order)
+		if (!system->input[i].hold)
 			continue;
 		fill_force(A, size, at + 1, system, (const mpq_t *)inverse, (const mpq_t *)system->input[i].force[1]);
-		mpq_set_ui(A[at * size + at + 1], 1, 1);
+		for (int m = 0; m < system->input[i].hold; m++)
+			mpq_set_ui(A[(at + m) * size + at + m + 1], 1, 1);
 	}
 	for (int e = 0; e < system->channels && x->powers > 0; e++) {
 		int at = x->channel + e * x->powers;

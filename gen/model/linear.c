@@ -140,7 +140,7 @@ int input_columns(const struct linear *system)
 {
 	int columns = 0;
 	for (int i = 0; i < system->inputs; i++)
-		columns += system->input[i].first_order ? 2 : 1;
+		columns += system->input[i].hold + 1;
 	return columns;
 }
 

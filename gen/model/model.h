@@ -16,7 +16,7 @@ struct load {                       /* force on the equations: t^k times one wav
 };
 struct input {                      /* a sampled input u */
 	const char *name;
-	bool first_order;           /* ramp between samples; else held */
+	int hold;                   /* degree of the polynomial through samples around; 0: held, 1: a ramp */
 	mpq_t *force[2];            /* of u and of u': one rational per equation */
 };
 struct linear {                     /* M q'' + C q' + K q = force - heldC q'(t_n) - heldK q(t_n) */
@@ -80,6 +80,7 @@ struct request {                    /* what the user asks for on the command lin
 	bool single;                /* the target's numbers are floats */
 	bool selftest;              /* NAME_selftest */
 	int rows;                   /* in a block of NAME_run; 0: as many as serve best, 1: no blocks */
+	bool batch;                 /* NAME_batch */
 	enum step_form form;
 	int anchors;                /* steps from one evaluation of a load's functions to the next; 0: as it is best */
 	bool solution;              /* the closed form is wanted, whatever the scheme */
@@ -292,6 +293,7 @@ struct reads {                    /* what forms read */
 	bool *highest;              /* per coordinate: its highest derivative */
 	bool time, math;            /* t itself; <math.h> */
 };
+bool reads_input_slope(const struct model *model, int input);      /* does an output? */
 /* not of the piecewise-linear functions: they are comparisons in C */
 bool calls_libm(const struct atom *a);
 struct reads reads_of(const struct model *model, int count, const struct form *const *form);

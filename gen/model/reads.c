@@ -53,3 +53,11 @@ struct reads reads_of(const struct model *model, int count, const struct form *c
 		look_at_form(&reading, model, seen, form[i]);
 	return reading;
 }
+
+bool reads_input_slope(const struct model *model, int input)
+{
+	bool any = false;
+	for (int i = 0; i < model->outputs; i++)
+		any = any || model->output[i].left || mpq_sgn(model->output[i].input[1][input]) != 0;
+	return any;
+}

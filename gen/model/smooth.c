@@ -47,7 +47,7 @@ static bool moves_in_a_step(const struct model *model, const struct form *form)
 {
 	bool ramps = false;
 	for (int i = 0; i < model->system.inputs; i++)
-		ramps = ramps || model->system.input[i].first_order;
+		ramps = ramps || model->system.input[i].hold;
 	for (int i = 0; i < form->terms; i++) {
 		const struct basis *basis = &form->term[i].basis;
 		if (basis->kind == BASIS_WAVE || basis->kind == BASIS_COORD ||

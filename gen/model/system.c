@@ -110,7 +110,7 @@ static void name_inputs(struct building *b)
 	system->input = ARRAY(struct input, (size_t)system->inputs);
 	for (const struct symbol *s = b->spec->first; s; s = s->next)
 		if (s->kind == SYMBOL_INPUT)
-			system->input[s->index] = (struct input){ .name = s->name, .first_order = s->first_order };
+			system->input[s->index] = (struct input){ .name = s->name, .hold = s->hold };
 	make_input_forces(system);
 }
 

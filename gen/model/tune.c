@@ -202,13 +202,14 @@ static void each_force(const struct linear *system, void (*take)(void *context, 
 		       void *context)
 {
 	int column = system->states;
+	const mpq_t *none = rationals((size_t)system->n); /* of further derivatives of inputs */
 	for (int s = 0; s < system->segments; s++)
 		for (int l = 0; l < system->loads; l++)
 			for (int k = 0; k < system->load[l].columns; k++)
 				take(context, column++, (const mpq_t *)system->load[l].force[k] + s * system->n);
 	for (int i = 0; i < system->inputs; i++)
-		for (int k = 0; k < (system->input[i].first_order ? 2 : 1); k++)
-			take(context, column++, (const mpq_t *)system->input[i].force[k]);
+		for (int k = 0; k <= system->input[i].hold; k++)
+			take(context, column++, k < 2 ? (const mpq_t *)system->input[i].force[k] : none);
 }
 
 struct reading {
@@ -265,9 +266,12 @@ static void read_output_row(const struct reading *r, int row, const struct outpu
 			for (int k = 0; k < system->load[l].columns; k++)
 				mpq_set(*solved_entry(r->search, r->entry, row, column++),
 					output->load[l][k * system->segments + s]);
-	for (int i = 0; i < system->inputs; i++)
-		for (int k = 0; k < (system->input[i].first_order ? 2 : 1); k++)
-			mpq_set(*solved_entry(r->search, r->entry, row, column++), output->input[k][i]);
+	for (int i = 0; i < system->inputs; i++) {
+		for (int k = 0; k <= system->input[i].hold; k++)
+			if (k < 2)
+				mpq_set(*solved_entry(r->search, r->entry, row, column + k), output->input[k][i]);
+		column += system->input[i].hold + 1;
+	}
 }
 
 /* output - sum of factors of highest derivatives times these = what is left of the row without them */

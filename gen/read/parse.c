@@ -288,7 +288,7 @@ static struct node *resolve_name(struct parser *p, struct token token)
 	if (token.primes > 0 && symbol->kind != SYMBOL_COORD && symbol->kind != SYMBOL_INPUT)
 		error(token.at, "only coordinates have derivatives", "%s '%s' has no derivative", kind_text(symbol),
 		      token.name);
-	if (token.primes > 0 && symbol->kind == SYMBOL_INPUT && !symbol->first_order)
+	if (token.primes > 0 && symbol->kind == SYMBOL_INPUT && !symbol->hold)
 		error(token.at, format("input %s hold first ramps between samples and has one", token.name),
 		      "input '%s' is held over a step: it has no slope", token.name);
 	if (token.primes > 1 && symbol->kind == SYMBOL_INPUT)
@@ -676,20 +676,33 @@ static bool take_word(struct parser *p, const char *word)
 static void apply_hold(struct parser *p, const struct symbol *last, int phrases)
 {
 	const struct symbol *held = NULL;
-	bool whole = phrases == 1 && last->first_order;
+	bool whole = phrases == 1 && last->hold;
 	for (struct symbol *s = p->spec->first; s && phrases > 0; s = s->next) {
 		if (s->statement != p->statement)
 			continue;
-		if (s->first_order && held && !whole)
+		if (s->hold && held && !whole)
 			error(held->at,
 			      format("what is held goes last, or has a statement of its own: input %s", held->name),
 			      "is '%s' held, or a ramp as '%s' is?", held->name, s->name);
-		held = s->first_order || held ? held : s;
-		s->first_order = s->first_order || whole;
+		held = s->hold || held ? held : s;
+		s->hold = whole ? last->hold : s->hold;
 	}
 }
 
-/* input: input NAME [ hold first ] { , NAME [ hold first ] } */
+/* The degree that follows `hold` */
+static int take_hold(struct parser *p)
+{
+	static const struct { const char *word; int degree; } known[] = {
+		{ "first", 1 }, { "third", 3 }, { "fifth", 5 }, { "seventh", 7 }
+	};
+	for (size_t i = 0; i < sizeof known / sizeof *known; i++)
+		if (take_word(p, known[i].word))
+			return known[i].degree;
+	error(p->token.at, "without 'hold first' an input is held from sample to sample",
+	      "expected 'first', 'third', 'fifth' or 'seventh', found %s", token_text(p->token));
+}
+
+/* input: input NAME [ hold DEGREE ] { , NAME [ hold DEGREE ] } */
 static void read_input(struct parser *p)
 {
 	struct symbol *input;
@@ -698,10 +711,7 @@ static void read_input(struct parser *p)
 		input = declare(p, expect_new_name(p, "the name of an input"), SYMBOL_INPUT, false);
 		if (!take_word(p, "hold"))
 			continue;
-		input->first_order = take_word(p, "first");
-		if (!input->first_order)
-			error(p->token.at, "without 'hold first' an input is held from sample to sample",
-			      "expected 'first', found %s", token_text(p->token));
+		input->hold = take_hold(p);
 		phrases++;
 	} while (take_op(p, ","));
 	expect_end(p);

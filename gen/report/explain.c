@@ -415,7 +415,7 @@ static void json_loads(FILE *to, const struct step *step)
 	for (int i = 0, column = 0; i < step->branch->system.inputs; i++) {
 		fprintf(to, "%s\n    {\"input\": \"%s\", \"columns\": [", i ? "," : "",
 			step->branch->system.input[i].name);
-		for (int k = 0; k <= step->branch->system.input[i].first_order; k++, column++) {
+		for (int k = 0; k <= step->branch->system.input[i].hold; k++, column++) {
 			fputs(k ? ", " : "", to);
 			json_column(to, table->states, table->inputs, column, table->input);
 		}

@@ -177,10 +177,11 @@ static const char *load_column_text(const struct linear *system, int column)
 static const char *input_column_text(const struct step *step, int column)
 {
 	const struct linear *system = &step->branch->system;
-	for (int i = 0; i < system->inputs; column -= system->input[i++].first_order ? 2 : 1)
-		if (column < (system->input[i].first_order ? 2 : 1))
+	for (int i = 0; i < system->inputs; column -= system->input[i++].hold + 1)
+		if (column < system->input[i].hold + 1)
 			return format("%s%s", system->input[i].name,
-				      !system->input[i].first_order ? "" : column ? "(end)" : "(start)");
+				      system->input[i].hold > 1 ? format("(tap %d)", column)
+				      : !system->input[i].hold ? "" : column ? "(end)" : "(start)");
 	return "";
 }
 

@@ -516,20 +516,16 @@ static void input_by_residues(struct filling *f, int input, int column)
 	by_residues_from(f, response_of_input(f->resolvent, f->system, f->row, input, column, f->model->h));
 }
 
-/* A ramp from u0 to u1 over h: u0 (u - u'/h) + u1 u'/h */
+/* One tap's share of u and its derivatives at the start */
 static void input_by_taylor(struct filling *f, int input, int column)
 {
-	int at = f->layout.input[input];
+	int at = f->layout.input[input], hold = f->system->input[input].hold;
 	mpq_t weight;
 	mpq_init(weight);
-	mpq_set_ui(weight, 1, 1);
-	if (column == 0)
-		add_entry(f, f->tau, at, weight);
-	if (f->system->input[input].first_order) {
-		mpq_inv(weight, f->model->h);
-		if (column == 0)
-			mpq_neg(weight, weight);
-		add_entry(f, f->tau, at + 1, weight);
+	for (int m = 0; m <= hold; m++) {
+		tap_derivative(hold, m, column, f->model->h, weight);
+		if (mpq_sgn(weight) != 0)
+			add_entry(f, f->tau, at + m, weight);
 	}
 	mpq_clear(weight);
 }
@@ -655,7 +651,7 @@ static void fill_row(struct filling *f, struct table *table)
 	for (int j = 0; j < system->n && wanted->mass && i < system->n; j++)
 		table->drift[i * system->n + j] = drift_entry(f, j, wanted->two_words);
 	for (int j = 0, column = 0; j < system->inputs; j++)
-		for (int k = 0; k <= system->input[j].first_order; k++, column++)
+		for (int k = 0; k <= system->input[j].hold; k++, column++)
 			table->input[i * table->inputs + column] =
 				number_of(f, wanted->two_words, SOUGHT_INPUT, j, k, system->input[j].name);
 	for (int j = 0; j < wanted->kernels; j++)

@@ -92,27 +92,38 @@ struct response *response_of_load(struct resolvent *r, const struct linear *syst
 	return image_of(r, &(struct question){ NULL, 1, &e, unit(system->states, i) });
 }
 
-/* Held: u. A ramp from u0 to u1: u = u0 + (u1 - u0) tau/h, u' = (u1 - u0)/h; column 0 is u0's share, column 1 that of
- * u1. */
+/* The factor of s^power in the polynomial of a tap */
+static void power_weight(int hold, int power, int tap, mpq_srcptr h, mpq_ptr weight)
+{
+	tap_weight(hold, power, tap, weight);
+	for (int k = 0; k < power; k++)
+		mpq_div(weight, weight, h);
+}
+
+/* Held: u. Else the polynomial through the taps, and u' its derivative; a column is one tap's share. */
 struct response *response_of_input(struct resolvent *r, const struct linear *system, int i, int index, int column,
 				   mpq_srcptr h)
 {
 	const struct input *input = &system->input[index];
 	int n = system->n;
-	struct excitation e = excitation_new(n, NULL, NULL, input->first_order ? 2 : 1);
-	for (int k = 0; k < n; k++) {
-		if (column == 0)
-			mpq_set(e.force[k], input->force[0][k]);
-		if (!input->first_order)
+	struct excitation e = excitation_new(n, NULL, NULL, input->hold + 1);
+	mpq_t weight, part;
+	mpq_inits(weight, part, NULL);
+	for (int m = 0; m <= input->hold; m++) {
+		power_weight(input->hold, m, column, h, weight);
+		for (int k = 0; k < n; k++)
+			mpq_mul(e.force[2 * m * n + k], input->force[0][k], weight);
+		if (m == input->hold)
 			continue;
-		mpq_t slope, jump;
-		mpq_inits(slope, jump, NULL);
-		mpq_div(slope, input->force[0][k], h);
-		mpq_div(jump, input->force[1][k], h);
-		(column ? mpq_add : mpq_sub)(e.force[k], e.force[k], jump);
-		(column ? mpq_add : mpq_sub)(e.force[2 * n + k], e.force[2 * n + k], slope);
-		mpq_clears(slope, jump, NULL);
+		power_weight(input->hold, m + 1, column, h, weight);
+		mpq_set_si(part, m + 1, 1);
+		mpq_mul(weight, weight, part);
+		for (int k = 0; k < n; k++) {
+			mpq_mul(part, input->force[1][k], weight);
+			mpq_add(e.force[2 * m * n + k], e.force[2 * m * n + k], part);
+		}
 	}
+	mpq_clears(weight, part, NULL);
 	return image_of(r, &(struct question){ NULL, 1, &e, unit(system->states, i) });
 }
 
@@ -232,7 +243,7 @@ struct response *output_of_input(struct resolvent *r, const struct linear *syste
 	for (int k = 0; k < n; k++) {
 		mpq_mul(e.force[k], input->force[0][k], value);
 		mpq_mul(e.force[2 * n + k], input->force[0][k], slope);
-		if (input->first_order) {
+		if (input->hold) {
 			mpq_mul(part, input->force[1][k], slope);
 			mpq_add(e.force[k], e.force[k], part);
 		}

@@ -54,6 +54,8 @@ const char *modal_objection(const struct step *step)
 		return "what moves as a whole has a repeated pole, and is kept apart";
 	if (model->asked.compensated)
 		return "--accuracy compensated takes the form delta or kick-drift-kick";
+	if (further_samples(system))
+		return "an input goes through further samples";
 	if (objection_of_loads(system))
 		return objection_of_loads(system);
 	int blocks = blocks_of(system, &block);
@@ -469,13 +471,13 @@ static bool put_inputs(const struct modes *f, const struct mode_vectors *m)
 	for (int i = 0; i < 5; i++)
 		rectangle_init(all[i], m->precision);
 	convolve_ramp(m, h, &held, &ramp);
-	for (int k = 0, column = 0; k < system->inputs && good; column += system->input[k++].first_order ? 2 : 1) {
+	for (int k = 0, column = 0; k < system->inputs && good; column += system->input[k++].hold ? 2 : 1) {
 		for (int i = 2; i < 5; i++)
 			mpfi_set_ui(all[i]->re, 0), mpfi_set_ui(all[i]->im, 0);
 		long largest = driven(system, m, (const mpq_t *)system->input[k].force[0], &force);
 		const long other = driven(system, m, (const mpq_t *)system->input[k].force[1], &slope);
 		largest = (other > largest ? other : largest) + size_of(&held);
-		if (!system->input[k].first_order) {
+		if (!system->input[k].hold) {
 			rectangle_mul(&z, &force, &held);
 			good = put_rows(f, &z, largest, f->modal->input, f->modal->inputs, column);
 			continue;

@@ -31,7 +31,7 @@ static void fill_input_states(const struct step *step, mpq_srcptr d, double *Phi
 	for (int i = 0; i < step->branch->system.inputs; i++) {
 		int at = layout->input[i];
 		Phi[at * layout->size + at] = 1;
-		if (!step->branch->system.input[i].first_order)
+		if (!step->branch->system.input[i].hold)
 			continue;
 		Phi[at * layout->size + at + 1] = round_rational(d);
 		Phi[(at + 1) * layout->size + at + 1] = 1;
@@ -48,7 +48,7 @@ static void fill_inputs(const struct step *step, const struct table *table, doub
 			const struct coefficient *ramp = &table->kernel[1][row * table->channels];
 			double *cell = Phi + row * layout->size + layout->input[i];
 			cell[0] = held[2 * i].value;
-			if (step->branch->system.input[i].first_order)
+			if (step->branch->system.input[i].hold)
 				cell[1] = ramp[2 * i].value + held[2 * i + 1].value;
 		}
 }
@@ -105,7 +105,7 @@ static void fill_row(const struct step *step, const struct output *expression, d
 			row[layout->load[l] + k] = equation_number(step->model, expression->load[l][k]).value;
 	for (int i = 0; i < system->inputs; i++) {
 		row[layout->input[i]] = equation_number(step->model, expression->input[0][i]).value;
-		if (system->input[i].first_order)
+		if (system->input[i].hold)
 			row[layout->input[i] + 1] = equation_number(step->model, expression->input[1][i]).value;
 	}
 }

@@ -17,7 +17,7 @@ int held_columns(const struct linear *system)
 {
 	int columns = 0;
 	for (int i = 0; i < system->inputs; i++)
-		columns += system->input[i].first_order;
+		columns += system->input[i].hold == 1;
 	return columns;
 }
 
@@ -58,7 +58,7 @@ static void add_input(struct share *share, const struct step *step, const struct
 static struct share share_of_sample(const struct step *step, const struct output *output, int input)
 {
 	struct share share = { 0 };
-	bool ramp = step->branch->system.input[input].first_order;
+	bool ramp = step->branch->system.input[input].hold;
 	add_input(&share, step, output, input, 0, !ramp, ramp);
 	add_input(&share, step, output, input, 1, ramp ? 0 : -1, ramp ? -2 : 0);
 	if (ramp)
@@ -183,7 +183,7 @@ static void fill_columns(const struct step *step, struct rows *rows)
 	for (int k = 0; k < loads; k++)
 		ask(&a, OPERAND_LOAD, k, share_of_load, k);
 	for (int i = 0, column = 0; i < system->inputs; i++)
-		if (system->input[i].first_order)
+		if (system->input[i].hold)
 			ask(&a, OPERAND_INPUT, column++, share_of_sample_before, i);
 	for (int i = 0; i < system->inputs; i++)
 		ask(&a, OPERAND_INPUT, held + i, share_of_sample, i);
@@ -211,7 +211,7 @@ static void fill_inputs(const struct step *step, int count, struct table *table)
 			struct share sample = share_of_sample(step, &state, j);
 			for (int k = 0; k < count; k++)
 				row[held + k * system->inputs + j] = value_of(step, &sample, count - k, true);
-			if (!system->input[j].first_order)
+			if (!system->input[j].hold)
 				continue;
 			struct share before = share_of_sample_before(step, &state, j);
 			row[column++] = value_of(step, &before, count, true);
@@ -322,6 +322,8 @@ static const char *rows_objection(const struct step *step)
 		return "the scheme holds terms over each step";
 	if (model->tuning)
 		return "the instance has its own factors";
+	if (further_samples(&step->branch->system))
+		return "an input goes through further samples";
 	if (step->branch->system.segments > 1)
 		return "loads change their formula";
 	if (step->branch->system.states > LIMIT_RESIDUE_STATES)

@@ -275,6 +275,7 @@ static void build(void *context)
 	step->form = FORM_DIRECT;
 	step->written = resolvent_of(&model->written->system);
 	check_pole_size(model, step->written);
+	check_holds(step);
 	take_operators(step);
 	if (scheme_row(model->scheme)->holds_coupling)
 		find_growth(step);
@@ -282,6 +283,8 @@ static void build(void *context)
 	build_kind[step->kind](step);
 	if (model->asked.selftest)
 		need_closed_form(step);
+	if (model->asked.batch)
+		need_batch(step);
 	program_check(step);
 	plan_phases(step);
 	plan_rows(step);
@@ -299,7 +302,7 @@ struct step *step_build(const struct model *model)
 	struct model *plain = NEW(struct model);
 	*plain = *model->written;
 	plain->asked.form = FORM_DIRECT;
-	plain->asked.compensated = plain->asked.selftest = false;
+	plain->asked.compensated = plain->asked.selftest = plain->asked.batch = false;
 	plain->asked.anchors = plain->asked.rows = 1;
 	step->shown = step_build(plain);
 	return step->shown ? step : NULL;

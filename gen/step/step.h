@@ -552,6 +552,20 @@ struct rows {
 int  held_columns(const struct linear *system);              /* ramps: the samples before the block */
 void plan_rows(struct step *step);                           /* step->rows; last, since it is a step of its own */
 
+/* ---- hold.c: what inputs do between samples ---- */
+
+void tap_weight(int hold, int power, int tap, mpq_ptr weight);     /* of (s/h)^power in that of a tap */
+void tap_derivative(int hold, int power, int tap, mpq_srcptr h, mpq_ptr derivative); /* at the step's start */
+void tap_slope(int hold, int tap, mpq_ptr slope);            /* h u' at the step's end, per tap */
+const char *hold_name(int hold);                             /* first, third, ... */
+bool further_samples(const struct linear *system);           /* an input goes through more than two */
+int samples_ahead(int hold);                                 /* that an input has had when the first step comes */
+void check_holds(const struct step *step);                   /* leaves the statement where one cannot be */
+
+/* ---- batch.c: many instances in one call ---- */
+
+void need_batch(const struct step *step);                   /* leaves the statement where the model has none */
+
 /* ---- scheme.c: the step of a model ---- */
 
 struct step *step_build(const struct model *model);         /* NULL: it was said why */

@@ -36,8 +36,8 @@ static void fill_output(const struct step *step, const struct output *output, do
 			for (int k = 0; k < system->load[l].columns; k++)
 				row[column++] = equation_number(model, output->load[l][k * system->segments + s]).value;
 	for (int i = 0; i < system->inputs; i++)
-		for (int k = 0; k < (system->input[i].first_order ? 2 : 1); k++)
-			row[column++] = equation_number(model, output->input[k][i]).value;
+		for (int k = 0; k <= system->input[i].hold; k++)
+			row[column++] = k < 2 ? equation_number(model, output->input[k][i]).value : 0;
 }
 
 double *nominal_outputs(const struct step *step)

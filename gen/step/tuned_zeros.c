@@ -38,6 +38,15 @@ static bool *reach(const struct step *step)
 	return reads;
 }
 
+/* Does an input act on a state, by itself or by one of its derivatives? */
+static bool reaches(const bool *row, int hold)
+{
+	bool any = false;
+	for (int m = 0; m <= hold; m++)
+		any = any || row[m];
+	return any;
+}
+
 void mark_tuned_zeros(struct step *step)
 {
 	struct table *table = step->branch->whole;
@@ -55,9 +64,8 @@ void mark_tuned_zeros(struct step *step)
 			for (int k = 0; k < table->columns; k++)
 				table->load[(s * n + i) * table->columns + k].zero = !row[n + k];
 		for (int input = 0, column = 0; input < system->inputs; input++)
-			for (int k = 0; k < (system->input[input].first_order ? 2 : 1); k++, column++)
+			for (int k = 0; k <= system->input[input].hold; k++, column++)
 				table->input[i * table->inputs + column].zero =
-					!row[step->layout.input[input]] &&
-					!(system->input[input].first_order && row[step->layout.input[input] + 1]);
+					!reaches(row + step->layout.input[input], system->input[input].hold);
 	}
 }

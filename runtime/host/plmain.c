@@ -115,25 +115,28 @@ static void bad_input(const samples *in, size_t column, const char *what)
     exit(1);
 }
 
-static int has_ramps(void)
+/* The most samples that an input has had when the first step comes; without ramps and the like 0 */
+static int most_ahead(void)
 {
-    int i;
+    int most = 0, i;
     for (i = 0; i < model->inputs; i++)
-        if (model->start_samples[i] > 0)
-            return 1;
-    return 0;
+        if (model->start_samples[i] > most)
+            most = model->start_samples[i];
+    return most;
 }
 
 /* What `steps` steps take */
 static uint64_t rows_for(uint64_t steps)
 {
-    return has_ramps() ? steps + 1 : steps;
+    return steps + (uint64_t)most_ahead();
 }
 
 static void too_few(const samples *in, uint64_t row, uint64_t steps, double h)
 {
     const uint64_t rows = rows_for(steps);
-    const char *const ramps = has_ramps() ? ": a ramp starts at row 0, of t = 0, and ends a step at the next" : "";
+    const char *const ramps = most_ahead() == 0  ? ""
+                              : most_ahead() > 1 ? ": an input goes through samples behind the step's end"
+                              : ": a ramp starts at row 0, of t = 0, and ends a step at the next";
     fprintf(stderr,
             "<stdin>:%lu:1: error: too few samples: expected row %.0f, of t = %.6g, found the end of the file\n",
             in->number, (double)row, (double)row * h);
@@ -397,29 +400,38 @@ static void retune(void *state, const real *params, real h)
         fail("with these values the numbers of the step are not finite");
 }
 
-/* u for step k: of inputs that are held from the row before, of ramps from the one read now, where there are any */
-static void next_sample(samples *in, real *sample, real *u, uint64_t k, uint64_t steps, double h)
+/* The rows read last, the newest last: most_ahead() + 1 of them; what they hold of inputs, each ahead as far as it has
+ * to be */
+static void take_row(samples *in, real *rows, real *u, uint64_t row, uint64_t steps, double h)
 {
-    const int ramps = has_ramps();
+    const int most = most_ahead(), n = model->inputs;
     int i;
-    for (i = 0; i < model->inputs; i++)
-        u[i] = sample[i];
-    if (!read_sample(in, sample))
-        too_few(in, ramps ? k + 1 : k, steps, h);
-    for (i = 0; i < model->inputs; i++)
-        if (!ramps || model->start_samples[i] > 0)
-            u[i] = sample[i];
+    memmove(rows, rows + n, sizeof *rows * (size_t)(most * n));
+    if (!read_sample(in, rows + most * n))
+        too_few(in, row, steps, h);
+    for (i = 0; i < n; i++)
+        u[i] = rows[model->start_samples[i] * n + i];
 }
 
-/* The names, and what ramps start from */
-static void begin_samples(samples *in, void *state, real *sample, uint64_t steps, double h)
+/* u for step k: of inputs that are held row k, of ramps row k + 1, of others one further ahead */
+static void next_sample(samples *in, real *rows, real *u, uint64_t k, uint64_t steps, double h)
 {
+    take_row(in, rows, u, k + (uint64_t)most_ahead(), steps, h);
+}
+
+/* The names, and the samples before the first step; what is held has its own there */
+static void begin_samples(samples *in, void *state, real *rows, real *u, uint64_t steps, double h)
+{
+    const int most = most_ahead(), n = model->inputs;
+    int k, i;
     read_header(in);
-    if (!has_ramps())
-        return;
-    if (!read_sample(in, sample))
-        too_few(in, 0, steps, h);
-    model->hold(state, sample);
+    for (k = 0; k < most; k++) {
+        take_row(in, rows, u, (uint64_t)k, steps, h);
+        for (i = 0; i < n; i++)
+            if (model->start_samples[i] == 0)
+                u[i] = rows[most * n + i];
+        model->hold(state, u);
+    }
 }
 
 static void run(double end, int raw, int count, char **text, const char *program)
@@ -427,7 +439,7 @@ static void run(double end, int raw, int count, char **text, const char *program
     void *state = need(malloc(model->size));
     row r = new_row(raw);
     real *u = (real *)need(malloc(sizeof *u * (size_t)(model->inputs + 1)));
-    real *sample = (real *)need(calloc((size_t)(model->inputs + 1), sizeof *sample));
+    real *rows = (real *)need(calloc((size_t)((model->inputs + 1) * 8), sizeof *rows));
     real *params = (real *)need(malloc(sizeof *params * (size_t)(model->params + 1)));
     samples in = {NULL, 256, 0, 0, 0};
     real h;
@@ -440,20 +452,20 @@ static void run(double end, int raw, int count, char **text, const char *program
         retune(state, params, h);
     steps = steps_until(end, (double)h);
     if (rows_for(steps) > 0 && model->inputs > 0)
-        begin_samples(&in, state, sample, steps, (double)h);
+        begin_samples(&in, state, rows, u, steps, (double)h);
     if (!raw)
         print_header();
     write_row(&r, state);
     for (k = 0; k < steps; k++) {
         if (model->inputs > 0)
-            next_sample(&in, sample, u, k, steps, (double)h);
+            next_sample(&in, rows, u, k, steps, (double)h);
         model->step(state, model->inputs > 0 ? u : NULL);
         check_status(state);
         write_row(&r, state);
     }
     free(in.line);
     free(params);
-    free(sample);
+    free(rows);
     free(u);
     free(r.text);
     free(r.value);

@@ -100,7 +100,7 @@ static size_t input_states(const struct linear *system)
 {
     size_t count = 0;
     for (int u = 0; u < system->inputs; u++)
-        count += system->input[u].first_order ? 2 : 1;
+        count += system->input[u].hold ? 2 : 1;
     return count;
 }
 
@@ -110,13 +110,13 @@ static void fill_inputs(const struct linear *system, mpq_srcptr h, const struct 
     size_t at = a->size - a->inputs, column = a->columns - a->inputs;
     for (int u = 0; u < system->inputs; u++) {
         mpq_set_ui(a->X[at * a->columns + column], 1, 1);
-        if (system->input[u].first_order) {
+        if (system->input[u].hold) {
             mpq_set_ui(a->A[at * a->size + at + 1], 1, 1);
             mpq_inv(a->X[(at + 1) * a->columns + column + 1], h);
             mpq_neg(a->X[(at + 1) * a->columns + column], a->X[(at + 1) * a->columns + column + 1]);
         }
-        at += system->input[u].first_order ? 2 : 1;
-        column += system->input[u].first_order ? 2 : 1;
+        at += system->input[u].hold ? 2 : 1;
+        column += system->input[u].hold ? 2 : 1;
     }
 }
 
@@ -138,7 +138,7 @@ static void fill_dynamics(const struct linear *system, int segment, bool pl, con
         size_t at = a->first_load + a->loads;
         right += states + a->loads;
         for (int u = 0; u < system->inputs; u++)
-            for (int k = 0; k <= system->input[u].first_order; k++)
+            for (int k = 0; k <= system->input[u].hold; k++)
                 mpq_set(row[at++], right[2 * u + k]);
     }
 }
@@ -1046,7 +1046,7 @@ static void compare_exact_row(const struct model *model, int segment, const stru
             compare_exact(entry_name(model, (size_t)i, at), response_of_load(resolvent, system, segment, i, l, k),
                           model->h, row[at]);
     for (int u = 0; u < system->inputs; u++)
-        for (int k = 0; k <= system->input[u].first_order; k++, at++)
+        for (int k = 0; k <= system->input[u].hold; k++, at++)
             compare_exact(entry_name(model, (size_t)i, at), response_of_input(resolvent, system, i, u, k, model->h),
                           model->h, row[at]);
 }

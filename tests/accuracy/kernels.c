@@ -113,7 +113,7 @@ static void fill_row(const struct model *model, const struct plant *p, size_t i,
         mpq_set(row[p->load_at + j], right[p->states + j]);
     right += p->states + p->loads;
     for (size_t u = 0, at = p->input_at; u < (size_t)system->inputs; u++)
-        for (int k = 0; k <= system->input[u].first_order; k++)
+        for (int k = 0; k <= system->input[u].hold; k++)
             mpq_set(row[at++], right[2 * u + (size_t)k]);
     right += 2 * (size_t)system->inputs;
     for (size_t e = 0; e < p->channels; e++) {
@@ -131,7 +131,7 @@ static bool make_plant(struct plant *p, const struct model *model, int which, in
                          .loads = (size_t)load_columns(system),
                          .channels = (size_t)model->channels };
     for (int u = 0; u < system->inputs; u++)
-        p->inputs += system->input[u].first_order ? 2 : 1;
+        p->inputs += system->input[u].hold ? 2 : 1;
     p->load_at = p->states + p->held;
     p->input_at = p->load_at + p->loads;
     p->channel_at = p->input_at + p->inputs;
@@ -145,8 +145,8 @@ static bool make_plant(struct plant *p, const struct model *model, int which, in
         fill_row(model, p, i, R + i * width);
     for (size_t at = p->load_at, l = 0; l < (size_t)system->loads; at += (size_t)system->load[l++].columns)
         fill_load_states(&system->load[l], p->size, p->A + at * p->size + at);
-    for (size_t u = 0, at = p->input_at; u < (size_t)system->inputs; at += system->input[u++].first_order ? 2 : 1)
-        if (system->input[u].first_order)
+    for (size_t u = 0, at = p->input_at; u < (size_t)system->inputs; at += system->input[u++].hold ? 2 : 1)
+        if (system->input[u].hold)
             mpq_set_ui(p->A[at * p->size + at + 1], 1, 1);
     for (size_t e = 0; e < p->channels; e++)
         for (size_t k = 0; k < 2; k++)
@@ -527,14 +527,14 @@ static void compare_inputs(const struct model *model, struct judge *judge, const
 {
     const size_t inputs = judge->plant.inputs;
     for (size_t u = 0, at = 0; u < (size_t)model->system.inputs; u++)
-        for (int end = 0; end <= model->system.input[u].first_order; end++, at++) {
+        for (int end = 0; end <= model->system.input[u].hold; end++, at++) {
             struct column column = { 0 };
             mpq_t *w = add_part(judge, &column, table->wanted->fraction)->w + judge->plant.input_at + at - (size_t)end;
             if (!end)
                 mpq_set_ui(w[0], 1, 1);
-            if (model->system.input[u].first_order)
+            if (model->system.input[u].hold)
                 mpq_inv(w[1], judge->h);
-            if (model->system.input[u].first_order && !end)
+            if (model->system.input[u].hold && !end)
                 mpq_neg(w[1], w[1]);
             trial.name = format("factor of input %s%s", model->system.input[u].name, end ? ", its end" : "");
             compare_column(model, judge, &column, table->input + at, inputs);

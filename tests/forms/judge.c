@@ -138,7 +138,7 @@ static struct flow flow_of(const struct judge *j, int segment)
     }
     fill_waves(system, &f);
     for (int u = 0; u < system->inputs; u++)
-        if (system->input[u].first_order)
+        if (system->input[u].hold)
             mpq_set_ui(f.A[(f.first_input + 2 * u) * f.size + f.first_input + 2 * u + 1], 1, 1);
     return f;
 }
@@ -184,9 +184,9 @@ static void take_column(const struct judge *j, const struct flow *f, const evalu
         take_entry(x, E, i, column);
         return;
     }
-    for (; part > system->input[u].first_order; u++)
-        part -= 1 + system->input[u].first_order;
-    if (!system->input[u].first_order) {
+    for (; part > system->input[u].hold; u++)
+        part -= 1 + system->input[u].hold;
+    if (!system->input[u].hold) {
         take_entry(x, E, i, f->first_input + 2 * u);
         return;
     }
@@ -207,8 +207,8 @@ static bool column_reaches(const struct judge *j, const struct flow *f, const bo
     int part = column - j->states - j->loads, at = f->first_input;
     if (part < 0)
         return reach[i * f->size + column];
-    for (int u = 0; part > j->system->input[u].first_order; u++, at += 2)
-        part -= 1 + j->system->input[u].first_order;
+    for (int u = 0; part > j->system->input[u].hold; u++, at += 2)
+        part -= 1 + j->system->input[u].hold;
     return reach[i * f->size + at] || reach[i * f->size + at + 1];
 }
 
@@ -404,7 +404,7 @@ struct judge *judge_of(const struct linear *system, mpq_srcptr h)
     for (int l = 0; l < system->loads; l++)
         j->loads += system->load[l].columns;
     for (int u = 0; u < system->inputs; u++)
-        j->inputs += 1 + system->input[u].first_order;
+        j->inputs += 1 + system->input[u].hold;
     j->columns = j->states + j->loads + j->inputs;
     mark_blocks(j);
     j->step = numbers(system->segments * j->states * j->columns);

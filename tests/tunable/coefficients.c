@@ -376,9 +376,9 @@ static void compare_columns(const struct tuned *m, const char *coeffs, const str
             compare_column(m, coeffs, &met.loads, table->load + s * table->states * table->columns + k, table->columns,
                            column++, "load");
     for (int i = 0, k = 0; i < system->inputs; i++) {
-        if (system->input[i].first_order)
+        if (system->input[i].hold)
             measure_ramp(m, coeffs, table->input + k, table->inputs, column);
-        for (int end = k + (system->input[i].first_order ? 2 : 1); k < end; k++)
+        for (int end = k + (system->input[i].hold ? 2 : 1); k < end; k++)
             compare_column(m, coeffs, &met.inputs, table->input + k, table->inputs, column++, "input");
     }
     if (column != m->columns)
@@ -406,7 +406,7 @@ static void output_row(const struct linear *system, const struct output *output,
             for (int k = 0; k < system->load[l].columns; k++)
                 row[column++] = rounded(output->load[l][k * system->segments + s]);
     for (int i = 0; i < system->inputs; i++)
-        for (int k = 0; k < (system->input[i].first_order ? 2 : 1); k++)
+        for (int k = 0; k < (system->input[i].hold ? 2 : 1); k++)
             row[column++] = rounded(output->input[k][i]);
 }
 

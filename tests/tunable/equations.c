@@ -203,7 +203,7 @@ static mpq_srcptr force_at(const struct linear *system, int column, int i, const
                     return output ? output->load[l][k * system->segments + s]
                                   : system->load[l].force[k][s * system->n + i];
     for (int u = 0; u < system->inputs; u++)
-        for (int k = 0; k < (system->input[u].first_order ? 2 : 1); k++)
+        for (int k = 0; k < (system->input[u].hold ? 2 : 1); k++)
             if (column-- == 0)
                 return output ? output->input[k][u] : system->input[u].force[k][i];
     return NULL;

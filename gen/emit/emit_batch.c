@@ -1,0 +1,683 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* NAME_batch: the step of a linear model over lanes, each an instance. What instances share of a step (load states,
+ * samples) is computed once, for some steps ahead; then each group of instances goes through these, its states in
+ * locals. The sums are those of NAME_step, in its order, so that an instance gets the bits of one that steps alone. */
+#include "emit/emit.h"
+
+#include <string.h>
+
+enum { STEPS_AHEAD = 64, MOST_GROUPS = 4 };
+
+struct batch {
+	const struct emitter *e;
+	int shared;                     /* numbers that instances share in a step: `now` */
+	const char **shared_text;       /* first those that the step reads, before it; */
+	int after;                      /* from here on those of the outputs, after it */
+	int *load[2], *input[2];        /* per column, of the step and of the outputs: index in `now`; -1: none */
+	int forced;                     /* index of the forced part; -1: none */
+	int factors;                    /* of an instance, that its params decide */
+	const char **factor_text;       /* s->coeffs.step[0][1] */
+};
+
+/* ---- what instances share, and what each has ---- */
+
+static int share(struct batch *b, const char *text)
+{
+	ENLARGE(b->shared_text, (size_t)b->shared + 1);
+	b->shared_text[b->shared] = text;
+	return b->shared++;
+}
+
+static void share_load(struct batch *b, int which, int column)
+{
+	const char *text = column_operand(b->e, column);
+	if (text && b->load[which][column] < 0)
+		b->load[which][column] = share(b, text);
+}
+
+static void share_operands_of_step(struct batch *b)
+{
+	const struct program *program = b->e->step->program;
+	for (int i = 0; i < program->assignments; i++)
+		for (int k = 0; k < program->assignment[i].terms; k++) {
+			const struct operand *o = &program->assignment[i].term[k].operand;
+			if (o->kind == OPERAND_LOAD)
+				share_load(b, 0, o->index);
+			else if (o->kind == OPERAND_INPUT && b->input[0][o->index] < 0)
+				b->input[0][o->index] = share(b, input_operand(b->e, o->index));
+		}
+}
+
+/* Column k of an output's row over loads, over inputs and their slopes: is it read? */
+static bool reads_load(const struct emitter *e, const struct output *output, int column)
+{
+	if (is_tuned_output(e, output))
+		return tuned_output_reads(e, output, e->system->states + column);
+	int l = 0;
+	for (; column >= e->system->load[l].columns; l++)
+		column -= e->system->load[l].columns;
+	return mpq_sgn(output->load[l][column]) != 0;
+}
+
+/* Of input i, or of its slope; struct tuning has columns for both of a ramp alone */
+static bool reads_input(const struct emitter *e, const struct output *output, int i, int slope)
+{
+	if (!is_tuned_output(e, output))
+		return mpq_sgn(output->input[slope][i]) != 0;
+	int column = e->system->states + load_columns(e->system);
+	for (int k = 0; k < i; k++)
+		column += e->system->input[k].hold + 1;
+	return (slope == 0 || e->system->input[i].hold) && tuned_output_reads(e, output, column + slope);
+}
+
+static void share_operands_of_output(struct batch *b, const struct output *output)
+{
+	for (int k = 0; k < load_columns(b->e->system); k++)
+		if (reads_load(b->e, output, k))
+			share_load(b, 1, k);
+	for (int k = 0; k < 2 * b->e->system->inputs; k++) {
+		int i = k / 2, slope = k % 2;
+		if (reads_input(b->e, output, i, slope) && b->input[1][k] < 0)
+			b->input[1][k] = share(b, format(slope ? "s->slope[%d]" : "s->u[%d]", i));
+	}
+}
+
+/* The name of a factor of the instance's own, in a function over lanes */
+static const char *own_factor(struct batch *b, const char *text)
+{
+	int k = 0;
+	while (k < b->factors && strcmp(b->factor_text[k], text) != 0)
+		k++;
+	if (k == b->factors) {
+		ENLARGE(b->factor_text, (size_t)b->factors + 1);
+		b->factor_text[b->factors++] = text;
+	}
+	return format("factor[%d]", k);
+}
+
+static int *no_places(int count)
+{
+	int *place = ARRAY(int, (size_t)count + 1);
+	for (int i = 0; i < count; i++)
+		place[i] = -1;
+	return place;
+}
+
+static void number_factors(struct batch *b);
+
+static struct batch plan(const struct emitter *e)
+{
+	struct batch b = { .e = e, .forced = -1 };
+	for (int which = 0; which < 2; which++) {
+		b.load[which] = no_places(load_columns(e->system));
+		b.input[which] = no_places(2 * e->system->inputs);
+	}
+	share_operands_of_step(&b);
+	b.after = b.shared;
+	for (int i = 0; i < e->model->outputs; i++)
+		share_operands_of_output(&b, &e->model->output[i]);
+	if (e->step->forced) {
+		b.forced = b.shared;
+		b.shared += e->system->states;
+	}
+	if (e->kind->own_factors)
+		number_factors(&b);
+	return b;
+}
+
+/* Rows of an instance's memory, as in its struct: what a step changes, then what only get and set read */
+struct member { const char *name; int rows; };
+
+static int members_of(const struct emitter *e, struct member member[5])
+{
+	int states = e->system->states, count = 0;
+	bool compensated = e->step->program->compensated;
+	member[count++] = (struct member){ "y", states };
+	if (compensated)
+		member[count++] = (struct member){ "rest", states };
+	if (e->step->carries)
+		member[count++] = (struct member){ "carry", e->step->carries };
+	if (e->step->forced && !compensated)
+		member[count++] = (struct member){ "rest", states };
+	if (e->model->relative) {
+		member[count++] = (struct member){ "set", states };
+		member[count++] = (struct member){ "from", states };
+	}
+	return count;
+}
+
+static int rows_of(const struct emitter *e)
+{
+	struct member member[5];
+	int count = members_of(e, member), rows = 0;
+	for (int i = 0; i < count; i++)
+		rows += member[i].rows;
+	return rows;
+}
+
+/* Those that a step changes */
+static int stepped_rows(const struct emitter *e)
+{
+	return e->system->states * (e->step->program->compensated ? 2 : 1) + e->step->carries;
+}
+
+/* Groups of lanes that step in turns, so that sums of one wait for none of their own */
+static int groups_of(const struct emitter *e)
+{
+	int groups = 8 / stepped_rows(e);
+	return groups < 1 ? 1 : groups > MOST_GROUPS ? MOST_GROUPS : groups;
+}
+
+/* ---- the header ---- */
+
+static const char *row_list(const struct emitter *e)
+{
+	struct member member[5];
+	int count = members_of(e, member);
+	const char *list = "";
+	for (int i = 0; i < count; i++)
+		list = format("%s%s%s", list, i ? ", " : "", member[i].name);
+	return list;
+}
+
+static void declare_instances(const struct emitter *e, const struct batch *b)
+{
+	say(e, "\n"
+	       "/* Many instances in one call, all at one time%s. In each array the instance is the fastest: entry i\n"
+	       " * of instance j stands at [i * count + j]. Set count and the arrays, then call $n_batch_init. */\n",
+	    e->system->inputs ? " and under the same inputs" : "");
+	say(e, "enum { $N_BATCH_ROWS = %d%s };\n", rows_of(e),
+	    b->factors ? format(", %s_BATCH_FACTORS = %d", e->upper, b->factors) : "");
+	say(e, "typedef struct $n_instances {\n"
+	       "    size_t count;\n"
+	       "    double *y;        /* [$N_BATCH_ROWS][count]: of each %s, as in struct $n */\n", row_list(e));
+	if (b->factors)
+		say(e, "    double *factors;  /* [$N_BATCH_FACTORS][count]: its own, by $n_batch_use; NULL: all have "
+		       "those of shared */\n");
+	say(e, "    double *peak;     /* [$N_OUTPUTS][count]: the largest |output| at ends of steps; "
+	       "NULL: not kept */\n"
+	       "    $n shared;        /* what all share: time%s%s; its states are not used */\n"
+	       "} $n_instances;\n", e->system->inputs ? ", the last sample" : "",
+	    e->phases || e->growths ? ", phases of loads" : "");
+}
+
+void emit_batch_declarations(const struct emitter *e)
+{
+	struct batch b = plan(e);
+	bool inputs = e->system->inputs > 0;
+	declare_instances(e, &b);
+	say(e, "void   $n_batch_init($n_instances *b);%31s/* t = 0; of each the spec's initial values%s */\n", "",
+	    b.factors ? " and coefficients" : "");
+	say(e, "void   $n_batch_set($n_instances *b, size_t j, const double y[$N_STATES]);  /* of instance j, now */\n"
+	       "void   $n_batch_get(const $n_instances *b, size_t j, double y[$N_STATES]);\n");
+	if (b.factors)
+		say(e, "/* Instance j goes on with c; PL_NO_STEP: its h is not that of shared, or b has no factors */\n"
+		       "int    $n_batch_use($n_instances *b, size_t j, const $n_coeffs *c);\n");
+	say(e, "/* n steps%s; out: [n][$N_OUTPUTS][count], or NULL */\n"
+	       "void   $n_batch($n_instances *b, size_t n, %sdouble *out);\n\n",
+	    inputs ? ", n rows of u for all" : "", inputs ? "const double *u, " : "");
+}
+
+/* ---- the step over lanes ---- */
+
+static const char *shared_place(int place)
+{
+	return place < 0 ? NULL : format("now[%d]", place);
+}
+
+static const char *operand_over_lanes(const struct batch *b, const struct operand *o)
+{
+	switch (o->kind) {
+	case OPERAND_STATE: return b->e->local[o->index];
+	case OPERAND_LOAD:  return shared_place(b->load[0][o->index]);
+	default:            return shared_place(b->input[0][o->index]);
+	}
+}
+
+static const char *term_over_lanes(struct batch *b, const struct assignment *a, const struct product *p)
+{
+	const char *operand = operand_over_lanes(b, &p->operand);
+	if (!b->e->step->program->tuned)
+		return scaled(p->factor->value, operand);
+	const char *factor = own_factor(b, tuned_factor(b->e, a->target, &p->operand));
+	return operand ? format("%s * %s", factor, operand) : factor;
+}
+
+/* Some term of a sum is over lanes, not a number that all share. */
+static bool is_over_lanes(const struct batch *b, const struct assignment *a)
+{
+	bool any = b->e->step->program->tuned && a->terms;
+	for (int k = 0; k < a->terms; k++)
+		any = any || a->term[k].operand.kind == OPERAND_STATE;
+	return any;
+}
+
+static const char *sum_over_lanes(struct batch *b, const struct assignment *a, bool second)
+{
+	const char **term = ARRAY(const char *, (size_t)a->terms + 1);
+	int terms = 0;
+	bool lanes = is_over_lanes(b, a);
+	for (int k = 0; k < a->terms; k++)
+		if (!second)
+			term[terms++] = term_over_lanes(b, a, &a->term[k]);
+		else if (has_second_word(&a->term[k], b->e->step))
+			term[terms++] = scaled(a->term[k].factor->low, operand_over_lanes(b, &a->term[k].operand));
+	const char *sum = terms ? tree(terms, term, 14) : "0.0";
+	return lanes && !second ? sum : format("pl_lanes_all(0.0) + (%s)", sum);
+}
+
+/* Where of the rows an assignment keeps what rounding takes */
+static int rest_row(const struct emitter *e, const struct assignment *a)
+{
+	int states = e->system->states;
+	return a->carried ? stepped_rows(e) - e->step->carries + e->step->carry[a->target] : states + a->target;
+}
+
+static void say_assignment(struct batch *b, const struct assignment *a)
+{
+	const struct emitter *e = b->e;
+	const struct program *program = e->step->program;
+	const char *old = e->local[a->target], *target = program->in_order ? old : format("y[%d]", a->target);
+	const char *name = e->model->state_name[a->target], *sum = sum_over_lanes(b, a, false);
+	if (program->compensated || a->carried)
+		say(e, "    %s = pl_lanes_accumulate(%s,  /* %s */\n"
+		       "              %s,\n"
+		       "              %s, &y[%d]);\n", target, old, name, sum,
+		    a->carried ? "pl_lanes_all(0.0)" : sum_over_lanes(b, a, true), rest_row(e, a));
+	else if (program->in_order)
+		say(e, "    %s += %s;\n", target, sum);
+	else if (a->added && a->terms > 1)
+		say(e, "    %s = %s + (%s);  /* %s */\n", target, old, sum, name);
+	else
+		say(e, "    %s = %s%s;  /* %s */\n", target, a->added ? format("%s + ", old) : "", sum, name);
+}
+
+static void number_factors(struct batch *b)
+{
+	const struct emitter *e = b->e;
+	const struct program *program = e->step->program;
+	for (int i = 0; i < program->assignments; i++)
+		for (int k = 0; k < program->assignment[i].terms; k++)
+			term_over_lanes(b, &program->assignment[i], &program->assignment[i].term[k]);
+	for (int i = 0; i < e->model->outputs; i++)
+		for (int k = 0; is_tuned_output(e, &e->model->output[i]) && k < e->model->tuning->x.size; k++)
+			if (tuned_output_reads(e, &e->model->output[i], k))
+				own_factor(b, tuned_output_factor(e, &e->model->output[i], k));
+}
+
+static void emit_lanes_step(struct batch *b)
+{
+	const struct emitter *e = b->e;
+	const struct program *program = e->step->program;
+	say(e, "\n/* One step of as many instances as there are lanes; now: what they share */\n"
+	       "PL_LANES_INLINE void $n_lanes_step(pl_lanes *y, %sconst double *now)\n"
+	       "{\n", b->factors ? "const pl_lanes *factor, " : "");
+	for (int i = 0; i < e->system->states; i++)
+		if (program->reads[i])
+			say(e, "    %spl_lanes %s = y[%d];\n", program->in_order ? "" : "const ", e->local[i], i);
+	for (int i = 0; i < program->assignments; i++)
+		say_assignment(b, &program->assignment[i]);
+	for (int i = 0; i < e->system->states && program->in_order; i++)
+		if (program->reads[i])
+			say(e, "    y[%d] = %s;\n", i, e->local[i]);
+	say(e, "    (void)now;\n"
+	       "}\n");
+}
+
+/* ---- outputs over lanes ---- */
+
+static const char *output_term(struct batch *b, const struct output *output, int column, mpq_srcptr fixed,
+			       const char *operand)
+{
+	if (!is_tuned_output(b->e, output))
+		return scaled(round_rational(fixed), operand);
+	const char *factor = own_factor(b, tuned_output_factor(b->e, output, column));
+	return operand ? format("%s * %s", factor, operand) : factor;
+}
+
+static bool reads_state(const struct emitter *e, const struct output *output, int i)
+{
+	return is_tuned_output(e, output) ? tuned_output_reads(e, output, i) : mpq_sgn(output->state[i]) != 0;
+}
+
+static int add_load_terms(struct batch *b, const struct output *output, const char **term)
+{
+	const struct linear *system = b->e->system;
+	int terms = 0;
+	for (int l = 0, column = 0; l < system->loads; l++)
+		for (int k = 0; k < system->load[l].columns; k++, column++)
+			if (reads_load(b->e, output, column))
+				term[terms++] = output_term(b, output, system->states + column, output->load[l][k],
+							    shared_place(b->load[1][column]));
+	return terms;
+}
+
+static int add_input_terms(struct batch *b, const struct output *output, const char **term)
+{
+	const struct linear *system = b->e->system;
+	int terms = 0, column = system->states + load_columns(system);
+	for (int i = 0; i < system->inputs; i++) {
+		for (int k = 0; k < 2; k++)
+			if (reads_input(b->e, output, i, k))
+				term[terms++] = output_term(b, output, column + k, output->input[k][i],
+							    shared_place(b->input[1][2 * i + k]));
+		column += system->input[i].hold + 1;
+	}
+	return terms;
+}
+
+static const char *output_over_lanes(struct batch *b, const struct output *output)
+{
+	const struct linear *system = b->e->system;
+	int terms = 0;
+	const char **term =
+		ARRAY(const char *, (size_t)(system->states + load_columns(system) + 2 * system->inputs) + 1);
+	for (int i = 0; i < system->states; i++)
+		if (reads_state(b->e, output, i))
+			term[terms++] = output_term(b, output, i, output->state[i], b->e->local[i]);
+	bool lanes = terms > 0 || is_tuned_output(b->e, output);
+	terms += add_load_terms(b, output, term + terms);
+	terms += add_input_terms(b, output, term + terms);
+	const char *sum = terms ? tree(terms, term, 13) : "0.0";
+	return lanes && terms ? sum : format("pl_lanes_all(%s)", sum);
+}
+
+/* A state as outputs read it: of momenta the velocity, of what is kept less its forced part the whole */
+static const char *state_over_lanes(const struct batch *b, int i)
+{
+	const char *mass = factor_of_momentum(b->e, i), *kept = format("y[%d]", i);
+	if (mass)
+		kept = format("%s / %s", kept, mass);
+	return b->forced >= 0 ? format("%s + now[%d]", kept, b->forced + i) : kept;
+}
+
+static void emit_lanes_out(struct batch *b)
+{
+	const struct emitter *e = b->e;
+	say(e, "\nPL_LANES_INLINE void $n_lanes_out(const pl_lanes *y, %sconst double *now, pl_lanes *out)\n"
+	       "{\n", b->factors ? "const pl_lanes *factor, " : "");
+	for (int i = 0; i < e->system->states; i++) {
+		bool read = false;
+		for (int o = 0; o < e->model->outputs; o++)
+			read = read || reads_state(e, &e->model->output[o], i);
+		if (read)
+			say(e, "    const pl_lanes %s = %s;\n", e->local[i], state_over_lanes(b, i));
+	}
+	for (int o = 0; o < e->model->outputs; o++)
+		say(e, "    out[%d] = %s;  /* %s */\n", o, output_over_lanes(b, &e->model->output[o]),
+		    e->model->output[o].name);
+	say(e, "    (void)now;\n"
+	       "%s"
+	       "}\n", b->factors ? "    (void)factor;\n" : "");
+}
+
+/* ---- what instances share ---- */
+
+static bool *loads_of_outputs(const struct batch *b)
+{
+	const struct linear *system = b->e->system;
+	bool *wanted = ARRAY(bool, (size_t)system->loads);
+	for (int l = 0, column = 0; l < system->loads; l++)
+		for (int k = 0; k < system->load[l].columns; k++, column++)
+			wanted[l] = wanted[l] || b->load[1][column] >= 0;
+	return wanted;
+}
+
+static void emit_shared(const struct batch *b)
+{
+	const struct emitter *e = b->e;
+	say(e, "\n/* What instances share in a step, which is taken: before it, */\n"
+	       "static void $n_share_step(%s, double *now)\n"
+	       "{\n", step_parameters(e));
+	emit_load_states(e, loads_of_step(e), false);
+	for (int i = 0; i < b->after; i++)
+		say(e, "    now[%d] = %s;\n", i, b->shared_text[i]);
+	emit_step_end(e);
+	say(e, "    (void)now;\n"
+	       "}\n"
+	       "\n/* and in the outputs behind it */\n"
+	       "static void $n_share_out(const $n *s, double *now)\n"
+	       "{\n");
+	emit_load_states(e, loads_of_outputs(b), false);
+	for (int i = b->after; i < (b->forced >= 0 ? b->forced : b->shared); i++)
+		say(e, "    now[%d] = %s;\n", i, b->shared_text[i]);
+	if (b->forced >= 0)
+		say(e, "    $n_forced(s, now + %d);\n", b->forced);
+	say(e, "    (void)s;\n"
+	       "    (void)now;\n"
+	       "}\n");
+}
+
+/* ---- lanes from the arrays and back ---- */
+
+static void emit_take_own(const struct batch *b)
+{
+	const struct emitter *e = b->e;
+	if (!b->factors)
+		return;
+	say(e, "    if (b->factors) {\n"
+	       "        size_t i;\n"
+	       "        for (i = 0; i < $N_BATCH_FACTORS; i++)\n"
+	       "            factor[i] = pl_lanes_load(b->factors + i * b->count + j, left);\n"
+	       "    } else {\n"
+	       "        const $n *s = &b->shared;\n");
+	for (int k = 0; k < b->factors; k++)
+		say(e, "        factor[%d] = pl_lanes_all(%s);\n", k, b->factor_text[k]);
+	say(e, "    }\n");
+}
+
+/* For the lanes from instance j on; beyond the last there are none. */
+static void say_left(const struct emitter *e)
+{
+	say(e, "    const size_t left = j < b->count ? b->count - j : 0;\n"
+	       "    j = left ? j : 0;\n");
+}
+
+static void emit_take(const struct batch *b)
+{
+	const struct emitter *e = b->e;
+	say(e, "\n/* As many instances as there are lanes, from j on */\n"
+	       "PL_LANES_INLINE void $n_lanes_take(const $n_instances *b, size_t j, pl_lanes *y,%s pl_lanes *peak)\n"
+	       "{\n", b->factors ? " pl_lanes *factor," : "");
+	say_left(e);
+	for (int i = 0; i < stepped_rows(e); i++)
+		say(e, "    y[%d] = pl_lanes_load(b->y + %d * b->count + j, left);\n", i, i);
+	for (int o = 0; o < e->model->outputs; o++)
+		say(e, "    peak[%d] = pl_lanes_load(b->peak + %d * b->count + j, b->peak ? left : 0);\n", o, o);
+	emit_take_own(b);
+	say(e, "}\n"
+	       "\nPL_LANES_INLINE void $n_lanes_give($n_instances *b, size_t j, const pl_lanes *y, "
+	       "const pl_lanes *peak)\n"
+	       "{\n");
+	say_left(e);
+	for (int i = 0; i < stepped_rows(e); i++)
+		say(e, "    pl_lanes_store(b->y + %d * b->count + j, y[%d], left);\n", i, i);
+	say(e, "    if (!b->peak)\n"
+	       "        return;\n");
+	for (int o = 0; o < e->model->outputs; o++)
+		say(e, "    pl_lanes_store(b->peak + %d * b->count + j, peak[%d], left);\n", o, o);
+	say(e, "}\n");
+}
+
+/* Outputs of a step's end into peak and out, where they are wanted */
+static void emit_tell(const struct batch *b)
+{
+	const struct emitter *e = b->e;
+	say(e, "\nPL_LANES_INLINE void $n_lanes_tell(size_t count, size_t j, const pl_lanes *y,%s\n"
+	       "    const double *now, pl_lanes *peak, double *out)\n"
+	       "{\n"
+	       "    pl_lanes value[$N_OUTPUTS];\n"
+	       "    $n_lanes_out(y, %snow, value);\n", b->factors ? " const pl_lanes *factor," : "",
+	    b->factors ? "factor, " : "");
+	for (int o = 0; o < e->model->outputs; o++)
+		say(e, "    peak[%d] = pl_lanes_peak(peak[%d], value[%d]);\n", o, o, o);
+	say(e, "    if (out && j < count) {\n");
+	for (int o = 0; o < e->model->outputs; o++)
+		say(e, "        pl_lanes_store(out + %d * count + j, value[%d], count - j);\n", o, o);
+	say(e, "    }\n"
+	       "}\n");
+}
+
+/* ---- groups of lanes over some steps ---- */
+
+static const char *from_group(int group)
+{
+	return group > 1 ? format("first + %d * lanes", group) : group ? "first + lanes" : "first";
+}
+
+static void emit_block(const struct batch *b)
+{
+	const struct emitter *e = b->e;
+	int groups = groups_of(e);
+	const char *own = b->factors ? "factor[%d], " : "";
+	say(e, "\n/* Instances from `first` on, %d for each lane, over n steps */\n"
+	       "static void $n_batch_block($n_instances *b, size_t first, size_t n, const double (*now)[%d],\n"
+	       "    double *out)\n"
+	       "{\n"
+	       "%s"
+	       "    const size_t count = b->count;\n"
+	       "    pl_lanes y[%d][%d], peak[%d][$N_OUTPUTS];\n", groups, b->shared ? b->shared : 1,
+	    groups > 1 ? "    const size_t lanes = sizeof(pl_lanes) / sizeof(double);\n" : "", groups,
+	    stepped_rows(e), groups);
+	if (b->factors)
+		say(e, "    pl_lanes factor[%d][$N_BATCH_FACTORS];\n", groups);
+	say(e, "    size_t k;\n");
+	for (int g = 0; g < groups; g++)
+		say(e, "    $n_lanes_take(b, %s, y[%d], %speak[%d]);\n", from_group(g), g, format(own, g), g);
+	say(e, "    for (k = 0; k < n; k++) {\n");
+	for (int g = 0; g < groups; g++)
+		say(e, "        $n_lanes_step(y[%d], %snow[k]);\n", g, format(own, g));
+	say(e, "        if (b->peak || out) {\n");
+	for (int g = 0; g < groups; g++)
+		say(e, "            $n_lanes_tell(count, %s, y[%d], %snow[k], peak[%d], out);\n", from_group(g), g,
+		    format(own, g), g);
+	say(e, "            out = out ? out + $N_OUTPUTS * count : NULL;\n"
+	       "        }\n"
+	       "    }\n");
+	for (int g = 0; g < groups; g++)
+		say(e, "    $n_lanes_give(b, %s, y[%d], peak[%d]);\n", from_group(g), g, g);
+	say(e, "}\n");
+}
+
+static void emit_batch_function(const struct batch *b)
+{
+	const struct emitter *e = b->e;
+	bool inputs = e->system->inputs > 0;
+	say(e, "\nvoid $n_batch($n_instances *b, size_t n, %sdouble *out)\n"
+	       "{\n"
+	       "    const size_t block = %d * sizeof(pl_lanes) / sizeof(double);\n"
+	       "    double now[%d][%d];\n"
+	       "    size_t first, k, steps;\n", inputs ? "const double *u, " : "", groups_of(e), STEPS_AHEAD,
+	    b->shared ? b->shared : 1);
+	say(e, "    for (; n > 0; n -= steps) {\n"
+	       "        steps = n < %d ? n : %d;\n"
+	       "        for (k = 0; k < steps; k++) {\n"
+	       "            $n_share_step(&b->shared, %snow[k]);\n"
+	       "            $n_share_out(&b->shared, now[k]);\n", STEPS_AHEAD, STEPS_AHEAD, inputs ? "u, " : "");
+	if (inputs)
+		say(e, "            u += $N_INPUTS;\n");
+	say(e, "        }\n"
+	       "        for (first = 0; first < b->count; first += block)\n"
+	       "            $n_batch_block(b, first, steps, (const double (*)[%d])now, out);\n"
+	       "        out = out ? out + steps * $N_OUTPUTS * b->count : NULL;\n"
+	       "    }\n"
+	       "}\n", b->shared ? b->shared : 1);
+}
+
+/* ---- init, set, get, use ---- */
+
+/* Rows of instance j from those of one alone, or into it */
+static void say_rows(const struct emitter *e, bool into)
+{
+	struct member member[5];
+	int count = members_of(e, member), row = 0;
+	for (int i = 0; i < count; i++) {
+		const char *from = row ? format("(%d + i)", row) : "i";
+		const char *there = format("b->y[%s * b->count + j]", from);
+		const char *here = format("one.%s[i]", member[i].name);
+		say(e, "    for (i = 0; i < %d; i++)\n"
+		       "        %s = %s;\n", member[i].rows, into ? there : here, into ? here : there);
+		row += member[i].rows;
+	}
+}
+
+static void emit_write(const struct batch *b)
+{
+	const struct emitter *e = b->e;
+	say(e, "\n/* One instance alone as instance j; its peaks are what its outputs are now. */\n"
+	       "static void $n_batch_write($n_instances *b, size_t j, const $n *s)\n"
+	       "{\n"
+	       "    %s$n one = *s;\n"
+	       "    double out[$N_OUTPUTS];\n"
+	       "    size_t i;\n", b->factors ? "" : "const ");
+	say_rows(e, true);
+	if (b->factors)
+		say(e, "    if (b->factors) {\n");
+	for (int k = 0; k < b->factors; k++)
+		say(e, "        one.%s = b->factors[%d * b->count + j];\n", strchr(b->factor_text[k], '>') + 1, k);
+	if (b->factors)
+		say(e, "    }\n");
+	say(e, "    $n_out(&one, out);\n"
+	       "    for (i = 0; i < $N_OUTPUTS && b->peak; i++)\n"
+	       "        b->peak[i * b->count + j] = out[i] < 0.0 ? -out[i] : out[i];\n"
+	       "}\n");
+}
+
+static void emit_use(const struct batch *b)
+{
+	const struct emitter *e = b->e;
+	if (!b->factors)
+		return;
+	say(e, "\nint $n_batch_use($n_instances *b, size_t j, const $n_coeffs *c)\n"
+	       "{\n"
+	       "    $n one = b->shared, *s = &one;\n"
+	       "    if (!b->factors || !(c->h == b->shared.coeffs.h))\n"
+	       "        return PL_NO_STEP;\n"
+	       "    s->coeffs = *c;\n");
+	for (int k = 0; k < b->factors; k++)
+		say(e, "    b->factors[%d * b->count + j] = %s;\n", k, b->factor_text[k]);
+	say(e, "    return 0;\n"
+	       "}\n");
+}
+
+static void emit_batch_access(const struct batch *b)
+{
+	const struct emitter *e = b->e;
+	emit_write(b);
+	emit_use(b);
+	say(e, "\nvoid $n_batch_init($n_instances *b)\n"
+	       "{\n"
+	       "    size_t j;\n"
+	       "    $n_init(&b->shared);\n"
+	       "    for (j = 0; j < b->count; j++) {\n"
+	       "%s"
+	       "        $n_batch_write(b, j, &b->shared);\n"
+	       "    }\n"
+	       "}\n", b->factors ? spell(e, "        (void)$n_batch_use(b, j, &b->shared.coeffs);\n") : "");
+	say(e, "\nvoid $n_batch_set($n_instances *b, size_t j, const double y[$N_STATES])\n"
+	       "{\n"
+	       "    $n one = b->shared;\n"
+	       "    $n_set(&one, $n_time(&b->shared), y);\n"
+	       "    $n_batch_write(b, j, &one);\n"
+	       "}\n"
+	       "\nvoid $n_batch_get(const $n_instances *b, size_t j, double y[$N_STATES])\n"
+	       "{\n"
+	       "    $n one = b->shared;\n"
+	       "    size_t i;\n");
+	say_rows(e, false);
+	say(e, "    $n_get(&one, y);\n"
+	       "}\n");
+}
+
+void emit_batch(const struct emitter *e)
+{
+	struct batch b = plan(e);
+	emit_shared(&b);
+	emit_lanes_step(&b);
+	emit_lanes_out(&b);
+	emit_take(&b);
+	emit_tell(&b);
+	emit_block(&b);
+	emit_batch_function(&b);
+	emit_batch_access(&b);
+}

@@ -1,0 +1,99 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What an input does between samples: a polynomial of an odd degree d through the d + 1 samples around the step, its
+ * taps, at the times (c - (d - 1)/2) h from the step's start, c = 0 .. d. A ramp is that of degree 1. Held is degree
+ * 0. */
+#include "step/step.h"
+
+/* The factor of (s/h)^power in Lagrange's polynomial of a tap: 1 there, 0 at the others */
+void tap_weight(int hold, int power, int tap, mpq_ptr weight)
+{
+	int before = hold > 0 ? (hold - 1) / 2 : 0;
+	mpq_t *factor = rationals((size_t)hold + 2), lower;
+	mpq_init(lower);
+	mpq_set_ui(factor[0], 1, 1);
+	for (int c = 0, degree = 0; c <= hold; c++) {
+		if (c == tap)
+			continue;
+		for (int m = ++degree; m >= 0; m--) {   /* times (s/h - node)/(own node - node) */
+			mpq_set_si(lower, before - c, 1);
+			mpq_mul(factor[m], factor[m], lower);
+			if (m > 0)
+				mpq_add(factor[m], factor[m], factor[m - 1]);
+			mpq_set_si(lower, tap - c, 1);
+			mpq_div(factor[m], factor[m], lower);
+		}
+	}
+	mpq_set(weight, factor[power]);
+	mpq_clear(lower);
+	rationals_free(factor, (size_t)hold + 2);
+}
+
+/* d^power u / d s^power at the step's start, per tap: power! h^-power times its factor */
+void tap_derivative(int hold, int power, int tap, mpq_srcptr h, mpq_ptr derivative)
+{
+	mpq_t times;
+	mpq_init(times);
+	tap_weight(hold, power, tap, derivative);
+	for (int k = 1; k <= power; k++) {
+		mpq_set_si(times, k, 1);
+		mpq_mul(derivative, derivative, times);
+		mpq_div(derivative, derivative, h);
+	}
+	mpq_clear(times);
+}
+
+/* h u' at the step's end, per tap */
+void tap_slope(int hold, int tap, mpq_ptr slope)
+{
+	mpq_t weight, times;
+	mpq_inits(weight, times, NULL);
+	mpq_set_ui(slope, 0, 1);
+	for (int m = 1; m <= hold; m++) {
+		tap_weight(hold, m, tap, weight);
+		mpq_set_si(times, m, 1);
+		mpq_mul(weight, weight, times);
+		mpq_add(slope, slope, weight);
+	}
+	mpq_clears(weight, times, NULL);
+}
+
+const char *hold_name(int hold)
+{
+	static const char *const name[] = { [1] = "first", [3] = "third", [5] = "fifth", [7] = "seventh" };
+	return name[hold];
+}
+
+int samples_ahead(int hold)
+{
+	return (hold + 1) / 2;
+}
+
+static const char *objection(const struct step *step)
+{
+	if (step->kind == KIND_REGIONS)
+		return "where a piecewise-linear model crosses a breakpoint is searched for with held inputs and ramps";
+	if (step->kind == KIND_LEFTOVER)
+		return "what is left over reads held inputs and ramps";
+	if (step->model->asked.single)
+		return "powers of the step leave the range of float";
+	if (step->model->asked.selftest)
+		return "the selftest has held inputs and ramps";
+	return NULL;
+}
+
+void check_holds(const struct step *step)
+{
+	const char *why = objection(step);
+	for (const struct symbol *s = step->model->spec->first; s && why; s = s->next)
+		if (s->kind == SYMBOL_INPUT && s->hold > 1)
+			error(s->at, "'hold first' would do", "input '%s' cannot be hold %s here: %s", s->name,
+			      hold_name(s->hold), why);
+}
+
+bool further_samples(const struct linear *system)
+{
+	bool any = false;
+	for (int i = 0; i < system->inputs; i++)
+		any = any || system->input[i].hold > 1;
+	return any;
+}
