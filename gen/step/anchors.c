@@ -138,6 +138,15 @@ void check_anchors(struct step *step)
 		step->no_anchors = step->model->asked.anchors == 1 ? "--anchors 1" : against;
 }
 
+void drop_anchors(struct step *step, const char *why)
+{
+	if (step->model->asked.anchors > 1)
+		refuse(step, why);
+	if (step->anchors)
+		step->no_anchors = why;
+	step->anchors = NULL;
+}
+
 void plan_anchors(struct step *step)
 {
 	struct anchors *anchors = anchors_of(step);

@@ -770,6 +770,10 @@ static bool is_cheaper(const struct step *step)
 
 static void take_modal(struct step *step, struct modal *modal)
 {
+	if (step->anchors) {
+		drop_anchors(step, "the form modal");
+		step->program = linear_program(step);
+	}
 	step->modal = modal;
 	step->form = FORM_MODAL;
 	step->program = modal_program(step);

@@ -423,6 +423,7 @@ const char *rounding_text(const struct step *step);
 /* ---- anchors.c: functions of loads every so many steps, tables between ---- */
 
 void check_anchors(struct step *step);                      /* leaves the statement where they are asked for in vain */
+void drop_anchors(struct step *step, const char *why);       /* an error where they were asked for */
 void plan_anchors(struct step *step);                       /* after its table */
 void fill_anchors(struct step *step);                       /* after its forced part is chosen */
 int anchored_term(const struct step *step, int state, int column);   /* its index; -1: it is none */

@@ -59,7 +59,7 @@ done <<END
 models/oscillator.spec
 models/sdcsf.spec --form delta --accuracy compensated --real float
 tests/forms/masses.spec
-tests/batch/forced.spec
+tests/batch/forced.spec --anchors 1
 ${LONG:+tests/relative/drive.spec
 models/oscillator.spec --real float
 models/sdcsf.spec --form delta --accuracy compensated

@@ -54,7 +54,7 @@ chain() {
 	echo "init c9 = 2"
 }
 
-# part NAME COORDS EQUATIONS [OPTION ...]: NAME.c
+# part NAME COORDS EQUATIONS [OPTION ...]: NAME.c; all evaluate their loads at every step, as a large one does
 part() {
 	name=$1
 	coords=$2
@@ -70,7 +70,7 @@ part() {
 		echo "step 0.01"
 	} >"$name.spec"
 	[ $# -gt 0 ] && shift
-	"$plgen" "$@" "$name.spec" -o "$name.c" >>log 2>&1
+	"$plgen" --anchors 1 "$@" "$name.spec" -o "$name.c" >>log 2>&1
 }
 
 # beside NAME STEPS TOLERANCE REST A PART ...: A stepped beside its parts
