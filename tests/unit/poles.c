@@ -181,7 +181,8 @@ static void a_disc_alone_holds_one_root(void **state)
         if (count == 0)
             continue;
         struct poly g = product_of(count, root, NULL);
-        struct iteration it;
+        struct iteration it = { 0 };
+        iteration_new(g, &it);
         iteration_start(g, &it);
         it.bits = 64 + (int)draw(400);
         for (int i = 0; i < it.degree; i++) {
