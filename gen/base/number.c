@@ -154,6 +154,8 @@ static int fewest_digits(double d, char text[static 64])
 const char *shortest(double d)
 {
 	char text[64];
+	if (d == 0 && !signbit(d))
+		return "0.0";           /* most of what large models print */
 	digits_do(d, fewest_digits(d, text), text);
 	char *exponent = strchr(text, 'e');
 	if (!exponent)
