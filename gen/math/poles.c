@@ -189,6 +189,7 @@ static void find_repulsion(const struct iteration *it, int i, mpc_ptr sum)
 /* One sweep; the largest correction relative to its root, as an exponent of 2. */
 static long sweep(struct poly g, struct iteration *it)
 {
+	enum { MANY = 32 };
 	mpc_t w, repulsion, product;
 	mpfr_t size;
 	long largest = -it->bits;
@@ -197,6 +198,8 @@ static long sweep(struct poly g, struct iteration *it)
 	mpc_init2(product, it->bits);
 	mpfr_init2(size, 53);
 	for (int i = 0; i < it->degree; i++) {
+		if (it->degree > MANY)
+			progress("poles", i, it->degree);
 		newton_correction(g, it->z[i], w);
 		find_repulsion(it, i, repulsion);
 		mpc_mul(product, repulsion, w, MPC_RNDNN);
