@@ -79,7 +79,7 @@ void  spend_terms(size_t count);
 #define ARRAY(type, count) ((type *)allocate(count, sizeof(type)))
 #define ENLARGE(array, count) ((array) = enlarge(array, count, sizeof *(array)))
 
-/* ---- progress.c: a line on a terminal for what takes longer than a second ---- */
+/* ---- progress.c: how far slow work is, on stderr ---- */
 
 void progress(const char *what, int done, int all);         /* done = 0 starts the clock */
 void progress_end(void);                                    /* the line goes */

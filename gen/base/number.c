@@ -127,6 +127,8 @@ bool round_bits(mpfi_srcptr x, int bits, mpz_ptr digits, long *exponent)
 const char *shortest(double d)
 {
 	char text[32];
+	if (d == 0 && !signbit(d))
+		return "0.0";           /* most of what large models print */
 	text[0] = '-';
 	*digits_text(text + (signbit(d) != 0), digits_shortest(d, target == &range_of_float), 0) = 0;
 	char *exponent = strchr(text, 'e');

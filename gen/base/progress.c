@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* One line on a terminal for what takes longer than a second; silent elsewhere. Nothing that is generated depends on
- * it. */
+/* How far slow work is: on a terminal one line that changes, for what takes longer than a second; elsewhere, so that a
+ * log shows it, a line for every ten seconds of computing, which no short work ever reaches. Nothing that is generated
+ * depends on it. */
 #define _POSIX_C_SOURCE 200809L
 #include "base/base.h"
 
@@ -9,25 +10,44 @@
 
 static bool shown;
 
-static long milliseconds(void)
+static long milliseconds(clockid_t clock)
 {
 	struct timespec t;
-	clock_gettime(CLOCK_MONOTONIC, &t);
+	clock_gettime(clock, &t);
 	return 1000 * (long)t.tv_sec + t.tv_nsec / 1000000;
 }
 
-void progress(const char *what, int done, int all)
+static void change_line(const char *what, int done, int all)
 {
 	static long start, last;
-	long now = milliseconds();
+	long now = milliseconds(CLOCK_MONOTONIC);
 	if (done == 0)
 		start = now;
-	if (!isatty(STDERR_FILENO) || now - start < 1000 || now - last < 200)
+	if (now - start < 1000 || now - last < 200)
 		return;
 	last = now;
 	shown = true;
 	fprintf(stderr, "\rplgen: %s, %d of %d ", what, done, all);
 	fflush(stderr);
+}
+
+static void add_line(const char *what, int done, int all)
+{
+	static long last;
+	long now = milliseconds(CLOCK_PROCESS_CPUTIME_ID);
+	if (now - last < 10000)
+		return;
+	last = now;
+	fprintf(stderr, "plgen: %s, %d of %d, %ld s\n", what, done, all, now / 1000);
+	fflush(stderr);
+}
+
+void progress(const char *what, int done, int all)
+{
+	static int terminal = -1;
+	if (terminal < 0)
+		terminal = isatty(STDERR_FILENO);
+	(terminal ? change_line : add_line)(what, done, all);
 }
 
 void progress_end(void)

@@ -22,6 +22,11 @@ void rational_subtract_row(int n, mpq_t *target, const mpq_t *row, mpq_srcptr fa
 void unreduced_product(int rows, int inner, int columns, const mpq_t *A, const mpq_t *B, mpq_t *AB);
 void rational_product(int rows, int inner, int columns, const mpq_t *A, const mpq_t *B, mpq_t *AB);
 
+/* ---- eigenvalues.c ---- */
+
+/* in double precision; false: not found */
+bool eigenvalues(int n, const mpq_t *A, double *re, double *im);
+
 /* ---- poly.c: polynomials over Z, constant term first ---- */
 
 struct poly {
@@ -33,6 +38,7 @@ void poly_trim(struct poly *p);
 struct poly poly_add(struct poly a, struct poly b);
 struct poly poly_sub(struct poly a, struct poly b);
 struct poly poly_mul(struct poly a, struct poly b);
+struct poly poly_product(int count, const struct poly *factor);
 struct poly poly_scale(struct poly a, mpz_srcptr factor);
 struct poly poly_shift(struct poly a, int powers);          /* times s^powers; negative: exact division */
 /* b divides a exactly, over Q; primitive up to a factor: see .c */
@@ -61,6 +67,8 @@ struct polymat {
 	struct poly *cell;          /* row-major */
 };
 /* det P not the zero polynomial; adj may be NULL, its n x n cells are filled in */
+/* Those of the blocks that have nothing in common: det P is their product; how many there are */
+int  polymat_determinants(struct polymat P, struct poly **det);
 void polymat_adjugate(struct polymat P, struct poly *det, struct polymat *adj);
 
 /* ---- enclosure.c: complex numbers enclosed in rectangles; targets may be operands ---- */
@@ -95,6 +103,10 @@ struct spectrum {                   /* the distinct poles of one denominator, 0 
 	struct spectrum *next;
 };
 struct spectrum *spectrum_of(struct poly D);                /* the same object for the same D */
+/* Of their product, primitive; what is known of its factors saves finding them, and roots of fewer at a time */
+struct spectrum *spectrum_of_product(int count, const struct poly *part);
+/* Where the roots are, roughly, 0 among them: for an iteration that has not begun */
+void spectrum_expect(struct spectrum *spectrum, int count, const double *re, const double *im);
 /* relative 2^-precision; false: not isolated within the limits */
 bool spectrum_refine(struct spectrum *spectrum, int precision);
 

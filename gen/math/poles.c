@@ -10,10 +10,18 @@
 #include <math.h>
 #include <mpc.h>
 
-enum { START_BITS = 64, RADIUS_BITS = 64, GUARD_BITS = 32, SWEEPS = 40, LIMIT_ITERATION_BITS = 1 << 16 };
+enum {
+	START_BITS = 64,
+	RADIUS_BITS = 64,
+	REPULSION_BITS = 64,
+	GUARD_BITS = 32,
+	SWEEPS = 40,
+	LIMIT_ITERATION_BITS = 1 << 16
+};
 
 struct iteration {                  /* of one factor */
 	int degree, bits;
+	bool expected, started;     /* z was told from outside; the iteration has begun */
 	mpc_t *z;
 	struct rectangle *center;   /* z as degenerate rectangles */
 	mpfr_t *radius;             /* upper bounds */
@@ -110,7 +118,7 @@ static void pull_apart(struct iteration *it)
 	mpc_clear(factor);
 }
 
-static void iteration_start(struct poly g, struct iteration *it)
+static void iteration_new(struct poly g, struct iteration *it)
 {
 	it->degree = g.length - 1;
 	it->bits = START_BITS;
@@ -122,9 +130,14 @@ static void iteration_start(struct poly g, struct iteration *it)
 		rectangle_init(&it->center[i], START_BITS);
 		mpfr_init2(it->radius[i], START_BITS);
 	}
-	if (!start_by_gsl(g, it))
+}
+
+static void iteration_start(struct poly g, struct iteration *it)
+{
+	if (!it->expected && !start_by_gsl(g, it))
 		start_by_newton_polygon(g, it);
 	pull_apart(it);
+	it->started = true;
 }
 
 /* ---- Ehrlich and Aberth ---- */
@@ -150,29 +163,48 @@ static bool is_finite(mpc_srcptr z)
 	return mpfr_number_p(mpc_realref(z)) && mpfr_number_p(mpc_imagref(z));
 }
 
+/* sum over j of 1/(z_i - z_j), the differences to all bits and the sum to few: it is multiplied by what is small */
+static void find_repulsion(const struct iteration *it, int i, mpc_ptr sum)
+{
+	mpc_t difference;
+	mpfr_t norm, square;
+	mpc_init2(difference, REPULSION_BITS);
+	mpfr_inits2(REPULSION_BITS, norm, square, NULL);
+	mpc_set_ui(sum, 0, MPC_RNDNN);
+	for (int j = 0; j < it->degree; j++) {
+		if (j == i)
+			continue;
+		mpc_sub(difference, it->z[i], it->z[j], MPC_RNDNN);
+		mpfr_sqr(norm, mpc_realref(difference), MPFR_RNDN);
+		mpfr_sqr(square, mpc_imagref(difference), MPFR_RNDN);
+		mpfr_add(norm, norm, square, MPFR_RNDN);
+		mpc_conj(difference, difference, MPC_RNDNN);
+		mpc_div_fr(difference, difference, norm, MPC_RNDNN);
+		mpc_add(sum, sum, difference, MPC_RNDNN);
+	}
+	mpfr_clears(norm, square, NULL);
+	mpc_clear(difference);
+}
+
 /* One sweep; the largest correction relative to its root, as an exponent of 2. */
 static long sweep(struct poly g, struct iteration *it)
 {
-	mpc_t w, repulsion, difference;
+	enum { MANY = 32 };
+	mpc_t w, repulsion, product;
 	mpfr_t size;
 	long largest = -it->bits;
 	mpc_init2(w, it->bits);
-	mpc_init2(repulsion, it->bits);
-	mpc_init2(difference, it->bits);
+	mpc_init2(repulsion, REPULSION_BITS);
+	mpc_init2(product, it->bits);
 	mpfr_init2(size, 53);
 	for (int i = 0; i < it->degree; i++) {
+		if (it->degree > MANY)
+			progress("poles", i, it->degree);
 		newton_correction(g, it->z[i], w);
-		mpc_set_ui(repulsion, 0, MPC_RNDNN);
-		for (int j = 0; j < it->degree; j++) {
-			if (j == i)
-				continue;
-			mpc_sub(difference, it->z[i], it->z[j], MPC_RNDNN);
-			mpc_ui_div(difference, 1, difference, MPC_RNDNN);
-			mpc_add(repulsion, repulsion, difference, MPC_RNDNN);
-		}
-		mpc_mul(repulsion, repulsion, w, MPC_RNDNN);
-		mpc_ui_sub(repulsion, 1, repulsion, MPC_RNDNN);
-		mpc_div(w, w, repulsion, MPC_RNDNN);
+		find_repulsion(it, i, repulsion);
+		mpc_mul(product, repulsion, w, MPC_RNDNN);
+		mpc_ui_sub(product, 1, product, MPC_RNDNN);
+		mpc_div(w, w, product, MPC_RNDNN);
 		if (!is_finite(w) || mpc_cmp_si(w, 0) == 0)
 			continue;
 		mpc_sub(it->z[i], it->z[i], w, MPC_RNDNN);
@@ -183,7 +215,7 @@ static long sweep(struct poly g, struct iteration *it)
 	}
 	mpc_clear(w);
 	mpc_clear(repulsion);
-	mpc_clear(difference);
+	mpc_clear(product);
 	mpfr_clear(size);
 	return largest;
 }
@@ -482,6 +514,8 @@ static bool refine_factor(struct spectrum *spectrum, int f, int precision)
 	/* never fewer than before: what they have parted would meet again */
 	int wanted = precision + GUARD_BITS + 2 * it->degree;
 	bool again = false;
+	if (!it->started)
+		iteration_start(factor->g, it);
 	for (int bits = wanted > it->bits ? wanted : it->bits; bits < LIMIT_ITERATION_BITS;
 	     bits += bits / 2, again = true) {
 		if (again)
@@ -507,27 +541,57 @@ bool spectrum_refine(struct spectrum *spectrum, int precision)
 	return true;
 }
 
-static struct spectrum *spectrum_new(struct poly D)
+static void make_room_for_poles(struct spectrum *spectrum)
 {
-	struct spectrum *spectrum = NEW(struct spectrum);
-	spectrum->D = D;
-	spectrum->zero = poly_valuation(D);
-	spectrum->factors = poly_square_free(D, &spectrum->factor);
 	size_t factors = (size_t)spectrum->factors;
 	spectrum->poles = ARRAY(int, factors);
 	spectrum->pole = ARRAY(struct pole *, factors);
 	spectrum->iteration = ARRAY(struct iteration, factors);
 	for (int f = 0; f < spectrum->factors; f++) {
 		int degree = spectrum->factor[f].g.length - 1;
-		iteration_start(spectrum->factor[f].g, &spectrum->iteration[f]);
+		iteration_new(spectrum->factor[f].g, &spectrum->iteration[f]);
 		spectrum->pole[f] = ARRAY(struct pole, (size_t)degree);
 		for (int i = 0; i < degree; i++)
 			rectangle_init(&spectrum->pole[f][i].at, START_BITS);
 	}
+}
+
+/* Adds those of a part of D; false: it has a root in common with one before that it does not share whole */
+static bool add_factors(struct spectrum *spectrum, struct poly part)
+{
+	struct factor *factor;
+	int factors = poly_square_free(part, &factor), known = spectrum->factors;
+	ENLARGE(spectrum->factor, (size_t)known + (size_t)factors);
+	for (int i = 0; i < factors; i++) {
+		int same = -1;
+		for (int f = 0; f < known && same < 0; f++)
+			if (poly_equal(spectrum->factor[f].g, factor[i].g))
+				same = f;
+			else if (poly_gcd(spectrum->factor[f].g, factor[i].g).length > 1)
+				return false;
+		if (same >= 0)
+			spectrum->factor[same].multiplicity += factor[i].multiplicity;
+		else
+			spectrum->factor[spectrum->factors++] = factor[i];
+	}
+	return true;
+}
+
+static struct spectrum *spectrum_new(struct poly D, int parts, const struct poly *part)
+{
+	struct spectrum *spectrum = NEW(struct spectrum);
+	spectrum->D = D;
+	spectrum->zero = poly_valuation(D);
+	bool apart = true;
+	for (int k = 0; k < parts && apart; k++)
+		apart = add_factors(spectrum, part[k]);
+	if (!apart)
+		spectrum->factors = poly_square_free(D, &spectrum->factor);
+	make_room_for_poles(spectrum);
 	return spectrum;
 }
 
-struct spectrum *spectrum_of(struct poly D)
+static struct spectrum *find_spectrum(struct poly D, int parts, const struct poly *part)
 {
 	enum { BUCKETS = 4096 };
 	static struct spectrum *known[BUCKETS];
@@ -538,7 +602,45 @@ struct spectrum *spectrum_of(struct poly D)
 	for (struct spectrum *s = *first; s; s = s->next)
 		if (poly_equal(s->D, D))
 			return s;
-	struct spectrum *spectrum = spectrum_new(D);
+	struct spectrum *spectrum = spectrum_new(D, parts, part);
 	spectrum->next = *first;
 	return *first = spectrum;
+}
+
+struct spectrum *spectrum_of(struct poly D)
+{
+	return find_spectrum(D, 1, &D);
+}
+
+struct spectrum *spectrum_of_product(int count, const struct poly *part)
+{
+	mpz_t content;
+	mpz_init(content);
+	struct poly D = poly_primitive(poly_product(count, part), content);
+	mpz_clear(content);
+	return find_spectrum(D, count, part);
+}
+
+/* Only where all roots but 0 are of one factor is it clear which are whose. */
+void spectrum_expect(struct spectrum *spectrum, int count, const double *re, const double *im)
+{
+	if (spectrum->factors != 1 || spectrum->iteration->started ||
+	    spectrum->iteration->degree + spectrum->zero != count)
+		return;
+	struct iteration *it = spectrum->iteration;
+	bool *zero = ARRAY(bool, (size_t)count);
+	for (int k = 0; k < spectrum->zero; k++) {
+		int least = -1;
+		for (int i = 0; i < count; i++)
+			if (!zero[i] && (least < 0 || hypot(re[i], im[i]) < hypot(re[least], im[least])))
+				least = i;
+		zero[least] = true;
+	}
+	it->expected = true;
+	for (int i = 0, found = 0; i < count; i++)
+		if (!zero[i]) {
+			it->expected = it->expected && (re[i] != 0 || im[i] != 0);
+			mpc_set_d_d(it->z[found++], re[i], im[i], MPC_RNDNN);
+		}
+	discard(zero);
 }

@@ -48,6 +48,15 @@ struct poly poly_mul(struct poly a, struct poly b)
 	return product;
 }
 
+struct poly poly_product(int count, const struct poly *factor)
+{
+	struct poly product = poly_new(1);
+	mpz_set_ui(product.c[0], 1);
+	for (int k = 0; k < count; k++)
+		product = poly_mul(product, factor[k]);
+	return product;
+}
+
 struct poly poly_scale(struct poly a, mpz_srcptr factor)
 {
 	struct poly scaled = poly_new(a.length);

@@ -133,33 +133,43 @@ static bool same_matrix(struct polymat a, struct polymat b)
 	return same;
 }
 
-static struct poly determinant_of_blocks(struct polymat P, const int *block, int blocks)
+static struct poly determinant(struct polymat P, struct polymat *adj);
+
+int polymat_determinants(struct polymat P, struct poly **det)
 {
+	int *block = ARRAY(int, 2 * (size_t)P.n), blocks = find_blocks(P, block);
 	struct polymat *part = ARRAY(struct polymat, (size_t)blocks);
-	struct poly *det = ARRAY(struct poly, (size_t)blocks), product = poly_new(1);
-	mpz_set_si(product.c[0], odd_order(P.n, block) != odd_order(P.n, block + P.n) ? -1 : 1);
+	*det = ARRAY(struct poly, (size_t)blocks + 1);
 	for (int k = 0; k < blocks; k++) {
 		int same = 0;
-		if (!part_of(P, block, k, &part[k]))
-			return poly_new(0);
+		if (!part_of(P, block, k, &part[k])) {
+			(*det)[0] = poly_new(0);
+			return 1;
+		}
 		while (!same_matrix(part[same], part[k]))
 			same++;
-		if (same == k)
-			polymat_adjugate(part[k], &det[k], NULL);
-		else
-			det[k] = det[same];
-		product = poly_mul(product, det[k]);
+		(*det)[k] = same < k ? (*det)[same] : determinant(part[k], NULL);
 	}
-	return product;
+	bool odd = odd_order(P.n, block) != odd_order(P.n, block + P.n);
+	if (odd)
+		(*det)[0] = poly_sub(poly_new(0), (*det)[0]);
+	return blocks;
 }
 
 void polymat_adjugate(struct polymat P, struct poly *det, struct polymat *adj)
 {
-	int *block = ARRAY(int, 2 * (size_t)P.n), blocks = adj ? 1 : find_blocks(P, block);
-	if (blocks > 1) {
-		*det = determinant_of_blocks(P, block, blocks);
+	if (adj) {
+		*det = determinant(P, adj);
 		return;
 	}
+	struct poly *part;
+	int parts = polymat_determinants(P, &part);
+	*det = poly_product(parts, part);
+}
+
+/* Of a matrix that is one block */
+static struct poly determinant(struct polymat P, struct polymat *adj)
+{
 	int n = P.n, count = degree_bound(P) + 1, cells = adj ? n * n : 0;
 	long *point = ARRAY(long, (size_t)count);
 	mpz_t *dets = ARRAY(mpz_t, (size_t)count), *column = ARRAY(mpz_t, (size_t)count),
@@ -172,10 +182,11 @@ void polymat_adjugate(struct polymat P, struct poly *det, struct polymat *adj)
 		found += sample(P, point[found], dets[found], adj ? adjs[found] : NULL);
 	}
 	progress_end();
-	*det = interpolate(count, point, (const mpz_t *)dets);
+	struct poly det = interpolate(count, point, (const mpz_t *)dets);
 	for (int cell = 0; cell < cells; cell++) {
 		for (int k = 0; k < count; k++)
 			column[k][0] = adjs[k][cell][0];        /* borrowed, not copied */
 		adj->cell[cell] = interpolate(count, point, (const mpz_t *)column);
 	}
+	return det;
 }

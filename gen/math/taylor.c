@@ -604,6 +604,7 @@ static bool find_plan(const struct taylor *t, long bits, struct plan *best)
 static void multiply(struct row *row, struct balls *z, const struct balls *x, const struct balls *y)
 {
 	for (int i = 0; i < x->n; i++) {
+		progress("e^{A h}, row of a product", i, x->n);
 		for (int k = 0; k < x->count[i]; k++) {
 			int m = x->column[i * x->n + k];
 			add_part(row, x, (size_t)(i * x->n + m), y, m);

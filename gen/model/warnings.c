@@ -3,7 +3,6 @@
  * do. */
 #include "model/model.h"
 
-#include <gsl/gsl_eigen.h>
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_odeiv2.h>
 #include <math.h>
@@ -100,29 +99,14 @@ static int ascending(const void *left, const void *right)
 }
 
 /* Sizes of the eigenvalues, or their real parts; false: not found. `value` receives n, sorted. */
-static bool eigenvalues(int n, const mpq_t *A, bool sizes, double *value)
+static bool sorted_eigenvalues(int n, const mpq_t *A, bool sizes, double *value)
 {
-	gsl_matrix *m = gsl_matrix_alloc((size_t)n, (size_t)n);
-	gsl_vector_complex *eigen = gsl_vector_complex_alloc((size_t)n);
-	gsl_eigen_nonsymm_workspace *work = gsl_eigen_nonsymm_alloc((size_t)n);
-	gsl_error_handler_t *handler = gsl_set_error_handler_off();
-	bool finite = true;
-	for (int i = 0; i < n * n; i++) {
-		double entry = nearest_double(A[i]);
-		finite = finite && isfinite(entry);
-		gsl_matrix_set(m, (size_t)(i / n), (size_t)(i % n), entry);
-	}
-	gsl_eigen_nonsymm_params(0, 1, work);
-	bool found = finite && gsl_eigen_nonsymm(m, eigen, work) == GSL_SUCCESS;
-	for (int i = 0; i < n && found; i++) {
-		gsl_complex z = gsl_vector_complex_get(eigen, (size_t)i);
-		value[i] = sizes ? hypot(GSL_REAL(z), GSL_IMAG(z)) : GSL_REAL(z);
-	}
+	double *im = ARRAY(double, (size_t)n);
+	bool found = eigenvalues(n, A, value, im);
+	for (int i = 0; i < n && found && sizes; i++)
+		value[i] = hypot(value[i], im[i]);
 	qsort(value, (size_t)n, sizeof *value, ascending);
-	gsl_set_error_handler(handler);
-	gsl_eigen_nonsymm_free(work);
-	gsl_vector_complex_free(eigen);
-	gsl_matrix_free(m);
+	discard(im);
 	return found;
 }
 
@@ -134,7 +118,7 @@ static bool stiffness(const struct linear *system, double *value)
 	if (!leading_inverse(system, inverse, &column))
 		return false;
 	unreduced_product(n, n, n, (const mpq_t *)inverse, (const mpq_t *)system->K, product);
-	bool found = eigenvalues(n, (const mpq_t *)product, false, value);
+	bool found = sorted_eigenvalues(n, (const mpq_t *)product, false, value);
 	rationals_free(inverse, (size_t)(n * n));
 	rationals_free(product, (size_t)(n * n));
 	return found;
@@ -143,7 +127,7 @@ static bool stiffness(const struct linear *system, double *value)
 static double fastest_pole(const struct linear *system)
 {
 	double *value = ARRAY(double, (size_t)system->states);
-	bool found = eigenvalues(system->states, (const mpq_t *)state_matrix(system, false), true, value);
+	bool found = sorted_eigenvalues(system->states, (const mpq_t *)state_matrix(system, false), true, value);
 	return found ? value[system->states - 1] : 0;
 }
 

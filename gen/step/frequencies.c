@@ -43,10 +43,7 @@ static int by_size(const void *left, const void *right)
 
 int poles_of(const struct model *model, const struct resolvent *resolvent, struct pole_report **report)
 {
-	mpz_t content;
-	mpz_init(content);
-	struct spectrum *spectrum = spectrum_of(poly_primitive(*resolvent_determinant(resolvent), content));
-	mpz_clear(content);
+	struct spectrum *spectrum = resolvent_spectrum(resolvent);
 	int count = 0;
 	if (!spectrum_refine(spectrum, REPORT_BITS))
 		error(model->asked.step_at, "do two parameters differ by less than their rounding?",

@@ -8,7 +8,9 @@
 struct resolvent {
 	const struct linear *system;
 	struct polymat P, adj;      /* the row-scaled P(s); its adjugate, when it was asked for */
-	struct poly B;              /* its determinant */
+	struct poly B;              /* its determinant: the product of its blocks' */
+	int parts;
+	struct poly *part;
 	mpz_t *row;                 /* scale of each row */
 };
 
@@ -63,7 +65,8 @@ struct resolvent *resolvent_of(const struct linear *system)
 		}
 	}
 	r->P = P;
-	polymat_adjugate(P, &r->B, NULL);
+	r->parts = polymat_determinants(P, &r->part);
+	r->B = poly_product(r->parts, r->part);
 	return r;
 }
 
@@ -93,6 +96,27 @@ void characteristic_polynomial(const struct resolvent *r, mpq_t *coefficient)
 const struct poly *resolvent_determinant(const struct resolvent *r)
 {
 	return &r->B;
+}
+
+/* A large polynomial tells its roots badly, and the matrix that it is of tells them well. */
+static void expect_eigenvalues(const struct resolvent *r, struct spectrum *spectrum)
+{
+	size_t n = (size_t)r->system->states;
+	mpq_t *A = state_matrix(r->system, false);
+	double *re = ARRAY(double, n), *im = ARRAY(double, n);
+	if (eigenvalues((int)n, (const mpq_t *)A, re, im))
+		spectrum_expect(spectrum, (int)n, re, im);
+	rationals_free(A, n * n);
+	discard(re);
+	discard(im);
+}
+
+struct spectrum *resolvent_spectrum(const struct resolvent *r)
+{
+	struct spectrum *spectrum = spectrum_of_product(r->parts, r->part);
+	if (r->system->states > LIMIT_RESIDUE_STATES && spectrum->precision == 0)
+		expect_eigenvalues(r, spectrum);
+	return spectrum;
 }
 
 /* ---- excitations ---- */

@@ -31,10 +31,7 @@ static void larger_wave(mpfr_ptr largest, const struct wave *wave)
 
 static void larger_poles(mpfr_ptr largest, const struct resolvent *resolvent)
 {
-	mpz_t content;
-	mpz_init(content);
-	struct spectrum *spectrum = spectrum_of(poly_primitive(*resolvent_determinant(resolvent), content));
-	mpz_clear(content);
+	struct spectrum *spectrum = resolvent_spectrum(resolvent);
 	/* as the residues begin: fewer bits may bring two iterates of a cluster together for good */
 	if (!spectrum_refine(spectrum, POLE_BITS)) {
 		mpfr_set_inf(largest, 1);

@@ -26,6 +26,7 @@ struct resolvent *resolvent_of(const struct linear *system);
 struct response *image_of(struct resolvent *r, const struct question *question);
 /* B(s) = det P, as many as its degree + 1 */
 void characteristic_polynomial(const struct resolvent *r, mpq_t *coefficient);
+struct spectrum *resolvent_spectrum(const struct resolvent *r);                /* of B(s) */
 const struct poly *resolvent_determinant(const struct resolvent *r);           /* B(s) times the scales of the rows */
 
 /* ---- loads.c: loads, inputs and held terms as excitations of a step ---- */

@@ -867,6 +867,49 @@ static void residues_of_powers_of_time(void **state)
     mpq_clears(scale, t, truth, found, NULL);
 }
 
+/* At equal distances, two of one denominator in turn, each from its own start: e^{a t} sin(w t) */
+static void responses_along_a_course(void **state)
+{
+    enum { ROWS = 90 };
+    mpq_t a, w, t, scale, shift, one;
+    mpfr_t truth;
+    mpfi_t value;
+    (void)state;
+    mpq_inits(a, w, t, scale, shift, one, NULL);
+    mpfr_init2(truth, TRUE_BITS);
+    mpq_set_ui(shift, 1, 3);
+    mpq_set_ui(one, 1, 1);
+    for (int n = 0; n < 8; n++) {
+        long i = (long)draw(20), j = 1 + (long)draw(40), rows = 1 + (long)draw(20);
+        struct poly D = poly_new(3);            /* 64 ((s + i/8)^2 + (j/4)^2) */
+        mpz_set_si(D.c[0], i * i + 4 * j * j);
+        mpz_set_si(D.c[1], 16 * i);
+        mpz_set_si(D.c[2], 64);
+        mpq_set_si(a, -i, 8);
+        mpq_set_si(w, j, 4);
+        mpq_set_si(scale, 16 * j, 1);
+        mpq_canonicalize(a);
+        mpq_canonicalize(w);
+        struct response *response[] = { response_of(scale, one_poly(), D), response_of(scale, one_poly(), D) };
+        for (int k = 0; k < ROWS; k++)
+            for (int r = 0; r < 2; r++) {
+                mpq_set_si(t, k + (k > ROWS / 2 ? 1 : 0), (unsigned long)rows);         /* one stride is longer */
+                mpq_canonicalize(t);
+                if (r)
+                    mpq_add(t, t, shift);
+                mpfr_set_zero(truth, 1);
+                add_wave(truth, a, w, t, one, 0, true);
+                mpfi_init2(value, 200);
+                assert_true(response_enclose(response[r], t, 128, value));
+                assert_interval("along a course", n, value, truth);
+                assert_narrow("along a course", n, value, -90);
+                mpfi_clear(value);
+            }
+    }
+    mpq_clears(a, w, t, scale, shift, one, NULL);
+    mpfr_clear(truth);
+}
+
 /* ---- exponentials of matrices ---- */
 
 enum { PRECISION = 120 };
@@ -955,6 +998,33 @@ static void taylor_times_its_inverse(void **state)
         entries_free(order, I);
     }
     mpq_clear(tau);
+}
+
+static void taylor_doubled_twice(void **state)
+{
+    mpq_t tau, exact, other;
+    mpq_inits(tau, exact, other, NULL);
+    (void)state;
+    for (int n = 0; n < 60; n++) {
+        int order = 1 + (int)draw(6);
+        mpq_t *A = draw_slow_matrix(order);
+        mpq_set_ui(tau, 1 + draw(12), 32);
+        mpq_canonicalize(tau);
+        struct taylor *twice = taylor_doubled(taylor_of(order, (const mpq_t *)A, tau)), *again = taylor_doubled(twice);
+        mpq_mul_2exp(tau, tau, 2);
+        struct taylor *direct = taylor_of(order, (const mpq_t *)A, tau);
+        mpfi_t *E = entries_of(again, order, PRECISION), *D = entries_of(direct, order, PRECISION);
+        assert_meet("doubled twice", n, order, (const mpfi_t *)E, (const mpfi_t *)D, ROOM - PRECISION);
+        for (int i = 0; i < order * order; i++) {
+            bool known = taylor_exact(again, i / order, i % order, exact);
+            if (known != taylor_exact(direct, i / order, i % order, other) || (known && !mpq_equal(exact, other)))
+                fail_msg("case %d, entry %d: exact as doubled %d, %g; directly %g", n, i, known, mpq_get_d(exact),
+                         mpq_get_d(other));
+        }
+        entries_free(order, E);
+        entries_free(order, D);
+    }
+    mpq_clears(tau, exact, other, NULL);
 }
 
 /* e^{A(s+t)} = e^{As} e^{At}, and e^{A+B} = e^A e^B for B = x + y A + z A^2 */
@@ -1313,7 +1383,9 @@ int main(int argc, char **argv)
         cmocka_unit_test(residues_of_powers_of_time),
         cmocka_unit_test(residues_of_real_poles),
         cmocka_unit_test(a_response_asked_anew),
+        cmocka_unit_test(responses_along_a_course),
         cmocka_unit_test(taylor_times_its_inverse),
+        cmocka_unit_test(taylor_doubled_twice),
         cmocka_unit_test(taylor_of_sums),
         cmocka_unit_test(taylor_of_known_eigenvalues),
         cmocka_unit_test(taylor_of_few_bits),

@@ -1,0 +1,33 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Eigenvalues of a rational matrix, in double precision: to begin with, or to tell a user. */
+#include "math/math.h"
+
+#include <gsl/gsl_eigen.h>
+#include <gsl/gsl_errno.h>
+#include <math.h>
+
+bool eigenvalues(int n, const mpq_t *A, double *re, double *im)
+{
+	gsl_matrix *m = gsl_matrix_alloc((size_t)n, (size_t)n);
+	gsl_vector_complex *eigen = gsl_vector_complex_alloc((size_t)n);
+	gsl_eigen_nonsymm_workspace *work = gsl_eigen_nonsymm_alloc((size_t)n);
+	gsl_error_handler_t *handler = gsl_set_error_handler_off();
+	bool finite = true;
+	for (int i = 0; i < n * n; i++) {
+		double entry = nearest_double(A[i]);
+		finite = finite && isfinite(entry);
+		gsl_matrix_set(m, (size_t)(i / n), (size_t)(i % n), entry);
+	}
+	gsl_eigen_nonsymm_params(0, 1, work);
+	bool found = finite && gsl_eigen_nonsymm(m, eigen, work) == GSL_SUCCESS;
+	for (int i = 0; i < n && found; i++) {
+		gsl_complex z = gsl_vector_complex_get(eigen, (size_t)i);
+		re[i] = GSL_REAL(z);
+		im[i] = GSL_IMAG(z);
+	}
+	gsl_set_error_handler(handler);
+	gsl_eigen_nonsymm_free(work);
+	gsl_vector_complex_free(eigen);
+	gsl_matrix_free(m);
+	return found;
+}
