@@ -63,7 +63,7 @@ void pl_cossin(pl_turn a, double z[2])
 {
     const uint64_t half_pi = 0xC90FDAA22168C235; /* pi/2 2^63 */
     const uint64_t sixth = 0x2AAAAAAAAAAAAAAB;   /* 2^64/6 */
-    const int quarter = (int)((a.hi + ((uint64_t)1 << 61)) >> 62); /* the nearest; 4 wraps to 0 */
+    const int quarter = (int)(((uint32_t)(a.hi >> 32) + 0x20000000u) >> 30); /* the nearest; 4 wraps to 0 */
     uint64_t x, xx;
     double r, rr, r4, c, s;
     union {
@@ -80,10 +80,18 @@ void pl_cossin(pl_turn a, double z[2])
     }
     a.hi = a.hi << 2 | a.lo >> 62; /* at most 2^63, in units of 2^-66 turn */
     a.lo <<= 2;
-    while (a.hi >> 59 == 0 && shift < 128) { /* so that small angles keep their relative accuracy */
-        a.hi = a.hi << 4 | a.lo >> 60;
-        a.lo <<= 4;
-        shift += 4;
+    /* So that small angles keep their relative accuracy; half a word at a time while that is empty: eleven rounds at
+     * most, however small */
+    while (a.hi >> 59 == 0 && shift < 128) {
+        if (a.hi >> 31 == 0) {
+            a.hi = a.hi << 32 | a.lo >> 32;
+            a.lo <<= 32;
+            shift += 32;
+        } else {
+            a.hi = a.hi << 4 | a.lo >> 60;
+            a.lo <<= 4;
+            shift += 4;
+        }
     }
     /* 2^-(63 + shift): made at once, since a target may multiply in software */
     unit.bits = (uint64_t)(1023 - 63 - shift) << 52;

@@ -4,8 +4,8 @@
 # its end.
 #
 # A line of a list is `NAME MODEL [OPTION ...]`, with options for plgen; as the first of them `untested` for what can
-# have no selftest, or `tunable` for what has tunable params and outputs that depend on them.  A model that is not in
-# the folder is in this one.
+# have no selftest, `tunable` for what has tunable params and outputs that depend on them, `anchored` for what keeps its
+# loads in tables: the others are as small as can be.  A model that is not in the folder is in this one.
 set -eu
 plgen=$1
 folder=$2
@@ -16,11 +16,13 @@ cat "$@" | grep -v '^#' >"$out.lines"
 echo '#include "variant.h"' >"$out.part"
 while read -r name model options; do
     selftest=--selftest
+    anchors='--anchors 1'
     case $options in untested*) selftest= options=${options#untested} ;; esac
+    case $options in anchored*) anchors= options=${options#anchored} ;; esac
     spec=$folder/$model.spec
     [ -f "$spec" ] || spec=${0%/*}/$model.spec
     # shellcheck disable=SC2086
-    "$plgen" $selftest --real "$real" --prefix "${name}_$real" ${options#tunable} "$spec" >>"$out.part"
+    "$plgen" $selftest $anchors --real "$real" --prefix "${name}_$real" ${options#tunable} "$spec" >>"$out.part"
 done <"$out.lines"
 {
     echo 'const struct variant variants_'"$real"'[] = {'
