@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* NAME_run in blocks: the outputs after 1, 2, ... K steps, all from what stands at the start of the block, so that no row
- * waits for the one before it and a compiler takes several at a time. A number of row l is C Phi^l y + its share of the
- * load states + that of the samples so far, every factor rounded once from its closed form at l h. What goes on to the
- * next block is a step of K h, in the form of the model's own step. */
+/* NAME_run in blocks: the outputs after 1, 2, ... K steps, all from what stands at the start of the block, so that no
+ * row waits for the one before it and a compiler takes several at a time. A number of row l is C Phi^l y + its share of
+ * the load states + that of the samples so far, every factor rounded once from its closed form at l h. What goes on to
+ * the next block is a step of K h, in the form of the model's own step. */
 #include "step/step.h"
 
 #include <math.h>
