@@ -63,6 +63,7 @@ while read -r name rows spec options; do
     case $spec in
         models/*) file=$root/$spec ;;
         linear/*) file=$emitted/${spec#linear/} ;;
+        forms/*) file=$root/tests/$spec ;;
         *) file=$spec ;;
     esac
     # shellcheck disable=SC2086
@@ -81,7 +82,7 @@ sdcs_two 32 models/sdcs.spec --accuracy compensated
 scs 12 models/scs.spec
 scs_two 12 models/scs.spec --accuracy compensated
 scs_delta 64 models/scs.spec --form delta --rows 64
-masses 4 linear/reduced.spec --rows 4
+masses 4 forms/masses.spec --rows 4
 sdcsf 64 models/sdcsf.spec
 sdcsf_two 7 models/sdcsf.spec --accuracy compensated --rows 7
 tuned_floor 64 models/tuned_floor.spec
