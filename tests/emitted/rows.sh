@@ -101,7 +101,7 @@ ramped2 6 linear/ramped2.spec --rows 6
 ramped2_two 8 linear/ramped2.spec --accuracy compensated --rows 8
 first2 8 linear/first2.spec --rows 8
 rigid 8 rigid.spec --rows 8
-sum 8 sum.spec
+sum 4 sum.spec
 changing 0 linear/switched.spec
 by_steps 0 models/sdcs.spec --rows 1
 f_sdcs 0 models/sdcs.spec --real float
