@@ -73,6 +73,7 @@ bench: tests
 	sh bench/generate.sh $(BUILD)
 	sh bench/growth.sh $(BUILD)
 	$(BUILD)/bench/apply
+	sh bench/run.sh $(BUILD)
 	sh bench/beam.sh $(BUILD)
 	sh bench/switching.sh $(BUILD)
 	$(BUILD)/bench/crossings

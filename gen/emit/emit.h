@@ -236,8 +236,7 @@ void emit_looped_step(const struct emitter *e);
 void emit_modes(const struct emitter *e);                         /* tables; nothing of other forms */
 void emit_modal_step(const struct emitter *e);
 
-/* ---- emit.c, emit_step.c, emit_out.c, emit_run.c, emit_loads.c, emit_forced.c, emit_anchors.c, emit_time.c,
- * emit_tune.c, emit_rhs.c: a step as C ---- */
+/* ---- emit.c and emit_step, _out, _run, _loads, _forced, _anchors, _time, _tune, _rhs: a step as C ---- */
 
 void emit_header(FILE *to, const struct step *step, const char *options, bool rhs);
 /* header_name NULL: all in one */

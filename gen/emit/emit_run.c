@@ -215,9 +215,90 @@ static void emit_block_locals(const struct emitter *e, const struct emitter *of_
 	emit_start(e);
 }
 
+/* ---- the step of K h ---- */
+
+/* With samples it is long: a table by columns, so that several states are computed at a time. */
+static bool steps_by_table(const struct emitter *e)
+{
+	const struct program *program = e->step->program;
+	return e->system->inputs > 0 && e->system->states % 2 == 0 && !program->in_order && !program->compensated &&
+	       e->step->carries == 0;
+}
+
+struct leap_column {
+	const char *operand;        /* NULL: 1 */
+	double *value;              /* per state */
+};
+
+/* false: it is 0 */
+static bool leap_column_of(const struct emitter *e, const struct coefficient *factor, int stride, const char *operand,
+			   struct leap_column *column)
+{
+	bool any = false;
+	*column = (struct leap_column){ operand, ARRAY(double, (size_t)e->system->states) };
+	for (int i = 0; i < e->system->states; i++) {
+		column->value[i] = factor[i * stride].zero ? 0 : factor[i * stride].value;
+		any = any || column->value[i] != 0;
+	}
+	return any;
+}
+
+/* Of the state, then of what acts; returns how many */
+static int leap_columns_of(const struct emitter *e, struct leap_column *column)
+{
+	const struct table *table = e->step->branch->whole;
+	const struct coefficient *square = e->step->form == FORM_DELTA ? table->increment : table->Phi;
+	int count = 0, n = table->states;
+	for (int j = 0; j < n; j++)
+		count += leap_column_of(e, square + j, n, e->local[j], &column[count]);
+	for (int k = 0; k < table->columns; k++)
+		if (!is_forced(e->step, k))
+			count += leap_column_of(e, table->load + k, table->columns, column_operand(e, k), &column[count]);
+	for (int k = 0; k < table->inputs; k++)
+		count += leap_column_of(e, table->input + k, table->inputs, e->sample[k], &column[count]);
+	return count;
+}
+
+static struct leap_column *room_for_leap(const struct emitter *e)
+{
+	const struct table *table = e->step->branch->whole;
+	return ARRAY(struct leap_column, (size_t)(table->states + table->columns + table->inputs) + 1);
+}
+
+static void emit_leap_table(const struct emitter *e)
+{
+	struct leap_column *column = room_for_leap(e);
+	int count = leap_columns_of(e, column);
+	say(e, "\n/* What a block adds to the states%s */\n"
+	       "static const double $n_leap[%d][$N_STATES] = {\n",
+	    e->step->form == FORM_DELTA ? "" : ", from 0 on", count);
+	for (int k = 0; k < count; k++)
+		emit_number_rows(e, 1, e->system->states, column[k].value,
+				 &(const char *){ column[k].operand ? column[k].operand : "1" });
+	say(e, "};\n");
+}
+
+static void emit_leap(const struct emitter *e)
+{
+	struct leap_column *column = room_for_leap(e);
+	int count = leap_columns_of(e, column);
+	const char **term = ARRAY(const char *, (size_t)count + 1);
+	for (int k = 0; k < count; k++) {
+		const char *operand = column[k].operand;
+		term[k] = format("%s_leap[%d][cell]%s%s", e->name, k, operand ? " * " : "", operand ? operand : "");
+	}
+	say(e, "    for (cell = 0; cell < $N_STATES; cell++)\n"
+	       "        s->y[cell] %s %s;\n",
+	    e->step->form == FORM_DELTA ? "+=" : "=", count ? tree(count, term, 22) : "0.0");
+}
+
 static void emit_block_step(const struct emitter *e)
 {
 	const struct program *program = e->step->program;
+	if (steps_by_table(e)) {
+		emit_leap(e);
+		return;
+	}
 	for (int i = 0; i < program->assignments; i++)
 		emit_assignment(e, &program->assignment[i]);
 	for (int i = 0; i < e->system->states && program->in_order; i++)
@@ -233,9 +314,13 @@ static void emit_block(const struct emitter *e)
 	block.step = e->step->rows->block;
 	block.sample = sample_names(e);
 	emit_rows(e);
+	if (steps_by_table(&block))
+		emit_leap_table(&block);
 	say(e, "\n/* $N_ROWS steps as one, and the outputs after each unless out is NULL */\n"
 	       "static void $n_block($n *s%s, double *out)\n"
 	       "{\n", inputs ? ", const double *samples" : "");
+	if (steps_by_table(&block))
+		say(e, "    int cell;\n");
 	emit_block_locals(&block, e);
 	emit_block_step(&block);
 	if (inputs)

@@ -56,8 +56,8 @@ void print_solution(FILE *to, const struct model *model, struct resolvent *writt
 		progress("row", (int)k, (int)last);
 		fprintf(to, "%.17g", nearest_double(t));
 		for (int j = 0; j < model->outputs; j++) {
-			struct coefficient value = started_value(form[j].count, form[j].list, t, false, model->asked.step_at,
-								 model->output[j].name);
+			struct coefficient value = started_value(form[j].count, form[j].list, t, false,
+								 model->asked.step_at, model->output[j].name);
 			if (!isfinite(value.value))
 				error(model->asked.end_at, NULL, "output '%s' leaves the range of double at t = %s s",
 				      model->output[j].name, readable_text(t));

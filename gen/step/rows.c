@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* NAME_run in blocks: the outputs after 1, 2, ... K steps, all from what stands at the start of the block, so that no row
- * waits for the one before it and a compiler takes several at a time. A number of row l is C Phi^l y + its share of the
- * load states + that of the samples so far, every factor rounded once from its closed form at l h. What goes on to the
- * next block is a step of K h, in the form of the model's own step. */
+/* NAME_run in blocks: the outputs after 1, 2, ... K steps, all from what stands at the start of the block, so that no
+ * row waits for the one before it and a compiler takes several at a time. A number of row l is C Phi^l y + its share of
+ * the load states + that of the samples so far, every factor rounded once from its closed form at l h. What goes on to
+ * the next block is a step of K h, in the form of the model's own step. */
 #include "step/step.h"
 
 #include <math.h>
 
 enum {
 	TABLE_NUMBERS = 3072,       /* of a block: they stay in the nearest cache */
-	LANES = 8,                  /* numbers that a compiler may take at a time */
+	LANES = 4,                  /* numbers that a compiler may take at a time */
 	FEWEST = 4                  /* rows that are worth a block */
 };
 
@@ -259,7 +259,7 @@ static int group_of(const struct step *step, int count, int outputs)
 	int group = 1;
 	if (step->branch->system.inputs == 0)
 		return count;
-	while (group * outputs < LANES || group * outputs % (LANES / 2))
+	while (group * outputs % LANES)
 		group *= 2;
 	return count % group ? count : group;
 }
@@ -267,7 +267,7 @@ static int group_of(const struct step *step, int count, int outputs)
 /* A sample of an input costs the more the more rows come after it; what loads cost once in a block, the less. */
 static int best_rows(const struct step *step)
 {
-	return step->branch->system.inputs ? 8 : step->program->wave_multiplications ? 64 : 32;
+	return step->branch->system.inputs ? 4 : step->program->wave_multiplications ? 64 : 32;
 }
 
 /* Kicks are as S^-1: a step of K h has to be far from where S vanishes. */

@@ -546,8 +546,9 @@ struct rows {
 	int count, outputs;         /* rows in a block; numbers in a row */
 	int columns;                /* those that give something */
 	struct row_column *column;
-	int group;                  /* rows that are summed side by side, so that samples after all of them are left out */
-	double **sample;            /* per input: the outputs at the end of its step, after one more, ...: [row][output] */
+	int group;                  /* rows summed side by side: samples after all of them are left out */
+	/* per input, what a sample gives the outputs at the end of its step, after one more, ...: [row][output] */
+	double **sample;
 	/* The step of `count` h. Columns of inputs: those of ramps before the block, then each of its samples */
 	struct step *block;
 };

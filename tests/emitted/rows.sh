@@ -63,6 +63,7 @@ while read -r name rows spec options; do
     case $spec in
         models/*) file=$root/$spec ;;
         linear/*) file=$emitted/${spec#linear/} ;;
+        forms/*) file=$root/tests/$spec ;;
         *) file=$spec ;;
     esac
     # shellcheck disable=SC2086
@@ -80,27 +81,27 @@ sdcs_direct 32 models/sdcs.spec --form direct
 sdcs_two 32 models/sdcs.spec --accuracy compensated
 scs 12 models/scs.spec
 scs_two 12 models/scs.spec --accuracy compensated
-scs_delta 64 models/scs.spec --form delta --rows 64
-masses 4 linear/reduced.spec --rows 4
+scs_delta 20 models/scs.spec --form delta --rows 20
+masses 4 forms/masses.spec --rows 4
 sdcsf 64 models/sdcsf.spec
 sdcsf_two 7 models/sdcsf.spec --accuracy compensated --rows 7
-tuned_floor 64 models/tuned_floor.spec
-forced 64 forced.spec
+tuned_floor 8 models/tuned_floor.spec --rows 8
+forced 16 forced.spec --rows 16
 loose 8 loose.spec --rows 8
 forced_two 8 forced.spec --accuracy compensated --rows 8
-growing 64 linear/growing.spec
-product 32 linear/product.spec
-ramps 32 linear/ramps.spec
-resonance 64 linear/resonance.spec
+growing 16 linear/growing.spec --rows 16
+product 8 linear/product.spec --rows 8
+ramps 8 linear/ramps.spec --rows 8
+resonance 8 linear/resonance.spec --rows 8
 maxwell 9 linear/maxwell.spec --rows 9
-vector3 16 linear/vector3.spec --rows 16
-reduced 16 linear/reduced.spec --reduce --rows 16
+vector3 8 linear/vector3.spec --rows 8
+reduced 8 linear/reduced.spec --reduce --rows 8
 held2 5 linear/held2.spec --rows 5
 ramped2 6 linear/ramped2.spec --rows 6
 ramped2_two 8 linear/ramped2.spec --accuracy compensated --rows 8
 first2 8 linear/first2.spec --rows 8
 rigid 8 rigid.spec --rows 8
-sum 8 sum.spec
+sum 4 sum.spec
 changing 0 linear/switched.spec
 by_steps 0 models/sdcs.spec --rows 1
 f_sdcs 0 models/sdcs.spec --real float

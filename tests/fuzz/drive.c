@@ -219,7 +219,7 @@ static void slopes_of(const void *nothing, double t, const double *y, const doub
 	of->slopes(t, y, u, dydt);
 }
 
-/* Over a step, with a stop where a load changes. */
+/* Over a step, with a stop where a load changes; a change at its start, but for rounding, has been. */
 static bool advance(struct truth *solver, double from, double to, const double *u, double *y)
 {
 	const char *p = of->changes;
@@ -230,7 +230,9 @@ static bool advance(struct truth *solver, double from, double to, const double *
 		const char *list = p;
 		char *end;
 		for (double change = strtod(list, &end); end != list; list = end, change = strtod(list, &end))
-			if (change > now + 1e-14 && change < next)
+			if (change > now && change <= now + 1e-14)
+				now = change;
+			else if (change > now && change < next)
 				next = change;
 		for (int i = 0; i < inputs; i++)
 			moved[i] = u[i] + (now - from) * u[inputs + i];
@@ -542,7 +544,7 @@ static void judge_run(void)
 	double *const u = malloc(sizeof *u * (size_t)(STEPS * inputs + 1)), y[MOST];
 	float *const outf = malloc(sizeof *outf * (size_t)(STEPS * outputs + 1));
 	float *const uf = malloc(sizeof *uf * (size_t)(STEPS * inputs + 1));
-	const double ulps = in_float ? 0 : 2 * 0x1p-52; /* in float there are no blocks of rows */
+	const double ulps = in_float ? 2 * 0x1p-23 : 2 * 0x1p-52;
 	if (!out || !u || !outf || !uf)
 		exit(3);
 	for (int k = 0; k < STEPS; k++)
