@@ -120,7 +120,9 @@ static void emit_includes(const struct emitter *e, bool rhs)
 
 static void emit_run(const struct emitter *e)
 {
-	bool inputs = e->system->inputs > 0;
+	bool inputs = e->system->inputs > 0, rests = e->step->rest && !e->step->rest->in_step;
+	if (rests)
+		emit_rest(e);
 	say(e, "\nvoid $n_run($n *s, size_t n, %sdouble *out)\n"
 	       "{\n"
 	       "    for (; n > 0; n--) {\n"
@@ -131,8 +133,10 @@ static void emit_run(const struct emitter *e)
 	       "            $n_out(s, out);\n"
 	       "            out += $N_OUTPUTS;\n"
 	       "        }\n"
+	       "%s"
 	       "    }\n"
-	       "}\n");
+	       "}\n",
+	    rests ? spell(e, "        if ((s->k & 63) == 0)\n            $n_rest(s);\n") : "");
 }
 
 static void emit_all_tables(const struct emitter *e)

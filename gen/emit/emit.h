@@ -253,6 +253,7 @@ void emit_set_aside(const struct emitter *e);
 void emit_take_back(const struct emitter *e);
 void emit_hand_over(const struct emitter *e);                     /* in at: y from the states in x */
 void emit_step(const struct emitter *e);
+void emit_rest(const struct emitter *e);                          /* NAME_rest: what has decayed comes to rest */
 void emit_step_end(const struct emitter *e);                      /* samples, phases and time move on */
 const char *step_parameters(const struct emitter *e);
 const char *input_operand(const struct emitter *e, int column);

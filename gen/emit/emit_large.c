@@ -33,7 +33,8 @@ static struct operand acting_operand(const struct group *g, int k)
 static double group_number(const struct emitter *e, const struct group *g, int row, int block,
 			const struct operand *operand, int segment)
 {
-	return group_factor(e->step, g, row, block, operand, segment)->value;
+	const struct coefficient *factor = group_factor(e->step, g, row, block, operand, segment);
+	return factor->zero ? 0 : factor->value;
 }
 
 static const char *matrix_name(const struct emitter *e)
@@ -415,4 +416,61 @@ void emit_looped_step(const struct emitter *e)
 			say(e, "    $n_%s%d_step(s%s);\n", kind[program->group[k].kind], k,
 			    acting(&program->group[k]) ? format(", driven%d", k) : "");
 	emit_take_back(e);
+}
+
+/* ---- rest ---- */
+
+/* Well above where numbers have fewer bits */
+static const char *least_size(const struct emitter *e)
+{
+	return e->model->asked.single ? "1e-35" : "1e-290";
+}
+
+static void emit_rest_of_all(const struct emitter *e)
+{
+	say(e, "    for (i = 0; i < $N_STATES; i++)\n"
+	       "        if (!(s->y[i] > -%s && s->y[i] < %s))\n"
+	       "            return;\n"
+	       "    for (i = 0; i < $N_STATES; i++)\n"
+	       "        s->y[i] = 0.0;\n",
+	    least_size(e), least_size(e));
+}
+
+static void emit_rest_of_parts(const struct emitter *e)
+{
+	const struct rest *rest = e->step->rest;
+	say(e, "    static const short part[$N_STATES] = {  /* that decays by itself; -1: it does not */\n"
+	       "        ");
+	for (int i = 0; i < e->system->states; i++)
+		say(e, "%s%d", !i ? "" : i % 20 ? ", " : ",\n        ", rest->part[i]);
+	say(e, "};\n"
+	       "    char moves[%d];\n"
+	       "    for (i = 0; i < %d; i++)\n"
+	       "        moves[i] = 0;\n"
+	       "    for (i = 0; i < $N_STATES; i++)\n"
+	       "        if (part[i] >= 0 && !(s->y[i] > -%s && s->y[i] < %s))\n"
+	       "            moves[part[i]] = 1;\n"
+	       "    for (i = 0; i < $N_STATES; i++)\n"
+	       "        if (part[i] >= 0 && !moves[part[i]])\n"
+	       "            s->y[i] = 0.0;\n",
+	    rest->parts, rest->parts, least_size(e), least_size(e));
+}
+
+/* What has decayed so far is at rest. Every 64 steps is often enough, and no step shows it. */
+void emit_rest(const struct emitter *e)
+{
+	bool compensated = e->step->program->compensated, parts = e->step->rest->parts > 1;
+	for (int i = 0; i < e->system->states; i++)
+		parts = parts || e->step->rest->part[i] < 0;
+	say(e, "\n"
+	       "/* Rest, for what has decayed below %s: numbers that small take many times as long as others */\n"
+	       "static void $n_rest($n *s)\n"
+	       "{\n"
+	       "    int i;\n",
+	    least_size(e));
+	(parts ? emit_rest_of_parts : emit_rest_of_all)(e);
+	if (compensated && !parts)
+		say(e, "    for (i = 0; i < $N_STATES; i++)\n"
+		       "        s->rest[i] = 0.0;\n");
+	say(e, "}\n");
 }

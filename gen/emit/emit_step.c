@@ -175,6 +175,9 @@ void emit_step_end(const struct emitter *e)
 	emit_keep_inputs(e);
 	emit_load_advance(e, NULL);
 	say(e, "    s->k++;\n");
+	if (e->step->rest && e->step->rest->in_step)
+		say(e, "    if ((s->k & 63) == 0)\n"
+		       "        $n_rest(s);\n");
 }
 
 const char *step_parameters(const struct emitter *e)
@@ -248,6 +251,8 @@ static void emit_changing_step(const struct emitter *e)
 void emit_step(const struct emitter *e)
 {
 	emit_groups(e);
+	if (e->step->rest && e->step->rest->in_step)
+		emit_rest(e);
 	if (e->system->segments > 1) {
 		emit_changing_step(e);
 		return;

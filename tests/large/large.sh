@@ -204,4 +204,34 @@ row_of_masses '' | "$plgen" - 2>log | grep 'form delta: 1600 multiplications' >>
 result $? '20 masses, all states: 1600 multiplications'
 "$plgen" --prefix modes row.spec -o modes.c && "$plgen" --form delta --prefix states row.spec -o states.c
 beside 'modes that the generator has chosen' 100 2e-12 2e-12 modes states
+
+# ---- rest ----
+
+# at_rest NAME HOW REAL PAIRS [OPTION ...]: so many damped masses in a row, and as many free of damping beside others
+at_rest() {
+	what=$1
+	how=$2
+	real=$3
+	pairs=$4
+	shift 4
+	for model in decaying mixed; do
+		awk -v n="$pairs" -v model=$model 'BEGIN {
+			for (i = 1; i <= n; i++) list = list (i > 1 ? ", " : "") "a" i (model == "mixed" ? ", b" i : "")
+			print "model " model "\ncoord " list
+			for (i = 1; i <= n; i++) {
+				print "a" i "\47\47 + a" i "\47 + 90*a" i (i > 1 ? " - 20*a" (i - 1) : "") " = 0"
+				if (model == "mixed") print "b" i "\47\47 + " 20 + i "*b" i " = 0"
+			}
+			print "step 0.01"
+		}' >$model.spec
+		"$plgen" --real "$real" "$@" $model.spec -o $model.c >>log 2>&1
+	done
+	# shellcheck disable=SC2086
+	$cc $flags -I"$root/runtime" -DREAL="$real" -DMODEL=pl_model$([ "$real" = float ] && echo f) \
+		"$root/tests/large/rest.c" decaying.c mixed.c "$PLRT" -lm -o rest >>log 2>&1 && ./rest "$how" >>log 2>&1
+	result $? "rest: $what"
+}
+: >log
+at_rest 'steps of 18 masses' step double 18 --form delta
+at_rest 'runs of two, in float' run float 2 --form delta
 tap_end
