@@ -274,7 +274,7 @@ static void banner_state(const struct emitter *e)
 static void banner_functions(const struct emitter *e)
 {
 	const char *no_at = e->kind->no_at(e->step);
-	int states = e->system->states;
+	int states = is_blockwise(e) ? 0 : e->system->states;
 	if (has_jump(e) && states > 12)
 		say(e, " * $n_jump needs some %d KB of stack.\n", 1 + 32 * states * states / 1024);
 	if (!has_jump(e))

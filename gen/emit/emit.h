@@ -217,6 +217,14 @@ void emit_groups(const struct emitter *e);                        /* tables and 
 bool rows_read_changing_loads(const struct emitter *e);           /* the factors are read from a table */
 void emit_looped_step(const struct emitter *e);
 
+/* ---- blockwise.c: between steps, and many at once, of a large model block by block ---- */
+
+bool is_blockwise(const struct emitter *e);
+void emit_block_list(const struct emitter *e);
+void emit_blockwise_at(const struct emitter *e);
+void emit_leap_loads(const struct emitter *e, const struct leap *leap, const char *vector);
+void emit_blockwise_leap(const struct emitter *e, const struct leap *leap, int entries);
+
 /* ---- emit_modal.c: a step of modes ---- */
 
 void emit_modes(const struct emitter *e);                         /* tables; nothing of other forms */

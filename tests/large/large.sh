@@ -90,7 +90,7 @@ beside() {
 	real=${real:-double}
 	model=pl_model$([ "$real" = float ] && echo f)
 	# shellcheck disable=SC2086
-	$cc $flags -I"$root/runtime" -DA="$a" -DPARTS="$list" -DREAL="$real" -DMODEL="$model" \
+	$cc $flags -I"$root/runtime" -DWHOLE="$a" -DPARTS="$list" -DREAL="$real" -DMODEL="$model" \
 		"$root/tests/large/compare.c" $files "$library" -lm -o compare >>log 2>&1 &&
 		./compare "$steps" "$tolerance" "$rest" >>log 2>&1
 	result $? "$what"
@@ -114,6 +114,17 @@ grep '_step(whole \*s\|= r1 +' whole.c >log
 grep -q 'whole_alike0_step(whole \*s' whole.c && grep -q 'whole_columns[0-9]_step(whole \*s' whole.c &&
 	grep -q 's->y\[1\] = r1 +' whole.c
 result $? 'blocks alike are one loop, a few rows are rows, a large block is columns'
+
+# The same without samples, so that they can leap, under loads that change or not; loads are not summed in one order
+for change in '' ' + (t < 0.333 ? 2 : 1 - t)'; do
+	: >log
+	parts='oscillating few chained'
+	for name in whole $parts; do
+		sed "/^input/d; s/= u/= 0.25/; s/u + cos/0.25 + cos/; s/^x2.*/&$change/; s/^c4.*/&$change/" $name.spec >t.spec
+		"$plgen" t.spec -o $name.c >>log 2>&1 || echo "$name is refused" >>log
+	done
+	beside "blocks that leap${change:+, across a change}" 60 1e-14 1e-12 whole $parts
+done
 
 # ---- modes ----
 
