@@ -186,8 +186,8 @@ static void banner_modes(const struct emitter *e)
 		say(e, " * A row of outputs: %d multiplications.\n", e->system->states * e->model->outputs);
 	say(e, " * A step rounds a mode by 3 %s of its amplitude at most, what it reads of loads and inputs apart; "
 	       "an output by\n"
-	       " * %d %s of the sum of its modes' sizes. States become modes in set and states again in get: of what a\n"
-	       " * state itself has in the modes, which is up to %.3g times its size, %d %s are rounding.\n",
+	       " * %d %s of the sum of its modes' sizes. States become modes in set and states again in get: of what\n"
+	       " * a state itself has in the modes, up to %.3g times its size, %d %s are rounding.\n",
 	    unit, e->system->states / 8 + 5, unit, modal->condition, 2 * (e->system->states / 8 + 5), unit);
 }
 

@@ -64,19 +64,23 @@ static void emit_block_loop(const struct emitter *e, int further)
 
 /* ---- at ---- */
 
-void emit_blockwise_at(const struct emitter *e)
+void declare_blockwise_at(const struct emitter *e)
 {
-	const struct series *series = &e->step->series;
-	const int further = e->step->layout.size - e->system->states, size = largest_block(e) + further;
+	const int size = largest_block(e) + e->step->layout.size - e->system->states;
 	say(e, "    double x[%d], part[%d], A[%d], work[%d];\n"
 	       "    pl_series series;\n"
 	       "    int block, j;\n",
 	    e->step->layout.size, size, size * size, 2 * size);
-	emit_series_vector(e);
+}
+
+/* x, as declared and filled, tau later */
+void emit_blockwise_at(const struct emitter *e)
+{
+	const struct series *series = &e->step->series;
 	say(e, "    series.degree = %d;\n"
 	       "    series.halvings = %d;\n"
 	       "    series.A = A;\n", series->degree, series->halvings);
-	emit_block_loop(e, further);
+	emit_block_loop(e, e->step->layout.size - e->system->states);
 	say(e, "        for (i = 0; i < size; i++) {\n"
 	       "            const int row = i < states ? at[i] : $N_STATES + i - states;\n"
 	       "            part[i] = x[row];\n"
@@ -89,7 +93,6 @@ void emit_blockwise_at(const struct emitter *e)
 	       "        for (i = 0; i < states; i++)\n"
 	       "            x[at[i]] = part[i];\n"
 	       "    }\n");
-	emit_hand_over(e);
 }
 
 /* ---- jump ---- */
@@ -119,13 +122,17 @@ static void emit_carries(const struct emitter *e, const char *layout)
 			say(e, layout, i, e->step->carry[i]);
 }
 
-void emit_blockwise_leap(const struct emitter *e, const struct leap *leap, int entries)
+void declare_blockwise_leap(const struct emitter *e, const struct leap *leap)
 {
 	const int further = leap->size - e->system->states, size = largest_block(e) + further;
-	const char *Phi = stepped_table(e, "Phi");
 	say(e, "    pl_two power[%d], work[%d], x[%d], w[%d]%s;\n", size * size, size * size, size, size,
 	    further ? format(", load[%d]", further) : "");
-	emit_leap_loads(e, leap, "load");
+}
+
+void emit_blockwise_leap(const struct emitter *e, const struct leap *leap, int entries)
+{
+	const int further = leap->size - e->system->states;
+	const char *Phi = stepped_table(e, "Phi");
 	say(e, "    int block, i, j;\n");
 	emit_block_loop(e, further);
 	say(e, "        for (i = 0; i < size * size; i++)\n"

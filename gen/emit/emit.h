@@ -215,20 +215,21 @@ void emit_descriptor(const struct emitter *e);
 
 void emit_groups(const struct emitter *e);                        /* tables and functions of its independent blocks */
 bool rows_read_changing_loads(const struct emitter *e);           /* the factors are read from a table */
-void emit_looped_step(const struct emitter *e);
+void emit_group_steps(const struct emitter *e, const char *const *acting_text); /* but rows; loads, then inputs */
 
 /* ---- blockwise.c: between steps, and many at once, of a large model block by block ---- */
 
 bool is_blockwise(const struct emitter *e);
 void emit_block_list(const struct emitter *e);
+void declare_blockwise_at(const struct emitter *e);               /* x, before what fills it */
 void emit_blockwise_at(const struct emitter *e);
-void emit_leap_loads(const struct emitter *e, const struct leap *leap, const char *vector);
+void declare_blockwise_leap(const struct emitter *e, const struct leap *leap); /* load, likewise */
 void emit_blockwise_leap(const struct emitter *e, const struct leap *leap, int entries);
 
 /* ---- emit_modal.c: a step of modes ---- */
 
 void emit_modes(const struct emitter *e);                         /* tables; nothing of other forms */
-void emit_modal_step(const struct emitter *e);
+void emit_modal_step(const struct emitter *e, const char *const *acting_text);
 
 /* ---- emit.c, emit_step.c, emit_out.c, emit_loads.c, emit_time.c, emit_tune.c, emit_rhs.c: a step as C ---- */
 
@@ -254,8 +255,6 @@ void emit_held_leftover(const struct emitter *e);                 /* which opera
 void emit_passing(const struct emitter *e);                       /* ... and pass(), across a change */
 /* declares i and load states; x[...] = what the series advances */
 void emit_series_vector(const struct emitter *e);
-const char *step_operand(const struct emitter *e, const struct operand *operand); /* NULL: the constant 1 */
-void emit_assignment(const struct emitter *e, const struct assignment *a);
 /* in a step that is no list of assignments: what only adds up is 0 over it */
 void emit_set_aside(const struct emitter *e);
 void emit_take_back(const struct emitter *e);

@@ -365,57 +365,30 @@ void emit_groups(const struct emitter *e)
 		emit_group(e, &e->step->program->group[k], k);
 }
 
-static void emit_group_call(const struct emitter *e, const struct group *g, int index)
+/* What acts on a group, in one vector: `acting_text` has the loads' columns, then the inputs'. */
+static void emit_driven(const struct emitter *e, const struct group *g, int index, const char *const *acting_text)
 {
-	if (acting(g)) {
-		say(e, "    const double driven%d[%d] = {", index, acting(g));
-		for (int k = 0; k < acting(g); k++) {
-			const struct operand operand = acting_operand(g, k);
-			const char *text = step_operand(e, &operand);
-			say(e, "%s%s", k ? ", " : "", text ? text : "1.0");
-		}
-		say(e, "};\n");
+	say(e, "    const double driven%d[%d] = {", index, acting(g));
+	for (int k = 0; k < acting(g); k++) {
+		const struct operand operand = acting_operand(g, k);
+		const bool input = operand.kind == OPERAND_INPUT;
+		say(e, "%s%s", k ? ", " : "",
+		    acting_text[operand.index + (input ? e->step->branch->whole->columns : 0)]);
 	}
+	say(e, "};\n");
 }
 
-/* The rows' states under their names; the rows of all groups are done at once */
-static void emit_group_rows(const struct emitter *e)
-{
-	const struct program *program = e->step->program;
-	const int states = e->system->states;
-	bool *stepped = ARRAY(bool, (size_t)states), *reads = ARRAY(bool, (size_t)states);
-	for (int k = 0; k < program->groups; k++)
-		for (int i = 0; i < program->group[k].states && program->group[k].kind == GROUP_ROWS; i++)
-			stepped[program->group[k].state[i]] = true;
-	for (int i = 0; i < states; i++)
-		reads[i] = stepped[i] && program->reads[i];
-	emit_raw_locals(e, reads, false);
-	if (rows_read_changing_loads(e))
-		say(e, "    const double (*const factor)[%d] = $n_load_factor[s->segment];\n",
-		    e->step->branch->whole->columns);
-	for (int i = 0; i < program->assignments; i++)
-		if (stepped[program->assignment[i].target])
-			emit_assignment(e, &program->assignment[i]);
-}
-
-void emit_looped_step(const struct emitter *e)
+void emit_group_steps(const struct emitter *e, const char *const *acting_text)
 {
 	static const char *const kind[] = { [GROUP_ALIKE] = "alike", [GROUP_COLUMNS] = "columns" };
 	const struct program *program = e->step->program;
-	if (e->step->modal) {
-		emit_modal_step(e);
-		return;
-	}
 	for (int k = 0; k < program->groups; k++)
-		if (program->group[k].kind != GROUP_ROWS)
-			emit_group_call(e, &program->group[k], k);
-	emit_group_rows(e);
-	emit_set_aside(e);
+		if (program->group[k].kind != GROUP_ROWS && acting(&program->group[k]))
+			emit_driven(e, &program->group[k], k, acting_text);
 	for (int k = 0; k < program->groups; k++)
 		if (program->group[k].kind != GROUP_ROWS)
 			say(e, "    $n_%s%d_step(s%s);\n", kind[program->group[k].kind], k,
 			    acting(&program->group[k]) ? format(", driven%d", k) : "");
-	emit_take_back(e);
 }
 
 /* ---- rest ---- */

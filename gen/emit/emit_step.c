@@ -14,7 +14,7 @@ const char *input_operand(const struct emitter *e, int column)
 	return NULL;
 }
 
-const char *step_operand(const struct emitter *e, const struct operand *operand)
+static const char *operand_text(const struct emitter *e, const struct operand *operand)
 {
 	switch (operand->kind) {
 	case OPERAND_STATE: return e->local[operand->index];
@@ -26,7 +26,7 @@ const char *step_operand(const struct emitter *e, const struct operand *operand)
 /* A load that changes has its factors in a table, one row for each segment of time. */
 static const char *term_text(const struct emitter *e, const struct assignment *a, const struct product *p)
 {
-	const char *operand = step_operand(e, &p->operand);
+	const char *operand = operand_text(e, &p->operand);
 	bool tuned = e->step->program->tuned;
 	if (!tuned && (p->operand.kind != OPERAND_LOAD || e->system->segments == 1))
 		return scaled(p->factor->value, operand);
@@ -50,7 +50,7 @@ static const char *second_sum_text(const struct emitter *e, const struct assignm
 	int terms = 0;
 	for (int k = 0; k < a->terms; k++)
 		if (has_second_word(&a->term[k], e->system))
-			term[terms++] = scaled(a->term[k].factor->low, step_operand(e, &a->term[k].operand));
+			term[terms++] = scaled(a->term[k].factor->low, operand_text(e, &a->term[k].operand));
 	return terms ? tree(terms, term, 14) : NULL;
 }
 
@@ -65,7 +65,7 @@ static void emit_compensated(const struct emitter *e, const struct assignment *a
 	    a->carried ? "carry" : "rest", a->carried ? e->step->carry[a->target] : a->target);
 }
 
-void emit_assignment(const struct emitter *e, const struct assignment *a)
+static void emit_assignment(const struct emitter *e, const struct assignment *a)
 {
 	const struct program *program = e->step->program;
 	const char *target = program->in_order ? e->local[a->target] : format("s->y[%d]", a->target);
@@ -147,6 +147,52 @@ void emit_take_back(const struct emitter *e)
 		if (carry[i] >= 0)
 			say(e, "    s->y[%d] = pl_accumulate(far%d, s->y[%d], 0.0, &s->carry[%d]);\n",
 			    i, carry[i], i, carry[i]);
+}
+
+/* Of the columns of loads, then of inputs */
+static const char **acting_texts(const struct emitter *e)
+{
+	const struct table *table = e->step->branch->whole;
+	const char **text = ARRAY(const char *, (size_t)(table->columns + table->inputs) + 1);
+	for (int k = 0; k < table->columns + table->inputs; k++) {
+		const bool load = k < table->columns;
+		const int index = load ? k : k - table->columns;
+		text[k] = operand_text(e, &(struct operand){ load ? OPERAND_LOAD : OPERAND_INPUT, index });
+		text[k] = text[k] ? text[k] : "1.0";
+	}
+	return text;
+}
+
+/* The rows of small blocks of a large model, their states under their names */
+static void emit_group_rows(const struct emitter *e)
+{
+	const struct program *program = e->step->program;
+	const int states = e->system->states;
+	bool *stepped = ARRAY(bool, (size_t)states), *reads = ARRAY(bool, (size_t)states);
+	for (int k = 0; k < program->groups; k++)
+		for (int i = 0; i < program->group[k].states && program->group[k].kind == GROUP_ROWS; i++)
+			stepped[program->group[k].state[i]] = true;
+	for (int i = 0; i < states; i++)
+		reads[i] = stepped[i] && program->reads[i];
+	emit_raw_locals(e, reads, false);
+	if (rows_read_changing_loads(e))
+		say(e, "    const double (*const factor)[%d] = $n_load_factor[s->segment];\n",
+		    e->step->branch->whole->columns);
+	for (int i = 0; i < program->assignments; i++)
+		if (stepped[program->assignment[i].target])
+			emit_assignment(e, &program->assignment[i]);
+}
+
+static void emit_looped_step(const struct emitter *e)
+{
+	if (e->step->modal) {
+		emit_modal_step(e, acting_texts(e));
+		return;
+	}
+	emit_group_rows(e);
+	emit_set_aside(e);
+	emit_group_steps(e, acting_texts(e));
+	emit_take_back(e);
 }
 
 /* A step that no change of the loads interrupts */

@@ -282,7 +282,10 @@ static void emit_passing_at(const struct emitter *e)
 static void emit_series_at(const struct emitter *e)
 {
 	if (is_blockwise(e)) {
+		declare_blockwise_at(e);
+		emit_series_vector(e);
 		emit_blockwise_at(e);
+		emit_hand_over(e);
 		return;
 	}
 	const struct series *series = &e->step->series;
@@ -419,7 +422,7 @@ static void emit_leap_end(const struct emitter *e)
 }
 
 /* load[...] = the load states that the step reads, behind the states */
-void emit_leap_loads(const struct emitter *e, const struct leap *leap, const char *vector)
+static void emit_leap_loads(const struct emitter *e, const struct leap *leap, const char *vector)
 {
 	emit_load_states(e, wanted_loads(e, leap->load), false);
 	for (int l = 0; l < e->system->loads; l++)
@@ -449,6 +452,8 @@ static void emit_leap(const struct emitter *e, const char *declaration)
 	       "%s($n *s, uint64_t n)\n"
 	       "{\n", declaration);
 	if (is_blockwise(e)) {
+		declare_blockwise_leap(e, &leap);
+		emit_leap_loads(e, &leap, "load");
 		emit_blockwise_leap(e, &leap, entries);
 		emit_leap_end_of_all(e);
 		return;

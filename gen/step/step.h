@@ -387,7 +387,6 @@ void find_carries(struct step *step);
 struct program *linear_program(const struct step *step);    /* from its table */
 /* in the code: loads that change have none */
 bool has_second_word(const struct product *p, const struct linear *system);
-bool is_constant_column(const struct linear *system, int column); /* of the loads: it is 1 */
 
 /* ---- large.c: a large step by its independent blocks ---- */
 

@@ -296,14 +296,6 @@ static bool is_identity(const struct assignment *a)
 	       a->term[0].factor->value == 1;
 }
 
-bool is_constant_column(const struct linear *system, int column)
-{
-	for (int l = 0; l < system->loads && column >= 0; column -= system->load[l++].columns)
-		if (column == 0 && is_polynomial(system->load[l].wave))
-			return true;
-	return false;
-}
-
 /* A load that is added as it is */
 static bool is_constant_load(const struct product *p, const struct linear *system)
 {
