@@ -178,15 +178,16 @@ static void banner_modes(const struct emitter *e)
 {
 	const struct modal *modal = e->step->modal;
 	const char *unit = e->model->asked.single ? "2^-24" : "2^-53";
-	say(e, " * Modal: %d pairs of modes turned and damped, %d real ones%s; residues enclosed, each number rounded "
-	       "once.\n", modal->pairs, modal->reals, e->model->asked.form == FORM_AUTO
-	       ? "; the cheapest for so few outputs (--form delta or direct steps the states)" : "");
+	say(e, " * Modal: %d pairs of modes turned and damped, %d real ones; residues enclosed, each number rounded "
+	       "once.\n", modal->pairs, modal->reals);
+	if (e->model->asked.form == FORM_AUTO)
+		say(e, " * It is the cheapest for so few outputs; --form delta or --form direct steps the states.\n");
 	if (modal->output)
 		say(e, " * A row of outputs: %d multiplications.\n", e->system->states * e->model->outputs);
 	say(e, " * A step rounds a mode by 3 %s of its amplitude at most, what it reads of loads and inputs apart; "
 	       "an output by\n"
-	       " * %d %s of the sum of its modes' sizes. States become modes in set and states again in get: of what a\n"
-	       " * state itself has in the modes, which is up to %.3g times its size, %d %s are rounding.\n",
+	       " * %d %s of the sum of its modes' sizes. States become modes in set and states again in get: of what\n"
+	       " * a state itself has in the modes, up to %.3g times its size, %d %s are rounding.\n",
 	    unit, e->system->states / 8 + 5, unit, modal->condition, 2 * (e->system->states / 8 + 5), unit);
 }
 
@@ -204,6 +205,9 @@ static void banner_form(const struct emitter *e)
 		    ? "; factors in two words,\n * and what rounding takes from the state is kept in rest" : "");
 	if (e->step->modal)
 		banner_modes(e);
+	if (e->step->rest)
+		say(e, " * What has decayed below %s is set to rest: looked for every 64 steps, by $n_%s.\n",
+		    e->model->asked.single ? "1e-35" : "1e-290", e->step->rest->in_step ? "step" : "run");
 	if (e->model->relative)
 		banner_relative(e);
 	if (e->step->carries)
@@ -298,7 +302,7 @@ static void banner_run(const struct emitter *e)
 static void banner_functions(const struct emitter *e)
 {
 	const char *no_at = e->kind->no_at(e->step);
-	int states = e->system->states;
+	int states = is_blockwise(e) ? 0 : e->system->states;
 	if (has_jump(e) && states > 12)
 		say(e, " * $n_jump needs some %d KB of stack.\n", 1 + 32 * states * states / 1024);
 	if (!has_jump(e))

@@ -17,8 +17,11 @@ static void emit_state_struct(const struct emitter *e)
 	const char *momenta = e->step->momenta ? format("; velocities times mass / mass of %s", first) : "";
 	say(e, "typedef struct $n $n;  /* copy it to save, assign it to restore */\n"
 	       "struct $n {\n"
-	       "    double y[$N_STATES];  /* %s%s%s */\n", state_list(e->model), momenta,
+	       "    double y[$N_STATES];  /* %s%s%s */\n",
+	    e->step->modal ? "modes" : state_list(e->model), momenta,
 	       e->step->forced ? "; less their forced part" : "");
+	if (e->step->modal)
+		say(e, "    double set[$N_STATES];  /* at the last set: %s */\n", state_list(e->model));
 	if (e->step->program->compensated)
 		say(e, "    double rest[$N_STATES];  /* what rounding took from y so far */\n");
 	else if (e->step->forced)

@@ -114,6 +114,7 @@ static void emit_all_tables(const struct emitter *e)
 /* What is there of some models only: states between steps, many steps at once, the ways to check it */
 static void emit_further_functions(const struct emitter *e, bool rhs)
 {
+	emit_block_list(e);
 	if (e->step->series.emitted)
 		e->kind->at(e);
 	if (has_jump(e))

@@ -229,12 +229,21 @@ void emit_descriptor(const struct emitter *e);
 
 void emit_groups(const struct emitter *e);                        /* tables and functions of its independent blocks */
 bool rows_read_changing_loads(const struct emitter *e);           /* the factors are read from a table */
-void emit_looped_step(const struct emitter *e);
+void emit_group_steps(const struct emitter *e, const char *const *acting_text); /* but rows; loads, then inputs */
+
+/* ---- blockwise.c: between steps, and many at once, of a large model block by block ---- */
+
+bool is_blockwise(const struct emitter *e);
+void emit_block_list(const struct emitter *e);
+void declare_blockwise_at(const struct emitter *e);               /* x, before what fills it */
+void emit_blockwise_at(const struct emitter *e);
+void declare_blockwise_leap(const struct emitter *e, const struct leap *leap); /* load, likewise */
+void emit_blockwise_leap(const struct emitter *e, const struct leap *leap, int entries);
 
 /* ---- emit_modal.c: a step of modes ---- */
 
 void emit_modes(const struct emitter *e);                         /* tables; nothing of other forms */
-void emit_modal_step(const struct emitter *e);
+void emit_modal_step(const struct emitter *e, const char *const *acting_text);
 
 /* ---- emit.c and emit_step, _out, _run, _loads, _forced, _anchors, _time, _tune, _rhs: a step as C ---- */
 
@@ -271,8 +280,6 @@ void emit_held_leftover(const struct emitter *e);                 /* which opera
 void emit_passing(const struct emitter *e);                       /* ... and pass(), across a change */
 /* declares i and load states; x[...] = what the series advances */
 void emit_series_vector(const struct emitter *e);
-const char *step_operand(const struct emitter *e, const struct operand *operand); /* NULL: the constant 1 */
-void emit_assignment(const struct emitter *e, const struct assignment *a);
 /* in a step that is no list of assignments: what only adds up is 0 over it */
 void emit_set_aside(const struct emitter *e);
 void emit_take_back(const struct emitter *e);
@@ -284,6 +291,7 @@ void emit_step(const struct emitter *e);
 /* as its program says, from the locals into s->y, or where it is in order into the locals */
 void emit_assignment(const struct emitter *e, const struct assignment *a);
 void emit_keep_inputs(const struct emitter *e, int samples);      /* of u, which has those of so many steps */
+void emit_rest(const struct emitter *e);                          /* NAME_rest: what has decayed comes to rest */
 void emit_step_end(const struct emitter *e);                      /* samples, phases and time move on */
 const char *step_parameters(const struct emitter *e);
 const char *input_operand(const struct emitter *e, int column);

@@ -33,7 +33,8 @@ static struct operand acting_operand(const struct group *g, int k)
 static double group_number(const struct emitter *e, const struct group *g, int row, int block,
 			const struct operand *operand, int segment)
 {
-	return group_factor(e->step, g, row, block, operand, segment)->value;
+	const struct coefficient *factor = group_factor(e->step, g, row, block, operand, segment);
+	return factor->zero ? 0 : factor->value;
 }
 
 static const char *matrix_name(const struct emitter *e)
@@ -364,55 +365,85 @@ void emit_groups(const struct emitter *e)
 		emit_group(e, &e->step->program->group[k], k);
 }
 
-static void emit_group_call(const struct emitter *e, const struct group *g, int index)
+/* What acts on a group, in one vector: `acting_text` has the loads' columns, then the inputs'. */
+static void emit_driven(const struct emitter *e, const struct group *g, int index, const char *const *acting_text)
 {
-	if (acting(g)) {
-		say(e, "    const double driven%d[%d] = {", index, acting(g));
-		for (int k = 0; k < acting(g); k++) {
-			const struct operand operand = acting_operand(g, k);
-			const char *text = step_operand(e, &operand);
-			say(e, "%s%s", k ? ", " : "", text ? text : "1.0");
-		}
-		say(e, "};\n");
+	say(e, "    const double driven%d[%d] = {", index, acting(g));
+	for (int k = 0; k < acting(g); k++) {
+		const struct operand operand = acting_operand(g, k);
+		const bool input = operand.kind == OPERAND_INPUT;
+		say(e, "%s%s", k ? ", " : "",
+		    acting_text[operand.index + (input ? e->step->branch->whole->columns : 0)]);
 	}
+	say(e, "};\n");
 }
 
-/* The rows' states under their names; the rows of all groups are done at once */
-static void emit_group_rows(const struct emitter *e)
-{
-	const struct program *program = e->step->program;
-	const int states = e->system->states;
-	bool *stepped = ARRAY(bool, (size_t)states), *reads = ARRAY(bool, (size_t)states);
-	for (int k = 0; k < program->groups; k++)
-		for (int i = 0; i < program->group[k].states && program->group[k].kind == GROUP_ROWS; i++)
-			stepped[program->group[k].state[i]] = true;
-	for (int i = 0; i < states; i++)
-		reads[i] = stepped[i] && program->reads[i];
-	emit_raw_locals(e, reads, false);
-	if (rows_read_changing_loads(e))
-		say(e, "    const double (*const factor)[%d] = $n_load_factor[s->segment];\n",
-		    e->step->branch->whole->columns);
-	for (int i = 0; i < program->assignments; i++)
-		if (stepped[program->assignment[i].target])
-			emit_assignment(e, &program->assignment[i]);
-}
-
-void emit_looped_step(const struct emitter *e)
+void emit_group_steps(const struct emitter *e, const char *const *acting_text)
 {
 	static const char *const kind[] = { [GROUP_ALIKE] = "alike", [GROUP_COLUMNS] = "columns" };
 	const struct program *program = e->step->program;
-	if (e->step->modal) {
-		emit_modal_step(e);
-		return;
-	}
 	for (int k = 0; k < program->groups; k++)
-		if (program->group[k].kind != GROUP_ROWS)
-			emit_group_call(e, &program->group[k], k);
-	emit_group_rows(e);
-	emit_set_aside(e);
+		if (program->group[k].kind != GROUP_ROWS && acting(&program->group[k]))
+			emit_driven(e, &program->group[k], k, acting_text);
 	for (int k = 0; k < program->groups; k++)
 		if (program->group[k].kind != GROUP_ROWS)
 			say(e, "    $n_%s%d_step(s%s);\n", kind[program->group[k].kind], k,
 			    acting(&program->group[k]) ? format(", driven%d", k) : "");
-	emit_take_back(e);
+}
+
+/* ---- rest ---- */
+
+/* Well above where numbers have fewer bits */
+static const char *least_size(const struct emitter *e)
+{
+	return e->model->asked.single ? "1e-35" : "1e-290";
+}
+
+static void emit_rest_of_all(const struct emitter *e)
+{
+	say(e, "    for (i = 0; i < $N_STATES; i++)\n"
+	       "        if (!(s->y[i] > -%s && s->y[i] < %s))\n"
+	       "            return;\n"
+	       "    for (i = 0; i < $N_STATES; i++)\n"
+	       "        s->y[i] = 0.0;\n",
+	    least_size(e), least_size(e));
+}
+
+static void emit_rest_of_parts(const struct emitter *e)
+{
+	const struct rest *rest = e->step->rest;
+	say(e, "    static const short part[$N_STATES] = {  /* that decays by itself; -1: it does not */\n"
+	       "        ");
+	for (int i = 0; i < e->system->states; i++)
+		say(e, "%s%d", !i ? "" : i % 20 ? ", " : ",\n        ", rest->part[i]);
+	say(e, "};\n"
+	       "    char moves[%d];\n"
+	       "    for (i = 0; i < %d; i++)\n"
+	       "        moves[i] = 0;\n"
+	       "    for (i = 0; i < $N_STATES; i++)\n"
+	       "        if (part[i] >= 0 && !(s->y[i] > -%s && s->y[i] < %s))\n"
+	       "            moves[part[i]] = 1;\n"
+	       "    for (i = 0; i < $N_STATES; i++)\n"
+	       "        if (part[i] >= 0 && !moves[part[i]])\n"
+	       "            s->y[i] = 0.0;\n",
+	    rest->parts, rest->parts, least_size(e), least_size(e));
+}
+
+/* What has decayed so far is at rest. Every 64 steps is often enough, and no step shows it. */
+void emit_rest(const struct emitter *e)
+{
+	bool compensated = e->step->program->compensated, parts = e->step->rest->parts > 1;
+	for (int i = 0; i < e->system->states; i++)
+		parts = parts || e->step->rest->part[i] < 0;
+	say(e, "\n"
+	       "/* Rest, for what has decayed below %s: numbers that small take many times as long as others */\n"
+	       "static void $n_rest($n *s)\n"
+	       "{\n"
+	       "    int i;\n",
+	    least_size(e));
+	(parts ? emit_rest_of_parts : emit_rest_of_all)(e);
+	if (compensated && !parts)
+		say(e, "    for (i = 0; i < $N_STATES; i++)\n"
+		       "        s->rest[i] = 0.0;\n");
+	say(e, "}\n");
 }

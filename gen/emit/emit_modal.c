@@ -153,15 +153,14 @@ static const char *driven_sum(const struct emitter *e, int count, const char *at
 	return count > 1 ? format(" + (%s)", sum) : count ? format(" + %s", sum) : "";
 }
 
-void emit_modal_step(const struct emitter *e)
+void emit_modal_step(const struct emitter *e, const char *const *acting_text)
 {
 	const struct modal *modal = e->step->modal;
 	struct operand *list = operands(e);
 	const int count = driving(e, list), pairs = modal->pairs;
-	for (int k = 0; k < count; k++) {
-		const char *text = step_operand(e, &list[k]);
-		say(e, "    const double driven%d = %s;\n", k, text ? text : "1.0");
-	}
+	for (int k = 0; k < count; k++)
+		say(e, "    const double driven%d = %s;\n", k,
+		    acting_text[list[k].index + (list[k].kind == OPERAND_INPUT ? modal->loads : 0)]);
 	say(e, "    int i;\n");
 	if (pairs) {
 		const char *at = format("%d + i", pairs), *turn = spell(e, "$n_turn");

@@ -6,6 +6,12 @@
 
 /* ---- step by step ---- */
 
+/* What has decayed comes to rest here: the step of a small model does not look. */
+static bool run_rests(const struct emitter *e)
+{
+	return e->step->rest && !e->step->rest->in_step;
+}
+
 static void emit_steps(const struct emitter *e)
 {
 	bool inputs = e->system->inputs > 0;
@@ -16,8 +22,11 @@ static void emit_steps(const struct emitter *e)
 	say(e, "        if (out) {\n"
 	       "            $n_out(s, out);\n"
 	       "            out += $N_OUTPUTS;\n"
-	       "        }\n"
-	       "    }\n");
+	       "        }\n");
+	if (run_rests(e))
+		say(e, "        if ((s->k & 63) == 0)\n"
+		       "            $n_rest(s);\n");
+	say(e, "    }\n");
 }
 
 /* ---- the tables of a block ---- */
@@ -348,6 +357,9 @@ static void emit_blocks(const struct emitter *e)
 	       "            $n_block(&now, %sout);\n", inputs ? "u, " : "");
 	if (inputs)
 		say(e, "            u += $N_ROWS * $N_INPUTS;\n");
+	if (run_rests(e))
+		say(e, "            if ((now.k & 63) < $N_ROWS)\n"
+		       "                $n_rest(&now);\n");
 	say(e, "            if (out)\n"
 	       "                out += $N_ROWS * $N_OUTPUTS;\n"
 	       "        }\n"
@@ -357,6 +369,8 @@ static void emit_blocks(const struct emitter *e)
 
 void emit_run(const struct emitter *e)
 {
+	if (run_rests(e))
+		emit_rest(e);
 	if (e->step->rows) {
 		emit_row_tables(e);
 		emit_block(e);

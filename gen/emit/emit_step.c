@@ -24,7 +24,7 @@ const char *input_operand(const struct emitter *e, int column)
 	return NULL;
 }
 
-const char *step_operand(const struct emitter *e, const struct operand *operand)
+static const char *operand_text(const struct emitter *e, const struct operand *operand)
 {
 	switch (operand->kind) {
 	case OPERAND_STATE: return e->local[operand->index];
@@ -36,7 +36,7 @@ const char *step_operand(const struct emitter *e, const struct operand *operand)
 /* A load that changes has its factors in a table, one row for each segment of time. */
 static const char *term_text(const struct emitter *e, const struct assignment *a, const struct product *p)
 {
-	const char *operand = step_operand(e, &p->operand);
+	const char *operand = operand_text(e, &p->operand);
 	bool tuned = e->step->program->tuned;
 	int turned = p->operand.kind == OPERAND_LOAD ? anchored_term(e->step, a->target, p->operand.index) : -1;
 	if (turned >= 0)
@@ -58,7 +58,7 @@ static const char *sum_text(const struct emitter *e, const struct assignment *a,
 
 static const char *second_term_text(const struct emitter *e, const struct assignment *a, const struct product *p)
 {
-	const char *operand = step_operand(e, &p->operand);
+	const char *operand = operand_text(e, &p->operand);
 	int turned = p->operand.kind == OPERAND_LOAD ? anchored_term(e->step, a->target, p->operand.index) : -1;
 	if (turned >= 0)
 		return format("turned[%d] * %s", e->step->anchors->terms + turned, operand);
@@ -206,6 +206,52 @@ void emit_take_back(const struct emitter *e)
 			    i, carry[i], i, carry[i]);
 }
 
+/* Of the columns of loads, then of inputs */
+static const char **acting_texts(const struct emitter *e)
+{
+	const struct table *table = e->step->branch->whole;
+	const char **text = ARRAY(const char *, (size_t)(table->columns + table->inputs) + 1);
+	for (int k = 0; k < table->columns + table->inputs; k++) {
+		const bool load = k < table->columns;
+		const int index = load ? k : k - table->columns;
+		text[k] = operand_text(e, &(struct operand){ load ? OPERAND_LOAD : OPERAND_INPUT, index });
+		text[k] = text[k] ? text[k] : "1.0";
+	}
+	return text;
+}
+
+/* The rows of small blocks of a large model, their states under their names */
+static void emit_group_rows(const struct emitter *e)
+{
+	const struct program *program = e->step->program;
+	const int states = e->system->states;
+	bool *stepped = ARRAY(bool, (size_t)states), *reads = ARRAY(bool, (size_t)states);
+	for (int k = 0; k < program->groups; k++)
+		for (int i = 0; i < program->group[k].states && program->group[k].kind == GROUP_ROWS; i++)
+			stepped[program->group[k].state[i]] = true;
+	for (int i = 0; i < states; i++)
+		reads[i] = stepped[i] && program->reads[i];
+	emit_raw_locals(e, reads, false);
+	if (rows_read_changing_loads(e))
+		say(e, "    const double (*const factor)[%d] = $n_load_factor[s->segment];\n",
+		    e->step->branch->whole->columns);
+	for (int i = 0; i < program->assignments; i++)
+		if (stepped[program->assignment[i].target])
+			emit_assignment(e, &program->assignment[i]);
+}
+
+static void emit_looped_step(const struct emitter *e)
+{
+	if (e->step->modal) {
+		emit_modal_step(e, acting_texts(e));
+		return;
+	}
+	emit_group_rows(e);
+	emit_set_aside(e);
+	emit_group_steps(e, acting_texts(e));
+	emit_take_back(e);
+}
+
 /* A step that no change of the loads interrupts */
 static void emit_plain_step(const struct emitter *e)
 {
@@ -237,6 +283,9 @@ void emit_step_end(const struct emitter *e)
 		say(e, "    if (++s->since == %d)\n"
 		       "        $n_anchor(s);\n",
 		    e->step->anchors->steps);
+	if (e->step->rest && e->step->rest->in_step)
+		say(e, "    if ((s->k & 63) == 0)\n"
+		       "        $n_rest(s);\n");
 }
 
 const char *step_parameters(const struct emitter *e)
@@ -310,6 +359,8 @@ static void emit_changing_step(const struct emitter *e)
 void emit_step(const struct emitter *e)
 {
 	emit_groups(e);
+	if (e->step->rest && e->step->rest->in_step)
+		emit_rest(e);
 	if (e->system->segments > 1) {
 		emit_changing_step(e);
 		return;

@@ -308,6 +308,13 @@ static void emit_passing_at(const struct emitter *e)
 
 static void emit_series_at(const struct emitter *e)
 {
+	if (is_blockwise(e)) {
+		declare_blockwise_at(e);
+		emit_series_vector(e);
+		emit_blockwise_at(e);
+		emit_hand_over(e);
+		return;
+	}
 	const struct series *series = &e->step->series;
 	const struct layout *layout = &e->step->layout;
 	say(e, "    %sconst pl_series series = {%d, $N_STATES, %d, %d, %s[0]};  /* size, states, degree, halvings */\n"
@@ -441,6 +448,28 @@ static void emit_leap_end(const struct emitter *e)
 			say(e, "    s->carry[%d] = x[%d].lo;\n", e->step->carry[i], i);
 }
 
+/* load[...] = the load states that the step reads, behind the states */
+static void emit_leap_loads(const struct emitter *e, const struct leap *leap, const char *vector)
+{
+	emit_load_states(e, wanted_loads(e, leap->load), false);
+	for (int l = 0; l < e->system->loads; l++)
+		for (int k = 0; k < e->system->load[l].columns && leap->load[l] >= 0; k++) {
+			const char *value = load_operand(e, l, k);
+			const int at = leap->load[l] + k - e->system->states;
+			say(e, "    %s[%d].hi = %s;\n"
+			       "    %s[%d].lo = 0.0;\n", vector, at, value ? value : "1.0", vector, at);
+		}
+}
+
+static void emit_leap_end_of_all(const struct emitter *e)
+{
+	emit_load_advance(e, "n");
+	say(e, "    s->k += n;\n");
+	if (e->step->anchors)
+		say(e, "    $n_anchor(s);\n");
+	say(e, "}\n");
+}
+
 /* n steps without a change of the loads: by powers of the one-step matrix */
 static void emit_leap(const struct emitter *e, const char *declaration)
 {
@@ -450,9 +479,15 @@ static void emit_leap(const struct emitter *e, const char *declaration)
 	emit_power_entries(e, entries, entry);
 	say(e, "\n"
 	       "%s($n *s, uint64_t n)\n"
-	       "{\n"
-	       "    pl_two power[%d], work[%d], x[%d], w[%d];\n",
-	    declaration, size * size, size * size, size, size);
+	       "{\n", declaration);
+	if (is_blockwise(e)) {
+		declare_blockwise_leap(e, &leap);
+		emit_leap_loads(e, &leap, "load");
+		emit_blockwise_leap(e, &leap, entries);
+		emit_leap_end_of_all(e);
+		return;
+	}
+	say(e, "    pl_two power[%d], work[%d], x[%d], w[%d];\n", size * size, size * size, size, size);
 	if (e->step->momenta || e->step->modal)
 		say(e, "    double y[$N_STATES];\n");
 	emit_load_states(e, wanted_loads(e, leap.load), false);
@@ -465,11 +500,7 @@ static void emit_leap(const struct emitter *e, const char *declaration)
 	store_loads(e, leap.load, ".hi");
 	say(e, "    pl_power_apply(%d, power, work, x, w, n);\n", size);
 	emit_leap_end(e);
-	emit_load_advance(e, "n");
-	say(e, "    s->k += n;\n");
-	if (e->step->anchors)
-		say(e, "    $n_anchor(s);\n");
-	say(e, "}\n");
+	emit_leap_end_of_all(e);
 }
 
 void emit_jump(const struct emitter *e)

@@ -169,8 +169,10 @@ void emit_set_state(const struct emitter *e, const char *vector, const char *ind
 {
 	bool rest = e->step->program->compensated;
 	if (e->step->modal) {
-		say(e, "%sfor (i = 0; i < $N_STATES; i++)\n"
-		       "%s    s->y[i] = $n_dot($n_to_modes[i], %s);\n", indent, indent, vector);
+		say(e, "%sfor (i = 0; i < $N_STATES; i++) {\n"
+		       "%s    s->set[i] = %s[i];\n"
+		       "%s    s->y[i] = $n_dot($n_to_modes[i], %s);\n"
+		       "%s}\n", indent, indent, vector, indent, vector, indent);
 		return;
 	}
 	say(e, "%sfor (i = 0; i < $N_STATES; i++)%s\n"
@@ -218,7 +220,7 @@ void emit_get_kept_state(const struct emitter *e, const char *vector)
 {
 	if (e->step->modal) {
 		say(e, "    for (i = 0; i < $N_STATES; i++)\n"
-		       "        %s[i] = $n_dot($n_from_modes[i], s->y);\n", vector);
+		       "        %s[i] = s->k == 0 ? s->set[i] : $n_dot($n_from_modes[i], s->y);\n", vector);
 		return;
 	}
 	say(e, "    for (i = 0; i < $N_STATES; i++)\n"

@@ -152,3 +152,11 @@ bool load_acts(const struct linear *system, const struct load *load)
 				return true;
 	return false;
 }
+
+bool is_constant_column(const struct linear *system, int column)
+{
+	for (int l = 0; l < system->loads && column >= 0; column -= system->load[l++].columns)
+		if (column == 0 && is_polynomial(system->load[l].wave))
+			return true;
+	return false;
+}

@@ -43,6 +43,7 @@ void highest_derivatives(const struct linear *system, const mpq_t *inverse, bool
 mpq_t *state_matrix(const struct linear *system, bool held); /* A of y' = A y, states x states */
 int load_columns(const struct linear *system);
 int input_columns(const struct linear *system);
+bool is_constant_column(const struct linear *system, int column); /* of the loads: it is 1 */
 bool load_acts(const struct linear *system, const struct load *load);
 
 /* ---- model.c: the equations of motion, exact ---- */

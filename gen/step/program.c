@@ -24,14 +24,6 @@ int load_of_column(const struct linear *system, int column, int *first)
 	return l;
 }
 
-bool is_constant_column(const struct linear *system, int column)
-{
-	for (int l = 0; l < system->loads && column >= 0; column -= system->load[l++].columns)
-		if (column == 0 && is_polynomial(system->load[l].wave))
-			return true;
-	return false;
-}
-
 bool is_forced(const struct step *step, int column)
 {
 	const struct linear *system = &step->branch->system;

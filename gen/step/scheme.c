@@ -106,16 +106,17 @@ static void build_exact(struct step *step)
 		make_whole(step);
 	if (step->model->tuning)
 		mark_tuned_zeros(step);
+	leave_out_lost(step);
 	find_carries(step);
 	plan_anchors(step);
 	step->program = linear_program(step);
 	plan_modal(step);
-	if (step->modal)
-		return;
-	plan_forced(step);
+	if (!step->modal)
+		plan_forced(step);
 	if (step->forced)
 		step->program = linear_program(step);
 	fill_anchors(step);
+	plan_rest(step);
 }
 
 static bool *loads_of_regions(const struct step *step)

@@ -280,6 +280,7 @@ struct step {                       /* everything that is emitted for one model 
 	struct anchors *anchors;    /* NULL: functions of loads in every step */
 	const char *no_anchors;     /* why, where a load has some; NULL: there are anchors, or none has */
 	struct forced *forced;      /* NAME keeps the state less this; NULL: as it is */
+	struct rest *rest;          /* what comes to rest where it is all but nothing; NULL: no part does */
 	struct rounding rounding;
 	mpfr_t growth;              /* pl: 1/s, largest real part of the modified equation's poles (report only) */
 	struct layout layout;       /* of x */
@@ -474,6 +475,15 @@ struct modal {                      /* modal states: the real parts of the pairs
 const char *modal_objection(const struct step *step);        /* what stands against it; NULL: nothing */
 struct modal *modal_of(const struct step *step);             /* NULL: a number is not decided */
 void plan_modal(struct step *step);                          /* where it is asked for, or cheaper and as exact */
+
+/* ---- rest.c: what is too small to count ---- */
+
+struct rest {                       /* parts of the state that nothing but themselves moves, and that decay */
+	bool in_step;               /* the step looks; else the run does */
+	int parts, *part;           /* per state as it is kept: its part; -1: of none that comes to rest */
+};
+void leave_out_lost(struct step *step);                      /* factors; before the program */
+void plan_rest(struct step *step);                           /* step->rest */
 
 /* ---- tuned_zeros.c: factors that are 0 whatever the tunable params are ---- */
 

@@ -327,7 +327,8 @@ static void print_options(FILE *to)
 {
 	static const char *const option[][2] = { { "reduce", "--reduce" }, { "float", "--real float" },
 		{ "compensated", "--accuracy compensated" }, { "direct", "--form direct" }, { "delta", "--form delta" },
-		{ "kdk", "--form kick-drift-kick" }, { "exact", "--scheme exact" }, { "pl", "--scheme pl" },
+		{ "kdk", "--form kick-drift-kick" },
+		{ "modal", "--form modal" }, { "exact", "--scheme exact" }, { "pl", "--scheme pl" },
 		{ "etd1", "--scheme etd1" }, { "etdrk2", "--scheme etdrk2" }, { "etdrk4", "--scheme etdrk4" },
 		{ "nc2", "--scheme nc2" }, { "nc3", "--scheme nc3" }, { "dq4", "--scheme dq4" },
 		{ "bm3", "--scheme bm3" }, { "selftest", "--selftest" }, { "rows", "--rows 8" },

@@ -231,8 +231,8 @@ static bool advance(struct truth *solver, double from, double to, const double *
 		char *end;
 		for (double change = strtod(list, &end); end != list; list = end, change = strtod(list, &end))
 			if (change > now && change <= now + 1e-14)
-				now = change;
-			else if (change > now && change < next)
+				now = change;           /* the first slope is already that of the next formula */
+			else if (change > now + 1e-14 && change < next)
 				next = change;
 		for (int i = 0; i < inputs; i++)
 			moved[i] = u[i] + (now - from) * u[inputs + i];

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* compare: steps one model (A) and its equal, or its parts (B1, B2, ...), beside it under the same samples, and compares
- * states by name. -DA=NAME -DPARTS="X(b1) X(b2)" -DREAL=double -DMODEL=pl_model
+/* compare: steps one model and its equal, or its parts (B1, B2, ...), beside it under the same samples, and compares
+ * states by name. -DWHOLE=NAME -DPARTS="X(b1) X(b2)" -DREAL=double -DMODEL=pl_model
  *
  *     compare STEPS TOLERANCE REST     tolerances are of the largest value of a state so far, 0: the same bits
  *
@@ -17,7 +17,7 @@
 enum { STATES = 512, INPUTS = 8, BYTES = 1 << 16 };
 #define JOIN_(a, b) a##b
 #define JOIN(a, b) JOIN_(a, b)
-extern const MODEL JOIN(A, _model);
+extern const MODEL JOIN(WHOLE, _model);
 #define X(part) extern const MODEL JOIN(part, _model);
 PARTS
 #undef X
@@ -138,7 +138,7 @@ int main(int argc, char **argv)
     const long steps = argc > 1 ? strtol(argv[1], NULL, 10) : 0;
     const double tolerance = argc > 2 ? strtod(argv[2], NULL) : 0, rest = argc > 3 ? strtod(argv[3], NULL) : 0;
     REAL u[INPUTS] = { 0 };
-    start(&whole, &JOIN(A, _model));
+    start(&whole, &JOIN(WHOLE, _model));
 #define X(b) start(&part[parts++], &JOIN(b, _model));
     PARTS
 #undef X

@@ -90,7 +90,7 @@ beside() {
 	real=${real:-double}
 	model=pl_model$([ "$real" = float ] && echo f)
 	# shellcheck disable=SC2086
-	$cc $flags -I"$root/runtime" -DA="$a" -DPARTS="$list" -DREAL="$real" -DMODEL="$model" \
+	$cc $flags -I"$root/runtime" -DWHOLE="$a" -DPARTS="$list" -DREAL="$real" -DMODEL="$model" \
 		"$root/tests/large/compare.c" $files "$library" -lm -o compare >>log 2>&1 &&
 		./compare "$steps" "$tolerance" "$rest" >>log 2>&1
 	result $? "$what"
@@ -98,7 +98,7 @@ beside() {
 
 count 8 48
 count 9 54
-count 20 120
+count 12 72
 if [ -n "${LONG:-}" ]; then
 	count 40 240
 fi
@@ -114,6 +114,17 @@ grep '_step(whole \*s\|= r1 +' whole.c >log
 grep -q 'whole_alike0_step(whole \*s' whole.c && grep -q 'whole_columns[0-9]_step(whole \*s' whole.c &&
 	grep -q 's->y\[1\] = r1 +' whole.c
 result $? 'blocks alike are one loop, a few rows are rows, a large block is columns'
+
+# The same without samples, so that they can leap, under loads that change or not; loads are not summed in one order
+for change in '' ' + (t < 0.333 ? 2 : 1 - t)'; do
+	: >log
+	parts='oscillating few chained'
+	for name in whole $parts; do
+		sed "/^input/d; s/= u/= 0.25/; s/u + cos/0.25 + cos/; s/^x2.*/&$change/; s/^c4.*/&$change/" $name.spec >t.spec
+		"$plgen" t.spec -o $name.c >>log 2>&1 || echo "$name is refused" >>log
+	done
+	beside "blocks that leap${change:+, across a change}" 60 1e-14 1e-12 whole $parts
+done
 
 # ---- modes ----
 
@@ -182,9 +193,9 @@ refused 'coord x' "x'' + x = t*cos(2*t)" 'step 0.1' 'a load has a power of t'
 refused 'coord x' "x'' + x = t < 1 ? 1 : 0" 'step 0.1' 'loads change their formula'
 refused 'coord x' "x'' + x = cos(t)" 'step 0.1' 'two poles, or a pole and a load, are too close'
 
-# A chain of 20 masses is stepped by modes where three outputs are all that is wanted, else by its states.
+# A chain of nine masses is stepped by modes where three outputs are all that is wanted, else by its states.
 row_of_masses() {
-	awk -v n=20 -v outputs="$1" 'BEGIN {
+	awk -v n=9 -v outputs="$1" 'BEGIN {
 		for (i = 1; i <= n; i++) list = list (i > 1 ? ", " : "") "x" i
 		print "model row\ncoord " list "\ninit x1 = 1"
 		for (i = 2; i <= n; i++) print "init x" i " = " 1 / i
@@ -197,11 +208,41 @@ row_of_masses() {
 		print outputs "\nstep 0.01"
 	}'
 }
-row_of_masses 'output x1, x10, x20' >row.spec
-"$plgen" row.spec 2>log | grep 'form modal: 80 multiplications, 40 additions' >>log
-result $? '20 masses, three outputs: 80 multiplications'
-row_of_masses '' | "$plgen" - 2>log | grep 'form delta: 1600 multiplications' >>log
-result $? '20 masses, all states: 1600 multiplications'
+row_of_masses 'output x1, x5, x9' >row.spec
+"$plgen" row.spec 2>log | grep 'form modal: 36 multiplications, 18 additions' >>log
+result $? 'nine masses, three outputs: 36 multiplications'
+row_of_masses '' | "$plgen" - 2>log | grep 'form delta: 324 multiplications' >>log
+result $? 'nine masses, all states: 324 multiplications'
 "$plgen" --prefix modes row.spec -o modes.c && "$plgen" --form delta --prefix states row.spec -o states.c
 beside 'modes that the generator has chosen' 100 2e-12 2e-12 modes states
+
+# ---- rest ----
+
+# at_rest NAME HOW REAL PAIRS [OPTION ...]: so many damped masses in a row, and as many free of damping beside others
+at_rest() {
+	what=$1
+	how=$2
+	real=$3
+	pairs=$4
+	shift 4
+	for model in decaying mixed; do
+		awk -v n="$pairs" -v model=$model 'BEGIN {
+			for (i = 1; i <= n; i++) list = list (i > 1 ? ", " : "") "a" i (model == "mixed" ? ", b" i : "")
+			print "model " model "\ncoord " list
+			for (i = 1; i <= n; i++) {
+				print "a" i "\47\47 + a" i "\47 + 90*a" i (i > 1 ? " - 20*a" (i - 1) : "") " = 0"
+				if (model == "mixed") print "b" i "\47\47 + " 20 + i "*b" i " = 0"
+			}
+			print "step 0.01"
+		}' >$model.spec
+		"$plgen" --real "$real" "$@" $model.spec -o $model.c >>log 2>&1
+	done
+	# shellcheck disable=SC2086
+	$cc $flags -I"$root/runtime" -DREAL="$real" -DMODEL=pl_model$([ "$real" = float ] && echo f) \
+		"$root/tests/large/rest.c" decaying.c mixed.c "$PLRT" -lm -o rest >>log 2>&1 && ./rest "$how" >>log 2>&1
+	result $? "rest: $what"
+}
+: >log
+at_rest 'steps of nine masses' step double 9 --form delta
+at_rest 'runs of two, in float' run float 2 --form delta
 tap_end
