@@ -15,45 +15,45 @@ static int expressions_of(const struct emitter *e)
 struct tables {
 	const char *text;           /* of one of them: [row][column] follows */
 	int rows, columns;
+	int from, to;               /* of branches from .. to - 1 */
 	double **value;             /* per branch */
 };
 
-static bool acts_at(const struct emitter *e, const struct tables *t, int row, int column)
+static bool acts_at(const struct tables *t, int row, int column)
 {
 	bool any = false;
-	for (int k = 0; k < e->step->branches; k++)
+	for (int k = t->from; k < t->to; k++)
 		any = any || t->value[k][row * t->columns + column] != 0;
 	return any;
 }
 
-static bool agree_at(const struct emitter *e, const struct tables *t, int row, int column)
+static bool agree_at(const struct tables *t, int row, int column)
 {
 	int at = row * t->columns + column;
 	bool same = true;
-	for (int k = 1; k < e->step->branches; k++)
-		same = same && t->value[k][at] == t->value[0][at];
+	for (int k = t->from; k < t->to; k++)
+		same = same && t->value[k][at] == t->value[t->from][at];
 	return same;
 }
 
 /* A number where all agree */
-static const char *entry_times(const struct emitter *e, const struct tables *t, int row, int column,
-			       const char *operand)
+static const char *entry_times(const struct tables *t, int row, int column, const char *operand)
 {
-	if (agree_at(e, t, row, column))
-		return scaled(t->value[0][row * t->columns + column], operand);
+	if (agree_at(t, row, column))
+		return scaled(t->value[t->from][row * t->columns + column], operand);
 	const char *text = format("%s[%d][%d]", t->text, row, column);
 	return operand ? format("%s * %s", text, operand) : text;
 }
 
 /* Sum of a row over the operands of its columns; further: a term more, or NULL */
-static const char *row_text(const struct emitter *e, const struct tables *t, int row, const char *const *operand,
+static const char *row_text(const struct tables *t, int row, const char *const *operand,
 			    const char *further, int indent)
 {
 	const char **term = ARRAY(const char *, (size_t)t->columns + 1);
 	int terms = 0;
 	for (int j = 0; j < t->columns; j++)
-		if (operand[j] && acts_at(e, t, row, j))
-			term[terms++] = entry_times(e, t, row, j, *operand[j] ? operand[j] : NULL);
+		if (operand[j] && acts_at(t, row, j))
+			term[terms++] = entry_times(t, row, j, *operand[j] ? operand[j] : NULL);
 	if (further)
 		term[terms++] = further;
 	return terms ? tree(terms, term, indent) : "0.0";
@@ -62,7 +62,8 @@ static const char *row_text(const struct emitter *e, const struct tables *t, int
 static struct tables tables_of_pieces(const struct emitter *e, const struct pieces *p, const char *text, int rows,
 				      double *(*of)(const struct region_piece *))
 {
-	struct tables t = { text, rows, e->step->layout.size, ARRAY(double *, (size_t)e->step->branches) };
+	struct tables t = { text, rows, e->step->layout.size, 0, e->step->branches,
+			    ARRAY(double *, (size_t)e->step->branches) };
 	for (int k = 0; k < e->step->branches; k++)
 		t.value[k] = of(&p->piece[k]);
 	return t;
@@ -76,30 +77,31 @@ static double *turn_of(const struct region_piece *piece)   { return piece->turn;
 static double *bend_of(const struct region_piece *piece)   { return piece->bend; }
 static double *turns_of(const struct region_piece *piece)  { return piece->turns; }
 
-static struct tables still_tables(const struct emitter *e, const struct pieces *p)
+static struct tables of_branch(struct tables t, int branch)
 {
-	struct tables t = { spell(e, "$n_still[which]"), 1, expressions_of(e),
-			    ARRAY(double *, (size_t)e->step->branches) };
-	for (int k = 0; k < e->step->branches; k++)
-		t.value[k] = still_of(&p->piece[k]);
+	t.from = branch;
+	t.to = branch + 1;
 	return t;
 }
 
-/* The largest that an expression may be off its chord: `size` of the entries of x that are not bounded */
-static const char *off_text(const struct emitter *e, const struct pieces *p, int expression, const char *const *size,
-			    int indent)
+/* The largest that an expression may be off its chord: `size` of the entries of x that are not bounded.  branch -1: of
+ * all */
+static const char *off_text(const struct emitter *e, const struct pieces *p, int branch, int expression,
+			    const char *const *size, int indent)
 {
-	struct tables off = tables_of_pieces(e, p, spell(e, "$n_off[which]"), expressions_of(e), off_of),
-		      still = still_tables(e, p);
-	int at = expression;
-	bool same = true, any = false;
-	for (int k = 0; k < e->step->branches; k++) {
-		same = same && still.value[k][at] == still.value[0][at];
-		any = any || still.value[k][at] != 0;
+	int n = expressions_of(e);
+	struct tables off = tables_of_pieces(e, p, spell(e, "$n_off[which]"), n, off_of),
+		      still = tables_of_pieces(e, p, spell(e, "$n_still[which]"), 1, still_of);
+	still.columns = n;
+	if (branch >= 0) {
+		off = of_branch(off, branch);
+		still = of_branch(still, branch);
 	}
-	const char *further = !any ? NULL : same ? shortest(still.value[0][at])
-						 : spell(e, "$n_still[which][%d]", at);
-	return row_text(e, &off, expression, size, further, indent);
+	const char *further = NULL;
+	if (acts_at(&still, 0, expression))
+		further = agree_at(&still, 0, expression) ? shortest(still.value[still.from][expression])
+							  : spell(e, "$n_still[which][%d]", expression);
+	return row_text(&off, expression, size, further, indent);
 }
 
 /* ---- tables ---- */
@@ -234,7 +236,7 @@ static void emit_expression(const struct emitter *e, const struct pieces *p)
 		say(e, "    (void)i;\n"
 		       "    return %s;\n", expression_text(e, p, 0, places(e, "x[%d]"), 11));
 	} else {
-		struct tables rows = { spell(e, "$n_row"), n, size, NULL };
+		struct tables rows = { spell(e, "$n_row"), n, size, 0, 0, NULL };
 		const char **term = ARRAY(const char *, (size_t)size);
 		int terms = 0;
 		for (int j = 0; j < size; j++) {
@@ -254,14 +256,14 @@ static void emit_turns(const struct emitter *e, const struct tables *t)
 {
 	for (int i = 0; i < t->rows; i++)
 		for (int j = 0; j < t->columns; j++)
-			if (acts_at(e, t, i, j) && !agree_at(e, t, i, j))
+			if (acts_at(t, i, j) && !agree_at(t, i, j))
 				say(e, "    const double h%d_%d = $N_H * $n_slopes[which][%d][%d];\n", i, j, i, j);
 }
 
-static const char *turn_times(const struct emitter *e, const struct tables *t, int i, int j)
+static const char *turn_times(const struct tables *t, int i, int j)
 {
 	const char *a = format("a%d", j);
-	return agree_at(e, t, i, j) ? scaled(t->value[0][i * t->columns + j], a) : format("h%d_%d * %s", i, j, a);
+	return agree_at(t, i, j) ? scaled(t->value[0][i * t->columns + j], a) : format("h%d_%d * %s", i, j, a);
 }
 
 /* Velocities are added last: positions and loads are there before them, so that a chain has one product and one sum an
@@ -271,13 +273,13 @@ static const char *turned_row(const struct emitter *e, const struct tables *t, i
 	const char **early = ARRAY(const char *, (size_t)t->columns), **late = ARRAY(const char *, (size_t)t->columns);
 	int earlies = 0, lates = 0;
 	for (int j = 0; j < t->columns; j++) {
-		if (!acts_at(e, t, row, j))
+		if (!acts_at(t, row, j))
 			continue;
 		bool velocity = j >= e->system->n && j < e->system->states;
 		if (velocity)
-			late[lates++] = turn_times(e, t, row, j);
+			late[lates++] = turn_times(t, row, j);
 		else
-			early[earlies++] = turn_times(e, t, row, j);
+			early[earlies++] = turn_times(t, row, j);
 	}
 	if (earlies && lates)
 		return format("(%s)\n                          + (%s)", tree(earlies, early, 26), tree(lates, late, 28));
@@ -414,7 +416,7 @@ static void emit_bounds(const struct emitter *e, const struct pieces *p)
 	       "static void $n_bounds(int which, const double x[%d], double off[%d])\n"
 	       "{\n", e->step->layout.size, n);
 	for (int i = 0; i < n; i++)
-		say(e, "    off[%d] = %s;\n", i, off_text(e, p, i, size, 13));
+		say(e, "    off[%d] = %s;\n", i, off_text(e, p, -1, i, size, 13));
 	say(e, "    (void)which;\n"
 	       "    (void)x;\n"
 	       "}\n"
@@ -439,7 +441,7 @@ static void emit_whole(const struct emitter *e, const struct pieces *p)
 	       "    const double (*const factor)[%d] = $n_%s[which];\n",
 	    size, size, size, any_pieces(e) ? "whole" : "pieces");
 	for (int i = 0; i < size; i++)
-		say(e, "    end[%d] = %s;\n", i, row_text(e, &whole, i, x, NULL, 13));
+		say(e, "    end[%d] = %s;\n", i, row_text(&whole, i, x, NULL, 13));
 	say(e, "    (void)factor;\n"
 	       "}\n");
 }
@@ -644,36 +646,111 @@ static bool is_read_at_end(const struct pieces *p, int size, int expressions, in
 	return read;
 }
 
-static void emit_ends(const struct emitter *e, const struct pieces *p, const char *const *x)
+/* ---- by tables of all regions, or region by region ---- */
+
+static bool goes_by_tables(const struct emitter *e)
+{
+	enum { TERMS = 200 };
+	const struct layout *layout = &e->step->layout;
+	return possible_regions(e->model->switching) * layout->states * layout->size > TERMS;
+}
+
+static void emit_ends(const struct emitter *e, const struct pieces *p, const struct tables *whole,
+		      const char *const *x, const char *before)
 {
 	int size = e->step->layout.size;
-	struct tables whole = tables_of_pieces(e, p, "factor", size, whole_of);
 	const char **name = layout_names(&e->step->layout, e->system, e->model);
 	for (int i = 0; i < size; i++)
 		if (i < e->system->states || is_read_at_end(p, size, expressions_of(e), i))
-			say(e, "    const double end%d = %s;  /* %s */\n", i, row_text(e, &whole, i, x, NULL, 22),
-			    name[i]);
+			say(e, "    %send%d = %s;  /* %s */\n", before, i, row_text(whole, i, x, NULL, 22), name[i]);
+}
+
+static const char **magnitudes(const struct emitter *e, const char *const *x)
+{
+	const char **text = ARRAY(const char *, (size_t)e->step->layout.size);
+	for (int j = 0; j < e->step->layout.size; j++)
+		text[j] = *x[j] ? format("pl_magnitude(%s)", x[j]) : "";
+	return text;
 }
 
 /* Each expression at the start, at the end, and how far it may be off the chord between */
 static void emit_chords(const struct emitter *e, const struct pieces *p, const char *const *x)
 {
-	int size = e->step->layout.size;
-	const char **magnitude = ARRAY(const char *, (size_t)size), **end = entries(e, "end%d");
-	for (int j = 0; j < size; j++)
-		magnitude[j] = *x[j] ? format("pl_magnitude(%s)", x[j]) : "";
+	const char **end = entries(e, "end%d");
 	for (int i = 0; i < expressions_of(e); i++) {
 		say(e, "    const double from%d = %s;\n", i, expression_text(e, p, i, x, 24));
 		say(e, "    const double to%d = %s;\n", i, expression_text(e, p, i, end, 24));
-		say(e, "    const double off%d = %s;\n", i, off_text(e, p, i, magnitude, 24));
+		say(e, "    const double off%d = %s;\n", i, off_text(e, p, -1, i, magnitudes(e, x), 24));
 	}
-	say(e, "    if (%s < %s", size_of_x(e, p, magnitude, 12), shortest(p->large));
+	say(e, "    if (");
 	for (int i = 0; i < expressions_of(e); i++)
-		say(e, " &&\n"
-		       "        (from%d < to%d ? from%d : to%d) - off%d > $n_within[s->contact.region][%d][0] &&\n"
-		       "        (from%d > to%d ? from%d : to%d) + off%d < $n_within[s->contact.region][%d][1]",
-		    i, i, i, i, i, i, i, i, i, i, i, i);
-	say(e, ") {\n");
+		say(e, "(from%d < to%d ? from%d : to%d) - off%d > $n_within[s->contact.region][%d][0] &&\n"
+		       "        (from%d > to%d ? from%d : to%d) + off%d < $n_within[s->contact.region][%d][1] &&\n"
+		       "        ", i, i, i, i, i, i, i, i, i, i, i, i);
+}
+
+static void emit_table_step(const struct emitter *e, const struct pieces *p, const char *const *x)
+{
+	struct tables whole = tables_of_pieces(e, p, "factor", e->step->layout.size, whole_of);
+	say(e, "    const int which = s->contact.matrix;\n"
+	       "    const double (*const factor)[%d] = $n_%s[which];\n", e->step->layout.size,
+	    any_pieces(e) ? "whole" : "pieces");
+	emit_ends(e, p, &whole, x, "const double ");
+	emit_chords(e, p, x);
+}
+
+/* x > -1 && x < 1 */
+static void emit_inside(const struct emitter *e, const struct pieces *p, int region, int expression, const char *from,
+			const char *to)
+{
+	const struct expression *x = &e->model->switching->expression[expression];
+	int interval = interval_of(e->model->switching, region, expression),
+	    at = region * expressions_of(e) + expression;
+	if (interval > 0)
+		say(e, "%s(%s < %s ? %s : %s) - off%d > %s", expression ? " &&\n                " : "", from, to, from, to,
+		    expression, shortest(p->low[at]));
+	if (interval < x->breaks)
+		say(e, "%s(%s > %s ? %s : %s) + off%d < %s", expression || interval ? " &&\n                " : "", from,
+		    to, from, to, expression, shortest(p->high[at]));
+}
+
+static void emit_region_case(const struct emitter *e, const struct pieces *p, const char *const *x, int region)
+{
+	int branch = e->model->switching->region[region].system, n = expressions_of(e);
+	struct tables whole = of_branch(tables_of_pieces(e, p, "", e->step->layout.size, whole_of), branch);
+	const char **end = entries(e, "end%d");
+	say(e, "    case %d:\n", region);
+	emit_ends(e, p, &whole, x, "    ");
+	for (int i = 0; i < n; i++)
+		say(e, "        off%d = %s;\n", i, off_text(e, p, branch, i, magnitudes(e, x), 15));
+	say(e, "        clear = ");
+	for (int i = 0; i < n; i++)
+		emit_inside(e, p, region, i, expression_text(e, p, i, x, 16), expression_text(e, p, i, end, 16));
+	say(e, ";\n"
+	       "        break;\n");
+}
+
+/* ends, and how far expressions may be off their chords: in each region its own numbers */
+static void emit_cases(const struct emitter *e, const struct pieces *p, const char *const *x)
+{
+	const struct switching *s = e->model->switching;
+	int size = e->step->layout.size;
+	const char *list = "";
+	for (int i = 0; i < size; i++)
+		if (i < e->system->states || is_read_at_end(p, size, s->expressions, i))
+			list = format("%s%send%d = 0.0", list, *list ? ", " : "", i);
+	for (int i = 0; i < s->expressions; i++)
+		list = format("%s, off%d", list, i);
+	say(e, "    double %s;\n"
+	       "    int clear = 0;\n"
+	       "    switch (s->contact.region) {\n", list);
+	for (int r = 0; r < s->regions; r++)
+		if (s->region[r].possible)
+			emit_region_case(e, p, x, r);
+	say(e, "    default:\n"
+	       "        break;\n"
+	       "    }\n"
+	       "    if (clear && ");
 }
 
 void emit_swift_step(const struct emitter *e)
@@ -681,14 +758,14 @@ void emit_swift_step(const struct emitter *e)
 	struct pieces pieces = pieces_of(e->step);
 	const struct layout *layout = &e->step->layout;
 	const char **x = operands(e);
-	say(e, "    const int which = s->contact.matrix;\n"
-	       "    const double (*const factor)[%d] = $n_%s[which];\n", layout->size,
-	    any_pieces(e) ? "whole" : "pieces");
 	for (int i = 0; i < e->system->inputs; i++)
 		if (e->system->input[i].first_order)
 			say(e, "    const double part%d = (u[%d] - s->u[%d]) / $N_H;  /* its slope */\n", i, i, i);
-	emit_ends(e, &pieces, x);
-	emit_chords(e, &pieces, x);
+	if (goes_by_tables(e))
+		emit_table_step(e, &pieces, x);
+	else
+		emit_cases(e, &pieces, x);
+	say(e, "%s < %s) {\n", size_of_x(e, &pieces, magnitudes(e, x), 12), shortest(pieces.large));
 	for (int i = 0; i < e->system->states; i++)
 		say(e, "        s->y[%d] = end%d;\n", i, i);
 	say(e, "        s->contact.crossings = 0;\n"
