@@ -77,6 +77,16 @@ static double *turn_of(const struct region_piece *piece)   { return piece->turn;
 static double *bend_of(const struct region_piece *piece)   { return piece->bend; }
 static double *turns_of(const struct region_piece *piece)  { return piece->turns; }
 
+/* Else all its entries are numbers in the text */
+static bool is_table(const struct tables *t)
+{
+	bool differs = false;
+	for (int i = 0; i < t->rows; i++)
+		for (int j = 0; j < t->columns; j++)
+			differs = differs || !agree_at(t, i, j);
+	return differs;
+}
+
 static struct tables of_branch(struct tables t, int branch)
 {
 	t.from = branch;
@@ -177,7 +187,9 @@ void emit_swift_tables(const struct emitter *e, const struct pieces *p, const ch
 {
 	int n = expressions_of(e);
 	struct tables whole = tables_of_pieces(e, p, "", e->step->layout.size, whole_of),
-		      off = tables_of_pieces(e, p, "", n, off_of), slack = tables_of_pieces(e, p, "", n, slack_of);
+		      off = tables_of_pieces(e, p, "", n, off_of), slack = tables_of_pieces(e, p, "", n, slack_of),
+		      still = tables_of_pieces(e, p, "", 1, still_of);
+	still.columns = n;
 	if (any_pieces(e)) {
 		struct tables turn = tables_of_pieces(e, p, "", n, turn_of),
 			      bend = tables_of_pieces(e, p, "", n, bend_of);
@@ -186,8 +198,11 @@ void emit_swift_tables(const struct emitter *e, const struct pieces *p, const ch
 		emit_of_each(e, &turn, "whole_lean", "lean over h", expression);
 		emit_of_each(e, &bend, "whole_sway", "sway over h", expression);
 	}
-	emit_of_each(e, &off, "off", "times |x|: how far each expression is off its chord over h, at most", expression);
-	emit_still(e, p);
+	if (is_table(&off))
+		emit_of_each(e, &off, "off", "times |x|: how far each expression is off its chord over h, at most",
+			     expression);
+	if (is_table(&still))
+		emit_still(e, p);
 	emit_of_each(e, &slack, "slack", "times |x|: what h e' is off the slope of its polynomial, at most",
 		     expression);
 	emit_neighbours(e, p);
@@ -282,7 +297,7 @@ static const char *turned_row(const struct emitter *e, const struct tables *t, i
 			early[earlies++] = turn_times(t, row, j);
 	}
 	if (earlies && lates)
-		return format("(%s)\n                          + (%s)", tree(earlies, early, 26), tree(lates, late, 28));
+		return format("(%s)\n%26s+ (%s)", tree(earlies, early, 26), "", tree(lates, late, 28));
 	return earlies ? tree(earlies, early, 25) : lates ? tree(lates, late, 25) : "0.0";
 }
 
@@ -368,13 +383,16 @@ static void emit_root(const struct emitter *e, const struct pieces *p)
 {
 	int terms = p->degree + 1;
 	say(e, "\n"
-	       "/* Where g rises through 0 for 0 < s < 1 first; 2: that is not certain.  Up to `most` its slope is above `least`\n"
-	       " * by the sizes of its other coefficients, and |g''| below `bend`: there is one root.  Two steps of Newton's\n"
+	       "/* Where g rises through 0 for 0 < s < 1 first; 2: that is not certain.  Up to `most` its slope "
+	       "is above `least`\n"
+	       " * by the sizes of its other coefficients, and |g''| below `bend`: there is one root.  Two steps "
+	       "of Newton's\n"
 	       " * method from the series of the inverse.  slack: what g' may be off by; g > 0 at 1 is known. */\n"
 	       "static double $n_root(const double g[%d], double slack)\n"
 	       "{\n"
 	       "    const double q = g[2] / g[1], w = -g[0] / g[1];\n"
-	       "    const double guess = w * (1.0 - q * w * (1.0 - 2.0 * q * w)), most = guess < 0.99 ? guess + 0.01 : 1.0;\n"
+	       "    const double guess = w * (1.0 - q * w * (1.0 - 2.0 * q * w)), most = guess < 0.99 ? guess + "
+	       "0.01 : 1.0;\n"
 	       "    double z = guess, last = guess, miss = 0.0, even = 0.0, odd = 0.0, least, bend = 0.0;\n"
 	       "    int i, k;\n", terms);
 	emit_sizes(e, terms, "least", "most", true);
@@ -401,7 +419,8 @@ static void emit_root(const struct emitter *e, const struct pieces *p)
 	       "        return 2.0;\n"
 	       "    if (most < 1.0 && !(least * (most - last) > -miss))\n"
 	       "        return 2.0;\n"
-	       "    /* the root is within |miss|/least of the last but one, and z within bend/(2 least) times that squared */\n"
+	       "    /* the root is within |miss|/least of the last but one, and z within bend/(2 least) times "
+	       "that squared */\n"
 	       "    return bend * (miss * miss) < least * least * least * 2.220446049250313e-16 ? z : 2.0;\n"
 	       "}\n");
 }
@@ -462,7 +481,8 @@ static void emit_near(const struct emitter *e, const struct pieces *p)
 	int size = e->step->layout.size, n = expressions_of(e);
 	const char *whole = any_pieces(e) ? "whole_" : "";
 	say(e, "\n"
-	       "/* How many expressions are not seen to be clear over h, from x to end; the last of them.  By chords, then by\n"
+	       "/* How many expressions are not seen to be clear over h, from x to end; the last of them.  By "
+	       "chords, then by\n"
 	       " * cubics, which lie within their Bezier points */\n"
 	       "static int $n_near(int region, int which, const double x[%d], const double end[%d], int *last)\n"
 	       "{\n"
@@ -496,9 +516,11 @@ static void emit_leaves(const struct emitter *e, const struct pieces *p)
 {
 	int size = e->step->layout.size, terms = p->degree + 1;
 	say(e, "\n"
-	       "/* Where expression i, which is `to` after h, first passes the upper or the lower end of its interval; 2: that is\n"
+	       "/* Where expression i, which is `to` after h, first passes the upper or the lower end of its "
+	       "interval; 2: that is\n"
 	       " * not certain.  c: the coefficients of x(s) */\n"
-	       "static double $n_leaves(int region, int which, int i, int up, const double x[%d], double c[%d][%d], double to)\n"
+	       "static double $n_leaves(int region, int which, int i, int up, const double x[%d], double "
+	       "c[%d][%d], double to)\n"
 	       "{\n"
 	       "    const double sign = up ? 1.0 : -1.0, b = $n_within[region][i][up], from = $n_expression(i, x);\n"
 	       "    double g[%d], noise = pl_magnitude(b), slack = 0.0;\n"
@@ -526,9 +548,11 @@ static void emit_moves_on(const struct emitter *e, const struct pieces *p)
 {
 	int size = e->step->layout.size, terms = p->degree + 1, n = expressions_of(e);
 	say(e, "\n"
-	       "/* Whether it is certain that nothing is passed from x on over h times `rest`: not what was passed just now, since\n"
+	       "/* Whether it is certain that nothing is passed from x on over h times `rest`: not what was "
+	       "passed just now, since\n"
 	       " * (e - b)/s stays beside 0, and nothing else.  c: the coefficients of x(s) */\n"
-	       "static int $n_moves_on(int region, int which, int passed, int up, const double x[%d], double c[%d][%d],\n"
+	       "static int $n_moves_on(int region, int which, int passed, int up, const double x[%d], double "
+	       "c[%d][%d],\n"
 	       "                       double rest, const double end[%d])\n"
 	       "{\n"
 	       "    double g[%d], off[%d], slack = 0.0, even = 0.0, odd = 0.0, more;\n"
@@ -543,7 +567,8 @@ static void emit_moves_on(const struct emitter *e, const struct pieces *p)
 	       "        return 0;\n"
 	       "    $n_bounds(which, x, off);\n"
 	       "    for (i = 0; i < %d; i++) {\n"
-	       "        const double from = $n_expression(i, x), to = $n_expression(i, end), sag = off[i] * (rest * rest);\n"
+	       "        const double from = $n_expression(i, x), to = $n_expression(i, end), sag = off[i] * "
+	       "(rest * rest);\n"
 	       "        if (i == passed ? !(up ? (from > to ? from : to) + sag < $n_within[region][i][1]\n"
 	       "                               : (from < to ? from : to) - sag > $n_within[region][i][0])\n"
 	       "                        : !$n_stays(region, i, from, to, sag))\n"
@@ -558,7 +583,8 @@ static void emit_cross(const struct emitter *e, const struct pieces *p)
 {
 	int size = e->step->layout.size, terms = p->degree + 1;
 	say(e, "\n"
-	       "/* x over h where it is certain that nothing is passed, or one breakpoint once: 1.  Else 0, and nothing has\n"
+	       "/* x over h where it is certain that nothing is passed, or one breakpoint once: 1.  Else 0, and "
+	       "nothing has\n"
 	       " * changed. */\n"
 	       "static int $n_cross($n *s, double x[%d])\n"
 	       "{\n"
@@ -699,19 +725,42 @@ static void emit_table_step(const struct emitter *e, const struct pieces *p, con
 	emit_chords(e, p, x);
 }
 
-/* x > -1 && x < 1 */
-static void emit_inside(const struct emitter *e, const struct pieces *p, int region, int expression, const char *from,
-			const char *to)
+/* Of an expression at the start and at the end: the state itself, or a local */
+static const char *short_text(const char *text, const char *local, int expression)
 {
-	const struct expression *x = &e->model->switching->expression[expression];
-	int interval = interval_of(e->model->switching, region, expression),
-	    at = region * expressions_of(e) + expression;
-	if (interval > 0)
-		say(e, "%s(%s < %s ? %s : %s) - off%d > %s", expression ? " &&\n                " : "", from, to, from, to,
-		    expression, shortest(p->low[at]));
-	if (interval < x->breaks)
-		say(e, "%s(%s > %s ? %s : %s) + off%d < %s", expression || interval ? " &&\n                " : "", from,
-		    to, from, to, expression, shortest(p->high[at]));
+	return strchr(text, ' ') ? format("%s%d", local, expression) : text;
+}
+
+/* An end of an interval, with what comes before it in the condition: beyond it is `than` */
+static void emit_side(const struct emitter *e, bool first, const char *from, const char *to, int expression, bool upper,
+		      double than)
+{
+	say(e, "%s(%s %c %s ? %s : %s) %c off%d %c %s", first ? "" : " &&\n                ", from,
+	    upper ? '>' : '<', to, from, to, upper ? '+' : '-', expression, upper ? '<' : '>', shortest(than));
+}
+
+/* Whether all expressions keep inside their intervals */
+static void emit_inside(const struct emitter *e, const struct pieces *p, const char *const *x, int region)
+{
+	const struct switching *s = e->model->switching;
+	const char **end = entries(e, "end%d");
+	bool first = true;
+	say(e, "        clear = ");
+	for (int i = 0; i < s->expressions; i++) {
+		const char *from = short_text(expression_text(e, p, i, x, 0), "from", i),
+			   *to = short_text(expression_text(e, p, i, end, 0), "to", i);
+		int interval = interval_of(s, region, i), at = region * s->expressions + i;
+		if (interval > 0) {
+			emit_side(e, first, from, to, i, false, p->low[at]);
+			first = false;
+		}
+		if (interval < s->expression[i].breaks) {
+			emit_side(e, first, from, to, i, true, p->high[at]);
+			first = false;
+		}
+	}
+	say(e, ";\n"
+	       "        break;\n");
 }
 
 static void emit_region_case(const struct emitter *e, const struct pieces *p, const char *const *x, int region)
@@ -721,13 +770,15 @@ static void emit_region_case(const struct emitter *e, const struct pieces *p, co
 	const char **end = entries(e, "end%d");
 	say(e, "    case %d:\n", region);
 	emit_ends(e, p, &whole, x, "    ");
-	for (int i = 0; i < n; i++)
+	for (int i = 0; i < n; i++) {
+		const char *from = expression_text(e, p, i, x, 15), *to = expression_text(e, p, i, end, 15);
+		if (strchr(from, ' '))
+			say(e, "        from%d = %s;\n", i, from);
+		if (strchr(to, ' '))
+			say(e, "        to%d = %s;\n", i, to);
 		say(e, "        off%d = %s;\n", i, off_text(e, p, branch, i, magnitudes(e, x), 15));
-	say(e, "        clear = ");
-	for (int i = 0; i < n; i++)
-		emit_inside(e, p, region, i, expression_text(e, p, i, x, 16), expression_text(e, p, i, end, 16));
-	say(e, ";\n"
-	       "        break;\n");
+	}
+	emit_inside(e, p, x, region);
 }
 
 /* ends, and how far expressions may be off their chords: in each region its own numbers */
@@ -739,8 +790,14 @@ static void emit_cases(const struct emitter *e, const struct pieces *p, const ch
 	for (int i = 0; i < size; i++)
 		if (i < e->system->states || is_read_at_end(p, size, s->expressions, i))
 			list = format("%s%send%d = 0.0", list, *list ? ", " : "", i);
-	for (int i = 0; i < s->expressions; i++)
+	const char **end = entries(e, "end%d");
+	for (int i = 0; i < s->expressions; i++) {
 		list = format("%s, off%d", list, i);
+		if (strchr(expression_text(e, p, i, x, 0), ' '))
+			list = format("%s, from%d", list, i);
+		if (strchr(expression_text(e, p, i, end, 0), ' '))
+			list = format("%s, to%d", list, i);
+	}
 	say(e, "    double %s;\n"
 	       "    int clear = 0;\n"
 	       "    switch (s->contact.region) {\n", list);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A step that is seen to be clear, or to cross once, against the runtime's search from the same state: over random
- * starts, many of them beside breakpoints, the same crossings at the same times, and the same state. The emitted code is
- * part of this file, whose NAME_cross says whether it was sure, and NAME_switching is what the search takes. */
+ * starts, many of them beside breakpoints, the same crossings at the same times, and the same state. The emitted code
+ * is part of this file, whose NAME_cross says whether it was sure, and NAME_switching is what the search takes. */
 #include "swift_variants.c"
 #include "tap.h"
 
@@ -72,7 +72,7 @@ static void compare(const char *name, int start, const struct outcome *swift, co
 
 struct place {                              /* where a model's starts are */
 	double size, speed;         /* of positions, of velocities */
-	int entry, less;            /* of the state: entry, or entry - less, is compared with -at and at; less -1: none */
+	int entry, less;            /* of the state: entry, less -1, or entry - less is compared with -at and at */
 	double at;
 };
 
@@ -164,8 +164,8 @@ static void all_starts(const char *name, void (*one)(int start, const struct pla
 
 int main(void)
 {
-	const struct place gear = { 1.5, 1, 0, -1, 1 }, mesh = { 0.04, 1, 1, -1, 0.01 }, masses = { 0.03, 1, 0, 1, 0.02 },
-			   zero = { 0.01, 1, 0, -1, 0 };
+	const struct place gear = { 1.5, 1, 0, -1, 1 }, mesh = { 0.04, 1, 1, -1, 0.01 },
+			   masses = { 0.03, 1, 0, 1, 0.02 }, zero = { 0.01, 1, 0, -1, 0 };
 	all_starts("gear1, h = 0.01", one_gear1_0, gear, 3000, 500);
 	all_starts("gear1, h = 0.1", one_gear1_1, gear, 3000, 500);
 	all_starts("gear1, h = 1", one_gear1_2, gear, 1000, 300);
