@@ -136,6 +136,14 @@ void banner_regions(const struct emitter *e)
 			at = format("%s%s%s", at, k ? ", " : "", readable_text(s->expression[i].at[k]));
 		say(e, " *     expression %d: %s, at %s\n", i, printable(form_text(model, s->expression[i].form)), at);
 	}
+	if (e->step->swift)
+		say(e, " * A step is one product where a bound shows it clear of every breakpoint; with one "
+		       "crossing that is\n"
+		       " * certain it goes by the model's own Taylor polynomials, of degree %d; all else by the "
+		       "search.\n",
+		    e->step->swift_degree);
+	else
+		say(e, " * Every step goes by the search: %s.\n", e->step->searches);
 	say(e, " * The poles above are those of the terms that are linear everywhere.\n"
 	       " * A region's number is the sum of its intervals, "
 	       "each times the product of the numbers of intervals before it.\n");

@@ -15,45 +15,45 @@ static int expressions_of(const struct emitter *e)
 struct tables {
 	const char *text;           /* of one of them: [row][column] follows */
 	int rows, columns;
+	int from, to;               /* of branches from .. to - 1 */
 	double **value;             /* per branch */
 };
 
-static bool acts_at(const struct emitter *e, const struct tables *t, int row, int column)
+static bool acts_at(const struct tables *t, int row, int column)
 {
 	bool any = false;
-	for (int k = 0; k < e->step->branches; k++)
+	for (int k = t->from; k < t->to; k++)
 		any = any || t->value[k][row * t->columns + column] != 0;
 	return any;
 }
 
-static bool agree_at(const struct emitter *e, const struct tables *t, int row, int column)
+static bool agree_at(const struct tables *t, int row, int column)
 {
 	int at = row * t->columns + column;
 	bool same = true;
-	for (int k = 1; k < e->step->branches; k++)
-		same = same && t->value[k][at] == t->value[0][at];
+	for (int k = t->from; k < t->to; k++)
+		same = same && t->value[k][at] == t->value[t->from][at];
 	return same;
 }
 
 /* A number where all agree */
-static const char *entry_times(const struct emitter *e, const struct tables *t, int row, int column,
-			       const char *operand)
+static const char *entry_times(const struct tables *t, int row, int column, const char *operand)
 {
-	if (agree_at(e, t, row, column))
-		return scaled(t->value[0][row * t->columns + column], operand);
+	if (agree_at(t, row, column))
+		return scaled(t->value[t->from][row * t->columns + column], operand);
 	const char *text = format("%s[%d][%d]", t->text, row, column);
 	return operand ? format("%s * %s", text, operand) : text;
 }
 
 /* Sum of a row over the operands of its columns; further: a term more, or NULL */
-static const char *row_text(const struct emitter *e, const struct tables *t, int row, const char *const *operand,
+static const char *row_text(const struct tables *t, int row, const char *const *operand,
 			    const char *further, int indent)
 {
 	const char **term = ARRAY(const char *, (size_t)t->columns + 1);
 	int terms = 0;
 	for (int j = 0; j < t->columns; j++)
-		if (operand[j] && acts_at(e, t, row, j))
-			term[terms++] = entry_times(e, t, row, j, *operand[j] ? operand[j] : NULL);
+		if (operand[j] && acts_at(t, row, j))
+			term[terms++] = entry_times(t, row, j, *operand[j] ? operand[j] : NULL);
 	if (further)
 		term[terms++] = further;
 	return terms ? tree(terms, term, indent) : "0.0";
@@ -62,7 +62,8 @@ static const char *row_text(const struct emitter *e, const struct tables *t, int
 static struct tables tables_of_pieces(const struct emitter *e, const struct pieces *p, const char *text, int rows,
 				      double *(*of)(const struct region_piece *))
 {
-	struct tables t = { text, rows, e->step->layout.size, ARRAY(double *, (size_t)e->step->branches) };
+	struct tables t = { text, rows, e->step->layout.size, 0, e->step->branches,
+			    ARRAY(double *, (size_t)e->step->branches) };
 	for (int k = 0; k < e->step->branches; k++)
 		t.value[k] = of(&p->piece[k]);
 	return t;
@@ -76,30 +77,41 @@ static double *turn_of(const struct region_piece *piece)   { return piece->turn;
 static double *bend_of(const struct region_piece *piece)   { return piece->bend; }
 static double *turns_of(const struct region_piece *piece)  { return piece->turns; }
 
-static struct tables still_tables(const struct emitter *e, const struct pieces *p)
+/* Else all its entries are numbers in the text */
+static bool is_table(const struct tables *t)
 {
-	struct tables t = { spell(e, "$n_still[which]"), 1, expressions_of(e),
-			    ARRAY(double *, (size_t)e->step->branches) };
-	for (int k = 0; k < e->step->branches; k++)
-		t.value[k] = still_of(&p->piece[k]);
+	bool differs = false;
+	for (int i = 0; i < t->rows; i++)
+		for (int j = 0; j < t->columns; j++)
+			differs = differs || !agree_at(t, i, j);
+	return differs;
+}
+
+static struct tables of_branch(struct tables t, int branch)
+{
+	t.from = branch;
+	t.to = branch + 1;
 	return t;
 }
 
-/* The largest that an expression may be off its chord: `size` of the entries of x that are not bounded */
-static const char *off_text(const struct emitter *e, const struct pieces *p, int expression, const char *const *size,
-			    int indent)
+/* The largest that an expression may be off its chord: `size` of the entries of x that are not bounded.  branch -1: of
+ * all */
+static const char *off_text(const struct emitter *e, const struct pieces *p, int branch, int expression,
+			    const char *const *size, int indent)
 {
-	struct tables off = tables_of_pieces(e, p, spell(e, "$n_off[which]"), expressions_of(e), off_of),
-		      still = still_tables(e, p);
-	int at = expression;
-	bool same = true, any = false;
-	for (int k = 0; k < e->step->branches; k++) {
-		same = same && still.value[k][at] == still.value[0][at];
-		any = any || still.value[k][at] != 0;
+	int n = expressions_of(e);
+	struct tables off = tables_of_pieces(e, p, spell(e, "$n_off[which]"), n, off_of),
+		      still = tables_of_pieces(e, p, spell(e, "$n_still[which]"), 1, still_of);
+	still.columns = n;
+	if (branch >= 0) {
+		off = of_branch(off, branch);
+		still = of_branch(still, branch);
 	}
-	const char *further = !any ? NULL : same ? shortest(still.value[0][at])
-						 : spell(e, "$n_still[which][%d]", at);
-	return row_text(e, &off, expression, size, further, indent);
+	const char *further = NULL;
+	if (acts_at(&still, 0, expression))
+		further = agree_at(&still, 0, expression) ? shortest(still.value[still.from][expression])
+							  : spell(e, "$n_still[which][%d]", expression);
+	return row_text(&off, expression, size, further, indent);
 }
 
 /* ---- tables ---- */
@@ -175,7 +187,9 @@ void emit_swift_tables(const struct emitter *e, const struct pieces *p, const ch
 {
 	int n = expressions_of(e);
 	struct tables whole = tables_of_pieces(e, p, "", e->step->layout.size, whole_of),
-		      off = tables_of_pieces(e, p, "", n, off_of), slack = tables_of_pieces(e, p, "", n, slack_of);
+		      off = tables_of_pieces(e, p, "", n, off_of), slack = tables_of_pieces(e, p, "", n, slack_of),
+		      still = tables_of_pieces(e, p, "", 1, still_of);
+	still.columns = n;
 	if (any_pieces(e)) {
 		struct tables turn = tables_of_pieces(e, p, "", n, turn_of),
 			      bend = tables_of_pieces(e, p, "", n, bend_of);
@@ -184,8 +198,11 @@ void emit_swift_tables(const struct emitter *e, const struct pieces *p, const ch
 		emit_of_each(e, &turn, "whole_lean", "lean over h", expression);
 		emit_of_each(e, &bend, "whole_sway", "sway over h", expression);
 	}
-	emit_of_each(e, &off, "off", "times |x|: how far each expression is off its chord over h, at most", expression);
-	emit_still(e, p);
+	if (is_table(&off))
+		emit_of_each(e, &off, "off", "times |x|: how far each expression is off its chord over h, at most",
+			     expression);
+	if (is_table(&still))
+		emit_still(e, p);
 	emit_of_each(e, &slack, "slack", "times |x|: what h e' is off the slope of its polynomial, at most",
 		     expression);
 	emit_neighbours(e, p);
@@ -234,7 +251,7 @@ static void emit_expression(const struct emitter *e, const struct pieces *p)
 		say(e, "    (void)i;\n"
 		       "    return %s;\n", expression_text(e, p, 0, places(e, "x[%d]"), 11));
 	} else {
-		struct tables rows = { spell(e, "$n_row"), n, size, NULL };
+		struct tables rows = { spell(e, "$n_row"), n, size, 0, 0, NULL };
 		const char **term = ARRAY(const char *, (size_t)size);
 		int terms = 0;
 		for (int j = 0; j < size; j++) {
@@ -254,14 +271,14 @@ static void emit_turns(const struct emitter *e, const struct tables *t)
 {
 	for (int i = 0; i < t->rows; i++)
 		for (int j = 0; j < t->columns; j++)
-			if (acts_at(e, t, i, j) && !agree_at(e, t, i, j))
+			if (acts_at(t, i, j) && !agree_at(t, i, j))
 				say(e, "    const double h%d_%d = $N_H * $n_slopes[which][%d][%d];\n", i, j, i, j);
 }
 
-static const char *turn_times(const struct emitter *e, const struct tables *t, int i, int j)
+static const char *turn_times(const struct tables *t, int i, int j)
 {
 	const char *a = format("a%d", j);
-	return agree_at(e, t, i, j) ? scaled(t->value[0][i * t->columns + j], a) : format("h%d_%d * %s", i, j, a);
+	return agree_at(t, i, j) ? scaled(t->value[0][i * t->columns + j], a) : format("h%d_%d * %s", i, j, a);
 }
 
 /* Velocities are added last: positions and loads are there before them, so that a chain has one product and one sum an
@@ -271,16 +288,16 @@ static const char *turned_row(const struct emitter *e, const struct tables *t, i
 	const char **early = ARRAY(const char *, (size_t)t->columns), **late = ARRAY(const char *, (size_t)t->columns);
 	int earlies = 0, lates = 0;
 	for (int j = 0; j < t->columns; j++) {
-		if (!acts_at(e, t, row, j))
+		if (!acts_at(t, row, j))
 			continue;
 		bool velocity = j >= e->system->n && j < e->system->states;
 		if (velocity)
-			late[lates++] = turn_times(e, t, row, j);
+			late[lates++] = turn_times(t, row, j);
 		else
-			early[earlies++] = turn_times(e, t, row, j);
+			early[earlies++] = turn_times(t, row, j);
 	}
 	if (earlies && lates)
-		return format("(%s)\n                          + (%s)", tree(earlies, early, 26), tree(lates, late, 28));
+		return format("(%s)\n%26s+ (%s)", tree(earlies, early, 26), "", tree(lates, late, 28));
 	return earlies ? tree(earlies, early, 25) : lates ? tree(lates, late, 25) : "0.0";
 }
 
@@ -366,13 +383,16 @@ static void emit_root(const struct emitter *e, const struct pieces *p)
 {
 	int terms = p->degree + 1;
 	say(e, "\n"
-	       "/* Where g rises through 0 for 0 < s < 1 first; 2: that is not certain.  Up to `most` its slope is above `least`\n"
-	       " * by the sizes of its other coefficients, and |g''| below `bend`: there is one root.  Two steps of Newton's\n"
+	       "/* Where g rises through 0 for 0 < s < 1 first; 2: that is not certain.  Up to `most` its slope "
+	       "is above `least`\n"
+	       " * by the sizes of its other coefficients, and |g''| below `bend`: there is one root.  Two steps "
+	       "of Newton's\n"
 	       " * method from the series of the inverse.  slack: what g' may be off by; g > 0 at 1 is known. */\n"
 	       "static double $n_root(const double g[%d], double slack)\n"
 	       "{\n"
 	       "    const double q = g[2] / g[1], w = -g[0] / g[1];\n"
-	       "    const double guess = w * (1.0 - q * w * (1.0 - 2.0 * q * w)), most = guess < 0.99 ? guess + 0.01 : 1.0;\n"
+	       "    const double guess = w * (1.0 - q * w * (1.0 - 2.0 * q * w)), most = guess < 0.99 ? guess + "
+	       "0.01 : 1.0;\n"
 	       "    double z = guess, last = guess, miss = 0.0, even = 0.0, odd = 0.0, least, bend = 0.0;\n"
 	       "    int i, k;\n", terms);
 	emit_sizes(e, terms, "least", "most", true);
@@ -399,7 +419,8 @@ static void emit_root(const struct emitter *e, const struct pieces *p)
 	       "        return 2.0;\n"
 	       "    if (most < 1.0 && !(least * (most - last) > -miss))\n"
 	       "        return 2.0;\n"
-	       "    /* the root is within |miss|/least of the last but one, and z within bend/(2 least) times that squared */\n"
+	       "    /* the root is within |miss|/least of the last but one, and z within bend/(2 least) times "
+	       "that squared */\n"
 	       "    return bend * (miss * miss) < least * least * least * 2.220446049250313e-16 ? z : 2.0;\n"
 	       "}\n");
 }
@@ -414,7 +435,7 @@ static void emit_bounds(const struct emitter *e, const struct pieces *p)
 	       "static void $n_bounds(int which, const double x[%d], double off[%d])\n"
 	       "{\n", e->step->layout.size, n);
 	for (int i = 0; i < n; i++)
-		say(e, "    off[%d] = %s;\n", i, off_text(e, p, i, size, 13));
+		say(e, "    off[%d] = %s;\n", i, off_text(e, p, -1, i, size, 13));
 	say(e, "    (void)which;\n"
 	       "    (void)x;\n"
 	       "}\n"
@@ -439,7 +460,7 @@ static void emit_whole(const struct emitter *e, const struct pieces *p)
 	       "    const double (*const factor)[%d] = $n_%s[which];\n",
 	    size, size, size, any_pieces(e) ? "whole" : "pieces");
 	for (int i = 0; i < size; i++)
-		say(e, "    end[%d] = %s;\n", i, row_text(e, &whole, i, x, NULL, 13));
+		say(e, "    end[%d] = %s;\n", i, row_text(&whole, i, x, NULL, 13));
 	say(e, "    (void)factor;\n"
 	       "}\n");
 }
@@ -460,7 +481,8 @@ static void emit_near(const struct emitter *e, const struct pieces *p)
 	int size = e->step->layout.size, n = expressions_of(e);
 	const char *whole = any_pieces(e) ? "whole_" : "";
 	say(e, "\n"
-	       "/* How many expressions are not seen to be clear over h, from x to end; the last of them.  By chords, then by\n"
+	       "/* How many expressions are not seen to be clear over h, from x to end; the last of them.  By "
+	       "chords, then by\n"
 	       " * cubics, which lie within their Bezier points */\n"
 	       "static int $n_near(int region, int which, const double x[%d], const double end[%d], int *last)\n"
 	       "{\n"
@@ -494,9 +516,11 @@ static void emit_leaves(const struct emitter *e, const struct pieces *p)
 {
 	int size = e->step->layout.size, terms = p->degree + 1;
 	say(e, "\n"
-	       "/* Where expression i, which is `to` after h, first passes the upper or the lower end of its interval; 2: that is\n"
+	       "/* Where expression i, which is `to` after h, first passes the upper or the lower end of its "
+	       "interval; 2: that is\n"
 	       " * not certain.  c: the coefficients of x(s) */\n"
-	       "static double $n_leaves(int region, int which, int i, int up, const double x[%d], double c[%d][%d], double to)\n"
+	       "static double $n_leaves(int region, int which, int i, int up, const double x[%d], double "
+	       "c[%d][%d], double to)\n"
 	       "{\n"
 	       "    const double sign = up ? 1.0 : -1.0, b = $n_within[region][i][up], from = $n_expression(i, x);\n"
 	       "    double g[%d], noise = pl_magnitude(b), slack = 0.0;\n"
@@ -524,9 +548,11 @@ static void emit_moves_on(const struct emitter *e, const struct pieces *p)
 {
 	int size = e->step->layout.size, terms = p->degree + 1, n = expressions_of(e);
 	say(e, "\n"
-	       "/* Whether it is certain that nothing is passed from x on over h times `rest`: not what was passed just now, since\n"
+	       "/* Whether it is certain that nothing is passed from x on over h times `rest`: not what was "
+	       "passed just now, since\n"
 	       " * (e - b)/s stays beside 0, and nothing else.  c: the coefficients of x(s) */\n"
-	       "static int $n_moves_on(int region, int which, int passed, int up, const double x[%d], double c[%d][%d],\n"
+	       "static int $n_moves_on(int region, int which, int passed, int up, const double x[%d], double "
+	       "c[%d][%d],\n"
 	       "                       double rest, const double end[%d])\n"
 	       "{\n"
 	       "    double g[%d], off[%d], slack = 0.0, even = 0.0, odd = 0.0, more;\n"
@@ -541,7 +567,8 @@ static void emit_moves_on(const struct emitter *e, const struct pieces *p)
 	       "        return 0;\n"
 	       "    $n_bounds(which, x, off);\n"
 	       "    for (i = 0; i < %d; i++) {\n"
-	       "        const double from = $n_expression(i, x), to = $n_expression(i, end), sag = off[i] * (rest * rest);\n"
+	       "        const double from = $n_expression(i, x), to = $n_expression(i, end), sag = off[i] * "
+	       "(rest * rest);\n"
 	       "        if (i == passed ? !(up ? (from > to ? from : to) + sag < $n_within[region][i][1]\n"
 	       "                               : (from < to ? from : to) - sag > $n_within[region][i][0])\n"
 	       "                        : !$n_stays(region, i, from, to, sag))\n"
@@ -556,7 +583,8 @@ static void emit_cross(const struct emitter *e, const struct pieces *p)
 {
 	int size = e->step->layout.size, terms = p->degree + 1;
 	say(e, "\n"
-	       "/* x over h where it is certain that nothing is passed, or one breakpoint once: 1.  Else 0, and nothing has\n"
+	       "/* x over h where it is certain that nothing is passed, or one breakpoint once: 1.  Else 0, and "
+	       "nothing has\n"
 	       " * changed. */\n"
 	       "static int $n_cross($n *s, double x[%d])\n"
 	       "{\n"
@@ -644,36 +672,142 @@ static bool is_read_at_end(const struct pieces *p, int size, int expressions, in
 	return read;
 }
 
-static void emit_ends(const struct emitter *e, const struct pieces *p, const char *const *x)
+/* ---- by tables of all regions, or region by region ---- */
+
+static bool goes_by_tables(const struct emitter *e)
+{
+	enum { TERMS = 200 };
+	const struct layout *layout = &e->step->layout;
+	return possible_regions(e->model->switching) * layout->states * layout->size > TERMS;
+}
+
+static void emit_ends(const struct emitter *e, const struct pieces *p, const struct tables *whole,
+		      const char *const *x, const char *before)
 {
 	int size = e->step->layout.size;
-	struct tables whole = tables_of_pieces(e, p, "factor", size, whole_of);
 	const char **name = layout_names(&e->step->layout, e->system, e->model);
 	for (int i = 0; i < size; i++)
 		if (i < e->system->states || is_read_at_end(p, size, expressions_of(e), i))
-			say(e, "    const double end%d = %s;  /* %s */\n", i, row_text(e, &whole, i, x, NULL, 22),
-			    name[i]);
+			say(e, "    %send%d = %s;  /* %s */\n", before, i, row_text(whole, i, x, NULL, 22), name[i]);
+}
+
+static const char **magnitudes(const struct emitter *e, const char *const *x)
+{
+	const char **text = ARRAY(const char *, (size_t)e->step->layout.size);
+	for (int j = 0; j < e->step->layout.size; j++)
+		text[j] = *x[j] ? format("pl_magnitude(%s)", x[j]) : "";
+	return text;
 }
 
 /* Each expression at the start, at the end, and how far it may be off the chord between */
 static void emit_chords(const struct emitter *e, const struct pieces *p, const char *const *x)
 {
-	int size = e->step->layout.size;
-	const char **magnitude = ARRAY(const char *, (size_t)size), **end = entries(e, "end%d");
-	for (int j = 0; j < size; j++)
-		magnitude[j] = *x[j] ? format("pl_magnitude(%s)", x[j]) : "";
+	const char **end = entries(e, "end%d");
 	for (int i = 0; i < expressions_of(e); i++) {
 		say(e, "    const double from%d = %s;\n", i, expression_text(e, p, i, x, 24));
 		say(e, "    const double to%d = %s;\n", i, expression_text(e, p, i, end, 24));
-		say(e, "    const double off%d = %s;\n", i, off_text(e, p, i, magnitude, 24));
+		say(e, "    const double off%d = %s;\n", i, off_text(e, p, -1, i, magnitudes(e, x), 24));
 	}
-	say(e, "    if (%s < %s", size_of_x(e, p, magnitude, 12), shortest(p->large));
+	say(e, "    if (");
 	for (int i = 0; i < expressions_of(e); i++)
-		say(e, " &&\n"
-		       "        (from%d < to%d ? from%d : to%d) - off%d > $n_within[s->contact.region][%d][0] &&\n"
-		       "        (from%d > to%d ? from%d : to%d) + off%d < $n_within[s->contact.region][%d][1]",
-		    i, i, i, i, i, i, i, i, i, i, i, i);
-	say(e, ") {\n");
+		say(e, "(from%d < to%d ? from%d : to%d) - off%d > $n_within[s->contact.region][%d][0] &&\n"
+		       "        (from%d > to%d ? from%d : to%d) + off%d < $n_within[s->contact.region][%d][1] &&\n"
+		       "        ", i, i, i, i, i, i, i, i, i, i, i, i);
+}
+
+static void emit_table_step(const struct emitter *e, const struct pieces *p, const char *const *x)
+{
+	struct tables whole = tables_of_pieces(e, p, "factor", e->step->layout.size, whole_of);
+	say(e, "    const int which = s->contact.matrix;\n"
+	       "    const double (*const factor)[%d] = $n_%s[which];\n", e->step->layout.size,
+	    any_pieces(e) ? "whole" : "pieces");
+	emit_ends(e, p, &whole, x, "const double ");
+	emit_chords(e, p, x);
+}
+
+/* Of an expression at the start and at the end: the state itself, or a local */
+static const char *short_text(const char *text, const char *local, int expression)
+{
+	return strchr(text, ' ') ? format("%s%d", local, expression) : text;
+}
+
+/* An end of an interval, with what comes before it in the condition: beyond it is `than` */
+static void emit_side(const struct emitter *e, bool first, const char *from, const char *to, int expression, bool upper,
+		      double than)
+{
+	say(e, "%s(%s %c %s ? %s : %s) %c off%d %c %s", first ? "" : " &&\n                ", from,
+	    upper ? '>' : '<', to, from, to, upper ? '+' : '-', expression, upper ? '<' : '>', shortest(than));
+}
+
+/* Whether all expressions keep inside their intervals */
+static void emit_inside(const struct emitter *e, const struct pieces *p, const char *const *x, int region)
+{
+	const struct switching *s = e->model->switching;
+	const char **end = entries(e, "end%d");
+	bool first = true;
+	say(e, "        clear = ");
+	for (int i = 0; i < s->expressions; i++) {
+		const char *from = short_text(expression_text(e, p, i, x, 0), "from", i),
+			   *to = short_text(expression_text(e, p, i, end, 0), "to", i);
+		int interval = interval_of(s, region, i), at = region * s->expressions + i;
+		if (interval > 0) {
+			emit_side(e, first, from, to, i, false, p->low[at]);
+			first = false;
+		}
+		if (interval < s->expression[i].breaks) {
+			emit_side(e, first, from, to, i, true, p->high[at]);
+			first = false;
+		}
+	}
+	say(e, ";\n"
+	       "        break;\n");
+}
+
+static void emit_region_case(const struct emitter *e, const struct pieces *p, const char *const *x, int region)
+{
+	int branch = e->model->switching->region[region].system, n = expressions_of(e);
+	struct tables whole = of_branch(tables_of_pieces(e, p, "", e->step->layout.size, whole_of), branch);
+	const char **end = entries(e, "end%d");
+	say(e, "    case %d:\n", region);
+	emit_ends(e, p, &whole, x, "    ");
+	for (int i = 0; i < n; i++) {
+		const char *from = expression_text(e, p, i, x, 15), *to = expression_text(e, p, i, end, 15);
+		if (strchr(from, ' '))
+			say(e, "        from%d = %s;\n", i, from);
+		if (strchr(to, ' '))
+			say(e, "        to%d = %s;\n", i, to);
+		say(e, "        off%d = %s;\n", i, off_text(e, p, branch, i, magnitudes(e, x), 15));
+	}
+	emit_inside(e, p, x, region);
+}
+
+/* ends, and how far expressions may be off their chords: in each region its own numbers */
+static void emit_cases(const struct emitter *e, const struct pieces *p, const char *const *x)
+{
+	const struct switching *s = e->model->switching;
+	int size = e->step->layout.size;
+	const char *list = "";
+	for (int i = 0; i < size; i++)
+		if (i < e->system->states || is_read_at_end(p, size, s->expressions, i))
+			list = format("%s%send%d = 0.0", list, *list ? ", " : "", i);
+	const char **end = entries(e, "end%d");
+	for (int i = 0; i < s->expressions; i++) {
+		list = format("%s, off%d", list, i);
+		if (strchr(expression_text(e, p, i, x, 0), ' '))
+			list = format("%s, from%d", list, i);
+		if (strchr(expression_text(e, p, i, end, 0), ' '))
+			list = format("%s, to%d", list, i);
+	}
+	say(e, "    double %s;\n"
+	       "    int clear = 0;\n"
+	       "    switch (s->contact.region) {\n", list);
+	for (int r = 0; r < s->regions; r++)
+		if (s->region[r].possible)
+			emit_region_case(e, p, x, r);
+	say(e, "    default:\n"
+	       "        break;\n"
+	       "    }\n"
+	       "    if (clear && ");
 }
 
 void emit_swift_step(const struct emitter *e)
@@ -681,14 +815,14 @@ void emit_swift_step(const struct emitter *e)
 	struct pieces pieces = pieces_of(e->step);
 	const struct layout *layout = &e->step->layout;
 	const char **x = operands(e);
-	say(e, "    const int which = s->contact.matrix;\n"
-	       "    const double (*const factor)[%d] = $n_%s[which];\n", layout->size,
-	    any_pieces(e) ? "whole" : "pieces");
 	for (int i = 0; i < e->system->inputs; i++)
 		if (e->system->input[i].hold)
 			say(e, "    const double part%d = (u[%d] - s->u[%d]) / $N_H;  /* its slope */\n", i, i, i);
-	emit_ends(e, &pieces, x);
-	emit_chords(e, &pieces, x);
+	if (goes_by_tables(e))
+		emit_table_step(e, &pieces, x);
+	else
+		emit_cases(e, &pieces, x);
+	say(e, "%s < %s) {\n", size_of_x(e, &pieces, magnitudes(e, x), 12), shortest(pieces.large));
 	for (int i = 0; i < e->system->states; i++)
 		say(e, "        s->y[%d] = end%d;\n", i, i);
 	say(e, "        s->contact.crossings = 0;\n"

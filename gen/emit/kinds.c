@@ -180,7 +180,7 @@ static void emit_regions_step(const struct emitter *e)
 
 static const struct kind regions = {
 	.banner = banner_regions,
-	.step_note = " * A step that stays clear of every breakpoint, in a region whose piece is the step:\n",
+	.step_note = " * A step that stays clear of every breakpoint, at most:\n",
 	.banner_more = nothing,
 	.no_jump = "crossings are found step by step",
 	.no_at = far_pole,

@@ -155,6 +155,27 @@ static void person_step(FILE *to, const struct step *step)
 				: "the largest |pole| times h is above 8");
 }
 
+/* Of the tables of a swift step: bounds for each matrix; for each region and expression, where it is and which are
+ * beside it */
+static long swift_bytes(const struct step *step)
+{
+	const struct switching *s = step->model->switching;
+	long size = step->layout.size, halves = 0;
+	for (int k = 0; k < step->branches; k++)
+		halves = halves || step->branch[k].halvings > 0;
+	return 8 * s->systems * (s->expressions * (2 * size + 1) + halves * size * (size + 2 * s->expressions)) +
+	       24 * (long)s->regions * s->expressions + 4 * s->expressions + 16 * (step->swift_degree + 1);
+}
+
+/* What a swift step does before it leaves it to the search, at most */
+static long swift_multiplications(const struct step *step)
+{
+	long size = step->layout.size, terms = step->swift_degree + 1;
+	return step->swift ? size * size + 8 * step->model->switching->expressions * size +
+				     2 * terms * (size * size + 4 * size + 8)
+			   : 0;
+}
+
 /* Bytes of tables, and the most that a step can take: every piece of it by a Taylor polynomial, all events and splits
  * used */
 static void person_regions(FILE *to, const struct step *step)
@@ -163,6 +184,8 @@ static void person_regions(FILE *to, const struct step *step)
 	long size = step->layout.size, matrices = s->systems, degree = step->series.degree, pieces = 1;
 	long bytes = 8 * (s->expressions * size + matrices * (2 * size * size + 3 * s->expressions * size)) +
 		     4 * (s->regions + s->expressions + matrices);
+	if (step->swift)
+		bytes += swift_bytes(step);
 	for (int k = 0; k < step->branches; k++)
 		pieces = 1l << step->branch[k].halvings > pieces ? 1l << step->branch[k].halvings : pieces;
 	pieces += MAX_EVENTS + 1;
@@ -185,10 +208,18 @@ static void person_regions(FILE *to, const struct step *step)
 			fprintf(to, " %d", interval_of(s, r, i));
 		fprintf(to, "): matrix %d\n", s->region[r].system);
 	}
+	if (step->swift)
+		fprintf(to,
+			"A step that a bound shows clear is one product; one crossing goes by Taylor polynomials of "
+			"degree %d, all else by the search.\n",
+			step->swift_degree);
+	else
+		fprintf(to, "Every step goes by the search: %s.\n", step->searches);
 	fprintf(to, "Tables: %ld bytes. Per step at most %d crossings and %d splits; at most %ld multiplications.\n",
 		bytes, MAX_EVENTS, MAX_SPLITS,
 		pieces * (degree * (size * size + 2 * size) + (degree + 1) * s->expressions * (size + 6)) +
-			4 * (degree + 1) * (2 * MAX_SPLITS + 4 * s->expressions * pieces + 64 * MAX_EVENTS));
+			4 * (degree + 1) * (2 * MAX_SPLITS + 4 * s->expressions * pieces + 64 * MAX_EVENTS) +
+			swift_multiplications(step));
 }
 
 /* What went where: the operators, then the leftover of the first; those of the others differ in linear terms only. */

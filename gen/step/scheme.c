@@ -145,16 +145,19 @@ static struct wanted *wanted_piece(const struct step *step, int halvings)
 	return r->table;
 }
 
-/* Over the whole of h, without pieces: where the fastest pole turns by 2 at most, and the code is a page */
-static bool is_swift(const struct step *step)
+/* Why a step of regions does not look over the whole of h first; NULL: it does */
+static const char *no_swift(const struct step *step)
 {
 	enum { TERMS = 400, BOUNDS = 1024 };
 	const struct switching *s = step->model->switching;
-	bool swift = !step->model->asked.single && s->regions * s->expressions <= BOUNDS &&
-		     step->layout.size * (step->layout.states + s->expressions) <= TERMS;
+	bool turns = false;
 	for (int k = 0; k < step->branches; k++)
-		swift = swift && step->branch[k].halvings <= 1;
-	return swift;
+		turns = turns || step->branch[k].halvings > 1;
+	return step->model->asked.single                 ? "it is smaller, for the target float"
+	       : turns                                   ? "the fastest pole turns by more than 2 in a step"
+	       : s->regions * s->expressions > BOUNDS     ? "there are too many regions"
+	       : step->layout.size * (step->layout.states + s->expressions) > TERMS ? "it would be more than a page"
+									      : NULL;
 }
 
 /* Tables over the whole of h, of a region that has pieces of half of it */
@@ -170,12 +173,17 @@ static void plan_whole(struct step *step, int k)
 static void plan_swift(struct step *step)
 {
 	bool any = false;
-	step->swift = is_swift(step);
+	step->searches = no_swift(step);
+	step->swift = !step->searches;
 	for (int k = 0; k < step->branches; k++)
 		any = any || step->branch[k].halvings > 0;
-	if (step->swift)
-		/* terms come in fours */
-		step->swift_degree = 3 | (any ? series_degree(step, 0, step->branches, 0) : step->series.degree);
+	if (!step->swift)
+		return;
+	int expressions = step->model->switching->expressions;
+	step->program->multiplications = (step->layout.states + expressions) * step->layout.size;
+	step->program->additions = step->program->multiplications + 2 * expressions;
+	/* terms come in fours */
+	step->swift_degree = 3 | (any ? series_degree(step, 0, step->branches, 0) : step->series.degree);
 }
 
 static void plan_region(struct step *step, int k)

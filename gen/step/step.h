@@ -288,6 +288,7 @@ struct step {                       /* everything that is emitted for one model 
 	/* of regions: a step looks over the whole of h whether it is clear, and for one crossing; by Taylor
 	 * polynomials of this degree */
 	bool swift;
+	const char *searches;       /* why it is not */
 	int swift_degree;
 	struct load_phase *phase;   /* per load */
 	struct rows *rows;          /* NAME_run in blocks of rows; NULL: step by step */
