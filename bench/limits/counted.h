@@ -5,14 +5,13 @@
 #ifndef COUNTED_H
 #define COUNTED_H
 
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <cstdio>
-#include <cstdlib>
-#include <cstring>
+#include <stddef.h>                 /* before `double` becomes another word; no <math.h>: linear models */
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
 
-typedef double plain;               /* before `double` becomes another word */
+typedef double plain;
 
 struct counted {
 	plain value;                /* first: its bits are read through a union */
@@ -46,6 +45,11 @@ inline plain later(plain a, plain b)
 	return a > b ? a : b;
 }
 
+inline plain sooner(plain a, plain b)
+{
+	return a < b ? a : b;
+}
+
 inline counted counted_sum(counted a, counted b, plain value)
 {
 	plain ready = later(a.ready, b.ready) + tally.add;
@@ -53,9 +57,9 @@ inline counted counted_sum(counted a, counted b, plain value)
 	tally.additions++;
 	tally.pairs += pair;
 	if (pair && a.factors >= 0)
-		ready = std::fmin(ready, later(a.factors, b.ready) + tally.fused);
+		ready = sooner(ready, later(a.factors, b.ready) + tally.fused);
 	if (pair && b.factors >= 0)
-		ready = std::fmin(ready, later(b.factors, a.ready) + tally.fused);
+		ready = sooner(ready, later(b.factors, a.ready) + tally.fused);
 	return counted_at(value, ready, -1);
 }
 
