@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Numbers that count: generated C is compiled as C++ with this for `double` (g++ -x c++ -include counted.h), and what it
- * computes then says how many operations it took and when its result could be there, were there no end of units to
+/* Numbers that count: generated C is compiled as C++ with this for `double` (g++ -x c++ -include counted.h), and what
+ * it computes then says how many operations it took and when its result could be there, were there no end of units to
  * compute with: the longest chain of operations that wait for each other.  Products that are added may be fused. */
 #ifndef COUNTED_H
 #define COUNTED_H

@@ -19,9 +19,10 @@ while [ $# -gt 0 ]; do
 	case $1 in
 	--quick) models='scs sdcsf' ;;
 	--flags)
-		sets='-O2:-O1:-O3:-Os:-O2 -fno-tree-vectorize -fno-slp-vectorize:-O2 -mavx2 -mfma:-O2 -march=native'
-		sets="$sets:-O3 -march=native:-O2 -march=native -mprefer-vector-width=512"
-		sets="$sets:-O2 -march=native -ffp-contract=off:-O2 -march=native -fno-tree-vectorize -fno-slp-vectorize"
+		scalar='-fno-tree-vectorize -fno-tree-slp-vectorize'
+		sets="-O2:-O1:-O3:-Os:-O2 $scalar:-O2 -mavx2 -mfma:-O2 -march=native:-O3 -march=native"
+		sets="$sets:-O2 -march=native -mprefer-vector-width=512:-O2 -march=native -ffp-contract=off"
+		sets="$sets:-O2 -march=native $scalar"
 		;;
 	*) break ;;
 	esac
@@ -143,6 +144,6 @@ done
 echo 'how near to the machine: ns a step or row, and the time over its bound (chain, work or store, the largest);'
 echo 'times_work: over work and store alone, what many rows at a time could come to'
 tr ',' '\t' <"$work/limits.csv" | awk -F '\t' '{
-	printf "%-12s %-14s %-6s %-56s %5s %7s %7s %9s %9s %9s %9s %12s %11s\n", $1, $2, $3, $4, $5, $6, $7, $8, $9, $10, $12,
-		$13, $14 }'
+	printf "%-12s %-14s %-6s %-66s %5s %7s %7s %9s %9s %9s %9s %12s %11s\n", $1, $2, $3, $4, $5, $6, $7, $8, $9,
+		$10, $12, $13, $14 }'
 [ -z "$folder" ] || cp "$work/limits.csv" "$folder/limits.csv"
