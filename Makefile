@@ -80,6 +80,8 @@ bench: tests
 	sh bench/retune.sh $(BUILD)
 	sh bench/sweep.sh $(BUILD)
 	sh bench/large.sh $(BUILD)
+	sh bench/rows.sh $(BUILD)
+	sh bench/limits/limits.sh $(BUILD)
 
 # Speed against accuracy, and stability where methods fail: charts/index.html with its pictures and tables. 20 minutes;
 # quick: 4.

@@ -89,6 +89,12 @@ generation() {
 	draw generation "$folder/break_even.csv"
 }
 
+limits() {
+	say 'how near to the machine'
+	sh bench/limits/limits.sh $quick "$build" "$folder" >&2
+	draw limits "$folder/limits.csv"
+}
+
 # A list with && would go on after a failure inside a function
 (energy; convergence; plmap) &
 first=$!
@@ -100,6 +106,7 @@ precision
 generation
 headline
 papers
+limits
 say 'the page'
 sh $charts/page.sh "$build" "$folder" "make charts${quick:+-quick}"
 say "done: $folder/index.html"

@@ -120,6 +120,7 @@ contents() {
 <a href="#stability">7 Stability and quality</a>
 <a href="#energy">8 Energy and momentum in long runs</a>
 <a href="#hard">9 Where methods fail</a>
+<a href="#limits">10 How near to the machine</a>
 <a href="#machine">Machine, compiler, command</a>
 </nav>
 EOT
@@ -233,6 +234,12 @@ hard() {
 	table hard.csv
 }
 
+limits() {
+	section limits '10 How near to the machine'
+	picture limits
+	table limits.csv
+}
+
 # Pictures and tables that no section has shown
 others() {
 	for file in "$folder"/*.svg "$folder"/*.csv; do
@@ -265,6 +272,7 @@ others() {
 	stability
 	energy
 	hard
+	limits
 	others
 	machine
 	echo '</html>'
