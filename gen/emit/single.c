@@ -24,6 +24,7 @@ static const struct name { const char *name, *stem; bool called; } names[] = {
 	{ "pl_switching", "pl_switching", false }, { "pl_switching_start", "pl_switching", false },
 	{ "pl_switching_step", "pl_switching", false }, { "pl_switching_advance", "pl_switching", false },
 	{ "pl_crossing", "pl_crossing", false },
+	{ "pl_peak", "pl_peak", false }, { "pl_peak_bend", "pl_peak", false },
 	{ "pl_lanes", "pl_lanes", false }, { "pl_lanes_load", "pl_lanes", false },
 	{ "pl_lanes_store", "pl_lanes", false }, { "pl_lanes_all", "pl_lanes", false },
 	{ "pl_lanes_peak", "pl_lanes", false }, { "pl_lanes_accumulate", "pl_lanes", false },

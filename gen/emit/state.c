@@ -9,7 +9,7 @@ const struct model *speaker(const struct model *model)
 
 bool has_jump(const struct emitter *e)
 {
-	return e->system->inputs == 0 && !e->kind->no_jump;
+	return e->system->inputs == 0 && !e->kind->no_jump && !has_peaks(e);
 }
 
 const char *state_list(const struct model *model)

@@ -25,6 +25,9 @@ static const char *objection_of_outputs(const struct model *model)
 	for (int i = 0; i < model->outputs; i++)
 		if (model->output[i].left)
 			return format("output %s is not linear", model->output[i].name);
+		else if (model->output[i].peak)
+			return format("output %s is a peak: those of a batch are in its array `peak`",
+				      model->output[i].name);
 	if (model->relative && !model->declared_outputs)
 		return "its states are kept as differences: declare outputs";
 	return NULL;
