@@ -163,6 +163,8 @@ void emit_peak_members(const struct emitter *e);
 void emit_peak_set(const struct emitter *e);
 const char *name_of_step(const struct emitter *e);                /* of the step that looks for no peaks */
 void emit_peak_step(const struct emitter *e);
+/* peak = the larger of it and of what is inside the step from x to the output `end`; in locals x, row, work, i */
+void emit_peak_look(const struct emitter *e, const struct output *output, const char *peak, const char *end);
 /* Of tunable models, in NAME_coeffs: members, the spec's, retuned */
 void emit_peak_coefficients(const struct emitter *e);
 void emit_nominal_peaks(const struct emitter *e);

@@ -26,6 +26,12 @@ static void emit_rows(const struct emitter *e, const char *name, const char *wha
 	say(e, "};\n");
 }
 
+/* Instances of a batch have that of what they share in one number. */
+static bool has_reach(const struct emitter *e)
+{
+	return e->model->asked.batch && e->step->layout.size > e->system->states;
+}
+
 void emit_peak_coefficients(const struct emitter *e)
 {
 	int size = e->step->layout.size;
@@ -34,6 +40,9 @@ void emit_peak_coefficients(const struct emitter *e)
 	say(e, "    double slope[%d][%d];  /* x' = slope x, x = the states and what acts on them */\n"
 	       "    double bend[%d][%d];   /* bend |x| bounds how far a peak's output is off its chord in a step */\n",
 	    size, size, peak_outputs(e->model), size);
+	if (has_reach(e))
+		say(e, "    double reach[%d];      /* so many times as with the spec's values what acts on the states "
+		       "bends it */\n", peak_outputs(e->model));
 }
 
 void emit_nominal_peaks(const struct emitter *e)
@@ -47,6 +56,10 @@ void emit_nominal_peaks(const struct emitter *e)
 	       "    {\n");
 	emit_number_rows(e, peak_outputs(e->model), e->step->layout.size, peaks_of(e->step).bend, peak_names(e));
 	say(e, "    },\n");
+	for (int i = 0; i < peak_outputs(e->model) && has_reach(e); i++)
+		say(e, i ? ", 1.0" : "    {1.0");
+	if (has_reach(e))
+		say(e, "},\n");
 }
 
 /* row[...] = the output over x: of tunable outputs from the instance's factors */
@@ -77,8 +90,14 @@ void emit_retune_peaks(const struct emitter *e)
 		if (!output->peak)
 			continue;
 		emit_row_of(e, output, "c->", "        ");
-		say(e, "        pl_peak_bend(%d, c->slope[0], row, h, c->bend[%d], space);\n", size,
-		    peak_place(e->model, output));
+		int place = peak_place(e->model, output);
+		say(e, "        pl_peak_bend(%d, c->slope[0], row, h, c->bend[%d], space);\n", size, place);
+		if (has_reach(e))
+			say(e, "        c->reach[%d] = 0.0;\n"
+			       "        for (i = $N_STATES; i < %d; i++)\n"
+			       "            if (c->bend[%d][i] > c->reach[%d] * $n_nominal.bend[%d][i])\n"
+			       "                c->reach[%d] = c->bend[%d][i] / $n_nominal.bend[%d][i];\n",
+			    place, size, place, place, place, place, place, place);
 	}
 	say(e, "    }\n");
 }
@@ -127,7 +146,7 @@ const char *name_of_step(const struct emitter *e)
 	return has_peaks(e) ? "move" : "step";
 }
 
-static void emit_look(const struct emitter *e, const struct output *output, int value)
+void emit_peak_look(const struct emitter *e, const struct output *output, const char *peak, const char *end)
 {
 	bool own = e->kind->own_factors;
 	int size = e->step->layout.size, place = peak_place(e->model, output);
@@ -136,10 +155,10 @@ static void emit_look(const struct emitter *e, const struct output *output, int 
 		emit_row_of(e, output, "s->coeffs.", "    ");
 		row = "row";
 	}
-	say(e, "    s->peak[%d] = pl_peak(%d, %s, %s, %s[%d], %s, x,\n"
-	       "        now[%d], s->peak[%d], work);  /* %s */\n", place, size,
-	    own ? "s->coeffs.slope[0]" : spell(e, "$n_slope[0]"), row, own ? "s->coeffs.bend" :
-	    spell(e, "$n_peak_bend"), place, step_length(e), value, place, output->name);
+	say(e, "    %s = pl_peak(%d, %s, %s, %s[%d], %s, x,\n"
+	       "        %s, %s, work);  /* %s */\n", peak, size,
+	    own ? "s->coeffs.slope[0]" : spell(e, "$n_slope[0]"), row,
+	    own ? "s->coeffs.bend" : spell(e, "$n_peak_bend"), place, step_length(e), end, peak, output->name);
 }
 
 void emit_peak_step(const struct emitter *e)
@@ -164,7 +183,9 @@ void emit_peak_step(const struct emitter *e)
 	       "    $n_now(s, now);\n", inputs ? "u, " : "", inputs ? ", u" : "");
 	for (int i = 0; i < e->model->outputs; i++)
 		if (e->model->output[i].peak)
-			emit_look(e, &e->model->output[i], i);
+			emit_peak_look(e, &e->model->output[i],
+				       format("s->peak[%d]", peak_place(e->model, &e->model->output[i])),
+				       format("now[%d]", i));
 	say(e, "}\n"
 	       "\nvoid $n_out(const $n *s, double out[$N_OUTPUTS])\n"
 	       "{\n"
