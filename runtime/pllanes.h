@@ -132,6 +132,59 @@ PL_LANES_INLINE pl_lanesf pl_lanesf_peak(pl_lanesf peak, pl_lanesf value)
 }
 #endif
 
+/* Is a above b in some lane, or one of them not a number? */
+#if defined(PL_LANES_BYTES) && defined(__AVX512F__)
+PL_LANES_INLINE int pl_lanes_above(pl_lanes a, pl_lanes b)
+{
+    return _mm512_cmp_pd_mask((__m512d)a, (__m512d)b, _CMP_NLE_UQ) != 0;
+}
+PL_LANES_INLINE int pl_lanesf_above(pl_lanesf a, pl_lanesf b)
+{
+    return _mm512_cmp_ps_mask((__m512)a, (__m512)b, _CMP_NLE_UQ) != 0;
+}
+#elif defined(PL_LANES_BYTES) && defined(__AVX__)
+PL_LANES_INLINE int pl_lanes_above(pl_lanes a, pl_lanes b)
+{
+    return _mm256_movemask_pd(_mm256_cmp_pd((__m256d)a, (__m256d)b, _CMP_NLE_UQ)) != 0;
+}
+PL_LANES_INLINE int pl_lanesf_above(pl_lanesf a, pl_lanesf b)
+{
+    return _mm256_movemask_ps(_mm256_cmp_ps((__m256)a, (__m256)b, _CMP_NLE_UQ)) != 0;
+}
+#elif defined(PL_LANES_BYTES) && defined(__SSE2__)
+PL_LANES_INLINE int pl_lanes_above(pl_lanes a, pl_lanes b)
+{
+    return _mm_movemask_pd(_mm_cmpnle_pd((__m128d)a, (__m128d)b)) != 0;
+}
+PL_LANES_INLINE int pl_lanesf_above(pl_lanesf a, pl_lanesf b)
+{
+    return _mm_movemask_ps(_mm_cmpnle_ps((__m128)a, (__m128)b)) != 0;
+}
+#else
+PL_LANES_INLINE int pl_lanes_above(pl_lanes a, pl_lanes b)
+{
+    double x[sizeof(pl_lanes) / sizeof(double)], y[sizeof(pl_lanes) / sizeof(double)];
+    size_t i;
+    int above = 0;
+    memcpy(x, &a, sizeof a);
+    memcpy(y, &b, sizeof b);
+    for (i = 0; i < sizeof(pl_lanes) / sizeof(double); i++)
+        above |= !(x[i] <= y[i]);
+    return above;
+}
+PL_LANES_INLINE int pl_lanesf_above(pl_lanesf a, pl_lanesf b)
+{
+    float x[sizeof(pl_lanesf) / sizeof(float)], y[sizeof(pl_lanesf) / sizeof(float)];
+    size_t i;
+    int above = 0;
+    memcpy(x, &a, sizeof a);
+    memcpy(y, &b, sizeof b);
+    for (i = 0; i < sizeof(pl_lanesf) / sizeof(float); i++)
+        above |= !(x[i] <= y[i]);
+    return above;
+}
+#endif
+
 /* As pl_accumulate, in every lane */
 PL_LANES_INLINE pl_lanes pl_lanes_accumulate(pl_lanes sum, pl_lanes term, pl_lanes small, pl_lanes *rest)
 {

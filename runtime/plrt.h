@@ -324,6 +324,23 @@ double pl_until(double t0, uint64_t k, pl_two h, pl_two change);
 /* The same in floats, off by less than 2^-45 of the largest (2^-46.5 measured over 9 10^5). */
 float pl_untilf(float t0, uint64_t k, pl_twof h, pl_twof change);
 
+/* ---- peak.c: the largest size of an output --------------------------------------------------------------- */
+
+enum { PL_PEAK_SPACE = 5 };
+#define PL_PEAK_WORK(size) (PL_PEAK_SPACE * (size)) /* reals that these work in */
+
+/* The larger of `peak` and |row . x(tau)|, 0 <= tau <= h, where x' = A x from x on, of `size` entries, and row . x(h)
+ * is known to be `end`.  bend . |x| bounds how far row . x(tau) is off its chord, so most steps are clear at once; else
+ * every extreme of its Taylor polynomial is found.  Not a number once the output is none. */
+double pl_peak(int size, const double *A, const double *row, const double *bend, double h, const double *x, double end,
+               double peak, double *work);
+float pl_peakf(int size, const float *A, const float *row, const float *bend, float h, const float *x, float end,
+               float peak, float *work);
+
+/* That bound: h^2/8 times what |row A^2 e^{A tau}| is at most, entry by entry */
+void pl_peak_bend(int size, const double *A, const double *row, double h, double *bend, double *work);
+void pl_peakf_bend(int size, const float *A, const float *row, float h, float *bend, float *work);
+
 /* ---- apply.c: matrices times vectors ----------------------------------------------------------------------- */
 
 /* y = table x; table is rows x columns, row-major; x has `columns` entries, y `rows`.  y overlaps neither x nor table.

@@ -43,6 +43,8 @@ enum { REAL_DIGITS = FLT_MANT_DIG, REAL_EXPONENTS = FLT_MAX_EXP };
 #define pl_increment pl_incrementf
 #define pl_ramp_before pl_rampf_before
 #define pl_ramp_cancels pl_rampf_cancels
+#define pl_peak pl_peakf
+#define pl_peak_bend pl_peakf_bend
 
 #else
 

@@ -52,6 +52,7 @@ static void emit_rest_of_state(const struct emitter *e)
 		       "        s->segment++;\n", e->system->segments - 1, step_length(e));
 	if (e->step->forced)
 		emit_set_forced_state(e, e->model->relative ? "x" : "y", "    ");
+	emit_peak_set(e);
 	if (e->kind->places)
 		say(e, "    $n_place(s);\n");
 	say(e, "}\n");

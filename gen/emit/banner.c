@@ -315,7 +315,9 @@ static void banner_functions(const struct emitter *e)
 		say(e, " * $n_jump needs some %d KB of stack.\n", 1 + 32 * states * states / 1024);
 	if (!has_jump(e))
 		say(e, " * There is no $n_jump: %s.\n",
-		    e->kind->no_jump ? e->kind->no_jump : "the samples to come are not known");
+		    e->kind->no_jump  ? e->kind->no_jump
+		    : has_peaks(e) ? "peaks are found step by step"
+				   : "the samples to come are not known");
 	if (no_at)
 		say(e, " * There is no $n_at: %s.\n", no_at);
 }

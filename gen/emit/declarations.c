@@ -48,6 +48,7 @@ static void emit_state_struct(const struct emitter *e)
 	say(e, "    double t0;            /* [s]; time is t0 + k h */\n"
 	       "    uint64_t k;           /* steps since then */\n");
 	e->kind->members(e);
+	emit_peak_members(e);
 	if (e->kind->keeps_status)
 		say(e, "    int status;           /* sticky: 0, or what pl_status names */\n");
 	say(e, "};\n\n");

@@ -109,6 +109,7 @@ static void emit_all_tables(const struct emitter *e)
 	emit_load_tables(e);
 	emit_anchor_tables(e);
 	e->kind->tables(e);
+	emit_peak_tables(e);
 }
 
 /* What is there of some models only: states between steps, many steps at once, the ways to check it */
@@ -149,6 +150,7 @@ void emit_code(FILE *to, const struct step *step, const char *options, const cha
 	e->kind->pass(e);
 	e->kind->step(e);
 	emit_out(e);
+	emit_peak_step(e);
 	emit_run(e);
 	emit_further_functions(e, rhs);
 	emit_descriptor(e);

@@ -158,6 +158,24 @@ bool tuned_output_reads(const struct emitter *e, const struct output *output, in
 /* The place of an output's factor of a column of x */
 const char *tuned_output_factor(const struct emitter *e, const struct output *output, int column);
 
+/* Its row of factors, in struct NAME_coeffs */
+const char *tuned_output_row(const struct emitter *e, const struct output *output);
+
+/* ---- emit_peaks.c: the largest sizes of outputs ---- */
+
+bool has_peaks(const struct emitter *e);
+void emit_peak_tables(const struct emitter *e);
+void emit_peak_members(const struct emitter *e);
+void emit_peak_set(const struct emitter *e);
+const char *name_of_step(const struct emitter *e);                /* of the step that looks for no peaks */
+void emit_peak_step(const struct emitter *e);
+/* peak = the larger of it and of what is inside the step from x to the output `end`; in locals x, row, work, i */
+void emit_peak_look(const struct emitter *e, const struct output *output, const char *peak, const char *end);
+/* Of tunable models, in NAME_coeffs: members, the spec's, retuned */
+void emit_peak_coefficients(const struct emitter *e);
+void emit_nominal_peaks(const struct emitter *e);
+void emit_retune_peaks(const struct emitter *e);
+
 /* ---- emit_batch.c: many instances in one call ---- */
 
 void emit_batch_declarations(const struct emitter *e);
@@ -280,6 +298,7 @@ void emit_held_leftover(const struct emitter *e);                 /* which opera
 void emit_passing(const struct emitter *e);                       /* ... and pass(), across a change */
 /* declares i and load states; x[...] = what the series advances */
 void emit_series_vector(const struct emitter *e);
+void emit_series_slopes(const struct emitter *e);                  /* A, of x' = A x */
 /* in a step that is no list of assignments: what only adds up is 0 over it */
 void emit_set_aside(const struct emitter *e);
 void emit_take_back(const struct emitter *e);

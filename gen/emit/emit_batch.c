@@ -13,8 +13,12 @@ struct batch {
 	int shared;                     /* numbers that instances share in a step: `now` */
 	const char **shared_text;       /* first those that the step reads, before it; */
 	int after;                      /* from here on those of the outputs, after it */
-	int *load[2], *input[2];        /* per column, of the step and of the outputs: index in `now`; -1: none */
+	/* per column, of the step and of the outputs: index in `now`; -1: none; of the outputs inputs and slopes */
+	int *load[2], *input[2];
 	int forced;                     /* index of the forced part; -1: none */
+	int end;                        /* behind what outputs read */
+	int acting, bending;            /* of peaks: what acts on the states, before the step; how far it bends each */
+	int lanes;                      /* factors of the instance that lanes have; */
 	int factors;                    /* of an instance, that its params decide */
 	const char **factor_text;       /* s->coeffs.step[0][1] */
 };
@@ -105,13 +109,19 @@ static int *no_places(int count)
 
 static void number_factors(struct batch *b);
 
+/* Is there more in x than the states? */
+static bool acts(const struct emitter *e)
+{
+	return e->step->layout.size > e->system->states;
+}
+
 static struct batch plan(const struct emitter *e)
 {
 	struct batch b = { .e = e, .forced = -1 };
-	for (int which = 0; which < 2; which++) {
+	for (int which = 0; which < 2; which++)
 		b.load[which] = no_places(load_columns(e->system));
-		b.input[which] = no_places(2 * e->system->inputs);
-	}
+	b.input[0] = no_places(input_columns(e->system));
+	b.input[1] = no_places(2 * e->system->inputs);
 	share_operands_of_step(&b);
 	b.after = b.shared;
 	for (int i = 0; i < e->model->outputs; i++)
@@ -119,6 +129,13 @@ static struct batch plan(const struct emitter *e)
 	if (e->step->forced) {
 		b.forced = b.shared;
 		b.shared += e->system->states;
+	}
+	b.end = b.shared;
+	b.acting = b.shared;
+	if (has_peaks(e)) {
+		b.shared += e->step->layout.size - e->system->states;
+		b.bending = b.shared;
+		b.shared += acts(e) ? peak_outputs(e->model) : 0;
 	}
 	if (e->kind->own_factors)
 		number_factors(&b);
@@ -303,6 +320,19 @@ static void number_factors(struct batch *b)
 		for (int k = 0; is_tuned_output(e, &e->model->output[i]) && k < e->model->tuning->x.size; k++)
 			if (tuned_output_reads(e, &e->model->output[i], k))
 				own_factor(b, tuned_output_factor(e, &e->model->output[i], k));
+	for (int p = 0; p < peak_outputs(e->model); p++) {
+		for (int i = 0; i < e->system->states; i++)
+			own_factor(b, format("s->coeffs.bend[%d][%d]", p, i));
+		if (acts(e))
+			own_factor(b, format("s->coeffs.reach[%d]", p));
+	}
+	b->lanes = b->factors;
+	for (int p = 0; p < peak_outputs(e->model); p++)
+		for (int i = e->system->states; i < e->step->layout.size; i++)
+			own_factor(b, format("s->coeffs.bend[%d][%d]", p, i));
+	for (int i = 0; i < e->system->states && has_peaks(e); i++)
+		for (int j = 0; j < e->step->layout.size; j++)
+			own_factor(b, format("s->coeffs.slope[%d][%d]", i, j));
 }
 
 static void emit_lanes_step(struct batch *b)
@@ -423,12 +453,34 @@ static bool *loads_of_outputs(const struct batch *b)
 	return wanted;
 }
 
+/* What acts on the states at the start of a step, and how far it bends outputs at the spec's values */
+static void say_acting(const struct batch *b)
+{
+	const struct emitter *e = b->e;
+	int size = e->step->layout.size, states = e->system->states;
+	const char *bend = e->kind->own_factors ? spell(e, "$n_nominal.bend") : spell(e, "$n_peak_bend");
+	if (!acts(e))
+		return;
+	say(e, "    double x[%d];\n"
+	       "    size_t j;\n"
+	       "    $n_begin_step(s, %sx);\n"
+	       "    for (j = $N_STATES; j < %d; j++)\n"
+	       "        now[j + %d] = x[j];\n", size, e->system->inputs ? "u, " : "", size, b->acting - states);
+	for (int p = 0; p < peak_outputs(e->model); p++)
+		say(e, "    now[%d] = 0.0;\n"
+		       "    for (j = $N_STATES; j < %d; j++)\n"
+		       "        now[%d] += %s[%d][j] * (x[j] < 0.0 ? -x[j] : x[j]);\n", b->bending + p, size,
+		    b->bending + p, bend, p);
+}
+
 static void emit_shared(const struct batch *b)
 {
 	const struct emitter *e = b->e;
 	say(e, "\n/* What instances share in a step, which is taken: before it, */\n"
 	       "static void $n_share_step(%s, double *now)\n"
 	       "{\n", step_parameters(e));
+	if (has_peaks(e))
+		say_acting(b);
 	emit_load_states(e, loads_of_step(e), false);
 	for (int i = 0; i < b->after; i++)
 		say(e, "    now[%d] = %s;\n", i, b->shared_text[i]);
@@ -439,7 +491,7 @@ static void emit_shared(const struct batch *b)
 	       "static void $n_share_out(const $n *s, double *now)\n"
 	       "{\n");
 	emit_load_states(e, loads_of_outputs(b), false);
-	for (int i = b->after; i < (b->forced >= 0 ? b->forced : b->shared); i++)
+	for (int i = b->after; i < (b->forced >= 0 ? b->forced : b->end); i++)
 		say(e, "    now[%d] = %s;\n", i, b->shared_text[i]);
 	if (b->forced >= 0)
 		say(e, "    $n_forced(s, now + %d);\n", b->forced);
@@ -457,11 +509,11 @@ static void emit_take_own(const struct batch *b)
 		return;
 	say(e, "    if (b->factors) {\n"
 	       "        size_t i;\n"
-	       "        for (i = 0; i < $N_BATCH_FACTORS; i++)\n"
+	       "        for (i = 0; i < %d; i++)\n"
 	       "            factor[i] = pl_lanes_load(b->factors + i * b->count + j, left);\n"
 	       "    } else {\n"
-	       "        const $n *s = &b->shared;\n");
-	for (int k = 0; k < b->factors; k++)
+	       "        const $n *s = &b->shared;\n", b->lanes);
+	for (int k = 0; k < b->lanes; k++)
 		say(e, "        factor[%d] = pl_lanes_all(%s);\n", k, b->factor_text[k]);
 	say(e, "    }\n");
 }
@@ -499,21 +551,144 @@ static void emit_take(const struct batch *b)
 	say(e, "}\n");
 }
 
-/* Outputs of a step's end into peak and out, where they are wanted */
-static void emit_tell(const struct batch *b)
+/* ---- peaks ---- */
+
+static bool reads_rows(const struct emitter *e)
+{
+	bool any = false;
+	for (int o = 0; o < e->model->outputs; o++)
+		any = any || (e->model->output[o].peak && is_tuned_output(e, &e->model->output[o]));
+	return any;
+}
+
+/* One lane that may have passed its peaks inside the step: as NAME_step looks for them */
+static void emit_look(const struct batch *b)
 {
 	const struct emitter *e = b->e;
-	say(e, "\nPL_LANES_INLINE void $n_lanes_tell(size_t count, size_t j, const pl_lanes *y,%s\n"
-	       "    const double *now, pl_lanes *peak, double *out)\n"
+	int size = e->step->layout.size, states = e->system->states;
+	bool own = e->kind->own_factors;
+	say(e, "\n/* Instance j by itself, from the states y on: larger values inside the step that ends at value */\n"
+	       "static void $n_batch_look(const $n_instances *b, size_t j, const double *y, const double *now, "
+	       "const double *value,\n"
+	       "    double *peak)\n"
+	       "{\n"
+	       "    double x[%d], work[PL_PEAK_WORK(%d)]%s;\n"
+	       "    size_t i;\n", size, size, own && reads_rows(e) ? format(", row[%d]", size) : "");
+	say(e, own ? "    $n one = b->shared, *s = &one;\n" : "");
+	for (int k = 0; k < b->factors; k++)
+		say(e, "%s    %s = b->factors[%d * b->count + j];\n", k ? "    " : "    if (b->factors) {\n    ",
+		    b->factor_text[k], k);
+	say(e, "%s    for (i = 0; i < %d; i++)\n"
+	       "        x[i] = i < $N_STATES ? y[i] : now[i + %d];\n", b->factors ? "    }\n" : "", size,
+	    b->acting - states);
+	for (int i = 0; i < states; i++)
+		if (factor_of_momentum(e, i))
+			say(e, "    x[%d] = y[%d] / %s;\n", i, i, factor_of_momentum(e, i));
+	for (int o = 0; o < e->model->outputs; o++)
+		if (e->model->output[o].peak)
+			emit_peak_look(e, &e->model->output[o], format("peak[%d]", o), format("value[%d]", o));
+	say(e, "    (void)b;\n"
+	       "    (void)j;\n"
+	       "}\n");
+}
+
+static const char *bend_over_lanes(struct batch *b, int p)
+{
+	const struct emitter *e = b->e;
+	const char **term = ARRAY(const char *, (size_t)e->system->states + 1);
+	const struct peaks peaks = peaks_of(e->step);
+	int terms = 0;
+	for (int i = 0; i < e->system->states; i++) {
+		const char *size = format("pl_lanes_peak(pl_lanes_all(0.0), start[%d]%s%s)", i,
+					  factor_of_momentum(e, i) ? " / " : "",
+					  factor_of_momentum(e, i) ? factor_of_momentum(e, i) : "");
+		term[terms++] = e->kind->own_factors
+			? format("%s * %s", own_factor(b, format("s->coeffs.bend[%d][%d]", p, i)), size)
+			: scaled(peaks.bend[p * e->step->layout.size + i], size);
+	}
+	if (acts(e) && e->kind->own_factors)
+		term[terms++] = format("%s * now[%d]", own_factor(b, format("s->coeffs.reach[%d]", p)), b->bending + p);
+	else if (acts(e))
+		term[terms++] = format("now[%d]", b->bending + p);
+	return tree(terms, term, 15);
+}
+
+/* Where a lane may have passed a peak, each is looked at by itself. */
+static void emit_lanes_look(struct batch *b)
+{
+	const struct emitter *e = b->e;
+	const char *own = b->factors ? "const pl_lanes *factor, " : "";
+	int states = e->system->states, outputs = e->model->outputs;
+	emit_look(b);
+	say(e, "\nPL_LANES_INLINE int $n_lanes_may_pass(const pl_lanes *start, %sconst double *now,\n"
+	       "    const pl_lanes *before, const pl_lanes *value, const pl_lanes *peak)\n"
+	       "{\n"
+	       "    int any = 0;\n", own);
+	for (int o = 0; o < outputs; o++)
+		if (e->model->output[o].peak)
+			say(e, "    any |= pl_lanes_above("
+			       "pl_lanes_peak(pl_lanes_peak(pl_lanes_all(0.0), before[%d]), value[%d])\n"
+			       "              + (%s), peak[%d]);  /* %s */\n", o, o,
+			    bend_over_lanes(b, peak_place(e->model, &e->model->output[o])), o,
+			    e->model->output[o].name);
+	say(e, "    return any;\n"
+	       "}\n"
+	       "\nstatic void $n_lanes_look(const $n_instances *b, size_t j, const pl_lanes *start,\n"
+	       "    const double *now, const pl_lanes *value, pl_lanes *peak)\n"
+	       "{\n"
+	       "    double y[%d], end[%d], most[%d];\n"
+	       "    const size_t lanes = sizeof(pl_lanes) / sizeof(double);\n"
+	       "    size_t l, i;\n", states, outputs, outputs);
+	say(e, "    for (l = 0; l < lanes && j + l < b->count; l++) {\n"
+	       "        for (i = 0; i < %d; i++)\n"
+	       "            memcpy(&y[i], (const char *)&start[i] + l * sizeof(double), sizeof(double));\n"
+	       "        for (i = 0; i < %d; i++) {\n"
+	       "            memcpy(&end[i], (const char *)&value[i] + l * sizeof(double), sizeof(double));\n"
+	       "            memcpy(&most[i], (const char *)&peak[i] + l * sizeof(double), sizeof(double));\n"
+	       "        }\n"
+	       "        $n_batch_look(b, j + l, y, now, end, most);\n"
+	       "        for (i = 0; i < %d; i++)\n"
+	       "            memcpy((char *)&peak[i] + l * sizeof(double), &most[i], sizeof(double));\n"
+	       "    }\n"
+	       "}\n", states, outputs, outputs);
+}
+
+/* Outputs of a step's end into peak and out, where they are wanted */
+static void emit_tell(struct batch *b)
+{
+	const struct emitter *e = b->e;
+	bool peaks = has_peaks(e);
+	if (peaks)
+		emit_lanes_look(b);
+	say(e, "\nPL_LANES_INLINE void $n_lanes_tell(const $n_instances *b, size_t j,\n"
+	       "    %sconst pl_lanes *y,%s const double *now, %spl_lanes *peak, double *out)\n"
 	       "{\n"
 	       "    pl_lanes value[$N_OUTPUTS];\n"
-	       "    $n_lanes_out(y, %snow, value);\n", b->factors ? " const pl_lanes *factor," : "",
+	       "    $n_lanes_out(y, %snow, value);\n", peaks ? "const pl_lanes *start, " : "",
+	    b->factors ? " const pl_lanes *factor," : "", peaks ? "pl_lanes *before, " : "",
 	    b->factors ? "factor, " : "");
-	for (int o = 0; o < e->model->outputs; o++)
+	if (peaks)
+		say(e, "    if ($n_lanes_may_pass(start, %snow, before, value, peak)) {\n"
+		       "        const pl_lanes from[$N_STATES] = {", b->factors ? "factor, " : "");
+	for (int i = 0; i < e->system->states && peaks; i++)
+		say(e, "%sstart[%d]", i ? ", " : "", i);
+	if (peaks)
+		say(e, "};  /* these are in memory here only */\n"
+		       "        pl_lanes to[$N_OUTPUTS], most[$N_OUTPUTS];\n"
+		       "        memcpy(to, value, sizeof to);\n"
+		       "        memcpy(most, peak, sizeof most);\n"
+		       "        $n_lanes_look(b, j, from, now, to, most);\n"
+		       "        memcpy(peak, most, sizeof most);\n"
+		       "    }\n");
+	for (int o = 0; o < e->model->outputs; o++) {
 		say(e, "    peak[%d] = pl_lanes_peak(peak[%d], value[%d]);\n", o, o, o);
-	say(e, "    if (out && j < count) {\n");
+		if (e->model->output[o].peak)
+			say(e, "    before[%d] = value[%d];\n"
+			       "    value[%d] = peak[%d];\n", o, o, o, o);
+	}
+	say(e, "    if (out && j < b->count) {\n");
 	for (int o = 0; o < e->model->outputs; o++)
-		say(e, "        pl_lanes_store(out + %d * count + j, value[%d], count - j);\n", o, o);
+		say(e, "        pl_lanes_store(out + %d * b->count + j, value[%d], b->count - j);\n", o, o);
 	say(e, "    }\n"
 	       "}\n");
 }
@@ -525,37 +700,58 @@ static const char *from_group(int group)
 	return group > 1 ? format("first + %d * lanes", group) : group ? "first + lanes" : "first";
 }
 
+/* A line for each group: # its number, @ its first instance, ! its factors where there are some */
+static void say_groups(const struct emitter *e, const struct batch *b, const char *layout)
+{
+	for (int g = 0; g < groups_of(e); g++) {
+		say(e, "    ");
+		for (const char *text = layout; *text; text++)
+			if (*text == '#')
+				say(e, "%d", g);
+			else if (*text == '@')
+				say(e, "%s", from_group(g));
+			else if (*text == '!')
+				say(e, b->factors ? "factor[%d], " : "", g);
+			else if (*text == '\t')
+				say(e, "    ");
+			else
+				say(e, "%c", *text);
+		say(e, "\n");
+	}
+}
+
 static void emit_block(const struct batch *b)
 {
 	const struct emitter *e = b->e;
 	int groups = groups_of(e);
-	const char *own = b->factors ? "factor[%d], " : "";
-	say(e, "\n/* Instances from `first` on, %d for each lane, over n steps */\n"
+	bool peaks = has_peaks(e);
+	say(e, "\n/* Instances from `first` on, %d a lane, over n steps; now[0]: what they share before these */\n"
 	       "static void $n_batch_block($n_instances *b, size_t first, size_t n, const double (*now)[%d],\n"
 	       "    double *out)\n"
 	       "{\n"
 	       "%s"
-	       "    const size_t count = b->count;\n"
 	       "    pl_lanes y[%d][%d], peak[%d][$N_OUTPUTS];\n", groups, b->shared ? b->shared : 1,
 	    groups > 1 ? "    const size_t lanes = sizeof(pl_lanes) / sizeof(double);\n" : "", groups,
 	    stepped_rows(e), groups);
 	if (b->factors)
-		say(e, "    pl_lanes factor[%d][$N_BATCH_FACTORS];\n", groups);
+		say(e, "    pl_lanes factor[%d][%d];\n", groups, b->lanes);
+	if (peaks)
+		say(e, "    pl_lanes start[%d][$N_STATES], before[%d][$N_OUTPUTS];\n", groups, groups);
 	say(e, "    size_t k;\n");
-	for (int g = 0; g < groups; g++)
-		say(e, "    $n_lanes_take(b, %s, y[%d], %speak[%d]);\n", from_group(g), g, format(own, g), g);
-	say(e, "    for (k = 0; k < n; k++) {\n");
-	for (int g = 0; g < groups; g++)
-		say(e, "        $n_lanes_step(y[%d], %snow[k]);\n", g, format(own, g));
+	say_groups(e, b, spell(e, "$n_lanes_take(b, @, y[#], !peak[#]);"));
+	if (peaks)
+		say_groups(e, b, spell(e, "$n_lanes_out(y[#], !now[0], before[#]);"));
+	say(e, "    for (k = 1; k <= n; k++) {\n");
+	for (int i = 0; i < e->system->states && peaks; i++)
+		say_groups(e, b, format("\tstart[#][%d] = y[#][%d];", i, i));
+	say_groups(e, b, spell(e, "\t$n_lanes_step(y[#], !now[k]);"));
 	say(e, "        if (b->peak || out) {\n");
-	for (int g = 0; g < groups; g++)
-		say(e, "            $n_lanes_tell(count, %s, y[%d], %snow[k], peak[%d], out);\n", from_group(g), g,
-		    format(own, g), g);
-	say(e, "            out = out ? out + $N_OUTPUTS * count : NULL;\n"
+	say_groups(e, b, spell(e, peaks ? "\t\t$n_lanes_tell(b, @, start[#], y[#], !now[k], before[#], peak[#], out);"
+					: "\t\t$n_lanes_tell(b, @, y[#], !now[k], peak[#], out);"));
+	say(e, "            out = out ? out + $N_OUTPUTS * b->count : NULL;\n"
 	       "        }\n"
 	       "    }\n");
-	for (int g = 0; g < groups; g++)
-		say(e, "    $n_lanes_give(b, %s, y[%d], peak[%d]);\n", from_group(g), g, g);
+	say_groups(e, b, spell(e, "$n_lanes_give(b, @, y[#], peak[#]);"));
 	say(e, "}\n");
 }
 
@@ -567,11 +763,12 @@ static void emit_batch_function(const struct batch *b)
 	       "{\n"
 	       "    const size_t block = %d * sizeof(pl_lanes) / sizeof(double);\n"
 	       "    double now[%d][%d];\n"
-	       "    size_t first, k, steps;\n", inputs ? "const double *u, " : "", groups_of(e), STEPS_AHEAD,
+	       "    size_t first, k, steps;\n", inputs ? "const double *u, " : "", groups_of(e), STEPS_AHEAD + 1,
 	    b->shared ? b->shared : 1);
 	say(e, "    for (; n > 0; n -= steps) {\n"
 	       "        steps = n < %d ? n : %d;\n"
-	       "        for (k = 0; k < steps; k++) {\n"
+	       "        $n_share_out(&b->shared, now[0]);\n"
+	       "        for (k = 1; k <= steps; k++) {\n"
 	       "            $n_share_step(&b->shared, %snow[k]);\n"
 	       "            $n_share_out(&b->shared, now[k]);\n", STEPS_AHEAD, STEPS_AHEAD, inputs ? "u, " : "");
 	if (inputs)

@@ -213,8 +213,8 @@ void emit_out(const struct emitter *e)
 	const struct model *model = e->model;
 	if (model->declared_outputs)
 		emit_direct_factors(e);
-	say(e, "\nvoid $n_out(const $n *s, double out[$N_OUTPUTS])\n"
-	       "{\n");
+	say(e, "\n%s(const $n *s, double out[$N_OUTPUTS])\n"
+	       "{\n", has_peaks(e) ? spell(e, "static void $n_now") : spell(e, "void $n_out"));
 	if (!model->declared_outputs) {
 		say(e, "    $n_get(s, out);\n"
 		       "}\n");

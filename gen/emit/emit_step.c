@@ -366,9 +366,9 @@ void emit_step(const struct emitter *e)
 		return;
 	}
 	say(e, "\n"
-	       "void $n_step(%s)\n"
+	       "%svoid $n_%s(%s)\n"
 	       "{\n",
-	    step_parameters(e));
+	    has_peaks(e) ? "static " : "", name_of_step(e), step_parameters(e));
 	emit_plain_step(e);
 	emit_step_end(e);
 	say(e, "}\n");

@@ -87,7 +87,7 @@ static void store_inputs(const struct emitter *e, const int *index)
 }
 
 /* Of a bank: one matrix for each operator */
-static void emit_slopes(const struct emitter *e)
+void emit_series_slopes(const struct emitter *e)
 {
 	const struct layout *layout = &e->step->layout;
 	int size = layout->size;
@@ -270,7 +270,7 @@ void emit_changes(const struct emitter *e)
 
 void emit_passing(const struct emitter *e)
 {
-	emit_slopes(e);
+	emit_series_slopes(e);
 	emit_pass(e);
 }
 
@@ -329,8 +329,8 @@ static void emit_series_at(const struct emitter *e)
 void emit_at(const struct emitter *e)
 {
 	bool changes = e->system->segments > 1;
-	if (!changes)
-		emit_slopes(e);
+	if (!changes && !has_peaks(e))
+		emit_series_slopes(e);
 	say(e, "\n"
 	       "void $n_at(const $n *s, %sdouble tau, double y[$N_STATES])\n"
 	       "{\n",

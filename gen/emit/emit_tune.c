@@ -97,6 +97,7 @@ void emit_coefficient_struct(const struct emitter *e)
 	if (tuned_outputs(e))
 		member(e, format("double out[%d][%d];", tuned_outputs(e), step_columns(e)),
 		       format("out z, where outputs depend on params%s", ramp_note(e, "its value and its slope")));
+	emit_peak_coefficients(e);
 	load_members(e);
 	say(e, "};\n\n");
 }
@@ -186,6 +187,7 @@ void emit_nominal(const struct emitter *e)
 	say(e, "    },\n");
 	if (tuned_outputs(e))
 		emit_nominal_outputs(e);
+	emit_nominal_peaks(e);
 	if (e->phases)
 		emit_nominal_loads(e, e->phase, phase_step_text);
 	if (e->phases && e->model->tuning->frequencies) {
@@ -526,6 +528,7 @@ static void emit_retune_function(const struct emitter *e)
 	       "        c->params[i] = params[i];\n");
 	emit_take_factors(e);
 	emit_take_loads(e);
+	emit_retune_peaks(e);
 	say(e, "    return 0;\n"
 	       "}\n");
 }

@@ -31,7 +31,7 @@ bool outputs_read(const struct emitter *e, int load)
 
 bool has_jump(const struct emitter *e)
 {
-	return e->system->inputs == 0 && !e->kind->no_jump;
+	return e->system->inputs == 0 && !e->kind->no_jump && !has_peaks(e);
 }
 
 const char *state_list(const struct model *model)

@@ -53,6 +53,11 @@ const char *tuned_output_factor(const struct emitter *e, const struct output *ou
 	return tuned_entry(e, "out", e->model->tuning->output[output - e->model->output] - e->model->n, column);
 }
 
+const char *tuned_output_row(const struct emitter *e, const struct output *output)
+{
+	return format("out[%d]", e->model->tuning->output[output - e->model->output] - e->model->n);
+}
+
 bool tuned_output_reads(const struct emitter *e, const struct output *output, int column)
 {
 	const struct tuning *t = e->model->tuning;

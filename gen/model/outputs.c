@@ -191,6 +191,7 @@ static void name_outputs(struct building *b)
 			add_output(model, count == 1 ? s->name : component_name(s->name, i + 1), s->value,
 				   row ? work.value->cell[i] : NULL);
 			model->output[model->outputs - 1].left = row ? NULL : work.value->cell[i];
+			model->output[model->outputs - 1].peak = s->peak;
 			model->output[model->outputs - 1].statement = index;
 			model->output[model->outputs - 1].cell = i;
 		}

@@ -778,6 +778,15 @@ static struct symbol *read_plain_output(struct parser *p, struct token name)
 }
 
 /* output: output ( NAME = expression | name ) { , ... } */
+/* `peak(`, unless that is a name of the spec's own */
+static bool take_peak(struct parser *p)
+{
+	if (spec_find(p->spec, "peak") || !take_word(p, "peak"))
+		return false;
+	expect_op(p, "(", "'(': peak(x) is the largest |x| so far");
+	return true;
+}
+
 static void read_output(struct parser *p)
 {
 	do {
@@ -791,8 +800,13 @@ static void read_output(struct parser *p)
 		if (name.primes > 0 || is_reserved(name.name))
 			error(name.at, NULL, "'%s' cannot be the name of an output", name.name);
 		take(p);
+		bool peak = take_peak(p);
 		struct node *value = read_expression(p);
-		declare(p, name, SYMBOL_OUTPUT, false)->value = value;
+		if (peak)
+			expect_op(p, ")", "')' or an operator");
+		struct symbol *output = declare(p, name, SYMBOL_OUTPUT, false);
+		output->value = value;
+		output->peak = peak;
 	} while (take_op(p, ","));
 	expect_end(p);
 }

@@ -83,6 +83,7 @@ struct symbol {
 	int highest;
 	enum { TIME_UNKNOWN, TIME_READ, TIME_NOT_READ } time; /* of a let */
 	bool marked;                /* of a let: its states are marked */
+	bool peak;                  /* of an output: peak(value) */
 	struct node *value;         /* of param, let, output */
 	struct value *collected;    /* value, when COLLECTED */
 	const struct form *whole;   /* of a scalar let: its value for all time, where something is left over */

@@ -37,9 +37,19 @@ struct closed_form {                /* of one output */
 	struct started *list;
 };
 
+/* What a step finds has no formula. */
+static void check_peaks_of(const struct model *model)
+{
+	for (int i = 0; i < model->outputs; i++)
+		if (model->output[i].peak)
+			error(model->output[i].value->start, "a step finds it", "the peak of '%s' has no closed form",
+			      model->output[i].name);
+}
+
 void print_solution(FILE *to, const struct model *model, struct resolvent *written, mpq_srcptr end)
 {
 	check_outputs(model);
+	check_peaks_of(model);
 	check_pole_size(model, written);
 	unsigned long last = last_step(model, end);
 	struct closed_form *form = ARRAY(struct closed_form, (size_t)model->outputs);

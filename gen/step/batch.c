@@ -20,11 +20,31 @@ static const char *objection_of_loads(const struct step *step)
 	return NULL;
 }
 
+/* Does an input that is held, or a slope, enter an output for some values of the params? */
+static bool jumps(const struct model *model, const struct output *output)
+{
+	const struct tuning *t = model->tuning;
+	int row = t ? t->output[output - model->output] : -1;
+	bool any = false;
+	for (int i = 0; i < model->system.inputs; i++) {
+		int hold = model->system.input[i].hold;
+		bool value = mpq_sgn(output->input[0][i]) != 0, slope = mpq_sgn(output->input[1][i]) != 0;
+		if (row >= 0)
+			value = value || t->acts[row * t->x.size + t->x.input[i]];
+		if (row >= 0 && hold)
+			slope = slope || t->acts[row * t->x.size + t->x.input[i] + 1];
+		any = any || (hold == 0 && value) || slope;
+	}
+	return any;
+}
+
 static const char *objection_of_outputs(const struct model *model)
 {
 	for (int i = 0; i < model->outputs; i++)
 		if (model->output[i].left)
 			return format("output %s is not linear", model->output[i].name);
+		else if (model->output[i].peak && jumps(model, &model->output[i]))
+			return format("output %s is the peak of what jumps with the samples", model->output[i].name);
 	if (model->relative && !model->declared_outputs)
 		return "its states are kept as differences: declare outputs";
 	return NULL;

@@ -94,7 +94,7 @@ static double *finite_slopes(const struct step *step, int branch)
 
 /* ---- expressions as rows over x ---- */
 
-static void fill_row(const struct step *step, const struct output *expression, double *row)
+void row_over_x(const struct step *step, const struct output *expression, double *row)
 {
 	const struct layout *layout = &step->layout;
 	const struct linear *system = &step->branch->system;
@@ -115,7 +115,7 @@ static double *rows_of(const struct step *step)
 	const struct switching *s = step->model->switching;
 	double *row = ARRAY(double, (size_t)s->expressions * (size_t)step->layout.size);
 	for (int i = 0; i < s->expressions; i++)
-		fill_row(step, s->expression[i].row, row + i * step->layout.size);
+		row_over_x(step, s->expression[i].row, row + i * step->layout.size);
 	return row;
 }
 
@@ -224,6 +224,22 @@ static double *bound_rows(const struct step *step, const struct pieces *pieces, 
 		bound[j] *= 1 + ldexp(1, -22);          /* still a bound when it is printed as a float */
 	discard(row);
 	return bound;
+}
+
+void bend_of_row(const struct step *step, const double *A, double h, const double *row, double *bend)
+{
+	int size = step->layout.size;
+	struct growth growth = growth_of(size, A, h);
+	double *second = ARRAY(double, (size_t)size);
+	memcpy(second, row, (size_t)size * sizeof *row);
+	times_matrix(size, second, A);
+	times_matrix(size, second, A);
+	bound_row(size, &growth, second, h * h / 8, bend);
+	for (int j = 0; j < size && step->model->asked.single; j++)
+		bend[j] *= 1 + ldexp(1, -22);           /* still a bound when it is printed as a float */
+	discard(growth.E);
+	discard(growth.most);
+	discard(second);
 }
 
 static void fill_bounds(const struct step *step, const struct pieces *pieces, int branch)

@@ -294,6 +294,7 @@ static void build(void *context)
 		need_closed_form(step);
 	if (model->asked.batch)
 		need_batch(step);
+	check_peaks(step);
 	program_check(step);
 	plan_phases(step);
 	plan_rows(step);

@@ -408,6 +408,19 @@ struct pieces {
 	double *weight;             /* 1/k!, k = 0 .. degree */
 };
 struct pieces pieces_of(const struct step *step);
+void row_over_x(const struct step *step, const struct output *output, double *row);
+/* Of |x|: how far row . x is at most off its chord over h, entry by entry */
+void bend_of_row(const struct step *step, const double *A, double h, const double *row, double *bend);
+
+/* ---- peaks.c: outputs of which the largest size is asked for ---- */
+
+struct peaks {                      /* of each of them, over x */
+	double *row, *bend;         /* the output; bend . |x| bounds how far it is off its chord in a step */
+};
+int peak_outputs(const struct model *model);                 /* how many */
+int peak_place(const struct model *model, const struct output *output); /* among them */
+void check_peaks(const struct step *step);                   /* leaves the statement where one cannot be found */
+struct peaks peaks_of(const struct step *step);
 
 /* ---- cost.c: what a step costs ---- */
 
