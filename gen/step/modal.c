@@ -56,6 +56,9 @@ const char *modal_objection(const struct step *step)
 		return "--accuracy compensated takes the form delta or kick-drift-kick";
 	if (further_samples(system))
 		return "an input goes through further samples";
+	for (int o = 0; o < model->outputs; o++)
+		if (model->output[o].peak)
+			return "peaks are found from states";
 	if (objection_of_loads(system))
 		return objection_of_loads(system);
 	int blocks = blocks_of(system, &block);

@@ -333,6 +333,8 @@ static const char *rows_objection(const struct step *step)
 	for (int o = 0; o < model->outputs; o++)
 		if (model->output[o].left)
 			return format("output %s is not linear", model->output[o].name);
+		else if (model->output[o].peak)
+			return "peaks are found step by step";
 	return NULL;
 }
 
