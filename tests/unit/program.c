@@ -121,8 +121,16 @@ static void loads_unmarked(struct step *s) { memset(s->program->uses, 0, (size_t
 static void carried(struct step *s) { s->program->assignment[0].carried = true; }
 static void tuned(struct step *s) { s->program->tuned = true; }
 static void loops(struct step *s) { s->program->loops = true; }
-static void matrix_gone(struct step *s) { s->program->product[0].factor = NULL; }
-static void matrix_columns(struct step *s) { s->program->product[0].columns--; }
+static void group_twice(struct step *s) { s->program->group[0].state[1] = s->program->group[0].state[0]; }
+static void group_short(struct step *s) { s->program->groups--; }
+static void group_state(struct step *s) { s->program->group[0].state[0] = s->branch->whole->states; }
+static void group_load(struct step *s)
+{
+    struct group *g = &s->program->group[0];
+    g->load = ARRAY(int, 1);
+    g->loads = 1;
+    g->load[0] = s->branch->whole->columns;
+}
 static void loop_in_order(struct step *s) { s->program->in_order = true; }
 static void region_gone(struct step *s) { s->branches--; }
 static void region_table(struct step *s) { s->branch[1].table = NULL; }
@@ -175,9 +183,11 @@ static const struct fault {
     { linear_spec, NULL, loads_unmarked, "a load is read that is not marked as used" },
     { linear_spec, NULL, carried, "no place for that" },
     { linear_spec, NULL, tuned, "there are none" },
-    { linear_spec, NULL, loops, "loops over matrices, or it has none" },
-    { large_spec, NULL, matrix_gone, "a matrix is not there" },
-    { large_spec, NULL, matrix_columns, "columns for another number of operands" },
+    { linear_spec, NULL, loops, "loops over groups, or it has none" },
+    { large_spec, NULL, group_twice, "a state is stepped twice" },
+    { large_spec, NULL, group_short, "loops over groups, or it has none" },
+    { large_spec, NULL, group_state, "a state that is out of range" },
+    { large_spec, NULL, group_load, "a load that is out of range" },
     { large_spec, NULL, loop_in_order, "a form that is not built with loops" },
     { regions_spec, NULL, region_gone, "regions: one without its tables" },
     { regions_spec, NULL, region_table, "a branch without tables" },
