@@ -142,7 +142,8 @@ static int fewest_digits(double d, char text[static 64])
 	int exponent, least = 1, most = target->digits;
 	bool alike = fabs(frexp(d, &exponent)) != 0.5;
 	while (least < most) {
-		int middle = !alike ? least : most == target->digits && least == 1 ? most - COMPUTED : (least + most) / 2;
+		bool begins = most == target->digits && least == 1;
+		int middle = !alike ? least : begins ? most - COMPUTED : (least + most) / 2;
 		if (digits_do(d, middle, text))
 			most = middle;
 		else
