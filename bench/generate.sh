@@ -10,3 +10,6 @@ ${CC:-cc} -O2 "$work/empty.c" -o "$work/empty"
 "$build/bench/clock" "$runs" "$work/empty" -- "$build/plgen" models/sdcsf.spec
 "$build/bench/clock" "$runs" "$work/empty" -- "$build/plgen" models/tuned_floor.spec
 "$build/bench/clock" 5 "$work/empty" -- "$build/plgen" --solution 30 models/sdcsf.spec
+"$build/bench/clock" 5 "$work/empty" -- "$build/plgen" --solution 30 models/quarter_car.spec
+"$build/bench/clock" 5 "$work/empty" -- "$build/plgen" models/beam15.spec
+"$build/bench/clock" 5 "$work/empty" -- "$build/plgen" --scheme etd1 models/beam4.spec
