@@ -216,7 +216,8 @@ void emit_phi(const struct emitter *e);
 void emit_gamma(const struct emitter *e);
 void emit_descriptor(const struct emitter *e);
 
-/* ---- emit.c, emit_step.c, emit_out.c, emit_loads.c, emit_forced.c, emit_anchors.c, emit_time.c, emit_tune.c, emit_rhs.c: a step as C ---- */
+/* ---- emit.c, emit_step.c, emit_out.c, emit_loads.c, emit_forced.c, emit_anchors.c, emit_time.c, emit_tune.c,
+ * emit_rhs.c: a step as C ---- */
 
 void emit_header(FILE *to, const struct step *step, const char *options, bool rhs);
 /* header_name NULL: all in one */
