@@ -64,7 +64,8 @@ int main(void)
                 least[m] = took < least[m] ? took : least[m];
             }
         printf("    %-10s without %6.2f ns   by anchors %6.2f, %.2f of that (target 1.15)   "
-               "in every step %6.2f, %.2f\n", name[w], 1e9 * least[0], 1e9 * least[1], least[1] / least[0], 1e9 * least[2], least[2] / least[0]);
+               "in every step %6.2f, %.2f\n",
+            name[w], 1e9 * least[0], 1e9 * least[1], least[1] / least[0], 1e9 * least[2], least[2] / least[0]);
     }
     return 0;
 }
