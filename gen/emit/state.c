@@ -29,6 +29,17 @@ bool outputs_read(const struct emitter *e, int load)
 	return read;
 }
 
+bool has_peaks(const struct emitter *e)
+{
+	return peak_outputs(e->model) > 0;
+}
+
+/* The step itself goes by another name. */
+const char *name_of_step(const struct emitter *e)
+{
+	return has_peaks(e) ? "move" : "step";
+}
+
 bool has_jump(const struct emitter *e)
 {
 	return e->system->inputs == 0 && !e->kind->no_jump && !has_peaks(e);

@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Loads by anchors. The functions of a load, cos, sin and e^{at}, are evaluated every so many steps only, from its phase
- * and growth in fixed point. In the steps between, what the load adds to a state is
+/* Loads by anchors. The functions of a load, cos, sin and e^{at}, are evaluated every so many steps only, from its
+ * phase and growth in fixed point. In the steps between, what the load adds to a state is
  *
  *   L z(t_a + l h) = (L E_l) z(t_a)
  *
- * with L the load's columns of the step, z its states and E_l how they go on in l steps. So L E_l, for each l, is a table
- * of constants, each enclosed and rounded once (Ziv); nothing is added up from step to step, and nothing accumulates. */
+ * with L the load's columns of the step, z its states and E_l how they go on in l steps. So L E_l, for each l, is a
+ * table of constants, each enclosed and rounded once (Ziv); nothing is added up from step to step, and nothing
+ * accumulates. */
 #include "step/step.h"
 
 #include <math.h>
@@ -339,10 +340,12 @@ static void fill_term(const struct step *step, struct row *row, struct turn *tur
 	int precision = FIRST_PRECISION;
 	while (precision <= LIMIT_PRECISION && !round_turned(row, turn, from, precision, c))
 		precision *= 2;
-	if (precision > LIMIT_PRECISION || !isfinite(c->value))
-		error(step->model->asked.step_at, "--anchors 1 may do", "what a load adds so many steps after an anchor "
-		      "is %s", precision > LIMIT_PRECISION ? format("not decided with %d bits", LIMIT_PRECISION)
-							   : format("beyond the range of %s", target_name()));
+	bool decided = precision <= LIMIT_PRECISION;
+	if (!decided || !isfinite(c->value))
+		error(step->model->asked.step_at, "--anchors 1 may do",
+		      "what a load adds so many steps after an anchor is %s",
+		      decided ? format("beyond the range of %s", target_name())
+			      : format("not decided with %d bits", LIMIT_PRECISION));
 }
 
 /* The terms of one state and one load, which stand together, after any number of steps */

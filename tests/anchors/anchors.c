@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* anchors: models with loads in pairs, one with anchors, one with its functions in every step. In states and outputs
  * they agree within some units of rounding of their largest values: over a long run; where a state is set, or jumped
- * to, any number of steps after an anchor; after NAME_at. What an anchor keeps is all in the struct: a copy goes on with
- * the same bits. Against closed forms: forms/history, forms/loads. */
+ * to, any number of steps after an anchor; after NAME_at. What an anchor keeps is all in the struct: a copy goes on
+ * with the same bits. Against closed forms: forms/history, forms/loads. */
 #include "plrt.h"
 #include "tap.h"
 

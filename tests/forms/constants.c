@@ -6,8 +6,8 @@
  *     constants [-n RANDOM] [-u UNDAMPED] [-s SEED] [-v] MODEL.spec ...
  *
  * The numbers are read from the C that is emitted: those of the step's own sums in the order in which they stand there,
- * and the tables Phi, Gamma, increment, load_factor and turned.  What they ought to be says the judge (judge.h).  Each variant
- * runs in a process of its own.
+ * and the tables Phi, Gamma, increment, load_factor and turned.  What they ought to be says the judge (judge.h).  Each
+ * variant runs in a process of its own.
  */
 #include "judge.h"
 #include "cases.h"
