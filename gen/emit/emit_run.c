@@ -249,7 +249,8 @@ static int leap_columns_of(const struct emitter *e, struct leap_column *column)
 		count += leap_column_of(e, square + j, n, e->local[j], &column[count]);
 	for (int k = 0; k < table->columns; k++)
 		if (!is_forced(e->step, k))
-			count += leap_column_of(e, table->load + k, table->columns, column_operand(e, k), &column[count]);
+			count += leap_column_of(e, table->load + k, table->columns, column_operand(e, k),
+						&column[count]);
 	for (int k = 0; k < table->inputs; k++)
 		count += leap_column_of(e, table->input + k, table->inputs, e->sample[k], &column[count]);
 	return count;
