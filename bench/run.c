@@ -97,10 +97,10 @@ int main(void)
 		cleared = fmin(cleared, sample_memset(ROWS * widest * sizeof *far, 8));
 	}
 	for (int i = 0; i < BUILDS; i++) {
-		printf("  %-28s %7.2f ns a row", build[i].name, build[i].least[0]);
+		printf("  %-58s %7.2f ns a row", build[i].name, build[i].least[0]);
 		if (build[i].target > 0)
-			printf("  (target %.1f)", build[i].target);
-		printf("%*s to memory %6.2f, %.2f of memset\n", build[i].target > 0 ? 0 : 14, "", build[i].least[1],
+			printf("   (target %.1f)", build[i].target);
+		printf("%*s to memory %6.2f, %.2f of memset\n", build[i].target > 0 ? 0 : 15, "", build[i].least[1],
 		       build[i].least[1] / cleared);
 	}
 	return 0;

@@ -159,6 +159,21 @@ static void emit_list(const struct emitter *e, const char *name, int count, cons
 	say(e, "};\n");
 }
 
+/* Does the sample before the block act on a row, or on the state at its end? */
+static bool is_read_before(const struct emitter *e, int column)
+{
+	const struct rows *rows = e->step->rows;
+	const struct table *table = e->step->branch->whole;
+	bool any = false;
+	for (int k = 0; k < rows->columns; k++) {
+		const struct operand *operand = &rows->column[k].operand;
+		any = any || (operand->kind == OPERAND_INPUT && operand->index == column);
+	}
+	for (int i = 0; i < table->states; i++)
+		any = any || !table->input[i * table->inputs + column].zero;
+	return any;
+}
+
 /* Samples are read before out is written, which may be in their place. */
 static void emit_sample_locals(const struct emitter *e)
 {
@@ -168,8 +183,8 @@ static void emit_sample_locals(const struct emitter *e)
 		text[k] = format("samples[%d]", k);
 	if (count)
 		emit_list(e, "u", count, text);
-	for (int i = 0; i < e->system->inputs; i++)
-		if (e->system->input[i].hold)
+	for (int i = 0, column = 0; i < e->system->inputs; i++)
+		if (e->system->input[i].hold && is_read_before(e, column++))
 			say(e, "    const double before%d = s->u[%d];\n", i + 1, i);
 }
 
@@ -262,7 +277,8 @@ static int leap_columns_of(const struct emitter *e, struct leap_column *column)
 		count += leap_column_of(e, square + j, n, e->local[j], &column[count]);
 	for (int k = 0; k < table->columns; k++)
 		if (!is_forced(e->step, k))
-			count += leap_column_of(e, table->load + k, table->columns, column_operand(e, k), &column[count]);
+			count += leap_column_of(e, table->load + k, table->columns, column_operand(e, k),
+						&column[count]);
 	for (int k = 0; k < table->inputs; k++)
 		count += leap_column_of(e, table->input + k, table->inputs, e->sample[k], &column[count]);
 	return count;

@@ -351,5 +351,5 @@ void plan_rows(struct step *step)
 	for (int count = most_rows(step, wish); count >= (asked->rows ? wish : FEWEST) && !step->rows; count /= 2)
 		try_rows(step, count);
 	if (!step->rows)
-		step->no_rows = asked->rows ? format("%d are too many for it", wish) : "they would not be faster";
+		step->no_rows = asked->rows ? format("%d are too many for it", wish) : "they would not be faster, or leave the range";
 }
