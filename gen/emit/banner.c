@@ -213,6 +213,8 @@ static void banner_form(const struct emitter *e)
 		    ? "; factors in two words,\n * and what rounding takes from the state is kept in rest" : "");
 	if (e->step->modal)
 		banner_modes(e);
+	if (e->step->no_modal)
+		say(e, " * The form modal would be cheaper for so few outputs, but %s.\n", e->step->no_modal);
 	if (e->step->rest)
 		say(e, " * What has decayed below %s is set to rest: looked for every 64 steps, by $n_%s.\n",
 		    e->model->asked.single ? "1e-35" : "1e-290", e->step->rest->in_step ? "step" : "run");

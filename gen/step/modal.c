@@ -802,4 +802,9 @@ void plan_modal(struct step *step)
 		      objection ? objection : "two poles, or a pole and a load, are too close");
 	if (modal && (asked || modal->condition <= AS_EXACT))
 		take_modal(step, modal);
+	else
+		step->no_modal = objection ? objection
+				 : modal   ? format("states that become modes would lose a factor of %.3g",
+						    modal->condition)
+					   : "two poles, or a pole and a load, are too close";
 }

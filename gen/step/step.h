@@ -273,6 +273,7 @@ struct step {                       /* everything that is emitted for one model 
 	enum step_form form;        /* any but FORM_AUTO */
 	const mpq_t *mass;          /* of kick-drift-kick, per coordinate; in units of the first */
 	struct modal *modal;        /* NAME keeps modal states; NULL: of another form */
+	const char *no_modal;       /* why not, where it would be cheaper; NULL: it would not */
 	bool momenta;               /* NAME keeps mass times velocity, since not all masses are equal */
 	/* states that nothing leads back from, which only add up: index of what rounding takes from each; -1: of
 	 * others */

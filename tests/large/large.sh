@@ -216,6 +216,10 @@ result $? 'nine masses, all states: 324 multiplications'
 "$plgen" --prefix modes row.spec -o modes.c && "$plgen" --form delta --prefix states row.spec -o states.c
 beside 'modes that the generator has chosen' 100 2e-12 2e-12 modes states
 
+row_of_masses 'output x1' | sed "s/^x1'' .* = 0/&+ t/" | "$plgen" - 2>log |
+	grep 'The form modal would be cheaper for so few outputs, but a load has a power of t\.' >>log
+result $? 'why modes are not chosen is told'
+
 # ---- rest ----
 
 # at_rest NAME HOW REAL PAIRS [OPTION ...]: so many damped masses in a row, and as many free of damping beside others
