@@ -12,7 +12,7 @@
 extern const pl_model plain_model, stops_model;
 uint64_t crossed(const void *s);
 
-enum { SAMPLES = 501, STEPS = 32, RUN = 200, LOOKED_AT = 400000 };
+enum { SAMPLES = 501, STEPS = 20, RUN = 200, LOOKED_AT = 400000 };
 
 static double nanoseconds(void)
 {

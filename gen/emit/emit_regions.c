@@ -246,21 +246,16 @@ static void emit_searched_step(const struct emitter *e)
 	emit_status(e);
 }
 
-/* What is not seen to be clear: one crossing, or a search */
-static void emit_pass_of_step(const struct emitter *e)
+/* What is not seen to be clear, or to cross once */
+static void emit_apart_search(const struct emitter *e)
 {
 	int size = e->step->layout.size;
 	emit_swift_functions(e);
 	say(e, "\n"
-	       "static PL_APART void $n_pass($n *s, double x[%d])\n"
+	       "static PL_APART void $n_search($n *s, double x[%d])\n"
 	       "{\n"
 	       "    double work[PL_SWITCHING_WORK(%d, %d, %d)];\n"
-	       "    int i;\n"
-	       "    if ($n_cross(s, x)) {\n"
-	       "        for (i = 0; i < $N_STATES; i++)\n"
-	       "            s->y[i] = x[i];\n"
-	       "        return;\n"
-	       "    }\n",
+	       "    int i;\n",
 	    size, size, regions_of(e)->expressions, e->step->series.degree);
 	emit_search(e);
 	emit_status(e);
@@ -278,12 +273,14 @@ static void emit_whole_step(const struct emitter *e)
 	emit_swift_step(e);
 	emit_take_back(e);
 	emit_step_end(e);
+	if (e->step->carries)           /* what was set aside is in no bound */
+		emit_status(e);
 }
 
 void emit_region_step(const struct emitter *e)
 {
 	if (e->step->swift)
-		emit_pass_of_step(e);
+		emit_apart_search(e);
 	say(e, "\n"
 	       "void $n_step(%s)\n"
 	       "{\n",

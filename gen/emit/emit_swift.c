@@ -583,10 +583,10 @@ static void emit_cross(const struct emitter *e, const struct pieces *p)
 {
 	int size = e->step->layout.size, terms = p->degree + 1;
 	say(e, "\n"
-	       "/* x over h where it is certain that nothing is passed, or one breakpoint once: 1.  Else 0, and "
+	       "/* s over h from x where it is certain that nothing is passed, or one breakpoint once: 1.  Else 0, and "
 	       "nothing has\n"
 	       " * changed. */\n"
-	       "static int $n_cross($n *s, double x[%d])\n"
+	       "static PL_APART int $n_cross($n *s, const double x[%d])\n"
 	       "{\n"
 	       "    const int region = s->contact.region, which = s->contact.matrix;\n"
 	       "    double c[%d][%d], y[%d], end[%d], z, to;\n"
@@ -621,10 +621,10 @@ static void emit_cross(const struct emitter *e, const struct pieces *p)
 	       "        s->contact.matrix = $n_matrix[next];\n"
 	       "    }\n"
 	       "    s->contact.crossings = near;\n"
-	       "    for (i = 0; i < %d; i++)\n"
-	       "        x[i] = end[i];\n"
+	       "    for (i = 0; i < $N_STATES; i++)\n"
+	       "        s->y[i] = end[i];\n"
 	       "    return 1;\n"
-	       "}\n", e->system->states);
+	       "}\n");
 }
 
 void emit_swift_functions(const struct emitter *e)
@@ -830,6 +830,7 @@ void emit_swift_step(const struct emitter *e)
 	       "        double now[%d];\n", layout->size);
 	for (int j = 0; j < layout->size; j++)
 		say(e, "        now[%d] = %s;\n", j, *x[j] ? x[j] : "1.0");
-	say(e, "        $n_pass(s, now);\n"
+	say(e, "        if (!$n_cross(s, now))\n"
+	       "            $n_search(s, now);\n"
 	       "    }\n");
 }

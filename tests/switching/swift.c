@@ -95,13 +95,13 @@ static void random_start(double *y, int states, double h, const struct place *p,
 			x[i] = s->y[i];                                                                                \
 		LOADS                                                                                                  \
 	}                                                                                                              \
-	static void keep_##NAME(const NAME *s, const double *x, struct outcome *o)                                     \
+	static void keep_##NAME(const NAME *s, const double *y, struct outcome *o)                                     \
 	{                                                                                                              \
 		o->crossings = s->contact.crossings;                                                                   \
 		o->region = s->contact.region;                                                                         \
 		o->total = s->contact.total;                                                                           \
 		memcpy(o->crossing, s->crossing, sizeof s->crossing);                                                  \
-		memcpy(o->y, x, STATES * sizeof *x);                                                                   \
+		memcpy(o->y, y, STATES * sizeof *y);                                                                   \
 	}                                                                                                              \
 	static void one_##NAME(int start, const struct place *p)                                                       \
 	{                                                                                                              \
@@ -117,7 +117,7 @@ static void random_start(double *y, int states, double h, const struct place *p,
 		t = s;                                                                                                 \
 		fill_##NAME(&s, x);                                                                                    \
 		const int sure = NAME##_cross(&s, x);                                                                  \
-		keep_##NAME(&s, x, &swift);                                                                            \
+		keep_##NAME(&s, s.y, &swift);                                                                          \
 		swift.sure = sure;                                                                                     \
 		fill_##NAME(&t, x);                                                                                    \
 		pl_switching_step(&NAME##_switching, x, &t.contact, t.crossing, work);                                 \
