@@ -16,7 +16,8 @@ set bmargin 9
 eval note." 'Filled: bound by chains of operations as the code is written, by their number or by stores, the ".\
 	"largest.\n".\
 	"Open: by number and stores alone, what many rows at a time could come to. Least of short samples in ".\
-	"turn with the machine itself;\nwork on integers, as phases of loads take, is in no bound.' at screen 0.01,0.065"
+	"turn with the machine itself;\n".\
+	"work on integers, as phases of loads take, is in no bound.' at screen 0.01,0.065"
 
 # column 1: model and function, counted; 2: their name; 3, 4: over bound, over work
 where(compiler, flags, shift) = "< awk -F, 'NR > 1 && $2 != \"run_to_memory\" { key = $1 \" \" $2; if (!(key in n)) ".\

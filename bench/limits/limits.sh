@@ -77,9 +77,9 @@ bounds() {
 		chain = count[counted, 5] + through
 		store = columns * store / machine["lanes"]
 		bound = most(chain, most(work, store))
-		printf "%s,%s,%s,%s,%d,%g,%g,%.3f,%.3f,%.3f,%.3f,%.3f,%.2f,%.2f\n", model, name, compiler, flags,
+		printf "%s,%s,%s,%s,%d,%g,%g,%.3f,%.3f,%.3f,%.3f,%.3f,%.2f,%.2f,%.4f\n", model, name, compiler, flags,
 			machine["lanes"], m, a, chain, work, store, bound, time[name], time[name] / bound,
-			time[name] / most(work, store)
+			time[name] / most(work, store), machine["add"]
 	}
 	FNR == NR && $1 == "machine" { machine[$2] = $3; next }
 	FNR == NR { time[$2] = $3; next }
@@ -96,7 +96,7 @@ say() {
 }
 
 say "model,function,compiler,flags,lanes,multiplications,additions,chain_ns,work_ns,store_ns,bound_ns,time_ns,\
-times_bound,times_work"
+times_bound,times_work,add_ns"
 mkdir "$work/counted"
 for file in $runtime; do
 	g++ -x c++ -w -O1 -include $here/counted.h -c "$file" -o "$work/counted/$(basename "$file").o"
@@ -146,4 +146,29 @@ echo 'times_work: over work and store alone, what many rows at a time could come
 tr ',' '\t' <"$work/limits.csv" | awk -F '\t' '{
 	printf "%-12s %-14s %-6s %-66s %5s %7s %7s %9s %9s %9s %9s %12s %11s\n", $1, $2, $3, $4, $5, $6, $7, $8, $9,
 		$10, $12, $13, $14 }'
+awk -F, -v models="$models" '
+	NR > 1 && $2 != "run_to_memory" {
+		key = $2 "," $3 "," $4
+		if (!(key in seen)) { seen[key] = 1; keys[++count] = key }
+		time[key, $1] = $12 / $15
+	}
+	END {
+		n = split(models, model, " ")
+		for (f = 1; f <= 2; f++) {
+			name = f == 1 ? "step" : "run"
+			printf "%s, over that of gcc -O2; each time in additions of its own run\n%-66s", name, ""
+			for (i = 1; i <= n; i++) printf " %11s", model[i]
+			print ""
+			for (k = 1; k <= count; k++) {
+				split(keys[k], part, ",")
+				if (part[1] != name) continue
+				printf "%-6s %-59s", part[2], part[3]
+				for (i = 1; i <= n; i++) {
+					first = time[name ",gcc,-O2", model[i]]
+					printf " %11.2f", (first ? time[keys[k], model[i]] / first : 0)
+				}
+				print ""
+			}
+		}
+	}' "$work/limits.csv"
 [ -z "$folder" ] || cp "$work/limits.csv" "$folder/limits.csv"
