@@ -78,6 +78,7 @@ bench: tests
 	$(BUILD)/bench/crossings
 	sh bench/retune.sh $(BUILD)
 	sh bench/sweep.sh $(BUILD)
+	sh bench/spectrum.sh $(BUILD)
 
 # Speed against accuracy, and stability where methods fail: charts/index.html with its pictures and tables. 20 minutes;
 # quick: 4.
