@@ -20,8 +20,8 @@ for compiler in gcc clang; do
 	command -v $compiler >/dev/null || continue
 	for flags in -O2 '-O2 -march=native -mprefer-vector-width=512'; do
 		# shellcheck disable=SC2086
-		$compiler -std=gnu99 $flags -ffp-contract=off -Iruntime -I"$work" bench/spectrum.c "$work"/*_pl.c runtime/*.c \
-			-lm -o "$work/spectrum"
+		$compiler -std=gnu99 $flags -ffp-contract=off -Iruntime -I"$work" bench/spectrum.c \
+			"$work"/*_pl.c runtime/*.c -lm -o "$work/spectrum"
 		echo "$compiler $flags"
 		"$work/spectrum" "$out/spectrum.csv"
 	done

@@ -64,6 +64,8 @@ bool is_used(const struct identifiers *c, const struct symbol *s, int order);
 /* ---- state.c: the state in emitted code ---- */
 
 bool has_jump(const struct emitter *e);
+bool has_peaks(const struct emitter *e);                          /* some output is the largest size so far */
+const char *name_of_step(const struct emitter *e);                /* of the step that looks for no peaks */
 const char *state_list(const struct model *model);                /* x, x' */
 const char *carried_text(const struct emitter *e);                /* the states that only add up */
 const struct model *speaker(const struct model *model);            /* over whose coordinates its forms are */
@@ -157,11 +159,9 @@ const char *tuned_output_row(const struct emitter *e, const struct output *outpu
 
 /* ---- emit_peaks.c: the largest sizes of outputs ---- */
 
-bool has_peaks(const struct emitter *e);
 void emit_peak_tables(const struct emitter *e);
 void emit_peak_members(const struct emitter *e);
 void emit_peak_set(const struct emitter *e);
-const char *name_of_step(const struct emitter *e);                /* of the step that looks for no peaks */
 void emit_peak_step(const struct emitter *e);
 /* peak = the larger of it and of what is inside the step from x to the output `end`; in locals x, row, work, i */
 void emit_peak_look(const struct emitter *e, const struct output *output, const char *peak, const char *end);

@@ -11,11 +11,6 @@ static const char **peak_names(const struct emitter *e)
 	return name;
 }
 
-bool has_peaks(const struct emitter *e)
-{
-	return peak_outputs(e->model) > 0;
-}
-
 /* ---- numbers ---- */
 
 static void emit_rows(const struct emitter *e, const char *name, const char *what, const double *value)
@@ -139,12 +134,6 @@ void emit_peak_set(const struct emitter *e)
 }
 
 /* ---- the step ---- */
-
-/* The step itself goes by another name. */
-const char *name_of_step(const struct emitter *e)
-{
-	return has_peaks(e) ? "move" : "step";
-}
 
 void emit_peak_look(const struct emitter *e, const struct output *output, const char *peak, const char *end)
 {

@@ -7,6 +7,17 @@ const struct model *speaker(const struct model *model)
 	return model->relative ? model : model->written;
 }
 
+bool has_peaks(const struct emitter *e)
+{
+	return peak_outputs(e->model) > 0;
+}
+
+/* Before the step that looks for peaks */
+const char *name_of_step(const struct emitter *e)
+{
+	return has_peaks(e) ? "move" : "step";
+}
+
 bool has_jump(const struct emitter *e)
 {
 	return e->system->inputs == 0 && !e->kind->no_jump && !has_peaks(e);
