@@ -83,6 +83,7 @@ bench: tests
 	sh bench/rows.sh $(BUILD)
 	sh bench/limits/limits.sh $(BUILD)
 	sh bench/loads.sh $(BUILD)
+	sh bench/spectrum.sh $(BUILD)
 
 # Speed against accuracy, and stability where methods fail: charts/index.html with its pictures and tables. 20 minutes;
 # quick: 4.

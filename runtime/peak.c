@@ -2,7 +2,7 @@
 /* The largest size of an output within a step: a bound that most steps stay below, else its Taylor polynomial. */
 #include "real.h"
 
-enum { MOST_TERMS = 48, MOST_HALVINGS = 20, BEND_PARTS = 4 };
+enum { MOST_TERMS = 48, MOST_HALVINGS = 20, BEND_PARTS = 4, MOST_ENTRIES = 96 };
 
 static real size_of(real a)
 {
@@ -55,18 +55,22 @@ static void values_at(const taylor *p, real s, real *value)
     }
 }
 
-/* |p| at the root of p' in a .. b, where p'' has one sign: Newton's method from where the chord of p' is 0 */
+/* |p| at the root of p' in a .. b, where p'' has one sign: Newton's method from where the chord of p' is 0.  Off by
+ * `off` p is off by off^2/2 p''. */
 static real extreme(const taylor *p, real a, real b, real slope_a, real slope_b)
 {
     real s = a + (b - a) * (slope_a / (slope_a - slope_b)), value[3];
     int k;
-    for (k = 0; k < 5; k++) {
-        real next;
+    for (k = 0; k < 6; k++) {
+        real next, off;
         values_at(p, s, value);
         next = s - value[1] / value[2];
-        s = next > a ? (next < b ? next : b) : a;
+        next = next > a ? (next < b ? next : b) : a;
+        off = size_of(next - s);
+        if (off * off * size_of(value[2]) <= REAL_EPSILON / 4 * size_of(value[0]))
+            break;
+        s = next;
     }
-    values_at(p, s, value);
     return size_of(value[0]);
 }
 
@@ -99,11 +103,53 @@ static real largest(const taylor *p, real peak)
 
 /* ---- the output as a polynomial ---- */
 
-/* row . e^{A s d} x, and x at the end, s = 1; 0: it takes too many terms.  work: 3 size reals */
-static int expand(int size, const real *A, const real *row, real d, real *x, taylor *p, real *work)
+/* A where it is not 0, row by row: mostly chains of derivatives.  Too many entries: all of A, none listed */
+typedef struct slopes {
+    int size, entries;
+    const real *A;
+    int row[MOST_ENTRIES], column[MOST_ENTRIES];
+    real value[MOST_ENTRIES];
+} slopes;
+
+static void list_entries(int size, const real *A, slopes *s)
 {
+    int i, j;
+    s->size = size;
+    s->A = A;
+    s->entries = 0;
+    for (i = 0; i < size; i++)
+        for (j = 0; j < size; j++)
+            if (A[i * size + j] < 0 || A[i * size + j] > 0) {
+                if (s->entries == MOST_ENTRIES) {
+                    s->entries = -1;
+                    return;
+                }
+                s->row[s->entries] = i;
+                s->column[s->entries] = j;
+                s->value[s->entries++] = A[i * size + j];
+            }
+}
+
+static void slope_of(const slopes *s, const real *x, real *slope)
+{
+    int i;
+    if (s->entries < 0) {
+        for (i = 0; i < s->size; i++)
+            slope[i] = product(s->size, s->A + i * s->size, x);
+        return;
+    }
+    for (i = 0; i < s->size; i++)
+        slope[i] = 0;
+    for (i = 0; i < s->entries; i++)
+        slope[s->row[i]] += s->value[i] * x[s->column[i]];
+}
+
+/* row . e^{A s d} x, and x at the end, s = 1; 0: it takes too many terms.  work: 3 size reals */
+static int expand(const slopes *A, const real *row, real d, real *x, taylor *p, real *work)
+{
+    const int size = A->size;
     real *term = work, *next = work + size, *most = work + 2 * size;
-    int i, j, k, small = 0;
+    int i, k, small = 0;
     for (i = 0; i < size; i++) {
         term[i] = x[i];
         most[i] = size_of(x[i]);
@@ -111,11 +157,7 @@ static int expand(int size, const real *A, const real *row, real d, real *x, tay
     p->c[0] = product(size, row, x);
     for (k = 1; k <= MOST_TERMS && small < 2; k++) {
         int all = 1;
-        for (i = 0; i < size; i++) {
-            next[i] = 0;
-            for (j = 0; j < size; j++)
-                next[i] += A[i * size + j] * term[j];
-        }
+        slope_of(A, term, next);
         for (i = 0; i < size; i++) {
             term[i] = next[i] * (d / (real)k);
             x[i] += term[i];
@@ -130,9 +172,9 @@ static int expand(int size, const real *A, const real *row, real d, real *x, tay
 }
 
 /* Part by part, of which there are 2^halvings; below 0: these are too long */
-static real search(int size, const real *A, const real *row, real h, int halvings, const real *start, real peak,
-                   real *work)
+static real search(const slopes *A, const real *row, real h, int halvings, const real *start, real peak, real *work)
 {
+    const int size = A->size;
     const int32_t parts = (int32_t)1 << halvings;
     real *x = work + 3 * size;
     int32_t part;
@@ -141,7 +183,7 @@ static real search(int size, const real *A, const real *row, real h, int halving
     for (i = 0; i < size; i++)
         x[i] = start[i];
     for (part = 0; part < parts; part++) {
-        if (!expand(size, A, row, h / (real)parts, x, &p, work))
+        if (!expand(A, row, h / (real)parts, x, &p, work))
             return -1;
         bound_derivatives(&p);
         peak = largest(&p, peak);
@@ -154,6 +196,7 @@ real pl_peak(int size, const real *A, const real *row, const real *bend, real h,
 {
     const real most = larger(size_of(product(size, row, x)), size_of(end));
     real off = 0, found = -1;
+    slopes listed;
     int i;
     for (i = 0; i < size; i++)
         off += bend[i] * size_of(x[i]);
@@ -162,8 +205,9 @@ real pl_peak(int size, const real *A, const real *row, const real *bend, real h,
     if (!(most - most <= 0) || !(peak - peak <= 0))     /* not finite */
         return peak - peak <= 0 ? most : peak;
     peak = larger(peak, most);
+    list_entries(size, A, &listed);
     for (i = 0; i <= MOST_HALVINGS && found < 0; i++)
-        found = search(size, A, row, h, i, x, peak, work);
+        found = search(&listed, row, h, i, x, peak, work);
     return found < 0 ? peak : found;
 }
 

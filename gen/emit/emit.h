@@ -70,6 +70,8 @@ bool is_used(const struct identifiers *c, const struct symbol *s, int order);
 bool has_peaks(const struct emitter *e);
 const char *name_of_step(const struct emitter *e);                /* of the step that looks for no peaks */
 bool has_jump(const struct emitter *e);
+bool has_peaks(const struct emitter *e);                          /* some output is the largest size so far */
+const char *name_of_step(const struct emitter *e);                /* of the step that looks for no peaks */
 const char *state_list(const struct model *model);                /* x, x' */
 const char *carried_text(const struct emitter *e);                /* the states that only add up */
 const struct model *speaker(const struct model *model);            /* over whose coordinates its forms are */

@@ -621,34 +621,40 @@ static void emit_lanes_look(struct batch *b)
 	int states = e->system->states, outputs = e->model->outputs;
 	emit_look(b);
 	say(e, "\nPL_LANES_INLINE int $n_lanes_may_pass(const pl_lanes *start, %sconst double *now,\n"
-	       "    const pl_lanes *before, const pl_lanes *value, const pl_lanes *peak)\n"
+	       "    const pl_lanes *before, pl_lanes *most, const pl_lanes *value, const pl_lanes *peak)\n"
 	       "{\n"
 	       "    int any = 0;\n", own);
 	for (int o = 0; o < outputs; o++)
 		if (e->model->output[o].peak)
-			say(e, "    any |= pl_lanes_above("
-			       "pl_lanes_peak(pl_lanes_peak(pl_lanes_all(0.0), before[%d]), value[%d])\n"
-			       "              + (%s), peak[%d]);  /* %s */\n", o, o,
-			    bend_over_lanes(b, peak_place(e->model, &e->model->output[o])), o,
-			    e->model->output[o].name);
+			say(e, "    most[%d] = pl_lanes_peak(pl_lanes_peak(pl_lanes_all(0.0), before[%d]), value[%d])\n"
+			       "              + (%s);  /* %s */\n"
+			       "    any |= pl_lanes_above(most[%d], peak[%d]);\n", o, o, o,
+			    bend_over_lanes(b, peak_place(e->model, &e->model->output[o])),
+			    e->model->output[o].name, o, o);
+		else
+			say(e, "    most[%d] = peak[%d];\n", o, o);
 	say(e, "    return any;\n"
 	       "}\n"
 	       "\nstatic void $n_lanes_look(const $n_instances *b, size_t j, const pl_lanes *start,\n"
-	       "    const double *now, const pl_lanes *value, pl_lanes *peak)\n"
+	       "    const double *now, const pl_lanes *most, const pl_lanes *value, pl_lanes *peak)\n"
 	       "{\n"
-	       "    double y[%d], end[%d], most[%d];\n"
+	       "    double y[%d], end[%d], largest[%d], bound;\n"
 	       "    const size_t lanes = sizeof(pl_lanes) / sizeof(double);\n"
 	       "    size_t l, i;\n", states, outputs, outputs);
 	say(e, "    for (l = 0; l < lanes && j + l < b->count; l++) {\n"
+	       "        int any = 0;\n"
 	       "        for (i = 0; i < %d; i++)\n"
 	       "            memcpy(&y[i], (const char *)&start[i] + l * sizeof(double), sizeof(double));\n"
 	       "        for (i = 0; i < %d; i++) {\n"
 	       "            memcpy(&end[i], (const char *)&value[i] + l * sizeof(double), sizeof(double));\n"
-	       "            memcpy(&most[i], (const char *)&peak[i] + l * sizeof(double), sizeof(double));\n"
+	       "            memcpy(&largest[i], (const char *)&peak[i] + l * sizeof(double), sizeof(double));\n"
+	       "            memcpy(&bound, (const char *)&most[i] + l * sizeof(double), sizeof(double));\n"
+	       "            any |= !(bound <= largest[i]);\n"
 	       "        }\n"
-	       "        $n_batch_look(b, j + l, y, now, end, most);\n"
+	       "        if (any)\n"
+	       "            $n_batch_look(b, j + l, y, now, end, largest);\n"
 	       "        for (i = 0; i < %d; i++)\n"
-	       "            memcpy((char *)&peak[i] + l * sizeof(double), &most[i], sizeof(double));\n"
+	       "            memcpy((char *)&peak[i] + l * sizeof(double), &largest[i], sizeof(double));\n"
 	       "    }\n"
 	       "}\n", states, outputs, outputs);
 }
@@ -664,21 +670,24 @@ static void emit_tell(struct batch *b)
 	       "    %sconst pl_lanes *y,%s const double *now, %spl_lanes *peak, double *out)\n"
 	       "{\n"
 	       "    pl_lanes value[$N_OUTPUTS];\n"
+	       "%s"
 	       "    $n_lanes_out(y, %snow, value);\n", peaks ? "const pl_lanes *start, " : "",
 	    b->factors ? " const pl_lanes *factor," : "", peaks ? "pl_lanes *before, " : "",
+	    peaks ? spell(e, "    pl_lanes most[$N_OUTPUTS];  /* that values in the step can be */\n") : "",
 	    b->factors ? "factor, " : "");
 	if (peaks)
-		say(e, "    if ($n_lanes_may_pass(start, %snow, before, value, peak)) {\n"
+		say(e, "    if ($n_lanes_may_pass(start, %snow, before, most, value, peak)) {\n"
 		       "        const pl_lanes from[$N_STATES] = {", b->factors ? "factor, " : "");
 	for (int i = 0; i < e->system->states && peaks; i++)
 		say(e, "%sstart[%d]", i ? ", " : "", i);
 	if (peaks)
 		say(e, "};  /* these are in memory here only */\n"
-		       "        pl_lanes to[$N_OUTPUTS], most[$N_OUTPUTS];\n"
+		       "        pl_lanes to[$N_OUTPUTS], bound[$N_OUTPUTS], largest[$N_OUTPUTS];\n"
 		       "        memcpy(to, value, sizeof to);\n"
-		       "        memcpy(most, peak, sizeof most);\n"
-		       "        $n_lanes_look(b, j, from, now, to, most);\n"
-		       "        memcpy(peak, most, sizeof most);\n"
+		       "        memcpy(bound, most, sizeof bound);\n"
+		       "        memcpy(largest, peak, sizeof largest);\n"
+		       "        $n_lanes_look(b, j, from, now, bound, to, largest);\n"
+		       "        memcpy(peak, largest, sizeof largest);\n"
 		       "    }\n");
 	for (int o = 0; o < e->model->outputs; o++) {
 		say(e, "    peak[%d] = pl_lanes_peak(peak[%d], value[%d]);\n", o, o, o);
