@@ -304,7 +304,10 @@ void explain_program(FILE *to, const struct step *step)
 	else
 		print_list(to, step);
 	print_reads(to, step);
-	fprintf(to, "Cost: %d multiplications, %d additions, %d calls%s\n", program->multiplications,
+	fprintf(to, "Cost: %d multiplications, %d additions, %d calls%s%s\n", program->multiplications,
 		program->additions, program->calls,
+		step->anchors ? format("; every %d steps %d and %d more", step->anchors->steps,
+				       program->wave_multiplications, program->wave_additions)
+			      : "",
 		step->forced ? "; the state is kept less what its loads sustain" : "");
 }
