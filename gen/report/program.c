@@ -235,8 +235,10 @@ static void print_list(FILE *to, const struct step *step)
 		fprintf(to, "Factors of loads change %d time%s; these are those before.\n",
 			step->branch->system.segments - 1, step->branch->system.segments == 2 ? "" : "s");
 	if (step->anchors && step->anchors->terms)
-		fprintf(to, "Loads are evaluated every %d steps, at an anchor; these are their factors there, of %d, which "
-			    "change from step to step.\n", step->anchors->steps, step->anchors->terms);
+		fprintf(to,
+			"Loads are evaluated every %d steps, at an anchor; these are their factors there, of %d, which "
+			"change from step to step.\n",
+			step->anchors->steps, step->anchors->terms);
 	if (program->loops) {
 		print_products(to, step);
 		return;
