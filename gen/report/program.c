@@ -267,8 +267,10 @@ static void print_list(FILE *to, const struct step *step)
 		fprintf(to, "Factors of loads change %d time%s; these are those before.\n",
 			step->branch->system.segments - 1, step->branch->system.segments == 2 ? "" : "s");
 	if (step->anchors && step->anchors->terms)
-		fprintf(to, "Loads are evaluated every %d steps, at an anchor; these are their factors there, of %d, which "
-			    "change from step to step.\n", step->anchors->steps, step->anchors->terms);
+		fprintf(to,
+			"Loads are evaluated every %d steps, at an anchor; these are their factors there, of %d, which "
+			"change from step to step.\n",
+			step->anchors->steps, step->anchors->terms);
 	if (program->loops) {
 		print_groups(to, step);
 		return;
@@ -336,7 +338,10 @@ void explain_program(FILE *to, const struct step *step)
 	else
 		print_list(to, step);
 	print_reads(to, step);
-	fprintf(to, "Cost: %d multiplications, %d additions, %d calls%s\n", program->multiplications,
+	fprintf(to, "Cost: %d multiplications, %d additions, %d calls%s%s\n", program->multiplications,
 		program->additions, program->calls,
+		step->anchors ? format("; every %d steps %d and %d more", step->anchors->steps,
+				       program->wave_multiplications, program->wave_additions)
+			      : "",
 		step->forced ? "; the state is kept less what its loads sustain" : "");
 }
