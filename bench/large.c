@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* large: a step of 40 masses in a row, the same with three outputs, and 40 oscillators, beside a loop over Phi written
- * by hand and, with -DDGEMV, beside dgemv of a BLAS. Short samples take turns, so that all meet the same machine; prints
- * the least of each [ns] and its ratio to the loop. */
+ * by hand and, with -DDGEMV, beside dgemv of a BLAS. Short samples take turns, so that all meet the same machine;
+ * prints the least of each [ns] and its ratio to the loop. */
 #include "masses_pl.h"
 #include "outputs_pl.h"
 #include "oscillators_pl.h"

@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# large.sh BUILD: a step of models of 80 states, beside a loop by hand and, where OpenBLAS is installed, its dgemv. On an
-# AVX-512 Xeon of 3 GHz the masses should take 1.3 us at -O2 and 0.5 with -march=native and no more than dgemv, three
+# large.sh BUILD: a step of models of 80 states, beside a loop by hand and, where OpenBLAS is installed, its dgemv. On
+# an AVX-512 Xeon of 3 GHz the masses should take 1.3 us at -O2 and 0.5 with -march=native and no more than dgemv, three
 # outputs of them 100 and 35 ns.
 set -e
 build=$1
@@ -42,8 +42,8 @@ fi
 for compiler in gcc clang; do
 	for flags in -O2 '-O2 -march=native'; do
 		# shellcheck disable=SC2086
-		$compiler -std=gnu11 $flags -Iruntime -I"$work" bench/large.c "$work"/*_pl.c runtime/*.c ${LDFLAGS:-} $blas \
-			-o "$work/large"
+		$compiler -std=gnu11 $flags -Iruntime -I"$work" bench/large.c "$work"/*_pl.c runtime/*.c ${LDFLAGS:-} \
+			$blas -o "$work/large"
 		OPENBLAS_NUM_THREADS=1 "$work/large" "$compiler $flags"
 	done
 done

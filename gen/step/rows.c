@@ -98,8 +98,9 @@ static struct share share_of_load(const struct step *step, const struct output *
 	mpq_t *initial = is_forced(step, column) ? rationals((size_t)system->states) : NULL;
 	for (int i = 0; i < system->states && initial; i++)
 		mpq_set(initial[i], step->forced->exact[i * columns + column]);
-	add_started(&share, output_of_load(step->branch->resolvent, system, output, l, column - first, (const mpq_t *)initial), 0,
-		    step->model->h);
+	add_started(&share,
+		    output_of_load(step->branch->resolvent, system, output, l, column - first, (const mpq_t *)initial),
+		    0, step->model->h);
 	return share;
 }
 
@@ -351,5 +352,6 @@ void plan_rows(struct step *step)
 	for (int count = most_rows(step, wish); count >= (asked->rows ? wish : FEWEST) && !step->rows; count /= 2)
 		try_rows(step, count);
 	if (!step->rows)
-		step->no_rows = asked->rows ? format("%d are too many for it", wish) : "they would not be faster, or leave the range";
+		step->no_rows = asked->rows ? format("%d are too many for it", wish)
+					    : "they would not be faster, or leave the range";
 }

@@ -64,8 +64,8 @@ compiles() {
     done <compilers
 }
 
-# all_compile FILE.c NAME [CHOICE [OPTIONS]]: without code, as one result; C and C++, by gcc and by clang, or what CHOICE
-# prints of the compilers
+# all_compile FILE.c NAME [CHOICE [OPTIONS]]: without code, as one result; C and C++, by gcc and by clang, or what
+# CHOICE prints of the compilers
 all_compile() {
     status=0
     : >log

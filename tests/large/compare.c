@@ -47,7 +47,8 @@ static void start(struct instance *i, const MODEL *model)
 
 static void compare(const char *of, const char *name, REAL found, REAL expected, double largest)
 {
-    const double off = found == expected ? 0 : fabs((double)found - (double)expected) / (largest > 0 ? largest : 1e-300);
+    const double size = largest > 0 ? largest : 1e-300;
+    const double off = found == expected ? 0 : fabs((double)found - (double)expected) / size;
     if (off > worst || isnan(off)) {
         worst = isnan(off) ? HUGE_VAL : off;
         where = name;

@@ -1,7 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# large.sh PLGEN ROOT CC, the runtime's library in PLRT: models of more than 16 states. Independent blocks step as each of them does alone, bit for bit
-# where the block is done alike; modes step as states do; what cannot be is refused by name.
+# large.sh PLGEN ROOT CC, the runtime's library in PLRT: models of more than 16 states. Independent blocks step as each
+# of them does alone, bit for bit where the block is done alike; modes step as states do; what cannot be is refused by
+# name.
 set -u
 plgen=$(cd "$(dirname "$1")" && pwd)/$(basename "$1") || exit 99
 root=$(cd "$2" && pwd) || exit 99
@@ -120,7 +121,8 @@ for change in '' ' + (t < 0.333 ? 2 : 1 - t)'; do
 	: >log
 	parts='oscillating few chained'
 	for name in whole $parts; do
-		sed "/^input/d; s/= u/= 0.25/; s/u + cos/0.25 + cos/; s/^x2.*/&$change/; s/^c4.*/&$change/" $name.spec >t.spec
+		sed "/^input/d; s/= u/= 0.25/; s/u + cos/0.25 + cos/; s/^x2.*/&$change/; s/^c4.*/&$change/" \
+			$name.spec >t.spec
 		"$plgen" t.spec -o $name.c >>log 2>&1 || echo "$name is refused" >>log
 	done
 	beside "blocks that leap${change:+, across a change}" 60 1e-14 1e-12 whole $parts

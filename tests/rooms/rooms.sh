@@ -41,7 +41,10 @@ for room in $rooms; do
 	before="$before $room"
 	[ -f "$root/gen/$room/$room.h" ] || echo "gen/$room/$room.h is missing" >>log
 	for header in $(sed -n 's/^#include "\([a-z_]*\)\/[a-z_]*\.h".*/\1/p' "$root/gen/$room"/*.[ch] | sort -u); do
-		case " host $before " in *" $header "*) ;; *) echo "gen/$room includes a header of gen/$header" >>log ;; esac
+		case " host $before " in
+		*" $header "*) ;;
+		*) echo "gen/$room includes a header of gen/$header" >>log ;;
+		esac
 	done
 done
 [ ! -s log ]

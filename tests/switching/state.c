@@ -24,8 +24,8 @@ static bool same(const pl_model *m, const double *found, const double *expected,
 	for (int i = 0; i < n; i++) {
             /* what is summed in another order is off by rounding, which is more where the state has grown large */
             const double rounding = 4 * DBL_EPSILON * fabs(expected[i]);
-            good = close_to(found[i], expected[i], fmax(tolerance, rounding), "%s, h = %g, after %d steps: %s %d", m->name, m->h, k,
-                            what, i) &&
+            good = close_to(found[i], expected[i], fmax(tolerance, rounding), "%s, h = %g, after %d steps: %s %d",
+                            m->name, m->h, k, what, i) &&
                    good;
         }
         return good;
