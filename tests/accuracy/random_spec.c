@@ -69,9 +69,9 @@ static void add_masses(struct equations *e)
 {
     const bool equal = chance(40), coupled = chance(15);
     for (int i = 0; i < e->n; i++)
-        e->left[i] = format("%s*x%d%s", equal ? "1" : number(-1, 2), i + 1, e->hold[i] ? "'" : "''");
+        e->left[i] = format("%s*x%d%s", equal ? "1" : number(-1, 2), i + 1, e->first_order[i] ? "'" : "''");
     for (int i = 0; coupled && i + 1 < e->n; i++)
-        if (!e->hold[i] && !e->hold[i + 1])
+        if (!e->first_order[i] && !e->first_order[i + 1])
             connect(e, i, i + 1, number(-3, -1), "''");
 }
 
@@ -121,7 +121,7 @@ static char *initial_values(const struct equations *e)
 {
     char *text = "";
     for (int i = 0; i < e->n; i++)
-        for (int k = 0; k < (e->hold[i] ? 1 : 2); k++)
+        for (int k = 0; k < (e->first_order[i] ? 1 : 2); k++)
             if (chance(40))
                 text =
                     format("%s%sx%d%s = %s", text, *text ? ", " : "init ", i + 1, k ? "'" : "", signed_number(-4, 1));
@@ -140,7 +140,7 @@ static char *sketch(const struct equations *e)
 {
     char *text = "";
     const unsigned i = below((unsigned)e->n);
-    if (chance(50) && !e->hold[i])
+    if (chance(50) && !e->first_order[i])
         text = format("mass %s at x%u\n", number(-1, 1), i + 1);
     if (chance(50))
         text = format("%sspring %s between x%u, %s\n", text, number(-2, 2), i + 1, i == 0 ? "ground" : "x1");
@@ -176,7 +176,7 @@ char *random_spec(uint64_t seed)
     e.n += (int)below(LARGEST);
     const bool mixed = chance(30), held = chance(15), ramp = chance(15), changes = chance(12);
     for (int i = 0; i < e.n; i++)
-        e.hold[i] = mixed && chance(50);
+        e.first_order[i] = mixed && chance(50);
     char *text = declarations(&e, held, ramp);
     add_masses(&e);
     if (chance(70)) {
@@ -194,7 +194,7 @@ char *random_spec(uint64_t seed)
         text = format("%s%s", text, sketch(&e));
     if (chance(30))
         text = format("%soutput a = x1%s + 0.25*x%d', b = x1 - 3*x%d + 2*cos(10*t), c = t - x1%s\n", text,
-                      e.hold[0] ? "'" : "''", e.n, e.n,
+                      e.first_order[0] ? "'" : "''", e.n, e.n,
                       held   ? " + 2*u"
                       : ramp ? " + 2*v - v'"
                              : "");
@@ -230,8 +230,8 @@ static char *doubled(struct equations *e)
     const char *damping = number(-2, 0);
     e->n = 4;
     for (int i = 0; i < 4; i++) {
-        e->hold[i] = coil && i % 2;
-        e->left[i] = format("%s*x%d%s", mass[i % 2], i + 1, e->hold[i] ? "'" : "''");
+        e->first_order[i] = coil && i % 2;
+        e->left[i] = format("%s*x%d%s", mass[i % 2], i + 1, e->first_order[i] ? "'" : "''");
     }
     for (int i = 0; i < 4; i += 2) {
         connect(e, i, i + 1, inside, "");
@@ -257,7 +257,7 @@ static char *summed(struct equations *e)
         speeds = format("%s + x%d'", speeds, i + 1);
     }
     for (int i = 0; i < e->n; i++) {
-        e->hold[i] = first;
+        e->first_order[i] = first;
         e->left[i] = first
                          ? format("x%d' + %s*x%d + %s*(%s)", i + 1, own, i + 1, shared, sum)
                          : format("x%d'' + %s*x%d' + %s*x%d + %s*(%s)", i + 1, damping, i + 1, own, i + 1, shared, sum);
@@ -271,9 +271,9 @@ static char *driven(struct equations *e)
     e->n = 2 + (int)below(LARGEST - 1);
     const int seen = 1 + (int)below((unsigned)e->n - 1);
     for (int i = 0; i < e->n; i++)
-        e->hold[i] = chance(25);
+        e->first_order[i] = chance(25);
     for (int i = 0; i < e->n; i++) {
-        e->left[i] = format("%s*x%d%s", number(-1, 1), i + 1, e->hold[i] ? "'" : "''");
+        e->left[i] = format("%s*x%d%s", number(-1, 1), i + 1, e->first_order[i] ? "'" : "''");
         for (int j = 0; j < e->n; j++)
             if ((i >= seen || j < seen) && (i == j || chance(60)))
                 add(e, i, i == j ? number(-1, 2) : format("(%s)", signed_number(-2, 0)), j, "");
