@@ -517,7 +517,7 @@ static void compare_solution_values(void *context)
             struct started *list;
             const int count =
                 responses_of_output(resolvent, &model->system, (const mpq_t *)model->initial, &model->output[o], &list);
-            const struct coefficient c = started_value(count, list, t, model->asked.step_at, model->output[o].name);
+            const struct coefficient c = started_value(count, list, t, false, model->asked.step_at, model->output[o].name);
             compare(model->output[o].name, c.value, work->expected[first + (size_t)o]);
         }
     }
@@ -707,7 +707,7 @@ static void compare_changes(void *context)
             struct started *list;
             const int count =
                 responses_of_output(resolvent, &model->system, (const mpq_t *)model->initial, &model->output[o], &list);
-            const struct coefficient c = started_value(count, list, t, model->asked.step_at, model->output[o].name);
+            const struct coefficient c = started_value(count, list, t, false, model->asked.step_at, model->output[o].name);
             compare_driven(model, &a, segment, &model->output[o], y, c.value);
         }
     }
@@ -841,8 +841,8 @@ static void compare_outputs(void *context)
             mpq_set_ui(t, multiples[k], 1);
             mpq_mul(t, t, r->full->h);
             trial.time = format("%lu h", multiples[k]);
-            const double expected = started_value(fs, f, t, r->full->asked.step_at, name).value;
-            compare(name, started_value(gs, g, t, r->full->asked.step_at, name).value, expected);
+            const double expected = started_value(fs, f, t, false, r->full->asked.step_at, name).value;
+            compare(name, started_value(gs, g, t, false, r->full->asked.step_at, name).value, expected);
         }
     }
     mpq_clear(t);
