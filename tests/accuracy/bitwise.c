@@ -517,7 +517,8 @@ static void compare_solution_values(void *context)
             struct started *list;
             const int count =
                 responses_of_output(resolvent, &model->system, (const mpq_t *)model->initial, &model->output[o], &list);
-            const struct coefficient c = started_value(count, list, t, false, model->asked.step_at, model->output[o].name);
+            const struct coefficient c = started_value(count, list, t, false, model->asked.step_at,
+                                                       model->output[o].name);
             compare(model->output[o].name, c.value, work->expected[first + (size_t)o]);
         }
     }
@@ -707,7 +708,8 @@ static void compare_changes(void *context)
             struct started *list;
             const int count =
                 responses_of_output(resolvent, &model->system, (const mpq_t *)model->initial, &model->output[o], &list);
-            const struct coefficient c = started_value(count, list, t, false, model->asked.step_at, model->output[o].name);
+            const struct coefficient c = started_value(count, list, t, false, model->asked.step_at,
+                                                       model->output[o].name);
             compare_driven(model, &a, segment, &model->output[o], y, c.value);
         }
     }
