@@ -86,6 +86,8 @@ inline counted operator-(counted a)
 	return a;
 }
 inline counted operator+(counted a) { return a; }
+inline counted counted_magnitude(counted a) { return a.value < 0 ? -a : a; }
+#define __builtin_fabs counted_magnitude  /* of the runtime */
 inline counted &operator+=(counted &a, counted b) { return a = a + b; }
 inline counted &operator-=(counted &a, counted b) { return a = a - b; }
 inline counted &operator*=(counted &a, counted b) { return a = a * b; }

@@ -10,7 +10,8 @@
 enum {
 	TABLE_NUMBERS = 3072,       /* of a block: they stay in the nearest cache */
 	LANES = 4,                  /* numbers that a compiler may take at a time */
-	FEWEST = 4                  /* rows that are worth a block */
+	FEWEST = 4,                 /* rows that are worth a block */
+	MOST_LOADS = 16             /* each column takes numbers of its own to build, powers of t large ones */
 };
 
 int held_columns(const struct linear *system)
@@ -329,6 +330,8 @@ static const char *rows_objection(const struct step *step)
 		return "loads change their formula";
 	if (step->branch->system.states > LIMIT_RESIDUE_STATES)
 		return format("blocks are built for up to %d states", LIMIT_RESIDUE_STATES);
+	if (load_columns(&step->branch->system) > MOST_LOADS)
+		return format("blocks are built for up to %d columns of loads", MOST_LOADS);
 	if (model->relative && !model->declared_outputs)
 		return "the states as written follow from what each has gained";
 	for (int o = 0; o < model->outputs; o++)
