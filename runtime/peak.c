@@ -259,7 +259,7 @@ void pl_peak_bend(int size, const real *A, const real *row, real h, real *bend, 
         for (r[j] = 0, i = 0; i < size; i++)
             r[j] += first[i] * A[i * size + j];
     for (k = 0; k < BEND_PARTS; k++) {
-        const int known = grow(size, A, h / BEND_PARTS, r, sum, work + 2 * size);
+        const int known = grow(size, A, h / (real)BEND_PARTS, r, sum, work + 2 * size);
         for (j = 0; j < size; j++)
             bend[j] = known ? larger(bend[j], slack * (h * h / 8) * sum[j]) : REAL_LARGE;
         if (!known)

@@ -30,6 +30,8 @@ static const char *objection(const struct step *step)
 		[KIND_REGIONS] = "regions: crossings need the loads at any time",
 		[KIND_LEFTOVER] = "a leftover: the scheme needs the loads between steps"
 	};
+	if (step->model->asked.form == FORM_MODAL)
+		return "the form modal: modes take their loads as they are";
 	if (of_kind[step->kind])
 		return of_kind[step->kind];
 	if (step->model->asked.single)

@@ -320,6 +320,8 @@ static const char *rows_objection(const struct step *step)
 	const struct model *model = step->model;
 	if (step->kind != KIND_LINEAR && step->kind != KIND_TUNED)
 		return "they are of a linear step";
+	if (step->modal)
+		return "modes are stepped";
 	if (step->branch->system.heldK)
 		return "the scheme holds terms over each step";
 	if (model->tuning)

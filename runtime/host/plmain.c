@@ -402,13 +402,13 @@ static void retune(void *state, const real *params, real h)
 
 /* The rows read last, the newest last: most_ahead() + 1 of them; what they hold of inputs, each ahead as far as it has
  * to be */
-static void take_row(samples *in, real *rows, real *u, uint64_t row, uint64_t steps, double h)
+static void take_row(samples *in, real *rows, real *u, uint64_t number, uint64_t steps, double h)
 {
     const int most = most_ahead(), n = model->inputs;
     int i;
     memmove(rows, rows + n, sizeof *rows * (size_t)(most * n));
     if (!read_sample(in, rows + most * n))
-        too_few(in, row, steps, h);
+        too_few(in, number, steps, h);
     for (i = 0; i < n; i++)
         u[i] = rows[model->start_samples[i] * n + i];
 }
