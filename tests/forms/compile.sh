@@ -86,12 +86,12 @@ no_double_instruction() {
         # shellcheck disable=SC2086
         "$compiler" -std=c99 $level $warnings -I"$root/runtime" -I"$root/tests/forms" -I"${1%/*}" ${3-} -c "$1" \
             -o out.o >log 2>&1 &&
-            objdump -d out.o | sed 's/#.*//' >code          # an address beside it may read fadd
+            objdump -d out.o | sed 's/#.*//' | cut -f 3- >code     # an address before or behind it may read fadd
         status=$?
         sse='(add|sub|mul|div|sqrt|min|max|u?comi|round|cmp[a-z]*)[sp]d|cvt[a-z0-9]*[sp]d[a-z0-9]*'
         x87='f(ld|st|add|sub|mul|div|ild)[a-z]*'
-        grep -E "[[:space:]]v?($sse|$x87)[[:space:]]" code >>log
-        grep -q -E '[[:space:]]v?[a-z]*[sp]s[[:space:]]' code || echo 'nothing of float either' >>log
+        grep -E "^v?($sse|$x87)([[:space:]]|$)" code >>log
+        grep -q -E '^v?[a-z]*[sp]s[[:space:]]' code || echo 'nothing of float either' >>log
         [ $status -eq 0 ] && [ ! -s log ]
         result $? "$2: no instruction of double, $compiler"
     done
