@@ -46,7 +46,7 @@ static void emit_rest_of_state(const struct emitter *e)
 	emit_load_set(e);
 	if (e->step->anchors)
 		say(e, "    s->since = 0;\n"
-		       "    $n_anchor(s);\n");
+		       "    $n_drop_anchor(s);\n");
 	if (e->system->segments > 1)
 		say(e, "    for (s->segment = 0; s->segment < %d && $n_until(s, s->segment) <= 1e-18 * %s;)\n"
 		       "        s->segment++;\n", e->system->segments - 1, step_length(e));

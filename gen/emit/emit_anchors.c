@@ -95,7 +95,7 @@ static void emit_anchor(const struct emitter *e)
 	}
 	say(e, "\n"
 	       "/* An anchor now: the functions of the loads, from phases that lose nothing however long a run is */\n"
-	       "static void $n_anchor($n *s)\n"
+	       "static void $n_drop_anchor($n *s)\n"
 	       "{\n");
 	if (time)
 		say(e, "    const double t = $n_time(s);\n");

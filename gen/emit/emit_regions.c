@@ -252,7 +252,7 @@ static void emit_apart_search(const struct emitter *e)
 	int size = e->step->layout.size;
 	emit_swift_functions(e);
 	say(e, "\n"
-	       "static PL_APART void $n_search($n *s, double x[%d])\n"
+	       "static PL_APART void $n_seek($n *s, double x[%d])\n"
 	       "{\n"
 	       "    double work[PL_SWITCHING_WORK(%d, %d, %d)];\n"
 	       "    int i;\n",

@@ -355,7 +355,7 @@ static void emit_block(const struct emitter *e)
 	say(e, "    s->k += $N_ROWS;\n");
 	if (e->step->anchors)
 		say(e, "    s->since = $N_ROWS;\n"
-		       "    $n_anchor(s);\n");
+		       "    $n_drop_anchor(s);\n");
 	say(e, "    if (out)\n"
 	       "        $n_rows(start, %sout);\n"
 	       "}\n", inputs ? "u, " : "");
@@ -368,7 +368,7 @@ static void emit_blocks(const struct emitter *e)
 	say(e, "    if (n >= $N_ROWS) {\n"
 	       "        $n now = *s;\n");
 	if (e->step->anchors)
-		say(e, "        $n_anchor(&now);\n");
+		say(e, "        $n_drop_anchor(&now);\n");
 	say(e, "        for (; n >= $N_ROWS; n -= $N_ROWS) {\n"
 	       "            $n_block(&now, %sout);\n", inputs ? "u, " : "");
 	if (inputs)

@@ -281,7 +281,7 @@ void emit_step_end(const struct emitter *e)
 	say(e, "    s->k++;\n");
 	if (e->step->anchors)
 		say(e, "    if (++s->since == %d)\n"
-		       "        $n_anchor(s);\n",
+		       "        $n_drop_anchor(s);\n",
 		    e->step->anchors->steps);
 	if (e->step->rest && e->step->rest->in_step)
 		say(e, "    if ((s->k & 63) == 0)\n"

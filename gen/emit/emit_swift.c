@@ -100,7 +100,7 @@ static const char *off_text(const struct emitter *e, const struct pieces *p, int
 			    const char *const *size, int indent)
 {
 	int n = expressions_of(e);
-	struct tables off = tables_of_pieces(e, p, spell(e, "$n_off[which]"), n, off_of),
+	struct tables off = tables_of_pieces(e, p, spell(e, "$n_chord_off[which]"), n, off_of),
 		      still = tables_of_pieces(e, p, spell(e, "$n_still[which]"), 1, still_of);
 	still.columns = n;
 	if (branch >= 0) {
@@ -165,7 +165,7 @@ static void emit_neighbours(const struct emitter *e, const struct pieces *p)
 			    shortest(p->high[r * n + i]), i == n - 1 ? "},\n" : "");
 	say(e, "};\n"
 	       "\n"
-	       "static const int $n_next[%d][%d][2] = {  /* regions below and above; -1: none that can occur */\n",
+	       "static const int $n_beyond[%d][%d][2] = {  /* regions below and above; -1: none that can occur */\n",
 	    s->regions, n);
 	for (int r = 0; r < s->regions; r++)
 		for (int i = 0; i < n; i++) {
@@ -199,7 +199,7 @@ void emit_swift_tables(const struct emitter *e, const struct pieces *p, const ch
 		emit_of_each(e, &bend, "whole_sway", "sway over h", expression);
 	}
 	if (is_table(&off))
-		emit_of_each(e, &off, "off", "times |x|: how far each expression is off its chord over h, at most",
+		emit_of_each(e, &off, "chord_off", "times |x|: how far each expression is off its chord over h, at most",
 			     expression);
 	if (is_table(&still))
 		emit_still(e, p);
@@ -311,7 +311,7 @@ static void emit_weights(const struct emitter *e, const struct pieces *p)
 		say(e, "%s%s", k % 4 ? ", " : ",\n    ", shortest(p->weight[k]));
 	say(e, "\n"
 	       "};\n"
-	       "static const double $n_order[%d] = {", terms);
+	       "static const double $n_orders[%d] = {", terms);
 	for (int k = 0; k < terms; k++)
 		say(e, "%s%d.0", k ? ", " : "", k);
 	say(e, "};\n");
@@ -369,8 +369,8 @@ static void emit_polynomial(const struct emitter *e, const struct pieces *p, con
 /* sum of |g[k + 2]| r^k, of k + 2 times that for `slopes`; lines of a function */
 static void emit_sizes(const struct emitter *e, int terms, const char *sum, const char *r, bool slopes)
 {
-	const char *factor = slopes ? spell(e, "$n_order[k + 2] * ") : "",
-		   *next = slopes ? spell(e, "$n_order[k + 3] * ") : "";
+	const char *factor = slopes ? spell(e, "$n_orders[k + 2] * ") : "",
+		   *next = slopes ? spell(e, "$n_orders[k + 3] * ") : "";
 	say(e, "    for (k = %d; k >= 0; k -= 2) {\n"
 	       "        even = even * (%s * %s) + %spl_magnitude(g[k + 2]);\n"
 	       "        odd = odd * (%s * %s) + %spl_magnitude(g[k + 3]);\n"
@@ -398,7 +398,7 @@ static void emit_root(const struct emitter *e, const struct pieces *p)
 	emit_sizes(e, terms, "least", "most", true);
 	say(e, "    least = g[1] - slack - most * least;\n"
 	       "    for (k = 2; k < %d; k++)\n"
-	       "        bend += $n_order[k] * $n_order[k - 1] * pl_magnitude(g[k]);\n"
+	       "        bend += $n_orders[k] * $n_orders[k - 1] * pl_magnitude(g[k]);\n"
 	       "    for (i = 0; i < 2; i++) {\n"
 	       "        const double zz = z * z;\n"
 	       "        double even_slope = %d.0 * g[%d], odd_slope = 0.0;\n"
@@ -407,8 +407,8 @@ static void emit_root(const struct emitter *e, const struct pieces *p)
 	       "        for (k = %d; k >= 0; k -= 2) {\n"
 	       "            even = even * zz + g[k];\n"
 	       "            odd = odd * zz + g[k + 1];\n"
-	       "            even_slope = even_slope * zz + $n_order[k + 1] * g[k + 1];\n"
-	       "            odd_slope = odd_slope * zz + $n_order[k + 2] * g[k + 2];\n"
+	       "            even_slope = even_slope * zz + $n_orders[k + 1] * g[k + 1];\n"
+	       "            odd_slope = odd_slope * zz + $n_orders[k + 2] * g[k + 2];\n"
 	       "        }\n"
 	       "        miss = even + z * odd;\n"
 	       "        last = z;\n"
@@ -525,7 +525,7 @@ static void emit_leaves(const struct emitter *e, const struct pieces *p)
 	       "    const double sign = up ? 1.0 : -1.0, b = $n_within[region][i][up], from = $n_expression(i, x);\n"
 	       "    double g[%d], noise = pl_magnitude(b), slack = 0.0;\n"
 	       "    int k;\n"
-	       "    if ($n_next[region][i][up] < 0 ||\n"
+	       "    if ($n_beyond[region][i][up] < 0 ||\n"
 	       "        !(up ? from > $n_within[region][i][0] : from < $n_within[region][i][1]))\n"
 	       "        return 2.0;\n"
 	       "    g[0] = sign * (from - b);\n"
@@ -607,7 +607,7 @@ static void emit_cross(const struct emitter *e, const struct pieces *p)
 	       "        if (z > 1.0)\n"
 	       "            return 0;\n"
 	       "        $n_sum_up(c, z, y);\n"
-	       "        next = $n_next[region][passed][up];\n"
+	       "        next = $n_beyond[region][passed][up];\n"
 	       "        $n_expand($n_matrix[next], y, c);\n"
 	       "        $n_sum_up(c, 1.0 - z, end);\n"
 	       "        if (!$n_moves_on(next, $n_matrix[next], passed, up, y, c, 1.0 - z, end))\n"
@@ -831,6 +831,6 @@ void emit_swift_step(const struct emitter *e)
 	for (int j = 0; j < layout->size; j++)
 		say(e, "        now[%d] = %s;\n", j, *x[j] ? x[j] : "1.0");
 	say(e, "        if (!$n_cross(s, now))\n"
-	       "            $n_search(s, now);\n"
+	       "            $n_seek(s, now);\n"
 	       "    }\n");
 }

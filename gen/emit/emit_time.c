@@ -466,7 +466,7 @@ static void emit_leap_end_of_all(const struct emitter *e)
 	emit_load_advance(e, "n");
 	say(e, "    s->k += n;\n");
 	if (e->step->anchors)
-		say(e, "    $n_anchor(s);\n");
+		say(e, "    $n_drop_anchor(s);\n");
 	say(e, "}\n");
 }
 
