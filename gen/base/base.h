@@ -68,6 +68,7 @@ void  memory_open(void);
 void  memory_close(void);
 void  memory_on_limit(void (*tell)(const char *message)); /* what says that a limit is reached, and ends the program */
 void *allocate(size_t count, size_t size);                 /* zeroed */
+void *need_memory(void *block);                            /* of a library: NULL ends the program as others do */
 void *enlarge(void *block, size_t count, size_t size);     /* contents kept, the rest undefined */
 char *format(const char *fmt, ...) __attribute__((format(printf, 1, 2)));
 mpq_t *rationals(size_t count);                            /* initialised to 0 */

@@ -45,6 +45,13 @@ static _Noreturn void out_of_memory(void)
 	exit(1);
 }
 
+void *need_memory(void *block)
+{
+	if (!block)
+		out_of_memory();
+	return block;
+}
+
 static size_t *size_of(void *block)
 {
 	return (size_t *)block - 1;

@@ -199,8 +199,8 @@ void emit_swift_tables(const struct emitter *e, const struct pieces *p, const ch
 		emit_of_each(e, &bend, "whole_sway", "sway over h", expression);
 	}
 	if (is_table(&off))
-		emit_of_each(e, &off, "chord_off", "times |x|: how far each expression is off its chord over h, at most",
-			     expression);
+		emit_of_each(e, &off, "chord_off",
+			     "times |x|: how far each expression is off its chord over h, at most", expression);
 	if (is_table(&still))
 		emit_still(e, p);
 	emit_of_each(e, &slack, "slack", "times |x|: what h e' is off the slope of its polynomial, at most",

@@ -8,10 +8,10 @@
 
 bool eigenvalues(int n, const mpq_t *A, double *re, double *im)
 {
-	gsl_matrix *m = gsl_matrix_alloc((size_t)n, (size_t)n);
-	gsl_vector_complex *eigen = gsl_vector_complex_alloc((size_t)n);
-	gsl_eigen_nonsymm_workspace *work = gsl_eigen_nonsymm_alloc((size_t)n);
 	gsl_error_handler_t *handler = gsl_set_error_handler_off();
+	gsl_matrix *m = need_memory(gsl_matrix_alloc((size_t)n, (size_t)n));
+	gsl_vector_complex *eigen = need_memory(gsl_vector_complex_alloc((size_t)n));
+	gsl_eigen_nonsymm_workspace *work = need_memory(gsl_eigen_nonsymm_alloc((size_t)n));
 	bool finite = true;
 	for (int i = 0; i < n * n; i++) {
 		double entry = nearest_double(A[i]);

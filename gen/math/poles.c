@@ -58,8 +58,8 @@ static bool start_by_gsl(struct poly g, struct iteration *it)
 			return false;
 		a[k] = mpz_sgn(g.c[k]) == 0 ? 0 : ldexp(mantissa, (int)exponent);
 	}
-	gsl_poly_complex_workspace *workspace = gsl_poly_complex_workspace_alloc((size_t)d + 1);
 	gsl_error_handler_t *handler = gsl_set_error_handler_off();
+	gsl_poly_complex_workspace *workspace = need_memory(gsl_poly_complex_workspace_alloc((size_t)d + 1));
 	bool good = gsl_poly_complex_solve(a, (size_t)d + 1, workspace, z) == GSL_SUCCESS;
 	gsl_set_error_handler(handler);
 	gsl_poly_complex_workspace_free(workspace);

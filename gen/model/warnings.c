@@ -360,9 +360,9 @@ static void compare_excursions(struct jacobian *j, double end, struct softness *
 		y[i] = nearest_double(model->initial[i]);
 	gsl_error_handler_t *handler = gsl_set_error_handler_off();
 	gsl_odeiv2_system system = { slopes, NULL, size, &r };
-	gsl_odeiv2_step *step = gsl_odeiv2_step_alloc(gsl_odeiv2_step_rkf45, size);
-	gsl_odeiv2_control *control = gsl_odeiv2_control_y_new(1e-8, 1e-4);
-	gsl_odeiv2_evolve *evolve = gsl_odeiv2_evolve_alloc(size);
+	gsl_odeiv2_step *step = need_memory(gsl_odeiv2_step_alloc(gsl_odeiv2_step_rkf45, size));
+	gsl_odeiv2_control *control = need_memory(gsl_odeiv2_control_y_new(1e-8, 1e-4));
+	gsl_odeiv2_evolve *evolve = need_memory(gsl_odeiv2_evolve_alloc(size));
 	bool good = true;
 	while (good) {
 		for (int k = 0; k < followed; k++)

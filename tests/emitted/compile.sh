@@ -227,7 +227,7 @@ for m in $models; do
     driver "$m/stdout.c" "$m" "$m/one" "-std=c99 $warnings"
     cp log "$m/said"
     h=$(step_of "$m") && "$m/one" "$(awk "BEGIN { print 100 * $h }")" | tail -n 1 | cut -d, -f2
-done >expected
+done | awk '{ printf "%.17g\n", $1 }' >expected
 mkdir program_c
 for pair in "${GCCS:-gcc g++}" "${CLANGS:-clang clang++}"; do
     c=${pair% *}
