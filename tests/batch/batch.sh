@@ -67,7 +67,7 @@ tests/batch/forced.spec --anchors 1
 tests/peaks/tuned.spec
 ${LONG:+tests/relative/drive.spec
 models/oscillator.spec --real float
-models/sdcsf.spec --form delta --accuracy compensated
+models/sdcsf.spec --form delta --accuracy compensated --anchors 1
 tests/tunable/sensor.spec
 tests/tunable/pair.spec --form direct
 tests/tunable/cart.spec --real float
@@ -75,7 +75,7 @@ tests/forms/damped_ramped.spec
 tests/relative/train.spec
 models/quarter_car.spec --real float
 models/scs.spec --accuracy compensated
-models/tuned_floor.spec
+models/tuned_floor.spec --anchors 1
 tests/peaks/peaks.spec
 tests/holds/tuned.spec}
 END
