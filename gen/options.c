@@ -40,6 +40,7 @@ static void take_header(struct options *options, const char *value) { (void)valu
 static void take_rhs(struct options *options, const char *value) { (void)value; options->rhs = true; }
 static void take_step(struct options *options, const char *value) { options->request.step = value; }
 static void take_scheme(struct options *options, const char *value) { options->request.scheme = value; }
+static void take_tolerance(struct options *options, const char *value) { options->request.tolerance = value; }
 static void take_prefix(struct options *options, const char *value) { options->request.prefix = value; }
 static void take_depfile(struct options *options, const char *value) { options->depfile = value; }
 
@@ -155,6 +156,8 @@ static const struct row {
 	{ "rhs", NULL, "also emit NAME_rhs: the equations as written", take_rhs, NULL },
 	{ "step", "EXPR", "instead of the spec's step", take_step, NULL },
 	{ "scheme", "NAME", "instead of the spec's: ", take_scheme, all_schemes },
+	{ "tolerance", "EXPR", "of scheme taylor: the error that a step may make, relative to each state", take_tolerance,
+	  NULL },
 	{ "real", "float", "numbers and arithmetic of type float (default: double)", take_real, NULL },
 	{ "form", "NAME", "of a linear step: auto direct delta kick-drift-kick modal", take_form, NULL },
 	{ "accuracy", "compensated", "two-word factors, and what rounding takes from the state is kept",
@@ -274,6 +277,8 @@ static void note_all(struct options *options)
 	const struct request *request = &options->request;
 	if (request->scheme)
 		note_in_banner(options, format("--scheme %s", request->scheme));
+	if (request->tolerance)
+		note_in_banner(options, format("--tolerance %s", request->tolerance));
 	if (request->step)
 		note_in_banner(options, format("--step %s", request->step));
 	if (request->prefix)

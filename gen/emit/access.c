@@ -53,7 +53,7 @@ static void emit_rest_of_state(const struct emitter *e)
 	if (e->step->forced)
 		emit_set_forced_state(e, e->model->relative ? "x" : "y", "    ");
 	emit_peak_set(e);
-	if (e->kind->places)
+	if (e->kind->places && e->kind->places(e))
 		say(e, "    $n_place(s);\n");
 	say(e, "}\n");
 }
@@ -216,7 +216,7 @@ static void emit_hold(const struct emitter *e)
 	       "    int i;\n"
 	       "    for (i = 0; i < $N_INPUTS; i++)\n"
 	       "        s->u[i] = u[i];\n");
-	if (e->kind->places)
+	if (e->kind->places && e->kind->places(e))
 		say(e, "    if (s->k == 0)\n"
 		       "        $n_place(s);\n");
 	say(e, "}\n");

@@ -62,7 +62,7 @@ static void banner_scheme(const struct emitter *e)
 {
 	const struct model *shown = e->step->shown->model;
 	if (e->model->scheme != SCHEME_EXACT)
-		banner_sentence(e, scheme_note(e->model->scheme));
+		banner_sentence(e, scheme_note(e->model->scheme, e->model->truncation.order));
 	if (loses_order(shown))
 		say(e, " * So where all is smooth; here of order %s at most: %s.\n", order_text(shown),
 		    printable(smoothness_text(shown)));
@@ -119,6 +119,24 @@ void banner_leftover(const struct emitter *e)
 	    model->loads_left ? " and the inputs" : ", the loads and the inputs");
 	banner_left(e, model);
 	banner_growth(e);
+}
+
+/* What the series is of, how long a step is */
+void banner_expanded(const struct emitter *e)
+{
+	const struct truncation *truncation = &e->model->truncation;
+	const char *tolerance = readable_text(truncation->tolerance);
+	banner_scheme(e);
+	if (truncation->adaptive)
+		say(e, " * Each step is as long as its last two terms are below %s of the largest value of each state so far:\n"
+		       " * several h, whose states the one series gives, or a part of h, of which there are %d at most.\n",
+		    tolerance, truncation->substeps);
+	else if (mpq_sgn(truncation->tolerance) != 0)
+		say(e, " * One way through, whatever the numbers are; where the last two terms are above %s of the largest value\n"
+		       " * of a state so far, $n_status says PL_INACCURATE.\n", tolerance);
+	else
+		say(e, " * One way through, whatever the numbers are; no step looks at its error.\n");
+	say(e, " * What rounding takes from the state is kept in rest.\n");
 }
 
 /* Regions, and what each expression is compared with */

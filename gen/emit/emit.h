@@ -24,7 +24,8 @@ struct emitter {
 	int *anchor;                /* per load: index of its first there; -1: none */
 	bool at_anchor;             /* load states are written where the anchor keeps them */
 	const char **sample;        /* of a block of steps: per column of its inputs; NULL: of one step */
-	bool at_node;               /* load states are those at `node` of the step, not at its start */
+	bool at_node;               /* load states are those at `node` of the step, not at its start; */
+	const char *after;          /* those this long after now [s]; NULL: not so */
 };
 /* The only writer: a printf format in which $n is the model's name and $N the same in capitals, $$ a dollar. */
 void say(const struct emitter *e, const char *layout, ...) __attribute__((format(printf, 2, 3)));
@@ -208,7 +209,7 @@ struct kind {
 	/* The state */
 	bool own_factors;                               /* what depends on h is in s->coeffs; else in tables */
 	void (*start)(const struct emitter *e, const char *s); /* before the first set; s: "s->" or "s." */
-	bool places;                                    /* NAME_place(s) finds what follows from a state that was set */
+	bool (*places)(const struct emitter *e);        /* NAME_place(s) finds what follows from a state that was set */
 	/* Tables and functions */
 	bool (*reads_load)(const struct emitter *e, int load); /* elsewhere than in the system, leftovers, outputs */
 	bool (*reads_phi)(const struct step *step);     /* of what is kept, in a loop */
@@ -222,6 +223,16 @@ struct kind {
 	void (*params)(const struct emitter *e);
 };
 const struct kind *row_of_kind(enum step_kind kind);
+/* Does an output read an acceleration that something left over acts on? */
+bool reads_channels(const struct model *model);
+
+/* ---- emit_expansion.c: the Taylor series of the solution ---- */
+
+bool expansion_places(const struct emitter *e);
+void emit_expansion_place(const struct emitter *e);
+void emit_expansion_members(const struct emitter *e);
+void emit_expansion_step(const struct emitter *e);
+void emit_expansion_at(const struct emitter *e);
 
 /* ---- banner.c, declarations.c: what a header has ---- */
 
@@ -229,6 +240,7 @@ void emit_banner(const struct emitter *e);
 void banner_linear(const struct emitter *e);                      /* what is approximated, of each kind */
 void banner_leftover(const struct emitter *e);
 void banner_regions(const struct emitter *e);
+void banner_expanded(const struct emitter *e);
 void emit_declarations(const struct emitter *e, bool rhs);
 
 /* ---- kept.c: states as written, and as they are kept ---- */

@@ -2,6 +2,8 @@
 /* Loads on the target: phases as turns, growths as exponents of 2, load states made of them at a step's start. */
 #include "emit/emit.h"
 
+#include <string.h>
+
 /* ---- tables ---- */
 
 /* |q| / unit as words, the first the highest, and a power of two */
@@ -213,12 +215,25 @@ const char *column_operand(const struct emitter *e, int column)
 	return load_operand(e, l, column);
 }
 
+/* ... and what it gains up to a time after now */
+static const char *later(const struct emitter *e, const char *what, const char *type, int i)
+{
+	int load = 0;
+	while ((strcmp(what, "phase") == 0 ? e->phase : e->growth)[load] != i)
+		load++;
+	const char *falls = mpq_sgn(e->system->load[load].wave->a) < 0 ? "1, " : "0, ";
+	return format("%s_add(s->%s[%d], %s_at(&%s_%s_rate[%d], %s%s))", type, what, i, type, e->name, what, i,
+		      strcmp(what, "phase") == 0 ? "" : falls, e->after);
+}
+
 /* s->phase[i] or s->growth[i], and what it has gained since: up to the node, or from the anchor up to now */
 static const char *now_of(const struct emitter *e, const char *what, const char *type, int i)
 {
 	const char *kept = format("s->%s[%d]", what, i);
 	if (e->at_node)
 		return format("%s_add(%s, %s_node_%s[node][%d])", type, kept, e->name, what, i);
+	if (e->after)
+		return later(e, what, type, i);
 	if (!e->step->anchors || e->at_anchor)
 		return kept;
 	return format("%s_add(%s, %s_times(%s_%s_step[%d], s->since))", type, kept, type, e->name, what, i);

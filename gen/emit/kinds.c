@@ -134,6 +134,12 @@ static const struct kind tuned = {
 
 /* ---- regions ---- */
 
+static bool any_place(const struct emitter *e)
+{
+	(void)e;
+	return true;
+}
+
 static bool regions_read_load(const struct emitter *e, int load)
 {
 	const struct switching *s = e->model->switching;
@@ -158,8 +164,7 @@ static void emit_region_tables(const struct emitter *e)
 	emit_region_start(e);
 }
 
-/* Does an output read an acceleration that something left over acts on? */
-static bool reads_channels(const struct model *model)
+bool reads_channels(const struct model *model)
 {
 	bool any = false;
 	for (int i = 0; i < model->outputs + model->n; i++) {
@@ -194,7 +199,7 @@ static const struct kind regions = {
 	.declare_state = emit_region_declarations,
 	.declare_more = nothing,
 	.start = no_start,
-	.places = true,
+	.places = any_place,
 	.reads_load = regions_read_load,
 	.reads_phi = never,
 	.tables = emit_region_tables,
@@ -255,10 +260,58 @@ static const struct kind leftover = {
 	.params = emit_no_params
 };
 
+/* ---- expanded: the Taylor series of the solution ---- */
+
+static const char *always(const struct step *step)
+{
+	(void)step;
+	return NULL;
+}
+
+static bool expansion_reads_load(const struct emitter *e, int load)
+{
+	return e->step->expansion->load[load];
+}
+
+static void emit_expansion_tables(const struct emitter *e)
+{
+	emit_times_of_changes(e);
+	emit_expansion_place(e);
+}
+
+static const struct kind expanded = {
+	.banner = banner_expanded,
+	.step_note = "",
+	.banner_more = nothing,
+	.no_jump = "what is left over is not linear in the state",
+	.no_at = always,
+	.constants = nothing,
+	.types = nothing,
+	.coefficients = nothing,
+	.members = emit_expansion_members,
+	.keeps_status = true,
+	.init_note = "t = 0, the spec's initial values",
+	.status_note = "0, or bits: PL_NOT_FINITE, PL_TOO_MANY_STEPS, PL_INACCURATE",
+	.declare_state = nothing,
+	.declare_more = nothing,
+	.start = no_start,
+	.places = expansion_places,
+	.reads_load = expansion_reads_load,
+	.reads_phi = never,
+	.tables = emit_expansion_tables,
+	.pass = nothing,
+	.step = emit_expansion_step,
+	.held = nothing,
+	.at = emit_expansion_at,
+	.wrappers = nothing,
+	.params = emit_no_params
+};
+
 const struct kind *row_of_kind(enum step_kind kind)
 {
 	static const struct kind *const row[KINDS] = {
-		[KIND_LINEAR] = &linear, [KIND_TUNED] = &tuned, [KIND_REGIONS] = &regions, [KIND_LEFTOVER] = &leftover
+		[KIND_LINEAR] = &linear,     [KIND_TUNED] = &tuned,	[KIND_REGIONS] = &regions,
+		[KIND_LEFTOVER] = &leftover, [KIND_EXPANDED] = &expanded
 	};
 	return row[kind];
 }

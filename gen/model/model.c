@@ -2,7 +2,10 @@
 /* From a parsed spec to a model: params, scheme, step and initial values here, the rest by the files before it. */
 #include "model/model.h"
 
+#include <math.h>
 #include <string.h>
+
+enum { LEAST_ORDER = 4, MOST_ORDER = 30 };      /* of a Taylor series */
 
 /* ---- params, lets ---- */
 
@@ -99,17 +102,21 @@ static void evaluate_lets(struct building *b)
 static void choose_scheme(void *context)
 {
 	struct building *b = context;
-	const char *wanted = b->request->scheme ? b->request->scheme : b->spec->scheme;
+	const char *asked = b->request->scheme, *blank = asked ? strchr(asked, ' ') : NULL;
+	const char *wanted = blank ? format("%.*s", (int)(blank - asked), asked) : asked ? asked : b->spec->scheme;
 	b->collector.scheme = "exact";
 	b->collector.closed = b->request->solution;
 	b->collector.keep = b->request->solution ? KEEP_NOTHING : wanted ? KEEP_PIECEWISE : KEEP_ALL;
 	if (!wanted)
 		return;
-	struct place at = b->request->scheme ? (struct place){ source_argument(wanted), 0 } : b->spec->scheme_at;
+	struct place at = asked ? (struct place){ source_argument(asked), 0 } : b->spec->scheme_at;
+	struct node *order = asked ? NULL : b->spec->scheme_order;
 	enum scheme scheme;
 	if (scheme_of(wanted, &scheme)) {
 		b->model->scheme = b->request->solution ? SCHEME_EXACT : scheme;
 		b->model->asked.scheme_at = at;
+		b->model->asked.scheme_order =
+			blank ? parse_argument(b->spec, at.source, (size_t)(blank - asked)) : order;
 		b->collector.scheme = scheme_name(b->model->scheme);
 		b->collector.keep = b->request->solution     ? KEEP_NOTHING
 				    : scheme == SCHEME_EXACT ? KEEP_PIECEWISE
@@ -122,18 +129,91 @@ static void choose_scheme(void *context)
 	      "unknown scheme '%s'", wanted);
 }
 
+/* An argument of the command line, then *at is where it stands; else what the spec has */
+static struct node *asked_or_written(struct building *b, const char *asked, struct node *written, struct place *at)
+{
+	if (!asked)
+		return written;
+	struct source *source = source_argument(asked);
+	struct node *node = parse_argument(b->spec, source, 0);
+	*at = (struct place){ source, 0 };
+	if (!node)
+		abandon();
+	return node;
+}
+
+static int whole_number(struct building *b, struct node *node, int low, int high, const char *what)
+{
+	mpq_t value;
+	mpq_init(value);
+	collect_constant(&b->collector, node, value);
+	if (mpz_cmp_ui(mpq_denref(value), 1) != 0 || mpq_cmp_si(value, low, 1) < 0 || mpq_cmp_si(value, high, 1) > 0)
+		error(node->start, NULL, "%s is a whole number from %d to %d, found %s", what, low, high,
+		      readable_text(value));
+	int number = (int)mpz_get_si(mpq_numref(value));
+	mpq_clear(value);
+	return number;
+}
+
+/* 8, 12, 16, 18 for 3, 6, 9, 12 digits: best within a third on smooth models, so much so that nobody needs to choose */
+static int order_for(mpq_srcptr tolerance)
+{
+	double digits = -log10(mpq_get_d(tolerance));
+	int order = (int)ceil(digits <= 9.001 ? 4 + 4 * (digits - 0.001) / 3 : 16 + 2 * (digits - 9.001) / 3);
+	return order < LEAST_ORDER ? LEAST_ORDER : order;
+}
+
+static void evaluate_tolerance(struct building *b, struct node *node, struct place at)
+{
+	struct truncation *truncation = &b->model->truncation;
+	const bool single = b->request->single;
+	mpq_t least;
+	mpq_init(least);
+	mpq_set_ui(least, 1, single ? 1000000 : 1000000000000000);
+	collect_constant(&b->collector, node, truncation->tolerance);
+	if (mpq_sgn(truncation->tolerance) <= 0 || mpq_cmp_ui(truncation->tolerance, 1, 1) >= 0)
+		error(at, "it is relative to the largest value of each state so far",
+		      "a tolerance is above 0 and below 1, found %s", readable_text(truncation->tolerance));
+	if (mpq_cmp(truncation->tolerance, least) < 0)
+		error(at, NULL, "a tolerance below %s is below the rounding of %s", single ? "1e-6" : "1e-15",
+		      target_name());
+	mpq_clear(least);
+}
+
+/* The order of a series, given or from its tolerance; the most steps within one h */
+static void evaluate_truncation(void *context)
+{
+	enum { SUBSTEPS = 1000, MOST_SUBSTEPS = 1000000000 };
+	struct building *b = context;
+	struct model *model = b->model;
+	struct truncation *truncation = &model->truncation;
+	struct place at = b->spec->tolerance ? b->spec->tolerance->start : model->asked.scheme_at;
+	struct node *tolerance = asked_or_written(b, b->request->tolerance, b->spec->tolerance, &at);
+	struct node *order = model->asked.scheme_order, *substeps = b->spec->substeps;
+	const struct scheme_row *row = scheme_row(model->scheme);
+	mpq_init(truncation->tolerance);
+	if (order && !row->expands)
+		error(order->start, format("that of scheme taylor is given: scheme taylor %s", text_between(order->start,
+		      order->end)), "the order of scheme %s is its own", row->name);
+	if (tolerance)
+		evaluate_tolerance(b, tolerance, at);
+	truncation->substeps = substeps ? whole_number(b, substeps, 1, MOST_SUBSTEPS, "the most substeps") : SUBSTEPS;
+	if (!row->expands)
+		return;
+	truncation->adaptive = !order;
+	if (order)
+		truncation->order = whole_number(b, order, LEAST_ORDER, MOST_ORDER, "an order");
+	if (!order && !tolerance)
+		mpq_set_ui(truncation->tolerance, 1, b->request->single ? 100000 : 1000000000);
+	if (!order)
+		truncation->order = order_for(truncation->tolerance);
+}
+
 static void evaluate_step(void *context)
 {
 	struct building *b = context;
-	struct node *node = b->spec->step;
 	struct place at = b->spec->step_at;
-	if (b->request->step) {
-		struct source *source = source_argument(b->request->step);
-		node = parse_argument(b->spec, source, 0);
-		at = (struct place){ source, 0 };
-		if (!node)
-			abandon();
-	}
+	struct node *node = asked_or_written(b, b->request->step, b->spec->step, &at);
 	b->model->asked.step_at = b->model->asked.end_at = at;
 	collect_constant(&b->collector, node, b->model->h);
 	if (mpq_sgn(b->model->h) <= 0)
@@ -376,6 +456,8 @@ static void collect_model(struct building *b)
 	if (all)
 		evaluate_params(b);
 	statement_guard(choose_scheme, b);
+	if (all)
+		statement_guard(evaluate_truncation, b);
 	collect_intervals(b);
 	if (all)
 		evaluate_lets(b);

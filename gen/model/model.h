@@ -75,7 +75,7 @@ struct smoothness {                 /* of what is left over, else of the equatio
 	bool timed;                 /* it lies at a time */
 };
 struct request {                    /* what the user asks for on the command line; of most, a spec may say it too */
-	const char *step, *scheme, *prefix;
+	const char *step, *scheme, *prefix, *tolerance;
 	bool reduce;
 	bool loads_left;            /* known loads are left to the scheme */
 	bool compensated;           /* two-word arithmetic */
@@ -90,6 +90,7 @@ struct request {                    /* what the user asks for on the command lin
 	const char **definition;    /* NAME=EXPR */
 	/* Where it is asked for, command line or spec: found when the model is built */
 	struct place scheme_at;     /* source NULL: it is not */
+	struct node *scheme_order;  /* of a series; NULL: not given */
 	struct place step_at, form_at, compensated_at;
 	struct place end_at;        /* the end of --solution, else as step_at */
 	/* What builders ask for to build a model a second time; then nothing is told again */
@@ -97,6 +98,12 @@ struct request {                    /* what the user asks for on the command lin
 	const mpq_t *tunable;
 	                            /* no step, no initial values */
 	const struct relative *relative; /* the coordinates to build the model over; NULL: the written ones */
+};
+struct truncation {                 /* of a Taylor series */
+	int order;                  /* of its last term in h */
+	bool adaptive;              /* steps as long as the tolerance lets them be; else each is h */
+	mpq_t tolerance;            /* of the last terms, relative to the largest value of each state; 0: not looked at */
+	int substeps;               /* most within one h */
 };
 struct reduction {                  /* what --reduce found */
 	int *place;                 /* of a reduced model, per written state: the state that is it, or -1 */
@@ -120,6 +127,7 @@ struct model {
 	mpq_t *initial;             /* one per state */
 	mpq_t h;
 	enum scheme scheme;
+	struct truncation truncation; /* of a scheme that expands; else all 0 */
 	bool loads_left;            /* known loads are left to the scheme */
 	int operators;              /* 0: exact, or nothing is left over */
 	struct operator *operator;

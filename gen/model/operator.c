@@ -350,7 +350,7 @@ static bool add_operator(struct building *b, const struct fixed *bank, int which
 	operator->C = model->system.C;
 	operator->K = model->system.K;
 	/* what holds coupling terms has an operator of its own */
-	operator->text = scheme_row(model->scheme)->holds_coupling ? "" : point_text(b->spec, which);
+	operator->text = chooses_operator(model->scheme) ? point_text(b->spec, which) : "";
 	mpq_init(operator->at);
 	if (!*operator->text)
 		return true;
@@ -373,7 +373,7 @@ static bool add_operator(struct building *b, const struct fixed *bank, int which
 void build_operators(struct building *b)
 {
 	struct model *model = b->model;
-	const struct fixed *bank = scheme_row(model->scheme)->holds_coupling ? NULL : banked(b->spec);
+	const struct fixed *bank = chooses_operator(model->scheme) ? banked(b->spec) : NULL;
 	if (!b->whole || !statement_guard(check_bank, b))
 		return;
 	bool good = true;

@@ -769,7 +769,8 @@ void judge_smoothness(struct building *b)
 
 int order_of_scheme(const struct model *model)
 {
-	return scheme_row(model->scheme)->order;
+	const struct scheme_row *row = scheme_row(model->scheme);
+	return row->expands ? model->truncation.order : row->order;
 }
 
 int order_that_holds(const struct model *model)

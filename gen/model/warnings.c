@@ -468,11 +468,12 @@ static void check_need(const struct building *b, bool left)
 {
 	const struct model *model = b->model;
 	const struct scheme_row *scheme = scheme_row(model->scheme);
-	if (b->spec->has_operator && (!scheme->leaves || !left))
+	if (b->spec->has_operator && (!scheme->leaves || !left || scheme->expands))
 		say_warning(b->spec->operator_at, NULL, "the operator has no effect: %s",
 			    scheme->holds_coupling
 				    ? format("that of scheme %s is each coordinate's own terms", scheme->name)
-				    : "nothing is left over");
+			    : scheme->expands ? format("scheme %s expands the whole right side", scheme->name)
+					      : "nothing is left over");
 	if (left && !model->loads_left)
 		return;
 	if (scheme->holds_coupling && !model->loads_left)
@@ -497,7 +498,7 @@ void warn(struct building *b)
 	check_need(b, left);
 	check_smoothness(b);
 	const struct scheme_row *scheme = scheme_row(model->scheme);
-	if (!left || !scheme->leaves || is_linear(b) || !silent_guard(differentiate, &j))
+	if (!left || !scheme->leaves || scheme->expands || is_linear(b) || !silent_guard(differentiate, &j))
 		return;
 	mpq_init(j.t);
 	if (scheme->predicts)

@@ -822,7 +822,7 @@ static void read_step(struct parser *p)
 	expect_end(p);
 }
 
-/* scheme: scheme NAME */
+/* scheme: scheme NAME [ order ] */
 static void read_scheme(struct parser *p)
 {
 	struct place at = last_token(p, 6);
@@ -832,9 +832,24 @@ static void read_scheme(struct parser *p)
 		unexpected(p, "the name of a scheme");
 	struct token name = take(p);
 	p->spec->scheme_at = name.at;
+	if (p->token.kind != TOKEN_END)
+		p->spec->scheme_order = read_expression(p);
 	expect_end(p);
 	p->spec->scheme = name.name;
 }
+
+/* tolerance: tolerance expression; substeps: substeps expression */
+static void read_bound(struct parser *p, const char *word, struct node **bound)
+{
+	struct place at = last_token(p, strlen(word));
+	if (*bound)
+		error(at, NULL, "the %s given already", strcmp(word, "substeps") == 0 ? "substeps are" : "tolerance is");
+	*bound = read_expression(p);
+	expect_end(p);
+}
+
+static void read_tolerance(struct parser *p) { read_bound(p, "tolerance", &p->spec->tolerance); }
+static void read_substeps(struct parser *p) { read_bound(p, "substeps", &p->spec->substeps); }
 
 static void expect_word(struct parser *p, const char *word)
 {
@@ -987,14 +1002,24 @@ static const struct statement {
 	{ "model", read_model }, { "param", read_param }, { "coord", read_coord }, { "init", read_init },
 	{ "let", read_let }, { "output", read_output }, { "step", read_step }, { "scheme", read_scheme },
 	{ "input", read_input }, { "matrix", read_matrix_statement }, { "mass", read_mass }, { "spring", read_spring },
-	{ "damper", read_damper }, { "force", read_force }, { "operator", read_operator }, { "tunable", read_tunable }
+	{ "damper", read_damper }, { "force", read_force }, { "operator", read_operator }, { "tunable", read_tunable },
+	{ "tolerance", read_tolerance }, { "substeps", read_substeps }
 };
+
+/* tolerance and substeps may be names of a spec's own: in an equation an operator or a prime follows. */
+static bool opens_statement(const struct statement *statement, struct token token)
+{
+	const char *next = token.at.source->text + token.at.offset + token.length;
+	next += strspn(next, " \t");
+	return is_reserved(statement->word) || strspn(next, WORD) > 0 || *next == '.' || *next == '(' || !*next ||
+	       *next == '\n' || *next == '#';
+}
 
 static const struct statement *statement_of(struct token token)
 {
 	for (size_t i = 0; token.kind == TOKEN_NAME && token.primes == 0 && i < sizeof statements / sizeof *statements;
 	     i++)
-		if (strcmp(token.name, statements[i].word) == 0)
+		if (strcmp(token.name, statements[i].word) == 0 && opens_statement(&statements[i], token))
 			return &statements[i];
 	return NULL;
 }

@@ -140,6 +140,9 @@ struct spec {                       /* what the text says, names resolved, nothi
 	struct place step_at;
 	const char *scheme;
 	struct place scheme_at;
+	/* of a scheme in powers of h: its order, as an expression; the error that a step may make; the most steps
+	 * within one h. NULL: not given */
+	struct node *scheme_order, *tolerance, *substeps;
 	bool has_operator;
 	struct place operator_at;
 	int fixeds;
@@ -193,11 +196,13 @@ struct scheme_row {
 	bool holds_coupling;        /* over the step: A is each coordinate's own terms, of linear models too */
 	bool holds_leftover;        /* over the step: there is a value of its order at any time between steps */
 	bool predicts;              /* the nodes by an explicit method, which bears no stiffness */
+	bool expands;               /* the whole right side, as a Taylor series in time */
 	/* Stability: where the operator's squared frequencies are below the model's by d, the state grows at h d over
 	 * this; 0: its phase drifts, by the order. */
 	int growth_divisor;
 };
 const struct scheme_row *scheme_row(enum scheme scheme);
+bool chooses_operator(enum scheme scheme);                  /* `operator at` has a meaning */
 const char *scheme_name(enum scheme scheme);
 bool scheme_of(const char *name, enum scheme *scheme);      /* false: there is none of this name */
 const char *nearest_scheme(const char *name);               /* or NULL */
@@ -205,7 +210,8 @@ enum scheme default_scheme(void);                           /* with a leftover *
 const char *all_schemes(const char *separator);             /* their names */
 const char *leaving_schemes(const char *last);              /* of those with a quadrature: a, b<last>c */
 const char *holding_schemes(void);                          /* of those that hold coupling terms */
-const char *scheme_note(enum scheme scheme);                /* Scheme etd1, of first order in h: ... */
+/* Scheme etd1, of first order in h: ... `order`: of a scheme that expands */
+const char *scheme_note(enum scheme scheme, int order);
 const char *step_form_name(enum step_form form);
 bool step_form_of(const char *name, enum step_form *form);  /* false: there is none of this name */
 

@@ -15,6 +15,11 @@ const struct scheme_row *scheme_row(enum scheme scheme)
 	return &rows[scheme];
 }
 
+bool chooses_operator(enum scheme scheme)
+{
+	return !rows[scheme].holds_coupling && !rows[scheme].expands;
+}
+
 const char *scheme_name(enum scheme scheme)
 {
 	return rows[scheme].name;
@@ -83,13 +88,18 @@ const char *holding_schemes(void)
 	return listed(holds, ", ", " and ");
 }
 
-const char *scheme_note(enum scheme scheme)
+const char *scheme_note(enum scheme scheme, int order)
 {
 	enum { WORDS = 5 };
 	static const char *const ordinal[WORDS] = { "zeroth", "first", "second", "third", "fourth" };
 	const struct scheme_row *row = &rows[scheme];
+	order = row->expands ? order : row->order;
 	return format("Scheme %s, of %s order in h: %s.", row->name,
-		      row->order < WORDS ? ordinal[row->order] : format("%dth", row->order), row->method);
+		      order < WORDS ? ordinal[order] : format("%d%s", order, order > 20 && order % 10 == 1   ? "st"
+									     : order > 20 && order % 10 == 2 ? "nd"
+									     : order > 20 && order % 10 == 3 ? "rd"
+													     : "th"),
+		      row->method);
 }
 
 /* ---- forms ---- */

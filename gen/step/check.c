@@ -260,6 +260,30 @@ static void check_regions(struct check *c)
 	}
 }
 
+/* A sum reads what stands before it, but for the values of an integral, which come one later. */
+static void check_expansion(struct check *c)
+{
+	const struct expansion *x = c->step->expansion;
+	c->where = "the series";
+	need(c, x && x->count >= c->step->branch->system.states, "there is none of each state");
+	for (int i = 0; i < x->count; i++) {
+		const struct sequence *s = &x->sequence[i];
+		c->where = format("sequence %d", i);
+		need(c, (s->state == NONE) == (i >= c->step->branch->system.states), "it stands among the states, or they do not");
+		need(c, s->a == NONE || among(s->a, x->count), "what it is of is out of range");
+		need(c, s->b == NONE || among(s->b, x->count), "its second operand is out of range");
+		for (int k = 0; k < s->terms; k++) {
+			const struct sequence_term *t = &s->term[k];
+			bool product = t->kind == TERM_PRODUCT, reads = product || t->kind == TERM_SEQUENCE;
+			bool before = s->kind == SEQUENCE_INTEGRAL;
+			need(c, t->factor || among(t->slot, x->slots), "a term without its factors");
+			need(c, !reads || (among(t->a, x->count) && (!product || among(t->b, x->count))),
+			     "a term of a sequence that is out of range");
+			need(c, !reads || before || (t->a < i && (!product || t->b < i)), "it reads what comes after it");
+		}
+	}
+}
+
 void program_check(const struct step *step)
 {
 	struct check c = { .step = step, .program = step->program, .where = "program" };
@@ -268,6 +292,8 @@ void program_check(const struct step *step)
 	need(&c, step->program->reads && step->program->uses, "it does not say what it reads");
 	if (step->model->switching)
 		check_regions(&c);
+	else if (step->kind == KIND_EXPANDED)
+		check_expansion(&c);
 	else if (has_leftover(step))
 		check_actions(&c);
 	else

@@ -197,3 +197,65 @@ void count_program(const struct step *step, struct program *program)
 	program->additions += count * left.additions;
 	program->calls = count * left.calls;
 }
+
+/* ---- the series of an expanded step ---- */
+
+static void count_sum(const struct expansion *x, const struct sequence *s, int k, struct program *p)
+{
+	for (int i = 0; i < s->terms; i++) {
+		const struct sequence_term *t = &s->term[i];
+		if (t->factor && t->factor[k] == 0)
+			continue;
+		int pairs = t->kind == TERM_PRODUCT && k > 0 ? (t->a == t->b ? k / 2 + 1 : k + 1) : 1;
+		if ((t->kind == TERM_SEQUENCE && k > x->sequence[t->a].degree))
+			continue;
+		p->multiplications += pairs + 1;
+		p->additions += pairs;
+	}
+}
+
+static void count_sequence(const struct expansion *x, const struct sequence *s, int k, struct program *p)
+{
+	switch (s->kind) {
+	case SEQUENCE_SUM:
+		count_sum(x, s, k, p);
+		break;
+	case SEQUENCE_INTEGRAL:
+		if (k > 0)
+			count_sum(x, s, k - 1, p);
+		else
+			p->calls += s->state == NONE;
+		break;
+	case SEQUENCE_ROOT:
+		p->multiplications += k / 2 + 2;
+		p->additions += k / 2 + 1;
+		p->calls += k == 0;
+		break;
+	case SEQUENCE_QUOTIENT:
+	case SEQUENCE_POWER:
+		p->multiplications += (s->kind == SEQUENCE_POWER ? 2 : 1) * k + 1;
+		p->additions += k;
+		p->calls += s->kind == SEQUENCE_POWER && k == 0;
+		break;
+	case SEQUENCE_RATE:
+		p->multiplications++;
+		break;
+	case SEQUENCE_CHOICE:
+		break;
+	}
+}
+
+void count_expansion(const struct step *step, struct program *program)
+{
+	enum { TWO_SUM = 8 };           /* of pl_accumulate, with what it is given 0 */
+	const struct expansion *x = step->expansion;
+	const struct linear *system = &step->branch->system;
+	for (int i = 0; i < x->count; i++)
+		for (int k = 0; k <= x->sequence[i].top && k <= x->sequence[i].degree; k++)
+			count_sequence(x, &x->sequence[i], k, program);
+	program->additions += system->states * (x->order + TWO_SUM);
+	for (int l = 0, column = 0; l < system->loads; l++)
+		for (int k = 0; k < system->load[l].columns; k++, column++)
+			program->uses[column] = x->load[l];
+	count_loads(program, step);
+}

@@ -72,7 +72,7 @@ static const char *objection(const struct step *step)
 {
 	if (step->kind == KIND_REGIONS)
 		return "where a piecewise-linear model crosses a breakpoint is searched for with held inputs and ramps";
-	if (step->kind == KIND_LEFTOVER)
+	if (has_leftover(step))
 		return "what is left over reads held inputs and ramps";
 	if (step->model->asked.single)
 		return "powers of the step leave the range of float";

@@ -24,7 +24,7 @@ static const char *objection(const struct step *step, const struct output *outpu
 		return "it is not linear";
 	if (step->kind == KIND_REGIONS)
 		return "the model is piecewise linear";
-	if (step->kind == KIND_LEFTOVER)
+	if (has_leftover(step))
 		return "the model has a leftover";
 	if (step->branch->system.segments > 1)
 		return "loads change their formula inside a step";

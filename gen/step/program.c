@@ -8,7 +8,9 @@ enum step_kind kind_of_step(const struct model *model)
 		return KIND_REGIONS;
 	if (model->tuning)
 		return KIND_TUNED;
-	return model->channels > 0 ? KIND_LEFTOVER : KIND_LINEAR;
+	if (model->channels == 0)
+		return KIND_LINEAR;
+	return scheme_row(model->scheme)->expands ? KIND_EXPANDED : KIND_LEFTOVER;
 }
 
 bool is_anchored(const struct step *step, int load)
@@ -35,14 +37,15 @@ bool is_forced(const struct step *step, int column)
 
 bool has_leftover(const struct step *step)
 {
-	return step->kind == KIND_LEFTOVER;
+	return step->kind == KIND_LEFTOVER || step->kind == KIND_EXPANDED;
 }
 
 void need_closed_form(const struct step *step)
 {
 	static const char *const of_kind[KINDS] = {
 		[KIND_REGIONS] = "where it crosses a breakpoint is found by a search",
-		[KIND_LEFTOVER] = "what is left over has no closed form"
+		[KIND_LEFTOVER] = "what is left over has no closed form",
+		[KIND_EXPANDED] = "what is left over has no closed form"
 	};
 	const char *why = of_kind[step->kind];
 	if (!why && step->model->scheme != SCHEME_EXACT)

@@ -272,11 +272,36 @@ static void build_leftover_step(struct step *step)
 	series_plan(step);
 }
 
+/* e^{A h} is for readers of the table alone. */
+static void build_expanded_step(struct step *step)
+{
+	struct recipe *recipe = NEW(struct recipe);
+	int states = step->branch->system.states;
+	recipe->step = step;
+	need_direct(step);
+	step->layout = layout_of(&step->branch->system, false);
+	add_table(recipe, "full", 1, 1, true);
+	make_tables(step, recipe->tables, recipe->table);
+	step->carry = ARRAY(int, (size_t)states);
+	step->program = NEW(struct program);
+	step->program->compensated = true;
+	step->program->reads = ARRAY(bool, (size_t)states);
+	step->program->uses = ARRAY(bool, (size_t)step->branch->whole->columns);
+	for (int i = 0; i < states; i++) {
+		step->carry[i] = -1;
+		step->program->reads[i] = true;
+	}
+	step->expansion = expansion_of(step);
+	step->series.emitted = true;
+	count_expansion(step, step->program);
+}
+
 static void build(void *context)
 {
 	static void (*const build_kind[KINDS])(struct step *) = {
 		[KIND_LINEAR] = build_linear_step, [KIND_TUNED] = build_tuned_step,
-		[KIND_REGIONS] = build_regions_step, [KIND_LEFTOVER] = build_leftover_step
+		[KIND_REGIONS] = build_regions_step, [KIND_LEFTOVER] = build_leftover_step,
+		[KIND_EXPANDED] = build_expanded_step
 	};
 	struct step *step = context;
 	const struct model *model = step->model;

@@ -242,6 +242,7 @@ enum step_kind {                    /* what a step is made of */
 	KIND_TUNED,                 /* the same, its factors from the params that the instance has */
 	KIND_REGIONS,               /* the series of a region, and a search for crossings */
 	KIND_LEFTOVER,              /* a list of actions on stages and leftovers */
+	KIND_EXPANDED,              /* the Taylor series of the solution */
 	KINDS
 };
 /* Phases and growths of loads e^{at} cos(wt + p) in fixed point: 128 bits; for the target float 64, in `low` */
@@ -291,6 +292,7 @@ struct step {                       /* everything that is emitted for one model 
 	bool swift;
 	const char *searches;       /* why it is not */
 	int swift_degree;
+	struct expansion *expansion; /* of an expanded step; else NULL */
 	struct load_phase *phase;   /* per load */
 	struct rows *rows;          /* NAME_run in blocks of rows; NULL: step by step */
 	const char *no_rows;        /* why it is so, where a reader would ask */
@@ -299,7 +301,7 @@ enum step_kind kind_of_step(const struct model *model);
 bool is_anchored(const struct step *step, int load);        /* its functions are evaluated at anchors only */
 int load_of_column(const struct linear *system, int column, int *first); /* *first: the first column of that load */
 bool is_forced(const struct step *step, int column);         /* is this load state's load left out of the step? */
-bool has_leftover(const struct step *step);                 /* it is of that kind */
+bool has_leftover(const struct step *step);                 /* it is of that kind, or expanded */
 void need_closed_form(const struct step *step);              /* leaves the statement where there is none */
 
 /* ---- check.c: between those who write programs and those who read them ---- */
@@ -426,6 +428,7 @@ struct peaks peaks_of(const struct step *step);
 /* ---- cost.c: what a step costs ---- */
 
 void count_program(const struct step *step, struct program *program); /* of a step with a leftover, not its loads */
+void count_expansion(const struct step *step, struct program *program); /* of one series, and its sum */
 /* what the load states of the columns in use cost; where there are anchors, at each of them */
 void count_loads(struct program *program, const struct step *step);
 /* ... and to turn them into those of now */
@@ -589,6 +592,56 @@ const char *hold_name(int hold);                             /* first, third, ..
 bool further_samples(const struct linear *system);           /* an input goes through more than two */
 int samples_ahead(int hold);                                 /* that an input has had when the first step comes */
 void check_holds(const struct step *step);                   /* leaves the statement where one cannot be */
+
+/* ---- sequences.c: the right side as sequences of Taylor coefficients, each made from those before it ---- */
+
+/* Of a quantity a(t) the k-th number is D^k a^(k)/k!, D = h. What stands in a sum at k is factor[k] times: the constant
+ * 1, a power of t, an entry of a load's states, an input's value at the start or its slope, the k-th number of another
+ * sequence, or sum over j = 0..k of a_j b_{k-j} (Moore; Griewank and Walther 2008, chapter 13). */
+enum term_kind { TERM_TIME, TERM_LOAD, TERM_INPUT, TERM_SLOPE, TERM_SEQUENCE, TERM_PRODUCT };
+struct sequence_term {
+	enum term_kind kind;
+	int a, b;                   /* which; the power of t; the load's column; the two sequences */
+	double *factor;             /* per k */
+	/* of a load that changes its formula: its place in the table of factors; -1: factor[] holds in all segments */
+	int slot;
+};
+enum sequence_kind {
+	SEQUENCE_SUM,               /* c_k = sum at k */
+	SEQUENCE_INTEGRAL,          /* c_0 = function of a_0, or a state; c_{k+1} = sum at k: 1/(k+1) is in the factors */
+	SEQUENCE_QUOTIENT,          /* c = a/b; a NONE: 1/b */
+	SEQUENCE_ROOT,              /* c^2 = a */
+	SEQUENCE_POWER,             /* c = a^exponent, which is constant */
+	SEQUENCE_RATE,              /* c_k = (k+1) a_{k+1} */
+	SEQUENCE_CHOICE             /* a where the condition holds, else b: it depends on t alone */
+};
+struct sequence {
+	enum sequence_kind kind;
+	int state;                  /* of an integral that is one; NONE */
+	enum function function;     /* of another: its value from a (and b) */
+	int a, b;
+	double exponent;
+	const struct form *left, *right; /* what the condition compares, linear in t */
+	enum comparison comparison;
+	int terms;
+	struct sequence_term *term;
+	int degree;                 /* all beyond are 0; order + 1: none need be */
+	int top;                    /* the last that something reads; -1: none */
+	bool late;                  /* the k-th stands where others have their (k+1)-th */
+};
+struct expansion {
+	int order;                  /* of the series in h */
+	int count;                  /* sequences; the first are the states */
+	struct sequence *sequence;
+	int slots;                  /* factors that change from segment to segment: */
+	double *changing;           /* [segment][k][slot] */
+	int *slot_load;             /* per slot: column of the loads */
+	bool *load;                 /* per load: read */
+	bool *input, *slope;        /* per input: read */
+	bool time;                  /* t is read */
+};
+/* Leaves the statement at what has no series */
+struct expansion *expansion_of(const struct step *step);
 
 /* ---- batch.c: many instances in one call ---- */
 
