@@ -381,6 +381,11 @@ static const char *input_parameters(const struct emitter *e, bool typed)
 		      !slope && !(input && e->ramps) ? "" : typed ? "const double slope[], " : "slope, ");
 }
 
+static const char *driven_parameter(const struct emitter *e)
+{
+	return e->system->inputs ? format("const double u[%s_INPUTS], ", e->upper) : "";
+}
+
 static void emit_input_samples(const struct emitter *e)
 {
 	const struct expansion *x = expansion(e);
@@ -616,7 +621,7 @@ static void emit_between(const struct emitter *e)
 	       "static int $n_between(const $n *s, %sdouble end, double y[$N_STATES], double rest[$N_STATES])\n"
 	       "{\n"
 	       "    double c[%d][$N_STATES], gain[$N_STATES], done = 0.0;\n"
-	       "    int i%s%s;\n", e->system->inputs ? "const double u[$N_INPUTS], " : "", order + 1,
+	       "    int i%s%s;\n", driven_parameter(e), order + 1,
 	    adaptive ? ", steps = 0" : "", changes(e) ? ", segment = s->segment" : "");
 	emit_input_samples(e);
 	say(e, "    while (done < end) {\n"
@@ -813,7 +818,7 @@ void emit_expansion_at(const struct emitter *e)
 	say(e, "\nvoid $n_at(const $n *s, %sdouble tau, double y[$N_STATES])\n"
 	       "{\n"
 	       "    double %s%s[$N_STATES];\n"
-	       "    int i;\n", e->system->inputs ? "const double u[$N_INPUTS], " : "", relative ? "x[$N_STATES], " : "",
+	       "    int i;\n", driven_parameter(e), relative ? "x[$N_STATES], " : "",
 	    offset ? "rest" : "gain");
 	if (!offset) {
 		say(e, "    double c[%d][$N_STATES];\n", expansion(e)->order + 1);

@@ -781,6 +781,8 @@ int order_that_holds(const struct model *model)
 
 bool loses_order(const struct model *model)
 {
+	if (scheme_row(model->scheme)->expands && model->smooth.timed)
+		return false;                   /* a series ends where formulas change in time */
 	return model->channels > 0 && model->smooth.tenths > 0 && model->smooth.tenths < 10 * order_of_scheme(model);
 }
 
