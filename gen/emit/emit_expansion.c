@@ -818,7 +818,7 @@ void emit_expansion_at(const struct emitter *e)
 	say(e, "\nvoid $n_at(const $n *s, %sdouble tau, double y[$N_STATES])\n"
 	       "{\n"
 	       "    double %s%s[$N_STATES];\n"
-	       "    int i;\n", driven_parameter(e), relative ? "x[$N_STATES], " : "",
+	       "    int i;\n", driven_parameter(e), relative ? format("x[%s_STATES], ", e->upper) : "",
 	    offset ? "rest" : "gain");
 	if (!offset) {
 		say(e, "    double c[%d][$N_STATES];\n", expansion(e)->order + 1);

@@ -445,6 +445,8 @@ static void check_smoothness(const struct building *b)
 	if (!loses_order(model))
 		return;
 	const struct smoothness *smooth = &model->smooth;
+	if (scheme_row(model->scheme)->expands && smooth->kind != SMOOTH_ALL)
+		return;                         /* it is refused */
 	const struct node *other = model->obstacle;
 	bool apart =
 		smooth->piecewise && !smooth->timed && other &&
@@ -463,6 +465,20 @@ static void check_smoothness(const struct building *b)
 }
 
 /* ---- the whole ---- */
+
+/* What is asked of a series, and the scheme is none */
+static void check_truncation(const struct building *b)
+{
+	const struct model *model = b->model;
+	const char *why = scheme_row(model->scheme)->expands
+				  ? "each step is h, whatever its error"
+				  : format("scheme %s does not look at its error", scheme_name(model->scheme));
+	bool expands = scheme_row(model->scheme)->expands;
+	if (b->spec->tolerance && !expands)
+		say_warning(b->spec->tolerance->start, NULL, "the tolerance has no effect: %s", why);
+	if (b->spec->substeps && !model->truncation.adaptive)
+		say_warning(b->spec->substeps->start, NULL, "the bound on substeps has no effect: %s", why);
+}
 
 static void check_need(const struct building *b, bool left)
 {
@@ -496,6 +512,7 @@ void warn(struct building *b)
 		say_note(model->obstacle->start, "scheme %s, not exact: '%s' %s", scheme_name(model->scheme),
 			 text_between(model->obstacle->start, model->obstacle->end), model->obstacle_text);
 	check_need(b, left);
+	check_truncation(b);
 	check_smoothness(b);
 	const struct scheme_row *scheme = scheme_row(model->scheme);
 	if (!left || !scheme->leaves || scheme->expands || is_linear(b) || !silent_guard(differentiate, &j))

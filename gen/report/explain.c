@@ -145,6 +145,8 @@ static void person_step(FILE *to, const struct step *step)
 	else if (model->tuning)
 		fprintf(to, "%s_at: e^{A tau} of the instance's own params, as %s_retune computes it.\n", model->name,
 			model->name);
+	else if (step->expansion)
+		fprintf(to, "%s_at: the series of the step, at a part of it.\n", model->name);
 	else if (step->series.emitted)
 		fprintf(to, "%s_at: Taylor series of degree %d on %d part%s of the time.\n", model->name,
 			step->series.degree, 1 << step->series.halvings, step->series.halvings ? "s" : "");
@@ -252,6 +254,8 @@ static void person_split(FILE *to, const struct step *step)
 	if (step->branches > 1)
 		fputs("A step uses the first operator whose value is not below the current one, else the last.\n", to);
 	fprintf(to, "Scheme %s is of order %d in h", scheme_name(model->scheme), order_of_scheme(model));
+	if (model->truncation.adaptive)
+		fprintf(to, ", its steps as long as a tolerance of %s lets them be", readable_text(model->truncation.tolerance));
 	if (loses_order(model))
 		fprintf(to, " where all is smooth; here of order %s at most: %s", order_text(model),
 			smoothness_text(model));
@@ -541,6 +545,10 @@ void explain_json(FILE *to, const struct step *step)
 		fprintf(to, "  \"growth_rate\": %.17g,\n", growth_rate(step));
 	static const char *const smooth[] = { "smooth", "kink", "jump" };
 	fprintf(to, "  \"order\": %d,\n  \"smooth\": \"%s\",\n", order_that_holds(model), smooth[model->smooth.kind]);
+	if (step->expansion && mpq_sgn(model->truncation.tolerance) != 0)
+		fprintf(to, "  \"tolerance\": %s,\n", shortest(mpq_get_d(model->truncation.tolerance)));
+	if (model->truncation.adaptive && step->expansion)
+		fprintf(to, "  \"substeps\": %d,\n", model->truncation.substeps);
 	if (step->model->switching)
 		json_regions(to, step);
 	if (has_leftover(step))

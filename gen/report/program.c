@@ -303,6 +303,72 @@ static void print_regions(FILE *to, const struct step *step)
 	}
 }
 
+/* ---- a series ---- */
+
+static const char *sequence_text(const struct step *step, int sequence)
+{
+	const struct sequence *s = &step->expansion->sequence[sequence];
+	return s->state != NONE ? state_text(step, s->state) : format("a%d", sequence - step->branch->system.states + 1);
+}
+
+static const char *term_text(const struct step *step, const struct sequence_term *t)
+{
+	const struct linear *system = &step->branch->system;
+	switch (t->kind) {
+	case TERM_TIME:     return t->a ? format("t^%d", t->a) : "1";
+	case TERM_LOAD:     return load_column_text(system, t->a);
+	case TERM_INPUT:    return system->input[t->a].name;
+	case TERM_SLOPE:    return format("%s'", system->input[t->a].name);
+	case TERM_SEQUENCE: return sequence_text(step, t->a);
+	default:            return format("%s %s", sequence_text(step, t->a), sequence_text(step, t->b));
+	}
+}
+
+/* The sum at k = 0; of an integral that is what its derivative has */
+static const char *sequence_sum(const struct step *step, const struct sequence *s)
+{
+	const char *text = "";
+	for (int i = 0; i < s->terms; i++) {
+		const struct sequence_term *t = &s->term[i];
+		const char *factor = t->factor ? shortest(t->factor[0]) : format("force[%d]", t->slot);
+		if (!t->factor || t->factor[0] != 0)
+			text = format("%s%s%s %s", text, *text ? " + " : "", factor, term_text(step, t));
+	}
+	return *text ? text : "0";
+}
+
+static const char *sequence_definition(const struct step *step, const struct sequence *s)
+{
+	const char *a = s->a == NONE ? "1" : sequence_text(step, s->a), *b = s->b == NONE ? "" : sequence_text(step, s->b);
+	switch (s->kind) {
+	case SEQUENCE_SUM:	return sequence_sum(step, s);
+	case SEQUENCE_QUOTIENT: return format("%s / %s", a, b);
+	case SEQUENCE_ROOT:	return format("sqrt(%s)", a);
+	case SEQUENCE_POWER:	return format("%s ^ %s", a, shortest(s->exponent));
+	case SEQUENCE_RATE:	return format("the derivative of %s", a);
+	case SEQUENCE_CHOICE:	return format("%s or %s, by t", a, b);
+	default:
+		if (s->state != NONE)
+			return format("integral of %s", sequence_sum(step, s));
+		return format("%s(%s%s%s), by the integral of %s", function_name(s->function), a, *b ? ", " : "", b,
+			      sequence_sum(step, s));
+	}
+}
+
+static void print_expansion(FILE *to, const struct step *step)
+{
+	const struct expansion *x = step->expansion;
+	const struct truncation *truncation = &step->model->truncation;
+	print_tables(to, step);
+	fprintf(to, "Series of order %d in time over h%s; of each sequence the coefficients that are read, factors of the "
+		"first:\n", x->order, truncation->adaptive ? ", as far as its last two terms allow" : "");
+	for (int i = 0; i < x->count; i++)
+		if (x->sequence[i].top >= 0)
+			fprintf(to, "    %s (0 to %d) = %s\n", sequence_text(step, i),
+				x->sequence[i].top < x->sequence[i].degree ? x->sequence[i].top : x->sequence[i].degree,
+				sequence_definition(step, &x->sequence[i]));
+}
+
 /* ---- the whole ---- */
 
 static void print_reads(FILE *to, const struct step *step)
@@ -333,6 +399,8 @@ void explain_program(FILE *to, const struct step *step)
 		scheme_name(step->model->scheme), step_form_text(step), readable_text(step->model->h));
 	if (step->model->switching)
 		print_regions(to, step);
+	else if (step->expansion)
+		print_expansion(to, step);
 	else if (has_leftover(step))
 		print_actions(to, step);
 	else

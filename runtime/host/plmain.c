@@ -302,7 +302,11 @@ static void check_status(const void *state)
                 status & PL_NOT_FINITE ? ";" : "");
     if (status & PL_NOT_FINITE)
         fprintf(stderr, " the step has left the finite numbers");
-    if (status & ~(PL_TOO_MANY_EVENTS | PL_NOT_FINITE))
+    if (status & PL_TOO_MANY_STEPS)
+        fprintf(stderr, " the step needed more substeps than its bound");
+    if (status & PL_INACCURATE)
+        fprintf(stderr, " the last terms of the step are above the tolerance");
+    if (status & ~(PL_TOO_MANY_EVENTS | PL_NOT_FINITE | PL_TOO_MANY_STEPS | PL_INACCURATE))
         fprintf(stderr, " status %d", status);
     fprintf(stderr, "\n");
     exit(1);
