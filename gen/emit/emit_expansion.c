@@ -695,7 +695,8 @@ static const char *u_argument(const struct emitter *e)
 static void emit_expansion_end(const struct emitter *e)
 {
 	emit_step_end(e);
-	say(e, "    s->status |= pl_not_finite(s->y, $N_STATES);\n");
+	if (!truncation(e)->adaptive)           /* else a series that is not finite serves no step */
+		say(e, "    s->status |= pl_not_finite(s->y, $N_STATES);\n");
 	if (changes(e))
 		say(e, "    while (s->segment < %d && $n_until(s, s->segment) <= 1e-18 * $N_H)\n"
 		       "        s->segment++;\n", e->system->segments - 1);
@@ -747,6 +748,8 @@ static void emit_adaptive_step(const struct emitter *e)
 	       "{\n"
 	       "    int i;\n", step_parameters(e));
 	emit_input_samples(e);
+	say(e, "    for (i = 0; i < $N_STATES; i++)\n");
+	emit_scales(e, "        ");
 	say(e, "    %s\n", expand_call(e, "0.0", spell(e, "$n_time(s) + 1e-9 * $N_H"), "s->segment", "s->y", "s->series"));
 	say(e, "    s->valid = $n_reach(s);\n");
 	if (inputs)
@@ -769,15 +772,16 @@ static void emit_adaptive_step(const struct emitter *e)
 	       "        double gain[$N_STATES];\n"
 	       "        s->served++;\n"
 	       "        $n_ahead((const double (*)[$N_STATES])s->series, (double)s->served, gain);\n"
-	       "        for (i = 0; i < $N_STATES; i++) {\n"
-	       "            s->rest[i] = s->base[i];\n"
-	       "            s->y[i] = pl_accumulate(s->series[0][i], gain[i], 0.0, &s->rest[i]);\n"
+	       "        if (s->served < s->valid) {\n"
+	       "            for (i = 0; i < $N_STATES; i++)\n"
+	       "                s->y[i] = s->series[0][i] + (gain[i] + s->base[i]);\n"
+	       "        } else {\n"
+	       "            for (i = 0; i < $N_STATES; i++)\n"
+	       "                s->y[i] = pl_accumulate(s->series[0][i], gain[i], 0.0, &s->rest[i]);\n"
 	       "        }\n"
 	       "    } else {\n"
 	       "        s->status |= $n_between(s, %s1.0, s->y, s->rest);\n"
-	       "    }\n"
-	       "    for (i = 0; i < $N_STATES; i++)\n", step_parameters(e), inputs ? ", u" : "", u_argument(e));
-	emit_scales(e, "        ");
+	       "    }\n", step_parameters(e), inputs ? ", u" : "", u_argument(e));
 	emit_expansion_end(e);
 }
 
