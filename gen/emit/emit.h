@@ -226,7 +226,19 @@ const struct kind *row_of_kind(enum step_kind kind);
 /* Does an output read an acceleration that something left over acts on? */
 bool reads_channels(const struct model *model);
 
-/* ---- emit_expansion.c: the Taylor series of the solution ---- */
+/* ---- emit_sequences.c: the coefficients of a series ---- */
+
+bool has_offset(const struct emitter *e);                         /* an expansion may start inside a step */
+const char *driven_parameter(const struct emitter *e);            /* const double u[N_INPUTS], or "" */
+void say_wrapped(const struct emitter *e, const char *text);      /* broken between summands */
+void emit_input_samples(const struct emitter *e);                 /* start, slope: what the series reads of ramps */
+void emit_force_table(const struct emitter *e);                   /* of loads that change their formula */
+void emit_expand_function(const struct emitter *e);               /* NAME_expand: all coefficients */
+/* tau, when, segment where it has them: the time after now; one in which conditions on t stand; that of the loads */
+const char *expand_call(const struct emitter *e, const char *tau, const char *when, const char *segment,
+			const char *y, const char *c);
+
+/* ---- emit_expansion.c: steps by the Taylor series of the solution ---- */
 
 bool expansion_places(const struct emitter *e);
 void emit_expansion_place(const struct emitter *e);

@@ -593,7 +593,7 @@ bool further_samples(const struct linear *system);           /* an input goes th
 int samples_ahead(int hold);                                 /* that an input has had when the first step comes */
 void check_holds(const struct step *step);                   /* leaves the statement where one cannot be */
 
-/* ---- sequences.c: the right side as sequences of Taylor coefficients, each made from those before it ---- */
+/* ---- sequences of Taylor coefficients, each made from those before it ---- */
 
 /* Of a quantity a(t) the k-th number is D^k a^(k)/k!, D = h. What stands in a sum at k is factor[k] times: the constant
  * 1, a power of t, an entry of a load's states, an input's value at the start or its slope, the k-th number of another
@@ -640,7 +640,47 @@ struct expansion {
 	bool *input, *slope;        /* per input: read */
 	bool time;                  /* t is read */
 };
-/* Leaves the statement at what has no series */
+/* ---- sums.c: what is added up exactly, and its factors as numbers ---- */
+
+struct key {                        /* of a sum, before its factors are numbers; kind, a and b as in sequence_term */
+	enum term_kind kind;
+	int a, b;
+	mpq_t factor;
+};
+struct sum {
+	int keys;
+	struct key *key;
+};
+struct sequencing {                 /* what the makers of sequences share */
+	const struct step *step;
+	const struct linear *system;
+	struct expansion *x;
+	struct layout layout;       /* states, loads, inputs, channels */
+	mpq_t **slopes;             /* per segment: x' = slopes x */
+	mpq_t pi;
+	int *uses;                  /* per atom */
+	int *atom;                  /* per atom: its sequence; NONE: not made yet */
+	int operands;               /* forms that are no single atom, each made once */
+	struct { const struct form *form; int sequence; } *operand;
+};
+void sum_add(struct sum *sum, enum term_kind kind, int a, int b, mpq_srcptr factor);
+/* Its terms into s, at k times scale[k] */
+void sum_numbers(struct sequencing *w, struct sequence *s, const struct sum *sum, const mpq_t *scale);
+mpq_t *plain_scale(const struct sequencing *w);             /* 1 */
+mpq_t *integral_scale(const struct sequencing *w, bool times_h);  /* 1/(k+1), or h/(k+1) */
+/* of a state, whose force changes from segment to segment: in a table */
+void add_changing_loads(struct sequencing *w, struct sequence *s, int state, const mpq_t *scale);
+int  column_of_load(const struct linear *system, int load); /* its first */
+
+/* ---- sequences.c: forms to sums, atoms to recurrences ---- */
+
+int  new_sequence(struct sequencing *w, struct sequence sequence);
+void count_uses(struct sequencing *w, const struct form *form);
+/* sum += scale form; leaves the statement at what has no series */
+void sum_add_form(struct sequencing *w, struct sum *sum, const struct form *form, mpq_srcptr scale);
+
+/* ---- expansion.c: the solution as a Taylor series ---- */
+
 struct expansion *expansion_of(const struct step *step);
 
 /* ---- batch.c: many instances in one call ---- */
