@@ -118,6 +118,10 @@ static void person_step(FILE *to, const struct step *step)
 			step->no_anchors ? step->no_anchors : "");
 	if (program->calls)
 		fprintf(to, ", %d calls of the model's own functions", program->calls);
+	if (peak_outputs(step->model) > 0)
+		fprintf(to, ".\nThe look for peaks takes %d and %d more, the outputs counted, where a bound shows that "
+			"none passes its peak",
+			program->peak_multiplications, program->peak_additions);
 	if (step->model->relative) {
 		fputs(".\n", to);
 		person_relative(to, step->model);
@@ -508,6 +512,31 @@ static void json_tuning(FILE *to, const struct tuning *t)
 	fputs("],\n", to);
 }
 
+/* A step; beside it what anchors, peaks, blocks of rows and forced parts take */
+static void json_cost(FILE *to, const struct step *step)
+{
+	const struct program *program = step->program;
+	fprintf(to, "  \"cost\": {\"multiplications\": %d, \"additions\": %d", program->multiplications,
+		program->additions);
+	if (program->calls)
+		fprintf(to, ", \"calls\": %d", program->calls);
+	if (program->wave_multiplications)
+		fprintf(to, ",\n    \"loads\": {\"every\": %d, \"multiplications\": %d, \"additions\": %d, "
+			"\"numbers\": %d}",
+			step->anchors ? step->anchors->steps : 1, program->wave_multiplications,
+			program->wave_additions, anchor_numbers(step));
+	if (peak_outputs(step->model) > 0)
+		fprintf(to, ",\n    \"peaks\": {\"multiplications\": %d, \"additions\": %d}",
+			program->peak_multiplications, program->peak_additions);
+	if (step->forced)
+		fprintf(to, ",\n    \"shown\": {\"multiplications\": %d, \"additions\": %d}",
+			step->forced->multiplications, step->forced->additions);
+	if (step->rows)
+		fprintf(to, ",\n    \"rows\": {\"count\": %d, \"numbers\": %d}", step->rows->count,
+			row_numbers(step));
+	fputs("}\n", to);
+}
+
 void explain_json(FILE *to, const struct step *step)
 {
 	const struct model *model = step->shown->model;
@@ -552,7 +581,6 @@ void explain_json(FILE *to, const struct step *step)
 	if (step->rounding.known)
 		fprintf(to, "  \"rounding\": {\"steps\": %d, \"relative\": %.17g, \"state\": \"%s\"},\n",
 			step->rounding.steps, step->rounding.relative, model->state_name[step->rounding.state]);
-	fprintf(to, "  \"cost\": {\"multiplications\": %d, \"additions\": %d", step->program->multiplications,
-		step->program->additions);
-	fprintf(to, step->program->calls ? ", \"calls\": %d}\n}\n" : "}\n}\n", step->program->calls);
+	json_cost(to, step);
+	fputs("}\n", to);
 }

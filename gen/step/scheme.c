@@ -295,6 +295,7 @@ static void build(void *context)
 	if (model->asked.batch)
 		need_batch(step);
 	check_peaks(step);
+	count_peaks(step);
 	program_check(step);
 	plan_phases(step);
 	plan_rows(step);

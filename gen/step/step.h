@@ -184,6 +184,7 @@ struct program {
 	/* for them: counted below too, or beside it what comes at each anchor */
 	int wave_multiplications, wave_additions;
 	int multiplications, additions, calls; /* calls: of the model's own functions */
+	int peak_multiplications, peak_additions; /* beside them: the outputs, and that none passes its peak */
 	bool loops;                 /* over tables: a large model */
 	/* of a list that loops: how its assignments are done, by blocks */
 	int groups;
@@ -430,6 +431,9 @@ void count_program(const struct step *step, struct program *program); /* of a st
 void count_loads(struct program *program, const struct step *step);
 /* ... and to turn them into those of now */
 void count_turned_loads(struct program *program, const struct step *step);
+void count_peaks(struct step *step);                        /* after its program and layout */
+int anchor_numbers(const struct step *step);                /* of the table for steps between anchors */
+int row_numbers(const struct step *step);                   /* of the tables of a block of rows */
 
 /* ---- forced.c: what rounding does to a step with loads ---- */
 
