@@ -103,8 +103,6 @@ void count_loads(struct program *program, const struct step *step)
 		const struct load *load = &system->load[l];
 		if (!is_used(program, load, column) && !is_anchored(step, l))
 			continue;
-		program->oscillators += oscillates(load->wave);
-		program->growths += mpq_sgn(load->wave->a) != 0;
 		*(is_anchored(step, l) ? &anchored : &program->multiplications) += products_of_load(load);
 		struct cost functions = functions_of_load(load, step->model->asked.single);
 		program->wave_multiplications += functions.multiplications;
@@ -205,6 +203,27 @@ void count_peaks(struct step *step)
 	}
 	step->program->peak_multiplications = cost.multiplications;
 	step->program->peak_additions = cost.additions;
+}
+
+/* ---- regions ---- */
+
+void count_regions(struct step *step, int multiplications, int additions)
+{
+	const struct linear *system = &step->branch->system;
+	struct program *program = step->program;
+	struct cost functions = { 0, 0, 0 };
+	for (int l = 0; l < system->loads; l++) {
+		if (step->layout.load[l] < 0)
+			continue;
+		struct cost c = functions_of_load(&system->load[l], step->model->asked.single);
+		functions.multiplications += c.multiplications;
+		functions.additions += c.additions;
+		multiplications += products_of_load(&system->load[l]);
+	}
+	program->wave_multiplications = functions.multiplications;
+	program->wave_additions = functions.additions;
+	program->multiplications = multiplications + functions.multiplications;
+	program->additions = additions + functions.additions;
 }
 
 /* ---- tables ---- */

@@ -180,8 +180,8 @@ static void plan_swift(struct step *step)
 	if (!step->swift)
 		return;
 	int expressions = step->model->switching->expressions;
-	step->program->multiplications = (step->layout.states + expressions) * step->layout.size;
-	step->program->additions = step->program->multiplications + 2 * expressions;
+	int products = (step->layout.states + expressions) * step->layout.size;
+	count_regions(step, products, products + 2 * expressions);
 	/* terms come in fours */
 	step->swift_degree = 3 | (any ? series_degree(step, 0, step->branches, 0) : step->series.degree);
 }
@@ -214,9 +214,8 @@ static void build_regions_step(struct step *step)
 	step->layout = layout_with(&first->system, 0, loads_of_regions(step));
 	find_carries(step);
 	step->program = linear_program(step);
-	step->program->multiplications =
-		step->layout.size * step->layout.size + 6 * step->model->switching->expressions * step->layout.size;
-	step->program->additions = step->program->multiplications;
+	int products = (step->layout.size + 6 * step->model->switching->expressions) * step->layout.size;
+	count_regions(step, products, products);
 	first->system.channels = channels;
 	step->series.degree = 3;
 	step->series.emitted = true;

@@ -180,8 +180,7 @@ struct program {
 	bool compensated;           /* factors in two words, and what rounding takes from a state is kept */
 	bool *reads;                /* per state: whether its old value is read */
 	bool *uses;                 /* per column of the loads */
-	int oscillators, growths;   /* cos/sin pairs and exponentials evaluated per step */
-	/* for them: counted below too, or beside it what comes at each anchor */
+	/* for cos/sin pairs and exponentials: counted below too, or beside it what comes at each anchor */
 	int wave_multiplications, wave_additions;
 	int multiplications, additions, calls; /* calls: of the model's own functions */
 	int peak_multiplications, peak_additions; /* beside them: the outputs, and that none passes its peak */
@@ -431,6 +430,8 @@ void count_program(const struct step *step, struct program *program); /* of a st
 void count_loads(struct program *program, const struct step *step);
 /* ... and to turn them into those of now */
 void count_turned_loads(struct program *program, const struct step *step);
+/* of a step of regions: its sums, and the load states of all of them */
+void count_regions(struct step *step, int multiplications, int additions);
 void count_peaks(struct step *step);                        /* after its program and layout */
 int anchor_numbers(const struct step *step);                /* of the table for steps between anchors */
 int row_numbers(const struct step *step);                   /* of the tables of a block of rows */

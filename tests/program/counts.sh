@@ -19,7 +19,7 @@ if ! command -v g++ >/dev/null 2>&1; then
 	skip 'operations counted' 'g++ is not installed'
 	tap_end
 fi
-for file in series power apply turns peak retune; do
+for file in series power apply turns peak retune until crossings; do
 	counted -c "$root/runtime/$file.c" -o "$file.o" >>log 2>&1
 done
 
@@ -36,7 +36,7 @@ taken() {
 	shift
 	"$plgen" "$@" >model.c 2>>log &&
 		counted -DMODEL="$name" "$limits/count.cpp" model.c -x none series.o power.o apply.o turns.o peak.o \
-			retune.o -o operations >>log 2>&1 && ./operations 1 1 -1 | tee -a log |
+			retune.o until.o crossings.o -o operations >>log 2>&1 && ./operations 1 1 -1 | tee -a log |
 		sed -n 's/^step \([0-9.]* [0-9.]*\) 0 0 .*/\1/p'
 }
 
@@ -75,6 +75,19 @@ for model in held tuned; do
 	taken m $model.spec >found
 	agree "$model: the same where peaks are looked for"
 done
+
+# Of regions what is stated is the most that a step takes which is clear of all breakpoints, functions of loads counted.
+cat >clear.spec <<'SPEC'
+model m
+coord x
+x'' + 0.1*x' + deadzone(x, -1, 1)/9 + x = 0.1 + 0.05*cos(0.8*t)
+step 0.1
+SPEC
+: >log
+{ stated clear.spec; taken m clear.spec; } | tr '\n' ' ' >counts
+cat counts >>log
+awk '{ exit NF != 4 || $3 > $1 || $4 > $2 || $3 < $1 - 12 || $4 < $2 - 14 }' counts
+result $? 'regions: a step that is clear takes at most what is stated, and little less'
 
 # The functions of a load are evaluated for the step, for the look, and for the outputs, so what is not counted of them
 # is missing three times; in the model without peaks once.
