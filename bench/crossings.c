@@ -3,12 +3,12 @@
  * one, and of the plain product Phi x; in short samples that take turns so that all meet the same machine; prints
  * medians and ratios. */
 #include "plrt.h"
+#include "timing.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 enum { SAMPLES = 301, REPEATS = 100, CASES = 5, N = 9, S = 3, R = 8, DEGREE = 30 };
 
@@ -111,13 +111,6 @@ static void fill(bench *b, int dof, double h)
 	}
 }
 
-static double nanoseconds(void)
-{
-	struct timespec t;
-	clock_gettime(CLOCK_MONOTONIC, &t);
-	return 1e9 * (double)t.tv_sec + (double)t.tv_nsec;
-}
-
 /* One step from x, again and again; each waits for the one before it. */
 static double sample(bench *b, const double *from, int plain, int *crossings)
 {
@@ -138,12 +131,6 @@ static double sample(bench *b, const double *from, int plain, int *crossings)
 	}
 	*crossings = plain ? 0 : c.crossings;
 	return (nanoseconds() - begin) / REPEATS;
-}
-
-static int ascending(const void *a, const void *b)
-{
-	double x = *(const double *)a, y = *(const double *)b;
-	return (x > y) - (x < y);
 }
 
 static void measure(int dof, double h)
@@ -170,9 +157,8 @@ static void measure(int dof, double h)
 	printf("%d masses and stops, size %d, h = %g, degree %d, %d halvings\n", dof, b.m.size, h, b.m.degree,
 	       b.halvings[0]);
 	for (int i = 0; i < CASES; i++) {
-		qsort(time[i], SAMPLES, sizeof **time, ascending);
-		printf("    %-30s %8.1f ns   %6.2f   %d crossings\n", what[i], time[i][SAMPLES / 2],
-		       time[i][SAMPLES / 2] / time[0][SAMPLES / 2], crossings[i]);
+		double one = median(time[i]), plain = median(time[0]);
+		printf("    %-30s %8.1f ns   %6.2f   %d crossings\n", what[i], one, one / plain, crossings[i]);
 	}
 }
 
