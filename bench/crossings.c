@@ -15,7 +15,8 @@ enum { SAMPLES = 301, REPEATS = 100, CASES = 5, N = 9, S = 3, R = 8, DEGREE = 30
 /* `dof` masses side by side, each with a stop 1 away: x'' = -x + 0.1 cos t, and -8 (x - 1) more beyond 1 */
 typedef struct bench {
 	pl_switching m;
-	double row[S * N], at[S], A[R * N * N], Phi[R * N * N], lean[R * S * N], sag[R * S * N], sway[R * S * N];
+	double row[S * N], at[S], A[R * N * N], Phi[R * N * N];
+	double tangent[R * S * N], chord_error[R * S * N], cubic_error[R * S * N];
 	int breaks[S], matrix[R], halvings[R];
 	double work[PL_SWITCHING_WORK(N, S, DEGREE)];
 	pl_crossing crossing[16];
@@ -73,10 +74,10 @@ static void fill_tables(bench *b, int r, double h)
 	for (int i = 0; i < dof; i++)
 		for (int j = 0; j < n; j++) {
 			int at = (r * dof + i) * n + j;
-			b->lean[at] = h / 3.0 * A[i * n + j];
+			b->tangent[at] = h / 3.0 * A[i * n + j];
 			for (int k = 0; k < n; k++) {
-				b->sag[at] += h * h / 8.0 * fabs(A2[i * n + k]) * growth[k * n + j];
-				b->sway[at] += h * h * h * h / 384.0 * fabs(A4[i * n + k]) * growth[k * n + j];
+				b->chord_error[at] += h * h / 8.0 * fabs(A2[i * n + k]) * growth[k * n + j];
+				b->cubic_error[at] += h * h * h * h / 384.0 * fabs(A4[i * n + k]) * growth[k * n + j];
 			}
 		}
 }
@@ -95,9 +96,8 @@ static void fill(bench *b, int dof, double h)
 	memset(b, 0, sizeof *b);
 	b->m = (pl_switching){.size = 2 * dof + 3, .h = h, .switches = dof, .row = b->row,
 	                      .breaks = b->breaks, .at = b->at, .matrix = b->matrix, .A = b->A, .Phi = b->Phi,
-	                      .lean = b->lean,
-	                      .sag = b->sag, .sway = b->sway, .halvings = b->halvings, .max_events = 16,
-	                      .max_splits = 500};
+	                      .tangent = b->tangent, .chord_error = b->chord_error, .cubic_error = b->cubic_error,
+	                      .halvings = b->halvings, .max_events = 16, .max_splits = 500};
 	for (int i = 0; i < dof; i++) {
 		b->row[i * b->m.size + i] = b->at[i] = 1.0;
 		b->breaks[i] = 1;
