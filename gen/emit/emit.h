@@ -278,7 +278,6 @@ void emit_load_advance(const struct emitter *e, const char *steps); /* `steps` N
 /* declares load1[...] for the loads wanted */
 void emit_load_states(const struct emitter *e, const bool *loads, bool time_is_there);
 void emit_load_array(const struct emitter *e, int load);          /* load1[2], what its states are called */
-const char *load_cell(const struct emitter *e, int load, int column); /* load1[0]; in the anchor s->anchor[0] */
 void emit_load_functions(const struct emitter *e, int load);      /* its states, from its phase and growth */
 void emit_load_powers(const struct emitter *e, int load);         /* those with t, from those without */
 bool outputs_read(const struct emitter *e, int load);

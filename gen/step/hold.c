@@ -57,7 +57,8 @@ void tap_slope(int hold, int tap, mpq_ptr slope)
 	mpq_clears(weight, times, NULL);
 }
 
-const char *hold_name(int hold)
+/* first, third, ... */
+static const char *hold_name(int hold)
 {
 	static const char *const name[] = { [1] = "first", [3] = "third", [5] = "fifth", [7] = "seventh" };
 	return name[hold];

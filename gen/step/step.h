@@ -492,8 +492,6 @@ struct modal {                      /* modal states: the real parts of the pairs
 	struct drift drift;
 	double condition;           /* what rounding gains that goes through both, 1 at best */
 };
-const char *modal_objection(const struct step *step);        /* what stands against it; NULL: nothing */
-struct modal *modal_of(const struct step *step);             /* NULL: a number is not decided */
 void plan_modal(struct step *step);                          /* where it is asked for, or cheaper and as exact */
 
 /* ---- rest.c: what is too small to count ---- */
@@ -590,7 +588,6 @@ void plan_rows(struct step *step);                           /* step->rows; last
 void tap_weight(int hold, int power, int tap, mpq_ptr weight);     /* of (s/h)^power in that of a tap */
 void tap_derivative(int hold, int power, int tap, mpq_srcptr h, mpq_ptr derivative); /* at the step's start */
 void tap_slope(int hold, int tap, mpq_ptr slope);            /* h u' at the step's end, per tap */
-const char *hold_name(int hold);                             /* first, third, ... */
 bool further_samples(const struct linear *system);           /* an input goes through more than two */
 int samples_ahead(int hold);                                 /* that an input has had when the first step comes */
 void check_holds(const struct step *step);                   /* leaves the statement where one cannot be */
