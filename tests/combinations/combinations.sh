@@ -45,8 +45,8 @@ words_of() {
 # is_program ID: --explain=program prints ID.spec as the program that its C has, by its first line and its operations
 is_program() {
 	# shellcheck disable=SC2046
-	timeout 1200 "$plgen" --explain=program --prefix "$1" $(head_of "$1.spec" options) "$1.spec" >program 2>"$1.said" ||
-		head -n 3 "$1.said" >>"$1.wrong"
+	timeout 1200 "$plgen" --explain=program --prefix "$1" $(head_of "$1.spec" options) "$1.spec" >program \
+		2>"$1.said" || head -n 3 "$1.said" >>"$1.wrong"
 	kind=$(sed -n "1s/^Program of a step of $1: \([a-z]*\).*/\1/p" program)
 	case $kind:$(head_of "$1.spec" class) in
 		linear:\ linear|regions:\ piecewise|with:*) ;;
