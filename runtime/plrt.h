@@ -326,7 +326,7 @@ float pl_untilf(float t0, uint64_t k, pl_twof h, pl_twof change);
 
 /* ---- peak.c: the largest size of an output --------------------------------------------------------------- */
 
-enum { PL_PEAK_SPACE = 5 };
+enum { PL_PEAK_SPACE = 6 };
 #define PL_PEAK_WORK(size) (PL_PEAK_SPACE * (size)) /* reals that these work in */
 
 /* The larger of `peak` and |row . x(tau)|, 0 <= tau <= h, where x' = A x from x on, of `size` entries, and row . x(h)
