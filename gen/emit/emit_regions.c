@@ -250,7 +250,7 @@ static void emit_searched_step(const struct emitter *e)
 static void emit_apart_search(const struct emitter *e)
 {
 	int size = e->step->layout.size;
-	emit_swift_functions(e);
+	emit_crossing(e);
 	say(e, "\n"
 	       "static PL_APART void $n_seek($n *s, double x[%d])\n"
 	       "{\n"
@@ -270,7 +270,7 @@ static void emit_whole_step(const struct emitter *e)
 	emit_set_aside(e);
 	emit_raw_locals(e, all, false);
 	emit_load_states(e, needed_loads(e), false);
-	emit_swift_step(e);
+	emit_clear_step(e);
 	emit_take_back(e);
 	emit_step_end(e);
 	if (e->step->carries)           /* what was set aside is in no bound */
