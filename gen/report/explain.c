@@ -167,6 +167,16 @@ static long swift_bytes(const struct step *step)
 	       24 * (long)s->regions * s->expressions + 4 * s->expressions + 16 * (step->swift_degree + 1);
 }
 
+/* Of cos, sin and e^{at} in the steps after an anchor */
+static long anchor_bytes(const struct step *step)
+{
+	long numbers = 0;
+	for (int l = 0; l < step->branch->system.loads && step->anchors; l++)
+		if (is_anchored(step, l))
+			numbers += step->anchors->steps * (1 + oscillates(step->branch->system.load[l].wave));
+	return 8 * numbers;
+}
+
 /* What a swift step does before it leaves it to the search, at most */
 static long swift_multiplications(const struct step *step)
 {
@@ -183,7 +193,7 @@ static void person_regions(FILE *to, const struct step *step)
 	const struct switching *s = step->shown->model->switching;
 	long size = step->layout.size, matrices = s->systems, degree = step->series.degree, pieces = 1;
 	long bytes = 8 * (s->expressions * size + matrices * (2 * size * size + 3 * s->expressions * size)) +
-		     4 * (s->regions + s->expressions + matrices);
+		     4 * (s->regions + s->expressions + matrices) + anchor_bytes(step);
 	if (step->swift)
 		bytes += swift_bytes(step);
 	for (int k = 0; k < step->branches; k++)

@@ -119,20 +119,6 @@ static void build_exact(struct step *step)
 	plan_rest(step);
 }
 
-static bool *loads_of_regions(const struct step *step)
-{
-	const struct switching *s = step->model->switching;
-	bool *needed = ARRAY(bool, (size_t)step->branch->system.loads);
-	for (int l = 0; l < step->branch->system.loads; l++) {
-		for (int k = 0; k < s->systems; k++)
-			needed[l] = needed[l] || load_acts(&s->system[k], &s->system[k].load[l]);
-		for (int e = 0; e < s->expressions; e++)
-			for (int k = 0; k < step->branch->system.load[l].columns; k++)
-				needed[l] = needed[l] || mpq_sgn(s->expression[e].row->load[l][k]) != 0;
-	}
-	return needed;
-}
-
 /* Phi over a part of the step, and what inputs add: u held, and u' as the slope of u */
 static struct wanted *wanted_piece(const struct step *step, int halvings)
 {
@@ -170,6 +156,20 @@ static void plan_whole(struct step *step, int k)
 		b->whole = tables_of(step->model, b->resolvent, &b->system, 1, wanted_piece(step, 0))[0];
 }
 
+/* Of a step of regions, beside its load states */
+static void count_sums(struct step *step, int multiplications, int additions)
+{
+	struct program *program = step->program;
+	program->multiplications = multiplications;
+	program->additions = additions;
+	if (step->anchors)
+		count_turned_loads(program, step);
+	else {
+		program->multiplications += program->wave_multiplications;
+		program->additions += program->wave_additions;
+	}
+}
+
 static void plan_swift(struct step *step)
 {
 	bool any = false;
@@ -180,8 +180,8 @@ static void plan_swift(struct step *step)
 	if (!step->swift)
 		return;
 	int expressions = step->model->switching->expressions;
-	step->program->multiplications = (step->layout.states + expressions) * step->layout.size;
-	step->program->additions = step->program->multiplications + 2 * expressions;
+	int sums = (step->layout.states + expressions) * step->layout.size;
+	count_sums(step, sums, sums + 2 * expressions);
 	/* terms come in fours */
 	step->swift_degree = 3 | (any ? series_degree(step, 0, step->branches, 0) : step->series.degree);
 }
@@ -213,10 +213,11 @@ static void build_regions_step(struct step *step)
 	first->system.channels = 0;
 	step->layout = layout_with(&first->system, 0, loads_of_regions(step));
 	find_carries(step);
+	plan_anchors(step);
+	fill_anchors(step);
 	step->program = linear_program(step);
-	step->program->multiplications =
-		step->layout.size * step->layout.size + 6 * step->model->switching->expressions * step->layout.size;
-	step->program->additions = step->program->multiplications;
+	int sums = step->layout.size * step->layout.size + 6 * step->model->switching->expressions * step->layout.size;
+	count_sums(step, sums, sums);
 	first->system.channels = channels;
 	step->series.degree = 3;
 	step->series.emitted = true;

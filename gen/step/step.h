@@ -212,6 +212,7 @@ struct anchored_term { int state, column; };
 struct anchors {                    /* load states at an anchor, and tables for the steps to the next */
 	int steps;                  /* from one to the next */
 	bool *load;                 /* per load: an anchor keeps its states */
+	bool turned;                /* the step turns them into those of now, and has no terms */
 	int terms;                  /* of a step: by state, then by column of a load */
 	struct anchored_term *term;
 	struct coefficient *factor; /* [steps since the anchor][term]: of the load state there */
@@ -299,6 +300,8 @@ enum step_kind kind_of_step(const struct model *model);
 bool is_anchored(const struct step *step, int load);        /* its functions are evaluated at anchors only */
 int load_of_column(const struct linear *system, int column, int *first); /* *first: the first column of that load */
 bool is_forced(const struct step *step, int column);         /* is this load state's load left out of the step? */
+/* those that a system or an expression reads */
+bool *loads_of_regions(const struct step *step);
 bool has_leftover(const struct step *step);                 /* it is of that kind */
 void need_closed_form(const struct step *step);              /* leaves the statement where there is none */
 
