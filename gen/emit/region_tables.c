@@ -63,6 +63,7 @@ static double *off_of(const struct region_piece *piece)    { return piece->off; 
 static double *still_of(const struct region_piece *piece)  { return piece->still; }
 static double *slack_of(const struct region_piece *piece)  { return piece->slack; }
 static double *turn_of(const struct region_piece *piece)   { return piece->turn; }
+static double *third_of(const struct region_piece *piece)  { return piece->third; }
 static double *bend_of(const struct region_piece *piece)   { return piece->bend; }
 
 /* Else all its entries are numbers in the text */
@@ -163,9 +164,11 @@ static void emit_neighbours(const struct emitter *e, const struct pieces *p)
 		}
 	say(e, "};\n"
 	       "\n"
-	       "static const int $n_stride[] = {");
-	for (int i = 0; i < n; i++)
-		say(e, "%s%d", i ? ", " : "", s->expression[i].stride);
+	       "static const int $n_interval[%d][%d] = {  /* of each expression, from the lowest one */\n",
+	    s->regions, n);
+	for (int r = 0; r < s->regions; r++)
+		for (int i = 0; i < n; i++)
+			say(e, "%s%d%s", i == 0 ? "    {" : ", ", interval_of(s, r, i), i == n - 1 ? "},\n" : "");
 	say(e, "};\n");
 }
 
@@ -174,6 +177,7 @@ void emit_swift_tables(const struct emitter *e, const struct pieces *p, const ch
 	int n = expressions_of(e);
 	struct region_tables whole = tables_of_regions(e, p, "", e->step->layout.size, whole_of),
 		      off = tables_of_regions(e, p, "", n, off_of), slack = tables_of_regions(e, p, "", n, slack_of),
+			     third = tables_of_regions(e, p, "", n, third_of),
 		      still = tables_of_regions(e, p, "", 1, still_of);
 	still.columns = n;
 	if (any_pieces(e)) {
@@ -189,8 +193,8 @@ void emit_swift_tables(const struct emitter *e, const struct pieces *p, const ch
 			     "times |x|: how far each expression is off its chord over h, at most", expression);
 	if (is_table(&still))
 		emit_still(e, p);
-	emit_of_each(e, &slack, "slack", "times |x|: what h e' is off the slope of its polynomial, at most",
-		     expression);
+	emit_of_each(e, &slack, "slack", "times |x|: what rounding may do to an expression and to h e'", expression);
+	emit_of_each(e, &third, "jerk", "times |x|: h^3/24 e''', at most", expression);
 	emit_neighbours(e, p);
 }
 

@@ -182,8 +182,7 @@ static void plan_swift(struct step *step)
 	int expressions = step->model->switching->expressions;
 	int sums = (step->layout.states + expressions) * step->layout.size;
 	count_sums(step, sums, sums + 2 * expressions);
-	/* terms come in fours */
-	step->swift_degree = 3 | (any ? series_degree(step, 0, step->branches, 0) : step->series.degree);
+	step->swift_degree = any ? series_degree(step, 0, step->branches, 0) : step->series.degree;
 }
 
 static void plan_region(struct step *step, int k)

@@ -207,6 +207,8 @@ struct forced {
 	bool changes;               /* any of it */
 	int multiplications, additions; /* to add it */
 };
+/* Of a step that is not left to the search: crossings, and parts looked at */
+enum { MOST_SWIFT = 4, MOST_LOOKS = 10 };
 enum { MOST_ANCHORED = 256 };       /* steps from one anchor to the next */
 struct anchored_term { int state, column; };
 struct anchors {                    /* load states at an anchor, and tables for the steps to the next */
@@ -287,7 +289,7 @@ struct step {                       /* everything that is emitted for one model 
 	mpfr_t growth;              /* pl: 1/s, largest real part of the modified equation's poles (report only) */
 	struct layout layout;       /* of x */
 	struct series series;
-	/* of regions: a step looks over the whole of h whether it is clear, and for one crossing; by Taylor
+	/* of regions: a step looks over the whole of h whether it is clear, and for few crossings; by Taylor
 	 * polynomials of this degree */
 	bool swift;
 	const char *searches;       /* why it is not */
@@ -395,9 +397,11 @@ struct region_piece {               /* of a branch, d = h 2^-halvings long; x as
 	double *second, *fourth;    /* second . |x(0)|, fourth . |x(0)| bound, on 0 .. d, d^2/8 times the second and */
 				    /* d^4/384 times the fourth derivative of each; expressions x size */
 	/* Where a step is swift: e^{A h}; over h, each expression is off its chord by at most off . |x(0)| + still, and
-	 * its slope off that of its Taylor polynomial by at most slack . |x(0)| / h; turn and bend are slope and fourth
+	 * rounding and what its Taylor polynomial leaves out make its value and h times its slope wrong by at most
+	 * slack . |x(0)|; turn and bend are slope and fourth
 	 * over h */
 	double *whole, *off, *still, *slack, *turn, *bend;
+	double *third;              /* third . |x(0)| bounds h^3/24 times the third derivative of each */
 	double *turns;              /* h A */
 };
 struct pieces {
@@ -411,6 +415,7 @@ struct pieces {
 	int degree;
 	double *weight;             /* 1/k!, k = 0 .. degree */
 };
+#define OPEN_END 0x1p1000           /* of an interval that no breakpoint ends */
 struct pieces pieces_of(const struct step *step);
 void row_over_x(const struct step *step, const struct output *output, double *row);
 /* Of |x|: how far row . x is at most off its chord over h, entry by entry */
