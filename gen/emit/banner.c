@@ -137,11 +137,11 @@ void banner_regions(const struct emitter *e)
 		say(e, " *     expression %d: %s, at %s\n", i, printable(form_text(model, s->expression[i].form)), at);
 	}
 	if (e->step->swift)
-		say(e, " * A step is one product where a bound shows it clear of every breakpoint; with one "
-		       "crossing that is\n"
-		       " * certain it goes by the model's own Taylor polynomials, of degree %d; all else by the "
+		say(e, " * A step is one product where a bound shows it clear of every breakpoint; up to %d "
+		       "crossings that are\n"
+		       " * certain go by the model's own Taylor polynomials, of degree %d; all else by the "
 		       "search.\n",
-		    e->step->swift_degree);
+		    MOST_SWIFT, e->step->swift_degree);
 	else
 		say(e, " * Every step goes by the search: %s.\n", e->step->searches);
 	say(e, " * The poles above are those of the terms that are linear everywhere.\n"

@@ -167,17 +167,27 @@ static long swift_bytes(const struct step *step)
 	long size = step->layout.size, halves = 0;
 	for (int k = 0; k < step->branches; k++)
 		halves = halves || step->branch[k].halvings > 0;
-	return 8 * s->systems * (s->expressions * (2 * size + 1) + halves * size * (size + 2 * s->expressions)) +
-	       24 * (long)s->regions * s->expressions + 4 * s->expressions + 16 * (step->swift_degree + 1);
+	return 8 * s->systems * (s->expressions * (3 * size + 1) + halves * size * (size + 2 * s->expressions)) +
+	       28 * (long)s->regions * s->expressions + 8 * (step->swift_degree + 1);
 }
 
-/* What a swift step does before it leaves it to the search, at most */
+/* Of cos, sin and e^{at} in the steps after an anchor */
+static long anchor_bytes(const struct step *step)
+{
+	long numbers = 0;
+	for (int l = 0; l < step->branch->system.loads && step->anchors; l++)
+		if (is_anchored(step, l))
+			numbers += step->anchors->steps * (1 + oscillates(step->branch->system.load[l].wave));
+	return 8 * numbers;
+}
+
+/* What a swift step does before it leaves it to the search, at most: in each part of the step bounds, and polynomials
+ * of x, corrected */
 static long swift_multiplications(const struct step *step)
 {
-	long size = step->layout.size, terms = step->swift_degree + 1;
-	return step->swift ? size * size + 8 * step->model->switching->expressions * size +
-				     2 * terms * (size * size + 4 * size + 8)
-			   : 0;
+	long size = step->layout.size, bounds = step->model->switching->expressions * (12 * size + 60);
+	long moves = 6 * step->swift_degree * (size * size + size) + 12 * size * size;
+	return step->swift ? size * size + MOST_LOOKS * (bounds + moves) : 0;
 }
 
 /* Bytes of tables, and the most that a step can take: every piece of it by a Taylor polynomial, all events and splits
@@ -187,7 +197,7 @@ static void person_regions(FILE *to, const struct step *step)
 	const struct switching *s = step->shown->model->switching;
 	long size = step->layout.size, matrices = s->systems, degree = step->series.degree, pieces = 1;
 	long bytes = 8 * (s->expressions * size + matrices * (2 * size * size + 3 * s->expressions * size)) +
-		     4 * (s->regions + s->expressions + matrices);
+		     4 * (s->regions + s->expressions + matrices) + anchor_bytes(step);
 	if (step->swift)
 		bytes += swift_bytes(step);
 	for (int k = 0; k < step->branches; k++)
@@ -214,9 +224,9 @@ static void person_regions(FILE *to, const struct step *step)
 	}
 	if (step->swift)
 		fprintf(to,
-			"A step that a bound shows clear is one product; one crossing goes by Taylor polynomials of "
-			"degree %d, all else by the search.\n",
-			step->swift_degree);
+			"A step that a bound shows clear is one product; up to %d crossings go by Taylor polynomials "
+			"of degree %d, all else by the search.\n",
+			MOST_SWIFT, step->swift_degree);
 	else
 		fprintf(to, "Every step goes by the search: %s.\n", step->searches);
 	fprintf(to, "Tables: %ld bytes. Per step at most %d crossings and %d splits; at most %ld multiplications.\n",

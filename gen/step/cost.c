@@ -212,6 +212,12 @@ void count_regions(struct step *step, int multiplications, int additions)
 	const struct linear *system = &step->branch->system;
 	struct program *program = step->program;
 	struct cost functions = { 0, 0, 0 };
+	if (step->anchors) {
+		program->multiplications = multiplications;
+		program->additions = additions;
+		count_turned_loads(program, step);
+		return;
+	}
 	for (int l = 0; l < system->loads; l++) {
 		if (step->layout.load[l] < 0)
 			continue;

@@ -207,11 +207,14 @@ struct forced {
 	bool changes;               /* any of it */
 	int multiplications, additions; /* to add it */
 };
+/* Of a step that is not left to the search: crossings, and parts looked at */
+enum { MOST_SWIFT = 4, MOST_LOOKS = 10 };
 enum { MOST_ANCHORED = 256 };       /* steps from one anchor to the next */
 struct anchored_term { int state, column; };
 struct anchors {                    /* load states at an anchor, and tables for the steps to the next */
 	int steps;                  /* from one to the next */
 	bool *load;                 /* per load: an anchor keeps its states */
+	bool turned;                /* the step turns them into those of now, and has no terms */
 	int terms;                  /* of a step: by state, then by column of a load */
 	struct anchored_term *term;
 	struct coefficient *factor; /* [steps since the anchor][term]: of the load state there */
@@ -286,7 +289,7 @@ struct step {                       /* everything that is emitted for one model 
 	mpfr_t growth;              /* pl: 1/s, largest real part of the modified equation's poles (report only) */
 	struct layout layout;       /* of x */
 	struct series series;
-	/* of regions: a step looks over the whole of h whether it is clear, and for one crossing; by Taylor
+	/* of regions: a step looks over the whole of h whether it is clear, and for few crossings; by Taylor
 	 * polynomials of this degree */
 	bool swift;
 	const char *searches;       /* why it is not */
@@ -299,6 +302,8 @@ enum step_kind kind_of_step(const struct model *model);
 bool is_anchored(const struct step *step, int load);        /* its functions are evaluated at anchors only */
 int load_of_column(const struct linear *system, int column, int *first); /* *first: the first column of that load */
 bool is_forced(const struct step *step, int column);         /* is this load state's load left out of the step? */
+/* those that a system or an expression reads */
+bool *loads_of_regions(const struct step *step);
 bool has_leftover(const struct step *step);                 /* it is of that kind */
 void need_closed_form(const struct step *step);              /* leaves the statement where there is none */
 
@@ -392,9 +397,11 @@ struct region_piece {               /* of a branch, d = h 2^-halvings long; x as
 	double *second, *fourth;    /* second . |x(0)|, fourth . |x(0)| bound, on 0 .. d, d^2/8 times the second and */
 				    /* d^4/384 times the fourth derivative of each; expressions x size */
 	/* Where a step is swift: e^{A h}; over h, each expression is off its chord by at most off . |x(0)| + still, and
-	 * its slope off that of its Taylor polynomial by at most slack . |x(0)| / h; turn and bend are slope and fourth
+	 * rounding and what its Taylor polynomial leaves out make its value and h times its slope wrong by at most
+	 * slack . |x(0)|; turn and bend are slope and fourth
 	 * over h */
 	double *whole, *off, *still, *slack, *turn, *bend;
+	double *third;              /* third . |x(0)| bounds h^3/24 times the third derivative of each */
 	double *turns;              /* h A */
 };
 struct pieces {
@@ -408,6 +415,7 @@ struct pieces {
 	int degree;
 	double *weight;             /* 1/k!, k = 0 .. degree */
 };
+#define OPEN_END 0x1p1000           /* of an interval that no breakpoint ends */
 struct pieces pieces_of(const struct step *step);
 void row_over_x(const struct step *step, const struct output *output, double *row);
 /* Of |x|: how far row . x is at most off its chord over h, entry by entry */
