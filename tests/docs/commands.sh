@@ -122,4 +122,19 @@ for page in README.md doc/spec.md doc/accuracy.md doc/performance.md doc/firmwar
 		try "$page" "$number" "$kind" "$line"
 	done <found
 done
+
+# Of options --help, the man page and the page of the language name the same ones; `--raw` is of plmain.
+options_in() {
+	grep -o -e '--*[a-zD][a-z]*' | grep -x -e '--[a-z]\{3,\}' -e '-[oD]' | sort -u
+}
+: >log
+plgen --help | sed -n '/^  -/p' | cut -c 1-26 | options_in >asked
+sed -n '/^\.SH OPTIONS/,/^\.SH GENERATED/{/^\.B/{s/\\f.//g;s/\\//gp}}' "$root/doc/plgen.1" | options_in >man
+sed -n '/^## The command/,/^## Mistakes/s/^\(| `-.*`[^|]*\)|.*/\1/p' "$root/doc/spec.md" | options_in >spec
+for place in man spec; do
+	diff asked $place >>log || echo "$place" >>log
+done
+[ "$(wc -l <asked)" -gt 15 ] || cat asked >>log
+[ ! -s log ]
+result $? "$(wc -l <asked) options: --help, doc/plgen.1 and doc/spec.md have the same"
 tap_end

@@ -136,6 +136,14 @@ batch_add() {
 			selftest=${id}_tested
 			echo "static double ${id}_tested(void) { return (double)${id}_selftest(); }"
 		fi
+		lanes=NULL
+		if grep -q "${id}_batch(" "$id.h"; then
+			lanes=${id}_lanes
+			real=double with=
+			grep -q "pl_modelf ${id}_model" "$id.h" && real=float
+			grep -q 'INPUTS = [1-9]' "$id.h" && with='u COMMA'
+			echo "LANES($id, $(echo "$id" | tr '[:lower:]' '[:upper:]'), $real, $with)"
+		fi
 		if [ "$again" != 'NULL, NULL, NULL' ]; then
 			echo "extern const int ${id}_coords[];"
 			for function in residual wanted; do
@@ -148,7 +156,7 @@ batch_add() {
 		echo "SUBJECT {\"$id\", $model, &${whole}_model, ${whole}_slopes, \"$scheme\", \"$class\"," \
 			"\"$changes\"," \
 			"$solution, $selftest," \
-			"$again, ${tuned:+&}${tuned:-NULL}${tuned:+_model}, \"$retune\"},"
+			"$again, ${tuned:+&}${tuned:-NULL}${tuned:+_model}, \"$retune\", $lanes},"
 	} >"$id.subject"
 	printf '%s\n' "$id" >>"subjects_$cc.list"
 	printf '%s\n' "$code" | tr ' ' '\n' >>"code_$cc.list"
@@ -186,6 +194,7 @@ batch_build() {
 		[ -s "compiled_$cc.list" ] || continue
 		{
 			echo '#include "drive.h"'
+			echo '#include "lanes.h"'
 			while read -r id; do
 				sed '/^SUBJECT/d' "$id.subject"
 			done <"compiled_$cc.list"
