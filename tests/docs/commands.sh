@@ -77,7 +77,7 @@ run_c() {
 		echo '}'
 	} >program.c
 	# shellcheck disable=SC2086
-	"${CC:-cc}" -std=c99 $warnings -Iruntime program.c ./*_pl.c ../runtime.a -lm -o program >>../log 2>&1 &&
+	${CC:-cc} -std=c99 $warnings -Iruntime program.c ./*_pl.c ../runtime.a -lm -o program >>../log 2>&1 &&
 		./program >>../log 2>&1
 }
 
@@ -108,7 +108,7 @@ try() {
 
 mkdir objects
 for file in "$root"/runtime/*.c; do
-	"${CC:-cc}" -std=c99 -O1 -I"$root/runtime" -c "$file" -o "objects/$(basename "$file" .c).o" || exit 99
+	${CC:-cc} -std=c99 -O1 -I"$root/runtime" -c "$file" -o "objects/$(basename "$file" .c).o" || exit 99
 done
 ar -rcs runtime.a objects/*.o || exit 99
 

@@ -5,7 +5,7 @@
 #
 #     linear.sh specs|names PLGEN LINEAR_INPUTS SOURCE_ROOT
 #
-# Each file goes to two of the four compilers by turns, with LONG=1 to all (see compilers.sh).
+# Each file goes to one of the four compilers by turns, with LONG=1 to all (see compilers.sh).
 #
 # The compilers are those of GCCS and CLANGS (default: gcc g++, clang clang++); what is not installed is skipped.
 set -u
