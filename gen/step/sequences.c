@@ -366,9 +366,105 @@ static _Noreturn void no_series(const struct atom *atom, const char *why)
 	      text_between(atom->node->start, atom->node->end), why);
 }
 
+/* ---- what depends on t alone and has a formula in each interval ---- */
+
+/* Constant, or a + b t */
+static bool is_linear_in_time(const struct form *form)
+{
+	for (int i = 0; i < form->terms; i++) {
+		const struct basis *basis = &form->term[i].basis;
+		bool time = basis->kind == BASIS_WAVE && is_polynomial(basis->wave) && basis->power <= 1;
+		if (!time && basis->kind > BASIS_PI)
+			return false;
+	}
+	return true;
+}
+
+static int choice(struct sequencing *w, const struct form *left, enum comparison comparison, const struct form *right,
+		  int a, int b)
+{
+	return new_sequence(w, (struct sequence){ .kind = SEQUENCE_CHOICE, .state = NONE, .left = left, .right = right,
+						  .comparison = comparison, .a = a, .b = b });
+}
+
+static int sequence_of_constant(struct sequencing *w, long value)
+{
+	return sequence_of_form(w, form_number(value));
+}
+
+static int best_from(struct sequencing *w, const struct atom *a, int next, int champion)
+{
+	if (next == a->operands)
+		return sequence_of_form(w, a->operand[champion]);
+	int other = best_from(w, a, next + 1, next), same = best_from(w, a, next + 1, champion);
+	return choice(w, a->operand[next], a->function == FN_MIN ? CMP_LT : CMP_GT, a->operand[champion], other, same);
+}
+
+static int sequence_of_table(struct sequencing *w, const struct atom *a)
+{
+	struct straight *piece;
+	int pieces = pieces_of_atom(a, &piece), made = NONE;
+	mpq_t shift;
+	mpq_init(shift);
+	for (int i = pieces - 1; i >= 0; i--) {
+		mpq_mul(shift, piece[i].slope, piece[i].x);
+		mpq_sub(shift, piece[i].y, shift);
+		struct form *line = form_sum(form_scale(a->operand[0], piece[i].slope), form_constant(shift), false);
+		int here = sequence_of_form(w, line);
+		made = made == NONE ? here : choice(w, a->operand[0], CMP_LT, form_constant(piece[i].end), here, made);
+	}
+	mpq_clear(shift);
+	return made;
+}
+
+/* x outside low .. high: what it is below, between and above */
+static int sequence_in_three(struct sequencing *w, const struct form *const *x, int below, int between, int above)
+{
+	int inner = choice(w, x[0], CMP_GT, x[2], above, between);
+	return choice(w, x[0], CMP_LT, x[1], below, inner);
+}
+
+/* Of functions with kinks, where their arguments are linear in t; NONE: of others */
+static int sequence_in_time(struct sequencing *w, const struct atom *a)
+{
+	enum { ARGUMENTS = 6, PIECES = 100 };
+	const struct form *x = a->operand[0], *zero = form_number(0);
+	struct straight *piece;
+	mpq_t minus;
+	for (int i = 0; i < a->operands; i++)
+		if (!is_linear_in_time(a->operand[i]))
+			return NONE;
+	mpq_init(minus);
+	mpq_set_si(minus, -1, 1);
+	switch (a->function) {
+	case FN_ABS:
+		return choice(w, x, CMP_LT, zero, sequence_of_form(w, form_scale(x, minus)), sequence_of_form(w, x));
+	case FN_SGN:
+		return choice(w, x, CMP_GT, zero, sequence_of_constant(w, 1),
+			      choice(w, x, CMP_LT, zero, sequence_of_constant(w, -1), sequence_of_constant(w, 0)));
+	case FN_MIN:
+	case FN_MAX:
+		return a->operands > ARGUMENTS ? NONE : best_from(w, a, 1, 0);
+	case FN_CLIP:
+		return sequence_in_three(w, a->operand, sequence_of_form(w, a->operand[1]), sequence_of_form(w, x),
+					 sequence_of_form(w, a->operand[2]));
+	case FN_DEADZONE:
+		return sequence_in_three(w, a->operand, sequence_of_form(w, form_difference(x, a->operand[1])),
+					 sequence_of_constant(w, 0),
+					 sequence_of_form(w, form_difference(x, a->operand[2])));
+	case FN_TABLE:
+		return pieces_of_atom(a, &piece) > PIECES ? NONE : sequence_of_table(w, a);
+	default:
+		return NONE;
+	}
+}
+
 static int sequence_of_call(struct sequencing *w, const struct atom *atom)
 {
-	int a = atom->operands ? sequence_of_form(w, atom->operand[0]) : NONE, b;
+	int timed = sequence_in_time(w, atom), b;
+	if (timed != NONE)
+		return timed;
+	int a = sequence_of_form(w, atom->operand[0]);
 	switch (atom->function) {
 	case FN_SIN:  return pair_sequence(w, a, FN_SIN, FN_COS, -1, false);
 	case FN_COS:  return pair_sequence(w, a, FN_SIN, FN_COS, -1, true);
@@ -416,18 +512,6 @@ static int sequence_of_power(struct sequencing *w, const struct atom *atom)
 	return half ? root_sequence(w, base) : new_sequence(w, made);
 }
 
-/* Constant, or a + b t */
-static bool is_linear_in_time(const struct form *form)
-{
-	for (int i = 0; i < form->terms; i++) {
-		const struct basis *basis = &form->term[i].basis;
-		bool time = basis->kind == BASIS_WAVE && is_polynomial(basis->wave) && basis->power <= 1;
-		if (!time && basis->kind > BASIS_PI)
-			return false;
-	}
-	return true;
-}
-
 static int sequence_of_choice(struct sequencing *w, const struct atom *atom)
 {
 	const struct form *condition = atom->operand[0];
@@ -435,11 +519,8 @@ static int sequence_of_choice(struct sequencing *w, const struct atom *atom)
 	if (!compare || compare->kind != ATOM_COMPARE || mpq_cmp_ui(condition->term[0].factor, 1, 1) != 0 ||
 	    !is_linear_in_time(compare->operand[0]) || !is_linear_in_time(compare->operand[1]))
 		no_series(atom, "changes where that is not known beforehand");
-	struct sequence made = { .kind = SEQUENCE_CHOICE, .state = NONE, .left = compare->operand[0],
-				 .right = compare->operand[1], .comparison = compare->comparison };
-	made.a = sequence_of_form(w, atom->operand[1]);
-	made.b = sequence_of_form(w, atom->operand[2]);
-	return new_sequence(w, made);
+	int a = sequence_of_form(w, atom->operand[1]), b = sequence_of_form(w, atom->operand[2]);
+	return choice(w, compare->operand[0], compare->comparison, compare->operand[1], a, b);
 }
 
 static int sequence_of_atom(struct sequencing *w, const struct atom *atom)
@@ -453,7 +534,11 @@ static int sequence_of_atom(struct sequencing *w, const struct atom *atom)
 	case ATOM_POWER:      made = sequence_of_power(w, atom); break;
 	case ATOM_CALL:       made = sequence_of_call(w, atom); break;
 	case ATOM_CHOOSE:     made = sequence_of_choice(w, atom); break;
-	default:              no_series(atom, "jumps");
+	default:
+		if (!is_linear_in_time(atom->operand[0]) || !is_linear_in_time(atom->operand[1]))
+			no_series(atom, "jumps");
+		made = choice(w, atom->operand[0], atom->comparison, atom->operand[1], sequence_of_constant(w, 1),
+			      sequence_of_constant(w, 0));
 	}
 	return w->atom[atom->index] = made;
 }
