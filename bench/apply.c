@@ -2,10 +2,10 @@
 /* apply: time of one product of a matrix with a vector, by the runtime and by a plain loop, in short samples that take
  * turns so that both meet the same machine; prints both medians and their ratio. */
 #include "plrt.h"
+#include "timing.h"
 
 #include <stdio.h>
 #include <stdlib.h>
-#include <time.h>
 
 enum { SAMPLES = 401, REPEATS = 200, LARGEST = 60 };
 
@@ -22,13 +22,6 @@ static void plain(int rows, int columns, const double *table, const double *x, d
 	}
 }
 
-static double nanoseconds(void)
-{
-	struct timespec t;
-	clock_gettime(CLOCK_MONOTONIC, &t);
-	return 1e9 * (double)t.tv_sec + (double)t.tv_nsec;
-}
-
 /* Each product waits for the one before it, as the products of a step do. */
 static double sample(product *multiply, int rows, int columns, const double *table, double *x, double *y)
 {
@@ -38,18 +31,6 @@ static double sample(product *multiply, int rows, int columns, const double *tab
 		x[0] = 0.5 * y[rows - 1];
 	}
 	return (nanoseconds() - start) / REPEATS;
-}
-
-static int ascending(const void *a, const void *b)
-{
-	double x = *(const double *)a, y = *(const double *)b;
-	return (x > y) - (x < y);
-}
-
-static double median(double *time)
-{
-	qsort(time, SAMPLES, sizeof *time, ascending);
-	return time[SAMPLES / 2];
 }
 
 static void measure(int rows, int columns)

@@ -3,22 +3,15 @@
  * so that both meet the same machine; prints medians, time per multiplication and their ratio. MULTIPLICATIONS is the
  * step's count in the generator's report. */
 #include "plrt.h"
+#include "timing.h"
 
 #include <stdio.h>
 #include <stdlib.h>
-#include <time.h>
 
 extern const pl_model beam_model;
 extern const double beam_Phi[30][30];
 
 enum { SAMPLES = 301, STEPS = 20, LOOPS = 100, STATES = 30 };
-
-static double nanoseconds(void)
-{
-	struct timespec t;
-	clock_gettime(CLOCK_MONOTONIC, &t);
-	return 1e9 * (double)t.tv_sec + (double)t.tv_nsec;
-}
 
 static void plain(double table[STATES][STATES], const double *x, double *y)
 {
@@ -47,18 +40,6 @@ static double sample_loops(double table[STATES][STATES], double *x, double *y)
 		x[0] = 1e-3 * y[STATES - 1];
 	}
 	return (nanoseconds() - start) / LOOPS;
-}
-
-static int ascending(const void *a, const void *b)
-{
-	double x = *(const double *)a, y = *(const double *)b;
-	return (x > y) - (x < y);
-}
-
-static double median(double *time)
-{
-	qsort(time, SAMPLES, sizeof *time, ascending);
-	return time[SAMPLES / 2];
 }
 
 int main(int argc, char **argv)

@@ -3,19 +3,20 @@
  * one, and of the plain product Phi x; in short samples that take turns so that all meet the same machine; prints
  * medians and ratios. */
 #include "plrt.h"
+#include "timing.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 enum { SAMPLES = 301, REPEATS = 100, CASES = 5, N = 9, S = 3, R = 8, DEGREE = 30 };
 
 /* `dof` masses side by side, each with a stop 1 away: x'' = -x + 0.1 cos t, and -8 (x - 1) more beyond 1 */
 typedef struct bench {
 	pl_switching m;
-	double row[S * N], at[S], A[R * N * N], Phi[R * N * N], lean[R * S * N], sag[R * S * N], sway[R * S * N];
+	double row[S * N], at[S], A[R * N * N], Phi[R * N * N];
+	double tangent[R * S * N], chord_error[R * S * N], cubic_error[R * S * N];
 	int breaks[S], matrix[R], halvings[R];
 	double work[PL_SWITCHING_WORK(N, S, DEGREE)];
 	pl_crossing crossing[16];
@@ -73,10 +74,10 @@ static void fill_tables(bench *b, int r, double h)
 	for (int i = 0; i < dof; i++)
 		for (int j = 0; j < n; j++) {
 			int at = (r * dof + i) * n + j;
-			b->lean[at] = h / 3.0 * A[i * n + j];
+			b->tangent[at] = h / 3.0 * A[i * n + j];
 			for (int k = 0; k < n; k++) {
-				b->sag[at] += h * h / 8.0 * fabs(A2[i * n + k]) * growth[k * n + j];
-				b->sway[at] += h * h * h * h / 384.0 * fabs(A4[i * n + k]) * growth[k * n + j];
+				b->chord_error[at] += h * h / 8.0 * fabs(A2[i * n + k]) * growth[k * n + j];
+				b->cubic_error[at] += h * h * h * h / 384.0 * fabs(A4[i * n + k]) * growth[k * n + j];
 			}
 		}
 }
@@ -95,9 +96,8 @@ static void fill(bench *b, int dof, double h)
 	memset(b, 0, sizeof *b);
 	b->m = (pl_switching){.size = 2 * dof + 3, .h = h, .switches = dof, .row = b->row,
 	                      .breaks = b->breaks, .at = b->at, .matrix = b->matrix, .A = b->A, .Phi = b->Phi,
-	                      .lean = b->lean,
-	                      .sag = b->sag, .sway = b->sway, .halvings = b->halvings, .max_events = 16,
-	                      .max_splits = 500};
+	                      .tangent = b->tangent, .chord_error = b->chord_error, .cubic_error = b->cubic_error,
+	                      .halvings = b->halvings, .max_events = 16, .max_splits = 500};
 	for (int i = 0; i < dof; i++) {
 		b->row[i * b->m.size + i] = b->at[i] = 1.0;
 		b->breaks[i] = 1;
@@ -109,13 +109,6 @@ static void fill(bench *b, int dof, double h)
 		b->halvings[r] = halvings;
 		fill_tables(b, r, h);
 	}
-}
-
-static double nanoseconds(void)
-{
-	struct timespec t;
-	clock_gettime(CLOCK_MONOTONIC, &t);
-	return 1e9 * (double)t.tv_sec + (double)t.tv_nsec;
 }
 
 /* One step from x, again and again; each waits for the one before it. */
@@ -138,12 +131,6 @@ static double sample(bench *b, const double *from, int plain, int *crossings)
 	}
 	*crossings = plain ? 0 : c.crossings;
 	return (nanoseconds() - begin) / REPEATS;
-}
-
-static int ascending(const void *a, const void *b)
-{
-	double x = *(const double *)a, y = *(const double *)b;
-	return (x > y) - (x < y);
 }
 
 static void measure(int dof, double h)
@@ -170,9 +157,8 @@ static void measure(int dof, double h)
 	printf("%d masses and stops, size %d, h = %g, degree %d, %d halvings\n", dof, b.m.size, h, b.m.degree,
 	       b.halvings[0]);
 	for (int i = 0; i < CASES; i++) {
-		qsort(time[i], SAMPLES, sizeof **time, ascending);
-		printf("    %-30s %8.1f ns   %6.2f   %d crossings\n", what[i], time[i][SAMPLES / 2],
-		       time[i][SAMPLES / 2] / time[0][SAMPLES / 2], crossings[i]);
+		double one = median(time[i]), plain = median(time[0]);
+		printf("    %-30s %8.1f ns   %6.2f   %d crossings\n", what[i], one, one / plain, crossings[i]);
 	}
 }
 

@@ -5,12 +5,12 @@
  * exponentials are apart. */
 #include "plain_pl.h"
 #include "tuned_pl.h"
+#include "timing.h"
 
 #include <gsl/gsl_linalg.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <time.h>
 
 #ifdef REAL_FLOAT
 typedef float real;
@@ -22,13 +22,6 @@ typedef double real;
 
 enum { SAMPLES = 301, RETUNES = 20, STEPS = 200, STATES = TUNED_STATES };
 enum { COLUMNS = sizeof tuned_nominal.step[0] / sizeof(real) };
-
-static double nanoseconds(void)
-{
-	struct timespec t;
-	clock_gettime(CLOCK_MONOTONIC, &t);
-	return 1e9 * (double)t.tv_sec + (double)t.tv_nsec;
-}
 
 /* Masses and springs of the models, and what drives sdcsf */
 static void slopes(double damping, double A[COLUMNS][COLUMNS])
@@ -93,18 +86,6 @@ static double sample_plain(plain *s)
 	for (int k = 0; k < STEPS; k++)
 		plain_step(s);
 	return (nanoseconds() - start) / STEPS;
-}
-
-static int ascending(const void *a, const void *b)
-{
-	double x = *(const double *)a, y = *(const double *)b;
-	return (x > y) - (x < y);
-}
-
-static double median(double *time)
-{
-	qsort(time, SAMPLES, sizeof *time, ascending);
-	return time[SAMPLES / 2];
 }
 
 /* The largest difference, as part of the largest entry of its column's block: states, loads */

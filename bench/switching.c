@@ -3,23 +3,16 @@
  * run as it comes, beside a step of the same model without stops, in short samples that take turns so that all meet the
  * same machine; prints medians and ratios. */
 #include "plrt.h"
+#include "timing.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 extern const pl_model plain_model, stops_model;
 uint64_t crossed(const void *s);
 
 enum { SAMPLES = 501, STEPS = 20, RUN = 200, LOOKED_AT = 400000 };
-
-static double nanoseconds(void)
-{
-	struct timespec t;
-	clock_gettime(CLOCK_MONOTONIC, &t);
-	return 1e9 * (double)t.tv_sec + (double)t.tv_nsec;
-}
 
 static double sample_run(const pl_model *m, void *state, const void *saved)
 {
@@ -71,18 +64,6 @@ static double sample_on(const pl_model *m, void *state)
 	for (int k = 0; k < RUN; k++)
 		m->step(state, NULL);
 	return (nanoseconds() - start) / RUN;
-}
-
-static int ascending(const void *a, const void *b)
-{
-	double x = *(const double *)a, y = *(const double *)b;
-	return (x > y) - (x < y);
-}
-
-static double median(double *time)
-{
-	qsort(time, SAMPLES, sizeof *time, ascending);
-	return time[SAMPLES / 2];
 }
 
 int main(int argc, char **argv)

@@ -116,14 +116,15 @@ static int list(const pl_switching *m, pl_contact *c, pl_crossing *crossing, rea
     return 1;
 }
 
-/* e - b, and what rounding may have done to it.  The rows of lean are a third of a piece's e'. */
+/* e - b, and what rounding may have done to it.  A tangent is a third of a piece's e'. */
 static real excess(const pl_switching *m, const pl_contact *c, const walk *w, int breakpoint, const real *x,
                    real *noise)
 {
-    const real *row = m->row + w->i * m->size, *lean = rows_of(m->lean, m, c) + w->i * m->size, b = w->at[breakpoint];
+    const real *row = m->row + w->i * m->size, *tangent = rows_of(m->tangent, m, c) + w->i * m->size;
+    const real b = w->at[breakpoint];
     real e;
     pl_multiply(1, m->size, row, x, &e);
-    *noise = noise_of(sizes(m->size, row, x) + 3 * sizes(m->size, lean, x) + magnitude(b));
+    *noise = noise_of(sizes(m->size, row, x) + 3 * sizes(m->size, tangent, x) + magnitude(b));
     return e - b;
 }
 
@@ -221,24 +222,24 @@ static int stays_clear(const pl_switching *m, const pl_contact *c, const real *x
 {
     const int n = m->size, s = m->switches;
     real *size = work, *from = size + n, *to = from + s, *off = to + s, *low = off + s, *high = low + s;
-    const real *lean = rows_of(m->lean, m, c);
+    const real *tangent = rows_of(m->tangent, m, c);
     int i;
     for (i = 0; i < n; i++)
         size[i] = magnitude(x[i]);
     pl_multiply(s, n, m->row, x, from);
     pl_multiply(s, n, m->row, y, to);
-    pl_multiply(s, n, rows_of(m->sag, m, c), size, off);
+    pl_multiply(s, n, rows_of(m->chord_error, m, c), size, off);
     for (i = 0; i < s; i++) {
         low[i] = smaller(from[i], to[i]) - off[i];
         high[i] = larger(from[i], to[i]) + off[i];
     }
     if (clear(m, c->region, low, high))
         return 1;
-    pl_multiply(s, n, rows_of(m->sway, m, c), size, off);
-    for (i = 0; i < s; i++, lean += n) { /* a cubic lies within its Bezier points */
+    pl_multiply(s, n, rows_of(m->cubic_error, m, c), size, off);
+    for (i = 0; i < s; i++, tangent += n) { /* a cubic lies within its Bezier points */
         real leaving, arriving;
-        pl_multiply(1, n, lean, x, &leaving);
-        pl_multiply(1, n, lean, y, &arriving);
+        pl_multiply(1, n, tangent, x, &leaving);
+        pl_multiply(1, n, tangent, y, &arriving);
         leaving = from[i] + leaving;
         arriving = to[i] - arriving;
         low[i] = smaller(smaller(from[i], to[i]), smaller(leaving, arriving)) - off[i];

@@ -29,18 +29,34 @@ static real product(int n, const real *a, const real *b)
 typedef struct taylor {
     int degree;
     real c[MOST_TERMS + 1];
-    real second, third; /* bounds of the derivatives */
+    real end, end_slope;        /* p, p' at 1 */
+    real second, third, fourth; /* bounds of the derivatives */
 } taylor;
 
 static void bound_derivatives(taylor *p)
 {
     int k;
-    p->second = p->third = 0;
+    p->end = p->c[0] + p->c[1];
+    p->end_slope = p->c[1];
+    p->second = p->third = p->fourth = 0;
     for (k = 2; k <= p->degree; k++) {
         const real size = (real)(k * (k - 1)) * size_of(p->c[k]);
+        p->end += p->c[k];
+        p->end_slope += (real)k * p->c[k];
         p->second += size;
         p->third += size * (real)(k - 2);
+        p->fourth += size * (real)((k - 2) * (k - 3));
     }
+}
+
+/* No |p| is larger: the cubic with p's values and slopes at 0 and 1 stays within its control points, here those of its
+ * halves, and is off p by at most s^2 (1 - s)^2/24 max|p''''|. */
+static real bound_of(const taylor *p)
+{
+    const real a = p->c[0], d = p->end, b = a + p->c[1] / 3, c = d - p->end_slope / 3;
+    const real ab = (a + b) / 2, bc = (b + c) / 2, cd = (c + d) / 2, left = (ab + bc) / 2, right = (bc + cd) / 2;
+    const real inner = larger(larger(size_of(left), size_of(right)), larger(size_of(ab), size_of(cd)));
+    return larger(larger(size_of(a), size_of(d)), inner) + p->fourth / 384;
 }
 
 /* value[0], [1], [2]: p, p', p'' at s */
@@ -103,76 +119,107 @@ static real largest(const taylor *p, real peak)
 
 /* ---- the output as a polynomial ---- */
 
-/* A where it is not 0, row by row: mostly chains of derivatives.  Too many entries: all of A, none listed */
+/* A where it is not 0, row by row, mostly chains of derivatives, and so the output's row; more entries: all of it */
 typedef struct slopes {
-    int size, entries;
-    const real *A;
-    int row[MOST_ENTRIES], column[MOST_ENTRIES];
+    int size, entries, places;  /* below 0: all */
+    int chain;                  /* rows from here on are sums of entries behind their own: of these, derivatives end */
+    const real *A, *output;
+    int row[MOST_ENTRIES + 1], column[MOST_ENTRIES], place[MOST_ENTRIES];
     real value[MOST_ENTRIES];
 } slopes;
+
+static int list_places(int size, const real *output, int *place)
+{
+    int i, places = 0;
+    for (i = 0; i < size; i++)
+        if (output[i] < 0 || output[i] > 0) {
+            if (places == MOST_ENTRIES)
+                return -1;
+            place[places++] = i;
+        }
+    return places;
+}
 
 static void list_entries(int size, const real *A, slopes *s)
 {
     int i, j;
     s->size = size;
     s->A = A;
-    s->entries = 0;
+    s->entries = s->chain = 0;
     for (i = 0; i < size; i++)
         for (j = 0; j < size; j++)
             if (A[i * size + j] < 0 || A[i * size + j] > 0) {
                 if (s->entries == MOST_ENTRIES) {
                     s->entries = -1;
+                    s->chain = size;
                     return;
                 }
                 s->row[s->entries] = i;
                 s->column[s->entries] = j;
                 s->value[s->entries++] = A[i * size + j];
+                s->chain = j <= i ? i + 1 : s->chain;
             }
+    s->row[s->entries] = size;
 }
 
-static void slope_of(const slopes *s, const real *x, real *slope)
+static real output_of(const slopes *s, const real *x)
 {
+    real sum = 0;
     int i;
-    if (s->entries < 0) {
-        for (i = 0; i < s->size; i++)
-            slope[i] = product(s->size, s->A + i * s->size, x);
-        return;
-    }
-    for (i = 0; i < s->size; i++)
-        slope[i] = 0;
-    for (i = 0; i < s->entries; i++)
-        slope[s->row[i]] += s->value[i] * x[s->column[i]];
+    if (s->places < 0)
+        return product(s->size, s->output, x);
+    for (i = 0; i < s->places; i++)
+        sum += s->output[s->place[i]] * x[s->place[i]];
+    return sum;
 }
 
-/* row . e^{A s d} x, and x at the end, s = 1; 0: it takes too many terms.  work: 3 size reals */
-static int expand(const slopes *A, const real *row, real d, real *x, taylor *p, real *work)
+/* Row i of A times x; *from: the first of its entries, then of those behind */
+static real slope_of(const slopes *s, const real *x, int i, int *from)
 {
-    const int size = A->size;
-    real *term = work, *next = work + size, *most = work + 2 * size;
-    int i, k, small = 0;
+    real sum = 0;
+    int k;
+    if (s->entries < 0)
+        return product(s->size, s->A + i * s->size, x);
+    for (k = *from; s->row[k] == i; k++)
+        sum += s->value[k] * x[s->column[k]];
+    *from = k;
+    return sum;
+}
+
+/* The output of e^{A s d} x, and x at the end, s = 1; 0: it takes too many terms.  work: 3 size reals */
+static int expand(const slopes *A, real d, real *x, taylor *p, real *work)
+{
+    real *term = work, *next = work + A->size, *most = work + 2 * A->size;
+    int i, k, small = 0, size = A->size;
     for (i = 0; i < size; i++) {
         term[i] = x[i];
         most[i] = size_of(x[i]);
     }
-    p->c[0] = product(size, row, x);
+    p->c[0] = output_of(A, x);
     for (k = 1; k <= MOST_TERMS && small < 2; k++) {
-        int all = 1;
-        slope_of(A, term, next);
+        const real part = d / (real)k;
+        real *const done = term;
+        int from = 0, all = 1;
         for (i = 0; i < size; i++) {
-            term[i] = next[i] * (d / (real)k);
-            x[i] += term[i];
-            most[i] = larger(most[i], size_of(term[i]));
-            all = all && size_of(term[i]) <= REAL_EPSILON / 8 * most[i];
+            const real now = slope_of(A, term, i, &from) * part;
+            next[i] = now;
+            x[i] += now;
+            most[i] = larger(most[i], size_of(now));
+            all &= size_of(now) <= REAL_EPSILON / 8 * most[i];
         }
-        p->c[k] = product(size, row, term);
+        term = next;
+        next = done;
+        p->c[k] = output_of(A, term);
         p->degree = k;
         small = all ? small + 1 : 0;
+        while (size > A->chain && !(term[size - 1] < 0) && !(term[size - 1] > 0))
+            next[--size] = 0;           /* from now on, in both */
     }
     return small == 2;
 }
 
 /* Part by part, of which there are 2^halvings; below 0: these are too long */
-static real search(const slopes *A, const real *row, real h, int halvings, const real *start, real peak, real *work)
+static real search(const slopes *A, real h, int halvings, const real *start, real peak, real *work)
 {
     const int size = A->size;
     const int32_t parts = (int32_t)1 << halvings;
@@ -183,10 +230,13 @@ static real search(const slopes *A, const real *row, real h, int halvings, const
     for (i = 0; i < size; i++)
         x[i] = start[i];
     for (part = 0; part < parts; part++) {
-        if (!expand(A, row, h / (real)parts, x, &p, work))
+        if (!expand(A, h / (real)parts, x, &p, work))
             return -1;
         bound_derivatives(&p);
-        peak = largest(&p, peak);
+        if (part + 1 < parts)
+            peak = larger(peak, size_of(p.end));
+        if (size_of(p.c[1]) < p.second && !(bound_of(&p) <= peak))      /* else it only rises, or stays below */
+            peak = largest(&p, peak);
     }
     return peak;
 }
@@ -206,41 +256,50 @@ real pl_peak(int size, const real *A, const real *row, const real *bend, real h,
         return peak - peak <= 0 ? most : peak;
     peak = larger(peak, most);
     list_entries(size, A, &listed);
+    listed.output = row;
+    listed.places = list_places(size, row, listed.place);
     for (i = 0; i <= MOST_HALVINGS && found < 0; i++)
-        found = search(&listed, row, h, i, x, peak, work);
+        found = search(&listed, h, i, x, peak, work);
     return found < 0 ? peak : found;
 }
 
 /* ---- the bound ---- */
 
-/* sum <- sum |A|^k d^k/k! of |row|, row <- row e^{A d}; 0: not in so many terms.  work: 3 size reals */
-static int grow(int size, const real *A, real d, real *row, real *sum, real *work)
+/* row A, and |row| |A| */
+static void row_times(const slopes *s, const real *row, real *product, const real *most, real *bound)
 {
-    real *term = work, *most = work + size, *next = work + 2 * size;
-    int i, j, k, small = 0;
-    for (i = 0; i < size; i++) {
-        term[i] = row[i];
-        sum[i] = most[i] = size_of(row[i]);
+    const int all = s->entries < 0, entries = all ? s->size * s->size : s->entries;
+    int k;
+    for (k = 0; k < s->size; k++)
+        product[k] = bound[k] = 0;
+    for (k = 0; k < entries; k++) {
+        const int i = all ? k / s->size : s->row[k], j = all ? k % s->size : s->column[k];
+        const real value = all ? s->A[k] : s->value[k];
+        product[j] += row[i] * value;
+        bound[j] += most[i] * size_of(value);
+    }
+}
+
+/* sum <- sum |A|^k d^k/k! of |row|, row <- row e^{A d}; 0: not in so many terms.  work: 4 size reals */
+static int grow(const slopes *A, real d, real *row, real *sum, real *work)
+{
+    const int size = A->size;
+    real *term = work, *most = work + size, *next = work + 2 * size, *bound = work + 3 * size;
+    int j, k, small = 0;
+    for (j = 0; j < size; j++) {
+        term[j] = row[j];
+        sum[j] = most[j] = size_of(row[j]);
     }
     for (k = 1; k <= MOST_TERMS && small < 2; k++) {
+        const real part = d / (real)k;
         int all = 1;
-        for (j = 0; j < size; j++)
-            next[j] = 0;
-        for (i = 0; i < size; i++)
-            for (j = 0; j < size; j++)
-                next[j] += term[i] * A[i * size + j];
-        for (j = 0; j < size; j++)
-            term[j] = next[j] * (d / (real)k);
-        for (j = 0; j < size; j++)
-            next[j] = 0;
-        for (i = 0; i < size; i++)
-            for (j = 0; j < size; j++)
-                next[j] += most[i] * size_of(A[i * size + j]);
+        row_times(A, term, next, most, bound);
         for (j = 0; j < size; j++) {
-            most[j] = next[j] * (d / (real)k);
+            term[j] = next[j] * part;
+            most[j] = bound[j] * part;
             row[j] += term[j];
             sum[j] += most[j];
-            all = all && most[j] <= REAL_EPSILON * sum[j];
+            all &= most[j] <= REAL_EPSILON * sum[j];
         }
         small = all ? small + 1 : 0;
     }
@@ -251,15 +310,15 @@ void pl_peak_bend(int size, const real *A, const real *row, real h, real *bend, 
 {
     const real slack = 1 + 4096 * REAL_EPSILON;
     real *r = work, *sum = work + size, *first = work + 2 * size;
-    int i, j, k;
+    slopes listed;
+    int j, k;
+    list_entries(size, A, &listed);
+    row_times(&listed, row, first, row, sum);
+    row_times(&listed, first, r, row, sum);
     for (j = 0; j < size; j++)
-        for (bend[j] = first[j] = 0, i = 0; i < size; i++)
-            first[j] += row[i] * A[i * size + j];
-    for (j = 0; j < size; j++)
-        for (r[j] = 0, i = 0; i < size; i++)
-            r[j] += first[i] * A[i * size + j];
+        bend[j] = 0;
     for (k = 0; k < BEND_PARTS; k++) {
-        const int known = grow(size, A, h / (real)BEND_PARTS, r, sum, work + 2 * size);
+        const int known = grow(&listed, h / (real)BEND_PARTS, r, sum, work + 2 * size);
         for (j = 0; j < size; j++)
             bend[j] = known ? larger(bend[j], slack * (h * h / 8) * sum[j]) : REAL_LARGE;
         if (!known)

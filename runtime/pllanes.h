@@ -132,6 +132,18 @@ PL_LANES_INLINE pl_lanesf pl_lanesf_peak(pl_lanesf peak, pl_lanesf value)
 }
 #endif
 
+/* The larger of `most` and |value|; not a number where value is none */
+PL_LANES_INLINE double pl_larger_size(double most, double value)
+{
+    const double size = value < 0.0 ? -value : value;
+    return most > size ? most : size;
+}
+PL_LANES_INLINE float pl_larger_sizef(float most, float value)
+{
+    const float size = value < 0.0f ? -value : value;
+    return most > size ? most : size;
+}
+
 /* Is a above b in some lane, or one of them not a number? */
 #if defined(PL_LANES_BYTES) && defined(__AVX512F__)
 PL_LANES_INLINE int pl_lanes_above(pl_lanes a, pl_lanes b)

@@ -326,7 +326,7 @@ float pl_untilf(float t0, uint64_t k, pl_twof h, pl_twof change);
 
 /* ---- peak.c: the largest size of an output --------------------------------------------------------------- */
 
-enum { PL_PEAK_SPACE = 5 };
+enum { PL_PEAK_SPACE = 6 };
 #define PL_PEAK_WORK(size) (PL_PEAK_SPACE * (size)) /* reals that these work in */
 
 /* The larger of `peak` and |row . x(tau)|, 0 <= tau <= h, where x' = A x from x on, of `size` entries, and row . x(h)
@@ -414,10 +414,10 @@ typedef struct pl_switching {
     const int *halvings; /* 0 .. 30: |pole| d is about 1 or below */
     const double *A;     /* size x size, row-major [1/s] */
     const double *Phi;   /* e^{A d}: the piece where nothing is crossed */
-    const double *lean;  /* d/3 row . A, so that lean . x = d/3 e' */
-    const double *sag;   /* on 0 .. d, e is off the chord through its ends by at most sag . |x(0)|: d^2/8 max|e''| */
-    const double *sway; /* on 0 .. d, e is off the cubic through its ends with its slopes there by at most sway .
-                         * |x(0)|: d^4/384 max|e''''| */
+    const double *tangent; /* d/3 row . A, so that tangent . x = d/3 e' */
+    /* On 0 .. d, e is off the chord through its ends by at most chord_error . |x(0)|: d^2/8 max|e''|, and off the cubic
+     * through its ends with its slopes there by at most cubic_error . |x(0)|: d^4/384 max|e''''| */
+    const double *chord_error, *cubic_error;
     /* of Taylor polynomials of e^{A tau} on 0 .. d, >= 3: as for pl_series, less where |pole| d is small */
     int degree;
     int max_events, max_splits; /* per step: crossings, and halvings of an interval in search of them */
@@ -471,7 +471,7 @@ typedef struct pl_switchingf {
     const int *breaks;
     const float *at;
     const int *matrix, *halvings;
-    const float *A, *Phi, *lean, *sag, *sway;
+    const float *A, *Phi, *tangent, *chord_error, *cubic_error;
     int degree, max_events, max_splits;
 } pl_switchingf;
 

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # shellcheck shell=sh disable=SC2154
 # Sourced before tap.sh by tests that compile what plgen emits. LONG=1 in the environment (`make check-long`):
-# everything with every compiler; without it no more than shows a warning, and what is alike goes to two of the four
-# by turns.
+# everything with every compiler; without it no more than shows a warning, and what is alike goes to one or two of the
+# four by turns.
 
 long() {
 	[ -n "${LONG:-}" ]
@@ -33,16 +33,26 @@ without_code() {
 	esac
 }
 
-# by_turns FILE: of its lines, gcc, g++, clang, clang++, by turns gcc and clang++ or g++ and clang; with LONG all
+# by_turns FILE: of its lines, gcc, g++, clang, clang++, one, gcc twice as often as another; with LONG all. Five turns,
+# so that none meets always the same in a loop of two, three or four.
 turn=0
 by_turns() {
-	turn=$((1 - turn))
+	turn=$((turn % 5 + 1))
 	if long; then
 		cat "$1"
-	elif [ $turn -eq 1 ]; then
-		sed -n '1p; 4p' "$1"
 	else
-		sed -n '2p; 3p' "$1"
+		sed -n "$(echo 1 4 1 3 2 | cut -d ' ' -f $turn)p" "$1"
+	fi
+}
+
+# gcc_and_another FILE: of the same lines the first, and one of the others by turns; with LONG all
+another=1
+gcc_and_another() {
+	another=$((another % 3 + 1))
+	if long; then
+		cat "$1"
+	else
+		sed -n "1p; $((another + 1))p" "$1"
 	fi
 }
 

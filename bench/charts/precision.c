@@ -61,31 +61,37 @@ static const int parts_scheme_quick[][8] = { { 1, 8, 0 }, { 4, 64, 0 }, { 1, 8, 
 static const int parts_implicit_large[] = { 1, 2, 4, 16, 0 }, parts_exact[] = { 1, 4, 0 },
 	parts_exact_quick[] = { 1, 0 };
 static const int digits[][8] = { { 3, 4, 6, 8, 10, 12, 13, 0 }, { 3, 4, 6, 8, 10, 12, 13, 0 }, { 4, 8, 12, 0 } },
-	digits_quick[] = { 3, 8, 12, 0 };
+	digits_quick[] = { 3, 8, 12, 0 }, digits_series[] = { 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 0 };
 
 struct ours {
 	const char *name, *options;
 	bool exact;                     /* else with a leftover */
+	bool series;                    /* of smooth models with few states */
+	bool tolerance;                 /* settings are tolerances, not steps */
 };
 
 static const struct ours ours[] = {
-	{ "exact", "", true },
-	{ "exact, direct", "--form direct", true },
-	{ "exact, delta", "--form delta", true },
-	{ "exact, kick-drift-kick", "--form kick-drift-kick", true },
-	{ "exact, compensated", "--accuracy compensated", true },
-	{ "exact, float", "--real float", true },
-	{ "exact, float, delta", "--real float --form delta", true },
-	{ "exact, float, kick-drift-kick", "--real float --form kick-drift-kick", true },
-	{ "exact, float, compensated", "--real float --accuracy compensated", true },
-	{ "pl", "--scheme pl", false },
-	{ "etd1", "--scheme etd1", false },
-	{ "etdrk2", "--scheme etdrk2", false },
-	{ "etdrk4", "--scheme etdrk4", false },
-	{ "nc2", "--scheme nc2", false },
-	{ "nc3", "--scheme nc3", false },
-	{ "dq4", "--scheme dq4", false },
-	{ "bm3", "--scheme bm3", false },
+	{ .name = "exact", .options = "", .exact = true },
+	{ .name = "exact, direct", .options = "--form direct", .exact = true },
+	{ .name = "exact, delta", .options = "--form delta", .exact = true },
+	{ .name = "exact, kick-drift-kick", .options = "--form kick-drift-kick", .exact = true },
+	{ .name = "exact, compensated", .options = "--accuracy compensated", .exact = true },
+	{ .name = "exact, float", .options = "--real float", .exact = true },
+	{ .name = "exact, float, delta", .options = "--real float --form delta", .exact = true },
+	{ .name = "exact, float, kick-drift-kick", .options = "--real float --form kick-drift-kick", .exact = true },
+	{ .name = "exact, float, compensated", .options = "--real float --accuracy compensated", .exact = true },
+	{ .name = "pl", .options = "--scheme pl" },
+	{ .name = "etd1", .options = "--scheme etd1" },
+	{ .name = "etdrk2", .options = "--scheme etdrk2" },
+	{ .name = "etdrk4", .options = "--scheme etdrk4" },
+	{ .name = "nc2", .options = "--scheme nc2" },
+	{ .name = "nc3", .options = "--scheme nc3" },
+	{ .name = "dq4", .options = "--scheme dq4" },
+	{ .name = "bm3", .options = "--scheme bm3" },
+	{ .name = "taylor", .options = "--scheme taylor", .series = true, .tolerance = true },
+	{ .name = "taylor 6", .options = "'--scheme=taylor 6'", .series = true },
+	{ .name = "taylor 8", .options = "'--scheme=taylor 8'", .series = true },
+	{ .name = "taylor 12", .options = "'--scheme=taylor 12'", .series = true },
 };
 enum { OURS_COUNT = sizeof ours / sizeof *ours };
 
@@ -93,6 +99,8 @@ enum { OURS_COUNT = sizeof ours / sizeof *ours };
 static bool applies(const struct charted *m, const struct ours *o)
 {
 	const bool piecewise = strncmp(m->name, "gear", 4) == 0;
+	if (o->series)
+		return !m->linear && !piecewise && m->kind != LARGE;
 	return o->exact ? m->linear || piecewise : !m->linear || strcmp(o->name, "pl") == 0;
 }
 
@@ -103,6 +111,8 @@ static const char *options_of(const struct ours *o)
 
 static const int *parts_of_ours(const struct charted *m, const struct ours *o, bool quick)
 {
+	if (o->tolerance)
+		return quick ? digits_quick : digits_series;
 	if (o->exact)
 		return quick ? parts_exact_quick : parts_exact;
 	return quick ? parts_scheme_quick[m->kind] : parts_scheme[m->kind];
@@ -143,7 +153,12 @@ static void list_model(const struct charted *m, bool quick)
 	for (const struct ours *o = ours; o < ours + OURS_COUNT; o++)
 		for (const int *parts = parts_of_ours(m, o, quick); applies(m, o) && *parts; parts++) {
 			file_of(m, o, *parts, name, sizeof name);
-			printf("%s models/%s.spec --step %s/%d %s\n", name, m->name, m->unit, *parts, options_of(o));
+			if (o->tolerance)
+				printf("%s models/%s.spec --step %s %s --tolerance 1e-%d\n", name, m->name, m->unit,
+				       options_of(o), *parts);
+			else
+				printf("%s models/%s.spec --step %s/%d %s\n", name, m->name, m->unit, *parts,
+				       options_of(o));
 		}
 }
 
@@ -221,8 +236,9 @@ static void add_ours(struct lines *lines, const struct charted *m, const struct 
 	for (const struct ours *o = ours; o < ours + OURS_COUNT; o++)
 		for (const int *parts = parts_of_ours(m, o, quick); applies(m, o) && *parts; parts++) {
 			struct line *line = add_line(lines);
-			line->ours = (struct method){ .name = o->name, .family = OURS, .settings = options_of(o) };
-			line->setting = p->unit / *parts;
+			line->ours = (struct method){ .name = o->name, .family = OURS, .settings = options_of(o),
+			                              .tolerance = o->tolerance };
+			line->setting = o->tolerance ? pow(10, -*parts) : p->unit / *parts;
 			file_of(m, o, *parts, line->file, sizeof line->file);
 		}
 }

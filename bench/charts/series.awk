@@ -58,6 +58,8 @@ BEGIN {
 	look("^nc3",                            15, "#c09000")
 	look("^dq4",                             5, "#a00050", "+4")
 	look("^bm3",                             7, "#203080", "+5")
+	look("^taylor$",                         7, "#d000d0")
+	look("^taylor",                          9, "#8000a0", "+3")
 	# fixed steps: dashed
 	look("Euler",                            1, "#007040", "2")
 	look("explicit trapez",                  2, "#40a000", "2")

@@ -155,11 +155,11 @@ void banner_regions(const struct emitter *e)
 		say(e, " *     expression %d: %s, at %s\n", i, printable(form_text(model, s->expression[i].form)), at);
 	}
 	if (e->step->swift)
-		say(e, " * A step is one product where a bound shows it clear of every breakpoint; with one "
-		       "crossing that is\n"
-		       " * certain it goes by the model's own Taylor polynomials, of degree %d; all else by the "
+		say(e, " * A step is one product where a bound shows it clear of every breakpoint; up to %d "
+		       "crossings that are\n"
+		       " * certain go by the model's own Taylor polynomials, of degree %d; all else by the "
 		       "search.\n",
-		    e->step->swift_degree);
+		    MOST_SWIFT, e->step->swift_degree);
 	else
 		say(e, " * Every step goes by the search: %s.\n", e->step->searches);
 	say(e, " * The poles above are those of the terms that are linear everywhere.\n"
@@ -283,11 +283,13 @@ static void banner_cost(const struct emitter *e)
 	if (program->calls)
 		say(e, ", %d calls of the model's own functions", program->calls);
 	say(e, ".\n");
+	if (has_peaks(e))
+		say(e, " * The look for peaks takes %d and %d more, the outputs counted, where a bound shows that none "
+		       "passes its peak.\n",
+		    program->peak_multiplications, program->peak_additions);
 	if (e->step->anchors && e->step->anchors->terms)
-		say(e, " * What loads add in the steps between comes from a table of %zu bytes, each number correctly "
-		       "rounded.\n",
-		    8 * (size_t)(e->step->anchors->steps * e->step->anchors->terms) *
-			    (program->compensated ? 2 : 1));
+		say(e, " * What loads add in the steps between comes from a table of %d bytes, each number correctly "
+		       "rounded.\n", 8 * anchor_numbers(e->step));
 }
 
 static const char *input_text(int hold)
@@ -321,7 +323,7 @@ static void banner_run(const struct emitter *e)
 	if (rows)
 		say(e, " * $n_run takes %d rows at a time, each from the state at the start of its block: "
 		       "tables of %d numbers.\n",
-		    rows->count, (rows->columns + e->system->inputs) * rows->count * rows->outputs);
+		    rows->count, row_numbers(e->step));
 	else if (e->step->no_rows)
 		say(e, " * $n_run goes step by step, without blocks of rows: %s.\n", e->step->no_rows);
 }

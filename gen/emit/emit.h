@@ -226,7 +226,19 @@ const struct kind *row_of_kind(enum step_kind kind);
 /* Does an output read an acceleration that something left over acts on? */
 bool reads_channels(const struct model *model);
 
-/* ---- emit_expansion.c: the Taylor series of the solution ---- */
+/* ---- emit_sequences.c: the coefficients of a series ---- */
+
+bool has_offset(const struct emitter *e);                         /* an expansion may start inside a step */
+const char *driven_parameter(const struct emitter *e);            /* const double u[N_INPUTS], or "" */
+void say_wrapped(const struct emitter *e, const char *text);      /* broken between summands */
+void emit_input_samples(const struct emitter *e);                 /* start, slope: what the series reads of ramps */
+void emit_force_table(const struct emitter *e);                   /* of loads that change their formula */
+void emit_expand_function(const struct emitter *e);               /* NAME_expand: all coefficients */
+/* tau, when, segment where it has them: the time after now; one in which conditions on t stand; that of the loads */
+const char *expand_call(const struct emitter *e, const char *tau, const char *when, const char *segment,
+			const char *y, const char *c);
+
+/* ---- emit_expansion.c: steps by the Taylor series of the solution ---- */
 
 bool expansion_places(const struct emitter *e);
 void emit_expansion_place(const struct emitter *e);
@@ -272,6 +284,39 @@ void emit_blockwise_at(const struct emitter *e);
 void declare_blockwise_leap(const struct emitter *e, const struct leap *leap); /* load, likewise */
 void emit_blockwise_leap(const struct emitter *e, const struct leap *leap, int entries);
 
+/* ---- region_tables.c: of regions, tables that there is one of for each matrix, and sums over their rows ---- */
+
+struct region_tables {
+	const char *text;           /* of one of them: [row][column] follows */
+	int rows, columns;
+	int from, to;               /* of branches from .. to - 1 */
+	double **value;             /* per branch */
+};
+/* over x, of all branches; and the same of one */
+struct region_tables tables_of_regions(const struct emitter *e, const struct pieces *p, const char *text, int rows,
+				       double *(*of)(const struct region_piece *));
+struct region_tables of_branch(struct region_tables t, int branch);
+double *whole_of(const struct region_piece *piece);               /* for `of`: e^{A h} */
+bool acts_at(const struct region_tables *t, int row, int column); /* an entry is not 0 everywhere */
+bool agree_at(const struct region_tables *t, int row, int column);
+/* Sum of a row over the operands of its columns; further: a term more, or NULL */
+const char *row_text(const struct region_tables *t, int row, const char *const *operand, const char *further,
+		     int indent);
+/* The largest that an expression may be off its chord: `size` of the entries of x that are not bounded.  branch -1: of
+ * all */
+const char *off_text(const struct emitter *e, const struct pieces *p, int branch, int expression,
+		     const char *const *size, int indent);
+int expressions_of(const struct emitter *e);
+bool any_pieces(const struct emitter *e);                         /* of h: then there are tables of all of it too */
+const char **places(const struct emitter *e, const char *layout); /* of each entry of x: x[%d] */
+const char **entries(const struct emitter *e, const char *layout); /* the same; "" where x is 1 */
+const char *expression_text(const struct emitter *e, const struct pieces *p, int expression,
+			    const char *const *operand, int indent);
+/* Sum of the sizes of those that are not bounded */
+const char *size_of_x(const struct emitter *e, const struct pieces *p, const char *const *size, int indent);
+/* Of a step that is swift; `expression`: names */
+void emit_swift_tables(const struct emitter *e, const struct pieces *p, const char *const *expression);
+
 /* ---- emit_modal.c: a step of modes ---- */
 
 void emit_modes(const struct emitter *e);                         /* tables; nothing of other forms */
@@ -290,7 +335,6 @@ void emit_load_advance(const struct emitter *e, const char *steps); /* `steps` N
 /* declares load1[...] for the loads wanted */
 void emit_load_states(const struct emitter *e, const bool *loads, bool time_is_there);
 void emit_load_array(const struct emitter *e, int load);          /* load1[2], what its states are called */
-const char *load_cell(const struct emitter *e, int load, int column); /* load1[0]; in the anchor s->anchor[0] */
 void emit_load_functions(const struct emitter *e, int load);      /* its states, from its phase and growth */
 void emit_load_powers(const struct emitter *e, int load);         /* those with t, from those without */
 bool outputs_read(const struct emitter *e, int load);
@@ -334,10 +378,9 @@ void emit_region_members(const struct emitter *e);
 void emit_region_start(const struct emitter *e);                  /* in set */
 void emit_region_step(const struct emitter *e);
 void emit_region_at(const struct emitter *e);
-/* emit_swift.c: of a step that is swift; `expression`: names */
-void emit_swift_tables(const struct emitter *e, const struct pieces *p, const char *const *expression);
-void emit_swift_functions(const struct emitter *e);               /* NAME_cross and what it calls */
-void emit_swift_step(const struct emitter *e);                    /* states and loads are in locals */
+/* emit_cross.c, emit_clear.c: of a step that is swift */
+void emit_crossing(const struct emitter *e);                      /* NAME_cross and what it calls */
+void emit_clear_step(const struct emitter *e);                    /* states and loads are in locals */
 /* Of models with tunable params: */
 void emit_coefficient_struct(const struct emitter *e);
 void emit_tuning_declarations(const struct emitter *e);

@@ -35,7 +35,7 @@ static void emit_factors(const struct emitter *e)
 
 static bool are_turned(const struct emitter *e)
 {
-	bool any = false;
+	bool any = e->step->anchors->turned;
 	for (int l = 0; l < e->system->loads; l++)
 		any = any || (e->anchor[l] >= 0 &&
 			      (outputs_read(e, l) || (e->step->forced && e->step->forced->load[l])));

@@ -6,7 +6,7 @@
 
 #include <string.h>
 
-enum { STEPS_AHEAD = 64, MOST_GROUPS = 4 };
+enum { STEPS_AHEAD = 64, STEPS_OF_PEAKS = 256, MOST_GROUPS = 4 };
 
 struct batch {
 	const struct emitter *e;
@@ -16,8 +16,10 @@ struct batch {
 	/* per column, of the step and of the outputs: index in `now`; -1: none; of the outputs inputs and slopes */
 	int *load[2], *input[2];
 	int forced;                     /* index of the forced part; -1: none */
-	int end;                        /* behind what outputs read */
-	int acting, bending;            /* of peaks: what acts on the states, before the step; how far it bends each */
+	/* Of peaks: what acts on the states before the step, then how far it bends each; is that computed only where
+	 * it is read, elsewhere bounded by the samples? */
+	int acting;
+	bool sampled;
 	int lanes;                      /* factors of the instance that lanes have; */
 	int factors;                    /* of an instance, that its params decide */
 	const char **factor_text;       /* s->coeffs.step[0][1] */
@@ -115,6 +117,15 @@ static bool acts(const struct emitter *e)
 	return e->step->layout.size > e->system->states;
 }
 
+/* ... all of it polynomials through samples, of which the derivatives take long? */
+static bool only_samples_act(const struct emitter *e)
+{
+	int columns = 0;
+	for (int i = 0; i < e->system->inputs; i++)
+		columns += e->system->input[i].hold > 1 ? e->system->input[i].hold + 1 : 0;
+	return e->system->states + columns == e->step->layout.size;
+}
+
 static struct batch plan(const struct emitter *e)
 {
 	struct batch b = { .e = e, .forced = -1 };
@@ -130,13 +141,9 @@ static struct batch plan(const struct emitter *e)
 		b.forced = b.shared;
 		b.shared += e->system->states;
 	}
-	b.end = b.shared;
-	b.acting = b.shared;
-	if (has_peaks(e)) {
-		b.shared += e->step->layout.size - e->system->states;
-		b.bending = b.shared;
-		b.shared += acts(e) ? peak_outputs(e->model) : 0;
-	}
+	if (has_peaks(e) && acts(e))
+		b.acting = e->step->layout.size - e->system->states + peak_outputs(e->model);
+	b.sampled = b.acting && only_samples_act(e);
 	if (e->kind->own_factors)
 		number_factors(&b);
 	return b;
@@ -453,24 +460,111 @@ static bool *loads_of_outputs(const struct batch *b)
 	return wanted;
 }
 
-/* What acts on the states at the start of a step, and how far it bends outputs at the spec's values */
-static void say_acting(const struct batch *b)
+static int shared_rows(const struct batch *b)
+{
+	return b->shared ? b->shared : 1;
+}
+
+static const char *nominal_bend(const struct emitter *e)
+{
+	return e->kind->own_factors ? spell(e, "$n_nominal.bend") : spell(e, "$n_peak_bend");
+}
+
+static void emit_acting(const struct batch *b)
 {
 	const struct emitter *e = b->e;
-	int size = e->step->layout.size, states = e->system->states;
-	const char *bend = e->kind->own_factors ? spell(e, "$n_nominal.bend") : spell(e, "$n_peak_bend");
-	if (!acts(e))
+	int size = e->step->layout.size, acting = size - e->system->states;
+	if (!b->acting)
 		return;
-	say(e, "    double x[%d];\n"
+	say(e, "\n/* What acts on the states at the start of a step, then how far with the spec's values it bends\n"
+	       " * outputs */\n"
+	       "static void $n_share_acting(const $n *s, %sdouble *acting)\n"
+	       "{\n"
+	       "    double x[%d];\n"
 	       "    size_t j;\n"
 	       "    $n_begin_step(s, %sx);\n"
 	       "    for (j = $N_STATES; j < %d; j++)\n"
-	       "        now[j + %d] = x[j];\n", size, e->system->inputs ? "u, " : "", size, b->acting - states);
+	       "        acting[j - $N_STATES] = x[j];\n", e->system->inputs ? "const double *u, " : "", size,
+	    e->system->inputs ? "u, " : "", size);
 	for (int p = 0; p < peak_outputs(e->model); p++)
-		say(e, "    now[%d] = 0.0;\n"
+		say(e, "    acting[%d] = 0.0;\n"
 		       "    for (j = $N_STATES; j < %d; j++)\n"
-		       "        now[%d] += %s[%d][j] * (x[j] < 0.0 ? -x[j] : x[j]);\n", b->bending + p, size,
-		    b->bending + p, bend, p);
+		       "        acting[%d] += %s[%d][j] * (x[j] < 0.0 ? -x[j] : x[j]);\n", acting + p, size, acting + p,
+		    nominal_bend(e), p);
+	say(e, "}\n");
+}
+
+/* How far samples no larger than `most` bend an output: by each derivative of the polynomial through them */
+static const char *reach_of_samples(const struct emitter *e, int input, int place)
+{
+	int hold = e->system->input[input].hold;
+	const char **term = ARRAY(const char *, (size_t)hold + 1), *power = "";
+	for (int m = 0; m <= hold; m++) {
+		const char *bend = format("%s[%d][%d]", nominal_bend(e), place, e->step->layout.input[input] + m);
+		term[m] = format("%s%s", scaled(tap_reach(hold, m), bend), power);
+		power = format("%s / %s", power, step_length(e));
+	}
+	return tree(hold + 1, term, 16);
+}
+
+static void emit_reach(const struct batch *b)
+{
+	const struct emitter *e = b->e;
+	if (!b->sampled)
+		return;
+	say(e, "\n/* How far at most the samples of n steps bend outputs */\n"
+	       "static void $n_share_reach(const $n *s, const double *u, size_t n, double *reach)\n"
+	       "{\n"
+	       "    double most;\n"
+	       "    size_t k;\n");
+	for (int p = 0; p < peak_outputs(e->model); p++)
+		say(e, "    reach[%d] = 0.0;\n", p);
+	for (int i = 0; i < e->system->inputs; i++) {
+		say(e, "    most = 0.0;\n"
+		       "    for (k = 0; k < %d; k++)\n"
+		       "        most = pl_larger_size(most, s->past[%d][k]);\n"
+		       "    for (k = 0; k < n; k++)\n"
+		       "        most = pl_larger_size(most, u[k * $N_INPUTS + %d]);\n", e->system->input[i].hold, i, i);
+		for (int p = 0; p < peak_outputs(e->model); p++)
+			say(e, "    reach[%d] += most * (%s);\n", p, reach_of_samples(e, i, p));
+	}
+	say(e, "    (void)s;\n"
+	       "}\n"
+	       "\n/* What acts on the states in the steps ahead */\n"
+	       "static void $n_ahead_acting(struct $n_ahead *ahead)\n"
+	       "{\n"
+	       "    double now[%d];\n"
+	       "    size_t k;\n"
+	       "    for (k = 1; k <= ahead->steps && !ahead->known; k++) {\n"
+	       "        $n_share_acting(&ahead->from, ahead->u, ahead->acting[k]);\n"
+	       "        $n_share_step(&ahead->from, ahead->u, now);\n"
+	       "        ahead->u += $N_INPUTS;\n"
+	       "    }\n"
+	       "    ahead->known = 1;\n"
+	       "}\n", shared_rows(b));
+}
+
+static int steps_ahead(const struct emitter *e)
+{
+	return has_peaks(e) ? STEPS_OF_PEAKS : STEPS_AHEAD;
+}
+
+static void emit_ahead(const struct batch *b)
+{
+	const struct emitter *e = b->e;
+	say(e, "\n/* What instances share in some steps ahead: [0] before the first, [k] in step k and behind it */\n"
+	       "struct $n_ahead {\n"
+	       "    size_t steps;\n"
+	       "    double now[%d][%d];\n", steps_ahead(e) + 1, shared_rows(b));
+	if (b->acting)
+		say(e, "    double acting[%d][%d];  /* on the states, then how far it bends outputs */\n"
+		       "    double reach[%d];       /* that at most */\n", steps_ahead(e) + 1, b->acting,
+		    peak_outputs(e->model));
+	if (b->sampled)
+		say(e, "    int known;             /* is `acting` filled in? From these, the samples of the steps: */\n"
+		       "    $n from;\n"
+		       "    const double *u;\n");
+	say(e, "};\n");
 }
 
 static void emit_shared(const struct batch *b)
@@ -479,8 +573,6 @@ static void emit_shared(const struct batch *b)
 	say(e, "\n/* What instances share in a step, which is taken: before it, */\n"
 	       "static void $n_share_step(%s, double *now)\n"
 	       "{\n", step_parameters(e));
-	if (has_peaks(e))
-		say_acting(b);
 	emit_load_states(e, loads_of_step(e), false);
 	for (int i = 0; i < b->after; i++)
 		say(e, "    now[%d] = %s;\n", i, b->shared_text[i]);
@@ -491,7 +583,7 @@ static void emit_shared(const struct batch *b)
 	       "static void $n_share_out(const $n *s, double *now)\n"
 	       "{\n");
 	emit_load_states(e, loads_of_outputs(b), false);
-	for (int i = b->after; i < (b->forced >= 0 ? b->forced : b->end); i++)
+	for (int i = b->after; i < (b->forced >= 0 ? b->forced : b->shared); i++)
 		say(e, "    now[%d] = %s;\n", i, b->shared_text[i]);
 	if (b->forced >= 0)
 		say(e, "    $n_forced(s, now + %d);\n", b->forced);
@@ -568,19 +660,19 @@ static void emit_look(const struct batch *b)
 	int size = e->step->layout.size, states = e->system->states;
 	bool own = e->kind->own_factors;
 	say(e, "\n/* Instance j by itself, from the states y on: larger values inside the step that ends at value */\n"
-	       "static void $n_batch_look(const $n_instances *b, size_t j, const double *y, const double *now, "
-	       "const double *value,\n"
+	       "static void $n_batch_look(const $n_instances *b, size_t j, const double *y, %sconst double *value,\n"
 	       "    double *peak)\n"
 	       "{\n"
 	       "    double x[%d], work[PL_PEAK_WORK(%d)]%s;\n"
-	       "    size_t i;\n", size, size, own && reads_rows(e) ? format(", row[%d]", size) : "");
+	       "    size_t i;\n", b->acting ? "const double *acting, " : "", size, size,
+	    own && reads_rows(e) ? format(", row[%d]", size) : "");
 	say(e, own ? "    $n one = b->shared, *s = &one;\n" : "");
 	for (int k = 0; k < b->factors; k++)
 		say(e, "%s    %s = b->factors[%d * b->count + j];\n", k ? "    " : "    if (b->factors) {\n    ",
 		    b->factor_text[k], k);
 	say(e, "%s    for (i = 0; i < %d; i++)\n"
-	       "        x[i] = i < $N_STATES ? y[i] : now[i + %d];\n", b->factors ? "    }\n" : "", size,
-	    b->acting - states);
+	       "        x[i] = %s;\n", b->factors ? "    }\n" : "", size,
+	    b->acting ? spell(e, "i < $N_STATES ? y[i] : acting[i - $N_STATES]") : "y[i]");
 	for (int i = 0; i < states; i++)
 		if (factor_of_momentum(e, i))
 			say(e, "    x[%d] = y[%d] / %s;\n", i, i, factor_of_momentum(e, i));
@@ -599,7 +691,7 @@ static const char *bend_over_lanes(struct batch *b, int p)
 	const struct peaks peaks = peaks_of(e->step);
 	int terms = 0;
 	for (int i = 0; i < e->system->states; i++) {
-		const char *size = format("pl_lanes_peak(pl_lanes_all(0.0), start[%d]%s%s)", i,
+		const char *size = format("pl_lanes_peak(pl_lanes_all(0.0), state[%d]%s%s)", i,
 					  factor_of_momentum(e, i) ? " / " : "",
 					  factor_of_momentum(e, i) ? factor_of_momentum(e, i) : "");
 		term[terms++] = e->kind->own_factors
@@ -607,40 +699,45 @@ static const char *bend_over_lanes(struct batch *b, int p)
 			: scaled(peaks.bend[p * e->step->layout.size + i], size);
 	}
 	if (acts(e) && e->kind->own_factors)
-		term[terms++] = format("%s * now[%d]", own_factor(b, format("s->coeffs.reach[%d]", p)), b->bending + p);
+		term[terms++] = format("%s * reach[%d]", own_factor(b, format("s->coeffs.reach[%d]", p)), p);
 	else if (acts(e))
-		term[terms++] = format("now[%d]", b->bending + p);
+		term[terms++] = format("reach[%d]", p);
 	return tree(terms, term, 15);
+}
+
+/* Of what lanes' states and outputs are at most, in a step or in some: may values in between have passed a peak? */
+static void emit_may_pass(struct batch *b)
+{
+	const struct emitter *e = b->e;
+	say(e, "\nPL_LANES_INLINE int $n_lanes_may_pass(const pl_lanes *state, %s%sconst pl_lanes *top,\n"
+	       "    const pl_lanes *peak, pl_lanes *most)\n"
+	       "{\n"
+	       "    int any = 0;\n", b->factors ? "const pl_lanes *factor, " : "",
+	    b->acting ? "const double *reach, " : "");
+	for (int o = 0; o < e->model->outputs; o++)
+		if (e->model->output[o].peak)
+			say(e, "    most[%d] = top[%d] + (%s);  /* %s */\n"
+			       "    any |= pl_lanes_above(most[%d], peak[%d]);\n", o, o,
+			    bend_over_lanes(b, peak_place(e->model, &e->model->output[o])),
+			    e->model->output[o].name, o, o);
+		else
+			say(e, "    most[%d] = peak[%d];\n", o, o);
+	say(e, "    return any;\n"
+	       "}\n");
 }
 
 /* Where a lane may have passed a peak, each is looked at by itself. */
 static void emit_lanes_look(struct batch *b)
 {
 	const struct emitter *e = b->e;
-	const char *own = b->factors ? "const pl_lanes *factor, " : "";
 	int states = e->system->states, outputs = e->model->outputs;
 	emit_look(b);
-	say(e, "\nPL_LANES_INLINE int $n_lanes_may_pass(const pl_lanes *start, %sconst double *now,\n"
-	       "    const pl_lanes *before, pl_lanes *most, const pl_lanes *value, const pl_lanes *peak)\n"
-	       "{\n"
-	       "    int any = 0;\n", own);
-	for (int o = 0; o < outputs; o++)
-		if (e->model->output[o].peak)
-			say(e, "    most[%d] = pl_lanes_peak(pl_lanes_peak(pl_lanes_all(0.0), before[%d]), value[%d])\n"
-			       "              + (%s);  /* %s */\n"
-			       "    any |= pl_lanes_above(most[%d], peak[%d]);\n", o, o, o,
-			    bend_over_lanes(b, peak_place(e->model, &e->model->output[o])),
-			    e->model->output[o].name, o, o);
-		else
-			say(e, "    most[%d] = peak[%d];\n", o, o);
-	say(e, "    return any;\n"
-	       "}\n"
-	       "\nstatic void $n_lanes_look(const $n_instances *b, size_t j, const pl_lanes *start,\n"
-	       "    const double *now, const pl_lanes *most, const pl_lanes *value, pl_lanes *peak)\n"
+	say(e, "\nstatic void $n_lanes_look(const $n_instances *b, size_t j, const pl_lanes *start,\n"
+	       "    %sconst pl_lanes *most, const pl_lanes *value, pl_lanes *peak)\n"
 	       "{\n"
 	       "    double y[%d], end[%d], largest[%d], bound;\n"
 	       "    const size_t lanes = sizeof(pl_lanes) / sizeof(double);\n"
-	       "    size_t l, i;\n", states, outputs, outputs);
+	       "    size_t l, i;\n", b->acting ? "const double *acting, " : "", states, outputs, outputs);
 	say(e, "    for (l = 0; l < lanes && j + l < b->count; l++) {\n"
 	       "        int any = 0;\n"
 	       "        for (i = 0; i < %d; i++)\n"
@@ -652,11 +749,36 @@ static void emit_lanes_look(struct batch *b)
 	       "            any |= !(bound <= largest[i]);\n"
 	       "        }\n"
 	       "        if (any)\n"
-	       "            $n_batch_look(b, j + l, y, now, end, largest);\n"
+	       "            $n_batch_look(b, j + l, y, %send, largest);\n"
 	       "        for (i = 0; i < %d; i++)\n"
 	       "            memcpy((char *)&peak[i] + l * sizeof(double), &largest[i], sizeof(double));\n"
 	       "    }\n"
-	       "}\n", states, outputs, outputs);
+	       "}\n", states, outputs, b->acting ? "acting, " : "", outputs);
+}
+
+/* Peaks of which values inside the step may pass are looked for. */
+static void say_look(const struct batch *b)
+{
+	const struct emitter *e = b->e;
+	for (int o = 0; o < e->model->outputs; o++)
+		if (e->model->output[o].peak)
+			say(e, "    top[%d] = pl_lanes_peak(pl_lanes_peak(pl_lanes_all(0.0), before[%d]), "
+			       "value[%d]);\n", o, o, o);
+		else
+			say(e, "    top[%d] = peak[%d];\n", o, o);
+	say(e, "    if ($n_lanes_may_pass(start, %s%stop, peak, most)) {\n"
+	       "        const pl_lanes from[$N_STATES] = {", b->factors ? "factor, " : "",
+	    b->acting ? format("acting + %d, ", e->step->layout.size - e->system->states) : "");
+	for (int i = 0; i < e->system->states; i++)
+		say(e, "%sstart[%d]", i ? ", " : "", i);
+	say(e, "};  /* these are in memory here only */\n"
+	       "        pl_lanes to[$N_OUTPUTS], bound[$N_OUTPUTS], largest[$N_OUTPUTS];\n"
+	       "        memcpy(to, value, sizeof to);\n"
+	       "        memcpy(bound, most, sizeof bound);\n"
+	       "        memcpy(largest, peak, sizeof largest);\n"
+	       "        $n_lanes_look(b, j, from, %sbound, to, largest);\n"
+	       "        memcpy(peak, largest, sizeof largest);\n"
+	       "    }\n", b->acting ? "acting, " : "");
 }
 
 /* Outputs of a step's end into peak and out, where they are wanted */
@@ -664,31 +786,18 @@ static void emit_tell(struct batch *b)
 {
 	const struct emitter *e = b->e;
 	bool peaks = has_peaks(e);
-	if (peaks)
-		emit_lanes_look(b);
 	say(e, "\nPL_LANES_INLINE void $n_lanes_tell(const $n_instances *b, size_t j,\n"
-	       "    %sconst pl_lanes *y,%s const double *now, %spl_lanes *peak, double *out)\n"
+	       "    %sconst pl_lanes *y,%s const double *now, %s%spl_lanes *peak, double *out)\n"
 	       "{\n"
 	       "    pl_lanes value[$N_OUTPUTS];\n"
 	       "%s"
 	       "    $n_lanes_out(y, %snow, value);\n", peaks ? "const pl_lanes *start, " : "",
-	    b->factors ? " const pl_lanes *factor," : "", peaks ? "pl_lanes *before, " : "",
-	    peaks ? spell(e, "    pl_lanes most[$N_OUTPUTS];  /* that values in the step can be */\n") : "",
+	    b->factors ? " const pl_lanes *factor," : "", b->acting ? "const double *acting, " : "",
+	    peaks ? "pl_lanes *before, " : "",
+	    peaks ? spell(e, "    pl_lanes top[$N_OUTPUTS], most[$N_OUTPUTS];  /* at its ends, in it */\n") : "",
 	    b->factors ? "factor, " : "");
 	if (peaks)
-		say(e, "    if ($n_lanes_may_pass(start, %snow, before, most, value, peak)) {\n"
-		       "        const pl_lanes from[$N_STATES] = {", b->factors ? "factor, " : "");
-	for (int i = 0; i < e->system->states && peaks; i++)
-		say(e, "%sstart[%d]", i ? ", " : "", i);
-	if (peaks)
-		say(e, "};  /* these are in memory here only */\n"
-		       "        pl_lanes to[$N_OUTPUTS], bound[$N_OUTPUTS], largest[$N_OUTPUTS];\n"
-		       "        memcpy(to, value, sizeof to);\n"
-		       "        memcpy(bound, most, sizeof bound);\n"
-		       "        memcpy(largest, peak, sizeof largest);\n"
-		       "        $n_lanes_look(b, j, from, now, bound, to, largest);\n"
-		       "        memcpy(peak, largest, sizeof largest);\n"
-		       "    }\n");
+		say_look(b);
 	for (int o = 0; o < e->model->outputs; o++) {
 		say(e, "    peak[%d] = pl_lanes_peak(peak[%d], value[%d]);\n", o, o, o);
 		if (e->model->output[o].peak)
@@ -710,9 +819,10 @@ static const char *from_group(int group)
 }
 
 /* A line for each group: # its number, @ its first instance, ! its factors where there are some */
-static void say_groups(const struct emitter *e, const struct batch *b, const char *layout)
+static void say_groups(const struct batch *b, int groups, const char *layout)
 {
-	for (int g = 0; g < groups_of(e); g++) {
+	const struct emitter *e = b->e;
+	for (int g = 0; g < groups; g++) {
 		say(e, "    ");
 		for (const char *text = layout; *text; text++)
 			if (*text == '#')
@@ -729,65 +839,205 @@ static void say_groups(const struct emitter *e, const struct batch *b, const cha
 	}
 }
 
-static void emit_block(const struct batch *b)
+static void say_locals(const struct batch *b, int groups)
 {
 	const struct emitter *e = b->e;
-	int groups = groups_of(e);
-	bool peaks = has_peaks(e);
-	say(e, "\n/* Instances from `first` on, %d a lane, over n steps; now[0]: what they share before these */\n"
-	       "static void $n_batch_block($n_instances *b, size_t first, size_t n, const double (*now)[%d],\n"
-	       "    double *out)\n"
-	       "{\n"
-	       "%s"
-	       "    pl_lanes y[%d][%d], peak[%d][$N_OUTPUTS];\n", groups, b->shared ? b->shared : 1,
+	say(e, "%s"
+	       "    pl_lanes y[%d][%d], peak[%d][$N_OUTPUTS];\n",
 	    groups > 1 ? "    const size_t lanes = sizeof(pl_lanes) / sizeof(double);\n" : "", groups,
 	    stepped_rows(e), groups);
 	if (b->factors)
 		say(e, "    pl_lanes factor[%d][%d];\n", groups, b->lanes);
+}
+
+/* Step by step, with outputs of each */
+static void emit_block(const struct batch *b, const char *name, int groups)
+{
+	const struct emitter *e = b->e;
+	bool peaks = has_peaks(e);
+	say(e, "\n/* Instances from `first` on, %s, over the steps ahead */\n"
+	       "static void $n_batch_%s($n_instances *b, size_t first, %sstruct $n_ahead *ahead, double *out)\n"
+	       "{\n", groups > 1 ? format("%d a lane", groups) : "one a lane", name, b->sampled ? "" : "const ");
+	say_locals(b, groups);
 	if (peaks)
 		say(e, "    pl_lanes start[%d][$N_STATES], before[%d][$N_OUTPUTS];\n", groups, groups);
 	say(e, "    size_t k;\n");
-	say_groups(e, b, spell(e, "$n_lanes_take(b, @, y[#], !peak[#]);"));
+	say_groups(b, groups, spell(e, "$n_lanes_take(b, @, y[#], !peak[#]);"));
 	if (peaks)
-		say_groups(e, b, spell(e, "$n_lanes_out(y[#], !now[0], before[#]);"));
-	say(e, "    for (k = 1; k <= n; k++) {\n");
+		say_groups(b, groups, spell(e, "$n_lanes_out(y[#], !ahead->now[0], before[#]);"));
+	if (b->sampled)
+		say(e, "    $n_ahead_acting(ahead);\n");
+	say(e, "    for (k = 1; k <= ahead->steps; k++) {\n");
 	for (int i = 0; i < e->system->states && peaks; i++)
-		say_groups(e, b, format("\tstart[#][%d] = y[#][%d];", i, i));
-	say_groups(e, b, spell(e, "\t$n_lanes_step(y[#], !now[k]);"));
+		say_groups(b, groups, format("\tstart[#][%d] = y[#][%d];", i, i));
+	say_groups(b, groups, spell(e, "\t$n_lanes_step(y[#], !ahead->now[k]);"));
 	say(e, "        if (b->peak || out) {\n");
-	say_groups(e, b, spell(e, peaks ? "\t\t$n_lanes_tell(b, @, start[#], y[#], !now[k], before[#], peak[#], out);"
-					: "\t\t$n_lanes_tell(b, @, y[#], !now[k], peak[#], out);"));
+	say_groups(b, groups, spell(e, "\t\t$n_lanes_tell(b, @, %sy[#], !ahead->now[k], %s%speak[#], out);",
+				    peaks ? "start[#], " : "", b->acting ? "ahead->acting[k], " : "",
+				    peaks ? "before[#], " : ""));
 	say(e, "            out = out ? out + $N_OUTPUTS * b->count : NULL;\n"
 	       "        }\n"
 	       "    }\n");
-	say_groups(e, b, spell(e, "$n_lanes_give(b, @, y[#], peak[#]);"));
+	say_groups(b, groups, spell(e, "$n_lanes_give(b, @, y[#], peak[#]);"));
 	say(e, "}\n");
+}
+
+/* ---- steps of which only the peaks are wanted: mostly clear by what states and outputs are at most ---- */
+
+/* Of these, what lanes have before the first step, and after each */
+static void emit_lanes_widen(const struct batch *b)
+{
+	const struct emitter *e = b->e;
+	int states = e->system->states, outputs = e->model->outputs;
+	const char *own = b->factors ? "const pl_lanes *factor, " : "", *given = b->factors ? "factor, " : "";
+	say(e, "\n/* The largest |state| and |output| so far */\n"
+	       "PL_LANES_INLINE void $n_lanes_first(const pl_lanes *y, %sconst double *now, pl_lanes *state,\n"
+	       "    pl_lanes *top)\n"
+	       "{\n"
+	       "    $n_lanes_out(y, %snow, top);\n", own, given);
+	for (int i = 0; i < states; i++)
+		say(e, "    state[%d] = pl_lanes_peak(pl_lanes_all(0.0), y[%d]);\n", i, i);
+	for (int o = 0; o < outputs; o++)
+		say(e, e->model->output[o].peak ? "    top[%d] = pl_lanes_peak(pl_lanes_all(0.0), top[%d]);\n"
+						: "    top[%d] = pl_lanes_all(0.0);\n", o, o);
+	say(e, "}\n"
+	       "\nPL_LANES_INLINE void $n_lanes_widen(const pl_lanes *y, %sconst double *now, pl_lanes *state,\n"
+	       "    pl_lanes *top)\n"
+	       "{\n"
+	       "    pl_lanes value[$N_OUTPUTS];\n"
+	       "    $n_lanes_out(y, %snow, value);\n", own, given);
+	for (int i = 0; i < states; i++)
+		say(e, "    state[%d] = pl_lanes_peak(state[%d], y[%d]);\n", i, i, i);
+	for (int o = 0; o < outputs; o++)
+		say(e, "    top[%d] = pl_lanes_peak(top[%d], value[%d]);\n", o, o, o);
+	say(e, "}\n");
+}
+
+/* The peaks at ends of steps are known before extremes are looked for: few are larger. */
+static void emit_lanes_end(const struct batch *b)
+{
+	const struct emitter *e = b->e;
+	int outputs = e->model->outputs;
+	say(e, "\n/* After these steps: where there may be more in between they are taken again, one by one. */\n"
+	       "PL_LANES_INLINE void $n_lanes_end($n_instances *b, size_t j, %sstruct $n_ahead *ahead,\n"
+	       "    const pl_lanes *y, %sconst pl_lanes *state, const pl_lanes *top, pl_lanes *peak)\n"
+	       "{\n"
+	       "    pl_lanes most[$N_OUTPUTS];\n", b->sampled ? "" : "const ",
+	    b->factors ? "const pl_lanes *factor, " : "");
+	for (int o = 0; o < outputs; o++)
+		say(e, "    peak[%d] = pl_lanes_peak(peak[%d], top[%d]);\n", o, o, o);
+	say(e, "    if (!b->peak || !$n_lanes_may_pass(state, %s%stop, peak, most)) {\n"
+	       "        $n_lanes_give(b, j, y, peak);\n"
+	       "        return;\n"
+	       "    }\n", b->factors ? "factor, " : "", b->acting ? "ahead->reach, " : "");
+	for (int o = 0; o < outputs; o++)
+		say(e, "    pl_lanes_store(b->peak + %d * b->count + j, peak[%d], b->count - j);\n", o, o);
+	say(e, "    $n_batch_one_by_one(b, j, ahead, NULL);\n"
+	       "}\n");
+}
+
+static void emit_swift_block(const struct batch *b, const char *name, int groups)
+{
+	const struct emitter *e = b->e;
+	say(e, "\n/* Instances from `first` on, %s, over the steps ahead */\n"
+	       "static void $n_batch_%s($n_instances *b, size_t first, %sstruct $n_ahead *ahead)\n"
+	       "{\n", groups > 1 ? format("%d a lane", groups) : "one a lane", name, b->sampled ? "" : "const ");
+	say_locals(b, groups);
+	say(e, "    pl_lanes state[%d][$N_STATES], top[%d][$N_OUTPUTS];\n"
+	       "    size_t k;\n", groups, groups);
+	say_groups(b, groups, spell(e, "$n_lanes_take(b, @, y[#], !peak[#]);"));
+	say_groups(b, groups, spell(e, "$n_lanes_first(y[#], !ahead->now[0], state[#], top[#]);"));
+	say(e, "    for (k = 1; k <= ahead->steps; k++) {\n");
+	say_groups(b, groups, spell(e, "\t$n_lanes_step(y[#], !ahead->now[k]);"));
+	say_groups(b, groups, spell(e, "\t$n_lanes_widen(y[#], !ahead->now[k], state[#], top[#]);"));
+	say(e, "    }\n");
+	say_groups(b, groups, spell(e, "$n_lanes_end(b, @, ahead, y[#], !state[#], top[#], peak[#]);"));
+	say(e, "}\n");
+}
+
+/* ---- NAME_batch ---- */
+
+static void emit_blocks(struct batch *b)
+{
+	const struct emitter *e = b->e;
+	int groups = groups_of(e);
+	if (!has_peaks(e)) {
+		emit_block(b, "block", groups);
+		if (groups > 1)
+			emit_block(b, "group", 1);
+		return;
+	}
+	emit_block(b, "one_by_one", 1);
+	emit_lanes_widen(b);
+	emit_lanes_end(b);
+	emit_swift_block(b, "block", groups);
+	if (groups > 1)
+		emit_swift_block(b, "group", 1);
+}
+
+/* ... computed, or of samples bounded, for as many steps as there are, u at the first */
+static void say_shared_steps(const struct batch *b)
+{
+	const struct emitter *e = b->e;
+	bool inputs = e->system->inputs > 0;
+	int peaks = peak_outputs(e->model);
+	say(e, "        ahead.steps = n < %d ? n : %d;\n"
+	       "        $n_share_out(&b->shared, ahead.now[0]);\n", steps_ahead(e), steps_ahead(e));
+	if (b->sampled)
+		say(e, "        ahead.known = 0;\n"
+		       "        ahead.from = b->shared;\n"
+		       "        ahead.u = u;\n"
+		       "        $n_share_reach(&b->shared, u, ahead.steps, ahead.reach);\n");
+	for (int p = 0; p < peaks && b->acting && !b->sampled; p++)
+		say(e, "        ahead.reach[%d] = 0.0;\n", p);
+	say(e, "        for (k = 1; k <= ahead.steps; k++) {\n");
+	if (b->acting && !b->sampled)
+		say(e, "            $n_share_acting(&b->shared, %sahead.acting[k]);\n", inputs ? "u, " : "");
+	for (int p = 0; p < peaks && b->acting && !b->sampled; p++)
+		say(e, "            ahead.reach[%d] = pl_larger_size(ahead.reach[%d], ahead.acting[k][%d]);\n", p, p,
+		    b->acting - peaks + p);
+	say(e, "            $n_share_step(&b->shared, %sahead.now[k]);\n"
+	       "            $n_share_out(&b->shared, ahead.now[k]);\n", inputs ? "u, " : "");
+	if (inputs)
+		say(e, "            u += $N_INPUTS;\n");
+	say(e, "        }\n");
+}
+
+/* As many whole blocks as there are, then single groups */
+static void say_blocks(const struct batch *b)
+{
+	const struct emitter *e = b->e;
+	bool single = groups_of(e) > 1;
+	const char *wanted = has_peaks(e) ? "!out && " : "", *last = has_peaks(e) ? "" : ", out";
+	if (has_peaks(e))
+		say(e, "        for (first = 0; out && first < b->count; first += lanes)\n"
+		       "            $n_batch_one_by_one(b, first, &ahead, out);\n");
+	say(e, "        for (first = 0; %sfirst < b->count%s; first += block)\n"
+	       "            $n_batch_block(b, first, &ahead%s);\n", wanted,
+	    single ? " && b->count - first > block - lanes" : "", last);
+	if (single)
+		say(e, "        for (; %sfirst < b->count; first += lanes)\n"
+		       "            $n_batch_group(b, first, &ahead%s);\n", wanted, last);
 }
 
 static void emit_batch_function(const struct batch *b)
 {
 	const struct emitter *e = b->e;
-	bool inputs = e->system->inputs > 0;
+	int groups = groups_of(e);
+	bool single = groups > 1, lanes = single || has_peaks(e);
 	say(e, "\nvoid $n_batch($n_instances *b, size_t n, %sdouble *out)\n"
 	       "{\n"
-	       "    const size_t block = %d * sizeof(pl_lanes) / sizeof(double);\n"
-	       "    double now[%d][%d];\n"
-	       "    size_t first, k, steps;\n", inputs ? "const double *u, " : "", groups_of(e), STEPS_AHEAD + 1,
-	    b->shared ? b->shared : 1);
-	say(e, "    for (; n > 0; n -= steps) {\n"
-	       "        steps = n < %d ? n : %d;\n"
-	       "        $n_share_out(&b->shared, now[0]);\n"
-	       "        for (k = 1; k <= steps; k++) {\n"
-	       "            $n_share_step(&b->shared, %snow[k]);\n"
-	       "            $n_share_out(&b->shared, now[k]);\n", STEPS_AHEAD, STEPS_AHEAD, inputs ? "u, " : "");
-	if (inputs)
-		say(e, "            u += $N_INPUTS;\n");
-	say(e, "        }\n"
-	       "        for (first = 0; first < b->count; first += block)\n"
-	       "            $n_batch_block(b, first, steps, (const double (*)[%d])now, out);\n"
-	       "        out = out ? out + steps * $N_OUTPUTS * b->count : NULL;\n"
+	       "    const size_t %sblock = %s%s;\n"
+	       "    struct $n_ahead ahead;\n"
+	       "    size_t first, k;\n", e->system->inputs ? "const double *u, " : "",
+	    lanes ? "lanes = sizeof(pl_lanes) / sizeof(double), " : "", single ? format("%d * ", groups) : "",
+	    lanes ? "lanes" : "sizeof(pl_lanes) / sizeof(double)");
+	say(e, "    for (; n > 0; n -= ahead.steps) {\n");
+	say_shared_steps(b);
+	say_blocks(b);
+	say(e, "        out = out ? out + ahead.steps * $N_OUTPUTS * b->count : NULL;\n"
 	       "    }\n"
-	       "}\n", b->shared ? b->shared : 1);
+	       "}\n");
 }
 
 /* ---- init, set, get, use ---- */
@@ -878,12 +1128,19 @@ static void emit_batch_access(const struct batch *b)
 void emit_batch(const struct emitter *e)
 {
 	struct batch b = plan(e);
+	emit_ahead(&b);
+	emit_acting(&b);
 	emit_shared(&b);
+	emit_reach(&b);
 	emit_lanes_step(&b);
 	emit_lanes_out(&b);
 	emit_take(&b);
+	if (has_peaks(e)) {
+		emit_may_pass(&b);
+		emit_lanes_look(&b);
+	}
 	emit_tell(&b);
-	emit_block(&b);
+	emit_blocks(&b);
 	emit_batch_function(&b);
 	emit_batch_access(&b);
 }

@@ -249,7 +249,8 @@ static const char *growth_now(const struct emitter *e, int i)
 	return now_of(e, "growth", "pl_growth", i);
 }
 
-const char *load_cell(const struct emitter *e, int load, int column)
+/* load1[0]; in the anchor s->anchor[0] */
+static const char *load_cell(const struct emitter *e, int load, int column)
 {
 	return e->at_anchor ? format("s->anchor[%d]", e->anchor[load] + column)
 			    : format("load%d[%d]", load + 1, column);

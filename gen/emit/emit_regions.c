@@ -191,7 +191,7 @@ void emit_region_start(const struct emitter *e)
 	       "{\n"
 	       "    int i;\n");
 	declare_room(e);
-	emit_load_states(e, needed_loads(e), false);
+	emit_turned_loads(e, needed_loads(e), false);
 	emit_x(e, false);
 	say(e, "    pl_switching_start(&$n_switching, x, &s->contact, work);\n"
 	       "}\n");
@@ -238,7 +238,7 @@ static void emit_searched_step(const struct emitter *e)
 	say(e, "    int i;\n");
 	declare_room(e);
 	emit_set_aside(e);
-	emit_load_states(e, needed_loads(e), false);
+	emit_turned_loads(e, needed_loads(e), false);
 	emit_x(e, true);
 	emit_search(e);
 	emit_take_back(e);
@@ -250,7 +250,7 @@ static void emit_searched_step(const struct emitter *e)
 static void emit_apart_search(const struct emitter *e)
 {
 	int size = e->step->layout.size;
-	emit_swift_functions(e);
+	emit_crossing(e);
 	say(e, "\n"
 	       "static PL_APART void $n_seek($n *s, double x[%d])\n"
 	       "{\n"
@@ -269,8 +269,8 @@ static void emit_whole_step(const struct emitter *e)
 		all[i] = true;
 	emit_set_aside(e);
 	emit_raw_locals(e, all, false);
-	emit_load_states(e, needed_loads(e), false);
-	emit_swift_step(e);
+	emit_turned_loads(e, needed_loads(e), false);
+	emit_clear_step(e);
 	emit_take_back(e);
 	emit_step_end(e);
 	if (e->step->carries)           /* what was set aside is in no bound */

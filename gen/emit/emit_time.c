@@ -53,7 +53,7 @@ static bool *wanted_loads(const struct emitter *e, const int *index)
 static void store_derivatives(const struct emitter *e, int input, int at)
 {
 	int hold = e->system->input[input].hold, before = 0;
-	const char **term = ARRAY(const char *, (size_t)hold + 1), *over = "";
+	const char **term = ARRAY(const char *, (size_t)hold + 1), *power = "";
 	mpq_t weight, one;
 	mpq_inits(weight, one, NULL);
 	mpq_set_ui(one, 1, 1);
@@ -66,8 +66,9 @@ static void store_derivatives(const struct emitter *e, int input, int at)
 			if (mpq_sgn(weight) != 0)
 				term[terms++] = scaled(round_rational(weight), input_operand(e, before + c));
 		}
-		say(e, "    x[%d] = (%s)%s;\n", at + m, tree(terms, term, 13), over);
-		over = format("%s / %s", over, step_length(e));
+		say(e, "    x[%d] = (%s)%s;\n", at + m, tree(terms, term, 13),
+		    m > 1 ? format(" / (%s)", power) : m ? format(" / %s", power) : "");
+		power = m ? format("%s * %s", power, step_length(e)) : step_length(e);
 	}
 	mpq_clears(weight, one, NULL);
 }

@@ -29,6 +29,7 @@ static const struct name { const char *name, *stem; bool called; } names[] = {
 	{ "pl_lanes", "pl_lanes", false }, { "pl_lanes_load", "pl_lanes", false },
 	{ "pl_lanes_store", "pl_lanes", false },
 	{ "pl_lanes_above", "pl_lanes", false }, { "pl_lanes_all", "pl_lanes", false },
+	{ "pl_larger_size", "pl_larger_size", false },
 	{ "pl_lanes_peak", "pl_lanes", false }, { "pl_lanes_accumulate", "pl_lanes", false },
 	{ "pl_model", "pl_model", false }, { "sin", "sin", true },
 	{ "cos", "cos", true }, { "tan", "tan", true }, { "exp", "exp", true }, { "log", "log", true },

@@ -3,13 +3,6 @@
  * the growth that elimination over polynomials has. */
 #include "math/math.h"
 
-struct samples {
-	int n, count, degree;       /* count = degree + 1 points */
-	long *point;
-	mpz_t *det;                 /* per point */
-	mpz_t **adj;                /* per point n x n, or NULL */
-};
-
 static int degree_bound(struct polymat P)
 {
 	int bound = 0;

@@ -220,11 +220,19 @@ static bool declared_later(const struct parser *p, const char *name)
 	return false;
 }
 
+static _Noreturn void peak_inside(struct place at)
+{
+	error(at, "it is the largest |EXPR| so far, and no part of an expression",
+	      "peak stands alone: output NAME = peak(EXPR)");
+}
+
 static _Noreturn void unknown_name(const struct parser *p, struct token token)
 {
 	if (declared_later(p, token.name))
 		error(token.at, "names are declared before use; this one is declared further down", "unknown name '%s'",
 		      token.name);
+	if (strcmp(token.name, "peak") == 0 && token.primes == 0 && is_op(p, "("))
+		peak_inside(token.at);
 	error(token.at, spec_suggestion(p->spec, token.name), "unknown name '%s'", token.name);
 }
 
@@ -777,7 +785,6 @@ static struct symbol *read_plain_output(struct parser *p, struct token name)
 	return symbol;
 }
 
-/* output: output ( NAME = expression | name ) { , ... } */
 /* `peak(`, unless that is a name of the spec's own */
 static bool take_peak(struct parser *p)
 {
@@ -787,6 +794,7 @@ static bool take_peak(struct parser *p)
 	return true;
 }
 
+/* output: output ( NAME = expression | NAME = peak ( expression ) | name ) { , ... } */
 static void read_output(struct parser *p)
 {
 	do {
@@ -800,10 +808,13 @@ static void read_output(struct parser *p)
 		if (name.primes > 0 || is_reserved(name.name))
 			error(name.at, NULL, "'%s' cannot be the name of an output", name.name);
 		take(p);
+		struct place at = p->token.at;
 		bool peak = take_peak(p);
 		struct node *value = read_expression(p);
 		if (peak)
 			expect_op(p, ")", "')' or an operator");
+		if (peak && p->token.kind == TOKEN_OPERATOR && strchr("+-*/^<>=!?", p->token.op[0]))
+			peak_inside(at);
 		struct symbol *output = declare(p, name, SYMBOL_OUTPUT, false);
 		output->value = value;
 		output->peak = peak;

@@ -118,6 +118,10 @@ static void person_step(FILE *to, const struct step *step)
 			step->no_anchors ? step->no_anchors : "");
 	if (program->calls)
 		fprintf(to, ", %d calls of the model's own functions", program->calls);
+	if (peak_outputs(step->model) > 0)
+		fprintf(to, ".\nThe look for peaks takes %d and %d more, the outputs counted, where a bound shows that "
+			"none passes its peak",
+			program->peak_multiplications, program->peak_additions);
 	if (step->model->relative) {
 		fputs(".\n", to);
 		person_relative(to, step->model);
@@ -165,17 +169,27 @@ static long swift_bytes(const struct step *step)
 	long size = step->layout.size, halves = 0;
 	for (int k = 0; k < step->branches; k++)
 		halves = halves || step->branch[k].halvings > 0;
-	return 8 * s->systems * (s->expressions * (2 * size + 1) + halves * size * (size + 2 * s->expressions)) +
-	       24 * (long)s->regions * s->expressions + 4 * s->expressions + 16 * (step->swift_degree + 1);
+	return 8 * s->systems * (s->expressions * (3 * size + 1) + halves * size * (size + 2 * s->expressions)) +
+	       28 * (long)s->regions * s->expressions + 8 * (step->swift_degree + 1);
 }
 
-/* What a swift step does before it leaves it to the search, at most */
+/* Of cos, sin and e^{at} in the steps after an anchor */
+static long anchor_bytes(const struct step *step)
+{
+	long numbers = 0;
+	for (int l = 0; l < step->branch->system.loads && step->anchors; l++)
+		if (is_anchored(step, l))
+			numbers += step->anchors->steps * (1 + oscillates(step->branch->system.load[l].wave));
+	return 8 * numbers;
+}
+
+/* What a swift step does before it leaves it to the search, at most: in each part of the step bounds, and polynomials
+ * of x, corrected */
 static long swift_multiplications(const struct step *step)
 {
-	long size = step->layout.size, terms = step->swift_degree + 1;
-	return step->swift ? size * size + 8 * step->model->switching->expressions * size +
-				     2 * terms * (size * size + 4 * size + 8)
-			   : 0;
+	long size = step->layout.size, bounds = step->model->switching->expressions * (12 * size + 60);
+	long moves = 6 * step->swift_degree * (size * size + size) + 12 * size * size;
+	return step->swift ? size * size + MOST_LOOKS * (bounds + moves) : 0;
 }
 
 /* Bytes of tables, and the most that a step can take: every piece of it by a Taylor polynomial, all events and splits
@@ -185,7 +199,7 @@ static void person_regions(FILE *to, const struct step *step)
 	const struct switching *s = step->shown->model->switching;
 	long size = step->layout.size, matrices = s->systems, degree = step->series.degree, pieces = 1;
 	long bytes = 8 * (s->expressions * size + matrices * (2 * size * size + 3 * s->expressions * size)) +
-		     4 * (s->regions + s->expressions + matrices);
+		     4 * (s->regions + s->expressions + matrices) + anchor_bytes(step);
 	if (step->swift)
 		bytes += swift_bytes(step);
 	for (int k = 0; k < step->branches; k++)
@@ -212,9 +226,9 @@ static void person_regions(FILE *to, const struct step *step)
 	}
 	if (step->swift)
 		fprintf(to,
-			"A step that a bound shows clear is one product; one crossing goes by Taylor polynomials of "
-			"degree %d, all else by the search.\n",
-			step->swift_degree);
+			"A step that a bound shows clear is one product; up to %d crossings go by Taylor polynomials "
+			"of degree %d, all else by the search.\n",
+			MOST_SWIFT, step->swift_degree);
 	else
 		fprintf(to, "Every step goes by the search: %s.\n", step->searches);
 	fprintf(to, "Tables: %ld bytes. Per step at most %d crossings and %d splits; at most %ld multiplications.\n",
@@ -512,6 +526,31 @@ static void json_tuning(FILE *to, const struct tuning *t)
 	fputs("],\n", to);
 }
 
+/* A step; beside it what anchors, peaks, blocks of rows and forced parts take */
+static void json_cost(FILE *to, const struct step *step)
+{
+	const struct program *program = step->program;
+	fprintf(to, "  \"cost\": {\"multiplications\": %d, \"additions\": %d", program->multiplications,
+		program->additions);
+	if (program->calls)
+		fprintf(to, ", \"calls\": %d", program->calls);
+	if (program->wave_multiplications)
+		fprintf(to, ",\n    \"loads\": {\"every\": %d, \"multiplications\": %d, \"additions\": %d, "
+			"\"numbers\": %d}",
+			step->anchors ? step->anchors->steps : 1, program->wave_multiplications,
+			program->wave_additions, anchor_numbers(step));
+	if (peak_outputs(step->model) > 0)
+		fprintf(to, ",\n    \"peaks\": {\"multiplications\": %d, \"additions\": %d}",
+			program->peak_multiplications, program->peak_additions);
+	if (step->forced)
+		fprintf(to, ",\n    \"shown\": {\"multiplications\": %d, \"additions\": %d}",
+			step->forced->multiplications, step->forced->additions);
+	if (step->rows)
+		fprintf(to, ",\n    \"rows\": {\"count\": %d, \"numbers\": %d}", step->rows->count,
+			row_numbers(step));
+	fputs("}\n", to);
+}
+
 void explain_json(FILE *to, const struct step *step)
 {
 	const struct model *model = step->shown->model;
@@ -560,7 +599,6 @@ void explain_json(FILE *to, const struct step *step)
 	if (step->rounding.known)
 		fprintf(to, "  \"rounding\": {\"steps\": %d, \"relative\": %.17g, \"state\": \"%s\"},\n",
 			step->rounding.steps, step->rounding.relative, model->state_name[step->rounding.state]);
-	fprintf(to, "  \"cost\": {\"multiplications\": %d, \"additions\": %d", step->program->multiplications,
-		step->program->additions);
-	fprintf(to, step->program->calls ? ", \"calls\": %d}\n}\n" : "}\n}\n", step->program->calls);
+	json_cost(to, step);
+	fputs("}\n", to);
 }

@@ -406,8 +406,11 @@ void explain_program(FILE *to, const struct step *step)
 	else
 		print_list(to, step);
 	print_reads(to, step);
-	fprintf(to, "Cost: %d multiplications, %d additions, %d calls%s%s\n", program->multiplications,
+	fprintf(to, "Cost: %d multiplications, %d additions, %d calls%s%s%s\n", program->multiplications,
 		program->additions, program->calls,
+		peak_outputs(step->model) > 0 ? format("; the look for peaks %d and %d more",
+						       program->peak_multiplications, program->peak_additions)
+					      : "",
 		step->anchors ? format("; every %d steps %d and %d more", step->anchors->steps,
 				       program->wave_multiplications, program->wave_additions)
 			      : "",

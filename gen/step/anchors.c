@@ -6,7 +6,7 @@
  *
  * with L the load's columns of the step, z its states and E_l how they go on in l steps. So L E_l, for each l, is a
  * table of constants, each enclosed and rounded once (Ziv); nothing is added up from step to step, and nothing
- * accumulates. */
+ * accumulates. A step of regions has many L and asks for z itself: there E_l alone is the table. */
 #include "step/step.h"
 
 #include <math.h>
@@ -27,7 +27,6 @@ static const char *objection(const struct step *step)
 {
 	static const char *const of_kind[KINDS] = {
 		[KIND_TUNED] = "tunable params: the target would have to make the tables",
-		[KIND_REGIONS] = "regions: crossings need the loads at any time",
 		[KIND_LEFTOVER] = "a leftover: the scheme needs the loads between steps",
 		[KIND_EXPANDED] = "a series: its steps are no steps of h"
 	};
@@ -39,7 +38,7 @@ static const char *objection(const struct step *step)
 		return "--real float: there functions are cheap, and memory is short";
 	if (step->branch->system.segments > 1)
 		return "loads that change their formula in time";
-	if (step->branch->system.states > LIMIT_UNROLLED_STATES)
+	if (step->kind != KIND_REGIONS && step->branch->system.states > LIMIT_UNROLLED_STATES)
 		return format("more than %d states: the step loops over its tables", LIMIT_UNROLLED_STATES);
 	return NULL;
 }
@@ -65,7 +64,7 @@ static void list_terms(struct anchors *anchors, const struct step *step, bool fo
 {
 	const struct linear *system = &step->branch->system;
 	anchors->terms = 0;
-	for (int i = 0; i < system->states; i++)
+	for (int i = 0; i < system->states && !anchors->turned; i++)
 		for (int l = 0, first = 0; l < system->loads; first += system->load[l++].columns)
 			if (anchors->load[l] && (forced_too || !is_forced(step, first)) &&
 			    moves(step, i, first, system->load[l].columns))
@@ -119,9 +118,11 @@ static struct anchors *anchors_of(const struct step *step)
 {
 	const struct linear *system = &step->branch->system;
 	struct anchors *anchors = NEW(struct anchors);
-	anchors->load = ARRAY(bool, (size_t)system->loads);
+	anchors->turned = step->kind == KIND_REGIONS;
+	anchors->load = anchors->turned ? loads_of_regions(step) : ARRAY(bool, (size_t)system->loads);
 	for (int l = 0; l < system->loads; l++)
-		anchors->load[l] = !is_polynomial(system->load[l].wave) && load_acts(system, &system->load[l]);
+		anchors->load[l] = !is_polynomial(system->load[l].wave) &&
+				   (anchors->turned ? anchors->load[l] : load_acts(system, &system->load[l]));
 	return anchors;
 }
 

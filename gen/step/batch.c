@@ -56,6 +56,8 @@ void need_batch(const struct step *step)
 	const char *why = objection_of_kind(step);
 	why = why ? why : objection_of_loads(step);
 	why = why ? why : objection_of_outputs(step->model);
+	if (!why && step->modal && step->branch->system.states <= LIMIT_UNROLLED_STATES)
+		why = "the form modal keeps modes in the place of states";
 	if (!why && step->program->loops)
 		why = format("beyond %d states a step loops over its tables", LIMIT_UNROLLED_STATES);
 	if (why)

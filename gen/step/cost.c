@@ -61,6 +61,16 @@ static struct cost leftover_cost(const struct step *step)
 	return c.cost;
 }
 
+/* Functions of a load: cos and sin together, e^{a t} */
+static struct cost functions_of_load(const struct load *load, bool single)
+{
+	bool turns = oscillates(load->wave), grows = mpq_sgn(load->wave->a) != 0;
+	return (struct cost){ turns * (single ? PL_COSSINF_MUL : PL_COSSIN_MUL) +
+				      grows * (single ? PL_GROWTHF_MUL : PL_GROWTH_MUL),
+			      turns * (single ? PL_COSSINF_ADD : PL_COSSIN_ADD) +
+				      grows * (single ? PL_GROWTHF_ADD : PL_GROWTH_ADD), 0 };
+}
+
 static bool is_used(const struct program *program, const struct load *load, int column)
 {
 	bool used = false;
@@ -78,23 +88,27 @@ static int products_of_load(const struct load *load)
 				      : 0;
 }
 
+/* ... and what turns the load states of an anchor into those of now */
+static struct cost turning_of_load(const struct load *load)
+{
+	bool turns = oscillates(load->wave);
+	return (struct cost){ (turns ? 4 : 1) + (turns ? 2 : 1) * (load->powers - 1), 2 * turns, 0 };
+}
+
 void count_loads(struct program *program, const struct step *step)
 {
 	const struct linear *system = &step->branch->system;
-	bool single = step->model->asked.single;
 	int anchored = 0;
 	for (int l = 0, column = 0; l < system->loads; column += system->load[l++].columns) {
 		const struct load *load = &system->load[l];
 		if (!is_used(program, load, column) && !is_anchored(step, l))
 			continue;
-		program->oscillators += oscillates(load->wave);
-		program->growths += mpq_sgn(load->wave->a) != 0;
 		*(is_anchored(step, l) ? &anchored : &program->multiplications) += products_of_load(load);
+		struct cost functions = functions_of_load(load, step->model->asked.single);
+		program->wave_multiplications += functions.multiplications;
+		program->wave_additions += functions.additions;
 	}
-	program->wave_multiplications = program->oscillators * (single ? PL_COSSINF_MUL : PL_COSSIN_MUL) +
-					program->growths * (single ? PL_GROWTHF_MUL : PL_GROWTH_MUL) + anchored;
-	program->wave_additions = program->oscillators * (single ? PL_COSSINF_ADD : PL_COSSIN_ADD) +
-				  program->growths * (single ? PL_GROWTHF_ADD : PL_GROWTH_ADD);
+	program->wave_multiplications += anchored;
 	if (step->anchors)
 		return;
 	program->multiplications += program->wave_multiplications;
@@ -108,11 +122,128 @@ void count_turned_loads(struct program *program, const struct step *step)
 		const struct load *load = &system->load[l];
 		if (!is_used(program, load, column))
 			continue;
-		bool turns = oscillates(load->wave), turned = is_anchored(step, l);
-		program->multiplications += turned ? (turns ? 4 : 1) + (turns ? 2 : 1) * (load->powers - 1)
-						   : products_of_load(load);
-		program->additions += turned && turns ? 2 : 0;
+		program->multiplications += is_anchored(step, l) ? turning_of_load(load).multiplications
+								 : products_of_load(load);
+		program->additions += is_anchored(step, l) ? turning_of_load(load).additions : 0;
 	}
+}
+
+/* ---- the look for peaks ---- */
+
+/* Does a column of x have a factor in an output, and does it take a multiplication? */
+static bool output_reads(const struct step *step, const struct output *output, mpq_srcptr factor, int column,
+			 bool *multiplied)
+{
+	const struct tuning *t = step->model->tuning;
+	int row = t ? t->output[output - step->model->output] : -1;
+	*multiplied = row >= 0 || !is_unit(factor);
+	return row >= 0 ? t->acts[row * t->x.size + column] : mpq_sgn(factor) != 0;
+}
+
+static bool is_one(const struct load *load, int column)
+{
+	return column == 0 && !oscillates(load->wave) && mpq_sgn(load->wave->a) == 0;
+}
+
+/* An output now: a row over x; `reads`, per load, marks those whose load states it reads. */
+static void cost_output(struct cost *cost, const struct step *step, const struct output *output, bool *reads)
+{
+	const struct linear *system = &step->branch->system;
+	const struct layout *x = step->model->tuning ? &step->model->tuning->x : &step->layout;
+	int terms = 0;
+	bool multiplied;
+	for (int i = 0; i < system->states; i++)
+		if (output_reads(step, output, output->state[i], i, &multiplied)) {
+			terms++;
+			cost->multiplications += multiplied;
+		}
+	for (int l = 0; l < system->loads; l++)
+		for (int k = 0; k < system->load[l].columns; k++)
+			if (output_reads(step, output, output->load[l][k], x->load[l] + k, &multiplied)) {
+				bool one = is_one(&system->load[l], k);
+				terms++;
+				cost->multiplications += multiplied && !one;
+				reads[l] = reads[l] || !one;
+			}
+	for (int i = 0; i < system->inputs; i++)
+		for (int k = 0; k <= (system->input[i].hold > 0); k++)
+			if (output_reads(step, output, output->input[k][i], x->input[i] + k, &multiplied)) {
+				terms++;
+				cost->multiplications += multiplied;
+			}
+	cost->additions += terms > 1 ? terms - 1 : 0;
+}
+
+/* Load states: anew, or from the anchor's */
+static void cost_load(struct cost *cost, const struct step *step, int l, bool turned)
+{
+	const struct load *load = &step->branch->system.load[l];
+	struct cost c = turned ? turning_of_load(load) : functions_of_load(load, step->model->asked.single);
+	cost->multiplications += c.multiplications + (turned ? 0 : products_of_load(load));
+	cost->additions += c.additions;
+}
+
+void count_peaks(struct step *step)
+{
+	const struct model *model = step->model;
+	const struct linear *system = &step->branch->system;
+	int count = peak_outputs(model), size = step->layout.size;
+	if (count == 0)
+		return;
+	bool *reads = ARRAY(bool, (size_t)system->loads);
+	/* of each the sums row . x and bend . |x|; their sum */
+	struct cost cost = { 2 * size * count, (2 * size + 1) * count, 0 };
+	for (int i = 0; i < model->outputs; i++)
+		cost_output(&cost, step, &model->output[i], reads);
+	for (int l = 0; l < system->loads; l++) {
+		if (step->layout.load[l] >= 0)
+			cost_load(&cost, step, l, false);
+		if (reads[l])
+			cost_load(&cost, step, l, is_anchored(step, l));
+	}
+	step->program->peak_multiplications = cost.multiplications;
+	step->program->peak_additions = cost.additions;
+}
+
+/* ---- regions ---- */
+
+void count_regions(struct step *step, int multiplications, int additions)
+{
+	const struct linear *system = &step->branch->system;
+	struct program *program = step->program;
+	struct cost functions = { 0, 0, 0 };
+	if (step->anchors) {
+		program->multiplications = multiplications;
+		program->additions = additions;
+		count_turned_loads(program, step);
+		return;
+	}
+	for (int l = 0; l < system->loads; l++) {
+		if (step->layout.load[l] < 0)
+			continue;
+		struct cost c = functions_of_load(&system->load[l], step->model->asked.single);
+		functions.multiplications += c.multiplications;
+		functions.additions += c.additions;
+		multiplications += products_of_load(&system->load[l]);
+	}
+	program->wave_multiplications = functions.multiplications;
+	program->wave_additions = functions.additions;
+	program->multiplications = multiplications + functions.multiplications;
+	program->additions = additions + functions.additions;
+}
+
+/* ---- tables ---- */
+
+int anchor_numbers(const struct step *step)
+{
+	const struct anchors *a = step->anchors;
+	return a ? a->steps * a->terms * (step->program->compensated ? 2 : 1) : 0;
+}
+
+int row_numbers(const struct step *step)
+{
+	const struct rows *rows = step->rows;
+	return rows ? (rows->columns + step->branch->system.inputs) * rows->count * rows->outputs : 0;
 }
 
 /* ---- the count of a program of actions ---- */

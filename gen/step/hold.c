@@ -42,6 +42,22 @@ void tap_derivative(int hold, int power, int tap, mpq_srcptr h, mpq_ptr derivati
 	mpq_clear(times);
 }
 
+/* What |d^power u / d s^power| h^power at the step's start is at most where no sample is above 1 */
+double tap_reach(int hold, int power)
+{
+	mpq_t one, derivative, sum;
+	mpq_inits(one, derivative, sum, NULL);
+	mpq_set_ui(one, 1, 1);
+	for (int c = 0; c <= hold; c++) {
+		tap_derivative(hold, power, c, one, derivative);
+		mpq_abs(derivative, derivative);
+		mpq_add(sum, sum, derivative);
+	}
+	double reach = round_rational(sum);
+	mpq_clears(one, derivative, sum, NULL);
+	return reach;
+}
+
 /* h u' at the step's end, per tap */
 void tap_slope(int hold, int tap, mpq_ptr slope)
 {
@@ -57,7 +73,8 @@ void tap_slope(int hold, int tap, mpq_ptr slope)
 	mpq_clears(weight, times, NULL);
 }
 
-const char *hold_name(int hold)
+/* first, third, ... */
+static const char *hold_name(int hold)
 {
 	static const char *const name[] = { [1] = "first", [3] = "third", [5] = "fifth", [7] = "seventh" };
 	return name[hold];

@@ -41,7 +41,8 @@ static const char *objection_of_loads(const struct linear *system)
 	return NULL;
 }
 
-const char *modal_objection(const struct step *step)
+/* What stands against it; NULL: nothing */
+static const char *modal_objection(const struct step *step)
 {
 	const struct linear *system = &step->branch->system;
 	const struct model *model = step->model;
@@ -695,7 +696,8 @@ static struct modal *modal_new(const struct step *step)
 	return modal;
 }
 
-struct modal *modal_of(const struct step *step)
+/* NULL: a number is not decided */
+static struct modal *modal_of(const struct step *step)
 {
 	struct block *block;
 	const int blocks = blocks_of(&step->branch->system, &block);

@@ -261,15 +261,14 @@ static void fill_intervals(const struct step *step, struct pieces *pieces)
 {
 	const struct switching *s = step->model->switching;
 	size_t cells = (size_t)s->regions * (size_t)s->expressions;
-	double open = step->model->asked.single ? 0x1p120 : 0x1p1000;
 	pieces->low = ARRAY(double, cells);
 	pieces->high = ARRAY(double, cells);
 	for (int r = 0; r < s->regions; r++)
 		for (int i = 0, first = 0; i < s->expressions; first += s->expression[i++].breaks) {
 			int interval = interval_of(s, r, i), cell = r * s->expressions + i;
 			const double *at = pieces->breakpoint + first + interval;
-			pieces->low[cell] = interval > 0 ? at[-1] : -open;
-			pieces->high[cell] = interval < s->expression[i].breaks ? at[0] : open;
+			pieces->low[cell] = interval > 0 ? at[-1] : -OPEN_END;
+			pieces->high[cell] = interval < s->expression[i].breaks ? at[0] : OPEN_END;
 		}
 }
 
@@ -289,7 +288,7 @@ static bool *bounded_entries(const struct step *step)
 	return bounded;
 }
 
-/* What such loads add to a bound is a number: it goes to `still`, and their places become 0. */
+/* What such loads add to a bound is a number, which is added to `still`; their places become 0. */
 static void fold_loads(const struct step *step, double *bound, double *still)
 {
 	for (int l = 0; l < step->branch->system.loads; l++) {
@@ -304,8 +303,8 @@ static void fold_loads(const struct step *step, double *bound, double *still)
 	*still *= step->model->asked.single ? 1 + ldexp(1, -22) : 1 + 1e-9;
 }
 
-/* |e'|/h of what a Taylor polynomial of this degree leaves out of it over 0 .. h, and what rounding may add to its
- * terms, whose chains are as long as their order */
+/* h |e'|, which is above |e|, of what a Taylor polynomial of this degree leaves out over 0 .. h, and what rounding may
+ * add to its terms, whose chains are as long as their order; all of them are added up */
 static void add_slack(int size, const double *A, double h, int degree, double epsilon, double *term, double *slack)
 {
 	enum { FURTHER = 40 };
@@ -317,12 +316,24 @@ static void add_slack(int size, const double *A, double h, int degree, double ep
 				next[j] += term[m] * fabs(A[m * size + j]) * h / k;
 		}
 		for (int j = 0; j < size; j++) {
-			double part = k > degree ? 1 : epsilon * (k + 1) * (size + 2);
+			double part = k > degree ? 1 : epsilon * ((k + 2) * (size + 2) + degree);
 			slack[j] += part * k * next[j] * (1 + 1e-9);
 			term[j] = next[j];
 		}
 	}
 	discard(next);
+}
+
+/* That number at the first of their places */
+static void gather_loads(const struct step *step, const bool *bounded, double *bound)
+{
+	double still = 0;
+	int first = 0;
+	while (first < step->layout.size && !bounded[first])
+		first++;
+	fold_loads(step, bound, &still);
+	if (first < step->layout.size)
+		bound[first] = still;
 }
 
 static double *slack_rows(const struct step *step, const struct pieces *pieces, const double *A)
@@ -331,8 +342,10 @@ static double *slack_rows(const struct step *step, const struct pieces *pieces, 
 	double *slack = ARRAY(double, (size_t)(expressions * size)), *term = ARRAY(double, (size_t)size);
 	double epsilon = ldexp(1, step->model->asked.single ? -23 : -52);
 	for (int i = 0; i < expressions; i++) {
-		for (int j = 0; j < size; j++)
+		for (int j = 0; j < size; j++) {
 			term[j] = fabs(pieces->row[i * size + j]);
+			slack[i * size + j] = 8 * epsilon * term[j];    /* as in the search */
+		}
 		add_slack(size, A, round_rational(step->model->h), pieces->degree, epsilon, term, slack + i * size);
 	}
 	discard(term);
@@ -362,12 +375,16 @@ static void fill_whole(const struct step *step, const struct pieces *pieces, int
 	piece->whole = Phi_of(step, step->branch[branch].whole, 0);
 	piece->off = bound_rows(step, pieces, piece->slopes, &growth, 2, h * h / 8);
 	piece->turn = slope_rows(step, pieces, piece->slopes, h / 3);
+	piece->third = bound_rows(step, pieces, piece->slopes, &growth, 3, h * h * h / 24);
 	piece->bend = bound_rows(step, pieces, piece->slopes, &growth, 4, h * h * h * h / 384);
 	piece->still = ARRAY(double, (size_t)expressions);
-	for (int i = 0; i < expressions; i++)
-		fold_loads(step, piece->off + i * size, &piece->still[i]);
 	piece->turns = turns_of(step, branch);
 	piece->slack = slack_rows(step, pieces, piece->slopes);
+	for (int i = 0; i < expressions; i++) {
+		fold_loads(step, piece->off + i * size, &piece->still[i]);
+		gather_loads(step, pieces->bounded, piece->slack + i * size);
+		gather_loads(step, pieces->bounded, piece->third + i * size);
+	}
 	discard(growth.E);
 	discard(growth.most);
 }

@@ -35,6 +35,20 @@ bool is_forced(const struct step *step, int column)
 	return false;
 }
 
+bool *loads_of_regions(const struct step *step)
+{
+	const struct switching *s = step->model->switching;
+	bool *needed = ARRAY(bool, (size_t)step->branch->system.loads);
+	for (int l = 0; l < step->branch->system.loads; l++) {
+		for (int k = 0; k < s->systems; k++)
+			needed[l] = needed[l] || load_acts(&s->system[k], &s->system[k].load[l]);
+		for (int e = 0; e < s->expressions; e++)
+			for (int k = 0; k < step->branch->system.load[l].columns; k++)
+				needed[l] = needed[l] || mpq_sgn(s->expression[e].row->load[l][k]) != 0;
+	}
+	return needed;
+}
+
 bool has_leftover(const struct step *step)
 {
 	return step->kind == KIND_LEFTOVER || step->kind == KIND_EXPANDED;

@@ -119,20 +119,6 @@ static void build_exact(struct step *step)
 	plan_rest(step);
 }
 
-static bool *loads_of_regions(const struct step *step)
-{
-	const struct switching *s = step->model->switching;
-	bool *needed = ARRAY(bool, (size_t)step->branch->system.loads);
-	for (int l = 0; l < step->branch->system.loads; l++) {
-		for (int k = 0; k < s->systems; k++)
-			needed[l] = needed[l] || load_acts(&s->system[k], &s->system[k].load[l]);
-		for (int e = 0; e < s->expressions; e++)
-			for (int k = 0; k < step->branch->system.load[l].columns; k++)
-				needed[l] = needed[l] || mpq_sgn(s->expression[e].row->load[l][k]) != 0;
-	}
-	return needed;
-}
-
 /* Phi over a part of the step, and what inputs add: u held, and u' as the slope of u */
 static struct wanted *wanted_piece(const struct step *step, int halvings)
 {
@@ -180,10 +166,9 @@ static void plan_swift(struct step *step)
 	if (!step->swift)
 		return;
 	int expressions = step->model->switching->expressions;
-	step->program->multiplications = (step->layout.states + expressions) * step->layout.size;
-	step->program->additions = step->program->multiplications + 2 * expressions;
-	/* terms come in fours */
-	step->swift_degree = 3 | (any ? series_degree(step, 0, step->branches, 0) : step->series.degree);
+	int products = (step->layout.states + expressions) * step->layout.size;
+	count_regions(step, products, products + 2 * expressions);
+	step->swift_degree = any ? series_degree(step, 0, step->branches, 0) : step->series.degree;
 }
 
 static void plan_region(struct step *step, int k)
@@ -213,10 +198,11 @@ static void build_regions_step(struct step *step)
 	first->system.channels = 0;
 	step->layout = layout_with(&first->system, 0, loads_of_regions(step));
 	find_carries(step);
+	plan_anchors(step);
+	fill_anchors(step);
 	step->program = linear_program(step);
-	step->program->multiplications =
-		step->layout.size * step->layout.size + 6 * step->model->switching->expressions * step->layout.size;
-	step->program->additions = step->program->multiplications;
+	int products = (step->layout.size + 6 * step->model->switching->expressions) * step->layout.size;
+	count_regions(step, products, products);
 	first->system.channels = channels;
 	step->series.degree = 3;
 	step->series.emitted = true;
@@ -320,6 +306,7 @@ static void build(void *context)
 	if (model->asked.batch)
 		need_batch(step);
 	check_peaks(step);
+	count_peaks(step);
 	program_check(step);
 	plan_phases(step);
 	plan_rows(step);

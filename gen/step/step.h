@@ -180,10 +180,10 @@ struct program {
 	bool compensated;           /* factors in two words, and what rounding takes from a state is kept */
 	bool *reads;                /* per state: whether its old value is read */
 	bool *uses;                 /* per column of the loads */
-	int oscillators, growths;   /* cos/sin pairs and exponentials evaluated per step */
-	/* for them: counted below too, or beside it what comes at each anchor */
+	/* for cos/sin pairs and exponentials: counted below too, or beside it what comes at each anchor */
 	int wave_multiplications, wave_additions;
 	int multiplications, additions, calls; /* calls: of the model's own functions */
+	int peak_multiplications, peak_additions; /* beside them: the outputs, and that none passes its peak */
 	bool loops;                 /* over tables: a large model */
 	/* of a list that loops: how its assignments are done, by blocks */
 	int groups;
@@ -207,11 +207,14 @@ struct forced {
 	bool changes;               /* any of it */
 	int multiplications, additions; /* to add it */
 };
+/* Of a step that is not left to the search: crossings, and parts looked at */
+enum { MOST_SWIFT = 4, MOST_LOOKS = 10 };
 enum { MOST_ANCHORED = 256 };       /* steps from one anchor to the next */
 struct anchored_term { int state, column; };
 struct anchors {                    /* load states at an anchor, and tables for the steps to the next */
 	int steps;                  /* from one to the next */
 	bool *load;                 /* per load: an anchor keeps its states */
+	bool turned;                /* the step turns them into those of now, and has no terms */
 	int terms;                  /* of a step: by state, then by column of a load */
 	struct anchored_term *term;
 	struct coefficient *factor; /* [steps since the anchor][term]: of the load state there */
@@ -287,7 +290,7 @@ struct step {                       /* everything that is emitted for one model 
 	mpfr_t growth;              /* pl: 1/s, largest real part of the modified equation's poles (report only) */
 	struct layout layout;       /* of x */
 	struct series series;
-	/* of regions: a step looks over the whole of h whether it is clear, and for one crossing; by Taylor
+	/* of regions: a step looks over the whole of h whether it is clear, and for few crossings; by Taylor
 	 * polynomials of this degree */
 	bool swift;
 	const char *searches;       /* why it is not */
@@ -301,6 +304,8 @@ enum step_kind kind_of_step(const struct model *model);
 bool is_anchored(const struct step *step, int load);        /* its functions are evaluated at anchors only */
 int load_of_column(const struct linear *system, int column, int *first); /* *first: the first column of that load */
 bool is_forced(const struct step *step, int column);         /* is this load state's load left out of the step? */
+/* those that a system or an expression reads */
+bool *loads_of_regions(const struct step *step);
 bool has_leftover(const struct step *step);                 /* it is of that kind, or expanded */
 void need_closed_form(const struct step *step);              /* leaves the statement where there is none */
 
@@ -394,9 +399,11 @@ struct region_piece {               /* of a branch, d = h 2^-halvings long; x as
 	double *second, *fourth;    /* second . |x(0)|, fourth . |x(0)| bound, on 0 .. d, d^2/8 times the second and */
 				    /* d^4/384 times the fourth derivative of each; expressions x size */
 	/* Where a step is swift: e^{A h}; over h, each expression is off its chord by at most off . |x(0)| + still, and
-	 * its slope off that of its Taylor polynomial by at most slack . |x(0)| / h; turn and bend are slope and fourth
+	 * rounding and what its Taylor polynomial leaves out make its value and h times its slope wrong by at most
+	 * slack . |x(0)|; turn and bend are slope and fourth
 	 * over h */
 	double *whole, *off, *still, *slack, *turn, *bend;
+	double *third;              /* third . |x(0)| bounds h^3/24 times the third derivative of each */
 	double *turns;              /* h A */
 };
 struct pieces {
@@ -410,6 +417,7 @@ struct pieces {
 	int degree;
 	double *weight;             /* 1/k!, k = 0 .. degree */
 };
+#define OPEN_END 0x1p1000           /* of an interval that no breakpoint ends */
 struct pieces pieces_of(const struct step *step);
 void row_over_x(const struct step *step, const struct output *output, double *row);
 /* Of |x|: how far row . x is at most off its chord over h, entry by entry */
@@ -433,6 +441,11 @@ void count_expansion(const struct step *step, struct program *program); /* of on
 void count_loads(struct program *program, const struct step *step);
 /* ... and to turn them into those of now */
 void count_turned_loads(struct program *program, const struct step *step);
+/* of a step of regions: its sums, and the load states of all of them */
+void count_regions(struct step *step, int multiplications, int additions);
+void count_peaks(struct step *step);                        /* after its program and layout */
+int anchor_numbers(const struct step *step);                /* of the table for steps between anchors */
+int row_numbers(const struct step *step);                   /* of the tables of a block of rows */
 
 /* ---- forced.c: what rounding does to a step with loads ---- */
 
@@ -490,8 +503,6 @@ struct modal {                      /* modal states: the real parts of the pairs
 	struct drift drift;
 	double condition;           /* what rounding gains that goes through both, 1 at best */
 };
-const char *modal_objection(const struct step *step);        /* what stands against it; NULL: nothing */
-struct modal *modal_of(const struct step *step);             /* NULL: a number is not decided */
 void plan_modal(struct step *step);                          /* where it is asked for, or cheaper and as exact */
 
 /* ---- rest.c: what is too small to count ---- */
@@ -587,13 +598,14 @@ void plan_rows(struct step *step);                           /* step->rows; last
 
 void tap_weight(int hold, int power, int tap, mpq_ptr weight);     /* of (s/h)^power in that of a tap */
 void tap_derivative(int hold, int power, int tap, mpq_srcptr h, mpq_ptr derivative); /* at the step's start */
+/* what |d^power u / d s^power| h^power at the step's start is at most where no sample is above 1 */
+double tap_reach(int hold, int power);
 void tap_slope(int hold, int tap, mpq_ptr slope);            /* h u' at the step's end, per tap */
-const char *hold_name(int hold);                             /* first, third, ... */
 bool further_samples(const struct linear *system);           /* an input goes through more than two */
 int samples_ahead(int hold);                                 /* that an input has had when the first step comes */
 void check_holds(const struct step *step);                   /* leaves the statement where one cannot be */
 
-/* ---- sequences.c: the right side as sequences of Taylor coefficients, each made from those before it ---- */
+/* ---- sequences of Taylor coefficients, each made from those before it ---- */
 
 /* Of a quantity a(t) the k-th number is D^k a^(k)/k!, D = h. What stands in a sum at k is factor[k] times: the constant
  * 1, a power of t, an entry of a load's states, an input's value at the start or its slope, the k-th number of another
@@ -640,7 +652,47 @@ struct expansion {
 	bool *input, *slope;        /* per input: read */
 	bool time;                  /* t is read */
 };
-/* Leaves the statement at what has no series */
+/* ---- sums.c: what is added up exactly, and its factors as numbers ---- */
+
+struct key {                        /* of a sum, before its factors are numbers; kind, a and b as in sequence_term */
+	enum term_kind kind;
+	int a, b;
+	mpq_t factor;
+};
+struct sum {
+	int keys;
+	struct key *key;
+};
+struct sequencing {                 /* what the makers of sequences share */
+	const struct step *step;
+	const struct linear *system;
+	struct expansion *x;
+	struct layout layout;       /* states, loads, inputs, channels */
+	mpq_t **slopes;             /* per segment: x' = slopes x */
+	mpq_t pi;
+	int *uses;                  /* per atom */
+	int *atom;                  /* per atom: its sequence; NONE: not made yet */
+	int operands;               /* forms that are no single atom, each made once */
+	struct { const struct form *form; int sequence; } *operand;
+};
+void sum_add(struct sum *sum, enum term_kind kind, int a, int b, mpq_srcptr factor);
+/* Its terms into s, at k times scale[k] */
+void sum_numbers(struct sequencing *w, struct sequence *s, const struct sum *sum, const mpq_t *scale);
+mpq_t *plain_scale(const struct sequencing *w);             /* 1 */
+mpq_t *integral_scale(const struct sequencing *w, bool times_h);  /* 1/(k+1), or h/(k+1) */
+/* of a state, whose force changes from segment to segment: in a table */
+void add_changing_loads(struct sequencing *w, struct sequence *s, int state, const mpq_t *scale);
+int  column_of_load(const struct linear *system, int load); /* its first */
+
+/* ---- sequences.c: forms to sums, atoms to recurrences ---- */
+
+int  new_sequence(struct sequencing *w, struct sequence sequence);
+void count_uses(struct sequencing *w, const struct form *form);
+/* sum += scale form; leaves the statement at what has no series */
+void sum_add_form(struct sequencing *w, struct sum *sum, const struct form *form, mpq_srcptr scale);
+
+/* ---- expansion.c: the solution as a Taylor series ---- */
+
 struct expansion *expansion_of(const struct step *step);
 
 /* ---- batch.c: many instances in one call ---- */

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* NAME_batch against NAME_step of each instance alone: states, outputs and peaks, with counts of instances that fill no
  * group of lanes, and steps in several calls. -DTUNED: with coefficients of its own in each instance. The sums are
- * the same, so are the bits; where products are contracted, 2 units in the last place of the largest value a step. */
+ * the same, so are the bits; where products are contracted, 2 units in the last place of the largest value a step.
+ * With every other count no outputs are wanted: then NAME_batch looks for extremes inside steps another way. */
 #include "m.h"
 
 #include <math.h>
@@ -16,7 +17,7 @@ typedef double real;
 #define UNIT 0x1p-52
 #endif
 
-enum { MOST = 70, STEPS = 150, INPUTS = M_INPUTS ? M_INPUTS : 1 };
+enum { MOST = 70, STEPS = 330, INPUTS = M_INPUTS ? M_INPUTS : 1 };
 
 static m alone[MOST];
 static real y[M_BATCH_ROWS * MOST], peak[M_OUTPUTS * MOST], out[STEPS * M_OUTPUTS * MOST], u[STEPS * INPUTS];
@@ -89,7 +90,7 @@ static void widen(size_t j)
         widest[j][i] = fmax(widest[j][i], fabs((double)now[i]));
 }
 
-static void step_alone(size_t count)
+static void step_alone(size_t count, int outputs)
 {
     size_t j;
     int k, i;
@@ -105,18 +106,19 @@ static void step_alone(size_t count)
             for (i = 0; i < M_OUTPUTS; i++) {
                 size_t row = (size_t)(k * M_OUTPUTS + i) * count;
                 greatest[j][i] = (real)fmax((double)greatest[j][i], fabs((double)now[i]));
-                compare("an output", j, (double)out[row + j], (double)now[i], (double)greatest[j][i]);
+                if (outputs)
+                    compare("an output", j, (double)out[row + j], (double)now[i], (double)greatest[j][i]);
             }
             widen(j);
         }
 }
 
-static void step_together(m_instances *b)
+static void step_together(m_instances *b, int outputs)
 {
-    static const size_t part[] = {1, 0, 63, 65, STEPS - 129};
+    static const size_t part[] = {1, 0, 63, STEPS - 64};
     size_t i, at = 0;
     for (i = 0; i < sizeof part / sizeof *part; i++) {
-        real *rows = out + at * M_OUTPUTS * b->count;
+        real *rows = outputs ? out + at * M_OUTPUTS * b->count : NULL;
 #if HAS_INPUTS
         m_batch(b, part[i], u + at * M_INPUTS, rows);
 #else
@@ -160,8 +162,8 @@ int main(int argc, char **argv)
         b.factors = factors;
 #endif
         start(&b);
-        step_together(&b);
-        step_alone(b.count);
+        step_together(&b, i % 2 == 0);
+        step_alone(b.count, i % 2 == 0);
         judge(&b);
     }
     printf("# %.3g units in the last place, at most %g\n", worst, bound);

@@ -42,6 +42,20 @@ words_of() {
 	done
 }
 
+# is_program ID: --explain=program prints ID.spec as the program that its C has, by its first line and its operations
+is_program() {
+	# shellcheck disable=SC2046
+	timeout 1200 "$plgen" --explain=program --prefix "$1" $(head_of "$1.spec" options) "$1.spec" >program \
+		2>"$1.said" || head -n 3 "$1.said" >>"$1.wrong"
+	kind=$(sed -n "1s/^Program of a step of $1: \([a-z]*\).*/\1/p" program)
+	case $kind:$(head_of "$1.spec" class) in
+		linear:\ linear|regions:\ piecewise|with:*) ;;
+		*) echo "the program is of kind '$kind'" >>"$1.wrong" ;;
+	esac
+	grep -q -F "$(sed -n 's/^Cost: \([0-9]* multiplications, [0-9]* additions\),.*/: \1/p' program)" "$1.c" ||
+		echo "its cost is not that of the comment in the C: $(grep '^Cost' program)" >>"$1.wrong"
+}
+
 if [ "${5:-}" = --table ]; then
 	# shellcheck disable=SC2086
 	"$covering" table $lists
@@ -67,6 +81,7 @@ while read -r row; do
 	# shellcheck disable=SC2086
 	"$covering" spec "r$number.spec" $row || exit 99
 	batch_add "r$number" "r$number.spec"
+	[ "$said" != made ] || is_program "r$number"
 	[ "$said" = refused ] && cp "r$number.said" "r$number.wrong"
 	for function in at jump; do
 		case " $row " in

@@ -332,7 +332,7 @@ static void print_options(FILE *to)
 		{ "etd1", "--scheme etd1" }, { "etdrk2", "--scheme etdrk2" }, { "etdrk4", "--scheme etdrk4" },
 		{ "nc2", "--scheme nc2" }, { "nc3", "--scheme nc3" }, { "dq4", "--scheme dq4" },
 		{ "bm3", "--scheme bm3" }, { "selftest", "--selftest" }, { "rows", "--rows 8" },
-		{ "loads", "--loads leftover" }, { "anchors", "--anchors 8" } };
+		{ "loads", "--loads leftover" }, { "anchors", "--anchors 8" }, { "batch", "--batch" } };
 	bool scheme = false;
 	fputs("# options:", to);
 	for (size_t i = 0; i < sizeof option / sizeof *option; i++)
@@ -366,7 +366,7 @@ static void write_chain(FILE *to, int n)
 static void write_spec(FILE *to)
 {
 	const bool vector = has("file") || has("many"), damped = !has("kdk");
-	const bool outputs = has("accel") || has("nonlinear") || has("reduce");
+	const bool outputs = has("accel") || has("nonlinear") || has("reduce") || has("peaks") || has("batch");
 	const int n = has("many") ? 9 : 3;
 	print_options(to);
 	fputs("model f\nparam k = 12\n", to);
@@ -418,6 +418,7 @@ static void write_spec(FILE *to)
 		fprintf(to, "output a, b%s%s\n", has("first") ? ", z" : "", vector ? ", q[1], q[3]'" : "");
 	if (has("accel"))
 		fprintf(to, "output a'', s = 2*b'' - a%s\n", has("first") ? " + z'" : "");
+	fputs(has("peaks") ? "output wave = a + 0.5*b, top = peak(a + 0.5*b)\n" : "", to);
 	fputs(has("nonlinear") ? "output r = a^2 + sin(b)*b'\n" : "", to);
 	fputs("step 0.01\n", to);
 }

@@ -77,7 +77,7 @@ run_c() {
 		echo '}'
 	} >program.c
 	# shellcheck disable=SC2086
-	"${CC:-cc}" -std=c99 $warnings -Iruntime program.c ./*_pl.c ../runtime.a -lm -o program >>../log 2>&1 &&
+	${CC:-cc} -std=c99 $warnings -Iruntime program.c ./*_pl.c ../runtime.a -lm -o program >>../log 2>&1 &&
 		./program >>../log 2>&1
 }
 
@@ -108,7 +108,7 @@ try() {
 
 mkdir objects
 for file in "$root"/runtime/*.c; do
-	"${CC:-cc}" -std=c99 -O1 -I"$root/runtime" -c "$file" -o "objects/$(basename "$file" .c).o" || exit 99
+	${CC:-cc} -std=c99 -O1 -I"$root/runtime" -c "$file" -o "objects/$(basename "$file" .c).o" || exit 99
 done
 ar -rcs runtime.a objects/*.o || exit 99
 
@@ -122,4 +122,19 @@ for page in README.md doc/spec.md doc/accuracy.md doc/performance.md doc/firmwar
 		try "$page" "$number" "$kind" "$line"
 	done <found
 done
+
+# Of options --help, the man page and the page of the language name the same ones; `--raw` is of plmain.
+options_in() {
+	grep -o -e '--*[a-zD][a-z]*' | grep -x -e '--[a-z]\{3,\}' -e '-[oD]' | sort -u
+}
+: >log
+plgen --help | sed -n '/^  -/p' | cut -c 1-26 | options_in >asked
+sed -n '/^\.SH OPTIONS/,/^\.SH GENERATED/{/^\.B/{s/\\f.//g;s/\\//gp}}' "$root/doc/plgen.1" | options_in >man
+sed -n '/^## The command/,/^## Mistakes/s/^\(| `-.*`[^|]*\)|.*/\1/p' "$root/doc/spec.md" | options_in >spec
+for place in man spec; do
+	diff asked $place >>log || echo "$place" >>log
+done
+[ "$(wc -l <asked)" -gt 15 ] || cat asked >>log
+[ ! -s log ]
+result $? "$(wc -l <asked) options: --help, doc/plgen.1 and doc/spec.md have the same"
 tap_end

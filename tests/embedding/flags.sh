@@ -25,7 +25,7 @@ floats='float.c turnsf.c untilf.c'
 two_words=until.c
 two_wordsf=untilf.c
 for file in *.c; do
-    "${CC:-cc}" -std=c99 -I"$root/runtime" -MM "$file" 2>log | grep -q 'plrt\.h'
+    ${CC:-cc} -std=c99 -I"$root/runtime" -MM "$file" 2>log | grep -q 'plrt\.h'
     result $? "$file goes through plrt.h"
 done
 grep -l 'include "two\.h"' "$root"/runtime/*.c | sed 's,.*/,,' | tr '\n' ' ' >log
@@ -121,9 +121,9 @@ refused gcc '-O2 -U__GNUC__ -fsingle-precision-constant' \
 accepted gcc '-O2 -U__GNUC__' "$doubles $floats"
 
 # A double of 32 bits: of models in float nothing is double.
-"${CC:-cc}" -std=c11 -E -P -I"$root/runtime" double.c 2>log |
+${CC:-cc} -std=c11 -E -P -I"$root/runtime" double.c 2>log |
     sed 's/\<double\>/float/g; s/sizeof(1\.0)/sizeof(1.0f)/' >narrow.c
-"${CC:-cc}" -std=c11 -w -c narrow.c -o out.o >said 2>&1
+${CC:-cc} -std=c11 -w -c narrow.c -o out.o >said 2>&1
 [ $? -ne 0 ] && grep -q 'error.*32 bits' said
 status=$?
 cat said >>log

@@ -16,7 +16,7 @@ runtime_archive "$root/runtime"
 # driver FILE.c NAME PROGRAM [FLAGS]
 driver() {
     # shellcheck disable=SC2086
-    "${CC:-cc}" -std=c99 -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Werror ${4-} -I"$root/runtime" \
+    ${CC:-cc} -std=c99 -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Werror ${4-} -I"$root/runtime" \
         "$root/runtime/host/plmain.c" "$1" "$archive" "-DMODEL=$2" -lm -o "$3" >>log 2>&1
 }
 
@@ -161,7 +161,7 @@ int main(void)
 }
 EOF
 "$plgen" -o touch_pl.c touch.spec 2>log && "$plgen" -o fixed_pl.c fixed.spec 2>>log &&
-    "${CC:-cc}" -std=c99 -I"$root/runtime" touch.c touch_pl.c fixed_pl.c "$archive" -o touch >>log 2>&1 && ./touch >>log
+    ${CC:-cc} -std=c99 -I"$root/runtime" touch.c touch_pl.c fixed_pl.c "$archive" -o touch >>log 2>&1 && ./touch >>log
 result $? 'piecewise linear: held before the first step, the sample decides the region, and nothing is crossed'
 
 # ---- the other type; times ----

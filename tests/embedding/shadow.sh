@@ -5,9 +5,9 @@
 #
 #     shadow.sh PLGEN SOURCE_ROOT
 #
-# Every identifier in the C of a model, taken as the name of that model.  The compilers are those of GCCS and CLANGS
-# (default: gcc g++, clang clang++), all four for the first model, for the others gcc's C and clang's C++, a third of
-# the names as C++; with LONG=1 all; what is not installed is skipped.
+# Every third identifier in the C of a model, with LONG=1 every one, taken as the name of that model.  The compilers are
+# those of GCCS and CLANGS (default: gcc g++, clang clang++), all four for the first model, for the others gcc's C and
+# clang's C++, with LONG=1 all; what is not installed is skipped.
 set -u
 plgen=$1
 root=$2
@@ -40,7 +40,7 @@ words() {
             -e '^\(a\{0,1\}\(sin\|cos\|tan\)h\{0,1\}\|exp\|log\|sqrt\|fabs\|pow\|fmin\|fmax\|atan2\)f$' | sort -u
 }
 
-# shadows TITLE LEAST SPEC OPTIONS: under each name that plgen takes, at least so many
+# shadows TITLE LEAST SPEC OPTIONS: under each name that plgen takes, of all of them at least so many
 shadows() {
     title=$1
     least=$2
@@ -50,7 +50,10 @@ shadows() {
     "$plgen" --prefix neutral "$@" "$spec" >neutral_named.c 2>log
     status=$?
     names=0
-    words neutral_named.c >names
+    number=$((number + 1))
+    # shellcheck disable=SC2046
+    third $((number % 3)) $(words neutral_named.c) >names
+    long || least=$((least / 3))
     while read -r name; do
         if "$plgen" --prefix "$name" "$@" "$spec" >text 2>/dev/null; then
             mv text "${name}_named.c"
@@ -59,21 +62,15 @@ shadows() {
     done <names
     echo "$names names" >>log
     [ $status -eq 0 ] && [ $names -ge "$least" ]
-    result $? "$title: $least names or more of its C may be its own"
+    result $? "$title: $least of these names or more may be its own"
     while read -r compiler options; do
         if ! command -v "$compiler" >/dev/null 2>&1; then
             skip "$title, $compiler" "$compiler is not installed"
             continue
         fi
-        # C++ takes longer: a third of the names, with LONG=1 all
-        number=$((number + 1))
-        case $options in
-            *c99*) these=$(echo ./*_named.c) ;;
-            *) these=$(third $number ./*_named.c) ;;
-        esac
         # shellcheck disable=SC2046,SC2086
         "$compiler" $warnings -I"$root/runtime" -fsyntax-only $(ahead "$compiler" ./neutral_named.c) $options \
-            $these >log 2>&1
+            ./*_named.c >log 2>&1
         result $? "$title: under each of them it compiles without a warning, $compiler"
     done <compilers
     long || { head -n 2 compilers >few && mv few compilers; }
@@ -92,7 +89,7 @@ for name in s y x i out tau; do
     : >log
     for n in neutral $name; do
         "$plgen" --prefix $n "$root/tests/emitted/linear/ramps.spec" >ran.c 2>>log &&
-            "${CC:-cc}" -std=c99 -I"$root/runtime" -DMODEL=$n "$root/runtime/host/plmain.c" ran.c "$archive" \
+            ${CC:-cc} -std=c99 -I"$root/runtime" -DMODEL=$n "$root/runtime/host/plmain.c" ran.c "$archive" \
                 -o ran 2>>log &&
             ./ran 2 >$n.csv 2>>log || echo "$n" >>log
     done

@@ -108,7 +108,7 @@ looks() {
         [ $real = double ] || own=-DFLOAT
         # shellcheck disable=SC2086
         "$plgen" --prefix linear --real $real "$@" -o linear_pl.c "$spec" 2>log &&
-            "${CC:-cc}" -std=c99 -O0 $flags $own -I"$root/runtime" look.c linear_pl.c "$archive" -lm \
+            ${CC:-cc} -std=c99 -O0 $flags $own -I"$root/runtime" look.c linear_pl.c "$archive" -lm \
                 -o look >>log 2>&1 &&
                 ./look >>log
         result $? "$title, $real: status is what the state says"
@@ -133,7 +133,7 @@ looks 'ramps, changing loads' "$root/tests/emitted/linear/switched.spec" ''
 
 : >log
 "$plgen" grows.spec >grows.c 2>>log && \
-    "${CC:-cc}" -std=c99 -I"$root/runtime" -DMODEL=linear "$root/runtime/host/plmain.c" grows.c "$archive" \
+    ${CC:-cc} -std=c99 -I"$root/runtime" -DMODEL=linear "$root/runtime/host/plmain.c" grows.c "$archive" \
         -o run >>log 2>&1
 ./run 400 >out.csv 2>said
 status=$?

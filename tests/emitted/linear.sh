@@ -5,7 +5,7 @@
 #
 #     linear.sh specs|names PLGEN LINEAR_INPUTS SOURCE_ROOT
 #
-# Each file goes to two of the four compilers by turns, with LONG=1 to all (see compilers.sh).
+# Each file goes to one of the four compilers by turns, with LONG=1 to all (see compilers.sh).
 #
 # The compilers are those of GCCS and CLANGS (default: gcc g++, clang clang++); what is not installed is skipped.
 set -u
@@ -52,22 +52,9 @@ only_runtime() {    # only_runtime OBJECT: does it name anything but pl_*, memcp
     [ ! -s log ]
 }
 
-# same_columns FOUND.csv EXPECTED.csv: same header, same number of rows, every value within 1e-11 of its column's
-# largest
+# same_columns FOUND.csv EXPECTED.csv
 same_columns() {
-    awk -F, '
-        FNR == NR { expected[FNR] = $0; rows = FNR
-                    for (i = 1; i <= NF && FNR > 1; i++) { v = $i < 0 ? -$i : +$i; if (v > most[i]) most[i] = v }
-                    next }
-        FNR == 1 { if ($0 != expected[1]) { print "header: found " $0 ", expected " expected[1]; bad = 1 }; next }
-        { n = split(expected[FNR], e)
-          if (n != NF) { print "row " FNR ": found " NF " columns, expected " n; bad = 1; exit }
-          for (i = 1; i <= NF; i++) {
-              d = $i - e[i]; if (d < 0) d = -d
-              if (!(d <= 1e-11 * most[i]) && ++bad < 10)
-                  print "row " FNR " column " i ": found " $i ", expected " e[i] ", tolerance " 1e-11 * most[i] } }
-        END { if (FNR != rows) { print "rows: found " FNR ", expected " rows; bad = 1 };
-            exit bad ? 1 : 0 }' "$2" "$1" >>log 2>&1
+    awk -F, -f "$root/tests/emitted/columns.awk" "$2" "$1" >>log 2>&1
 }
 
 runtime_archive "$root/runtime"

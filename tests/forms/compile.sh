@@ -28,8 +28,9 @@ switching='gear1 two_masses quarter_car_bumps'
     done
 } >compilers
 
-# compiles FILE.c NAME [OPTIONS]: one result for each compiler and language
+# compiles FILE.c NAME [OPTIONS]: by one compiler, of C or of C++, after the other by turns, with LONG=1 by each
 compiles() {
+    by_turns compilers >some
     while read -r compiler options; do
         if ! command -v "$compiler" >/dev/null 2>&1; then
             skip "$2, $compiler" "$compiler is not installed"
@@ -43,7 +44,7 @@ compiles() {
         "$compiler" $warnings -I"$root/runtime" -I"$root/tests/forms" -I"${1%/*}" ${3-} $options -c "$1" \
             -o out.o >log 2>&1
         result $? "$2, $compiler ${options%% *}"
-    done <compilers
+    done <some
 }
 
 without_comments() {
@@ -117,7 +118,7 @@ for m in $leftover $switching; do
     "$plgen" --real float --rhs -o "apart_$m.c" "$root/models/$m.spec" >log 2>&1 &&
         "$plgen" --real float --rhs --header "$root/models/$m.spec" >"header.h" 2>>log &&
         cmp "apart_$m.h" header.h >>log 2>&1 && grep -q "^#include \"apart_$m.h\"\$" "apart_$m.c" &&
-        "${CC:-cc}" -std=c99 $warnings -I"$root/runtime" -I. -fsyntax-only "apart_$m.c" >>log 2>&1
+        ${CC:-cc} -std=c99 $warnings -I"$root/runtime" -I. -fsyntax-only "apart_$m.c" >>log 2>&1
     result $? "$m in float: -o writes C and header, --header the same header"
 done
 for m in scs quarter_car; do

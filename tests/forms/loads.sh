@@ -138,7 +138,7 @@ for compiler in "${CC:-cc} -std=c99" "clang -std=c99" "g++ -std=c++17 -x c++"; d
 		tap_end
 	}
 done
-"${CC:-cc}" -O0 -I"$root/runtime" -I"$root/tests/emitted" -I. -o program "$root/tests/forms/loads.c" \
+${CC:-cc} -O0 -I"$root/runtime" -I"$root/tests/emitted" -I. -o program "$root/tests/forms/loads.c" \
 	"$root/tests/emitted/tap.c" "$archive" -lm >log 2>&1 || {
 	result 1 'the models compile'
 	tap_end

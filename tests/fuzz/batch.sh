@@ -13,6 +13,9 @@ ASAN_OPTIONS=exitcode=99:detect_leaks=0:hard_rss_limit_mb=2048:${ASAN_OPTIONS:-}
 UBSAN_OPTIONS=print_stacktrace=1:exitcode=99:${UBSAN_OPTIONS:-}
 export ASAN_OPTIONS UBSAN_OPTIONS
 warnings='-Werror -Wall -Wextra -Wpedantic -Wconversion -Wdouble-promotion -Wshadow'
+# not optimised, which takes half as long or less; with LONG=1 in the environment as a user would
+level=-O0
+[ -z "${LONG:-}" ] || level=-O1
 sanitizers='-fsanitize=address,undefined -fno-sanitize-recover=all'
 
 batch_new() {
@@ -136,6 +139,14 @@ batch_add() {
 			selftest=${id}_tested
 			echo "static double ${id}_tested(void) { return (double)${id}_selftest(); }"
 		fi
+		lanes=NULL
+		if grep -q "${id}_batch(" "$id.h"; then
+			lanes=${id}_lanes
+			real=double with=
+			grep -q "pl_modelf ${id}_model" "$id.h" && real=float
+			grep -q 'INPUTS = [1-9]' "$id.h" && with='u COMMA'
+			echo "LANES($id, $(echo "$id" | tr '[:lower:]' '[:upper:]'), $real, $with)"
+		fi
 		if [ "$again" != 'NULL, NULL, NULL' ]; then
 			echo "extern const int ${id}_coords[];"
 			for function in residual wanted; do
@@ -148,7 +159,7 @@ batch_add() {
 		echo "SUBJECT {\"$id\", $model, &${whole}_model, ${whole}_slopes, \"$scheme\", \"$class\"," \
 			"\"$changes\"," \
 			"$solution, $selftest," \
-			"$again, ${tuned:+&}${tuned:-NULL}${tuned:+_model}, \"$retune\"},"
+			"$again, ${tuned:+&}${tuned:-NULL}${tuned:+_model}, \"$retune\", $lanes},"
 	} >"$id.subject"
 	printf '%s\n' "$id" >>"subjects_$cc.list"
 	printf '%s\n' "$code" | tr ' ' '\n' >>"code_$cc.list"
@@ -161,7 +172,7 @@ compile() {
 	while read -r id; do
 		code="$(sed -n 's/^#include "\(.*\)\.h"$/\1.c/p' "$id.subject" | tr '\n' ' ')"
 		# shellcheck disable=SC2086
-		if ! $cc -std=c99 -O1 $warnings $sanitizers -I"$source/runtime" -c $code 2>"$id.cc_said"; then
+		if ! $cc -std=c99 $level $warnings $sanitizers -I"$source/runtime" -c $code 2>"$id.cc_said"; then
 			{
 				echo "$cc: the C does not compile"
 				grep -m 3 -e 'error' "$id.cc_said"
@@ -169,7 +180,7 @@ compile() {
 			continue
 		fi
 		if [ -f "$id.again.c" ]; then
-			$cc -std=gnu11 -O1 -I"$source/tests/fuzz" -c "$id.again.made.c" -o "$id.again.o" \
+			$cc -std=gnu11 $level -I"$source/tests/fuzz" -c "$id.again.made.c" -o "$id.again.o" \
 				2>"$id.cc_said" ||
 				{ { echo "$cc: the second writing does not compile"; grep -m 3 error "$id.cc_said"; } \
 					>"$id.wrong"; continue; }
@@ -186,6 +197,7 @@ batch_build() {
 		[ -s "compiled_$cc.list" ] || continue
 		{
 			echo '#include "drive.h"'
+			echo '#include "lanes.h"'
 			while read -r id; do
 				sed '/^SUBJECT/d' "$id.subject"
 			done <"compiled_$cc.list"
@@ -201,7 +213,7 @@ batch_build() {
 			[ -f "$id.again.c" ] && objects="$objects $id.again.o"
 		done <"compiled_$cc.list"
 		# shellcheck disable=SC2086
-		$cc -std=gnu11 -O1 -w $sanitizers -I. -I"$source/runtime" -I"$source/tests/fuzz" "subjects_$cc.c" \
+		$cc -std=gnu11 $level -w $sanitizers -I. -I"$source/runtime" -I"$source/tests/fuzz" "subjects_$cc.c" \
 			$objects \
 			"$folder/drive_$cc.a" \
 			-lsundials_cvode -lsundials_arkode -lsundials_nvecserial -lm -o "batch_$cc" >"link_$cc.said" \

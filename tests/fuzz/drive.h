@@ -20,6 +20,7 @@ struct subject {
 	void (*wanted)(double t, const double *y, const double *u, const double *top, double *out);
 	const pl_model *tuned;      /* the spec with other params and step; NULL: nothing is tunable */
 	const char *retune;         /* these values: NAME=VALUE ... */
+	double (*lanes)(void);      /* of NAME_batch, lanes.h; or NULL */
 };
 
 extern const struct subject subjects[];     /* up to one without a name */

@@ -12,6 +12,8 @@
  *     NAME_residual(t, y, u, top, r)     left sides minus right sides; top: the highest derivative of each coordinate
  *     NAME_wanted(t, y, u, top, out)     the outputs; NULL `out` of a model without
  *     NAME_coords                        how many coordinates, then of each its order */
+#include "random.h"
+
 #include <inttypes.h>
 #include <stdarg.h>
 #include <stdbool.h>
@@ -21,17 +23,6 @@
 #include <string.h>
 
 enum { MOST_COORDS = 48, MOST_NAMES = 12, ROOM = 1 << 16 };
-
-static uint64_t state;
-
-/* splitmix64 (Steele, Lea, Flood 2014) */
-static uint64_t next(void)
-{
-	uint64_t z = state += UINT64_C(0x9e3779b97f4a7c15);
-	z = (z ^ (z >> 30)) * UINT64_C(0xbf58476d1ce4e5b9);
-	z = (z ^ (z >> 27)) * UINT64_C(0x94d049bb133111eb);
-	return z ^ (z >> 31);
-}
 
 static int below(int n)
 {

@@ -35,11 +35,18 @@ options_of() {
     esac
 }
 
+cat >compilers <<'END'
+gcc -std=c99 -O1 -c -o object.o
+g++ -std=c++17 -fsyntax-only -x c++
+clang -std=c99 -fsyntax-only
+clang++ -std=c++17 -fsyntax-only -x c++
+END
+
+# gcc and one of the others by turns, with LONG=1 all
 for file in $files; do
     name=${file##*/}
-    for compiler in 'gcc -std=c99 -O1 -c -o object.o' 'clang -std=c99 -fsyntax-only' \
-        'g++ -std=c++17 -fsyntax-only -x c++' \
-        'clang++ -std=c++17 -fsyntax-only -x c++'; do
+    gcc_and_another compilers >some
+    while read -r compiler; do
         if ! command -v "${compiler%% *}" >/dev/null 2>&1; then
             count=$((count + 1))
             echo "ok $count - $name, ${compiler%% *} # SKIP ${compiler%% *} is not installed"
@@ -49,7 +56,7 @@ for file in $files; do
         ${compiler%% *} $warnings -I"$root/runtime" -I"$here" -I"${file%/*}" $(options_of "$compiler" "$file") \
             "$file" >log 2>&1
         result $? "$name, $compiler: not a warning"
-    done
+    done <some
 done
 
 # Each line a model: what its leftover needs (inputs, slopes, times, loads, banks) differs.
@@ -83,18 +90,20 @@ while read -r kind; do
         "$plgen" --rhs --prefix "kind_$scheme" --scheme "$scheme" kind.spec 2>log >>all.c ||
             { status=1; cat log >>said; }
     done
-    for compiler in 'gcc -std=c99' 'clang -std=c99' 'g++ -std=c++17 -x c++'; do
+    by_turns compilers >some
+    while read -r compiler; do
         command -v "${compiler%% *}" >/dev/null 2>&1 || continue
-        # shellcheck disable=SC2086
-        ${compiler%% *} $warnings -fsyntax-only -I"$root/runtime" ${compiler#* } all.c >>said 2>&1 || status=1
-    done
+        # shellcheck disable=SC2046,SC2086
+        ${compiler%% *} $warnings -I"$root/runtime" $(options_of "$compiler" all.c) all.c >>said 2>&1 || status=1
+    done <some
     cp said log
     result $status "$kind"
 done <kinds
 
 # ---- the same bytes twice ----
 
-for file in $files; do
+# shellcheck disable=SC2086
+for file in $(third 1 $files); do
     name=${file##*/}
     list=${name%_variants.c}
     "$here/variants.sh" "$plgen" "$here/$list.list" "$work/$name" "$work/${name%.c}.h" "$here" "$root/models" \

@@ -44,7 +44,7 @@ refused() {
     result $? "refused: $text"
 }
 
-refused "expected the end of the statement, found '\*'" "x'' + x = 0" 'peak(x)*2'
+refused 'peak stands alone: output NAME = peak(EXPR)' "x'' + x = 0" 'peak(x)*2'
 refused "expected '(': peak(x) is the largest |x| so far, found 'x'" "x'' + x = 0" 'peak x'
 here="the peak of 'q' cannot be found here"
 refused "$here: it is not linear" "x'' + x = 0" 'peak(x*z)'

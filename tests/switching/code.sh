@@ -32,14 +32,20 @@ options_of() {
     esac
 }
 
-# compiled NAME FILE [OPTION ...]: by all compilers that there are
+cat >compilers <<'END'
+gcc -std=c99 -O1 -c -o object.o
+g++ -std=c++17 -fsyntax-only -x c++
+clang -std=c99 -fsyntax-only
+clang++ -std=c++17 -fsyntax-only -x c++
+END
+
+# compiled NAME FILE [OPTION ...]: by gcc and one of the others by turns, with LONG=1 by all compilers that there are
 compiled() {
     name=$1
     file=$2
     shift 2
-    for compiler in 'gcc -std=c99 -O1 -c -o object.o' 'clang -std=c99 -fsyntax-only' \
-        'g++ -std=c++17 -fsyntax-only -x c++' \
-        'clang++ -std=c++17 -fsyntax-only -x c++'; do
+    gcc_and_another compilers >some
+    while read -r compiler; do
         if ! command -v "${compiler%% *}" >/dev/null 2>&1; then
             count=$((count + 1))
             echo "ok $count - $name, ${compiler%% *} # SKIP ${compiler%% *} is not installed"
@@ -48,11 +54,14 @@ compiled() {
         # shellcheck disable=SC2046,SC2086
         ${compiler%% *} $warnings -I"$root/runtime" "$@" $(options_of "$compiler" "$file") "$file" >log 2>&1
         result $? "$name, $compiler: not a warning"
-    done
+    done <some
 }
 
 for file in $files; do
     compiled "${file##*/}" "$file" -I"$here" -I"${file%/*}"
+done
+# shellcheck disable=SC2086
+for file in $(third 2 $files); do
     name=${file##*/}
     list=${name%_variants.c}
     "$here/variants.sh" "$plgen" "$here/$list.list" "$work/$name" "$work/${name%.c}.h" "$here" \
@@ -96,11 +105,12 @@ while read -r kind; do
     "$plgen" --rhs joined.spec >kind.c 2>log || status=1
     "$plgen" --rhs joined.spec >again.c 2>>log
     cmp kind.c again.c >>log 2>&1 || status=1
-    for compiler in 'gcc -std=c99' 'clang -std=c99' 'g++ -std=c++17 -x c++' 'clang++ -std=c++17 -x c++'; do
+    by_turns compilers >some
+    while read -r compiler; do
         command -v "${compiler%% *}" >/dev/null 2>&1 || continue
-        # shellcheck disable=SC2086
-        ${compiler%% *} $warnings -fsyntax-only -I"$root/runtime" ${compiler#* } kind.c >>log 2>&1 || status=1
-    done
+        # shellcheck disable=SC2046,SC2086
+        ${compiler%% *} $warnings -I"$root/runtime" $(options_of "$compiler" kind.c) kind.c >>log 2>&1 || status=1
+    done <some
     result $status "$kind"
 done <kinds
 

@@ -29,8 +29,9 @@ warnings='-Wall -Wextra -Wpedantic -Wconversion -Wdouble-promotion -Wshadow -Wer
     done
 } >compilers
 
-# compiles NAME FILE.c ...: one result for each compiler and language
+# compiles NAME FILE.c ...: by gcc and one of the others by turns, with LONG=1 by each
 compiles() {
+    gcc_and_another compilers >some
     what=$1
     shift
     cat "$@" >all.c
@@ -39,19 +40,19 @@ compiles() {
             skip "$what, $compiler" "$compiler is not installed"
             continue
         fi
-        # by gcc each becomes an object, whose names are looked at, optimised in one form; for the others they are one
-        # file without code, but with LONG=1
+        # by gcc each becomes an object, whose names are looked at, optimised in one form of double; for the others they
+        # are one file without code, but with LONG=1
         these=$*
         if ! long; then
             case $compiler,$what in
                 *clang* | *++*) options="$options -O0 -fsyntax-only" these=all.c ;;
-                *,*direct) options="$options -O0" ;;
+                *,*direct | *,float*) options="$options -O0" ;;
             esac
         fi
         # shellcheck disable=SC2086
         "$compiler" $warnings -I"$root/runtime" $options -c $these >log 2>&1
         result $? "$what, $compiler ${options%% *}"
-    done <compilers
+    done <some
 }
 
 # What a file calls beyond its own: of the runtime, and memcpy or memset, which a compiler makes of assignments
@@ -101,7 +102,7 @@ done
 for spec in $specs; do
     name=$(basename "$spec" .spec)
     "$plgen" -o "$name.c" "$spec" >log 2>&1 &&
-        "${CC:-cc}" -std=c99 $warnings -I"$root/runtime" -O0 -S "$name.c" -o apart.s >>log 2>&1
+        ${CC:-cc} -std=c99 $warnings -I"$root/runtime" -O0 -S "$name.c" -o apart.s >>log 2>&1
     result $? "$name: -o writes C and header"
 done
 
@@ -123,7 +124,7 @@ for real in double float; do
             else
                 "$plgen" --real $real "$spec" >drive.c 2>log
             fi
-            "${CC:-cc}" -std=c99 $warnings $define -DMODEL=$name -I"$root/runtime" "$root/runtime/host/plmain.c" \
+            ${CC:-cc} -std=c99 $warnings $define -DMODEL=$name -I"$root/runtime" "$root/runtime/host/plmain.c" \
                 drive.c \
                 "$archive" -o "run_$name$suffix$other" >>log 2>&1
             result $? "plmain of $name, $real${other:+, with the values as -D}"

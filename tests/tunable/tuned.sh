@@ -5,8 +5,8 @@
 #     tuned.sh PLGEN REAL CODE.c HEADER.h MODEL.spec ...
 #
 # Each is there as NAME and, with --form direct, as direct_NAME; as plain_NAME and plain_direct_NAME: the same spec
-# without `tunable`; and where its line `#there OPTION ...` gives other values, with these as there_NAME and
-# there_direct_NAME, again without `tunable`.
+# without `tunable`; and where its line `#there OPTION ...`, or the file NAME.there beside this script, gives other
+# values, with these as there_NAME and there_direct_NAME, again without `tunable`.
 set -eu
 LC_ALL=C
 export LC_ALL
@@ -67,6 +67,8 @@ entry() {
 for spec; do
     name=$(basename "$spec" .spec)
     there=$(sed -n 's/^#there //p' "$spec")
+    beside=${0%/*}/$name.there
+    [ ! -f "$beside" ] || there=$(cat "$beside")
     grep -v '^tunable' "$spec" >"$work/without.spec"
     for form in delta direct; do
         if [ $form = delta ]; then before='' direct=0; else before=direct_ direct=1; fi

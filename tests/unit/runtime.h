@@ -50,6 +50,39 @@ static inline uint64_t random_word(void)
     return seed * 0x2545F4914F6CDD1Du;
 }
 
+#ifdef REAL_IS_FLOAT
+#define real_of(v) mpfr_get_flt(v, MPFR_RNDN)
+#else
+#define real_of(v) mpfr_get_d(v, MPFR_RNDN)
+#endif
+
+/* v in two words */
+static inline pl_two two_of(mpfr_t v)
+{
+    mpfr_t rest;
+    pl_two t;
+    mpfr_init2(rest, mpfr_get_prec(v));
+    t.hi = real_of(v);
+    mpfr_sub_d(rest, v, t.hi, MPFR_RNDN);
+    t.lo = real_of(rest);
+    mpfr_clear(rest);
+    return t;
+}
+
+static inline void set_two(mpfr_t v, pl_two t)
+{
+    mpfr_set_d(v, t.hi, MPFR_RNDN);
+    mpfr_add_d(v, v, t.lo, MPFR_RNDN);
+}
+
+static inline pl_two word_of(double v)
+{
+    pl_two t;
+    t.hi = (real)v;
+    t.lo = 0;
+    return t;
+}
+
 /* How many samples to draw, of `all`: every one in the long form (LONG in the environment), else a tenth. */
 static inline long samples(long all)
 {

@@ -33,7 +33,7 @@ enum { N = 10, S = 3, B = 2, R = 27, LARGEST_DEGREE = 24, EVENTS = 64, SPLITS = 
 typedef struct model {
     pl_switching m;
     double base[N * N], add[S][B + 1][N * N];
-    real row[S * N], at[S * B], *A, *Phi, *lean, *sag, *sway;
+    real row[S * N], at[S * B], *A, *Phi, *tangent, *chord_error, *cubic_error;
     int states, breaks[S], matrix[R], halvings[R], regions; /* states: the model's own, coordinates first */
     real x[N], *work;
     pl_contact c;
@@ -73,9 +73,9 @@ static void unbuild(model *s)
 {
     free(s->A);
     free(s->Phi);
-    free(s->lean);
-    free(s->sag);
-    free(s->sway);
+    free(s->tangent);
+    free(s->chord_error);
+    free(s->cubic_error);
     free(s->work);
     free(s->crossing);
 }
@@ -192,10 +192,10 @@ static void tables_of(model *s, int r, double step)
             double sum = 0.0;
             for (k = 0; k < n; k++)
                 sum += h / 3.0 * row[k] * A[k * n + j];
-            s->lean[at + j] = (real)sum;
+            s->tangent[at + j] = (real)sum;
         }
-        bound(n, row, A, 2, growth, h * h / 8.0, s->sag + at);
-        bound(n, row, A, 4, growth, h * h * h * h / 384.0, s->sway + at);
+        bound(n, row, A, 2, growth, h * h / 8.0, s->chord_error + at);
+        bound(n, row, A, 4, growth, h * h * h * h / 384.0, s->cubic_error + at);
     }
 }
 
@@ -208,9 +208,9 @@ static void build(model *s, double h)
         s->regions *= s->breaks[i] + 1;
     s->A = reals(s->regions * n * n);
     s->Phi = reals(s->regions * n * n);
-    s->lean = reals(s->regions * n * switches);
-    s->sag = reals(s->regions * n * switches);
-    s->sway = reals(s->regions * n * switches);
+    s->tangent = reals(s->regions * n * switches);
+    s->chord_error = reals(s->regions * n * switches);
+    s->cubic_error = reals(s->regions * n * switches);
     for (i = 0; i < s->regions; i++) {
         s->matrix[i] = i;
         tables_of(s, i, (double)(real)h);
@@ -223,9 +223,9 @@ static void build(model *s, double h)
     s->m.matrix = s->matrix;
     s->m.A = s->A;
     s->m.Phi = s->Phi;
-    s->m.lean = s->lean;
-    s->m.sag = s->sag;
-    s->m.sway = s->sway;
+    s->m.tangent = s->tangent;
+    s->m.chord_error = s->chord_error;
+    s->m.cubic_error = s->cubic_error;
     s->m.halvings = s->halvings;
     s->m.max_events = EVENTS;
     s->m.max_splits = SPLITS;

@@ -8,42 +8,14 @@ enum { BITS = 400 };
  * the range, 2^(2 MANY) beyond it. */
 #ifdef REAL_IS_FLOAT
 #define UNIT 0x1p-46
-#define real_of(v) mpfr_get_flt(v, MPFR_RNDN)
 enum { NUMBERS = 66, MANY = 75, FEW = 45, COUPLED = 101 };
 static const uint64_t counts[] = {1, 2, 3, 1000, 123456789, 1000000000};
 #else
 #define UNIT 0x1p-104
-#define real_of(v) mpfr_get_d(v, MPFR_RNDN)
 enum { NUMBERS = 150, MANY = 600, FEW = 420, COUPLED = 1001 };
 static const uint64_t counts[] = {1, 2, 3, 1000, 123456789, 1000000000, 1000000000000};
 #endif
 enum { COUNTS = sizeof counts / sizeof counts[0] };
-
-static pl_two two_of(mpfr_t v)
-{
-    mpfr_t rest;
-    pl_two t;
-    mpfr_init2(rest, BITS);
-    t.hi = real_of(v);
-    mpfr_sub_d(rest, v, t.hi, MPFR_RNDN);
-    t.lo = real_of(rest);
-    mpfr_clear(rest);
-    return t;
-}
-
-static pl_two one_word(double v)
-{
-    pl_two t;
-    t.hi = (real)v;
-    t.lo = 0;
-    return t;
-}
-
-static void set_two(mpfr_t v, pl_two t)
-{
-    mpfr_set_d(v, t.hi, MPFR_RNDN);
-    mpfr_add_d(v, v, t.lo, MPFR_RNDN);
-}
 
 static double worst; /* error, in tolerances */
 
@@ -88,8 +60,8 @@ static void rotation(void **state)
         P[2] = two_of(s);
         P[1].hi = -P[2].hi;
         P[1].lo = -P[2].lo;
-        x[0] = one_word(1.0);
-        x[1] = one_word(0.0);
+        x[0] = word_of(1.0);
+        x[1] = word_of(0.0);
         pl_power_apply(2, P, W, x, w, counts[i]);
         mpfr_mul_ui(angle, angle, (unsigned long)counts[i], MPFR_RNDN);
         mpfr_sin_cos(s, c, angle, MPFR_RNDN);
@@ -114,12 +86,12 @@ static void coupled(void **state)
         mpfr_init2(P[i], BITS);
         mpfr_init2(Q[i], BITS);
         mpfr_set_d(P[i], entries[i], MPFR_RNDN);
-        p[i] = one_word(entries[i]);
+        p[i] = word_of(entries[i]);
     }
     for (i = 0; i < 3; i++) {
         mpfr_init2(x[i], BITS);
         mpfr_init2(y[i], BITS);
-        v[i] = one_word(1.0 + 0.3 * i);
+        v[i] = word_of(1.0 + 0.3 * i);
         set_two(x[i], v[i]);
     }
     for (bit = 0; count >> bit != 0; bit++) {
@@ -169,10 +141,10 @@ static void fibonacci(void **state)
     mpfr_init2(v, BITS);
     for (k = 1; k <= NUMBERS; k++) {
         pl_two P[4], W[4], x[2], w[2];
-        P[0] = P[1] = P[2] = one_word(1.0);
-        P[3] = one_word(0.0);
-        x[0] = one_word(1.0);
-        x[1] = one_word(0.0);
+        P[0] = P[1] = P[2] = word_of(1.0);
+        P[3] = word_of(0.0);
+        x[0] = word_of(1.0);
+        x[1] = word_of(0.0);
         pl_power_apply(2, P, W, x, w, k);
         mpz_fib_ui(f, (unsigned long)k);
         mpfr_set_z(v, f, MPFR_RNDN);
@@ -188,7 +160,7 @@ static void no_steps(void **state)
     int i;
     (void)state;
     for (i = 0; i < 4; i++)
-        P[i] = one_word(3.0);
+        P[i] = word_of(3.0);
     x[0].hi = (real)0.1;
     x[0].lo = (real)1e-18;
     x[1].hi = -INFINITY;
@@ -207,14 +179,14 @@ static void overflow_is_infinite_and_stays_where_it_is(void **state)
     (void)state;
     for (sign = -1; sign <= 1; sign += 2) {
         for (i = 0; i < 9; i++)
-            P[i] = one_word(0.0);
-        P[0] = P[4] = one_word(1.5); /* growing, turning the other way round */
-        P[1] = one_word(-0.75);
-        P[3] = one_word(0.75);
-        P[8] = one_word(0.5);
-        x[0] = one_word(sign);
-        x[1] = one_word(-0.25);
-        x[2] = one_word(3.0);
+            P[i] = word_of(0.0);
+        P[0] = P[4] = word_of(1.5); /* growing, turning the other way round */
+        P[1] = word_of(-0.75);
+        P[3] = word_of(0.75);
+        P[8] = word_of(0.5);
+        x[0] = word_of(sign);
+        x[1] = word_of(-0.25);
+        x[2] = word_of(3.0);
         pl_power_apply(3, P, W, x, w, 1000000);
         for (i = 0; i < 2; i++)
             if (!isinf(x[i].hi) || x[i].lo != 0)
@@ -222,11 +194,11 @@ static void overflow_is_infinite_and_stays_where_it_is(void **state)
         assert_double(x[2].hi, 0.0, "decoupled entry");
     }
     for (i = 0; i < 9; i++)
-        P[i] = one_word(0.0);
-    P[0] = P[1] = P[3] = P[4] = one_word(1.5);
-    P[8] = one_word(-1.0);
-    x[0] = x[1] = one_word(1.0);
-    x[2] = one_word(5.0);
+        P[i] = word_of(0.0);
+    P[0] = P[1] = P[3] = P[4] = word_of(1.5);
+    P[8] = word_of(-1.0);
+    x[0] = x[1] = word_of(1.0);
+    x[2] = word_of(5.0);
     pl_power_apply(3, P, W, x, w, UINT64_MAX);
     assert_double(x[0].hi, (double)INFINITY, "growing entry");
     assert_double(x[2].hi, -5.0, "decoupled entry");
@@ -239,14 +211,14 @@ static void overflow_has_the_sign_of_the_sum(void **state)
     int i;
     (void)state;
     for (i = 0; i < 9; i++)
-        P[i] = one_word(0.0);
-    P[0] = one_word(ldexp(1.0, MANY));
-    P[1] = one_word(-ldexp(1.0, MANY));
-    P[2] = one_word(-ldexp(1.0, MANY));
-    P[3] = one_word(ldexp(1.0, MANY));
-    P[4] = one_word(-ldexp(1.0, MANY));
-    P[5] = one_word(ldexp(1.0, FEW));
-    x[0] = x[1] = x[2] = one_word(ldexp(1.0, MANY));
+        P[i] = word_of(0.0);
+    P[0] = word_of(ldexp(1.0, MANY));
+    P[1] = word_of(-ldexp(1.0, MANY));
+    P[2] = word_of(-ldexp(1.0, MANY));
+    P[3] = word_of(ldexp(1.0, MANY));
+    P[4] = word_of(-ldexp(1.0, MANY));
+    P[5] = word_of(ldexp(1.0, FEW));
+    x[0] = x[1] = x[2] = word_of(ldexp(1.0, MANY));
     pl_power_apply(3, P, W, x, w, 1);
     assert_double(x[0].hi, -(double)INFINITY, "+inf - inf - inf");
     assert_double(x[1].hi, ldexp(1.0, MANY + FEW), "+inf - inf + a power of 2");

@@ -58,14 +58,6 @@ static pl_two about(double v)
     return t;
 }
 
-static pl_two one_word(double v)
-{
-    pl_two t;
-    t.hi = (real)v;
-    t.lo = 0;
-    return t;
-}
-
 /* ---- increments ---- */
 
 typedef struct system {
@@ -84,17 +76,11 @@ static void clear(system_of *s, int states, int loads)
     s->size = states + loads;
     s->states = states;
     for (i = 0; i < LARGEST * LARGEST; i++)
-        s->A[i] = one_word(0.0);
+        s->A[i] = word_of(0.0);
 }
 
 static mpfr_t exact_A[LARGEST * LARGEST], exact_D[LARGEST * LARGEST], power[LARGEST * LARGEST], room[LARGEST * LARGEST],
     temporary;
-
-static void set_two(mpfr_t v, pl_two t)
-{
-    mpfr_set_d(v, t.hi, MPFR_RNDN);
-    mpfr_add_d(v, v, t.lo, MPFR_RNDN);
-}
 
 /* room <- a b */
 static void exact_product(int n, mpfr_t *a, mpfr_t *b)
@@ -217,7 +203,7 @@ static void report(const char *family)
 /* One mass: x'' = -k/m x - c/m x'.  How fast it goes. */
 static double one_mass(system_of *s, double m, double c, double k)
 {
-    *entry(s, 0, 1) = one_word(1.0);
+    *entry(s, 0, 1) = word_of(1.0);
     *entry(s, 1, 0) = about(-k / m);
     *entry(s, 1, 1) = about(-c / m);
     return fmax(sqrt(k / m), c / m);
@@ -230,7 +216,7 @@ static double two_masses(system_of *s, const double *m, const double *c, const d
     int i;
     for (i = 0; i < 2; i++) {
         const double ks = k[1] + (i == 0 ? k[0] : 0), cs = c[1] + (i == 0 ? c[0] : 0);
-        *entry(s, i, 2 + i) = one_word(1.0);
+        *entry(s, i, 2 + i) = word_of(1.0);
         *entry(s, 2 + i, i) = about(-ks / m[i]);
         *entry(s, 2 + i, 1 - i) = about(k[1] / m[i]);
         *entry(s, 2 + i, 2 + i) = about(-cs / m[i]);
@@ -306,8 +292,8 @@ static void near_confluence(void **state)
         clear(&s, 2, 0);
         fastest = one_mass(&s, m, 2 * m * w * (1 + (i % 8 < 4 ? gap : -gap)), m * w * w);
         if (exact) {
-            *entry(&s, 1, 0) = one_word(-w * w);
-            *entry(&s, 1, 1) = one_word(-2 * w);
+            *entry(&s, 1, 0) = word_of(-w * w);
+            *entry(&s, 1, 1) = word_of(-2 * w);
         }
         assert_increment(&s, tau_of(fastest, i % 3 == 0 ? -10.0 : -2.0, i % 3 == 0 ? FARTHEST : 5.0),
                          "near confluence");
@@ -317,7 +303,7 @@ static void near_confluence(void **state)
         const double w = scattered(1.0, 1e6), coupling = w * w * scattered(1e-16, 1e-2);
         system_of s;
         clear(&s, 4, 0);
-        *entry(&s, 0, 2) = *entry(&s, 1, 3) = one_word(1.0);
+        *entry(&s, 0, 2) = *entry(&s, 1, 3) = word_of(1.0);
         *entry(&s, 2, 0) = *entry(&s, 3, 1) = about(-w * w);
         *entry(&s, 2, 1) = about(coupling);
         if (i % 2)
@@ -389,7 +375,7 @@ static void rigid_body(void **state)
             order[other] = swapped;
         }
         for (j = 0; j < n - 1; j++)
-            *entry(&s, order[j], order[j + 1]) = i % 2 ? one_word(1.0) : about(scattered(0.1, 10.0));
+            *entry(&s, order[j], order[j + 1]) = i % 2 ? word_of(1.0) : about(scattered(0.1, 10.0));
         assert_increment(&s, (real)scattered(1e-3, 1e3), "nilpotent");
     }
     report("nilpotent");
@@ -427,7 +413,7 @@ static int put_load(system_of *s, int load, int at, double own, double *fastest)
     case MONOMIAL: /* t^d, ..., t, 1: (t^j)' = j t^{j - 1} */
         used = 2 + below(5);
         for (j = 0; j < used - 1; j++)
-            *entry(s, at + j, at + j + 1) = one_word(used - 1 - j);
+            *entry(s, at + j, at + j + 1) = word_of(used - 1 - j);
         break;
     case EXPONENTIAL:
         rate = own * scattered(1e-3, 1.0);
@@ -435,7 +421,7 @@ static int put_load(system_of *s, int load, int at, double own, double *fastest)
         *fastest = fmax(*fastest, rate);
         break;
     case RAMP: /* u and u', by a spring and maybe a damper */
-        *entry(s, at, at + 1) = one_word(1.0);
+        *entry(s, at, at + 1) = word_of(1.0);
         used = 2;
         break;
     default:
@@ -498,7 +484,7 @@ static void far_columns(void **state)
         one_mass(&s, 1.0, damping, i % 3 == 1 ? between(0.0, 1.0) : 0);
         *entry(&s, 1, 2) = about(scattered(1e-3, 1e3));
         for (j = 0; j < length - 1; j++)
-            *entry(&s, 2 + j, 3 + j) = one_word(length - 1 - j);
+            *entry(&s, 2 + j, 3 + j) = word_of(length - 1 - j);
         assert_increment(&s, (real)scattered(1e-3, 4.0), "far columns");
     }
     report("far columns");
@@ -527,8 +513,8 @@ static void cancelling_loads(void **state)
         rate = fastest * scattered(1e-3, 1.0);
         tau = tau_of(fastest, all ? -10.0 : -30.0, 1.0);
         force = scattered(1e-3, 1e3);
-        *entry(&s, s.states, s.states + 1) = one_word(rate);
-        *entry(&s, s.states + 1, s.states) = one_word(-rate);
+        *entry(&s, s.states, s.states + 1) = word_of(rate);
+        *entry(&s, s.states + 1, s.states) = word_of(-rate);
         for (j = masses; j < s.states; j++) {
             *entry(&s, j, s.states) = about(force);
             *entry(&s, j, s.states + 1) = about(-force * rate * (double)tau / 2 * (all ? 1 : between(0.8, 0.9)));
@@ -576,7 +562,7 @@ static void ends_of_the_range(void **state)
     (void)state;
     clear(&s, 2, 2);
     one_mass(&s, 1.0, 0.1, 4.0);
-    *entry(&s, 1, 2) = *entry(&s, 2, 3) = one_word(1.0);
+    *entry(&s, 1, 2) = *entry(&s, 2, 3) = word_of(1.0);
     assert_status(pl_increment(4, 2, s.A, 0, 1, D, work), 0, "tau = 0");
     for (i = 0; i < 8; i++)
         if (D[i].hi != 0)
@@ -585,26 +571,26 @@ static void ends_of_the_range(void **state)
         assert_status(pl_increment(4, 2, s.A, special[i], 1, D, work), PL_NOT_FINITE, "tau not finite");
         for (j = 0; j < 4; j++) {
             const pl_two kept = *entry(&s, 1, j);
-            *entry(&s, 1, j) = one_word(special[i]);
+            *entry(&s, 1, j) = word_of(special[i]);
             assert_status(pl_increment(4, 2, s.A, (real)0x1p-10, 1, D, work), PL_NOT_FINITE, "A not finite");
             assert_status(pl_increment(4, 2, s.A, (real)0.5, 1, D, work), PL_NOT_FINITE, "A not finite");
             assert_status(pl_increment(4, 2, s.A, (real)100, 1, D, work), PL_NOT_FINITE, "A not finite");
             *entry(&s, 1, j) = kept;
         }
-        *entry(&s, 2, 3) = one_word(special[i]);
+        *entry(&s, 2, 3) = word_of(special[i]);
         assert_status(pl_increment(4, 2, s.A, (real)0.5, 1, D, work), PL_NOT_FINITE, "a load not finite");
-        *entry(&s, 2, 3) = one_word(1.0);
+        *entry(&s, 2, 3) = word_of(1.0);
     }
     assert_status(pl_increment(4, 2, s.A, (real)1e20, 1, D, work), PL_NOT_FINITE, "a norm beyond what is taken");
     assert_status(pl_increment(4, 2, s.A, REAL_LARGE, 1, D, work), PL_NOT_FINITE, "a norm beyond what is taken");
-    *entry(&s, 1, 1) = one_word(1.0);
+    *entry(&s, 1, 1) = word_of(1.0);
     assert_status(pl_increment(4, 2, s.A, 20, 1, D, work), 0, "a growing state, a short time");
     assert_status(pl_increment(4, 2, s.A, 1e5, 1, D, work), PL_NOT_FINITE, "a growing state, a long time");
-    *entry(&s, 1, 1) = one_word(0.0);
-    *entry(&s, 2, 2) = one_word(1.0);
+    *entry(&s, 1, 1) = word_of(0.0);
+    *entry(&s, 2, 2) = word_of(1.0);
     assert_status(pl_increment(4, 2, s.A, 1e5, 1, D, work), PL_NOT_FINITE, "a growing load");
     clear(&s, 1, 0);
-    *entry(&s, 0, 0) = one_word(-1e6);
+    *entry(&s, 0, 0) = word_of(-1e6);
     assert_status(pl_increment(1, 1, s.A, 1e3, 1, D, work), 0, "a state that decays at once");
     if (D[0].hi != -1)
         fail_msg("a state that decays at once: found %.17g, expected -1", (double)D[0].hi);
@@ -785,7 +771,7 @@ static void equations(void **state)
                         int terms = 1 + (c.e.terms < TERMS - 40 ? below(3) : 0);
                         for (; terms > 0; terms--) {
                             const pl_two factor =
-                                below(3) ? about(either(scattered(1e-3, 1e3))) : one_word(either(1.0));
+                                below(3) ? about(either(scattered(1e-3, 1e3))) : word_of(either(1.0));
                             put_term(&c, row, column, below(c.e.monomials + 1), factor);
                         }
                     }
@@ -814,7 +800,7 @@ static void nearly_singular(void **state)
                 put_term(&c, row, column, below(2), factor);
             }
             for (column = 0; column < n; column++) { /* rank one, and a little */
-                put_term(&c, row, 3 + column, 1, one_word((row + 1.0) * (column + 2.0)));
+                put_term(&c, row, 3 + column, 1, word_of((row + 1.0) * (column + 2.0)));
                 put_term(&c, row, 3 + column, 0, about(either(scattered(REAL_EPSILON, 1e-3))));
             }
         }
@@ -833,9 +819,9 @@ static void singular(void **state)
         case_of c;
         start_case(&c, n, 2, 1);
         for (row = 0; row < n; row++) {
-            put_term(&c, row, 0, 0, one_word(1.0));
+            put_term(&c, row, 0, 0, word_of(1.0));
             for (column = 0; column < n && n > 1; column++)
-                put_term(&c, row, 2 + column, 0, one_word((row + 1.0) * (column + 2.0)));
+                put_term(&c, row, 2 + column, 0, word_of((row + 1.0) * (column + 2.0)));
         }
         assert_equations(&c, "singular"); /* by the same road: exactly singular there too */
         assert_status(pl_equations_at(&c.e, c.params, value, work), PL_SINGULAR, "singular");
@@ -851,11 +837,11 @@ static void singular(void **state)
             c.monomial[row].from = row;
             c.monomial[row].param = 1;
         }
-        put_term(&c, 0, 0, 0, one_word(1.0));
-        put_term(&c, 0, 1, 3, one_word(1.0));
-        put_term(&c, 0, 2, 2, one_word(1.0));
-        put_term(&c, 1, 1, 2, one_word(1.0));
-        put_term(&c, 1, 2, 1, one_word(1.0));
+        put_term(&c, 0, 0, 0, word_of(1.0));
+        put_term(&c, 0, 1, 3, word_of(1.0));
+        put_term(&c, 0, 2, 2, word_of(1.0));
+        put_term(&c, 1, 1, 2, word_of(1.0));
+        put_term(&c, 1, 2, 1, word_of(1.0));
         assert_equations(&c, "singular but for rounding");
     }
 }
@@ -876,10 +862,10 @@ static void not_finite(void **state)
         c.monomial[2].param = 2;
         c.monomial[2].divides = 1;
         c.monomial[3].from = 1;
-        put_term(&c, 0, 0, 3, one_word(-1.0));
-        put_term(&c, 0, 0, 0, one_word(1.0)); /* behind what overflows */
+        put_term(&c, 0, 0, 3, word_of(-1.0));
+        put_term(&c, 0, 0, 0, word_of(1.0)); /* behind what overflows */
         if (solves)
-            put_term(&c, 0, 1, 4, one_word(1.0));
+            put_term(&c, 0, 1, 4, word_of(1.0));
         for (i = 0; i < PARAMS; i++)
             c.params[i] = (real)(i + 2);
         assert_status(pl_equations_at(&c.e, c.params, value, work), 0, "all finite");

@@ -6,10 +6,8 @@ enum { BITS = 400 };
 
 #ifdef REAL_IS_FLOAT
 #define LARGEST_ERROR 0x1p-45 /* of the largest of what is added up */
-#define real_of(v) mpfr_get_flt(v, MPFR_RNDN)
 #else
 #define LARGEST_ERROR 0x1p-100
-#define real_of(v) mpfr_get_d(v, MPFR_RNDN)
 #endif
 
 /* 2^low .. 2^high, about */
@@ -17,24 +15,6 @@ static double random_number(int low, int high)
 {
     return ldexp((double)(random_word() >> 11 | (uint64_t)1 << 52),
                  low - 52 + (int)(random_word() % (uint64_t)(high - low)));
-}
-
-static pl_two two_of(mpfr_t v)
-{
-    mpfr_t rest;
-    pl_two t;
-    mpfr_init2(rest, BITS);
-    t.hi = real_of(v);
-    mpfr_sub_d(rest, v, t.hi, MPFR_RNDN);
-    t.lo = real_of(rest);
-    mpfr_clear(rest);
-    return t;
-}
-
-static void set_two(mpfr_t v, pl_two t)
-{
-    mpfr_set_d(v, t.hi, MPFR_RNDN);
-    mpfr_add_d(v, v, t.lo, MPFR_RNDN);
 }
 
 static double worst; /* error, of the largest */

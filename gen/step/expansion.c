@@ -1,0 +1,234 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The solution as a Taylor series: a sequence of coefficients for each state, which of them there are, and which are
+ * read. */
+#include "step/step.h"
+
+/* ---- the states ---- */
+
+/* y' of a state: its row of A, loads, inputs, and what is left over, whose linear terms may cancel */
+static struct sum slope_of_state(struct sequencing *w, int state)
+{
+	const struct model *model = w->step->model;
+	const struct layout *layout = &w->layout;
+	mpq_t *row = w->slopes[0] + state * layout->size;
+	struct sum sum = { 0 };
+	for (int j = 0; j < layout->states; j++)
+		if (mpq_sgn(row[j]) != 0)
+			sum_add(&sum, TERM_SEQUENCE, j, 0, row[j]);
+	for (int i = 0; i < w->system->inputs; i++) {
+		if (mpq_sgn(row[layout->input[i]]) != 0)
+			sum_add(&sum, TERM_INPUT, i, 0, row[layout->input[i]]);
+		if (w->system->input[i].hold && mpq_sgn(row[layout->input[i] + 1]) != 0)
+			sum_add(&sum, TERM_SLOPE, i, 0, row[layout->input[i] + 1]);
+	}
+	for (int l = 0, column = 0; l < w->system->loads; column += w->system->load[l++].columns)
+		for (int j = 0; j < w->system->load[l].columns && layout->load[l] >= 0; j++) {
+			mpq_srcptr factor = row[layout->load[l] + j];
+			if (mpq_sgn(factor) == 0 || w->system->segments > 1)
+				continue;
+			bool power = is_polynomial(w->system->load[l].wave);
+			sum_add(&sum, power ? TERM_TIME : TERM_LOAD, power ? j : column + j, 0, factor);
+		}
+	for (int e = 0; e < w->system->channels; e++)
+		if (mpq_sgn(row[layout->channel + e]) != 0)
+			sum_add_form(w, &sum, model->operator[0].left[e], row[layout->channel + e]);
+	return sum;
+}
+
+static void expand_state(struct sequencing *w, int state)
+{
+	mpq_t *scale = integral_scale(w, true);
+	struct sum sum = slope_of_state(w, state);      /* makes sequences: the array may move */
+	struct sequence made = w->x->sequence[state];
+	sum_numbers(w, &made, &sum, (const mpq_t *)scale);
+	if (w->system->segments > 1)
+		add_changing_loads(w, &made, state, (const mpq_t *)scale);
+	w->x->sequence[state] = made;
+	rationals_free(scale, (size_t)w->x->order + 1);
+}
+
+/* ---- which coefficients there are, and are read ---- */
+
+static int degree_of_term(const struct sequencing *w, const struct sequence_term *t)
+{
+	const struct sequence *all = w->x->sequence;
+	int order = w->x->order, degree = 0;
+	if (t->kind == TERM_SEQUENCE)
+		degree = all[t->a].degree;
+	else if (t->kind == TERM_PRODUCT)
+		degree = all[t->a].degree + all[t->b].degree;
+	else if (t->slot >= 0)
+		degree = order + 1;
+	else
+		for (int k = 0; k <= order; k++)
+			degree = t->factor[k] != 0 ? k : degree;
+	return degree > order ? order + 1 : degree;
+}
+
+static int degree_now(const struct sequencing *w, const struct sequence *s)
+{
+	int degree = 0, order = w->x->order;
+	const struct sequence *all = w->x->sequence;
+	bool constant = (s->a == NONE || all[s->a].degree == 0) && (s->b == NONE || all[s->b].degree == 0);
+	switch (s->kind) {
+	case SEQUENCE_SUM:
+	case SEQUENCE_INTEGRAL:
+		for (int i = 0; i < s->terms; i++) {
+			int of_term = degree_of_term(w, &s->term[i]);
+			degree = of_term > degree ? of_term : degree;
+		}
+		if (s->kind == SEQUENCE_INTEGRAL)
+			degree = s->state == NONE && constant ? 0 : degree < order ? degree + 1 : order + 1;
+		return degree;
+	case SEQUENCE_RATE:
+		return all[s->a].degree > order ? order + 1 : all[s->a].degree > 0 ? all[s->a].degree - 1 : 0;
+	case SEQUENCE_CHOICE:
+		return all[s->a].degree > all[s->b].degree ? all[s->a].degree : all[s->b].degree;
+	default:
+		return constant ? 0 : order + 1;
+	}
+}
+
+/* From below: what is found to have more terms makes others have more. */
+static void find_degrees(struct sequencing *w)
+{
+	bool changed = true;
+	while (changed) {
+		changed = false;
+		for (int i = 0; i < w->x->count; i++) {
+			int degree = degree_now(w, &w->x->sequence[i]);
+			changed = changed || degree > w->x->sequence[i].degree;
+			if (degree > w->x->sequence[i].degree)
+				w->x->sequence[i].degree = degree;
+		}
+	}
+}
+
+static bool raise(struct expansion *x, int sequence, int top)
+{
+	struct sequence *s = sequence == NONE ? NULL : &x->sequence[sequence];
+	if (!s || top <= s->top)
+		return false;
+	s->top = top > x->order ? x->order : top;
+	return true;
+}
+
+/* What sequence i reads up to its top */
+static bool raise_operands(struct expansion *x, int i)
+{
+	const struct sequence *s = &x->sequence[i];
+	int top = s->top;
+	bool changed = false;
+	if (top < 0)
+		return false;
+	bool integral = s->kind == SEQUENCE_INTEGRAL;
+	for (int k = 0; k < s->terms; k++) {
+		const struct sequence_term *t = &s->term[k];
+		if (t->kind == TERM_SEQUENCE || t->kind == TERM_PRODUCT)
+			changed |= raise(x, t->a, top - integral);
+		if (t->kind == TERM_PRODUCT)
+			changed |= raise(x, t->b, top - integral);
+	}
+	int operand = integral ? 0 : s->kind == SEQUENCE_RATE ? top + 1 : top;
+	changed |= raise(x, s->a, operand);
+	changed |= raise(x, s->b, operand);
+	return changed;
+}
+
+static void find_tops(struct sequencing *w)
+{
+	struct expansion *x = w->x;
+	bool changed = true;
+	for (int i = 0; i < w->system->states; i++)
+		x->sequence[i].top = x->order;
+	while (changed) {
+		changed = false;
+		for (int i = 0; i < x->count; i++)
+			changed |= raise_operands(x, i);
+	}
+}
+
+/* What reads a rate comes with it one later. */
+static void find_late(struct sequencing *w)
+{
+	struct expansion *x = w->x;
+	for (bool changed = true; changed;) {
+		changed = false;
+		for (int i = 0; i < x->count; i++) {
+			struct sequence *s = &x->sequence[i];
+			bool late = s->kind == SEQUENCE_RATE;
+			for (int k = 0; k < s->terms; k++) {
+				const struct sequence_term *t = &s->term[k];
+				if (t->kind == TERM_SEQUENCE || t->kind == TERM_PRODUCT)
+					late = late || x->sequence[t->a].late;
+				if (t->kind == TERM_PRODUCT)
+					late = late || x->sequence[t->b].late;
+			}
+			late = late || (s->a != NONE && x->sequence[s->a].late) || (s->b != NONE && x->sequence[s->b].late);
+			if (s->kind == SEQUENCE_INTEGRAL)
+				late = false;
+			changed = changed || late != s->late;
+			s->late = late;
+		}
+	}
+}
+
+static void find_time(struct sequencing *w)
+{
+	for (int i = 0; i < w->x->count; i++)
+		for (int k = 0; k < w->x->sequence[i].terms; k++) {
+			const struct sequence_term *t = &w->x->sequence[i].term[k];
+			w->x->time = w->x->time || (t->kind == TERM_TIME && t->a > 0);
+		}
+}
+
+/* ---- the whole ---- */
+
+static struct layout place_all(struct sequencing *w)
+{
+	struct reads reads = { 0 };
+	const struct model *model = w->step->model;
+	reads = reads_of(model, model->channels, (const struct form *const *)model->operator[0].left);
+	bool *needed = ARRAY(bool, (size_t)w->system->loads);
+	for (int l = 0; l < w->system->loads; l++)
+		needed[l] = reads.load[l] || load_acts(w->system, &w->system->load[l]);
+	return layout_with(w->system, 1, needed);
+}
+
+static void start_states(struct sequencing *w)
+{
+	for (int i = 0; i < w->system->states; i++)
+		new_sequence(w, (struct sequence){ .kind = SEQUENCE_INTEGRAL, .state = i, .a = NONE, .b = NONE });
+}
+
+struct expansion *expansion_of(const struct step *step)
+{
+	const struct linear *system = &step->branch->system;
+	const struct model *model = step->model;
+	int atoms = atoms_count(model->atoms);
+	struct sequencing work = { .step = step, .system = system, .x = NEW(struct expansion) }, *w = &work;
+	w->x->order = model->truncation.order;
+	w->x->load = ARRAY(bool, (size_t)system->loads);
+	w->x->input = ARRAY(bool, (size_t)system->inputs);
+	w->x->slope = ARRAY(bool, (size_t)system->inputs);
+	w->uses = ARRAY(int, (size_t)atoms);
+	w->atom = ARRAY(int, (size_t)atoms);
+	for (int i = 0; i < atoms; i++)
+		w->atom[i] = NONE;
+	mpq_init(w->pi);
+	constant_pi(w->pi);
+	w->layout = place_all(w);
+	w->slopes = ARRAY(mpq_t *, (size_t)system->segments);
+	for (int k = 0; k < system->segments; k++)
+		w->slopes[k] = augmented_matrix(&w->layout, system, k);
+	for (int e = 0; e < model->channels; e++)
+		count_uses(w, model->operator[0].left[e]);
+	start_states(w);
+	for (int i = 0; i < system->states; i++)
+		expand_state(w, i);
+	find_degrees(w);
+	find_tops(w);
+	find_late(w);
+	find_time(w);
+	return w->x;
+}
