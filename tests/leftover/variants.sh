@@ -69,7 +69,8 @@ grep -v -e '^#' -e '^$' "$list" | while read -r name schemes steps options; do
             fi
             [ "$step" = - ] || choice="$choice --step $step"
             # shellcheck disable=SC2086
-            "$plgen" --rhs $choice $given ${order:+--scheme "taylor $order"} -o "$work/$prefix.c" "$spec" 2>"$work/said" ||
+            "$plgen" --rhs $choice $given ${order:+--scheme "taylor $order"} -o "$work/$prefix.c" "$spec" \
+                2>"$work/said" ||
                 { cat "$work/said" >&2; exit 1; }
             cat "$work/$prefix.h" >>"$work/headers"
             grep -v '^#include "'"$prefix"'.h"$' "$work/$prefix.c" >>"$work/bodies"

@@ -1,17 +1,17 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Random smooth equations, and the Taylor coefficients of their solution by another road than recurrences.
  *
- *     drawn_series spec SEED       a spec `drawn` with 20 coordinates, 12 of them of second order
- *     drawn_series truth SEED      a line `start TIME`, then for each state its name and value there, then for each
- *                                  state its name, k, h^k/k! y^(k), and what rounding each operation once makes of it,
- *                                  in units of 2^-53
+ *     drawn_series spec SEED           a spec `drawn` with 20 coordinates, 12 of them of second order
+ *     drawn_series truth SEED ORDER    a line `start TIME`, then for each state its name and value there, then for each
+ *                                      k <= ORDER and state its name, k, h^k/k! y^(k), and how far that is off, in
+ *                                      units of 2^-53, where each operation rounds once
  *
  * The right side is evaluated point by point in complex numbers of many bits on a small circle around the start, with
- * what is known of y (Picard); Cauchy's integral over that circle, as a sum over its points, gives the next coefficient.
- * What is beyond aliases with the circle's radius, 2^-16, to the power of the number of points, 8 or more. The same a second time,
- * each coefficient of each operation off by a random part of 2^-53 of itself, shows what rounding may do: without that
- * no bound would be right both for e^x and for what cancels. Starts and numbers are binary fractions of few bits, so that they
- * are the same in double. */
+ * what is known of y (Picard); Cauchy's integral over that circle, as a sum over its points, gives the next
+ * coefficient. What lies beyond aliases, by the circle's radius, 2^-16, to the power of the number of points, which is
+ * 8 or more. The same a second time, each coefficient of each operation off by a random part of 2^-53 of itself, shows
+ * what rounding may do: without that no bound would be right both for e^x and for what cancels. Starts and numbers are
+ * binary fractions of few bits, so that they are the same in double. */
 #include <math.h>
 #include <mpc.h>
 #include <stdbool.h>
@@ -581,8 +581,10 @@ static void make_truth(int order)
         mpc_init2(node[i].z, BITS);
     expand(0, order);
     for (int k = 1; k <= order; k++)
-        for (int i = 0; i < STATES; i++)
-            growth = fmax(growth, pow(fabs(mpfr_get_d(series[0][k][i], MPFR_RNDN)) / fmax(1, fabs(initial[i])), 1.0 / k));
+        for (int i = 0; i < STATES; i++) {
+            double size = fabs(mpfr_get_d(series[0][k][i], MPFR_RNDN)) / fmax(1, fabs(initial[i]));
+            growth = fmax(growth, pow(size, 1.0 / k));
+        }
     for (int run = 1; run < RUNS; run++) {
         draw_rounding(order - 1);
         expand(run, order);
