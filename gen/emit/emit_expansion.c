@@ -4,7 +4,10 @@
 
 #include <math.h>
 
-enum { WHOLE_STEPS = 32 };          /* most that one expansion serves */
+enum {
+	WHOLE_STEPS = 32,           /* most that one expansion serves */
+	REMAINDERS = 3              /* of each of its last two coefficients: itself, and what stands in for it */
+};
 
 static const struct expansion *expansion(const struct emitter *e)
 {
@@ -69,7 +72,8 @@ static void emit_reach_tables(const struct emitter *e)
 	for (int m = 1; m <= WHOLE_STEPS; m++) {
 		mpq_set(bound, truncation(e)->tolerance);
 		mpq_set_ui(steps, (unsigned long)m, 1);
-		for (int k = 1; k < order; k++)
+		mpq_mul(bound, bound, steps);
+		for (int k = 4; k < order; k++)
 			mpq_div(bound, bound, steps);
 		const char *gap = m == 1 ? "" : (m - 1) % 4 ? ", " : ",\n    ";
 		before = format("%s%s%s", before, gap, shortest(round_rational(bound)));
@@ -77,64 +81,89 @@ static void emit_reach_tables(const struct emitter *e)
 		last = format("%s%s%s", last, gap, shortest(round_rational(bound)));
 	}
 	mpq_clears(bound, steps, NULL);
-	say(e, "\n/* The tolerance over m^%d and m^%d: what the last two coefficients may be for m steps */\n"
+	say(e, "\n/* The tolerance over m^%d and m^%d: what the last coefficients may be for m steps, times m^4 */\n"
 	       "static const double $n_last[%d] = {\n    %s\n};\n"
-	       "static const double $n_before_last[%d] = {\n    %s\n};\n", order, order - 1, WHOLE_STEPS, last,
+	       "static const double $n_before_last[%d] = {\n    %s\n};\n", order - 4, order - 5, WHOLE_STEPS, last,
 	    WHOLE_STEPS, before);
 }
 
-/* The last two coefficients, relative to the largest size of each state so far */
+/* The last two coefficients, relative to the largest size of each state so far. Of a series in t^n alone they may be 0,
+ * or nearly: then those before stand in for them, each two orders over 256, which is more than full series fall. */
 static void emit_remainder(const struct emitter *e)
 {
-	int order = expansion(e)->order;
-	say(e, "\n/* The last two coefficients over the largest value of each state so far, or where that is 0 its gain */\n"
-	       "static void $n_remainder(const $n *s, const double c[%d][$N_STATES], double *last, double *before)\n"
+	int order = expansion(e)->order, kept = truncation(e)->adaptive ? REMAINDERS : 1;
+	static const char *const factor[] = { "", " * 0.00390625", " * 1.52587890625e-5" };
+	say(e, "\n/* The last two coefficients over the largest value of each state so far, or where that is 0 its gain"
+	       "%s */\n"
+	       "static void $n_remainder(const $n *s, const double c[%d][$N_STATES], double last[%d],\n"
+	       "    double before[%d])\n"
 	       "{\n"
-	       "    int i;\n"
-	       "    *last = *before = 0.0;\n"
-	       "    for (i = 0; i < $N_STATES; i++) {\n"
-	       "        double unit = s->unit[i], p = c[%d][i], q = c[%d][i];\n"
+	       "    int i;\n",
+	    kept > 1 ? ";\n * what stands in for them where they are 0: those before, each two over 256" : "",
+	    order + 1, kept, kept);
+	for (int j = 0; j < kept; j++)
+		say(e, "    last[%d] = before[%d] = 0.0;\n", j, j);
+	say(e, "    for (i = 0; i < $N_STATES; i++) {\n"
+	       "        double p = pl_magnitude(c[0][i]), unit = p > s->scale[i] ? 1.0 / p : s->unit[i];\n"
 	       "        if (unit == 0.0) {\n"
 	       "            const double one = pl_magnitude(c[1][i]), two = pl_magnitude(c[2][i]);\n"
 	       "            unit = one > two ? 1.0 / one : two > 0.0 ? 1.0 / two : 1.0;\n"
-	       "        }\n"
-	       "        p = pl_magnitude(p) * unit;\n"
-	       "        q = pl_magnitude(q) * unit;\n"
-	       "        *last = p <= *last ? *last : p;  /* what is not a number stays */\n"
-	       "        *before = q <= *before ? *before : q;\n"
-	       "    }\n"
-	       "}\n", order + 1, order, order - 1);
+	       "        }\n");
+	for (int j = 0; j < 2 * kept; j++) {
+		const char *sum = format("%s[%d]", j % 2 ? "before" : "last", j / 2);
+		if (order - j >= 2)
+			say(e, "        p = pl_magnitude(c[%d][i]) * unit%s;\n"
+			       "        %s = p <= %s ? %s : p;%s\n", order - j, factor[j / 2], sum, sum, sum,
+			    j ? "" : "  /* what is not a number stays */");
+	}
+	say(e, "    }\n"
+	       "}\n");
+}
+
+/* last[0] + last[1]/m^2 + last[2]/m^4 within the tolerance over m^order */
+static void emit_serves(const struct emitter *e)
+{
+	say(e, "\n/* Whether the remainders are within these bounds after m steps */\n"
+	       "static int $n_serves(const double last[%d], const double before[%d], double m, double bound,\n"
+	       "    double bound_before)\n"
+	       "{\n"
+	       "    const double square = m * m;\n"
+	       "    return (last[0] * square + last[1]) * square + last[2] <= bound &&\n"
+	       "        (before[0] * square + before[1]) * square + before[2] <= bound_before;\n"
+	       "}\n", REMAINDERS, REMAINDERS);
 }
 
 static void emit_reach(const struct emitter *e)
 {
 	int order = expansion(e)->order;
+	const char *tolerance = shortest(round_rational(truncation(e)->tolerance));
 	say(e, "\n/* Steps that the series serves, at most %d; 0: not even one */\n"
 	       "static int $n_reach(const $n *s)\n"
 	       "{\n"
-	       "    double last, before;\n"
+	       "    double last[%d], before[%d];\n"
 	       "    int m = s->valid;\n"
-	       "    $n_remainder(s, s->series, &last, &before);\n"
-	       "    while (m < %d && last <= $n_last[m] && before <= $n_before_last[m])\n"
+	       "    $n_remainder(s, s->series, last, before);\n"
+	       "    while (m < %d && $n_serves(last, before, (double)(m + 1), $n_last[m], $n_before_last[m]))\n"
 	       "        m++;\n"
-	       "    while (m > 0 && !(last <= $n_last[m - 1] && before <= $n_before_last[m - 1]))\n"
+	       "    while (m > 0 && !$n_serves(last, before, (double)m, $n_last[m - 1], $n_before_last[m - 1]))\n"
 	       "        m--;\n"
 	       "    return m;\n"
-	       "}\n", WHOLE_STEPS, WHOLE_STEPS);
+	       "}\n", WHOLE_STEPS, REMAINDERS, REMAINDERS, WHOLE_STEPS);
 	say(e, "\n/* The part of a step that the series serves, a power of 2 up to 1; 0: none */\n"
 	       "static double $n_part(const $n *s, const double c[%d][$N_STATES])\n"
 	       "{\n"
-	       "    double last, before, part = 1.0;\n"
+	       "    double last[%d], before[%d], part = 1.0;\n"
 	       "    int halvings = 0;\n"
-	       "    $n_remainder(s, c, &last, &before);\n"
-	       "    for (; halvings < 60 && !(last <= %s && before <= %s); halvings++) {\n"
-	       "        part *= 0.5;\n"
-	       "        last *= %s;\n"
-	       "        before *= %s;\n"
-	       "    }\n"
+	       "    $n_remainder(s, c, last, before);\n"
+	       "    for (; halvings < 60 && !$n_serves(last, before, 1.0, %s, %s); halvings++) {\n"
+	       "        part *= 0.5;\n", order + 1, REMAINDERS, REMAINDERS, tolerance, tolerance);
+	for (int j = 0; j < REMAINDERS; j++)
+		say(e, "        last[%d] *= %s;\n"
+		       "        before[%d] *= %s;\n", j, shortest(ldexp(1, 2 * j - order)), j,
+		    shortest(ldexp(1, 2 * j + 1 - order)));
+	say(e, "    }\n"
 	       "    return halvings < 60 ? part : 0.0;\n"
-	       "}\n", order + 1, shortest(round_rational(truncation(e)->tolerance)),
-	    shortest(round_rational(truncation(e)->tolerance)), shortest(ldexp(1, -order)), shortest(ldexp(1, 1 - order)));
+	       "}\n");
 }
 
 /* ---- inside a step ---- */
@@ -243,7 +272,7 @@ static void emit_fixed_step(const struct emitter *e)
 		say(e, "    double c[%d][$N_STATES];\n", order + 1);
 		emit_input_samples(e);
 		if (looks_at_tolerance(e))
-			say(e, "    double last, before;\n"
+			say(e, "    double last[1], before[1];\n"
 			       "    int i;\n");
 		say(e, "    %s\n", expand_call(e, "", "", "", "s->y", "c"));
 		for (int i = 0; i < states; i++) {
@@ -254,8 +283,8 @@ static void emit_fixed_step(const struct emitter *e)
 			say_wrapped(e, format("s->y[%d] = pl_accumulate(s->y[%d], %s, 0.0, &s->rest[%d]);\n", i, i, text, i));
 		}
 		if (looks_at_tolerance(e))
-			say(e, "    $n_remainder(s, (const double (*)[$N_STATES])c, &last, &before);\n"
-			       "    if (!(last <= %s && before <= %s))\n"
+			say(e, "    $n_remainder(s, (const double (*)[$N_STATES])c, last, before);\n"
+			       "    if (!(last[0] <= %s && before[0] <= %s))\n"
 			       "        s->status |= PL_INACCURATE;\n",
 			    shortest(round_rational(truncation(e)->tolerance)),
 			    shortest(round_rational(truncation(e)->tolerance)));
@@ -333,6 +362,7 @@ void emit_expansion_step(const struct emitter *e)
 		emit_remainder(e);
 	if (truncation(e)->adaptive) {
 		emit_reach_tables(e);
+		emit_serves(e);
 		emit_reach(e);
 	}
 	if (has_offset(e))

@@ -45,9 +45,17 @@ static void masses(real t, const real *y, const real *u, real *dydt)
     dydt[3] = 0.2L * cosl(2 * t) - drag - force;
 }
 
+static void sparse(real t, const real *y, const real *u, real *dydt)
+{
+    (void)u;
+    dydt[0] = -t * t * y[0] * y[0];
+    dydt[1] = -t * t * t * y[1] * y[1];
+}
+
 static const struct subject subjects[] = {{.name = "pendulum"}, {.name = "vanderpol"}, {.name = "duffing"},
     {.name = "mathieu"}, {.name = "quad2dof"}, {.name = "held"}, {.name = "ramped"}, {.name = "thermal"},
     {.name = "coupled"}, {.name = "rotor"}, {.name = "growth"}, {.name = "chain"}, {.name = "masses", .f = masses},
+    {.name = "sparse", .f = sparse},
     {.name = "timed", .f = timed, .changes = 1, .change = {1.2345678L}},
     {.name = "changing", .f = changing, .changes = 5, .change = {0.37L, 0.55L, 0.62L, 0.81L, 0.9L}}};
 enum { SUBJECTS = sizeof subjects / sizeof *subjects };
