@@ -115,7 +115,8 @@ static struct value *collect_argument(struct collector *c, const struct node *no
 /* A function that divides its arguments' range, of one cell of each */
 static struct form *piecewise_cell(struct collector *c, struct node *node, struct form *const *x)
 {
-	bool kept = (node->function == FN_ATAN2 ? keeps : keeps_piecewise)(c) && !is_decided_call(c, node, x);
+	/* an angle has a single formula: known when it is of time alone, and no load all the same */
+	bool kept = node->function == FN_ATAN2 ? keeps(c) : keeps_piecewise(c) && !is_decided_call(c, node, x);
 	return kept ? kept_call(c, node, node->function, node->children, x) : piecewise(c, node, x);
 }
 

@@ -458,6 +458,7 @@ static void collect_model(struct building *b)
 	statement_guard(choose_scheme, b);
 	if (all)
 		statement_guard(evaluate_truncation, b);
+	b->collector.constant_only = false;     /* where what had to be constant was not */
 	collect_intervals(b);
 	if (all)
 		evaluate_lets(b);
@@ -468,6 +469,7 @@ static void collect_model(struct building *b)
 		evaluate_initials(b);
 	if (all && (b->spec->step || request->step))
 		statement_guard(evaluate_step, b);
+	b->collector.constant_only = false;
 }
 
 static void check_reduction(const struct building *b)

@@ -474,8 +474,10 @@ static void check_truncation(const struct building *b)
 				  ? "each step is h, whatever its error"
 				  : format("scheme %s does not look at its error", scheme_name(model->scheme));
 	bool expands = scheme_row(model->scheme)->expands;
-	if (b->spec->tolerance && !expands)
-		say_warning(b->spec->tolerance->start, NULL, "the tolerance has no effect: %s", why);
+	const char *asked = b->request->tolerance;
+	if ((asked || b->spec->tolerance) && !expands)
+		say_warning(asked ? (struct place){ source_argument(asked), 0 } : b->spec->tolerance->start, NULL,
+			    "the tolerance has no effect: %s", why);
 	if (b->spec->substeps && !model->truncation.adaptive)
 		say_warning(b->spec->substeps->start, NULL, "the bound on substeps has no effect: %s", why);
 }

@@ -1017,13 +1017,15 @@ static const struct statement {
 	{ "tolerance", read_tolerance }, { "substeps", read_substeps }
 };
 
-/* tolerance and substeps may be names of a spec's own: in an equation an operator or a prime follows. */
+/* tolerance and substeps may be names of a spec's own: in an equation an operator or a prime follows; a sign is that of
+ * a number where the line has no =. */
 static bool opens_statement(const struct statement *statement, struct token token)
 {
 	const char *next = token.at.source->text + token.at.offset + token.length;
 	next += strspn(next, " \t");
+	bool sign = *next == '-' || *next == '+';
 	return is_reserved(statement->word) || strspn(next, WORD) > 0 || *next == '.' || *next == '(' || !*next ||
-	       *next == '\n' || *next == '#';
+	       *next == '\n' || *next == '#' || (sign && next[strcspn(next, "=\n")] != '=');
 }
 
 static const struct statement *statement_of(struct token token)

@@ -9,6 +9,7 @@
 # step).  Options:
 #     as=PREFIX       PREFIX instead of NAME in the names
 #     at=TEXT         `operator at TEXT` instead of the spec's own operator ('_' is a blank); at=none: no such statement
+#     order=N         of scheme taylor, which N makes fixed
 #     anything else   for plgen
 set -eu
 LC_ALL=C
@@ -40,9 +41,11 @@ grep -v -e '^#' -e '^$' "$list" | while read -r name schemes steps options; do
     as=$name
     spec=$work/$name.spec
     given=
+    order=
     for option in $options; do
         case $option in
             as=*) as=${option#as=} ;;
+            order=*) order=${option#order=} ;;
             at=*)
                 operator=$(printf '%s' "${option#at=}" | tr '_' ' ')
                 {
@@ -66,7 +69,8 @@ grep -v -e '^#' -e '^$' "$list" | while read -r name schemes steps options; do
             fi
             [ "$step" = - ] || choice="$choice --step $step"
             # shellcheck disable=SC2086
-            "$plgen" --rhs $choice $given -o "$work/$prefix.c" "$spec" 2>"$work/said" ||
+            "$plgen" --rhs $choice $given ${order:+--scheme "taylor $order"} -o "$work/$prefix.c" "$spec" \
+                2>"$work/said" ||
                 { cat "$work/said" >&2; exit 1; }
             cat "$work/$prefix.h" >>"$work/headers"
             grep -v '^#include "'"$prefix"'.h"$' "$work/$prefix.c" >>"$work/bodies"

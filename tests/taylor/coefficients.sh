@@ -1,0 +1,41 @@
+#!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
+# coefficients.sh PLGEN DRAWN_SERIES SOURCE FIRST COUNT: for COUNT seeds the series that the generated code makes of
+# random equations, beside the coefficients that drawn_series finds by Cauchy's integral.
+set -u
+absolute() {
+	case $1 in
+		/*) echo "$1" ;;
+		*) echo "$PWD/$1" ;;
+	esac
+}
+plgen=$(absolute "$1")
+drawn_series=$(absolute "$2")
+source=$(absolute "$3")
+seed=$4
+end=$(($4 + $5))
+. "$source/tests/tap.sh"
+runtime_archive "$source/runtime"
+
+# made SEED: the program `compare`, and its order
+made() {
+	"$drawn_series" spec "$1" >drawn.spec &&
+		timeout 600 "$plgen" -o drawn_pl.c drawn.spec &&
+		"${CC:-cc}" -std=c99 -O0 -w -I. -I"$source/runtime" "$source/tests/taylor/compare_series.c" drawn_pl.c \
+			"$archive" -lm -o compare &&
+		order=$(./compare order)
+}
+
+while [ "$seed" -lt "$end" ]; do
+	words=
+	if made "$seed" >log 2>&1; then
+		"$drawn_series" truth "$seed" "$order" >truth && ./compare <truth >log 2>&1
+		good=$?
+		words=$(tail -n 1 log)
+	else
+		good=1
+	fi
+	result $good "seed $seed: $words"
+	seed=$((seed + 1))
+done
+tap_end

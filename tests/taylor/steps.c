@@ -1,0 +1,444 @@
+/* SPDX-License-Identifier: MIT-0 */
+/* What steps by series do: every step and every value between, against the equations by hand in long double; orders;
+ * tolerances; what is the same bit for bit; CVODE; energy; what ends. LONG=1: a million outputs. */
+#include "gragg.h"
+#include "steps_variants.h"
+#include "swing_float_pl.h"
+#include "systems.h"
+#include "tap.h"
+#include "truth.h"
+
+#include <math.h>
+
+enum { STEPS = 60, HALF = STEPS / 2, MOST = 40, MOST_CHANGES = 5 };
+
+struct subject {
+    const char *name;
+    equations *f;                       /* NULL: that of `systems` */
+    int changes;
+    real change[MOST_CHANGES];          /* when formulas change */
+};
+
+static void timed(real t, const real *y, const real *u, real *dydt)
+{
+    (void)u;
+    dydt[0] = y[1];
+    dydt[1] = -4 * y[0] - (t < 1.2345678L ? 8 : 2) * y[0] * y[0] * y[0];
+}
+
+static void changing(real t, const real *y, const real *u, real *dydt)
+{
+    (void)u;
+    dydt[0] = y[1];
+    dydt[1] = (t < 0.37L ? 2 * cosl(3 * t) : t < 0.81L ? t * t : expl(-t)) - 0.1L * y[1] -
+        (t < 0.55L ? 1 : 2) * sinl(y[0]) - 0.5L * y[0] * y[0] * y[0] - 0.6L * fabsl(t - 0.62L) * y[0] * y[0] -
+        fminl(t, 0.9L) * y[0] * y[1];
+}
+
+static void masses(real t, const real *y, const real *u, real *dydt)
+{
+    const real force = 3 * sinl(y[1] - y[0] - 1.5L), drag = 0.1L * (y[3] - y[2]);
+    (void)u;
+    dydt[0] = y[2];
+    dydt[1] = y[3];
+    dydt[2] = (drag + force) / 2;
+    dydt[3] = 0.2L * cosl(2 * t) - drag - force;
+}
+
+static const struct subject subjects[] = {{.name = "pendulum"}, {.name = "vanderpol"}, {.name = "duffing"},
+    {.name = "mathieu"}, {.name = "quad2dof"}, {.name = "held"}, {.name = "ramped"}, {.name = "thermal"},
+    {.name = "coupled"}, {.name = "rotor"}, {.name = "growth"}, {.name = "chain"}, {.name = "masses", .f = masses},
+    {.name = "timed", .f = timed, .changes = 1, .change = {1.2345678L}},
+    {.name = "changing", .f = changing, .changes = 5, .change = {0.37L, 0.55L, 0.62L, 0.81L, 0.9L}}};
+enum { SUBJECTS = sizeof subjects / sizeof *subjects };
+
+static const struct subject *subject_of(const char *name)
+{
+    for (int i = 0; i < SUBJECTS; i++)
+        if (strcmp(subjects[i].name, name) == 0)
+            return &subjects[i];
+    abort();
+}
+
+static equations *field(const struct subject *s)
+{
+    return s->f ? s->f : system_of(s->name)->equations;
+}
+
+static bool is_ramped(const pl_model *m)
+{
+    return m->hold != NULL;
+}
+
+/* Of a model with or without inputs: y from `from` to `to`, through what changes */
+static void solve(const struct subject *s, const pl_model *m, real from, real to, const real *u, real *y)
+{
+    for (int i = 0; i < s->changes; i++)
+        if (from < s->change[i] && s->change[i] < to) {
+            /* up to it the formula before: the truth sees nothing of what begins there */
+            gragg(field(s), m->states, from, s->change[i] - 1e-17L, 0.05L, 0, NULL, y);
+            from = s->change[i];
+        }
+    gragg(field(s), m->states, from, to, 0.05L, m->inputs, u, y);
+}
+
+static real exact_step(const pl_model *m)
+{
+    return 1 / roundl(1 / (real)m->h);
+}
+
+static double random_number(void)
+{
+    static unsigned seed = 1;
+    seed = seed * 1103515245u + 12345u;
+    return (double)(seed >> 8) / 8388608 - 1;
+}
+
+static void *fresh(const pl_model *m)
+{
+    void *state = calloc(1, m->size);
+    m->init(state);
+    return state;
+}
+
+/* ---- every step ---- */
+
+struct found {
+    double step, middle, end;           /* largest differences, over the largest value of the state */
+};
+
+static void look(double *worst, const pl_model *m, const double *found, const real *expected, const double *most)
+{
+    for (int i = 0; i < m->states; i++)
+        *worst = fmax(*worst, most[i] > 0 ? (double)fabsl(found[i] - expected[i]) / most[i] : 0);
+}
+
+/* Of adaptive steps a lost bit or an ended tolerance shows in a step; the differences of the steps before are in it. */
+static struct found follow(const struct subject *s, const pl_model *m)
+{
+    struct found worst = {0, 0, 0};
+    double y[MOST], middle[MOST], end[MOST], most[MOST] = {0}, sample[MOST], before[MOST] = {0};
+    real truth[MOST], half[MOST], u[MOST], h = exact_step(m);
+    void *state = fresh(m);
+    m->get(state, y);
+    for (int i = 0; i < m->states; i++) {
+        truth[i] = y[i];
+        most[i] = fabs(y[i]);
+    }
+    for (int k = 0; k < STEPS; k++) {
+        for (int i = 0; i < m->inputs; i++) {
+            sample[i] = random_number();
+            u[i] = is_ramped(m) ? before[i] : sample[i];
+            u[m->inputs + i] = is_ramped(m) ? (sample[i] - (real)before[i]) / h : 0;
+            before[i] = sample[i];
+        }
+        m->at(state, sample, m->h / 2, middle);
+        m->at(state, sample, m->h, end);
+        m->step(state, sample);
+        m->get(state, y);
+        memcpy(half, truth, sizeof half);
+        solve(s, m, k * h, (k + 0.5L) * h, u, half);
+        solve(s, m, k * h, (k + 1) * h, u, truth);
+        for (int i = 0; i < m->states; i++)
+            most[i] = fmax(most[i], fabs((double)truth[i]));
+        look(&worst.middle, m, middle, half, most);
+        look(&worst.step, m, y, truth, most);
+        for (int i = 0; i < m->states; i++)
+            half[i] = y[i];
+        look(&worst.end, m, end, half, most);
+    }
+    if (m->status(state) != 0)
+        worst.step = INFINITY;
+    free(state);
+    return worst;
+}
+
+static void follows(const struct subject *s, const pl_model *m, double bound)
+{
+    const struct found worst = follow(s, m);
+    bool good = close_to(worst.step, 0, bound, "%s: states after steps", m->name);
+    good = close_to(worst.middle, 0, bound, "%s: states in the middle of steps", m->name) && good;
+    /* the same sum in another order */
+    good = close_to(worst.end, 0, 1e-15, "%s: NAME_at at the end of steps, beside the step", m->name) && good;
+    ok(good, "%s: steps, their middles and ends (%.2g, %.2g, %.2g)", m->name, worst.step, worst.middle, worst.end);
+}
+
+/* ---- bit for bit ---- */
+
+static void samples(const pl_model *m, double *u)
+{
+    for (int i = 0; i < STEPS * m->inputs; i++)
+        u[i] = random_number();
+}
+
+static void same_bits(const pl_model *m)
+{
+    const size_t inputs = (size_t)m->inputs, outputs = (size_t)m->outputs;
+    double *u = calloc(STEPS * inputs + 1, sizeof *u), *out = calloc(STEPS * outputs, sizeof *out);
+    double *again = calloc(STEPS * outputs, sizeof *again), y[MOST];
+    void *state = fresh(m), *saved = calloc(1, m->size);
+    bool good = true;
+    samples(m, u);
+    m->run(state, STEPS, u, out);
+    m->init(state);                                             /* renews what the run left */
+    if (m->hold)
+        m->hold(state, (const double[MOST]){0});
+    for (size_t k = 0; k < STEPS; k++) {
+        m->step(state, u + k * inputs);
+        m->out(state, again + k * outputs);
+        if (k + 1 == HALF)
+            memcpy(saved, state, m->size);
+    }
+    good = memcmp(out, again, STEPS * outputs * sizeof *out) == 0;
+    ok(good, "%s: run and step, init after a run", m->name);
+    memset(again, 0, STEPS * outputs * sizeof *again);
+    memcpy(state, saved, m->size);
+    m->run(state, HALF, u + HALF * inputs, again);
+    ok(memcmp(out + HALF * outputs, again, HALF * outputs * sizeof *out) == 0, "%s: a copy restores", m->name);
+    /* set: of what was before nothing is left */
+    m->get(saved, y);
+    m->set(state, 0.25, y);
+    m->set(saved, 0.25, y);
+    memset(again, 0, STEPS * outputs * sizeof *again);
+    void *other = fresh(m);
+    m->set(other, 0.25, y);
+    for (int i = 0; i < 3; i++)
+        if (m->hold)
+            m->hold(i == 0 ? state : i == 1 ? saved : other, u);
+    m->run(state, HALF, u, out);
+    m->run(saved, HALF, u, again);
+    good = memcmp(out, again, HALF * outputs * sizeof *out) == 0;
+    m->run(other, HALF, u, again);
+    ok(memcmp(out, again, HALF * outputs * sizeof *out) == 0 && good, "%s: set renews", m->name);
+    free(u);
+    free(out);
+    free(again);
+    free(state);
+    free(saved);
+    free(other);
+}
+
+/* ---- orders ---- */
+
+/* The largest error at `points` equal times, over the largest start */
+static double error_at(const struct subject *s, const pl_model *m, double seconds, int points)
+{
+    double y[MOST], worst = 0, most = 0;
+    real truth[MOST];
+    void *state = fresh(m);
+    m->get(state, y);
+    for (int i = 0; i < m->states; i++) {
+        truth[i] = y[i];
+        most = fmax(most, fabs(y[i]));
+    }
+    for (int k = 0; k < points; k++) {
+        m->run(state, (size_t)lround(seconds / points / m->h), NULL, NULL);
+        m->get(state, y);
+        solve(s, m, (real)seconds * k / points, (real)seconds * (k + 1) / points, NULL, truth);
+        for (int i = 0; i < m->states; i++)
+            worst = fmax(worst, (double)fabsl(y[i] - truth[i]) / most);
+    }
+    free(state);
+    return worst;
+}
+
+static void has_order(const char *name, int order, double seconds)
+{
+    const double margin = order == 4 ? 0.15 : order == 8 ? 0.3 : 1.1;
+    const struct subject *s = subject_of(name);
+    const pl_model *wide = variant_of(steps, "%s_%d_0", name, order)->model;
+    const pl_model *narrow = variant_of(steps, "%s_%d_1", name, order)->model;
+    const int points = (int)lround(seconds / wide->h);
+    double coarse = error_at(s, wide, seconds, points), fine = error_at(s, narrow, seconds, points);
+    double found = log(coarse / fine) / log(wide->h / narrow->h);
+    bool good = close_to(found, order, margin, "%s, order %d", name, order);
+    ok(good && fine > 1e-15, "%s: order %d is %.2f (errors %.3g, %.3g)", name, order, found, coarse, fine);
+}
+
+/* ---- tolerances ---- */
+
+/* Geometric mean of error over tolerance after ten seconds, of 20 random starts */
+static void keeps(const char *name, int digits, double bound)
+{
+    enum { STARTS = 20, SECONDS = 10 };
+    const pl_model *m = variant_of(steps, "%s_e%d_taylor_0", name, digits)->model;
+    const struct subject *s = subject_of(name);
+    double sum = 0, worst = 0;
+    for (int run = 0; run < STARTS; run++) {
+        double y[2] = {2 * random_number(), random_number()}, most = fmax(fabs(y[0]), fabs(y[1])), error = 0;
+        real truth[2] = {y[0], y[1]};
+        void *state = fresh(m);
+        m->set(state, 0, y);
+        for (int second = 0; second < SECONDS; second++) {
+            solve(s, m, second, second + 1, NULL, truth);
+            m->run(state, (size_t)lround(1 / m->h), NULL, NULL);
+            m->get(state, y);
+            for (int i = 0; i < 2; i++) {
+                most = fmax(most, fabs(y[i]));
+                error = fmax(error, (double)fabsl(y[i] - truth[i]));
+            }
+        }
+        if (m->status(state) != 0)
+            error = INFINITY;
+        sum += log(fmax(error / most, 1e-18) * pow(10, digits));
+        worst = fmax(worst, error / most * pow(10, digits));
+        free(state);
+    }
+    double mean = exp(sum / STARTS);
+    ok(close_to(mean, 0, bound, "%s, tolerance 1e-%d: error over it", name, digits),
+        "%s, tolerance 1e-%d: error over it %.2g in the mean, at most %.2g", name, digits, mean, worst);
+}
+
+/* ---- CVODE ---- */
+
+static void beside_cvode(void)
+{
+    const struct system *s = system_of("quad2dof");
+    const pl_model *m = variant_of(steps, "quad2dof_taylor_0")->model;
+    const double scale[] = {0.1, 0.1, 0.1, 0.1};
+    struct truth *solver = truth_new(4, system_slopes, s, CVODE_ADAMS, 1e-12, scale);
+    void *state = fresh(m);
+    double y[4], truth[4], worst = 0;
+    m->get(state, truth);
+    bool good = true;
+    for (int k = 1; k <= 40; k++) {
+        good = truth_advance(solver, (k - 1) * m->h, k * m->h, 0, NULL, truth) && good;
+        m->step(state, NULL);
+        m->get(state, y);
+        for (int i = 0; i < 4; i++)
+            worst = fmax(worst, fabs(y[i] - truth[i]));
+    }
+    truth_free(solver);
+    free(state);
+    ok(close_to(worst, 0, 1e-10, "quad2dof beside CVODE") && good, "quad2dof beside CVODE at 1e-12 (%.2g)", worst);
+}
+
+/* ---- float ---- */
+
+static void in_float(void)
+{
+    const struct subject *s = subject_of("pendulum");
+    swing_float single;
+    const pl_model *m = variant_of(steps, "pendulum_taylor_0")->model;
+    real truth[2];
+    double worst = 0, between = 0;
+    float y[2], at[2];
+    swing_float_init(&single);
+    swing_float_get(&single, y);
+    for (int i = 0; i < 2; i++)
+        truth[i] = y[i];
+    for (int k = 0; k < 100; k++) {
+        real half[2] = {truth[0], truth[1]};
+        swing_float_at(&single, 0.05f, at);
+        swing_float_step(&single);
+        swing_float_get(&single, y);
+        solve(s, m, k * 0.1L, (k + 0.5L) * 0.1L, NULL, half);
+        solve(s, m, k * 0.1L, (k + 1) * 0.1L, NULL, truth);
+        for (int i = 0; i < 2; i++) {
+            worst = fmax(worst, (double)fabsl(y[i] - truth[i]));
+            between = fmax(between, (double)fabsl(at[i] - half[i]));
+        }
+    }
+    bool good = close_to(worst, 0, 2e-5, "states in float") && close_to(between, 0, 2e-5, "between steps");
+    ok(good && swing_float_status(&single) == 0, "float, tolerance 1e-5: %.2g, between %.2g", worst, between);
+}
+
+/* ---- energy ---- */
+
+static real swing_energy(const double *y) { return (real)y[1] * y[1] / 2 + 1 - cosl(y[0]); }
+static real spring_energy(const double *y)
+{
+    real x = y[0];
+    return (real)y[1] * y[1] / 2 + x * x / 2 + x * x * x * x / 4;
+}
+
+static void holds_energy(const char *name, real (*energy)(const double *y), double bound)
+{
+    const pl_model *m = variant_of(steps, "%s", name)->model;
+    const long outputs = getenv("LONG") ? 1000000 : 10000;
+    void *state = fresh(m);
+    double y[2], worst = 0;
+    m->get(state, y);
+    const real start = energy(y);
+    for (long k = 0; k < outputs; k++) {
+        m->step(state, NULL);
+        m->get(state, y);
+        worst = fmax(worst, (double)fabsl(energy(y) / start - 1));
+    }
+    bool good = close_to(worst, 0, bound, "%s: energy", name);
+    ok(good && m->status(state) == 0, "%s: energy over %ld outputs within %.2g", name, outputs, worst);
+    free(state);
+}
+
+/* ---- what ends ---- */
+
+/* After the last good step the status has `bit`, and the state is finite where adaptive steps stop. */
+static void ends(const char *name, int bit, double from, double to, bool stays_finite)
+{
+    const pl_model *m = variant_of(steps, "%s", name)->model;
+    void *state = fresh(m);
+    double y[MOST], last[MOST];
+    int k = 0, early = 0;
+    m->get(state, y);
+    while (m->status(state) == 0 && k < 1000) {
+        memcpy(last, y, sizeof last);
+        m->step(state, NULL);
+        m->get(state, y);
+        k++;
+        for (int i = 0; i < m->states && m->status(state) == 0; i++)
+            early += !isfinite(y[i]);
+    }
+    const double when = m->time(state);
+    bool good = true;
+    for (int i = 0; i < m->states; i++)
+        good = good && isfinite(last[i]) && (!stays_finite || isfinite(y[i]));
+    if (!good)
+        note("%s: state %g %g, before %g %g", name, y[0], y[m->states - 1], last[0], last[m->states - 1]);
+    if ((m->status(state) & bit) != bit)
+        note("%s: status %d, expected bit %d", name, m->status(state), bit);
+    good = good && (m->status(state) & bit) == bit && early == 0;
+    good = close_to(when, (from + to) / 2, (to - from) / 2, "%s: the time at which it ends", name) && good;
+    m->init(state);
+    ok(good && m->status(state) == 0, "%s: status %d, at %g s, and none after init", name, bit, when);
+    free(state);
+}
+
+static void endings(void)
+{
+    ends("pole_taylor_0", PL_NOT_FINITE, 0.55, 0.65, true);
+    ends("pole_fixed_0", PL_INACCURATE, 0.25, 0.55, true);
+    ends("root_taylor_0", PL_NOT_FINITE, 1.05, 1.15, true);
+    ends("root_fixed_0", PL_NOT_FINITE, 1.05, 1.25, false);
+    ends("stiff_taylor_0", PL_TOO_MANY_STEPS, 0.05, 0.15, true);
+    ends("coarse_0", PL_INACCURATE, 0.45, 0.55, true);
+}
+
+int main(void)
+{
+    static const char *const measured[] = {"pendulum", "vanderpol", "duffing", "mathieu", "timed", "changing"};
+    for (int i = 0; i < SUBJECTS; i++) {
+        const struct subject *s = &subjects[i];
+        const pl_model *adaptive = variant_of(steps, "%s_taylor_0", s->name)->model;
+        const pl_model *fixed = variant_of(steps, "%s_fixed_0", s->name)->model;
+        follows(s, adaptive, 2e-11);
+        follows(s, fixed, strcmp(s->name, "ramped") == 0 ? 2e-11 : strcmp(s->name, "timed") == 0 ? 2e-13 : 3e-15);
+        same_bits(adaptive);
+        same_bits(fixed);
+    }
+    for (size_t i = 0; i < sizeof measured / sizeof *measured; i++)
+        for (int order = 4; order <= 12; order += 4)
+            has_order(measured[i], order, 2);
+    for (int digits = 4; digits <= 12; digits += digits == 4 ? 2 : 3) {
+        keeps("pendulum", digits, 1);
+        keeps("vanderpol", digits, 1);
+        keeps("duffing", digits, 1);
+    }
+    beside_cvode();
+    in_float();
+    holds_energy("swing_taylor_0", swing_energy, 1e-13);
+    holds_energy("swing_fixed_0", swing_energy, 1e-13);
+    holds_energy("spring_taylor_0", spring_energy, 1e-13);
+    holds_energy("spring_fixed_0", spring_energy, 1e-13);
+    endings();
+    return tap_end();
+}
