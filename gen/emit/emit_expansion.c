@@ -259,6 +259,18 @@ static void emit_expansion_end(const struct emitter *e)
 	say(e, "}\n");
 }
 
+/* c_1 + ... + c_P, small ones first; the last three, which come late, apart */
+static const char *whole_gain(int order, int state)
+{
+	enum { LATE = 3 };
+	const char *text = "", *late = format("c[%d][%d]", order, state);
+	for (int k = order - 1; k > order - LATE; k--)
+		late = format("(%s + c[%d][%d])", late, k, state);
+	for (int k = order - LATE; k > 0; k--)
+		text = *text ? format("(%s + c[%d][%d])", text, k, state) : format("c[%d][%d]", k, state);
+	return format("%s + %s", late, text);
+}
+
 /* Of fixed order: one way through, whatever the numbers are */
 static void emit_fixed_step(const struct emitter *e)
 {
@@ -276,9 +288,7 @@ static void emit_fixed_step(const struct emitter *e)
 			       "    int i;\n");
 		say(e, "    %s\n", expand_call(e, "", "", "", "s->y", "c"));
 		for (int i = 0; i < states; i++) {
-			const char *text = format("c[%d][%d]", order, i);
-			for (int k = order - 1; k > 0; k--)
-				text = format("(%s + c[%d][%d])", text, k, i);
+			const char *text = whole_gain(order, i);
 			say(e, "    ");
 			say_wrapped(e, format("s->y[%d] = pl_accumulate(s->y[%d], %s, 0.0, &s->rest[%d]);\n", i, i, text, i));
 		}

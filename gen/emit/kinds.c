@@ -291,7 +291,7 @@ static const struct kind expanded = {
 	.members = emit_expansion_members,
 	.keeps_status = true,
 	.init_note = "t = 0, the spec's initial values",
-	.status_note = "0, or bits: PL_NOT_FINITE, PL_TOO_MANY_STEPS, PL_INACCURATE",
+	.status_note = "0, or PL_... bits (plrt.h)",
 	.declare_state = nothing,
 	.declare_more = nothing,
 	.start = no_start,
