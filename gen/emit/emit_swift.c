@@ -470,7 +470,7 @@ static const char *size_of_x(const struct emitter *e, const struct pieces *p, co
 	const char **term = ARRAY(const char *, (size_t)e->step->layout.size);
 	int terms = 0;
 	for (int j = 0; j < e->step->layout.size; j++)
-		if (!p->bounded[j])
+		if (!p->bounded[j] && *size[j])         /* 1 counts for nothing */
 			term[terms++] = size[j];
 	return tree(terms, term, indent);
 }

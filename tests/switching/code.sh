@@ -67,6 +67,7 @@ coord x; x'' + x + max(x, 0) = 0
 coord x; x'' + x + max(x, 0) = t
 coord x; x'' + x + max(x - t, 0) = 0
 coord x; x'' + x + max(x, 0) = exp(-t)*sin(2*t) + t^2
+coord x, y; x' + y + max(x, 0) = t; y'' + y = x
 coord x; x'' + x + abs(x - cos(t)) = 1
 coord x; input u; x'' + x + max(x, 0) = u
 coord x; input u; x'' + x + max(x - u, 0) = 0
