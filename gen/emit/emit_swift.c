@@ -100,8 +100,8 @@ static const char *off_text(const struct emitter *e, const struct pieces *p, int
 			    const char *const *size, int indent)
 {
 	int n = expressions_of(e);
-	struct tables off = tables_of_pieces(e, p, spell(e, "$n_chord_off[which]"), n, off_of),
-		      still = tables_of_pieces(e, p, spell(e, "$n_still[which]"), 1, still_of);
+	struct tables off = tables_of_pieces(e, p, spell(e, "$o_chord_off[which]"), n, off_of),
+		      still = tables_of_pieces(e, p, spell(e, "$o_still[which]"), 1, still_of);
 	still.columns = n;
 	if (branch >= 0) {
 		off = of_branch(off, branch);
@@ -110,7 +110,7 @@ static const char *off_text(const struct emitter *e, const struct pieces *p, int
 	const char *further = NULL;
 	if (acts_at(&still, 0, expression))
 		further = agree_at(&still, 0, expression) ? shortest(still.value[still.from][expression])
-							  : spell(e, "$n_still[which][%d]", expression);
+							  : spell(e, "$o_still[which][%d]", expression);
 	return row_text(&off, expression, size, further, indent);
 }
 
@@ -120,7 +120,7 @@ static void emit_of_each(const struct emitter *e, const struct tables *t, const 
 			 const char *const *row_name)
 {
 	say(e, "\n"
-	       "static const double $n_%s[%d][%d][%d] = {  /* %s */\n",
+	       "static const double $o_%s[%d][%d][%d] = {  /* %s */\n",
 	    name, e->step->branches, t->rows, t->columns, note);
 	for (int k = 0; k < e->step->branches; k++) {
 		say(e, "  {\n");
@@ -142,7 +142,7 @@ static void emit_still(const struct emitter *e, const struct pieces *p)
 {
 	int expressions = expressions_of(e);
 	say(e, "\n"
-	       "static const double $n_still[%d][%d] = {  /* what 1, cos and sin add to that, at most */\n",
+	       "static const double $o_still[%d][%d] = {  /* what 1, cos and sin add to that, at most */\n",
 	    e->step->branches, expressions);
 	for (int k = 0; k < e->step->branches; k++)
 		for (int i = 0; i < expressions; i++)
@@ -157,7 +157,7 @@ static void emit_neighbours(const struct emitter *e, const struct pieces *p)
 	const struct switching *s = e->model->switching;
 	int n = s->expressions;
 	say(e, "\n"
-	       "static const double $n_within[%d][%d][2] = {  /* what each expression is between in each region */\n",
+	       "static const double $o_within[%d][%d][2] = {  /* what each expression is between in each region */\n",
 	    s->regions, n);
 	for (int r = 0; r < s->regions; r++)
 		for (int i = 0; i < n; i++)
@@ -165,7 +165,7 @@ static void emit_neighbours(const struct emitter *e, const struct pieces *p)
 			    shortest(p->high[r * n + i]), i == n - 1 ? "},\n" : "");
 	say(e, "};\n"
 	       "\n"
-	       "static const int $n_beyond[%d][%d][2] = {  /* regions below and above; -1: none that can occur */\n",
+	       "static const int $o_beyond[%d][%d][2] = {  /* regions below and above; -1: none that can occur */\n",
 	    s->regions, n);
 	for (int r = 0; r < s->regions; r++)
 		for (int i = 0; i < n; i++) {
@@ -177,7 +177,7 @@ static void emit_neighbours(const struct emitter *e, const struct pieces *p)
 		}
 	say(e, "};\n"
 	       "\n"
-	       "static const int $n_stride[] = {");
+	       "static const int $o_stride[] = {");
 	for (int i = 0; i < n; i++)
 		say(e, "%s%d", i ? ", " : "", s->expression[i].stride);
 	say(e, "};\n");
@@ -245,13 +245,13 @@ static void emit_expression(const struct emitter *e, const struct pieces *p)
 {
 	int size = e->step->layout.size, n = expressions_of(e);
 	say(e, "\n"
-	       "static double $n_expression(int i, const double x[%d])\n"
+	       "static double $o_expression(int i, const double x[%d])\n"
 	       "{\n", size);
 	if (n == 1) {
 		say(e, "    (void)i;\n"
 		       "    return %s;\n", expression_text(e, p, 0, places(e, "x[%d]"), 11));
 	} else {
-		struct tables rows = { spell(e, "$n_row"), n, size, 0, 0, NULL };
+		struct tables rows = { spell(e, "$o_row"), n, size, 0, 0, NULL };
 		const char **term = ARRAY(const char *, (size_t)size);
 		int terms = 0;
 		for (int j = 0; j < size; j++) {
@@ -272,7 +272,7 @@ static void emit_turns(const struct emitter *e, const struct tables *t)
 	for (int i = 0; i < t->rows; i++)
 		for (int j = 0; j < t->columns; j++)
 			if (acts_at(t, i, j) && !agree_at(t, i, j))
-				say(e, "    const double h%d_%d = $N_H * $n_slopes[which][%d][%d];\n", i, j, i, j);
+				say(e, "    const double h%d_%d = $N_H * $o_slopes[which][%d][%d];\n", i, j, i, j);
 }
 
 static const char *turn_times(const struct tables *t, int i, int j)
@@ -305,13 +305,13 @@ static void emit_weights(const struct emitter *e, const struct pieces *p)
 {
 	int terms = p->degree + 1;
 	say(e, "\n"
-	       "static const double $n_weight[%d] = {  /* 1/k! */\n"
+	       "static const double $d_weight[%d] = {  /* 1/k! */\n"
 	       "    1.0", terms);
 	for (int k = 1; k < terms; k++)
 		say(e, "%s%s", k % 4 ? ", " : ",\n    ", shortest(p->weight[k]));
 	say(e, "\n"
 	       "};\n"
-	       "static const double $n_orders[%d] = {", terms);
+	       "static const double $d_orders[%d] = {", terms);
 	for (int k = 0; k < terms; k++)
 		say(e, "%s%d.0", k ? ", " : "", k);
 	say(e, "};\n");
@@ -321,10 +321,9 @@ static void emit_expand(const struct emitter *e, const struct pieces *p)
 {
 	int size = e->step->layout.size, terms = p->degree + 1;
 	struct tables turns = tables_of_pieces(e, p, "", size, turns_of);
-	emit_weights(e, p);
 	say(e, "\n"
 	       "/* The coefficients of x(s) = e^{A h s} x: its derivatives, times 1/k! */\n"
-	       "static void $n_expand(int which, const double x[%d], double c[%d][%d])\n"
+	       "static void $o_expand(int which, const double x[%d], double c[%d][%d])\n"
 	       "{\n", size, terms, size);
 	emit_turns(e, &turns);
 	for (int j = 0; j < size; j++)
@@ -333,7 +332,7 @@ static void emit_expand(const struct emitter *e, const struct pieces *p)
 	for (int j = 0; j < size; j++)
 		say(e, "    c[0][%d] = a%d;\n", j, j);
 	say(e, "    for (k = 1; k < %d; k++) {\n"
-	       "        const double weight = $n_weight[k];\n", terms);
+	       "        const double weight = $d_weight[k];\n", terms);
 	for (int i = 0; i < size; i++)
 		say(e, "        const double b%d = %s;\n", i, turned_row(e, &turns, i));
 	for (int i = 0; i < size; i++)
@@ -350,7 +349,7 @@ static void emit_polynomial(const struct emitter *e, const struct pieces *p, con
 	int size = e->step->layout.size, terms = p->degree + 1;
 	say(e, "\n"
 	       "/* x(s)%s */\n"
-	       "static void $n_%s(double c[%d][%d], double s, double x[%d])\n"
+	       "static void $o_%s(double c[%d][%d], double s, double x[%d])\n"
 	       "{\n"
 	       "    const double ss = s * s;\n", count < size ? ", the states" : "", name, terms, size, size);
 	for (int i = 0; i < count; i++)
@@ -369,8 +368,8 @@ static void emit_polynomial(const struct emitter *e, const struct pieces *p, con
 /* sum of |g[k + 2]| r^k, of k + 2 times that for `slopes`; lines of a function */
 static void emit_sizes(const struct emitter *e, int terms, const char *sum, const char *r, bool slopes)
 {
-	const char *factor = slopes ? spell(e, "$n_orders[k + 2] * ") : "",
-		   *next = slopes ? spell(e, "$n_orders[k + 3] * ") : "";
+	const char *factor = slopes ? spell(e, "$d_orders[k + 2] * ") : "",
+		   *next = slopes ? spell(e, "$d_orders[k + 3] * ") : "";
 	say(e, "    for (k = %d; k >= 0; k -= 2) {\n"
 	       "        even = even * (%s * %s) + %spl_magnitude(g[k + 2]);\n"
 	       "        odd = odd * (%s * %s) + %spl_magnitude(g[k + 3]);\n"
@@ -388,7 +387,7 @@ static void emit_root(const struct emitter *e, const struct pieces *p)
 	       " * by the sizes of its other coefficients, and |g''| below `bend`: there is one root.  Two steps "
 	       "of Newton's\n"
 	       " * method from the series of the inverse.  slack: what g' may be off by; g > 0 at 1 is known. */\n"
-	       "static double $n_root(const double g[%d], double slack)\n"
+	       "static double $d_root(const double g[%d], double slack)\n"
 	       "{\n"
 	       "    const double q = g[2] / g[1], w = -g[0] / g[1];\n"
 	       "    const double guess = w * (1.0 - q * w * (1.0 - 2.0 * q * w)), most = guess < 0.99 ? guess + "
@@ -398,7 +397,7 @@ static void emit_root(const struct emitter *e, const struct pieces *p)
 	emit_sizes(e, terms, "least", "most", true);
 	say(e, "    least = g[1] - slack - most * least;\n"
 	       "    for (k = 2; k < %d; k++)\n"
-	       "        bend += $n_orders[k] * $n_orders[k - 1] * pl_magnitude(g[k]);\n"
+	       "        bend += $d_orders[k] * $d_orders[k - 1] * pl_magnitude(g[k]);\n"
 	       "    for (i = 0; i < 2; i++) {\n"
 	       "        const double zz = z * z;\n"
 	       "        double even_slope = %d.0 * g[%d], odd_slope = 0.0;\n"
@@ -407,8 +406,8 @@ static void emit_root(const struct emitter *e, const struct pieces *p)
 	       "        for (k = %d; k >= 0; k -= 2) {\n"
 	       "            even = even * zz + g[k];\n"
 	       "            odd = odd * zz + g[k + 1];\n"
-	       "            even_slope = even_slope * zz + $n_orders[k + 1] * g[k + 1];\n"
-	       "            odd_slope = odd_slope * zz + $n_orders[k + 2] * g[k + 2];\n"
+	       "            even_slope = even_slope * zz + $d_orders[k + 1] * g[k + 1];\n"
+	       "            odd_slope = odd_slope * zz + $d_orders[k + 2] * g[k + 2];\n"
 	       "        }\n"
 	       "        miss = even + z * odd;\n"
 	       "        last = z;\n"
@@ -432,7 +431,7 @@ static void emit_bounds(const struct emitter *e, const struct pieces *p)
 	const char **size = entries(e, "pl_magnitude(x[%d])");
 	say(e, "\n"
 	       "/* How far each expression is off its chord over h or less, at most */\n"
-	       "static void $n_bounds(int which, const double x[%d], double off[%d])\n"
+	       "static void $o_bounds(int which, const double x[%d], double off[%d])\n"
 	       "{\n", e->step->layout.size, n);
 	for (int i = 0; i < n; i++)
 		say(e, "    off[%d] = %s;\n", i, off_text(e, p, -1, i, size, 13));
@@ -440,10 +439,10 @@ static void emit_bounds(const struct emitter *e, const struct pieces *p)
 	       "    (void)x;\n"
 	       "}\n"
 	       "\n"
-	       "static int $n_stays(int region, int i, double from, double to, double off)\n"
+	       "static int $o_stays(int region, int i, double from, double to, double off)\n"
 	       "{\n"
-	       "    return (from < to ? from : to) - off > $n_within[region][i][0] &&\n"
-	       "           (from > to ? from : to) + off < $n_within[region][i][1];\n"
+	       "    return (from < to ? from : to) - off > $o_within[region][i][0] &&\n"
+	       "           (from > to ? from : to) + off < $o_within[region][i][1];\n"
 	       "}\n");
 }
 
@@ -455,9 +454,9 @@ static void emit_whole(const struct emitter *e, const struct pieces *p)
 	const char **x = entries(e, "x[%d]");
 	say(e, "\n"
 	       "/* e^{A h} x */\n"
-	       "static void $n_advance(int which, const double x[%d], double end[%d])\n"
+	       "static void $o_advance(int which, const double x[%d], double end[%d])\n"
 	       "{\n"
-	       "    const double (*const factor)[%d] = $n_%s[which];\n",
+	       "    const double (*const factor)[%d] = $o_%s[which];\n",
 	    size, size, size, any_pieces(e) ? "whole" : "pieces");
 	for (int i = 0; i < size; i++)
 		say(e, "    end[%d] = %s;\n", i, row_text(&whole, i, x, NULL, 13));
@@ -484,23 +483,23 @@ static void emit_near(const struct emitter *e, const struct pieces *p)
 	       "/* How many expressions are not seen to be clear over h, from x to end; the last of them.  By "
 	       "chords, then by\n"
 	       " * cubics, which lie within their Bezier points */\n"
-	       "static int $n_near(int region, int which, const double x[%d], const double end[%d], int *last)\n"
+	       "static int $o_near(int region, int which, const double x[%d], const double end[%d], int *last)\n"
 	       "{\n"
 	       "    double off[%d];\n"
 	       "    int i, j, near = 0;\n"
-	       "    $n_bounds(which, x, off);\n"
+	       "    $o_bounds(which, x, off);\n"
 	       "    for (i = 0; i < %d; i++) {\n"
-	       "        const double from = $n_expression(i, x), to = $n_expression(i, end);\n"
+	       "        const double from = $o_expression(i, x), to = $o_expression(i, end);\n"
 	       "        double leaving = from, arriving = to, sway = 0.0;\n"
-	       "        if ($n_stays(region, i, from, to, off[i]))\n"
+	       "        if ($o_stays(region, i, from, to, off[i]))\n"
 	       "            continue;\n",
 	    size, size, n, n);
 	say(e, "        for (j = 0; j < %d; j++) {\n"
-	       "            leaving += $n_%slean[which][i][j] * x[j];\n"
-	       "            arriving -= $n_%slean[which][i][j] * end[j];\n"
-	       "            sway += $n_%ssway[which][i][j] * pl_magnitude(x[j]);\n"
+	       "            leaving += $o_%slean[which][i][j] * x[j];\n"
+	       "            arriving -= $o_%slean[which][i][j] * end[j];\n"
+	       "            sway += $o_%ssway[which][i][j] * pl_magnitude(x[j]);\n"
 	       "        }\n"
-	       "        if ($n_stays(region, i, from, to, sway) && $n_stays(region, i, leaving, arriving, sway))\n"
+	       "        if ($o_stays(region, i, from, to, sway) && $o_stays(region, i, leaving, arriving, sway))\n"
 	       "            continue;\n"
 	       "        *last = i;\n"
 	       "        near++;\n"
@@ -519,27 +518,27 @@ static void emit_leaves(const struct emitter *e, const struct pieces *p)
 	       "/* Where expression i, which is `to` after h, first passes the upper or the lower end of its "
 	       "interval; 2: that is\n"
 	       " * not certain.  c: the coefficients of x(s) */\n"
-	       "static double $n_leaves(int region, int which, int i, int up, const double x[%d], double "
+	       "static double $o_leaves(int region, int which, int i, int up, const double x[%d], double "
 	       "c[%d][%d], double to)\n"
 	       "{\n"
-	       "    const double sign = up ? 1.0 : -1.0, b = $n_within[region][i][up], from = $n_expression(i, x);\n"
+	       "    const double sign = up ? 1.0 : -1.0, b = $o_within[region][i][up], from = $o_expression(i, x);\n"
 	       "    double g[%d], noise = pl_magnitude(b), slack = 0.0;\n"
 	       "    int k;\n"
-	       "    if ($n_beyond[region][i][up] < 0 ||\n"
-	       "        !(up ? from > $n_within[region][i][0] : from < $n_within[region][i][1]))\n"
+	       "    if ($o_beyond[region][i][up] < 0 ||\n"
+	       "        !(up ? from > $o_within[region][i][0] : from < $o_within[region][i][1]))\n"
 	       "        return 2.0;\n"
 	       "    g[0] = sign * (from - b);\n"
 	       "    for (k = 1; k < %d; k++) {\n"
-	       "        g[k] = sign * $n_expression(i, c[k]);\n"
+	       "        g[k] = sign * $o_expression(i, c[k]);\n"
 	       "        noise += pl_magnitude(g[k]);\n"
 	       "    }\n",
 	    size, terms, size, terms, terms);
 	say(e, "    for (k = 0; k < %d; k++) {\n"
-	       "        slack += $n_slack[which][i][k] * pl_magnitude(x[k]);\n"
-	       "        noise += pl_magnitude($n_row[i][k] * x[k]);\n"
+	       "        slack += $o_slack[which][i][k] * pl_magnitude(x[k]);\n"
+	       "        noise += pl_magnitude($o_row[i][k] * x[k]);\n"
 	       "    }\n"
 	       "    noise *= 1.7763568394002505e-15;  /* 8 DBL_EPSILON, as in the search */\n"
-	       "    return g[0] < -noise && sign * (to - b) > noise && g[1] > 0.0 ? $n_root(g, slack) : 2.0;\n"
+	       "    return g[0] < -noise && sign * (to - b) > noise && g[1] > 0.0 ? $d_root(g, slack) : 2.0;\n"
 	       "}\n", size);
 }
 
@@ -551,27 +550,27 @@ static void emit_moves_on(const struct emitter *e, const struct pieces *p)
 	       "/* Whether it is certain that nothing is passed from x on over h times `rest`: not what was "
 	       "passed just now, since\n"
 	       " * (e - b)/s stays beside 0, and nothing else.  c: the coefficients of x(s) */\n"
-	       "static int $n_moves_on(int region, int which, int passed, int up, const double x[%d], double "
+	       "static int $o_moves_on(int region, int which, int passed, int up, const double x[%d], double "
 	       "c[%d][%d],\n"
 	       "                       double rest, const double end[%d])\n"
 	       "{\n"
 	       "    double g[%d], off[%d], slack = 0.0, even = 0.0, odd = 0.0, more;\n"
 	       "    int i, k;\n"
 	       "    for (k = 1; k < %d; k++)\n"
-	       "        g[k] = $n_expression(passed, c[k]);\n"
+	       "        g[k] = $o_expression(passed, c[k]);\n"
 	       "    for (k = 0; k < %d; k++)\n"
-	       "        slack += $n_slack[which][passed][k] * pl_magnitude(x[k]);\n",
+	       "        slack += $o_slack[which][passed][k] * pl_magnitude(x[k]);\n",
 	    size, terms, size, size, terms, n, terms, size);
 	emit_sizes(e, terms, "more", "rest", false);
 	say(e, "    if (!((up ? g[1] : -g[1]) > rest * more + slack))\n"
 	       "        return 0;\n"
-	       "    $n_bounds(which, x, off);\n"
+	       "    $o_bounds(which, x, off);\n"
 	       "    for (i = 0; i < %d; i++) {\n"
-	       "        const double from = $n_expression(i, x), to = $n_expression(i, end), sag = off[i] * "
+	       "        const double from = $o_expression(i, x), to = $o_expression(i, end), sag = off[i] * "
 	       "(rest * rest);\n"
-	       "        if (i == passed ? !(up ? (from > to ? from : to) + sag < $n_within[region][i][1]\n"
-	       "                               : (from < to ? from : to) - sag > $n_within[region][i][0])\n"
-	       "                        : !$n_stays(region, i, from, to, sag))\n"
+	       "        if (i == passed ? !(up ? (from > to ? from : to) + sag < $o_within[region][i][1]\n"
+	       "                               : (from < to ? from : to) - sag > $o_within[region][i][0])\n"
+	       "                        : !$o_stays(region, i, from, to, sag))\n"
 	       "            return 0;\n"
 	       "    }\n"
 	       "    return %s < %s;\n"
@@ -586,54 +585,58 @@ static void emit_cross(const struct emitter *e, const struct pieces *p)
 	       "/* s over h from x where it is certain that nothing is passed, or one breakpoint once: 1.  Else 0, and "
 	       "nothing has\n"
 	       " * changed. */\n"
-	       "static PL_APART int $n_cross($n *s, const double x[%d])\n"
+	       "static PL_APART int $o_cross($n *s, const double x[%d])\n"
 	       "{\n"
-	       "    const int region = s->contact.region, which = s->contact.matrix;\n"
+	       "    const int region = s->contact$p.region, which = s->contact$p.matrix;\n"
 	       "    double c[%d][%d], y[%d], end[%d], z, to;\n"
 	       "    int i, passed = 0, up, next, near;\n"
 	       "    if (!(%s < %s))\n"
 	       "        return 0;\n"
-	       "    $n_advance(which, x, end);\n"
-	       "    near = $n_near(region, which, x, end, &passed);\n"
+	       "    $o_advance(which, x, end);\n"
+	       "    near = $o_near(region, which, x, end, &passed);\n"
 	       "    if (near > 1)\n"
 	       "        return 0;\n",
 	    size, terms, size, size, size, size_of_x(e, p, places(e, "pl_magnitude(x[%d])"), 10),
 	    shortest(p->large));
 	say(e, "    if (near) {\n"
-	       "        to = $n_expression(passed, end);\n"
-	       "        up = to > $n_within[region][passed][1];\n"
-	       "        $n_expand(which, x, c);\n"
-	       "        z = $n_leaves(region, which, passed, up, x, c, to);\n"
+	       "        to = $o_expression(passed, end);\n"
+	       "        up = to > $o_within[region][passed][1];\n"
+	       "        $o_expand(which, x, c);\n"
+	       "        z = $o_leaves(region, which, passed, up, x, c, to);\n"
 	       "        if (z > 1.0)\n"
 	       "            return 0;\n"
-	       "        $n_sum_up(c, z, y);\n"
-	       "        next = $n_beyond[region][passed][up];\n"
-	       "        $n_expand($n_matrix[next], y, c);\n"
-	       "        $n_sum_up(c, 1.0 - z, end);\n"
-	       "        if (!$n_moves_on(next, $n_matrix[next], passed, up, y, c, 1.0 - z, end))\n"
+	       "        $o_sum_up(c, z, y);\n"
+	       "        next = $o_beyond[region][passed][up];\n"
+	       "        $o_expand($o_matrix[next], y, c);\n"
+	       "        $o_sum_up(c, 1.0 - z, end);\n"
+	       "        if (!$o_moves_on(next, $o_matrix[next], passed, up, y, c, 1.0 - z, end))\n"
 	       "            return 0;\n");
-	say(e, "        s->crossing[0].time = z * $N_H;\n"
-	       "        s->crossing[0].expression = passed;\n"
-	       "        s->crossing[0].breakpoint = next / $n_stride[passed] %% ($n_breaks[passed] + 1) - up;\n"
-	       "        s->crossing[0].upward = up;\n"
-	       "        s->contact.total++;\n"
-	       "        s->contact.region = next;\n"
-	       "        s->contact.matrix = $n_matrix[next];\n"
+	say(e, "        s->crossing$p[0].time = z * $N_H;\n"
+	       "        s->crossing$p[0].expression = passed;\n"
+	       "        s->crossing$p[0].breakpoint = next / $o_stride[passed] %% ($o_breaks[passed] + 1) - up;\n"
+	       "        s->crossing$p[0].upward = up;\n"
+	       "        s->contact$p.total++;\n"
+	       "        s->contact$p.region = next;\n"
+	       "        s->contact$p.matrix = $o_matrix[next];\n"
 	       "    }\n"
-	       "    s->contact.crossings = near;\n"
-	       "    for (i = 0; i < $N_STATES; i++)\n"
-	       "        s->y[i] = end[i];\n"
+	       "    s->contact$p.crossings = near;\n"
+	       "    for (i = 0; i < %s; i++)\n"
+	       "        s->y[%s] = end[i];\n"
 	       "    return 1;\n"
-	       "}\n");
+	       "}\n", own_states(e), place_in_loop(e));
 }
 
 void emit_swift_functions(const struct emitter *e)
 {
 	struct pieces pieces = pieces_of(e->step);
+	bool shares = strcmp(e->degree, e->own) != 0;   /* what depends on the degree alone is there already */
 	emit_expression(e, &pieces);
+	if (!shares)
+		emit_weights(e, &pieces);
 	emit_expand(e, &pieces);
 	emit_polynomial(e, &pieces, "sum_up", e->step->layout.size);
-	emit_root(e, &pieces);
+	if (!shares)
+		emit_root(e, &pieces);
 	emit_bounds(e, &pieces);
 	emit_whole(e, &pieces);
 	emit_near(e, &pieces);
@@ -657,9 +660,10 @@ static const char **operands(const struct emitter *e)
 				text[layout->load[l] + k] = load_operand(e, l, k);
 	for (int i = 0; i < e->system->inputs; i++) {
 		bool ramp = e->system->input[i].hold;
-		text[layout->input[i]] = format(ramp ? "s->u[%d]" : "u[%d]", i);
+		int of = place_of_input(e, i);
+		text[layout->input[i]] = format(ramp ? "s->u[%d]" : "u[%d]", of);
 		if (ramp)
-			text[layout->input[i] + 1] = format("part%d", i);
+			text[layout->input[i] + 1] = format("part%d", of);
 	}
 	return text;
 }
@@ -710,16 +714,16 @@ static void emit_chords(const struct emitter *e, const struct pieces *p, const c
 	}
 	say(e, "    if (");
 	for (int i = 0; i < expressions_of(e); i++)
-		say(e, "(from%d < to%d ? from%d : to%d) - off%d > $n_within[s->contact.region][%d][0] &&\n"
-		       "        (from%d > to%d ? from%d : to%d) + off%d < $n_within[s->contact.region][%d][1] &&\n"
+		say(e, "(from%d < to%d ? from%d : to%d) - off%d > $o_within[s->contact$p.region][%d][0] &&\n"
+		       "        (from%d > to%d ? from%d : to%d) + off%d < $o_within[s->contact$p.region][%d][1] &&\n"
 		       "        ", i, i, i, i, i, i, i, i, i, i, i, i);
 }
 
 static void emit_table_step(const struct emitter *e, const struct pieces *p, const char *const *x)
 {
 	struct tables whole = tables_of_pieces(e, p, "factor", e->step->layout.size, whole_of);
-	say(e, "    const int which = s->contact.matrix;\n"
-	       "    const double (*const factor)[%d] = $n_%s[which];\n", e->step->layout.size,
+	say(e, "    const int which = s->contact$p.matrix;\n"
+	       "    const double (*const factor)[%d] = $o_%s[which];\n", e->step->layout.size,
 	    any_pieces(e) ? "whole" : "pieces");
 	emit_ends(e, p, &whole, x, "const double ");
 	emit_chords(e, p, x);
@@ -800,7 +804,7 @@ static void emit_cases(const struct emitter *e, const struct pieces *p, const ch
 	}
 	say(e, "    double %s;\n"
 	       "    int clear = 0;\n"
-	       "    switch (s->contact.region) {\n", list);
+	       "    switch (s->contact$p.region) {\n", list);
 	for (int r = 0; r < s->regions; r++)
 		if (s->region[r].possible)
 			emit_region_case(e, p, x, r);
@@ -815,22 +819,24 @@ void emit_swift_step(const struct emitter *e)
 	struct pieces pieces = pieces_of(e->step);
 	const struct layout *layout = &e->step->layout;
 	const char **x = operands(e);
-	for (int i = 0; i < e->system->inputs; i++)
+	for (int i = 0; i < e->system->inputs; i++) {
+		int of = place_of_input(e, i);
 		if (e->system->input[i].hold)
-			say(e, "    const double part%d = (u[%d] - s->u[%d]) / $N_H;  /* its slope */\n", i, i, i);
+			say(e, "    const double part%d = (u[%d] - s->u[%d]) / $N_H;  /* its slope */\n", of, of, of);
+	}
 	if (goes_by_tables(e))
 		emit_table_step(e, &pieces, x);
 	else
 		emit_cases(e, &pieces, x);
 	say(e, "%s < %s) {\n", size_of_x(e, &pieces, magnitudes(e, x), 12), shortest(pieces.large));
 	for (int i = 0; i < e->system->states; i++)
-		say(e, "        s->y[%d] = end%d;\n", i, i);
-	say(e, "        s->contact.crossings = 0;\n"
+		say(e, "        s->y[%d] = end%d;\n", place_of_state(e, i), i);
+	say(e, "        s->contact$p.crossings = 0;\n"
 	       "    } else {\n"
 	       "        double now[%d];\n", layout->size);
 	for (int j = 0; j < layout->size; j++)
 		say(e, "        now[%d] = %s;\n", j, *x[j] ? x[j] : "1.0");
-	say(e, "        if (!$n_cross(s, now))\n"
-	       "            $n_seek(s, now);\n"
+	say(e, "        if (!$o_cross(s, now))\n"
+	       "            $o_seek(s, now);\n"
 	       "    }\n");
 }

@@ -28,6 +28,7 @@ static const char *objection(const struct step *step)
 	static const char *const of_kind[KINDS] = {
 		[KIND_TUNED] = "tunable params: the target would have to make the tables",
 		[KIND_REGIONS] = "regions: crossings need the loads at any time",
+		[KIND_PARTS] = "regions: crossings need the loads at any time",
 		[KIND_LEFTOVER] = "a leftover: the scheme needs the loads between steps"
 	};
 	if (step->model->asked.form == FORM_MODAL)

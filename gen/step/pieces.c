@@ -82,6 +82,11 @@ static double *Phi_of(const struct step *step, const struct table *table, int ha
 	return Phi;
 }
 
+double *whole_step_of(const struct step *step, int branch)
+{
+	return Phi_of(step, step->branch[branch].whole, 0);
+}
+
 static double *finite_slopes(const struct step *step, int branch)
 {
 	int cells = step->layout.size * step->layout.size;

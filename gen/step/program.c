@@ -5,7 +5,7 @@
 enum step_kind kind_of_step(const struct model *model)
 {
 	if (model->switching)
-		return KIND_REGIONS;
+		return model->switching->parts ? KIND_PARTS : KIND_REGIONS;
 	if (model->tuning)
 		return KIND_TUNED;
 	return model->channels > 0 ? KIND_LEFTOVER : KIND_LINEAR;
@@ -42,6 +42,7 @@ void need_closed_form(const struct step *step)
 {
 	static const char *const of_kind[KINDS] = {
 		[KIND_REGIONS] = "where it crosses a breakpoint is found by a search",
+		[KIND_PARTS] = "where it crosses a breakpoint is found by a search",
 		[KIND_LEFTOVER] = "what is left over has no closed form"
 	};
 	const char *why = of_kind[step->kind];
