@@ -315,9 +315,30 @@ static const char **linear_operands(const struct emitter *part)
 		bool ramp = part->system->input[i].hold;
 		x[layout->input[i]] = format(ramp ? "s->u[%d]" : "u[%d]", of);
 		if (ramp)
-			x[layout->input[i] + 1] = format("slope%d", of);
+			x[layout->input[i] + 1] = format("part%d", of);
 	}
 	return x;
+}
+
+/* Load states that are given, since others follow from them, and that no row reads */
+static void emit_unread(const struct emitter *part, const double *whole)
+{
+	int size = part->step->layout.size;
+	for (int l = 0; l < part->system->loads; l++) {
+		const struct load *load = &part->system->load[l];
+		int first = part->step->layout.load[l];
+		bool polynomial = is_polynomial(load->wave), time = false, array = false;
+		for (int k = 0; k < load->columns && first >= 0; k++)
+			for (int i = 0; i < part->system->states; i++) {
+				bool reads = whole[i * size + first + k] != 0;
+				time = time || (reads && polynomial && k == 1);
+				array = array || (reads && (!polynomial || k > 1));
+			}
+		if (first >= 0 && polynomial && load->powers > 1 && !time)
+			say(part, "    (void)t;\n");
+		if (first >= 0 && (!polynomial || load->powers > 2) && !array)
+			say(part, "    (void)load%d;\n", l + 1);
+	}
 }
 
 static void emit_linear_rows(const struct emitter *part, const double *whole)
@@ -333,7 +354,7 @@ static void emit_linear_rows(const struct emitter *part, const double *whole)
 	emit_raw_locals(part, all, false);
 	for (int i = 0; i < part->system->inputs; i++)
 		if (part->system->input[i].hold)
-			say(part, "    const double slope%d = %s;\n", place_of_input(part, i),
+			say(part, "    const double part%d = %s;\n", place_of_input(part, i),
 			    ramp_slope(part, place_of_input(part, i)));
 	for (int i = 0; i < states; i++) {
 		int terms = 0;
@@ -343,6 +364,7 @@ static void emit_linear_rows(const struct emitter *part, const double *whole)
 		say(part, "    s->y[%d] = %s;  /* %s */\n", place_of_state(part, i),
 		    terms ? tree(terms, term, 14) : "0.0", part->model->state_name[i]);
 	}
+	emit_unread(part, whole);
 }
 
 static void emit_linear_step(const struct emitter *part)

@@ -422,7 +422,7 @@ struct pieces pieces_of(const struct step *step)
 		pieces.piece[k].slopes = finite_slopes(step, k);
 	for (int k = 0; k < step->branches; k++)
 		pieces.piece[k].Phi = Phi_of(step, step->branch[k].table[0], step->branch[k].halvings);
-	for (int k = 0; k < step->branches; k++)
+	for (int k = 0; k < step->branches && step->model->switching->expressions > 0; k++)
 		fill_bounds(step, &pieces, k);
 	if (step->swift)
 		fill_swift(step, &pieces);

@@ -25,7 +25,8 @@ result $? 'five stops: less than 100 KB of C'
 tr -d ' \n' <json | sed 's/.*"parts":\[//; s/"cost".*//; s/"coordinates"/\n&/g' |
     sed -n 's/.*"regions":\[\([^]]*\).*/\1/p' | sed 's/{"number":\([0-9]*\),"matrix":[0-9]*}/\1/g; s/,/ /g' >shares
 awk '{ split("", next_sums); m = 0
-       for (i = 1; i <= NF; i++) for (s = 0; s < (NR == 1 ? 1 : n); s++) next_sums[m++] = (NR == 1 ? 0 : sum[s]) + $i
+       for (i = 1; i <= NF; i++) for (s = 0; s < (NR == 1 ? 1 : n); s++) 
+                next_sums[m++] = (NR == 1 ? 0 : sum[s]) + $i
        for (s = 0; s < m; s++) sum[s] = next_sums[s]
        n = m }
      END { for (s = 0; s < n; s++) { if (seen[sum[s]]++) bad++; if (sum[s] < 0 || sum[s] > 242) bad++ }
@@ -126,7 +127,8 @@ EOF
 "$plgen" --real float -o parts.c "$here/parts.spec" >log 2>&1 &&
     for one in x y; do
         [ $one = x ] && others=yz || others=xz
-        sed "/of [$others]\$/d" "$here/parts.spec" | "$plgen" --real float --prefix part_$one -o part_$one.c - || exit 99
+        sed "/of [$others]\$/d" "$here/parts.spec" |
+            "$plgen" --real float --prefix part_$one -o part_$one.c - || exit 99
     done >>log 2>&1 &&
     gcc -std=c99 -O1 -Wall -Wextra -Wconversion -Wdouble-promotion -Werror -I"$root/runtime" -I. float.c parts.c \
         part_x.c part_y.c "$archive" -o float >>log 2>&1 &&
