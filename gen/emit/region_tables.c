@@ -87,8 +87,8 @@ const char *off_text(const struct emitter *e, const struct pieces *p, int branch
 			    const char *const *size, int indent)
 {
 	int n = expressions_of(e);
-	struct region_tables off = tables_of_regions(e, p, spell(e, "$n_chord_off[which]"), n, off_of),
-		      still = tables_of_regions(e, p, spell(e, "$n_still[which]"), 1, still_of);
+	struct region_tables off = tables_of_regions(e, p, spell(e, "$o_chord_off[which]"), n, off_of),
+		      still = tables_of_regions(e, p, spell(e, "$o_still[which]"), 1, still_of);
 	still.columns = n;
 	if (branch >= 0) {
 		off = of_branch(off, branch);
@@ -97,7 +97,7 @@ const char *off_text(const struct emitter *e, const struct pieces *p, int branch
 	const char *further = NULL;
 	if (acts_at(&still, 0, expression))
 		further = agree_at(&still, 0, expression) ? shortest(still.value[still.from][expression])
-							  : spell(e, "$n_still[which][%d]", expression);
+							  : spell(e, "$o_still[which][%d]", expression);
 	return row_text(&off, expression, size, further, indent);
 }
 
@@ -107,7 +107,7 @@ static void emit_of_each(const struct emitter *e, const struct region_tables *t,
 			 const char *const *row_name)
 {
 	say(e, "\n"
-	       "static const double $n_%s[%d][%d][%d] = {  /* %s */\n",
+	       "static const double $o_%s[%d][%d][%d] = {  /* %s */\n",
 	    name, e->step->branches, t->rows, t->columns, note);
 	for (int k = 0; k < e->step->branches; k++) {
 		say(e, "  {\n");
@@ -129,7 +129,7 @@ static void emit_still(const struct emitter *e, const struct pieces *p)
 {
 	int expressions = expressions_of(e);
 	say(e, "\n"
-	       "static const double $n_still[%d][%d] = {  /* what 1, cos and sin add to that, at most */\n",
+	       "static const double $o_still[%d][%d] = {  /* what 1, cos and sin add to that, at most */\n",
 	    e->step->branches, expressions);
 	for (int k = 0; k < e->step->branches; k++)
 		for (int i = 0; i < expressions; i++)
@@ -144,7 +144,7 @@ static void emit_neighbours(const struct emitter *e, const struct pieces *p)
 	const struct switching *s = e->model->switching;
 	int n = s->expressions;
 	say(e, "\n"
-	       "static const double $n_within[%d][%d][2] = {  /* what each expression is between in each region */\n",
+	       "static const double $o_within[%d][%d][2] = {  /* what each expression is between in each region */\n",
 	    s->regions, n);
 	for (int r = 0; r < s->regions; r++)
 		for (int i = 0; i < n; i++)
@@ -152,7 +152,7 @@ static void emit_neighbours(const struct emitter *e, const struct pieces *p)
 			    shortest(p->high[r * n + i]), i == n - 1 ? "},\n" : "");
 	say(e, "};\n"
 	       "\n"
-	       "static const int $n_beyond[%d][%d][2] = {  /* regions below and above; -1: none that can occur */\n",
+	       "static const int $o_beyond[%d][%d][2] = {  /* regions below and above; -1: none that can occur */\n",
 	    s->regions, n);
 	for (int r = 0; r < s->regions; r++)
 		for (int i = 0; i < n; i++) {
@@ -164,7 +164,7 @@ static void emit_neighbours(const struct emitter *e, const struct pieces *p)
 		}
 	say(e, "};\n"
 	       "\n"
-	       "static const int $n_interval[%d][%d] = {  /* of each expression, from the lowest one */\n",
+	       "static const int $o_interval[%d][%d] = {  /* of each expression, from the lowest one */\n",
 	    s->regions, n);
 	for (int r = 0; r < s->regions; r++)
 		for (int i = 0; i < n; i++)
@@ -235,7 +235,7 @@ const char *size_of_x(const struct emitter *e, const struct pieces *p, const cha
 	const char **term = ARRAY(const char *, (size_t)e->step->layout.size);
 	int terms = 0;
 	for (int j = 0; j < e->step->layout.size; j++)
-		if (!p->bounded[j])
+		if (!p->bounded[j] && *size[j])         /* 1 counts for nothing */
 			term[terms++] = size[j];
 	return tree(terms, term, indent);
 }
