@@ -286,6 +286,7 @@ struct region_tables of_branch(struct region_tables t, int branch);
 double *whole_of(const struct region_piece *piece);               /* for `of`: e^{A h} */
 bool acts_at(const struct region_tables *t, int row, int column); /* an entry is not 0 everywhere */
 bool agree_at(const struct region_tables *t, int row, int column);
+bool is_table(const struct region_tables *t);                     /* else all its entries are numbers in the text */
 /* Sum of a row over the operands of its columns; further: a term more, or NULL */
 const char *row_text(const struct region_tables *t, int row, const char *const *operand, const char *further,
 		     int indent);
@@ -380,6 +381,7 @@ void emit_part_start(const struct emitter *e);
 void emit_parts_step(const struct emitter *e);
 void emit_parts_at(const struct emitter *e);
 /* emit_cross.c, emit_clear.c: of a step that is swift */
+void emit_crossing_scalars(const struct emitter *e);              /* what depends on no table: once, before those */
 void emit_crossing(const struct emitter *e);                      /* NAME_cross and what it calls */
 void emit_clear_step(const struct emitter *e);                    /* states and loads are in locals */
 /* Of models with tunable params: */

@@ -35,13 +35,6 @@ static bool is_read_at_end(const struct pieces *p, int size, int expressions, in
 
 /* ---- by tables of all regions, or region by region ---- */
 
-static bool goes_by_tables(const struct emitter *e)
-{
-	enum { TERMS = 200 };
-	const struct layout *layout = &e->step->layout;
-	return possible_regions(e->model->switching) * layout->states * layout->size > TERMS;
-}
-
 static void emit_ends(const struct emitter *e, const struct pieces *p, const struct region_tables *whole,
 		      const char *const *x, const char *before)
 {
@@ -181,7 +174,7 @@ void emit_clear_step(const struct emitter *e)
 		if (e->system->input[i].hold)
 			say(e, "    const double part%d = (u[%d] - s->u[%d]) / $N_H;  /* its slope */\n", of, of, of);
 	}
-	if (goes_by_tables(e))
+	if (is_cleared_by_tables(e->step))
 		emit_table_step(e, &pieces, x);
 	else
 		emit_cases(e, &pieces, x);

@@ -280,8 +280,10 @@ static void emit_whole_step(const struct emitter *e)
 
 void emit_region_step(const struct emitter *e)
 {
-	if (e->step->swift)
+	if (e->step->swift) {
+		emit_crossing_scalars(e);
 		emit_region_search(e);
+	}
 	say(e, "\n"
 	       "void $n_step(%s)\n"
 	       "{\n",

@@ -66,8 +66,7 @@ static double *turn_of(const struct region_piece *piece)   { return piece->turn;
 static double *third_of(const struct region_piece *piece)  { return piece->third; }
 static double *bend_of(const struct region_piece *piece)   { return piece->bend; }
 
-/* Else all its entries are numbers in the text */
-static bool is_table(const struct region_tables *t)
+bool is_table(const struct region_tables *t)
 {
 	bool differs = false;
 	for (int i = 0; i < t->rows; i++)
@@ -188,10 +187,11 @@ void emit_swift_tables(const struct emitter *e, const struct pieces *p, const ch
 		emit_of_each(e, &turn, "whole_lean", "lean over h", expression);
 		emit_of_each(e, &bend, "whole_sway", "sway over h", expression);
 	}
-	if (is_table(&off))
+	bool reads = any_pieces(e) || is_cleared_by_tables(e->step);    /* what they are off their chords */
+	if (reads && is_table(&off))
 		emit_of_each(e, &off, "chord_off",
 			     "times |x|: how far each expression is off its chord over h, at most", expression);
-	if (is_table(&still))
+	if (reads && is_table(&still))
 		emit_still(e, p);
 	emit_of_each(e, &slack, "slack", "times |x|: what rounding may do to an expression and to h e'", expression);
 	emit_of_each(e, &third, "jerk", "times |x|: h^3/24 e''', at most", expression);

@@ -167,7 +167,9 @@ static long swift_bytes(const struct step *step)
 	long size = step->layout.size, halves = 0;
 	for (int k = 0; k < step->branches; k++)
 		halves = halves || step->branch[k].halvings > 0;
-	return 8 * s->systems * (s->expressions * (3 * size + 1) + halves * size * (size + 2 * s->expressions)) +
+	long off = halves || is_cleared_by_tables(step) ? size + 1 : 0;
+	return 8 * s->systems *
+		       (s->expressions * (2 * size + off) + halves * size * (size + 2 * s->expressions)) +
 	       28 * (long)s->regions * s->expressions + 8 * (step->swift_degree + 1);
 }
 

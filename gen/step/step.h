@@ -399,6 +399,7 @@ void take_operators(struct step *step);
 
 void build_regions_step(struct step *step);
 void build_parts_step(struct step *step);
+bool is_cleared_by_tables(const struct step *step);         /* a swift step looks by tables, not region by region */
 
 /* ---- pieces.c: what a piecewise-linear model finds its crossings with ---- */
 

@@ -30,6 +30,12 @@ static const char *no_swift(const struct step *step)
 									      : NULL;
 }
 
+bool is_cleared_by_tables(const struct step *step)
+{
+	enum { TERMS = 200 };
+	return possible_regions(step->model->switching) * step->layout.states * step->layout.size > TERMS;
+}
+
 /* Tables over the whole of h, of a region that has pieces of half of it */
 static void plan_whole(struct step *step, int k)
 {
