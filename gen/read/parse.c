@@ -843,8 +843,10 @@ static void read_scheme(struct parser *p)
 		unexpected(p, "the name of a scheme");
 	struct token name = take(p);
 	p->spec->scheme_at = name.at;
-	if (p->token.kind != TOKEN_END)
-		p->spec->scheme_order = read_expression(p);
+	enum scheme scheme;
+	bool expands = scheme_of(name.name, &scheme) && scheme_row(scheme)->expands;
+	if (p->token.kind == TOKEN_NUMBER || (expands && p->token.kind != TOKEN_END))
+		p->spec->scheme_order = read_expression(p);     /* a number behind another scheme is told later */
 	expect_end(p);
 	p->spec->scheme = name.name;
 }

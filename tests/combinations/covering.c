@@ -323,6 +323,12 @@ static bool has(const char *one)
 	return false;
 }
 
+/* Those schemes bring what they are for */
+static bool expands(void)
+{
+	return has("taylor") || has("taylor12");
+}
+
 static void print_options(FILE *to)
 {
 	static const char *const option[][2] = { { "reduce", "--reduce" }, { "float", "--real float" },
@@ -331,8 +337,8 @@ static void print_options(FILE *to)
 		{ "modal", "--form modal" }, { "exact", "--scheme exact" }, { "pl", "--scheme pl" },
 		{ "etd1", "--scheme etd1" }, { "etdrk2", "--scheme etdrk2" }, { "etdrk4", "--scheme etdrk4" },
 		{ "nc2", "--scheme nc2" }, { "nc3", "--scheme nc3" }, { "dq4", "--scheme dq4" },
-		{ "bm3", "--scheme bm3" }, { "selftest", "--selftest" }, { "rows", "--rows 8" },
-		{ "loads", "--loads leftover" }, { "anchors", "--anchors 8" }, { "batch", "--batch" } };
+		{ "bm3", "--scheme bm3" }, { "taylor", "--scheme taylor" }, { "selftest", "--selftest" },
+		{ "rows", "--rows 8" }, { "loads", "--loads leftover" }, { "anchors", "--anchors 8" }, { "batch", "--batch" } };
 	bool scheme = false;
 	fputs("# options:", to);
 	for (size_t i = 0; i < sizeof option / sizeof *option; i++)
@@ -340,14 +346,15 @@ static void print_options(FILE *to)
 			fprintf(to, " %s", option[i][1]);
 			scheme = scheme || strncmp(option[i][1], "--scheme", 8) == 0;
 		}
+	scheme = scheme || has("taylor12");
 	if (has("loads") && !scheme)
 		fputs(" --scheme etdrk4", to);
 	const bool kinks = has("kinked") || (has("loads") && has("change"));
 	fprintf(to, "\n# class: %s\n",
-		kinks                      ? "kinked"
-			: has("piecewise") ? "piecewise"
-			: has("smooth")    ? "smooth"
-					   : "linear");
+		kinks                                ? "kinked"
+			: has("piecewise")           ? "piecewise"
+			: has("smooth") || expands() ? "smooth"
+						     : "linear");
 	fprintf(to, "# changes:%s\n", has("change") ? " 0.053 0.1 0.21" : "");
 	if (has("tunable"))
 		fputs("# retune: k=17.5 step=0.0125\n", to);
@@ -400,7 +407,7 @@ static void write_spec(FILE *to)
 	fprintf(to, "b''%s + k*(b - a) = ", damped ? " + 0.3*(b' - a')" : "");
 	fputs(has("power") ? "5*t^3 + " : "", to);
 	fputs(has("piecewise") ? "-9*max(b - 0.1, 0) + " : "", to);
-	fputs(has("smooth") ? "-2*b^3 + " : "", to);
+	fputs(has("smooth") || expands() ? "-2*b^3 + " : "", to);
 	fputs(has("kinked") ? "-3*abs(b)*b' + " : "", to);
 	fputs(has("ramp") ? "0.05*v' + " : "", to);
 	fputs("0\n", to);
@@ -420,6 +427,7 @@ static void write_spec(FILE *to)
 		fprintf(to, "output a'', s = 2*b'' - a%s\n", has("first") ? " + z'" : "");
 	fputs(has("peaks") ? "output wave = a + 0.5*b, top = peak(a + 0.5*b)\n" : "", to);
 	fputs(has("nonlinear") ? "output r = a^2 + sin(b)*b'\n" : "", to);
+	fputs(has("taylor12") ? "scheme taylor 12\n" : "", to);
 	fputs("step 0.01\n", to);
 }
 

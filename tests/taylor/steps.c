@@ -49,7 +49,6 @@ static void sparse(real t, const real *y, const real *u, real *dydt)
 {
     (void)u;
     dydt[0] = -t * t * y[0] * y[0];
-    dydt[1] = -t * t * t * y[1] * y[1];
 }
 
 static const struct subject subjects[] = {{.name = "pendulum"}, {.name = "vanderpol"}, {.name = "duffing"},
@@ -360,7 +359,8 @@ static real spring_energy(const double *y)
     return (real)y[1] * y[1] / 2 + x * x / 2 + x * x * x * x / 4;
 }
 
-static void holds_energy(const char *name, real (*energy)(const double *y), double bound)
+/* bounds: over 1e4 outputs, over 1e6 */
+static void holds_energy(const char *name, real (*energy)(const double *y), double soon, double late)
 {
     const pl_model *m = variant_of(steps, "%s", name)->model;
     const long outputs = getenv("LONG") ? 1000000 : 10000;
@@ -373,7 +373,7 @@ static void holds_energy(const char *name, real (*energy)(const double *y), doub
         m->get(state, y);
         worst = fmax(worst, (double)fabsl(energy(y) / start - 1));
     }
-    bool good = close_to(worst, 0, bound, "%s: energy", name);
+    bool good = close_to(worst, 0, getenv("LONG") ? late : soon, "%s: energy", name);
     ok(good && m->status(state) == 0, "%s: energy over %ld outputs within %.2g", name, outputs, worst);
     free(state);
 }
@@ -428,7 +428,7 @@ int main(void)
         const struct subject *s = &subjects[i];
         const pl_model *adaptive = variant_of(steps, "%s_taylor_0", s->name)->model;
         const pl_model *fixed = variant_of(steps, "%s_fixed_0", s->name)->model;
-        follows(s, adaptive, 2e-11);
+        follows(s, adaptive, strcmp(s->name, "sparse") == 0 ? 2e-10 : 2e-11);        /* twice the tolerance */
         follows(s, fixed, strcmp(s->name, "ramped") == 0 ? 2e-11 : strcmp(s->name, "timed") == 0 ? 2e-13 : 3e-15);
         same_bits(adaptive);
         same_bits(fixed);
@@ -443,10 +443,10 @@ int main(void)
     }
     beside_cvode();
     in_float();
-    holds_energy("swing_taylor_0", swing_energy, 1e-13);
-    holds_energy("swing_fixed_0", swing_energy, 1e-13);
-    holds_energy("spring_taylor_0", spring_energy, 1e-13);
-    holds_energy("spring_fixed_0", spring_energy, 1e-13);
+    holds_energy("swing_taylor_0", swing_energy, 1e-14, 1e-12);     /* what 1e-15 a step leaves, one way */
+    holds_energy("swing_fixed_0", swing_energy, 4e-15, 1e-13);
+    holds_energy("spring_taylor_0", spring_energy, 4e-15, 1e-13);
+    holds_energy("spring_fixed_0", spring_energy, 4e-15, 1e-13);
     endings();
     return tap_end();
 }
