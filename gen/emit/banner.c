@@ -139,21 +139,37 @@ void banner_expanded(const struct emitter *e)
 	say(e, " * What rounding takes from the state is kept in rest.\n");
 }
 
-/* Regions, and what each expression is compared with */
-void banner_regions(const struct emitter *e)
+static void banner_expressions(const struct emitter *e)
 {
 	const struct model *model = e->step->shown->model;
 	const struct switching *s = model->switching;
-	say(e, " * Scheme exact: nothing is approximated. "
-	       "The equations are piecewise linear: %d regions, %d different, in each of which\n"
-	       " * every constant is its closed form, correctly rounded; "
-	       "crossings inside a step are found in order, to rounding.\n", possible_regions(s), s->systems);
 	for (int i = 0; i < s->expressions; i++) {
 		const char *at = "";
 		for (int k = 0; k < s->expression[i].breaks; k++)
 			at = format("%s%s%s", at, k ? ", " : "", readable_text(s->expression[i].at[k]));
 		say(e, " *     expression %d: %s, at %s\n", i, printable(form_text(model, s->expression[i].form)), at);
 	}
+}
+
+static void banner_region_number(const struct emitter *e)
+{
+	say(e, " * The poles above are those of the terms that are linear everywhere.\n"
+	       " * A region's number is the sum of its intervals, "
+	       "each times the product of the numbers of intervals before it.\n");
+}
+
+/* Regions, and what each expression is compared with */
+void banner_regions(const struct emitter *e)
+{
+	const struct switching *s = e->step->shown->model->switching;
+	say(e, " * Scheme exact: nothing is approximated. "
+	       "The equations are piecewise linear: %d regions, %d different, in each of which\n"
+	       " * every constant is its closed form, correctly rounded; "
+	       "crossings inside a step are found in order, to rounding.\n", possible_regions(s), s->systems);
+	banner_expressions(e);
+	if (s->sharing)
+		say(e, " * Coordinates move as a whole: %d independent parts have their regions together.\n",
+		    s->sharing);
 	if (e->step->swift)
 		say(e, " * A step is one product where a bound shows it clear of every breakpoint; up to %d "
 		       "crossings that are\n"
@@ -162,9 +178,48 @@ void banner_regions(const struct emitter *e)
 		    MOST_SWIFT, e->step->swift_degree);
 	else
 		say(e, " * Every step goes by the search: %s.\n", e->step->searches);
-	say(e, " * The poles above are those of the terms that are linear everywhere.\n"
-	       " * A region's number is the sum of its intervals, "
-	       "each times the product of the numbers of intervals before it.\n");
+	banner_region_number(e);
+}
+
+static void banner_part(const struct emitter *e, int index)
+{
+	const struct step *part = e->step->part[index];
+	const struct switching *s = part->model->switching;
+	const int *expression = e->model->switching->part[index].expression;
+	const char *text = format("part %d:", index), *divides = "";
+	for (int i = 0; i < part->model->n; i++)
+		text = format("%s%s %s", text, i ? "," : "", part->model->coord_name[i]);
+	for (int i = 0; i < s->expressions; i++)
+		divides = format("%s%s %d", divides, i ? "," : "", expression[i]);
+	if (s->expressions == 0)
+		say(e, " *     %s; linear\n", text);
+	else
+		say(e, " *     %s; expression%s%s; %d regions, %d different%s\n", text, s->expressions > 1 ? "s" : "",
+		    divides, possible_regions(s), s->systems,
+		    part->swift ? format("; polynomials of degree %d", part->swift_degree)
+				: format("; every step goes by the search: %s", part->searches));
+}
+
+/* Of independent parts */
+void banner_parts(const struct emitter *e)
+{
+	bool swift = false;
+	say(e, " * Scheme exact: nothing is approximated. The equations are piecewise linear, in %d independent parts, "
+	       "each with\n"
+	       " * regions and crossings of its own: in each region every constant is its closed form, correctly "
+	       "rounded;\n"
+	       " * crossings inside a step are found in order, to rounding.\n", e->step->parts);
+	banner_expressions(e);
+	for (int p = 0; p < e->step->parts; p++) {
+		banner_part(e, p);
+		swift = swift || e->step->part[p]->swift;
+	}
+	if (swift)
+		say(e, " * A step of a part is one product where a bound shows it clear of every breakpoint; up to %d "
+		       "crossings that\n"
+		       " * are certain go by the part's own Taylor polynomials; all else by the search.\n",
+		    MOST_SWIFT);
+	banner_region_number(e);
 }
 
 static void banner_irrationals(const struct emitter *e)

@@ -61,7 +61,8 @@ static struct emitter emitter_new(FILE *to, const struct step *step, const char 
 	struct emitter e = {
 		.to = to, .step = step, .kind = row_of_kind(step->kind), .model = step->model,
 		.system = &step->branch->system, .options = options, .name = step->model->name,
-		.upper = upper_case(step->model->name)
+		.upper = upper_case(step->model->name), .own = step->model->name, .place = "",
+		.degree = step->model->name
 	};
 	number_loads(&e);
 	for (int i = 0; i < e.system->inputs; i++)

@@ -14,6 +14,10 @@ struct emitter {
 	const struct model *model;
 	const struct linear *system;
 	const char *name, *upper;   /* scs, SCS */
+	/* of independent parts of a piecewise-linear model the one that is printed; NULL: none */
+	const struct region_part *part;
+	const char *own, *place;    /* what its names begin with, scs_part1, its index, [1]; else the name, nothing */
+	const char *degree;         /* the first part's whose polynomials are of its degree */
 	const char *options;
 	struct identifiers *c;      /* of every symbol */
 	const char **local;         /* per state: the C local that holds it */
@@ -27,7 +31,8 @@ struct emitter {
 	bool at_node;               /* load states are those at `node` of the step, not at its start; */
 	const char *after;          /* those this long after now [s]; NULL: not so */
 };
-/* The only writer: a printf format in which $n is the model's name and $N the same in capitals, $$ a dollar. */
+/* The only writer: a printf format in which $n is the model's name and $N the same in capitals, $o and $p a part's own
+ * name and place, $d that of the first part of its degree, $$ a dollar. */
 void say(const struct emitter *e, const char *layout, ...) __attribute__((format(printf, 2, 3)));
 /* the same as text */
 const char *spell(const struct emitter *e, const char *layout, ...) __attribute__((format(printf, 2, 3)));
@@ -84,6 +89,11 @@ void emit_locals(const struct emitter *e, const bool *reads);     /* the states 
 /* as kept: of kick-drift-kick, momenta */
 void emit_raw_locals(const struct emitter *e, const bool *reads, bool changing);
 void emit_locals_of(const struct emitter *e, const bool *reads, const char *vector);
+/* of a part, in the model: a state of it, an input; how many states it has; state i in a loop, as text */
+int place_of_state(const struct emitter *e, int state);
+int place_of_input(const struct emitter *e, int input);
+const char *own_states(const struct emitter *e);
+const char *place_in_loop(const struct emitter *e);
 const char *step_length(const struct emitter *e);                 /* NAME_H; of tunable models that of the instance s */
 const char *slope_of_samples(const struct emitter *e, const char *to, const char *from); /* samples a step apart */
 const char *ramp_slope(const struct emitter *e, int input);       /* of an input that ramps to u over the step */
@@ -252,6 +262,7 @@ void emit_banner(const struct emitter *e);
 void banner_linear(const struct emitter *e);                      /* what is approximated, of each kind */
 void banner_leftover(const struct emitter *e);
 void banner_regions(const struct emitter *e);
+void banner_parts(const struct emitter *e);
 void banner_expanded(const struct emitter *e);
 void emit_declarations(const struct emitter *e, bool rhs);
 
@@ -299,6 +310,7 @@ struct region_tables of_branch(struct region_tables t, int branch);
 double *whole_of(const struct region_piece *piece);               /* for `of`: e^{A h} */
 bool acts_at(const struct region_tables *t, int row, int column); /* an entry is not 0 everywhere */
 bool agree_at(const struct region_tables *t, int row, int column);
+bool is_table(const struct region_tables *t);                     /* else all its entries are numbers in the text */
 /* Sum of a row over the operands of its columns; further: a term more, or NULL */
 const char *row_text(const struct region_tables *t, int row, const char *const *operand, const char *further,
 		     int indent);
@@ -378,7 +390,22 @@ void emit_region_members(const struct emitter *e);
 void emit_region_start(const struct emitter *e);                  /* in set */
 void emit_region_step(const struct emitter *e);
 void emit_region_at(const struct emitter *e);
+/* of a part as of the whole: x from the state, in a step or at its start; its declaration, and room to work in; from
+ * x, into the state; the same apart, where a step is swift */
+void emit_region_vector(const struct emitter *e, bool step);
+void declare_region_room(const struct emitter *e);
+void emit_search(const struct emitter *e);
+void emit_region_search(const struct emitter *e);
+void emit_region_status(const struct emitter *e);
+/* emit_parts.c: of independent parts, each as it would be alone */
+void emit_part_tables(const struct emitter *e);
+void emit_part_declarations(const struct emitter *e);
+void emit_part_members(const struct emitter *e);
+void emit_part_start(const struct emitter *e);
+void emit_parts_step(const struct emitter *e);
+void emit_parts_at(const struct emitter *e);
 /* emit_cross.c, emit_clear.c: of a step that is swift */
+void emit_crossing_scalars(const struct emitter *e);              /* what depends on no table: once, before those */
 void emit_crossing(const struct emitter *e);                      /* NAME_cross and what it calls */
 void emit_clear_step(const struct emitter *e);                    /* states and loads are in locals */
 /* Of models with tunable params: */

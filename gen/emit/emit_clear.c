@@ -17,9 +17,10 @@ static const char **operands(const struct emitter *e)
 				text[layout->load[l] + k] = load_operand(e, l, k);
 	for (int i = 0; i < e->system->inputs; i++) {
 		bool ramp = e->system->input[i].hold;
-		text[layout->input[i]] = format(ramp ? "s->u[%d]" : "u[%d]", i);
+		int of = place_of_input(e, i);
+		text[layout->input[i]] = format(ramp ? "s->u[%d]" : "u[%d]", of);
 		if (ramp)
-			text[layout->input[i] + 1] = format("part%d", i);
+			text[layout->input[i] + 1] = format("part%d", of);
 	}
 	return text;
 }
@@ -33,13 +34,6 @@ static bool is_read_at_end(const struct pieces *p, int size, int expressions, in
 }
 
 /* ---- by tables of all regions, or region by region ---- */
-
-static bool goes_by_tables(const struct emitter *e)
-{
-	enum { TERMS = 200 };
-	const struct layout *layout = &e->step->layout;
-	return possible_regions(e->model->switching) * layout->states * layout->size > TERMS;
-}
 
 static void emit_ends(const struct emitter *e, const struct pieces *p, const struct region_tables *whole,
 		      const char *const *x, const char *before)
@@ -70,16 +64,16 @@ static void emit_chords(const struct emitter *e, const struct pieces *p, const c
 	}
 	say(e, "    if (");
 	for (int i = 0; i < expressions_of(e); i++)
-		say(e, "(from%d < to%d ? from%d : to%d) - off%d > $n_within[s->contact.region][%d][0] &&\n"
-		       "        (from%d > to%d ? from%d : to%d) + off%d < $n_within[s->contact.region][%d][1] &&\n"
+		say(e, "(from%d < to%d ? from%d : to%d) - off%d > $o_within[s->contact$p.region][%d][0] &&\n"
+		       "        (from%d > to%d ? from%d : to%d) + off%d < $o_within[s->contact$p.region][%d][1] &&\n"
 		       "        ", i, i, i, i, i, i, i, i, i, i, i, i);
 }
 
 static void emit_table_step(const struct emitter *e, const struct pieces *p, const char *const *x)
 {
 	struct region_tables whole = tables_of_regions(e, p, "factor", e->step->layout.size, whole_of);
-	say(e, "    const int which = s->contact.matrix;\n"
-	       "    const double (*const factor)[%d] = $n_%s[which];\n", e->step->layout.size,
+	say(e, "    const int which = s->contact$p.matrix;\n"
+	       "    const double (*const factor)[%d] = $o_%s[which];\n", e->step->layout.size,
 	    any_pieces(e) ? "whole" : "pieces");
 	emit_ends(e, p, &whole, x, "const double ");
 	emit_chords(e, p, x);
@@ -160,7 +154,7 @@ static void emit_cases(const struct emitter *e, const struct pieces *p, const ch
 	}
 	say(e, "    double %s;\n"
 	       "    int clear = 0;\n"
-	       "    switch (s->contact.region) {\n", list);
+	       "    switch (s->contact$p.region) {\n", list);
 	for (int r = 0; r < s->regions; r++)
 		if (s->region[r].possible)
 			emit_region_case(e, p, x, r);
@@ -175,22 +169,24 @@ void emit_clear_step(const struct emitter *e)
 	struct pieces pieces = pieces_of(e->step);
 	const struct layout *layout = &e->step->layout;
 	const char **x = operands(e);
-	for (int i = 0; i < e->system->inputs; i++)
+	for (int i = 0; i < e->system->inputs; i++) {
+		int of = place_of_input(e, i);
 		if (e->system->input[i].hold)
-			say(e, "    const double part%d = (u[%d] - s->u[%d]) / $N_H;  /* its slope */\n", i, i, i);
-	if (goes_by_tables(e))
+			say(e, "    const double part%d = (u[%d] - s->u[%d]) / $N_H;  /* its slope */\n", of, of, of);
+	}
+	if (is_cleared_by_tables(e->step))
 		emit_table_step(e, &pieces, x);
 	else
 		emit_cases(e, &pieces, x);
 	say(e, "%s < %s) {\n", size_of_x(e, &pieces, magnitudes(e, x), 12), shortest(pieces.large));
 	for (int i = 0; i < e->system->states; i++)
-		say(e, "        s->y[%d] = end%d;\n", i, i);
-	say(e, "        s->contact.crossings = 0;\n"
+		say(e, "        s->y[%d] = end%d;\n", place_of_state(e, i), i);
+	say(e, "        s->contact$p.crossings = 0;\n"
 	       "    } else {\n"
 	       "        double now[%d];\n", layout->size);
 	for (int j = 0; j < layout->size; j++)
 		say(e, "        now[%d] = %s;\n", j, *x[j] ? x[j] : "1.0");
-	say(e, "        if (!$n_cross(s, now))\n"
-	       "            $n_seek(s, now);\n"
+	say(e, "        if (!$o_cross(s, now))\n"
+	       "            $o_seek(s, now);\n"
 	       "    }\n");
 }

@@ -9,8 +9,155 @@
  * of (e - b)/s in the place of e - b, whose third derivative is at most a quarter of the fourth of e. */
 #include "emit/emit.h"
 
+#include <string.h>
+
 static double *turn_of(const struct region_piece *piece)  { return piece->turn; }
 static double *turns_of(const struct region_piece *piece) { return piece->turns; }
+
+/* ---- what depends on no table: one for all parts ---- */
+
+static void emit_remarks(const struct emitter *e)
+{
+	say(e, "\n"
+	       "/* What is passed in a step, where that is certain, and little.  Times are in parts of h.\n"
+	       " *   sizes, most      sums with |x|; most: of a bound, where what is never above 1 stands once\n"
+	       " *   bounds           how far each expression is off its chord over h or less, at most\n"
+	       " *   noise            what rounding may do to expression i beside b; 8 DBL_EPSILON as in the search\n"
+	       " *   slope            h e' of expression i\n"
+	       " *   advance          e^{A h} x\n"
+	       " *   turn_once, move  h A x; gain = e^{A h s} x - x, by its Taylor polynomial\n"
+	       " *   keeps            whether expression i certainly keeps off the ends of its interval over h times\n"
+	       " *                    `rest`, from x to end: by its chord, then by its cubic, which is within its\n"
+	       " *                    Bezier points.  behind: the end it comes from, or -1; it keeps off that one, b,\n"
+	       " *                    where (e - b)/s does not come to 0\n");
+	say(e, " *   meets            whether it surely meets the lower or the upper end at y, after h times z, and\n"
+	       " *                    none before; and passes it by more than rounding before h times `rest`\n"
+	       " *   guess            about where it is b, from x to end over h times `rest`; back: it comes from b\n"
+	       " *   reach            moves x on to y, where it is b, near h times z; returns z.  From what is gained\n"
+	       " *                    since x: of e - b itself more is lost\n"
+	       " *   next             the first crossing: 1, and moves on to it; 0: there is none in this length; -1:\n"
+	       " *                    that is not certain, and may be so of less; -2: nor of less\n"
+	       " *   cross            s over h: 1.  Else 0, and nothing has changed. */\n");
+}
+
+static void emit_stretch(const struct emitter *e)
+{
+	say(e, "typedef struct $n_stretch {  /* of a step, in one region */\n"
+	       "    double done, rest, length;   /* before it, to the end of the step; looked at */\n"
+	       "    int region, which;\n"
+	       "    int passed, behind;          /* expression that comes from an end of its interval; which end */\n"
+	       "} $n_stretch;\n"
+	       "\n"
+	       "static void $n_next_stretch($n_stretch *p, double gone, int region, int which, int passed,\n"
+	       "                            int behind)\n"
+	       "{\n"
+	       "    p->done += gone;\n"
+	       "    p->rest = p->length = 1.0 - p->done;\n"
+	       "    p->region = region;\n"
+	       "    p->which = which;\n"
+	       "    p->passed = passed;\n"
+	       "    p->behind = behind;\n"
+	       "}\n");
+	say(e, "\n"
+	       "static void $n_accept(pl_contact *contact, pl_crossing *into, const $n_stretch *last,\n"
+	       "                      const pl_crossing *crossing, int count)\n"
+	       "{\n"
+	       "    int i;\n"
+	       "    for (i = 0; i < count; i++)\n"
+	       "        into[i] = crossing[i];\n"
+	       "    contact->crossings = count;\n"
+	       "    contact->total += (uint64_t)count;\n"
+	       "    contact->region = last->region;\n"
+	       "    contact->matrix = last->which;\n"
+	       "}\n"
+	       "\n"
+	       "/* Whether what goes from `from` to `to`, by at most `off` aside, is between low and high */\n"
+	       "static int $n_between(double low, double high, double from, double to, double off)\n"
+	       "{\n"
+	       "    return (from < to ? from : to) - off > low && (from < to ? to : from) + off < high;\n"
+	       "}\n");
+}
+
+static void emit_passes(const struct emitter *e)
+{
+	say(e, "\n"
+	       "/* Whether what comes to b at z, to `noise`, certainly was not there before, nor at the other end,\n"
+	       " * far, of its interval; and is beyond b by more than noise before `rest`.  leaving, slope: its\n"
+	       " * derivatives at 0 and z, up or down as it goes there; more: what its slope may be off those of the\n"
+	       " * chord; off: at most off its own chord over h; behind: it comes from an end, back: from b */\n"
+	       "static int $n_passes(double sign, double from, double b, double far, double leaving, double slope,\n"
+	       "                     double noise, double more, double z, double rest, double off, int behind,\n"
+	       "                     int back)\n"
+	       "{\n"
+	       "    if (!(z > 0.0 && z < rest))\n"
+	       "        return 0;\n"
+	       "    if (!((rest - z) * slope > 2.0 * noise && slope * slope > 16.0 * off * noise))\n"
+	       "        return 0;\n");
+	say(e, "    if (back)\n"
+	       "        return slope > noise + more && -leaving > noise + more &&\n"
+	       "               sign * (b - far) - z * z * off > 0.0;\n"
+	       "    if (!(slope > noise + more && sign * (b - from) > noise + z * more))\n"
+	       "        return 0;\n"
+	       "    if (behind)\n"
+	       "        return leaving > noise + more && sign * (b - far) > noise + z * more;\n"
+	       "    return sign * (from - far) - z * z * off > 0.0;\n"
+	       "}\n");
+}
+
+static void emit_zeros(const struct emitter *e)
+{
+	say(e, "\n"
+	       "/* About where in 0 .. 1 the cubic with these values and slopes at its ends is 0, no more than a\n"
+	       " * guess.  back: it is 0 at the start, and comes back */\n"
+	       "static double $n_cubic_zero(double from, double to, double leaving, double arriving, int back)\n"
+	       "{\n"
+	       "    const double rise = to - from;\n"
+	       "    double c0 = from, c1 = leaving, c2 = 3.0 * rise - 2.0 * leaving - arriving;\n"
+	       "    double c3 = leaving + arriving - 2.0 * rise, low = 0.0, high = 1.0, t = -from / rise;\n"
+	       "    int k;\n"
+	       "    if (!back && leaving > 0.25 * rise && arriving > 0.25 * rise) {  /* that of the inverse */\n"
+	       "        const double u = 1.0 - t;\n"
+	       "        return t * (t * (3.0 - 2.0 * t) + u * (u * (rise / leaving) - t * (rise / arriving)));\n"
+	       "    }\n"
+	       "    if (back) {\n"
+	       "        c0 = c1;\n"
+	       "        c1 = c2;\n"
+	       "        c2 = c3;\n"
+	       "        c3 = 0.0;\n"
+	       "        t = 0.5;\n"
+	       "    }\n");
+	say(e, "    for (k = 0; k < 12; k++) {\n"
+	       "        const double at = c0 + t * (c1 + t * (c2 + t * c3)), last = t;\n"
+	       "        if (at > 0.0)\n"
+	       "            high = t;\n"
+	       "        else\n"
+	       "            low = t;\n"
+	       "        t -= at / (c1 + t * (2.0 * c2 + t * (3.0 * c3)));\n"
+	       "        if (!(t > low && t < high))\n"
+	       "            t = 0.5 * (low + high);\n"
+	       "        if (pl_magnitude(t - last) < 1e-5)\n"
+	       "            break;\n"
+	       "    }\n"
+	       "    return t;\n"
+	       "}\n"
+	       "\n"
+	       "/* How far on it is to where an expression has gained so much, by the inverse series of the\n"
+	       " * polynomial of these derivatives */\n"
+	       "static double $n_inverse(double gain, double slope, double bend, double turn)\n"
+	       "{\n"
+	       "    const double w = 1.0 / slope, second = 0.5 * w * bend, third = 0.16666666666666666 * w * turn;\n"
+	       "    const double z = w * gain;\n"
+	       "    return z * (1.0 - z * (second - z * (2.0 * second * second - third)));\n"
+	       "}\n");
+}
+
+void emit_crossing_scalars(const struct emitter *e)
+{
+	emit_remarks(e);
+	emit_stretch(e);
+	emit_passes(e);
+	emit_zeros(e);
+}
 
 /* ---- expressions, bounds ---- */
 
@@ -18,13 +165,13 @@ static void emit_expression(const struct emitter *e, const struct pieces *p)
 {
 	int size = e->step->layout.size, n = expressions_of(e);
 	say(e, "\n"
-	       "static double $n_expression(int i, const double x[%d])\n"
+	       "static double $o_expression(int i, const double x[%d])\n"
 	       "{\n", size);
 	if (n == 1) {
 		say(e, "    (void)i;\n"
 		       "    return %s;\n", expression_text(e, p, 0, places(e, "x[%d]"), 11));
 	} else {
-		struct region_tables rows = { spell(e, "$n_row"), n, size, 0, 0, NULL };
+		struct region_tables rows = { spell(e, "$o_row"), n, size, 0, 0, NULL };
 		const char **term = ARRAY(const char *, (size_t)size);
 		int terms = 0;
 		for (int j = 0; j < size; j++) {
@@ -50,7 +197,7 @@ static void emit_product(const struct emitter *e, const char *name, const char *
 			term[terms++] = *what[j] ? format("row[%d] * %s", j, what[j]) : format("row[%d]", j);
 			any = any || *what[j];
 		}
-	say(e, "static double $n_%s(const double row[%d], const double x[%d])\n"
+	say(e, "static double $o_%s(const double row[%d], const double x[%d])\n"
 	       "{\n"
 	       "%s%s"
 	       "    return %s;\n"
@@ -80,8 +227,7 @@ static void emit_products(const struct emitter *e, const struct pieces *p)
 		if (p->bounded[j])
 			most[j] = "";
 	}
-	say(e, "\n"
-	       "/* Of a bound: what is never above 1 stands in one place */\n");
+	say(e, "\n");
 	emit_product(e, "most", most, all);
 }
 
@@ -91,26 +237,25 @@ static void emit_bounds(const struct emitter *e, const struct pieces *p)
 	int n = expressions_of(e), size = e->step->layout.size;
 	const char **magnitude = entries(e, "pl_magnitude(x[%d])");
 	say(e, "\n"
-	       "/* How far each expression is off its chord over h or less, at most */\n"
-	       "static void $n_bounds(int which, const double x[%d], double off[%d])\n"
+	       "static void $o_bounds(int which, const double x[%d], double off[%d])\n"
 	       "{\n", size, n);
 	for (int i = 0; i < n; i++)
-		say(e, "    off[%d] = %s;\n", i, off_text(e, p, -1, i, magnitude, 13));
-	say(e, "    (void)which;\n"
-	       "    (void)x;\n"
+		say(e, "    off[%d] = %s;\n", i,
+		    any_pieces(e) ? off_text(e, p, -1, i, magnitude, 13)
+				  : spell(e, "$o_sizes($o_sag[which][%d], x)", i));
+	say(e, "%s"
 	       "}\n"
 	       "\n"
-	       "/* What rounding may do to expression i beside b; 8 DBL_EPSILON, as in the search */\n"
-	       "static double $n_noise(int which, int i, double b, const double x[%d])\n"
+	       "static double $o_noise(int which, int i, double b, const double x[%d])\n"
 	       "{\n"
-	       "    return $n_most($n_slack[which][i], x) + 1.7763568394002505e-15 * pl_magnitude(b);\n"
+	       "    return $o_most($o_slack[which][i], x) + 1.7763568394002505e-15 * pl_magnitude(b);\n"
 	       "}\n"
 	       "\n"
-	       "/* h e' of expression i */\n"
-	       "static double $n_slope(int which, int i, const double x[%d])\n"
+	       "static double $o_slope(int which, int i, const double x[%d])\n"
 	       "{\n"
-	       "    return 3.0 * $n_along($n_%slean[which][i], x);\n"
-	       "}\n", size, size, any_pieces(e) ? "whole_" : "");
+	       "    return 3.0 * $o_along($o_%slean[which][i], x);\n"
+	       "}\n", any_pieces(e) ? "    (void)which;\n    (void)x;\n" : "", size, size,
+	    any_pieces(e) ? "whole_" : "");
 }
 
 /* ---- x(s) ---- */
@@ -122,15 +267,13 @@ static void emit_whole(const struct emitter *e, const struct pieces *p)
 	struct region_tables whole = tables_of_regions(e, p, "factor", size, whole_of);
 	const char **x = entries(e, "x[%d]");
 	say(e, "\n"
-	       "/* e^{A h} x */\n"
-	       "static void $n_advance(int which, const double x[%d], double end[%d])\n"
+	       "static void $o_advance(int which, const double x[%d], double end[%d])\n"
 	       "{\n"
-	       "    const double (*const factor)[%d] = $n_%s[which];\n",
+	       "    const double (*const factor)[%d] = $o_%s[which];\n",
 	    size, size, size, any_pieces(e) ? "whole" : "pieces");
 	for (int i = 0; i < size; i++)
 		say(e, "    end[%d] = %s;\n", i, row_text(&whole, i, x, NULL, 13));
-	say(e, "    (void)factor;\n"
-	       "}\n");
+	say(e, is_table(&whole) ? "}\n" : "    (void)factor;\n}\n");
 }
 
 static bool moves(const struct region_tables *t, int row)
@@ -144,11 +287,15 @@ static bool moves(const struct region_tables *t, int row)
 /* Entries of h A that differ from matrix to matrix: locals, and their text */
 static void emit_turns(const struct emitter *e, const struct region_tables *t)
 {
+	bool any = false;
 	for (int i = 0; i < t->rows; i++)
 		for (int j = 0; j < t->columns; j++)
-			if (acts_at(t, i, j) && !agree_at(t, i, j))
-				say(e, "    const double h%d_%d = $N_H * $n_slopes[which][%d][%d];\n", i, j, i, j);
-	say(e, "    (void)which;\n");
+			if (acts_at(t, i, j) && !agree_at(t, i, j)) {
+				say(e, "    const double h%d_%d = $N_H * $o_slopes[which][%d][%d];\n", i, j, i, j);
+				any = true;
+			}
+	if (!any)
+		say(e, "    (void)which;\n");
 }
 
 static const char *turn_times(const struct region_tables *t, int i, int j, const char *operand)
@@ -182,8 +329,7 @@ static void emit_turn(const struct emitter *e, const struct region_tables *t)
 {
 	int size = e->step->layout.size;
 	say(e, "\n"
-	       "/* h A x */\n"
-	       "static void $n_turn_once(int which, const double x[%d], double d[%d])\n"
+	       "static void $o_turn_once(int which, const double x[%d], double d[%d])\n"
 	       "{\n", size, size);
 	emit_turns(e, t);
 	for (int i = 0; i < size; i++)
@@ -194,7 +340,7 @@ static void emit_turn(const struct emitter *e, const struct region_tables *t)
 static void emit_weights(const struct emitter *e, const struct pieces *p)
 {
 	say(e, "\n"
-	       "static const double $n_weight[%d] = {  /* 1/k! */\n"
+	       "static const double $d_weight[%d] = {  /* 1/k! */\n"
 	       "    1.0", p->degree + 1);
 	for (int k = 1; k <= p->degree; k++)
 		say(e, "%s%s", k % 4 ? ", " : ",\n    ", shortest(p->weight[k]));
@@ -207,8 +353,7 @@ static void emit_move(const struct emitter *e, const struct pieces *p, const str
 {
 	int size = e->step->layout.size;
 	say(e, "\n"
-	       "/* gain = e^{A h s} x - x, by its Taylor polynomial */\n"
-	       "static void $n_move(int which, const double x[%d], double s, double gain[%d])\n"
+	       "static void $o_move(int which, const double x[%d], double s, double gain[%d])\n"
 	       "{\n"
 	       "    double power = s;\n"
 	       "    int k;\n", size, size);
@@ -222,7 +367,7 @@ static void emit_move(const struct emitter *e, const struct pieces *p, const str
 			say(e, "        const double b%d = %s;\n", i, turned_row(e, t, i, "a%d", false));
 	say(e, "        double weight;\n"
 	       "        power *= s;\n"
-	       "        weight = power * $n_weight[k];\n");
+	       "        weight = power * $d_weight[k];\n");
 	for (int i = 0; i < size; i++)
 		if (moves(t, i))
 			say(e, "        a%d = b%d;\n"
@@ -240,35 +385,28 @@ static void emit_keeps(const struct emitter *e)
 	int size = e->step->layout.size;
 	const char *whole = any_pieces(e) ? "whole_" : "";
 	say(e, "\n"
-	       "/* Whether expression i certainly keeps off the ends of its interval over h times `rest`, from x\n"
-	       " * to end: by its chord, then by its cubic, which is within its Bezier points.  behind: the end it\n"
-	       " * comes from, or -1; it keeps off that one, b, where (e - b)/s does not come to 0. */\n"
-	       "static int $n_keeps(int region, int which, int i, int behind, const double x[%d],\n"
+	       "static int $o_keeps(int region, int which, int i, int behind, const double x[%d],\n"
 	       "                    const double end[%d], double rest, double off)\n"
 	       "{\n"
-	       "    const double from = $n_expression(i, x), to = $n_expression(i, end), two = rest * rest;\n"
-	       "    double low = $n_within[region][i][0], high = $n_within[region][i][1], more, less, sway;\n",
+	       "    const double from = $o_expression(i, x), to = $o_expression(i, end), two = rest * rest;\n"
+	       "    double low = $o_within[region][i][0], high = $o_within[region][i][1], sway;\n",
 	    size, size);
 	say(e, "    if (behind >= 0) {\n"
 	       "        const double sign = behind ? -1.0 : 1.0, b = behind ? high : low;\n"
-	       "        const double noise = $n_noise(which, i, b, x), jerk = two * $n_most($n_jerk[which][i], x);\n"
-	       "        if (!(sign * $n_slope(which, i, x) > noise + jerk && sign * (to - b) > noise + rest * jerk))\n"
+	       "        const double noise = $o_noise(which, i, b, x), jerk = two * $o_most($o_jerk[which][i], x);\n"
+	       "        if (!(sign * $o_slope(which, i, x) > noise + jerk && sign * (to - b) > noise + rest * jerk))\n"
 	       "            return 0;\n"
 	       "        if (behind)\n"
 	       "            high = %s;\n"
 	       "        else\n"
 	       "            low = -%s;\n"
 	       "    }\n", shortest(OPEN_END), shortest(OPEN_END));
-	say(e, "    less = from < to ? from : to;\n"
-	       "    more = from < to ? to : from;\n"
-	       "    if (less - two * off > low && more + two * off < high)\n"
+	say(e, "    if ($n_between(low, high, from, to, two * off))\n"
 	       "        return 1;\n"
-	       "    sway = two * two * $n_sizes($n_%ssway[which][i], x);\n"
-	       "    if (!(less - sway > low && more + sway < high))\n"
-	       "        return 0;\n"
-	       "    less = from + rest * $n_along($n_%slean[which][i], x);\n"
-	       "    more = to - rest * $n_along($n_%slean[which][i], end);\n"
-	       "    return (less < more ? less : more) - sway > low && (less < more ? more : less) + sway < high;\n"
+	       "    sway = two * two * $o_sizes($o_%ssway[which][i], x);\n"
+	       "    return $n_between(low, high, from, to, sway) &&\n"
+	       "           $n_between(low, high, from + rest * $o_along($o_%slean[which][i], x),\n"
+	       "                      to - rest * $o_along($o_%slean[which][i], end), sway);\n"
 	       "}\n", whole, whole, whole);
 }
 
@@ -276,32 +414,18 @@ static void emit_first(const struct emitter *e)
 {
 	int size = e->step->layout.size;
 	say(e, "\n"
-	       "/* Whether expression i, from x, certainly meets the lower or the upper end of its interval at y,\n"
-	       " * after h times z, and none before; and passes it by more than rounding before h times `rest`.\n"
-	       " * behind: as above */\n"
-	       "static int $n_meets(int region, int which, int i, int up, int behind, const double x[%d],\n"
+	       "static int $o_meets(int region, int which, int i, int up, int behind, const double x[%d],\n"
 	       "                    const double y[%d], double z, double rest, double off)\n"
 	       "{\n"
-	       "    const double sign = up ? 1.0 : -1.0, b = $n_within[region][i][up], far = "
-	       "$n_within[region][i][!up];\n"
-	       "    const double from = $n_expression(i, x), leaving = sign * $n_slope(which, i, x);\n"
-	       "    const double slope = sign * $n_slope(which, i, y), noise = $n_noise(which, i, b, x), zz = z * z;\n"
-	       "    double jerk;\n"
-	       "    if (!(z > 0.0 && z < rest && pl_magnitude($n_expression(i, y) - b) <= noise))\n"
-	       "        return 0;\n"
-	       "    if (!((rest - z) * slope > 2.0 * noise && slope * slope > 16.0 * off * noise))\n"
-	       "        return 0;\n", size, size);
-	say(e, "    if (behind == up) {\n"
-	       "        const double sway = noise + 4.0 * z * zz * $n_sizes($n_%ssway[which][i], x);\n"
-	       "        return slope > sway && -leaving > sway && sign * (b - far) - zz * off > 0.0;\n"
-	       "    }\n"
-	       "    jerk = zz * $n_most($n_jerk[which][i], x);\n"
-	       "    if (!(slope > noise + jerk && sign * (b - from) > noise + z * jerk))\n"
-	       "        return 0;\n"
-	       "    if (behind >= 0)\n"
-	       "        return leaving > noise + jerk && sign * (b - far) > noise + z * jerk;\n"
-	       "    return sign * (from - far) - zz * off > 0.0;\n"
-	       "}\n", any_pieces(e) ? "whole_" : "");
+	       "    const double sign = up ? 1.0 : -1.0, b = $o_within[region][i][up];\n"
+	       "    const double noise = $o_noise(which, i, b, x), zz = z * z;\n"
+	       "    const double more = behind == up ? 4.0 * z * zz * $o_sizes($o_%ssway[which][i], x)\n"
+	       "                                     : zz * $o_most($o_jerk[which][i], x);\n"
+	       "    return pl_magnitude($o_expression(i, y) - b) <= noise &&\n"
+	       "           $n_passes(sign, $o_expression(i, x), b, $o_within[region][i][!up],\n"
+	       "                     sign * $o_slope(which, i, x), sign * $o_slope(which, i, y), noise, more, z,\n"
+	       "                     rest, off, behind >= 0, behind == up);\n"
+	       "}\n", size, size, any_pieces(e) ? "whole_" : "");
 }
 
 /* ---- where it is ---- */
@@ -310,69 +434,34 @@ static void emit_guess(const struct emitter *e)
 {
 	int size = e->step->layout.size;
 	say(e, "\n"
-	       "/* About where expression i is b, on its way from x to end over h times `rest`: by the cubic of its\n"
-	       " * values and slopes there.  back: it comes from b.  No more than a guess */\n"
-	       "static double $n_guess(int which, int i, double sign, double b, int back, const double x[%d],\n"
+	       "static double $o_guess(int which, int i, double sign, double b, int back, const double x[%d],\n"
 	       "                       const double end[%d], double rest)\n"
 	       "{\n"
-	       "    const double from = sign * ($n_expression(i, x) - b), to = sign * ($n_expression(i, end) - b);\n"
-	       "    const double leaving = sign * rest * $n_slope(which, i, x), rise = to - from;\n"
-	       "    const double arriving = sign * rest * $n_slope(which, i, end);\n"
-	       "    double c0 = from, c1 = leaving, c2 = 3.0 * rise - 2.0 * leaving - arriving;\n"
-	       "    double c3 = leaving + arriving - 2.0 * rise, low = 0.0, high = 1.0, t = -from / rise;\n"
-	       "    int k;\n", size, size);
-	say(e, "    if (!back && leaving > 0.25 * rise && arriving > 0.25 * rise) {  /* that of the inverse */\n"
-	       "        const double u = 1.0 - t;\n"
-	       "        return rest * t * (t * (3.0 - 2.0 * t) + u * (u * (rise / leaving) - t * (rise / arriving)));\n"
-	       "    }\n"
-	       "    if (back) {\n"
-	       "        c0 = c1;\n"
-	       "        c1 = c2;\n"
-	       "        c2 = c3;\n"
-	       "        c3 = 0.0;\n"
-	       "        t = 0.5;\n"
-	       "    }\n"
-	       "    for (k = 0; k < 12; k++) {\n"
-	       "        const double at = c0 + t * (c1 + t * (c2 + t * c3)), last = t;\n"
-	       "        if (at > 0.0)\n"
-	       "            high = t;\n"
-	       "        else\n"
-	       "            low = t;\n"
-	       "        t -= at / (c1 + t * (2.0 * c2 + t * (3.0 * c3)));\n"
-	       "        if (!(t > low && t < high))\n"
-	       "            t = 0.5 * (low + high);\n"
-	       "        if (pl_magnitude(t - last) < 1e-5)\n"
-	       "            break;\n"
-	       "    }\n"
-	       "    return rest * t;\n"
-	       "}\n");
+	       "    return rest * $n_cubic_zero(sign * ($o_expression(i, x) - b), sign * ($o_expression(i, end) - b),\n"
+	       "                                sign * rest * $o_slope(which, i, x),\n"
+	       "                                sign * rest * $o_slope(which, i, end), back);\n"
+	       "}\n", size, size);
 }
 
 static void emit_reach(const struct emitter *e)
 {
 	int size = e->step->layout.size;
 	say(e, "\n"
-	       "/* Moves x on to y, where expression i is b, near h times z; returns z.  By the inverse series of its "
-	       "third-order\n"
-	       " * polynomial, and from what is gained since x: of e - b itself more is lost */\n"
-	       "static double $n_reach(int which, int i, double b, const double x[%d], double z, double y[%d])\n"
+	       "static double $o_reach(int which, int i, double b, const double x[%d], double z, double y[%d])\n"
 	       "{\n"
 	       "    double d[3][%d], gain[%d];\n"
-	       "    const double far = b - $n_expression(i, x);\n"
+	       "    const double far = b - $o_expression(i, x);\n"
 	       "    int j, k;\n"
-	       "    $n_move(which, x, z, gain);\n"
+	       "    $o_move(which, x, z, gain);\n"
 	       "    for (k = 0; k < 4; k++) {\n"
-	       "        double w, second, third, step;\n"
+	       "        double step;\n"
 	       "        for (j = 0; j < %d; j++)\n"
 	       "            y[j] = x[j] + gain[j];\n"
-	       "        $n_turn_once(which, y, d[0]);\n"
-	       "        $n_turn_once(which, d[0], d[1]);\n"
-	       "        $n_turn_once(which, d[1], d[2]);\n"
-	       "        w = 1.0 / $n_expression(i, d[0]);\n"
-	       "        second = 0.5 * w * $n_expression(i, d[1]);\n"
-	       "        third = 0.16666666666666666 * w * $n_expression(i, d[2]);\n"
-	       "        w *= far - $n_expression(i, gain);\n"
-	       "        step = w * (1.0 - w * (second - w * (2.0 * second * second - third)));\n"
+	       "        $o_turn_once(which, y, d[0]);\n"
+	       "        $o_turn_once(which, d[0], d[1]);\n"
+	       "        $o_turn_once(which, d[1], d[2]);\n"
+	       "        step = $n_inverse(far - $o_expression(i, gain), $o_expression(i, d[0]),\n"
+	       "                          $o_expression(i, d[1]), $o_expression(i, d[2]));\n"
 	       "        z += step;\n", size, size, size, size, size);
 	say(e, "        if (pl_magnitude(step) < 1e-4) {\n"
 	       "            for (j = 0; j < %d; j++)\n"
@@ -382,7 +471,7 @@ static void emit_reach(const struct emitter *e)
 	       "        }\n"
 	       "        if (!(pl_magnitude(step) < 1.0))\n"
 	       "            break;\n"
-	       "        $n_move(which, y, step, d[0]);\n"
+	       "        $o_move(which, y, step, d[0]);\n"
 	       "        for (j = 0; j < %d; j++)\n"
 	       "            gain[j] += d[0][j];\n"
 	       "    }\n"
@@ -392,49 +481,27 @@ static void emit_reach(const struct emitter *e)
 
 /* ---- crossing after crossing ---- */
 
-static void emit_part(const struct emitter *e)
-{
-	int size = e->step->layout.size;
-	say(e, "\n"
-	       "typedef struct $n_part {  /* of a step, in one region; times in parts of h */\n"
-	       "    double x[%d], end[%d]; /* at its start, and after `length` */\n"
-	       "    double done, rest, length;\n"
-	       "    int region, which;\n"
-	       "    int passed, behind;   /* the expression that comes from an end of its interval, and which */\n"
-	       "} $n_part;\n"
-	       "\n"
-	       "static void $n_start_part($n_part *p, double gone, int region, int passed, int behind)\n"
-	       "{\n"
-	       "    p->done += gone;\n"
-	       "    p->rest = p->length = 1.0 - p->done;\n"
-	       "    p->region = region;\n"
-	       "    p->which = $n_matrix[region];\n"
-	       "    p->passed = passed;\n"
-	       "    p->behind = behind;\n"
-	       "}\n", size, size);
-}
-
 /* Which expressions may be passed: near, unclear[] */
 static void emit_candidates(const struct emitter *e)
 {
 	int n = expressions_of(e);
 	say(e, "    for (i = 0; i < %d; i++) {\n"
-	       "        const double *const within = $n_within[p->region][i];\n"
-	       "        const double from = $n_expression(i, p->x), to = $n_expression(i, p->end);\n"
+	       "        const double *const within = $o_within[p->region][i];\n"
+	       "        const double from = $o_expression(i, x), to = $o_expression(i, end);\n"
 	       "        const int above = to > within[1];\n"
 	       "        double about;\n"
 	       "        behind = i == p->passed ? p->behind : -1;\n"
 	       "        if (behind < 0 && !(from > within[0] && from < within[1]))\n"
 	       "            return -2;\n"
 	       "        if (!above && !(to < within[0])) {\n"
-	       "            if (!$n_keeps(p->region, p->which, i, behind, p->x, p->end, p->length, off[i]))\n"
+	       "            if (!$o_keeps(p->region, p->which, i, behind, x, end, p->length, off[i]))\n"
 	       "                return -1;\n"
 	       "            continue;\n"
 	       "        }\n"
-	       "        about = $n_guess(p->which, i, above ? 1.0 : -1.0, within[above], behind == above, p->x,\n"
-	       "                         p->end, p->length);\n", n);
-	say(e, "        unclear[near++] = i;\n"
-	       "        if (about < z) {\n"
+	       "        about = $o_guess(p->which, i, above ? 1.0 : -1.0, within[above], behind == above, x,\n"
+	       "                         end, p->length);\n", n);
+	say(e, n > 1 ? "        unclear[near++] = i;\n" : "        near++;\n");
+	say(e, "        if (about < z) {\n"
 	       "            z = about;\n"
 	       "            first = i;\n"
 	       "            up = above;\n"
@@ -448,37 +515,33 @@ static void emit_next(const struct emitter *e)
 {
 	int size = e->step->layout.size, n = expressions_of(e);
 	say(e, "\n"
-	       "/* The first crossing: 1, and moves on to it; 0: there is none in this length; -1: that is not\n"
-	       " * certain, and may be so of less; -2: nor of less */\n"
-	       "static int $n_next($n_part *p, pl_crossing *crossing)\n"
+	       "static int $o_next($n_stretch *p, double x[%d], const double end[%d], pl_crossing *crossing)\n"
 	       "{\n"
 	       "    double off[%d], y[%d], z = 2.0;\n"
-	       "    int i, unclear[%d], near = 0, first = 0, up = 0, behind, next;\n"
-	       "    $n_bounds(p->which, p->x, off);\n", n, size, n);
+	       "    int i, %snear = 0, first = 0, up = 0, behind, next;\n"
+	       "    $o_bounds(p->which, x, off);\n", size, size, n, size, n > 1 ? format("unclear[%d], ", n) : "");
 	emit_candidates(e);
-	say(e, "    next = $n_beyond[p->region][first][up];\n"
+	say(e, "    next = $o_beyond[p->region][first][up];\n"
 	       "    behind = first == p->passed ? p->behind : -1;\n"
 	       "    if (next < 0)\n"
 	       "        return -2;\n"
-	       "    z = $n_reach(p->which, first, $n_within[p->region][first][up], p->x, z, y);\n"
-	       "    if (!$n_meets(p->region, p->which, first, up, behind, p->x, y, z, p->length, off[first]))\n"
+	       "    z = $o_reach(p->which, first, $o_within[p->region][first][up], x, z, y);\n"
+	       "    if (!$o_meets(p->region, p->which, first, up, behind, x, y, z, p->length, off[first]))\n"
 	       "        return -1;\n");
 	if (n > 1)
 		say(e, "    for (i = 0; i < near; i++) {  /* others that are passed, but later */\n"
 		       "        const int other = unclear[i];\n"
 		       "        behind = other == p->passed ? p->behind : -1;\n"
-		       "        if (other != first && !$n_keeps(p->region, p->which, other, behind, p->x, y, z, "
+		       "        if (other != first && !$o_keeps(p->region, p->which, other, behind, x, y, z, "
 		       "off[other]))\n"
 		       "            return -1;\n"
 		       "    }\n");
-	else
-		say(e, "    (void)unclear;\n");
 	say(e, "    for (i = 0; i < %d; i++)\n"
-	       "        p->x[i] = y[i];\n"
-	       "    $n_start_part(p, z, next, first, !up);\n"
+	       "        x[i] = y[i];\n"
+	       "    $n_next_stretch(p, z, next, $o_matrix[next], first, !up);\n"
 	       "    crossing->time = p->done * $N_H;\n"
 	       "    crossing->expression = first;\n"
-	       "    crossing->breakpoint = $n_interval[next][first] - up;\n"
+	       "    crossing->breakpoint = $o_interval[next][first] - up;\n"
 	       "    crossing->upward = up;\n"
 	       "    return 1;\n"
 	       "}\n", size);
@@ -489,56 +552,50 @@ static void emit_cross(const struct emitter *e, const struct pieces *p)
 {
 	int size = e->step->layout.size;
 	say(e, "\n"
-	       "/* s over h from x where it is certain what is passed, and that is little: 1.  Else 0, and nothing has "
-	       "changed. */\n"
-	       "static PL_APART int $n_cross($n *s, const double x[%d])\n"
+	       "static PL_APART int $o_cross($n *s, const double now[%d])\n"
 	       "{\n"
 	       "    pl_crossing crossing[%d];\n"
-	       "    $n_part part;\n"
+	       "    $n_stretch part = {0.0, 1.0, 1.0, 0, 0, -1, -1};\n"
+	       "    double x[%d], end[%d];\n"
 	       "    int i, look, count = 0;\n"
 	       "    for (i = 0; i < %d; i++)\n"
-	       "        part.x[i] = x[i];\n"
-	       "    part.done = 0.0;\n"
-	       "    $n_start_part(&part, 0.0, s->contact.region, -1, -1);\n"
+	       "        x[i] = now[i];\n"
+	       "    part.region = s->contact$p.region;\n"
+	       "    part.which = s->contact$p.matrix;\n"
 	       "    if (!(%s < %s))\n"
 	       "        return 0;\n"
-	       "    $n_advance(part.which, x, part.end);\n"
-	       "    for (look = 0; look < %d; look++) {\n", size, MOST_SWIFT, size,
+	       "    $o_advance(part.which, x, end);\n"
+	       "    for (look = 0; look < %d; look++) {\n", size, MOST_SWIFT, size, size, size,
 	    size_of_x(e, p, places(e, "pl_magnitude(x[%d])"), 10), shortest(p->large), MOST_LOOKS);
 	say(e, "        int found = -2;\n"
 	       "        if (%s < %s &&\n"
 	       "            count < %d)\n"
-	       "            found = $n_next(&part, &crossing[count]);\n"
+	       "            found = $o_next(&part, x, end, &crossing[count]);\n"
 	       "        if (found == -2)\n"
 	       "            return 0;\n"
 	       "        if (found == 0 && part.length == part.rest)\n"
 	       "            break;\n",
-	    size_of_x(e, p, places(e, "pl_magnitude(part.end[%d])"), 12), shortest(p->large), MOST_SWIFT);
+	    size_of_x(e, p, places(e, "pl_magnitude(end[%d])"), 12), shortest(p->large), MOST_SWIFT);
 	say(e, "        if (found == -1)\n"
 	       "            part.length *= 0.5;\n"
 	       "        else if (found == 1)\n"
 	       "            count++;\n"
 	       "        else {\n"
 	       "            for (i = 0; i < %d; i++)\n"
-	       "                part.x[i] = part.end[i];\n"
-	       "            $n_start_part(&part, part.length, part.region, -1, -1);\n"
+	       "                x[i] = end[i];\n"
+	       "            $n_next_stretch(&part, part.length, part.region, part.which, -1, -1);\n"
 	       "        }\n"
-	       "        $n_move(part.which, part.x, part.length, part.end);\n"
+	       "        $o_move(part.which, x, part.length, end);\n"
 	       "        for (i = 0; i < %d; i++)\n"
-	       "            part.end[i] += part.x[i];\n"
+	       "            end[i] += x[i];\n"
 	       "    }\n"
 	       "    if (look == %d)\n"
 	       "        return 0;\n", size, size, MOST_LOOKS);
-	say(e, "    for (i = 0; i < count; i++)\n"
-	       "        s->crossing[i] = crossing[i];\n"
-	       "    s->contact.crossings = count;\n"
-	       "    s->contact.total += (uint64_t)count;\n"
-	       "    s->contact.region = part.region;\n"
-	       "    s->contact.matrix = part.which;\n"
-	       "    for (i = 0; i < $N_STATES; i++)\n"
-	       "        s->y[i] = part.end[i];\n"
+	say(e, "    $n_accept(&s->contact$p, s->crossing$p, &part, crossing, count);\n"
+	       "    for (i = 0; i < %s; i++)\n"
+	       "        s->y[%s] = end[i];\n"
 	       "    return 1;\n"
-	       "}\n");
+	       "}\n", own_states(e), place_in_loop(e));
 }
 
 void emit_crossing(const struct emitter *e)
@@ -550,13 +607,13 @@ void emit_crossing(const struct emitter *e)
 	emit_bounds(e, &pieces);
 	emit_whole(e, &pieces);
 	emit_turn(e, &turns);
-	emit_weights(e, &pieces);
+	if (strcmp(e->degree, e->own) == 0)     /* else they are there already */
+		emit_weights(e, &pieces);
 	emit_move(e, &pieces, &turns);
 	emit_keeps(e);
 	emit_first(e);
 	emit_guess(e);
 	emit_reach(e);
-	emit_part(e);
 	emit_next(e);
 	emit_cross(e, &pieces);
 }

@@ -14,7 +14,8 @@ static const char **expression_names(const struct emitter *e)
 	const struct switching *s = regions_of(e), *shown = e->step->shown->model->switching;
 	const char **name = ARRAY(const char *, (size_t)s->expressions);
 	for (int i = 0; i < s->expressions; i++)
-		name[i] = form_text(e->step->shown->model, shown->expression[i].form);
+		name[i] = form_text(e->step->shown->model,
+				    shown->expression[e->part ? e->part->expression[i] : i].form);
 	return name;
 }
 
@@ -36,7 +37,7 @@ static void emit_matrices(const struct emitter *e, const struct pieces *pieces, 
 {
 	int size = e->step->layout.size;
 	say(e, "\n"
-	       "static const double $n_%s[%d][%d][%d] = {  /* %s */\n",
+	       "static const double $o_%s[%d][%d][%d] = {  /* %s */\n",
 	    m->name, e->step->branches, m->rows, size, m->note);
 	for (int k = 0; k < e->step->branches; k++) {
 		say(e, "  {\n");
@@ -51,7 +52,7 @@ static void emit_rows(const struct emitter *e, const struct pieces *pieces)
 	const struct switching *s = regions_of(e);
 	int size = e->step->layout.size;
 	say(e, "\n"
-	       "static const double $n_row[%d][%d] = {  /* expressions that breakpoints divide */\n",
+	       "static const double $o_row[%d][%d] = {  /* expressions that breakpoints divide */\n",
 	    s->expressions, size);
 	emit_number_rows(e, s->expressions, size, pieces->row, expression_names(e));
 	say(e, "};\n");
@@ -61,10 +62,10 @@ static void emit_breakpoints(const struct emitter *e, const struct pieces *piece
 {
 	const struct switching *s = regions_of(e);
 	int shown = 0;
-	say(e, "\nstatic const int $n_breaks[] = {");
+	say(e, "\nstatic const int $o_breaks[] = {");
 	for (int i = 0; i < s->expressions; i++)
 		say(e, "%s%d", i ? ", " : "", s->expression[i].breaks);
-	say(e, "};\nstatic const double $n_breakpoint[] = {");
+	say(e, "};\nstatic const double $o_breakpoint[] = {");
 	for (int i = 0; i < s->expressions; i++)
 		for (int k = 0; k < s->expression[i].breaks; k++, shown++)
 			say(e, "%s%s", shown ? ", " : "", shortest(pieces->breakpoint[shown]));
@@ -75,7 +76,7 @@ static void emit_region_numbers(const struct emitter *e)
 {
 	const struct switching *s = regions_of(e);
 	say(e, "\n"
-	       "static const int $n_matrix[%d] = {  /* of each region; -1: its inequalities cannot hold together */\n"
+	       "static const int $o_matrix[%d] = {  /* of each region; -1: its inequalities cannot hold together */\n"
 	       "    ",
 	    s->regions);
 	for (int r = 0; r < s->regions; r++) {
@@ -85,7 +86,7 @@ static void emit_region_numbers(const struct emitter *e)
 	say(e, "\n"
 	       "};\n"
 	       "\n"
-	       "static const int $n_halvings[] = {");
+	       "static const int $o_halvings[] = {");
 	for (int k = 0; k < e->step->branches; k++)
 		say(e, "%s%d", k ? ", " : "", e->step->branch[k].halvings);
 	say(e, "};\n");
@@ -93,9 +94,9 @@ static void emit_region_numbers(const struct emitter *e)
 
 static void emit_switching(const struct emitter *e)
 {
-	say(e, "\nstatic const pl_switching $n_switching = {\n"
-	       "    %d, $N_H, %d, $n_row[0], $n_breaks, $n_breakpoint, $n_matrix, $n_halvings,\n"
-	       "    $n_slopes[0][0], $n_pieces[0][0], $n_lean[0][0], $n_sag[0][0], $n_sway[0][0], "
+	say(e, "\nstatic const pl_switching $o_switching = {\n"
+	       "    %d, $N_H, %d, $o_row[0], $o_breaks, $o_breakpoint, $o_matrix, $o_halvings,\n"
+	       "    $o_slopes[0][0], $o_pieces[0][0], $o_lean[0][0], $o_sag[0][0], $o_sway[0][0], "
 	       "%d, $N_MAX_EVENTS, %d\n"
 	       "};\n",
 	    e->step->layout.size, regions_of(e)->expressions, e->step->series.degree, MAX_SPLITS);
@@ -153,20 +154,20 @@ static void emit_inputs_in_x(const struct emitter *e, bool step)
 {
 	for (int i = 0; i < e->system->inputs; i++) {
 		bool ramp = e->system->input[i].hold;
-		int at = e->step->layout.input[i];
-		say(e, "    x[%d] = %s[%d];\n", at, step && !ramp ? "u" : "s->u", i);
+		int at = e->step->layout.input[i], of = place_of_input(e, i);
+		say(e, "    x[%d] = %s[%d];\n", at, step && !ramp ? "u" : "s->u", of);
 		if (ramp && step)
-			say(e, "    x[%d] = %s;\n", at + 1, ramp_slope(e, i));
+			say(e, "    x[%d] = %s;\n", at + 1, ramp_slope(e, of));
 		else if (ramp)
 			say(e, "    x[%d] = 0.0;\n", at + 1);
 	}
 }
 
-static void emit_x(const struct emitter *e, bool step)
+void emit_region_vector(const struct emitter *e, bool step)
 {
 	const struct layout *layout = &e->step->layout;
-	say(e, "    for (i = 0; i < $N_STATES; i++)\n"
-	       "        x[i] = s->y[i];\n");
+	say(e, "    for (i = 0; i < %s; i++)\n"
+	       "        x[i] = s->y[%s];\n", own_states(e), place_in_loop(e));
 	for (int l = 0; l < e->system->loads; l++)
 		for (int k = 0; k < e->system->load[l].columns && layout->load[l] >= 0; k++) {
 			const char *operand = load_operand(e, l, k);
@@ -175,7 +176,7 @@ static void emit_x(const struct emitter *e, bool step)
 	emit_inputs_in_x(e, step);
 }
 
-static void declare_room(const struct emitter *e)
+void declare_region_room(const struct emitter *e)
 {
 	const struct series *series = &e->step->series;
 	const struct layout *layout = &e->step->layout;
@@ -190,9 +191,9 @@ void emit_region_start(const struct emitter *e)
 	       "static void $n_place($n *s)\n"
 	       "{\n"
 	       "    int i;\n");
-	declare_room(e);
+	declare_region_room(e);
 	emit_turned_loads(e, needed_loads(e), false);
-	emit_x(e, false);
+	emit_region_vector(e, false);
 	say(e, "    pl_switching_start(&$n_switching, x, &s->contact, work);\n"
 	       "}\n");
 }
@@ -221,44 +222,44 @@ static void emit_region_questions(const struct emitter *e)
 }
 
 /* By the search, from x; `i` is declared */
-static void emit_search(const struct emitter *e)
+void emit_search(const struct emitter *e)
 {
-	say(e, "    pl_switching_step(&$n_switching, x, &s->contact, s->crossing, work);\n"
-	       "    for (i = 0; i < $N_STATES; i++)\n"
-	       "        s->y[i] = x[i];\n");
+	say(e, "    pl_switching_step(&$o_switching, x, &s->contact$p, s->crossing$p, work);\n"
+	       "    for (i = 0; i < %s; i++)\n"
+	       "        s->y[%s] = x[i];\n", own_states(e), place_in_loop(e));
 }
 
-static void emit_status(const struct emitter *e)
+void emit_region_status(const struct emitter *e)
 {
-	say(e, "    s->status |= s->contact.status | pl_not_finite(s->y, $N_STATES);\n");
+	say(e, "    s->status |= s->contact$p.status | pl_not_finite(s->y, $N_STATES);\n");
 }
 
 static void emit_searched_step(const struct emitter *e)
 {
 	say(e, "    int i;\n");
-	declare_room(e);
+	declare_region_room(e);
 	emit_set_aside(e);
 	emit_turned_loads(e, needed_loads(e), false);
-	emit_x(e, true);
+	emit_region_vector(e, true);
 	emit_search(e);
 	emit_take_back(e);
 	emit_step_end(e);
-	emit_status(e);
+	emit_region_status(e);
 }
 
 /* What is not seen to be clear, or to cross once */
-static void emit_apart_search(const struct emitter *e)
+void emit_region_search(const struct emitter *e)
 {
 	int size = e->step->layout.size;
 	emit_crossing(e);
 	say(e, "\n"
-	       "static PL_APART void $n_seek($n *s, double x[%d])\n"
+	       "static PL_APART void $o_seek($n *s, double x[%d])\n"
 	       "{\n"
 	       "    double work[PL_SWITCHING_WORK(%d, %d, %d)];\n"
 	       "    int i;\n",
 	    size, size, regions_of(e)->expressions, e->step->series.degree);
 	emit_search(e);
-	emit_status(e);
+	emit_region_status(e);
 	say(e, "}\n");
 }
 
@@ -274,13 +275,15 @@ static void emit_whole_step(const struct emitter *e)
 	emit_take_back(e);
 	emit_step_end(e);
 	if (e->step->carries)           /* what was set aside is in no bound */
-		emit_status(e);
+		emit_region_status(e);
 }
 
 void emit_region_step(const struct emitter *e)
 {
-	if (e->step->swift)
-		emit_apart_search(e);
+	if (e->step->swift) {
+		emit_crossing_scalars(e);
+		emit_region_search(e);
+	}
 	say(e, "\n"
 	       "void $n_step(%s)\n"
 	       "{\n",
@@ -303,9 +306,9 @@ void emit_region_at(const struct emitter *e)
 	       "    pl_crossing crossing[$N_MAX_EVENTS];\n"
 	       "    int i;\n",
 	    u);
-	declare_room(e);
+	declare_region_room(e);
 	emit_load_states(e, needed_loads(e), false);
-	emit_x(e, true);
+	emit_region_vector(e, true);
 	say(e, "    pl_switching_advance(&$n_switching, tau, x, &contact, crossing, work);\n");
 	emit_hand_over(e);
 	say(e, "}\n");

@@ -211,6 +211,63 @@ static const struct kind regions = {
 	.params = emit_no_params
 };
 
+/* ---- regions of independent parts ---- */
+
+static bool parts_read_load(const struct emitter *e, int load)
+{
+	return e->step->layout.load[load] >= 0;
+}
+
+static void emit_event_limit_of_parts(const struct emitter *e)
+{
+	int parts = 0;
+	for (int p = 0; p < e->step->parts; p++)
+		parts += e->step->part[p]->model->switching->expressions > 0;
+	say(e, "enum { $N_MAX_EVENTS = %d };  /* crossings in a step, %d of each part */\n", parts * MAX_EVENTS,
+	    MAX_EVENTS);
+}
+
+static void emit_tables_of_parts(const struct emitter *e)
+{
+	emit_part_tables(e);
+	emit_part_start(e);
+}
+
+static void emit_step_of_parts(const struct emitter *e)
+{
+	if (reads_channels(e->model))
+		emit_leftover_functions(e);
+	emit_parts_step(e);
+}
+
+static const struct kind parts = {
+	.banner = banner_parts,
+	.step_note = " * A step that stays clear of every breakpoint, at most:\n",
+	.banner_more = nothing,
+	.no_jump = "crossings are found step by step",
+	.no_at = far_pole,
+	.constants = emit_event_limit_of_parts,
+	.types = nothing,
+	.coefficients = nothing,
+	.members = emit_part_members,
+	.keeps_status = true,
+	.init_note = "t = 0, the spec's initial values",
+	.status_note = "0, or bits: PL_NOT_FINITE, PL_TOO_MANY_EVENTS",
+	.declare_state = emit_part_declarations,
+	.declare_more = nothing,
+	.start = no_start,
+	.places = any_place,
+	.reads_load = parts_read_load,
+	.reads_phi = never,
+	.tables = emit_tables_of_parts,
+	.pass = emit_pass_of_changes,
+	.step = emit_step_of_parts,
+	.held = nothing,
+	.at = emit_parts_at,
+	.wrappers = nothing,
+	.params = emit_no_params
+};
+
 /* ---- leftover: a list of actions ---- */
 
 static bool flows_whole(const struct step *step)
@@ -310,8 +367,8 @@ static const struct kind expanded = {
 const struct kind *row_of_kind(enum step_kind kind)
 {
 	static const struct kind *const row[KINDS] = {
-		[KIND_LINEAR] = &linear,     [KIND_TUNED] = &tuned,	[KIND_REGIONS] = &regions,
-		[KIND_LEFTOVER] = &leftover, [KIND_EXPANDED] = &expanded
+		[KIND_LINEAR] = &linear, [KIND_TUNED] = &tuned, [KIND_REGIONS] = &regions,
+		[KIND_PARTS] = &parts, [KIND_LEFTOVER] = &leftover, [KIND_EXPANDED] = &expanded
 	};
 	return row[kind];
 }

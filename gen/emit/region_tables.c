@@ -66,8 +66,7 @@ static double *turn_of(const struct region_piece *piece)   { return piece->turn;
 static double *third_of(const struct region_piece *piece)  { return piece->third; }
 static double *bend_of(const struct region_piece *piece)   { return piece->bend; }
 
-/* Else all its entries are numbers in the text */
-static bool is_table(const struct region_tables *t)
+bool is_table(const struct region_tables *t)
 {
 	bool differs = false;
 	for (int i = 0; i < t->rows; i++)
@@ -87,8 +86,8 @@ const char *off_text(const struct emitter *e, const struct pieces *p, int branch
 			    const char *const *size, int indent)
 {
 	int n = expressions_of(e);
-	struct region_tables off = tables_of_regions(e, p, spell(e, "$n_chord_off[which]"), n, off_of),
-		      still = tables_of_regions(e, p, spell(e, "$n_still[which]"), 1, still_of);
+	struct region_tables off = tables_of_regions(e, p, spell(e, "$o_chord_off[which]"), n, off_of),
+		      still = tables_of_regions(e, p, spell(e, "$o_still[which]"), 1, still_of);
 	still.columns = n;
 	if (branch >= 0) {
 		off = of_branch(off, branch);
@@ -97,7 +96,7 @@ const char *off_text(const struct emitter *e, const struct pieces *p, int branch
 	const char *further = NULL;
 	if (acts_at(&still, 0, expression))
 		further = agree_at(&still, 0, expression) ? shortest(still.value[still.from][expression])
-							  : spell(e, "$n_still[which][%d]", expression);
+							  : spell(e, "$o_still[which][%d]", expression);
 	return row_text(&off, expression, size, further, indent);
 }
 
@@ -107,7 +106,7 @@ static void emit_of_each(const struct emitter *e, const struct region_tables *t,
 			 const char *const *row_name)
 {
 	say(e, "\n"
-	       "static const double $n_%s[%d][%d][%d] = {  /* %s */\n",
+	       "static const double $o_%s[%d][%d][%d] = {  /* %s */\n",
 	    name, e->step->branches, t->rows, t->columns, note);
 	for (int k = 0; k < e->step->branches; k++) {
 		say(e, "  {\n");
@@ -129,7 +128,7 @@ static void emit_still(const struct emitter *e, const struct pieces *p)
 {
 	int expressions = expressions_of(e);
 	say(e, "\n"
-	       "static const double $n_still[%d][%d] = {  /* what 1, cos and sin add to that, at most */\n",
+	       "static const double $o_still[%d][%d] = {  /* what 1, cos and sin add to that, at most */\n",
 	    e->step->branches, expressions);
 	for (int k = 0; k < e->step->branches; k++)
 		for (int i = 0; i < expressions; i++)
@@ -144,7 +143,7 @@ static void emit_neighbours(const struct emitter *e, const struct pieces *p)
 	const struct switching *s = e->model->switching;
 	int n = s->expressions;
 	say(e, "\n"
-	       "static const double $n_within[%d][%d][2] = {  /* what each expression is between in each region */\n",
+	       "static const double $o_within[%d][%d][2] = {  /* what each expression is between in each region */\n",
 	    s->regions, n);
 	for (int r = 0; r < s->regions; r++)
 		for (int i = 0; i < n; i++)
@@ -152,7 +151,7 @@ static void emit_neighbours(const struct emitter *e, const struct pieces *p)
 			    shortest(p->high[r * n + i]), i == n - 1 ? "},\n" : "");
 	say(e, "};\n"
 	       "\n"
-	       "static const int $n_beyond[%d][%d][2] = {  /* regions below and above; -1: none that can occur */\n",
+	       "static const int $o_beyond[%d][%d][2] = {  /* regions below and above; -1: none that can occur */\n",
 	    s->regions, n);
 	for (int r = 0; r < s->regions; r++)
 		for (int i = 0; i < n; i++) {
@@ -164,7 +163,7 @@ static void emit_neighbours(const struct emitter *e, const struct pieces *p)
 		}
 	say(e, "};\n"
 	       "\n"
-	       "static const int $n_interval[%d][%d] = {  /* of each expression, from the lowest one */\n",
+	       "static const int $o_interval[%d][%d] = {  /* of each expression, from the lowest one */\n",
 	    s->regions, n);
 	for (int r = 0; r < s->regions; r++)
 		for (int i = 0; i < n; i++)
@@ -188,10 +187,11 @@ void emit_swift_tables(const struct emitter *e, const struct pieces *p, const ch
 		emit_of_each(e, &turn, "whole_lean", "lean over h", expression);
 		emit_of_each(e, &bend, "whole_sway", "sway over h", expression);
 	}
-	if (is_table(&off))
+	bool reads = any_pieces(e) || is_cleared_by_tables(e->step);    /* what they are off their chords */
+	if (reads && is_table(&off))
 		emit_of_each(e, &off, "chord_off",
 			     "times |x|: how far each expression is off its chord over h, at most", expression);
-	if (is_table(&still))
+	if (reads && is_table(&still))
 		emit_still(e, p);
 	emit_of_each(e, &slack, "slack", "times |x|: what rounding may do to an expression and to h e'", expression);
 	emit_of_each(e, &third, "jerk", "times |x|: h^3/24 e''', at most", expression);
@@ -235,7 +235,7 @@ const char *size_of_x(const struct emitter *e, const struct pieces *p, const cha
 	const char **term = ARRAY(const char *, (size_t)e->step->layout.size);
 	int terms = 0;
 	for (int j = 0; j < e->step->layout.size; j++)
-		if (!p->bounded[j])
+		if (!p->bounded[j] && *size[j])         /* 1 counts for nothing */
 			term[terms++] = size[j];
 	return tree(terms, term, indent);
 }

@@ -94,6 +94,26 @@ const char *factor_of_momentum(const struct emitter *e, int state)
 	return shortest(finite_number(e, e->step->mass[e->system->coord[state]]));
 }
 
+int place_of_state(const struct emitter *e, int state)
+{
+	return e->part ? e->part->state[state] : state;
+}
+
+int place_of_input(const struct emitter *e, int input)
+{
+	return e->part ? e->part->input[input] : input;
+}
+
+const char *own_states(const struct emitter *e)
+{
+	return e->part ? format("%d", e->system->states) : spell(e, "$N_STATES");
+}
+
+const char *place_in_loop(const struct emitter *e)
+{
+	return e->part ? spell(e, "$o_state[i]") : "i";
+}
+
 /* A line break instead of the blank between two of a list that would pass column 110 */
 static void say_list(const struct emitter *e, const char *list)
 {
@@ -119,7 +139,7 @@ static void write_locals(const struct emitter *e, const bool *reads, const char 
 		const char *mass = velocities && !forced ? factor_of_momentum(e, i) : NULL;
 		if (reads[i])
 			list = format("%s%s%s = %s[%d]%s%s", list, *list ? ", " : format("    %s ", type), e->local[i],
-				      vector, i, mass ? " / " : "", mass ? mass : "");
+				      vector, place_of_state(e, i), mass ? " / " : "", mass ? mass : "");
 	}
 	say_list(e, *list ? format("%s;\n", list) : "");
 }

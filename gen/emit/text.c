@@ -9,7 +9,8 @@
 /* `layout` with the names in it: names are C identifiers, without a % */
 static char *with_names(const struct emitter *e, const char *layout)
 {
-	size_t length = 1, longest = strlen(e->name) + strlen(e->upper);
+	size_t length = 1, longest = strlen(e->name) + strlen(e->upper) + strlen(e->own) + strlen(e->place) +
+			     strlen(e->degree);
 	for (const char *c = layout; *c; c++)
 		length += *c == '$' ? longest : 1;
 	char *text = ARRAY(char, length), *end = text;
@@ -19,7 +20,8 @@ static char *with_names(const struct emitter *e, const char *layout)
 			continue;
 		}
 		c++;
-		const char *what = *c == 'n' ? e->name : *c == 'N' ? e->upper : "$";
+		const char *what = *c == 'n' ? e->name : *c == 'N' ? e->upper : *c == 'o' ? e->own
+				 : *c == 'p' ? e->place : *c == 'd' ? e->degree : "$";
 		end = stpcpy(end, what);
 	}
 	return text;

@@ -4,7 +4,7 @@
 #include "model/model.h"
 
 /* Equations 0 .. n-1 and coordinates n .. 2n-1 as nodes of one graph; parent pointers of its components. */
-static int root(int *parent, int i)
+int root_of_node(int *parent, int i)
 {
 	while (parent[i] != i)
 		i = parent[i] = parent[parent[i]];
@@ -20,7 +20,7 @@ static int *components(const struct linear *system)
 	for (int k = 0; k < 5; k++)
 		for (int cell = 0; matrix[k] && cell < n * n; cell++)
 			if (mpq_sgn(matrix[k][cell]) != 0)
-				parent[root(parent, cell / n)] = root(parent, n + cell % n);
+				parent[root_of_node(parent, cell / n)] = root_of_node(parent, n + cell % n);
 	return parent;
 }
 
@@ -93,30 +93,37 @@ static void restrict_system(const struct linear *whole, struct block *b)
 		system->channel[e] = subvector((const mpq_t *)whole->channel[e], 1, n, b);
 }
 
+struct block block_at(const struct linear *system, int *parent, int coord)
+{
+	int n = system->n, equations = 0, of = root_of_node(parent, n + coord);
+	struct block b = { .system = *system, .equation = ARRAY(int, (size_t)n), .coord = ARRAY(int, (size_t)n) };
+	b.system.n = 0;
+	for (int i = 0; i < n; i++) {
+		if (root_of_node(parent, n + i) == of)
+			b.coord[b.system.n++] = i;
+		if (root_of_node(parent, i) == of)
+			b.equation[equations++] = i;
+	}
+	restrict_system(system, &b);
+	return b;
+}
+
+/* Does a coordinate before it belong to the same component? */
+bool is_seen_before(int n, int *parent, int coord)
+{
+	bool seen = false;
+	for (int earlier = 0; earlier < coord; earlier++)
+		seen = seen || root_of_node(parent, n + earlier) == root_of_node(parent, n + coord);
+	return seen;
+}
+
 int blocks_of(const struct linear *system, struct block **blocks)
 {
 	int n = system->n, count = 0, *parent = components(system);
 	*blocks = ARRAY(struct block, (size_t)n);
 	/* a block for each component, in the order of their first coordinates */
-	for (int j = 0; j < n; j++) {
-		bool seen = false;
-		for (int earlier = 0; earlier < j; earlier++)
-			seen = seen || root(parent, n + earlier) == root(parent, n + j);
-		if (seen)
-			continue;
-		struct block *b = &(*blocks)[count++];
-		b->system = *system;
-		b->system.n = 0;
-		b->equation = ARRAY(int, (size_t)n);
-		b->coord = ARRAY(int, (size_t)n);
-		int equations = 0;
-		for (int i = 0; i < n; i++) {
-			if (root(parent, n + i) == root(parent, n + j))
-				b->coord[b->system.n++] = i;
-			if (root(parent, i) == root(parent, n + j))
-				b->equation[equations++] = i;
-		}
-		restrict_system(system, b);
-	}
+	for (int j = 0; j < n; j++)
+		if (!is_seen_before(n, parent, j))
+			(*blocks)[count++] = block_at(system, parent, j);
 	return count;
 }

@@ -518,7 +518,7 @@ struct model *model_build(struct spec *spec, const struct request *request)
 	collect_model(&b);
 	build_parts(&b);
 	model->irrationals = b.collector.irrationals;
-	bool told = request->solution || request->tunable || request->relative;
+	bool told = request->solution || request->tunable || request->relative || request->undivided;
 	if (!diagnostics_errors() && !told)
 		judge_smoothness(&b);
 	if (!diagnostics_errors() && !told)

@@ -98,6 +98,7 @@ struct request {                    /* what the user asks for on the command lin
 	const mpq_t *tunable;
 	                            /* no step, no initial values */
 	const struct relative *relative; /* the coordinates to build the model over; NULL: the written ones */
+	bool undivided;             /* regions are those of all coordinates together */
 };
 struct truncation {                 /* of a Taylor series */
 	int order;                  /* of its last term in h */
@@ -198,6 +199,7 @@ struct expression {                 /* what is compared with breakpoints: linear
 	mpq_t *at;                  /* rising */
 	const struct node *node;    /* where it comes from */
 	int stride;                 /* of its interval in the index of a region */
+	int met;                    /* rises in the order in which the equations show expressions */
 };
 struct region {                     /* one interval for each expression */
 	bool possible;              /* its inequalities can hold together */
@@ -205,12 +207,25 @@ struct region {                     /* one interval for each expression */
 	struct form **residual;     /* per row: linear */
 };
 struct switching {
+	int rows, *row;             /* of the equations that it is of */
 	int expressions;
 	struct expression *expression;
 	int regions;                /* all, possible or not: products of the expressions' intervals */
-	struct region *region;
+	struct region *region;      /* NULL where there are parts */
 	int systems;
-	struct linear *system;
+	struct linear *system;      /* where there are parts one: that of the first region of each */
+	int parts;                  /* 0: its regions are those of all coordinates together */
+	struct region_part *part;
+	int sharing;                /* parts that have these regions together, since some move as a whole */
+};
+/* Coordinates that nothing outside of them acts on, in no region: they have regions of their own, and cross breakpoints
+ * at times of their own. */
+struct region_part {
+	int coord;                  /* the first */
+	struct model *model;        /* of them alone; its `switching` has no expressions where they are linear */
+	int *state;                 /* per state of it: that of the whole model */
+	int *input;                 /* likewise of the inputs that act on it or are in its expressions */
+	int *expression;            /* likewise */
 };
 struct model *model_build(struct spec *spec, const struct request *request);
 void argument_value(struct model *model, const char *text, mpq_ptr value); /* of --solution; may use params */
@@ -250,6 +265,10 @@ struct block {
 };
 /* M regular, so that a block has as many equations as coordinates */
 int blocks_of(const struct linear *system, struct block **blocks);
+/* Components of a graph whose nodes are n equations and then n coordinates, by their parents */
+int  root_of_node(int *parent, int node);
+struct block block_at(const struct linear *system, int *parent, int coord);  /* the component of that coordinate */
+bool is_seen_before(int n, int *parent, int coord);          /* an earlier coordinate is of the same one */
 
 /* ---- augmented.c: the augmented state ---- */
 
@@ -344,12 +363,22 @@ const char *smoothness_text(const struct model *model);     /* max(x - 0.5, 0) h
 /* ---- regions.c: piecewise-linear equations as regions with linear ones ---- */
 
 bool is_piecewise_linear(const struct building *b);
+int  interval_of(const struct switching *s, int region, int expression);
+bool share_expression(const struct switching *a, const struct switching *b);
+/* of these rows of the equations; leaves the statement where they are too many, or with dry friction */
+struct switching *regions_of_rows(struct building *b, int rows, int *row);
+void remove_idle_breaks(struct switching *s);
+int  add_system(struct switching *s, const struct linear *system);   /* its index */
+int  possible_regions(const struct switching *s);
+
+/* ---- parts.c: regions of independent coordinates ---- */
+
 void find_regions(struct building *b);                      /* says what cannot be treated */
+/* of a region of a part in the number of the model's: its intervals, by the strides of the whole */
+int  share_of_region(const struct region_part *part, const struct switching *whole, int region);
 void place_region_loads(struct building *b);
 /* their systems; after the loads of all have their places */
 void build_regions(struct building *b);
-int  interval_of(const struct switching *s, int region, int expression);
-int  possible_regions(const struct switching *s);
 
 /* ---- settle.c: which scheme the equations allow ---- */
 

@@ -28,6 +28,7 @@ struct looking {
 	struct form **known;        /* per atom */
 	int count;
 	bool grown;                 /* an expression or a breakpoint was met for the first time: look again */
+	int region, row;            /* where it looks */
 	int lowest;                 /* of the regions, where there is one expression, that a new breakpoint divides */
 };
 
@@ -39,8 +40,10 @@ int interval_of(const struct switching *s, int region, int expression)
 
 int possible_regions(const struct switching *s)
 {
-	int count = 0;
-	for (int r = 0; r < s->regions; r++)
+	int count = s->parts > 0;
+	for (int p = 0; p < s->parts; p++)
+		count *= possible_regions(s->part[p].model->switching);
+	for (int r = 0; r < s->regions && !s->parts; r++)
 		count += s->region[r].possible;
 	return count;
 }
@@ -57,17 +60,32 @@ static bool is_multiple(const struct form *form, const struct form *e, mpq_ptr o
 	return multiple;
 }
 
+bool share_expression(const struct switching *a, const struct switching *b)
+{
+	bool shared = false;
+	mpq_t factor;
+	mpq_init(factor);
+	for (int i = 0; i < a->expressions; i++)
+		for (int k = 0; k < b->expressions && !shared; k++)
+			shared = is_multiple(a->expression[i].form, b->expression[k].form, factor);
+	mpq_clear(factor);
+	return shared;
+}
+
 /* The expression that form, which has no constant, is a multiple of; met for the first time it is one, with the sign
  * and scale in which it was written. The form goes to it, or is freed. */
-static int find_expression(struct switching *s, const struct node *node, struct form *form, mpq_ptr of)
+static int find_expression(struct looking *l, const struct node *node, struct form *form, mpq_ptr of)
 {
+	struct switching *s = l->s;
 	for (int i = 0; i < s->expressions; i++)
 		if (is_multiple(form, s->expression[i].form, of)) {
 			form_free(form);
 			return i;
 		}
 	ENLARGE(s->expression, (size_t)s->expressions + 1);
-	s->expression[s->expressions] = (struct expression){ .form = form, .node = node };
+	s->expression[s->expressions] = (struct expression){
+		.form = form, .node = node, .met = l->row + (l->region > 0 ? l->b->model->n : 0)
+	};
 	mpq_set_ui(of, 1, 1);
 	return s->expressions++;
 }
@@ -113,7 +131,7 @@ static int sign_here(struct looking *l, const struct node *node, const struct fo
 	constant_value(c, &plain, constant);
 	int sign = mpq_sgn(constant);
 	if (plain.terms < form->terms) {
-		int e = find_expression(l->s, node, form_sum(form, &plain, true), factor);
+		int e = find_expression(l, node, form_sum(form, &plain, true), factor);
 		mpq_div(constant, constant, factor);
 		mpq_neg(constant, constant);    /* e = (form - constant)/factor against -constant/factor */
 		sign = is_above(l, e, constant) == (mpq_sgn(factor) > 0) ? 1 : -1;
@@ -229,9 +247,13 @@ static int count_candidates(struct switching *s)
 	return count;
 }
 
-static _Noreturn void too_many(const struct switching *s)
+static _Noreturn void too_many(const struct building *b, const struct switching *s)
 {
-	error(s->expression[s->expressions - 1].node->at, "a scheme with a leftover, such as etdrk4, needs no regions",
+	bool together = b->model->relative || b->request->undivided;
+	error(s->expression[s->expressions - 1].node->at,
+	      together ? "some coordinates move as a whole, and then independent parts have their regions together; a "
+			 "scheme with a leftover, such as etdrk4, needs no regions"
+		       : "a scheme with a leftover, such as etdrk4, needs no regions",
 	      "more regions than the limit of %d", LIMIT_REGIONS);
 }
 
@@ -244,7 +266,7 @@ static bool look(struct building *b, struct switching *s, int *known)
 	bool single = s->expressions == 1;
 	s->regions = count_candidates(s);
 	if (s->regions > LIMIT_CANDIDATES)
-		too_many(s);
+		too_many(b, s);
 	s->region = ARRAY(struct region, (size_t)s->regions);
 	for (int r = 0; r < *known; r++)
 		s->region[r] = before[r];
@@ -255,10 +277,13 @@ static bool look(struct building *b, struct switching *s, int *known)
 				     .interval = intervals_of(s, r),
 				     .known = ARRAY(struct form *, (size_t)atoms),
 				     .count = atoms,
+				     .region = r,
 				     .lowest = r };
 		s->region[r].residual = ARRAY(struct form *, (size_t)b->model->n);
-		for (int i = 0; i < b->model->n; i++)
-			s->region[r].residual[i] = form_here(&l, b->snapshot->residual[i].form);
+		for (int k = 0; k < s->rows; k++) {
+			l.row = s->row[k];
+			s->region[r].residual[l.row] = form_here(&l, b->snapshot->residual[l.row].form);
+		}
 		*known = single && s->expressions == 1 ? l.lowest : 0;
 		if (l.grown)
 			return false;
@@ -381,7 +406,7 @@ static bool independent(const struct switching *s)
 	return true;
 }
 
-static void mark_possible(struct switching *s)
+static void mark_possible(const struct building *b, struct switching *s)
 {
 	struct basis *basis;
 	int bases = find_bases(s, &basis), count = 0;
@@ -391,7 +416,7 @@ static void mark_possible(struct switching *s)
 		count += s->region[r].possible;
 	}
 	if (count > LIMIT_REGIONS)
-		too_many(s);
+		too_many(b, s);
 }
 
 /* ---- what cannot be treated: forces that jump with a velocity ---- */
@@ -418,7 +443,8 @@ static void check_face(struct building *b, const struct switching *s, int below,
 	const struct expression *e = &s->expression[expression];
 	const struct region *low = &s->region[below], *high = &s->region[below + e->stride];
 	mpq_srcptr at = e->at[interval_of(s, below, expression)];
-	for (int i = 0; i < b->model->n; i++) {
+	for (int k = 0; k < s->rows; k++) {
+		int i = s->row[k];
 		const struct form *jump = form_sum(high->residual[i], low->residual[i], true);
 		if (vanishes_on(&b->collector, jump, e, at))
 			continue;
@@ -436,22 +462,18 @@ static void check_jumps(struct building *b, const struct switching *s)
 }
 
 /* Highest derivatives cannot decide on their own equations; the collector has refused them. */
-static void search(void *context)
+struct switching *regions_of_rows(struct building *b, int rows, int *row)
 {
-	struct building *b = context;
 	struct switching *s = NEW(struct switching);
 	int known = 0;
+	s->rows = rows;
+	s->row = row;
 	while (!look(b, s, &known))
 		;
-	mark_possible(s);
+	mark_possible(b, s);
 	if (!b->model->relative)                /* else it has been told */
 		check_jumps(b, s);
-	b->model->switching = s;
-}
-
-void find_regions(struct building *b)
-{
-	statement_guard(search, b);
+	return s;
 }
 
 /* ---- their systems ---- */
@@ -478,7 +500,7 @@ static bool same_system(const struct linear *a, const struct linear *b)
 	return same;
 }
 
-static int add_system(struct switching *s, const struct linear *system)
+int add_system(struct switching *s, const struct linear *system)
 {
 	for (int i = 0; i < s->systems; i++)
 		if (same_system(&s->system[i], system))
@@ -545,7 +567,7 @@ static void drop_expression(struct switching *s, int expression)
 	count_candidates(s);
 }
 
-static void remove_idle_breaks(struct switching *s)
+void remove_idle_breaks(struct switching *s)
 {
 	for (int e = s->expressions - 1; e >= 0; e--) {
 		for (int at = s->expression[e].breaks - 1; at >= 0; at--)
@@ -554,32 +576,4 @@ static void remove_idle_breaks(struct switching *s)
 		if (s->expression[e].breaks == 0)
 			drop_expression(s, e);
 	}
-}
-
-void place_region_loads(struct building *b)
-{
-	const struct switching *s = b->model->switching;
-	for (int r = 0; r < s->regions; r++)
-		for (int i = 0; i < b->model->n && s->region[r].possible; i++)
-			place_loads(b, s->region[r].residual[i]);
-	for (int e = 0; e < s->expressions; e++)
-		place_loads(b, s->expression[e].form);
-}
-
-void build_regions(struct building *b)
-{
-	struct model *model = b->model;
-	struct switching *s = model->switching;
-	for (int r = 0; r < s->regions; r++) {
-		struct region *region = &s->region[r];
-		if (!region->possible)
-			continue;
-		struct linear system = empty_system(model);
-		for (int i = 0; i < model->n; i++)
-			fill_system(b, &system, 0, i, region->residual[i]);
-		region->system = add_system(s, &system);
-	}
-	remove_idle_breaks(s);
-	for (int e = 0; e < s->expressions; e++)
-		s->expression[e].row = row_of_form(b, s->expression[e].form);
 }

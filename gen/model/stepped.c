@@ -38,6 +38,32 @@ static void warn_of_kept(const struct model *model)
 			    names);
 }
 
+/* The model again, its regions those of all coordinates together: over differences independent parts are not told
+ * apart. NULL: it was said why not */
+static struct model *undivided(struct model *model, struct spec *spec, struct request *again)
+{
+	if (!model->switching || !model->switching->parts)
+		return model;
+	again->undivided = true;
+	struct model *whole = model_build(spec, again);
+	if (whole)
+		whole->switching->sharing = model->switching->parts;
+	return whole;
+}
+
+static struct model *model_over_differences(struct model *model, struct spec *spec, struct request *again)
+{
+	model = undivided(model, spec, again);
+	again->relative = model ? relative_of(model) : NULL;
+	struct model *relative = again->relative ? model_build(spec, again) : NULL;
+	if (!relative || !find_tuning(relative, again))
+		return NULL;
+	relative->reduction.irreducible = model->reduction.irreducible;
+	if (relative->switching)
+		relative->switching->sharing = model->switching->sharing;
+	return relative;
+}
+
 /* The model over coordinates that part what moves as a whole from what moves in it; itself, where nothing does */
 struct model *stepped_model(struct model *model, struct spec *spec, const struct request *request)
 {
@@ -46,8 +72,7 @@ struct model *stepped_model(struct model *model, struct spec *spec, const struct
 		warn_of_kept(model);
 		return model;
 	}
-	again.relative = relative_of(model);
-	if (!again.relative)
+	if (!relative_of(model))
 		return model;
 	if (scheme_row(model->scheme)->holds_coupling) {
 		say_warning(model->asked.scheme_at.source ? model->asked.scheme_at : spec->name_at,
@@ -57,9 +82,5 @@ struct model *stepped_model(struct model *model, struct spec *spec, const struct
 		return model;
 	}
 	again.reduce = again.reduce && !model->reduction.irreducible;
-	struct model *relative = model_build(spec, &again);
-	if (!relative || !find_tuning(relative, &again))
-		return NULL;
-	relative->reduction.irreducible = model->reduction.irreducible;
-	return relative;
+	return model_over_differences(model, spec, &again);
 }

@@ -169,7 +169,9 @@ static long swift_bytes(const struct step *step)
 	long size = step->layout.size, halves = 0;
 	for (int k = 0; k < step->branches; k++)
 		halves = halves || step->branch[k].halvings > 0;
-	return 8 * s->systems * (s->expressions * (3 * size + 1) + halves * size * (size + 2 * s->expressions)) +
+	long off = halves || is_cleared_by_tables(step) ? size + 1 : 0;
+	return 8 * s->systems *
+		       (s->expressions * (2 * size + off) + halves * size * (size + 2 * s->expressions)) +
 	       28 * (long)s->regions * s->expressions + 8 * (step->swift_degree + 1);
 }
 
@@ -192,23 +194,32 @@ static long swift_multiplications(const struct step *step)
 	return step->swift ? size * size + MOST_LOOKS * (bounds + moves) : 0;
 }
 
-/* Bytes of tables, and the most that a step can take: every piece of it by a Taylor polynomial, all events and splits
- * used */
-static void person_regions(FILE *to, const struct step *step)
+/* Of the tables of a step, or of a part that is stepped alone */
+static long bytes_of_regions(const struct step *step)
 {
-	const struct switching *s = step->shown->model->switching;
-	long size = step->layout.size, matrices = s->systems, degree = step->series.degree, pieces = 1;
+	const struct switching *s = step->model->switching;
+	long size = step->layout.size, matrices = s->systems;
 	long bytes = 8 * (s->expressions * size + matrices * (2 * size * size + 3 * s->expressions * size)) +
-		     4 * (s->regions + s->expressions + matrices) + anchor_bytes(step);
-	if (step->swift)
-		bytes += swift_bytes(step);
+		     4 * (s->regions + s->expressions + matrices);
+	return bytes + (step->swift ? swift_bytes(step) : 0);
+}
+
+/* The most multiplications of a step: every piece of it by a Taylor polynomial, all events and splits used */
+static long most_of_regions(const struct step *step)
+{
+	const struct switching *s = step->model->switching;
+	long size = step->layout.size, degree = step->series.degree, pieces = 1;
 	for (int k = 0; k < step->branches; k++)
 		pieces = 1l << step->branch[k].halvings > pieces ? 1l << step->branch[k].halvings : pieces;
 	pieces += MAX_EVENTS + 1;
-	fprintf(to,
-		"Piecewise linear: %d regions, %d of them different; in each nothing is approximated, every constant "
-		"is correctly rounded.\n",
-		possible_regions(s), s->systems);
+	return pieces * (degree * (size * size + 2 * size) + (degree + 1) * s->expressions * (size + 6)) +
+	       4 * (degree + 1) * (2 * MAX_SPLITS + 4 * s->expressions * pieces + 64 * MAX_EVENTS) +
+	       swift_multiplications(step);
+}
+
+static void person_expressions(FILE *to, const struct step *step)
+{
+	const struct switching *s = step->shown->model->switching;
 	for (int i = 0; i < s->expressions; i++) {
 		fprintf(to, "    expression %d: %s, breakpoints", i,
 			form_text(step->shown->model, s->expression[i].form));
@@ -216,26 +227,91 @@ static void person_regions(FILE *to, const struct step *step)
 			fprintf(to, "%s %s", k ? "," : "", readable_text(s->expression[i].at[k]));
 		fputc('\n', to);
 	}
-	for (int r = 0; r < s->regions; r++) {
-		if (!s->region[r].possible)
-			continue;
-		fprintf(to, "    region %d (intervals", r);
-		for (int i = 0; i < s->expressions; i++)
-			fprintf(to, " %d", interval_of(s, r, i));
-		fprintf(to, "): matrix %d\n", s->region[r].system);
-	}
+}
+
+static void person_intervals(FILE *to, const struct switching *s, int region)
+{
+	fputs(" (intervals", to);
+	for (int i = 0; i < s->expressions; i++)
+		fprintf(to, " %d", interval_of(s, region, i));
+	fprintf(to, "): matrix %d\n", s->region[region].system);
+}
+
+static void person_way(FILE *to, const struct step *step, const char *of)
+{
 	if (step->swift)
 		fprintf(to,
-			"A step that a bound shows clear is one product; up to %d crossings go by Taylor polynomials "
-			"of degree %d, all else by the search.\n",
-			MOST_SWIFT, step->swift_degree);
+			"%s that a bound shows clear is one product; up to %d crossings go by Taylor polynomials of "
+			"degree %d, all else by the search.\n",
+			of, MOST_SWIFT, step->swift_degree);
 	else
-		fprintf(to, "Every step goes by the search: %s.\n", step->searches);
+		fprintf(to, "%s goes by the search: %s.\n", *of == 'A' ? "Every step" : of, step->searches);
+}
+
+static void person_regions(FILE *to, const struct step *step)
+{
+	const struct switching *s = step->shown->model->switching;
+	fprintf(to,
+		"Piecewise linear: %d regions, %d of them different; in each nothing is approximated, every constant "
+		"is correctly rounded.\n",
+		possible_regions(s), s->systems);
+	person_expressions(to, step);
+	if (s->sharing)
+		fprintf(to, "Coordinates move as a whole: %d independent parts have their regions together.\n",
+			s->sharing);
+	for (int r = 0; r < s->regions; r++)
+		if (s->region[r].possible) {
+			fprintf(to, "    region %d", r);
+			person_intervals(to, s, r);
+		}
+	person_way(to, step, "A step");
 	fprintf(to, "Tables: %ld bytes. Per step at most %d crossings and %d splits; at most %ld multiplications.\n",
-		bytes, MAX_EVENTS, MAX_SPLITS,
-		pieces * (degree * (size * size + 2 * size) + (degree + 1) * s->expressions * (size + 6)) +
-			4 * (degree + 1) * (2 * MAX_SPLITS + 4 * s->expressions * pieces + 64 * MAX_EVENTS) +
-			swift_multiplications(step));
+		bytes_of_regions(step) + anchor_bytes(step), MAX_EVENTS, MAX_SPLITS, most_of_regions(step));
+}
+
+/* ---- independent parts ---- */
+
+static void person_part(FILE *to, const struct step *whole, int index)
+{
+	const struct switching *all = whole->model->switching;
+	const struct region_part *part = &all->part[index];
+	const struct switching *s = part->model->switching;
+	fprintf(to, "    part %d:", index);
+	for (int i = 0; i < part->model->n; i++)
+		fprintf(to, "%s %s", i ? "," : "", part->model->coord_name[i]);
+	if (s->expressions == 0) {
+		fputs("; linear\n", to);
+		return;
+	}
+	fputs("; expressions", to);
+	for (int i = 0; i < s->expressions; i++)
+		fprintf(to, "%s %d", i ? "," : "", part->expression[i]);
+	fprintf(to, "; %d regions, %d of them different\n", possible_regions(s), s->systems);
+	for (int r = 0; r < s->regions; r++)
+		if (s->region[r].possible) {
+			fprintf(to, "        %d of the region's number", share_of_region(part, all, r));
+			person_intervals(to, s, r);
+		}
+	person_way(to, whole->part[index], "        A step of it");
+}
+
+static void person_parts(FILE *to, const struct step *step)
+{
+	long bytes = anchor_bytes(step), most = 0;
+	fprintf(to,
+		"Piecewise linear, in %d independent parts, each stepped by itself; in each region nothing is "
+		"approximated, every constant is correctly rounded.\n",
+		step->parts);
+	person_expressions(to, step);
+	for (int p = 0; p < step->parts; p++) {
+		person_part(to, step, p);
+		bytes += bytes_of_regions(step->part[p]);
+		most += most_of_regions(step->part[p]);
+	}
+	fprintf(to,
+		"Tables: %ld bytes. Per step of each part at most %d crossings and %d splits; of all at most %ld "
+		"multiplications.\n",
+		bytes, MAX_EVENTS, MAX_SPLITS, most);
 }
 
 /* What went where: the operators, then the leftover of the first; those of the others differ in linear terms only. */
@@ -330,7 +406,7 @@ void explain_person(FILE *to, const struct step *step)
 	if (scheme_row(model->scheme)->holds_coupling)
 		person_held(to, step);
 	if (model->switching)
-		person_regions(to, step);
+		(step->parts ? person_parts : person_regions)(to, step);
 	else if (has_leftover(step))
 		person_split(to, step);
 	else if (!scheme_row(model->scheme)->holds_coupling)
@@ -495,10 +571,9 @@ static void json_split(FILE *to, const struct step *step)
 	fputs("],\n", to);
 }
 
-static void json_regions(FILE *to, const struct step *step)
+static void json_expressions(FILE *to, const struct step *step)
 {
 	const struct switching *s = step->shown->model->switching;
-	bool first = true;
 	fputs("  \"expressions\": [", to);
 	for (int i = 0; i < s->expressions; i++) {
 		fprintf(to, "%s\n    {\"expression\": \"%s\", \"breakpoints\": [", i ? "," : "",
@@ -507,13 +582,56 @@ static void json_regions(FILE *to, const struct step *step)
 			fprintf(to, "%s%.17g", k ? ", " : "", nearest_double(s->expression[i].at[k]));
 		fputs("]}", to);
 	}
-	fputs("],\n  \"regions\": [", to);
+	fputs("],\n", to);
+}
+
+static void json_region_list(FILE *to, const struct switching *s)
+{
+	bool first = true;
+	fputs("  \"regions\": [", to);
 	for (int r = 0; r < s->regions; r++) {
 		if (!s->region[r].possible)
 			continue;
 		fprintf(to, "%s\n    {\"number\": %d, \"matrix\": %d}", first ? "" : ",", r, s->region[r].system);
 		first = false;
 	}
+	fputs("],\n", to);
+}
+
+/* number: what a region of the part adds to that of the model */
+static void json_part(FILE *to, const struct switching *all, int index)
+{
+	const struct region_part *part = &all->part[index];
+	const struct switching *s = part->model->switching;
+	bool first = true;
+	fprintf(to, "%s\n    {\"coordinates\": [", index ? "," : "");
+	for (int i = 0; i < part->model->n; i++)
+		fprintf(to, "%s\"%s\"", i ? ", " : "", part->model->coord_name[i]);
+	fputs("], \"expressions\": [", to);
+	for (int i = 0; i < s->expressions; i++)
+		fprintf(to, "%s%d", i ? ", " : "", part->expression[i]);
+	fputs("],\n     \"regions\": [", to);
+	for (int r = 0; r < s->regions && s->expressions > 0; r++) {
+		if (!s->region[r].possible)
+			continue;
+		fprintf(to, "%s{\"number\": %d, \"matrix\": %d}", first ? "" : ", ",
+			share_of_region(part, all, r), s->region[r].system);
+		first = false;
+	}
+	fputs("]}", to);
+}
+
+static void json_regions(FILE *to, const struct step *step)
+{
+	const struct switching *s = step->shown->model->switching;
+	json_expressions(to, step);
+	if (!s->parts) {
+		json_region_list(to, s);
+		return;
+	}
+	fputs("  \"parts\": [", to);
+	for (int p = 0; p < s->parts; p++)
+		json_part(to, s, p);
 	fputs("],\n", to);
 }
 

@@ -285,6 +285,16 @@ static void print_list(FILE *to, const struct step *step)
 
 /* ---- regions ---- */
 
+static void print_matrices(FILE *to, const struct step *step)
+{
+	for (int k = 0; k < step->branches; k++) {
+		fprintf(to, "Matrix %d, %s:\n", k,
+			step->branch[k].halvings ? format("pieces of h/%ld", 1l << step->branch[k].halvings)
+						 : "one piece");
+		print_table(to, step->branch[k].table[0]);
+	}
+}
+
 static void print_regions(FILE *to, const struct step *step)
 {
 	const struct switching *s = step->model->switching;
@@ -295,11 +305,24 @@ static void print_regions(FILE *to, const struct step *step)
 		"region\n",
 		s->expressions == 1 ? "the expression" : format("one of %d expressions", s->expressions),
 		step->series.degree);
-	for (int k = 0; k < step->branches; k++) {
-		fprintf(to, "Matrix %d, %s:\n", k,
-			step->branch[k].halvings ? format("pieces of h/%ld", 1l << step->branch[k].halvings)
-						 : "one piece");
-		print_table(to, step->branch[k].table[0]);
+	print_matrices(to, step);
+}
+
+/* Each as if it were alone */
+static void print_parts(FILE *to, const struct step *step)
+{
+	for (int p = 0; p < step->parts; p++) {
+		const struct step *part = step->part[p];
+		fprintf(to, "Part %d:", p);
+		for (int i = 0; i < part->model->n; i++)
+			fprintf(to, "%s %s", i ? "," : "", part->model->coord_name[i]);
+		if (part->model->switching->expressions > 0) {
+			fputs(". ", to);
+			print_regions(to, part);
+		} else {
+			fputs(". Actions:\n    y = whole.Phi y + loads + whole.held u + whole.ramp u'\n", to);
+			print_matrices(to, part);
+		}
 	}
 }
 
@@ -388,7 +411,8 @@ static void print_reads(FILE *to, const struct step *step)
 
 static const char *kind_text(const struct step *step)
 {
-	return step->model->switching ? "regions" : has_leftover(step) ? "with a leftover"
+	return step->parts ? "regions of independent parts"
+	       : step->model->switching ? "regions" : has_leftover(step) ? "with a leftover"
 	       : step->program->tuned ? "linear, tunable" : "linear";
 }
 
@@ -398,7 +422,7 @@ void explain_program(FILE *to, const struct step *step)
 	fprintf(to, "Program of a step of %s: %s; scheme %s, form %s, h = %s s\n", step->model->name, kind_text(step),
 		scheme_name(step->model->scheme), step_form_text(step), readable_text(step->model->h));
 	if (step->model->switching)
-		print_regions(to, step);
+		(step->parts ? print_parts : print_regions)(to, step);
 	else if (step->expansion)
 		print_expansion(to, step);
 	else if (has_leftover(step))

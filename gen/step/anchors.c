@@ -38,7 +38,7 @@ static const char *objection(const struct step *step)
 		return "--real float: there functions are cheap, and memory is short";
 	if (step->branch->system.segments > 1)
 		return "loads that change their formula in time";
-	if (step->kind != KIND_REGIONS && step->branch->system.states > LIMIT_UNROLLED_STATES)
+	if (!step->model->switching && step->branch->system.states > LIMIT_UNROLLED_STATES)
 		return format("more than %d states: the step loops over its tables", LIMIT_UNROLLED_STATES);
 	return NULL;
 }
@@ -118,7 +118,7 @@ static struct anchors *anchors_of(const struct step *step)
 {
 	const struct linear *system = &step->branch->system;
 	struct anchors *anchors = NEW(struct anchors);
-	anchors->turned = step->kind == KIND_REGIONS;
+	anchors->turned = step->model->switching != NULL;
 	anchors->load = anchors->turned ? loads_of_regions(step) : ARRAY(bool, (size_t)system->loads);
 	for (int l = 0; l < system->loads; l++)
 		anchors->load[l] = !is_polynomial(system->load[l].wave) &&

@@ -247,17 +247,19 @@ static void check_actions(struct check *c)
 
 /* ---- regions ---- */
 
-static void check_regions(struct check *c)
+static void check_regions(struct check *c, const struct step *step)
 {
-	const struct step *step = c->step;
 	c->where = "regions";
 	need(c, step->branches == step->model->switching->systems, "one without its tables");
+	need(c, step->parts == step->model->switching->parts, "an independent part without its step");
 	need(c, step->series.emitted && step->series.degree > 0, "they have no series to find crossings by");
 	for (int k = 0; k < step->branches; k++) {
 		const struct wanted *wanted = step->branch[k].table[0]->wanted;
 		need(c, among(step->branch[k].halvings, LIMIT_PIECES + 1), "pieces of a step that are out of range");
 		need(c, wanted->kernels == 2, "a table without what inputs add, held and as ramps");
 	}
+	for (int p = 0; p < step->parts; p++)
+		check_regions(c, step->part[p]);
 }
 
 /* A sum reads what stands before it, but for the values of an integral, which come one later. */
@@ -291,7 +293,7 @@ void program_check(const struct step *step)
 	check_tables(&c);
 	need(&c, step->program->reads && step->program->uses, "it does not say what it reads");
 	if (step->model->switching)
-		check_regions(&c);
+		check_regions(&c, step);
 	else if (step->kind == KIND_EXPANDED)
 		check_expansion(&c);
 	else if (has_leftover(step))

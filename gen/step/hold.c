@@ -87,7 +87,7 @@ int samples_ahead(int hold)
 
 static const char *objection(const struct step *step)
 {
-	if (step->kind == KIND_REGIONS)
+	if (step->model->switching)
 		return "where a piecewise-linear model crosses a breakpoint is searched for with held inputs and ramps";
 	if (has_leftover(step))
 		return "what is left over reads held inputs and ramps";

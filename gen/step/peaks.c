@@ -22,7 +22,7 @@ static const char *objection(const struct step *step, const struct output *outpu
 {
 	if (output->left)
 		return "it is not linear";
-	if (step->kind == KIND_REGIONS)
+	if (step->model->switching)
 		return "the model is piecewise linear";
 	if (has_leftover(step))
 		return "the model has a leftover";

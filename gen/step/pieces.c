@@ -82,6 +82,11 @@ static double *Phi_of(const struct step *step, const struct table *table, int ha
 	return Phi;
 }
 
+double *whole_step_of(const struct step *step, int branch)
+{
+	return Phi_of(step, step->branch[branch].whole, 0);
+}
+
 static double *finite_slopes(const struct step *step, int branch)
 {
 	int cells = step->layout.size * step->layout.size;
@@ -434,7 +439,7 @@ struct pieces pieces_of(const struct step *step)
 		pieces.piece[k].slopes = finite_slopes(step, k);
 	for (int k = 0; k < step->branches; k++)
 		pieces.piece[k].Phi = Phi_of(step, step->branch[k].table[0], step->branch[k].halvings);
-	for (int k = 0; k < step->branches; k++)
+	for (int k = 0; k < step->branches && step->model->switching->expressions > 0; k++)
 		fill_bounds(step, &pieces, k);
 	if (step->swift)
 		fill_swift(step, &pieces);

@@ -5,7 +5,7 @@
 enum step_kind kind_of_step(const struct model *model)
 {
 	if (model->switching)
-		return KIND_REGIONS;
+		return model->switching->parts ? KIND_PARTS : KIND_REGIONS;
 	if (model->tuning)
 		return KIND_TUNED;
 	if (model->channels == 0)
@@ -35,17 +35,25 @@ bool is_forced(const struct step *step, int column)
 	return false;
 }
 
+static void mark_loads_of(const struct switching *s, bool *needed)
+{
+	for (int l = 0; l < s->system->loads; l++) {
+		for (int k = 0; k < s->systems; k++)
+			needed[l] = needed[l] || load_acts(&s->system[k], &s->system[k].load[l]);
+		for (int e = 0; e < s->expressions; e++)
+			for (int k = 0; k < s->system->load[l].columns; k++)
+				needed[l] = needed[l] || mpq_sgn(s->expression[e].row->load[l][k]) != 0;
+	}
+}
+
 bool *loads_of_regions(const struct step *step)
 {
 	const struct switching *s = step->model->switching;
 	bool *needed = ARRAY(bool, (size_t)step->branch->system.loads);
-	for (int l = 0; l < step->branch->system.loads; l++) {
-		for (int k = 0; k < s->systems; k++)
-			needed[l] = needed[l] || load_acts(&s->system[k], &s->system[k].load[l]);
-		for (int e = 0; e < s->expressions; e++)
-			for (int k = 0; k < step->branch->system.load[l].columns; k++)
-				needed[l] = needed[l] || mpq_sgn(s->expression[e].row->load[l][k]) != 0;
-	}
+	for (int p = 0; p < s->parts; p++)
+		mark_loads_of(s->part[p].model->switching, needed);
+	if (s->parts == 0)
+		mark_loads_of(s, needed);
 	return needed;
 }
 
@@ -58,6 +66,7 @@ void need_closed_form(const struct step *step)
 {
 	static const char *const of_kind[KINDS] = {
 		[KIND_REGIONS] = "where it crosses a breakpoint is found by a search",
+		[KIND_PARTS] = "where it crosses a breakpoint is found by a search",
 		[KIND_LEFTOVER] = "what is left over has no closed form",
 		[KIND_EXPANDED] = "what is left over has no closed form"
 	};

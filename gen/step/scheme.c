@@ -40,36 +40,6 @@ static void find_growth(struct step *step)
 		mpfr_max(step->growth, step->growth, pole[i].re, MPFR_RNDN);
 }
 
-/* The ramps of inputs as channels: u', held and as the slope of u */
-static struct linear driven_system(const struct linear *region)
-{
-	struct linear system = *region;
-	system.channels = 2 * region->inputs;
-	system.channel = ARRAY(mpq_t *, (size_t)system.channels);
-	for (int i = 0; i < system.channels; i++)
-		system.channel[i] = region->input[i / 2].force[i % 2];
-	return system;
-}
-
-/* The linear system of each operator, and what of it a step takes */
-static void take_operators(struct step *step)
-{
-	const struct model *model = step->model;
-	const struct switching *regions = model->switching;
-	bool holds = scheme_row(model->scheme)->holds_coupling;
-	step->branches = regions ? regions->systems : model->operators ? model->operators : 1;
-	step->branch = ARRAY(struct branch, (size_t)step->branches);
-	for (int k = 0; k < step->branches; k++) {
-		struct linear system = regions		  ? driven_system(&regions->system[k])
-				       : model->operators ? operator_system(model, k)
-							  : model->system;
-		bool as_written = !regions && !model->operators && model->written == model && !holds;
-		step->branch[k].system = holds ? piecewise_laplace(&system) : system;
-		step->branch[k].resolvent = as_written ? step->written : resolvent_of(&step->branch[k].system);
-		check_pole_size(model, step->branch[k].resolvent);
-	}
-}
-
 static void make_tables(struct step *step, int count, const struct wanted *wanted)
 {
 	step->tables = count;
@@ -117,98 +87,6 @@ static void build_exact(struct step *step)
 		step->program = linear_program(step);
 	fill_anchors(step);
 	plan_rest(step);
-}
-
-/* Phi over a part of the step, and what inputs add: u held, and u' as the slope of u */
-static struct wanted *wanted_piece(const struct step *step, int halvings)
-{
-	struct recipe *r = NEW(struct recipe);
-	r->step = step;
-	int piece = add_table(r, "piece", 1, 1ul << halvings, true);
-	add_phi(r, piece, "held", 1, 1ul << halvings, 1, (long[]){ 1 });
-	int ramp = add_phi(r, piece, "ramp", 1, 1ul << halvings, 2, (long[]){ 0, 1 });
-	mpq_set(r->table[piece].kernel[ramp].part[0].power[1], step->model->h);
-	return r->table;
-}
-
-/* Why a step of regions does not look over the whole of h first; NULL: it does */
-static const char *no_swift(const struct step *step)
-{
-	enum { TERMS = 400, BOUNDS = 1024 };
-	const struct switching *s = step->model->switching;
-	bool turns = false;
-	for (int k = 0; k < step->branches; k++)
-		turns = turns || step->branch[k].halvings > 1;
-	return step->model->asked.single                 ? "it is smaller, for the target float"
-	       : turns                                   ? "the fastest pole turns by more than 2 in a step"
-	       : s->regions * s->expressions > BOUNDS     ? "there are too many regions"
-	       : step->layout.size * (step->layout.states + s->expressions) > TERMS ? "it would be more than a page"
-									      : NULL;
-}
-
-/* Tables over the whole of h, of a region that has pieces of half of it */
-static void plan_whole(struct step *step, int k)
-{
-	struct branch *b = &step->branch[k];
-	if (b->halvings == 0)
-		b->whole = b->table[0];
-	else if (b->halvings == 1 && k > 0)
-		b->whole = tables_of(step->model, b->resolvent, &b->system, 1, wanted_piece(step, 0))[0];
-}
-
-static void plan_swift(struct step *step)
-{
-	bool any = false;
-	step->searches = no_swift(step);
-	step->swift = !step->searches;
-	for (int k = 0; k < step->branches; k++)
-		any = any || step->branch[k].halvings > 0;
-	if (!step->swift)
-		return;
-	int expressions = step->model->switching->expressions;
-	int products = (step->layout.states + expressions) * step->layout.size;
-	count_regions(step, products, products + 2 * expressions);
-	step->swift_degree = any ? series_degree(step, 0, step->branches, 0) : step->series.degree;
-}
-
-static void plan_region(struct step *step, int k)
-{
-	step->branch[k].halvings = series_halvings(step, k);
-	if (step->branch[k].halvings > LIMIT_PIECES)
-		error(step->model->asked.step_at, "a smaller step would do",
-		      "the largest pole times h is above 2^%d: too many pieces of a step to look for crossings in",
-		      LIMIT_PIECES);
-	struct linear *system = &step->branch[k].system;
-	step->branch[k].table = tables_of(step->model, step->branch[k].resolvent, system, 1,
-					  wanted_piece(step, step->branch[k].halvings));
-	plan_whole(step, k);
-	system->channels = 0;
-	int degree = series_degree(step, k, k + 1, step->branch[k].halvings);
-	step->series.degree = degree > step->series.degree ? degree : step->series.degree;
-}
-
-/* A piecewise-linear model: e^{A d} of each region for pieces d of the step, and the series that finds crossings */
-static void build_regions_step(struct step *step)
-{
-	struct branch *first = step->branch;
-	int channels = first->system.channels;  /* ramps of inputs, while tables are made */
-	need_direct(step);
-	step->tables = 1;
-	first->whole = tables_of(step->model, first->resolvent, &first->system, 1, wanted_piece(step, 0))[0];
-	first->system.channels = 0;
-	step->layout = layout_with(&first->system, 0, loads_of_regions(step));
-	find_carries(step);
-	plan_anchors(step);
-	fill_anchors(step);
-	step->program = linear_program(step);
-	int products = (step->layout.size + 6 * step->model->switching->expressions) * step->layout.size;
-	count_regions(step, products, products);
-	first->system.channels = channels;
-	step->series.degree = 3;
-	step->series.emitted = true;
-	for (int k = 0; k < step->branches; k++)
-		plan_region(step, k);
-	plan_swift(step);
 }
 
 static void build_with_leftover(struct step *step)
@@ -290,8 +168,8 @@ static void build(void *context)
 {
 	static void (*const build_kind[KINDS])(struct step *) = {
 		[KIND_LINEAR] = build_linear_step, [KIND_TUNED] = build_tuned_step,
-		[KIND_REGIONS] = build_regions_step, [KIND_LEFTOVER] = build_leftover_step,
-		[KIND_EXPANDED] = build_expanded_step
+		[KIND_REGIONS] = build_regions_step, [KIND_PARTS] = build_parts_step,
+		[KIND_LEFTOVER] = build_leftover_step, [KIND_EXPANDED] = build_expanded_step
 	};
 	struct step *step = context;
 	const struct model *model = step->model;

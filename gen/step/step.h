@@ -244,6 +244,7 @@ enum step_kind {                    /* what a step is made of */
 	KIND_LINEAR,                /* assignments, or loops over tables: nothing is left over */
 	KIND_TUNED,                 /* the same, its factors from the params that the instance has */
 	KIND_REGIONS,               /* the series of a region, and a search for crossings */
+	KIND_PARTS,                 /* independent parts, each with regions of its own, or linear */
 	KIND_LEFTOVER,              /* a list of actions on stages and leftovers */
 	KIND_EXPANDED,              /* the Taylor series of the solution */
 	KINDS
@@ -296,6 +297,8 @@ struct step {                       /* everything that is emitted for one model 
 	const char *searches;       /* why it is not */
 	int swift_degree;
 	struct expansion *expansion; /* of an expanded step; else NULL */
+	int parts;                  /* of a piecewise-linear model that are independent, each with a step of its own */
+	struct step **part;
 	struct load_phase *phase;   /* per load */
 	struct rows *rows;          /* NAME_run in blocks of rows; NULL: step by step */
 	const char *no_rows;        /* why it is so, where a reader would ask */
@@ -390,6 +393,16 @@ struct leap leap_of(const struct step *step);
 /* Beyond Phi, what is not 0; returns how many */
 int leap_entries_of(const struct step *step, const struct leap *leap, struct leap_entry **entry);
 
+/* ---- branches.c: the linear systems that a step is made of ---- */
+
+void take_operators(struct step *step);
+
+/* ---- switched.c: steps of piecewise-linear models ---- */
+
+void build_regions_step(struct step *step);
+void build_parts_step(struct step *step);
+bool is_cleared_by_tables(const struct step *step);         /* a swift step looks by tables, not region by region */
+
 /* ---- pieces.c: what a piecewise-linear model finds its crossings with ---- */
 
 struct region_piece {               /* of a branch, d = h 2^-halvings long; x as in struct layout */
@@ -419,6 +432,7 @@ struct pieces {
 };
 #define OPEN_END 0x1p1000           /* of an interval that no breakpoint ends */
 struct pieces pieces_of(const struct step *step);
+double *whole_step_of(const struct step *step, int branch);  /* e^{A h}, size x size */
 void row_over_x(const struct step *step, const struct output *output, double *row);
 /* Of |x|: how far row . x is at most off its chord over h, entry by entry */
 void bend_of_row(const struct step *step, const double *A, double h, const double *row, double *bend);

@@ -76,6 +76,9 @@ coord x; x'' + x + max(x, 0) = 0
 coord x; x'' + x + max(x, 0) = t
 coord x; x'' + x + max(x - t, 0) = 0
 coord x; x'' + x + max(x, 0) = exp(-t)*sin(2*t) + t^2
+coord x, y; x' + y + max(x, 0) = t; y'' + y = x
+coord x, q[9]; x'' + x + max(x, 0) = 0; q'' + q = 0
+coord x, y, z; input u, v hold first; x'' + x + max(x - u, 0) = t^2; y' + abs(y) = v; z'' + z = cos(t) + t^3 + v'
 coord x; x'' + x + abs(x - cos(t)) = 1
 coord x; input u; x'' + x + max(x, 0) = u
 coord x; input u; x'' + x + max(x - u, 0) = 0

@@ -130,6 +130,76 @@ static void twins(int step)
 	run_free(&one);
 }
 
+static bool same_crossings(int count, const pl_crossing *found, const pl_crossing *expected, int shift, int k)
+{
+	bool good = true;
+	for (int i = 0; i < count; i++) {
+		good = close_to(found[i].time, expected[i].time, 1e-10, "step %d: time of crossing %d", k, i) && good;
+		good = found[i].expression == expected[i].expression + shift && found[i].upward == expected[i].upward &&
+		       found[i].breakpoint == expected[i].breakpoint && good;
+	}
+	return good;
+}
+
+/* Of the crossings of all those of expressions first .. last */
+static int picked(int count, const pl_crossing *all, int first, int last, pl_crossing *some)
+{
+	int found = 0;
+	for (int i = 0; i < count; i++)
+		if (all[i].expression >= first && all[i].expression <= last)
+			some[found++] = all[i];
+	return found;
+}
+
+/* x has expression 0 of two intervals; y 1 of two, its velocity, and 2 of three; z none */
+static void parts(int step)
+{
+	struct run all = run_new(variant_of(state_table, "parts_%d", step)), one[3];
+	double states[6], alone[2], middle[6];
+	bool good = true, listed = true, numbered = true, between = true;
+	for (int c = 0; c < 3; c++)
+		one[c] = run_new(variant_of(state_table, "part_%c_%d", "xyz"[c], step));
+	const double h = all.of->model->h;
+	for (int k = 0; k < 400; k++) {
+		pl_crossing crossing[MOST_EVENTS], own[2][MOST_EVENTS], of_part[MOST_EVENTS];
+		const double u[1] = { 0.5 + sample(k) };
+		all.of->model->at(all.state, u, 0.37 * h, middle);
+		run_step(&all, u);
+		run_state(&all, states);
+		const int count = all.of->crossings(all.state, crossing);
+		for (int c = 0; c < 3; c++) {
+			one[c].of->model->at(one[c].state, u, 0.37 * h, alone);
+			const double then[2] = { middle[c], middle[3 + c] };
+			between = same(all.of->model, then, alone, 2, 1e-10, "at 0.37 h, state", k) && between;
+			run_step(&one[c], u);
+			run_state(&one[c], alone);
+			const double now[2] = { states[c], states[3 + c] };
+			good = same(all.of->model, now, alone, 2, 1e-10, "state", k) && good;
+			if (c == 2)
+				continue;
+			const int found = one[c].of->crossings(one[c].state, own[c]);
+			const int taken = picked(count, crossing, c, c ? 2 : 0, of_part);
+			listed = close_to(taken, found, 0, "step %d: crossings of part %d", k, c) && listed;
+			listed = taken == found && same_crossings(found, of_part, own[c], c, k) && listed;
+		}
+		const int region = one[0].of->region(one[0].state) + 2 * one[1].of->region(one[1].state);
+		numbered = close_to(all.of->region(all.state), region, 0, "step %d: region", k) && numbered;
+	}
+	const uint64_t crossed = one[0].of->crossed(one[0].state) + one[1].of->crossed(one[1].state);
+	ok(good, "parts, h = %g: each as one alone", h);
+	ok(between, "parts, h = %g: each as one alone between steps", h);
+	ok(listed && all.of->crossed(all.state) == crossed, "parts, h = %g: %d crossings, each as of one alone", h,
+		(int)crossed);
+	ok(numbered, "parts, h = %g: the number of the region from theirs", h);
+	const double none[6] = { 0, 0, NAN, 0, 0, 0 };
+	run_set(&all, none);
+	run_step(&all, (const double[]){ 0 });
+	ok(all.of->model->status(all.state) == PL_NOT_FINITE, "parts, h = %g: no number in the linear part is told", h);
+	for (int c = 0; c < 3; c++)
+		run_free(&one[c]);
+	run_free(&all);
+}
+
 /* x - w rises through 0.1 and comes back: the direction is that of x - w, as written */
 static void bump(void)
 {
@@ -165,8 +235,10 @@ static void bump(void)
 int main(void)
 {
 	bump();
-	for (int step = 0; step < 3; step++)
+	for (int step = 0; step < 3; step++) {
 		twins(step);
+		parts(step);
+	}
 	for (const struct variant *of = state_table; of->model; of++)
 		functions(of);
 	return tap_end();

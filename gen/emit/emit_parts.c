@@ -1,0 +1,478 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A piecewise-linear model of independent parts as C: each part's tables and functions as if it were alone, and what
+ * makes one model of them. */
+#include "emit/emit.h"
+
+#include <math.h>
+
+static const struct switching *regions_of(const struct emitter *part)
+{
+	return part->model->switching;
+}
+
+static bool is_linear_step(const struct step *part)
+{
+	return part->model->switching->expressions == 0;
+}
+
+static bool is_linear_part(const struct emitter *part)
+{
+	return is_linear_step(part->step);
+}
+
+static int first_of_degree(const struct emitter *e, int index)
+{
+	int first = 0;
+	while (is_linear_step(e->step->part[first]) || !e->step->part[first]->swift ||
+	       e->step->part[first]->swift_degree != e->step->part[index]->swift_degree)
+		if (first++ == index)
+			return index;
+	return first;
+}
+
+static struct emitter part_of(const struct emitter *e, int index)
+{
+	struct emitter part = *e;
+	part.part = &e->model->switching->part[index];
+	part.model = part.part->model;
+	part.step = e->step->part[index];
+	part.system = &part.step->branch->system;
+	part.own = format("%s_part%d", e->name, index);
+	part.place = format("[%d]", index);
+	part.degree = format("%s_part%d", e->name, first_of_degree(e, index));
+	part.local = ARRAY(const char *, (size_t)part.system->states);
+	for (int i = 0; i < part.system->states; i++)
+		part.local[i] = e->local[part.part->state[i]];
+	return part;
+}
+
+/* The linear part, the last, has none. */
+static int divided_parts(const struct emitter *e)
+{
+	int parts = e->step->parts;
+	return parts - is_linear_step(e->step->part[parts - 1]);
+}
+
+static void for_parts(const struct emitter *e, int count, void (*emit)(const struct emitter *part))
+{
+	for (int p = 0; p < count; p++) {
+		const struct emitter part = part_of(e, p);
+		emit(&part);
+	}
+}
+
+/* ---- tables ---- */
+
+static void emit_indices(const struct emitter *part, const char *name, int count, const int *index, const char *note)
+{
+	say(part, "static const int $o_%s[%d] = {", name, count);
+	for (int i = 0; i < count; i++)
+		say(part, "%s%d", i == 0 ? "" : i % 20 ? ", " : ",\n    ", index[i]);
+	say(part, "};  /* %s */\n", note);
+}
+
+/* What each region of the part adds to the number of the model's */
+static void emit_shares(const struct emitter *part, const struct switching *whole)
+{
+	const struct switching *s = regions_of(part);
+	int *share = ARRAY(int, (size_t)s->regions);
+	for (int r = 0; r < s->regions; r++)
+		share[r] = share_of_region(part->part, whole, r);
+	emit_indices(part, "share", s->regions, share, "of each region in the number of the model's region");
+	emit_indices(part, "number", s->expressions, part->part->expression, "of its expressions");
+}
+
+static void emit_matrix(const struct emitter *part, const char *name, const char *note, const double *value)
+{
+	int size = part->step->layout.size;
+	say(part, "\n"
+		  "static const double $o_%s[%d][%d] = {  /* %s */\n", name, size, size, note);
+	emit_number_rows(part, size, size, value, layout_names(&part->step->layout, part->system, part->model));
+	say(part, "};\n");
+}
+
+/* Of the linear part, for NAME_at: a region without expressions, whose tables are never looked at */
+static void emit_linear_tables(const struct emitter *part)
+{
+	struct pieces pieces = pieces_of(part->step);
+	emit_matrix(part, "slopes", "x' = A x; x = states, load states, inputs", pieces.piece->slopes);
+	emit_matrix(part, "pieces", "e^{A d}, d = h 2^-halvings", pieces.piece->Phi);
+	say(part, "\n"
+		  "static const int $o_matrix[1] = {0};\n"
+		  "static const int $o_halvings[1] = {%d};\n"
+		  "\n"
+		  "static const pl_switching $o_switching = {  /* no expressions: what is theirs is not read */\n"
+		  "    %d, $N_H, 0, $o_slopes[0], $o_matrix, $o_slopes[0], $o_matrix, $o_halvings,\n"
+		  "    $o_slopes[0], $o_pieces[0], $o_slopes[0], $o_slopes[0], $o_slopes[0], %d, 0, 0\n"
+		  "};\n",
+	    part->step->branch->halvings, part->step->layout.size, part->step->series.degree);
+}
+
+static const char *names_of_part(const struct emitter *part)
+{
+	const char *list = "";
+	for (int i = 0; i < part->model->n; i++)
+		list = format("%s%s%s", list, i ? ", " : "", part->model->coord_name[i]);
+	return list;
+}
+
+static void emit_tables_of_part(const struct emitter *part)
+{
+	say(part, "\n/* ---- part %d: %s ---- */\n\n", (int)(part->part - part->step->shown->model->switching->part),
+	    names_of_part(part));
+	emit_indices(part, "state", part->system->states, part->part->state, "where its states are in y");
+	if (is_linear_part(part)) {
+		emit_linear_tables(part);
+		return;
+	}
+	emit_shares(part, part->step->shown->model->switching);
+	emit_regions(part);
+}
+
+void emit_part_tables(const struct emitter *e)
+{
+	for_parts(e, e->step->parts, emit_tables_of_part);
+}
+
+/* ---- what functions of a part are given: inputs, and the load states that it reads ---- */
+
+/* `as_parameters`, or as arguments */
+static const char *loads_text(const struct emitter *part, bool as_parameters)
+{
+	const char *text = "";
+	for (int l = 0; l < part->system->loads; l++) {
+		const struct load *load = &part->system->load[l];
+		bool polynomial = is_polynomial(load->wave);
+		if (part->step->layout.load[l] < 0)
+			continue;
+		if (polynomial && load->powers > 1)
+			text = format("%s, %st", text, as_parameters ? "double " : "");
+		if (!polynomial || load->powers > 2)
+			text = as_parameters ? format("%s, const double load%d[%d]", text, l + 1, load->columns)
+					     : format("%s, load%d", text, l + 1);
+	}
+	return text;
+}
+
+static const char *given_text(const struct emitter *part, bool as_parameters)
+{
+	const char *u = part->system->inputs == 0 ? ""
+			: as_parameters           ? spell(part, ", const double u[$N_INPUTS]")
+						  : ", u";
+	return format("%s%s", u, loads_text(part, as_parameters));
+}
+
+static bool *needed_loads(const struct emitter *e, bool linear_too)
+{
+	bool *needed = ARRAY(bool, (size_t)e->system->loads);
+	for (int p = 0; p < (linear_too ? e->step->parts : divided_parts(e)); p++)
+		for (int l = 0; l < e->system->loads; l++)
+			needed[l] = needed[l] || e->step->part[p]->layout.load[l] >= 0;
+	return needed;
+}
+
+/* ---- in the model's own functions ---- */
+
+void emit_part_declarations(const struct emitter *e)
+{
+	say(e, "int    $n_region(const $n *s);           "
+	       "/* its number: an interval of each expression, see the source */\n"
+	       "uint64_t $n_crossed(const $n *s);        /* breakpoints crossed since init or set */\n"
+	       "int    $n_crossings(const $n *s, pl_crossing crossing[$N_MAX_EVENTS]);  "
+	       "/* those of the last step, by time; how many */\n");
+}
+
+void emit_part_members(const struct emitter *e)
+{
+	say(e, "    pl_contact contact[%d];   /* of each part: region, crossings */\n"
+	       "    pl_crossing crossing[%d][%d];  /* of each, in the last step */\n",
+	    divided_parts(e), divided_parts(e), MAX_EVENTS);
+}
+
+static void emit_place_of_part(const struct emitter *part)
+{
+	say(part, "\n"
+		  "static void $o_place($n *s%s)\n"
+		  "{\n"
+		  "    int i;\n", loads_text(part, true));
+	declare_region_room(part);
+	emit_region_vector(part, false);
+	say(part, "    pl_switching_start(&$o_switching, x, &s->contact$p, work);\n"
+		  "}\n");
+}
+
+static void emit_place_call(const struct emitter *part)
+{
+	say(part, "    $o_place(s%s);\n", loads_text(part, false));
+}
+
+void emit_part_start(const struct emitter *e)
+{
+	for_parts(e, divided_parts(e), emit_place_of_part);
+	say(e, "\n"
+	       "/* The regions of a state */\n"
+	       "static void $n_place($n *s)\n"
+	       "{\n");
+	emit_turned_loads(e, needed_loads(e, false), false);
+	for_parts(e, divided_parts(e), emit_place_call);
+	say(e, "}\n");
+}
+
+/* ---- questions ---- */
+
+static const char *list_of(const struct emitter *e, const char *table)
+{
+	const char *list = "";
+	for (int p = 0; p < divided_parts(e); p++)
+		list = format("%s%s%s_part%d_%s", list, p == 0 ? "" : p % 4 ? ", " : ",\n        ", e->name, p, table);
+	return list;
+}
+
+static void emit_region_number(const struct emitter *e)
+{
+	int parts = divided_parts(e);
+	say(e, "\n"
+	       "int $n_region(const $n *s)\n"
+	       "{\n"
+	       "    return ");
+	for (int p = 0; p < parts; p++)
+		say(e, "%s$n_part%d_share[s->contact[%d].region]", p ? "\n           + " : "", p, p);
+	say(e, ";\n"
+	       "}\n"
+	       "\n"
+	       "uint64_t $n_crossed(const $n *s)\n"
+	       "{\n"
+	       "    return ");
+	for (int p = 0; p < parts; p++)
+		say(e, "%ss->contact[%d].total", p == 0 ? "" : p % 4 ? " + " : "\n           + ", p);
+	say(e, ";\n"
+	       "}\n");
+}
+
+/* Those of all parts, by time */
+static void emit_crossings(const struct emitter *e)
+{
+	int parts = divided_parts(e);
+	say(e, "\n"
+	       "int $n_crossings(const $n *s, pl_crossing crossing[$N_MAX_EVENTS])\n"
+	       "{\n"
+	       "    static const int *const number[%d] = {\n"
+	       "        %s\n"
+	       "    };\n"
+	       "    int next[%d] = {0}, count = 0, part, first;\n"
+	       "    for (;;) {\n"
+	       "        for (part = 0, first = -1; part < %d; part++)\n"
+	       "            if (next[part] < s->contact[part].crossings &&\n"
+	       "                (first < 0 || s->crossing[part][next[part]].time < "
+	       "s->crossing[first][next[first]].time))\n"
+	       "                first = part;\n"
+	       "        if (first < 0)\n"
+	       "            return count;\n"
+	       "        crossing[count] = s->crossing[first][next[first]++];\n"
+	       "        crossing[count].expression = number[first][crossing[count].expression];\n"
+	       "        count++;\n"
+	       "    }\n"
+	       "}\n",
+	    parts, list_of(e, "number"), parts, parts);
+}
+
+/* ---- a step ---- */
+
+static int acting_entries(const struct emitter *part, const double *whole)
+{
+	int size = part->step->layout.size, count = 0;
+	for (int i = 0; i < part->system->states * size; i++)
+		count += whole[i] != 0;
+	return count;
+}
+
+static void emit_linear_loop(const struct emitter *part, const double *whole)
+{
+	emit_matrix(part, "whole", "e^{A h}", whole);
+	say(part, "\n"
+		  "static void $o_step($n *s%s)\n"
+		  "{\n"
+		  "    double x[%d], end[%d];\n"
+		  "    int i;\n", given_text(part, true), part->step->layout.size, part->system->states);
+	emit_region_vector(part, true);
+	say(part, "    pl_multiply(%d, %d, $o_whole[0], x, end);\n"
+		  "    for (i = 0; i < %d; i++)\n"
+		  "        s->y[$o_state[i]] = end[i];\n", part->system->states, part->step->layout.size,
+	    part->system->states);
+}
+
+static const char **linear_operands(const struct emitter *part)
+{
+	const struct layout *layout = &part->step->layout;
+	const char **x = ARRAY(const char *, (size_t)layout->size);
+	for (int i = 0; i < part->system->states; i++)
+		x[i] = part->local[i];
+	for (int l = 0; l < part->system->loads; l++)
+		for (int k = 0; k < part->system->load[l].columns && layout->load[l] >= 0; k++)
+			x[layout->load[l] + k] = load_operand(part, l, k);
+	for (int i = 0; i < part->system->inputs; i++) {
+		int of = place_of_input(part, i);
+		bool ramp = part->system->input[i].hold;
+		x[layout->input[i]] = format(ramp ? "s->u[%d]" : "u[%d]", of);
+		if (ramp)
+			x[layout->input[i] + 1] = format("part%d", of);
+	}
+	return x;
+}
+
+/* Load states that are given, since others follow from them, and that no row reads */
+static void emit_unread(const struct emitter *part, const double *whole)
+{
+	int size = part->step->layout.size;
+	for (int l = 0; l < part->system->loads; l++) {
+		const struct load *load = &part->system->load[l];
+		int first = part->step->layout.load[l];
+		bool polynomial = is_polynomial(load->wave), time = false, array = false;
+		for (int k = 0; k < load->columns && first >= 0; k++)
+			for (int i = 0; i < part->system->states; i++) {
+				bool reads = whole[i * size + first + k] != 0;
+				time = time || (reads && polynomial && k == 1);
+				array = array || (reads && (!polynomial || k > 1));
+			}
+		if (first >= 0 && polynomial && load->powers > 1 && !time)
+			say(part, "    (void)t;\n");
+		if (first >= 0 && (!polynomial || load->powers > 2) && !array)
+			say(part, "    (void)load%d;\n", l + 1);
+	}
+}
+
+static void emit_linear_rows(const struct emitter *part, const double *whole)
+{
+	int size = part->step->layout.size, states = part->system->states;
+	bool *all = ARRAY(bool, (size_t)states);
+	const char **x = linear_operands(part), **term = ARRAY(const char *, (size_t)size);
+	for (int i = 0; i < states; i++)
+		all[i] = true;
+	say(part, "\n"
+		  "static void $o_step($n *s%s)\n"
+		  "{\n", given_text(part, true));
+	emit_raw_locals(part, all, false);
+	for (int i = 0; i < part->system->inputs; i++)
+		if (part->system->input[i].hold)
+			say(part, "    const double part%d = %s;\n", place_of_input(part, i),
+			    ramp_slope(part, place_of_input(part, i)));
+	for (int i = 0; i < states; i++) {
+		int terms = 0;
+		for (int j = 0; j < size; j++)
+			if (whole[i * size + j] != 0)
+				term[terms++] = scaled(whole[i * size + j], x[j]);
+		say(part, "    s->y[%d] = %s;  /* %s */\n", place_of_state(part, i),
+		    terms ? tree(terms, term, 14) : "0.0", part->model->state_name[i]);
+	}
+	emit_unread(part, whole);
+}
+
+static void emit_linear_step(const struct emitter *part)
+{
+	enum { TERMS = 400 };
+	const double *whole = whole_step_of(part->step, 0);
+	const char **size = ARRAY(const char *, (size_t)part->system->states);
+	(acting_entries(part, whole) > TERMS ? emit_linear_loop : emit_linear_rows)(part, whole);
+	for (int i = 0; i < part->system->states; i++)
+		size[i] = format("pl_magnitude(s->y[%d])", place_of_state(part, i));
+	say(part, "    if (!(%s < %s))\n"
+		  "        s->status |= pl_not_finite(s->y, $N_STATES);\n"
+		  "}\n",
+	    tree(part->system->states, size, 10), shortest(part->model->asked.single ? 0x1p120 : 0x1p1000));
+}
+
+static void emit_divided_step(const struct emitter *part)
+{
+	bool *all = ARRAY(bool, (size_t)part->system->states);
+	for (int i = 0; i < part->system->states; i++)
+		all[i] = true;
+	if (part->step->swift)
+		emit_region_search(part);
+	say(part, "\n"
+		  "static void $o_step($n *s%s)\n"
+		  "{\n", given_text(part, true));
+	if (part->step->swift) {
+		emit_raw_locals(part, all, false);
+		emit_clear_step(part);
+	} else {
+		say(part, "    int i;\n");
+		declare_region_room(part);
+		emit_region_vector(part, true);
+		emit_search(part);
+		emit_region_status(part);
+	}
+	say(part, "}\n");
+}
+
+static void emit_step_of_part(const struct emitter *part)
+{
+	(is_linear_part(part) ? emit_linear_step : emit_divided_step)(part);
+}
+
+static void emit_step_call(const struct emitter *part)
+{
+	say(part, "    $o_step(s%s);\n", given_text(part, false));
+}
+
+void emit_parts_step(const struct emitter *e)
+{
+	bool swift = false;
+	for (int p = 0; p < e->step->parts; p++)
+		swift = swift || e->step->part[p]->swift;
+	if (swift)
+		emit_crossing_scalars(e);
+	for_parts(e, e->step->parts, emit_step_of_part);
+	say(e, "\n"
+	       "void $n_step(%s)\n"
+	       "{\n", step_parameters(e));
+	emit_set_aside(e);
+	emit_turned_loads(e, needed_loads(e, true), false);
+	for_parts(e, e->step->parts, emit_step_call);
+	emit_take_back(e);
+	emit_step_end(e);
+	if (e->step->carries)           /* what was set aside is in no bound */
+		say(e, "    s->status |= pl_not_finite(s->y, $N_STATES);\n");
+	say(e, "}\n");
+	emit_region_number(e);
+	emit_crossings(e);
+}
+
+/* ---- between steps ---- */
+
+static void emit_at_of_part(const struct emitter *part)
+{
+	bool linear = is_linear_part(part);
+	say(part, "\n"
+		  "static void $o_at(const $n *s%s, double tau, double y[$N_STATES])\n"
+		  "{\n", given_text(part, true));
+	if (linear)
+		say(part, "    pl_contact contact = {0, 0, 0, 0, 0};\n"
+			  "    pl_crossing crossing[1];\n");
+	else
+		say(part, "    pl_contact contact = s->contact$p;\n"
+			  "    pl_crossing crossing[%d];\n", MAX_EVENTS);
+	say(part, "    int i;\n");
+	declare_region_room(part);
+	emit_region_vector(part, true);
+	say(part, "    pl_switching_advance(&$o_switching, tau, x, &contact, crossing, work);\n"
+		  "    for (i = 0; i < %d; i++)\n"
+		  "        y[$o_state[i]] = x[i];\n"
+		  "}\n", part->system->states);
+}
+
+static void emit_at_call(const struct emitter *part)
+{
+	say(part, "    $o_at(s%s, tau, y);\n", given_text(part, false));
+}
+
+void emit_parts_at(const struct emitter *e)
+{
+	const char *u = e->system->inputs ? format("const double u[%s_INPUTS], ", e->upper) : "";
+	for_parts(e, e->step->parts, emit_at_of_part);
+	say(e, "\n"
+	       "void $n_at(const $n *s, %sdouble tau, double y[$N_STATES])\n"
+	       "{\n", u);
+	emit_load_states(e, needed_loads(e, true), false);
+	for_parts(e, e->step->parts, emit_at_call);
+	say(e, "}\n");
+}

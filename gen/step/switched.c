@@ -1,0 +1,177 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Steps of piecewise-linear models: e^{A d} of each region for pieces d of the step; of parts that are independent, a
+ * step each. */
+#include "step/step.h"
+
+/* Phi over a part of the step, and what inputs add: u held, and u' as the slope of u */
+static struct wanted *wanted_piece(const struct step *step, int halvings)
+{
+	struct recipe *r = NEW(struct recipe);
+	r->step = step;
+	int piece = add_table(r, "piece", 1, 1ul << halvings, true);
+	add_phi(r, piece, "held", 1, 1ul << halvings, 1, (long[]){ 1 });
+	int ramp = add_phi(r, piece, "ramp", 1, 1ul << halvings, 2, (long[]){ 0, 1 });
+	mpq_set(r->table[piece].kernel[ramp].part[0].power[1], step->model->h);
+	return r->table;
+}
+
+/* Why a step of regions does not look over the whole of h first; NULL: it does */
+static const char *no_swift(const struct step *step)
+{
+	enum { TERMS = 400, BOUNDS = 1024 };
+	const struct switching *s = step->model->switching;
+	bool turns = false;
+	for (int k = 0; k < step->branches; k++)
+		turns = turns || step->branch[k].halvings > 1;
+	return step->model->asked.single                 ? "it is smaller, for the target float"
+	       : turns                                   ? "the fastest pole turns by more than 2 in a step"
+	       : s->regions * s->expressions > BOUNDS     ? "there are too many regions"
+	       : step->layout.size * (step->layout.states + s->expressions) > TERMS ? "it would be more than a page"
+									      : NULL;
+}
+
+bool is_cleared_by_tables(const struct step *step)
+{
+	enum { TERMS = 200 };
+	return possible_regions(step->model->switching) * step->layout.states * step->layout.size > TERMS;
+}
+
+/* Tables over the whole of h, of a region that has pieces of half of it */
+static void plan_whole(struct step *step, int k)
+{
+	struct branch *b = &step->branch[k];
+	if (b->halvings == 0)
+		b->whole = b->table[0];
+	else if (b->halvings == 1 && k > 0)
+		b->whole = tables_of(step->model, b->resolvent, &b->system, 1, wanted_piece(step, 0))[0];
+}
+
+static void plan_swift(struct step *step)
+{
+	bool any = false;
+	step->searches = no_swift(step);
+	step->swift = !step->searches;
+	for (int k = 0; k < step->branches; k++)
+		any = any || step->branch[k].halvings > 0;
+	if (!step->swift)
+		return;
+	int expressions = step->model->switching->expressions;
+	step->program->multiplications = (step->layout.states + expressions) * step->layout.size;
+	step->program->additions = step->program->multiplications + 2 * expressions;
+	step->swift_degree = any ? series_degree(step, 0, step->branches, 0) : step->series.degree;
+}
+
+static void plan_region(struct step *step, int k)
+{
+	step->branch[k].halvings = series_halvings(step, k);
+	if (step->branch[k].halvings > LIMIT_PIECES)
+		error(step->model->asked.step_at, "a smaller step would do",
+		      "the largest pole times h is above 2^%d: too many pieces of a step to look for crossings in",
+		      LIMIT_PIECES);
+	struct linear *system = &step->branch[k].system;
+	step->branch[k].table = tables_of(step->model, step->branch[k].resolvent, system, 1,
+					  wanted_piece(step, step->branch[k].halvings));
+	plan_whole(step, k);
+	system->channels = 0;
+	int degree = series_degree(step, k, k + 1, step->branch[k].halvings);
+	step->series.degree = degree > step->series.degree ? degree : step->series.degree;
+}
+
+/* e^{A d} of each region for pieces d of the step, and the series that finds crossings. What is counted is without the
+ * load states. */
+static void build_divided(struct step *step)
+{
+	struct branch *first = step->branch;
+	int channels = first->system.channels;  /* ramps of inputs, while tables are made */
+	need_direct(step);
+	step->tables = 1;
+	first->whole = tables_of(step->model, first->resolvent, &first->system, 1, wanted_piece(step, 0))[0];
+	first->system.channels = 0;
+	step->layout = layout_with(&first->system, 0, loads_of_regions(step));
+	find_carries(step);
+	plan_anchors(step);
+	fill_anchors(step);
+	step->program = linear_program(step);
+	step->program->multiplications =
+		(step->layout.size + 6 * step->model->switching->expressions) * step->layout.size;
+	step->program->additions = step->program->multiplications;
+	first->system.channels = channels;
+	step->series.degree = 3;
+	step->series.emitted = true;
+	for (int k = 0; k < step->branches; k++)
+		plan_region(step, k);
+	plan_swift(step);
+}
+
+void build_regions_step(struct step *step)
+{
+	build_divided(step);
+	count_regions(step, step->program->multiplications, step->program->additions);
+}
+
+/* ---- independent parts ---- */
+
+/* Of the part's own model, as if it were alone */
+static struct step *step_of_part(const struct step *whole, const struct region_part *part)
+{
+	struct step *step = NEW(struct step);
+	step->model = part->model;
+	step->shown = whole;
+	step->kind = KIND_REGIONS;
+	step->form = FORM_DIRECT;
+	step->no_anchors = "a part is given its load states";
+	take_operators(step);
+	step->written = step->branch->resolvent;
+	build_divided(step);
+	return step;
+}
+
+static void carry_of_parts(struct step *step)
+{
+	const struct switching *s = step->model->switching;
+	int states = step->branch->system.states;
+	step->carry = ARRAY(int, (size_t)states);
+	for (int i = 0; i < states; i++)
+		step->carry[i] = -1;
+	for (int p = 0; p < step->parts; p++)
+		for (int i = 0; i < step->part[p]->layout.states; i++)
+			if (step->part[p]->carry[i] >= 0)
+				step->carry[s->part[p].state[i]] = step->carries++;
+}
+
+/* The load states are those of all. */
+static void count_parts(struct step *step)
+{
+	int multiplications = 0, additions = 0;
+	step->program = linear_program(step);
+	for (int p = 0; p < step->parts; p++) {
+		const struct step *part = step->part[p];
+		multiplications += part->program->multiplications;
+		additions += part->program->additions;
+		step->series.degree =
+			part->series.degree > step->series.degree ? part->series.degree : step->series.degree;
+	}
+	step->series.emitted = true;
+	count_regions(step, multiplications, additions);
+}
+
+/* The table of the whole is that of the first regions, for NAME_Phi and the report. */
+void build_parts_step(struct step *step)
+{
+	const struct switching *s = step->model->switching;
+	struct branch *first = step->branch;
+	need_direct(step);
+	step->tables = 1;
+	first->table = tables_of(step->model, first->resolvent, &first->system, 1, wanted_piece(step, 0));
+	first->whole = first->table[0];
+	first->system.channels = 0;
+	step->parts = s->parts;
+	step->part = ARRAY(struct step *, (size_t)s->parts);
+	for (int p = 0; p < s->parts; p++)
+		step->part[p] = step_of_part(step, &s->part[p]);
+	step->layout = layout_with(&first->system, 0, loads_of_regions(step));
+	carry_of_parts(step);
+	plan_anchors(step);
+	fill_anchors(step);
+	count_parts(step);
+}
