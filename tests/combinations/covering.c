@@ -338,7 +338,8 @@ static void print_options(FILE *to)
 		{ "etd1", "--scheme etd1" }, { "etdrk2", "--scheme etdrk2" }, { "etdrk4", "--scheme etdrk4" },
 		{ "nc2", "--scheme nc2" }, { "nc3", "--scheme nc3" }, { "dq4", "--scheme dq4" },
 		{ "bm3", "--scheme bm3" }, { "taylor", "--scheme taylor" }, { "selftest", "--selftest" },
-		{ "rows", "--rows 8" }, { "loads", "--loads leftover" }, { "anchors", "--anchors 8" }, { "batch", "--batch" } };
+		{ "rows", "--rows 8" }, { "loads", "--loads leftover" }, { "anchors", "--anchors 8" },
+		{ "batch", "--batch" } };
 	bool scheme = false;
 	fputs("# options:", to);
 	for (size_t i = 0; i < sizeof option / sizeof *option; i++)
