@@ -128,11 +128,14 @@ void banner_expanded(const struct emitter *e)
 	const char *tolerance = readable_text(truncation->tolerance);
 	banner_scheme(e);
 	if (truncation->adaptive)
-		say(e, " * Each step is as long as its last two terms are below %s of the largest value of each state so far:\n"
-		       " * several h, whose states the one series gives, or a part of h, of which there are %d at most.\n",
+		say(e, " * Each step is as long as its last two terms are below %s of the largest value of each state so "
+		       "far:\n"
+		       " * several h, whose states the one series gives, or a part of h, of which there are %d at "
+		       "most.\n",
 		    tolerance, truncation->substeps);
 	else if (mpq_sgn(truncation->tolerance) != 0)
-		say(e, " * One way through, whatever the numbers are; where the last two terms are above %s of the largest value\n"
+		say(e, " * One way through, whatever the numbers are; where the last two terms are above %s of the "
+		       "largest value\n"
 		       " * of a state so far, $n_status says PL_INACCURATE.\n", tolerance);
 	else
 		say(e, " * One way through, whatever the numbers are; no step looks at its error.\n");

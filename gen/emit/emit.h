@@ -132,6 +132,8 @@ const char *leftover_call(const struct emitter *e, const char *node, const char 
 const char *leftover_of_step(const struct emitter *e);            /* its call at the start of a step, into `left` */
 const char *leftover_of_outputs(const struct emitter *e);
 const char *basis_now(const struct emitter *e, const struct basis *basis); /* of states, inputs, load states, t */
+/* Does an output read an acceleration that something left over acts on? */
+bool reads_channels(const struct model *model);
 void emit_leftover(const struct emitter *e);
 
 /* ---- selection.c: which operator of a bank serves now ---- */
@@ -233,8 +235,6 @@ struct kind {
 	void (*params)(const struct emitter *e);
 };
 const struct kind *row_of_kind(enum step_kind kind);
-/* Does an output read an acceleration that something left over acts on? */
-bool reads_channels(const struct model *model);
 
 /* ---- emit_sequences.c: the coefficients of a series ---- */
 

@@ -173,7 +173,7 @@ static void emit_between(const struct emitter *e)
 {
 	int order = expansion(e)->order, last = e->system->segments - 1;
 	bool adaptive = truncation(e)->adaptive;
-	say(e, "\n/* y and what rounding took from it, end h later: 0, or what went wrong, and then as far as it went */\n"
+	say(e, "\n/* y and what rounding took from it, end h later: 0; or what went wrong, and y as far as it went */\n"
 	       "static int $n_between(const $n *s, %sdouble end, double y[$N_STATES], double rest[$N_STATES])\n"
 	       "{\n"
 	       "    double c[%d][$N_STATES], gain[$N_STATES], done = 0.0;\n"
@@ -289,8 +289,9 @@ static void emit_fixed_step(const struct emitter *e)
 		say(e, "    %s\n", expand_call(e, "", "", "", "s->y", "c"));
 		for (int i = 0; i < states; i++) {
 			const char *text = whole_gain(order, i);
+			text = format("s->y[%d] = pl_accumulate(s->y[%d], %s, 0.0, &s->rest[%d]);\n", i, i, text, i);
 			say(e, "    ");
-			say_wrapped(e, format("s->y[%d] = pl_accumulate(s->y[%d], %s, 0.0, &s->rest[%d]);\n", i, i, text, i));
+			say_wrapped(e, text);
 		}
 		if (looks_at_tolerance(e))
 			say(e, "    $n_remainder(s, (const double (*)[$N_STATES])c, last, before);\n"
@@ -316,7 +317,8 @@ static void emit_adaptive_step(const struct emitter *e)
 	emit_input_samples(e);
 	say(e, "    for (i = 0; i < $N_STATES; i++)\n");
 	emit_scales(e, "        ");
-	say(e, "    %s\n", expand_call(e, "0.0", spell(e, "$n_time(s) + 1e-9 * $N_H"), "s->segment", "s->y", "s->series"));
+	const char *when = spell(e, "$n_time(s) + 1e-9 * $N_H");
+	say(e, "    %s\n", expand_call(e, "0.0", when, "s->segment", "s->y", "s->series"));
 	say(e, "    s->valid = $n_reach(s);\n");
 	if (inputs)
 		say(e, "    s->valid = s->valid > 1 ? 1 : s->valid;  /* the samples to come are not known */\n");
@@ -356,9 +358,11 @@ void emit_expansion_members(const struct emitter *e)
 	if (truncation(e)->adaptive)
 		say(e, "    double series[%d][$N_STATES];  /* the last expansion, in powers of time over h */\n"
 		       "    double base[$N_STATES];  /* what rounding had taken there */\n"
-		       "    int served, valid;    /* steps since then; steps that it serves */\n", expansion(e)->order + 1);
+		       "    int served, valid;    /* steps since then; steps that it serves */\n",
+		    expansion(e)->order + 1);
 	if (looks_at_tolerance(e))
-		say(e, "    double scale[$N_STATES], unit[$N_STATES];  /* the largest size of each state so far; 1 over it */\n");
+		say(e, "    double scale[$N_STATES], unit[$N_STATES];  "
+		       "/* the largest size of each state so far; 1 over it */\n");
 }
 
 void emit_expansion_step(const struct emitter *e)
@@ -385,7 +389,7 @@ void emit_expansion_step(const struct emitter *e)
 void emit_expansion_at(const struct emitter *e)
 {
 	bool relative = e->model->relative != NULL, adaptive = truncation(e)->adaptive, offset = has_offset(e);
-	const char *y = relative ? "x" : "y";
+	const char *y = relative ? "x" : "y", *margin = adaptive ? "    " : "";
 	say(e, "\nvoid $n_at(const $n *s, %sdouble tau, double y[$N_STATES])\n"
 	       "{\n"
 	       "    double %s%s[$N_STATES];\n"
@@ -402,7 +406,8 @@ void emit_expansion_at(const struct emitter *e)
 	if (adaptive)
 		say(e, "    if (s->served < s->valid) {\n"
 		       "        double gain[$N_STATES];\n"
-		       "        $n_ahead((const double (*)[$N_STATES])s->series, (double)s->served + tau / $N_H, gain);\n"
+		       "        $n_ahead((const double (*)[$N_STATES])s->series, (double)s->served + tau / $N_H, "
+		       "gain);\n"
 		       "        for (i = 0; i < $N_STATES; i++)\n"
 		       "            %s[i] = s->series[0][i] + (gain[i] + s->base[i]);\n"
 		       "    } else {\n", y);
@@ -411,8 +416,8 @@ void emit_expansion_at(const struct emitter *e)
 		       "%s        %s[i] = s->y[i];\n"
 		       "%s        rest[i] = s->rest[i];\n"
 		       "%s    }\n"
-		       "%s    $n_between(s, %stau / $N_H, %s, rest);\n", adaptive ? "    " : "", adaptive ? "    " : "", y,
-		    adaptive ? "    " : "", adaptive ? "    " : "", adaptive ? "    " : "", u_argument(e), y);
+		       "%s    $n_between(s, %stau / $N_H, %s, rest);\n", margin, margin, y, margin, margin, margin,
+		    u_argument(e), y);
 	if (adaptive)
 		say(e, "    }\n");
 	if (relative)

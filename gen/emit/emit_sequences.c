@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The coefficients of a series as C: a line for each, oldest terms first, since what is newest decides how long the next
- * one waits. */
+/* The coefficients of a series as C: a line for each, oldest terms first, since what is newest decides how long the
+ * next one waits. */
 #include "emit/emit.h"
 
 #include <string.h>
@@ -153,7 +153,8 @@ static const char *old_part(const struct emitter *e, int a, int b, int k, double
 }
 
 /* factor times the k-th of a b, its newest terms into `last` */
-static void add_product(const struct emitter *e, struct list *sum, struct list *last, int a, int b, int k, double factor)
+static void add_product(const struct emitter *e, struct list *sum, struct list *last, int a, int b, int k,
+			double factor)
 {
 	if (k == 0) {
 		const char *product = times(coefficient(e, a, 0), coefficient(e, b, 0));

@@ -164,18 +164,6 @@ static void emit_region_tables(const struct emitter *e)
 	emit_region_start(e);
 }
 
-bool reads_channels(const struct model *model)
-{
-	bool any = false;
-	for (int i = 0; i < model->outputs + model->n; i++) {
-		const struct output *output =
-			i < model->outputs ? &model->output[i] : model->highest[i - model->outputs];
-		for (int c = 0; output && c < model->channels; c++)
-			any = any || mpq_sgn(output->channel[c]) != 0;
-	}
-	return any;
-}
-
 static void emit_regions_step(const struct emitter *e)
 {
 	if (reads_channels(e->model))

@@ -100,6 +100,18 @@ const char *leftover_of_outputs(const struct emitter *e)
 	return leftover_call(e, "0", "s->y", "left", FROM_OUTPUTS);
 }
 
+bool reads_channels(const struct model *model)
+{
+	bool any = false;
+	for (int i = 0; i < model->outputs + model->n; i++) {
+		const struct output *output =
+			i < model->outputs ? &model->output[i] : model->highest[i - model->outputs];
+		for (int c = 0; output && c < model->channels; c++)
+			any = any || mpq_sgn(output->channel[c]) != 0;
+	}
+	return any;
+}
+
 /* ---- its text ---- */
 
 static int load_of_wave(const struct emitter *e, const struct wave *wave)

@@ -193,8 +193,9 @@ static void evaluate_truncation(void *context)
 	const struct scheme_row *row = scheme_row(model->scheme);
 	mpq_init(truncation->tolerance);
 	if (order && !row->expands)
-		error(order->start, format("that of scheme taylor is given: scheme taylor %s", text_between(order->start,
-		      order->end)), "the order of scheme %s is its own", row->name);
+		error(order->start,
+		      format("that of scheme taylor is given: scheme taylor %s", text_between(order->start, order->end)),
+		      "the order of scheme %s is its own", row->name);
 	if (tolerance)
 		evaluate_tolerance(b, tolerance, at);
 	truncation->substeps = substeps ? whole_number(b, substeps, 1, MOST_SUBSTEPS, "the most substeps") : SUBSTEPS;

@@ -103,7 +103,7 @@ struct request {                    /* what the user asks for on the command lin
 struct truncation {                 /* of a Taylor series */
 	int order;                  /* of its last term in h */
 	bool adaptive;              /* steps as long as the tolerance lets them be; else each is h */
-	mpq_t tolerance;            /* of the last terms, relative to the largest value of each state; 0: not looked at */
+	mpq_t tolerance;            /* of the last terms, relative to the largest of each state; 0: not looked at */
 	int substeps;               /* most within one h */
 };
 struct reduction {                  /* what --reduce found */

@@ -856,7 +856,8 @@ static void read_bound(struct parser *p, const char *word, struct node **bound)
 {
 	struct place at = last_token(p, strlen(word));
 	if (*bound)
-		error(at, NULL, "the %s given already", strcmp(word, "substeps") == 0 ? "substeps are" : "tolerance is");
+		error(at, NULL, "the %s given already",
+		      strcmp(word, "substeps") == 0 ? "substeps are" : "tolerance is");
 	*bound = read_expression(p);
 	expect_end(p);
 }

@@ -345,7 +345,8 @@ static void person_split(FILE *to, const struct step *step)
 		fputs("A step uses the first operator whose value is not below the current one, else the last.\n", to);
 	fprintf(to, "Scheme %s is of order %d in h", scheme_name(model->scheme), order_of_scheme(model));
 	if (model->truncation.adaptive)
-		fprintf(to, ", its steps as long as a tolerance of %s lets them be", readable_text(model->truncation.tolerance));
+		fprintf(to, ", its steps as long as a tolerance of %s lets them be",
+			readable_text(model->truncation.tolerance));
 	if (loses_order(model))
 		fprintf(to, " where all is smooth; here of order %s at most: %s", order_text(model),
 			smoothness_text(model));

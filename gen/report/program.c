@@ -331,7 +331,8 @@ static void print_parts(FILE *to, const struct step *step)
 static const char *sequence_text(const struct step *step, int sequence)
 {
 	const struct sequence *s = &step->expansion->sequence[sequence];
-	return s->state != NONE ? state_text(step, s->state) : format("a%d", sequence - step->branch->system.states + 1);
+	return s->state != NONE ? state_text(step, s->state)
+				: format("a%d", sequence - step->branch->system.states + 1);
 }
 
 static const char *term_text(const struct step *step, const struct sequence_term *t)
@@ -362,7 +363,8 @@ static const char *sequence_sum(const struct step *step, const struct sequence *
 
 static const char *sequence_definition(const struct step *step, const struct sequence *s)
 {
-	const char *a = s->a == NONE ? "1" : sequence_text(step, s->a), *b = s->b == NONE ? "" : sequence_text(step, s->b);
+	const char *a = s->a == NONE ? "1" : sequence_text(step, s->a);
+	const char *b = s->b == NONE ? "" : sequence_text(step, s->b);
 	switch (s->kind) {
 	case SEQUENCE_SUM:	return sequence_sum(step, s);
 	case SEQUENCE_QUOTIENT: return format("%s / %s", a, b);
@@ -383,7 +385,8 @@ static void print_expansion(FILE *to, const struct step *step)
 	const struct expansion *x = step->expansion;
 	const struct truncation *truncation = &step->model->truncation;
 	print_tables(to, step);
-	fprintf(to, "Series of order %d in time over h%s; of each sequence the coefficients that are read, factors of the "
+	fprintf(to,
+		"Series of order %d in time over h%s; of each sequence the coefficients that are read, factors of the "
 		"first:\n", x->order, truncation->adaptive ? ", as far as its last two terms allow" : "");
 	for (int i = 0; i < x->count; i++)
 		if (x->sequence[i].top >= 0)

@@ -271,7 +271,8 @@ static void check_expansion(struct check *c)
 	for (int i = 0; i < x->count; i++) {
 		const struct sequence *s = &x->sequence[i];
 		c->where = format("sequence %d", i);
-		need(c, (s->state == NONE) == (i >= c->step->branch->system.states), "it stands among the states, or they do not");
+		need(c, (s->state == NONE) == (i >= c->step->branch->system.states),
+		     "it stands among the states, or they do not");
 		need(c, s->a == NONE || among(s->a, x->count), "what it is of is out of range");
 		need(c, s->b == NONE || among(s->b, x->count), "its second operand is out of range");
 		for (int k = 0; k < s->terms; k++) {
@@ -281,7 +282,8 @@ static void check_expansion(struct check *c)
 			need(c, t->factor || among(t->slot, x->slots), "a term without its factors");
 			need(c, !reads || (among(t->a, x->count) && (!product || among(t->b, x->count))),
 			     "a term of a sequence that is out of range");
-			need(c, !reads || before || (t->a < i && (!product || t->b < i)), "it reads what comes after it");
+			need(c, !reads || before || (t->a < i && (!product || t->b < i)),
+			     "it reads what comes after it");
 		}
 	}
 }

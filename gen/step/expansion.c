@@ -164,7 +164,8 @@ static void find_late(struct sequencing *w)
 				if (t->kind == TERM_PRODUCT)
 					late = late || x->sequence[t->b].late;
 			}
-			late = late || (s->a != NONE && x->sequence[s->a].late) || (s->b != NONE && x->sequence[s->b].late);
+			late = late || (s->a != NONE && x->sequence[s->a].late);
+			late = late || (s->b != NONE && x->sequence[s->b].late);
 			if (s->kind == SEQUENCE_INTEGRAL)
 				late = false;
 			changed = changed || late != s->late;

@@ -160,7 +160,8 @@ static void build_expanded_step(struct step *step)
 	count_expansion(step, step->program);
 	if (step->program->multiplications > LIMIT_SERIES)
 		error(step->model->asked.scheme_at, "etdrk4 and the schemes like it loop over tables",
-		      "its series of order %d has %d multiplications, more than the limit of %d: compilers take minutes",
+		      "its series of order %d has %d multiplications, more than the limit of %d: compilers take "
+		      "minutes",
 		      step->expansion->order, step->program->multiplications, LIMIT_SERIES);
 }
 

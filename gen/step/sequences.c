@@ -290,7 +290,8 @@ static int root_sequence(struct sequencing *w, int a)
 }
 
 /* s' = a' c, c' = sign a' s: both are made, and the one asked for returned */
-static int pair_sequence(struct sequencing *w, int a, enum function first, enum function second, long sign, bool want_second)
+static int pair_sequence(struct sequencing *w, int a, enum function first, enum function second, long sign,
+			 bool want_second)
 {
 	mpq_t scale, turned;
 	mpq_inits(scale, turned, NULL);

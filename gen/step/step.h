@@ -634,7 +634,7 @@ struct sequence_term {
 };
 enum sequence_kind {
 	SEQUENCE_SUM,               /* c_k = sum at k */
-	SEQUENCE_INTEGRAL,          /* c_0 = function of a_0, or a state; c_{k+1} = sum at k: 1/(k+1) is in the factors */
+	SEQUENCE_INTEGRAL,          /* c_0 = function of a_0, or a state; c_{k+1} = sum at k, 1/(k+1) in its factors */
 	SEQUENCE_QUOTIENT,          /* c = a/b; a NONE: 1/b */
 	SEQUENCE_ROOT,              /* c^2 = a */
 	SEQUENCE_POWER,             /* c = a^exponent, which is constant */
