@@ -128,8 +128,8 @@ void banner_expanded(const struct emitter *e)
 	const char *tolerance = readable_text(truncation->tolerance);
 	banner_scheme(e);
 	if (truncation->adaptive)
-		say(e, " * Each step is as long as its last two terms are below %s of the largest value of each state so "
-		       "far:\n"
+		say(e, " * Each step is as long as its last two terms are below %s of the largest value of each state "
+		       "so far:\n"
 		       " * several h, whose states the one series gives, or a part of h, of which there are %d at "
 		       "most.\n",
 		    tolerance, truncation->substeps);

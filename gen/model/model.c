@@ -194,7 +194,8 @@ static void evaluate_truncation(void *context)
 	mpq_init(truncation->tolerance);
 	if (order && !row->expands)
 		error(order->start,
-		      format("that of scheme taylor is given: scheme taylor %s", text_between(order->start, order->end)),
+		      format("that of scheme taylor is given: scheme taylor %s",
+			     text_between(order->start, order->end)),
 		      "the order of scheme %s is its own", row->name);
 	if (tolerance)
 		evaluate_tolerance(b, tolerance, at);

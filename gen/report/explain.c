@@ -704,7 +704,7 @@ void explain_json(FILE *to, const struct step *step)
 	static const char *const smooth[] = { "smooth", "kink", "jump" };
 	fprintf(to, "  \"order\": %d,\n  \"smooth\": \"%s\",\n", order_that_holds(model), smooth[model->smooth.kind]);
 	if (step->expansion && mpq_sgn(model->truncation.tolerance) != 0)
-		fprintf(to, "  \"tolerance\": %s,\n", shortest(mpq_get_d(model->truncation.tolerance)));
+		fprintf(to, "  \"tolerance\": %s,\n", shortest(round_rational(model->truncation.tolerance)));
 	if (model->truncation.adaptive && step->expansion)
 		fprintf(to, "  \"substeps\": %d,\n", model->truncation.substeps);
 	if (step->model->switching)
