@@ -606,7 +606,7 @@ typedef struct pl_model {
     /* 0 <= tau <= h; NULL where the model has none */
     void (*at)(const void *s, const double *u, double tau, double *y);
     void (*jump)(void *s, uint64_t n);                                 /* n steps at once; NULL where it has none */
-    int (*status)(const void *s); /* 0, or bits: PL_NOT_FINITE, PL_TOO_MANY_EVENTS */
+    int (*status)(const void *s); /* 0, or PL_... bits */
     int params;                   /* tunable ones */
     const char *const *param_names;
     const double *param_values;   /* the spec's */
