@@ -44,12 +44,13 @@ for status in "$folder"/*.status "$folder"/*/*.status; do
 	if [ -f "$path.mtx" ]; then
 		cp "$path.mtx" .
 	fi
-	arguments=''            # options and names without spaces
+	arguments=''            # one a line; a value may have blanks
 	if [ -f "$path.args" ]; then
-		arguments=$(tr '\n' ' ' < "$path.args")
+		arguments=$(cat "$path.args")
 	fi
 	# shellcheck disable=SC2086
-	if "$plgen" $arguments "$name.spec" > "$name.c" 2> "$work/messages" < /dev/null &&
+	if (IFS='
+'; exec "$plgen" $arguments "$name.spec") > "$name.c" 2> "$work/messages" < /dev/null &&
 	   "$@" -std=c99 $warnings -I"$runtime" -O0 -S "$name.c" -o /dev/null 2> "$work/messages"; then
 		echo "ok $number - $name"
 	else

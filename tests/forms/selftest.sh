@@ -26,7 +26,7 @@ subject() {
 }
 values() {
 	{ echo 'int main(void)'; echo '{'; cat calls; echo '    return 0;'; echo '}'; } >>subjects.c
-	"$compiler" -O0 -I"$root/runtime" subjects.c "$archive" -o program >log 2>&1 && ./program
+	$compiler -O0 -I"$root/runtime" subjects.c "$archive" -o program >log 2>&1 && ./program
 }
 
 # constants FILE: those of its step, each once, from 1e-5 on: what is smaller adds less than rounding to a step of float

@@ -21,7 +21,7 @@ runtime_archive "$source/runtime"
 made() {
 	"$drawn_series" spec "$1" >drawn.spec &&
 		timeout 600 "$plgen" -o drawn_pl.c drawn.spec &&
-		"${CC:-cc}" -std=c99 -O0 -w -I. -I"$source/runtime" "$source/tests/taylor/compare_series.c" drawn_pl.c \
+		${CC:-cc} -std=c99 -O0 -w -I. -I"$source/runtime" "$source/tests/taylor/compare_series.c" drawn_pl.c \
 			"$archive" -lm -o compare &&
 		order=$(./compare order)
 }

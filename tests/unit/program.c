@@ -312,7 +312,9 @@ static void rows_are_whole(void **state)
         enum scheme found;
         assert_non_null(row->name);
         assert_true(scheme_of(row->name, &found) && (int)found == i);
-        assert_int_equal(row->order > 0, i != SCHEME_EXACT);
+        /* that of one that expands is asked for, or found */
+        assert_int_equal(row->order > 0, i != SCHEME_EXACT && !row->expands);
+        assert_true(!row->expands || (row->leaves && !row->predicts && !row->holds_leftover));
         assert_int_equal(row->leaves || row->holds_coupling, i != SCHEME_EXACT);
         if (i != SCHEME_EXACT) {
             assert_non_null(row->method);
