@@ -515,7 +515,7 @@ static void emit_next(const struct emitter *e)
 {
 	int size = e->step->layout.size, n = expressions_of(e);
 	say(e, "\n"
-	       "static int $o_next($n_stretch *p, double x[%d], const double end[%d], pl_crossing *crossing)\n"
+	       "static int $o_first($n_stretch *p, double x[%d], const double end[%d], pl_crossing *crossing)\n"
 	       "{\n"
 	       "    double off[%d], y[%d], z = 2.0;\n"
 	       "    int i, %snear = 0, first = 0, up = 0, behind, next;\n"
@@ -541,7 +541,7 @@ static void emit_next(const struct emitter *e)
 	       "    $n_next_stretch(p, z, next, $o_matrix[next], first, !up);\n"
 	       "    crossing->time = p->done * $N_H;\n"
 	       "    crossing->expression = first;\n"
-	       "    crossing->breakpoint = $o_interval[next][first] - up;\n"
+	       "    crossing->breakpoint = $o_span[next][first] - up;\n"
 	       "    crossing->upward = up;\n"
 	       "    return 1;\n"
 	       "}\n", size);
@@ -570,7 +570,7 @@ static void emit_cross(const struct emitter *e, const struct pieces *p)
 	say(e, "        int found = -2;\n"
 	       "        if (%s < %s &&\n"
 	       "            count < %d)\n"
-	       "            found = $o_next(&part, x, end, &crossing[count]);\n"
+	       "            found = $o_first(&part, x, end, &crossing[count]);\n"
 	       "        if (found == -2)\n"
 	       "            return 0;\n"
 	       "        if (found == 0 && part.length == part.rest)\n"

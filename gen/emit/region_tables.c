@@ -163,7 +163,7 @@ static void emit_neighbours(const struct emitter *e, const struct pieces *p)
 		}
 	say(e, "};\n"
 	       "\n"
-	       "static const int $o_interval[%d][%d] = {  /* of each expression, from the lowest one */\n",
+	       "static const int $o_span[%d][%d] = {  /* of each expression, from the lowest one */\n",
 	    s->regions, n);
 	for (int r = 0; r < s->regions; r++)
 		for (int i = 0; i < n; i++)
