@@ -243,7 +243,7 @@ static void rest(const struct system *s, const struct tables *T, real t, const r
 /* x <- x + factor h P r */
 static void kick(const struct hand *p, const real *P, real factor, const real *r, real *x)
 {
-    real scaled[HAND_MOST];
+    real scaled[HAND_MOST] = {0};
     const int n = size_of(p->system);
     for (int i = 0; i < n; i++)
         scaled[i] = factor * p->h * r[i];
