@@ -130,9 +130,9 @@ void banner_expanded(const struct emitter *e)
 	if (truncation->adaptive)
 		say(e, " * Each step is as long as its last two terms are below %s of the largest value of each state "
 		       "so far:\n"
-		       " * several h, whose states the one series gives, or a part of h, of which there are %d at "
-		       "most.\n",
-		    tolerance, truncation->substeps);
+		       " * %s, or a part of h, of which there are %d at most.\n",
+		    tolerance, e->system->inputs ? "h" : "several h, whose states the one series gives",
+		    truncation->substeps);
 	else if (mpq_sgn(truncation->tolerance) != 0)
 		say(e, " * One way through, whatever the numbers are; where the last two terms are above %s of the "
 		       "largest value\n"

@@ -29,6 +29,18 @@ static bool looks_at_tolerance(const struct emitter *e)
 	return mpq_sgn(truncation(e)->tolerance) != 0;
 }
 
+/* Of fixed order: the status says where the last terms are above the tolerance. */
+static bool watches(const struct emitter *e)
+{
+	return looks_at_tolerance(e) && !truncation(e)->adaptive;
+}
+
+/* Steps that one expansion may serve: with inputs one, the samples to come are not known */
+static int most_served(const struct emitter *e)
+{
+	return e->system->inputs ? 1 : WHOLE_STEPS;
+}
+
 /* ---- its sum ---- */
 
 static void emit_ahead(const struct emitter *e)
@@ -65,11 +77,11 @@ static void emit_ahead(const struct emitter *e)
 
 static void emit_reach_tables(const struct emitter *e)
 {
-	int order = expansion(e)->order;
+	int order = expansion(e)->order, most = most_served(e);
 	const char *last = "", *before = "";
 	mpq_t bound, steps;
 	mpq_inits(bound, steps, NULL);
-	for (int m = 1; m <= WHOLE_STEPS; m++) {
+	for (int m = 1; m <= most; m++) {
 		mpq_set(bound, truncation(e)->tolerance);
 		mpq_set_ui(steps, (unsigned long)m, 1);
 		mpq_mul(bound, bound, steps);
@@ -83,8 +95,8 @@ static void emit_reach_tables(const struct emitter *e)
 	mpq_clears(bound, steps, NULL);
 	say(e, "\n/* The tolerance over m^%d and m^%d: what the last coefficients may be for m steps, times m^4 */\n"
 	       "static const double $n_last[%d] = {\n    %s\n};\n"
-	       "static const double $n_before_last[%d] = {\n    %s\n};\n", order - 4, order - 5, WHOLE_STEPS, last,
-	    WHOLE_STEPS, before);
+	       "static const double $n_before_last[%d] = {\n    %s\n};\n", order - 4, order - 5, most, last, most,
+	    before);
 }
 
 /* The last two coefficients, relative to the largest size of each state so far. Of a series in t^n alone they may be 0,
@@ -135,9 +147,9 @@ static void emit_serves(const struct emitter *e)
 
 static void emit_reach(const struct emitter *e)
 {
-	int order = expansion(e)->order;
+	int order = expansion(e)->order, most = most_served(e);
 	const char *tolerance = shortest(round_rational(truncation(e)->tolerance));
-	say(e, "\n/* Steps that the series serves, at most %d; 0: not even one */\n"
+	say(e, "\n/* Steps that the series serves, at most %d%s; 0: not even one */\n"
 	       "static int $n_reach(const $n *s)\n"
 	       "{\n"
 	       "    double last[%d], before[%d];\n"
@@ -148,7 +160,8 @@ static void emit_reach(const struct emitter *e)
 	       "    while (m > 0 && !$n_serves(last, before, (double)m, $n_last[m - 1], $n_before_last[m - 1]))\n"
 	       "        m--;\n"
 	       "    return m;\n"
-	       "}\n", WHOLE_STEPS, REMAINDERS, REMAINDERS, WHOLE_STEPS);
+	       "}\n", most, e->system->inputs ? ": the samples to come are not known" : "", REMAINDERS, REMAINDERS,
+	    most);
 	say(e, "\n/* The part of a step that the series serves, a power of 2 up to 1; 0: none */\n"
 	       "static double $n_part(const $n *s, const double c[%d][$N_STATES])\n"
 	       "{\n"
@@ -166,6 +179,31 @@ static void emit_reach(const struct emitter *e)
 	       "}\n");
 }
 
+/* Of terms that are 1 at h: at a part of it size^P and size^(P - 1) of that */
+static void emit_is_accurate(const struct emitter *e)
+{
+	int order = expansion(e)->order;
+	const char *tolerance = shortest(round_rational(truncation(e)->tolerance));
+	bool part = changes(e);
+	say(e, "\n/* Whether the last two terms%s are within the tolerance */\n"
+	       "static int $n_is_accurate(const $n *s, const double c[%d][$N_STATES]%s)\n"
+	       "{\n"
+	       "    double last[1], before[1]%s;\n",
+	    part ? ", at this part of a step," : "", order + 1, part ? ", double size" : "",
+	    part ? ", power = size" : "");
+	if (part)
+		say(e, "    int k;\n");
+	say(e, "    $n_remainder(s, c, last, before);\n");
+	if (part)
+		say(e, "    for (k = 2; k < %d; k++)\n"
+		       "        power *= size;\n"
+		       "    return last[0] * (power * size) <= %s && before[0] * power <= %s;\n", order, tolerance,
+		    tolerance);
+	else
+		say(e, "    return last[0] <= %s && before[0] <= %s;\n", tolerance, tolerance);
+	say(e, "}\n");
+}
+
 /* ---- inside a step ---- */
 
 /* From now over a part of the step: substeps, and changes of the loads on the way */
@@ -178,7 +216,8 @@ static void emit_between(const struct emitter *e)
 	       "{\n"
 	       "    double c[%d][$N_STATES], gain[$N_STATES], done = 0.0;\n"
 	       "    int i%s%s;\n", driven_parameter(e), order + 1,
-	    adaptive ? ", steps = 0" : "", changes(e) ? ", segment = s->segment" : "");
+	    adaptive ? ", steps = 0" : watches(e) ? ", status = 0" : "",
+	    changes(e) ? ", segment = s->segment" : "");
 	emit_input_samples(e);
 	say(e, "    while (done < end) {\n"
 	       "        double limit = end, size;\n");
@@ -202,13 +241,16 @@ static void emit_between(const struct emitter *e)
 		       "        size = size < limit - done ? size : limit - done;\n");
 	else
 		say(e, "        size = limit - done;\n");
+	if (watches(e))
+		say(e, "        if (!$n_is_accurate(s, (const double (*)[$N_STATES])c, size))\n"
+		       "            status = PL_INACCURATE;\n");
 	say(e, "        $n_ahead((const double (*)[$N_STATES])c, size, gain);\n"
 	       "        for (i = 0; i < $N_STATES; i++)\n"
 	       "            y[i] = pl_accumulate(y[i], gain[i], 0.0, &rest[i]);\n"
 	       "        done = size < limit - done ? done + size : limit;\n"
 	       "    }\n"
-	       "    return 0;\n"
-	       "}\n");
+	       "    return %s;\n"
+	       "}\n", watches(e) ? "status" : "0");
 }
 
 /* ---- the step ---- */
@@ -279,13 +321,12 @@ static void emit_fixed_step(const struct emitter *e)
 	       "{\n", step_parameters(e));
 	if (changes(e)) {
 		say(e, "%s    s->status |= $n_between(s, %s1.0, s->y, s->rest);\n",
-		    looks_at_tolerance(e) ? "    int i;\n" : "", u_argument(e));
+		    watches(e) ? "    int i;\n" : "", u_argument(e));
 	} else {
 		say(e, "    double c[%d][$N_STATES];\n", order + 1);
 		emit_input_samples(e);
-		if (looks_at_tolerance(e))
-			say(e, "    double last[1], before[1];\n"
-			       "    int i;\n");
+		if (watches(e))
+			say(e, "    int i;\n");
 		say(e, "    %s\n", expand_call(e, "", "", "", "s->y", "c"));
 		for (int i = 0; i < states; i++) {
 			const char *text = whole_gain(order, i);
@@ -293,45 +334,53 @@ static void emit_fixed_step(const struct emitter *e)
 			say(e, "    ");
 			say_wrapped(e, text);
 		}
-		if (looks_at_tolerance(e))
-			say(e, "    $n_remainder(s, (const double (*)[$N_STATES])c, last, before);\n"
-			       "    if (!(last[0] <= %s && before[0] <= %s))\n"
-			       "        s->status |= PL_INACCURATE;\n",
-			    shortest(round_rational(truncation(e)->tolerance)),
-			    shortest(round_rational(truncation(e)->tolerance)));
+		if (watches(e))
+			say(e, "    if (!$n_is_accurate(s, (const double (*)[$N_STATES])c))\n"
+			       "        s->status |= PL_INACCURATE;\n");
 	}
-	if (looks_at_tolerance(e)) {
+	if (watches(e)) {
 		say(e, "    for (i = 0; i < $N_STATES; i++)\n");
 		emit_scales(e, "        ");
 	}
 	emit_expansion_end(e);
 }
 
-static void emit_adaptive_step(const struct emitter *e)
+/* A new series. The loads' next change bounds the steps that it serves; conditions on t are decided before it, in the
+ * middle, where time is on one side of them also when it is late, or float. */
+static void emit_renew(const struct emitter *e)
 {
 	bool inputs = e->system->inputs > 0;
+	const char *when = spell(e, "$n_time(s) + 0.5 * $N_H");
 	say(e, "\n/* A new series from here, and how many steps it serves */\n"
 	       "static void $n_renew(%s)\n"
-	       "{\n"
-	       "    int i;\n", step_parameters(e));
+	       "{\n", step_parameters(e));
+	if (changes(e)) {
+		say(e, "    const double change = s->segment < %d ? $n_until(s, s->segment) : %d.0 * $N_H;\n",
+		    e->system->segments - 1, most_served(e));
+		when = spell(e, "$n_time(s) + 0.5 * (change < $N_H ? change : $N_H)");
+	}
+	say(e, "    int i;\n");
 	emit_input_samples(e);
 	say(e, "    for (i = 0; i < $N_STATES; i++)\n");
 	emit_scales(e, "        ");
-	const char *when = spell(e, "$n_time(s) + 1e-9 * $N_H");
 	say(e, "    %s\n", expand_call(e, "0.0", when, "s->segment", "s->y", "s->series"));
 	say(e, "    s->valid = $n_reach(s);\n");
-	if (inputs)
-		say(e, "    s->valid = s->valid > 1 ? 1 : s->valid;  /* the samples to come are not known */\n");
 	if (changes(e))
-		say(e, "    if (s->segment < %d && $n_until(s, s->segment) < s->valid * $N_H)\n"
-		       "        s->valid = (int)($n_until(s, s->segment) / $N_H);\n", e->system->segments - 1);
+		say(e, "    if (change < s->valid * $N_H)\n"
+		       "        s->valid = (int)(change / $N_H);\n");
 	say(e, "    s->served = 0;\n"
 	       "    for (i = 0; i < $N_STATES; i++)\n"
 	       "        s->base[i] = s->rest[i];\n");
 	if (inputs)
 		say(e, "    (void)u;\n");
-	say(e, "}\n"
-	       "\nvoid $n_step(%s)\n"
+	say(e, "}\n");
+}
+
+static void emit_adaptive_step(const struct emitter *e)
+{
+	bool inputs = e->system->inputs > 0;
+	emit_renew(e);
+	say(e, "\nvoid $n_step(%s)\n"
 	       "{\n"
 	       "    int i;\n"
 	       "    if (s->served == s->valid)\n"
@@ -372,8 +421,10 @@ void emit_expansion_step(const struct emitter *e)
 	emit_force_table(e);
 	emit_expand_function(e);
 	emit_ahead(e);
-	if (looks_at_tolerance(e) && (truncation(e)->adaptive || !changes(e)))
+	if (looks_at_tolerance(e))
 		emit_remainder(e);
+	if (watches(e))
+		emit_is_accurate(e);
 	if (truncation(e)->adaptive) {
 		emit_reach_tables(e);
 		emit_serves(e);

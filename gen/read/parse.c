@@ -1021,21 +1021,22 @@ static const struct statement {
 };
 
 /* tolerance and substeps may be names of a spec's own: in an equation an operator or a prime follows; a sign is that of
- * a number where the line has no =. */
-static bool opens_statement(const struct statement *statement, struct token token)
+ * a number where the line has no =; an = is no equation where there is no such name. */
+static bool opens_statement(const struct spec *spec, const struct statement *statement, struct token token)
 {
 	const char *next = token.at.source->text + token.at.offset + token.length;
 	next += strspn(next, " \t");
 	bool sign = *next == '-' || *next == '+';
 	return is_reserved(statement->word) || strspn(next, WORD) > 0 || *next == '.' || *next == '(' || !*next ||
-	       *next == '\n' || *next == '#' || (sign && next[strcspn(next, "=\n")] != '=');
+	       *next == '\n' || *next == '#' || (sign && next[strcspn(next, "=\n")] != '=') ||
+	       (*next == '=' && !spec_find(spec, statement->word));
 }
 
-static const struct statement *statement_of(struct token token)
+static const struct statement *statement_of(const struct spec *spec, struct token token)
 {
 	for (size_t i = 0; token.kind == TOKEN_NAME && token.primes == 0 && i < sizeof statements / sizeof *statements;
 	     i++)
-		if (strcmp(token.name, statements[i].word) == 0 && opens_statement(&statements[i], token))
+		if (strcmp(token.name, statements[i].word) == 0 && opens_statement(spec, &statements[i], token))
 			return &statements[i];
 	return NULL;
 }
@@ -1096,7 +1097,7 @@ static void read_statement(void *context)
 	struct parser *p = context;
 	p->token = lex_next(&p->lexer);
 	p->end = p->token.at;
-	const struct statement *statement = statement_of(p->token);
+	const struct statement *statement = statement_of(p->spec, p->token);
 	if (!p->spec->name && !(statement && statement->read == read_model)) {
 		p->spec->name = "";             /* told once */
 		error(p->token.at, "a spec begins with its name: model NAME",
@@ -1130,7 +1131,7 @@ static const struct statement *failed_statement(const struct parser *p, size_t f
 	size_t length = strspn(text, WORD);
 	struct token token = { TOKEN_NAME, { p->lexer.source, from }, length, "", format("%.*s", (int)length, text),
 			       text[length] == '\'' };
-	const struct statement *statement = statement_of(token);
+	const struct statement *statement = statement_of(p->spec, token);
 	*after = from + length;
 	if (statement || !resembles_statement(p->spec, token))
 		return statement;

@@ -2,6 +2,7 @@
 /* What steps by series do: every step and every value between, against the equations by hand in long double; orders;
  * tolerances; what is the same bit for bit; CVODE; energy; what ends. LONG=1: a million outputs. */
 #include "gragg.h"
+#include "soon_float_pl.h"
 #include "steps_variants.h"
 #include "swing_float_pl.h"
 #include "systems.h"
@@ -51,6 +52,14 @@ static void sparse(real t, const real *y, const real *u, real *dydt)
     dydt[0] = -t * t * y[0] * y[0];
 }
 
+/* soon; and late, of which time counts from 4194304 */
+static void stiffening(real t, const real *y, const real *u, real *dydt)
+{
+    (void)u;
+    dydt[0] = y[1];
+    dydt[1] = (t < 0.5L ? -1 : -4) * sinl(y[0]);
+}
+
 static const struct subject subjects[] = {{.name = "pendulum"}, {.name = "vanderpol"}, {.name = "duffing"},
     {.name = "mathieu"}, {.name = "quad2dof"}, {.name = "held"}, {.name = "ramped"}, {.name = "thermal"},
     {.name = "coupled"}, {.name = "rotor"}, {.name = "growth"}, {.name = "chain"}, {.name = "masses", .f = masses},
@@ -81,7 +90,7 @@ static bool is_ramped(const pl_model *m)
 static void solve(const struct subject *s, const pl_model *m, real from, real to, const real *u, real *y)
 {
     for (int i = 0; i < s->changes; i++)
-        if (from < s->change[i] && s->change[i] < to) {
+        if (from < s->change[i] && s->change[i] <= to) {
             /* up to it the formula before: the truth sees nothing of what begins there */
             gragg(field(s), m->states, from, s->change[i] - 1e-17L, 0.05L, 0, NULL, y);
             from = s->change[i];
@@ -350,6 +359,41 @@ static void in_float(void)
     ok(good && swing_float_status(&single) == 0, "float, tolerance 1e-5: %.2g, between %.2g", worst, between);
 }
 
+/* ---- a condition on t that changes at a step ---- */
+
+enum { LATE = 4194304, LATE_STEPS = 16 };
+
+/* Both to the same truth, of which time counts from the start */
+static void late_changes(void)
+{
+    const struct subject soon = {.name = "soon", .f = stiffening, .changes = 1, .change = {0.5L}};
+    const pl_model *m = variant_of(steps, "late_taylor_0")->model;
+    const double start[2] = {1, 0};
+    double worst = 0, worst_float = 0, y[2];
+    float single[2];
+    real truth[2] = {1, 0};
+    soon_float s;
+    void *state = fresh(m);
+    soon_float_init(&s);
+    m->set(state, LATE, start);
+    for (int k = 0; k < LATE_STEPS; k++) {
+        m->step(state, NULL);
+        m->get(state, y);
+        soon_float_step(&s);
+        soon_float_get(&s, single);
+        solve(&soon, m, k * 0.125L, (k + 1) * 0.125L, NULL, truth);
+        for (int i = 0; i < 2; i++) {
+            worst = fmax(worst, (double)fabsl(y[i] - truth[i]));
+            worst_float = fmax(worst_float, (double)fabsl(single[i] - truth[i]));
+        }
+    }
+    bool good = close_to(worst, 0, 2e-11, "states beside a change at %g s", LATE + 0.5);
+    ok(good && m->status(state) == 0, "late: a change at a step, at %g s (%.2g)", LATE + 0.5, worst);
+    good = close_to(worst_float, 0, 2e-5, "states in float beside a change at 0.5 s");
+    ok(good && soon_float_status(&s) == 0, "soon: a change at a step, in float (%.2g)", worst_float);
+    free(state);
+}
+
 /* ---- energy ---- */
 
 static real swing_energy(const double *y) { return (real)y[1] * y[1] / 2 + 1 - cosl(y[0]); }
@@ -419,6 +463,7 @@ static void endings(void)
     ends("root_fixed_0", PL_NOT_FINITE, 1.05, 1.25, false);
     ends("stiff_taylor_0", PL_TOO_MANY_STEPS, 0.05, 0.15, true);
     ends("coarse_0", PL_INACCURATE, 0.45, 0.55, true);
+    ends("coarser_0", PL_INACCURATE, 0.45, 0.55, true);
 }
 
 int main(void)
@@ -443,6 +488,7 @@ int main(void)
     }
     beside_cvode();
     in_float();
+    late_changes();
     holds_energy("swing_taylor_0", swing_energy, 1e-14, 1e-12);     /* what 1e-15 a step leaves, one way */
     holds_energy("swing_fixed_0", swing_energy, 4e-15, 1e-13);
     holds_energy("spring_taylor_0", spring_energy, 4e-15, 1e-13);
