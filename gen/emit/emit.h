@@ -73,8 +73,6 @@ bool is_used(const struct identifiers *c, const struct symbol *s, int order);
 
 /* ---- state.c: the state in emitted code ---- */
 
-bool has_peaks(const struct emitter *e);
-const char *name_of_step(const struct emitter *e);                /* of the step that looks for no peaks */
 bool has_jump(const struct emitter *e);
 bool has_peaks(const struct emitter *e);                          /* some output is the largest size so far */
 const char *name_of_step(const struct emitter *e);                /* of the step that looks for no peaks */
@@ -191,8 +189,42 @@ void emit_peak_coefficients(const struct emitter *e);
 void emit_nominal_peaks(const struct emitter *e);
 void emit_retune_peaks(const struct emitter *e);
 
-/* ---- emit_batch.c: many instances in one call ---- */
+/* ---- emit_lanes.c, batch_peaks.c, emit_batch.c: many instances in one call ---- */
 
+struct batch {
+	const struct emitter *e;
+	int shared;                     /* numbers that instances share in a step: `now` */
+	const char **shared_text;       /* first those that the step reads, before it; */
+	int after;                      /* from here on those of the outputs, after it */
+	/* per column, of the step and of the outputs: index in `now`; -1: none; of the outputs inputs and slopes */
+	int *load[2], *input[2];
+	int forced;                     /* index of the forced part; -1: none */
+	/* Of peaks: what acts on the states before the step, then how far it bends each; is that computed only where
+	 * it is read, elsewhere bounded by the samples? */
+	int acting;
+	bool sampled;
+	int lanes;                      /* factors of the instance that lanes have; */
+	int factors;                    /* of an instance, that its params decide */
+	const char **factor_text;       /* s->coeffs.step[0][1] */
+};
+struct batch plan_batch(const struct emitter *e);
+bool acts_beside_states(const struct emitter *e);                 /* more is in x than the states */
+int batch_shared_rows(const struct batch *b);                     /* of `now` */
+int batch_stepped_rows(const struct emitter *e);                  /* of an instance's memory: those a step changes */
+int batch_groups(const struct emitter *e);                        /* of lanes that step in turns */
+/* The name of a factor of the instance's own, in a function over lanes */
+const char *batch_factor(struct batch *b, const char *text);
+void emit_lanes_step(struct batch *b);
+void emit_lanes_out(struct batch *b);
+void emit_lanes_take(const struct batch *b);                      /* NAME_lanes_take, and _give back */
+/* Of peaks: what acts on the states, and how far that bends outputs; which lanes may have passed theirs */
+void emit_batch_acting(const struct batch *b);
+void emit_batch_reach(const struct batch *b);
+void emit_lanes_may_pass(struct batch *b);
+void emit_lanes_look(struct batch *b);
+void emit_lanes_tell(struct batch *b);                            /* outputs of a step's end, with peaks or without */
+void emit_lanes_widen(const struct batch *b);
+void emit_lanes_end(const struct batch *b);
 void emit_batch_declarations(const struct emitter *e);
 void emit_batch(const struct emitter *e);
 
