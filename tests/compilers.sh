@@ -8,6 +8,14 @@ long() {
 	[ -n "${LONG:-}" ]
 }
 
+# list_compilers: a line each, with options, of which by_turns and gcc_and_another choose
+list_compilers() {
+	echo 'gcc -std=c99 -O1 -c -o object.o'
+	echo 'g++ -std=c++17 -fsyntax-only -x c++'
+	echo 'clang -std=c99 -fsyntax-only'
+	echo 'clang++ -std=c++17 -fsyntax-only -x c++'
+}
+
 # ahead COMPILER FILE: an option that has C++ take <math.h>, most of its work, from one precompiled copy. Only where
 # FILE includes it: no other may see its names.
 ahead() {

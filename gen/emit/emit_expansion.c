@@ -366,7 +366,7 @@ static void emit_renew(const struct emitter *e)
 	say(e, "    %s\n", expand_call(e, "0.0", when, "s->segment", "s->y", "s->series"));
 	say(e, "    s->valid = $n_reach(s);\n");
 	if (changes(e))
-		say(e, "    if (change < s->valid * $N_H)\n"
+		say(e, "    if (change < (double)s->valid * $N_H)\n"
 		       "        s->valid = (int)(change / $N_H);\n");
 	say(e, "    s->served = 0;\n"
 	       "    for (i = 0; i < $N_STATES; i++)\n"

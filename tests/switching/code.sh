@@ -32,12 +32,7 @@ options_of() {
     esac
 }
 
-cat >compilers <<'END'
-gcc -std=c99 -O1 -c -o object.o
-g++ -std=c++17 -fsyntax-only -x c++
-clang -std=c99 -fsyntax-only
-clang++ -std=c++17 -fsyntax-only -x c++
-END
+list_compilers >compilers
 
 # compiled NAME FILE [OPTION ...]: by gcc and one of the others by turns, with LONG=1 by all compilers that there are
 compiled() {
