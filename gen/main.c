@@ -22,10 +22,6 @@ struct work {
 static bool make_model(struct work *w)
 {
 	const struct request *request = &w->options.request;
-	const struct source *source = source_read(w->options.spec);
-	if (!source)
-		return false;
-	w->spec = parse_spec(source);
 	w->model = model_build(w->spec, request);
 	if (!w->model || (!request->solution && !find_tuning(w->model, request)))
 		return false;
@@ -41,6 +37,31 @@ static bool make_step(struct work *w)
 	struct model *stepped = stepped_model(w->model, w->spec, &w->options.request);
 	w->step = stepped ? step_build(stepped) : NULL;
 	return w->step;
+}
+
+static void try_all(void *context)
+{
+	struct work *w = context;
+	if (!make_model(w) || !make_step(w))
+		abandon();
+}
+
+/* Where no scheme is asked for the best one may not have a step of this model: then another is taken, and it is told
+ * why. What stands in the way of any is said by the last. */
+static bool make(struct work *w)
+{
+	struct request *request = &w->options.request;
+	const struct source *source = source_read(w->options.spec);
+	if (!source)
+		return false;
+	w->spec = parse_spec(source);
+	if (!diagnostics_errors() && !request->scheme && !w->spec->scheme && !request->solution) {
+		request->passed_over = refusal_of(try_all, w);
+		if (!request->passed_over)
+			return true;
+		w->spec = parse_spec(source);
+	}
+	return make_model(w) && make_step(w);
 }
 
 /* ---- from a step to texts ---- */
@@ -152,7 +173,7 @@ static bool compile(struct work *w)
 {
 	if (w->options.request.single && !w->options.request.solution)
 		target_float();
-	if (!make_model(w) || !make_step(w) || !print_text(w))
+	if (!make(w) || !print_text(w))
 		return false;
 	print_header(w);
 	rewrite_code(w);

@@ -126,15 +126,22 @@ bool statement_guard(void (*work)(void *), void *context)
 	return done;
 }
 
+const char *refusal_of(void (*work)(void *), void *context)
+{
+	int known = said_count, errors = error_count, first = known;
+	if (statement_guard(work, context))
+		return NULL;
+	while (first < said_count && strcmp(said[first].severity, "error") != 0)
+		first++;
+	const char *message = first < said_count ? said[first].message : "";
+	said_count = known;
+	error_count = errors;
+	return message;
+}
+
 bool silent_guard(void (*work)(void *), void *context)
 {
-	int known = said_count, errors = error_count;
-	bool done = statement_guard(work, context);
-	if (!done) {
-		said_count = known;
-		error_count = errors;
-	}
-	return done;
+	return !refusal_of(work, context);
 }
 
 void diagnostics_context(const char *note)

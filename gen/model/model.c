@@ -180,6 +180,17 @@ static void evaluate_tolerance(struct building *b, struct node *node, struct pla
 	mpq_clear(least);
 }
 
+void choose_order(struct building *b)
+{
+	struct truncation *truncation = &b->model->truncation;
+	if (!scheme_row(b->model->scheme)->expands || truncation->order)
+		return;
+	truncation->adaptive = true;
+	if (mpq_sgn(truncation->tolerance) == 0)
+		mpq_set_ui(truncation->tolerance, 1, b->request->single ? 100000 : 1000000000);
+	truncation->order = order_for(truncation->tolerance);
+}
+
 /* The order of a series, given or from its tolerance; the most steps within one h */
 static void evaluate_truncation(void *context)
 {
@@ -200,15 +211,9 @@ static void evaluate_truncation(void *context)
 	if (tolerance)
 		evaluate_tolerance(b, tolerance, at);
 	truncation->substeps = substeps ? whole_number(b, substeps, 1, MOST_SUBSTEPS, "the most substeps") : SUBSTEPS;
-	if (!row->expands)
-		return;
-	truncation->adaptive = !order;
-	if (order)
+	if (order && row->expands)
 		truncation->order = whole_number(b, order, LEAST_ORDER, MOST_ORDER, "an order");
-	if (!order && !tolerance)
-		mpq_set_ui(truncation->tolerance, 1, b->request->single ? 100000 : 1000000000);
-	if (!order)
-		truncation->order = order_for(truncation->tolerance);
+	choose_order(b);
 }
 
 static void evaluate_step(void *context)

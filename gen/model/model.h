@@ -86,6 +86,7 @@ struct request {                    /* what the user asks for on the command lin
 	enum step_form form;
 	int anchors;                /* steps from one evaluation of a load's functions to the next; 0: as it is best */
 	bool solution;              /* the closed form is wanted, whatever the scheme */
+	const char *passed_over;    /* why the scheme that would be best has no step; NULL: it was not tried yet */
 	int definitions;
 	const char **definition;    /* NAME=EXPR */
 	/* Where it is asked for, command line or spec: found when the model is built */
@@ -379,6 +380,10 @@ int  share_of_region(const struct region_part *part, const struct switching *who
 void place_region_loads(struct building *b);
 /* their systems; after the loads of all have their places */
 void build_regions(struct building *b);
+
+/* ---- model.c ---- */
+
+void choose_order(struct building *b);                      /* of a series, from its tolerance; of others, none */
 
 /* ---- settle.c: which scheme the equations allow ---- */
 

@@ -207,13 +207,23 @@ static void find_obstacle(void *context)
 	model->obstacle_text = format("%s%s%s", why, *rewrite ? "; " : "", rewrite);
 }
 
+/* The first scheme to try where exact is not possible and none was asked for. What is smooth has its Taylor series; an
+ * operator, and loads that are left over, have been written for schemes that take the equations apart. */
+static enum scheme scheme_of_choice(const struct building *b)
+{
+	if (b->request->passed_over || b->spec->has_operator || b->request->loads_left)
+		return default_scheme();
+	return SCHEME_TAYLOR;
+}
+
 /* Exact where nothing is left over and no scheme was asked for; the equations for all time where something is. */
 static bool settle_scheme(struct building *b)
 {
 	struct model *model = b->model;
 	bool linear = is_linear(b);
 	if (!linear && !model->asked.scheme_at.source && !b->request->solution && !is_piecewise_linear(b)) {
-		model->scheme = default_scheme();
+		model->scheme = scheme_of_choice(b);
+		choose_order(b);
 		silent_guard(find_obstacle, b);
 	}
 	b->collector.scheme = scheme_name(model->scheme);

@@ -3,6 +3,8 @@
  * do. */
 #include "model/model.h"
 
+#include <string.h>
+
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_odeiv2.h>
 #include <math.h>
@@ -505,14 +507,27 @@ static void check_need(const struct building *b, bool left)
 			    scheme->name);
 }
 
+/* Why what would be best is not taken */
+static const char *passed_over(const char *why)
+{
+	const char *named = format("scheme %s", scheme_name(SCHEME_TAYLOR));
+	if (!why)
+		return "";
+	return strncmp(why, named, strlen(named)) == 0 ? format("; %s", why) : format("; not %s: %s", named, why);
+}
+
 void warn(struct building *b)
 {
 	const struct model *model = b->model;
 	bool left = model->channels > 0;
 	struct jacobian j = { .b = b };
 	if (left && model->obstacle)
-		say_note(model->obstacle->start, "scheme %s, not exact: '%s' %s", scheme_name(model->scheme),
-			 text_between(model->obstacle->start, model->obstacle->end), model->obstacle_text);
+		say_note(model->obstacle->start, "scheme %s%s, not exact: '%s' %s%s", scheme_name(model->scheme),
+			 model->truncation.adaptive
+				 ? format(", tolerance %s", shortest(round_rational(model->truncation.tolerance)))
+				 : "",
+			 text_between(model->obstacle->start, model->obstacle->end), model->obstacle_text,
+			 passed_over(b->request->passed_over));
 	check_need(b, left);
 	check_truncation(b);
 	check_smoothness(b);
