@@ -186,18 +186,19 @@ for scheme in etd1 etdrk2 etdrk4; do
 done
 silent "$root/models/pendulum.spec"
 silent "$root/models/duffing.spec" --step 0.01 --scheme etdrk4
-says "$root/models/duffing.spec" softer
+says "$root/models/duffing.spec" softer --scheme etdrk4
+silent "$root/models/duffing.spec" --scheme taylor
 
-# notes SPEC TERM: without a scheme, one note and nothing else, on the term that kept it from exact steps
+# notes SPEC SCHEME TERM: without a scheme, one note and nothing else, on the term that kept it from exact steps
 notes()
 {
     "$plgen" "$1" >out.c 2>log && [ "$(grep -c 'note:' log)" -eq 1 ] && ! grep -q 'warning:' log &&
-        grep -q -F "note: scheme etdrk4, not exact: '$2'" log
-    result $? "${1##*/}: notes that $2 stands in the way of exact"
+        grep -q -F "note: scheme $2, not exact: '$3'" log
+    result $? "${1##*/}: notes that $3 stands in the way of exact, and scheme $2 is taken"
 }
-notes "$root/models/vanderpol.spec" "mu*(1 - x^2)*x'"
-notes "$root/models/quad2dof.spec" '-2*x*y'
-notes "$root/models/mathieu.spec" '(a - 2*q*cos(2*t))*x'
+notes "$root/models/vanderpol.spec" 'taylor, tolerance 1e-9' "mu*(1 - x^2)*x'"
+notes "$root/models/quad2dof.spec" 'taylor, tolerance 1e-9' '-2*x*y'
+notes "$root/models/mathieu.spec" etdrk4 '(a - 2*q*cos(2*t))*x'
 
 # orders SPEC SCHEME ORDER SMOOTH TEXT: the order that holds, in JSON, --explain and the banner
 orders()
