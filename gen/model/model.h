@@ -385,6 +385,26 @@ void build_regions(struct building *b);
 
 void choose_order(struct building *b);                      /* of a series, from its tolerance; of others, none */
 
+/* ---- jacobian.c: of the equations for all time, where states and time are fixed ---- */
+
+struct jacobian {
+	struct building *b;
+	/* [coordinate][row]: of the equations for all time, by velocity and by coordinate */
+	struct form ***C, ***K;
+	struct linear at;           /* evaluated */
+	bool damped;                /* C too */
+	const mpq_t *state;         /* where the states are fixed */
+	mpq_t t;
+};
+void jacobian_forms(void *jacobian);                        /* C, K and what `at` has of the system */
+/* K, and C where it is wanted, at j->t and j->state; leaves the statement where they are not defined */
+void jacobian_evaluate(void *jacobian);
+int  jacobian_point(const struct jacobian *j, struct fixing *fixing); /* states + 1, which it fixes */
+/* [1/s^2] of the coordinates' stiffness alone, eigenvalues of W^-1 K, rising; false: not found */
+bool squared_frequencies(const struct linear *system, double *value);
+double fastest_pole(const struct linear *system);           /* its size [1/s]; 0: not found */
+double fastest_decay(const struct linear *system);          /* the largest -Re of a pole [1/s], at least 0 */
+
 /* ---- settle.c: which scheme the equations allow ---- */
 
 bool is_linear(const struct building *b);                   /* with constant coefficients, loads in time excepted */

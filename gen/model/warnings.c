@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What a spec may say but is better told about. Nothing here reaches the generated code, so eigenvalues in double will
- * do. */
+/* What a spec may say but is better told about. */
 #include "model/model.h"
 
 #include <string.h>
@@ -17,122 +16,6 @@ enum { SAMPLES = 32 };
  * times it anyhow. */
 static const double LITTLE = 1e-2, TWICE = 0.5, TENFOLD = 0.9, DRIFT = 1e-3;
 
-/* ---- the Jacobian in time ---- */
-
-struct jacobian {
-	struct building *b;
-	/* [coordinate][row]: of the equations for all time, by velocity and by coordinate */
-	struct form ***C, ***K;
-	struct linear at;           /* evaluated */
-	bool damped;                /* C too */
-	const mpq_t *state;         /* where the states are fixed */
-	mpq_t t;
-};
-
-static struct form **columns(struct building *b, int coord, int order)
-{
-	const struct form **row = ARRAY(const struct form *, (size_t)b->model->n);
-	for (int i = 0; i < b->model->n; i++)
-		row[i] = b->whole->residual[i].form;
-	return form_derivatives(&b->collector, b->model->n, row, coord, order);
-}
-
-static void differentiate(void *context)
-{
-	struct jacobian *j = context;
-	const struct model *model = j->b->model;
-	j->C = ARRAY(struct form **, (size_t)model->n);
-	j->K = ARRAY(struct form **, (size_t)model->n);
-	for (int k = 0; k < model->n; k++) {
-		j->C[k] = columns(j->b, k, 1);
-		j->K[k] = columns(j->b, k, 0);
-	}
-	j->at = linear_like(&model->system);
-	j->at.M = model->system.M;
-}
-
-static int fix_states(const struct jacobian *j, struct fixing *fixing)
-{
-	const struct model *model = j->b->model;
-	for (int i = 0; i < model->system.states; i++) {
-		int coord = model->system.coord[i];
-		fixing[i] =
-			(struct fixing){ .symbol = model->frame.coord[coord], .coord = coord, .order = i >= model->n };
-		mpq_init(fixing[i].value);
-		mpq_set(fixing[i].value, j->state[i]);
-	}
-	struct fixing *time = &fixing[model->system.states];
-	*time = (struct fixing){ .at = model->spec->name_at };
-	time->form = form_constant(j->t);
-	return model->system.states + 1;
-}
-
-static void constant_of(struct collector *c, const struct form *form, mpq_ptr value)
-{
-	mpq_set_ui(value, 0, 1);
-	if (is_constant(form))                  /* what still depends on inputs is left out */
-		constant_value(c, form, value);
-}
-
-/* K, and C where it is wanted, at j->t and j->state; leaves the statement where they are not defined */
-static void evaluate(void *context)
-{
-	struct jacobian *j = context;
-	const struct model *model = j->b->model;
-	struct collector *c = &j->b->collector;
-	int n = model->n;
-	struct fixing *fixing = ARRAY(struct fixing, (size_t)model->system.states + 1);
-	struct point *point = point_new(c, fix_states(j, fixing), fixing);
-	for (int k = 0; k < n; k++)
-		for (int i = 0; i < n; i++) {
-			/* of first order: what multiplies the highest derivative */
-			if (j->damped || model->system.velocity[k] < 0)
-				constant_of(c, form_at(point, j->C[k][i]), j->at.C[i * n + k]);
-			constant_of(c, form_at(point, j->K[k][i]), j->at.K[i * n + k]);
-		}
-}
-
-/* ---- eigenvalues ---- */
-
-static int ascending(const void *left, const void *right)
-{
-	const double *a = left, *b = right;
-	return (*a > *b) - (*a < *b);
-}
-
-/* Sizes of the eigenvalues, or their real parts; false: not found. `value` receives n, sorted. */
-static bool sorted_eigenvalues(int n, const mpq_t *A, bool sizes, double *value)
-{
-	double *im = ARRAY(double, (size_t)n);
-	bool found = eigenvalues(n, A, value, im);
-	for (int i = 0; i < n && found && sizes; i++)
-		value[i] = hypot(value[i], im[i]);
-	qsort(value, (size_t)n, sizeof *value, ascending);
-	discard(im);
-	return found;
-}
-
-/* Squared frequencies [1/s^2] of the coordinates' stiffness alone: eigenvalues of W^-1 K */
-static bool stiffness(const struct linear *system, double *value)
-{
-	int n = system->n, column;
-	mpq_t *inverse = rationals((size_t)(n * n)), *product = rationals((size_t)(n * n));
-	if (!leading_inverse(system, inverse, &column))
-		return false;
-	unreduced_product(n, n, n, (const mpq_t *)inverse, (const mpq_t *)system->K, product);
-	bool found = sorted_eigenvalues(n, (const mpq_t *)product, false, value);
-	rationals_free(inverse, (size_t)(n * n));
-	rationals_free(product, (size_t)(n * n));
-	return found;
-}
-
-static double fastest_pole(const struct linear *system)
-{
-	double *value = ARRAY(double, (size_t)system->states);
-	bool found = sorted_eigenvalues(system->states, (const mpq_t *)state_matrix(system, false), true, value);
-	return found ? value[system->states - 1] : 0;
-}
-
 /* ---- explicit predictors ---- */
 
 static struct place scheme_place(const struct building *b)
@@ -148,7 +31,7 @@ static void check_predictor(struct jacobian *j)
 	double fastest = 0;
 	j->state = (const mpq_t *)model->initial;
 	j->damped = true;
-	if (silent_guard(evaluate, j))
+	if (silent_guard(jacobian_evaluate, j))
 		fastest = fastest_pole(&j->at);
 	for (int k = 0; k < model->operators; k++) {
 		struct linear system = operator_system(model, k);
@@ -179,7 +62,7 @@ static void choose_operator(void *context)
 	const struct model *model = work->j->b->model;
 	struct collector *c = &work->j->b->collector;
 	struct fixing *fixing = ARRAY(struct fixing, (size_t)model->system.states + 1);
-	const struct form *now = form_at(point_new(c, fix_states(work->j, fixing), fixing), model->selector);
+	const struct form *now = form_at(point_new(c, jacobian_point(work->j, fixing), fixing), model->selector);
 	if (!is_constant(now))
 		abandon();
 	mpq_t value;
@@ -230,10 +113,10 @@ static void compare(struct jacobian *j, bool moved, const char *where, struct so
 	const struct model *model = j->b->model;
 	struct choice_work choice = { j, 0 };
 	double *here = ARRAY(double, (size_t)model->n), *there = ARRAY(double, (size_t)model->n);
-	if (!silent_guard(evaluate, j) || (model->selector && !silent_guard(choose_operator, &choice)))
+	if (!silent_guard(jacobian_evaluate, j) || (model->selector && !silent_guard(choose_operator, &choice)))
 		return;
 	struct linear system = operator_system(model, choice.which);
-	if (!stiffness(&j->at, here) || !stiffness(&system, there))
+	if (!squared_frequencies(&j->at, here) || !squared_frequencies(&system, there))
 		return;
 	for (int i = 0; i < model->n; i++) {
 		double now = (here[i] - there[i]) * worst->here, known = (worst->here - worst->operator) * here[i];
@@ -413,7 +296,7 @@ static void check_softness(struct jacobian *j)
 		mpq_mul(end, end, model->h);
 	/* at rest; where that is not defined, at the start */
 	j->state = (const mpq_t *)rationals((size_t)model->system.states);
-	if (!silent_guard(evaluate, j))
+	if (!silent_guard(jacobian_evaluate, j))
 		j->state = (const mpq_t *)model->initial;
 	bool moves = stiffness_moves(j);
 	for (int k = 0; k <= (moves ? SAMPLES : 0); k++) {
@@ -532,7 +415,7 @@ void warn(struct building *b)
 	check_truncation(b);
 	check_smoothness(b);
 	const struct scheme_row *scheme = scheme_row(model->scheme);
-	if (!left || !scheme->leaves || scheme->expands || is_linear(b) || !silent_guard(differentiate, &j))
+	if (!left || !scheme->leaves || scheme->expands || is_linear(b) || !silent_guard(jacobian_forms, &j))
 		return;
 	mpq_init(j.t);
 	if (scheme->predicts)

@@ -1,0 +1,117 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The Jacobian of the equations, where the states and the time are fixed, and its eigenvalues. Nothing here reaches
+ * the numbers of the generated code, so eigenvalues in double will do. */
+#include "model/model.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+static struct form **columns(struct building *b, int coord, int order)
+{
+	const struct form **row = ARRAY(const struct form *, (size_t)b->model->n);
+	for (int i = 0; i < b->model->n; i++)
+		row[i] = b->whole->residual[i].form;
+	return form_derivatives(&b->collector, b->model->n, row, coord, order);
+}
+
+void jacobian_forms(void *context)
+{
+	struct jacobian *j = context;
+	const struct model *model = j->b->model;
+	j->C = ARRAY(struct form **, (size_t)model->n);
+	j->K = ARRAY(struct form **, (size_t)model->n);
+	for (int k = 0; k < model->n; k++) {
+		j->C[k] = columns(j->b, k, 1);
+		j->K[k] = columns(j->b, k, 0);
+	}
+	j->at = linear_like(&model->system);
+	j->at.M = model->system.M;
+}
+
+int jacobian_point(const struct jacobian *j, struct fixing *fixing)
+{
+	const struct model *model = j->b->model;
+	for (int i = 0; i < model->system.states; i++) {
+		int coord = model->system.coord[i];
+		fixing[i] =
+			(struct fixing){ .symbol = model->frame.coord[coord], .coord = coord, .order = i >= model->n };
+		mpq_init(fixing[i].value);
+		mpq_set(fixing[i].value, j->state[i]);
+	}
+	struct fixing *time = &fixing[model->system.states];
+	*time = (struct fixing){ .at = model->spec->name_at };
+	time->form = form_constant(j->t);
+	return model->system.states + 1;
+}
+
+static void constant_of(struct collector *c, const struct form *form, mpq_ptr value)
+{
+	mpq_set_ui(value, 0, 1);
+	if (is_constant(form))                  /* what still depends on inputs is left out */
+		constant_value(c, form, value);
+}
+
+void jacobian_evaluate(void *context)
+{
+	struct jacobian *j = context;
+	const struct model *model = j->b->model;
+	struct collector *c = &j->b->collector;
+	int n = model->n;
+	struct fixing *fixing = ARRAY(struct fixing, (size_t)model->system.states + 1);
+	struct point *point = point_new(c, jacobian_point(j, fixing), fixing);
+	for (int k = 0; k < n; k++)
+		for (int i = 0; i < n; i++) {
+			/* of first order: what multiplies the highest derivative */
+			if (j->damped || model->system.velocity[k] < 0)
+				constant_of(c, form_at(point, j->C[k][i]), j->at.C[i * n + k]);
+			constant_of(c, form_at(point, j->K[k][i]), j->at.K[i * n + k]);
+		}
+}
+
+/* ---- eigenvalues ---- */
+
+static int ascending(const void *left, const void *right)
+{
+	const double *a = left, *b = right;
+	return (*a > *b) - (*a < *b);
+}
+
+/* Sizes of the eigenvalues, or their real parts; false: not found. `value` receives n, sorted. */
+static bool sorted_eigenvalues(int n, const mpq_t *A, bool sizes, double *value)
+{
+	double *im = ARRAY(double, (size_t)n);
+	bool found = eigenvalues(n, A, value, im);
+	for (int i = 0; i < n && found && sizes; i++)
+		value[i] = hypot(value[i], im[i]);
+	qsort(value, (size_t)n, sizeof *value, ascending);
+	discard(im);
+	return found;
+}
+
+/* Squared frequencies [1/s^2] of the coordinates' squared_frequencies alone: eigenvalues of W^-1 K */
+bool squared_frequencies(const struct linear *system, double *value)
+{
+	int n = system->n, column;
+	mpq_t *inverse = rationals((size_t)(n * n)), *product = rationals((size_t)(n * n));
+	if (!leading_inverse(system, inverse, &column))
+		return false;
+	unreduced_product(n, n, n, (const mpq_t *)inverse, (const mpq_t *)system->K, product);
+	bool found = sorted_eigenvalues(n, (const mpq_t *)product, false, value);
+	rationals_free(inverse, (size_t)(n * n));
+	rationals_free(product, (size_t)(n * n));
+	return found;
+}
+
+double fastest_pole(const struct linear *system)
+{
+	double *value = ARRAY(double, (size_t)system->states);
+	bool found = sorted_eigenvalues(system->states, (const mpq_t *)state_matrix(system, false), true, value);
+	return found ? value[system->states - 1] : 0;
+}
+
+double fastest_decay(const struct linear *system)
+{
+	double *value = ARRAY(double, (size_t)system->states);
+	bool found = sorted_eigenvalues(system->states, (const mpq_t *)state_matrix(system, false), false, value);
+	return found ? fmax(-value[0], 0) : 0;
+}
