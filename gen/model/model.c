@@ -2,10 +2,7 @@
 /* From a parsed spec to a model: params, scheme, step and initial values here, the rest by the files before it. */
 #include "model/model.h"
 
-#include <math.h>
 #include <string.h>
-
-enum { LEAST_ORDER = 4, MOST_ORDER = 30 };      /* of a Taylor series */
 
 /* ---- params, lets ---- */
 
@@ -155,14 +152,6 @@ static int whole_number(struct building *b, struct node *node, int low, int high
 	return number;
 }
 
-/* 8, 12, 16, 18 for 3, 6, 9, 12 digits: best within a third on smooth models, so much so that nobody needs to choose */
-static int order_for(mpq_srcptr tolerance)
-{
-	double digits = -log10(mpq_get_d(tolerance));
-	int order = (int)ceil(digits <= 9.001 ? 4 + 4 * (digits - 0.001) / 3 : 16 + 2 * (digits - 9.001) / 3);
-	return order < LEAST_ORDER ? LEAST_ORDER : order;
-}
-
 static void evaluate_tolerance(struct building *b, struct node *node, struct place at)
 {
 	struct truncation *truncation = &b->model->truncation;
@@ -178,17 +167,6 @@ static void evaluate_tolerance(struct building *b, struct node *node, struct pla
 		error(at, NULL, "a tolerance below %s is below the rounding of %s", single ? "1e-6" : "1e-15",
 		      target_name());
 	mpq_clear(least);
-}
-
-void choose_order(struct building *b)
-{
-	struct truncation *truncation = &b->model->truncation;
-	if (!scheme_row(b->model->scheme)->expands || truncation->order)
-		return;
-	truncation->adaptive = true;
-	if (mpq_sgn(truncation->tolerance) == 0)
-		mpq_set_ui(truncation->tolerance, 1, b->request->single ? 100000 : 1000000000);
-	truncation->order = order_for(truncation->tolerance);
 }
 
 /* The order of a series, given or from its tolerance; the most steps within one h */
@@ -213,7 +191,7 @@ static void evaluate_truncation(void *context)
 	truncation->substeps = substeps ? whole_number(b, substeps, 1, MOST_SUBSTEPS, "the most substeps") : SUBSTEPS;
 	if (order && row->expands)
 		truncation->order = whole_number(b, order, LEAST_ORDER, MOST_ORDER, "an order");
-	choose_order(b);
+	choose_order(model, b->request->single);
 }
 
 static void evaluate_step(void *context)

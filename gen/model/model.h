@@ -381,9 +381,11 @@ void place_region_loads(struct building *b);
 /* their systems; after the loads of all have their places */
 void build_regions(struct building *b);
 
-/* ---- model.c ---- */
+/* ---- truncation.c: where a series ends ---- */
 
-void choose_order(struct building *b);                      /* of a series, from its tolerance; of others, none */
+enum { LEAST_ORDER = 4, MOST_ORDER = 30 };
+/* from its tolerance, which is the default where it is 0; of what is no series, none */
+void choose_order(struct model *model, bool single);
 
 /* ---- jacobian.c: of the equations for all time, where states and time are fixed ---- */
 

@@ -223,7 +223,7 @@ static bool settle_scheme(struct building *b)
 	bool linear = is_linear(b);
 	if (!linear && !model->asked.scheme_at.source && !b->request->solution && !is_piecewise_linear(b)) {
 		model->scheme = scheme_of_choice(b);
-		choose_order(b);
+		choose_order(model, b->request->single);
 		silent_guard(find_obstacle, b);
 	}
 	b->collector.scheme = scheme_name(model->scheme);
