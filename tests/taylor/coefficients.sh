@@ -19,10 +19,17 @@ runtime_archive "$source/runtime"
 
 # made SEED: the program `compare`, and its order
 made() {
-	"$drawn_series" spec "$1" >drawn.spec &&
-		timeout 600 "$plgen" -o drawn_pl.c drawn.spec &&
-		${CC:-cc} -std=c99 -O0 -w -I. -I"$source/runtime" "$source/tests/taylor/compare_series.c" drawn_pl.c \
-			"$archive" -lm -o compare &&
+	defines=
+	"$drawn_series" spec "$1" >drawn.spec && timeout 600 "$plgen" -o drawn_pl.c drawn.spec || return 1
+	if grep -q "^input" drawn.spec; then
+		defines=-DDRIVEN
+	fi
+	if grep -q "What may move as a whole" drawn_pl.c; then
+		defines="$defines -DRELATIVE"
+	fi
+	# shellcheck disable=SC2086
+	${CC:-cc} -std=c99 -O0 -w $defines -I. -I"$source/runtime" "$source/tests/taylor/compare_series.c" \
+		drawn_pl.c "$archive" -lm -o compare &&
 		order=$(./compare order)
 }
 

@@ -2,7 +2,8 @@
 /* Random smooth equations, and the Taylor coefficients of their solution by another road than recurrences.
  *
  *     drawn_series spec SEED           a spec `drawn` with 20 coordinates, 12 of them of second order
- *     drawn_series truth SEED ORDER    a line `start TIME`, then for each state its name and value there, then for each
+ *     drawn_series truth SEED ORDER    a line `start TIME`, for each input, if there are some, its sample before and at
+ *                                      the end, then for each state its name and value at the start, then for each
  *                                      k <= ORDER and state its name, k, h^k/k! y^(k), and how far that is off, in
  *                                      units of 2^-53, where each operation rounds once
  *
@@ -11,7 +12,8 @@
  * coefficient. What lies beyond aliases, by the circle's radius, 2^-16, to the power of the number of points, which is
  * 8 or more. The same a second time, each coefficient of each operation off by a random part of 2^-53 of itself, shows
  * what rounding may do: without that no bound would be right both for e^x and for what cancels. Starts and numbers are
- * binary fractions of few bits, so that they are the same in double. */
+ * binary fractions of few bits, so that they are the same in double. What has another formula in each interval of time
+ * is drawn as the whole and as the formula that holds just after the start. */
 #include <math.h>
 #include <mpc.h>
 #include <stdbool.h>
@@ -21,13 +23,17 @@
 #include <string.h>
 
 enum {
-    SECOND = 12, COORDS = 20, STATES = COORDS + SECOND, MOST_NODES = 4000, MOST_ORDER = 20, BITS = 480, RADIUS = 16,
+    SECOND = 12, COORDS = 20, STATES = COORDS + SECOND, INPUTS = 2, TEXT = 200, MOST_NODES = 4000, MOST_ORDER = 20,
+    BITS = 480, RADIUS = 16,
     RUNS = 2,                           /* the plain one, and with rounding */
     MOST_SIZE = 40                      /* of an expression */
 };
 
 enum kind {
-    NUMBER, TIME, STATE, ADD, SUBTRACT, MULTIPLY, DIVIDE, POWER, ATAN2, SQRT, EXP, LOG, SIN, COS, TAN, ASIN, ACOS, ATAN,
+    NUMBER, TIME, INPUT, STATE,
+    PIECES,                             /* a: what holds of a function of t with kinks or jumps, whose text is `text` */
+    CHOICE,                             /* a or b, one by `text` and one else */
+    ADD, SUBTRACT, MULTIPLY, DIVIDE, POWER, ATAN2, SQRT, EXP, LOG, SIN, COS, TAN, ASIN, ACOS, ATAN,
     SINH, COSH, TANH, KINDS
 };
 static const char *const name_of[KINDS] = {
@@ -38,13 +44,17 @@ static const char *const name_of[KINDS] = {
 static struct node {
     enum kind kind;
     int a, b, size;
-    bool used;
+    bool used, forked;                  /* something in it has another formula at other times */
+    bool holds;                         /* of a choice: a, else b */
     double value;                       /* at the start; of a number itself */
+    char text[TEXT];
     mpc_t z;
     double rounding[MOST_ORDER + 1];
 } node[MOST_NODES];
 static int nodes, root[COORDS];
 static double start_time, h, tolerance, initial[STATES], mass[COORDS][2];
+static bool driven;                     /* by `held` and `ramp` */
+static double sample[INPUTS][2];        /* before and at the end */
 static uint64_t state;
 
 /* xorshift64* (Vigna 2016) */
@@ -100,9 +110,11 @@ static int add_node(enum kind kind, int a, int b)
         abort();
     struct node *n = &node[nodes];
     *n = (struct node){ .kind = kind, .a = a, .b = b, .size = 1 };
-    if (a >= 0)
+    if (a >= 0) {
         n->size += node[a].size + (b >= 0 ? node[b].size : 0);
-    if (kind > STATE)
+        n->forked = kind == PIECES || kind == CHOICE || node[a].forked || (b >= 0 && node[b].forked);
+    }
+    if (kind >= ADD)
         n->value = value_of(kind, node[a].value, b >= 0 ? node[b].value : 0);
     return nodes++;
 }
@@ -114,16 +126,107 @@ static int number(double value)
     return made;
 }
 
+static int time_itself(void)
+{
+    int made = add_node(TIME, -1, -1);
+    node[made].value = start_time;
+    return made;
+}
+
+/* ---- what has another formula in each interval of time ---- */
+
+static int pieces(int holds, const char *text)
+{
+    int made = add_node(PIECES, holds, -1);
+    node[made].value = node[holds].value;
+    snprintf(node[made].text, TEXT, "%s", text);
+    return made;
+}
+
+/* No multiple of 1/128, as what is compared with it is */
+static double border(double near) { return near + (2 * below(32) - 31) / 256.0; }
+
+/* table(text; ...) with nodes half a unit apart, whose first is x */
+static int table(int argument, const char *of, double x)
+{
+    double y[3] = { fraction(-24, 24), fraction(-24, 24), fraction(-24, 24) }, value = node[argument].value;
+    int piece = value < x + 0.5 ? 0 : 1;
+    double slope = 2 * (y[piece + 1] - y[piece]);
+    char text[TEXT];
+    snprintf(text, TEXT, "table(%s; %.17g, %g; %.17g, %g; %.17g, %g)", of, x, y[0], x + 0.5, y[1], x + 1, y[2]);
+    int shift = number(y[piece] - slope * (x + 0.5 * piece));
+    return pieces(add_node(ADD, shift, add_node(MULTIPLY, number(slope), argument)), text);
+}
+
+static int in_intervals(void)
+{
+    double slope = fraction(-24, 24), shift = fraction(-24, 24), value = shift + slope * start_time;
+    double low = border(value), high = low + 0.25 * (1 + below(4)), other = fraction(-24, 24);
+    int line = add_node(ADD, number(shift), add_node(MULTIPLY, number(slope), time_itself()));
+    int second = add_node(ADD, number(low), add_node(MULTIPLY, number(other), time_itself()));
+    char of[TEXT / 4], text[TEXT];
+    snprintf(of, sizeof of, "%g + (%g)*t", shift, slope);
+    switch (below(7)) {
+    case 0:
+        snprintf(text, TEXT, "abs(%s - (%.17g))", of, low);
+        line = add_node(SUBTRACT, line, number(low));
+        return pieces(node[line].value > 0 ? line : add_node(MULTIPLY, number(-1), line), text);
+    case 1:
+        snprintf(text, TEXT, "min(%s, %.17g + (%g)*t)", of, low, other);
+        return pieces(node[line].value < node[second].value ? line : second, text);
+    case 2:
+        snprintf(text, TEXT, "max(%s, %.17g + (%g)*t, %.17g)", of, low, other, high);
+        second = node[line].value > node[second].value ? line : second;
+        return pieces(node[second].value > high ? second : number(high), text);
+    case 3:
+        snprintf(text, TEXT, "clip(%s, %.17g, %.17g)", of, low, high);
+        return pieces(value < low ? number(low) : value > high ? number(high) : line, text);
+    case 4:
+        snprintf(text, TEXT, "deadzone(%s, %.17g, %.17g)", of, low, high);
+        if (value > low && value < high)
+            return pieces(number(0), text);
+        return pieces(add_node(SUBTRACT, line, number(value < low ? low : high)), text);
+    case 5:
+        snprintf(text, TEXT, "sgn(%s - (%.17g))", of, low);
+        return pieces(number(value > low ? 1 : -1), text);
+    default:
+        return table(line, of, low);
+    }
+}
+
+/* a until a time near the start, perhaps the start itself, and b from then on */
+static int choice(int a, int b)
+{
+    static const char *const sign[] = { "<", "<=", ">", ">=" };
+    double when = start_time + (below(4) ? (2 * below(32) - 31) / 64.0 : 0);
+    int which = below(4), made = add_node(CHOICE, a, b);
+    struct node *n = &node[made];
+    n->holds = (when <= start_time) == (which >= 2);
+    n->value = node[n->holds ? a : b].value;
+    snprintf(n->text, TEXT, "t %s %.17g", sign[which], when);
+    return made;
+}
+
+/* ---- expressions ---- */
+
+static int input(void)
+{
+    int made = add_node(INPUT, -1, -1), i = node[made].b = below(INPUTS + 1);
+    node[made].value = i == 0 ? sample[0][1] : i == 1 ? sample[1][0] : (sample[1][1] - sample[1][0]) / h;
+    return made;
+}
+
 static int leaf(bool varies)
 {
-    int which = below(12);
+    int which = below(15);
     if (which == 0 && !varies)
         return number(fraction(-24, 24));
-    if (which <= 2) {
-        int made = add_node(TIME, -1, -1);
-        node[made].value = start_time;
-        return made;
-    }
+    if (which <= 2)
+        return time_itself();
+    if (which == 3)
+        return in_intervals();
+    if (which == 4 && driven)
+        return input();
     int made = add_node(STATE, -1, -1);
     node[made].b = below(STATES);
     node[made].value = initial[node[made].b];
@@ -131,25 +234,26 @@ static int leaf(bool varies)
     return made;
 }
 
-/* What a function may be of: smooth, and no closer to where it is not than its series needs */
+/* What a function may be of: smooth, and no closer to where it is not than its series needs; where that is forked, at
+ * all times */
 static int positive(int a)
 {
-    return node[a].value > 0.2 ? a : add_node(ADD, add_node(MULTIPLY, a, a), number(0.5));
+    return node[a].value > 0.2 && !node[a].forked ? a : add_node(ADD, add_node(MULTIPLY, a, a), number(0.5));
 }
 
 static int small(int a)
 {
-    return fabs(node[a].value) < 0.7 ? a : add_node(MULTIPLY, number(0.5), add_node(SIN, a, -1));
+    return fabs(node[a].value) < 0.7 && !node[a].forked ? a : add_node(MULTIPLY, number(0.5), add_node(SIN, a, -1));
 }
 
 static int moderate(int a)
 {
-    return fabs(node[a].value) < 1.25 ? a : add_node(TANH, a, -1);
+    return fabs(node[a].value) < 1.25 && !node[a].forked ? a : add_node(TANH, a, -1);
 }
 
 static int divisor(int a)
 {
-    return fabs(node[a].value) > 0.3 ? a : add_node(ADD, number(1.25), add_node(MULTIPLY, a, a));
+    return fabs(node[a].value) > 0.3 && !node[a].forked ? a : add_node(ADD, number(1.25), add_node(MULTIPLY, a, a));
 }
 
 static int power(int a, int b)
@@ -167,7 +271,8 @@ static int power(int a, int b)
 
 static int angle(int y, int x)
 {
-    bool far = node[x].value > 0.3 || fabs(node[y].value) > 0.3;
+    bool forked = node[x].forked || node[y].forked;
+    bool far = !forked && (node[x].value > 0.3 || fabs(node[y].value) > 0.3);
     return add_node(ATAN2, y, far ? x : divisor(x));
 }
 
@@ -196,22 +301,30 @@ static int expression(int depth)
             return again;
     }
     int a = expression(depth - 1), b = below(3) ? expression(depth - 1) : leaf(false);
-    int made = combine(a, b);
+    bool fork = below(12) == 0 && !node[a].forked && !node[b].forked;
+    int made = fork ? choice(a, b) : combine(a, b);
     if (node[made].size > MOST_SIZE)
         return leaf(true);
     return fabs(node[made].value) < 8 ? made : add_node(ATAN, made, -1);
 }
 
 /* t^k cos(wt), e^{at}, t^k: what is linear in loads is taken apart by the generator */
-static int load(void)
+static int smooth_load(void)
 {
-    int t = add_node(TIME, -1, -1), w = number(fraction(-40, 40)), turned = add_node(MULTIPLY, w, t);
-    node[t].value = start_time;
+    int t = time_itself(), w = number(fraction(-40, 40)), turned = add_node(MULTIPLY, w, t);
     node[turned].value = node[w].value * start_time;
     int which = below(3), wave = add_node(which ? which == 1 ? COS : SIN : EXP, which ? turned : moderate(turned), -1);
     if (below(2))
         return wave;
     return add_node(MULTIPLY, wave, below(2) ? t : add_node(POWER, t, number(2 + below(3))));
+}
+
+static int load(void)
+{
+    int which = below(4);
+    if (which == 0)
+        return in_intervals();
+    return which == 1 ? choice(smooth_load(), smooth_load()) : smooth_load();
 }
 
 /* Of coordinate i, which holds it: what moves as a whole would have other states */
@@ -234,7 +347,9 @@ static void mark_used(int i)
     if (n->used)
         return;
     n->used = true;
-    if (n->kind > STATE) {
+    if (n->kind == CHOICE) {
+        mark_used(n->holds ? n->a : n->b);
+    } else if (n->kind > STATE) {
         mark_used(n->a);
         if (n->b >= 0)
             mark_used(n->b);
@@ -249,6 +364,10 @@ static void draw_all(uint64_t seed)
     start_time = below(3) ? below(16) / 8.0 : 0;
     h = ldexp(1, -2 - below(4));
     tolerance = pow(10, -3 - below(10));
+    driven = below(2);
+    for (int i = 0; i < INPUTS; i++)
+        for (int k = 0; k < 2; k++)
+            sample[i][k] = fraction(-20, 20);
     for (int i = 0; i < STATES; i++)
         initial[i] = fraction(-20, 20);
     for (int i = 0; i < COORDS; i++) {
@@ -272,6 +391,7 @@ static const char *state_name(int i)
 
 static void print(int i)
 {
+    static const char *const input_name[] = { "held", "ramp", "ramp'" };
     static const char sign[] = { [ADD] = '+', [SUBTRACT] = '-', [MULTIPLY] = '*', [DIVIDE] = '/', [POWER] = '^' };
     const struct node *n = &node[i];
     switch (n->kind) {
@@ -283,6 +403,19 @@ static void print(int i)
         break;
     case STATE:
         fputs(state_name(n->b), stdout);
+        break;
+    case INPUT:
+        fputs(input_name[n->b], stdout);
+        break;
+    case PIECES:
+        fputs(n->text, stdout);
+        break;
+    case CHOICE:
+        printf("(%s ? ", n->text);
+        print(n->a);
+        fputs(" : ", stdout);
+        print(n->b);
+        putchar(')');
         break;
     case ADD: case SUBTRACT: case MULTIPLY: case DIVIDE: case POWER:
         putchar('(');
@@ -307,6 +440,8 @@ static void print_spec(uint64_t seed)
     printf("model drawn  # seed %llu\ncoord q1", (unsigned long long)seed);
     for (int i = 1; i < COORDS; i++)
         printf(", %s", state_name(i));
+    if (driven)
+        fputs("\ninput held\ninput ramp hold first", stdout);
     printf("\nscheme taylor\ntolerance %.0e\nstep %.17g\n", tolerance, h);
     for (int i = 0; i < COORDS; i++) {
         printf("%.17g*%s%s", mass[i][0], state_name(i), i < SECOND ? "''" : "'");
@@ -356,11 +491,26 @@ static void raise_to(mpc_t z, const struct node *n)
 
 static void evaluate(struct node *n, mpc_srcptr time, mpc_t y[STATES])
 {
-    mpc_ptr a = n->a >= 0 ? node[n->a].z : NULL, b = n->b >= 0 && n->kind != STATE ? node[n->b].z : NULL;
+    mpc_ptr a = n->a >= 0 ? node[n->a].z : NULL, b = n->b >= 0 && n->kind > STATE ? node[n->b].z : NULL;
     switch (n->kind) {
     case NUMBER: mpc_set_d(n->z, n->value, MPC_RNDNN); break;
     case TIME: mpc_set(n->z, time, MPC_RNDNN); break;
     case STATE: mpc_set(n->z, y[n->b], MPC_RNDNN); break;
+    case PIECES: mpc_set(n->z, a, MPC_RNDNN); break;
+    case CHOICE: mpc_set(n->z, n->holds ? a : b, MPC_RNDNN); break;
+    case INPUT:
+        mpc_set_d(n->z, n->value, MPC_RNDNN);
+        if (n->b == 1) {                /* all of few bits */
+            mpc_t change;
+            mpc_init2(change, BITS);
+            mpc_set_d(change, start_time, MPC_RNDNN);
+            mpc_sub(change, time, change, MPC_RNDNN);
+            mpfr_mul_d(mpc_realref(change), mpc_realref(change), (sample[1][1] - sample[1][0]) / h, MPFR_RNDN);
+            mpfr_mul_d(mpc_imagref(change), mpc_imagref(change), (sample[1][1] - sample[1][0]) / h, MPFR_RNDN);
+            mpc_add(n->z, n->z, change, MPC_RNDNN);
+            mpc_clear(change);
+        }
+        break;
     case ADD: mpc_add(n->z, a, b, MPC_RNDNN); break;
     case SUBTRACT: mpc_sub(n->z, a, b, MPC_RNDNN); break;
     case MULTIPLY: mpc_mul(n->z, a, b, MPC_RNDNN); break;
@@ -417,7 +567,7 @@ static void right_sides(int run, mpc_srcptr tau, int known)
         if (!node[i].used)
             continue;
         evaluate(&node[i], time, y);
-        if (run > 0 && node[i].kind > STATE)
+        if (run > 0 && node[i].kind >= ADD)
             round_once(&node[i], tau, known);
     }
     for (int i = 0; i < STATES; i++)
@@ -496,7 +646,7 @@ static void draw_rounding(int k)
             mpc_pow_si(turn[j], point, -j, MPC_RNDNN);
         right_sides(0, tau, k);
         for (int i = 0; i < nodes; i++)
-            for (int j = 0; j <= k && node[i].used && node[i].kind > STATE; j++)
+            for (int j = 0; j <= k && node[i].used && node[i].kind >= ADD; j++)
                 add_point(sum[i][j], node[i].z, turn[j], j, p, N);
     }
     for (int i = 0; i < nodes; i++) {
@@ -552,6 +702,8 @@ static void expand(int run, int order)
 static void print_truth(int order)
 {
     printf("start %a\n", start_time);
+    for (int i = 0; i < INPUTS && driven; i++)
+        printf("%a %a\n", sample[i][0], sample[i][1]);
     for (int i = 0; i < STATES; i++)
         printf("%s %a\n", state_name(i), initial[i]);
     mpfr_t difference;
