@@ -5,8 +5,8 @@
 #
 # A line of a list is `NAME MODEL [OPTION ...]`, with options for plgen; as the first of them `untested` for what can
 # have no selftest, `tunable` for what has tunable params and outputs that depend on them, `anchored` for what keeps its
-# loads in tables: the others are as small as can be, and NAME_run goes step by step.  A model that is not in the folder
-# is in this one.
+# loads in tables: the others are as small as can be, and NAME_run goes step by step; as the last `order=N` for scheme
+# taylor of that order.  A model that is not in the folder is in this one.
 set -eu
 plgen=$1
 folder=$2
@@ -20,11 +20,13 @@ while read -r name model options; do
     anchors='--anchors 1'
     case $options in untested*) selftest= options=${options#untested} ;; esac
     case $options in anchored*) anchors= options=${options#anchored} ;; esac
+    order=
+    case $options in *order=*) order=${options#*order=} options=${options%order=*} ;; esac
     spec=$folder/$model.spec
     [ -f "$spec" ] || spec=${0%/*}/$model.spec
     # shellcheck disable=SC2086
-    "$plgen" $selftest $anchors --rows 1 --real "$real" --prefix "${name}_$real" ${options#tunable} "$spec" \
-        >>"$out.part"
+    "$plgen" $selftest $anchors --rows 1 --real "$real" --prefix "${name}_$real" ${options#tunable} \
+        ${order:+--scheme "taylor $order"} "$spec" >>"$out.part"
 done <"$out.lines"
 {
     echo 'const struct variant variants_'"$real"'[] = {'
