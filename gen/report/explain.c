@@ -350,7 +350,10 @@ static void person_split(FILE *to, const struct step *step)
 	if (loses_order(model))
 		fprintf(to, " where all is smooth; here of order %s at most: %s", order_text(model),
 			smoothness_text(model));
-	fprintf(to, ".\nr, left to scheme %s, is a force on each of these equations%s:\n", scheme_name(model->scheme),
+	fputs(".\n", to);
+	if (step->expansion)
+		person_reach(to, step);
+	fprintf(to, "r, left to scheme %s, is a force on each of these equations%s:\n", scheme_name(model->scheme),
 		step->branches > 1 ? " (with the first operator; with the others its linear terms differ)" : "");
 	for (int c = 0; c < model->channels; c++)
 		fprintf(to, "    %s: %s\n", model->coord_name[coordinate_of_row(model, model->channel_row[c])],
@@ -707,6 +710,8 @@ void explain_json(FILE *to, const struct step *step)
 		fprintf(to, "  \"tolerance\": %s,\n", shortest(round_rational(model->truncation.tolerance)));
 	if (model->truncation.adaptive && step->expansion)
 		fprintf(to, "  \"substeps\": %d,\n", model->truncation.substeps);
+	if (step->expansion)
+		json_reach(to, step);
 	if (step->model->switching)
 		json_regions(to, step);
 	if (has_leftover(step))

@@ -14,6 +14,11 @@ double growth_rate(const struct step *step);                /* [1/s] */
 const char *polynomial_text(int length, const mpq_t *c);    /* in s */
 const char *irrationals_text(const struct irrationals *used);
 
+/* ---- reach.c: what a series costs, and how far it reaches ---- */
+
+void person_reach(FILE *to, const struct step *step);
+void json_reach(FILE *to, const struct step *step);
+
 /* ---- program.c, explain.c, solution.c ---- */
 
 void explain_program(FILE *to, const struct step *step);    /* what a step does, before it is C */

@@ -202,13 +202,13 @@ static void start_states(struct sequencing *w)
 		new_sequence(w, (struct sequence){ .kind = SEQUENCE_INTEGRAL, .state = i, .a = NONE, .b = NONE });
 }
 
-struct expansion *expansion_of(const struct step *step)
+struct expansion *expansion_of(const struct step *step, int order)
 {
 	const struct linear *system = &step->branch->system;
 	const struct model *model = step->model;
 	int atoms = atoms_count(model->atoms);
 	struct sequencing work = { .step = step, .system = system, .x = NEW(struct expansion) }, *w = &work;
-	w->x->order = model->truncation.order;
+	w->x->order = order;
 	w->x->load = ARRAY(bool, (size_t)system->loads);
 	w->x->input = ARRAY(bool, (size_t)system->inputs);
 	w->x->slope = ARRAY(bool, (size_t)system->inputs);

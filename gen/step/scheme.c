@@ -155,7 +155,7 @@ static void build_expanded_step(struct step *step)
 		step->carry[i] = -1;
 		step->program->reads[i] = true;
 	}
-	step->expansion = expansion_of(step);
+	step->expansion = expansion_of(step, step->model->truncation.order);
 	step->series.emitted = true;
 	count_expansion(step, step->program);
 	if (step->program->multiplications > LIMIT_SERIES)

@@ -707,7 +707,17 @@ void sum_add_form(struct sequencing *w, struct sum *sum, const struct form *form
 
 /* ---- expansion.c: the solution as a Taylor series ---- */
 
-struct expansion *expansion_of(const struct step *step);
+struct expansion *expansion_of(const struct step *step, int order);
+
+/* ---- radius.c: how far a series reaches from the start ---- */
+
+enum { EXPANSION_SERVES = 32 };     /* most steps that one expansion serves */
+struct reach {                      /* estimates, at t = 0 from the initial values, inputs 0 */
+	bool known;                 /* every coefficient is finite */
+	double radius;              /* of convergence [s]; infinite: no singularity is seen */
+	double served;              /* by tolerance: steps that one series serves, below 1 the part of one; else 0 */
+};
+struct reach reach_of_series(const struct step *step);
 
 /* ---- batch.c: many instances in one call ---- */
 
