@@ -275,6 +275,9 @@ const char *driven_parameter(const struct emitter *e);            /* const doubl
 void say_wrapped(const struct emitter *e, const char *text);      /* broken between summands */
 void emit_input_samples(const struct emitter *e);                 /* start, slope: what the series reads of ramps */
 void emit_force_table(const struct emitter *e);                   /* of loads that change their formula */
+const char *coefficient(const struct emitter *e, int sequence, int k); /* its k-th as a local; NULL: that is 0 */
+void emit_coefficients(const struct emitter *e);                  /* locals: from y, now */
+bool expands_in_step(const struct emitter *e);                    /* the step of fixed order does, without a call */
 void emit_expand_function(const struct emitter *e);               /* NAME_expand: all coefficients */
 /* tau, when, segment where it has them: the time after now; one in which conditions on t stand; that of the loads */
 const char *expand_call(const struct emitter *e, const char *tau, const char *when, const char *segment,

@@ -5,7 +5,6 @@
 #include <math.h>
 
 enum {
-	WHOLE_STEPS = 32,           /* most that one expansion serves */
 	REMAINDERS = 3              /* of each of its last two coefficients: itself, and what stands in for it */
 };
 
@@ -38,7 +37,7 @@ static bool watches(const struct emitter *e)
 /* Steps that one expansion may serve: with inputs one, the samples to come are not known */
 static int most_served(const struct emitter *e)
 {
-	return e->system->inputs ? 1 : WHOLE_STEPS;
+	return e->system->inputs ? 1 : EXPANSION_SERVES;
 }
 
 /* ---- its sum ---- */
@@ -125,8 +124,7 @@ static void emit_remainder(const struct emitter *e)
 		const char *sum = format("%s[%d]", j % 2 ? "before" : "last", j / 2);
 		if (order - j >= 2)
 			say(e, "        p = pl_magnitude(c[%d][i]) * unit%s;\n"
-			       "        %s = p <= %s ? %s : p;%s\n", order - j, factor[j / 2], sum, sum, sum,
-			    j ? "" : "  /* what is not a number stays */");
+			       "        %s = p <= %s ? %s : p;\n", order - j, factor[j / 2], sum, sum, sum);
 	}
 	say(e, "    }\n"
 	       "}\n");
@@ -244,13 +242,15 @@ static void emit_between(const struct emitter *e)
 	if (watches(e))
 		say(e, "        if (!$n_is_accurate(s, (const double (*)[$N_STATES])c, size))\n"
 		       "            status = PL_INACCURATE;\n");
-	say(e, "        $n_ahead((const double (*)[$N_STATES])c, size, gain);\n"
+	say(e, "        $n_ahead((const double (*)[$N_STATES])c, size, gain);\n");
+	say(e, "        if (pl_not_finite(gain, $N_STATES))\n"
+	       "            return PL_NOT_FINITE%s;\n"
 	       "        for (i = 0; i < $N_STATES; i++)\n"
 	       "            y[i] = pl_accumulate(y[i], gain[i], 0.0, &rest[i]);\n"
 	       "        done = size < limit - done ? done + size : limit;\n"
 	       "    }\n"
 	       "    return %s;\n"
-	       "}\n", watches(e) ? "status" : "0");
+	       "}\n", watches(e) ? " | PL_INACCURATE" : "", watches(e) ? "status" : "0");
 }
 
 /* ---- the step ---- */
@@ -293,52 +293,96 @@ static const char *u_argument(const struct emitter *e)
 static void emit_expansion_end(const struct emitter *e)
 {
 	emit_step_end(e);
-	if (!truncation(e)->adaptive)           /* else a series that is not finite serves no step */
-		say(e, "    s->status |= pl_not_finite(s->y, $N_STATES);\n");
 	if (changes(e))
 		say(e, "    while (s->segment < %d && $n_until(s, s->segment) <= 1e-18 * $N_H)\n"
 		       "        s->segment++;\n", e->system->segments - 1);
 	say(e, "}\n");
 }
 
-/* c_1 + ... + c_P, small ones first; the last three, which come late, apart */
-static const char *whole_gain(int order, int state)
+/* The k-th coefficient of a state in the step itself, or of the array c; NULL: it is 0 */
+static const char *term_of_gain(const struct emitter *e, int state, int k)
 {
-	enum { LATE = 3 };
-	const char *text = "", *late = format("c[%d][%d]", order, state);
-	for (int k = order - 1; k > order - LATE; k--)
-		late = format("(%s + c[%d][%d])", late, k, state);
-	for (int k = order - LATE; k > 0; k--)
-		text = *text ? format("(%s + c[%d][%d])", text, k, state) : format("c[%d][%d]", k, state);
-	return format("%s + %s", late, text);
+	return expands_in_step(e) && !watches(e) ? coefficient(e, state, k) : format("c[%d][%d]", k, state);
 }
 
-/* Of fixed order: one way through, whatever the numbers are */
+static const char *plus(const char *sum, const char *term)
+{
+	return !term ? sum : *sum ? format("(%s + %s)", sum, term) : term;
+}
+
+/* c_1 + ... + c_P as what is added and what is small beside it: the last three, which come late. Small ones first */
+static const char *whole_gain(const struct emitter *e, int state)
+{
+	enum { LATE = 3 };
+	int order = expansion(e)->order;
+	const char *text = "", *late = "";
+	for (int k = order; k > order - LATE; k--)
+		late = plus(late, term_of_gain(e, state, k));
+	for (int k = order - LATE; k > 0; k--)
+		text = plus(text, term_of_gain(e, state, k));
+	return format("%s, %s", *text ? text : "0.0", *late ? late : "0.0");
+}
+
+/* What is not finite is not kept: the state stays as it was. */
+static void emit_keep(const struct emitter *e, bool watched)
+{
+	int states = e->system->states;
+	const char *sum = "";
+	for (int i = 0; i < states; i++)
+		sum = format("%s%s(next%d - next%d)", sum, i ? " + " : "", i, i);
+	say(e, "    ");
+	say_wrapped(e, format("if (%s != 0.0) {  /* one of them is not finite */\n", sum));
+	say(e, "        s->status |= PL_NOT_FINITE%s;\n"
+	       "    } else {\n", watched ? " | PL_INACCURATE" : "");
+	for (int i = 0; i < states; i++)
+		say(e, "        s->y[%d] = next%d;\n"
+		       "        s->rest[%d] = rest%d;\n", i, i, i, i);
+	if (watched) {
+		say(e, "        for (i = 0; i < $N_STATES; i++)\n");
+		emit_scales(e, "            ");
+	}
+	say(e, "    }\n");
+}
+
+/* Without a change of the loads: one way through but for what is kept */
+static void emit_straight_step(const struct emitter *e)
+{
+	bool watched = watches(e), here = expands_in_step(e) && !watched;
+	if (here) {
+		say(e, "    const double *const y = s->y;\n");
+		emit_coefficients(e);
+	} else {
+		say(e, "    double c[%d][$N_STATES];\n", expansion(e)->order + 1);
+		emit_input_samples(e);
+		if (watched)
+			say(e, "    int i;\n");
+	}
+	for (int i = 0; i < e->system->states; i++)
+		say(e, "    double rest%d = s->rest[%d]%s;\n", i, i, here ? "" : format(", next%d", i));
+	if (!here)
+		say(e, "    %s\n", expand_call(e, "", "", "", "s->y", "c"));
+	for (int i = 0; i < e->system->states; i++) {
+		say(e, "    ");
+		say_wrapped(e, format("%snext%d = pl_accumulate(s->y[%d], %s, &rest%d);\n",
+				      here ? "const double " : "", i, i, whole_gain(e, i), i));
+	}
+	if (watched)
+		say(e, "    if (!$n_is_accurate(s, (const double (*)[$N_STATES])c))\n"
+		       "        s->status |= PL_INACCURATE;\n");
+	emit_keep(e, watched);
+}
+
 static void emit_fixed_step(const struct emitter *e)
 {
-	int order = expansion(e)->order, states = e->system->states;
+	bool scales = changes(e) && watches(e);
 	say(e, "\nvoid $n_step(%s)\n"
 	       "{\n", step_parameters(e));
-	if (changes(e)) {
-		say(e, "%s    s->status |= $n_between(s, %s1.0, s->y, s->rest);\n",
-		    watches(e) ? "    int i;\n" : "", u_argument(e));
-	} else {
-		say(e, "    double c[%d][$N_STATES];\n", order + 1);
-		emit_input_samples(e);
-		if (watches(e))
-			say(e, "    int i;\n");
-		say(e, "    %s\n", expand_call(e, "", "", "", "s->y", "c"));
-		for (int i = 0; i < states; i++) {
-			const char *text = whole_gain(order, i);
-			text = format("s->y[%d] = pl_accumulate(s->y[%d], %s, 0.0, &s->rest[%d]);\n", i, i, text, i);
-			say(e, "    ");
-			say_wrapped(e, text);
-		}
-		if (watches(e))
-			say(e, "    if (!$n_is_accurate(s, (const double (*)[$N_STATES])c))\n"
-			       "        s->status |= PL_INACCURATE;\n");
-	}
-	if (watches(e)) {
+	if (!changes(e))
+		emit_straight_step(e);
+	else
+		say(e, "%s    s->status |= $n_between(s, %s1.0, s->y, s->rest);\n", scales ? "    int i;\n" : "",
+		    u_argument(e));
+	if (scales) {
 		say(e, "    for (i = 0; i < $N_STATES; i++)\n");
 		emit_scales(e, "        ");
 	}
@@ -380,6 +424,23 @@ static void emit_adaptive_step(const struct emitter *e)
 {
 	bool inputs = e->system->inputs > 0;
 	emit_renew(e);
+	say(e, "\n/* The next state, unless it is not finite: then the state stays, and the next step begins anew */\n"
+	       "static void $n_take($n *s, const double next[$N_STATES])\n"
+	       "{\n"
+	       "    double odd = 0.0;\n"
+	       "    int i;\n"
+	       "    for (i = 0; i < $N_STATES; i++)\n"
+	       "        odd += next[i] - next[i];\n"
+	       "    if (odd != 0.0) {\n"
+	       "        s->status |= PL_NOT_FINITE;\n"
+	       "        s->served = s->valid = 0;\n"
+	       "        for (i = 0; i < $N_STATES; i++)\n"
+	       "            s->rest[i] = s->base[i];\n"
+	       "    } else {\n"
+	       "        for (i = 0; i < $N_STATES; i++)\n"
+	       "            s->y[i] = next[i];\n"
+	       "    }\n"
+	       "}\n");
 	say(e, "\nvoid $n_step(%s)\n"
 	       "{\n"
 	       "    int i;\n"
@@ -391,11 +452,12 @@ static void emit_adaptive_step(const struct emitter *e)
 	       "        $n_ahead((const double (*)[$N_STATES])s->series, (double)s->served, gain);\n"
 	       "        if (s->served < s->valid) {\n"
 	       "            for (i = 0; i < $N_STATES; i++)\n"
-	       "                s->y[i] = s->series[0][i] + (gain[i] + s->base[i]);\n"
+	       "                gain[i] = s->series[0][i] + (gain[i] + s->base[i]);\n"
 	       "        } else {\n"
 	       "            for (i = 0; i < $N_STATES; i++)\n"
-	       "                s->y[i] = pl_accumulate(s->series[0][i], gain[i], 0.0, &s->rest[i]);\n"
+	       "                gain[i] = pl_accumulate(s->series[0][i], gain[i], 0.0, &s->rest[i]);\n"
 	       "        }\n"
+	       "        $n_take(s, gain);\n"
 	       "    } else {\n"
 	       "        s->status |= $n_between(s, %s1.0, s->y, s->rest);\n"
 	       "    }\n", step_parameters(e), inputs ? ", u" : "", u_argument(e));

@@ -44,8 +44,7 @@ static const char *prefix(const struct emitter *e)
 	return "coefficient_of_sequence_";
 }
 
-/* Its k-th coefficient; NULL: that is 0 */
-static const char *coefficient(const struct emitter *e, int sequence, int k)
+const char *coefficient(const struct emitter *e, int sequence, int k)
 {
 	const struct sequence *s = &expansion(e)->sequence[sequence];
 	if (k > s->degree)
@@ -446,6 +445,21 @@ static bool reads_instance(const struct emitter *e)
 	return instance;
 }
 
+void emit_coefficients(const struct emitter *e)
+{
+	const struct expansion *x = expansion(e);
+	emit_expansion_locals(e);
+	for (int k = 0; k <= x->order; k++)
+		for (int i = 0; i < x->count; i++)
+			define_coefficient(e, i, k);
+}
+
+bool expands_in_step(const struct emitter *e)
+{
+	enum { MOST = 1000 };           /* multiplications, which then stand twice: NAME_at makes the series too */
+	return !has_offset(e) && !has_choices(e) && !e->ramps && e->step->program->multiplications <= MOST;
+}
+
 void emit_expand_function(const struct emitter *e)
 {
 	const struct expansion *x = expansion(e);
@@ -456,10 +470,7 @@ void emit_expand_function(const struct emitter *e)
 	    has_offset(e) ? "tau after now" : "now", has_offset(e) ? "double tau, " : "",
 	    has_choices(e) ? "double when, " : "", changes(e) ? "int segment, " : "", input_parameters(e, true),
 	    x->order + 1);
-	emit_expansion_locals(e);
-	for (int k = 0; k <= x->order; k++)
-		for (int i = 0; i < x->count; i++)
-			define_coefficient(e, i, k);
+	emit_coefficients(e);
 	for (int k = 0; k <= x->order; k++)
 		for (int i = 0; i < e->system->states; i++) {
 			const char *name = coefficient(e, i, k);
