@@ -1,0 +1,57 @@
+#!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
+# reach.sh PLGEN SOURCE: the radius of convergence at the start that --explain and --explain=json tell, beside the place
+# of the nearest singularity in closed form.
+set -u
+absolute() {
+	case $1 in
+		/*) echo "$1" ;;
+		*) echo "$PWD/$1" ;;
+	esac
+}
+plgen=$(absolute "$1")
+source=$(absolute "$2")
+. "$source/tests/tap.sh"
+
+# told NAME EXPECTED: of drawn.spec; null: none is told
+told() {
+	"$plgen" --scheme taylor --explain=json drawn.spec >json 2>log && "$plgen" --scheme taylor --explain drawn.spec \
+		>text 2>>log || { result 1 "$1"; return; }
+	found=$(sed -n 's/^ *"radius": \(.*\),$/\1/p' json)
+	if [ "$2" = null ]; then
+		echo "found $found, expected null" >log
+		[ "$found" = null ]
+		result $? "$1: no radius"
+		return
+	fi
+	echo "$found $2" | awk '{ d = $1 / $2 - 1; print "found " $1 ", expected " $2 ", tolerance 4 %"
+		exit !(d > -0.04 && d < 0.04) }' >log && grep -q "radius of convergence is about $found s" text
+	result $? "$1: $found s, in closed form $2 s"
+}
+
+# equation START EQUATION: the spec
+equation() {
+	printf 'model drawn\ncoord x\ninit %s\n%s\nstep 0.1\n' "$1" "$2" >drawn.spec
+}
+equation 'x = 1' "x' = x^2"
+told '1/(1 - t)' 1
+equation 'x = 0' "x' = 1 + x^2"
+told 'tan(t): two poles' 1.5708
+equation 'x = 1.03' "x' = -1/x"
+told 'sqrt(1.03^2 - 2t)' 0.53045
+equation 'x = 1' "x' = -t^2*x^2"
+told '3/(3 + t^3): three poles, a series in t^3' 1.44225
+equation 'x = 0' "x' = (t - 2 < 0 ? 1 : 2)/sqrt(1 + t^2)"
+told 'asinh(t): branches' 1
+equation 'x = 2' "x' = -x*log(x)"
+told 'exp(log(2) exp(-t)): entire' null
+cp "$source/models/mathieu.spec" drawn.spec
+told 'a linear equation: entire' null
+# x = 2 asin(k cd(t)): sqrt(K^2 + K'^2), k = sin(1.0472/2) (Abramowitz and Stegun, 16.5)
+cp "$source/models/pendulum.spec" drawn.spec
+told 'pendulum' 2.7372
+equation 'x = 0' "x' = -1/x"
+told 'no series' null
+grep -q 'series cannot be made' text
+result $? 'no series: told'
+tap_end
