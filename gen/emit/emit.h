@@ -30,6 +30,7 @@ struct emitter {
 	const char **sample;        /* of a block of steps: per column of its inputs; NULL: of one step */
 	bool at_node;               /* load states are those at `node` of the step, not at its start; */
 	const char *after;          /* those this long after now [s]; NULL: not so */
+	struct lines *series;       /* lines of coefficients that are being made, and which are read; else NULL */
 };
 /* The only writer: a printf format in which $n is the model's name and $N the same in capitals, $o and $p a part's own
  * name and place, $d that of the first part of its degree, $$ a dollar. */
@@ -275,6 +276,7 @@ const char *driven_parameter(const struct emitter *e);            /* const doubl
 void say_wrapped(const struct emitter *e, const char *text);      /* broken between summands */
 void emit_input_samples(const struct emitter *e);                 /* start, slope: what the series reads of ramps */
 void emit_force_table(const struct emitter *e);                   /* of loads that change their formula */
+void emit_series_lines(const struct emitter *e);
 const char *coefficient(const struct emitter *e, int sequence, int k); /* its k-th as a local; NULL: that is 0 */
 void emit_coefficients(const struct emitter *e);                  /* locals: from y, now */
 bool expands_in_step(const struct emitter *e);                    /* the step of fixed order does, without a call */

@@ -231,5 +231,6 @@ struct expansion *expansion_of(const struct step *step, int order)
 	find_tops(w);
 	find_late(w);
 	find_time(w);
+	find_newest(w->x);
 	return w->x;
 }

@@ -654,6 +654,11 @@ struct sequence {
 	int degree;                 /* all beyond are 0; order + 1: none need be */
 	int top;                    /* the last that something reads; -1: none */
 	bool late;                  /* the k-th stands where others have their (k+1)-th */
+	bool known;                 /* it depends on time and inputs alone */
+	/* The k-th, of an integral the (k+1)-th, k >= 1, is an early part + sum over these of a factor times their k-th */
+	int gains;                  /* 0: not made so */
+	int *gain;
+	bool split;                 /* others read its early part and gains */
 };
 struct expansion {
 	int order;                  /* of the series in h */
@@ -704,6 +709,10 @@ int  new_sequence(struct sequencing *w, struct sequence sequence);
 void count_uses(struct sequencing *w, const struct form *form);
 /* sum += scale form; leaves the statement at what has no series */
 void sum_add_form(struct sequencing *w, struct sum *sum, const struct form *form, mpq_srcptr scale);
+
+/* ---- newest.c: how the newest coefficients enter the next ones ---- */
+
+void find_newest(struct expansion *x);
 
 /* ---- expansion.c: the solution as a Taylor series ---- */
 
