@@ -285,6 +285,13 @@ void emit_expand_function(const struct emitter *e);               /* NAME_expand
 const char *expand_call(const struct emitter *e, const char *tau, const char *when, const char *segment,
 			const char *y, const char *c);
 
+/* ---- emit_reach.c: how far a series holds ---- */
+
+bool looks_at_tolerance(const struct emitter *e);
+bool watches(const struct emitter *e);          /* of fixed order: whether the last terms are above the tolerance */
+int  most_served(const struct emitter *e);      /* steps, by one expansion; with inputs only one */
+void emit_validity(const struct emitter *e);
+
 /* ---- emit_expansion.c: steps by the Taylor series of the solution ---- */
 
 bool expansion_places(const struct emitter *e);

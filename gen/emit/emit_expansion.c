@@ -2,12 +2,6 @@
 /* Steps by the Taylor series of the solution: its sum, how far it holds, steps as long as its last terms allow. */
 #include "emit/emit.h"
 
-#include <math.h>
-
-enum {
-	REMAINDERS = 3              /* of each of its last two coefficients: itself, and what stands in for it */
-};
-
 static const struct expansion *expansion(const struct emitter *e)
 {
 	return e->step->expansion;
@@ -21,23 +15,6 @@ static const struct truncation *truncation(const struct emitter *e)
 static bool changes(const struct emitter *e)
 {
 	return e->system->segments > 1;
-}
-
-static bool looks_at_tolerance(const struct emitter *e)
-{
-	return mpq_sgn(truncation(e)->tolerance) != 0;
-}
-
-/* Of fixed order: the status says where the last terms are above the tolerance. */
-static bool watches(const struct emitter *e)
-{
-	return looks_at_tolerance(e) && !truncation(e)->adaptive;
-}
-
-/* Steps that one expansion may serve: with inputs one, the samples to come are not known */
-static int most_served(const struct emitter *e)
-{
-	return e->system->inputs ? 1 : EXPANSION_SERVES;
 }
 
 /* ---- its sum ---- */
@@ -72,136 +49,6 @@ static void emit_ahead(const struct emitter *e)
 	say(e, "}\n");
 }
 
-/* ---- how far it holds ---- */
-
-static void emit_reach_tables(const struct emitter *e)
-{
-	int order = expansion(e)->order, most = most_served(e);
-	const char *last = "", *before = "";
-	mpq_t bound, steps;
-	mpq_inits(bound, steps, NULL);
-	for (int m = 1; m <= most; m++) {
-		mpq_set(bound, truncation(e)->tolerance);
-		mpq_set_ui(steps, (unsigned long)m, 1);
-		mpq_mul(bound, bound, steps);
-		for (int k = 4; k < order; k++)
-			mpq_div(bound, bound, steps);
-		const char *gap = m == 1 ? "" : (m - 1) % 4 ? ", " : ",\n    ";
-		before = format("%s%s%s", before, gap, shortest(round_rational(bound)));
-		mpq_div(bound, bound, steps);
-		last = format("%s%s%s", last, gap, shortest(round_rational(bound)));
-	}
-	mpq_clears(bound, steps, NULL);
-	say(e, "\n/* The tolerance over m^%d and m^%d: what the last coefficients may be for m steps, times m^4 */\n"
-	       "static const double $n_last[%d] = {\n    %s\n};\n"
-	       "static const double $n_before_last[%d] = {\n    %s\n};\n", order - 4, order - 5, most, last, most,
-	    before);
-}
-
-/* The last two coefficients, relative to the largest size of each state so far. Of a series in t^n alone they may be 0,
- * or nearly: then those before stand in for them, each two orders over 256, which is more than full series fall. */
-static void emit_remainder(const struct emitter *e)
-{
-	int order = expansion(e)->order, kept = truncation(e)->adaptive ? REMAINDERS : 1;
-	static const char *const factor[] = { "", " * 0.00390625", " * 1.52587890625e-5" };
-	say(e, "\n/* The last two coefficients over the largest value of each state so far, or where that is 0 its gain"
-	       "%s */\n"
-	       "static void $n_remainder(const $n *s, const double c[%d][$N_STATES], double last[%d],\n"
-	       "    double before[%d])\n"
-	       "{\n"
-	       "    int i;\n",
-	    kept > 1 ? ";\n * what stands in for them where they are 0: those before, each two over 256" : "",
-	    order + 1, kept, kept);
-	for (int j = 0; j < kept; j++)
-		say(e, "    last[%d] = before[%d] = 0.0;\n", j, j);
-	say(e, "    for (i = 0; i < $N_STATES; i++) {\n"
-	       "        double p = pl_magnitude(c[0][i]), unit = p > s->scale[i] ? 1.0 / p : s->unit[i];\n"
-	       "        if (unit == 0.0) {\n"
-	       "            const double one = pl_magnitude(c[1][i]), two = pl_magnitude(c[2][i]);\n"
-	       "            unit = one > two ? 1.0 / one : two > 0.0 ? 1.0 / two : 1.0;\n"
-	       "        }\n");
-	for (int j = 0; j < 2 * kept; j++) {
-		const char *sum = format("%s[%d]", j % 2 ? "before" : "last", j / 2);
-		if (order - j >= 2)
-			say(e, "        p = pl_magnitude(c[%d][i]) * unit%s;\n"
-			       "        %s = p <= %s ? %s : p;\n", order - j, factor[j / 2], sum, sum, sum);
-	}
-	say(e, "    }\n"
-	       "}\n");
-}
-
-/* last[0] + last[1]/m^2 + last[2]/m^4 within the tolerance over m^order */
-static void emit_serves(const struct emitter *e)
-{
-	say(e, "\n/* Whether the remainders are within these bounds after m steps */\n"
-	       "static int $n_serves(const double last[%d], const double before[%d], double m, double bound,\n"
-	       "    double bound_before)\n"
-	       "{\n"
-	       "    const double square = m * m;\n"
-	       "    return (last[0] * square + last[1]) * square + last[2] <= bound &&\n"
-	       "        (before[0] * square + before[1]) * square + before[2] <= bound_before;\n"
-	       "}\n", REMAINDERS, REMAINDERS);
-}
-
-static void emit_reach(const struct emitter *e)
-{
-	int order = expansion(e)->order, most = most_served(e);
-	const char *tolerance = shortest(round_rational(truncation(e)->tolerance));
-	say(e, "\n/* Steps that the series serves, at most %d%s; 0: not even one */\n"
-	       "static int $n_reach(const $n *s)\n"
-	       "{\n"
-	       "    double last[%d], before[%d];\n"
-	       "    int m = s->valid;\n"
-	       "    $n_remainder(s, s->series, last, before);\n"
-	       "    while (m < %d && $n_serves(last, before, (double)(m + 1), $n_last[m], $n_before_last[m]))\n"
-	       "        m++;\n"
-	       "    while (m > 0 && !$n_serves(last, before, (double)m, $n_last[m - 1], $n_before_last[m - 1]))\n"
-	       "        m--;\n"
-	       "    return m;\n"
-	       "}\n", most, e->system->inputs ? ": the samples to come are not known" : "", REMAINDERS, REMAINDERS,
-	    most);
-	say(e, "\n/* The part of a step that the series serves, a power of 2 up to 1; 0: none */\n"
-	       "static double $n_part(const $n *s, const double c[%d][$N_STATES])\n"
-	       "{\n"
-	       "    double last[%d], before[%d], part = 1.0;\n"
-	       "    int halvings = 0;\n"
-	       "    $n_remainder(s, c, last, before);\n"
-	       "    for (; halvings < 60 && !$n_serves(last, before, 1.0, %s, %s); halvings++) {\n"
-	       "        part *= 0.5;\n", order + 1, REMAINDERS, REMAINDERS, tolerance, tolerance);
-	for (int j = 0; j < REMAINDERS; j++)
-		say(e, "        last[%d] *= %s;\n"
-		       "        before[%d] *= %s;\n", j, shortest(ldexp(1, 2 * j - order)), j,
-		    shortest(ldexp(1, 2 * j + 1 - order)));
-	say(e, "    }\n"
-	       "    return halvings < 60 ? part : 0.0;\n"
-	       "}\n");
-}
-
-/* Of terms that are 1 at h: at a part of it size^P and size^(P - 1) of that */
-static void emit_is_accurate(const struct emitter *e)
-{
-	int order = expansion(e)->order;
-	const char *tolerance = shortest(round_rational(truncation(e)->tolerance));
-	bool part = changes(e);
-	say(e, "\n/* Whether the last two terms%s are within the tolerance */\n"
-	       "static int $n_is_accurate(const $n *s, const double c[%d][$N_STATES]%s)\n"
-	       "{\n"
-	       "    double last[1], before[1]%s;\n",
-	    part ? ", at this part of a step," : "", order + 1, part ? ", double size" : "",
-	    part ? ", power = size" : "");
-	if (part)
-		say(e, "    int k;\n");
-	say(e, "    $n_remainder(s, c, last, before);\n");
-	if (part)
-		say(e, "    for (k = 2; k < %d; k++)\n"
-		       "        power *= size;\n"
-		       "    return last[0] * (power * size) <= %s && before[0] * power <= %s;\n", order, tolerance,
-		    tolerance);
-	else
-		say(e, "    return last[0] <= %s && before[0] <= %s;\n", tolerance, tolerance);
-	say(e, "}\n");
-}
-
 /* ---- inside a step ---- */
 
 /* From now over a part of the step: substeps, and changes of the loads on the way */
@@ -210,12 +57,14 @@ static void emit_between(const struct emitter *e)
 	int order = expansion(e)->order, last = e->system->segments - 1;
 	bool adaptive = truncation(e)->adaptive;
 	say(e, "\n/* y and what rounding took from it, end h later: 0; or what went wrong, and y as far as it went */\n"
-	       "static int $n_between(const $n *s, %sdouble end, double y[$N_STATES], double rest[$N_STATES])\n"
+	       "static int $n_between(const $n *s, %s%sdouble end, double y[$N_STATES], double rest[$N_STATES])\n"
 	       "{\n"
 	       "    double c[%d][$N_STATES], gain[$N_STATES], done = 0.0;\n"
-	       "    int i%s%s;\n", driven_parameter(e), order + 1,
+	       "    int i%s%s;\n", driven_parameter(e), adaptive ? "int fresh, " : "", order + 1,
 	    adaptive ? ", steps = 0" : watches(e) ? ", status = 0" : "",
 	    changes(e) ? ", segment = s->segment" : "");
+	if (adaptive)
+		say(e, "    double longest = 1.0;\n");
 	emit_input_samples(e);
 	say(e, "    while (done < end) {\n"
 	       "        double limit = end, size;\n");
@@ -226,7 +75,8 @@ static void emit_between(const struct emitter *e)
 		       "            if (limit > done)\n"
 		       "                break;\n"
 		       "            limit = end;\n"
-		       "        }\n", last);
+		       "%s"
+		       "        }\n", last, adaptive ? "            fresh = 1;\n" : "");
 	if (adaptive)
 		say(e, "        if (steps++ == %d)\n"
 		       "            return PL_TOO_MANY_STEPS;\n", truncation(e)->substeps);
@@ -236,7 +86,22 @@ static void emit_between(const struct emitter *e)
 		say(e, "        size = $n_part(s, (const double (*)[$N_STATES])c);\n"
 		       "        if (size == 0.0)\n"
 		       "            return PL_NOT_FINITE;\n"
-		       "        size = size < limit - done ? size : limit - done;\n");
+		       "        size = size < longest ? size : longest;\n"
+		       "        size = size < limit - done ? size : limit - done;\n"
+		       "        for (longest *= 2.0; fresh; longest = 2.0 * size) {\n"
+		       "            double d[%d][$N_STATES], next[$N_STATES];\n"
+		       "            $n_ahead((const double (*)[$N_STATES])c, size, gain);\n"
+		       "            for (i = 0; i < $N_STATES; i++)\n"
+		       "                next[i] = y[i] + gain[i];\n"
+		       "            %s\n"
+		       "            fresh = !$n_agrees(s, (const double (*)[$N_STATES])c, "
+		       "(const double (*)[$N_STATES])d, size);\n"
+		       "            size *= fresh ? 0.5 : 1.0;\n"
+		       "            fresh = fresh && size > 1e-9;\n"
+		       "        }\n",
+		    order + 1, expand_call(e, spell(e, "(done + size) * $N_H"),
+					   spell(e, "$n_time(s) + 0.5 * (done + limit) * $N_H"), "segment", "next",
+					   "d"));
 	else
 		say(e, "        size = limit - done;\n");
 	if (watches(e))
@@ -277,7 +142,7 @@ void emit_expansion_place(const struct emitter *e)
 	       "{\n"
 	       "    int i;\n");
 	if (truncation(e)->adaptive)
-		say(e, "    s->served = s->valid = 0;\n");
+		say(e, "    s->served = s->valid = s->most = 0;\n");
 	say(e, "    for (i = 0; i < $N_STATES; i++) {\n"
 	       "        s->scale[i] = s->unit[i] = 0.0;\n");
 	emit_scales(e, "        ");
@@ -293,9 +158,11 @@ static const char *u_argument(const struct emitter *e)
 static void emit_expansion_end(const struct emitter *e)
 {
 	emit_step_end(e);
+	const char *again = truncation(e)->adaptive ? "s->most = 0;\n        " : "";
 	if (changes(e))
-		say(e, "    while (s->segment < %d && $n_until(s, s->segment) <= 1e-18 * $N_H)\n"
-		       "        s->segment++;\n", e->system->segments - 1);
+		say(e, "    while (s->segment < %d && $n_until(s, s->segment) <= 1e-18 * $N_H)%s\n"
+		       "        %ss->segment++;\n%s", e->system->segments - 1, *again ? " {" : "", again,
+		    *again ? "    }\n" : "");
 	say(e, "}\n");
 }
 
@@ -408,7 +275,9 @@ static void emit_renew(const struct emitter *e)
 	say(e, "    for (i = 0; i < $N_STATES; i++)\n");
 	emit_scales(e, "        ");
 	say(e, "    %s\n", expand_call(e, "0.0", when, "s->segment", "s->y", "s->series"));
-	say(e, "    s->valid = $n_reach(s);\n");
+	say(e, "    i = s->most ? $n_reach(s) : 0;\n"
+	       "    s->valid = i < s->most ? i : s->most;\n"
+	       "    s->most = s->valid ? 2 * s->valid : s->most;\n");
 	if (changes(e))
 		say(e, "    if (change < (double)s->valid * $N_H)\n"
 		       "        s->valid = (int)(change / $N_H);\n");
@@ -433,7 +302,7 @@ static void emit_adaptive_step(const struct emitter *e)
 	       "        odd += next[i] - next[i];\n"
 	       "    if (odd != 0.0) {\n"
 	       "        s->status |= PL_NOT_FINITE;\n"
-	       "        s->served = s->valid = 0;\n"
+	       "        s->served = s->valid = s->most = 0;\n"
 	       "        for (i = 0; i < $N_STATES; i++)\n"
 	       "            s->rest[i] = s->base[i];\n"
 	       "    } else {\n"
@@ -459,7 +328,8 @@ static void emit_adaptive_step(const struct emitter *e)
 	       "        }\n"
 	       "        $n_take(s, gain);\n"
 	       "    } else {\n"
-	       "        s->status |= $n_between(s, %s1.0, s->y, s->rest);\n"
+	       "        s->status |= $n_between(s, %s!s->most, 1.0, s->y, s->rest);\n"
+	       "        s->most = 1;\n"
 	       "    }\n", step_parameters(e), inputs ? ", u" : "", u_argument(e));
 	emit_expansion_end(e);
 }
@@ -469,7 +339,8 @@ void emit_expansion_members(const struct emitter *e)
 	if (truncation(e)->adaptive)
 		say(e, "    double series[%d][$N_STATES];  /* the last expansion, in powers of time over h */\n"
 		       "    double base[$N_STATES];  /* what rounding had taken there */\n"
-		       "    int served, valid;    /* steps since then; steps that it serves */\n",
+		       "    int served, valid;    /* steps since then; steps that it serves */\n"
+		       "    int most;             /* that the next one may serve; 0: nothing is known of it */\n",
 		    expansion(e)->order + 1);
 	if (looks_at_tolerance(e))
 		say(e, "    double scale[$N_STATES], unit[$N_STATES];  "
@@ -483,15 +354,7 @@ void emit_expansion_step(const struct emitter *e)
 	emit_force_table(e);
 	emit_expand_function(e);
 	emit_ahead(e);
-	if (looks_at_tolerance(e))
-		emit_remainder(e);
-	if (watches(e))
-		emit_is_accurate(e);
-	if (truncation(e)->adaptive) {
-		emit_reach_tables(e);
-		emit_serves(e);
-		emit_reach(e);
-	}
+	emit_validity(e);
 	if (has_offset(e))
 		emit_between(e);
 	(truncation(e)->adaptive ? emit_adaptive_step : emit_fixed_step)(e);
@@ -529,8 +392,8 @@ void emit_expansion_at(const struct emitter *e)
 		       "%s        %s[i] = s->y[i];\n"
 		       "%s        rest[i] = s->rest[i];\n"
 		       "%s    }\n"
-		       "%s    $n_between(s, %stau / $N_H, %s, rest);\n", margin, margin, y, margin, margin, margin,
-		    u_argument(e), y);
+		       "%s    $n_between(s, %s%stau / $N_H, %s, rest);\n", margin, margin, y, margin, margin, margin,
+		    u_argument(e), adaptive ? "!s->most, " : "", y);
 	if (adaptive)
 		say(e, "    }\n");
 	if (relative)

@@ -60,6 +60,15 @@ static void stiffening(real t, const real *y, const real *u, real *dydt)
     dydt[1] = (t < 0.5L ? -1 : -4) * sinl(y[0]);
 }
 
+static void rising(real t, const real *y, const real *u, real *dydt)
+{
+    (void)u;
+    dydt[0] = y[2];
+    dydt[1] = y[3];
+    dydt[2] = t * t * t * t * t - y[0] * y[0] * y[0];
+    dydt[3] = (t < 1 ? 0 : (t - 1) * (t - 1) * (t - 1) * (t - 1)) - y[1] * y[1] * y[1];
+}
+
 static const struct subject subjects[] = {{.name = "pendulum"}, {.name = "vanderpol"}, {.name = "duffing"},
     {.name = "mathieu"}, {.name = "quad2dof"}, {.name = "held"}, {.name = "ramped"}, {.name = "thermal"},
     {.name = "coupled"}, {.name = "rotor"}, {.name = "growth"}, {.name = "chain"}, {.name = "masses", .f = masses},
@@ -236,7 +245,7 @@ static void same_bits(const pl_model *m)
 
 /* ---- orders ---- */
 
-/* The largest error at `points` equal times, over the largest start */
+/* The largest error at `points` equal times, over the largest start; from rest itself */
 static double error_at(const struct subject *s, const pl_model *m, double seconds, int points)
 {
     double y[MOST], worst = 0, most = 0;
@@ -247,6 +256,7 @@ static double error_at(const struct subject *s, const pl_model *m, double second
         truth[i] = y[i];
         most = fmax(most, fabs(y[i]));
     }
+    most = most > 0 ? most : 1;
     for (int k = 0; k < points; k++) {
         m->run(state, (size_t)lround(seconds / points / m->h), NULL, NULL);
         m->get(state, y);
@@ -450,6 +460,17 @@ static void endings(void)
     ends("coarser_0", PL_INACCURATE, 0.45, 0.55, false);
 }
 
+/* What the first series says nothing of */
+static void from_rest(void)
+{
+    static const struct subject s = {.name = "rising", .f = rising, .changes = 1, .change = {1}};
+    static const char *const names[] = {"rising_taylor_0", "rising_taylor_1"};
+    for (int i = 0; i < 2; i++) {
+        double error = error_at(&s, variant_of(steps, "%s", names[i])->model, 4, 2);
+        ok(close_to(error, 0, 1e-8, "%s", names[i]), "%s: four seconds from rest (%.2g)", names[i], error);
+    }
+}
+
 int main(void)
 {
     static const char *const measured[] = {"pendulum", "vanderpol", "duffing", "mathieu", "timed", "changing"};
@@ -465,6 +486,7 @@ int main(void)
     for (size_t i = 0; i < sizeof measured / sizeof *measured; i++)
         for (int order = 4; order <= 12; order += 4)
             has_order(measured[i], order, 2);
+    from_rest();
     beside_cvode();
     in_float();
     late_changes();

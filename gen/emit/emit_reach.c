@@ -1,0 +1,220 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* How far a Taylor series holds, by its last terms; and, where nothing is known of it, by the slope at its end. */
+#include "emit/emit.h"
+
+#include <math.h>
+
+enum { REMAINDERS = 3 };            /* of each of its last two coefficients: itself, and what stands in for it */
+
+static int order_of(const struct emitter *e)
+{
+	return e->step->expansion->order;
+}
+
+static const struct truncation *truncation(const struct emitter *e)
+{
+	return &e->model->truncation;
+}
+
+bool looks_at_tolerance(const struct emitter *e)
+{
+	return mpq_sgn(truncation(e)->tolerance) != 0;
+}
+
+bool watches(const struct emitter *e)
+{
+	return looks_at_tolerance(e) && !truncation(e)->adaptive;
+}
+
+int most_served(const struct emitter *e)
+{
+	return e->system->inputs ? 1 : EXPANSION_SERVES;
+}
+
+static const char *tolerance_text(const struct emitter *e)
+{
+	return shortest(round_rational(truncation(e)->tolerance));
+}
+
+/* ---- the last terms ---- */
+
+static void emit_reach_tables(const struct emitter *e)
+{
+	int order = order_of(e), most = most_served(e);
+	const char *last = "", *before = "";
+	mpq_t bound, steps;
+	mpq_inits(bound, steps, NULL);
+	for (int m = 1; m <= most; m++) {
+		mpq_set(bound, truncation(e)->tolerance);
+		mpq_set_ui(steps, (unsigned long)m, 1);
+		for (int k = 1; k < order; k++)
+			mpq_div(bound, bound, steps);
+		const char *gap = m == 1 ? "" : (m - 1) % 4 ? ", " : ",\n    ";
+		before = format("%s%s%s", before, gap, shortest(round_rational(bound)));
+		mpq_div(bound, bound, steps);
+		last = format("%s%s%s", last, gap, shortest(round_rational(bound)));
+	}
+	mpq_clears(bound, steps, NULL);
+	say(e, "\n/* The tolerance over m^%d and m^%d: what the last coefficients may be for m steps */\n"
+	       "static const double $n_last[%d] = {\n    %s\n};\n"
+	       "static const double $n_before_last[%d] = {\n    %s\n};\n", order, order - 1, most, last, most, before);
+}
+
+/* The last two coefficients, relative to the largest size of each state so far. Of a series in t^n alone they may be 0,
+ * or nearly: then those before stand in for them, each two orders over 256, which is more than full series fall. */
+static void emit_remainder(const struct emitter *e, int kept)
+{
+	int order = order_of(e);
+	static const char *const factor[] = { "", " * 0.00390625", " * 1.52587890625e-5" };
+	say(e, "\n/* The last two coefficients over the largest value of each state so far, or where that is 0 its gain"
+	       "%s */\n"
+	       "static void $n_remainder%s(const $n *s, const double c[%d][$N_STATES], double last[%d],\n"
+	       "    double before[%d])\n"
+	       "{\n"
+	       "    int i;\n",
+	    kept > 1 ? ";\n * what stands in for them where they are 0: those before, each two over 256" : "",
+	    kept > 1 ? "s" : "", order + 1, kept, kept);
+	for (int j = 0; j < kept; j++)
+		say(e, "    last[%d] = before[%d] = 0.0;\n", j, j);
+	say(e, "    for (i = 0; i < $N_STATES; i++) {\n"
+	       "        double p = pl_magnitude(c[0][i]), unit = p > s->scale[i] ? 1.0 / p : s->unit[i];\n"
+	       "        if (unit == 0.0) {\n"
+	       "            const double one = pl_magnitude(c[1][i]), two = pl_magnitude(c[2][i]);\n"
+	       "            unit = one > two ? 1.0 / one : two > 0.0 ? 1.0 / two : 1.0;\n"
+	       "        }\n");
+	for (int j = 0; j < 2 * kept; j++) {
+		const char *sum = format("%s[%d]", j % 2 ? "before" : "last", j / 2);
+		if (order - j >= 2)
+			say(e, "        p = pl_magnitude(c[%d][i]) * unit%s;\n"
+			       "        %s = p <= %s ? %s : p;\n", order - j, factor[j / 2], sum, sum, sum);
+	}
+	say(e, "    }\n"
+	       "}\n");
+}
+
+/* ---- steps by tolerance ---- */
+
+static void emit_part(const struct emitter *e)
+{
+	int order = order_of(e);
+	const char *tolerance = tolerance_text(e);
+	say(e, "\n/* The part of a step that the series serves, a power of 2 up to 1; 0: none */\n"
+	       "static double $n_part(const $n *s, const double c[%d][$N_STATES])\n"
+	       "{\n"
+	       "    double last[%d], before[%d], part = 1.0;\n"
+	       "    int halvings = 0;\n"
+	       "    $n_remainders(s, c, last, before);\n"
+	       "    for (; halvings < 60 && !(last[0] + last[1] + last[2] <= %s &&\n"
+	       "            before[0] + before[1] + before[2] <= %s); halvings++) {\n"
+	       "        part *= 0.5;\n", order + 1, REMAINDERS, REMAINDERS, tolerance, tolerance);
+	for (int j = 0; j < REMAINDERS; j++)
+		say(e, "        last[%d] *= %s;\n"
+		       "        before[%d] *= %s;\n", j, shortest(ldexp(1, 2 * j - order)), j,
+		    shortest(ldexp(1, 2 * j + 1 - order)));
+	say(e, "    }\n"
+	       "    return halvings < 60 ? part : 0.0;\n"
+	       "}\n");
+}
+
+/* What precedes a series has shown that its last terms tell what follows. With inputs nothing has. */
+static void emit_steps_served(const struct emitter *e)
+{
+	if (e->system->inputs) {
+		say(e, "\n/* Steps that the series serves: 1, the samples to come are not known; 0: not even that */\n"
+		       "static int $n_reach(const $n *s)\n"
+		       "{\n"
+		       "    return $n_part(s, s->series) >= 1.0;\n"
+		       "}\n");
+		return;
+	}
+	say(e, "\n/* Steps that the series serves, at most %d; 0: not even one */\n"
+	       "static int $n_reach(const $n *s)\n"
+	       "{\n"
+	       "    double last[1], before[1];\n"
+	       "    int m = s->valid;\n"
+	       "    $n_remainder(s, s->series, last, before);\n"
+	       "    while (m < %d && last[0] <= $n_last[m] && before[0] <= $n_before_last[m])\n"
+	       "        m++;\n"
+	       "    while (m > 0 && !(last[0] <= $n_last[m - 1] && before[0] <= $n_before_last[m - 1]))\n"
+	       "        m--;\n"
+	       "    return m;\n"
+	       "}\n", EXPANSION_SERVES, EXPANSION_SERVES);
+}
+
+/* A first series may say nothing of what comes: x'' + x^3 = t^5 from rest has one term up to t^22. The equations do, at
+ * its end: what lacks at P + 1 lacks P + 1 times in the slope there. What rounding may take from the slope of a
+ * state is counted by the largest of all. */
+static void emit_agrees(const struct emitter *e)
+{
+	int order = order_of(e);
+	mpq_t bound, times;
+	mpq_inits(bound, times, NULL);
+	mpq_set_si(times, order, 1);
+	mpq_mul(bound, truncation(e)->tolerance, times);
+	say(e, "\n/* Whether the series c has at its end, size h later, the slope that the equations have there: d is the\n"
+	       " * series from there on */\n"
+	       "static int $n_agrees(const $n *s, const double c[%d][$N_STATES], const double d[%d][$N_STATES],\n"
+	       "    double size)\n"
+	       "{\n"
+	       "    double most = 0.0;\n"
+	       "    int i, k;\n"
+	       "    for (i = 0; i < $N_STATES; i++)\n"
+	       "        most = pl_magnitude(d[0][i]) > most ? pl_magnitude(d[0][i]) : most;\n"
+	       "    for (i = 0; i < $N_STATES; i++) {\n"
+	       "        double slope = 0.0, large = pl_magnitude(d[0][i]);\n"
+	       "        for (k = %d; k > 0; k--)\n"
+	       "            slope = slope * size + (double)k * c[k][i];\n"
+	       "        large = s->scale[i] > large ? s->scale[i] : large;\n"
+	       "        if (!(pl_magnitude(slope - d[1][i]) * size <= %s * large + %s * most))\n"
+	       "            return 0;\n"
+	       "    }\n"
+	       "    return 1;\n"
+	       "}\n", order + 1, order + 1, order, shortest(round_rational(bound)),
+	    e->model->asked.single ? "1e-6" : "1e-15");
+	mpq_clears(bound, times, NULL);
+}
+
+/* ---- fixed order ---- */
+
+/* Of terms that are 1 at h: at a part of it size^P and size^(P - 1) of that */
+static void emit_is_accurate(const struct emitter *e)
+{
+	int order = order_of(e);
+	const char *tolerance = tolerance_text(e);
+	bool part = e->system->segments > 1;
+	say(e, "\n/* Whether the last two terms%s are within the tolerance */\n"
+	       "static int $n_is_accurate(const $n *s, const double c[%d][$N_STATES]%s)\n"
+	       "{\n"
+	       "    double last[1], before[1]%s;\n",
+	    part ? ", at this part of a step," : "", order + 1, part ? ", double size" : "",
+	    part ? ", power = size" : "");
+	if (part)
+		say(e, "    int k;\n");
+	say(e, "    $n_remainder(s, c, last, before);\n");
+	if (part)
+		say(e, "    for (k = 2; k < %d; k++)\n"
+		       "        power *= size;\n"
+		       "    return last[0] * (power * size) <= %s && before[0] * power <= %s;\n", order, tolerance,
+		    tolerance);
+	else
+		say(e, "    return last[0] <= %s && before[0] <= %s;\n", tolerance, tolerance);
+	say(e, "}\n");
+}
+
+void emit_validity(const struct emitter *e)
+{
+	if (watches(e)) {
+		emit_remainder(e, 1);
+		emit_is_accurate(e);
+	}
+	if (!truncation(e)->adaptive)
+		return;
+	if (!e->system->inputs) {
+		emit_remainder(e, 1);
+		emit_reach_tables(e);
+	}
+	emit_remainder(e, REMAINDERS);
+	emit_part(e);
+	emit_steps_served(e);
+	emit_agrees(e);
+}
