@@ -19,10 +19,11 @@ static bool changes(const struct emitter *e)
 
 /* ---- its sum ---- */
 
+enum { WRITTEN_OUT = 400 };             /* terms; more are looped over */
+
 static void emit_ahead(const struct emitter *e)
 {
 	int order = expansion(e)->order, states = e->system->states;
-	enum { WRITTEN_OUT = 400 };
 	say(e, "\n/* What the series gains from its start, theta h later */\n"
 	       "static void $n_ahead(const double c[%d][$N_STATES], double theta, double gain[$N_STATES])\n"
 	       "{\n", order + 1);
@@ -256,6 +257,51 @@ static void emit_fixed_step(const struct emitter *e)
 	emit_expansion_end(e);
 }
 
+/* m^2 to m^order, each from two before it: then no more than a product and sums wait for the last coefficient */
+static void emit_powers(const struct emitter *e, int order)
+{
+	for (int k = 2; k <= order; k++)
+		say(e, "%sm%d = m%s * m%s%s", k == 2 ? "    const double " : (k - 2) % 6 ? ", " : ",\n        ", k,
+		    k < 4 ? "" : format("%d", k / 2), k - k / 2 < 2 ? "" : format("%d", k - k / 2),
+		    k == order ? ";\n" : "");
+}
+
+static const char *term_of_end(int state, int k)
+{
+	return format("c[%d][%d] * m%s", k, state, k == 1 ? "" : format("%d", k));
+}
+
+static void emit_end(const struct emitter *e)
+{
+	enum { LATE = 2 };              /* of at least 4 */
+	int order = expansion(e)->order, states = e->system->states;
+	say(e, "\n/* The state m steps after the start of the series, and what rounding takes from it */\n"
+	       "static void $n_end(const double c[%d][$N_STATES], double m, double end[$N_STATES], "
+	       "double rest[$N_STATES])\n"
+	       "{\n", order + 1);
+	if (states * order > WRITTEN_OUT) {
+		say(e, "    double gain[$N_STATES];\n"
+		       "    int i;\n"
+		       "    $n_ahead(c, m, gain);\n"
+		       "    for (i = 0; i < $N_STATES; i++)\n"
+		       "        end[i] = pl_accumulate(c[0][i], gain[i], 0.0, &rest[i]);\n"
+		       "}\n");
+		return;
+	}
+	emit_powers(e, order);
+	for (int i = 0; i < states; i++) {
+		const char *text = "", *late = "";
+		for (int k = order; k > order - LATE; k--)
+			late = plus(late, term_of_end(i, k));
+		for (int k = order - LATE; k > 1; k--)
+			text = plus(text, term_of_end(i, k));
+		say(e, "    ");
+		say_wrapped(e, format("end[%d] = pl_accumulate(c[0][%d], %s, %s + %s, &rest[%d]);\n", i, i,
+				      term_of_end(i, 1), text, late, i));
+	}
+	say(e, "}\n");
+}
+
 /* A new series. The loads' next change bounds the steps that it serves; conditions on t are decided before it, in the
  * middle, where time is on one side of them also when it is late, or float. */
 static void emit_renew(const struct emitter *e)
@@ -283,7 +329,12 @@ static void emit_renew(const struct emitter *e)
 		       "        s->valid = (int)(change / $N_H);\n");
 	say(e, "    s->served = 0;\n"
 	       "    for (i = 0; i < $N_STATES; i++)\n"
-	       "        s->base[i] = s->rest[i];\n");
+	       "        s->base[i] = s->left[i] = s->rest[i];\n"
+	       "    if (s->valid) {\n"
+	       "        $n_end((const double (*)[$N_STATES])s->series, (double)s->valid, s->next, s->left);\n"
+	       "        if (pl_not_finite(s->next, $N_STATES))\n"
+	       "            s->valid = s->most = 0;\n"
+	       "    }\n");
 	if (inputs)
 		say(e, "    (void)u;\n");
 	say(e, "}\n");
@@ -292,44 +343,26 @@ static void emit_renew(const struct emitter *e)
 static void emit_adaptive_step(const struct emitter *e)
 {
 	bool inputs = e->system->inputs > 0;
+	emit_end(e);
 	emit_renew(e);
-	say(e, "\n/* The next state, unless it is not finite: then the state stays, and the next step begins anew */\n"
-	       "static void $n_take($n *s, const double next[$N_STATES])\n"
-	       "{\n"
-	       "    double odd = 0.0;\n"
-	       "    int i;\n"
-	       "    for (i = 0; i < $N_STATES; i++)\n"
-	       "        odd += next[i] - next[i];\n"
-	       "    if (odd != 0.0) {\n"
-	       "        s->status |= PL_NOT_FINITE;\n"
-	       "        s->served = s->valid = s->most = 0;\n"
-	       "        for (i = 0; i < $N_STATES; i++)\n"
-	       "            s->rest[i] = s->base[i];\n"
-	       "    } else {\n"
-	       "        for (i = 0; i < $N_STATES; i++)\n"
-	       "            s->y[i] = next[i];\n"
-	       "    }\n"
-	       "}\n");
 	say(e, "\nvoid $n_step(%s)\n"
 	       "{\n"
 	       "    int i;\n"
 	       "    if (s->served == s->valid)\n"
 	       "        $n_renew(s%s);\n"
-	       "    if (s->valid) {\n"
-	       "        double gain[$N_STATES];\n"
-	       "        s->served++;\n"
-	       "        $n_ahead((const double (*)[$N_STATES])s->series, (double)s->served, gain);\n"
-	       "        if (s->served < s->valid) {\n"
-	       "            for (i = 0; i < $N_STATES; i++)\n"
-	       "                gain[i] = s->series[0][i] + (gain[i] + s->base[i]);\n"
-	       "        } else {\n"
-	       "            for (i = 0; i < $N_STATES; i++)\n"
-	       "                gain[i] = pl_accumulate(s->series[0][i], gain[i], 0.0, &s->rest[i]);\n"
-	       "        }\n"
-	       "        $n_take(s, gain);\n"
-	       "    } else {\n"
+	       "    if (s->valid == 0) {\n"
 	       "        s->status |= $n_between(s, %s!s->most, 1.0, s->y, s->rest);\n"
 	       "        s->most = 1;\n"
+	       "    } else if (++s->served < s->valid) {\n"
+	       "        double gain[$N_STATES];\n"
+	       "        $n_ahead((const double (*)[$N_STATES])s->series, (double)s->served, gain);\n"
+	       "        for (i = 0; i < $N_STATES; i++)\n"
+	       "            s->y[i] = s->series[0][i] + (gain[i] + s->base[i]);\n"
+	       "    } else {\n"
+	       "        for (i = 0; i < $N_STATES; i++) {\n"
+	       "            s->y[i] = s->next[i];\n"
+	       "            s->rest[i] = s->left[i];\n"
+	       "        }\n"
 	       "    }\n", step_parameters(e), inputs ? ", u" : "", u_argument(e));
 	emit_expansion_end(e);
 }
@@ -339,6 +372,7 @@ void emit_expansion_members(const struct emitter *e)
 	if (truncation(e)->adaptive)
 		say(e, "    double series[%d][$N_STATES];  /* the last expansion, in powers of time over h */\n"
 		       "    double base[$N_STATES];  /* what rounding had taken there */\n"
+		       "    double next[$N_STATES], left[$N_STATES];  /* where it ends; what rounding took there */\n"
 		       "    int served, valid;    /* steps since then; steps that it serves */\n"
 		       "    int most;             /* that the next one may serve; 0: nothing is known of it */\n",
 		    expansion(e)->order + 1);

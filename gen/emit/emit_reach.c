@@ -4,7 +4,10 @@
 
 #include <math.h>
 
-enum { REMAINDERS = 3 };            /* of each of its last two coefficients: itself, and what stands in for it */
+enum {
+	REMAINDERS = 3,             /* of each of its last two coefficients: itself, and what stands in for it */
+	WRITTEN_STATES = 4          /* more are looped over */
+};
 
 static int order_of(const struct emitter *e)
 {
@@ -116,6 +119,26 @@ static void emit_part(const struct emitter *e)
 	       "}\n");
 }
 
+/* The last two coefficients, state by state: what follows waits for it */
+static void emit_written_remainder(const struct emitter *e)
+{
+	int order = order_of(e), states = e->system->states;
+	for (int i = 0; i < states; i++)
+		say(e, "    const double unit%d = s->unit[%d] != 0.0 ? s->unit[%d] : $n_unit(s, %d);\n", i, i, i, i);
+	for (int i = 0; i < states; i++)
+		say(e, "    const double p%d = pl_magnitude(s->series[%d][%d]) * unit%d, "
+		       "q%d = pl_magnitude(s->series[%d][%d]) * unit%d;\n", i, order, i, i, i, order - 1, i, i);
+	const char *last = "p0", *before = "q0";
+	for (int i = 1; i < states; i++) {
+		say(e, "    const double last%d = p%d > %s ? p%d : %s, before%d = q%d > %s ? q%d : %s;\n", i, i, last, i,
+		    last, i, i, before, i, before);
+		last = format("last%d", i);
+		before = format("before%d", i);
+	}
+	say(e, "    const double last = %s, before = %s;\n"
+	       "    int m = s->valid;\n", last, before);
+}
+
 /* What precedes a series has shown that its last terms tell what follows. With inputs nothing has. */
 static void emit_steps_served(const struct emitter *e)
 {
@@ -127,18 +150,33 @@ static void emit_steps_served(const struct emitter *e)
 		       "}\n");
 		return;
 	}
-	say(e, "\n/* Steps that the series serves, at most %d; 0: not even one */\n"
-	       "static int $n_reach(const $n *s)\n"
+	int order = order_of(e);
+	say(e, "\n/* 1 over the largest size of a state so far, or where it has always been 0 over what it gains */\n"
+	       "static double $n_unit(const $n *s, int i)\n"
 	       "{\n"
-	       "    double last[1], before[1];\n"
-	       "    int m = s->valid;\n"
-	       "    $n_remainder(s, s->series, last, before);\n"
-	       "    while (m < %d && last[0] <= $n_last[m] && before[0] <= $n_before_last[m])\n"
+	       "    const double one = pl_magnitude(s->series[1][i]), two = pl_magnitude(s->series[2][i]);\n"
+	       "    return s->unit[i] != 0.0 ? s->unit[i] : one > two ? 1.0 / one : two > 0.0 ? 1.0 / two : 1.0;\n"
+	       "}\n"
+	       "\n/* Steps that the series serves, at most %d; 0: not even one */\n"
+	       "static int $n_reach(const $n *s)\n"
+	       "{\n", EXPANSION_SERVES);
+	if (e->system->states <= WRITTEN_STATES)
+		emit_written_remainder(e);
+	else
+		say(e, "    double last = 0.0, before = 0.0;\n"
+		       "    int i, m = s->valid;\n"
+		       "    for (i = 0; i < $N_STATES; i++) {\n"
+		       "        const double unit = $n_unit(s, i), p = pl_magnitude(s->series[%d][i]) * unit,\n"
+		       "            q = pl_magnitude(s->series[%d][i]) * unit;\n"
+		       "        last = p > last ? p : last;\n"
+		       "        before = q > before ? q : before;\n"
+		       "    }\n", order, order - 1);
+	say(e, "    while (m < %d && last <= $n_last[m] && before <= $n_before_last[m])\n"
 	       "        m++;\n"
-	       "    while (m > 0 && !(last[0] <= $n_last[m - 1] && before[0] <= $n_before_last[m - 1]))\n"
+	       "    while (m > 0 && !(last <= $n_last[m - 1] && before <= $n_before_last[m - 1]))\n"
 	       "        m--;\n"
 	       "    return m;\n"
-	       "}\n", EXPANSION_SERVES, EXPANSION_SERVES);
+	       "}\n", EXPANSION_SERVES);
 }
 
 /* A first series may say nothing of what comes: x'' + x^3 = t^5 from rest has one term up to t^22. The equations do, at
@@ -209,10 +247,8 @@ void emit_validity(const struct emitter *e)
 	}
 	if (!truncation(e)->adaptive)
 		return;
-	if (!e->system->inputs) {
-		emit_remainder(e, 1);
+	if (!e->system->inputs)
 		emit_reach_tables(e);
-	}
 	emit_remainder(e, REMAINDERS);
 	emit_part(e);
 	emit_steps_served(e);
