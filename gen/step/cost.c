@@ -345,8 +345,35 @@ static void count_sum(const struct expansion *x, const struct sequence *s, int k
 	}
 }
 
+/* Early part, and gains times what is newest; the gains themselves once, at k = 1 */
+static void count_joined(const struct expansion *x, const struct sequence *s, int k, struct program *p)
+{
+	int own = s->kind == SEQUENCE_INTEGRAL || s->kind == SEQUENCE_SUM ? 0 : s->kind == SEQUENCE_ROOT ? k / 2 : k - 1;
+	int made = s->gains * (k == 1 ? 2 : 1);
+	p->multiplications += made + (s->kind == SEQUENCE_INTEGRAL ? s->gains : 0);
+	p->additions += made;
+	p->multiplications += s->kind == SEQUENCE_POWER ? 2 * own + 1 : own;
+	p->additions += own;
+	for (int i = 0; i < s->terms; i++) {
+		const struct sequence_term *t = &s->term[i];
+		bool pair = t->kind == TERM_PRODUCT, made_of = pair || t->kind == TERM_SEQUENCE;
+		if (t->factor && t->factor[k] == 0)
+			continue;
+		int old = !pair ? !made_of : t->a == t->b ? k / 2 : k - 1;
+		const struct sequence *a = made_of ? &x->sequence[t->a] : NULL, *b = pair ? &x->sequence[t->b] : NULL;
+		int early = (a && (a->split || a->known)) + (b && a != b && (b->split || b->known));
+		p->multiplications += old + (old > 0) + early * (pair ? 2 : 1);
+		p->additions += old + early;
+	}
+}
+
 static void count_sequence(const struct expansion *x, const struct sequence *s, int k, struct program *p)
 {
+	int from = s->kind == SEQUENCE_INTEGRAL ? k - 1 : k;
+	if (s->gains && from > 0) {
+		count_joined(x, s, from, p);
+		return;
+	}
 	switch (s->kind) {
 	case SEQUENCE_SUM:
 		count_sum(x, s, k, p);
