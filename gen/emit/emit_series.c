@@ -141,18 +141,24 @@ static void define(const struct emitter *e, const char *name, const char *text)
 	define_as(e, "const double", name, text);
 }
 
-static const char *times(const char *a, const char *b)
+/* a_i b_j; where one is 0 the other is not read */
+static const char *pair(const struct emitter *e, int a, int i, int b, int j)
 {
-	return a && b ? format("%s * %s", a, b) : NULL;
+	if (i > sequence_of(e, a)->degree || j > sequence_of(e, b)->degree)
+		return NULL;
+	return format("%s * %s", coefficient(e, a, i), coefficient(e, b, j));
 }
 
-/* a_k times b_0 with its factor */
-static const char *newest(const char *latest, double factor, const char *first)
+static const char *latest_times(const char *latest, double factor, const char *first)
 {
-	if (!latest || !first)
-		return NULL;
 	return factor == 1 ? format("%s * %s", latest, first)
 			   : format("%s * (%s)", latest, scaled(factor, first));
+}
+
+/* What is new of one sequence, times the first of another with its factor */
+static const char *newest(const char *latest, double factor, const struct emitter *e, int other)
+{
+	return latest ? latest_times(latest, factor, coefficient(e, other, 0)) : NULL;
 }
 
 /* factor (a_1 b_{k-1} + ... + a_{k-1} b_1) */
@@ -162,15 +168,15 @@ static const char *old_part(const struct emitter *e, int a, int b, int k, double
 	bool square = a == b;
 	for (int gap = k % 2 ? 1 : 0; gap <= k - 2; gap += 2) {        /* those in the middle are the oldest */
 		int i = (k - gap) / 2, j = k - i;
-		add(&old, times(coefficient(e, a, i), coefficient(e, b, j)));
+		add(&old, pair(e, a, i, b, j));
 		if (i != j && !square)
-			add(&old, times(coefficient(e, a, j), coefficient(e, b, i)));
+			add(&old, pair(e, a, j, b, i));
 	}
 	if (old.terms == 0)
 		return NULL;
 	if (!square)
 		return scaled(factor, old.terms == 1 ? old.term[0] : format("(%s)", chain(&old)));
-	const char *middle = k % 2 == 0 ? times(coefficient(e, a, k / 2), coefficient(e, a, k / 2)) : NULL;
+	const char *middle = k % 2 == 0 ? pair(e, a, k / 2, a, k / 2) : NULL;
 	struct list twice = { middle ? old.terms - 1 : old.terms, middle ? old.term + 1 : old.term };
 	const char *rest = twice.terms == 0	? NULL
 			   : twice.terms == 1 ? scaled(2, twice.term[0])
@@ -185,17 +191,14 @@ static void add_product(const struct emitter *e, struct list *sum, struct list *
 			double factor)
 {
 	if (k == 0) {
-		const char *product = times(coefficient(e, a, 0), coefficient(e, b, 0));
+		const char *product = pair(e, a, 0, b, 0);
 		add(sum, product ? scaled(factor, product) : NULL);
 		return;
 	}
 	add(sum, old_part(e, a, b, k, factor));
-	if (a == b) {
-		add(last, newest(coefficient(e, a, k), 2 * factor, coefficient(e, a, 0)));
-		return;
-	}
-	add(last, newest(coefficient(e, a, k), factor, coefficient(e, b, 0)));
-	add(last, newest(coefficient(e, b, k), factor, coefficient(e, a, 0)));
+	add(last, newest(coefficient(e, a, k), a == b ? 2 * factor : factor, e, b));
+	if (a != b)
+		add(last, newest(coefficient(e, b, k), factor, e, a));
 }
 
 static const char *power_of_time(int power)
@@ -298,9 +301,9 @@ static void add_early_terms(const struct emitter *e, struct list *sum, const str
 		add(sum, old_part(e, t->a, t->b, k, factor));
 		const char *b = t->a == t->b ? NULL : early(e, t->b, k);
 		if (a)
-			add(sum, newest(a, t->a == t->b ? 2 * factor : factor, coefficient(e, t->b, 0)));
+			add(sum, newest(a, t->a == t->b ? 2 * factor : factor, e, t->b));
 		if (b)
-			add(sum, newest(b, factor, coefficient(e, t->a, 0)));
+			add(sum, newest(b, factor, e, t->a));
 	}
 }
 
@@ -310,9 +313,9 @@ static const char *early_quotient(const struct emitter *e, int sequence, const s
 	const char *above = s->a == NONE ? NULL : early(e, s->a, k), *below = early(e, s->b, k);
 	struct list sum = { 0 };
 	if (below)
-		add(&sum, times(coefficient(e, sequence, 0), below));
+		add(&sum, format("%s * %s", coefficient(e, sequence, 0), below));
 	for (int j = 1; j < k; j++)
-		add(&sum, times(coefficient(e, sequence, j), coefficient(e, s->b, k - j)));
+		add(&sum, pair(e, sequence, j, s->b, k - j));
 	if (!above && sum.terms == 0)
 		return NULL;
 	const char *inverse = helper(e, sequence, "inverse");
@@ -348,8 +351,8 @@ static void add_power_terms(const struct emitter *e, struct list *sum, int seque
 {
 	for (int j = first; j < k; j++) {
 		double factor = rounded_double((s->exponent * (k - j) - j) / k);
-		const char *product = times(coefficient(e, s->a, k - j), coefficient(e, sequence, j));
-		if (factor != 0 && product)
+		const char *product = factor == 0 ? NULL : pair(e, s->a, k - j, sequence, j);
+		if (product)
 			add(sum, scaled(factor, product));
 	}
 }
@@ -359,7 +362,7 @@ static const char *early_power(const struct emitter *e, int sequence, const stru
 	const char *base = early(e, s->a, k);
 	struct list sum = { 0 };
 	if (base)
-		add(&sum, scaled(rounded_double(s->exponent), times(base, coefficient(e, sequence, 0))));
+		add(&sum, scaled(rounded_double(s->exponent), format("%s * %s", base, coefficient(e, sequence, 0))));
 	add_power_terms(e, &sum, sequence, s, 1, k);
 	return sum.terms ? format("(%s) * %s", chain(&sum), helper(e, sequence, "inverse")) : NULL;
 }
@@ -407,10 +410,12 @@ static const char *gain(const struct emitter *e, int sequence, int other)
 	return gain_name(e, sequence, other);
 }
 
-static const char *gain_times(const char *gain, double factor, const char *first)
+/* times the first of a sequence */
+static const char *gain_times(const struct emitter *e, const char *gain, double factor, int sequence)
 {
-	if (!gain || !first)
+	if (!gain)
 		return NULL;
+	const char *first = coefficient(e, sequence, 0);
 	return strcmp(gain, "1") == 0 ? scaled(factor, first) : scaled(factor, format("%s * %s", first, gain));
 }
 
@@ -427,10 +432,10 @@ static const char *gain_of_sum(const struct emitter *e, const struct sequence *s
 		if (t->kind == TERM_SEQUENCE) {
 			add(&sum, !a ? NULL : strcmp(a, "1") == 0 ? scaled(factor, NULL) : scaled(factor, a));
 		} else if (t->a == t->b) {
-			add(&sum, gain_times(a, 2 * factor, coefficient(e, t->a, 0)));
+			add(&sum, gain_times(e, a, 2 * factor, t->a));
 		} else {
-			add(&sum, gain_times(a, factor, coefficient(e, t->b, 0)));
-			add(&sum, gain_times(b, factor, coefficient(e, t->a, 0)));
+			add(&sum, gain_times(e, a, factor, t->b));
+			add(&sum, gain_times(e, b, factor, t->a));
 		}
 	}
 	return chain(&sum);
@@ -446,14 +451,14 @@ static const char *gain_text(const struct emitter *e, int sequence, int other)
 	const struct sequence *s = sequence_of(e, sequence);
 	if (s->kind == SEQUENCE_SUM || s->kind == SEQUENCE_INTEGRAL)
 		return gain_of_sum(e, s, other);
-	const char *a = s->a == NONE ? NULL : gain(e, s->a, other), *first = coefficient(e, sequence, 0);
+	const char *a = s->a == NONE ? NULL : gain(e, s->a, other);
 	if (s->kind == SEQUENCE_ROOT)
 		return format("%s * %s", plain_gain(a), helper(e, sequence, "half"));
 	const char *inverse = helper(e, sequence, "inverse");
 	if (s->kind == SEQUENCE_POWER)
-		return scaled(rounded_double(s->exponent), format("%s * %s * %s", plain_gain(a), first, inverse));
+		return scaled(rounded_double(s->exponent), format("%s * %s * %s", plain_gain(a), coefficient(e, sequence, 0), inverse));
 	const char *b = gain(e, s->b, other);
-	const char *below = b ? gain_times(b, 1, first) : NULL;
+	const char *below = gain_times(e, b, 1, sequence);
 	return !below ? format("%s * %s", plain_gain(a), inverse)
 	       : a    ? format("(%s - %s) * %s", plain_gain(a), below, inverse)
 		      : format("-%s * %s", below, inverse);
@@ -509,8 +514,8 @@ static const char *joined(const struct emitter *e, int sequence, int k)
 			continue;
 		}
 		e->series->gain[sequence][i] = true;
-		add(&last, newest(latest, s->kind == SEQUENCE_INTEGRAL ? rounded_double(1.0 / (k + 1)) : 1,
-				  gain_name(e, sequence, s->gain[i])));
+		add(&last, latest_times(latest, s->kind == SEQUENCE_INTEGRAL ? rounded_double(1.0 / (k + 1)) : 1,
+					gain_name(e, sequence, s->gain[i])));
 	}
 	return early_and_last(&sum, &last);
 }
@@ -537,7 +542,7 @@ static void define_quotient(const struct emitter *e, int sequence, const struct 
 	}
 	const char *inverse = helper(e, sequence, "inverse");
 	for (int j = 0; j < k; j++)
-		add(&sum, times(coefficient(e, sequence, j), coefficient(e, s->b, k - j)));
+		add(&sum, pair(e, sequence, j, s->b, k - j));
 	const char *minus = sum.terms ? format("(%s)", chain(&sum)) : "0.0";
 	define(e, name_of(e, sequence, k),
 	       above ? format("(%s - %s) * %s", above, minus, inverse) : format("-%s * %s", minus, inverse));
