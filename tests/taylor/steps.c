@@ -460,6 +460,33 @@ static void endings(void)
     ends("coarser_0", PL_INACCURATE, 0.45, 0.55, false);
 }
 
+static void pushed(real t, const real *y, const real *u, real *dydt)
+{
+    (void)t;
+    dydt[0] = y[1];
+    dydt[1] = u[0] - y[0] * y[0] * y[0] * y[0] * y[0];
+}
+
+/* An input that begins while the model is at rest */
+static void from_a_push(void)
+{
+    const pl_model *m = variant_of(steps, "pushed_taylor_0")->model;
+    const double none = 0, push = 1;
+    const real u[2] = {push, 0};
+    real truth[HAND_MOST] = {0};
+    double y[2], error = 0;
+    void *state = fresh(m);
+    for (int k = 0; k < 3; k++)
+        m->step(state, &none);
+    m->step(state, &push);
+    m->get(state, y);
+    gragg(pushed, 2, 0, 2, 0.01L, 1, u, truth);
+    for (int i = 0; i < 2; i++)
+        error = fmax(error, (double)fabsl(y[i] - truth[i]));
+    ok(close_to(error, 0, 1e-8, "pushed") && m->status(state) == 0, "pushed: a step after rest (%.2g)", error);
+    free(state);
+}
+
 /* What the first series says nothing of */
 static void from_rest(void)
 {
@@ -487,6 +514,7 @@ int main(void)
         for (int order = 4; order <= 12; order += 4)
             has_order(measured[i], order, 2);
     from_rest();
+    from_a_push();
     beside_cvode();
     in_float();
     late_changes();
