@@ -130,8 +130,8 @@ static void emit_written_remainder(const struct emitter *e)
 		       "q%d = pl_magnitude(s->series[%d][%d]) * unit%d;\n", i, order, i, i, i, order - 1, i, i);
 	const char *last = "p0", *before = "q0";
 	for (int i = 1; i < states; i++) {
-		say(e, "    const double last%d = p%d > %s ? p%d : %s, before%d = q%d > %s ? q%d : %s;\n", i, i, last, i,
-		    last, i, i, before, i, before);
+		say(e, "    const double last%d = p%d > %s ? p%d : %s;\n"
+		       "    const double before%d = q%d > %s ? q%d : %s;\n", i, i, last, i, last, i, i, before, i, before);
 		last = format("last%d", i);
 		before = format("before%d", i);
 	}
@@ -189,8 +189,8 @@ static void emit_agrees(const struct emitter *e)
 	mpq_inits(bound, times, NULL);
 	mpq_set_si(times, order, 1);
 	mpq_mul(bound, truncation(e)->tolerance, times);
-	say(e, "\n/* Whether the series c has at its end, size h later, the slope that the equations have there: d is the\n"
-	       " * series from there on */\n"
+	say(e, "\n/* Whether the series c has at its end, size h later, the slope that the equations have there:\n"
+	       " * d is the series from there on */\n"
 	       "static int $n_agrees(const $n *s, const double c[%d][$N_STATES], const double d[%d][$N_STATES],\n"
 	       "    double size)\n"
 	       "{\n"

@@ -346,8 +346,8 @@ static double rounded_double(double value)
 	return value;
 }
 
-static void add_power_terms(const struct emitter *e, struct list *sum, int sequence, const struct sequence *s, int first,
-			    int k)
+static void add_power_terms(const struct emitter *e, struct list *sum, int sequence, const struct sequence *s,
+			    int first, int k)
 {
 	for (int j = first; j < k; j++) {
 		double factor = rounded_double((s->exponent * (k - j) - j) / k);
@@ -456,7 +456,8 @@ static const char *gain_text(const struct emitter *e, int sequence, int other)
 		return format("%s * %s", plain_gain(a), helper(e, sequence, "half"));
 	const char *inverse = helper(e, sequence, "inverse");
 	if (s->kind == SEQUENCE_POWER)
-		return scaled(rounded_double(s->exponent), format("%s * %s * %s", plain_gain(a), coefficient(e, sequence, 0), inverse));
+		return scaled(rounded_double(s->exponent), format("%s * %s * %s", plain_gain(a),
+								  coefficient(e, sequence, 0), inverse));
 	const char *b = gain(e, s->b, other);
 	const char *below = gain_times(e, b, 1, sequence);
 	return !below ? format("%s * %s", plain_gain(a), inverse)
@@ -617,8 +618,9 @@ static void define_read(const struct emitter *e, int sequence, const struct sequ
 		return;
 	}
 	switch (s->kind) {
-	case SEQUENCE_SUM:      define(e, name_of(e, sequence, k), sum_at(e, s, k)); break;
-	case SEQUENCE_INTEGRAL: define(e, name_of(e, sequence, k), k ? sum_at(e, s, k - 1) : value_at_start(e, s)); break;
+	case SEQUENCE_SUM:
+	case SEQUENCE_INTEGRAL: define(e, name_of(e, sequence, k),
+				       from < 0 ? value_at_start(e, s) : sum_at(e, s, from)); break;
 	case SEQUENCE_QUOTIENT: define_quotient(e, sequence, s, k); break;
 	case SEQUENCE_ROOT:     define_root(e, sequence, s, k); break;
 	case SEQUENCE_POWER:    define_power(e, sequence, s, k); break;

@@ -348,7 +348,8 @@ static void count_sum(const struct expansion *x, const struct sequence *s, int k
 /* Early part, and gains times what is newest; the gains themselves once, at k = 1 */
 static void count_joined(const struct expansion *x, const struct sequence *s, int k, struct program *p)
 {
-	int own = s->kind == SEQUENCE_INTEGRAL || s->kind == SEQUENCE_SUM ? 0 : s->kind == SEQUENCE_ROOT ? k / 2 : k - 1;
+	bool sum = s->kind == SEQUENCE_INTEGRAL || s->kind == SEQUENCE_SUM;
+	int own = sum ? 0 : s->kind == SEQUENCE_ROOT ? k / 2 : k - 1;
 	int made = s->gains * (k == 1 ? 2 : 1);
 	p->multiplications += made + (s->kind == SEQUENCE_INTEGRAL ? s->gains : 0);
 	p->additions += made;

@@ -15,7 +15,8 @@ static bool *state_dependent(const struct expansion *x)
 		changed = false;
 		for (int i = 0; i < x->count; i++) {
 			const struct sequence *s = &x->sequence[i];
-			bool now = s->state != NONE || (s->a != NONE && depends[s->a]) || (s->b != NONE && depends[s->b]);
+			bool now = s->state != NONE || (s->a != NONE && depends[s->a]) ||
+				   (s->b != NONE && depends[s->b]);
 			for (int k = 0; k < s->terms; k++) {
 				const struct sequence_term *t = &s->term[k];
 				now = now || (t->kind == TERM_SEQUENCE && depends[t->a]) ||

@@ -655,7 +655,8 @@ struct sequence {
 	int top;                    /* the last that something reads; -1: none */
 	bool late;                  /* the k-th stands where others have their (k+1)-th */
 	bool known;                 /* it depends on time and inputs alone */
-	/* The k-th, of an integral the (k+1)-th, k >= 1, is an early part + sum over these of a factor times their k-th */
+	/* The k-th, of an integral the (k+1)-th, is for k >= 1 an early part + sum over these of factors times their
+	 * k-th */
 	int gains;                  /* 0: not made so */
 	int *gain;
 	bool split;                 /* others read its early part and gains */

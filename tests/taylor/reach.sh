@@ -15,8 +15,8 @@ source=$(absolute "$2")
 
 # told NAME EXPECTED: of drawn.spec; null: none is told
 told() {
-	"$plgen" --scheme taylor --explain=json drawn.spec >json 2>log && "$plgen" --scheme taylor --explain drawn.spec \
-		>text 2>>log || { result 1 "$1"; return; }
+	"$plgen" --scheme taylor --explain=json drawn.spec >json 2>log &&
+		"$plgen" --scheme taylor --explain drawn.spec >text 2>>log || { result 1 "$1"; return; }
 	found=$(sed -n 's/^ *"radius": \(.*\),$/\1/p' json)
 	if [ "$2" = null ]; then
 		echo "found $found, expected null" >log
