@@ -131,7 +131,8 @@ static void emit_written_remainder(const struct emitter *e)
 	const char *last = "p0", *before = "q0";
 	for (int i = 1; i < states; i++) {
 		say(e, "    const double last%d = p%d > %s ? p%d : %s;\n"
-		       "    const double before%d = q%d > %s ? q%d : %s;\n", i, i, last, i, last, i, i, before, i, before);
+		       "    const double before%d = q%d > %s ? q%d : %s;\n", i, i, last, i, last, i, i, before, i,
+		    before);
 		last = format("last%d", i);
 		before = format("before%d", i);
 	}
