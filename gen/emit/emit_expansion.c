@@ -231,8 +231,9 @@ static void emit_straight_step(const struct emitter *e)
 		say(e, "    %s\n", expand_call(e, "", "", "", "s->y", "c"));
 	for (int i = 0; i < e->system->states; i++) {
 		say(e, "    ");
-		say_wrapped(e, format("%snext%d = pl_accumulate(s->y[%d], %s, &rest%d);\n",
-				      here ? "const double " : "", i, i, whole_gain(e, i), i));
+		const char *now = here ? coefficient(e, i, 0) : format("s->y[%d]", i);
+		say_wrapped(e, format("%snext%d = pl_accumulate(%s, %s, &rest%d);\n", here ? "const double " : "", i,
+				      now, whole_gain(e, i), i));
 	}
 	if (watched)
 		say(e, "    if (!$n_is_accurate(s, (const double (*)[$N_STATES])c))\n"
