@@ -9,7 +9,7 @@ CHECK_PACKAGES = $(DEMO_PACKAGES) g++ clang libcmocka-dev valgrind \
 	gcc-arm-none-eabi libnewlib-arm-none-eabi qemu-system-arm
 
 .PHONY: all setup deps demo-deps check-deps demo tests check check-long faults bench charts charts-quick \
-	firmware-report install clean
+	charts-page firmware-report install clean
 
 all: setup
 	ninja -C $(BUILD) plgen
@@ -90,6 +90,10 @@ bench: tests
 charts charts-quick: tests
 	ninja -C $(BUILD) charts
 	sh bench/charts/charts.sh $(BUILD) charts $(if $(findstring quick,$@),--quick)
+
+# Pictures and pages once more from tables that are there, by default those kept in doc/charts: nothing is measured
+charts-page: demo-deps
+	sh bench/charts/draw.sh $(or $(TABLES),doc/charts)
 
 # Bytes, stack and instructions on emulated boards: doc/firmware.md
 firmware-report: tests
