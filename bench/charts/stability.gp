@@ -24,16 +24,17 @@ do for [form=1:forms] {
 		unset label
 		if (k == 1) { eval found_label }
 		line = (k - 1)/4
+		method = named(k)
 		set origin 0.003 + 0.248*((k - 1) % 4), 1 - (50.0 + 205*(line + 1))/high
 		set size 0.248, 200.0/high
-		set title named(k) noenhanced textcolor rgb '#202020'
+		set title method noenhanced textcolor rgb '#202020'
 		set ylabel (k % 4 == 1 ? 'damping ratio ζ' : '')
 		set xlabel (k > count - 4 ? 'w h  [rad]' : '')
 		set xtics ('0.01' -2, '0.1' -1, '1' 0, '10' 1, '100' 2)
 		set ytics 0,0.5,1.5
-		plot cells(map, named(k), "-v x=wh -v y=zeta -v value=growth") using 1:3:1:2:3:4:5 with boxxyerror lc \
+		plot cells(map, method, "-v x=wh -v y=zeta -v value=growth") using 1:3:1:2:3:4:5 with boxxyerror lc \
 			palette, \
-			for [b=1:4] ends using (strcol(1) eq named(k) && $2 == b ? log10($3) : NaN):4 skip 1 with \
+			for [b=1:4] ends using (strcol(1) eq method && $2 == b ? log10($3) : NaN):4 skip 1 with \
 			lines lw 2.6 lc rgb 'black'
 	}
 	set origin 0.51, 0.0; set size 0.48, 200.0/high
