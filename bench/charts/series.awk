@@ -15,10 +15,12 @@ function wanted(field,    i) {
 		if (field[condition_column[i]] != condition_value[i]) return 0
 	return 1
 }
+# By family where there is one, and then by name
 function group_of(name, family,    i) {
-	for (i = 1; i <= groups; i++)
+	if (family == "ours") return name ~ /^exact/ ? "exact" : "scheme"
+	for (i = family == "" ? 1 : 3; i <= groups; i++)
 		if (name ~ pattern_of[i]) return group_name[i]
-	return family == "ours" ? "scheme" : family == "propagator" ? "matrix" : family in colour ? family : "other"
+	return family == "propagator" ? "matrix" : family in colour ? family : "other"
 }
 # The first mark of the group that none of it has in this picture
 function mark_of(of,    n, i, mark) {
@@ -84,7 +86,7 @@ BEGIN {
 	while ((getline line < palette) > 0)
 		if (split(line, part, " ") == 4 && line !~ /^#/) {
 			colour[part[1]] = part[2]; dash[part[1]] = part[3]; marks[part[1]] = part[4] }
-	# the first pattern that fits counts
+	# the first pattern that fits counts; the first two are ours
 	group("^exact", "exact")
 	group("^(pl|etd|nc2|nc3|dq4|bm3|taylor|frozen)", "scheme")
 	group("implicit trapez|Newmark|alpha|Bathe", "implicit")
