@@ -8,6 +8,7 @@ unset logscale
 set format '%g'
 set xlabel 'frequency of the force, eta [rad/s]'
 set ylabel 'half the range of q [1]'
+set offsets graph 0, graph 0, graph 0.05, graph 0
 set key inside top right vertical Left reverse font ',11'
 name = 'gear1_sweep'
 eval heading

@@ -152,6 +152,8 @@ result $? 'few tables: pages of what is there, no link to what is not'
 grep -q 'modelling_less\|energy_double' one/index.html && echo 'the page names what is not there' >>log
 [ ! -s log ]
 result $? 'few tables: a model that nobody has described, no slot for what is missing'
+titled "$work/one" 5
+result $? 'few tables: titles of pictures say what is found'
 at_most_ten "$work/one"
 result $? 'few tables: legends of at most 10 entries among some sixty methods'
 compared "$work/one"

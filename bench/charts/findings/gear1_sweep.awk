@@ -10,6 +10,6 @@ NF == 0 { block = 1; last = ""; next }
 	last = $2; before = $1
 }
 END {
-	printf "The gear pair jumps at %.3g rad/s when its force is swept up, at %.3g rad/s when it is swept down\n", at[0],
-		at[1]
+	printf "The gear pair jumps at %.3g rad/s when its force is swept up, at %.3g rad/s when it is swept " \
+		"down\n", at[0], at[1]
 }
