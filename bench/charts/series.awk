@@ -87,11 +87,12 @@ BEGIN {
 		if (split(line, part, " ") == 4 && line !~ /^#/) {
 			colour[part[1]] = part[2]; dash[part[1]] = part[3]; marks[part[1]] = part[4] }
 	# the first pattern that fits counts; the first two are ours
-	group("^exact", "exact")
+	group("^(exact|modes)", "exact")
 	group("^(pl|etd|nc2|nc3|dq4|bm3|taylor|frozen)", "scheme")
 	group("implicit trapez|Newmark|alpha|Bathe", "implicit")
-	group("Euler|trapez|^RK4|central|fixed step|^CR$", "fixed")
-	group("Dormand|ode45|rk8pd|msadams|Adams|BDF|ARKODE", "adaptive")
+	group("Euler|trapez|^RK4|central|fixed step|^CR", "fixed")
+	group("^elements", "fixed")
+	group("Dormand|ode45|rk8pd|msadams|Adams|BDF|ARKODE|^balanced", "adaptive")
 	group("^exp\\(|odal", "matrix")
 }
 NR == 1 {

@@ -10,7 +10,7 @@ here=$root/tests/charts
 charts=$root/bench/charts
 kept=$root/doc/charts
 csv=$charts/csv.awk
-stories='headline_integrators headline_equal_step energy_double hard modelling_less'
+stories='headline_integrators headline_equal_step energy_double hard less'
 
 # entries PICTURE.svg: of its legend
 entries() {
@@ -149,7 +149,7 @@ whole "$work/one"
 result $? 'few tables: pages of what is there, no link to what is not'
 : >log
 [ -s one/model_new_thing.html ] && grep -q new_thing one/index.html || echo 'the new model has no page' >>log
-grep -q 'modelling_less\|energy_double' one/index.html && echo 'the page names what is not there' >>log
+grep -q 'id="less"\|energy_double' one/index.html && echo 'the page names what is not there' >>log
 [ ! -s log ]
 result $? 'few tables: a model that nobody has described, no slot for what is missing'
 titled "$work/one" 5
@@ -158,10 +158,10 @@ at_most_ten "$work/one"
 result $? 'few tables: legends of at most 10 entries among some sixty methods'
 compared "$work/one"
 result $? 'few tables: the matrix by another road'
-cp "$kept/headline_confluence.svg" two/modelling_less.svg
-echo 'model,error' >two/modelling_less.csv
-echo 'beam,1e-3' >>two/modelling_less.csv
+cp "$kept/headline_confluence.svg" two/less.svg
+echo 'model,error' >two/less.csv
+echo 'beam,1e-3' >>two/less.csv
 (cd "$root" && sh bench/charts/page.sh "$work/two") >log 2>&1
-grep -q 'id="modelling_less"' two/index.html && grep -q 'modelling_less.csv' two/index.html
-result $? 'few tables: modelling_less stands on the first page once it is there'
+grep -q 'id="less"' two/index.html && grep -q '"less.csv"' two/index.html
+result $? 'few tables: what modelling less saves stands on the first page once it is there'
 tap_end
