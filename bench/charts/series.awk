@@ -18,7 +18,7 @@ function wanted(field,    i) {
 # By family where there is one, and then by name
 function group_of(name, family,    i) {
 	if (family == "ours") return name ~ /^exact/ ? "exact" : "scheme"
-	for (i = family == "" ? 1 : 3; i <= groups; i++)
+	for (i = family == "" ? 1 : 4; i <= groups; i++)
 		if (name ~ pattern_of[i]) return group_name[i]
 	return family == "propagator" ? "matrix" : family in colour ? family : "other"
 }
@@ -86,7 +86,8 @@ BEGIN {
 	while ((getline line < palette) > 0)
 		if (split(line, part, " ") == 4 && line !~ /^#/) {
 			colour[part[1]] = part[2]; dash[part[1]] = part[3]; marks[part[1]] = part[4] }
-	# the first pattern that fits counts; the first two are ours
+	# the first pattern that fits counts; the first three are ours
+	group("^modes$", "scheme")
 	group("^(exact|modes)", "exact")
 	group("^(pl|etd|nc2|nc3|dq4|bm3|taylor|frozen)", "scheme")
 	group("implicit trapez|Newmark|alpha|Bathe", "implicit")
