@@ -39,8 +39,8 @@ set xlabel textcolor rgb '#202020'
 set ylabel textcolor rgb '#202020'
 if (narrow) { set xlabel offset 0,0.7; set xtics offset 0,0.2 }
 if (narrow) set key outside center bottom vertical Left reverse maxrows 5 samplen 2.5 spacing 1.15 width -1 height 0.7 \
-	font ',10' textcolor rgb '#202020'; else set key outside right top vertical Left reverse samplen 3.5 spacing 1.25 \
-	width 1 font ',11' textcolor rgb '#202020'
+	font ',10' textcolor rgb '#202020'; else set key outside right top vertical Left reverse samplen 3.5 \
+	spacing 1.25 width 1 font ',11' textcolor rgb '#202020'
 set format x '10^{%T}'
 set format y '10^{%T}'
 set logscale xy
