@@ -63,6 +63,15 @@ stability() {
 	sh $charts/stability.sh $quick "$plgen" "$programs" "$folder"
 }
 
+structural() {
+	say 'time integrators of structural dynamics, a frame under a record'
+	sh $charts/frame.sh "$plgen" "$variants"
+	"$programs/integrators" $quick "$folder"
+	"$programs/frame" "$variants" "$folder"
+	draw integrators "$folder"
+	draw frame "$folder"
+}
+
 # ---- what does ----
 
 precision() {
@@ -96,7 +105,7 @@ limits() {
 }
 
 # A list with && would go on after a failure inside a function
-(energy; convergence; plmap) &
+(energy; convergence; plmap; structural) &
 first=$!
 (hard; stability) &
 second=$!

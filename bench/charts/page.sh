@@ -121,6 +121,7 @@ contents() {
 <a href="#energy">8 Energy and momentum in long runs</a>
 <a href="#hard">9 Where methods fail</a>
 <a href="#limits">10 How near to the machine</a>
+<a href="#structural">11 Time integrators of structural dynamics</a>
 <a href="#machine">Machine, compiler, command</a>
 </nav>
 EOT
@@ -240,6 +241,19 @@ limits() {
 	table limits.csv
 }
 
+structural() {
+	section structural '11 Time integrators of structural dynamics'
+	picture frame
+	table frame.csv
+	table frame_history.csv
+	table frame_record.csv
+	picture integrators
+	table integrators.csv
+	caption integrators_orders
+	table integrators_orders.csv
+	table integrators_check.csv
+}
+
 # Pictures and tables that no section has shown
 others() {
 	for file in "$folder"/*.svg "$folder"/*.csv; do
@@ -273,6 +287,7 @@ others() {
 	energy
 	hard
 	limits
+	structural
 	others
 	machine
 	echo '</html>'

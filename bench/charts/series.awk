@@ -67,6 +67,11 @@ BEGIN {
 	look("RK4",                              6, "#00602f", "2")
 	look("central difference",               4, "#309090", "2")
 	look("Newmark",                         12, "#207020", "2")
+	look("HHT",                              6, "#a08000", "2")
+	look("rho-Bathe",                       14, "#0060c0", "2")
+	look("Bathe",                           10, "#60a0e0", "2")
+	look("^CR",                              2, "#c04080", "2")
+	look("KR-alpha",                         1, "#8040a0", "2")
 	look("alpha",                            8, "#60a060", "2")
 	# adaptive: dotted
 	look("Dormand",                          4, "#0050c0", "3")
