@@ -47,7 +47,8 @@ static void check_fixed(struct problem *p, const struct method *const *methods)
 	const struct truth *truth = truth_of(p);
 	for (const struct method *const *m = methods; *m; m++) {
 		const int order = order_of(*m, p), parts = parts_for(order);
-		struct run *coarse = (*m)->open(*m, p, p->unit / parts), *fine = (*m)->open(*m, p, p->unit / (2 * parts));
+		struct run *coarse = (*m)->open(*m, p, p->unit / parts),
+			*fine = (*m)->open(*m, p, p->unit / (2 * parts));
 		check_order((*m)->name, p->name, order, error_at_ends(coarse, truth), error_at_ends(fine, truth));
 	}
 }
