@@ -72,6 +72,13 @@ structural() {
 	draw frame "$folder"
 }
 
+less() {
+	say 'what modelling less saves'
+	sh $charts/less.sh "$plgen" "$programs/less" "$variants"
+	"$programs/less" "$variants" "$folder"
+	draw less "$folder"
+}
+
 # ---- what does ----
 
 precision() {
@@ -107,7 +114,7 @@ limits() {
 # A list with && would go on after a failure inside a function
 (energy; convergence; plmap; structural) &
 first=$!
-(hard; stability) &
+(hard; stability; less) &
 second=$!
 wait $first
 wait $second

@@ -12,6 +12,7 @@
  * the record's step.
  */
 #include "amplification.h"
+#include "record.h"
 
 #include <dlfcn.h>
 #include <math.h>
@@ -20,44 +21,8 @@
 #include <string.h>
 
 typedef __float128 quad;
-enum { SAMPLES = 1001, STOREYS = 3, SIZE = 2 * STOREYS, ROOF = 2 };
-static const double sample_time = 0.02;
-
-/* ---- the record ---- */
-
-/* As recorders give it, in thousandths of a m/s^2: noise through a soil of 2.5 Hz with 60 % of critical damping (Kanai,
- * Tajimi), strong from 3 to 9 s. Sums and products alone, so it is the same everywhere. */
-static double noise(uint64_t *seed)
-{
-	double sum = -6;
-	for (int i = 0; i < 12; i++) {
-		*seed = *seed * 6364136223846793005u + 1442695040888963407u;
-		sum += (double)(*seed >> 40) / 16777216.0;
-	}
-	return sum;
-}
-
-static double strength(double t)
-{
-	return t < 3 ? t * t / 9 : t <= 9 ? 1 : 1 / (1 + (t - 9) * (t - 9) / 9);
-}
-
-static void record(double *sample)
-{
-	enum { PARTS = 4 };
-	const double w = 15.7, zeta = 0.6, h = sample_time / PARTS;
-	double x = 0, v = 0;
-	uint64_t seed = 1;
-	for (int k = 0; k < SAMPLES; k++) {
-		const double force = 3 * strength(k * sample_time) * noise(&seed);
-		for (int i = 0; i < PARTS; i++) {
-			v -= h * (2 * zeta * w * v + w * w * x - force);
-			x += h * v;
-		}
-		const double ground = k == 0 ? 0 : 2 * zeta * w * v + w * w * x;
-		sample[k] = floor(1000 * ground + 0.5) / 1000;
-	}
-}
+enum { SAMPLES = RECORD_SAMPLES, STOREYS = 3, SIZE = 2 * STOREYS, ROOF = 2 };
+static const double sample_time = RECORD_STEP;
 
 /* ---- the building ---- */
 
@@ -294,7 +259,7 @@ int main(int argc, char **argv)
 	void *handle = open_variant(argv[1], 1);
 	ask(&b, handle);
 	dlclose(handle);
-	record(b.sample);
+	record_of_quake(b.sample);
 	FILE *csv = table_open(argv[2], "frame_record.csv", "t_s,quake_m_per_s2");
 	for (int k = 0; k < SAMPLES; k++)
 		fprintf(csv, "%.2f,%g\n", k * sample_time, b.sample[k]);

@@ -122,6 +122,7 @@ contents() {
 <a href="#hard">9 Where methods fail</a>
 <a href="#limits">10 How near to the machine</a>
 <a href="#structural">11 Time integrators of structural dynamics</a>
+<a href="#less">12 Modelling less</a>
 <a href="#machine">Machine, compiler, command</a>
 </nav>
 EOT
@@ -254,6 +255,12 @@ structural() {
 	table integrators_check.csv
 }
 
+less() {
+	section less '12 Modelling less'
+	picture less
+	table less.csv
+}
+
 # Pictures and tables that no section has shown
 others() {
 	for file in "$folder"/*.svg "$folder"/*.csv; do
@@ -288,6 +295,7 @@ others() {
 	hard
 	limits
 	structural
+	less
 	others
 	machine
 	echo '</html>'

@@ -60,6 +60,12 @@ BEGIN {
 	look("^bm3",                             7, "#203080", "+5")
 	look("^taylor$",                         7, "#d000d0")
 	look("^taylor",                          9, "#8000a0", "+3")
+	# models with less in them
+	look("^modes, static rest, float",       5, "#b07000")
+	look("^modes, static rest",              7, "#d00000")
+	look("^modes$",                          9, "#f07000")
+	look("^balanced",                        8, "#0050c0", "3")
+	look("^elements",                        4, "#207020", "2")
 	# fixed steps: dashed
 	look("Euler",                            1, "#007040", "2")
 	look("explicit trapez",                  2, "#40a000", "2")

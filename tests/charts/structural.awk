@@ -44,7 +44,8 @@ file == 2 {
 	rows++
 }
 END {
-	result(checks == 187 && rows == 27 && seen == 15, "all of it", "checks " checks ", rows " rows ", compared " seen)
+	result(checks == 187 && rows == 27 && seen == 15, "all of it", "checks " checks ", rows " rows \
+		", compared " seen)
 	print "1.." count
 	exit bad
 }
