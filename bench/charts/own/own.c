@@ -65,7 +65,7 @@ static double own_ns(void)
 
 static bool read_refusal(struct line *line, const char *path)
 {
-	char name[4096];
+	char name[4200];
 	snprintf(name, sizeof name, "%s.refused", path);
 	FILE *f = fopen(name, "r");
 	if (!f)
