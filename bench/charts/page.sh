@@ -271,10 +271,10 @@ others() {
 	done >"$shown.others"
 	if [ -s "$shown.others" ]; then
 		section others 'More'
-		while read -r name; do
-			case $name in
-				*.svg) picture "${name%.svg}" ;;
-				*) caption "${name%.csv}"; table "$name" ;;
+		while read -r file; do
+			case $file in
+				*.svg) picture "${file%.svg}" ;;
+				*) caption "${file%.csv}"; table "$file" ;;
 			esac
 		done <"$shown.others"
 	fi
