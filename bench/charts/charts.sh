@@ -54,6 +54,19 @@ stability() {
 	sh $charts/stability.sh $quick "$plgen" "$programs" "$folder"
 }
 
+structural() {
+	say 'time integrators of structural dynamics, a frame under a record'
+	sh $charts/frame.sh "$plgen" "$variants"
+	"$programs/integrators" $quick "$folder"
+	"$programs/frame" "$variants" "$folder"
+}
+
+less() {
+	say 'what modelling less saves'
+	sh $charts/less.sh "$plgen" "$programs/less" "$variants"
+	"$programs/less" "$variants" "$folder"
+}
+
 # ---- what does ----
 
 precision() {
@@ -83,9 +96,9 @@ limits() {
 }
 
 # A list with && would go on after a failure inside a function
-(energy; convergence; plmap) &
+(energy; convergence; plmap; structural) &
 first=$!
-(hard; stability) &
+(hard; stability; less) &
 second=$!
 wait $first
 wait $second

@@ -55,7 +55,7 @@ diff "$work/break_even.csv" "$here/break_even/expect.csv" >"$log" 2>&1
 result $? "break-even of given times: as worked out by hand"
 awk -f "$csv" -f "$here/break_even/check.awk" "$out/break_even.csv" >"$log" 2>&1
 result $? "break_even.csv: like beside like, never where it never pays"
-for name in stability_check quality_check operator_check; do
+for name in stability_check quality_check operator_check integrators_check; do
     grep -v ',ok$' "$out/$name.csv" | sed 1d >"$log"
     [ ! -s "$log" ]
     result $? "$name.csv: what is known of the boundaries"
