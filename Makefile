@@ -9,7 +9,7 @@ CHECK_PACKAGES = $(DEMO_PACKAGES) g++ clang libcmocka-dev valgrind \
 	gcc-arm-none-eabi libnewlib-arm-none-eabi qemu-system-arm
 
 .PHONY: all setup deps demo-deps check-deps demo tests check check-long faults bench charts charts-quick \
-	firmware-report install clean
+	charts-page chart firmware-report install clean
 
 all: setup
 	ninja -C $(BUILD) plgen
@@ -90,6 +90,16 @@ bench: tests
 charts charts-quick: tests
 	ninja -C $(BUILD) charts
 	sh bench/charts/charts.sh $(BUILD) charts $(if $(findstring quick,$@),--quick)
+
+# Pictures and pages once more from tables that are there, by default those kept in doc/charts: nothing is measured
+charts-page: demo-deps
+	sh bench/charts/draw.sh $(or $(TABLES),doc/charts)
+
+# The same for a model of your own: make chart SPEC=my.spec [UNTIL=10] [EVERY=0.1], in seconds
+chart: demo-deps
+	$(call configure,test -f $(BUILD)/build.ninja)
+	@ninja -C $(BUILD) plgen >/dev/null
+	@sh bench/charts/own/own.sh $(BUILD)/plgen "$(SPEC)" charts/own "$(UNTIL)" "$(EVERY)"
 
 # Bytes, stack and instructions on emulated boards: doc/firmware.md
 firmware-report: tests

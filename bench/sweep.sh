@@ -22,15 +22,5 @@ const int sweep_count = $count;
 EOT
 gcc -O1 -Iruntime bench/sweep.c "$work/all.c" runtime/*.c -o "$work/sweep"
 "$work/sweep" >"$out/gear1_sweep.csv"
-gnuplot <<PLOT
-set terminal svg size 800,500 font 'sans,12' background 'white'
-set output '$out/gear1_sweep.svg'
-set xlabel 'frequency of the force, eta [rad/s]'
-set ylabel 'half the range of q'
-set title 'gear1, zeta 0.02, force 0.1 + 0.06 cos(eta t) (chosen), swept up and down'
-set grid
-set key top right
-plot '$out/gear1_sweep.csv' index 0 using 1:2 with linespoints pt 8 lc rgb '#c03020' title 'up', \
-     '' index 1 using 1:2 with linespoints pt 11 lc rgb '#2050a0' title 'down'
-PLOT
+gnuplot -c bench/charts/gear1_sweep.gp "$out" "$out"
 echo "$out/gear1_sweep.svg"

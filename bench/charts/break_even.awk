@@ -1,5 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# awk -f csv.awk -f break_even.awk generation.csv precision.csv: see generation.sh.
+# awk -f csv.awk -f break_even.awk generation.csv precision.csv: after how many steps generating pays.
+# break_even.csv: on each model, against each rival, from precision.csv: its cheapest setting whose largest
+# error is at most 1e-6, in float 1e-3 (ns per unit of output, median), ours in the same type likewise, and after how
+# many steps of ours the time to generate and compile is won back:
+#     steps = (generate + compile - 2 empty) / (rival's ns per step of ours - ours)
+# never: the rival is faster or, within the 10 % that times hold, as fast, or only the rival comes to that error; none:
+# no setting of the rival comes to it, so there is nothing to win back against.
 # The cheapest of them so far
 function offer(key) {
 	if (!(key in cheapest) || ns < cheapest[key]) { cheapest[key] = ns; setting[key] = row[column["setting"]];

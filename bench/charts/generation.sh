@@ -1,18 +1,11 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# generation.sh [--quick] BUILD FOLDER: what generating costs, and when it pays. Run at the top of the source tree,
+# generation.sh [--quick] BUILD FOLDER: what generating costs. Run at the top of the source tree,
 # after precision.
 #
 # FOLDER/generation.csv: for each model of FOLDER/precision.csv the time of plgen and of cc -O2 -c on what it wrote,
 # whole processes in turn with an empty one (bench/clock.c); minimum, median and maximum in milliseconds, as measured:
 # the empty one's stand beside them.
-#
-# FOLDER/break_even.csv: on each model, against each rival, from precision.csv: its cheapest setting whose largest
-# error is at most 1e-6, in float 1e-3 (ns per unit of output, median), ours in the same type likewise, and after how
-# many steps of ours the time to generate and compile is won back:
-#     steps = (generate + compile - 2 empty) / (rival's ns per step of ours - ours)
-# never: the rival is faster or, within the 10 % that times hold, as fast, or only the rival comes to that error; none:
-# no setting of the rival comes to it, so there is nothing to win back against.
 set -e
 runs=15
 if [ "$1" = --quick ]; then
@@ -46,6 +39,3 @@ while read -r model; do
 	compile=$(measure $compiler -O2 -Iruntime -c "$work/$model.c" -o "$work/$model.o")
 	echo "$model,$(wc -c <"$work/$model.c"),${generate%,*},$compile,$runs" >>"$folder/generation.csv"
 done <"$work/models"
-
-awk -f bench/charts/csv.awk -f bench/charts/break_even.awk "$folder/generation.csv" "$folder/precision.csv" \
-	>"$folder/break_even.csv"

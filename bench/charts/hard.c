@@ -347,8 +347,9 @@ static void try_peer(FILE *out, const struct hard_case *c, const struct problem 
 
 static void try_peers(FILE *out, const struct hard_case *c, const struct problem *p, const struct history *h)
 {
-	const struct method *const *const lists[] = { fixed_methods, adaptive_methods, propagator_methods };
-	for (int k = 0; k < 3; k++)
+	const struct method *const *const lists[] = { fixed_methods, structural_methods, adaptive_methods,
+	                                              propagator_methods };
+	for (int k = 0; k < 4; k++)
 		for (const struct method *const *m = lists[k]; *m; m++)
 			try_peer(out, c, p, h, *m);
 	try_peer(out, c, p, h, &residues_naive);

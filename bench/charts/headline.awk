@@ -1,43 +1,62 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# awk -f csv.awk -f headline.awk headline_integrators.csv: gnuplot for a chart with a row for each method: its median
-# time at each of the two errors, or the word that it does not get there; `rows` and `clauses`.
+# awk -v palette=palette.list -f csv.awk -f headline.awk headline_integrators.csv: gnuplot for a chart with a row for
+# each method, the quickest first: its median time at each of the two errors, or the word that it does not get there;
+# `rows` and `clauses`.
+function place_of(k,    i, n) {
+	for (i = 1; i <= rows; i++)
+		if (cost[i] < cost[k] || (cost[i] == cost[k] && i < k)) n++
+	return n + 1
+}
+BEGIN {
+	while ((getline line < palette) > 0)
+		if (split(line, part, " ") > 1) colour[part[1]] = part[2]
+}
 NR == 1 { read_head($0, column); next }
 {
 	split_row($0, f)
 	name = f[column["method"]]
-	if (!(name in place)) { place[name] = ++rows; tics = tics (rows > 1 ? ", " : "") "'" name "' " rows }
-	family = f[column["family"]] == "ours" ? "ours" : f[column["family"]] == "propagator" ? "matrix" : "peer"
+	if (!(name in place)) { place[name] = ++rows; method[rows] = name; cost[rows] = 1e300 }
+	k = place[name]
+	family[k] = f[column["family"]] == "ours" ? "ours" : f[column["family"]] == "propagator" ? "matrix" : "peer"
 	which = (f[column["target"]] + 0 < 1e-10 ? "fine" : "coarse")
-	y = place[name] + (which == "fine" ? 0.17 : -0.17)
-	if (f[column["reached"]] == "reached")
-		block[which "_" family] = block[which "_" family] f[column["ns_median"]] "," y "\n"
-	else {
-		least = f[column["error"]] == "failed" ? "failed" : "not reached: " sprintf("%.2g",
-			f[column["error"]]) " at best"
+	if (f[column["reached"]] == "reached") {
+		time[k, which] = f[column["ns_median"]] + 0
+		if (which == "coarse" || cost[k] == 1e300)
+			cost[k] = time[k, which] * (which == "coarse" ? 1 : 1e9)
+	} else {
+		why[k, which] = f[column["error"]] == "failed" ? "failed" : \
+			sprintf("%.2g at best", f[column["error"]])
 		if (f[column["parts_estimated"]] != "none")
-			least = "not reached: would take some " sprintf("%d",
-			f[column["parts_estimated"]]) " steps per output"
-		words = words "set label " (100 + ++labels) " '" (which == "fine" ? "10^{-12}" : "10^{-9}") " " \
-			least "' at first 1.3," y " left font ',8' textcolor rgb '#707070'\n"
+			why[k, which] = sprintf("would take %d steps", f[column["parts_estimated"]])
 	}
 }
 END {
-	split("coarse_ours fine_ours coarse_matrix fine_matrix coarse_peer fine_peer", name_of, " ")
-	title["coarse_ours"] = "plgen, error 10^{-9}"; title["fine_ours"] = "plgen, error 10^{-12}"
-	title["coarse_matrix"] = "matrix of a step, error 10^{-9}"
-	title["fine_matrix"] = "matrix of a step, error 10^{-12}"
-	title["coarse_peer"] = "integrator, error 10^{-9}"; title["fine_peer"] = "integrator, error 10^{-12}"
-	look["coarse_ours"] = "pt 9 ps 1.3 lw 1.4 lc rgb '#d00000'";
-	look["fine_ours"] = "pt 7 ps 1.3 lw 1.4 lc rgb '#a00000'"
-	look["coarse_matrix"] = "pt 8 ps 1.2 lw 1.4 lc rgb '#007040'"
-	look["fine_matrix"] = "pt 6 ps 1.2 lw 1.4 lc rgb '#00402a'"
-	look["coarse_peer"] = "pt 8 ps 1.2 lw 1.4 lc rgb '#0050c0'";
-	look["fine_peer"] = "pt 6 ps 1.2 lw 1.4 lc rgb '#303030'"
-	for (i = 1; i <= 6; i++) {
+	split("coarse fine", targets, " ")
+	for (k = 1; k <= rows; k++) {
+		at = place_of(k)
+		tics = tics (k > 1 ? ", " : "") "\"" method[k] "\" " at
+		for (i = 1; i <= 2; i++) {
+			which = targets[i]
+			y = at + (i == 2 ? 0.19 : -0.19)
+			if ((k, which) in time)
+				block[which "_" family[k]] = block[which "_" family[k]] time[k, which] "," y "\n"
+			else if ((k, which) in why)
+				words = words "set label " ++labels " '" (i == 2 ? "1e-12: " : "1e-9: ") why[k, which] \
+					"' at first 1.3," y " left font ',9' textcolor rgb '#505050'\n"
+		}
+	}
+	n = split("coarse_ours fine_ours coarse_matrix fine_matrix coarse_peer fine_peer", name_of, " ")
+	of["ours"] = "exact"; of["matrix"] = "matrix"; of["peer"] = "adaptive"
+	who["ours"] = "plgen"; who["matrix"] = "matrix of a step"; who["peer"] = "integrator"
+	for (i = 1; i <= n; i++) {
 		b = name_of[i]
 		if (block[b] == "") continue
+		split(b, part, "_")
+		coarse = part[1] == "coarse"
 		printf "$%s << EOD\n%sEOD\n", b, block[b]
-		text = text (text == "" ? "" : ", ") "$" b " using 1:2 with points " look[b] " title '" title[b] "'"
+		text = text (text == "" ? "" : ", ") "$" b " using 1:2 with points pt " \
+			(part[2] == "ours" ? (coarse ? 5 : 7) : coarse ? 8 : 6) " ps 1.1 lw 1.6 lc rgb '" \
+			colour[of[part[2]]] "' title '" who[part[2]] ", error " (coarse ? "10^{-9}" : "10^{-12}") "'"
 	}
-	printf "%sset ytics (%s)\nrows = %d\nclauses = \"%s\"\n", words, tics, rows, text
+	printf "%stics = '%s'\nrows = %d\nclauses = \"%s\"\n", words, tics, rows, text
 }

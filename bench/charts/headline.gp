@@ -1,81 +1,84 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# gnuplot -c headline.gp TABLES OUTDIR: the pictures of headline_integrators.csv, headline_equal_step.csv,
-# headline_confluence.csv.
-here = system("dirname '".ARG0."'"); folder = ARG1; out = ARG2
-size = '900,940'
-load here.'/style.gp'
-small(n, y, text) = sprintf("set label %d \"%s\" at screen 0.01,%g left font ',8' textcolor rgb '#505050'", n, text, y)
-flags = "gcc -O2 for all, no -march=native, no -ffast-math. Medians of whole histories taken in turns."
-chosen = "Layout deduced, parameters chosen: the source's did not survive."
+# headline_integrators.csv, headline_equal_step.csv, headline_confluence.csv
+here = system("dirname '".ARG0."'"); folder = ARG1; out = ARG2; narrow = ARG3 eq 'narrow'
 
 # ---- each integrator at the setting that reaches an error ----
 csv = folder.'/headline_integrators.csv'
-load "< awk -f '".here."/csv.awk' -f '".here."/headline.awk' '".csv."'"
+count = int(system("awk -F'\"' 'NR > 1 && !seen[$2]++ { n++ } END { print n }' '".csv."'"))
+size = sprintf('%d,%d', narrow ? 400 : 900, 130 + (narrow ? 70 : 0) + 25*count)
+load here.'/style.gp'
+load "< awk -v palette='".here."/palette.list' -f '".here."/csv.awk' -f '".here."/headline.awk' '".csv."'"
 name = 'headline_integrators'
-set title "scs, 1000 s, output every 0.01 s: time for an output at equal error"
 set xlabel 'CPU time per output [ns]'
-unset ylabel
 unset logscale y
 set format y '%s'
-set yrange [0.3:rows + 0.7] reverse
+set yrange [rows + 0.6:0.4]
 set xrange [1:1e5]
+eval "set ytics (".tics.") font ',".(narrow ? 9 : 11)."' noenhanced"
 set grid noytics
-set lmargin 25
-set key inside top right box lc rgb '#c0c0c0' opaque spacing 1.2
-eval small(1, 0.012, chosen." ".flags)
-eval small(2, 0.035, "Largest error over the history, relative to the largest value. Beside a method that does not ".\
-	"get there: the least error found, or what it would take by its order.")
+set lmargin (narrow ? 20 : 25)
+if (!narrow) { set key inside top right }
+eval heading
 eval "plot ".clauses
 eval write
-unset label
-set key default
-size = '1000,600'
-load here.'/style.gp'
-unset lmargin
-set xrange [*:*]
-set yrange [*:*] noreverse
-set grid xtics ytics
-set ytics autofreq
+unset label; unset lmargin
 
 # ---- at equal step ----
 csv = folder.'/headline_equal_step.csv'
-set title "scs at equal step, 0.01 s: time and drift of the energy"
-set xlabel 'CPU time per step with its output [ns], median'
-set ylabel 'relative change of the energy after '.system("awk -F, '$1 == \"\\\"exact\\\"\" { print $7 }' ".\
-	"'".csv."'").' steps'
-set xrange [1:100]
-set yrange [1e-16:1]
-eval small(1, 0.012, chosen." ".flags)
-eval small(2, 0.05, "Filled: plgen's. Open: a precomputed matrix exponential, and modal superposition.")
-name = 'headline_drift'
-load series(csv, "-v x=ns_median -v y=energy_drift_long -v abs=1 -v with=points")
-eval "plot ".clauses
-eval write
-set title "scs at equal step, 0.01 s: time and error over the history"
-set ylabel 'largest error over the history, relative to the largest value'
+load "< awk -v palette='".here."/palette.list' -f '".here."/csv.awk' -f '".here."/equal_step.awk' '".csv."'"
+size = sprintf('%d,%d', narrow ? 400 : 900, 150 + 26*rows)
 name = 'headline_equal_step'
-load series(csv, "-v x=ns_median -v y=error -v with=points")
-eval "plot ".clauses
-eval write
+found = finding(name, size)
+top = 1 - (34.0 + 17*lines_of(found))/(150 + 26*rows)
+panels = narrow ? 2 : 3
+first = narrow ? 0.37 : 0.245
+wide = (1 - first)/panels
+array axis = ['time of a step [ns]', 'largest error', 'drift of the energy']
+load here.'/style.gp'
+do for [form = 1:forms] {
+	eval begin(form)
+	set multiplot
+	unset key
+	unset logscale y
+	set grid xtics ytics
+	do for [k = 1:panels] {
+		set lmargin screen first + wide*(k - 1)
+		set rmargin screen first + wide*k - 0.025
+		set tmargin screen top
+		set bmargin screen 70.0/(150 + 26*rows)
+		unset label
+		set yrange [rows + 0.6:0.4]
+		set xlabel axis[k] font ',11'
+		if (k == 1) {
+			eval found_label
+			eval "set ytics (".tics.") font ',".(narrow ? 9 : 11)."' noenhanced"
+			unset logscale x; set format x '%g'
+			set xrange [0:*]; set xtics autofreq font ',10'
+			if (narrow) { set xtics 0,10 }
+		} else {
+			eval "set ytics (".blank.")"
+			set logscale x; set format x '10^{%T}'
+			set xrange [(k == 2 ? 1e-16 : 1e-15):(k == 2 ? 1e-3 : 1)]
+			set xtics 1e-14,(narrow ? 1e6 : 1e4),1 font ',10'
+		}
+		eval 'plot '.panel(k)
+	}
+	unset multiplot
+	unset output
+}
+reset
 
 # ---- where frequencies nearly meet ----
 csv = folder.'/headline_confluence.csv'
+size = narrow ? '400,560' : '900,560'
+load here.'/style.gp'
 set xlabel 'relative gap between the two frequencies'
-set ylabel 'largest error over 100 s, relative to the largest value'
+set ylabel 'largest error over 100 s, relative'
 set xrange [3e-4:3e-13] reverse
 set yrange [1e-17:10]
 set xtics ('10^{-4}' 1e-4, '10^{-6}' 1e-6, '10^{-8}' 1e-8, '10^{-10}' 1e-10, '0' 1e-12)
-set title "One mass drives the next and feels nothing of it: the two modes become one"
-eval small(1, 0.02, "Frequencies 10 and 10 (1 + gap) rad/s, step 0.01 s (chosen). At gap 0 the matrix is defective: ".\
-	"it has no second mode.")
 name = 'headline_confluence'
-load series(csv, "-v where=case=one-way -v x=gap -v y=error -v xzero=1e-12")
-eval "plot ".clauses
-eval write
-set title "scs, its coupling spring nearly gone: two frequencies meet, the modes stay apart"
-eval small(1, 0.02, "k2 = 100 gap N/m, k1 = k3 = 100 N/m, step 0.01 s (chosen). At gap 0 the masses no longer feel ".\
-	"each other.")
-name = 'headline_twins'
-load series(csv, "-v where=case=twins -v x=gap -v y=error -v xzero=1e-12")
+eval heading
+load series(csv, "-v where=case=one-way -v x=gap -v y=error -v xzero=1e-12 -v most=10 -v rank=last")
 eval "plot ".clauses
 eval write

@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# headline.sh PLGEN HEADLINE OUTDIR [--quick]: the variants, the tables OUTDIR/headline_*.csv and their pictures.
+# headline.sh PLGEN HEADLINE OUTDIR [--quick]: the variants, the tables OUTDIR/headline_*.csv.
 # Run at the top of the source tree.
 set -e
 plgen=$1 program=$2 out=$3
@@ -11,4 +11,3 @@ mkdir -p "$variants"
 	xargs -P2 -L1 sh -c 'plgen=$1 folder=$2 file=$3; shift 3
 		exec sh bench/charts/variant.sh "$plgen" "$folder/$file" "$@"' make "$plgen" "$variants"
 "$program" "$@" "$variants" "$out"
-gnuplot -c bench/charts/headline.gp "$out" "$out"

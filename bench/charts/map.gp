@@ -3,9 +3,6 @@
 # log10. `bounds`: ten of them, between the classes.
 cells(file, name, options) = "< awk -F, -v name='".name."' -v bounds='".bounds."' ".options." -f ".\
 	"'".here."/cells.awk' '".file."'"
-svg_of_map = "set terminal svg size 900,660 dynamic enhanced font 'DejaVu Sans,Helvetica,sans-serif,12' background ".\
-	"rgb 'white'"
-png_of_map = "set terminal pngcairo size 900,660 enhanced font 'DejaVu Sans,10' background rgb 'white'"
 set style fill solid 1 noborder
 set key off
 set palette defined (-0.5 '#08306b', 0.5 '#08306b', 0.5 '#2f79b5', 1.5 '#2f79b5', 1.5 '#73b2d8', 2.5 '#73b2d8', 2.5 \
@@ -20,4 +17,4 @@ panels = "unset logscale; set format '%g'; unset grid; unset colorbox; unset lab
 	set xtics font ',9' out nomirror; set ytics font ',9' out nomirror; set ylabel font ',9' offset 1.6,0; set \
 	xlabel font ',9' offset 0,0.9"
 legend_only = "unset title; unset border; unset xtics; unset ytics; unset xlabel; unset ylabel; unset label; set ".\
-	"cbtics font ',9'; set cblabel font ',9' offset 0,0.6"
+	"cbtics font ',9' textcolor rgb '#202020'; set cblabel font ',10' offset 0,0.6 textcolor rgb '#202020'"

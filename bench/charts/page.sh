@@ -1,28 +1,30 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# page.sh BUILD FOLDER COMMAND: FOLDER/index.html from the pictures and tables that charts.sh has made there. Run at
-# the top of the source tree. A picture is followed by its caption (captions/NAME.txt, or that of the longest beginning
-# of NAME that has one) and its numbers. What lies in FOLDER and is named nowhere here comes at the end, so that
-# nothing is left out.
+# page.sh FOLDER: FOLDER/index.html, a page for each model and one for each topic, from the pictures and tables there.
+# Run at the top of the source tree. A picture stands beside its caption (captions/NAME.txt, or that of the longest
+# beginning of NAME that has one). What is not there is left out; what lies in FOLDER and is named nowhere here comes on
+# the page more.html, so that nothing is lost.
 set -e
-build=$1 folder=$2 command=$3
+folder=$1
 charts=bench/charts
-page=$folder/index.html
 shown=$(mktemp)
 trap 'rm -f "$shown"' EXIT
+stories='headline_integrators headline_equal_step energy_double hard less'
 
-section() {
-	printf '<h2 id="%s">%s</h2>\n' "$1" "$2"
+escaped() {
+	sed 's/&/\&amp;/g; s/</\&lt;/g; s/"/\&quot;/g'
 }
 
-# caption NAME
-caption() {
+there() {
+	[ -f "$folder/$1" ]
+}
+
+# text_of NAME: its caption
+text_of() {
 	name=$1
 	while [ -n "$name" ]; do
 		if [ -f "$charts/captions/$name.txt" ]; then
-			printf '<p class="caption">'
-			sed 's/&/\&amp;/g; s/</\&lt;/g; s/>/\&gt;/g' "$charts/captions/$name.txt"
-			printf '</p>\n'
+			escaped <"$charts/captions/$name.txt"
 			return
 		fi
 		case $name in
@@ -32,165 +34,91 @@ caption() {
 	done
 }
 
-# picture NAME
-picture() {
-	[ -f "$folder/$1.svg" ] || { printf '<p class="bad">The picture %s is missing.</p>\n' "$1"; return; }
-	echo "$1.svg" >>"$shown"
-	printf '<figure id="%s"><a href="%s.svg"><img src="%s.svg" alt="%s" loading="lazy"></a>\n' "$1" "$1" "$1" "$1"
-	[ ! -f "$folder/$1.png" ] || printf '<div class="as"><a href="%s.png">PNG</a></div>\n' "$1"
-	echo '</figure>'
-	caption "$1"
+# caption NAME: as a paragraph
+caption() {
+	text=$(text_of "$1")
+	[ -z "$text" ] || printf '<p>%s</p>\n' "$text"
 }
 
-# table FILE.csv [COLUMN=VALUE]
+# picture NAME: nothing where there is none; for whom it is read aloud, what it found
+picture() {
+	there "$1.svg" || return 0
+	echo "$1.svg" >>"$shown"
+	text=$(text_of "$1")
+	found=$(sh $charts/finding.sh "$1" "$folder" | escaped)
+	[ -n "$found" ] || found=$(printf '%s' "$text" | tr '\n' ' ' | sed 's/\. .*/./')
+	size=$(sed -n '/viewBox/{s/.*="0 0 \([0-9]*\) \([0-9]*\)".*/width="\1" height="\2"/p;q;}' "$folder/$1.svg")
+	fits=
+	if there "${1}_narrow.svg"; then
+		fits=' fits'
+		echo "${1}_narrow.svg" >>"$shown"
+	fi
+	printf '<figure id="%s"><div class="figure%s"><a href="%s.svg"><picture>' "$1" "$fits" "$1"
+	[ -z "$fits" ] || printf '<source media="(max-width: 640px)" srcset="%s_narrow.svg">' "$1"
+	printf '<img src="%s.svg" %s alt="%s" loading="lazy"></picture></a></div>\n' "$1" "$size" "${found:-$1}"
+	printf '<figcaption>%s</figcaption></figure>\n' "${text:-$found}"
+}
+
+# table FILE.csv [COLUMN=VALUE]: nothing where there is none
 table() {
-	[ -f "$folder/$1" ] || { printf '<p class="bad">The table %s is missing.</p>\n' "$1"; return; }
+	there "$1" || return 0
 	echo "$1" >>"$shown"
 	awk -v name="$1" -v where="$2" -f $charts/csv.awk -f $charts/table.awk "$folder/$1"
 }
 
-row() {
-	printf '<tr><th>%s</th><td>%s</td></tr>\n' "$1" "$2"
+# rows FILE.csv COLUMN VALUE HEADING: the table of those rows, if there are any
+rows() {
+	there "$1" || return 0
+	awk -v column="$2" -v value="$3" -f $charts/csv.awk -f $charts/rows_of.awk "$folder/$1" || return 0
+	printf '<h2>%s</h2>\n' "$4"
+	caption "${1%.csv}"
+	table "$1" "$2=$3"
 }
 
-head_of_page() {
-	cat <<'EOT'
-<!DOCTYPE html>
-<html lang="en">
-<meta charset="utf-8">
-<meta name="viewport" content="width=device-width, initial-scale=1">
-<title>plgen: speed against accuracy, and stability where methods fail</title>
-<style>
-body { font: 16px/1.5 system-ui, sans-serif; color: #222; background: #fff; max-width: 1100px; margin: 0 auto;
-	padding: 1rem 1.5rem 4rem; }
-h1 { font-size: 1.7rem; line-height: 1.2; }
-h2 { margin-top: 3rem; border-bottom: 2px solid #d00000; padding-bottom: .2rem; } h3 { margin: 2rem 0 0; }
-figure { margin: 1rem 0 0; } img { width: 100%; max-width: 900px; height: auto; border: 1px solid #ddd; }
-.as, .numbers { font-size: .8rem; margin: 0; } .caption { max-width: 900px; margin: .3rem 0 .6rem; }
-.wide { overflow-x: auto; max-height: 34rem; overflow-y: auto; margin: .3rem 0 1rem; }
-table { border-collapse: collapse; font-size: .78rem; font-variant-numeric: tabular-nums; }
-th, td { border: 1px solid #ddd; padding: .12rem .4rem; text-align: left; vertical-align: top; max-width: 26rem; }
-th { background: #f4f4f4; } .n { text-align: right; } .bad { color: #c00000; font-weight: 600; }
-.poor { color: #a05a00; } .none { color: #888; }
-.machine td, .machine th { font-size: .85rem; } .hard td, .hard th { white-space: normal; }
-.ours th:first-child { color: #c00000; }
-details { margin: .3rem 0 1rem; } summary { cursor: pointer; font-size: .85rem; }
-nav { columns: 2; font-size: .95rem; } nav a { display: block; }
-code { font-size: .9em; background: #f4f4f4; padding: 0 .2em; }
-</style>
-<h1>plgen: speed against accuracy, and stability where methods fail</h1>
-EOT
+# head_of TITLE
+head_of() {
+	cat <<-EOT
+	<!DOCTYPE html>
+	<html lang="en">
+	<meta charset="utf-8">
+	<meta name="viewport" content="width=device-width, initial-scale=1">
+	<title>$1</title>
+	<link rel="stylesheet" href="style.css">
+	<h1>$1</h1>
+	EOT
 }
 
-machine() {
-	section machine 'Measured on'
-	echo '<table class="machine">'
-	row processor "$(sed -n 's/^model name[^:]*: *//p' /proc/cpuinfo | sed -n 1p), $(nproc) cores"
-	row system "$(uname -s) $(uname -r | sed 's/-.*//') $(uname -m)$(
-		sed -n 's/^PRETTY_NAME="\(.*\)"/, \1/p' /etc/os-release 2>/dev/null)"
-	row compiler "$(${CC:-cc} --version | sed -n 1p)"
-	row flags '<code>-O2</code> for all, generated code and peers alike; '\
-'no <code>-march=native</code>, no <code>-ffast-math</code>'
-	sundials=$(awk '$2 == "SUNDIALS_VERSION" { gsub(/"/, "", $3); print $3 }' \
-		/usr/include/sundials/sundials_config.h 2>/dev/null)
-	row libraries "GSL $(gsl-config --version 2>/dev/null), SUNDIALS $sundials, $(gnuplot --version)"
-	row plgen "$("$build/plgen" --version)"
-	row command "<code>$command</code>"
-	echo '</table>'
-	cat <<'EOT'
-<p>plgen's own code has filled marks and thick lines; peers have open marks and thin lines, dashed with a fixed step,
-dotted where they adapt it, dash-dotted for matrices of a step. Errors are relative to the largest value of the history;
-they are the same to the last digit in every run. Times are medians of samples taken in turns, each of them a whole
-history; the tables have minimum, median and maximum. A failure stands as a
-<span class="bad">word</span>, in no place as a gap.</p>
-<p>Parameters of the models from the four papers are chosen, since those of the sources did not survive; what is deduced
-and what is chosen is said in each model's file.</p>
-EOT
+# The topics: their pages, for what they have. A topic is a function that prints its pictures and tables.
+topics='stability structural energy papers convergence limits'
+
+title_of() {
+	case $1 in
+		stability) echo 'Stability, quality, and where methods fail' ;;
+		structural) echo 'Time integrators of structural dynamics' ;;
+		energy) echo 'Energy and momentum in long runs' ;;
+		papers) echo 'What the papers found, and what is measured' ;;
+		convergence) echo 'Convergence, and where frequencies meet' ;;
+		limits) echo 'What generating costs, how near to the machine, how times agree' ;;
+		more) echo 'More' ;;
+	esac
 }
 
-contents() {
-	cat <<'EOT'
-<nav>
-<a href="#headline">1 Two comparisons first</a>
-<a href="#precision">2 Work and precision</a>
-<a href="#generation">3 What generating costs</a>
-<a href="#convergence">4 Convergence</a>
-<a href="#papers">5 What the papers found</a>
-<a href="#plmap">6 pl against RK4</a>
-<a href="#stability">7 Stability and quality</a>
-<a href="#energy">8 Energy and momentum in long runs</a>
-<a href="#hard">9 Where methods fail</a>
-<a href="#limits">10 How near to the machine</a>
-<a href="#machine">Machine, compiler, command</a>
-</nav>
-EOT
-}
-
-headline() {
-	section headline '1 Two comparisons first'
-	picture headline_integrators
-	table headline_integrators.csv
-	picture headline_equal_step
-	picture headline_drift
-	table headline_equal_step.csv
-	picture headline_confluence
-	picture headline_twins
-	table headline_confluence.csv
-}
-
-precision() {
-	section precision '2 Work and precision'
-	echo '<p class="caption">For each model the largest error over its whole history against the time for a unit'
-	echo 'of output, and against evaluations of the right-hand side. Models that are not linear come first.</p>'
-	awk -F, 'NR > 1 && !seen[$1]++ { print $1 }' "$folder/precision.csv" | while read -r model; do
-		printf '<h3 id="model_%s">%s</h3>\n' "$model" "$model"
-		picture "precision_$model"
-		picture "evaluations_$model"
-		table precision.csv "model=$model"
-	done
-	echo '<h3>How times agree</h3>'
-	caption precision_check
-	table precision_check.csv
-}
-
-generation() {
-	section generation '3 What generating costs'
-	picture break_even
-	table break_even.csv
-	caption generation
-	table generation.csv
-}
-
-convergence() {
-	section convergence '4 Convergence'
-	for system in scs sdcs sdcsf; do
-		picture convergence_$system
-		table convergence.csv system=$system
-	done
-	table convergence_orders.csv
-}
-
-papers() {
-	section papers '5 What the papers found, and what is measured'
-	picture papers_times
-	table papers_times.csv
-	for source in 000 001 002 004; do
-		caption papers_$source
-		table papers_$source.csv
-	done
-	picture papers_beam_tip
-	table papers_beam_tip.csv
-}
-
-plmap() {
-	section plmap '6 The Piecewise-Laplace method with its coupling held, against RK4'
-	picture plmap
-	table plmap.csv
-	table plmap_check.csv
+short_title_of() {
+	case $1 in
+		stability) echo 'Stability and failures' ;;
+		structural) echo 'Structural dynamics' ;;
+		energy) echo 'Energy' ;;
+		papers) echo 'The papers' ;;
+		convergence) echo 'Convergence' ;;
+		limits) echo 'Generating, machine, clocks' ;;
+		more) echo 'More' ;;
+	esac
 }
 
 stability() {
-	section stability '7 Stability and quality'
+	picture hard
+	there hard.csv && caption hard_table && awk -f $charts/csv.awk -f $charts/hard_table.awk "$folder/hard.csv"
+	table hard.csv
 	picture stability_map
 	table stability_map.csv
 	table stability_boundary.csv
@@ -205,12 +133,23 @@ stability() {
 	picture pl_map
 	table pl_map.csv
 	table operator_check.csv
-	caption largest_step
+	there largest_step.csv && printf '<h2>The largest stable step</h2>\n' && caption largest_step
 	table largest_step.csv
 }
 
+structural() {
+	picture frame
+	table frame.csv
+	table frame_history.csv
+	table frame_record.csv
+	picture integrators
+	table integrators.csv
+	there integrators_orders.csv && caption integrators_orders
+	table integrators_orders.csv
+	table integrators_check.csv
+}
+
 energy() {
-	section energy '8 Energy and momentum in long runs'
 	picture energy_double
 	table energy.csv 'case=undamped;real=double'
 	picture energy_float
@@ -218,62 +157,169 @@ energy() {
 	picture energy_float_short
 	table energy.csv 'case=undamped;real=float;step_s=0.0001'
 	picture momentum_double
-	table energy.csv 'case=moving;real=double'
-	table energy.csv 'case=resting;real=double'
-	picture momentum_float
-	table energy.csv 'case=moving;real=float'
-	table energy.csv 'case=resting;real=float'
-	caption decay
+	table energy.csv 'case=moving'
+	table energy.csv 'case=resting'
+	there decay.csv && printf '<h2>Light damping</h2>\n' && caption decay
 	table decay.csv
 }
 
-hard() {
-	section hard '9 Where methods fail'
-	caption hard
-	awk -f $charts/csv.awk -f $charts/hard_table.awk "$folder/hard.csv"
-	table hard.csv
+papers() {
+	for source in 000 001 002 004; do
+		there papers_$source.csv || continue
+		printf '<h2>Source %s</h2>\n' "$source"
+		caption papers_$source
+		table papers_$source.csv
+		case $source in
+			000)
+				picture papers_times
+				table papers_times.csv
+				picture plmap
+				table plmap.csv
+				table plmap_check.csv ;;
+			004)
+				picture papers_beam_tip
+				table papers_beam_tip.csv ;;
+		esac
+	done
+}
+
+convergence() {
+	for file in "$folder"/convergence_*.svg; do
+		[ -f "$file" ] || continue
+		system=$(basename "$file" .svg)
+		picture "$system"
+		table convergence.csv "system=${system#convergence_}"
+	done
+	table convergence_orders.csv
+	picture headline_confluence
+	table headline_confluence.csv
 }
 
 limits() {
-	section limits '10 How near to the machine'
+	picture break_even
+	table break_even.csv
+	there generation.csv && caption generation
+	table generation.csv
 	picture limits
 	table limits.csv
+	there precision_check.csv && printf '<h2>How times agree</h2>\n' && caption precision_check
+	table precision_check.csv
 }
 
-# Pictures and tables that no section has shown
-others() {
+# What no page has shown
+more() {
 	for file in "$folder"/*.svg "$folder"/*.csv; do
 		name=$(basename "$file")
 		if [ -f "$file" ] && ! grep -qxF "$name" "$shown"; then
-			echo "$name"
-		fi
-	done >"$shown.others"
-	if [ -s "$shown.others" ]; then
-		section others 'More'
-		while read -r name; do
 			case $name in
+				*_narrow.svg) ;;
 				*.svg) picture "${name%.svg}" ;;
 				*) caption "${name%.csv}"; table "$name" ;;
 			esac
-		done <"$shown.others"
-	fi
-	rm -f "$shown.others"
+		fi
+	done
 }
 
-{
-	head_of_page
-	contents
-	headline
-	precision
-	generation
-	convergence
-	papers
-	plmap
-	stability
-	energy
-	hard
-	limits
-	others
-	machine
+links() {
+	echo '<nav>'
+	[ "$1" = index ] || echo '<a href="index.html">All models</a>'
+	for other in $topics more; do
+		[ "$other" = "$1" ] || [ ! -f "$folder/$other.html" ] ||
+			printf '<a href="%s.html">%s</a>\n' "$other" "$(short_title_of "$other")"
+	done
+	echo '</nav>'
+}
+
+# model NAME: its page
+model() {
+	head_of "$1: time against error"
+	links model
+	about=$(sed -n "s/^$1	//p" $charts/models.list | escaped)
+	printf '<p>%s The model: <code>models/%s.spec</code>; %s s, an output every %s s.</p>\n' "$about" "$1" \
+		"$(of_model "$1" history_s)" "$(of_model "$1" unit_s)"
+	awk -v only="$1" -f $charts/csv.awk -f $charts/words.awk -f $charts/matrix_html.awk "$folder/matrix.csv"
+	picture "precision_$1"
+	for file in "$folder/$1"_*.svg; do
+		name=$(basename "$file" .svg)
+		case $name in
+			*_narrow | "$1_*") ;;
+			*)
+				picture "$name"
+				there "$name.csv" && echo "$name.csv" >>"$shown" &&
+					printf '<p class=numbers><a href="%s.csv">%s.csv</a></p>\n' "$name" "$name" ;;
+		esac
+	done
+	printf '<h2>Every method at its cheapest setting</h2>\n<p>Time of an output.</p>\n'
+	awk -v model="$1" -f $charts/csv.awk -f $charts/words.awk -f $charts/ranking.awk "$folder/precision.csv"
+	rows break_even.csv model "$1" 'After how many steps generating pays'
+	rows largest_step.csv model "$1" 'The largest stable step'
+	printf '<h2>All settings</h2>\n'
+	table precision.csv "model=$1"
 	echo '</html>'
-} >"$page"
+}
+
+# of_model NAME COLUMN: what its first row in precision.csv has there
+of_model() {
+	awk -v model="$1" -v wanted="$2" -f $charts/csv.awk -f $charts/value.awk "$folder/precision.csv"
+}
+
+index() {
+	head_of 'plgen: the cheapest way to a wanted error, and where methods fail'
+	links index
+	if there matrix.csv; then
+		awk -f $charts/csv.awk -f $charts/verdict.awk "$folder/matrix.csv"
+		awk -f $charts/csv.awk -f $charts/words.awk -f $charts/matrix_html.awk "$folder/matrix.csv"
+		echo matrix.csv >>"$shown"
+		echo '<p class=numbers>Numbers: <a href="matrix.csv">matrix.csv</a></p>'
+	fi
+	for name in $stories; do
+		picture "$name"
+		case $name in
+			hard | energy_*) ;;                     # their pages have the tables
+			*)
+				! there "$name.csv" || printf '<details><summary>Table</summary>'
+				table "$name.csv"
+				! there "$name.csv" || echo '</details>' ;;
+		esac
+	done
+	if there machine.csv; then
+		echo '<h2 id="machine">Measured on</h2>'
+		table machine.csv
+	fi
+	cat <<-'EOT'
+	<p>plgen's own code has filled marks and unbroken lines; peers have open marks and thin lines, dashed with a
+	fixed step, dotted where they adapt it, dash-dotted for matrices of a step. Errors are relative to the largest
+	value of the history; they are the same to the last digit in every run. Times are medians of samples taken in
+	turns, each of them a whole history; the tables have minimum, median and maximum. A failure stands as a word, in
+	no place as a gap. Parameters of the models from the four papers are chosen, since those of the sources did not
+	survive; what is deduced and what is chosen is said in each model's file.</p>
+	EOT
+	echo '</html>'
+}
+
+rm -f "$folder"/*.html
+cp $charts/style.css "$folder"
+# Which topics have something, so that each page links to them; then the pages
+for topic in $topics; do
+	[ -z "$($topic)" ] || : >"$folder/$topic.html"
+done
+if there precision.csv; then
+	models=$(awk -F, 'NR > 1 && !seen[$1]++ { print $1 }' "$folder/precision.csv")
+	for name in $models; do
+		model "$name" >"$folder/model_$name.html"
+	done
+fi
+index >"$folder/index.html.new"
+rest=$(more)
+[ -z "$rest" ] || : >"$folder/more.html"
+for topic in $topics more; do
+	[ -f "$folder/$topic.html" ] || continue
+	{
+		head_of "$(title_of "$topic")"
+		links "$topic"
+		if [ "$topic" = more ]; then printf '%s\n' "$rest"; else $topic; fi
+		echo '</html>'
+	} >"$folder/$topic.html.new"
+	mv "$folder/$topic.html.new" "$folder/$topic.html"
+done
+mv "$folder/index.html.new" "$folder/index.html"

@@ -59,8 +59,9 @@ FILE *table_begin(const struct papers *papers, const char *name)
 
 void table_row(FILE *table, const struct row *row)
 {
-	const char *const field[] = { row->source, row->model, row->method, row->quantity, row->reported,
-	                              row->recovered, row->measured, row->settings };
+	const char *const field[] = { row->source, row->model, row->method, row->quantity,
+	                              row->reported ? row->reported : "not known", row->recovered, row->measured,
+	                              row->settings };
 	print_fields(table, sizeof field / sizeof *field, field);
 	fputc('\n', table);
 }

@@ -23,7 +23,8 @@ void rotating_beam(struct papers *papers);          /* 004, papers_beam.c */
 /* ---- papers.c ---- */
 
 struct row {
-	const char *source, *model, *method, *quantity, *reported, *recovered, *measured, *settings; /* NULL: empty */
+	/* NULL: of `reported` not known, the others empty */
+	const char *source, *model, *method, *quantity, *reported, *recovered, *measured, *settings;
 };
 FILE *file_begin(const struct papers *papers, const char *name, const char *head);
 FILE *table_begin(const struct papers *papers, const char *name);

@@ -3,7 +3,7 @@
 # papers.sh [--quick] PLGEN FOLDER: the generated code that papers.c compares with what the four sources report, as
 # FOLDER/papers_*.so. Run at the top of the source tree. --quick: the beam at h = 0.01 only.
 set -e
-beam_rates='10 100 1000' fine_rates='100 1000'
+beam_rates='10 100 1000 10000' fine_rates='100 1000'
 if [ "$1" = --quick ]; then
 	beam_rates=100 fine_rates=100
 	shift
@@ -41,6 +41,9 @@ for scheme in nc2 nc3 dq4 bm3; do
 		make_later ${model}_${scheme}_10 models/$model.spec --scheme $scheme --step 1/10
 	done
 	make_later quad2dof_${scheme}_2 models/quad2dof.spec --scheme $scheme --step 1/2
+	for rate in 100 1000; do
+		make_later vanderpol_stiff_${scheme}_$rate models/vanderpol_stiff.spec --scheme $scheme --step 1/$rate
+	done
 done
 
 # 002: clearances; the same gears without one, for the cost of a step

@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# plmap.gp plmap.csv OUTDIR
-here = system("dirname '".ARG0."'"); csv = ARG1; out = ARG2
+# plmap.csv
+here = system("dirname '".ARG0."'"); folder = ARG1; out = ARG2; narrow = 0
+size = '900,720'
 load here.'/style.gp'
+csv = folder.'/plmap.csv'
 unset logscale
 unset key
 set format '%g'
@@ -43,10 +45,10 @@ panel(contours, layout, periods) = "set title title('".layout."', ".periods.") o
 	"$marks using 1:(strcol(3) eq '".layout."' ? $2 : 1/0):5 with points pt 7 ps 1 lc rgb variable, ".\
 	"$marks using 1:(strcol(3) eq '".layout."' ? $2 : 1/0):4:5 with labels left offset 0.7,0 noenhanced font ".\
 	"',10' textcolor rgb variable"
-draw = "set multiplot title 'Error of pl (coupling held) over that of RK4 at the same step: two undamped masses' ".\
-	"font ',13'; ".\
+draw = "set multiplot; eval found_label; ".\
 	"set lmargin screen 0.075; set rmargin screen 0.44; set tmargin screen 0.885; set bmargin screen 0.555; ".\
 	"unset colorbox; set xlabel ''; set ylabel 'coupling k_2/k_1 [1]'; eval panel('$c1', 'k3 = k1', 6); ".\
+	"unset label 99; ".\
 	"set lmargin screen 0.50; set rmargin screen 0.865; set ylabel ''; ".\
 	"set colorbox user origin 0.89,0.14 size 0.02,0.74; ".\
 	"set cblabel 'largest displacement error, pl over RK4 [1]'; eval panel('$c3', 'k3 = k1/2', 6); ".\
@@ -58,19 +60,17 @@ draw = "set multiplot title 'Error of pl (coupling held) over that of RK4 at the
 	"eval panel('$c4', 'k3 = k1/2', 60); unset label 1; ".\
 	"unset multiplot"
 $marks << EOD
--1 0 "k3 = k1" "scs" 0xffffff
--0.199 -2 "k3 = k1/2" "scs_weak" 0x000000
+-1 0 "k3 = k1" "scs" 0xfffffe
+-0.199 -2 "k3 = k1/2" "scs_weak" 0x000001
 EOD
 set object 1 rectangle from graph 0,0 to graph 1,1 behind fillcolor rgb '#b0b0b0' fillstyle solid noborder
 legend = 'thick line: equal; dashed: 100 times apart; grey: both off by more than half the initial displacement; '.\
 	'dots: models at h = 0.01 s'
-set label 2 at graph 0.03,0.93 left 'RK4 more accurate' font ',10' textcolor rgb 'white' front
-set label 3 at graph 0.97,0.06 right 'pl more accurate' font ',10' front
-set terminal svg size 900,700 dynamic enhanced font 'DejaVu Sans,Helvetica,sans-serif,13' background rgb 'white'
-set output out.'/plmap.svg'
-eval draw
-unset output
-set terminal pngcairo size 900,700 enhanced font 'DejaVu Sans,11' background rgb 'white'
-set output out.'/plmap.png'
-eval draw
-unset output
+set label 2 at graph 0.03,0.93 left 'RK4 more accurate' font ',10' textcolor rgb '#fffffe' front
+set label 3 at graph 0.97,0.06 right 'pl more accurate' font ',10' textcolor rgb '#000001' front
+name = 'plmap'
+do for [form = 1:forms] {
+	eval begin(form)
+	eval draw
+	unset output
+}

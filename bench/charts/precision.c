@@ -367,6 +367,7 @@ static void measure(FILE *out, const struct charted *m, const char *folder, bool
 	struct truth *t = truth_of(p);
 	struct lines lines = { NULL, 0 };
 	add_peers(&lines, m, p, fixed_methods, quick);
+	add_peers(&lines, m, p, structural_methods, quick);
 	add_peers(&lines, m, p, adaptive_methods, quick);
 	add_peers(&lines, m, p, propagator_methods, quick);
 	add_ours(&lines, m, p, quick);

@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# precision.sh PLGEN PRECISION OUTDIR [--quick] [MODEL...]: the variants, the table OUTDIR/precision.csv, how its times
-# agree (precision_check.csv), and its pictures. Run at the top of the source tree.
+# precision.sh PLGEN PRECISION OUTDIR [--quick] [MODEL...]: the variants and the table OUTDIR/precision.csv.
+# Run at the top of the source tree; draw.sh then draws.
 set -e
 plgen=$1 program=$2 out=$3
 shift 3
@@ -16,5 +16,3 @@ if [ "$1" = --quick ]; then
 	shift
 fi
 "$program" $quick "$variants" "$out/precision.csv" "$@"
-awk -f bench/charts/csv.awk -f bench/charts/precision_check.awk "$out/precision.csv" >"$out/precision_check.csv"
-gnuplot -c bench/charts/precision.gp "$out/precision.csv" "$out"

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# gnuplot -c bench/charts/quality.gp FOLDER OUTDIR: FOLDER has quality.csv
-here = system("dirname '".ARG0."'"); folder = ARG1; out = ARG2
+# quality.csv: quality and quality_small
+here = system("dirname '".ARG0."'"); folder = ARG1; out = ARG2; narrow = 0
 load here.'/style.gp'
 csv = folder.'/quality.csv'
 # Curves of 81 points, equally spaced on a log axis: a mark on some of them
@@ -9,15 +9,13 @@ unset bmargin
 
 # Two panels side by side, and between them nothing but their axes: the key stands below both
 do for [which=1:2] {
-	do for [form=1:2] {
-		eval (form == 1 ? "set terminal svg size 900,600 dynamic enhanced font 'DejaVu ".\
-			"Sans,Helvetica,sans-serif,12' background rgb 'white'" : \
-			"set terminal pngcairo size 900,600 enhanced font 'DejaVu Sans,10' background rgb 'white'")
-		set output out.'/'.(which == 1 ? 'quality' : 'quality_small').'.'.(form == 1 ? 'svg' : 'png')
+	name = which == 1 ? 'quality' : 'quality_small'
+	do for [form=1:forms] {
+		eval begin(form)
 		set multiplot
 		do for [side=1:2] {
 			unset label; set key off; unset arrow; unset xzeroaxis
-			set origin 0.5*(side - 1), 0.20; set size 0.5, 0.75
+			set origin 0.5*(side - 1), 0.19; set size 0.5, 0.73
 			set lmargin 9; set rmargin 2; set tmargin 2; set bmargin 4
 			set xlabel 'h / T, step over period' offset 0,0.3
 			if (which == 1) {
@@ -34,10 +32,7 @@ do for [which=1:2] {
 				set ylabel (side == 1 ? 'size of the period elongation  [%]' : \
 					'size of the amplitude''s change in a period  [%]') offset 1,0
 			}
-			if (side == 1) { set label 1 (which == 1 ? \
-				"x'' + w^2x = 0: how well each method keeps the period T = 2π/w and the amplitude" : \
-				"x'' + w^2x = 0: error of period and amplitude for small steps; ".\
-				"what rounding makes is left out") at screen 0.5,0.97 center font ',13' }
+			if (side == 1) { eval found_label }
 			load marked((which == 1 ? 4 : 9), '-v x=h_over_T -v y='.(which == 1 ? (side == 1 ? \
 				'period_elongation_percent' : 'amplitude_decay_percent_per_period') : \
 				(side == 1 ? 'elongation_size' : 'decay_size')).(which == 1 ? ' -v any=1' : \
@@ -50,13 +45,8 @@ do for [which=1:2] {
 		set origin 0,0; set size 1,0.22
 		set lmargin 2; set rmargin 2; set tmargin 0; set bmargin 0
 		set key at screen 0.5,0.125 center vertical Left reverse maxrows 4 width -2 samplen 4.5 spacing 1.25 \
-			font ',10'
+			font ',11'
 		load marked(9, '-v x=h_over_T -v y=period_elongation_percent -v any=1')
-		set label 1 (which == 1 ? 'pl 0.1: scheme pl on two equal masses, k2/k1 = 0.1, in the mode in phase '.\
-			'(decays) and out of phase (grows).  exact: 0 in both.' : \
-			'exact has neither; '.\
-			'in amplitude the implicit trapezoid, Newmark and central difference have none either.  pl '.\
-			'0.1: two equal masses, k2/k1 = 0.1') at screen 0.5,0.022 center font ',9'
 		set xrange [10:11]; set yrange [1e6:1e7]          # nothing of the curves
 		eval 'plot '.clauses
 		unset multiplot

@@ -1,92 +1,100 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# awk -v where='model=scs;quantity=largest' -v x=ns_median -v y=largest [-v by=method] [-v xfactor=1e-3] [-v yfactor=1]
-# [-v skip=REGEX]
-#     [-v with=lines|points] [-v abs=1] [-v xzero=1e-12] -f csv.awk -f series.awk FILE.csv
+# awk -v palette=palette.list -v where='model=scs;quantity=largest' -v x=ns_median -v y=largest [-v by=method]
+#     [-v xfactor=1e-3] [-v yfactor=1] [-v skip=REGEX] [-v with=lines|points] [-v abs=1] [-v any=1] [-v xzero=1e-12]
+#     [-v most=10 [-v rank=last]] -f csv.awk -f series.awk FILE.csv
 # prints gnuplot: a data block for each method that has rows with numbers above 0 in both columns (above or below, with
-# -v any=1), and `clauses`, what to plot of them; abs: of absolute values of y; xzero: where 0 stands on a log axis. A
-# method looks alike in every chart: ours filled marks and thick unbroken lines, peers open marks and thin lines,
-# dashed by family, so they stay apart in black and white too. What is not in the table below gets a look by its turn.
+# -v any=1), and `clauses`, what to plot of them; abs: of absolute values of y; xzero: where 0 stands on a log axis.
+# A method has the colour of its group and, in one picture, a mark of its own: ours filled marks and unbroken lines,
+# peers open marks and thin lines, dashed by group, so they stay apart in black and white too.
+# most: no more entries in the legend than that. Of ours and of the peers those stay that come nearest to the cheapest
+# of their side at some error (rank=last: those with the least y at their last x); all others become one grey entry.
 
-function look(pattern, mark, colour, dash) { looks++; pattern_of[looks] = pattern; mark_of[looks] = mark;
-	colour_of[looks] = colour; dash_of[looks] = dash }
+function group(pattern, name) { groups++; pattern_of[groups] = pattern; group_name[groups] = name }
 function wanted(field,    i) {
 	for (i = 1; i <= conditions; i++)
 		if (field[condition_column[i]] != condition_value[i]) return 0
 	return 1
 }
-function of_table(name,    i) {
-	for (i = 1; i <= looks; i++)
-		if (name ~ pattern_of[i]) return i
-	return 0
+# By family where there is one, and then by name
+function group_of(name, family,    i) {
+	if (family == "ours") return name ~ /^exact/ ? "exact" : "scheme"
+	for (i = family == "" ? 1 : 4; i <= groups; i++)
+		if (name ~ pattern_of[i]) return group_name[i]
+	return family == "propagator" ? "matrix" : family in colour ? family : "other"
 }
-function clause(k, name,    i, dash, thick, width, size) {
-	i = of_table(name)
-	if (i == 0) { i = 1 + looks; mark_of[i] = 1 + (k - 1) % 3; colour_of[i] = "#808080"; dash_of[i] = "'--.'" }
-	dash = dash_of[i] == "" ? 1 : dash_of[i]
-	thick = dash == 1 || dash ~ /^\+/
-	sub(/^\+/, "", dash)
-	width = thick ? 2.6 : 1.5
-	size = thick ? 1.2 : 1.1
-	if (with == "lines")
-		return sprintf("$series_%d using 1:2 with lines lc rgb '%s' dt %s lw %s title '%s'", k, colour_of[i],
-		dash, width, name)
-	return sprintf("$series_%d using 1:2 with " (with == "points" ? "points" \
-		: "linespoints") " pt %d ps %s lc rgb '%s'" (with == "points" ? "" : " dt " dash) " lw %s title '%s'",
-		k, mark_of[i], size, colour_of[i], with == "points" ? 1.6 : width, name)
+# The first mark of the group that none of it has in this picture
+function mark_of(of,    n, i, mark) {
+	n = split(marks[of], mark, ",")
+	for (i = 1; i <= n; i++)
+		if (!((of, mark[i]) in taken)) { taken[of, mark[i]] = 1; return mark[i] }
+	return mark[1 + used[of]++ % n]
+}
+function clause(k, of,    ours, style) {
+	ours = of == "exact" || of == "scheme"
+	style = with == "lines" ? "lines" : with == "points" ? "points" : "linespoints"
+	return sprintf("$series_%d using 1:2 with %s", k, style) \
+		(style == "lines" ? "" : sprintf(" pt %d ps %s", mark_of(of), ours ? 1.1 : 1.0)) \
+		sprintf(" lc rgb '%s'", colour[of]) (style == "points" ? "" : " dt " dash[of]) \
+		sprintf(" lw %s title \"%s\"", style == "points" ? 1.8 : ours ? 2.4 : 1.5, name_of[k])
+}
+# The least x at an error of at most 10^-e, and that of the side
+function least(k, e,    i, best) {
+	best = ""
+	for (i = 1; i <= count[k]; i++)
+		if (ordinate[k, i] <= 10^-e && (best == "" || abscissa[k, i] < best)) best = abscissa[k, i]
+	return best
+}
+function score_all(    k, e, cost, side, least_of) {
+	for (k = 1; k <= names; k++) score[k] = rank == "last" ? ordinate[k, count[k]] : 1e300
+	if (rank == "last") return
+	for (e = 1; e <= 14; e++) {
+		split("", least_of)
+		for (k = 1; k <= names; k++) {
+			cost = least(k, e); side = family_of[k] == "ours"
+			if (cost != "" && (!(side in least_of) || cost < least_of[side])) least_of[side] = cost
+		}
+		for (k = 1; k <= names; k++) {
+			cost = least(k, e); side = family_of[k] == "ours"
+			if (cost != "" && cost / least_of[side] < score[k]) score[k] = cost / least_of[side]
+		}
+	}
+}
+# The n best of a side stay
+function choose(ours, n,    i, k, best) {
+	for (i = 1; i <= n; i++) {
+		best = 0
+		for (k = 1; k <= names; k++)
+			if ((family_of[k] == "ours") == ours && !(k in chosen) && (best == 0 || score[k] < score[best]))
+				best = k
+		if (best) chosen[best] = 1
+	}
+}
+function choose_all(    k, ours, of_ours, of_peers) {
+	for (k = 1; k <= names; k++) ours += family_of[k] == "ours"
+	if (most == "" || names <= most) { for (k = 1; k <= names; k++) chosen[k] = 1; return }
+	score_all()
+	of_ours = ours < int((most - 1) / 2) ? ours : int((most - 1) / 2)
+	of_peers = most - 1 - of_ours
+	if (names - ours < of_peers) { of_peers = names - ours; of_ours = most - 1 - of_peers }
+	choose(1, of_ours)
+	choose(0, of_peers)
 }
 BEGIN {
 	by = by == "" ? "method" : by
 	xfactor = xfactor == "" ? 1 : xfactor
 	yfactor = yfactor == "" ? 1 : yfactor
-	# ours: filled marks (5 square, 7 disc, 9 and 11 triangles, 13 diamond, 15 pentagon), thick, unbroken but where
-	# marks run out (a dash with +); the first pattern that fits counts
-	look("^(exact, )?float.*compensated",   15, "#604000")
-	look("^(exact, )?float.*delta",         13, "#f0b000")
-	look("^(exact, )?float.*kick",          11, "#b07000")
-	look("^(exact, )?float.*direct",         9, "#d08000")
-	look("^(exact, )?float",                 5, "#b07000")
-	look("^exact.*compensated",             15, "#a00000")
-	look("^exact.*delta",                   13, "#ff6060")
-	look("^exact.*kick",                    11, "#c00060")
-	look("^exact.*direct",                   5, "#900040")
-	look("^exact",                           7, "#d00000")
-	look("^pl",                              5, "#000000")
-	look("^etd1",                            5, "#f0a000", "+2")
-	look("^etdrk2",                          9, "#f07000")
-	look("^etdrk4",                         13, "#d03000")
-	look("^nc2",                            11, "#905000")
-	look("^nc3",                            15, "#c09000")
-	look("^dq4",                             5, "#a00050", "+4")
-	look("^bm3",                             7, "#203080", "+5")
-	look("^taylor$",                         7, "#d000d0")
-	look("^taylor",                          9, "#8000a0", "+3")
-	# fixed steps: dashed
-	look("Euler",                            1, "#007040", "2")
-	look("explicit trapez",                  2, "#40a000", "2")
-	look("trapez",                           3, "#80a000", "2")
-	look("RK4",                              6, "#00602f", "2")
-	look("central difference",               4, "#309090", "2")
-	look("Newmark",                         12, "#207020", "2")
-	look("alpha",                            8, "#60a060", "2")
-	# adaptive: dotted
-	look("Dormand",                          4, "#0050c0", "3")
-	look("ode45",                            4, "#0050c0", "3")
-	look("rk8pd.*fixed",                    14, "#008060", "2")
-	look("rk8pd",                            6, "#0090e0", "3")
-	look("msadams",                          8, "#6040c0", "3")
-	look("Adams",                           10, "#3030a0", "3")
-	look("BDF",                             12, "#8000c0", "3")
-	look("ARKODE",                          14, "#0070a0", "3")
-	# propagators: dash and dot
-	look("^exp\\(.*literals, float",         2, "#a08040", "4")
-	look("^exp\\(.*float",                  3, "#c0a060", "4")
-	look("^exp\\(.*rounded, literals",      6, "#000000", "4")
-	look("^exp\\(.*literals",               4, "#505050", "4")
-	look("^exp\\(.*CBLAS",                   14, "#606060", "4")
-	look("^exp\\(.*rounded",                12, "#000000", "4")
-	look("^exp\\(.*fixed",                    8, "#906000", "4")
-	look("^exp\\(",                          10, "#303030", "4")
-	look("odal",                             1, "#808080", "4")
+	while ((getline line < palette) > 0)
+		if (split(line, part, " ") == 4 && line !~ /^#/) {
+			colour[part[1]] = part[2]; dash[part[1]] = part[3]; marks[part[1]] = part[4] }
+	# the first pattern that fits counts; the first three are ours
+	group("^modes$", "scheme")
+	group("^(exact|modes)", "exact")
+	group("^(pl|etd|nc2|nc3|dq4|bm3|taylor|frozen)", "scheme")
+	group("implicit trapez|Newmark|alpha|Bathe", "implicit")
+	group("Euler|trapez|^RK4|central|fixed step|^CR", "fixed")
+	group("^elements", "fixed")
+	group("Dormand|ode45|rk8pd|msadams|Adams|BDF|ARKODE|^balanced", "adaptive")
+	group("^exp\\(|odal", "matrix")
 }
 NR == 1 {
 	n = split_row($0, head)
@@ -103,20 +111,39 @@ NR == 1 {
 {
 	split("", row)
 	split_row($0, row)
-	name = row[column[by]]; abscissa = row[column[x]]; ordinate = row[column[y]]
+	name = row[column[by]]; at = row[column[x]]; value = row[column[y]]
 	if (!wanted(row) || (skip != "" && name ~ skip)) next
-	if (!is_number(abscissa) || !is_number(ordinate)) next
-	if (abs && ordinate < 0) ordinate = -ordinate
-	if (xzero != "" && abscissa == 0) abscissa = xzero
-	if (!any && (abscissa + 0 <= 0 || ordinate + 0 <= 0)) next
-	if (!(name in number)) { number[name] = ++names; name_of[names] = name }
-	points[number[name]] = points[number[name]] sprintf("%.10g,%.10g\n", abscissa * xfactor, ordinate * yfactor)
+	if (!is_number(at) || !is_number(value)) next
+	if (abs && value < 0) value = -value
+	if (xzero != "" && at == 0) at = xzero
+	if (!any && (at + 0 <= 0 || value + 0 <= 0)) next
+	if (!(name in number)) {
+		number[name] = ++names; name_of[names] = name
+		of[names] = group_of(name, "family" in column ? row[column["family"]] : "")
+		family_of[names] = of[names] == "exact" || of[names] == "scheme" ? "ours" : "peer"
+	}
+	k = number[name]
+	abscissa[k, ++count[k]] = at * xfactor
+	ordinate[k, count[k]] = value * yfactor
+	points[k] = points[k] sprintf("%.10g,%.10g\n", at * xfactor, value * yfactor)
 }
 END {
+	choose_all()
 	text = ""
-	for (k = 1; k <= names; k++) {
-		printf "$series_%d << EOD\n%sEOD\n", k, points[k]
-		text = text (k > 1 ? ", " : "") clause(k, name_of[k])
+	for (k = 1; k <= names; k++)
+		if (!(k in chosen)) { others++; rest = rest (rest == "" ? "" : "\n") points[k] }
+	if (others) {
+		printf "$others << EOD\n%sEOD\n", rest
+		text = "$others using 1:2 with " (with == "points" ? "points pt 7 ps 0.4" : "lines lw 0.7") \
+			" lc rgb '" colour["other"] "' title \"" others " others, in the table\""
 	}
-	printf "clauses = \"%s\"\n", names ? text : "1/0 notitle"
+	# ours last, above all others
+	for (side = 0; side < 2; side++)
+		for (k = 1; k <= names; k++) {
+			if (!(k in chosen) || (family_of[k] == "ours") != side) continue
+			printf "$series_%d << EOD\n%sEOD\n", k, points[k]
+			text = text (text == "" ? "" : ", ") clause(k, of[k])
+		}
+	gsub(/"/, "\\\"", text)
+	printf "clauses = \"%s\"\n", text != "" ? text : "1/0 notitle"
 }

@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 # stability.sh [--quick] PLGEN PROGRAMS OUTDIR: where methods are stable, and how well they keep period and amplitude.
-# Run at the top of the source tree; PROGRAMS has stability, quality, operator_map and largest_step.  CSV, SVG and PNG
+# Run at the top of the source tree; PROGRAMS has stability, quality, operator_map and largest_step.  tables
 # go to OUTDIR; exit status 1 where a measured boundary is not the known one (OUTDIR/*_check.csv).
 set -e
 quick=
@@ -18,7 +18,4 @@ bad=0
 "$programs/quality" $quick "$out" || bad=1
 "$programs/operator_map" $quick "$out" "$out/variants" || bad=1
 "$programs/largest_step" $quick "$out" "$out/variants" || bad=1
-for picture in stability quality operator_map; do
-	gnuplot -c $charts/$picture.gp "$out" "$out"
-done
 exit $bad

@@ -55,7 +55,7 @@ diff "$work/break_even.csv" "$here/break_even/expect.csv" >"$log" 2>&1
 result $? "break-even of given times: as worked out by hand"
 awk -f "$csv" -f "$here/break_even/check.awk" "$out/break_even.csv" >"$log" 2>&1
 result $? "break_even.csv: like beside like, never where it never pays"
-for name in stability_check quality_check operator_check; do
+for name in stability_check quality_check operator_check integrators_check; do
     grep -v ',ok$' "$out/$name.csv" | sed 1d >"$log"
     [ ! -s "$log" ]
     result $? "$name.csv: what is known of the boundaries"
@@ -65,34 +65,35 @@ done
 
 for file in "$out"/*.svg; do
     name=$(basename "$file" .svg)
+    case $name in
+        *_narrow) link="srcset=\"$name.svg\"" ;;
+        *) link="src=\"$name.svg\"" ;;
+    esac
     {
         grep -q '</svg>' "$file" || echo "$name.svg is not whole"
-        [ "$(dd if="$out/$name.png" bs=1 skip=1 count=3 2>/dev/null)" = PNG ] || echo "$name.png is none"
-        grep -q "src=\"$name.svg\"" "$out/index.html" || echo "the page does not show $name.svg"
+        [ "${name%_narrow}" != "$name" ] ||
+            [ "$(dd if="$out/$name.png" bs=1 skip=1 count=3 2>/dev/null)" = PNG ] || echo "$name.png is none"
+        grep -q "$link" "$out"/*.html || echo "no page shows $name.svg"
         # Of what is drawn at least one line or mark
         grep -q -e '<path stroke' -e '<use ' -e "<path.*stroke='" -e '<polygon' -e '<circle' "$file" ||
             echo "$name.svg is empty"
     } >"$log" 2>&1
     [ ! -s "$log" ]
-    result $? "$name: a picture in both forms, on the page"
+    result $? "$name: a picture in both forms, on a page"
 done
 while read -r name; do
     [ -f "$out/$name.svg" ] || echo "no $name.svg"
 done <"$here/pictures.list" >"$log"
 [ ! -s "$log" ]
 result $? "every picture is there"
-{
-    sed -n 's/.*src="\([^"]*\)".*/\1/p' "$out/index.html" | while read -r name; do
-        [ -s "$out/$name" ] || echo "the page shows $name, which is not there"
-    done
-    grep -n -e 'is missing' -e 'has no rows' "$out/index.html"
-    for file in "$out"/*.csv; do
-        grep -q "href=\"$(basename "$file")\"" "$out/index.html" || echo "the page has no table $(basename "$file")"
-    done
-    grep -n -e '<script' -e 'https\{0,1\}:' "$out/index.html"
-} >"$log"
-[ ! -s "$log" ]
-result $? "index.html: every picture and table, nothing from elsewhere"
+for page in "$out"/*.html; do
+    awk -f "$here/look.awk" "$page" | sed "s/^/$(basename "$page"): /"
+done >"$log"
+for file in "$out"/*.csv; do
+    grep -q "href=\"$(basename "$file")\"" "$out"/*.html || echo "no page has the table $(basename "$file")" >>"$log"
+done
+[ -s "$out/index.html" ] && [ ! -s "$log" ]
+result $? "pages: every picture with its text and caption, every table, nothing from elsewhere"
 
 # ---- the same again ----
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # awk -v list=methods.list -f csv.awk -f methods.awk precision.csv: every model of a quick run has every
-# method of the list (propagators only where it is linear) and of ours those that there are for it; each row has
-# numbers, or a word and the flag `failed`.
+# method of the list (propagators and structural ones only where it is linear) and of ours those that there are for it;
+# each row has numbers, or a word and the flag `failed`.
 function ours_of(model) {
 	if (model == "scs")
 		return "exact;exact, direct;exact, delta;exact, kick-drift-kick;exact, compensated;exact, float;" \
@@ -48,7 +48,8 @@ END {
 	for (m = 1; m <= models; m++) {
 		model = model_list[m]
 		for (method in family_of)
-			if ((family_of[method] != "propagator" || model == "scs") && !((model, method) in seen)) {
+			if ((family_of[method] !~ /^(propagator|structural)$/ || model == "scs") &&
+			    !((model, method) in seen)) {
 				print model ": no " method
 				bad = 1
 			}

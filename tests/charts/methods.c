@@ -35,14 +35,21 @@ static int parts_for(int order)
 	return order == 1 ? 512 : order == 2 ? 32 : order == 4 ? 8 : 1;
 }
 
-static void check_fixed(struct problem *p)
+/* CR and KR-alpha are of second order only from rest under a load that sets in smoothly */
+static int order_of(const struct method *m, const struct problem *p)
+{
+	const bool lags = strcmp(m->name, "CR") == 0 || strncmp(m->name, "KR", 2) == 0;
+	return lags && p->start[0] != 0 ? 1 : m->order;
+}
+
+static void check_fixed(struct problem *p, const struct method *const *methods)
 {
 	const struct truth *truth = truth_of(p);
-	for (const struct method *const *m = fixed_methods; *m; m++) {
-		const int parts = parts_for((*m)->order);
-                struct run *coarse = (*m)->open(*m, p, p->unit / parts),
-                           *fine = (*m)->open(*m, p, p->unit / (2 * parts));
-                check_order((*m)->name, p->name, (*m)->order, error_at_ends(coarse, truth), error_at_ends(fine, truth));
+	for (const struct method *const *m = methods; *m; m++) {
+		const int order = order_of(*m, p), parts = parts_for(order);
+		struct run *coarse = (*m)->open(*m, p, p->unit / parts),
+			*fine = (*m)->open(*m, p, p->unit / (2 * parts));
+		check_order((*m)->name, p->name, order, error_at_ends(coarse, truth), error_at_ends(fine, truth));
 	}
 }
 
@@ -171,8 +178,10 @@ int main(int argc, char **argv)
 	const char *folder = argv[1];
 	struct problem *pendulum = load(folder, "pendulum", 0.4, 10, false, 0),
 		*forced = load(folder, "sdcsf", 0.2, 10, true, 5);
-	check_fixed(pendulum);
-	check_fixed(forced);
+	check_fixed(pendulum, fixed_methods);
+	check_fixed(forced, fixed_methods);
+	check_fixed(forced, structural_methods);
+	check_fixed(forced, structural_others);
 	check_schemes(pendulum, folder, "pendulum");
 	check_schemes(load(folder, "scs", 0.2, 3, true, 0), folder, "scs");
 	check_exact(load(folder, "scs", 0.01, 3000, true, 0), folder, "scs");

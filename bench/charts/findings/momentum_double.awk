@@ -1,0 +1,13 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# of: energy.csv
+NR == 1 { read_head($0, column); next }
+{
+	split_row($0, f)
+	if (f[column["case"]] != "moving" || f[column["real"]] != "double" || !is_number(f[column["largest"]])) next
+	last[f[column["method"]]] = f[column["largest"]]; steps = f[column["steps"]]
+}
+END {
+	print "Momentum of a free pair changed over " short(steps) " steps: matrix exponential " \
+		short(last["exp(A h), loop"]) ", plgen's exact " short(last["exact"]) ", compensated " \
+		short(last["exact, compensated"])
+}

@@ -1,0 +1,441 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ *
+ * own [-q] EVERY UNITS FOLDER
+ *
+ * Error against time of plgen's steps and of peers on one model, over UNITS outputs EVERY seconds apart:
+ * FOLDER/own.csv, and a verdict for each wanted error: FOLDER/verdict.txt. own.sh compiles it for the model;
+ * FOLDER/model.so is the model as plgen makes it, FOLDER/list has a line for each further variant: file, name, `step`
+ * or `tolerance`, setting, options. -q: each time taken once, for tests.
+ */
+#include "own.h"
+#include "peers.h"
+#include "truth.h"
+
+#include <dlfcn.h>
+#include <limits.h>
+
+static const struct peer peers[] = {
+	{"RK4", false, rk4, "classical, steps in an output; equations inlined"},
+	{"Dormand-Prince", true, dormand_prince, "5(4), PI controller, free interpolant of order 4; equations inlined"},
+	{"GSL rk8pd", true, gsl_rk8pd, "driver with scaled control, applied to each output time"},
+	{"CVODE Adams", true, cvode_adams, "fixed-point iteration, output from its interpolant"},
+	{"CVODE BDF", true, cvode_bdf, "Newton, dense, Jacobian by differences, output from its interpolant"},
+};
+enum { PEERS = sizeof peers / sizeof *peers, MOST_LINES = 200 };
+/* Steps in an output, and tolerances as 10 to the minus these; fewer where there are many states */
+static const int parts[] = {1, 2, 4, 8, 16, 32, 64, 256, 0}, parts_large[] = {1, 4, 16, 64, 128, 0};
+static const int digits[] = {3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 0}, digits_large[] = {4, 7, 10, 13, 0};
+enum { LARGE = N > 12 };
+
+struct line {
+	const struct peer *peer;        /* NULL: ours */
+	char name[64], file[200], options[100];
+	bool tolerance;
+	double setting;
+	void *handle, *state;
+	const pl_model *model;
+	const pl_modelf *single;
+	int steps;                      /* of ours in an output */
+	double error, evaluations, ns;
+	const char *word;               /* ok, failed, gave up, refused */
+	char refusal[300];
+};
+
+static void leave(const char *what, const char *why)
+{
+	fprintf(stderr, "own: %s: %s\n", what, why);
+	exit(1);
+}
+
+static void *need(void *memory)
+{
+	if (!memory)
+		leave("memory", "there is none left");
+	return memory;
+}
+
+static double own_ns(void)
+{
+	struct timespec t;
+	clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+	return 1e9 * (double)t.tv_sec + (double)t.tv_nsec;
+}
+
+/* ---- ours ---- */
+
+static bool read_refusal(struct line *line, const char *path)
+{
+	char name[4200];
+	snprintf(name, sizeof name, "%s.refused", path);
+	FILE *f = fopen(name, "r");
+	if (!f)
+		return false;
+	if (!fgets(line->refusal, sizeof line->refusal, f))
+		strcpy(line->refusal, "refused");
+	line->refusal[strcspn(line->refusal, "\n")] = '\0';
+	fclose(f);
+	line->word = "refused";
+	return true;
+}
+
+static void open_ours(struct line *line, const char *folder)
+{
+	char path[4096];
+	snprintf(path, sizeof path, "%s%s/%s", strchr(folder, '/') ? "" : "./", folder, line->file);
+	if (read_refusal(line, path))
+		return;
+	line->handle = dlopen(path, RTLD_NOW | RTLD_LOCAL);
+	const void *model = line->handle ? dlsym(line->handle, "subject_model") : NULL;
+	if (!model)
+		leave(path, "no model in it");
+	if (strstr(line->options, "--real float"))
+		line->single = model;
+	else
+		line->model = model;
+	line->steps = line->tolerance ? 1 : (int)line->setting;
+	line->state = need(calloc(1, line->single ? line->single->size : line->model->size));
+}
+
+/* Rows of inputs for the steps of output k: as plrt.h has it, row j + 1 where an input is a ramp */
+static void samples_of(int k, int steps, double *u)
+{
+	const double *now = history.sample + (size_t)k * INPUTS, *next = now + INPUTS;
+	for (int j = 0; j < steps; j++)
+		for (int i = 0; i < INPUTS; i++)
+			*u++ = history.ramp[i] ? now[i] + (j + 1) * (next[i] - now[i]) / steps : now[i];
+}
+
+static bool run_ours(struct line *line, double *rows)
+{
+	const int steps = line->steps;
+	double u[INPUTS > 0 ? steps * INPUTS : 1];
+	line->model->init(line->state);
+	if (line->model->hold)
+		line->model->hold(line->state, history.sample);
+	for (int k = 0; k < history.units; k++, rows += N) {
+		if (INPUTS > 0)
+			samples_of(k, steps, u);
+		line->model->run(line->state, (size_t)steps, INPUTS > 0 ? u : NULL, NULL);
+		line->model->get(line->state, rows);
+	}
+	return line->model->status(line->state) == 0;
+}
+
+static bool run_single(struct line *line, double *rows)
+{
+	const int steps = line->steps;
+	double u[INPUTS > 0 ? steps * INPUTS : 1];
+	float narrow[INPUTS > 0 ? steps * INPUTS : 1], row[N];
+	line->single->init(line->state);
+	for (int i = 0; i < INPUTS; i++)
+		narrow[i] = (float)history.sample[i];
+	if (line->single->hold)
+		line->single->hold(line->state, narrow);
+	for (int k = 0; k < history.units; k++, rows += N) {
+		if (INPUTS > 0)
+			samples_of(k, steps, u);
+		for (int i = 0; i < steps * INPUTS; i++)
+			narrow[i] = (float)u[i];
+		line->single->run(line->state, (size_t)steps, INPUTS > 0 ? narrow : NULL, NULL);
+		line->single->get(line->state, row);
+		for (int i = 0; i < N; i++)
+			rows[i] = row[i];
+	}
+	return line->single->status(line->state) == 0;
+}
+
+/* ---- the history ---- */
+
+static void describe(const char *folder, struct extrapolation *x)
+{
+	char path[4096];
+	snprintf(path, sizeof path, "%s%s/model.so", strchr(folder, '/') ? "" : "./", folder);
+	void *handle = dlopen(path, RTLD_NOW | RTLD_LOCAL);
+	const pl_model *model = handle ? dlsym(handle, "subject_model") : NULL;
+	if (!model)
+		leave(path, handle ? "no model in it" : dlerror());
+	void *state = need(calloc(1, model->size));
+	model->init(state);
+	model->get(state, history.start);
+	for (int i = 0; i < N; i++)
+		x->velocity[i] = model->state_names[i][strlen(model->state_names[i]) - 1] == '\'';
+	for (int i = 0; i < INPUTS; i++) {
+		if (model->start_samples[i] > 1)
+			leave(model->input_names[i], "inputs that are joined by polynomials of higher degree than 1 "
+			      "are not charted: they reach over several outputs, which no step of another method "
+			      "follows");
+		history.ramp[i] = model->start_samples[i] == 1;
+	}
+	free(state);
+}
+
+/* Inputs: two sines with periods of 40 and 17 outputs, each input by its number later */
+static void make_signal(void)
+{
+	history.sample = need(calloc((size_t)(history.units + 2) * (INPUTS > 0 ? INPUTS : 1), sizeof(double)));
+	for (int k = 0; k <= history.units + 1; k++)
+		for (int i = 0; i < INPUTS; i++)
+			history.sample[k * INPUTS + i] = sin(2 * M_PI * k / 40 + i) + sin(2 * M_PI * k / 17 + i) / 2;
+}
+
+static void find_scales(const struct extrapolation *x, const double *rows)
+{
+	double most[2] = {0, 0};
+	for (int k = -1; k < history.units; k++)
+		for (int i = 0; i < N; i++) {
+			double *to = &most[x->velocity[i]];
+			*to = fmax(*to, fabs(k < 0 ? history.start[i] : rows[k * N + i]));
+		}
+	for (int i = 0; i < N; i++)
+		history.scale[i] = most[x->velocity[i]] > 0 ? most[x->velocity[i]] : 1;
+}
+
+static double error_of(const double *rows, const double *truth)
+{
+	double most = 0;
+	for (int k = 0; k < history.units * N; k++) {
+		const double off = fabs(rows[k] - truth[k]) / history.scale[k % N];
+		if (!(off <= most))
+			most = off;
+		if (!isfinite(off))
+			return HUGE_VAL;
+	}
+	return most;
+}
+
+/* ---- the lines ---- */
+
+static int read_list(const char *folder, struct line *lines)
+{
+	char path[4096], text[1000], kind[20];
+	snprintf(path, sizeof path, "%s/list", folder);
+	FILE *f = fopen(path, "r");
+	int count = 0;
+	if (!f)
+		leave(path, "cannot be read");
+	while (count < MOST_LINES && fgets(text, sizeof text, f)) {
+		struct line *line = &lines[count];
+		if (sscanf(text, "%199[^\t]\t%63[^\t]\t%19[^\t]\t%lf\t%99[^\n]", line->file, line->name, kind,
+		           &line->setting, line->options) != 5)
+			leave(path, text);
+		line->tolerance = strcmp(kind, "tolerance") == 0;
+		open_ours(line, folder);
+		count++;
+	}
+	fclose(f);
+	return count;
+}
+
+static const int *settings_of(const struct peer *peer)
+{
+	if (peer->tolerance)
+		return LARGE ? digits_large : digits;
+	return LARGE ? parts_large : parts;
+}
+
+static int add_peers(struct line *lines, int count)
+{
+	for (int p = 0; p < PEERS; p++)
+		for (const int *k = settings_of(&peers[p]); *k && count < MOST_LINES; k++) {
+			struct line *line = &lines[count++];
+			line->peer = &peers[p];
+			line->tolerance = peers[p].tolerance;
+			line->setting = line->tolerance ? pow(10, -*k) : *k;
+			snprintf(line->name, sizeof line->name, "%s", peers[p].name);
+		}
+	return count;
+}
+
+/* Its time is that of one pass through the whole history */
+static double pass(struct line *line, double *rows, bool *good)
+{
+	const double begin = own_ns();
+	history.evaluations = 0;
+	history.most = line->tolerance ? 60000000L / N : LONG_MAX;
+	if (line->single)
+		*good = run_single(line, rows);
+	else if (line->model)
+		*good = run_ours(line, rows);
+	else if (setjmp(history.gave_up) == 0)
+		*good = line->peer->run(line->setting, rows);
+	else
+		line->word = "gave up";
+	return (own_ns() - begin) / history.units;
+}
+
+static void find_error(struct line *line, double *rows, const double *truth)
+{
+	bool good = false;
+	line->word = "ok";
+	line->ns = pass(line, rows, &good);
+	line->error = good ? error_of(rows, truth) : HUGE_VAL;
+	line->evaluations = line->peer ? (double)history.evaluations / history.units : -1;
+	if (!isfinite(line->error) && strcmp(line->word, "gave up") != 0)
+		line->word = "failed";
+}
+
+/* Rounds in turn, so that what disturbs the machine meets all alike; the least time counts */
+static void find_times(struct line *lines, int count, double *rows)
+{
+	enum { ROUNDS = 3 };
+	for (int round = 0; round < ROUNDS; round++)
+		for (struct line *line = lines; line < lines + count; line++) {
+			const double whole = line->ns * history.units;
+			const int repeats = whole > 1e8 ? 0 : whole > 2e6 ? 1 : (int)(2e6 / (whole + 1e3)) + 1;
+			bool good;
+			if (strcmp(line->word, "ok") != 0)
+				continue;
+			for (int k = 0; k < repeats; k++)
+				line->ns = fmin(line->ns, pass(line, rows, &good));
+		}
+}
+
+/* ---- what comes out ---- */
+
+static void put_setting(FILE *out, const struct line *line)
+{
+	if (line->tolerance)
+		fprintf(out, "tolerance %.0e", line->setting);
+	else
+		fprintf(out, "step %g s", history.every / line->setting);
+}
+
+static void put_line(FILE *csv, const struct line *line, double agreement)
+{
+	const bool good = strcmp(line->word, "ok") == 0;
+	const char *settings = line->peer ? line->peer->settings : line->refusal[0] ? line->refusal : line->options;
+	fprintf(csv, "\"%s\",%s,%s,%.6g,", line->name, line->peer ? "peer" : "ours",
+	        line->tolerance ? "tolerance" : "step",
+	        line->tolerance ? line->setting : history.every / line->setting);
+	if (good)
+		fprintf(csv, "%.4g,ok,", line->error);
+	else
+		fprintf(csv, "%s,%s,", line->word, line->word);
+	if (good && line->peer)
+		fprintf(csv, "%.6g,", line->evaluations);
+	else
+		fputs("none,", csv);
+	if (good)
+		fprintf(csv, "%.5g,", line->ns);
+	else
+		fputs("none,", csv);
+	fprintf(csv, "%.2g,\"", agreement);
+	for (; *settings; settings++)
+		putc(*settings == '"' ? '\'' : *settings, csv);
+	fputs("\"\n", csv);
+}
+
+static FILE *open_in(const char *folder, const char *name)
+{
+	char path[4096];
+	snprintf(path, sizeof path, "%s/%s", folder, name);
+	FILE *out = fopen(path, "w");
+	if (!out)
+		leave(path, "cannot be written");
+	return out;
+}
+
+static void write_table(const char *folder, const struct line *lines, int count, double agreement)
+{
+	FILE *csv = open_in(folder, "own.csv");
+	fputs("method,family,setting_kind,setting,largest,word,evaluations_per_output,ns_min,truth_agreement,"
+	      "settings\n", csv);
+	for (const struct line *line = lines; line < lines + count; line++)
+		put_line(csv, line, agreement);
+	if (ferror(csv) | fclose(csv))
+		leave("own.csv", "cannot be written");
+}
+
+static const struct line *cheapest(const struct line *lines, int count, bool ours, double target)
+{
+	const struct line *best = NULL;
+	for (const struct line *line = lines; line < lines + count; line++)
+		if (!line->peer == ours && strcmp(line->word, "ok") == 0 && line->error <= target &&
+		    (!best || line->ns < best->ns))
+			best = line;
+	return best;
+}
+
+static void put_best(FILE *out, const char *of, const struct line *line)
+{
+	if (!line) {
+		fprintf(out, "%s: none", of);
+		return;
+	}
+	fprintf(out, "%s: %.3g us an output (%s, ", of, line->ns / 1000, line->name);
+	put_setting(out, line);
+	putc(')', out);
+}
+
+/* A line for each wanted error; then the factors alone, for the picture's title */
+static void write_verdict(const char *folder, const struct line *lines, int count, double agreement)
+{
+	static const double targets[] = {1e-3, 1e-6, 1e-9, 1e-12};
+	char title[400] = "";
+	FILE *out = open_in(folder, "verdict.txt");
+	for (int i = 0; i < 4; i++) {
+		const struct line *ours = cheapest(lines, count, true, targets[i]),
+			*peer = cheapest(lines, count, false, targets[i]);
+		char *end = title + strlen(title);
+		const size_t room = sizeof title - strlen(title);
+		const char *mark = i ? ", " : "", *alone = ours ? "plgen only" : peer ? "a peer only" : "none";
+		fprintf(out, "error below %.0e:  ", targets[i]);
+		if (!(targets[i] >= agreement)) {
+			fprintf(out, "not known: two roads to what is true are %.1g apart\n", agreement);
+			snprintf(end, room, "%s%.0e: not known", mark, targets[i]);
+			continue;
+		}
+		put_best(out, "plgen", ours);
+		put_best(out, ";  best peer", peer);
+		if (ours && peer) {
+			fprintf(out, ";  plgen is %.2g times as fast", peer->ns / ours->ns);
+			snprintf(end, room, "%s%.0e: %.2g", mark, targets[i], peer->ns / ours->ns);
+		} else {
+			snprintf(end, room, "%s%.0e: %s", mark, targets[i], alone);
+		}
+		putc('\n', out);
+	}
+	fprintf(out, "title: %s\n", title);
+	if (ferror(out) | fclose(out))
+		leave("verdict.txt", "cannot be written");
+}
+
+int main(int argc, char **argv)
+{
+	static struct line lines[MOST_LINES];
+	static struct extrapolation x;
+	const bool quick = argc > 1 && strcmp(argv[1], "-q") == 0;
+	if (argc != 4 + quick) {
+		fputs("usage: own [-q] EVERY UNITS FOLDER\n", stderr);
+		return 2;
+	}
+	const char *folder = argv[3 + quick];
+	gsl_set_error_handler_off();
+	history.every = atof(argv[1 + quick]);
+	history.units = atoi(argv[2 + quick]);
+	if (!(history.every > 0) || history.units < 1)
+		leave("UNTIL and EVERY", "an output at least has to come before the end");
+	double *truth = need(calloc((size_t)history.units * N, sizeof *truth)),
+		*rows = need(calloc((size_t)history.units * N, sizeof *rows));
+	describe(folder, &x);
+	make_signal();
+	x.most = 1000000000L / N;
+	if (!truth_of(&x, truth))
+		leave("what is true", "extrapolation does not come to the end: the motion grows without bound, or its "
+		      "equations are too stiff or too rough for it");
+	find_scales(&x, truth);
+	const int ours = read_list(folder, lines), count = add_peers(lines, ours);
+	/* of what is true with whatever comes nearest, another road in every case */
+	double agreement = HUGE_VAL;
+	for (struct line *line = lines; line < lines + count; line++)
+		if (!line->refusal[0]) {
+			find_error(line, rows, truth);
+			if (strcmp(line->word, "ok") == 0)
+				agreement = fmin(agreement, line->error);
+		}
+	if (!quick)
+		find_times(lines, count, rows);
+	write_table(folder, lines, count, agreement);
+	write_verdict(folder, lines, count, agreement);
+	return 0;
+}

@@ -1,0 +1,94 @@
+#!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
+# own.sh [-q] PLGEN SPEC FOLDER [UNTIL] [EVERY]: error against time on any spec, plgen's steps beside what else there
+# is; FOLDER/NAME.csv, .svg, .png and a verdict. UNTIL, EVERY [s]: the history's end and the time between outputs;
+# without them the spec's step, and 1000 of it or 300 where there are more than 12 states. -q: times are taken once, for
+# tests. Run at the top of the source tree. What plgen refuses is said in its own words, and the exit status is 1.
+set -e
+quick=
+[ "$1" != -q ] || { quick=-q; shift; }
+plgen=$1 spec=$2 folder=$3 until=$4 every=$5
+own=bench/charts/own
+cc=${CC:-cc}
+[ -f "$spec" ] || { echo "own.sh: no file $spec; give one as SPEC=my.spec" >&2; exit 1; }
+work=$(mktemp -d "${TMPDIR:-/tmp}/own.XXXXXX")
+trap 'rm -rf "$work"' EXIT
+trap 'exit 99' HUP INT TERM
+LC_ALL=C.UTF-8
+export LC_ALL
+
+# number TEXT: of a decimal or a fraction
+number() {
+	awk -v text="$1" 'BEGIN { n = split(text, part, "/"); print n == 2 ? part[1]/part[2] : n == 1 ? text + 0 : -1 }'
+}
+
+# ---- the model itself ----
+
+if ! "$plgen" --rhs --prefix subject ${every:+--step "$every"} "$spec" >"$work/subject_pl.c" 2>"$work/said"; then
+	cat "$work/said" >&2
+	echo "own.sh: plgen refuses the spec, so there is nothing to chart" >&2
+	exit 1
+fi
+name=$(sed -n 's/^model[ \t][ \t]*\([A-Za-z0-9_]*\).*/\1/p' "$spec" | sed -n 1p)
+[ -n "$every" ] || every=$(sed -n 's/^#define SUBJECT_H \([^ ]*\).*/\1/p' "$work/subject_pl.c")
+# of NAME, an enumerator at the head of the code
+count_of() {
+	sed -n "s/^enum {.*SUBJECT_$1 = \([0-9]*\).*/\1/p" "$work/subject_pl.c"
+}
+states=$(count_of STATES) inputs=$(count_of INPUTS)
+if [ -n "$until" ]; then
+	units=$(awk -v every="$(number "$every")" -v end="$(number "$until")" \
+		'BEGIN { print every <= 0 || end <= 0 ? 0 : int(end/every + 0.5) }')
+else
+	units=$([ "$states" -le 12 ] && echo 1000 || echo 300)
+fi
+if [ "$units" -lt 1 ] || [ "$units" -gt 100000 ]; then
+	echo "own.sh: UNTIL=$until with EVERY=$every are $units outputs; 1 to 100000 can be charted" >&2
+	exit 1
+fi
+
+# NAME_rhs by itself, so that peers have it inlined; and in long double
+awk '/^void subject_rhs\(/ && !/;/ { on = 1 } on { print } on && /^}/ { exit }' "$work/subject_pl.c" |
+	sed 's/^void subject_rhs(/INLINE void rhs_double(/' >"$work/rhs_double.h"
+sed 's/rhs_double/rhs_long/; s/\([^A-Za-z0-9_]\)double\([^A-Za-z0-9_]\)/\1quad_of_truth\2/g
+	s/\([^A-Za-z0-9_]\)double\([^A-Za-z0-9_]\)/\1quad_of_truth\2/g' "$work/rhs_double.h" >"$work/rhs_long.h"
+
+# ---- plgen's variants ----
+
+sh bench/charts/variant.sh "$plgen" "$work/model.so" "$spec" --step "$every"
+sh bench/charts/variant.sh "$plgen" "$work/exact-1.so" "$spec" --step "$every" --scheme exact
+if [ -f "$work/exact-1.so" ]; then kinds=exact; elif [ "$states" -le 12 ]; then kinds='small left'; else kinds=left; fi
+grep -v '^#' $own/variants | while IFS='|' read -r method options setting values where; do
+	case " $kinds " in *" $where "*) ;; *) continue ;; esac
+	for value in $values; do
+		file=$(echo "$method-$value" | tr -d ' ,').so
+		if [ "$setting" = tolerance ]; then
+			value=1e-$value
+			echo "$work/$file $spec --step $every $options --tolerance $value" >>"$work/make"
+		else
+			echo "$work/$file $spec --step ($every)/$value $options" >>"$work/make"
+		fi
+		printf '%s\t%s\t%s\t%s\t%s\n' "$file" "$method" "$setting" "$value" "$options" >>"$work/list"
+	done
+done
+xargs -P2 -L1 sh bench/charts/variant.sh "$plgen" <"$work/make" &
+variants=$!
+$cc -std=gnu11 -O2 -Iruntime -I$own -I"$work" -DSTATES="$states" -DINPUTS="$inputs" $own/own.c -o "$work/own" \
+	-lsundials_cvode -lsundials_nvecserial -lsundials_sunmatrixdense -lsundials_sunlinsoldense \
+	-lsundials_sunnonlinsolfixedpoint -lgsl -lgslcblas -lm -ldl
+wait $variants
+
+# ---- errors, times, picture ----
+
+"$work/own" $quick "$(number "$every")" "$units" "$work"
+mkdir -p "$folder"
+mv "$work/own.csv" "$folder/$name.csv"
+mv "$work/verdict.txt" "$folder/$name.txt"
+signal=
+[ "$inputs" = 0 ] || signal='inputs: sin(2π t/40E) + sin(2π t/17E)/2, E the time between outputs, sampled there'
+gnuplot -c $own/own.gp "$folder/$name.csv" "$folder" "$name" "$every" "$units" "$folder/$name.txt" "$signal"
+echo "$name: $units outputs, one every $every s${signal:+; $signal}"
+grep -v '^title:' "$folder/$name.txt"
+grep ',refused,' "$folder/$name.csv" | awk -F, -f bench/charts/csv.awk -f $own/refused.awk
+[ "$kinds" != left ] || echo 'left out: taylor, whose series of more than 12 states compilers take minutes for'
+echo "$folder/$name.svg, $folder/$name.csv"

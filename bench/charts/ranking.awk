@@ -1,0 +1,46 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# awk -v model=MODEL -f csv.awk -f words.awk -f ranking.awk precision.csv: every method's cheapest setting at each
+# wanted error as an HTML table, the cheapest at the finest error first; what does not get there has its least error.
+function escaped(text) { gsub(/&/, "\\&amp;", text); gsub(/</, "\\&lt;", text); return text }
+function before(a, b,    i) {
+	for (i = errors; i >= 1; i--) {
+		if (((a, i) in ns) != ((b, i) in ns)) return (a, i) in ns
+		if (((a, i) in ns) && ns[a, i] != ns[b, i]) return ns[a, i] < ns[b, i]
+	}
+	return a < b
+}
+BEGIN { errors = split("1e-3 1e-6 1e-9 1e-12", wanted, " ") }
+NR == 1 { read_head($0, column); next }
+{
+	split_row($0, f)
+	if (f[column["model"]] != model) next
+	name = f[column["method"]]
+	if (!(name in number)) { number[name] = ++rows; method[rows] = name; family[rows] = f[column["family"]] }
+	k = number[name]
+	error = f[column["largest"]]; cost = f[column["ns_median"]] + 0
+	if (f[column["failed"]] == "1" || !is_number(error) || cost <= 0) next
+	if (!(k in least) || error + 0 < least[k]) least[k] = error + 0
+	for (i = 1; i <= errors; i++)
+		if (error + 0 <= wanted[i] + 0 && (!((k, i) in ns) || cost < ns[k, i])) {
+			ns[k, i] = cost; setting[k, i] = f[column["setting"]] }
+}
+END {
+	for (k = 1; k <= rows; k++) {
+		at = 1
+		for (i = 1; i <= rows; i++) at += i != k && before(i, k)
+		place[at] = k
+	}
+	print "<div class=wide><table><tr><th>method</th>"
+	for (i = 1; i <= errors; i++) print "<th>error at most " wanted[i] "</th>"
+	print "<th>least error</th></tr>"
+	for (r = 1; r <= rows; r++) {
+		k = place[r]
+		printf "<tr class=%s><th>%s</th>", family[k], escaped(method[k])
+		for (i = 1; i <= errors; i++)
+			if ((k, i) in ns) printf "<td class=n title=\"setting %s\">%s</td>", setting[k, i],
+				time_text(ns[k, i])
+			else printf "<td class=none>not reached</td>"
+		print "<td class=" (k in least ? "n>" short(least[k]) : "bad>failed") "</td></tr>"
+	}
+	print "</table></div>"
+}

@@ -1,0 +1,46 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# awk -v name=MODEL -f csv.awk -f own.awk NAME.csv: what the chart of a spec must show, whatever the spec
+function say(text) { print text; bad = 1 }
+NR == 1 { read_head($0, column); next }
+{
+	split("", row)
+	split_row($0, row)
+	method = row[column["method"]]; setting = row[column["setting"]]; error = row[column["largest"]]
+	word = row[column["word"]]; agreement = row[column["truth_agreement"]] + 0
+	if (word !~ /^(ok|failed|gave up|refused)$/) say(method ", " setting ": word " word)
+	if ((word == "ok") != is_number(error)) say(method ", " setting ": error " error ", word " word)
+	rows[method]++
+	if (word != "ok") next
+	good[method]++
+	if (!(method in least) || error + 0 < least[method]) least[method] = error + 0
+	if (method == "exact" && error + 0 > 1e-9)
+		say("exact, step " setting ": found " error ", expected 0, tolerance 1e-9")
+	if (method == "exact, float" && error + 0 > 0.05) say(method ": found " error ", expected 0, tolerance 0.05")
+	# consecutive halves, far from rounding
+	if (method == "RK4" && before > 0 && before_setting / setting == 2 && before < 1e-3 && error + 0 > 1e-9)
+		order[++orders] = log(before / error) / log(2)
+	before = method == "RK4" ? error + 0 : 0
+	before_setting = setting
+}
+END {
+	smooth = "pendulum scs sdcs sdcsf scs_weak duffing mathieu quad2dof vanderpol linear2dof tuned_floor mixed " \
+		"quarter_car oscillator frame"
+	if (index(" " smooth " ", " " name " ") && name != "oscillator" && orders == 0) say("no order of RK4 is seen")
+	if (index(" " smooth " ", " " name " ") && orders && (order[orders] < 3.7 || order[orders] > 4.5))
+		say("RK4: order of its finest steps found " order[orders] ", expected 4, tolerance -0.3, 0.5")
+	n = split("RK4;Dormand-Prince;GSL rk8pd;CVODE Adams;CVODE BDF", peers, ";")
+	for (i = 1; i <= n; i++)
+		if (rows[peers[i]] < 4 || !good[peers[i]])
+			say(peers[i] ": " rows[peers[i]] + 0 " rows, " good[peers[i]] + 0 " good")
+	if (!("exact" in good) && !("etdrk4" in good)) say("nothing of plgen's")
+	# What each reaches with its least tolerance; forces that jump cost digits
+	split("RK4;Dormand-Prince;GSL rk8pd;CVODE Adams;CVODE BDF", method_of, ";")
+	split("1e-6;2e-9;2e-9;1e-7;1e-7", limit_of, ";")
+	for (i = 1; i <= 5; i++) {
+		limit = name != "two_masses" ? limit_of[i] : i == 1 ? 1 : 1e-5
+		if (!(method_of[i] in least) || least[method_of[i]] > limit + 0)
+			say(method_of[i] ": least error " least[method_of[i]] ", expected 0, tolerance " limit)
+	}
+	if (agreement > 1e-9) say("two roads to what is true are " agreement " apart, tolerance 1e-9")
+	exit bad
+}

@@ -1,0 +1,167 @@
+#!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
+# pages.sh ROOT: what readers see of the charts: the pages and pictures kept in doc/charts, and some drawn of small
+# tables. Nothing is measured. As TAP.
+set -u
+root=$1
+case $root in /*) ;; *) root=$PWD/$root ;; esac
+. "${0%/*}/../tap.sh"
+here=$root/tests/charts
+charts=$root/bench/charts
+kept=$root/doc/charts
+csv=$charts/csv.awk
+stories='headline_integrators headline_equal_step energy_double hard less'
+
+# entries PICTURE.svg: of its legend
+entries() {
+	sed -n 's/.*<g id="gnuplot_plot_[0-9]*[a-z]*" ><title>\(.*\)<\/title>.*/\1/p' "$1" | grep -v '^gnuplot_plot' |
+		sort -u | grep -c .
+}
+
+# at_most_ten FOLDER: legends of stories and models
+at_most_ten() {
+	: >log
+	: >all_entries
+	for name in $stories; do
+		[ ! -f "$1/$name.svg" ] || ls "$1/$name.svg" "$1/${name}"_narrow.svg 2>/dev/null
+	done >pictures
+	ls "$1"/precision_*.svg >>pictures
+	while read -r file; do
+		n=$(entries "$file")
+		echo "$n" >>all_entries
+		[ "$n" -le 10 ] || echo "$(basename "$file"): $n entries" >>log
+	done <pictures
+	# where none is found nothing is read
+	[ "$(sort -n all_entries | tail -n 1)" -ge 5 ] || echo 'no legend is found' >>log
+	[ ! -s log ]
+}
+
+# whole FOLDER: its pages have what they link to, each picture and table is on a page, and what pages need
+whole() {
+	: >log
+	for page in "$1"/*.html; do
+		name=$(basename "$page")
+		awk -f "$here/look.awk" "$page" | sed "s/^/$name: /" >>log
+		sed 's/>/>\n/g' "$page" | sed -n 's/.*<[^>]* \(src\|href\|srcset\)="\([^"]*\)".*/\2/p' >links
+		while read -r link; do
+			file=${link%%#*}
+			[ -z "$file" ] || [ -s "$1/$file" ] || echo "$name: no $link" >>log
+			case $link in
+				*'#'*)
+					grep -q "id=\"${link#*#}\"" "$1/${file:-$name}" ||
+						echo "$name: no $link" >>log ;;
+			esac
+		done <links
+		cat links >>all
+	done
+	for file in "$1"/*.svg "$1"/*.csv; do
+		grep -qxF "$(basename "$file")" all || echo "no page has $(basename "$file")" >>log
+	done
+	rm -f all
+	[ ! -s log ]
+}
+
+# titled FOLDER: the first words of what a picture found stand in it
+titled() {
+	: >log
+	count_of=0
+	for file in "$1"/*.svg; do
+		name=$(basename "$file" .svg)
+		found=$(cd "$root" && sh bench/charts/finding.sh "${name%_narrow}" "$1" | cut -c 1-25)
+		[ -n "$found" ] || continue
+		count_of=$((count_of + 1))
+		sed "s/&apos;/'/g; s/&#39;/'/g" "$file" | grep -qF "$found" ||
+			echo "$name: has no title \"$found\"" >>log
+		! grep -q 'nan\b\|: of  ' <<-EOT || echo "$name: \"$found\"" >>log
+		$found
+		EOT
+	done
+	[ "$count_of" -gt "$2" ] || echo "only $count_of pictures have a finding" >>log
+	[ ! -s log ]
+}
+
+# compared FOLDER: matrix.csv there, and what the page shows of it, against the other road
+compared() {
+	sh "$here/matrix.sh" "$1/precision.csv" | cut -f 1,2,4,6,7 >expected
+	awk -f "$csv" -f "$here/matrix_fields.awk" "$1/matrix.csv" >found
+	diff found expected >log
+	# cells of the page
+	for class in ahead even behind nobody; do
+		sed 's/<td/\n&/g' "$1/index.html" | grep -c "<td class=$class>"
+	done | tr '\n' ' ' >cells
+	awk -F '\t' '{ n[$5]++ } END { printf "%d %d %d %d ", n["ours"] + n["only ours"], n["even"],
+		n["peer"] + n["only peer"], n["none"] }' expected >words
+	cmp cells words >>log 2>&1 || cat cells words >>log
+	[ -s expected ] && [ ! -s log ]
+}
+
+awk -f "$here/palette.awk" "$charts/palette.list" >log
+[ ! -s log ]
+result $? 'palette: contrast with both grounds, colours that a deuteranope tells apart'
+sed 's/^adaptive #....../adaptive #8a7a2e/' "$charts/palette.list" | awk -f "$here/palette.awk" >log
+grep -q 'to a deuteranope' log
+result $? 'palette: colours alike to a deuteranope are noticed'
+sed 's/^other #....../other #c8c8c8/' "$charts/palette.list" | awk -f "$here/palette.awk" >log
+grep -q 'contrast 1.6.* with paper' log
+result $? 'palette: a pale colour is noticed'
+
+whole "$kept"
+result $? 'doc/charts: pages have alts, captions, links that lead somewhere; nothing is on no page'
+titled "$kept" 30
+result $? 'doc/charts: titles of pictures say what is found'
+at_most_ten "$kept"
+result $? 'doc/charts: legends of stories and models have at most 10 entries'
+compared "$kept"
+result $? 'doc/charts: the matrix agrees with precision.csv by another road'
+mkdir again
+cp "$kept"/*.csv "$kept"/*.svg again
+(cd "$root" && sh bench/charts/page.sh "$work/again") >log 2>&1
+for page in "$kept"/*.html "$kept"/style.css; do
+	cmp "$page" "again/$(basename "$page")" >>log 2>&1
+done
+[ "$(ls again/*.html | wc -l)" = "$(ls "$kept"/*.html | wc -l)" ] || echo 'not the same pages' >>log
+[ ! -s log ]
+result $? 'doc/charts: pages made of its tables are those that lie there'
+
+# Two models, one of them unknown, and more methods than a legend holds, some of families nobody has heard of
+few() {
+	mkdir -p "$1"
+	awk -F, 'NR == 1 || $1 == "scs"' "$kept/precision.csv" >"$1/precision.csv"
+	awk -F, '$1 == "pendulum"' OFS=, "$kept/precision.csv" | sed 's/^pendulum/new_thing/' >new
+	cat new >>"$1/precision.csv"
+	for k in 1 2 3 4 5 6 7 8 9; do
+		sed "s/\"RK4\",fixed/\"Solver $k\",fixed/; s/\"etdrk4\"/\"etdam$k\"/
+			s/\"GSL msadams\",adaptive/\"DOP$k\",strange/" new
+	done | grep -e '"Solver' -e '"etdam' -e '"DOP' >>"$1/precision.csv"
+	cp "$kept/hard.csv" "$kept"/headline_*.csv "$1"
+}
+few one
+few two
+for folder in one two; do
+	(cd "$root" && sh bench/charts/draw.sh "$work/$folder") >>log 2>&1 || echo "draw.sh: status $?" >>log
+done
+grep -v '^$' log >said
+[ ! -s said ]
+result $? 'few tables: drawn, without a warning'
+diff -r one two >log
+result $? 'few tables: the same bytes twice'
+whole "$work/one"
+result $? 'few tables: pages of what is there, no link to what is not'
+: >log
+[ -s one/model_new_thing.html ] && grep -q new_thing one/index.html || echo 'the new model has no page' >>log
+grep -q 'id="less"\|energy_double' one/index.html && echo 'the page names what is not there' >>log
+[ ! -s log ]
+result $? 'few tables: a model that nobody has described, no slot for what is missing'
+titled "$work/one" 5
+result $? 'few tables: titles of pictures say what is found'
+at_most_ten "$work/one"
+result $? 'few tables: legends of at most 10 entries among some sixty methods'
+compared "$work/one"
+result $? 'few tables: the matrix by another road'
+cp "$kept/headline_confluence.svg" two/less.svg
+echo 'model,error' >two/less.csv
+echo 'beam,1e-3' >>two/less.csv
+(cd "$root" && sh bench/charts/page.sh "$work/two") >log 2>&1
+grep -q 'id="less"' two/index.html && grep -q '"less.csv"' two/index.html
+result $? 'few tables: what modelling less saves stands on the first page once it is there'
+tap_end
