@@ -43,7 +43,7 @@ static int most_served(const struct emitter *e)
 
 /* ---- its sum ---- */
 
-static void emit_ahead(const struct emitter *e)
+void emit_series_ahead(const struct emitter *e)
 {
 	int order = expansion(e)->order, states = e->system->states;
 	enum { WRITTEN_OUT = 400 };
@@ -101,7 +101,7 @@ static void emit_reach_tables(const struct emitter *e)
 
 /* The last two coefficients, relative to the largest size of each state so far. Of a series in t^n alone they may be 0,
  * or nearly: then those before stand in for them, each two orders over 256, which is more than full series fall. */
-static void emit_remainder(const struct emitter *e)
+void emit_series_remainder(const struct emitter *e)
 {
 	int order = expansion(e)->order, kept = truncation(e)->adaptive ? REMAINDERS : 1;
 	static const char *const factor[] = { "", " * 0.00390625", " * 1.52587890625e-5" };
@@ -420,9 +420,9 @@ void emit_expansion_step(const struct emitter *e)
 		emit_leftover_functions(e);
 	emit_force_table(e);
 	emit_expand_function(e);
-	emit_ahead(e);
+	emit_series_ahead(e);
 	if (looks_at_tolerance(e))
-		emit_remainder(e);
+		emit_series_remainder(e);
 	if (watches(e))
 		emit_is_accurate(e);
 	if (truncation(e)->adaptive) {

@@ -302,26 +302,13 @@ static void define_power(const struct emitter *e, int sequence, const struct seq
 	define(e, coefficient(e, sequence, k), format("(%s) * %s", chain(&sum), inverse));
 }
 
-static const char *time_form(const struct emitter *e, const struct form *form)
-{
-	struct list sum = { 0 };
-	for (int i = 0; i < form->terms; i++) {
-		const struct basis *basis = &form->term[i].basis;
-		const char *operand = basis->kind == BASIS_PI				? "3.141592653589793"
-				      : basis->kind == BASIS_WAVE && basis->power > 0 ? "when"
-										      : NULL;
-		add(&sum, scaled(finite_number(e, form->term[i].factor), operand));
-	}
-	return chain(&sum);
-}
-
 static void define_choice(const struct emitter *e, int sequence, const struct sequence *s, int k)
 {
 	static const char *const sign[] = { "<", "<=", ">", ">=", "==", "!=" };
 	const char *a = coefficient(e, s->a, k), *b = coefficient(e, s->b, k), *choice = own_name(e, sequence, "holds");
 	if (k == 0)
-		say(e, "    const int %s = %s %s %s;\n", choice, time_form(e, s->left), sign[s->comparison],
-		    time_form(e, s->right));
+		say(e, "    const int %s = %s %s %s;\n", choice, time_text(e, s->left, "when"), sign[s->comparison],
+		    time_text(e, s->right, "when"));
 	define(e, coefficient(e, sequence, k), format("%s ? %s : %s", choice, a ? a : "0.0", b ? b : "0.0"));
 }
 
