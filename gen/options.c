@@ -156,7 +156,7 @@ static const struct row {
 	{ "rhs", NULL, "also emit NAME_rhs: the equations as written", take_rhs, NULL },
 	{ "step", "EXPR", "instead of the spec's step", take_step, NULL },
 	{ "scheme", "NAME", "instead of the spec's: ", take_scheme, all_schemes },
-	{ "tolerance", "EXPR", "of scheme taylor: the error that a step may make, relative to each state",
+	{ "tolerance", "EXPR", "of taylor, radau, auto: the error that a step may make, relative to each state",
 	  take_tolerance, NULL },
 	{ "real", "float", "numbers and arithmetic of type float (default: double)", take_real, NULL },
 	{ "form", "NAME", "of a linear step: auto direct delta kick-drift-kick modal", take_form, NULL },

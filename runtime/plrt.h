@@ -14,6 +14,8 @@
  *     crossings.c steps of piecewise-linear models, with every crossing of a breakpoint found
  *     retune.c    coefficients of a step from other params: NAME_retune
  *     rate.c      the rate of a load's phase from another frequency
+ *     root.c      rough roots: the length of a step by its error
+ *     dense.c     linear equations: Newton's method of implicit schemes
  *
  * turnsf.c, growthf.c, ... are the same for models in float, which never touch a double.  Their names end in f where
  * the others have pl_turn, pl_growth, ...: pl_turnf_at is to pl_turn_at as sinf is to sin.
@@ -314,6 +316,26 @@ static inline float pl_accumulatef(float sum, float term, float small, float *re
     return result;
 }
 enum { PL_ACCUMULATE_ADD = 11 };
+
+/* ---- root.c: lengths of steps --------------------------------------------------------------------------- */
+
+/* The n-th root of a, a normal number above 0, n >= 1, within 6 %: without pow, and the same bits on every target. */
+double pl_root(double a, int n);
+float pl_rootf(float a, int n);
+
+/* ---- dense.c: linear equations -------------------------------------------------------------------------- */
+
+/* A, n x n, row-major, by Gauss' elimination with partial pivoting, in place: 1, or 0 where it is singular or not a
+ * number comes out.  Complex: real and imaginary part side by side. */
+int pl_factor(int n, double *A, int *pivot);
+int pl_factor_complex(int n, double *A, int *pivot);
+/* x <- A^-1 x, A and pivot as the other has left them. */
+void pl_solve(int n, const double *A, const int *pivot, double *x);
+void pl_solve_complex(int n, const double *A, const int *pivot, double *x);
+int pl_factorf(int n, float *A, int *pivot);
+int pl_factorf_complex(int n, float *A, int *pivot);
+void pl_solvef(int n, const float *A, const int *pivot, float *x);
+void pl_solvef_complex(int n, const float *A, const int *pivot, float *x);
 
 /* ---- until.c: when a load changes ------------------------------------------------------------------------- */
 

@@ -43,6 +43,11 @@ enum { REAL_DIGITS = FLT_MANT_DIG, REAL_EXPONENTS = FLT_MAX_EXP };
 #define pl_increment pl_incrementf
 #define pl_ramp_before pl_rampf_before
 #define pl_ramp_cancels pl_rampf_cancels
+#define pl_root pl_rootf
+#define pl_factor pl_factorf
+#define pl_solve pl_solvef
+#define pl_factor_complex pl_factorf_complex
+#define pl_solve_complex pl_solvef_complex
 #define pl_peak pl_peakf
 #define pl_peak_bend pl_peakf_bend
 

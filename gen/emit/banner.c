@@ -142,6 +142,30 @@ void banner_expanded(const struct emitter *e)
 	say(e, " * What rounding takes from the state is kept in rest.\n");
 }
 
+/* What is solved at which nodes, how long an internal step is */
+void banner_collocated(const struct emitter *e)
+{
+	const struct truncation *truncation = &e->model->truncation;
+	banner_scheme(e);
+	say(e, " * %s%d stages, of order %d; an internal step is as long as its error is below %s of the largest "
+	       "value of\n"
+	       " * each state so far: several h, whose states its polynomial gives, or a part of h, of which %d are "
+	       "tried "
+	       "at most.\n", e->step->expansion ? "The collocation: " : "", truncation->stages,
+	    2 * truncation->stages - 1, readable_text(truncation->tolerance), truncation->substeps);
+	say(e, splits(e) ? " * Newton's method with the Jacobian of its start, by the modes of its stages: one real "
+			   "and %d "
+			   "complex systems of %d.\n"
+			 : " * Newton's method with the Jacobian at each node: %d stages by %d unknowns.\n",
+	    splits(e) ? (truncation->stages - 1) / 2 : truncation->stages, e->step->motion->coords);
+	if (e->step->expansion)
+		say(e, " * One iteration of it: %d multiplications, %d additions, %d calls.\n",
+		    e->step->iteration.multiplications, e->step->iteration.additions, e->step->iteration.calls);
+	say(e, " * What rounding takes from the state is kept in rest.\n%s%s%s",
+	    e->step->shown->no_phi ? " * There is no Phi: " : "", e->step->shown->no_phi ? e->step->shown->no_phi : "",
+	    e->step->shown->no_phi ? ".\n" : "");
+}
+
 static void banner_expressions(const struct emitter *e)
 {
 	const struct model *model = e->step->shown->model;
@@ -330,6 +354,11 @@ static void banner_forced(const struct emitter *e)
 static void banner_cost(const struct emitter *e)
 {
 	const struct program *program = e->step->program;
+	if (e->step->collocation)
+		say(e, " * %s:\n", e->step->expansion ? "One series, which may serve several steps"
+						       : "One iteration of Newton's method, of which an internal step "
+							 "takes two "
+							 "to four");
 	say(e, "%s * One step of h = %s s, form %s: %d multiplications, %d additions", e->kind->step_note,
 	    readable_text(e->model->h), step_form_text(e->step), program->multiplications, program->additions);
 	if (e->step->anchors)

@@ -106,8 +106,9 @@ static void declare_checks(const struct emitter *e, bool rhs)
 
 static void declare_tables(const struct emitter *e)
 {
-	declare(e, spell(e, "extern const double $n_Phi[$N_STATES][$N_STATES];"), "y(t+h) = Phi y(t) + ...");
-	if (e->system->inputs)
+	if (!e->step->shown->no_phi)
+		declare(e, spell(e, "extern const double $n_Phi[$N_STATES][$N_STATES];"), "y(t+h) = Phi y(t) + ...");
+	if (e->system->inputs && !e->step->shown->no_phi)
 		declare(e, spell(e, "extern const double $n_Gamma[$N_STATES][%d];", input_columns(e->system)),
 			most_taps_before(e) ? "... + Gamma u; of an input: its samples around the step" :
 			e->ramps ? "... + Gamma u; of a ramp: before, after" : "... + Gamma u");

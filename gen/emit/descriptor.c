@@ -18,6 +18,8 @@ static void emit_matrix(const struct emitter *e, const struct step *step, const 
 /* Of the states as written; of those that are kept where a function reads it */
 void emit_phi(const struct emitter *e)
 {
+	if (e->step->shown->no_phi)
+		return;
 	emit_matrix(e, e->step->shown, spell(e, "const double $n_Phi"));
 	if (e->model->relative && (has_jump(e) || e->kind->reads_phi(e->step)))
 		emit_matrix(e, e->step, format("static const double %s", stepped_table(e, "Phi")));
@@ -36,7 +38,8 @@ static void emit_input_matrix(const struct emitter *e, const struct step *step, 
 
 void emit_gamma(const struct emitter *e)
 {
-	emit_input_matrix(e, e->step->shown, spell(e, "const double $n_Gamma"));
+	if (!e->step->shown->no_phi)
+		emit_input_matrix(e, e->step->shown, spell(e, "const double $n_Gamma"));
 }
 
 static void emit_wrapper(const struct emitter *e, const char *result, const char *function, const char *parameters,

@@ -111,6 +111,9 @@ struct writer;                      /* declares locals for what several places u
 typedef const char *basis_writer(const struct emitter *e, const struct basis *basis); /* NULL: 1 */
 struct writer *writer_new(const struct emitter *e, basis_writer *basis_text, int count, const struct form *const *form);
 const char *write_form(struct writer *w, const struct form *form, int indent);
+void write_conditions_at(struct writer *w, const char *when);     /* those on time alone: C of a time; else each at t */
+bool is_linear_time(const struct form *form);                     /* constant, or a + b t */
+const char *time_text(const struct emitter *e, const struct form *form, const char *when);
 
 /* ---- leftover.c: what a scheme leaves over, as a function ---- */
 
@@ -297,8 +300,56 @@ void emit_validity(const struct emitter *e);
 bool expansion_places(const struct emitter *e);
 void emit_expansion_place(const struct emitter *e);
 void emit_expansion_members(const struct emitter *e);
+/* Of steps by collocation too, where there is a series beside it */
+void emit_series_ahead(const struct emitter *e);                         /* NAME_ahead: the sum of the series */
+void emit_series_remainder(const struct emitter *e);                     /* NAME_remainders: its last terms */
 void emit_expansion_step(const struct emitter *e);
 void emit_expansion_at(const struct emitter *e);
+
+/* ---- emit_motion.c: the highest derivatives and their Jacobian ---- */
+
+/* So many coordinates that stages are solved by their modes, with the Jacobian of the step's start */
+bool splits(const struct emitter *e);
+bool motion_reads_load(const struct emitter *e, int load);
+void emit_motion(const struct emitter *e);                        /* NAME_known, NAME_linearize */
+int  known_values(const struct emitter *e);                       /* what is known of a time; 0: nothing is read */
+/* `inside`: after now, inside the step */
+const char *known_call(const struct emitter *e, const char *tau, const char *inside, const char *node);
+const char *forces_call(const struct emitter *e, const char *node, const char *y, const char *left);
+const char *linearize_call(const struct emitter *e, const char *node, const char *y, const char *left,
+			   const char *slope);
+/* Samples at the start and slopes, as the functions of an internal step take them and are handed them */
+const char *samples_parameter(const struct emitter *e);
+const char *samples_argument(const struct emitter *e);
+/* C that declares left and slope_of, and fills them where the internal step starts; samples are called u and slope */
+const char *start_jacobian(const struct emitter *e);
+/* C: of coordinate j the state whose derivative is its highest; of state i its coordinate, what a highest derivative
+ * of 1 gains it in dt, its derivative */
+const char *highest_text(const struct emitter *e, const char *j);
+const char *coord_text(const struct emitter *e, const char *i);
+const char *kind_text(const struct emitter *e, const char *i);
+const char *moved_text(const struct emitter *e, const char *i);
+const char *speed_text(const struct emitter *e, const char *i);
+void emit_state_table(const struct emitter *e);                   /* that they read, where there is no formula */
+
+/* ---- emit_newton.c: Newton's method at the nodes ---- */
+
+int  unknowns_of_stages(const struct emitter *e);
+void emit_stage_tables(const struct emitter *e);
+void emit_newton(const struct emitter *e);                        /* NAME_iterate */
+
+/* ---- emit_switches.c: beside the collocation a series ---- */
+
+void emit_series_steps(const struct emitter *e);                  /* NAME_rates, NAME_product, NAME_expand_step */
+void emit_choice(const struct emitter *e);                        /* in NAME_advance: the one or the other */
+
+/* ---- emit_collocation.c: steps by collocation ---- */
+
+bool collocation_places(const struct emitter *e);
+void emit_collocation_place(const struct emitter *e);
+void emit_collocation_members(const struct emitter *e);
+void emit_collocation_step(const struct emitter *e);
+void emit_collocation_at(const struct emitter *e);
 
 /* ---- banner.c, declarations.c: what a header has ---- */
 
@@ -308,6 +359,7 @@ void banner_leftover(const struct emitter *e);
 void banner_regions(const struct emitter *e);
 void banner_parts(const struct emitter *e);
 void banner_expanded(const struct emitter *e);
+void banner_collocated(const struct emitter *e);
 void emit_declarations(const struct emitter *e, bool rhs);
 
 /* ---- kept.c: states as written, and as they are kept ---- */

@@ -21,7 +21,7 @@ static bool changes(const struct emitter *e)
 
 enum { WRITTEN_OUT = 400 };             /* terms; more are looped over */
 
-static void emit_ahead(const struct emitter *e)
+void emit_series_ahead(const struct emitter *e)
 {
 	int order = expansion(e)->order, states = e->system->states;
 	say(e, "\n/* What the series gains from its start, theta h later */\n"
@@ -388,7 +388,7 @@ void emit_expansion_step(const struct emitter *e)
 		emit_leftover_functions(e);
 	emit_force_table(e);
 	emit_expand_function(e);
-	emit_ahead(e);
+	emit_series_ahead(e);
 	emit_validity(e);
 	if (has_offset(e))
 		emit_between(e);

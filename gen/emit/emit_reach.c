@@ -95,6 +95,11 @@ static void emit_remainder(const struct emitter *e, int kept)
 	       "}\n");
 }
 
+void emit_series_remainder(const struct emitter *e)
+{
+	emit_remainder(e, REMAINDERS);
+}
+
 /* ---- steps by tolerance ---- */
 
 static void emit_part(const struct emitter *e)
@@ -250,7 +255,7 @@ void emit_validity(const struct emitter *e)
 		return;
 	if (!e->system->inputs)
 		emit_reach_tables(e);
-	emit_remainder(e, REMAINDERS);
+	emit_series_remainder(e);
 	emit_part(e);
 	emit_steps_served(e);
 	emit_agrees(e);

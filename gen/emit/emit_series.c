@@ -576,19 +576,6 @@ static void define_power(const struct emitter *e, int sequence, const struct seq
 	define(e, name_of(e, sequence, k), format("(%s) * %s", chain(&sum), helper(e, sequence, "inverse")));
 }
 
-static const char *time_form(const struct emitter *e, const struct form *form)
-{
-	struct list sum = { 0 };
-	for (int i = 0; i < form->terms; i++) {
-		const struct basis *basis = &form->term[i].basis;
-		const char *operand = basis->kind == BASIS_PI				? "3.141592653589793"
-				      : basis->kind == BASIS_WAVE && basis->power > 0 ? "when"
-										      : NULL;
-		add(&sum, scaled(finite_number(e, form->term[i].factor), operand));
-	}
-	return chain(&sum);
-}
-
 static void define_choice(const struct emitter *e, int sequence, const struct sequence *s, int k)
 {
 	const char *a = coefficient(e, s->a, k), *b = coefficient(e, s->b, k);
@@ -602,7 +589,7 @@ static void define_helper(const struct emitter *e, int sequence, const struct se
 	static const char *const sign[] = { "<", "<=", ">", ">=", "==", "!=" };
 	if (s->kind == SEQUENCE_CHOICE)
 		define_as(e, "const int", helper_name(e, sequence, "holds"),
-			  format("%s %s %s", time_form(e, s->left), sign[s->comparison], time_form(e, s->right)));
+			  format("%s %s %s", time_text(e, s->left, "when"), sign[s->comparison], time_text(e, s->right, "when")));
 	else if (s->kind == SEQUENCE_ROOT)
 		define(e, helper_name(e, sequence, "half"), format("0.5 / %s", coefficient(e, sequence, 0)));
 	else

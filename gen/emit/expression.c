@@ -21,6 +21,7 @@ struct writer {
 	int parts;
 	struct part *part;
 	int locals;                 /* declared so far */
+	const char *when;           /* conditions on time alone hold as they do at this time; NULL: as at any other */
 };
 
 static struct part *part_of(const struct writer *w, const struct form *form)
@@ -87,6 +88,11 @@ struct writer *writer_new(const struct emitter *e, basis_writer *basis_text, int
 		count_form(w, form[i]);
 	name_lets(w);
 	return w;
+}
+
+void write_conditions_at(struct writer *w, const char *when)
+{
+	w->when = when;
 }
 
 /* ---- text ---- */
@@ -212,6 +218,40 @@ static const char *extreme_text(struct writer *w, const struct atom *a)
 	return text;
 }
 
+/* Constant, or a + b t */
+bool is_linear_time(const struct form *form)
+{
+	for (int i = 0; i < form->terms; i++) {
+		const struct basis *basis = &form->term[i].basis;
+		bool time = basis->kind == BASIS_WAVE && is_polynomial(basis->wave) && basis->power <= 1;
+		if (!time && basis->kind > BASIS_PI)
+			return false;
+	}
+	return true;
+}
+
+/* Numbers and the time `when` */
+const char *time_text(const struct emitter *e, const struct form *form, const char *when)
+{
+	const char **term = ARRAY(const char *, (size_t)form->terms + 1);
+	for (int i = 0; i < form->terms; i++) {
+		const struct basis *basis = &form->term[i].basis;
+		const char *operand = basis->kind == BASIS_PI				? "3.141592653589793"
+				      : basis->kind == BASIS_WAVE && basis->power > 0 ? when
+										      : NULL;
+		term[i] = scaled(finite_number(e, form->term[i].factor), operand);
+	}
+	return form->terms ? tree(form->terms, term, 18) : "0.0";
+}
+
+static bool is_decided_in_time(const struct writer *w, const struct atom *a)
+{
+	bool timed = w->when != NULL;
+	for (int i = 0; i < a->operands; i++)
+		timed = timed && is_linear_time(a->operand[i]);
+	return timed;
+}
+
 static const char *call_text(struct writer *w, const struct atom *a)
 {
 	const char *x, *low, *high;
@@ -224,7 +264,8 @@ static const char *call_text(struct writer *w, const struct atom *a)
 		x = word_of(w, a->operand[0]);
 		return format("(%s < 0.0 ? -%s : %s)", x, x, x);
 	case FN_SGN:
-		x = word_of(w, a->operand[0]);
+		x = is_decided_in_time(w, a) ? declare(w, NULL, time_text(w->e, a->operand[0], w->when))
+					     : word_of(w, a->operand[0]);
 		return format("(double)((%s > 0.0) - (%s < 0.0))", x, x);
 	case FN_CLIP:
 	case FN_DEADZONE:
@@ -241,6 +282,9 @@ static const char *call_text(struct writer *w, const struct atom *a)
 static const char *comparison_text(struct writer *w, const struct atom *a)
 {
 	static const char *const sign[] = { "<", "<=", ">", ">=", "==", "!=" };
+	if (is_decided_in_time(w, a))
+		return format("%s %s %s", time_text(w->e, a->operand[0], w->when), sign[a->comparison],
+			      time_text(w->e, a->operand[1], w->when));
 	const char *left = argument_text(w, a->operand[0]);
 	return format("%s %s %s", left, sign[a->comparison], argument_text(w, a->operand[1]));
 }

@@ -352,11 +352,53 @@ static const struct kind expanded = {
 	.params = emit_no_params
 };
 
+/* ---- collocated: polynomials that solve the equations at nodes ---- */
+
+static void emit_collocation_tables(const struct emitter *e)
+{
+	emit_times_of_changes(e);
+	emit_collocation_place(e);
+}
+
+static bool collocation_reads_load(const struct emitter *e, int load)
+{
+	return motion_reads_load(e, load) || (e->step->expansion && e->step->expansion->load[load]);
+}
+
+static const struct kind collocated = {
+	.banner = banner_collocated,
+	.step_note = "",
+	.banner_more = nothing,
+	.no_jump = "what is left over is not linear in the state",
+	.no_at = always,
+	.constants = nothing,
+	.types = nothing,
+	.coefficients = nothing,
+	.members = emit_collocation_members,
+	.keeps_status = true,
+	.init_note = "t = 0, the spec's initial values",
+	.status_note = "0, or PL_... bits (plrt.h)",
+	.declare_state = nothing,
+	.declare_more = nothing,
+	.start = no_start,
+	.places = collocation_places,
+	.reads_load = collocation_reads_load,
+	.reads_phi = never,
+	.tables = emit_collocation_tables,
+	.pass = nothing,
+	.step = emit_collocation_step,
+	.held = nothing,
+	.at = emit_collocation_at,
+	.wrappers = nothing,
+	.params = emit_no_params
+};
+
 const struct kind *row_of_kind(enum step_kind kind)
 {
 	static const struct kind *const row[KINDS] = {
 		[KIND_LINEAR] = &linear, [KIND_TUNED] = &tuned, [KIND_REGIONS] = &regions,
-		[KIND_PARTS] = &parts, [KIND_LEFTOVER] = &leftover, [KIND_EXPANDED] = &expanded
+		[KIND_PARTS] = &parts, [KIND_LEFTOVER] = &leftover, [KIND_EXPANDED] = &expanded,
+		[KIND_COLLOCATED] = &collocated
 	};
 	return row[kind];
 }

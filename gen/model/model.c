@@ -169,6 +169,21 @@ static void evaluate_tolerance(struct building *b, struct node *node, struct pla
 	mpq_clear(least);
 }
 
+static int stages_of(struct building *b, struct node *node)
+{
+	int stages = LEAST_STAGES;
+	mpq_t asked;
+	mpq_init(asked);
+	collect_constant(&b->collector, node, asked);
+	while (stages <= MOST_STAGES && mpq_cmp_ui(asked, (unsigned long)stages, 1) != 0)
+		stages += 2;
+	if (stages > MOST_STAGES)
+		error(node->start, NULL, "the number of stages of scheme %s is 3, 5, 7 or 9, found %s",
+		      scheme_name(b->model->scheme), readable_text(asked));
+	mpq_clear(asked);
+	return stages;
+}
+
 /* The order of a series, given or from its tolerance; the most steps within one h */
 static void evaluate_truncation(void *context)
 {
@@ -189,7 +204,9 @@ static void evaluate_truncation(void *context)
 	if (tolerance)
 		evaluate_tolerance(b, tolerance, at);
 	truncation->substeps = substeps ? whole_number(b, substeps, 1, MOST_SUBSTEPS, "the most substeps") : SUBSTEPS;
-	if (order && row->expands)
+	if (order && row->collocates)
+		truncation->stages = stages_of(b, order);
+	else if (order && row->expands)
 		truncation->order = whole_number(b, order, LEAST_ORDER, MOST_ORDER, "an order");
 	choose_order(model, b->request->single);
 }

@@ -103,6 +103,7 @@ struct request {                    /* what the user asks for on the command lin
 };
 struct truncation {                 /* of a Taylor series */
 	int order;                  /* of its last term in h */
+	int stages;                 /* of a collocation; 0: there is none */
 	bool adaptive;              /* steps as long as the tolerance lets them be; else each is h */
 	mpq_t tolerance;            /* of the last terms, relative to the largest of each state; 0: not looked at */
 	int substeps;               /* most within one h */
@@ -136,6 +137,7 @@ struct model {
 	int *owner;                 /* per coordinate: the row of its equation */
 	int channels;               /* of what is left over, of each operator: one for each equation that has some */
 	int *channel_row;           /* its equation */
+	struct form **left_slope;   /* of a scheme that collocates: [channel][state], the leftover's derivative */
 	const struct atoms *atoms;
 	struct switching *switching; /* exact: the regions of a piecewise-linear model; NULL: it has one */
 	struct smoothness smooth;
@@ -384,6 +386,7 @@ void build_regions(struct building *b);
 /* ---- truncation.c: where a series ends ---- */
 
 enum { LEAST_ORDER = 4, MOST_ORDER = 30 };
+enum { LEAST_STAGES = 3, MOST_STAGES = 9 };
 /* from its tolerance, which is the default where it is 0; of what is no series, none */
 void choose_order(struct model *model, bool single);
 

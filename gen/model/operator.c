@@ -277,6 +277,22 @@ static void find_channels(struct building *b)
 	}
 }
 
+/* What Newton's method needs of it */
+static void differentiate_left(void *context)
+{
+	struct building *b = context;
+	struct model *model = b->model;
+	const struct linear *system = &model->system;
+	const struct form *const *left = (const struct form *const *)model->operator[0].left;
+	model->left_slope = ARRAY(struct form *, (size_t)(model->channels * system->states));
+	for (int i = 0; i < system->states; i++) {
+		struct form **slope = form_derivatives(&b->collector, model->channels, left, system->coord[i],
+						       i >= system->n);
+		for (int e = 0; e < model->channels; e++)
+			model->left_slope[e * system->states + i] = slope[e];
+	}
+}
+
 /* ---- waves that the leftover reads get load states, as loads do ---- */
 
 struct visit {
@@ -306,6 +322,8 @@ void visit_leftovers(const struct model *model, void (*visit)(void *, const stru
 	for (int k = 0; k < model->operators; k++)
 		for (int e = 0; e < model->channels; e++)
 			visit_form(&v, model->operator[k].left[e]);
+	for (int i = 0; model->left_slope && i < model->channels * model->system.states; i++)
+		visit_form(&v, model->left_slope[i]);
 	if (model->selector)
 		visit_form(&v, model->selector);
 }
@@ -389,6 +407,8 @@ void build_operators(struct building *b)
 		model->selector = NULL;
 		return;
 	}
+	if (scheme_row(model->scheme)->collocates)
+		statement_guard(differentiate_left, b);
 	visit_leftovers(model, place_waves, b);
 }
 

@@ -375,6 +375,7 @@ static void check_need(const struct building *b, bool left)
 		say_warning(b->spec->operator_at, NULL, "the operator has no effect: %s",
 			    scheme->holds_coupling
 				    ? format("that of scheme %s is each coordinate's own terms", scheme->name)
+			    : scheme->collocates ? format("scheme %s takes the whole right side as it is", scheme->name)
 			    : scheme->expands ? format("scheme %s expands the whole right side", scheme->name)
 					      : "nothing is left over");
 	if (left && !model->loads_left)

@@ -833,7 +833,7 @@ static void read_step(struct parser *p)
 	expect_end(p);
 }
 
-/* scheme: scheme NAME [ order ] */
+/* scheme: scheme NAME [ order or stages ] */
 static void read_scheme(struct parser *p)
 {
 	struct place at = last_token(p, 6);

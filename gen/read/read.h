@@ -196,7 +196,9 @@ struct scheme_row {
 	bool holds_coupling;        /* over the step: A is each coordinate's own terms, of linear models too */
 	bool holds_leftover;        /* over the step: there is a value of its order at any time between steps */
 	bool predicts;              /* the nodes by an explicit method, which bears no stiffness */
-	bool expands;               /* the whole right side, as a Taylor series in time */
+	bool expands;               /* the whole right side, nothing taken out: as a Taylor series in time, */
+	bool collocates;            /* or by collocation, which bears stiffness; */
+	bool switches;              /* or by both, as the stiffness is */
 	/* Stability: where the operator's squared frequencies are below the model's by d, the state grows at h d over
 	 * this; 0: its phase drifts, by the order. */
 	int growth_divisor;

@@ -131,11 +131,14 @@ static void person_step(FILE *to, const struct step *step)
 		fprintf(to, ".\n%s", drift_text(&drift));
 	if (step->rounding.known)
 		fprintf(to, ".\n%s", rounding_text(step));
-	fprintf(to, ".\nPhi%s, each entry correctly rounded:\n",
-		!has_leftover(step)  ? ""
-		: step->branches > 1 ? " = e^{A h} of the first operator"
-				     : " = e^{A h}");
-	for (int i = 0; i < model->system.states; i++) {
+	if (step->shown->no_phi)
+		fprintf(to, ".\nThere is no Phi: %s.\n", step->shown->no_phi);
+	else
+		fprintf(to, ".\nPhi%s, each entry correctly rounded:\n",
+			!has_leftover(step)  ? ""
+			: step->branches > 1 ? " = e^{A h} of the first operator"
+					     : " = e^{A h}");
+	for (int i = 0; i < model->system.states && !step->shown->no_phi; i++) {
 		fprintf(to, "    %-8s", model->state_name[i]);
 		for (int j = 0; j < model->system.states; j++)
 			fprintf(to, " %24s",
@@ -149,6 +152,8 @@ static void person_step(FILE *to, const struct step *step)
 	else if (model->tuning)
 		fprintf(to, "%s_at: e^{A tau} of the instance's own params, as %s_retune computes it.\n", model->name,
 			model->name);
+	else if (step->collocation)
+		fprintf(to, "%s_at: the polynomial of the internal step, or of the next.\n", model->name);
 	else if (step->expansion)
 		fprintf(to, "%s_at: the series of the step, at a part of it.\n", model->name);
 	else if (step->series.emitted)
@@ -314,6 +319,27 @@ static void person_parts(FILE *to, const struct step *step)
 		bytes, MAX_EVENTS, MAX_SPLITS, most);
 }
 
+/* Stages, order and nodes; how Newton's method solves them; what an iteration costs */
+static void person_collocation(FILE *to, const struct step *step)
+{
+	const struct collocation *x = step->collocation;
+	int coords = step->motion->coords;
+	fprintf(to, ".\nThe collocation has %d stages, of order %d at the ends of its steps and %d inside, at the "
+		"nodes\n   ",
+		x->stages, 2 * x->stages - 1, x->stages + 1);
+	for (int i = 0; i < x->stages; i++)
+		fprintf(to, "%s %.6g", i ? "," : "", x->node[i]);
+	if (step->motion->apart)
+		fprintf(to, ".\nNewton's method takes the Jacobian where a step starts, and solves one real and %d "
+			"complex systems of %d unknowns", x->modes - 1, coords);
+	else
+		fprintf(to, ".\nNewton's method takes the Jacobian at each node, and solves %d unknowns together",
+			x->stages * coords);
+	fprintf(to, ":\n%d multiplications, %d additions, %d calls an iteration, of which a step takes two to four; "
+		"where the step is longer than h, several h share them", step->iteration.multiplications,
+		step->iteration.additions, step->iteration.calls);
+}
+
 /* What went where: the operators, then the leftover of the first; those of the others differ in linear terms only. */
 static void person_split(FILE *to, const struct step *step)
 {
@@ -347,6 +373,8 @@ static void person_split(FILE *to, const struct step *step)
 	if (model->truncation.adaptive)
 		fprintf(to, ", its steps as long as a tolerance of %s lets them be",
 			readable_text(model->truncation.tolerance));
+	if (step->collocation)
+		person_collocation(to, step);
 	if (loses_order(model))
 		fprintf(to, " where all is smooth; here of order %s at most: %s", order_text(model),
 			smoothness_text(model));
@@ -700,15 +728,21 @@ void explain_json(FILE *to, const struct step *step)
 	json_rational_matrix(to, "C", model->written->n, (const mpq_t *)model->written->system.C);
 	json_rational_matrix(to, "K", model->written->n, (const mpq_t *)model->written->system.K);
 	json_poles(to, step);
-	json_matrix(to, "Phi", model->system.states, model->system.states, Phi);
+	if (!step->shown->no_phi)
+		json_matrix(to, "Phi", model->system.states, model->system.states, Phi);
 	json_loads(to, step);
 	if (scheme_row(model->scheme)->holds_coupling)
 		fprintf(to, "  \"growth_rate\": %.17g,\n", growth_rate(step));
 	static const char *const smooth[] = { "smooth", "kink", "jump" };
 	fprintf(to, "  \"order\": %d,\n  \"smooth\": \"%s\",\n", order_that_holds(model), smooth[model->smooth.kind]);
-	if (step->expansion && mpq_sgn(model->truncation.tolerance) != 0)
+	if (step->collocation)
+		fprintf(to, "  \"stages\": %d,\n"
+			    "  \"iteration\": {\"multiplications\": %d, \"additions\": %d, \"calls\": %d},\n",
+			step->collocation->stages, step->iteration.multiplications, step->iteration.additions,
+			step->iteration.calls);
+	if ((step->expansion || step->collocation) && mpq_sgn(model->truncation.tolerance) != 0)
 		fprintf(to, "  \"tolerance\": %s,\n", shortest(round_rational(model->truncation.tolerance)));
-	if (model->truncation.adaptive && step->expansion)
+	if (model->truncation.adaptive && (step->expansion || step->collocation))
 		fprintf(to, "  \"substeps\": %d,\n", model->truncation.substeps);
 	if (step->expansion)
 		json_reach(to, step);

@@ -395,6 +395,35 @@ static void print_expansion(FILE *to, const struct step *step)
 				sequence_definition(step, &x->sequence[i]));
 }
 
+/* ---- collocation ---- */
+
+static void print_collocation(FILE *to, const struct step *step)
+{
+	const struct collocation *x = step->collocation;
+	const struct motion *m = step->motion;
+	const struct model *model = step->model;
+	if (step->expansion)
+		print_expansion(to, step);
+	else
+		print_tables(to, step);
+	fprintf(to, "Collocation at %d nodes of an internal step:\n   ", x->stages);
+	for (int i = 0; i < x->stages; i++)
+		fprintf(to, "%s %s", i ? "," : "", shortest(x->node[i]));
+	fprintf(to, "\nIts unknowns, the highest derivatives at each node%s:\n",
+		m->columns ? ", what loads and inputs give them apart" : "");
+	for (int i = 0; i < m->coords; i++)
+		fprintf(to, "    %s%s = %s\n", model->coord_name[i], highest_state(&model->system, i) == i ? "'" : "''",
+			form_text(model, m->force[i]));
+	fprintf(to, "Their Jacobian, where it is not 0:\n");
+	for (int k = 0; k < m->entries; k++)
+		fprintf(to, "    of %s by %s%s = %s\n", model->coord_name[m->entry[k].coord],
+			model->coord_name[m->entry[k].of],
+			m->entry[k].twice || highest_state(&model->system, m->entry[k].of) == m->entry[k].of ? "" : "'",
+			form_text(model, m->entry[k].slope));
+	fprintf(to, "An iteration of Newton's method: %d multiplications, %d additions, %d calls\n",
+		step->iteration.multiplications, step->iteration.additions, step->iteration.calls);
+}
+
 /* ---- the whole ---- */
 
 static void print_reads(FILE *to, const struct step *step)
@@ -426,6 +455,8 @@ void explain_program(FILE *to, const struct step *step)
 		scheme_name(step->model->scheme), step_form_text(step), readable_text(step->model->h));
 	if (step->model->switching)
 		(step->parts ? print_parts : print_regions)(to, step);
+	else if (step->collocation)
+		print_collocation(to, step);
 	else if (step->expansion)
 		print_expansion(to, step);
 	else if (has_leftover(step))

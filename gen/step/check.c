@@ -288,6 +288,22 @@ static void check_expansion(struct check *c)
 	}
 }
 
+static void check_collocation(struct check *c)
+{
+	const struct motion *m = c->step->motion;
+	int coords = c->step->branch->system.n;
+	if (c->step->expansion)
+		check_expansion(c);
+	c->where = "the collocation";
+	need(c, c->step->collocation && c->step->collocation->modes == (c->step->collocation->stages + 1) / 2,
+	     "there is none, or its modes are not those of its stages");
+	c->where = "the highest derivatives";
+	need(c, m && m->coords == coords, "there is none of each coordinate");
+	for (int i = 0; i < m->entries; i++)
+		need(c, among(m->entry[i].coord, coords) && among(m->entry[i].of, coords),
+		     "an entry of their Jacobian is out of range");
+}
+
 void program_check(const struct step *step)
 {
 	struct check c = { .step = step, .program = step->program, .where = "program" };
@@ -298,6 +314,8 @@ void program_check(const struct step *step)
 		check_regions(&c, step);
 	else if (step->kind == KIND_EXPANDED)
 		check_expansion(&c);
+	else if (step->kind == KIND_COLLOCATED)
+		check_collocation(&c);
 	else if (has_leftover(step))
 		check_actions(&c);
 	else

@@ -418,3 +418,34 @@ void count_expansion(const struct step *step, struct program *program)
 			program->uses[column] = x->load[l];
 	count_loads(program, step);
 }
+
+/* ---- Newton's method in a collocated step ---- */
+
+/* Elimination of n unknowns, and one right side; of complex numbers four times that */
+static int elimination(int n)
+{
+	return n * (n * n - 1) / 3 + n * n;
+}
+
+void count_collocation(struct step *step)
+{
+	enum { OF_COMPLEX = 4 };
+	const struct motion *m = step->motion;
+	int s = step->collocation->stages, n = m->coords, sums = 2 * s * s * n, solved;
+	bool apart = m->apart;
+	struct counting c = { .seen = ARRAY(bool, (size_t)atoms_count(step->model->atoms)) };
+	for (int i = 0; i < n; i++)
+		cost_form(&c, m->force[i]);
+	for (int k = 0; k < m->entries && !apart; k++)
+		cost_form(&c, m->entry[k].slope);
+	solved = apart ? n * n * (1 + OF_COMPLEX * (s - 1) / 2) + 2 * s * s * n
+		       : elimination(s * n) + m->entries * s * s;
+	step->iteration.multiplications = s * c.cost.multiplications + sums + solved;
+	step->iteration.additions = s * c.cost.additions + sums + solved;
+	step->iteration.calls = s * c.cost.calls;
+	if (step->expansion)
+		return;
+	step->program->multiplications = step->iteration.multiplications;
+	step->program->additions = step->iteration.additions;
+	step->program->calls = step->iteration.calls;
+}

@@ -10,7 +10,8 @@ enum step_kind kind_of_step(const struct model *model)
 		return KIND_TUNED;
 	if (model->channels == 0)
 		return KIND_LINEAR;
-	return scheme_row(model->scheme)->expands ? KIND_EXPANDED : KIND_LEFTOVER;
+	const struct scheme_row *row = scheme_row(model->scheme);
+	return row->collocates ? KIND_COLLOCATED : row->expands ? KIND_EXPANDED : KIND_LEFTOVER;
 }
 
 bool is_anchored(const struct step *step, int load)
@@ -59,7 +60,7 @@ bool *loads_of_regions(const struct step *step)
 
 bool has_leftover(const struct step *step)
 {
-	return step->kind == KIND_LEFTOVER || step->kind == KIND_EXPANDED;
+	return step->kind == KIND_LEFTOVER || step->kind == KIND_EXPANDED || step->kind == KIND_COLLOCATED;
 }
 
 void need_closed_form(const struct step *step)
@@ -68,7 +69,8 @@ void need_closed_form(const struct step *step)
 		[KIND_REGIONS] = "where it crosses a breakpoint is found by a search",
 		[KIND_PARTS] = "where it crosses a breakpoint is found by a search",
 		[KIND_LEFTOVER] = "what is left over has no closed form",
-		[KIND_EXPANDED] = "what is left over has no closed form"
+		[KIND_EXPANDED] = "what is left over has no closed form",
+		[KIND_COLLOCATED] = "what is left over has no closed form"
 	};
 	const char *why = of_kind[step->kind];
 	if (!why && step->model->scheme != SCHEME_EXACT)

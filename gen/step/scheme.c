@@ -136,16 +136,21 @@ static void build_leftover_step(struct step *step)
 	series_plan(step);
 }
 
-/* e^{A h} is for readers of the table alone. */
-static void build_expanded_step(struct step *step)
+struct reading { struct step *step; unsigned long parts; };    /* h times 0, or 1 */
+
+/* e^{A h}, for readers of the table alone */
+static void make_read_table(void *context)
 {
+	struct reading *reading = context;
 	struct recipe *recipe = NEW(struct recipe);
+	recipe->step = reading->step;
+	add_table(recipe, "full", (long)reading->parts, 1, true);
+	make_tables(reading->step, recipe->tables, recipe->table);
+}
+
+static void build_series(struct step *step)
+{
 	int states = step->branch->system.states;
-	recipe->step = step;
-	need_direct(step);
-	step->layout = layout_of(&step->branch->system, false);
-	add_table(recipe, "full", 1, 1, true);
-	make_tables(step, recipe->tables, recipe->table);
 	step->carry = ARRAY(int, (size_t)states);
 	step->program = NEW(struct program);
 	step->program->compensated = true;
@@ -157,6 +162,10 @@ static void build_expanded_step(struct step *step)
 	}
 	step->expansion = expansion_of(step, step->model->truncation.order);
 	step->series.emitted = true;
+}
+
+static void count_series(struct step *step)
+{
 	count_expansion(step, step->program);
 	if (step->program->multiplications > LIMIT_SERIES)
 		error(step->model->asked.scheme_at, "etdrk4 and the schemes like it loop over tables",
@@ -165,12 +174,43 @@ static void build_expanded_step(struct step *step)
 		      step->expansion->order, step->program->multiplications, LIMIT_SERIES);
 }
 
+static void build_expanded_step(struct step *step)
+{
+	need_direct(step);
+	step->layout = layout_of(&step->branch->system, false);
+	make_read_table(&(struct reading){ step, 1 });
+	build_series(step);
+	count_series(step);
+}
+
+/* What has no series, a step of this kind cannot do either: beside a series it is that, else one to find it out. Where
+ * h is that of rare outputs, e^{A h} may be beyond all range. */
+static void build_collocated_step(struct step *step)
+{
+	bool switches = scheme_row(step->model->scheme)->switches;
+	need_direct(step);
+	step->layout = layout_of(&step->branch->system, false);
+	if (!silent_guard(make_read_table, &(struct reading){ step, 1 })) {
+		make_read_table(&(struct reading){ step, 0 });
+		step->no_phi = format("e^{A h} is beyond the range of %s", target_name());
+	}
+	build_series(step);
+	step->collocation = collocation_of(step);
+	step->motion = motion_of(step);
+	if (switches)
+		count_series(step);
+	else
+		step->expansion = NULL;
+	count_collocation(step);
+}
+
 static void build(void *context)
 {
 	static void (*const build_kind[KINDS])(struct step *) = {
 		[KIND_LINEAR] = build_linear_step, [KIND_TUNED] = build_tuned_step,
 		[KIND_REGIONS] = build_regions_step, [KIND_PARTS] = build_parts_step,
-		[KIND_LEFTOVER] = build_leftover_step, [KIND_EXPANDED] = build_expanded_step
+		[KIND_LEFTOVER] = build_leftover_step, [KIND_EXPANDED] = build_expanded_step,
+		[KIND_COLLOCATED] = build_collocated_step
 	};
 	struct step *step = context;
 	const struct model *model = step->model;

@@ -360,10 +360,11 @@ static int angle_sequence(struct sequencing *w, int y, int x)
 	return c;
 }
 
-static _Noreturn void no_series(const struct atom *atom, const char *why)
+static _Noreturn void no_series(const struct sequencing *w, const struct atom *atom, const char *why)
 {
 	error(atom->node->start, "etdrk4 and the schemes like it step across it, of lower order there",
-	      "scheme taylor needs what is smooth between the changes of the loads: '%s' %s",
+	      "scheme %s needs what is smooth between the changes of the loads: '%s' "
+	      "%s", scheme_name(w->step->model->scheme),
 	      text_between(atom->node->start, atom->node->end), why);
 }
 
@@ -482,7 +483,7 @@ static int sequence_of_call(struct sequencing *w, const struct atom *atom)
 	case FN_ATAN2:
 		b = sequence_of_form(w, atom->operand[1]);
 		return angle_sequence(w, a, b);
-	default: no_series(atom, "is not");
+	default: no_series(w, atom, "is not");
 	}
 }
 
@@ -519,7 +520,7 @@ static int sequence_of_choice(struct sequencing *w, const struct atom *atom)
 	const struct atom *compare = condition->terms == 1 ? condition->term[0].basis.atom : NULL;
 	if (!compare || compare->kind != ATOM_COMPARE || mpq_cmp_ui(condition->term[0].factor, 1, 1) != 0 ||
 	    !is_linear_in_time(compare->operand[0]) || !is_linear_in_time(compare->operand[1]))
-		no_series(atom, "changes where that is not known beforehand");
+		no_series(w, atom, "changes where that is not known beforehand");
 	int a = sequence_of_form(w, atom->operand[1]), b = sequence_of_form(w, atom->operand[2]);
 	return choice(w, compare->operand[0], compare->comparison, compare->operand[1], a, b);
 }
@@ -537,7 +538,7 @@ static int sequence_of_atom(struct sequencing *w, const struct atom *atom)
 	case ATOM_CHOOSE:     made = sequence_of_choice(w, atom); break;
 	default:
 		if (!is_linear_in_time(atom->operand[0]) || !is_linear_in_time(atom->operand[1]))
-			no_series(atom, "jumps");
+			no_series(w, atom, "jumps");
 		made = choice(w, atom->operand[0], atom->comparison, atom->operand[1], sequence_of_constant(w, 1),
 			      sequence_of_constant(w, 0));
 	}

@@ -247,6 +247,7 @@ enum step_kind {                    /* what a step is made of */
 	KIND_PARTS,                 /* independent parts, each with regions of its own, or linear */
 	KIND_LEFTOVER,              /* a list of actions on stages and leftovers */
 	KIND_EXPANDED,              /* the Taylor series of the solution */
+	KIND_COLLOCATED,            /* polynomials that solve the equations at nodes; beside them a series, or none */
 	KINDS
 };
 /* Phases and growths of loads e^{at} cos(wt + p) in fixed point: 128 bits; for the target float 64, in `low` */
@@ -297,6 +298,10 @@ struct step {                       /* everything that is emitted for one model 
 	const char *searches;       /* why it is not */
 	int swift_degree;
 	struct expansion *expansion; /* of an expanded step; else NULL */
+	const char *no_phi;         /* why e^{A h}, which a collocated step does not need, is not there; NULL: it is */
+	struct collocation *collocation; /* of a collocated step; else NULL */
+	struct motion *motion;      /* likewise */
+	struct { int multiplications, additions, calls; } iteration; /* of Newton's method: what one costs */
 	int parts;                  /* of a piecewise-linear model that are independent, each with a step of its own */
 	struct step **part;
 	struct load_phase *phase;   /* per load */
@@ -451,6 +456,8 @@ struct peaks peaks_of(const struct step *step);
 
 void count_program(const struct step *step, struct program *program); /* of a step with a leftover, not its loads */
 void count_expansion(const struct step *step, struct program *program); /* of one series, and its sum */
+/* of a collocated step an iteration of Newton's method; where there is no series, that is what its program costs */
+void count_collocation(struct step *step);
 /* what the load states of the columns in use cost; where there are anchors, at each of them */
 void count_loads(struct program *program, const struct step *step);
 /* ... and to turn them into those of now */
@@ -728,6 +735,44 @@ struct reach {                      /* estimates, at t = 0 from the initial valu
 	double served;              /* by tolerance: steps that one series serves, below 1 the part of one; else 0 */
 };
 struct reach reach_of_series(const struct step *step);
+
+/* ---- collocation.c: Radau IIA ---- */
+
+struct stage_mode {                 /* of A: A v = z v, u A = z u, u v = 1 */
+	bool pair;                  /* it stands for itself and its conjugate; else it is real */
+	double re, im;              /* z */
+	double *left, *right;       /* [stage][re, im]: u; v, of a pair twice that */
+};
+struct collocation {
+	int stages;
+	double *node;               /* c, rising, parts of the step; the last is 1 */
+	double *once, *twice;       /* A and A^2, [stage][stage] */
+	double *monomial;           /* [power][stage]: polynomials that are 1 at one node, 0 at the others */
+	int modes;                  /* of A */
+	struct stage_mode *mode;    /* the real one first */
+};
+struct collocation *collocation_of(const struct step *step);
+
+/* ---- motion.c: the highest derivatives of the coordinates ---- */
+
+struct motion_entry {               /* of the Jacobian, where it is not 0 */
+	int coord, of;              /* row; the coordinate by which, or by whose velocity, it is derived */
+	bool twice;                 /* by the coordinate, and that is of second order */
+	const struct form *slope;
+};
+struct motion {
+	int coords;
+	/* so many that stages are solved by their modes, and the Jacobian is that of the step's start */
+	bool apart;
+	const struct form **force;  /* per coordinate: without what depends on time alone in the linear part, */
+	bool *driven;               /* which there is */
+	int columns;                /* of the loads */
+	double *load, *input;       /* [segment][coordinate][column]; [coordinate][input][value, slope] */
+	int entries;
+	struct motion_entry *entry;
+};
+struct motion *motion_of(const struct step *step);
+int  highest_state(const struct linear *system, int coord);  /* the state whose derivative that is */
 
 /* ---- batch.c: many instances in one call ---- */
 

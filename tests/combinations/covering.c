@@ -326,7 +326,7 @@ static bool has(const char *one)
 /* Those schemes bring what they are for */
 static bool expands(void)
 {
-	return has("taylor") || has("taylor12");
+	return has("taylor") || has("taylor12") || has("radau") || has("auto");
 }
 
 static void print_options(FILE *to)
@@ -337,7 +337,8 @@ static void print_options(FILE *to)
 		{ "modal", "--form modal" }, { "exact", "--scheme exact" }, { "pl", "--scheme pl" },
 		{ "etd1", "--scheme etd1" }, { "etdrk2", "--scheme etdrk2" }, { "etdrk4", "--scheme etdrk4" },
 		{ "nc2", "--scheme nc2" }, { "nc3", "--scheme nc3" }, { "dq4", "--scheme dq4" },
-		{ "bm3", "--scheme bm3" }, { "taylor", "--scheme taylor" }, { "selftest", "--selftest" },
+		{ "bm3", "--scheme bm3" }, { "taylor", "--scheme taylor" }, { "radau", "--scheme radau" },
+		{ "auto", "--scheme auto" }, { "selftest", "--selftest" },
 		{ "rows", "--rows 8" }, { "loads", "--loads leftover" }, { "anchors", "--anchors 8" },
 		{ "batch", "--batch" } };
 	bool scheme = false;

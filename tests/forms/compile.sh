@@ -134,7 +134,7 @@ done
 
 for f in "$root"/runtime/*f.c; do
     case ${f##*/} in
-        turnsf.c | seriesf.c | powerf.c | untilf.c | growthf.c | applyf.c | crossingsf.c)
+        turnsf.c | seriesf.c | powerf.c | untilf.c | growthf.c | applyf.c | crossingsf.c | rootf.c | densef.c)
             no_double_instruction "$f" "runtime ${f##*/}" ;;
     esac
 done

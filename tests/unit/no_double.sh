@@ -48,7 +48,7 @@ for compiler; do
             ;;
     esac
     for level in -O0 -O2 -Os; do
-        for piece in turns growth series power until apply crossings retune rate; do
+        for piece in turns growth series power until apply crossings retune rate root dense; do
             ! doubles "$compiler" "$level" "${piece}f"
             result $? "${piece}f.c, $compiler $level"
         done

@@ -1,0 +1,590 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Steps by collocation, as long as a tolerance lets them be, with outputs from their polynomials; beside them, where
+ * the scheme switches, steps by the Taylor series. */
+#include "emit/emit.h"
+
+#include <float.h>
+#include <math.h>
+
+enum {
+	MOST_LENGTH = 65536,        /* of an internal step, in h */
+	ITERATIONS = 9              /* of Newton's method */
+};
+
+static int stages(const struct emitter *e)
+{
+	return e->step->collocation->stages;
+}
+
+static bool changes(const struct emitter *e)
+{
+	return e->system->segments > 1;
+}
+
+static bool switches(const struct emitter *e)
+{
+	return e->step->expansion != NULL;
+}
+
+static double tolerance(const struct emitter *e)
+{
+	return round_rational(e->model->truncation.tolerance);
+}
+
+/* Rows of the polynomial; row 0 would be the state where the internal step starts */
+static int rows(const struct emitter *e)
+{
+	return (switches(e) && e->model->truncation.order > stages(e) ? e->model->truncation.order : stages(e)) + 1;
+}
+
+static const char *nodes_argument(const struct emitter *e)
+{
+	int known = known_values(e);
+	return known ? format("(const double (*)[%d])node, ", known) : "";
+}
+
+/* Where it is taken where the step starts, and not at each node */
+static const char *jacobian_parameter(const struct emitter *e)
+{
+	int entries = e->step->motion->entries;
+	return splits(e) ? format("const double slope_of[%d], ", entries ? entries : 1) : "";
+}
+
+/* ---- members ---- */
+
+void emit_collocation_members(const struct emitter *e)
+{
+	say(e, "    double start[$N_STATES], poly[%d][$N_STATES];  /* of an internal step; its polynomial, from "
+	       "time^1 on in "
+	       "row 1 */\n"
+	       "    double gain[$N_STATES];  /* over all of it */\n"
+	       "    double at, at_low;  /* where it starts, in h since the step k - back */\n"
+	       "    double size, per;     /* its length in h; 1 over the unit of the polynomial */\n"
+	       "    double want;          /* the length that the next may have */\n"
+	       "    double scale[$N_STATES], unit[$N_STATES];  /* the largest size of each state so far; 1 over it */\n"
+	       "    int back;             /* steps of h since then */\n"
+	       "    int stop, ready;      /* it ends at 1: a step of h, 2: a change of the loads; it may be "
+	       "extrapolated */\n",
+	    rows(e));
+	if (changes(e))
+		say(e, "    int leg;              /* the segment of time that it is in */\n");
+	if (switches(e))
+		say(e, "    int series, stiff;    /* the polynomial is a series; the next one is of the collocation "
+		       "*/\n"
+		       "    double product;       /* of the length that the last series had and how fast the motion "
+		       "may be there */\n"
+		       "    int bounds, patience, run;  /* series in a row that stability bounds; how many may be; "
+		       "steps of the "
+		       "collocation */\n");
+}
+
+bool collocation_places(const struct emitter *e)
+{
+	(void)e;
+	return true;
+}
+
+/* Some states are 0 for a while, or all but 0, and grow as high powers of time: relative to themselves nothing would
+ * do. So the largest of its kind counts for each too, by a millionth. */
+static void emit_scales(const struct emitter *e)
+{
+	say(e, "\n/* The largest size of each state so far, or a millionth of that of its kind, and 1 over it; 0: it "
+	       "is 0 */\n"
+	       "static void $n_measure($n *s)\n"
+	       "{\n"
+	       "    double most[3] = {0.0, 0.0, 0.0};\n"
+	       "    int i, grown = 0;\n"
+	       "    for (i = 0; i < $N_STATES; i++)\n"
+	       "        if (pl_magnitude(s->start[i]) > s->scale[i]) {\n"
+	       "            s->scale[i] = pl_magnitude(s->start[i]);\n"
+	       "            grown = 1;\n"
+	       "        }\n"
+	       "    if (!grown)\n"
+	       "        return;\n"
+	       "    for (i = 0; i < $N_STATES; i++)\n"
+	       "        if (s->scale[i] > most[%s])\n"
+	       "            most[%s] = s->scale[i];\n"
+	       "    for (i = 0; i < $N_STATES; i++) {\n"
+	       "        const double least = %s * most[%s], size = s->scale[i] > least ? s->scale[i] : least;\n"
+	       "        s->unit[i] = size > 0.0 ? 1.0 / size : 0.0;\n"
+	       "    }\n"
+	       "}\n", kind_text(e, "i"), kind_text(e, "i"), shortest(ldexp(1, -20)), kind_text(e, "i"));
+}
+
+static void emit_anew(const struct emitter *e)
+{
+	say(e, "\n/* An internal step starts at the state now. */\n"
+	       "static void $n_anew($n *s)\n"
+	       "{\n"
+	       "    int i;\n"
+	       "    for (i = 0; i < $N_STATES; i++)\n"
+	       "        s->start[i] = s->y[i];\n"
+	       "    s->at = s->at_low = s->size = 0.0;\n"
+	       "    s->per = 1.0;\n"
+	       "    s->back = s->stop = s->ready = 0;\n"
+	       "%s}\n", changes(e) ? "    s->leg = s->segment;\n" : "");
+}
+
+void emit_collocation_place(const struct emitter *e)
+{
+	emit_state_table(e);
+	emit_anew(e);
+	emit_scales(e);
+	say(e, "\n/* What follows from a state that was set */\n"
+	       "static void $n_place($n *s)\n"
+	       "{\n"
+	       "    int i;\n"
+	       "    $n_anew(s);\n"
+	       "    for (i = 0; i < $N_STATES; i++)\n"
+	       "        s->scale[i] = s->unit[i] = 0.0;\n"
+	       "    $n_measure(s);\n"
+	       "    s->want = 0.0;\n");
+	if (switches(e))
+		say(e, "    s->product = 0.0;\n"
+		       "    s->series = s->stiff = s->bounds = s->run = 0;\n"
+		       "    s->patience = 2;\n");
+	say(e, "}\n");
+}
+
+/* ---- the polynomial ---- */
+
+static void emit_within(const struct emitter *e)
+{
+	int s = stages(e), states = e->system->states;
+	enum { WRITTEN_OUT = 200 };
+	say(e, "\n/* What the polynomial of a collocation gains from its start, theta of the step later */\n"
+	       "static void $n_within(const double c[%d][$N_STATES], double theta, double gain[$N_STATES])\n"
+	       "{\n", rows(e));
+	if (states * s > WRITTEN_OUT) {
+		say(e, "    int i, k;\n"
+		       "    for (i = 0; i < $N_STATES; i++)\n"
+		       "        gain[i] = c[%d][i];\n"
+		       "    for (k = %d; k > 0; k--)\n"
+		       "        for (i = 0; i < $N_STATES; i++)\n"
+		       "            gain[i] = gain[i] * theta + c[k][i];\n"
+		       "    for (i = 0; i < $N_STATES; i++)\n"
+		       "        gain[i] *= theta;\n"
+		       "}\n", s, s - 1);
+		return;
+	}
+	for (int i = 0; i < states; i++)
+		say(e, "    double g%d = c[%d][%d];\n", i, s, i);
+	for (int k = s - 1; k > 0; k--)
+		for (int i = 0; i < states; i++)
+			say(e, "%sg%d = g%d * theta + c[%d][%d];%s", i % 4 ? " " : "    ", i, i, k, i,
+			    i % 4 == 3 || i == states - 1 ? "\n" : "");
+	for (int i = 0; i < states; i++)
+		say(e, "    gain[%d] = g%d * theta;\n", i, i);
+	say(e, "}\n");
+}
+
+static void emit_inside(const struct emitter *e)
+{
+	say(e, "\n/* The state `ahead` h after the start of the internal step, which reaches so far */\n"
+	       "static void $n_inside(const $n *s, double ahead, double y[$N_STATES])\n"
+	       "{\n"
+	       "    double gain[$N_STATES];\n"
+	       "    int i;\n"
+	       "    if (ahead == s->size) {\n"
+	       "        for (i = 0; i < $N_STATES; i++)\n"
+	       "            y[i] = s->start[i] + (s->gain[i] + s->rest[i]);\n"
+	       "        return;\n"
+	       "    }\n");
+	if (switches(e))
+		say(e, "    if (s->series)\n"
+		       "        $n_ahead(s->poly, ahead, gain);\n"
+		       "    else\n"
+		       "    ");
+	say(e, "    $n_within(s->poly, ahead * s->per, gain);\n"
+	       "    for (i = 0; i < $N_STATES; i++)\n"
+	       "        y[i] = s->start[i] + (gain[i] + s->rest[i]);\n"
+	       "}\n");
+}
+
+/* ---- a step of the collocation ---- */
+
+/* The derivative of the last polynomial, beyond its end: the velocity's, or of first order the coordinate's own */
+static void emit_prediction(const struct emitter *e)
+{
+	int s = stages(e), n = e->system->n;
+	say(e, "    for (i = 0; i < %d; i++) {\n"
+	       "        const double theta = 1.0 + $n_node[i] * size * s->per;\n"
+	       "        for (j = 0; j < %d; j++) {\n"
+	       "            double sum = %s * s->poly[%d][%s];\n"
+	       "            for (m = %d; m > 0; m--)\n"
+	       "                sum = sum * theta + (double)m * s->poly[m][%s];\n"
+	       "            k[i * %d + j] = s->ready ? sum * s->per / $N_H : 0.0;\n"
+	       "        }\n"
+	       "    }\n", s, n, shortest(s), s, highest_text(e, "j"), s - 1, highest_text(e, "j"), n);
+}
+
+/* Where nothing is known of a state's size yet, that at the nodes counts, or after h if it went on so. */
+static void emit_sizes(const struct emitter *e)
+{
+	int n = e->system->n;
+	say(e, "\n/* 1 over the size of each state; where that was 0 so far, of what the step makes of it */\n"
+	       "static void $n_sizes(const $n *s, double dt, const double k[%d], double unit[$N_STATES])\n"
+	       "{\n"
+	       "    int i, j;\n"
+	       "    dt = dt > $N_H ? dt : $N_H;\n"
+	       "    for (i = 0; i < $N_STATES; i++) {\n"
+	       "        double most = 0.0;\n"
+	       "        unit[i] = s->unit[i];\n"
+	       "        if (unit[i] != 0.0)\n"
+	       "            continue;\n"
+	       "        for (j = 0; j < %d; j++)\n"
+	       "            if (pl_magnitude(k[j * %d + %s]) > most)\n"
+	       "                most = pl_magnitude(k[j * %d + %s]);\n"
+	       "        most *= %s;\n"
+	       "        unit[i] = most > 0.0 ? 1.0 / most : 1.0;\n"
+	       "    }\n"
+	       "}\n", unknowns_of_stages(e), stages(e), n, coord_text(e, "i"), n, coord_text(e, "i"),
+	    moved_text(e, "i"));
+}
+
+static void emit_solve(const struct emitter *e)
+{
+	int s = stages(e), known = known_values(e);
+	const double bound = fmax(0.05 * tolerance(e), 4 * (e->model->asked.single ? FLT_EPSILON : DBL_EPSILON));
+	say(e, "\n/* The highest derivatives k at the nodes of a step of `size` h: 1, or 0 where Newton's method does "
+	       "not "
+	       "find them */\n"
+	       "static int $n_solve(const $n *s%s, %sdouble size, double unit[$N_STATES], double k[%d])\n"
+	       "{\n"
+	       "    const double dt = size * $N_H;\n"
+	       "    double previous = 0.0;\n", samples_parameter(e), jacobian_parameter(e), unknowns_of_stages(e));
+	if (splits(e))
+		say(e, "    $n_factors factors;\n");
+	if (known)
+		say(e, "    double node[%d][%d];\n", s, known);
+	say(e, "    int i, j, m;\n");
+	if (known) {
+		struct emitter here = *e;
+		here.ramps = false;             /* samples are called u here */
+		say(e, "    for (i = 0; i < %d; i++)\n"
+		       "        %s\n", s,
+		    known_call(&here, spell(e, "((s->at - (double)s->back) + $n_node[i] * size) * $N_H"),
+			       spell(e, "((s->at - (double)s->back) + 0.5 * size) * $N_H"), "node[i]"));
+	}
+	emit_prediction(e);
+	if (splits(e))
+		say(e, "    if (!$n_factorize(slope_of, dt, &factors))\n"
+		       "        return 0;\n");
+	say(e, "    for (i = 0; i < %d; i++) {\n"
+	       "        double change;\n"
+	       "        $n_sizes(s, dt, k, unit);\n"
+	       "        change = $n_iterate(s->start, %sdt, unit, %sk);\n"
+	       "        if (!(change < 1e10)%s)\n"
+	       "            return 0;\n"
+	       "        if (i > 0 && (change <= %s || (change < previous && change * change <= %s * (previous - "
+	       "change))))\n"
+	       "            return 1;\n"
+	       "        if (change <= %s)\n"
+	       "            return 1;\n"
+	       "        previous = change;\n"
+	       "    }\n"
+	       "    return 0;\n"
+	       "}\n", ITERATIONS, nodes_argument(e), splits(e) ? "&factors, " : "",
+	    splits(e) ? " || (i > 0 && change >= previous)" : "", shortest(bound), shortest(bound),
+	    shortest(e->model->asked.single ? 1e-12 : 1e-17));
+}
+
+/* The polynomial, and the size of its last term where that is largest, over 2^(2s-1): what a polynomial of one degree
+ * less leaves out on 0 .. 1 (Chebyshev) */
+static void emit_finish(const struct emitter *e)
+{
+	int s = stages(e), n = e->system->n;
+	say(e, "\n/* The polynomial through the nodes; returns its last term as an error, relative to the sizes */\n"
+	       "static double $n_finish(const double y[$N_STATES], double dt, const double unit[$N_STATES],\n"
+	       "    const double k[%d], double poly[%d][$N_STATES], double gain[$N_STATES])\n"
+	       "{\n"
+	       "    double most = 0.0;\n"
+	       "    int i, j, m;\n", unknowns_of_stages(e), s + 1);
+	say(e, "    for (j = 0; j < %d; j++) {\n"
+	       "        double v[%d], once = 0.0, twice = 0.0;\n"
+	       "        const int state = %s, twofold = state != j;\n"
+	       "        for (i = 0; i < %d; i++) {\n"
+	       "            double sum = 0.0;\n"
+	       "            for (m = 0; m < %d; m++)\n"
+	       "                sum += $n_once[i][m] * k[m * %d + j];\n"
+	       "            v[i] = y[state] + dt * sum;\n"
+	       "            once = sum;\n"
+	       "            twice += $n_twice[%d][i] * k[i * %d + j];\n"
+	       "        }\n", n, s, highest_text(e, "j"), s, s, n, s - 1, n);
+	say(e, "        gain[state] = dt * once;\n"
+	       "        if (twofold)\n"
+	       "            gain[j] = dt * (y[state] + dt * twice);\n"
+	       "        for (i = 0; i < %d; i++) {\n"
+	       "            double rate = 0.0, speed = 0.0;\n"
+	       "            for (m = 0; m < %d; m++) {\n"
+	       "                rate += $n_monomial[i][m] * k[m * %d + j];\n"
+	       "                speed += $n_monomial[i][m] * v[m];\n"
+	       "            }\n"
+	       "            poly[i + 1][state] = rate * (dt / (double)(i + 1));\n"
+	       "            if (twofold)\n"
+	       "                poly[i + 1][j] = speed * (dt / (double)(i + 1));\n"
+	       "        }\n"
+	       "    }\n", s, s, n);
+	say(e, "    for (i = 0; i < $N_STATES; i++) {\n"
+	       "        const double last = pl_magnitude(poly[%d][i]) * unit[i];\n"
+	       "        most = last > most || last != last ? last : most;\n"
+	       "    }\n"
+	       "    return most * %s;\n"
+	       "}\n", s, shortest(ldexp(1, 1 - 2 * s)));
+}
+
+/* ---- the next internal step ---- */
+
+/* The end of the last is where the next starts. */
+static void emit_commit(const struct emitter *e)
+{
+	say(e, "\n/* The next internal step starts where the last ends. */\n"
+	       "static void $n_commit($n *s)\n"
+	       "{\n"
+	       "    int i;\n"
+	       "    if (s->size == 0.0)\n"
+	       "        return;\n"
+	       "    for (i = 0; i < $N_STATES; i++)\n"
+	       "        s->start[i] = pl_accumulate(s->start[i], s->gain[i], 0.0, &s->rest[i]);\n"
+	       "    if (s->stop == 1) {\n"
+	       "        s->at = s->at_low = 0.0;\n"
+	       "        s->back = 0;\n"
+	       "    } else {\n"
+	       "        const int whole = (int)(s->at = pl_accumulate(s->at, s->size, 0.0, &s->at_low));\n"
+	       "        s->at -= (double)whole;\n"
+	       "        s->back -= whole;\n"
+	       "    }\n");
+	if (changes(e))
+		say(e, "    s->leg += s->stop == 2;\n");
+	say(e, "    s->size = 0.0;\n"
+	       "    $n_measure(s);\n"
+	       "}\n");
+}
+
+static void emit_limit(const struct emitter *e)
+{
+	say(e, "\n/* How long the next internal step may be at most, in h; s->stop says what ends it there */\n"
+	       "static double $n_limit($n *s)\n"
+	       "{\n"
+	       "    double limit = %d.0;\n"
+	       "    s->stop = 0;\n", MOST_LENGTH);
+	if (e->system->inputs)
+		say(e, "    limit = ((double)(s->back + 1) - s->at) - s->at_low;  /* the samples to come are not "
+		       "known */\n"
+		       "    s->stop = 1;\n");
+	if (changes(e))
+		say(e, "    for (; s->leg < %d; s->leg++) {\n"
+		       "        const double change = $n_until(s, s->leg) / $N_H - (s->at - (double)s->back);\n"
+		       "        if (change > 1e-12) {\n"
+		       "            if (change < limit) {\n"
+		       "                limit = change;\n"
+		       "                s->stop = 2;\n"
+		       "            }\n"
+		       "            break;\n"
+		       "        }\n"
+		       "    }\n", e->system->segments - 1);
+	say(e, "    return limit;\n"
+	       "}\n");
+}
+
+static void emit_collocate(const struct emitter *e)
+{
+	int s = stages(e);
+	const char *single = e->model->asked.single ? "1e-35" : "1e-290";
+	say(e, "\n/* An internal step of the collocation, at most `limit` h long: 0, or what went wrong%s */\n"
+	       "static int $n_collocate($n *s%s, double limit, %sint *steps)\n"
+	       "{\n"
+	       "    const int stop = s->stop;\n"
+	       "    int rejected = 0, i, j;\n"
+	       "%s"
+	       "    for (;;) {\n"
+	       "        double k[%d], poly[%d][$N_STATES], unit[$N_STATES], error, factor = rejected < 3 ? 0.25 : "
+	       "0.0625;\n"
+	       "        const double size = s->want < limit ? s->want : limit;\n"
+	       "        int good;\n"
+	       "        if ((*steps)++ == %d)\n"
+	       "            return PL_TOO_MANY_STEPS;\n"
+	       "        if (!(size > %s))\n"
+	       "            return PL_NOT_FINITE;\n",
+	    switches(e) ? "; -1: a series should do it" : "", samples_parameter(e),
+	    switches(e) ? "const double rates[2], "
+			  "" : "", splits(e) ? start_jacobian(e) : "", unknowns_of_stages(e), s + 1,
+	    e->model->truncation.substeps, e->model->asked.single ? "1e-12" : "1e-18");
+	say(e, "        good = $n_solve(s%s%s, size, unit, k);\n"
+	       "        if (good) {\n"
+	       "            error = $n_finish(s->start, size * $N_H, unit, k, poly, s->gain) + %s;\n"
+	       "            good = error <= %s;\n"
+	       "            if (error < 1e30)\n"
+	       "                factor = 0.9 * pl_root(%s / error, %d);\n"
+	       "            factor = factor > 5.0 ? 5.0 : factor > 0.15 ? factor : 0.15;\n"
+	       "        }\n"
+	       "        if (!good) {\n"
+	       "            s->want = size * (rejected++ < 3 || factor < 0.1 ? factor : 0.1);\n"
+	       "%s"
+	       "            continue;\n"
+	       "        }\n", e->system->inputs ? ", u, slope" : "", splits(e) ? ", slope_of" : "", single,
+	    shortest(2 * tolerance(e)),
+	    shortest(tolerance(e)), s + 1,
+	    !switches(e) ? "" : spell(e, "            if ($n_product(rates, s->want) < 0.5)\n"
+					 "                return -1;\n"));
+	say(e, "        s->want = size < limit || s->want < size * factor ? size * factor : s->want;\n"
+	       "        s->stop = size < limit ? 0 : stop;\n"
+	       "        s->size = size;\n"
+	       "        s->per = 1.0 / size;\n"
+	       "        s->ready = 1;\n"
+	       "%s"
+	       "        for (i = 1; i <= %d; i++)\n"
+	       "            for (j = 0; j < $N_STATES; j++)\n"
+	       "                s->poly[i][j] = poly[i][j];\n"
+	       "        return 0;\n"
+	       "    }\n"
+	       "}\n", switches(e) ? "        s->series = 0;\n        s->run++;\n" : "", s);
+}
+
+static void emit_samples_now(const struct emitter *e)
+{
+	int inputs = e->system->inputs;
+	const char *start = "", *slope = "";
+	for (int i = 0; i < inputs; i++) {
+		bool ramp = e->system->input[i].hold;
+		start = format("%s%s%s[%d]", start, i ? ", " : "", ramp ? "s->u" : "u", i);
+		slope = format("%s%s%s", slope, i ? ", " : "", ramp ? ramp_slope(e, i) : "0.0");
+	}
+	if (inputs && e->ramps)
+		say(e, "    const double start[$N_INPUTS] = {%s};\n", start);
+	if (inputs)
+		say(e, "    const double slope[$N_INPUTS] = {%s};\n", slope);
+}
+
+/* Of a first step: a hundredth of what a state is, at its speed */
+static void emit_first_length(const struct emitter *e)
+{
+	say(e, "\n/* A first length, in h: the states move by a hundredth */\n"
+	       "static double $n_first(const $n *s%s)\n"
+	       "{\n"
+	       "    double most = 1.0;\n"
+	       "    int i;\n"
+	       "%s"
+	       "    for (i = 0; i < $N_STATES; i++) {\n"
+	       "        const double speed = pl_magnitude(%s) * s->unit[i] * (100.0 * $N_H);\n"
+	       "        most = speed > most ? speed : most;\n"
+	       "    }\n"
+	       "    return 1.0 / most;\n"
+	       "}\n", samples_parameter(e), start_jacobian(e), speed_text(e, "i"));
+}
+
+static void emit_advance(const struct emitter *e)
+{
+	say(e, "\n/* The next internal step, from the end of the last: 0, or what went wrong; *steps of them were "
+	       "tried */\n"
+	       "static int $n_advance(%s, int *steps)\n"
+	       "{\n", step_parameters(e));
+	emit_samples_now(e);
+	say(e, "    double limit%s;\n"
+	       "%s"
+	       "    $n_commit(s);\n"
+	       "    limit = $n_limit(s);\n"
+	       "    if (s->want == 0.0)\n"
+	       "        s->want = $n_first(s%s);\n", switches(e) ? ", rates[2]" : "",
+	    switches(e) ? "    int wrong;\n" : "", samples_argument(e));
+	if (switches(e)) {
+		say(e, "    $n_rates(s%s, rates);\n", samples_argument(e));
+		emit_choice(e);
+		return;
+	}
+	say(e, "    return $n_collocate(s%s, limit, steps);\n"
+	       "}\n", samples_argument(e));
+}
+
+/* ---- the step ---- */
+
+static const char *u_argument(const struct emitter *e)
+{
+	return e->system->inputs ? "u, " : "";
+}
+
+/* s->y `end` h after now */
+static void emit_reach(const struct emitter *e)
+{
+	say(e, "\n/* y `end` h after now, from as many internal steps as it takes: 0; or what went wrong, and the "
+	       "last good "
+	       "state */\n"
+	       "static int $n_reach($n *s, %sdouble end, double y[$N_STATES])\n"
+	       "{\n"
+	       "    int i, steps = 0, wrong = 0;\n"
+	       "    double ahead;\n"
+	       "    while ((ahead = (((double)s->back + end) - s->at) - s->at_low) > s->size && !wrong)\n"
+	       "        wrong = $n_advance(s, %s&steps);\n"
+	       "    if (!wrong) {\n"
+	       "        $n_inside(s, ahead, y);\n"
+	       "        return 0;\n"
+	       "    }\n"
+	       "    for (i = 0; i < $N_STATES; i++)\n"
+	       "        y[i] = s->start[i];\n"
+	       "    return wrong;\n"
+	       "}\n", driven_parameter(e), u_argument(e));
+}
+
+static void emit_step_function(const struct emitter *e)
+{
+	say(e, "\nvoid $n_step(%s)\n"
+	       "{\n"
+	       "    const int wrong = $n_reach(s, %s1.0, s->y);\n"
+	       "    s->back++;\n", step_parameters(e), u_argument(e));
+	emit_step_end(e);
+	if (changes(e))
+		say(e, "    while (s->segment < %d && $n_until(s, s->segment) <= 1e-18 * $N_H)\n"
+		       "        s->segment++;\n", e->system->segments - 1);
+	say(e, "    if (wrong) {\n"
+	       "        s->status |= wrong;\n"
+	       "        $n_anew(s);\n"
+	       "    }\n"
+	       "}\n");
+}
+
+void emit_collocation_step(const struct emitter *e)
+{
+	if (reads_channels(e->model))
+		emit_leftover_functions(e);
+	emit_stage_tables(e);
+	emit_motion(e);
+	emit_newton(e);
+	if (switches(e)) {
+		emit_series_steps(e);
+	}
+	emit_within(e);
+	emit_inside(e);
+	emit_sizes(e);
+	emit_solve(e);
+	emit_finish(e);
+	emit_commit(e);
+	emit_limit(e);
+	emit_first_length(e);
+	emit_collocate(e);
+	emit_advance(e);
+	emit_reach(e);
+	emit_step_function(e);
+}
+
+/* ---- between steps ---- */
+
+/* Of a copy: what it takes beyond the internal step is not kept. */
+void emit_collocation_at(const struct emitter *e)
+{
+	bool relative = e->model->relative != NULL;
+	const char *y = relative ? "x" : "y";
+	say(e, "\nvoid $n_at(const $n *s, %sdouble tau, double y[$N_STATES])\n"
+	       "{\n"
+	       "    const double ahead = (((double)s->back + tau / $N_H) - s->at) - s->at_low;\n"
+	       "%s"
+	       "    if (ahead <= s->size && s->size > 0.0) {\n"
+	       "        $n_inside(s, ahead, %s);\n"
+	       "    } else {\n"
+	       "        $n copy = *s;\n"
+	       "        $n_reach(&copy, %stau / $N_H, %s);\n"
+	       "    }\n", driven_parameter(e), relative ? spell(e, "    double x[$N_STATES];\n") : "", y, u_argument(e),
+	    y);
+	if (relative)
+		say(e, "    $n_written(s, x, y);\n");
+	say(e, "}\n");
+}

@@ -1,0 +1,445 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The highest derivatives of the coordinates and their Jacobian as C: what depends on time alone once for a time, the
+ * rest for a state. */
+#include "emit/emit.h"
+
+static const struct motion *motion(const struct emitter *e)
+{
+	return e->step->motion;
+}
+
+bool splits(const struct emitter *e)
+{
+	return motion(e)->apart;
+}
+
+static struct reads reads_of_motion(const struct emitter *e)
+{
+	const struct motion *m = motion(e);
+	const struct form **form = ARRAY(const struct form *, (size_t)(m->coords + m->entries));
+	for (int i = 0; i < m->coords; i++)
+		form[i] = m->force[i];
+	for (int k = 0; k < m->entries; k++)
+		form[m->coords + k] = m->entry[k].slope;
+	return reads_of(e->model, m->coords + m->entries, form);
+}
+
+/* Is a column of the loads in the linear part of some coordinate? */
+static bool drives(const struct emitter *e, int column)
+{
+	const struct motion *m = motion(e);
+	bool any = false;
+	for (int i = 0; i < e->system->segments * m->coords; i++)
+		any = any || m->load[i * m->columns + column] != 0;
+	return any;
+}
+
+static bool load_drives(const struct emitter *e, int load)
+{
+	bool any = false;
+	int first = 0;
+	for (int l = 0; l < load; l++)
+		first += e->system->load[l].columns;
+	for (int j = 0; j < e->system->load[load].columns; j++)
+		any = any || drives(e, first + j);
+	return any;
+}
+
+bool motion_reads_load(const struct emitter *e, int load)
+{
+	return load_drives(e, load) || reads_of_motion(e).load[load];
+}
+
+/* ---- states and coordinates in loops ---- */
+
+/* All of second order: then state n + j is the velocity of coordinate j. */
+static bool all_second(const struct emitter *e)
+{
+	return e->system->states == 2 * e->system->n;
+}
+
+static bool all_first(const struct emitter *e)
+{
+	return e->system->states == e->system->n;
+}
+
+const char *highest_text(const struct emitter *e, const char *j)
+{
+	return all_first(e) ? j : all_second(e) ? format("%d + %s", e->system->n, j) : spell(e, "$n_highest[%s]", j);
+}
+
+const char *coord_text(const struct emitter *e, const char *i)
+{
+	return all_first(e) ? i : all_second(e) ? format("%s %% %d", i, e->system->n) : spell(e, "$n_coord[%s]", i);
+}
+
+/* Is a state's derivative another state? */
+static const char *is_moved(const struct emitter *e, const char *i)
+{
+	return all_second(e) ? format("%s < %d", i, e->system->n)
+			     : spell(e, "$n_highest[$n_coord[%s]] != %s", i, i);
+}
+
+/* Coordinates of second order, velocities, coordinates of first order */
+const char *kind_text(const struct emitter *e, const char *i)
+{
+	return all_first(e) ? "0" : all_second(e) ? format("%s >= %d", i, e->system->n)
+						   : format("%s ? 0 : %s < %d ? 2 : "
+							    "1", is_moved(e, i), i, e->system->n);
+}
+
+const char *moved_text(const struct emitter *e, const char *i)
+{
+	return all_first(e) ? "dt" : format("%s ? dt * dt : dt", is_moved(e, i));
+}
+
+const char *speed_text(const struct emitter *e, const char *i)
+{
+	if (all_first(e))
+		return format("left[%s]", i);
+	const char *moved = is_moved(e, i), *highest = highest_text(e, coord_text(e, i));
+	if (all_second(e))
+		highest = format("%d + %s", e->system->n, i);
+	return format("%s ? s->start[%s] : left[%s]", moved, highest, coord_text(e, i));
+}
+
+void emit_state_table(const struct emitter *e)
+{
+	if (all_first(e) || all_second(e))
+		return;
+	say(e, "\n/* The state whose derivative is a coordinate's highest; the coordinate of a state */\n"
+	       "static const short $n_highest[%d] = {", e->system->n);
+	for (int j = 0; j < e->system->n; j++)
+		say(e, "%s%d", j ? ", " : "", highest_state(e->system, j));
+	say(e, "};\n"
+	       "static const short $n_coord[$N_STATES] = {");
+	for (int i = 0; i < e->system->states; i++)
+		say(e, "%s%d", i ? ", " : "", e->system->coord[i]);
+	say(e, "};\n");
+}
+
+/* ---- what is known of a time before the state is ---- */
+
+struct place_of_known { int driven, time, when, load, value, slope, count; };
+
+static bool ramps(const struct emitter *e, int input)
+{
+	return e->system->input[input].hold > 0;
+}
+
+/* Does a form jump where a condition on time changes? Then all nodes of a step stand on the same side. */
+static bool form_decides(const struct form *form, bool *seen)
+{
+	bool any = false;
+	for (int i = 0; i < form->terms; i++) {
+		const struct atom *a = form->term[i].basis.atom;
+		if (!a || seen[a->index])
+			continue;
+		seen[a->index] = true;
+		any = any || a->kind == ATOM_COMPARE || (a->kind == ATOM_CALL && a->function == FN_SGN);
+		for (int k = 0; k < a->operands; k++)
+			any = form_decides(a->operand[k], seen) || any;
+	}
+	return any;
+}
+
+static bool decides(const struct emitter *e)
+{
+	const struct motion *m = motion(e);
+	bool any = false, *seen = ARRAY(bool, (size_t)atoms_count(e->model->atoms));
+	for (int i = 0; i < m->coords; i++)
+		any = form_decides(m->force[i], seen) || any;
+	for (int k = 0; k < m->entries; k++)
+		any = form_decides(m->entry[k].slope, seen) || any;
+	return any;
+}
+
+/* Where each kind begins: driven coordinates, t, the time at which conditions on it hold, the load states that are
+ * read, inputs, their slopes */
+static struct place_of_known known_places(const struct emitter *e, const struct reads *r)
+{
+	struct place_of_known p = { 0 };
+	for (int i = 0; i < motion(e)->coords; i++)
+		p.count += motion(e)->driven[i];
+	p.time = p.count;
+	p.count += r->time;
+	p.when = p.count;
+	p.count += decides(e);
+	p.load = p.count;
+	for (int l = 0; l < e->system->loads; l++)
+		p.count += r->load[l] ? e->system->load[l].columns : 0;
+	p.value = p.count;
+	for (int i = 0; i < e->system->inputs; i++)
+		p.count += r->input[i];
+	p.slope = p.count;
+	for (int i = 0; i < e->system->inputs; i++)
+		p.count += r->input[e->system->inputs + i];
+	return p;
+}
+
+int known_values(const struct emitter *e)
+{
+	struct reads r = reads_of_motion(e);
+	return known_places(e, &r).count;
+}
+
+static bool changes(const struct emitter *e)
+{
+	return e->system->segments > 1;
+}
+
+static void emit_drive_table(const struct emitter *e)
+{
+	const struct motion *m = motion(e);
+	const char **note = ARRAY(const char *, (size_t)m->coords);
+	for (int i = 0; i < m->coords; i++)
+		note[i] = e->model->coord_name[i];
+	say(e, "\n/* What the load states give each highest derivative, in each segment of time */\n"
+	       "static const double $n_drive[%d][%d][%d] = {\n", e->system->segments, m->coords, m->columns);
+	for (int k = 0; k < e->system->segments; k++) {
+		say(e, "  {\n");
+		emit_number_rows(e, m->coords, m->columns, m->load + k * m->coords * m->columns, note);
+		say(e, "  },\n");
+	}
+	say(e, "};\n");
+}
+
+static bool any_drive(const struct emitter *e)
+{
+	bool any = false;
+	for (int column = 0; column < motion(e)->columns; column++)
+		any = any || drives(e, column);
+	return any;
+}
+
+static const char *drive_text(const struct emitter *e, int coord)
+{
+	const struct motion *m = motion(e);
+	int inputs = e->system->inputs, terms = 0;
+	const char **term = ARRAY(const char *, (size_t)(m->columns + 2 * inputs) + 1);
+	for (int k = 0; k < m->columns; k++) {
+		const char *operand = column_operand(e, k);
+		double factor = m->load[coord * m->columns + k];
+		if (changes(e) && drives(e, k))
+			term[terms++] = format("drive[%d][%d]%s", coord, k, operand ? format(" * %s", operand) : "");
+		else if (factor != 0)
+			term[terms++] = scaled(factor, operand);
+	}
+	for (int i = 0; i < inputs; i++) {
+		const double *factor = m->input + 2 * (coord * inputs + i);
+		if (factor[0] != 0)
+			term[terms++] = scaled(factor[0], ramps(e, i) ? format("(u[%d] + tau * slope[%d])", i, i)
+								      : format("u[%d]", i));
+		if (factor[1] != 0)
+			term[terms++] = scaled(factor[1], format("slope[%d]", i));
+	}
+	return terms ? tree(terms, term, 18) : "0.0";
+}
+
+static void emit_known_loads(const struct emitter *e, const struct reads *r)
+{
+	bool *wanted = ARRAY(bool, (size_t)e->system->loads), time = r->time;
+	for (int l = 0; l < e->system->loads; l++) {
+		wanted[l] = r->load[l] || load_drives(e, l);
+		time = time || (wanted[l] && e->system->load[l].powers > 1);
+	}
+	if (time)
+		say(e, "    const double t = $n_time(s) + tau;\n");
+	struct emitter here = *e;
+	here.after = "tau";
+	emit_load_states(&here, wanted, true);
+}
+
+static void emit_known_values(const struct emitter *e, const struct reads *r)
+{
+	struct place_of_known p = known_places(e, r);
+	int inputs = e->system->inputs;
+	for (int i = 0; i < motion(e)->coords; i++)
+		if (motion(e)->driven[i])
+			say(e, "    node[%d] = %s;  /* of %s */\n", p.driven++, drive_text(e, i),
+			    e->model->coord_name[i]);
+	if (r->time)
+		say(e, "    node[%d] = t;\n", p.time);
+	if (decides(e))
+		say(e, "    node[%d] = $n_time(s) + inside;  /* where conditions on t hold as they do over the step "
+		       "*/\n",
+		    p.when);
+	for (int l = 0; l < e->system->loads; l++)
+		for (int k = 0; k < e->system->load[l].columns && r->load[l]; k++) {
+			const char *operand = load_operand(e, l, k);
+			say(e, "    node[%d] = %s;\n", p.load++, operand ? operand : "1.0");
+		}
+	for (int i = 0; i < inputs; i++)
+		if (r->input[i])
+			say(e, ramps(e, i) ? "    node[%d] = u[%d] + tau * slope[%d];\n" : "    node[%d] = u[%d];\n",
+			    p.value++, i, i);
+	for (int i = 0; i < inputs; i++)
+		if (r->input[inputs + i])
+			say(e, "    node[%d] = slope[%d];\n", p.slope++, i);
+}
+
+const char *known_call(const struct emitter *e, const char *tau, const char *inside, const char *node)
+{
+	const char *condition = decides(e) ? format("%s, ", inside) : "";
+	return spell(e, "$n_known(s, %s, %s%s%s%s);", tau, condition, changes(e) ? "s->leg, " : "",
+		     !e->system->inputs ? "" : e->ramps ? "start, slope, " : "u, slope, ", node);
+}
+
+static void emit_known(const struct emitter *e, const struct reads *r)
+{
+	bool drive = changes(e) && any_drive(e);
+	if (drive)
+		emit_drive_table(e);
+	say(e, "\n/* What the equations read beside the state, tau after now */\n"
+	       "static void $n_known(const $n *s, double tau, %s%s%sdouble node[%d])\n"
+	       "{\n", decides(e) ? "double inside, " : "", changes(e) ? "int segment, " : "",
+	    e->system->inputs ? "const double u[], const double slope[], " : "", known_places(e, r).count);
+	if (drive)
+		say(e, "    const double (*const drive)[%d] = $n_drive[segment];\n", motion(e)->columns);
+	emit_known_loads(e, r);
+	emit_known_values(e, r);
+	say(e, "    (void)s;\n"
+	       "    (void)tau;\n");
+	if (changes(e) && !drive)
+		say(e, "    (void)segment;\n");
+	if (e->system->inputs)
+		say(e, "    (void)u;\n"
+		       "    (void)slope;\n");
+	say(e, "}\n");
+}
+
+/* ---- the highest derivatives, and their Jacobian ---- */
+
+/* Of what is known under the names that forms read */
+static void emit_motion_locals(const struct emitter *e, const struct reads *r)
+{
+	struct place_of_known p = known_places(e, r);
+	int inputs = e->system->inputs;
+	emit_locals_of(e, r->state, "y");
+	if (r->time)
+		say(e, "    const double t = node[%d];\n", p.time);
+	for (int l = 0; l < e->system->loads; l++)
+		if (r->load[l]) {
+			say(e, "    const double *const load%d = node + %d;\n", l + 1, p.load);
+			p.load += e->system->load[l].columns;
+		}
+	for (int i = 0; i < inputs; i++)
+		if (r->input[i])
+			say(e, "    const double %s = node[%d];\n", input_name(e, i, 0), p.value++);
+	for (int i = 0; i < inputs; i++)
+		if (r->input[inputs + i])
+			say(e, "    const double %s = node[%d];\n", input_name(e, i, 1), p.slope++);
+}
+
+const char *linearize_call(const struct emitter *e, const char *node, const char *y, const char *left,
+			   const char *slope)
+{
+	return spell(e, "$n_linearize(%s%s, %s, %s);", known_values(e) ? format("%s, ", node) : "", y, left, slope);
+}
+
+const char *forces_call(const struct emitter *e, const char *node, const char *y, const char *left)
+{
+	return spell(e, "$n_forces(%s%s, %s);", known_values(e) ? format("%s, ", node) : "", y, left);
+}
+
+/* The highest derivatives, and where they are wanted the entries of their Jacobian */
+static void emit_motion_forms(const struct emitter *e, const struct reads *r, int entries)
+{
+	const struct motion *m = motion(e);
+	int driven = 0;
+	const struct form **form = ARRAY(const struct form *, (size_t)(m->coords + entries));
+	for (int i = 0; i < m->coords; i++)
+		form[i] = m->force[i];
+	for (int k = 0; k < entries; k++)
+		form[m->coords + k] = m->entry[k].slope;
+	struct writer *writer = writer_new(e, basis_now, m->coords + entries, form);
+	if (decides(e))
+		write_conditions_at(writer, format("node[%d]", known_places(e, r).when));
+	for (int i = 0; i < m->coords; i++) {
+		const char *text = write_form(writer, form[i], 15);
+		say(e, "    left[%d] = %s%s;  /* %s */\n", i, text,
+		    m->driven[i] ? format(" + node[%d]", driven++) : "", e->model->coord_name[i]);
+	}
+	for (int k = 0; k < entries; k++) {
+		const char *text = write_form(writer, form[m->coords + k], 15);
+		say(e, "    slope[%d] = %s;\n", k, text);
+	}
+}
+
+/* What only the Jacobian reads is not read by the forces. */
+static void emit_unread_locals(const struct emitter *e, const struct reads *r)
+{
+	for (int i = 0; i < e->system->states; i++)
+		if (r->state[i])
+			say(e, "    (void)%s;\n", e->local[i]);
+}
+
+static void emit_forces(const struct emitter *e, const struct reads *r)
+{
+	int known = known_places(e, r).count;
+	const struct motion *m = motion(e);
+	struct reads forces = reads_of(e->model, m->coords, m->force);
+	say(e, "\n/* The highest derivatives at state y */\n"
+	       "static void $n_forces(%sconst double y[$N_STATES], double left[%d])\n"
+	       "{\n", known ? format("const double node[%d], ", known) : "", m->coords);
+	emit_motion_locals(e, r);
+	emit_motion_forms(e, r, 0);
+	for (int i = 0; i < e->system->states; i++)
+		r->state[i] = r->state[i] && !forces.state[i];
+	emit_unread_locals(e, r);
+	say(e, "    (void)y;\n"
+	       "}\n");
+}
+
+static void emit_linearize(const struct emitter *e, const struct reads *r)
+{
+	int known = known_places(e, r).count, entries = motion(e)->entries;
+	say(e, "\n/* The highest derivatives at state y, and their Jacobian where it is not 0 */\n"
+	       "static %svoid $n_linearize(%sconst double y[$N_STATES], double left[%d], double slope[%d])\n"
+	       "{\n", splits(e) ? "" : "inline ", known ? format("const double node[%d], ", known) : "",
+	    motion(e)->coords, entries ? entries : 1);
+	emit_motion_locals(e, r);
+	emit_motion_forms(e, r, entries);
+	if (!any_of(r->state, e->system->states))
+		say(e, "    (void)y;\n");
+	if (r->time && decides(e))
+		say(e, "    (void)t;\n");
+	if (entries == 0)
+		say(e, "    slope[0] = 0.0;\n");
+	say(e, "}\n");
+}
+
+void emit_motion(const struct emitter *e)
+{
+	struct reads r = reads_of_motion(e);
+	if (known_places(e, &r).count)
+		emit_known(e, &r);
+	emit_linearize(e, &r);
+	if (splits(e))
+		emit_forces(e, &r);
+}
+
+/* ---- for an internal step ---- */
+
+const char *samples_argument(const struct emitter *e)
+{
+	return !e->system->inputs ? "" : e->ramps ? ", start, slope" : ", u, slope";
+}
+
+const char *samples_parameter(const struct emitter *e)
+{
+	return e->system->inputs ? ", const double u[], const double slope[]" : "";
+}
+
+const char *start_jacobian(const struct emitter *e)
+{
+	int known = known_values(e), n = e->system->n, entries = e->step->motion->entries;
+	struct emitter here = *e;
+	here.ramps = false;
+	const char *declared = format("    double left[%d], slope_of[%d];\n", n, entries ? entries : 1);
+	if (known)
+		declared = format("%s    double node[%d];\n    %s\n", declared, known,
+				  known_call(&here, spell(e, "(s->at - (double)s->back) * $N_H"),
+					     spell(e, "((s->at - (double)s->back) + 1e-9) * $N_H"), "node"));
+	return format("%s    %s\n", declared, linearize_call(e, "node", "s->start", "left", "slope_of"));
+}

@@ -1,0 +1,180 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Beside the collocation the Taylor series: where stability bounds its steps, and which of the two is next. */
+#include "emit/emit.h"
+
+#include <math.h>
+
+static double tolerance(const struct emitter *e)
+{
+	return round_rational(e->model->truncation.tolerance);
+}
+
+/* ---- where the series is bounded by stability ---- */
+
+/* -J_ii + sum over j of |J_ij| of one kind of the entries of row i; NULL: it has none */
+static const char *row_bound(const struct emitter *e, int coord, bool twice)
+{
+	const struct motion *m = e->step->motion;
+	const char **term = ARRAY(const char *, (size_t)m->entries + 1);
+	int terms = 0;
+	for (int k = 0; k < m->entries; k++) {
+		const struct motion_entry *entry = &m->entry[k];
+		if (entry->coord != coord || entry->twice != twice)
+			continue;
+		term[terms++] = !twice && entry->of == coord ? format("-slope_of[%d]", k)
+							     : format("pl_magnitude(slope_of[%d])", k);
+	}
+	return terms ? tree(terms, term, 12) : NULL;
+}
+
+/* Of Gershgorin's circles how far they reach to the left; of the derivatives by coordinates, which are squared rates,
+ * their size */
+static void emit_rates(const struct emitter *e)
+{
+	int n = e->system->n;
+	say(e, "\n/* Bounds on how fast the motion may decay [1/s], and on the square of how fast it may turn: "
+	       "Gershgorin's, of "
+	       "the\n * Jacobian where the internal step starts */\n"
+	       "static void $n_rates(const $n *s%s, double rates[2])\n"
+	       "{\n"
+	       "    double size;\n"
+	       "%s"
+	       "    rates[0] = rates[1] = 0.0;\n", samples_parameter(e), start_jacobian(e));
+	for (int i = 0; i < 2 * n; i++) {
+		const char *bound = row_bound(e, i / 2, i % 2);
+		if (bound)
+			say(e, "    size = %s;\n"
+			       "    rates[%d] = size > rates[%d] ? size : rates[%d];\n", bound, i % 2, i % 2, i % 2);
+	}
+	say(e, "    (void)size;\n"
+	       "    (void)s;\n"
+	       "}\n"
+	       "\n/* Their product with a length in h, the larger one: what moves to and fro bounds a series less */\n"
+	       "static double $n_product(const double rates[2], double length)\n"
+	       "{\n"
+	       "    const double dt = length * $N_H, decay = rates[0] * dt, turn = 0.5625 * rates[1] * dt * dt;\n"
+	       "    return turn > decay * decay ? pl_root(turn, 2) : decay;\n"
+	       "}\n");
+}
+
+/* (tolerance / last term)^(1 / order), and the same of the one before; where they are 0, or nearly, of what stands in
+ * for them */
+static void emit_length(const struct emitter *e)
+{
+	int order = e->model->truncation.order;
+	const char *tol = shortest(tolerance(e)), *tiny = e->model->asked.single ? "1e-35" : "1e-290";
+	say(e, "\n/* How many h the series serves; 0: it is not finite */\n"
+	       "static double $n_length(const $n *s)\n"
+	       "{\n"
+	       "    double last[3], before[3], length, other, square;\n"
+	       "    $n_remainders(s, s->poly, last, before);\n"
+	       "    if (!((last[0] + last[1]) + (last[2] + before[0]) + (before[1] + before[2]) < %s))\n"
+	       "        return 0.0;\n"
+	       "    length = pl_root(%s / (last[0] + %s), %d);\n"
+	       "    other = pl_root(%s / (before[0] + %s), %d);\n"
+	       "    length = other < length ? other : length;\n"
+	       "    square = length * "
+	       "length;\n", e->model->asked.single ? "1e37" : "1e300", tol, tiny, order, tol, tiny,
+	    order - 1);
+	say(e, "    if (last[1] * square + last[2] > last[0] * square * square ||\n"
+	       "        before[1] * square + before[2] > before[0] * square * square) {\n"
+	       "        other = pl_root(%s / (((last[0] * square + last[1]) * square + last[2]) + %s), %d);\n"
+	       "        length = other < length ? other : length;\n"
+	       "        other = pl_root(%s / (((before[0] * square + before[1]) * square + before[2]) + %s), %d);\n"
+	       "        length = other < length ? other : length;\n"
+	       "    }\n"
+	       "    return 0.94 * length;\n"
+	       "}\n", tol, tiny, order - 4, tol, tiny, order - 5);
+}
+
+/* A series in s->poly: 1, or 0 where it is not finite */
+static void emit_series_step(const struct emitter *e)
+{
+	const double most = 0.8 + 0.1 * e->model->truncation.order;
+	const char *start = spell(e, "(s->at - (double)s->back) * $N_H");
+	const char *when = spell(e, "$n_time(s) + ((s->at - (double)s->back) + 1e-9) * $N_H");
+	struct emitter here = *e;
+	here.ramps = false;
+	say(e, "\n/* An internal step by the series: 1, or 0 where that is not finite. Where stability bounds several "
+	       "in a row, "
+	       "the\n * collocation is next. */\n"
+	       "static int $n_expand_step($n *s%s, double limit, const double rates[2])\n"
+	       "{\n"
+	       "    double length, product;\n"
+	       "    %s\n"
+	       "%s"
+	       "    length = $n_length(s);\n"
+	       "    if (length == 0.0)\n"
+	       "        return 0;\n", samples_parameter(e), expand_call(&here, start, when, "s->leg", "s->start",
+	    "s->poly"), e->system->inputs ? "    (void)u;\n    (void)slope;\n" : "");
+	say(e, "    if (length > 8.0 && length > 8.0 * s->want)\n"
+	       "        length = s->want > 1.0 ? 8.0 * s->want : 8.0;\n"
+	       "    s->want = length;\n"
+	       "    if (length < limit)\n"
+	       "        s->stop = 0;\n"
+	       "    else\n"
+	       "        length = limit;\n"
+	       "    product = $n_product(rates, length);\n"
+	       "    s->bounds = product > %s ? s->bounds + 1 : 0;\n"
+	       "    if (s->bounds >= s->patience) {\n"
+	       "        s->stiff = 1;\n"
+	       "        s->product = product;\n"
+	       "        s->run = s->bounds = 0;\n"
+	       "    }\n"
+	       "    $n_ahead((const double (*)[$N_STATES])s->poly, length, s->gain);\n"
+	       "    s->size = length;\n"
+	       "    s->series = 1;\n"
+	       "    s->ready = 0;\n"
+	       "    return 1;\n"
+	       "}\n", shortest(most));
+}
+
+void emit_series_steps(const struct emitter *e)
+{
+	emit_force_table(e);
+	emit_expand_function(e);
+	emit_series_ahead(e);
+	emit_series_remainder(e);
+	emit_rates(e);
+	emit_length(e);
+	emit_series_step(e);
+}
+
+/* ---- which is next ---- */
+
+/* How many series a step of the collocation is worth, by what they cost; some less, so that they do not take turns */
+static double worth(const struct emitter *e)
+{
+	const struct collocation *x = e->step->collocation;
+	double iterations = 2.2 + splits(e) * 3, series = e->step->program->multiplications;
+	double step = iterations * e->step->iteration.multiplications + 4.0 * x->stages * x->stages * e->system->n;
+	double ratio = floor(step / series * 12) / 16;
+	return ratio < 1 ? 1 : ratio > 8 ? 8 : ratio;
+}
+
+void emit_choice(const struct emitter *e)
+{
+	const double most = 0.8 + 0.1 * e->model->truncation.order;
+	const char *samples = samples_argument(e);
+	say(e, "    for (;;) {\n"
+	       "        const double dear = %s * s->product, most = s->run >= 3 && dear > %s ? dear : %s;\n"
+	       "        if (s->stiff && $n_product(rates, s->want < limit ? s->want : limit) < most) {\n"
+	       "            s->stiff = 0;  /* and where that was so soon, the series is given more time */\n"
+	       "            s->patience = s->run > 8 ? 2 : s->patience < 64 ? 2 * s->patience : 64;\n"
+	       "        }\n"
+	       "        if (!s->stiff) {\n"
+	       "            if ((*steps)++ == %d)\n"
+	       "                return PL_TOO_MANY_STEPS;\n"
+	       "            if ($n_expand_step(s%s, limit, rates))\n"
+	       "                return 0;\n"
+	       "            s->stiff = 1;\n"
+	       "            s->run = s->ready = 0;\n"
+	       "            s->product = 0.0;\n"
+	       "        "
+	       "}\n", shortest(worth(e)), shortest(most), shortest(most), e->model->truncation.substeps, samples);
+	say(e, "        wrong = $n_collocate(s%s, limit, rates, steps);\n"
+	       "        if (wrong >= 0)\n"
+	       "            return wrong;\n"
+	       "    }\n"
+	       "}\n", samples);
+}
