@@ -86,6 +86,7 @@ struct peer {
 	/* false: it failed */
 	bool (*run)(double setting, double *rows);
 	const char *settings;
+	bool (*applies)(void);          /* to this model; NULL: to every one. A step of such a peer is an output */
 };
 
 #endif
