@@ -252,6 +252,29 @@ static bool settle_scheme(struct building *b)
 	return !diagnostics_errors();
 }
 
+/* Whether at the start some part decays so fast that stability, not accuracy, would bound the steps of a series: then
+ * the series goes beside a method that bears it. */
+static bool is_stiff(struct building *b)
+{
+	struct model *model = b->model;
+	struct jacobian j = { .b = b, .damped = true, .state = (const mpq_t *)model->initial };
+	mpq_init(j.t);
+	bool known = silent_guard(jacobian_forms, &j) && silent_guard(jacobian_evaluate, &j);
+	mpq_clear(j.t);
+	return known && fastest_decay(&j.at) * nearest_double(model->h) > 0.8 + 0.1 * model->truncation.order;
+}
+
+static void prefer_stiff(struct building *b)
+{
+	struct model *model = b->model;
+	if (!model->obstacle || model->scheme != SCHEME_TAYLOR || !is_stiff(b))
+		return;
+	model->scheme = SCHEME_AUTO;
+	model->truncation.order = 0;
+	choose_order(model, b->request->single);
+	b->collector.scheme = scheme_name(model->scheme);
+}
+
 void build_system(struct building *b)
 {
 	struct model *model = b->model;
@@ -276,4 +299,6 @@ void build_system(struct building *b)
 	model->residual = rows->residual;
 	model->snapshot = b->snapshot;
 	model->whole = b->whole;
+	if (b->whole && !diagnostics_errors())
+		prefer_stiff(b);
 }

@@ -394,10 +394,9 @@ static void check_need(const struct building *b, bool left)
 /* Why what would be best is not taken */
 static const char *passed_over(const char *why)
 {
-	const char *named = format("scheme %s", scheme_name(SCHEME_TAYLOR));
 	if (!why)
 		return "";
-	return strncmp(why, named, strlen(named)) == 0 ? format("; %s", why) : format("; not %s: %s", named, why);
+	return strncmp(why, "scheme ", 7) == 0 ? format("; %s", why) : format("; not scheme taylor: %s", why);
 }
 
 void warn(struct building *b)
