@@ -89,6 +89,8 @@ static const struct ours ours[] = {
 	{ .name = "dq4", .options = "--scheme dq4" },
 	{ .name = "bm3", .options = "--scheme bm3" },
 	{ .name = "taylor", .options = "--scheme taylor", .series = true, .tolerance = true },
+	{ .name = "radau", .options = "--scheme radau", .series = true, .tolerance = true },
+	{ .name = "auto", .options = "--scheme auto", .series = true, .tolerance = true },
 	{ .name = "taylor 6", .options = "'--scheme=taylor 6'", .series = true },
 	{ .name = "taylor 8", .options = "'--scheme=taylor 8'", .series = true },
 	{ .name = "taylor 12", .options = "'--scheme=taylor 12'", .series = true },
