@@ -52,6 +52,7 @@ enum {
 	LIMIT_RESIDUE_STATES = 12,  /* beyond, a Taylor series gives the numbers: residues get slow */
 	LIMIT_BLOCK_ROWS = 64,      /* in a block of NAME_run */
 	LIMIT_SERIES = 50000,       /* multiplications of a Taylor series, each of which is C */
+	LIMIT_COLLOCATED = 40,      /* coordinates of a collocation, whose matrices stand on the stack */
 	LIMIT_TURNS = 256,          /* log2 of a load's angle in a step, for models of more states than that */
 	LIMIT_ERRORS = 100,         /* told before the rest is not looked at */
 	/* of an expression in operations, through params and lets; a function of many arguments counts as many */

@@ -188,7 +188,12 @@ static void build_expanded_step(struct step *step)
 static void build_collocated_step(struct step *step)
 {
 	bool switches = scheme_row(step->model->scheme)->switches;
+	int coords = step->model->n;
 	need_direct(step);
+	if (coords > LIMIT_COLLOCATED)
+		error(step->model->asked.scheme_at, "etdrk4 and the schemes like it loop over tables",
+		      "scheme %s is built for up to %d coordinates, whose matrices stand on the stack: the model has %d",
+		      scheme_name(step->model->scheme), LIMIT_COLLOCATED, coords);
 	step->layout = layout_of(&step->branch->system, false);
 	if (!silent_guard(make_read_table, &(struct reading){ step, 1 })) {
 		make_read_table(&(struct reading){ step, 0 });
