@@ -212,6 +212,25 @@ static const char *extreme_text(struct writer *w, const struct atom *a)
 	return text;
 }
 
+/* A form that is linear in t, at another time than now */
+static const char *form_then(const struct writer *w, const struct form *form)
+{
+	const char **term = ARRAY(const char *, (size_t)form->terms + 1);
+	for (int i = 0; i < form->terms; i++) {
+		const struct basis *basis = &form->term[i].basis;
+		const char *operand = basis->kind == BASIS_WAVE && basis->power == 1 ? w->e->when
+				      : basis->kind == BASIS_PI		     ? w->basis_text(w->e, basis)
+									     : NULL;
+		term[i] = scaled(finite_number(w->e, form->term[i].factor), operand);
+	}
+	return form->terms ? tree(form->terms, term, 18) : "0.0";
+}
+
+static bool is_asked_then(const struct writer *w, const struct atom *a)
+{
+	return w->e->when && !a->state && !a->input;
+}
+
 static const char *call_text(struct writer *w, const struct atom *a)
 {
 	const char *x, *low, *high;
@@ -224,7 +243,7 @@ static const char *call_text(struct writer *w, const struct atom *a)
 		x = word_of(w, a->operand[0]);
 		return format("(%s < 0.0 ? -%s : %s)", x, x, x);
 	case FN_SGN:
-		x = word_of(w, a->operand[0]);
+		x = is_asked_then(w, a) ? declare(w, NULL, form_then(w, a->operand[0])) : word_of(w, a->operand[0]);
 		return format("(double)((%s > 0.0) - (%s < 0.0))", x, x);
 	case FN_CLIP:
 	case FN_DEADZONE:
@@ -241,6 +260,9 @@ static const char *call_text(struct writer *w, const struct atom *a)
 static const char *comparison_text(struct writer *w, const struct atom *a)
 {
 	static const char *const sign[] = { "<", "<=", ">", ">=", "==", "!=" };
+	if (is_asked_then(w, a))
+		return format("%s %s %s", form_then(w, a->operand[0]), sign[a->comparison],
+			      form_then(w, a->operand[1]));
 	const char *left = argument_text(w, a->operand[0]);
 	return format("%s %s %s", left, sign[a->comparison], argument_text(w, a->operand[1]));
 }

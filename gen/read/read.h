@@ -144,6 +144,7 @@ struct spec {                       /* what the text says, names resolved, nothi
 	 * within one h. NULL: not given */
 	struct node *scheme_order, *tolerance, *substeps;
 	bool has_operator;
+	struct node *operator_count; /* of a bank between two values; NULL: each has a value of its own */
 	struct place operator_at;
 	int fixeds;
 	struct fixed *fixed;
@@ -197,6 +198,9 @@ struct scheme_row {
 	bool holds_leftover;        /* over the step: there is a value of its order at any time between steps */
 	bool predicts;              /* the nodes by an explicit method, which bears no stiffness */
 	bool expands;               /* the whole right side, as a Taylor series in time */
+	bool modes;                 /* in normal modes of symmetric operators; loads are left over too */
+	int points;                 /* of an exponential multistep method: past forces that a step reads */
+	int stages;                 /* of collocation, where no number is given; 0: it is none */
 	/* Stability: where the operator's squared frequencies are below the model's by d, the state grows at h d over
 	 * this; 0: its phase drifts, by the order. */
 	int growth_divisor;

@@ -428,6 +428,8 @@ void explain_program(FILE *to, const struct step *step)
 		(step->parts ? print_parts : print_regions)(to, step);
 	else if (step->expansion)
 		print_expansion(to, step);
+	else if (step->normal)
+		program_normal(to, step);
 	else if (has_leftover(step))
 		print_actions(to, step);
 	else

@@ -10,6 +10,8 @@ enum step_kind kind_of_step(const struct model *model)
 		return KIND_TUNED;
 	if (model->channels == 0)
 		return KIND_LINEAR;
+	if (scheme_row(model->scheme)->modes)
+		return KIND_NORMAL;
 	return scheme_row(model->scheme)->expands ? KIND_EXPANDED : KIND_LEFTOVER;
 }
 
@@ -59,7 +61,7 @@ bool *loads_of_regions(const struct step *step)
 
 bool has_leftover(const struct step *step)
 {
-	return step->kind == KIND_LEFTOVER || step->kind == KIND_EXPANDED;
+	return step->kind == KIND_LEFTOVER || step->kind == KIND_EXPANDED || step->kind == KIND_NORMAL;
 }
 
 void need_closed_form(const struct step *step)
@@ -68,7 +70,8 @@ void need_closed_form(const struct step *step)
 		[KIND_REGIONS] = "where it crosses a breakpoint is found by a search",
 		[KIND_PARTS] = "where it crosses a breakpoint is found by a search",
 		[KIND_LEFTOVER] = "what is left over has no closed form",
-		[KIND_EXPANDED] = "what is left over has no closed form"
+		[KIND_EXPANDED] = "what is left over has no closed form",
+		[KIND_NORMAL] = "what is left over has no closed form"
 	};
 	const char *why = of_kind[step->kind];
 	if (!why && step->model->scheme != SCHEME_EXACT)

@@ -136,8 +136,8 @@ static void build_leftover_step(struct step *step)
 	series_plan(step);
 }
 
-/* e^{A h} is for readers of the table alone. */
-static void build_expanded_step(struct step *step)
+/* Of a step that is neither assignments nor actions: e^{A h} is for readers of the table alone. */
+static void build_without_list(struct step *step)
 {
 	struct recipe *recipe = NEW(struct recipe);
 	int states = step->branch->system.states;
@@ -148,13 +148,18 @@ static void build_expanded_step(struct step *step)
 	make_tables(step, recipe->tables, recipe->table);
 	step->carry = ARRAY(int, (size_t)states);
 	step->program = NEW(struct program);
-	step->program->compensated = true;
 	step->program->reads = ARRAY(bool, (size_t)states);
 	step->program->uses = ARRAY(bool, (size_t)step->branch->whole->columns);
 	for (int i = 0; i < states; i++) {
 		step->carry[i] = -1;
 		step->program->reads[i] = true;
 	}
+}
+
+static void build_expanded_step(struct step *step)
+{
+	build_without_list(step);
+	step->program->compensated = true;
 	step->expansion = expansion_of(step, step->model->truncation.order);
 	step->series.emitted = true;
 	count_expansion(step, step->program);
@@ -165,12 +170,23 @@ static void build_expanded_step(struct step *step)
 		      step->expansion->order, step->program->multiplications, LIMIT_SERIES);
 }
 
+/* Times in a step at which forces are evaluated are those of a step by collocation. */
+static void build_normal_step(struct step *step)
+{
+	build_without_list(step);
+	const struct normal *normal = normal_of(step);
+	step->program->nodes = normal->stages + 1;
+	step->program->node = normal->node;
+	count_normal(step, step->program);
+}
+
 static void build(void *context)
 {
 	static void (*const build_kind[KINDS])(struct step *) = {
 		[KIND_LINEAR] = build_linear_step, [KIND_TUNED] = build_tuned_step,
 		[KIND_REGIONS] = build_regions_step, [KIND_PARTS] = build_parts_step,
-		[KIND_LEFTOVER] = build_leftover_step, [KIND_EXPANDED] = build_expanded_step
+		[KIND_LEFTOVER] = build_leftover_step, [KIND_EXPANDED] = build_expanded_step,
+		[KIND_NORMAL] = build_normal_step
 	};
 	struct step *step = context;
 	const struct model *model = step->model;
