@@ -10,6 +10,7 @@
 #     as=PREFIX       PREFIX instead of NAME in the names
 #     at=TEXT         `operator at TEXT` instead of the spec's own operator ('_' is a blank); at=none: no such statement
 #     order=N         of scheme taylor, which N makes fixed
+#     stages=N        of scheme etdcol
 #     anything else   for plgen
 set -eu
 LC_ALL=C
@@ -42,10 +43,12 @@ grep -v -e '^#' -e '^$' "$list" | while read -r name schemes steps options; do
     spec=$work/$name.spec
     given=
     order=
+    stages=
     for option in $options; do
         case $option in
             as=*) as=${option#as=} ;;
             order=*) order=${option#order=} ;;
+            stages=*) stages=${option#stages=} ;;
             at=*)
                 operator=$(printf '%s' "${option#at=}" | tr '_' ' ')
                 {
@@ -69,7 +72,8 @@ grep -v -e '^#' -e '^$' "$list" | while read -r name schemes steps options; do
             fi
             [ "$step" = - ] || choice="$choice --step $step"
             # shellcheck disable=SC2086
-            "$plgen" --rhs $choice $given ${order:+--scheme "taylor $order"} -o "$work/$prefix.c" "$spec" \
+            "$plgen" --rhs $choice $given ${order:+--scheme "taylor $order"} \
+                ${stages:+--scheme "etdcol $stages"} -o "$work/$prefix.c" "$spec" \
                 2>"$work/said" ||
                 { cat "$work/said" >&2; exit 1; }
             cat "$work/$prefix.h" >>"$work/headers"
