@@ -60,6 +60,10 @@ BEGIN {
 	look("^bm3",                             7, "#203080", "+5")
 	look("^taylor$",                         7, "#d000d0")
 	look("^taylor",                          9, "#8000a0", "+3")
+	look("^etdam4",                          5, "#0060c0", "+2")
+	look("^etdam5",                          9, "#0040e0", "+2")
+	look("^etdam6",                         11, "#2020a0", "+2")
+	look("^etdcol",                         13, "#4000ff", "+4")
 	# fixed steps: dashed
 	look("Euler",                            1, "#007040", "2")
 	look("explicit trapez",                  2, "#40a000", "2")
