@@ -224,6 +224,8 @@ void emit_function_values(const struct emitter *e)
 	struct writer *writer = writer_new(&here, basis_now, count, form);
 	for (int k = 0; k < count; k++)
 		say(e, "    f[%d] = %s;\n", k, write_form(writer, form[k], 11));
+	if (r.time && has_changes(e))   /* conditions alone may read it */
+		say(e, "    (void)t;\n");
 	say(e, "    (void)s;\n"
 	       "    (void)node;\n"
 	       "%s}\n", has_changes(e) ? "    (void)when;\n" : "");
