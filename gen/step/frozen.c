@@ -22,6 +22,7 @@ struct frozen {
 	const double *f;            /* of time: all, the first is 1 */
 	int bank;
 	double *matrix[2];          /* what is left over, of eta and of eta': modes x modes */
+	double h;
 };
 
 /* ---- what is left over at a time ---- */
@@ -117,19 +118,21 @@ static void collocation_of_frozen(const struct frozen *z, const double *from, do
 		}
 }
 
-static double radius_of(struct frozen *z, bool twice)
+static void map_of_frozen(const struct frozen *z, bool twice, const double *from, double *to)
 {
-	const struct normal *m = z->normal;
-	int size = (2 + m->kept) * m->modes;
+	if (z->normal->points)
+		step_of_frozen(z, twice, from, to);
+	else
+		collocation_of_frozen(z, from, to);
+}
+
+static double radius_by_eigenvalues(const struct frozen *z, bool twice, int size)
+{
 	double *matrix = ARRAY(double, (size_t)size * (size_t)size), *from = ARRAY(double, (size_t)size);
 	double *to = ARRAY(double, (size_t)size);
-	freeze(z);
 	for (int j = 0; j < size; j++) {
 		from[j] = 1;
-		if (m->points)
-			step_of_frozen(z, twice, from, to);
-		else
-			collocation_of_frozen(z, from, to);
+		map_of_frozen(z, twice, from, to);
 		from[j] = 0;
 		for (int i = 0; i < size; i++)
 			matrix[i * size + j] = to[i];
@@ -139,6 +142,49 @@ static double radius_of(struct frozen *z, bool twice)
 	discard(from);
 	discard(to);
 	return radius;
+}
+
+/* Amplitudes times frequencies, rates, and forces over a step, so that each counts alike */
+static double size_of_state(const struct frozen *z, const double *x, double h)
+{
+	const struct normal *m = z->normal;
+	double sum = 0;
+	for (int i = 0; i < (2 + m->kept) * m->modes; i++) {
+		double scale = i < m->modes ? m->frequency[z->bank * m->modes + i] : i < 2 * m->modes ? 1 : h;
+		sum += scale * x[i] * scale * x[i];
+	}
+	return sqrt(sum);
+}
+
+/* Of many modes: by what so many steps make of any state, in the mean of the second half of them */
+static double radius_by_steps(const struct frozen *z, bool twice, int size)
+{
+	enum { STEPS = 8192 };
+	double *x[2] = { ARRAY(double, (size_t)size), ARRAY(double, (size_t)size) }, growth = 0;
+	unsigned seed = 1;
+	for (int i = 0; i < 2 * z->normal->modes; i++) {
+		seed = seed * 1103515245u + 12345u;
+		x[0][i] = (double)(seed >> 8) / 8388608 - 1;
+	}
+	for (int k = 0; k < STEPS; k++) {
+		double before = size_of_state(z, x[k % 2], z->h);
+		map_of_frozen(z, twice, x[k % 2], x[(k + 1) % 2]);
+		double after = size_of_state(z, x[(k + 1) % 2], z->h);
+		for (int i = 0; i < size && after > 0; i++)
+			x[(k + 1) % 2][i] /= after;
+		growth += k >= STEPS / 2 && before > 0 && after > 0 ? log(after / before) : 0;
+	}
+	discard(x[0]);
+	discard(x[1]);
+	return exp(growth / (STEPS - STEPS / 2));
+}
+
+static double radius_of(struct frozen *z, bool twice)
+{
+	enum { BY_EIGENVALUES = 160 };
+	int size = (2 + z->normal->kept) * z->normal->modes;
+	freeze(z);
+	return (size <= BY_EIGENVALUES ? radius_by_eigenvalues : radius_by_steps)(z, twice, size);
 }
 
 /* ---- times to look at ---- */
@@ -264,11 +310,12 @@ struct stability stability_of(const struct step *step, bool twice)
 	const struct normal *m = step->normal;
 	size_t cells = (size_t)m->modes * (size_t)m->modes;
 	struct frozen z = { .normal = m, .functions = step->model->split->functions,
-			    .matrix = { ARRAY(double, cells), ARRAY(double, cells) } };
+			    .matrix = { ARRAY(double, cells), ARRAY(double, cells) },
+			    .h = nearest_double(step->model->h) };
 	struct stability found = { .span = span_of(step) };
 	const double *f = functions_at(step, found.span);
 	const struct chosen *chosen = choose_times(step, f);
-	double steps = found.span / nearest_double(step->model->h);
+	double steps = found.span / z.h;
 	for (z.bank = 0; z.bank < m->banks; z.bank++)
 		if (chosen[z.bank].times)
 			found.growth += growth_of_bank(&z, &chosen[z.bank], f, twice, &found) * steps *

@@ -28,6 +28,9 @@ static const char *name_of(const struct step *step)
 static void check_orders(const struct step *step)
 {
 	const struct model *model = step->model;
+	if (model->n > LIMIT_MODES)
+		error(scheme_place(step), NULL, "more coordinates than the limit of %d of scheme %s", LIMIT_MODES,
+		      name_of(step));
 	for (int j = 0; j < model->n; j++)
 		if (model->system.velocity[j] < 0)
 			error(scheme_place(step), "etdrk4 and taylor take it",
