@@ -308,7 +308,8 @@ int  functions_of_time(const struct emitter *e);                  /* beside the 
 bool has_bank(const struct emitter *e);                           /* of several operators */
 bool has_changes(const struct emitter *e);                        /* of formula in time */
 void say_numbers(const struct emitter *e, int count, const double *value);  /* of an initialiser */
-/* static const double NAME_name[operators][outer][row], one of all where they are alike; what a step calls its own */
+/* static const double NAME_name[operators][outer][row], without `outer` where it is 0, one of all operators where they
+ * are alike; what a step calls its own */
 const char *emit_bank_table(const struct emitter *e, const char *name, const char *note, int outer, int row,
 			    const double *value);
 struct row_sum {                    /* of what is written out in a loop over i */

@@ -62,24 +62,31 @@ void say_numbers(const struct emitter *e, int count, const double *value)
 const char *emit_bank_table(const struct emitter *e, const char *name, const char *note, int outer, int row,
 				   const double *value)
 {
-	struct bank_table t = table_of_banks(e, outer * row, value);
+	int rows = outer ? outer : 1;
+	struct bank_table t = table_of_banks(e, rows * row, value);
 	int banks = t.alike ? 1 : normal_of_step(e)->banks;
 	say(e, "\n/* %s */\n"
 	       "static const double $n_%s[%d]", note, name, banks);
-	if (outer > 1)
+	if (outer)
 		say(e, "[%d]", outer);
 	say(e, "[%d] = {\n", row);
 	for (int b = 0; b < banks; b++) {
-		say(e, outer > 1 ? "  {\n" : "");
-		for (int k = 0; k < outer; k++) {
+		say(e, outer ? "  {\n" : "");
+		for (int k = 0; k < rows; k++) {
 			say(e, "    {");
-			say_numbers(e, row, value + (b * outer + k) * row);
+			say_numbers(e, row, value + (b * rows + k) * row);
 			say(e, "},\n");
 		}
-		say(e, outer > 1 ? "  },\n" : "");
+		say(e, outer ? "  },\n" : "");
 	}
 	say(e, "};\n");
 	return spell(e, t.alike ? "$n_%s[0]" : "$n_%s[which]", name);
+}
+
+/* By which a table of so many numbers of each operator is read */
+static const char *bank_index(const struct emitter *e, const double *value, int size)
+{
+	return table_of_banks(e, size, value).alike ? "0" : "which";
 }
 
 /* ---- sums over the rows of a block ---- */
@@ -282,7 +289,7 @@ static void add_block(const struct emitter *e, struct row_sum *s, int matrix, in
 	case SHAPE_ZERO:
 		return;
 	case SHAPE_DIAGONAL:
-		name = emit_bank_table(e, name, "What is left over of a mode: a force on itself", 1, rows->rows,
+		name = emit_bank_table(e, name, "What is left over of a mode: a force on itself", 0, rows->rows,
 				       diagonal_of(e, value, row));
 		add_summand(s, format("%s[i] * x%d[%d + i]", name, matrix + 1, rows->place));
 		return;
@@ -330,6 +337,95 @@ static struct combination combination_of(const struct emitter *e, int matrix)
 				     part[1].terms ? tree(part[1].terms, part[1].term, 20) : NULL };
 }
 
+/* ---- what is not linear ---- */
+
+static struct reads reads_of_rest(const struct emitter *e)
+{
+	const struct splitting *split = e->model->split;
+	const struct form **form = ARRAY(const struct form *, (size_t)split->rests + 1);
+	for (int k = 0; k < split->rests; k++)
+		form[k] = split->rest[k].form;
+	return reads_of(e->model, split->rests, form);
+}
+
+static void emit_rest_forces(const struct emitter *e)
+{
+	const struct splitting *split = e->model->split;
+	const struct form **form = ARRAY(const struct form *, (size_t)split->rests + 1);
+	struct reads r = reads_of_rest(e);
+	if (split->rests == 0)
+		return;
+	for (int k = 0; k < split->rests; k++)
+		form[k] = split->rest[k].form;
+	say(e, "\n/* What is not linear in the states, before it is multiplied with a function of time */\n"
+	       "static void $n_rest(const double y[$N_STATES], double left[%d])\n"
+	       "{\n", split->rests);
+	emit_locals_of(e, r.state, "y");
+	struct writer *writer = writer_new(e, basis_now, split->rests, form);
+	for (int k = 0; k < split->rests; k++)
+		say(e, "    left[%d] = %s;  /* %s */\n", k, write_form(writer, form[k], 15),
+		    e->model->coord_name[split->rest[k].coord]);
+	say(e, "}\n");
+}
+
+/* Of a coordinate: its block, and its place in that */
+static int block_of_coordinate(const struct emitter *e, int coord, int *place)
+{
+	const struct normal *m = normal_of_step(e);
+	for (int b = 0; b < m->blocks; b++)
+		for (*place = 0; *place < m->block[b].modes; ++*place)
+			if (m->block[b].coord[*place] == coord)
+				return b;
+	return 0;
+}
+
+/* V's row of each coordinate with such a force: what that is on the modes */
+static void add_rest_forces(const struct emitter *e, struct row_sum *sum)
+{
+	const struct normal *m = normal_of_step(e);
+	const struct splitting *split = e->model->split;
+	int n = m->modes, place;
+	for (int k = 0; k < split->rests; k++) {
+		int block = block_of_coordinate(e, split->rest[k].coord, &place), first = first_mode(e, block);
+		const struct mode_block *own = &m->block[block];
+		double *row = ARRAY(double, (size_t)(m->banks * own->rows));
+		for (int b = 0; b < m->banks; b++)
+			for (int j = 0; j < own->modes; j++)
+				row[b * own->rows + j] = m->from[(b * n + split->rest[k].coord) * n + first + j];
+		const char *name = emit_bank_table(e, format("rest%d", k + 1), "A force on a coordinate as forces on modes",
+						   0, own->rows, row);
+		add_summand(&sum[block], format("%s[i] * rest%d", name, k + 1));
+	}
+}
+
+/* The states that it reads, and its values times functions of time */
+static void emit_rest_values(const struct emitter *e)
+{
+	const struct normal *m = normal_of_step(e);
+	const struct splitting *split = e->model->split;
+	struct reads r = reads_of_rest(e);
+	if (split->rests == 0)
+		return;
+	say(e, "    double y[$N_STATES], left[%d];\n", split->rests);
+	for (int i = 0; i < e->system->states; i++) {
+		int place, block = block_of_coordinate(e, e->system->coord[i], &place);
+		const struct mode_block *own = &m->block[block];
+		struct row_sum s = { 0 };
+		if (!r.state[i])
+			continue;
+		const char *table = spell(e, "$n_from_modes%d[%s]", block + 1,
+					  bank_index(e, sorted(e, m->from, block, false), own->modes * own->rows));
+		for (int j = 0; j < own->modes; j++)
+			add_summand(&s, format("%s[%d][%d] * %s[%d]", table, j, place, i < m->modes ? "eta" : "rate",
+					       own->place + j));
+		say(e, "    y[%d] = %s;\n", i, tree(s.terms, s.term, 11));
+	}
+	say(e, "    $n_rest(y, left);\n");
+	for (int k = 0; k < split->rests; k++)
+		say(e, "    const double rest%d = left[%d]%s%s;\n", k + 1, k, split->rest[k].function ? " * " : "",
+		    split->rest[k].function ? function_text(split->rest[k].function) : "");
+}
+
 static void emit_combinations(const struct emitter *e, const struct combination *made)
 {
 	const struct normal *m = normal_of_step(e);
@@ -364,7 +460,7 @@ void emit_forces(const struct emitter *e)
 		if (!m->force[f])
 			continue;
 		const char *name =
-			emit_bank_table(e, format("force%d", f), "Forces of time alone", 1, m->width, m->force[f]);
+			emit_bank_table(e, format("force%d", f), "Forces of time alone", 0, m->width, m->force[f]);
 		for (int b = 0; b < m->blocks; b++)
 			add_summand(&sum[b], format("%s[%d + i]%s%s", name, m->block[b].place, f ? " * " : "",
 						 f ? function_text(f) : ""));
@@ -373,11 +469,14 @@ void emit_forces(const struct emitter *e)
 		for (int k = 0; k < m->matrices; k++)
 			for (int c = 0; c < m->blocks; c++)
 				add_block(e, &sum[b], k, b, c);
+	emit_rest_forces(e);
+	add_rest_forces(e, sum);
 	say(e, "\n/* Forces on the modes: what is left over, loads among it */\n"
 	       "static void $n_forces(int which, const double f[%d], const double eta[%d],\n"
 	       "    const double rate[%d], double force[%d])\n"
 	       "{\n", functions_of_time(e) ? functions_of_time(e) : 1, m->width, m->width, m->width);
 	emit_combinations(e, made);
+	emit_rest_values(e);
 	for (int b = 0; b < m->blocks; b++)
 		say_row_sum(e, format("force[%d + i]", m->block[b].place), m->block[b].rows, &sum[b]);
 	say(e, "    (void)which;\n"

@@ -73,10 +73,16 @@ struct time_function {              /* what stands with it in the leftover of th
 	mpq_t *force;               /* on the equation of each coordinate; NULL: none */
 	mpq_t last;                 /* its value in the last segment of time, where it is constant there */
 };
+struct rest_force {                 /* on the equation of a coordinate: a function of time times one of the states */
+	int coord, function;
+	struct form *form;
+};
 struct splitting {                  /* the leftover, sorted: see split.c */
 	int functions;
 	struct time_function *function; /* the first is 1 */
-	struct form **rest;         /* per coordinate: what is neither linear nor of time alone */
+	int rests;                  /* forces that are neither */
+	struct rest_force *rest;
+	const struct node *mixed;   /* time and states in one function: none of this; NULL: there is none such */
 	bool settles;               /* there is a last segment of time, in which all functions are constant */
 	const struct atom *unknown; /* changes its formula in time, it is not known when; NULL: none does */
 	int selector;               /* function that a bank is chosen by; -1: there is no bank, or it is by states */

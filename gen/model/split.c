@@ -101,6 +101,42 @@ static void add_force(struct split_work *w, const struct basis *basis, mpq_srcpt
 	mpq_clear(factor);
 }
 
+/* By a product's factor of time alone: they are one (atom.c), or none */
+static int time_factor(const struct atom *a)
+{
+	for (int k = 0; a->kind == ATOM_PRODUCT && k < a->operands; k++)
+		if (is_of_time(a->operand[k]) && a->exponent[k] == 1)
+			return k;
+	return -1;
+}
+
+static void add_rest(struct split_work *w, const struct basis *basis, mpq_srcptr by)
+{
+	struct splitting *s = w->split;
+	const struct atom *a = basis->atom;
+	const struct form *states = form_unit(*basis), *function = s->function[0].form;
+	int k = a ? time_factor(a) : -1, r = 0;
+	mpq_t factor;
+	mpq_init(factor);
+	mpq_set(factor, by);
+	if (k >= 0) {
+		states = kept_others(&w->b->collector, a->node, a, k);
+		function = a->operand[k];
+	}
+	for (int i = 0; i < states->terms; i++)
+		if (states->term[i].basis.atom && states->term[i].basis.atom->time)
+			s->mixed = a->node;
+	k = number_of_function(s, function, factor);
+	while (r < s->rests && (s->rest[r].coord != w->coord || s->rest[r].function != k))
+		r++;
+	if (r == s->rests) {
+		ENLARGE(s->rest, (size_t)s->rests + 1);
+		s->rest[s->rests++] = (struct rest_force){ w->coord, k, NEW(struct form) };
+	}
+	form_add_to(s->rest[r].form, states, factor);
+	mpq_clear(factor);
+}
+
 static void add_term(struct split_work *w, const struct form_term *term)
 {
 	const struct basis *basis = &term->basis;
@@ -113,7 +149,7 @@ static void add_term(struct split_work *w, const struct form_term *term)
 	else if (depends_on_time_only(basis))
 		add_force(w, basis, term->factor);
 	else
-		form_add_basis(w->split->rest[w->coord], *basis, term->factor);
+		add_rest(w, basis, term->factor);
 }
 
 /* ---- when functions of time change their formula, and what they are in the end ---- */
@@ -168,8 +204,7 @@ static void find_last_values(void *context)
 		else
 			s->settles = false;
 	}
-	for (int i = 0; i < w->b->model->n; i++)
-		s->settles = s->settles && s->rest[i]->terms == 0;
+	s->settles = s->settles && s->rests == 0;
 }
 
 static void find_course(struct split_work *w)
@@ -194,9 +229,6 @@ void split_leftover(struct building *b)
 	mpq_set_ui(one, 1, 1);
 	number_of_function(s, form_unit((struct basis){ .kind = BASIS_ONE }), one);
 	mpq_clear(one);
-	s->rest = ARRAY(struct form *, (size_t)model->n);
-	for (int i = 0; i < model->n; i++)
-		s->rest[i] = NEW(struct form);
 	for (int c = 0; c < model->channels; c++) {
 		const struct form *left = model->operator[0].left[c];
 		w.coord = coordinate_of_row(model, model->channel_row[c]);

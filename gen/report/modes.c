@@ -28,8 +28,9 @@ const char *stability_of_modes(const struct step *step)
 {
 	const struct stability *s = &step->normal->stability;
 	bool inside = s->radius < 1;
-	return format("functions of time frozen, the spectral radius of a step is at most 1 %c %.2g, at t = %.4g s; "
-		      "all steps up to t = %.4g s let nothing grow by more than %.3g", inside ? '-' : '+',
+	return format("functions of time frozen%s, the spectral radius of a step is at most 1 %c %.2g, at t = %.4g s; "
+		      "all steps up to t = %.4g s let nothing grow by more than %.3g",
+		      step->model->split->rests ? " and what is not linear left out" : "", inside ? '-' : '+',
 		      inside ? 1 - s->radius : s->radius - 1, s->time, s->span, s->growth_factor);
 }
 

@@ -469,6 +469,12 @@ void count_normal(const struct step *step, struct program *program)
 	int n = normal->modes, points = normal->points, evaluations = normal->twice ? 2 : 1;
 	for (int f = 1; f < split->functions; f++)
 		cost_form(&c, split->function[f].form);
+	struct counting rest = { .seen = c.seen };
+	for (int k = 0; k < split->rests; k++)
+		cost_form(&rest, split->rest[k].form);
+	force.multiplications += rest.cost.multiplications + (n + 1) * split->rests;
+	force.additions += rest.cost.additions + n * split->rests;
+	c.cost.calls += evaluations * rest.cost.calls;
 	program->multiplications = c.cost.multiplications + evaluations * force.multiplications + n * (3 * points + 6);
 	program->additions = c.cost.additions + evaluations * force.additions + n * (3 * points + 6);
 	program->calls = c.cost.calls;

@@ -58,11 +58,11 @@ static void check_left(const struct step *step)
 	if (model->system.inputs > 0)
 		error(scheme_place(step), "etdrk4 and taylor take it",
 		      "scheme %s needs forces that are smooth from step to step: the model has inputs", name_of(step));
-	for (int i = 0; i < model->n; i++)
-		if (model->split->rest[i]->terms)
-			error(scheme_place(step), "etdrk4 and taylor take it",
-			      "scheme %s takes what is linear in the states: in the equation of %s there is %s",
-			      name_of(step), model->coord_name[i], form_text(model, model->split->rest[i]));
+	const struct node *mixed = model->split->mixed;
+	if (mixed)
+		error(mixed->start, "etdrk4 and taylor take it",
+		      "scheme %s takes products of functions of time and of states: in '%s' both stand in one",
+		      name_of(step), text_between(mixed->start, mixed->end));
 }
 
 /* ---- modes ---- */
