@@ -392,8 +392,8 @@ static void add_rest_forces(const struct emitter *e, struct row_sum *sum)
 		for (int b = 0; b < m->banks; b++)
 			for (int j = 0; j < own->modes; j++)
 				row[b * own->rows + j] = m->from[(b * n + split->rest[k].coord) * n + first + j];
-		const char *name = emit_bank_table(e, format("rest%d", k + 1), "A force on a coordinate as forces on modes",
-						   0, own->rows, row);
+		const char *name = emit_bank_table(e, format("rest%d", k + 1), "A force on a coordinate, on modes", 0,
+						   own->rows, row);
 		add_summand(&sum[block], format("%s[i] * rest%d", name, k + 1));
 	}
 }
