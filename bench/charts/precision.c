@@ -60,6 +60,7 @@ static const int parts_scheme[][8] = { { 1, 2, 4, 8, 16, 32, 0 }, { 1, 4, 16, 64
 static const int parts_scheme_quick[][8] = { { 1, 8, 0 }, { 4, 64, 0 }, { 1, 8, 0 } };
 static const int parts_implicit_large[] = { 1, 2, 4, 16, 0 }, parts_exact[] = { 1, 4, 0 },
 	parts_exact_quick[] = { 1, 0 };
+static const int parts_modes[] = { 1, 2, 4, 0 };
 static const int digits[][8] = { { 3, 4, 6, 8, 10, 12, 13, 0 }, { 3, 4, 6, 8, 10, 12, 13, 0 }, { 4, 8, 12, 0 } },
 	digits_quick[] = { 3, 8, 12, 0 }, digits_series[] = { 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 0 };
 
@@ -67,6 +68,7 @@ struct ours {
 	const char *name, *options;
 	bool exact;                     /* else with a leftover */
 	bool series;                    /* of smooth models with few states */
+	bool modes;                     /* of large ones, with a bank of their own: specs/modes_NAME.spec */
 	bool tolerance;                 /* settings are tolerances, not steps */
 };
 
@@ -94,6 +96,11 @@ static const struct ours ours[] = {
 	{ .name = "taylor 6", .options = "'--scheme=taylor 6'", .series = true },
 	{ .name = "taylor 8", .options = "'--scheme=taylor 8'", .series = true },
 	{ .name = "taylor 12", .options = "'--scheme=taylor 12'", .series = true },
+	{ .name = "etdam4", .options = "--scheme etdam4", .modes = true },
+	{ .name = "etdam5", .options = "--scheme etdam5", .modes = true },
+	{ .name = "etdam6", .options = "--scheme etdam6", .modes = true },
+	{ .name = "etdcol 4", .options = "'--scheme=etdcol 4'", .modes = true },
+	{ .name = "etdcol 6", .options = "'--scheme=etdcol 6'", .modes = true },
 };
 enum { OURS_COUNT = sizeof ours / sizeof *ours };
 
@@ -101,6 +108,8 @@ enum { OURS_COUNT = sizeof ours / sizeof *ours };
 static bool applies(const struct charted *m, const struct ours *o)
 {
 	const bool piecewise = strncmp(m->name, "gear", 4) == 0;
+	if (o->modes)
+		return m->kind == LARGE;
 	if (o->series)
 		return !m->linear && !piecewise && m->kind != LARGE;
 	return o->exact ? m->linear || piecewise : !m->linear || strcmp(o->name, "pl") == 0;
@@ -117,6 +126,8 @@ static const int *parts_of_ours(const struct charted *m, const struct ours *o, b
 		return quick ? digits_quick : digits_series;
 	if (o->exact)
 		return quick ? parts_exact_quick : parts_exact;
+	if (o->modes)
+		return quick ? parts_exact_quick : parts_modes;
 	return quick ? parts_scheme_quick[m->kind] : parts_scheme[m->kind];
 }
 
@@ -159,7 +170,8 @@ static void list_model(const struct charted *m, bool quick)
 				printf("%s models/%s.spec --step %s %s --tolerance 1e-%d\n", name, m->name, m->unit,
 				       options_of(o), *parts);
 			else
-				printf("%s models/%s.spec --step %s/%d %s\n", name, m->name, m->unit, *parts,
+				printf("%s %s%s.spec --step %s/%d %s\n", name,
+				       o->modes ? "bench/charts/specs/modes_" : "models/", m->name, m->unit, *parts,
 				       options_of(o));
 		}
 }

@@ -166,6 +166,26 @@ void banner_collocated(const struct emitter *e)
 	    e->step->shown->no_phi ? ".\n" : "");
 }
 
+/* The modes, what is left over in them, how a step goes */
+void banner_normal(const struct emitter *e)
+{
+	const struct normal *m = e->step->normal;
+	const struct model *model = e->model;
+	banner_scheme(e);
+	banner_sentence(e, format("Normal modes of M q'' + C q' + K q = 0, K and C symmetric: %s.",
+				  operators_of_modes(e->step)));
+	banner_sentence(e, "Exact: what each mode does by itself; approximated, by polynomials in time: forces on the "
+			   "modes, loads too, which are V^T times");
+	banner_left(e, model);
+	banner_sentence(e, format("Step: %s.", course_of_modes(e->step)));
+	banner_sentence(e, format("Stability: %s.", stability_of_modes(e->step)));
+	banner_sentence(e, format("Tables: at most %d numbers, of which a step reads those of one operator.",
+				  numbers_of_modes(e->step)));
+	if (e->system->segments > 1)
+		banner_sentence(e, format("Where functions of time change their formula, the method starts anew%s.",
+					  m->settled ? "; after the last change steps are exact" : ""));
+}
+
 static void banner_expressions(const struct emitter *e)
 {
 	const struct model *model = e->step->shown->model;
@@ -394,7 +414,7 @@ static void banner_state(const struct emitter *e)
 	say(e, " * State y = %s.\n", state_list(e->step->shown->model));
 	for (int i = 0; i < e->system->inputs; i++)
 		say(e, " * Input %s: %s.\n", e->system->input[i].name, input_text(e->system->input[i].hold));
-	if (changes > 0)
+	if (changes > 0 && !e->step->normal)
 		say(e, " * The loads change their formula %d time%s; "
 		       "a step across a change is exact too, by a series that stops there.\n", changes,
 		    changes > 1 ? "s" : "");

@@ -351,6 +351,37 @@ void emit_collocation_members(const struct emitter *e);
 void emit_collocation_step(const struct emitter *e);
 void emit_collocation_at(const struct emitter *e);
 
+/* ---- emit_forces.c: tables of modes, and forces on them ---- */
+
+const struct normal *normal_of_step(const struct emitter *e);
+int  functions_of_time(const struct emitter *e);                  /* beside the constant one */
+bool has_bank(const struct emitter *e);                           /* of several operators */
+bool has_changes(const struct emitter *e);                        /* of formula in time */
+void say_numbers(const struct emitter *e, int count, const double *value);  /* of an initialiser */
+/* static const double NAME_name[operators][outer][row], without `outer` where it is 0, one of all operators where they
+ * are alike; what a step calls its own */
+const char *emit_bank_table(const struct emitter *e, const char *name, const char *note, int outer, int row,
+			    const double *value);
+struct row_sum {                    /* of what is written out in a loop over i */
+	int terms, room;
+	const char **term;
+};
+void add_summand(struct row_sum *s, const char *text);
+/* target[i] = sum for so many i, in as many loops as its terms ask for */
+void say_row_sum(const struct emitter *e, const char *target, int rows, const struct row_sum *s);
+/* At a node of the step, with the formulas that hold in it: after it, those of the step that has ended */
+const char *functions_call(const struct emitter *e, const char *node, bool ended, const char *f);
+void emit_to_modes(const struct emitter *e);                      /* NAME_modes_of */
+void emit_from_modes(const struct emitter *e);                    /* NAME_of_modes */
+void emit_function_values(const struct emitter *e);               /* NAME_functions */
+void emit_forces(const struct emitter *e);                        /* NAME_forces */
+
+/* ---- emit_normal.c: steps in normal modes ---- */
+
+void emit_normal_members(const struct emitter *e);
+void emit_normal_tables(const struct emitter *e);
+void emit_normal_step(const struct emitter *e);
+
 /* ---- banner.c, declarations.c: what a header has ---- */
 
 void emit_banner(const struct emitter *e);
@@ -360,6 +391,7 @@ void banner_regions(const struct emitter *e);
 void banner_parts(const struct emitter *e);
 void banner_expanded(const struct emitter *e);
 void banner_collocated(const struct emitter *e);
+void banner_normal(const struct emitter *e);
 void emit_declarations(const struct emitter *e, bool rhs);
 
 /* ---- kept.c: states as written, and as they are kept ---- */

@@ -91,7 +91,7 @@ static void print_node_rows(const struct emitter *e, const struct node_table *ta
 		for (int l = 0; l < e->system->loads; l++)
 			if (table->index[l] >= 0)
 				say(e, "%s%s", shown++ ? ",\n     " : "", table->text(e, &e->step->phase[l].node[i]));
-		say(e, "},  /* %s h */\n", exact_text(program->node[i]));
+		say(e, "},  /* %s h */\n", readable_text(program->node[i]));
 	}
 	say(e, "};\n");
 }

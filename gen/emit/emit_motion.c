@@ -374,7 +374,7 @@ static void emit_unread_locals(const struct emitter *e, const struct reads *r)
 			say(e, "    (void)%s;\n", e->local[i]);
 }
 
-static void emit_forces(const struct emitter *e, const struct reads *r)
+static void emit_force_function(const struct emitter *e, const struct reads *r)
 {
 	int known = known_places(e, r).count;
 	const struct motion *m = motion(e);
@@ -416,7 +416,7 @@ void emit_motion(const struct emitter *e)
 		emit_known(e, &r);
 	emit_linearize(e, &r);
 	if (splits(e))
-		emit_forces(e, &r);
+		emit_force_function(e, &r);
 }
 
 /* ---- for an internal step ---- */

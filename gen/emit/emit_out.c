@@ -233,6 +233,9 @@ void emit_out(const struct emitter *e)
 			form[forms++] = model->output[i].left;
 	}
 	emit_locals(e, needs.reads);
+	if (needs.left && e->step->normal && !any_of(needs.reads, e->system->states))
+		say(e, "    double now[$N_STATES];\n"
+		       "    $n_get(s, now);\n");
 	emit_input_locals(e, needs.inputs);
 	if (needs.time)
 		say(e, "    const double t = $n_time(s);\n");

@@ -393,12 +393,55 @@ static const struct kind collocated = {
 	.params = emit_no_params
 };
 
+/* ---- normal modes ---- */
+
+static const char *no_values_of_modes(const struct step *step)
+{
+	(void)step;
+	return "between its steps the scheme has no values of its order";
+}
+
+static void emit_normal_constants(const struct emitter *e)
+{
+	emit_times_of_changes(e);
+	emit_normal_tables(e);
+}
+
+static const struct kind normal_modes = {
+	.banner = banner_normal,
+	.step_note = "",
+	.banner_more = nothing,
+	.no_jump = "what is left over changes in time",
+	.no_at = no_values_of_modes,
+	.constants = nothing,
+	.types = nothing,
+	.coefficients = nothing,
+	.members = emit_normal_members,
+	.keeps_status = true,
+	.init_note = "t = 0, the spec's initial values",
+	.status_note = "0, or PL_NOT_FINITE once a step has left the finite numbers",
+	.declare_state = nothing,
+	.declare_more = nothing,
+	.start = no_start,
+	.places = any_place,
+	.reads_load = no_further_load,
+	.reads_phi = never,
+	.tables = emit_normal_constants,
+	.pass = nothing,
+	.step = emit_normal_step,
+	.held = nothing,
+	.at = nothing,
+	.wrappers = nothing,
+	.params = emit_no_params
+};
+
 const struct kind *row_of_kind(enum step_kind kind)
 {
 	static const struct kind *const row[KINDS] = {
 		[KIND_LINEAR] = &linear, [KIND_TUNED] = &tuned, [KIND_REGIONS] = &regions,
 		[KIND_PARTS] = &parts, [KIND_LEFTOVER] = &leftover, [KIND_EXPANDED] = &expanded,
-		[KIND_COLLOCATED] = &collocated
+		[KIND_COLLOCATED] = &collocated,
+		[KIND_NORMAL] = &normal_modes
 	};
 	return row[kind];
 }

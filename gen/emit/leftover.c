@@ -50,6 +50,8 @@ struct reads reads_of_leftover(const struct emitter *e)
 
 bool needs_node(const struct emitter *e, const struct reads *r)
 {
+	if (e->step->normal)            /* outputs alone call it */
+		return false;
 	return e->step->program->nodes > 1 && (r->time || any_of(r->load, e->system->loads) || reads_ramp(e, r));
 }
 
@@ -97,7 +99,7 @@ const char *leftover_of_step(const struct emitter *e)
 
 const char *leftover_of_outputs(const struct emitter *e)
 {
-	return leftover_call(e, "0", "s->y", "left", FROM_OUTPUTS);
+	return leftover_call(e, "0", e->step->normal ? "now" : "s->y", "left", FROM_OUTPUTS);
 }
 
 bool reads_channels(const struct model *model)

@@ -129,12 +129,19 @@ static void say_list(const struct emitter *e, const char *list)
 	}
 }
 
+/* s->y is not the state as it is known outside: NAME_get makes that */
+static bool is_read_whole(const struct emitter *e)
+{
+	return e->step->forced || e->step->modal || e->step->normal;
+}
+
 /* The states wanted. `velocities`: without masses; else as the struct has them. */
 static void write_locals(const struct emitter *e, const bool *reads, const char *type, const char *vector,
 			 bool velocities)
 {
 	const char *list = "";
-	bool forced = velocities && (e->step->forced || e->step->modal);        /* then the vector is whole */
+	bool forced = velocities && is_read_whole(e);
+
 	for (int i = 0; i < e->system->states; i++) {
 		const char *mass = velocities && !forced ? factor_of_momentum(e, i) : NULL;
 		if (reads[i])
@@ -149,7 +156,7 @@ void emit_locals(const struct emitter *e, const bool *reads)
 	bool any = false;
 	for (int i = 0; i < e->system->states; i++)
 		any = any || reads[i];
-	bool whole = e->step->forced || e->step->modal;
+	bool whole = is_read_whole(e);
 	if (whole && any)
 		say(e, "    double now[$N_STATES];\n"
 		       "    $n_%s(s, now);\n", e->model->relative ? "kept" : "get");
@@ -253,6 +260,13 @@ void emit_get_kept_state(const struct emitter *e, const char *vector)
 		say(e, "    for (i = 0; i < $N_STATES; i++)\n"
 		       "        %s[i] = s->k == 0 ? s->set[i] : $n_dot($n_from_modes[i], s->y);\n", vector);
 		return;
+	}
+	if (e->step->normal) {
+		say(e, "    if (s->k) {\n"
+		       "        $n_of_modes(s->which, s->eta, %s);\n"
+		       "        $n_of_modes(s->which, s->rate, %s + %d);\n"
+		       "        return;\n"
+		       "    }\n", vector, vector, e->step->normal->modes);
 	}
 	say(e, "    for (i = 0; i < $N_STATES; i++)\n"
 	       "        %s[i] = s->y[i];\n", vector);

@@ -6,7 +6,7 @@
 #include <gsl/gsl_errno.h>
 #include <math.h>
 
-bool eigenvalues(int n, const mpq_t *A, double *re, double *im)
+static bool find(int n, const double *A, double *re, double *im)
 {
 	gsl_error_handler_t *handler = gsl_set_error_handler_off();
 	gsl_matrix *m = need_memory(gsl_matrix_alloc((size_t)n, (size_t)n));
@@ -14,9 +14,8 @@ bool eigenvalues(int n, const mpq_t *A, double *re, double *im)
 	gsl_eigen_nonsymm_workspace *work = need_memory(gsl_eigen_nonsymm_alloc((size_t)n));
 	bool finite = true;
 	for (int i = 0; i < n * n; i++) {
-		double entry = nearest_double(A[i]);
-		finite = finite && isfinite(entry);
-		gsl_matrix_set(m, (size_t)(i / n), (size_t)(i % n), entry);
+		finite = finite && isfinite(A[i]);
+		gsl_matrix_set(m, (size_t)(i / n), (size_t)(i % n), A[i]);
 	}
 	gsl_eigen_nonsymm_params(0, 1, work);
 	bool found = finite && gsl_eigen_nonsymm(m, eigen, work) == GSL_SUCCESS;
@@ -30,4 +29,25 @@ bool eigenvalues(int n, const mpq_t *A, double *re, double *im)
 	gsl_vector_complex_free(eigen);
 	gsl_matrix_free(m);
 	return found;
+}
+
+bool eigenvalues(int n, const mpq_t *A, double *re, double *im)
+{
+	double *rounded = ARRAY(double, (size_t)n * (size_t)n);
+	for (int i = 0; i < n * n; i++)
+		rounded[i] = nearest_double(A[i]);
+	bool found = find(n, rounded, re, im);
+	discard(rounded);
+	return found;
+}
+
+double spectral_radius(int n, const double *A)
+{
+	double *re = ARRAY(double, (size_t)n), *im = ARRAY(double, (size_t)n), radius = 0;
+	bool found = find(n, A, re, im);
+	for (int i = 0; i < n; i++)
+		radius = hypot(re[i], im[i]) > radius ? hypot(re[i], im[i]) : radius;
+	discard(re);
+	discard(im);
+	return found ? radius : HUGE_VAL;
 }

@@ -27,6 +27,21 @@ void rational_product(int rows, int inner, int columns, const mpq_t *A, const mp
 /* in double precision; false: not found */
 bool eigenvalues(int n, const mpq_t *A, double *re, double *im);
 
+double spectral_radius(int n, const double *A);             /* of n x n; infinite where none is found */
+
+/* ---- symmetric.c: K v = lambda M v of symmetric K and positive definite M, in multiprecision ---- */
+
+mpfr_t *reals(size_t count, int precision);                 /* 0, of so many bits */
+void reals_free(mpfr_t *x, size_t count);
+struct eigenpairs {
+	int n, blocks;
+	mpfr_t *value;              /* those of a block after each other, rising */
+	mpfr_t *vector;             /* n x n, a column each: V^T M V = I, V^T K V diagonal; 0 outside its block */
+	int *block;                 /* per pair: 0 .. blocks - 1; what no entry of M and K couples are blocks */
+};
+/* Residuals below 2^-precision of what they are sums of; false: M is not positive definite. n x n, symmetric */
+bool symmetric_eigenpairs(int n, const mpq_t *M, const mpq_t *K, int precision, struct eigenpairs *pairs);
+
 /* ---- poly.c: polynomials over Z, constant term first ---- */
 
 struct poly {

@@ -4,6 +4,8 @@
 
 #include <string.h>
 
+enum { LEAST_LOBATTO = 2, MOST_LOBATTO = 12 };  /* stages of collocation in normal modes */
+
 /* ---- params, lets ---- */
 
 static void define_override(struct building *b, const char *text)
@@ -196,7 +198,13 @@ static void evaluate_truncation(void *context)
 	struct node *order = model->asked.scheme_order, *substeps = b->spec->substeps;
 	const struct scheme_row *row = scheme_row(model->scheme);
 	mpq_init(truncation->tolerance);
-	if (order && !row->expands)
+	if (row->stages) {
+		model->stages = row->stages;
+		if (order)
+			model->stages = whole_number(b, order, LEAST_LOBATTO, MOST_LOBATTO, "a number of stages");
+		truncation->order = model->stages + 1;
+	}
+	if (order && !row->expands && !row->stages)
 		error(order->start,
 		      format("that of scheme taylor is given: scheme taylor %s",
 			     text_between(order->start, order->end)),

@@ -66,6 +66,27 @@ struct operator {                   /* A of y' = A y + loads + inputs + r(t, y);
 	mpq_t at;                   /* of a bank: the value up to which it serves */
 	const char *text;           /* x = 2, x' = 0 */
 };
+struct time_function {              /* what stands with it in the leftover of the first operator */
+	const struct form *form;    /* of time alone */
+	/* n x n: force on the equation of coordinate i of coordinate j, of its velocity; NULL: none */
+	mpq_t *position, *velocity;
+	mpq_t *force;               /* on the equation of each coordinate; NULL: none */
+	mpq_t last;                 /* its value in the last segment of time, where it is constant there */
+};
+struct rest_force {                 /* on the equation of a coordinate: a function of time times one of the states */
+	int coord, function;
+	struct form *form;
+};
+struct splitting {                  /* the leftover, sorted: see split.c */
+	int functions;
+	struct time_function *function; /* the first is 1 */
+	int rests;                  /* forces that are neither */
+	struct rest_force *rest;
+	const struct node *mixed;   /* time and states in one function: none of this; NULL: there is none such */
+	bool settles;               /* there is a last segment of time, in which all functions are constant */
+	const struct atom *unknown; /* changes its formula in time, it is not known when; NULL: none does */
+	int selector;               /* function that a bank is chosen by; -1: there is no bank, or it is by states */
+};
 struct smoothness {                 /* of what is left over, else of the equations; where nothing is found all is 0 */
 	int tenths;                 /* of the order that no scheme exceeds here: 10 at a jump, 20 at a kink */
 	enum { SMOOTH_ALL, SMOOTH_KINK, SMOOTH_JUMP } kind;
@@ -102,7 +123,7 @@ struct request {                    /* what the user asks for on the command lin
 	bool undivided;             /* regions are those of all coordinates together */
 };
 struct truncation {                 /* of a Taylor series */
-	int order;                  /* of its last term in h */
+	int order;                  /* of its last term in h; of collocation in h */
 	int stages;                 /* of a collocation; 0: there is none */
 	bool adaptive;              /* steps as long as the tolerance lets them be; else each is h */
 	mpq_t tolerance;            /* of the last terms, relative to the largest of each state; 0: not looked at */
@@ -132,6 +153,7 @@ struct model {
 	enum scheme scheme;
 	struct truncation truncation; /* of a scheme that expands; else all 0 */
 	bool loads_left;            /* known loads are left to the scheme */
+	int stages;                 /* of collocation: nodes after the step's start; 0: another scheme */
 	int operators;              /* 0: exact, or nothing is left over */
 	struct operator *operator;
 	int *owner;                 /* per coordinate: the row of its equation */
@@ -143,6 +165,7 @@ struct model {
 	struct smoothness smooth;
 	const struct node *obstacle; /* the first term that stood in the way of exact, where no scheme was asked for; */
 	const char *obstacle_text;  /* why it did, and the way out if there is one */
+	struct splitting *split;    /* of a scheme in normal modes; else NULL */
 	const struct form *selector; /* of a bank: what is compared with `at`; NULL: one operator */
 	const struct tuning *tuning; /* tunable params, and how the equations follow from them; NULL: there are none */
 	int outputs;
@@ -349,6 +372,10 @@ void build_operators(struct building *b);
 struct linear operator_system(const struct model *model, int k);
 /* Every form that the leftovers and the selector are made of, once, operands before what they make. */
 void visit_leftovers(const struct model *model, void (*visit)(void *context, const struct form *form), void *context);
+
+/* ---- split.c: what is left over as matrices times functions of time, and the rest ---- */
+
+void split_leftover(struct building *b);                    /* model->split; after the operators */
 
 /* ---- smooth.c: how smooth the equations are, and what order that leaves to a scheme ---- */
 

@@ -9,6 +9,7 @@
 struct point_work {
 	struct building *b;
 	int which;                  /* of a bank */
+	mpq_srcptr value;           /* of its name; NULL: as written */
 	int fixings;
 	struct fixing *fixing;
 };
@@ -20,8 +21,10 @@ static void add_fixing(struct point_work *work, const struct fixed *fixed, int c
 	*f = (struct fixing){ .at = fixed->at, .symbol = fixed->symbol, .coord = coord, .order = fixed->primes };
 	f->form = value;
 	mpq_init(f->value);
+	if (work->value && fixed->values > 1)
+		f->form = form_constant(work->value);
 	if (fixed->symbol || fixed->values > 1) /* t stays a form, so that quarter turns are exact */
-		constant_value(&work->b->collector, value, f->value);
+		constant_value(&work->b->collector, f->form, f->value);
 }
 
 static void check_order(const struct fixed *fixed)
@@ -36,7 +39,7 @@ static void evaluate_fixed(struct point_work *work, const struct fixed *fixed)
 {
 	struct collector *c = &work->b->collector;
 	const struct symbol *symbol = fixed->symbol;
-	struct node *node = fixed->value[fixed->values > 1 ? work->which : 0];
+	struct node *node = fixed->value[fixed->values > 1 && !work->value ? work->which : 0];
 	bool vector = symbol && symbol->kind == SYMBOL_COORD && symbol->length && !fixed->component;
 	int count = vector ? symbol->length : 1,
 	    first = symbol && symbol->kind == SYMBOL_COORD
@@ -111,12 +114,83 @@ static void check_bank(void *context)
 		error(bank->at, NULL, "a bank is chosen by one number: name a component");
 }
 
+/* How many operators: as many as values, or the number asked for between two */
+static int size_of_bank(struct building *b, const struct fixed *bank)
+{
+	enum { MOST_OPERATORS = 256 };
+	const struct node *count = b->spec->operator_count;
+	mpq_t number;
+	if (!count)
+		return bank ? bank->values : 1;
+	if (!bank || bank->values != 2)
+		error(count->start, "operator 16 at w = 0, 15",
+		      "a number of operators goes with two values of one name");
+	mpq_init(number);
+	collect_constant(&b->collector, b->spec->operator_count, number);
+	if (mpz_cmp_ui(mpq_denref(number), 1) != 0 || mpq_cmp_ui(number, 1, 1) < 0 ||
+	    mpq_cmp_ui(number, MOST_OPERATORS, 1) > 0)
+		error(count->start, NULL, "a number of operators is a whole number from 1 to %d, found %s",
+		      MOST_OPERATORS, readable_text(number));
+	int operators = (int)mpz_get_si(mpq_numref(number));
+	mpq_clear(number);
+	return operators;
+}
+
+struct bank_work {
+	struct building *b;
+	const struct fixed *bank;
+	int operators;
+	mpq_t *value;               /* ends of the parts of the range that they serve; NULL: values are written */
+};
+
+static void nearest_root(mpq_ptr value)
+{
+	mpfr_t root;
+	mpfr_init2(root, 53);
+	mpfr_set_q(root, value, MPFR_RNDN);
+	mpfr_sqrt(root, root, MPFR_RNDN);
+	mpfr_get_q(value, root);
+	mpfr_clear(root);
+}
+
+/* Parts of equal length in the square of the value, as stiffness and mass terms of a turning frame follow it. Each
+ * operator is that at the upper end of its part, as of values that are written: softer than the model it would make
+ * what is left over drive the motion. */
+static void divide_range(void *context)
+{
+	struct bank_work *w = context;
+	w->operators = size_of_bank(w->b, w->bank);
+	if (!w->b->spec->operator_count)
+		return;
+	size_t count = (size_t)w->operators;
+	mpq_t limit[2], length, part;
+	mpq_inits(limit[0], limit[1], length, part, NULL);
+	for (int k = 0; k < 2; k++)
+		collect_constant(&w->b->collector, w->bank->value[k], limit[k]);
+	if (mpq_sgn(limit[0]) < 0 || mpq_cmp(limit[0], limit[1]) >= 0)
+		error(w->bank->value[0]->start, "they are divided into parts of equal length in the square",
+		      "operators between two values take the first from 0 up, and the second above it");
+	for (int k = 0; k < 2; k++)
+		mpq_mul(limit[k], limit[k], limit[k]);
+	mpq_sub(length, limit[1], limit[0]);
+	w->value = rationals(count);
+	for (int k = 0; k < w->operators; k++) {
+		mpq_set_si(part, k + 1, (unsigned long)w->operators);
+		mpq_canonicalize(part);
+		mpq_mul(part, part, length);
+		mpq_add(w->value[k], limit[0], part);
+		nearest_root(w->value[k]);
+	}
+	mpq_clears(limit[0], limit[1], length, part, NULL);
+}
+
 static void check_rising(const struct building *b, const struct fixed *bank)
 {
 	const struct operator *operator = b->model->operator;
 	for (int k = 1; k < b->model->operators; k++)
 		if (mpq_cmp(operator[k - 1].at, operator[k].at) >= 0)
-			error(bank->value[k]->start, "the step uses the first whose value is not below the current one",
+			error(bank->value[b->spec->operator_count ? 1 : k]->start,
+			      "the step uses the first whose value is not below the current one",
 			      "the values of a bank rise");
 }
 
@@ -340,14 +414,15 @@ static void place_waves(void *context, const struct form *form)
 
 /* ---- the whole ---- */
 
-static const char *point_text(const struct spec *spec, int which)
+static const char *point_text(const struct spec *spec, int which, mpq_srcptr banked_value)
 {
 	const char *text = "";
 	for (int i = 0; i < spec->fixeds; i++) {
 		const struct fixed *f = &spec->fixed[i];
-		const struct node *value = f->value[f->values > 1 ? which : 0];
+		bool found = banked_value && f->values > 1;
+		const struct node *value = f->value[f->values > 1 && !found ? which : 0];
 		text = format("%s%s%s = %s", text, *text ? ", " : "", text_between(f->at, f->end),
-			      text_between(value->start, value->end));
+			      found ? readable_text(banked_value) : text_between(value->start, value->end));
 	}
 	return text;
 }
@@ -359,16 +434,79 @@ static bool fixes(const struct fixing *fixing, const struct fixed *name)
 	return fixing->symbol == name->symbol && fixing->order == name->primes && fixing->coord == coord;
 }
 
-static bool add_operator(struct building *b, const struct fixed *bank, int which)
+/* Of the coordinate at place i the row of its equation: then M, and what shall be symmetric, is so as written */
+static mpq_ptr of_coordinates(const struct building *b, const mpq_t *matrix, int i, int j)
 {
+	return (mpq_ptr)matrix[b->owner[i] * b->model->n + j];
+}
+
+/* matrix <- its symmetric part */
+static void keep_symmetric(const struct building *b, mpq_t *matrix)
+{
+	mpq_t mean;
+	mpq_init(mean);
+	for (int i = 0; i < b->model->n; i++)
+		for (int j = 0; j < i; j++) {
+			mpq_ptr lower = of_coordinates(b, matrix, i, j), upper = of_coordinates(b, matrix, j, i);
+			mpq_add(mean, lower, upper);
+			mpq_div_2exp(mean, mean, 1);
+			mpq_set(lower, mean);
+			mpq_set(upper, mean);
+		}
+	mpq_clear(mean);
+}
+
+/* Has M q'' + C q' + K q real modes, all of them symmetric? C M^-1 K = K M^-1 C (Caughey and O'Kelly 1965) */
+static bool is_classical(const struct building *b, const mpq_t *C, const mpq_t *K)
+{
+	int n = b->model->n, column;
+	size_t cells = (size_t)n * (size_t)n;
+	mpq_t *mass = rationals(cells), *inverse = rationals(cells), *damping = rationals(cells),
+	      *stiffness = rationals(cells), *solved = rationals(cells), *product = rationals(cells);
+	for (int i = 0; i < n; i++)
+		for (int j = 0; j < n; j++) {
+			mpq_set(mass[i * n + j], of_coordinates(b, b->model->system.M, i, j));
+			mpq_set(damping[i * n + j], of_coordinates(b, C, i, j));
+			mpq_set(stiffness[i * n + j], of_coordinates(b, K, i, j));
+		}
+	bool classical = rational_inverse(n, (const mpq_t *)mass, inverse, &column);
+	rational_product(n, n, n, (const mpq_t *)inverse, (const mpq_t *)stiffness, solved);
+	rational_product(n, n, n, (const mpq_t *)damping, (const mpq_t *)solved, product);
+	for (int i = 0; i < n; i++)             /* of symmetric matrices, K M^-1 C is the transpose */
+		for (int j = 0; j < i && classical; j++)
+			classical = mpq_equal(product[i * n + j], product[j * n + i]);
+	return classical;
+}
+
+/* What has real modes: the symmetric part of K, and that of C where it is diagonal in them */
+static void keep_modes(const struct building *b, struct operator *operator)
+{
+	size_t cells = (size_t)b->model->n * (size_t)b->model->n;
+	mpq_t *C = rationals(cells), *K = rationals(cells);
+	for (size_t i = 0; i < cells; i++) {
+		mpq_set(C[i], operator->C[i]);
+		mpq_set(K[i], operator->K[i]);
+	}
+	operator->C = C;
+	operator->K = K;
+	keep_symmetric(b, K);
+	keep_symmetric(b, C);
+	for (size_t i = 0; !is_classical(b, (const mpq_t *)C, (const mpq_t *)K) && i < cells; i++)
+		mpq_set_ui(C[i], 0, 1);
+}
+
+static bool add_operator(const struct bank_work *w, int which)
+{
+	struct building *b = w->b;
 	struct model *model = b->model;
+	const struct fixed *bank = w->bank;
 	struct operator *operator = &model->operator[which];
 	size_t cells = (size_t)model->n * (size_t)model->n;
-	struct point_work point = { b, which, 0, NULL };
+	struct point_work point = { b, which, w->value ? w->value[which] : NULL, 0, NULL };
 	operator->C = model->system.C;
 	operator->K = model->system.K;
 	/* what holds coupling terms has an operator of its own */
-	operator->text = chooses_operator(model->scheme) ? point_text(b->spec, which) : "";
+	operator->text = chooses_operator(model->scheme) ? point_text(b->spec, which, point.value) : "";
 	mpq_init(operator->at);
 	if (!*operator->text)
 		return true;
@@ -394,12 +532,18 @@ void build_operators(struct building *b)
 	const struct fixed *bank = chooses_operator(model->scheme) ? banked(b->spec) : NULL;
 	if (!b->whole || !statement_guard(check_bank, b))
 		return;
+	struct bank_work work = { .b = b, .bank = bank, .operators = 1 };
 	bool good = true;
-	model->operators = bank ? bank->values : 1;
+	if (chooses_operator(model->scheme) && !statement_guard(divide_range, &work))
+		return;
+	model->operators = work.operators;
 	model->operator = ARRAY(struct operator, (size_t)model->operators);
-	for (int k = 0; k < model->operators && good; k++)
-		good = add_operator(b, bank, k);
-	if (!good || (bank && !statement_guard(find_selector, b)))
+	for (int k = 0; k < model->operators && good; k++) {
+		good = add_operator(&work, k);
+		if (good && scheme_row(model->scheme)->modes)
+			keep_modes(b, &model->operator[k]);
+	}
+	if (!good || (model->operators > 1 && !statement_guard(find_selector, b)))
 		return;
 	find_channels(b);
 	if (model->channels == 0) {             /* then every operator is the equations' own */
@@ -410,6 +554,8 @@ void build_operators(struct building *b)
 	if (scheme_row(model->scheme)->collocates)
 		statement_guard(differentiate_left, b);
 	visit_leftovers(model, place_waves, b);
+	if (scheme_row(model->scheme)->modes)
+		split_leftover(b);
 }
 
 struct linear operator_system(const struct model *model, int k)

@@ -246,7 +246,8 @@ static bool settle_scheme(struct building *b)
 		return check_changes(b);
 	if (!linear || b->request->loads_left || b->spec->has_operator)
 		collect_whole(b);
-	model->loads_left = b->whole && b->request->loads_left;
+	/* in normal modes known loads are forces like others */
+	model->loads_left = b->whole && (b->request->loads_left || scheme_row(model->scheme)->modes);
 	if (b->whole && !diagnostics_errors())
 		statement_guard(part_loads, b);
 	return !diagnostics_errors();

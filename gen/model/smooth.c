@@ -770,7 +770,7 @@ void judge_smoothness(struct building *b)
 int order_of_scheme(const struct model *model)
 {
 	const struct scheme_row *row = scheme_row(model->scheme);
-	return row->expands ? model->truncation.order : row->order;
+	return row->order ? row->order : model->truncation.order;
 }
 
 int order_that_holds(const struct model *model)
@@ -781,8 +781,9 @@ int order_that_holds(const struct model *model)
 
 bool loses_order(const struct model *model)
 {
-	if (scheme_row(model->scheme)->expands && model->smooth.timed)
-		return false;                   /* a series ends where formulas change in time */
+	const struct scheme_row *row = scheme_row(model->scheme);
+	if ((row->expands || row->modes) && model->smooth.timed)
+		return false;                   /* a step ends where formulas change in time */
 	return model->channels > 0 && model->smooth.tenths > 0 && model->smooth.tenths < 10 * order_of_scheme(model);
 }
 

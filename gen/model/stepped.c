@@ -74,9 +74,11 @@ struct model *stepped_model(struct model *model, struct spec *spec, const struct
 	}
 	if (!relative_of(model))
 		return model;
-	if (scheme_row(model->scheme)->holds_coupling) {
+	const struct scheme_row *row = scheme_row(model->scheme);
+	if (row->holds_coupling || row->modes) {
 		say_warning(model->asked.scheme_at.source ? model->asked.scheme_at : spec->name_at,
-			    "any other scheme steps differences as states of their own",
+			    row->modes ? "exact and etdrk4 step differences as states of their own"
+				       : "any other scheme steps differences as states of their own",
 			    "%s keeps coordinates as they are written, and some may move as a whole: where they grow, "
 			    "their differences lose digits", scheme_name(model->scheme));
 		return model;

@@ -415,7 +415,9 @@ void warn(struct building *b)
 	check_truncation(b);
 	check_smoothness(b);
 	const struct scheme_row *scheme = scheme_row(model->scheme);
-	if (!left || !scheme->leaves || scheme->expands || is_linear(b) || !silent_guard(jacobian_forms, &j))
+	/* in normal modes a step's spectral radius tells more */
+	if (!left || !scheme->leaves || scheme->expands || scheme->modes || is_linear(b) ||
+	    !silent_guard(jacobian_forms, &j))
 		return;
 	mpq_init(j.t);
 	if (scheme->predicts)

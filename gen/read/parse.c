@@ -844,8 +844,8 @@ static void read_scheme(struct parser *p)
 	struct token name = take(p);
 	p->spec->scheme_at = name.at;
 	enum scheme scheme;
-	bool expands = scheme_of(name.name, &scheme) && scheme_row(scheme)->expands;
-	if (p->token.kind == TOKEN_NUMBER || (expands && p->token.kind != TOKEN_END))
+	bool counts = scheme_of(name.name, &scheme) && (scheme_row(scheme)->expands || scheme_row(scheme)->stages);
+	if (p->token.kind == TOKEN_NUMBER || (counts && p->token.kind != TOKEN_END))
 		p->spec->scheme_order = read_expression(p);     /* a number behind another scheme is told later */
 	expect_end(p);
 	p->spec->scheme = name.name;
@@ -912,7 +912,7 @@ static struct fixed *read_fixed_name(struct parser *p)
 	return fixed;
 }
 
-/* operator: operator at NAME = expression { , ( NAME = expression | expression ) } */
+/* operator: operator [ number ] at NAME = expression { , ( NAME = expression | expression ) } */
 static void read_operator(struct parser *p)
 {
 	struct spec *spec = p->spec;
@@ -922,6 +922,8 @@ static void read_operator(struct parser *p)
 		error(at, NULL, "the operator is given already");
 	spec->has_operator = true;
 	spec->operator_at = at;
+	if (p->token.kind == TOKEN_NUMBER)
+		spec->operator_count = read_expression(p);
 	expect_word(p, "at");
 	do {
 		if (!fixed || names_definition(p)) {

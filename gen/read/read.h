@@ -144,6 +144,7 @@ struct spec {                       /* what the text says, names resolved, nothi
 	 * within one h. NULL: not given */
 	struct node *scheme_order, *tolerance, *substeps;
 	bool has_operator;
+	struct node *operator_count; /* of a bank between two values; NULL: each has a value of its own */
 	struct place operator_at;
 	int fixeds;
 	struct fixed *fixed;
@@ -199,6 +200,9 @@ struct scheme_row {
 	bool expands;               /* the whole right side, nothing taken out: as a Taylor series in time, */
 	bool collocates;            /* or by collocation, which bears stiffness; */
 	bool switches;              /* or by both, as the stiffness is */
+	bool modes;                 /* in normal modes of symmetric operators; loads are left over too */
+	int points;                 /* of an exponential multistep method: past forces that a step reads */
+	int stages;                 /* of collocation in modes, where no number is given; 0: it is none */
 	/* Stability: where the operator's squared frequencies are below the model's by d, the state grows at h d over
 	 * this; 0: its phase drifts, by the order. */
 	int growth_divisor;

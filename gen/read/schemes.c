@@ -54,7 +54,7 @@ enum scheme default_scheme(void)
 /* ---- lists of them, in messages ---- */
 
 static bool is_any(const struct scheme_row *row) { return row->name; }
-static bool leaves(const struct scheme_row *row) { return row->leaves; }
+static bool leaves(const struct scheme_row *row) { return row->leaves && !row->modes; }      /* anything */
 static bool holds(const struct scheme_row *row) { return row->holds_coupling; }
 
 /* a, b<last>c of those that are meant */
@@ -93,7 +93,7 @@ const char *scheme_note(enum scheme scheme, int order)
 	enum { WORDS = 5 };
 	static const char *const ordinal[WORDS] = { "zeroth", "first", "second", "third", "fourth" };
 	const struct scheme_row *row = &rows[scheme];
-	order = row->expands ? order : row->order;
+	order = row->order ? row->order : order;
 	return format("Scheme %s, of %s order in h: %s.", row->name,
 		      order < WORDS ? ordinal[order] : format("%d%s", order, order > 20 && order % 10 == 1   ? "st"
 									     : order > 20 && order % 10 == 2 ? "nd"

@@ -349,7 +349,7 @@ static void person_split(FILE *to, const struct step *step)
 		model->loads_left             ? " excepted"
 		: step->branch->system.inputs ? " and the inputs"
 					      : "");
-	for (int k = 0; k < model->operators; k++) {
+	for (int k = 0; k < model->operators && !step->normal; k++) {
 		const struct operator *operator = &model->operator[k];
 		if (!*operator->text) {
 			fputs(scheme_row(model->scheme)->holds_coupling
@@ -367,7 +367,9 @@ static void person_split(FILE *to, const struct step *step)
 		if (!scheme_row(model->scheme)->holds_coupling)
 			person_poles(to, model, step->shown->branch[k].resolvent);
 	}
-	if (step->branches > 1)
+	if (step->normal)
+		person_normal(to, step);
+	if (model->operators > 1)
 		fputs("A step uses the first operator whose value is not below the current one, else the last.\n", to);
 	fprintf(to, "Scheme %s is of order %d in h", scheme_name(model->scheme), order_of_scheme(model));
 	if (model->truncation.adaptive)
@@ -382,7 +384,7 @@ static void person_split(FILE *to, const struct step *step)
 	if (step->expansion)
 		person_reach(to, step);
 	fprintf(to, "r, left to scheme %s, is a force on each of these equations%s:\n", scheme_name(model->scheme),
-		step->branches > 1 ? " (with the first operator; with the others its linear terms differ)" : "");
+		model->operators > 1 ? " (with the first operator; with the others its linear terms differ)" : "");
 	for (int c = 0; c < model->channels; c++)
 		fprintf(to, "    %s: %s\n", model->coord_name[coordinate_of_row(model, model->channel_row[c])],
 			form_text(model, model->operator[0].left[c]));
@@ -585,8 +587,10 @@ static void json_loads(FILE *to, const struct step *step)
 static void json_split(FILE *to, const struct step *step)
 {
 	const struct model *model = step->shown->model;
+	if (step->normal)
+		json_normal(to, step);
 	fputs("  \"operators\": [", to);
-	for (int k = 0; k < model->operators; k++) {
+	for (int k = 0; k < model->operators && !step->normal; k++) {
 		struct pole_report *pole;
 		int count = poles_of(model, step->shown->branch[k].resolvent, &pole);
 		fprintf(to, "%s{\n  \"at\": \"%s\",\n", k ? ", " : "", model->operator[k].text);

@@ -459,6 +459,8 @@ void explain_program(FILE *to, const struct step *step)
 		print_collocation(to, step);
 	else if (step->expansion)
 		print_expansion(to, step);
+	else if (step->normal)
+		program_normal(to, step);
 	else if (has_leftover(step))
 		print_actions(to, step);
 	else

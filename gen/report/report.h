@@ -19,6 +19,16 @@ const char *irrationals_text(const struct irrationals *used);
 void person_reach(FILE *to, const struct step *step);
 void json_reach(FILE *to, const struct step *step);
 
+/* ---- modes.c: steps in normal modes ---- */
+
+const char *operators_of_modes(const struct step *step);    /* whose modes they are */
+const char *course_of_modes(const struct step *step);       /* which way a step goes */
+const char *stability_of_modes(const struct step *step);
+int  numbers_of_modes(const struct step *step);             /* in its tables, at most */
+void person_normal(FILE *to, const struct step *step);
+void json_normal(FILE *to, const struct step *step);         /* a member of an object */
+void program_normal(FILE *to, const struct step *step);
+
 /* ---- program.c, explain.c, solution.c ---- */
 
 void explain_program(FILE *to, const struct step *step);    /* what a step does, before it is C */

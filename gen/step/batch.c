@@ -9,7 +9,8 @@ static const char *objection_of_kind(const struct step *step)
 		[KIND_PARTS] = "where an instance crosses a breakpoint is a matter of its own",
 		[KIND_LEFTOVER] = "what is left over is not linear in the state",
 		[KIND_EXPANDED] = "what is left over is not linear in the state",
-		[KIND_COLLOCATED] = "what is left over is not linear in the state"
+		[KIND_COLLOCATED] = "what is left over is not linear in the state",
+		[KIND_NORMAL] = "each instance would keep the forces of its last steps"
 	};
 	return of_kind[step->kind];
 }

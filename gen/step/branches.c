@@ -19,7 +19,9 @@ void take_operators(struct step *step)
 	const struct model *model = step->model;
 	const struct switching *regions = model->switching;
 	bool holds = scheme_row(model->scheme)->holds_coupling;
-	step->branches = regions ? regions->systems : model->operators ? model->operators : 1;
+	/* in normal modes, what else reads a branch is content with the first operator's */
+	int operators = step->kind == KIND_NORMAL ? 1 : model->operators;
+	step->branches = regions ? regions->systems : operators ? operators : 1;
 	step->branch = ARRAY(struct branch, (size_t)step->branches);
 	for (int k = 0; k < step->branches; k++) {
 		struct linear system = regions		  ? driven_system(&regions->system[k])

@@ -316,6 +316,8 @@ void program_check(const struct step *step)
 		check_expansion(&c);
 	else if (step->kind == KIND_COLLOCATED)
 		check_collocation(&c);
+	else if (step->kind == KIND_NORMAL)
+		need(&c, step->normal && step->normal->banks > 0, "there are no normal modes");
 	else if (has_leftover(step))
 		check_actions(&c);
 	else

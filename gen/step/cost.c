@@ -449,3 +449,66 @@ void count_collocation(struct step *step)
 	step->program->additions = step->iteration.additions;
 	step->program->calls = step->iteration.calls;
 }
+
+/* Loads whose functions the factors of forces read */
+static void mark_loads_read(const struct step *step, struct program *program)
+{
+	const struct splitting *split = step->model->split;
+	const struct linear *system = &step->branch->system;
+	for (int f = 1; f < split->functions; f++) {
+		struct reads r = reads_of(step->model, 1, &split->function[f].form);
+		for (int l = 0, column = 0; l < system->loads; l++)
+			for (int k = 0; k < system->load[l].columns; k++, column++)
+				program->uses[column] = program->uses[column] || r.load[l];
+	}
+}
+
+static struct cost cost_of_matrix(const struct normal *normal, const struct normal_matrix *m)
+{
+	struct cost cost = { 0, 0, 0 };
+	for (int i = 0; i < normal->modes * normal->modes; i++)
+		cost.multiplications += m->value[i] != 0;
+	cost.additions = cost.multiplications;
+	cost.multiplications += m->terms * normal->modes;
+	cost.additions += (m->terms - 1) * normal->modes;
+	return cost;
+}
+
+/* Of one evaluation of the forces on the modes */
+static struct cost cost_of_forces(const struct step *step)
+{
+	const struct normal *normal = step->normal;
+	struct cost all = { 0, 0, 0 };
+	for (int k = 0; k < normal->matrices; k++) {
+		struct cost cost = cost_of_matrix(normal, &normal->matrix[k]);
+		all.multiplications += cost.multiplications;
+		all.additions += cost.additions;
+	}
+	for (int f = 0; f < step->model->split->functions; f++) {
+		all.multiplications += normal->force[f] ? normal->modes : 0;
+		all.additions += normal->force[f] ? normal->modes : 0;
+	}
+	return all;
+}
+
+void count_normal(const struct step *step, struct program *program)
+{
+	const struct normal *normal = step->normal;
+	const struct splitting *split = step->model->split;
+	struct counting c = { .seen = ARRAY(bool, (size_t)atoms_count(step->model->atoms)) };
+	struct cost force = cost_of_forces(step);
+	int n = normal->modes, points = normal->points, evaluations = normal->twice ? 2 : 1;
+	for (int f = 1; f < split->functions; f++)
+		cost_form(&c, split->function[f].form);
+	struct counting rest = { .seen = c.seen };
+	for (int k = 0; k < split->rests; k++)
+		cost_form(&rest, split->rest[k].form);
+	force.multiplications += rest.cost.multiplications + (n + 1) * split->rests;
+	force.additions += rest.cost.additions + n * split->rests;
+	c.cost.calls += evaluations * rest.cost.calls;
+	program->multiplications = c.cost.multiplications + evaluations * force.multiplications + n * (3 * points + 6);
+	program->additions = c.cost.additions + evaluations * force.additions + n * (3 * points + 6);
+	program->calls = c.cost.calls;
+	mark_loads_read(step, program);
+	count_loads(program, step);
+}

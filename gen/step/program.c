@@ -11,7 +11,8 @@ enum step_kind kind_of_step(const struct model *model)
 	if (model->channels == 0)
 		return KIND_LINEAR;
 	const struct scheme_row *row = scheme_row(model->scheme);
-	return row->collocates ? KIND_COLLOCATED : row->expands ? KIND_EXPANDED : KIND_LEFTOVER;
+	return row->modes ? KIND_NORMAL : row->collocates ? KIND_COLLOCATED
+		   : row->expands ? KIND_EXPANDED : KIND_LEFTOVER;
 }
 
 bool is_anchored(const struct step *step, int load)
@@ -60,7 +61,8 @@ bool *loads_of_regions(const struct step *step)
 
 bool has_leftover(const struct step *step)
 {
-	return step->kind == KIND_LEFTOVER || step->kind == KIND_EXPANDED || step->kind == KIND_COLLOCATED;
+	return step->kind == KIND_LEFTOVER || step->kind == KIND_EXPANDED || step->kind == KIND_COLLOCATED ||
+	       step->kind == KIND_NORMAL;
 }
 
 void need_closed_form(const struct step *step)
@@ -70,7 +72,8 @@ void need_closed_form(const struct step *step)
 		[KIND_PARTS] = "where it crosses a breakpoint is found by a search",
 		[KIND_LEFTOVER] = "what is left over has no closed form",
 		[KIND_EXPANDED] = "what is left over has no closed form",
-		[KIND_COLLOCATED] = "what is left over has no closed form"
+		[KIND_COLLOCATED] = "what is left over has no closed form",
+		[KIND_NORMAL] = "what is left over has no closed form"
 	};
 	const char *why = of_kind[step->kind];
 	if (!why && step->model->scheme != SCHEME_EXACT)

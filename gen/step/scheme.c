@@ -148,18 +148,24 @@ static void make_read_table(void *context)
 	make_tables(reading->step, recipe->tables, recipe->table);
 }
 
-static void build_series(struct step *step)
+/* Neither assignments nor actions: all states are read */
+static void write_no_list(struct step *step)
 {
 	int states = step->branch->system.states;
 	step->carry = ARRAY(int, (size_t)states);
 	step->program = NEW(struct program);
-	step->program->compensated = true;
 	step->program->reads = ARRAY(bool, (size_t)states);
 	step->program->uses = ARRAY(bool, (size_t)step->branch->whole->columns);
 	for (int i = 0; i < states; i++) {
 		step->carry[i] = -1;
 		step->program->reads[i] = true;
 	}
+}
+
+static void build_series(struct step *step)
+{
+	write_no_list(step);
+	step->program->compensated = true;
 	step->expansion = expansion_of(step, step->model->truncation.order);
 	step->series.emitted = true;
 }
@@ -209,13 +215,27 @@ static void build_collocated_step(struct step *step)
 	count_collocation(step);
 }
 
+/* Times in a step at which forces are evaluated are those of a step by collocation. */
+static void build_normal_step(struct step *step)
+{
+	need_direct(step);
+	step->layout = layout_of(&step->branch->system, false);
+	make_read_table(&(struct reading){ step, 1 });
+	write_no_list(step);
+	const struct normal *normal = normal_of(step);
+	step->program->nodes = normal->stages + 1;
+	step->program->node = normal->node;
+	count_normal(step, step->program);
+}
+
 static void build(void *context)
 {
 	static void (*const build_kind[KINDS])(struct step *) = {
 		[KIND_LINEAR] = build_linear_step, [KIND_TUNED] = build_tuned_step,
 		[KIND_REGIONS] = build_regions_step, [KIND_PARTS] = build_parts_step,
 		[KIND_LEFTOVER] = build_leftover_step, [KIND_EXPANDED] = build_expanded_step,
-		[KIND_COLLOCATED] = build_collocated_step
+		[KIND_COLLOCATED] = build_collocated_step,
+		[KIND_NORMAL] = build_normal_step
 	};
 	struct step *step = context;
 	const struct model *model = step->model;

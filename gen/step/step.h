@@ -248,6 +248,7 @@ enum step_kind {                    /* what a step is made of */
 	KIND_LEFTOVER,              /* a list of actions on stages and leftovers */
 	KIND_EXPANDED,              /* the Taylor series of the solution */
 	KIND_COLLOCATED,            /* polynomials that solve the equations at nodes; beside them a series, or none */
+	KIND_NORMAL,                /* normal modes, and what is left over as forces on them */
 	KINDS
 };
 /* Phases and growths of loads e^{at} cos(wt + p) in fixed point: 128 bits; for the target float 64, in `low` */
@@ -302,6 +303,7 @@ struct step {                       /* everything that is emitted for one model 
 	struct collocation *collocation; /* of a collocated step; else NULL */
 	struct motion *motion;      /* likewise */
 	struct { int multiplications, additions, calls; } iteration; /* of Newton's method: what one costs */
+	struct normal *normal;      /* of a step in normal modes; else NULL */
 	int parts;                  /* of a piecewise-linear model that are independent, each with a step of its own */
 	struct step **part;
 	struct load_phase *phase;   /* per load */
@@ -458,6 +460,7 @@ void count_program(const struct step *step, struct program *program); /* of a st
 void count_expansion(const struct step *step, struct program *program); /* of one series, and its sum */
 /* of a collocated step an iteration of Newton's method; where there is no series, that is what its program costs */
 void count_collocation(struct step *step);
+void count_normal(const struct step *step, struct program *program); /* of a multistep step in normal modes */
 /* what the load states of the columns in use cost; where there are anchors, at each of them */
 void count_loads(struct program *program, const struct step *step);
 /* ... and to turn them into those of now */
@@ -525,6 +528,107 @@ struct modal {                      /* modal states: the real parts of the pairs
 	double condition;           /* what rounding gains that goes through both, 1 at best */
 };
 void plan_modal(struct step *step);                          /* where it is asked for, or cheaper and as exact */
+
+/* ---- weights.c: what a force that is a polynomial over a step gives a mode ---- */
+
+struct normal_mode { mpfr_t lambda, delta; };      /* eta'' + 2 delta eta' + lambda eta = F [1/s^2, 1/s] */
+struct lagrange {                   /* polynomials of s/h, each 1 at one of the nodes and 0 at all others */
+	int nodes;
+	mpfr_t *node;
+	mpfr_t *factor;             /* nodes x nodes: of polynomial i that of (s/h)^j */
+};
+struct lagrange lagrange_of(int nodes, const mpq_t *node);
+void lagrange_at(const struct lagrange *l, mpq_srcptr sigma, mpfr_t *value); /* each at s = sigma h */
+mpq_t *lobatto_nodes(int stages);                           /* stages + 1 of them, 0 and 1 among them; to 256 bits */
+struct mode_flow {                  /* of one mode over theta h */
+	/* eta = e eta0 + s eta0' + ..., eta' = de eta0 + ds eta0' + ... */
+	mpfr_t e, s, de, ds;
+	mpfr_t *position, *rate;    /* ... + what a force of each polynomial adds to eta, to eta' */
+};
+struct mode_flow mode_flow_of(const struct normal_mode *mode, mpq_srcptr h, mpq_srcptr theta, const struct lagrange *l);
+void mode_flow_free(struct mode_flow *flow, const struct lagrange *l);
+
+/* ---- normal.c: normal modes of the operators of a bank, and what is left over in them ---- */
+
+enum { NORMAL_BITS = 192 };         /* of modes and weights, before they are rounded */
+struct mode_block {                 /* modes that no entry of M and K couples with others */
+	int modes, *coord;          /* as many coordinates as modes */
+	int place, rows;            /* in vectors of modes: where they stand; with what makes their number even */
+};
+struct normal_matrix {              /* a matrix of forces on the modes: times a sum of vectors of modes */
+	double *value;              /* [bank][mode i][mode j]; nothing below 2^-160 of the largest */
+	int terms;
+	struct { int function; bool velocity; double *factor; } *term; /* factor[bank] times function times eta, eta' */
+};
+struct normal_stage {               /* modes at a time after the step's start, from it and from forces */
+	int points;
+	double *flow;               /* [bank][e, s, de, ds][place] */
+	double *weight;             /* [bank][point][eta, eta'][place] */
+};
+struct stability {                  /* of a multistep method, functions of time frozen */
+	double span;                /* [s] over which they are looked at */
+	double radius;              /* the largest spectral radius of a step; */
+	int bank;                   /* where that is: the operator, */
+	double time;                /* the time [s] */
+	double growth;              /* ln of what all steps of the span together let grow at most; */
+	double growth_factor;       /* that itself */
+};
+struct normal {
+	int modes, width;           /* n; length of a vector of modes */
+	int banks, blocks;
+	struct mode_block *block;
+	int *place;                 /* per mode: in a vector */
+	double *to, *from;          /* [bank][mode][coordinate] V^T M; [bank][coordinate][mode] V */
+	double *frequency, *ratio;  /* [bank][mode]: sqrt(lambda), 0 below 0; delta over it */
+	int matrices;
+	struct normal_matrix *matrix;
+	double **force;             /* per function: [bank][place]; NULL: none */
+	int points;                 /* of the multistep method; 0: each step is by collocation */
+	bool twice;                 /* predict, evaluate, correct, evaluate; else the last is left out */
+	struct normal_stage step;   /* the predictor: points past forces, the last first */
+	double *correct;            /* [bank][eta, eta'][place]: of the force's excess over its extrapolation */
+	double *extrapolate;        /* [point] */
+	int stages;                 /* of a step by collocation; */
+	/* its sweeps, from forces extrapolated from the step before; where there is none, all equal at first */
+	int sweeps, first_sweeps;
+	double *ahead;              /* [stage][node]: forces extrapolated to this step's nodes from those of the last */
+	int kept;                   /* forces that are kept between steps: points, or stages + 1 */
+	struct normal_stage *stage;
+	mpq_t *node;                /* stages + 1, from 0 to 1 */
+	/* Once all functions of time are constant: over [omega eta, eta', 1], by columns: [2 modes + 1][2 width]; the
+	 * operator whose modes they are. NULL: they never are */
+	double *settled, *omega, *period; /* omega and 1/omega: [place] */
+	int settled_bank;
+	struct stability stability; /* of a multistep method */
+};
+struct normal *normal_of(struct step *step);                /* leaves the statement where there is none */
+struct normal_work {                /* what its builders share */
+	struct step *step;
+	const struct model *model;
+	struct normal *normal;
+	mpq_t *M;                   /* rows are those of the equations of the coordinates */
+	struct eigenpairs *pairs;   /* per bank */
+	struct normal_mode *mode;          /* per bank and mode */
+};
+
+/* ---- normal_left.c: what is left over, in modes ---- */
+
+double round_real(mpfr_srcptr x);
+mpq_t *by_coordinates(const struct model *model, const mpq_t *matrix); /* rows as those of the coordinates' equations */
+void find_transforms(struct normal_work *w);
+void find_matrices(struct normal_work *w);
+void find_forces(struct normal_work *w);
+
+/* ---- settled.c: a step once all functions of time are constant ---- */
+
+/* Over [omega eta, eta', 1] of these modes, one omega each, above 0: (2n + 1) x (2n + 1). M, C and K: of the first
+ * operator, rows by coordinates */
+mpfr_t *settled_matrix(const struct model *model, const mpq_t *M, const mpq_t *C, const mpq_t *K,
+		       const struct eigenpairs *pairs, mpfr_t *omega);
+
+/* ---- frozen.c: stability of multistep methods in normal modes ---- */
+
+struct stability stability_of(const struct step *step, bool twice);
 
 /* ---- rest.c: what is too small to count ---- */
 

@@ -329,6 +329,11 @@ static bool expands(void)
 	return has("taylor") || has("taylor12") || has("radau") || has("auto");
 }
 
+static bool moves(void)
+{
+	return has("etdam5") || has("etdcol");
+}
+
 static void print_options(FILE *to)
 {
 	static const char *const option[][2] = { { "reduce", "--reduce" }, { "float", "--real float" },
@@ -338,7 +343,8 @@ static void print_options(FILE *to)
 		{ "etd1", "--scheme etd1" }, { "etdrk2", "--scheme etdrk2" }, { "etdrk4", "--scheme etdrk4" },
 		{ "nc2", "--scheme nc2" }, { "nc3", "--scheme nc3" }, { "dq4", "--scheme dq4" },
 		{ "bm3", "--scheme bm3" }, { "taylor", "--scheme taylor" }, { "radau", "--scheme radau" },
-		{ "auto", "--scheme auto" }, { "selftest", "--selftest" },
+		{ "auto", "--scheme auto" }, { "etdam5", "--scheme etdam5" }, { "etdcol", "--scheme etdcol" },
+		{ "selftest", "--selftest" },
 		{ "rows", "--rows 8" }, { "loads", "--loads leftover" }, { "anchors", "--anchors 8" },
 		{ "batch", "--batch" } };
 	bool scheme = false;
@@ -355,7 +361,7 @@ static void print_options(FILE *to)
 	fprintf(to, "\n# class: %s\n",
 		kinks                                ? "kinked"
 			: has("piecewise")           ? "piecewise"
-			: has("smooth") || expands() ? "smooth"
+			: has("smooth") || expands() || moves() ? "smooth"
 						     : "linear");
 	fprintf(to, "# changes:%s\n", has("change") ? " 0.053 0.1 0.21" : "");
 	if (has("tunable"))
@@ -410,6 +416,7 @@ static void write_spec(FILE *to)
 	fputs(has("power") ? "5*t^3 + " : "", to);
 	fputs(has("piecewise") ? "-9*max(b - 0.1, 0) + " : "", to);
 	fputs(has("smooth") || expands() ? "-2*b^3 + " : "", to);
+	fputs(moves() ? "-2*cos(1.5*t)*b + " : "", to);
 	fputs(has("kinked") ? "-3*abs(b)*b' + " : "", to);
 	fputs(has("ramp") ? "0.05*v' + " : "", to);
 	fputs("0\n", to);

@@ -312,8 +312,9 @@ static void rows_are_whole(void **state)
         enum scheme found;
         assert_non_null(row->name);
         assert_true(scheme_of(row->name, &found) && (int)found == i);
-        /* that of one that expands is asked for, or found */
-        assert_int_equal(row->order > 0, i != SCHEME_EXACT && !row->expands);
+        /* that of one that expands, or has stages, is asked for, or found */
+        assert_int_equal(row->order > 0, i != SCHEME_EXACT && !row->expands && !row->stages);
+        assert_int_equal(row->modes, row->points > 0 || row->stages > 0);
         assert_true(!row->expands || (row->leaves && !row->predicts && !row->holds_leftover));
         assert_int_equal(row->leaves || row->holds_coupling, i != SCHEME_EXACT);
         if (i != SCHEME_EXACT) {

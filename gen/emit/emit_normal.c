@@ -1,0 +1,369 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Steps in normal modes: by collocation, by past forces, and once nothing changes. */
+#include "emit/emit.h"
+
+/* ---- a step by collocation ---- */
+
+/* e eta + s eta', de eta + ds eta', and weights of forces: the stage at theta h */
+static const char *stage_sum(const char *flow, const char *weight, int row, int points, const char *force)
+{
+	struct row_sum s = { 0 };
+	add_summand(&s, format("%s[%d][i] * s->eta[i]", flow, 2 * row));
+	add_summand(&s, format("%s[%d][i] * s->rate[i]", flow, 2 * row + 1));
+	for (int k = 0; k < points; k++)
+		add_summand(&s, format("%s[%d][i] * %s", weight, 2 * k + row, format(force, k)));
+	return tree(s.terms, s.term, 21);
+}
+
+static void emit_keep_point(const struct emitter *e, const char *force, const char *f)
+{
+	const struct normal *m = normal_of_step(e);
+	say(e, "    s->newest = s->newest + 1 < %d ? s->newest + 1 : 0;\n"
+	       "    s->known += s->known < %d;\n"
+	       "    for (i = 0; i < %d; i++) {\n"
+	       "        s->force[s->newest][i] = %s[i];\n"
+	       "        s->past[s->newest][0][i] = s->eta[i];\n"
+	       "        s->past[s->newest][1][i] = s->rate[i];\n"
+	       "    }\n", m->points, m->points, m->width, force);
+	for (int k = 0; k < functions_of_time(e); k++)
+		say(e, "    s->f[s->newest][%d] = %s[%d];\n", k, f, k);
+}
+
+/* Of a method of one step, all nodes are kept: forces to extrapolate from, the rest for a change of operator. */
+static void emit_keep_nodes(const struct emitter *e)
+{
+	const struct normal *m = normal_of_step(e);
+	say(e, "    for (k = 0; k <= %d; k++) {\n"
+	       "        for (i = 0; i < %d; i++) {\n"
+	       "            s->force[k][i] = force[k][i];\n", m->stages, m->width);
+	if (has_bank(e))
+		say(e, "            s->past[k][0][i] = eta[k][i];\n"
+		       "            s->past[k][1][i] = rate[k][i];\n");
+	say(e, "        }\n");
+	for (int k = 0; k < functions_of_time(e); k++)
+		say(e, "        s->f[k][%d] = f[k][%d];\n", k, k);
+	say(e, "    }\n"
+	       "    s->known = %d;\n", m->kept);
+}
+
+/* Forces at the nodes to begin with */
+static void emit_first_forces(const struct emitter *e)
+{
+	const struct normal *m = normal_of_step(e);
+	int width = m->width, nodes = m->stages + 1;
+	if (m->points == 0) {
+		say(e, "    if (s->known) {\n"
+		       "        sweeps = %d;\n"
+		       "        for (i = 0; i < %d; i++) {\n"
+		       "            force[0][i] = s->force[%d][i];\n", m->sweeps, width, m->stages);
+		for (int i = 0; i < m->stages; i++) {
+			struct row_sum s = { 0 };
+			for (int k = 0; k < nodes; k++)
+				add_summand(&s, scaled(m->ahead[i * nodes + k], format("s->force[%d][i]", k)));
+			say(e, "            force[%d][i] = %s;\n", i + 1, tree(s.terms, s.term, 26));
+		}
+		say(e, "        }\n"
+		       "    } else {\n");
+	}
+	const char *indent = m->points ? "" : "    ";
+	say(e, "%s    $n_forces(which, f[0], s->eta, s->rate, force[0]);\n"
+	       "%s    for (k = 1; k <= %d; k++)\n"
+	       "%s        for (i = 0; i < %d; i++)\n"
+	       "%s            force[k][i] = force[0][i];\n", indent, indent, m->stages, indent, width, indent);
+	if (m->points == 0)
+		say(e, "    }\n");
+}
+
+static void emit_sweeps(const struct emitter *e, const char *const *flow, const char *const *weight)
+{
+	const struct normal *m = normal_of_step(e);
+	int nodes = m->stages + 1;
+	say(e, "    for (sweep = 0; sweep < sweeps; sweep++) {\n");
+	for (int i = 0; i < m->stages; i++)
+		say(e, "        for (i = 0; i < %d; i++) {\n"
+		       "            eta[%d][i] = %s;\n"
+		       "            rate[%d][i] = %s;\n"
+		       "        }\n"
+		       "        $n_forces(which, f[%d], eta[%d], rate[%d], force[%d]);\n", m->width, i + 1,
+		    stage_sum(flow[i], weight[i], 0, nodes, "force[%d][i]"), i + 1,
+		    stage_sum(flow[i], weight[i], 1, nodes, "force[%d][i]"), i + 1, i + 1, i + 1, i + 1);
+	say(e, "    }\n");
+}
+
+static void emit_collocation(const struct emitter *e)
+{
+	const struct normal *m = normal_of_step(e);
+	int stages = m->stages, nodes = stages + 1, width = m->width;
+	int functions = functions_of_time(e) ? functions_of_time(e) : 1;
+	const char **flow = ARRAY(const char *, (size_t)stages), **weight = ARRAY(const char *, (size_t)stages);
+	for (int i = 0; i < stages; i++) {
+		flow[i] = emit_bank_table(e, format("flow%d", i + 1), "Modes at a node from those at the step's start",
+					  4, width, m->stage[i].flow);
+		weight[i] = emit_bank_table(e, format("weight%d", i + 1), "... and from the forces at all nodes",
+					    2 * nodes, width, m->stage[i].weight);
+	}
+	say(e, "\n/* A step by collocation: forces are a polynomial through the nodes, found by so many sweeps */\n"
+	       "static void $n_collocate($n *s)\n"
+	       "{\n"
+	       "    double f[%d][%d], force[%d][%d], eta[%d][%d], rate[%d][%d];\n"
+	       "    const int which = s->which;\n"
+	       "    int i, k, sweep, sweeps = %d;\n", nodes, functions, nodes, width, nodes, width, nodes, width,
+	    m->first_sweeps);
+	if (functions_of_time(e))
+		say(e, "    for (k = 0; k <= %d; k++)\n"
+		       "        %s\n", stages, functions_call(e, "k", false, "f[k]"));
+	emit_first_forces(e);
+	if (m->points) {
+		say(e, "    if (s->known == 0) {\n");
+		emit_keep_point(e, "force[0]", "f[0]");
+		say(e, "    }\n");
+	} else if (has_bank(e)) {
+		say(e, "    for (i = 0; i < %d; i++) {\n"
+		       "        eta[0][i] = s->eta[i];\n"
+		       "        rate[0][i] = s->rate[i];\n"
+		       "    }\n", width);
+	}
+	emit_sweeps(e, flow, weight);
+	say(e, "    for (i = 0; i < %d; i++) {\n"
+	       "        s->eta[i] = eta[%d][i];\n"
+	       "        s->rate[i] = rate[%d][i];\n"
+	       "    }\n", width, stages, stages);
+	emit_step_end(e);
+	if (m->points)
+		emit_keep_point(e, format("force[%d]", stages), format("f[%d]", stages));
+	else
+		emit_keep_nodes(e);
+	say(e, "}\n");
+}
+
+/* ---- a bank ---- */
+
+static void emit_bank(const struct emitter *e)
+{
+	const struct normal *m = normal_of_step(e);
+	if (!has_bank(e))
+		return;
+	say(e, "\n/* Values up to which the operators serve, but the last */\n"
+	       "static const double $n_bound[%d] = {", m->banks - 1);
+	for (int b = 0; b + 1 < m->banks; b++)
+		say(e, "%s%s", b == 0 ? "" : b % 6 ? ", " : ",\n    ",
+		    shortest(equation_number(e->model, e->model->operator[b].at).value));
+	say(e, "};\n"
+	       "\n/* The first operator whose value is not below this */\n"
+	       "static int $n_operator(int which, double now)\n"
+	       "{\n"
+	       "    while (which < %d && now > $n_bound[which])\n"
+	       "        which++;\n"
+	       "    while (which > 0 && now <= $n_bound[which - 1])\n"
+	       "        which--;\n"
+	       "    return which;\n"
+	       "}\n", m->banks - 1);
+	say(e, "\n/* From the modes of one operator to those of another: what is kept of the last steps too */\n"
+	       "static void $n_use($n *s, int which)\n"
+	       "{\n"
+	       "    double q[%d];\n"
+	       "    int k, d;\n"
+	       "    $n_of_modes(s->which, s->eta, q);\n"
+	       "    $n_modes_of(which, q, s->eta);\n"
+	       "    $n_of_modes(s->which, s->rate, q);\n"
+	       "    $n_modes_of(which, q, s->rate);\n"
+	       "    for (k = 0; k < s->known; k++) {\n"
+	       "        for (d = 0; d < 2; d++) {\n"
+	       "            $n_of_modes(s->which, s->past[k][d], q);\n"
+	       "            $n_modes_of(which, q, s->past[k][d]);\n"
+	       "        }\n"
+	       "        $n_forces(which, s->f[k], s->past[k][0], s->past[k][1], s->force[k]);\n"
+	       "    }\n"
+	       "    s->which = which;\n"
+	       "}\n", m->modes);
+}
+
+/* ---- the step ---- */
+
+static void emit_multistep(const struct emitter *e)
+{
+	const struct normal *m = normal_of_step(e);
+	int points = m->points, width = m->width;
+	const char *flow = emit_bank_table(e, "flow", "Modes after a step from those before", 4, width, m->step.flow);
+	const char *weight = emit_bank_table(e, "weight", "... and from the forces at its start and before", 2 * points,
+					     width, m->step.weight);
+	const char *correct = emit_bank_table(e, "correct", "What a force adds by its excess over the extrapolated one",
+					      2, width, m->correct);
+	struct row_sum extrapolated = { 0 };
+	for (int k = 0; k < points; k++)
+		add_summand(&extrapolated, scaled(m->extrapolate[k], format("force%d[i]", k)));
+	say(e, "\n/* A step from past forces: predict, evaluate, correct%s */\n"
+	       "static void $n_advance($n *s)\n"
+	       "{\n"
+	       "    double eta[%d], rate[%d], force[%d], expected[%d], f[%d];\n"
+	       "    const int which = s->which;\n"
+	       "    int i, at = s->newest;\n", m->twice ? ", evaluate" : "", width, width, width, width,
+	    functions_of_time(e) ? functions_of_time(e) : 1);
+	for (int k = 0; k < points; k++)
+		say(e, "    const double *const force%d = s->force[at];\n%s", k,
+		    k + 1 < points ? format("    at = at ? at - 1 : %d;\n", points - 1) : "");
+	say(e, "    for (i = 0; i < %d; i++) {\n"
+	       "        eta[i] = %s;\n"
+	       "        rate[i] = %s;\n"
+	       "        expected[i] = %s;\n"
+	       "    }\n", width, stage_sum(flow, weight, 0, points, "force%d[i]"),
+	    stage_sum(flow, weight, 1, points, "force%d[i]"), tree(extrapolated.terms, extrapolated.term, 22));
+	emit_step_end(e);
+	if (functions_of_time(e))
+		say(e, "    %s\n", functions_call(e, "0", true, "f"));
+	say(e, "    $n_forces(which, f, eta, rate, force);\n"
+	       "    for (i = 0; i < %d; i++) {\n"
+	       "        const double excess = force[i] - expected[i];\n"
+	       "        s->eta[i] = eta[i] + %s[0][i] * excess;\n"
+	       "        s->rate[i] = rate[i] + %s[1][i] * excess;\n"
+	       "    }\n", width, correct, correct);
+	if (m->twice)
+		say(e, "    $n_forces(which, f, s->eta, s->rate, force);\n");
+	emit_keep_point(e, "force", "f");
+	say(e, "}\n");
+}
+
+void emit_normal_tables(const struct emitter *e)
+{
+	emit_to_modes(e);
+	emit_from_modes(e);
+	if (functions_of_time(e))
+		emit_function_values(e);
+	emit_forces(e);
+	emit_bank(e);
+	const struct normal *m = normal_of_step(e);
+	int selector = e->model->split->selector - 1;
+	say(e, "\n/* What follows from a state that was set */\n"
+	       "static void $n_place($n *s)\n"
+	       "{\n");
+	if (has_bank(e))
+		say(e, "    double f[%d];\n"
+		       "    %s\n"
+		       "    s->which = $n_operator(0, f[%d]);\n",
+		    functions_of_time(e), functions_call(e, "0", false, "f"), selector);
+	else
+		say(e, "    s->which = 0;\n");
+	say(e, "    s->known = 0;\n%s"
+	       "    $n_modes_of(s->which, s->y, s->eta);\n"
+	       "    $n_modes_of(s->which, s->y + %d, s->rate);\n"
+	       "}\n", m->points ? format("    s->newest = %d;\n", m->points - 1) : "", m->modes);
+}
+
+/* ---- once all functions of time are constant ---- */
+
+static void emit_settled(const struct emitter *e)
+{
+	const struct normal *m = normal_of_step(e);
+	int size = 2 * m->modes + 1, width = m->width;
+	struct row_sum s = { 0 };
+	say(e, "\n/* Frequencies that amplitudes are scaled by, and 1 over them */\n"
+	       "static const double $n_omega[2][%d] = {\n    {", width);
+	say_numbers(e, width, m->omega);
+	say(e, "},\n    {");
+	say_numbers(e, width, m->period);
+	say(e, "},\n};\n"
+	       "\n/* A step over [omega eta, eta', 1], by columns */\n"
+	       "static const double $n_settled[%d][%d] = {\n", size, 2 * width);
+	for (int j = 0; j < size; j++) {
+		say(e, "    {");
+		say_numbers(e, 2 * width, m->settled + j * 2 * width);
+		say(e, "},\n");
+	}
+	say(e, "};\n"
+	       "\n/* Nothing changes any more: the step is exact */\n"
+	       "static void $n_continue($n *s)\n"
+	       "{\n"
+	       "    double x[%d], sum[%d];\n"
+	       "    int i;\n", 2 * width, 2 * width);
+	if (has_bank(e))
+		say(e, "    if (s->which != %d)\n"
+		       "        $n_use(s, %d);\n", m->settled_bank, m->settled_bank);
+	say(e, "    for (i = 0; i < %d; i++) {\n"
+	       "        x[i] = $n_omega[0][i] * s->eta[i];\n"
+	       "        x[%d + i] = s->rate[i];\n"
+	       "    }\n", width, width);
+	for (int j = 0; j < size; j++)
+		add_summand(&s, j + 1 == size ? spell(e, "$n_settled[%d][i]", j)
+					   : spell(e, "$n_settled[%d][i] * x[%d]", j,
+						   (j < m->modes ? 0 : width) + m->place[j % m->modes]));
+	say_row_sum(e, "sum[i]", 2 * width, &s);
+	say(e, "    for (i = 0; i < %d; i++) {\n"
+	       "        s->eta[i] = $n_omega[1][i] * sum[i];\n"
+	       "        s->rate[i] = sum[%d + i];\n"
+	       "    }\n"
+	       "    s->known = 0;\n", width, width);
+	emit_step_end(e);
+	say(e, "}\n");
+}
+
+/* ---- the whole ---- */
+
+/* Where functions of time change their formula, past forces are of no use: the step starts anew. A change that is not
+ * at the end of a step is one of another t0 than 0. */
+static void emit_restart(const struct emitter *e)
+{
+	int points = normal_of_step(e)->points;
+	say(e, "    while (s->segment < %d && $n_until(s, s->segment) <= 1e-9 * $N_H) {\n"
+	       "        if ($n_until(s, s->segment) < -1e-9 * $N_H)\n"
+	       "            s->status |= PL_INACCURATE;  /* it was inside the step */\n"
+	       "        s->segment++;\n"
+	       "        s->known = 0;\n", e->system->segments - 1);
+	if (points)
+		say(e, "        s->newest = %d;\n", points - 1);
+	say(e, "    }\n");
+}
+
+void emit_normal_step(const struct emitter *e)
+{
+	const struct normal *m = normal_of_step(e);
+	int points = m->points;
+	if (reads_channels(e->model))
+		emit_leftover(e);
+	emit_collocation(e);
+	if (points)
+		emit_multistep(e);
+	if (m->settled)
+		emit_settled(e);
+	say(e, "\nvoid $n_step($n *s)\n"
+	       "{\n");
+	if (m->settled)
+		say(e, "    if (s->segment == %d) {\n"
+		       "        $n_continue(s);\n"
+		       "        s->status |= pl_not_finite(s->eta, %d) | pl_not_finite(s->rate, %d);\n"
+		       "        return;\n"
+		       "    }\n", e->system->segments - 1, m->width, m->width);
+	if (points)
+		say(e, "    if (s->known < %d)\n"
+		       "        $n_collocate(s);\n"
+		       "    else\n"
+		       "        $n_advance(s);\n", points);
+	else
+		say(e, "    $n_collocate(s);\n");
+	if (has_bank(e)) {
+		const char *now = format("s->f[%s][%d]", points ? "s->newest" : format("%d", m->stages),
+					 e->model->split->selector - 1);
+		say(e, "    if ($n_operator(s->which, %s) != s->which)\n"
+		       "        $n_use(s, $n_operator(s->which, %s));\n", now, now);
+	}
+	if (has_changes(e))
+		emit_restart(e);
+	say(e, "    s->status |= pl_not_finite(s->eta, %d) | pl_not_finite(s->rate, %d);\n"
+	       "}\n", m->width, m->width);
+}
+
+void emit_normal_members(const struct emitter *e)
+{
+	const struct normal *m = normal_of_step(e);
+	int functions = functions_of_time(e) ? functions_of_time(e) : 1;
+	const char *where = m->points ? "ends of the last steps" : "nodes of the last step";
+	bool past = m->points || has_bank(e);
+	say(e, "    double eta[%d], rate[%d];  /* normal modes now, and how they change [1/s] */\n"
+	       "    double force[%d][%d]; /* on them, at the %s */\n", m->width, m->width, m->kept, m->width, where);
+	if (past)
+		say(e, "    double past[%d][2][%d];  /* what they were there */\n", m->kept, m->width);
+	say(e, "    double f[%d][%d];       /* functions of time there */\n"
+	       "    int which;            /* operator whose modes they are */\n", m->kept, functions);
+	if (m->points)
+		say(e, "    int newest;           /* of those ends the last */\n");
+	say(e, "    int known;            /* how many there are */\n");
+}

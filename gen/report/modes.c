@@ -1,0 +1,120 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Of steps in normal modes: modes, operators, which way a step goes, what was found of its stability. */
+#include "report/report.h"
+
+const char *operators_of_modes(const struct step *step)
+{
+	const struct model *model = step->model;
+	const char *first = model->operator[0].text, *last = model->operator[model->operators - 1].text;
+	if (!*first)
+		return "that of the linear terms with constant coefficients";
+	if (model->operators == 1)
+		return format("that of the Jacobian at %s", first);
+	return format("those of the Jacobian at %s to %s, %d operators", first, last, model->operators);
+}
+
+const char *course_of_modes(const struct step *step)
+{
+	const struct normal *m = step->normal;
+	if (m->points == 0)
+		return format("collocation at %d Lobatto nodes, %d sweeps; where it starts anew %d", m->stages + 1,
+			      m->sweeps, m->first_sweeps);
+	return format("predict from %d past forces, evaluate, correct%s; the first %d steps by collocation at %d "
+		      "Lobatto nodes", m->points, m->twice ? ", evaluate (PECE)" : " (PEC)", m->points - 1,
+		      m->stages + 1);
+}
+
+const char *stability_of_modes(const struct step *step)
+{
+	const struct stability *s = &step->normal->stability;
+	bool inside = s->radius < 1;
+	return format("functions of time frozen%s, the spectral radius of a step is at most 1 %c %.2g, at t = %.4g s; "
+		      "all steps up to t = %.4g s let nothing grow by more than %.3g",
+		      step->model->split->rests ? " and what is not linear left out" : "", inside ? '-' : '+',
+		      inside ? 1 - s->radius : s->radius - 1, s->time, s->span, s->growth_factor);
+}
+
+int numbers_of_modes(const struct step *step)
+{
+	const struct normal *m = step->normal;
+	int n = m->modes, width = m->width;
+	int multistep = m->points ? (4 + 2 * m->points + 2) * width : 0;
+	int collocation = m->stages * (4 + 2 * (m->stages + 1)) * width;
+	int forces = 0;
+	for (int f = 0; f < step->model->split->functions; f++)
+		forces += m->force[f] ? width : 0;
+	return m->banks * (2 * n * n + m->matrices * n * n + forces + multistep + collocation) +
+	       (m->settled ? (2 * n + 1) * 2 * width : 0);
+}
+
+void person_normal(FILE *to, const struct step *step)
+{
+	const struct normal *m = step->normal;
+	fprintf(to, "Modes of M q'' + C q' + K q = 0, K and C symmetric: %s. All else is r, loads too: a force on each "
+		    "mode.\n", operators_of_modes(step));
+	for (int b = 0; b < m->banks; b += m->banks > 1 ? m->banks - 1 : 1) {
+		fprintf(to, "    modes%s%s, [Hz], and damping ratio:\n", m->banks > 1 ? " at " : "",
+			m->banks > 1 ? step->model->operator[b].text : "");
+		for (int j = 0; j < m->modes; j++)
+			fprintf(to, "    %-24.8g %.8g\n", m->frequency[b * m->modes + j] / 6.283185307179586,
+				m->ratio[b * m->modes + j]);
+	}
+	fprintf(to, "Step: %s.\nStability: %s.\nTables: at most %d numbers.\n", course_of_modes(step),
+		stability_of_modes(step), numbers_of_modes(step));
+	if (m->settled)
+		fprintf(to, "From t = %s s on nothing changes any more, and steps are exact: e^{A h} over modes.\n",
+			readable_text(step->model->system.change[step->model->system.segments - 2]));
+}
+
+void json_normal(FILE *to, const struct step *step)
+{
+	const struct normal *m = step->normal;
+	fprintf(to, "  \"modes\": {\"count\": %d, \"operators\": [", m->modes);
+	for (int b = 0; b < m->banks; b++) {
+		fprintf(to, "%s\n    {\"at\": \"%s\", \"hertz\": [", b ? "," : "", step->model->operator[b].text);
+		for (int j = 0; j < m->modes; j++)
+			fprintf(to, "%s%.17g", j ? ", " : "", m->frequency[b * m->modes + j] / 6.283185307179586);
+		fputs("], \"damping_ratio\": [", to);
+		for (int j = 0; j < m->modes; j++)
+			fprintf(to, "%s%.17g", j ? ", " : "", m->ratio[b * m->modes + j]);
+		fputs("]}", to);
+	}
+	fprintf(to, "],\n    \"points\": %d, \"stages\": %d, \"sweeps\": %d, \"twice\": %s,\n", m->points, m->stages,
+		m->sweeps, m->twice ? "true" : "false");
+	fprintf(to, "    \"radius\": %.17g, \"radius_at\": %.17g, \"growth\": %.17g,\n", m->stability.radius,
+		m->stability.time, m->stability.growth);
+	fprintf(to, "    \"numbers\": %d, \"settles\": %s},\n", numbers_of_modes(step), m->settled ? "true" : "false");
+}
+
+/* ---- the program ---- */
+
+static const char *factor_text(const struct step *step, int function, const double *factor)
+{
+	const struct normal *m = step->normal;
+	const char *text = function ? form_text(step->model, step->model->split->function[function].form) : "1";
+	if (m->banks > 1 && factor[0] != factor[m->banks - 1])
+		return format("(%s to %s) %s", shortest(factor[0]), shortest(factor[m->banks - 1]), text);
+	return factor[0] == 1 ? text : format("%s (%s)", shortest(factor[0]), text);
+}
+
+void program_normal(FILE *to, const struct step *step)
+{
+	const struct normal *m = step->normal;
+	fprintf(to, "Modes: %s; in %d block%s\n", operators_of_modes(step), m->blocks, m->blocks > 1 ? "s" : "");
+	fprintf(to, "Forces on the modes, V^T (...):\n");
+	for (int k = 0; k < m->matrices; k++) {
+		fprintf(to, "    matrix %d times", k + 1);
+		for (int t = 0; t < m->matrix[k].terms; t++)
+			fprintf(to, "%s %s %s", t ? " +" : "",
+				factor_text(step, m->matrix[k].term[t].function, m->matrix[k].term[t].factor),
+				m->matrix[k].term[t].velocity ? "eta'" : "eta");
+		fputc('\n', to);
+	}
+	for (int f = 0; f < step->model->split->functions; f++)
+		if (m->force[f])
+			fprintf(to, "    %s times a vector\n",
+				f ? form_text(step->model, step->model->split->function[f].form) : "1");
+	fprintf(to, "Step: %s\n", course_of_modes(step));
+	if (m->settled)
+		fputs("Once nothing changes: [omega eta, eta'] <- matrix [omega eta, eta', 1]\n", to);
+}
