@@ -10,7 +10,7 @@
 #     as=PREFIX       PREFIX instead of NAME in the names
 #     at=TEXT         `operator at TEXT` instead of the spec's own operator ('_' is a blank); at=none: no such statement
 #     order=N         of scheme taylor, which N makes fixed
-#     stages=N        of the line's scheme
+#     stages=N        of the line's scheme, or of etdcol
 #     anything else   for plgen
 set -eu
 LC_ALL=C
@@ -70,10 +70,12 @@ grep -v -e '^#' -e '^$' "$list" | while read -r name schemes steps options; do
             else
                 [ "$stages" ] || choice="$choice --scheme $scheme"
             fi
+            of_stages=$scheme
+            [ "$scheme" = - ] && of_stages=etdcol
             [ "$step" = - ] || choice="$choice --step $step"
             # shellcheck disable=SC2086
             "$plgen" --rhs $choice $given ${order:+--scheme "taylor $order"} \
-                ${stages:+--scheme "$scheme $stages"} -o "$work/$prefix.c" "$spec" \
+                ${stages:+--scheme "$of_stages $stages"} -o "$work/$prefix.c" "$spec" \
                 2>"$work/said" ||
                 { cat "$work/said" >&2; exit 1; }
             cat "$work/$prefix.h" >>"$work/headers"
