@@ -58,6 +58,9 @@ static void check_left(const struct step *step)
 	if (model->system.inputs > 0)
 		error(scheme_place(step), "etdrk4 and taylor take it",
 		      "scheme %s needs forces that are smooth from step to step: the model has inputs", name_of(step));
+	if (model->operators > 1 && model->split->selector < 0)
+		error(model->spec->operator_at, "of one operator, or of a bank by time or a let of time",
+		      "scheme %s takes the modes of a bank that is chosen by time alone", name_of(step));
 	const struct node *mixed = model->split->mixed;
 	if (mixed)
 		error(mixed->start, "etdrk4 and taylor take it",
