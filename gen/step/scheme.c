@@ -198,7 +198,8 @@ static void build_collocated_step(struct step *step)
 	need_direct(step);
 	if (coords > LIMIT_COLLOCATED)
 		error(step->model->asked.scheme_at, "etdrk4 and the schemes like it loop over tables",
-		      "scheme %s is built for up to %d coordinates, whose matrices stand on the stack: the model has %d",
+		      "scheme %s is built for up to %d coordinates, whose matrices stand on the stack: the model has "
+		      "%d",
 		      scheme_name(step->model->scheme), LIMIT_COLLOCATED, coords);
 	step->layout = layout_of(&step->branch->system, false);
 	if (!silent_guard(make_read_table, &(struct reading){ step, 1 })) {
