@@ -208,12 +208,14 @@ static void find_obstacle(void *context)
 }
 
 /* The first scheme to try where exact is not possible and none was asked for. What is smooth has its Taylor series; an
- * operator, and loads that are left over, have been written for schemes that take the equations apart. */
+ * operator, and loads that are left over, have been written for schemes that take the equations apart: of many states
+ * in normal modes. */
 static enum scheme scheme_of_choice(const struct building *b)
 {
-	if (b->request->passed_over || b->spec->has_operator || b->request->loads_left)
+	bool many = b->model->system.states > LIMIT_UNROLLED_STATES;
+	if (b->request->passed_over || b->request->loads_left)
 		return default_scheme();
-	return SCHEME_TAYLOR;
+	return !b->spec->has_operator ? SCHEME_TAYLOR : many ? SCHEME_ETDAM4 : default_scheme();
 }
 
 /* Exact where nothing is left over and no scheme was asked for; the equations for all time where something is. */

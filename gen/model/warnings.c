@@ -396,7 +396,7 @@ static const char *passed_over(const char *why)
 {
 	if (!why)
 		return "";
-	return strncmp(why, "scheme ", 7) == 0 ? format("; %s", why) : format("; not scheme taylor: %s", why);
+	return strncmp(why, "scheme ", 7) == 0 ? format("; %s", why) : format("; what would be best is refused: %s", why);
 }
 
 void warn(struct building *b)
