@@ -601,21 +601,11 @@ static void add_real(mpfr_ptr target, mpfr_srcptr a, mpq_srcptr b)
     mpfr_clear(product);
 }
 
-static mpfr_t *reals(size_t count)
-{
-    mpfr_t *x = ARRAY(mpfr_t, count);
-    for (size_t i = 0; i < count; i++) {
-        mpfr_init2(x[i], MIDPOINT_BITS);
-        mpfr_set_zero(x[i], 1);
-    }
-    return x;
-}
-
 /* y <- e^{A tau} y */
 static mpfr_t *advance(const struct augmented *a, mpq_srcptr tau, const mpfr_t *y)
 {
     const size_t n = a->size;
-    mpfr_t *E = reals(n * n), *next = reals(n), product;
+    mpfr_t *E = reals(n * n, MIDPOINT_BITS), *next = reals(n, MIDPOINT_BITS), product;
     if (evaluator_midpoints(n, (const mpq_t *)a->A, tau, MIDPOINT_BITS, E) != 0)
         return NULL;
     mpfr_init2(product, MIDPOINT_BITS);
@@ -638,7 +628,7 @@ static mpfr_t *driven(const struct model *model, mpq_srcptr t, int *segment)
     mpq_t now, tau;
     mpq_inits(now, tau, NULL);
     struct augmented a = augment(system, first, false, model->h);
-    mpfr_t *y = reals(a.size);
+    mpfr_t *y = reals(a.size, MIDPOINT_BITS);
     mpq_t *z = rationals(a.loads);
     set_load_states(system, now, z);
     for (size_t i = 0; i < a.states; i++)
