@@ -118,6 +118,10 @@ struct truth {                      /* at each end of a unit and at TRUTH_BETWEE
 };
 #define TRUTH_BETWEEN 0.375
 struct truth *truth_of(struct problem *problem);                    /* and gives the problem its scales */
+/* The road beside quadruple precision for models by hand: extrapolation in long double; no agreement, no roads */
+struct truth *truth_by_extrapolation(struct problem *problem);
+/* The largest difference at the ends of units, relative to the scales of the first */
+double truth_difference(const struct truth *truth, const struct truth *other);
 void truth_free(struct truth *truth);
 /* relative to the scales; failed: not finite or it gave up */
 struct error { double q_end, q_between, v_end, v_between, largest; bool failed; };

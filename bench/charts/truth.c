@@ -3,14 +3,18 @@
  *
  *   linear         e^{A t} in quadruple precision (33 digits), loads carried as states: no error that a double could
  *                  see.
- *   nonlinear      the equations by hand, by extrapolation (Gragg, Bulirsch, Stoer) in long double (19 digits).
- *   the beams      the same on matrices found by quadrature of their definition (tests/leftover/cantilever.c).
+ *   nonlinear      the equations by hand, by Taylor series in quadruple precision (quad_taylor.c); beside it
+ *                  (truth_by_extrapolation, which tests hold against it) by extrapolation (Gragg, Bulirsch, Stoer) in
+ *                  long double (19 digits).
+ *   the beams      the same on their matrices' decimals (quad_beam.c); beside it on matrices found by quadrature of
+ *                  their definition (tests/leftover/cantilever.c).
  *   clearances     the equations by hand, by Taylor series between crossings in long double (tests/switching/hand.c).
  *   what has none of these: NAME_rhs, in double, by extrapolation in long double.
  *
  * The second road is another method on NAME_rhs in double; how far the two are apart is the truth's `agreement`, and
  * says how good that method is as much as how good the truth is. */
 #include "charts.h"
+#include "quad_taylor.h"
 
 #include "../../tests/leftover/elliptic.h"
 #include "../../tests/switching/hand.h"
@@ -40,9 +44,7 @@ static void *allot(size_t count, size_t size)
 /* 0.01 means 1/100, not the double next to it: a decimal of at most 13 digits is taken as such. */
 static quad exactly(double x)
 {
-	char text[40];
-	snprintf(text, sizeof text, "%.12e", x);
-	return strtod(text, NULL) == x ? strtoflt128(text, NULL) : (quad)x;
+	return quad_of_decimal(x);
 }
 
 /* ---- linear: closed form ---- */
@@ -545,15 +547,17 @@ static void solve(struct problem *p, struct truth *t)
 	if (gears_of(p->name)) {
 		t->roads = "by hand: Taylor series between crossings in long double; NAME_rhs by GSL rk8pd";
 		between_crossings(p, gears_of(p->name), t);
+	} else if (quad_taylor_has(p)) {
+		t->roads = "by hand: Taylor series in quadruple precision; NAME_rhs by GSL rk8pd";
+		quad_taylor(p, t);
 	} else {
-		t->roads = e->name ? "by hand: extrapolation in long double; NAME_rhs by GSL rk8pd"
-		           : "NAME_rhs: extrapolation in long double; GSL rk8pd";
+		t->roads = "NAME_rhs: extrapolation in long double; GSL rk8pd";
 		extrapolated(p, e, t);
 	}
 	find_scales(p, t);
 	t->agreement = solver_difference(p, t, gears_of(p->name) ? 0 : e->parts);
 	if (strcmp(p->name, "pendulum") == 0) {
-		t->roads = "by hand: extrapolation in long double; NAME_rhs by GSL rk8pd; elliptic function";
+		t->roads = "by hand: Taylor series in quadruple precision; NAME_rhs by GSL rk8pd; elliptic function";
 		t->agreement = fmax(t->agreement, elliptic_difference(p, t));
 	}
 }
@@ -566,6 +570,22 @@ struct truth *truth_of(struct problem *p)
 	say_progress("%s: truth", p->name);
 	solve(p, t);
 	return t;
+}
+
+struct truth *truth_by_extrapolation(struct problem *p)
+{
+	struct truth *t = new_truth(p);
+	extrapolated(p, equations_of(p), t);
+	find_scales(p, t);
+	return t;
+}
+
+double truth_difference(const struct truth *t, const struct truth *other)
+{
+	double most = 0;
+	for (int k = 0; k < t->units; k++)
+		most = farther(most, t, k, other->at_end + k * 2 * t->n);
+	return most;
 }
 
 void truth_free(struct truth *t)
