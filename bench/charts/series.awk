@@ -76,7 +76,13 @@ BEGIN {
 	look("msadams",                          8, "#6040c0", "3")
 	look("Adams",                           10, "#3030a0", "3")
 	look("BDF",                             12, "#8000c0", "3")
+	look("ARKODE DIRK",                      1, "#0070a0", "3")
 	look("ARKODE",                          14, "#0070a0", "3")
+	look("DOP853",                          12, "#0000ff", "3")
+	look("RADAU5",                           2, "#a000ff", "3")
+	look("RADAU9",                           3, "#a000ff", "3")
+	look("RADAU13",                          8, "#a000ff", "3")
+	look("bsimp",                            1, "#00a0ff", "3")
 	# propagators: dash and dot
 	look("^exp\\(.*literals, float",         2, "#a08040", "4")
 	look("^exp\\(.*float",                  3, "#c0a060", "4")

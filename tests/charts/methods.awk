@@ -26,7 +26,7 @@ NR == 1 { read_head($0, column); next }
 	for (e = 1; e <= 5; e++) {
 		value = row[column[errors[e]]]
 		good = row[column["failed"]] == 0 ? is_number(value) &&
-			value >= 0 : value ~ /^(failed|refused|diverged|nan)$/
+			value >= 0 : value ~ /^(failed|refused|cannot|diverged|nan)$/
 		if (!good) { print model ", " method ": " errors[e] " is " value ", failed " row[column["failed"]];
 			bad = 1 }
 	}

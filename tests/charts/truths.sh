@@ -1,6 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# truths.sh PLGEN PROGRAM ROOT: the generated code of every smooth model of the charts, then that program on it.
+# truths.sh PLGEN PROGRAM ROOT: the generated code of every smooth model of the charts, then that program (truths,
+# peers) on it.
 set -e
 absolute() {
     case $1 in
