@@ -79,11 +79,12 @@ struct run {
 	bool (*timed)(struct run *run, int units);
 };
 extern const struct method *const fixed_methods[];      /* classic.c; NULL at the end */
+extern const struct method *const inlined_methods[];    /* inlined.c: of fixed step, smooth models */
 extern const struct method *const adaptive_methods[];   /* adaptive.c */
 /* What the absolute tolerances of a run stand on: one that an adaptive method opens on this problem */
 void adaptive_scales(const struct problem *problem, double *scale_q, double *scale_v);
 extern const struct method *const propagator_methods[]; /* propagator.c: linear problems */
-const struct method *method_find(const char *name);     /* among these three */
+const struct method *method_find(const char *name);     /* among these */
 /* literals.c: a matrix as constants in code. The object's `void advance(real *z, long units, real *rows)` takes `steps`
  * steps z <- Phi z a unit and keeps `own` entries of z in a row. NULL: an entry is not finite, or it does not
  * compile. */

@@ -14,9 +14,10 @@ static const struct method *find_among(const struct method *const *methods, cons
 
 const struct method *method_find(const char *name)
 {
-	const struct method *const *const lists[] = {fixed_methods, adaptive_methods, propagator_methods};
+	const struct method *const *const lists[] = {fixed_methods, inlined_methods, adaptive_methods,
+	                                             propagator_methods};
 	const struct method *found = NULL;
-	for (int i = 0; i < 3 && !found; i++)
+	for (int i = 0; i < 4 && !found; i++)
 		found = find_among(lists[i], name);
 	return found;
 }

@@ -58,6 +58,8 @@ static const int parts_fixed[][8] = { { 1, 2, 4, 8, 16, 32, 64, 0 }, { 4, 16, 64
 static const int parts_fixed_quick[][8] = { { 1, 8, 64, 0 }, { 16, 256, 0 }, { 1, 16, 40, 0 } };
 static const int parts_scheme[][8] = { { 1, 2, 4, 8, 16, 32, 0 }, { 1, 4, 16, 64, 256, 1024, 0 }, { 1, 4, 16, 0 } };
 static const int parts_scheme_quick[][8] = { { 1, 8, 0 }, { 4, 64, 0 }, { 1, 8, 0 } };
+/* Units that a step of inlined.c goes over */
+static const int spans[] = { 2, 3, 4, 5, 6, 8, 10, 15, 0 }, spans_quick[] = { 4, 0 };
 static const int parts_implicit_large[] = { 1, 2, 4, 16, 0 }, parts_exact[] = { 1, 4, 0 },
 	parts_exact_quick[] = { 1, 0 };
 static const int digits[][8] = { { 3, 4, 6, 8, 10, 12, 13, 0 }, { 3, 4, 6, 8, 10, 12, 13, 0 }, { 4, 8, 12, 0 } },
@@ -231,6 +233,13 @@ static void add_peers(struct lines *lines, const struct charted *m, const struct
 	}
 }
 
+static void add_spans(struct lines *lines, const struct charted *m, const struct problem *p, bool quick)
+{
+	for (const struct method *const *method = inlined_methods; *method && m->kind == ORDINARY; method++)
+		for (const int *span = quick ? spans_quick : spans; *span; span++)
+			add_peer(lines, p, *method, *span * p->unit);
+}
+
 static void add_ours(struct lines *lines, const struct charted *m, const struct problem *p, bool quick)
 {
 	for (const struct ours *o = ours; o < ours + OURS_COUNT; o++)
@@ -367,6 +376,8 @@ static void measure(FILE *out, const struct charted *m, const char *folder, bool
 	struct truth *t = truth_of(p);
 	struct lines lines = { NULL, 0 };
 	add_peers(&lines, m, p, fixed_methods, quick);
+	add_peers(&lines, m, p, inlined_methods, quick);
+	add_spans(&lines, m, p, quick);
 	add_peers(&lines, m, p, adaptive_methods, quick);
 	add_peers(&lines, m, p, propagator_methods, quick);
 	add_ours(&lines, m, p, quick);
