@@ -28,26 +28,33 @@ struct charted {
 	double w;                       /* of its load [rad/s] */
 	enum kind kind;
 	bool quick;                     /* part of a quick run */
+	bool here;                      /* its spec stands in bench/charts/specs, not in models */
 };
 
 static const struct charted models[] = {
-	{ "pendulum", "1/10", 100, 100, false, 0, ORDINARY, true },
-	{ "vanderpol", "1/10", 200, 200, false, 0, ORDINARY, false },
-	{ "vanderpol_stiff", "1/10", 2000, 200, false, 0, STIFF, false },
-	{ "quad2dof", "1/10", 300, 100, false, 0, ORDINARY, false },
-	{ "duffing", "1/10", 300, 100, false, 0, ORDINARY, false },
-	{ "mathieu", "1/10", 300, 100, false, 0, ORDINARY, false },
-	{ "beam4", "1/100", 2000, 100, false, 0, LARGE, true },
-	{ "beam15", "1/100", 2000, 100, false, 0, LARGE, false },
-	{ "gear1", "1/10", 500, 200, false, 0, ORDINARY, true },
-	{ "gear2", "1/10", 200, 200, false, 0, ORDINARY, false },
-	{ "gear3", "1/100", 2000, 500, false, 0, ORDINARY, false },
-	{ "scs", "1/100", 3000, 1000, true, 0, ORDINARY, true },
-	{ "sdcs", "1/100", 3000, 1000, true, 0, ORDINARY, false },
-	{ "sdcsf", "1/100", 3000, 1000, true, 5, ORDINARY, false },
-	{ "scs_weak", "1/100", 3000, 1000, true, 0, ORDINARY, false },
-	{ "linear2dof", "1/5", 50, 50, true, 0, ORDINARY, false },
-	{ "tuned_floor", "1/100", 3000, 1000, true, 4 * M_PI, ORDINARY, false },
+	{ "pendulum", "1/10", 100, 100, false, 0, ORDINARY, true, false },
+	{ "vanderpol", "1/10", 200, 200, false, 0, ORDINARY, false, false },
+	{ "vanderpol_stiff", "1/10", 2000, 200, false, 0, STIFF, false, false },
+	{ "quad2dof", "1/10", 300, 100, false, 0, ORDINARY, false, false },
+	{ "duffing", "1/10", 300, 100, false, 0, ORDINARY, false, false },
+	{ "mathieu", "1/10", 300, 100, false, 0, ORDINARY, false, false },
+	{ "beam4", "1/100", 2000, 100, false, 0, LARGE, true, false },
+	{ "beam15", "1/100", 2000, 100, false, 0, LARGE, false, false },
+	{ "henon_heiles", "1/10", 300, 100, false, 0, ORDINARY, false, true },
+	{ "coupled_vanderpol", "1/10", 300, 100, false, 0, ORDINARY, false, true },
+	{ "double_pendulum", "1/10", 300, 100, false, 0, ORDINARY, false, true },
+	{ "rayleigh", "1/10", 300, 100, false, 0, ORDINARY, false, true },
+	{ "duffing_pair", "1/10", 300, 100, false, 0, ORDINARY, false, true },
+	{ "spherical_pendulum", "1/10", 300, 100, false, 0, ORDINARY, false, true },
+	{ "gear1", "1/10", 500, 200, false, 0, ORDINARY, true, false },
+	{ "gear2", "1/10", 200, 200, false, 0, ORDINARY, false, false },
+	{ "gear3", "1/100", 2000, 500, false, 0, ORDINARY, false, false },
+	{ "scs", "1/100", 3000, 1000, true, 0, ORDINARY, true, false },
+	{ "sdcs", "1/100", 3000, 1000, true, 0, ORDINARY, false, false },
+	{ "sdcsf", "1/100", 3000, 1000, true, 5, ORDINARY, false, false },
+	{ "scs_weak", "1/100", 3000, 1000, true, 0, ORDINARY, false, false },
+	{ "linear2dof", "1/5", 50, 50, true, 0, ORDINARY, false, false },
+	{ "tuned_floor", "1/100", 3000, 1000, true, 4 * M_PI, ORDINARY, false, false },
 };
 enum { MODELS = sizeof models / sizeof *models };
 
@@ -148,18 +155,23 @@ static void file_of(const struct charted *m, const struct ours *o, int parts, ch
 	name[length] = '\0';
 }
 
+static const char *folder_of(const struct charted *m)
+{
+	return m->here ? "bench/charts/specs" : "models";
+}
+
 static void list_model(const struct charted *m, bool quick)
 {
 	char name[200];
-	printf("%s.so models/%s.spec\n", m->name, m->name);
+	printf("%s.so %s/%s.spec\n", m->name, folder_of(m), m->name);
 	for (const struct ours *o = ours; o < ours + OURS_COUNT; o++)
 		for (const int *parts = parts_of_ours(m, o, quick); applies(m, o) && *parts; parts++) {
 			file_of(m, o, *parts, name, sizeof name);
 			if (o->tolerance)
-				printf("%s models/%s.spec --step %s %s --tolerance 1e-%d\n", name, m->name, m->unit,
-				       options_of(o), *parts);
+				printf("%s %s/%s.spec --step %s %s --tolerance 1e-%d\n", name, folder_of(m), m->name,
+				       m->unit, options_of(o), *parts);
 			else
-				printf("%s models/%s.spec --step %s/%d %s\n", name, m->name, m->unit, *parts,
+				printf("%s %s/%s.spec --step %s/%d %s\n", name, folder_of(m), m->name, m->unit, *parts,
 				       options_of(o));
 		}
 }

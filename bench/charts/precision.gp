@@ -14,6 +14,12 @@ title_of(m) = \
 	m eq 'quad2dof' ? 'Two oscillators with quadratic coupling (Hénon and Heiles; equations deduced)' : \
 	m eq 'duffing' ? 'Duffing under a cosine (parameters chosen)' : \
 	m eq 'mathieu' ? 'Mathieu with damping, unstable (parameters chosen)' : \
+	m eq 'henon\_heiles' ? 'Hénon and Heiles at an energy of 1/8 (start chosen)' : \
+	m eq 'coupled\_vanderpol' ? 'Two coupled oscillators of van der Pol (values chosen)' : \
+	m eq 'double\_pendulum' ? 'Double pendulum, g/l = 1 (start chosen)' : \
+	m eq 'rayleigh' ? 'Rayleigh, x(0) = 1 (chosen)' : \
+	m eq 'duffing\_pair' ? 'Two coupled Duffing oscillators, quadratic damping (values chosen)' : \
+	m eq 'spherical\_pendulum' ? 'Spherical pendulum in two angles, g/l = 1 (start chosen)' : \
 	m eq 'beam4' ? 'Rotating beam, 15 coordinates, spun up to 4 rad/s (matrices deduced)' : \
 	m eq 'beam15' ? 'Rotating beam, 15 coordinates, spun up to 15 rad/s (matrices deduced)' : \
 	m eq 'gear1' ? 'gear1: one pair of wheels with backlash' : \
