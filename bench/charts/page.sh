@@ -72,6 +72,7 @@ table { border-collapse: collapse; font-size: .78rem; font-variant-numeric: tabu
 th, td { border: 1px solid #ddd; padding: .12rem .4rem; text-align: left; vertical-align: top; max-width: 26rem; }
 th { background: #f4f4f4; } .n { text-align: right; } .bad { color: #c00000; font-weight: 600; }
 .poor { color: #a05a00; } .none { color: #888; }
+.good { color: #006000; }
 .machine td, .machine th { font-size: .85rem; } .hard td, .hard th { white-space: normal; }
 .ours th:first-child { color: #c00000; }
 details { margin: .3rem 0 1rem; } summary { cursor: pointer; font-size: .85rem; }
@@ -111,7 +112,7 @@ EOT
 contents() {
 	cat <<'EOT'
 <nav>
-<a href="#headline">1 Two comparisons first</a>
+<a href="#headline">1 Who is cheapest, and two comparisons</a>
 <a href="#precision">2 Work and precision</a>
 <a href="#generation">3 What generating costs</a>
 <a href="#convergence">4 Convergence</a>
@@ -127,7 +128,10 @@ EOT
 }
 
 headline() {
-	section headline '1 Two comparisons first'
+	section headline '1 Who is cheapest, and two comparisons'
+	caption matrix
+	awk -f $charts/csv.awk -f $charts/matrix_table.awk "$folder/matrix.csv"
+	table matrix.csv
 	picture headline_integrators
 	table headline_integrators.csv
 	picture headline_equal_step

@@ -58,7 +58,8 @@ static bool gsl_make(struct adaptive *a)
 	gsl_set_error_handler_off();
 	if (type == gsl_odeiv2_step_bsimp && !jacobian_of(a->run.problem))
 		return false;
-	g->system = (gsl_odeiv2_system){.function = gsl_slope, .jacobian = gsl_jacobian, .dimension = (size_t)a->size, .params = a};
+	g->system = (gsl_odeiv2_system){.function = gsl_slope, .jacobian = gsl_jacobian,
+	                                .dimension = (size_t)a->size, .params = a};
 	g->first = fixed ? a->run.setting : 1e-3 * a->run.problem->unit;
 	g->y = calloc((size_t)a->size, sizeof *g->y);
 	if (fixed)                  /* tolerances so open that the control never rejects a step */

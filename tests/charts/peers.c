@@ -4,6 +4,7 @@
  *   DOP853       its coefficients meet the order conditions of all 200 rooted trees to order 8, its interpolant those
  *                of the 85 to order 7, anywhere in a step
  *   Radau IIA    nodes and matrix meet Butcher's simplifying conditions B(2s - 1), C(s), by which the order is 2s - 1
+ *   e^{A h}      by Pade's approximant, against its closed form
  *   equations    right-hand sides and Jacobians compiled into the peers are those of NAME_rhs and of its differences
  *   errors       of each peer, everywhere in a history, against its tolerance
  *
@@ -144,6 +145,19 @@ static void check_radau(int s)
 		   "Radau IIA, 3 stages: the published nodes");
 }
 
+/* ---- the matrix exponential ---- */
+
+/* Of a damped turn, known in closed form, at lengths that take no squaring, and some */
+static void check_exponential(double length)
+{
+	const double w = 3, d = 0.1, A[4] = { -d, w, -w, -d };
+	const double size = exp(-d * length), c = size * cos(w * length), s = size * sin(w * length);
+	double E[4], off = NAN;
+	if (pade_exponential(2, A, length, E))
+		off = fmax(fmax(fabs(E[0] - c), fabs(E[3] - c)), fmax(fabs(E[1] - s), fabs(E[2] + s))) / size;
+	ok(close_to(off, 0, 2e-15 * (1 + w * length), "error"), "e^{A h} by Pade, |A h| %g: error %.1e", w * length, off);
+}
+
 /* ---- equations ---- */
 
 struct equation {
@@ -232,6 +246,34 @@ static void check_errors(struct problem *p, const char *const *names, double set
 	problem_free(p);
 }
 
+/* Methods of fixed step that are compiled with their right-hand sides: twice the step, at ends of steps. And over
+ * several units the same steps, with outputs inside that the polynomial of degree 5 gives */
+static void check_orders(struct problem *p)
+{
+	struct truth *t = truth_of(p);
+	for (const struct method *const *m = inlined_methods; *m; m++) {
+		const int order = (*m)->order, parts = order == 2 ? 16 : order == 4 ? 4 : 1;
+		double error[2] = { NAN, NAN };
+		for (int k = 0; k < 2; k++) {
+			const double coarse = order > 4 ? 4 * p->unit : p->unit / parts;
+			struct run *run = (*m)->open(*m, p, coarse / (1 << k));
+			double y[4], most = 0;
+			for (int u = 0; u < p->units && run; u++) {
+				run->advance(run, 1, y);
+				for (int i = 0; i < 2 * p->n && u % 4 == 3; i++)
+					most = fmax(most, fabs(y[i] - t->at_end[u * 2 * p->n + i]));
+			}
+			error[k] = most;
+			if (run)
+				run->close(run);
+		}
+		ok(close_to(log2(error[0] / error[1]), order, 0.35, "errors %.3g and %.3g: order", error[0], error[1]),
+		   "%s on %s: order %d", (*m)->name, p->name, order);
+	}
+	truth_free(t);
+	problem_free(p);
+}
+
 int main(int argc, char **argv)
 {
 	static const char *const all[] = { "DOP853", "RADAU5", "RADAU9", "RADAU13", "ARKODE DIRK", "GSL bsimp",
@@ -244,11 +286,16 @@ int main(int argc, char **argv)
 	check_dop853();
 	for (int s = 3; s <= 7; s += 2)
 		check_radau(s);
+	check_exponential(0.01);
+	check_exponential(1.5);
+	check_exponential(20);
 	for (size_t k = 0; k < sizeof equations / sizeof *equations; k++) {
 		struct problem *p = load(argv[1], equations[k].name, 0.1, 10);
 		check_equation(&equations[k], p);
 		problem_free(p);
 	}
+	check_orders(load(argv[1], "pendulum", 0.1, 100));
+	check_orders(load(argv[1], "henon_heiles", 0.1, 100));
 	check_errors(load(argv[1], "pendulum", 0.1, 100), all, 1e-9, 3e-7);
 	check_errors(load(argv[1], "mathieu", 0.1, 100), all, 1e-9, 3e-7);
 	check_errors(load(argv[1], "duffing_pair", 0.1, 100), all, 1e-9, 3e-7);
