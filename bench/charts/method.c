@@ -15,9 +15,9 @@ static const struct method *find_among(const struct method *const *methods, cons
 const struct method *method_find(const char *name)
 {
 	const struct method *const *const lists[] = {fixed_methods, inlined_methods, adaptive_methods,
-	                                             propagator_methods};
+	                                             clearance_methods, propagator_methods};
 	const struct method *found = NULL;
-	for (int i = 0; i < 4 && !found; i++)
+	for (int i = 0; i < 5 && !found; i++)
 		found = find_among(lists[i], name);
 	return found;
 }

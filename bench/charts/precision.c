@@ -69,8 +69,10 @@ static const int parts_scheme_quick[][8] = { { 1, 8, 0 }, { 4, 64, 0 }, { 1, 8, 
 static const int spans[] = { 2, 3, 4, 5, 6, 8, 10, 15, 0 }, spans_quick[] = { 4, 0 };
 static const int parts_implicit_large[] = { 1, 2, 4, 16, 0 }, parts_exact[] = { 1, 4, 0 },
 	parts_exact_quick[] = { 1, 0 };
-static const int digits[][8] = { { 3, 4, 6, 8, 10, 12, 13, 0 }, { 3, 4, 6, 8, 10, 12, 13, 0 }, { 4, 8, 12, 0 } },
-	digits_quick[] = { 3, 8, 12, 0 }, digits_series[] = { 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 0 };
+static const int digits_all[] = { 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 0 },
+	digits_large[] = { 2, 4, 6, 8, 10, 12, 0 }, digits_quick[] = { 3, 8, 12, 0 };
+/* Of what is compiled with its right-hand side */
+static const int parts_inlined[] = { 1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64, 0 };
 
 struct ours {
 	const char *name, *options;
@@ -118,10 +120,16 @@ static const char *options_of(const struct ours *o)
 	return *o->options ? o->options : "--scheme exact";
 }
 
+/* Ours and a peer's alike */
+static const int *tolerances_of(const struct charted *m, bool quick)
+{
+	return quick ? digits_quick : m->kind == LARGE ? digits_large : digits_all;
+}
+
 static const int *parts_of_ours(const struct charted *m, const struct ours *o, bool quick)
 {
 	if (o->tolerance)
-		return quick ? digits_quick : digits_series;
+		return tolerances_of(m, quick);
 	if (o->exact)
 		return quick ? parts_exact_quick : parts_exact;
 	return quick ? parts_scheme_quick[m->kind] : parts_scheme[m->kind];
@@ -226,30 +234,38 @@ static const int *parts_of_peer(const struct charted *m, const struct method *me
 		return quick ? parts_exact_quick : parts_exact;
 	if (m->kind == LARGE && !quick && is_implicit(method))
 		return parts_implicit_large;
+	if (strstr(method->name, "inlined") && m->kind == ORDINARY && !quick)
+		return parts_inlined;
 	return quick ? parts_fixed_quick[m->kind] : parts_fixed[m->kind];
 }
 
+/* everywhere: else what cannot on this model is left out */
 static void add_peers(struct lines *lines, const struct charted *m, const struct problem *p,
-                      const struct method *const *methods, bool quick)
+                      const struct method *const *methods, bool quick, bool everywhere)
 {
 	for (; *methods; methods++) {
 		const struct method *method = *methods;
 		if (method->linear_only && !p->linear)
 			continue;
 		if (method->tolerance)
-			for (const int *d = quick ? digits_quick : digits[m->kind]; *d; d++)
+			for (const int *d = tolerances_of(m, quick); *d; d++)
 				add_peer(lines, p, method, pow(10, -*d));
 		else
 			for (const int *parts = parts_of_peer(m, method, quick); *parts; parts++)
 				add_peer(lines, p, method, p->unit / *parts);
+		while (!everywhere && lines->count > 0 && !lines->line[lines->count - 1].run)
+			lines->count--;
 	}
 }
 
 static void add_spans(struct lines *lines, const struct charted *m, const struct problem *p, bool quick)
 {
 	for (const struct method *const *method = inlined_methods; *method && m->kind == ORDINARY; method++)
-		for (const int *span = quick ? spans_quick : spans; *span; span++)
+		for (const int *span = quick ? spans_quick : spans; *span; span++) {
 			add_peer(lines, p, *method, *span * p->unit);
+			if (!lines->line[lines->count - 1].run)
+				lines->count--;
+		}
 }
 
 static void add_ours(struct lines *lines, const struct charted *m, const struct problem *p, bool quick)
@@ -387,11 +403,13 @@ static void measure(FILE *out, const struct charted *m, const char *folder, bool
 	struct problem *p = load(m, folder, quick, path);
 	struct truth *t = truth_of(p);
 	struct lines lines = { NULL, 0 };
-	add_peers(&lines, m, p, fixed_methods, quick);
-	add_peers(&lines, m, p, inlined_methods, quick);
+	/* A peer is added to one of these lists */
+	add_peers(&lines, m, p, fixed_methods, quick, true);
+	add_peers(&lines, m, p, inlined_methods, quick, false);
 	add_spans(&lines, m, p, quick);
-	add_peers(&lines, m, p, adaptive_methods, quick);
-	add_peers(&lines, m, p, propagator_methods, quick);
+	add_peers(&lines, m, p, adaptive_methods, quick, true);
+	add_peers(&lines, m, p, clearance_methods, quick, false);
+	add_peers(&lines, m, p, propagator_methods, quick, true);
 	add_ours(&lines, m, p, quick);
 	open_ours(&lines, p, folder);
 	for (int i = 0; i < lines.count; i++) {

@@ -112,9 +112,7 @@ static void gsl_exponential(int entries, const double *generator, double length,
 	free(scaled);
 }
 
-/* The same without the error of scaling and squaring in double: Taylor's series of a 2^-k part, squared k times, in
- * long double */
-static void rounded_exponential(int size, const double *generator, double length, double *result)
+void rounded_exponential(int size, const double *generator, double length, double *result)
 {
 	enum { TERMS = 24 };
 	const size_t entries = (size_t)size * (size_t)size;

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# awk -v list=methods.list -f csv.awk -f methods.awk precision.csv: every model of a quick run has every
+# awk -v list=methods.list -v special=special.list -f csv.awk -f methods.awk precision.csv: every model of a quick run has every
 # method of the list (propagators only where it is linear) and of ours those that there are for it; each row has
 # numbers, or a word and the flag `failed`.
 function ours_of(model) {
@@ -15,6 +15,7 @@ BEGIN {
 		sub(/^[a-z]* /, "", line)
 		family_of[line] = family
 	}
+	while ((getline line < special) > 0) specials[++special_count] = line
 	split("q_end q_between v_end v_between largest", errors, " ")
 }
 NR == 1 { read_head($0, column); next }
@@ -44,6 +45,12 @@ NR == 1 { read_head($0, column); next }
 	}
 }
 END {
+	for (k = 1; k <= special_count; k++) {
+		model = method = specials[k]
+		sub(/ .*/, "", model)
+		sub(/^[^ ]* /, "", method)
+		if (!((model, method) in seen)) { print model ": no " method; bad = 1 }
+	}
 	models = split("pendulum beam4 gear1 scs", model_list, " ")
 	for (m = 1; m <= models; m++) {
 		model = model_list[m]

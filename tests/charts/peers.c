@@ -217,11 +217,11 @@ static void check_equation(const struct equation *e, const struct problem *p)
 
 /* ---- errors ---- */
 
-/* At a tolerance, everywhere, also between outputs, against `most` times it */
+/* At a tolerance, or with a step of a unit, everywhere, also between outputs */
 static void check_error(const char *name, struct problem *p, const struct truth *t, double setting, double most)
 {
 	const struct method *m = method_find(name);
-	struct run *run = m ? m->open(m, p, setting) : NULL;
+	struct run *run = m ? m->open(m, p, m->tolerance ? setting : p->unit) : NULL;
 	const struct error e = run ? error_of(run, t) : (struct error){ .failed = true };
 	const double found = e.failed ? NAN : e.largest;
 	ok(close_to(found, 0, most, "largest error of %s", name),
@@ -279,6 +279,7 @@ int main(int argc, char **argv)
 	static const char *const all[] = { "DOP853", "RADAU5", "RADAU9", "RADAU13", "ARKODE DIRK", "GSL bsimp",
 	                                  NULL };
 	static const char *const stiff[] = { "RADAU5", "RADAU9", "RADAU13", NULL };
+	static const char *const regions[] = { "CVODE Adams, roots", "exact in regions, bisection", NULL };
 	if (argc != 2) {
 		fputs("usage: peers VARIANTS\n", stderr);
 		return 2;
@@ -301,5 +302,8 @@ int main(int argc, char **argv)
 	check_errors(load(argv[1], "duffing_pair", 0.1, 100), all, 1e-9, 3e-7);
 	check_errors(load(argv[1], "vanderpol_stiff", 0.1, 1000), stiff, 1e-9, 1e-5);
 	check_errors(load(argv[1], "beam4", 0.01, 100), stiff, 1e-6, 1e-4);
+	check_errors(load(argv[1], "gear1", 0.1, 200), regions, 1e-12, 1e-9);
+	check_errors(load(argv[1], "gear2", 0.1, 200), regions, 1e-12, 1e-9);
+	check_errors(load(argv[1], "gear3", 0.01, 500), regions, 1e-12, 1e-8);
 	return tap_end();
 }

@@ -15,7 +15,7 @@ trap 'rm -rf "$work"' EXIT
 trap 'exit 99' HUP INT TERM
 cd "$root"
 {
-    for name in pendulum vanderpol vanderpol_stiff quad2dof duffing mathieu beam4 beam15; do
+    for name in pendulum vanderpol vanderpol_stiff quad2dof duffing mathieu beam4 beam15 gear1 gear2 gear3; do
         echo "$work/$name.so models/$name.spec"
     done
     for name in henon_heiles coupled_vanderpol double_pendulum rayleigh duffing_pair spherical_pendulum; do
