@@ -381,7 +381,8 @@ static const struct kind arkode = {
 };
 static const struct kind arkode_dirk = {
 	.method = BY_TOLERANCE("ARKODE DIRK", 5,
-	                       "ARKStep, implicit, its own table of order 5, Newton, dense; Jacobian as of CVODE BDF; "
+	                       "ARKStep, implicit, its own table of order 5, Newton, dense, to 1e-3 of the tolerance; "
+	                       "linear problems are said to be linear; Jacobian as of CVODE BDF; "
 	                       "stopped at each output time (its interpolants are of degree 5 at most)"),
 	.solver = &dirk_solver, .formula = 5,
 };
