@@ -70,6 +70,17 @@ static inline void slope(struct adaptive *a, double t, const double *y, double *
 		a->rhs_of(a->of, t, y, dydt);
 }
 
+/* Without a call, as fmax and fmin are at -O2; of what is not a number b is taken, and from larger(1, nan) comes nan */
+static inline double larger(double a, double b)
+{
+	return a > b ? a : b;
+}
+
+static inline double smaller(double a, double b)
+{
+	return a < b ? a : b;
+}
+
 static inline bool all_finite(int size, const double *y)
 {
 	double zero = 0.0;

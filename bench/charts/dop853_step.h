@@ -35,11 +35,49 @@ static inline void INSTANCE(dense)(struct dop853 *d, double t, double h, const d
 			                            D(14) + D(15) + D(16));
 }
 
+/* A step from y, whose slope is k[1], to `next`; returns its weighted error */
+INLINE double INSTANCE(try)(struct dop853 *d, double t, double h, const double *y, double *next,
+                            double (*k)[2 * EXTENT])
+{
+	const double tolerance = d->tolerance, *scale = d->adaptive.scale;
+	double x[2 * EXTENT];
+	STAGE(2, A(2, 1));
+	STAGE(3, A(3, 1) + A(3, 2));
+	STAGE(4, A(4, 1) + A(4, 3));
+	STAGE(5, A(5, 1) + A(5, 3) + A(5, 4));
+	STAGE(6, A(6, 1) + A(6, 4) + A(6, 5));
+	STAGE(7, A(7, 1) + A(7, 4) + A(7, 5) + A(7, 6));
+	STAGE(8, A(8, 1) + A(8, 4) + A(8, 5) + A(8, 6) + A(8, 7));
+	STAGE(9, A(9, 1) + A(9, 4) + A(9, 5) + A(9, 6) + A(9, 7) + A(9, 8));
+	STAGE(10, A(10, 1) + A(10, 4) + A(10, 5) + A(10, 6) + A(10, 7) + A(10, 8) + A(10, 9));
+	STAGE(11, A(11, 1) + A(11, 4) + A(11, 5) + A(11, 6) + A(11, 7) + A(11, 8) + A(11, 9) + A(11, 10));
+	STAGE(12, A(12, 1) + A(12, 4) + A(12, 5) + A(12, 6) + A(12, 7) + A(12, 8) + A(12, 9) + A(12, 10) +
+	          A(12, 11));
+	double sum5 = 0.0, sum3 = 0.0;
+	EACH {
+		const double slope = A(13, 1) + A(13, 6) + A(13, 7) + A(13, 8) + A(13, 9) + A(13, 10) +
+		                     A(13, 11) + A(13, 12);
+		next[m] = y[m] + h * slope;
+		const double over = 1.0 / (tolerance * (scale[m] + larger(fabs(y[m]), fabs(next[m]))));
+		const double error3 = slope - dop853_error3[1] * k[1][m] - dop853_error3[9] * k[9][m] -
+		                      dop853_error3[12] * k[12][m];
+		double error5 = 0.0;
+		_Pragma("GCC unroll 12") for (int j = 1; j <= DOP853_PLAIN; j++)
+			if (j == 1 || j > 5)
+				error5 += dop853_error5[j] * k[j][m];
+		sum5 += error5 * over * (error5 * over);
+		sum3 += error3 * over * (error3 * over);
+	}
+	d->adaptive.evaluations += 11;
+	/* the error of order 5 where that of order 3 is not much larger: II.5 (5.27) */
+	const double whole = sum5 + 0.01 * sum3;
+	return whole > 0.0 ? h * sum5 / sqrt(SIZE * whole) : 0.0;
+}
+
 /* Until the end of a step is at `end` or after it */
 static bool INSTANCE(advance)(struct dop853 *d, double end)
 {
-	double y[2 * EXTENT], next[2 * EXTENT], x[2 * EXTENT], k[DOP853_STAGES + 1][2 * EXTENT];
-	const double tolerance = d->tolerance, *scale = d->adaptive.scale;
+	double y[2 * EXTENT], next[2 * EXTENT], k[DOP853_STAGES + 1][2 * EXTENT];
 	double t = d->t;
 	bool rejected = false;
 	EACH {
@@ -50,40 +88,10 @@ static bool INSTANCE(advance)(struct dop853 *d, double end)
 		const double h = d->h;
 		if (tries-- == 0 || t + 0.1 * h == t)
 			return false;
-		STAGE(2, A(2, 1));
-		STAGE(3, A(3, 1) + A(3, 2));
-		STAGE(4, A(4, 1) + A(4, 3));
-		STAGE(5, A(5, 1) + A(5, 3) + A(5, 4));
-		STAGE(6, A(6, 1) + A(6, 4) + A(6, 5));
-		STAGE(7, A(7, 1) + A(7, 4) + A(7, 5) + A(7, 6));
-		STAGE(8, A(8, 1) + A(8, 4) + A(8, 5) + A(8, 6) + A(8, 7));
-		STAGE(9, A(9, 1) + A(9, 4) + A(9, 5) + A(9, 6) + A(9, 7) + A(9, 8));
-		STAGE(10, A(10, 1) + A(10, 4) + A(10, 5) + A(10, 6) + A(10, 7) + A(10, 8) + A(10, 9));
-		STAGE(11, A(11, 1) + A(11, 4) + A(11, 5) + A(11, 6) + A(11, 7) + A(11, 8) + A(11, 9) + A(11, 10));
-		STAGE(12, A(12, 1) + A(12, 4) + A(12, 5) + A(12, 6) + A(12, 7) + A(12, 8) + A(12, 9) + A(12, 10) +
-		          A(12, 11));
-		double sum5 = 0.0, sum3 = 0.0;
-		EACH {
-			const double slope = A(13, 1) + A(13, 6) + A(13, 7) + A(13, 8) + A(13, 9) + A(13, 10) +
-			                     A(13, 11) + A(13, 12);
-			next[m] = y[m] + h * slope;
-			const double over = 1.0 / (tolerance * (scale[m] + fmax(fabs(y[m]), fabs(next[m]))));
-			const double error3 = slope - dop853_error3[1] * k[1][m] - dop853_error3[9] * k[9][m] -
-			                      dop853_error3[12] * k[12][m];
-			double error5 = 0.0;
-			_Pragma("GCC unroll 12") for (int j = 1; j <= DOP853_PLAIN; j++)
-				if (j == 1 || j > 5)
-					error5 += dop853_error5[j] * k[j][m];
-			sum5 += error5 * over * (error5 * over);
-			sum3 += error3 * over * (error3 * over);
-		}
-		d->adaptive.evaluations += 11;
-		/* the error of order 5 where that of order 3 is not much larger: II.5 (5.27) */
-		const double whole = sum5 + 0.01 * sum3;
-		const double error = whole > 0.0 ? h * sum5 / sqrt(SIZE * whole) : 0.0;
+		const double error = INSTANCE(try)(d, t, h, y, next, k);
 		if (!isfinite(error))
 			return false;
-		const double shrink = fmax(1.0 / 6.0, fmin(3.0, pow(error, 0.125) / 0.9));
+		const double shrink = larger(1.0 / 6.0, smaller(3.0, pow(error, 0.125) / 0.9));
 		if (!(error <= 1.0)) {
 			rejected = true;
 			d->h = h / shrink;
@@ -96,7 +104,7 @@ static bool INSTANCE(advance)(struct dop853 *d, double end)
 		d->from = t;
 		d->last = h;
 		t += h;
-		d->h = rejected ? fmin(h, h / shrink) : h / shrink;
+		d->h = rejected ? smaller(h, h / shrink) : h / shrink;
 		rejected = false;
 		EACH {
 			y[m] = next[m];

@@ -124,7 +124,7 @@ INLINE double INSTANCE(error)(struct radau *d, double h, const double *y, const 
 	EACH
 		error[m] = rq[m] + g * error[COORDINATES + m];
 	for (int m = 0; m < 2 * COORDINATES; m++) {
-		const double share = error[m] / (d->tolerance * (d->adaptive.scale[m] + fmax(fabs(y[m]), fabs(end[m]))));
+		const double share = error[m] / (d->tolerance * (d->adaptive.scale[m] + larger(fabs(y[m]), fabs(end[m]))));
 		total += share * share;
 	}
 	return sqrt(total / (2 * COORDINATES));
@@ -158,9 +158,9 @@ INLINE int INSTANCE(newton)(struct radau *d, double h, double K[][EXTENT], doubl
 	EACH {
 		const double q = d->tolerance * (d->adaptive.scale[m] + fabs(y[m]));
 		const double v = d->tolerance * (d->adaptive.scale[COORDINATES + m] + fabs(y[COORDINATES + m]));
-		weight[m] = fmax(h / v, 0.5 * h * h / q);
+		weight[m] = larger(h / v, 0.5 * h * h / q);
 	}
-	d->factor_of_contraction = pow(fmax(d->factor_of_contraction, 2.2e-16), 0.8);
+	d->factor_of_contraction = pow(larger(d->factor_of_contraction, 2.2e-16), 0.8);
 	d->contraction = 0.001;
 	for (int newt = 0; newt < most; newt++) {
 		INSTANCE(residual)(d, h, y, K, r, end, s);
@@ -184,11 +184,11 @@ INLINE int INSTANCE(newton)(struct radau *d, double h, double K[][EXTENT], doubl
 			const double to_come = d->factor_of_contraction * now *
 			                       pow(d->contraction, most - 2 - newt) / d->newton_tolerance;
 			if (to_come >= 1.0) {
-				d->h = h * 0.8 * pow(fmin(20.0, to_come), -1.0 / (4 + most - 2 - newt));
+				d->h = h * 0.8 * pow(smaller(20.0, to_come), -1.0 / (4 + most - 2 - newt));
 				return 0;
 			}
 		}
-		before = fmax(now, 1e-300);
+		before = larger(now, 1e-300);
 		if (d->factor_of_contraction * now <= d->newton_tolerance) {
 			/* the end with the last correction in it */
 			EACH {
@@ -243,9 +243,9 @@ INLINE bool INSTANCE(advance)(struct radau *d, double limit, const int s)
 			d->adaptive.evaluations++;
 			size = INSTANCE(error)(d, h, d->y, end, K, there, error, s);
 		}
-		size = fmax(size, 1e-10);
-		const double safe = fmin(0.9, 0.9 * (1 + 2 * most) / (iterations + 2 * most));
-		double shrink = fmax(0.125, fmin(5.0, pow(size, 1.0 / (s + 1)) / safe));
+		size = larger(1e-10, size);
+		const double safe = smaller(0.9, 0.9 * (1 + 2 * most) / (iterations + 2 * most));
+		double shrink = larger(0.125, smaller(5.0, pow(size, 1.0 / (s + 1)) / safe));
 		if (!(size < 1.0)) {
 			d->rejected = true;
 			d->h = d->first ? 0.1 * h : h / shrink;
@@ -254,16 +254,16 @@ INLINE bool INSTANCE(advance)(struct radau *d, double limit, const int s)
 		}
 		if (!d->first) {
 			const double ahead = d->accepted_h / h * pow(size * size / d->accepted_error, 1.0 / (s + 1));
-			shrink = fmax(shrink, fmax(0.125, fmin(5.0, ahead / 0.9)));
+			shrink = larger(shrink, larger(0.125, smaller(5.0, ahead / 0.9)));
 		}
 		d->accepted_h = h;
-		d->accepted_error = fmax(1e-2, size);
+		d->accepted_error = larger(1e-2, size);
 		INSTANCE(keep)(d, h, K, end, s);
 		SLOPES(d->t, d->y, d->slope);
 		d->adaptive.evaluations++;
 		double next = h / shrink;
 		if (d->rejected)
-			next = fmin(next, h);
+			next = smaller(next, h);
 		d->first = d->rejected = false;
 		d->keeps_jacobian = d->contraction <= 0.001;
 		d->jacobian_is_new = false;
