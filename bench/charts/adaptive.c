@@ -388,7 +388,7 @@ static const struct kind arkode_dirk = {
 };
 static const struct kind gsl_bsimp = {
 	.method = BY_TOLERANCE("GSL bsimp", 0,
-	                       "Bader and Deuflhard's extrapolation, with exact Jacobian (none: it cannot), driver with "
+	                       "Bader and Deuflhard's extrapolation, exact Jacobian (none: it cannot), driver with "
 	                       "scaled control, applied to each output time; it has no interpolant"),
 	.solver = &gsl_solver, .gsl = &gsl_odeiv2_step_bsimp,
 };

@@ -393,9 +393,9 @@ static struct run *roots_open(const struct method *method, const struct problem 
 
 static const struct method cvode_roots = {
 	.name = "CVODE Adams, roots", .family = ADAPTIVE, .tolerance = true, .open = roots_open,
-	.settings = "rtol = setting, atol = rtol times largest coordinate, velocity; order 1 to 12, fixed-point iteration, "
-	            "the matrix of each region, CVodeRootInit at its borders, CVodeReInit behind them; output from its "
-	            "interpolant",
+	.settings = "rtol = setting, atol = rtol times largest coordinate, velocity; order 1 to 12, fixed-point "
+	            "iteration, the matrix of each region, CVodeRootInit at its borders, CVodeReInit behind them; "
+	            "output from its interpolant",
 };
 static const struct method exact_bisection = {
 	.name = "exact in regions, bisection", .family = FIXED, .open = exact_open,

@@ -134,7 +134,8 @@ INLINE void INSTANCE(join_at)(const struct inlined *r, double s, double *y)
 	EACH_COORDINATE {
 		const double *b = r->bend[m], v = r->h * r->from[COORDINATES + m];
 		y[m] = r->from[m] + s * (v + s * (b[0] + s * (b[1] + s * (b[2] + s * b[3]))));
-		y[COORDINATES + m] = (v + s * (2.0 * b[0] + s * (3.0 * b[1] + s * (4.0 * b[2] + s * 5.0 * b[3])))) * over;
+		y[COORDINATES + m] = over * (v + s * (2.0 * b[0] + s * (3.0 * b[1] + s * (4.0 * b[2] +
+		                                                                          s * 5.0 * b[3]))));
 	}
 }
 

@@ -927,6 +927,6 @@ static const struct method literals_float =
 	PROPAGATOR_METHOD("exp(A h) rounded, literals, float", ROUNDED " and to float; " AS_CODE, literals_float_open);
 
 const struct method *const propagator_methods[] = {
-	&loop, &by_gsl, &rounded, &fixed_size, &literals, &rounded_literals, &dgemv, &modal, &loop_float, &literals_float,
-	NULL,
+	&loop, &by_gsl, &rounded, &fixed_size, &literals, &rounded_literals, &dgemv, &modal, &loop_float,
+	&literals_float, NULL,
 };

@@ -124,7 +124,8 @@ INLINE double INSTANCE(error)(struct radau *d, double h, const double *y, const 
 	EACH
 		error[m] = rq[m] + g * error[COORDINATES + m];
 	for (int m = 0; m < 2 * COORDINATES; m++) {
-		const double share = error[m] / (d->tolerance * (d->adaptive.scale[m] + larger(fabs(y[m]), fabs(end[m]))));
+		const double weight = d->adaptive.scale[m] + larger(fabs(y[m]), fabs(end[m]));
+		const double share = error[m] / (d->tolerance * weight);
 		total += share * share;
 	}
 	return sqrt(total / (2 * COORDINATES));

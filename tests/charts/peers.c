@@ -116,8 +116,8 @@ static void check_dop853(void)
 	}
 	ok(close_to(most_row, 0, 1e-14, "largest difference of a row sum"), "DOP853: rows add up to the nodes");
 	ok(close_to(most, 0, 2e-14, "largest residual"), "DOP853: order 8, by 200 conditions: %.1e", most);
-	ok(close_to(most_inside, 0, 2e-14, "largest residual"), "DOP853: interpolant of order 7, by 85 conditions: %.1e",
-	   most_inside);
+	ok(close_to(most_inside, 0, 2e-14, "largest residual"), 
+	   "DOP853: interpolant of order 7, by 85 conditions: %.1e", most_inside);
 	double first = 0;
 	for (int j = 1; j <= DOP853_PLAIN; j++)
 		first += dop853_error5[j];
@@ -155,7 +155,8 @@ static void check_exponential(double length)
 	double E[4], off = NAN;
 	if (pade_exponential(2, A, length, E))
 		off = fmax(fmax(fabs(E[0] - c), fabs(E[3] - c)), fmax(fabs(E[1] - s), fabs(E[2] + s))) / size;
-	ok(close_to(off, 0, 2e-15 * (1 + w * length), "error"), "e^{A h} by Pade, |A h| %g: error %.1e", w * length, off);
+	ok(close_to(off, 0, 2e-15 * (1 + w * length), "error"), "e^{A h} by Pade, |A h| %g: error %.1e", w * length,
+	   off);
 }
 
 /* ---- equations ---- */
