@@ -16,8 +16,8 @@
 /* name, coordinates */
 #define EQUATIONS(X) \
 	X(pendulum, 1) X(vanderpol, 1) X(vanderpol_stiff, 1) X(vanderpol_stiffer, 1) X(quad2dof, 2) \
-	X(duffing, 1) X(mathieu, 1) X(henon_heiles, 2) X(coupled_vanderpol, 2) X(double_pendulum, 2) X(rayleigh, 1) X(duffing_pair, 2) \
-	X(spherical_pendulum, 2)
+	X(duffing, 1) X(mathieu, 1) X(henon_heiles, 2) X(coupled_vanderpol, 2) X(double_pendulum, 2) \
+	X(rayleigh, 1) X(duffing_pair, 2) X(spherical_pendulum, 2)
 /* Those of them whose accelerations depend on time and coordinates alone */
 #define EQUATIONS_WITHOUT_VELOCITY(X) X(pendulum, 1) X(quad2dof, 2) X(henon_heiles, 2)
 

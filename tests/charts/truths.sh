@@ -18,7 +18,8 @@ cd "$root"
     for name in pendulum vanderpol vanderpol_stiff quad2dof duffing mathieu beam4 beam15 gear1 gear2 gear3; do
         echo "$work/$name.so models/$name.spec"
     done
-    for name in vanderpol_stiffer henon_heiles coupled_vanderpol double_pendulum rayleigh duffing_pair spherical_pendulum; do
+    for name in vanderpol_stiffer henon_heiles coupled_vanderpol double_pendulum rayleigh duffing_pair \
+        spherical_pendulum; do
         echo "$work/$name.so bench/charts/specs/$name.spec"
     done
 } | xargs -P 2 -L 1 bench/charts/variant.sh "$plgen"
