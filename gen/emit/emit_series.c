@@ -589,7 +589,8 @@ static void define_helper(const struct emitter *e, int sequence, const struct se
 	static const char *const sign[] = { "<", "<=", ">", ">=", "==", "!=" };
 	if (s->kind == SEQUENCE_CHOICE)
 		define_as(e, "const int", helper_name(e, sequence, "holds"),
-			  format("%s %s %s", time_text(e, s->left, "when"), sign[s->comparison], time_text(e, s->right, "when")));
+			  format("%s %s %s", time_text(e, s->left, "when"), sign[s->comparison],
+				 time_text(e, s->right, "when")));
 	else if (s->kind == SEQUENCE_ROOT)
 		define(e, helper_name(e, sequence, "half"), format("0.5 / %s", coefficient(e, sequence, 0)));
 	else
