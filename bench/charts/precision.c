@@ -64,8 +64,8 @@ enum { MODELS = sizeof models / sizeof *models };
  * 2.7e-4 s for RK4; their implicit methods, which solve for 30 unknowns, and their schemes stay at the first. */
 #define TOLERANCE(digit, power) (10 * (power) + (digit))        /* digit e-power */
 static const int parts_fixed[][8] = { { 1, 2, 4, 8, 16, 32, 64, 0 }, { 4, 16, 64, 256, 1024, 0 },
-                                      { 1, 4, 16, 40, 80, 0 }, { 4, 16, 64, 256, 1024, 0 } };
-static const int parts_fixed_quick[][8] = { { 1, 8, 64, 0 }, { 16, 256, 0 }, { 1, 16, 40, 0 }, { 16, 1024, 0 } };
+                                      { 1, 4, 16, 40, 80, 0 }, { 16, 64, 256, 1024, 4096, 0 } };
+static const int parts_fixed_quick[][8] = { { 1, 8, 64, 0 }, { 16, 256, 0 }, { 1, 16, 40, 0 }, { 16, 4096, 0 } };
 static const int parts_scheme[][8] = { { 1, 2, 4, 8, 16, 32, 0 }, { 1, 4, 16, 64, 256, 1024, 0 }, { 1, 4, 16, 0 },
                                        { 1, 4, 16, 64, 256, 1024, 0 } };
 static const int parts_scheme_quick[][8] = { { 1, 8, 0 }, { 4, 64, 0 }, { 1, 8, 0 }, { 4, 64, 0 } };
