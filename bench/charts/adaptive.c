@@ -1,81 +1,13 @@
-/* SPDX-License-Identifier: GPL-3.0-or-later
- *
- * Integrators that choose their steps, each configured as its manual advises: the Dormand-Prince pair written plainly
- * here, GSL's odeiv2, SUNDIALS' CVODE and ARKODE. The setting is the relative tolerance e. The absolute tolerance of
- * every coordinate is e times the largest coordinate of the history, of every velocity e times the largest velocity:
- * what a user who knows the problem would give, and here taken from what is true (truth_of; hard.c: its closed forms).
- * So the weight of an error is between e and 2 e of the scale for everyone, and no work is lost where something passes
- * through zero.
- *
- * Where an integrator has an interpolant it walks as it likes and output is read from it; one that has none (GSL), or
- * whose own is too coarse for its order, is stopped at each output time. The first kind looks ahead for `between`; for
- * the second a fresh solution at the same tolerance goes there from the end of the last unit. Neither changes the run.
- */
-#include <float.h>
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Integrators that choose their steps (adaptive.h): the Dormand-Prince pair written plainly here, the run that all of
+ * them share, and their list. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <arkode/arkode_arkstep.h>
 #include <cvode/cvode.h>
-#include <gsl/gsl_errno.h>
-#include <gsl/gsl_odeiv2.h>
-#include <nvector/nvector_serial.h>
-#include <sunlinsol/sunlinsol_dense.h>
-#include <sunmatrix/sunmatrix_dense.h>
-#include <sunnonlinsol/sunnonlinsol_fixedpoint.h>
 
-#include "charts.h"
-
-enum { MOST_STEPS = 200000 };       /* of its own, in a unit: then it has failed */
-#define TOLERANCES "rtol = setting, atol = rtol times largest coordinate, velocity; "
-
-struct adaptive {
-	struct run run;
-	void (*rhs)(double t, const double y[], double dydt[]);
-	void (*rhs_of)(const void *of, double t, const double y[], double dydt[]);
-	const void *of;
-	int n, size;
-	double *scale;              /* size: largest coordinate, or velocity, of the history */
-	long units;                 /* gone since the start */
-	long evaluations;
-	bool failed;
-	double *now;                /* at the end of the last unit */
-	struct adaptive *aside;     /* `between`: a second one, made when it is first wanted */
-};
-
-/* What each integrator does in its own way */
-struct solver {
-	size_t bytes;               /* of its struct, which begins with a struct adaptive */
-	bool (*make)(struct adaptive *a);
-	bool (*begin)(struct adaptive *a, double t, const double *y);
-	/* the solution at `end`, not before what was asked last */
-	bool (*reach)(struct adaptive *a, double end, double *y);
-	/* `reach` may be asked for a time inside a unit, and the run goes on as if it had not been */
-	bool looks_ahead;
-	void (*discard)(struct adaptive *a);
-};
-
-struct kind {
-	struct method method;       /* first: a pointer to it is a pointer to this */
-	const struct solver *solver;
-	const gsl_odeiv2_step_type *const *gsl;     /* GSL: which */
-	int formula;                /* CVODE: CV_ADAMS, CV_BDF */
-};
-
-static const struct kind *kind_of(const struct adaptive *a)
-{
-	return (const struct kind *)a->run.method;
-}
-
-static inline void slope(struct adaptive *a, double t, const double *y, double *dydt)
-{
-	a->evaluations++;
-	if (a->rhs)
-		a->rhs(t, y, dydt);
-	else
-		a->rhs_of(a->of, t, y, dydt);
-}
+#include "adaptive.h"
 
 /* ---- Dormand-Prince 5(4): Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I, table II.5.2 ---- */
 
@@ -284,268 +216,7 @@ static void set_scales(struct adaptive *a)
 	}
 }
 
-/* ---- GSL odeiv2 ---- */
-
-struct gsl {
-	struct adaptive adaptive;
-	gsl_odeiv2_system system;
-	gsl_odeiv2_driver *driver;
-	double first;               /* its first step */
-	double t;
-	double *y;
-};
-
-static int gsl_slope(double t, const double y[], double dydt[], void *of)
-{
-	slope(of, t, y, dydt);
-	return GSL_SUCCESS;
-}
-
-static bool gsl_make(struct adaptive *a)
-{
-	struct gsl *g = (struct gsl *)a;
-	const gsl_odeiv2_step_type *type = *kind_of(a)->gsl;
-	const bool fixed = !a->run.method->tolerance;
-	gsl_set_error_handler_off();
-	g->system = (gsl_odeiv2_system){.function = gsl_slope, .dimension = (size_t)a->size, .params = a};
-	g->first = fixed ? a->run.setting : 1e-3 * a->run.problem->unit;
-	g->y = calloc((size_t)a->size, sizeof *g->y);
-	if (fixed)                  /* tolerances so open that the control never rejects a step */
-		g->driver = gsl_odeiv2_driver_alloc_y_new(&g->system, type, g->first, DBL_MAX, 0.0);
-	else
-		g->driver = gsl_odeiv2_driver_alloc_scaled_new(&g->system, type, g->first, a->run.setting,
-		                                               a->run.setting, 1.0, 0.0, a->scale);
-	return g->y && g->driver && gsl_odeiv2_driver_set_nmax(g->driver, fixed ? 0 : MOST_STEPS) == GSL_SUCCESS;
-}
-
-static bool gsl_begin(struct adaptive *a, double t, const double *y)
-{
-	struct gsl *g = (struct gsl *)a;
-	g->t = t;
-	memcpy(g->y, y, (size_t)a->size * sizeof *y);
-	return gsl_odeiv2_driver_reset_hstart(g->driver, g->first) == GSL_SUCCESS;
-}
-
-static bool gsl_reach(struct adaptive *a, double end, double *y)
-{
-	struct gsl *g = (struct gsl *)a;
-	if (gsl_odeiv2_driver_apply(g->driver, &g->t, end, g->y) != GSL_SUCCESS)
-		return false;
-	memcpy(y, g->y, (size_t)a->size * sizeof *y);
-	return true;
-}
-
-/* Equal steps, no longer than the setting: of a whole unit they are the setting */
-static bool gsl_reach_fixed(struct adaptive *a, double end, double *y)
-{
-	struct gsl *g = (struct gsl *)a;
-	const double length = end - g->t, steps = fmax(1.0, ceil(length / a->run.setting - 1e-6));
-	if (gsl_odeiv2_driver_apply_fixed_step(g->driver, &g->t, length / steps, (unsigned long)steps, g->y) !=
-	    GSL_SUCCESS)
-		return false;
-	g->t = end;
-	memcpy(y, g->y, (size_t)a->size * sizeof *y);
-	return true;
-}
-
-static void gsl_discard(struct adaptive *a)
-{
-	struct gsl *g = (struct gsl *)a;
-	if (g->driver)
-		gsl_odeiv2_driver_free(g->driver);
-	free(g->y);
-}
-
-static const struct solver gsl_solver = {
-	.bytes = sizeof(struct gsl), .make = gsl_make, .begin = gsl_begin, .reach = gsl_reach, .discard = gsl_discard,
-};
-static const struct solver gsl_fixed_solver = {
-	.bytes = sizeof(struct gsl), .make = gsl_make, .begin = gsl_begin, .reach = gsl_reach_fixed,
-	.discard = gsl_discard,
-};
-
-/* ---- SUNDIALS ---- */
-
-struct sundials {
-	struct adaptive adaptive;
-	SUNContext context;
-	void *memory;               /* of CVODE or ARKODE */
-	N_Vector y, tolerances;
-	SUNNonlinearSolver fixed_point;
-	SUNMatrix jacobian;
-	SUNLinearSolver dense;
-	double start;               /* CVODE: time, and has it taken the first step since */
-	bool begun;
-};
-
-static int sundials_slope(realtype t, N_Vector y, N_Vector dydt, void *of)
-{
-	slope(of, t, NV_DATA_S(y), NV_DATA_S(dydt));
-	return 0;
-}
-
-static void sundials_silent(int code, const char *module, const char *function, char *message, void *of)
-{
-	(void)code, (void)module, (void)function, (void)message, (void)of;
-}
-
-static bool sundials_vectors(struct sundials *s)
-{
-	const struct adaptive *a = &s->adaptive;
-	if (SUNContext_Create(NULL, &s->context) != 0)
-		return false;
-	s->y = N_VNew_Serial(a->size, s->context);
-	s->tolerances = N_VNew_Serial(a->size, s->context);
-	if (!s->y || !s->tolerances)
-		return false;
-	memcpy(NV_DATA_S(s->y), a->run.problem->start, (size_t)a->size * sizeof(double));
-	for (int i = 0; i < a->size; i++)
-		NV_Ith_S(s->tolerances, i) = a->run.setting * a->scale[i];
-	return true;
-}
-
-static void sundials_discard(struct adaptive *a)
-{
-	struct sundials *s = (struct sundials *)a;
-	if (s->fixed_point)
-		SUNNonlinSolFree(s->fixed_point);
-	if (s->dense)
-		SUNLinSolFree(s->dense);
-	if (s->jacobian)
-		SUNMatDestroy(s->jacobian);
-	if (s->y)
-		N_VDestroy(s->y);
-	if (s->tolerances)
-		N_VDestroy(s->tolerances);
-	if (s->context)
-		SUNContext_Free(&s->context);
-}
-
-static int cvode_jacobian(realtype t, N_Vector y, N_Vector dydt, SUNMatrix J, void *of, N_Vector w1, N_Vector w2,
-                          N_Vector w3)
-{
-	const struct adaptive *a = of;
-	(void)t, (void)y, (void)dydt, (void)w1, (void)w2, (void)w3;
-	for (int j = 0; j < a->size; j++)
-		for (int i = 0; i < a->size; i++)
-			SM_COLUMN_D(J, j)[i] = a->run.problem->A[i * a->size + j];
-	return 0;
-}
-
-static bool cvode_iteration(struct sundials *s)
-{
-	const struct adaptive *a = &s->adaptive;
-	if (kind_of(a)->formula == CV_ADAMS) {
-		s->fixed_point = SUNNonlinSol_FixedPoint(s->y, 0, s->context);
-		return s->fixed_point && CVodeSetNonlinearSolver(s->memory, s->fixed_point) == 0;
-	}
-	s->jacobian = SUNDenseMatrix(a->size, a->size, s->context);
-	s->dense = s->jacobian ? SUNLinSol_Dense(s->y, s->jacobian, s->context) : NULL;
-	if (!s->dense || CVodeSetLinearSolver(s->memory, s->dense, s->jacobian) != 0)
-		return false;
-	return !(a->run.problem->linear && a->run.problem->A) || CVodeSetJacFn(s->memory, cvode_jacobian) == 0;
-}
-
-static bool cvode_make(struct adaptive *a)
-{
-	struct sundials *s = (struct sundials *)a;
-	if (!sundials_vectors(s) || !(s->memory = CVodeCreate(kind_of(a)->formula, s->context)))
-		return false;
-	return CVodeSetErrHandlerFn(s->memory, sundials_silent, NULL) == 0 &&
-	       CVodeInit(s->memory, sundials_slope, 0.0, s->y) == 0 &&
-	       CVodeSVtolerances(s->memory, a->run.setting, s->tolerances) == 0 &&
-	       CVodeSetUserData(s->memory, a) == 0 && CVodeSetMaxNumSteps(s->memory, MOST_STEPS) == 0 &&
-	       cvode_iteration(s);
-}
-
-static bool cvode_begin(struct adaptive *a, double t, const double *y)
-{
-	struct sundials *s = (struct sundials *)a;
-	memcpy(NV_DATA_S(s->y), y, (size_t)a->size * sizeof *y);
-	s->start = t;
-	s->begun = false;
-	return CVodeReInit(s->memory, t, s->y) == 0;
-}
-
-/* The first call says how far the user means to go, by which the first step is chosen: always a unit, whatever is
- * asked first */
-static bool cvode_reach(struct adaptive *a, double end, double *y)
-{
-	struct sundials *s = (struct sundials *)a;
-	double t;
-	if (!s->begun && CVode(s->memory, s->start + a->run.problem->unit, s->y, &t, CV_ONE_STEP) < 0)
-		return false;
-	s->begun = true;
-	if (CVode(s->memory, end, s->y, &t, CV_NORMAL) < 0)
-		return false;
-	memcpy(y, NV_DATA_S(s->y), (size_t)a->size * sizeof *y);
-	return true;
-}
-
-static void cvode_discard(struct adaptive *a)
-{
-	CVodeFree(&((struct sundials *)a)->memory);
-	sundials_discard(a);
-}
-
-static const struct solver cvode_solver = {
-	.bytes = sizeof(struct sundials), .make = cvode_make, .begin = cvode_begin, .reach = cvode_reach,
-	.looks_ahead = true,
-	.discard = cvode_discard,
-};
-
-/* By ARKStep: ERKStep of SUNDIALS 6.4 takes the last stage of this table for the first of the next step, which it is
- * not, and so loses accuracy (SUNDIALS issue 311, mended since). Its interpolants, of degree 5 at most, spoil what is
- * below 1e-5 between its long steps: stopped at the output times it reaches 1e-9 with less than half the evaluations,
- * though 1e-4 with twice as many. */
-static bool arkode_make(struct adaptive *a)
-{
-	struct sundials *s = (struct sundials *)a;
-	if (!sundials_vectors(s) || !(s->memory = ARKStepCreate(sundials_slope, NULL, 0.0, s->y, s->context)))
-		return false;
-	return ARKStepSetErrHandlerFn(s->memory, sundials_silent, NULL) == 0 &&
-	       ARKStepSetTableNum(s->memory, ARKODE_DIRK_NONE, ARKODE_FEHLBERG_13_7_8) == 0 &&
-	       ARKStepSVtolerances(s->memory, a->run.setting, s->tolerances) == 0 &&
-	       ARKStepSetUserData(s->memory, a) == 0 && ARKStepSetMaxNumSteps(s->memory, MOST_STEPS) == 0;
-}
-
-static bool arkode_begin(struct adaptive *a, double t, const double *y)
-{
-	struct sundials *s = (struct sundials *)a;
-	memcpy(NV_DATA_S(s->y), y, (size_t)a->size * sizeof *y);
-	return ARKStepReInit(s->memory, sundials_slope, NULL, t, s->y) == 0;
-}
-
-static bool arkode_reach(struct adaptive *a, double end, double *y)
-{
-	struct sundials *s = (struct sundials *)a;
-	double t;
-	if (ARKStepSetStopTime(s->memory, end) != 0 || ARKStepEvolve(s->memory, end, s->y, &t, ARK_NORMAL) < 0)
-		return false;
-	memcpy(y, NV_DATA_S(s->y), (size_t)a->size * sizeof *y);
-	return true;
-}
-
-static void arkode_discard(struct adaptive *a)
-{
-	ARKStepFree(&((struct sundials *)a)->memory);
-	sundials_discard(a);
-}
-
-static const struct solver arkode_solver = {
-	.bytes = sizeof(struct sundials), .make = arkode_make, .begin = arkode_begin, .reach = arkode_reach,
-	.discard = arkode_discard,
-};
-
 /* ---- the run as charts.h has it ---- */
-
-static bool all_finite(int size, const double *y)
-{
-	double zero = 0.0;
-	for (int i = 0; i < size; i++)
-		zero += 0.0 * y[i];
-	return zero == 0.0;
-}
 
 static void adaptive_restart(struct run *run)
 {
@@ -559,6 +230,10 @@ static bool adaptive_advance(struct run *run, int units, double *rows)
 {
 	struct adaptive *a = (struct adaptive *)run;
 	const struct solver *solver = kind_of(a)->solver;
+	if (a->walk && !a->failed) {
+		a->failed = !a->walk(a, units, rows);
+		return !a->failed;
+	}
 	for (int u = 0; u < units && !a->failed; u++) {
 		a->units++;
 		a->failed = !solver->reach(a, (double)a->units * run->problem->unit, a->now) ||
@@ -642,7 +317,7 @@ static struct adaptive *adaptive_new(const struct method *method, const struct p
 	return NULL;
 }
 
-static struct run *adaptive_open(const struct method *method, const struct problem *problem, double setting)
+struct run *adaptive_open(const struct method *method, const struct problem *problem, double setting)
 {
 	if (!(setting > 0.0) || (method->tolerance && setting > 1.0))
 		return NULL;
@@ -662,10 +337,6 @@ static struct run *fixed_open(const struct method *method, const struct problem 
 }
 
 /* ---- the list ---- */
-
-#define BY_TOLERANCE(NAME, ORDER, SETTINGS) \
-	{.name = NAME, .family = ADAPTIVE, .tolerance = true, .order = ORDER, .settings = TOLERANCES SETTINGS, \
-	 .open = adaptive_open}
 
 static const struct kind dormand_prince = {
 	.method = BY_TOLERANCE("Dormand-Prince", 5,
@@ -698,8 +369,8 @@ static const struct kind cvode_adams = {
 };
 static const struct kind cvode_bdf = {
 	.method = BY_TOLERANCE("CVODE BDF", 0,
-	                       "order 1 to 5, Newton, dense; Jacobian exact for linear problems, else its own "
-	                       "differences; CV_NORMAL, output from its interpolant"),
+	                       "order 1 to 5, Newton, dense; Jacobian exact for smooth models, beams and linear "
+	                       "problems, else its own differences; CV_NORMAL, output from its interpolant"),
 	.solver = &cvode_solver, .formula = CV_BDF,
 };
 static const struct kind arkode = {
@@ -708,11 +379,25 @@ static const struct kind arkode = {
 	                       "of degree 5 at most)"),
 	.solver = &arkode_solver,
 };
+static const struct kind arkode_dirk = {
+	.method = BY_TOLERANCE("ARKODE DIRK", 5,
+	                       "ARKStep, implicit, its own table of order 5, Newton, dense, to 1e-3 of the tolerance; "
+	                       "linear problems are said to be linear; Jacobian as of CVODE BDF; "
+	                       "stopped at each output time (its interpolants are of degree 5 at most)"),
+	.solver = &dirk_solver, .formula = 5,
+};
+static const struct kind gsl_bsimp = {
+	.method = BY_TOLERANCE("GSL bsimp", 0,
+	                       "Bader and Deuflhard's extrapolation, exact Jacobian (none: it cannot), driver with "
+	                       "scaled control, applied to each output time; it has no interpolant"),
+	.solver = &gsl_solver, .gsl = &gsl_odeiv2_step_bsimp,
+};
 
+/* A peer is added here (its name in tests/charts/methods.list, its group in series.awk) */
 const struct method *const adaptive_methods[] = {
-	&dormand_prince.method, &gsl_rk8pd.method, &gsl_msadams.method, &gsl_rk8pd_fixed.method, &cvode_adams.method,
-	&cvode_bdf.method,
-	&arkode.method, NULL,
+	&dormand_prince.method, &dop853.method, &gsl_rk8pd.method, &gsl_msadams.method, &gsl_rk8pd_fixed.method,
+	&gsl_bsimp.method, &cvode_adams.method, &cvode_bdf.method, &arkode.method, &arkode_dirk.method, &radau5.method,
+	&radau9.method, &radau13.method, NULL,
 };
 
 void adaptive_scales(const struct problem *problem, double *scale_q, double *scale_v)

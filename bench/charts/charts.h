@@ -81,11 +81,18 @@ struct run {
 extern const struct method *const fixed_methods[];      /* classic.c; NULL at the end */
 /* structural.c, linear problems: one of each kind, and the same with other parameters */
 extern const struct method *const structural_methods[], *const structural_others[];
+extern const struct method *const inlined_methods[];    /* inlined.c: of fixed step, smooth models */
 extern const struct method *const adaptive_methods[];   /* adaptive.c */
 /* What the absolute tolerances of a run stand on: one that an adaptive method opens on this problem */
 void adaptive_scales(const struct problem *problem, double *scale_q, double *scale_v);
+extern const struct method *const clearance_methods[];  /* clearance.c: models with clearances */
 extern const struct method *const propagator_methods[]; /* propagator.c: linear problems */
 const struct method *method_find(const char *name);     /* among these */
+/* pade.c: e^{A length}, n x n, row-major; false: A is not finite, and nor is the result */
+bool pade_exponential(int n, const double *A, double length, double *result);
+/* propagator.c: the same without the error of scaling and squaring in double: Taylor's series of a 2^-k part, squared k
+ * times, in long double, and rounded once */
+void rounded_exponential(int size, const double *generator, double length, double *result);
 /* literals.c: a matrix as constants in code. The object's `void advance(real *z, long units, real *rows)` takes `steps`
  * steps z <- Phi z a unit and keeps `own` entries of z in a row. NULL: an entry is not finite, or it does not
  * compile. */
@@ -120,6 +127,10 @@ struct truth {                      /* at each end of a unit and at TRUTH_BETWEE
 };
 #define TRUTH_BETWEEN 0.375
 struct truth *truth_of(struct problem *problem);                    /* and gives the problem its scales */
+/* The road beside quadruple precision for models by hand: extrapolation in long double; no agreement, no roads */
+struct truth *truth_by_extrapolation(struct problem *problem);
+/* The largest difference at the ends of units, relative to the scales of the first */
+double truth_difference(const struct truth *truth, const struct truth *other);
 void truth_free(struct truth *truth);
 /* relative to the scales; failed: not finite or it gave up */
 struct error { double q_end, q_between, v_end, v_between, largest; bool failed; };

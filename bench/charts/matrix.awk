@@ -1,27 +1,29 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # awk -f csv.awk -f matrix.awk precision.csv: for each model and wanted error the cheapest setting of ours and of the
-# peers that keeps it (largest error of the history at most that), as CSV. factor: the peer's time over ours; word: who
-# is ahead, by more than the 10 % that times hold.
+# peers that keeps it (largest error of the history at most that), in double, as CSV. Times are medians, as wherever the
+# charts show one. factor: the peer's time over ours; word: who is ahead, by more than the 10 % that times hold.
 function offer(key) {
-	if (!(key in ns) || cost < ns[key]) { ns[key] = cost; who[key] = row[column["method"]];
+	if (!(key in ns) || cost < ns[key]) { ns[key] = cost; who[key] = method; had[key] = error
 		setting[key] = row[column["setting"]] }
 }
-function found(key) { return key in ns ? "\"" who[key] "\"," setting[key] "," ns[key] : "none,none,none" }
+function found(key) {
+	return key in ns ? "\"" who[key] "\"," setting[key] "," had[key] "," ns[key] : "none,none,none,none"
+}
 BEGIN { errors = split("1e-3 1e-6 1e-9 1e-12", wanted, " ") }
 NR == 1 { read_head($0, column); next }
 {
 	split("", row)
 	split_row($0, row)
-	model = row[column["model"]]
+	model = row[column["model"]]; method = row[column["method"]]
 	if (!(model in known)) { known[model] = 1; models[++count] = model }
 	error = row[column["largest"]]; cost = row[column["ns_median"]] + 0
-	if (row[column["failed"]] == "1" || !is_number(error) || cost <= 0) next
+	if (row[column["failed"]] == "1" || !is_number(error) || cost <= 0 || method ~ /float/) next
 	side = row[column["family"]] == "ours" ? "ours" : "peer"
 	for (i = 1; i <= errors; i++)
 		if (error + 0 <= wanted[i] + 0) offer(model SUBSEP i SUBSEP side)
 }
 END {
-	print "model,error,ours,our_setting,our_ns,peer,peer_setting,peer_ns,factor,word"
+	print "model,error,ours,ours_setting,ours_error,ours_ns,peer,peer_setting,peer_error,peer_ns,factor,word"
 	for (m = 1; m <= count; m++)
 		for (i = 1; i <= errors; i++) {
 			ours = models[m] SUBSEP i SUBSEP "ours"; peer = models[m] SUBSEP i SUBSEP "peer"

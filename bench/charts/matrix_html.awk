@@ -5,7 +5,7 @@ function escaped(text) { gsub(/&/, "\\&amp;", text); gsub(/</, "\\&lt;", text); 
 # Ours and the peer, each with its time; on narrow screens left out
 function both(    text) {
 	text = f[column["ours"]] == "none" ? "none of ours" : escaped(f[column["ours"]]) " " \
-		time_text(f[column["our_ns"]])
+		time_text(f[column["ours_ns"]])
 	return text " : " (f[column["peer"]] == "none" ? "no peer" : escaped(f[column["peer"]]) " " \
 		time_text(f[column["peer_ns"]]))
 }
@@ -16,7 +16,7 @@ function cell(    word, factor, winner) {
 	if (word == "even") return "<td class=even><b>even</b> <span>" both() "</span></td>"
 	if (word == "peer")
 		return "<td class=behind><b>" winner "</b> " times_text(1 / factor) "× <span>ahead of " \
-			escaped(f[column["ours"]]) " " time_text(f[column["our_ns"]]) "</span></td>"
+			escaped(f[column["ours"]]) " " time_text(f[column["ours_ns"]]) "</span></td>"
 	if (word == "only peer")
 		return "<td class=behind><b>" winner "</b> alone <span>" time_text(f[column["peer_ns"]]) "</span></td>"
 	return "<td class=nobody>nobody</td>"

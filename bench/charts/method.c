@@ -14,10 +14,11 @@ static const struct method *find_among(const struct method *const *methods, cons
 
 const struct method *method_find(const char *name)
 {
-	const struct method *const *const lists[] = {fixed_methods, structural_methods, structural_others,
-	                                             adaptive_methods, propagator_methods};
+	const struct method *const *const lists[] = {fixed_methods, inlined_methods, structural_methods,
+	                                             structural_others, adaptive_methods,
+	                                             clearance_methods, propagator_methods};
 	const struct method *found = NULL;
-	for (int i = 0; i < 5 && !found; i++)
+	for (int i = 0; i < (int)(sizeof lists / sizeof *lists) && !found; i++)
 		found = find_among(lists[i], name);
 	return found;
 }

@@ -235,7 +235,9 @@ model() {
 	head_of "$1: time against error"
 	links model
 	about=$(sed -n "s/^$1	//p" $charts/models.list | escaped)
-	printf '<p>%s The model: <code>models/%s.spec</code>; %s s, an output every %s s.</p>\n' "$about" "$1" \
+	spec=$charts/specs/$1.spec
+	[ -f "$spec" ] || spec=models/$1.spec
+	printf '<p>%s The model: <code>%s</code>; %s s, an output every %s s.</p>\n' "$about" "$spec" \
 		"$(of_model "$1" history_s)" "$(of_model "$1" unit_s)"
 	awk -v only="$1" -f $charts/csv.awk -f $charts/words.awk -f $charts/matrix_html.awk "$folder/matrix.csv"
 	picture "precision_$1"

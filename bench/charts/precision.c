@@ -17,8 +17,9 @@
 
 /* ---- what is measured ---- */
 
-/* stiff: steps from coarse to fine; large: fewer settings, each of which takes long */
-enum kind { ORDINARY, STIFF, LARGE };
+/* stiff: steps from coarse to fine; large: fewer settings, each of which takes long; stiffer: as stiff, without
+ * the multistep solvers and the one of order 8 that are for what is not stiff: a run of theirs takes minutes there */
+enum kind { ORDINARY, STIFF, LARGE, STIFFER };
 
 struct charted {
 	const char *name;
@@ -28,41 +29,61 @@ struct charted {
 	double w;                       /* of its load [rad/s] */
 	enum kind kind;
 	bool quick;                     /* part of a quick run */
+	bool here;                      /* its spec stands in bench/charts/specs, not in models */
 };
 
 static const struct charted models[] = {
-	{ "pendulum", "1/10", 100, 100, false, 0, ORDINARY, true },
-	{ "vanderpol", "1/10", 200, 200, false, 0, ORDINARY, false },
-	{ "vanderpol_stiff", "1/10", 2000, 200, false, 0, STIFF, false },
-	{ "quad2dof", "1/10", 300, 100, false, 0, ORDINARY, false },
-	{ "duffing", "1/10", 300, 100, false, 0, ORDINARY, false },
-	{ "mathieu", "1/10", 300, 100, false, 0, ORDINARY, false },
-	{ "beam4", "1/100", 2000, 100, false, 0, LARGE, true },
-	{ "beam15", "1/100", 2000, 100, false, 0, LARGE, false },
-	{ "gear1", "1/10", 500, 200, false, 0, ORDINARY, true },
-	{ "gear2", "1/10", 200, 200, false, 0, ORDINARY, false },
-	{ "gear3", "1/100", 2000, 500, false, 0, ORDINARY, false },
-	{ "scs", "1/100", 3000, 1000, true, 0, ORDINARY, true },
-	{ "sdcs", "1/100", 3000, 1000, true, 0, ORDINARY, false },
-	{ "sdcsf", "1/100", 3000, 1000, true, 5, ORDINARY, false },
-	{ "scs_weak", "1/100", 3000, 1000, true, 0, ORDINARY, false },
-	{ "linear2dof", "1/5", 50, 50, true, 0, ORDINARY, false },
-	{ "tuned_floor", "1/100", 3000, 1000, true, 4 * M_PI, ORDINARY, false },
+	{ "pendulum", "1/10", 100, 100, false, 0, ORDINARY, true, false },
+	{ "vanderpol", "1/10", 200, 200, false, 0, ORDINARY, false, false },
+	{ "vanderpol_stiff", "1/10", 2000, 200, false, 0, STIFF, false, false },
+	{ "vanderpol_stiffer", "1", 2000, 200, false, 0, STIFFER, false, true },
+	{ "quad2dof", "1/10", 300, 100, false, 0, ORDINARY, false, false },
+	{ "duffing", "1/10", 300, 100, false, 0, ORDINARY, false, false },
+	{ "mathieu", "1/10", 300, 100, false, 0, ORDINARY, false, false },
+	{ "beam4", "1/100", 2000, 100, false, 0, LARGE, true, false },
+	{ "beam15", "1/100", 2000, 100, false, 0, LARGE, false, false },
+	{ "henon_heiles", "1/10", 300, 100, false, 0, ORDINARY, false, true },
+	{ "coupled_vanderpol", "1/10", 300, 100, false, 0, ORDINARY, false, true },
+	{ "double_pendulum", "1/10", 300, 100, false, 0, ORDINARY, false, true },
+	{ "rayleigh", "1/10", 300, 100, false, 0, ORDINARY, false, true },
+	{ "duffing_pair", "1/10", 300, 100, false, 0, ORDINARY, false, true },
+	{ "spherical_pendulum", "1/10", 300, 100, false, 0, ORDINARY, false, true },
+	{ "gear1", "1/10", 500, 200, false, 0, ORDINARY, true, false },
+	{ "gear2", "1/10", 200, 200, false, 0, ORDINARY, false, false },
+	{ "gear3", "1/100", 2000, 500, false, 0, ORDINARY, false, false },
+	{ "scs", "1/100", 3000, 1000, true, 0, ORDINARY, true, false },
+	{ "sdcs", "1/100", 3000, 1000, true, 0, ORDINARY, false, false },
+	{ "sdcsf", "1/100", 3000, 1000, true, 5, ORDINARY, false, false },
+	{ "scs_weak", "1/100", 3000, 1000, true, 0, ORDINARY, false, false },
+	{ "linear2dof", "1/5", 50, 50, true, 0, ORDINARY, false, false },
+	{ "tuned_floor", "1/100", 3000, 1000, true, 4 * M_PI, ORDINARY, false, false },
 };
 enum { MODELS = sizeof models / sizeof *models };
 
-/* Steps, as the unit over these, and tolerances, as 10 to the minus these; 0 ends. A step of the beams must be below
+/* Steps, as the unit over these, and tolerances, as TOLERANCE; 0 ends. A step of the beams must be below
  * 2.7e-4 s for RK4; their implicit methods, which solve for 30 unknowns, and their schemes stay at the first. */
+#define TOLERANCE(digit, power) (10 * (power) + (digit))        /* digit e-power */
 static const int parts_fixed[][8] = { { 1, 2, 4, 8, 16, 32, 64, 0 }, { 4, 16, 64, 256, 1024, 0 },
-                                      { 1, 4, 16, 40, 80, 0 } };
-static const int parts_fixed_quick[][8] = { { 1, 8, 64, 0 }, { 16, 256, 0 }, { 1, 16, 40, 0 } };
-static const int parts_scheme[][8] = { { 1, 2, 4, 8, 16, 32, 0 }, { 1, 4, 16, 64, 256, 1024, 0 }, { 1, 4, 16, 0 } };
-static const int parts_scheme_quick[][8] = { { 1, 8, 0 }, { 4, 64, 0 }, { 1, 8, 0 } };
+                                      { 1, 4, 16, 40, 80, 0 }, { 16, 64, 256, 1024, 4096, 0 } };
+static const int parts_fixed_quick[][8] = { { 1, 8, 64, 0 }, { 16, 256, 0 }, { 1, 16, 40, 0 }, { 16, 4096, 0 } };
+static const int parts_scheme[][8] = { { 1, 2, 4, 8, 16, 32, 0 }, { 1, 4, 16, 64, 256, 1024, 0 }, { 1, 4, 16, 0 },
+                                       { 1, 4, 16, 64, 256, 1024, 0 } };
+static const int parts_scheme_quick[][8] = { { 1, 8, 0 }, { 4, 64, 0 }, { 1, 8, 0 }, { 4, 64, 0 } };
+/* Units that a step of inlined.c goes over */
+static const int spans[] = { 2, 3, 4, 5, 6, 8, 10, 15, 0 }, spans_quick[] = { 4, 0 };
 static const int parts_implicit_large[] = { 1, 2, 4, 16, 0 }, parts_exact[] = { 1, 4, 0 },
 	parts_exact_quick[] = { 1, 0 };
 static const int parts_modes[] = { 1, 2, 4, 0 };
-static const int digits[][8] = { { 3, 4, 6, 8, 10, 12, 13, 0 }, { 3, 4, 6, 8, 10, 12, 13, 0 }, { 4, 8, 12, 0 } },
-	digits_quick[] = { 3, 8, 12, 0 }, digits_series[] = { 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 0 };
+/* Close together where errors are 1e-3, for which a fixed step is often enough */
+static const int tolerances_all[] = {
+	TOLERANCE(1, 1), TOLERANCE(3, 2), TOLERANCE(1, 2), TOLERANCE(3, 3), TOLERANCE(1, 3), TOLERANCE(5, 4),
+	TOLERANCE(2, 4), TOLERANCE(1, 4), TOLERANCE(1, 5), TOLERANCE(1, 6), TOLERANCE(1, 7), TOLERANCE(1, 8),
+	TOLERANCE(1, 9), TOLERANCE(1, 10), TOLERANCE(1, 11), TOLERANCE(1, 12), TOLERANCE(1, 13), TOLERANCE(1, 14), 0 };
+static const int tolerances_large[] = { TOLERANCE(1, 2), TOLERANCE(1, 4), TOLERANCE(1, 6), TOLERANCE(1, 8),
+                                        TOLERANCE(1, 10), TOLERANCE(1, 12), 0 };
+static const int tolerances_quick[] = { TOLERANCE(1, 3), TOLERANCE(1, 8), TOLERANCE(1, 12), 0 };
+/* Of what is compiled with its right-hand side */
+static const int parts_inlined[] = { 1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64, 0 };
 
 struct ours {
 	const char *name, *options;
@@ -120,10 +141,21 @@ static const char *options_of(const struct ours *o)
 	return *o->options ? o->options : "--scheme exact";
 }
 
+/* Ours and a peer's alike */
+static const int *tolerances_of(const struct charted *m, bool quick)
+{
+	return quick ? tolerances_quick : m->kind == LARGE ? tolerances_large : tolerances_all;
+}
+
+static double tolerance_of(int code)
+{
+	return code % 10 * pow(10, -(code / 10));
+}
+
 static const int *parts_of_ours(const struct charted *m, const struct ours *o, bool quick)
 {
 	if (o->tolerance)
-		return quick ? digits_quick : digits_series;
+		return tolerances_of(m, quick);
 	if (o->exact)
 		return quick ? parts_exact_quick : parts_exact;
 	if (o->modes)
@@ -148,30 +180,39 @@ static double value_of(const char *fraction)
 
 /* ---- the list ---- */
 
-/* scs, exact, delta, 4: scs-exact-delta-4.so */
+/* scs, exact, delta, 4: scs-exact-delta-4.so; pendulum, taylor, TOLERANCE(3, 2): pendulum-taylor-3e-2.so */
 static void file_of(const struct charted *m, const struct ours *o, int parts, char *name, size_t room)
 {
 	size_t length = 0;
-	snprintf(name, room, "%s-%s-%d.so", m->name, o->name, parts);
+	if (o->tolerance)
+		snprintf(name, room, "%s-%s-%de-%d.so", m->name, o->name, parts % 10, parts / 10);
+	else
+		snprintf(name, room, "%s-%s-%d.so", m->name, o->name, parts);
 	for (const char *c = name; *c; c++)
 		if (*c != ' ')
 			name[length++] = *c == ',' ? '-' : *c;
 	name[length] = '\0';
 }
 
+static const char *folder_of(const struct charted *m)
+{
+	return m->here ? "bench/charts/specs" : "models";
+}
+
 static void list_model(const struct charted *m, bool quick)
 {
 	char name[200];
-	printf("%s.so models/%s.spec\n", m->name, m->name);
+	printf("%s.so %s/%s.spec\n", m->name, folder_of(m), m->name);
 	for (const struct ours *o = ours; o < ours + OURS_COUNT; o++)
 		for (const int *parts = parts_of_ours(m, o, quick); applies(m, o) && *parts; parts++) {
 			file_of(m, o, *parts, name, sizeof name);
 			if (o->tolerance)
-				printf("%s models/%s.spec --step %s %s --tolerance 1e-%d\n", name, m->name, m->unit,
-				       options_of(o), *parts);
+				printf("%s %s/%s.spec --step %s %s --tolerance %de-%d\n", name, folder_of(m), m->name,
+				       m->unit, options_of(o), *parts % 10, *parts / 10);
 			else
-				printf("%s %s%s.spec --step %s/%d %s\n", name,
-				       o->modes ? "bench/charts/specs/modes_" : "models/", m->name, m->unit, *parts,
+				printf("%s %s/%s%s.spec --step %s/%d %s\n", name,
+				       o->modes ? "bench/charts/specs" : folder_of(m), o->modes ? "modes_" : "", m->name,
+				       m->unit, *parts,
 				       options_of(o));
 		}
 }
@@ -220,29 +261,50 @@ static bool is_implicit(const struct method *method)
 	       strcmp(method->name, "generalized-alpha") == 0;
 }
 
+static bool is_slow_on(const struct charted *m, const struct method *method)
+{
+	return m->kind == STIFFER && (strcmp(method->name, "GSL msadams") == 0 ||
+	       strcmp(method->name, "CVODE Adams") == 0 || strcmp(method->name, "ARKODE order 8") == 0);
+}
+
 static const int *parts_of_peer(const struct charted *m, const struct method *method, bool quick)
 {
 	if (method->family == PROPAGATOR)
 		return quick ? parts_exact_quick : parts_exact;
 	if (m->kind == LARGE && !quick && is_implicit(method))
 		return parts_implicit_large;
+	if (strstr(method->name, "inlined") && m->kind == ORDINARY && !quick)
+		return parts_inlined;
 	return quick ? parts_fixed_quick[m->kind] : parts_fixed[m->kind];
 }
 
+/* everywhere: else what cannot on this model is left out */
 static void add_peers(struct lines *lines, const struct charted *m, const struct problem *p,
-                      const struct method *const *methods, bool quick)
+                      const struct method *const *methods, bool quick, bool everywhere)
 {
 	for (; *methods; methods++) {
 		const struct method *method = *methods;
-		if (method->linear_only && !p->linear)
+		if ((method->linear_only && !p->linear) || is_slow_on(m, method))
 			continue;
 		if (method->tolerance)
-			for (const int *d = quick ? digits_quick : digits[m->kind]; *d; d++)
-				add_peer(lines, p, method, pow(10, -*d));
+			for (const int *code = tolerances_of(m, quick); *code; code++)
+				add_peer(lines, p, method, tolerance_of(*code));
 		else
 			for (const int *parts = parts_of_peer(m, method, quick); *parts; parts++)
 				add_peer(lines, p, method, p->unit / *parts);
+		while (!everywhere && lines->count > 0 && !lines->line[lines->count - 1].run)
+			lines->count--;
 	}
+}
+
+static void add_spans(struct lines *lines, const struct charted *m, const struct problem *p, bool quick)
+{
+	for (const struct method *const *method = inlined_methods; *method && m->kind == ORDINARY; method++)
+		for (const int *span = quick ? spans_quick : spans; *span; span++) {
+			add_peer(lines, p, *method, *span * p->unit);
+			if (!lines->line[lines->count - 1].run)
+				lines->count--;
+		}
 }
 
 static void add_ours(struct lines *lines, const struct charted *m, const struct problem *p, bool quick)
@@ -252,7 +314,7 @@ static void add_ours(struct lines *lines, const struct charted *m, const struct 
 			struct line *line = add_line(lines);
 			line->ours = (struct method){ .name = o->name, .family = OURS, .settings = options_of(o),
 			                              .tolerance = o->tolerance };
-			line->setting = o->tolerance ? pow(10, -*parts) : p->unit / *parts;
+			line->setting = o->tolerance ? tolerance_of(*parts) : p->unit / *parts;
 			file_of(m, o, *parts, line->file, sizeof line->file);
 		}
 }
@@ -380,10 +442,14 @@ static void measure(FILE *out, const struct charted *m, const char *folder, bool
 	struct problem *p = load(m, folder, quick, path);
 	struct truth *t = truth_of(p);
 	struct lines lines = { NULL, 0 };
-	add_peers(&lines, m, p, fixed_methods, quick);
-	add_peers(&lines, m, p, structural_methods, quick);
-	add_peers(&lines, m, p, adaptive_methods, quick);
-	add_peers(&lines, m, p, propagator_methods, quick);
+	/* A peer is added to one of these lists */
+	add_peers(&lines, m, p, fixed_methods, quick, true);
+	add_peers(&lines, m, p, inlined_methods, quick, false);
+	add_spans(&lines, m, p, quick);
+	add_peers(&lines, m, p, structural_methods, quick, true);
+	add_peers(&lines, m, p, adaptive_methods, quick, true);
+	add_peers(&lines, m, p, clearance_methods, quick, false);
+	add_peers(&lines, m, p, propagator_methods, quick, true);
 	add_ours(&lines, m, p, quick);
 	open_ours(&lines, p, folder);
 	for (int i = 0; i < lines.count; i++) {

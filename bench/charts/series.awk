@@ -89,11 +89,11 @@ BEGIN {
 	# the first pattern that fits counts; the first three are ours
 	group("^modes$", "scheme")
 	group("^(exact|modes)", "exact")
-	group("^(pl|etd|nc2|nc3|dq4|bm3|taylor|frozen)", "scheme")
+	group("^(pl|etd|nc2|nc3|dq4|bm3|taylor|radau|auto|frozen)", "scheme")
 	group("implicit trapez|Newmark|alpha|Bathe", "implicit")
-	group("Euler|trapez|^RK4|central|fixed step|^CR", "fixed")
+	group("Euler|trapez|^RK4|central|fixed step|^CR|Blanes|Kahan", "fixed")
 	group("^elements", "fixed")
-	group("Dormand|ode45|rk8pd|msadams|Adams|BDF|ARKODE|^balanced", "adaptive")
+	group("Dormand|DOP853|ode45|rk8pd|msadams|bsimp|Adams|BDF|ARKODE|RADAU|^balanced", "adaptive")
 	group("^exp\\(|odal", "matrix")
 }
 NR == 1 {

@@ -3,17 +3,21 @@
  *
  *   linear         e^{A t} in quadruple precision (33 digits), loads carried as states: no error that a double could
  *                  see.
- *   nonlinear      the equations by hand, by extrapolation (Gragg, Bulirsch, Stoer) in long double (19 digits).
- *   the beams      the same on matrices found by quadrature of their definition (tests/leftover/cantilever.c).
+ *   nonlinear      the equations by hand, by Taylor series in quadruple precision (quad_taylor.c); beside it
+ *                  (truth_by_extrapolation, which tests hold against it) by extrapolation (Gragg, Bulirsch, Stoer) in
+ *                  long double (19 digits).
+ *   the beams      the same on their matrices' decimals (quad_beam.c); beside it on matrices found by quadrature of
+ *                  their definition (tests/leftover/cantilever.c).
  *   clearances     the equations by hand, by Taylor series between crossings in long double (tests/switching/hand.c).
  *   what has none of these: NAME_rhs, in double, by extrapolation in long double.
  *
  * The second road is another method on NAME_rhs in double; how far the two are apart is the truth's `agreement`, and
  * says how good that method is as much as how good the truth is. */
 #include "charts.h"
+#include "gears.h"
+#include "quad_taylor.h"
 
 #include "../../tests/leftover/elliptic.h"
-#include "../../tests/switching/hand.h"
 
 #include <math.h>
 #include <quadmath.h>
@@ -40,9 +44,7 @@ static void *allot(size_t count, size_t size)
 /* 0.01 means 1/100, not the double next to it: a decimal of at most 13 digits is taken as such. */
 static quad exactly(double x)
 {
-	char text[40];
-	snprintf(text, sizeof text, "%.12e", x);
-	return strtod(text, NULL) == x ? strtoflt128(text, NULL) : (quad)x;
+	return quad_of_decimal(x);
 }
 
 /* ---- linear: closed form ---- */
@@ -200,7 +202,8 @@ static void vanderpol(const struct problem *p, real t, const real *y, real *dydt
 {
 	(void)t;
 	dydt[0] = y[1];
-	dydt[1] = (strcmp(p->name, "vanderpol") == 0 ? 1 : 100) * (1 - y[0] * y[0]) * y[1] - y[0];
+	const real mu = strcmp(p->name, "vanderpol") == 0 ? 1 : strcmp(p->name, "vanderpol_stiff") == 0 ? 100 : 1000;
+	dydt[1] = mu * (1 - y[0] * y[0]) * y[1] - y[0];
 }
 
 static void quad2dof(const struct problem *p, real t, const real *y, real *dydt)
@@ -250,6 +253,7 @@ static const struct equations by_hand[] = {
 	{ "pendulum", pendulum, 1e-16L, 0 },
 	{ "vanderpol", vanderpol, 1e-16L, 0 },
 	{ "vanderpol_stiff", vanderpol, 1e-16L, 0 },
+	{ "vanderpol_stiffer", vanderpol, 1e-16L, 0 },
 	{ "quad2dof", quad2dof, 1e-16L, 0 },
 	{ "duffing", duffing, 1e-16L, 0 },
 	{ "mathieu", mathieu, 1e-16L, 0 },
@@ -367,50 +371,6 @@ static void extrapolated(const struct problem *p, const struct equations *e, str
 
 /* ---- clearances: Taylor series between crossings, in long double ---- */
 
-/* Both sides of a gap: while row . x is beyond gap, the accelerations have -push k times by how much */
-static void add_gap(struct hand_system *s, const real *row, const real *push, real k, real gap)
-{
-	for (int side = 1; side >= -1; side -= 2) {
-		struct hand_stop *stop = &s->stop[s->stops++];
-		*stop = (struct hand_stop){ .k = k, .gap = gap };
-		for (int i = 0; i < s->n; i++) {
-			stop->row[i] = side * row[i];
-			stop->push[i] = side * push[i];
-		}
-	}
-}
-
-/* models/gear1.spec */
-static void gear1(struct hand_system *s)
-{
-	*s = (struct hand_system){ .n = 1, .C = { { 0.1L } }, .f0 = { 0.1L }, .fa = { 0.05L }, .w = 0.8L,
-	                           .start = { 1.1L } };
-	add_gap(s, (real[]){ 1 }, (real[]){ 1 }, 1, 1);
-}
-
-/* models/gear2.spec */
-static void gear2(struct hand_system *s)
-{
-	*s = (struct hand_system){ .n = 2, .K = { { 0, -0.5L }, { 0, 1 } }, .C = { { 0.1L, -0.05L }, { -0.05L, 0.1L } },
-	                           .f0 = { 0.1L, 0.05L },
-	                           .fa = { 0.05L }, .w = 0.8L, .start = { 1.2L, 0.1L } };
-	add_gap(s, (real[]){ 1, 0 }, (real[]){ 1, -0.5L }, 1, 1);
-}
-
-/* models/gear3.spec: masses 1, 0.5, 2 divided out */
-static void gear3(struct hand_system *s)
-{
-	*s = (struct hand_system){ .n = 3, .C = { { 0.4L, -0.4L, 0 }, { -0.8L, 1.4L, -0.6L }, { 0, -0.15L, 0.15L } },
-	                           .f0 = { 1, 0, -0.5L },
-	                           .fa = { 0.8L }, .w = 7, .start = { 0.03L, 0, -0.03L } };
-	add_gap(s, (real[]){ 1, -1, 0 }, (real[]){ 1, -2, 0 }, 100, 0.01L);
-	add_gap(s, (real[]){ 0, 1, -1 }, (real[]){ 0, 2, -0.5L }, 80, 0.02L);
-}
-
-/* models/stop.spec and bilinear.spec are not charted */
-static const struct { const char *name; void (*make)(struct hand_system *s); } gears[] = { { "gear1", gear1 },
-	{ "gear2", gear2 }, { "gear3", gear3 } };
-
 static void between_crossings(const struct problem *p, void (*make)(struct hand_system *s), struct truth *t)
 {
 	const int size = 2 * p->n;
@@ -524,14 +484,6 @@ static const struct equations *equations_of(const struct problem *p)
 	return e;
 }
 
-static void (*gears_of(const char *name))(struct hand_system *)
-{
-	for (size_t i = 0; i < sizeof gears / sizeof *gears; i++)
-		if (strcmp(gears[i].name, name) == 0)
-			return gears[i].make;
-	return NULL;
-}
-
 static void solve(struct problem *p, struct truth *t)
 {
 	const struct equations *e = equations_of(p);
@@ -545,15 +497,17 @@ static void solve(struct problem *p, struct truth *t)
 	if (gears_of(p->name)) {
 		t->roads = "by hand: Taylor series between crossings in long double; NAME_rhs by GSL rk8pd";
 		between_crossings(p, gears_of(p->name), t);
+	} else if (quad_taylor_has(p)) {
+		t->roads = "by hand: Taylor series in quadruple precision; NAME_rhs by GSL rk8pd";
+		quad_taylor(p, t);
 	} else {
-		t->roads = e->name ? "by hand: extrapolation in long double; NAME_rhs by GSL rk8pd"
-		           : "NAME_rhs: extrapolation in long double; GSL rk8pd";
+		t->roads = "NAME_rhs: extrapolation in long double; GSL rk8pd";
 		extrapolated(p, e, t);
 	}
 	find_scales(p, t);
 	t->agreement = solver_difference(p, t, gears_of(p->name) ? 0 : e->parts);
 	if (strcmp(p->name, "pendulum") == 0) {
-		t->roads = "by hand: extrapolation in long double; NAME_rhs by GSL rk8pd; elliptic function";
+		t->roads = "by hand: Taylor series in quadruple precision; NAME_rhs by GSL rk8pd; elliptic function";
 		t->agreement = fmax(t->agreement, elliptic_difference(p, t));
 	}
 }
@@ -566,6 +520,22 @@ struct truth *truth_of(struct problem *p)
 	say_progress("%s: truth", p->name);
 	solve(p, t);
 	return t;
+}
+
+struct truth *truth_by_extrapolation(struct problem *p)
+{
+	struct truth *t = new_truth(p);
+	extrapolated(p, equations_of(p), t);
+	find_scales(p, t);
+	return t;
+}
+
+double truth_difference(const struct truth *t, const struct truth *other)
+{
+	double most = 0;
+	for (int k = 0; k < t->units; k++)
+		most = farther(most, t, k, other->at_end + k * 2 * t->n);
+	return most;
 }
 
 void truth_free(struct truth *t)

@@ -10,5 +10,7 @@ END {
 		count["ours"] + count["only ours"], cells, count["only ours"], count["even"],
 		count["peer"] + count["only peer"], count["only peer"]
 	if (count["none"]) printf "; in %d nobody gets there", count["none"]
-	print ". Times are for one output; even: within the 10 % that times hold.</p>"
+	print ". Each is at its cheapest setting, in double, whose largest error over the whole history, at " \
+		"outputs and between them, is not above the wanted one. Times are for one output; even: within " \
+		"the 10 % that times hold.</p>"
 }

@@ -121,6 +121,12 @@ void banner_leftover(const struct emitter *e)
 	banner_growth(e);
 }
 
+static void tell_no_phi(const struct emitter *e)
+{
+	if (e->step->shown->no_phi)
+		say(e, " * There is no Phi: %s.\n", e->step->shown->no_phi);
+}
+
 /* What the series is of, how long a step is */
 void banner_expanded(const struct emitter *e)
 {
@@ -140,6 +146,7 @@ void banner_expanded(const struct emitter *e)
 	else
 		say(e, " * One way through, whatever the numbers are; no step looks at its error.\n");
 	say(e, " * What rounding takes from the state is kept in rest.\n");
+	tell_no_phi(e);
 }
 
 /* What is solved at which nodes, how long an internal step is */
@@ -161,9 +168,8 @@ void banner_collocated(const struct emitter *e)
 	if (e->step->expansion)
 		say(e, " * One iteration of it: %d multiplications, %d additions, %d calls.\n",
 		    e->step->iteration.multiplications, e->step->iteration.additions, e->step->iteration.calls);
-	say(e, " * What rounding takes from the state is kept in rest.\n%s%s%s",
-	    e->step->shown->no_phi ? " * There is no Phi: " : "", e->step->shown->no_phi ? e->step->shown->no_phi : "",
-	    e->step->shown->no_phi ? ".\n" : "");
+	say(e, " * What rounding takes from the state is kept in rest.\n");
+	tell_no_phi(e);
 }
 
 /* The modes, what is left over in them, how a step goes */

@@ -180,17 +180,25 @@ static void count_series(struct step *step)
 		      step->expansion->order, step->program->multiplications, LIMIT_SERIES);
 }
 
+/* A step that does not read e^{A h} has a table without it where h is that of rare outputs, and it beyond all range. */
+static void read_table_if_there(struct step *step)
+{
+	if (silent_guard(make_read_table, &(struct reading){ step, 1 }))
+		return;
+	make_read_table(&(struct reading){ step, 0 });
+	step->no_phi = format("e^{A h} is beyond the range of %s", target_name());
+}
+
 static void build_expanded_step(struct step *step)
 {
 	need_direct(step);
 	step->layout = layout_of(&step->branch->system, false);
-	make_read_table(&(struct reading){ step, 1 });
+	read_table_if_there(step);
 	build_series(step);
 	count_series(step);
 }
 
-/* What has no series, a step of this kind cannot do either: beside a series it is that, else one to find it out. Where
- * h is that of rare outputs, e^{A h} may be beyond all range. */
+/* What has no series, a step of this kind cannot do either: beside a series it is that, else one to find it out. */
 static void build_collocated_step(struct step *step)
 {
 	bool switches = scheme_row(step->model->scheme)->switches;
@@ -202,10 +210,7 @@ static void build_collocated_step(struct step *step)
 		      "%d",
 		      scheme_name(step->model->scheme), LIMIT_COLLOCATED, coords);
 	step->layout = layout_of(&step->branch->system, false);
-	if (!silent_guard(make_read_table, &(struct reading){ step, 1 })) {
-		make_read_table(&(struct reading){ step, 0 });
-		step->no_phi = format("e^{A h} is beyond the range of %s", target_name());
-	}
+	read_table_if_there(step);
 	build_series(step);
 	step->collocation = collocation_of(step);
 	step->motion = motion_of(step);

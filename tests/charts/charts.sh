@@ -41,7 +41,8 @@ while read -r name head; do
     result $? "$name.csv: its columns, and rows"
 done <"$here/tables.list"
 
-awk -v list="$here/methods.list" -f "$csv" -f "$here/methods.awk" "$out/precision.csv" >"$log" 2>&1
+awk -v list="$here/methods.list" -v special="$here/special.list" -f "$csv" -f "$here/methods.awk" \
+    "$out/precision.csv" >"$log" 2>&1
 result $? "precision.csv: every model and method, each with its errors or a word"
 awk -f "$csv" -f "$here/exact.awk" "$out/precision.csv" >"$log" 2>&1
 result $? "precision.csv: exact forms in double are below 1e-11 on linear models"

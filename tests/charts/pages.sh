@@ -105,6 +105,16 @@ sed 's/^other #....../other #c8c8c8/' "$charts/palette.list" | awk -f "$here/pal
 grep -q 'contrast 1.6.* with paper' log
 result $? 'palette: a pale colour is noticed'
 
+awk -f "$csv" -f "$charts/matrix.awk" "$here/matrix/precision.csv" >given.csv 2>log
+diff given.csv "$here/matrix/expect.csv" >>log
+result $? 'matrix of given times: as worked out by hand'
+awk -f "$csv" -f "$charts/words.awk" -f "$charts/matrix_html.awk" given.csv | grep -o '<td class=[a-z]*>\(<b>[^<]*\)*' |
+	sed 's/<td class=//; s/><b>/ /; s/>$//' | tr '\n' ';' >cells
+echo 'ahead 2.0×;behind DOP853;behind RADAU5;nobody;even even;even even;ahead alone;ahead alone;' | tr -d '\n' >words
+cmp cells words >log 2>&1 || cat cells words >>log
+[ ! -s log ]
+result $? 'matrix of given times: the same as a table'
+
 whole "$kept"
 result $? 'doc/charts: pages have alts, captions, links that lead somewhere; nothing is on no page'
 titled "$kept" 30

@@ -24,5 +24,5 @@ sh bench/charts/hard.sh "$build/plgen" "$work/hard" problems
     "$charts/precision" --scales $quick "$work" && "$charts/hard" --scales $quick "$work/hard"
 } >"$work/scales" 2>"$work/said" || { status=$?; sed 's/^/# /' "$work/said"; exit $status; }
 models=$(awk 'END { print NR }' "$work/scales")
-[ "$models" -eq 29 ] || { echo "Bail out! $models models and cases, expected 17 and 12"; exit 1; }
+[ "$models" -eq 36 ] || { echo "Bail out! $models models and cases, expected 24 and 12"; exit 1; }
 "$program" <"$work/scales"

@@ -7,7 +7,7 @@ NR == 1 { read_head($0, column); next }
 	split_row($0, f)
 	if (f[column["model"]] != wanted) next
 	word = f[column["word"]]; error = f[column["error"]]
-	ours = f[column["ours"]] " " time_text(f[column["our_ns"]]); peer = f[column["peer"]] " " \
+	ours = f[column["ours"]] " " time_text(f[column["ours_ns"]]); peer = f[column["peer"]] " " \
 		time_text(f[column["peer_ns"]])
 	if (word == "none") next
 	if (word == "ours") ahead = ahead (ahead == "" ? "" : ", ") error

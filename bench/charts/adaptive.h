@@ -1,0 +1,106 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ *
+ * Integrators that choose their steps, each configured as its manual advises: the Dormand-Prince pair written plainly
+ * here, GSL's odeiv2, SUNDIALS' CVODE and ARKODE. The setting is the relative tolerance e. The absolute tolerance of
+ * every coordinate is e times the largest coordinate of the history, of every velocity e times the largest velocity:
+ * what a user who knows the problem would give, and here taken from what is true (truth_of; hard.c: its closed forms).
+ * So the weight of an error is between e and 2 e of the scale for everyone, and no work is lost where something passes
+ * through zero.
+ *
+ * Where an integrator has an interpolant it walks as it likes and output is read from it; one that has none (GSL), or
+ * whose own is too coarse for its order, is stopped at each output time. The first kind looks ahead for `between`; for
+ * the second a fresh solution at the same tolerance goes there from the end of the last unit. Neither changes the run.
+ */
+#ifndef ADAPTIVE_H
+#define ADAPTIVE_H
+
+#include <gsl/gsl_odeiv2.h>
+
+#include "charts.h"
+
+enum { MOST_STEPS = 200000 };       /* of its own, in a unit: then it has failed */
+#define TOLERANCES "rtol = setting, atol = rtol times largest coordinate, velocity; "
+
+struct adaptive {
+	struct run run;
+	void (*rhs)(double t, const double y[], double dydt[]);
+	void (*rhs_of)(const void *of, double t, const double y[], double dydt[]);
+	const void *of;
+	int n, size;
+	double *scale;              /* size: largest coordinate, or velocity, of the history */
+	long units;                 /* gone since the start */
+	long evaluations;
+	bool failed;
+	double *now;                /* at the end of the last unit */
+	struct adaptive *aside;     /* `between`: a second one, made when it is first wanted */
+	/* NULL, or set by make: `reach` unit after unit, compiled with the right-hand side inside */
+	bool (*walk)(struct adaptive *a, int units, double *rows);
+};
+
+/* What each integrator does in its own way */
+struct solver {
+	size_t bytes;               /* of its struct, which begins with a struct adaptive */
+	bool (*make)(struct adaptive *a);
+	bool (*begin)(struct adaptive *a, double t, const double *y);
+	/* the solution at `end`, not before what was asked last */
+	bool (*reach)(struct adaptive *a, double end, double *y);
+	/* `reach` may be asked for a time inside a unit, and the run goes on as if it had not been */
+	bool looks_ahead;
+	void (*discard)(struct adaptive *a);
+};
+
+struct kind {
+	struct method method;       /* first: a pointer to it is a pointer to this */
+	const struct solver *solver;
+	const gsl_odeiv2_step_type *const *gsl;     /* GSL: which */
+	int formula;                /* CVODE: CV_ADAMS, CV_BDF; DIRK: its order; Radau IIA: stages */
+};
+
+static inline const struct kind *kind_of(const struct adaptive *a)
+{
+	return (const struct kind *)a->run.method;
+}
+
+static inline void slope(struct adaptive *a, double t, const double *y, double *dydt)
+{
+	a->evaluations++;
+	if (a->rhs)
+		a->rhs(t, y, dydt);
+	else
+		a->rhs_of(a->of, t, y, dydt);
+}
+
+/* Without a call, as fmax and fmin are at -O2; of what is not a number b is taken, and from larger(1, nan) comes nan */
+static inline double larger(double a, double b)
+{
+	return a > b ? a : b;
+}
+
+static inline double smaller(double a, double b)
+{
+	return a < b ? a : b;
+}
+
+static inline bool all_finite(int size, const double *y)
+{
+	double zero = 0.0;
+	for (int i = 0; i < size; i++)
+		zero += 0.0 * y[i];
+	return zero == 0.0;
+}
+
+struct run *adaptive_open(const struct method *method, const struct problem *problem, double setting);
+
+#define BY_TOLERANCE(NAME, ORDER, SETTINGS) \
+	{.name = NAME, .family = ADAPTIVE, .tolerance = true, .order = ORDER, .settings = TOLERANCES SETTINGS, \
+	 .open = adaptive_open}
+
+extern const struct solver gsl_solver, gsl_fixed_solver;        /* solvers_gsl.c */
+extern const struct solver cvode_solver, arkode_solver, dirk_solver;         /* solvers_sundials.c */
+/* Kinds that stand in files of their own */
+extern const struct kind dop853;                                 /* dop853.c */
+extern const struct kind radau5, radau9, radau13;               /* radau.c */
+/* Its nodes, and A, s x s, row-major: s = 3, 5 or 7. For tests */
+void radau_numbers(int s, double *c, double *A);
+
+#endif

@@ -1,0 +1,12 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* models/gear1.spec to gear3.spec by hand, for what is true and for peers that want each region's matrix and each
+ * border. */
+#ifndef GEARS_H
+#define GEARS_H
+
+#include "../../tests/switching/hand.h"
+
+/* What fills in the system of that name; NULL: it is none of them */
+void (*gears_of(const char *name))(struct hand_system *);
+
+#endif

@@ -1,0 +1,44 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* truths VARIANTS: what the charts hold errors against, Taylor series in quadruple precision, beside the other road,
+ * extrapolation in long double on equations written a second time. Their difference is stated; it is what long double
+ * loses, so its bound is each model's own; of the models in bench/charts/specs the other road is NAME_rhs in double,
+ * its sums in long double. And NAME_rhs must be the same model: agreement. VARIANTS: what truths.sh
+ * made. */
+#include <math.h>
+#include <stdlib.h>
+
+#include "charts.h"
+#include "tap.h"
+
+static const struct { const char *name; double unit; int units; double apart; } models[] = {
+	{ "pendulum", 0.1, 100, 1e-15 }, { "vanderpol", 0.1, 200, 1e-15 }, { "vanderpol_stiff", 0.1, 1000, 1e-11 },
+	{ "vanderpol_stiffer", 1, 820, 1e-11 },
+	{ "quad2dof", 0.1, 300, 1e-15 }, { "duffing", 0.1, 300, 1e-15 }, { "mathieu", 0.1, 300, 1e-15 },
+	{ "beam4", 0.01, 100, 2e-11 }, { "beam15", 0.01, 100, 2e-11 },
+	{ "henon_heiles", 0.1, 300, 1e-13 }, { "coupled_vanderpol", 0.1, 300, 2e-13 },
+	{ "double_pendulum", 0.1, 300, 1e-13 }, { "rayleigh", 0.1, 300, 1e-13 }, { "duffing_pair", 0.1, 300, 1e-13 },
+	{ "spherical_pendulum", 0.1, 300, 1e-13 },
+};
+
+int main(int argc, char **argv)
+{
+	char file[4096];
+	if (argc != 2) {
+		fputs("usage: truths VARIANTS\n", stderr);
+		return 2;
+	}
+	for (size_t k = 0; k < sizeof models / sizeof *models; k++) {
+		snprintf(file, sizeof file, "%s/%s.so", argv[1], models[k].name);
+		struct problem *p = problem_load(file, models[k].name, models[k].unit, models[k].units, false, 0);
+		struct truth *t = truth_of(p), *other = truth_by_extrapolation(p);
+		const double apart = truth_difference(t, other);
+		ok(close_to(apart, 0, models[k].apart, "difference of two roads"),
+		   "%s: extrapolation in long double is %.2g off quadruple precision", models[k].name, apart);
+		ok(close_to(t->agreement, 0, 3e-11, "difference of NAME_rhs by GSL rk8pd"),
+		   "%s: the generated right-hand side in double is %.2g off it", models[k].name, t->agreement);
+		truth_free(t);
+		truth_free(other);
+		problem_free(p);
+	}
+	return tap_end();
+}
