@@ -211,8 +211,8 @@ static void list_model(const struct charted *m, bool quick)
 				       m->unit, options_of(o), *parts % 10, *parts / 10);
 			else
 				printf("%s %s/%s%s.spec --step %s/%d %s\n", name,
-				       o->modes ? "bench/charts/specs" : folder_of(m), o->modes ? "modes_" : "", m->name,
-				       m->unit, *parts,
+				       o->modes ? "bench/charts/specs" : folder_of(m), o->modes ? "modes_" : "",
+				       m->name, m->unit, *parts,
 				       options_of(o));
 		}
 }

@@ -396,7 +396,7 @@ static const char *passed_over(const char *why)
 {
 	if (!why)
 		return "";
-	return strncmp(why, "scheme ", 7) == 0 ? format("; %s", why) : format("; what would be best is refused: %s", why);
+	return format("; %s%s", strncmp(why, "scheme ", 7) == 0 ? "" : "what would be best is refused: ", why);
 }
 
 void warn(struct building *b)
