@@ -593,7 +593,7 @@ static const struct tuned *tuned_of(const char *path, bool direct)
     exit(1);
 }
 
-struct batch {
+struct trial_batch {
     const struct tuned *m;
     const char *text;
     const bool *varies;                 /* per output */
@@ -602,7 +602,7 @@ struct batch {
     const struct family *family;        /* NULL: draw_near */
 };
 
-static void try_batch(const struct batch *b)
+static void try_batch(const struct trial_batch *b)
 {
     real p[LIMIT_TUNABLES];
     for (unsigned long k = 0; k < b->sets; k++) {
@@ -623,7 +623,7 @@ static void try_batch(const struct batch *b)
 }
 
 /* The coefficients that an instance starts with */
-static void try_nominal(const struct batch *b)
+static void try_nominal(const struct trial_batch *b)
 {
     const struct tuned *m = b->m;
     const struct step *step = generator(m, b->text, NULL, 0);
@@ -638,20 +638,20 @@ static void try_nominal(const struct batch *b)
     compare_loads(m, m->nominal, step);
 }
 
-static const char *name_of(const struct batch *b)
+static const char *name_of(const struct trial_batch *b)
 {
     return b->family ? format("%s, %s", b->m->name, b->family->name) : b->m->name;
 }
 
 static bool try_case(void *context)
 {
-    const struct batch *b = context;
+    const struct trial_batch *b = context;
     (b->sets ? try_batch : try_nominal)(b);
     finish(name_of(b));
     return met.failed == 0 && met.compared > 0;
 }
 
-static void run(struct batch *b)
+static void run(struct trial_batch *b)
 {
     const char *what = b->sets ? format("%lu sets of params", b->sets) : "nominal coefficients, bit for bit";
     run_case(format(TYPE ", %s: %s", name_of(b), what), 0, try_case, b);
@@ -676,7 +676,7 @@ int main(int argc, char **argv)
     if (BITS == 24)
         target_float();
     for (int i = optind; i < argc; i++) {
-        struct batch b = { .m = tuned_of(argv[i], false), .text = text_of(argv[i]) };
+        struct trial_batch b = { .m = tuned_of(argv[i], false), .text = text_of(argv[i]) };
         b.varies = output_varies(b.m, b.text);
         for (int f = 0; f < FAMILIES && strcmp(b.m->name, "pair") == 0; f++) {
             b.family = &families[f];
