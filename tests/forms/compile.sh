@@ -92,7 +92,7 @@ no_double_instruction() {
         sse='(add|sub|mul|div|sqrt|min|max|u?comi|round|cmp[a-z]*)[sp]d|cvt[a-z0-9]*[sp]d[a-z0-9]*'
         x87='f(ld|st|add|sub|mul|div|ild)[a-z]*'
         grep -E "^v?($sse|$x87)([[:space:]]|$)" code >>log
-        grep -q -E '^v?[a-z]*[sp]s[[:space:]]' code || echo 'nothing of float either' >>log
+        grep -q -E '^v?([a-z]*[sp]s|movd)[[:space:]]' code || echo 'nothing of float either' >>log
         [ $status -eq 0 ] && [ ! -s log ]
         result $? "$2: no instruction of double, $compiler"
     done
