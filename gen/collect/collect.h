@@ -118,6 +118,7 @@ struct form *load_product(struct collector *collector, const struct form *a, con
 /* x = factor t + phase, factor not 0 */
 bool linear_in_time(const struct form *x, mpq_srcptr *factor, struct form *phase);
 bool is_polynomial(const struct wave *wave);                /* t^k alone */
+bool is_linear_in_time(const struct form *form);            /* a + b t: it is known when it passes 0 */
 bool oscillates(const struct wave *wave);
 
 /* ---- atom.c: what is not linear, as expressions that are shared wherever they are the same ---- */

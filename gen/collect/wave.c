@@ -187,6 +187,17 @@ bool is_polynomial(const struct wave *wave)
 	return mpq_sgn(wave->a) == 0 && mpq_sgn(wave->w) == 0;
 }
 
+bool is_linear_in_time(const struct form *form)
+{
+	for (int i = 0; i < form->terms; i++) {
+		const struct basis *basis = &form->term[i].basis;
+		bool time = basis->kind == BASIS_WAVE && is_polynomial(basis->wave) && basis->power <= 1;
+		if (!time && basis->kind > BASIS_PI)
+			return false;
+	}
+	return true;
+}
+
 bool oscillates(const struct wave *wave)
 {
 	return mpq_sgn(wave->w) != 0;

@@ -112,7 +112,6 @@ typedef const char *basis_writer(const struct emitter *e, const struct basis *ba
 struct writer *writer_new(const struct emitter *e, basis_writer *basis_text, int count, const struct form *const *form);
 const char *write_form(struct writer *w, const struct form *form, int indent);
 void write_conditions_at(struct writer *w, const char *when);     /* those on time alone: C of a time; else each at t */
-bool is_linear_time(const struct form *form);                     /* constant, or a + b t */
 const char *time_text(const struct emitter *e, const struct form *form, const char *when);
 
 /* ---- leftover.c: what a scheme leaves over, as a function ---- */

@@ -218,18 +218,6 @@ static const char *extreme_text(struct writer *w, const struct atom *a)
 	return text;
 }
 
-/* Constant, or a + b t */
-bool is_linear_time(const struct form *form)
-{
-	for (int i = 0; i < form->terms; i++) {
-		const struct basis *basis = &form->term[i].basis;
-		bool time = basis->kind == BASIS_WAVE && is_polynomial(basis->wave) && basis->power <= 1;
-		if (!time && basis->kind > BASIS_PI)
-			return false;
-	}
-	return true;
-}
-
 /* Numbers and the time `when` */
 const char *time_text(const struct emitter *e, const struct form *form, const char *when)
 {
@@ -248,7 +236,7 @@ static bool is_decided_in_time(const struct writer *w, const struct atom *a)
 {
 	bool timed = w->when != NULL;
 	for (int i = 0; i < a->operands; i++)
-		timed = timed && is_linear_time(a->operand[i]);
+		timed = timed && is_linear_in_time(a->operand[i]);
 	return timed;
 }
 

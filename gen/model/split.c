@@ -160,18 +160,6 @@ static bool has_formulas(const struct atom *a)
 	       (a->kind == ATOM_CALL && (a->function == FN_ABS || a->function == FN_SGN || a->function >= FN_MIN));
 }
 
-/* Of differences alone it is known when they pass 0: those that are linear in t */
-static bool is_linear_in_time(const struct form *form)
-{
-	for (int i = 0; i < form->terms; i++) {
-		const struct basis *basis = &form->term[i].basis;
-		bool line = basis->kind == BASIS_WAVE && is_polynomial(basis->wave) && basis->power <= 1;
-		if (basis->kind > BASIS_PI && !line)
-			return false;
-	}
-	return true;
-}
-
 static const struct atom *first_unknown(const struct form *form)
 {
 	const struct atom *found = NULL;

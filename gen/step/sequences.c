@@ -370,18 +370,6 @@ static _Noreturn void no_series(const struct sequencing *w, const struct atom *a
 
 /* ---- what depends on t alone and has a formula in each interval ---- */
 
-/* Constant, or a + b t */
-static bool is_linear_in_time(const struct form *form)
-{
-	for (int i = 0; i < form->terms; i++) {
-		const struct basis *basis = &form->term[i].basis;
-		bool time = basis->kind == BASIS_WAVE && is_polynomial(basis->wave) && basis->power <= 1;
-		if (!time && basis->kind > BASIS_PI)
-			return false;
-	}
-	return true;
-}
-
 static int choice(struct sequencing *w, const struct form *left, enum comparison comparison, const struct form *right,
 		  int a, int b)
 {
