@@ -300,6 +300,8 @@ bool expansion_places(const struct emitter *e);
 void emit_expansion_place(const struct emitter *e);
 void emit_expansion_members(const struct emitter *e);
 /* Of steps by collocation too, where there is a series beside it */
+/* NAME_name: c_1 theta + ... + c_degree theta^degree of each state, by Horner's rule; c has so many rows */
+void emit_polynomial(const struct emitter *e, const char *name, int rows, int degree);
 void emit_series_ahead(const struct emitter *e);                         /* NAME_ahead: the sum of the series */
 void emit_series_remainder(const struct emitter *e);                     /* NAME_remainders: its last terms */
 void emit_expansion_step(const struct emitter *e);

@@ -150,32 +150,8 @@ void emit_collocation_place(const struct emitter *e)
 
 static void emit_within(const struct emitter *e)
 {
-	int s = stages(e), states = e->system->states;
-	enum { WRITTEN_OUT = 200 };
-	say(e, "\n/* What the polynomial of a collocation gains from its start, theta of the step later */\n"
-	       "static void $n_within(const double c[%d][$N_STATES], double theta, double gain[$N_STATES])\n"
-	       "{\n", rows(e));
-	if (states * s > WRITTEN_OUT) {
-		say(e, "    int i, k;\n"
-		       "    for (i = 0; i < $N_STATES; i++)\n"
-		       "        gain[i] = c[%d][i];\n"
-		       "    for (k = %d; k > 0; k--)\n"
-		       "        for (i = 0; i < $N_STATES; i++)\n"
-		       "            gain[i] = gain[i] * theta + c[k][i];\n"
-		       "    for (i = 0; i < $N_STATES; i++)\n"
-		       "        gain[i] *= theta;\n"
-		       "}\n", s, s - 1);
-		return;
-	}
-	for (int i = 0; i < states; i++)
-		say(e, "    double g%d = c[%d][%d];\n", i, s, i);
-	for (int k = s - 1; k > 0; k--)
-		for (int i = 0; i < states; i++)
-			say(e, "%sg%d = g%d * theta + c[%d][%d];%s", i % 4 ? " " : "    ", i, i, k, i,
-			    i % 4 == 3 || i == states - 1 ? "\n" : "");
-	for (int i = 0; i < states; i++)
-		say(e, "    gain[%d] = g%d * theta;\n", i, i);
-	say(e, "}\n");
+	say(e, "\n/* What the polynomial of a collocation gains from its start, theta of the step later */\n");
+	emit_polynomial(e, "within", rows(e), stages(e));
 }
 
 static void emit_inside(const struct emitter *e)

@@ -21,13 +21,12 @@ static bool changes(const struct emitter *e)
 
 enum { WRITTEN_OUT = 400 };             /* terms; more are looped over */
 
-void emit_series_ahead(const struct emitter *e)
+void emit_polynomial(const struct emitter *e, const char *name, int rows, int degree)
 {
-	int order = expansion(e)->order, states = e->system->states;
-	say(e, "\n/* What the series gains from its start, theta h later */\n"
-	       "static void $n_ahead(const double c[%d][$N_STATES], double theta, double gain[$N_STATES])\n"
-	       "{\n", order + 1);
-	if (states * order > WRITTEN_OUT) {
+	int states = e->system->states;
+	say(e, "static void $n_%s(const double c[%d][$N_STATES], double theta, double gain[$N_STATES])\n"
+	       "{\n", name, rows);
+	if (states * degree > WRITTEN_OUT) {
 		say(e, "    int i, k;\n"
 		       "    for (i = 0; i < $N_STATES; i++)\n"
 		       "        gain[i] = c[%d][i];\n"
@@ -36,18 +35,24 @@ void emit_series_ahead(const struct emitter *e)
 		       "            gain[i] = gain[i] * theta + c[k][i];\n"
 		       "    for (i = 0; i < $N_STATES; i++)\n"
 		       "        gain[i] *= theta;\n"
-		       "}\n", order, order - 1);
+		       "}\n", degree, degree - 1);
 		return;
 	}
 	for (int i = 0; i < states; i++)
-		say(e, "    double g%d = c[%d][%d];\n", i, order, i);
-	for (int k = order - 1; k > 0; k--)
+		say(e, "    double g%d = c[%d][%d];\n", i, degree, i);
+	for (int k = degree - 1; k > 0; k--)
 		for (int i = 0; i < states; i++)
 			say(e, "%sg%d = g%d * theta + c[%d][%d];%s", i % 4 ? " " : "    ", i, i, k, i,
 			    i % 4 == 3 || i == states - 1 ? "\n" : "");
 	for (int i = 0; i < states; i++)
 		say(e, "    gain[%d] = g%d * theta;\n", i, i);
 	say(e, "}\n");
+}
+
+void emit_series_ahead(const struct emitter *e)
+{
+	say(e, "\n/* What the series gains from its start, theta h later */\n");
+	emit_polynomial(e, "ahead", expansion(e)->order + 1, expansion(e)->order);
 }
 
 /* ---- inside a step ---- */
