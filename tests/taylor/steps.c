@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT-0 */
 /* What steps by series do: every step and every value between, against the equations by hand in long double; orders;
  * what is the same bit for bit; CVODE; energy; what ends. LONG=1: a million outputs. */
-#include "gragg.h"
+#include "followed.h"
 #include "soon_float_pl.h"
 #include "steps_variants.h"
 #include "swing_float_pl.h"
@@ -10,41 +10,6 @@
 #include "truth.h"
 
 #include <math.h>
-
-enum { STEPS = 60, HALF = STEPS / 2, MOST = 40, MOST_CHANGES = 5 };
-
-struct subject {
-    const char *name;
-    equations *f;                       /* NULL: that of `systems` */
-    int changes;
-    real change[MOST_CHANGES];          /* when formulas change */
-};
-
-static void timed(real t, const real *y, const real *u, real *dydt)
-{
-    (void)u;
-    dydt[0] = y[1];
-    dydt[1] = -4 * y[0] - (t < 1.2345678L ? 8 : 2) * y[0] * y[0] * y[0];
-}
-
-static void changing(real t, const real *y, const real *u, real *dydt)
-{
-    (void)u;
-    dydt[0] = y[1];
-    dydt[1] = (t < 0.37L ? 2 * cosl(3 * t) : t < 0.81L ? t * t : expl(-t)) - 0.1L * y[1] -
-        (t < 0.55L ? 1 : 2) * sinl(y[0]) - 0.5L * y[0] * y[0] * y[0] - 0.6L * fabsl(t - 0.62L) * y[0] * y[0] -
-        fminl(t, 0.9L) * y[0] * y[1];
-}
-
-static void masses(real t, const real *y, const real *u, real *dydt)
-{
-    const real force = 3 * sinl(y[1] - y[0] - 1.5L), drag = 0.1L * (y[3] - y[2]);
-    (void)u;
-    dydt[0] = y[2];
-    dydt[1] = y[3];
-    dydt[2] = (drag + force) / 2;
-    dydt[3] = 0.2L * cosl(2 * t) - drag - force;
-}
 
 static void sparse(real t, const real *y, const real *u, real *dydt)
 {
@@ -90,98 +55,7 @@ static const struct subject *subject_of(const char *name)
     abort();
 }
 
-static equations *field(const struct subject *s)
-{
-    return s->f ? s->f : system_of(s->name)->equations;
-}
-
-static bool is_ramped(const pl_model *m)
-{
-    return m->hold != NULL;
-}
-
-/* Of a model with or without inputs: y from `from` to `to`, through what changes */
-static void solve(const struct subject *s, const pl_model *m, real from, real to, const real *u, real *y)
-{
-    for (int i = 0; i < s->changes; i++)
-        if (from < s->change[i] && s->change[i] <= to) {
-            /* up to it the formula before: the truth sees nothing of what begins there */
-            gragg(field(s), m->states, from, s->change[i] - 1e-17L, 0.05L, 0, NULL, y);
-            from = s->change[i];
-        }
-    gragg(field(s), m->states, from, to, 0.05L, m->inputs, u, y);
-}
-
-static real exact_step(const pl_model *m)
-{
-    return 1 / roundl(1 / (real)m->h);
-}
-
-static double random_number(void)
-{
-    static unsigned seed = 1;
-    seed = seed * 1103515245u + 12345u;
-    return (double)(seed >> 8) / 8388608 - 1;
-}
-
-static void *fresh(const pl_model *m)
-{
-    void *state = calloc(1, m->size);
-    m->init(state);
-    return state;
-}
-
 /* ---- every step ---- */
-
-struct found {
-    double step, middle, end;           /* largest differences, over the largest value of the state */
-};
-
-static void look(double *worst, const pl_model *m, const double *found, const real *expected, const double *most)
-{
-    for (int i = 0; i < m->states; i++)
-        *worst = fmax(*worst, most[i] > 0 ? (double)fabsl(found[i] - expected[i]) / most[i] : 0);
-}
-
-/* Of adaptive steps a lost bit or an ended tolerance shows in a step; the differences of the steps before are in it. */
-static struct found follow(const struct subject *s, const pl_model *m)
-{
-    struct found worst = {0, 0, 0};
-    double y[MOST], middle[MOST], end[MOST], most[MOST] = {0}, sample[MOST], before[MOST] = {0};
-    real truth[MOST], half[MOST], u[MOST], h = exact_step(m);
-    void *state = fresh(m);
-    m->get(state, y);
-    for (int i = 0; i < m->states; i++) {
-        truth[i] = y[i];
-        most[i] = fabs(y[i]);
-    }
-    for (int k = 0; k < STEPS; k++) {
-        for (int i = 0; i < m->inputs; i++) {
-            sample[i] = random_number();
-            u[i] = is_ramped(m) ? before[i] : sample[i];
-            u[m->inputs + i] = is_ramped(m) ? (sample[i] - (real)before[i]) / h : 0;
-            before[i] = sample[i];
-        }
-        m->at(state, sample, m->h / 2, middle);
-        m->at(state, sample, m->h, end);
-        m->step(state, sample);
-        m->get(state, y);
-        memcpy(half, truth, sizeof half);
-        solve(s, m, k * h, (k + 0.5L) * h, u, half);
-        solve(s, m, k * h, (k + 1) * h, u, truth);
-        for (int i = 0; i < m->states; i++)
-            most[i] = fmax(most[i], fabs((double)truth[i]));
-        look(&worst.middle, m, middle, half, most);
-        look(&worst.step, m, y, truth, most);
-        for (int i = 0; i < m->states; i++)
-            half[i] = y[i];
-        look(&worst.end, m, end, half, most);
-    }
-    if (m->status(state) != 0)
-        worst.step = INFINITY;
-    free(state);
-    return worst;
-}
 
 static void follows(const struct subject *s, const pl_model *m, double bound)
 {
