@@ -159,7 +159,7 @@ static void between(const struct pair *p, const char *name, double bound)
         p->a->at(p->s, u, 0.7 * p->a->h, y[0]);
         p->b->at(p->r, u, 0.7 * p->a->h, y[1]);
         for (i = 0; i < (int)p->a->states; i++)
-            o.off[i] = fmax(o.off[i], fabs(y[0][i] - y[1][i]));
+            o.off[i] = worse(o.off[i], fabs(y[0][i] - y[1][i]));
         step(p->a, p->s, (uint64_t)k);
         step(p->b, p->r, (uint64_t)k);
         look(p, &o);

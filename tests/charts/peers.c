@@ -105,14 +105,14 @@ static void check_dop853(void)
 		most = fmax(most, fabs(dot(dop853_a[13], t) - 1 / t->density));
 		for (int part = 1; part < 8 && t->order <= 7; part++) {
 			weights_inside(part / 8.0, b);
-			most_inside = fmax(most_inside, fabs(dot(b, t) - pow(part / 8.0, t->order) / t->density));
+			most_inside = worse(most_inside, fabs(dot(b, t) - pow(part / 8.0, t->order) / t->density));
 		}
 	}
 	for (int i = 2; i <= STAGES; i++) {
 		double sum = 0;
 		for (int j = 1; j < i; j++)
 			sum += dop853_a[i][j];
-		most_row = fmax(most_row, fabs(sum - dop853_c[i]));
+		most_row = worse(most_row, fabs(sum - dop853_c[i]));
 	}
 	ok(close_to(most_row, 0, 1e-14, "largest difference of a row sum"), "DOP853: rows add up to the nodes");
 	ok(close_to(most, 0, 2e-14, "largest residual"), "DOP853: order 8, by 200 conditions: %.1e", most);
@@ -195,7 +195,7 @@ static void check_equation(const struct equation *e, const struct problem *p)
 		e->slopes(0.37 * turn, y, f);
 		problem_slope(p, 0.37 * turn, y, g);
 		for (int i = 0; i < 2 * e->n; i++)
-			off = fmax(off, fabs(f[i] - g[i]) / (1 + fabs(g[i])));
+			off = worse(off, fabs(f[i] - g[i]) / (1 + fabs(g[i])));
 		e->jacobian(0.37 * turn, y, J[0], J[1]);
 		for (int j = 0; j < 2 * e->n; j++) {
 			const double kept = y[j];
@@ -206,7 +206,7 @@ static void check_equation(const struct equation *e, const struct problem *p)
 			y[j] = kept;
 			for (int i = 0; i < e->n; i++) {
 				const double by_hand = J[j / e->n][i * e->n + j % e->n];
-				off_J = fmax(off_J, fabs((up[e->n + i] - down[e->n + i]) / (2 * h) - by_hand) /
+				off_J = worse(off_J, fabs((up[e->n + i] - down[e->n + i]) / (2 * h) - by_hand) /
 				             (1 + fabs(by_hand)));
 			}
 		}

@@ -104,7 +104,7 @@ static void set_and_step(const pl_model *m, const struct equations *e)
             largest[i] = fmax(largest[i], fabs(y[i]));
             good = close_to(z[i], y[i], e->load == WAVE ? 1e-14 * largest[i] : 0, "after set, step %d, %s", k,
                 m->state_names[i]) && good;
-            worst = fmax(worst, fabs(z[i] - y[i]) / fmax(largest[i], 1e-300));
+            worst = worse(worst, fabs(z[i] - y[i]) / fmax(largest[i], 1e-300));
         }
         good = close_to(m->time(placed), m->time(walked), 4e-16 * m->time(walked), "time after set, step %d", k) &&
             good;

@@ -83,7 +83,7 @@ static bool state_agrees(struct subject *s, const void *state, const mpq_t *x, c
                 s->model->name, which, k,
                             p, POINTS - 1, s->model->state_names[i]) && good;
             if (scale > 0)
-                s->worst = fmax(s->worst, fabs(found[i] - expected[i]) / (DBL_EPSILON * scale));
+                s->worst = worse(s->worst, fabs(found[i] - expected[i]) / (DBL_EPSILON * scale));
             s->points++;
             s->exact += found[i] == expected[i];
         }

@@ -84,7 +84,7 @@ static bool row_agrees(const double *out, size_t k, const char *how)
         const double expected = solution[k * (size_t)outputs + (size_t)i];
         good = close_to(out[i], expected, 1e-12 * largest[i], "%s, row %zu, %s", how, k, model->output_names[i]) &&
             good;
-        worst = fmax(worst, fabs(out[i] - expected) / largest[i]);
+        worst = worse(worst, fabs(out[i] - expected) / largest[i]);
     }
     return good;
 }
@@ -279,7 +279,7 @@ static void far_jump(void)
     model->get(state, jumped);
     for (int i = 0; i < e->states; i++) {
         good = close_to(jumped[i], y[i], 1e-12 * most[i], "after 10^9 steps, %s", model->state_names[i]) && good;
-        worst = fmax(worst, fabs(jumped[i] - y[i]) / most[i]);
+        worst = worse(worst, fabs(jumped[i] - y[i]) / most[i]);
     }
     good = close_to(model->time(state), nearest_double(t[0]), 0, "time after 10^9 steps") && good;
     note("%s, jump of 10^9 steps: largest difference %.3g", model->name, worst);

@@ -73,7 +73,7 @@ static bool from_state(struct subject *s, const void *state, const mpq_t t)
                 s->model->name, mpq_get_d(t), p,
                             POINTS, s->model->state_names[i]) && good;
             if (scale[i] > 0)
-                s->worst = fmax(s->worst, fabs(found[i] - expected) / (DBL_EPSILON * scale[i]));
+                s->worst = worse(s->worst, fabs(found[i] - expected) / (DBL_EPSILON * scale[i]));
             s->points++;
         }
     }
@@ -145,7 +145,7 @@ static void judge_set(const char *name, const char *h, double from, int n)
             most[i] = fmax(most[i], fabs(expected));
             good = close_to(found[i], expected, 1e-13 * most[i], "%s set to %g, step %d, %s", name, from, k,
                 model->state_names[i]) && good;
-            worst = fmax(worst, fabs(found[i] - expected) / most[i]);
+            worst = worse(worst, fabs(found[i] - expected) / most[i]);
         }
         good = close_to(model->time(state), nearest_double(t[0]),
             2 * DBL_EPSILON * fmax(fabs(from), fabs(mpq_get_d(t[0]))), "time") && good;

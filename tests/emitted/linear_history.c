@@ -71,7 +71,7 @@ static bool agrees(const double *out, size_t k, const char *how)
         good = close_to(out[i], solution[at], tolerance * most[at], "%s to %zu, %s", how, k, model->output_names[i]) &&
             good;
         if (most[at] > 0)
-            worst = fmax(worst, fabs(out[i] - solution[at]) / most[at]);
+            worst = worse(worst, fabs(out[i] - solution[at]) / most[at]);
     }
     return good;
 }

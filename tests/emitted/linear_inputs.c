@@ -121,7 +121,7 @@ static struct run referred(const struct subject *s, const struct reference *r, d
         }
         outputs_of(r, x, run.out[k]);
         for (int i = 0; i < OUTPUTS; i++)
-            run.most_out[i] = fmax(run.most_out[i], fabs(run.out[k][i]));
+            run.most_out[i] = worse(run.most_out[i], fabs(run.out[k][i]));
         if (k < SAMPLES) {
             set_inputs(s, k ? u[k - 1] : none, u[k], x);
             reference_apply(r, E, x);
@@ -229,7 +229,7 @@ static void between(const struct subject *s, const struct reference *r, const st
          * generous here */
         for (int i = 0; i < 4; i++) {
             good = close_to(found[i], expected[i], 16 * DBL_EPSILON * run->most_y[i], "at %d, %d", k, i) && good;
-            worst = fmax(worst, fabs(found[i] - expected[i]) / (DBL_EPSILON * run->most_y[i]));
+            worst = worse(worst, fabs(found[i] - expected[i]) / (DBL_EPSILON * run->most_y[i]));
         }
         m->step(state, u[k]);
     }

@@ -37,7 +37,7 @@ static void jump(const char *name, uint64_t n)
         const double scale = largest * (i < 2 ? 1 : w);
         good = close_to(y[i], expected[i], 1e-13 * scale, "%s, jump of %.0e, %s", name, (double)n,
             model->state_names[i]) && good;
-        worst = fmax(worst, fabs(y[i] - expected[i]) / scale);
+        worst = worse(worst, fabs(y[i] - expected[i]) / scale);
     }
     good = close_to(model->time(state), nearest_double(t[1]), 0, "time") && good;
     ok(good, "%s: a jump of %.0e steps, within 1e-13", name, (double)n);
@@ -61,7 +61,7 @@ static bool phase_right(const void *state, const mpq_t t, const char *how)
     for (int i = 0; i < 2; i++) {
         const double expected = mpfr_get_d(x[4 + i], MPFR_RNDN);
         good = close_to(out[2 + i], expected, 1e-12, "%s, %s", how, i ? "sine" : "cosine") && good;
-        worst = fmax(worst, fabs(out[2 + i] - expected));
+        worst = worse(worst, fabs(out[2 + i] - expected));
     }
     note("phase %s: difference %.3g", how, worst);
     free_floats(x, r->size);

@@ -125,7 +125,7 @@ static void judge(struct subject *s)
             good = close_to(N_VGetArrayPointer(s->y)[i], y[i], tolerance * most[i], "%s, row %d, %s", m->name, row,
                 m->state_names[i]) && good;
             if (most[i] > 0)
-                worst = fmax(worst, fabs(N_VGetArrayPointer(s->y)[i] - y[i]) / most[i]);
+                worst = worse(worst, fabs(N_VGetArrayPointer(s->y)[i] - y[i]) / most[i]);
         }
     }
     ok(good, "%s: CVODE at rtol 1e-10 agrees within %g over %d s", m->name, tolerance, SECONDS);

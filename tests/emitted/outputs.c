@@ -15,7 +15,7 @@ static double worst;
 static bool is(double found, double expected, double terms, const char *what, int k)
 {
     if (terms > 0)
-        worst = fmax(worst, fabs(found - expected) / terms);
+        worst = worse(worst, fabs(found - expected) / terms);
     return close_to(found, expected, 1e-12 * terms, "%s, step %d", what, k);
 }
 

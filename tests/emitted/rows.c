@@ -4,6 +4,8 @@
  * same bits; nothing beyond the n-th row. Models of one file, CODE; lines for rows.sh: what is wrong, then "not ok". */
 #include CODE
 
+#include "worse.h"
+
 #include <float.h>
 #include <math.h>
 #include <stdbool.h>
@@ -58,7 +60,7 @@ static bool near(double found, double expected, double steps, double most, const
 {
     const double allowed = 2 * EPSILON * steps * most;
     if (steps > 0 && most > 0)
-        worst = fmax(worst, fabs(found - expected) / (EPSILON * steps * most));
+        worst = worse(worst, fabs(found - expected) / (EPSILON * steps * most));
     if (fabs(found - expected) <= allowed)
         return true;
     if (said++ < 5)
@@ -78,7 +80,7 @@ static void by_step(int last)
         for (int i = 0; i < m->states; i++)
             most_y[i] = fmax(most_y[i], fabs((double)y[k][i]));
         for (int i = 0; i < m->outputs; i++)
-            most_out[i] = fmax(most_out[i], fabs((double)out[k][i]));
+            most_out[i] = worse(most_out[i], fabs((double)out[k][i]));
         m->step(now, samples(BEFORE + k));
     }
 }

@@ -89,7 +89,7 @@ static double difference(const struct history *h, int row, N_Vector y)
 {
     double worst = 0;
     for (int i = 0; i < h->states; i++)
-        worst = fmax(worst, fabs(N_VGetArrayPointer(y)[i] - h->y[row * h->states + i]) / h->largest[i]);
+        worst = worse(worst, fabs(N_VGetArrayPointer(y)[i] - h->y[row * h->states + i]) / h->largest[i]);
     return worst;
 }
 
@@ -113,7 +113,7 @@ static double by_cvode(const struct history *h, double relative)
     for (int row = 1; row <= h->rows && good; row++) {
         const double goal = row * h->every * h->of->model->h;
         good = CVodeSetStopTime(cvode, goal) == CV_SUCCESS && CVode(cvode, goal, y, &t, CV_NORMAL) >= 0;
-        worst = fmax(worst, difference(h, row, y));
+        worst = worse(worst, difference(h, row, y));
     }
     CVodeGetNumSteps(cvode, &steps);
     note("%s: CVODE at %.0e, %ld steps: largest difference %.3g", h->of->model->name, relative, steps, worst);
@@ -150,7 +150,7 @@ static double by_arkode(const struct history *h, double relative)
                             ERKStepSetInitStep(arkode, size) == ARK_SUCCESS);
         good = good && ERKStepSetStopTime(arkode, stretch) == ARK_SUCCESS &&
             ERKStepEvolve(arkode, stretch, y, &t, ARK_NORMAL) >= 0;
-        worst = fmax(worst, difference(h, row, y));
+        worst = worse(worst, difference(h, row, y));
     }
     ERKStepGetNumSteps(arkode, &steps);
     note("%s: ARKODE at %.0e, %ld steps: largest difference %.3g", h->of->model->name, relative, steps, worst);

@@ -3,6 +3,8 @@
 #ifndef TAP_H
 #define TAP_H
 
+#include "worse.h"
+
 #include <stdbool.h>
 
 #if defined __GNUC__

@@ -84,7 +84,7 @@ static void linear2dof_closed_form(void)
                                      5 / 3.0L * a * sinl(a * t) + 4 / 3.0L * b * sinl(b * t)};
         for (int i = 0; i < 4; i++) {
             good = close_to(s.y[i], (double)y[i], 1e-13 * largest[i], "entry %d, step %d", i, k) && good;
-            worst = fmax(worst, fabs(s.y[i] - (double)y[i]) / largest[i]);
+            worst = worse(worst, fabs(s.y[i] - (double)y[i]) / largest[i]);
         }
     }
     note("linear2dof: largest difference over the amplitude %.3g", worst);

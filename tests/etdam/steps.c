@@ -100,7 +100,7 @@ static double error_over(const struct subject *s, const pl_model *m, double seco
         m->get(state, y);
         solve(s, (real)seconds * k / points, (real)seconds * (k + 1) / points, truth);
         for (int i = 0; i < m->states / 2; i++) {
-            worst = fmax(worst, (double)fabsl(y[i] - truth[i]));
+            worst = worse(worst, (double)fabsl(y[i] - truth[i]));
             most = fmax(most, (double)fabsl(truth[i]));
         }
     }
@@ -157,7 +157,7 @@ static void stays_exact(const char *name, double bound)
         m->get(state, y);
         gragg(spun, 4, second, second + 1, 0.05L, 0, NULL, truth);
         for (int i = 0; i < 4; i++) {
-            worst = fmax(worst, (double)fabsl(y[i] - truth[i]));
+            worst = worse(worst, (double)fabsl(y[i] - truth[i]));
             most = fmax(most, (double)fabsl(truth[i]));
         }
     }
@@ -186,7 +186,7 @@ static void agrees_over_spin_up(double bound)
         b->run(other, (size_t)lround(0.1 / b->h), NULL, NULL);
         a->get(one, y);
         b->get(other, z);
-        worst = fmax(worst, fabs(y[CANTILEVER_TIP] - z[CANTILEVER_TIP]));
+        worst = worse(worst, fabs(y[CANTILEVER_TIP] - z[CANTILEVER_TIP]));
         most = fmax(most, fabs(z[CANTILEVER_TIP]));
     }
     free(one);
@@ -262,8 +262,8 @@ static void outputs_of(const char *name)
             wide[i] = y[i];
         gyro((k + 1) * (real)m->h, wide, NULL, dydt);
         for (int i = 0; i < 2; i++) {
-            worst = fmax(worst, fabs(out[i] - y[i]));
-            worst = fmax(worst, (double)fabsl(out[2 + i] - dydt[2 + i]) / 40);
+            worst = worse(worst, fabs(out[i] - y[i]));
+            worst = worse(worst, (double)fabsl(out[2 + i] - dydt[2 + i]) / 40);
         }
     }
     free(state);
@@ -283,7 +283,7 @@ static void in_float(void)
         spun_float_get(&s, y);
         solve(&spun_frame, k * 0.1L, (k + 1) * 0.1L, truth);
         for (int i = 0; i < 2; i++)
-            worst = fmax(worst, (double)fabsl(y[i] - truth[i]));
+            worst = worse(worst, (double)fabsl(y[i] - truth[i]));
     }
     ok(close_to(worst, 0, 1e-5, "spun in float") && spun_float_status(&s) == 0, "spun in float, etdam5 (%.2g)", worst);
 }

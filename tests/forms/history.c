@@ -107,7 +107,7 @@ static void try_history(void)
         m->get(&s, y);
         good = close_states(y, steps[k], k, "history") && good;
         for (int i = 0; i < m->states; i++)
-            worst = fmax(worst, fabs((double)y[i] - steps[k][i]) / tolerance(i, k));
+            worst = worse(worst, fabs((double)y[i] - steps[k][i]) / tolerance(i, k));
         if (k < STEPS)
             m->step(&s, sample(k));
     }

@@ -194,7 +194,7 @@ static void run(struct subject *m, double stated)
             step(m);
             out(m, y);
             for (i = 0; i < outputs; i++)
-                off = fmax(off, fabs(y[i] - truth[k + 1][i]) / scale);
+                off = worse(off, fabs(y[i] - truth[k + 1][i]) / scale);
         }
         ok(off <= limit, "%s, from a state set: off by %.2g of the largest number of all", name, off);
     }

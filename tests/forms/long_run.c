@@ -63,7 +63,7 @@ static void try_energy(int form)
     for (int k = 0; k < READINGS; k++) {
         m->run(&s, (size_t)(n / READINGS), NULL, NULL);
         last = energy_of(m, &s) / first - 1;
-        worst = fmax(worst, fabs(last));
+        worst = worse(worst, fabs(last));
     }
     if (form == DIRECT) {
         note("%s, %g steps of %g s: energy %+.3g (the form without a bound)", m->name, n, (double)m->h, last);
@@ -141,7 +141,7 @@ static void try_momentum(int form)
     const double first = momentum_of(m, &s, &sizes);
     for (int k = 0; k < READINGS; k++) {
         m->run(&s, (size_t)(n / READINGS), NULL, NULL);
-        worst = fmax(worst, fabs(momentum_of(m, &s, &sizes) - first) / sizes);
+        worst = worse(worst, fabs(momentum_of(m, &s, &sizes) - first) / sizes);
         largest = fmax(largest, sizes / fabs(first));
     }
     if (form == DIRECT) {

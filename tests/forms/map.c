@@ -167,7 +167,7 @@ static void try_eigenvalues(const struct map *map, const wide c[N + 1])
         ratio = logarithm(ratio);
         if (fabs((double)ratio.re) > fabs(amplitude))
             amplitude = (double)ratio.re;
-        phase = fmax(phase, fabs((double)ratio.im));
+        phase = worse(phase, fabs((double)ratio.im));
         if (p.re != 0 && !strstr(map->name, "direct"))  /* the issue's */
             rates = close_to((double)(p.re + ratio.re / h), (double)p.re, 0.01 * fabs((double)p.re),
                 "%s: decay rate of mode %d", map->name, mode + 1) && rates;

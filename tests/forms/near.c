@@ -79,7 +79,7 @@ static void compare(const struct variant *v, FILE *f)
                 ? 20 : 1);
             good = close_to(history[k][i], expected[k][i], tolerance, "%s, %s, step %d", m->name, m->state_names[i],
                 k) && good;
-            worst = fmax(worst, fabs(history[k][i] - expected[k][i]) / tolerance);
+            worst = worse(worst, fabs(history[k][i] - expected[k][i]) / tolerance);
         }
     ok(good, "%s: %d steps in float beside double, %.2f of the tolerance", m->name, STEPS, worst);
 }

@@ -16,6 +16,7 @@
  * In float 2e-5 per step for what is 1e-12 in double, and at least 2e-3 beside CVODE. */
 #include "drive.h"
 #include "truth.h"
+#include "../emitted/worse.h"
 
 #include <math.h>
 #include <stdarg.h>
@@ -391,7 +392,7 @@ static void run_steps(void)
 		for (int i = 0; i < states; i++)
 			size = fmax(size, fabs(row[k].y[i]));
 		for (int i = 0; i < outputs; i++)
-			out_size = fmax(out_size, fabs(row[k].out[i]));
+			out_size = worse(out_size, fabs(row[k].out[i]));
 		if (!(size <= 1e30) || !(out_size <= 1e30))
 			complain("a state or an output is not finite, t = %.17g", row[k].t);
 		near(row[k].t, k * h, in_float ? 4e-7 * (k + 1) * h : 1e-13, "time", k * h, "t");
@@ -477,7 +478,7 @@ static void judge_steps(void *s, int from, int steps, double step, struct row *f
 		bool good = true;
 		for (int i = 0; i < states && all; i++) {
 			good = near(found[i], y[i], bound() * size, what, t + step, state_name(i)) && good;
-			worst_truth = fmax(worst_truth, fabs(found[i] - y[i]) / size);
+			worst_truth = worse(worst_truth, fabs(found[i] - y[i]) / size);
 		}
 		for (int i = 0; i < inputs; i++)
 			u[i] = ramps[i] ? sampled[i] : u[i];
@@ -541,7 +542,7 @@ static void judge_solution(void)
 			const double expected = strtod(p + 1, &p);
 			good = near(row[k].out[i], expected, rounding(k) * own[i], "output against the closed form", t,
 				output_name(i)) && good;
-			worst_solution = fmax(worst_solution, fabs(row[k].out[i] - expected) / own[i]);
+			worst_solution = worse(worst_solution, fabs(row[k].out[i] - expected) / own[i]);
 		}
 		if (!good)
 			break;
@@ -790,7 +791,7 @@ static void judge_retune(void)
                                 model_out(s, y);
 				of->tuned->out(w, expected);
 				for (int i = 0; i < outputs; i++)
-					out_size = fmax(out_size, fabs(expected[i]));
+					out_size = worse(out_size, fabs(expected[i]));
 				for (int i = 0; i < outputs; i++)
                                     good = near(y[i], expected[i], 10 * rounding(k) * fmax(largest, out_size),
                                                 "retuned, outputs", (k + 1) * step, output_name(i)) &&

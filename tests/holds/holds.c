@@ -4,6 +4,7 @@
  * Step, at between steps and run; -DTUNED: by retuned coefficients, and the order in h for a sine, d + 1, by halves of
  * the step. -DCHAIN: all inputs are the ramp's polynomial. */
 #include "m.h"
+#include "../emitted/worse.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -94,7 +95,7 @@ static double deviation(const double *y, double t)
         int m;
         for (m = 0; m < DEGREES; m++)
             size += fabs(x_of[which][m]) * pow(STEPS * h, m) * (i >= M_STATES / 2 ? w : 1);
-        worst = fmax(worst, fabs(y[i] - exact) / size);
+        worst = worse(worst, fabs(y[i] - exact) / size);
     }
     return worst;
 }
@@ -107,16 +108,16 @@ static void follow(m *s, const char *what, double bound)
     for (n = 0; n < STEPS; n++) {
         sample(u, n, polynomial);
         m_at(s, u, 0.37 * h, y);
-        between = fmax(between, deviation(y, (n + 0.37) * h));
+        between = worse(between, deviation(y, (n + 0.37) * h));
         m_step(s, u);
         m_get(s, y);
-        worst = fmax(worst, deviation(y, (n + 1) * h));
+        worst = worse(worst, deviation(y, (n + 1) * h));
 #ifndef CHAIN
         {
             double out[M_OUTPUTS];
             m_out(s, out);
-            outputs = fmax(outputs, fabs(out[4] - value(u_of[2], (n + 1) * h, 1)) / fabs(value(u_of[2], STEPS * h, 1)));
-            outputs = fmax(outputs, fabs(out[5] - value(u_of[1], (n + 1) * h, 0)) / fabs(value(u_of[1], STEPS * h, 0)));
+            outputs = worse(outputs, fabs(out[4] - value(u_of[2], (n + 1) * h, 1)) / fabs(value(u_of[2], STEPS * h, 1)));
+            outputs = worse(outputs, fabs(out[5] - value(u_of[1], (n + 1) * h, 0)) / fabs(value(u_of[1], STEPS * h, 0)));
         }
 #endif
     }

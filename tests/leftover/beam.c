@@ -60,7 +60,7 @@ static void as_written(const struct truth_of *b)
                 continue;
             good = close_to(dydt[i], (double)expected[i], 1e-13 * most[i], "%s_rhs, t = %g, entry %d", b->name, t, i) &&
                 good;
-            worst = fmax(worst, fabs(dydt[i] - (double)expected[i]) / most[i]);
+            worst = worse(worst, fabs(dydt[i] - (double)expected[i]) / most[i]);
         }
     }
     ok(good, "%s_rhs: the equations by hand, matrices by quadrature (largest difference %.2g)", b->name, worst);
@@ -102,7 +102,7 @@ static void solve(struct truth_of *b)
         tip[2] = y[TIP];
         least_of(b, tip, (k - 1) / rate, 1 / rate);
         if (k / rate > spin_up + 1)
-            b->late = fmax(b->late, fabs(y[TIP]));
+            b->late = worse(b->late, fabs(y[TIP]));
         if (k % FINE == 0) {
             b->tip[k / FINE] = y[TIP];
             b->stretch[k / FINE] = y[CANTILEVER_STRETCH];
@@ -156,9 +156,9 @@ static struct run run_of(const struct variant *of, const char *name, const struc
         if (!(tip < gone))
             r.gone = t;
         if (t > spin_up + 1 && t < spin_up + 11)
-            r.early = fmax(r.early, tip);
+            r.early = worse(r.early, tip);
         if (t > SECONDS - 10)
-            r.last = fmax(r.last, tip);
+            r.last = worse(r.last, tip);
     }
     free(state);
     note("%s, h = %g: largest error %.3g m, seen %.3g s, gone %.3g s, up to %.3g m early, %.3g m at last", name, m->h,

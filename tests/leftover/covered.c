@@ -37,7 +37,7 @@ static void judge(const char *name, const char *scheme)
     for (int i = 0; i < one->states; i++) {
         good = close_to(difference[i], 0, tolerance * most[i], "%s: %s", other->name, one->state_names[i]) && good;
         if (most[i] > 0)
-            worst = fmax(worst, difference[i] / most[i]);
+            worst = worse(worst, difference[i] / most[i]);
     }
     ok(good, "%s, %s: `exact` over %d steps (largest difference over the amplitude %.2g)", name, scheme, STEPS, worst);
     free(a);

@@ -35,7 +35,7 @@ static double largest_error(const pl_model *m, solution *x)
     for (int k = 1; k <= steps; k++) {
         m->step(state, NULL);
         m->get(state, y);
-        worst = fmax(worst, fabs(y[0] - x(SECONDS * (double)k / steps)));
+        worst = worse(worst, fabs(y[0] - x(SECONDS * (double)k / steps)));
     }
     free(state);
     return worst;

@@ -49,7 +49,7 @@ static double error_of(const pl_model *m, int rows)
         m->run(state, (size_t)every, NULL, NULL);
         m->get(state, y);
         for (int i = 0; i < m->states; i++)
-            worst = fmax(worst, fabs(y[i] - truth[row][i]));
+            worst = worse(worst, fabs(y[i] - truth[row][i]));
     }
     free(state);
     return worst;

@@ -62,7 +62,7 @@ static void as_written(const struct subject *s)
                 continue;
             good = close_to(dydt[i], (double)expected[i], rounding * most[i], "%s_rhs, d %s/dt", m->name,
                 m->state_names[i]) && good;
-            worst = fmax(worst, fabs(dydt[i] - (double)expected[i]) / most[i]);
+            worst = worse(worst, fabs(dydt[i] - (double)expected[i]) / most[i]);
         }
     }
     ok(good, "%s_rhs: the equations by hand at %d points (largest difference %.2g)", m->name, POINTS, worst);
@@ -117,7 +117,7 @@ static void by_solver(const struct subject *s)
             most[i] = fmax(most[i], fabs(x[i]));
             good = close_to(x[i], y[i], s->tolerance * most[i], "%s, t = %g, %s", m->name, to, m->state_names[i]) &&
                 good;
-            worst = fmax(worst, fabs(x[i] - y[i]) / most[i]);
+            worst = worse(worst, fabs(x[i] - y[i]) / most[i]);
         }
     }
     ok(good, "%s: CVODE at rtol %.0e agrees within %.0e over %g s (largest difference %.2g)", m->name, relative,

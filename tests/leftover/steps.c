@@ -113,7 +113,7 @@ static bool run(struct subject *a, double t0, int count, const double *from)
         for (int i = 0; i < s->states; i++) {
             good = close_to(history[k + 1][i], (double)y[i], tolerance * a->most[i], "%s, step %d, %s", m->name, k + 1,
                 m->state_names[i]) && good;
-            a->worst = fmax(a->worst, fabs(history[k + 1][i] - (double)y[i]) / a->most[i]);
+            a->worst = worse(a->worst, fabs(history[k + 1][i] - (double)y[i]) / a->most[i]);
         }
         m->run(state, 1, s->inputs ? u[k] : NULL, NULL);
         for (int i = 0; i < s->states; i++)
@@ -190,7 +190,7 @@ static void between(const struct system *s)
                 good = close_to(found[i], (double)expected[i], 1e-14 * most[i] + 1e-17,
                     "%s, step %d, %d parts of four, %s", m->name, k, part,
                                 m->state_names[i]) && good;
-                worst = fmax(worst, fabs(found[i] - (double)expected[i]) / fmax(most[i], 1e-3));
+                worst = worse(worst, fabs(found[i] - (double)expected[i]) / fmax(most[i], 1e-3));
             }
         }
         m->step(state, s->inputs ? u[k] : NULL);

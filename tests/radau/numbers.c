@@ -33,7 +33,7 @@ static real power(real x, int n)
 static double worst;
 static void compare(real found, real expected, real size)
 {
-    worst = fmax(worst, (double)(fabsl(found - expected) / (size * (DBL_EPSILON / 2))));
+    worst = worse(worst, (double)(fabsl(found - expected) / (size * (DBL_EPSILON / 2))));
 }
 
 static void says(const char *what)

@@ -161,7 +161,7 @@ static double error_of(const pl_model *m)
     m->get(state, y);
     solve(&s, m, 0, roundl(SECONDS / (real)m->h) * (real)m->h, u, truth);
     for (int i = 0; i < m->states; i++)
-        worst = fmax(worst, (double)fabsl(y[i] - truth[i]));
+        worst = worse(worst, (double)fabsl(y[i] - truth[i]));
     free(state);
     return worst;
 }
@@ -196,12 +196,12 @@ static void starts(const char *name, double tolerance, double mean_bound)
             solve(&s, m, second, second + 1, NULL, truth);
             for (int i = 0; i < 2; i++) {
                 most[i] = fmax(most[i], fabs((double)truth[i]));
-                error = fmax(error, (double)fabsl(y[i] - truth[i]) / most[i]);
+                error = worse(error, (double)fabsl(y[i] - truth[i]) / most[i]);
             }
         }
         failed += m->status(state) != 0 || !isfinite(y[0]);
         sum += log(fmax(error, 1e-18) / tolerance);
-        worst = fmax(worst, error / tolerance);
+        worst = worse(worst, error / tolerance);
         free(state);
     }
     const double mean = exp(sum / count);
@@ -229,9 +229,9 @@ static void in_float(void)
         relax_float_step(&single);
         relax_float_get(&single, y);
         solve(&s, m, k * 0.1L, (k + 0.5L) * 0.1L, NULL, truth);
-        between = fmax(between, (double)fabsl(at[0] - truth[0]));
+        between = worse(between, (double)fabsl(at[0] - truth[0]));
         solve(&s, m, (k + 0.5L) * 0.1L, (k + 1) * 0.1L, NULL, truth);
-        worst = fmax(worst, (double)fabsl(y[0] - truth[0]));
+        worst = worse(worst, (double)fabsl(y[0] - truth[0]));
     }
     bool good = close_to(worst, 0, 2e-4, "states in float") && close_to(between, 0, 2e-4, "between steps");
     ok(good && relax_float_status(&single) == 0, "float, tolerance 1e-5: %.2g, between %.2g", worst, between);

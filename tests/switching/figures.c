@@ -87,7 +87,7 @@ static void gear_at(const struct gear *g, const struct hand_system *system, int 
 		const double size = i < system->n ? 1 : 0.5;
 		good = close_to(y[i], (double)by_hand.y[i], 2e-12 * size, "%s, h = %g, %s by hand", g->name, m->h,
 			m->state_names[i]) && good;
-		worst = fmax(worst, fabs(y[i] - (double)by_hand.y[i]));
+		worst = worse(worst, fabs(y[i] - (double)by_hand.y[i]));
 	}
         good = close_to((double)of->crossed(r.state), (double)by_hand.crossings, 0, "changes of region by hand") &&
                good;
@@ -130,7 +130,7 @@ static void bilinear(int step)
             good = close_to(time[i + 1] - time[i], crossing[i].upward ? up : down, 1e-12 * period,
                             "h = %g, crossing %d to the next", of->model->h, i) &&
                    good;
-            worst = fmax(worst, fabs(time[i + 2] - time[i] - period));
+            worst = worse(worst, fabs(time[i + 2] - time[i] - period));
 	}
         ok(good, "bilinear, h = %g: period pi/w1 + pi/w2 over %d periods (largest difference %.2g)", of->model->h,
            PERIODS, worst);

@@ -30,7 +30,7 @@ static void same_forms(void)
                             good = close_to(found[i], expected[i], 1e-11, "form_%s, h = %g, %s", forms[f],
                                             r.of->model->h, r.of->model->state_names[i]) &&
                                    good;
-                            worst = fmax(worst, fabs(found[i] - expected[i]));
+                            worst = worse(worst, fabs(found[i] - expected[i]));
 			}
 			good = close_to((double)r.of->crossed(r.state), (double)plain.of->crossed(plain.state), 0,
 				"form_%s: crossings", forms[f]) && good;

@@ -62,7 +62,7 @@ static bool at_step(const struct hand_system *s, unsigned seed, int step, const 
 	run_until(&r, SECONDS);
 	run_state(&r, found);
 	const double off = apart(s, found, y, size);
-	sums.worst = fmax(sums.worst, off);
+	sums.worst = worse(sums.worst, off);
         const bool state_good =
             close_to(off, 0, tolerance, KIND " %u, h = %g: end state, h = 0.005", seed, steps[step]);
         const bool count_good = close_to((double)of->crossed(r.state), (double)fine->of->crossed(fine->state), 0,
@@ -96,7 +96,7 @@ static void one(unsigned seed)
             close_to(apart(&s, y, expected, size), 0, tolerance, KIND " %u, h = 0.005: end state by hand", seed);
         good = close_to((double)count, (double)truth.crossings, 0, KIND " %u, h = 0.005: crossings by hand", seed) &&
                good;
-        sums.worst_by_hand = fmax(sums.worst_by_hand, apart(&s, y, expected, size));
+        sums.worst_by_hand = worse(sums.worst_by_hand, apart(&s, y, expected, size));
 	sums.crossings += count;
 	sums.systems++;
 	for (int step = 0; step < STEPS; step++)

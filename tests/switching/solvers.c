@@ -249,7 +249,7 @@ static void compare(const struct subject *p)
                 good = close_to(x[i], expected, p->tolerance * most[i], "%s, h = %g, t = %g, %s", p->name, m->h, to,
                                 m->state_names[i]) &&
                        good;
-                worst = fmax(worst, fabs(x[i] - expected) / most[i]);
+                worst = worse(worst, fabs(x[i] - expected) / most[i]);
 		}
 	}
         ok(good, "%s, h = %g: CVODE with roots agrees over %g s (largest difference %.2g, tolerance %.0e)", p->name,

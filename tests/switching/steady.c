@@ -98,7 +98,7 @@ static double balance(double eta, double *a)
 		lacks(eta, a, r);
 		left = 0;
 		for (int i = 0; i < UNKNOWNS; i++)
-			left = fmax(left, fabs(r[i]));
+			left = worse(left, fabs(r[i]));
 	}
 	return left;
 }
@@ -112,7 +112,7 @@ static struct swing by_balance(double eta)
 	for (int n = 0; n < SAMPLES; n++) {
 		const double x = series(a, 2 * acos(-1) * n / SAMPLES);
 		low = fmin(low, x);
-		high = fmax(high, x);
+		high = worse(high, x);
 	}
 	return (struct swing){ (high - low) / 2, a[0] };
 }
@@ -132,7 +132,7 @@ static struct swing by_steps(const struct variant *of, double eta)
 			run_step(&r, NULL);
 		of->model->at(r.state, NULL, t - of->model->time(r.state), y);
 		low = fmin(low, y[0]);
-		high = fmax(high, y[0]);
+		high = worse(high, y[0]);
 		sum += y[0];
 	}
 	run_free(&r);

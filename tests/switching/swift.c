@@ -42,7 +42,7 @@ static bool same_crossings(const struct outcome *a, const struct outcome *b, dou
 	for (int i = 0; i < a->crossings && same; i++) {
 		const pl_crossing *x = &a->crossing[i], *y = &b->crossing[i];
 		double apart = fabs(x->time - y->time) / h;
-		tally.time = fmax(tally.time, apart);
+		tally.time = worse(tally.time, apart);
 		same = x->expression == y->expression && x->breakpoint == y->breakpoint && x->upward == y->upward &&
 		       apart <= of_time;
 	}
@@ -62,9 +62,9 @@ static void compare(const char *name, int start, const struct outcome *swift, co
 		return;
 	for (int i = 0; i < states; i++) {
 		size = fmax(size, fabs(search->y[i]));
-		apart = fmax(apart, fabs(swift->y[i] - search->y[i]));
+		apart = worse(apart, fabs(swift->y[i] - search->y[i]));
 	}
-	tally.state = fmax(tally.state, apart / size);
+	tally.state = worse(tally.state, apart / size);
 	if (same_crossings(swift, search, h) && apart / size <= of_state)
 		return;
 	if (tally.wrong++ < 5)

@@ -2,6 +2,7 @@
 /* Free drives with gaps that turn for a long time, in the type that the model was made in: -DFLOAT for float; -DKIND
  * says which. The torque is that of the drive at rest, momentum is that of the start. */
 #include "model.h"
+#include "../emitted/worse.h"
 #if KIND == 3
 #define rig gear3
 #define rig_init gear3_init
@@ -42,8 +43,8 @@ static int check(void)
 		if (k <= 100000 || k % 1009)
 			continue;
 		rig_out(&s, out);
-		worst = fmax(worst, fabs((double)out[0] - (double)u[0]) / 1.2);
-		speed = fmax(speed, fabs((double)out[2] - 100) / 100);
+		worst = worse(worst, fabs((double)out[0] - (double)u[0]) / 1.2);
+		speed = worse(speed, fabs((double)out[2] - 100) / 100);
 	}
         printf("# torque off by %.3g of its size, at most %.3g; speed by %.3g, at most %.3g\n", worst, TORQUE, speed,
                TORQUE);
@@ -66,7 +67,7 @@ static int check(void)
 	const double start = momentum(&s);
 	for (long k = 1; k <= 200000; k++) {
 		rig_step(&s);
-		worst = fmax(worst, fabs(momentum(&s) - start) / start / (double)EPSILON);
+		worst = worse(worst, fabs(momentum(&s) - start) / start / (double)EPSILON);
 	}
 	printf("# %d crossings; momentum off by %.3g epsilon, at most 4\n", (int)rig_crossed(&s), worst);
 	return worst <= 4 && rig_crossed(&s) > 10000 && rig_status(&s) == 0;
@@ -89,7 +90,7 @@ static int check(void)
 		rig_out(&turning, a);
 		rig_out(&resting, b);
 		for (int i = 0; i < 2; i++) {
-			worst = fmax(worst, fabs((double)a[i] - (double)b[i]));
+			worst = worse(worst, fabs((double)a[i] - (double)b[i]));
 			largest = fmax(largest, fabs((double)b[i]));
 		}
 	}

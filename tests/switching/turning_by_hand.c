@@ -4,6 +4,7 @@
  * hundred: 229 are looked at. */
 #include "model.h"
 #include "by_hand.h"
+#include "../emitted/worse.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -20,13 +21,13 @@ int main(void)
 		const double u[2] = { 1.2 + 2 * sin(0.05 * k), 1.1 + cos(0.03 * k) };
 		rig_at(&s, u, 0.3 * RIG_H, y);
 		by_hand_at(&e, u, 0.3 * RIG_H, z);
-		early = fmax(early, fabs(y[0] - y[1] - z[0]) / 0.1 + fabs(y[2] / 6 + y[3] * 5 / 6 - z[3]) / 100);
+		early = worse(early, fabs(y[0] - y[1] - z[0]) / 0.1 + fabs(y[2] / 6 + y[3] * 5 / 6 - z[3]) / 100);
 		rig_step(&s, u);
 		by_hand_step(&e, u);
 		rig_out(&s, a);
 		by_hand_out(&e, b);
 		for (int i = 0; i < 3; i++)
-			worst = fmax(worst, fabs(a[i] - b[i]) / size[i]);
+			worst = worse(worst, fabs(a[i] - b[i]) / size[i]);
 	}
 	printf("# %d and %d crossings; outputs off by %.3g, between steps %.3g, at most 1e-10\n", (int)rig_crossed(&s),
 		(int)by_hand_crossed(&e), worst, early);

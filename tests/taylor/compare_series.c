@@ -3,6 +3,7 @@
  * standard input. `order`: prints that of the series. DRIVEN: the model has inputs; RELATIVE: it may move as a
  * whole. */
 #include "drawn_pl.h"
+#include "../emitted/worse.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -80,7 +81,7 @@ int main(int argc, char **argv)
             return 2;
         const double lost = written_at(&s, k, c), found = c[i], difference = fabs(found - expected);
         const double tolerance = BOUND * unit * 0x1p-53 + lost;
-        worst = fmax(worst, unit > 0 ? fmax(difference - lost, 0) / (unit * 0x1p-53) : 0);
+        worst = worse(worst, unit > 0 ? fmax(difference - lost, 0) / (unit * 0x1p-53) : 0);
         seen++;
         if (difference <= tolerance)
             continue;

@@ -106,7 +106,7 @@ static double conditioning(const struct subject *s, const double *start)
     }
     for (int k = 1; k <= SECONDS; k++)
         for (int i = 0; i < s->states; i++)
-            worst = fmax(worst, (double)gain[k][i]);
+            worst = worse(worst, (double)gain[k][i]);
     return worst;
 }
 
@@ -137,7 +137,7 @@ static double error_from(const struct subject *s, const pl_model *m, const struc
         m->run(state, (size_t)lround(1 / m->h), NULL, NULL);
         m->get(state, y);
         for (int i = 0; i < s->states; i++)
-            worst = fmax(worst, (double)fabsl(y[i] - start->truth[k][i]));
+            worst = worse(worst, (double)fabsl(y[i] - start->truth[k][i]));
     }
     if (m->status(state) != 0)
         worst = INFINITY;
@@ -172,7 +172,7 @@ static void keeps(const struct subject *s, int digits, const struct start *start
         gains += log(start[i].conditioning);
         if (ratio[i] > most)
             most = ratio[worst = i];
-        beside = fmax(beside, ratio[i] / start[i].conditioning);
+        beside = worse(beside, ratio[i] / start[i].conditioning);
     }
     qsort(ratio, (size_t)count, sizeof *ratio, ascending);
     const double mean = exp(sum / count), few = ratio[count * 9 / 10];
@@ -193,7 +193,7 @@ static void truth_holds(const struct subject *s, const struct start *start)
     memcpy(y, start->truth[0], sizeof start->truth[0]);
     gragg(field(s), s->states, 0, SECONDS, 0.025L, 0, NULL, y);
     for (int i = 0; i < s->states; i++)
-        difference = fmax(difference, (double)fabsl(y[i] - start->truth[SECONDS][i]));
+        difference = worse(difference, (double)fabsl(y[i] - start->truth[SECONDS][i]));
     difference /= start->conditioning * start->most;
     ok(close_to(difference, 0, 1e-15, "%s: extrapolation", s->name), "%s: extrapolation holds (%.2g)", s->name,
         difference);

@@ -141,7 +141,7 @@ static double error_at(const struct subject *s, const pl_model *m, double second
         m->get(state, y);
         solve(s, m, (real)seconds * k / points, (real)seconds * (k + 1) / points, NULL, truth);
         for (int i = 0; i < m->states; i++)
-            worst = fmax(worst, (double)fabsl(y[i] - truth[i]) / most);
+            worst = worse(worst, (double)fabsl(y[i] - truth[i]) / most);
     }
     free(state);
     return worst;
@@ -177,7 +177,7 @@ static void beside_cvode(void)
         m->step(state, NULL);
         m->get(state, y);
         for (int i = 0; i < 4; i++)
-            worst = fmax(worst, fabs(y[i] - truth[i]));
+            worst = worse(worst, fabs(y[i] - truth[i]));
     }
     truth_free(solver);
     free(state);
@@ -206,8 +206,8 @@ static void in_float(void)
         solve(s, m, k * 0.1L, (k + 0.5L) * 0.1L, NULL, half);
         solve(s, m, k * 0.1L, (k + 1) * 0.1L, NULL, truth);
         for (int i = 0; i < 2; i++) {
-            worst = fmax(worst, (double)fabsl(y[i] - truth[i]));
-            between = fmax(between, (double)fabsl(at[i] - half[i]));
+            worst = worse(worst, (double)fabsl(y[i] - truth[i]));
+            between = worse(between, (double)fabsl(at[i] - half[i]));
         }
     }
     bool good = close_to(worst, 0, 2e-5, "states in float") && close_to(between, 0, 2e-5, "between steps");
@@ -238,8 +238,8 @@ static void late_changes(void)
         soon_float_get(&s, single);
         solve(&soon, m, k * 0.125L, (k + 1) * 0.125L, NULL, truth);
         for (int i = 0; i < 2; i++) {
-            worst = fmax(worst, (double)fabsl(y[i] - truth[i]));
-            worst_float = fmax(worst_float, (double)fabsl(single[i] - truth[i]));
+            worst = worse(worst, (double)fabsl(y[i] - truth[i]));
+            worst_float = worse(worst_float, (double)fabsl(single[i] - truth[i]));
         }
     }
     bool good = close_to(worst, 0, 2e-11, "states beside a change at %g s", LATE + 0.5);
@@ -270,7 +270,7 @@ static void holds_energy(const char *name, real (*energy)(const double *y), doub
     for (long k = 0; k < outputs; k++) {
         m->step(state, NULL);
         m->get(state, y);
-        worst = fmax(worst, (double)fabsl(energy(y) / start - 1));
+        worst = worse(worst, (double)fabsl(energy(y) / start - 1));
     }
     bool good = close_to(worst, 0, getenv("LONG") ? late : soon, "%s: energy", name);
     ok(good && m->status(state) == 0, "%s: energy over %ld outputs within %.2g", name, outputs, worst);
@@ -361,7 +361,7 @@ static void from_a_push(void)
     m->get(state, y);
     gragg(pushed, 2, 0, 2, 0.01L, 1, u, truth);
     for (int i = 0; i < 2; i++)
-        error = fmax(error, (double)fabsl(y[i] - truth[i]));
+        error = worse(error, (double)fabsl(y[i] - truth[i]));
     ok(close_to(error, 0, 1e-8, "pushed") && m->status(state) == 0, "pushed: a step after rest (%.2g)", error);
     free(state);
 }

@@ -119,7 +119,7 @@ static void compare_now(struct run *r, const real_model *a, const void *s, const
     for (int i = 0; i < a->outputs; i++)
         take(r, STATES + i, y[i], z[i]);
     const double p = (double)a->time(s), q = (double)b->time(t);
-    r->time = fmax(r->time, p == q ? 0 : fabs(p - q) / (EPSILON * fabs(q)));
+    r->time = worse(r->time, p == q ? 0 : fabs(p - q) / (EPSILON * fabs(q)));
 }
 
 static void compare_between(struct run *r, const real_model *a, const void *s, const real_model *b, const void *t,

@@ -16,6 +16,7 @@
 #include "tuned.h"
 #include "cases.h"
 #include "drawn.h"
+#include "../emitted/worse.h"
 
 #include <ctype.h>
 #include <math.h>
@@ -336,10 +337,10 @@ static void compare_states(const struct tuned *m, const char *coeffs, const stru
         for (int j = 0; j < n; j++) {
             const double found = (double)row_of(m, coeffs, m->step, i)[j], expected = square[i * n + j].value;
             compare(&met.states, found, expected, Phi, "states", i, j);
-            off = fmax(off, fabs(found - expected));
+            off = worse(off, fabs(found - expected));
         }
     if (off > 0 && !m->direct)
-        met.increment = fmax(met.increment, off / ulp(increment));
+        met.increment = worse(met.increment, off / ulp(increment));
 }
 
 /* A column of factors: one row for each state */
@@ -361,10 +362,10 @@ static void measure_ramp(const struct tuned *m, const char *coeffs, const struct
     for (int i = 0; i < m->step_entries; i++)
         for (int k = 0; k < 2; k++) {
             largest = fmax(largest, fabs(from[i * stride + k].value));
-            off = fmax(off, fabs((double)row_of(m, coeffs, m->step, i)[column + k] - from[i * stride + k].value));
+            off = worse(off, fabs((double)row_of(m, coeffs, m->step, i)[column + k] - from[i * stride + k].value));
         }
     if (off > 0)
-        met.ramps = fmax(met.ramps, off / ulp(largest));
+        met.ramps = worse(met.ramps, off / ulp(largest));
 }
 
 static void compare_columns(const struct tuned *m, const char *coeffs, const struct table *table,
@@ -533,7 +534,7 @@ static void try_values(const struct tuned *m, const char *text, const bool *vari
     }
     const double angle = largest_pole_angle(step);
     met.least_angle = met.compared == 0 ? angle : fmin(met.least_angle, angle);
-    met.most_angle = fmax(met.most_angle, angle);
+    met.most_angle = worse(met.most_angle, angle);
     compare_states(m, coeffs, step->branch->whole);
     compare_columns(m, coeffs, step->branch->whole, &step->branch->system);
     if (m->out_entries > 0)

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT-0 */
 /* runtime/retune.c: increments against Taylor's series in MPFR, equations against exact fractions. */
 #include "runtime.h"
+#include "../emitted/worse.h"
 
 /* BOUND: of an increment, in units in the last place of the largest entry.  FARTHEST: log2 of the largest |A| tau.
  * SMALLEST: below it underflow may take bits.  LOSS: of an equation, in parts of all its terms. */
@@ -156,7 +157,7 @@ static void assert_columns(const system_of *s, real tau, const real *D, int from
             mpfr_sub_d(temporary, exact_D[i * s->size + j], D[i * s->size + j], MPFR_RNDN);
             off = fabs(mpfr_get_d(temporary, MPFR_RNDN));
             if (unit > 0)
-                worst = fmax(worst, off / unit);
+                worst = worse(worst, off / unit);
             if (!(off <= BOUND * unit)) {
                 int row, column;
                 for (row = 0; row < s->size; row++)
@@ -702,7 +703,7 @@ static void assert_equations(const case_of *c, const char *family)
             mpq_sub(t, t, exact[i * wide + j]);
             off = fabs(mpq_get_d(t));
             if (terms > 0)
-                worst = fmax(worst, off / terms);
+                worst = worse(worst, off / terms);
             if (!(off <= LOSS * terms))
                 fail_msg("%s, row %d, column %d: found %.17g + %.17g, expected %.17g; off by %g, bound %g", family, i,
                          j, (double)value[i * width + j].hi, (double)value[i * width + j].lo,
