@@ -140,6 +140,7 @@ void emit_declarations(const struct emitter *e, bool rhs)
 	say(e, "enum { $N_STATES = %d, $N_INPUTS = %d, $N_OUTPUTS = %d };\n", e->system->states, e->system->inputs,
 	       e->model->outputs);
 	e->kind->constants(e);
+	emit_index_names(e);
 	say(e, "#define $N_H %s  /* step [s] */\n\n", shortest(round_rational(e->model->h)));
 	e->kind->types(e);
 	emit_state_struct(e);

@@ -393,6 +393,7 @@ void banner_parts(const struct emitter *e);
 void banner_expanded(const struct emitter *e);
 void banner_collocated(const struct emitter *e);
 void banner_normal(const struct emitter *e);
+void emit_index_names(const struct emitter *e);                    /* index_names.c: NAME_OUT_TIP and the like */
 void emit_declarations(const struct emitter *e, bool rhs);
 
 /* ---- kept.c: states as written, and as they are kept ---- */

@@ -116,8 +116,10 @@ static void follow(m *s, const char *what, double bound)
         {
             double out[M_OUTPUTS];
             m_out(s, out);
-            outputs = worse(outputs, fabs(out[4] - value(u_of[2], (n + 1) * h, 1)) / fabs(value(u_of[2], STEPS * h, 1)));
-            outputs = worse(outputs, fabs(out[5] - value(u_of[1], (n + 1) * h, 0)) / fabs(value(u_of[1], STEPS * h, 0)));
+            outputs = worse(outputs,
+                            fabs(out[4] - value(u_of[2], (n + 1) * h, 1)) / fabs(value(u_of[2], STEPS * h, 1)));
+            outputs = worse(outputs,
+                            fabs(out[5] - value(u_of[1], (n + 1) * h, 0)) / fabs(value(u_of[1], STEPS * h, 0)));
         }
 #endif
     }
