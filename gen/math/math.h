@@ -42,6 +42,29 @@ struct eigenpairs {
 /* Residuals below 2^-precision of what they are sums of; false: M is not positive definite. n x n, symmetric */
 bool symmetric_eigenpairs(int n, const mpq_t *M, const mpq_t *K, int precision, struct eigenpairs *pairs);
 
+/* ---- invariant.c: the smallest real invariant subspaces, right and left ---- */
+
+struct invariants;
+struct invariant {                  /* of eigenvalues that lie together, with their conjugates */
+	int columns;                /* of its basis: 1 of a real eigenvalue, 2 of a pair of complex ones, or more */
+	double re, im;              /* the middle of those in the upper half plane, im >= 0 */
+	bool real;                  /* its eigenvalues are real, or as good as */
+	int members, first;         /* invariant.c */
+};
+/* Of a square A, which stays: in double precision, by rising size of eigenvalues. A basis of one column, or pair, is 1
+ * in the largest of its `leading` first entries. NULL: not found */
+struct invariants *invariants_of(int n, const mpq_t *A, int leading);
+/* of A = M^-1 K of symmetric M, positive definite, and K */
+struct invariants *invariants_symmetric(int n, const mpq_t *A, const mpq_t *M, const mpq_t *K);
+int invariants_count(const struct invariants *of);
+const struct invariant *invariant_part(const struct invariants *of, int part);
+/* X and Y, n x columns, as first found: A X = X T, A^T Y = Y T^T, Y^T X = 1. Of a complex p with eigenvector v columns
+ * are Re v and Im v, T = [Re p, Im p; -Im p, Re p]. */
+void invariant_start(const struct invariants *of, int part, double *X, double *Y);
+/* T, X and Y^T (columns x n), each number to about so many bits of the largest of its column; what is no larger than
+ * what they may be wrong by is 0. False: the start is too far off. */
+bool invariant_refine(struct invariants *of, int part, int bits, mpq_t *block, mpq_t *right, mpq_t *left);
+
 /* ---- poly.c: polynomials over Z, constant term first ---- */
 
 struct poly {

@@ -177,6 +177,7 @@ struct model {
 	struct reduction reduction;
 	/* the model is over other coordinates than the written ones; NULL: over those */
 	const struct relative *relative;
+	const struct shortening *shortened; /* it is of some modes of another; NULL: it is not */
 };
 
 /* ---- relative.c: coordinates in which what may move as a whole is parted from what moves in it ---- */
@@ -470,13 +471,20 @@ struct mode {
 	/* Known once mode_refine was called; each number to 2^-MODE_BITS of the largest in its row */
 	mpq_t *block;               /* states x states */
 	mpq_t *right, *left;        /* states of the model x states; states x states of the model */
-	int first, columns;         /* of the basis: modes.c */
+	int first, columns;         /* of the basis: modes.c; coordinates, where it moves */
 };
 struct modes {
 	const struct model *model;
 	int count;
 	struct mode *mode;          /* by number */
 	struct mode_basis *basis;   /* modes.c */
+};
+struct shortening {                 /* of a model of modes */
+	const struct modes *modes;
+	const bool *kept;           /* per mode */
+	bool statics;               /* what is dropped still follows loads and inputs at once */
+	/* z = to y of the whole model's states y, and from z is what is kept of y: its states x the whole's, and back */
+	mpq_t *to, *from;
 };
 /* Of a linear model with declared outputs. NULL: `*why` says what stands against it ("a param is tunable"). */
 struct modes *modes_of(const struct model *model, const char **why);

@@ -80,18 +80,18 @@ static struct poly characteristic(const struct step *step)
 	return det;
 }
 
-struct mode { mpfr_t size, angle; };    /* ln|z|, arg z; of a pole: Re p h, |Im p| h, turns taken out */
+struct ringing { mpfr_t size, angle; };    /* ln|z|, arg z; of a pole: Re p h, |Im p| h, turns taken out */
 
-static struct mode mode_new(void)
+static struct ringing mode_new(void)
 {
-	struct mode m;
+	struct ringing m;
 	mpfr_inits2(DRIFT_BITS, m.size, m.angle, NULL);
 	return m;
 }
 
-static struct mode mode_of_eigenvalue(const struct rectangle *z)
+static struct ringing mode_of_eigenvalue(const struct rectangle *z)
 {
-	struct mode m = mode_new();
+	struct ringing m = mode_new();
 	mpfr_t re, im;
 	mpfr_inits2(DRIFT_BITS, re, im, NULL);
 	mpfi_mid(re, z->re);
@@ -104,9 +104,9 @@ static struct mode mode_of_eigenvalue(const struct rectangle *z)
 	return m;
 }
 
-static struct mode mode_of_pole(const struct rectangle *p, mpq_srcptr h)
+static struct ringing mode_of_pole(const struct rectangle *p, mpq_srcptr h)
 {
-	struct mode m = mode_new();
+	struct ringing m = mode_new();
 	mpfr_t turn;
 	mpfr_init2(turn, DRIFT_BITS);
 	mpfi_mid(m.size, p->re);
@@ -129,12 +129,12 @@ static int poles_in(const struct spectrum *spectrum)
 	return count;
 }
 
-static int modes_of(const struct spectrum *spectrum, mpq_srcptr h, struct mode **list)
+static int ringing_of(const struct spectrum *spectrum, mpq_srcptr h, struct ringing **list)
 {
 	int count = 0;
-	*list = ARRAY(struct mode, (size_t)poles_in(spectrum));
+	*list = ARRAY(struct ringing, (size_t)poles_in(spectrum));
 	if (spectrum->zero && h) {                      /* the pole 0; an eigenvalue 0 has no logarithm */
-		struct mode m = mode_new();
+		struct ringing m = mode_new();
 		mpfr_set_zero(m.size, 1);
 		mpfr_set_zero(m.angle, 1);
 		(*list)[count++] = m;
@@ -146,7 +146,7 @@ static int modes_of(const struct spectrum *spectrum, mpq_srcptr h, struct mode *
 	return count;
 }
 
-static void compare(const struct mode *z, int poles, const struct mode *pole, struct drift *drift)
+static void compare(const struct ringing *z, int poles, const struct ringing *pole, struct drift *drift)
 {
 	double nearest = -1, size = 0, angle = 0;
 	mpfr_t difference;
@@ -172,7 +172,7 @@ static void compare(const struct mode *z, int poles, const struct mode *pole, st
 struct drift drift_of(const struct step *step)
 {
 	struct drift drift = { 0, 0, false };
-	struct mode *eigenvalue, *pole;
+	struct ringing *eigenvalue, *pole;
 	mpz_t content;
 	if (step->modal)
 		return step->modal->drift;
@@ -185,7 +185,7 @@ struct drift drift_of(const struct step *step)
 	mpz_clear(content);
 	if (!spectrum_refine(map, DRIFT_BITS) || !spectrum_refine(exact, DRIFT_BITS))
 		return drift;
-	int eigenvalues = modes_of(map, NULL, &eigenvalue), poles = modes_of(exact, step->model->h, &pole);
+	int eigenvalues = ringing_of(map, NULL, &eigenvalue), poles = ringing_of(exact, step->model->h, &pole);
 	for (int i = 0; i < eigenvalues; i++)
 		compare(&eigenvalue[i], poles, pole, &drift);
 	drift.known = map->zero == 0;                   /* an eigenvalue 0: a mode that has died within one step */

@@ -397,7 +397,7 @@ static bool round_part(mpfi_srcptr x, long largest, double *value)
 	return part_size(x) < largest - NOTHING;
 }
 
-struct modes {                      /* being filled */
+struct filling {                      /* being filled */
 	const struct step *step;
 	struct modal *modal;
 	const struct block *block;
@@ -405,7 +405,7 @@ struct modes {                      /* being filled */
 };
 
 /* To the rows of the mode; `twice`: it stands for its conjugate as well */
-static bool put_rows(const struct modes *f, const struct rectangle *z, long largest, double *table, int columns,
+static bool put_rows(const struct filling *f, const struct rectangle *z, long largest, double *table, int columns,
 		     int column)
 {
 	return round_part(z->re, largest, &table[f->re * columns + column]) &&
@@ -413,7 +413,7 @@ static bool put_rows(const struct modes *f, const struct rectangle *z, long larg
 }
 
 /* 2 Re (v z) = 2 Re v re - 2 Im v im */
-static bool put_columns(const struct modes *f, const struct rectangle *v, long largest, double *row)
+static bool put_columns(const struct filling *f, const struct rectangle *v, long largest, double *row)
 {
 	bool good = round_part(v->re, largest, &row[f->re]);
 	if (f->im < 0 || !good)
@@ -434,7 +434,7 @@ static long largest_of(const struct rectangle *z, int from, int to)
 	return largest;
 }
 
-static bool put_vectors(const struct modes *f, const struct mode_vectors *m)
+static bool put_vectors(const struct filling *f, const struct mode_vectors *m)
 {
 	const struct linear *system = &f->block->system;
 	const int n = f->modal->states, split = system->n;
@@ -447,7 +447,7 @@ static bool put_vectors(const struct modes *f, const struct mode_vectors *m)
 	return good;
 }
 
-static bool put_outputs(const struct modes *f, const struct mode_vectors *m)
+static bool put_outputs(const struct filling *f, const struct mode_vectors *m)
 {
 	const struct model *model = f->step->model;
 	bool good = true;
@@ -462,7 +462,7 @@ static bool put_outputs(const struct modes *f, const struct mode_vectors *m)
 	return good;
 }
 
-static bool put_inputs(const struct modes *f, const struct mode_vectors *m)
+static bool put_inputs(const struct filling *f, const struct mode_vectors *m)
 {
 	const struct linear *system = &f->block->system;
 	mpq_srcptr h = f->step->model->h;
@@ -504,7 +504,7 @@ static bool put_inputs(const struct modes *f, const struct mode_vectors *m)
 }
 
 /* e^{(a + iw) s} and its conjugate, turned: the load's cosine and sine, in the mode */
-static bool put_oscillation(const struct modes *f, const struct mode_vectors *m, const struct load *load, int column)
+static bool put_oscillation(const struct filling *f, const struct mode_vectors *m, const struct load *load, int column)
 {
 	const struct linear *system = &f->block->system;
 	struct rectangle q, plus, minus, cosine, sine, force[2], z;
@@ -545,7 +545,7 @@ static bool put_oscillation(const struct modes *f, const struct mode_vectors *m,
 }
 
 /* e^{a s}, a constant where a is 0 */
-static bool put_growth(const struct modes *f, const struct mode_vectors *m, const struct load *load, int column)
+static bool put_growth(const struct filling *f, const struct mode_vectors *m, const struct load *load, int column)
 {
 	struct rectangle q, z, ramp, force;
 	struct rectangle *all[] = { &q, &z, &ramp, &force };
@@ -565,7 +565,7 @@ static bool put_growth(const struct modes *f, const struct mode_vectors *m, cons
 	return good;
 }
 
-static bool put_loads(const struct modes *f, const struct mode_vectors *m)
+static bool put_loads(const struct filling *f, const struct mode_vectors *m)
 {
 	const struct linear *system = &f->block->system;
 	bool good = true;
@@ -579,7 +579,7 @@ static bool put_loads(const struct modes *f, const struct mode_vectors *m)
 }
 
 /* What the rounding of e^{p h} does to the mode in a step: rounded / e^{p h} - 1 */
-static void measure_drift(const struct modes *f, const struct mode_vectors *m)
+static void measure_drift(const struct filling *f, const struct mode_vectors *m)
 {
 	struct drift *drift = &f->modal->drift;
 	struct rectangle z;
@@ -598,14 +598,14 @@ static void measure_drift(const struct modes *f, const struct mode_vectors *m)
 }
 
 /* e^{p h} */
-static bool put_power(const struct modes *f, const struct mode_vectors *m)
+static bool put_power(const struct filling *f, const struct mode_vectors *m)
 {
 	double *turn = f->modal->turn;
 	return round_part(m->power.re, size_of(&m->power), &turn[f->re]) &&
 	       (f->im < 0 || round_part(m->power.im, size_of(&m->power), &turn[f->im]));
 }
 
-static bool put_mode(const struct modes *f, const struct pole *pole, int precision)
+static bool put_mode(const struct filling *f, const struct pole *pole, int precision)
 {
 	const struct linear *system = &f->block->system;
 	struct mode_vectors m = { .states = system->states, .precision = precision };
@@ -642,7 +642,7 @@ static void count_modes(struct modal *modal, struct spectrum *const *spectrum, i
 	}
 }
 
-static bool fill_mode(struct modes *f, struct spectrum *spectrum, int factor, int i, int *pair, int *real)
+static bool fill_mode(struct filling *f, struct spectrum *spectrum, int factor, int i, int *pair, int *real)
 {
 	const bool is_real = factor < 0 || spectrum->pole[factor][i].real;
 	f->re = is_real ? 2 * f->modal->pairs + (*real)++ : (*pair)++;
@@ -703,7 +703,7 @@ static struct modal *modal_of(const struct step *step)
 	const int blocks = blocks_of(&step->branch->system, &block);
 	struct spectrum **spectrum = ARRAY(struct spectrum *, (size_t)blocks);
 	struct modal *modal = modal_new(step);
-	struct modes f = { .step = step, .modal = modal };
+	struct filling f = { .step = step, .modal = modal };
 	int pair = 0, real = 0;
 	bool good = true;
 	mpz_t content;

@@ -1,0 +1,768 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/*
+ * The smallest real invariant subspaces of a matrix, right and left, to any precision. Eigenvectors in double precision
+ * (QR: Golub and Van Loan 2013, 7.5 and 8.3) are the start, eigenvalues that lie together have one subspace. A basis X
+ * and a left one Y, Y^T X = 1, then follow from residuals in multiprecision,
+ *
+ *     T = Y^T A X,   R = A X - X T,   X <- X - sum over other eigenvectors i of v_i (w_i R) / (lambda_i - theta)
+ *
+ * and so for Y: Newton's method with the derivative of the start, which gains about as many bits a time as double
+ * precision found. All is done on the balanced matrix D^-1 A D, D of powers of two.
+ */
+#include "math/math.h"
+
+#include <gsl/gsl_complex_math.h>
+#include <gsl/gsl_eigen.h>
+#include <gsl/gsl_errno.h>
+#include <gsl/gsl_linalg.h>
+#include <math.h>
+#include <stdlib.h>
+
+enum {
+	MOST_CORRECTIONS = 60,
+	GUARD_BITS = 64,            /* of the work, beyond what is asked for */
+	SNAP_BITS = 24              /* so many bits above what is asked for a number is nothing beside its column */
+};
+#define TOGETHER_NEAR 1e-6          /* of their size: eigenvalues that share a subspace */
+#define TOGETHER_FAR 1e-12          /* of the largest, of a symmetric matrix */
+#define TOGETHER_SPLIT 3e-8         /* of any other: a double one is split by the root of what rounding does */
+
+struct cell { int row, column; };
+struct invariants {
+	int n;
+	double *scale;              /* D */
+	double *re, *im;            /* eigenvalues */
+	/* n x n, balanced: eigenvectors as columns of V; of a subspace that has several an orthonormal basis; W = V^-1 */
+	double *V_re, *V_im, *W_re, *W_im;
+	int parts;
+	struct invariant *part;
+	int *member;                /* eigenvalues, part by part; those of the lower half plane are nobody's */
+	int cells;                  /* of A that are not 0 */
+	struct cell *cell;
+	const mpq_t *A;
+	mpfr_t *value;              /* of the cells, of `precision` bits; NULL: not yet */
+	int precision;
+	double size;                /* of A, balanced: its largest row */
+};
+
+/* ---- eigenvectors in double precision ---- */
+
+static struct invariants *invariants_new(int n, const mpq_t *A)
+{
+	struct invariants *of = NEW(struct invariants);
+	const size_t cells = (size_t)n * (size_t)n;
+	*of = (struct invariants){ .n = n, .A = A };
+	of->scale = ARRAY(double, (size_t)n);
+	of->re = ARRAY(double, (size_t)n);
+	of->im = ARRAY(double, (size_t)n);
+	of->V_re = ARRAY(double, cells);
+	of->V_im = ARRAY(double, cells);
+	of->W_re = ARRAY(double, cells);
+	of->W_im = ARRAY(double, cells);
+	for (int i = 0; i < n * n; i++)
+		of->cells += mpq_sgn(A[i]) != 0;
+	of->cell = ARRAY(struct cell, (size_t)of->cells + 1);
+	for (int i = 0, c = 0; i < n * n; i++)
+		if (mpq_sgn(A[i]) != 0)
+			of->cell[c++] = (struct cell){ i / n, i % n };
+	return of;
+}
+
+static gsl_matrix *matrix_of(int n, const mpq_t *A, bool *finite)
+{
+	gsl_matrix *m = need_memory(gsl_matrix_alloc((size_t)n, (size_t)n));
+	for (int i = 0; i < n * n; i++) {
+		const double value = nearest_double(A[i]);
+		*finite = *finite && isfinite(value);
+		gsl_matrix_set(m, (size_t)(i / n), (size_t)(i % n), value);
+	}
+	return m;
+}
+
+static void measure(struct invariants *of, const gsl_matrix *A)
+{
+	for (int i = 0; i < of->n; i++) {
+		double sum = 0;
+		for (int j = 0; j < of->n; j++)
+			sum += fabs(gsl_matrix_get(A, (size_t)i, (size_t)j));
+		of->size = sum > of->size ? sum : of->size;
+	}
+}
+
+static bool general_vectors(struct invariants *of)
+{
+	const size_t n = (size_t)of->n;
+	bool found = true;
+	gsl_matrix *A = matrix_of(of->n, of->A, &found);
+	gsl_vector *D = need_memory(gsl_vector_alloc(n));
+	gsl_vector_complex *eigen = need_memory(gsl_vector_complex_alloc(n));
+	gsl_matrix_complex *V = need_memory(gsl_matrix_complex_alloc(n, n));
+	gsl_eigen_nonsymmv_workspace *work = need_memory(gsl_eigen_nonsymmv_alloc(n));
+	found = found && gsl_linalg_balance_matrix(A, D) == GSL_SUCCESS;
+	measure(of, A);
+	found = found && gsl_eigen_nonsymmv(A, eigen, V, work) == GSL_SUCCESS;
+	for (size_t i = 0; i < n && found; i++) {
+		const gsl_complex z = gsl_vector_complex_get(eigen, i);
+		of->re[i] = GSL_REAL(z);
+		of->im[i] = GSL_IMAG(z);
+		of->scale[i] = gsl_vector_get(D, i);
+		for (size_t j = 0; j < n; j++) {
+			const gsl_complex v = gsl_matrix_complex_get(V, i, j);
+			of->V_re[i * n + j] = GSL_REAL(v);
+			of->V_im[i * n + j] = GSL_IMAG(v);
+			found = found && isfinite(GSL_REAL(v)) && isfinite(GSL_IMAG(v));
+		}
+	}
+	gsl_eigen_nonsymmv_free(work);
+	gsl_matrix_complex_free(V);
+	gsl_vector_complex_free(eigen);
+	gsl_vector_free(D);
+	gsl_matrix_free(A);
+	return found;
+}
+
+/* of M^-1 K, M with a diagonal of ones after scaling */
+static bool symmetric_vectors(struct invariants *of, const mpq_t *mass, const mpq_t *stiffness)
+{
+	const size_t n = (size_t)of->n;
+	bool found = true;
+	gsl_matrix *M = matrix_of(of->n, mass, &found), *K = matrix_of(of->n, stiffness, &found);
+	gsl_matrix *V = need_memory(gsl_matrix_alloc(n, n)), *whole = NULL;
+	gsl_vector *eigen = need_memory(gsl_vector_alloc(n));
+	gsl_eigen_gensymmv_workspace *work = need_memory(gsl_eigen_gensymmv_alloc(n));
+	for (size_t i = 0; i < n; i++) {
+		const double d = gsl_matrix_get(M, i, i);
+		found = found && d > 0;
+		of->scale[i] = found ? ldexp(1, -(int)lround(log2(d) / 2)) : 1;
+	}
+	for (size_t i = 0; i < n * n; i++) {
+		const double both = of->scale[i / n] * of->scale[i % n];
+		gsl_matrix_set(M, i / n, i % n, both * gsl_matrix_get(M, i / n, i % n));
+		gsl_matrix_set(K, i / n, i % n, both * gsl_matrix_get(K, i / n, i % n));
+	}
+	whole = need_memory(gsl_matrix_alloc(n, n));
+	gsl_matrix_memcpy(whole, M);
+	found = found && gsl_eigen_gensymmv(K, M, eigen, V, work) == GSL_SUCCESS;
+	for (size_t j = 0; j < n && found; j++) {
+		double norm = 0;
+		of->re[j] = gsl_vector_get(eigen, j);
+		of->size = fabs(of->re[j]) > of->size ? fabs(of->re[j]) : of->size;
+		for (size_t i = 0; i < n; i++) {
+			double sum = 0;
+			for (size_t k = 0; k < n; k++)
+				sum += gsl_matrix_get(whole, i, k) * gsl_matrix_get(V, k, j);
+			of->V_re[i * n + j] = gsl_matrix_get(V, i, j);
+			of->W_re[j * n + i] = sum;
+			norm += sum * of->V_re[i * n + j];
+		}
+		found = norm > 0 && isfinite(norm);
+		for (size_t i = 0; i < n; i++)
+			of->W_re[j * n + i] /= norm;
+	}
+	gsl_eigen_gensymmv_free(work);
+	gsl_vector_free(eigen);
+	gsl_matrix_free(whole);
+	gsl_matrix_free(V);
+	gsl_matrix_free(K);
+	gsl_matrix_free(M);
+	return found;
+}
+
+/* ---- which eigenvalues lie together ---- */
+
+static int root_of(int *parent, int i)
+{
+	while (parent[i] != i)
+		i = parent[i] = parent[parent[i]];
+	return i;
+}
+
+static bool lie_together(const struct invariants *of, int i, int j, double far)
+{
+	const double a = hypot(of->re[i], of->im[i]), b = hypot(of->re[j], of->im[j]);
+	const double apart = hypot(of->re[i] - of->re[j], of->im[i] - of->im[j]);
+	return apart <= TOGETHER_NEAR * (a > b ? a : b) + far;
+}
+
+/* A part whose eigenvalues include conjugates of each other is real; else its conjugate is left out. */
+static void add_part(struct invariants *of, int *parent, int root)
+{
+	struct invariant part = { .first = of->parts ? of->part[of->parts - 1].first : 0, .real = true };
+	int upper = 0, lower = 0, count = 0;
+	if (of->parts)
+		part.first += of->part[of->parts - 1].members;
+	for (int i = 0; i < of->n; i++)
+		if (root_of(parent, i) == root) {
+			of->member[part.first + count++] = i;
+			upper += of->im[i] > 0;
+			lower += of->im[i] < 0;
+			part.re += of->re[i];
+			part.im += of->im[i];
+		}
+	if (lower == count)
+		return;
+	part.real = upper != count;
+	part.members = count;
+	part.columns = part.real ? count : 2 * count;
+	part.re /= count;
+	part.im = part.real ? 0 : part.im / count;
+	of->part[of->parts++] = part;
+}
+
+static int by_size(const void *a, const void *b)
+{
+	const struct invariant *p = a, *q = b;
+	const double x = hypot(p->re, p->im), y = hypot(q->re, q->im);
+	return x < y ? -1 : x > y ? 1 : p->first - q->first;
+}
+
+static void find_parts(struct invariants *of, bool symmetric)
+{
+	int *parent = ARRAY(int, (size_t)of->n);
+	double largest = 0;
+	of->part = ARRAY(struct invariant, (size_t)of->n);
+	of->member = ARRAY(int, (size_t)of->n);
+	for (int i = 0; i < of->n; i++) {
+		parent[i] = i;
+		largest = hypot(of->re[i], of->im[i]) > largest ? hypot(of->re[i], of->im[i]) : largest;
+	}
+	const double far = largest * (symmetric ? TOGETHER_FAR : TOGETHER_SPLIT);
+	for (int i = 0; i < of->n; i++)
+		for (int j = 0; j < i; j++)
+			if (lie_together(of, i, j, far))
+				parent[root_of(parent, i)] = root_of(parent, j);
+	for (int i = 0; i < of->n; i++)
+		if (root_of(parent, i) == i)
+			add_part(of, parent, i);
+	qsort(of->part, (size_t)of->parts, sizeof *of->part, by_size);
+	discard(parent);
+}
+
+/* ---- a basis of each part ---- */
+
+/* Column j less its part along column k, k of length 1 */
+static void project_out(struct invariants *of, int j, int k)
+{
+	const int n = of->n;
+	double re = 0, im = 0;
+	for (int i = 0; i < n; i++) {
+		re += of->V_re[i * n + k] * of->V_re[i * n + j] + of->V_im[i * n + k] * of->V_im[i * n + j];
+		im += of->V_re[i * n + k] * of->V_im[i * n + j] - of->V_im[i * n + k] * of->V_re[i * n + j];
+	}
+	for (int i = 0; i < n; i++) {
+		const double v_re = of->V_re[i * n + k], v_im = of->V_im[i * n + k];
+		of->V_re[i * n + j] -= re * v_re - im * v_im;
+		of->V_im[i * n + j] -= re * v_im + im * v_re;
+	}
+}
+
+static double column_length(const struct invariants *of, int j)
+{
+	double sum = 0;
+	for (int i = 0; i < of->n; i++)
+		sum += of->V_re[i * of->n + j] * of->V_re[i * of->n + j] + of->V_im[i * of->n + j] * of->V_im[i * of->n + j];
+	return sqrt(sum);
+}
+
+static void scale_column(struct invariants *of, int j, double re, double im)
+{
+	for (int i = 0; i < of->n; i++) {
+		const double v_re = of->V_re[i * of->n + j], v_im = of->V_im[i * of->n + j];
+		of->V_re[i * of->n + j] = re * v_re - im * v_im;
+		of->V_im[i * of->n + j] = re * v_im + im * v_re;
+	}
+}
+
+/* The largest of the first `leading` entries, as written, becomes 1. */
+static void scale_to_largest(struct invariants *of, int j, int leading)
+{
+	int at = 0;
+	double most = 0;
+	for (int i = 0; i < leading; i++) {
+		const double size = of->scale[i] * hypot(of->V_re[i * of->n + j], of->V_im[i * of->n + j]);
+		if (size > most * (1 + 1e-9)) {         /* the first of those that are alike */
+			most = size;
+			at = i;
+		}
+	}
+	const double re = of->V_re[at * of->n + j], im = of->V_im[at * of->n + j], square = re * re + im * im;
+	if (square > 0)
+		scale_column(of, j, re / square / of->scale[at], -im / square / of->scale[at]);
+}
+
+/* Of a real part with conjugate eigenvectors: their real and imaginary parts */
+static void make_real(struct invariants *of, const struct invariant *part)
+{
+	const int n = of->n;
+	for (int a = 0; a < part->members; a++) {
+		const int j = of->member[part->first + a];
+		const bool imaginary = of->im[j] < 0;
+		for (int i = 0; i < n; i++) {
+			if (imaginary)
+				of->V_re[i * n + j] = of->V_im[i * n + j];
+			of->V_im[i * n + j] = 0;
+		}
+	}
+}
+
+static bool orthonormalize(struct invariants *of, const struct invariant *part)
+{
+	bool good = true;
+	if (part->real)
+		make_real(of, part);
+	for (int a = 0; a < part->members; a++) {
+		const int j = of->member[part->first + a];
+		double length = column_length(of, j);
+		for (int again = 0; again < 2; again++)
+			for (int b = 0; b < a; b++)
+				project_out(of, j, of->member[part->first + b]);
+		good = good && column_length(of, j) > 1e-12 * length;
+		length = column_length(of, j);
+		if (length > 0)
+			scale_column(of, j, 1 / length, 0);
+	}
+	return good;
+}
+
+static bool complete_inverse(struct invariants *of)
+{
+	const size_t n = (size_t)of->n;
+	gsl_matrix_complex *V = need_memory(gsl_matrix_complex_alloc(n, n)),
+			   *W = need_memory(gsl_matrix_complex_alloc(n, n));
+	gsl_permutation *order = need_memory(gsl_permutation_alloc(n));
+	int sign;
+	for (size_t i = 0; i < n * n; i++)
+		gsl_matrix_complex_set(V, i / n, i % n, gsl_complex_rect(of->V_re[i], of->V_im[i]));
+	bool good = gsl_linalg_complex_LU_decomp(V, order, &sign) == GSL_SUCCESS;
+	for (size_t i = 0; i < n && good; i++) {
+		const gsl_complex pivot = gsl_matrix_complex_get(V, i, i);
+		good = GSL_REAL(pivot) != 0 || GSL_IMAG(pivot) != 0;
+	}
+	good = good && gsl_linalg_complex_LU_invert(V, order, W) == GSL_SUCCESS;
+	for (size_t i = 0; i < n * n && good; i++) {
+		const gsl_complex z = gsl_matrix_complex_get(W, i / n, i % n);
+		of->W_re[i] = GSL_REAL(z);
+		of->W_im[i] = GSL_IMAG(z);
+		good = isfinite(of->W_re[i]) && isfinite(of->W_im[i]);
+	}
+	gsl_permutation_free(order);
+	gsl_matrix_complex_free(W);
+	gsl_matrix_complex_free(V);
+	return good;
+}
+
+/* Of an eigenvalue of the lower half plane that is nobody's: the conjugate of an upper one that no other took */
+static bool conjugate_column(struct invariants *of, int j, bool *taken)
+{
+	const int n = of->n;
+	int k = 0;
+	while (k < n && (taken[k] || of->re[k] != of->re[j] || of->im[k] != -of->im[j]))
+		k++;
+	if (k == n)
+		return false;
+	taken[k] = true;
+	for (int i = 0; i < n; i++) {
+		of->V_re[i * n + j] = of->V_re[i * n + k];
+		of->V_im[i * n + j] = -of->V_im[i * n + k];
+	}
+	return true;
+}
+
+static bool find_bases(struct invariants *of, int leading)
+{
+	bool *taken = ARRAY(bool, (size_t)of->n), good = true;
+	for (int i = 0; i < of->n; i++)
+		taken[i] = of->im[i] >= 0;      /* not one of those that are nobody's */
+	for (int p = 0; p < of->parts && good; p++) {
+		const struct invariant *part = &of->part[p];
+		for (int a = 0; a < part->members; a++)
+			taken[of->member[part->first + a]] = part->real;
+		if (part->members > 1)
+			good = orthonormalize(of, part);
+		else
+			scale_to_largest(of, of->member[part->first], leading);
+	}
+	bool *nobody = ARRAY(bool, (size_t)of->n);
+	for (int i = 0; i < of->n; i++)
+		nobody[i] = of->im[i] < 0 && !taken[i];
+	for (int i = 0; i < of->n && good; i++)
+		good = !nobody[i] || conjugate_column(of, i, taken);
+	discard(taken);
+	discard(nobody);
+	return good && complete_inverse(of);
+}
+
+/* Rows of W stay as they are, but for the scale of their columns. */
+static void scale_symmetric(struct invariants *of, int leading)
+{
+	for (int j = 0; j < of->n; j++) {
+		double was = 0, is = 0;
+		for (int i = 0; i < of->n; i++)
+			was += of->V_re[i * of->n + j] * of->W_re[j * of->n + i];
+		scale_to_largest(of, j, leading);
+		for (int i = 0; i < of->n; i++)
+			is += of->V_re[i * of->n + j] * of->W_re[j * of->n + i];
+		for (int i = 0; i < of->n; i++)
+			of->W_re[j * of->n + i] *= was / is;
+	}
+}
+
+static struct invariants *sorted(struct invariants *of, bool found, bool symmetric, int leading)
+{
+	if (found)
+		find_parts(of, symmetric);
+	if (found && symmetric)
+		scale_symmetric(of, leading);
+	else if (found)
+		found = find_bases(of, leading);
+	return found ? of : NULL;
+}
+
+struct invariants *invariants_of(int n, const mpq_t *A, int leading)
+{
+	gsl_error_handler_t *handler = gsl_set_error_handler_off();
+	struct invariants *of = invariants_new(n, A);
+	of = sorted(of, general_vectors(of), false, leading);
+	gsl_set_error_handler(handler);
+	return of;
+}
+
+struct invariants *invariants_symmetric(int n, const mpq_t *A, const mpq_t *M, const mpq_t *K)
+{
+	gsl_error_handler_t *handler = gsl_set_error_handler_off();
+	struct invariants *of = invariants_new(n, A);
+	of = sorted(of, symmetric_vectors(of, M, K), true, n);
+	gsl_set_error_handler(handler);
+	return of;
+}
+
+int invariants_count(const struct invariants *of)
+{
+	return of->parts;
+}
+
+const struct invariant *invariant_part(const struct invariants *of, int part)
+{
+	return &of->part[part];
+}
+
+/* Pairs of columns are real and imaginary part; of V x, and of rows W, where y = y1 - i y2. */
+void invariant_start(const struct invariants *of, int part, double *X, double *Y)
+{
+	const struct invariant *p = &of->part[part];
+	const int n = of->n, k = p->columns;
+	for (int a = 0; a < p->members; a++)
+		for (int i = 0, j = of->member[p->first + a]; i < n; i++) {
+			const int at = p->real ? a : 2 * a;
+			X[i * k + at] = of->scale[i] * of->V_re[i * n + j];
+			Y[i * k + at] = of->W_re[j * n + i] / of->scale[i] * (p->real ? 1 : 2);
+			if (p->real)
+				continue;
+			X[i * k + at + 1] = of->scale[i] * of->V_im[i * n + j];
+			Y[i * k + at + 1] = -2 * of->W_im[j * n + i] / of->scale[i];
+		}
+}
+
+/* ---- to any precision ---- */
+
+struct correcting {
+	const struct invariants *of;
+	const struct invariant *part;
+	int k;                      /* columns */
+	mpfr_t *X, *Y, *R, *S;      /* n x k: bases, A X, A^T Y, then residuals */
+	mpfr_t *T, *G;              /* k x k */
+	mpfr_t x;
+};
+
+static void prepare_cells(struct invariants *of, int precision)
+{
+	if (of->precision >= precision)
+		return;
+	if (of->value)
+		reals_free(of->value, (size_t)of->cells);
+	of->value = reals((size_t)of->cells, precision);
+	of->precision = precision;
+	for (int c = 0; c < of->cells; c++)
+		mpfr_set_q(of->value[c], of->A[of->cell[c].row * of->n + of->cell[c].column], MPFR_RNDN);
+}
+
+/* R = A X, or A^T X */
+static void apply(const struct correcting *w, bool transposed, mpfr_t *X, mpfr_t *R)
+{
+	const struct invariants *of = w->of;
+	for (int i = 0; i < of->n * w->k; i++)
+		mpfr_set_zero(R[i], 1);
+	for (int c = 0; c < of->cells; c++) {
+		const int row = transposed ? of->cell[c].column : of->cell[c].row;
+		const int column = transposed ? of->cell[c].row : of->cell[c].column;
+		for (int a = 0; a < w->k; a++)
+			if (!mpfr_zero_p(X[column * w->k + a]))
+				mpfr_fma(R[row * w->k + a], of->value[c], X[column * w->k + a], R[row * w->k + a],
+					 MPFR_RNDN);
+	}
+}
+
+/* G = Y^T X, k x k */
+static void inner(const struct correcting *w, mpfr_t *Y, mpfr_t *X, mpfr_t *G)
+{
+	for (int a = 0; a < w->k; a++)
+		for (int b = 0; b < w->k; b++) {
+			mpfr_set_zero(G[a * w->k + b], 1);
+			for (int i = 0; i < w->of->n; i++)
+				mpfr_fma(G[a * w->k + b], Y[i * w->k + a], X[i * w->k + b], G[a * w->k + b], MPFR_RNDN);
+		}
+}
+
+static void swap_rows(mpfr_t *G, int k, int a, int b)
+{
+	for (int j = 0; j < k && a != b; j++)
+		mpfr_swap(G[a * k + j], G[b * k + j]);
+}
+
+/* G <- G^-1 by Gauss and Jordan, by way of T; false: singular */
+static bool invert(const struct correcting *w)
+{
+	const int k = w->k;
+	for (int i = 0; i < k * k; i++)
+		mpfr_set_ui(w->T[i], i / k == i % k, MPFR_RNDN);
+	for (int c = 0; c < k; c++) {
+		int pivot = c;
+		for (int r = c + 1; r < k; r++)
+			if (mpfr_cmpabs(w->G[r * k + c], w->G[pivot * k + c]) > 0)
+				pivot = r;
+		if (mpfr_zero_p(w->G[pivot * k + c]))
+			return false;
+		swap_rows(w->G, k, c, pivot);
+		swap_rows(w->T, k, c, pivot);
+		mpfr_set(w->T[k * k], w->G[c * k + c], MPFR_RNDN);
+		for (int j = 0; j < k; j++) {
+			mpfr_div(w->G[c * k + j], w->G[c * k + j], w->T[k * k], MPFR_RNDN);
+			mpfr_div(w->T[c * k + j], w->T[c * k + j], w->T[k * k], MPFR_RNDN);
+		}
+		for (int r = 0; r < k; r++) {
+			if (r == c)
+				continue;
+			mpfr_neg(w->T[k * k], w->G[r * k + c], MPFR_RNDN);
+			for (int j = 0; j < k; j++) {
+				mpfr_fma(w->G[r * k + j], w->T[k * k], w->G[c * k + j], w->G[r * k + j], MPFR_RNDN);
+				mpfr_fma(w->T[r * k + j], w->T[k * k], w->T[c * k + j], w->T[r * k + j], MPFR_RNDN);
+			}
+		}
+	}
+	for (int i = 0; i < k * k; i++)
+		mpfr_swap(w->G[i], w->T[i]);
+	return true;
+}
+
+/* Y <- Y (Y^T X)^-T */
+static bool make_dual(const struct correcting *w)
+{
+	const int k = w->k;
+	inner(w, w->Y, w->X, w->G);
+	if (!invert(w))
+		return false;
+	for (int i = 0; i < w->of->n; i++) {
+		for (int a = 0; a < k; a++) {
+			mpfr_set_zero(w->T[a], 1);
+			for (int b = 0; b < k; b++)
+				mpfr_fma(w->T[a], w->G[a * k + b], w->Y[i * k + b], w->T[a], MPFR_RNDN);
+		}
+		for (int a = 0; a < k; a++)
+			mpfr_set(w->Y[i * k + a], w->T[a], MPFR_RNDN);
+	}
+	return true;
+}
+
+/* R - X T, or X T^T; its largest entry on the balanced matrix */
+static double residual(const struct correcting *w, bool transposed, mpfr_t *X, mpfr_t *R, double *largest)
+{
+	const int k = w->k;
+	double most = 0;
+	*largest = 0;
+	for (int i = 0; i < w->of->n; i++)
+		for (int a = 0; a < k; a++) {
+			const double scale = transposed ? w->of->scale[i] : 1 / w->of->scale[i];
+			for (int b = 0; b < k; b++) {
+				mpfr_srcptr factor = w->T[transposed ? a * k + b : b * k + a];
+				mpfr_neg(w->G[0], factor, MPFR_RNDN);
+				mpfr_fma(R[i * k + a], X[i * k + b], w->G[0], R[i * k + a], MPFR_RNDN);
+			}
+			const double left = fabs(mpfr_get_d(R[i * k + a], MPFR_RNDN)) * scale;
+			const double size = fabs(mpfr_get_d(X[i * k + a], MPFR_RNDN)) * scale;
+			most = left > most ? left : most;
+			*largest = size > *largest ? size : *largest;
+		}
+	return most;
+}
+
+/* The eigenvalue that a column, or a pair of them, is corrected by */
+static void middle(const struct correcting *w, int a, double *re, double *im)
+{
+	const int step = w->part->real ? 1 : 2, at = a * step, k = w->k;
+	*re = mpfr_get_d(w->T[at * k + at], MPFR_RNDN);
+	*im = step == 1 ? 0 : mpfr_get_d(w->T[at * k + at + 1], MPFR_RNDN);
+}
+
+/* What column a of the balanced residual has of eigenvector j, divided by the distance of its eigenvalue */
+static void part_along(const struct correcting *w, bool transposed, int a, int j, const double *r_re,
+		       const double *r_im, double *re, double *im)
+{
+	const struct invariants *of = w->of;
+	const int n = of->n;
+	double theta_re, theta_im, sum_re = 0, sum_im = 0;
+	middle(w, a, &theta_re, &theta_im);
+	for (int i = 0; i < n; i++) {
+		const double v_re = transposed ? of->V_re[i * n + j] : of->W_re[j * n + i];
+		const double v_im = transposed ? of->V_im[i * n + j] : of->W_im[j * n + i];
+		sum_re += v_re * r_re[i] - v_im * r_im[i];
+		sum_im += v_re * r_im[i] + v_im * r_re[i];
+	}
+	const double x = of->re[j] - theta_re, y = of->im[j] - theta_im, square = x * x + y * y;
+	*re = (sum_re * x + sum_im * y) / square;
+	*im = (sum_im * x - sum_re * y) / square;
+}
+
+static void add_double(const struct correcting *w, mpfr_ptr to, double value, int exponent)
+{
+	mpfr_set_d((mpfr_ptr)w->x, value, MPFR_RNDN);
+	mpfr_mul_2si((mpfr_ptr)w->x, w->x, exponent, MPFR_RNDN);
+	mpfr_sub(to, to, w->x, MPFR_RNDN);
+}
+
+/* X less what its residual R asks for; `exponent`: R is looked at times 2^-exponent, so that nothing underflows */
+static void correct(const struct correcting *w, bool transposed, mpfr_t *X, mpfr_t *R, int exponent)
+{
+	const struct invariants *of = w->of;
+	const int n = of->n, step = w->part->real ? 1 : 2, k = w->k;
+	double *r = ARRAY(double, 4 * (size_t)n), *r_im = r + n, *e = r + 2 * n, *e_im = r + 3 * n;
+	const double sign = transposed ? -1 : 1;        /* y = y1 - i y2 */
+	bool *own = ARRAY(bool, (size_t)n);
+	for (int a = 0; a < w->part->members; a++)
+		own[of->member[w->part->first + a]] = true;
+	for (int a = 0; a < w->part->members; a++) {
+		for (int i = 0; i < n; i++) {
+			const double scale = transposed ? of->scale[i] : 1 / of->scale[i];
+			e[i] = e_im[i] = r_im[i] = 0;
+			for (int b = 0; b < step; b++) {
+				mpfr_mul_2si((mpfr_ptr)w->x, R[i * k + a * step + b], -exponent, MPFR_RNDN);
+				(b ? r_im : r)[i] = scale * mpfr_get_d(w->x, MPFR_RNDN) * (b ? sign : 1);
+			}
+		}
+		for (int j = 0; j < n; j++) {
+			double re, im;
+			if (own[j])
+				continue;
+			part_along(w, transposed, a, j, r, r_im, &re, &im);
+			for (int i = 0; i < n; i++) {
+				const double v_re = transposed ? of->W_re[j * n + i] : of->V_re[i * n + j];
+				const double v_im = transposed ? of->W_im[j * n + i] : of->V_im[i * n + j];
+				e[i] += v_re * re - v_im * im;
+				e_im[i] += v_re * im + v_im * re;
+			}
+		}
+		for (int i = 0; i < n; i++) {
+			const double scale = transposed ? 1 / of->scale[i] : of->scale[i];
+			add_double(w, X[i * k + a * step], scale * e[i], exponent);
+			if (step == 2)
+				add_double(w, X[i * k + a * step + 1], sign * scale * e_im[i], exponent);
+		}
+	}
+	discard(own);
+	discard(r);
+}
+
+/* false: it does not get better */
+static bool refine(const struct correcting *w, int bits)
+{
+	const double wanted = ldexp(1, -bits);
+	double before = HUGE_VAL;
+	for (int round = 0; round < MOST_CORRECTIONS; round++) {
+		double X_largest, Y_largest;
+		if (!make_dual(w))
+			return false;
+		apply(w, false, w->X, w->R);
+		apply(w, true, w->Y, w->S);
+		inner(w, w->Y, w->R, w->T);
+		const double right = residual(w, false, w->X, w->R, &X_largest) / (X_largest * w->of->size);
+		const double left = residual(w, true, w->Y, w->S, &Y_largest) / (Y_largest * w->of->size);
+		const double worst = right > left ? right : left;
+		if (!(worst <= 1) || (round > 3 && worst > before / 2))
+			return false;
+		if (worst <= wanted)
+			return true;
+		before = worst;
+		const int exponent = ilogb(worst);
+		correct(w, false, w->X, w->R, exponent);
+		correct(w, true, w->Y, w->S, exponent);
+	}
+	return false;
+}
+
+/* To `bits` behind the largest of its column; what is less than the guard is 0, as it is in truth where symmetry
+ * makes it so. */
+static void round_all(const struct correcting *w, mpfr_t *X, bool dual, int bits, mpq_t *rounded)
+{
+	const int n = w->of->n, k = w->k;
+	mpfr_t most, largest;
+	mpfr_inits2(mpfr_get_prec(X[0]), most, largest, NULL);
+	for (int a = 0; a < k; a++) {
+		mpfr_set_zero(largest, 1);
+		for (int i = 0; i < n; i++) {
+			mpfr_mul_d(most, X[i * k + a], dual ? w->of->scale[i] : 1 / w->of->scale[i], MPFR_RNDN);
+			if (mpfr_cmpabs(most, largest) > 0)
+				mpfr_abs(largest, most, MPFR_RNDN);
+		}
+		mpfr_div_2ui(largest, largest, (unsigned long)(bits - SNAP_BITS), MPFR_RNDN);
+		for (int i = 0; i < n; i++) {
+			mpfr_mul_d(most, X[i * k + a], dual ? w->of->scale[i] : 1 / w->of->scale[i], MPFR_RNDN);
+			mpfr_prec_round(X[i * k + a], bits, MPFR_RNDN);
+			if (mpfr_cmpabs(most, largest) > 0)
+				mpfr_get_q(rounded[dual ? a * n + i : i * k + a], X[i * k + a]);
+		}
+	}
+	mpfr_clears(most, largest, NULL);
+}
+
+static void round_block(const struct correcting *w, int bits, mpq_t *block)
+{
+	for (int i = 0; i < w->k * w->k; i++) {
+		const bool some = fabs(mpfr_get_d(w->T[i], MPFR_RNDN)) > ldexp(w->of->size, SNAP_BITS - bits);
+		mpfr_prec_round(w->T[i], bits, MPFR_RNDN);
+		if (some)
+			mpfr_get_q(block[i], w->T[i]);
+	}
+}
+
+bool invariant_refine(struct invariants *of, int part, int bits, mpq_t *block, mpq_t *right, mpq_t *left)
+{
+	const int n = of->n, precision = bits + GUARD_BITS;
+	struct correcting w = { .of = of, .part = &of->part[part], .k = of->part[part].columns };
+	const size_t cells = (size_t)n * (size_t)w.k, square = (size_t)w.k * (size_t)w.k + 1;
+	double *X = ARRAY(double, cells), *Y = ARRAY(double, cells);
+	prepare_cells(of, precision);
+	mpfr_init2(w.x, precision);
+	mpfr_t **all[] = { &w.X, &w.Y, &w.R, &w.S };
+	for (int i = 0; i < 4; i++)
+		*all[i] = reals(cells, precision);
+	w.T = reals(square, precision);
+	w.G = reals(square, precision);
+	invariant_start(of, part, X, Y);
+	for (size_t i = 0; i < cells; i++) {
+		mpfr_set_d(w.X[i], X[i], MPFR_RNDN);
+		mpfr_set_d(w.Y[i], Y[i], MPFR_RNDN);
+	}
+	const bool good = refine(&w, bits + GUARD_BITS / 4);
+	if (good) {
+		round_block(&w, bits, block);
+		round_all(&w, w.X, false, bits, right);
+		round_all(&w, w.Y, true, bits, left);
+	}
+	for (int i = 0; i < 4; i++)
+		reals_free(*all[i], cells);
+	reals_free(w.T, square);
+	reals_free(w.G, square);
+	mpfr_clear(w.x);
+	discard(X);
+	discard(Y);
+	return good;
+}

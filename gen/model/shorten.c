@@ -1,0 +1,440 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The model of some of its modes: their coordinates are its states, and what the others would follow at once stays as
+ * rows from loads and inputs into outputs (static correction: Craig and Kurdila 2006, 11.4, for loads at their own
+ * frequencies). Numbers of modes are dyadic rationals of a precision, and exact from here on. */
+#include "model/model.h"
+
+#include <math.h>
+#include <string.h>
+
+/* ---- the states of a model of modes ---- */
+
+struct selection {
+	struct modes *modes;
+	const bool *of;             /* per mode */
+	int states, coords;
+	int *first;                 /* per mode: its first state, or coordinate; -1: it is none of these */
+	int *place;                 /* per mode: where z_i is among the states, states of the whole model a row */
+};
+
+/* States z of a mode: coordinates first, then velocities, of all modes */
+static int place_of(const struct selection *s, int mode, int i)
+{
+	const struct mode *m = &s->modes->mode[mode];
+	return !m->moves || i < m->columns ? s->first[mode] + i : s->coords + s->first[mode] + i - m->columns;
+}
+
+static bool select_modes(struct selection *s)
+{
+	const struct modes *modes = s->modes;
+	s->first = ARRAY(int, (size_t)modes->count + 1);
+	for (int i = 0; i < modes->count; i++) {
+		const struct mode *mode = &modes->mode[i];
+		s->first[i] = s->of[i] ? s->coords : -1;
+		if (!s->of[i])
+			continue;
+		if (!mode_refine(s->modes, i))
+			return false;
+		s->coords += mode->moves ? mode->columns : mode->states;
+		s->states += mode->states;
+	}
+	return true;
+}
+
+static struct linear shape_of(const struct selection *s)
+{
+	const bool moves = s->states > s->coords;
+	struct linear shape = { .n = s->coords, .states = s->states, .segments = 1,
+				.velocity = ARRAY(int, (size_t)s->coords), .coord = ARRAY(int, (size_t)s->states) };
+	for (int i = 0; i < s->coords; i++) {
+		shape.velocity[i] = moves ? s->coords + i : -1;
+		shape.coord[i] = i;
+		if (moves)
+			shape.coord[s->coords + i] = i;
+	}
+	return linear_like(&shape);
+}
+
+static void fill_block(const struct selection *s, int index, struct linear *system)
+{
+	const struct mode *mode = &s->modes->mode[index];
+	const int c = mode->moves ? mode->columns : mode->states, k = mode->states, n = s->coords;
+	for (int i = 0; i < c; i++)
+		for (int j = 0; j < c; j++) {
+			const int cell = (s->first[index] + i) * n + s->first[index] + j;
+			const mpq_t *row = (const mpq_t *)mode->block + (mode->moves ? c + i : i) * k;
+			mpq_neg(system->K[cell], row[j]);
+			if (mode->moves)
+				mpq_neg(system->C[cell], row[c + j]);
+			if (i == j)
+				mpq_set_ui((mode->moves ? system->M : system->C)[cell], 1, 1);
+		}
+}
+
+/* ---- what drives them ---- */
+
+/* W^-1 force, at the states that are highest derivatives */
+static mpq_t *force_column(const struct modes *modes, const mpq_t *inverse, const mpq_t *force)
+{
+	const struct linear *system = &modes->model->system;
+	mpq_t *highest = rationals((size_t)system->n), *column = rationals((size_t)system->states);
+	rational_product(system->n, system->n, 1, inverse, force, highest);
+	for (int i = 0; i < system->n; i++)
+		mpq_swap(column[system->velocity[i] >= 0 ? system->velocity[i] : i], highest[i]);
+	rationals_free(highest, (size_t)system->n);
+	return column;
+}
+
+/* left column: what drives z */
+static void drive(const struct modes *modes, const struct mode *mode, const mpq_t *column, mpq_t *b)
+{
+	const int states = modes->model->system.states;
+	rational_product(mode->states, states, 1, (const mpq_t *)mode->left, column, b);
+}
+
+static void project_force(const struct selection *s, const mpq_t *inverse, const mpq_t *force, mpq_t *to)
+{
+	const struct modes *modes = s->modes;
+	mpq_t *column = force_column(modes, inverse, force);
+	for (int i = 0; i < modes->count; i++) {
+		const struct mode *mode = &modes->mode[i];
+		if (!s->of[i])
+			continue;
+		mpq_t *b = rationals((size_t)mode->states);
+		drive(modes, mode, (const mpq_t *)column, b);
+		const int from = mode->moves ? mode->columns : 0;
+		for (int j = from; j < mode->states; j++)
+			mpq_set(to[s->first[i] + j - from], b[j]);
+		rationals_free(b, (size_t)mode->states);
+	}
+	rationals_free(column, (size_t)modes->model->system.states);
+}
+
+static void project_loads(const struct selection *s, const mpq_t *inverse, struct linear *system)
+{
+	const struct linear *whole = &s->modes->model->system;
+	const int n = whole->n;
+	system->segments = whole->segments;
+	system->change = whole->change;
+	system->loads = whole->loads;
+	system->load = ARRAY(struct load, (size_t)whole->loads);
+	for (int l = 0; l < whole->loads; l++) {
+		struct load *load = &system->load[l];
+		*load = whole->load[l];
+		load->force = ARRAY(mpq_t *, (size_t)load->columns);
+		for (int k = 0; k < load->columns; k++) {
+			load->force[k] = rationals((size_t)whole->segments * (size_t)s->coords);
+			for (int part = 0; part < whole->segments; part++)
+				project_force(s, inverse, (const mpq_t *)whole->load[l].force[k] + part * n,
+					      load->force[k] + part * s->coords);
+		}
+	}
+	system->inputs = whole->inputs;
+	system->input = ARRAY(struct input, (size_t)whole->inputs);
+	for (int i = 0; i < whole->inputs; i++) {
+		system->input[i] = whole->input[i];
+		for (int k = 0; k < 2; k++) {
+			system->input[i].force[k] = rationals((size_t)s->coords);
+			project_force(s, inverse, (const mpq_t *)whole->input[i].force[k], system->input[i].force[k]);
+		}
+	}
+}
+
+/* ---- what the others follow at once ---- */
+
+struct following {
+	const struct modes *modes;
+	const mpq_t *inverse;
+	const struct mode *mode;
+	mpq_t **c;                  /* per output: its row over z */
+	struct output *output;      /* gets c P */
+	bool minus;                 /* less c P instead */
+};
+
+static void add_rows(const struct following *f, int output, const mpq_t *x, mpq_ptr to)
+{
+	mpq_t *sum = rationals(1);
+	rational_product(1, f->mode->states, 1, (const mpq_t *)f->c[output], x, sum);
+	(f->minus ? mpq_sub : mpq_add)(to, to, sum[0]);
+	rationals_free(sum, 1);
+}
+
+/* [a - T, w; -w, a - T] of a load, its inverse; false: singular */
+static bool inverse_of(const struct mode *mode, mpq_srcptr a, mpq_srcptr w, int trig, mpq_t *inverse)
+{
+	const int k = mode->states, size = trig * k;
+	int column;
+	mpq_t *F = rationals((size_t)size * (size_t)size);
+	for (int r = 0; r < size; r++)
+		for (int c = 0; c < size; c++) {
+			mpq_ptr cell = F[r * size + c];
+			if (r / k == c / k)
+				mpq_neg(cell, mode->block[r % k * k + c % k]);
+			if (r == c)
+				mpq_add(cell, cell, a);
+			if (r / k != c / k && r % k == c % k)
+				(r < c ? mpq_set : mpq_neg)(cell, w);
+		}
+	const bool regular = rational_inverse(size, (const mpq_t *)F, inverse, &column);
+	rationals_free(F, (size_t)size * (size_t)size);
+	return regular;
+}
+
+/* x = inverse (b - (power + 1) above), of one power of t of a load; above NULL: 0 */
+static void forced_power(int size, const mpq_t *inverse, mpq_t *b, const mpq_t *above, int power, mpq_t *x)
+{
+	mpq_t factor, product;
+	mpq_inits(factor, product, NULL);
+	mpq_set_si(factor, power + 1, 1);
+	for (int i = 0; i < size && above; i++) {
+		mpq_mul(product, factor, above[i]);
+		mpq_sub(b[i], b[i], product);
+	}
+	rational_product(size, size, 1, inverse, (const mpq_t *)b, x);
+	mpq_clears(factor, product, NULL);
+}
+
+static void follow_load(const struct following *f, int l, int segment)
+{
+	const struct linear *system = &f->modes->model->system;
+	const struct load *load = &system->load[l];
+	const int trig = oscillates(load->wave) ? 2 : 1, k = f->mode->states, size = trig * k;
+	const size_t cells = (size_t)size * (size_t)size;
+	mpq_t *inverse = rationals(cells), *b = rationals((size_t)size), *x = NULL;
+	const bool regular = inverse_of(f->mode, load->wave->a, load->wave->w, trig, inverse);
+	for (int power = load->powers - 1; power >= 0 && regular; power--) {
+		mpq_t *above = x;
+		x = rationals((size_t)size);
+		for (int t = 0; t < trig; t++) {
+			const mpq_t *force = (const mpq_t *)load->force[power * trig + t] + segment * system->n;
+			mpq_t *column = force_column(f->modes, f->inverse, force);
+			drive(f->modes, f->mode, (const mpq_t *)column, b + t * k);
+			rationals_free(column, (size_t)system->states);
+		}
+		forced_power(size, (const mpq_t *)inverse, b, (const mpq_t *)above, power, x);
+		for (int o = 0; o < f->modes->model->outputs; o++)
+			for (int t = 0; t < trig; t++)
+				add_rows(f, o, (const mpq_t *)x + t * k,
+					 f->output[o].load[l][(power * trig + t) * system->segments + segment]);
+		if (above)
+			rationals_free(above, (size_t)size);
+	}
+	if (x)
+		rationals_free(x, (size_t)size);
+	rationals_free(b, (size_t)size);
+	rationals_free(inverse, cells);
+}
+
+/* -T^-1 B */
+static void follow_input(const struct following *f, int input)
+{
+	const int k = f->mode->states;
+	mpq_t *inverse = rationals((size_t)k * (size_t)k), *b = rationals((size_t)k), *x = rationals((size_t)k);
+	mpq_srcptr zero = rationals(1)[0];
+	const bool regular = inverse_of(f->mode, zero, zero, 1, inverse);
+	for (int order = 0; order < 2 && regular; order++) {
+		const mpq_t *force = (const mpq_t *)f->modes->model->system.input[input].force[order];
+		mpq_t *column = force_column(f->modes, f->inverse, force);
+		drive(f->modes, f->mode, (const mpq_t *)column, b);
+		rational_product(k, k, 1, (const mpq_t *)inverse, (const mpq_t *)b, x);
+		for (int o = 0; o < f->modes->model->outputs; o++)
+			add_rows(f, o, (const mpq_t *)x, f->output[o].input[order][input]);
+		rationals_free(column, (size_t)f->modes->model->system.states);
+	}
+	rationals_free(inverse, (size_t)k * (size_t)k);
+	rationals_free(b, (size_t)k);
+	rationals_free(x, (size_t)k);
+}
+
+static mpq_t *row_over(const struct modes *modes, const struct mode *mode, const struct output *output)
+{
+	mpq_t *c = rationals((size_t)mode->states);
+	rational_product(1, modes->model->system.states, mode->states, (const mpq_t *)output->state,
+			 (const mpq_t *)mode->right, c);
+	return c;
+}
+
+/* The outputs get what this mode follows loads and inputs by; false: it was not found */
+static bool follow(struct modes *modes, int index, const mpq_t *inverse, struct output *output, bool minus)
+{
+	const struct model *model = modes->model;
+	struct following f = { .modes = modes, .inverse = inverse, .mode = &modes->mode[index], .output = output,
+			       .minus = minus };
+	bool any = false;
+	if (!mode_refine(modes, index))
+		return false;
+	f.c = ARRAY(mpq_t *, (size_t)model->outputs);
+	for (int o = 0; o < model->outputs; o++) {
+		f.c[o] = row_over(modes, f.mode, &model->output[o]);
+		for (int i = 0; i < f.mode->states; i++)
+			any = any || mpq_sgn(f.c[o][i]) != 0;
+	}
+	for (int l = 0; l < model->system.loads && any; l++)
+		for (int s = 0; s < model->system.segments; s++)
+			follow_load(&f, l, s);
+	for (int i = 0; i < model->system.inputs && any; i++)
+		follow_input(&f, i);
+	return true;
+}
+
+/* ---- the model ---- */
+
+static mpq_t *copied(size_t count, const mpq_t *q)
+{
+	mpq_t *copy = rationals(count);
+	for (size_t i = 0; i < count; i++)
+		mpq_set(copy[i], q[i]);
+	return copy;
+}
+
+/* Rows over the states of the selection; of loads and inputs as they are, or 0 */
+static struct output *rows_over(const struct selection *s, bool direct)
+{
+	const struct model *model = s->modes->model;
+	const struct linear *system = &model->system;
+	struct output *output = ARRAY(struct output, (size_t)model->outputs);
+	for (int o = 0; o < model->outputs; o++) {
+		const struct output *of = &model->output[o];
+		output[o] = *of;
+		output[o].state = rationals((size_t)s->states);
+		for (int i = 0; i < s->modes->count; i++) {
+			if (!s->of[i])
+				continue;
+			mpq_t *c = row_over(s->modes, &s->modes->mode[i], of);
+			for (int j = 0; j < s->modes->mode[i].states; j++)
+				mpq_swap(output[o].state[place_of(s, i, j)], c[j]);
+			rationals_free(c, (size_t)s->modes->mode[i].states);
+		}
+		output[o].load = ARRAY(mpq_t *, (size_t)system->loads);
+		for (int l = 0; l < system->loads; l++) {
+			const size_t cells = (size_t)(system->load[l].columns * system->segments);
+			output[o].load[l] = direct ? copied(cells, (const mpq_t *)of->load[l]) : rationals(cells);
+		}
+		for (int k = 0; k < 2; k++)
+			output[o].input[k] = direct ? copied((size_t)system->inputs, (const mpq_t *)of->input[k])
+						    : rationals((size_t)system->inputs);
+	}
+	return output;
+}
+
+/* mode3, mode3'; of a pair of poles that are not of a coordinate mode3_re, mode3_im; of several mode3a, mode3b */
+static const char *state_name(const struct mode *mode, int i)
+{
+	const int c = mode->moves ? mode->columns : mode->states;
+	const char *prime = i < c ? "" : "'";
+	if (!mode->moves && mode->states == 2 && mode->weight == 1)
+		return format("mode%d_%s", mode->number, i ? "im" : "re");
+	if (c == 1)
+		return format("mode%d%s", mode->number, prime);
+	return format("mode%d_%d%s", mode->number, i % c + 1, prime);
+}
+
+/* left y: exactly, of the rounded numbers of left */
+static void project_start(const struct selection *s, mpq_t *initial)
+{
+	const struct model *model = s->modes->model;
+	for (int i = 0; i < s->modes->count; i++) {
+		const struct mode *mode = &s->modes->mode[i];
+		if (!s->of[i])
+			continue;
+		mpq_t *z = rationals((size_t)mode->states);
+		drive(s->modes, mode, (const mpq_t *)model->initial, z);
+		for (int j = 0; j < mode->states; j++)
+			mpq_swap(initial[place_of(s, i, j)], z[j]);
+		rationals_free(z, (size_t)mode->states);
+	}
+}
+
+static struct model *model_of(const struct selection *s, bool direct)
+{
+	const struct model *model = s->modes->model;
+	struct model *shorter = NEW(struct model);
+	int column;
+	mpq_t *inverse = rationals((size_t)model->n * (size_t)model->n);
+	leading_inverse(&model->system, inverse, &column);
+	*shorter = *model;
+	shorter->n = s->coords;
+	shorter->system = shape_of(s);
+	shorter->state_name = ARRAY(const char *, (size_t)s->states);
+	shorter->initial = rationals((size_t)s->states);
+	for (int i = 0; i < s->modes->count; i++) {
+		for (int j = 0; s->of[i] && j < s->modes->mode[i].states; j++)
+			shorter->state_name[place_of(s, i, j)] = state_name(&s->modes->mode[i], j);
+		if (s->of[i])
+			fill_block(s, i, &shorter->system);
+	}
+	shorter->coord_name = shorter->state_name;
+	project_loads(s, (const mpq_t *)inverse, &shorter->system);
+	project_start(s, shorter->initial);
+	shorter->highest = ARRAY(struct output *, (size_t)s->coords);
+	shorter->output = rows_over(s, direct);
+	return shorter;
+}
+
+/* Matrices between the states of the model and those of the selection: z = to y, and y = from z of what is kept */
+static struct shortening *shortening_of(const struct selection *s, bool statics)
+{
+	const int states = s->modes->model->system.states, n = s->states;
+	struct shortening *of = NEW(struct shortening);
+	*of = (struct shortening){ .modes = s->modes, .kept = s->of, .statics = statics };
+	of->to = rationals((size_t)n * (size_t)states);
+	of->from = rationals((size_t)n * (size_t)states);
+	for (int i = 0; i < s->modes->count; i++) {
+		const struct mode *mode = &s->modes->mode[i];
+		for (int j = 0; s->of[i] && j < mode->states; j++)
+			for (int k = 0; k < states; k++) {
+				const int at = place_of(s, i, j);
+				mpq_set(of->to[at * states + k], mode->left[j * states + k]);
+				mpq_set(of->from[k * n + at], mode->right[k * mode->states + j]);
+			}
+	}
+	return of;
+}
+
+static bool follow_dropped(struct modes *modes, const bool *kept, struct output *output, bool minus)
+{
+	const struct model *model = modes->model;
+	int column;
+	mpq_t *inverse = rationals((size_t)model->n * (size_t)model->n);
+	bool good = true;
+	leading_inverse(&model->system, inverse, &column);
+	for (int i = 0; i < modes->count && good; i++)
+		good = kept[i] || follow(modes, i, (const mpq_t *)inverse, output, minus);
+	rationals_free(inverse, (size_t)model->n * (size_t)model->n);
+	return good;
+}
+
+struct model *modes_kept(struct modes *modes, const bool *kept, bool statics)
+{
+	struct selection s = { .modes = modes, .of = kept };
+	if (!select_modes(&s) || s.states == 0)
+		return NULL;
+	struct model *shorter = model_of(&s, true);
+	if (statics && !follow_dropped(modes, kept, shorter->output, false))
+		return NULL;
+	shorter->shortened = shortening_of(&s, statics);
+	return shorter;
+}
+
+struct model *modes_dropped(struct modes *modes, const bool *kept, bool statics)
+{
+	bool *dropped = ARRAY(bool, (size_t)modes->count);
+	struct selection s = { .modes = modes, .of = dropped };
+	for (int i = 0; i < modes->count; i++)
+		dropped[i] = !kept[i];
+	if (!select_modes(&s) || s.states == 0)
+		return NULL;
+	struct model *error = model_of(&s, false);
+	if (statics && !follow_dropped(modes, kept, error->output, true))
+		return NULL;
+	return error;
+}
+
+double modes_loss(const struct modes *modes, const bool *kept, bool statics, int output)
+{
+	double sum = 0;
+	for (int i = 0; i < modes->count; i++)
+		if (!kept[i])
+			sum += statics ? modes->mode[i].transient[output] : modes->mode[i].size[output];
+	return sum;
+}
