@@ -27,6 +27,8 @@ static bool make_model(struct work *w)
 		return false;
 	if (request->reduce)
 		w->model = model_reduce(w->model);
+	if (w->model)
+		w->model = model_shorten(w->model);
 	return w->model;
 }
 

@@ -41,6 +41,7 @@ static void take_rhs(struct options *options, const char *value) { (void)value; 
 static void take_step(struct options *options, const char *value) { options->request.step = value; }
 static void take_scheme(struct options *options, const char *value) { options->request.scheme = value; }
 static void take_tolerance(struct options *options, const char *value) { options->request.tolerance = value; }
+static void take_modes(struct options *options, const char *value) { options->request.modes = value; }
 static void take_prefix(struct options *options, const char *value) { options->request.prefix = value; }
 static void take_depfile(struct options *options, const char *value) { options->depfile = value; }
 
@@ -167,6 +168,7 @@ static const struct row {
 	{ "D", "NAME=EXPR", "another value for a param; EXPR may use the spec's params", take_definition, NULL },
 	{ "prefix", "NAME", "instead of the model's name for everything generated", take_prefix, NULL },
 	{ "reduce", NULL, "leave out what the outputs cannot see", take_reduce, NULL },
+	{ "modes", "N", "keep the N modes that matter most to the outputs; 1,2,9: those", take_modes, NULL },
 	{ "rows", "K", "in a block of NAME_run; 1: step by step (default: by the model's size)", take_rows, NULL },
 	{ "depfile", "FILE", "also write a make/ninja dependency file", take_depfile, NULL },
 	{ "selftest", NULL, "also emit NAME_selftest: steps against the closed form", take_selftest, NULL },
@@ -279,6 +281,8 @@ static void note_all(struct options *options)
 		note_in_banner(options, format("--scheme %s", request->scheme));
 	if (request->tolerance)
 		note_in_banner(options, format("--tolerance %s", request->tolerance));
+	if (request->modes)
+		note_in_banner(options, format("--modes \"%s\"", request->modes));
 	if (request->step)
 		note_in_banner(options, format("--step %s", request->step));
 	if (request->prefix)

@@ -456,6 +456,27 @@ static void begin_model(struct building *b)
 	b->polynomial = wave_of(&b->collector, zero, zero, zero);
 }
 
+/* The statement `modes`, or --modes in its place */
+static void evaluate_modes(void *context)
+{
+	struct building *b = context;
+	struct wanted_modes *wanted = &b->model->modes;
+	struct mode_list list = b->spec->modes;
+	if (b->request->modes)
+		list = parse_mode_list(b->spec, source_argument(b->request->modes));
+	if (!list.at.source)
+		abandon();
+	*wanted = (struct wanted_modes){ list.at, list.count, ARRAY(int, (size_t)list.count), list.each,
+					 !list.without_static };
+	for (int i = 0; i < list.count; i++) {
+		wanted->number[i] = whole_number(b, list.number[i], 1, LIMIT_STATES,
+						 list.each ? "the number of a mode" : "a count of modes");
+		for (int j = 0; j < i; j++)
+			if (wanted->number[j] == wanted->number[i])
+				error(list.number[i]->start, NULL, "mode %d is in the list already", wanted->number[i]);
+	}
+}
+
 /* Params, equations and outputs as forms; initial values and the step. With values of the tunable params no more than
  * the equations: what nothing reads may not be defined there. */
 static void collect_model(struct building *b)
@@ -468,6 +489,8 @@ static void collect_model(struct building *b)
 	statement_guard(choose_scheme, b);
 	if (all)
 		statement_guard(evaluate_truncation, b);
+	if (all && (b->spec->modes.at.source || request->modes))
+		statement_guard(evaluate_modes, b);
 	b->collector.constant_only = false;     /* where what had to be constant was not */
 	collect_intervals(b);
 	if (all)

@@ -97,6 +97,7 @@ struct smoothness {                 /* of what is left over, else of the equatio
 };
 struct request {                    /* what the user asks for on the command line; of most, a spec may say it too */
 	const char *step, *scheme, *prefix, *tolerance;
+	const char *modes;
 	bool reduce;
 	bool loads_left;            /* known loads are left to the scheme */
 	bool compensated;           /* two-word arithmetic */
@@ -128,6 +129,12 @@ struct truncation {                 /* of a Taylor series */
 	bool adaptive;              /* steps as long as the tolerance lets them be; else each is h */
 	mpq_t tolerance;            /* of the last terms, relative to the largest of each state; 0: not looked at */
 	int substeps;               /* most within one h */
+};
+struct wanted_modes {               /* of the statement `modes`, or of --modes */
+	struct place at;            /* source NULL: all */
+	int count, *number;
+	bool each;                  /* those numbers; else number[0] is how many, the best */
+	bool statics;               /* what is dropped follows loads and inputs at once */
 };
 struct reduction {                  /* what --reduce found */
 	int *place;                 /* of a reduced model, per written state: the state that is it, or -1 */
@@ -175,6 +182,7 @@ struct model {
 	struct output **highest;
 	const struct model *written; /* itself; of a reduced model: the one that it was made of */
 	struct reduction reduction;
+	struct wanted_modes modes;
 	/* the model is over other coordinates than the written ones; NULL: over those */
 	const struct relative *relative;
 	const struct shortening *shortened; /* it is of some modes of another; NULL: it is not */
@@ -522,7 +530,7 @@ struct model *modes_dropped(struct modes *modes, const bool *kept, bool statics)
  * In double precision. */
 double modes_loss(const struct modes *modes, const bool *kept, bool statics, int output);
 /* What the statement `modes` or --modes asks for; the model itself where neither does. NULL: it was said why not */
-struct model *model_shorten(struct model *model, const struct request *request);
+struct model *model_shorten(struct model *model);
 
 /* ---- warnings.c: what a spec may say but is better told about ---- */
 

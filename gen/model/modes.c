@@ -36,17 +36,14 @@ static const char *objection_of_outputs(const struct model *model)
 
 static const char *objection(const struct model *model)
 {
-	const struct scheme_row *row = scheme_row(model->scheme);
 	if (model->switching)
 		return "the equations are piecewise linear, and each region has modes of its own";
+	if (model->scheme != SCHEME_EXACT)
+		return format("scheme %s does not step the equations exactly", scheme_name(model->scheme));
 	if (model->operators)
 		return "the equations are not linear: something is left over";
 	if (model->tuning)
 		return "there are tunable params, and modes follow from them";
-	if (model->system.heldK || row->holds_coupling || row->expands || row->collocates || row->modes)
-		return format("scheme %s does not step the linear equations exactly", scheme_name(model->scheme));
-	if (model->loads_left)
-		return "known loads are left to the scheme";
 	if (model->written != model)
 		return "--reduce has taken other states: what no output sees is left out with modes, too";
 	return objection_of_outputs(model);

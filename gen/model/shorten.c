@@ -4,8 +4,6 @@
  * frequencies). Numbers of modes are dyadic rationals of a precision, and exact from here on. */
 #include "model/model.h"
 
-#include <math.h>
-#include <string.h>
 
 /* ---- the states of a model of modes ---- */
 
@@ -14,7 +12,6 @@ struct selection {
 	const bool *of;             /* per mode */
 	int states, coords;
 	int *first;                 /* per mode: its first state, or coordinate; -1: it is none of these */
-	int *place;                 /* per mode: where z_i is among the states, states of the whole model a row */
 };
 
 /* States z of a mode: coordinates first, then velocities, of all modes */
@@ -437,4 +434,91 @@ double modes_loss(const struct modes *modes, const bool *kept, bool statics, int
 		if (!kept[i])
 			sum += statics ? modes->mode[i].transient[output] : modes->mode[i].size[output];
 	return sum;
+}
+
+/* ---- the statement ---- */
+
+static void put_modes(struct modes *modes, bool *kept, const struct wanted_modes *wanted)
+{
+	const int *order = modes_by_share(modes);
+	int count = 0, rigid = 0;
+	for (int i = 0; i < modes->count; i++) {
+		const struct mode *mode = &modes->mode[i];
+		rigid += mode->rigid && mode->seen ? mode->weight : 0;
+	}
+	if (rigid > wanted->number[0])
+		error(wanted->at, "what moves as a whole is never dropped where an output sees it",
+		      "%d rigid mode%s seen by the outputs: no fewer can be kept", rigid,
+		      rigid > 1 ? "s are" : " is");
+	for (int i = 0; i < modes->count && count < wanted->number[0]; i++) {
+		const struct mode *mode = &modes->mode[order[i]];
+		kept[order[i]] = mode->seen;
+		count += mode->seen ? mode->weight : 0;
+	}
+}
+
+/* The mode that has this number */
+static int mode_of_number(const struct modes *modes, int number)
+{
+	for (int i = 0; i < modes->count; i++)
+		if (number < modes->mode[i].number + modes->mode[i].weight)
+			return i;
+	return -1;
+}
+
+static int modes_in(const struct modes *modes)
+{
+	const struct mode *last = &modes->mode[modes->count - 1];
+	return last->number + last->weight - 1;
+}
+
+static void put_listed(struct modes *modes, bool *kept, const struct wanted_modes *wanted)
+{
+	for (int i = 0; i < wanted->count; i++) {
+		const int index = mode_of_number(modes, wanted->number[i]);
+		if (index < 0)
+			error(wanted->at, NULL, "there is no mode %d: the model has %d", wanted->number[i],
+			      modes_in(modes));
+		kept[index] = true;
+	}
+	for (int i = 0; i < modes->count; i++)
+		if (modes->mode[i].rigid && modes->mode[i].seen && !kept[i])
+			error(wanted->at, "what moves as a whole is never dropped where an output sees it",
+			      "mode %d is rigid and seen by an output: it has to be kept", modes->mode[i].number);
+}
+
+struct shortened { struct model *model, *shorter; };
+
+static void shorten(void *context)
+{
+	struct shortened *s = context;
+	const struct wanted_modes *wanted = &s->model->modes;
+	const char *why;
+	struct modes *modes = modes_of(s->model, &why);
+	if (!modes)
+		error(wanted->at, NULL, "modes cannot be left out: %s", why);
+	if (!wanted->each && wanted->number[0] > modes_in(modes))
+		error(wanted->at, NULL, "%d modes cannot be kept: the model has %d", wanted->number[0],
+		      modes_in(modes));
+	bool *kept = ARRAY(bool, (size_t)modes->count);
+	(wanted->each ? put_listed : put_modes)(modes, kept, wanted);
+	bool any = false;
+	for (int i = 0; i < modes->count; i++)
+		any = any || kept[i];
+	if (!any)
+		error(wanted->at, NULL, "nothing would be left: no output sees a mode that anything reaches");
+	s->shorter = modes_kept(modes, kept, wanted->statics);
+	if (!s->shorter)
+		error(wanted->at, NULL, "modes cannot be left out: two poles are too close for double precision");
+	s->shorter->reduction.place = ARRAY(int, (size_t)s->model->system.states);
+	for (int i = 0; i < s->model->system.states; i++)
+		s->shorter->reduction.place[i] = -1;    /* no written state is a state */
+}
+
+struct model *model_shorten(struct model *model)
+{
+	struct shortened s = { model, NULL };
+	if (!model->modes.at.source)
+		return model;
+	return statement_guard(shorten, &s) ? s.shorter : NULL;
 }

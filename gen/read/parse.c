@@ -865,6 +865,33 @@ static void read_bound(struct parser *p, const char *word, struct node **bound)
 static void read_tolerance(struct parser *p) { read_bound(p, "tolerance", &p->spec->tolerance); }
 static void read_substeps(struct parser *p) { read_bound(p, "substeps", &p->spec->substeps); }
 
+/* expression { , expression } [ , ] [ without static ] */
+static struct mode_list take_modes(struct parser *p)
+{
+	struct mode_list list = { .at = p->token.at };
+	do {
+		if (list.count > 0 && (p->token.kind == TOKEN_END || p->token.kind == TOKEN_NAME))
+			break;                  /* a comma at the end makes a list of one */
+		ENLARGE(list.number, (size_t)list.count + 1);
+		list.number[list.count++] = read_expression(p);
+		list.each = list.each || is_op(p, ",");
+	} while (take_op(p, ","));
+	list.without_static = take_word(p, "without");
+	if (list.without_static && !take_word(p, "static"))
+		unexpected(p, "'static'");
+	expect_end(p);
+	return list;
+}
+
+/* modes: modes expression { , expression } [ without static ] */
+static void read_modes(struct parser *p)
+{
+	struct place at = last_token(p, 5);
+	if (p->spec->modes.at.source)
+		error(at, NULL, "the modes are given already");
+	p->spec->modes = take_modes(p);
+}
+
 static void expect_word(struct parser *p, const char *word)
 {
 	if (!take_word(p, word))
@@ -1019,10 +1046,10 @@ static const struct statement {
 	{ "let", read_let }, { "output", read_output }, { "step", read_step }, { "scheme", read_scheme },
 	{ "input", read_input }, { "matrix", read_matrix_statement }, { "mass", read_mass }, { "spring", read_spring },
 	{ "damper", read_damper }, { "force", read_force }, { "operator", read_operator }, { "tunable", read_tunable },
-	{ "tolerance", read_tolerance }, { "substeps", read_substeps }
+	{ "tolerance", read_tolerance }, { "substeps", read_substeps }, { "modes", read_modes }
 };
 
-/* tolerance and substeps may be names of a spec's own: in an equation an operator or a prime follows; a sign is that of
+/* tolerance, substeps and modes may be names of a spec's own: in an equation an operator or a prime follows; a sign is that of
  * a number where the line has no =; an = is no equation where there is no such name. */
 static bool opens_statement(const struct spec *spec, const struct statement *statement, struct token token)
 {
@@ -1237,4 +1264,23 @@ struct node *parse_argument(struct spec *spec, const struct source *source, size
 	struct argument argument = { .parser = { .spec = spec, .lexer = { source, from, source->length } } };
 	statement_guard(read_argument, &argument);
 	return argument.value;
+}
+
+struct listing {
+	struct parser parser;
+	struct mode_list list;
+};
+
+static void read_listing(void *context)
+{
+	struct listing *listing = context;
+	take(&listing->parser);                 /* the first token, before which there is none */
+	listing->list = take_modes(&listing->parser);
+}
+
+struct mode_list parse_mode_list(struct spec *spec, const struct source *source)
+{
+	struct listing listing = { .parser = { .spec = spec, .lexer = { source, 0, source->length } } };
+	const struct mode_list none = { .count = 0 };
+	return statement_guard(read_listing, &listing) ? listing.list : none;
 }

@@ -116,6 +116,13 @@ struct fixed {                      /* of `operator at NAME = value, value, ...`
 	int values;
 	struct node **value;
 };
+struct mode_list {                  /* of `modes 6` or `modes 1, 2, 9`, and `without static` behind it */
+	struct place at;            /* source NULL: there is none */
+	struct node **number;
+	int count;
+	bool each;                  /* a comma stands there: modes by their numbers; else so many, the best */
+	bool without_static;
+};
 struct tunable {                    /* a param that the target may change */
 	struct place at;
 	struct symbol *symbol;
@@ -150,11 +157,13 @@ struct spec {                       /* what the text says, names resolved, nothi
 	struct fixed *fixed;
 	int tunables;
 	struct tunable *tunable;
+	struct mode_list modes;
 	struct place end;
 };
 struct spec *parse_spec(const struct source *source);
 /* an expression from the command line */
 struct node *parse_argument(struct spec *spec, const struct source *source, size_t from);
+struct mode_list parse_mode_list(struct spec *spec, const struct source *source); /* likewise; at.source NULL: wrong */
 struct symbol *spec_find(const struct spec *spec, const char *name);
 char *text_between(struct place start, struct place end);   /* without comments, white space folded */
 

@@ -247,7 +247,7 @@ static void build(void *context)
 	const struct model *model = step->model;
 	step->kind = kind_of_step(model);
 	step->form = FORM_DIRECT;
-	step->written = resolvent_of(&model->written->system);
+	step->written = resolvent_of(&(model->shortened ? model : model->written)->system);
 	check_pole_size(model, step->written);
 	check_holds(step);
 	take_operators(step);
