@@ -592,40 +592,6 @@ static void describe(const struct survey *s, struct mode *mode)
 	discard(p.T);
 }
 
-/* What may have a pole 0 is looked at in more digits. */
-static bool find_rigid(struct modes *modes, int index)
-{
-	struct mode *mode = &modes->mode[index];
-	if (!mode_refine(modes, index))
-		return false;
-	const int c = mode->moves ? mode->columns : mode->states, k = mode->states;
-	bool zero = true;
-	double largest = 0;
-	for (int i = 0; i < modes->count; i++)
-		largest = fmax(largest, fabs(invariant_part(modes->basis->invariants, modes->mode[i].first)->re));
-	mpq_t trace;
-	mpq_init(trace);
-	for (int i = 0; i < c; i++)
-		for (int j = 0; j < c && mode->moves; j++)
-			zero = zero && mpq_sgn(mode->block[(c + i) * k + j]) == 0;
-	for (int i = 0; i < c && !mode->moves; i++)
-		mpq_add(trace, trace, mode->block[i * k + i]);
-	if (!mode->moves)
-		zero = fabs(nearest_double(trace)) <= 1e-25 * largest;
-	mpq_clear(trace);
-	mode->rigid = zero;
-	if (zero)
-		mode->re = mode->moves ? mode->re : 0;
-	return true;
-}
-
-static int by_frequency(const void *a, const void *b)
-{
-	const struct mode *p = a, *q = b;
-	const double x = hypot(p->re, p->im), y = hypot(q->re, q->im);
-	return x < y ? -1 : x > y ? 1 : p->first - q->first;
-}
-
 static double largest_eigenvalue(const struct mode_basis *basis)
 {
 	double largest = 0;
@@ -634,6 +600,91 @@ static double largest_eigenvalue(const struct mode_basis *basis)
 		largest = fmax(largest, hypot(part->re, part->im));
 	}
 	return largest;
+}
+
+/* To the nearest of so many bits */
+static void round_to_bits(mpq_ptr q, int bits)
+{
+	mpfr_t x;
+	mpfr_init2(x, bits);
+	mpfr_set_q(x, q, MPFR_RNDN);
+	mpfr_get_q(q, x);
+	mpfr_clear(x);
+}
+
+/* Two poles 0 with one eigenvector: z becomes (z_i, row i of the block times z), i the larger row, whose derivatives are
+ * exactly the second and 0. */
+static void straighten(struct mode *mode, int states)
+{
+	mpq_t *S = rationals(4), *inverse = rationals(4), *left = rationals(2 * (size_t)states),
+	      *right = rationals(2 * (size_t)states);
+	const mpq_t *T = (const mpq_t *)mode->block;
+	int column;
+	const bool second = fabs(nearest_double(T[2])) + fabs(nearest_double(T[3])) >
+			    fabs(nearest_double(T[0])) + fabs(nearest_double(T[1]));
+	mpq_set_ui(S[second], 1, 1);
+	mpq_set(S[2], T[2 * second]);
+	mpq_set(S[3], T[2 * second + 1]);
+	if (rational_inverse(2, (const mpq_t *)S, inverse, &column)) {
+		rational_product(2, 2, states, (const mpq_t *)S, (const mpq_t *)mode->left, left);
+		rational_product(states, 2, 2, (const mpq_t *)mode->right, (const mpq_t *)inverse, right);
+		for (int i = 0; i < 2 * states; i++) {
+			mpq_swap(mode->left[i], left[i]);
+			round_to_bits(right[i], MODE_BITS);
+			round_to_bits(mode->left[i], MODE_BITS);
+			mpq_swap(mode->right[i], right[i]);
+		}
+		for (int i = 0; i < 4; i++)
+			mpq_set_ui(mode->block[i], i == 1, 1);
+	}
+	rationals_free(S, 4);
+	rationals_free(inverse, 4);
+	rationals_free(left, 2 * (size_t)states);
+	rationals_free(right, 2 * (size_t)states);
+}
+
+/* T^2 = 0, as far as its digits tell, or of one state T = 0 */
+static bool is_nilpotent(const struct mode *mode, double largest)
+{
+	const int k = mode->states;
+	mpq_t *square = rationals((size_t)k * (size_t)k);
+	double most = 0;
+	rational_product(k, k, k, (const mpq_t *)mode->block, (const mpq_t *)mode->block, square);
+	for (int i = 0; i < k * k; i++)
+		most = fmax(most, fabs(nearest_double(square[i])));
+	rationals_free(square, (size_t)k * (size_t)k);
+	return most <= 1e-25 * largest * largest;
+}
+
+/* What may have a pole 0 is looked at in more digits. */
+static bool find_rigid(struct modes *modes, int index)
+{
+	struct mode *mode = &modes->mode[index];
+	if (!mode_refine(modes, index))
+		return false;
+	const int c = mode->moves ? mode->columns : mode->states, k = mode->states;
+	bool zero = true;
+	const double largest = largest_eigenvalue(modes->basis);
+	for (int i = 0; i < c; i++)
+		for (int j = 0; j < c && mode->moves; j++)
+			zero = zero && mpq_sgn(mode->block[(c + i) * k + j]) == 0;
+	if (!mode->moves)
+		zero = is_nilpotent(mode, largest);
+	mode->rigid = zero;
+	if (zero && !mode->moves) {
+		mode->re = 0;
+		mode->weight = (mode->states + 1) / 2;
+		if (mode->states == 2)
+			straighten(mode, modes->model->system.states);
+	}
+	return true;
+}
+
+static int by_frequency(const void *a, const void *b)
+{
+	const struct mode *p = a, *q = b;
+	const double x = hypot(p->re, p->im), y = hypot(q->re, q->im);
+	return x < y ? -1 : x > y ? 1 : p->first - q->first;
 }
 
 static void list_modes(const struct survey *s, struct modes *modes)
@@ -648,8 +699,6 @@ static void list_modes(const struct survey *s, struct modes *modes)
 		describe(s, &modes->mode[i]);
 	}
 	qsort(modes->mode, (size_t)modes->count, sizeof *modes->mode, by_frequency);
-	for (int i = 0, number = 1; i < modes->count; number += modes->mode[i++].weight)
-		modes->mode[i].number = number;
 }
 
 struct modes *modes_of(const struct model *model, const char **why)
@@ -676,6 +725,8 @@ struct modes *modes_of(const struct model *model, const char **why)
 		if (!*why && size * (s.basis->moves ? 1 : size) <= PERHAPS_RIGID && !find_rigid(modes, i))
 			*why = "two poles are too close for double precision";
 	}
+	for (int i = 0, number = 1; i < modes->count; number += modes->mode[i++].weight)
+		modes->mode[i].number = number;
 	for (int i = 0; i < modes->count && !*why; i++)
 		survey_mode(&s, &modes->mode[i]);
 	find_shares(modes);
@@ -700,6 +751,7 @@ static void lift_exactly(const struct modes *modes, struct mode *mode, const mpq
 		for (int j = 0; j < c; j++) {
 			mpq_neg(mode->block[(c + i) * k + j], theta[i * c + j]);
 			mpq_neg(mode->block[(c + i) * k + c + j], damping[i * c + j]);
+			round_to_bits(mode->block[(c + i) * k + c + j], MODE_BITS);
 		}
 		for (int j = 0; j < n; j++) {
 			mpq_set(mode->right[j * k + i], X[j * c + i]);
