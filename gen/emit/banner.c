@@ -78,12 +78,36 @@ static void banner_growth(const struct emitter *e)
 	       "(largest real part of its poles; the poles above are exact).\n", growth_rate(e->step));
 }
 
+/* Which modes are kept, and what is lost at most */
+static void banner_shortening(const struct emitter *e)
+{
+	enum { WIDTH = 100 };
+	const struct model *model = e->model;
+	const char *line = format(" * From the start and under the loads%s outputs lose at most",
+				  model->system.inputs ? ", inputs 0," : "");
+	say(e, " * Modes %s of %d are kept; %s.\n", mode_numbers(model->shortened, true),
+	    modes_of_model(model->shortened), statics_text(model));
+	for (int i = 0; i < model->outputs; i++) {
+		const char *loss = loss_text(model, i);
+		if (strlen(line) + strlen(loss) > WIDTH) {
+			say(e, "%s\n", line);
+			line = " *    ";
+		}
+		line = format("%s %s%s", line, loss, i + 1 < model->outputs ? "," : " (sums of |residues|, for all time).");
+	}
+	say(e, "%s\n", line);
+}
+
 void banner_linear(const struct emitter *e)
 {
 	banner_scheme(e);
 	if (!scheme_row(e->model->scheme)->holds_coupling)
-		say(e, " * %sothing is approximated; each constant is its closed form, correctly rounded.\n",
-		    e->model->scheme == SCHEME_EXACT ? "Scheme exact: n" : "Nothing is left over: n");
+		say(e, " * %sothing %sis approximated; each constant is its closed form, correctly rounded.\n",
+		    e->model->shortened ? "Modes are dropped, n"
+		    : e->model->scheme == SCHEME_EXACT ? "Scheme exact: n" : "Nothing is left over: n",
+		    e->model->shortened ? "else " : "");
+	if (e->model->shortened)
+		banner_shortening(e);
 	banner_growth(e);
 }
 

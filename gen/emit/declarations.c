@@ -112,6 +112,13 @@ static void declare_tables(const struct emitter *e)
 		declare(e, spell(e, "extern const double $n_Gamma[$N_STATES][%d];", input_columns(e->system)),
 			most_taps_before(e) ? "... + Gamma u; of an input: its samples around the step" :
 			e->ramps ? "... + Gamma u; of a ramp: before, after" : "... + Gamma u");
+	if (e->model->shortened) {
+		const int all = e->model->written->system.states;
+		declare(e, spell(e, "extern const double $n_to_modes[$N_STATES][%d];", all),
+			"y = to_modes x, x: a state of all modes");
+		declare(e, spell(e, "extern const double $n_from_modes[%d][$N_STATES];", all),
+			"x = from_modes y, without what is dropped");
+	}
 	declare(e, spell(e, "extern const pl_model $n_model;"), "");
 }
 

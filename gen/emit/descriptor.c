@@ -25,6 +25,31 @@ void emit_phi(const struct emitter *e)
 		emit_matrix(e, e->step, format("static const double %s", stepped_table(e, "Phi")));
 }
 
+static void emit_rounded(const struct emitter *e, int rows, int columns, const mpq_t *q, const char *const *row_note)
+{
+	double *value = ARRAY(double, (size_t)(rows * columns));
+	for (int i = 0; i < rows * columns; i++)
+		value[i] = round_rational(q[i]);
+	emit_number_rows(e, rows, columns, value, row_note);
+	say(e, "};\n");
+}
+
+/* Between the states of all modes and those of the kept ones */
+void emit_mode_matrices(const struct emitter *e)
+{
+	const struct shortening *s = e->model->shortened;
+	const struct model *whole = e->model->written;
+	const int states = e->system->states, all = whole->system.states;
+	if (!s)
+		return;
+	say(e, "\n/* The state of a full state x: y = to_modes x, exactly what the modes that are kept have of it. */\n"
+	       "const double $n_to_modes[$N_STATES][%d] = {  /* columns: %s */\n", all, state_list(whole));
+	emit_rounded(e, states, all, (const mpq_t *)s->to, e->model->state_name);
+	say(e, "\n/* The full state that a state stands for: x = from_modes y, the part of the dropped modes left out. */\n"
+	       "const double $n_from_modes[%d][$N_STATES] = {  /* columns: %s */\n", all, state_list(e->model));
+	emit_rounded(e, all, states, (const mpq_t *)s->from, whole->state_name);
+}
+
 static void emit_input_matrix(const struct emitter *e, const struct step *step, const char *declaration)
 {
 	const struct table *table = step->branch->whole;

@@ -107,6 +107,7 @@ static void emit_all_tables(const struct emitter *e)
 	emit_phi(e);
 	if (e->system->inputs)
 		emit_gamma(e);
+	emit_mode_matrices(e);
 	emit_load_tables(e);
 	emit_anchor_tables(e);
 	e->kind->tables(e);

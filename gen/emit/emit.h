@@ -407,6 +407,7 @@ void emit_access(const struct emitter *e);
 /* ---- descriptor.c: tables for all to read, and the descriptor ---- */
 
 void emit_phi(const struct emitter *e);
+void emit_mode_matrices(const struct emitter *e);               /* of a model of some modes: from and to all states */
 void emit_gamma(const struct emitter *e);
 void emit_descriptor(const struct emitter *e);
 

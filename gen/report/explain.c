@@ -431,6 +431,8 @@ void explain_person(FILE *to, const struct step *step)
 	person_matrix(to, "C", model->written->n, (const mpq_t *)model->written->system.C);
 	person_matrix(to, "K", model->written->n, (const mpq_t *)model->written->system.K);
 	person_loads(to, &model->written->system);
+	if (model->shortened)
+		fputs("\nOf the modes that are kept:\n", to);
 	person_poles(to, step->model, step->written);
 	const char *irrational = irrationals_text(&model->irrationals);
 	if (*irrational)
@@ -444,8 +446,12 @@ void explain_person(FILE *to, const struct step *step)
 	else if (has_leftover(step))
 		person_split(to, step);
 	else if (!scheme_row(model->scheme)->holds_coupling)
-		fputs("Nothing is approximated: every constant is its closed form, correctly rounded.\n", to);
-	if (model->written != model)
+		fprintf(to, "%s: every constant is its closed form, correctly rounded.\n",
+			model->shortened ? "Modes are dropped, nothing else is approximated"
+					 : "Nothing is approximated");
+	if (model->shortened)
+		person_shortening(to, model);
+	else if (model->written != model)
 		person_reduction(to, step);
 	if (model->reduction.irreducible)
 		fputs("Nothing to reduce: every state is seen by an output.\n", to);
@@ -726,6 +732,8 @@ void explain_json(FILE *to, const struct step *step)
 	json_names(to, "outputs", model->outputs, output);
 	json_names(to, "inputs", model->system.inputs, input);
 	json_names(to, "dropped", model->reduction.dropped, model->reduction.dropped_name);
+	if (model->shortened)
+		json_shortening(to, model);
 	if (model->tuning)
 		json_tuning(to, model->tuning);
 	json_rational_matrix(to, "M", model->written->n, (const mpq_t *)model->written->system.M);

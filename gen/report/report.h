@@ -29,6 +29,15 @@ void person_normal(FILE *to, const struct step *step);
 void json_normal(FILE *to, const struct step *step);         /* a member of an object */
 void program_normal(FILE *to, const struct step *step);
 
+/* ---- shortened.c: a model of some modes of another ---- */
+
+const char *mode_numbers(const struct shortening *s, bool kept); /* of those that are kept, or of the others: 1-4, 6 */
+int  modes_of_model(const struct shortening *s);            /* how many it has, dropped ones too */
+const char *loss_text(const struct model *model, int output); /* tip 3.2e-05: at most, by the start and the loads */
+const char *statics_text(const struct model *model);        /* what dropped modes still do */
+void person_shortening(FILE *to, const struct model *model);
+void json_shortening(FILE *to, const struct model *model);  /* members of an object */
+
 /* ---- program.c, explain.c, solution.c ---- */
 
 void explain_program(FILE *to, const struct step *step);    /* what a step does, before it is C */

@@ -1,0 +1,120 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Of a model of some modes of another: which are kept, and what is lost by the others. */
+#include "report/report.h"
+
+#include <math.h>
+
+/* The numbers of the modes that are kept, or of the others: 1-4, 6 */
+const char *mode_numbers(const struct shortening *s, bool kept)
+{
+	const char *text = "";
+	const struct modes *modes = s->modes;
+	for (int i = 0; i < modes->count;) {
+		int last = i;
+		if (s->kept[i] != kept) {
+			i++;
+			continue;
+		}
+		while (last + 1 < modes->count && s->kept[last + 1] == kept)
+			last++;
+		const int from = modes->mode[i].number, to = modes->mode[last].number + modes->mode[last].weight - 1;
+		text = format("%s%s%d", text, *text ? ", " : "", from);
+		if (to > from)
+			text = format("%s-%d", text, to);
+		i = last + 1;
+	}
+	return text;
+}
+
+int modes_of_model(const struct shortening *s)
+{
+	const struct mode *last = &s->modes->mode[s->modes->count - 1];
+	return last->number + last->weight - 1;
+}
+
+/* tip 3.2e-05 */
+const char *loss_text(const struct model *model, int output)
+{
+	const struct shortening *s = model->shortened;
+	const double loss = modes_loss(s->modes, s->kept, s->statics, output);
+	const char *name = model->output[output].name;
+	return isfinite(loss) ? format("%s %.3g", name, loss * (1 + 1e-6))
+			      : format("%s without a bound (something dropped grows, or a load has its pole)", name);
+}
+
+/* What the others still do */
+const char *statics_text(const struct model *model)
+{
+	const struct linear *system = &model->system;
+	if (!model->shortened->statics)
+		return "the others are left out";
+	return format("of the others the outputs keep%s%s%s",
+		      system->loads ? " what loads force" : "", system->loads && system->inputs ? " and" : "",
+		      system->inputs ? " the static gain of inputs" : system->loads ? "" : " nothing: there are no loads");
+}
+
+static double ratio_of(const struct mode *mode)
+{
+	const double size = hypot(mode->re, mode->im);
+	return size == 0 ? 0 : -mode->re / size;
+}
+
+/* Each mode, and what it gives */
+void person_shortening(FILE *to, const struct model *model)
+{
+	const struct shortening *s = model->shortened;
+	const struct modes *modes = s->modes;
+	fprintf(to, "Modes %s of %d are kept; %s.\n", mode_numbers(s, true), modes_of_model(s), statics_text(model));
+	fprintf(to, "    %-9s %-16s %-14s %-10s largest share of an output\n", "mode", "frequency [Hz]", "damping ratio",
+		"");
+	for (int i = 0; i < modes->count; i++) {
+		const struct mode *mode = &modes->mode[i];
+		const int last = mode->number + mode->weight - 1;
+		const char *number = last > mode->number ? format("%d-%d", mode->number, last)
+							 : format("%d", mode->number);
+		const char *share = !mode->seen ? "not seen" : mode->rigid ? "rigid"
+				    : isfinite(mode->share) ? format("%.3g", mode->share) : "no bound";
+		fprintf(to, "    %-9s %-16.8g %-14.8g %-10s %s\n", number,
+			hypot(mode->re, mode->im) / 6.283185307179586, ratio_of(mode), s->kept[i] ? "kept" : "dropped",
+			share);
+	}
+	fputs("Of the largest sizes that modes can ever have in an output, by the start and the loads, or by a step of "
+	      "an input.\n", to);
+	fprintf(to, "From the start and under the loads%s outputs lose at most (sums of |residues|, for all time):\n",
+		model->system.inputs ? ", inputs 0," : "");
+	for (int i = 0; i < model->outputs; i++)
+		fprintf(to, "    %s\n", loss_text(model, i));
+	fputs("States:", to);
+	for (int i = 0; i < model->system.states; i++)
+		fprintf(to, "%s %s", i ? "," : "", model->state_name[i]);
+	fputs("\n", to);
+}
+
+static void json_number(FILE *to, double value)
+{
+	if (isfinite(value))
+		fprintf(to, "%.9g", value);
+	else
+		fputs("null", to);
+}
+
+/* Members of an object */
+void json_shortening(FILE *to, const struct model *model)
+{
+	const struct shortening *s = model->shortened;
+	fputs("  \"modes\": [\n", to);
+	for (int i = 0; i < s->modes->count; i++) {
+		const struct mode *mode = &s->modes->mode[i];
+		fprintf(to, "    {\"number\": %d, \"states\": %d, \"re\": %.9g, \"im\": %.9g, \"rigid\": %s, \"seen\": %s, "
+			    "\"kept\": %s, \"share\": ", mode->number, mode->states, mode->re, mode->im,
+			mode->rigid ? "true" : "false", mode->seen ? "true" : "false", s->kept[i] ? "true" : "false");
+		json_number(to, mode->share);
+		fprintf(to, "}%s\n", i + 1 < s->modes->count ? "," : "");
+	}
+	fprintf(to, "  ],\n  \"static\": %s,\n  \"lost\": [", s->statics ? "true" : "false");
+	for (int i = 0; i < model->outputs; i++) {
+		fputs(i ? ", " : "", to);
+		json_number(to, modes_loss(s->modes, s->kept, s->statics, i));
+	}
+	fputs("],\n", to);
+}
