@@ -38,10 +38,11 @@ static const char *objection(const struct model *model)
 {
 	if (model->switching)
 		return "the equations are piecewise linear, and each region has modes of its own";
+	if (model->obstacle || model->operators)
+		return "the equations are not linear, and modes are of linear ones";
 	if (model->scheme != SCHEME_EXACT)
-		return format("scheme %s does not step the equations exactly", scheme_name(model->scheme));
-	if (model->operators)
-		return "the equations are not linear: something is left over";
+		return format("scheme %s does not step the equations exactly, as exact does",
+			      scheme_name(model->scheme));
 	if (model->tuning)
 		return "there are tunable params, and modes follow from them";
 	if (model->written != model)
