@@ -114,10 +114,10 @@ static void declare_tables(const struct emitter *e)
 			e->ramps ? "... + Gamma u; of a ramp: before, after" : "... + Gamma u");
 	if (e->model->shortened) {
 		const int all = e->model->written->system.states;
-		declare(e, spell(e, "extern const double $n_to_modes[$N_STATES][%d];", all),
-			"y = to_modes x, x: a state of all modes");
-		declare(e, spell(e, "extern const double $n_from_modes[%d][$N_STATES];", all),
-			"x = from_modes y, without what is dropped");
+		declare(e, spell(e, "extern const double $n_from_whole[$N_STATES][%d];", all),
+			"y = from_whole x, x: a state of all modes");
+		declare(e, spell(e, "extern const double $n_to_whole[%d][$N_STATES];", all),
+			"x = to_whole y, without what is dropped");
 	}
 	declare(e, spell(e, "extern const pl_model $n_model;"), "");
 }

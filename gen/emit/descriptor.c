@@ -42,11 +42,11 @@ void emit_mode_matrices(const struct emitter *e)
 	const int states = e->system->states, all = whole->system.states;
 	if (!s)
 		return;
-	say(e, "\n/* The state of a full state x: y = to_modes x, exactly what the modes that are kept have of it. */\n"
-	       "const double $n_to_modes[$N_STATES][%d] = {  /* columns: %s */\n", all, state_list(whole));
+	say(e, "\n/* The state of a full state x: y = from_whole x, exactly what the modes that are kept have of it. */\n"
+	       "const double $n_from_whole[$N_STATES][%d] = {  /* columns: %s */\n", all, state_list(whole));
 	emit_rounded(e, states, all, (const mpq_t *)s->to, e->model->state_name);
-	say(e, "\n/* The full state that a state stands for: x = from_modes y, the part of the dropped modes left out. */\n"
-	       "const double $n_from_modes[%d][$N_STATES] = {  /* columns: %s */\n", all, state_list(e->model));
+	say(e, "\n/* The full state that a state stands for: x = to_whole y, the part of the dropped modes left out. */\n"
+	       "const double $n_to_whole[%d][$N_STATES] = {  /* columns: %s */\n", all, state_list(e->model));
 	emit_rounded(e, all, states, (const mpq_t *)s->from, whole->state_name);
 }
 

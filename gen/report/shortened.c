@@ -32,13 +32,20 @@ int modes_of_model(const struct shortening *s)
 	return last->number + last->weight - 1;
 }
 
+/* Up to three digits */
+static double rounded_up(double x)
+{
+	const double unit = x > 0 ? pow(10, floor(log10(x)) - 2) : 0;
+	return x > 0 ? ceil(x / unit) * unit : 0;
+}
+
 /* tip 3.2e-05 */
 const char *loss_text(const struct model *model, int output)
 {
 	const struct shortening *s = model->shortened;
 	const double loss = modes_loss(s->modes, s->kept, s->statics, output);
 	const char *name = model->output[output].name;
-	return isfinite(loss) ? format("%s %.3g", name, loss * (1 + 1e-6))
+	return isfinite(loss) ? format("%s %.3g", name, rounded_up(loss))
 			      : format("%s without a bound (something dropped grows, or a load has its pole)", name);
 }
 
@@ -93,7 +100,7 @@ void person_shortening(FILE *to, const struct model *model)
 static void json_number(FILE *to, double value)
 {
 	if (isfinite(value))
-		fprintf(to, "%.9g", value);
+		fprintf(to, "%.17g", value);
 	else
 		fputs("null", to);
 }

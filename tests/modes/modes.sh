@@ -1,0 +1,75 @@
+#!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Models of some modes: against sums over modes in closed form (closed.c), and against the whole model (whole.c).
+#
+#     modes.sh PLGEN SOURCE_ROOT
+set -u
+plgen=$1
+root=$2
+case $plgen in /*) ;; *) plgen=$PWD/$plgen ;; esac
+case $root in /*) ;; *) root=$PWD/$root ;; esac
+here=$root/tests/modes
+. "$root/tests/tap.sh"
+runtime_archive "$root/runtime"
+warnings='-Wall -Wextra -Wpedantic -Wconversion -Wdouble-promotion -Werror'
+cp "$here"/*.spec "$here"/*.mtx .
+cp -r "$root/models/beam" .
+
+# made PREFIX OPTION ... SPEC
+made() {
+	prefix=$1
+	shift
+	"$plgen" --prefix "$prefix" -o "$prefix.c" "$@" &&
+		${CC:-cc} -std=c99 -O1 $warnings -I"$root/runtime" -c "$prefix.c" -o "$prefix.o"
+}
+
+# closed NAME MODES KEPT FLAGS
+closed() {
+	{
+		made m --modes "$2" "$1.spec" &&
+			${CC:-cc} -std=c99 -O0 -Wall -DKEPT="$3" $4 -I"$root/runtime" -I. "$here/closed.c" m.o "$archive" -lm \
+				-o m && ./m
+	} >log 2>&1
+	result $? "$1, modes $2: closed form"
+}
+
+closed chain 6 63 ''
+closed chain '1, 2, 3' 7 ''
+closed chain '1, 2, 3 without static' 7 -DWITHOUT
+closed chain '2, 6' 34 ''
+closed chain '5,' 16 ''
+closed blocks 4 15 -DBLOCKS
+closed blocks '1, 2' 3 -DBLOCKS
+closed blocks '3, 4 without static' 12 '-DBLOCKS -DWITHOUT'
+closed blocks '2,' 2 -DBLOCKS
+
+# against NAME MODES FLAGS OPTION ...
+against() {
+	name=$1
+	modes=$2
+	flags=$3
+	shift 3
+	{
+		lost=$("$plgen" --modes "$modes" --explain=json "$@" "$name.spec" | sed -n 's/^  "lost": \[\(.*\)\],$/\1/p' |
+			sed 's/null/HUGE_VAL/g')
+		made whole "$@" "$name.spec" && made part --modes "$modes" "$@" "$name.spec" &&
+			${CC:-cc} -std=c99 -O0 -Wall -DLOST="{$lost}" $flags -I"$root/runtime" -I. "$here/whole.c" whole.o \
+				part.o "$archive" -lm -o whole && ./whole
+	} >log 2>&1
+	result $? "$name, modes $modes${*:+, $*}: the whole model"
+}
+
+against chain 6 -DALL
+against chain 2 -DSETTLES=100
+against local_dampers 3 -DALL
+against local_dampers 2 -DSETTLES=150
+against local_dampers 1 -DSETTLES=150
+against mixed 5 '-DALL -DINPUTS'
+against mixed 4 -DINPUTS
+against mixed 2 '-DINPUTS -DSETTLES=40'
+against repeated 4 '-DALL -DINPUTS'
+against repeated 2 '-DINPUTS -DSETTLES=250'
+for form in direct delta modal; do
+	against chain 3 '' --form $form
+done
+tap_end
