@@ -342,7 +342,28 @@ static void project_start(const struct selection *s, mpq_t *initial)
 	}
 }
 
-static struct model *model_of(const struct selection *s, bool direct)
+/* Matrices between the states of the model and those of the selection: z = to y, and y = from z of what is kept */
+static struct shortening *shortening_of(const struct selection *s, bool statics)
+{
+	const int states = s->modes->model->system.states, n = s->states;
+	struct shortening *of = NEW(struct shortening);
+	*of = (struct shortening){ .modes = s->modes, .kept = s->of, .statics = statics };
+	of->to = rationals((size_t)n * (size_t)states);
+	of->from = rationals((size_t)n * (size_t)states);
+	for (int i = 0; i < s->modes->count; i++) {
+		const struct mode *mode = &s->modes->mode[i];
+		for (int j = 0; s->of[i] && j < mode->states; j++)
+			for (int k = 0; k < states; k++) {
+				const int at = place_of(s, i, j);
+				mpq_set(of->to[at * states + k], mode->left[j * states + k]);
+				mpq_set(of->from[k * n + at], mode->right[k * mode->states + j]);
+			}
+	}
+	return of;
+}
+
+/* `direct`: what outputs read of loads and inputs at once comes with them. */
+static struct model *model_of(const struct selection *s, bool direct, bool statics)
 {
 	const struct model *model = s->modes->model;
 	struct model *shorter = NEW(struct model);
@@ -365,27 +386,11 @@ static struct model *model_of(const struct selection *s, bool direct)
 	project_start(s, shorter->initial);
 	shorter->highest = ARRAY(struct output *, (size_t)s->coords);
 	shorter->output = rows_over(s, direct);
+	shorter->shortened = shortening_of(s, statics);
+	shorter->reduction.place = ARRAY(int, (size_t)model->system.states);
+	for (int i = 0; i < model->system.states; i++)
+		shorter->reduction.place[i] = -1;       /* no written state is a state */
 	return shorter;
-}
-
-/* Matrices between the states of the model and those of the selection: z = to y, and y = from z of what is kept */
-static struct shortening *shortening_of(const struct selection *s, bool statics)
-{
-	const int states = s->modes->model->system.states, n = s->states;
-	struct shortening *of = NEW(struct shortening);
-	*of = (struct shortening){ .modes = s->modes, .kept = s->of, .statics = statics };
-	of->to = rationals((size_t)n * (size_t)states);
-	of->from = rationals((size_t)n * (size_t)states);
-	for (int i = 0; i < s->modes->count; i++) {
-		const struct mode *mode = &s->modes->mode[i];
-		for (int j = 0; s->of[i] && j < mode->states; j++)
-			for (int k = 0; k < states; k++) {
-				const int at = place_of(s, i, j);
-				mpq_set(of->to[at * states + k], mode->left[j * states + k]);
-				mpq_set(of->from[k * n + at], mode->right[k * mode->states + j]);
-			}
-	}
-	return of;
 }
 
 static bool follow_dropped(struct modes *modes, const bool *kept, struct output *output, bool minus)
@@ -406,10 +411,9 @@ struct model *modes_kept(struct modes *modes, const bool *kept, bool statics)
 	struct selection s = { .modes = modes, .of = kept };
 	if (!select_modes(&s) || s.states == 0)
 		return NULL;
-	struct model *shorter = model_of(&s, true);
+	struct model *shorter = model_of(&s, true, statics);
 	if (statics && !follow_dropped(modes, kept, shorter->output, false))
 		return NULL;
-	shorter->shortened = shortening_of(&s, statics);
 	return shorter;
 }
 
@@ -421,7 +425,7 @@ struct model *modes_dropped(struct modes *modes, const bool *kept, bool statics)
 		dropped[i] = !kept[i];
 	if (!select_modes(&s) || s.states == 0)
 		return NULL;
-	struct model *error = model_of(&s, false);
+	struct model *error = model_of(&s, false, false);
 	if (statics && !follow_dropped(modes, kept, error->output, true))
 		return NULL;
 	return error;
@@ -510,9 +514,6 @@ static void shorten(void *context)
 	s->shorter = modes_kept(modes, kept, wanted->statics);
 	if (!s->shorter)
 		error(wanted->at, NULL, "modes cannot be left out: two poles are too close for double precision");
-	s->shorter->reduction.place = ARRAY(int, (size_t)s->model->system.states);
-	for (int i = 0; i < s->model->system.states; i++)
-		s->shorter->reduction.place[i] = -1;    /* no written state is a state */
 }
 
 struct model *model_shorten(struct model *model)
