@@ -93,7 +93,8 @@ static void banner_shortening(const struct emitter *e)
 			say(e, "%s\n", line);
 			line = " *    ";
 		}
-		line = format("%s %s%s", line, loss, i + 1 < model->outputs ? "," : " (sums of |residues|, for all time).");
+		line = format("%s %s%s", line, loss,
+			      i + 1 < model->outputs ? "," : " (sums of |residues|, for all time).");
 	}
 	say(e, "%s\n", line);
 }
@@ -102,10 +103,10 @@ void banner_linear(const struct emitter *e)
 {
 	banner_scheme(e);
 	if (!scheme_row(e->model->scheme)->holds_coupling)
-		say(e, " * %sothing %sis approximated; each constant is its closed form, correctly rounded.\n",
-		    e->model->shortened ? "Modes are dropped, n"
-		    : e->model->scheme == SCHEME_EXACT ? "Scheme exact: n" : "Nothing is left over: n",
-		    e->model->shortened ? "else " : "");
+		say(e, " * %s is approximated; each constant is its closed form, correctly rounded.\n",
+		    e->model->shortened                ? "Scheme exact: modes are dropped, nothing else"
+		    : e->model->scheme == SCHEME_EXACT ? "Scheme exact: nothing"
+						       : "Nothing is left over: nothing");
 	if (e->model->shortened)
 		banner_shortening(e);
 	banner_growth(e);

@@ -42,10 +42,10 @@ void emit_mode_matrices(const struct emitter *e)
 	const int states = e->system->states, all = whole->system.states;
 	if (!s)
 		return;
-	say(e, "\n/* The state of a full state x: y = from_whole x, exactly what the modes that are kept have of it. */\n"
+	say(e, "\n/* The state of a full state x, what the modes that are kept have of it: y = from_whole x. */\n"
 	       "const double $n_from_whole[$N_STATES][%d] = {  /* columns: %s */\n", all, state_list(whole));
 	emit_rounded(e, states, all, (const mpq_t *)s->to, e->model->state_name);
-	say(e, "\n/* The full state that a state stands for: x = to_whole y, the part of the dropped modes left out. */\n"
+	say(e, "\n/* The full state of a state, the part of the dropped modes left out: x = to_whole y. */\n"
 	       "const double $n_to_whole[%d][$N_STATES] = {  /* columns: %s */\n", all, state_list(e->model));
 	emit_rounded(e, all, states, (const mpq_t *)s->from, whole->state_name);
 }

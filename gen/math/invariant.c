@@ -32,7 +32,7 @@ struct invariants {
 	int n;
 	double *scale;              /* D */
 	double *re, *im;            /* eigenvalues */
-	/* n x n, balanced: eigenvectors as columns of V; of a subspace that has several an orthonormal basis; W = V^-1 */
+	/* n x n, balanced: eigenvectors as columns of V, of a subspace of several an orthonormal basis; W = V^-1 */
 	double *V_re, *V_im, *W_re, *W_im;
 	int parts;
 	struct invariant *part;
@@ -260,8 +260,8 @@ static double column_length(const struct invariants *of, int j)
 {
 	double sum = 0;
 	for (int i = 0; i < of->n; i++)
-		sum += of->V_re[i * of->n + j] * of->V_re[i * of->n + j] + of->V_im[i * of->n + j] * of->V_im[i * of->n + j];
-	return sqrt(sum);
+		sum = hypot(sum, hypot(of->V_re[i * of->n + j], of->V_im[i * of->n + j]));
+	return sum;
 }
 
 static void scale_column(struct invariants *of, int j, double re, double im)

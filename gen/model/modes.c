@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
  * The modes of a linear model and what each of them gives to the outputs. Where M^-1 C has the invariant subspaces of
- * M^-1 K, which it has if both commute (Caughey and O'Kelly 1965), modes are coordinates, m'' + c m' + lambda m = force;
- * else they are those of the state matrix. Sizes are sums of |residues| in double precision: to choose by and to tell.
+ * M^-1 K, which it has if both commute (Caughey and O'Kelly 1965), modes are coordinates, m'' + c m' + lambda m =
+ * force; else they are those of the state matrix. Sizes are sums of |residues| in double precision: to choose by and to
+ * tell.
  */
 #include "model/model.h"
 
@@ -613,8 +614,8 @@ static void round_to_bits(mpq_ptr q, int bits)
 	mpfr_clear(x);
 }
 
-/* Two poles 0 with one eigenvector: z becomes (z_i, row i of the block times z), i the larger row, whose derivatives are
- * exactly the second and 0. */
+/* Two poles 0 with one eigenvector: z becomes (z_i, row i of the block times z), i the larger row, whose derivatives
+ * are exactly the second and 0. */
 static void straighten(struct mode *mode, int states)
 {
 	mpq_t *S = rationals(4), *inverse = rationals(4), *left = rationals(2 * (size_t)states),
@@ -694,10 +695,11 @@ static void list_modes(const struct survey *s, struct modes *modes)
 	modes->mode = ARRAY(struct mode, (size_t)modes->count + 1);
 	for (int i = 0; i < modes->count; i++) {
 		const struct invariant *part = invariant_part(s->basis->invariants, i);
-		modes->mode[i] = (struct mode){ .first = i, .columns = part->columns, .moves = s->basis->moves,
-						.states = part->columns * (s->basis->moves ? 2 : 1),
-						.weight = s->basis->moves || part->real ? part->columns : part->columns / 2 };
-		describe(s, &modes->mode[i]);
+		struct mode *mode = &modes->mode[i];
+		*mode = (struct mode){ .first = i, .columns = part->columns, .moves = s->basis->moves };
+		mode->states = part->columns * (mode->moves ? 2 : 1);
+		mode->weight = mode->moves || part->real ? part->columns : part->columns / 2;
+		describe(s, mode);
 	}
 	qsort(modes->mode, (size_t)modes->count, sizeof *modes->mode, by_frequency);
 }

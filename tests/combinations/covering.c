@@ -354,6 +354,8 @@ static void print_options(FILE *to)
 			fprintf(to, " %s", option[i][1]);
 			scheme = scheme || strncmp(option[i][1], "--scheme", 8) == 0;
 		}
+	if (has("modes"))       /* all of them; what no output sees is left out */
+		fprintf(to, " --modes %d", 2 + has("first") + (has("many") ? 9 : has("file") ? 3 : 0));
 	scheme = scheme || has("taylor12");
 	if (has("loads") && !scheme)
 		fputs(" --scheme etdrk4", to);
@@ -381,7 +383,7 @@ static void write_chain(FILE *to, int n)
 static void write_spec(FILE *to)
 {
 	const bool vector = has("file") || has("many"), damped = !has("kdk");
-	const bool outputs = has("accel") || has("nonlinear") || has("reduce") || has("peaks") || has("batch");
+	const bool outputs = has("accel") || has("nonlinear") || has("reduce") || has("modes") || has("peaks") || has("batch");
 	const int n = has("many") ? 9 : 3;
 	print_options(to);
 	fputs("model f\nparam k = 12\n", to);

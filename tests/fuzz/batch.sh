@@ -84,10 +84,10 @@ batch_add() {
 	whole=$id
 	code="$id.c"
 	case $given in
-		*--real*|*--reduce*)
+		*--real*|*--reduce*|*--modes*)
 			whole=w$id
 			if ! make_c "$whole" "$spec" "$plain"; then
-				echo "without --real and --reduce: $(grep -m 1 error "$whole.said")" >"$id.wrong"
+				echo "without --real, --reduce and --modes: $(grep -m 1 error "$whole.said")" >"$id.wrong"
 				return
 			fi
 			code="$code $whole.c" ;;
