@@ -29,7 +29,7 @@ made() {
 closed() {
 	{
 		made m --modes "$2" "$1.spec" &&
-			${CC:-cc} -std=c99 -O0 -Wall -DKEPT="$3" $4 -I"$root/runtime" -I. "$here/closed.c" m.o "$archive" -lm \
+			${CC:-cc} -std=c99 -O0 -Wall -DKEPT="$3" $4 -I"$root/runtime" -I"$root/tests/emitted" -I. "$here/closed.c" m.o "$archive" -lm \
 				-o m && ./m
 	} >log 2>&1
 	result $? "$1, modes $2: closed form"
@@ -55,7 +55,7 @@ against() {
 		lost=$("$plgen" --modes "$modes" --explain=json "$@" "$name.spec" | sed -n 's/^  "lost": \[\(.*\)\],$/\1/p' |
 			sed 's/null/HUGE_VAL/g')
 		made whole "$@" "$name.spec" && made part --modes "$modes" "$@" "$name.spec" &&
-			${CC:-cc} -std=c99 -O0 -Wall -DLOST="{$lost}" $flags -I"$root/runtime" -I. "$here/whole.c" whole.o \
+			${CC:-cc} -std=c99 -O0 -Wall -DLOST="{$lost}" $flags -I"$root/runtime" -I"$root/tests/emitted" -I. "$here/whole.c" whole.o \
 				part.o $archive -lm -o whole && ./whole
 	} >log 2>&1
 	result $? "$name, modes $modes${*:+, $*}: the whole model"

@@ -5,6 +5,7 @@
  * and outputs are the same, an input being held. -DDROPPED: a model of what outputs lose. -DLOST={...}: outputs differ by no more, inputs 0. */
 #include "part.h"
 #include "whole.h"
+#include "worse.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -93,8 +94,7 @@ static void same_states(void)
         part_get(&b, z);
         project(x, y);
         for (i = 0; i < K; i++) {
-            if (!(fabs(y[i] - z[i]) <= worst[i]))
-                worst[i] = fabs(y[i] - z[i]);
+            worst[i] = worse(worst[i], fabs(y[i] - z[i]));
             size = fmax(size, fabs(z[i]));
         }
         advance_whole(&a, n);
@@ -130,8 +130,7 @@ static void same_motion(void)
             now[i] -= now_rest[i];
         restore(now, back);
         for (i = 0; i < N; i++) {
-            if (!(fabs(x[i] - rest[i] - back[i]) <= worst))
-                worst = fabs(x[i] - rest[i] - back[i]);
+            worst = worse(worst, fabs(x[i] - rest[i] - back[i]));
             size = fmax(size, fmax(fabs(back[i]), fabs(rest[i])));
         }
         advance_whole(&a, n);
@@ -153,8 +152,8 @@ static void same_outputs(int from, const double *most, double tolerance)
         whole_out(&a, p);
         part_out(&b, q);
         for (i = 0; i < OUTPUTS; i++) {
-            if (n >= from && !(fabs(p[i] - q[i]) <= worst[i]))
-                worst[i] = fabs(p[i] - q[i]);
+            if (n >= from)
+                worst[i] = worse(worst[i], fabs(p[i] - q[i]));
             size[i] = fmax(size[i], fabs(p[i]));
         }
         advance_whole(&a, n);
@@ -181,8 +180,7 @@ static void lost_outputs(void)
         part_out(&b, q);
         dropped_out(&lost, e);
         for (i = 0; i < OUTPUTS; i++) {
-            if (!(fabs(p[i] - q[i] - e[i]) <= worst[i]))
-                worst[i] = fabs(p[i] - q[i] - e[i]);
+            worst[i] = worse(worst[i], fabs(p[i] - q[i] - e[i]));
             size[i] = fmax(size[i], fabs(p[i]));
         }
         advance_whole(&a, n);
