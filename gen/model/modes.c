@@ -42,8 +42,7 @@ static const char *objection(const struct model *model)
 	if (model->obstacle || model->operators)
 		return "the equations are not linear, and modes are of linear ones";
 	if (model->scheme != SCHEME_EXACT)
-		return format("scheme %s does not step the equations exactly, as exact does",
-			      scheme_name(model->scheme));
+		return "that needs scheme exact";
 	if (model->tuning)
 		return "there are tunable params, and modes follow from them";
 	if (model->written != model)

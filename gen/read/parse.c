@@ -1049,8 +1049,8 @@ static const struct statement {
 	{ "tolerance", read_tolerance }, { "substeps", read_substeps }, { "modes", read_modes }
 };
 
-/* tolerance, substeps and modes may be names of a spec's own: in an equation an operator or a prime follows; a sign is that of
- * a number where the line has no =; an = is no equation where there is no such name. */
+/* tolerance, substeps and modes may be names of a spec's own: in an equation an operator or a prime follows; a sign is
+ * that of a number where the line has no =; an = is no equation where there is no such name. */
 static bool opens_statement(const struct spec *spec, const struct statement *statement, struct token token)
 {
 	const char *next = token.at.source->text + token.at.offset + token.length;

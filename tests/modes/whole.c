@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A model of modes against the whole model, both as C: from_whole times a state of the whole is the state of the one that
- * is smaller, at any time and from any start, under loads and inputs; to_whole gives back what starts in the kept
+/* A model of modes against the whole model, both as C: from_whole times a state of the whole is the state of the one
+ * that is smaller, at any time and from any start, under loads and inputs; to_whole gives back what starts in the kept
  * modes; and outputs. -DALL: nothing is dropped, outputs are the same. -DSETTLES=T: after T what is dropped is at rest,
- * and outputs are the same, an input being held. -DDROPPED: a model of what outputs lose. -DLOST={...}: outputs differ by no more, inputs 0. */
+ * and outputs are the same, an input being held. -DDROPPED: a model of what outputs lose. -DLOST={...}: outputs differ
+ * by no more, inputs 0. */
 #include "part.h"
 #include "whole.h"
 #include "worse.h"
