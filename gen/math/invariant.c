@@ -738,8 +738,8 @@ static void turn_row(const struct correcting *w, mpfr_t *row, int a, int b, int 
 	mpfr_set(row[1], w->S[1], MPFR_RNDN);
 }
 
-/* z = the eigenvector X g of p, g = (T_01, p - T_00), over its largest entry c: X becomes (Re z, Im z), T [a, b; -b, a].
- * G = (Re g_0, Im g_0; Re g_1, Im g_1) / c, and Y^T <- G^-1 Y^T. */
+/* z = the eigenvector X g of p, g = (T_01, p - T_00), over its largest entry c: X becomes (Re z, Im z), T
+ * [a, b; -b, a]. G = (Re g_0, Im g_0; Re g_1, Im g_1) / c, and Y^T <- G^-1 Y^T. */
 static bool scale_pair(const struct correcting *w)
 {
 	mpfr_t *T = w->T, *G = w->G, *R = reals(6, (int)mpfr_get_prec(w->T[0]));
