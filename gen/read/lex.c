@@ -104,7 +104,8 @@ static void check_number(struct token token)
 
 static void lex_name(struct token *token, const char *text)
 {
-	while (is_letter(text[token->length]) || is_digit(text[token->length]))
+	while (is_letter(text[token->length]) || is_digit(text[token->length]) ||
+	       (text[token->length] == '.' && is_letter(text[token->length + 1])))       /* front.body */
 		token->length++;
 	token->kind = TOKEN_NAME;
 	token->name = format("%.*s", (int)token->length, text);
