@@ -225,7 +225,8 @@ static _Noreturn void unknown_name(const struct parser *p, struct token token)
 		      token.name);
 	if (strcmp(token.name, "peak") == 0 && token.primes == 0 && is_op(p, "("))
 		peak_inside(token.at);
-	if (is_of_broken_part(p, token.name))
+	/* by itself a part was without error: this one follows from another */
+	if (is_of_broken_part(p, token.name) || (p->part && diagnostics_errors()))
 		abandon();
 	const char *note = part_note(p, token.name);
 	error(token.at, note ? note : spec_suggestion(p->spec, token.name), "unknown name '%s'", token.name);
@@ -612,7 +613,7 @@ struct symbol *declare(struct parser *p, struct token name, enum symbol_kind kin
 	int *counts[] = { &spec->params, &spec->coords, &spec->lets, &spec->outputs, &spec->inputs, &spec->matrices,
 			  &spec->part_outputs, &spec->part_names };
 	const char *whole = p->part ? format("%s.%s", p->part->name, name.name) : name.name;
-	if (kind != SYMBOL_PART)
+	if (kind != SYMBOL_PART && !broken)
 		check_name_in_c(p, whole, name.at);
 	struct symbol *symbol = NEW(struct symbol);
 	*symbol = (struct symbol){

@@ -1,128 +1,135 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Parts of a scene that no output can see are not modelled. What an equation or an element of a sketch names holds
- * together; a force on something, or an expression that an input is connected to, makes that see what it reads, and not
- * the other way round. The scene's own coordinates count as one more part. */
+/* What no output of a scene can see is not modelled: parts, and coordinates. What an equation names is seen together, and
+ * what an element of a sketch acts on; a force sees what it reads, and not the other way round. */
 #include "read/parser.h"
 
+struct list {                       /* of coordinates */
+	int count;
+	const struct symbol **coord;
+};
+struct tie {                        /* of an equation or element */
+	struct list together, read; /* read: by those */
+};
 struct sight {
 	struct spec *spec;
-	bool *seen;                 /* by part; the last is the scene's own */
+	bool *seen;                 /* coordinates, by the symbols' numbers */
+	int *met;                   /* by the symbols' numbers: in which walk last */
+	int walk;
 	bool grown;
 };
 
-static int place_of(const struct spec *spec, const struct scene_part *part)
-{
-	int place = 0;
-	while (place < spec->parts && spec->part[place] != part)
-		place++;
-	return place;
-}
+/* ---- which coordinates an expression reads ---- */
 
-/* ---- which parts an expression reads ---- */
-
-/* A let is looked through once at a time. */
-static void mark_parts(const struct spec *spec, const struct node *node, bool *let, bool *part)
+static void add_coordinates(struct sight *sight, const struct node *node, struct list *list)
 {
-	struct symbol *symbol = node->kind == NODE_NAME ? node->symbol : NULL;
-	if (symbol && symbol->kind == SYMBOL_COORD)
-		part[place_of(spec, symbol->part)] = true;
-	if (symbol && symbol->kind == SYMBOL_LET && !let[symbol->number]) {
-		let[symbol->number] = true;
-		mark_parts(spec, symbol->value, let, part);
+	const struct symbol *symbol = node->kind == NODE_NAME ? node->symbol : NULL;
+	bool fresh = symbol && sight->met[symbol->number] != sight->walk;
+	if (fresh)
+		sight->met[symbol->number] = sight->walk;
+	if (fresh && symbol->kind == SYMBOL_COORD) {
+		ENLARGE(list->coord, (size_t)list->count + 1);
+		list->coord[list->count++] = symbol;
 	}
+	if (fresh && symbol->kind == SYMBOL_LET)
+		add_coordinates(sight, symbol->value, list);
 	for (int i = 0; i < node->children; i++)
-		mark_parts(spec, node->child[i], let, part);
+		add_coordinates(sight, node->child[i], list);
 }
 
-static bool *parts_read(const struct spec *spec, const struct node *left, const struct node *right)
+static struct list read_by(struct sight *sight, const struct node *left, const struct node *right)
 {
-	bool *let = ARRAY(bool, (size_t)spec->symbols + 1), *part = ARRAY(bool, (size_t)spec->parts + 1);
-	mark_parts(spec, left, let, part);
+	struct list list = { 0 };
+	sight->walk++;
+	add_coordinates(sight, left, &list);
 	if (right)
-		mark_parts(spec, right, let, part);
-	discard(let);
-	return part;
-}
-
-static void see(struct sight *sight, int part)
-{
-	sight->grown = sight->grown || !sight->seen[part];
-	sight->seen[part] = true;
-}
-
-static void see_all(struct sight *sight, const bool *part)
-{
-	for (int i = 0; i <= sight->spec->parts; i++)
-		if (part[i])
-			see(sight, i);
+		add_coordinates(sight, right, &list);
+	return list;
 }
 
 /* ---- what is seen ---- */
 
+static void see(struct sight *sight, const struct list *list)
+{
+	for (int i = 0; i < list->count; i++) {
+		sight->grown = sight->grown || !sight->seen[list->coord[i]->number];
+		sight->seen[list->coord[i]->number] = true;
+	}
+}
+
 static void see_outputs(struct sight *sight)
 {
-	for (const struct symbol *s = sight->spec->first; s; s = s->next)
-		if (s->kind == SYMBOL_OUTPUT)
-			see_all(sight, parts_read(sight->spec, s->value, NULL));
+	for (const struct symbol *s = sight->spec->first; s; s = s->next) {
+		if (s->kind != SYMBOL_OUTPUT)
+			continue;
+		struct list list = read_by(sight, s->value, NULL);
+		see(sight, &list);
+	}
 }
 
-struct tie {                        /* of an equation or element */
-	bool *together, *read;      /* parts; read: by those, NULL: none */
-};
-
-static struct tie tie_of_equation(const struct spec *spec, const struct equation *equation)
+/* One that names no coordinate at all is not judged here. */
+static bool is_seen(const struct sight *sight, const struct list *list)
 {
-	struct tie tie = { parts_read(spec, equation->left, equation->right), NULL };
-	bool any = false;
-	for (int i = 0; i <= spec->parts; i++)
-		any = any || tie.together[i];
-	if (!any)
-		tie.together[place_of(spec, equation->part)] = true;
-	return tie;
-}
-
-static struct tie tie_of_element(const struct spec *spec, const struct element *element)
-{
-	struct tie tie = { parts_read(spec, element->from, element->to), NULL };
-	tie.read = parts_read(spec, element->value, NULL);
-	return tie;
-}
-
-static bool is_seen(const struct sight *sight, const struct tie *tie)
-{
-	bool seen = false;
-	for (int i = 0; i <= sight->spec->parts; i++)
-		seen = seen || (tie->together[i] && sight->seen[i]);
+	bool seen = list->count == 0;
+	for (int i = 0; i < list->count; i++)
+		seen = seen || sight->seen[list->coord[i]->number];
 	return seen;
 }
 
-static void follow(struct sight *sight, const struct tie *tie, int ties)
+static struct tie *ties_of(struct sight *sight)
+{
+	const struct spec *spec = sight->spec;
+	struct tie *tie = ARRAY(struct tie, (size_t)(spec->equations + spec->elements));
+	for (int i = 0; i < spec->equations; i++)
+		tie[i].together = read_by(sight, spec->equation[i].left, spec->equation[i].right);
+	for (int i = 0; i < spec->elements; i++) {
+		const struct element *element = &spec->element[i];
+		struct tie *own = &tie[spec->equations + i];
+		own->together = read_by(sight, element->from, element->to);
+		own->read = read_by(sight, element->value, NULL);
+	}
+	return tie;
+}
+
+static void follow(struct sight *sight, const struct tie *tie)
 {
 	do {
 		sight->grown = false;
-		for (int i = 0; i < ties; i++) {
-			if (!is_seen(sight, &tie[i]))
+		for (int i = 0; i < sight->spec->equations + sight->spec->elements; i++) {
+			if (!is_seen(sight, &tie[i].together))
 				continue;
-			see_all(sight, tie[i].together);
-			if (tie[i].read)
-				see_all(sight, tie[i].read);
+			see(sight, &tie[i].together);
+			see(sight, &tie[i].read);
 		}
 	} while (sight->grown);
 }
 
+/* A part is unseen if it has coordinates of its own, and none of them is seen. */
+static void find_unseen_parts(struct sight *sight)
+{
+	struct spec *spec = sight->spec;
+	for (int i = 0; i < spec->parts; i++) {
+		bool any = false, seen = false;
+		for (const struct symbol *s = spec->first; s; s = s->next)
+			if (s->kind == SYMBOL_COORD && s->part == spec->part[i]) {
+				any = true;
+				seen = seen || sight->seen[s->number];
+			}
+		spec->part[i]->unseen = any && !seen;
+	}
+}
+
 /* ---- what is not goes ---- */
 
-static bool goes(const struct sight *sight, const struct symbol *symbol)
+static bool goes(struct sight *sight, const struct symbol *symbol)
 {
-	bool own = symbol->kind == SYMBOL_COORD || (symbol->kind == SYMBOL_INPUT && symbol->part);
-	if (own || (symbol->kind == SYMBOL_PARAM && symbol->part))
-		return !sight->seen[place_of(sight->spec, symbol->part)];
+	bool unseen = symbol->part && symbol->part->unseen;
+	if (symbol->kind == SYMBOL_COORD)
+		return !sight->seen[symbol->number];
 	if (symbol->kind != SYMBOL_LET)
-		return false;
-	const bool *part = parts_read(sight->spec, symbol->value, NULL);
-	bool unseen = symbol->part && !sight->seen[place_of(sight->spec, symbol->part)];
-	for (int i = 0; i <= sight->spec->parts; i++)
-		unseen = unseen || (part[i] && !sight->seen[i]);
+		return unseen && (symbol->kind == SYMBOL_INPUT || symbol->kind == SYMBOL_PARAM);
+	struct list list = read_by(sight, symbol->value, NULL);
+	for (int i = 0; i < list.count; i++)
+		unseen = unseen || !sight->seen[list.coord[i]->number];
 	return unseen;
 }
 
@@ -204,52 +211,41 @@ static void drop_ties(struct sight *sight, const struct tie *tie)
 	struct spec *spec = sight->spec;
 	int equations = 0, elements = 0;
 	for (int i = 0; i < spec->equations; i++)
-		if (is_seen(sight, &tie[i]))
+		if (is_seen(sight, &tie[i].together))
 			spec->equation[equations++] = spec->equation[i];
 	for (int i = 0; i < spec->elements; i++)
-		if (is_seen(sight, &tie[spec->equations + i]))
+		if (is_seen(sight, &tie[spec->equations + i].together))
 			spec->element[elements++] = spec->element[i];
 	spec->equations = equations;
 	spec->elements = elements;
 }
 
-/* A part inside one that is told is not told as well. */
-static void tell(struct sight *sight)
+/* A part inside one that is told is not told as well; nor are the coordinates of either. */
+static void tell(const struct sight *sight)
 {
-	struct spec *spec = sight->spec;
-	bool *own = ARRAY(bool, (size_t)spec->parts + 1);
-	for (const struct symbol *s = spec->first; s; s = s->next)
-		if (s->kind == SYMBOL_COORD)
-			own[place_of(spec, s->part)] = true;
-	for (int i = spec->parts - 1; i >= 0; i--) {
-		struct scene_part *part = spec->part[i];
-		part->unseen = own[i] && !sight->seen[i];
-	}
+	const struct spec *spec = sight->spec;
 	for (int i = 0; i < spec->parts; i++) {
 		const struct scene_part *part = spec->part[i];
 		if (part->unseen && !(part->inside && part->inside->unseen))
 			say_note(part->at, "part '%s' is not modelled: no output sees it", part->name);
 	}
-	for (const struct symbol *s = spec->first; s && !sight->seen[spec->parts]; s = s->next)
-		if (s->kind == SYMBOL_COORD && !s->part)
+	for (const struct symbol *s = spec->first; s; s = s->next)
+		if (s->kind == SYMBOL_COORD && !sight->seen[s->number] && !(s->part && s->part->unseen))
 			say_note(s->at, "'%s' is not modelled: no output sees it", s->name);
 }
 
 void leave_unseen(struct spec *spec)
 {
-	struct sight sight = { .spec = spec, .seen = ARRAY(bool, (size_t)spec->parts + 1) };
-	int ties = spec->equations + spec->elements;
-	struct tie *tie = ARRAY(struct tie, (size_t)ties);
+	size_t symbols = (size_t)spec->symbols + 1;
+	struct sight sight = { .spec = spec, .seen = ARRAY(bool, symbols), .met = ARRAY(int, symbols) };
 	see_outputs(&sight);
 	if (!sight.grown)                       /* without outputs all states are */
 		return;
-	for (int i = 0; i < spec->equations; i++)
-		tie[i] = tie_of_equation(spec, &spec->equation[i]);
-	for (int i = 0; i < spec->elements; i++)
-		tie[spec->equations + i] = tie_of_element(spec, &spec->element[i]);
-	follow(&sight, tie, ties);
+	const struct tie *tie = ties_of(&sight);
+	follow(&sight, tie);
+	find_unseen_parts(&sight);
 	tell(&sight);
-	bool *gone = ARRAY(bool, (size_t)spec->symbols + 1);
+	bool *gone = ARRAY(bool, symbols);
 	for (const struct symbol *s = spec->first; s; s = s->next)
 		gone[s->number] = goes(&sight, s);
 	int tunables = spec->tunables;
