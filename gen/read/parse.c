@@ -1265,7 +1265,7 @@ void parse_statements(struct spec *spec, struct spec *own, struct scene_part *pa
 	while (position < source->length) {
 		size_t unclosed, from = position;
 		struct parser p = { .spec = spec, .own = own, .part = part };
-		p.lexer = (struct lexer){ source, from, lex_statement_end(source, from, &unclosed) };
+		p.lexer = (struct lexer){ source, from, lex_statement_end(source, from, &unclosed), spec->uses };
 		position = p.lexer.end + 1;
 		for (size_t i = from; strchr(" \t\r\f\v", source->text[i]) && i < p.lexer.end;)
 			from = ++i;
@@ -1330,7 +1330,8 @@ static void read_argument(void *context)
 
 struct node *parse_argument(struct spec *spec, const struct source *source, size_t from)
 {
-	struct argument argument = { .parser = { .spec = spec, .own = spec, .lexer = { source, from, source->length } } };
+	struct argument argument = { .parser = { .spec = spec, .own = spec } };
+	argument.parser.lexer = (struct lexer){ source, from, source->length, spec->uses };
 	statement_guard(read_argument, &argument);
 	return argument.value;
 }

@@ -19,6 +19,7 @@ struct token {
 struct lexer {
 	const struct source *source;
 	size_t position, end;       /* a statement: line ends inside brackets are white space */
+	bool points;                /* names may have some: front.body */
 };
 /* Where the statement that starts at `from` ends: the line end outside brackets. `unclosed` receives the offset of a
  * bracket that no later text closes (the statement is then its line), else SIZE_MAX. */
@@ -146,6 +147,7 @@ struct spec {                       /* what the text says, names resolved, nothi
 	struct symbol **bucket;         /* the same by name */
 	int components;                 /* of all coordinates together */
 	int symbols, params, coords, lets, outputs, inputs, matrices, part_outputs, part_names;
+	bool uses;                  /* it has a statement `use` */
 	int parts;                  /* in the order of `use`, those inside a part after it */
 	struct scene_part **part;
 	int unseen;                 /* states of parts that no output sees, and their names */

@@ -222,6 +222,7 @@ void read_use(struct parser *p)
 	struct scene_part use = { 0 };
 	struct token file = p->token, *name = NULL;
 	size_t names = 0;
+	p->lexer.points = p->spec->uses = true;
 	if (p->token.kind != TOKEN_STRING)
 		error(p->token.at, "use \"axle.spec\" as front", "expected the file of a part in quotes, found %s",
 		      token_text(p->token));
