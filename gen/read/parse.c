@@ -101,60 +101,7 @@ static void nest(struct parser *p, struct place at)
 		error(at, NULL, "nesting over the limit of %d", LIMIT_NESTING);
 }
 
-/* ---- nodes ---- */
-
-struct node *node_new(enum node_kind kind, struct place at)
-{
-	struct node *node = NEW(struct node);
-	node->kind = kind;
-	node->at = node->start = node->end = at;
-	mpq_init(node->number);
-	return node;
-}
-
-void add_child(struct node *node, struct node *child, bool inverse, struct place operator)
-{
-	size_t count = (size_t)node->children;
-	if ((count & (count - 1)) == 0) {       /* room grows by doubling */
-		size_t room = count ? 2 * count : 1;
-		ENLARGE(node->child, room);
-		ENLARGE(node->inverse, room);
-		ENLARGE(node->operator, room);
-	}
-	bool many = node->kind == NODE_CALL &&
-		    (node->function == FN_MIN || node->function == FN_MAX || node->function == FN_TABLE);
-	int inside = child->depth + 1 + (many ? node->children : 0);
-	node->depth = inside > node->depth ? inside : node->depth;
-	if (node->depth > LIMIT_DEPTH)
-		error(child->start, NULL, "operations inside each other, through params and lets, over the limit of %d",
-		      LIMIT_DEPTH);
-	node->child[count] = child;
-	node->inverse[count] = inverse;
-	node->operator[count] = operator;
-	node->children++;
-	node->end = child->end;
-}
-
-char *text_between(struct place start, struct place end)
-{
-	const char *text = start.source->text;
-	char *folded = ARRAY(char, end.offset - start.offset + 1);
-	size_t length = 0;
-	for (size_t i = start.offset; i < end.offset; i++) {
-		if (text[i] == '#')
-			while (i < end.offset && text[i] != '\n')
-				i++;
-		bool space = i >= end.offset || strchr(" \t\r\n\f\v", text[i]);
-		if (!space)
-			folded[length++] = text[i];
-		else if (length > 0 && folded[length - 1] != ' ')
-			folded[length++] = ' ';
-	}
-	while (length > 0 && folded[length - 1] == ' ')
-		length--;
-	folded[length] = 0;
-	return folded;
-}
+/* ---- names ---- */
 
 enum { BUCKETS = 1 << 14 };
 
@@ -189,6 +136,13 @@ static bool begins(const char *line, const char *word)
 	return strncmp(line, word, length) == 0 && (line[length] == ' ' || line[length] == '\t');
 }
 
+const char *symbol_kind(const struct symbol *symbol)
+{
+	static const char *const text[] = { "param", "coordinate", "let", "output", "input", "matrix", "output",
+					    "part" };
+	return text[symbol->kind];
+}
+
 /* Whether the rest of this statement or a later one declares it: then the order is what is wrong. */
 static bool declared_later(const struct parser *p, const char *name)
 {
@@ -218,6 +172,30 @@ static _Noreturn void peak_inside(struct place at)
 	      "peak stands alone: output NAME = peak(EXPR)");
 }
 
+/* Then it was told what is wrong. */
+static bool is_of_broken_part(const struct parser *p, const char *name)
+{
+	for (const char *point = name; (point = strchr(point, '.')); point++) {
+		const struct symbol *part = find_symbol(p, format("%.*s", (int)(point - name), name));
+		if (part && part->kind == SYMBOL_PART && part->broken)
+			return true;
+	}
+	return false;
+}
+
+/* A note on front.body where no part is named front; or NULL */
+static const char *part_note(const struct parser *p, const char *name)
+{
+	const char *point = strchr(name, '.');
+	if (!point)
+		return NULL;
+	const char *first = format("%.*s", (int)(point - name), name);
+	const struct symbol *symbol = find_symbol(p, first);
+	if (!symbol)
+		return format("no part is named '%s': use \"FILE.spec\" as %s", first, first);
+	return symbol->kind == SYMBOL_PART ? NULL : format("%s '%s' is no part", symbol_kind(symbol), first);
+}
+
 static _Noreturn void unknown_name(const struct parser *p, struct token token)
 {
 	if (declared_later(p, token.name))
@@ -230,13 +208,6 @@ static _Noreturn void unknown_name(const struct parser *p, struct token token)
 		abandon();
 	const char *note = part_note(p, token.name);
 	error(token.at, note ? note : spec_suggestion(p->spec, token.name), "unknown name '%s'", token.name);
-}
-
-const char *symbol_kind(const struct symbol *symbol)
-{
-	static const char *const text[] = { "param", "coordinate", "let", "output", "input", "matrix", "output",
-					    "part" };
-	return text[symbol->kind];
 }
 
 /* component: [ NUMBER ] { ' }; *primes grows by those behind the bracket */
@@ -622,6 +593,24 @@ struct symbol *declare(struct parser *p, struct token name, enum symbol_kind kin
 	symbol->index = broken ? -1 : (*counts[kind])++;
 	add_symbol(spec, symbol);
 	return symbol;
+}
+
+/* What the scene gives to the part that is read; or NULL */
+static const struct binding *binding_of(const struct parser *p, const char *name)
+{
+	const struct binding *found = NULL;
+	for (const struct scene_part *part = p->part; part; part = part->inside) {
+		for (int i = 0; i < part->bindings; i++) {
+			struct binding *binding = &part->binding[i];
+			if (strcmp(binding->name.name, name) != 0 || binding->name.primes || binding->component)
+				continue;
+			binding->taken = true;
+			found = binding;        /* that of the outermost */
+		}
+		const char *point = strrchr(part->name, '.');
+		name = format("%s.%s", point ? point + 1 : part->name, name);
+	}
+	return found;
 }
 
 /* In a part: what the scene gives instead */
@@ -1041,7 +1030,8 @@ static struct node *read_coordinate(struct parser *p, bool ground)
 	if (p->token.kind != TOKEN_NAME || is_reserved(p->token.name))
 		unexpected(p, ground ? "a coordinate or ground" : "a coordinate");
 	struct node *node = resolve_name(p, take(p));
-	if (!node->symbol || node->symbol->kind != SYMBOL_COORD || node->primes > 0 || (node->symbol->length && !node->component))
+	const struct symbol *symbol = node->symbol;
+	if (!symbol || symbol->kind != SYMBOL_COORD || node->primes > 0 || (symbol->length && !node->component))
 		error(node->at, NULL, "expected a scalar coordinate or a component, found '%s'",
 		      text_between(node->start, node->end));
 	return node;
@@ -1052,7 +1042,8 @@ static struct node *read_coordinate(struct parser *p, bool ground)
 static void read_element(struct parser *p, int kind)
 {
 	struct spec *spec = p->spec;
-	struct element element = { .kind = kind, .part = p->part, .at = (struct place){ p->lexer.source, p->statement } };
+	struct element element = { .kind = kind, .part = p->part };
+	element.at = (struct place){ p->lexer.source, p->statement };
 	element.value = read_expression(p);
 	expect_word(p, kind == ELEMENT_MASS ? "at" : kind == ELEMENT_FORCE ? "on" : "between");
 	bool two = kind == ELEMENT_SPRING || kind == ELEMENT_DAMPER;
@@ -1080,6 +1071,13 @@ static void read_spring(struct parser *p) { read_element(p, ELEMENT_SPRING); }
 static void read_damper(struct parser *p) { read_element(p, ELEMENT_DAMPER); }
 static void read_force(struct parser *p) { read_element(p, ELEMENT_FORCE); }
 
+/* By a file that stands on this one */
+static void read_part(struct parser *p)
+{
+	p->spec->uses = p->lexer.points = true;
+	p->spec->reader->read(p);
+}
+
 static const struct statement {
 	const char *word;
 	void (*read)(struct parser *);
@@ -1088,11 +1086,11 @@ static const struct statement {
 	{ "let", read_let }, { "output", read_output }, { "step", read_step }, { "scheme", read_scheme },
 	{ "input", read_input }, { "matrix", read_matrix_statement }, { "mass", read_mass }, { "spring", read_spring },
 	{ "damper", read_damper }, { "force", read_force }, { "operator", read_operator }, { "tunable", read_tunable },
-	{ "tolerance", read_tolerance }, { "substeps", read_substeps }, { "use", read_use }
+	{ "tolerance", read_tolerance }, { "substeps", read_substeps }, { "use", read_part }
 };
 
-/* tolerance, substeps and use may be names of a spec's own: in an equation an operator or a prime follows; a sign is that of
- * a number where the line has no =; an = is no equation where there is no such name. */
+/* tolerance, substeps and use may be names of a spec's own: in an equation an operator or a prime follows; a sign is
+ * that of a number where the line has no =; an = is no equation where there is no such name. */
 static bool opens_statement(const struct parser *p, const struct statement *statement, struct token token)
 {
 	const char *next = token.at.source->text + token.at.offset + token.length;
@@ -1226,10 +1224,11 @@ static void declare_what_failed(struct parser *p, size_t from)
 	size_t after;
 	const struct statement *statement = failed_statement(p, from, &after);
 	for (struct symbol *s = p->spec->first; s; s = s->next)
-		if (s->statement == p->statement && s->part == p->part && (s->kind == SYMBOL_PARAM || s->kind == SYMBOL_MATRIX))
+		if (s->statement == p->statement && s->part == p->part &&
+		    (s->kind == SYMBOL_PARAM || s->kind == SYMBOL_MATRIX))
 			s->broken = true;
-	if (statement && statement->read == read_use)
-		use_failed(p, after);
+	if (statement && statement->read == read_part)
+		p->spec->reader->failed(p, after);
 	bool all = statement && (statement->read == read_coord || statement->read == read_input);
 	if (!statement || (!all && statement->read != read_param && statement->read != read_let &&
 			   statement->read != read_output && statement->read != read_matrix_statement))
@@ -1287,28 +1286,15 @@ void parse_statements(struct spec *spec, struct spec *own, struct scene_part *pa
 			  source->length ? "there is no statement in this file" : "the file is empty");
 }
 
-static struct spec *parse_whole(const struct source *source)
+struct spec *parse_whole(const struct source *source, const struct part_reader *reader)
 {
 	struct spec *spec = NEW(struct spec);
 	spec->source = source;
+	spec->reader = reader;
 	spec->last = &spec->first;
 	spec->bucket = ARRAY(struct symbol *, BUCKETS);
 	spec->end = place_end(source);
 	parse_statements(spec, spec, NULL, source);
-	return spec;
-}
-
-void parse_alone(const struct source *source)
-{
-	parse_whole(source);
-}
-
-struct spec *parse_spec(const struct source *source)
-{
-	open_scene(source);
-	struct spec *spec = parse_whole(source);
-	if (spec->parts && !diagnostics_errors())
-		leave_unseen(spec);
 	return spec;
 }
 

@@ -7,8 +7,8 @@
 
 struct parser {
 	struct spec *spec;          /* the whole scene */
-	/* what is the text's own: its name, step, scheme, operator. Of the scene's text: the same; of a part's: read, and
-	 * then left aside */
+	/* what is the text's own: its name, step, scheme, operator. Of the scene's text: the same; of a part's: read,
+	 * and then left aside */
 	struct spec *own;
 	struct scene_part *part;          /* whose text it is; NULL: the scene's */
 	struct lexer lexer;
@@ -20,6 +20,26 @@ struct parser {
 	bool no_acceleration;       /* in a let */
 };
 
+struct binding {                    /* of `with NAME = value` */
+	struct token name;
+	int component;
+	struct node *value;
+	bool taken;                 /* it replaced what the part's text has */
+};
+struct part_reader {                /* what parse.c asks use.c for, which stands on it */
+	void (*read)(struct parser *p);
+	/* names of parts that a failed statement would have made */
+	void (*failed)(struct parser *p, size_t after);
+};
+
+/* ---- node.c ---- */
+
+struct node *node_new(enum node_kind kind, struct place at);
+void add_child(struct node *node, struct node *child, bool inverse, struct place operator);
+/* an output of a part in an expression: its value, at this place */
+struct node *inlined(struct node *value, struct place at, struct place end);
+bool has_acceleration(const struct node *node);
+
 /* ---- parse.c ---- */
 
 struct token take(struct parser *p);
@@ -30,8 +50,6 @@ _Noreturn void unexpected(const struct parser *p, const char *expected);
 void expect_op(struct parser *p, const char *op, const char *expected);
 void expect_end(struct parser *p);
 struct token expect_new_name(struct parser *p, const char *what);
-struct node *node_new(enum node_kind kind, struct place at);
-void add_child(struct node *node, struct node *child, bool inverse, struct place operator);
 struct node *read_expression(struct parser *p);
 int  read_component(struct parser *p, int *primes, bool declared);
 void check_component(const struct symbol *symbol, int component, struct place at);
@@ -44,26 +62,8 @@ struct node *read_file_name(struct parser *p);
 /* of a coordinate; what a part's own text gives, the scene gives again */
 void add_initial(struct parser *p, struct token name, struct symbol *coord, int component, struct node *value);
 void declare_quietly(struct parser *p, struct token name, enum symbol_kind kind); /* broken, unless it is known */
-void parse_alone(const struct source *source);              /* for what is said about it */
+struct spec *parse_whole(const struct source *source, const struct part_reader *reader);
 void parse_statements(struct spec *spec, struct spec *own, struct scene_part *part, const struct source *source);
-
-/* ---- use.c: parts ---- */
-
-struct binding {                    /* of `with NAME = value` */
-	struct token name;
-	int component;
-	struct node *value;
-	bool taken;                 /* it replaced what the part's text has */
-};
-void open_scene(const struct source *source);               /* no part of itself */
-void read_use(struct parser *p);
-void use_failed(struct parser *p, size_t after);            /* names of parts that a failed statement would have made */
-struct binding *binding_of(const struct parser *p, const char *name); /* of the part that is read; or NULL */
-bool is_of_broken_part(const struct parser *p, const char *name);
-const char *part_note(const struct parser *p, const char *name);  /* on front.body where no part is named front */
-/* an output of a part in an expression: its value, at this place */
-struct node *inlined(struct node *value, struct place at, struct place end);
-bool has_acceleration(const struct node *node);
 
 /* ---- slope.c ---- */
 

@@ -148,6 +148,7 @@ struct spec {                       /* what the text says, names resolved, nothi
 	int components;                 /* of all coordinates together */
 	int symbols, params, coords, lets, outputs, inputs, matrices, part_outputs, part_names;
 	bool uses;                  /* it has a statement `use` */
+	const struct part_reader *reader;
 	int parts;                  /* in the order of `use`, those inside a part after it */
 	struct scene_part **part;
 	int unseen;                 /* states of parts that no output sees, and their names */

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What no output of a scene can see is not modelled: parts, and coordinates. What an equation names is seen together, and
- * what an element of a sketch acts on; a force sees what it reads, and not the other way round. */
+/* What no output of a scene can see is not modelled: parts, and coordinates. What an equation names is seen together,
+ * and what an element of a sketch acts on; a force sees what it reads, and not the other way round. */
 #include "read/parser.h"
 
 struct list {                       /* of coordinates */
@@ -157,8 +157,9 @@ static void name_unseen(struct spec *spec, const struct symbol *coord)
 	for (int k = 0; k < (has_velocity(spec, coord) ? 2 : 1) * count; k++) {
 		const char *prime = k < count ? "" : "'";
 		ENLARGE(spec->unseen_name, (size_t)spec->unseen + 1);
-		spec->unseen_name[spec->unseen++] = coord->length ? format("%s[%d]%s", coord->name, k % count + 1, prime)
-								  : format("%s%s", coord->name, prime);
+		spec->unseen_name[spec->unseen++] =
+			coord->length ? format("%s[%d]%s", coord->name, k % count + 1, prime)
+				      : format("%s%s", coord->name, prime);
 	}
 }
 

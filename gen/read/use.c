@@ -32,7 +32,7 @@ static struct text *text_of(const char *path)
 	return known = text;
 }
 
-void open_scene(const struct source *source)
+static void open_scene(const struct source *source)
 {
 	struct text *text = text_of(source->name);
 	if (text)
@@ -57,6 +57,10 @@ static int depth_of_texts(void)
 	return depth;
 }
 
+static void read_use(struct parser *p);
+static void use_failed(struct parser *p, size_t after);
+static const struct part_reader reader = { read_use, use_failed };
+
 /* Names, expressions and statements: told once, with the part's own names, however often the part is used. */
 static void look_at(struct text *text)
 {
@@ -64,7 +68,7 @@ static void look_at(struct text *text)
 	text->open = true;
 	text->outer = innermost;
 	innermost = text;
-	parse_alone(text->source);
+	parse_whole(text->source, &reader);
 	innermost = text->outer;
 	text->open = false;
 	text->good = diagnostics_errors() == before;
@@ -90,23 +94,6 @@ static const struct text *read_text(const char *path, struct place at)
 }
 
 /* ---- what the scene gives ---- */
-
-struct binding *binding_of(const struct parser *p, const char *name)
-{
-	struct binding *found = NULL;
-	for (const struct scene_part *part = p->part; part; part = part->inside) {
-		for (int i = 0; i < part->bindings; i++) {
-			struct binding *binding = &part->binding[i];
-			if (strcmp(binding->name.name, name) != 0 || binding->name.primes || binding->component)
-				continue;
-			binding->taken = true;
-			found = binding;        /* that of the outermost */
-		}
-		const char *point = strrchr(part->name, '.');
-		name = format("%s.%s", point ? point + 1 : part->name, name);
-	}
-	return found;
-}
 
 /* binding: NAME [ component ] { ' } = expression */
 static struct binding read_binding(struct parser *p)
@@ -217,12 +204,11 @@ static void add_part(struct parser *p, struct token name, const struct scene_par
 }
 
 /* use: use STRING as NAME { , NAME } [ with binding { , binding } ] */
-void read_use(struct parser *p)
+static void read_use(struct parser *p)
 {
 	struct scene_part use = { 0 };
 	struct token file = p->token, *name = NULL;
 	size_t names = 0;
-	p->lexer.points = p->spec->uses = true;
 	if (p->token.kind != TOKEN_STRING)
 		error(p->token.at, "use \"axle.spec\" as front", "expected the file of a part in quotes, found %s",
 		      token_text(p->token));
@@ -247,7 +233,7 @@ void read_use(struct parser *p)
 }
 
 /* Their names are known but broken, so that their use is not told as well. */
-void use_failed(struct parser *p, size_t after)
+static void use_failed(struct parser *p, size_t after)
 {
 	static const char letters[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ_0123456789";
 	const char *text = p->lexer.source->text, *end = text + p->lexer.end;
@@ -272,44 +258,15 @@ void use_failed(struct parser *p, size_t after)
 	}
 }
 
-/* ---- names ---- */
+/* ---- the whole ---- */
 
-bool is_of_broken_part(const struct parser *p, const char *name)
+struct spec *parse_spec(const struct source *source)
 {
-	for (const char *point = name; (point = strchr(point, '.')); point++) {
-		const struct symbol *part = find_symbol(p, format("%.*s", (int)(point - name), name));
-		if (part && part->kind == SYMBOL_PART && part->broken)
-			return true;
-	}
-	return false;
-}
-
-const char *part_note(const struct parser *p, const char *name)
-{
-	const char *point = strchr(name, '.');
-	if (!point)
-		return NULL;
-	const char *first = format("%.*s", (int)(point - name), name);
-	const struct symbol *symbol = find_symbol(p, first);
-	if (!symbol)
-		return format("no part is named '%s': use \"FILE.spec\" as %s", first, first);
-	return symbol->kind == SYMBOL_PART ? NULL : format("%s '%s' is no part", symbol_kind(symbol), first);
-}
-
-struct node *inlined(struct node *value, struct place at, struct place end)
-{
-	struct node *node = node_new(NODE_SUM, at);
-	add_child(node, value, false, at);
-	node->end = end;
-	return node;
-}
-
-bool has_acceleration(const struct node *node)
-{
-	bool found = node->kind == NODE_NAME && node->symbol->kind == SYMBOL_COORD && node->primes > 1;
-	for (int i = 0; i < node->children && !found; i++)
-		found = has_acceleration(node->child[i]);
-	return found;
+	open_scene(source);
+	struct spec *spec = parse_whole(source, &reader);
+	if (spec->parts && !diagnostics_errors())
+		leave_unseen(spec);
+	return spec;
 }
 
 /* ---- for a reader ---- */

@@ -739,9 +739,9 @@ static const char *json_text(const char *name)
 	return text;
 }
 
-static void json_parts(FILE *to, const struct spec *spec)
+static void json_scene(FILE *to, const struct spec *spec)
 {
-	fputs("  \"parts\": [", to);
+	fputs("  \"scene\": [", to);
 	for (int i = 0; i < spec->parts; i++)
 		fprintf(to, "%s{\"name\": \"%s\", \"file\": \"%s\", \"modelled\": %s}", i ? ", " : "",
 			spec->part[i]->name, json_text(spec->part[i]->file), spec->part[i]->unseen ? "false" : "true");
@@ -770,7 +770,7 @@ void explain_json(FILE *to, const struct step *step)
 	json_names(to, "inputs", model->system.inputs, input);
 	json_dropped(to, model);
 	if (model->spec->parts)
-		json_parts(to, model->spec);
+		json_scene(to, model->spec);
 	if (model->tuning)
 		json_tuning(to, model->tuning);
 	json_rational_matrix(to, "M", model->written->n, (const mpq_t *)model->written->system.M);

@@ -57,7 +57,8 @@ END
     grep -qx 'cells_pl.c: cells.spec cell.spec stiffness.mtx' log
 result $? 'files of parts are in the dependency file'
 
-cp "$here"/*.spec "$here"/*.mtx . && "$plgen" cells.spec >from_file 2>log && "$plgen" - <cells.spec >from_stdin 2>>log &&
+cp "$here"/*.spec "$here"/*.mtx . && "$plgen" cells.spec >from_file 2>log &&
+    "$plgen" - <cells.spec >from_stdin 2>>log &&
     sed 's/cells\.spec/<stdin>/' from_file | diff - from_stdin >>log
 result $? 'standard input: parts are relative to the working directory'
 

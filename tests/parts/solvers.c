@@ -18,7 +18,7 @@ static const double tolerance = 1e-8, relative = 1e-11, pi = 3.14159265358979323
 
 extern const pl_model half_car_model, drivetrain_model, street_model;
 
-static double sample, ramp, since;              /* a record: its value and slope at the last sample, and when that was */
+static double sample, ramp, since;              /* a record at its last sample: value and slope; when that was */
 static int piece;                               /* how many changes of formula are behind */
 
 /* Heave and pitch of the body, wheels; front and rear axles 1.1 and 1.5 m from the centre, 10 m/s, bump of 0.6 m */
