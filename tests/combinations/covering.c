@@ -386,6 +386,10 @@ static void write_spec(FILE *to)
 	print_options(to);
 	fputs("model f\nparam k = 12\n", to);
 	fputs(has("tunable") ? "tunable k\n" : "", to);
+	if (has("parts"))
+		fprintf(to, "use \"part.spec\" as p%s with k = k/3, x = 0.1%s%s\n", outputs ? ", unused" : "",
+			has("cos") ? ", pull = cos(4*t)" : ", pull = 0",
+			damped ? "" : ", m = 1");
 	fputs("coord a, b\n", to);
 	fputs(has("first") ? "coord z\n" : "", to);
 	fputs(has("reduce") ? "coord unseen\n" : "", to);
@@ -405,11 +409,8 @@ static void write_spec(FILE *to)
 			fprintf(to, "; %d", i % 2);
 		fputs("]\n", to);
 	}
-	if (has("parts"))
-		fprintf(to, "use \"part.spec\" as p%s with k = %s, x = 0.1%s%s\nspring k/4 between p.x, b\n%s",
-			outputs ? ", unused" : "", has("rigid") ? "0" : "k/3",
-			has("cos") ? ", pull = cos(4*t)" : ", pull = 0",
-			damped ? "" : ", m = 1", damped ? "damper 0.2 between p.x, b\n" : "");
+	if (has("parts") && !has("rigid"))
+		fprintf(to, "spring k/4 between p.x, b\n%s", damped ? "damper 0.2 between p.x, b\n" : "");
 	fprintf(to, "%sa''%s + k*(a - b)%s = ", damped ? "2*" : "", damped ? " + 0.3*(a' - b')" : "",
 	        has("rigid") ? "" : " + 30*a");
 	fputs(has("cos") || has("loads") ? "3*cos(7*t) + " : "", to);
