@@ -53,7 +53,7 @@ static void try_all(void *context)
 static bool make(struct work *w)
 {
 	struct request *request = &w->options.request;
-	const struct source *source = source_read(w->options.spec);
+	const struct source *source = source_read(w->options.spec, (struct place){ 0 });
 	if (!source)
 		return false;
 	w->spec = parse_spec(source);

@@ -55,6 +55,8 @@ enum {
 	LIMIT_SERIES = 50000,       /* multiplications of a Taylor series, each of which is C */
 	LIMIT_COLLOCATED = 40,      /* coordinates of a collocation, whose matrices stand on the stack */
 	LIMIT_TURNS = 256,          /* log2 of a load's angle in a step, for models of more states than that */
+	LIMIT_SCENE = 1000,         /* of a scene, */
+	LIMIT_PARTS_INSIDE = 32,    /* inside each other */
 	LIMIT_ERRORS = 100,         /* told before the rest is not looked at */
 	/* of an expression in operations, through params and lets; a function of many arguments counts as many */
 	LIMIT_DEPTH = 10000,
@@ -96,13 +98,14 @@ struct source {
 	const char *text;           /* ends with a 0 byte that does not count */
 	size_t length;
 	int order;                  /* in which they were opened: the spec first */
+	bool repeats;               /* a part, in the model as often as it is used: of a place the first is told */
 };
 struct place {
 	const struct source *source;
 	size_t offset;
 };
-/* "-" is standard input; says what went wrong and returns NULL */
-struct source *source_read(const char *path);
+/* "-" is standard input, unless `at` names the file; says what went wrong, there or at its start, and returns NULL */
+struct source *source_read(const char *path, struct place at);
 struct source *source_argument(const char *text);          /* a value from the command line */
 struct place place_end(const struct source *source);       /* just after the last character of the last line */
 

@@ -33,7 +33,8 @@ static void say(struct place at, const char *severity, const char *note, const c
 	va_end(again);
 	for (int i = 0; i < said_count; i++)    /* a let that two equations use is told once */
 		if (said[i].at.offset == at.offset && said[i].at.source == at.source &&
-		    strcmp(said[i].message, message) == 0)
+		    (strcmp(said[i].message, message) == 0 ||
+		     (at.source->repeats && strcmp(said[i].severity, severity) == 0)))
 			return;
 	if (said_count == LIMIT_ERRORS && strcmp(severity, "error") == 0) {
 		message = format("more errors than the limit of %d: what comes after them is not looked at",
@@ -271,7 +272,7 @@ static struct source *source_new(const char *name, const char *base, char *text,
 {
 	struct source *source = NEW(struct source);
 	static int sources;
-	*source = (struct source){ name, base, text, length, sources++ };
+	*source = (struct source){ .name = name, .base = base, .text = text, .length = length, .order = sources++ };
 	return source;
 }
 
@@ -320,9 +321,17 @@ static char *read_all(FILE *file, size_t *length)
 	return text;
 }
 
-struct source *source_read(const char *path)
+static void cannot_read(const struct source *source, struct place at, const char *why)
 {
-	bool standard = strcmp(path, "-") == 0;
+	if (at.source)
+		say_error(at, NULL, "cannot read '%s': %s", source->name, why);
+	else
+		say_error((struct place){ source, 0 }, NULL, "cannot read the file: %s", why);
+}
+
+struct source *source_read(const char *path, struct place at)
+{
+	bool standard = !at.source && strcmp(path, "-") == 0;
 	const char *slash = strrchr(path, '/');
 	struct source *source = source_new(standard ? "<stdin>" : path,
 					   standard ? "<stdin>"
@@ -332,7 +341,7 @@ struct source *source_read(const char *path)
 	struct place start = { source, 0 };
 	FILE *file = standard ? stdin : fopen(path, "rb");
 	if (!file) {
-		say_error(start, NULL, "cannot read the file: %s", strerror(errno));
+		cannot_read(source, at, strerror(errno));
 		return NULL;
 	}
 	size_t length;
@@ -342,7 +351,7 @@ struct source *source_read(const char *path)
 	if (!standard)
 		fclose(file);
 	if (failed) {
-		say_error(start, NULL, "cannot read the file: %s", strerror(failed));
+		cannot_read(source, at, strerror(failed));
 		return NULL;
 	}
 	if (length > LIMIT_TEXT) {

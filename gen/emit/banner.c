@@ -18,10 +18,15 @@ static const char *printable(const char *text)
 static void banner_equations(const struct emitter *e)
 {
 	const struct spec *spec = e->model->spec;
+	const struct equation *equation = spec->equation;
+	const struct element *element = spec->element;
 	for (int i = 0; i < spec->equations; i++)
-		say(e, " *     %s\n", text_between(spec->equation[i].at, spec->equation[i].end));
+		say(e, " *     %s\n", written_text(equation[i].part, equation[i].at, equation[i].end));
 	for (int i = 0; i < spec->elements; i++)
-		say(e, " *     %s\n", text_between(spec->element[i].at, spec->element[i].end));
+		say(e, " *     %s\n", written_text(element[i].part, element[i].at, element[i].end));
+	for (int i = 0; i < spec->parts; i++)
+		if (parts_text(spec, i))
+			say(e, "%s%s.\n", i ? " *     and " : " *\n * Of parts: ", printable(parts_text(spec, i)));
 }
 
 static void banner_poles(const struct emitter *e)

@@ -70,7 +70,10 @@ static bool is_generated(const struct identifiers *c, const char *name)
 
 static const char *claim(struct identifiers *c, const char *wish)
 {
-	const char *name = may_be_macro(wish) ? format("v%s", wish) : wish;
+	char *own = format("%s", wish);         /* of a part: front.body is front_body */
+	for (char *point = own; (point = strchr(point, '.'));)
+		*point = '_';
+	const char *name = may_be_macro(own) ? format("v%s", own) : own;
 	while (is_generated(c, name) || is_taken(c, name) || may_be_macro(name))
 		name = is_generated(c, name) ? format("v%s", name) : format("%s_", name);
 	struct taken **first = &c->taken[name_hash(name) % BUCKETS], *taken = NEW(struct taken);
@@ -119,7 +122,7 @@ static const char *identifier(const char *name)
 static void name_symbols(struct identifiers *c, const struct spec *spec)
 {
 	for (const struct symbol *s = spec->first; s; s = s->next)
-		if (s->kind != SYMBOL_OUTPUT)
+		if (s->kind != SYMBOL_OUTPUT && s->kind < SYMBOL_PART_OUTPUT)
 			c->symbol[s->number].name[0] = claim(c, s->name);
 	for (const struct symbol *s = spec->first; s; s = s->next) {
 		struct identifier *own = &c->symbol[s->number];

@@ -201,6 +201,26 @@ static const char *missing_name(const struct building *b, int coord)
 						    : format("%s''", b->model->coord_name[coord]);
 }
 
+/* Of a part, or of the scene's own: counted and told where its text ends */
+static void tell_missing(const struct building *b, int missing, int all)
+{
+	const struct symbol *symbol = b->model->frame.coord[missing];
+	struct place at = symbol->part ? place_end(symbol->part->source) : b->spec->end;
+	int n = b->model->n, coords = 0, owned = 0;
+	for (int j = 0; j < n; j++)
+		if (b->model->frame.coord[j]->part == symbol->part) {
+			coords++;
+			owned += b->owner[j] >= 0;
+		}
+	if (b->spec->parts == 0) {
+		coords = n;
+		owned = all;
+	}
+	say_error(at, "each coordinate needs an equation of motion",
+		  "missing equation: %s, %s; none determines %s", plural(coords, "coordinate"),
+		  plural(owned, "equation"), missing_name(b, missing));
+}
+
 /* Each coordinate gets a written equation; sketched ones without get an empty one to which the elements add. */
 bool assign_equations(struct building *b)
 {
@@ -228,9 +248,7 @@ bool assign_equations(struct building *b)
 		say_error(b->snapshot->residual[surplus < 0 ? written - 1 : surplus].at, NULL,
 			  "surplus equation: %s for %s", plural(all, "equation"), plural(n, "coordinate"));
 	else if (all < n)
-		say_error(b->spec->end, "each coordinate needs an equation of motion",
-			  "missing equation: %s, %s; none determines %s", plural(n, "coordinate"),
-			  plural(all, "equation"), missing_name(b, missing));
+		tell_missing(b, missing, all);
 	return all == n;
 }
 

@@ -102,9 +102,10 @@ static void check_number(struct token token)
 	error(token.at, note, "malformed number '%.*s'", token.length > 60 ? 60 : (int)token.length, text);
 }
 
-static void lex_name(struct token *token, const char *text)
+static void lex_name(struct token *token, const char *text, bool points)
 {
-	while (is_letter(text[token->length]) || is_digit(text[token->length]))
+	while (is_letter(text[token->length]) || is_digit(text[token->length]) ||
+	       (points && text[token->length] == '.' && is_letter(text[token->length + 1])))
 		token->length++;
 	token->kind = TOKEN_NAME;
 	token->name = format("%.*s", (int)token->length, text);
@@ -187,7 +188,7 @@ struct token lex_next(struct lexer *lexer)
 	token.at.offset = lexer->position;
 	const char *text = lexer->source->text + lexer->position;
 	if (is_letter(*text)) {
-		lex_name(&token, text);
+		lex_name(&token, text, lexer->points);
 	} else if (is_digit(*text) || (*text == '.' && is_digit(text[1]))) {
 		token.kind = TOKEN_NUMBER;
 		token.length = number_extent(text);

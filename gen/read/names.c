@@ -165,11 +165,12 @@ static bool is_of_library(const char *name)
 	return length > 2 && strcmp(name + length - 2, "_t") == 0;
 }
 
+/* The same for names that are one in C: front.body, front_body */
 size_t name_hash(const char *name)
 {
 	size_t hash = 0;
 	for (; *name; name++)
-		hash = (hash ^ (unsigned char)*name) * 0x9e3779b97f4a7c15u;
+		hash = (hash ^ (unsigned char)(*name == '.' ? '_' : *name)) * 0x9e3779b97f4a7c15u;
 	return hash >> 20;
 }
 

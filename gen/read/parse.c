@@ -1,28 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Tokens to nodes and declarations. The production stands above each function that reads it; names are resolved as
  * they are read, since they are declared before use. */
-#include "read/read.h"
+#include "read/parser.h"
 
 #include <string.h>
 
-struct parser {
-	struct spec *spec;
-	struct lexer lexer;
-	struct token token;         /* the next one, not yet taken */
-	struct place end;           /* just after the last one taken */
-	size_t operand_end;         /* just after the last operand: there an operator may be missing */
-	size_t statement;           /* offset where it starts */
-	int nesting;
-	bool no_acceleration;       /* in a let */
-};
-
 static const char WORD[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ_0123456789";
-
-static struct node *read_expression(struct parser *p);
 
 /* ---- tokens ---- */
 
-static struct token take(struct parser *p)
+struct token take(struct parser *p)
 {
 	struct token token = p->token;
 	p->end = token.at;
@@ -31,12 +18,12 @@ static struct token take(struct parser *p)
 	return token;
 }
 
-static bool is_op(const struct parser *p, const char *op)
+bool is_op(const struct parser *p, const char *op)
 {
 	return p->token.kind == TOKEN_OPERATOR && strcmp(p->token.op, op) == 0;
 }
 
-static bool take_op(struct parser *p, const char *op)
+bool take_op(struct parser *p, const char *op)
 {
 	if (!is_op(p, op))
 		return false;
@@ -91,18 +78,18 @@ static const char *stray_note(const struct parser *p)
 	return NULL;
 }
 
-static _Noreturn void unexpected(const struct parser *p, const char *expected)
+_Noreturn void unexpected(const struct parser *p, const char *expected)
 {
 	error(p->token.at, stray_note(p), "expected %s, found %s", expected, token_text(p->token));
 }
 
-static void expect_op(struct parser *p, const char *op, const char *expected)
+void expect_op(struct parser *p, const char *op, const char *expected)
 {
 	if (!take_op(p, op))
 		unexpected(p, expected);
 }
 
-static void expect_end(struct parser *p)
+void expect_end(struct parser *p)
 {
 	if (p->token.kind != TOKEN_END)
 		unexpected(p, "the end of the statement");
@@ -114,60 +101,7 @@ static void nest(struct parser *p, struct place at)
 		error(at, NULL, "nesting over the limit of %d", LIMIT_NESTING);
 }
 
-/* ---- nodes ---- */
-
-static struct node *node_new(enum node_kind kind, struct place at)
-{
-	struct node *node = NEW(struct node);
-	node->kind = kind;
-	node->at = node->start = node->end = at;
-	mpq_init(node->number);
-	return node;
-}
-
-static void add_child(struct node *node, struct node *child, bool inverse, struct place operator)
-{
-	size_t count = (size_t)node->children;
-	if ((count & (count - 1)) == 0) {       /* room grows by doubling */
-		size_t room = count ? 2 * count : 1;
-		ENLARGE(node->child, room);
-		ENLARGE(node->inverse, room);
-		ENLARGE(node->operator, room);
-	}
-	bool many = node->kind == NODE_CALL &&
-		    (node->function == FN_MIN || node->function == FN_MAX || node->function == FN_TABLE);
-	int inside = child->depth + 1 + (many ? node->children : 0);
-	node->depth = inside > node->depth ? inside : node->depth;
-	if (node->depth > LIMIT_DEPTH)
-		error(child->start, NULL, "operations inside each other, through params and lets, over the limit of %d",
-		      LIMIT_DEPTH);
-	node->child[count] = child;
-	node->inverse[count] = inverse;
-	node->operator[count] = operator;
-	node->children++;
-	node->end = child->end;
-}
-
-char *text_between(struct place start, struct place end)
-{
-	const char *text = start.source->text;
-	char *folded = ARRAY(char, end.offset - start.offset + 1);
-	size_t length = 0;
-	for (size_t i = start.offset; i < end.offset; i++) {
-		if (text[i] == '#')
-			while (i < end.offset && text[i] != '\n')
-				i++;
-		bool space = i >= end.offset || strchr(" \t\r\n\f\v", text[i]);
-		if (!space)
-			folded[length++] = text[i];
-		else if (length > 0 && folded[length - 1] != ' ')
-			folded[length++] = ' ';
-	}
-	while (length > 0 && folded[length - 1] == ' ')
-		length--;
-	folded[length] = 0;
-	return folded;
-}
+/* ---- names ---- */
 
 enum { BUCKETS = 1 << 14 };
 
@@ -177,6 +111,11 @@ struct symbol *spec_find(const struct spec *spec, const char *name)
 		if (strcmp(s->name, name) == 0)
 			return s;
 	return NULL;
+}
+
+struct symbol *find_symbol(const struct parser *p, const char *name)
+{
+	return spec_find(p->spec, p->part ? format("%s.%s", p->part->name, name) : name);
 }
 
 /* Behind all others: of equal names the first is found. */
@@ -195,6 +134,13 @@ static bool begins(const char *line, const char *word)
 {
 	size_t length = strlen(word);
 	return strncmp(line, word, length) == 0 && (line[length] == ' ' || line[length] == '\t');
+}
+
+const char *symbol_kind(const struct symbol *symbol)
+{
+	static const char *const text[] = { "param", "coordinate", "let", "output", "input", "matrix", "output",
+					    "part" };
+	return text[symbol->kind];
 }
 
 /* Whether the rest of this statement or a later one declares it: then the order is what is wrong. */
@@ -226,6 +172,30 @@ static _Noreturn void peak_inside(struct place at)
 	      "peak stands alone: output NAME = peak(EXPR)");
 }
 
+/* Then it was told what is wrong. */
+static bool is_of_broken_part(const struct parser *p, const char *name)
+{
+	for (const char *point = name; (point = strchr(point, '.')); point++) {
+		const struct symbol *part = find_symbol(p, format("%.*s", (int)(point - name), name));
+		if (part && part->kind == SYMBOL_PART && part->broken)
+			return true;
+	}
+	return false;
+}
+
+/* A note on front.body where no part is named front; or NULL */
+static const char *part_note(const struct parser *p, const char *name)
+{
+	const char *point = strchr(name, '.');
+	if (!point)
+		return NULL;
+	const char *first = format("%.*s", (int)(point - name), name);
+	const struct symbol *symbol = find_symbol(p, first);
+	if (!symbol)
+		return format("no part is named '%s': use \"FILE.spec\" as %s", first, first);
+	return symbol->kind == SYMBOL_PART ? NULL : format("%s '%s' is no part", symbol_kind(symbol), first);
+}
+
 static _Noreturn void unknown_name(const struct parser *p, struct token token)
 {
 	if (declared_later(p, token.name))
@@ -233,17 +203,15 @@ static _Noreturn void unknown_name(const struct parser *p, struct token token)
 		      token.name);
 	if (strcmp(token.name, "peak") == 0 && token.primes == 0 && is_op(p, "("))
 		peak_inside(token.at);
-	error(token.at, spec_suggestion(p->spec, token.name), "unknown name '%s'", token.name);
-}
-
-static const char *kind_text(const struct symbol *symbol)
-{
-	static const char *const text[] = { "param", "coordinate", "let", "output", "input", "matrix" };
-	return text[symbol->kind];
+	/* by itself a part was without error: this one follows from another */
+	if (is_of_broken_part(p, token.name) || (p->part && diagnostics_errors()))
+		abandon();
+	const char *note = part_note(p, token.name);
+	error(token.at, note ? note : spec_suggestion(p->spec, token.name), "unknown name '%s'", token.name);
 }
 
 /* component: [ NUMBER ] { ' }; *primes grows by those behind the bracket */
-static int read_component(struct parser *p, int *primes, bool declared)
+int read_component(struct parser *p, int *primes, bool declared)
 {
 	if (!is_op(p, "[") || p->token.at.offset != p->end.offset)
 		return 0;
@@ -271,7 +239,7 @@ static int read_component(struct parser *p, int *primes, bool declared)
 	return component;
 }
 
-static void check_component(const struct symbol *symbol, int component, struct place at)
+void check_component(const struct symbol *symbol, int component, struct place at)
 {
 	if (component == 0)
 		return;
@@ -281,20 +249,40 @@ static void check_component(const struct symbol *symbol, int component, struct p
 		error(at, NULL, "'%s' has %d components", symbol->name, symbol->length);
 }
 
+/* What a name stands for, where that is an expression: an output of a part, the slope of a connected input */
+static struct node *read_inlined(struct parser *p, const struct symbol *symbol, struct token token)
+{
+	if (symbol->kind == SYMBOL_LET)
+		return inlined(slope_of(symbol->value, symbol->value->start), token.at, p->end);
+	if (token.primes > 0)
+		error(token.at, "only coordinates have derivatives", "output '%s' has no derivative", token.name);
+	if (symbol->peak)
+		error(token.at, format("it is one by itself: output %s", token.name),
+		      "a peak is an output, and no part of an expression");
+	if (p->no_acceleration && has_acceleration(symbol->value))
+		error(token.at, "a let may use coordinates and their first derivatives", "an acceleration in a let");
+	return inlined(symbol->value, token.at, p->end);
+}
+
 /* name: NAME { ' } | NAME [ NUMBER ] { ' } */
 static struct node *resolve_name(struct parser *p, struct token token)
 {
 	int component = read_component(p, &token.primes, false);
-	struct symbol *symbol = spec_find(p->spec, token.name);
+	struct symbol *symbol = find_symbol(p, token.name);
 	if (!symbol)
 		unknown_name(p, token);
 	if (symbol->broken)
 		abandon();
+	if (symbol->kind == SYMBOL_PART)
+		error(token.at, format("what belongs to it has its name: %s.NAME", token.name),
+		      "'%s' is a part, and stands for no value", token.name);
+	if (symbol->kind == SYMBOL_PART_OUTPUT || (symbol->connected && token.primes == 1 && symbol->hold))
+		return read_inlined(p, symbol, token);
 	if (symbol->kind == SYMBOL_OUTPUT)
 		error(token.at, "a shorthand for use in expressions is a let",
 		      "output '%s' cannot be used in an expression", token.name);
 	if (token.primes > 0 && symbol->kind != SYMBOL_COORD && symbol->kind != SYMBOL_INPUT)
-		error(token.at, "only coordinates have derivatives", "%s '%s' has no derivative", kind_text(symbol),
+		error(token.at, "only coordinates have derivatives", "%s '%s' has no derivative", symbol_kind(symbol),
 		      token.name);
 	if (token.primes > 0 && symbol->kind == SYMBOL_INPUT && !symbol->hold)
 		error(token.at, format("input %s hold first ramps between samples and has one", token.name),
@@ -425,7 +413,7 @@ static struct node *read_operand(struct parser *p)
 		node->end = p->end;
 		return node;
 	}
-	if (is_reserved(name.name) && !spec_find(p->spec, name.name))   /* else broken: told where it is declared */
+	if (is_reserved(name.name) && !find_symbol(p, name.name))   /* else broken: told where it is declared */
 		error(name.at, NULL, "'%s' is a reserved word", name.name);
 	return resolve_name(p, name);
 }
@@ -533,7 +521,7 @@ static struct node *read_comparison(struct parser *p)
 }
 
 /* expression: comparison [ ? expression : expression ] */
-static struct node *read_expression(struct parser *p)
+struct node *read_expression(struct parser *p)
 {
 	struct node *condition = read_comparison(p);
 	if (!is_op(p, "?"))
@@ -552,7 +540,7 @@ static struct node *read_expression(struct parser *p)
 
 /* ---- statements ---- */
 
-static struct token expect_new_name(struct parser *p, const char *what)
+struct token expect_new_name(struct parser *p, const char *what)
 {
 	if (p->token.kind != TOKEN_NAME)
 		unexpected(p, what);
@@ -563,28 +551,73 @@ static struct token expect_new_name(struct parser *p, const char *what)
 	return take(p);
 }
 
+/* Names that differ in a point for a _ are one in C. Told where the scene makes them meet. */
+static void check_name_in_c(const struct parser *p, const char *name, struct place at)
+{
+	for (const struct symbol *s = p->spec->bucket[name_hash(name) % BUCKETS]; s; s = s->next_alike) {
+		size_t same = 0;
+		while (s->name[same] && (s->name[same] == name[same] || (strchr("._", s->name[same]) && name[same] &&
+									 strchr("._", name[same]))))
+			same++;
+		if (!s->name[same] && !name[same] && strcmp(s->name, name) != 0 && s->kind != SYMBOL_PART)
+			error(p->part ? p->part->at : at, "names of parts have a _ for the point there",
+			      "'%s' and '%s' are one name in C", s->name, name);
+	}
+}
+
 static struct place last_token(const struct parser *p, size_t length)
 {
 	return (struct place){ p->end.source, p->end.offset - length };
 }
 
-static struct symbol *declare(struct parser *p, struct token name, enum symbol_kind kind, bool broken)
+struct symbol *declare(struct parser *p, struct token name, enum symbol_kind kind, bool broken)
 {
 	struct spec *spec = p->spec;
-	struct symbol *known = spec_find(spec, name.name);
+	struct symbol *known = find_symbol(p, name.name);
+	if (strchr(name.name, '.'))
+		error(name.at, "names with a point are those of parts", "'%s' is no name to declare", name.name);
 	if (known && known->broken)
 		abandon();
 	if (known)
 		error(name.at, NULL, "'%s' is declared already, as %s %s", name.name,
-		      known->kind == SYMBOL_OUTPUT || known->kind == SYMBOL_INPUT ? "an" : "a", kind_text(known));
-	int *counts[] = { &spec->params, &spec->coords, &spec->lets, &spec->outputs, &spec->inputs, &spec->matrices };
+		      known->kind == SYMBOL_OUTPUT || known->kind == SYMBOL_INPUT ? "an" : "a", symbol_kind(known));
+	int *counts[] = { &spec->params, &spec->coords, &spec->lets, &spec->outputs, &spec->inputs, &spec->matrices,
+			  &spec->part_outputs, &spec->part_names };
+	const char *whole = p->part ? format("%s.%s", p->part->name, name.name) : name.name;
+	if (kind != SYMBOL_PART && !broken)
+		check_name_in_c(p, whole, name.at);
 	struct symbol *symbol = NEW(struct symbol);
 	*symbol = (struct symbol){
-		.kind = kind, .name = name.name, .at = name.at, .statement = p->statement, .broken = broken
+		.kind = kind, .name = whole, .at = name.at, .statement = p->statement, .broken = broken, .part = p->part
 	};
 	symbol->index = broken ? -1 : (*counts[kind])++;
 	add_symbol(spec, symbol);
 	return symbol;
+}
+
+/* What the scene gives to the part that is read; or NULL */
+static const struct binding *binding_of(const struct parser *p, const char *name)
+{
+	const struct binding *found = NULL;
+	for (const struct scene_part *part = p->part; part; part = part->inside) {
+		for (int i = 0; i < part->bindings; i++) {
+			struct binding *binding = &part->binding[i];
+			if (strcmp(binding->name.name, name) != 0 || binding->name.primes || binding->component)
+				continue;
+			binding->taken = true;
+			found = binding;        /* that of the outermost */
+		}
+		const char *point = strrchr(part->name, '.');
+		name = format("%s.%s", point ? point + 1 : part->name, name);
+	}
+	return found;
+}
+
+/* In a part: what the scene gives instead */
+static struct node *given_value(struct parser *p, const char *name, struct node *value)
+{
+	const struct binding *binding = binding_of(p, name);
+	return binding ? binding->value : value;
 }
 
 /* param: param NAME = expression { , NAME = expression };   let: let NAME = expression */
@@ -594,6 +627,7 @@ static void read_definitions(struct parser *p, enum symbol_kind kind)
 		struct token name = expect_new_name(p, "a name");
 		expect_op(p, "=", "'='");
 		struct node *value = read_expression(p);
+		value = kind == SYMBOL_PARAM ? given_value(p, name.name, value) : value;
 		declare(p, name, kind, false)->value = value;
 	} while (take_op(p, ","));
 	expect_end(p);
@@ -610,21 +644,29 @@ static void read_let(struct parser *p)
 	read_definitions(p, SYMBOL_LET);
 }
 
-static void add_file(struct spec *spec, const char *path)
+void add_file(struct spec *spec, const char *path)
 {
+	for (int i = 0; i < spec->files; i++)
+		if (strcmp(spec->file[i], path) == 0)
+			return;
 	ENLARGE(spec->file, (size_t)spec->files + 1);
 	spec->file[spec->files++] = path;
 }
 
-/* A data file stands beside the spec unless its path is absolute. */
-static struct node *read_file_name(struct parser *p)
+/* A file that a text names stands beside it unless its path is absolute. */
+const char *beside(const struct source *source, const char *name)
+{
+	const char *slash = strrchr(source->name, '/');
+	return name[0] == '/' || !slash ? name : format("%.*s/%s", (int)(slash - source->name), source->name, name);
+}
+
+struct node *read_file_name(struct parser *p)
 {
 	struct token token = take(p);
 	const char *name = format("%.*s", (int)token.length - 2, token.at.source->text + token.at.offset + 1);
-	const char *spec = p->spec->source->name, *slash = strrchr(spec, '/');
 	struct node *node = node_new(NODE_FILE, token.at);
 	node->end = p->end;
-	node->path = name[0] == '/' || !slash ? name : format("%.*s/%s", (int)(slash - spec), spec, name);
+	node->path = beside(token.at.source, name);
 	add_file(p->spec, node->path);
 	return node;
 }
@@ -636,6 +678,7 @@ static void read_matrix_statement(struct parser *p)
 		struct token name = expect_new_name(p, "the name of a matrix");
 		expect_op(p, "=", "'='");
 		struct node *value = p->token.kind == TOKEN_STRING ? read_file_name(p) : read_expression(p);
+		value = given_value(p, name.name, value);
 		declare(p, name, SYMBOL_MATRIX, false)->value = value;
 	} while (take_op(p, ","));
 	expect_end(p);
@@ -644,14 +687,14 @@ static void read_matrix_statement(struct parser *p)
 /* model: model NAME */
 static void read_model(struct parser *p)
 {
-	if (p->spec->name && *p->spec->name)
-		error(last_token(p, 5), NULL, "the model is named already: '%s'", p->spec->name);
-	if (p->token.kind != TOKEN_NAME || p->token.primes > 0)
+	if (p->own->name && *p->own->name)
+		error(last_token(p, 5), NULL, "the model is named already: '%s'", p->own->name);
+	if (p->token.kind != TOKEN_NAME || p->token.primes > 0 || strchr(p->token.name, '.'))
 		unexpected(p, "the model's name");
 	struct token name = take(p);
 	expect_end(p);
-	p->spec->name = name.name;
-	p->spec->name_at = name.at;
+	p->own->name = name.name;
+	p->own->name_at = name.at;
 }
 
 /* coord: coord NAME [ '[' NUMBER ']' ] { , ... } */
@@ -670,7 +713,7 @@ static void read_coord(struct parser *p)
 	expect_end(p);
 }
 
-static bool take_word(struct parser *p, const char *word)
+bool take_word(struct parser *p, const char *word)
 {
 	if (p->token.kind != TOKEN_NAME || p->token.primes > 0 || strcmp(p->token.name, word) != 0)
 		return false;
@@ -686,7 +729,7 @@ static void apply_hold(struct parser *p, const struct symbol *last, int phrases)
 	const struct symbol *held = NULL;
 	bool whole = phrases == 1 && last->hold;
 	for (struct symbol *s = p->spec->first; s && phrases > 0; s = s->next) {
-		if (s->statement != p->statement)
+		if (s->statement != p->statement || s->part != p->part)
 			continue;
 		if (s->hold && held && !whole)
 			error(held->at,
@@ -716,7 +759,11 @@ static void read_input(struct parser *p)
 	struct symbol *input;
 	int phrases = 0;
 	do {
-		input = declare(p, expect_new_name(p, "the name of an input"), SYMBOL_INPUT, false);
+		struct token name = expect_new_name(p, "the name of an input");
+		struct node *connected = given_value(p, name.name, NULL);
+		input = declare(p, name, connected ? SYMBOL_LET : SYMBOL_INPUT, false);
+		input->value = connected;
+		input->connected = connected;
 		if (!take_word(p, "hold"))
 			continue;
 		input->hold = take_hold(p);
@@ -726,16 +773,18 @@ static void read_input(struct parser *p)
 	apply_hold(p, input, phrases);
 }
 
-static void add_initial(struct parser *p, struct token name, struct symbol *coord, int component, struct node *value)
+/* What a part has of its own the scene may give again: the later one counts. */
+void add_initial(struct parser *p, struct token name, struct symbol *coord, int component, struct node *value)
 {
 	struct spec *spec = p->spec;
 	for (int i = 0; i < spec->initials; i++)
 		if (spec->initial[i].coord == coord && spec->initial[i].primes == name.primes &&
+		    spec->initial[i].part == p->part &&
 		    (!component || !spec->initial[i].component || spec->initial[i].component == component))
 			error(name.at, NULL, "the initial value of %s is given already", token_text(name));
 	ENLARGE(spec->initial, (size_t)spec->initials + 1);
 	spec->initial[spec->initials++] =
-		(struct initial){ name.at, p->statement, coord, name.primes, component, value };
+		(struct initial){ name.at, p->part, p->statement, coord, name.primes, component, value };
 }
 
 /* init: init NAME [ ' ] = expression { , ... } */
@@ -747,7 +796,7 @@ static void read_init(struct parser *p)
 		struct token name = take(p);
 		int component = read_component(p, &name.primes, false);
 		name.length = p->end.offset - name.at.offset;
-		struct symbol *coord = spec_find(p->spec, name.name);
+		struct symbol *coord = find_symbol(p, name.name);
 		if (coord && coord->broken)
 			abandon();
 		if (!coord && !is_reserved(name.name))
@@ -765,13 +814,19 @@ static void read_init(struct parser *p)
 }
 
 /* An output that only names something: x1, x2', x1'', a let. */
-static struct symbol *read_plain_output(struct parser *p, struct token name)
+static void read_plain_output(struct parser *p, struct token name)
 {
-	struct node *value = strcmp(name.name, "t") == 0 ? node_new(NODE_TIME, name.at) : resolve_name(p, name);
+	const struct symbol *known = find_symbol(p, name.name);
+	const bool peak = known && known->kind == SYMBOL_PART_OUTPUT && known->peak;
+	struct node *value = strcmp(name.name, "t") == 0 ? node_new(NODE_TIME, name.at)
+			     : peak                      ? inlined(known->value, name.at, p->end)
+							 : resolve_name(p, name);
 	const char *shown = value->component ? format("%s[%d]%.*s", name.name, value->component, value->primes, "''")
 					     : format("%s%.*s", name.name, value->primes, "''");
 	if (p->token.kind != TOKEN_END && !is_op(p, ","))
 		unexpected(p, "'=' or ','");
+	if (p->part)                            /* the scene names it as it is */
+		return;
 	for (struct symbol *s = p->spec->first; s; s = s->next)
 		if (s->kind == SYMBOL_OUTPUT && strcmp(s->name, shown) == 0)
 			error(name.at, NULL, "output '%s' is declared already", shown);
@@ -780,15 +835,15 @@ static struct symbol *read_plain_output(struct parser *p, struct token name)
 		.kind = SYMBOL_OUTPUT, .name = shown, .at = name.at, .statement = p->statement, .value = value
 	};
 	symbol->index = p->spec->outputs++;
+	symbol->peak = peak;
 	value->end = p->end;
 	add_symbol(p->spec, symbol);
-	return symbol;
 }
 
 /* `peak(`, unless that is a name of the spec's own */
 static bool take_peak(struct parser *p)
 {
-	if (spec_find(p->spec, "peak") || !take_word(p, "peak"))
+	if (find_symbol(p, "peak") || !take_word(p, "peak"))
 		return false;
 	expect_op(p, "(", "'(': peak(x) is the largest |x| so far");
 	return true;
@@ -815,7 +870,7 @@ static void read_output(struct parser *p)
 			expect_op(p, ")", "')' or an operator");
 		if (peak && p->token.kind == TOKEN_OPERATOR && strchr("+-*/^<>=!?", p->token.op[0]))
 			peak_inside(at);
-		struct symbol *output = declare(p, name, SYMBOL_OUTPUT, false);
+		struct symbol *output = declare(p, name, p->part ? SYMBOL_PART_OUTPUT : SYMBOL_OUTPUT, false);
 		output->value = value;
 		output->peak = peak;
 	} while (take_op(p, ","));
@@ -826,10 +881,10 @@ static void read_output(struct parser *p)
 static void read_step(struct parser *p)
 {
 	struct place at = last_token(p, 4);
-	if (p->spec->step)
+	if (p->own->step)
 		error(at, NULL, "the step is given already");
-	p->spec->step_at = p->token.at;
-	p->spec->step = read_expression(p);
+	p->own->step_at = p->token.at;
+	p->own->step = read_expression(p);
 	expect_end(p);
 }
 
@@ -837,18 +892,18 @@ static void read_step(struct parser *p)
 static void read_scheme(struct parser *p)
 {
 	struct place at = last_token(p, 6);
-	if (p->spec->scheme)
+	if (p->own->scheme)
 		error(at, NULL, "the scheme is given already");
 	if (p->token.kind != TOKEN_NAME || p->token.primes > 0)
 		unexpected(p, "the name of a scheme");
 	struct token name = take(p);
-	p->spec->scheme_at = name.at;
+	p->own->scheme_at = name.at;
 	enum scheme scheme;
 	bool counts = scheme_of(name.name, &scheme) && (scheme_row(scheme)->expands || scheme_row(scheme)->stages);
 	if (p->token.kind == TOKEN_NUMBER || (counts && p->token.kind != TOKEN_END))
-		p->spec->scheme_order = read_expression(p);     /* a number behind another scheme is told later */
+		p->own->scheme_order = read_expression(p);     /* a number behind another scheme is told later */
 	expect_end(p);
-	p->spec->scheme = name.name;
+	p->own->scheme = name.name;
 }
 
 /* tolerance: tolerance expression; substeps: substeps expression */
@@ -862,8 +917,8 @@ static void read_bound(struct parser *p, const char *word, struct node **bound)
 	expect_end(p);
 }
 
-static void read_tolerance(struct parser *p) { read_bound(p, "tolerance", &p->spec->tolerance); }
-static void read_substeps(struct parser *p) { read_bound(p, "substeps", &p->spec->substeps); }
+static void read_tolerance(struct parser *p) { read_bound(p, "tolerance", &p->own->tolerance); }
+static void read_substeps(struct parser *p) { read_bound(p, "substeps", &p->own->substeps); }
 
 /* expression { , expression } [ , ] [ without static ] */
 static struct mode_list take_modes(struct parser *p)
@@ -887,9 +942,9 @@ static struct mode_list take_modes(struct parser *p)
 static void read_modes(struct parser *p)
 {
 	struct place at = last_token(p, 5);
-	if (p->spec->modes.at.source)
+	if (p->own->modes.at.source)
 		error(at, NULL, "the modes are given already");
-	p->spec->modes = take_modes(p);
+	p->own->modes = take_modes(p);
 }
 
 static void expect_word(struct parser *p, const char *word)
@@ -911,16 +966,19 @@ static bool names_definition(const struct parser *p)
 /* What an operator can fix: t, a coordinate, its first derivative, a let */
 static struct fixed *read_fixed_name(struct parser *p)
 {
-	struct spec *spec = p->spec;
+	struct spec *spec = p->own;
 	if (p->token.kind != TOKEN_NAME)
 		unexpected(p, "a name to fix");
 	struct token token = take(p);
 	bool time = strcmp(token.name, "t") == 0 && token.primes == 0;
 	struct node *name = time ? NULL : resolve_name(p, token);
 	struct symbol *symbol = time ? NULL : name->symbol;
+	if (!time && !symbol)
+		error(token.at, "an operator fixes t, coordinates, their first derivatives and lets",
+		      "'%s' cannot be fixed", token.name);
 	if (symbol && symbol->kind != SYMBOL_COORD && symbol->kind != SYMBOL_LET)
 		error(token.at, "an operator fixes t, coordinates, their first derivatives and lets",
-		      "%s '%s' cannot be fixed", kind_text(symbol), symbol->name);
+		      "%s '%s' cannot be fixed", symbol_kind(symbol), symbol->name);
 	if (token.primes > 1 || (name && name->primes > 1))
 		error(token.at, "an operator fixes t, coordinates, their first derivatives and lets",
 		      "an acceleration cannot be fixed");
@@ -942,7 +1000,7 @@ static struct fixed *read_fixed_name(struct parser *p)
 /* operator: operator [ number ] at NAME = expression { , ( NAME = expression | expression ) } */
 static void read_operator(struct parser *p)
 {
-	struct spec *spec = p->spec;
+	struct spec *spec = p->own;
 	struct place at = last_token(p, 8);
 	struct fixed *fixed = NULL;
 	if (spec->has_operator)
@@ -973,12 +1031,12 @@ static void read_tunable(struct parser *p)
 		if (p->token.kind != TOKEN_NAME || is_reserved(p->token.name))
 			unexpected(p, "a param");
 		struct token token = take(p);
-		struct symbol *symbol = spec_find(spec, token.name);
-		if (!symbol || symbol->broken || symbol->kind == SYMBOL_PARAM)
+		struct symbol *symbol = find_symbol(p, token.name);
+		if (!symbol || symbol->broken || symbol->kind == SYMBOL_PARAM || symbol->kind == SYMBOL_PART)
 			symbol = resolve_name(p, token)->symbol;
 		if (symbol->kind != SYMBOL_PARAM)
 			error(token.at, "a param is tunable, and nothing else", "%s '%s' is not a param",
-			      kind_text(symbol), symbol->name);
+			      symbol_kind(symbol), symbol->name);
 		if (symbol->tuned)
 			error(token.at, NULL, "'%s' is tunable already", symbol->name);
 		if (spec->tunables == LIMIT_TUNABLES)
@@ -999,7 +1057,8 @@ static struct node *read_coordinate(struct parser *p, bool ground)
 	if (p->token.kind != TOKEN_NAME || is_reserved(p->token.name))
 		unexpected(p, ground ? "a coordinate or ground" : "a coordinate");
 	struct node *node = resolve_name(p, take(p));
-	if (node->symbol->kind != SYMBOL_COORD || node->primes > 0 || (node->symbol->length && !node->component))
+	const struct symbol *symbol = node->symbol;
+	if (!symbol || symbol->kind != SYMBOL_COORD || node->primes > 0 || (symbol->length && !node->component))
 		error(node->at, NULL, "expected a scalar coordinate or a component, found '%s'",
 		      text_between(node->start, node->end));
 	return node;
@@ -1010,7 +1069,8 @@ static struct node *read_coordinate(struct parser *p, bool ground)
 static void read_element(struct parser *p, int kind)
 {
 	struct spec *spec = p->spec;
-	struct element element = { .kind = kind, .at = (struct place){ p->lexer.source, p->statement } };
+	struct element element = { .kind = kind, .part = p->part };
+	element.at = (struct place){ p->lexer.source, p->statement };
 	element.value = read_expression(p);
 	expect_word(p, kind == ELEMENT_MASS ? "at" : kind == ELEMENT_FORCE ? "on" : "between");
 	bool two = kind == ELEMENT_SPRING || kind == ELEMENT_DAMPER;
@@ -1038,6 +1098,13 @@ static void read_spring(struct parser *p) { read_element(p, ELEMENT_SPRING); }
 static void read_damper(struct parser *p) { read_element(p, ELEMENT_DAMPER); }
 static void read_force(struct parser *p) { read_element(p, ELEMENT_FORCE); }
 
+/* By a file that stands on this one */
+static void read_part(struct parser *p)
+{
+	p->spec->uses = p->lexer.points = true;
+	p->spec->reader->read(p);
+}
+
 static const struct statement {
 	const char *word;
 	void (*read)(struct parser *);
@@ -1046,26 +1113,26 @@ static const struct statement {
 	{ "let", read_let }, { "output", read_output }, { "step", read_step }, { "scheme", read_scheme },
 	{ "input", read_input }, { "matrix", read_matrix_statement }, { "mass", read_mass }, { "spring", read_spring },
 	{ "damper", read_damper }, { "force", read_force }, { "operator", read_operator }, { "tunable", read_tunable },
-	{ "tolerance", read_tolerance }, { "substeps", read_substeps }, { "modes", read_modes }
+	{ "tolerance", read_tolerance }, { "substeps", read_substeps }, { "modes", read_modes }, { "use", read_part }
 };
 
-/* tolerance, substeps and modes may be names of a spec's own: in an equation an operator or a prime follows; a sign is
- * that of a number where the line has no =; an = is no equation where there is no such name. */
-static bool opens_statement(const struct spec *spec, const struct statement *statement, struct token token)
+/* tolerance, substeps, modes and use may be names of a spec's own: in an equation an operator or a prime follows; a
+ * sign is that of a number where the line has no =; an = is no equation where there is no such name. */
+static bool opens_statement(const struct parser *p, const struct statement *statement, struct token token)
 {
 	const char *next = token.at.source->text + token.at.offset + token.length;
 	next += strspn(next, " \t");
 	bool sign = *next == '-' || *next == '+';
-	return is_reserved(statement->word) || strspn(next, WORD) > 0 || *next == '.' || *next == '(' || !*next ||
+	return is_reserved(statement->word) || strspn(next, WORD) > 0 || strchr(".\"", *next) || *next == '(' ||
 	       *next == '\n' || *next == '#' || (sign && next[strcspn(next, "=\n")] != '=') ||
-	       (*next == '=' && !spec_find(spec, statement->word));
+	       (*next == '=' && !find_symbol(p, statement->word));
 }
 
-static const struct statement *statement_of(const struct spec *spec, struct token token)
+static const struct statement *statement_of(const struct parser *p, struct token token)
 {
 	for (size_t i = 0; token.kind == TOKEN_NAME && token.primes == 0 && i < sizeof statements / sizeof *statements;
 	     i++)
-		if (strcmp(token.name, statements[i].word) == 0 && opens_statement(spec, &statements[i], token))
+		if (strcmp(token.name, statements[i].word) == 0 && opens_statement(p, &statements[i], token))
 			return &statements[i];
 	return NULL;
 }
@@ -1079,19 +1146,19 @@ static const char *nearest_statement(const char *word)
 }
 
 /* A line such as `parm m = 1` or `stpe 0.01`: no expression starts with a name and a name or number. */
-static bool resembles_statement(const struct spec *spec, struct token token)
+static bool resembles_statement(const struct parser *p, struct token token)
 {
 	const char *text = token.at.source->text + token.at.offset + token.length;
 	size_t space = strspn(text, " \t");
 	return token.kind == TOKEN_NAME && token.primes == 0 && space > 0 && strspn(text + space, WORD) > 0 &&
-	       !spec_find(spec, token.name) && !is_reserved(token.name);
+	       !find_symbol(p, token.name) && !is_reserved(token.name);
 }
 
 /* It is meant as a statement: say so rather than that its first word is unknown. */
 static void check_statement_word(const struct parser *p)
 {
 	struct token token = p->token;
-	if (!resembles_statement(p->spec, token))
+	if (!resembles_statement(p, token))
 		return;
 	const char *nearest = nearest_statement(token.name);
 	error(token.at, nearest ? format("did you mean '%s'?", nearest) : NULL, "unknown statement '%s'", token.name);
@@ -1102,7 +1169,7 @@ static void read_equation(struct parser *p)
 {
 	check_statement_word(p);
 	struct spec *spec = p->spec;
-	struct equation equation = { .at = p->token.at };
+	struct equation equation = { .at = p->token.at, .part = p->part };
 	spec->equations++;                      /* counted even if broken: its absence is not to be told as well */
 	ENLARGE(spec->equation, (size_t)spec->equations);
 	spec->equation[spec->equations - 1] = equation;
@@ -1126,14 +1193,14 @@ static void read_statement(void *context)
 	struct parser *p = context;
 	p->token = lex_next(&p->lexer);
 	p->end = p->token.at;
-	const struct statement *statement = statement_of(p->spec, p->token);
-	if (!p->spec->name && !(statement && statement->read == read_model)) {
-		p->spec->name = "";             /* told once */
+	const struct statement *statement = statement_of(p, p->token);
+	if (!p->own->name && !(statement && statement->read == read_model)) {
+		p->own->name = "";              /* told once */
 		error(p->token.at, "a spec begins with its name: model NAME",
 		      "expected the statement 'model', found %s", token_text(p->token));
 	}
-	if (!p->spec->name)
-		p->spec->name = "";             /* should its statement fail, that is told */
+	if (!p->own->name)
+		p->own->name = "";              /* should its statement fail, that is told */
 	if (!statement) {
 		read_equation(p);
 	} else {
@@ -1144,12 +1211,18 @@ static void read_statement(void *context)
 
 /* ---- after an error ---- */
 
+struct quiet { struct parser *parser; struct token name; enum symbol_kind kind; };
+
 static void declare_broken(void *context)
 {
-	struct parser *p = context;
-	struct token token = p->token;
-	if (!spec_find(p->spec, token.name))
-		declare(p, token, SYMBOL_PARAM, true);
+	struct quiet *quiet = context;
+	if (!find_symbol(quiet->parser, quiet->name.name))
+		declare(quiet->parser, quiet->name, quiet->kind, true);
+}
+
+void declare_quietly(struct parser *p, struct token name, enum symbol_kind kind)
+{
+	statement_guard(declare_broken, &(struct quiet){ p, name, kind });
 }
 
 /* The statement that starts at `from`, or that its misspelt first word is meant for. Nothing is lexed: what cannot be
@@ -1160,9 +1233,9 @@ static const struct statement *failed_statement(const struct parser *p, size_t f
 	size_t length = strspn(text, WORD);
 	struct token token = { TOKEN_NAME, { p->lexer.source, from }, length, "", format("%.*s", (int)length, text),
 			       text[length] == '\'' };
-	const struct statement *statement = statement_of(p->spec, token);
+	const struct statement *statement = statement_of(p, token);
 	*after = from + length;
-	if (statement || !resembles_statement(p->spec, token))
+	if (statement || !resembles_statement(p, token))
 		return statement;
 	const char *nearest = nearest_statement(token.name);
 	for (size_t i = 0; nearest && i < sizeof statements / sizeof *statements; i++)
@@ -1178,8 +1251,11 @@ static void declare_what_failed(struct parser *p, size_t from)
 	size_t after;
 	const struct statement *statement = failed_statement(p, from, &after);
 	for (struct symbol *s = p->spec->first; s; s = s->next)
-		if (s->statement == p->statement && (s->kind == SYMBOL_PARAM || s->kind == SYMBOL_MATRIX))
+		if (s->statement == p->statement && s->part == p->part &&
+		    (s->kind == SYMBOL_PARAM || s->kind == SYMBOL_MATRIX))
 			s->broken = true;
+	if (statement && statement->read == read_part)
+		p->spec->reader->failed(p, after);
 	bool all = statement && (statement->read == read_coord || statement->read == read_input);
 	if (!statement || (!all && statement->read != read_param && statement->read != read_let &&
 			   statement->read != read_output && statement->read != read_matrix_statement))
@@ -1199,28 +1275,23 @@ static void declare_what_failed(struct parser *p, size_t from)
 		bool defined = listed || (next[0] == '=' && next[1] != '=');
 		listed = false;
 		if ((all || defined) && !strchr("0123456789", text[i])) {
-			p->token = (struct token){
+			struct token token = {
 				TOKEN_NAME, { p->lexer.source, i }, length, "", format("%.*s", (int)length, text + i), 0
 			};
-			statement_guard(declare_broken, p);
+			declare_quietly(p, token, SYMBOL_PARAM);
 		}
 		i += length - 1;
 	}
 }
 
 /* spec: { statement line-end } */
-struct spec *parse_spec(const struct source *source)
+void parse_statements(struct spec *spec, struct spec *own, struct scene_part *part, const struct source *source)
 {
-	struct spec *spec = NEW(struct spec);
-	spec->source = source;
-	spec->last = &spec->first;
-	spec->bucket = ARRAY(struct symbol *, BUCKETS);
-	spec->end = place_end(source);
 	size_t position = strncmp(source->text, "\xef\xbb\xbf", 3) == 0 ? 3 : 0;
 	while (position < source->length) {
 		size_t unclosed, from = position;
-		struct parser p = { .spec = spec };
-		p.lexer = (struct lexer){ source, from, lex_statement_end(source, from, &unclosed) };
+		struct parser p = { .spec = spec, .own = own, .part = part };
+		p.lexer = (struct lexer){ source, from, lex_statement_end(source, from, &unclosed), spec->uses };
 		position = p.lexer.end + 1;
 		for (size_t i = from; strchr(" \t\r\f\v", source->text[i]) && i < p.lexer.end;)
 			from = ++i;
@@ -1236,10 +1307,21 @@ struct spec *parse_spec(const struct source *source)
 		if (!good)
 			declare_what_failed(&p, from);
 	}
-	if (!spec->name)
-		say_error(spec->end.offset ? spec->end : (struct place){ source, 0 },
-			  "a spec begins with its name: model NAME",
+	struct place end = place_end(source);
+	if (!own->name)
+		say_error(end.offset ? end : (struct place){ source, 0 }, "a spec begins with its name: model NAME",
 			  source->length ? "there is no statement in this file" : "the file is empty");
+}
+
+struct spec *parse_whole(const struct source *source, const struct part_reader *reader)
+{
+	struct spec *spec = NEW(struct spec);
+	spec->source = source;
+	spec->reader = reader;
+	spec->last = &spec->first;
+	spec->bucket = ARRAY(struct symbol *, BUCKETS);
+	spec->end = place_end(source);
+	parse_statements(spec, spec, NULL, source);
 	return spec;
 }
 
@@ -1261,7 +1343,8 @@ static void read_argument(void *context)
 
 struct node *parse_argument(struct spec *spec, const struct source *source, size_t from)
 {
-	struct argument argument = { .parser = { .spec = spec, .lexer = { source, from, source->length } } };
+	struct argument argument = { .parser = { .spec = spec, .own = spec } };
+	argument.parser.lexer = (struct lexer){ source, from, source->length, spec->uses };
 	statement_guard(read_argument, &argument);
 	return argument.value;
 }

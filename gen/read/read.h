@@ -19,6 +19,7 @@ struct token {
 struct lexer {
 	const struct source *source;
 	size_t position, end;       /* a statement: line ends inside brackets are white space */
+	bool points;                /* names may have some: front.body */
 };
 /* Where the statement that starts at `from` ends: the line end outside brackets. `unclosed` receives the offset of a
  * bracket that no later text closes (the statement is then its line), else SIZE_MAX. */
@@ -65,12 +66,14 @@ struct node {
 	struct kept *kept;          /* of one that is: its value, and when it holds */
 };
 struct span { mpq_srcptr after, before; };   /* of time; NULL: no bound */
-enum symbol_kind { SYMBOL_PARAM, SYMBOL_COORD, SYMBOL_LET, SYMBOL_OUTPUT, SYMBOL_INPUT, SYMBOL_MATRIX };
+enum symbol_kind { SYMBOL_PARAM, SYMBOL_COORD, SYMBOL_LET, SYMBOL_OUTPUT, SYMBOL_INPUT, SYMBOL_MATRIX,
+		   SYMBOL_PART_OUTPUT, SYMBOL_PART };
 struct symbol {
 	enum symbol_kind kind;
 	int number;                 /* 1, 2, ... in the order of declaration; 0: no statement declares it */
-	const char *name;
+	const char *name;           /* of what belongs to a part: front.body */
 	struct place at;
+	const struct scene_part *part;    /* whose text declares it; NULL: the scene's */
 	size_t statement;           /* offset of the statement that declares it */
 	/* among its kind, in the order of declaration; of a coordinate: of its first component */
 	int index;
@@ -84,6 +87,7 @@ struct symbol {
 	enum { TIME_UNKNOWN, TIME_READ, TIME_NOT_READ } time; /* of a let */
 	bool marked;                /* of a let: its states are marked */
 	bool peak;                  /* of an output: peak(value) */
+	bool connected;             /* of a let: an input of a part, to which the scene gives its value */
 	struct node *value;         /* of param, let, output */
 	struct value *collected;    /* value, when COLLECTED */
 	const struct form *whole;   /* of a scalar let: its value for all time, where something is left over */
@@ -95,15 +99,18 @@ struct symbol {
 };
 struct equation {
 	struct place at, end;       /* first token; just after the last */
+	const struct scene_part *part;    /* whose text has it; NULL: the scene's */
 	struct node *left, *right;
 };
 struct element {                    /* of a sketch */
 	enum { ELEMENT_MASS, ELEMENT_SPRING, ELEMENT_DAMPER, ELEMENT_FORCE } kind;
+	const struct scene_part *part;    /* whose text has it; NULL: the scene's */
 	struct place at, end;
 	struct node *value, *from, *to; /* coordinates, or components; `to` NULL: the ground, or none */
 };
 struct initial {
 	struct place at;
+	const struct scene_part *part;    /* whose text gives it; NULL: the scene's */
 	size_t statement;
 	struct symbol *coord;
 	int primes, component;
@@ -127,6 +134,18 @@ struct tunable {                    /* a param that the target may change */
 	struct place at;
 	struct symbol *symbol;
 };
+struct scene_part {                       /* of a scene: a spec in it, as often as `use` names it */
+	const char *name;           /* front; inside another: half.front */
+	const char *file;           /* as written */
+	struct place at;            /* what names it */
+	const struct source *source;
+	const struct scene_part *inside;  /* another part; NULL: the scene */
+	bool broken;                /* it was told what is wrong */
+	bool unseen;                /* by any output: not in the model */
+	const char *aside;          /* statements of its text that a scene does not read; "": none */
+	int bindings;
+	struct binding *binding;
+};
 struct spec {                       /* what the text says, names resolved, nothing evaluated */
 	const struct source *source;
 	const char *name;
@@ -134,7 +153,13 @@ struct spec {                       /* what the text says, names resolved, nothi
 	struct symbol *first, **last;   /* all symbols in the order of declaration */
 	struct symbol **bucket;         /* the same by name */
 	int components;                 /* of all coordinates together */
-	int symbols, params, coords, lets, outputs, inputs, matrices;
+	int symbols, params, coords, lets, outputs, inputs, matrices, part_outputs, part_names;
+	bool uses;                  /* it has a statement `use` */
+	const struct part_reader *reader;
+	int parts;                  /* in the order of `use`, those inside a part after it */
+	struct scene_part **part;
+	int unseen;                 /* states of parts that no output sees, and their names */
+	const char **unseen_name;
 	int equations;
 	struct equation *equation;
 	int elements;
@@ -166,6 +191,13 @@ struct node *parse_argument(struct spec *spec, const struct source *source, size
 struct mode_list parse_mode_list(struct spec *spec, const struct source *source); /* likewise; at.source NULL: wrong */
 struct symbol *spec_find(const struct spec *spec, const char *name);
 char *text_between(struct place start, struct place end);   /* without comments, white space folded */
+
+/* ---- use.c: parts of a scene, for a reader ---- */
+
+/* an equation or element: front: M*x'' = 0 */
+const char *written_text(const struct scene_part *part, struct place at, struct place end);
+/* axle.spec as front, rear; NULL: it is told with a part before it */
+const char *parts_text(const struct spec *spec, int index);
 
 /* ---- names.c: words with a meaning of their own ---- */
 

@@ -411,6 +411,15 @@ static void person_reduction(FILE *to, const struct step *step)
 		fprintf(to, "    %s\n", pole_text(&pole[i]));
 }
 
+static void person_scene(FILE *to, const struct spec *spec)
+{
+	if (spec->parts)
+		fputs("\nParts:\n", to);
+	for (int i = 0; i < spec->parts; i++)
+		if (parts_text(spec, i))
+			fprintf(to, "    %s\n", parts_text(spec, i));
+}
+
 void explain_person(FILE *to, const struct step *step)
 {
 	const struct model *model = step->shown->model;
@@ -418,9 +427,12 @@ void explain_person(FILE *to, const struct step *step)
 	fprintf(to, "Model %s: %d coordinate%s, %d states, scheme %s\n\n", model->name, model->written->n,
 		model->written->n == 1 ? "" : "s", model->written->system.states, scheme_name(model->scheme));
 	for (int i = 0; i < spec->equations; i++)
-		fprintf(to, "    %s\n", text_between(spec->equation[i].at, spec->equation[i].end));
+		fprintf(to, "    %s\n",
+			written_text(spec->equation[i].part, spec->equation[i].at, spec->equation[i].end));
 	for (int i = 0; i < spec->elements; i++)
-		fprintf(to, "    %s\n", text_between(spec->element[i].at, spec->element[i].end));
+		fprintf(to, "    %s\n",
+			written_text(spec->element[i].part, spec->element[i].at, spec->element[i].end));
+	person_scene(to, spec);
 	if (spec->elements) {
 		fputs("\nEquations of the sketch:\n\n", to);
 		for (int i = 0; i < model->written->n; i++)
@@ -711,6 +723,37 @@ static void json_cost(FILE *to, const struct step *step)
 	fputs("}\n", to);
 }
 
+/* States of parts that are not modelled, then what reduction left out */
+static void json_dropped(FILE *to, const struct model *model)
+{
+	const struct spec *spec = model->spec;
+	const char **name = ARRAY(const char *, (size_t)(spec->unseen + model->reduction.dropped));
+	for (int i = 0; i < spec->unseen; i++)
+		name[i] = spec->unseen_name[i];
+	for (int i = 0; i < model->reduction.dropped; i++)
+		name[spec->unseen + i] = model->reduction.dropped_name[i];
+	json_names(to, "dropped", spec->unseen + model->reduction.dropped, name);
+}
+
+/* A file's name as it is in quotes */
+static const char *json_text(const char *name)
+{
+	const char *text = "";
+	for (; *name; name++)
+		text = (unsigned char)*name < ' ' ? format("%s\\u%04x", text, *name)
+						  : format("%s%s%c", text, *name == '\\' ? "\\" : "", *name);
+	return text;
+}
+
+static void json_scene(FILE *to, const struct spec *spec)
+{
+	fputs("  \"scene\": [", to);
+	for (int i = 0; i < spec->parts; i++)
+		fprintf(to, "%s{\"name\": \"%s\", \"file\": \"%s\", \"modelled\": %s}", i ? ", " : "",
+			spec->part[i]->name, json_text(spec->part[i]->file), spec->part[i]->unseen ? "false" : "true");
+	fputs("],\n", to);
+}
+
 void explain_json(FILE *to, const struct step *step)
 {
 	const struct model *model = step->shown->model;
@@ -731,9 +774,11 @@ void explain_json(FILE *to, const struct step *step)
 	json_names(to, "states", model->system.states, model->state_name);
 	json_names(to, "outputs", model->outputs, output);
 	json_names(to, "inputs", model->system.inputs, input);
-	json_names(to, "dropped", model->reduction.dropped, model->reduction.dropped_name);
+	json_dropped(to, model);
 	if (model->shortened)
 		json_shortening(to, model);
+	if (model->spec->parts)
+		json_scene(to, model->spec);
 	if (model->tuning)
 		json_tuning(to, model->tuning);
 	json_rational_matrix(to, "M", model->written->n, (const mpq_t *)model->written->system.M);

@@ -20,7 +20,7 @@ source=$(absolute "$4")
 lists="$source/tests/combinations/capabilities.list $source/tests/combinations/refusals.list"
 . "$source/tests/tap.sh"
 . "$source/tests/fuzz/batch.sh"
-cp "$source"/tests/combinations/*.mtx .
+cp "$source"/tests/combinations/*.mtx "$source"/tests/combinations/part.spec .
 tab=$(printf '\t')
 
 # words_of ID ROW: what there is to say against ID.spec, made or not; nothing if all of the row is there

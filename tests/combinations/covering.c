@@ -389,6 +389,10 @@ static void write_spec(FILE *to)
 	print_options(to);
 	fputs("model f\nparam k = 12\n", to);
 	fputs(has("tunable") ? "tunable k\n" : "", to);
+	if (has("parts"))
+		fprintf(to, "use \"part.spec\" as p%s with k = k/3, x = 0.1%s%s\n", outputs ? ", unused" : "",
+			has("cos") ? ", pull = cos(4*t)" : ", pull = 0",
+			damped ? "" : ", m = 1");
 	fputs("coord a, b\n", to);
 	fputs(has("first") ? "coord z\n" : "", to);
 	fputs(has("reduce") ? "coord unseen\n" : "", to);
@@ -408,6 +412,8 @@ static void write_spec(FILE *to)
 			fprintf(to, "; %d", i % 2);
 		fputs("]\n", to);
 	}
+	if (has("parts") && !has("rigid"))
+		fprintf(to, "spring k/4 between p.x, b\n%s", damped ? "damper 0.2 between p.x, b\n" : "");
 	fprintf(to, "%sa''%s + k*(a - b)%s = ", damped ? "2*" : "", damped ? " + 0.3*(a' - b')" : "",
 	        has("rigid") ? "" : " + 30*a");
 	fputs(has("cos") || has("loads") ? "3*cos(7*t) + " : "", to);
@@ -434,7 +440,8 @@ static void write_spec(FILE *to)
 		fputs("spring 2 between b, q[1]\n", to);
 	}
 	if (outputs)
-		fprintf(to, "output a, b%s%s\n", has("first") ? ", z" : "", vector ? ", q[1], q[3]'" : "");
+		fprintf(to, "output a, b%s%s%s\n", has("first") ? ", z" : "", vector ? ", q[1], q[3]'" : "",
+		        has("parts") ? ", p.speed" : "");
 	if (has("accel"))
 		fprintf(to, "output a'', s = 2*b'' - a%s\n", has("first") ? " + z'" : "");
 	fputs(has("peaks") ? "output wave = a + 0.5*b, top = peak(a + 0.5*b)\n" : "", to);

@@ -42,6 +42,7 @@ keep_it() {
 if [ -n "$corpus" ]; then
 	batch_new
 	names=
+	cp -R "$corpus/parts" .
 	for spec in "$corpus"/*.spec; do
 		name=$(basename "$spec" .spec)
 		names="$names $name"

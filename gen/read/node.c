@@ -1,0 +1,74 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Nodes, and the text that they stand for. */
+#include "read/parser.h"
+
+#include <string.h>
+
+struct node *node_new(enum node_kind kind, struct place at)
+{
+	struct node *node = NEW(struct node);
+	node->kind = kind;
+	node->at = node->start = node->end = at;
+	mpq_init(node->number);
+	return node;
+}
+
+void add_child(struct node *node, struct node *child, bool inverse, struct place operator)
+{
+	size_t count = (size_t)node->children;
+	if ((count & (count - 1)) == 0) {       /* room grows by doubling */
+		size_t room = count ? 2 * count : 1;
+		ENLARGE(node->child, room);
+		ENLARGE(node->inverse, room);
+		ENLARGE(node->operator, room);
+	}
+	bool many = node->kind == NODE_CALL &&
+		    (node->function == FN_MIN || node->function == FN_MAX || node->function == FN_TABLE);
+	int inside = child->depth + 1 + (many ? node->children : 0);
+	node->depth = inside > node->depth ? inside : node->depth;
+	if (node->depth > LIMIT_DEPTH)
+		error(child->start, NULL, "operations inside each other, through params and lets, over the limit of %d",
+		      LIMIT_DEPTH);
+	node->child[count] = child;
+	node->inverse[count] = inverse;
+	node->operator[count] = operator;
+	node->children++;
+	node->end = child->end;
+}
+
+char *text_between(struct place start, struct place end)
+{
+	const char *text = start.source->text;
+	char *folded = ARRAY(char, end.offset - start.offset + 1);
+	size_t length = 0;
+	for (size_t i = start.offset; i < end.offset; i++) {
+		if (text[i] == '#')
+			while (i < end.offset && text[i] != '\n')
+				i++;
+		bool space = i >= end.offset || strchr(" \t\r\n\f\v", text[i]);
+		if (!space)
+			folded[length++] = text[i];
+		else if (length > 0 && folded[length - 1] != ' ')
+			folded[length++] = ' ';
+	}
+	while (length > 0 && folded[length - 1] == ' ')
+		length--;
+	folded[length] = 0;
+	return folded;
+}
+
+struct node *inlined(struct node *value, struct place at, struct place end)
+{
+	struct node *node = node_new(NODE_SUM, at);
+	add_child(node, value, false, at);
+	node->end = end;
+	return node;
+}
+
+bool has_acceleration(const struct node *node)
+{
+	bool found = node->kind == NODE_NAME && node->symbol->kind == SYMBOL_COORD && node->primes > 1;
+	for (int i = 0; i < node->children && !found; i++)
+		found = has_acceleration(node->child[i]);
+	return found;
+}

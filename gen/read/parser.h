@@ -1,0 +1,77 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The parser, for the files that read statements with it. */
+#ifndef PLGEN_PARSER_H
+#define PLGEN_PARSER_H
+
+#include "read/read.h"
+
+struct parser {
+	struct spec *spec;          /* the whole scene */
+	/* what is the text's own: its name, step, scheme, operator. Of the scene's text: the same; of a part's: read,
+	 * and then left aside */
+	struct spec *own;
+	struct scene_part *part;          /* whose text it is; NULL: the scene's */
+	struct lexer lexer;
+	struct token token;         /* the next one, not yet taken */
+	struct place end;           /* just after the last one taken */
+	size_t operand_end;         /* just after the last operand: there an operator may be missing */
+	size_t statement;           /* offset where it starts */
+	int nesting;
+	bool no_acceleration;       /* in a let */
+};
+
+struct binding {                    /* of `with NAME = value` */
+	struct token name;
+	int component;
+	struct node *value;
+	bool taken;                 /* it replaced what the part's text has */
+};
+struct part_reader {                /* what parse.c asks use.c for, which stands on it */
+	void (*read)(struct parser *p);
+	/* names of parts that a failed statement would have made */
+	void (*failed)(struct parser *p, size_t after);
+};
+
+/* ---- node.c ---- */
+
+struct node *node_new(enum node_kind kind, struct place at);
+void add_child(struct node *node, struct node *child, bool inverse, struct place operator);
+/* an output of a part in an expression: its value, at this place */
+struct node *inlined(struct node *value, struct place at, struct place end);
+bool has_acceleration(const struct node *node);
+
+/* ---- parse.c ---- */
+
+struct token take(struct parser *p);
+bool is_op(const struct parser *p, const char *op);
+bool take_op(struct parser *p, const char *op);
+bool take_word(struct parser *p, const char *word);
+_Noreturn void unexpected(const struct parser *p, const char *expected);
+void expect_op(struct parser *p, const char *op, const char *expected);
+void expect_end(struct parser *p);
+struct token expect_new_name(struct parser *p, const char *what);
+struct node *read_expression(struct parser *p);
+int  read_component(struct parser *p, int *primes, bool declared);
+void check_component(const struct symbol *symbol, int component, struct place at);
+const char *symbol_kind(const struct symbol *symbol);
+struct symbol *find_symbol(const struct parser *p, const char *name); /* as the text has it; or NULL */
+struct symbol *declare(struct parser *p, struct token name, enum symbol_kind kind, bool broken);
+void add_file(struct spec *spec, const char *path);
+const char *beside(const struct source *source, const char *name); /* the path of what a text names */
+struct node *read_file_name(struct parser *p);
+/* of a coordinate; what a part's own text gives, the scene gives again */
+void add_initial(struct parser *p, struct token name, struct symbol *coord, int component, struct node *value);
+void declare_quietly(struct parser *p, struct token name, enum symbol_kind kind); /* broken, unless it is known */
+struct spec *parse_whole(const struct source *source, const struct part_reader *reader);
+void parse_statements(struct spec *spec, struct spec *own, struct scene_part *part, const struct source *source);
+
+/* ---- slope.c ---- */
+
+/* The derivative of an expression in time; an error at `at` where it has none that is known */
+struct node *slope_of(struct node *node, struct place at);
+
+/* ---- unseen.c ---- */
+
+void leave_unseen(struct spec *spec);                       /* parts that no output can see */
+
+#endif

@@ -1,0 +1,175 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The derivative in time of an expression that a scene gives to an input of a part which reads the input's slope. Its
+ * nodes stand at those of the expression. */
+#include "read/parser.h"
+
+static struct node *like(const struct node *node, enum node_kind kind)
+{
+	struct node *made = node_new(kind, node->at);
+	made->start = node->start;
+	made->end = node->end;
+	return made;
+}
+
+static struct node *number(const struct node *node, long value)
+{
+	struct node *made = like(node, NODE_NUMBER);
+	mpq_set_si(made->number, value, 1);
+	return made;
+}
+
+static bool is_zero(const struct node *node)
+{
+	return node->kind == NODE_NUMBER && mpq_sgn(node->number) == 0;
+}
+
+static void append(struct node *node, struct node *child, bool inverse)
+{
+	struct place end = node->end;
+	add_child(node, child, inverse, node->at);
+	node->end = end;
+}
+
+static struct node *call(const struct node *like_this, enum function function, struct node *argument)
+{
+	struct node *made = like(like_this, NODE_CALL);
+	made->function = function;
+	append(made, argument, false);
+	return made;
+}
+
+/* factor * slope, or factor / slope's place with `inverse`; 0 stays 0 */
+static struct node *times(struct node *factor, struct node *slope)
+{
+	if (is_zero(slope))
+		return slope;
+	struct node *product = like(slope, NODE_PRODUCT);
+	append(product, factor, false);
+	append(product, slope, false);
+	return product;
+}
+
+static struct node *negative(struct node *node)
+{
+	struct node *sum = like(node, NODE_SUM);
+	append(sum, node, true);
+	return sum;
+}
+
+static struct node *quotient(struct node *above, struct node *below)
+{
+	struct node *made = like(above, NODE_PRODUCT);
+	append(made, above, false);
+	append(made, below, true);
+	return made;
+}
+
+static struct node *slope_of_name(struct node *node, struct place at)
+{
+	const struct symbol *symbol = node->symbol;
+	if (symbol->kind == SYMBOL_PARAM || symbol->kind == SYMBOL_MATRIX)
+		return number(node, 0);
+	if (symbol->kind == SYMBOL_LET)
+		return slope_of(symbol->value, at);
+	if (node->primes > 0)
+		error(at, NULL, "its slope is read, and would hold the derivative of %s",
+		      text_between(node->start, node->end));
+	if (symbol->kind == SYMBOL_INPUT && !symbol->hold)
+		error(at, "an input with 'hold first' ramps between samples and has one",
+		      "its slope is read, and input '%s' is held over a step: it has none", symbol->name);
+	struct node *made = like(node, NODE_NAME);
+	made->symbol = node->symbol;
+	made->component = node->component;
+	made->primes = 1;
+	return made;
+}
+
+static struct node *slope_of_sum(const struct node *node, struct place at)
+{
+	struct node *sum = like(node, NODE_SUM);
+	for (int i = 0; i < node->children; i++) {
+		struct node *slope = slope_of(node->child[i], at);
+		if (!is_zero(slope))
+			append(sum, slope, node->inverse[i]);
+	}
+	return sum->children ? sum : number(node, 0);
+}
+
+/* a b / c: a' b / c + a b' / c - a b / c * c' / c */
+static struct node *slope_of_product(struct node *node, struct place at)
+{
+	struct node *sum = like(node, NODE_SUM);
+	for (int i = 0; i < node->children; i++) {
+		struct node *slope = slope_of(node->child[i], at);
+		if (is_zero(slope))
+			continue;
+		struct node *product = like(node, NODE_PRODUCT);
+		for (int k = 0; k < node->children; k++)
+			append(product, k == i && !node->inverse[i] ? slope : node->child[k], node->inverse[k]);
+		append(sum, node->inverse[i] ? times(quotient(product, node->child[i]), slope) : product,
+		       node->inverse[i]);
+	}
+	return sum->children ? sum : number(node, 0);
+}
+
+/* b^n: n b^(n - 1) b' */
+static struct node *slope_of_power(struct node *node, struct place at)
+{
+	struct node *base = slope_of(node->child[0], at), *exponent = node->child[1];
+	if (!is_zero(slope_of(exponent, at)))
+		error(at, NULL, "its slope is read, and is not found: an exponent depends on time");
+	if (is_zero(base))
+		return base;
+	struct node *less = like(exponent, NODE_SUM), *power = like(node, NODE_POWER);
+	append(less, exponent, false);
+	append(less, number(exponent, 1), true);
+	append(power, node->child[0], false);
+	append(power, less, false);
+	return times(exponent, times(power, base));
+}
+
+static struct node *slope_of_call(struct node *node, struct place at)
+{
+	struct node *x = node->child[0], *inner = slope_of(x, at);
+	bool constant = true;
+	for (int i = 0; i < node->children; i++)
+		constant = constant && is_zero(slope_of(node->child[i], at));
+	if (constant)
+		return number(node, 0);
+	switch (node->function) {
+	case FN_SIN:  return times(call(node, FN_COS, x), inner);
+	case FN_COS:  return negative(times(call(node, FN_SIN, x), inner));
+	case FN_SINH: return times(call(node, FN_COSH, x), inner);
+	case FN_COSH: return times(call(node, FN_SINH, x), inner);
+	case FN_EXP:  return times(node, inner);
+	case FN_LOG:  return quotient(inner, x);
+	case FN_SQRT: return quotient(inner, times(number(node, 2), node));
+	case FN_ABS:  return times(call(node, FN_SGN, x), inner);
+	default:
+		error(at, "found are those of sums, products, powers, sin, cos, exp, log, sqrt, sinh, cosh, abs",
+		      "its slope is read, and that of %s is not found", function_name(node->function));
+	}
+}
+
+struct node *slope_of(struct node *node, struct place at)
+{
+	struct node *choice;
+	switch (node->kind) {
+	case NODE_NUMBER:
+	case NODE_PI:      return number(node, 0);
+	case NODE_TIME:    return number(node, 1);
+	case NODE_NAME:    return slope_of_name(node, at);
+	case NODE_SUM:     return slope_of_sum(node, at);
+	case NODE_PRODUCT: return slope_of_product(node, at);
+	case NODE_POWER:   return slope_of_power(node, at);
+	case NODE_CALL:    return slope_of_call(node, at);
+	case NODE_CHOOSE:
+		choice = like(node, NODE_CHOOSE);
+		append(choice, node->child[0], false);
+		append(choice, slope_of(node->child[1], at), false);
+		append(choice, slope_of(node->child[2], at), false);
+		return choice;
+	default:
+		error(at, NULL, "its slope is read, and is not found");
+	}
+}
