@@ -110,6 +110,15 @@ static int by_cost(const void *left, const void *right)
 	return (int)a->form - (int)b->form;
 }
 
+static void try_forms(struct choosing *c)
+{
+	static const enum step_form forms[] = { FORM_DIRECT, FORM_DELTA, FORM_KICK_DRIFT_KICK, FORM_MODAL };
+	for (size_t i = 0; i < sizeof forms / sizeof *forms; i++)
+		if (c->request->form == FORM_AUTO || c->request->form == forms[i])
+			try_form(c, forms[i]);
+	qsort(c->choice->alternative, (size_t)c->choice->alternatives, sizeof *c->choice->alternative, by_cost);
+}
+
 static bool meets(const struct alternative *a)
 {
 	return !a->refused && !a->why && a->excess <= 1;
@@ -131,47 +140,73 @@ static int worst_requirement(const struct model *model, const struct alternative
 	return worst;
 }
 
-static const char *what_would_do(const struct choosing *c)
+/* Of those that are known, the most exact */
+static const struct alternative *most_exact(const struct choice *choice, double most)
 {
-	if (c->request->real_given && c->request->single)
-		return "--real float is asked for: without it double is tried too";
-	if (c->request->form != FORM_AUTO)
-		return "--form is asked for: without it other forms are tried too";
-	return NULL;
-}
-
-static void tell_unmet(const struct choosing *c)
-{
-	const struct choice *choice = c->choice;
-	const struct model *model = c->model;
 	const struct alternative *best = NULL;
 	for (int i = 0; i < choice->alternatives; i++) {
 		const struct alternative *a = &choice->alternative[i];
-		if (!a->refused && !a->why && (!best || a->excess < best->excess))
+		if (!a->refused && !a->why && a->cost <= most && (!best || a->excess < best->excess))
 			best = a;
 	}
+	return best;
+}
+
+/* The largest real part of a pole [1/s] */
+static double growth_of(const struct step *step)
+{
+	struct pole_report *pole;
+	double growth = -HUGE_VAL;
+	const int poles = poles_of(step->model, step->written, &pole);
+	for (int i = 0; i < poles; i++)
+		growth = fmax(growth, mpfr_get_d(pole[i].re, MPFR_RNDN));
+	return growth;
+}
+
+/* What stands in the way, as far as something asked for does */
+static const char *what_would_do(struct choosing *c)
+{
+	const struct request *asked = c->request;
+	struct request open = *asked;
+	const double growth = c->states ? growth_of(c->states) : 0;
+	if (growth > 1e-9)
+		return format("the model is unstable: what rounds grows as e^{%.3g t} with it", growth);
+	if (!(asked->real_given && asked->single) && asked->form == FORM_AUTO && !asked->compensated)
+		return NULL;
+	open.real_given = open.compensated = false;
+	open.form = FORM_AUTO;
+	c->request = &open;
+	c->choice = NEW(struct choice);
+	try_forms(c);
+	const struct alternative *best = most_exact(c->choice, HUGE_VAL);
+	c->request = asked;
+	return best && best->excess <= 1
+		       ? format("without what is asked for on the command line it can: %.2g (%s)",
+				best->certificate[worst_requirement(c->model, best)].rounding, alternative_text(best))
+		       : NULL;
+}
+
+static void tell_unmet(struct choosing *c)
+{
+	const struct model *model = c->model;
+	const struct choice *choice = c->choice;
+	const struct alternative *best = most_exact(choice, HUGE_VAL), *first = choice->alternative;
+	const char *note = what_would_do(c);
 	if (!best) {
-		const struct alternative *a = &choice->alternative[0];
-		say_error(model->requirement[0].need->at, what_would_do(c), "the need cannot be certified: %s",
-			  a->refused ? a->refused : a->why);
+		say_error(model->requirement[0].need->at, note, "the need cannot be certified: %s",
+			  first->refused ? first->refused : first->why);
 		return;
 	}
 	const int i = worst_requirement(model, best);
 	const struct requirement *r = &model->requirement[i];
-	say_error(r->need->at, what_would_do(c),
+	say_error(r->need->at, note,
 		  "the need cannot be met: rounding alone is bounded by %.2g at best (%s), and %.2g is needed",
 		  best->certificate[i].rounding, alternative_text(best), needed_error(r, &best->certificate[i]));
 }
 
 static void tell_dear(const struct choosing *c, const struct alternative *taken)
 {
-	const struct choice *choice = c->choice;
-	const struct alternative *best = NULL;
-	for (int i = 0; i < choice->alternatives; i++) {
-		const struct alternative *a = &choice->alternative[i];
-		if (!a->refused && !a->why && a->cost <= c->model->budget && (!best || a->excess < best->excess))
-			best = a;
-	}
+	const struct alternative *best = most_exact(c->choice, c->model->budget);
 	const char *fits = best ? format("%s takes %.0f, and misses the need by a factor of %.3g",
 					 alternative_text(best), best->cost, best->excess)
 				: "nothing that there is takes so few";
@@ -203,16 +238,12 @@ static bool find_taken(struct choosing *c)
 
 struct step *choose_step(struct model *written, struct model *stepped, struct request *request)
 {
-	static const enum step_form forms[] = { FORM_DIRECT, FORM_DELTA, FORM_KICK_DRIFT_KICK, FORM_MODAL };
 	struct choosing c = { .written = written, .model = stepped, .request = request, .choice = NEW(struct choice) };
 	if (!find_requirements(stepped))
 		return NULL;
 	c.states = built(&c, FORM_DIRECT);
 	c.modes = built(&c, FORM_MODAL);
-	for (size_t i = 0; i < sizeof forms / sizeof *forms; i++)
-		if (request->form == FORM_AUTO || request->form == forms[i])
-			try_form(&c, forms[i]);
-	qsort(c.choice->alternative, (size_t)c.choice->alternatives, sizeof *c.choice->alternative, by_cost);
+	try_forms(&c);
 	if (!find_taken(&c))
 		return NULL;
 	c.now = &c.choice->alternative[c.choice->taken];

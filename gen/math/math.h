@@ -184,6 +184,13 @@ bool taylor_exact(struct taylor *t, int i, int j, mpq_ptr exact);
 
 /* A <- D^-1 A D, D = diag(scale) powers of 2, so that rows and columns of A - I become alike in size: exact */
 void balance_map(int n, double *A, double *scale);
+struct sparse {                     /* the entries of a matrix that are not 0, row by row */
+	int rows, *start, *column;
+	double *value;
+};
+struct sparse sparse_of(int rows, int columns, const double *A);
+void sparse_free(const struct sparse *s);
+void sparse_add(const struct sparse *s, const double *x, double *sum);     /* sum + A x */
 struct spread {                     /* of A, over so many steps; both are bounds, n x n */
 	int n;
 	long steps;

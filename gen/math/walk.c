@@ -132,16 +132,48 @@ struct spread spread_of(int n, const double *A, long steps)
 
 /* ---- one row ---- */
 
-static void next_vector(int n, const double *A, bool columns, const double *x, double *next)
+struct sparse sparse_of(int rows, int columns, const double *A)
 {
-	for (int i = 0; i < n; i++)
+	struct sparse s = { .rows = rows,
+			    .start = ARRAY(int, (size_t)rows + 1),
+			    .column = ARRAY(int, (size_t)(rows * columns)),
+			    .value = ARRAY(double, (size_t)(rows * columns)) };
+	for (int i = 0; i < rows; i++) {
+		s.start[i + 1] = s.start[i];
+		for (int j = 0; j < columns; j++)
+			if (A[i * columns + j] != 0) {
+				s.column[s.start[i + 1]] = j;
+				s.value[s.start[i + 1]++] = A[i * columns + j];
+			}
+	}
+	return s;
+}
+
+void sparse_free(const struct sparse *s)
+{
+	discard(s->start);
+	discard(s->column);
+	discard(s->value);
+}
+
+void sparse_add(const struct sparse *s, const double *x, double *sum)
+{
+	for (int i = 0; i < s->rows; i++)
+		for (int e = s->start[i]; e < s->start[i + 1]; e++)
+			sum[i] += s->value[e] * x[s->column[e]];
+}
+
+static void next_vector(const struct sparse *s, bool columns, const double *x, double *next)
+{
+	for (int i = 0; i < s->rows; i++)
 		next[i] = 0;
-	for (int k = 0; k < n; k++)
-		for (int i = 0; i < n; i++)
-			if (columns)
-				next[k] += A[k * n + i] * x[i];
-			else if (x[k] != 0)
-				next[i] += x[k] * A[k * n + i];
+	if (columns) {
+		sparse_add(s, x, next);
+		return;
+	}
+	for (int k = 0; k < s->rows; k++)
+		for (int e = s->start[k]; e < s->start[k + 1]; e++)
+			next[s->column[e]] += x[k] * s->value[e];
 }
 
 static double largest_of(int n, const double *x)
@@ -168,6 +200,7 @@ void reach_of_row(const struct spread *s, const double *A, const double *row, bo
 	enum { LOOKS = 64 };
 	const int n = s->n;
 	double *x = ARRAY(double, (size_t)n), *next = ARRAY(double, (size_t)n), *tail = ARRAY(double, (size_t)n);
+	const struct sparse matrix = sparse_of(n, n, A);
 	double largest = 0;
 	long m = 0;
 	for (int i = 0; i < n; i++) {
@@ -180,7 +213,7 @@ void reach_of_row(const struct spread *s, const double *A, const double *row, bo
 			sum[i] += fabs(x[i]);
 			most[i] = fmax(most[i], fabs(x[i]));
 		}
-		next_vector(n, A, columns, x, next);
+		next_vector(&matrix, columns, x, next);
 		double *swap = x;
 		x = next;
 		next = swap;
@@ -198,4 +231,5 @@ void reach_of_row(const struct spread *s, const double *A, const double *row, bo
 	discard(x);
 	discard(next);
 	discard(tail);
+	sparse_free(&matrix);
 }

@@ -48,9 +48,15 @@ static void check_certified(const struct finding *f)
 	struct place at = f->need->at;
 	if (model->switching)
 		error(at, NULL, "a need is certified for linear models: the equations are piecewise linear");
-	if (model->operators > 0 || scheme_row(model->scheme)->expands || model->scheme != SCHEME_EXACT)
+	if (model->obstacle || model->channels > 0)
 		error(at, NULL, "a need is certified for linear models: scheme %s approximates what it leaves over",
 		      scheme_name(model->scheme));
+	if (model->scheme != SCHEME_EXACT)
+		error(at, "without it the step is exact, and its rounding is certified",
+		      "a need is certified for scheme exact, and scheme %s is asked for", scheme_name(model->scheme));
+	if (model->relative && !model->declared_outputs)
+		error(at, format("output %s", model->output[0].name),
+		      "a need is of a declared output where coordinates may move as a whole");
 	if (model->tuning)
 		error(at, "a need holds for one model: without tunable, or with -D for other values",
 		      "the model has tunable params: what their values do to the error is not bounded");
@@ -68,7 +74,7 @@ static void find_output(const struct finding *f)
 		error(need->output_at, names_of_outputs(model), "'%s' is not an output", need->output);
 	const struct output *output = &model->output[f->found->output];
 	if (output->peak)
-		error(need->output_at, "a need on what it is the peak of covers every sample",
+		error(need->output_at, "a need on what it is the peak of holds for every sample of it, the largest too",
 		      "'%s' is a peak: needs are of outputs that follow the state", need->output);
 	if (output->left || !output->state)
 		error(need->output_at, NULL, "'%s' is not linear in states, loads and inputs: its error is not bounded",
@@ -131,6 +137,9 @@ static void find_budget(void *context)
 	const struct budget *budget = &model->spec->budget;
 	mpq_t instructions;
 	mpq_init(instructions);
+	if (model->requirements == 0)
+		error(budget->at, "need OUTPUT within BOUND until END",
+		      "a budget stands beside a need: there is none");
 	for (int i = 0; i < TARGETS; i++)
 		if (strcmp(budget->target.name, targets[i].name) == 0)
 			model->target = &targets[i];

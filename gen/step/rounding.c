@@ -17,10 +17,14 @@ struct kept {                       /* the step over the state as it is kept: y+
 	double *Phi, *load, *input, *start;
 	double *row, *direct, *feed[2]; /* of the output: y; z; u and u' */
 	double *scale;              /* the state is in these units, powers of 2: those in which it is balanced */
+	struct wave_of_column *wave; /* per load column */
 	double *amplitude;          /* per load column: its largest size, of cosine and sine together */
 	double *most;               /* per input column */
 	double *size;               /* per state: the largest that it may become */
-	double largest;             /* of the output: what it surely reaches */
+};
+struct extent {                     /* of an output, over all samples */
+	double most, last, slack;   /* by the loads and from the start, as walked through; how far that may be off */
+	double lower, upper;        /* of the largest, inputs counted */
 };
 struct errors {
 	const struct step *step;
@@ -82,52 +86,59 @@ static void keep_modes(const struct step *exact, int o, struct kept *k)
 
 /* ---- loads ---- */
 
-struct place_of_column { const struct load *load; int power; bool sine; };
+struct wave_of_column {             /* t^power e^{a t} cos or sin(w t + p); without waves cos(p) = 1 */
+	int power;
+	bool turns, sine;
+	double a, w, p;
+};
 
-static struct place_of_column place_of_column(const struct linear *system, int column)
+static struct wave_of_column wave_of_column(const struct linear *system, int column)
 {
 	int first;
 	const struct load *load = &system->load[load_of_column(system, column, &first)];
-	const int trig = oscillates(load->wave) ? 2 : 1;
-	return (struct place_of_column){ load, (column - first) / trig, (column - first) % trig };
+	const bool turns = oscillates(load->wave);
+	return (struct wave_of_column){ .power = (column - first) / (turns ? 2 : 1),
+					.turns = turns,
+					.sine = turns && (column - first) % 2,
+					.a = mpq_get_d(load->wave->a),
+					.w = mpq_get_d(load->wave->w),
+					.p = mpq_get_d(load->wave->p) };
 }
 
-static double load_value(const struct place_of_column *p, double t)
+static struct wave_of_column *waves_of_columns(const struct linear *system, int columns)
 {
-	const struct wave *wave = p->load->wave;
-	const double angle = mpq_get_d(wave->w) * t + mpq_get_d(wave->p);
-	const double turn = !oscillates(wave) ? 1 : p->sine ? sin(angle) : cos(angle);
-	return pow(t, p->power) * exp(mpq_get_d(wave->a) * t) * turn;
+	struct wave_of_column *wave = ARRAY(struct wave_of_column, (size_t)columns);
+	for (int c = 0; c < columns; c++)
+		wave[c] = wave_of_column(system, c);
+	return wave;
+}
+
+static double load_value(const struct wave_of_column *p, double t)
+{
+	double value = p->a != 0 ? exp(p->a * t) : 1;
+	if (p->turns)
+		value *= (p->sine ? sin : cos)(p->w * t + p->p);
+	for (int k = 0; k < p->power; k++)
+		value *= t;
+	return value;
 }
 
 /* The largest of |t^k e^{a t}| up to `end` */
-static double largest_load(const struct place_of_column *p, double end)
+static double largest_load(const struct wave_of_column *p, double end)
 {
-	const double a = mpq_get_d(p->load->wave->a), peak = a < 0 ? -p->power / a : end;
-	const double t = peak < end ? peak : end;
-	return fmax(pow(t, p->power) * exp(a * t), p->power ? 0 : 1);
-}
-
-static double *loads_at(const struct linear *system, int columns, double t)
-{
-	double *z = ARRAY(double, (size_t)columns);
-	for (int c = 0; c < columns; c++) {
-		const struct place_of_column p = place_of_column(system, c);
-		z[c] = load_value(&p, t);
-	}
-	return z;
+	const double peak = p->a < 0 ? -p->power / p->a : end, t = peak < end ? peak : end;
+	return fmax(pow(t, p->power) * exp(p->a * t), p->power ? 0 : 1);
 }
 
 /* What the step leaves out is added where the state is read: it starts less that, and the output reads it. */
 static void keep_forced(const struct step *step, struct kept *k)
 {
-	const double *z = loads_at(&step->branch->system, k->columns, 0);
 	for (int i = 0; i < k->n; i++)
 		for (int c = 0; c < k->columns && step->forced; c++) {
 			const double part = is_load_forced(step, c)
 						    ? mpq_get_d(step->forced->exact[i * k->columns + c])
 						    : 0;
-			k->start[i] -= part * z[c];
+			k->start[i] -= part * load_value(&k->wave[c], 0);
 			k->direct[c] += k->row[i] * part;
 		}
 }
@@ -151,8 +162,7 @@ static void bound_operands(const struct errors *e, struct kept *k)
 	const struct linear *system = &e->step->branch->system;
 	const double end = mpq_get_d(e->r->until) + mpq_get_d(e->step->model->h);
 	for (int c = 0; c < k->columns; c++) {
-		const struct place_of_column p = place_of_column(system, c);
-		k->amplitude[c] = largest_load(&p, end) * (1 + 1e-9);
+		k->amplitude[c] = largest_load(&k->wave[c], end) * (1 + 1e-9);
 	}
 	for (int i = 0, c = 0; i < system->inputs; i++)
 		for (int j = 0; j <= system->input[i].hold; j++, c++)
@@ -195,6 +205,7 @@ static struct kept *kept_of(const struct errors *e, const struct step *exact)
 	k->amplitude = ARRAY(double, columns);
 	k->most = ARRAY(double, inputs);
 	k->size = ARRAY(double, n);
+	k->wave = waves_of_columns(&step->branch->system, k->columns);
 	if (step->modal)
 		keep_modes(exact, e->r->output, k);
 	else
@@ -208,51 +219,66 @@ static struct kept *kept_of(const struct errors *e, const struct step *exact)
 
 /* ---- how large states become ---- */
 
-static void advance(const struct kept *k, const double *z, double *x, double *next)
+/* The output less its inputs at sample m, loads z; row_size: sum of |row| */
+static double output_now(const struct kept *k, const double *x, const double *z)
 {
-	for (int i = 0; i < k->n; i++) {
-		next[i] = 0;
-		for (int j = 0; j < k->n; j++)
-			next[i] += k->Phi[i * k->n + j] * x[j];
-		for (int c = 0; c < k->columns; c++)
-			next[i] += k->load[i * k->columns + c] * z[c];
-	}
+	double out = 0;
 	for (int i = 0; i < k->n; i++)
-		x[i] = next[i];
+		out += k->row[i] * x[i];
+	for (int c = 0; c < k->columns; c++)
+		out += k->direct[c] * z[c];
+	return out;
 }
 
-/* From the start, inputs 0: sizes of the states; what the output reaches; what it is at the end */
-static double walk_loads(const struct errors *e, const struct spread *spread, struct kept *k)
+/* How far that may be off: what the walk has rounded, and what reading it and the loads rounds */
+static double slack_of_output(const struct kept *k, const struct spread *spread, double largest)
 {
-	const struct linear *system = &e->step->branch->system;
-	const double h = mpq_get_d(e->step->model->h);
-	double *x = ARRAY(double, (size_t)k->n), *next = ARRAY(double, (size_t)k->n), largest = 0, last = 0;
+	double sum = 0, direct = 0;
+	for (int i = 0; i < k->n; i++)
+		sum += fabs(k->row[i]);
+	for (int c = 0; c < k->columns; c++)
+		direct += fabs(k->direct[c]) * k->amplitude[c];
+	return sum * largest * spread->slack + direct * (k->columns + 64) * 0x1p-50;
+}
+
+/* From the start, inputs 0: sizes of the states; the largest and the last of the output */
+static struct extent walk_loads(long steps, double h, const struct spread *spread, struct kept *k)
+{
+	const struct sparse Phi = sparse_of(k->n, k->n, k->Phi), load = sparse_of(k->n, k->columns, k->load);
+	double *x = ARRAY(double, (size_t)k->n), *next = ARRAY(double, (size_t)k->n),
+	       *z = ARRAY(double, (size_t)k->columns), largest = 0;
+	struct extent found = { 0 };
 	for (int i = 0; i < k->n; i++)
 		x[i] = k->start[i];
-	for (long m = 0; m <= e->steps; m++) {
-		double *z = loads_at(system, k->columns, (double)m * h), out = 0, bulk = 0;
+	for (long m = 0; m <= steps; m++) {
+		for (int c = 0; c < k->columns; c++)
+			z[c] = load_value(&k->wave[c], (double)m * h);
 		for (int i = 0; i < k->n; i++) {
 			k->size[i] = fmax(k->size[i], fabs(x[i]));
 			largest = fmax(largest, fabs(x[i]));
-			out += k->row[i] * x[i];
-			bulk += fabs(k->row[i]);
+			next[i] = 0;
 		}
-		for (int c = 0; c < k->columns; c++)
-			out += k->direct[c] * z[c];
-		last = fabs(out) - bulk * largest * spread->slack;
-		k->largest = fmax(k->largest, last);
-		advance(k, z, x, next);
-		discard(z);
+		found.last = fabs(output_now(k, x, z));
+		found.most = fmax(found.most, found.last);
+		sparse_add(&Phi, x, next);
+		sparse_add(&load, z, next);
+		double *swap = x;
+		x = next;
+		next = swap;
 	}
 	for (int i = 0; i < k->n; i++)
 		k->size[i] = k->size[i] * (1 + 1e-9) + spread->slack * largest;
+	found.slack = slack_of_output(k, spread, largest);
 	discard(x);
 	discard(next);
-	return last;
+	discard(z);
+	sparse_free(&Phi);
+	sparse_free(&load);
+	return found;
 }
 
-/* The largest that inputs within their bounds can do: to states, a bound; to the output, attained */
-static void add_inputs(const struct errors *e, const struct spread *spread, struct kept *k)
+/* What inputs within their bounds can do to the states at most */
+static void add_inputs(const struct spread *spread, struct kept *k)
 {
 	double *sum = ARRAY(double, (size_t)k->n), *most = ARRAY(double, (size_t)k->n),
 	       *column = ARRAY(double, (size_t)k->n);
@@ -263,7 +289,60 @@ static void add_inputs(const struct errors *e, const struct spread *spread, stru
 		for (int i = 0; i < k->n; i++)
 			k->size[i] += sum[i] * k->most[c];
 	}
-	(void)e;
+	discard(sum);
+	discard(most);
+	discard(column);
+}
+
+/* What a sample of an input does to the output m steps after it is given: to states by column `first` and on, one for
+ * each tap, the last of which is the sample itself; sum of sizes over m < steps, of a sample in its bound. It is
+ * attained: the signs of the samples may be any. */
+static double sum_of_input(const struct linear *system, long steps, const struct kept *k, int input, int first)
+{
+	const int taps = system->input[input].hold + 1, n = k->n;
+	const struct sparse Phi = sparse_of(n, n, k->Phi);
+	double *x = ARRAY(double, (size_t)n), *next = ARRAY(double, (size_t)n), sum = 0;
+	for (long m = 0; m < steps; m++) {
+		const int tap = m < taps ? taps - 1 - (int)m : -1;
+		double out = m == 0 ? k->feed[0][input] : 0;
+		for (int i = 0; i < n; i++)
+			next[i] = tap >= 0 ? k->input[i * k->inputs + first + tap] : 0;
+		sparse_add(&Phi, x, next);
+		for (int i = 0; i < n; i++)
+			out += k->row[i] * next[i];
+		sum += fabs(out);
+		double *swap = x;
+		x = next;
+		next = swap;
+	}
+	discard(x);
+	discard(next);
+	sparse_free(&Phi);
+	return sum * k->most[first];
+}
+
+/* What reads the slopes of inputs is bounded, not attained. */
+static double slopes_of_inputs(const struct linear *system, const struct kept *k, double h)
+{
+	double sum = 0;
+	for (int i = 0, c = 0; i < system->inputs; c += system->input[i++].hold + 1)
+		sum += fabs(k->feed[1][i]) * 2 * k->most[c] / h * (system->input[i].hold > 1 ? 4 : 1);
+	return sum;
+}
+
+static struct extent extent_of_kept(const struct step *step, long steps, const struct spread *spread, struct kept *k)
+{
+	const struct linear *system = &step->branch->system;
+	const double h = mpq_get_d(step->model->h);
+	struct extent e = walk_loads(steps, h, spread, k);
+	double by_inputs = 0;
+	for (int i = 0, c = 0; i < system->inputs; c += system->input[i++].hold + 1)
+		by_inputs += sum_of_input(system, steps, k, i, c);
+	add_inputs(spread, k);
+	const double slack = e.slack + by_inputs * (1e-9 + spread->slack * (double)steps);
+	e.lower = fmax(0, fmax(e.most, e.last + by_inputs) - slack);
+	e.upper = (e.most + by_inputs + slopes_of_inputs(system, k, h)) * (1 + 1e-9) + slack;
+	return e;
 }
 
 /* ---- what one step rounds ---- */
@@ -280,9 +359,9 @@ static int levels(int terms)
  * 64 bits for float, in 128 for double, is off by one of its last for each step */
 static double load_error(const struct errors *e, int column)
 {
-	const struct place_of_column p = place_of_column(&e->step->branch->system, column);
+	const struct wave_of_column *p = &e->kept->wave[column];
 	const double phase = ldexp((double)(e->steps + 1) * 7, 1 - phase_bits(e->step));
-	return (2 + 3 * (mpq_sgn(p.load->wave->a) != 0) + 4 * p.power) * e->unit + phase;
+	return (2 + 3 * (p->a != 0) + 4 * p->power) * e->unit + phase;
 }
 
 struct operand_bound { double size, error; };
@@ -395,12 +474,12 @@ static void reckon_start(const struct errors *e, double *error)
 {
 	const struct kept *k = e->kept;
 	const struct modal *modal = e->step->modal;
-	const double *z = loads_at(&e->step->branch->system, k->columns, 0);
 	for (int i = 0; i < k->n; i++) {
 		double size = fabs(k->start[i]) * k->scale[i] * (mass_of(e->step, i) != 1 ? 3 : 1);
 		for (int c = 0; c < k->columns && e->step->forced; c++)
 			if (is_load_forced(e->step, c))
-				size += fabs(mpq_get_d(e->step->forced->exact[i * k->columns + c]) * z[c]) *
+				size += fabs(mpq_get_d(e->step->forced->exact[i * k->columns + c]) *
+					     load_value(&k->wave[c], 0)) *
 					(8 + levels(k->columns));
 		for (int j = 0; j < k->n && modal; j++)
 			size += fabs(modal->to[i * k->n + j] * mpq_get_d(e->step->model->initial[j])) * (k->n / 8 + 6);
@@ -547,9 +626,7 @@ struct certificate certificate_of(const struct step *step, const struct step *ex
 		return found;
 	}
 	e.kept = k;
-	walk_loads(&e, &spread, k);
-	add_inputs(&e, &spread, k);
-	found.largest = k->largest;
+	found.largest = extent_of_kept(step, e.steps, &spread, k).lower;
 	add_up(&e, &spread, &found);
 	return found;
 }

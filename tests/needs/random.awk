@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# A linear model with a need, drawn from a seed: 1 to 6 masses in a chain with further springs, damping of every kind
+# A linear model with a need, drawn from a seed: 1 to 6 masses in a chain with further springs, on the ground or free, damping of every kind
 # (none, proportional, dashpots anywhere, strong), loads, starts; equations or sketch. -v seed=N
 function uniform(a, b) { return a + (b - a) * rand() }
 function log_uniform(a, b) { return exp(uniform(log(a), log(b))) }
@@ -9,6 +9,7 @@ BEGIN {
 	for (i = 0; i < 20; i++)
 		rand()
 	n = 1 + int(6 * rand())
+	free = n > 1 && rand() < 0.15   # it may move as a whole
 	kind = int(5 * rand())          # of damping
 	step = log_uniform(0.002, 0.1)
 	stiff = log_uniform(5, 500)
@@ -27,6 +28,8 @@ BEGIN {
 	for (i = 1; i <= n; i++) {
 		k = stiff * log_uniform(0.3, 3)
 		to = i == 1 ? "ground" : "x" (i - 1)
+		if (i == 1 && free)
+			continue
 		print "spring " number(k) " between x" i ", " to
 		c = kind == 1 ? 0.004 * k : kind == 2 ? log_uniform(0.01, 2) : kind == 3 ? log_uniform(1, 60) : 0
 		if (kind == 4 && i == n)
