@@ -1,44 +1,55 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What a spec with needs leaves open - float or double, two words, the form of the step - is tried, and the cheapest
- * that meets all needs is taken. What is written or asked for is kept. */
+/* What a spec with needs leaves open - float or double, two words, the form of the step, modes that are kept - is
+ * tried, and the cheapest that meets all needs is taken. What is written or asked for is kept.
+ *
+ * Modes are dropped from the least share on. What the outputs lose is known for each number of modes at once; the
+ * steps that are tried are those of the fewest modes that lose less than is needed, of one less, which shows what that
+ * would miss, and of a few more, which leave more of the need to rounding. Where all modes are kept the states are
+ * those that were written. */
 #include "command.h"
 
 #include <math.h>
 #include <stdlib.h>
 
+enum { MORE_MODES = 3 };            /* than the fewest that lose less than is needed */
+
+struct variant {                    /* a model to step: all modes, or some of them */
+	struct model *model;
+	double *dropped;            /* per requirement */
+	struct step *states, *modes; /* in double: the numbers of a step of states, of modes; NULL: there is none */
+};
 struct choosing {
-	struct model *written, *model;
+	struct model *written, *stepped;
 	const struct request *request;
 	struct choice *choice;
-	struct step *states, *modes; /* in double: the numbers of a step of states, of modes; NULL: there is none */
+	double *largest;            /* per requirement: what the exact output surely reaches */
+	struct variant *variant;
 	struct alternative *now;
 	struct step *step;
 };
 
 /* ---- one alternative ---- */
 
-static void set_asked(struct choosing *c, const struct alternative *a)
+static void ask(struct model *model, const struct alternative *a)
 {
-	struct model *models[] = { c->written, c->model };
-	for (int i = 0; i < 2; i++) {
-		models[i]->asked.single = a->single;
-		models[i]->asked.compensated = a->compensated;
-		models[i]->asked.form = a->form;
-		models[i]->asked.form_at = (struct place){ source_argument(step_form_name(a->form)), 0 };
-	}
-	(a->single ? target_float : target_double)();
+	model->asked.single = a->single;
+	model->asked.compensated = a->compensated;
+	model->asked.form = a->form;
+	model->asked.form_at = (struct place){ source_argument(step_form_name(a->form)), 0 };
 }
 
 static void build_now(void *context)
 {
 	struct choosing *c = context;
-	set_asked(c, c->now);
-	c->step = step_build(c->model);
+	ask(c->written, c->now);
+	ask(c->now->model, c->now);
+	(c->now->single ? target_float : target_double)();
+	c->step = step_build(c->now->model);
 	if (!c->step)
 		abandon();
 }
 
-/* Both at once is told once: compensated there is no other form. */
+/* Two words take these forms only. */
 static bool stands_alone(const struct alternative *a)
 {
 	return !a->compensated || a->form == FORM_DELTA || a->form == FORM_KICK_DRIFT_KICK;
@@ -47,38 +58,44 @@ static bool stands_alone(const struct alternative *a)
 static void certify(struct choosing *c)
 {
 	struct alternative *a = c->now;
-	const struct step *exact = c->step->modal ? c->modes : c->states;
-	a->certificate = ARRAY(struct certificate, (size_t)c->model->requirements);
-	a->cost = cost_of_step(c->step, c->model->target);
-	for (int i = 0; i < c->model->requirements; i++) {
-		const struct requirement *r = &c->model->requirement[i];
-		a->certificate[i] = certificate_of(c->step, exact ? exact : c->step, r);
-		const struct certificate *found = &a->certificate[i];
+	const struct step *exact = c->step->modal ? c->variant->modes : c->variant->states;
+	a->certificate = ARRAY(struct certificate, (size_t)c->stepped->requirements);
+	a->cost = cost_of_step(c->step, c->stepped->target);
+	for (int i = 0; i < c->stepped->requirements; i++) {
+		const struct requirement *r = &c->stepped->requirement[i];
+		struct certificate *found = &a->certificate[i];
+		*found = certificate_of(c->step, exact ? exact : c->step, r);
+		found->dropped = c->variant->dropped[i];
+		found->needed = needed_error(r, c->largest[i]);
 		a->why = a->why ? a->why : found->why;
 		if (found->known)
-			a->excess = fmax(a->excess, found->rounding / needed_error(r, found));
+			a->excess = fmax(a->excess, (found->rounding + found->dropped) / found->needed);
 	}
 }
 
 static void try_one(struct choosing *c, bool single, bool compensated, enum step_form form)
 {
 	struct alternative *a = c->now = NEW(struct alternative);
-	*a = (struct alternative){ .single = single, .compensated = compensated, .form = form };
+	*a = (struct alternative){ .single = single, .compensated = compensated, .form = form,
+				   .model = c->variant->model };
 	if (!stands_alone(a))
 		return;
 	a->refused = refusal_of(build_now, c);
 	if (!a->refused)
 		certify(c);
+	else if (a->model->shortened)
+		return;                 /* as of all modes */
 	ENLARGE(c->choice->alternative, (size_t)c->choice->alternatives + 1);
 	c->choice->alternative[c->choice->alternatives++] = *a;
 }
 
-/* ---- all of them ---- */
+/* ---- all of one model ---- */
 
-static struct step *built(struct choosing *c, enum step_form form)
+static struct step *built(struct choosing *c, struct model *model, enum step_form form)
 {
 	c->now = NEW(struct alternative);
 	c->now->form = form;
+	c->now->model = model;
 	c->step = NULL;
 	return refusal_of(build_now, c) ? NULL : c->step;
 }
@@ -96,6 +113,123 @@ static void try_form(struct choosing *c, enum step_form form)
 	}
 }
 
+static void try_forms(struct choosing *c)
+{
+	static const enum step_form forms[] = { FORM_DIRECT, FORM_DELTA, FORM_KICK_DRIFT_KICK, FORM_MODAL };
+	const bool modes = c->variant->model->shortened;        /* its states are those of modes already */
+	for (size_t i = 0; i < sizeof forms / sizeof *forms; i++)
+		if ((c->request->form == FORM_AUTO || c->request->form == forms[i]) &&
+		    !(modes && forms[i] == FORM_MODAL))
+			try_form(c, forms[i]);
+}
+
+static struct variant *variant_of(struct choosing *c, struct model *model)
+{
+	struct variant *v = NEW(struct variant);
+	v->model = model;
+	v->dropped = ARRAY(double, (size_t)c->stepped->requirements);
+	v->states = built(c, model, FORM_DIRECT);
+	v->modes = model->shortened ? NULL : built(c, model, FORM_MODAL);
+	return v;
+}
+
+/* ---- fewer modes ---- */
+
+struct dropping {
+	struct modes *modes;
+	const int *order;
+	bool statics;
+	double **lost;              /* per requirement, per number of modes kept */
+};
+
+static bool loses_less(const struct choosing *c, const struct dropping *d, int count)
+{
+	bool less = true;
+	for (int i = 0; i < c->stepped->requirements; i++)
+		less = less && d->lost[i][count] <= needed_error(&c->stepped->requirement[i], c->largest[i]);
+	return less;
+}
+
+static void try_modes(struct choosing *c, const struct dropping *d, int count)
+{
+	bool *kept = ARRAY(bool, (size_t)d->modes->count);
+	for (int i = 0; i < count; i++)
+		kept[d->order[i]] = true;
+	target_double();
+	struct model *model = modes_kept(d->modes, kept, d->statics);
+	if (!model)
+		return;
+	c->variant = variant_of(c, model);
+	for (int i = 0; i < c->stepped->requirements; i++)
+		c->variant->dropped[i] = d->lost[i][count];
+	try_forms(c);
+}
+
+static void drop_modes(struct choosing *c, struct dropping *d)
+{
+	const int requirements = c->stepped->requirements, all = d->modes->count;
+	target_double();
+	d->lost = ARRAY(double *, (size_t)requirements);
+	for (int i = 0; i < requirements; i++)
+		d->lost[i] = losses_of(d->modes, d->order, d->statics, &c->stepped->requirement[i]);
+	int fewest = all;
+	while (fewest > 1 && loses_less(c, d, fewest - 1))
+		fewest--;
+	for (int count = fewest > 1 ? fewest - 1 : fewest; count <= fewest + MORE_MODES && count < all; count++)
+		try_modes(c, d, count);
+}
+
+/* Where loads or inputs act, what is dropped may follow them at once. */
+static bool has_statics(const struct linear *system)
+{
+	bool acts = system->inputs > 0;
+	for (int l = 0; l < system->loads; l++)
+		acts = acts || load_acts(system, &system->load[l]);
+	return acts;
+}
+
+static void try_fewer(struct choosing *c)
+{
+	const char *why;
+	struct model *whole = NEW(struct model);
+	*whole = *c->written;           /* whose coordinates are the written ones */
+	if (c->written->written == c->written)
+		whole->written = whole;
+	ask(whole, &(struct alternative){ .form = FORM_AUTO });
+	whole->requirements = c->stepped->requirements;
+	whole->requirement = c->stepped->requirement;
+	whole->target = c->stepped->target;
+	whole->budget = c->stepped->budget;
+	target_double();
+	struct modes *modes = whole->declared_outputs ? modes_of(whole, &why) : NULL;
+	if (!modes || modes->count < 2)
+		return;
+	for (int statics = 0; statics <= has_statics(&whole->system); statics++)
+		drop_modes(c, &(struct dropping){ .modes = modes, .order = modes_by_share(modes),
+						  .statics = statics });
+}
+
+/* What the modes that are written to be dropped lose */
+static void count_written(struct choosing *c)
+{
+	const struct shortening *s = c->written->shortened;
+	struct modes *modes = (struct modes *)(uintptr_t)s->modes;
+	int *order = ARRAY(int, (size_t)modes->count), kept = 0;
+	for (int which = 1; which >= 0; which--)
+		for (int i = 0; i < modes->count; i++)
+			if (s->kept[i] == which)
+				order[kept++] = i;
+	kept = 0;
+	for (int i = 0; i < modes->count; i++)
+		kept += s->kept[i];
+	target_double();
+	for (int i = 0; i < c->stepped->requirements && kept < modes->count; i++)
+		c->variant->dropped[i] =
+			losses_of(modes, order, s->statics, &c->stepped->requirement[i])[kept];
+}
+
+/* ---- all of them ---- */
+
 static int by_cost(const void *left, const void *right)
 {
 	const struct alternative *a = left, *b = right;
@@ -103,6 +237,8 @@ static int by_cost(const void *left, const void *right)
 		return a->refused ? 1 : -1;
 	if (a->cost != b->cost)
 		return a->cost < b->cost ? -1 : 1;
+	if (a->excess != b->excess)
+		return a->excess < b->excess ? -1 : 1;
 	if (a->single != b->single)
 		return a->single ? -1 : 1;
 	if (a->compensated != b->compensated)
@@ -110,12 +246,25 @@ static int by_cost(const void *left, const void *right)
 	return (int)a->form - (int)b->form;
 }
 
-static void try_forms(struct choosing *c)
+static void try_all(struct choosing *c)
 {
-	static const enum step_form forms[] = { FORM_DIRECT, FORM_DELTA, FORM_KICK_DRIFT_KICK, FORM_MODAL };
-	for (size_t i = 0; i < sizeof forms / sizeof *forms; i++)
-		if (c->request->form == FORM_AUTO || c->request->form == forms[i])
-			try_form(c, forms[i]);
+	c->choice = NEW(struct choice);
+	c->variant = variant_of(c, c->stepped);
+	const struct model *full = c->written->shortened ? c->written->shortened->modes->model : c->stepped;
+	struct step *exact = c->variant->states;
+	if (full != c->stepped) {
+		struct model *whole = NEW(struct model);
+		*whole = *full;
+		exact = built(c, whole, FORM_DIRECT);
+	}
+	c->largest = ARRAY(double, (size_t)c->stepped->requirements);
+	for (int i = 0; i < c->stepped->requirements && exact; i++)
+		c->largest[i] = largest_of_output(exact, &c->stepped->requirement[i]);
+	if (c->written->shortened)
+		count_written(c);
+	try_forms(c);
+	if (!c->written->shortened)
+		try_fewer(c);
 	qsort(c->choice->alternative, (size_t)c->choice->alternatives, sizeof *c->choice->alternative, by_cost);
 }
 
@@ -127,13 +276,13 @@ static bool meets(const struct alternative *a)
 /* ---- what cannot be met ---- */
 
 /* The requirement that it is furthest from */
-static int worst_requirement(const struct model *model, const struct alternative *a)
+static int worst_requirement(const struct choosing *c, const struct alternative *a)
 {
 	int worst = 0;
 	double most = 0;
-	for (int i = 0; i < model->requirements; i++) {
+	for (int i = 0; i < c->stepped->requirements; i++) {
 		const struct certificate *found = &a->certificate[i];
-		const double excess = found->known ? found->rounding / needed_error(&model->requirement[i], found) : 0;
+		const double excess = (found->rounding + found->dropped) / found->needed;
 		worst = excess > most ? i : worst;
 		most = fmax(most, excess);
 	}
@@ -168,7 +317,7 @@ static const char *what_would_do(struct choosing *c)
 {
 	const struct request *asked = c->request;
 	struct request open = *asked;
-	const double growth = c->states ? growth_of(c->states) : 0;
+	const double growth = c->variant->states ? growth_of(c->variant->states) : 0;
 	if (growth > 1e-9)
 		return format("the model is unstable: what rounds grows as e^{%.3g t} with it", growth);
 	if (!(asked->real_given && asked->single) && asked->form == FORM_AUTO && !asked->compensated)
@@ -176,43 +325,38 @@ static const char *what_would_do(struct choosing *c)
 	open.real_given = open.compensated = false;
 	open.form = FORM_AUTO;
 	c->request = &open;
-	c->choice = NEW(struct choice);
-	try_forms(c);
+	try_all(c);
 	const struct alternative *best = most_exact(c->choice, HUGE_VAL);
 	c->request = asked;
-	return best && best->excess <= 1
-		       ? format("without what is asked for on the command line it can: %.2g (%s)",
-				best->certificate[worst_requirement(c->model, best)].rounding, alternative_text(best))
-		       : NULL;
+	return best && best->excess <= 1 ? format("without what is asked for on the command line it can: %s",
+						  certified_text(best, worst_requirement(c, best)))
+					 : NULL;
 }
 
 static void tell_unmet(struct choosing *c)
 {
-	const struct model *model = c->model;
 	const struct choice *choice = c->choice;
 	const struct alternative *best = most_exact(choice, HUGE_VAL), *first = choice->alternative;
 	const char *note = what_would_do(c);
 	if (!best) {
-		say_error(model->requirement[0].need->at, note, "the need cannot be certified: %s",
+		say_error(c->stepped->requirement[0].need->at, note, "the need cannot be certified: %s",
 			  first->refused ? first->refused : first->why);
 		return;
 	}
-	const int i = worst_requirement(model, best);
-	const struct requirement *r = &model->requirement[i];
-	say_error(r->need->at, note,
-		  "the need cannot be met: rounding alone is bounded by %.2g at best (%s), and %.2g is needed",
-		  best->certificate[i].rounding, alternative_text(best), needed_error(r, &best->certificate[i]));
+	const int i = worst_requirement(c, best);
+	say_error(c->stepped->requirement[i].need->at, note, "the need cannot be met: at best %s, and %.2g is needed",
+		  certified_text(best, i), best->certificate[i].needed);
 }
 
 static void tell_dear(const struct choosing *c, const struct alternative *taken)
 {
-	const struct alternative *best = most_exact(c->choice, c->model->budget);
+	const struct alternative *best = most_exact(c->choice, c->stepped->budget);
 	const char *fits = best ? format("%s takes %.0f, and misses the need by a factor of %.3g",
 					 alternative_text(best), best->cost, best->excess)
 				: "nothing that there is takes so few";
-	say_error(c->model->spec->budget.at, fits,
+	say_error(c->stepped->spec->budget.at, fits,
 		  "over budget: the cheapest that meets the need takes some %.0f instructions (%s), %.0f more than %.0f",
-		  taken->cost, alternative_text(taken), taken->cost - c->model->budget, c->model->budget);
+		  taken->cost, alternative_text(taken), taken->cost - c->stepped->budget, c->stepped->budget);
 }
 
 /* ---- the choice ---- */
@@ -229,7 +373,7 @@ static bool find_taken(struct choosing *c)
 		return false;
 	}
 	const struct alternative *taken = &choice->alternative[choice->taken];
-	if (c->model->target && taken->cost > c->model->budget) {
+	if (c->stepped->target && taken->cost > c->stepped->budget) {
 		tell_dear(c, taken);
 		return false;
 	}
@@ -238,12 +382,10 @@ static bool find_taken(struct choosing *c)
 
 struct step *choose_step(struct model *written, struct model *stepped, struct request *request)
 {
-	struct choosing c = { .written = written, .model = stepped, .request = request, .choice = NEW(struct choice) };
+	struct choosing c = { .written = written, .stepped = stepped, .request = request };
 	if (!find_requirements(stepped))
 		return NULL;
-	c.states = built(&c, FORM_DIRECT);
-	c.modes = built(&c, FORM_MODAL);
-	try_forms(&c);
+	try_all(&c);
 	if (!find_taken(&c))
 		return NULL;
 	c.now = &c.choice->alternative[c.choice->taken];

@@ -436,7 +436,7 @@ static void banner_needs(const struct emitter *e)
 	for (int i = 0; i < e->model->requirements && e->step->choice; i++)
 		say(e, " * Needed: %s;\n"
 		       " *     %s.\n",
-		    printable(need_text(&e->model->requirement[i])), certified_text(e->step, i));
+		    printable(need_text(&e->model->requirement[i])), margin_text(e->step, i));
 }
 
 static const char *input_text(int hold)

@@ -10,6 +10,7 @@
 
 #include <math.h>
 
+enum { MOST_TRACED = 4000000 };      /* samples at which what is lost is kept */
 #define WORK 4e9                    /* operations of a walk through all samples */
 
 struct kept {                       /* the step over the state as it is kept: y+ = Phi y + load z + input u */
@@ -241,8 +242,9 @@ static double slack_of_output(const struct kept *k, const struct spread *spread,
 	return sum * largest * spread->slack + direct * (k->columns + 64) * 0x1p-50;
 }
 
-/* From the start, inputs 0: sizes of the states; the largest and the last of the output */
-static struct extent walk_loads(long steps, double h, const struct spread *spread, struct kept *k)
+/* From the start, inputs 0: sizes of the states; the largest and the last of the output; added to `trace`, where there
+ * is one, at each sample */
+static struct extent walk_loads(long steps, double h, const struct spread *spread, struct kept *k, double *trace)
 {
 	const struct sparse Phi = sparse_of(k->n, k->n, k->Phi), load = sparse_of(k->n, k->columns, k->load);
 	double *x = ARRAY(double, (size_t)k->n), *next = ARRAY(double, (size_t)k->n),
@@ -258,7 +260,10 @@ static struct extent walk_loads(long steps, double h, const struct spread *sprea
 			largest = fmax(largest, fabs(x[i]));
 			next[i] = 0;
 		}
-		found.last = fabs(output_now(k, x, z));
+		const double out = output_now(k, x, z);
+		if (trace)
+			trace[m] += out;
+		found.last = fabs(out);
 		found.most = fmax(found.most, found.last);
 		sparse_add(&Phi, x, next);
 		sparse_add(&load, z, next);
@@ -296,8 +301,9 @@ static void add_inputs(const struct spread *spread, struct kept *k)
 
 /* What a sample of an input does to the output m steps after it is given: to states by column `first` and on, one for
  * each tap, the last of which is the sample itself; sum of sizes over m < steps, of a sample in its bound. It is
- * attained: the signs of the samples may be any. */
-static double sum_of_input(const struct linear *system, long steps, const struct kept *k, int input, int first)
+ * attained: the signs of the samples may be any. Each is added to `trace`, where there is one. */
+static double sum_of_input(const struct linear *system, long steps, const struct kept *k, int input, int first,
+			   double *trace)
 {
 	const int taps = system->input[input].hold + 1, n = k->n;
 	const struct sparse Phi = sparse_of(n, n, k->Phi);
@@ -311,6 +317,8 @@ static double sum_of_input(const struct linear *system, long steps, const struct
 		for (int i = 0; i < n; i++)
 			out += k->row[i] * next[i];
 		sum += fabs(out);
+		if (trace)
+			trace[m] += out;
 		double *swap = x;
 		x = next;
 		next = swap;
@@ -334,10 +342,10 @@ static struct extent extent_of_kept(const struct step *step, long steps, const s
 {
 	const struct linear *system = &step->branch->system;
 	const double h = mpq_get_d(step->model->h);
-	struct extent e = walk_loads(steps, h, spread, k);
+	struct extent e = walk_loads(steps, h, spread, k, NULL);
 	double by_inputs = 0;
 	for (int i = 0, c = 0; i < system->inputs; c += system->input[i++].hold + 1)
-		by_inputs += sum_of_input(system, steps, k, i, c);
+		by_inputs += sum_of_input(system, steps, k, i, c, NULL);
 	add_inputs(spread, k);
 	const double slack = e.slack + by_inputs * (1e-9 + spread->slack * (double)steps);
 	e.lower = fmax(0, fmax(e.most, e.last + by_inputs) - slack);
@@ -603,19 +611,133 @@ static long samples(const struct requirement *r, mpq_srcptr h)
 	return count;
 }
 
-double needed_error(const struct requirement *r, const struct certificate *c)
+double needed_error(const struct requirement *r, double largest)
 {
-	return mpq_get_d(r->bound) * (r->need->percent ? c->largest : 1);
+	return mpq_get_d(r->bound) * (r->need->percent ? largest : 1);
+}
+
+static struct errors errors_of(const struct step *step, const struct requirement *r)
+{
+	const bool single = step->model->asked.single;
+	return (struct errors){ .step = step,
+				.r = r,
+				.steps = samples(r, step->model->h),
+				.unit = single ? 0x1p-24 : 0x1p-53,
+				.tiny = single ? 0x1p-149 : 0x1p-1074 };
+}
+
+double largest_of_output(const struct step *exact, const struct requirement *r)
+{
+	const struct errors e = errors_of(exact, r);
+	if (objection(&e))
+		return 0;
+	struct kept *k = kept_of(&e, exact);
+	const struct spread spread = spread_of(k->n, k->Phi, e.steps + 1);
+	return spread.known ? extent_of_kept(exact, e.steps, &spread, k).lower : 0;
+}
+
+/* ---- what is lost with modes ---- */
+
+struct loss {                       /* of one output, summed over modes */
+	long steps;
+	double *trace, **input;     /* at each sample; m steps after a sample of an input */
+	double slack;               /* how far what is found may be off */
+};
+
+/* One more mode is dropped: `step` is that of what is lost with it. */
+static bool add_loss(const struct step *step, const struct requirement *r, struct loss *loss)
+{
+	const struct linear *system = &step->branch->system;
+	const struct errors e = errors_of(step, r);
+	if (objection(&e))
+		return false;
+	struct kept *k = kept_of(&e, step);
+	const struct spread spread = spread_of(k->n, k->Phi, e.steps + 1);
+	if (!spread.known)
+		return false;
+	loss->slack += walk_loads(e.steps, mpq_get_d(step->model->h), &spread, k, loss->trace).slack;
+	for (int i = 0, c = 0; i < system->inputs; c += system->input[i++].hold + 1)
+		loss->slack += sum_of_input(system, e.steps, k, i, c, loss->input[i]) *
+			       (1e-9 + spread.slack * (double)e.steps);
+	loss->slack += slopes_of_inputs(system, k, mpq_get_d(step->model->h));
+	return true;
+}
+
+static double size_of_loss(const struct loss *loss, const struct linear *system, const struct requirement *r)
+{
+	double most = 0, inputs = 0;
+	for (long m = 0; m <= loss->steps; m++)
+		most = fmax(most, fabs(loss->trace[m]));
+	for (int i = 0; i < system->inputs; i++) {
+		double sum = 0;
+		for (long m = 0; m < loss->steps; m++)
+			sum += fabs(loss->input[i][m]);
+		inputs += sum * mpq_get_d(r->most[i]);
+	}
+	return (most + inputs) * (1 + 1e-9) + loss->slack;
+}
+
+static struct loss no_loss(const struct linear *system, long steps)
+{
+	struct loss loss = { .steps = steps,
+			     .trace = ARRAY(double, (size_t)steps + 1),
+			     .input = ARRAY(double *, (size_t)system->inputs) };
+	for (int i = 0; i < system->inputs; i++)
+		loss.input[i] = ARRAY(double, (size_t)steps + 1);
+	return loss;
+}
+
+static void loss_free(const struct loss *loss, const struct linear *system)
+{
+	discard(loss->trace);
+	for (int i = 0; i < system->inputs; i++)
+		discard(loss->input[i]);
+}
+
+struct building_loss { struct model *error; struct step *step; };
+
+static void build_loss(void *context)
+{
+	struct building_loss *b = context;
+	b->error->written = b->error;
+	b->error->asked.form = FORM_DIRECT;
+	b->error->asked.anchors = b->error->asked.rows = 1;
+	b->error->asked.batch = b->error->asked.selftest = false;
+	b->step = step_build(b->error);
+	if (!b->step)
+		abandon();
+}
+
+/* What is lost with one mode, as a step in double; NULL: it is not found */
+static struct step *step_of_loss(struct modes *modes, int mode, bool statics)
+{
+	bool *kept = ARRAY(bool, (size_t)modes->count);
+	for (int i = 0; i < modes->count; i++)
+		kept[i] = i != mode;
+	struct building_loss b = { .error = modes_dropped(modes, kept, statics) };
+	discard(kept);
+	return b.error && silent_guard(build_loss, &b) ? b.step : NULL;
+}
+
+double *losses_of(struct modes *modes, const int *order, bool statics, const struct requirement *r)
+{
+	const struct linear *system = &modes->model->system;
+	const long steps = samples(r, modes->model->h);
+	double *lost = ARRAY(double, (size_t)modes->count + 1);
+	bool good = steps >= 0 && steps <= MOST_TRACED;
+	struct loss loss = no_loss(system, good ? steps : 0);
+	for (int c = modes->count - 1; c >= 0; c--) {
+		const struct step *step = good ? step_of_loss(modes, order[c], statics) : NULL;
+		good = step && add_loss(step, r, &loss);
+		lost[c] = good ? size_of_loss(&loss, system, r) : HUGE_VAL;
+	}
+	loss_free(&loss, system);
+	return lost;
 }
 
 struct certificate certificate_of(const struct step *step, const struct step *exact, const struct requirement *r)
 {
-	const bool single = step->model->asked.single;
-	struct errors e = { .step = step,
-			    .r = r,
-			    .steps = samples(r, step->model->h),
-			    .unit = single ? 0x1p-24 : 0x1p-53,
-			    .tiny = single ? 0x1p-149 : 0x1p-1074 };
+	struct errors e = errors_of(step, r);
 	struct certificate found = { .why = objection(&e) };
 	if (found.why)
 		return found;
@@ -626,7 +748,7 @@ struct certificate certificate_of(const struct step *step, const struct step *ex
 		return found;
 	}
 	e.kept = k;
-	found.largest = extent_of_kept(step, e.steps, &spread, k).lower;
+	extent_of_kept(step, e.steps, &spread, k);
 	add_up(&e, &spread, &found);
 	return found;
 }

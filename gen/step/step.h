@@ -482,19 +482,25 @@ const char *rounding_text(const struct step *step);
 
 /* ---- rounding.c: how far an output of the emitted program may be off ---- */
 
-struct certificate {                /* of one requirement */
+struct certificate {                /* of one requirement, in the output's unit */
 	bool known;
 	const char *why;            /* it is not */
-	double rounding;            /* at every sample up to the end, in the output's unit: a bound */
-	double largest;             /* of the exact output: what it surely reaches */
+	double rounding, dropped;   /* at every sample up to the end: bounds of what rounds, of what modes are missed */
+	double needed;
 };
 /* `exact`: the same step with the numbers of double */
 struct certificate certificate_of(const struct step *step, const struct step *exact, const struct requirement *r);
-double needed_error(const struct requirement *r, const struct certificate *c);      /* in the output's unit */
+double needed_error(const struct requirement *r, double largest);       /* of the output */
+/* what it surely reaches; `exact` in double; 0: it is not known */
+double largest_of_output(const struct step *exact, const struct requirement *r);
+/* [modes + 1]: what the output loses at most where the first so many of the order are kept. HUGE_VAL: not known.
+ * To be called with the target double */
+double *losses_of(struct modes *modes, const int *order, bool statics, const struct requirement *r);
 
 struct alternative {                /* one way to step a model with needs */
 	bool single, compensated;
 	enum step_form form;
+	struct model *model;        /* that is stepped: of all modes, or of some */
 	const char *refused;        /* why there is no such step; NULL: there is */
 	double cost;                /* of a step and its outputs, as cost_of_step counts */
 	const char *why;            /* its error is not known; NULL: it is */

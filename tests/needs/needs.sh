@@ -23,15 +23,16 @@ for seed in $(seq "$first" "$last"); do
 	"$plgen" drawn.spec >drawn_pl.c && "$plgen" --solution "$end" drawn.spec | sed 1d >exact.csv &&
 		${CC:-cc} -O1 -ffp-contract=off -I"$work" -I"$runtime" -w "$here/run.c" "$runtime"/*.c -o run &&
 		./run "$(wc -l <exact.csv)" >got || { echo "not ok - seed $seed: no program"; exit 1; }
-	sed -n '/"taken": true/s/.*"certified": \([^,]*\).*"needed": \([^}]*\)}.*/\1 \2/p' drawn.json >bound
+	sed -n '/"taken": true/s/.*"certified": \([^,]*\), "dropped": \([^,]*\),.*"needed": \([^}]*\)}.*/\1 \3 \2/p' \
+		drawn.json >bound
 	paste -d' ' got exact.csv | tr , ' ' | awk -v seed="$seed" '
-		NR == FNR { bound = $1; needed = $2; next }
+		NR == FNR { bound = $1; needed = $2; dropped = $3; next }
 		{ e = $1 - $3; e = e < 0 ? -e : e; if (!(e <= worst)) worst = e; size = $3 > size ? $3 : size }
 		END {
 			spare = 4.5e-16 * size  # what reading both here rounds
 			good = worst <= bound + spare && bound <= needed
-			printf "%s - seed %d: error %.3g, bound %.3g, need %.3g\n", good ? "ok" : "not ok", seed, worst,
-				bound, needed
+			printf "%s - seed %d: error %.3g, bound %.3g, need %.3g, dropped modes %.3g\n",
+				good ? "ok" : "not ok", seed, worst, bound, needed, dropped
 		}' bound - >line
 	cat line
 	met=$((met + 1))
