@@ -1,0 +1,25 @@
+#!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
+# What is certified for any input within a bound is attained by one: driven.spec, held and as a ramp.
+# worst.sh PLGEN HERE RUNTIME
+plgen=$1 here=$2 runtime=$3
+work=$(mktemp -d) || exit 1
+trap 'rm -rf "$work"' EXIT
+cd "$work" || exit 1
+bad=0
+for hold in held ramp; do
+	if [ $hold = ramp ]; then
+		sed 's/^input u/input u hold first/' "$here/driven.spec" >driven.spec
+	else
+		cp "$here/driven.spec" .
+	fi
+	sed '/^need/d' driven.spec >whole.spec
+	"$plgen" --real double --prefix chosen -o chosen_pl.c driven.spec &&
+		"$plgen" --real double --prefix whole -o whole_pl.c whole.spec &&
+		${CC:-cc} -O1 -w -I. -I"$runtime" "$here/worst.c" chosen_pl.c whole_pl.c "$runtime"/*.c -lm -o $hold ||
+		exit 1
+	certified=$("$plgen" --real double --explain=json driven.spec |
+		sed -n '/"taken": true/s/.*"certified": \([^,]*\).*/\1/p')
+	./$hold 2000 3 "$certified" || bad=1
+done
+exit $bad
