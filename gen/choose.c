@@ -355,8 +355,8 @@ static void tell_dear(const struct choosing *c, const struct alternative *taken)
 					 alternative_text(best), best->cost, best->excess)
 				: "nothing that there is takes so few";
 	say_error(c->stepped->spec->budget.at, fits,
-		  "over budget: the cheapest that meets the need takes some %.0f instructions (%s), %.0f more than %.0f",
-		  taken->cost, alternative_text(taken), taken->cost - c->stepped->budget, c->stepped->budget);
+		  "over budget: the cheapest that meets the need takes some %.0f instructions (%s), %.0f more than "
+		  "%.0f", taken->cost, alternative_text(taken), taken->cost - c->stepped->budget, c->stepped->budget);
 }
 
 /* ---- the choice ---- */

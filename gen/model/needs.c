@@ -144,7 +144,8 @@ static void find_budget(void *context)
 		if (strcmp(budget->target.name, targets[i].name) == 0)
 			model->target = &targets[i];
 	if (!model->target)
-		error(budget->target.at, "targets: cortex-m4, cortex-m0", "there is no target '%s'", budget->target.name);
+		error(budget->target.at, "targets: cortex-m4, cortex-m0", "there is no target '%s'",
+		      budget->target.name);
 	constant(budget->instructions, instructions);
 	if (mpq_sgn(instructions) <= 0)
 		error(budget->instructions->start, NULL, "a budget is above 0, found %s", readable_text(instructions));

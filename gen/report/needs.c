@@ -131,7 +131,8 @@ void json_needs(FILE *to, const struct step *step)
 		fprintf(to, "%s\n    {\"modes\": \"%s\", \"statics\": %s, \"real\": \"%s\", \"form\": \"%s\", "
 			"\"accuracy\": \"%s\", \"taken\": %s",
 			i ? "," : "", a->model->shortened ? mode_numbers(a->model->shortened, true) : "all",
-			a->model->shortened && a->model->shortened->statics ? "true" : "false", a->single ? "float" : "double", step_form_name(a->form),
+			a->model->shortened && a->model->shortened->statics ? "true" : "false",
+			a->single ? "float" : "double", step_form_name(a->form),
 			a->compensated ? "compensated" : "plain", i == step->choice->taken ? "true" : "false");
 		if (a->refused || a->why) {
 			fprintf(to, ", \"why\": %s}", json_quoted(a->refused ? a->refused : a->why));

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# A linear model with a need, drawn from a seed: 1 to 6 masses in a chain with further springs, on the ground or free, damping of every kind
-# (none, proportional, dashpots anywhere, strong), loads, starts; equations or sketch. -v seed=N
+# A linear model with a need, drawn from a seed: 1 to 6 masses in a chain with further springs, on the ground or free,
+# damping of every kind (none, proportional, dashpots anywhere, strong), loads, starts. -v seed=N
 function uniform(a, b) { return a + (b - a) * rand() }
 function log_uniform(a, b) { return exp(uniform(log(a), log(b))) }
 function number(x) { return sprintf("%.4g", x) }
