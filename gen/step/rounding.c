@@ -32,7 +32,8 @@ struct errors {
 	const struct kept *kept;
 	const struct requirement *r;
 	long steps;
-	double unit, tiny;          /* of rounding, relative; where numbers leave the range below */
+	/* of rounding, relative; where numbers leave the range below, or what has decayed is set to rest */
+	double unit, tiny;
 	double *size, *err;         /* per state, while a step is reckoned */
 };
 
@@ -310,7 +311,7 @@ static double sum_of_input(const struct linear *system, long steps, const struct
 	double *x = ARRAY(double, (size_t)n), *next = ARRAY(double, (size_t)n), sum = 0;
 	for (long m = 0; m < steps; m++) {
 		const int tap = m < taps ? taps - 1 - (int)m : -1;
-		double out = m == 0 ? k->feed[0][input] : 0;
+		double out = m == (taps - 1) / 2 ? k->feed[0][input] : 0;  /* that at the step's end */
 		for (int i = 0; i < n; i++)
 			next[i] = tap >= 0 ? k->input[i * k->inputs + first + tap] : 0;
 		sparse_add(&Phi, x, next);
@@ -623,7 +624,7 @@ static struct errors errors_of(const struct step *step, const struct requirement
 				.r = r,
 				.steps = samples(r, step->model->h),
 				.unit = single ? 0x1p-24 : 0x1p-53,
-				.tiny = single ? 0x1p-149 : 0x1p-1074 };
+				.tiny = step->rest ? (single ? 1e-35 : 1e-290) : single ? 0x1p-149 : 0x1p-1074 };
 }
 
 double largest_of_output(const struct step *exact, const struct requirement *r)
