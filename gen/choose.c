@@ -4,8 +4,8 @@
  *
  * Modes are dropped from the least share on. What the outputs lose is known for each number of modes at once; the
  * steps that are tried are those of the fewest modes that lose less than is needed, of one less, which shows what that
- * would miss, and of a few more, which leave more of the need to rounding. Where all modes are kept the states are
- * those that were written. */
+ * would miss, and of a few more, which leave more of the need to rounding. Of many states only steps of modes are
+ * tried, where there are such. Where all modes are kept the states are those that were written. */
 #include "command.h"
 
 #include <math.h>
@@ -64,7 +64,8 @@ static void certify(struct choosing *c)
 	for (int i = 0; i < c->stepped->requirements; i++) {
 		const struct requirement *r = &c->stepped->requirement[i];
 		struct certificate *found = &a->certificate[i];
-		*found = certificate_of(c->step, exact ? exact : c->step, r);
+		*found = exact ? certificate_of(c->step, exact, r)
+			       : (struct certificate){ .why = "the numbers of its step are not known in double" };
 		found->dropped = c->variant->dropped[i];
 		found->needed = needed_error(r, c->largest[i]);
 		a->why = a->why ? a->why : found->why;
@@ -113,14 +114,22 @@ static void try_form(struct choosing *c, enum step_form form)
 	}
 }
 
+/* Its steps of states cost so much more than those of modes that only these are tried. */
+static bool is_large(const struct model *model)
+{
+	return model->system.states > LIMIT_UNROLLED_STATES && !model->shortened;
+}
+
 static void try_forms(struct choosing *c)
 {
 	static const enum step_form forms[] = { FORM_DIRECT, FORM_DELTA, FORM_KICK_DRIFT_KICK, FORM_MODAL };
-	const bool modes = c->variant->model->shortened;        /* its states are those of modes already */
-	for (size_t i = 0; i < sizeof forms / sizeof *forms; i++)
-		if ((c->request->form == FORM_AUTO || c->request->form == forms[i]) &&
-		    !(modes && forms[i] == FORM_MODAL))
+	const struct variant *v = c->variant;
+	const bool asked = c->request->form != FORM_AUTO, modes = v->model->shortened;
+	for (size_t i = 0; i < sizeof forms / sizeof *forms; i++) {
+		const bool needless = forms[i] == FORM_MODAL ? modes : is_large(v->model) && v->modes;
+		if (asked ? c->request->form == forms[i] : !needless)
 			try_form(c, forms[i]);
+	}
 }
 
 static struct variant *variant_of(struct choosing *c, struct model *model)
@@ -128,8 +137,10 @@ static struct variant *variant_of(struct choosing *c, struct model *model)
 	struct variant *v = NEW(struct variant);
 	v->model = model;
 	v->dropped = ARRAY(double, (size_t)c->stepped->requirements);
-	v->states = built(c, model, FORM_DIRECT);
-	v->modes = model->shortened ? NULL : built(c, model, FORM_MODAL);
+	if (!model->shortened || c->request->form == FORM_MODAL)
+		v->modes = built(c, model, FORM_MODAL);
+	if (!is_large(model) || !v->modes || c->request->form != FORM_AUTO)
+		v->states = built(c, model, FORM_DIRECT);
 	return v;
 }
 
@@ -251,7 +262,7 @@ static void try_all(struct choosing *c)
 	c->choice = NEW(struct choice);
 	c->variant = variant_of(c, c->stepped);
 	const struct model *full = c->written->shortened ? c->written->shortened->modes->model : c->stepped;
-	struct step *exact = c->variant->states;
+	struct step *exact = c->variant->states ? c->variant->states : c->variant->modes;
 	if (full != c->stepped) {
 		struct model *whole = NEW(struct model);
 		*whole = *full;
@@ -317,7 +328,8 @@ static const char *what_would_do(struct choosing *c)
 {
 	const struct request *asked = c->request;
 	struct request open = *asked;
-	const double growth = c->variant->states ? growth_of(c->variant->states) : 0;
+	const struct step *known = c->variant->states ? c->variant->states : c->variant->modes;
+	const double growth = known ? growth_of(known) : 0;
 	if (growth > 1e-9)
 		return format("the model is unstable: what rounds grows as e^{%.3g t} with it", growth);
 	if (!(asked->real_given && asked->single) && asked->form == FORM_AUTO && !asked->compensated)

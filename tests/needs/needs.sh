@@ -5,6 +5,7 @@
 # needs.sh PLGEN HERE RUNTIME FIRST LAST: those of these seeds
 # needs.sh PLGEN HERE RUNTIME beam: the beam of beam.awk, of which at most 6 modes are kept and a third of the cost
 plgen=$1 here=$2 runtime=$3 first=$4 last=${5:-}
+case $plgen in /*) ;; *) plgen=$PWD/$plgen ;; esac
 work=$(mktemp -d) || exit 1
 trap 'rm -rf "$work"' EXIT
 cd "$work" || exit 1

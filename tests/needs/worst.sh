@@ -4,6 +4,7 @@
 # largest value is known in closed form: gain.spec.
 # worst.sh PLGEN HERE RUNTIME
 plgen=$1 here=$2 runtime=$3
+case $plgen in /*) ;; *) plgen=$PWD/$plgen ;; esac
 work=$(mktemp -d) || exit 1
 trap 'rm -rf "$work"' EXIT
 cd "$work" || exit 1
