@@ -18,6 +18,12 @@ struct options {
 };
 void read_options(int argc, char **argv, struct options *options); /* ends the program where they are wrong */
 
+/* ---- choose.c: the cheapest step that is as exact as needed ---- */
+
+/* Of this model, the one that is stepped: what the request leaves open is chosen, and kept in the request and in the
+ * models; NULL: it was said why there is none */
+struct step *choose_step(struct model *written, struct model *stepped, struct request *request);
+
 /* ---- publish.c: texts in memory, then files ---- */
 
 struct file {

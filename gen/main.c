@@ -13,6 +13,7 @@ struct work {
 	struct options options;
 	struct spec *spec;
 	struct model *model;
+	struct model *stepped;          /* the one that is stepped: it, or over other coordinates */
 	struct step *step;              /* NULL: the closed form is printed, and nothing is stepped */
 	struct file *text, *header;     /* what is printed; the header beside C, NULL: none */
 };
@@ -36,8 +37,17 @@ static bool make_step(struct work *w)
 {
 	if (w->options.request.solution)
 		return true;
-	struct model *stepped = stepped_model(w->model, w->spec, &w->options.request);
-	w->step = stepped ? step_build(stepped) : NULL;
+	w->stepped = stepped_model(w->model, w->spec, &w->options.request);
+	w->step = w->stepped ? step_build(w->stepped) : NULL;
+	return w->step;
+}
+
+/* Where the spec says how exact it has to be */
+static bool choose(struct work *w)
+{
+	if (!w->step || (w->spec->needs == 0 && !w->spec->budget.instructions))
+		return true;
+	w->step = choose_step(w->model, w->stepped, &w->options.request);
 	return w->step;
 }
 
@@ -175,7 +185,7 @@ static bool compile(struct work *w)
 {
 	if (w->options.request.single && !w->options.request.solution)
 		target_float();
-	if (!make(w) || !print_text(w))
+	if (!make(w) || !choose(w) || !print_text(w))
 		return false;
 	print_header(w);
 	rewrite_code(w);

@@ -61,6 +61,7 @@ static void take_solution(struct options *options, const char *value)
 
 static void take_real(struct options *options, const char *value)
 {
+	options->request.real_given = true;
 	options->request.single = is_second("--real", value, "double", "float");
 }
 

@@ -51,6 +51,7 @@ enum {
 	LIMIT_UNROLLED_STATES = 16, /* beyond, a step loops over its tables */
 	LIMIT_RESIDUE_STATES = 12,  /* beyond, a Taylor series gives the numbers: residues get slow */
 	LIMIT_BLOCK_ROWS = 64,      /* in a block of NAME_run */
+	LIMIT_NEED_STATES = 128,    /* of a model with needs */
 	LIMIT_MODES = 128,          /* of a scheme in normal modes */
 	LIMIT_SERIES = 50000,       /* multiplications of a Taylor series, each of which is C */
 	LIMIT_COLLOCATED = 40,      /* coordinates of a collocation, whose matrices stand on the stack */
@@ -133,6 +134,7 @@ void check_power(struct place at, mpq_srcptr base, unsigned long exponent); /* t
 
 /* The target's type is double, or float after target_float; a double holds its numbers. */
 void   target_float(void);
+void   target_double(void);
 const char *target_name(void);
 /* nearest of the target's numbers; +-HUGE_VAL beyond the range */
 double round_rational(mpq_srcptr q);

@@ -22,6 +22,11 @@ void target_float(void)
 	target = &range_of_float;
 }
 
+void target_double(void)
+{
+	target = &range_of_double;
+}
+
 const char *target_name(void)
 {
 	return target->name;

@@ -435,6 +435,15 @@ static void banner_cost(const struct emitter *e)
 		       "rounded.\n", 8 * anchor_numbers(e->step));
 }
 
+/* Each need, and what is certified: two lines */
+static void banner_needs(const struct emitter *e)
+{
+	for (int i = 0; i < e->model->requirements && e->step->choice; i++)
+		say(e, " * Needed: %s;\n"
+		       " *     %s.\n",
+		    printable(need_text(&e->model->requirement[i])), margin_text(e->step, i));
+}
+
 static const char *input_text(int hold)
 {
 	if (hold > 1)
@@ -498,6 +507,7 @@ void emit_banner(const struct emitter *e)
 	e->kind->banner(e);
 	banner_irrationals(e);
 	banner_cost(e);
+	banner_needs(e);
 	banner_form(e);
 	if (e->step->forced)
 		banner_forced(e);

@@ -180,6 +180,30 @@ void taylor_entry(const struct taylor *t, int i, int j, mpfi_ptr value);
 /* True if the entry is a polynomial in tau, zero included, for every tau: then `exact` is its value at this one. */
 bool taylor_exact(struct taylor *t, int i, int j, mpq_ptr exact);
 
+/* ---- walk.c: x+ = A x in double, step by step, and how far that rounds ---- */
+
+/* A <- D^-1 A D, D = diag(scale) powers of 2, so that rows and columns of A - I become alike in size: exact */
+void balance_map(int n, double *A, double *scale);
+struct sparse {                     /* the entries of a matrix that are not 0, row by row */
+	int rows, *start, *column;
+	double *value;
+};
+struct sparse sparse_of(int rows, int columns, const double *A);
+void sparse_free(const struct sparse *s);
+void sparse_add(const struct sparse *s, const double *x, double *sum);     /* sum + A x */
+struct spread {                     /* of A, over so many steps; both are bounds, n x n */
+	int n;
+	long steps;
+	double *sum, *most;         /* over m < steps of |A^m|; the largest of each entry */
+	double slack;               /* of what a walk in double finds, relative to the largest of its vector */
+	bool known;                 /* that is small */
+};
+struct spread spread_of(int n, const double *A, long steps);
+/* Sums over m < steps of |row A^m|, and the largest of each entry; `columns`: of |A^m row|. Not every power is walked
+ * through where they die away. */
+void reach_of_row(const struct spread *spread, const double *A, const double *row, bool columns, double *sum,
+		  double *most);
+
 /* ---- fit.c: functions of params from their values ---- */
 
 /* powers up to it, and down to its negative; points that tell what is constant */

@@ -102,6 +102,7 @@ struct request {                    /* what the user asks for on the command lin
 	bool loads_left;            /* known loads are left to the scheme */
 	bool compensated;           /* two-word arithmetic */
 	bool single;                /* the target's numbers are floats */
+	bool real_given;            /* that was said: --real */
 	bool selftest;              /* NAME_selftest */
 	int rows;                   /* in a block of NAME_run; 0: as many as serve best, 1: no blocks */
 	bool batch;                 /* NAME_batch */
@@ -129,6 +130,12 @@ struct truncation {                 /* of a Taylor series */
 	bool adaptive;              /* steps as long as the tolerance lets them be; else each is h */
 	mpq_t tolerance;            /* of the last terms, relative to the largest of each state; 0: not looked at */
 	int substeps;               /* most within one h */
+};
+struct requirement {                /* a need, evaluated */
+	const struct need *need;
+	int output;
+	mpq_t bound, until;         /* in the output's unit, or as a part of its largest value; [s] */
+	mpq_t *most;                /* per input: of its size */
 };
 struct wanted_modes {               /* of the statement `modes`, or of --modes */
 	struct place at;            /* source NULL: all */
@@ -180,6 +187,10 @@ struct model {
 	bool declared_outputs;
 	/* per coordinate: its highest derivative as a row, where an output that is not linear reads it */
 	struct output **highest;
+	int requirements;           /* needs; the target of a budget, its instructions a step; 0: there is none */
+	struct requirement *requirement;
+	const struct target *target;
+	double budget;
 	const struct model *written; /* itself; of a reduced model: the one that it was made of */
 	struct reduction reduction;
 	struct wanted_modes modes;
@@ -450,6 +461,15 @@ double fastest_decay(const struct linear *system);          /* the largest -Re o
 
 bool is_linear(const struct building *b);                   /* with constant coefficients, loads in time excepted */
 void build_system(struct building *b);                      /* M, C, K, loads, inputs */
+
+/* ---- needs.c: how exact outputs have to be ---- */
+
+struct target {                     /* a processor: what it takes of instructions */
+	const char *name;
+	struct { double multiplication, addition, wave, step; } cost[2]; /* in double, in float */
+};
+/* of the model that is stepped: its requirements, its target; false: it was said what stands in the way */
+bool find_requirements(struct model *model);
 
 /* ---- reduce.c: the smallest model with the same outputs ---- */
 

@@ -151,11 +151,17 @@ static const char *character_note(const char *text)
 	return NULL;
 }
 
-static void lex_operator(struct token *token, const char *text)
+static void lex_operator(struct token *token, const char *text, bool needs)
 {
 	static const char *const operators[] = {
 		"==", "!=", "<=", ">=", "+", "-", "*", "/", "^", "(", ")", "[", "]", ",", ";", "=", "<", ">", "?", ":"
 	};
+	if (needs && (text[0] == '%' || text[0] == '|')) {
+		token->kind = TOKEN_OPERATOR;
+		token->length = 1;
+		token->op[0] = text[0];
+		return;
+	}
 	for (size_t i = 0; i < sizeof operators / sizeof *operators; i++)
 		if (strncmp(text, operators[i], strlen(operators[i])) == 0) {
 			token->kind = TOKEN_OPERATOR;
@@ -196,7 +202,7 @@ struct token lex_next(struct lexer *lexer)
 	} else if (*text == '"') {
 		lex_string(&token, text);
 	} else {
-		lex_operator(&token, text);
+		lex_operator(&token, text, lexer->needs);
 	}
 	lexer->position += token.length;
 	return token;

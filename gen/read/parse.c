@@ -1048,6 +1048,80 @@ static void read_tunable(struct parser *p)
 	expect_end(p);
 }
 
+/* ---- how exact outputs have to be, and what a step may cost ---- */
+
+/* An output as it is named, primes and component included */
+static const char *read_output_name(struct parser *p)
+{
+	if (p->token.kind != TOKEN_NAME || is_reserved(p->token.name))
+		unexpected(p, "the name of an output");
+	struct token name = take(p);
+	int component = read_component(p, &name.primes, false);
+	return component ? format("%s[%d]%.*s", name.name, component, name.primes, "''")
+			 : format("%s%.*s", name.name, name.primes, "''");
+}
+
+/* | NAME | <= expression */
+static struct need_input read_need_input(struct parser *p)
+{
+	expect_op(p, "|", "'|': the bound of an input, as in for |u| <= 3");
+	if (p->token.kind != TOKEN_NAME || p->token.primes > 0)
+		unexpected(p, "the name of an input");
+	struct token name = take(p);
+	struct need_input input = { .at = name.at, .name = name.name };
+	expect_op(p, "|", "'|'");
+	expect_op(p, "<=", "'<='");
+	input.most = read_expression(p);
+	return input;
+}
+
+/* need: need output within expression [ % ] until expression [ for |NAME| <= expression { , ... } ] */
+static void read_need(struct parser *p)
+{
+	struct need need = { .at = last_token(p, 4), .output_at = p->token.at };
+	p->lexer.needs = true;
+	need.output = read_output_name(p);
+	expect_word(p, "within");
+	need.bound = read_expression(p);
+	need.percent = take_op(p, "%");
+	expect_word(p, "until");
+	need.until = read_expression(p);
+	if (p->token.kind != TOKEN_END) {
+		expect_word(p, "for");
+		do {
+			struct need_input input = read_need_input(p);
+			for (int i = 0; i < need.inputs; i++)
+				if (strcmp(need.input[i].name, input.name) == 0)
+					error(input.at, NULL, "'%s' is bounded already", input.name);
+			ENLARGE(need.input, (size_t)need.inputs + 1);
+			need.input[need.inputs++] = input;
+		} while (take_op(p, ","));
+	}
+	expect_end(p);
+	ENLARGE(p->own->need, (size_t)p->own->needs + 1);
+	p->own->need[p->own->needs++] = need;
+}
+
+/* budget: budget expression instructions on TARGET; a target has hyphens in its name */
+static void read_budget(struct parser *p)
+{
+	struct budget *budget = &p->own->budget;
+	struct place at = last_token(p, 6);
+	if (budget->instructions)
+		error(at, NULL, "the budget is given already");
+	struct node *instructions = read_expression(p);
+	expect_word(p, "instructions");
+	expect_word(p, "on");
+	if (p->token.kind != TOKEN_NAME || p->token.primes > 0)
+		unexpected(p, "a target: cortex-m4 or cortex-m0");
+	*budget = (struct budget){ at, instructions, p->token };
+	size_t from = p->token.at.offset;
+	while (p->token.kind != TOKEN_END)
+		take(p);
+	budget->target.name = text_between(budget->target.at, p->end);
+	budget->target.length = p->end.offset - from;
+}
+
 /* ---- sketches ---- */
 
 static struct node *read_coordinate(struct parser *p, bool ground)
@@ -1113,11 +1187,12 @@ static const struct statement {
 	{ "let", read_let }, { "output", read_output }, { "step", read_step }, { "scheme", read_scheme },
 	{ "input", read_input }, { "matrix", read_matrix_statement }, { "mass", read_mass }, { "spring", read_spring },
 	{ "damper", read_damper }, { "force", read_force }, { "operator", read_operator }, { "tunable", read_tunable },
-	{ "tolerance", read_tolerance }, { "substeps", read_substeps }, { "modes", read_modes }, { "use", read_part }
+	{ "tolerance", read_tolerance }, { "substeps", read_substeps }, { "modes", read_modes }, { "use", read_part },
+	{ "need", read_need }, { "budget", read_budget }
 };
 
-/* tolerance, substeps, modes and use may be names of a spec's own: in an equation an operator or a prime follows; a
- * sign is that of a number where the line has no =; an = is no equation where there is no such name. */
+/* tolerance, substeps, modes, use, need and budget may be names of a spec's own: in an equation an operator or a prime
+ * follows; a sign is that of a number where the line has no =; an = is no equation where there is no such name. */
 static bool opens_statement(const struct parser *p, const struct statement *statement, struct token token)
 {
 	const char *next = token.at.source->text + token.at.offset + token.length;
@@ -1291,7 +1366,7 @@ void parse_statements(struct spec *spec, struct spec *own, struct scene_part *pa
 	while (position < source->length) {
 		size_t unclosed, from = position;
 		struct parser p = { .spec = spec, .own = own, .part = part };
-		p.lexer = (struct lexer){ source, from, lex_statement_end(source, from, &unclosed), spec->uses };
+		p.lexer = (struct lexer){ source, from, lex_statement_end(source, from, &unclosed), spec->uses, false };
 		position = p.lexer.end + 1;
 		for (size_t i = from; strchr(" \t\r\f\v", source->text[i]) && i < p.lexer.end;)
 			from = ++i;
@@ -1344,7 +1419,7 @@ static void read_argument(void *context)
 struct node *parse_argument(struct spec *spec, const struct source *source, size_t from)
 {
 	struct argument argument = { .parser = { .spec = spec, .own = spec } };
-	argument.parser.lexer = (struct lexer){ source, from, source->length, spec->uses };
+	argument.parser.lexer = (struct lexer){ source, from, source->length, spec->uses, false };
 	statement_guard(read_argument, &argument);
 	return argument.value;
 }

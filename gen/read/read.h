@@ -20,6 +20,7 @@ struct lexer {
 	const struct source *source;
 	size_t position, end;       /* a statement: line ends inside brackets are white space */
 	bool points;                /* names may have some: front.body */
+	bool needs;                 /* of a need: % and | are operators too */
 };
 /* Where the statement that starts at `from` ends: the line end outside brackets. `unclosed` receives the offset of a
  * bracket that no later text closes (the statement is then its line), else SIZE_MAX. */
@@ -146,6 +147,24 @@ struct scene_part {                       /* of a scene: a spec in it, as often 
 	int bindings;
 	struct binding *binding;
 };
+struct need_input {                 /* of a need: |NAME| <= most */
+	struct place at;
+	const char *name;
+	struct node *most;
+};
+struct need {                       /* need OUTPUT within BOUND [%] until END [for |NAME| <= MOST, ...] */
+	struct place at, output_at; /* of the word; of the output's name */
+	const char *output;         /* as outputs are named: x1, q[3]' */
+	struct node *bound, *until;
+	bool percent;               /* of the output's largest value */
+	int inputs;
+	struct need_input *input;
+};
+struct budget {                     /* budget N instructions on TARGET */
+	struct place at;
+	struct node *instructions;  /* NULL: there is none */
+	struct token target;
+};
 struct spec {                       /* what the text says, names resolved, nothing evaluated */
 	const struct source *source;
 	const char *name;
@@ -182,6 +201,9 @@ struct spec {                       /* what the text says, names resolved, nothi
 	struct fixed *fixed;
 	int tunables;
 	struct tunable *tunable;
+	int needs;
+	struct need *need;
+	struct budget budget;
 	struct mode_list modes;
 	struct place end;
 };

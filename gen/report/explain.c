@@ -468,6 +468,8 @@ void explain_person(FILE *to, const struct step *step)
 	if (model->reduction.irreducible)
 		fputs("Nothing to reduce: every state is seen by an output.\n", to);
 	person_step(to, step);
+	if (step->choice)
+		person_needs(to, step);
 }
 
 /* ---- JSON ---- */
@@ -814,6 +816,8 @@ void explain_json(FILE *to, const struct step *step)
 	if (step->rounding.known)
 		fprintf(to, "  \"rounding\": {\"steps\": %d, \"relative\": %.17g, \"state\": \"%s\"},\n",
 			step->rounding.steps, step->rounding.relative, model->state_name[step->rounding.state]);
+	if (step->choice)
+		json_needs(to, step);
 	json_cost(to, step);
 	fputs("}\n", to);
 }

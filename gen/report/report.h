@@ -29,6 +29,15 @@ void person_normal(FILE *to, const struct step *step);
 void json_normal(FILE *to, const struct step *step);         /* a member of an object */
 void program_normal(FILE *to, const struct step *step);
 
+/* ---- needs.c: what was chosen for needs, and from what ---- */
+
+const char *alternative_text(const struct alternative *a);  /* float, delta */
+const char *need_text(const struct requirement *r);         /* as written */
+const char *certified_text(const struct alternative *a, int i); /* of a requirement: the bound and its parts */
+const char *margin_text(const struct step *step, int i);    /* of the one taken, with the margin */
+void person_needs(FILE *to, const struct step *step);
+void json_needs(FILE *to, const struct step *step);          /* members of an object */
+
 /* ---- shortened.c: a model of some modes of another ---- */
 
 const char *mode_numbers(const struct shortening *s, bool kept); /* of those that are kept, or of the others: 1-4, 6 */

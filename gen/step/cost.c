@@ -183,6 +183,46 @@ static void cost_load(struct cost *cost, const struct step *step, int l, bool tu
 	cost->additions += c.additions;
 }
 
+/* Of the loads whose functions a step evaluates, in the mean over the steps to an anchor */
+static int waves_of(const struct step *step)
+{
+	const struct linear *system = &step->branch->system;
+	int waves = 0;
+	for (int l = 0, column = 0; l < system->loads; column += system->load[l++].columns)
+		waves += oscillates(system->load[l].wave) && is_used(step->program, &system->load[l], column);
+	return waves;
+}
+
+double cost_of_step(const struct step *step, const struct target *target)
+{
+	const struct model *model = step->model;
+	const struct program *program = step->program;
+	const bool single = model->asked.single;
+	const int anchor = step->anchors ? step->anchors->steps : 1;
+	struct cost cost = { program->multiplications, program->additions, 0 };
+	bool *reads = ARRAY(bool, (size_t)step->branch->system.loads);
+	if (step->forced) {
+		cost.multiplications += step->forced->multiplications;
+		cost.additions += step->forced->additions;
+	}
+	for (int i = 0; i < model->outputs && model->declared_outputs && !step->modal; i++)
+		if (!model->output[i].left && !model->output[i].peak)
+			cost_output(&cost, step, &model->output[i], reads);
+	if (step->modal)
+		cost.multiplications += model->outputs * step->modal->states;
+	if (step->modal)
+		cost.additions += model->outputs * step->modal->states;
+	double multiplications = cost.multiplications, additions = cost.additions;
+	if (step->anchors) {
+		multiplications += (double)program->wave_multiplications / anchor;
+		additions += (double)program->wave_additions / anchor;
+	}
+	if (!target)
+		return (multiplications + additions) * (single ? 1 : 2);
+	return target->cost[single].multiplication * multiplications + target->cost[single].addition * additions +
+	       target->cost[single].wave * waves_of(step) / anchor + target->cost[single].step;
+}
+
 void count_peaks(struct step *step)
 {
 	const struct model *model = step->model;

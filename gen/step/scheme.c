@@ -234,6 +234,18 @@ static void build_normal_step(struct step *step)
 	count_normal(step, step->program);
 }
 
+/* Where a model is stepped in several ways, that of the equations as written is made once. */
+static struct resolvent *resolvent_of_written(const struct model *model)
+{
+	static const struct model *last;
+	static struct resolvent *made;
+	const struct model *written = model->shortened ? model : model->written;
+	if (written != last || !made)
+		made = resolvent_of(&written->system);
+	last = written;
+	return made;
+}
+
 static void build(void *context)
 {
 	static void (*const build_kind[KINDS])(struct step *) = {
@@ -247,7 +259,7 @@ static void build(void *context)
 	const struct model *model = step->model;
 	step->kind = kind_of_step(model);
 	step->form = FORM_DIRECT;
-	step->written = resolvent_of(&(model->shortened ? model : model->written)->system);
+	step->written = resolvent_of_written(model);
 	check_pole_size(model, step->written);
 	check_holds(step);
 	take_operators(step);

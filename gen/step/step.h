@@ -290,6 +290,7 @@ struct step {                       /* everything that is emitted for one model 
 	struct forced *forced;      /* NAME keeps the state less this; NULL: as it is */
 	struct rest *rest;          /* what comes to rest where it is all but nothing; NULL: no part does */
 	struct rounding rounding;
+	struct choice *choice;      /* what it was chosen from; NULL: there are no needs */
 	mpfr_t growth;              /* pl: 1/s, largest real part of the modified equation's poles (report only) */
 	struct layout layout;       /* of x */
 	struct series series;
@@ -467,6 +468,8 @@ void count_loads(struct program *program, const struct step *step);
 void count_turned_loads(struct program *program, const struct step *step);
 /* of a step of regions: its sums, and the load states of all of them */
 void count_regions(struct step *step, int multiplications, int additions);
+/* a step, and its outputs where they are linear: instructions; without a target operations, those of double twice */
+double cost_of_step(const struct step *step, const struct target *target);
 void count_peaks(struct step *step);                        /* after its program and layout */
 int anchor_numbers(const struct step *step);                /* of the table for steps between anchors */
 int row_numbers(const struct step *step);                   /* of the tables of a block of rows */
@@ -476,6 +479,38 @@ int row_numbers(const struct step *step);                   /* of the tables of 
 /* its rounding; its forced part, where the bound is the better for it */
 void plan_forced(struct step *step);
 const char *rounding_text(const struct step *step);
+
+/* ---- rounding.c: how far an output of the emitted program may be off ---- */
+
+struct certificate {                /* of one requirement, in the output's unit */
+	bool known;
+	const char *why;            /* it is not */
+	double rounding, dropped;   /* at every sample up to the end: bounds of what rounds, of what modes are missed */
+	double needed;
+};
+/* `exact`: the same step with the numbers of double */
+struct certificate certificate_of(const struct step *step, const struct step *exact, const struct requirement *r);
+double needed_error(const struct requirement *r, double largest);       /* of the output */
+/* what it surely reaches; `exact` in double; 0: it is not known */
+double largest_of_output(const struct step *exact, const struct requirement *r);
+/* [modes + 1]: what the output loses at most where the first so many of the order are kept. HUGE_VAL: not known.
+ * To be called with the target double */
+double *losses_of(struct modes *modes, const int *order, bool statics, const struct requirement *r);
+
+struct alternative {                /* one way to step a model with needs */
+	bool single, compensated;
+	enum step_form form;
+	struct model *model;        /* that is stepped: of all modes, or of some */
+	const char *refused;        /* why there is no such step; NULL: there is */
+	double cost;                /* of a step and its outputs, as cost_of_step counts */
+	const char *why;            /* its error is not known; NULL: it is */
+	double excess;              /* the largest of error over need; at most 1: all needs are met */
+	struct certificate *certificate; /* per requirement */
+};
+struct choice {
+	int alternatives, taken;
+	struct alternative *alternative; /* those that there are come first, the cheapest before others */
+};
 
 /* ---- anchors.c: functions of loads every so many steps, tables between ---- */
 

@@ -1,0 +1,411 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What a spec with needs leaves open - float or double, two words, the form of the step, modes that are kept - is
+ * tried, and the cheapest that meets all needs is taken. What is written or asked for is kept.
+ *
+ * Modes are dropped from the least share on. What the outputs lose is known for each number of modes at once; the
+ * steps that are tried are those of the fewest modes that lose less than is needed, of one less, which shows what that
+ * would miss, and of a few more, which leave more of the need to rounding. Of many states only steps of modes are
+ * tried, where there are such. Where all modes are kept the states are those that were written. */
+#include "command.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+enum { MORE_MODES = 3 };            /* than the fewest that lose less than is needed */
+
+struct variant {                    /* a model to step: all modes, or some of them */
+	struct model *model;
+	double *dropped;            /* per requirement */
+	struct step *states, *modes; /* in double: the numbers of a step of states, of modes; NULL: there is none */
+};
+struct choosing {
+	struct model *written, *stepped;
+	const struct request *request;
+	struct choice *choice;
+	double *largest;            /* per requirement: what the exact output surely reaches */
+	struct variant *variant;
+	struct alternative *now;
+	struct step *step;
+};
+
+/* ---- one alternative ---- */
+
+static void ask(struct model *model, const struct alternative *a)
+{
+	model->asked.single = a->single;
+	model->asked.compensated = a->compensated;
+	model->asked.form = a->form;
+	model->asked.form_at = (struct place){ source_argument(step_form_name(a->form)), 0 };
+}
+
+static void build_now(void *context)
+{
+	struct choosing *c = context;
+	ask(c->written, c->now);
+	ask(c->now->model, c->now);
+	(c->now->single ? target_float : target_double)();
+	c->step = step_build(c->now->model);
+	if (!c->step)
+		abandon();
+}
+
+/* Two words take these forms only. */
+static bool stands_alone(const struct alternative *a)
+{
+	return !a->compensated || a->form == FORM_DELTA || a->form == FORM_KICK_DRIFT_KICK;
+}
+
+static void certify(struct choosing *c)
+{
+	struct alternative *a = c->now;
+	const struct step *exact = c->step->modal ? c->variant->modes : c->variant->states;
+	a->certificate = ARRAY(struct certificate, (size_t)c->stepped->requirements);
+	a->cost = cost_of_step(c->step, c->stepped->target);
+	for (int i = 0; i < c->stepped->requirements; i++) {
+		const struct requirement *r = &c->stepped->requirement[i];
+		struct certificate *found = &a->certificate[i];
+		*found = exact ? certificate_of(c->step, exact, r)
+			       : (struct certificate){ .why = "the numbers of its step are not known in double" };
+		found->dropped = c->variant->dropped[i];
+		found->needed = needed_error(r, c->largest[i]);
+		a->why = a->why ? a->why : found->why;
+		if (found->known)
+			a->excess = fmax(a->excess, (found->rounding + found->dropped) / found->needed);
+	}
+}
+
+static void try_one(struct choosing *c, bool single, bool compensated, enum step_form form)
+{
+	struct alternative *a = c->now = NEW(struct alternative);
+	*a = (struct alternative){ .single = single, .compensated = compensated, .form = form,
+				   .model = c->variant->model };
+	if (!stands_alone(a))
+		return;
+	a->refused = refusal_of(build_now, c);
+	if (!a->refused)
+		certify(c);
+	else if (a->model->shortened)
+		return;                 /* as of all modes */
+	ENLARGE(c->choice->alternative, (size_t)c->choice->alternatives + 1);
+	c->choice->alternative[c->choice->alternatives++] = *a;
+}
+
+/* ---- all of one model ---- */
+
+static struct step *built(struct choosing *c, struct model *model, enum step_form form)
+{
+	c->now = NEW(struct alternative);
+	c->now->form = form;
+	c->now->model = model;
+	c->step = NULL;
+	return refusal_of(build_now, c) ? NULL : c->step;
+}
+
+static void try_form(struct choosing *c, enum step_form form)
+{
+	const struct request *asked = c->request;
+	for (int precision = 0; precision < 2; precision++) {
+		const bool single = precision == 0;
+		if (asked->real_given && asked->single != single)
+			continue;
+		if (!asked->compensated)
+			try_one(c, single, false, form);
+		try_one(c, single, true, form);
+	}
+}
+
+/* Its steps of states cost so much more than those of modes that only these are tried. */
+static bool is_large(const struct model *model)
+{
+	return model->system.states > LIMIT_UNROLLED_STATES && !model->shortened;
+}
+
+static void try_forms(struct choosing *c)
+{
+	static const enum step_form forms[] = { FORM_DIRECT, FORM_DELTA, FORM_KICK_DRIFT_KICK, FORM_MODAL };
+	const struct variant *v = c->variant;
+	const bool asked = c->request->form != FORM_AUTO, modes = v->model->shortened;
+	for (size_t i = 0; i < sizeof forms / sizeof *forms; i++) {
+		const bool needless = forms[i] == FORM_MODAL ? modes : is_large(v->model) && v->modes;
+		if (asked ? c->request->form == forms[i] : !needless)
+			try_form(c, forms[i]);
+	}
+}
+
+static struct variant *variant_of(struct choosing *c, struct model *model)
+{
+	struct variant *v = NEW(struct variant);
+	v->model = model;
+	v->dropped = ARRAY(double, (size_t)c->stepped->requirements);
+	if (!model->shortened || c->request->form == FORM_MODAL)
+		v->modes = built(c, model, FORM_MODAL);
+	if (!is_large(model) || !v->modes || c->request->form != FORM_AUTO)
+		v->states = built(c, model, FORM_DIRECT);
+	return v;
+}
+
+/* ---- fewer modes ---- */
+
+struct dropping {
+	struct modes *modes;
+	const int *order;
+	bool statics;
+	double **lost;              /* per requirement, per number of modes kept */
+};
+
+static bool loses_less(const struct choosing *c, const struct dropping *d, int count)
+{
+	bool less = true;
+	for (int i = 0; i < c->stepped->requirements; i++)
+		less = less && d->lost[i][count] <= needed_error(&c->stepped->requirement[i], c->largest[i]);
+	return less;
+}
+
+static void try_modes(struct choosing *c, const struct dropping *d, int count)
+{
+	bool *kept = ARRAY(bool, (size_t)d->modes->count);
+	for (int i = 0; i < count; i++)
+		kept[d->order[i]] = true;
+	target_double();
+	struct model *model = modes_kept(d->modes, kept, d->statics);
+	if (!model)
+		return;
+	c->variant = variant_of(c, model);
+	for (int i = 0; i < c->stepped->requirements; i++)
+		c->variant->dropped[i] = d->lost[i][count];
+	try_forms(c);
+}
+
+static void drop_modes(struct choosing *c, struct dropping *d)
+{
+	const int requirements = c->stepped->requirements, all = d->modes->count;
+	target_double();
+	d->lost = ARRAY(double *, (size_t)requirements);
+	for (int i = 0; i < requirements; i++)
+		d->lost[i] = losses_of(d->modes, d->order, d->statics, &c->stepped->requirement[i]);
+	int fewest = all;
+	while (fewest > 1 && loses_less(c, d, fewest - 1))
+		fewest--;
+	for (int count = fewest > 1 ? fewest - 1 : fewest; count <= fewest + MORE_MODES && count < all; count++)
+		try_modes(c, d, count);
+}
+
+/* Where loads or inputs act, what is dropped may follow them at once. */
+static bool has_statics(const struct linear *system)
+{
+	bool acts = system->inputs > 0;
+	for (int l = 0; l < system->loads; l++)
+		acts = acts || load_acts(system, &system->load[l]);
+	return acts;
+}
+
+static void try_fewer(struct choosing *c)
+{
+	const char *why;
+	struct model *whole = NEW(struct model);
+	*whole = *c->written;           /* whose coordinates are the written ones */
+	if (c->written->written == c->written)
+		whole->written = whole;
+	ask(whole, &(struct alternative){ .form = FORM_AUTO });
+	whole->requirements = c->stepped->requirements;
+	whole->requirement = c->stepped->requirement;
+	whole->target = c->stepped->target;
+	whole->budget = c->stepped->budget;
+	target_double();
+	struct modes *modes = whole->declared_outputs ? modes_of(whole, &why) : NULL;
+	if (!modes || modes->count < 2)
+		return;
+	for (int statics = 0; statics <= has_statics(&whole->system); statics++)
+		drop_modes(c, &(struct dropping){ .modes = modes, .order = modes_by_share(modes),
+						  .statics = statics });
+}
+
+/* What the modes that are written to be dropped lose */
+static void count_written(struct choosing *c)
+{
+	const struct shortening *s = c->written->shortened;
+	struct modes *modes = (struct modes *)(uintptr_t)s->modes;
+	int *order = ARRAY(int, (size_t)modes->count), kept = 0;
+	for (int which = 1; which >= 0; which--)
+		for (int i = 0; i < modes->count; i++)
+			if (s->kept[i] == which)
+				order[kept++] = i;
+	kept = 0;
+	for (int i = 0; i < modes->count; i++)
+		kept += s->kept[i];
+	target_double();
+	for (int i = 0; i < c->stepped->requirements && kept < modes->count; i++)
+		c->variant->dropped[i] =
+			losses_of(modes, order, s->statics, &c->stepped->requirement[i])[kept];
+}
+
+/* ---- all of them ---- */
+
+static int by_cost(const void *left, const void *right)
+{
+	const struct alternative *a = left, *b = right;
+	if (!a->refused != !b->refused)
+		return a->refused ? 1 : -1;
+	if (a->cost != b->cost)
+		return a->cost < b->cost ? -1 : 1;
+	if (a->excess != b->excess)
+		return a->excess < b->excess ? -1 : 1;
+	if (a->single != b->single)
+		return a->single ? -1 : 1;
+	if (a->compensated != b->compensated)
+		return a->compensated ? 1 : -1;
+	return (int)a->form - (int)b->form;
+}
+
+static void try_all(struct choosing *c)
+{
+	c->choice = NEW(struct choice);
+	c->variant = variant_of(c, c->stepped);
+	const struct model *full = c->written->shortened ? c->written->shortened->modes->model : c->stepped;
+	struct step *exact = c->variant->states ? c->variant->states : c->variant->modes;
+	if (full != c->stepped) {
+		struct model *whole = NEW(struct model);
+		*whole = *full;
+		exact = built(c, whole, FORM_DIRECT);
+	}
+	c->largest = ARRAY(double, (size_t)c->stepped->requirements);
+	for (int i = 0; i < c->stepped->requirements && exact; i++)
+		c->largest[i] = largest_of_output(exact, &c->stepped->requirement[i]);
+	if (c->written->shortened)
+		count_written(c);
+	try_forms(c);
+	if (!c->written->shortened)
+		try_fewer(c);
+	qsort(c->choice->alternative, (size_t)c->choice->alternatives, sizeof *c->choice->alternative, by_cost);
+}
+
+static bool meets(const struct alternative *a)
+{
+	return !a->refused && !a->why && a->excess <= 1;
+}
+
+/* ---- what cannot be met ---- */
+
+/* The requirement that it is furthest from */
+static int worst_requirement(const struct choosing *c, const struct alternative *a)
+{
+	int worst = 0;
+	double most = 0;
+	for (int i = 0; i < c->stepped->requirements; i++) {
+		const struct certificate *found = &a->certificate[i];
+		const double excess = (found->rounding + found->dropped) / found->needed;
+		worst = excess > most ? i : worst;
+		most = fmax(most, excess);
+	}
+	return worst;
+}
+
+/* Of those that are known, the most exact */
+static const struct alternative *most_exact(const struct choice *choice, double most)
+{
+	const struct alternative *best = NULL;
+	for (int i = 0; i < choice->alternatives; i++) {
+		const struct alternative *a = &choice->alternative[i];
+		if (!a->refused && !a->why && a->cost <= most && (!best || a->excess < best->excess))
+			best = a;
+	}
+	return best;
+}
+
+/* The largest real part of a pole [1/s] */
+static double growth_of(const struct step *step)
+{
+	struct pole_report *pole;
+	double growth = -HUGE_VAL;
+	const int poles = poles_of(step->model, step->written, &pole);
+	for (int i = 0; i < poles; i++)
+		growth = fmax(growth, mpfr_get_d(pole[i].re, MPFR_RNDN));
+	return growth;
+}
+
+/* What stands in the way, as far as something asked for does */
+static const char *what_would_do(struct choosing *c)
+{
+	const struct request *asked = c->request;
+	struct request open = *asked;
+	const struct step *known = c->variant->states ? c->variant->states : c->variant->modes;
+	const double growth = known ? growth_of(known) : 0;
+	if (growth > 1e-9)
+		return format("the model is unstable: what rounds grows as e^{%.3g t} with it", growth);
+	if (!(asked->real_given && asked->single) && asked->form == FORM_AUTO && !asked->compensated)
+		return NULL;
+	open.real_given = open.compensated = false;
+	open.form = FORM_AUTO;
+	c->request = &open;
+	try_all(c);
+	const struct alternative *best = most_exact(c->choice, HUGE_VAL);
+	c->request = asked;
+	return best && best->excess <= 1 ? format("without what is asked for on the command line it can: %s",
+						  certified_text(best, worst_requirement(c, best)))
+					 : NULL;
+}
+
+static void tell_unmet(struct choosing *c)
+{
+	const struct choice *choice = c->choice;
+	const struct alternative *best = most_exact(choice, HUGE_VAL), *first = choice->alternative;
+	const char *note = what_would_do(c);
+	if (!best) {
+		say_error(c->stepped->requirement[0].need->at, note, "the need cannot be certified: %s",
+			  first->refused ? first->refused : first->why);
+		return;
+	}
+	const int i = worst_requirement(c, best);
+	say_error(c->stepped->requirement[i].need->at, note, "the need cannot be met: at best %s, and %.2g is needed",
+		  certified_text(best, i), best->certificate[i].needed);
+}
+
+static void tell_dear(const struct choosing *c, const struct alternative *taken)
+{
+	const struct alternative *best = most_exact(c->choice, c->stepped->budget);
+	const char *fits = best ? format("%s takes %.0f, and misses the need by a factor of %.3g",
+					 alternative_text(best), best->cost, best->excess)
+				: "nothing that there is takes so few";
+	say_error(c->stepped->spec->budget.at, fits,
+		  "over budget: the cheapest that meets the need takes some %.0f instructions (%s), %.0f more than "
+		  "%.0f", taken->cost, alternative_text(taken), taken->cost - c->stepped->budget, c->stepped->budget);
+}
+
+/* ---- the choice ---- */
+
+static bool find_taken(struct choosing *c)
+{
+	struct choice *choice = c->choice;
+	choice->taken = -1;
+	for (int i = 0; i < choice->alternatives && choice->taken < 0; i++)
+		if (meets(&choice->alternative[i]))
+			choice->taken = i;
+	if (choice->taken < 0) {
+		tell_unmet(c);
+		return false;
+	}
+	const struct alternative *taken = &choice->alternative[choice->taken];
+	if (c->stepped->target && taken->cost > c->stepped->budget) {
+		tell_dear(c, taken);
+		return false;
+	}
+	return true;
+}
+
+struct step *choose_step(struct model *written, struct model *stepped, struct request *request)
+{
+	struct choosing c = { .written = written, .stepped = stepped, .request = request };
+	if (!find_requirements(stepped))
+		return NULL;
+	try_all(&c);
+	if (!find_taken(&c))
+		return NULL;
+	c.now = &c.choice->alternative[c.choice->taken];
+	request->single = c.now->single;
+	request->compensated = c.now->compensated;
+	request->form = c.now->form;
+	if (!statement_guard(build_now, &c))
+		return NULL;
+	c.step->choice = c.choice;
+	return c.step;
+}

@@ -1,0 +1,169 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* How exact outputs have to be, until when, for which inputs; what a step may cost on which target. */
+#include "model/model.h"
+
+#include <string.h>
+
+/* Fitted to the instructions of doc/firmware.md, -O2: of each operation in soft float; where there is hardware, of the
+ * whole step, within 10 % */
+static const struct target targets[] = {
+	{ "cortex-m4", { { 58, 78, 0, 0 }, { 1.5, 1.5, 110, 12 } } },
+	{ "cortex-m0", { { 305, 147, 0, 0 }, { 126, 80, 0, 0 } } }
+};
+enum { TARGETS = sizeof targets / sizeof *targets };
+
+struct finding {
+	struct model *model;
+	const struct need *need;
+	struct requirement *found;
+};
+
+static void constant(const struct node *node, mpq_ptr value)
+{
+	struct collector collector = { .scheme = "exact" };
+	collect_constant(&collector, (struct node *)(uintptr_t)node, value);
+}
+
+static const char *names_of_outputs(const struct model *model)
+{
+	enum { SHOWN = 8 };
+	const char *list = "";
+	for (int i = 0; i < model->outputs && i < SHOWN; i++)
+		list = format("%s%s%s", list, i ? ", " : "", model->output[i].name);
+	return format("outputs: %s%s", list, model->outputs > SHOWN ? ", ..." : "");
+}
+
+static int output_named(const struct model *model, const char *name)
+{
+	for (int i = 0; i < model->outputs; i++)
+		if (strcmp(model->output[i].name, name) == 0)
+			return i;
+	return -1;
+}
+
+/* What is certified so far: an output that is linear, of a linear model */
+static void check_certified(const struct finding *f)
+{
+	const struct model *model = f->model;
+	struct place at = f->need->at;
+	if (model->switching)
+		error(at, NULL, "a need is certified for linear models: the equations are piecewise linear");
+	if (model->obstacle || model->channels > 0)
+		error(at, NULL, "a need is certified for linear models: scheme %s approximates what it leaves over",
+		      scheme_name(model->scheme));
+	if (model->scheme != SCHEME_EXACT)
+		error(at, "without it the step is exact, and its rounding is certified",
+		      "a need is certified for scheme exact, and scheme %s is asked for", scheme_name(model->scheme));
+	if (model->relative && !model->declared_outputs)
+		error(at, format("output %s", model->output[0].name),
+		      "a need is of a declared output where coordinates may move as a whole");
+	if (model->tuning)
+		error(at, "a need holds for one model: without tunable, or with -D for other values",
+		      "the model has tunable params: what their values do to the error is not bounded");
+	if (model->system.segments > 1)
+		error(at, "loads that change their formula can be written as inputs",
+		      "a need is not certified where loads change their formula in time");
+}
+
+static void find_output(const struct finding *f)
+{
+	const struct model *model = f->model;
+	const struct need *need = f->need;
+	f->found->output = output_named(model, need->output);
+	if (f->found->output < 0)
+		error(need->output_at, names_of_outputs(model), "'%s' is not an output", need->output);
+	const struct output *output = &model->output[f->found->output];
+	if (output->peak)
+		error(need->output_at, "a need on what it is the peak of holds for every sample of it, the largest too",
+		      "'%s' is a peak: needs are of outputs that follow the state", need->output);
+	if (output->left || !output->state)
+		error(need->output_at, NULL, "'%s' is not linear in states, loads and inputs: its error is not bounded",
+		      need->output);
+}
+
+static void find_inputs(const struct finding *f)
+{
+	const struct linear *system = &f->model->system;
+	f->found->most = rationals((size_t)system->inputs);
+	bool *bounded = ARRAY(bool, (size_t)system->inputs);
+	for (int k = 0; k < f->need->inputs; k++) {
+		const struct need_input *given = &f->need->input[k];
+		int i = 0;
+		while (i < system->inputs && strcmp(system->input[i].name, given->name) != 0)
+			i++;
+		if (i == system->inputs)
+			error(given->at, system->inputs ? NULL : "the model has none", "'%s' is not an input",
+			      given->name);
+		constant(given->most, f->found->most[i]);
+		if (mpq_sgn(f->found->most[i]) <= 0)
+			error(given->most->start, NULL, "the bound of an input is above 0, found %s",
+			      readable_text(f->found->most[i]));
+		bounded[i] = true;
+	}
+	for (int i = 0; i < system->inputs; i++)
+		if (!bounded[i])
+			error(f->need->at, format("need %s within ... until ... for |%s| <= ...", f->need->output,
+						  system->input[i].name),
+			      "nothing says how large the input '%s' may be", system->input[i].name);
+}
+
+static void find_requirement(void *context)
+{
+	const struct finding *f = context;
+	struct requirement *r = f->found;
+	mpq_inits(r->bound, r->until, NULL);
+	r->need = f->need;
+	check_certified(f);
+	find_output(f);
+	constant(f->need->bound, r->bound);
+	if (mpq_sgn(r->bound) <= 0)
+		error(f->need->bound->start, NULL, "a need is above 0, found %s", readable_text(r->bound));
+	if (f->need->percent) {
+		mpq_t hundred;
+		mpq_init(hundred);
+		mpq_set_ui(hundred, 100, 1);
+		mpq_div(r->bound, r->bound, hundred);
+		mpq_clear(hundred);
+	}
+	constant(f->need->until, r->until);
+	if (mpq_sgn(r->until) < 0)
+		error(f->need->until->start, NULL, "a need ends at 0 or later, found %s", readable_text(r->until));
+	find_inputs(f);
+}
+
+static void find_budget(void *context)
+{
+	struct model *model = context;
+	const struct budget *budget = &model->spec->budget;
+	mpq_t instructions;
+	mpq_init(instructions);
+	if (model->requirements == 0)
+		error(budget->at, "need OUTPUT within BOUND until END",
+		      "a budget stands beside a need: there is none");
+	for (int i = 0; i < TARGETS; i++)
+		if (strcmp(budget->target.name, targets[i].name) == 0)
+			model->target = &targets[i];
+	if (!model->target)
+		error(budget->target.at, "targets: cortex-m4, cortex-m0", "there is no target '%s'",
+		      budget->target.name);
+	constant(budget->instructions, instructions);
+	if (mpq_sgn(instructions) <= 0)
+		error(budget->instructions->start, NULL, "a budget is above 0, found %s", readable_text(instructions));
+	model->budget = nearest_double(instructions);
+	mpq_clear(instructions);
+}
+
+bool find_requirements(struct model *model)
+{
+	const struct spec *spec = model->spec;
+	bool good = true;
+	model->requirement = ARRAY(struct requirement, (size_t)spec->needs);
+	model->requirements = spec->needs;
+	for (int i = 0; i < spec->needs; i++) {
+		struct finding f = { model, &spec->need[i], &model->requirement[i] };
+		good = statement_guard(find_requirement, &f) && good;
+	}
+	if (spec->budget.instructions)
+		good = statement_guard(find_budget, model) && good;
+	return good;
+}

@@ -1,0 +1,151 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What was chosen for the needs of a spec, and from what: accuracy against cost. */
+#include "report/report.h"
+
+#include <string.h>
+
+/* modes 7-12 dropped, static gain kept; NULL: all are there */
+static const char *dropped_text(const struct alternative *a)
+{
+	const struct shortening *s = a->model->shortened;
+	const char *numbers = s ? mode_numbers(s, false) : "";
+	return *numbers ? format("modes %s dropped%s", numbers, s->statics ? ", static gain kept" : "") : NULL;
+}
+
+static const char *arithmetic_text(const struct alternative *a)
+{
+	return format("%s, %s%s", a->single ? "float" : "double", step_form_name(a->form),
+		      a->compensated ? ", two words" : "");
+}
+
+const char *alternative_text(const struct alternative *a)
+{
+	const char *dropped = dropped_text(a);
+	return format("%s%s%s", arithmetic_text(a), dropped ? "; " : "", dropped ? dropped : "");
+}
+
+const char *certified_text(const struct alternative *a, int i)
+{
+	const struct certificate *c = &a->certificate[i];
+	const char *dropped = dropped_text(a);
+	if (!dropped)
+		return format("certified %.2g (rounding: %s)", c->rounding, arithmetic_text(a));
+	return format("certified %.2g = %.2g (%s) + %.2g (%s)", c->rounding + c->dropped, c->dropped, dropped,
+		      c->rounding, arithmetic_text(a));
+}
+
+const char *need_text(const struct requirement *r)
+{
+	const struct need *need = r->need;
+	const char *text = format("%s within %s%s until %s", need->output,
+				  text_between(need->bound->start, need->bound->end), need->percent ? " %" : "",
+				  text_between(need->until->start, need->until->end));
+	for (int i = 0; i < need->inputs; i++)
+		text = format("%s%s |%s| <= %s", text, i ? "," : " for", need->input[i].name,
+			      text_between(need->input[i].most->start, need->input[i].most->end));
+	return text;
+}
+
+static const char *unit_of_cost(const struct model *model)
+{
+	return model->target ? format("instructions on %s", model->target->name)
+			     : "operations, those of double counted twice";
+}
+
+const char *margin_text(const struct step *step, int i)
+{
+	const struct alternative *a = &step->choice->alternative[step->choice->taken];
+	const struct certificate *c = &a->certificate[i];
+	return format("%s at every sample, a margin of %.3g", certified_text(a, i),
+		      c->needed / (c->rounding + c->dropped));
+}
+
+static void person_alternative(FILE *to, const struct step *step, int i)
+{
+	const struct alternative *a = &step->choice->alternative[i];
+	if (a->refused) {
+		fprintf(to, "              %s: there is none, %s\n", alternative_text(a), a->refused);
+		return;
+	}
+	fprintf(to, "    %c %7.0f  ", i == step->choice->taken ? '*' : ' ', a->cost);
+	if (a->why) {
+		fprintf(to, "%s: not certified, %s\n", alternative_text(a), a->why);
+		return;
+	}
+	for (int k = 0; k < step->model->requirements; k++)
+		fprintf(to, "%s%s", k ? ", " : "", certified_text(a, k) + strlen("certified "));
+	fprintf(to, a->excess > 1 ? "; misses by a factor of %.3g\n" : "; a margin of %.3g\n",
+		a->excess > 1 ? a->excess : 1 / a->excess);
+}
+
+/* More exact than all that is cheaper; of what there is not, the first with its reason */
+static bool is_shown(const struct choice *choice, int i)
+{
+	const struct alternative *a = &choice->alternative[i];
+	bool shown = true;
+	for (int k = 0; k < i && shown; k++) {
+		const struct alternative *b = &choice->alternative[k];
+		if (a->refused)
+			shown = !b->refused || strcmp(a->refused, b->refused) != 0;
+		else
+			shown = !a->why && (b->why || b->excess > a->excess);
+	}
+	return shown || i == choice->taken;
+}
+
+void person_needs(FILE *to, const struct step *step)
+{
+	const struct model *model = step->model;
+	const struct choice *choice = step->choice;
+	int left = 0;
+	fputs("\nNeeds:\n", to);
+	for (int i = 0; i < model->requirements; i++)
+		fprintf(to, "    %s: %s\n", need_text(&model->requirement[i]), margin_text(step, i));
+	fprintf(to, "Alternatives (* taken; %s, the outputs counted; bound of the error):\n", unit_of_cost(model));
+	for (int i = 0; i < choice->alternatives; i++)
+		if (is_shown(choice, i))
+			person_alternative(to, step, i);
+		else
+			left++;
+	if (left)
+		fprintf(to, "and %d more that are dearer than a more exact one, or that there are not.\n", left);
+}
+
+static const char *json_quoted(const char *text)
+{
+	const char *quoted = "";
+	for (; *text; text++)
+		quoted = format("%s%s%c", quoted, *text == '"' || *text == '\\' ? "\\" : "", *text);
+	return format("\"%s\"", quoted);
+}
+
+void json_needs(FILE *to, const struct step *step)
+{
+	const struct model *model = step->model;
+	fputs("  \"needs\": [", to);
+	for (int i = 0; i < model->requirements; i++)
+		fprintf(to, "%s%s", i ? ", " : "", json_quoted(need_text(&model->requirement[i])));
+	fputs("],\n  \"alternatives\": [", to);
+	for (int i = 0; i < step->choice->alternatives; i++) {
+		const struct alternative *a = &step->choice->alternative[i];
+		fprintf(to, "%s\n    {\"modes\": \"%s\", \"statics\": %s, \"real\": \"%s\", \"form\": \"%s\", "
+			"\"accuracy\": \"%s\", \"taken\": %s",
+			i ? "," : "", a->model->shortened ? mode_numbers(a->model->shortened, true) : "all",
+			a->model->shortened && a->model->shortened->statics ? "true" : "false",
+			a->single ? "float" : "double", step_form_name(a->form),
+			a->compensated ? "compensated" : "plain", i == step->choice->taken ? "true" : "false");
+		if (a->refused || a->why) {
+			fprintf(to, ", \"why\": %s}", json_quoted(a->refused ? a->refused : a->why));
+			continue;
+		}
+		fprintf(to, ", \"cost\": %.17g, \"excess\": %.17g, \"errors\": [", a->cost, a->excess);
+		for (int k = 0; k < model->requirements; k++)
+			fprintf(to,
+				"%s{\"certified\": %.17g, \"dropped\": %.17g, \"rounding\": %.17g, "
+				"\"needed\": %.17g}",
+				k ? ", " : "", a->certificate[k].rounding + a->certificate[k].dropped,
+				a->certificate[k].dropped, a->certificate[k].rounding, a->certificate[k].needed);
+		fputs("]}", to);
+	}
+	fputs("],\n", to);
+}
