@@ -208,7 +208,7 @@ static const char *whole_gain(const struct emitter *e, int state)
 	return format("%s, %s", *text ? text : "0.0", *late ? late : "0.0");
 }
 
-/* True where one of what is called so, with the number of a state, is not finite: its difference from itself is not 0 */
+/* Whether one of what is called so, with the number of a state, is not finite: its difference from itself is not 0 */
 static const char *is_not_finite(const struct emitter *e, const char *before, const char *after)
 {
 	const char *sum = "";

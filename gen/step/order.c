@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The order of a series whose steps are as long as the tolerance lets them be, where no order was asked for. That of the
+/* The order of a series whose steps are as long as the tolerance lets them be, where none was asked for. That of the
  * tolerance is best for what is cheap. A series of order P takes a number of multiplications that grows with P^2, for
  * a step that grows with tolerance^(1/(P-1)), its last but one term being at the tolerance; and where it is long it has
- * more instructions than a processor keeps decoded. Then a lower order is cheaper: by half where the equations have
+ * more instructions than a processor keeps decoded. Then a lower order is cheaper: by a third where the equations have
  * seven products, for the same error. */
 #include "step/step.h"
 
