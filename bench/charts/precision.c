@@ -56,7 +56,7 @@ static const struct charted models[] = {
 	{ "sdcsf", "1/100", 3000, 1000, true, 5, ORDINARY, false, false },
 	{ "scs_weak", "1/100", 3000, 1000, true, 0, ORDINARY, false, false },
 	{ "linear2dof", "1/5", 50, 50, true, 0, ORDINARY, false, false },
-	{ "tuned_floor", "1/100", 3000, 1000, true, 4 * M_PI, ORDINARY, false, false },
+	{ "tuned_floor", "1/100", 3000, 1000, true, 4 * M_PI, ORDINARY, false, true },
 };
 enum { MODELS = sizeof models / sizeof *models };
 
@@ -73,6 +73,8 @@ static const int parts_scheme_quick[][8] = { { 1, 8, 0 }, { 4, 64, 0 }, { 1, 8, 
 static const int spans[] = { 2, 3, 4, 5, 6, 8, 10, 15, 0 }, spans_quick[] = { 4, 0 };
 static const int parts_implicit_large[] = { 1, 2, 4, 16, 0 }, parts_exact[] = { 1, 4, 0 },
 	parts_exact_quick[] = { 1, 0 };
+/* Of a series of fixed order on a smooth model: between the others, as those that are compiled in have them */
+static const int parts_series[] = { 1, 2, 3, 4, 6, 8, 16, 32, 0 };
 static const int parts_modes[] = { 1, 2, 4, 0 };
 /* Close together where errors are 1e-3, for which a fixed step is often enough */
 static const int tolerances_all[] = {
@@ -114,8 +116,11 @@ static const struct ours ours[] = {
 	{ .name = "taylor", .options = "--scheme taylor", .series = true, .tolerance = true },
 	{ .name = "radau", .options = "--scheme radau", .series = true, .tolerance = true },
 	{ .name = "auto", .options = "--scheme auto", .series = true, .tolerance = true },
+	{ .name = "taylor 4", .options = "'--scheme=taylor 4'", .series = true },
+	{ .name = "taylor 5", .options = "'--scheme=taylor 5'", .series = true },
 	{ .name = "taylor 6", .options = "'--scheme=taylor 6'", .series = true },
 	{ .name = "taylor 8", .options = "'--scheme=taylor 8'", .series = true },
+	{ .name = "taylor 9", .options = "'--scheme=taylor 9'", .series = true },
 	{ .name = "taylor 12", .options = "'--scheme=taylor 12'", .series = true },
 	{ .name = "etdam4", .options = "--scheme etdam4", .modes = true },
 	{ .name = "etdam5", .options = "--scheme etdam5", .modes = true },
@@ -160,6 +165,8 @@ static const int *parts_of_ours(const struct charted *m, const struct ours *o, b
 		return quick ? parts_exact_quick : parts_exact;
 	if (o->modes)
 		return quick ? parts_exact_quick : parts_modes;
+	if (o->series && m->kind == ORDINARY && !quick)
+		return parts_series;
 	return quick ? parts_scheme_quick[m->kind] : parts_scheme[m->kind];
 }
 

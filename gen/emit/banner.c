@@ -67,7 +67,7 @@ static void banner_scheme(const struct emitter *e)
 {
 	const struct model *shown = e->step->shown->model;
 	if (e->model->scheme != SCHEME_EXACT)
-		banner_sentence(e, scheme_note(e->model->scheme, e->model->truncation.order));
+		banner_sentence(e, scheme_note(e->model->scheme, order_of_step(e->step)));
 	if (loses_order(shown))
 		say(e, " * So where all is smooth; here of order %s at most: %s.\n", order_text(shown),
 		    printable(smoothness_text(shown)));

@@ -306,6 +306,8 @@ void emit_series_ahead(const struct emitter *e);                         /* NAME
 void emit_series_remainder(const struct emitter *e);                     /* NAME_remainders: its last terms */
 void emit_expansion_step(const struct emitter *e);
 void emit_expansion_at(const struct emitter *e);
+/* Whether $n_inside is there, for the steps that a series serves before its last */
+bool serves_rows(const struct emitter *e);
 
 /* ---- emit_motion.c: the highest derivatives and their Jacobian ---- */
 

@@ -21,12 +21,29 @@ static bool changes(const struct emitter *e)
 
 enum { WRITTEN_OUT = 400 };             /* terms; more are looped over */
 
+static bool is_written_out(const struct emitter *e, int degree)
+{
+	return e->system->states * degree <= WRITTEN_OUT;
+}
+
+/* g0, g1, ...: c[1] + theta (c[2] + ...) of each state, by Horner's rule */
+static void emit_horner(const struct emitter *e, const char *c, int degree)
+{
+	int states = e->system->states;
+	for (int i = 0; i < states; i++)
+		say(e, "    double g%d = %s[%d][%d];\n", i, c, degree, i);
+	for (int k = degree - 1; k > 0; k--)
+		for (int i = 0; i < states; i++)
+			say(e, "%sg%d = g%d * theta + %s[%d][%d];%s", i % 4 ? " " : "    ", i, i, c, k, i,
+			    i % 4 == 3 || i == states - 1 ? "\n" : "");
+}
+
 void emit_polynomial(const struct emitter *e, const char *name, int rows, int degree)
 {
 	int states = e->system->states;
 	say(e, "static void $n_%s(const double c[%d][$N_STATES], double theta, double gain[$N_STATES])\n"
 	       "{\n", name, rows);
-	if (states * degree > WRITTEN_OUT) {
+	if (!is_written_out(e, degree)) {
 		say(e, "    int i, k;\n"
 		       "    for (i = 0; i < $N_STATES; i++)\n"
 		       "        gain[i] = c[%d][i];\n"
@@ -38,12 +55,7 @@ void emit_polynomial(const struct emitter *e, const char *name, int rows, int de
 		       "}\n", degree, degree - 1);
 		return;
 	}
-	for (int i = 0; i < states; i++)
-		say(e, "    double g%d = c[%d][%d];\n", i, degree, i);
-	for (int k = degree - 1; k > 0; k--)
-		for (int i = 0; i < states; i++)
-			say(e, "%sg%d = g%d * theta + c[%d][%d];%s", i % 4 ? " " : "    ", i, i, k, i,
-			    i % 4 == 3 || i == states - 1 ? "\n" : "");
+	emit_horner(e, "c", degree);
 	for (int i = 0; i < states; i++)
 		say(e, "    gain[%d] = g%d * theta;\n", i, i);
 	say(e, "}\n");
@@ -196,15 +208,21 @@ static const char *whole_gain(const struct emitter *e, int state)
 	return format("%s, %s", *text ? text : "0.0", *late ? late : "0.0");
 }
 
+/* Whether one of what is called so, with the number of a state, is not finite: its difference from itself is not 0 */
+static const char *is_not_finite(const struct emitter *e, const char *before, const char *after)
+{
+	const char *sum = "";
+	for (int i = 0; i < e->system->states; i++)
+		sum = format("%s%s(%s%d%s - %s%d%s)", sum, i ? " + " : "", before, i, after, before, i, after);
+	return format("%s != 0.0", sum);
+}
+
 /* What is not finite is not kept: the state stays as it was. */
 static void emit_keep(const struct emitter *e, bool watched)
 {
 	int states = e->system->states;
-	const char *sum = "";
-	for (int i = 0; i < states; i++)
-		sum = format("%s%s(next%d - next%d)", sum, i ? " + " : "", i, i);
 	say(e, "    ");
-	say_wrapped(e, format("if (%s != 0.0) {  /* one of them is not finite */\n", sum));
+	say_wrapped(e, format("if (%s) {  /* one of them is not finite */\n", is_not_finite(e, "next", "")));
 	say(e, "        s->status |= PL_NOT_FINITE%s;\n"
 	       "    } else {\n", watched ? " | PL_INACCURATE" : "");
 	for (int i = 0; i < states; i++)
@@ -285,7 +303,7 @@ static void emit_end(const struct emitter *e)
 	       "static void $n_end(const double c[%d][$N_STATES], double m, double end[$N_STATES], "
 	       "double rest[$N_STATES])\n"
 	       "{\n", order + 1);
-	if (states * order > WRITTEN_OUT) {
+	if (!is_written_out(e, order)) {
 		say(e, "    double gain[$N_STATES];\n"
 		       "    int i;\n"
 		       "    $n_ahead(c, m, gain);\n"
@@ -338,11 +356,43 @@ static void emit_renew(const struct emitter *e)
 	       "        s->base[i] = s->left[i] = s->rest[i];\n"
 	       "    if (s->valid) {\n"
 	       "        $n_end((const double (*)[$N_STATES])s->series, (double)s->valid, s->next, s->left);\n"
-	       "        if (pl_not_finite(s->next, $N_STATES))\n"
-	       "            s->valid = s->most = 0;\n"
+	       "        ");
+	say_wrapped(e, format("if (%s)\n", is_written_out(e, expansion(e)->order)
+						    ? is_not_finite(e, "s->next[", "]")
+						    : spell(e, "pl_not_finite(s->next, $N_STATES)")));
+	say(e, "            s->valid = s->most = 0;\n"
 	       "    }\n");
 	if (inputs)
 		say(e, "    (void)u;\n");
+	say(e, "}\n");
+}
+
+bool serves_rows(const struct emitter *e)
+{
+	return expansion(e) && !e->step->collocation && truncation(e)->adaptive && !e->system->inputs;
+}
+
+/* A function of its own, so that NAME_run goes from one to the next without a step's questions */
+static void emit_inside(const struct emitter *e)
+{
+	int order = expansion(e)->order, states = e->system->states;
+	say(e, "\n/* A step whose end lies inside of what the series serves */\n"
+	       "static void $n_inside($n *s)\n"
+	       "{\n"
+	       "    const double theta = (double)(s->served + 1);\n");
+	if (is_written_out(e, order)) {
+		emit_horner(e, "s->series", order);
+		for (int i = 0; i < states; i++)
+			say(e, "    s->y[%d] = s->series[0][%d] + (g%d * theta + s->base[%d]);\n", i, i, i, i);
+	} else {
+		say(e, "    double gain[$N_STATES];\n"
+		       "    int i;\n"
+		       "    $n_ahead((const double (*)[$N_STATES])s->series, theta, gain);\n"
+		       "    for (i = 0; i < $N_STATES; i++)\n"
+		       "        s->y[i] = s->series[0][i] + (gain[i] + s->base[i]);\n");
+	}
+	say(e, "    s->served++;\n");
+	emit_step_end(e);
 	say(e, "}\n");
 }
 
@@ -351,25 +401,28 @@ static void emit_adaptive_step(const struct emitter *e)
 	bool inputs = e->system->inputs > 0;
 	emit_end(e);
 	emit_renew(e);
+	if (serves_rows(e))
+		emit_inside(e);
 	say(e, "\nvoid $n_step(%s)\n"
 	       "{\n"
 	       "    int i;\n"
 	       "    if (s->served == s->valid)\n"
-	       "        $n_renew(s%s);\n"
-	       "    if (s->valid == 0) {\n"
+	       "        $n_renew(s%s);\n", step_parameters(e), inputs ? ", u" : "");
+	if (serves_rows(e))
+		say(e, "    if (s->served + 1 < s->valid) {\n"
+		       "        $n_inside(s);\n"
+		       "        return;\n"
+		       "    }\n");
+	say(e, "    if (s->valid == 0) {\n"
 	       "        s->status |= $n_between(s, %s!s->most, 1.0, s->y, s->rest);\n"
 	       "        s->most = 1;\n"
-	       "    } else if (++s->served < s->valid) {\n"
-	       "        double gain[$N_STATES];\n"
-	       "        $n_ahead((const double (*)[$N_STATES])s->series, (double)s->served, gain);\n"
-	       "        for (i = 0; i < $N_STATES; i++)\n"
-	       "            s->y[i] = s->series[0][i] + (gain[i] + s->base[i]);\n"
 	       "    } else {\n"
+	       "        s->served = s->valid;\n"
 	       "        for (i = 0; i < $N_STATES; i++) {\n"
 	       "            s->y[i] = s->next[i];\n"
 	       "            s->rest[i] = s->left[i];\n"
 	       "        }\n"
-	       "    }\n", step_parameters(e), inputs ? ", u" : "", u_argument(e));
+	       "    }\n", u_argument(e));
 	emit_expansion_end(e);
 }
 

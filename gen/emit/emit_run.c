@@ -15,8 +15,14 @@ static bool run_rests(const struct emitter *e)
 static void emit_steps(const struct emitter *e)
 {
 	bool inputs = e->system->inputs > 0;
-	say(e, "    for (; n > 0; n--) {\n"
-	       "        $n_step(s%s);\n", inputs ? ", u" : "");
+	say(e, "    for (; n > 0; n--) {\n");
+	if (serves_rows(e))
+		say(e, "        if (s->served + 1 < s->valid)\n"
+		       "            $n_inside(s);\n"
+		       "        else\n"
+		       "            $n_step(s);\n");
+	else
+		say(e, "        $n_step(s%s);\n", inputs ? ", u" : "");
 	if (inputs)
 		say(e, "        u += $N_INPUTS;\n");
 	say(e, "        if (out) {\n"

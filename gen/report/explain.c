@@ -371,7 +371,7 @@ static void person_split(FILE *to, const struct step *step)
 		person_normal(to, step);
 	if (model->operators > 1)
 		fputs("A step uses the first operator whose value is not below the current one, else the last.\n", to);
-	fprintf(to, "Scheme %s is of order %d in h", scheme_name(model->scheme), order_of_scheme(model));
+	fprintf(to, "Scheme %s is of order %d in h", scheme_name(model->scheme), order_of_step(step));
 	if (model->truncation.adaptive)
 		fprintf(to, ", its steps as long as a tolerance of %s lets them be",
 			readable_text(model->truncation.tolerance));
@@ -793,7 +793,9 @@ void explain_json(FILE *to, const struct step *step)
 	if (scheme_row(model->scheme)->holds_coupling)
 		fprintf(to, "  \"growth_rate\": %.17g,\n", growth_rate(step));
 	static const char *const smooth[] = { "smooth", "kink", "jump" };
-	fprintf(to, "  \"order\": %d,\n  \"smooth\": \"%s\",\n", order_that_holds(model), smooth[model->smooth.kind]);
+	fprintf(to, "  \"order\": %d,\n  \"smooth\": \"%s\",\n",
+		step->expansion && !loses_order(model) ? order_of_step(step) : order_that_holds(model),
+		smooth[model->smooth.kind]);
 	if (step->collocation)
 		fprintf(to, "  \"stages\": %d,\n"
 			    "  \"iteration\": {\"multiplications\": %d, \"additions\": %d, \"calls\": %d},\n",

@@ -166,7 +166,7 @@ static void build_series(struct step *step)
 {
 	write_no_list(step);
 	step->program->compensated = true;
-	step->expansion = expansion_of(step, step->model->truncation.order);
+	step->expansion = expansion_of(step, economical_order(step));
 	step->series.emitted = true;
 }
 

@@ -865,6 +865,13 @@ void find_newest(struct expansion *x);
 
 struct expansion *expansion_of(const struct step *step, int order);
 
+/* ---- order.c: the order of a series ---- */
+
+/* The one that was asked for, or that of the tolerance, or a lower one that is cheaper. Leaves step->expansion. */
+int economical_order(struct step *step);
+/* In h, of its scheme where all is smooth */
+int order_of_step(const struct step *step);
+
 /* ---- radius.c: how far a series reaches from the start ---- */
 
 enum { EXPANSION_SERVES = 32 };     /* most steps that one expansion serves */
