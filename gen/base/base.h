@@ -52,6 +52,7 @@ enum {
 	LIMIT_RESIDUE_STATES = 12,  /* beyond, a Taylor series gives the numbers: residues get slow */
 	LIMIT_BLOCK_ROWS = 64,      /* in a block of NAME_run */
 	LIMIT_MODES = 128,          /* of a scheme in normal modes */
+	LIMIT_WITHIN = 1000,        /* radians of a mode in a step that has values inside: as many series */
 	LIMIT_SERIES = 50000,       /* multiplications of a Taylor series, each of which is C */
 	LIMIT_COLLOCATED = 40,      /* coordinates of a collocation, whose matrices stand on the stack */
 	LIMIT_TURNS = 256,          /* log2 of a load's angle in a step, for models of more states than that */

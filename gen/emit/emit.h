@@ -383,6 +383,10 @@ void emit_normal_members(const struct emitter *e);
 void emit_normal_tables(const struct emitter *e);
 void emit_normal_step(const struct emitter *e);
 
+/* ---- emit_within.c: states inside such a step ---- */
+
+void emit_normal_at(const struct emitter *e);
+
 /* ---- banner.c, declarations.c: what a header has ---- */
 
 void emit_banner(const struct emitter *e);

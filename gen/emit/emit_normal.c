@@ -103,11 +103,12 @@ static void emit_collocation(const struct emitter *e)
 					    2 * nodes, width, m->stage[i].weight);
 	}
 	say(e, "\n/* A step by collocation: forces are a polynomial through the nodes, found by so many sweeps */\n"
-	       "static void $n_collocate($n *s)\n"
+	       "static void $n_collocate($n *s%s)\n"
 	       "{\n"
-	       "    double f[%d][%d], force[%d][%d], eta[%d][%d], rate[%d][%d];\n"
+	       "    double f[%d][%d], %seta[%d][%d], rate[%d][%d];\n"
 	       "    const int which = s->which;\n"
-	       "    int i, k, sweep, sweeps = %d;\n", nodes, functions, nodes, width, nodes, width, nodes, width,
+	       "    int i, k, sweep, sweeps = %d;\n", m->points ? format(", double force[%d][%d]", nodes, width) : "",
+	    nodes, functions, m->points ? "" : format("force[%d][%d], ", nodes, width), nodes, width, nodes, width,
 	    m->first_sweeps);
 	if (functions_of_time(e))
 		say(e, "    for (k = 0; k <= %d; k++)\n"
@@ -193,11 +194,12 @@ static void emit_multistep(const struct emitter *e)
 	for (int k = 0; k < points; k++)
 		add_summand(&extrapolated, scaled(m->extrapolate[k], format("force%d[i]", k)));
 	say(e, "\n/* A step from past forces: predict, evaluate, correct%s */\n"
-	       "static void $n_advance($n *s)\n"
+	       "static void $n_advance($n *s%s)\n"
 	       "{\n"
 	       "    double eta[%d], rate[%d], force[%d], expected[%d], f[%d];\n"
 	       "    const int which = s->which;\n"
-	       "    int i, at = s->newest;\n", m->twice ? ", evaluate" : "", width, width, width, width,
+	       "    int i, at = s->newest;\n", m->twice ? ", evaluate; first: the force of the first time" : "",
+	    m->twice ? format(", double first[%d]", width) : "", width, width, width, width,
 	    functions_of_time(e) ? functions_of_time(e) : 1);
 	for (int k = 0; k < points; k++)
 		say(e, "    const double *const force%d = s->force[at];\n%s", k,
@@ -218,7 +220,9 @@ static void emit_multistep(const struct emitter *e)
 	       "        s->rate[i] = rate[i] + %s[1][i] * excess;\n"
 	       "    }\n", width, correct, correct);
 	if (m->twice)
-		say(e, "    $n_forces(which, f, s->eta, s->rate, force);\n");
+		say(e, "    for (i = 0; i < %d; i++)\n"
+		       "        first[i] = force[i];\n"
+		       "    $n_forces(which, f, s->eta, s->rate, force);\n", width);
 	emit_keep_point(e, "force", "f");
 	say(e, "}\n");
 }
@@ -326,6 +330,8 @@ void emit_normal_step(const struct emitter *e)
 		emit_settled(e);
 	say(e, "\nvoid $n_step($n *s)\n"
 	       "{\n");
+	if (points)
+		say(e, "    double force[%d][%d];  /* on modes, of the first steps */\n", points, m->width);
 	if (m->settled)
 		say(e, "    if (s->segment == %d) {\n"
 		       "        $n_continue(s);\n"
@@ -334,9 +340,9 @@ void emit_normal_step(const struct emitter *e)
 		       "    }\n", e->system->segments - 1, m->width, m->width);
 	if (points)
 		say(e, "    if (s->known < %d)\n"
-		       "        $n_collocate(s);\n"
+		       "        $n_collocate(s, force);\n"
 		       "    else\n"
-		       "        $n_advance(s);\n", points);
+		       "        $n_advance(s%s);\n", points, m->twice ? ", force[0]" : "");
 	else
 		say(e, "    $n_collocate(s);\n");
 	if (has_bank(e)) {

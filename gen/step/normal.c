@@ -196,8 +196,7 @@ static struct normal_stage stage_of(const struct normal_work *w, mpq_srcptr thet
 	return stage;
 }
 
-/* Nodes 0, -1, ...: the last force first */
-static mpq_t *past_nodes(int count)
+mpq_t *past_nodes(int count)
 {
 	mpq_t *node = rationals((size_t)count);
 	for (int k = 0; k < count; k++)
@@ -397,5 +396,6 @@ struct normal *normal_of(struct step *step)
 	choose_evaluations(&w);
 	if (model->split->settles)
 		find_settled(&w);
+	find_within(&w);
 	return normal;
 }

@@ -573,6 +573,14 @@ struct stability {                  /* of a multistep method, functions of time 
 	double growth;              /* ln of what all steps of the span together let grow at most; */
 	double growth_factor;       /* that itself */
 };
+struct within {                     /* a step: states inside it, by Taylor series over its parts */
+	double angle;               /* by which a mode turns or decays in a step at most: in as many parts */
+	int terms;
+	double *stiffness, *damping; /* [bank][place] lambda, 2 delta; no damping: NULL */
+	/* Of the force's polynomial, the factors of what forces exceed that at the step's start by: [power - 1][node - 1];
+	 * through past forces and the new one (NULL: of a method of one step); through those at all nodes of a step */
+	double *past, *nodes;
+};
 struct normal {
 	int modes, width;           /* n; length of a vector of modes */
 	int banks, blocks;
@@ -600,6 +608,7 @@ struct normal {
 	double *settled, *omega, *period; /* omega and 1/omega: [place] */
 	int settled_bank;
 	struct stability stability; /* of a multistep method */
+	struct within within;
 };
 struct normal *normal_of(struct step *step);                /* leaves the statement where there is none */
 struct normal_work {                /* what its builders share */
@@ -610,6 +619,7 @@ struct normal_work {                /* what its builders share */
 	struct eigenpairs *pairs;   /* per bank */
 	struct normal_mode *mode;          /* per bank and mode */
 };
+mpq_t *past_nodes(int count);                               /* 0, -1, ...: the last force first */
 
 /* ---- normal_left.c: what is left over, in modes ---- */
 
@@ -625,6 +635,10 @@ void find_forces(struct normal_work *w);
  * operator, rows by coordinates */
 mpfr_t *settled_matrix(const struct model *model, const mpq_t *M, const mpq_t *C, const mpq_t *K,
 		       const struct eigenpairs *pairs, mpfr_t *omega);
+
+/* ---- within.c: states inside a step in normal modes ---- */
+
+void find_within(struct normal_work *w);
 
 /* ---- frozen.c: stability of multistep methods in normal modes ---- */
 

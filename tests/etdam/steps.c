@@ -2,80 +2,12 @@
 /* What steps in normal modes do, against the equations by hand in long double: orders, of the first steps too; banks;
  * changes of formula; steps that are exact once nothing changes; the rotating beam; what is the same bit for bit. */
 #include "cantilever.h"
-#include "gragg.h"
+#include "frames.h"
 #include "spun_float_pl.h"
 #include "steps_variants.h"
 #include "tap.h"
 
 #include <math.h>
-
-enum { MOST = 30, MOST_CHANGES = 3 };
-
-struct subject {
-    equations *f;
-    int states, changes;
-    real change[MOST_CHANGES];          /* when formulas change */
-    real piece;                         /* of a step of the truth */
-};
-
-/* ---- equations ---- */
-
-static void gyro(real t, const real *y, const real *u, real *dydt)
-{
-    const real w = 2 + sinl(0.8L * t), wp = 0.8L * cosl(0.8L * t);
-    (void)u;
-    dydt[0] = y[2];
-    dydt[1] = y[3];
-    dydt[2] = cosl(3 * t) + 0.2L * w * w - 0.3L * y[2] + 2 * w * y[3] + wp * y[1] - (40 - w * w) * y[0] + 10 * y[1];
-    dydt[3] = 0.5L * t / (1 + t) - 0.3L * y[3] - 2 * w * y[2] - wp * y[0] - (90 - w * w) * y[1] + 10 * y[0];
-}
-
-static void spun(real t, const real *y, const real *u, real *dydt)
-{
-    const real w = t < 2 ? 1.5L * t - 0.375L * t * t : 1.5L, wp = t < 2 ? 1.5L - 0.75L * t : 0;
-    const real x = t < 0.5L ? 3 : t < 1 ? 4 * t : -1, z = t < 2 ? cosl(5 * t) : 0.3L;
-    (void)u;
-    dydt[0] = y[2];
-    dydt[1] = y[3];
-    dydt[2] = x - 0.3L * y[2] + 2 * w * y[3] + wp * y[1] - (40 - w * w) * y[0] + 10 * y[1];
-    dydt[3] = z - 0.15L * y[3] - 2 * w * y[2] - wp * y[0] - (90 - w * w) * y[1] + 10 * y[0];
-}
-
-static void bent(real t, const real *y, const real *u, real *dydt)
-{
-    const real w = 2 + sinl(0.8L * t);
-    (void)u;
-    for (int i = 0; i < 3; i++)
-        dydt[i] = y[3 + i];
-    dydt[3] = cosl(3 * t) - 4 * cosl(t) * sinl(y[0] - y[1]) - 0.3L * y[3] + 2 * w * y[4] - (40 - w * w) * y[0] +
-        10 * y[1] - 30 * y[0] * y[0] * y[0];
-    dydt[4] = -0.3L * y[4] - 2 * w * y[3] - (90 - w * w) * y[1] + 10 * y[0] - 0.5L * y[4] * y[4] * y[4];
-    dydt[5] = -20 * y[2] - 0.4L * y[2] * y[2] * w;
-}
-
-static void beam(real t, const real *y, const real *u, real *dydt)
-{
-    real dw;
-    const real w = cantilever_speed(15, t, &dw);
-    (void)u;
-    cantilever_slopes(w, dw, y, dydt);
-}
-
-static const struct subject gyro_frame = {gyro, 4, 0, {0}, 0.05L};
-static const struct subject spun_frame = {spun, 4, 3, {0.5L, 1, 2}, 0.05L};
-static const struct subject bent_frame = {bent, 6, 0, {0}, 0.05L};
-static const struct subject turning_beam = {beam, 30, 0, {0}, 5e-4L};
-
-/* y from `from` to `to`, through what changes; up to that the formula before */
-static void solve(const struct subject *s, real from, real to, real *y)
-{
-    for (int i = 0; i < s->changes; i++)
-        if (from < s->change[i] && s->change[i] < to) {
-            gragg(s->f, s->states, from, s->change[i] * (1 - 1e-18L), s->piece, 0, NULL, y);
-            from = s->change[i];
-        }
-    gragg(s->f, s->states, from, to * (1 - 1e-18L), s->piece, 0, NULL, y);
-}
 
 static void *fresh(const pl_model *m)
 {
@@ -155,7 +87,7 @@ static void stays_exact(const char *name, double bound)
     for (int second = 2; second < 42; second++) {
         m->run(state, (size_t)lround(1 / m->h), NULL, NULL);
         m->get(state, y);
-        gragg(spun, 4, second, second + 1, 0.05L, 0, NULL, truth);
+        gragg(spun_frame.f, 4, second, second + 1, 0.05L, 0, NULL, truth);
         for (int i = 0; i < 4; i++) {
             worst = worse(worst, (double)fabsl(y[i] - truth[i]));
             most = fmax(most, (double)fabsl(truth[i]));
@@ -260,7 +192,7 @@ static void outputs_of(const char *name)
         m->out(state, out);
         for (int i = 0; i < 4; i++)
             wide[i] = y[i];
-        gyro((k + 1) * (real)m->h, wide, NULL, dydt);
+        gyro_frame.f((k + 1) * (real)m->h, wide, NULL, dydt);
         for (int i = 0; i < 2; i++) {
             worst = worse(worst, fabs(out[i] - y[i]));
             worst = worse(worst, (double)fabsl(out[2 + i] - dydt[2 + i]) / 40);
