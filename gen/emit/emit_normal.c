@@ -4,14 +4,18 @@
 
 /* ---- a step by collocation ---- */
 
+struct stage_tables { const char *flow, *weight, *wave; };
+
 /* e eta + s eta', de eta + ds eta', and weights of forces: the stage at theta h */
-static const char *stage_sum(const char *flow, const char *weight, int row, int points, const char *force)
+static const char *stage_sum(const struct emitter *e, const struct stage_tables *t, int row, int points,
+			     const char *force)
 {
 	struct row_sum s = { 0 };
-	add_summand(&s, format("%s[%d][i] * s->eta[i]", flow, 2 * row));
-	add_summand(&s, format("%s[%d][i] * s->rate[i]", flow, 2 * row + 1));
+	add_summand(&s, format("%s[%d][i] * s->eta[i]", t->flow, 2 * row));
+	add_summand(&s, format("%s[%d][i] * s->rate[i]", t->flow, 2 * row + 1));
 	for (int k = 0; k < points; k++)
-		add_summand(&s, format("%s[%d][i] * %s", weight, 2 * k + row, format(force, k)));
+		add_summand(&s, format("%s[%d][i] * %s", t->weight, 2 * k + row, format(force, k)));
+	add_waves(e, &s, t->wave, row);
 	return tree(s.terms, s.term, 21);
 }
 
@@ -74,7 +78,7 @@ static void emit_first_forces(const struct emitter *e)
 		say(e, "    }\n");
 }
 
-static void emit_sweeps(const struct emitter *e, const char *const *flow, const char *const *weight)
+static void emit_sweeps(const struct emitter *e, const struct stage_tables *table)
 {
 	const struct normal *m = normal_of_step(e);
 	int nodes = m->stages + 1;
@@ -85,8 +89,8 @@ static void emit_sweeps(const struct emitter *e, const char *const *flow, const 
 		       "            rate[%d][i] = %s;\n"
 		       "        }\n"
 		       "        $n_forces(which, f[%d], eta[%d], rate[%d], force[%d]);\n", m->width, i + 1,
-		    stage_sum(flow[i], weight[i], 0, nodes, "force[%d][i]"), i + 1,
-		    stage_sum(flow[i], weight[i], 1, nodes, "force[%d][i]"), i + 1, i + 1, i + 1, i + 1);
+		    stage_sum(e, &table[i], 0, nodes, "force[%d][i]"), i + 1,
+		    stage_sum(e, &table[i], 1, nodes, "force[%d][i]"), i + 1, i + 1, i + 1, i + 1);
 	say(e, "    }\n");
 }
 
@@ -95,12 +99,14 @@ static void emit_collocation(const struct emitter *e)
 	const struct normal *m = normal_of_step(e);
 	int stages = m->stages, nodes = stages + 1, width = m->width;
 	int functions = functions_of_time(e) ? functions_of_time(e) : 1;
-	const char **flow = ARRAY(const char *, (size_t)stages), **weight = ARRAY(const char *, (size_t)stages);
+	struct stage_tables *table = ARRAY(struct stage_tables, (size_t)stages);
 	for (int i = 0; i < stages; i++) {
-		flow[i] = emit_bank_table(e, format("flow%d", i + 1), "Modes at a node from those at the step's start",
-					  4, width, m->stage[i].flow);
-		weight[i] = emit_bank_table(e, format("weight%d", i + 1), "... and from the forces at all nodes",
-					    2 * nodes, width, m->stage[i].weight);
+		table[i].flow = emit_bank_table(e, format("flow%d", i + 1),
+						"Modes at a node from those at the step's start", 4, width,
+						m->stage[i].flow);
+		table[i].weight = emit_bank_table(e, format("weight%d", i + 1), "... and from the forces at all nodes",
+						  2 * nodes, width, m->stage[i].weight);
+		table[i].wave = emit_wave_table(e, format("wave%d", i + 1), &m->stage[i]);
 	}
 	say(e, "\n/* A step by collocation: forces are a polynomial through the nodes, found by so many sweeps */\n"
 	       "static void $n_collocate($n *s%s)\n"
@@ -110,6 +116,8 @@ static void emit_collocation(const struct emitter *e)
 	       "    int i, k, sweep, sweeps = %d;\n", m->points ? format(", double force[%d][%d]", nodes, width) : "",
 	    nodes, functions, m->points ? "" : format("force[%d][%d], ", nodes, width), nodes, width, nodes, width,
 	    m->first_sweeps);
+	say(e, "%s", wave_array(e));
+	emit_waves_now(e);
 	if (functions_of_time(e))
 		say(e, "    for (k = 0; k <= %d; k++)\n"
 		       "        %s\n", stages, functions_call(e, "k", false, "f[k]"));
@@ -124,7 +132,7 @@ static void emit_collocation(const struct emitter *e)
 		       "        rate[0][i] = s->rate[i];\n"
 		       "    }\n", width);
 	}
-	emit_sweeps(e, flow, weight);
+	emit_sweeps(e, table);
 	say(e, "    for (i = 0; i < %d; i++) {\n"
 	       "        s->eta[i] = eta[%d][i];\n"
 	       "        s->rate[i] = rate[%d][i];\n"
@@ -185,9 +193,12 @@ static void emit_multistep(const struct emitter *e)
 {
 	const struct normal *m = normal_of_step(e);
 	int points = m->points, width = m->width;
-	const char *flow = emit_bank_table(e, "flow", "Modes after a step from those before", 4, width, m->step.flow);
-	const char *weight = emit_bank_table(e, "weight", "... and from the forces at its start and before", 2 * points,
-					     width, m->step.weight);
+	const struct stage_tables table = {
+		emit_bank_table(e, "flow", "Modes after a step from those before", 4, width, m->step.flow),
+		emit_bank_table(e, "weight", "... and from the forces at its start and before", 2 * points, width,
+				m->step.weight),
+		emit_wave_table(e, "wave", &m->step)
+	};
 	const char *correct = emit_bank_table(e, "correct", "What a force adds by its excess over the extrapolated one",
 					      2, width, m->correct);
 	struct row_sum extrapolated = { 0 };
@@ -198,18 +209,19 @@ static void emit_multistep(const struct emitter *e)
 	       "{\n"
 	       "    double eta[%d], rate[%d], force[%d], expected[%d], f[%d];\n"
 	       "    const int which = s->which;\n"
-	       "    int i, at = s->newest;\n", m->twice ? ", evaluate; first: the force of the first time" : "",
+	       "    int i, at = s->newest;\n%s", m->twice ? ", evaluate; first: the force of the first time" : "",
 	    m->twice ? format(", double first[%d]", width) : "", width, width, width, width,
-	    functions_of_time(e) ? functions_of_time(e) : 1);
+	    functions_of_time(e) ? functions_of_time(e) : 1, wave_array(e));
 	for (int k = 0; k < points; k++)
 		say(e, "    const double *const force%d = s->force[at];\n%s", k,
 		    k + 1 < points ? format("    at = at ? at - 1 : %d;\n", points - 1) : "");
+	emit_waves_now(e);
 	say(e, "    for (i = 0; i < %d; i++) {\n"
 	       "        eta[i] = %s;\n"
 	       "        rate[i] = %s;\n"
 	       "        expected[i] = %s;\n"
-	       "    }\n", width, stage_sum(flow, weight, 0, points, "force%d[i]"),
-	    stage_sum(flow, weight, 1, points, "force%d[i]"), tree(extrapolated.terms, extrapolated.term, 22));
+	       "    }\n", width, stage_sum(e, &table, 0, points, "force%d[i]"),
+	    stage_sum(e, &table, 1, points, "force%d[i]"), tree(extrapolated.terms, extrapolated.term, 22));
 	emit_step_end(e);
 	if (functions_of_time(e))
 		say(e, "    %s\n", functions_call(e, "0", true, "f"));
@@ -234,6 +246,7 @@ void emit_normal_tables(const struct emitter *e)
 	if (functions_of_time(e))
 		emit_function_values(e);
 	emit_forces(e);
+	emit_waves(e);
 	emit_bank(e);
 	const struct normal *m = normal_of_step(e);
 	int selector = e->model->split->selector - 1;
@@ -258,7 +271,7 @@ void emit_normal_tables(const struct emitter *e)
 static void emit_settled(const struct emitter *e)
 {
 	const struct normal *m = normal_of_step(e);
-	int size = 2 * m->modes + 1, width = m->width;
+	int size = settled_size(e->model), width = m->width;
 	struct row_sum s = { 0 };
 	say(e, "\n/* Frequencies that amplitudes are scaled by, and 1 over them */\n"
 	       "static const double $n_omega[2][%d] = {\n    {", width);
@@ -266,8 +279,8 @@ static void emit_settled(const struct emitter *e)
 	say(e, "},\n    {");
 	say_numbers(e, width, m->period);
 	say(e, "},\n};\n"
-	       "\n/* A step over [omega eta, eta', 1], by columns */\n"
-	       "static const double $n_settled[%d][%d] = {\n", size, 2 * width);
+	       "\n/* A step over [omega eta, eta', 1%s], by columns */\n"
+	       "static const double $n_settled[%d][%d] = {\n", wave_values(e) ? ", loads" : "", size, 2 * width);
 	for (int j = 0; j < size; j++) {
 		say(e, "    {");
 		say_numbers(e, 2 * width, m->settled + j * 2 * width);
@@ -278,7 +291,8 @@ static void emit_settled(const struct emitter *e)
 	       "static void $n_continue($n *s)\n"
 	       "{\n"
 	       "    double x[%d], sum[%d];\n"
-	       "    int i;\n", 2 * width, 2 * width);
+	       "    int i;\n%s", 2 * width, 2 * width, wave_array(e));
+	emit_waves_now(e);
 	if (has_bank(e))
 		say(e, "    if (s->which != %d)\n"
 		       "        $n_use(s, %d);\n", m->settled_bank, m->settled_bank);
@@ -286,10 +300,11 @@ static void emit_settled(const struct emitter *e)
 	       "        x[i] = $n_omega[0][i] * s->eta[i];\n"
 	       "        x[%d + i] = s->rate[i];\n"
 	       "    }\n", width, width);
-	for (int j = 0; j < size; j++)
-		add_summand(&s, j + 1 == size ? spell(e, "$n_settled[%d][i]", j)
-					   : spell(e, "$n_settled[%d][i] * x[%d]", j,
-						   (j < m->modes ? 0 : width) + m->place[j % m->modes]));
+	for (int j = 0; j < 2 * m->modes; j++)
+		add_summand(&s, spell(e, "$n_settled[%d][i] * x[%d]", j,
+				      (j < m->modes ? 0 : width) + m->place[j % m->modes]));
+	add_summand(&s, spell(e, "$n_settled[%d][i]", 2 * m->modes));
+	add_waves_of_columns(e, &s, 2 * m->modes + 1);
 	say_row_sum(e, "sum[i]", 2 * width, &s);
 	say(e, "    for (i = 0; i < %d; i++) {\n"
 	       "        s->eta[i] = $n_omega[1][i] * sum[i];\n"

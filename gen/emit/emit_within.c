@@ -61,10 +61,12 @@ static void emit_inside(const struct emitter *e)
 						m->within.stiffness);
 	const char *damping = m->within.damping ? emit_bank_table(e, "damping", "2 delta of each mode [1/s]", 0, width,
 								  m->within.damping) : NULL;
+	const char *waves = wave_values(e) ? emit_bank_table(e, "swing", "Known loads: forces on modes",
+							     wave_values(e), width, m->wave) : NULL;
 	int parts = m->within.angle > 1 ? (int)ceil(m->within.angle) : 1;
 	say(e, "\n/* Modes go on by tau, forces on them being polynomials%s: by series over parts of the\n"
 	       " * time, in which no mode turns by more than 1 */\n"
-	       "static void $n_inside(int which, double tau, int degree, double power[][%d],%s\n"
+	       "static void $n_inside(int which, double tau, int degree, double power[][%d],%s%s\n"
 	       "    double eta[%d], double rate[%d])\n"
 	       "{\n"
 	       "    const double theta = tau / $N_H;\n"
@@ -72,7 +74,10 @@ static void emit_inside(const struct emitter *e)
 	       "    const double d = theta / (double)parts;\n"
 	       "    double x[%d], v[%d], force[%d];\n"
 	       "    int i, j, k, part;\n", m->settled ? ", or all that acts" : "", width,
-	    m->settled ? " const double *f," : "", width, width, parts, parts + 1, width, width, width);
+	    m->settled ? " const double *f," : "", wave_values(e) ? format(" double wave[%d],", wave_values(e)) : "",
+	    width, width, parts, parts + 1, width, width, width);
+	if (wave_values(e))
+		say(e, "    double swing[%d];\n", wave_values(e));
 	if (m->settled)
 		say(e, "    double still[%d];\n"
 		       "    for (i = 0; i < %d; i++)\n"
@@ -84,10 +89,14 @@ static void emit_inside(const struct emitter *e)
 	       "        for (i = 0; i < %d; i++) {\n"
 	       "            x[i] = eta[i];\n"
 	       "            v[i] = rate[i];\n"
-	       "        }\n"
-	       "        for (k = 0; k < %d; k++) {\n"
-	       "            const double by = d * $N_H / (double)(k + 1);\n", width, m->within.terms);
+	       "        }\n", width);
+	if (wave_values(e))
+		say(e, "        for (i = 0; i < %d; i++)\n"
+		       "            swing[i] = wave[i];\n", wave_values(e));
+	say(e, "        for (k = 0; k < %d; k++) {\n"
+	       "            const double by = d * $N_H / (double)(k + 1);\n", m->within.terms);
 	emit_term_force(e);
+	emit_wave_force(e, waves);
 	say(e, "            for (i = 0; i < %d; i++) {\n"
 	       "                const double next = by * (force[i] - %s[i] * x[i]%s);\n"
 	       "                x[i] = by * v[i];\n"
@@ -141,11 +150,11 @@ static void emit_at_settled(const struct emitter *e)
 	if (has_bank(e))
 		say(e, "        if (s->which != %d)\n"
 		       "            $n_use(&next, %d);\n", m->settled_bank, m->settled_bank);
-	say(e, "        $n_inside(next.which, tau, 0, force, f, next.eta, next.rate);\n"
+	say(e, "        $n_inside(next.which, tau, 0, force, f%s, next.eta, next.rate);\n"
 	       "        $n_of_modes(next.which, next.eta, y);\n"
 	       "        $n_of_modes(next.which, next.rate, y + %d);\n"
 	       "        return;\n"
-	       "    }\n", m->modes);
+	       "    }\n", wave_values(e) ? ", wave" : "", m->modes);
 }
 
 void emit_normal_at(const struct emitter *e)
@@ -158,8 +167,9 @@ void emit_normal_at(const struct emitter *e)
 	       "{\n"
 	       "    $n next = *s;\n"
 	       "    double force[%d][%d], eta[%d], rate[%d];\n"
-	       "    int i, k, %sdegree = %d;\n", most + 1, m->width, m->width, m->width,
-	    m->points ? "at = s->newest, " : "", m->stages);
+	       "    int i, k, %sdegree = %d;\n%s", most + 1, m->width, m->width, m->width,
+	    m->points ? "at = s->newest, " : "", m->stages, wave_array(e));
+	emit_waves_now(e);
 	if (m->settled)
 		emit_at_settled(e);
 	if (m->points)
@@ -174,8 +184,9 @@ void emit_normal_at(const struct emitter *e)
 	       "        eta[i] = s->eta[i];\n"
 	       "        rate[i] = s->rate[i];\n"
 	       "    }\n"
-	       "    $n_inside(s->which, tau, degree, force%s, eta, rate);\n"
+	       "    $n_inside(s->which, tau, degree, force%s%s, eta, rate);\n"
 	       "    $n_of_modes(s->which, eta, y);\n"
 	       "    $n_of_modes(s->which, rate, y + %d);\n"
-	       "}\n", m->width, m->settled ? ", NULL" : "", m->modes);
+	       "}\n", m->width, m->settled ? ", NULL" : "", wave_values(e) ? ", wave" : "",
+	    m->modes);
 }

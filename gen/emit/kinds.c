@@ -400,6 +400,15 @@ static const char *too_many_turns(const struct step *step)
 	return step->series.emitted ? NULL : format("in a step a mode turns or decays by more than %d", LIMIT_WITHIN);
 }
 
+static bool reads_wave(const struct emitter *e, int load)
+{
+	const struct splitting *split = e->model->split;
+	bool found = false;
+	for (int k = 0; k < split->waves && !found; k++)
+		found = split->wave[k].wave == e->system->load[load].wave;
+	return found;
+}
+
 static void emit_normal_constants(const struct emitter *e)
 {
 	emit_times_of_changes(e);
@@ -423,7 +432,7 @@ static const struct kind normal_modes = {
 	.declare_more = nothing,
 	.start = no_start,
 	.places = any_place,
-	.reads_load = no_further_load,
+	.reads_load = reads_wave,
 	.reads_phi = never,
 	.tables = emit_normal_constants,
 	.pass = nothing,

@@ -177,7 +177,7 @@ static struct normal_stage stage_of(const struct normal_work *w, mpq_srcptr thet
 {
 	const struct normal *normal = w->normal;
 	int width = normal->width, n = normal->modes;
-	struct normal_stage stage = { .points = l->nodes };
+	struct normal_stage stage = { .points = l->nodes, .wave = waves_of_stage(w, theta) };
 	stage.flow = ARRAY(double, (size_t)(normal->banks * 4 * width));
 	stage.weight = ARRAY(double, (size_t)(normal->banks * l->nodes * 2 * width));
 	for (int b = 0; b < normal->banks; b++)
@@ -270,7 +270,7 @@ static void find_settled(struct normal_work *w)
 {
 	struct normal *normal = w->normal;
 	const struct model *model = w->model;
-	int n = normal->modes, size = 2 * n + 1, bank = normal->settled_bank = last_bank(model), width = normal->width;
+	int n = normal->modes, size = settled_size(model), bank = normal->settled_bank = last_bank(model), width = normal->width;
 	mpfr_t *omega = reals((size_t)n, NORMAL_BITS), *Phi;
 	normal->omega = ARRAY(double, (size_t)width);
 	normal->period = ARRAY(double, (size_t)width);
@@ -372,6 +372,7 @@ struct normal *normal_of(struct step *step)
 	check_orders(step);
 	check_left(step);
 	check_changes(step);
+	check_turns(step);
 	w.M = by_coordinates(model, (const mpq_t *)model->system.M);
 	check_symmetry(&w);
 	normal->modes = model->n;
@@ -385,6 +386,7 @@ struct normal *normal_of(struct step *step)
 	find_transforms(&w);
 	find_matrices(&w);
 	find_forces(&w);
+	find_waves(&w);
 	normal->stages = row->points ? row->points - 1 : model->stages;
 	normal->kept = row->points ? row->points : model->stages + 1;
 	normal->sweeps = SWEEPS;

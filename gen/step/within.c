@@ -53,7 +53,8 @@ static void last_norms(const struct normal *m, const struct splitting *split, do
 	}
 }
 
-/* By what a mode turns or decays in a step at most; once nothing changes, what is left over makes them faster. */
+/* By what a mode or a wave turns or decays in a step at most; once nothing changes, what is left over makes modes
+ * faster. */
 static double angle_of_step(const struct normal_work *w)
 {
 	const struct normal *m = w->normal;
@@ -63,6 +64,11 @@ static double angle_of_step(const struct normal_work *w)
 		double turn = sqrt(fabs(lambda)) + 2 * fabs(mpfr_get_d(w->mode[i].delta, MPFR_RNDN));
 		angle = turn > angle ? turn : angle;
 		fastest = fabs(lambda) > fastest ? fabs(lambda) : fastest;
+	}
+	for (int k = 0; k < w->model->split->waves; k++) {
+		const struct wave *wave = w->model->split->wave[k].wave;
+		double turn = fabs(nearest_double(wave->a)) + nearest_double(wave->w);
+		angle = turn > angle ? turn : angle;
 	}
 	if (m->settled) {
 		last_norms(m, w->model->split, norm);

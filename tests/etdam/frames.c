@@ -27,6 +27,14 @@ static void spun(real t, const real *y, const real *u, real *dydt)
     dydt[3] = z - 0.15L * y[3] - 2 * w * y[2] - wp * y[0] - (90 - w * w) * y[1] + 10 * y[0];
 }
 
+/* The same with an unbalance, and a load that fades */
+static void turned(real t, const real *y, const real *u, real *dydt)
+{
+    spun(t, y, u, dydt);
+    dydt[2] += 2 * cosl(40 * t + 0.3L) + expl(-t / 4);
+    dydt[3] += 2 * sinl(40 * t + 0.3L);
+}
+
 static void bent(real t, const real *y, const real *u, real *dydt)
 {
     const real w = 2 + sinl(0.8L * t);
@@ -39,6 +47,15 @@ static void bent(real t, const real *y, const real *u, real *dydt)
     dydt[5] = -20 * y[2] - 0.4L * y[2] * y[2] * w;
 }
 
+static void rotor(real t, const real *y, const real *u, real *dydt)
+{
+    (void)u;
+    dydt[0] = y[2];
+    dydt[1] = y[3];
+    dydt[2] = 900 * cosl(300 * t + 0.4L) + 7 * expl(-2 * t) * sinl(50 * t) + 3 * expl(-t) - 0.3L * y[2] - 40 * y[0];
+    dydt[3] = 2 * sinl(300 * t + 0.4L) - 0.3L * y[3] - (90 + 20 * sinl(t)) * y[1];
+}
+
 static void beam(real t, const real *y, const real *u, real *dydt)
 {
     real dw;
@@ -49,7 +66,9 @@ static void beam(real t, const real *y, const real *u, real *dydt)
 
 const struct subject gyro_frame = {gyro, 4, 0, {0}, 0.05L};
 const struct subject spun_frame = {spun, 4, 3, {0.5L, 1, 2}, 0.05L};
+const struct subject turned_frame = {turned, 4, 3, {0.5L, 1, 2}, 0.02L};
 const struct subject bent_frame = {bent, 6, 0, {0}, 0.05L};
+const struct subject rotor_frame = {rotor, 4, 0, {0}, 0.005L};
 const struct subject turning_beam = {beam, 30, 0, {0}, 5e-4L};
 
 void solve(const struct subject *s, real from, real to, real *y)

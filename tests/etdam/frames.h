@@ -13,7 +13,7 @@ struct subject {
     real change[MOST_CHANGES];          /* when formulas change */
     real piece;                         /* of a step of the truth */
 };
-extern const struct subject gyro_frame, spun_frame, bent_frame, turning_beam;
+extern const struct subject gyro_frame, spun_frame, turned_frame, bent_frame, rotor_frame, turning_beam;
 
 /* y from `from` to `to`, through what changes; up to that the formula before */
 void solve(const struct subject *s, real from, real to, real *y);

@@ -114,7 +114,7 @@ static void meets_steps(const char *name, double bound)
 }
 
 /* From the state at a step's start, once nothing changes */
-static void is_exact_inside(const char *name, double bound)
+static void is_exact_inside(const struct subject *s, const char *name, double bound)
 {
     const pl_model *m = model_of(name, 0);
     struct found found = {0, 0, 10};
@@ -127,7 +127,7 @@ static void is_exact_inside(const char *name, double bound)
             m->get(state, y);
             for (int i = 0; i < 4; i++)
                 truth[i] = y[i];
-            gragg(spun_frame.f, 4, 3, 3 + (real)fraction[j] * (real)m->h, 0.05L, 0, NULL, truth);
+            gragg(s->f, 4, m->time(state), m->time(state) + (real)fraction[j] * (real)m->h, s->piece, 0, NULL, truth);
             m->at(state, NULL, fraction[j] * m->h, y);
             compare(&found, truth, y, 4);
         }
@@ -176,6 +176,7 @@ int main(void)
     has_order_inside(&gyro_frame, "first_etdam5", 0, 0.1, 5.8);
     has_order_inside(&spun_frame, "spun_etdam6", 0, 2, 6);
     has_order_inside(&spun_frame, "spun_nodes", 0, 2, 5);
+    has_order_inside(&turned_frame, "turned_etdam5", 0, 2, 4.5);
     has_order_inside(&bent_frame, "bent_etdam4", 0, 2, 4.5);
     has_order_inside(&bent_frame, "bent_etdam6", 0, 2, 6);
     meets_steps("gyro_etdam5", 1e-14);
@@ -184,8 +185,11 @@ int main(void)
     meets_steps("bent_etdam4", 1e-14);
     meets_steps("nodes_5", 1e-4);
     meets_steps("spun_nodes", 1e-10);
-    is_exact_inside("spun_etdam4", 1e-14);
-    is_exact_inside("spun_nodes", 1e-14);
+    meets_steps("turned_etdam5", 1e-14);
+    is_exact_inside(&spun_frame, "spun_etdam4", 1e-14);
+    is_exact_inside(&spun_frame, "spun_nodes", 1e-14);
+    is_exact_inside(&turned_frame, "turned_etdam5", 1e-14);
+    is_exact_inside(&turned_frame, "turned_nodes", 1e-14);
     turns_inside("beam_etdam4", 1e-7);
     turns_inside("beam_etdam6", 1e-11);
     turns_inside("beam_nodes", 1e-12);
