@@ -322,7 +322,7 @@ static void emit_settled(const struct emitter *e)
 static void emit_restart(const struct emitter *e)
 {
 	int points = normal_of_step(e)->points;
-	say(e, "    while (s->segment < %d && $n_until(s, s->segment) <= 1e-9 * $N_H) {\n"
+	say(e, "    while (s->segment < %d && $n_near(s) && $n_until(s, s->segment) <= 1e-9 * $N_H) {\n"
 	       "        if ($n_until(s, s->segment) < -1e-9 * $N_H)\n"
 	       "            s->status |= PL_INACCURATE;  /* it was inside the step */\n"
 	       "        s->segment++;\n"
@@ -332,10 +332,21 @@ static void emit_restart(const struct emitter *e)
 	say(e, "    }\n");
 }
 
+static void emit_near(const struct emitter *e)
+{
+	say(e, "\n/* Whether the next change of formula may be at hand: until then the time in one word is enough */\n"
+	       "static int $n_near(const $n *s)\n"
+	       "{\n"
+	       "    return $n_change[s->segment].hi - $n_time(s) <= $N_H + 1e-6 * $n_change[s->segment].hi;\n"
+	       "}\n");
+}
+
 void emit_normal_step(const struct emitter *e)
 {
 	const struct normal *m = normal_of_step(e);
 	int points = m->points;
+	if (has_changes(e))
+		emit_near(e);
 	if (reads_channels(e->model))
 		emit_leftover(e);
 	emit_collocation(e);
