@@ -147,6 +147,41 @@ static void emit_collocation(const struct emitter *e)
 
 /* ---- a bank ---- */
 
+/* V^T M V is orthogonal: what goes back is transposed */
+static void emit_turn(const struct emitter *e)
+{
+	const struct normal *m = normal_of_step(e);
+	int width = m->width, tables = m->banks - 1;
+	say(e, "\n/* Modes of the next operator from those of each, beyond what they are themselves */\n"
+	       "static const double $n_next[%d][%d][%d] = {\n", tables, width, width);
+	for (int b = 0; b < tables; b++) {
+		say(e, "  {\n");
+		for (int i = 0; i < width; i++) {
+			say(e, "    {");
+			say_numbers(e, width, m->turn + (b * width + i) * width);
+			say(e, "},\n");
+		}
+		say(e, "  },\n");
+	}
+	say(e, "};\n"
+	       "\nstatic void $n_turn(int from, int to, double mode[%d])\n"
+	       "{\n"
+	       "    while (from != to) {\n"
+	       "        const int up = from < to, at = up ? from : from - 1;\n"
+	       "        double more[%d];\n"
+	       "        int i, j;\n"
+	       "        for (i = 0; i < %d; i++) {\n"
+	       "            more[i] = 0.0;\n"
+	       "            for (j = 0; j < %d; j++)\n"
+	       "                more[i] += (up ? $n_next[at][i][j] : $n_next[at][j][i]) * mode[j];\n"
+	       "        }\n"
+	       "        for (i = 0; i < %d; i++)\n"
+	       "            mode[i] += more[i];\n"
+	       "        from += up ? 1 : -1;\n"
+	       "    }\n"
+	       "}\n", width, width, width, width, width);
+}
+
 static void emit_bank(const struct emitter *e)
 {
 	const struct normal *m = normal_of_step(e);
@@ -167,24 +202,20 @@ static void emit_bank(const struct emitter *e)
 	       "        which--;\n"
 	       "    return which;\n"
 	       "}\n", m->banks - 1);
+	emit_turn(e);
 	say(e, "\n/* From the modes of one operator to those of another: what is kept of the last steps too */\n"
 	       "static void $n_use($n *s, int which)\n"
 	       "{\n"
-	       "    double q[%d];\n"
 	       "    int k, d;\n"
-	       "    $n_of_modes(s->which, s->eta, q);\n"
-	       "    $n_modes_of(which, q, s->eta);\n"
-	       "    $n_of_modes(s->which, s->rate, q);\n"
-	       "    $n_modes_of(which, q, s->rate);\n"
+	       "    $n_turn(s->which, which, s->eta);\n"
+	       "    $n_turn(s->which, which, s->rate);\n"
 	       "    for (k = 0; k < s->known; k++) {\n"
-	       "        for (d = 0; d < 2; d++) {\n"
-	       "            $n_of_modes(s->which, s->past[k][d], q);\n"
-	       "            $n_modes_of(which, q, s->past[k][d]);\n"
-	       "        }\n"
+	       "        for (d = 0; d < 2; d++)\n"
+	       "            $n_turn(s->which, which, s->past[k][d]);\n"
 	       "        $n_forces(which, s->f[k], s->past[k][0], s->past[k][1], s->force[k]);\n"
 	       "    }\n"
 	       "    s->which = which;\n"
-	       "}\n", m->modes);
+	       "}\n");
 }
 
 /* ---- the step ---- */

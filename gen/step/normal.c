@@ -384,6 +384,7 @@ struct normal *normal_of(struct step *step)
 		find_modes(&w, b);
 	find_blocks(&w);
 	find_transforms(&w);
+	find_turns(&w);
 	find_matrices(&w);
 	find_forces(&w);
 	find_waves(&w);

@@ -588,6 +588,7 @@ struct normal {
 	struct mode_block *block;
 	int *place;                 /* per mode: in a vector */
 	double *to, *from;          /* [bank][mode][coordinate] V^T M; [bank][coordinate][mode] V */
+	double *turn;               /* [bank but the last][place][place] V^T M V - I, from its modes to the next's */
 	double *frequency, *ratio;  /* [bank][mode]: sqrt(lambda), 0 below 0; delta over it */
 	int matrices;
 	struct normal_matrix *matrix;
@@ -628,6 +629,7 @@ mpq_t *past_nodes(int count);                               /* 0, -1, ...: the l
 double round_real(mpfr_srcptr x);
 mpq_t *by_coordinates(const struct model *model, const mpq_t *matrix); /* rows as those of the coordinates' equations */
 void find_transforms(struct normal_work *w);
+void find_turns(struct normal_work *w);
 void find_matrices(struct normal_work *w);
 void find_forces(struct normal_work *w);
 
