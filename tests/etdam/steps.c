@@ -306,7 +306,7 @@ int main(void)
     turns_beam("beam_etdam6", 1e-11);
     turns_beam("beam_nodes", 1e-12);
     agrees_over_spin_up(2e-11);
-    rings_little(1e-12);
+    rings_little(4e-13);
     same_bits("gyro_etdam4");
     same_bits("banked_etdam5");
     same_bits("spun_etdam6");
