@@ -50,7 +50,8 @@ int numbers_of_modes(const struct step *step)
 	int forces = 0;
 	for (int f = 0; f < step->model->split->functions; f++)
 		forces += m->force[f] ? width : 0;
-	return (m->banks - 1) * width * width + m->banks * (2 * n * n + m->matrices * n * n + forces + multistep + collocation) +
+	return (m->banks - 1) * width * width +
+	       m->banks * (2 * n * n + m->matrices * n * n + forces + multistep + collocation) +
 	       (m->settled ? settled_size(step->model) * 2 * width : 0);
 }
 

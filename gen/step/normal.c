@@ -196,14 +196,6 @@ static struct normal_stage stage_of(const struct normal_work *w, mpq_srcptr thet
 	return stage;
 }
 
-mpq_t *past_nodes(int count)
-{
-	mpq_t *node = rationals((size_t)count);
-	for (int k = 0; k < count; k++)
-		mpq_set_si(node[k], -k, 1);
-	return node;
-}
-
 /* The corrector's polynomial through the new force and all others is the predictor's and, times what the new force
  * exceeds that at h, the one that is 1 at h and 0 at all others. */
 static void find_multistep(struct normal_work *w)
@@ -270,7 +262,8 @@ static void find_settled(struct normal_work *w)
 {
 	struct normal *normal = w->normal;
 	const struct model *model = w->model;
-	int n = normal->modes, size = settled_size(model), bank = normal->settled_bank = last_bank(model), width = normal->width;
+	int n = normal->modes, size = settled_size(model), width = normal->width;
+	int bank = normal->settled_bank = last_bank(model);
 	mpfr_t *omega = reals((size_t)n, NORMAL_BITS), *Phi;
 	normal->omega = ARRAY(double, (size_t)width);
 	normal->period = ARRAY(double, (size_t)width);

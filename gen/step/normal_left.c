@@ -104,8 +104,8 @@ void find_transforms(struct normal_work *w)
 	}
 }
 
-/* From the modes of an operator to those of the next, without the way over coordinates: there what a slow mode has would
- * leave its rounding in fast ones, times their frequency in their rates. */
+/* From the modes of an operator to those of the next, without the way over coordinates: there what a slow mode has
+ * would leave its rounding in fast ones, times their frequency in their rates. */
 void find_turns(struct normal_work *w)
 {
 	struct normal *normal = w->normal;

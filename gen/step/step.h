@@ -539,6 +539,7 @@ struct lagrange {                   /* polynomials of s/h, each 1 at one of the 
 };
 struct lagrange lagrange_of(int nodes, const mpq_t *node);
 void lagrange_at(const struct lagrange *l, mpq_srcptr sigma, mpfr_t *value); /* each at s = sigma h */
+mpq_t *past_nodes(int count);                               /* 0, -1, ...: the last force first */
 mpq_t *lobatto_nodes(int stages);                           /* stages + 1 of them, 0 and 1 among them; to 256 bits */
 struct mode_flow {                  /* of one mode over theta h */
 	/* eta = e eta0 + s eta0' + ..., eta' = de eta0 + ds eta0' + ... */
@@ -622,7 +623,6 @@ struct normal_work {                /* what its builders share */
 	struct eigenpairs *pairs;   /* per bank */
 	struct normal_mode *mode;          /* per bank and mode */
 };
-mpq_t *past_nodes(int count);                               /* 0, -1, ...: the last force first */
 
 /* ---- normal_left.c: what is left over, in modes ---- */
 
@@ -642,8 +642,8 @@ double *waves_of_stage(const struct normal_work *w, mpq_srcptr theta);     /* of
 /* ---- settled.c: a step once all functions of time are constant ---- */
 
 int settled_size(const struct model *model);                /* 2n + 1, and 2 for each wave */
-/* Over [omega eta, eta', 1, cos and sin of each wave] of these modes, one omega each, above 0: of that size. M, C and K:
- * of the first operator, rows by coordinates */
+/* Over [omega eta, eta', 1, cos and sin of each wave] of these modes, one omega each, above 0: of that size. M, C and
+ * K: of the first operator, rows by coordinates */
 mpfr_t *settled_matrix(const struct model *model, const mpq_t *M, const mpq_t *C, const mpq_t *K,
 		       const struct eigenpairs *pairs, mpfr_t *omega);
 
