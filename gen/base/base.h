@@ -53,6 +53,7 @@ enum {
 	LIMIT_BLOCK_ROWS = 64,      /* in a block of NAME_run */
 	LIMIT_NEED_STATES = 128,    /* of a model with needs */
 	LIMIT_MODES = 128,          /* of a scheme in normal modes */
+	LIMIT_WITHIN = 1000,        /* radians of a mode in a step that has values inside: as many series */
 	LIMIT_SERIES = 50000,       /* multiplications of a Taylor series, each of which is C */
 	LIMIT_COLLOCATED = 40,      /* coordinates of a collocation, whose matrices stand on the stack */
 	LIMIT_TURNS = 256,          /* log2 of a load's angle in a step, for models of more states than that */

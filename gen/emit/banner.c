@@ -210,8 +210,8 @@ void banner_normal(const struct emitter *e)
 	banner_scheme(e);
 	banner_sentence(e, format("Normal modes of M q'' + C q' + K q = 0, K and C symmetric: %s.",
 				  operators_of_modes(e->step)));
-	banner_sentence(e, "Exact: what each mode does by itself; approximated, by polynomials in time: forces on the "
-			   "modes, loads too, which are V^T times");
+	banner_sentence(e, format("Exact: %s; approximated, by polynomials in time: all %s forces on the modes, which "
+				  "are V^T times", exact_in_modes(e->step), model->split->waves ? "other" : "these"));
 	banner_left(e, model);
 	banner_sentence(e, format("Step: %s.", course_of_modes(e->step)));
 	banner_sentence(e, format("Stability: %s.", stability_of_modes(e->step)));

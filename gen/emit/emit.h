@@ -379,11 +379,26 @@ void emit_from_modes(const struct emitter *e);                    /* NAME_of_mod
 void emit_function_values(const struct emitter *e);               /* NAME_functions */
 void emit_forces(const struct emitter *e);                        /* NAME_forces */
 
+/* ---- emit_waves.c: known loads, to which modes respond exactly ---- */
+
+int  wave_values(const struct emitter *e);                        /* cos and sin of each */
+void emit_waves(const struct emitter *e);                         /* NAME_waves */
+const char *wave_array(const struct emitter *e);                  /* double wave[...] of a function, or "" */
+void emit_waves_now(const struct emitter *e);                     /* wave <- them */
+const char *emit_wave_table(const struct emitter *e, const char *name, const struct normal_stage *stage); /* or NULL */
+void add_waves(const struct emitter *e, struct row_sum *s, const char *table, int row); /* row 0: of eta, 1: of eta' */
+void add_waves_of_columns(const struct emitter *e, struct row_sum *s, int first);
+void emit_wave_force(const struct emitter *e, const char *table); /* in NAME_inside: of a term of its series */
+
 /* ---- emit_normal.c: steps in normal modes ---- */
 
 void emit_normal_members(const struct emitter *e);
 void emit_normal_tables(const struct emitter *e);
 void emit_normal_step(const struct emitter *e);
+
+/* ---- emit_within.c: states inside such a step ---- */
+
+void emit_normal_at(const struct emitter *e);
 
 /* ---- banner.c, declarations.c: what a header has ---- */
 

@@ -462,8 +462,8 @@ void emit_forces(const struct emitter *e)
 		const char *name =
 			emit_bank_table(e, format("force%d", f), "Forces of time alone", 0, m->width, m->force[f]);
 		for (int b = 0; b < m->blocks; b++)
-			add_summand(&sum[b], format("%s[%d + i]%s%s", name, m->block[b].place, f ? " * " : "",
-						 f ? function_text(f) : ""));
+			add_summand(&sum[b], format("%s[%d + i]%s", name, m->block[b].place,
+						    f ? format(" * now%d", f) : ""));
 	}
 	for (int b = 0; b < m->blocks; b++)
 		for (int k = 0; k < m->matrices; k++)
@@ -475,6 +475,10 @@ void emit_forces(const struct emitter *e)
 	       "static void $n_forces(int which, const double f[%d], const double eta[%d],\n"
 	       "    const double rate[%d], double force[%d])\n"
 	       "{\n", functions_of_time(e) ? functions_of_time(e) : 1, m->width, m->width, m->width);
+	/* what a loop reads through a pointer might be what it writes, and compilers would leave it as it is */
+	for (int f = 1; f < e->model->split->functions; f++)
+		if (m->force[f])
+			say(e, "    const double now%d = %s;\n", f, function_text(f));
 	emit_combinations(e, made);
 	emit_rest_values(e);
 	for (int b = 0; b < m->blocks; b++)

@@ -4,14 +4,18 @@
 
 /* ---- a step by collocation ---- */
 
+struct stage_tables { const char *flow, *weight, *wave; };
+
 /* e eta + s eta', de eta + ds eta', and weights of forces: the stage at theta h */
-static const char *stage_sum(const char *flow, const char *weight, int row, int points, const char *force)
+static const char *stage_sum(const struct emitter *e, const struct stage_tables *t, int row, int points,
+			     const char *force)
 {
 	struct row_sum s = { 0 };
-	add_summand(&s, format("%s[%d][i] * s->eta[i]", flow, 2 * row));
-	add_summand(&s, format("%s[%d][i] * s->rate[i]", flow, 2 * row + 1));
+	add_summand(&s, format("%s[%d][i] * s->eta[i]", t->flow, 2 * row));
+	add_summand(&s, format("%s[%d][i] * s->rate[i]", t->flow, 2 * row + 1));
 	for (int k = 0; k < points; k++)
-		add_summand(&s, format("%s[%d][i] * %s", weight, 2 * k + row, format(force, k)));
+		add_summand(&s, format("%s[%d][i] * %s", t->weight, 2 * k + row, format(force, k)));
+	add_waves(e, &s, t->wave, row);
 	return tree(s.terms, s.term, 21);
 }
 
@@ -74,7 +78,7 @@ static void emit_first_forces(const struct emitter *e)
 		say(e, "    }\n");
 }
 
-static void emit_sweeps(const struct emitter *e, const char *const *flow, const char *const *weight)
+static void emit_sweeps(const struct emitter *e, const struct stage_tables *table)
 {
 	const struct normal *m = normal_of_step(e);
 	int nodes = m->stages + 1;
@@ -85,8 +89,8 @@ static void emit_sweeps(const struct emitter *e, const char *const *flow, const 
 		       "            rate[%d][i] = %s;\n"
 		       "        }\n"
 		       "        $n_forces(which, f[%d], eta[%d], rate[%d], force[%d]);\n", m->width, i + 1,
-		    stage_sum(flow[i], weight[i], 0, nodes, "force[%d][i]"), i + 1,
-		    stage_sum(flow[i], weight[i], 1, nodes, "force[%d][i]"), i + 1, i + 1, i + 1, i + 1);
+		    stage_sum(e, &table[i], 0, nodes, "force[%d][i]"), i + 1,
+		    stage_sum(e, &table[i], 1, nodes, "force[%d][i]"), i + 1, i + 1, i + 1, i + 1);
 	say(e, "    }\n");
 }
 
@@ -95,20 +99,25 @@ static void emit_collocation(const struct emitter *e)
 	const struct normal *m = normal_of_step(e);
 	int stages = m->stages, nodes = stages + 1, width = m->width;
 	int functions = functions_of_time(e) ? functions_of_time(e) : 1;
-	const char **flow = ARRAY(const char *, (size_t)stages), **weight = ARRAY(const char *, (size_t)stages);
+	struct stage_tables *table = ARRAY(struct stage_tables, (size_t)stages);
 	for (int i = 0; i < stages; i++) {
-		flow[i] = emit_bank_table(e, format("flow%d", i + 1), "Modes at a node from those at the step's start",
-					  4, width, m->stage[i].flow);
-		weight[i] = emit_bank_table(e, format("weight%d", i + 1), "... and from the forces at all nodes",
-					    2 * nodes, width, m->stage[i].weight);
+		table[i].flow = emit_bank_table(e, format("flow%d", i + 1),
+						"Modes at a node from those at the step's start", 4, width,
+						m->stage[i].flow);
+		table[i].weight = emit_bank_table(e, format("weight%d", i + 1), "... and from the forces at all nodes",
+						  2 * nodes, width, m->stage[i].weight);
+		table[i].wave = emit_wave_table(e, format("wave%d", i + 1), &m->stage[i]);
 	}
 	say(e, "\n/* A step by collocation: forces are a polynomial through the nodes, found by so many sweeps */\n"
-	       "static void $n_collocate($n *s)\n"
+	       "static void $n_collocate($n *s%s)\n"
 	       "{\n"
-	       "    double f[%d][%d], force[%d][%d], eta[%d][%d], rate[%d][%d];\n"
+	       "    double f[%d][%d], %seta[%d][%d], rate[%d][%d];\n"
 	       "    const int which = s->which;\n"
-	       "    int i, k, sweep, sweeps = %d;\n", nodes, functions, nodes, width, nodes, width, nodes, width,
+	       "    int i, k, sweep, sweeps = %d;\n", m->points ? format(", double force[%d][%d]", nodes, width) : "",
+	    nodes, functions, m->points ? "" : format("force[%d][%d], ", nodes, width), nodes, width, nodes, width,
 	    m->first_sweeps);
+	say(e, "%s", wave_array(e));
+	emit_waves_now(e);
 	if (functions_of_time(e))
 		say(e, "    for (k = 0; k <= %d; k++)\n"
 		       "        %s\n", stages, functions_call(e, "k", false, "f[k]"));
@@ -123,7 +132,7 @@ static void emit_collocation(const struct emitter *e)
 		       "        rate[0][i] = s->rate[i];\n"
 		       "    }\n", width);
 	}
-	emit_sweeps(e, flow, weight);
+	emit_sweeps(e, table);
 	say(e, "    for (i = 0; i < %d; i++) {\n"
 	       "        s->eta[i] = eta[%d][i];\n"
 	       "        s->rate[i] = rate[%d][i];\n"
@@ -137,6 +146,41 @@ static void emit_collocation(const struct emitter *e)
 }
 
 /* ---- a bank ---- */
+
+/* V^T M V is orthogonal: what goes back is transposed */
+static void emit_turn(const struct emitter *e)
+{
+	const struct normal *m = normal_of_step(e);
+	int width = m->width, tables = m->banks - 1;
+	say(e, "\n/* Modes of the next operator from those of each, beyond what they are themselves */\n"
+	       "static const double $n_next[%d][%d][%d] = {\n", tables, width, width);
+	for (int b = 0; b < tables; b++) {
+		say(e, "  {\n");
+		for (int i = 0; i < width; i++) {
+			say(e, "    {");
+			say_numbers(e, width, m->turn + (b * width + i) * width);
+			say(e, "},\n");
+		}
+		say(e, "  },\n");
+	}
+	say(e, "};\n"
+	       "\nstatic void $n_turn(int from, int to, double mode[%d])\n"
+	       "{\n"
+	       "    while (from != to) {\n"
+	       "        const int up = from < to, at = up ? from : from - 1;\n"
+	       "        double more[%d];\n"
+	       "        int i, j;\n"
+	       "        for (i = 0; i < %d; i++) {\n"
+	       "            more[i] = 0.0;\n"
+	       "            for (j = 0; j < %d; j++)\n"
+	       "                more[i] += (up ? $n_next[at][i][j] : $n_next[at][j][i]) * mode[j];\n"
+	       "        }\n"
+	       "        for (i = 0; i < %d; i++)\n"
+	       "            mode[i] += more[i];\n"
+	       "        from += up ? 1 : -1;\n"
+	       "    }\n"
+	       "}\n", width, width, width, width, width);
+}
 
 static void emit_bank(const struct emitter *e)
 {
@@ -158,24 +202,20 @@ static void emit_bank(const struct emitter *e)
 	       "        which--;\n"
 	       "    return which;\n"
 	       "}\n", m->banks - 1);
+	emit_turn(e);
 	say(e, "\n/* From the modes of one operator to those of another: what is kept of the last steps too */\n"
 	       "static void $n_use($n *s, int which)\n"
 	       "{\n"
-	       "    double q[%d];\n"
 	       "    int k, d;\n"
-	       "    $n_of_modes(s->which, s->eta, q);\n"
-	       "    $n_modes_of(which, q, s->eta);\n"
-	       "    $n_of_modes(s->which, s->rate, q);\n"
-	       "    $n_modes_of(which, q, s->rate);\n"
+	       "    $n_turn(s->which, which, s->eta);\n"
+	       "    $n_turn(s->which, which, s->rate);\n"
 	       "    for (k = 0; k < s->known; k++) {\n"
-	       "        for (d = 0; d < 2; d++) {\n"
-	       "            $n_of_modes(s->which, s->past[k][d], q);\n"
-	       "            $n_modes_of(which, q, s->past[k][d]);\n"
-	       "        }\n"
+	       "        for (d = 0; d < 2; d++)\n"
+	       "            $n_turn(s->which, which, s->past[k][d]);\n"
 	       "        $n_forces(which, s->f[k], s->past[k][0], s->past[k][1], s->force[k]);\n"
 	       "    }\n"
 	       "    s->which = which;\n"
-	       "}\n", m->modes);
+	       "}\n");
 }
 
 /* ---- the step ---- */
@@ -184,30 +224,35 @@ static void emit_multistep(const struct emitter *e)
 {
 	const struct normal *m = normal_of_step(e);
 	int points = m->points, width = m->width;
-	const char *flow = emit_bank_table(e, "flow", "Modes after a step from those before", 4, width, m->step.flow);
-	const char *weight = emit_bank_table(e, "weight", "... and from the forces at its start and before", 2 * points,
-					     width, m->step.weight);
+	const struct stage_tables table = {
+		emit_bank_table(e, "flow", "Modes after a step from those before", 4, width, m->step.flow),
+		emit_bank_table(e, "weight", "... and from the forces at its start and before", 2 * points, width,
+				m->step.weight),
+		emit_wave_table(e, "wave", &m->step)
+	};
 	const char *correct = emit_bank_table(e, "correct", "What a force adds by its excess over the extrapolated one",
 					      2, width, m->correct);
 	struct row_sum extrapolated = { 0 };
 	for (int k = 0; k < points; k++)
 		add_summand(&extrapolated, scaled(m->extrapolate[k], format("force%d[i]", k)));
 	say(e, "\n/* A step from past forces: predict, evaluate, correct%s */\n"
-	       "static void $n_advance($n *s)\n"
+	       "static void $n_advance($n *s%s)\n"
 	       "{\n"
 	       "    double eta[%d], rate[%d], force[%d], expected[%d], f[%d];\n"
 	       "    const int which = s->which;\n"
-	       "    int i, at = s->newest;\n", m->twice ? ", evaluate" : "", width, width, width, width,
-	    functions_of_time(e) ? functions_of_time(e) : 1);
+	       "    int i, at = s->newest;\n%s", m->twice ? ", evaluate; first: the force of the first time" : "",
+	    m->twice ? format(", double first[%d]", width) : "", width, width, width, width,
+	    functions_of_time(e) ? functions_of_time(e) : 1, wave_array(e));
 	for (int k = 0; k < points; k++)
 		say(e, "    const double *const force%d = s->force[at];\n%s", k,
 		    k + 1 < points ? format("    at = at ? at - 1 : %d;\n", points - 1) : "");
+	emit_waves_now(e);
 	say(e, "    for (i = 0; i < %d; i++) {\n"
 	       "        eta[i] = %s;\n"
 	       "        rate[i] = %s;\n"
 	       "        expected[i] = %s;\n"
-	       "    }\n", width, stage_sum(flow, weight, 0, points, "force%d[i]"),
-	    stage_sum(flow, weight, 1, points, "force%d[i]"), tree(extrapolated.terms, extrapolated.term, 22));
+	       "    }\n", width, stage_sum(e, &table, 0, points, "force%d[i]"),
+	    stage_sum(e, &table, 1, points, "force%d[i]"), tree(extrapolated.terms, extrapolated.term, 22));
 	emit_step_end(e);
 	if (functions_of_time(e))
 		say(e, "    %s\n", functions_call(e, "0", true, "f"));
@@ -218,7 +263,9 @@ static void emit_multistep(const struct emitter *e)
 	       "        s->rate[i] = rate[i] + %s[1][i] * excess;\n"
 	       "    }\n", width, correct, correct);
 	if (m->twice)
-		say(e, "    $n_forces(which, f, s->eta, s->rate, force);\n");
+		say(e, "    for (i = 0; i < %d; i++)\n"
+		       "        first[i] = force[i];\n"
+		       "    $n_forces(which, f, s->eta, s->rate, force);\n", width);
 	emit_keep_point(e, "force", "f");
 	say(e, "}\n");
 }
@@ -230,6 +277,7 @@ void emit_normal_tables(const struct emitter *e)
 	if (functions_of_time(e))
 		emit_function_values(e);
 	emit_forces(e);
+	emit_waves(e);
 	emit_bank(e);
 	const struct normal *m = normal_of_step(e);
 	int selector = e->model->split->selector - 1;
@@ -254,7 +302,7 @@ void emit_normal_tables(const struct emitter *e)
 static void emit_settled(const struct emitter *e)
 {
 	const struct normal *m = normal_of_step(e);
-	int size = 2 * m->modes + 1, width = m->width;
+	int size = settled_size(e->model), width = m->width;
 	struct row_sum s = { 0 };
 	say(e, "\n/* Frequencies that amplitudes are scaled by, and 1 over them */\n"
 	       "static const double $n_omega[2][%d] = {\n    {", width);
@@ -262,8 +310,8 @@ static void emit_settled(const struct emitter *e)
 	say(e, "},\n    {");
 	say_numbers(e, width, m->period);
 	say(e, "},\n};\n"
-	       "\n/* A step over [omega eta, eta', 1], by columns */\n"
-	       "static const double $n_settled[%d][%d] = {\n", size, 2 * width);
+	       "\n/* A step over [omega eta, eta', 1%s], by columns */\n"
+	       "static const double $n_settled[%d][%d] = {\n", wave_values(e) ? ", loads" : "", size, 2 * width);
 	for (int j = 0; j < size; j++) {
 		say(e, "    {");
 		say_numbers(e, 2 * width, m->settled + j * 2 * width);
@@ -274,7 +322,8 @@ static void emit_settled(const struct emitter *e)
 	       "static void $n_continue($n *s)\n"
 	       "{\n"
 	       "    double x[%d], sum[%d];\n"
-	       "    int i;\n", 2 * width, 2 * width);
+	       "    int i;\n%s", 2 * width, 2 * width, wave_array(e));
+	emit_waves_now(e);
 	if (has_bank(e))
 		say(e, "    if (s->which != %d)\n"
 		       "        $n_use(s, %d);\n", m->settled_bank, m->settled_bank);
@@ -282,10 +331,11 @@ static void emit_settled(const struct emitter *e)
 	       "        x[i] = $n_omega[0][i] * s->eta[i];\n"
 	       "        x[%d + i] = s->rate[i];\n"
 	       "    }\n", width, width);
-	for (int j = 0; j < size; j++)
-		add_summand(&s, j + 1 == size ? spell(e, "$n_settled[%d][i]", j)
-					   : spell(e, "$n_settled[%d][i] * x[%d]", j,
-						   (j < m->modes ? 0 : width) + m->place[j % m->modes]));
+	for (int j = 0; j < 2 * m->modes; j++)
+		add_summand(&s, spell(e, "$n_settled[%d][i] * x[%d]", j,
+				      (j < m->modes ? 0 : width) + m->place[j % m->modes]));
+	add_summand(&s, spell(e, "$n_settled[%d][i]", 2 * m->modes));
+	add_waves_of_columns(e, &s, 2 * m->modes + 1);
 	say_row_sum(e, "sum[i]", 2 * width, &s);
 	say(e, "    for (i = 0; i < %d; i++) {\n"
 	       "        s->eta[i] = $n_omega[1][i] * sum[i];\n"
@@ -303,7 +353,7 @@ static void emit_settled(const struct emitter *e)
 static void emit_restart(const struct emitter *e)
 {
 	int points = normal_of_step(e)->points;
-	say(e, "    while (s->segment < %d && $n_until(s, s->segment) <= 1e-9 * $N_H) {\n"
+	say(e, "    while (s->segment < %d && $n_near(s) && $n_until(s, s->segment) <= 1e-9 * $N_H) {\n"
 	       "        if ($n_until(s, s->segment) < -1e-9 * $N_H)\n"
 	       "            s->status |= PL_INACCURATE;  /* it was inside the step */\n"
 	       "        s->segment++;\n"
@@ -313,10 +363,21 @@ static void emit_restart(const struct emitter *e)
 	say(e, "    }\n");
 }
 
+static void emit_near(const struct emitter *e)
+{
+	say(e, "\n/* Whether the next change of formula may be at hand: until then the time in one word is enough */\n"
+	       "static int $n_near(const $n *s)\n"
+	       "{\n"
+	       "    return $n_change[s->segment].hi - $n_time(s) <= $N_H + 1e-6 * $n_change[s->segment].hi;\n"
+	       "}\n");
+}
+
 void emit_normal_step(const struct emitter *e)
 {
 	const struct normal *m = normal_of_step(e);
 	int points = m->points;
+	if (has_changes(e))
+		emit_near(e);
 	if (reads_channels(e->model))
 		emit_leftover(e);
 	emit_collocation(e);
@@ -326,6 +387,8 @@ void emit_normal_step(const struct emitter *e)
 		emit_settled(e);
 	say(e, "\nvoid $n_step($n *s)\n"
 	       "{\n");
+	if (points)
+		say(e, "    double force[%d][%d];  /* on modes, of the first steps */\n", points, m->width);
 	if (m->settled)
 		say(e, "    if (s->segment == %d) {\n"
 		       "        $n_continue(s);\n"
@@ -334,9 +397,9 @@ void emit_normal_step(const struct emitter *e)
 		       "    }\n", e->system->segments - 1, m->width, m->width);
 	if (points)
 		say(e, "    if (s->known < %d)\n"
-		       "        $n_collocate(s);\n"
+		       "        $n_collocate(s, force);\n"
 		       "    else\n"
-		       "        $n_advance(s);\n", points);
+		       "        $n_advance(s%s);\n", points, m->twice ? ", force[0]" : "");
 	else
 		say(e, "    $n_collocate(s);\n");
 	if (has_bank(e)) {

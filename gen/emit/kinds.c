@@ -395,10 +395,18 @@ static const struct kind collocated = {
 
 /* ---- normal modes ---- */
 
-static const char *no_values_of_modes(const struct step *step)
+static const char *too_many_turns(const struct step *step)
 {
-	(void)step;
-	return "between its steps the scheme has no values of its order";
+	return step->series.emitted ? NULL : format("in a step a mode turns or decays by more than %d", LIMIT_WITHIN);
+}
+
+static bool reads_wave(const struct emitter *e, int load)
+{
+	const struct splitting *split = e->model->split;
+	bool found = false;
+	for (int k = 0; k < split->waves && !found; k++)
+		found = split->wave[k].wave == e->system->load[load].wave;
+	return found;
 }
 
 static void emit_normal_constants(const struct emitter *e)
@@ -412,7 +420,7 @@ static const struct kind normal_modes = {
 	.step_note = "",
 	.banner_more = nothing,
 	.no_jump = "what is left over changes in time",
-	.no_at = no_values_of_modes,
+	.no_at = too_many_turns,
 	.constants = nothing,
 	.types = nothing,
 	.coefficients = nothing,
@@ -424,13 +432,13 @@ static const struct kind normal_modes = {
 	.declare_more = nothing,
 	.start = no_start,
 	.places = any_place,
-	.reads_load = no_further_load,
+	.reads_load = reads_wave,
 	.reads_phi = never,
 	.tables = emit_normal_constants,
 	.pass = nothing,
 	.step = emit_normal_step,
 	.held = nothing,
-	.at = nothing,
+	.at = emit_normal_at,
 	.wrappers = nothing,
 	.params = emit_no_params
 };

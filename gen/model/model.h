@@ -77,11 +77,17 @@ struct rest_force {                 /* on the equation of a coordinate: a functi
 	int coord, function;
 	struct form *form;
 };
+struct wave_force {                 /* of a wave alone, of its cos and its sin: on the equation of each coordinate */
+	struct wave *wave;
+	mpq_t *force[2];
+};
 struct splitting {                  /* the leftover, sorted: see split.c */
 	int functions;
 	struct time_function *function; /* the first is 1 */
 	int rests;                  /* forces that are neither */
 	struct rest_force *rest;
+	int waves;                  /* known loads to which modes respond exactly; none where loads are to be left over */
+	struct wave_force *wave;
 	const struct node *mixed;   /* time and states in one function: none of this; NULL: there is none such */
 	bool settles;               /* there is a last segment of time, in which all functions are constant */
 	const struct atom *unknown; /* changes its formula in time, it is not known when; NULL: none does */

@@ -1,12 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What is left over, sorted: forces that are linear in coordinates and velocities with factors of time alone, forces of
- * time alone, and the rest. The first two are matrices and vectors, one for each function of time. */
+/* What is left over, sorted: forces that are linear in coordinates and velocities with factors of time alone, waves,
+ * other forces of time alone, and the rest. All but the last are matrices and vectors, one for each function of time.
+ */
 #include "model/model.h"
 
 struct split_work {
 	struct building *b;
 	struct splitting *split;
 	int coord;                  /* in whose equation the term stands */
+	const struct basis *basis;  /* of time alone; */
+	const struct form *plain;   /* the same as a sum of waves; NULL: it is none, or not at all times the same */
 };
 
 static mpq_t *zeros_if_none(mpq_t **matrix, size_t cells)
@@ -90,6 +93,69 @@ static void add_product(struct split_work *w, const struct atom *a, int k, mpq_s
 	mpq_clear(factor);
 }
 
+/* e^{a t} cos(w t + p), or its sin: a force to which a mode's response is known */
+static bool is_wave(const struct split_work *w, const struct basis *basis)
+{
+	return basis->kind == BASIS_WAVE && basis->power == 0 && !w->b->request->loads_left &&
+	       (mpq_sgn(basis->wave->w) != 0 || mpq_sgn(basis->wave->a) != 0);
+}
+
+static void add_wave(struct split_work *w, const struct basis *basis, mpq_srcptr by)
+{
+	struct splitting *s = w->split;
+	int k = 0, n = w->b->model->n;
+	while (k < s->waves && s->wave[k].wave != basis->wave)
+		k++;
+	if (k == s->waves) {
+		ENLARGE(s->wave, (size_t)s->waves + 1);
+		s->wave[s->waves++] = (struct wave_force){ basis->wave, { rationals((size_t)n), rationals((size_t)n) } };
+	}
+	mpq_ptr entry = s->wave[k].force[basis->sine][w->coord];
+	mpq_add(entry, entry, by);
+}
+
+/* Products of waves are waves: exp(-t)*sin(5*t) */
+static void find_plain(void *context)
+{
+	struct split_work *w = context;
+	struct collector *c = &w->b->collector;
+	struct point *point = point_new(c, 0, NULL);
+	const struct form *first = NULL;
+	bool plain = true;
+	for (c->interval = 0; c->interval < w->b->model->system.segments; c->interval++) {
+		const struct form *here = form_at(point, form_unit(*w->basis));
+		first = first ? first : here;
+		plain = plain && same_form(first, here);
+	}
+	for (int i = 0; i < first->terms; i++)
+		plain = plain && is_wave(w, &first->term[i].basis);
+	w->plain = plain ? first : NULL;
+}
+
+static const struct form *plain_form(struct split_work *w, const struct basis *basis)
+{
+	w->basis = basis;
+	w->plain = NULL;
+	if (!basis->atom)
+		return is_wave(w, basis) ? form_unit(*basis) : NULL;
+	if (!silent_guard(find_plain, w))
+		w->plain = NULL;
+	w->b->collector.interval = 0;
+	return w->plain;
+}
+
+static void add_waves(struct split_work *w, const struct form *plain, mpq_srcptr by)
+{
+	mpq_t factor;
+	mpq_init(factor);
+	place_loads(w->b, plain);
+	for (int i = 0; i < plain->terms; i++) {
+		mpq_mul(factor, by, plain->term[i].factor);
+		add_wave(w, &plain->term[i].basis, factor);
+	}
+	mpq_clear(factor);
+}
+
 static void add_force(struct split_work *w, const struct basis *basis, mpq_srcptr by)
 {
 	mpq_t factor;
@@ -142,10 +208,13 @@ static void add_term(struct split_work *w, const struct form_term *term)
 	const struct basis *basis = &term->basis;
 	const struct form *one = w->split->function[0].form;
 	int k = basis->atom ? linear_factor(basis->atom) : -1;
+	const struct form *plain;
 	if (basis->kind == BASIS_COORD)
 		add_state(w, one, basis, term->factor);
 	else if (k >= 0)
 		add_product(w, basis->atom, k, term->factor);
+	else if (depends_on_time_only(basis) && (plain = plain_form(w, basis)))
+		add_waves(w, plain, term->factor);
 	else if (depends_on_time_only(basis))
 		add_force(w, basis, term->factor);
 	else
@@ -211,7 +280,7 @@ void split_leftover(struct building *b)
 {
 	struct model *model = b->model;
 	struct splitting *s = NEW(struct splitting);
-	struct split_work w = { b, s, 0 };
+	struct split_work w = { .b = b, .split = s };
 	mpq_t one;
 	mpq_init(one);
 	mpq_set_ui(one, 1, 1);

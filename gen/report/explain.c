@@ -156,6 +156,12 @@ static void person_step(FILE *to, const struct step *step)
 		fprintf(to, "%s_at: the polynomial of the internal step, or of the next.\n", model->name);
 	else if (step->expansion)
 		fprintf(to, "%s_at: the series of the step, at a part of it.\n", model->name);
+	else if (step->normal && step->series.emitted)
+		fprintf(to, "%s_at: the step's modes under the polynomial of its forces, by series of %d terms.\n",
+			model->name, step->normal->within.terms);
+	else if (step->normal)
+		fprintf(to, "%s_at is not emitted: in a step a mode turns or decays by more than %d.\n", model->name,
+			LIMIT_WITHIN);
 	else if (step->series.emitted)
 		fprintf(to, "%s_at: Taylor series of degree %d on %d part%s of the time.\n", model->name,
 			step->series.degree, 1 << step->series.halvings, step->series.halvings ? "s" : "");

@@ -13,6 +13,12 @@ const char *operators_of_modes(const struct step *step)
 	return format("those of the Jacobian at %s to %s, %d operators", first, last, model->operators);
 }
 
+const char *exact_in_modes(const struct step *step)
+{
+	return step->model->split->waves ? "what each mode does by itself, and under the waves e^{a t} cos(w t + p) of loads"
+					 : "what each mode does by itself";
+}
+
 const char *course_of_modes(const struct step *step)
 {
 	const struct normal *m = step->normal;
@@ -38,20 +44,22 @@ int numbers_of_modes(const struct step *step)
 {
 	const struct normal *m = step->normal;
 	int n = m->modes, width = m->width;
-	int multistep = m->points ? (4 + 2 * m->points + 2) * width : 0;
-	int collocation = m->stages * (4 + 2 * (m->stages + 1)) * width;
+	int waves = 4 * step->model->split->waves;
+	int multistep = m->points ? (4 + 2 * m->points + 2 + waves) * width : 0;
+	int collocation = m->stages * (4 + 2 * (m->stages + 1) + waves) * width;
 	int forces = 0;
 	for (int f = 0; f < step->model->split->functions; f++)
 		forces += m->force[f] ? width : 0;
-	return m->banks * (2 * n * n + m->matrices * n * n + forces + multistep + collocation) +
-	       (m->settled ? (2 * n + 1) * 2 * width : 0);
+	return (m->banks - 1) * width * width +
+	       m->banks * (2 * n * n + m->matrices * n * n + forces + multistep + collocation) +
+	       (m->settled ? settled_size(step->model) * 2 * width : 0);
 }
 
 void person_normal(FILE *to, const struct step *step)
 {
 	const struct normal *m = step->normal;
-	fprintf(to, "Modes of M q'' + C q' + K q = 0, K and C symmetric: %s. All else is r, loads too: a force on each "
-		    "mode.\n", operators_of_modes(step));
+	fprintf(to, "Modes of M q'' + C q' + K q = 0, K and C symmetric: %s. Exact: %s. All else is r: a force on each "
+		    "mode.\n", operators_of_modes(step), exact_in_modes(step));
 	for (int b = 0; b < m->banks; b += m->banks > 1 ? m->banks - 1 : 1) {
 		fprintf(to, "    modes%s%s, [Hz], and damping ratio:\n", m->banks > 1 ? " at " : "",
 			m->banks > 1 ? step->model->operator[b].text : "");
@@ -114,7 +122,12 @@ void program_normal(FILE *to, const struct step *step)
 		if (m->force[f])
 			fprintf(to, "    %s times a vector\n",
 				f ? form_text(step->model, step->model->split->function[f].form) : "1");
+	for (int k = 0; k < step->model->split->waves; k++)
+		for (int d = 0; d <= oscillates(step->model->split->wave[k].wave); d++)
+			fprintf(to, "    %s times a vector, exact\n",
+				form_text(step->model, form_unit((struct basis){
+					.kind = BASIS_WAVE, .wave = step->model->split->wave[k].wave, .sine = d })));
 	fprintf(to, "Step: %s\n", course_of_modes(step));
 	if (m->settled)
-		fputs("Once nothing changes: [omega eta, eta'] <- matrix [omega eta, eta', 1]\n", to);
+		fputs("Once nothing changes: [omega eta, eta'] <- matrix [omega eta, eta', 1, waves]\n", to);
 }

@@ -22,6 +22,7 @@ void json_reach(FILE *to, const struct step *step);
 /* ---- modes.c: steps in normal modes ---- */
 
 const char *operators_of_modes(const struct step *step);    /* whose modes they are */
+const char *exact_in_modes(const struct step *step);
 const char *course_of_modes(const struct step *step);       /* which way a step goes */
 const char *stability_of_modes(const struct step *step);
 int  numbers_of_modes(const struct step *step);             /* in its tables, at most */

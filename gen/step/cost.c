@@ -495,12 +495,27 @@ static void mark_loads_read(const struct step *step, struct program *program)
 {
 	const struct splitting *split = step->model->split;
 	const struct linear *system = &step->branch->system;
-	for (int f = 1; f < split->functions; f++) {
-		struct reads r = reads_of(step->model, 1, &split->function[f].form);
-		for (int l = 0, column = 0; l < system->loads; l++)
-			for (int k = 0; k < system->load[l].columns; k++, column++)
-				program->uses[column] = program->uses[column] || r.load[l];
+	const struct form **form = ARRAY(const struct form *, (size_t)split->functions);
+	for (int f = 1; f < split->functions; f++)
+		form[f - 1] = split->function[f].form;
+	struct reads r = reads_of(step->model, split->functions - 1, form);
+	for (int l = 0, column = 0; l < system->loads; l++) {
+		bool read = r.load[l];
+		for (int k = 0; k < split->waves; k++)
+			read = read || split->wave[k].wave == system->load[l].wave;
+		for (int k = 0; k < system->load[l].columns; k++, column++)
+			program->uses[column] = program->uses[column] || read;
 	}
+}
+
+/* What waves add to eta and eta' of each mode: cos and sin, or e^{a t} alone */
+static int wave_products(const struct step *step)
+{
+	const struct splitting *split = step->model->split;
+	int values = 0;
+	for (int k = 0; k < split->waves; k++)
+		values += oscillates(split->wave[k].wave) ? 2 : 1;
+	return 2 * step->normal->modes * values;
 }
 
 static struct cost cost_of_matrix(const struct normal *normal, const struct normal_matrix *m)
@@ -546,6 +561,8 @@ void count_normal(const struct step *step, struct program *program)
 	force.multiplications += rest.cost.multiplications + (n + 1) * split->rests;
 	force.additions += rest.cost.additions + n * split->rests;
 	c.cost.calls += evaluations * rest.cost.calls;
+	c.cost.multiplications += wave_products(step);
+	c.cost.additions += wave_products(step);
 	program->multiplications = c.cost.multiplications + evaluations * force.multiplications + n * (3 * points + 6);
 	program->additions = c.cost.additions + evaluations * force.additions + n * (3 * points + 6);
 	program->calls = c.cost.calls;

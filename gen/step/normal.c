@@ -177,7 +177,7 @@ static struct normal_stage stage_of(const struct normal_work *w, mpq_srcptr thet
 {
 	const struct normal *normal = w->normal;
 	int width = normal->width, n = normal->modes;
-	struct normal_stage stage = { .points = l->nodes };
+	struct normal_stage stage = { .points = l->nodes, .wave = waves_of_stage(w, theta) };
 	stage.flow = ARRAY(double, (size_t)(normal->banks * 4 * width));
 	stage.weight = ARRAY(double, (size_t)(normal->banks * l->nodes * 2 * width));
 	for (int b = 0; b < normal->banks; b++)
@@ -194,15 +194,6 @@ static struct normal_stage stage_of(const struct normal_work *w, mpq_srcptr thet
 			mode_flow_free(&flow, l);
 		}
 	return stage;
-}
-
-/* Nodes 0, -1, ...: the last force first */
-static mpq_t *past_nodes(int count)
-{
-	mpq_t *node = rationals((size_t)count);
-	for (int k = 0; k < count; k++)
-		mpq_set_si(node[k], -k, 1);
-	return node;
 }
 
 /* The corrector's polynomial through the new force and all others is the predictor's and, times what the new force
@@ -271,7 +262,8 @@ static void find_settled(struct normal_work *w)
 {
 	struct normal *normal = w->normal;
 	const struct model *model = w->model;
-	int n = normal->modes, size = 2 * n + 1, bank = normal->settled_bank = last_bank(model), width = normal->width;
+	int n = normal->modes, size = settled_size(model), width = normal->width;
+	int bank = normal->settled_bank = last_bank(model);
 	mpfr_t *omega = reals((size_t)n, NORMAL_BITS), *Phi;
 	normal->omega = ARRAY(double, (size_t)width);
 	normal->period = ARRAY(double, (size_t)width);
@@ -373,6 +365,7 @@ struct normal *normal_of(struct step *step)
 	check_orders(step);
 	check_left(step);
 	check_changes(step);
+	check_turns(step);
 	w.M = by_coordinates(model, (const mpq_t *)model->system.M);
 	check_symmetry(&w);
 	normal->modes = model->n;
@@ -384,8 +377,10 @@ struct normal *normal_of(struct step *step)
 		find_modes(&w, b);
 	find_blocks(&w);
 	find_transforms(&w);
+	find_turns(&w);
 	find_matrices(&w);
 	find_forces(&w);
+	find_waves(&w);
 	normal->stages = row->points ? row->points - 1 : model->stages;
 	normal->kept = row->points ? row->points : model->stages + 1;
 	normal->sweeps = SWEEPS;
@@ -397,5 +392,6 @@ struct normal *normal_of(struct step *step)
 	choose_evaluations(&w);
 	if (model->split->settles)
 		find_settled(&w);
+	find_within(&w);
 	return normal;
 }

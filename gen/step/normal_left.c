@@ -104,6 +104,38 @@ void find_transforms(struct normal_work *w)
 	}
 }
 
+/* From the modes of an operator to those of the next, without the way over coordinates: there what a slow mode has
+ * would leave its rounding in fast ones, times their frequency in their rates. */
+void find_turns(struct normal_work *w)
+{
+	struct normal *normal = w->normal;
+	int n = normal->modes, width = normal->width;
+	mpfr_t sum, part, *MV = reals((size_t)n * (size_t)n, NORMAL_BITS);
+	mpfr_inits2(NORMAL_BITS, sum, part, NULL);
+	normal->turn = ARRAY(double, (size_t)(normal->banks * width * width));
+	for (int b = 0; b + 1 < normal->banks; b++) {
+		for (int i = 0; i < n * n; i++) {
+			mpfr_set_zero(MV[i], 1);
+			for (int k = 0; k < n; k++) {
+				mpfr_mul_q(part, w->pairs[b].vector[k * n + i % n], w->M[i / n * n + k], MPFR_RNDN);
+				mpfr_add(MV[i], MV[i], part, MPFR_RNDN);
+			}
+		}
+		for (int i = 0; i < n * n; i++) {
+			mpfr_set_si(sum, i / n == i % n ? -1 : 0, MPFR_RNDN);
+			for (int k = 0; k < n; k++) {
+				mpfr_mul(part, w->pairs[b + 1].vector[k * n + i / n], MV[k * n + i % n], MPFR_RNDN);
+				mpfr_add(sum, sum, part, MPFR_RNDN);
+			}
+			if (!mpfr_zero_p(sum) && mpfr_get_exp(sum) > -NOTHING)
+				normal->turn[(b * width + normal->place[i / n]) * width + normal->place[i % n]] =
+					round_real(sum);
+		}
+	}
+	mpfr_clears(sum, part, NULL);
+	reals_free(MV, (size_t)n * (size_t)n);
+}
+
 /* ---- what is left over ---- */
 
 /* X = ratio Y; false: it is no multiple */

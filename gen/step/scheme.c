@@ -232,6 +232,7 @@ static void build_normal_step(struct step *step)
 	step->program->nodes = normal->stages + 1;
 	step->program->node = normal->node;
 	count_normal(step, step->program);
+	step->series.emitted = normal->within.angle <= LIMIT_WITHIN;
 }
 
 /* Where a model is stepped in several ways, that of the equations as written is made once. */

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * From a time on all functions of time are constant: then M q'' + C q' + K q = g with constant matrices, and a step is
- * e^{A h} of x = [q, q', 1]. It is taken over [omega eta, eta', 1], whose matrix has entries of the size of 1, where
- * that over coordinates has frequencies for entries.
+ * From a time on all functions of time are constant: then M q'' + C q' + K q = g + waves with constant matrices, and a
+ * step is e^{A h} of x = [q, q', 1, cos and sin of each wave]. It is taken over [omega eta, eta', 1, ...], whose matrix
+ * has entries of the size of 1, where that over coordinates has frequencies for entries.
  */
 #include "step/step.h"
 
@@ -20,10 +20,37 @@ static void add_multiple(size_t cells, mpq_t *X, mpq_srcptr by, const mpq_t *Y)
 	mpq_clear(part);
 }
 
-/* A of [q, q', 1], (2n + 1) x (2n + 1), by the first operator and what it leaves over at the end */
+int settled_size(const struct model *model)
+{
+	return 2 * model->n + 1 + 2 * model->split->waves;
+}
+
+/* Rows of the waves: (a + i w) (cos + i sin); their forces, as columns of the accelerations */
+static void add_waves(const struct model *model, mpq_t *A, const mpq_t *inverse)
+{
+	int n = model->n, size = settled_size(model);
+	mpq_t part;
+	mpq_init(part);
+	for (int k = 0; k < model->split->waves; k++) {
+		const struct wave_force *own = &model->split->wave[k];
+		int c = 2 * n + 1 + 2 * k, s = c + 1;
+		mpq_set(A[c * size + c], own->wave->a);
+		mpq_set(A[s * size + s], own->wave->a);
+		mpq_set(A[s * size + c], own->wave->w);
+		mpq_neg(A[c * size + s], own->wave->w);
+		for (int i = 0; i < 2 * n * n; i++) {
+			mpq_ptr entry = A[(n + i / 2 / n) * size + c + i % 2];
+			mpq_mul(part, inverse[i / 2], own->force[i % 2][i / 2 % n]);
+			mpq_add(entry, entry, part);
+		}
+	}
+	mpq_clear(part);
+}
+
+/* A of [q, q', 1, waves], by the first operator and what it leaves over at the end */
 static mpq_t *last_matrix(const struct model *model, const mpq_t *M, const mpq_t *C, const mpq_t *K)
 {
-	int n = model->n, size = 2 * n + 1, column;
+	int n = model->n, size = settled_size(model), column;
 	size_t cells = (size_t)n * (size_t)n;
 	const struct splitting *split = model->split;
 	mpq_t *inverse = rationals(cells), *of[3] = { rationals(cells), rationals(cells), rationals((size_t)n) };
@@ -51,6 +78,7 @@ static mpq_t *last_matrix(const struct model *model, const mpq_t *M, const mpq_t
 					mpq_add(entry, entry, part);
 				}
 	}
+	add_waves(model, A, (const mpq_t *)inverse);
 	mpq_clears(minus, part, NULL);
 	return A;
 }
@@ -73,11 +101,11 @@ static void real_product(int rows, int inner, int columns, mpfr_t *X, mpfr_t *Y,
 	mpfr_clear(part);
 }
 
-/* [V^T M, 0, 0; 0, V^T M, 0; 0, 0, 1], its first rows times omega; or what undoes that */
+/* [V^T M, 0, 0; 0, V^T M, 0; 0, 0, I], its first rows times omega; or what undoes that */
 static mpfr_t *transform(const struct model *model, const mpq_t *M, const struct eigenpairs *pairs, mpfr_t *omega,
 			 bool back)
 {
-	int n = model->n, size = 2 * n + 1;
+	int n = model->n, size = settled_size(model);
 	mpfr_t *T = reals((size_t)size * (size_t)size, ENTRY_BITS), part;
 	mpfr_init2(part, ENTRY_BITS);
 	for (int i = 0; i < n; i++)
@@ -94,7 +122,8 @@ static mpfr_t *transform(const struct model *model, const mpq_t *M, const struct
 			else
 				mpfr_mul(of_q, of_rate, omega[i], MPFR_RNDN);
 		}
-	mpfr_set_ui(T[size * size - 1], 1, MPFR_RNDN);
+	for (int i = 2 * n; i < size; i++)
+		mpfr_set_ui(T[i * size + i], 1, MPFR_RNDN);
 	mpfr_clear(part);
 	return T;
 }
@@ -102,7 +131,7 @@ static mpfr_t *transform(const struct model *model, const mpq_t *M, const struct
 mpfr_t *settled_matrix(const struct model *model, const mpq_t *M, const mpq_t *C, const mpq_t *K,
 		       const struct eigenpairs *pairs, mpfr_t *omega)
 {
-	int size = 2 * model->n + 1;
+	int size = settled_size(model);
 	size_t cells = (size_t)size * (size_t)size;
 	struct taylor *taylor = taylor_of(size, (const mpq_t *)last_matrix(model, M, C, K), model->h);
 	mpfr_t *Phi = reals(cells, ENTRY_BITS), *half = reals(cells, ENTRY_BITS);

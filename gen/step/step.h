@@ -574,6 +574,7 @@ struct lagrange {                   /* polynomials of s/h, each 1 at one of the 
 };
 struct lagrange lagrange_of(int nodes, const mpq_t *node);
 void lagrange_at(const struct lagrange *l, mpq_srcptr sigma, mpfr_t *value); /* each at s = sigma h */
+mpq_t *past_nodes(int count);                               /* 0, -1, ...: the last force first */
 mpq_t *lobatto_nodes(int stages);                           /* stages + 1 of them, 0 and 1 among them; to 256 bits */
 struct mode_flow {                  /* of one mode over theta h */
 	/* eta = e eta0 + s eta0' + ..., eta' = de eta0 + ds eta0' + ... */
@@ -599,6 +600,7 @@ struct normal_stage {               /* modes at a time after the step's start, f
 	int points;
 	double *flow;               /* [bank][e, s, de, ds][place] */
 	double *weight;             /* [bank][point][eta, eta'][place] */
+	double *wave;               /* [bank][wave][of cos, of sin at the step's start][eta, eta'][place] */
 };
 struct stability {                  /* of a multistep method, functions of time frozen */
 	double span;                /* [s] over which they are looked at */
@@ -608,16 +610,26 @@ struct stability {                  /* of a multistep method, functions of time 
 	double growth;              /* ln of what all steps of the span together let grow at most; */
 	double growth_factor;       /* that itself */
 };
+struct within {                     /* a step: states inside it, by Taylor series over its parts */
+	double angle;               /* by which a mode, or a wave, turns or decays in a step at most: in as many parts */
+	int terms;
+	double *stiffness, *damping; /* [bank][place] lambda, 2 delta; no damping: NULL */
+	/* Of the force's polynomial, the factors of what forces exceed that at the step's start by: [power - 1][node - 1];
+	 * through past forces and the new one (NULL: of a method of one step); through those at all nodes of a step */
+	double *past, *nodes;
+};
 struct normal {
 	int modes, width;           /* n; length of a vector of modes */
 	int banks, blocks;
 	struct mode_block *block;
 	int *place;                 /* per mode: in a vector */
 	double *to, *from;          /* [bank][mode][coordinate] V^T M; [bank][coordinate][mode] V */
+	double *turn;               /* [bank but the last][place][place] V^T M V - I, from its modes to the next's */
 	double *frequency, *ratio;  /* [bank][mode]: sqrt(lambda), 0 below 0; delta over it */
 	int matrices;
 	struct normal_matrix *matrix;
 	double **force;             /* per function: [bank][place]; NULL: none */
+	double *wave;               /* forces of waves: [bank][wave][cos, sin][place] */
 	int points;                 /* of the multistep method; 0: each step is by collocation */
 	bool twice;                 /* predict, evaluate, correct, evaluate; else the last is left out */
 	struct normal_stage step;   /* the predictor: points past forces, the last first */
@@ -630,11 +642,12 @@ struct normal {
 	int kept;                   /* forces that are kept between steps: points, or stages + 1 */
 	struct normal_stage *stage;
 	mpq_t *node;                /* stages + 1, from 0 to 1 */
-	/* Once all functions of time are constant: over [omega eta, eta', 1], by columns: [2 modes + 1][2 width]; the
+	/* Once all functions of time are constant: over [omega eta, eta', 1, waves], by columns: [size][2 width]; the
 	 * operator whose modes they are. NULL: they never are */
 	double *settled, *omega, *period; /* omega and 1/omega: [place] */
 	int settled_bank;
 	struct stability stability; /* of a multistep method */
+	struct within within;
 };
 struct normal *normal_of(struct step *step);                /* leaves the statement where there is none */
 struct normal_work {                /* what its builders share */
@@ -651,15 +664,27 @@ struct normal_work {                /* what its builders share */
 double round_real(mpfr_srcptr x);
 mpq_t *by_coordinates(const struct model *model, const mpq_t *matrix); /* rows as those of the coordinates' equations */
 void find_transforms(struct normal_work *w);
+void find_turns(struct normal_work *w);
 void find_matrices(struct normal_work *w);
 void find_forces(struct normal_work *w);
 
+/* ---- waves.c: known loads, to which modes respond exactly ---- */
+
+void check_turns(const struct step *step);
+void find_waves(struct normal_work *w);
+double *waves_of_stage(const struct normal_work *w, mpq_srcptr theta);     /* of all banks; see struct normal_stage */
+
 /* ---- settled.c: a step once all functions of time are constant ---- */
 
-/* Over [omega eta, eta', 1] of these modes, one omega each, above 0: (2n + 1) x (2n + 1). M, C and K: of the first
- * operator, rows by coordinates */
+int settled_size(const struct model *model);                /* 2n + 1, and 2 for each wave */
+/* Over [omega eta, eta', 1, cos and sin of each wave] of these modes, one omega each, above 0: of that size. M, C and
+ * K: of the first operator, rows by coordinates */
 mpfr_t *settled_matrix(const struct model *model, const mpq_t *M, const mpq_t *C, const mpq_t *K,
 		       const struct eigenpairs *pairs, mpfr_t *omega);
+
+/* ---- within.c: states inside a step in normal modes ---- */
+
+void find_within(struct normal_work *w);
 
 /* ---- frozen.c: stability of multistep methods in normal modes ---- */
 

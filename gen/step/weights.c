@@ -111,6 +111,14 @@ mpq_t *lobatto_nodes(int stages)
 	return node;
 }
 
+mpq_t *past_nodes(int count)
+{
+	mpq_t *node = rationals((size_t)count);
+	for (int k = 0; k < count; k++)
+		mpq_set_si(node[k], -k, 1);
+	return node;
+}
+
 /* ---- the highest moment ---- */
 
 struct moments {
