@@ -291,7 +291,7 @@ struct code *generate(const struct toolchain *t, const struct options *o, const 
 		return NULL;
 	}
 	if (!quiet)
-		fputs(said.err, stderr);
+		say_text(said.err);
 	free(said.err);
 	return code_of(said.out);
 }

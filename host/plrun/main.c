@@ -155,7 +155,12 @@ int main(int argc, char **argv)
 	struct start s = { 0 };
 	char *error;
 	int status;
+	struct workers w = workers_begin(&argc, &argv);
 	read_options(argc, argv, &s.options);
+	if (w.rank != 0)
+		leave_notes_to_first();
+	if (w.size > 1 && !s.options.sweep)
+		fail(WRONG_USAGE, "several processes share out a sweep, and nothing else");
 	s.tools = find_tools();
 	make_code(&s);
 	s.machine = machine_of(s.tools, s.code, &error);
@@ -163,8 +168,11 @@ int main(int argc, char **argv)
 		fail(WRONG_DATA, error);
 	check_end(&s);
 	set_params(&s);
-	status = run_once(&s);
+	status = s.options.sweep
+		 ? sweep_run(s.tools, &s.options, s.code, s.machine, w.rank == 0 ? open_output(&s.options) : NULL, w)
+		 : run_once(&s);
 	if (fclose(stdout) != 0)
 		fail(WRONG_DATA, format("cannot write to standard output: %s", strerror(errno)));
+	workers_end();
 	return status;
 }

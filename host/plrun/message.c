@@ -9,6 +9,8 @@
 #include <time.h>
 #include <unistd.h>
 
+static bool shown;                      /* a line that says how far a run is */
+
 char *format(const char *pattern, ...)
 {
 	va_list arguments;
@@ -32,10 +34,25 @@ void wrong_usage(const char *message)
 	exit(WRONG_USAGE);
 }
 
+static bool quiet;
+
+void leave_notes_to_first(void)
+{
+	quiet = true;
+}
+
 void say_note(const char *message)
 {
+	if (quiet)
+		return;
 	progress_end();
 	fprintf(stderr, "note: %s\n", message);
+}
+
+void say_text(const char *text)
+{
+	if (!quiet)
+		fputs(text, stderr);
 }
 
 void *need(void *memory)
@@ -88,8 +105,6 @@ void fail_at(struct place at, const char *note, const char *message)
 }
 
 /* ---- how far a run is ---- */
-
-static bool shown;
 
 static long milliseconds(void)
 {

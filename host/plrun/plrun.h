@@ -55,6 +55,8 @@ char *format(const char *pattern, ...) __attribute__((format(printf, 1, 2)));  /
 _Noreturn void fail(int status, const char *message);   /* "plrun: error: ..." */
 _Noreturn void wrong_usage(const char *message);
 void say_note(const char *message);
+void say_text(const char *text);                        /* warnings of another program, as they are */
+void leave_notes_to_first(void);                        /* of several processes, which would say the same */
 void *need(void *memory);                               /* not NULL, or the program ends */
 void *grown(void *array, size_t count, size_t *room, size_t item); /* room for one more than `count` items */
 
@@ -254,24 +256,25 @@ void picture_draw(struct picture *p, const char *file); /* NULL: a window */
 
 /* ---- sweep.c, journal.c, workers.c ---- */
 
+/* Of several processes under mpirun this is number `rank` of `size`; else 0 of 1 */
+struct workers {
+	int rank, size;
+};
+
 struct sweep;
 int sweep_run(const struct toolchain *t, const struct options *o, const struct code *c, const struct machine *m,
-	      FILE *to);                                /* exit status */
-char *sweep_line(struct sweep *s, size_t row);          /* computed; ends with a newline */
+	      FILE *to, struct workers w);              /* exit status */
+char *sweep_line(struct sweep *s, size_t row);          /* computed, by any thread; ends with a newline */
 
 struct journal;
 struct journal *journal_open(const char *key, bool resume, size_t rows, char **line); /* line: those that are done */
 void journal_add(struct journal *j, size_t row, const char *line);
 void journal_end(struct journal *j);                    /* all is done: nothing stays */
 
-/* Of several processes under mpirun this is number `rank` of `size`; else 0 of 1 */
-struct workers {
-	int rank, size;
-};
 struct workers workers_begin(int *argc, char ***argv);
 void workers_end(void);
-/* Lines 0 .. rows - 1 that are NULL, by all cores of all processes: deliver() is called in the first process, for one
- * line at a time */
+/* Lines 0 .. rows - 1 that are NULL, by `jobs` threads (0: as many as there are cores) of each process: deliver() is
+ * called in the first process, for one line at a time */
 void workers_share(struct workers w, int jobs, struct sweep *s, size_t rows, char **line,
 		   void (*deliver)(void *who, size_t row, char *line), void *who);
 

@@ -167,8 +167,8 @@ static void look_for_gaps(const struct record *r)
 			where = k;
 		}
 	if (longest > 5 * mean)
-		fprintf(stderr, "%s: warning: row %zu, of t = %g, comes %.3g s after the one before, others %.3g s\n",
-			r->path, where, r->time[where], longest, mean);
+		say_text(format("%s: warning: row %zu, of t = %g, comes %.3g s after the one before, others %.3g s\n",
+				r->path, where, r->time[where], longest, mean));
 }
 
 static void begin_at_zero(struct record *r)

@@ -47,6 +47,9 @@ bool read_number(const char *text, double *value)
 	char *end;
 	if (strspn(text, "+-.0123456789eE") != strlen(text))
 		return false;
-	*value = digits_read(text, &end);
-	return end != text && *end == 0 && *value - *value == 0;
+	double read = digits_read(text, &end);
+	if (end == text || *end || read - read != 0)
+		return false;
+	*value = read;
+	return true;
 }
