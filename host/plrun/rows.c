@@ -24,16 +24,22 @@ struct rows *rows_new(FILE *to, const struct machine *m, double h, uint64_t ever
 {
 	struct rows *r = need(calloc(1, sizeof *r));
 	*r = (struct rows){ to, m, h, every, need(malloc(LONGEST * (size_t)(m->outputs + 2))) };
-	fputs("t", to);
-	for (int i = 0; i < m->outputs; i++)
-		fprintf(to, ",%s", m->output_names[i]);
-	check_written(putc('\n', to) != EOF);
 	return r;
+}
+
+static void print_names(const struct rows *r)
+{
+	fputs("t", r->to);
+	for (int i = 0; i < r->machine->outputs; i++)
+		fprintf(r->to, ",%s", r->machine->output_names[i]);
+	check_written(putc('\n', r->to) != EOF);
 }
 
 void rows_add(void *who, uint64_t k, const double *out)
 {
 	struct rows *r = who;
+	if (k == 0)
+		print_names(r);
 	if (k % r->every)
 		return;
 	char *end = put_time(r->text, k, r->h, r->machine->single);
