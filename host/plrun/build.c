@@ -101,21 +101,25 @@ const char *cache_folder(void)
 
 /* ---- what there is to build with ---- */
 
-/* The words of the environment's `name`, or of `otherwise`, appended */
+static void add_word(struct toolchain *t, const char *word)
+{
+	t->compiler = need(reallocarray(t->compiler, t->compiler_words + 2, sizeof *t->compiler));
+	t->compiler[t->compiler_words++] = word;
+	t->compiler[t->compiler_words] = NULL;
+}
+
+/* The words of the environment's `name`, or of `otherwise`; a path to a program is one, blanks or not */
 static void add_words(struct toolchain *t, const char *name, const char *otherwise)
 {
 	const char *text = getenv(name);
-	char *words = format("%s", text && *text ? text : otherwise), *rest = words;
-	if (strchr(words, '/') && access(words, X_OK) == 0)     /* a path with blanks */
-		rest = NULL;
-	for (char *word = rest ? strtok_r(words, " \t\n", &rest) : words; word;
-	     word = rest ? strtok_r(NULL, " \t\n", &rest) : NULL) {
-		t->compiler = need(reallocarray(t->compiler, t->compiler_words + 2, sizeof *t->compiler));
-		t->compiler[t->compiler_words++] = word;
-		t->compiler[t->compiler_words] = NULL;
-		if (!rest)
-			break;
+	bool said = text && text[strspn(text, " \t\n")];
+	char *words = format("%s", said ? text : otherwise), *rest;
+	if (strchr(words, '/') && access(words, X_OK) == 0) {
+		add_word(t, words);
+		return;
 	}
+	for (char *word = strtok_r(words, " \t\n", &rest); word; word = strtok_r(NULL, " \t\n", &rest))
+		add_word(t, word);
 }
 
 static const char *find_plgen(void)
@@ -180,8 +184,6 @@ static void read_runtime(struct toolchain *t)
 	free(name);
 }
 
-static const char *const flags[] = { "-O2", "-fPIC", "-w", NULL };
-
 /* A compiler is its words, and of the file of the first its place, size and time: another version is another one. */
 static void read_compiler(struct toolchain *t)
 {
@@ -193,11 +195,12 @@ static void read_compiler(struct toolchain *t)
 	hash_text(&t->key, real);
 	hash_bytes(&t->key, &about.st_size, sizeof about.st_size);
 	hash_bytes(&t->key, &about.st_mtim, sizeof about.st_mtim);
+	add_word(t, "-O2");
+	add_word(t, "-fPIC");
+	add_word(t, "-w");
 	add_words(t, "CFLAGS", "");
 	for (size_t i = 0; i < t->compiler_words; i++)
 		hash_text(&t->key, t->compiler[i]);
-	for (int i = 0; flags[i]; i++)
-		hash_text(&t->key, flags[i]);
 }
 
 struct toolchain *find_tools(void)
@@ -301,13 +304,11 @@ struct code *generate(const struct toolchain *t, const struct options *o, const 
 /* The compiler with `more`; NULL, or what it said */
 static char *run_compiler(const struct toolchain *t, const char *const *more, size_t count)
 {
-	const char **argv = need(calloc(t->compiler_words + count + 6, sizeof *argv));
+	const char **argv = need(calloc(t->compiler_words + count + 3, sizeof *argv));
 	size_t words = 0;
 	struct said said;
 	for (size_t i = 0; i < t->compiler_words; i++)
 		argv[words++] = t->compiler[i];
-	for (int i = 0; flags[i]; i++)
-		argv[words++] = flags[i];
 	argv[words++] = "-I";
 	argv[words++] = t->runtime;
 	for (size_t i = 0; i < count; i++)

@@ -45,8 +45,6 @@
 #include <stdint.h>
 #include <stdio.h>
 
-#define PLRUN_VERSION "0.1.0"
-
 /* ---- message.c ---- */
 
 enum { WRONG_DATA = 1, WRONG_USAGE = 2 };       /* exit status */

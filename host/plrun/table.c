@@ -130,11 +130,15 @@ static char named_separator(struct place line)
 	return line.length == 5 && strncmp(line.line, "sep=", 4) == 0 ? line.line[4] : 0;
 }
 
+/* Is the first cell that is not empty no number? */
 static bool has_name(const struct table *t)
 {
 	double value;
 	char first[64];
-	snprintf(first, sizeof first, "%s", t->cell[0].text);
+	size_t cell = 0;
+	while (cell + 1 < t->cells && !*t->cell[cell].text)
+		cell++;
+	snprintf(first, sizeof first, "%s", t->cell[cell].text);
 	for (char *comma = first; (comma = strchr(comma, ','));)
 		*comma = '.';
 	return !read_number(first, &value) && *first;
@@ -156,7 +160,7 @@ void table_open(struct table *t, const char *path)
 	t->text = read_whole(path, &t->length);
 	if (!t->text)
 		fail(WRONG_DATA, format("cannot read '%s': %s", path, strerror(errno)));
-	if (t->length >= 2 && ((unsigned char)t->text[0] ^ (unsigned char)t->text[1]) == (0xFF ^ 0xFE))
+	if (t->length >= 2 && (memcmp(t->text, "\xFF\xFE", 2) == 0 || memcmp(t->text, "\xFE\xFF", 2) == 0))
 		fail(WRONG_DATA, format("%s is UTF-16: save it as UTF-8", t->at.path));
 	if (t->length >= 3 && memcmp(t->text, "\xEF\xBB\xBF", 3) == 0)
 		t->next = 3;

@@ -10,7 +10,8 @@ root=$(absolute "$3")
 export PLGEN
 . "$root/tests/tap.sh"
 XDG_CACHE_HOME=$work/cache
-export XDG_CACHE_HOME
+ASAN_OPTIONS=detect_leaks=0             # what lives to the end of the program is not given back
+export XDG_CACHE_HOME ASAN_OPTIONS
 models=$root/models
 
 # plrun with what it says in `said`; a sanitizer's report is no message

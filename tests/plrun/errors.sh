@@ -175,6 +175,7 @@ push,road,time [ms]
           ^
 note: --time 'time [ms]' takes it as seconds all the same"
 record 'UTF-16' '\0377\0376a\0000' 'plrun: error: r.csv is UTF-16: save it as UTF-8'
+record 'UTF-16 the other way' '\0376\0377\0000a' 'plrun: error: r.csv is UTF-16: save it as UTF-8'
 record 'bytes that are 0' 'push,road\n1,\00002\n' 'r.csv:2:1: error: this is no text: it has bytes that are 0
 1,?2
 ^

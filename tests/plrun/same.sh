@@ -42,7 +42,7 @@ one_model() {
 		return
 	fi
 	model=$(sed -n 's/^const pl_modelf\{0,1\} \(.*\)_model = {/\1/p' model_pl.c)
-	${CC:-cc} -w -O2 -I"$root/runtime" "$root/runtime/host/plmain.c" model_pl.c "$archive" -DMODEL="$model" $define \
+	${CC:-cc} -w -O0 -I"$root/runtime" "$root/runtime/host/plmain.c" model_pl.c "$archive" -DMODEL="$model" $define \
 		-lm -o main 2>>log && ./main "$end" <record.csv >main.csv 2>>log
 	if [ -s record.csv ]; then
 		run "$spec" "$end" --real "$real" --input record.csv >run.csv

@@ -53,6 +53,13 @@ result $? '... and said'
 written 'times that begin later' late.csv
 grep -q 'its first row, of t = 12.5, is taken as t = 0' said
 result $? '... and said'
+(echo ',road,push'; awk '{ print NR - 1 "," $2 "," $3 }' numbers) >frame.csv
+written 'a column of numbers without a name, passed over' frame.csv --column road=road
+awk '{ print $2 "," $3 }' numbers | sed '1s/.*/01,-3/' >zero.csv
+awk '{ print $2 "," $3 }' numbers | sed '1s/.*/1,-3/' >one.csv
+run two.spec --input one.csv >one_out.csv
+run two.spec --input zero.csv >out.csv
+same one_out.csv out.csv 'a first number as 01'
 printf '%s' "$(cat plain.csv)" >unended.csv
 written 'no end of the last line' unended.csv
 run two.spec --input - <plain.csv >out.csv
