@@ -316,7 +316,8 @@ static char *run_compiler(const struct toolchain *t, const char *const *more, si
 	char *error = run_command(argv, NULL, false, &said);
 	free(argv);
 	if (!error && said.status)
-		error = format("the compiler '%s' could not make a program of the model:\n%s", t->compiler[0], said.err);
+		error = format("the compiler '%s' could not make a program of the model:\n%s", t->compiler[0],
+			       said.err);
 	return error;
 }
 

@@ -112,7 +112,8 @@ static const struct row {
 	{ "D", "NAME=EXPR", "another value for a param; of a tunable one nothing is compiled anew", take_definition },
 	{ "o", "FILE.csv", "the rows, or what a sweep comes to, in a file (default: standard output)", take_output },
 	{ "plot", "[FILE]", "a picture by gnuplot: .svg, .png or .pdf; without FILE a window", take_plot },
-	{ "sweep", "FILE.csv", "a run for each row of params; a line each: last values and root mean squares", take_sweep },
+	{ "sweep", "FILE.csv", "a run for each row of params; a line each: last values and root mean squares",
+	  take_sweep },
 	{ "peak", NULL, "... and the largest |value| at the ends of steps", take_peak },
 	{ "jobs", "N", "... on N cores (default: all)", take_jobs },
 	{ "resume", NULL, "... going on where the same sweep was interrupted", take_resume },
@@ -140,8 +141,8 @@ static _Noreturn void print_usage(struct options *o, const char *value)
 		if (!rows[i].take)
 			printf(" --%s", rows[i].name);
 	fputs("\n  --help, --version\n\n"
-	      "PLGEN names the generator (default: beside plrun, then in PATH), CC the compiler (cc), CFLAGS more flags\n"
-	      "for it, XDG_CACHE_HOME where what is compiled is kept (~/.cache).\n"
+	      "PLGEN names the generator (default: beside plrun, then in PATH), CC the compiler (cc), CFLAGS more\n"
+	      "flags for it, XDG_CACHE_HOME where what is compiled is kept (~/.cache).\n"
 	      "Exit status: 0 done; 1 something in the files is wrong, or the run, or a row of a sweep; 2 the command\n"
 	      "line is wrong.\n", stdout);
 	exit(0);

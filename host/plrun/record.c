@@ -241,7 +241,8 @@ void record_say(const struct record *r, double h)
 		least = d < least ? d : least;
 	}
 	if (longest - least < 1e-3 * longest)
-		say_note(format("%s: a row every %.6g s, and the step is %.6g s: resampled by ramps", r->path, least, h));
+		say_note(format("%s: a row every %.6g s, and the step is %.6g s: resampled by ramps", r->path, least,
+				h));
 	else
 		say_note(format("%s: rows %.6g to %.6g s apart, and the step is %.6g s: resampled by ramps", r->path,
 				least, longest, h));

@@ -73,8 +73,8 @@ static char *status_text(int status, double t, bool single)
 {
 	char *text = format("t = %s:", shortest(t, single));
 	if (status & PL_TOO_MANY_EVENTS)
-		text = format("%s the step has met more crossings, or needed a longer search for them, than its bound%s",
-			      text, status & PL_NOT_FINITE ? ";" : "");
+		text = format("%s the step has met more crossings, or needed a longer search for them, "
+			      "than its bound%s", text, status & PL_NOT_FINITE ? ";" : "");
 	if (status & PL_NOT_FINITE)
 		text = format("%s the step has left the finite numbers", text);
 	if (status & PL_TOO_MANY_STEPS)

@@ -117,7 +117,8 @@ for file in "$root"/runtime/*.c; do
 done
 ar -rcs runtime.a objects/*.o || exit 99
 
-for page in README.md doc/running.md doc/spec.md doc/accuracy.md doc/performance.md doc/firmware.md doc/packages.md doc/design.md; do
+for page in README.md doc/running.md doc/spec.md doc/accuracy.md doc/performance.md doc/firmware.md doc/packages.md \
+	doc/design.md; do
 	rm -rf page blocks
 	mkdir -p page/build blocks
 	ln -s "$root/runtime" "$root/models" page

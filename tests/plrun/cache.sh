@@ -75,7 +75,8 @@ unset CC
 (PLGEN=none-such; run "$models/scs.spec" 0.1 >out.csv; [ $? -eq 1 ] && grep -q "cannot run 'none-such'" said)
 result $? 'no plgen'
 mkdir beside && ln -s "$PLGEN" beside/plgen && cp "$plrun" beside/plrun
-(unset PLGEN; export PLGEN_RUNTIME="$root/runtime"; PATH=/usr/bin:/bin; beside/plrun "$models/scs.spec" 0.1 >out.csv 2>log)
+(unset PLGEN; export PLGEN_RUNTIME="$root/runtime"; PATH=/usr/bin:/bin
+	beside/plrun "$models/scs.spec" 0.1 >out.csv 2>log)
 same plain.csv out.csv 'plgen beside plrun'
 if [ "$(id -u)" != 0 ]; then
 	mkdir sealed && chmod a-w sealed

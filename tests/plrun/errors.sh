@@ -96,8 +96,8 @@ kk=1
 note: did you mean 'k'?" swing.spec 1 -D kk=1
 refuses 'a scheme' 1 "$("$PLGEN" --scheme rk4 swing.spec 2>&1)" swing.spec 1 --scheme rk4
 refuses 'no such spec' 1 "$("$PLGEN" none.spec 2>&1)" none.spec 1
-refuses 'values of a param that make no step' 1 'swing: error: with these values the numbers of the step are not finite' \
-	swing.spec 1 -D k=1e300
+refuses 'values of a param that make no step' 1 \
+	'swing: error: with these values the numbers of the step are not finite' swing.spec 1 -D k=1e300
 
 # ---- records ----
 # record NAME LINES EXPECTED [OPTIONS]
@@ -114,7 +114,8 @@ record 'an input is missing' 'road,time\n1,2\n' "r.csv:1:1: error: no column is 
 road,time
 ^
 note: --column push=HEADER says which it is; there are 'road', 'time'"
-record 'a column too many, named' 'road,wind,push\n1,2,3\n' "r.csv:1:6: error: a column too many: no input is called 'wind'
+record 'a column too many, named' 'road,wind,push\n1,2,3\n' \
+	"r.csv:1:6: error: a column too many: no input is called 'wind'
 road,wind,push
      ^
 note: the inputs are road, push; with --column or --time other columns are passed over"
@@ -137,7 +138,8 @@ tab=$(printf '\t')
 record 'a gap at the end' 'push\troad\n1\t\n' "r.csv:2:3: error: expected a number, found nothing: the row has a gap
 1$tab
  $tab^"
-record 'an empty line' 'push,road\n1,2\n\n1,2\n' 'r.csv:3:1: error: a row is missing: the line is empty, and others follow it'
+record 'an empty line' 'push,road\n1,2\n\n1,2\n' \
+	'r.csv:3:1: error: a row is missing: the line is empty, and others follow it'
 record 'text in a number' 'push,road\n1,2 mm\n' "r.csv:2:3: error: expected a finite number, found '2 mm'
 1,2 mm
   ^"
@@ -151,7 +153,8 @@ record 'marks of thousands' 'push;road\n1;1.234,5\n' "r.csv:2:3: error: expected
 1;1.234,5
   ^
 note: a decimal comma goes with ; or tabs between the columns; thousands have no mark"
-record 'a point after a comma' 'push;road\n1,5;1\n2.5;1\n' 'r.csv:3:1: error: numbers before have a decimal comma, and this one a point
+record 'a point after a comma' 'push;road\n1,5;1\n2.5;1\n' \
+	'r.csv:3:1: error: numbers before have a decimal comma, and this one a point
 2.5;1
 ^'
 record 'an open quote' 'push,road\n1,"2\n' 'r.csv:2:3: error: this quote is not closed
@@ -170,7 +173,8 @@ note: its columns are 'a', 'b'" --column road=c
 record 'times that fall' 't,push,road\n0,1,1\n0.2,1,1\n0.1,1,1\n' 'r.csv:4:1: error: times have to rise: 0.1 follows 0.2
 0.1,1,1
 ^'
-record 'times in other units' 'push,road,time [ms]\n1,2,3\n' "r.csv:1:11: error: times are in seconds, and these are in 'ms'
+record 'times in other units' 'push,road,time [ms]\n1,2,3\n' \
+	"r.csv:1:11: error: times are in seconds, and these are in 'ms'
 push,road,time [ms]
           ^
 note: --time 'time [ms]' takes it as seconds all the same"

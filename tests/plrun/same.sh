@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Every output of every model in models/, in double and float, has the digits that runtime/host/plmain.c prints; t is the
-# decimal k h.
+# Every output of every model in models/, in double and float, has the digits that runtime/host/plmain.c prints; t is
+# the decimal k h.
 #
 #     same.sh PLRUN PLGEN SOURCE_ROOT
 . "${0%/*}/begin.sh"
@@ -42,8 +42,9 @@ one_model() {
 		return
 	fi
 	model=$(sed -n 's/^const pl_modelf\{0,1\} \(.*\)_model = {/\1/p' model_pl.c)
-	${CC:-cc} -w -O0 -I"$root/runtime" "$root/runtime/host/plmain.c" model_pl.c "$archive" -DMODEL="$model" $define \
-		-lm -o main 2>>log && ./main "$end" <record.csv >main.csv 2>>log
+	# shellcheck disable=SC2086
+	${CC:-cc} -w -O0 -I"$root/runtime" "$root/runtime/host/plmain.c" model_pl.c "$archive" -DMODEL="$model" \
+		$define -lm -o main 2>>log && ./main "$end" <record.csv >main.csv 2>>log
 	if [ -s record.csv ]; then
 		run "$spec" "$end" --real "$real" --input record.csv >run.csv
 	else

@@ -16,8 +16,10 @@ mw*wheel'' - c*(body' - wheel') - k*(body - wheel) + kt*(wheel - road) = 0
 output body, comfort = body''
 step 0.002
 X
-awk 'BEGIN { print "road"; for (k = 0; k <= 2000; k++) printf "%.6f\n", 0.01 * sin(k * 0.02) + 0.004 * sin(k * 0.11) }' >road.csv
-awk 'BEGIN { print "k,c,m"; for (i = 0; i < 24; i++) print 10000 + 1000 * i "," 800 + 100 * (i % 5) "," 250 + 50 * (i % 3) }' >params.csv
+awk 'BEGIN { print "road"
+	for (k = 0; k <= 2000; k++) printf "%.6f\n", 0.01 * sin(k * 0.02) + 0.004 * sin(k * 0.11) }' >road.csv
+awk 'BEGIN { print "k,c,m"
+	for (i = 0; i < 24; i++) print 10000 + 1000 * i "," 800 + 100 * (i % 5) "," 250 + 50 * (i % 3) }' >params.csv
 sed -i '11s/.*/20000,900,0/; 15s/.*/-1e9,900,300/' params.csv
 
 run car.spec --input road.csv --sweep params.csv --peak --jobs 1 >one.csv
@@ -44,7 +46,8 @@ for row in 3 12 24; do
 			if (v > top[i]) top[i] = v } }
 		END { for (i = 2; i <= 3; i++) {
 			if (last[i] != want[i + 3]) { print "final", want[i + 3], last[i]; bad = 1 }
-			if (off(want[i + 5], sqrt(sum[i] / (NR - 2)))) { print "rms", want[i + 5], sqrt(sum[i] / (NR - 2)); bad = 1 }
+			rms = sqrt(sum[i] / (NR - 2))
+			if (off(want[i + 5], rms)) { print "rms", want[i + 5], rms; bad = 1 }
 			if (off(want[i + 7], top[i])) { print "peak", want[i + 7], top[i]; bad = 1 } }
 			exit bad || NR != 2003 }' >>log
 	result $? "line $row is the run with its params"
@@ -55,6 +58,15 @@ same one.csv two.csv 'jobs 1 and 2'
 run car.spec --input road.csv --sweep params.csv --peak --jobs 2 -o file.csv
 same one.csv file.csv 'into a file'
 
+# The process pid, once 50 lines are in the journal
+kill_in_the_middle() {
+	while [ "$(cat "$XDG_CACHE_HOME"/plgen/sweep-* 2>/dev/null | wc -l)" -lt 100 ] && kill -0 $pid 2>/dev/null; do
+		sleep 0.02
+	done
+	kill -9 $pid
+	wait $pid 2>/dev/null
+}
+
 # killed when some lines are done, and gone on with
 awk 'BEGIN { print "k"; for (i = 0; i < 400; i++) print 10000 + 50 * i }' >many.csv
 awk 'BEGIN { print "road"; for (k = 0; k <= 20000; k++) printf "%.6f\n", 0.01 * sin(k * 0.02) }' >long.csv
@@ -62,9 +74,7 @@ run car.spec --input long.csv --sweep many.csv >whole.csv
 : >log
 "$plrun" car.spec --input long.csv --sweep many.csv >part.csv 2>>log &
 pid=$!
-while [ "$(cat "$XDG_CACHE_HOME"/plgen/sweep-* 2>/dev/null | wc -l)" -lt 100 ] && kill -0 $pid 2>/dev/null; do sleep 0.02; done
-kill -9 $pid
-wait $pid 2>/dev/null
+kill_in_the_middle
 done=$(wc -l <part.csv)
 [ "$done" -lt 401 ] && [ "$done" -gt 0 ]
 result $? 'killed in the middle'
@@ -99,11 +109,7 @@ elif $mpi "$plrun" car.spec --input road.csv --sweep params.csv --peak >mpi.csv 
 	same one.csv mpi.csv 'MPI: 2 processes and 1'
 	"$plrun" car.spec --input long.csv --sweep many.csv >part.csv 2>log &
 	pid=$!
-	while [ "$(cat "$XDG_CACHE_HOME"/plgen/sweep-* 2>/dev/null | wc -l)" -lt 100 ] && kill -0 $pid 2>/dev/null; do
-		sleep 0.02
-	done
-	kill -9 $pid
-	wait $pid 2>/dev/null
+	kill_in_the_middle
 	$mpi "$plrun" car.spec --input long.csv --sweep many.csv --resume >mpi.csv 2>log
 	same whole.csv mpi.csv 'MPI: resumed'
 	$mpi "$plrun" "$models/sdcsf.spec" 1 >mpi.csv 2>log

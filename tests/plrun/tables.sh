@@ -44,7 +44,7 @@ written 'quotes' quoted.csv
 written 'byte order mark, CRLF, comment, blanks, empty lines at the end' dos.csv
 (echo 'sep=;'; echo 'road;push'; awk '{ print $2 ";" $3 }' numbers) >sep.csv
 written 'a line that names the separator' sep.csv
-(echo 'CH "1",CH2,Zeit,CH7' | sed 's/CH "1"/"CH ""1"""/'; awk '{ print $2 "," $2 + 1 "," $1 "," $3 }' numbers) >logger.csv
+(echo '"CH ""1""",CH2,Zeit,CH7'; awk '{ print $2 "," $2 + 1 "," $1 "," $3 }' numbers) >logger.csv
 written 'columns and times by name, others passed over' logger.csv --column 'road=CH "1"' --column push=CH7 \
 	--time Zeit
 grep -q "note: logger.csv: not read: 'CH2'" said
