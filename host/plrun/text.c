@@ -23,16 +23,14 @@ char *put_time(char *to, uint64_t k, double h, bool single)
 {
 	digits_decimal step = digits_shortest(h, single);
 	uint64_t longest = single ? 1000000 : 1000000000000000;
-	double t;
 	if (step.digits == 0 || step.digits >= longest || k > UINT64_C(9000000000000000000) / step.digits)
 		return put_shortest(to, single ? (double)(float)((double)k * h) : (double)k * h, single);
 	uint64_t digits = k * step.digits;
-	if (digits == 0 || !digits_nearest(digits, step.exponent, &t)) {
-		char text[LONGEST * 2];
-		snprintf(text, sizeof text, "%llue%d", (unsigned long long)digits, step.exponent);
-		t = strtod(text, NULL);
-	}
-	return put_shortest(to, t, false);
+	if (digits < 1000000000000000)          /* no other number of so few digits reads back the same */
+		return digits_text(to, digits ? digits_stripped(digits, step.exponent) : (digits_decimal){ 0, 0 }, 15);
+	char text[LONGEST * 2];
+	snprintf(text, sizeof text, "%llue%d", (unsigned long long)digits, step.exponent);
+	return put_shortest(to, strtod(text, NULL), false);
 }
 
 const char *shortest(double value, bool single)
