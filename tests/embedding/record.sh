@@ -191,18 +191,4 @@ for real in double float; do
     result $? "times of $real in as few digits as read back the same"
 done
 
-# ---- the lines of README.md ----
-
-awk '/^model two/ { on = 1 } on && /^```/ { exit } on' "$root/README.md" >two.spec
-line=$(sed -n 's/^\(gnuplot .*\)/\1/p' "$root/README.md")
-if command -v gnuplot >/dev/null 2>&1; then
-    : >log
-    "$plgen" two.spec >two.c 2>>log && driver two.c two two && ./two 30 >two.csv 2>>log &&
-        [ "$(wc -l <two.csv)" -eq 3002 ] &&
-        sh -c "$line" >>log 2>&1 && [ "$(grep -c '<path' two.svg)" -ge 1 ] && [ "$(wc -c <two.svg)" -gt 20000 ]
-    result $? 'README: the spec, stepped and drawn with the gnuplot that is there'
-else
-    skip 'README: drawn' 'gnuplot is not installed'
-fi
-
 tap_end

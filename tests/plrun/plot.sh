@@ -19,6 +19,9 @@ run "$models/sdcsf.spec" 2 --plot=a.png >rows.csv && [ "$(head -c 4 a.png | tail
 result $? png
 run --plot a.pdf "$models/sdcsf.spec" 2 >rows.csv && [ "$(head -c 4 a.pdf)" = %PDF ]
 result $? pdf
+awk '/^model two/ { on = 1 } on && /^```/ { exit } on' "$root/README.md" >two.spec
+run two.spec 30 --plot two.svg >two.csv && [ "$(wc -l <two.csv)" -eq 3002 ] && [ "$(wc -c <two.svg)" -gt 20000 ]
+result $? 'README: the spec, run and drawn'
 run "$models/scs.spec" 300 --plot long.svg >rows.csv && [ "$(wc -c <long.svg)" -lt 4000000 ]
 result $? 'a picture of many rows stays small'
 (unset DISPLAY WAYLAND_DISPLAY; run "$models/scs.spec" 1 --plot >rows.csv; [ $? -eq 1 ] && grep -q 'no display' said)

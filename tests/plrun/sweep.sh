@@ -78,7 +78,8 @@ kill_in_the_middle
 done=$(wc -l <part.csv)
 [ "$done" -lt 401 ] && [ "$done" -gt 0 ]
 result $? 'killed in the middle'
-printf '399 0123' >>"$(ls "$XDG_CACHE_HOME"/plgen/sweep-*)"          # half an entry
+# an entry whose line is not the one that was written, and half of one
+printf '399 00112233445566778899aabbccddeeff 11\n400,1,2,ok\n398 0123' >>"$(ls "$XDG_CACHE_HOME"/plgen/sweep-*)"
 run car.spec --input long.csv --sweep many.csv --resume >resumed.csv
 cp said log
 same whole.csv resumed.csv 'resumed: the same bytes'
