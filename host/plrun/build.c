@@ -48,7 +48,7 @@ char *hash_name(const struct hash *h)
 
 char *read_whole(const char *path, size_t *length)
 {
-	FILE *f = strcmp(path, "-") == 0 ? stdin : fopen(path, "rb");
+	FILE *f = strcmp(path, "-") == 0 ? stdin : fopen(path, "rbe");
 	char *text = NULL;
 	size_t room = 0, got;
 	*length = 0;
@@ -289,8 +289,8 @@ struct code *generate(const struct toolchain *t, const struct options *o, const 
 	if (*error)
 		return NULL;
 	if (said.status) {
-		*status = said.status;
-		*error = said.err;
+		*status = said.status > 2 ? WRONG_DATA : said.status;
+		*error = *said.err ? said.err : format("plgen ended with status %d", said.status);
 		return NULL;
 	}
 	if (!quiet)

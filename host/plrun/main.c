@@ -16,9 +16,10 @@ struct start {
 	double *params;                         /* NULL: none is changed */
 };
 
+/* What plgen says are lines; what is wrong with plgen is not. */
 static _Noreturn void end_with(int status, const char *error)
 {
-	if (status == WRONG_DATA && strncmp(error, "cannot run", 10) == 0)
+	if (!strchr(error, '\n'))
 		fail(status, error);
 	fputs(error, stderr);
 	exit(status);
@@ -130,6 +131,8 @@ static int run_once(struct start *s)
 	uint64_t every = steps_between(o, m);
 	job.record = o->input ? record_read(o, m) : NULL;
 	char *error = plan_run(&job);
+	if (error && job.record)                /* its last line is where more was expected */
+		fail_at((struct place){ job.record->path, job.record->last_line, "", 0, 0 }, NULL, error);
 	if (error)
 		fail(WRONG_DATA, error);
 	if (job.resampled)

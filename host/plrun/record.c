@@ -156,7 +156,7 @@ static void check_time(struct table *t, const struct record *r, const struct cho
 			       shortest(r->time[k - 1], false)));
 }
 
-/* A place where much more time passes than elsewhere has lost rows. */
+/* A place where much more time passes than elsewhere has lost rows. Each row is a line. */
 static void look_for_gaps(const struct record *r)
 {
 	double mean = (r->time[r->rows - 1] - r->time[0]) / (double)(r->rows - 1), longest = 0;
@@ -167,8 +167,8 @@ static void look_for_gaps(const struct record *r)
 			where = k;
 		}
 	if (longest > 5 * mean)
-		say_text(format("%s: warning: row %zu, of t = %g, comes %.3g s after the one before, others %.3g s\n",
-				r->path, where, r->time[where], longest, mean));
+		say_text(format("%s:%lu:1: warning: %.3g s without a row, where others are %.3g s apart\n", r->path,
+				r->last_line - (r->rows - 1 - where), longest, mean));
 }
 
 static void begin_at_zero(struct record *r)
@@ -200,8 +200,8 @@ struct record *record_read(const struct options *o, const struct machine *m)
 			check_time(&t, r, &c);
 		}
 		r->rows++;
+		r->last_line = t.at.number;
 	}
-	r->last_line = t.at.number;
 	if (r->rows == 0)
 		fail_at((struct place){ t.at.path, t.at.number + 1, "", 0, 0 }, NULL,
 			"expected rows of numbers, found the end of the file");

@@ -30,10 +30,10 @@ char *plan_run(struct job *job)
 	if (job->until < 0)
 		job->steps = samples > ahead ? samples - ahead : 0;
 	if (r && samples < job->steps + ahead)
-		return format("%s:%lu: too few samples: %llu steps take %llu, to t = %.6g, and there are %llu, to %.6g",
-			      r->path, r->last_line, (unsigned long long)job->steps,
-			      (unsigned long long)(job->steps + ahead), (double)(job->steps + ahead - 1) * job->h,
-			      (unsigned long long)samples, (double)(samples - 1) * job->h);
+		return format("too few samples: %llu steps take %llu, to t = %.6g, and there are %llu, to %.6g",
+			      (unsigned long long)job->steps, (unsigned long long)(job->steps + ahead),
+			      (double)(job->steps + ahead - 1) * job->h, (unsigned long long)samples,
+			      (double)(samples - 1) * job->h);
 	return NULL;
 }
 

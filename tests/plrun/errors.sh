@@ -185,7 +185,14 @@ record 'bytes that are 0' 'push,road\n1,\00002\n' 'r.csv:2:1: error: this is no 
 ^
 note: save it as text, UTF-8'
 record 'a record that ends early' 'push,road\n1,2\n1,2\n' \
-	'plrun: error: r.csv:3: too few samples: 5 steps take 5, to t = 0.4, and there are 2, to 0.1' 0.5
+	'r.csv:3:1: error: too few samples: 5 steps take 5, to t = 0.4, and there are 2, to 0.1' 0.5
+awk 'BEGIN { print "t,push,road"; for (k = 0; k < 90; k++) if (k < 20 || k > 40) print k / 10 ",1,2" }' >r.csv
+run in.spec --input r.csv >out
+[ "$(cat said)" = 'r.csv:22:1: warning: 2.2 s without a row, where others are 0.131 s apart
+note: r.csv: rows 0.1 to 2.2 s apart, and the step is 0.1 s: resampled by ramps' ]
+status=$?
+cp said log
+result $status 'rows that are missing, by their times'
 printf 'push,road\n1,2\n' >r.csv
 refuses 'a column of no input' 2 "plrun: error: --column: the model has no input 'wind'; its inputs: road, push
 $usage" in.spec --input r.csv --column wind=push
