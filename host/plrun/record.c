@@ -103,7 +103,7 @@ static bool is_taken(const struct choice *c, const struct machine *m, int column
 	return c->time == column;
 }
 
-/* What is not an input is the time, or without use. */
+/* What is not an input is the time, or without use: so is what has no name, as row numbers and empty columns do. */
 static void take_rest(const struct table *t, const struct machine *m, struct choice *c)
 {
 	const char *unused = "";
@@ -114,7 +114,7 @@ static void take_rest(const struct table *t, const struct machine *m, struct cho
 			c->time = i;
 			continue;
 		}
-		if (!c->chosen)
+		if (!c->chosen && *t->header[i].text)
 			fail_at(header_place(t, (size_t)i),
 				format("the inputs are %s; with --column or --time other columns are passed over",
 				       all_inputs(m)),

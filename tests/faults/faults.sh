@@ -79,7 +79,8 @@ file_of()
 		echo "$wanted"
 		return
 	fi
-	for file in $(cd "$1" && { find gen runtime host -name "${wanted##*/}"; find gen runtime host -name '*.[ch]'; }); do
+	for file in $(cd "$1" && { find gen runtime host -name "${wanted##*/}"
+		find gen runtime host -name '*.[ch]'; }); do
 		if accepts "$1" "$file" "$here/$2.patch"; then
 			echo "$file"
 			return

@@ -54,7 +54,9 @@ written 'times that begin later' late.csv
 grep -q 'its first row, of t = 12.5, is taken as t = 0' said
 result $? '... and said'
 (echo ',road,push'; awk '{ print NR - 1 "," $2 "," $3 }' numbers) >frame.csv
-written 'a column of numbers without a name, passed over' frame.csv --column road=road
+written 'row numbers without a name are passed over' frame.csv
+(echo 'road;push;;'; awk '{ print $2 ";" $3 ";;" }' numbers) >trailing.csv
+written 'empty columns at the end' trailing.csv
 awk '{ print $2 "," $3 }' numbers | sed '1s/.*/01,-3/' >zero.csv
 awk '{ print $2 "," $3 }' numbers | sed '1s/.*/1,-3/' >one.csv
 run two.spec --input one.csv >one_out.csv
