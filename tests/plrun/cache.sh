@@ -78,6 +78,10 @@ mkdir beside && ln -s "$PLGEN" beside/plgen && cp "$plrun" beside/plrun
 (unset PLGEN; export PLGEN_RUNTIME="$root/runtime"; PATH=/usr/bin:/bin
 	beside/plrun "$models/scs.spec" 0.1 >out.csv 2>log)
 same plain.csv out.csv 'plgen beside plrun'
+cp -r "$root/runtime" later && sed -i 's/PL_MODEL_VERSION = [0-9]*/PL_MODEL_VERSION = 99/' later/plrt.h
+PLGEN_RUNTIME=$work/later run "$models/scs.spec" 0.1 >out.csv
+[ $? -eq 1 ] && grep -q 'its descriptor has version 99, and this plrun reads version [0-9]*$' said && [ ! -s out.csv ]
+result $? 'a descriptor of another version'
 if [ "$(id -u)" != 0 ]; then
 	mkdir sealed && chmod a-w sealed
 	XDG_CACHE_HOME=$work/sealed run "$models/scs.spec" 0.1 >out.csv
