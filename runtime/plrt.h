@@ -608,14 +608,19 @@ pl_ratef pl_ratef_of(pl_twof w); /* 2^-86 */
 
 /* ---- a model, seen from outside -------------------------------------------------------------------------- */
 
+/* The shape of the two descriptors below.  A program that loads models compiled apart from it looks at the first two
+ * entries before it reads any other: they stay where they are, whatever comes. */
+enum { PL_MODEL_VERSION = 2 };
+
 /* What a program needs to drive a model that it was not written for.  s points to the model's state, `size` bytes,
  * aligned as any double or uint64_t; copy the bytes to save it, copy them back to restore it.
  * u holds one sample of the `inputs` inputs and is NULL where there are none. */
 typedef struct pl_model {
+    int version;                  /* PL_MODEL_VERSION, of the plrt.h that the model was compiled with */
+    int real_size;                /* sizeof(double); in its place a pl_modelf says sizeof(float) */
     const char *name;
     size_t size;                  /* sizeof the state */
     int states, inputs, outputs;
-    int real_size;                /* sizeof(double); in its place a pl_modelf says sizeof(float) */
     double h;                     /* step [s] */
     const char *const *state_names, *const *input_names, *const *output_names;
     void (*init)(void *s);        /* t = 0 and the spec's initial values */
@@ -644,10 +649,10 @@ typedef struct pl_model {
 
 /* The same of a model in float. */
 typedef struct pl_modelf {
+    int version, real_size;
     const char *name;
     size_t size;
     int states, inputs, outputs;
-    int real_size;
     float h;
     const char *const *state_names, *const *input_names, *const *output_names;
     void (*init)(void *s);

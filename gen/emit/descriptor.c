@@ -139,7 +139,8 @@ void emit_descriptor(const struct emitter *e)
 	say(e, "\n");
 	emit_wrappers(e);
 	say(e, "\nconst pl_model $n_model = {\n"
-	       "    \"$n\", sizeof(struct $n), $N_STATES, $N_INPUTS, $N_OUTPUTS, sizeof(double), $N_H,\n"
+	       "    PL_MODEL_VERSION, sizeof(double), \"$n\", sizeof(struct $n),\n"
+	       "    $N_STATES, $N_INPUTS, $N_OUTPUTS, $N_H,\n"
 	       "    $n_state_names, %s, $n_output_names,\n"
 	       "    $n_any_init, $n_any_set, $n_any_get, $n_any_time, $n_any_step,\n"
 	       "    $n_any_out, $n_any_run, %s, %s, $n_any_status,\n", name_if(e, inputs, "input_names"),

@@ -45,6 +45,11 @@ static const descriptor *const model = &DESCRIPTOR(MODEL);
 /* The linker does not see types: a descriptor of the other one has `real_size` in the same place, and its name. */
 static void check_type(void)
 {
+    if (model->version != PL_MODEL_VERSION) {
+        fprintf(stderr, "plmain: error: the model was compiled with a plrt.h whose descriptors have version %d, and "
+                        "plmain.c with one of version %d\n", model->version, PL_MODEL_VERSION);
+        exit(2);
+    }
     if (model->real_size == (int)sizeof(real))
         return;
     fprintf(stderr, "%s: error: plmain.c was compiled %s -DFLOAT, and the model is in %s\n", model->name,

@@ -3,7 +3,7 @@
 # What the pages tell a reader to type is typed: every block of every page, as TAP, each page in an empty folder that
 # has but `runtime`, `models` and `build/plgen`, as a clone has.
 #
-#     commands.sh PLGEN SOURCE_ROOT
+#     commands.sh PLGEN SOURCE_ROOT PLRUN
 #
 # ```spec       a model: plgen makes NAME_pl.c and NAME_pl.h of it
 # ```sh         commands: run one after the other; all succeed, nothing they write is empty
@@ -15,7 +15,9 @@
 set -u
 plgen=$1
 root=$2
+plrun=$3
 case $plgen in /*) ;; *) plgen=$PWD/$plgen ;; esac
+case $plrun in /*) ;; *) plrun=$PWD/$plrun ;; esac
 . "${0%/*}/../tap.sh"
 here=$root/tests/docs
 warnings='-Wall -Wextra -Wpedantic -Werror'
@@ -27,6 +29,9 @@ pictures='doc/design.md:      gen/base      memory'
 
 mkdir bin
 ln -s "$plgen" bin/plgen
+ln -s "$plrun" bin/plrun
+XDG_CACHE_HOME=$work/cache
+export XDG_CACHE_HOME
 PATH=$PWD/bin:$PATH
 
 # target NAME: the Makefile has it
@@ -112,11 +117,13 @@ for file in "$root"/runtime/*.c; do
 done
 ar -rcs runtime.a objects/*.o || exit 99
 
-for page in README.md doc/spec.md doc/accuracy.md doc/performance.md doc/firmware.md doc/packages.md doc/design.md; do
+for page in README.md doc/running.md doc/spec.md doc/accuracy.md doc/performance.md doc/firmware.md doc/packages.md \
+	doc/design.md; do
 	rm -rf page blocks
 	mkdir -p page/build blocks
 	ln -s "$root/runtime" "$root/models" page
 	ln -s "$plgen" page/build/plgen
+	ln -s "$plrun" page/build/plrun
 	awk -v folder=blocks -f "$here/blocks.awk" "$root/$page" >found || exit 99
 	while read -r number kind line; do
 		try "$page" "$number" "$kind" "$line"
@@ -137,4 +144,10 @@ done
 [ "$(wc -l <asked)" -gt 15 ] || cat asked >>log
 [ ! -s log ]
 result $? "$(wc -l <asked) options: --help, doc/plgen.1 and doc/spec.md have the same"
+: >log
+plrun --help | sed -n '/^  /p' | options_in | grep -v -e '^--help$' -e '^--version$' >asked
+sed -n '/^\.SH OPTIONS/,/^\.SH ENVIRON/{/^\.B/{s/\\f.//g;s/\\//gp}}' "$root/doc/plrun.1" | options_in |
+	grep -v -e '^--help$' -e '^--version$' >man
+diff asked man >>log && [ "$(wc -l <asked)" -gt 15 ]
+result $? "$(wc -l <asked) options of plrun: --help and doc/plrun.1 have the same"
 tap_end

@@ -38,6 +38,7 @@ look() {
 code='-name *.c -o -name *.h -o -name *.in -o -name *.sh -o -name *.awk -o -name *.gp -o -name *.build -o -name *.ld'
 set -f
 look gen gen
+look host host
 look runtime runtime
 look bench bench ! -name '*.list' ! -name '*.csv'
 # shellcheck disable=SC2086

@@ -167,6 +167,13 @@ result $? 'piecewise linear: held before the first step, the sample decides the 
 # ---- the other type; times ----
 
 printf "model two\nparam k = 4\ntunable k\ncoord x\ninit x = 1\nx'' + k*x = 0\nstep 0.01\n" >two.spec
+: >log
+mkdir later && cp "$root"/runtime/*.h later && sed -i 's/PL_MODEL_VERSION = [0-9]*/PL_MODEL_VERSION = 99/' later/plrt.h
+"$plgen" two.spec >two.c && ${CC:-cc} -std=c99 -Ilater -c two.c -o later.o 2>>log &&
+    ${CC:-cc} -std=c99 -I"$root/runtime" -DMODEL=two "$root/runtime/host/plmain.c" later.o "$archive" -lm -o later_two \
+        2>>log && ./later_two 1 >found.csv 2>said
+[ $? -eq 2 ] && [ ! -s found.csv ] && grep -q 'whose descriptors have version 99, and plmain.c with one of version' said
+result $? 'a model compiled with a plrt.h of another version: told'
 for real in double float; do
     other=-DFLOAT
     is=with
@@ -190,19 +197,5 @@ for real in double float; do
     [ ! -s log ]
     result $? "times of $real in as few digits as read back the same"
 done
-
-# ---- the lines of README.md ----
-
-awk '/^model two/ { on = 1 } on && /^```/ { exit } on' "$root/README.md" >two.spec
-line=$(sed -n 's/^\(gnuplot .*\)/\1/p' "$root/README.md")
-if command -v gnuplot >/dev/null 2>&1; then
-    : >log
-    "$plgen" two.spec >two.c 2>>log && driver two.c two two && ./two 30 >two.csv 2>>log &&
-        [ "$(wc -l <two.csv)" -eq 3002 ] &&
-        sh -c "$line" >>log 2>&1 && [ "$(grep -c '<path' two.svg)" -ge 1 ] && [ "$(wc -c <two.svg)" -gt 20000 ]
-    result $? 'README: the spec, stepped and drawn with the gnuplot that is there'
-else
-    skip 'README: drawn' 'gnuplot is not installed'
-fi
 
 tap_end

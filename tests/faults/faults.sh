@@ -3,7 +3,7 @@
 #
 # faults.sh [-j COPIES] [-w FOLDER] [--check | --refresh] [NAME ...]: faults of which a suite is known to notice them,
 # all or those named.
-# Each NAME.patch beside this script changes one file of gen or runtime. Its head says:
+# Each NAME.patch beside this script changes one file of gen, runtime or host. Its head says:
 #   # suite: TEST            the meson test that has to fail
 #   # run: PROGRAM ARGUMENT  only this of it, where the whole takes long: the program by its path in the build folder,
 #                            run in the root of the tree
@@ -79,7 +79,8 @@ file_of()
 		echo "$wanted"
 		return
 	fi
-	for file in $(cd "$1" && { find gen runtime -name "${wanted##*/}"; find gen runtime -name '*.[ch]'; }); do
+	for file in $(cd "$1" && { find gen runtime host -name "${wanted##*/}"
+		find gen runtime host -name '*.[ch]'; }); do
 		if accepts "$1" "$file" "$here/$2.patch"; then
 			echo "$file"
 			return

@@ -1,0 +1,192 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A loaded model. Its numbers go in and out as doubles: those of a model in float are floats, which a double holds. */
+#define _GNU_SOURCE
+#include "plrun.h"
+
+#include <dlfcn.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* What any descriptor begins with */
+struct head {
+	int version, real_size;
+};
+
+static char *check_head(const struct head *head, const char *path)
+{
+	if (head->version != PL_MODEL_VERSION)
+		return format("%s: its descriptor has version %d, and this plrun reads version %d", path, head->version,
+			      PL_MODEL_VERSION);
+	if (head->real_size != (int)sizeof(double) && head->real_size != (int)sizeof(float))
+		return format("%s: its numbers have %d bytes, which are neither float nor double", path,
+			      head->real_size);
+	return NULL;
+}
+
+static double *widened(const float *value, int count)
+{
+	double *wide = need(malloc(sizeof *wide * (size_t)(count + 1)));
+	for (int i = 0; i < count; i++)
+		wide[i] = (double)value[i];
+	return wide;
+}
+
+#define FILL(m, d) do { \
+	(m)->name = (d)->name; \
+	(m)->size = (d)->size; \
+	(m)->states = (d)->states; \
+	(m)->inputs = (d)->inputs; \
+	(m)->outputs = (d)->outputs; \
+	(m)->params = (d)->params; \
+	(m)->h = (double)(d)->h; \
+	(m)->input_names = (d)->input_names; \
+	(m)->output_names = (d)->output_names; \
+	(m)->param_names = (d)->param_names; \
+	(m)->ahead = (d)->start_samples; \
+	(m)->has_status = (d)->status != NULL; \
+	(m)->can_retune = (d)->retune != NULL; \
+} while (0)
+
+static void fill(struct machine *m)
+{
+	if (m->single)
+		FILL(m, m->modelf);
+	else
+		FILL(m, m->model);
+	m->param_values = m->single ? widened(m->modelf->param_values, m->params)
+				    : need(malloc(sizeof(double) * (size_t)(m->params + 1)));
+	if (!m->single && m->params)
+		memcpy(m->param_values, m->model->param_values, sizeof(double) * (size_t)m->params);
+	for (int i = 0; i < m->inputs; i++)
+		if (m->ahead[i] > m->most_ahead)
+			m->most_ahead = m->ahead[i];
+}
+
+struct machine *machine_open(const char *path, const char *name, char **error)
+{
+	struct machine *m = need(calloc(1, sizeof *m));
+	char *symbol = format("%s_model", name);
+	*error = NULL;
+	m->object = dlopen(path, RTLD_NOW | RTLD_LOCAL);
+	const void *descriptor = m->object ? dlsym(m->object, symbol) : NULL;
+	free(symbol);
+	if (!descriptor)
+		*error = format("cannot load what was compiled: %s", dlerror());
+	else
+		*error = check_head(descriptor, path);
+	if (*error) {
+		machine_close(m);
+		return NULL;
+	}
+	m->single = ((const struct head *)descriptor)->real_size == (int)sizeof(float);
+	m->model = descriptor;
+	m->modelf = descriptor;
+	fill(m);
+	return m;
+}
+
+struct machine *machine_of(const struct toolchain *t, const struct code *c, char **error)
+{
+	struct machine *m = NULL;
+	for (int attempt = 0; !m && attempt < 2; attempt++) {   /* what a crash has left in the cache is made anew */
+		char *object = compile(t, c, attempt > 0, error);
+		if (!object)
+			return NULL;
+		m = machine_open(object, c->name, error);
+		free(object);
+	}
+	return m;
+}
+
+void machine_close(struct machine *m)
+{
+	if (m->object)
+		dlclose(m->object);
+	free(m->param_values);
+	free(m);
+}
+
+/* ---- an instance ---- */
+
+struct instance *instance_new(const struct machine *m)
+{
+	struct instance *i = need(calloc(1, sizeof *i));
+	int most = m->inputs > m->outputs ? m->inputs : m->outputs;
+	i->machine = m;
+	i->state = need(calloc(1, m->size));
+	if (m->single)
+		i->narrow = need(calloc((size_t)(most > m->params ? most : m->params) + 1, sizeof(float)));
+	if (m->single)
+		m->modelf->init(i->state);
+	else
+		m->model->init(i->state);
+	return i;
+}
+
+void instance_free(struct instance *i)
+{
+	free(i->state);
+	free(i->narrow);
+	free(i);
+}
+
+static const float *narrowed(struct instance *i, const double *value, int count)
+{
+	for (int k = 0; k < count; k++)
+		i->narrow[k] = (float)value[k];
+	return i->narrow;
+}
+
+const char *instance_retune(struct instance *i, const double *params, double h)
+{
+	const struct machine *m = i->machine;
+	int status = m->single ? m->modelf->retune(i->state, narrowed(i, params, m->params), (float)h)
+			       : m->model->retune(i->state, params, h);
+	return status == 0 ? NULL
+	     : status == PL_NO_STEP ? "the step is not above 0"
+	     : status == PL_NO_RATE ? "with these values a load's frequency is below 0"
+	     : status == PL_SINGULAR ? "with these values the mass matrix has no inverse"
+	     : "with these values the numbers of the step are not finite";
+}
+
+void instance_hold(struct instance *i, const double *u)
+{
+	const struct machine *m = i->machine;
+	if (m->single)
+		m->modelf->hold(i->state, narrowed(i, u, m->inputs));
+	else
+		m->model->hold(i->state, u);
+}
+
+void instance_step(struct instance *i, const double *u)
+{
+	const struct machine *m = i->machine;
+	if (m->single)
+		m->modelf->step(i->state, m->inputs ? narrowed(i, u, m->inputs) : NULL);
+	else
+		m->model->step(i->state, m->inputs ? u : NULL);
+}
+
+void instance_out(struct instance *i, double *out)
+{
+	const struct machine *m = i->machine;
+	if (!m->single) {
+		m->model->out(i->state, out);
+		return;
+	}
+	m->modelf->out(i->state, i->narrow);
+	for (int k = 0; k < m->outputs; k++)
+		out[k] = (double)i->narrow[k];
+}
+
+int instance_status(const struct instance *i)
+{
+	const struct machine *m = i->machine;
+	return !m->has_status ? 0 : m->single ? m->modelf->status(i->state) : m->model->status(i->state);
+}
+
+double instance_time(const struct instance *i)
+{
+	const struct machine *m = i->machine;
+	return m->single ? (double)m->modelf->time(i->state) : m->model->time(i->state);
+}

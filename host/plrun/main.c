@@ -1,0 +1,181 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* plrun: a spec is made a program, and run: the column of calls. */
+#define _GNU_SOURCE
+#include "plrun.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+struct start {
+	struct options options;
+	struct toolchain *tools;
+	struct code *code;
+	struct machine *machine;
+	double *params;                         /* NULL: none is changed */
+};
+
+/* What plgen says are lines; what is wrong with plgen is not. */
+static _Noreturn void end_with(int status, const char *error)
+{
+	if (!strchr(error, '\n'))
+		fail(status, error);
+	fputs(error, stderr);
+	exit(status);
+}
+
+/* The definitions that plgen has to be given: of a tunable param another number is no other model. */
+static size_t definitions_for(const struct options *o, const struct code *c, bool numbers, const char **definition)
+{
+	size_t count = 0;
+	double value;
+	for (size_t i = 0; i < o->definitions; i++) {
+		bool number = read_number(o->definition[i].value, &value);
+		if (!number || (numbers && !(c && is_tunable(c, o->definition[i].name))))
+			definition[count++] = format("%s=%s", o->definition[i].name, o->definition[i].value);
+	}
+	return count;
+}
+
+/* Which params are tunable is known of the C alone: it is made without the numbers, and once more with those that
+ * belong into it. What keeps the first from being made is told of the one with all. */
+static void make_code(struct start *s)
+{
+	const char **definition = need(calloc(s->options.definitions + 1, sizeof *definition));
+	size_t few = definitions_for(&s->options, NULL, false, definition), all;
+	bool numbers = few < s->options.definitions;
+	char *error;
+	int status;
+	s->code = generate(s->tools, &s->options, definition, few, numbers, &error, &status);
+	all = definitions_for(&s->options, s->code, true, definition);
+	if (numbers)
+		s->code = generate(s->tools, &s->options, definition, all, false, &error, &status);
+	if (!s->code)
+		end_with(status, error);
+	free(definition);
+}
+
+static void set_params(struct start *s)
+{
+	const struct machine *m = s->machine;
+	for (size_t i = 0; i < s->options.definitions; i++) {
+		double value;
+		if (!is_tunable(s->code, s->options.definition[i].name) ||
+		    !read_number(s->options.definition[i].value, &value))
+			continue;
+		if (!s->params) {
+			s->params = need(malloc(sizeof *s->params * (size_t)m->params));
+			memcpy(s->params, m->param_values, sizeof *s->params * (size_t)m->params);
+		}
+		for (int k = 0; k < m->params; k++)
+			if (strcmp(m->param_names[k], s->options.definition[i].name) == 0)
+				s->params[k] = value;
+	}
+}
+
+static void check_end(const struct start *s)
+{
+	if (s->options.until < 0 && !s->options.input)
+		wrong_usage("when does it end? plrun MODEL.spec T, in seconds");
+	if (s->options.input && s->machine->inputs == 0)
+		wrong_usage(format("--input: the model '%s' has no inputs", s->machine->name));
+	if (!s->options.input && s->machine->inputs > 0)
+		wrong_usage(format("the model '%s' has inputs: --input FILE.csv gives their samples",
+				   s->machine->name));
+}
+
+static FILE *open_output(const struct options *o)
+{
+	FILE *to = o->output ? fopen(o->output, "wb") : stdout;
+	if (!to)
+		fail(WRONG_DATA, format("cannot write '%s': %s", o->output, strerror(errno)));
+	return to;
+}
+
+/* How many steps a row is apart from the next */
+static uint64_t steps_between(const struct options *o, const struct machine *m)
+{
+	if (o->every < 0)
+		return 1;
+	double steps = o->every / m->h;
+	uint64_t whole = (uint64_t)(steps + 0.5);
+	if (!(steps < 9e15) || whole == 0 || steps - (double)whole > 1e-6 * steps ||
+	    (double)whole - steps > 1e-6 * steps)
+		wrong_usage(format("--every takes a multiple of the step, %s s, found %s",
+				   shortest(m->h, m->single), shortest(o->every, false)));
+	return whole;
+}
+
+struct watchers {
+	struct rows *rows;
+	struct picture *picture;
+};
+
+static void watch_both(void *who, uint64_t k, const double *out)
+{
+	struct watchers *w = who;
+	if (w->rows)
+		rows_add(w->rows, k, out);
+	if (w->picture)
+		picture_add(w->picture, k, out);
+}
+
+/* Rows on a terminal, beside a picture, would hide what is said about it. */
+static int run_once(struct start *s)
+{
+	const struct options *o = &s->options;
+	const struct machine *m = s->machine;
+	struct job job = { .machine = m, .params = s->params, .h = m->h, .until = o->until, .told = true };
+	struct watchers w = { NULL, NULL };
+	uint64_t every = steps_between(o, m);
+	job.record = o->input ? record_read(o, m) : NULL;
+	char *error = plan_run(&job);
+	if (error && job.record)                /* its last line is where more was expected */
+		fail_at((struct place){ job.record->path, job.record->last_line, "", 0, 0 }, NULL, error);
+	if (error)
+		fail(WRONG_DATA, error);
+	if (job.resampled)
+		record_say(job.record, job.h);
+	FILE *to = open_output(o);
+	if (!o->plot || o->output || !isatty(STDOUT_FILENO))
+		w.rows = rows_new(to, m, job.h, every);
+	if (o->plot)
+		w.picture = picture_new(m, job.h);
+	error = run_steps(&job, watch_both, &w);
+	progress_end();
+	if (w.rows)
+		rows_end(w.rows);
+	if (w.picture)
+		picture_draw(w.picture, o->plot_file);
+	if (error)
+		fprintf(stderr, "%s: error: %s\n", m->name, error);
+	return error ? WRONG_DATA : 0;
+}
+
+int main(int argc, char **argv)
+{
+	struct start s = { 0 };
+	char *error;
+	int status;
+	struct workers w = workers_begin(&argc, &argv);
+	read_options(argc, argv, &s.options);
+	if (w.rank != 0)
+		leave_notes_to_first();
+	if (w.size > 1 && !s.options.sweep)
+		fail(WRONG_USAGE, "several processes share out a sweep, and nothing else");
+	s.tools = find_tools();
+	make_code(&s);
+	s.machine = machine_of(s.tools, s.code, &error);
+	if (!s.machine)
+		fail(WRONG_DATA, error);
+	check_end(&s);
+	set_params(&s);
+	status = s.options.sweep
+		 ? sweep_run(s.tools, &s.options, s.code, s.machine, w.rank == 0 ? open_output(&s.options) : NULL, w)
+		 : run_once(&s);
+	if (fclose(stdout) != 0)
+		fail(WRONG_DATA, format("cannot write to standard output: %s", strerror(errno)));
+	workers_end();
+	return status;
+}

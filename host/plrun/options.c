@@ -1,0 +1,272 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The command line. What is plgen's is passed on as it stands; messages about it are plgen's. */
+#define _GNU_SOURCE
+#include "plrun.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+struct words {                          /* of the command line, and which is next */
+	char **word;
+	int count, next;
+};
+
+static double time_of(const char *what, const char *text)
+{
+	double value;
+	if (!read_number(text, &value) || value < 0)
+		wrong_usage(format("%s: expected a time in seconds, finite and not negative, found '%s'", what, text));
+	return value;
+}
+
+static struct pair pair_of(const char *option, const char *what, const char *text)
+{
+	const char *equals = strchr(text, '=');
+	if (!equals || equals == text || !equals[1])
+		wrong_usage(format("%s takes %s, found '%s'", option, what, text));
+	return (struct pair){ need(strndup(text, (size_t)(equals - text))), equals + 1 };
+}
+
+static void add_pair(struct pair **list, size_t *count, struct pair pair)
+{
+	for (size_t i = 0; i < *count; i++)
+		if (strcmp((*list)[i].name, pair.name) == 0)
+			wrong_usage(format("'%s' is given twice", pair.name));
+	*list = need(reallocarray(*list, *count + 1, sizeof pair));
+	(*list)[(*count)++] = pair;
+}
+
+static void pass_on(struct options *o, const char *word)
+{
+	o->passed = grown(o->passed, o->passed_count, &o->passed_room, sizeof *o->passed);
+	o->passed[o->passed_count++] = word;
+}
+
+/* ---- what each option sets ---- */
+
+static void take_until(struct options *o, const char *value)
+{
+	if (o->until >= 0)
+		wrong_usage("the time of the end is given twice");
+	o->until = time_of("--until", value);
+}
+
+static void take_every(struct options *o, const char *value) { o->every = time_of("--every", value); }
+static void take_input(struct options *o, const char *value) { o->input = value; }
+static void take_time(struct options *o, const char *value) { o->time = value; }
+static void take_output(struct options *o, const char *value) { o->output = value; }
+static void take_sweep(struct options *o, const char *value) { o->sweep = value; }
+static void take_peak(struct options *o, const char *value) { (void)value; o->peak = true; }
+static void take_resume(struct options *o, const char *value) { (void)value; o->resume = true; }
+
+static void take_column(struct options *o, const char *value)
+{
+	add_pair(&o->column, &o->columns, pair_of("--column", "NAME=HEADER", value));
+}
+
+static void take_definition(struct options *o, const char *value)
+{
+	add_pair(&o->definition, &o->definitions, pair_of("-D", "NAME=EXPR", value));
+}
+
+static void take_jobs(struct options *o, const char *value)
+{
+	char *end;
+	long jobs = strtol(value, &end, 10);
+	if (*value < '0' || *value > '9' || *end || jobs < 1 || jobs > 4096)
+		wrong_usage(format("--jobs takes a number from 1 to 4096, found '%s'", value));
+	o->jobs = (int)jobs;
+}
+
+static void take_plot(struct options *o, const char *value)
+{
+	o->plot = true;
+	o->plot_file = value;
+}
+
+static _Noreturn void print_usage(struct options *o, const char *value);
+
+static _Noreturn void print_version(struct options *o, const char *value)
+{
+	(void)o;
+	(void)value;
+	puts("plrun " PLRUN_VERSION);
+	exit(0);
+}
+
+/* ---- the options, in the order of usage ---- */
+
+static const struct row {
+	const char *name, *argument, *help;     /* argument: NULL: none, in brackets: a picture's name or none */
+	void (*take)(struct options *o, const char *value);     /* NULL: plgen's */
+} rows[] = {
+	{ "until", "T", "time of the end [s], as T behind the spec (default with --input: where the record ends)",
+	  take_until },
+	{ "every", "DT", "rows every DT seconds, a multiple of the step (default: every step)", take_every },
+	{ "input", "FILE.csv", "samples of the inputs, one column each, in any order; - reads standard input",
+	  take_input },
+	{ "column", "NAME=HEADER", "the input NAME is the column HEADER; columns without use are then passed over",
+	  take_column },
+	{ "time", "HEADER", "the column of times [s] (default: one called t or time); without one row k is at k steps",
+	  take_time },
+	{ "D", "NAME=EXPR", "another value for a param; of a tunable one nothing is compiled anew", take_definition },
+	{ "o", "FILE.csv", "the rows, or what a sweep comes to, in a file (default: standard output)", take_output },
+	{ "plot", "[FILE]", "a picture by gnuplot: .svg, .png or .pdf; without FILE a window", take_plot },
+	{ "sweep", "FILE.csv", "a run for each row of params; a line each: last values and root mean squares",
+	  take_sweep },
+	{ "peak", NULL, "... and the largest |value| at the ends of steps", take_peak },
+	{ "jobs", "N", "... on N cores (default: all)", take_jobs },
+	{ "resume", NULL, "... going on where the same sweep was interrupted", take_resume },
+	{ "step", "EXPR", NULL, NULL }, { "scheme", "NAME", NULL, NULL }, { "tolerance", "EXPR", NULL, NULL },
+	{ "real", "TYPE", NULL, NULL }, { "form", "NAME", NULL, NULL }, { "accuracy", "NAME", NULL, NULL },
+	{ "loads", "NAME", NULL, NULL }, { "prefix", "NAME", NULL, NULL },
+	{ "anchors", "N", NULL, NULL }, { "reduce", NULL, NULL, NULL },
+	{ "help", NULL, "", print_usage }, { "version", NULL, "", print_version }
+};
+enum { ROWS = sizeof rows / sizeof *rows };
+
+static _Noreturn void print_usage(struct options *o, const char *value)
+{
+	(void)o;
+	(void)value;
+	fputs("usage: plrun [options] MODEL.spec [T]\n\n"
+	      "Runs a vibration model from t = 0 to T and writes its outputs as CSV to standard output.\n\n", stdout);
+	for (int i = 0; i < ROWS; i++)
+		if (rows[i].help && *rows[i].help)
+			printf("  %s%s %-*s %s\n", rows[i].name[1] ? "--" : "-", rows[i].name,
+			       18 - (int)strlen(rows[i].name) - (rows[i].name[1] != 0),
+			       rows[i].argument ? rows[i].argument : "", rows[i].help);
+	fputs("  passed on to plgen:", stdout);
+	for (int i = 0; i < ROWS; i++)
+		if (!rows[i].take)
+			printf(" --%s", rows[i].name);
+	fputs("\n  --help, --version\n\n"
+	      "PLGEN names the generator (default: beside plrun, then in PATH), CC the compiler (cc), CFLAGS more\n"
+	      "flags for it, XDG_CACHE_HOME where what is compiled is kept (~/.cache).\n"
+	      "Exit status: 0 done; 1 something in the files is wrong, or the run, or a row of a sweep; 2 the command\n"
+	      "line is wrong.\n", stdout);
+	exit(0);
+}
+
+/* ---- the line ---- */
+
+static bool is_picture(const char *word)
+{
+	const char *dot = word ? strrchr(word, '.') : NULL;
+	return dot && (strcmp(dot, ".svg") == 0 || strcmp(dot, ".png") == 0 || strcmp(dot, ".pdf") == 0);
+}
+
+/* `length` letters of `word` are the option's name */
+static const struct row *row_of(const char *name, size_t length)
+{
+	for (int i = 0; i < ROWS; i++)
+		if (strlen(rows[i].name) == length && strncmp(rows[i].name, name, length) == 0)
+			return &rows[i];
+	return NULL;
+}
+
+/* The value of an option: behind '=' or the letter, or the next word */
+static const char *value_of(struct words *w, const struct row *row, const char *given)
+{
+	const char *next = w->next < w->count ? w->word[w->next] : NULL;
+	const char *dashes = row->name[1] ? "--" : "-";
+	if (!row->argument) {
+		if (given)
+			wrong_usage(format("--%s takes no value, found '%s'", row->name, given));
+		return NULL;
+	}
+	if (row->argument[0] == '[') {
+		if (!given && is_picture(next)) {
+			w->next++;
+			return next;
+		}
+		if (given && !is_picture(given))
+			wrong_usage(format("--plot draws .svg, .png or .pdf, found '%s'", given));
+		return given;
+	}
+	if (!given && !next)
+		wrong_usage(format("option %s%s needs a value: %s", dashes, row->name, row->argument));
+	if (!given)
+		w->next++;
+	return given ? given : next;
+}
+
+static void take_option(struct words *w, struct options *o)
+{
+	const char *word = w->word[w->next++], *name = word[1] == '-' ? word + 2 : word + 1;
+	bool is_long = word[1] == '-';
+	size_t length = is_long ? strcspn(name, "=") : 1;
+	const struct row *row = row_of(name, length);
+	if (!row || is_long != (row->name[1] != 0))
+		wrong_usage(format("unknown option '%s'", word));
+	const char *given = is_long ? (name[length] ? name + length + 1 : NULL) : name[1] ? name + 1 : NULL;
+	const char *value = value_of(w, row, given);
+	if (row->take) {
+		row->take(o, value);
+		return;
+	}
+	pass_on(o, value ? format("--%s=%s", row->name, value) : format("--%s", row->name));
+}
+
+static void take_word(struct options *o, const char *word)
+{
+	if (!o->spec) {
+		o->spec = word;
+		return;
+	}
+	const char *dot = strrchr(word, '.');
+	if (dot && strcmp(dot, ".spec") == 0)
+		wrong_usage(format("one spec at a time: surplus argument '%s'", word));
+	if (o->plot && !o->plot_file && dot && !(dot[1] >= '0' && dot[1] <= '9') && dot[1])
+		wrong_usage(format("--plot draws .svg, .png or .pdf, found '%s'", word));
+	if (o->until >= 0)
+		wrong_usage(format("surplus argument '%s': the time of the end is given", word));
+	o->until = time_of("T", word);
+}
+
+static void check(const struct options *o)
+{
+	if (!o->spec)
+		wrong_usage("no spec is given");
+	if (!o->sweep && (o->peak || o->resume || o->jobs))
+		wrong_usage(format("%s goes with --sweep", o->peak ? "--peak" : o->resume ? "--resume" : "--jobs"));
+	if (o->sweep && o->plot)
+		wrong_usage("--plot draws one run, and a sweep has many");
+	if (o->sweep && o->every >= 0)
+		wrong_usage("--every is for the rows of one run; a sweep looks at every step");
+	if (o->sweep && strcmp(o->spec, "-") == 0)
+		wrong_usage("a sweep may read the spec many times: it has to be a file");
+	if (o->input && strcmp(o->input, "-") == 0 && strcmp(o->spec, "-") == 0)
+		wrong_usage("standard input is the spec, or the samples");
+	if (!o->input && (o->columns || o->time))
+		wrong_usage(format("%s goes with --input", o->columns ? "--column" : "--time"));
+	if (o->every == 0)
+		wrong_usage("--every: expected a time above 0");
+	const char *written[] = { o->output, o->plot_file }, *read[] = { o->spec, o->input, o->sweep };
+	for (int i = 0; i < 2; i++)
+		for (int j = 0; j < 3; j++)
+			if (written[i] && read[j] && strcmp(written[i], read[j]) == 0)
+				wrong_usage(format("'%s' would be written over", written[i]));
+}
+
+void read_options(int argc, char **argv, struct options *o)
+{
+	struct words w = { argv, argc, 1 };
+	bool options = true;
+	o->until = o->every = -1;
+	while (w.next < argc) {
+		const char *word = argv[w.next];
+		if (options && strcmp(word, "--") == 0) {
+			options = false;
+			w.next++;
+		} else if (options && word[0] == '-' && word[1]) {
+			take_option(&w, o);
+		} else {
+			take_word(o, word);
+			w.next++;
+		}
+	}
+	pass_on(o, NULL);
+	o->passed_count--;
+	check(o);
+}

@@ -1,0 +1,161 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A picture of a run by gnuplot: a panel for each output over one axis of time. A long run is kept as the least and the
+ * largest value of each output in buckets of equal length, more of them than a picture has points across. */
+#define _GNU_SOURCE
+#include "plrun.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { BUCKETS = 8192, PANELS = 12 };   /* BUCKETS: even */
+
+struct picture {
+	const struct machine *machine;
+	double h;
+	int panels;
+	uint64_t stride;                /* steps of a bucket */
+	size_t buckets;
+	double *least, *largest;        /* BUCKETS x panels */
+};
+
+struct picture *picture_new(const struct machine *m, double h)
+{
+	struct picture *p = need(calloc(1, sizeof *p));
+	*p = (struct picture){ .machine = m, .h = h, .panels = m->outputs < PANELS ? m->outputs : PANELS, .stride = 1 };
+	p->least = need(calloc((size_t)BUCKETS * (size_t)p->panels, sizeof(double)));
+	p->largest = need(calloc((size_t)BUCKETS * (size_t)p->panels, sizeof(double)));
+	return p;
+}
+
+/* Bucket `from` with what is in [least, largest] too */
+static void widen(struct picture *p, size_t bucket, const double *least, const double *largest)
+{
+	double *low = p->least + bucket * (size_t)p->panels, *high = p->largest + bucket * (size_t)p->panels;
+	for (int i = 0; i < p->panels; i++) {
+		low[i] = least[i] < low[i] ? least[i] : low[i];
+		high[i] = largest[i] > high[i] ? largest[i] : high[i];
+	}
+}
+
+static void begin_bucket(struct picture *p, size_t bucket, const double *least, const double *largest)
+{
+	size_t n = (size_t)p->panels;
+	memmove(p->least + bucket * n, least, n * sizeof *least);
+	memmove(p->largest + bucket * n, largest, n * sizeof *largest);
+}
+
+static void halve(struct picture *p)
+{
+	size_t n = (size_t)p->panels;
+	for (size_t b = 0; b < BUCKETS; b++) {
+		if (b % 2 == 0)
+			begin_bucket(p, b / 2, p->least + b * n, p->largest + b * n);
+		else
+			widen(p, b / 2, p->least + b * n, p->largest + b * n);
+	}
+	p->buckets = BUCKETS / 2;
+	p->stride *= 2;
+}
+
+void picture_add(void *who, uint64_t k, const double *out)
+{
+	struct picture *p = who;
+	if (k / p->stride >= BUCKETS)
+		halve(p);
+	size_t bucket = (size_t)(k / p->stride);
+	if (bucket == p->buckets) {
+		begin_bucket(p, bucket, out, out);
+		p->buckets++;
+	} else {
+		widen(p, bucket, out, out);
+	}
+}
+
+/* ---- gnuplot's words ---- */
+
+static void print_quoted(FILE *to, const char *text)
+{
+	for (putc('\'', to); *text; text++)
+		fprintf(to, *text == '\'' ? "''" : "%c", *text);
+	putc('\'', to);
+}
+
+static void print_row(FILE *to, const struct picture *p, size_t bucket, const double *value)
+{
+	char text[LONGEST];
+	*put_time(text, bucket * p->stride, p->h, p->machine->single) = 0;
+	fputs(text, to);
+	for (int i = 0; i < p->panels; i++) {
+		*put_shortest(text, value[bucket * (size_t)p->panels + (size_t)i], p->machine->single) = 0;
+		fprintf(to, " %s", text);
+	}
+	putc('\n', to);
+}
+
+/* A bucket of one step is a point; of more it is two, and the line between them is what happens in it. */
+static void print_data(FILE *to, const struct picture *p)
+{
+	fputs("$data << END\n", to);
+	for (size_t b = 0; b < p->buckets; b++) {
+		print_row(to, p, b, p->least);
+		if (p->stride > 1)
+			print_row(to, p, b, p->largest);
+	}
+	fputs("END\n", to);
+}
+
+static void print_terminal(FILE *to, const struct picture *p, const char *file)
+{
+	int height = 120 + (p->panels == 1 ? 360 : 180 * p->panels);
+	const char *end = file ? file + strlen(file) - 3 : "";
+	if (!file)
+		return;
+	if (strcmp(end, "pdf") == 0)
+		fprintf(to, "set term pdfcairo noenhanced size %.1fin,%.1fin font 'sans,10'\n", 9.0, height / 100.0);
+	else
+		fprintf(to, "set term %s noenhanced size 900,%d font 'sans,11' background '#ffffff'\n",
+			strcmp(end, "png") == 0 ? "pngcairo" : "svg", height);
+	fputs("set output ", to);
+	print_quoted(to, file);
+	putc('\n', to);
+}
+
+static void print_panels(FILE *to, const struct picture *p)
+{
+	double end = (double)((p->buckets ? p->buckets - 1 : 0) * p->stride) * p->h;
+	fprintf(to, "set multiplot layout %d,1 title ", p->panels);
+	print_quoted(to, p->machine->name);
+	fprintf(to, " noenhanced\nset grid lt 1 lc rgb '#dddddd'\nset lmargin 12\nset rmargin 3\nunset key\n"
+		    "set xrange [0:%g]\nset offsets 0,0,graph 0.05,graph 0.05\nset format y '%%.3g'\n",
+		end > 0 ? end : 1.0);
+	for (int i = 0; i < p->panels; i++) {
+		fputs("set ylabel ", to);
+		print_quoted(to, p->machine->output_names[i]);
+		fprintf(to, " noenhanced\n%splot $data using 1:%d with %s lc rgb '#1f5fa8' lw 1.2\n",
+			i == p->panels - 1 ? "set xlabel 't [s]'\n" : "", i + 2, p->buckets > 1 ? "lines" : "points");
+	}
+	fputs("unset multiplot\n", to);
+}
+
+void picture_draw(struct picture *p, const char *file)
+{
+	FILE *script = need(tmpfile());
+	const char *window[] = { "gnuplot", "--persist", "-", NULL }, *drawn[] = { "gnuplot", "-", NULL };
+	struct said said = { 0 };
+	const char *display = getenv("DISPLAY"), *wayland = getenv("WAYLAND_DISPLAY");
+	if (!file && !(display && *display) && !(wayland && *wayland))
+		fail(WRONG_DATA, "there is no display for a window: --plot FILE.svg draws a file");
+	if (p->panels < p->machine->outputs)
+		say_note(format("the first %d of %d outputs are drawn", p->panels, p->machine->outputs));
+	print_terminal(script, p, file);
+	print_data(script, p);
+	print_panels(script, p);
+	fflush(script);
+	rewind(script);
+	char *error = run_command(file ? drawn : window, script, false, &said);
+	if (!error && said.status)
+		error = format("gnuplot could not draw:\n%s", said.err);
+	if (error)
+		fail(WRONG_DATA, error);
+	fclose(script);
+}

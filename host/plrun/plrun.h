@@ -1,0 +1,279 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* plrun: a spec becomes numbers and pictures, with no C written.
+ *
+ *     spec --plgen--> C --cc--> shared object in a cache --dlopen--> descriptor --run--> rows: CSV, picture
+ *                                                                        \--sweep--> a line for each set of params
+ *
+ * Nothing of the generator is linked in: plrun starts plgen, and the compiler, as a person would, with arguments as a
+ * list and never through a shell, so that blanks in paths mean nothing.  What drives a model is its descriptor
+ * (`pl_model`, runtime/plrt.h) and NAME_step alone, so that a row has the bits that the generated code has in any
+ * other program.
+ *
+ * The files, in the order in which a run goes through them:
+ *
+ *     main.c      the column of calls
+ *     options.c   the command line; what is plgen's own is passed on
+ *     message.c   errors, with places in files; memory
+ *     text.c      numbers as text: shortest digits, t as the decimal k h
+ *     command.c   programs: found, started, what they say
+ *     build.c     from a spec to a shared object.  The cache is keyed by everything that the object is made of: the
+ *                 C, the runtime, the compiler and its flags; an object is made beside its place and renamed into
+ *                 it, so two runs at a time do no harm
+ *     machine.c   a loaded model, its numbers as doubles whatever its type
+ *     table.c     CSV as spreadsheets write it, a line at a time, with places
+ *     record.c    a table as samples of the inputs, resampled where its times are not those of the steps
+ *     run.c       steps, and what watches them
+ *     rows.c      the rows of a run as CSV
+ *     plot.c      ... as a picture
+ *     sweep.c     lines of params, and what a run with each comes to
+ *     journal.c   the lines that are done, kept beside, from which an interrupted sweep goes on
+ *     workers.c   the lines shared out to cores (OpenMP) and machines (MPI)
+ *
+ * A param that the spec declares tunable changes without compiling (`retune`); any other is given to plgen as -D, and
+ * compiled once for each value.  The line of a sweep depends on its params alone: who computes it, and when, does not
+ * show.  Lines are written in the order of the table.
+ *
+ * In single runs what is wrong ends the program where it is found; in a sweep it is the text of the line's status, so
+ * what a line needs returns its error as text, NULL where there is none. */
+#ifndef PLRUN_H
+#define PLRUN_H
+
+#include "plrt.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+
+/* ---- message.c ---- */
+
+enum { WRONG_DATA = 1, WRONG_USAGE = 2 };       /* exit status */
+
+char *format(const char *pattern, ...) __attribute__((format(printf, 1, 2)));  /* on the heap */
+_Noreturn void fail(int status, const char *message);   /* "plrun: error: ..." */
+_Noreturn void wrong_usage(const char *message);
+void say_note(const char *message);
+void say_text(const char *text);                        /* warnings of another program, as they are */
+void leave_notes_to_first(void);                        /* of several processes, which would say the same */
+void *need(void *memory);                               /* not NULL, or the program ends */
+void *grown(void *array, size_t count, size_t *room, size_t item); /* room for one more than `count` items */
+
+/* A place in a file: `line` is the text of line `number`, of `length` bytes, `column` the offset in it */
+struct place {
+	const char *path;
+	unsigned long number;
+	const char *line;
+	size_t length, column;
+};
+void say_at(struct place at, const char *kind, const char *message);      /* kind: error, warning */
+_Noreturn void fail_at(struct place at, const char *note, const char *message); /* note: NULL for none */
+
+bool progress_wanted(void);                             /* a terminal, and a fifth of a second since the last line */
+void progress(const char *line);
+void progress_end(void);                                /* takes the line away */
+
+/* ---- text.c ---- */
+
+enum { LONGEST = 32 };                                  /* characters of a number and what follows it */
+char *put_shortest(char *to, double value, bool single);/* in as few digits as read back the same; its end, no 0 */
+/* k h: as a decimal where h is one of at most 15 digits, 6 if it is a float */
+char *put_time(char *to, uint64_t k, double h, bool single);
+const char *shortest(double value, bool single);        /* on the heap */
+bool read_number(const char *text, double *value);      /* all of it, finite, decimal */
+
+/* ---- options.c ---- */
+
+struct pair {
+	const char *name, *value;
+};
+struct options {
+	const char *spec, *output;
+	double until, every;                    /* [s]; below 0: not given */
+	const char *input, *time;               /* the record, and the header of its times */
+	struct pair *column, *definition;       /* input=header; params */
+	size_t columns, definitions;
+	const char **passed;                    /* plgen's own options, NULL-terminated */
+	size_t passed_count, passed_room;
+	bool plot;
+	const char *plot_file;                  /* NULL: a window */
+	const char *sweep;
+	bool peak, resume;
+	int jobs;                               /* 0: as many as there are cores */
+};
+void read_options(int argc, char **argv, struct options *o);
+
+/* ---- command.c ---- */
+
+struct said {
+	int status;                             /* exit status; 128 + the signal that ended it */
+	char *out, *err;                        /* NUL-terminated */
+	size_t out_length;
+};
+const char *folder_of_program(void);            /* of plrun itself; NULL: not known */
+char *find_in_path(const char *name);           /* NULL: not there */
+/* The program argv[0], found in PATH, with `input` or NULL on its standard input (inherits: ours).  NULL, or why it
+ * could not be started. */
+char *run_command(const char *const *argv, FILE *input, bool inherits, struct said *said);
+
+/* ---- build.c ---- */
+
+/* The bytes of anything in 128 bits (FNV-1a), as the names of files in the cache */
+struct hash {
+	unsigned __int128 value;
+};
+void hash_begin(struct hash *h);
+void hash_bytes(struct hash *h, const void *bytes, size_t length);
+void hash_text(struct hash *h, const char *text);       /* with its end, so that "a" "bc" is not "ab" "c" */
+char *hash_name(const struct hash *h);                  /* 32 digits */
+char *read_whole(const char *path, size_t *length);     /* NULL: errno */
+const char *cache_folder(void);                         /* made when it is not there */
+
+struct toolchain;                               /* plgen, the compiler, the runtime */
+struct toolchain *find_tools(void);
+
+/* The C of a spec, with `extra` definitions "NAME=EXPR" beside the options'.  Its messages are shown unless `quiet`;
+ * NULL: it went wrong, *error says how, *status is plgen's. */
+struct code {
+	char *text;
+	char *name;                             /* of the model */
+	bool single;
+	char **tunable;                         /* NULL-terminated */
+};
+struct code *generate(const struct toolchain *t, const struct options *o, const char *const *extra, size_t extras,
+		      bool quiet, char **error, int *status);
+bool is_tunable(const struct code *c, const char *name);
+/* The C as a shared object: its path in the cache, compiled when it is not there.  NULL: *error */
+char *compile(const struct toolchain *t, const struct code *c, bool anew, char **error);
+/* What its C is made of, for a key */
+void hash_tools(const struct toolchain *t, struct hash *h);
+
+/* ---- machine.c ---- */
+
+struct machine {
+	void *object;                           /* of dlopen */
+	const pl_model *model;                  /* of a model in float its pl_modelf: `single` says which */
+	const pl_modelf *modelf;
+	bool single, has_status, can_retune;
+	const char *name;
+	int states, inputs, outputs, params;
+	size_t size;
+	double h;
+	const char *const *input_names, *const *output_names, *const *param_names;
+	const int *ahead;                       /* of each input: samples that it has had before the first step */
+	int most_ahead;
+	double *param_values;
+};
+struct machine *machine_open(const char *path, const char *name, char **error);     /* NULL: *error */
+struct machine *machine_of(const struct toolchain *t, const struct code *c, char **error);
+void machine_close(struct machine *m);
+
+struct instance {
+	const struct machine *machine;
+	void *state;
+	float *narrow;                          /* of models in float: room for any vector */
+};
+struct instance *instance_new(const struct machine *m); /* as `init` leaves it */
+void instance_free(struct instance *i);
+const char *instance_retune(struct instance *i, const double *params, double h);    /* NULL, or what is wrong */
+void instance_hold(struct instance *i, const double *u);
+void instance_step(struct instance *i, const double *u);
+void instance_out(struct instance *i, double *out);
+int instance_status(const struct instance *i);
+double instance_time(const struct instance *i);
+
+/* ---- table.c ---- */
+
+struct cell {
+	size_t column;                          /* offset in the line */
+	const char *text;                       /* without blanks and quotes, NUL-terminated; ends with the line */
+	bool quoted;
+};
+struct table {
+	const char *path;
+	char *text;                             /* the whole file */
+	size_t length, next;                    /* next: where the line after this one begins */
+	struct place at;                        /* this line */
+	char separator, point;                  /* point: of numbers so far, 0: none had one */
+	struct cell *cell;
+	size_t cells, cell_room;
+	char *words;                            /* the cells' texts */
+	size_t words_room;
+	struct cell *header;                    /* NULL: the first line has numbers */
+	size_t columns;                         /* of the first line, and so of all */
+	struct place header_at;
+};
+void table_open(struct table *t, const char *path);
+bool table_next(struct table *t);                       /* false: at its end */
+double table_number(struct table *t, size_t cell);      /* finite, or the program ends at its place */
+struct place table_place(const struct table *t, size_t column);
+struct place header_place(const struct table *t, size_t column);
+
+/* ---- record.c ---- */
+
+struct record {
+	const char *path;
+	int inputs;
+	size_t rows;
+	double *value;                          /* rows x inputs */
+	double *time;                           /* [s] from the first on; NULL: row k is at k h */
+	unsigned long last_line;
+};
+struct record *record_read(const struct options *o, const struct machine *m);
+/* Does row k stand at k h, for all k? Then samples are rows. */
+bool record_on_grid(const struct record *r, double h);
+uint64_t record_samples(const struct record *r, double h, bool on_grid);   /* how many there are at 0, h, 2 h ... */
+void record_say(const struct record *r, double h);      /* that it is resampled, where it is */
+/* Sample k; *near is where the last one was found, 0 at first */
+void record_sample(const struct record *r, double h, bool on_grid, uint64_t k, size_t *near, double *u);
+
+/* ---- run.c ---- */
+
+struct job {
+	const struct machine *machine;
+	const struct record *record;            /* NULL: no inputs */
+	const double *params;                   /* NULL: as the model has them */
+	double h, until;                        /* until < 0: to the end of the record */
+	bool resampled, told;                   /* told: progress is */
+	uint64_t steps;                         /* these two by plan_run */
+};
+char *plan_run(struct job *job);                        /* NULL, or why not */
+typedef void watch(void *who, uint64_t k, const double *out);  /* after step k, and at k = 0 */
+char *run_steps(const struct job *job, watch *each, void *who);
+
+/* ---- rows.c, plot.c: what watches a run ---- */
+
+struct rows;
+struct rows *rows_new(FILE *to, const struct machine *m, double h, uint64_t every);
+watch rows_add;
+void rows_end(struct rows *r);
+
+struct picture;
+struct picture *picture_new(const struct machine *m, double h);
+watch picture_add;
+void picture_draw(struct picture *p, const char *file); /* NULL: a window */
+
+/* ---- sweep.c, journal.c, workers.c ---- */
+
+/* Of several processes under mpirun this is number `rank` of `size`; else 0 of 1 */
+struct workers {
+	int rank, size;
+};
+
+struct sweep;
+int sweep_run(const struct toolchain *t, const struct options *o, const struct code *c, const struct machine *m,
+	      FILE *to, struct workers w);              /* exit status */
+char *sweep_line(struct sweep *s, size_t row);          /* computed, by any thread; ends with a newline */
+
+struct journal;
+struct journal *journal_open(const char *key, bool resume, size_t rows, char **line); /* line: those that are done */
+void journal_add(struct journal *j, size_t row, const char *line);
+void journal_end(struct journal *j);                    /* all is done: nothing stays */
+
+struct workers workers_begin(int *argc, char ***argv);
+void workers_end(void);
+/* Lines 0 .. rows - 1 that are NULL, by `jobs` threads (0: as many as there are cores) of each process: deliver() is
+ * called in the first process, for one line at a time */
+void workers_share(struct workers w, int jobs, struct sweep *s, size_t rows, char **line,
+		   void (*deliver)(void *who, size_t row, char *line), void *who);
+
+#endif

@@ -1,0 +1,267 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A recorded table as samples of the inputs. Row k is the sample at k h, as everywhere; with a column of times the
+ * first row is t = 0, and where times are not k h the record goes straight from row to row. */
+#define _GNU_SOURCE
+#include "plrun.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+enum { NONE = -1 };
+
+struct choice {                         /* which columns are read */
+	int *of_input;
+	int time;
+	bool chosen;                    /* by --column or --time: others may stand beside */
+};
+
+/* "t", "time", "Time [s]", "t/s"; another unit is told where it stands */
+static bool is_time(const struct table *t, size_t column)
+{
+	const char *name = t->header[column].text;
+	size_t length = strncasecmp(name, "time", 4) == 0 ? 4 : strncasecmp(name, "t", 1) == 0 ? 1 : 0;
+	const char *rest = name + length;
+	char unit[16] = "";
+	if (!length || (*rest && !strchr(" [(/", *rest)))
+		return false;
+	sscanf(rest, " %*[[(/] %15[^])]", unit);
+	for (size_t end = strlen(unit); end && unit[end - 1] == ' ';)
+		unit[--end] = 0;
+	if (*unit && strcmp(unit, "s") && strcmp(unit, "sec") && strcmp(unit, "seconds"))
+		fail_at(header_place(t, column), format("--time '%s' takes it as seconds all the same", name),
+			format("times are in seconds, and these are in '%s'", unit));
+	return true;
+}
+
+static int find_column(const struct table *t, const char *header)
+{
+	int found = NONE;
+	for (size_t i = 0; i < t->columns; i++) {
+		if (strcmp(t->header[i].text, header) != 0)
+			continue;
+		if (found != NONE)
+			fail_at(header_place(t, i), NULL, format("two columns are called '%s'", header));
+		found = (int)i;
+	}
+	return found;
+}
+
+static const char *all_headers(const struct table *t)
+{
+	const char *list = "";
+	for (size_t i = 0; i < t->columns; i++)
+		list = format("%s%s'%s'", list, i ? ", " : "", t->header[i].text);
+	return list;
+}
+
+static const char *all_inputs(const struct machine *m)
+{
+	const char *list = "";
+	for (int i = 0; i < m->inputs; i++)
+		list = format("%s%s%s", list, i ? ", " : "", m->input_names[i]);
+	return list;
+}
+
+static int named_column(const struct table *t, const char *option, const char *header)
+{
+	int column = find_column(t, header);
+	if (column == NONE)
+		fail_at(header_place(t, 0), format("its columns are %s", all_headers(t)),
+			format("%s: no column is called '%s'", option, header));
+	return column;
+}
+
+static void take_columns(const struct options *o, const struct table *t, const struct machine *m, struct choice *c)
+{
+	for (size_t k = 0; k < o->columns; k++) {
+		int input = 0;
+		while (input < m->inputs && strcmp(m->input_names[input], o->column[k].name) != 0)
+			input++;
+		if (input == m->inputs)
+			wrong_usage(format("--column: the model has no input '%s'; its inputs: %s", o->column[k].name,
+					   all_inputs(m)));
+		c->of_input[input] = named_column(t, "--column", o->column[k].value);
+	}
+	for (int i = 0; i < m->inputs; i++)
+		if (c->of_input[i] == NONE)
+			c->of_input[i] = find_column(t, m->input_names[i]);
+	for (int i = 0; i < m->inputs; i++)
+		if (c->of_input[i] == NONE)
+			fail_at(header_place(t, 0), format("--column %s=HEADER says which it is; there are %s",
+							   m->input_names[i], all_headers(t)),
+				format("no column is called '%s', as the input is", m->input_names[i]));
+	if (o->time)
+		c->time = named_column(t, "--time", o->time);
+}
+
+static bool is_taken(const struct choice *c, const struct machine *m, int column)
+{
+	for (int i = 0; i < m->inputs; i++)
+		if (c->of_input[i] == column)
+			return true;
+	return c->time == column;
+}
+
+/* What is not an input is the time, or without use: so is what has no name, as row numbers and empty columns do. */
+static void take_rest(const struct table *t, const struct machine *m, struct choice *c)
+{
+	const char *unused = "";
+	for (int i = 0; i < (int)t->columns; i++) {
+		if (is_taken(c, m, i))
+			continue;
+		if (c->time == NONE && is_time(t, (size_t)i)) {
+			c->time = i;
+			continue;
+		}
+		if (!c->chosen && *t->header[i].text)
+			fail_at(header_place(t, (size_t)i),
+				format("the inputs are %s; with --column or --time other columns are passed over",
+				       all_inputs(m)),
+				format("a column too many: no input is called '%s'", t->header[i].text));
+		unused = format("%s%s'%s'", unused, *unused ? ", " : "", t->header[i].text);
+	}
+	if (*unused)
+		say_note(format("%s: not read: %s", t->at.path, unused));
+}
+
+static struct choice choose(const struct options *o, const struct table *t, const struct machine *m)
+{
+	struct choice c = { need(calloc((size_t)m->inputs, sizeof(int))), NONE, o->columns || o->time };
+	for (int i = 0; i < m->inputs; i++)
+		c.of_input[i] = t->header ? NONE : i;
+	if (t->header) {
+		take_columns(o, t, m, &c);
+		take_rest(t, m, &c);
+	} else if (c.chosen) {
+		fail(WRONG_DATA, format("%s: --column and --time name columns, and its first line has no names",
+					t->at.path));
+	} else if (t->columns != (size_t)m->inputs) {
+		fail_at((struct place){ t->at.path, t->at.number + 1, t->text + t->next, 0, 0 },
+			format("a first line with names says which is which; the inputs are %s", all_inputs(m)),
+			format("expected %d column%s, one for each input, found %zu", m->inputs,
+			       m->inputs == 1 ? "" : "s", t->columns));
+	}
+	return c;
+}
+
+/* ---- the rows ---- */
+
+static void check_time(struct table *t, const struct record *r, const struct choice *c)
+{
+	size_t k = r->rows;
+	if (k > 0 && !(r->time[k] > r->time[k - 1]))
+		fail_at(table_place(t, t->cell[c->time].column), NULL,
+			format("times have to rise: %s follows %s", shortest(r->time[k], false),
+			       shortest(r->time[k - 1], false)));
+}
+
+/* A place where much more time passes than elsewhere has lost rows. Each row is a line. */
+static void look_for_gaps(const struct record *r)
+{
+	double mean = (r->time[r->rows - 1] - r->time[0]) / (double)(r->rows - 1), longest = 0;
+	size_t where = 0;
+	for (size_t k = 1; k < r->rows; k++)
+		if (r->time[k] - r->time[k - 1] > longest) {
+			longest = r->time[k] - r->time[k - 1];
+			where = k;
+		}
+	if (longest > 5 * mean)
+		say_text(format("%s:%lu:1: warning: %.3g s without a row, where others are %.3g s apart\n", r->path,
+				r->last_line - (r->rows - 1 - where), longest, mean));
+}
+
+static void begin_at_zero(struct record *r)
+{
+	double first = r->time[0];
+	if (first == 0)
+		return;
+	say_note(format("%s: its first row, of t = %s, is taken as t = 0", r->path, shortest(first, false)));
+	for (size_t k = 0; k < r->rows; k++)
+		r->time[k] -= first;
+}
+
+struct record *record_read(const struct options *o, const struct machine *m)
+{
+	struct record *r = need(calloc(1, sizeof *r));
+	struct table t;
+	size_t room = 0, time_room = 0;
+	table_open(&t, o->input);
+	struct choice c = choose(o, &t, m);
+	r->path = t.at.path;
+	r->inputs = m->inputs;
+	while (table_next(&t)) {
+		r->value = grown(r->value, r->rows, &room, sizeof *r->value * (size_t)m->inputs);
+		for (int i = 0; i < m->inputs; i++)
+			r->value[r->rows * (size_t)m->inputs + (size_t)i] = table_number(&t, (size_t)c.of_input[i]);
+		if (c.time != NONE) {
+			r->time = grown(r->time, r->rows, &time_room, sizeof *r->time);
+			r->time[r->rows] = table_number(&t, (size_t)c.time);
+			check_time(&t, r, &c);
+		}
+		r->rows++;
+		r->last_line = t.at.number;
+	}
+	if (r->rows == 0)
+		fail_at((struct place){ t.at.path, t.at.number + 1, "", 0, 0 }, NULL,
+			"expected rows of numbers, found the end of the file");
+	if (r->time && r->rows > 1)
+		look_for_gaps(r);
+	if (r->time)
+		begin_at_zero(r);
+	free(t.text);
+	free(c.of_input);
+	return r;
+}
+
+/* ---- samples ---- */
+
+/* Times are written with few digits: a millionth of a step is nothing. */
+bool record_on_grid(const struct record *r, double h)
+{
+	for (size_t k = 0; r->time && k < r->rows; k++) {
+		double off = r->time[k] - (double)k * h;
+		if (!(off < 1e-6 * h && off > -1e-6 * h))
+			return false;
+	}
+	return true;
+}
+
+uint64_t record_samples(const struct record *r, double h, bool on_grid)
+{
+	return on_grid ? r->rows : (uint64_t)(r->time[r->rows - 1] / h + 1e-6) + 1;
+}
+
+void record_say(const struct record *r, double h)
+{
+	double longest = 0, least = 1e300;
+	for (size_t k = 1; k < r->rows; k++) {
+		double d = r->time[k] - r->time[k - 1];
+		longest = d > longest ? d : longest;
+		least = d < least ? d : least;
+	}
+	if (longest - least < 1e-3 * longest)
+		say_note(format("%s: a row every %.6g s, and the step is %.6g s: resampled by ramps", r->path, least,
+				h));
+	else
+		say_note(format("%s: rows %.6g to %.6g s apart, and the step is %.6g s: resampled by ramps", r->path,
+				least, longest, h));
+}
+
+void record_sample(const struct record *r, double h, bool on_grid, uint64_t k, size_t *near, double *u)
+{
+	size_t n = (size_t)r->inputs;
+	if (on_grid) {
+		memcpy(u, r->value + k * n, sizeof *u * n);
+		return;
+	}
+	double t = (double)k * h;
+	while (*near + 2 < r->rows && r->time[*near + 1] <= t)
+		(*near)++;
+	size_t next = *near + 1 < r->rows ? *near + 1 : *near;
+	const double *from = r->value + *near * n, *to = r->value + next * n;
+	double part = next == *near ? 0 : (t - r->time[*near]) / (r->time[next] - r->time[*near]);
+	part = part < 1 ? part : 1;
+	for (size_t i = 0; i < n; i++)
+		u[i] = from[i] + part * (to[i] - from[i]);
+}

@@ -1,0 +1,139 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A run: NAME_step from t = 0 on, each row looked at by whoever watches. */
+#include "plrun.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* The last k with k h <= end. What is a whole number but for the rounding of h and the quotient counts as whole. */
+static bool steps_until(double end, double h, bool single, uint64_t *steps)
+{
+	double quotient = end / h;
+	if (!(quotient < 9007199254740992.0))
+		return false;
+	*steps = (uint64_t)(quotient + 1e-9 + quotient * (single ? 0x1p-23 : 0x1p-52));
+	return true;
+}
+
+char *plan_run(struct job *job)
+{
+	const struct record *r = job->record;
+	uint64_t ahead = (uint64_t)job->machine->most_ahead;
+	if (!(job->h > 0))
+		return format("the step is not above 0");
+	bool on_grid = !r || record_on_grid(r, job->h);
+	uint64_t samples = r ? record_samples(r, job->h, on_grid) : 0;
+	job->resampled = !on_grid;
+	if (job->until >= 0 && !steps_until(job->until, job->h, job->machine->single, &job->steps))
+		return format("T is more than 2^53 steps");
+	if (job->until < 0)
+		job->steps = samples > ahead ? samples - ahead : 0;
+	if (r && samples < job->steps + ahead)
+		return format("too few samples: %llu steps take %llu, to t = %.6g, and there are %llu, to %.6g",
+			      (unsigned long long)job->steps, (unsigned long long)(job->steps + ahead),
+			      (double)(job->steps + ahead - 1) * job->h, (unsigned long long)samples,
+			      (double)(samples - 1) * job->h);
+	return NULL;
+}
+
+/* The rows of the record that a step reads: `most_ahead` + 1 of them, the newest last */
+struct window {
+	const struct job *job;
+	double *row, *u;
+	uint64_t next;
+	size_t near;
+};
+
+static void take_sample(struct window *w)
+{
+	const struct machine *m = w->job->machine;
+	size_t n = (size_t)m->inputs, most = (size_t)m->most_ahead;
+	memmove(w->row, w->row + n, sizeof *w->row * most * n);
+	record_sample(w->job->record, w->job->h, !w->job->resampled, w->next++, &w->near, w->row + most * n);
+	for (size_t i = 0; i < n; i++)
+		w->u[i] = w->row[(size_t)m->ahead[i] * n + i];
+}
+
+/* The samples before the first step: row 0 of a ramp is its value at t = 0. What is held has its own there. */
+static void begin_samples(struct window *w, struct instance *s)
+{
+	const struct machine *m = w->job->machine;
+	size_t n = (size_t)m->inputs;
+	for (int k = 0; k < m->most_ahead; k++) {
+		take_sample(w);
+		for (size_t i = 0; i < n; i++)
+			if (m->ahead[i] == 0)
+				w->u[i] = w->row[(size_t)m->most_ahead * n + i];
+		instance_hold(s, w->u);
+	}
+}
+
+static char *status_text(int status, double t, bool single)
+{
+	char *text = format("t = %s:", shortest(t, single));
+	if (status & PL_TOO_MANY_EVENTS)
+		text = format("%s the step has met more crossings, or needed a longer search for them, "
+			      "than its bound%s", text, status & PL_NOT_FINITE ? ";" : "");
+	if (status & PL_NOT_FINITE)
+		text = format("%s the step has left the finite numbers", text);
+	if (status & PL_TOO_MANY_STEPS)
+		text = format("%s the step needed more substeps than its bound", text);
+	if (status & PL_INACCURATE)
+		text = format("%s the last terms of the step are above the tolerance", text);
+	if (status & ~(PL_TOO_MANY_EVENTS | PL_NOT_FINITE | PL_TOO_MANY_STEPS | PL_INACCURATE))
+		text = format("%s status %d", text, status);
+	return text;
+}
+
+static void tell(const struct job *job, uint64_t k)
+{
+	char line[120];
+	if (!job->told || (k & 63) || !progress_wanted())
+		return;
+	snprintf(line, sizeof line, "t = %.6g of %.6g s (%.0f %%)", (double)k * job->h, (double)job->steps * job->h,
+		 100.0 * (double)k / (double)job->steps);
+	progress(line);
+}
+
+static char *take_steps(const struct job *job, struct instance *s, struct window *w, double *out, watch *each,
+			void *who)
+{
+	instance_out(s, out);
+	each(who, 0, out);
+	for (uint64_t k = 1; k <= job->steps; k++) {
+		if (job->record)
+			take_sample(w);
+		instance_step(s, w->u);
+		int status = instance_status(s);
+		if (status)
+			return status_text(status, instance_time(s), job->machine->single);
+		instance_out(s, out);
+		each(who, k, out);
+		tell(job, k);
+	}
+	return NULL;
+}
+
+char *run_steps(const struct job *job, watch *each, void *who)
+{
+	const struct machine *m = job->machine;
+	struct instance *s = instance_new(m);
+	size_t n = (size_t)m->inputs;
+	struct window w = { .job = job };
+	double *out = need(malloc(sizeof *out * (size_t)(m->outputs + 1)));
+	w.row = need(calloc(((size_t)m->most_ahead + 1) * n + 1, sizeof *w.row));
+	w.u = need(calloc(n + 1, sizeof *w.u));
+	const char *wrong = job->params ? instance_retune(s, job->params, job->h) : NULL;
+	char *error = wrong ? format("%s", wrong) : NULL;
+	if (!error) {
+		if (job->record && job->steps + (uint64_t)m->most_ahead > 0)
+			begin_samples(&w, s);
+		error = take_steps(job, s, &w, out, each, who);
+	}
+	free(w.row);
+	free(w.u);
+	free(out);
+	instance_free(s);
+	return error;
+}

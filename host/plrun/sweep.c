@@ -1,0 +1,491 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A run for each row of params, and a line about each: its number, the params, of every output the last value, the root
+ * mean square and, with --peak, the largest size, of all rows from t = 0 on, then how it ended.
+ *
+ * Tunable params go into an instance. The values of the others, and a `step` where nothing is tunable, make a variant:
+ * a model of its own, compiled when the first of its rows is reached and dropped with the last. */
+#define _GNU_SOURCE
+#include "plrun.h"
+
+#include <errno.h>
+#include <math.h>
+#include <pthread.h>
+#include <signal.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+struct variant {
+	size_t row;                             /* the first that has it */
+	size_t left;                            /* rows that are still to come */
+	pthread_mutex_t busy;
+	bool tried;
+	struct machine *machine;                /* NULL, tried: `error` */
+	char *error;
+};
+
+struct param {
+	const char *name;
+	bool tuned, step;                       /* not tuned: by plgen */
+};
+
+struct sweep {
+	const struct toolchain *tools;
+	const struct options *options;
+	const struct machine *machine;          /* at the values of the command line */
+	const struct record *record;
+	struct param *param;
+	size_t params, rows, rows_room;
+	const char **text;                      /* rows x params */
+	size_t *variant_of;                     /* row -> variant */
+	struct variant *variant;
+	size_t variants;
+	FILE *to;                               /* of the first process: */
+	struct journal *journal;
+	char **line;
+	size_t written, done, failed;
+};
+
+/* ---- the table ---- */
+
+static const char *value_of(const struct sweep *s, size_t row, size_t param)
+{
+	return s->text[row * s->params + param];
+}
+
+static struct code *generate_with(const struct sweep *s, const char *definition, char **error)
+{
+	int status;
+	return generate(s->tools, s->options, &definition, 1, true, error, &status);
+}
+
+/* A name that plgen does not know is wrong in every row: it is told at once, where it stands. */
+static void check_param(const struct sweep *s, const struct table *t, size_t column, const char *value)
+{
+	char *error = NULL;
+	const char *name = t->header[column].text;
+	for (size_t i = 0; i < s->options->definitions; i++)
+		if (strcmp(s->options->definition[i].name, name) == 0)
+			fail_at(header_place(t, column), NULL,
+				format("'%s' has a value on the command line, too", name));
+	for (size_t i = 0; i < column; i++)
+		if (strcmp(t->header[i].text, name) == 0)
+			fail_at(header_place(t, column), NULL, format("two columns are called '%s'", name));
+	if (s->param[column].tuned || s->param[column].step)
+		return;
+	generate_with(s, format("%s=%s", name, value), &error);
+	if (error && (strstr(error, "no param is named") || strstr(error, "is not a param")))
+		fail_at(header_place(t, column), NULL, format("no param is named '%s'", name));
+}
+
+static void take_header(struct sweep *s, const struct table *t, const struct code *c)
+{
+	if (!t->header)
+		fail_at((struct place){ t->at.path, t->at.number + 1, t->text + t->next, 0, 0 }, NULL,
+			"expected a first line with the names of params");
+	s->params = t->columns;
+	s->param = need(calloc(s->params, sizeof *s->param));
+	for (size_t i = 0; i < s->params; i++) {
+		const char *name = t->header[i].text;
+		s->param[i] = (struct param){ name, is_tunable(c, name), strcmp(name, "step") == 0 };
+		if (s->param[i].step && s->machine->can_retune)
+			s->param[i].tuned = true;
+	}
+}
+
+/* A value as it is given to plgen, and told: numbers with a point; any other is an expression, or plgen says what. */
+static const char *value_text(struct table *t, size_t cell, bool is_number)
+{
+	const char *text = t->cell[cell].text;
+	if (!*text || is_number || strspn(text, "+-.,0123456789eE") == strlen(text))
+		table_number(t, cell);
+	char *value = format("%s", text);
+	for (char *comma = value; t->separator != ',' && (comma = strchr(comma, ','));)
+		*comma = '.';
+	return value;
+}
+
+static void read_table(struct sweep *s, const struct code *c)
+{
+	struct table t;
+	table_open(&t, s->options->sweep);
+	take_header(s, &t, c);
+	while (table_next(&t)) {
+		s->text = grown(s->text, s->rows, &s->rows_room, sizeof *s->text * s->params);
+		for (size_t i = 0; i < s->params; i++)
+			s->text[s->rows * s->params + i] = value_text(&t, i, s->param[i].tuned || s->param[i].step);
+		s->rows++;
+	}
+	if (s->rows == 0)
+		fail_at((struct place){ t.at.path, t.at.number + 1, "", 0, 0 }, NULL,
+			"expected rows of params, found the end of the file");
+	for (size_t i = 0; i < s->params; i++)
+		check_param(s, &t, i, value_of(s, 0, i));
+}
+
+/* ---- variants ---- */
+
+static bool same_variant(const struct sweep *s, size_t a, size_t b)
+{
+	for (size_t i = 0; i < s->params; i++)
+		if (!s->param[i].tuned && strcmp(value_of(s, a, i), value_of(s, b, i)) != 0)
+			return false;
+	return true;
+}
+
+static const struct sweep *sorted;              /* whose rows are put in order; before any thread begins */
+
+static int by_variant(const void *a, const void *b)
+{
+	size_t one = *(const size_t *)a, other = *(const size_t *)b;
+	for (size_t i = 0; i < sorted->params; i++) {
+		int order = sorted->param[i].tuned ? 0
+			  : strcmp(value_of(sorted, one, i), value_of(sorted, other, i));
+		if (order)
+			return order;
+	}
+	return one < other ? -1 : 1;
+}
+
+/* `left` counts rows of all processes: of one of several a variant may stay loaded to the end. */
+static void find_variants(struct sweep *s)
+{
+	size_t *order = need(calloc(s->rows, sizeof *order));
+	s->variant_of = need(calloc(s->rows, sizeof *s->variant_of));
+	s->variant = need(calloc(s->rows, sizeof *s->variant));
+	for (size_t i = 0; i < s->rows; i++)
+		order[i] = i;
+	sorted = s;
+	qsort(order, s->rows, sizeof *order, by_variant);
+	for (size_t i = 0; i < s->rows; i++) {
+		if (i == 0 || !same_variant(s, order[i - 1], order[i])) {
+			s->variant[s->variants].row = order[i];
+			pthread_mutex_init(&s->variant[s->variants++].busy, NULL);
+		}
+		s->variant_of[order[i]] = s->variants - 1;
+		s->variant[s->variants - 1].left++;
+	}
+	free(order);
+}
+
+/* The first line of what plgen or the compiler said */
+static char *first_line(const char *text)
+{
+	const char *error = strstr(text, "error: ");
+	text = error ? error + strlen("error: ") : text;
+	return need(strndup(text, strcspn(text, "\n")));
+}
+
+static bool is_name_of(const struct machine *m, const char *name)
+{
+	for (int k = 0; k < m->params; k++)
+		if (strcmp(m->param_names[k], name) == 0)
+			return true;
+	return false;
+}
+
+static void build_variant(struct sweep *s, struct variant *v)
+{
+	const struct options *o = s->options;
+	const char **definition = need(calloc(s->params + o->definitions, sizeof *definition));
+	struct options with = *o;
+	size_t count = 0;
+	int status;
+	with.passed = need(calloc(o->passed_count + 2, sizeof *with.passed));
+	memcpy(with.passed, o->passed, o->passed_count * sizeof *o->passed);
+	double number;
+	for (size_t i = 0; i < o->definitions; i++) {
+		if (!is_name_of(s->machine, o->definition[i].name) || !read_number(o->definition[i].value, &number))
+			definition[count++] = format("%s=%s", o->definition[i].name, o->definition[i].value);
+	}
+	for (size_t i = 0; i < s->params; i++) {
+		if (s->param[i].step && !s->param[i].tuned)
+			with.passed[with.passed_count++] = format("--step=%s", value_of(s, v->row, i));
+		else if (!s->param[i].tuned)
+			definition[count++] = format("%s=%s", s->param[i].name, value_of(s, v->row, i));
+	}
+	struct code *c = generate(s->tools, &with, definition, count, true, &v->error, &status);
+	if (c) {
+		v->machine = machine_of(s->tools, c, &v->error);
+		free(c->text);
+		free(c);
+	}
+	if (v->error)
+		v->error = first_line(v->error);
+	free(definition);
+	free(with.passed);
+}
+
+static const struct machine *take_variant(struct sweep *s, struct variant *v)
+{
+	pthread_mutex_lock(&v->busy);
+	if (!v->tried)
+		build_variant(s, v);
+	v->tried = true;
+	pthread_mutex_unlock(&v->busy);
+	return v->machine;
+}
+
+static void leave_variant(struct variant *v)
+{
+	pthread_mutex_lock(&v->busy);
+	if (--v->left == 0 && v->machine) {
+		machine_close(v->machine);
+		v->machine = NULL;
+	}
+	pthread_mutex_unlock(&v->busy);
+}
+
+/* ---- a line ---- */
+
+struct sums {                           /* of a run */
+	int outputs;
+	double *last, *largest;
+	long double *squares;           /* a long double, so that squares of large values stay finite */
+	uint64_t rows;
+};
+
+static void add_up(void *who, uint64_t k, const double *out)
+{
+	struct sums *sums = who;
+	for (int i = 0; i < sums->outputs; i++) {
+		sums->last[i] = out[i];
+		sums->squares[i] += (long double)out[i] * (long double)out[i];
+		if (fabs(out[i]) > sums->largest[i])
+			sums->largest[i] = fabs(out[i]);
+	}
+	sums->rows = k + 1;
+}
+
+static void print_cell(FILE *to, const char *text)
+{
+	if (!strpbrk(text, ",\"\n")) {
+		fputs(text, to);
+		return;
+	}
+	for (putc('"', to); *text; text++)
+		fprintf(to, *text == '"' ? "\"\"" : "%c", *text);
+	putc('"', to);
+}
+
+static void print_value(FILE *to, bool there, double value, bool single)
+{
+	char text[LONGEST];
+	*put_shortest(text, value, single) = 0;
+	fprintf(to, ",%s", there ? text : "");
+}
+
+/* Does any row differ from the model as it is compiled?  Else its coefficients are the generator's own. */
+static bool is_tuned(const struct sweep *s)
+{
+	double value;
+	for (size_t i = 0; i < s->params; i++)
+		if (s->param[i].tuned)
+			return true;
+	for (size_t i = 0; i < s->options->definitions; i++)
+		if (is_name_of(s->machine, s->options->definition[i].name) &&
+		    read_number(s->options->definition[i].value, &value))
+			return true;
+	return false;
+}
+
+/* The tunables of a row beside those of the command line, and its step */
+static double *params_of(const struct sweep *s, size_t row, const struct machine *m, double *h)
+{
+	double *params = need(malloc(sizeof *params * (size_t)(m->params + 1)));
+	*h = m->h;
+	memcpy(params, m->param_values, sizeof *params * (size_t)m->params);
+	for (int k = 0; k < m->params; k++) {
+		for (size_t i = 0; i < s->options->definitions; i++)
+			if (strcmp(m->param_names[k], s->options->definition[i].name) == 0)
+				read_number(s->options->definition[i].value, &params[k]);
+		for (size_t i = 0; i < s->params; i++)
+			if (strcmp(m->param_names[k], s->param[i].name) == 0)
+				read_number(value_of(s, row, i), &params[k]);
+	}
+	for (size_t i = 0; i < s->params; i++)
+		if (s->param[i].step && s->param[i].tuned)
+			read_number(value_of(s, row, i), h);
+	return params;
+}
+
+/* NULL, or how it went wrong */
+static char *run_row(struct sweep *s, size_t row, const struct machine *m, struct sums *sums)
+{
+	struct job job = { .machine = m, .record = s->record, .until = s->options->until };
+	double *params = params_of(s, row, m, &job.h);
+	job.params = is_tuned(s) ? params : NULL;
+	char *error = plan_run(&job);
+	if (!error)
+		error = run_steps(&job, add_up, sums);
+	free(params);
+	return error;
+}
+
+static void print_line(FILE *to, const struct sweep *s, size_t row, const struct sums *sums, const char *error)
+{
+	bool single = s->machine->single;
+	fprintf(to, "%zu", row + 1);
+	for (size_t i = 0; i < s->params; i++) {
+		putc(',', to);
+		print_cell(to, value_of(s, row, i));
+	}
+	for (int i = 0; i < s->machine->outputs; i++)
+		print_value(to, !error, sums->last[i], single);
+	for (int i = 0; i < s->machine->outputs; i++)
+		print_value(to, !error, error ? 0 : (double)sqrtl(sums->squares[i] / (long double)sums->rows), single);
+	for (int i = 0; s->options->peak && i < s->machine->outputs; i++)
+		print_value(to, !error, sums->largest[i], single);
+	putc(',', to);
+	print_cell(to, error ? format("failed: %s", error) : "ok");
+	putc('\n', to);
+}
+
+char *sweep_line(struct sweep *s, size_t row)
+{
+	struct variant *v = &s->variant[s->variant_of[row]];
+	size_t outputs = (size_t)s->machine->outputs + 1, length;
+	struct sums sums = { s->machine->outputs, need(calloc(outputs, sizeof(double))),
+			     need(calloc(outputs, sizeof(double))), need(calloc(outputs, sizeof(long double))), 0 };
+	char *line, *error;
+	FILE *to = need(open_memstream(&line, &length));
+	const struct machine *m = take_variant(s, v);
+	error = m ? run_row(s, row, m, &sums) : v->error;
+	leave_variant(v);
+	print_line(to, s, row, &sums, error);
+	fclose(to);
+	free(sums.last);
+	free(sums.largest);
+	free(sums.squares);
+	return line;
+}
+
+/* ---- the sweep ---- */
+
+static void print_names(const struct sweep *s)
+{
+	static const char *const what[] = { "final", "rms", "peak" };
+	fputs("run", s->to);
+	for (size_t i = 0; i < s->params; i++) {
+		putc(',', s->to);
+		print_cell(s->to, s->param[i].name);
+	}
+	for (int k = 0; k < 2 + s->options->peak; k++)
+		for (int i = 0; i < s->machine->outputs; i++)
+			fprintf(s->to, ",%s %s", what[k], s->machine->output_names[i]);
+	fputs(",status\n", s->to);
+}
+
+static bool has_failed(const char *line)
+{
+	size_t length = strlen(line);
+	return length < 4 || strcmp(line + length - 4, ",ok\n") != 0;
+}
+
+static char no_more[] = "";                    /* stands for a line that is */
+
+/* Lines are written in the order of the table, as soon as those before them are there. */
+static void write_done(struct sweep *s)
+{
+	for (; s->written < s->rows && s->line[s->written]; s->written++) {
+		char *line = s->line[s->written];
+		s->failed += has_failed(line);
+		if (fputs(line, s->to) < 0)
+			fail(WRONG_DATA, format("cannot write the lines: %s", strerror(errno)));
+		free(line);
+		s->line[s->written] = no_more;
+	}
+	if (fflush(s->to) != 0)
+		fail(WRONG_DATA, format("cannot write the lines: %s", strerror(errno)));
+}
+
+static void deliver(void *who, size_t row, char *line)
+{
+	struct sweep *s = who;
+	journal_add(s->journal, row, line);
+	s->line[row] = line;
+	s->done++;
+	write_done(s);
+	if (s->done < s->rows && progress_wanted())
+		progress(format("%zu of %zu runs", s->done, s->rows));
+}
+
+static void add_file(struct hash *h, const char *path)
+{
+	size_t length;
+	char *text = path ? read_whole(path, &length) : NULL;
+	if (path && !text)
+		fail(WRONG_DATA, format("cannot read '%s': %s", path, strerror(errno)));
+	hash_bytes(h, text ? text : "", text ? length + 1 : 1);
+	free(text);
+}
+
+/* Everything that a line depends on */
+static char *key_of(const struct sweep *s, const struct code *c)
+{
+	const struct options *o = s->options;
+	struct hash h;
+	hash_begin(&h);
+	hash_tools(s->tools, &h);
+	hash_text(&h, c->text);
+	add_file(&h, o->spec);
+	add_file(&h, o->sweep);
+	hash_text(&h, shortest(o->until, false));
+	hash_text(&h, o->time ? o->time : "");
+	hash_text(&h, o->peak ? "peak" : "");
+	for (size_t i = 0; i < o->passed_count; i++)
+		hash_text(&h, o->passed[i]);
+	for (size_t i = 0; i < o->definitions; i++)
+		hash_text(&h, format("%s=%s", o->definition[i].name, o->definition[i].value));
+	if (s->record) {
+		hash_bytes(&h, s->record->value,
+			   s->record->rows * (size_t)s->record->inputs * sizeof *s->record->value);
+		hash_bytes(&h, s->record->time, s->record->time ? s->record->rows * sizeof *s->record->time : 0);
+	}
+	return hash_name(&h);
+}
+
+static void on_signal(int number)
+{
+	static const char text[] = "\nplrun: interrupted; the same command with --resume goes on here\n";
+	ssize_t written = write(STDERR_FILENO, text, sizeof text - 1);
+	(void)written;
+	signal(number, SIG_DFL);
+	raise(number);
+}
+
+static void begin_output(struct sweep *s, const struct code *c, struct workers w)
+{
+	if (s->record && !record_on_grid(s->record, s->machine->h))
+		record_say(s->record, s->machine->h);
+	s->line = need(calloc(s->rows, sizeof *s->line));
+	if (w.rank != 0)
+		return;
+	s->journal = journal_open(key_of(s, c), s->options->resume, s->rows, s->line);
+	signal(SIGINT, on_signal);
+	signal(SIGTERM, on_signal);
+	for (size_t i = 0; i < s->rows; i++)
+		s->done += s->line[i] != NULL;
+	if (s->options->resume)
+		say_note(format("%zu of %zu runs are done", s->done, s->rows));
+	print_names(s);
+	write_done(s);
+}
+
+int sweep_run(const struct toolchain *t, const struct options *o, const struct code *c, const struct machine *m,
+	      FILE *to, struct workers w)
+{
+	struct sweep s = { .tools = t, .options = o, .machine = m, .to = to };
+	s.record = o->input ? record_read(o, m) : NULL;
+	read_table(&s, c);
+	find_variants(&s);
+	begin_output(&s, c, w);
+	workers_share(w, o->jobs, &s, s.rows, s.line, deliver, &s);
+	if (w.rank != 0)
+		return 0;
+	progress_end();
+	journal_end(s.journal);
+	if (s.failed)
+		fprintf(stderr, "plrun: error: %zu of %zu runs failed: see the column status\n", s.failed, s.rows);
+	return s.failed ? WRONG_DATA : 0;
+}

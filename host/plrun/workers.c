@@ -1,0 +1,169 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Lines shared out: to the threads of a process by OpenMP, and under mpirun to processes, of which number r of n takes
+ * rows r, r + n, ... and sends their lines to the first. Only one thread at a time speaks to the others. */
+#include "plrun.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#ifdef _OPENMP
+#include <omp.h>
+#endif
+#ifdef HAVE_MPI
+#include <mpi.h>
+#endif
+
+struct share {
+	struct workers workers;
+	struct sweep *sweep;
+	size_t rows, awaited;                   /* awaited: lines that other processes owe the first */
+	char **line;
+	void (*deliver)(void *who, size_t row, char *line);
+	void *who;
+};
+
+#ifdef HAVE_MPI
+
+/* One line from another process; false: none has come, and `wait` is not set */
+static bool receive(struct share *s, bool wait)
+{
+	MPI_Status status;
+	int length, there = 1;
+	if (wait)
+		MPI_Probe(MPI_ANY_SOURCE, 0, MPI_COMM_WORLD, &status);
+	else
+		MPI_Iprobe(MPI_ANY_SOURCE, 0, MPI_COMM_WORLD, &there, &status);
+	if (!there)
+		return false;
+	MPI_Get_count(&status, MPI_BYTE, &length);
+	char *message = need(malloc((size_t)length));
+	uint64_t row;
+	MPI_Recv(message, length, MPI_BYTE, status.MPI_SOURCE, 0, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
+	memcpy(&row, message, sizeof row);
+	s->deliver(s->who, (size_t)row, format("%s", message + sizeof row));
+	s->awaited--;
+	free(message);
+	return true;
+}
+
+/* The row's number, then the line with its 0 */
+static void send(size_t row, char *line)
+{
+	uint64_t number = row;
+	size_t length = strlen(line) + 1;
+	char *message = need(malloc(sizeof number + length));
+	memcpy(message, &number, sizeof number);
+	memcpy(message + sizeof number, line, length);
+	MPI_Send(message, (int)(sizeof number + length), MPI_BYTE, 0, 0, MPI_COMM_WORLD);
+	free(message);
+	free(line);
+}
+
+/* Which rows are done is known to the first, which has the journal. */
+static void agree_on_done(const struct share *s, char *done)
+{
+	for (size_t i = 0; i < s->rows; i += 1 << 30) {
+		size_t part = s->rows - i < 1 << 30 ? s->rows - i : 1 << 30;
+		MPI_Bcast(done + i, (int)part, MPI_BYTE, 0, MPI_COMM_WORLD);
+	}
+}
+
+static bool begun;
+
+struct workers workers_begin(int *argc, char ***argv)
+{
+	struct workers w = { 0, 1 };
+	int level;
+	if (!getenv("OMPI_COMM_WORLD_SIZE") && !getenv("PMI_SIZE"))
+		return w;               /* not under mpirun: nothing has to be started */
+	MPI_Init_thread(argc, argv, MPI_THREAD_SERIALIZED, &level);
+	begun = true;
+	MPI_Comm_rank(MPI_COMM_WORLD, &w.rank);
+	MPI_Comm_size(MPI_COMM_WORLD, &w.size);
+	if (level < MPI_THREAD_SERIALIZED)
+		fail(WRONG_DATA, "this MPI bears no threads");
+	return w;
+}
+
+void workers_end(void)
+{
+	if (begun)
+		MPI_Finalize();
+}
+
+#else
+
+static bool receive(struct share *s, bool wait) { return (void)s, (void)wait, false; }
+static void send(size_t row, char *line) { (void)row, (void)line; }
+static void agree_on_done(const struct share *s, char *done) { (void)s, (void)done; }
+
+struct workers workers_begin(int *argc, char ***argv)
+{
+	(void)argc, (void)argv;
+	const char *size = getenv("OMPI_COMM_WORLD_SIZE");
+	if (size && strcmp(size, "1") != 0)
+		fail(WRONG_USAGE, "this plrun was built without MPI: each of these processes would run everything");
+	return (struct workers){ 0, 1 };
+}
+
+void workers_end(void)
+{
+}
+
+#endif
+
+static void hand_over(struct share *s, size_t row, char *line)
+{
+	if (s->workers.rank != 0) {
+		send(row, line);
+		return;
+	}
+	s->deliver(s->who, row, line);
+	while (s->awaited && receive(s, false))
+		;
+}
+
+static void run_own(struct share *s, const size_t *own, size_t count, int jobs)
+{
+#ifdef _OPENMP
+	int threads = jobs ? jobs : omp_get_max_threads();
+#else
+	if (jobs > 1)
+		wrong_usage("this plrun was built without OpenMP: one job at a time");
+#endif
+#ifdef _OPENMP
+#pragma omp parallel for schedule(dynamic, 1) num_threads(threads)
+#endif
+	for (size_t i = 0; i < count; i++) {
+		char *line = sweep_line(s->sweep, own[i]);
+#ifdef _OPENMP
+#pragma omp critical(hand_over)
+#endif
+		hand_over(s, own[i], line);
+	}
+}
+
+void workers_share(struct workers w, int jobs, struct sweep *sweep, size_t rows, char **line,
+		   void (*deliver)(void *who, size_t row, char *line), void *who)
+{
+	struct share s = { w, sweep, rows, 0, line, deliver, who };
+	char *done = need(calloc(rows + 1, 1));
+	size_t *own = need(calloc(rows + 1, sizeof *own)), count = 0;
+	for (size_t i = 0; i < rows; i++)
+		done[i] = line[i] != NULL;
+	if (w.size > 1)
+		agree_on_done(&s, done);
+	for (size_t i = 0; i < rows; i++) {
+		if (done[i])
+			continue;
+		if ((int)(i % (size_t)w.size) == w.rank)
+			own[count++] = i;
+		else
+			s.awaited++;
+	}
+	run_own(&s, own, count, jobs);
+	while (w.rank == 0 && s.awaited && receive(&s, true))
+		;
+	free(done);
+	free(own);
+}

@@ -1,0 +1,32 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Sourced by the scripts of this folder, whose arguments are PLRUN PLGEN SOURCE_ROOT: paths, and a cache of their own.
+set -u
+absolute() {
+	case $1 in /*) echo "$1" ;; *) echo "$PWD/$1" ;; esac
+}
+plrun=$(absolute "$1")
+PLGEN=$(absolute "$2")
+root=$(absolute "$3")
+export PLGEN
+. "$root/tests/tap.sh"
+XDG_CACHE_HOME=$work/cache
+ASAN_OPTIONS=detect_leaks=0             # what lives to the end of the program is not given back
+export XDG_CACHE_HOME ASAN_OPTIONS
+models=$root/models
+
+# plrun with what it says in `said`; a sanitizer's report is no message
+run() {
+	"$plrun" "$@" 2>said
+	status=$?
+	if grep -q 'Sanitizer\|runtime error' said; then
+		cat said >>log
+		return 77
+	fi
+	return $status
+}
+
+# same A B NAME: the same bytes, and some
+same() {
+	[ -s "$1" ] && cmp "$1" "$2" >>log 2>&1
+	result $? "$3"
+}

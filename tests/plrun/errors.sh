@@ -1,0 +1,237 @@
+#!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Messages: what is wrong with a command line, a record, a table of params; to the last letter.
+#
+#     errors.sh PLRUN PLGEN SOURCE_ROOT
+. "${0%/*}/begin.sh"
+cat >in.spec <<'X'
+model in
+coord x
+input road, push
+x'' + x = road + push
+step 0.1
+X
+cat >swing.spec <<'X'
+model swing
+param k = 4
+coord x
+tunable k
+x'' + k*x = 0
+init x = 1
+step 0.1
+X
+cat >hard.spec <<'X'
+model hard
+coord x
+x'' - x - x^3 = 0
+init x = 10
+step 0.1
+scheme etdrk4
+X
+: >empty.csv
+
+# refuses NAME STATUS EXPECTED OPTIONS...: nothing on standard output, and this on the other
+refuses() {
+	name=$1 wanted=$2 expected=$3
+	shift 3
+	chosen "$name" || return 0
+	: >log
+	run "$@" >out </dev/null
+	status=$?
+	printf '%s\n' "$expected" >expected
+	[ $status -eq "$wanted" ] || echo "exit status $status" >>log
+	diff expected said >>log 2>&1
+	[ ! -s out ] || echo 'it has written rows' >>log
+	[ ! -s log ]
+	result $? "$name"
+}
+usage='note: plrun --help lists the options'
+
+# ---- the command line ----
+refuses 'no spec' 2 "plrun: error: no spec is given
+$usage"
+refuses 'no time' 2 "plrun: error: when does it end? plrun MODEL.spec T, in seconds
+$usage" swing.spec
+refuses 'a time that is none' 2 "plrun: error: T: expected a time in seconds, finite and not negative, found '10s'
+$usage" swing.spec 10s
+refuses 'a negative time' 2 "plrun: error: --until: expected a time in seconds, finite and not negative, found '-1'
+$usage" swing.spec --until -1
+refuses 'two times' 2 "plrun: error: surplus argument '2': the time of the end is given
+$usage" swing.spec 1 2
+refuses 'two times, by option' 2 "plrun: error: the time of the end is given twice
+$usage" swing.spec 1 --until 2
+refuses 'two specs' 2 "plrun: error: one spec at a time: surplus argument 'in.spec'
+$usage" swing.spec in.spec
+refuses 'an unknown option' 2 "plrun: error: unknown option '--colour'
+$usage" swing.spec 1 --colour
+refuses 'an option without its value' 2 "plrun: error: option --input needs a value: FILE.csv
+$usage" swing.spec 1 --input
+refuses 'a value of none' 2 "plrun: error: --peak takes no value, found 'x'
+$usage" swing.spec 1 --sweep s.csv --peak=x
+refuses 'a column without a header' 2 "plrun: error: --column takes NAME=HEADER, found 'road'
+$usage" in.spec --column road
+refuses 'a param twice' 2 "plrun: error: 'k' is given twice
+$usage" swing.spec 1 -D k=1 -D k=2
+refuses 'jobs' 2 "plrun: error: --jobs takes a number from 1 to 4096, found '0'
+$usage" swing.spec 1 --sweep s.csv --jobs 0
+refuses 'jobs of one run' 2 "plrun: error: --jobs goes with --sweep
+$usage" swing.spec 1 --jobs 2
+refuses 'a picture of a sweep' 2 "plrun: error: --plot draws one run, and a sweep has many
+$usage" swing.spec 1 --sweep s.csv --plot
+refuses 'a picture of another kind' 2 "plrun: error: --plot draws .svg, .png or .pdf, found 'a.jpg'
+$usage" swing.spec 1 --plot a.jpg
+refuses 'rows apart by no whole steps' 2 "plrun: error: --every takes a multiple of the step, 0.1 s, found 0.25
+$usage" swing.spec 1 --every 0.25
+refuses 'the input written over' 2 "plrun: error: 'r.csv' would be written over
+$usage" in.spec --input r.csv -o r.csv
+refuses 'samples of no inputs' 2 "plrun: error: --input: the model 'swing' has no inputs
+$usage" swing.spec --input empty.csv
+refuses 'inputs without samples' 2 "plrun: error: the model 'in' has inputs: --input FILE.csv gives their samples
+$usage" in.spec 1
+
+# ---- plgen's own words ----
+refuses 'an unknown param' 1 "<command line>:1:1: error: no param is named 'kk'
+kk=1
+^
+note: did you mean 'k'?" swing.spec 1 -D kk=1
+refuses 'a scheme' 1 "$("$PLGEN" --scheme rk4 swing.spec 2>&1)" swing.spec 1 --scheme rk4
+refuses 'no such spec' 1 "$("$PLGEN" none.spec 2>&1)" none.spec 1
+refuses 'values of a param that make no step' 1 \
+	'swing: error: with these values the numbers of the step are not finite' swing.spec 1 -D k=1e300
+
+# ---- records ----
+# record NAME LINES EXPECTED [OPTIONS]
+record() {
+	name=$1 expected=$3
+	printf '%b' "$2" >r.csv
+	shift 3
+	refuses "$name" 1 "$expected" in.spec --input r.csv "$@"
+}
+refuses 'no such record' 1 "plrun: error: cannot read 'none.csv': No such file or directory" in.spec --input none.csv
+record 'an empty file' '' 'r.csv:1:1: error: expected rows of numbers, found the end of the file'
+record 'names alone' 'road,push\n' 'r.csv:2:1: error: expected rows of numbers, found the end of the file'
+record 'an input is missing' 'road,time\n1,2\n' "r.csv:1:1: error: no column is called 'push', as the input is
+road,time
+^
+note: --column push=HEADER says which it is; there are 'road', 'time'"
+record 'a column too many, named' 'road,wind,push\n1,2,3\n' \
+	"r.csv:1:6: error: a column too many: no input is called 'wind'
+road,wind,push
+     ^
+note: the inputs are road, push; with --column or --time other columns are passed over"
+record 'a column too many' 'push,road\n1,2\n1,2,3\n' 'r.csv:3:5: error: a column too many: the first line has 2
+1,2,3
+    ^'
+record 'decimal commas between commas' 'push,road\n1,2,3,4\n' 'r.csv:2:5: error: a column too many: the first line has 2
+1,2,3,4
+    ^
+note: numbers with a decimal comma go with ; between the columns'
+record 'too few columns' 'push;road\n1;2\n1\n' 'r.csv:3:2: error: too few columns: the first line has 2, this one 1
+1
+ ^'
+record 'no names, too few columns' '1\n2\n' 'r.csv:1:1: error: expected 2 columns, one for each input, found 1
+note: a first line with names says which is which; the inputs are road, push'
+record 'a gap' 'push;road\n1;2\n;2\n' 'r.csv:3:1: error: expected a number, found nothing: the row has a gap
+;2
+^'
+tab=$(printf '\t')
+record 'a gap at the end' 'push\troad\n1\t\n' "r.csv:2:3: error: expected a number, found nothing: the row has a gap
+1$tab
+ $tab^"
+record 'an empty line' 'push,road\n1,2\n\n1,2\n' \
+	'r.csv:3:1: error: a row is missing: the line is empty, and others follow it'
+record 'text in a number' 'push,road\n1,2 mm\n' "r.csv:2:3: error: expected a finite number, found '2 mm'
+1,2 mm
+  ^"
+record 'what is not finite' 'push,road\n1,nan\n' "r.csv:2:3: error: expected a finite number, found 'nan'
+1,nan
+  ^"
+record 'too large' 'push,road\n1,1e999\n' "r.csv:2:3: error: expected a finite number, found '1e999'
+1,1e999
+  ^"
+record 'marks of thousands' 'push;road\n1;1.234,5\n' "r.csv:2:3: error: expected a finite number, found '1.234,5'
+1;1.234,5
+  ^
+note: a decimal comma goes with ; or tabs between the columns; thousands have no mark"
+record 'a point after a comma' 'push;road\n1,5;1\n2.5;1\n' \
+	'r.csv:3:1: error: numbers before have a decimal comma, and this one a point
+2.5;1
+^'
+record 'an open quote' 'push,road\n1,"2\n' 'r.csv:2:3: error: this quote is not closed
+1,"2
+  ^'
+record 'behind a quote' 'push,road\n1,"2"3\n' 'r.csv:2:6: error: expected a separator behind the quote
+1,"2"3
+     ^'
+record 'one name twice' 'push,road,push\n1,2,3\n' "r.csv:1:11: error: two columns are called 'push'
+push,road,push
+          ^"
+record 'a header that is not there' 'a,b\n1,2\n' "r.csv:1:1: error: --column: no column is called 'c'
+a,b
+^
+note: its columns are 'a', 'b'" --column road=c
+record 'times that fall' 't,push,road\n0,1,1\n0.2,1,1\n0.1,1,1\n' 'r.csv:4:1: error: times have to rise: 0.1 follows 0.2
+0.1,1,1
+^'
+record 'times in other units' 'push,road,time [ms]\n1,2,3\n' \
+	"r.csv:1:11: error: times are in seconds, and these are in 'ms'
+push,road,time [ms]
+          ^
+note: --time 'time [ms]' takes it as seconds all the same"
+record 'UTF-16' '\0377\0376a\0000' 'plrun: error: r.csv is UTF-16: save it as UTF-8'
+record 'UTF-16 the other way' '\0376\0377\0000a' 'plrun: error: r.csv is UTF-16: save it as UTF-8'
+record 'bytes that are 0' 'push,road\n1,\00002\n' 'r.csv:2:1: error: this is no text: it has bytes that are 0
+1,?2
+^
+note: save it as text, UTF-8'
+record 'a record that ends early' 'push,road\n1,2\n1,2\n' \
+	'r.csv:3:1: error: too few samples: 5 steps take 5, to t = 0.4, and there are 2, to 0.1' 0.5
+awk 'BEGIN { print "t,push,road"; for (k = 0; k < 90; k++) if (k < 20 || k > 40) print k / 10 ",1,2" }' >r.csv
+run in.spec --input r.csv >out
+[ "$(cat said)" = 'r.csv:22:1: warning: 2.2 s without a row, where others are 0.131 s apart
+note: r.csv: rows 0.1 to 2.2 s apart, and the step is 0.1 s: resampled by ramps' ]
+status=$?
+cp said log
+result $status 'rows that are missing, by their times'
+printf 'push,road\n1,2\n' >r.csv
+refuses 'a column of no input' 2 "plrun: error: --column: the model has no input 'wind'; its inputs: road, push
+$usage" in.spec --input r.csv --column wind=push
+
+# ---- runs ----
+run hard.spec 10 >out
+[ $? -eq 1 ] && [ "$(cat said)" = 'hard: error: t = 0.4: the step has left the finite numbers' ] && [ -s out ]
+status=$?
+cat said >log
+result $status 'a run that leaves the finite numbers: the rows before it are written'
+if [ -w /dev/full ]; then
+	"$plrun" swing.spec 100 >/dev/full 2>said
+	[ $? -eq 1 ] && grep -q 'error: cannot write the rows: No space left on device' said
+	result $? 'a full disk'
+fi
+
+# ---- sweeps ----
+# table NAME LINES EXPECTED [OPTIONS]
+table() {
+	name=$1 expected=$3
+	printf '%b' "$2" >s.csv
+	shift 3
+	refuses "$name" 1 "$expected" swing.spec 1 --sweep s.csv "$@"
+}
+table 'a sweep without names' '1\n2\n' 's.csv:1:1: error: expected a first line with the names of params'
+table 'a sweep of an unknown param' 'k,m\n1,2\n' "s.csv:1:3: error: no param is named 'm'
+k,m
+  ^"
+table 'a sweep with one param twice' 'k,k\n1,2\n' "s.csv:1:3: error: two columns are called 'k'
+k,k
+  ^"
+table 'a sweep of a param that is given' 'k\n1\n' "s.csv:1:1: error: 'k' has a value on the command line, too
+k
+^" -D k=3
+table 'a sweep with a gap' 'k;step\n1;0.1\n2;\n' 's.csv:3:3: error: expected a number, found nothing: the row has a gap
+2;
+  ^'
+table 'a sweep with text' 'k\n1\nabc\n' "s.csv:3:1: error: expected a finite number, found 'abc'
+abc
+^"
+table 'a sweep of nothing' 'k\n' 's.csv:2:1: error: expected rows of params, found the end of the file'
+tap_end

@@ -1,0 +1,32 @@
+#!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Pictures: of each kind, with as many lines as there are outputs, and the rows beside them.
+#
+#     plot.sh PLRUN PLGEN SOURCE_ROOT
+. "${0%/*}/begin.sh"
+if ! command -v gnuplot >/dev/null; then
+	skip plot 'no gnuplot'
+	tap_end
+fi
+run "$models/sdcsf.spec" 2 >plain.csv
+run "$models/sdcsf.spec" 2 --plot "it's a.svg" >rows.csv
+same plain.csv rows.csv 'the rows are written, too'
+grep -q '<path' "it's a.svg" && [ "$(grep -c "rgb( 31,  95, 168)" "it's a.svg")" -ge 4 ]
+result $? 'svg: a line for each output'
+grep -q "x1'" "it's a.svg" || grep -q 'x1&apos;\|x1&#39;' "it's a.svg"
+result $? 'svg: the names of the outputs'
+run "$models/sdcsf.spec" 2 --plot=a.png >rows.csv && [ "$(head -c 4 a.png | tail -c 3)" = PNG ]
+result $? png
+run --plot a.pdf "$models/sdcsf.spec" 2 >rows.csv && [ "$(head -c 4 a.pdf)" = %PDF ]
+result $? pdf
+awk '/^model two/ { on = 1 } on && /^```/ { exit } on' "$root/README.md" >two.spec
+run two.spec 30 --plot two.svg >two.csv && [ "$(wc -l <two.csv)" -eq 3002 ] && [ "$(wc -c <two.svg)" -gt 20000 ]
+result $? 'README: the spec, run and drawn'
+run "$models/scs.spec" 300 --plot long.svg >rows.csv && [ "$(wc -c <long.svg)" -lt 4000000 ]
+result $? 'a picture of many rows stays small'
+(unset DISPLAY WAYLAND_DISPLAY; run "$models/scs.spec" 1 --plot >rows.csv; [ $? -eq 1 ] && grep -q 'no display' said)
+result $? 'a window without a display'
+run "$models/scs.spec" 1 --plot none/such/a.svg >rows.csv
+[ $? -eq 1 ] && grep -q 'gnuplot could not draw' said
+result $? 'a picture that cannot be written'
+tap_end

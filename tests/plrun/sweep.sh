@@ -1,0 +1,122 @@
+#!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
+# A line of a sweep is what the rows of a run with these params come to; its bytes do not depend on how many work at it,
+# nor on interruptions.
+#
+#     sweep.sh PLRUN PLGEN SOURCE_ROOT
+. "${0%/*}/begin.sh"
+cat >car.spec <<'X'
+model car
+param m = 300, k = 18000, c = 1200, mw = 30, kt = 150000
+tunable k, c
+coord body, wheel
+input road hold first
+m*body'' + c*(body' - wheel') + k*(body - wheel) = 0
+mw*wheel'' - c*(body' - wheel') - k*(body - wheel) + kt*(wheel - road) = 0
+output body, comfort = body''
+step 0.002
+X
+awk 'BEGIN { print "road"
+	for (k = 0; k <= 2000; k++) printf "%.6f\n", 0.01 * sin(k * 0.02) + 0.004 * sin(k * 0.11) }' >road.csv
+awk 'BEGIN { print "k,c,m"
+	for (i = 0; i < 24; i++) print 10000 + 1000 * i "," 800 + 100 * (i % 5) "," 250 + 50 * (i % 3) }' >params.csv
+sed -i '11s/.*/20000,900,0/; 15s/.*/-1e9,900,300/' params.csv
+
+run car.spec --input road.csv --sweep params.csv --peak --jobs 1 >one.csv
+[ $? -eq 1 ] && [ "$(wc -l <one.csv)" -eq 25 ]
+result $? 'a line for each row; status 1, as some fail'
+cp said log
+grep -q '^10,20000,900,0,,,,,,,failed: ' one.csv && grep -q '^14,-1e9,900,300,,,,,,,"*failed: ' one.csv &&
+	[ "$(grep -c ',ok$' one.csv)" -eq 22 ] && grep -q '2 of 24 runs failed' said
+result $? 'failed rows are marked, the others go on'
+[ "$(head -n 1 one.csv)" = 'run,k,c,m,final body,final comfort,rms body,rms comfort,peak body,peak comfort,status' ]
+result $? 'names of the columns'
+
+# lines against the rows of single runs, added up here: last values to the letter, sums within 1e-13
+for row in 3 12 24; do
+	line=$(sed -n "$((row + 1))p" params.csv)
+	k=${line%%,*} rest=${line#*,}
+	c=${rest%%,*} m=${rest#*,}
+	run car.spec --input road.csv -D "k=$k" -D "c=$c" -D "m=$m" >rows.csv
+	: >log
+	sed -n "$((row + 1))p" one.csv | cat - rows.csv | awk -F, '
+		function off(a, b) { d = (a - b) / b; return d * d > 1e-26 }
+		NR == 1 { for (i = 1; i <= NF; i++) want[i] = $i; next }
+		NR > 2 { for (i = 2; i <= 3; i++) { last[i] = $i; sum[i] += $i * $i; v = $i < 0 ? -$i : $i
+			if (v > top[i]) top[i] = v } }
+		END { for (i = 2; i <= 3; i++) {
+			if (last[i] != want[i + 3]) { print "final", want[i + 3], last[i]; bad = 1 }
+			rms = sqrt(sum[i] / (NR - 2))
+			if (off(want[i + 5], rms)) { print "rms", want[i + 5], rms; bad = 1 }
+			if (off(want[i + 7], top[i])) { print "peak", want[i + 7], top[i]; bad = 1 } }
+			exit bad || NR != 2003 }' >>log
+	result $? "line $row is the run with its params"
+done
+
+run car.spec --input road.csv --sweep params.csv --peak --jobs 2 >two.csv
+same one.csv two.csv 'jobs 1 and 2'
+run car.spec --input road.csv --sweep params.csv --peak --jobs 2 -o file.csv
+same one.csv file.csv 'into a file'
+
+# The process pid, once 50 lines are in the journal
+kill_in_the_middle() {
+	while [ "$(cat "$XDG_CACHE_HOME"/plgen/sweep-* 2>/dev/null | wc -l)" -lt 100 ] && kill -0 $pid 2>/dev/null; do
+		sleep 0.02
+	done
+	kill -9 $pid
+	wait $pid 2>/dev/null
+}
+
+# killed when some lines are done, and gone on with
+awk 'BEGIN { print "k"; for (i = 0; i < 400; i++) print 10000 + 50 * i }' >many.csv
+awk 'BEGIN { print "road"; for (k = 0; k <= 20000; k++) printf "%.6f\n", 0.01 * sin(k * 0.02) }' >long.csv
+run car.spec --input long.csv --sweep many.csv >whole.csv
+: >log
+"$plrun" car.spec --input long.csv --sweep many.csv >part.csv 2>>log &
+pid=$!
+kill_in_the_middle
+done=$(wc -l <part.csv)
+[ "$done" -lt 401 ] && [ "$done" -gt 0 ]
+result $? 'killed in the middle'
+# an entry whose line is not the one that was written, and half of one
+printf '399 00112233445566778899aabbccddeeff 11\n400,1,2,ok\n398 0123' >>"$(ls "$XDG_CACHE_HOME"/plgen/sweep-*)"
+run car.spec --input long.csv --sweep many.csv --resume >resumed.csv
+cp said log
+same whole.csv resumed.csv 'resumed: the same bytes'
+awk '/runs are done/ { exit !($2 >= 50 && $2 < 400 && $4 == 400) }' said
+result $? 'what was done was not done again'
+! ls "$XDG_CACHE_HOME"/plgen/sweep-* >/dev/null 2>&1
+result $? 'nothing stays of a sweep that is done'
+run car.spec --input long.csv --sweep many.csv --resume >resumed.csv
+same whole.csv resumed.csv 'resumed where nothing is there'
+
+# step as a param: of a tunable model by retuning, else by plgen; float; no inputs
+printf 'step;w\n0,01;4\n0,02;5\n' >steps.csv
+run "$models/sdcsf.spec" 1 --sweep steps.csv >steps_out.csv
+run "$models/sdcsf.spec" 1 --step 0.02 -D w=5 | tail -n 1 | cut -d, -f 2- >last
+[ "$(sed -n 3p steps_out.csv | cut -d, -f 4-7)" = "$(cat last)" ]
+result $? 'another step, decimal commas'
+run "$models/sdcsf.spec" 1 --sweep steps.csv --real float >float_out.csv
+run "$models/sdcsf.spec" 1 --real float -D w=4 | tail -n 1 | cut -d, -f 2- >last
+[ "$(sed -n 2p float_out.csv | cut -d, -f 4-7)" = "$(cat last)" ]
+result $? 'float'
+
+# two processes, where there is an mpirun and plrun takes part
+mpi='mpirun --allow-run-as-root --oversubscribe -n 2'
+if ! command -v mpirun >/dev/null; then
+	skip 'MPI: 2 processes and 1' 'no mpirun'
+elif $mpi "$plrun" car.spec --input road.csv --sweep params.csv --peak >mpi.csv 2>log; [ -s mpi.csv ] ||
+	! grep -q 'built without MPI' log; then
+	same one.csv mpi.csv 'MPI: 2 processes and 1'
+	"$plrun" car.spec --input long.csv --sweep many.csv >part.csv 2>log &
+	pid=$!
+	kill_in_the_middle
+	$mpi "$plrun" car.spec --input long.csv --sweep many.csv --resume >mpi.csv 2>log
+	same whole.csv mpi.csv 'MPI: resumed'
+	$mpi "$plrun" "$models/sdcsf.spec" 1 >mpi.csv 2>log
+	[ ! -s mpi.csv ] && grep -q 'several processes share out a sweep, and nothing else' log
+	result $? 'MPI: one run is refused'
+else
+	skip 'MPI: 2 processes and 1' 'plrun is built without MPI'
+fi
+tap_end
