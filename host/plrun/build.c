@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <time.h>
 #include <unistd.h>
 
 struct toolchain {
@@ -358,7 +359,6 @@ static char *compile_runtime(const struct toolchain *t, bool single, const char 
 	char *error = run_compiler(t, word, count);
 	if (!error && rename(made, object) != 0)
 		error = format("cannot write '%s': %s", object, strerror(errno));
-	unlink(made);
 	free(word);
 	return error;
 }
@@ -374,9 +374,35 @@ static char *compile_model(const struct toolchain *t, const struct code *c, cons
 		error = run_compiler(t, word, sizeof word / sizeof *word);
 	if (!error && rename(made, object) != 0)
 		error = format("cannot write '%s': %s", object, strerror(errno));
-	unlink(source);
-	unlink(made);
 	return error;
+}
+
+/* A folder `making.*` of the cache, with what may be in one */
+static void remove_work(const char *work)
+{
+	static const char *const made[] = { "model.c", "model.so", "runtime.o" };
+	for (size_t i = 0; i < sizeof made / sizeof *made; i++) {
+		char *file = format("%s/%s", work, made[i]);
+		unlink(file);
+		free(file);
+	}
+	rmdir(work);
+}
+
+/* What was killed while it compiled has left its folder there: after a day nobody works in it. */
+static void remove_old_work(void)
+{
+	DIR *cache = opendir(cache_folder());
+	struct stat about;
+	for (struct dirent *entry; cache && (entry = readdir(cache));) {
+		char *path = format("%s/%s", cache_folder(), entry->d_name);
+		if (strncmp(entry->d_name, "making.", 7) == 0 && stat(path, &about) == 0 &&
+		    about.st_mtime < time(NULL) - 86400)
+			remove_work(path);
+		free(path);
+	}
+	if (cache)
+		closedir(cache);
 }
 
 char *compile(const struct toolchain *t, const struct code *c, bool anew, char **error)
@@ -395,6 +421,7 @@ char *compile(const struct toolchain *t, const struct code *c, bool anew, char *
 		*error = compile_runtime(t, c->single, work, runtime);
 	if (!*error)
 		*error = compile_model(t, c, work, runtime, object);
-	rmdir(work);
+	remove_work(work);
+	remove_old_work();
 	return *error ? NULL : object;
 }

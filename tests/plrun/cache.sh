@@ -62,9 +62,14 @@ result $? 'three at a time in an empty cache'
 ! ls -d "$XDG_CACHE_HOME"/plgen/making.* >/dev/null 2>&1
 result $? 'nothing else stays there'
 
+mkdir -p "$XDG_CACHE_HOME/plgen/making.old" "$XDG_CACHE_HOME/plgen/making.new"
+: >"$XDG_CACHE_HOME/plgen/making.old/model.c"
+touch -d '3 days ago' "$XDG_CACHE_HOME/plgen/making.old"
 CC="$work/tools/cc -pipe"
 run "$models/scs.spec" 0.1 >out.csv
 same plain.csv out.csv 'a compiler of two words'
+[ ! -d "$XDG_CACHE_HOME/plgen/making.old" ] && [ -d "$XDG_CACHE_HOME/plgen/making.new" ]
+result $? 'what a killed run has left goes after a day'
 CC=none-such run "$models/scs.spec" 0.1 >out.csv
 [ $? -eq 1 ] && grep -q "there is no compiler 'none-such'; CC names another" said
 result $? 'no compiler'
