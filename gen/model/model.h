@@ -102,6 +102,7 @@ struct request {                    /* what the user asks for on the command lin
 	bool loads_left;            /* known loads are left to the scheme */
 	bool compensated;           /* two-word arithmetic */
 	bool single;                /* the target's numbers are floats */
+	bool step_open;             /* nothing says how long a step is: one is chosen */
 	bool real_given;            /* that was said: --real */
 	bool selftest;              /* NAME_selftest */
 	int rows;                   /* in a block of NAME_run; 0: as many as serve best, 1: no blocks */
@@ -470,6 +471,7 @@ struct target {                     /* a processor: what it takes of instruction
 };
 /* of the model that is stepped: its requirements, its target; false: it was said what stands in the way */
 bool find_requirements(struct model *model);
+bool is_measured(const struct model *model);                /* no bound is known: it is not linear, or piecewise linear */
 
 /* ---- reduce.c: the smallest model with the same outputs ---- */
 
