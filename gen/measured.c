@@ -150,8 +150,8 @@ static bool find_tolerance(struct measuring *m)
 		}
 	}
 	if (isfinite(apart_at_best))
-		m->why = format("two references differ by %.2g of what is needed, and 0.01 is asked for: the motion is "
-				"too sensitive to be known until then, or the need too fine", apart_at_best);
+		m->why = format("two references differ by more than %swhat is needed: the motion is too sensitive to be "
+				"known until then, or the need too fine", apart_at_best > 1 ? "" : "a hundredth of ");
 	return false;
 }
 
