@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Needs of models that no bound is known for: what is not linear, or piecewise linear. Schemes, steps and tolerances that
- * the spec leaves open are tried: the C of each runs beside a reference of the equations as written, from the spec's
- * start and from its neighbours, and the cheapest that meets all needs is taken. It is measured, not certified. */
+/* Needs of models that no bound is known for: what is not linear, or piecewise linear. Schemes, steps and tolerances
+ * that the spec leaves open are tried: the C of each runs beside a reference of the equations as written, from the
+ * spec's start and from its neighbours, and the cheapest that meets all needs is taken. It is measured, not
+ * certified. */
 #include "command.h"
 #include "run/run.h"
 
@@ -150,8 +151,9 @@ static bool find_tolerance(struct measuring *m)
 		}
 	}
 	if (isfinite(apart_at_best))
-		m->why = format("two references differ by more than %swhat is needed: the motion is too sensitive to be "
-				"known until then, or the need too fine", apart_at_best > 1 ? "" : "a hundredth of ");
+		m->why = format("two references differ by more than %swhat is needed: the motion is too sensitive to "
+				"be known until then, or the need too fine",
+				apart_at_best > 1 ? "" : "a hundredth of ");
 	return false;
 }
 
@@ -276,7 +278,8 @@ static void try_alternative(struct measuring *m, struct alternative *a)
 		roads.h = mpq_get_d(step->model->h);
 		roads.most = LIMIT_MEASURED;
 		if (m->until / roads.h > MOST_SAMPLES)
-			a->why = format("%.0f steps are more than the %d that are measured", m->until / roads.h, MOST_SAMPLES);
+			a->why = format("%.0f steps are more than the %d that are measured", m->until / roads.h,
+					MOST_SAMPLES);
 		else
 			a->excess = tried_from(m, a, r, &roads, NULL, true);
 	}
@@ -352,8 +355,8 @@ static bool is_written(const char *option, const void *spec)
 
 static void try_scheme(struct measuring *m, const char *scheme)
 {
-	static const char *const tolerances[] = { "1e-3", "1e-4", "1e-5", "1e-6", "1e-7", "1e-8", "1e-9", "1e-10", "1e-11",
-						  "1e-12", "1e-13" };
+	static const char *const tolerances[] = { "1e-3", "1e-4", "1e-5", "1e-6", "1e-7", "1e-8", "1e-9", "1e-10",
+						  "1e-11", "1e-12", "1e-13" };
 	const struct spec *spec = m->model->spec;
 	enum scheme row = m->model->scheme;
 	if (scheme)
@@ -402,40 +405,6 @@ static struct request with_param(const struct measuring *m, struct request as, c
 	return as;
 }
 
-static bool same_numbers(const mpq_t *a, const mpq_t *b, int count)
-{
-	for (int i = 0; i < count; i++)
-		if (!mpq_equal(a[i], b[i]))
-			return false;
-	return true;
-}
-
-/* Do they differ in nothing but forces of loads? Texts that are cut short say nothing. */
-static bool differ_in_loads(const struct model *a, const struct model *b)
-{
-	const struct linear *p = &a->system, *q = &b->system;
-	bool loads = false;
-	if (p->states != q->states || p->loads != q->loads || p->segments != q->segments ||
-	    a->operators != b->operators || a->channels != b->channels || !mpq_equal(a->h, b->h) ||
-	    !same_numbers(p->M, q->M, p->n * p->n) || !same_numbers(p->C, q->C, p->n * p->n) ||
-	    !same_numbers(p->K, q->K, p->n * p->n) || !same_numbers(a->initial, b->initial, p->states))
-		return false;
-	for (int k = 0; k < a->operators * a->channels; k++) {
-		const char *left = form_text(a, a->operator[k / a->channels].left[k % a->channels]);
-		if (strstr(left, "...") || strcmp(left, form_text(b, b->operator[k / a->channels].left[k % a->channels])))
-			return false;
-	}
-	for (int l = 0; l < p->loads; l++) {
-		const struct wave *u = p->load[l].wave, *v = q->load[l].wave;
-		if (!mpq_equal(u->a, v->a) || !mpq_equal(u->w, v->w) || !mpq_equal(u->p, v->p) ||
-		    p->load[l].columns != q->load[l].columns)
-			return false;
-		for (int c = 0; c < p->load[l].columns; c++)
-			loads = loads || !same_numbers(p->load[l].force[c], q->load[l].force[c], p->segments * p->n);
-	}
-	return loads;
-}
-
 static void find_amplitudes(struct measuring *m, const struct alternative *a)
 {
 	const struct request as = request_of(m, a);
@@ -443,7 +412,7 @@ static void find_amplitudes(struct measuring *m, const struct alternative *a)
 	if (m->amplitudes_known)
 		return;
 	m->amplitudes_known = true;
-	if (!here || here->model->switching)                    /* of regions the loads stand in all systems: not looked at */
+	if (!here || here->model->switching)            /* of regions the loads stand in all systems: not looked at */
 		return;
 	for (const struct symbol *s = m->model->spec->first; s; s = s->next) {
 		if (s->kind != SYMBOL_PARAM || !value_of_param(m, s) || m->amplitudes == 16)
@@ -541,7 +510,8 @@ static void try_schemes(struct measuring *m)
 	}
 	if (m->model->switching)
 		try_scheme(m, scheme_name(SCHEME_EXACT));
-	for (int likely = 1; likely >= 0; likely--)              /* what is likely to do first: what is dearer is not tried */
+	/* What is likely to do comes first: what is dearer is not tried. */
+	for (int likely = 1; likely >= 0; likely--)
 		for (int i = 0; i < SCHEMES; i++) {
 			const struct scheme_row *row = scheme_row((enum scheme)i);
 			if (row->leaves && likely == (row->by_default || (row->expands && !row->collocates)))
@@ -588,8 +558,9 @@ static void tell_unmet(const struct measuring *m)
 		say_error(at, NULL, "the need cannot be measured: %s",
 			  any ? (any->refused ? any->refused : any->why) : "there is no scheme for the model");
 	else if (best->excess <= within)
-		say_error(at, NULL, "the need cannot be met: %s meets it from the spec's start, and misses it by a factor of "
-			  "%.3g from %s", alternative_text(best), best->worst_neighbour, best->worst_name);
+		say_error(at, NULL,
+			  "the need cannot be met: %s meets it from the spec's start, and misses it by a factor of "
+			  "%.3g where %s", alternative_text(best), best->worst_neighbour, best->worst_name);
 	else
 		say_error(at, m->request->step_open ? NULL : "without 'step' one is chosen",
 			  "the need cannot be met: the best that was measured, %s, misses it by a factor of %.3g",
@@ -601,8 +572,8 @@ static bool is_over_budget(const struct measuring *m, const struct alternative *
 	if (!m->model->target || taken->step_cost <= m->model->budget)
 		return false;
 	say_error(m->model->spec->budget.at, "a shorter step of a scheme of lower order may take fewer each",
-		  "over budget: the cheapest that meets the need takes some %.0f instructions a step (%s), %.0f more than "
-		  "%.0f", taken->step_cost, alternative_text(taken), taken->step_cost - m->model->budget,
+		  "over budget: the cheapest that meets the need takes some %.0f instructions a step (%s), %.0f more "
+		  "than %.0f", taken->step_cost, alternative_text(taken), taken->step_cost - m->model->budget,
 		  m->model->budget);
 	return true;
 }

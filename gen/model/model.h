@@ -471,7 +471,8 @@ struct target {                     /* a processor: what it takes of instruction
 };
 /* of the model that is stepped: its requirements, its target; false: it was said what stands in the way */
 bool find_requirements(struct model *model);
-bool is_measured(const struct model *model);                /* no bound is known: it is not linear, or piecewise linear */
+bool differ_in_loads(const struct model *a, const struct model *b); /* in nothing but how large their loads are */
+bool is_measured(const struct model *model);                /* no bound is known: it is not linear, or in pieces */
 
 /* ---- reduce.c: the smallest model with the same outputs ---- */
 

@@ -180,3 +180,40 @@ bool find_requirements(struct model *model)
 		good = statement_guard(find_budget, model) && good;
 	return good;
 }
+
+/* ---- amplitudes ---- */
+
+static bool same_numbers(const mpq_t *a, const mpq_t *b, int count)
+{
+	for (int i = 0; i < count; i++)
+		if (!mpq_equal(a[i], b[i]))
+			return false;
+	return true;
+}
+
+/* Texts of leftovers that are cut short say nothing. */
+bool differ_in_loads(const struct model *a, const struct model *b)
+{
+	const struct linear *p = &a->system, *q = &b->system;
+	bool loads = false;
+	if (p->states != q->states || p->loads != q->loads || p->segments != q->segments ||
+	    a->operators != b->operators || a->channels != b->channels || !mpq_equal(a->h, b->h) ||
+	    !same_numbers(p->M, q->M, p->n * p->n) || !same_numbers(p->C, q->C, p->n * p->n) ||
+	    !same_numbers(p->K, q->K, p->n * p->n) || !same_numbers(a->initial, b->initial, p->states))
+		return false;
+	for (int k = 0; k < a->operators * a->channels; k++) {
+		const char *left = form_text(a, a->operator[k / a->channels].left[k % a->channels]);
+		const char *other = form_text(b, b->operator[k / a->channels].left[k % a->channels]);
+		if (strstr(left, "...") || strcmp(left, other) != 0)
+			return false;
+	}
+	for (int l = 0; l < p->loads; l++) {
+		const struct wave *u = p->load[l].wave, *v = q->load[l].wave;
+		if (!mpq_equal(u->a, v->a) || !mpq_equal(u->w, v->w) || !mpq_equal(u->p, v->p) ||
+		    p->load[l].columns != q->load[l].columns)
+			return false;
+		for (int c = 0; c < p->load[l].columns; c++)
+			loads = loads || !same_numbers(p->load[l].force[c], q->load[l].force[c], p->segments * p->n);
+	}
+	return loads;
+}

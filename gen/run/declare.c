@@ -101,7 +101,8 @@ struct entity *entity_new(struct code *c, enum entity_kind kind, const char *nam
 /* ---- types ---- */
 
 static const struct { const char *name; const struct ctype *type; } known_types[] = {
-	{ "void", &ctype_void }, { "char", &ctype_char }, { "int", &ctype_int }, { "short", &ctype_short }, { "unsigned", &ctype_unsigned },
+	{ "void", &ctype_void }, { "char", &ctype_char }, { "short", &ctype_short }, { "int", &ctype_int },
+	{ "unsigned", &ctype_unsigned },
 	{ "double", &ctype_double }, { "float", &ctype_float }, { "uint32_t", &ctype_unsigned },
 	{ "int32_t", &ctype_int }, { "uint64_t", &ctype_wide }, { "int64_t", &ctype_long }, { "size_t", &ctype_wide },
 	{ "ptrdiff_t", &ctype_long }, { "long", &ctype_long },

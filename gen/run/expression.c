@@ -68,7 +68,8 @@ static void store_arguments(struct code *c, struct acts *acts, const struct enti
 	}
 	for (int i = 0; i < called->count && called->calls; i++) {
 		const struct entity *p = e->parameter[i];
-		add_act(acts, act_evaluate(assigned(stored_at(p->type, p->at), value_of(stored_at(p->type, p->shared)))));
+		const struct operation *from = value_of(stored_at(p->type, p->shared));
+		add_act(acts, act_evaluate(assigned(stored_at(p->type, p->at), from)));
 	}
 }
 
@@ -266,7 +267,9 @@ static unsigned mark_of_change(const struct lexeme *l)
 	for (const char *sign = signs; *sign; sign++)
 		if (l->mark == MARK2(*sign, '='))
 			return MARK(*sign);
-	return l->mark == MARK3('<', '<', '=') ? MARK2('<', '<') : l->mark == MARK3('>', '>', '=') ? MARK2('>', '>') : 0;
+	return l->mark == MARK3('<', '<', '=')	 ? MARK2('<', '<')
+	       : l->mark == MARK3('>', '>', '=') ? MARK2('>', '>')
+						 : 0;
 }
 
 static const struct operation *read_changing(struct code *c)

@@ -124,35 +124,42 @@ SINGLE(atan)
 #define RUNTIME_STRUCT(name, types, structure) \
 	{ "pl_" #name, types, structure, call_##name, NULL, 0, 0, TAKES_NO_MORE }
 #define MATH(name) \
-	{ #name, "dd", NULL, NULL, name, 0, 0, TAKES_CALL }, { #name "f", "fd", NULL, NULL, single_##name, 0, 0, TAKES_CALL }
+	{ #name, "dd", NULL, NULL, name, 0, 0, TAKES_CALL },            \
+	{ #name "f", "fd", NULL, NULL, single_##name, 0, 0, TAKES_CALL }
 #define MATH_OF_TWO(name)                                               \
 	{ #name, "ddd", NULL, call_##name, NULL, 0, 0, TAKES_CALL },    \
 	{ #name "f", "fdd", NULL, call_##name##f, NULL, 0, 0, TAKES_CALL }
 
 static const struct library_function functions[] = {
 	RUNTIME_STRUCT(turn_add, "sss", "pl_turn"), RUNTIME_STRUCT(turn_times, "ssi", "pl_turn"),
-	RUNTIME_STRUCT(turn_at, "spd", "pl_turn"), RUNTIME_OF(cossin, "vsp", PL_COSSIN_MUL, PL_COSSIN_ADD, TAKES_NO_MORE),
-	RUNTIME(turnf_add, "uuu"), RUNTIME(turnf_times, "uuu"), RUNTIME(turnf_at, "upd"), RUNTIME_OF(cossinf, "vup", PL_COSSINF_MUL, PL_COSSINF_ADD, TAKES_NO_MORE),
+	RUNTIME_STRUCT(turn_at, "spd", "pl_turn"),
+	RUNTIME_OF(cossin, "vsp", PL_COSSIN_MUL, PL_COSSIN_ADD, TAKES_NO_MORE), RUNTIME(turnf_add, "uuu"),
+	RUNTIME(turnf_times, "uuu"), RUNTIME(turnf_at, "upd"),
+	RUNTIME_OF(cossinf, "vup", PL_COSSINF_MUL, PL_COSSINF_ADD, TAKES_NO_MORE),
 	RUNTIME_STRUCT(growth_add, "sss", "pl_growth"), RUNTIME_STRUCT(growth_times, "ssi", "pl_growth"),
-	RUNTIME_STRUCT(growth_at, "spid", "pl_growth"), RUNTIME_OF(growth_value, "ds", PL_GROWTH_MUL, PL_GROWTH_ADD, TAKES_NO_MORE),
-	RUNTIME(growthf_add, "lll"), RUNTIME(growthf_times, "llu"), RUNTIME(growthf_at, "lpid"),
+	RUNTIME_STRUCT(growth_at, "spid", "pl_growth"),
+	RUNTIME_OF(growth_value, "ds", PL_GROWTH_MUL, PL_GROWTH_ADD, TAKES_NO_MORE), RUNTIME(growthf_add, "lll"),
+	RUNTIME(growthf_times, "llu"), RUNTIME(growthf_at, "lpid"),
 	RUNTIME_OF(growthf_value, "fl", PL_GROWTHF_MUL, PL_GROWTHF_ADD, TAKES_NO_MORE),
 	RUNTIME(series_advance, "vpdpp"), RUNTIME(seriesf_advance, "vpdpp"),
-	RUNTIME_OF(accumulate, "ddddp", 0, PL_ACCUMULATE_ADD, TAKES_NO_MORE), RUNTIME_OF(accumulatef, "fdddp", 0, PL_ACCUMULATE_ADD, TAKES_NO_MORE), RUNTIME(root, "ddi"), RUNTIME(rootf, "fdi"),
-	RUNTIME_OF(factor, "iipp", 1, 1, TAKES_FACTORS), RUNTIME_OF(factor_complex, "iipp", 4, 4, TAKES_FACTORS), RUNTIME_OF(solve, "vippp", 1, 1, TAKES_SOLUTION),
-	RUNTIME_OF(solve_complex, "vippp", 4, 4, TAKES_SOLUTION), RUNTIME_OF(factorf, "iipp", 1, 1, TAKES_FACTORS), RUNTIME_OF(factorf_complex, "iipp", 4, 4, TAKES_FACTORS),
-	RUNTIME_OF(solvef, "vippp", 1, 1, TAKES_SOLUTION), RUNTIME_OF(solvef_complex, "vippp", 4, 4, TAKES_SOLUTION),
-	RUNTIME(until, "ddiss"), RUNTIME(untilf, "fdiss"),
-	RUNTIME_OF(multiply, "viippp", 0, 0, TAKES_MATRIX), RUNTIME_OF(multiply_add, "viippp", 0, 0, TAKES_MATRIX), RUNTIME_OF(multiplyf, "viippp", 0, 0, TAKES_MATRIX),
-	RUNTIME_OF(multiplyf_add, "viippp", 0, 0, TAKES_MATRIX), RUNTIME(not_finite, "ipi"), RUNTIME(not_finitef, "ipi"),
+	RUNTIME_OF(accumulate, "ddddp", 0, PL_ACCUMULATE_ADD, TAKES_NO_MORE),
+	RUNTIME_OF(accumulatef, "fdddp", 0, PL_ACCUMULATE_ADD, TAKES_NO_MORE), RUNTIME(root, "ddi"),
+	RUNTIME(rootf, "fdi"), RUNTIME_OF(factor, "iipp", 1, 1, TAKES_FACTORS),
+	RUNTIME_OF(factor_complex, "iipp", 4, 4, TAKES_FACTORS), RUNTIME_OF(solve, "vippp", 1, 1, TAKES_SOLUTION),
+	RUNTIME_OF(solve_complex, "vippp", 4, 4, TAKES_SOLUTION), RUNTIME_OF(factorf, "iipp", 1, 1, TAKES_FACTORS),
+	RUNTIME_OF(factorf_complex, "iipp", 4, 4, TAKES_FACTORS), RUNTIME_OF(solvef, "vippp", 1, 1, TAKES_SOLUTION),
+	RUNTIME_OF(solvef_complex, "vippp", 4, 4, TAKES_SOLUTION), RUNTIME(until, "ddiss"), RUNTIME(untilf, "fdiss"),
+	RUNTIME_OF(multiply, "viippp", 0, 0, TAKES_MATRIX), RUNTIME_OF(multiply_add, "viippp", 0, 0, TAKES_MATRIX),
+	RUNTIME_OF(multiplyf, "viippp", 0, 0, TAKES_MATRIX), RUNTIME_OF(multiplyf_add, "viippp", 0, 0, TAKES_MATRIX),
+	RUNTIME(not_finite, "ipi"), RUNTIME(not_finitef, "ipi"),
 	{ "pl_magnitude", "dd", NULL, NULL, pl_magnitude, 0, 0, TAKES_NO_MORE }, RUNTIME(magnitudef, "fd"),
-	RUNTIME(switching_start, "vpppp"), RUNTIME_OF(switching_step, "vppppp", 0, 0, TAKES_PIECES), RUNTIME_OF(switching_advance, "vpdpppp", 0, 0, TAKES_PIECES),
-	RUNTIME(switchingf_start, "vpppp"), RUNTIME_OF(switchingf_step, "vppppp", 0, 0, TAKES_PIECES),
+	RUNTIME(switching_start, "vpppp"), RUNTIME_OF(switching_step, "vppppp", 0, 0, TAKES_PIECES),
+	RUNTIME_OF(switching_advance, "vpdpppp", 0, 0, TAKES_PIECES), RUNTIME(switchingf_start, "vpppp"),
+	RUNTIME_OF(switchingf_step, "vppppp", 0, 0, TAKES_PIECES),
 	RUNTIME_OF(switchingf_advance, "vpdpppp", 0, 0, TAKES_PIECES),
-	{ "PL_SWITCHING_WORK", "iiii", NULL, call_work, NULL, 0, 0, TAKES_NO_MORE },
-	MATH(sin), MATH(cos), MATH(tan), MATH(exp), MATH(log), MATH(sqrt), MATH(fabs), MATH(sinh), MATH(cosh),
-	MATH(tanh), MATH(asin), MATH(acos), MATH(atan), MATH_OF_TWO(atan2), MATH_OF_TWO(pow), MATH_OF_TWO(fmin),
-	MATH_OF_TWO(fmax)
+	{ "PL_SWITCHING_WORK", "iiii", NULL, call_work, NULL, 0, 0, TAKES_NO_MORE }, MATH(sin), MATH(cos), MATH(tan),
+	MATH(exp), MATH(log), MATH(sqrt), MATH(fabs), MATH(sinh), MATH(cosh), MATH(tanh), MATH(asin), MATH(acos),
+	MATH(atan), MATH_OF_TWO(atan2), MATH_OF_TWO(pow), MATH_OF_TWO(fmin), MATH_OF_TWO(fmax),
 };
 
 const struct library_function *library_function(const char *name)
@@ -187,7 +194,7 @@ static void count_call(const struct library_function *f, const union word *a)
 		products = (uint64_t)f->multiplications * size * size * size / 3;
 	else if (f->takes == TAKES_SOLUTION)
 		products = (uint64_t)f->multiplications * size * size;
-	else if (f->takes == TAKES_PIECES) {                    /* a piece, and whether it is clear; both types begin so */
+	else if (f->takes == TAKES_PIECES) {            /* a piece, and whether it is clear; both types begin so */
 		const pl_contact *contact = a[f->type[2] == 'd' ? 3 : 2].place;
 		const pl_switching *m = a[0].place;
 		bool single = strncmp(f->name, "pl_switchingf", 13) == 0;

@@ -431,9 +431,9 @@ const struct operation *combined(unsigned mark, const struct operation *a, const
 	if (mark == MARK2('&', '&') || mark == MARK2('|', '|')) {
 		a = as_condition(a);
 		b = as_condition(b);
-		return a && b ? new_operation((struct operation){ .go.whole = mark == MARK2('&', '&') ? run_and : run_or,
-								  .type = &ctype_int, .a = a, .b = b })
-			      : NULL;
+		struct operation both = { .type = &ctype_int, .a = a, .b = b };
+		both.go.whole = mark == MARK2('&', '&') ? run_and : run_or;
+		return a && b ? new_operation(both) : NULL;
 	}
 	if (!pointers && !numbers)
 		return NULL;

@@ -222,7 +222,7 @@ static void keep_sample(struct journey *j, struct course *course, long k)
 static const char *reason_of(int status)
 {
 	return status == GSL_EBADFUNC ? "a reference would take too long"
-				      : "a reference needs steps too short: where the equations jump, or have no solution";
+				      : "a reference needs steps too short: the equations jump, or have no solution";
 }
 
 struct course *road_of(struct roads *roads, int which, const double *start, const char **why)

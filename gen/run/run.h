@@ -57,8 +57,8 @@ struct operation {
 	int64_t n;
 	double x;
 };
-extern const struct ctype ctype_void, ctype_char, ctype_short, ctype_int, ctype_unsigned, ctype_long, ctype_wide, ctype_double,
-	ctype_float;
+extern const struct ctype ctype_void, ctype_char, ctype_short, ctype_int, ctype_unsigned, ctype_long, ctype_wide,
+	ctype_double, ctype_float;
 /* What has run so far, as step/cost.c counts it: quotients are products, a call is one of <math.h>. Of what the runtime
  * does with arrays it is an estimate. */
 extern struct counted { uint64_t multiplications, additions, calls; } counted;
@@ -103,7 +103,8 @@ const struct operation *act_body(const struct operation *list);                 
 
 union word { int64_t whole; double real; void *place; };
 struct library_function {
-	const char *name, *type;    /* i whole, d real, p pointer, s a struct, by where it is; the result first; v: none */
+	/* type, the result first: i, l, u whole, d, f real, p pointer, s a struct, by where it is, v none */
+	const char *name, *type;
 	const char *structure;      /* of a result that is one: its name */
 	void (*run)(union word *result, const union word *argument); /* of a struct: result->place says where to */
 	double (*real)(double x);   /* of one number: that alone */
@@ -160,7 +161,13 @@ struct entity *entity_find(const struct code *c, const char *name); /* NULL: the
 struct entity *entity_new(struct code *c, enum entity_kind kind, const char *name, const struct ctype *type);
 bool is_type_next(const struct code *c);
 const struct ctype *read_type(struct code *c);               /* specifiers: static const double */
-struct declared { const char *name; const struct ctype *type; bool function; struct entity *parameter; int parameters; };
+struct declared {
+	const char *name;
+	const struct ctype *type;
+	bool function;
+	struct entity *parameter;
+	int parameters;
+};
 /* what follows it: *const x[2]; name NULL: of a cast. Parameters are entities that are in no scope yet */
 struct declared read_declarator(struct code *c, const struct ctype *type);
 void read_outside(struct code *c);                           /* all that stands outside of functions */
@@ -189,7 +196,7 @@ struct running;                     /* an instance */
 /* one of a model; what its functions need is compiled now, and may leave the statement */
 struct running *running_new(struct code *code, const struct step *step);
 const struct step *running_step_of(const struct running *r);
-void   running_start(struct running *r, double t, const double *y);  /* any state at any time; y NULL: the spec's, at 0 */
+void   running_start(struct running *r, double t, const double *y);  /* any state; y NULL: the spec's, at 0 */
 void   running_step(struct running *r, const double *u);     /* by h */
 void   running_state(struct running *r, double *y);
 double running_time(struct running *r);

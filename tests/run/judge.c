@@ -105,7 +105,8 @@ static struct found compare(const struct solving *s, double until, double times)
     bool good = CVodeInit(cvode, slopes, 0, y) == CV_SUCCESS &&
                 CVodeSetUserData(cvode, (void *)(size_t)s) == CV_SUCCESS &&
                 CVodeSStolerances(cvode, 1e-12, 1e-13) == CV_SUCCESS &&
-                CVodeSetLinearSolver(cvode, linear, J) == CV_SUCCESS && CVodeSetMaxNumSteps(cvode, 10000000) == CV_SUCCESS;
+                CVodeSetLinearSolver(cvode, linear, J) == CV_SUCCESS &&
+                CVodeSetMaxNumSteps(cvode, 10000000) == CV_SUCCESS;
     for (char line[4096]; good && fgets(line, sizeof line, stdin);) {
         if (line[0] == 't')
             now = strtod(line + 1, NULL);
