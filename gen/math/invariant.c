@@ -43,6 +43,7 @@ struct invariants {
 	mpfr_t *value;              /* of the cells, of `precision` bits; NULL: not yet */
 	int precision;
 	double size;                /* of A, balanced: its largest row */
+	int leading;                /* entries, of which the largest of a basis of one vector is 1 */
 };
 
 /* ---- eigenvectors in double precision ---- */
@@ -409,6 +410,7 @@ static void scale_symmetric(struct invariants *of, int leading)
 
 static struct invariants *sorted(struct invariants *of, bool found, bool symmetric, int leading)
 {
+	of->leading = leading;
 	if (found)
 		find_parts(of, symmetric);
 	if (found && symmetric)
@@ -698,6 +700,94 @@ static bool refine(const struct correcting *w, int bits)
 	return false;
 }
 
+/* ---- scaled: what double precision chose does not show ---- */
+
+/* The first of the largest of the leading entries of X's columns together */
+static int largest_entry(const struct correcting *w)
+{
+	int at = 0;
+	double most = 0;
+	for (int i = 0; i < w->of->leading; i++) {
+		const double re = mpfr_get_d(w->X[i * w->k], MPFR_RNDN);
+		const double size = w->k == 1 ? fabs(re) : hypot(re, mpfr_get_d(w->X[i * w->k + 1], MPFR_RNDN));
+		if (size > most * (1 + 1e-9)) {
+			most = size;
+			at = i;
+		}
+	}
+	return at;
+}
+
+static void scale_one(const struct correcting *w)
+{
+	mpfr_set(w->G[0], w->X[largest_entry(w)], MPFR_RNDN);
+	for (int i = 0; i < w->of->n; i++) {
+		mpfr_div(w->X[i], w->X[i], w->G[0], MPFR_RNDN);
+		mpfr_mul(w->Y[i], w->Y[i], w->G[0], MPFR_RNDN);
+	}
+}
+
+/* row of two <- row [G_0, G_1; G_2, G_3] */
+static void turn_row(const struct correcting *w, mpfr_t *row, int a, int b, int c, int d)
+{
+	mpfr_mul(w->S[0], row[0], w->G[a], MPFR_RNDN);
+	mpfr_fma(w->S[0], row[1], w->G[b], w->S[0], MPFR_RNDN);
+	mpfr_mul(w->S[1], row[0], w->G[c], MPFR_RNDN);
+	mpfr_fma(w->S[1], row[1], w->G[d], w->S[1], MPFR_RNDN);
+	mpfr_set(row[0], w->S[0], MPFR_RNDN);
+	mpfr_set(row[1], w->S[1], MPFR_RNDN);
+}
+
+/* z = the eigenvector X g of p, g = (T_01, p - T_00), over its largest entry c: X becomes (Re z, Im z), T
+ * [a, b; -b, a]. G = (Re g_0, Im g_0; Re g_1, Im g_1) / c, and Y^T <- G^-1 Y^T. */
+static bool scale_pair(const struct correcting *w)
+{
+	mpfr_t *T = w->T, *G = w->G, *R = reals(6, (int)mpfr_get_prec(w->T[0]));
+	const int at = largest_entry(w);
+	mpfr_add(R[0], T[0], T[3], MPFR_RNDN);          /* a */
+	mpfr_div_2ui(R[0], R[0], 1, MPFR_RNDN);
+	mpfr_sub(R[1], T[0], R[0], MPFR_RNDN);          /* b^2 = - (T_00 - a)^2 - T_01 T_10 */
+	mpfr_sqr(R[2], R[1], MPFR_RNDN);
+	mpfr_fma(R[2], T[1], T[2], R[2], MPFR_RNDN);
+	mpfr_neg(R[2], R[2], MPFR_RNDN);
+	bool good = mpfr_sgn(R[2]) > 0 && !mpfr_zero_p(T[1]);
+	mpfr_sqrt(R[2], R[2], MPFR_RNDN);
+	mpfr_neg(R[1], R[1], MPFR_RNDN);                /* g = (T_01, R_1 + i b) */
+	mpfr_mul(R[3], w->X[2 * at], T[1], MPFR_RNDN);  /* c */
+	mpfr_fma(R[3], w->X[2 * at + 1], R[1], R[3], MPFR_RNDN);
+	mpfr_mul(R[4], w->X[2 * at + 1], R[2], MPFR_RNDN);
+	mpfr_sqr(R[5], R[3], MPFR_RNDN);
+	mpfr_fma(R[5], R[4], R[4], R[5], MPFR_RNDN);
+	mpfr_div(R[3], R[3], R[5], MPFR_RNDN);          /* 1/c = R_3 - i R_4 */
+	mpfr_div(R[4], R[4], R[5], MPFR_RNDN);
+	mpfr_mul(G[0], T[1], R[3], MPFR_RNDN);
+	mpfr_mul(G[1], T[1], R[4], MPFR_RNDN);
+	mpfr_neg(G[1], G[1], MPFR_RNDN);
+	mpfr_mul(G[2], R[2], R[4], MPFR_RNDN);
+	mpfr_fma(G[2], R[1], R[3], G[2], MPFR_RNDN);
+	mpfr_mul(G[3], R[1], R[4], MPFR_RNDN);
+	mpfr_fms(G[3], R[2], R[3], G[3], MPFR_RNDN);
+	for (int i = 0; i < w->of->n; i++)
+		turn_row(w, w->X + 2 * i, 0, 2, 1, 3);
+	good = good && make_dual(w);            /* which works in T */
+	mpfr_set(T[0], R[0], MPFR_RNDN);
+	mpfr_set(T[3], R[0], MPFR_RNDN);
+	mpfr_neg(T[2], R[2], MPFR_RNDN);
+	mpfr_set(T[1], R[2], MPFR_RNDN);
+	reals_free(R, 6);
+	return good;
+}
+
+static bool scale_basis(const struct correcting *w)
+{
+	if (w->part->members > 1)
+		return true;
+	if (w->k == 2)
+		return scale_pair(w);
+	scale_one(w);
+	return true;
+}
+
 /* To `bits` behind the largest of its column; what is less than the guard is 0, as it is in truth where symmetry
  * makes it so. */
 static void round_all(const struct correcting *w, mpfr_t *X, bool dual, int bits, mpq_t *rounded)
@@ -751,7 +841,7 @@ bool invariant_refine(struct invariants *of, int part, int bits, mpq_t *block, m
 		mpfr_set_d(w.X[i], X[i], MPFR_RNDN);
 		mpfr_set_d(w.Y[i], Y[i], MPFR_RNDN);
 	}
-	const bool good = refine(&w, bits + GUARD_BITS / 4);
+	const bool good = refine(&w, bits + GUARD_BITS / 4) && scale_basis(&w);
 	if (good) {
 		round_block(&w, bits, block);
 		round_all(&w, w.X, false, bits, right);

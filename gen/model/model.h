@@ -487,18 +487,18 @@ struct model *model_reduce(struct model *model);             /* itself where not
 struct mode {
 	int number;                 /* by rising size of its poles, from 1; of several coordinates: the first's */
 	int states;                 /* of z */
-	int weight;                 /* how many it counts for: its pairs of poles and real poles, rigid ones by coordinate */
+	int weight;                 /* how many it counts for: its pairs of poles and real poles; two poles 0 as one */
 	bool moves;                 /* z = (m, m') */
 	bool rigid;                 /* a pole is 0 */
 	bool seen;                  /* some output reads it, and a load, an input or the start reaches it */
 	double re, im;              /* its pole [1/s], im >= 0; where there are several: their middle */
-	/* In units of the output: the largest size it can ever have in it by the start and the loads, the same of what is
-	 * left once the forced part of loads is kept, and per input the largest that a step of height 1 gives; HUGE_VAL:
-	 * no bound. In double precision: to choose by, and to tell. */
+	/* In units of the output: the largest size it can ever have in it by the start and the loads, the same of what
+	 * is left once the forced part of loads is kept, and per input the largest that a step of height 1 gives;
+	 * HUGE_VAL: no bound. In double precision: to choose by, and to tell. */
 	double *size;               /* [output] */
 	double *transient;          /* [output] */
 	double *by_input;           /* [output * inputs + input] */
-	double share;               /* the largest part it has, of the sum over all modes, in any output by any of these */
+	double share;               /* the largest part of the sum over all modes, in any output by any of these */
 	/* Known once mode_refine was called; each number to 2^-MODE_BITS of the largest in its row */
 	mpq_t *block;               /* states x states */
 	mpq_t *right, *left;        /* states of the model x states; states x states of the model */
@@ -514,7 +514,7 @@ struct shortening {                 /* of a model of modes */
 	const struct modes *modes;
 	const bool *kept;           /* per mode */
 	bool statics;               /* what is dropped still follows loads and inputs at once */
-	/* z = to y of the whole model's states y, and from z is what is kept of y: its states x the whole's, and back */
+	/* z = to y of the whole model's states y, and from z is what is kept of y: states x the whole's, and back */
 	mpq_t *to, *from;
 };
 /* Of a linear model with declared outputs. NULL: `*why` says what stands against it ("a param is tunable"). */

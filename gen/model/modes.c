@@ -42,8 +42,7 @@ static const char *objection(const struct model *model)
 	if (model->obstacle || model->operators)
 		return "the equations are not linear, and modes are of linear ones";
 	if (model->scheme != SCHEME_EXACT)
-		return format("scheme %s does not step the equations exactly, as exact does",
-			      scheme_name(model->scheme));
+		return "that needs scheme exact";
 	if (model->tuning)
 		return "there are tunable params, and modes follow from them";
 	if (model->written != model)
@@ -614,9 +613,49 @@ static void round_to_bits(mpq_ptr q, int bits)
 	mpfr_clear(x);
 }
 
+static void clear_small(int count, mpq_t *x, int stride)
+{
+	double largest = 0;
+	for (int i = 0; i < count; i++)
+		largest = fmax(largest, fabs(nearest_double(x[i * stride])));
+	for (int i = 0; i < count; i++)
+		if (fabs(nearest_double(x[i * stride])) <= 1e-30 * largest)
+			mpq_set_ui(x[i * stride], 0, 1);
+		else
+			round_to_bits(x[i * stride], MODE_BITS);
+}
+
+/* Of two poles 0: 1 in the largest coordinate, in which the second state has no part */
+static void make_unit(int states, int coords, mpq_t *left, mpq_t *right)
+{
+	mpq_t scale, part, product;
+	int at = 0;
+	mpq_inits(scale, part, product, NULL);
+	for (int i = 1; i < coords; i++)
+		if (fabs(nearest_double(right[2 * i])) > fabs(nearest_double(right[2 * at])) * (1 + 1e-9))
+			at = i;
+	mpq_set(scale, right[2 * at]);
+	for (int i = 0; i < 2 * states && mpq_sgn(scale) != 0; i++) {
+		mpq_div(right[i], right[i], scale);
+		mpq_mul(left[i], left[i], scale);
+	}
+	mpq_set(part, right[2 * at + 1]);
+	for (int i = 0; i < states && mpq_sgn(scale) != 0; i++) {
+		mpq_mul(product, part, right[2 * i]);
+		mpq_sub(right[2 * i + 1], right[2 * i + 1], product);
+		mpq_mul(product, part, left[states + i]);
+		mpq_add(left[i], left[i], product);
+	}
+	for (int i = 0; i < 2; i++) {
+		clear_small(states, right + i, 2);
+		clear_small(states, left + i * states, 1);
+	}
+	mpq_clears(scale, part, product, NULL);
+}
+
 /* Two poles 0 with one eigenvector: z becomes (z_i, row i of the block times z), i the larger row, whose derivatives
  * are exactly the second and 0. */
-static void straighten(struct mode *mode, int states)
+static void straighten(struct mode *mode, int states, int coords)
 {
 	mpq_t *S = rationals(4), *inverse = rationals(4), *left = rationals(2 * (size_t)states),
 	      *right = rationals(2 * (size_t)states);
@@ -630,10 +669,9 @@ static void straighten(struct mode *mode, int states)
 	if (rational_inverse(2, (const mpq_t *)S, inverse, &column)) {
 		rational_product(2, 2, states, (const mpq_t *)S, (const mpq_t *)mode->left, left);
 		rational_product(states, 2, 2, (const mpq_t *)mode->right, (const mpq_t *)inverse, right);
+		make_unit(states, coords, left, right);
 		for (int i = 0; i < 2 * states; i++) {
 			mpq_swap(mode->left[i], left[i]);
-			round_to_bits(right[i], MODE_BITS);
-			round_to_bits(mode->left[i], MODE_BITS);
 			mpq_swap(mode->right[i], right[i]);
 		}
 		for (int i = 0; i < 4; i++)
@@ -677,7 +715,7 @@ static bool find_rigid(struct modes *modes, int index)
 		mode->re = 0;
 		mode->weight = (mode->states + 1) / 2;
 		if (mode->states == 2)
-			straighten(mode, modes->model->system.states);
+			straighten(mode, modes->model->system.states, modes->model->n);
 	}
 	return true;
 }

@@ -319,6 +319,8 @@ static const char *state_name(const struct mode *mode, int i)
 {
 	const int c = mode->moves ? mode->columns : mode->states;
 	const char *prime = i < c ? "" : "'";
+	if (!mode->moves && mode->states == 2 && mode->rigid)
+		return format("mode%d%s", mode->number, i ? "'" : "");
 	if (!mode->moves && mode->states == 2 && mode->weight == 1)
 		return format("mode%d_%s", mode->number, i ? "im" : "re");
 	if (c == 1)

@@ -55,9 +55,11 @@ const char *statics_text(const struct model *model)
 	const struct linear *system = &model->system;
 	if (!model->shortened->statics)
 		return "the others are left out";
-	return format("of the others the outputs keep%s%s%s",
-		      system->loads ? " what loads force" : "", system->loads && system->inputs ? " and" : "",
-		      system->inputs ? " the static gain of inputs" : system->loads ? "" : " nothing: there are no loads");
+	if (!system->loads && !system->inputs)
+		return "nothing drives the others";
+	return format("of the others the outputs keep%s%s%s", system->loads ? " what loads force" : "",
+		      system->loads && system->inputs ? " and" : "",
+		      system->inputs ? " the static gain of inputs" : "");
 }
 
 static double ratio_of(const struct mode *mode)
@@ -72,8 +74,8 @@ void person_shortening(FILE *to, const struct model *model)
 	const struct shortening *s = model->shortened;
 	const struct modes *modes = s->modes;
 	fprintf(to, "Modes %s of %d are kept; %s.\n", mode_numbers(s, true), modes_of_model(s), statics_text(model));
-	fprintf(to, "    %-9s %-16s %-14s %-10s largest share of an output\n", "mode", "frequency [Hz]", "damping ratio",
-		"");
+	fprintf(to, "    %-9s %-16s %-14s %-10s largest share of an output\n", "mode", "frequency [Hz]",
+		"damping ratio", "");
 	for (int i = 0; i < modes->count; i++) {
 		const struct mode *mode = &modes->mode[i];
 		const int last = mode->number + mode->weight - 1;
@@ -112,8 +114,9 @@ void json_shortening(FILE *to, const struct model *model)
 	fputs("  \"modes\": [\n", to);
 	for (int i = 0; i < s->modes->count; i++) {
 		const struct mode *mode = &s->modes->mode[i];
-		fprintf(to, "    {\"number\": %d, \"states\": %d, \"re\": %.9g, \"im\": %.9g, \"rigid\": %s, \"seen\": %s, "
-			    "\"kept\": %s, \"share\": ", mode->number, mode->states, mode->re, mode->im,
+		fprintf(to,
+			"    {\"number\": %d, \"states\": %d, \"re\": %.9g, \"im\": %.9g, \"rigid\": %s, "
+			"\"seen\": %s, \"kept\": %s, \"share\": ", mode->number, mode->states, mode->re, mode->im,
 			mode->rigid ? "true" : "false", mode->seen ? "true" : "false", s->kept[i] ? "true" : "false");
 		json_number(to, mode->share);
 		fprintf(to, "}%s\n", i + 1 < s->modes->count ? "," : "");

@@ -593,7 +593,8 @@ static const char *objection(const struct errors *e)
 	const struct linear *system = &e->step->branch->system;
 	if (system->states > LIMIT_NEED_STATES)
 		return format("it is built for up to %d states", LIMIT_NEED_STATES);
-	if (e->steps < 0 || (double)e->steps * (system->states * system->states + 32 * load_columns(system) + 32) > WORK)
+	const int each = system->states * system->states + 32 * load_columns(system) + 32;
+	if (e->steps < 0 || (double)e->steps * each > WORK)
 		return "there are too many samples until then";
 	return NULL;
 }

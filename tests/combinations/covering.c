@@ -383,7 +383,8 @@ static void write_chain(FILE *to, int n)
 static void write_spec(FILE *to)
 {
 	const bool vector = has("file") || has("many"), damped = !has("kdk");
-	const bool outputs = has("accel") || has("nonlinear") || has("reduce") || has("modes") || has("peaks") || has("batch");
+	const bool outputs = has("accel") || has("nonlinear") || has("reduce") || has("modes") || has("peaks") ||
+			     has("batch");
 	const int n = has("many") ? 9 : 3;
 	print_options(to);
 	fputs("model f\nparam k = 12\n", to);

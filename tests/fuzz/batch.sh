@@ -87,7 +87,7 @@ batch_add() {
 		*--real*|*--reduce*|*--modes*)
 			whole=w$id
 			if ! make_c "$whole" "$spec" "$plain"; then
-				echo "without --real, --reduce and --modes: $(grep -m 1 error "$whole.said")" >"$id.wrong"
+				echo "the plain model: $(grep -m 1 error "$whole.said")" >"$id.wrong"
 				return
 			fi
 			code="$code $whole.c" ;;

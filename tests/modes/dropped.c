@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* dropped SPEC MODES PREFIX [ header ]: C of what the outputs of a model lose when the MODES that matter most are kept, as a model
- * of its own. */
+/* dropped SPEC MODES PREFIX [ header ]: C of what the outputs of a model lose when the MODES that matter most are kept,
+ * as a model of its own. */
 #include "emit/emit.h"
 
 #include <stdlib.h>

@@ -25,12 +25,18 @@ made() {
 		${CC:-cc} -std=c99 -O1 $warnings -I"$root/runtime" -c "$prefix.c" -o "$prefix.o"
 }
 
+# compiled PROGRAM FLAGS AND FILES ...
+compiled() {
+	program=$1
+	shift
+	${CC:-cc} -std=c99 -O0 -Wall -I"$root/runtime" -I"$root/tests/emitted" -I. "$@" -lm -o "$program"
+}
+
 # closed NAME MODES KEPT FLAGS
 closed() {
 	{
 		made m --modes "$2" "$1.spec" &&
-			${CC:-cc} -std=c99 -O0 -Wall -DKEPT="$3" $4 -I"$root/runtime" -I. "$here/closed.c" m.o "$archive" -lm \
-				-o m && ./m
+			compiled m -DKEPT="$3" $4 "$here/closed.c" m.o "$archive" && ./m
 	} >log 2>&1
 	result $? "$1, modes $2: closed form"
 }
@@ -52,11 +58,10 @@ against() {
 	flags=$3
 	shift 3
 	{
-		lost=$("$plgen" --modes "$modes" --explain=json "$@" "$name.spec" | sed -n 's/^  "lost": \[\(.*\)\],$/\1/p' |
-			sed 's/null/HUGE_VAL/g')
+		lost=$("$plgen" --modes "$modes" --explain=json "$@" "$name.spec" |
+			sed -n 's/null/HUGE_VAL/g; s/^  "lost": \[\(.*\)\],$/\1/p')
 		made whole "$@" "$name.spec" && made part --modes "$modes" "$@" "$name.spec" &&
-			${CC:-cc} -std=c99 -O0 -Wall -DLOST="{$lost}" $flags -I"$root/runtime" -I. "$here/whole.c" whole.o \
-				part.o $archive -lm -o whole && ./whole
+			compiled whole -DLOST="{$lost}" $flags "$here/whole.c" whole.o part.o $archive && ./whole
 	} >log 2>&1
 	result $? "$name, modes $modes${*:+, $*}: the whole model"
 }

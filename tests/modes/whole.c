@@ -1,10 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A model of modes against the whole model, both as C: from_whole times a state of the whole is the state of the one that
- * is smaller, at any time and from any start, under loads and inputs; to_whole gives back what starts in the kept
+/* A model of modes against the whole model, both as C: from_whole times a state of the whole is the state of the one
+ * that is smaller, at any time and from any start, under loads and inputs; to_whole gives back what starts in the kept
  * modes; and outputs. -DALL: nothing is dropped, outputs are the same. -DSETTLES=T: after T what is dropped is at rest,
- * and outputs are the same, an input being held. -DDROPPED: a model of what outputs lose. -DLOST={...}: outputs differ by no more, inputs 0. */
+ * and outputs are the same, an input being held. -DDROPPED: a model of what outputs lose. -DLOST={...}: outputs differ
+ * by no more, inputs 0. */
 #include "part.h"
 #include "whole.h"
+#include "worse.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -93,8 +95,7 @@ static void same_states(void)
         part_get(&b, z);
         project(x, y);
         for (i = 0; i < K; i++) {
-            if (!(fabs(y[i] - z[i]) <= worst[i]))
-                worst[i] = fabs(y[i] - z[i]);
+            worst[i] = worse(worst[i], fabs(y[i] - z[i]));
             size = fmax(size, fabs(z[i]));
         }
         advance_whole(&a, n);
@@ -130,8 +131,7 @@ static void same_motion(void)
             now[i] -= now_rest[i];
         restore(now, back);
         for (i = 0; i < N; i++) {
-            if (!(fabs(x[i] - rest[i] - back[i]) <= worst))
-                worst = fabs(x[i] - rest[i] - back[i]);
+            worst = worse(worst, fabs(x[i] - rest[i] - back[i]));
             size = fmax(size, fmax(fabs(back[i]), fabs(rest[i])));
         }
         advance_whole(&a, n);
@@ -153,8 +153,8 @@ static void same_outputs(int from, const double *most, double tolerance)
         whole_out(&a, p);
         part_out(&b, q);
         for (i = 0; i < OUTPUTS; i++) {
-            if (n >= from && !(fabs(p[i] - q[i]) <= worst[i]))
-                worst[i] = fabs(p[i] - q[i]);
+            if (n >= from)
+                worst[i] = worse(worst[i], fabs(p[i] - q[i]));
             size[i] = fmax(size[i], fabs(p[i]));
         }
         advance_whole(&a, n);
@@ -181,8 +181,7 @@ static void lost_outputs(void)
         part_out(&b, q);
         dropped_out(&lost, e);
         for (i = 0; i < OUTPUTS; i++) {
-            if (!(fabs(p[i] - q[i] - e[i]) <= worst[i]))
-                worst[i] = fabs(p[i] - q[i] - e[i]);
+            worst[i] = worse(worst[i], fabs(p[i] - q[i] - e[i]));
             size[i] = fmax(size[i], fabs(p[i]));
         }
         advance_whole(&a, n);

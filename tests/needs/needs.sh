@@ -51,7 +51,7 @@ for seed in $seeds; do
 	grep -q '^not ok' line && bad=$((bad + 1))
 done
 if [ "$first" = beam ]; then
-	sed -n 's/.*"modes": "\([^"]*\)".*"taken": \([a-z]*\), "cost": \([^,]*\), "excess": \([^,]*\),.*/\1 \2 \3 \4/p' \
+	sed -n 's/.*"modes": "\([^"]*\)".*"taken": \([a-z]*\), "cost": \([^,]*\), "excess": \([^,]*\).*/\1 \2 \3 \4/p' \
 		drawn.json | awk '
 		$1 == "all" && $4 <= 1 && (!all || $3 < all) { all = $3 }
 		$2 == "true" { taken = $3; modes = $0 }

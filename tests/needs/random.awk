@@ -54,5 +54,6 @@ BEGIN {
 		line = line " - " number(uniform(0.2, 2)) "*x" (1 + int(n * rand())) "'"
 	print line
 	print "step " number(step)
-	print "need y within 1e-" (1 + seed % 12) (rand() < 0.3 ? " %" : "") " until " number(step * log_uniform(30, 3000))
+	print "need y within 1e-" (1 + seed % 12) (rand() < 0.3 ? " %" : "") " until " \
+	      number(step * log_uniform(30, 3000))
 }
