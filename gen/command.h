@@ -24,6 +24,10 @@ void read_options(int argc, char **argv, struct options *options); /* ends the p
  * models; NULL: it was said why there is none */
 struct step *choose_step(struct model *written, struct model *stepped, struct request *request);
 
+/* ---- measured.c: the same of what no bound is known for ---- */
+
+struct step *choose_measured(struct model *stepped, struct request *request);
+
 /* ---- publish.c: texts in memory, then files ---- */
 
 struct file {

@@ -58,6 +58,17 @@ static void try_all(void *context)
 		abandon();
 }
 
+/* With a need a step may be chosen; until then any will do. */
+static void leave_step_open(struct work *w)
+{
+	struct request *request = &w->options.request;
+	if (w->spec->needs == 0 || w->spec->step || request->step || !w->spec->need[0].until)
+		return;
+	const struct node *until = w->spec->need[0].until;
+	request->step = format("(%s)/1000", text_between(until->start, until->end));
+	request->step_open = true;
+}
+
 /* Where no scheme is asked for the best one may not have a step of this model: then another is taken, and it is told
  * why. What stands in the way of any is said by the last. */
 static bool make(struct work *w)
@@ -67,6 +78,7 @@ static bool make(struct work *w)
 	if (!source)
 		return false;
 	w->spec = parse_spec(source);
+	leave_step_open(w);
 	if (!diagnostics_errors() && !request->scheme && !w->spec->scheme && !request->solution) {
 		request->passed_over = refusal_of(try_all, w);
 		if (!request->passed_over)

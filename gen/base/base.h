@@ -125,6 +125,7 @@ void say_note(struct place at, const char *fmt, ...) __attribute__((format(print
 bool statement_guard(void (*work)(void *), void *context); /* true if the work ran to its end */
 bool silent_guard(void (*work)(void *), void *context);    /* the same; what it says when it fails is forgotten */
 const char *refusal_of(void (*work)(void *), void *context); /* so; NULL: it ran to its end; else the first error */
+const char *unheard_refusal_of(void (*work)(void *), void *context); /* its warnings are forgotten too */
 void diagnostics_context(const char *note);                /* the note of what has none from now on; NULL: none */
 int  diagnostics_errors(void);
 void diagnostics_print(FILE *to);

@@ -140,6 +140,14 @@ const char *refusal_of(void (*work)(void *), void *context)
 	return message;
 }
 
+const char *unheard_refusal_of(void (*work)(void *), void *context)
+{
+	int known = said_count;
+	const char *message = refusal_of(work, context);
+	said_count = known;
+	return message;
+}
+
 bool silent_guard(void (*work)(void *), void *context)
 {
 	return !refusal_of(work, context);

@@ -108,6 +108,7 @@ struct request {                    /* what the user asks for on the command lin
 	bool loads_left;            /* known loads are left to the scheme */
 	bool compensated;           /* two-word arithmetic */
 	bool single;                /* the target's numbers are floats */
+	bool step_open;             /* nothing says how long a step is: one is chosen */
 	bool real_given;            /* that was said: --real */
 	bool selftest;              /* NAME_selftest */
 	int rows;                   /* in a block of NAME_run; 0: as many as serve best, 1: no blocks */
@@ -476,6 +477,8 @@ struct target {                     /* a processor: what it takes of instruction
 };
 /* of the model that is stepped: its requirements, its target; false: it was said what stands in the way */
 bool find_requirements(struct model *model);
+bool differ_in_loads(const struct model *a, const struct model *b); /* in nothing but how large their loads are */
+bool is_measured(const struct model *model);                /* no bound is known: it is not linear, or in pieces */
 
 /* ---- reduce.c: the smallest model with the same outputs ---- */
 

@@ -12,6 +12,13 @@ static const char *dropped_text(const struct alternative *a)
 	return *numbers ? format("modes %s dropped%s", numbers, s->statics ? ", static gain kept" : "") : NULL;
 }
 
+/* Of one that is measured */
+static const char *tried_text(const struct alternative *a)
+{
+	return format("%s, %s%s%s%s%s", a->single ? "float" : "double", a->name, a->step ? ", step " : "",
+		      a->step ? a->step : "", a->tolerance ? ", tolerance " : "", a->tolerance ? a->tolerance : "");
+}
+
 static const char *arithmetic_text(const struct alternative *a)
 {
 	return format("%s, %s%s", a->single ? "float" : "double", step_form_name(a->form),
@@ -20,6 +27,8 @@ static const char *arithmetic_text(const struct alternative *a)
 
 const char *alternative_text(const struct alternative *a)
 {
+	if (a->measured)
+		return tried_text(a);
 	const char *dropped = dropped_text(a);
 	return format("%s%s%s", arithmetic_text(a), dropped ? "; " : "", dropped ? dropped : "");
 }
@@ -27,6 +36,8 @@ const char *alternative_text(const struct alternative *a)
 const char *certified_text(const struct alternative *a, int i)
 {
 	const struct certificate *c = &a->certificate[i];
+	if (a->measured)
+		return format("measured %.2g (%s)", c->rounding, tried_text(a));
 	const char *dropped = dropped_text(a);
 	if (!dropped)
 		return format("certified %.2g (rounding: %s)", c->rounding, arithmetic_text(a));
@@ -52,12 +63,20 @@ static const char *unit_of_cost(const struct model *model)
 			     : "operations, those of double counted twice";
 }
 
+static const char *neighbours_text(const struct alternative *a)
+{
+	if (a->neighbours == 0)
+		return "";
+	return format(", of %.3g where %s %s 10 %% more or less", 1 / a->worst_neighbour, a->neighbour_names,
+		      a->neighbours > 2 ? "are each" : "is");
+}
+
 const char *margin_text(const struct step *step, int i)
 {
 	const struct alternative *a = &step->choice->alternative[step->choice->taken];
 	const struct certificate *c = &a->certificate[i];
-	return format("%s at every sample, a margin of %.3g", certified_text(a, i),
-		      c->needed / (c->rounding + c->dropped));
+	return format("%s at every sample, a margin of %.3g%s", certified_text(a, i),
+		      c->needed / (c->rounding + c->dropped), neighbours_text(a));
 }
 
 static void person_alternative(FILE *to, const struct step *step, int i)
@@ -69,11 +88,15 @@ static void person_alternative(FILE *to, const struct step *step, int i)
 	}
 	fprintf(to, "    %c %7.0f  ", i == step->choice->taken ? '*' : ' ', a->cost);
 	if (a->why) {
-		fprintf(to, "%s: not certified, %s\n", alternative_text(a), a->why);
+		fprintf(to, "%s: not %s, %s\n", alternative_text(a), a->measured ? "measured" : "certified", a->why);
 		return;
 	}
 	for (int k = 0; k < step->model->requirements; k++)
-		fprintf(to, "%s%s", k ? ", " : "", certified_text(a, k) + strlen("certified "));
+		fprintf(to, "%s%s", k ? ", " : "", strchr(certified_text(a, k), ' ') + 1);
+	if (a->excess <= 1 && a->worst_neighbour > 0.99) {
+		fprintf(to, "; misses by a factor of %.3g where %s\n", a->worst_neighbour, a->worst_name);
+		return;
+	}
 	fprintf(to, a->excess > 1 ? "; misses by a factor of %.3g\n" : "; a margin of %.3g\n",
 		a->excess > 1 ? a->excess : 1 / a->excess);
 }
@@ -101,7 +124,9 @@ void person_needs(FILE *to, const struct step *step)
 	fputs("\nNeeds:\n", to);
 	for (int i = 0; i < model->requirements; i++)
 		fprintf(to, "    %s: %s\n", need_text(&model->requirement[i]), margin_text(step, i));
-	fprintf(to, "Alternatives (* taken; %s, the outputs counted; bound of the error):\n", unit_of_cost(model));
+	const bool measured = choice->alternative[0].measured;
+	fprintf(to, "Alternatives (* taken; %s%s, the outputs counted; %s):\n", unit_of_cost(model),
+		measured ? ", in a second of the model's time" : "", measured ? "error" : "bound of the error");
 	for (int i = 0; i < choice->alternatives; i++)
 		if (is_shown(choice, i))
 			person_alternative(to, step, i);
@@ -119,6 +144,32 @@ static const char *json_quoted(const char *text)
 	return format("\"%s\"", quoted);
 }
 
+static void json_tried(FILE *to, const struct alternative *a)
+{
+	fprintf(to, "\"scheme\": %s, ", json_quoted(a->name));
+	if (a->step)
+		fprintf(to, "\"step\": %s, ", a->step);
+	if (a->tolerance)
+		fprintf(to, "\"tolerance\": %s, ", a->tolerance);
+}
+
+static void json_modes(FILE *to, const struct alternative *a)
+{
+	const struct shortening *s = a->model->shortened;
+	fprintf(to, "\"modes\": \"%s\", \"statics\": %s, ", s ? mode_numbers(s, true) : "all",
+		s && s->statics ? "true" : "false");
+}
+
+static void json_error(FILE *to, const struct alternative *a, int k)
+{
+	const struct certificate *c = &a->certificate[k];
+	fprintf(to, "%s{\"%s\": %.17g, ", k ? ", " : "", a->measured ? "measured" : "certified",
+		c->rounding + c->dropped);
+	if (!a->measured)
+		fprintf(to, "\"dropped\": %.17g, \"rounding\": %.17g, ", c->dropped, c->rounding);
+	fprintf(to, "\"needed\": %.17g}", c->needed);
+}
+
 void json_needs(FILE *to, const struct step *step)
 {
 	const struct model *model = step->model;
@@ -128,10 +179,9 @@ void json_needs(FILE *to, const struct step *step)
 	fputs("],\n  \"alternatives\": [", to);
 	for (int i = 0; i < step->choice->alternatives; i++) {
 		const struct alternative *a = &step->choice->alternative[i];
-		fprintf(to, "%s\n    {\"modes\": \"%s\", \"statics\": %s, \"real\": \"%s\", \"form\": \"%s\", "
-			"\"accuracy\": \"%s\", \"taken\": %s",
-			i ? "," : "", a->model->shortened ? mode_numbers(a->model->shortened, true) : "all",
-			a->model->shortened && a->model->shortened->statics ? "true" : "false",
+		fprintf(to, "%s\n    {", i ? "," : "");
+		(a->measured ? json_tried : json_modes)(to, a);
+		fprintf(to, "\"real\": \"%s\", \"form\": \"%s\", \"accuracy\": \"%s\", \"taken\": %s",
 			a->single ? "float" : "double", step_form_name(a->form),
 			a->compensated ? "compensated" : "plain", i == step->choice->taken ? "true" : "false");
 		if (a->refused || a->why) {
@@ -140,11 +190,7 @@ void json_needs(FILE *to, const struct step *step)
 		}
 		fprintf(to, ", \"cost\": %.17g, \"excess\": %.17g, \"errors\": [", a->cost, a->excess);
 		for (int k = 0; k < model->requirements; k++)
-			fprintf(to,
-				"%s{\"certified\": %.17g, \"dropped\": %.17g, \"rounding\": %.17g, "
-				"\"needed\": %.17g}",
-				k ? ", " : "", a->certificate[k].rounding + a->certificate[k].dropped,
-				a->certificate[k].dropped, a->certificate[k].rounding, a->certificate[k].needed);
+			json_error(to, a, k);
 		fputs("]}", to);
 	}
 	fputs("],\n", to);

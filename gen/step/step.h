@@ -485,7 +485,9 @@ const char *rounding_text(const struct step *step);
 struct certificate {                /* of one requirement, in the output's unit */
 	bool known;
 	const char *why;            /* it is not */
-	double rounding, dropped;   /* at every sample up to the end: bounds of what rounds, of what modes are missed */
+	/* at every sample up to the end: bounds of what rounds, of what modes are missed; of one that is measured the
+	 * whole error, and 0 */
+	double rounding, dropped;
 	double needed;
 };
 /* `exact`: the same step with the numbers of double */
@@ -501,6 +503,15 @@ struct alternative {                /* one way to step a model with needs */
 	bool single, compensated;
 	enum step_form form;
 	struct model *model;        /* that is stepped: of all modes, or of some */
+	/* of one that is measured: what was left open and is tried, else NULL; its scheme; what its step costs, and
+	 * `cost` is that over the step, [1/s]; how many neighbouring starts were tried, the largest of error over need
+	 * there, and where */
+	bool measured;
+	const char *scheme, *step, *tolerance, *name;
+	double step_cost;
+	int neighbours;
+	double worst_neighbour;
+	const char *worst_name, *neighbour_names;
 	const char *refused;        /* why there is no such step; NULL: there is */
 	double cost;                /* of a step and its outputs, as cost_of_step counts */
 	const char *why;            /* its error is not known; NULL: it is */

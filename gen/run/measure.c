@@ -1,0 +1,50 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* How far a step is off, and what it takes: its C runs from start to end beside a reference. */
+#include "run/run.h"
+
+#include <math.h>
+
+/* What is not a number stays one. */
+static bool compare_sample(struct trial *trial, struct running *r, const struct course *reference, long k,
+			   const double *ends)
+{
+	const int outputs = reference->outputs;
+	const double t = running_time(r) * (1 - 1e-14);
+	double *out = trial->error + outputs;
+	bool finite = true;
+	running_outputs(r, out);
+	for (int i = 0; i < outputs; i++) {
+		const double error = fabs(out[i] - reference->value[k * outputs + i]);
+		if (t > ends[i])
+			continue;
+		trial->error[i] = error <= trial->error[i] ? trial->error[i] : error;
+		finite = finite && isfinite(trial->error[i]);
+	}
+	return finite;
+}
+
+struct trial trial_of(struct running *r, const struct course *reference, const double *start, const double *ends)
+{
+	const struct model *model = running_step_of(r)->model;
+	struct trial trial = { .error = ARRAY(double, 2 * (size_t)reference->outputs + 1) };
+	double *none = ARRAY(double, 2 * (size_t)model->system.inputs + 1);
+	running_start(r, 0, start);
+	bool finite = compare_sample(&trial, r, reference, 0, ends);
+	const struct counted before = counted;
+	long k = 0;
+	for (; k < reference->samples && finite && !trial.why; k++) {
+		running_step(r, none);
+		finite = compare_sample(&trial, r, reference, k + 1, ends);
+		if (running_status(r) != 0)
+			trial.why = format("it ends with status %d at t = %.3g s", running_status(r), running_time(r));
+		else if (counted.multiplications - before.multiplications > LIMIT_MEASURED)
+			trial.why = "it takes too long to be measured";
+	}
+	if (!finite && !trial.why)
+		trial.why = format("it leaves the finite numbers at t = %.3g s", running_time(r));
+	const double steps = k > 0 ? (double)k : 1;
+	trial.multiplications = (double)(counted.multiplications - before.multiplications) / steps;
+	trial.additions = (double)(counted.additions - before.additions) / steps;
+	trial.calls = (double)(counted.calls - before.calls) / steps;
+	return trial;
+}

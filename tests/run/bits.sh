@@ -1,0 +1,72 @@
+#!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
+# bits.sh PLGEN INTERPRET SOURCE_ROOT: the C of models, run inside the generator and compiled: the same bits, of each
+# scheme and both types.
+set -u
+plgen=$1
+interpret=$2
+root=$3
+case $plgen in /*) ;; *) plgen=$PWD/$plgen ;; esac
+case $interpret in /*) ;; *) interpret=$PWD/$interpret ;; esac
+. "${0%/*}/../tap.sh"
+runtime_archive "$root/runtime"
+here=${0%/*}
+case $here in /*) ;; *) here=$root/tests/run ;; esac
+
+# same FILE.spec STEPS REAL [SCHEME]
+same() {
+	what="${1##*/} ${4:-} $3"
+	chosen "$what" || return 0
+	name=$(sed -n 's/^model *\([a-z0-9_]*\).*/\1/p' "$1")
+	flags="-DMODEL=$name -DRHS=${name}_rhs"
+	[ "$3" = float ] && flags="$flags -DFLOAT"
+	grep -q '^input' "$1" && flags="$flags -DINPUTS"
+	: >log
+	# shellcheck disable=SC2086
+	"$plgen" --rhs --real "$3" ${4:+--scheme "$4"} "$1" >model.c 2>>log &&
+		${CC:-cc} -std=c99 -O1 -ffp-contract=off -w $flags -I"$root/runtime" "$here/drive.c" model.c \
+			"$archive" -lm -o drive >>log 2>&1 && ./drive "$2" >compiled &&
+		"$interpret" "$1" "$2" "$3" ${4:+"$4"} >run 2>>log && cmp compiled run >>log 2>&1 && [ -s run ]
+	result $? "$what"
+}
+
+for model in "$root"/models/pendulum.spec "$root"/models/duffing.spec; do
+	for scheme in etd1 etdrk2 etdrk4 nc2 nc3 dq4 bm3 taylor radau auto etdam4 etdam5 etdam6 etdcol; do
+		same "$model" 300 double $scheme
+		same "$model" 300 float $scheme
+	done
+done
+for name in vanderpol quad2dof mathieu scs_weak; do
+	same "$root/models/$name.spec" 500 double
+	same "$root/models/$name.spec" 500 float
+done
+for scheme in '' auto radau; do
+	same "$root/models/vanderpol_stiff.spec" 200 double $scheme
+done
+for name in gear1 gear2 gear3 bilinear stop two_masses quarter_car_bumps; do
+	same "$root/models/$name.spec" 1000 double
+	same "$root/models/$name.spec" 300 float
+done
+same "$root/models/beam4.spec" 30 double
+same "$root/models/beam4.spec" 30 double etdam4
+same "$root/models/beam15.spec" 10 double
+
+# What the language has and models rarely need: inputs of each hold, outputs with functions, growing loads, matrices
+cat >inputs.spec <<END
+model inputs
+coord x, y
+input u
+input v hold first
+input w hold first
+init x = 0.3
+x'' + 0.1*x' + 2*x - y + x^3 = u + exp(-0.2*t)*cos(3*t)
+y' + y + x^2*y = v + 0.1*w + (t < 1 ? t : 1) + exp(-t)
+output a = x''
+output b = sqrt(1 + x^2) + atan2(x, 1 + y^2)
+step 0.05
+END
+for scheme in etdrk2 etdrk4 bm3 taylor radau; do
+	same inputs.spec 100 double $scheme
+	same inputs.spec 100 float $scheme
+done
+tap_end

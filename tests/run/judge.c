@@ -1,0 +1,138 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What a model does (lines "t ..." and "o ..." of drive.c, standard input) against CVODE on its equations, written here
+ * by hand:
+ *     judge MODEL WITHIN[%] UNTIL START LOAD
+ * initial values times START, loads times LOAD. Prints the largest difference of the output and what is allowed. */
+#include <cvode/cvode.h>
+#include <math.h>
+#include <nvector/nvector_serial.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sunlinsol/sunlinsol_dense.h>
+#include <sunmatrix/sunmatrix_dense.h>
+
+struct equations {
+    const char *name;
+    int states;
+    double start[3];
+    void (*slopes)(double t, const double *y, double load, double *dydt);
+    double (*output)(double t, const double *y, double load);
+};
+
+static double first(double t, const double *y, double load)
+{
+    (void)t, (void)load;
+    return y[0];
+}
+
+static void pendulum(double t, const double *y, double load, double *dydt)
+{
+    (void)t, (void)load;
+    dydt[0] = y[1];
+    dydt[1] = -sin(y[0]);
+}
+
+static void duffing(double t, const double *y, double load, double *dydt)
+{
+    dydt[0] = y[1];
+    dydt[1] = load * 0.5 * cos(1.4 * t) - 0.2 * y[1] - y[0] - y[0] * y[0] * y[0];
+}
+
+static double acceleration(double t, const double *y, double load)
+{
+    double dydt[2];
+    duffing(t, y, load, dydt);
+    return dydt[1];
+}
+
+static void clearance(double t, const double *y, double load, double *dydt)
+{
+    const double gap = 0.3, past = y[0] > gap ? y[0] - gap : y[0] < -gap ? y[0] + gap : 0;
+    dydt[0] = y[1];
+    dydt[1] = load * 0.8 * cos(1.3 * t) - 0.1 * y[1] - 5 * past;
+}
+
+static void lorenz(double t, const double *y, double load, double *dydt)
+{
+    (void)t, (void)load;
+    dydt[0] = 10 * (y[1] - y[0]);
+    dydt[1] = y[0] * (28 - y[2]) - y[1];
+    dydt[2] = y[0] * y[1] - 8.0 / 3 * y[2];
+}
+
+static void mathieu(double t, const double *y, double load, double *dydt)
+{
+    dydt[0] = y[1];
+    dydt[1] = load * (t < 4 ? sin(3 * t) : 0) - 0.05 * y[1] - (1 + 0.3 * cos(2.1 * t)) * y[0];
+}
+
+static const struct equations all[] = {
+    {"pendulum", 2, {1.0472, 0}, pendulum, first},
+    {"duffing", 2, {1, 0}, duffing, first},
+    {"shaken", 2, {1, 0}, duffing, acceleration},
+    {"clearance", 2, {0.2, 0}, clearance, first},
+    {"lorenz", 3, {1, 1, 20}, lorenz, first},
+    {"mathieu", 2, {0.5, 0}, mathieu, first},
+};
+
+struct solving { const struct equations *of; double load; };
+
+static int slopes(realtype t, N_Vector y, N_Vector dydt, void *from)
+{
+    const struct solving *s = from;
+    s->of->slopes(t, N_VGetArrayPointer(y), s->load, N_VGetArrayPointer(dydt));
+    return 0;
+}
+
+struct found { double worst, largest; long samples; };
+
+/* The solver to each time that is read, beside what the model has there */
+static struct found compare(const struct solving *s, double until, double times)
+{
+    struct found found = {0, 0, 0};
+    double now = 0, out;
+    SUNContext context;
+    SUNContext_Create(NULL, &context);
+    N_Vector y = N_VNew_Serial(s->of->states, context);
+    for (int i = 0; i < s->of->states; i++)
+        NV_Ith_S(y, i) = s->of->start[i] * times;
+    SUNMatrix J = SUNDenseMatrix(s->of->states, s->of->states, context);
+    SUNLinearSolver linear = SUNLinSol_Dense(y, J, context);
+    void *cvode = CVodeCreate(CV_BDF, context);
+    realtype t = 0;
+    bool good = CVodeInit(cvode, slopes, 0, y) == CV_SUCCESS &&
+                CVodeSetUserData(cvode, (void *)(size_t)s) == CV_SUCCESS &&
+                CVodeSStolerances(cvode, 1e-12, 1e-13) == CV_SUCCESS &&
+                CVodeSetLinearSolver(cvode, linear, J) == CV_SUCCESS &&
+                CVodeSetMaxNumSteps(cvode, 10000000) == CV_SUCCESS;
+    for (char line[4096]; good && fgets(line, sizeof line, stdin);) {
+        if (line[0] == 't')
+            now = strtod(line + 1, NULL);
+        if (line[0] != 'o' || now > until * (1 + 1e-12))
+            continue;
+        out = strtod(line + 1, NULL);
+        good = CVode(cvode, now, y, &t, CV_NORMAL) >= 0;
+        const double exact = s->of->output(now, N_VGetArrayPointer(y), s->load), error = fabs(out - exact);
+        found.worst = error <= found.worst ? found.worst : error;
+        found.largest = fmax(found.largest, fabs(exact));
+        found.samples++;
+    }
+    found.samples = good ? found.samples : 0;
+    return found;
+}
+
+int main(int argc, char **argv)
+{
+    struct solving s = {NULL, argc > 5 ? atof(argv[5]) : 1};
+    for (size_t i = 0; argc > 5 && i < sizeof all / sizeof *all; i++)
+        if (strcmp(all[i].name, argv[1]) == 0)
+            s.of = &all[i];
+    if (!s.of)
+        return 2;
+    const struct found found = compare(&s, atof(argv[3]), atof(argv[4]));
+    const double within = atof(argv[2]) * (strchr(argv[2], '%') ? found.largest / 100 : 1);
+    printf("off by %.3g at most in %ld samples, %.3g is needed\n", found.worst, found.samples, within);
+    return !(found.samples > 0 && found.worst <= within);
+}

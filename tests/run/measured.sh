@@ -1,0 +1,129 @@
+#!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
+# measured.sh PLGEN JUDGE SOURCE_ROOT: needs of models that are not linear, or piecewise linear. What is chosen is
+# compiled and run; CVODE, on equations by hand, finds every sample within the need, from the spec's start and its
+# neighbours.
+set -u
+plgen=$1
+judge=$2
+root=$3
+case $plgen in /*) ;; *) plgen=$PWD/$plgen ;; esac
+case $judge in /*) ;; *) judge=$PWD/$judge ;; esac
+. "${0%/*}/../tap.sh"
+runtime_archive "$root/runtime"
+
+cat >pendulum.txt <<END
+coord x
+init x = 1.0472
+x'' + sin(x) = 0
+END
+cat >duffing.txt <<END
+param F = 0.5
+coord x
+init x = 1
+x'' + 0.2*x' + x + x^3 = F*cos(1.4*t)
+END
+{ cat duffing.txt; echo "output a = x''"; } >shaken.txt
+cat >clearance.txt <<END
+param F = 0.8
+coord x
+init x = 0.2
+x'' + 0.1*x' + 5*deadzone(x, -0.3, 0.3) = F*cos(1.3*t)
+END
+cat >lorenz.txt <<END
+coord x, y, z
+init x = 1, y = 1, z = 20
+x' = 10*(y - x)
+y' = x*(28 - z) - y
+z' = x*y - 8/3*z
+END
+cat >mathieu.txt <<END
+param F = 1
+coord x
+init x = 0.5
+x'' + 0.05*x' + (1 + 0.3*cos(2.1*t))*x = F*(t < 4 ? sin(3*t) : 0)
+END
+
+# meets MODEL OUTPUT WITHIN UNTIL LOADS [OPTIONS]: LOADS: whether F is a load
+meets() {
+	name=$1 within=$3 until=$4 loads=$5
+	what="$1 within $3 until $4"
+	output=$2
+	shift 5
+	what="$what $*"
+	chosen "$what" || return 0
+	{ echo "model $name"; cat "$name.txt"; echo "need $output within $within until $until"; } >"$name.spec"
+	flags="-DMODEL=$name -DRHS=${name}_rhs"
+	case "$*" in *float*) flags="$flags -DFLOAT" ;; esac
+	good=0
+	: >log
+	# the choice is that of the spec: other loads are put into what it has chosen
+	"$plgen" --explain=json "$@" "$name.spec" 2>>log | tr '\n' ' ' |
+		sed 's/.*"alternatives"//; s/.*{\([^{]*"taken": true\).*/\1/' >taken
+	scheme=$(sed -n 's/.*"scheme": "\([a-z0-9]*\)".*/\1/p' taken)
+	step=$(sed -n 's/.*"step": \([0-9.e-]*\),.*/\1/p' taken)
+	tolerance=$(sed -n 's/.*"tolerance": \([0-9.e-]*\),.*/\1/p' taken)
+	for factors in '1 1' '1.1 1' '0.9 1' '1 1.1' '1 0.9'; do
+		start=${factors% *} load=${factors#* }
+		[ "$load" = 1 ] || [ "$loads" = yes ] || continue
+		grep -v '^need' "$name.spec" >free.spec
+		force=$(sed -n 's/^param F = //p' free.spec)
+		"$plgen" --rhs "$@" --scheme "$scheme" --step "$step" ${tolerance:+--tolerance "$tolerance"} \
+			${force:+-D "F=$force*$load"} free.spec >model.c 2>>log &&
+			{ [ "$factors" != '1 1' ] || "$plgen" --rhs "$@" "$name.spec" >model.c 2>>log; } &&
+			${CC:-cc} -std=c99 -O1 -ffp-contract=off -w $flags -I"$root/runtime" "$root/tests/run/drive.c" \
+				model.c "$archive" -lm -o drive >>log 2>&1 && ./drive "$until" "$start" >samples &&
+			{ echo "$scheme step $step tolerance $tolerance, start $start, load $load:"
+			  "$judge" "$name" "$(echo "$within" | tr -d ' ')" "$until" "$start" "$load" <samples
+			} >>log || good=1
+	done
+	result $good "$what"
+}
+
+meets pendulum x 1e-2 100 no
+meets pendulum x 1e-4 50 no
+meets pendulum x 1e-9 20 no
+meets pendulum x 1e-3 20 no --real float
+meets pendulum x 1e-4 50 no --scheme bm3
+meets duffing x 1e-5 60 yes
+meets duffing x 1e-5 60 yes --scheme etdam4
+meets duffing x '0.5 %' 30 yes
+meets duffing x 1e-3 30 yes --real float
+meets shaken a 1e-4 30 yes
+meets clearance x 1e-3 40 yes
+meets clearance x 1e-6 10 yes --scheme exact
+meets lorenz x 1e-3 5 no
+meets mathieu x 1e-5 30 yes
+
+# says NAME TEXT OPTIONS: an error with this text, and no C
+says() {
+	name=$1 text=$2
+	shift 2
+	chosen "$name" || return 0
+	"$plgen" "$@" >model.c 2>log
+	[ $? -eq 1 ] && [ ! -s model.c ] && grep -qF -e "$text" log
+	result $? "$name"
+}
+
+{ echo 'model lorenz'; cat lorenz.txt; echo 'need x within 1e-3 until 80'; } >chaos.spec
+says 'a chaotic motion is not known for long' 'the motion is too sensitive to be known until then' chaos.spec
+{ echo 'model pendulum'; cat pendulum.txt; echo 'need x within 1e-13 until 50'; } >fine.spec
+says 'a need beyond what references know' 'two references differ by more than' fine.spec
+{ echo 'model pendulum'; cat pendulum.txt; echo 'need x within 1e-9 until 20'; } >float.spec
+says 'a need beyond float' 'the need cannot be met: the best that was measured, float' --real float float.spec
+says 'a step that is written' 'the need cannot be met' --step 0.5 --scheme etdrk2 float.spec
+{ echo 'model pendulum'; cat pendulum.txt; echo 'need x within 1e-4 until 1e7'; } >long.spec
+says 'an end that is too far' 'would take too long' long.spec
+printf "model driven\ncoord x\ninput u\nx'' + x^3 = u\nneed x within 1e-3 until 5\n" >driven.spec
+says 'an input' 'a need is measured on known loads' driven.spec
+printf "model linear\ncoord x\ninit x = 1\nx'' + x = 0\nneed x within 1e-3 until 5\n" >linear.spec
+says 'a linear model without a step' 'missing step' linear.spec
+
+# The word is `measured`: of a model that is not linear nothing is certified.
+{ echo 'model pendulum'; cat pendulum.txt; echo 'need x within 1e-4 until 50'; } >word.spec
+"$plgen" word.spec >word.c 2>log && grep -q 'Needed: x within 1e-4 until 50;' word.c && grep -q ' measured ' word.c &&
+	! grep -qi certified word.c && "$plgen" --explain word.spec >word.txt 2>>log && ! grep -qi certified word.txt
+result $? 'what is said is that it was measured'
+"$plgen" word.spec >again.c 2>log && cmp word.c again.c >>log
+result $? 'the same choice again'
+tap_end
