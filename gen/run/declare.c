@@ -26,14 +26,14 @@ bool is_word_next(const struct code *c, const char *word)
 	return peek(c)->kind == LEXEME_NAME && strcmp(peek(c)->text, word) == 0;
 }
 
-bool take(struct code *c, unsigned mark)
+bool take_mark(struct code *c, unsigned mark)
 {
 	bool taken = is_next(c, mark);
 	c->here += taken;
 	return taken;
 }
 
-bool take_word(struct code *c, const char *word)
+bool take_keyword(struct code *c, const char *word)
 {
 	bool taken = is_word_next(c, word);
 	c->here += taken;
@@ -42,7 +42,7 @@ bool take_word(struct code *c, const char *word)
 
 void need(struct code *c, unsigned mark)
 {
-	if (!take(c, mark))
+	if (!take_mark(c, mark))
 		not_run(c, format("no '%c'", (int)(mark & 127)));
 }
 
@@ -72,7 +72,7 @@ static void skip_statement(struct code *c)
 		else
 			c->here++;
 	}
-	take(c, ';');
+	take_mark(c, ';');
 }
 
 /* ---- names ---- */
@@ -175,13 +175,13 @@ static const struct ctype *read_struct(struct code *c)
 	static int unnamed;
 	const char *tag = peek(c)->kind == LEXEME_NAME ? take_name(c) : format("%d", ++unnamed);
 	struct ctype *type = struct_of(c, tag);
-	if (!take(c, '{'))
+	if (!take_mark(c, '{'))
 		return type;
-	while (!take(c, '}')) {
+	while (!take_mark(c, '}')) {
 		const struct ctype *of = read_type(c);
 		do
 			add_member(c, type, read_declarator(c, of));
-		while (take(c, ','));
+		while (take_mark(c, ','));
 		need(c, ';');
 	}
 	type->size = (type->size + type->align - 1) / type->align * type->align;
@@ -193,13 +193,13 @@ static const struct ctype *read_enum(struct code *c)
 	int64_t next = 0;
 	if (peek(c)->kind == LEXEME_NAME)
 		c->here++;
-	if (!take(c, '{'))
+	if (!take_mark(c, '{'))
 		return &ctype_int;
-	while (!take(c, '}')) {
+	while (!take_mark(c, '}')) {
 		const char *name = take_name(c);
-		next = take(c, '=') ? c->constant(c) : next;
+		next = take_mark(c, '=') ? c->constant(c) : next;
 		entity_new(c, ENTITY_NUMBER, name, &ctype_int)->number = next++;
-		take(c, ',');
+		take_mark(c, ',');
 	}
 	return &ctype_int;
 }
@@ -208,15 +208,15 @@ const struct ctype *read_type(struct code *c)
 {
 	const struct ctype *type = NULL;
 	skip_qualifiers(c);
-	if (take_word(c, "struct"))
+	if (take_keyword(c, "struct"))
 		type = read_struct(c);
-	else if (take_word(c, "enum"))
+	else if (take_keyword(c, "enum"))
 		type = read_enum(c);
 	else if (peek(c)->kind == LEXEME_NAME)
 		type = known_type(c, take_name(c));
 	if (!type)
 		not_run(c, "no type that is known");
-	take_word(c, "int");                                    /* unsigned int */
+	take_keyword(c, "int");                                    /* unsigned int */
 	skip_qualifiers(c);
 	return type;
 }
@@ -225,7 +225,7 @@ const struct ctype *read_type(struct code *c)
 
 static const struct ctype *read_dimensions(struct code *c, const struct ctype *type)
 {
-	if (!take(c, '['))
+	if (!take_mark(c, '['))
 		return type;
 	int count = is_next(c, ']') ? -1 : (int)c->constant(c);
 	need(c, ']');
@@ -235,7 +235,7 @@ static const struct ctype *read_dimensions(struct code *c, const struct ctype *t
 static void read_parameters(struct code *c, struct declared *d)
 {
 	d->function = true;
-	if (take(c, ')'))
+	if (take_mark(c, ')'))
 		return;
 	do {
 		struct declared p = read_declarator(c, read_type(c));
@@ -245,14 +245,14 @@ static void read_parameters(struct code *c, struct declared *d)
 		ENLARGE(d->parameter, (size_t)d->parameters + 1);
 		d->parameter[d->parameters++] = (struct entity){ .kind = ENTITY_VARIABLE, .type = type,
 								 .name = p.name ? p.name : "" };
-	} while (take(c, ','));
+	} while (take_mark(c, ','));
 	need(c, ')');
 }
 
 struct declared read_declarator(struct code *c, const struct ctype *type)
 {
 	struct declared d = { .type = type };
-	for (; take(c, '*'); skip_qualifiers(c))
+	for (; take_mark(c, '*'); skip_qualifiers(c))
 		d.type = pointer_to(d.type);
 	skip_qualifiers(c);
 	if (is_next(c, '(') && c->lexemes.list[c->here + 1].mark == '*') { /* (*const x)[3]: a pointer to an array */
@@ -270,7 +270,7 @@ struct declared read_declarator(struct code *c, const struct ctype *type)
 	}
 	if (peek(c)->kind == LEXEME_NAME)
 		d.name = take_name(c);
-	if (take(c, '('))
+	if (take_mark(c, '('))
 		read_parameters(c, &d);
 	else
 		d.type = read_dimensions(c, d.type);
@@ -301,7 +301,7 @@ static void keep_variable(struct code *c, struct declared d)
 	struct entity *e = entity_find(c, d.name);
 	if (!e)
 		e = entity_new(c, ENTITY_VARIABLE, d.name, d.type);
-	if (!take(c, '='))
+	if (!take_mark(c, '='))
 		return;
 	e->filled = c->here;
 	while (!is_next(c, ';') && !is_next(c, ',') && peek(c)->kind != LEXEME_END) {
@@ -316,7 +316,7 @@ static void read_declaration(struct code *c)
 {
 	bool type = is_word_next(c, "typedef");
 	const struct ctype *of = read_type(c);
-	while (!take(c, ';')) {
+	while (!take_mark(c, ';')) {
 		struct declared d = read_declarator(c, of);
 		if (!d.name)
 			not_run(c, "a declaration of an unknown kind");
@@ -329,7 +329,7 @@ static void read_declaration(struct code *c)
 			keep_variable(c, d);
 		if (body)
 			return;
-		take(c, ',');
+		take_mark(c, ',');
 	}
 }
 

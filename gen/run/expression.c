@@ -46,11 +46,11 @@ static struct called read_arguments(struct code *c)
 	struct called called = { 0 };
 	int before = c->calls;
 	need(c, '(');
-	while (!take(c, ')')) {
+	while (!take_mark(c, ')')) {
 		if (called.count == 16)
 			not_run(c, "too many arguments");
 		called.argument[called.count++] = read_assignment(c);
-		take(c, ',');
+		take_mark(c, ',');
 	}
 	called.calls = c->calls != before;
 	c->calls++;
@@ -140,7 +140,7 @@ static const struct operation *read_primary(struct code *c)
 	if (peek(c)->kind == LEXEME_NAME)
 		return read_name(c);
 	need(c, '(');
-	const struct operation *o = read_expression(c);
+	const struct operation *o = read_operation(c);
 	need(c, ')');
 	return o;
 }
@@ -159,13 +159,13 @@ static const struct operation *read_postfix(struct code *c)
 {
 	const struct operation *o = read_primary(c);
 	for (;;) {
-		if (take(c, '[')) {
-			const struct operation *index = value_of(read_expression(c));
+		if (take_mark(c, '[')) {
+			const struct operation *index = value_of(read_operation(c));
 			need(c, ']');
 			o = sure(c, element_of(value_of(o), index));
-		} else if (take(c, '.')) {
+		} else if (take_mark(c, '.')) {
 			o = member_of(c, place_of(o));
-		} else if (take(c, MARK2('-', '>'))) {
+		} else if (take_mark(c, MARK2('-', '>'))) {
 			o = member_of(c, value_of(o));
 		} else if (is_next(c, MARK2('+', '+')) || is_next(c, MARK2('-', '-'))) {
 			o = sure(c, stepped(o, is_next(c, MARK2('+', '+')) ? 1 : -1, true));
@@ -200,18 +200,18 @@ static const struct operation *read_unary(struct code *c)
 {
 	static const char signs[] = "-+!~";
 	for (const char *sign = signs; *sign; sign++)
-		if (take(c, MARK(*sign)))
+		if (take_mark(c, MARK(*sign)))
 			return sure(c, negated(MARK(*sign), value_of(read_unary(c))));
-	if (take(c, '*')) {
+	if (take_mark(c, '*')) {
 		const struct operation *o = value_of(read_unary(c));
 		return sure(c, element_of(o, number_whole(&ctype_int, 0)));
 	}
-	if (take(c, '&'))
+	if (take_mark(c, '&'))
 		return place_of(read_unary(c));
 	for (int by = -1; by <= 1; by += 2)
-		if (take(c, by > 0 ? MARK2('+', '+') : MARK2('-', '-')))
+		if (take_mark(c, by > 0 ? MARK2('+', '+') : MARK2('-', '-')))
 			return sure(c, stepped(read_unary(c), by, false));
-	if (take_word(c, "sizeof"))
+	if (take_keyword(c, "sizeof"))
 		return read_size(c);
 	if (is_next(c, '(')) {
 		c->here++;
@@ -251,9 +251,9 @@ static const struct operation *read_binary(struct code *c, int lowest)
 static const struct operation *read_conditional(struct code *c)
 {
 	const struct operation *o = read_binary(c, 1);
-	if (!take(c, '?'))
+	if (!take_mark(c, '?'))
 		return o;
-	const struct operation *a = value_of(read_expression(c));
+	const struct operation *a = value_of(read_operation(c));
 	need(c, ':');
 	return sure(c, chosen(value_of(o), a, value_of(read_conditional(c))));
 }
@@ -276,7 +276,7 @@ static const struct operation *read_changing(struct code *c)
 {
 	const struct operation *o = read_conditional(c);
 	unsigned mark = mark_of_change(peek(c));
-	if (take(c, '='))
+	if (take_mark(c, '='))
 		return sure(c, assigned(o, value_of(read_changing(c))));
 	if (!mark)
 		return o;
@@ -291,10 +291,10 @@ const struct operation *read_assignment(struct code *c)
 	return o->type ? value_of(o) : o;
 }
 
-const struct operation *read_expression(struct code *c)
+const struct operation *read_operation(struct code *c)
 {
 	const struct operation *o = read_changing(c);
-	while (take(c, ',')) {
+	while (take_mark(c, ',')) {
 		const struct operation *a = o->type ? act_evaluate(value_of(o)) : o;
 		o = read_changing(c);
 		if (!o->type)
@@ -325,7 +325,7 @@ static void fill_one(struct code *c, struct acts *acts, const struct ctype *type
 /* { a, b, ... }; a list without brackets fills what is inside it too */
 static void fill_list(struct code *c, struct acts *acts, const struct ctype *type, char *to)
 {
-	bool bracket = take(c, '{');
+	bool bracket = take_mark(c, '{');
 	int parts = type->kind == CTYPE_ARRAY ? type->count : type->members;
 	for (int i = 0; i < parts && !is_next(c, '}'); i++) {
 		bool array = type->kind == CTYPE_ARRAY;
@@ -333,7 +333,7 @@ static void fill_list(struct code *c, struct acts *acts, const struct ctype *typ
 			 to + (array ? (size_t)i * type->of->size : type->member[i].offset));
 		if (!bracket && i + 1 == parts)
 			break;
-		if (!take(c, ','))
+		if (!take_mark(c, ','))
 			break;
 	}
 	if (bracket)
@@ -367,7 +367,7 @@ static void fill_one(struct code *c, struct acts *acts, const struct ctype *type
 		fill_list(c, acts, type, to);
 		return;
 	}
-	bool bracket = take(c, '{');
+	bool bracket = take_mark(c, '{');
 	add_act(acts, act_evaluate(sure(c, assigned(stored_at(type, to), read_assignment(c)))));
 	if (bracket)
 		need(c, '}');

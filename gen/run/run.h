@@ -152,8 +152,8 @@ _Noreturn void not_run(const struct code *c, const char *what);     /* leaves th
 const struct lexeme *peek(const struct code *c);
 bool is_next(const struct code *c, unsigned mark);
 bool is_word_next(const struct code *c, const char *word);
-bool take(struct code *c, unsigned mark);                    /* true: it was next, and is behind */
-bool take_word(struct code *c, const char *word);
+bool take_mark(struct code *c, unsigned mark);                    /* true: it was next, and is behind */
+bool take_keyword(struct code *c, const char *word);
 void need(struct code *c, unsigned mark);
 const char *take_name(struct code *c);
 void skip_to_end(struct code *c, unsigned open, unsigned close); /* a bracket that is next, with all in it */
@@ -174,7 +174,7 @@ void read_outside(struct code *c);                           /* all that stands 
 
 /* ---- expression.c ---- */
 
-const struct operation *read_expression(struct code *c);     /* with commas */
+const struct operation *read_operation(struct code *c);     /* with commas */
 const struct operation *read_assignment(struct code *c);     /* without; its value */
 int64_t read_constant(struct code *c);
 /* Of a variable `to`, from what is next: acts are added to the list, but for numbers where it is filled `now`; *type

@@ -15,7 +15,7 @@ static const struct operation *condition_of(struct code *c, const struct operati
 static const struct operation *in_brackets(struct code *c)
 {
 	need(c, '(');
-	const struct operation *o = condition_of(c, read_expression(c));
+	const struct operation *o = condition_of(c, read_operation(c));
 	need(c, ')');
 	return o;
 }
@@ -35,7 +35,7 @@ static void read_local(struct code *c, struct acts *acts, struct declared d, boo
 	struct entity *e = entity_new(c, ENTITY_VARIABLE, d.name, d.type);
 	if (d.type->count != -1)
 		e->at = allocate(1, d.type->size + 1);
-	if (!take(c, '='))
+	if (!take_mark(c, '='))
 		return;
 	e->at = read_filling(c, once ? &at_once : acts, &e->type, e->at);
 	for (int i = 0; i < at_once.count; i++)
@@ -49,7 +49,7 @@ static const struct operation *read_locals(struct code *c)
 	const struct ctype *type = read_type(c);
 	do
 		read_local(c, &acts, read_declarator(c, type), once);
-	while (take(c, ','));
+	while (take_mark(c, ','));
 	need(c, ';');
 	return act_list(acts.count, acts.list);
 }
@@ -61,7 +61,7 @@ static const struct operation *read_block(struct code *c)
 	struct acts acts = { false, 0, NULL };
 	struct entity *newest = c->newest;
 	need(c, '{');
-	while (!take(c, '}'))
+	while (!take_mark(c, '}'))
 		add_act(&acts, read_statement(c));
 	c->newest = newest;
 	return act_list(acts.count, acts.list);
@@ -70,7 +70,7 @@ static const struct operation *read_block(struct code *c)
 static const struct operation *read_if(struct code *c)
 {
 	const struct operation *condition = in_brackets(c), *yes = read_statement(c);
-	return act_if(condition, yes, take_word(c, "else") ? read_statement(c) : NULL);
+	return act_if(condition, yes, take_keyword(c, "else") ? read_statement(c) : NULL);
 }
 
 static const struct operation *read_while(struct code *c)
@@ -82,7 +82,7 @@ static const struct operation *read_while(struct code *c)
 static const struct operation *read_do(struct code *c)
 {
 	const struct operation *body = read_statement(c);
-	if (!take_word(c, "while"))
+	if (!take_keyword(c, "while"))
 		not_run(c, "no while");
 	const struct operation *condition = in_brackets(c);
 	need(c, ';');
@@ -99,7 +99,7 @@ static const struct operation *read_for(struct code *c)
 	} else {
 		if (!is_next(c, ';'))
 			first = act_evaluate(read_assignment(c));
-		while (take(c, ',')) {
+		while (take_mark(c, ',')) {
 			const struct operation *two[] = { first, act_evaluate(read_assignment(c)) };
 			struct acts both = { false, 0, NULL };
 			add_act(&both, two[0]);
@@ -109,10 +109,10 @@ static const struct operation *read_for(struct code *c)
 		need(c, ';');
 	}
 	if (!is_next(c, ';'))
-		condition = condition_of(c, read_expression(c));
+		condition = condition_of(c, read_operation(c));
 	need(c, ';');
 	if (!is_next(c, ')'))
-		next = act_evaluate(value_of(read_expression(c)));
+		next = act_evaluate(value_of(read_operation(c)));
 	need(c, ')');
 	struct acts acts = { false, 0, NULL };
 	add_act(&acts, first);
@@ -129,9 +129,9 @@ static const struct operation *read_switch(struct code *c)
 	struct entity *newest = c->newest;
 	const struct operation *value = in_brackets(c);
 	need(c, '{');
-	while (!take(c, '}')) {
-		bool others = take_word(c, "default");
-		if (!others && !take_word(c, "case")) {
+	while (!take_mark(c, '}')) {
+		bool others = take_keyword(c, "default");
+		if (!others && !take_keyword(c, "case")) {
 			add_act(&acts, read_statement(c));
 			continue;
 		}
@@ -145,7 +145,7 @@ static const struct operation *read_switch(struct code *c)
 
 static const struct operation *read_return(struct code *c)
 {
-	if (take(c, ';'))
+	if (take_mark(c, ';'))
 		return act_leave(RETURNS);
 	const struct operation *value = read_assignment(c);
 	need(c, ';');
@@ -161,28 +161,28 @@ static const struct operation *read_statement(struct code *c)
 {
 	if (is_next(c, '{'))
 		return read_block(c);
-	if (take(c, ';'))
+	if (take_mark(c, ';'))
 		return nothing();
-	if (take_word(c, "if"))
+	if (take_keyword(c, "if"))
 		return read_if(c);
-	if (take_word(c, "for"))
+	if (take_keyword(c, "for"))
 		return read_for(c);
-	if (take_word(c, "while"))
+	if (take_keyword(c, "while"))
 		return read_while(c);
-	if (take_word(c, "do"))
+	if (take_keyword(c, "do"))
 		return read_do(c);
-	if (take_word(c, "switch"))
+	if (take_keyword(c, "switch"))
 		return read_switch(c);
-	if (take_word(c, "return"))
+	if (take_keyword(c, "return"))
 		return read_return(c);
 	if (is_type_next(c))
 		return read_locals(c);
-	bool breaks = take_word(c, "break"), continues = !breaks && take_word(c, "continue");
+	bool breaks = take_keyword(c, "break"), continues = !breaks && take_keyword(c, "continue");
 	const struct operation *act = breaks	  ? act_leave(BREAKS)
 				      : continues ? act_leave(CONTINUES)
 						  : act_evaluate(read_assignment(c));
 	if (!breaks && !continues)
-		while (take(c, ',')) {
+		while (take_mark(c, ',')) {
 			struct acts both = { false, 0, NULL };
 			add_act(&both, act);
 			add_act(&both, act_evaluate(read_assignment(c)));
