@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* papers [--quick] [--times] VARIANTS FOLDER: the findings of the four sources beside what is measured: FOLDER/papers_000.csv
- * (coupled systems), papers_001.csv (precise integration), papers_002.csv (clearances), papers_004.csv (rotating
- * beam); --times: their times alone, papers_times.csv. VARIANTS holds what papers.sh made. The sources' parameter values did not
- * survive: those of the models are chosen. */
+/* papers [--quick] [--times] VARIANTS FOLDER: the findings of the four sources beside what is measured:
+ * FOLDER/papers_000.csv (coupled systems), papers_001.csv (precise integration), papers_002.csv (clearances) and
+ * papers_004.csv (rotating beam); --times: their times alone, papers_times.csv. VARIANTS holds what papers.sh made. The
+ * sources' parameter values did not survive: those of the models are chosen. */
 #include <math.h>
 #include <stdarg.h>
 #include <stdlib.h>

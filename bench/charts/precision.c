@@ -344,7 +344,8 @@ static void say_scales(FILE *out, const struct charted *m, const char *folder, b
 	problem_free(p);
 }
 
-static void add_all(struct lines *lines, const struct charted *m, const struct problem *p, bool quick, const char *folder)
+static void add_all(struct lines *lines, const struct charted *m, const struct problem *p, bool quick,
+                    const char *folder)
 {
 	/* A peer is added to one of these lists */
 	add_peers(lines, m, p, fixed_methods, quick, true);
@@ -430,7 +431,7 @@ int main(int argc, char **argv)
 		else if (scales)
 			say_scales(out, m, argv[at], quick);
 		else
-			measure(errors ? NULL : out, m, argv[at], quick, quick ? 0.5 : 6);
+			measure(errors ? NULL : out, m, argv[at], quick, quick ? 0.5 : 5);
 		fflush(out);
 	}
 	if (ferror(out) || fclose(out) != 0) {

@@ -7,7 +7,7 @@ set -e
 plgen=$1 program=$2 out=$3
 shift 3
 variants=$out/variants
-quick= errors=
+quick='' errors=''
 while :; do
 	case ${1:-} in
 		--quick) quick=--quick ;;
@@ -28,6 +28,7 @@ mkdir -p "$variants"
 # Words: names of models
 # shellcheck disable=SC2046
 set -- $("$program" --names $quick "$@")
+# shellcheck disable=SC2046
 [ -z "$errors" ] || rm -f $(printf "$variants/%s.errors\n" "$@")
 for model in $(missing "$@"); do
 	"$program" --list $quick "$model" |

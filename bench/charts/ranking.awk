@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # awk -v model=MODEL -f csv.awk -f words.awk -f ranking.awk precision.csv: every method's cheapest setting at each
-# wanted error as an HTML table, the cheapest at the finest error first; what does not get there has its least error, and
-# what gets there at more than 20 times the cheapest time (without one of its own in the table) is called dear.
+# wanted error as an HTML table, the cheapest at the finest error first; what does not get there has its least error,
+# and what gets there at more than 20 times the cheapest time (without one of its own in the table) is called dear.
 function escaped(text) { gsub(/&/, "\\&amp;", text); gsub(/</, "\\&lt;", text); return text }
 function before(a, b,    i) {
 	for (i = errors; i >= 1; i--) {

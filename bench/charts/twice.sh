@@ -16,7 +16,7 @@ for time in first second; do
 done
 
 tables() {
-	(cd "$folder/$1" && find . -name '*.csv' -o -name '*.errors') | sort
+	(cd "$folder/$1" && find . -name '*.csv' -o -name '*.errors' -o -name settings) | sort
 }
 tables first >"$folder/tables"
 tables second >"$folder/tables_again"

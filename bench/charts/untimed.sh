@@ -60,6 +60,11 @@ papers() {
 	"$programs/papers" $quick "$variants" "$folder"
 }
 
+# settings of the comparisons that lead the page
+headline() {
+	sh $charts/headline.sh "$plgen" "$programs/headline" "$folder" --find $quick
+}
+
 mkdir -p "$variants"
 if [ "${1:-}" = --job ]; then
 	job=$2
@@ -75,8 +80,8 @@ if [ $# -eq 0 ]; then
 	# What takes longest first, so that no job is left alone at the end
 	models=$("$programs/precision" --names $quick)
 	# Words
-	# shellcheck disable=SC2086
-	set -- $(printf 'errors_%s\n' $models | grep beam) energy papers stability \
+	# shellcheck disable=SC2046,SC2086
+	set -- $(printf 'errors_%s\n' $models | grep beam) headline energy papers stability \
 		$(printf 'errors_%s\n' $models | grep -v beam) hard less convergence plmap structural
 fi
 printf '%s\n' "$@" | xargs -P 2 -I '{}' sh $charts/untimed.sh "$build" "$folder" $quick --job '{}'
