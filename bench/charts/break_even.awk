@@ -5,7 +5,7 @@
 # many steps of ours the time to generate and compile is won back:
 #     steps = (generate + compile - 2 empty) / (rival's ns per step of ours - ours)
 # never: the rival is faster or, within the 10 % that times hold, as fast, or only the rival comes to that error; none:
-# no setting of the rival comes to it, so there is nothing to win back against.
+# no setting of the rival comes to it, or none that was timed (dear), so there is nothing to win back against.
 # The cheapest of them so far
 function offer(key) {
 	if (!(key in cheapest) || ns < cheapest[key]) { cheapest[key] = ns; setting[key] = row[column["setting"]];
@@ -32,7 +32,9 @@ file == 1 {
 		rivals[model, ++rival_count[model]] = method
 		real_of[method] = real
 	}
-	if (!is_number(error) || error + 0 > target[real] + 0 || ns <= 0) next
+	if (!is_number(error) || error + 0 > target[real] + 0) next
+	if (row[column["ns_median"]] == "dear") dear[model SUBSEP "rival" SUBSEP method] = 1
+	if (ns <= 0) next
 	offer(family == "ours" ? model SUBSEP "ours" SUBSEP real : model SUBSEP "rival" SUBSEP method)
 }
 END {
@@ -45,13 +47,13 @@ END {
 			rival = model SUBSEP "rival" SUBSEP method; ours = model SUBSEP "ours" SUBSEP real
 			printf "%s,%s,%s,\"%s\",", model, real, target[real], method
 			if (rival in cheapest) printf "%s,%s,%.6g,", setting[rival], error_at[rival], cheapest[rival]
-			else printf "failed,failed,failed,"
+			else printf rival in dear ? "dear,dear,dear," : "failed,failed,failed,"
 			if (ours in cheapest)
 				printf "\"%s\",%s,%s,%.6g,", method_at[ours], setting[ours], error_at[ours],
 				cheapest[ours]
 			else printf "none,failed,failed,failed,"
 			printf "%.6g,", once[model]
-			if (!(rival in cheapest)) print "none,none,not reached"
+			if (!(rival in cheapest)) print rival in dear ? "none,none,dear" : "none,none,not reached"
 			else if (!(ours in cheapest)) print "never,never,ours not reached"
 			else if (cheapest[rival] < cheapest[ours] / 1.1) print "never,never,rival is faster"
 			else if (cheapest[rival] <= cheapest[ours] * 1.1) print "never,never,as fast"

@@ -134,7 +134,8 @@ double truth_difference(const struct truth *truth, const struct truth *other);
 void truth_free(struct truth *truth);
 /* relative to the scales; failed: not finite or it gave up */
 struct error { double q_end, q_between, v_end, v_between, largest; bool failed; };
-/* restarts the run and goes through the whole history */
+/* Restarts the run and goes through the whole history. Between the ends of units it looks in each of them; of more than
+ * 1000 units and 12 states in every eighth. */
 struct error error_of(struct run *run, const struct truth *truth);
 
 /* ---- samples.c: time ---- */
@@ -143,8 +144,11 @@ struct samples { double min, median, max; int count; };            /* nanosecond
 /* A sample is a pass of the run from its start through the whole history, the start included, repeated where that is
  * too short to time: what costs more in one part of a history than in another is weighed as it comes. Interleaved:
  * sample k of every run is taken before sample k+1 of any, three of each and more of what is cheap; `seconds` is the
- * budget for all. The time is the process's own (CPU). */
+ * budget for all, and what has taken a second of its own is sampled no more. The time is the process's own (CPU). */
 void sample_runs(int runs, struct run *const *run, double seconds, struct samples *result);
+/* The same, but run k is left out (no samples) where is_dear says so, which has a first reading of those before it */
+void sample_ladders(int runs, struct run *const *run, double seconds,
+                    bool (*is_dear)(int k, const struct samples *so_far, void *of), void *of, struct samples *result);
 double sample_pass(struct run *run);        /* ns per unit of one such pass by itself: what samples are held against */
 struct samples sample_summary(int count, double *ns);               /* sorts */
 double now_ns(void);

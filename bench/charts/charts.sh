@@ -1,8 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 # charts.sh BUILD FOLDER [--quick]: all tables, and of them pictures and pages, FOLDER/index.html. Run at the top of the
-# source tree; progress on standard error. What measures no time runs first, in two queues side by side; what measures
-# time runs alone; draw.sh then makes of the tables what is looked at.
+# source tree; progress on standard error. What measures no time runs first, two jobs side by side (untimed.sh); what
+# measures time runs alone; draw.sh then makes of the tables what is looked at.
 set -e
 build=$1 folder=$2 quick=
 [ "$3" != --quick ] || quick=--quick
@@ -23,52 +23,6 @@ say() {
 	printf '[%4d s] %s\n' $(($(date +%s) - begin)) "$*" >&2
 }
 
-# ---- what measures no time ----
-
-convergence() {
-	say 'convergence of pl and exact in N'
-	sh $charts/convergence.sh $quick "$plgen" "$variants"
-	"$programs/convergence" $quick "$variants" "$folder"
-}
-
-plmap() {
-	say 'pl against RK4 over step and coupling'
-	sh $charts/plmap.sh $quick "$plgen" "$variants"
-	"$programs/plmap" $quick "$variants" "$folder"
-}
-
-energy() {
-	say 'energy and momentum in long runs'
-	sh $charts/energy.sh "$plgen" "$variants"
-	"$programs/energy" $quick "$variants" "$folder"
-}
-
-hard() {
-	say 'hard cases'
-	sh $charts/hard.sh "$plgen" "$variants"
-	"$programs/hard" $quick "$variants" "$folder"
-}
-
-stability() {
-	say 'stability, quality, largest steps'
-	sh $charts/stability.sh $quick "$plgen" "$programs" "$folder"
-}
-
-structural() {
-	say 'time integrators of structural dynamics, a frame under a record'
-	sh $charts/frame.sh "$plgen" "$variants"
-	"$programs/integrators" $quick "$folder"
-	"$programs/frame" "$variants" "$folder"
-}
-
-less() {
-	say 'what modelling less saves'
-	sh $charts/less.sh "$plgen" "$programs/less" "$variants"
-	"$programs/less" "$variants" "$folder"
-}
-
-# ---- what does ----
-
 precision() {
 	say 'work and precision'
 	sh $charts/precision.sh "$plgen" "$programs/precision" "$folder" $quick
@@ -80,9 +34,8 @@ headline() {
 }
 
 papers() {
-	say 'what the papers found'
-	sh $charts/papers.sh $quick "$plgen" "$variants"
-	"$programs/papers" $quick "$variants" "$folder"
+	say 'times of what the papers compare'
+	"$programs/papers" $quick --times "$variants" "$folder"
 }
 
 generation() {
@@ -95,13 +48,8 @@ limits() {
 	sh bench/limits/limits.sh $quick "$build" "$folder" >&2
 }
 
-# A list with && would go on after a failure inside a function
-(energy; convergence; plmap; structural) &
-first=$!
-(hard; stability; less) &
-second=$!
-wait $first
-wait $second
+say 'what measures no time: untimed.sh'
+sh $charts/untimed.sh "$build" "$folder" $quick
 precision
 generation
 headline

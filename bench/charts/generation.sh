@@ -7,7 +7,7 @@
 # whole processes in turn with an empty one (bench/clock.c); minimum, median and maximum in milliseconds, as measured:
 # the empty one's stand beside them.
 set -e
-runs=15
+runs=7
 if [ "$1" = --quick ]; then
 	runs=3
 	shift

@@ -9,7 +9,8 @@
  *   headline_confluence.csv   the same methods where frequencies nearly meet: the largest error over 100 s
  *
  *     headline --list [--quick]             the variants wanted: FILE SPEC options, a line each
- *     headline [--quick] VARIANTS OUTDIR
+ *     headline --find [--quick] VARIANTS OUTDIR  what is no time: the settings, VARIANTS/settings, and the last table
+ *     headline [--quick] VARIANTS OUTDIR    the first two tables, at these settings
  *
  * Errors are the largest over the whole history at the outputs, relative to the largest displacement and velocity. */
 #include "charts.h"
@@ -196,6 +197,56 @@ static const struct found *found_before(const struct rows *rows, const struct me
 	return NULL;
 }
 
+/* VARIANTS/settings: target, method, setting, error, whether it is reached, estimate; the same bytes whenever it is
+ * written */
+static FILE *open_settings(const char *variants, const char *mode)
+{
+	char path[4096];
+	snprintf(path, sizeof path, "%s/settings", variants);
+	FILE *file = fopen(path, mode);
+	if (!file) {
+		fprintf(stderr, "headline: %s: headline --find makes it\n", path);
+		exit(1);
+	}
+	return file;
+}
+
+static void keep_settings(const struct rows *rows, const char *variants)
+{
+	FILE *out = open_settings(variants, "w");
+	for (const struct row *row = rows->row; row < rows->row + rows->count; row++)
+		fprintf(out, "%g %.17g %.17g %d %.17g %s\n", row->target, row->found.setting, row->found.error,
+		        row->found.reached, row->found.estimate, row->method->name);
+	if (ferror(out) || fclose(out) != 0) {
+		fputs("headline: cannot write settings\n", stderr);
+		exit(1);
+	}
+}
+
+static void read_settings(struct rows *rows, const struct problem *p, const char *variants)
+{
+	FILE *in = open_settings(variants, "r");
+	char name[100];
+	int reached;
+	for (;;) {
+		struct row *row = &rows->row[rows->count];
+		*row = (struct row){ 0 };
+		if (fscanf(in, "%lf %lf %lf %d %lf %99[^\n]", &row->target, &row->found.setting, &row->found.error,
+		           &reached, &row->found.estimate, name) != 6)
+			break;
+		row->method = method_find(name);
+		row->found.reached = reached;
+		if (reached && row->method)
+			row->run = row->method->open(row->method, p, row->found.setting);
+		if (!row->method || (reached && !row->run)) {
+			fprintf(stderr, "headline: settings of %s, which is not there\n", name);
+			exit(1);
+		}
+		rows->count++;
+	}
+	fclose(in);
+}
+
 static void look_for(struct rows *rows, const struct method *const *methods, const struct problem *p,
                      const struct truth *t, double target, int most)
 {
@@ -207,8 +258,6 @@ static void look_for(struct rows *rows, const struct method *const *methods, con
 			row->found = find_step(*methods, p, t, target, most);
 		else
 			row->found = looser && !looser->reached ? *looser : find_tolerance(*methods, p, t, target);
-		if (row->found.reached)
-			row->run = (*methods)->open(*methods, p, row->found.setting);
 	}
 }
 
@@ -323,16 +372,24 @@ static bool is_float(const char *name)
 	return strstr(name, "float") != NULL;
 }
 
+static const double targets[] = { 1e-9, 1e-12 };
+
+static void find_settings(const struct problem *p, const struct truth *t, const char *variants, bool quick)
+{
+	static struct rows rows;
+	for (int k = 0; k < 2; k++) {
+		look_for(&rows, fixed_methods, p, t, targets[k], quick ? 64 : 1024);
+		look_for(&rows, adaptive_methods, p, t, targets[k], quick ? 64 : 1024);
+	}
+	keep_settings(&rows, variants);
+}
+
 static void integrators(const struct problem *p, const struct truth *t, const char *variants, const char *folder,
                         bool quick)
 {
 	static struct rows rows;
 	struct mine mine[OURS_COUNT];
-	const double targets[] = { 1e-9, 1e-12 };
-	for (int k = 0; k < 2; k++) {
-		look_for(&rows, fixed_methods, p, t, targets[k], quick ? 64 : 1024);
-		look_for(&rows, adaptive_methods, p, t, targets[k], quick ? 64 : 1024);
-	}
+	read_settings(&rows, p, variants);
 	/* In float none comes near these errors; the next table has them */
 	for (const struct method *const *m = propagator_methods; *m; m++) {
 		struct run *run = is_float((*m)->name) ? NULL : (*m)->open(*m, p, p->unit);
@@ -526,10 +583,11 @@ static void confluence(const char *variants, const char *folder)
 
 int main(int argc, char **argv)
 {
-	bool quick = false, listed = false;
+	bool quick = false, listed = false, find = false;
 	int at = 1;
 	for (; at < argc && argv[at][0] == '-'; at++) {
 		listed = listed || strcmp(argv[at], "--list") == 0;
+		find = find || strcmp(argv[at], "--find") == 0;
 		quick = quick || strcmp(argv[at], "--quick") == 0;
 	}
 	if (listed) {
@@ -537,7 +595,7 @@ int main(int argc, char **argv)
 		return 0;
 	}
 	if (argc - at != 2) {
-		fputs("usage: headline --list\n       headline [--quick] VARIANTS OUTDIR\n", stderr);
+		fputs("usage: headline --list\n       headline [--find] [--quick] VARIANTS OUTDIR\n", stderr);
 		return 2;
 	}
 	char path[4096];
@@ -545,9 +603,13 @@ int main(int argc, char **argv)
 	struct problem *p = problem_load(path, "scs", 0.01, quick ? 10000 : 100000, true, 0);
 	struct truth *t = truth_of(p);
 	fprintf(stderr, "\ntwo roads to the truth agree to %.2g\n", t->agreement);
-	integrators(p, t, argv[at], argv[at + 1], quick);
-	equal_step(p, t, argv[at], argv[at + 1], quick);
-	confluence(argv[at], argv[at + 1]);
+	if (find) {
+		find_settings(p, t, argv[at], quick);
+		confluence(argv[at], argv[at + 1]);
+	} else {
+		integrators(p, t, argv[at], argv[at + 1], quick);
+		equal_step(p, t, argv[at], argv[at + 1], quick);
+	}
 	truth_free(t);
 	problem_free(p);
 	return 0;

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* papers [--quick] VARIANTS FOLDER: the findings of the four sources beside what is measured: FOLDER/papers_000.csv
- * (coupled systems), papers_001.csv (precise integration), papers_002.csv (clearances), papers_004.csv (rotating
- * beam), and all times in papers_times.csv. VARIANTS holds what papers.sh made. The sources' parameter values did not
- * survive: those of the models are chosen. */
+/* papers [--quick] [--times] VARIANTS FOLDER: the findings of the four sources beside what is measured:
+ * FOLDER/papers_000.csv (coupled systems), papers_001.csv (precise integration), papers_002.csv (clearances) and
+ * papers_004.csv (rotating beam); --times: their times alone, papers_times.csv. VARIANTS holds what papers.sh made. The
+ * sources' parameter values did not survive: those of the models are chosen. */
 #include <math.h>
 #include <stdarg.h>
 #include <stdlib.h>
@@ -60,7 +60,7 @@ FILE *table_begin(const struct papers *papers, const char *name)
 void table_row(FILE *table, const struct row *row)
 {
 	const char *const field[] = { row->source, row->model, row->method, row->quantity,
-	                              row->reported ? row->reported : "not known", row->recovered, row->measured,
+	                              row->reported ? row->reported : "not stated", row->recovered, row->measured,
 	                              row->settings };
 	print_fields(table, sizeof field / sizeof *field, field);
 	fputc('\n', table);
@@ -76,7 +76,8 @@ void table_end(FILE *table)
 
 void timing_row(const struct papers *papers, const struct timing *t)
 {
-	const char *const field[] = { t->source, t->model, t->method, t->quantity, t->reported, t->measured };
+	const char *const field[] = { t->source, t->model, t->method, t->quantity, t->reported ? t->reported : "not stated",
+	                              t->measured };
 	print_fields(papers->times, sizeof field / sizeof *field, field);
 	fprintf(papers->times, ",%.6g,%.6g,%.6g,", t->ns.min, t->ns.median, t->ns.max);
 	print_fields(papers->times, 1, &t->settings);
@@ -127,18 +128,30 @@ const char *ordering(int count, struct placing *placing)
 
 int main(int argc, char **argv)
 {
-	const bool quick = argc > 1 && strcmp(argv[1], "--quick") == 0;
-	if (argc != 3 + quick) {
-		fputs("usage: papers [--quick] VARIANTS FOLDER\n", stderr);
+	bool quick = false, times = false;
+	int at = 1;
+	for (; at < argc && argv[at][0] == '-'; at++) {
+		quick = quick || strcmp(argv[at], "--quick") == 0;
+		times = times || strcmp(argv[at], "--times") == 0;
+	}
+	if (argc - at != 2) {
+		fputs("usage: papers [--quick] [--times] VARIANTS FOLDER\n", stderr);
 		return 2;
 	}
-	struct papers papers = { .variants = argv[1 + quick], .folder = argv[2 + quick], .quick = quick };
-	papers.times = file_begin(&papers, "papers_times.csv",
-	                          "source,model,method,quantity,reported,measured,ns_min,ns_median,ns_max,settings");
+	struct papers papers = { .variants = argv[at], .folder = argv[at + 1], .quick = quick };
+	if (times) {
+		papers.times = file_begin(&papers, "papers_times.csv",
+		                          "source,model,method,quantity,reported,measured,ns_min,ns_median,ns_max,settings");
+		coupled_times(&papers);
+		integration_times(&papers);
+		clearance_times(&papers);
+		beam_times(&papers);
+		table_end(papers.times);
+		return 0;
+	}
 	coupled_systems(&papers);
 	precise_integration(&papers);
 	clearances(&papers);
 	rotating_beam(&papers);
-	table_end(papers.times);
 	return 0;
 }

@@ -19,11 +19,16 @@ void coupled_systems(struct papers *papers);        /* 000, papers_coupled.c */
 void precise_integration(struct papers *papers);    /* 001, papers_integration.c */
 void clearances(struct papers *papers);             /* 002, papers_clearance.c */
 void rotating_beam(struct papers *papers);          /* 004, papers_beam.c */
+/* Their times, beside none of the above */
+void coupled_times(const struct papers *papers);
+void integration_times(const struct papers *papers);
+void clearance_times(const struct papers *papers);
+void beam_times(const struct papers *papers);
 
 /* ---- papers.c ---- */
 
 struct row {
-	/* NULL: of `reported` not known, the others empty */
+	/* NULL: of `reported` not stated (in what is left of the source), the others empty */
 	const char *source, *model, *method, *quantity, *reported, *recovered, *measured, *settings;
 };
 FILE *file_begin(const struct papers *papers, const char *name, const char *head);

@@ -293,8 +293,12 @@ void coupled_systems(struct papers *papers)
 	}
 	for (size_t i = 0; i < sizeof springs / sizeof *springs; i++)
 		compare_springs(papers, table, &springs[i]);
+	table_end(table);
+}
+
+void coupled_times(const struct papers *papers)
+{
 	for (size_t i = 0; i < sizeof systems / sizeof *systems; i++)
 		for (int fine = 0; fine < 2; fine++)
 			time_histories(papers, &systems[i], fine);
-	table_end(table);
 }

@@ -5,11 +5,15 @@
  *
  *     precision --list [--quick] [MODEL...]              the variants wanted: one line each, FILE SPEC and plgen's
  *                                                        options
- *     precision [--quick] VARIANTS FILE.csv [MODEL...]   VARIANTS: the folder with those files
+ *     precision --names [--quick] [MODEL...]             the models of a run
+ *     precision --errors [--quick] VARIANTS [MODEL...]   VARIANTS: the folder with those files. VARIANTS/NAME.errors:
+ *                                                        all that is no time, the same bytes whenever it is made
+ *     precision [--quick] VARIANTS FILE.csv [MODEL...]   the table: errors of NAME.errors where that is there, else
+ *                                                        found; and times
  *     precision --scales [--quick] VARIANTS [MODEL...]   what tolerances stand on, a line for each model: name, shared
  *                                                        object, unit [s], units, largest |coordinate|, |velocity|
  */
-#include "charts.h"
+#include "precision_lines.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -83,6 +87,10 @@ static const int tolerances_all[] = {
 	TOLERANCE(1, 9), TOLERANCE(1, 10), TOLERANCE(1, 11), TOLERANCE(1, 12), TOLERANCE(1, 13), TOLERANCE(1, 14), 0 };
 static const int tolerances_large[] = { TOLERANCE(1, 2), TOLERANCE(1, 4), TOLERANCE(1, 6), TOLERANCE(1, 8),
                                         TOLERANCE(1, 10), TOLERANCE(1, 12), 0 };
+/* Of radau and auto where nothing is stiff, so that taylor is the cheaper one: their code takes compilers long */
+static const int tolerances_few[] = { TOLERANCE(1, 2), TOLERANCE(1, 3), TOLERANCE(1, 4), TOLERANCE(1, 6),
+                                      TOLERANCE(1, 7), TOLERANCE(1, 9), TOLERANCE(1, 10), TOLERANCE(1, 12),
+                                      TOLERANCE(1, 13), 0 };
 static const int tolerances_quick[] = { TOLERANCE(1, 3), TOLERANCE(1, 8), TOLERANCE(1, 12), 0 };
 /* Of what is compiled with its right-hand side */
 static const int parts_inlined[] = { 1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64, 0 };
@@ -160,7 +168,8 @@ static double tolerance_of(int code)
 static const int *parts_of_ours(const struct charted *m, const struct ours *o, bool quick)
 {
 	if (o->tolerance)
-		return tolerances_of(m, quick);
+		return m->kind == ORDINARY && !quick && strcmp(o->name, "taylor") != 0 ? tolerances_few
+			: tolerances_of(m, quick);
 	if (o->exact)
 		return quick ? parts_exact_quick : parts_exact;
 	if (o->modes)
@@ -226,21 +235,6 @@ static void list_model(const struct charted *m, bool quick)
 
 /* ---- the runs of one model ---- */
 
-struct line {                       /* one row of the CSV */
-	struct method ours;             /* of ours */
-	const struct method *method;
-	double setting;
-	struct run *run;                /* NULL: refused or failed to open */
-	char file[200];                 /* of ours, in the folder of variants */
-	char *refused;
-	struct error error;
-	double evaluations;             /* per unit; below 0: none */
-	struct samples samples;
-	double pass;                    /* ns per unit of one more pass, by itself */
-};
-
-struct lines { struct line *line; int count; };
-
 static struct line *add_line(struct lines *lines)
 {
 	struct line *line = realloc(lines->line, (size_t)(lines->count + 1) * sizeof *line);
@@ -260,6 +254,7 @@ static void add_peer(struct lines *lines, const struct problem *p, const struct 
 	line->method = method;
 	line->setting = setting;
 	line->run = method->open(method, p, setting);
+	line->rung = lines->count > 1 && line[-1].method == method ? line[-1].rung + 1 : 0;
 }
 
 static bool is_implicit(const struct method *method)
@@ -339,93 +334,6 @@ static void open_ours(struct lines *lines, const struct problem *p, const char *
 	}
 }
 
-static const struct method *method_of(const struct line *line)
-{
-	return line->method ? line->method : &line->ours;
-}
-
-static void find_error(struct line *line, const struct problem *p, const struct truth *t)
-{
-	line->error = error_of(line->run, t);
-	long evaluations = line->run->evaluations(line->run);
-	line->evaluations = evaluations < 0 ? -1 : (double)evaluations / p->units;
-}
-
-static void find_times(struct lines *lines, double seconds)
-{
-	struct run **run = calloc((size_t)lines->count + 1, sizeof *run);
-	struct samples *samples = calloc((size_t)lines->count + 1, sizeof *samples);
-	int count = 0;
-	if (!run || !samples)
-		exit(1);
-	for (int i = 0; i < lines->count; i++)
-		if (lines->line[i].run && !lines->line[i].error.failed)
-			run[count++] = lines->line[i].run;
-	sample_runs(count, run, seconds, samples);
-	for (int i = 0, k = 0; i < lines->count; i++)
-		if (lines->line[i].run && !lines->line[i].error.failed) {
-			lines->line[i].pass = sample_pass(run[k]);
-			lines->line[i].samples = samples[k++];
-		}
-	free(run);
-	free(samples);
-}
-
-/* ---- the table ---- */
-
-static const char *const families[] = { "ours", "fixed", "adaptive", "propagator" };
-
-static void put_quoted(FILE *out, const char *text)
-{
-	putc('"', out);
-	for (; *text; text++)
-		putc(*text == '"' ? '\'' : *text, out);
-	putc('"', out);
-}
-
-static void put_word(FILE *out, const char *word, int columns)
-{
-	for (int i = 0; i < columns; i++)
-		fprintf(out, ",%s", word);
-}
-
-static void put_settings(FILE *out, const struct line *line)
-{
-	const struct method *method = method_of(line);
-	char text[400];
-	snprintf(text, sizeof text, "%s; %s", method->settings, line->run &&
-	         !line->method ? generated_between(line->run) : "");
-	put_quoted(out, line->refused ? line->refused : line->method ? method->settings : text);
-}
-
-static void put_line(FILE *out, const struct line *line, const struct problem *p, const struct truth *t)
-{
-	const struct method *method = method_of(line);
-	const struct error *e = &line->error;
-	fprintf(out, "%s,", p->name);
-	put_quoted(out, method->name);
-	fprintf(out, ",%s,%s,%.6g", families[method->family], method->tolerance ? "tolerance" : "step", line->setting);
-	if (line->refused)
-		put_word(out, "refused", 6);
-	else if (!line->run)
-		put_word(out, "cannot", 6);
-	else if (e->failed)
-		put_word(out, "failed", 5), fputs(",1", out);
-	else
-		fprintf(out, ",%.4g,%.4g,%.4g,%.4g,%.4g,0", e->q_end, e->q_between, e->v_end, e->v_between, e->largest);
-	if (line->run && !e->failed && line->evaluations >= 0)
-		fprintf(out, ",%.6g", line->evaluations);
-	else
-		fputs(",none", out);
-	if (line->samples.count > 0)
-		fprintf(out, ",%.5g,%.5g,%.5g,%d,%d,%.5g,", line->samples.min, line->samples.median, line->samples.max,
-		        line->samples.count, p->units, line->pass);
-	else
-		put_word(out, "none", 6), putc(',', out);
-	put_settings(out, line);
-	fprintf(out, ",%.2g,%g,%g\n", t->agreement, p->unit, p->unit * p->units);
-}
-
 static struct problem *load(const struct charted *m, const char *folder, bool quick, char path[4096])
 {
 	snprintf(path, 4096, "%s/%s.so", folder, m->name);
@@ -443,38 +351,50 @@ static void say_scales(FILE *out, const struct charted *m, const char *folder, b
 	problem_free(p);
 }
 
+static void add_all(struct lines *lines, const struct charted *m, const struct problem *p, bool quick,
+                    const char *folder)
+{
+	/* A peer is added to one of these lists */
+	add_peers(lines, m, p, fixed_methods, quick, true);
+	add_peers(lines, m, p, inlined_methods, quick, false);
+	add_spans(lines, m, p, quick);
+	add_peers(lines, m, p, structural_methods, quick, true);
+	add_peers(lines, m, p, adaptive_methods, quick, true);
+	add_peers(lines, m, p, clearance_methods, quick, false);
+	add_peers(lines, m, p, propagator_methods, quick, true);
+	add_ours(lines, m, p, quick);
+	open_ours(lines, p, folder);
+}
+
+/* out: the table; NULL: errors alone, which are kept */
 static void measure(FILE *out, const struct charted *m, const char *folder, bool quick, double seconds)
 {
 	char path[4096];
 	struct problem *p = load(m, folder, quick, path);
-	struct truth *t = truth_of(p);
-	struct lines lines = { NULL, 0 };
-	/* A peer is added to one of these lists */
-	add_peers(&lines, m, p, fixed_methods, quick, true);
-	add_peers(&lines, m, p, inlined_methods, quick, false);
-	add_spans(&lines, m, p, quick);
-	add_peers(&lines, m, p, structural_methods, quick, true);
-	add_peers(&lines, m, p, adaptive_methods, quick, true);
-	add_peers(&lines, m, p, clearance_methods, quick, false);
-	add_peers(&lines, m, p, propagator_methods, quick, true);
-	add_ours(&lines, m, p, quick);
-	open_ours(&lines, p, folder);
-	for (int i = 0; i < lines.count; i++) {
-		struct line *line = &lines.line[i];
-		say_progress("%s: error of %s, %g", m->name, method_of(line)->name, line->setting);
-		if (line->run)
-			find_error(line, p, t);
+	struct lines lines = { NULL, 0, 0 };
+	const bool known = out && read_scales(&lines, p, folder);
+	struct truth *t = known ? NULL : truth_of(p);
+	add_all(&lines, m, p, quick, folder);
+	if (known) {
+		read_errors(&lines, p, folder);
+	} else {
+		find_errors(&lines, p, t);
+		truth_free(t);
 	}
-	say_progress("%s: time", m->name);
-	find_times(&lines, seconds);
-	for (int i = 0; i < lines.count; i++) {
-		put_line(out, &lines.line[i], p, t);
-		if (lines.line[i].run)
-			lines.line[i].run->close(lines.line[i].run);
-		free(lines.line[i].refused);
+	if (out) {
+		say_progress("%s: time", m->name);
+		find_times(&lines, seconds);
+	} else {
+		keep_errors(&lines, p, folder);
+	}
+	for (struct line *line = lines.line; line < lines.line + lines.count; line++) {
+		if (out)
+			put_line(out, &lines, line, p);
+		if (line->run)
+			line->run->close(line->run);
+		free(line->refused);
 	}
 	free(lines.line);
-	truth_free(t);
 	problem_free(p);
 }
 
@@ -482,39 +402,43 @@ static void measure(FILE *out, const struct charted *m, const char *folder, bool
 
 int main(int argc, char **argv)
 {
-	bool list = false, scales = false, quick = false;
+	bool list = false, names = false, scales = false, errors = false, quick = false;
 	int at = 1;
 	for (; at < argc && argv[at][0] == '-'; at++) {
 		list = list || strcmp(argv[at], "--list") == 0;
 		scales = scales || strcmp(argv[at], "--scales") == 0;
+		names = names || strcmp(argv[at], "--names") == 0;
+		errors = errors || strcmp(argv[at], "--errors") == 0;
 		quick = quick || strcmp(argv[at], "--quick") == 0;
 	}
-	const int files = list ? 0 : scales ? 1 : 2;
+	const int files = list || names ? 0 : scales || errors ? 1 : 2;
 	if (argc - at < files) {
 		fputs("usage: precision --list [--quick] [MODEL...]\n"
 		      "       precision [--quick] VARIANTS FILE.csv [MODEL...]\n"
+		      "       precision --names [--quick] [MODEL...]\n"
+		      "       precision --errors [--quick] VARIANTS [MODEL...]\n"
 		      "       precision --scales [--quick] VARIANTS [MODEL...]\n", stderr);
 		return 2;
 	}
-	FILE *out = list || scales ? stdout : fopen(argv[at + 1], "w");
+	FILE *out = files < 2 ? stdout : fopen(argv[at + 1], "w");
 	if (!out) {
 		perror(argv[at + 1]);
 		return 1;
 	}
-	if (!list && !scales)
-		fputs("model,method,family,setting_kind,setting,q_end,q_between,v_end,v_between,largest,failed,"
-		      "evaluations_per_unit,ns_min,ns_median,ns_max,ns_samples,ns_units,ns_pass,settings,"
-		      "truth_agreement,unit_s,history_s\n", out);
+	if (files == 2)
+		put_head(out);
 	for (int i = 0; i < (argc > at + files ? argc - at - files : MODELS); i++) {
 		const struct charted *m = argc > at + files ? model_named(argv[at + files + i]) : &models[i];
 		if (argc == at + files && quick && !scales && !m->quick)
 			continue;
-		if (list)
+		if (names)
+			puts(m->name);
+		else if (list)
 			list_model(m, quick);
 		else if (scales)
 			say_scales(out, m, argv[at], quick);
 		else
-			measure(out, m, argv[at], quick, quick ? 0.5 : 10);
+			measure(errors ? NULL : out, m, argv[at], quick, quick ? 0.5 : 5);
 		fflush(out);
 	}
 	if (ferror(out) || fclose(out) != 0) {

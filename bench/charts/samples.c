@@ -10,6 +10,8 @@
 #include <unistd.h>
 
 enum { SAMPLES_LEAST = 3, SAMPLES_MOST = 201, CHUNK = 1000 };
+/* ns of one run: what takes this long in one pass or two is not disturbed by much */
+#define ENOUGH 1e9
 
 double now_ns(void)
 {
@@ -100,20 +102,24 @@ static bool is_once(void)
 	return getenv("CHARTS_ONCE") != NULL;
 }
 
-/* The first pass meets cold caches: it is kept only where it is so long that they do not count. */
-static void prepare(struct turn *turn, struct run *run, double *rows)
+/* The first pass meets cold caches: it is kept only where it is so long that they do not count. Returns what a pass
+ * takes [ns]. */
+static double prepare(struct turn *turn, struct run *run, double *rows)
 {
 	turn->repeats = 1;
 	double ns = passes(run, 1, rows);
-	if (ns >= 20e6 || is_once())
+	if (ns >= 20e6 || is_once()) {
 		keep(turn, run, ns);
-	else
-		turn->repeats = repeats_for(passes(run, 1, rows));
+		return ns;
+	}
+	ns = passes(run, 1, rows);
+	turn->repeats = repeats_for(ns);
+	return ns;
 }
 
 static bool wants_more(const struct turn *turn, double share)
 {
-	if (is_once())
+	if (is_once() || turn->spent >= ENOUGH)
 		return false;
 	return turn->count < SAMPLES_LEAST || (turn->count < SAMPLES_MOST && turn->spent < share);
 }
@@ -133,7 +139,8 @@ static double *rows_of(int runs, struct run *const *run)
 	return rows;
 }
 
-void sample_runs(int runs, struct run *const *run, double seconds, struct samples *result)
+void sample_ladders(int runs, struct run *const *run, double seconds,
+                    bool (*is_dear)(int k, const struct samples *so_far, void *of), void *of, struct samples *result)
 {
 	struct turn *turn = calloc((size_t)runs + 1, sizeof *turn);
 	double *rows = rows_of(runs, run), share = 1e9 * seconds / (runs > 0 ? runs : 1);
@@ -141,12 +148,17 @@ void sample_runs(int runs, struct run *const *run, double seconds, struct sample
 		fputs("samples: out of memory\n", stderr);
 		exit(1);
 	}
-	for (int i = 0; i < runs; i++)
-		prepare(&turn[i], run[i], rows);
+	for (int i = 0; i < runs; i++) {
+		result[i] = (struct samples){ 0 };
+		if (is_dear && is_dear(i, result, of))
+			continue;
+		const double ns = prepare(&turn[i], run[i], rows) / run[i]->problem->units;
+		result[i] = (struct samples){ ns, ns, ns, 1 };
+	}
 	for (bool any = true; any;) {
 		any = false;
 		for (int i = 0; i < runs; i++)
-			if (wants_more(&turn[i], share)) {
+			if (result[i].count > 0 && wants_more(&turn[i], share)) {
 				any = true;
 				keep(&turn[i], run[i], passes(run[i], turn[i].repeats, rows));
 			}
@@ -155,6 +167,11 @@ void sample_runs(int runs, struct run *const *run, double seconds, struct sample
 		result[i] = sample_summary(turn[i].count, turn[i].ns);
 	free(turn);
 	free(rows);
+}
+
+void sample_runs(int runs, struct run *const *run, double seconds, struct samples *result)
+{
+	sample_ladders(runs, run, seconds, NULL, NULL, result);
 }
 
 double sample_pass(struct run *run)

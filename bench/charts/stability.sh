@@ -7,15 +7,16 @@ set -e
 quick=
 [ "$1" = --quick ] && quick=$1 && shift
 plgen=$1 programs=$2 out=$3
+variants=$out/variants/stability
 charts=bench/charts
-mkdir -p "$out/variants"
+mkdir -p "$variants"
 grep -v '^#' $charts/stability.variants | while read -r name spec options; do
 	# shellcheck disable=SC2086
-	[ -f "$out/variants/$name.so" ] || sh $charts/variant.sh "$plgen" "$out/variants/$name.so" "$spec" $options
+	sh $charts/variant.sh "$plgen" "$variants/$name.so" "$spec" $options
 done
 bad=0
-"$programs/stability" $quick "$out" "$out/variants" || bad=1
+"$programs/stability" $quick "$out" "$variants" || bad=1
 "$programs/quality" $quick "$out" || bad=1
-"$programs/operator_map" $quick "$out" "$out/variants" || bad=1
-"$programs/largest_step" $quick "$out" "$out/variants" || bad=1
+"$programs/operator_map" $quick "$out" "$variants" || bad=1
+"$programs/largest_step" $quick "$out" "$variants" || bad=1
 exit $bad

@@ -11,7 +11,7 @@ function escaped(text) {
 function class_of(head, text) {
 	if (text ~ /^(failed|diverged|refused|nan|-nan|inf|-inf|wrong|gave up|not reached|ours not reached|no|FAILED)$/)
 		return "bad"
-	if (text ~ /^(poor|never)$/) return "poor"
+	if (text ~ /^(poor|never|dear)$/) return "poor"
 	if (text ~ /^(linear only|as exact)$/) return "none"
 	return is_number(text) ? "n" : ""
 }

@@ -31,6 +31,8 @@ NR == 1 { read_head($0, column); next }
 		if (!good) { print model ", " method ": " errors[e] " is " value ", failed " row[column["failed"]];
 			bad = 1 }
 	}
+	if (row[column["ns_median"]] == "dear" && (row[column["failed"]] != 0 ||
+	    row[column["family"]] != "adaptive")) { print model ", " method ": left without a time"; bad = 1 }
 	timed = row[column["ns_units"]] * row[column["unit_s"]]
 	if (is_number(row[column["ns_median"]]) && timed != row[column["history_s"]]) {
 		print model ", " method ": timed over " row[column["ns_units"]] " units of " \

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # awk -f csv.awk -f check.awk break_even.csv: float beside float and double beside double;
-steps, or never where ours are not cheaper
+# steps, or never where ours are not cheaper
 function type_of(method) { return method ~ /float/ ? "float" : "double" }
 NR == 1 { read_head($0, column); next }
 {
