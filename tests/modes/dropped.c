@@ -8,7 +8,7 @@
 static struct step *step_of(const char *const *argument)
 {
 	const struct request request = { .prefix = argument[3] };
-	const struct source *source = source_read(argument[1]);
+	const struct source *source = source_read(argument[1], (struct place){ 0 });
 	struct model *model = source ? model_build(parse_spec(source), &request) : NULL;
 	const char *why = "the spec is wrong";
 	struct modes *modes = model ? modes_of(model, &why) : NULL;
