@@ -36,10 +36,13 @@ for status in "$folder"/*.status "$folder"/*/*.status; do
 		continue
 	fi
 	number=$((number + 1))
+	from=.                  # as run.sh: what has no files of its own stands beside those of its topic
 	if [ -f "$path.sh" ]; then
 		sh "$path.sh" > "$name.spec"
-	else
+	elif [ -f "$path.args" ]; then
 		cp "$path.spec" .
+	else
+		from=${path%/*}
 	fi
 	if [ -f "$path.mtx" ]; then
 		cp "$path.mtx" .
@@ -50,7 +53,7 @@ for status in "$folder"/*.status "$folder"/*/*.status; do
 	fi
 	# shellcheck disable=SC2086
 	if (IFS='
-'; exec "$plgen" $arguments "$name.spec") > "$name.c" 2> "$work/messages" < /dev/null &&
+'; cd "$from" && exec "$plgen" $arguments "$name.spec") > "$name.c" 2> "$work/messages" < /dev/null &&
 	   "$@" -std=c99 $warnings -I"$runtime" -O0 -S "$name.c" -o /dev/null 2> "$work/messages"; then
 		echo "ok $number - $name"
 	else
