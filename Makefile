@@ -9,7 +9,7 @@ CHECK_PACKAGES = $(DEMO_PACKAGES) g++ clang libcmocka-dev valgrind \
 	gcc-arm-none-eabi libnewlib-arm-none-eabi qemu-system-arm python3-scipy libopenmpi-dev openmpi-bin
 
 .PHONY: all setup deps demo-deps check-deps demo tests check check-long faults bench charts charts-quick \
-	charts-twice charts-page chart firmware-report install clean
+	charts-twice charts-page chart gallery firmware-report install clean
 
 all: setup
 	ninja -C $(BUILD) plgen plrun
@@ -105,6 +105,10 @@ chart: demo-deps
 	$(call configure,test -f $(BUILD)/build.ninja)
 	@ninja -C $(BUILD) plgen >/dev/null
 	@sh bench/charts/own/own.sh $(BUILD)/plgen "$(SPEC)" charts/own "$(UNTIL)" "$(EVERY)"
+
+# The pictures of doc/gallery.md, by plrun
+gallery: demo-deps all
+	sh bench/gallery.sh $(BUILD)/plrun doc/gallery
 
 # Bytes, stack and instructions on emulated boards: doc/firmware.md
 firmware-report: tests
