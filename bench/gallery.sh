@@ -68,11 +68,11 @@ small() {
 	awk '
 		{ gsub(/^[ \t]+|[ \t]+$/, "") }
 		/^<desc>/ {
-			print "<style>.l{fill:none;color:black;stroke:currentColor;stroke-width:1;stroke-linejoin:miter}" \
-				".t{stroke:none;fill:black;font:11px sans-serif}</style>"
+			print "<style>.l{fill:none;color:black;stroke:currentColor;stroke-linejoin:miter}"
+			print ".t{stroke:none;fill:black;font:11px sans-serif}</style>"
 			next
 		}
-		/^<g fill="none" color="black" stroke="currentColor" stroke-width="1.00"/ { held = "<g class=\"l\">"; next }
+		/^<g fill="none" color="black" stroke="currentColor" / { held = "<g class=\"l\">"; next }
 		held != "" && $0 == "</g>" { held = ""; next }
 		$0 == "" { next }
 		{
