@@ -70,7 +70,7 @@ done
 for picture in "$root"/doc/gallery/*; do
 	[ -f "$root/models/$(basename "$picture" .svg).spec" ] || echo "$picture: of no model" >>log
 done
-grep '(`.*`)' "$root/doc/gallery.md" | grep -o '`[a-z0-9_]*`' | tr -d '`' | sort -u >named
+sed -n '/^## /,$p' "$root/doc/gallery.md" | grep -o '`[a-z0-9_]*`' | tr -d '`' | sort -u >named
 comm -23 named tests | sed 's/$/ is no test/' >>log
 [ "$(wc -l <named)" -gt 15 ] && [ ! -s log ]
 result $? "doc/gallery.md: $(ls "$root"/models/*.spec | wc -l) models, $(wc -l <named) tests"
