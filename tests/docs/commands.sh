@@ -11,8 +11,7 @@
 # ```c          statements, with the headers that they name: compiled with the models of the page, linked and run;
 #               a block that begins with a comment `NAME.c` or `NAME.h` is that file, for the commands after it
 #
-# A block of commands that cannot be run here is one of `elsewhere` alone; a picture in letters is named in `pictures`.
-# Any other block fails.
+# A picture in letters is named in `pictures`. Any other block fails.
 set -u
 plgen=$1
 root=$2
@@ -22,9 +21,6 @@ case $plrun in /*) ;; *) plrun=$PWD/$plrun ;; esac
 . "${0%/*}/../tap.sh"
 here=$root/tests/docs
 warnings='-Wall -Wextra -Wpedantic -Werror'
-# Installs packages, and takes minutes; the demo has steps that other blocks run, check is what runs this test.
-elsewhere='make demo
-make check'
 # What a page draws, by its first line
 pictures='doc/design.md:      gen/base      memory
 doc/tutorial.md:      +------------+'
@@ -35,20 +31,6 @@ ln -s "$plrun" bin/plrun
 XDG_CACHE_HOME=$work/cache
 export XDG_CACHE_HOME
 PATH=$PWD/bin:$PATH
-
-# target NAME: the Makefile has it
-target() {
-	sed -n 's/^\([a-z][a-z -]*\):.*/\1/p' "$root/Makefile" | tr ' ' '\n' | grep -qx -e "$1"
-}
-
-# is_elsewhere FILE: each command is one that cannot be run here; those of make are there
-is_elsewhere() {
-	sed 's/ *#.*//; /^$/d' "$1" >commands
-	while read -r words; do
-		echo "$elsewhere" | grep -qx -e "$words" || return 1
-		target "${words#make }" || echo "the Makefile has no ${words#make }" >>log
-	done <commands
-}
 
 # In the folder of the page, with PAGE, NUMBER and KIND of a block:
 
@@ -109,13 +91,7 @@ try() {
 	: >log
 	block=$PWD/blocks/$2.$3
 	case $3 in
-		spec | console | c) ;;
-		sh)
-			if is_elsewhere "$block"; then
-				[ ! -s log ]
-				result $? "$1:$4: commands for elsewhere: $(tr '\n' ' ' <commands)"
-				return
-			fi ;;
+		spec | sh | console | c) ;;
 		text)
 			echo "$pictures" | grep -qF -e "$1:$(sed 's/,.*//; q' "$block")"
 			result $? "$1:$4: a picture"
@@ -125,7 +101,8 @@ try() {
 			result 1 "$1:$4: a block that is $3"
 			return ;;
 	esac
-	title="$1:$4: $3: $(grep -v -e '^#' -e '^$' "$block" | head -n 1 | sed 's,^/\* ,,; s, *[#/*].*,,' | cut -c 1-60)"
+	title=$(grep -v -e '^#' -e '^$' "$block" | head -n 1 | sed 's,^/\* ,,; s, *[#/*].*,,' | cut -c 1-60)
+	title="$1:$4: $3: $title"
 	if program=$(absent "$block"); then
 		skip "$title" "no $program"
 		return
