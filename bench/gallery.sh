@@ -18,7 +18,7 @@ bilinear 40 0.1
 building 20 0.05
 drivetrain 2 0.005
 duffing 40 0.1 taylor
-frame 10 0.025
+frame 10 0.02
 gear1 60 0.2
 gear2 60 0.2
 gear3 10 0.025
@@ -36,9 +36,9 @@ scs_weak 1 0.0025
 sdcs 10 0.025
 sdcsf 10 0.025
 stop 2 0.005
-street 20 0.1
+street 20 0.05
 tuned_floor 10 0.02
-two_masses 10 0.025
+two_masses 6 0.01
 vanderpol 30 0.1 taylor
 vanderpol_stiff 300 0.5 auto'
 
