@@ -2,14 +2,15 @@
 # Thin: packages through apt, everything else through Meson.
 
 BUILD = build
-# The command; then what the demo shows, what the charts draw with, and what the tests compare with and run on
-PACKAGES = gcc libc6-dev make meson ninja-build pkgconf libgmp-dev libmpfr-dev libmpfi-dev libmpc-dev libgsl-dev
-DEMO_PACKAGES = $(PACKAGES) libsundials-dev gnuplot-nox
+# The commands and their pictures; then what the demo shows, and what the tests compare with and run on
+PACKAGES = gcc libc6-dev make meson ninja-build pkgconf libgmp-dev libmpfr-dev libmpfi-dev libmpc-dev libgsl-dev \
+	gnuplot-nox
+DEMO_PACKAGES = $(PACKAGES) libsundials-dev
 CHECK_PACKAGES = $(DEMO_PACKAGES) g++ clang libcmocka-dev valgrind \
 	gcc-arm-none-eabi libnewlib-arm-none-eabi qemu-system-arm python3-scipy libopenmpi-dev openmpi-bin
 
 .PHONY: all setup deps demo-deps check-deps demo tests check check-long faults bench charts charts-quick \
-	charts-twice charts-page chart firmware-report install clean
+	charts-twice charts-page chart gallery firmware-report install clean
 
 all: setup
 	ninja -C $(BUILD) plgen plrun
@@ -105,6 +106,10 @@ chart: demo-deps
 	$(call configure,test -f $(BUILD)/build.ninja)
 	@ninja -C $(BUILD) plgen >/dev/null
 	@sh bench/charts/own/own.sh $(BUILD)/plgen "$(SPEC)" charts/own "$(UNTIL)" "$(EVERY)"
+
+# The pictures of doc/gallery.md, by plrun
+gallery: all
+	sh bench/gallery.sh $(BUILD)/plrun doc/gallery
 
 # Bytes, stack and instructions on emulated boards: doc/firmware.md
 firmware-report: tests

@@ -1,17 +1,17 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 # What the pages tell a reader to type is typed: every block of every page, as TAP, each page in an empty folder that
-# has but `runtime`, `models` and `build/plgen`, as a clone has.
+# has but `runtime`, `models`, `tests`, `build/plgen` and `build/plrun`, as a clone has.
 #
 #     commands.sh PLGEN SOURCE_ROOT PLRUN
 #
 # ```spec       a model: plgen makes NAME_pl.c and NAME_pl.h of it
 # ```sh         commands: run one after the other; all succeed, nothing they write is empty
 # ```console    `$ command` and what it says, to the last letter
-# ```c          statements, with the headers that they name: compiled with the models of the page, linked and run
+# ```c          statements, with the headers that they name: compiled with the models of the page, linked and run;
+#               a block that begins with a comment `NAME.c` or `NAME.h` is that file, for the commands after it
 #
-# A block of commands that cannot be run here is one of `elsewhere` alone; a picture in letters is named in `pictures`.
-# Any other block fails.
+# A picture in letters is named in `pictures`. Any other block fails.
 set -u
 plgen=$1
 root=$2
@@ -21,11 +21,9 @@ case $plrun in /*) ;; *) plrun=$PWD/$plrun ;; esac
 . "${0%/*}/../tap.sh"
 here=$root/tests/docs
 warnings='-Wall -Wextra -Wpedantic -Werror'
-# Installs packages, and takes minutes; the demo has steps that other blocks run, check is what runs this test.
-elsewhere='make demo
-make check'
 # What a page draws, by its first line
-pictures='doc/design.md:      gen/base      memory'
+pictures='doc/design.md:      gen/base      memory
+doc/tutorial.md:      +------------+'
 
 mkdir bin
 ln -s "$plgen" bin/plgen
@@ -33,20 +31,6 @@ ln -s "$plrun" bin/plrun
 XDG_CACHE_HOME=$work/cache
 export XDG_CACHE_HOME
 PATH=$PWD/bin:$PATH
-
-# target NAME: the Makefile has it
-target() {
-	sed -n 's/^\([a-z][a-z -]*\):.*/\1/p' "$root/Makefile" | tr ' ' '\n' | grep -qx -e "$1"
-}
-
-# is_elsewhere FILE: each command is one that cannot be run here; those of make are there
-is_elsewhere() {
-	sed 's/ *#.*//; /^$/d' "$1" >commands
-	while read -r words; do
-		echo "$elsewhere" | grep -qx -e "$words" || return 1
-		target "${words#make }" || echo "the Makefile has no ${words#make }" >>log
-	done <commands
-}
 
 # In the folder of the page, with PAGE, NUMBER and KIND of a block:
 
@@ -74,6 +58,11 @@ run_console() {
 }
 
 run_c() {
+	file=$(sed -n '1s,^/\* \([A-Za-z0-9_]*\.[ch]\)\([: ].*\)*$,\1,p' "$block")
+	if [ -n "$file" ]; then
+		cp "$block" "$file"
+		return
+	fi
 	{
 		grep '^#' "$block"
 		echo 'int main(void)'
@@ -86,18 +75,23 @@ run_c() {
 		./program >>../log 2>&1
 }
 
+# absent FILE: a program that its commands name, and that is not installed
+absent() {
+	for program in arm-none-eabi-gcc qemu-system-arm; do
+		if grep -q "^\(\$ \)*$program " "$1" && ! command -v "$program" >/dev/null; then
+			echo "$program"
+			return
+		fi
+	done
+	return 1
+}
+
 # try PAGE NUMBER KIND LINE
 try() {
 	: >log
 	block=$PWD/blocks/$2.$3
 	case $3 in
-		spec | console | c) ;;
-		sh)
-			if is_elsewhere "$block"; then
-				[ ! -s log ]
-				result $? "$1:$4: commands for elsewhere: $(tr '\n' ' ' <commands)"
-				return
-			fi ;;
+		spec | sh | console | c) ;;
 		text)
 			echo "$pictures" | grep -qF -e "$1:$(sed 's/,.*//; q' "$block")"
 			result $? "$1:$4: a picture"
@@ -107,8 +101,14 @@ try() {
 			result 1 "$1:$4: a block that is $3"
 			return ;;
 	esac
+	title=$(grep -v -e '^#' -e '^$' "$block" | head -n 1 | sed 's,^/\* ,,; s, *[#/*].*,,' | cut -c 1-60)
+	title="$1:$4: $3: $title"
+	if program=$(absent "$block"); then
+		skip "$title" "no $program"
+		return
+	fi
 	(cd page && "run_$3")
-	result $? "$1:$4: $3: $(grep -v -e '^#' -e '^$' "$block" | head -n 1 | sed 's, *[#/].*,,' | cut -c 1-60)"
+	result $? "$title"
 }
 
 mkdir objects
@@ -117,11 +117,11 @@ for file in "$root"/runtime/*.c; do
 done
 ar -rcs runtime.a objects/*.o || exit 99
 
-for page in README.md doc/running.md doc/spec.md doc/accuracy.md doc/performance.md doc/firmware.md doc/packages.md \
-	doc/design.md; do
+for page in README.md doc/tutorial.md doc/cookbook.md doc/running.md doc/spec.md doc/accuracy.md \
+	doc/performance.md doc/firmware.md doc/packages.md doc/design.md; do
 	rm -rf page blocks
 	mkdir -p page/build blocks
-	ln -s "$root/runtime" "$root/models" page
+	ln -s "$root/runtime" "$root/models" "$root/tests" page
 	ln -s "$plgen" page/build/plgen
 	ln -s "$plrun" page/build/plrun
 	awk -v folder=blocks -f "$here/blocks.awk" "$root/$page" >found || exit 99

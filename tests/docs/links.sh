@@ -54,8 +54,28 @@ for page in README.md $(cd "$root" && ls doc/*.md); do
 	result $? "$page: targets of make are there"
 done
 
-# The last column of the table of figures: `make X`, a program of the build with its arguments, or a test.
+# The gallery has every model, its picture and tests that there are
 tr ',' '\n' <"$build/meson-info/intro-tests.json" | sed -n 's/.*"name": "\([^"]*\)".*/\1/p' | sort -u >tests
+: >log
+for spec in "$root"/models/*.spec; do
+	name=$(basename "$spec" .spec)
+	picture=$root/doc/gallery/$name.svg
+	grep -qF "![$name](gallery/$name.svg)" "$root/doc/gallery.md" || echo "$name is not in doc/gallery.md" >>log
+	if [ ! -f "$picture" ] || ! grep -q '<path' "$picture"; then
+		echo "$name: no picture" >>log
+	elif [ "$(wc -c <"$picture")" -gt 61440 ]; then
+		echo "$name: the picture is larger than 60 KiB" >>log
+	fi
+done
+for picture in "$root"/doc/gallery/*; do
+	[ -f "$root/models/$(basename "$picture" .svg).spec" ] || echo "$picture: of no model" >>log
+done
+sed -n '/^## /,$p' "$root/doc/gallery.md" | grep -o '`[a-z0-9_]*`' | tr -d '`' | sort -u >named
+comm -23 named tests | sed 's/$/ is no test/' >>log
+[ "$(wc -l <named)" -gt 15 ] && [ ! -s log ]
+result $? "doc/gallery.md: $(ls "$root"/models/*.spec | wc -l) models, $(wc -l <named) tests"
+
+# The last column of the table of figures: `make X`, a program of the build with its arguments, or a test.
 sed -n '/^## Figures/,$s/^|.*| `\([^`]*\)` |$/\1/p' "$root/README.md" >figures
 : >log
 while read -r first rest; do

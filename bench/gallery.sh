@@ -1,0 +1,106 @@
+#!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
+# gallery.sh PLRUN FOLDER: a picture of each model in models/ into FOLDER, by `plrun --plot`: some hundred points, the
+# same bytes each time. Steps are those of a picture: a linear model is exact at any, a smooth one goes by its series.
+set -eu
+plrun=$1
+folder=$2
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+mkdir -p "$folder"
+cp models/building.spec "$work"                 # a part, beside the street that is made there
+
+# NAME END STEP [SCHEME]
+lengths='axle 2 0.005
+beam15 17 0.01
+beam4 17 0.01
+bilinear 40 0.1
+building 20 0.05
+drivetrain 2 0.005
+duffing 40 0.1 taylor
+frame 10 0.02
+gear1 60 0.2
+gear2 60 0.2
+gear3 10 0.025
+half_car 3 0.01
+inertia 30 0.1
+linear2dof 20 0.05
+mathieu 60 0.2 taylor
+oscillator 20 0.05
+pendulum 20 0.05 taylor
+quad2dof 60 0.2 taylor
+quarter_car 3 0.01
+quarter_car_bumps 3 0.01
+scs 5 0.0125
+scs_weak 1 0.0025
+sdcs 10 0.025
+sdcsf 10 0.025
+stop 2 0.005
+street 20 0.05
+tuned_floor 10 0.02
+two_masses 6 0.01
+vanderpol 30 0.1 taylor
+vanderpol_stiff 300 0.5 auto'
+
+# record NAME END STEP: what its inputs get, as CSV with times
+record() {
+	case $1 in
+		axle) columns=road,top ;;
+		quarter_car_bumps) columns=road ;;
+		oscillator) columns=ground_acc ;;
+		building | frame | street) columns=quake ;;
+		*) return ;;
+	esac
+	grep -q '^input' "models/$1.spec" || return 0
+	awk -v columns=$columns -v end="$2" -v h="$3" 'BEGIN {
+		pi = 3.14159265358979
+		print "t," columns
+		for (k = 0; k <= end / h + 0.5; k++) {
+			t = k * h
+			u = 2 * (t / 4) ^ 2 * exp(2 - t / 2) * (sin(9 * t) + 0.6 * sin(31 * t + 1))
+			if (columns ~ /road/)
+				u = t > 0.2 && t < 0.4 ? 0.1 * sin(pi * (t - 0.2) / 0.2) : 0
+			printf "%.6g,%.9g%s\n", t, u, columns ~ /top/ ? ",0" : "" } }'
+}
+
+# small: gnuplot's SVG on standard input with what it says at each tick said once, and a tenth of a pixel as the unit
+small() {
+	awk '
+		{ gsub(/^[ \t]+|[ \t]+$/, "") }
+		/^<desc>/ {
+			print "<style>.l{fill:none;color:black;stroke:currentColor;stroke-linejoin:miter}"
+			print ".t{stroke:none;fill:black;font:11px sans-serif}</style>"
+			next
+		}
+		/^<g fill="none" color="black" stroke="currentColor" / { held = "<g class=\"l\">"; next }
+		held != "" && $0 == "</g>" { held = ""; next }
+		$0 == "" { next }
+		{
+			gsub(/stroke="none" fill="black" font-family="sans" font-size="11.00" */, "class=\"t\" ")
+			gsub(/ class="gridline" */, " ")
+			while (!/<text>/ && match($0, /[0-9]\.[0-9][0-9]/))
+				$0 = substr($0, 1, RSTART + 2) substr($0, RSTART + 4)
+			print held $0
+			held = ""
+		}'
+}
+
+echo "$lengths" | while read -r name end step scheme; do
+	record "$name" "$end" "$step" >"$work/record.csv"
+	case $name in
+		street) shown='s/^output n1.roof.*/output n1.roof, n4.roof, n10.roof/' ;;
+		vanderpol_stiff) shown='s/^step/output x\n&/' ;;
+		quad2dof) shown='/^output energy/d' ;;
+		*) shown= ;;
+	esac
+	spec=models/$name.spec
+	if [ -n "$shown" ]; then
+		sed "$shown" "$spec" >"$work/$name.spec"
+		spec=$work/$name.spec
+	fi
+	set -- "$spec" "$end" --step "$step" --plot "$work/picture.svg"
+	[ -z "$scheme" ] || set -- "$@" --scheme "$scheme"
+	[ ! -s "$work/record.csv" ] || set -- "$@" --input "$work/record.csv"
+	"$plrun" "$@" -o "$work/rows.csv" 2>"$work/said" || { cat "$work/said" >&2; exit 1; }
+	small <"$work/picture.svg" >"$folder/$name.svg"
+done
