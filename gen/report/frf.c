@@ -100,14 +100,6 @@ static void need_transfers(const struct model *model)
 		      "there is no input and no load that an output could be told over");
 }
 
-/* The angle nearest to that of the row before, by whole turns */
-static void carry_on(struct responses *r, int row, int k)
-{
-	double *angle = &r->angle[row * r->count + k];
-	if (row)
-		*angle += 360 * rint((angle[-r->count] - *angle) / 360);
-}
-
 struct responses responses_of(const struct step *step, struct band band)
 {
 	const struct model *model = step->shown->model;
@@ -116,12 +108,13 @@ struct responses responses_of(const struct step *step, struct band band)
 	r.count = transfers_of(resolvent_of(&model->system), model, &r.transfer);
 	r.size = ARRAY(double, (size_t)band.count * (size_t)r.count + 1);
 	r.angle = ARRAY(double, (size_t)band.count * (size_t)r.count + 1);
-	for (int row = 0; row < band.count; row++) {
-		progress("frequency", row, band.count);
-		for (int k = 0; k < r.count; k++) {
-			int at = row * r.count + k;
-			transfer_at(&r.transfer[k], frequency_of(&band, row), &r.size[at], &r.angle[at]);
-			carry_on(&r, row, k);
+	for (int k = 0; k < r.count; k++) {
+		struct course course = course_of(model, &r.transfer[k]);
+		progress("frequency response", k, r.count);
+		for (int row = 0; row < band.count; row++) {
+			double f = frequency_of(&band, row), angle;
+			transfer_at(&r.transfer[k], f, &r.size[row * r.count + k], &angle);
+			r.angle[row * r.count + k] = angle_on_course(&course, f, angle);
 		}
 	}
 	progress_end();

@@ -71,16 +71,36 @@ static const char *rays_of(double left, double high)
 	for (size_t i = 0; i < sizeof ratio / sizeof *ratio; i++) {
 		double slope = sqrt(1 - ratio[i] * ratio[i]) / ratio[i], turn = -left * slope / high;
 		double x = turn > 1 ? -high / slope : left, y = turn > 1 ? high : -left * slope;
-		if (turn > 8 || turn < 0.12 || before < 1.35 * turn)
+		if (turn > 8 || turn < 0.12 || before < 1.7 * turn)
 			continue;
 		before = turn;
 		for (int side = 1; side >= -1; side -= 2)
 			text = format("%sset arrow from 0,0 to %.10g,%.10g nohead lc rgb '#c8c8c8' lw 0.8\n", text, x,
 				      side * y);
-		text = format("%sset label '%g' at %.10g,%.10g %s offset %s tc rgb '#808080'\n", text, ratio[i], x, y,
-			      turn > 1 ? "center" : "right", turn > 1 ? "0,0.5" : "-0.4,0");
+		text = format("%sset label '%g' at %.10g,%.10g %s tc rgb '#808080'\n", text, ratio[i], x, y,
+			      turn > 1 ? "center offset 0,0.5" : "left offset 0.5,0.7");
 	}
 	return text;
+}
+
+/* Each with its frequency, where that does not stand on another's */
+static void print_poles(FILE *to, int count, const struct pole_report *pole, double high)
+{
+	double told = HUGE_VAL;
+	fputs("$poles << END\n", to);
+	for (int i = count - 1; i >= 0; i--) {
+		double re = mpfr_get_d(pole[i].re, MPFR_RNDN), im = mpfr_get_d(pole[i].im, MPFR_RNDN);
+		const char *text = "";
+		if (told - im > 0.08 * high || i == count - 1) {
+			text = format("%.4g Hz%s", mpfr_get_d(pole[i].hertz, MPFR_RNDN),
+				      pole[i].multiplicity > 1 ? format(", %d-fold", pole[i].multiplicity) : "");
+			told = im;
+		}
+		fprintf(to, "%.17g %.17g \"%s\"\n", re, im, text);
+		if (pole[i].pair)
+			fprintf(to, "%.17g %.17g \"\"\n", re, -im);
+	}
+	fputs("END\n", to);
 }
 
 static void plot_poles(struct picture *p)
@@ -89,32 +109,24 @@ static void plot_poles(struct picture *p)
 	double left, right, high;
 	int count = poles_of(p->step->model, p->step->written, &pole);
 	window_of_poles(count, pole, &left, &right, &high);
-	fputs("$poles << END\n", p->data);
-	for (int i = 0; i < count; i++) {
-		double re = mpfr_get_d(pole[i].re, MPFR_RNDN), im = mpfr_get_d(pole[i].im, MPFR_RNDN);
-		double hertz = mpfr_get_d(pole[i].hertz, MPFR_RNDN);
-		fprintf(p->data, "%.17g %.17g \"%.4g Hz%s\"\n", re, im, hertz,
-			pole[i].multiplicity > 1 ? format(", %d-fold", pole[i].multiplicity) : "");
-		if (pole[i].pair)
-			fprintf(p->data, "%.17g %.17g \"\"\n", re, -im);
-	}
-	fputs("END\n", p->data);
+	print_poles(p->data, count, pole, high);
 	add_panel(p, 0, WIDTH, 480, format(
-		"set title 'poles, and rays of equal damping ratio'\nset lmargin 12\nset rmargin 5\nset tmargin 3.4\n"
+		"set title 'poles, and rays of equal damping ratio'\nunset key\nset lmargin 12\nset rmargin 5\nset tmargin 3.4\n"
 		"set xlabel 're [1/s]'\nset ylabel 'im [rad/s]'\nset xzeroaxis lt 1 lc rgb '#606060'\n"
 		"set yzeroaxis lt 1 lc rgb '#606060'\n%s"
 		"plot [%.10g:%.10g] [%.10g:%.10g] $poles using 1:2 with points pt 2 ps 1.2 lw 2 lc rgb '#b03020', "
-		"'' using 1:2:3 %s with labels left offset 0.8,0.4 font ',9'\n",
-		rays_of(left, high), left, right, -high, high, count > 24 ? "every 1000000" : ""));
+		"'' using 1:2:3 with labels left offset 0.8,0.4 font ',9'\n",
+		rays_of(left, high), left, right, -high, high));
 	p->height += 480;
 }
 
 /* ---- mode shapes ---- */
 
-static const char *coordinate_tics(const struct model *model)
+/* As many as there is room for */
+static const char *coordinate_tics(const struct model *model, int most)
 {
 	const char *text = "set xtics (";
-	int every = (model->n + 11) / 12;
+	int every = (model->n + most - 1) / most;
 	for (int i = 0; i < model->n; i += every)
 		text = format("%s%s%s %d", text, i ? ", " : "", quoted(model->coord_name[i]), i + 1);
 	return format("%s)\n", text);
@@ -140,8 +152,9 @@ static void add_shape(struct picture *p, const struct model *model, const struct
 	fputs("END\n", p->data);
 	add_panel(p, k % columns * wide, wide, TALL, format(
 		"set title '%.5g Hz, damping ratio %.3g'\nset lmargin 7\nset rmargin 2\nset xzeroaxis lt 1 lc rgb "
-		"'#606060'\nset ytics 0.5\n%splot [0.5:%d.5] [-1.15:1.15] $shape%d using 1:2 with linespoints pt 7 ps 0.6 "
-		"lw 1.6 lc rgb '#1f5fa8' title 're'%s\n", hertz, ratio, coordinate_tics(model), model->n, k + 1,
+		"'#606060'\nset ytics 0.5\n%s%splot [0.5:%d.5] [-1.15:1.15] $shape%d using 1:2 with linespoints pt 7 "
+		"ps 0.6 lw 1.6 lc rgb '#1f5fa8' title 're'%s\n", hertz, ratio, twofold ? "" : "unset key\n",
+		coordinate_tics(model, 15 / columns), model->n, k + 1,
 		twofold ? ", '' using 1:3 with linespoints pt 6 ps 0.6 dt 2 lc rgb '#b03020' title 'im'" : ""));
 	if (k % columns == columns - 1 || k == shapes - 1)
 		p->height += TALL;
@@ -278,7 +291,7 @@ static void add_response(struct picture *p, int output, int column, bool last)
 {
 	int tall = last ? 190 : 150;
 	add_panel(p, 0, WIDTH, tall, format("set key off\nset lmargin 12\nset rmargin 4\nset ylabel %s\nset format y "
-					    "'%%.3g'\nset tmargin 1\n%splot $response using 1:%d with lines lw 1.4 lc rgb "
+					    "'%%.3g'\nset tmargin 1\nset autoscale xfix\n%splot $response using 1:%d with lines lw 1.4 lc rgb "
 					    "'#1f5fa8'\n", quoted(p->step->shown->model->output[output].name),
 					    last ? "set xlabel 't [s]'\n" : "set bmargin 1.6\n", column));
 	p->height += tall;

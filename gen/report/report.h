@@ -71,6 +71,15 @@ int  zeros_of_transfer(const struct model *model, const struct transfer *t, stru
 /* |H(2 pi i f)| and its angle [deg], -180 <= angle < 180, each rounded once; of a pole: infinite */
 void transfer_at(const struct transfer *t, double hertz, double *size, double *angle);
 
+struct course {                     /* of an angle: how the zeros and poles turn it */
+	int zeros, poles;
+	struct zero *zero, *pole;
+	double start;               /* [deg], 0 or -180: what H is near 0, its powers of s left out */
+};
+struct course course_of(const struct model *model, const struct transfer *t);
+/* The same angle, with the whole turns that lead to it from frequency 0 */
+double angle_on_course(const struct course *c, double hertz, double angle);
+
 /* ---- shapes.c: mode shapes ---- */
 
 struct mode_shape {                      /* of a pole; one entry per coordinate, the largest 1 */
@@ -95,7 +104,7 @@ struct band { double from, to; int count; };                 /* [Hz], in equal r
 struct band band_of(const char *text);                       /* F0:F1[:N] of the command line; leaves the statement */
 double frequency_of(const struct band *band, int row);
 struct band band_of_poles(int count, const struct pole_report *pole, int rows); /* around them */
-struct responses {                  /* [row][transfer]; angles [deg] go on from row to row */
+struct responses {                  /* [row][transfer]; angles [deg] with the turns from frequency 0 on */
 	struct band band;
 	int count;
 	struct transfer *transfer;

@@ -134,19 +134,19 @@ static void add_zero(struct zero *zero, const struct rectangle *at, int multipli
 	mpfr_clear(middle);
 }
 
-int zeros_of_transfer(const struct model *model, const struct transfer *t, struct zero **list)
+static int roots_of(const struct model *model, const struct transfer *t, struct poly p, struct zero **list)
 {
 	int count = 0;
-	*list = ARRAY(struct zero, (size_t)t->N.length + 1);
-	if (t->N.length < 2)
+	*list = ARRAY(struct zero, (size_t)p.length + 1);
+	if (p.length < 2)
 		return 0;
 	mpz_t content;
 	mpz_init(content);
-	struct spectrum *spectrum = spectrum_of(poly_primitive(t->N, content));
+	struct spectrum *spectrum = spectrum_of(poly_primitive(p, content));
 	mpz_clear(content);
 	if (!spectrum_refine(spectrum, 128))
-		error(model->asked.step_at, NULL, "two zeros of %s over %s are too close to each other to be told "
-						  "apart", t->output, t->drive);
+		error(model->asked.step_at, NULL, "two zeros or poles of %s over %s are too close to each other to be "
+						  "told apart", t->output, t->drive);
 	if (spectrum->zero)
 		add_zero(&(*list)[count++], NULL, spectrum->zero, false);
 	for (int f = 0; f < spectrum->factors; f++)
@@ -154,6 +154,11 @@ int zeros_of_transfer(const struct model *model, const struct transfer *t, struc
 			add_zero(&(*list)[count++], &spectrum->pole[f][i].at, spectrum->factor[f].multiplicity,
 				 !spectrum->pole[f][i].real);
 	return count;
+}
+
+int zeros_of_transfer(const struct model *model, const struct transfer *t, struct zero **list)
+{
+	return roots_of(model, t, t->N, list);
 }
 
 /* ---- its values on the imaginary axis ---- */
@@ -189,8 +194,10 @@ static bool round_polar(const struct transfer *t, const struct rectangle *z, dou
 		*angle = mpfi_is_neg(z->re) != negative ? -180 : 0;
 	} else if (found) {
 		mpfi_t re, im;
-		mpfi_init_set(re, z->re);
-		mpfi_init_set(im, z->im);
+		mpfi_init2(re, precision);
+		mpfi_init2(im, precision);
+		mpfi_set(re, z->re);
+		mpfi_set(im, z->im);
 		if (negative) {
 			mpfi_neg(re, re);
 			mpfi_neg(im, im);
@@ -223,4 +230,41 @@ void transfer_at(const struct transfer *t, double hertz, double *size, double *a
 	}
 	if (!found)                     /* no frequency but 0 is a pole: others are rational multiples of pi */
 		*size = HUGE_VAL;
+}
+
+/* ---- its angle, which goes on from one frequency to the next ---- */
+
+static int lowest(struct poly p)
+{
+	return mpz_sgn(p.c[poly_valuation(p)]);
+}
+
+struct course course_of(const struct model *model, const struct transfer *t)
+{
+	struct course c = { 0 };
+	if (t->N.length == 0)
+		return c;
+	c.zeros = roots_of(model, t, t->N, &c.zero);
+	c.poles = roots_of(model, t, t->D, &c.pole);
+	c.start = mpq_sgn(t->scale) * lowest(t->N) * lowest(t->D) < 0 ? -180 : 0;
+	return c;
+}
+
+/* What they turn H by from frequency 0 to w, those at 0 a quarter each; one on the axis as if it were left of it */
+static double turn_of(int count, const struct zero *root, double w)
+{
+	double turn = 0;
+	for (int i = 0; i < count; i++) {
+		const struct zero *r = &root[i];
+		double by = atan2(w - r->im, fabs(r->re)) + (r->pair ? atan2(w + r->im, fabs(r->re)) : 0);
+		turn += (r->re > 0 ? -1 : 1) * r->multiplicity * by;
+	}
+	return turn * (180 / 3.141592653589793);
+}
+
+double angle_on_course(const struct course *c, double hertz, double angle)
+{
+	double w = 6.283185307179586 * hertz;
+	double about = c->start + turn_of(c->zeros, c->zero, w) - turn_of(c->poles, c->pole, w);
+	return angle + 360 * rint((about - angle) / 360);
 }
