@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* gnuplot draws: its script goes in and its picture comes out through files without names, so that nothing of it is left
- * where it fails, and no shell reads any of it. */
+/* gnuplot draws: its script goes in and its picture comes out through files without names, so that nothing of it is
+ * left where it fails, and no shell reads any of it. */
 #define _GNU_SOURCE
 #include "report/report.h"
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* One page of HTML with everything in it: equations, matrices, modes, pictures, what was chosen, what it costs, how far it
- * may be off. It reads well at 400 points of width too: what is wide moves in a frame of its own. */
+/* One page of HTML with everything in it: equations, matrices, modes, pictures, what was chosen, what it costs, how
+ * far it may be off. It reads well at 400 points of width too: what is wide moves in a frame of its own. */
 #include "report/report.h"
 
 #include <string.h>

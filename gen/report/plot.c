@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Pictures of a model as scripts for gnuplot: panels below each other, or beside. All numbers are in the script, those of
- * frf as --response prints them, those of response as --solution does. No dates, no paths. */
+/* Pictures of a model as scripts for gnuplot: panels below each other, or beside. All numbers are in the script, those
+ * of frf as --response prints them, those of response as --solution does. No dates, no paths. */
 #include "report/report.h"
 
 #include <math.h>
@@ -199,7 +199,8 @@ static const char *curves(const struct responses *r, const char *data, int first
 static void add_bode(struct picture *p, const struct responses *r, int first, int last)
 {
 	int count, angles;
-	const char *size = curves(r, "$frf", first, last, 0, &count), *angle = curves(r, "$frf", first, last, 1, &angles);
+	const char *size = curves(r, "$frf", first, last, 0, &count);
+	const char *angle = curves(r, "$frf", first, last, 1, &angles);
 	const char *frame = format("set logscale x\nset xrange [%.10g:%.10g]\nset lmargin 12\nset rmargin 20\nset key "
 				   "outside right top\nset format y '%%.3g'\n", r->band.from, r->band.to);
 	note_first(count < CURVES ? count : CURVES, count, "outputs");
@@ -334,7 +335,11 @@ static void plot_response(struct picture *p)
 		if (is_told(&model->output[i]) && told++ < OUTPUTS)
 			output[count++] = i;
 	note_first(count, model->outputs, "outputs");
+	bool single = strcmp(target_name(), "float") == 0;
+	target_double();                /* what --solution prints */
 	print_samples(p, count, output);
+	if (single)
+		target_float();
 	for (int i = 0; i < count; i++)
 		add_response(p, output[i], i + 2, i == count - 1);
 }
@@ -378,6 +383,15 @@ enum picture_format picture_of_file(const char *path)
 	return PICTURE_NONE;
 }
 
+/* What stands before the names inside of it, so that pictures of one page have names of their own */
+static const char *name_of(const char *list)
+{
+	const char *name = "";
+	for (; *list; list++)
+		name = format("%s%c", name, *list == ',' ? '_' : *list);
+	return name;
+}
+
 static void print_terminal(FILE *to, enum picture_format as, int height, const char *name)
 {
 	if (as == PICTURE_PDF)
@@ -386,7 +400,7 @@ static void print_terminal(FILE *to, enum picture_format as, int height, const c
 		fprintf(to, "set term pngcairo noenhanced size %d,%d font 'sans,11' background '#ffffff'\n", WIDTH, height);
 	else
 		fprintf(to, "set term svg noenhanced size %d,%d font 'sans,12' background '#ffffff' name \"%s\"\n", WIDTH,
-			height, name);
+			height, name_of(name));
 }
 
 static void print_panels(FILE *to, const struct picture *p)

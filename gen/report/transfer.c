@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Transfer functions H(s) = scale N(s)/D(s) of the linear part, exact and without common factors: each output over each
  * input u, and over what each load forces with its function of time taken as u. The image of an output under the ramp
- * u = t from rest is H(s)/s^2, under a step H(s)/s (Laplace transform of an integral; any textbook of linear systems). */
+ * u = t from rest is H(s)/s^2, under a step H(s)/s (Laplace transform of an integral). */
 #include "report/report.h"
 
 #include <math.h>
@@ -179,6 +179,13 @@ static void enclose_quotient(const struct transfer *t, double hertz, struct rect
 	rectangle_clear(&D);
 }
 
+/* The nearest double, whatever the target; false: its ends have not the same */
+static bool round_double(mpfi_srcptr x, double *d)
+{
+	*d = mpfr_get_d(&x->left, MPFR_RNDN);
+	return *d == mpfr_get_d(&x->right, MPFR_RNDN);
+}
+
 /* |H| and, in degrees from -180 up to 180, its angle; a number below 0 is at -180. Both rounded to nearest, once */
 static bool round_polar(const struct transfer *t, const struct rectangle *z, double *size, double *angle)
 {
@@ -189,7 +196,7 @@ static bool round_polar(const struct transfer *t, const struct rectangle *z, dou
 	mpfi_hypot(x, z->re, z->im);
 	mpfi_mul_q(x, x, t->scale);
 	mpfi_abs(x, x);
-	bool found = round_enclosure(x, size) && isfinite(*size), negative = mpq_sgn(t->scale) < 0;
+	bool found = round_double(x, size) && isfinite(*size), negative = mpq_sgn(t->scale) < 0;
 	if (found && mpfi_is_zero(z->im)) {
 		*angle = mpfi_is_neg(z->re) != negative ? -180 : 0;
 	} else if (found) {
@@ -206,7 +213,7 @@ static bool round_polar(const struct transfer *t, const struct rectangle *z, dou
 		mpfi_atan2(x, im, re);
 		mpfi_mul_ui(x, x, 180);
 		mpfi_div(x, x, pi);
-		found = round_enclosure(x, angle);
+		found = round_double(x, angle);
 		mpfi_clear(re);
 		mpfi_clear(im);
 	}
