@@ -789,6 +789,27 @@ static void json_scene(FILE *to, const struct spec *spec)
 	fputs("],\n", to);
 }
 
+/* Its order here, and what it goes by */
+static void json_scheme(FILE *to, const struct step *step)
+{
+	const struct model *model = step->shown->model;
+	static const char *const smooth[] = { "smooth", "kink", "jump" };
+	fprintf(to, "  \"order\": %d,\n  \"smooth\": \"%s\",\n",
+		step->expansion && !loses_order(model) ? order_of_step(step) : order_that_holds(model),
+		smooth[model->smooth.kind]);
+	if (step->collocation)
+		fprintf(to, "  \"stages\": %d,\n"
+			    "  \"iteration\": {\"multiplications\": %d, \"additions\": %d, \"calls\": %d},\n",
+			step->collocation->stages, step->iteration.multiplications, step->iteration.additions,
+			step->iteration.calls);
+	if ((step->expansion || step->collocation) && mpq_sgn(model->truncation.tolerance) != 0)
+		fprintf(to, "  \"tolerance\": %s,\n", shortest(round_rational(model->truncation.tolerance)));
+	if (model->truncation.adaptive && (step->expansion || step->collocation))
+		fprintf(to, "  \"substeps\": %d,\n", model->truncation.substeps);
+	if (step->expansion)
+		json_reach(to, step);
+}
+
 void explain_json(FILE *to, const struct step *step)
 {
 	const struct model *model = step->shown->model;
@@ -826,21 +847,7 @@ void explain_json(FILE *to, const struct step *step)
 	json_loads(to, step);
 	if (scheme_row(model->scheme)->holds_coupling)
 		fprintf(to, "  \"growth_rate\": %.17g,\n", growth_rate(step));
-	static const char *const smooth[] = { "smooth", "kink", "jump" };
-	fprintf(to, "  \"order\": %d,\n  \"smooth\": \"%s\",\n",
-		step->expansion && !loses_order(model) ? order_of_step(step) : order_that_holds(model),
-		smooth[model->smooth.kind]);
-	if (step->collocation)
-		fprintf(to, "  \"stages\": %d,\n"
-			    "  \"iteration\": {\"multiplications\": %d, \"additions\": %d, \"calls\": %d},\n",
-			step->collocation->stages, step->iteration.multiplications, step->iteration.additions,
-			step->iteration.calls);
-	if ((step->expansion || step->collocation) && mpq_sgn(model->truncation.tolerance) != 0)
-		fprintf(to, "  \"tolerance\": %s,\n", shortest(round_rational(model->truncation.tolerance)));
-	if (model->truncation.adaptive && (step->expansion || step->collocation))
-		fprintf(to, "  \"substeps\": %d,\n", model->truncation.substeps);
-	if (step->expansion)
-		json_reach(to, step);
+	json_scheme(to, step);
 	if (step->model->switching)
 		json_regions(to, step);
 	if (has_leftover(step))

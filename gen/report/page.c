@@ -3,7 +3,7 @@
  * far it may be off. It reads well at 400 points of width too: what is wide moves in a frame of its own. */
 #include "report/report.h"
 
-#include <string.h>
+#include <math.h>
 
 struct section {
 	const char *title;
@@ -121,7 +121,7 @@ static const char *entry_text(const struct mode_shape *shape, int i)
 	const char *re = format("%.4g", shape->re[i]);
 	if (shape->im[i] == 0)
 		return re;
-	return format("%s %c %.4g i", re, shape->im[i] < 0 ? '-' : '+', shape->im[i] < 0 ? -shape->im[i] : shape->im[i]);
+	return format("%s %c %.4g i", re, shape->im[i] < 0 ? '-' : '+', fabs(shape->im[i]));
 }
 
 static bool has_shapes(const struct step *step)
@@ -170,8 +170,8 @@ static void print_gains(FILE *to, const struct step *step)
 	const struct model *model = step->shown->model;
 	struct transfer *t;
 	int count = transfers_of(resolvent_of(&model->system), model, &t);
-	fputs("<div class=\"wide\"><table>\n<tr><th class=\"name\">output</th><th class=\"name\">over</th><th>static gain"
-	      "</th><th class=\"name\">zeros [1/s]</th></tr>\n", to);
+	fputs("<div class=\"wide\"><table>\n<tr><th class=\"name\">output</th><th class=\"name\">over</th><th>static "
+	      "gain</th><th class=\"name\">zeros [1/s]</th></tr>\n", to);
 	for (int k = 0; k < count; k++)
 		fprintf(to, "<tr><td class=\"name\">%s</td><td class=\"name\">%s</td><td>%s</td><td class=\"name\">%s"
 			    "</td></tr>\n", escaped(t[k].output), escaped(t[k].drive), static_gain_text(&t[k]),
@@ -218,8 +218,8 @@ void print_page(FILE *to, const struct step *step, const char *options)
 {
 	const struct model *model = step->shown->model;
 	fprintf(to, "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\"/>\n<meta name=\"viewport\" "
-		    "content=\"width=device-width,initial-scale=1\"/>\n<title>%s</title>\n<style>\n%s</style>\n</head>\n"
-		    "<body>\n<h1>%s</h1>\n", model->name, style, model->name);
+		    "content=\"width=device-width,initial-scale=1\"/>\n<title>%s</title>\n<style>\n%s</style>\n"
+		    "</head>\n<body>\n<h1>%s</h1>\n", model->name, style, model->name);
 	fprintf(to, "<p>%d coordinate%s, %d states, %d input%s, %d output%s; plgen " PLGEN_VERSION "%s%s.</p>\n<nav>",
 		model->written->n, model->written->n == 1 ? "" : "s", model->written->system.states,
 		model->system.inputs, model->system.inputs == 1 ? "" : "s", model->outputs,

@@ -111,7 +111,8 @@ static void plot_poles(struct picture *p)
 	window_of_poles(count, pole, &left, &right, &high);
 	print_poles(p->data, count, pole, high);
 	add_panel(p, 0, WIDTH, 480, format(
-		"set title 'poles, and rays of equal damping ratio'\nunset key\nset lmargin 12\nset rmargin 5\nset tmargin 3.4\n"
+		"set title 'poles, and rays of equal damping ratio'\nunset key\nset lmargin 12\nset rmargin 5\n"
+		"set tmargin 3.4\n"
 		"set xlabel 're [1/s]'\nset ylabel 'im [rad/s]'\nset xzeroaxis lt 1 lc rgb '#606060'\n"
 		"set yzeroaxis lt 1 lc rgb '#606060'\n%s"
 		"plot [%.10g:%.10g] [%.10g:%.10g] $poles using 1:2 with points pt 2 ps 1.2 lw 2 lc rgb '#b03020', "
@@ -145,7 +146,8 @@ static void add_shape(struct picture *p, const struct model *model, const struct
 	enum { TALL = 210 };
 	bool twofold = is_complex(shape, model->n);
 	int columns = shapes < 3 ? shapes : 3, wide = WIDTH / columns;
-	double hertz = mpfr_get_d(shape->pole->hertz, MPFR_RNDN), ratio = mpfr_get_d(shape->pole->damping_ratio, MPFR_RNDN);
+	double hertz = mpfr_get_d(shape->pole->hertz, MPFR_RNDN);
+	double ratio = mpfr_get_d(shape->pole->damping_ratio, MPFR_RNDN);
 	fprintf(p->data, "$shape%d << END\n", k + 1);
 	for (int i = 0; i < model->n; i++)
 		fprintf(p->data, "%d %.17g %.17g\n", i + 1, shape->re[i], shape->im[i]);
@@ -240,8 +242,8 @@ static void plot_frf(struct picture *p)
 
 /* ---- responses in time ---- */
 
-/* Ten periods of the slowest that oscillates, or five time constants of the slowest that decays, whichever is longer, of
- * poles and loads; without any 100 steps; to two digits */
+/* Ten periods of the slowest that oscillates, or five time constants of the slowest that decays, whichever is longer,
+ * of poles and loads; without any 100 steps; to two digits */
 static double span_of(const struct step *step)
 {
 	const struct linear *system = &step->shown->model->system;
@@ -291,10 +293,11 @@ static void need_responses(const struct step *step)
 static void add_response(struct picture *p, int output, int column, bool last)
 {
 	int tall = last ? 190 : 150;
-	add_panel(p, 0, WIDTH, tall, format("set key off\nset lmargin 12\nset rmargin 4\nset ylabel %s\nset format y "
-					    "'%%.3g'\nset tmargin 1\nset autoscale xfix\n%splot $response using 1:%d with lines lw 1.4 lc rgb "
-					    "'#1f5fa8'\n", quoted(p->step->shown->model->output[output].name),
-					    last ? "set xlabel 't [s]'\n" : "set bmargin 1.6\n", column));
+	add_panel(p, 0, WIDTH, tall, format(
+		"set key off\nset lmargin 12\nset rmargin 4\nset ylabel %s\nset format y '%%.3g'\nset tmargin 1\n"
+		"set autoscale xfix\n%splot $response using 1:%d with lines lw 1.4 lc rgb '#1f5fa8'\n",
+		quoted(p->step->shown->model->output[output].name),
+		last ? "set xlabel 't [s]'\n" : "set bmargin 1.6\n", column));
 	p->height += tall;
 }
 
@@ -397,10 +400,11 @@ static void print_terminal(FILE *to, enum picture_format as, int height, const c
 	if (as == PICTURE_PDF)
 		fprintf(to, "set term pdfcairo noenhanced size 9in,%.2fin font 'sans,10'\n", height / 100.0);
 	else if (as == PICTURE_PNG)
-		fprintf(to, "set term pngcairo noenhanced size %d,%d font 'sans,11' background '#ffffff'\n", WIDTH, height);
+		fprintf(to, "set term pngcairo noenhanced size %d,%d font 'sans,11' background '#ffffff'\n", WIDTH,
+			height);
 	else
-		fprintf(to, "set term svg noenhanced size %d,%d font 'sans,12' background '#ffffff' name \"%s\"\n", WIDTH,
-			height, name_of(name));
+		fprintf(to, "set term svg noenhanced size %d,%d font 'sans,12' background '#ffffff' name \"%s\"\n",
+			WIDTH, height, name_of(name));
 }
 
 static void print_panels(FILE *to, const struct picture *p)

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What --explain tells of the linear part beside its matrices and poles: mode shapes, zeros, static gains, and the
- * state space x' = A x + B u, y = C x + D u, u the inputs and then the loads, each with its function of time taken as u. */
+ * state space x' = A x + B u, y = C x + D u: u are the inputs, then the loads, each with its function of time taken as
+ * u. */
 #include "report/report.h"
 
 #include <math.h>

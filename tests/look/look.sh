@@ -123,8 +123,9 @@ if command -v gnuplot >log; then
 	good=0
 	for kind in 'svg <?xml' 'png PNG' 'pdf %PDF'; do
 		end=${kind%% *}
-		"$plgen" --plot frf,poles -o "a.$end" "$spec" >out 2>log && "$plgen" --plot frf,poles -o "b.$end" "$spec" &&
-			[ ! -s out ] && head -c 8 "a.$end" | grep -aqF "${kind#* }" || good=1
+		"$plgen" --plot frf,poles -o "a.$end" "$spec" >out 2>log &&
+			"$plgen" --plot frf,poles -o "b.$end" "$spec" && [ ! -s out ] &&
+			head -c 8 "a.$end" | grep -aqF "${kind#* }" || good=1
 	done
 	cmp a.svg b.svg >>log && cmp a.png b.png >>log && [ "$good" -eq 0 ]
 	result $? 'svg, png and pdf'

@@ -36,7 +36,8 @@ END {
 	n = split("Equations;Matrices;Poles and modes;Poles in the plane;Mode shapes;What was chosen, and why;" \
 	          "Cost and error of a step", section, ";")
 	for (i = 1; i <= n; i++)
-		if (text !~ ("<h2 id=\"s[0-9]+\">" section[i] "</h2>") || text !~ ("<a href=\"#s[0-9]+\">" section[i] "</a>"))
+		if (text !~ ("<h2 id=\"s[0-9]+\">" section[i] "</h2>") ||
+		    text !~ ("<a href=\"#s[0-9]+\">" section[i] "</a>"))
 			wrong("no section " section[i])
 	gsub(/xmlns(:xlink)?="[^"]*"/, "", text)
 	if (text ~ /(src|href)="[^#]/ || text ~ /https?:/)
