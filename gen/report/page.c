@@ -156,7 +156,13 @@ static bool has_transfers(const struct step *step)
 {
 	const struct model *model = step->shown->model;
 	struct drive *drive;
-	return model->system.states <= LIMIT_TRANSFERS && drives_of(model, &drive) > 0;
+	struct transfer *t;
+	if (model->system.states > LIMIT_TRANSFERS || drives_of(model, &drive) == 0)
+		return false;
+	int count = transfers_of(resolvent_of(&model->system), model, &t);
+	while (count > 0 && t[count - 1].N.length == 0)
+		count--;
+	return count > 0;
 }
 
 static bool has_response(const struct step *step)

@@ -27,13 +27,10 @@ static void add_panel(struct picture *p, int left, int width, int height, const 
 	p->panel[p->panels++] = (struct panel){ left, p->height, width, height, text };
 }
 
-/* Names are identifiers with primes and indices; in quotes a ' is written twice. */
+/* Names are identifiers with primes and indices, and what loads are in time: nothing in them means more in quotes. */
 static const char *quoted(const char *text)
 {
-	const char *in = "'";
-	for (; *text; text++)
-		in = format(*text == '\'' ? "%s''" : "%s%c", in, *text);
-	return format("%s'", in);
+	return format("\"%s\"", text);
 }
 
 static void note_first(int shown, int all, const char *what)
@@ -437,7 +434,8 @@ void print_picture(FILE *to, const struct step *step, const char *list, enum pic
 		name += length;
 	}
 	if (p.height == 0)
-		error(step->model->asked.step_at, NULL, "there is nothing to draw");
+		error(step->model->asked.step_at, NULL,
+		      "there is nothing to draw: no output that is linear reacts to an input or a load");
 	print_terminal(script, as, p.height, list);
 	copy(p.data, script);
 	print_panels(script, &p);

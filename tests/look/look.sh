@@ -114,6 +114,7 @@ refused 2 "found ''" 'a picture without a name' --plot poles, "$spec"
 refused 2 "-o of --plot takes FILE.svg, FILE.png or FILE.pdf, found 'a.c'" 'no such ending' --plot poles -o a.c "$spec"
 refused 1 'plrun --plot' 'a response that is not linear' --plot response "$root/models/pendulum.spec"
 refused 1 'plrun --plot' 'a response with inputs' --plot response "$here/car.spec"
+refused 1 'no output that is linear reacts' 'no reaction' --plot frf "$root/tests/leftover/gated.spec"
 refused 1 'there is no input and no load' 'no input and no load' --plot frf "$root/models/pendulum.spec"
 refused 1 '30 states: frequency responses are limited to 24' 'too many states' --plot frf "$root/models/beam15.spec"
 
@@ -129,8 +130,9 @@ if command -v gnuplot >log; then
 	done
 	cmp a.svg b.svg >>log && cmp a.png b.png >>log && [ "$good" -eq 0 ]
 	result $? 'svg, png and pdf'
-	for name in sdcsf quarter_car bilinear beam4 tuned_floor pendulum; do
-		"$plgen" --report "$root/models/$name.spec" >page 2>log && awk -f "$here/page.awk" page >log 2>&1 &&
+	for name in models/sdcsf models/quarter_car models/quarter_car_bumps models/bilinear models/beam4 \
+		models/tuned_floor models/pendulum tests/anchors/growing tests/leftover/gated; do
+		"$plgen" --report "$root/$name.spec" >page 2>log && awk -f "$here/page.awk" page >log 2>&1 &&
 			grep -q '<svg ' page
 		result $? "the page of $name"
 	done
