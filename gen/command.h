@@ -7,9 +7,11 @@
 
 /* ---- options.c: the command line ---- */
 
-enum print { PRINT_C, PRINT_HEADER, PRINT_EXPLAIN, PRINT_JSON, PRINT_PROGRAM, PRINT_SOLUTION };
+enum print { PRINT_C, PRINT_HEADER, PRINT_EXPLAIN, PRINT_JSON, PRINT_PROGRAM, PRINT_SOLUTION, PRINT_RESPONSE,
+	     PRINT_PLOT, PRINT_REPORT };
 struct options {
 	const char *spec, *output, *depfile, *solution;
+	const char *value;              /* of --response, --plot */
 	const char *header;             /* beside the C file `output`; NULL: none is written */
 	enum print print;
 	bool rhs;

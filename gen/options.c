@@ -23,7 +23,8 @@ static void note_in_banner(struct options *options, const char *option)
 static void set_print(struct options *options, enum print print)
 {
 	if (options->print != PRINT_C)
-		wrong_usage("--header, --explain and --solution exclude each other");
+		wrong_usage("--header, --explain, --solution, --response, --plot and --report exclude "
+			    "each other");
 	options->print = print;
 }
 
@@ -57,6 +58,27 @@ static void take_solution(struct options *options, const char *value)
 	set_print(options, PRINT_SOLUTION);
 	options->solution = value;
 	options->request.solution = true;
+}
+
+static void take_response(struct options *options, const char *value)
+{
+	set_print(options, PRINT_RESPONSE);
+	options->value = value;
+}
+
+static void take_plot(struct options *options, const char *value)
+{
+	const char *wrong = wrong_picture(value);
+	if (wrong)
+		wrong_usage(format("--plot takes %s, found '%s'", PICTURE_KINDS, wrong));
+	set_print(options, PRINT_PLOT);
+	options->value = value;
+}
+
+static void take_report(struct options *options, const char *value)
+{
+	(void)value;
+	set_print(options, PRINT_REPORT);
 }
 
 static void take_real(struct options *options, const char *value)
@@ -155,6 +177,11 @@ static const struct row {
 	{ "explain", "[=json]", "print what was derived: matrices, B(s), poles, Phi, cost", take_explain, NULL },
 	{ "explain", "=program", "print what a step does, before it is C", NULL, NULL },
 	{ "solution", "T", "print the closed-form solution at every step up to T as CSV", take_solution, NULL },
+	{ "response", "F0:F1[:N]", "print the frequency response from F0 to F1 Hz as CSV, N frequencies (200)",
+	  take_response, NULL },
+	{ "plot", "KIND,...", "draw response, poles, modes, frf by gnuplot; -o FILE.svg, .png or .pdf", take_plot,
+	  NULL },
+	{ "report", NULL, "print a page of HTML: equations, modes, pictures, what was chosen", take_report, NULL },
 	{ "rhs", NULL, "also emit NAME_rhs: the equations as written", take_rhs, NULL },
 	{ "step", "EXPR", "instead of the spec's step", take_step, NULL },
 	{ "scheme", "NAME", "instead of the spec's: ", take_scheme, all_schemes },
@@ -309,6 +336,8 @@ static void note_all(struct options *options)
 static void find_header(struct options *options)
 {
 	size_t length = options->output ? strlen(options->output) : 0;
+	if (options->print == PRINT_PLOT && options->output && picture_of_file(options->output) == PICTURE_NONE)
+		wrong_usage(format("-o of --plot takes FILE.svg, FILE.png or FILE.pdf, found '%s'", options->output));
 	if (!options->output || options->print != PRINT_C)
 		return;
 	if (length < 3 || strcmp(options->output + length - 2, ".c") != 0)

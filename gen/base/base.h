@@ -54,6 +54,10 @@ enum {
 	LIMIT_NEED_STATES = 128,    /* of a model with needs */
 	LIMIT_MODES = 128,          /* of a scheme in normal modes */
 	LIMIT_WITHIN = 1000,        /* radians of a mode in a step that has values inside: as many series */
+	LIMIT_SHAPES = 40,          /* coordinates of a model whose mode shapes are told */
+	LIMIT_TRANSFERS = 24,       /* states of one whose transfer functions are, */
+	LIMIT_HELD_STATES = 64,     /* and whose discrete state space is */
+	LIMIT_FREQUENCIES = 100000, /* rows of --response */
 	LIMIT_SERIES = 50000,       /* multiplications of a Taylor series, each of which is C */
 	LIMIT_COLLOCATED = 40,      /* coordinates of a collocation, whose matrices stand on the stack */
 	LIMIT_TURNS = 256,          /* log2 of a load's angle in a step, for models of more states than that */

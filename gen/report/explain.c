@@ -103,7 +103,7 @@ static void person_relative(FILE *to, const struct model *model)
 	fprintf(to, "What may move as a whole is kept apart from what moves in it: the step keeps %s.\n", list);
 }
 
-static void person_step(FILE *to, const struct step *step)
+static void person_operations(FILE *to, const struct step *step)
 {
 	const struct model *model = step->shown->model;
 	const struct program *program = step->program;
@@ -131,6 +131,20 @@ static void person_step(FILE *to, const struct step *step)
 		fprintf(to, ".\n%s", drift_text(&drift));
 	if (step->rounding.known)
 		fprintf(to, ".\n%s", rounding_text(step));
+}
+
+void person_cost(FILE *to, const struct step *step)
+{
+	person_operations(to, step);
+	fputs(".\n", to);
+	if (step->choice)
+		person_needs(to, step);
+}
+
+static void person_step(FILE *to, const struct step *step)
+{
+	const struct model *model = step->shown->model;
+	person_operations(to, step);
 	if (step->shown->no_phi)
 		fprintf(to, ".\nThere is no Phi: %s.\n", step->shown->no_phi);
 	else
@@ -426,12 +440,10 @@ static void person_scene(FILE *to, const struct spec *spec)
 			fprintf(to, "    %s\n", parts_text(spec, i));
 }
 
-void explain_person(FILE *to, const struct step *step)
+void person_equations(FILE *to, const struct step *step)
 {
 	const struct model *model = step->shown->model;
 	const struct spec *spec = model->spec;
-	fprintf(to, "Model %s: %d coordinate%s, %d states, scheme %s\n\n", model->name, model->written->n,
-		model->written->n == 1 ? "" : "s", model->written->system.states, scheme_name(model->scheme));
 	for (int i = 0; i < spec->equations; i++)
 		fprintf(to, "    %s\n",
 			written_text(spec->equation[i].part, spec->equation[i].at, spec->equation[i].end));
@@ -444,19 +456,11 @@ void explain_person(FILE *to, const struct step *step)
 		for (int i = 0; i < model->written->n; i++)
 			fprintf(to, "    %s\n", equation_text(model->written, model->residual[i].form));
 	}
-	fputs("\nP(s) = M s^2 + C s + K with\n", to);
-	person_matrix(to, "M", model->written->n, (const mpq_t *)model->written->system.M);
-	person_matrix(to, "C", model->written->n, (const mpq_t *)model->written->system.C);
-	person_matrix(to, "K", model->written->n, (const mpq_t *)model->written->system.K);
-	person_loads(to, &model->written->system);
-	if (model->shortened)
-		fputs("\nOf the modes that are kept:\n", to);
-	person_poles(to, step->model, step->written);
-	const char *irrational = irrationals_text(&model->irrationals);
-	if (*irrational)
-		fprintf(to, "\nIrrational constants (%s) were taken as rationals of %d bits.\n", irrational,
-			IRRATIONAL_BITS);
-	fputc('\n', to);
+}
+
+void person_course(FILE *to, const struct step *step)
+{
+	const struct model *model = step->shown->model;
 	if (scheme_row(model->scheme)->holds_coupling)
 		person_held(to, step);
 	if (model->switching)
@@ -473,9 +477,32 @@ void explain_person(FILE *to, const struct step *step)
 		person_reduction(to, step);
 	if (model->reduction.irreducible)
 		fputs("Nothing to reduce: every state is seen by an output.\n", to);
+}
+
+void explain_person(FILE *to, const struct step *step)
+{
+	const struct model *model = step->shown->model;
+	fprintf(to, "Model %s: %d coordinate%s, %d states, scheme %s\n\n", model->name, model->written->n,
+		model->written->n == 1 ? "" : "s", model->written->system.states, scheme_name(model->scheme));
+	person_equations(to, step);
+	fputs("\nP(s) = M s^2 + C s + K with\n", to);
+	person_matrix(to, "M", model->written->n, (const mpq_t *)model->written->system.M);
+	person_matrix(to, "C", model->written->n, (const mpq_t *)model->written->system.C);
+	person_matrix(to, "K", model->written->n, (const mpq_t *)model->written->system.K);
+	person_loads(to, &model->written->system);
+	if (model->shortened)
+		fputs("\nOf the modes that are kept:\n", to);
+	person_poles(to, step->model, step->written);
+	const char *irrational = irrationals_text(&model->irrationals);
+	if (*irrational)
+		fprintf(to, "\nIrrational constants (%s) were taken as rationals of %d bits.\n", irrational,
+			IRRATIONAL_BITS);
+	fputc('\n', to);
+	person_course(to, step);
 	person_step(to, step);
 	if (step->choice)
 		person_needs(to, step);
+	person_linear(to, step);
 }
 
 /* ---- JSON ---- */
@@ -762,6 +789,27 @@ static void json_scene(FILE *to, const struct spec *spec)
 	fputs("],\n", to);
 }
 
+/* Its order here, and what it goes by */
+static void json_scheme(FILE *to, const struct step *step)
+{
+	const struct model *model = step->shown->model;
+	static const char *const smooth[] = { "smooth", "kink", "jump" };
+	fprintf(to, "  \"order\": %d,\n  \"smooth\": \"%s\",\n",
+		step->expansion && !loses_order(model) ? order_of_step(step) : order_that_holds(model),
+		smooth[model->smooth.kind]);
+	if (step->collocation)
+		fprintf(to, "  \"stages\": %d,\n"
+			    "  \"iteration\": {\"multiplications\": %d, \"additions\": %d, \"calls\": %d},\n",
+			step->collocation->stages, step->iteration.multiplications, step->iteration.additions,
+			step->iteration.calls);
+	if ((step->expansion || step->collocation) && mpq_sgn(model->truncation.tolerance) != 0)
+		fprintf(to, "  \"tolerance\": %s,\n", shortest(round_rational(model->truncation.tolerance)));
+	if (model->truncation.adaptive && (step->expansion || step->collocation))
+		fprintf(to, "  \"substeps\": %d,\n", model->truncation.substeps);
+	if (step->expansion)
+		json_reach(to, step);
+}
+
 void explain_json(FILE *to, const struct step *step)
 {
 	const struct model *model = step->shown->model;
@@ -793,26 +841,13 @@ void explain_json(FILE *to, const struct step *step)
 	json_rational_matrix(to, "C", model->written->n, (const mpq_t *)model->written->system.C);
 	json_rational_matrix(to, "K", model->written->n, (const mpq_t *)model->written->system.K);
 	json_poles(to, step);
+	json_linear(to, step);
 	if (!step->shown->no_phi)
 		json_matrix(to, "Phi", model->system.states, model->system.states, Phi);
 	json_loads(to, step);
 	if (scheme_row(model->scheme)->holds_coupling)
 		fprintf(to, "  \"growth_rate\": %.17g,\n", growth_rate(step));
-	static const char *const smooth[] = { "smooth", "kink", "jump" };
-	fprintf(to, "  \"order\": %d,\n  \"smooth\": \"%s\",\n",
-		step->expansion && !loses_order(model) ? order_of_step(step) : order_that_holds(model),
-		smooth[model->smooth.kind]);
-	if (step->collocation)
-		fprintf(to, "  \"stages\": %d,\n"
-			    "  \"iteration\": {\"multiplications\": %d, \"additions\": %d, \"calls\": %d},\n",
-			step->collocation->stages, step->iteration.multiplications, step->iteration.additions,
-			step->iteration.calls);
-	if ((step->expansion || step->collocation) && mpq_sgn(model->truncation.tolerance) != 0)
-		fprintf(to, "  \"tolerance\": %s,\n", shortest(round_rational(model->truncation.tolerance)));
-	if (model->truncation.adaptive && (step->expansion || step->collocation))
-		fprintf(to, "  \"substeps\": %d,\n", model->truncation.substeps);
-	if (step->expansion)
-		json_reach(to, step);
+	json_scheme(to, step);
 	if (step->model->switching)
 		json_regions(to, step);
 	if (has_leftover(step))

@@ -48,11 +48,97 @@ const char *statics_text(const struct model *model);        /* what dropped mode
 void person_shortening(FILE *to, const struct model *model);
 void json_shortening(FILE *to, const struct model *model);  /* members of an object */
 
+/* ---- transfer.c: transfer functions of the linear part ---- */
+
+struct drive {                      /* what an output is told over */
+	const char *name;           /* of an input; of a load what it is in time: cos(5*t) */
+	int input;                  /* -1: it is a load */
+	int load, column, segment;  /* what it forces in this segment of time */
+};
+struct transfer {                   /* H(s) = scale N/D of an output over it, N and D coprime; N of length 0: it is 0 */
+	const char *output, *drive;
+	mpq_t scale;
+	struct poly N, D;
+};
+struct zero { double re, im; int multiplicity; bool pair; }; /* [1/s]; a pair: it and its conjugate */
+bool is_told(const struct output *output);                  /* it is linear in states, loads and inputs, and no peak */
+int  drives_of(const struct model *model, struct drive **drives); /* inputs, then loads; returns how many */
+/* by drives, then by outputs; `r`: of the model's system */
+int  transfers_of(struct resolvent *r, const struct model *model, struct transfer **list);
+struct transfer transfer_of(struct resolvent *r, const struct model *model, int output, const struct drive *drive);
+bool static_gain(const struct transfer *t, mpq_ptr gain);   /* H(0); false: there is a pole at 0 */
+int  zeros_of_transfer(const struct model *model, const struct transfer *t, struct zero **list);
+/* |H(2 pi i f)| and its angle [deg], -180 <= angle < 180, each rounded once; of a pole: infinite */
+void transfer_at(const struct transfer *t, double hertz, double *size, double *angle);
+
+struct course {                     /* of an angle: how the zeros and poles turn it */
+	int zeros, poles;
+	struct zero *zero, *pole;
+	double start;               /* [deg], 0 or -180: what H is near 0, its powers of s left out */
+};
+struct course course_of(const struct model *model, const struct transfer *t);
+/* The same angle, with the whole turns that lead to it from frequency 0 */
+double angle_on_course(const struct course *c, double hertz, double angle);
+
+/* ---- shapes.c: mode shapes ---- */
+
+struct mode_shape {                      /* of a pole; one entry per coordinate, the largest 1 */
+	const struct pole_report *pole;
+	double *re, *im;
+};
+/* one for each pole or pair of poles; of more than LIMIT_SHAPES coordinates none */
+int  shapes_of(const struct linear *system, int count, const struct pole_report *pole, struct mode_shape **list);
+
+/* ---- space.c: shapes, zeros, static gains and state space, for --explain ---- */
+
+/* of the model that poles are told of */
+int  shapes_of_step(const struct step *step, struct mode_shape **shape, const struct model **of);
+const char *zeros_text(const struct model *model, const struct transfer *t);
+const char *static_gain_text(const struct transfer *t);
+void person_linear(FILE *to, const struct step *step);
+void json_linear(FILE *to, const struct step *step);         /* members of an object */
+
+/* ---- frf.c: frequency responses ---- */
+
+struct band { double from, to; int count; };                 /* [Hz], in equal ratios */
+struct band band_of(const char *text);                       /* F0:F1[:N] of the command line; leaves the statement */
+double frequency_of(const struct band *band, int row);
+struct band band_of_poles(int count, const struct pole_report *pole, int rows); /* around them */
+struct responses {                  /* [row][transfer]; angles [deg] with the turns from frequency 0 on */
+	struct band band;
+	int count;
+	struct transfer *transfer;
+	double *size, *angle;
+};
+struct responses responses_of(const struct step *step, struct band band);
+void print_response(FILE *to, const struct step *step, const char *band);   /* as CSV */
+
+/* ---- gnuplot.c ---- */
+
+FILE *new_script(void);                                     /* a file without a name */
+void draw(FILE *to, FILE *script);                          /* what gnuplot makes of it; it is said where it cannot */
+
+/* ---- plot.c: pictures ---- */
+
+#define PICTURE_KINDS "response, poles, modes and frf, with commas between"
+enum picture_format { PICTURE_NONE, PICTURE_SVG, PICTURE_PNG, PICTURE_PDF };
+const char *wrong_picture(const char *list);                /* of KIND,...: one that is none; NULL: all are */
+enum picture_format picture_of_file(const char *path);      /* by its ending; NULL: SVG */
+void print_picture(FILE *to, const struct step *step, const char *list, enum picture_format as);
+void picture_in_page(FILE *to, const struct step *step, const char *kind);   /* inline SVG */
+
+/* ---- page.c ---- */
+
+void print_page(FILE *to, const struct step *step, const char *options);    /* HTML, with everything in it */
+
 /* ---- program.c, explain.c, solution.c ---- */
 
 void explain_program(FILE *to, const struct step *step);    /* what a step does, before it is C */
 
 void explain_person(FILE *to, const struct step *step);
+void person_equations(FILE *to, const struct step *step);   /* as written, and what a sketch or a scene means */
+void person_course(FILE *to, const struct step *step);      /* what is exact, and what is done with what is not */
+void person_cost(FILE *to, const struct step *step);        /* and how far a step may be off */
 void explain_json(FILE *to, const struct step *step);
 void print_solution(FILE *to, const struct model *model, struct resolvent *written, mpq_srcptr end);
 

@@ -73,7 +73,9 @@ what == "text" && inside && /[0-9]/ {
 }
 what == "text" { inside = /pole \[1\/s\] +frequency \[Hz\] +damping ratio/ }
 
-what == "poles" && /"re":/ {
+# those of shapes and zeros stand elsewhere
+/^  "/ { poles = /^  "poles":/ }
+what == "poles" && poles && /"re":/ {
     gsub(/[^-+.0-9e ]|re|multiplicity/, "")
     row += !($2 < 0)
     near("real part " row, $1, re[row], 1e-14)

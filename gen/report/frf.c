@@ -1,0 +1,138 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Frequency responses N(jw)/B(jw) of the linear part as numbers: each is enclosed, and rounded once. */
+#include "report/report.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { ROWS = 200 };
+
+/* ---- the frequencies ---- */
+
+static const char range_note[] = "--response takes F0:F1[:N], from and to in Hz, and how many";
+
+/* A number up to `end`; false: it is none */
+static bool read_number(const char *text, const char *end, double *number)
+{
+	char *stop;
+	const char *copy = format("%.*s", (int)(end - text), text);
+	if (strspn(copy, "0123456789.eE+-") != strlen(copy) || !*copy || *copy == '+' || *copy == '-')
+		return false;
+	*number = strtod(copy, &stop);
+	return !*stop;
+}
+
+struct band band_of(const char *text)
+{
+	struct place at = { source_argument(text), 0 };
+	struct band band = { .count = ROWS };
+	const char *colon = strchr(text, ':'), *last = colon ? strchr(colon + 1, ':') : NULL,
+		   *end = text + strlen(text);
+	double rows = ROWS;
+	if (!colon) {
+		at.offset = strlen(text);
+		error(at, range_note, "expected ':' and where the range ends");
+	}
+	if (!read_number(text, colon, &band.from) || !(band.from > 0 && isfinite(band.from)))
+		error(at, range_note, "expected a frequency above 0");
+	at.offset = (size_t)(colon + 1 - text);
+	if (!read_number(colon + 1, last ? last : end, &band.to) || !(band.to > band.from && isfinite(band.to)))
+		error(at, range_note, "expected a frequency above the first");
+	at.offset = last ? (size_t)(last + 1 - text) : 0;
+	if (last && (!read_number(last + 1, end, &rows) || rows != floor(rows) || rows < 2 ||
+		     rows > LIMIT_FREQUENCIES))
+		error(at, range_note, "expected a number of frequencies from 2 to %d", LIMIT_FREQUENCIES);
+	band.count = (int)rows;
+	return band;
+}
+
+/* f0 (f1/f0)^(k/(N-1)); the ends as they are given, others good to a double */
+double frequency_of(const struct band *band, int row)
+{
+	if (row == 0 || row == band->count - 1)
+		return row ? band->to : band->from;
+	mpfr_t f, ratio;
+	mpfr_init2(f, 128);
+	mpfr_init2(ratio, 128);
+	mpfr_set_d(ratio, band->to, MPFR_RNDN);
+	mpfr_div_d(ratio, ratio, band->from, MPFR_RNDN);
+	mpfr_log(ratio, ratio, MPFR_RNDN);
+	mpfr_mul_ui(ratio, ratio, (unsigned long)row, MPFR_RNDN);
+	mpfr_div_ui(ratio, ratio, (unsigned long)(band->count - 1), MPFR_RNDN);
+	mpfr_exp(ratio, ratio, MPFR_RNDN);
+	mpfr_mul_d(f, ratio, band->from, MPFR_RNDN);
+	double value = mpfr_get_d(f, MPFR_RNDN);
+	mpfr_clear(f);
+	mpfr_clear(ratio);
+	return value;
+}
+
+/* From a decade below the lowest that is not 0 to one above the highest, at whole decades' tenths; without any: 0.1 to
+ * 10 Hz */
+struct band band_of_poles(int count, const struct pole_report *pole, int rows)
+{
+	double low = 0, high = 0;
+	for (int i = 0; i < count; i++) {
+		double hertz = mpfr_get_d(pole[i].hertz, MPFR_RNDN);
+		if (hertz > 0 && isfinite(hertz)) {
+			low = low == 0 || hertz < low ? hertz : low;
+			high = hertz > high ? hertz : high;
+		}
+	}
+	if (low == 0)
+		low = high = 1;
+	double down = pow(10, floor(log10(low))), up = pow(10, floor(log10(high)));
+	return (struct band){ floor(low / down) * down / 10, ceil(high / up) * up * 10, rows };
+}
+
+/* ---- the numbers ---- */
+
+static void need_transfers(const struct model *model)
+{
+	struct drive *drive;
+	if (model->system.states > LIMIT_TRANSFERS)
+		error(model->asked.step_at, "--reduce or --modes makes it smaller",
+		      "the model has %d states: frequency responses are limited to %d", model->system.states,
+		      LIMIT_TRANSFERS);
+	if (drives_of(model, &drive) == 0)
+		error(model->asked.step_at, "input u, and u in an equation",
+		      "there is no input and no load that an output could be told over");
+}
+
+struct responses responses_of(const struct step *step, struct band band)
+{
+	const struct model *model = step->shown->model;
+	need_transfers(model);
+	struct responses r = { .band = band };
+	r.count = transfers_of(resolvent_of(&model->system), model, &r.transfer);
+	r.size = ARRAY(double, (size_t)band.count * (size_t)r.count + 1);
+	r.angle = ARRAY(double, (size_t)band.count * (size_t)r.count + 1);
+	for (int k = 0; k < r.count; k++) {
+		struct course course = course_of(model, &r.transfer[k]);
+		progress("frequency response", k, r.count);
+		for (int row = 0; row < band.count; row++) {
+			double f = frequency_of(&band, row), angle;
+			transfer_at(&r.transfer[k], f, &r.size[row * r.count + k], &angle);
+			r.angle[row * r.count + k] = angle_on_course(&course, f, angle);
+		}
+	}
+	progress_end();
+	return r;
+}
+
+void print_response(FILE *to, const struct step *step, const char *band)
+{
+	struct responses r = responses_of(step, band_of(band));
+	fputs("f", to);
+	for (int k = 0; k < r.count; k++)
+		fprintf(to, ",%s/%s mag,%s/%s phase", r.transfer[k].output, r.transfer[k].drive, r.transfer[k].output,
+			r.transfer[k].drive);
+	fputc('\n', to);
+	for (int row = 0; row < r.band.count; row++) {
+		fprintf(to, "%.17g", frequency_of(&r.band, row));
+		for (int k = 0; k < r.count; k++)
+			fprintf(to, ",%.17g,%.17g", r.size[row * r.count + k], r.angle[row * r.count + k]);
+		fputc('\n', to);
+	}
+}

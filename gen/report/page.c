@@ -1,0 +1,244 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* One page of HTML with everything in it: equations, matrices, modes, pictures, what was chosen, what it costs, how
+ * far it may be off. It reads well at 400 points of width too: what is wide moves in a frame of its own. */
+#include "report/report.h"
+
+#include <math.h>
+
+struct section {
+	const char *title;
+	void (*print)(FILE *to, const struct step *step);
+	bool (*applies)(const struct step *step); /* NULL: always */
+};
+
+static const char style[] =
+	"body{font:16px/1.5 system-ui,sans-serif;color:#222;background:#fff;max-width:60rem;margin:0 auto;"
+	"padding:1rem}\n"
+	"h1{font-size:1.6rem;margin:.2em 0}h2{font-size:1.2rem;margin:1.6em 0 .4em;border-bottom:1px solid #ccc}\n"
+	"nav a{margin-right:.9em;white-space:nowrap}a{color:#1f5fa8}p{margin:.5em 0}\n"
+	".wide{overflow-x:auto;margin:.5em 0}\n"
+	"pre{font:.85rem/1.45 ui-monospace,monospace;background:#f5f5f5;padding:.6em .8em;margin:.5em 0;"
+	"overflow-x:auto}\n"
+	"pre.text{white-space:pre-wrap;overflow-wrap:anywhere}\n"
+	"table{border-collapse:collapse;font-size:.9rem}td,th{padding:.2em .7em;text-align:right;"
+	"border-bottom:1px solid #e4e4e4;white-space:nowrap}th{font-weight:600}\n"
+	"td.name,th.name{text-align:left}table.matrix{display:inline-table;margin:.3em 1.4em .3em 0;"
+	"border-left:2px solid #444;border-right:2px solid #444}table.matrix td{border:0}\n"
+	"figure{margin:.6em 0;overflow-x:auto}figure svg{display:block;width:100%;min-width:38rem;height:auto}\n";
+
+/* ---- text as HTML ---- */
+
+static const char *escaped(const char *text)
+{
+	const char *html = "";
+	for (; *text; text++) {
+		const char *as = *text == '<' ? "&lt;" : *text == '>' ? "&gt;" : *text == '&' ? "&amp;"
+				 : *text == '"' ? "&quot;" : NULL;
+		html = as ? format("%s%s", html, as) : format("%s%c", html, *text);
+	}
+	return html;
+}
+
+static void copy_escaped(FILE *from, FILE *to)
+{
+	rewind(from);
+	for (int c; (c = getc(from)) != EOF;)
+		if (c == '<' || c == '>' || c == '&')
+			fputs(c == '<' ? "&lt;" : c == '>' ? "&gt;" : "&amp;", to);
+		else
+			putc(c, to);
+}
+
+/* What is told a person, as it is */
+static void print_words(FILE *to, const struct step *step, void (*print)(FILE *to, const struct step *step),
+			const char *kind)
+{
+	FILE *words = new_script();
+	print(words, step);
+	fprintf(to, "<pre%s>", kind);
+	copy_escaped(words, to);
+	fputs("</pre>\n", to);
+	fclose(words);
+}
+
+/* ---- sections ---- */
+
+static const struct model *told_model(const struct step *step)
+{
+	const struct model *model = step->shown->model;
+	return model->shortened ? model : model->written;
+}
+
+static void print_equations(FILE *to, const struct step *step)
+{
+	print_words(to, step, person_equations, "");
+}
+
+static void print_matrix(FILE *to, const char *name, int n, const mpq_t *A)
+{
+	fprintf(to, "<div class=\"wide\">%s = <table class=\"matrix\">\n", name);
+	for (int i = 0; i < n; i++) {
+		fputs("<tr>", to);
+		for (int j = 0; j < n; j++)
+			fprintf(to, "<td>%s</td>", readable_text(A[i * n + j]));
+		fputs("</tr>\n", to);
+	}
+	fputs("</table></div>\n", to);
+}
+
+static void print_matrices(FILE *to, const struct step *step)
+{
+	const struct model *model = told_model(step);
+	int length = resolvent_determinant(step->written)->length;
+	mpq_t *B = rationals((size_t)length);
+	characteristic_polynomial(step->written, B);
+	fprintf(to, "<p>%sP(s) = M s<sup>2</sup> + C s + K, over", has_leftover(step) || model->switching
+			? "Of the terms that are linear with constant coefficients: " : "");
+	for (int i = 0; i < model->n; i++)
+		fprintf(to, "%s %s", i ? "," : "", escaped(model->coord_name[i]));
+	fputs(".</p>\n", to);
+	print_matrix(to, "M", model->n, (const mpq_t *)model->system.M);
+	print_matrix(to, "C", model->n, (const mpq_t *)model->system.C);
+	print_matrix(to, "K", model->n, (const mpq_t *)model->system.K);
+	fprintf(to, "<p>Characteristic polynomial, det P(s):</p>\n<pre>B(s) = %s</pre>\n",
+		polynomial_text(length, (const mpq_t *)B));
+}
+
+static void print_modes(FILE *to, const struct step *step)
+{
+	struct pole_report *pole;
+	int count = poles_of(step->model, step->written, &pole);
+	fputs("<div class=\"wide\"><table>\n<tr><th class=\"name\">pole [1/s]</th><th>frequency [Hz]</th><th>damping "
+	      "ratio</th></tr>\n", to);
+	for (int i = 0; i < count; i++)
+		fprintf(to, "<tr><td class=\"name\">%s</td><td>%.8g</td><td>%.8g</td></tr>\n", pole_text(&pole[i]),
+			mpfr_get_d(pole[i].hertz, MPFR_RNDN), mpfr_get_d(pole[i].damping_ratio, MPFR_RNDN));
+	fputs("</table></div>\n", to);
+}
+
+static const char *entry_text(const struct mode_shape *shape, int i)
+{
+	const char *re = format("%.4g", shape->re[i]);
+	if (shape->im[i] == 0)
+		return re;
+	return format("%s %c %.4g i", re, shape->im[i] < 0 ? '-' : '+', fabs(shape->im[i]));
+}
+
+static bool has_shapes(const struct step *step)
+{
+	return told_model(step)->n <= LIMIT_SHAPES;
+}
+
+static void print_shapes(FILE *to, const struct step *step)
+{
+	const struct model *model;
+	struct mode_shape *shape;
+	int count = shapes_of_step(step, &shape, &model);
+	fputs("<p>The largest entry of each is 1.</p>\n<div class=\"wide\"><table>\n<tr><th>frequency [Hz]</th>", to);
+	for (int i = 0; i < model->n; i++)
+		fprintf(to, "<th>%s</th>", escaped(model->coord_name[i]));
+	fputs("</tr>\n", to);
+	for (int k = 0; k < count; k++) {
+		fprintf(to, "<tr><td>%.6g</td>", mpfr_get_d(shape[k].pole->hertz, MPFR_RNDN));
+		for (int i = 0; i < model->n; i++)
+			fprintf(to, "<td>%s</td>", entry_text(&shape[k], i));
+		fputs("</tr>\n", to);
+	}
+	fputs("</table></div>\n", to);
+	picture_in_page(to, step, "modes");
+}
+
+static void print_poles(FILE *to, const struct step *step) { picture_in_page(to, step, "poles"); }
+static void print_frf(FILE *to, const struct step *step) { picture_in_page(to, step, "frf"); }
+static void print_responses(FILE *to, const struct step *step) { picture_in_page(to, step, "response"); }
+
+static bool has_transfers(const struct step *step)
+{
+	const struct model *model = step->shown->model;
+	struct drive *drive;
+	struct transfer *t;
+	if (model->system.states > LIMIT_TRANSFERS || drives_of(model, &drive) == 0)
+		return false;
+	int count = transfers_of(resolvent_of(&model->system), model, &t);
+	while (count > 0 && t[count - 1].N.length == 0)
+		count--;
+	return count > 0;
+}
+
+static bool has_response(const struct step *step)
+{
+	const struct model *model = step->shown->model;
+	return !model->switching && !has_leftover(step) && model->system.inputs == 0;
+}
+
+static void print_gains(FILE *to, const struct step *step)
+{
+	const struct model *model = step->shown->model;
+	struct transfer *t;
+	int count = transfers_of(resolvent_of(&model->system), model, &t);
+	fputs("<div class=\"wide\"><table>\n<tr><th class=\"name\">output</th><th class=\"name\">over</th><th>static "
+	      "gain</th><th class=\"name\">zeros [1/s]</th></tr>\n", to);
+	for (int k = 0; k < count; k++)
+		fprintf(to, "<tr><td class=\"name\">%s</td><td class=\"name\">%s</td><td>%s</td><td class=\"name\">%s"
+			    "</td></tr>\n", escaped(t[k].output), escaped(t[k].drive), static_gain_text(&t[k]),
+			zeros_text(model, &t[k]));
+	fputs("</table></div>\n", to);
+}
+
+static void print_chosen(FILE *to, const struct step *step)
+{
+	const struct model *model = step->shown->model;
+	fprintf(to, "<p>Scheme %s%s, form %s, h = %s s, numbers of type %s.</p>\n", scheme_name(model->scheme),
+		model->asked.scheme_at.source ? " (asked for)" : " (best that the model allows)", step_form_text(step),
+		readable_text(model->h), target_name());
+	if (model->obstacle && model->obstacle_text)
+		fprintf(to, "<p>Not exact as a whole: %s.</p>\n", escaped(model->obstacle_text));
+	print_words(to, step, person_course, " class=\"text\"");
+}
+
+static void print_cost(FILE *to, const struct step *step)
+{
+	print_words(to, step, person_cost, " class=\"text\"");
+}
+
+static const struct section sections[] = {
+	{ "Equations", print_equations, NULL },
+	{ "Matrices", print_matrices, NULL },
+	{ "Poles and modes", print_modes, NULL },
+	{ "Poles in the plane", print_poles, NULL },
+	{ "Mode shapes", print_shapes, has_shapes },
+	{ "Static gains and zeros", print_gains, has_transfers },
+	{ "Frequency responses", print_frf, has_transfers },
+	{ "Response from the start", print_responses, has_response },
+	{ "What was chosen, and why", print_chosen, NULL },
+	{ "Cost and error of a step", print_cost, NULL }
+};
+enum { SECTIONS = sizeof sections / sizeof *sections };
+
+static bool is_there(const struct section *section, const struct step *step)
+{
+	return !section->applies || section->applies(step);
+}
+
+void print_page(FILE *to, const struct step *step, const char *options)
+{
+	const struct model *model = step->shown->model;
+	fprintf(to, "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\"/>\n<meta name=\"viewport\" "
+		    "content=\"width=device-width,initial-scale=1\"/>\n<title>%s</title>\n<style>\n%s</style>\n"
+		    "</head>\n<body>\n<h1>%s</h1>\n", model->name, style, model->name);
+	fprintf(to, "<p>%d coordinate%s, %d states, %d input%s, %d output%s; plgen " PLGEN_VERSION "%s%s.</p>\n<nav>",
+		model->written->n, model->written->n == 1 ? "" : "s", model->written->system.states,
+		model->system.inputs, model->system.inputs == 1 ? "" : "s", model->outputs,
+		model->outputs == 1 ? "" : "s", *options ? " " : "", escaped(options));
+	for (int i = 0; i < SECTIONS; i++)
+		if (is_there(&sections[i], step))
+			fprintf(to, "<a href=\"#s%d\">%s</a>\n", i, sections[i].title);
+	fputs("</nav>\n", to);
+	for (int i = 0; i < SECTIONS; i++) {
+		if (!is_there(&sections[i], step))
+			continue;
+		fprintf(to, "<h2 id=\"s%d\">%s</h2>\n", i, sections[i].title);
+		sections[i].print(to, step);
+	}
+	fputs("</body>\n</html>\n", to);
+}

@@ -1,0 +1,345 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What --explain tells of the linear part beside its matrices and poles: mode shapes, zeros, static gains, and the
+ * state space x' = A x + B u, y = C x + D u: u are the inputs, then the loads, each with its function of time taken as
+ * u. */
+#include "report/report.h"
+
+#include <math.h>
+#include <string.h>
+
+/* ---- state space ---- */
+
+struct space {
+	const struct model *model;
+	int states, drives, outputs;    /* outputs: those that are told */
+	struct drive *drive;
+	int *output;
+	bool slopes;                    /* an input's u' acts: B1 u', D1 u' beside */
+	mpq_t *A, *B, *B1, *C, *D, *D1; /* row-major; drives are columns of B and D */
+};
+
+static const mpq_t *force_of(const struct space *s, int drive, bool slope)
+{
+	const struct linear *system = &s->model->system;
+	const struct drive *d = &s->drive[drive];
+	if (d->input >= 0)
+		return (const mpq_t *)system->input[d->input].force[slope];
+	return slope ? NULL : (const mpq_t *)system->load[d->load].force[d->column] + d->segment * system->n;
+}
+
+/* Column `drive` of B: W^-1 force, where the highest derivatives are */
+static void fill_column(const struct space *s, const mpq_t *inverse, const mpq_t *force, int drive, mpq_t *B)
+{
+	const struct linear *system = &s->model->system;
+	int n = system->n;
+	mpq_t *highest = rationals((size_t)n);
+	rational_product(n, n, 1, inverse, force, highest);
+	for (int i = 0; i < n; i++)
+		mpq_set(B[(system->velocity[i] >= 0 ? system->velocity[i] : i) * s->drives + drive], highest[i]);
+	rationals_free(highest, (size_t)n);
+}
+
+static void fill_inputs(struct space *s)
+{
+	int n = s->model->system.n, column;
+	mpq_t *inverse = rationals((size_t)(n * n));
+	leading_inverse(&s->model->system, inverse, &column);
+	for (int d = 0; d < s->drives; d++) {
+		fill_column(s, (const mpq_t *)inverse, force_of(s, d, false), d, s->B);
+		const mpq_t *slope = force_of(s, d, true);
+		for (int i = 0; slope && i < n; i++)
+			s->slopes = s->slopes || mpq_sgn(slope[i]) != 0;
+		if (slope)
+			fill_column(s, (const mpq_t *)inverse, slope, d, s->B1);
+	}
+}
+
+static void fill_outputs(struct space *s)
+{
+	int segments = s->model->system.segments;
+	for (int i = 0; i < s->outputs; i++) {
+		const struct output *output = &s->model->output[s->output[i]];
+		for (int j = 0; j < s->states; j++)
+			mpq_set(s->C[i * s->states + j], output->state[j]);
+		for (int d = 0; d < s->drives; d++) {
+			const struct drive *drive = &s->drive[d];
+			mpq_set(s->D[i * s->drives + d],
+				drive->input >= 0 ? output->input[0][drive->input]
+						  : output->load[drive->load][drive->column * segments +
+									      drive->segment]);
+			if (drive->input < 0)
+				continue;
+			mpq_set(s->D1[i * s->drives + d], output->input[1][drive->input]);
+			s->slopes = s->slopes || mpq_sgn(output->input[1][drive->input]) != 0;
+		}
+	}
+}
+
+static struct space space_of(const struct model *model)
+{
+	struct space s = { .model = model, .states = model->system.states };
+	s.drives = drives_of(model, &s.drive);
+	s.output = ARRAY(int, (size_t)model->outputs + 1);
+	for (int i = 0; i < model->outputs; i++)
+		if (is_told(&model->output[i]))
+			s.output[s.outputs++] = i;
+	size_t states = (size_t)s.states, drives = (size_t)s.drives, outputs = (size_t)s.outputs;
+	s.A = state_matrix(&model->system, false);
+	s.B = rationals(states * drives);
+	s.B1 = rationals(states * drives);
+	s.C = rationals(outputs * states);
+	s.D = rationals(outputs * drives);
+	s.D1 = rationals(outputs * drives);
+	fill_inputs(&s);
+	fill_outputs(&s);
+	return s;
+}
+
+/* [A B; 0 0] h has the exponential [Phi Gamma; 0 I]: u held over h (Van Loan 1978). Errors are below 2^-100 of the
+ * largest entry; NULL: it could not be found. (states + drives) squared */
+static double *held_matrix(const struct space *s)
+{
+	int size = s->states + s->drives;
+	mpq_t *whole = rationals((size_t)(size * size)), exact;
+	double *held = ARRAY(double, (size_t)(size * size));
+	for (int i = 0; i < s->states; i++)
+		for (int j = 0; j < size; j++)
+			mpq_set(whole[i * size + j], j < s->states ? s->A[i * s->states + j]
+								   : s->B[i * s->drives + j - s->states]);
+	struct taylor *t = taylor_of(size, (const mpq_t *)whole, s->model->h);
+	rationals_free(whole, (size_t)(size * size));
+	if (!taylor_enclose(t, 128))
+		return NULL;
+	mpfi_t value;
+	mpfi_init2(value, 192);
+	mpq_init(exact);
+	for (int i = 0; i < size * size; i++) {
+		taylor_entry(t, i / size, i % size, value);
+		held[i] = taylor_exact(t, i / size, i % size, exact) ? nearest_double(exact) : mpfi_get_d(value);
+	}
+	mpq_clear(exact);
+	mpfi_clear(value);
+	return held;
+}
+
+/* ---- JSON ---- */
+
+static const char *number_text(double value)
+{
+	return isfinite(value) ? format("%.17g", value) : "null";
+}
+
+static void json_rows(FILE *to, const char *key, int rows, int columns, int stride, const double *value)
+{
+	fprintf(to, "\"%s\": [", key);
+	for (int i = 0; i < rows; i++) {
+		fputs(i ? ",\n      [" : "\n      [", to);
+		for (int j = 0; j < columns; j++)
+			fprintf(to, "%s%s", j ? ", " : "", number_text(value[i * stride + j]));
+		fputc(']', to);
+	}
+	fputs("]", to);
+}
+
+static void json_exact(FILE *to, const char *key, int rows, int columns, mpq_t *const value)
+{
+	double *rounded = ARRAY(double, (size_t)(rows * columns) + 1);
+	for (int i = 0; i < rows * columns; i++)
+		rounded[i] = nearest_double(value[i]);
+	json_rows(to, key, rows, columns, columns, rounded);
+	discard(rounded);
+}
+
+static void json_discrete(FILE *to, const struct space *s)
+{
+	double *held = s->slopes || s->model->system.states > LIMIT_HELD_STATES ? NULL : held_matrix(s);
+	int size = s->states + s->drives;
+	if (!held) {
+		fputs("    \"discrete\": null},\n", to);
+		return;
+	}
+	fprintf(to, "    \"discrete\": {\"h\": %.17g, ", nearest_double(s->model->h));
+	json_rows(to, "A", s->states, s->states, size, held);
+	fputs(",\n     ", to);
+	json_rows(to, "B", s->states, s->drives, size, held + s->states);
+	fputs(",\n     ", to);
+	json_exact(to, "C", s->outputs, s->states, s->C);
+	fputs(",\n     ", to);
+	json_exact(to, "D", s->outputs, s->drives, s->D);
+	fputs("}},\n", to);
+}
+
+static void json_space(FILE *to, const struct model *model)
+{
+	struct space s = space_of(model);
+	fputs("  \"ss\": {\"inputs\": [", to);
+	for (int d = 0; d < s.drives; d++)
+		fprintf(to, "%s\"%s\"", d ? ", " : "", s.drive[d].name);
+	fputs("], \"outputs\": [", to);
+	for (int i = 0; i < s.outputs; i++)
+		fprintf(to, "%s\"%s\"", i ? ", " : "", model->output[s.output[i]].name);
+	fputs("],\n    ", to);
+	json_exact(to, "A", s.states, s.states, s.A);
+	fputs(",\n    ", to);
+	json_exact(to, "B", s.states, s.drives, s.B);
+	fputs(",\n    ", to);
+	json_exact(to, "C", s.outputs, s.states, s.C);
+	fputs(",\n    ", to);
+	json_exact(to, "D", s.outputs, s.drives, s.D);
+	fputs(",\n    ", to);
+	if (s.slopes) {
+		json_exact(to, "B_slope", s.states, s.drives, s.B1);
+		fputs(",\n    ", to);
+		json_exact(to, "D_slope", s.outputs, s.drives, s.D1);
+		fputs(",\n    ", to);
+	}
+	json_discrete(to, &s);
+}
+
+static void json_shapes(FILE *to, int count, const struct mode_shape *shape, int n)
+{
+	fputs("  \"shapes\": [", to);
+	for (int k = 0; k < count; k++) {
+		fprintf(to, "%s\n    {\"pole\": {\"re\": %s, \"im\": %s},\n     \"re\": [", k ? "," : "",
+			number_text(mpfr_get_d(shape[k].pole->re, MPFR_RNDN)),
+			number_text(mpfr_get_d(shape[k].pole->im, MPFR_RNDN)));
+		for (int i = 0; i < n; i++)
+			fprintf(to, "%s%.17g", i ? ", " : "", shape[k].re[i]);
+		fputs("],\n     \"im\": [", to);
+		for (int i = 0; i < n; i++)
+			fprintf(to, "%s%.17g", i ? ", " : "", shape[k].im[i]);
+		fputs("]}", to);
+	}
+	fputs("],\n", to);
+}
+
+static void json_zero_list(FILE *to, const struct model *model, const struct transfer *t)
+{
+	struct zero *zero;
+	int count = zeros_of_transfer(model, t, &zero);
+	bool first = true;
+	for (int i = 0; i < count; i++)
+		for (int k = 0; k <= zero[i].pair; k++, first = false)
+			fprintf(to, "%s{\"re\": %.17g, \"im\": %.17g, \"multiplicity\": %d}", first ? "" : ", ",
+				zero[i].re, k ? -zero[i].im : zero[i].im, zero[i].multiplicity);
+}
+
+/* Per output over each drive: its static gain, null where a pole is at 0; its zeros, null where it is 0 for all s */
+static void json_transfers(FILE *to, const struct model *model, int count, const struct transfer *t)
+{
+	mpq_t gain;
+	mpq_init(gain);
+	fputs("  \"zeros\": [", to);
+	for (int k = 0; k < count; k++) {
+		fprintf(to, "%s\n    {\"output\": \"%s\", \"input\": \"%s\", \"static_gain\": %s,\n     \"zeros\": ",
+			k ? "," : "", t[k].output, t[k].drive,
+			static_gain(&t[k], gain) ? number_text(nearest_double(gain)) : "null");
+		if (t[k].N.length == 0) {
+			fputs("null}", to);
+			continue;
+		}
+		fputc('[', to);
+		json_zero_list(to, model, &t[k]);
+		fputs("]}", to);
+	}
+	fputs("],\n", to);
+	mpq_clear(gain);
+}
+
+int shapes_of_step(const struct step *step, struct mode_shape **shape, const struct model **of)
+{
+	const struct model *model = step->shown->model;
+	struct pole_report *pole;
+	*of = model->shortened ? model : model->written;     /* that the poles are of */
+	int count = poles_of(step->model, step->written, &pole);
+	return shapes_of(&(*of)->system, count, pole, shape);
+}
+
+static int transfers_of_step(const struct step *step, struct transfer **t)
+{
+	const struct model *model = step->shown->model;
+	struct drive *drive;
+	if (model->system.states > LIMIT_TRANSFERS || drives_of(model, &drive) == 0)
+		return 0;
+	return transfers_of(resolvent_of(&model->system), model, t);
+}
+
+void json_linear(FILE *to, const struct step *step)
+{
+	const struct model *of;
+	struct mode_shape *shape;
+	struct transfer *transfer;
+	int shapes = shapes_of_step(step, &shape, &of);
+	json_shapes(to, shapes, shape, of->system.n);
+	int transfers = transfers_of_step(step, &transfer);
+	json_transfers(to, step->shown->model, transfers, transfer);
+	json_space(to, step->shown->model);
+}
+
+/* ---- for a person ---- */
+
+const char *zeros_text(const struct model *model, const struct transfer *t)
+{
+	struct zero *zero;
+	int count = t->N.length ? zeros_of_transfer(model, t, &zero) : 0;
+	const char *text = "";
+	for (int i = 0; i < count; i++) {
+		text = format("%s%s%.8g", text, *text ? ", " : "", zero[i].re);
+		if (zero[i].pair)
+			text = format("%s +- %.8g i", text, zero[i].im);
+		if (zero[i].multiplicity > 1)
+			text = format("%s (%d-fold)", text, zero[i].multiplicity);
+	}
+	return t->N.length == 0 ? "does not react" : *text ? text : "none";
+}
+
+const char *static_gain_text(const struct transfer *t)
+{
+	mpq_t gain;
+	mpq_init(gain);
+	const char *text = static_gain(t, gain) ? format("%.8g", nearest_double(gain)) : "infinite";
+	mpq_clear(gain);
+	return text;
+}
+
+static void person_shapes(FILE *to, const struct model *of, int count, const struct mode_shape *shape)
+{
+	const struct linear *system = &of->system;
+	fputs("\nMode shapes, the largest entry of each 1:\n", to);
+	for (int k = 0; k < count; k++) {
+		fprintf(to, "    %.8g Hz:", mpfr_get_d(shape[k].pole->hertz, MPFR_RNDN));
+		for (int i = 0; i < system->n; i++) {
+			fprintf(to, "%s %s %.6g", i ? "," : "", of->coord_name[i], shape[k].re[i]);
+			if (shape[k].im[i] != 0)
+				fprintf(to, " %c %.6g i", shape[k].im[i] < 0 ? '-' : '+', fabs(shape[k].im[i]));
+		}
+		fputc('\n', to);
+	}
+}
+
+static void person_transfers(FILE *to, const struct step *step)
+{
+	const struct model *model = step->shown->model;
+	struct transfer *t;
+	struct drive *drive;
+	int drives = drives_of(model, &drive), count = transfers_of_step(step, &t);
+	if (drives && model->system.states > LIMIT_TRANSFERS)
+		fprintf(to, "\nStatic gains and zeros are told of up to %d states.\n", LIMIT_TRANSFERS);
+	if (count)
+		fprintf(to, "\n    %-36s %-16s zeros [1/s]\n", "output over input or load", "static gain");
+	for (int k = 0; k < count; k++)
+		fprintf(to, "    %-36s %-16s %s\n", format("%s / %s", t[k].output, t[k].drive), static_gain_text(&t[k]),
+			zeros_text(model, &t[k]));
+}
+
+void person_linear(FILE *to, const struct step *step)
+{
+	const struct model *of;
+	struct mode_shape *shape;
+	int count = shapes_of_step(step, &shape, &of);
+	if (of->system.n > LIMIT_SHAPES)
+		fprintf(to, "\nMode shapes are told of up to %d coordinates.\n", LIMIT_SHAPES);
+	else
+		person_shapes(to, of, count, shape);
+	person_transfers(to, step);
+}

@@ -1,0 +1,277 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Transfer functions H(s) = scale N(s)/D(s) of the linear part, exact and without common factors: each output over each
+ * input u, and over what each load forces with its function of time taken as u. The image of an output under the ramp
+ * u = t from rest is H(s)/s^2, under a step H(s)/s (Laplace transform of an integral). */
+#include "report/report.h"
+
+#include <math.h>
+
+/* ---- outputs and what drives them ---- */
+
+bool is_told(const struct output *output)
+{
+	return (output->form || !output->value) && !output->peak; /* without declared outputs: a state */
+}
+
+/* The first segment of time in which it acts, on an equation or on an output; -1: none */
+static int segment_of_column(const struct model *model, int load, int column)
+{
+	const struct linear *system = &model->system;
+	for (int s = 0; s < system->segments; s++) {
+		for (int i = 0; i < system->n; i++)
+			if (mpq_sgn(system->load[load].force[column][s * system->n + i]) != 0)
+				return s;
+		for (int i = 0; i < model->outputs; i++)
+			if (is_told(&model->output[i]) &&
+			    mpq_sgn(model->output[i].load[load][column * system->segments + s]) != 0)
+				return s;
+	}
+	return -1;
+}
+
+int drives_of(const struct model *model, struct drive **drives)
+{
+	const struct linear *system = &model->system;
+	int count = 0;
+	*drives = ARRAY(struct drive, (size_t)(system->inputs + load_columns(system) + 1));
+	for (int i = 0; i < system->inputs; i++)
+		(*drives)[count++] = (struct drive){ system->input[i].name, i, 0, 0, 0 };
+	for (int l = 0; l < system->loads; l++)
+		for (int k = 0; k < system->load[l].columns; k++) {
+			int segment = segment_of_column(model, l, k);
+			if (segment >= 0)
+				(*drives)[count++] =
+					(struct drive){ column_text(&system->load[l], k), -1, l, k, segment };
+		}
+	return count;
+}
+
+/* ---- one transfer function ---- */
+
+static struct response *image_of_load(struct resolvent *r, const struct model *model, const struct output *output,
+				      const struct drive *drive)
+{
+	const struct linear *system = &model->system;
+	struct excitation e = excitation_new(system->n, NULL, NULL, 1);
+	for (int k = 0; k < system->n; k++)
+		mpq_set(e.force[k], system->load[drive->load].force[drive->column][drive->segment * system->n + k]);
+	mpq_set(e.direct[0], output->load[drive->load][drive->column * system->segments + drive->segment]);
+	return image_of(r, &(struct question){ NULL, 1, &e, (const mpq_t *)output->state });
+}
+
+/* s^powers times an image, without common factors */
+static void multiply_by_s(struct transfer *t, const struct response *image, int powers)
+{
+	struct poly D = image->spectrum->D;
+	int poles = D.length ? poly_valuation(D) : 0, shared = poles < powers ? poles : powers;
+	mpq_init(t->scale);
+	mpq_set(t->scale, image->scale);
+	t->N = image->N.length ? poly_shift(image->N, powers - shared) : image->N;
+	t->D = poly_shift(D, -shared);
+}
+
+struct transfer transfer_of(struct resolvent *r, const struct model *model, int output, const struct drive *drive)
+{
+	const struct output *read = &model->output[output];
+	struct transfer t = { .output = read->name, .drive = drive->name };
+	mpq_t zero, one;
+	mpq_inits(zero, one, NULL);
+	mpq_set_ui(one, 1, 1);
+	if (drive->input >= 0)
+		multiply_by_s(&t, output_of_input(r, &model->system, read, drive->input, zero, one), 2);
+	else
+		multiply_by_s(&t, image_of_load(r, model, read, drive), 1);
+	mpq_clears(zero, one, NULL);
+	return t;
+}
+
+int transfers_of(struct resolvent *r, const struct model *model, struct transfer **list)
+{
+	struct drive *drive;
+	int drives = drives_of(model, &drive), count = 0;
+	*list = ARRAY(struct transfer, (size_t)(drives * model->outputs) + 1);
+	progress("transfer function", 0, drives * model->outputs);
+	for (int d = 0; d < drives; d++)
+		for (int i = 0; i < model->outputs; i++) {
+			progress("transfer function", d * model->outputs + i, drives * model->outputs);
+			if (is_told(&model->output[i]))
+				(*list)[count++] = transfer_of(r, model, i, &drive[d]);
+		}
+	progress_end();
+	return count;
+}
+
+/* ---- what is told of it ---- */
+
+bool static_gain(const struct transfer *t, mpq_ptr gain)
+{
+	mpq_t over;
+	mpq_set_ui(gain, 0, 1);
+	if (t->N.length == 0)
+		return true;
+	if (mpz_sgn(t->D.c[0]) == 0)
+		return false;
+	mpq_init(over);
+	mpq_set_z(gain, t->N.c[0]);
+	mpq_set_z(over, t->D.c[0]);
+	mpq_div(gain, gain, over);
+	mpq_mul(gain, gain, t->scale);
+	mpq_clear(over);
+	return true;
+}
+
+static void add_zero(struct zero *zero, const struct rectangle *at, int multiplicity, bool pair)
+{
+	mpfr_t middle;
+	mpfr_init2(middle, 128);
+	*zero = (struct zero){ 0, 0, multiplicity, pair };
+	if (at) {
+		mpfi_mid(middle, at->re);
+		zero->re = mpfr_get_d(middle, MPFR_RNDN);
+		mpfi_mid(middle, at->im);
+		zero->im = mpfr_get_d(middle, MPFR_RNDN);
+	}
+	mpfr_clear(middle);
+}
+
+static int roots_of(const struct model *model, const struct transfer *t, struct poly p, struct zero **list)
+{
+	int count = 0;
+	*list = ARRAY(struct zero, (size_t)p.length + 1);
+	if (p.length < 2)
+		return 0;
+	mpz_t content;
+	mpz_init(content);
+	struct spectrum *spectrum = spectrum_of(poly_primitive(p, content));
+	mpz_clear(content);
+	if (!spectrum_refine(spectrum, 128))
+		error(model->asked.step_at, NULL, "two zeros or poles of %s over %s are too close to each other to be "
+						  "told apart", t->output, t->drive);
+	if (spectrum->zero)
+		add_zero(&(*list)[count++], NULL, spectrum->zero, false);
+	for (int f = 0; f < spectrum->factors; f++)
+		for (int i = 0; i < spectrum->poles[f]; i++)
+			add_zero(&(*list)[count++], &spectrum->pole[f][i].at, spectrum->factor[f].multiplicity,
+				 !spectrum->pole[f][i].real);
+	return count;
+}
+
+int zeros_of_transfer(const struct model *model, const struct transfer *t, struct zero **list)
+{
+	return roots_of(model, t, t->N, list);
+}
+
+/* ---- its values on the imaginary axis ---- */
+
+/* N(s)/D(s) there */
+static void enclose_quotient(const struct transfer *t, double hertz, struct rectangle *z, int precision)
+{
+	struct rectangle s, D;
+	rectangle_init(&s, precision);
+	rectangle_init(&D, precision);
+	mpfi_const_pi(s.im);
+	mpfi_mul_2ui(s.im, s.im, 1);
+	mpfi_mul_d(s.im, s.im, hertz);
+	rectangle_evaluate(z, t->N, &s);
+	rectangle_evaluate(&D, t->D, &s);
+	rectangle_div(z, z, &D);
+	rectangle_clear(&s);
+	rectangle_clear(&D);
+}
+
+/* The nearest double, whatever the target; false: its ends have not the same */
+static bool round_double(mpfi_srcptr x, double *d)
+{
+	*d = mpfr_get_d(&x->left, MPFR_RNDN);
+	return *d == mpfr_get_d(&x->right, MPFR_RNDN);
+}
+
+/* |H| and, in degrees from -180 up to 180, its angle; a number below 0 is at -180. Both rounded to nearest, once */
+static bool round_polar(const struct transfer *t, const struct rectangle *z, double *size, double *angle)
+{
+	int precision = (int)mpfi_get_prec(z->re);
+	mpfi_t x, pi;
+	mpfi_init2(x, precision);
+	mpfi_init2(pi, precision);
+	mpfi_hypot(x, z->re, z->im);
+	mpfi_mul_q(x, x, t->scale);
+	mpfi_abs(x, x);
+	bool found = round_double(x, size) && isfinite(*size), negative = mpq_sgn(t->scale) < 0;
+	if (found && mpfi_is_zero(z->im)) {
+		*angle = mpfi_is_neg(z->re) != negative ? -180 : 0;
+	} else if (found) {
+		mpfi_t re, im;
+		mpfi_init2(re, precision);
+		mpfi_init2(im, precision);
+		mpfi_set(re, z->re);
+		mpfi_set(im, z->im);
+		if (negative) {
+			mpfi_neg(re, re);
+			mpfi_neg(im, im);
+		}
+		mpfi_const_pi(pi);
+		mpfi_atan2(x, im, re);
+		mpfi_mul_ui(x, x, 180);
+		mpfi_div(x, x, pi);
+		found = round_double(x, angle);
+		mpfi_clear(re);
+		mpfi_clear(im);
+	}
+	mpfi_clear(x);
+	mpfi_clear(pi);
+	return found;
+}
+
+void transfer_at(const struct transfer *t, double hertz, double *size, double *angle)
+{
+	*size = *angle = 0;
+	if (t->N.length == 0)
+		return;
+	bool found = false;
+	for (int precision = 128; !found && precision <= LIMIT_PRECISION; precision *= 2) {
+		struct rectangle z;
+		rectangle_init(&z, precision);
+		enclose_quotient(t, hertz, &z, precision);
+		found = round_polar(t, &z, size, angle);
+		rectangle_clear(&z);
+	}
+	if (!found)                     /* no frequency but 0 is a pole: others are rational multiples of pi */
+		*size = HUGE_VAL;
+}
+
+/* ---- its angle, which goes on from one frequency to the next ---- */
+
+static int lowest(struct poly p)
+{
+	return mpz_sgn(p.c[poly_valuation(p)]);
+}
+
+struct course course_of(const struct model *model, const struct transfer *t)
+{
+	struct course c = { 0 };
+	if (t->N.length == 0)
+		return c;
+	c.zeros = roots_of(model, t, t->N, &c.zero);
+	c.poles = roots_of(model, t, t->D, &c.pole);
+	c.start = mpq_sgn(t->scale) * lowest(t->N) * lowest(t->D) < 0 ? -180 : 0;
+	return c;
+}
+
+/* What they turn H by from frequency 0 to w, those at 0 a quarter each; one on the axis as if it were left of it */
+static double turn_of(int count, const struct zero *root, double w)
+{
+	double turn = 0;
+	for (int i = 0; i < count; i++) {
+		const struct zero *r = &root[i];
+		double by = atan2(w - r->im, fabs(r->re)) + (r->pair ? atan2(w + r->im, fabs(r->re)) : 0);
+		turn += (r->re > 0 ? -1 : 1) * r->multiplicity * by;
+	}
+	return turn * (180 / 3.141592653589793);
+}
+
+double angle_on_course(const struct course *c, double hertz, double angle)
+{
+	double w = 6.283185307179586 * hertz;
+	double about = c->start + turn_of(c->zeros, c->zero, w) - turn_of(c->poles, c->pole, w);
+	return angle + 360 * rint((about - angle) / 360);
+}

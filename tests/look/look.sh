@@ -1,0 +1,143 @@
+#!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
+# look.sh PLGEN LOOK ROOT: the linear part as --explain=json, --response, --plot and --report tell it. Numbers are
+# LOOK's; pictures are scripts, which a gnuplot of the test's own hands on as they are.
+set -u
+plgen=$(cd "$(dirname "$1")" && pwd)/$(basename "$1") || exit 99
+look=$(cd "$(dirname "$2")" && pwd)/$(basename "$2") || exit 99
+root=$(cd "$3" && pwd) || exit 99
+here=$root/tests/look
+. "$root/tests/tap.sh"
+
+# numbers NAME SPEC: one result for all that LOOK finds, of which it says those that are wrong
+numbers() {
+	"$plgen" --explain=json "$2" >json 2>log && "$plgen" --response 0.05:50:400 "$2" >csv 2>log &&
+		"$look" "$1" json csv >log
+	status=$?
+	grep '^not ok' -B 2 log >wrong && mv wrong log
+	result $status "numbers of $1"
+}
+numbers sdcsf "$root/models/sdcsf.spec"
+numbers car "$here/car.spec"
+numbers held "$here/held.spec"
+
+"$plgen" --response 1:2:3 "$here/car.spec" | head -n 1 | tr ',' '\n' >head.csv
+for force in 'road' 'sin(30*t)'; do
+	for output in body travel felt tyre; do
+		printf '%s/%s mag\n%s/%s phase\n' "$output" "$force" "$output" "$force"
+	done
+done | sed '1i f' >expected
+diff expected head.csv >log
+result $? 'names of the columns'
+
+"$plgen" --response 0.05:50:400 "$root/models/sdcsf.spec" >many && "$plgen" --response 0.05:50:2 \
+	"$root/models/sdcsf.spec" >two && [ "$(tail -n 1 many)" = "$(tail -n 1 two)" ] && [ "$(wc -l <two)" -eq 3 ]
+result $? 'a phase does not depend on the rows before it'
+
+# A load on the first of two masses: over x1, s^2 + s + 200, whose roots are -0.5 +- i sqrt(199.75)
+"$plgen" --explain "$root/models/sdcsf.spec" >text 2>log
+grep -F 'x1 / cos(5*t)' text | grep -F ' 0.0066666667 ' | grep -qF -- '-0.5 +- 14.133294 i'
+result $? 'the zeros of two masses'
+
+mkdir own bare
+cat >own/gnuplot <<'END'
+#!/bin/sh
+[ "$*" = '-d -' ] && exec cat
+END
+chmod +x own/gnuplot
+
+PATH=$PWD/own:$PATH "$plgen" --plot poles,modes,frf,response "$root/models/sdcsf.spec" >script 2>log
+result $? 'a script of all kinds'
+
+# block NAME: the rows of a block of data
+block() {
+	sed -n "/^\\\$$1 << END\$/,/^END\$/p" script | sed '1d;$d'
+}
+
+block frf >rows
+first=$(head -n 1 rows | cut -d ' ' -f 1)
+last=$(tail -n 1 rows | cut -d ' ' -f 1)
+"$plgen" --response "$first:$last:$(wc -l <rows | tr -d ' ')" "$root/models/sdcsf.spec" 2>log | sed 1d | tr ',' ' ' >csv
+[ -s csv ] && cmp rows csv >log 2>&1
+result $? 'frf is drawn from the numbers of --response'
+
+block response >rows
+"$plgen" --solution "$(tail -n 1 rows | cut -d ' ' -f 1)" "$root/models/sdcsf.spec" | sed 1d | tr ',' ' ' >csv
+cat >same.awk <<'END'
+NR == FNR { row[$1] = $0; next }
+$1 in row { same += row[$1] == $0; seen++ }
+END { print seen + 0, same + 0 >"/dev/stderr"; exit !(seen > 50 && same == seen) }
+END
+awk -f same.awk csv rows 2>log
+result $? 'response is drawn from the numbers of --solution'
+
+block poles | awk '{ print $1, $2 }' | sort >rows
+"$plgen" --explain=json "$root/models/sdcsf.spec" | sed -n '/"poles": \[/,/\],/p' | tr -d '{}' |
+	awk -F '[:,]' '/"re"/ { print $2, $4 }' | sed 's/^ //; s/  / /' | sort >csv
+[ -s csv ] && diff rows csv >log
+result $? 'poles are those of the JSON'
+
+! grep -E "$root|$work|20[0-9][0-9]-|:[0-9][0-9]:[0-9][0-9]" script >log
+result $? 'no paths and no dates in a script'
+
+PATH=$PWD/own:$PATH "$plgen" --report "$root/models/sdcsf.spec" >page 2>log && awk -f "$here/page.awk" page >log 2>&1
+result $? 'a page without pictures is closed well'
+
+# ---- without gnuplot, and where it fails ----
+
+# refused STATUS TEXT NAME OPTION...: nothing on standard output
+refused() {
+	expected=$1
+	text=$2
+	name=$3
+	shift 3
+	PATH=${path:-$PATH} "$plgen" "$@" >out 2>log
+	[ $? -eq "$expected" ] && [ ! -s out ] && grep -qF -- "$text" log
+	result $? "$name"
+}
+spec=$root/models/sdcsf.spec
+echo kept >kept.svg
+path=$PWD/bare
+refused 1 'gnuplot draws pictures, and it is not installed' 'gnuplot is missing' --plot poles "$spec"
+refused 1 'gnuplot draws pictures, and it is not installed' 'gnuplot is missing: the page' --report "$spec"
+refused 1 'gnuplot draws pictures' 'gnuplot is missing: onto a file' --plot poles -o kept.svg "$spec"
+printf '#!/bin/sh\necho no such terminal >&2\necho half a picture\nexit 1\n' >bare/gnuplot
+chmod +x bare/gnuplot
+path=$PWD/bare:$PATH
+refused 1 'no such terminal' 'gnuplot fails' --plot poles -o kept.svg "$spec"
+[ "$(cat kept.svg)" = kept ] && [ "$(ls kept.svg*)" = kept.svg ]
+result $? 'a file stays as it was where gnuplot fails'
+path=
+refused 2 "--plot takes response, poles, modes and frf, with commas between, found 'pole'" 'no such picture' \
+	--plot poles,pole "$spec"
+refused 2 "found ''" 'a picture without a name' --plot poles, "$spec"
+refused 2 "-o of --plot takes FILE.svg, FILE.png or FILE.pdf, found 'a.c'" 'no such ending' --plot poles -o a.c "$spec"
+refused 1 'plrun --plot' 'a response that is not linear' --plot response "$root/models/pendulum.spec"
+refused 1 'plrun --plot' 'a response with inputs' --plot response "$here/car.spec"
+refused 1 'no output that is linear reacts' 'no reaction' --plot frf "$root/tests/leftover/gated.spec"
+refused 1 'there is no input and no load' 'no input and no load' --plot frf "$root/models/pendulum.spec"
+refused 1 '30 states: frequency responses are limited to 24' 'too many states' --plot frf "$root/models/beam15.spec"
+
+# ---- with gnuplot ----
+
+if command -v gnuplot >log; then
+	good=0
+	for kind in 'svg <?xml' 'png PNG' 'pdf %PDF'; do
+		end=${kind%% *}
+		"$plgen" --plot frf,poles -o "a.$end" "$spec" >out 2>log &&
+			"$plgen" --plot frf,poles -o "b.$end" "$spec" && [ ! -s out ] &&
+			head -c 8 "a.$end" | grep -aqF "${kind#* }" || good=1
+	done
+	cmp a.svg b.svg >>log && cmp a.png b.png >>log && [ "$good" -eq 0 ]
+	result $? 'svg, png and pdf'
+	for name in models/sdcsf models/quarter_car models/quarter_car_bumps models/bilinear models/beam4 \
+		models/tuned_floor models/pendulum tests/anchors/growing tests/leftover/gated; do
+		"$plgen" --report "$root/$name.spec" >page 2>log && awk -f "$here/page.awk" page >log 2>&1 &&
+			grep -q '<svg ' page
+		result $? "the page of $name"
+	done
+else
+	skip 'svg, png and pdf' 'no gnuplot'
+fi
+
+tap_end
