@@ -174,7 +174,12 @@ void banner_expanded(const struct emitter *e)
 		       "largest value\n"
 		       " * of a state so far, $n_status says PL_INACCURATE.\n", tolerance);
 	else
-		say(e, " * One way through, whatever the numbers are; no step looks at its error.\n");
+		say(e, " * One way through, whatever the numbers are; no %s looks at its error.\n",
+		    spans_steps(e) ? "expansion" : "step");
+	if (spans_steps(e))
+		say(e, " * One expansion is over %d steps: those before its last are values of its series, by Horner's "
+		       "rule. Costs are\n"
+		       " * those of a step, its share of the expansion and of such values.\n", truncation->over);
 	say(e, " * What rounding takes from the state is kept in rest.\n");
 	tell_no_phi(e);
 }

@@ -195,7 +195,7 @@ static double find_radius(const struct values *v)
 	for (int i = 0; i < v->system->states; i++) {
 		long double radius, power;
 		if (fit(v->c[i], &radius, &power) && power > -ENTIRE)
-			least = fmin(least, (double)expl(radius) * mpq_get_d(v->step->model->h));
+			least = fmin(least, (double)expl(radius) * v->step->model->truncation.over * mpq_get_d(v->step->model->h));
 	}
 	return least;
 }
