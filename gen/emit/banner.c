@@ -481,6 +481,8 @@ static void banner_run(const struct emitter *e)
 		say(e, " * $n_run takes %d rows at a time, each from the state at the start of its block: "
 		       "tables of %d numbers.\n",
 		    rows->count, row_numbers(e->step));
+	else if (runs_in_blocks(e))
+		say(e, " * $n_run takes %d rows at a time, those of an expansion.\n", e->model->truncation.over);
 	else if (e->step->no_rows)
 		say(e, " * $n_run goes step by step, without blocks of rows: %s.\n", e->step->no_rows);
 }

@@ -318,6 +318,7 @@ bool serves_rows(const struct emitter *e);
 /* ---- emit_over.c: a series of fixed order over several steps ---- */
 
 bool spans_steps(const struct emitter *e);
+bool runs_in_blocks(const struct emitter *e);                     /* NAME_run takes all steps of an expansion at once */
 void emit_over_members(const struct emitter *e);
 void emit_over_step(const struct emitter *e);
 void emit_over_block(const struct emitter *e);                    /* NAME_block, where there is one */

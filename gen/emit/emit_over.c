@@ -18,10 +18,11 @@ bool spans_steps(const struct emitter *e)
 	return e->step->expansion && !e->step->collocation && truncation(e)->over > 1;
 }
 
-/* A block of rows has all coefficients as locals: no watch, and few enough that they stand twice. */
-static bool runs_in_blocks(const struct emitter *e)
+/* A block of rows has all coefficients as locals: no watch, few enough that they stand twice, and not --rows 1, which
+ * wants small code. */
+bool runs_in_blocks(const struct emitter *e)
 {
-	return spans_steps(e) && expands_in_step(e) && !watches(e) && is_written_out(e, order_of(e));
+	return spans_steps(e) && e->model->asked.rows != 1 && expands_in_step(e) && !watches(e) && is_written_out(e, order_of(e));
 }
 
 void emit_over_members(const struct emitter *e)
