@@ -177,10 +177,10 @@ void banner_expanded(const struct emitter *e)
 		say(e, " * One way through, whatever the numbers are; no %s looks at its error.\n",
 		    spans_steps(e) ? "expansion" : "step");
 	if (spans_steps(e))
-		say(e, " * One expansion is over %d steps, and its error is that of a step of %d h; those before the last "
-		       "are values of\n"
-		       " * its series, by Horner's rule. Costs are those of a step, its share of the expansion and of such "
-		       "values.\n", truncation->over, truncation->over);
+		say(e, " * One expansion is over %d steps, and its error is that of a step of %d h; those before the "
+		       "last are values of\n"
+		       " * its series, by Horner's rule. Costs are those of a step, its share of the expansion and of "
+		       "such values.\n", truncation->over, truncation->over);
 	say(e, " * What rounding takes from the state is kept in rest.\n");
 	tell_no_phi(e);
 }

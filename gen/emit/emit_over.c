@@ -22,7 +22,8 @@ bool spans_steps(const struct emitter *e)
  * wants small code. */
 bool runs_in_blocks(const struct emitter *e)
 {
-	return spans_steps(e) && e->model->asked.rows != 1 && expands_in_step(e) && !watches(e) && is_written_out(e, order_of(e));
+	return spans_steps(e) && e->model->asked.rows != 1 && expands_in_step(e) && !watches(e) &&
+	       is_written_out(e, order_of(e));
 }
 
 void emit_over_members(const struct emitter *e)
@@ -72,7 +73,8 @@ static void emit_value(const struct emitter *e, const char *theta, gain_term *te
 		for (int i = 0; i < states; i++) {
 			const char *text = term(e, i, k);
 			if (k < highest_term(e, i, term))
-				say(e, "%sg%d = g%d * %s%s%s;\n", indent, i, i, theta, text ? " + " : "", text ? text : "");
+				say(e, "%sg%d = g%d * %s%s%s;\n", indent, i, i, theta, text ? " + " : "",
+				    text ? text : "");
 		}
 	for (int i = 0; i < states; i++)
 		say(e, "%ss->y[%d] = %s + (g%d * %s + %s);\n", indent, i, term(e, i, 0), i, theta, format(rest, i));
@@ -187,8 +189,8 @@ void emit_over_block(const struct emitter *e)
 	int states = e->system->states;
 	if (!runs_in_blocks(e))
 		return;
-	say(e, "\n/* %d steps as one, and the outputs after each unless out is NULL; 0: its end is not finite, and s as "
-	       "it was */\n"
+	say(e, "\n/* %d steps as one, and the outputs after each unless out is NULL; 0: its end is not finite, and s "
+	       "as it was */\n"
 	       "static int $n_block($n *s, double *out)\n"
 	       "{\n"
 	       "    const double *const y = s->y;\n", truncation(e)->over);

@@ -195,7 +195,8 @@ static int steps_of_expansion(struct building *b)
 	if (!over)
 		return 1;
 	if (!row->expands || row->collocates)
-		error(over->start, "scheme taylor N over K", "no expansion of scheme %s is over several steps", row->name);
+		error(over->start, "scheme taylor N over K", "no expansion of scheme %s is over several steps",
+		      row->name);
 	return whole_number(b, over, 1, MOST_OVER, "the number of steps of one expansion");
 }
 
