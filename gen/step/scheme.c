@@ -217,7 +217,8 @@ static void need_all_known(const struct step *step)
 		return;
 	if (system->inputs > 0)
 		error(over->start, "over 1",
-		      "one expansion is over several steps: the samples of %s to come are not known", system->input[0].name);
+		      "one expansion is over several steps: the samples of %s to come are not known",
+		      system->input[0].name);
 	if (system->segments > 1)
 		error(over->start, "over 1",
 		      "one expansion is over several steps: a load or a condition on t changes its formula inside");
