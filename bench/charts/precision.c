@@ -79,6 +79,8 @@ static const int parts_implicit_large[] = { 1, 2, 4, 16, 0 }, parts_exact[] = { 
 	parts_exact_quick[] = { 1, 0 };
 /* Of a series of fixed order on a smooth model: between the others, as those that are compiled in have them */
 static const int parts_series[] = { 1, 2, 3, 4, 6, 8, 16, 32, 0 };
+/* Of one expansion over several units, whose values are the rows */
+static const int parts_over[] = { 1, 0 };
 static const int parts_modes[] = { 1, 2, 4, 0 };
 /* Close together where errors are 1e-3, for which a fixed step is often enough */
 static const int tolerances_all[] = {
@@ -101,6 +103,7 @@ struct ours {
 	bool series;                    /* of smooth models with few states */
 	bool modes;                     /* of large ones, with a bank of their own: specs/modes_NAME.spec */
 	bool tolerance;                 /* settings are tolerances, not steps */
+	bool over;                      /* one expansion is over several units */
 };
 
 static const struct ours ours[] = {
@@ -130,6 +133,16 @@ static const struct ours ours[] = {
 	{ .name = "taylor 8", .options = "'--scheme=taylor 8'", .series = true },
 	{ .name = "taylor 9", .options = "'--scheme=taylor 9'", .series = true },
 	{ .name = "taylor 12", .options = "'--scheme=taylor 12'", .series = true },
+	{ .name = "taylor 4 over 2", .options = "'--scheme=taylor 4 over 2'", .series = true, .over = true },
+	{ .name = "taylor 5 over 2", .options = "'--scheme=taylor 5 over 2'", .series = true, .over = true },
+	{ .name = "taylor 6 over 2", .options = "'--scheme=taylor 6 over 2'", .series = true, .over = true },
+	{ .name = "taylor 6 over 3", .options = "'--scheme=taylor 6 over 3'", .series = true, .over = true },
+	{ .name = "taylor 6 over 4", .options = "'--scheme=taylor 6 over 4'", .series = true, .over = true },
+	{ .name = "taylor 8 over 2", .options = "'--scheme=taylor 8 over 2'", .series = true, .over = true },
+	{ .name = "taylor 8 over 3", .options = "'--scheme=taylor 8 over 3'", .series = true, .over = true },
+	{ .name = "taylor 8 over 4", .options = "'--scheme=taylor 8 over 4'", .series = true, .over = true },
+	{ .name = "taylor 12 over 2", .options = "'--scheme=taylor 12 over 2'", .series = true, .over = true },
+	{ .name = "taylor 12 over 3", .options = "'--scheme=taylor 12 over 3'", .series = true, .over = true },
 	{ .name = "etdam4", .options = "--scheme etdam4", .modes = true },
 	{ .name = "etdam5", .options = "--scheme etdam5", .modes = true },
 	{ .name = "etdam6", .options = "--scheme etdam6", .modes = true },
@@ -144,6 +157,8 @@ static bool applies(const struct charted *m, const struct ours *o)
 	const bool piecewise = strncmp(m->name, "gear", 4) == 0;
 	if (o->modes)
 		return m->kind == LARGE;
+	if (o->over)
+		return m->kind == ORDINARY && !m->linear && !piecewise;
 	if (o->series)
 		return !m->linear && !piecewise && m->kind != LARGE;
 	return o->exact ? m->linear || piecewise : !m->linear || strcmp(o->name, "pl") == 0;
@@ -170,6 +185,8 @@ static const int *parts_of_ours(const struct charted *m, const struct ours *o, b
 	if (o->tolerance)
 		return m->kind == ORDINARY && !quick && strcmp(o->name, "taylor") != 0 ? tolerances_few
 			: tolerances_of(m, quick);
+	if (o->over)
+		return parts_over;
 	if (o->exact)
 		return quick ? parts_exact_quick : parts_exact;
 	if (o->modes)

@@ -174,7 +174,13 @@ void banner_expanded(const struct emitter *e)
 		       "largest value\n"
 		       " * of a state so far, $n_status says PL_INACCURATE.\n", tolerance);
 	else
-		say(e, " * One way through, whatever the numbers are; no step looks at its error.\n");
+		say(e, " * One way through, whatever the numbers are; no %s looks at its error.\n",
+		    spans_steps(e) ? "expansion" : "step");
+	if (spans_steps(e))
+		say(e, " * One expansion is over %d steps, and its error is that of a step of %d h; those before the "
+		       "last are values of\n"
+		       " * its series, by Horner's rule. Costs are those of a step, its share of the expansion and of "
+		       "such values.\n", truncation->over, truncation->over);
 	say(e, " * What rounding takes from the state is kept in rest.\n");
 	tell_no_phi(e);
 }
@@ -476,6 +482,8 @@ static void banner_run(const struct emitter *e)
 		say(e, " * $n_run takes %d rows at a time, each from the state at the start of its block: "
 		       "tables of %d numbers.\n",
 		    rows->count, row_numbers(e->step));
+	else if (runs_in_blocks(e))
+		say(e, " * $n_run takes %d rows at a time, those of an expansion.\n", e->model->truncation.over);
 	else if (e->step->no_rows)
 		say(e, " * $n_run goes step by step, without blocks of rows: %s.\n", e->step->no_rows);
 }

@@ -21,7 +21,7 @@ static bool changes(const struct emitter *e)
 
 enum { WRITTEN_OUT = 400 };             /* terms; more are looped over */
 
-static bool is_written_out(const struct emitter *e, int degree)
+bool is_written_out(const struct emitter *e, int degree)
 {
 	return e->system->states * degree <= WRITTEN_OUT;
 }
@@ -63,7 +63,8 @@ void emit_polynomial(const struct emitter *e, const char *name, int rows, int de
 
 void emit_series_ahead(const struct emitter *e)
 {
-	say(e, "\n/* What the series gains from its start, theta h later */\n");
+	const char *unit = spans_steps(e) ? format("%d ", truncation(e)->over) : "";
+	say(e, "\n/* What the series gains from its start, theta %sh later */\n", unit);
 	emit_polynomial(e, "ahead", expansion(e)->order + 1, expansion(e)->order);
 }
 
@@ -138,7 +139,7 @@ static void emit_between(const struct emitter *e)
 
 /* ---- the step ---- */
 
-static void emit_scales(const struct emitter *e, const char *indent)
+void emit_series_scales(const struct emitter *e, const char *indent)
 {
 	say(e, "%sif (pl_magnitude(s->y[i]) > s->scale[i]) {\n"
 	       "%s    s->scale[i] = pl_magnitude(s->y[i]);\n"
@@ -148,24 +149,29 @@ static void emit_scales(const struct emitter *e, const char *indent)
 
 bool expansion_places(const struct emitter *e)
 {
-	return looks_at_tolerance(e);
+	return looks_at_tolerance(e) || spans_steps(e);
 }
 
 void emit_expansion_place(const struct emitter *e)
 {
-	if (!looks_at_tolerance(e))
+	if (!expansion_places(e))
 		return;
 	say(e, "\n/* What follows from a state that was set */\n"
 	       "static void $n_place($n *s)\n"
-	       "{\n"
-	       "    int i;\n");
+	       "{\n");
+	if (looks_at_tolerance(e))
+		say(e, "    int i;\n");
 	if (truncation(e)->adaptive)
 		say(e, "    s->served = s->valid = s->most = 0;\n");
-	say(e, "    for (i = 0; i < $N_STATES; i++) {\n"
-	       "        s->scale[i] = s->unit[i] = 0.0;\n");
-	emit_scales(e, "        ");
-	say(e, "    }\n"
-	       "}\n");
+	else if (spans_steps(e))
+		say(e, "    s->served = 0;\n");
+	if (looks_at_tolerance(e)) {
+		say(e, "    for (i = 0; i < $N_STATES; i++) {\n"
+		       "        s->scale[i] = s->unit[i] = 0.0;\n");
+		emit_series_scales(e, "        ");
+		say(e, "    }\n");
+	}
+	say(e, "}\n");
 }
 
 static const char *u_argument(const struct emitter *e)
@@ -196,20 +202,20 @@ static const char *plus(const char *sum, const char *term)
 }
 
 /* c_1 + ... + c_P as what is added and what is small beside it: the last three, which come late. Small ones first */
-static const char *whole_gain(const struct emitter *e, int state)
+const char *whole_gain(const struct emitter *e, int state, gain_term *term)
 {
 	enum { LATE = 3 };
 	int order = expansion(e)->order;
 	const char *text = "", *late = "";
 	for (int k = order; k > order - LATE; k--)
-		late = plus(late, term_of_gain(e, state, k));
+		late = plus(late, term(e, state, k));
 	for (int k = order - LATE; k > 0; k--)
-		text = plus(text, term_of_gain(e, state, k));
+		text = plus(text, term(e, state, k));
 	return format("%s, %s", *text ? text : "0.0", *late ? late : "0.0");
 }
 
 /* Whether one of what is called so, with the number of a state, is not finite: its difference from itself is not 0 */
-static const char *is_not_finite(const struct emitter *e, const char *before, const char *after)
+const char *is_not_finite(const struct emitter *e, const char *before, const char *after)
 {
 	const char *sum = "";
 	for (int i = 0; i < e->system->states; i++)
@@ -230,7 +236,7 @@ static void emit_keep(const struct emitter *e, bool watched)
 		       "        s->rest[%d] = rest%d;\n", i, i, i, i);
 	if (watched) {
 		say(e, "        for (i = 0; i < $N_STATES; i++)\n");
-		emit_scales(e, "            ");
+		emit_series_scales(e, "            ");
 	}
 	say(e, "    }\n");
 }
@@ -256,7 +262,7 @@ static void emit_straight_step(const struct emitter *e)
 		say(e, "    ");
 		const char *now = here ? coefficient(e, i, 0) : format("s->y[%d]", i);
 		say_wrapped(e, format("%snext%d = pl_accumulate(%s, %s, &rest%d);\n", here ? "const double " : "", i,
-				      now, whole_gain(e, i), i));
+				      now, whole_gain(e, i, term_of_gain), i));
 	}
 	if (watched)
 		say(e, "    if (!$n_is_accurate(s, (const double (*)[$N_STATES])c))\n"
@@ -276,7 +282,7 @@ static void emit_fixed_step(const struct emitter *e)
 		    u_argument(e));
 	if (scales) {
 		say(e, "    for (i = 0; i < $N_STATES; i++)\n");
-		emit_scales(e, "        ");
+		emit_series_scales(e, "        ");
 	}
 	emit_expansion_end(e);
 }
@@ -343,7 +349,7 @@ static void emit_renew(const struct emitter *e)
 	say(e, "    int i;\n");
 	emit_input_samples(e);
 	say(e, "    for (i = 0; i < $N_STATES; i++)\n");
-	emit_scales(e, "        ");
+	emit_series_scales(e, "        ");
 	say(e, "    %s\n", expand_call(e, "0.0", when, "s->segment", "s->y", "s->series"));
 	say(e, "    i = s->most ? $n_reach(s) : 0;\n"
 	       "    s->valid = i < s->most ? i : s->most;\n"
@@ -435,6 +441,8 @@ void emit_expansion_members(const struct emitter *e)
 		       "    int served, valid;    /* steps since then; steps that it serves */\n"
 		       "    int most;             /* that the next one may serve; 0: nothing is known of it */\n",
 		    expansion(e)->order + 1);
+	if (spans_steps(e))
+		emit_over_members(e);
 	if (looks_at_tolerance(e))
 		say(e, "    double scale[$N_STATES], unit[$N_STATES];  "
 		       "/* the largest size of each state so far; 1 over it */\n");
@@ -450,10 +458,28 @@ void emit_expansion_step(const struct emitter *e)
 	emit_validity(e);
 	if (has_offset(e))
 		emit_between(e);
-	(truncation(e)->adaptive ? emit_adaptive_step : emit_fixed_step)(e);
+	(truncation(e)->adaptive ? emit_adaptive_step : spans_steps(e) ? emit_over_step : emit_fixed_step)(e);
 }
 
 /* ---- between steps ---- */
+
+/* At a part of the series that the step is of, or that one begins with */
+static void emit_at_over(const struct emitter *e, const char *y)
+{
+	int over = truncation(e)->over;
+	say(e, "    if (s->served > 0) {\n"
+	       "        const double theta = ((double)s->served + tau / $N_H) / %d.0;\n"
+	       "        $n_ahead((const double (*)[$N_STATES])s->series, theta, gain);\n"
+	       "        for (i = 0; i < $N_STATES; i++)\n"
+	       "            %s[i] = s->series[0][i] + (gain[i] + s->rest[i]);\n"
+	       "    } else {\n"
+	       "        double c[%d][$N_STATES];\n"
+	       "        %s\n"
+	       "        $n_ahead((const double (*)[$N_STATES])c, tau / (%d.0 * $N_H), gain);\n"
+	       "        for (i = 0; i < $N_STATES; i++)\n"
+	       "            %s[i] = s->y[i] + (gain[i] + s->rest[i]);\n"
+	       "    }\n", over, y, expansion(e)->order + 1, expand_call(e, "", "", "", "s->y", "c"), over, y);
+}
 
 void emit_expansion_at(const struct emitter *e)
 {
@@ -464,7 +490,9 @@ void emit_expansion_at(const struct emitter *e)
 	       "    double %s%s[$N_STATES];\n"
 	       "    int i;\n", driven_parameter(e), relative ? format("x[%s_STATES], ", e->upper) : "",
 	    offset ? "rest" : "gain");
-	if (!offset) {
+	if (spans_steps(e)) {
+		emit_at_over(e, y);
+	} else if (!offset) {
 		say(e, "    double c[%d][$N_STATES];\n", expansion(e)->order + 1);
 		emit_input_samples(e);
 		say(e, "    %s\n", expand_call(e, "", "", "", "s->y", "c"));

@@ -397,10 +397,12 @@ void emit_run(const struct emitter *e)
 		emit_row_tables(e);
 		emit_block(e);
 	}
+	emit_over_block(e);
 	say(e, "\nvoid $n_run($n *s, size_t n, %sdouble *out)\n"
 	       "{\n", e->system->inputs ? "const double *u, " : "");
 	if (e->step->rows)
 		emit_blocks(e);
+	emit_over_run(e);
 	emit_steps(e);
 	say(e, "}\n");
 }

@@ -124,17 +124,18 @@ void emit_coefficients(const struct emitter *e)
 bool expands_in_step(const struct emitter *e)
 {
 	enum { MOST = 1000 };           /* multiplications, which then stand twice: NAME_at makes the series too */
-	return !has_offset(e) && !has_choices(e) && !e->ramps && e->step->program->multiplications <= MOST;
+	return !has_offset(e) && !has_choices(e) && !e->ramps && expansion(e)->multiplications <= MOST;
 }
 
 void emit_expand_function(const struct emitter *e)
 {
 	const struct expansion *x = expansion(e);
 	bool tau = false;
-	say(e, "\n/* The series of the solution from %s on: c[k] = h^k/k! times the k-th derivative of y */\n"
+	say(e, "\n/* The series of the solution from %s on: c[k] = %s^k/k! times the k-th derivative of y */\n"
 	       "static void $n_expand(const $n *s, %s%s%s%sconst double y[$N_STATES], double c[%d][$N_STATES])\n"
 	       "{\n",
-	    has_offset(e) ? "tau after now" : "now", has_offset(e) ? "double tau, " : "",
+	    has_offset(e) ? "tau after now" : "now", spans_steps(e) ? format("(%d h)", e->model->truncation.over) : "h",
+	    has_offset(e) ? "double tau, " : "",
 	    has_choices(e) ? "double when, " : "", changes(e) ? "int segment, " : "", input_parameters(e, true),
 	    x->order + 1);
 	emit_coefficients(e);

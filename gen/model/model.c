@@ -109,13 +109,14 @@ static void choose_scheme(void *context)
 	if (!wanted)
 		return;
 	struct place at = asked ? (struct place){ source_argument(asked), 0 } : b->spec->scheme_at;
-	struct node *order = asked ? NULL : b->spec->scheme_order;
+	struct node *order = asked ? NULL : b->spec->scheme_order, *over = asked ? NULL : b->spec->scheme_over;
 	enum scheme scheme;
 	if (scheme_of(wanted, &scheme)) {
 		b->model->scheme = b->request->solution ? SCHEME_EXACT : scheme;
 		b->model->asked.scheme_at = at;
 		b->model->asked.scheme_order =
-			blank ? parse_argument(b->spec, at.source, (size_t)(blank - asked)) : order;
+			blank ? parse_scheme_order(b->spec, at.source, (size_t)(blank - asked), &over) : order;
+		b->model->asked.scheme_over = over;
 		b->collector.scheme = scheme_name(b->model->scheme);
 		b->collector.keep = b->request->solution     ? KEEP_NOTHING
 				    : scheme == SCHEME_EXACT ? KEEP_PIECEWISE
@@ -186,6 +187,19 @@ static int stages_of(struct building *b, struct node *node)
 	return stages;
 }
 
+/* The steps that one expansion of fixed order is over */
+static int steps_of_expansion(struct building *b)
+{
+	struct node *over = b->model->asked.scheme_over;
+	const struct scheme_row *row = scheme_row(b->model->scheme);
+	if (!over)
+		return 1;
+	if (!row->expands || row->collocates)
+		error(over->start, "scheme taylor N over K", "no expansion of scheme %s is over several steps",
+		      row->name);
+	return whole_number(b, over, 1, MOST_OVER, "the number of steps of one expansion");
+}
+
 /* The order of a series, given or from its tolerance; the most steps within one h */
 static void evaluate_truncation(void *context)
 {
@@ -216,6 +230,7 @@ static void evaluate_truncation(void *context)
 		truncation->stages = stages_of(b, order);
 	else if (order && row->expands)
 		truncation->order = whole_number(b, order, LEAST_ORDER, MOST_ORDER, "an order");
+	truncation->over = steps_of_expansion(b);
 	choose_order(model, b->request->single);
 }
 

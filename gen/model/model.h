@@ -121,7 +121,7 @@ struct request {                    /* what the user asks for on the command lin
 	const char **definition;    /* NAME=EXPR */
 	/* Where it is asked for, command line or spec: found when the model is built */
 	struct place scheme_at;     /* source NULL: it is not */
-	struct node *scheme_order;  /* of a series; NULL: not given */
+	struct node *scheme_order, *scheme_over; /* of a series; NULL: not given */
 	struct place step_at, form_at, compensated_at;
 	struct place end_at;        /* the end of --solution, else as step_at */
 	/* What builders ask for to build a model a second time; then nothing is told again */
@@ -134,7 +134,8 @@ struct request {                    /* what the user asks for on the command lin
 struct truncation {                 /* of a Taylor series */
 	int order;                  /* of its last term in h; of collocation in h */
 	int stages;                 /* of a collocation; 0: there is none */
-	bool adaptive;              /* steps as long as the tolerance lets them be; else each is h */
+	bool adaptive;              /* steps as long as the tolerance lets them be; else each is h, */
+	int over;                   /* and one expansion is over so many of them */
 	mpq_t tolerance;            /* of the last terms, relative to the largest of each state; 0: not looked at */
 	int substeps;               /* most within one h */
 };
@@ -438,6 +439,10 @@ void place_region_loads(struct building *b);
 void build_regions(struct building *b);
 
 /* ---- truncation.c: where a series ends ---- */
+
+enum { MOST_OVER = 32 };            /* steps of one expansion of fixed order: as many as one by tolerance serves */
+/* h times those of one expansion: the unit of time of its coefficients */
+void unit_of_expansion(const struct model *model, mpq_ptr unit);
 
 enum { LEAST_ORDER = 4, MOST_ORDER = 30 };
 enum { LEAST_STAGES = 3, MOST_STAGES = 9 };

@@ -35,3 +35,9 @@ void choose_order(struct model *model, bool single)
 	else
 		truncation->order = order_for(truncation->tolerance);
 }
+
+void unit_of_expansion(const struct model *model, mpq_ptr unit)
+{
+	mpq_set_si(unit, model->truncation.over, 1);
+	mpq_mul(unit, unit, model->h);
+}

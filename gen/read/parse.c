@@ -888,7 +888,18 @@ static void read_step(struct parser *p)
 	expect_end(p);
 }
 
-/* scheme: scheme NAME [ order or stages ] */
+/* order or stages [ over steps ] */
+static struct node *take_order(struct parser *p, struct node **over)
+{
+	struct place at = p->token.at;
+	if (!find_symbol(p, "over") && take_word(p, "over"))
+		error(at, "scheme taylor N over K", "an expansion over several steps is of fixed order");
+	struct node *order = read_expression(p);
+	*over = take_word(p, "over") ? read_expression(p) : NULL;
+	return order;
+}
+
+/* scheme: scheme NAME [ order or stages [ over steps ] ] */
 static void read_scheme(struct parser *p)
 {
 	struct place at = last_token(p, 6);
@@ -901,7 +912,8 @@ static void read_scheme(struct parser *p)
 	enum scheme scheme;
 	bool counts = scheme_of(name.name, &scheme) && (scheme_row(scheme)->expands || scheme_row(scheme)->stages);
 	if (p->token.kind == TOKEN_NUMBER || (counts && p->token.kind != TOKEN_END))
-		p->own->scheme_order = read_expression(p);     /* a number behind another scheme is told later */
+		/* a number behind another scheme is told later */
+		p->own->scheme_order = take_order(p, &p->own->scheme_over);
 	expect_end(p);
 	p->own->scheme = name.name;
 }
@@ -1402,7 +1414,7 @@ struct spec *parse_whole(const struct source *source, const struct part_reader *
 
 struct argument {
 	struct parser parser;
-	struct node *value;
+	struct node *value, **over; /* over: behind the name of a scheme */
 };
 
 static void read_argument(void *context)
@@ -1411,17 +1423,22 @@ static void read_argument(void *context)
 	struct parser *p = &argument->parser;
 	p->token = lex_next(&p->lexer);
 	p->end = p->token.at;
-	struct node *value = read_expression(p);
+	struct node *value = argument->over ? take_order(p, argument->over) : read_expression(p);
 	expect_end(p);
 	argument->value = value;
 }
 
-struct node *parse_argument(struct spec *spec, const struct source *source, size_t from)
+struct node *parse_scheme_order(struct spec *spec, const struct source *source, size_t from, struct node **over)
 {
-	struct argument argument = { .parser = { .spec = spec, .own = spec } };
+	struct argument argument = { .parser = { .spec = spec, .own = spec }, .over = over };
 	argument.parser.lexer = (struct lexer){ source, from, source->length, spec->uses, false };
 	statement_guard(read_argument, &argument);
 	return argument.value;
+}
+
+struct node *parse_argument(struct spec *spec, const struct source *source, size_t from)
+{
+	return parse_scheme_order(spec, source, from, NULL);
 }
 
 struct listing {

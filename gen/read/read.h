@@ -191,9 +191,9 @@ struct spec {                       /* what the text says, names resolved, nothi
 	struct place step_at;
 	const char *scheme;
 	struct place scheme_at;
-	/* of a scheme in powers of h: its order, as an expression; the error that a step may make; the most steps
-	 * within one h. NULL: not given */
-	struct node *scheme_order, *tolerance, *substeps;
+	/* of a scheme in powers of h: its order, as an expression; the steps that one expansion is over; the error that
+	 * a step may make; the most steps within one h. NULL: not given */
+	struct node *scheme_order, *scheme_over, *tolerance, *substeps;
 	bool has_operator;
 	struct node *operator_count; /* of a bank between two values; NULL: each has a value of its own */
 	struct place operator_at;
@@ -210,6 +210,8 @@ struct spec {                       /* what the text says, names resolved, nothi
 struct spec *parse_spec(const struct source *source);
 /* an expression from the command line */
 struct node *parse_argument(struct spec *spec, const struct source *source, size_t from);
+/* Behind the name of a scheme: its order, and NULL or what follows the word `over` */
+struct node *parse_scheme_order(struct spec *spec, const struct source *source, size_t from, struct node **over);
 struct mode_list parse_mode_list(struct spec *spec, const struct source *source); /* likewise; at.source NULL: wrong */
 struct symbol *spec_find(const struct spec *spec, const char *name);
 char *text_between(struct place start, struct place end);   /* without comments, white space folded */

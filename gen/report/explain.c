@@ -395,6 +395,8 @@ static void person_split(FILE *to, const struct step *step)
 	if (model->truncation.adaptive)
 		fprintf(to, ", its steps as long as a tolerance of %s lets them be",
 			readable_text(model->truncation.tolerance));
+	if (model->truncation.over > 1)
+		fprintf(to, ", which is that of %d h for one expansion", model->truncation.over);
 	if (step->collocation)
 		person_collocation(to, step);
 	if (loses_order(model))
@@ -806,6 +808,8 @@ static void json_scheme(FILE *to, const struct step *step)
 		fprintf(to, "  \"tolerance\": %s,\n", shortest(round_rational(model->truncation.tolerance)));
 	if (model->truncation.adaptive && (step->expansion || step->collocation))
 		fprintf(to, "  \"substeps\": %d,\n", model->truncation.substeps);
+	if (step->expansion && model->truncation.over > 1)
+		fprintf(to, "  \"over\": %d,\n", model->truncation.over);
 	if (step->expansion)
 		json_reach(to, step);
 }

@@ -386,8 +386,9 @@ static void print_expansion(FILE *to, const struct step *step)
 	const struct truncation *truncation = &step->model->truncation;
 	print_tables(to, step);
 	fprintf(to,
-		"Series of order %d in time over h%s; of each sequence the coefficients that are read, factors of the "
-		"first:\n", x->order, truncation->adaptive ? ", as far as its last two terms allow" : "");
+		"Series of order %d in time over %s%s; of each sequence the coefficients that are read, factors of the "
+		"first:\n", x->order, truncation->over > 1 ? format("%d h", truncation->over) : "h",
+		truncation->adaptive ? ", as far as its last two terms allow" : "");
 	for (int i = 0; i < x->count; i++)
 		if (x->sequence[i].top >= 0)
 			fprintf(to, "    %s (0 to %d) = %s\n", sequence_text(step, i),

@@ -218,6 +218,8 @@ struct expansion *expansion_of(const struct step *step, int order)
 		w->atom[i] = NONE;
 	mpq_init(w->pi);
 	constant_pi(w->pi);
+	mpq_init(w->unit);
+	unit_of_expansion(model, w->unit);
 	w->layout = place_all(w);
 	w->slopes = ARRAY(mpq_t *, (size_t)system->segments);
 	for (int k = 0; k < system->segments; k++)

@@ -191,11 +191,11 @@ static bool fit(const long double *c, long double *log_radius, long double *powe
 static double find_radius(const struct values *v)
 {
 	enum { ENTIRE = 5 };            /* k^5 R^-k is no singularity's, but of what falls nearly as 1/k! */
-	double least = INFINITY;
+	double least = INFINITY, unit = v->step->model->truncation.over * mpq_get_d(v->step->model->h);
 	for (int i = 0; i < v->system->states; i++) {
 		long double radius, power;
 		if (fit(v->c[i], &radius, &power) && power > -ENTIRE)
-			least = fmin(least, (double)expl(radius) * mpq_get_d(v->step->model->h));
+			least = fmin(least, (double)expl(radius) * unit);
 	}
 	return least;
 }

@@ -170,14 +170,33 @@ static void build_series(struct step *step)
 	step->series.emitted = true;
 }
 
+static int share(int of_expansion, int of_rows, int over)
+{
+	return (of_expansion + of_rows + over - 1) / over;
+}
+
+/* Of a step: its share of the expansion, and of the values before the last by Horner's rule */
+static void share_series(const struct step *step, struct program *program)
+{
+	int over = step->model->truncation.over, terms = step->branch->system.states * step->expansion->order;
+	int rows = over - 1, sums = step->branch->system.states * (step->expansion->order + 1);
+	program->multiplications = share(program->multiplications, rows * terms, over);
+	program->additions = share(program->additions, rows * sums, over);
+	program->wave_multiplications = share(program->wave_multiplications, 0, over);
+	program->wave_additions = share(program->wave_additions, 0, over);
+	program->calls = share(program->calls, 0, over);
+}
+
 static void count_series(struct step *step)
 {
 	count_expansion(step, step->program);
+	step->expansion->multiplications = step->program->multiplications;
 	if (step->program->multiplications > LIMIT_SERIES)
 		error(step->model->asked.scheme_at, "etdrk4 and the schemes like it loop over tables",
 		      "its series of order %d has %d multiplications, more than the limit of %d: compilers take "
 		      "minutes",
 		      step->expansion->order, step->program->multiplications, LIMIT_SERIES);
+	share_series(step, step->program);
 }
 
 /* A step that does not read e^{A h} has a table without it where h is that of rare outputs, and it beyond all range. */
@@ -189,8 +208,25 @@ static void read_table_if_there(struct step *step)
 	step->no_phi = format("e^{A h} is beyond the range of %s", target_name());
 }
 
+/* One expansion over several steps knows what acts in all of them. */
+static void need_all_known(const struct step *step)
+{
+	const struct linear *system = &step->branch->system;
+	struct node *over = step->model->asked.scheme_over;
+	if (step->model->truncation.over < 2)
+		return;
+	if (system->inputs > 0)
+		error(over->start, "over 1",
+		      "one expansion is over several steps: the samples of %s to come are not known",
+		      system->input[0].name);
+	if (system->segments > 1)
+		error(over->start, "over 1",
+		      "one expansion is over several steps: a load or a condition on t changes its formula inside");
+}
+
 static void build_expanded_step(struct step *step)
 {
+	need_all_known(step);
 	need_direct(step);
 	step->layout = layout_of(&step->branch->system, false);
 	read_table_if_there(step);

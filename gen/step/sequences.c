@@ -238,7 +238,7 @@ static int derivative_of(struct sequencing *w, int sequence, mpq_ptr scale)
 	int velocity = velocities_of(w, sequence);
 	mpq_set_ui(scale, 1, 1);
 	if (velocity != NONE) {
-		mpq_set(scale, w->step->model->h);
+		mpq_set(scale, w->unit);
 		return velocity;
 	}
 	return new_sequence(w, (struct sequence){ .kind = SEQUENCE_RATE, .state = NONE, .a = sequence, .b = NONE });

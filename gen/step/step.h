@@ -844,7 +844,7 @@ struct sequence {
 	bool split;                 /* others read its early part and gains */
 };
 struct expansion {
-	int order;                  /* of the series in h */
+	int order;                  /* of the series in its unit of time, h or several of them */
 	int count;                  /* sequences; the first are the states */
 	struct sequence *sequence;
 	int slots;                  /* factors that change from segment to segment: */
@@ -853,6 +853,7 @@ struct expansion {
 	bool *load;                 /* per load: read */
 	bool *input, *slope;        /* per input: read */
 	bool time;                  /* t is read */
+	int multiplications;        /* of one expansion, that of its end and of the loads with it */
 };
 /* ---- sums.c: what is added up exactly, and its factors as numbers ---- */
 
@@ -872,6 +873,7 @@ struct sequencing {                 /* what the makers of sequences share */
 	struct layout layout;       /* states, loads, inputs, channels */
 	mpq_t **slopes;             /* per segment: x' = slopes x */
 	mpq_t pi;
+	mpq_t unit;                 /* of time: D, h or several of them */
 	int *uses;                  /* per atom */
 	int *atom;                  /* per atom: its sequence; NONE: not made yet */
 	int operands;               /* forms that are no single atom, each made once */
@@ -881,7 +883,7 @@ void sum_add(struct sum *sum, enum term_kind kind, int a, int b, mpq_srcptr fact
 /* Its terms into s, at k times scale[k] */
 void sum_numbers(struct sequencing *w, struct sequence *s, const struct sum *sum, const mpq_t *scale);
 mpq_t *plain_scale(const struct sequencing *w);             /* 1 */
-mpq_t *integral_scale(const struct sequencing *w, bool times_h);  /* 1/(k+1), or h/(k+1) */
+mpq_t *integral_scale(const struct sequencing *w, bool times_unit);  /* 1/(k+1), or D/(k+1) */
 /* of a state, whose force changes from segment to segment: in a table */
 void add_changing_loads(struct sequencing *w, struct sequence *s, int state, const mpq_t *scale);
 int  column_of_load(const struct linear *system, int load); /* its first */

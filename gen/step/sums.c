@@ -49,7 +49,7 @@ static void add_powers(struct sequencing *w, struct sequence *s, int m, mpq_srcp
 		mpq_set_ui(binomial, (unsigned long)(m - k), (unsigned long)k + 1);
 		mpq_canonicalize(binomial);
 		mpq_mul(part, part, binomial);
-		mpq_mul(part, part, w->step->model->h);
+		mpq_mul(part, part, w->unit);
 	}
 	mpq_clears(part, binomial, NULL);
 }
@@ -67,7 +67,7 @@ static void next_row(const struct sequencing *w, int load, int k, mpq_t *row)
 			mpq_add(next[j], next[j], part);
 		}
 	mpq_set_ui(part, 1, (unsigned long)k + 1);
-	mpq_mul(part, part, w->step->model->h);
+	mpq_mul(part, part, w->unit);
 	for (int j = 0; j < n; j++)
 		mpq_mul(row[j], next[j], part);
 	mpq_clear(part);
@@ -142,7 +142,7 @@ static void add_input(struct sequencing *w, struct sequence *s, const struct key
 		term->factor = ARRAY(double, (size_t)w->x->order + 1);
 		mpq_mul(number, key->factor, scale[k]);
 		if (k)
-			mpq_mul(number, number, w->step->model->h);
+			mpq_mul(number, number, w->unit);
 		term->factor[k] = rounded(w, number);
 		(term->kind == TERM_INPUT ? w->x->input : w->x->slope)[key->a] = true;
 	}
@@ -190,13 +190,13 @@ mpq_t *plain_scale(const struct sequencing *w)
 }
 
 /* D/(k+1): of a derivative with respect to time; or 1/(k+1), where D is in the factors already */
-mpq_t *integral_scale(const struct sequencing *w, bool times_h)
+mpq_t *integral_scale(const struct sequencing *w, bool times_unit)
 {
 	mpq_t *scale = rationals((size_t)w->x->order + 1);
 	for (int k = 0; k <= w->x->order; k++) {
 		mpq_set_ui(scale[k], 1, (unsigned long)k + 1);
-		if (times_h)
-			mpq_mul(scale[k], scale[k], w->step->model->h);
+		if (times_unit)
+			mpq_mul(scale[k], scale[k], w->unit);
 	}
 	return scale;
 }

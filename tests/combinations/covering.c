@@ -326,7 +326,7 @@ static bool has(const char *one)
 /* Those schemes bring what they are for */
 static bool expands(void)
 {
-	return has("taylor") || has("taylor12") || has("radau") || has("auto");
+	return has("taylor") || has("taylor12") || has("over3") || has("radau") || has("auto");
 }
 
 static bool moves(void)
@@ -356,7 +356,7 @@ static void print_options(FILE *to)
 		}
 	if (has("modes"))       /* all of them; what no output sees is left out */
 		fprintf(to, " --modes %d", 2 + has("first") + (has("many") ? 9 : has("file") ? 3 : 0));
-	scheme = scheme || has("taylor12");
+	scheme = scheme || has("taylor12") || has("over3");
 	if (has("loads") && !scheme)
 		fputs(" --scheme etdrk4", to);
 	const bool kinks = has("kinked") || (has("loads") && has("change"));
@@ -447,6 +447,7 @@ static void write_spec(FILE *to)
 	fputs(has("peaks") ? "output wave = a + 0.5*b, top = peak(a + 0.5*b)\n" : "", to);
 	fputs(has("nonlinear") ? "output r = a^2 + sin(b)*b'\n" : "", to);
 	fputs(has("taylor12") ? "scheme taylor 12\n" : "", to);
+	fputs(has("over3") ? "scheme taylor 12 over 3\n" : "", to);
 	fputs("step 0.01\n", to);
 }
 

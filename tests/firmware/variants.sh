@@ -6,7 +6,7 @@
 # A line of a list is `NAME MODEL [OPTION ...]`, with options for plgen; as the first of them `untested` for what can
 # have no selftest, `tunable` for what has tunable params and outputs that depend on them, `anchored` for what keeps its
 # loads in tables: the others are as small as can be, and NAME_run goes step by step; as the last `order=N` for scheme
-# taylor of that order.  A model that is not in the folder is in this one.
+# taylor of that order, `order=N over K` for one series over K steps.  A model that is not in the folder is in this one.
 set -eu
 plgen=$1
 folder=$2

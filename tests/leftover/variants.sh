@@ -10,6 +10,7 @@
 #     as=PREFIX       PREFIX instead of NAME in the names
 #     at=TEXT         `operator at TEXT` instead of the spec's own operator ('_' is a blank); at=none: no such statement
 #     order=N         of scheme taylor, which N makes fixed
+#     over=K          beside it: one expansion is over so many steps
 #     stages=N        of the line's scheme, or of etdcol
 #     anything else   for plgen
 set -eu
@@ -43,11 +44,13 @@ grep -v -e '^#' -e '^$' "$list" | while read -r name schemes steps options; do
     spec=$work/$name.spec
     given=
     order=
+    over=
     stages=
     for option in $options; do
         case $option in
             as=*) as=${option#as=} ;;
             order=*) order=${option#order=} ;;
+            over=*) over=" over ${option#over=}" ;;
             stages=*) stages=${option#stages=} ;;
             at=*)
                 operator=$(printf '%s' "${option#at=}" | tr '_' ' ')
@@ -74,7 +77,7 @@ grep -v -e '^#' -e '^$' "$list" | while read -r name schemes steps options; do
             [ "$scheme" = - ] && of_stages=etdcol
             [ "$step" = - ] || choice="$choice --step $step"
             # shellcheck disable=SC2086
-            "$plgen" --rhs $choice $given ${order:+--scheme "taylor $order"} \
+            "$plgen" --rhs $choice $given ${order:+--scheme "taylor $order$over"} \
                 ${stages:+--scheme "$of_stages $stages"} -o "$work/$prefix.c" "$spec" \
                 2>"$work/said" ||
                 { cat "$work/said" >&2; exit 1; }

@@ -147,17 +147,94 @@ static double error_at(const struct subject *s, const pl_model *m, double second
     return worst;
 }
 
-static void has_order(const char *name, int order, double seconds)
+static void has_order(const char *name, const char *kind, int order, double seconds)
 {
     const double margin = order == 4 ? 0.15 : order == 8 ? 0.3 : 1.1;
     const struct subject *s = subject_of(name);
-    const pl_model *wide = variant_of(steps, "%s_%d_0", name, order)->model;
-    const pl_model *narrow = variant_of(steps, "%s_%d_1", name, order)->model;
+    const pl_model *wide = variant_of(steps, "%s%s_%d_0", name, kind, order)->model;
+    const pl_model *narrow = variant_of(steps, "%s%s_%d_1", name, kind, order)->model;
     const int points = (int)lround(seconds / wide->h);
     double coarse = error_at(s, wide, seconds, points), fine = error_at(s, narrow, seconds, points);
     double found = log(coarse / fine) / log(wide->h / narrow->h);
-    bool good = close_to(found, order, margin, "%s, order %d", name, order);
-    ok(good && fine > 1e-15, "%s: order %d is %.2f (errors %.3g, %.3g)", name, order, found, coarse, fine);
+    bool good = close_to(found, order, margin, "%s%s, order %d", name, kind, order);
+    ok(good && fine > 1e-15, "%s%s: order %d is %.2f (errors %.3g, %.3g)", name, kind, order, found, coarse, fine);
+}
+
+/* ---- one expansion over several steps ---- */
+
+/* Every `times`-th state of one is the next of the other, bit for bit */
+static void same_states(const char *name, const char *other, int times)
+{
+    const pl_model *m = variant_of(steps, "%s", name)->model, *wide = variant_of(steps, "%s", other)->model;
+    void *state = fresh(m), *wide_state = fresh(wide);
+    double y[MOST] = {0}, expected[MOST] = {0}, worst = 0;
+    bool good = true;
+    for (int k = 0; k < STEPS; k++) {
+        for (int i = 0; i < times; i++)
+            m->step(state, NULL);
+        wide->step(wide_state, NULL);
+        m->get(state, y);
+        wide->get(wide_state, expected);
+        good = good && memcmp(y, expected, sizeof y) == 0;
+        for (int i = 0; i < m->states; i++)
+            worst = worse(worst, fabs(y[i] - expected[i]));
+    }
+    ok(good && m->status(state) == 0, "%s: %d steps are one of %s, bit for bit (%.2g)", name, times, other, worst);
+    free(state);
+    free(wide_state);
+}
+
+/* Rows from wherever an expansion stands: so many steps, then so many by NAME_run, with rows or without */
+static void rows_from_inside(const char *name, int over)
+{
+    const pl_model *m = variant_of(steps, "%s", name)->model;
+    const size_t outputs = (size_t)m->outputs;
+    double *all = calloc(STEPS * outputs, sizeof *all), *rows = calloc(STEPS * outputs, sizeof *rows);
+    bool good = true;
+    void *state = fresh(m);
+    for (size_t k = 0; k < STEPS; k++) {
+        m->step(state, NULL);
+        m->out(state, all + k * outputs);
+    }
+    for (int before = 0; before <= over; before++)
+        for (int n = 1; n <= 3 * over; n++)
+            for (int written = 0; written < 2; written++) {
+                m->init(state);
+                m->run(state, (size_t)before, NULL, NULL);
+                m->run(state, (size_t)n, NULL, written ? rows : NULL);
+                if (!written)
+                    m->out(state, rows + (size_t)(n - 1) * outputs);
+                size_t from = written ? 0 : (size_t)n - 1;
+                good = good && memcmp(rows + from * outputs, all + ((size_t)before + from) * outputs,
+                    ((size_t)n - from) * outputs * sizeof *rows) == 0;
+            }
+    ok(good, "%s: rows from inside an expansion", name);
+    free(all);
+    free(rows);
+    free(state);
+}
+
+static void over_several(void)
+{
+    static const char *const names[] = {"pendulum", "vanderpol", "duffing", "mathieu", "quad2dof", "rotor", "masses",
+        "growth"};
+    static const char *const measured[] = {"pendulum", "duffing", "mathieu"};
+    char name[40];
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+        const pl_model *m = variant_of(steps, "%s_over_0", names[i])->model;
+        follows(subject_of(names[i]), m, 1e-14);
+        same_bits(m);
+        snprintf(name, sizeof name, "%s_over_0", names[i]);
+        rows_from_inside(name, strcmp(names[i], "mathieu") == 0 ? 3 : 4);
+    }
+    same_states("pendulum_over_single_0", "pendulum_single_0", 1);
+    same_states("masses_over_single_0", "masses_single_0", 1);
+    same_states("rotor_over_single_0", "rotor_single_0", 1);
+    same_states("pendulum_over_fifth_0", "pendulum_single_0", 5);
+    same_states("rotor_over_fifth_0", "rotor_single_0", 5);
+    for (size_t i = 0; i < sizeof measured / sizeof *measured; i++)
+        for (int order = 4; order <= 8; order += 4)
+            has_order(measured[i], "_over", order, 2);
 }
 
 /* ---- CVODE ---- */
@@ -320,6 +397,12 @@ static void endings(void)
 {
     ends("pole_taylor_0", PL_NOT_FINITE, 0.55, 0.65, false);
     ends("pole_fixed_0", PL_INACCURATE, 0.25, 0.55, false);
+    ends("pole_over_0", PL_INACCURATE, 0.05, 0.55, false);
+    ends("root_over_0", PL_NOT_FINITE, 1.05, 1.35, true);
+    ends("burst_over_0", PL_NOT_FINITE, 0.85, 1.65, true);
+    ends("burst_over_watched_0", PL_INACCURATE, 0.65, 1.05, false);
+    ends("stuck_over_0", PL_NOT_FINITE, 0.05, 0.15, true);
+    ends("stuck_over_watched_0", PL_NOT_FINITE | PL_INACCURATE, 0.05, 0.15, true);
     ends("root_taylor_0", PL_NOT_FINITE, 1.05, 1.15, false);
     ends("root_fixed_0", PL_NOT_FINITE, 1.05, 1.25, true);
     ends("falling_taylor_0", PL_NOT_FINITE, 1.05, 1.15, false);
@@ -399,7 +482,8 @@ int main(void)
     }
     for (size_t i = 0; i < sizeof measured / sizeof *measured; i++)
         for (int order = 4; order <= 12; order += 4)
-            has_order(measured[i], order, 2);
+            has_order(measured[i], "", order, 2);
+    over_several();
     from_rest();
     from_a_push();
     beside_cvode();
