@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* An FMU's sources through the system's compiler, in a folder of their own, to the shared object that importers load. */
+/* An FMU's sources through the system's compiler, in a folder of their own, to the shared object that importers
+ * load. */
 #define _GNU_SOURCE     /* environ */
 #include "command.h"
 

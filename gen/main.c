@@ -194,7 +194,8 @@ static void print_depfile(const struct work *w)
 	if (!options->depfile)
 		return;
 	struct file *f = file_new(options->depfile);
-	fprintf(f->to, "%s", options->fmu ? escaped(options->fmu) : options->output ? escaped(options->output) : format("%s_pl.c", w->model->name));
+	const char *made = options->fmu ? options->fmu : options->output;
+	fprintf(f->to, "%s", made ? escaped(made) : format("%s_pl.c", w->model->name));
 	fprintf(f->to, "%s:", options->header ? format(" %s", escaped(options->header)) : "");
 	if (strcmp(options->spec, "-") != 0)
 		fprintf(f->to, " %s", escaped(options->spec));

@@ -60,17 +60,36 @@ static const char *defined_at(const char *line)
 	return strncmp(name, "pl_", 3) == 0 ? format("%.*s", (int)(bracket - name), name) : NULL;
 }
 
-/* Does `code` name a function that the file defines? */
-static bool serves(int file, const char *code, bool single)
+/* What the C of a model needs so far */
+struct wants {
+	const char *code;
+	bool single;
+	bool file[TEXTS];
+};
+
+static const char *text_of(int file)
 {
-	const char *base = base_of(file), *text = base ? runtime_file(base) : texts[file].text;
-	for (const char *line = text; line; line = strchr(line, '\n')) {
+	return base_of(file) ? runtime_file(base_of(file)) : texts[file].text;
+}
+
+static bool is_named(const struct wants *wants, const char *name)
+{
+	bool named = names(wants->code, name);
+	for (int i = 0; i < TEXTS && !named; i++)
+		named = wants->file[i] && names(text_of(i), name);
+	return named;
+}
+
+/* Is a function named that the file defines? Of files for float under its name there, or in another of them as in the
+ * one that it was made of. */
+static bool serves(int file, const struct wants *wants)
+{
+	for (const char *line = text_of(file); line; line = strchr(line, '\n')) {
 		line += *line == '\n';
 		const char *name = defined_at(line);
-		if (name && (names(code, base ? name_in_float(name) : name) || (single && names(code, name))))
+		if (name && (is_named(wants, base_of(file) ? name_in_float(name) : name) ||
+			     (wants->single && is_named(wants, name))))
 			return true;
-		if (!*line)
-			break;
 	}
 	return false;
 }
@@ -109,19 +128,15 @@ static void add_file(struct archive *to, const char *name)
 
 void add_runtime(struct fmu *f, struct archive *to, const char *code)
 {
-	bool added[TEXTS] = { false }, again = true;
-	const char *needed = code;
-	while (again) {
+	struct wants wants = { code, f->single, { false } };
+	for (bool again = true; again;) {
 		again = false;
-		for (int i = 0; i < TEXTS; i++) {
-			if (added[i] || !is_of_type(i, f->single) || !serves(i, needed, f->single))
-				continue;
-			added[i] = again = true;
-			needed = format("%s\n%s", needed, runtime_file(base_of(i) ? base_of(i) : texts[i].name));
-		}
+		for (int i = 0; i < TEXTS; i++)
+			if (!wants.file[i] && is_of_type(i, f->single) && serves(i, &wants))
+				wants.file[i] = again = true;
 	}
 	for (int i = 0; i < TEXTS; i++)
-		if (added[i]) {
+		if (wants.file[i]) {
 			ENLARGE(f->source, (size_t)f->sources + 1);
 			f->source[f->sources++] = texts[i].name;
 			add_file(to, texts[i].name);
