@@ -108,7 +108,8 @@ static struct words command_of(const struct fmu *fmu, const char *headers, const
 static bool compile(const struct words *w)
 {
 	pid_t child;
-	int status = 0, error = posix_spawnp(&child, w->word[0], NULL, NULL, (char *const *)(uintptr_t)w->word, environ);
+	int status = 0;
+	int error = posix_spawnp(&child, w->word[0], NULL, NULL, (char *const *)(uintptr_t)w->word, environ);
 	while (!error && waitpid(child, &status, 0) < 0)
 		error = errno == EINTR ? 0 : errno;
 	if (error)

@@ -251,7 +251,8 @@ static void try_params(const struct fmu *f, const model *m)
 	good = good && m->retune(r.s, p, m->h) == 0;
 	fill(u, m->inputs, 5);
 	reference_start(&r, u);
-	judge(good && set_inputs(f, i, m, u) && leave(f, i) && run(f, i, &r, m, 0, 50, 1), "another param from the start");
+	judge(good && set_inputs(f, i, m, u) && leave(f, i) && run(f, i, &r, m, 0, 50, 1),
+	      "another param from the start");
 	p[0] = (real)(value = 1.25);
 	good = set(f, i, &at, 1, &value) && m->retune(r.s, p, m->h) == 0;
 	judge(good && run(f, i, &r, m, 50, 100, 1), "and another on the way");
