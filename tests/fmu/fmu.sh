@@ -88,6 +88,38 @@ printf ' name="%s"\n' logStatusWarning logStatusError time u u2 output.time stat
 diff expected names >>log
 result $? 'every variable has a name of its own'
 
+cat >variables.sed <<'END'
+/<ModelVariables>/,/<.ModelVariables>/{
+s/^ *//
+s/ causality="\([a-z]*\)" variability="\([a-z]*\)"/ \1 \2/p
+/<Real/p
+}
+END
+"$plgen" --fmu v.fmu --fmu-version 2 "$own/plant.spec" >log 2>&1 && unpack v.fmu v &&
+    sed -n -f variables.sed v/modelDescription.xml >names
+cat >expected <<'END'
+<ScalarVariable name="time" valueReference="0" independent continuous>
+<Real/>
+<ScalarVariable name="pull" valueReference="1" input continuous>
+<Real start="0.0"/>
+<ScalarVariable name="base" valueReference="2" input continuous>
+<Real start="0.0"/>
+<ScalarVariable name="x" valueReference="3" output continuous>
+<Real/>
+<ScalarVariable name="spring_force" valueReference="4" output continuous>
+<Real/>
+<ScalarVariable name="m" valueReference="5" parameter tunable initial="exact">
+<Real start="2.0"/>
+<ScalarVariable name="k" valueReference="6" parameter tunable initial="exact">
+<Real start="40.0"/>
+<ScalarVariable name="state.x" valueReference="7" local continuous initial="exact">
+<Real start="0.1"/>
+<ScalarVariable name="state.x&apos;" valueReference="8" local continuous initial="exact">
+<Real start="-0.2"/>
+END
+diff expected names >>log
+result $? 'names, causalities and start values'
+
 cat >ahead.spec <<'END'
 model ahead
 coord x
@@ -229,8 +261,10 @@ drive() {
     done <judged
 }
 
+# one NAME SPEC VERSION OPTIONS; not where CASE asks for others
 one() {
     label="$1, FMI $3${4:+, $4}"
+    case $label in *"${CASE%%: *}"*) ;; *) return ;; esac
     make_both m "$2" "$3" "$4"
     status=$?
     result $status "$label: made and compiled"
