@@ -3,7 +3,7 @@
 #ifndef PLGEN_COMMAND_H
 #define PLGEN_COMMAND_H
 
-#include "emit/emit.h"
+#include "fmu/fmu.h"
 
 /* ---- options.c: the command line ---- */
 
@@ -14,6 +14,10 @@ struct options {
 	const char *value;              /* of --response, --plot */
 	const char *header;             /* beside the C file `output`; NULL: none is written */
 	enum print print;
+	const char *fmu;                /* the FMU that is written instead; NULL: none */
+	int fmu_version;                /* 2 or 3; 0: not said */
+	bool fmu_binary;                /* with the compiled one; */
+	const char *fmu_headers;        /* the folder of the standard's headers; NULL: the compiler knows it */
 	bool rhs;
 	struct request request;
 	const char *banner;             /* what of them belongs in a banner */
@@ -30,6 +34,11 @@ struct step *choose_step(struct model *written, struct model *stepped, struct re
 
 struct step *choose_measured(struct model *stepped, struct request *request);
 
+/* ---- binary.c: the compiler ---- */
+
+/* adds the shared object to an FMU; false: it was said why there is none */
+bool add_binary(struct fmu *fmu, const char *headers);
+
 /* ---- publish.c: texts in memory, then files ---- */
 
 struct file {
@@ -43,6 +52,8 @@ struct file {
 bool same_file(const char *a, const char *b);               /* one file under two names */
 void publish_open(void);                                    /* what is not published goes when the program ends */
 struct file *file_new(const char *path);                    /* open; published in this order */
+struct file *file_inside(void);                             /* open; part of another, not published; freed by: */
+void file_drop(struct file *f);
 void file_close(struct file *f);
 /* C becomes other C: for the target float, or with locals apart from the model's name. */
 void file_rewrite(struct file *f, const char *name, void (*print)(FILE *to, const char *text, const char *name));

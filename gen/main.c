@@ -104,13 +104,18 @@ static void print_closed_form(FILE *to, const struct work *w)
 	print_solution(to, w->model, resolvent_of(&w->model->system), end);
 }
 
+static const char *header_name(const struct work *w)
+{
+	return w->options.fmu ? fmu_header_name(w->model) : base_name(w->options.header);
+}
+
 static void print_main_text(void *context)
 {
 	const struct work *w = context;
 	const struct options *options = &w->options;
 	FILE *to = w->text->to;
 	switch (options->print) {
-	case PRINT_C:        emit_code(to, w->step, options->banner, base_name(options->header), options->rhs); break;
+	case PRINT_C:        emit_code(to, w->step, options->banner, header_name(w), options->rhs); break;
 	case PRINT_HEADER:   emit_header(to, w->step, options->banner, options->rhs); break;
 	case PRINT_EXPLAIN:  explain_person(to, w->step); break;
 	case PRINT_JSON:     explain_json(to, w->step); break;
@@ -124,7 +129,7 @@ static void print_main_text(void *context)
 
 static bool print_text(struct work *w)
 {
-	w->text = file_new(w->options.output);
+	w->text = w->options.fmu ? file_inside() : file_new(w->options.output);
 	bool printed = statement_guard(print_main_text, w);
 	file_close(w->text);
 	if (!printed)
@@ -134,9 +139,9 @@ static bool print_text(struct work *w)
 
 static void print_header(struct work *w)
 {
-	if (!w->options.header)
+	if (!w->options.header && !w->options.fmu)
 		return;
-	w->header = file_new(w->options.header);
+	w->header = w->options.fmu ? file_inside() : file_new(w->options.header);
 	emit_header(w->header->to, w->step, w->options.banner, w->options.rhs);
 	file_close(w->header);
 }
@@ -167,6 +172,26 @@ static void rewrite_code(struct work *w)
 		mark_pair(w->text, w->header);
 }
 
+/* ---- both and what they need in one file ---- */
+
+static bool print_fmu(const struct work *w)
+{
+	const struct options *options = &w->options;
+	if (!options->fmu)
+		return true;
+	struct fmu *fmu = fmu_new(w->step, options->fmu_version ? options->fmu_version : 3, w->text->text,
+				  w->header->text);
+	bool made = fmu && (!options->fmu_binary || add_binary(fmu, options->fmu_headers));
+	if (made) {
+		struct file *f = file_new(options->fmu);
+		archive_write(f->to, &fmu->archive);
+		file_close(f);
+	}
+	file_drop(w->text);
+	file_drop(w->header);
+	return made;
+}
+
 /* ---- what was read, for make and ninja ---- */
 
 /* A name in a make rule */
@@ -184,7 +209,8 @@ static void print_depfile(const struct work *w)
 	if (!options->depfile)
 		return;
 	struct file *f = file_new(options->depfile);
-	fprintf(f->to, "%s", options->output ? escaped(options->output) : format("%s_pl.c", w->model->name));
+	const char *made = options->fmu ? options->fmu : options->output;
+	fprintf(f->to, "%s", made ? escaped(made) : format("%s_pl.c", w->model->name));
 	fprintf(f->to, "%s:", options->header ? format(" %s", escaped(options->header)) : "");
 	if (strcmp(options->spec, "-") != 0)
 		fprintf(f->to, " %s", escaped(options->spec));
@@ -204,6 +230,8 @@ static bool compile(struct work *w)
 		return false;
 	print_header(w);
 	rewrite_code(w);
+	if (!print_fmu(w))
+		return false;
 	print_depfile(w);
 	if (!spares(w->spec->files, w->spec->file))
 		return false;

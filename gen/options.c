@@ -39,6 +39,7 @@ static bool is_second(const char *option, const char *value, const char *first, 
 static void take_output(struct options *options, const char *value) { options->output = value; }
 static void take_header(struct options *options, const char *value) { (void)value; set_print(options, PRINT_HEADER); }
 static void take_rhs(struct options *options, const char *value) { (void)value; options->rhs = true; }
+static void take_fmu(struct options *options, const char *value) { options->fmu = value; }
 static void take_step(struct options *options, const char *value) { options->request.step = value; }
 static void take_scheme(struct options *options, const char *value) { options->request.scheme = value; }
 static void take_tolerance(struct options *options, const char *value) { options->request.tolerance = value; }
@@ -138,6 +139,17 @@ static void take_selftest(struct options *options, const char *value)
 	options->request.selftest = true;
 }
 
+static void take_fmu_version(struct options *options, const char *value)
+{
+	options->fmu_version = is_second("--fmu-version", value, "2", "3") ? 3 : 2;
+}
+
+static void take_fmu_binary(struct options *options, const char *value)
+{
+	options->fmu_binary = true;
+	options->fmu_headers = value;
+}
+
 static void take_rows(struct options *options, const char *value)
 {
 	char *end;
@@ -201,6 +213,9 @@ static const struct row {
 	{ "depfile", "FILE", "also write a make/ninja dependency file", take_depfile, NULL },
 	{ "selftest", NULL, "also emit NAME_selftest: steps against the closed form", take_selftest, NULL },
 	{ "batch", NULL, "also emit NAME_batch: many instances of a linear model in one call", take_batch, NULL },
+	{ "fmu", "FILE.fmu", "write an FMU for co-simulation, with its C as source", take_fmu, NULL },
+	{ "fmu-version", "2", "of FMI: 2 or 3 (default: 3)", take_fmu_version, NULL },
+	{ "fmu-binary", "[=DIR]", "compiled too, with the standard's headers in DIR", take_fmu_binary, NULL },
 	{ "help", NULL, NULL, print_usage, NULL },
 	{ "version", NULL, NULL, print_version, NULL }
 };
@@ -345,11 +360,34 @@ static void find_header(struct options *options)
 	options->header = format("%.*s.h", (int)length - 2, options->output);
 }
 
+/* Of an FMU everything else that is printed, and what nothing in it would call */
+static void check_fmu(const struct options *options)
+{
+	const size_t length = options->fmu ? strlen(options->fmu) : 0;
+	const struct { bool asked; const char *option; } against[] = {
+		{ options->output, "-o" }, { options->print == PRINT_HEADER, "--header" },
+		{ options->print == PRINT_SOLUTION, "--solution" }, { options->print != PRINT_C, "--explain" },
+		{ options->rhs, "--rhs" }, { options->request.selftest, "--selftest" },
+		{ options->request.batch, "--batch" }
+	};
+	if (!options->fmu && (options->fmu_version || options->fmu_binary))
+		wrong_usage(format("%s goes with --fmu FILE.fmu",
+				   options->fmu_version ? "--fmu-version" : "--fmu-binary"));
+	if (!options->fmu)
+		return;
+	if (length < 5 || strcmp(options->fmu + length - 4, ".fmu") != 0)
+		wrong_usage(format("--fmu takes the name of an FMU, FILE.fmu, found '%s'", options->fmu));
+	for (size_t i = 0; i < sizeof against / sizeof *against; i++)
+		if (against[i].asked)
+			wrong_usage(format("%s does not go with --fmu", against[i].option));
+}
+
 static void check_names(const struct options *options)
 {
-	const char *path[] = { options->spec, options->output, options->header, options->depfile };
-	for (int i = 0; i < 4; i++)
-		for (int j = i + 1; j < 4; j++)
+	const char *path[] = { options->spec, options->output, options->header, options->depfile, options->fmu };
+	enum { PATHS = sizeof path / sizeof *path };
+	for (int i = 0; i < PATHS; i++)
+		for (int j = i + 1; j < PATHS; j++)
 			if (path[i] && path[j] && same_file(path[i], path[j]))
 				wrong_usage(format("'%s' would be written over: each file needs a name of its own",
 						   path[i]));
@@ -360,6 +398,7 @@ void read_options(int argc, char **argv, struct options *options)
 	options->banner = "";
 	take_all(argc, argv, options);
 	note_all(options);
+	check_fmu(options);
 	find_header(options);
 	check_names(options);
 }

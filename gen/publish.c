@@ -123,6 +123,19 @@ struct file *file_new(const char *path)
 	return f;
 }
 
+struct file *file_inside(void)
+{
+	struct file *f = NEW(struct file);
+	open_text(f);
+	return f;
+}
+
+void file_drop(struct file *f)
+{
+	free(f->text);
+	f->text = NULL;
+}
+
 void file_rewrite(struct file *f, const char *name, void (*print)(FILE *to, const char *text, const char *name))
 {
 	char *text = f->text;

@@ -1,0 +1,184 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What describes an FMU (FMI 2.0.5, section 2.2; FMI 3.0.2, sections 2.4 and 2.5), valid against the standard's
+ * schemas. */
+#include "fmu/fmu.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+const char *attribute_text(const char *text)
+{
+	const char *made = "";
+	for (; *text; text++)
+		switch (*text) {
+		case '&':  made = format("%s&amp;", made); break;
+		case '<':  made = format("%s&lt;", made); break;
+		case '>':  made = format("%s&gt;", made); break;
+		case '"':  made = format("%s&quot;", made); break;
+		case '\'': made = format("%s&apos;", made); break;
+		default:   made = format("%s%c", made, *text);
+		}
+	return made;
+}
+
+/* ---- text that grows in memory ---- */
+
+struct text {
+	FILE *to;
+	char *bytes;
+	size_t length;
+};
+
+static void open_text(struct text *t)
+{
+	t->to = need_memory(open_memstream(&t->bytes, &t->length));
+	fputs("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n", t->to);
+}
+
+static const char *close_text(struct text *t)
+{
+	bool whole = !ferror(t->to);
+	const char *kept = fclose(t->to) == 0 && whole ? format("%s", t->bytes) : NULL;
+	free(t->bytes);
+	return need_memory((char *)kept);
+}
+
+/* ---- what both versions say of a variable ---- */
+
+struct wording {
+	const char *causality, *variability, *initial;
+};
+
+static struct wording wording_of(const struct fmu_variable *v)
+{
+	static const struct wording wording[] = {
+		[FMU_TIME] = { "independent", "continuous", NULL },
+		[FMU_INPUT] = { "input", "continuous", NULL },
+		[FMU_OUTPUT] = { "output", "continuous", NULL },
+		[FMU_PARAM] = { "parameter", "tunable", "exact" },
+		[FMU_STATE] = { "local", "continuous", "exact" }
+	};
+	return wording[v->kind];
+}
+
+static void print_variable(FILE *to, const struct fmu *f, int reference)
+{
+	const struct fmu_variable *v = &f->variables.variable[reference];
+	const struct wording w = wording_of(v);
+	const bool starts = v->kind != FMU_TIME && v->kind != FMU_OUTPUT;
+	const char *initial = w.initial ? format(" initial=\"%s\"", w.initial) : "";
+	const char *start = starts ? format(" start=\"%s\"", shortest(v->start)) : "";
+	const char *common = format("name=\"%s\" valueReference=\"%d\" causality=\"%s\" variability=\"%s\"%s",
+				    attribute_text(v->name), reference, w.causality, w.variability, initial);
+	if (f->version == 3)
+		fprintf(to, "    <Float64 %s%s/>\n", common, start);
+	else
+		fprintf(to, "    <ScalarVariable %s>\n      <Real%s/>\n    </ScalarVariable>\n", common, start);
+}
+
+static void print_variables(FILE *to, const struct fmu *f)
+{
+	fputs("  <ModelVariables>\n", to);
+	for (int i = 0; i < f->variables.count; i++)
+		print_variable(to, f, i);
+	fputs("  </ModelVariables>\n", to);
+}
+
+/* A line for each output: of FMI 3.0 by its value reference, of FMI 2.0 by its place, from 1 */
+static void print_outputs(FILE *to, const struct fmu *f, const char *indent, const char *element)
+{
+	for (int i = 0; i < f->variables.count; i++)
+		if (f->variables.variable[i].kind == FMU_OUTPUT)
+			fprintf(to, f->version == 3 ? "%s<%s valueReference=\"%d\"/>\n" : "%s<%s index=\"%d\"/>\n",
+				indent, element, f->version == 3 ? i : i + 1);
+}
+
+static bool has_outputs(const struct fmu *f)
+{
+	for (int i = 0; i < f->variables.count; i++)
+		if (f->variables.variable[i].kind == FMU_OUTPUT)
+			return true;
+	return false;
+}
+
+static void print_structure(FILE *to, const struct fmu *f)
+{
+	fputs("  <ModelStructure>\n", to);
+	if (f->version == 3) {
+		print_outputs(to, f, "    ", "Output");
+		print_outputs(to, f, "    ", "InitialUnknown");
+	} else if (has_outputs(f)) {
+		fputs("    <Outputs>\n", to);
+		print_outputs(to, f, "      ", "Unknown");
+		fputs("    </Outputs>\n    <InitialUnknowns>\n", to);
+		print_outputs(to, f, "      ", "Unknown");
+		fputs("    </InitialUnknowns>\n", to);
+	}
+	fputs("  </ModelStructure>\n", to);
+}
+
+static void print_logging(FILE *to)
+{
+	fputs("  <LogCategories>\n"
+	      "    <Category name=\"logStatusWarning\"/>\n"
+	      "    <Category name=\"logStatusError\"/>\n"
+	      "  </LogCategories>\n", to);
+}
+
+/* ---- the two versions ---- */
+
+static void print_head_2(FILE *to, const struct fmu *f)
+{
+	fprintf(to, "<fmiModelDescription fmiVersion=\"2.0\" modelName=\"%s\" guid=\"%s\" license=\"MIT-0\" "
+		    "generationTool=\"plgen " PLGEN_VERSION "\" variableNamingConvention=\"flat\">\n",
+		attribute_text(f->title), f->token);
+	fprintf(to, "  <CoSimulation modelIdentifier=\"%s\" canHandleVariableCommunicationStepSize=\"false\" "
+		    "canNotUseMemoryManagementFunctions=\"true\" canGetAndSetFMUstate=\"true\" "
+		    "canSerializeFMUstate=\"true\">\n"
+		    "    <SourceFiles>\n", f->name);
+	for (int i = 0; i < f->sources; i++)
+		fprintf(to, "      <File name=\"%s\"/>\n", f->source[i]);
+	fputs("    </SourceFiles>\n"
+	      "  </CoSimulation>\n", to);
+}
+
+static void print_head_3(FILE *to, const struct fmu *f)
+{
+	fprintf(to, "<fmiModelDescription fmiVersion=\"3.0\" modelName=\"%s\" instantiationToken=\"%s\" "
+		    "license=\"MIT-0\" generationTool=\"plgen " PLGEN_VERSION "\" "
+		    "variableNamingConvention=\"flat\">\n", attribute_text(f->title), f->token);
+	fprintf(to, "  <CoSimulation modelIdentifier=\"%s\" canGetAndSetFMUState=\"true\" "
+		    "canSerializeFMUState=\"true\" canHandleVariableCommunicationStepSize=\"false\" "
+		    "fixedInternalStepSize=\"%s\"/>\n", f->name, shortest(f->h));
+}
+
+const char *model_description(const struct fmu *f)
+{
+	struct text t = { 0 };
+	open_text(&t);
+	(f->version == 3 ? print_head_3 : print_head_2)(t.to, f);
+	print_logging(t.to);
+	fprintf(t.to, "  <DefaultExperiment startTime=\"0\" stepSize=\"%s\"/>\n", shortest(f->h));
+	print_variables(t.to, f);
+	print_structure(t.to, f);
+	fputs("</fmiModelDescription>\n", t.to);
+	return close_text(&t);
+}
+
+const char *build_description(const struct fmu *f)
+{
+	struct text t = { 0 };
+	open_text(&t);
+	fprintf(t.to, "<fmiBuildDescription fmiVersion=\"3.0\">\n"
+		      "  <BuildConfiguration modelIdentifier=\"%s\">\n"
+		      "    <SourceFileSet language=\"C99\">\n", f->name);
+	for (int i = 0; i < f->sources; i++)
+		fprintf(t.to, "      <SourceFile name=\"%s\"/>\n", f->source[i]);
+	fputs("    </SourceFileSet>\n", t.to);
+	if (f->math)
+		fputs("    <Library name=\"m\" external=\"true\" "
+		      "description=\"the C library's mathematics, where it is a library of its own\"/>\n", t.to);
+	fputs("  </BuildConfiguration>\n"
+	      "</fmiBuildDescription>\n", t.to);
+	return close_text(&t);
+}

@@ -1,0 +1,112 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The files of an FMU and their order. */
+#include "fmu/fmu.h"
+
+#include <string.h>
+
+const char *fmu_header_name(const struct model *model)
+{
+	return format("%s_pl.h", model->name);
+}
+
+/* An input that is read further ahead than to the end of a step: the importer has no such samples. */
+static bool can_have_inputs(const struct model *model)
+{
+	bool can = true;
+	for (const struct symbol *s = model->spec->first; s; s = s->next)
+		if (s->kind == SYMBOL_INPUT && s->hold > 1) {
+			say_error(s->at, "'hold first' would do: an importer knows the sample at the end of a step",
+				  "an FMU cannot have input '%s', which is held over samples further ahead", s->name);
+			can = false;
+		}
+	return can;
+}
+
+/* FNV-1a of 64 bits */
+static uint64_t hash_of(uint64_t hash, const char *text)
+{
+	for (; *text; text++)
+		hash = (hash ^ (unsigned char)*text) * 0x100000001b3;
+	return hash;
+}
+
+/* What the importer must have read to make an instance: a number of all that is compiled, so a description of another
+ * version of the model does not fit. */
+static uint64_t mark_of(const struct fmu *f, const char *code, const char *header)
+{
+	uint64_t hash = hash_of(0xcbf29ce484222325, f->version == 3 ? "3" : "2");
+	const char *text[] = { code, header, runtime_file("plfmu.h"), runtime_file("plrt.h") };
+	for (size_t i = 0; i < sizeof text / sizeof *text; i++)
+		hash = hash_of(hash, text[i]);
+	return hash;
+}
+
+/* fmu_model.h, which plfmu.h asks for */
+static const char *model_header(const struct fmu *f, const struct step *step, uint64_t mark)
+{
+	const struct linear *system = &step->branch->system;
+	const char *name = f->name;
+	return format("/* SPDX-License-Identifier: MIT-0 */\n"
+		      "/* Which model plfmu.h makes an FMU of: made by plgen " PLGEN_VERSION "; do not edit. */\n"
+		      "#ifndef FMU_MODEL_H\n"
+		      "#define FMU_MODEL_H\n\n"
+		      "#define FMI%d_FUNCTION_PREFIX %s_\n\n"
+		      "#include \"%s\"\n\n"
+		      "typedef struct %s fmu_state;\n"
+		      "typedef %s fmu_real;\n"
+		      "typedef pl_model%s fmu_model;\n"
+		      "#define FMU_MODEL %s_model\n"
+		      "#define FMU_H %s\n"
+		      "#define FMU_TOKEN \"%s\"\n"
+		      "#define FMU_MARK 0x%016llx\n"
+		      "enum { FMU_STATES = %d, FMU_INPUTS = %d, FMU_OUTPUTS = %d, FMU_PARAMS = %d };\n\n"
+		      "#endif\n",
+		      f->version, name, fmu_header_name(step->model), name, f->single ? "float" : "double",
+		      f->single ? "f" : "", name, shortest(f->h), f->token, (unsigned long long)mark, system->states,
+		      system->inputs, step->model->outputs, step->model->tuning ? step->model->tuning->params : 0);
+}
+
+static void add_text(struct fmu *f, const char *name, const char *text)
+{
+	archive_add(&f->archive, name, text, strlen(text));
+}
+
+static void add_source(struct fmu *f, const char *name)
+{
+	ENLARGE(f->source, (size_t)f->sources + 1);
+	f->source[f->sources++] = name;
+}
+
+struct fmu *fmu_new(const struct step *step, int version, const char *code, const char *header)
+{
+	const struct model *model = step->model;
+	struct fmu *f = NEW(struct fmu);
+	if (!can_have_inputs(model))
+		return NULL;
+	f->version = version;
+	f->single = model->asked.single;
+	f->name = model->name;
+	f->title = model->spec->name;
+	f->h = nearest_double(model->h);
+	f->math = strstr(code, "\n#include <math.h>\n") != NULL;
+	f->variables = variables_of(step);
+	const uint64_t mark = mark_of(f, code, header);
+	const uint64_t more = hash_of(mark, "token");
+	f->token = format("{%08x-%04x-%04x-%04x-%04x%08x}", (unsigned)(mark >> 32), (unsigned)(mark >> 16 & 0xffff),
+			  (unsigned)(mark & 0xffff), (unsigned)(more >> 48), (unsigned)(more >> 32 & 0xffff),
+			  (unsigned)(more & 0xffffffff));
+	add_source(f, version == 3 ? "fmi3.c" : "fmi2.c");
+	add_source(f, format("%s_pl.c", f->name));
+	struct archive runtime = { 0 };
+	add_runtime(f, &runtime, code);
+	add_text(f, "modelDescription.xml", model_description(f));
+	add_text(f, "documentation/licenses/license.txt", runtime_file("LICENSE"));
+	if (version == 3)
+		add_text(f, "sources/buildDescription.xml", build_description(f));
+	add_text(f, "sources/fmu_model.h", model_header(f, step, mark));
+	add_text(f, format("sources/%s", fmu_header_name(model)), header);
+	add_text(f, format("sources/%s_pl.c", f->name), code);
+	for (int i = 0; i < runtime.members; i++)
+		archive_add(&f->archive, runtime.member[i].name, runtime.member[i].bytes, runtime.member[i].length);
+	return f;
+}

@@ -1,0 +1,71 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A step as an FMU for co-simulation: its C, the runtime that it needs, and what describes it, in one archive. */
+#ifndef PLGEN_FMU_H
+#define PLGEN_FMU_H
+
+#include "emit/emit.h"
+
+/* ---- archive.c: files in one file ---- */
+
+struct member {
+	const char *name;           /* with '/' between folders */
+	const char *bytes;
+	size_t length;
+};
+struct archive {
+	int members;
+	struct member *member;
+};
+void archive_add(struct archive *a, const char *name, const char *bytes, size_t length);
+const struct member *archive_find(const struct archive *a, const char *name); /* NULL: it is not there */
+/* zip, stored as it is: the same members, the same bytes */
+void archive_write(FILE *to, const struct archive *a);
+
+/* ---- variables.c: what the importer sees ---- */
+
+enum fmu_kind { FMU_TIME, FMU_INPUT, FMU_OUTPUT, FMU_PARAM, FMU_STATE };
+struct fmu_variable {               /* its place in the list is its value reference */
+	enum fmu_kind kind;
+	const char *name;           /* as no other */
+	double start;               /* of inputs, params and states */
+};
+struct fmu_variables {
+	int count;
+	struct fmu_variable *variable;
+};
+/* in the order of runtime/fmi/plfmu.h: time, inputs, outputs, params, states */
+struct fmu_variables variables_of(const struct step *step);
+
+/* ---- description.c: modelDescription.xml, and of FMI 3.0 sources/buildDescription.xml ---- */
+
+struct fmu {
+	int version;                /* 2 or 3 */
+	const char *name;           /* of the model: its identifier */
+	const char *title;          /* the spec's name for it */
+	const char *token;          /* instantiationToken, guid */
+	bool single;                /* it is in float */
+	double h;
+	bool math;                  /* its C needs the library of <math.h> */
+	struct fmu_variables variables;
+	int sources;                /* of sources/: those that are compiled */
+	const char **source;
+	struct archive archive;
+};
+const char *attribute_text(const char *text);              /* as the value of an XML attribute */
+const char *model_description(const struct fmu *f);
+const char *build_description(const struct fmu *f);
+
+/* ---- pieces.c: of the runtime, what C needs ---- */
+
+/* those files, as members of sources/, and of them those that are compiled as sources of f */
+void add_runtime(struct fmu *f, struct archive *to, const char *code);
+const char *runtime_file(const char *name);                /* its text */
+
+/* ---- fmu.c: the whole ---- */
+
+/* NAME_pl.h, which the C includes */
+const char *fmu_header_name(const struct model *model);
+/* of this C and its header; NULL: it was said why there is none */
+struct fmu *fmu_new(const struct step *step, int version, const char *code, const char *header);
+
+#endif

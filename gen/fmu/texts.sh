@@ -1,0 +1,16 @@
+#!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
+# texts.sh OUTPUT FILE ...: the files as C strings in a list of names and texts.
+set -eu
+output=$1
+shift
+{
+	echo '/* made by texts.sh */'
+	echo 'static const struct { const char *name, *text; } texts[] = {'
+	for file in "$@"; do
+		echo "{ \"${file##*/}\","
+		sed 's/[\\"]/\\&/g; s/^/"/; s/$/\\n"/' "$file"
+		echo '},'
+	done
+	echo '};'
+} >"$output"

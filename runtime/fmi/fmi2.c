@@ -1,0 +1,377 @@
+/* SPDX-License-Identifier: MIT-0 */
+/* A model as an FMU for co-simulation of FMI 2.0: plfmu.h with the standard's names, and stubs for what it declares and
+ * this FMU does not offer.  The standard's three headers come from the importer. */
+#include "plfmu.h"
+
+#include "fmi2Functions.h"
+
+static fmi2Status status_of(enum fmu_result result)
+{
+    return result == FMU_OK ? fmi2OK : result == FMU_WARNING ? fmi2Warning : fmi2Error;
+}
+
+/* The text is a printf format there. */
+static void log_message(fmu_instance *i, enum fmu_result result, const char *text)
+{
+    const fmi2CallbackLogger callback = (fmi2CallbackLogger)i->callback;
+    if (callback)
+        callback(i->environment, i->name, status_of(result),
+                 result == FMU_WARNING ? fmu_category_warning : fmu_category_error, "%s", text);
+}
+
+static fmi2Status absent(fmi2Component c, const char *function)
+{
+    return status_of(fmu_absent((fmu_instance *)c, function));
+}
+
+/* ---- creation ---- */
+
+const char *fmi2GetTypesPlatform(void)
+{
+    return fmi2TypesPlatform;
+}
+
+const char *fmi2GetVersion(void)
+{
+    return fmi2Version;
+}
+
+fmi2Status fmi2SetDebugLogging(fmi2Component c, fmi2Boolean loggingOn, size_t nCategories,
+                               const fmi2String categories[])
+{
+    return c ? status_of(fmu_logging((fmu_instance *)c, loggingOn != 0, nCategories, categories)) : fmi2Error;
+}
+
+/* Before there is an instance: so an error is told as if it had been */
+static fmi2Component refused(const fmi2CallbackFunctions *functions, fmi2String name, const char *why)
+{
+    if (functions && functions->logger)
+        functions->logger(functions->componentEnvironment, name, fmi2Error, fmu_category_error, "%s", why);
+    return NULL;
+}
+
+fmi2Component fmi2Instantiate(fmi2String instanceName, fmi2Type fmuType, fmi2String fmuGUID,
+                              fmi2String fmuResourceLocation, const fmi2CallbackFunctions *functions,
+                              fmi2Boolean visible, fmi2Boolean loggingOn)
+{
+    fmu_instance *i;
+    (void)fmuResourceLocation;
+    (void)visible;
+    if (fmuType != fmi2CoSimulation)
+        return refused(functions, instanceName, "this FMU is for co-simulation only");
+    i = fmu_new(instanceName, fmuGUID);
+    if (!i)
+        return refused(functions, instanceName, "the GUID is another, or out of memory");
+    if (functions) {
+        i->environment = functions->componentEnvironment;
+        i->callback = (void (*)(void))functions->logger;
+    }
+    i->log = log_message;
+    fmu_logging(i, loggingOn != 0, 0, NULL);
+    return i;
+}
+
+void fmi2FreeInstance(fmi2Component c)
+{
+    free(c);
+}
+
+/* ---- from mode to mode ---- */
+
+fmi2Status fmi2SetupExperiment(fmi2Component c, fmi2Boolean toleranceDefined, fmi2Real tolerance, fmi2Real startTime,
+                               fmi2Boolean stopTimeDefined, fmi2Real stopTime)
+{
+    fmu_instance *i = (fmu_instance *)c;
+    (void)toleranceDefined;
+    (void)tolerance;
+    (void)stopTimeDefined;
+    (void)stopTime;
+    if (!i)
+        return fmi2Error;
+    return status_of(i->data.mode == FMU_INSTANTIATED ? fmu_initialize(i, startTime)
+                                                      : fmu_out_of_place(i, "fmi2SetupExperiment"));
+}
+
+fmi2Status fmi2EnterInitializationMode(fmi2Component c)
+{
+    return c ? status_of(fmu_enter((fmu_instance *)c, "fmi2EnterInitializationMode")) : fmi2Error;
+}
+
+fmi2Status fmi2ExitInitializationMode(fmi2Component c)
+{
+    return c ? status_of(fmu_leave((fmu_instance *)c, "fmi2ExitInitializationMode")) : fmi2Error;
+}
+
+fmi2Status fmi2Terminate(fmi2Component c)
+{
+    return c ? status_of(fmu_end((fmu_instance *)c, "fmi2Terminate")) : fmi2Error;
+}
+
+fmi2Status fmi2Reset(fmi2Component c)
+{
+    if (!c)
+        return fmi2Error;
+    fmu_begin(&((fmu_instance *)c)->data);
+    return fmi2OK;
+}
+
+/* ---- values: all are Real ---- */
+
+fmi2Status fmi2GetReal(fmi2Component c, const fmi2ValueReference vr[], size_t nvr, fmi2Real value[])
+{
+    return c ? status_of(fmu_get((fmu_instance *)c, vr, nvr, value)) : fmi2Error;
+}
+
+fmi2Status fmi2SetReal(fmi2Component c, const fmi2ValueReference vr[], size_t nvr, const fmi2Real value[])
+{
+    return c ? status_of(fmu_set((fmu_instance *)c, vr, nvr, value)) : fmi2Error;
+}
+
+/* ---- a step: done when it returns, so nothing is ever pending ---- */
+
+fmi2Status fmi2DoStep(fmi2Component c, fmi2Real currentCommunicationPoint, fmi2Real communicationStepSize,
+                      fmi2Boolean noSetFMUStatePriorToCurrentPoint)
+{
+    (void)noSetFMUStatePriorToCurrentPoint;
+    if (!c)
+        return fmi2Error;
+    return status_of(fmu_step((fmu_instance *)c, currentCommunicationPoint, communicationStepSize, "fmi2DoStep"));
+}
+
+fmi2Status fmi2GetRealStatus(fmi2Component c, const fmi2StatusKind s, fmi2Real *value)
+{
+    if (!c || s != fmi2LastSuccessfulTime)
+        return fmi2Discard;
+    *value = fmu_time(&((fmu_instance *)c)->data);
+    return fmi2OK;
+}
+
+fmi2Status fmi2GetBooleanStatus(fmi2Component c, const fmi2StatusKind s, fmi2Boolean *value)
+{
+    if (!c || s != fmi2Terminated)
+        return fmi2Discard;
+    *value = fmi2False;
+    return fmi2OK;
+}
+
+fmi2Status fmi2GetStatus(fmi2Component c, const fmi2StatusKind s, fmi2Status *value)
+{
+    (void)c;
+    (void)s;
+    (void)value;
+    return fmi2Discard;
+}
+
+fmi2Status fmi2GetIntegerStatus(fmi2Component c, const fmi2StatusKind s, fmi2Integer *value)
+{
+    (void)c;
+    (void)s;
+    (void)value;
+    return fmi2Discard;
+}
+
+fmi2Status fmi2GetStringStatus(fmi2Component c, const fmi2StatusKind s, fmi2String *value)
+{
+    (void)c;
+    (void)s;
+    (void)value;
+    return fmi2Discard;
+}
+
+/* ---- saved states ---- */
+
+fmi2Status fmi2GetFMUstate(fmi2Component c, fmi2FMUstate *FMUstate)
+{
+    return c && FMUstate ? status_of(fmu_save((fmu_instance *)c, FMUstate)) : fmi2Error;
+}
+
+fmi2Status fmi2SetFMUstate(fmi2Component c, fmi2FMUstate FMUstate)
+{
+    return c ? status_of(fmu_restore((fmu_instance *)c, FMUstate)) : fmi2Error;
+}
+
+fmi2Status fmi2FreeFMUstate(fmi2Component c, fmi2FMUstate *FMUstate)
+{
+    (void)c;
+    if (FMUstate) {
+        free(*FMUstate);
+        *FMUstate = NULL;
+    }
+    return fmi2OK;
+}
+
+fmi2Status fmi2SerializedFMUstateSize(fmi2Component c, fmi2FMUstate FMUstate, size_t *size)
+{
+    (void)FMUstate;
+    if (!c || !size)
+        return fmi2Error;
+    *size = sizeof(fmu_saved);
+    return fmi2OK;
+}
+
+fmi2Status fmi2SerializeFMUstate(fmi2Component c, fmi2FMUstate FMUstate, fmi2Byte serializedState[], size_t size)
+{
+    return c ? status_of(fmu_serialize((fmu_instance *)c, FMUstate, serializedState, size)) : fmi2Error;
+}
+
+fmi2Status fmi2DeSerializeFMUstate(fmi2Component c, const fmi2Byte serializedState[], size_t size,
+                                   fmi2FMUstate *FMUstate)
+{
+    if (!c || !FMUstate)
+        return fmi2Error;
+    return status_of(fmu_deserialize((fmu_instance *)c, serializedState, size, FMUstate));
+}
+
+/* ---- what this FMU does not offer: no variables of other types, no derivatives, no model exchange ---- */
+
+fmi2Status fmi2GetInteger(fmi2Component c, const fmi2ValueReference vr[], size_t nvr, fmi2Integer value[])
+{
+    (void)vr;
+    (void)nvr;
+    (void)value;
+    return absent(c, "fmi2GetInteger");
+}
+
+fmi2Status fmi2GetBoolean(fmi2Component c, const fmi2ValueReference vr[], size_t nvr, fmi2Boolean value[])
+{
+    (void)vr;
+    (void)nvr;
+    (void)value;
+    return absent(c, "fmi2GetBoolean");
+}
+
+fmi2Status fmi2GetString(fmi2Component c, const fmi2ValueReference vr[], size_t nvr, fmi2String value[])
+{
+    (void)vr;
+    (void)nvr;
+    (void)value;
+    return absent(c, "fmi2GetString");
+}
+
+fmi2Status fmi2SetInteger(fmi2Component c, const fmi2ValueReference vr[], size_t nvr, const fmi2Integer value[])
+{
+    (void)vr;
+    (void)nvr;
+    (void)value;
+    return absent(c, "fmi2SetInteger");
+}
+
+fmi2Status fmi2SetBoolean(fmi2Component c, const fmi2ValueReference vr[], size_t nvr, const fmi2Boolean value[])
+{
+    (void)vr;
+    (void)nvr;
+    (void)value;
+    return absent(c, "fmi2SetBoolean");
+}
+
+fmi2Status fmi2SetString(fmi2Component c, const fmi2ValueReference vr[], size_t nvr, const fmi2String value[])
+{
+    (void)vr;
+    (void)nvr;
+    (void)value;
+    return absent(c, "fmi2SetString");
+}
+
+fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueReference vUnknown_ref[], size_t nUnknown,
+                                        const fmi2ValueReference vKnown_ref[], size_t nKnown, const fmi2Real dvKnown[],
+                                        fmi2Real dvUnknown[])
+{
+    (void)vUnknown_ref;
+    (void)nUnknown;
+    (void)vKnown_ref;
+    (void)nKnown;
+    (void)dvKnown;
+    (void)dvUnknown;
+    return absent(c, "fmi2GetDirectionalDerivative");
+}
+
+fmi2Status fmi2EnterEventMode(fmi2Component c)
+{
+    return absent(c, "fmi2EnterEventMode");
+}
+
+fmi2Status fmi2NewDiscreteStates(fmi2Component c, fmi2EventInfo *fmi2eventInfo)
+{
+    (void)fmi2eventInfo;
+    return absent(c, "fmi2NewDiscreteStates");
+}
+
+fmi2Status fmi2EnterContinuousTimeMode(fmi2Component c)
+{
+    return absent(c, "fmi2EnterContinuousTimeMode");
+}
+
+fmi2Status fmi2CompletedIntegratorStep(fmi2Component c, fmi2Boolean noSetFMUStatePriorToCurrentPoint,
+                                       fmi2Boolean *enterEventMode, fmi2Boolean *terminateSimulation)
+{
+    (void)noSetFMUStatePriorToCurrentPoint;
+    (void)enterEventMode;
+    (void)terminateSimulation;
+    return absent(c, "fmi2CompletedIntegratorStep");
+}
+
+fmi2Status fmi2SetTime(fmi2Component c, fmi2Real time)
+{
+    (void)time;
+    return absent(c, "fmi2SetTime");
+}
+
+fmi2Status fmi2SetContinuousStates(fmi2Component c, const fmi2Real x[], size_t nx)
+{
+    (void)x;
+    (void)nx;
+    return absent(c, "fmi2SetContinuousStates");
+}
+
+fmi2Status fmi2GetDerivatives(fmi2Component c, fmi2Real derivatives[], size_t nx)
+{
+    (void)derivatives;
+    (void)nx;
+    return absent(c, "fmi2GetDerivatives");
+}
+
+fmi2Status fmi2GetEventIndicators(fmi2Component c, fmi2Real eventIndicators[], size_t ni)
+{
+    (void)eventIndicators;
+    (void)ni;
+    return absent(c, "fmi2GetEventIndicators");
+}
+
+fmi2Status fmi2GetContinuousStates(fmi2Component c, fmi2Real x[], size_t nx)
+{
+    (void)x;
+    (void)nx;
+    return absent(c, "fmi2GetContinuousStates");
+}
+
+fmi2Status fmi2GetNominalsOfContinuousStates(fmi2Component c, fmi2Real x_nominal[], size_t nx)
+{
+    (void)x_nominal;
+    (void)nx;
+    return absent(c, "fmi2GetNominalsOfContinuousStates");
+}
+
+fmi2Status fmi2SetRealInputDerivatives(fmi2Component c, const fmi2ValueReference vr[], size_t nvr,
+                                       const fmi2Integer order[], const fmi2Real value[])
+{
+    (void)vr;
+    (void)nvr;
+    (void)order;
+    (void)value;
+    return absent(c, "fmi2SetRealInputDerivatives");
+}
+
+fmi2Status fmi2GetRealOutputDerivatives(fmi2Component c, const fmi2ValueReference vr[], size_t nvr,
+                                        const fmi2Integer order[], fmi2Real value[])
+{
+    (void)vr;
+    (void)nvr;
+    (void)order;
+    (void)value;
+    return absent(c, "fmi2GetRealOutputDerivatives");
+}
+
+fmi2Status fmi2CancelStep(fmi2Component c)
+{
+    return absent(c, "fmi2CancelStep");
+}

@@ -1,0 +1,749 @@
+/* SPDX-License-Identifier: MIT-0 */
+/* A model as an FMU for co-simulation of FMI 3.0: plfmu.h with the standard's names, and stubs for what it declares and
+ * this FMU does not offer.  The standard's three headers come from the importer. */
+#include "plfmu.h"
+
+#include "fmi3Functions.h"
+
+static fmi3Status status_of(enum fmu_result result)
+{
+    return result == FMU_OK ? fmi3OK : result == FMU_WARNING ? fmi3Warning : fmi3Error;
+}
+
+static void log_message(fmu_instance *i, enum fmu_result result, const char *text)
+{
+    const fmi3LogMessageCallback callback = (fmi3LogMessageCallback)i->callback;
+    if (callback)
+        callback(i->environment, status_of(result),
+                 result == FMU_WARNING ? fmu_category_warning : fmu_category_error, text);
+}
+
+static fmi3Status absent(fmi3Instance instance, const char *function)
+{
+    return status_of(fmu_absent((fmu_instance *)instance, function));
+}
+
+/* ---- creation ---- */
+
+const char *fmi3GetVersion(void)
+{
+    return fmi3Version;
+}
+
+fmi3Status fmi3SetDebugLogging(fmi3Instance instance, fmi3Boolean loggingOn, size_t nCategories,
+                               const fmi3String categories[])
+{
+    return instance ? status_of(fmu_logging((fmu_instance *)instance, loggingOn, nCategories, categories)) : fmi3Error;
+}
+
+/* Before there is an instance: so an error is told as if it had been */
+static fmi3Instance refused(fmi3LogMessageCallback logMessage, fmi3InstanceEnvironment environment, const char *why)
+{
+    if (logMessage)
+        logMessage(environment, fmi3Error, fmu_category_error, why);
+    return NULL;
+}
+
+fmi3Instance fmi3InstantiateCoSimulation(fmi3String instanceName, fmi3String instantiationToken,
+                                         fmi3String resourcePath, fmi3Boolean visible, fmi3Boolean loggingOn,
+                                         fmi3Boolean eventModeUsed, fmi3Boolean earlyReturnAllowed,
+                                         const fmi3ValueReference requiredIntermediateVariables[],
+                                         size_t nRequiredIntermediateVariables,
+                                         fmi3InstanceEnvironment instanceEnvironment, fmi3LogMessageCallback logMessage,
+                                         fmi3IntermediateUpdateCallback intermediateUpdate)
+{
+    fmu_instance *i;
+    (void)resourcePath;
+    (void)visible;
+    (void)earlyReturnAllowed;
+    (void)requiredIntermediateVariables;
+    (void)intermediateUpdate;
+    if (eventModeUsed)
+        return refused(logMessage, instanceEnvironment, "this FMU has no event mode");
+    if (nRequiredIntermediateVariables > 0)
+        return refused(logMessage, instanceEnvironment, "this FMU offers no intermediate update");
+    i = fmu_new(instanceName, instantiationToken);
+    if (!i)
+        return refused(logMessage, instanceEnvironment, "the instantiation token is another, or out of memory");
+    i->environment = instanceEnvironment;
+    i->callback = (void (*)(void))logMessage;
+    i->log = log_message;
+    fmu_logging(i, loggingOn, 0, NULL);
+    return i;
+}
+
+fmi3Instance fmi3InstantiateModelExchange(fmi3String instanceName, fmi3String instantiationToken,
+                                          fmi3String resourcePath, fmi3Boolean visible, fmi3Boolean loggingOn,
+                                          fmi3InstanceEnvironment instanceEnvironment,
+                                          fmi3LogMessageCallback logMessage)
+{
+    (void)instanceName;
+    (void)instantiationToken;
+    (void)resourcePath;
+    (void)visible;
+    (void)loggingOn;
+    return refused(logMessage, instanceEnvironment, "this FMU is for co-simulation only");
+}
+
+fmi3Instance fmi3InstantiateScheduledExecution(fmi3String instanceName, fmi3String instantiationToken,
+                                               fmi3String resourcePath, fmi3Boolean visible, fmi3Boolean loggingOn,
+                                               fmi3InstanceEnvironment instanceEnvironment,
+                                               fmi3LogMessageCallback logMessage, fmi3ClockUpdateCallback clockUpdate,
+                                               fmi3LockPreemptionCallback lockPreemption,
+                                               fmi3UnlockPreemptionCallback unlockPreemption)
+{
+    (void)instanceName;
+    (void)instantiationToken;
+    (void)resourcePath;
+    (void)visible;
+    (void)loggingOn;
+    (void)clockUpdate;
+    (void)lockPreemption;
+    (void)unlockPreemption;
+    return refused(logMessage, instanceEnvironment, "this FMU is for co-simulation only");
+}
+
+void fmi3FreeInstance(fmi3Instance instance)
+{
+    free(instance);
+}
+
+/* ---- from mode to mode ---- */
+
+fmi3Status fmi3EnterInitializationMode(fmi3Instance instance, fmi3Boolean toleranceDefined, fmi3Float64 tolerance,
+                                       fmi3Float64 startTime, fmi3Boolean stopTimeDefined, fmi3Float64 stopTime)
+{
+    fmu_instance *i = (fmu_instance *)instance;
+    enum fmu_result result;
+    (void)toleranceDefined;
+    (void)tolerance;
+    (void)stopTimeDefined;
+    (void)stopTime;
+    if (!i)
+        return fmi3Error;
+    result = fmu_enter(i, "fmi3EnterInitializationMode");
+    return status_of(result == FMU_OK ? fmu_initialize(i, startTime) : result);
+}
+
+fmi3Status fmi3ExitInitializationMode(fmi3Instance instance)
+{
+    return instance ? status_of(fmu_leave((fmu_instance *)instance, "fmi3ExitInitializationMode")) : fmi3Error;
+}
+
+fmi3Status fmi3Terminate(fmi3Instance instance)
+{
+    return instance ? status_of(fmu_end((fmu_instance *)instance, "fmi3Terminate")) : fmi3Error;
+}
+
+fmi3Status fmi3Reset(fmi3Instance instance)
+{
+    if (!instance)
+        return fmi3Error;
+    fmu_begin(&((fmu_instance *)instance)->data);
+    return fmi3OK;
+}
+
+/* ---- values: all are Float64 ---- */
+
+fmi3Status fmi3GetFloat64(fmi3Instance instance, const fmi3ValueReference valueReferences[], size_t nValueReferences,
+                          fmi3Float64 values[], size_t nValues)
+{
+    if (!instance || nValues != nValueReferences)
+        return fmi3Error;
+    return status_of(fmu_get((fmu_instance *)instance, valueReferences, nValueReferences, values));
+}
+
+fmi3Status fmi3SetFloat64(fmi3Instance instance, const fmi3ValueReference valueReferences[], size_t nValueReferences,
+                          const fmi3Float64 values[], size_t nValues)
+{
+    if (!instance || nValues != nValueReferences)
+        return fmi3Error;
+    return status_of(fmu_set((fmu_instance *)instance, valueReferences, nValueReferences, values));
+}
+
+/* ---- a step ---- */
+
+fmi3Status fmi3DoStep(fmi3Instance instance, fmi3Float64 currentCommunicationPoint, fmi3Float64 communicationStepSize,
+                      fmi3Boolean noSetFMUStatePriorToCurrentPoint, fmi3Boolean *eventHandlingNeeded,
+                      fmi3Boolean *terminateSimulation, fmi3Boolean *earlyReturn, fmi3Float64 *lastSuccessfulTime)
+{
+    fmu_instance *i = (fmu_instance *)instance;
+    fmi3Status status;
+    (void)noSetFMUStatePriorToCurrentPoint;
+    if (!i)
+        return fmi3Error;
+    status = status_of(fmu_step(i, currentCommunicationPoint, communicationStepSize, "fmi3DoStep"));
+    if (eventHandlingNeeded)
+        *eventHandlingNeeded = fmi3False;
+    if (terminateSimulation)
+        *terminateSimulation = fmi3False;
+    if (earlyReturn)
+        *earlyReturn = fmi3False;
+    if (lastSuccessfulTime)
+        *lastSuccessfulTime = fmu_time(&i->data);
+    return status;
+}
+
+/* ---- saved states ---- */
+
+fmi3Status fmi3GetFMUState(fmi3Instance instance, fmi3FMUState *FMUState)
+{
+    return instance && FMUState ? status_of(fmu_save((fmu_instance *)instance, FMUState)) : fmi3Error;
+}
+
+fmi3Status fmi3SetFMUState(fmi3Instance instance, fmi3FMUState FMUState)
+{
+    return instance ? status_of(fmu_restore((fmu_instance *)instance, FMUState)) : fmi3Error;
+}
+
+fmi3Status fmi3FreeFMUState(fmi3Instance instance, fmi3FMUState *FMUState)
+{
+    (void)instance;
+    if (FMUState) {
+        free(*FMUState);
+        *FMUState = NULL;
+    }
+    return fmi3OK;
+}
+
+fmi3Status fmi3SerializedFMUStateSize(fmi3Instance instance, fmi3FMUState FMUState, size_t *size)
+{
+    (void)FMUState;
+    if (!instance || !size)
+        return fmi3Error;
+    *size = sizeof(fmu_saved);
+    return fmi3OK;
+}
+
+fmi3Status fmi3SerializeFMUState(fmi3Instance instance, fmi3FMUState FMUState, fmi3Byte serializedState[], size_t size)
+{
+    return instance ? status_of(fmu_serialize((fmu_instance *)instance, FMUState, serializedState, size)) : fmi3Error;
+}
+
+fmi3Status fmi3DeserializeFMUState(fmi3Instance instance, const fmi3Byte serializedState[], size_t size,
+                                   fmi3FMUState *FMUState)
+{
+    if (!instance || !FMUState)
+        return fmi3Error;
+    return status_of(fmu_deserialize((fmu_instance *)instance, serializedState, size, FMUState));
+}
+
+/* ---- what this FMU does not offer: no variables of other types, no derivatives, events, clocks, configuration ---- */
+
+fmi3Status fmi3EnterEventMode(fmi3Instance instance)
+{
+    return absent(instance, "fmi3EnterEventMode");
+}
+
+fmi3Status fmi3GetFloat32(fmi3Instance instance, const fmi3ValueReference valueReferences[], size_t nValueReferences,
+                          fmi3Float32 values[], size_t nValues)
+{
+    (void)valueReferences;
+    (void)nValueReferences;
+    (void)values;
+    (void)nValues;
+    return absent(instance, "fmi3GetFloat32");
+}
+
+fmi3Status fmi3GetInt8(fmi3Instance instance, const fmi3ValueReference valueReferences[], size_t nValueReferences,
+                       fmi3Int8 values[], size_t nValues)
+{
+    (void)valueReferences;
+    (void)nValueReferences;
+    (void)values;
+    (void)nValues;
+    return absent(instance, "fmi3GetInt8");
+}
+
+fmi3Status fmi3GetUInt8(fmi3Instance instance, const fmi3ValueReference valueReferences[], size_t nValueReferences,
+                        fmi3UInt8 values[], size_t nValues)
+{
+    (void)valueReferences;
+    (void)nValueReferences;
+    (void)values;
+    (void)nValues;
+    return absent(instance, "fmi3GetUInt8");
+}
+
+fmi3Status fmi3GetInt16(fmi3Instance instance, const fmi3ValueReference valueReferences[], size_t nValueReferences,
+                        fmi3Int16 values[], size_t nValues)
+{
+    (void)valueReferences;
+    (void)nValueReferences;
+    (void)values;
+    (void)nValues;
+    return absent(instance, "fmi3GetInt16");
+}
+
+fmi3Status fmi3GetUInt16(fmi3Instance instance, const fmi3ValueReference valueReferences[], size_t nValueReferences,
+                         fmi3UInt16 values[], size_t nValues)
+{
+    (void)valueReferences;
+    (void)nValueReferences;
+    (void)values;
+    (void)nValues;
+    return absent(instance, "fmi3GetUInt16");
+}
+
+fmi3Status fmi3GetInt32(fmi3Instance instance, const fmi3ValueReference valueReferences[], size_t nValueReferences,
+                        fmi3Int32 values[], size_t nValues)
+{
+    (void)valueReferences;
+    (void)nValueReferences;
+    (void)values;
+    (void)nValues;
+    return absent(instance, "fmi3GetInt32");
+}
+
+fmi3Status fmi3GetUInt32(fmi3Instance instance, const fmi3ValueReference valueReferences[], size_t nValueReferences,
+                         fmi3UInt32 values[], size_t nValues)
+{
+    (void)valueReferences;
+    (void)nValueReferences;
+    (void)values;
+    (void)nValues;
+    return absent(instance, "fmi3GetUInt32");
+}
+
+fmi3Status fmi3GetInt64(fmi3Instance instance, const fmi3ValueReference valueReferences[], size_t nValueReferences,
+                        fmi3Int64 values[], size_t nValues)
+{
+    (void)valueReferences;
+    (void)nValueReferences;
+    (void)values;
+    (void)nValues;
+    return absent(instance, "fmi3GetInt64");
+}
+
+fmi3Status fmi3GetUInt64(fmi3Instance instance, const fmi3ValueReference valueReferences[], size_t nValueReferences,
+                         fmi3UInt64 values[], size_t nValues)
+{
+    (void)valueReferences;
+    (void)nValueReferences;
+    (void)values;
+    (void)nValues;
+    return absent(instance, "fmi3GetUInt64");
+}
+
+fmi3Status fmi3GetBoolean(fmi3Instance instance, const fmi3ValueReference valueReferences[], size_t nValueReferences,
+                          fmi3Boolean values[], size_t nValues)
+{
+    (void)valueReferences;
+    (void)nValueReferences;
+    (void)values;
+    (void)nValues;
+    return absent(instance, "fmi3GetBoolean");
+}
+
+fmi3Status fmi3GetString(fmi3Instance instance, const fmi3ValueReference valueReferences[], size_t nValueReferences,
+                         fmi3String values[], size_t nValues)
+{
+    (void)valueReferences;
+    (void)nValueReferences;
+    (void)values;
+    (void)nValues;
+    return absent(instance, "fmi3GetString");
+}
+
+fmi3Status fmi3GetBinary(fmi3Instance instance, const fmi3ValueReference valueReferences[], size_t nValueReferences,
+                         size_t valueSizes[], fmi3Binary values[], size_t nValues)
+{
+    (void)valueReferences;
+    (void)nValueReferences;
+    (void)valueSizes;
+    (void)values;
+    (void)nValues;
+    return absent(instance, "fmi3GetBinary");
+}
+
+fmi3Status fmi3GetClock(fmi3Instance instance, const fmi3ValueReference valueReferences[], size_t nValueReferences,
+                        fmi3Clock values[])
+{
+    (void)valueReferences;
+    (void)nValueReferences;
+    (void)values;
+    return absent(instance, "fmi3GetClock");
+}
+
+fmi3Status fmi3SetFloat32(fmi3Instance instance, const fmi3ValueReference valueReferences[], size_t nValueReferences,
+                          const fmi3Float32 values[], size_t nValues)
+{
+    (void)valueReferences;
+    (void)nValueReferences;
+    (void)values;
+    (void)nValues;
+    return absent(instance, "fmi3SetFloat32");
+}
+
+fmi3Status fmi3SetInt8(fmi3Instance instance, const fmi3ValueReference valueReferences[], size_t nValueReferences,
+                       const fmi3Int8 values[], size_t nValues)
+{
+    (void)valueReferences;
+    (void)nValueReferences;
+    (void)values;
+    (void)nValues;
+    return absent(instance, "fmi3SetInt8");
+}
+
+fmi3Status fmi3SetUInt8(fmi3Instance instance, const fmi3ValueReference valueReferences[], size_t nValueReferences,
+                        const fmi3UInt8 values[], size_t nValues)
+{
+    (void)valueReferences;
+    (void)nValueReferences;
+    (void)values;
+    (void)nValues;
+    return absent(instance, "fmi3SetUInt8");
+}
+
+fmi3Status fmi3SetInt16(fmi3Instance instance, const fmi3ValueReference valueReferences[], size_t nValueReferences,
+                        const fmi3Int16 values[], size_t nValues)
+{
+    (void)valueReferences;
+    (void)nValueReferences;
+    (void)values;
+    (void)nValues;
+    return absent(instance, "fmi3SetInt16");
+}
+
+fmi3Status fmi3SetUInt16(fmi3Instance instance, const fmi3ValueReference valueReferences[], size_t nValueReferences,
+                         const fmi3UInt16 values[], size_t nValues)
+{
+    (void)valueReferences;
+    (void)nValueReferences;
+    (void)values;
+    (void)nValues;
+    return absent(instance, "fmi3SetUInt16");
+}
+
+fmi3Status fmi3SetInt32(fmi3Instance instance, const fmi3ValueReference valueReferences[], size_t nValueReferences,
+                        const fmi3Int32 values[], size_t nValues)
+{
+    (void)valueReferences;
+    (void)nValueReferences;
+    (void)values;
+    (void)nValues;
+    return absent(instance, "fmi3SetInt32");
+}
+
+fmi3Status fmi3SetUInt32(fmi3Instance instance, const fmi3ValueReference valueReferences[], size_t nValueReferences,
+                         const fmi3UInt32 values[], size_t nValues)
+{
+    (void)valueReferences;
+    (void)nValueReferences;
+    (void)values;
+    (void)nValues;
+    return absent(instance, "fmi3SetUInt32");
+}
+
+fmi3Status fmi3SetInt64(fmi3Instance instance, const fmi3ValueReference valueReferences[], size_t nValueReferences,
+                        const fmi3Int64 values[], size_t nValues)
+{
+    (void)valueReferences;
+    (void)nValueReferences;
+    (void)values;
+    (void)nValues;
+    return absent(instance, "fmi3SetInt64");
+}
+
+fmi3Status fmi3SetUInt64(fmi3Instance instance, const fmi3ValueReference valueReferences[], size_t nValueReferences,
+                         const fmi3UInt64 values[], size_t nValues)
+{
+    (void)valueReferences;
+    (void)nValueReferences;
+    (void)values;
+    (void)nValues;
+    return absent(instance, "fmi3SetUInt64");
+}
+
+fmi3Status fmi3SetBoolean(fmi3Instance instance, const fmi3ValueReference valueReferences[], size_t nValueReferences,
+                          const fmi3Boolean values[], size_t nValues)
+{
+    (void)valueReferences;
+    (void)nValueReferences;
+    (void)values;
+    (void)nValues;
+    return absent(instance, "fmi3SetBoolean");
+}
+
+fmi3Status fmi3SetString(fmi3Instance instance, const fmi3ValueReference valueReferences[], size_t nValueReferences,
+                         const fmi3String values[], size_t nValues)
+{
+    (void)valueReferences;
+    (void)nValueReferences;
+    (void)values;
+    (void)nValues;
+    return absent(instance, "fmi3SetString");
+}
+
+fmi3Status fmi3SetBinary(fmi3Instance instance, const fmi3ValueReference valueReferences[], size_t nValueReferences,
+                         const size_t valueSizes[], const fmi3Binary values[], size_t nValues)
+{
+    (void)valueReferences;
+    (void)nValueReferences;
+    (void)valueSizes;
+    (void)values;
+    (void)nValues;
+    return absent(instance, "fmi3SetBinary");
+}
+
+fmi3Status fmi3SetClock(fmi3Instance instance, const fmi3ValueReference valueReferences[], size_t nValueReferences,
+                        const fmi3Clock values[])
+{
+    (void)valueReferences;
+    (void)nValueReferences;
+    (void)values;
+    return absent(instance, "fmi3SetClock");
+}
+
+fmi3Status fmi3GetNumberOfVariableDependencies(fmi3Instance instance, fmi3ValueReference valueReference,
+                                               size_t *nDependencies)
+{
+    (void)valueReference;
+    (void)nDependencies;
+    return absent(instance, "fmi3GetNumberOfVariableDependencies");
+}
+
+fmi3Status fmi3GetVariableDependencies(fmi3Instance instance, fmi3ValueReference dependent,
+                                       size_t elementIndicesOfDependent[], fmi3ValueReference independents[],
+                                       size_t elementIndicesOfIndependents[], fmi3DependencyKind dependencyKinds[],
+                                       size_t nDependencies)
+{
+    (void)dependent;
+    (void)elementIndicesOfDependent;
+    (void)independents;
+    (void)elementIndicesOfIndependents;
+    (void)dependencyKinds;
+    (void)nDependencies;
+    return absent(instance, "fmi3GetVariableDependencies");
+}
+
+fmi3Status fmi3GetDirectionalDerivative(fmi3Instance instance, const fmi3ValueReference unknowns[], size_t nUnknowns,
+                                        const fmi3ValueReference knowns[], size_t nKnowns, const fmi3Float64 seed[],
+                                        size_t nSeed, fmi3Float64 sensitivity[], size_t nSensitivity)
+{
+    (void)unknowns;
+    (void)nUnknowns;
+    (void)knowns;
+    (void)nKnowns;
+    (void)seed;
+    (void)nSeed;
+    (void)sensitivity;
+    (void)nSensitivity;
+    return absent(instance, "fmi3GetDirectionalDerivative");
+}
+
+fmi3Status fmi3GetAdjointDerivative(fmi3Instance instance, const fmi3ValueReference unknowns[], size_t nUnknowns,
+                                    const fmi3ValueReference knowns[], size_t nKnowns, const fmi3Float64 seed[],
+                                    size_t nSeed, fmi3Float64 sensitivity[], size_t nSensitivity)
+{
+    (void)unknowns;
+    (void)nUnknowns;
+    (void)knowns;
+    (void)nKnowns;
+    (void)seed;
+    (void)nSeed;
+    (void)sensitivity;
+    (void)nSensitivity;
+    return absent(instance, "fmi3GetAdjointDerivative");
+}
+
+fmi3Status fmi3EnterConfigurationMode(fmi3Instance instance)
+{
+    return absent(instance, "fmi3EnterConfigurationMode");
+}
+
+fmi3Status fmi3ExitConfigurationMode(fmi3Instance instance)
+{
+    return absent(instance, "fmi3ExitConfigurationMode");
+}
+
+fmi3Status fmi3GetIntervalDecimal(fmi3Instance instance, const fmi3ValueReference valueReferences[],
+                                  size_t nValueReferences, fmi3Float64 intervals[], fmi3IntervalQualifier qualifiers[])
+{
+    (void)valueReferences;
+    (void)nValueReferences;
+    (void)intervals;
+    (void)qualifiers;
+    return absent(instance, "fmi3GetIntervalDecimal");
+}
+
+fmi3Status fmi3GetIntervalFraction(fmi3Instance instance, const fmi3ValueReference valueReferences[],
+                                   size_t nValueReferences, fmi3UInt64 counters[], fmi3UInt64 resolutions[],
+                                   fmi3IntervalQualifier qualifiers[])
+{
+    (void)valueReferences;
+    (void)nValueReferences;
+    (void)counters;
+    (void)resolutions;
+    (void)qualifiers;
+    return absent(instance, "fmi3GetIntervalFraction");
+}
+
+fmi3Status fmi3GetShiftDecimal(fmi3Instance instance, const fmi3ValueReference valueReferences[],
+                               size_t nValueReferences, fmi3Float64 shifts[])
+{
+    (void)valueReferences;
+    (void)nValueReferences;
+    (void)shifts;
+    return absent(instance, "fmi3GetShiftDecimal");
+}
+
+fmi3Status fmi3GetShiftFraction(fmi3Instance instance, const fmi3ValueReference valueReferences[],
+                                size_t nValueReferences, fmi3UInt64 counters[], fmi3UInt64 resolutions[])
+{
+    (void)valueReferences;
+    (void)nValueReferences;
+    (void)counters;
+    (void)resolutions;
+    return absent(instance, "fmi3GetShiftFraction");
+}
+
+fmi3Status fmi3SetIntervalDecimal(fmi3Instance instance, const fmi3ValueReference valueReferences[],
+                                  size_t nValueReferences, const fmi3Float64 intervals[])
+{
+    (void)valueReferences;
+    (void)nValueReferences;
+    (void)intervals;
+    return absent(instance, "fmi3SetIntervalDecimal");
+}
+
+fmi3Status fmi3SetIntervalFraction(fmi3Instance instance, const fmi3ValueReference valueReferences[],
+                                   size_t nValueReferences, const fmi3UInt64 counters[], const fmi3UInt64 resolutions[])
+{
+    (void)valueReferences;
+    (void)nValueReferences;
+    (void)counters;
+    (void)resolutions;
+    return absent(instance, "fmi3SetIntervalFraction");
+}
+
+fmi3Status fmi3SetShiftDecimal(fmi3Instance instance, const fmi3ValueReference valueReferences[],
+                               size_t nValueReferences, const fmi3Float64 shifts[])
+{
+    (void)valueReferences;
+    (void)nValueReferences;
+    (void)shifts;
+    return absent(instance, "fmi3SetShiftDecimal");
+}
+
+fmi3Status fmi3SetShiftFraction(fmi3Instance instance, const fmi3ValueReference valueReferences[],
+                                size_t nValueReferences, const fmi3UInt64 counters[], const fmi3UInt64 resolutions[])
+{
+    (void)valueReferences;
+    (void)nValueReferences;
+    (void)counters;
+    (void)resolutions;
+    return absent(instance, "fmi3SetShiftFraction");
+}
+
+fmi3Status fmi3EvaluateDiscreteStates(fmi3Instance instance)
+{
+    return absent(instance, "fmi3EvaluateDiscreteStates");
+}
+
+fmi3Status fmi3UpdateDiscreteStates(fmi3Instance instance, fmi3Boolean *discreteStatesNeedUpdate,
+                                    fmi3Boolean *terminateSimulation, fmi3Boolean *nominalsOfContinuousStatesChanged,
+                                    fmi3Boolean *valuesOfContinuousStatesChanged, fmi3Boolean *nextEventTimeDefined,
+                                    fmi3Float64 *nextEventTime)
+{
+    (void)discreteStatesNeedUpdate;
+    (void)terminateSimulation;
+    (void)nominalsOfContinuousStatesChanged;
+    (void)valuesOfContinuousStatesChanged;
+    (void)nextEventTimeDefined;
+    (void)nextEventTime;
+    return absent(instance, "fmi3UpdateDiscreteStates");
+}
+
+fmi3Status fmi3EnterContinuousTimeMode(fmi3Instance instance)
+{
+    return absent(instance, "fmi3EnterContinuousTimeMode");
+}
+
+fmi3Status fmi3CompletedIntegratorStep(fmi3Instance instance, fmi3Boolean noSetFMUStatePriorToCurrentPoint,
+                                       fmi3Boolean *enterEventMode, fmi3Boolean *terminateSimulation)
+{
+    (void)noSetFMUStatePriorToCurrentPoint;
+    (void)enterEventMode;
+    (void)terminateSimulation;
+    return absent(instance, "fmi3CompletedIntegratorStep");
+}
+
+fmi3Status fmi3SetTime(fmi3Instance instance, fmi3Float64 time)
+{
+    (void)time;
+    return absent(instance, "fmi3SetTime");
+}
+
+fmi3Status fmi3SetContinuousStates(fmi3Instance instance, const fmi3Float64 continuousStates[],
+                                   size_t nContinuousStates)
+{
+    (void)continuousStates;
+    (void)nContinuousStates;
+    return absent(instance, "fmi3SetContinuousStates");
+}
+
+fmi3Status fmi3GetContinuousStateDerivatives(fmi3Instance instance, fmi3Float64 derivatives[], size_t nContinuousStates)
+{
+    (void)derivatives;
+    (void)nContinuousStates;
+    return absent(instance, "fmi3GetContinuousStateDerivatives");
+}
+
+fmi3Status fmi3GetEventIndicators(fmi3Instance instance, fmi3Float64 eventIndicators[], size_t nEventIndicators)
+{
+    (void)eventIndicators;
+    (void)nEventIndicators;
+    return absent(instance, "fmi3GetEventIndicators");
+}
+
+fmi3Status fmi3GetContinuousStates(fmi3Instance instance, fmi3Float64 continuousStates[], size_t nContinuousStates)
+{
+    (void)continuousStates;
+    (void)nContinuousStates;
+    return absent(instance, "fmi3GetContinuousStates");
+}
+
+fmi3Status fmi3GetNominalsOfContinuousStates(fmi3Instance instance, fmi3Float64 nominals[], size_t nContinuousStates)
+{
+    (void)nominals;
+    (void)nContinuousStates;
+    return absent(instance, "fmi3GetNominalsOfContinuousStates");
+}
+
+fmi3Status fmi3GetNumberOfEventIndicators(fmi3Instance instance, size_t *nEventIndicators)
+{
+    (void)nEventIndicators;
+    return absent(instance, "fmi3GetNumberOfEventIndicators");
+}
+
+fmi3Status fmi3GetNumberOfContinuousStates(fmi3Instance instance, size_t *nContinuousStates)
+{
+    (void)nContinuousStates;
+    return absent(instance, "fmi3GetNumberOfContinuousStates");
+}
+
+fmi3Status fmi3EnterStepMode(fmi3Instance instance)
+{
+    return absent(instance, "fmi3EnterStepMode");
+}
+
+fmi3Status fmi3GetOutputDerivatives(fmi3Instance instance, const fmi3ValueReference valueReferences[],
+                                    size_t nValueReferences, const fmi3Int32 orders[], fmi3Float64 values[],
+                                    size_t nValues)
+{
+    (void)valueReferences;
+    (void)nValueReferences;
+    (void)orders;
+    (void)values;
+    (void)nValues;
+    return absent(instance, "fmi3GetOutputDerivatives");
+}
+
+fmi3Status fmi3ActivateModelPartition(fmi3Instance instance, fmi3ValueReference clockReference,
+                                      fmi3Float64 activationTime)
+{
+    (void)clockReference;
+    (void)activationTime;
+    return absent(instance, "fmi3ActivateModelPartition");
+}

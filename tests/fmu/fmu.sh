@@ -1,0 +1,311 @@
+#!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
+# fmu.sh PLGEN SOURCE_ROOT: FMUs against the standard's schemas and headers, and driven by an importer.
+#
+# Headers and schemas of FMI stand in FMI_DIR, by default ../shared/fmi beside the checkout, as 2.0/headers, 2.0/schema,
+# 3.0/headers and 3.0/schema; without them what needs them is skipped.
+set -u
+plgen=$1
+root=$(cd "$2" && pwd) || exit 99
+case $plgen in /*) ;; *) plgen=$PWD/$plgen ;; esac
+standard=${FMI_DIR:-$root/../shared/fmi}
+standard=$(cd "$standard" 2>/dev/null && pwd)
+. "$root/tests/tap.sh"
+own=$root/tests/fmu
+models=$root/models
+warnings='-Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wcast-qual -Werror'
+
+# unpack FMU FOLDER: by a program that knows zip, which checks sums and lengths
+unpack() {
+    rm -rf "$2"
+    python3 - "$1" "$2" >>log 2>&1 <<'END'
+import sys, zipfile
+z = zipfile.ZipFile(sys.argv[1])
+bad = z.testzip()
+assert bad is None, bad
+assert all(i.compress_type == 0 and i.date_time == (1980, 1, 1, 0, 0, 0) for i in z.infolist())
+assert len(set(z.namelist())) == len(z.namelist())
+z.extractall(sys.argv[2])
+END
+}
+
+# sources FOLDER: the files that the description lists
+sources() {
+    if [ -f "$1/sources/buildDescription.xml" ]; then
+        sed -n 's/.*<SourceFile name="\([^"]*\)".*/\1/p' "$1/sources/buildDescription.xml"
+    else
+        sed -n 's/.*<File name="\([^"]*\)".*/\1/p' "$1/modelDescription.xml"
+    fi
+}
+
+token() {
+    sed -n 's/.* \(instantiationToken\|guid\)="\([^"]*\)".*/\2/p' "$1/modelDescription.xml"
+}
+
+# ---- without the standard's files ----
+
+"$plgen" --fmu a.fmu "$models/scs.spec" >log 2>&1 && "$plgen" --fmu b.fmu "$models/scs.spec" >>log 2>&1 &&
+    cmp a.fmu b.fmu >>log 2>&1
+result $? 'the same bytes twice'
+: >log
+unpack a.fmu a
+result $? 'a zip file of stored members, all of the first day'
+find a -type f | LC_ALL=C sort | sed 's,^a/,,' >names
+cat >expected <<'END'
+documentation/licenses/license.txt
+modelDescription.xml
+sources/apply.c
+sources/buildDescription.xml
+sources/fmi3.c
+sources/fmu_model.h
+sources/plfmu.h
+sources/plrt.h
+sources/power.c
+sources/real.h
+sources/scs_pl.c
+sources/scs_pl.h
+sources/series.c
+sources/two.h
+END
+diff expected names >log
+result $? 'the runtime that the model uses, and no more'
+"$plgen" --fmu c.fmu -D k1=101 "$models/scs.spec" >log 2>&1 && unpack c.fmu c && [ "$(token a)" != "$(token c)" ] &&
+    [ -n "$(token a)" ]
+result $? 'another model has another token'
+
+cat >taken.spec <<'END'
+model taken
+coord x
+input u
+x'' + x = u
+output u2 = 2*x
+output time = x
+step 0.1
+END
+"$plgen" --fmu t.fmu taken.spec >log 2>&1 && unpack t.fmu t &&
+    grep -o ' name="[^"]*"' t/modelDescription.xml >names
+printf ' name="%s"\n' logStatusWarning logStatusError time u u2 output.time state.x 'state.x&apos;' >expected
+diff expected names >>log
+result $? 'every variable has a name of its own'
+
+cat >variables.sed <<'END'
+/<ModelVariables>/,/<.ModelVariables>/{
+s/^ *//
+s/ causality="\([a-z]*\)" variability="\([a-z]*\)"/ \1 \2/p
+/<Real/p
+}
+END
+"$plgen" --fmu v.fmu --fmu-version 2 "$own/plant.spec" >log 2>&1 && unpack v.fmu v &&
+    sed -n -f variables.sed v/modelDescription.xml >names
+cat >expected <<'END'
+<ScalarVariable name="time" valueReference="0" independent continuous>
+<Real/>
+<ScalarVariable name="pull" valueReference="1" input continuous>
+<Real start="0.0"/>
+<ScalarVariable name="base" valueReference="2" input continuous>
+<Real start="0.0"/>
+<ScalarVariable name="x" valueReference="3" output continuous>
+<Real/>
+<ScalarVariable name="spring_force" valueReference="4" output continuous>
+<Real/>
+<ScalarVariable name="m" valueReference="5" parameter tunable initial="exact">
+<Real start="2.0"/>
+<ScalarVariable name="k" valueReference="6" parameter tunable initial="exact">
+<Real start="40.0"/>
+<ScalarVariable name="state.x" valueReference="7" local continuous initial="exact">
+<Real start="0.1"/>
+<ScalarVariable name="state.x&apos;" valueReference="8" local continuous initial="exact">
+<Real start="-0.2"/>
+END
+diff expected names >>log
+result $? 'names, causalities and start values'
+
+cat >ahead.spec <<'END'
+model ahead
+coord x
+input u hold third
+x'' + x = u
+step 0.1
+END
+"$plgen" --fmu ahead.fmu ahead.spec >log 2>&1
+[ $? -eq 1 ] && [ ! -e ahead.fmu ] && grep -q "ahead.spec:3:7: error: an FMU cannot have input 'u'" log
+result $? 'samples further ahead are refused, with their place'
+
+"$plgen" --fmu away/a.fmu "$models/scs.spec" >log 2>&1
+[ $? -eq 1 ] && grep -q 'away/a.fmu: error: cannot write' log && [ ! -e away ]
+result $? 'a folder that is not there is told'
+
+# refused NAME WORDS OPTION ...: the command line is wrong, and nothing is written
+refused() {
+    said=$1
+    shift
+    "$plgen" "$@" "$models/scs.spec" >out 2>log
+    [ $? -eq 2 ] && [ ! -s out ] && [ ! -e no.fmu ] && grep -q -e "$said" log
+    result $? "refused: $*"
+}
+refused 'FILE.fmu, found' --fmu no.zip
+refused 'FILE.fmu, found' --fmu .fmu
+refused '-o does not go with --fmu' --fmu no.fmu -o no.c
+for option in --header --explain --rhs --selftest --batch '--solution 1'; do
+    # shellcheck disable=SC2086
+    refused "${option% *} does not go with --fmu" --fmu no.fmu $option
+done
+refused '--fmu-version goes with --fmu' --fmu-version 2
+refused '--fmu-binary goes with --fmu' --fmu-binary
+refused '--fmu-version takes 2 or 3' --fmu no.fmu --fmu-version 1
+
+CC=not-there "$plgen" --fmu no.fmu --fmu-binary "$models/scs.spec" >out 2>log
+[ $? -eq 1 ] && [ ! -e no.fmu ] && grep -q "error: .*'not-there'" log
+result $? 'a compiler that is not there is told, and nothing is written'
+mkdir empty
+TMPDIR=$work/empty CC=false "$plgen" --fmu no.fmu --fmu-binary "$models/scs.spec" >out 2>log
+[ $? -eq 1 ] && [ ! -e no.fmu ] && grep -q 'fmu-binary=DIR' log && [ -z "$(ls -A empty)" ]
+result $? 'a compiler that fails is told, and leaves nothing'
+"$plgen" --fmu d.fmu --depfile d.d "$models/scs.spec" >log 2>&1 && grep -q '^d\.fmu: .*scs\.spec' d.d
+result $? 'a dependency file names the FMU'
+
+# ---- with them ----
+
+if [ -z "$standard" ] || [ ! -f "$standard/3.0/headers/fmi3Functions.h" ]; then
+    skip 'schemas, headers, importer' 'headers and schemas of FMI are not there: FMI_DIR names their folder'
+    tap_end
+fi
+
+validate() {
+    command -v xmllint >/dev/null 2>&1 || return 77
+    xmllint --noout --schema "$standard/$1.0/schema/fmi$1$2.xsd" "$3" >>log 2>&1
+}
+
+# described VERSION FOLDER NAME
+described() {
+    : >log
+    validate "$1" ModelDescription "$2/modelDescription.xml"
+    status=$?
+    if [ $status -eq 0 ] && [ "$1" -eq 3 ]; then
+        validate 3 BuildDescription "$2/sources/buildDescription.xml"
+        status=$?
+    fi
+    if [ $status -eq 77 ]; then
+        skip "$3: valid against the schema" 'xmllint is not installed'
+    else
+        result $status "$3: valid against the schema"
+    fi
+}
+
+# warned VERSION FOLDER NAME: each source alone, as C99, with nothing but the standard's headers
+warned() {
+    for compiler in gcc clang; do
+        if ! command -v $compiler >/dev/null 2>&1; then
+            skip "$3: no warning of $compiler" "$compiler is not installed"
+            continue
+        fi
+        : >log
+        for file in $(sources "$2"); do
+            # shellcheck disable=SC2086
+            $compiler -std=c99 $warnings -I"$standard/$1.0/headers" -fsyntax-only "$2/sources/$file" >>log 2>&1 ||
+                echo "$file does not compile" >>log
+        done
+        [ ! -s log ]
+        result $? "$3: no warning of $compiler"
+    done
+}
+
+# build VERSION FOLDER OBJECT: as an importer would
+build() {
+    files=$(sources "$2" | sed "s,^,$2/sources/,")
+    # shellcheck disable=SC2086
+    ${CC:-cc} -std=c99 -O1 -w -fPIC -shared -Wl,--no-undefined -fvisibility=hidden \
+        -DFMI$1_OVERRIDE_FUNCTION_PREFIX -I"$standard/$1.0/headers" $files -o "$3" -lm >>log 2>&1
+}
+
+# The standard's functions are all there, and nothing else can be seen.
+exported() {
+    sed -n "s/.*FMI$1_Export *fmi$1[A-Za-z0-9]*TYPE *\(fmi$1[A-Za-z0-9]*\);.*/\1/p" \
+        "$standard/$1.0/headers/fmi$1Functions.h" | LC_ALL=C sort >expected
+    nm -D --defined-only "$2" | awk '$2 ~ /[A-Z]/ && $3 !~ /^_/ { print $3 }' | LC_ALL=C sort >names
+    [ -s expected ] && diff expected names >>log
+}
+
+for version in 2 3; do
+    for single in '' -DSINGLE; do
+        ${CC:-cc} -std=gnu11 -Wall -Wextra -Werror $single -DFMI=$version -I"$standard/$version.0/headers" \
+            -I"$root/runtime" "$own/drive.c" -o "drive$version$single" -ldl || exit 99
+    done
+done
+runtime_archive "$root/runtime"
+
+# make NAME SPEC VERSION OPTIONS: the FMU NAME.fmu, its object, and the model's own functions as another
+make_both() {
+    : >log
+    "$plgen" --fmu "$1.fmu" --fmu-version "$3" $4 "$2" >>log 2>&1 && unpack "$1.fmu" "$1" &&
+        build "$3" "$1" "./$1.so" && "$plgen" $4 "$2" >"$1.c" 2>>log &&
+        ${CC:-cc} -std=c99 -O1 -w -fPIC -shared -I"$root/runtime" "$1.c" "$root"/runtime/*.c -o "$1_own.so" -lm \
+            >>log 2>&1
+}
+
+# drive LABEL PROGRAM ARGUMENT ...: its results become ours
+drive() {
+    label=$1
+    shift
+    "$@" >said 2>&1
+    status=$?
+    grep -q '^ok' said || echo "not ok - it ended with status $status" >>said
+    [ $status -le 1 ] || echo "not ok - it ended with status $status" >>said
+    grep '^#' said >log
+    grep -E '^(not )?ok - ' said >judged
+    while IFS= read -r line; do
+        case $line in
+            ok*) result 0 "$label: ${line#ok - }" ;;
+            *) result 1 "$label: ${line#not ok - }" ;;
+        esac
+    done <judged
+}
+
+# one NAME SPEC VERSION OPTIONS; not where CASE asks for others
+one() {
+    label="$1, FMI $3${4:+, $4}"
+    case $label in *"${CASE%%: *}"*) ;; *) return ;; esac
+    make_both m "$2" "$3" "$4"
+    status=$?
+    result $status "$label: made and compiled"
+    [ $status -eq 0 ] || return
+    described "$3" m "$label"
+    warned "$3" m "$label"
+    : >log
+    exported "$3" ./m.so
+    result $? "$label: the standard's functions, and no others"
+    single=
+    case $4 in *float*) single=-DSINGLE ;; esac
+    drive "$label" "./drive$3$single" ./m.so "$(token m)" ./m_own.so "$1"
+}
+
+for version in 2 3; do
+    one plant "$own/plant.spec" $version ''
+    one absorber "$own/absorber.spec" $version ''
+    one gear1 "$models/gear1.spec" $version ''
+done
+one oscillator "$models/oscillator.spec" 3 ''
+one pendulum "$models/pendulum.spec" 3 ''
+one drivetrain "$models/drivetrain.spec" 3 ''
+one vanderpol_stiff "$models/vanderpol_stiff.spec" 3 ''
+one beam4 "$models/beam4.spec" 3 ''
+one plant "$own/plant.spec" 3 '--real float'
+one gear1 "$models/gear1.spec" 2 '--real float'
+one absorber "$own/absorber.spec" 3 '--real float --prefix absorber'
+
+for version in 2 3; do
+    make_both plant "$own/plant.spec" $version '' && make_both absorber "$own/absorber.spec" $version '' &&
+        drive "a pair, FMI $version" "./drive$version" ./plant.so "$(token plant)" ./plant_own.so plant \
+            ./absorber.so "$(token absorber)" ./absorber_own.so absorber
+    # the compiled one
+    : >log
+    case $version in 2) place=linux64 ;; *) place=$(uname -m)-linux ;; esac
+    "$plgen" --fmu p.fmu --fmu-version $version "--fmu-binary=$standard/$version.0/headers" "$own/plant.spec" \
+        >>log 2>&1 && "$plgen" --fmu q.fmu --fmu-version $version "--fmu-binary=$standard/$version.0/headers" \
+        "$own/plant.spec" >>log 2>&1 && cmp p.fmu q.fmu >>log && unpack p.fmu p && exported $version \
+        "p/binaries/$place/plant.so"
+    result $? "FMI $version: the compiled one, the same bytes twice"
+    drive "compiled, FMI $version" "./drive$version" "p/binaries/$place/plant.so" "$(token p)" ./plant_own.so plant
+done
+
+tap_end
