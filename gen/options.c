@@ -131,7 +131,21 @@ static void take_batch(struct options *options, const char *value)
 	options->request.batch = true;
 }
 
+static void take_bundle(struct options *options, const char *value)
+{
+	(void)value;
+	options->bundle = true;
+}
+
 static void print_usage(struct options *options, const char *value);
+
+static void print_runtime_folder(struct options *options, const char *value)
+{
+	(void)options;
+	(void)value;
+	printf("%s\n", runtime_folder());
+	exit(0);
+}
 
 static void print_version(struct options *options, const char *value)
 {
@@ -174,6 +188,8 @@ static const struct row {
 	{ "depfile", "FILE", "also write a make/ninja dependency file", take_depfile, NULL },
 	{ "selftest", NULL, "also emit NAME_selftest: steps against the closed form", take_selftest, NULL },
 	{ "batch", NULL, "also emit NAME_batch: many instances of a linear model in one call", take_batch, NULL },
+	{ "bundle", NULL, "the C with what it needs of the runtime inside", take_bundle, NULL },
+	{ "runtime-dir", NULL, "print the folder of the runtime", print_runtime_folder, NULL },
 	{ "help", NULL, NULL, print_usage, NULL },
 	{ "version", NULL, NULL, print_version, NULL }
 };
@@ -304,6 +320,8 @@ static void note_all(struct options *options)
 		note_in_banner(options, "--selftest");
 	if (options->rhs)
 		note_in_banner(options, "--rhs");
+	if (options->bundle)
+		note_in_banner(options, "--bundle");
 }
 
 static void find_header(struct options *options)
@@ -330,6 +348,8 @@ void read_options(int argc, char **argv, struct options *options)
 {
 	options->banner = "";
 	take_all(argc, argv, options);
+	if (options->bundle && options->print != PRINT_C)
+		wrong_usage("--bundle is of C: it does not go with --header, --explain or --solution");
 	note_all(options);
 	find_header(options);
 	check_names(options);

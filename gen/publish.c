@@ -123,6 +123,15 @@ struct file *file_new(const char *path)
 	return f;
 }
 
+void file_replace(struct file *f, void (*print)(FILE *to, const char *text, const void *context), const void *context)
+{
+	char *text = f->text;
+	open_text(f);
+	print(f->to, text, context);
+	file_close(f);
+	free(text);
+}
+
 void file_rewrite(struct file *f, const char *name, void (*print)(FILE *to, const char *text, const char *name))
 {
 	char *text = f->text;
