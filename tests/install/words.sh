@@ -89,8 +89,8 @@ redir! > found
 silent echo &filetype
 silent echo synIDattr(synID(1, 1, 1), 'name')
 silent echo synIDattr(synID(3, 1, 1), 'name')
-silent echo synIDattr(synID(4, 8, 1), 'name')
-silent echo synIDattr(synID(4, 17, 1), 'name')
+silent echo synIDattr(synID(4, 11, 1), 'name')
+silent echo synIDattr(synID(4, 20, 1), 'name')
 redir END
 qall!
 END
