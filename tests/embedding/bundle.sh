@@ -108,7 +108,7 @@ bundles() {
             command -v "$compiler" >/dev/null 2>&1 || continue
             # shellcheck disable=SC2086
             "$compiler" $warnings $options -c model.c -o model.o >>log 2>&1 || echo "$compiler" >>log
-            nm model.o | grep -E ' [A-TV-Z] ' | grep -v -E ' [A-TV-Z] _?scene_' >>log
+            nm model.o | grep -E ' [A-TV-Z] ' | grep -v -E ' ([A-TV-Z] _?scene_|V DW\.ref\.__gxx_personality)' >>log
             nm model.o | grep -E ' U pl_' >>log
         done <compilers
         [ ! -s log ]
