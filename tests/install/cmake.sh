@@ -5,14 +5,14 @@
 #
 #     cmake.sh BUILD SOURCE_ROOT
 set -u
-build=$1
-root=$2
+build=$(cd "$1" && pwd) || exit 99
+root=$(cd "$2" && pwd) || exit 99
 . "${0%/*}/../tap.sh"
 if ! command -v cmake >/dev/null 2>&1; then
 	skip 'a project of CMake' 'cmake is not installed'
 	tap_end
 fi
-. "$root/tests/install/stage.sh" "$build" "$root"
+. "$root/tests/install/stage.sh"
 
 cat >"$project/CMakeLists.txt" <<'END'
 cmake_minimum_required(VERSION 3.16)
@@ -54,6 +54,15 @@ for generator in Ninja 'Unix Makefiles'; do
 	makes_again "$generator" "$out" cmake --build "$out"
 	runs "$generator: it has the other matrix" 300 "$out/app"
 done
+
+# As doc/install.md has it
+mkdir page
+sed -n '/^```cmake/,/^```/p' "$root/doc/install.md" | sed '/^```/d' >page/CMakeLists.txt
+cp "$project/the models/drive.spec" "$project/the models/k and k.mtx" page
+sed 's/REAL double/REAL float/' "$project/main.c" >page/main.c
+cmake -S page -B page/build -DCMAKE_PREFIX_PATH="$prefix" >log 2>&1 && cmake --build page/build >>log 2>&1
+result $? 'it builds as the page has it'
+runs 'a model as the page has it' 300 page/build/app
 
 # What cannot be is told
 printf 'cmake_minimum_required(VERSION 3.16)\nproject(outside C)\nfind_package(plgen %s REQUIRED)\n' 0.1 >CMakeLists.txt

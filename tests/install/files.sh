@@ -4,10 +4,10 @@
 #
 #     files.sh BUILD SOURCE_ROOT
 set -u
-build=$1
-root=$2
+build=$(cd "$1" && pwd) || exit 99
+root=$(cd "$2" && pwd) || exit 99
 . "${0%/*}/../tap.sh"
-. "$root/tests/install/stage.sh" "$build" "$root"
+. "$root/tests/install/stage.sh"
 
 : >log
 for file in bin/plgen bin/plrun share/man/man1/plgen.1 share/man/man1/plrun.1 share/plgen/models/sdcsf.spec \

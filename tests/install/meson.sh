@@ -5,10 +5,10 @@
 #
 #     meson.sh BUILD SOURCE_ROOT
 set -u
-build=$1
-root=$2
+build=$(cd "$1" && pwd) || exit 99
+root=$(cd "$2" && pwd) || exit 99
 . "${0%/*}/../tap.sh"
-. "$root/tests/install/stage.sh" "$build" "$root"
+. "$root/tests/install/stage.sh"
 
 # As doc/install.md has it
 sed -n '/^```meson/,/^```/p' "$root/doc/install.md" | sed '/^```/d' >"$project/meson.build"

@@ -4,9 +4,8 @@
 # path that has the commands; `project`, a folder for an outside project, has drive.spec, which reads a matrix, and a
 # program main.c that runs it.
 #
-#     . stage.sh BUILD SOURCE
-build=$1
-source=$2
+# Its caller has set `build` and `root`, the folders of build and sources.
+source=$root
 
 if ! DESTDIR="$work/first stage" meson install -C "$build" --no-rebuild --quiet >log 2>&1; then
 	result 1 'it installs'

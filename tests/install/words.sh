@@ -5,10 +5,10 @@
 #
 #     words.sh BUILD SOURCE_ROOT
 set -u
-build=$1
-root=$2
+build=$(cd "$1" && pwd) || exit 99
+root=$(cd "$2" && pwd) || exit 99
 . "${0%/*}/../tap.sh"
-. "$root/tests/install/stage.sh" "$build" "$root"
+. "$root/tests/install/stage.sh"
 
 options_of() {
 	"$1" --help | grep -o -e '--*[a-zA-Z][a-z-]*' | grep -x -e '--[a-z][a-z-]*' -e '-[a-zA-Z]' | sort -u
