@@ -7,13 +7,14 @@ PACKAGES = gcc libc6-dev make meson ninja-build pkgconf libgmp-dev libmpfr-dev l
 	gnuplot-nox
 DEMO_PACKAGES = $(PACKAGES) libsundials-dev
 CHECK_PACKAGES = $(DEMO_PACKAGES) g++ clang libcmocka-dev valgrind \
-	gcc-arm-none-eabi libnewlib-arm-none-eabi qemu-system-arm libxml2-utils python3-scipy libopenmpi-dev openmpi-bin
+	gcc-arm-none-eabi libnewlib-arm-none-eabi qemu-system-arm libxml2-utils python3-scipy libopenmpi-dev openmpi-bin \
+	cmake cppcheck
 
 .PHONY: all setup deps demo-deps check-deps demo tests check check-long faults bench charts charts-quick \
 	charts-twice charts-page chart gallery firmware-report install clean
 
 all: setup
-	ninja -C $(BUILD) plgen plrun
+	ninja -C $(BUILD) plgen plrun libplrt.a
 
 # Asks apt only for what is not there.
 define need

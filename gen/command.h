@@ -19,6 +19,7 @@ struct options {
 	bool fmu_binary;                /* with the compiled one; */
 	const char *fmu_headers;        /* the folder of the standard's headers; NULL: the compiler knows it */
 	bool rhs;
+	bool bundle;                    /* with the runtime inside */
 	struct request request;
 	const char *banner;             /* what of them belongs in a banner */
 };
@@ -57,8 +58,39 @@ void file_drop(struct file *f);
 void file_close(struct file *f);
 /* C becomes other C: for the target float, or with locals apart from the model's name. */
 void file_rewrite(struct file *f, const char *name, void (*print)(FILE *to, const char *text, const char *name));
+/* Another text for it, made of the one it has */
+void file_replace(struct file *f, void (*print)(FILE *to, const char *text, const void *context), const void *context);
 void mark_pair(struct file *code, struct file *header);     /* of two runs they must not compile; code NULL: alone */
 bool spares(int count, const char *const *path);            /* is nothing written over them? Else it says so */
 void publish(void);
+
+/* ---- pieces.c: the runtime as it is installed ---- */
+
+struct piece {                  /* a declaration, a definition, or lines of the preprocessor */
+	const char *file;       /* where it stands, without the ending */
+	const char *comment, *text;
+	const char **name;      /* what it declares; none: a check of the compiler */
+	int names;
+	bool shared;            /* of plrt.h */
+	bool function, local;   /* declared or defined; static */
+	bool in_code, in_header;
+};
+struct runtime {
+	const char *folder;
+	bool single;            /* for models in float */
+	struct piece *piece;
+	int pieces;
+	const char **from, **to; /* names that stand for others in float */
+	int aliases;
+};
+const char *runtime_folder(void);                           /* ends the program where it is not found */
+struct runtime *runtime_read(bool single);
+char *runtime_text(const struct runtime *r, const char *name); /* of a file there */
+const char *next_word(const char **at, size_t *length);     /* of C outside comments and strings; NULL: no more */
+bool is_word(const char *word, size_t length, const char *name);
+
+/* ---- bundle.c: a model with the runtime inside ---- */
+
+void bundle(struct file *code, struct file *header, bool single); /* header NULL: the C has all */
 
 #endif

@@ -166,6 +166,8 @@ static void rewrite_code(struct work *w)
 	rewrite(w, w->text);
 	if (w->header)
 		rewrite(w, w->header);
+	if (w->options.bundle)
+		bundle(w->text, w->header, w->options.request.single);
 	if (w->options.print == PRINT_HEADER)
 		mark_pair(NULL, w->text);
 	else if (w->header)

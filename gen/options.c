@@ -165,7 +165,21 @@ static void take_batch(struct options *options, const char *value)
 	options->request.batch = true;
 }
 
+static void take_bundle(struct options *options, const char *value)
+{
+	(void)value;
+	options->bundle = true;
+}
+
 static void print_usage(struct options *options, const char *value);
+
+static void print_runtime_folder(struct options *options, const char *value)
+{
+	(void)options;
+	(void)value;
+	printf("%s\n", runtime_folder());
+	exit(0);
+}
 
 static void print_version(struct options *options, const char *value)
 {
@@ -216,6 +230,8 @@ static const struct row {
 	{ "fmu", "FILE.fmu", "write an FMU for co-simulation, with its C as source", take_fmu, NULL },
 	{ "fmu-version", "2", "of FMI: 2 or 3 (default: 3)", take_fmu_version, NULL },
 	{ "fmu-binary", "[=DIR]", "compiled too, with the standard's headers in DIR", take_fmu_binary, NULL },
+	{ "bundle", NULL, "the C with what it needs of the runtime inside", take_bundle, NULL },
+	{ "runtime-dir", NULL, "print the folder of the runtime", print_runtime_folder, NULL },
 	{ "help", NULL, NULL, print_usage, NULL },
 	{ "version", NULL, NULL, print_version, NULL }
 };
@@ -346,6 +362,8 @@ static void note_all(struct options *options)
 		note_in_banner(options, "--selftest");
 	if (options->rhs)
 		note_in_banner(options, "--rhs");
+	if (options->bundle)
+		note_in_banner(options, "--bundle");
 }
 
 static void find_header(struct options *options)
@@ -397,6 +415,8 @@ void read_options(int argc, char **argv, struct options *options)
 {
 	options->banner = "";
 	take_all(argc, argv, options);
+	if (options->bundle && options->print != PRINT_C)
+		wrong_usage("--bundle is of C: it does not go with --header, --explain or --solution");
 	note_all(options);
 	check_fmu(options);
 	find_header(options);

@@ -136,6 +136,15 @@ void file_drop(struct file *f)
 	f->text = NULL;
 }
 
+void file_replace(struct file *f, void (*print)(FILE *to, const char *text, const void *context), const void *context)
+{
+	char *text = f->text;
+	open_text(f);
+	print(f->to, text, context);
+	file_close(f);
+	free(text);
+}
+
 void file_rewrite(struct file *f, const char *name, void (*print)(FILE *to, const char *text, const char *name))
 {
 	char *text = f->text;

@@ -452,7 +452,7 @@ static void follow_jumps(const pl_switching *m, const real *x, pl_contact *c, pl
     int way;
     for (w = first_switch(m); arrive(m, c->region, &w); leave(&w))
         for (; (way = outside(m, c, &w, x)) != 0; w.interval += way) {
-            list(m, c, crossing, 0, w.i, w.interval - (way < 0), way > 0);
+            (void)list(m, c, crossing, 0, w.i, w.interval - (way < 0), way > 0);
             enter(m, c, c->region + way * w.stride);
         }
 }

@@ -25,6 +25,10 @@
 #ifndef PLRT_H
 #define PLRT_H
 
+#ifdef PL_BUNDLED /* they define its types where they are not there yet */
+#error "plrt.h, or a header that includes it, goes before headers of bundles (plgen --bundle)"
+#endif
+
 #include <stddef.h>
 #include <stdint.h>
 

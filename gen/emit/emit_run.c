@@ -25,7 +25,7 @@ static void emit_steps(const struct emitter *e)
 		say(e, "        $n_step(s%s);\n", inputs ? ", u" : "");
 	if (inputs)
 		say(e, "        u += $N_INPUTS;\n");
-	say(e, "        if (out) {\n"
+	say(e, "        if (out != NULL) {\n"
 	       "            $n_out(s, out);\n"
 	       "            out += $N_OUTPUTS;\n"
 	       "        }\n");
@@ -362,7 +362,7 @@ static void emit_block(const struct emitter *e)
 	if (e->step->anchors)
 		say(e, "    s->since = $N_ROWS;\n"
 		       "    $n_drop_anchor(s);\n");
-	say(e, "    if (out)\n"
+	say(e, "    if (out != NULL)\n"
 	       "        $n_rows(start, %sout);\n"
 	       "}\n", inputs ? "u, " : "");
 }
@@ -382,7 +382,7 @@ static void emit_blocks(const struct emitter *e)
 	if (run_rests(e))
 		say(e, "            if ((now.k & 63) < $N_ROWS)\n"
 		       "                $n_rest(&now);\n");
-	say(e, "            if (out)\n"
+	say(e, "            if (out != NULL)\n"
 	       "                out += $N_ROWS * $N_OUTPUTS;\n"
 	       "        }\n"
 	       "        *s = now;\n"

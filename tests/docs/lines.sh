@@ -40,6 +40,7 @@ set -f
 look gen gen
 look host host
 look runtime runtime
+look share share
 look bench bench ! -name '*.list' ! -name '*.csv'
 # shellcheck disable=SC2086
 look tests tests '(' $code ')'

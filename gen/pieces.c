@@ -1,0 +1,348 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The runtime as it is installed: where it is, and its text in pieces, each of which can be left out. */
+#define _GNU_SOURCE     /* asprintf, readlink */
+#include "command.h"
+
+#include <ctype.h>
+#include <dirent.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+/* ---- where ---- */
+
+/* The folder of this program, so that what is installed together may be moved together; NULL: not known */
+static const char *own_folder(void)
+{
+	static char path[4096];
+	ssize_t length = readlink("/proc/self/exe", path, sizeof path - 1);
+	path[length > 0 ? length : 0] = 0;
+	char *slash = strrchr(path, '/');
+	if (!slash)
+		return NULL;
+	*slash = 0;
+	return path;
+}
+
+const char *runtime_folder(void)
+{
+	const char *own = own_folder(), *named = getenv("PLGEN_RUNTIME");
+	const char *place[] = { named && *named ? named : NULL,
+				own ? format("%s/%s/plgen/runtime", own, PLGEN_DATA_FROM_BIN) : NULL,
+				own ? format("%s/../runtime", own) : NULL, PLGEN_RUNTIME };
+	for (size_t i = 0; i < sizeof place / sizeof *place; i++)
+		if (place[i] && access(format("%s/plrt.h", place[i]), R_OK) == 0) {
+			char *real = realpath(place[i], NULL);
+			return need_memory(real);
+		}
+	fputs("plgen: error: the runtime, plrt.h, is not there\n"
+	      "note: the environment's PLGEN_RUNTIME names its folder\n", stderr);
+	exit(1);
+}
+
+char *runtime_text(const struct runtime *r, const char *name)
+{
+	const char *path = format("%s/%s", r->folder, name);
+	FILE *from = fopen(path, "r");
+	char *text = NULL;
+	size_t room = 0;
+	if (!from || getdelim(&text, &room, 0, from) < 0) {
+		fprintf(stderr, "%s: error: cannot read this file of the runtime\n", path);
+		exit(1);
+	}
+	fclose(from);
+	return text;
+}
+
+/* ---- words ---- */
+
+static bool begins_word(char c) { return isalpha((unsigned char)c) || c == '_'; }
+static bool in_word(char c) { return isalnum((unsigned char)c) || c == '_'; }
+
+/* Past what begins at `from`: a comment, a string, a character, a number, a word or a sign */
+static const char *token_end(const char *from)
+{
+	const char *at = from + 1;
+	if (from[0] == '/' && from[1] == '*') {
+		const char *end = strstr(from + 2, "*/");
+		return end ? end + 2 : from + strlen(from);
+	}
+	if (*from == '"' || *from == '\'') {
+		for (; *at && *at != *from; at++)
+			at += *at == '\\' && at[1];
+		return *at ? at + 1 : at;
+	}
+	if (isdigit((unsigned char)*from))
+		for (; in_word(*at) || *at == '.'; at++) {}
+	else if (begins_word(*from))
+		for (; in_word(*at); at++) {}
+	return at;
+}
+
+const char *next_word(const char **at, size_t *length)
+{
+	while (**at) {
+		const char *from = *at;
+		*at = token_end(from);
+		*length = (size_t)(*at - from);
+		if (begins_word(*from))
+			return from;
+	}
+	return NULL;
+}
+
+bool is_word(const char *word, size_t length, const char *name)
+{
+	return strncmp(word, name, length) == 0 && name[length] == 0;
+}
+
+static const char *first_sign(const char *text, const char *signs)
+{
+	for (; *text; text = token_end(text))
+		if (strchr(signs, *text) && !(text[0] == '/' && text[1] == '*'))
+			return text;
+	return NULL;
+}
+
+/* ---- a piece and what it declares ---- */
+
+static void add_name(struct piece *p, const char *word, size_t length)
+{
+	ENLARGE(p->name, (size_t)p->names + 1);
+	p->name[p->names++] = format("%.*s", (int)length, word);
+}
+
+/* The last word before `end` */
+static void add_last(struct piece *p, const char *text, const char *end)
+{
+	const char *word, *last = NULL;
+	size_t length, of_last = 0;
+	while ((word = next_word(&text, &length)) && word < end) {
+		last = word;
+		of_last = length;
+	}
+	if (last)
+		add_name(p, last, of_last);
+}
+
+static void add_macros(struct piece *p)
+{
+	for (const char *line = p->text; line; line = strchr(line, '\n') ? strchr(line, '\n') + 1 : NULL)
+		if (strncmp(line, "#define ", 8) == 0)
+			add_name(p, line + 8, (size_t)(token_end(line + 8) - line - 8));
+}
+
+static void add_constants(struct piece *p)
+{
+	const char *at = strchr(p->text, '{');
+	for (bool expected = true; at && *at != '}'; at = token_end(at))
+		if (*at == ',' || *at == '{') {
+			expected = true;
+		} else if (begins_word(*at) && expected) {
+			add_name(p, at, (size_t)(token_end(at) - at));
+			expected = false;
+		}
+}
+
+static void name_piece(struct piece *p)
+{
+	if (*p->text == '#') {
+		add_macros(p);
+	} else if (strncmp(p->text, "typedef ", 8) == 0) {
+		add_last(p, p->text, p->text + strlen(p->text));
+	} else if (strncmp(p->text, "enum ", 5) == 0) {
+		add_constants(p);
+	} else if (strncmp(p->text, "PL_ASSERT(", 10) != 0) {
+		const char *end = first_sign(p->text, "([=;");
+		p->function = end && *end == '(';
+		p->local = strncmp(p->text, "static ", 7) == 0;
+		add_last(p, p->text, end ? end : p->text);
+	}
+}
+
+static void add_piece(struct runtime *r, const char *file, const char *comment, const char *text)
+{
+	ENLARGE(r->piece, (size_t)r->pieces + 1);
+	struct piece *p = &r->piece[r->pieces++];
+	*p = (struct piece){ .file = file, .comment = comment, .text = text };
+	p->shared = strcmp(file, "plrt") == 0;
+	name_piece(p);
+}
+
+/* ---- a file: what the preprocessor would leave out for one type of numbers, and the rest in pieces ---- */
+
+struct reader {
+	struct runtime *runtime;
+	const char *file;               /* its name without the ending */
+	const char *comment, *text;     /* of the piece that is being read */
+	int conditions;                 /* open #if of the piece */
+	int known, left_out;            /* open #if that are decided here; the outermost that is not taken, 0: none */
+	int opaque_inside[8];           /* other #if inside each of them */
+};
+
+static void read_file(struct runtime *r, const char *name);
+
+/* Is a declaration or a group of lines complete? */
+static bool complete(const struct reader *f)
+{
+	int depth = 0;
+	char last = 0;
+	const char *end = f->text;
+	if (*f->text == '#')
+		return f->conditions == 0 && f->text[strlen(f->text) - 2] != '\\';
+	for (const char *at = f->text; *at; at = end) {
+		end = token_end(at);
+		if (at[0] == '/' && at[1] == '*') {
+			if (strncmp(end - 2, "*/", 2) != 0 || end - at < 4)
+				return false;
+			continue;
+		}
+		depth += (strchr("({[", *at) != NULL) - (strchr(")}]", *at) != NULL);
+		last = isspace((unsigned char)*at) ? last : *at;
+	}
+	return depth == 0 && (last == ';' || last == '}');
+}
+
+static void take_line(struct reader *f, const char *line)
+{
+	bool comment_open = *f->comment && !strstr(f->comment, "*/");
+	if (!*f->text && (comment_open || strncmp(line, "/*", 2) == 0)) {
+		f->comment = format("%s%s\n", comment_open ? f->comment : "", line);
+		return;
+	}
+	if (!*f->text && !*line) {
+		f->comment = "";
+		return;
+	}
+	f->conditions += strncmp(line, "#if", 3) == 0;
+	f->conditions -= strncmp(line, "#endif", 6) == 0;
+	f->text = format("%s%s\n", f->text, line);
+	if (!complete(f))
+		return;
+	add_piece(f->runtime, f->file, f->comment, f->text);
+	f->comment = f->text = "";
+}
+
+/* Names that are decided here: 1 defined, 0 not, -1 another name */
+static int decided(const struct runtime *r, const char *name)
+{
+	size_t length = strlen(name);
+	if (strcmp(name, "REAL_IS_FLOAT") == 0 || strcmp(name, "PL_FLOAT_ONLY") == 0)
+		return r->single;
+	if (strcmp(name, "__cplusplus") == 0)
+		return 0;
+	return length > 2 && strncmp(name, "PL", 2) == 0 && strcmp(name + length - 2, "_H") == 0 ? 0 : -1;
+}
+
+/* #if, #else and #endif of what is decided; false: the line is another one */
+static bool take_condition(struct reader *f, const char *line)
+{
+	char word[64] = "", name[64] = "";
+	sscanf(line, "#%63s %63s", word, name);
+	bool asks = strcmp(word, "ifdef") == 0 || strcmp(word, "ifndef") == 0;
+	int is = asks ? decided(f->runtime, name) : -1;
+	if (is >= 0) {
+		f->opaque_inside[++f->known] = 0;
+		if (!f->left_out && (is == 1) != (word[2] == 'd'))
+			f->left_out = f->known;
+		return true;
+	}
+	if (strncmp(word, "if", 2) == 0)
+		f->opaque_inside[f->known]++;
+	bool own = f->known > 0 && f->opaque_inside[f->known] == 0;
+	if (strcmp(word, "else") == 0 && own) {
+		f->left_out = f->left_out == f->known ? 0 : f->left_out ? f->left_out : f->known;
+		return true;
+	}
+	if (strcmp(word, "endif") != 0)
+		return false;
+	if (!own) {
+		f->opaque_inside[f->known]--;
+		return false;
+	}
+	f->left_out = f->left_out == f->known ? 0 : f->left_out;
+	f->known--;
+	return true;
+}
+
+/* #include, and #define of what is decided or of another name in float; false: the line is another one */
+static bool take_directive(struct reader *f, const char *line)
+{
+	struct runtime *r = f->runtime;
+	char name[64], other[64], end;
+	if (sscanf(line, "#include \"%63[^\"]\"", name) == 1) {
+		read_file(r, name);
+		return true;
+	}
+	if (sscanf(line, "#include <%63[^>]>", name) == 1)
+		return true;
+	int words = sscanf(line, "#define %63s %63s %c", name, other, &end);
+	if (words == 1 && decided(r, name) >= 0)
+		return true;
+	if (words != 2 || strncmp(name, "pl_", 3) != 0 || strncmp(other, "pl_", 3) != 0)
+		return false;
+	ENLARGE(r->from, (size_t)r->aliases + 1);
+	ENLARGE(r->to, (size_t)r->aliases + 1);
+	r->from[r->aliases] = format("%s", name);
+	r->to[r->aliases++] = format("%s", other);
+	return true;
+}
+
+static void read_file(struct runtime *r, const char *name)
+{
+	struct reader f = { .runtime = r, .file = format("%.*s", (int)(strlen(name) - 2), name), .comment = "",
+			    .text = "" };
+	for (int i = 0; i < r->pieces; i++)
+		if (strcmp(r->piece[i].file, f.file) == 0)
+			return;
+	char *text = runtime_text(r, name), *rest = text;
+	for (char *line; (line = strsep(&rest, "\n"));) {
+		if (*line == '#' && !*f.text && take_condition(&f, line))
+			continue;
+		if (f.left_out || (*line == '#' && !*f.text && take_directive(&f, line)))
+			continue;
+		take_line(&f, line);
+	}
+	free(text);
+}
+
+/* ---- all of it ---- */
+
+static int by_name(const void *a, const void *b)
+{
+	return strcmp(*(const char *const *)a, *(const char *const *)b);
+}
+
+/* Files of one type: growthf.c beside growth.c is of floats. */
+static bool serves(const struct runtime *r, const char *name)
+{
+	size_t length = strlen(name);
+	if (length < 3 || strcmp(name + length - 2, ".c") != 0)
+		return false;
+	bool single = name[length - 3] == 'f' &&
+		      access(format("%s/%.*s.c", r->folder, (int)length - 3, name), R_OK) == 0;
+	return single == r->single;
+}
+
+struct runtime *runtime_read(bool single)
+{
+	struct runtime *r = NEW(struct runtime);
+	const char **name = NULL;
+	size_t names = 0;
+	r->folder = runtime_folder();
+	r->single = single;
+	DIR *folder = opendir(r->folder);
+	for (struct dirent *entry; folder && (entry = readdir(folder));)
+		if (serves(r, entry->d_name)) {
+			ENLARGE(name, names + 1);
+			name[names++] = format("%s", entry->d_name);
+		}
+	if (folder)
+		closedir(folder);
+	read_file(r, "plrt.h");
+	if (names > 0)
+		qsort(name, names, sizeof *name, by_name);
+	for (size_t i = 0; i < names; i++)
+		read_file(r, name[i]);
+	return r;
+}

@@ -1,0 +1,218 @@
+#!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
+# plgen --bundle: a model with the runtime inside compiles alone and without a warning, has the bits of one that is
+# linked with the runtime, needs nothing of it and shows no name but its own.
+#
+#     bundle.sh PLGEN SOURCE_ROOT
+#
+# The compilers are gcc and clang as C99, g++ and clang++ as C++17, all four for the first model, for the others one of
+# them in turn, with LONG=1 all; what is not installed is skipped.
+set -u
+plgen=$1
+root=$2
+case $plgen in /*) ;; *) plgen=$PWD/$plgen ;; esac
+warnings='-Wall -Wextra -Wpedantic -Wconversion -Wdouble-promotion -Wshadow -Wcast-qual -Werror'
+. "${0%/*}/../tap.sh"
+. "$root/tests/compilers.sh"
+PLGEN_RUNTIME=$root/runtime
+export PLGEN_RUNTIME
+runtime_archive "$root/runtime"
+
+cat >compilers <<'EOT'
+gcc -std=c99
+clang++ -std=c++17 -x c++
+clang -std=c99
+g++ -std=c++17 -x c++
+EOT
+
+# What a model has after some steps, and in one, by its bits; with a leap where it has one
+cat >show.c <<'EOT'
+#include "model.h"
+#include <stdio.h>
+#include <string.h>
+
+#ifdef FLOAT
+typedef float real;
+typedef pl_modelf descriptor;
+#else
+typedef double real;
+typedef pl_model descriptor;
+#endif
+extern const descriptor MODEL;
+
+static void show(const real *y, int n)
+{
+    unsigned char byte[sizeof(real)];
+    int i, k;
+    for (i = 0; i < n; i++) {
+        memcpy(byte, y + i, sizeof byte);
+        for (k = 0; k < (int)sizeof byte; k++)
+            printf("%02x", byte[k]);
+        putchar('\n');
+    }
+}
+
+int main(void)
+{
+    static union { double d; unsigned char bytes[1 << 20]; } s;
+    static real y[2000];
+    const descriptor *m = &MODEL;
+    real u[64] = {1};
+    int k;
+    if (m->size > sizeof s)
+        return 2;
+    m->init(&s);
+    for (k = 0; k < 40; k++) {
+        m->step(&s, m->inputs ? u : NULL);
+        m->out(&s, y);
+        show(y, m->outputs);
+    }
+    if (m->at) {
+        m->at(&s, m->inputs ? u : NULL, m->h / 3, y);
+        show(y, m->states);
+    }
+    if (m->jump)
+        m->jump(&s, 1000);
+    m->get(&s, y);
+    show(y, m->states);
+    if (m->retune)
+        printf("%d\n", m->retune(&s, m->param_values, m->h / 2));
+    m->step(&s, m->inputs ? u : NULL);
+    m->get(&s, y);
+    show(y, m->states);
+    printf("%d\n", m->status(&s));
+    return 0;
+}
+EOT
+
+number=0
+# bundles TITLE SPEC OPTIONS: in double and float
+bundles() {
+    title=$1
+    spec=$2
+    shift 2
+    for real in double float; do
+        own=
+        [ $real = double ] || own=-DFLOAT
+        rm -f model.c model.h
+        if ! "$plgen" --bundle --real $real --prefix scene "$@" -o model.c "$spec" >log 2>&1; then
+            result 1 "$title, $real: a bundle"
+            continue
+        fi
+        number=$((number + 1))
+        line=0
+        : >log
+        while read -r compiler options; do
+            line=$((line + 1))
+            long || [ $number -eq 1 ] || [ $line -eq $((number % 4 + 1)) ] || continue
+            command -v "$compiler" >/dev/null 2>&1 || continue
+            # shellcheck disable=SC2086
+            "$compiler" $warnings $options -c model.c -o model.o >>log 2>&1 || echo "$compiler" >>log
+            nm model.o | grep -E ' [A-TV-Z] ' | grep -v -E ' ([A-TV-Z] _?scene_|V DW\.ref\.__gxx_personality)' >>log
+            nm model.o | grep -E ' U pl_' >>log
+        done <compilers
+        [ ! -s log ]
+        result $? "$title, $real: no warning, no name of the runtime outside"
+        # shellcheck disable=SC2086
+        ${CC:-cc} -std=c99 -O1 -ffp-contract=off $own -DMODEL=scene_model show.c model.c -lm -o inside >log 2>&1 &&
+            ./inside >inside.bits
+        # shellcheck disable=SC2086
+        "$plgen" --real $real --prefix scene "$@" -o model.c "$spec" >>log 2>&1 &&
+            ${CC:-cc} -std=c99 -O1 -ffp-contract=off $own -DMODEL=scene_model -I"$root/runtime" show.c model.c \
+                "$root"/runtime/*.c -lm -o linked >>log 2>&1 && ./linked >linked.bits
+        cmp inside.bits linked.bits >>log 2>&1 && [ "$(wc -l <inside.bits)" -gt 40 ]
+        result $? "$title, $real: the bits of a model that is linked with the runtime"
+    done
+}
+bundles 'loads' "$root/models/sdcsf.spec" --rhs
+bundles 'loads that change and grow' "$root/tests/emitted/linear/switched.spec"
+bundles 'two words' "$root/models/scs.spec" --accuracy compensated --selftest
+bundles 'regions' "$root/models/quarter_car_bumps.spec"
+bundles 'tunable' "$root/tests/tunable/changes.spec"
+bundles 'many instances' "$root/models/quarter_car.spec" --batch
+bundles 'a leftover' "$root/models/beam4.spec" --scheme etdrk4
+bundles 'series' "$root/models/pendulum.spec"
+bundles 'stiff' "$root/models/vanderpol_stiff.spec" --scheme radau
+
+# ---- names: of a model that is called as something in the runtime ----
+
+: >log
+for name in real two add multiply rounded growth point walk words_pair sizes clear found; do
+    for spec in "$root/models/quarter_car_bumps.spec" "$root/tests/tunable/changes.spec"; do
+        "$plgen" --bundle --prefix $name -o $name.c "$spec" 2>>log &&
+            ${CC:-cc} $warnings -std=c99 -c $name.c -o named.o >>log 2>&1 || echo "$name" >>log
+    done
+done
+[ ! -s log ]
+result $? 'models called as functions and types inside the runtime'
+
+# ---- headers beside each other ----
+
+"$plgen" --bundle --prefix one -o one.c "$root/models/sdcsf.spec" 2>log
+"$plgen" --bundle --prefix other --real float -o other.c "$root/models/quarter_car_bumps.spec" 2>>log
+"$plgen" --prefix plain -o plain.c "$root/models/pendulum.spec" 2>>log
+echo '#include "plain.h"
+#include "one.h"
+#include "other.h"
+#include "one.h"
+typedef struct { plain p; one o; other q; } all;' >beside.c
+echo '#include "other.h"
+#include "one.h"
+#include "plain.h"' >before.c
+: >log
+while read -r compiler options; do
+    command -v "$compiler" >/dev/null 2>&1 || continue
+    # shellcheck disable=SC2086
+    "$compiler" $warnings $options -I"$root/runtime" -fsyntax-only beside.c >>log 2>&1 || echo "$compiler" >>log
+done <compilers
+[ ! -s log ]
+result $? 'two bundles and a model without stand in one file'
+${CC:-cc} -I"$root/runtime" -fsyntax-only before.c >said 2>&1
+[ $? -ne 0 ] && grep -q 'goes before headers of bundles' said
+result $? 'plrt.h behind a bundle is refused by name'
+sed 's/PL_BUNDLED 0x/&1/; s/PL_BUNDLED != 0x/&1/' one.h >later.h
+printf '#include "other.h"\n#include "later.h"\n' >versions.c
+${CC:-cc} -fsyntax-only versions.c >said 2>&1
+[ $? -ne 0 ] && grep -q 'different versions do not go together' said
+result $? 'bundles of different versions are refused by name'
+
+# ---- standard output; what it does not go with ----
+
+"$plgen" --bundle "$root/models/sdcsf.spec" >alone.c 2>log && ${CC:-cc} $warnings -std=c99 -c alone.c >>log 2>&1
+result $? 'a bundle on standard output is one file'
+: >log
+for option in --header --explain '--solution 1'; do
+    # shellcheck disable=SC2086
+    "$plgen" --bundle $option "$root/models/sdcsf.spec" >out 2>said
+    [ $? -eq 2 ] && [ ! -s out ] && grep -q 'bundle is of C' said || echo "$option" >>log
+done
+[ ! -s log ]
+result $? '--bundle goes with C alone'
+
+# ---- sizes: printed, and never larger ----
+
+: >log
+mkdir small
+for file in "$root"/runtime/*.c; do
+    ${CC:-cc} -Os -I"$root/runtime" -c "$file" -o "small/$(basename "$file" .c).o" 2>>log
+done
+ar rcs plrt.a small/*.o
+for spec in sdcsf pendulum quarter_car_bumps; do
+    for real in double float; do
+        "$plgen" --real $real --bundle --prefix scene -o model.c "$root/models/$spec.spec" 2>>log
+        ${CC:-cc} -Os -c model.c -o inside.o 2>>log
+        lines=$(cat model.c model.h | wc -l)
+        "$plgen" --real $real --prefix scene -o model.c "$root/models/$spec.spec" 2>>log
+        ${CC:-cc} -Os -I"$root/runtime" -c model.c -o model.o 2>>log
+        # all that the linker takes of the library
+        ${CC:-cc} -r -nostdlib model.o plrt.a -o linked.o 2>>log
+        inside=$(size inside.o | awk 'NR == 2 { print $1 + $2 }')
+        linked=$(size linked.o | awk 'NR == 2 { print $1 + $2 }')
+        separate=$(cat model.c model.h "$root"/runtime/*.[ch] | wc -l)
+        echo "# $spec, $real: $inside bytes, $lines lines; with the library $linked bytes, $separate lines"
+        [ "$inside" -le $((linked + linked / 50)) ] || echo "$spec $real: $inside bytes, linked $linked" >>log
+    done
+done
+[ ! -s log ]
+result $? 'a bundle is no larger than what is linked'
+tap_end

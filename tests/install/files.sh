@@ -1,0 +1,59 @@
+#!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
+# What is installed: all of it, under the prefix that is asked for, without a word of where it was built.
+#
+#     files.sh BUILD SOURCE_ROOT
+set -u
+build=$(cd "$1" && pwd) || exit 99
+root=$(cd "$2" && pwd) || exit 99
+. "${0%/*}/../tap.sh"
+. "$root/tests/install/stage.sh"
+
+: >log
+for file in bin/plgen bin/plrun share/man/man1/plgen.1 share/man/man1/plrun.1 share/plgen/models/sdcsf.spec \
+	share/plgen/runtime/host/plmain.c share/plgen/vscode/package.json share/vim/vimfiles/syntax/plgen.vim \
+	share/bash-completion/completions/plgen share/bash-completion/completions/plrun \
+	share/zsh/site-functions/_plgen share/doc/plgen/spec.md share/doc/plgen/install.md share/doc/plgen/LICENSE; do
+	[ -s "$prefix/$file" ] || echo "$file is missing" >>log
+done
+for file in libplrt.a pkgconfig/plgen.pc cmake/plgen/plgenConfig.cmake cmake/plgen/plgenConfigVersion.cmake; do
+	[ -s "$libdir/$file" ] || echo "$file is missing" >>log
+done
+[ ! -s log ]
+result $? 'commands, pages, library, models and packages'
+diff -r "$source/models" "$prefix/share/plgen/models" >log && diff -r "$source/runtime" "$prefix/share/plgen/runtime" >>log
+result $? 'runtime and models are those of the sources, and all'
+
+grep -r -l -e "$source" -e "$work" "$prefix" >found
+sed "s,$prefix/,,; s,^.*libplrt.a,libplrt.a," found | grep -v -x bin/plrun >log
+[ ! -s log ]
+result $? 'nothing that is installed names the folder of the sources, or its place before it was moved'
+
+# Found from the program itself, and by the environment
+: >log
+[ "$(plgen --runtime-dir)" = "$(realpath "$prefix/share/plgen/runtime")" ] || plgen --runtime-dir >>log 2>&1
+ln -s "$prefix/bin/plgen" "$work/linked"
+[ "$("$work/linked" --runtime-dir)" = "$(plgen --runtime-dir)" ] || echo 'not through a link' >>log
+[ "$(PLGEN_RUNTIME=$source/runtime plgen --runtime-dir)" = "$(realpath "$source/runtime")" ] ||
+	echo 'not what PLGEN_RUNTIME names' >>log
+[ ! -s log ]
+result $? '--runtime-dir: from the program, through a link, by the environment'
+mv "$prefix/share/plgen/runtime" "$prefix/share/plgen/away"
+plgen --runtime-dir >out 2>log
+status=$?
+if [ -f /usr/local/share/plgen/runtime/plrt.h ]; then
+	skip '--runtime-dir: without a runtime' 'one is installed in /usr/local'
+else
+	[ $status -eq 1 ] && [ ! -s out ] && grep -q 'PLGEN_RUNTIME names its folder' log
+	result $? '--runtime-dir: without a runtime it says what names one'
+fi
+mv "$prefix/share/plgen/away" "$prefix/share/plgen/runtime"
+
+# The same bytes wherever it is
+"$build/plgen" --bundle "$source/models/sdcsf.spec" >built.c 2>log
+plgen --bundle "$prefix/share/plgen/models/sdcsf.spec" >moved.c 2>>log
+cmp built.c moved.c >>log 2>&1 && [ -s built.c ]
+result $? 'a bundle has the same bytes from the build and from what is installed'
+XDG_CACHE_HOME=$work/cache plrun "$prefix/share/plgen/models/scs.spec" 1 >out 2>log && [ "$(wc -l <out)" -gt 10 ]
+result $? 'plrun runs'
+tap_end
