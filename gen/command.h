@@ -13,6 +13,7 @@ struct options {
 	const char *header;             /* beside the C file `output`; NULL: none is written */
 	enum print print;
 	bool rhs;
+	bool strict;                    /* warnings are errors */
 	struct request request;
 	const char *banner;             /* what of them belongs in a banner */
 };
