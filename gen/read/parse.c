@@ -310,6 +310,7 @@ static struct node *resolve_name(struct parser *p, struct token token)
 		unknown_name(p, token);
 	if (symbol->broken)
 		abandon();
+	symbol->used = true;
 	if (symbol->kind == SYMBOL_PART)
 		error(token.at, format("what belongs to it has its name: %s.NAME", token.name),
 		      "'%s' is a part, and stands for no value", token.name);

@@ -84,6 +84,7 @@ struct symbol {
 	/* among its kind, in the order of declaration; of a coordinate: of its first component */
 	int index;
 	int length;                 /* of a vector coordinate; 0: scalar */
+	bool used;                  /* some expression reads it */
 	bool broken;                /* its own statement failed: what uses it is passed over in silence */
 	/* it is tunable, or made of something that is; of that: tune.c has looked through its value */
 	bool tuned, tuning_checked;
