@@ -277,8 +277,11 @@ static const char *nearest_option(const char *word)
 	for (size_t i = 0; i < sizeof habit / sizeof *habit; i++)
 		if (strcmp(word, habit[i].word) == 0)
 			return habit[i].option ? format("--%s", habit[i].option) : "-o";
-	for (int i = 0; i < ROWS; i++)
+	for (int i = 0; i < ROWS; i++) {
 		known[i] = rows[i].name;
+		if (strcmp(word, known[i]) == 0)
+			return NULL;            /* it is there, and takes no value */
+	}
 	const char *nearest = nearest_name(word, ROWS, known);
 	return nearest ? format("--%s", nearest) : NULL;
 }

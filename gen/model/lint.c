@@ -9,8 +9,9 @@
 /* states of which poles are looked for, coordinates of which the rank of K is: no more than a moment's work */
 enum { MOST_POLES = 200, MOST_RANK = 64 };
 static const double PI = 3.14159265358979323846;
-/* Of the largest pole: what grows by less may be rounding, as a double pole 0 is known to half the digits. */
-static const double GROWS = 1e-6;
+/* Of the largest pole: what grows by less may be rounding, as a double pole is known to half the digits; of the size of
+ * the matrix: a pole that is smaller may be 0, many times. */
+static const double GROWS = 1e-6, PERHAPS_ZERO = 1e-4;
 /* Near is a hundredth; light is a damping ratio at which there a load acts much more than a twentieth beside it,
  * by STANDS_OUT times at least. */
 static const double NEAR = 1e-2, LIGHT = 2e-2, BESIDE = 5e-2, STANDS_OUT = 2;
@@ -20,7 +21,7 @@ struct lint {
 	const struct model *model;
 	const struct linear *system;
 	int poles;                  /* as many as states; 0: they are not known */
-	double *re, *im;
+	double *re, *im, size;
 	struct place negative;      /* of a sketch, its first value below 0; source NULL: there is none */
 };
 
@@ -123,13 +124,28 @@ static const char *pushing_term(const struct lint *lint, int coord)
 	return mass * sign_at(lint, (const mpq_t *)s->K, coord) < 0 ? "stiffness" : NULL;
 }
 
+/* [1/s] of the entries of y' = A y: roots of those by which coordinates accelerate */
+static double size_of(const struct linear *s, const mpq_t *A)
+{
+	double size = 0;
+	for (int i = 0; i < s->states; i++)
+		for (int j = 0; j < s->states; j++) {
+			double entry = fabs(nearest_double(A[i * s->states + j]));
+			if (i < s->n && s->velocity[i] >= 0)
+				continue;       /* x' = v */
+			size = fmax(size, i >= s->n && j < s->n && s->velocity[j] >= 0 ? sqrt(entry) : entry);
+		}
+	return size;
+}
+
 static void check_stability(const struct lint *lint)
 {
 	double worst = 0, largest = 0;
 	const struct model *model = lint->model;
 	for (int i = 0; i < lint->poles; i++) {
-		worst = fmax(worst, lint->re[i]);
-		largest = fmax(largest, hypot(lint->re[i], lint->im[i]));
+		double size = hypot(lint->re[i], lint->im[i]);
+		worst = size < PERHAPS_ZERO * lint->size ? worst : fmax(worst, lint->re[i]);
+		largest = fmax(largest, size);
 	}
 	if (worst <= GROWS * largest)
 		return;
@@ -171,7 +187,7 @@ static void check_step(const struct lint *lint)
 		}
 	if (fastest * h > PI)
 		say_warning(model->asked.step_at, format("a step below %.3g s", PI / fastest),
-			    "the step is more than half the shortest period %s, %.3g s: at its steps it looks slower",
+			    "the step is more than half the shortest period %s, %.3g s: its samples show a slower motion",
 			    what, 2 * PI / fastest);
 }
 
@@ -457,7 +473,9 @@ void lint(struct building *b)
 	if (states <= MOST_POLES) {
 		lint.re = ARRAY(double, (size_t)states);
 		lint.im = ARRAY(double, (size_t)states);
-		if (eigenvalues(states, (const mpq_t *)state_matrix(&model->system, false), lint.re, lint.im))
+		const mpq_t *A = (const mpq_t *)state_matrix(&model->system, false);
+		lint.size = size_of(&model->system, A);
+		if (eigenvalues(states, A, lint.re, lint.im))
 			lint.poles = states;
 	}
 	check_stability(&lint);

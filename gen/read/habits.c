@@ -167,7 +167,7 @@ const char *habit_note(const struct parser *p, struct token name)
 		return format("%s of a coordinate is written with %s: %s%.*s",
 			      primes > 1 ? "the second derivative" : "the derivative",
 			      primes > 1 ? "two primes" : "a prime", coord, primes, "''");
-	if (strcasecmp(name.name, "pi") == 0)
+	if (strcasecmp(name.name, "pi") == 0 && strcmp(name.name, "pi") != 0)
 		return "it is written small: pi";
 	if (strcasecmp(name.name, "e") == 0)
 		return is_op(p, "^") ? format("the exponential is a function: exp(%s)",
@@ -203,9 +203,12 @@ const char *statement_habit(const char *word)
 
 bool is_unfinished(const struct parser *p)
 {
+	const char *text = p->lexer.source->text, *next = text + p->lexer.end;
 	size_t end = p->end.offset;
-	return p->token.kind == TOKEN_END && end > p->statement &&
-	       strchr(",+-*/^=<>?:", p->lexer.source->text[end - 1]);
+	next += *next == '\n';
+	next += strspn(next, " \t");
+	return p->token.kind == TOKEN_END && end > p->statement && strchr(",+-*/^=<>?:", text[end - 1]) &&
+	       *next && !strchr("\r\n#", *next) && p->lexer.end < p->lexer.source->length;
 }
 
 bool opens_comment(const struct parser *p)

@@ -251,7 +251,7 @@ const char *nearest_name(const char *name, int count, const char *const *known)
 		int d = edit_distance(name, known[i], distance);
 		if (d > 0 && strcasecmp(name, known[i]) == 0)
 			return known[i];
-		if (d > 0 && d < distance && 2 * d <= (int)strlen(name)) {
+		if (d > 0 && d < distance && d < (int)strlen(name)) {
 			best = known[i];
 			distance = d;
 		}

@@ -60,6 +60,8 @@ static bool is_place(struct token token)
 	return false;
 }
 
+static bool goes_on(const struct parser *p);
+
 /* What usually stands behind a token that fits nowhere. */
 static const char *stray_note(const struct parser *p)
 {
@@ -67,7 +69,7 @@ static const char *stray_note(const struct parser *p)
 	const char *unit = after_operand && p->token.kind == TOKEN_NAME ? stray_unit_note(p) : NULL;
 	if (decimal_comma(p))
 		return "the decimal mark is the point: 1.5";
-	if (is_unfinished(p))
+	if (goes_on(p))
 		return "a statement ends at the end of its line, unless a bracket is open there";
 	if (opens_comment(p))
 		return "a comment starts with #";
@@ -722,6 +724,16 @@ static void read_matrix_statement(struct parser *p)
 	expect_end(p);
 }
 
+/* two-mass as two_mass */
+static const char *joined_name(struct token name)
+{
+	const char *text = name.at.source->text + name.at.offset;
+	char *joined = format("%.*s", (int)strcspn(text, " \t\r\n#"), text);
+	for (char *c = joined; *c; c++)
+		*c = strchr(WORD, *c) ? *c : '_';
+	return joined;
+}
+
 /* model: model NAME */
 static void read_model(struct parser *p)
 {
@@ -730,8 +742,8 @@ static void read_model(struct parser *p)
 	if (p->token.kind != TOKEN_NAME || p->token.primes > 0 || strchr(p->token.name, '.'))
 		unexpected(p, "the model's name");
 	struct token name = take(p);
-	if (is_op(p, "-") || is_op(p, "+"))
-		error(p->token.at, format("names are made of the letters a to z, digits and _: %s_...", name.name),
+	if (is_op(p, "-") || is_op(p, "+") || is_op(p, "/"))
+		error(p->token.at, format("names are made of the letters a to z, digits and _: %s", joined_name(name)),
 		      "a model's name has no '%s'", p->token.op);
 	expect_end(p);
 	p->own->name = name.name;
@@ -1404,23 +1416,40 @@ static void declare_what_failed(struct parser *p, size_t from)
 	}
 }
 
-/* Of an unfinished statement the lines that go on with it: what it declares there is known, and they are no equations.
- * One that opens a statement goes on with none; one that is not set in goes on with a list only. */
+/* Whether the line from `from` to `end` can be the rest of an unfinished statement: one that opens a statement cannot,
+ * one that is not set in where it goes on with a list: k = 100 */
+static bool is_rest(const struct parser *p, size_t from, size_t end)
+{
+	const char *text = p->lexer.source->text;
+	size_t first = from + strspn(text + from, " \t"), after;
+	size_t word = first + strspn(text + first, WORD);
+	word += strspn(text + word, " \t");
+	bool listed = failed_statement(p, p->statement, &after) && strchr("=,#\r\n", text[word]);
+	return first < end && (first > from || listed) && !failed_statement(p, first, &after);
+}
+
+static bool goes_on(const struct parser *p)
+{
+	const struct source *source = p->lexer.source;
+	size_t unclosed, from = p->lexer.end + 1;
+	return is_unfinished(p) && from < source->length &&
+	       is_rest(p, from, lex_statement_end(source, from, &unclosed));
+}
+
+/* The lines that go on with an unfinished statement: what it declares there is known, and they are no equations. */
 static void take_unfinished_lines(struct parser *p)
 {
 	const struct source *source = p->lexer.source;
-	size_t after;
-	bool list = failed_statement(p, p->statement, &after), more = is_unfinished(p);
+	bool more = is_unfinished(p);
 	while (more && p->lexer.end + 1 < source->length) {
 		size_t unclosed, from = p->lexer.end + 1, end = lex_statement_end(source, from, &unclosed);
-		size_t first = from + strspn(source->text + from, " \t");
-		if (first >= end || (first == from && !list) || failed_statement(p, first, &after))
+		if (!is_rest(p, from, end))
 			break;
 		p->lexer.end = end;
-		size_t last = first + strcspn(source->text + first, "#\n");
-		while (last > first && strchr(" \t\r", source->text[last - 1]))
+		size_t last = from + strcspn(source->text + from, "#\n");
+		while (last > from && strchr(" \t\r", source->text[last - 1]))
 			last--;
-		more = last > first && strchr(",+-*/^=", source->text[last - 1]);
+		more = last > from && strchr(",+-*/^=", source->text[last - 1]);
 	}
 }
 
