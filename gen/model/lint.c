@@ -101,6 +101,29 @@ static const struct symbol *negative_param(const struct node *node)
 	return found;
 }
 
+static bool reads_coordinate(const struct node *node)
+{
+	bool reads = false;
+	if (node->kind == NODE_NAME && node->symbol->kind == SYMBOL_LET)
+		return reads_coordinate(node->symbol->value);
+	for (int i = 0; i < node->children && !reads; i++)
+		reads = reads_coordinate(node->child[i]);
+	return reads || (node->kind == NODE_NAME && node->symbol->kind == SYMBOL_COORD);
+}
+
+/* The first param below 0 that multiplies or divides a coordinate; or NULL */
+static const struct symbol *negative_factor(const struct node *node)
+{
+	const struct symbol *found = NULL;
+	bool product = node->kind == NODE_PRODUCT && reads_coordinate(node);
+	if (node->kind == NODE_NAME && node->symbol->kind == SYMBOL_LET)
+		return negative_factor(node->symbol->value);
+	for (int i = 0; i < node->children && !found; i++)
+		found = product && !reads_coordinate(node->child[i]) ? negative_param(node->child[i])
+								       : negative_factor(node->child[i]);
+	return found;
+}
+
 static const struct equation *equation_at(const struct spec *spec, struct place at)
 {
 	for (int i = 0; i < spec->equations; i++)
@@ -150,21 +173,20 @@ static void check_stability(const struct lint *lint)
 	if (worst <= GROWS * largest)
 		return;
 	struct place at = lint->negative.source ? lint->negative : model->spec->name_at;
-	const char *why = "";
-	for (int i = 0; i < model->n && !*why && model->spec->equations; i++) {
+	const char *why = NULL;
+	for (int i = 0; i < model->n && !why && model->spec->equations; i++) {
 		const char *term = pushing_term(lint, i);
 		if (!term)
 			continue;
 		const struct residual *residual = &model->residual[model->owner[i]];
 		const struct equation *equation = equation_at(model->spec, residual->at);
-		const struct symbol *param = equation ? negative_param(equation->left) : NULL;
-		param = equation && !param ? negative_param(equation->right) : param;
+		const struct symbol *param = equation ? negative_factor(equation->left) : NULL;
+		param = equation && !param ? negative_factor(equation->right) : param;
 		at = param ? param->at : residual->at;
-		why = format("%s the %s of %s has the sign that its mass has not",
-			     param ? format(": param '%s' is negative, and", param->name) : ":", term,
-			     model->coord_name[i]);
+		why = format("the %s of %s has the sign that its mass has not%s", term, model->coord_name[i],
+			     param ? format(": param '%s' is negative", param->name) : "");
 	}
-	say_warning(at, NULL, "an unstable pole, the motion grows e-fold in %.3g s%s", 1 / worst, why);
+	say_warning(at, why, "an unstable pole: the motion grows e-fold in %.3g s", 1 / worst);
 }
 
 /* ---- the step ---- */
