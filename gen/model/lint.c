@@ -82,12 +82,17 @@ static void check_elements(struct lint *lint)
 	mpq_clear(value);
 }
 
+/* Walks go through lets, as often as they are read: `left` nodes are looked at, and then no more is found. */
+enum { MOST_NODES = 100000 };
+
 /* The first param below 0 that this reads, other than inside of params; or NULL */
-static const struct symbol *negative_param(const struct node *node)
+static const struct symbol *negative_param(const struct node *node, int *left)
 {
 	const struct symbol *symbol = node->kind == NODE_NAME ? node->symbol : NULL, *found = NULL;
+	if (--*left < 0)
+		return NULL;
 	if (symbol && symbol->kind == SYMBOL_LET)
-		return negative_param(symbol->value);
+		return negative_param(symbol->value, left);
 	if (symbol && symbol->kind == SYMBOL_PARAM && symbol->progress == COLLECTED && symbol->collected->rows == 1 &&
 	    symbol->collected->columns == 1) {
 		mpq_t value;
@@ -97,30 +102,34 @@ static const struct symbol *negative_param(const struct node *node)
 		mpq_clear(value);
 	}
 	for (int i = 0; i < node->children && !found; i++)
-		found = negative_param(node->child[i]);
+		found = negative_param(node->child[i], left);
 	return found;
 }
 
-static bool reads_coordinate(const struct node *node)
+static bool reads_coordinate(const struct node *node, int *left)
 {
 	bool reads = false;
+	if (--*left < 0)
+		return false;
 	if (node->kind == NODE_NAME && node->symbol->kind == SYMBOL_LET)
-		return reads_coordinate(node->symbol->value);
+		return reads_coordinate(node->symbol->value, left);
 	for (int i = 0; i < node->children && !reads; i++)
-		reads = reads_coordinate(node->child[i]);
+		reads = reads_coordinate(node->child[i], left);
 	return reads || (node->kind == NODE_NAME && node->symbol->kind == SYMBOL_COORD);
 }
 
 /* The first param below 0 that multiplies or divides a coordinate; or NULL */
-static const struct symbol *negative_factor(const struct node *node)
+static const struct symbol *negative_factor(const struct node *node, int *left)
 {
 	const struct symbol *found = NULL;
-	bool product = node->kind == NODE_PRODUCT && reads_coordinate(node);
+	bool product = --*left >= 0 && node->kind == NODE_PRODUCT && reads_coordinate(node, left);
+	if (*left < 0)
+		return NULL;
 	if (node->kind == NODE_NAME && node->symbol->kind == SYMBOL_LET)
-		return negative_factor(node->symbol->value);
+		return negative_factor(node->symbol->value, left);
 	for (int i = 0; i < node->children && !found; i++)
-		found = product && !reads_coordinate(node->child[i]) ? negative_param(node->child[i])
-								       : negative_factor(node->child[i]);
+		found = product && !reads_coordinate(node->child[i], left) ? negative_param(node->child[i], left)
+								       : negative_factor(node->child[i], left);
 	return found;
 }
 
@@ -180,8 +189,9 @@ static void check_stability(const struct lint *lint)
 			continue;
 		const struct residual *residual = &model->residual[model->owner[i]];
 		const struct equation *equation = equation_at(model->spec, residual->at);
-		const struct symbol *param = equation ? negative_factor(equation->left) : NULL;
-		param = equation && !param ? negative_factor(equation->right) : param;
+		int left = MOST_NODES;
+		const struct symbol *param = equation ? negative_factor(equation->left, &left) : NULL;
+		param = equation && !param ? negative_factor(equation->right, &left) : param;
 		at = param ? param->at : residual->at;
 		why = format("the %s of %s has the sign that its mass has not%s", term, model->coord_name[i],
 			     param ? format(": param '%s' is negative", param->name) : "");
@@ -276,15 +286,17 @@ static double amplitude(const struct linear *s, const struct load *load, double 
 }
 
 /* cos or sin in an expression, through lets; or NULL */
-static const struct node *oscillation(const struct node *node)
+static const struct node *oscillation(const struct node *node, int *left)
 {
 	const struct node *found = NULL;
+	if (--*left < 0)
+		return NULL;
 	if (node->kind == NODE_CALL && (node->function == FN_COS || node->function == FN_SIN))
 		return node;
 	if (node->kind == NODE_NAME && node->symbol->kind == SYMBOL_LET)
-		return oscillation(node->symbol->value);
+		return oscillation(node->symbol->value, left);
 	for (int i = 0; i < node->children && !found; i++)
-		found = oscillation(node->child[i]);
+		found = oscillation(node->child[i], left);
 	return found;
 }
 
@@ -292,7 +304,7 @@ static const struct node *oscillation(const struct node *node)
 static struct place place_of_load(const struct lint *lint, const struct load *load)
 {
 	const struct linear *s = lint->system;
-	int row = 0, oscillate = 0;
+	int row = 0, oscillate = 0, left = MOST_NODES;
 	for (int l = 0; l < s->loads; l++)
 		oscillate += mpq_sgn(s->load[l].wave->w) != 0;
 	for (int i = s->n - 1; i >= 0; i--)
@@ -301,10 +313,10 @@ static struct place place_of_load(const struct lint *lint, const struct load *lo
 				row = mpq_sgn(load->force[c][k * s->n + i]) != 0 ? i : row;
 	struct place at = lint->model->residual[row].at;
 	const struct equation *equation = equation_at(lint->model->spec, at);
-	const struct node *node = equation && oscillate == 1 ? oscillation(equation->right) : NULL;
-	node = equation && oscillate == 1 && !node ? oscillation(equation->left) : node;
+	const struct node *node = equation && oscillate == 1 ? oscillation(equation->right, &left) : NULL;
+	node = equation && oscillate == 1 && !node ? oscillation(equation->left, &left) : node;
 	for (int i = 0; i < lint->model->spec->elements && oscillate == 1 && !node; i++)
-		node = oscillation(lint->model->spec->element[i].value);
+		node = oscillation(lint->model->spec->element[i].value, &left);
 	return node ? node->start : at;
 }
 
