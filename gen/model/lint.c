@@ -73,7 +73,8 @@ static void check_elements(struct lint *lint)
 	mpq_init(value);
 	for (int i = 0; i < b->spec->elements; i++) {
 		const struct element *element = &b->spec->element[i];
-		if (element->kind == ELEMENT_FORCE || !constant_of_node(b, element->value, value) || mpq_sgn(value) >= 0)
+		if (element->kind == ELEMENT_FORCE || !constant_of_node(b, element->value, value) ||
+		    mpq_sgn(value) >= 0)
 			continue;
 		say_warning(element->value->start, NULL, "a negative %s, %s", what[element->kind],
 			    readable_text(value));
@@ -219,7 +220,8 @@ static void check_step(const struct lint *lint)
 		}
 	if (fastest * h > PI)
 		say_warning(model->asked.step_at, format("a step below %.3g s", PI / fastest),
-			    "the step is more than half the shortest period %s, %.3g s: its samples show a slower motion",
+			    "the step is more than half the shortest period %s, %.3g s: its samples show a slower "
+			    "motion",
 			    what, 2 * PI / fastest);
 }
 

@@ -49,7 +49,7 @@ const char *unit_note(const char *number, size_t digits, const char *unit, size_
 	return format("numbers bear no units; in SI units: %s", written);
 }
 
-/* 100 N/m, 1 ms, 30 deg: a unit that is no name of the spec's, behind a number */
+/* 100 N/m, 1 ms, 30 deg: a unit behind a number */
 const char *stray_unit_note(const struct parser *p)
 {
 	const char *text = p->lexer.source->text, *end = text + p->end.offset, *start = end;
@@ -58,22 +58,20 @@ const char *stray_unit_note(const struct parser *p)
 		(start > text + 1 && strchr("+-", start[-1]) && strchr("eE", start[-2])) ||
 		(strchr("eE", start[-1]) && strchr("0123456789+-", start[0]))))
 		start--;
-	if (start == end || !strchr(NUMBER, *start) || find_symbol(p, p->token.name))
+	if (start == end || !strchr(NUMBER, *start))
 		return NULL;
 	return unit_note(start, (size_t)(end - start), p->token.name, p->token.length);
 }
 
 /* ---- names ---- */
 
-/* The coordinate that `name` is, or NULL */
-static const char *coordinate(const struct parser *p, const char *name)
+static bool is_sign(const struct parser *p, char sign)
 {
-	const struct symbol *symbol = find_symbol(p, name);
-	return symbol && symbol->kind == SYMBOL_COORD ? name : NULL;
+	return p->token.kind == TOKEN_OPERATOR && p->token.op[0] == sign && p->token.op[1] == 0;
 }
 
 /* x1dot, x1_ddot, dx1, ddx1: a coordinate and how often it is derived; or NULL */
-static const char *derived_coordinate(const struct parser *p, const char *name, int *primes)
+static const char *derived_coordinate(const struct parser *p, const char *name, is_coordinate *is, int *primes)
 {
 	static const struct { const char *before, *after; int primes; } habit[] = {
 		{ "", "ddot", 2 }, { "", "_ddot", 2 }, { "", "dotdot", 2 }, { "", "_dot_dot", 2 }, { "", "_dd", 2 },
@@ -87,16 +85,15 @@ static const char *derived_coordinate(const struct parser *p, const char *name, 
 		    strcmp(name + length - after, habit[i].after) != 0)
 			continue;
 		*primes = habit[i].primes;
-		const char *coord =
-			coordinate(p, format("%.*s", (int)(length - before - after), name + before));
-		if (coord)
+		const char *coord = format("%.*s", (int)(length - before - after), name + before);
+		if (is(p, coord))
 			return coord;
 	}
 	return NULL;
 }
 
 /* der(x1), diff(diff(x1)), diff(x1, t, 2): the argument, and how often it is derived; or NULL */
-static const char *derived_argument(const struct parser *p, struct token name, int *primes)
+static const char *derived_argument(const struct parser *p, struct token name, is_coordinate *is, int *primes)
 {
 	static const char *const habit[] = { "der", "diff", "d", "dt", "ddt", "deriv", "derivative", "D", "Dt" };
 	const char *at = name.at.source->text + name.at.offset;
@@ -108,8 +105,10 @@ static const char *derived_argument(const struct parser *p, struct token name, i
 			break;
 		at += word + 1;
 	}
-	const char *coord = *primes ? coordinate(p, format("%.*s", (int)strspn(at, WORD), at)) : NULL;
-	if (coord && strncmp(at + strspn(at, WORD), ", t, 2)", 7) == 0)
+	const char *coord = format("%.*s", (int)strspn(at, WORD), at);
+	if (!*primes || !is(p, coord))
+		return NULL;
+	if (strncmp(at + strspn(at, WORD), ", t, 2)", 7) == 0)
 		*primes = 2;
 	return coord;
 }
@@ -156,13 +155,13 @@ static const char *function_note(const char *name)
 	return NULL;
 }
 
-const char *habit_note(const struct parser *p, struct token name)
+const char *habit_note(const struct parser *p, struct token name, is_coordinate *is)
 {
 	int primes;
-	const char *coord = derived_coordinate(p, name.name, &primes);
-	bool call = is_op(p, "(");
+	const char *coord = derived_coordinate(p, name.name, is, &primes);
+	bool call = is_sign(p, '(');
 	if (!coord && call)
-		coord = derived_argument(p, name, &primes);
+		coord = derived_argument(p, name, is, &primes);
 	if (coord)
 		return format("%s of a coordinate is written with %s: %s%.*s",
 			      primes > 1 ? "the second derivative" : "the derivative",
@@ -170,7 +169,7 @@ const char *habit_note(const struct parser *p, struct token name)
 	if (strcasecmp(name.name, "pi") == 0 && strcmp(name.name, "pi") != 0)
 		return "it is written small: pi";
 	if (strcasecmp(name.name, "e") == 0)
-		return is_op(p, "^") ? format("the exponential is a function: exp(%s)",
+		return is_sign(p, '^') ? format("the exponential is a function: exp(%s)",
 					      exponent_text(p->token.at.source->text + p->token.at.offset))
 				     : "the exponential is a function: exp(1) is this number";
 	if (strcmp(name.name, "time") == 0)
@@ -215,5 +214,5 @@ bool opens_comment(const struct parser *p)
 {
 	const char *text = p->lexer.source->text + p->token.at.offset;
 	bool before = p->token.at.offset > 0 && text[-1] == '/';
-	return (is_op(p, "/") && (before || text[1] == '/' || text[1] == '*')) || (is_op(p, "*") && before);
+	return (is_sign(p, '/') && (before || text[1] == '/' || text[1] == '*')) || (is_sign(p, '*') && before);
 }

@@ -66,7 +66,8 @@ static bool goes_on(const struct parser *p);
 static const char *stray_note(const struct parser *p)
 {
 	bool after_operand = p->operand_end > 0 && p->operand_end == p->end.offset;
-	const char *unit = after_operand && p->token.kind == TOKEN_NAME ? stray_unit_note(p) : NULL;
+	bool word = after_operand && p->token.kind == TOKEN_NAME && !find_symbol(p, p->token.name);
+	const char *unit = word ? stray_unit_note(p) : NULL;
 	if (decimal_comma(p))
 		return "the decimal mark is the point: 1.5";
 	if (goes_on(p))
@@ -232,6 +233,12 @@ static _Noreturn void missing_coordinates(struct parser *p, struct token name)
 	      "unknown name '%s', and there is no statement 'coord', which declares the coordinates", name.name);
 }
 
+static bool names_coordinate(const struct parser *p, const char *name)
+{
+	const struct symbol *symbol = find_symbol(p, name);
+	return symbol && symbol->kind == SYMBOL_COORD;
+}
+
 static _Noreturn void unknown_name(struct parser *p, struct token token)
 {
 	if (declared_later(p, token.name))
@@ -242,7 +249,7 @@ static _Noreturn void unknown_name(struct parser *p, struct token token)
 	/* by itself a part was without error: this one follows from another */
 	if (is_of_broken_part(p, token.name) || (p->part && diagnostics_errors()))
 		abandon();
-	const char *note = part_note(p, token.name), *habit = habit_note(p, token);
+	const char *note = part_note(p, token.name), *habit = habit_note(p, token, names_coordinate);
 	if (!note && !habit && lacks_coordinates(p, token))
 		missing_coordinates(p, token);
 	error(token.at, note ? note : habit ? habit : spec_suggestion(p->spec, token.name), "unknown name '%s'",
