@@ -20,6 +20,7 @@ struct options {
 	const char *fmu_headers;        /* the folder of the standard's headers; NULL: the compiler knows it */
 	bool rhs;
 	bool bundle;                    /* with the runtime inside */
+	bool strict;                    /* warnings are errors */
 	struct request request;
 	const char *banner;             /* what of them belongs in a banner */
 };

@@ -13,6 +13,12 @@ static _Noreturn void wrong_usage(const char *message)
 	exit(2);
 }
 
+static bool ends_in(const char *text, const char *end)
+{
+	size_t length = strlen(text), tail = strlen(end);
+	return length > tail && strcmp(text + length - tail, end) == 0;
+}
+
 /* ---- what each option sets ---- */
 
 static void note_in_banner(struct options *options, const char *option)
@@ -56,6 +62,8 @@ static void take_explain(struct options *options, const char *value)
 
 static void take_solution(struct options *options, const char *value)
 {
+	if (ends_in(value, ".spec"))
+		wrong_usage(format("--solution takes a time before the spec, --solution 10, found '%s'", value));
 	set_print(options, PRINT_SOLUTION);
 	options->solution = value;
 	options->request.solution = true;
@@ -171,6 +179,12 @@ static void take_bundle(struct options *options, const char *value)
 	options->bundle = true;
 }
 
+static void take_strict(struct options *options, const char *value)
+{
+	(void)value;
+	options->strict = true;
+}
+
 static void print_usage(struct options *options, const char *value);
 
 static void print_runtime_folder(struct options *options, const char *value)
@@ -232,6 +246,8 @@ static const struct row {
 	{ "fmu-binary", "[=DIR]", "compiled too, with the standard's headers in DIR", take_fmu_binary, NULL },
 	{ "bundle", NULL, "the C with what it needs of the runtime inside", take_bundle, NULL },
 	{ "runtime-dir", NULL, "print the folder of the runtime", print_runtime_folder, NULL },
+	{ "strict", NULL, "warnings are errors", take_strict, NULL },
+	{ "h", NULL, NULL, print_usage, NULL },
 	{ "help", NULL, NULL, print_usage, NULL },
 	{ "version", NULL, NULL, print_version, NULL }
 };
@@ -269,7 +285,8 @@ static _Noreturn void print_usage(struct options *options, const char *value)
 		if (rows[i].help)
 			print_row(&rows[i]);
 		else
-			rest = format("%s%s--%s", rest, *rest ? ", " : "", rows[i].name);
+			rest = format("%s%s%s%s", rest, *rest ? ", " : "", is_short(&rows[i]) ? "-" : "--",
+				      rows[i].name);
 	printf("  %s\n\n"
 	       "Exit status: 0 done; 1 the spec is wrong or a file cannot be read or written; 2 the command line is "
 	       "wrong.\n",
@@ -303,6 +320,30 @@ static const struct row *row_of(int option)
 	return NULL;
 }
 
+/* What is meant by an option that there is not: --steps, --float; or NULL */
+static const char *nearest_option(const char *word)
+{
+	static const struct { const char *word, *option; } habit[] = {
+		{ "float", "real float" }, { "single", "real float" }, { "double", "real double" },
+		{ "json", "explain=json" }, { "output", NULL }, { "dt", "step" }, { "method", "scheme" },
+		{ "solver", "scheme" }, { "until", "solution" }, { "usage", "help" }, { "Werror", "strict" },
+		{ "werror", "strict" }
+	};
+	const char *known[ROWS];
+	word += strspn(word, "-");
+	word = format("%.*s", (int)strcspn(word, "="), word);
+	for (size_t i = 0; i < sizeof habit / sizeof *habit; i++)
+		if (strcmp(word, habit[i].word) == 0)
+			return habit[i].option ? format("--%s", habit[i].option) : "-o";
+	for (int i = 0; i < ROWS; i++) {
+		known[i] = rows[i].name;
+		if (strcmp(word, known[i]) == 0)
+			return NULL;            /* it is there, and takes no value */
+	}
+	const char *nearest = nearest_name(word, ROWS, known);
+	return nearest ? format("--%s", nearest) : NULL;
+}
+
 /* `word` is where getopt_long stood: of a long option it does not say more. */
 static _Noreturn void not_taken(int option, const char *word)
 {
@@ -310,6 +351,9 @@ static _Noreturn void not_taken(int option, const char *word)
 	const char *shown = letter ? format("-%c", optopt) : format("'%s'", word);
 	if (option == ':')
 		wrong_usage(format("option %s needs a value", shown));
+	const char *nearest = letter ? NULL : nearest_option(word);
+	if (nearest)
+		wrong_usage(format("unknown option or surplus value: %s; did you mean %s?", shown, nearest));
 	wrong_usage(letter ? format("unknown option '%s'", shown)
 			   : format("unknown option or surplus value: %s", shown));
 }
@@ -325,6 +369,9 @@ static void take_all(int argc, char **argv, struct options *options)
 			not_taken(option, argv[before]);
 		row_of(option)->take(options, optarg);
 	}
+	for (int i = optind; i < argc && options->print == PRINT_EXPLAIN; i++)
+		if (strcmp(argv[i], "json") == 0 || strcmp(argv[i], "program") == 0)
+			wrong_usage(format("the value of --explain is written with =: --explain=%s", argv[i]));
 	if (optind == argc)
 		wrong_usage("no spec is given");
 	if (optind + 1 < argc)

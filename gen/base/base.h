@@ -132,6 +132,7 @@ const char *refusal_of(void (*work)(void *), void *context); /* so; NULL: it ran
 const char *unheard_refusal_of(void (*work)(void *), void *context); /* its warnings are forgotten too */
 void diagnostics_context(const char *note);                /* the note of what has none from now on; NULL: none */
 int  diagnostics_errors(void);
+bool diagnostics_harden(void);                             /* warnings become errors: are there any? */
 void diagnostics_print(FILE *to);
 void check_bits(struct place at, mpq_srcptr value);        /* the limit on exact values */
 void check_power(struct place at, mpq_srcptr base, unsigned long exponent); /* the same, before the work */

@@ -163,6 +163,19 @@ int diagnostics_errors(void)
 	return error_count;
 }
 
+bool diagnostics_harden(void)
+{
+	bool hardened = false;
+	for (int i = 0; i < said_count; i++) {
+		if (strcmp(said[i].severity, "warning") != 0)
+			continue;
+		said[i].severity = "error";
+		error_count++;
+		hardened = true;
+	}
+	return hardened;
+}
+
 static size_t line_start(const struct source *source, size_t offset)
 {
 	size_t from = offset;
@@ -329,12 +342,23 @@ static char *read_all(FILE *file, size_t *length)
 	return text;
 }
 
+/* plgen two where there is a two.spec */
+static const char *spec_beside(const char *path)
+{
+	const char *name = format("%s.spec", path);
+	FILE *file = fopen(name, "rb");
+	if (!file)
+		return NULL;
+	fclose(file);
+	return format("did you mean '%s'?", name);
+}
+
 static void cannot_read(const struct source *source, struct place at, const char *why)
 {
 	if (at.source)
 		say_error(at, NULL, "cannot read '%s': %s", source->name, why);
 	else
-		say_error((struct place){ source, 0 }, NULL, "cannot read the file: %s", why);
+		say_error((struct place){ source, 0 }, spec_beside(source->name), "cannot read the file: %s", why);
 }
 
 struct source *source_read(const char *path, struct place at)

@@ -566,6 +566,10 @@ double modes_loss(const struct modes *modes, const bool *kept, bool statics, int
 /* What the statement `modes` or --modes asks for; the model itself where neither does. NULL: it was said why not */
 struct model *model_shorten(struct model *model);
 
+/* ---- lint.c: what is no mistake of language, and yet seldom meant ---- */
+
+void lint(struct building *b);
+
 /* ---- warnings.c: what a spec may say but is better told about ---- */
 
 void warn(struct building *b);

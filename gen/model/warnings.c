@@ -404,6 +404,7 @@ void warn(struct building *b)
 	const struct model *model = b->model;
 	bool left = model->channels > 0;
 	struct jacobian j = { .b = b };
+	lint(b);
 	if (left && model->obstacle && b->spec->needs == 0)     /* else the scheme is chosen */
 		say_note(model->obstacle->start, "scheme %s%s, not exact: '%s' %s%s", scheme_name(model->scheme),
 			 model->truncation.adaptive

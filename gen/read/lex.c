@@ -99,6 +99,9 @@ static void check_number(struct token token)
 	if (good > 0 && is_letter(text[good]) && text[good] != '_' && !exponent && !hexadecimal)
 		note = format("multiplication is written with *: %.*s*%.*s", (int)good, text,
 			      (int)(token.length - good), text + good);
+	const char *unit = good > 0 ? unit_note(text, good, text + good, token.length - good) : NULL;
+	if (unit)
+		note = format("%s; %s", unit, note);
 	error(token.at, note, "malformed number '%.*s'", token.length > 60 ? 60 : (int)token.length, text);
 }
 
@@ -146,6 +149,15 @@ static const char *character_note(const char *text)
 		return "multiplication is written with *";
 	if (text[0] == '\'')
 		return "a prime follows the name of a coordinate without space: x'";
+	if (text[0] == '|')
+		return text[1] == '|' ? "conditions stand inside each other: x < 0 ? 1 : (x > 2 ? 1 : 0)"
+				      : "the size of a value is written abs(x)";
+	if (text[0] == '&')
+		return "conditions stand inside each other: x > 0 ? (x < 2 ? 1 : 0) : 0";
+	if (text[0] == '%')
+		return "a comment starts with #";
+	if (strncmp(text, "\xcf\x80", 2) == 0)
+		return "it is written pi";
 	if ((unsigned char)text[0] >= 0x80)
 		return "names are made of the letters a to z, digits and _";
 	return NULL;

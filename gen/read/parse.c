@@ -60,12 +60,22 @@ static bool is_place(struct token token)
 	return false;
 }
 
+static bool goes_on(const struct parser *p);
+
 /* What usually stands behind a token that fits nowhere. */
 static const char *stray_note(const struct parser *p)
 {
 	bool after_operand = p->operand_end > 0 && p->operand_end == p->end.offset;
+	bool word = after_operand && p->token.kind == TOKEN_NAME && !find_symbol(p, p->token.name);
+	const char *unit = word ? stray_unit_note(p) : NULL;
 	if (decimal_comma(p))
 		return "the decimal mark is the point: 1.5";
+	if (goes_on(p))
+		return "a statement ends at the end of its line, unless a bracket is open there";
+	if (opens_comment(p))
+		return "a comment starts with #";
+	if (unit)
+		return unit;
 	if (is_op(p, ";") && p->nesting == 0)
 		return "each statement has its own line; the parts of one are separated by commas";
 	if (starts_definition(p))
@@ -196,7 +206,40 @@ static const char *part_note(const struct parser *p, const char *name)
 	return symbol->kind == SYMBOL_PART ? NULL : format("%s '%s' is no part", symbol_kind(symbol), first);
 }
 
-static _Noreturn void unknown_name(const struct parser *p, struct token token)
+/* Whether no line declares a coordinate, and the name has a prime somewhere: it is meant for one */
+static bool lacks_coordinates(const struct parser *p, struct token name)
+{
+	const char *text = p->lexer.source->text;
+	if (p->spec->coords > 0 || p->part)
+		return false;
+	for (const char *line = text; line; line = strchr(line, '\n'), line = line ? line + 1 : NULL)
+		if (begins(line + strspn(line, " \t"), "coord"))
+			return false;
+	for (const char *at = text; (at = strstr(at, name.name)) != NULL; at++) {
+		size_t length = strspn(at, WORD);
+		if (length == strlen(name.name) && at[length] == '\'' && (at == text || !strchr(WORD, at[-1])))
+			return true;
+	}
+	return false;
+}
+
+/* Told once, at the first of them */
+static _Noreturn void missing_coordinates(struct parser *p, struct token name)
+{
+	if (p->spec->lacks_coords)
+		abandon();
+	p->spec->lacks_coords = true;
+	error(name.at, format("coord %s", name.name),
+	      "unknown name '%s', and there is no statement 'coord', which declares the coordinates", name.name);
+}
+
+static bool names_coordinate(const struct parser *p, const char *name)
+{
+	const struct symbol *symbol = find_symbol(p, name);
+	return symbol && symbol->kind == SYMBOL_COORD;
+}
+
+static _Noreturn void unknown_name(struct parser *p, struct token token)
 {
 	if (declared_later(p, token.name))
 		error(token.at, "names are declared before use; this one is declared further down", "unknown name '%s'",
@@ -206,8 +249,11 @@ static _Noreturn void unknown_name(const struct parser *p, struct token token)
 	/* by itself a part was without error: this one follows from another */
 	if (is_of_broken_part(p, token.name) || (p->part && diagnostics_errors()))
 		abandon();
-	const char *note = part_note(p, token.name);
-	error(token.at, note ? note : spec_suggestion(p->spec, token.name), "unknown name '%s'", token.name);
+	const char *note = part_note(p, token.name), *habit = habit_note(p, token, names_coordinate);
+	if (!note && !habit && lacks_coordinates(p, token))
+		missing_coordinates(p, token);
+	error(token.at, note ? note : habit ? habit : spec_suggestion(p->spec, token.name), "unknown name '%s'",
+	      token.name);
 }
 
 /* component: [ NUMBER ] { ' }; *primes grows by those behind the bracket */
@@ -273,6 +319,7 @@ static struct node *resolve_name(struct parser *p, struct token token)
 		unknown_name(p, token);
 	if (symbol->broken)
 		abandon();
+	symbol->used = true;
 	if (symbol->kind == SYMBOL_PART)
 		error(token.at, format("what belongs to it has its name: %s.NAME", token.name),
 		      "'%s' is a part, and stands for no value", token.name);
@@ -684,6 +731,16 @@ static void read_matrix_statement(struct parser *p)
 	expect_end(p);
 }
 
+/* two-mass as two_mass */
+static const char *joined_name(struct token name)
+{
+	const char *text = name.at.source->text + name.at.offset;
+	char *joined = format("%.*s", (int)strcspn(text, " \t\r\n#"), text);
+	for (char *c = joined; *c; c++)
+		*c = strchr(WORD, *c) ? *c : '_';
+	return joined;
+}
+
 /* model: model NAME */
 static void read_model(struct parser *p)
 {
@@ -692,6 +749,9 @@ static void read_model(struct parser *p)
 	if (p->token.kind != TOKEN_NAME || p->token.primes > 0 || strchr(p->token.name, '.'))
 		unexpected(p, "the model's name");
 	struct token name = take(p);
+	if (is_op(p, "-") || is_op(p, "+") || is_op(p, "/"))
+		error(p->token.at, format("names are made of the letters a to z, digits and _: %s", joined_name(name)),
+		      "a model's name has no '%s'", p->token.op);
 	expect_end(p);
 	p->own->name = name.name;
 	p->own->name_at = name.at;
@@ -1226,7 +1286,9 @@ static const struct statement *statement_of(const struct parser *p, struct token
 
 static const char *nearest_statement(const char *word)
 {
-	const char *known[sizeof statements / sizeof *statements];
+	const char *known[sizeof statements / sizeof *statements], *habit = statement_habit(word);
+	if (habit)
+		return habit;
 	for (size_t i = 0; i < sizeof statements / sizeof *statements; i++)
 		known[i] = statements[i].word;
 	return nearest_name(word, (int)(sizeof statements / sizeof *statements), known);
@@ -1238,7 +1300,7 @@ static bool resembles_statement(const struct parser *p, struct token token)
 	const char *text = token.at.source->text + token.at.offset + token.length;
 	size_t space = strspn(text, " \t");
 	return token.kind == TOKEN_NAME && token.primes == 0 && space > 0 && strspn(text + space, WORD) > 0 &&
-	       !find_symbol(p, token.name) && !is_reserved(token.name);
+	       !find_symbol(p, token.name) && (!is_reserved(token.name) || statement_habit(token.name));
 }
 
 /* It is meant as a statement: say so rather than that its first word is unknown. */
@@ -1351,11 +1413,13 @@ static void declare_what_failed(struct parser *p, size_t from)
 	int depth = 0;
 	for (size_t i = after; i < p->lexer.end; i++) {
 		if (text[i] == '#')
+			i += strcspn(text + i, "\n");
+		if (i >= p->lexer.end)
 			break;
 		size_t length = strspn(text + i, WORD);
 		if (length == 0) {
 			depth += strchr("([{", text[i]) ? 1 : strchr(")]}", text[i]) ? -1 : 0;
-			listed = depth == 0 && (text[i] == ',' || (listed && strchr(" \t", text[i])));
+			listed = depth == 0 && (text[i] == ',' || (listed && strchr(" \t\r\n", text[i])));
 			continue;
 		}
 		const char *next = text + i + length + strspn(text + i + length, " \t");
@@ -1368,6 +1432,43 @@ static void declare_what_failed(struct parser *p, size_t from)
 			declare_quietly(p, token, SYMBOL_PARAM);
 		}
 		i += length - 1;
+	}
+}
+
+/* Whether the line from `from` to `end` can be the rest of an unfinished statement: one that opens a statement cannot,
+ * one that is not set in where it goes on with a list: k = 100 */
+static bool is_rest(const struct parser *p, size_t from, size_t end)
+{
+	const char *text = p->lexer.source->text;
+	size_t first = from + strspn(text + from, " \t"), after;
+	size_t word = first + strspn(text + first, WORD);
+	word += strspn(text + word, " \t");
+	bool listed = failed_statement(p, p->statement, &after) && strchr("=,#\r\n", text[word]);
+	return first < end && (first > from || listed) && !failed_statement(p, first, &after);
+}
+
+static bool goes_on(const struct parser *p)
+{
+	const struct source *source = p->lexer.source;
+	size_t unclosed, from = p->lexer.end + 1;
+	return is_unfinished(p) && from < source->length &&
+	       is_rest(p, from, lex_statement_end(source, from, &unclosed));
+}
+
+/* The lines that go on with an unfinished statement: what it declares there is known, and they are no equations. */
+static void take_unfinished_lines(struct parser *p)
+{
+	const struct source *source = p->lexer.source;
+	bool more = is_unfinished(p);
+	while (more && p->lexer.end + 1 < source->length) {
+		size_t unclosed, from = p->lexer.end + 1, end = lex_statement_end(source, from, &unclosed);
+		if (!is_rest(p, from, end))
+			break;
+		p->lexer.end = end;
+		size_t last = from + strcspn(source->text + from, "#\n");
+		while (last > from && strchr(" \t\r", source->text[last - 1]))
+			last--;
+		more = last > from && strchr(",+-*/^=", source->text[last - 1]);
 	}
 }
 
@@ -1391,8 +1492,12 @@ void parse_statements(struct spec *spec, struct spec *own, struct scene_part *pa
 				  source->text[unclosed]);
 		else
 			good = statement_guard(read_statement, &p);
-		if (!good)
-			declare_what_failed(&p, from);
+		if (good)
+			continue;
+		if (unclosed == SIZE_MAX)
+			take_unfinished_lines(&p);
+		position = p.lexer.end + 1;
+		declare_what_failed(&p, from);
 	}
 	struct place end = place_end(source);
 	if (!own->name)

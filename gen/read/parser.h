@@ -65,6 +65,16 @@ void declare_quietly(struct parser *p, struct token name, enum symbol_kind kind)
 struct spec *parse_whole(const struct source *source, const struct part_reader *reader);
 void parse_statements(struct spec *spec, struct spec *own, struct scene_part *part, const struct source *source);
 
+/* ---- habits.c: what is written from habit of paper and of other programs; notes, or NULL ---- */
+
+typedef bool is_coordinate(const struct parser *p, const char *name);
+const char *stray_unit_note(const struct parser *p);        /* at the N of 100 N/m, where that is no name */
+/* at an unknown name: x1dot, der(x1), Pi, csv(...) */
+const char *habit_note(const struct parser *p, struct token name, is_coordinate *is);
+const char *statement_habit(const char *word);              /* parameter: param */
+bool opens_comment(const struct parser *p);                 /* at one of the signs of // */
+bool is_unfinished(const struct parser *p);                 /* at the end of a line that a , or + ends */
+
 /* ---- slope.c ---- */
 
 /* The derivative of an expression in time; an error at `at` where it has none that is known */

@@ -29,6 +29,11 @@ struct token lex_next(struct lexer *lexer);
 const char *token_text(struct token token);                /* for messages: 'x1', the end of the line */
 void lex_number(struct token token, mpq_ptr value);        /* the decimal, exactly */
 
+/* ---- habits.c: what is written from habit of other programs, for the lexer ---- */
+
+/* 1 and ms: numbers bear no units; in SI units: 1e-3. NULL: the second is no unit */
+const char *unit_note(const char *number, size_t digits, const char *unit, size_t length);
+
 /* ---- parse.c: tokens to nodes and declarations ---- */
 
 enum function {
@@ -79,6 +84,7 @@ struct symbol {
 	/* among its kind, in the order of declaration; of a coordinate: of its first component */
 	int index;
 	int length;                 /* of a vector coordinate; 0: scalar */
+	bool used;                  /* some expression reads it */
 	bool broken;                /* its own statement failed: what uses it is passed over in silence */
 	/* it is tunable, or made of something that is; of that: tune.c has looked through its value */
 	bool tuned, tuning_checked;
@@ -174,6 +180,7 @@ struct spec {                       /* what the text says, names resolved, nothi
 	int components;                 /* of all coordinates together */
 	int symbols, params, coords, lets, outputs, inputs, matrices, part_outputs, part_names;
 	bool uses;                  /* it has a statement `use` */
+	bool lacks_coords;          /* there is no coordinate, and that was told */
 	const struct part_reader *reader;
 	int parts;                  /* in the order of `use`, those inside a part after it */
 	struct scene_part **part;

@@ -37,7 +37,15 @@ bool scheme_of(const char *name, enum scheme *scheme)
 
 const char *nearest_scheme(const char *name)
 {
+	/* methods of other programs, which are meant as they stand: what there is instead is the whole list */
+	static const char *const other[] = {
+		"rk2", "rk3", "rk4", "rk45", "rkf45", "rk", "euler", "heun", "midpoint", "verlet", "leapfrog",
+		"newmark", "hht", "ode23", "ode45", "ode15s", "dopri5", "bdf", "bdf2", "ab2", "ab4", "cvode", "lsoda"
+	};
 	const char *known[SCHEMES];
+	for (size_t i = 0; i < sizeof other / sizeof *other; i++)
+		if (strcmp(name, other[i]) == 0)
+			return NULL;
 	for (int i = 0; i < SCHEMES; i++)
 		known[i] = rows[i].name;
 	return nearest_name(name, SCHEMES, known);

@@ -7,7 +7,7 @@
 static void check_outputs(const struct model *model)
 {
 	if (model->system.inputs)
-		error(model->asked.end_at, NULL,
+		error(model->asked.end_at, "plrun MODEL.spec --input FILE.csv runs it by recorded samples",
 		      "--solution needs a model without inputs: their samples are not known");
 	for (int j = 0; j < model->outputs; j++)
 		if (!model->output[j].form && model->output[j].value)

@@ -22,7 +22,7 @@ mkdir "$work/in" && cd "$work/in" || exit 1
 prints_c()      # PATH, without ending
 {
 	[ "$(cat "$1.status")" = 0 ] || return 1
-	! [ -f "$1.args" ] || ! grep -q -e '^--explain' -e '^--solution' -e '^--help' -e '^--version' "$1.args"
+	! [ -f "$1.args" ] || ! grep -q -e '^--explain' -e '^--solution' -e '^-h' -e '^--help' -e '^--version' "$1.args"
 }
 
 warnings='-Wall -Wextra -Wpedantic -Wconversion -Wdouble-promotion -Wshadow -Werror'

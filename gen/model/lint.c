@@ -1,0 +1,531 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What is no mistake of language, and yet seldom meant: names that nothing reads, and of linear models poles that grow,
+ * a step that shows them as slower ones, resonance, drift, forces that belong to no energy. */
+#include "model/model.h"
+
+#include <math.h>
+#include <string.h>
+
+/* states of which poles are looked for, coordinates of which the rank of K is: no more than a moment's work */
+enum { MOST_POLES = 200, MOST_RANK = 64 };
+static const double PI = 3.14159265358979323846;
+/* Of the largest pole: what grows by less may be rounding, as a double pole is known to half the digits; of the size of
+ * the matrix: a pole that is smaller may be 0, many times. */
+static const double GROWS = 1e-6, PERHAPS_ZERO = 1e-4;
+/* Near is a hundredth; light is a damping ratio at which there a load acts much more than a twentieth beside it,
+ * by STANDS_OUT times at least. */
+static const double NEAR = 1e-2, LIGHT = 2e-2, BESIDE = 5e-2, STANDS_OUT = 2;
+
+struct lint {
+	struct building *b;
+	const struct model *model;
+	const struct linear *system;
+	int poles;                  /* as many as states; 0: they are not known */
+	double *re, *im, size;
+	struct place negative;      /* of a sketch, its first value below 0; source NULL: there is none */
+};
+
+/* ---- names that nothing reads ---- */
+
+static void check_names(const struct spec *spec)
+{
+	for (const struct symbol *s = spec->first; s; s = s->next) {
+		bool told = s->kind == SYMBOL_PARAM || s->kind == SYMBOL_LET || s->kind == SYMBOL_INPUT ||
+			    s->kind == SYMBOL_MATRIX;
+		const char *point = strrchr(s->name, '.');
+		if (told && !s->used && !s->broken)
+			say_warning(s->at, NULL, "%s '%s' is not used",
+				    s->kind == SYMBOL_PARAM     ? "param"
+				    : s->kind == SYMBOL_MATRIX  ? "matrix"
+				    : s->connected || s->kind == SYMBOL_INPUT ? "input" : "let",
+				    s->part && point ? point + 1 : s->name);
+	}
+}
+
+/* ---- what is negative ---- */
+
+struct constant_work {
+	struct building *b;
+	struct node *node;
+	mpq_ptr value;
+};
+
+static void take_constant(void *context)
+{
+	struct constant_work *work = context;
+	collect_constant(&work->b->collector, work->node, work->value);
+}
+
+/* false: it is none */
+static bool constant_of_node(struct building *b, struct node *node, mpq_ptr value)
+{
+	bool outer = b->collector.constant_only;
+	bool constant = silent_guard(take_constant, &(struct constant_work){ b, node, value });
+	b->collector.constant_only = outer;
+	return constant;
+}
+
+static void check_elements(struct lint *lint)
+{
+	struct building *b = lint->b;
+	static const char *const what[] = { "mass", "stiffness", "damping" };
+	mpq_t value;
+	mpq_init(value);
+	for (int i = 0; i < b->spec->elements; i++) {
+		const struct element *element = &b->spec->element[i];
+		if (element->kind == ELEMENT_FORCE || !constant_of_node(b, element->value, value) ||
+		    mpq_sgn(value) >= 0)
+			continue;
+		say_warning(element->value->start, NULL, "a negative %s, %s", what[element->kind],
+			    readable_text(value));
+		lint->negative = lint->negative.source ? lint->negative : element->value->start;
+	}
+	mpq_clear(value);
+}
+
+/* Walks go through lets, as often as they are read: `left` nodes are looked at, and then no more is found. */
+enum { MOST_NODES = 100000 };
+
+/* The first param below 0 that this reads, other than inside of params; or NULL */
+static const struct symbol *negative_param(const struct node *node, int *left)
+{
+	const struct symbol *symbol = node->kind == NODE_NAME ? node->symbol : NULL, *found = NULL;
+	if (--*left < 0)
+		return NULL;
+	if (symbol && symbol->kind == SYMBOL_LET)
+		return negative_param(symbol->value, left);
+	if (symbol && symbol->kind == SYMBOL_PARAM && symbol->progress == COLLECTED && symbol->collected->rows == 1 &&
+	    symbol->collected->columns == 1) {
+		mpq_t value;
+		mpq_init(value);
+		param_value(symbol, value);
+		found = mpq_sgn(value) < 0 ? symbol : NULL;
+		mpq_clear(value);
+	}
+	for (int i = 0; i < node->children && !found; i++)
+		found = negative_param(node->child[i], left);
+	return found;
+}
+
+static bool reads_coordinate(const struct node *node, int *left)
+{
+	bool reads = false;
+	if (--*left < 0)
+		return false;
+	if (node->kind == NODE_NAME && node->symbol->kind == SYMBOL_LET)
+		return reads_coordinate(node->symbol->value, left);
+	for (int i = 0; i < node->children && !reads; i++)
+		reads = reads_coordinate(node->child[i], left);
+	return reads || (node->kind == NODE_NAME && node->symbol->kind == SYMBOL_COORD);
+}
+
+/* The first param below 0 that multiplies or divides a coordinate; or NULL */
+static const struct symbol *negative_factor(const struct node *node, int *left)
+{
+	const struct symbol *found = NULL;
+	bool product = --*left >= 0 && node->kind == NODE_PRODUCT && reads_coordinate(node, left);
+	if (*left < 0)
+		return NULL;
+	if (node->kind == NODE_NAME && node->symbol->kind == SYMBOL_LET)
+		return negative_factor(node->symbol->value, left);
+	for (int i = 0; i < node->children && !found; i++)
+		found = product && !reads_coordinate(node->child[i], left) ? negative_param(node->child[i], left)
+								       : negative_factor(node->child[i], left);
+	return found;
+}
+
+static const struct equation *equation_at(const struct spec *spec, struct place at)
+{
+	for (int i = 0; i < spec->equations; i++)
+		if (spec->equation[i].at.source == at.source && spec->equation[i].at.offset == at.offset)
+			return &spec->equation[i];
+	return NULL;
+}
+
+static int sign_at(const struct lint *lint, const mpq_t *A, int coord)
+{
+	return mpq_sgn(A[lint->model->owner[coord] * lint->system->n + coord]);
+}
+
+/* Which of a coordinate's own terms pushes it away: of the sign that its mass does not have; NULL: none does */
+static const char *pushing_term(const struct lint *lint, int coord)
+{
+	const struct linear *s = lint->system;
+	int mass = sign_at(lint, (const mpq_t *)(s->velocity[coord] < 0 ? s->C : s->M), coord);
+	if (s->velocity[coord] >= 0 && mass * sign_at(lint, (const mpq_t *)s->C, coord) < 0)
+		return "damping";
+	return mass * sign_at(lint, (const mpq_t *)s->K, coord) < 0 ? "stiffness" : NULL;
+}
+
+/* [1/s] of the entries of y' = A y: roots of those by which coordinates accelerate */
+static double size_of(const struct linear *s, const mpq_t *A)
+{
+	double size = 0;
+	for (int i = 0; i < s->states; i++)
+		for (int j = 0; j < s->states; j++) {
+			double entry = fabs(nearest_double(A[i * s->states + j]));
+			if (i < s->n && s->velocity[i] >= 0)
+				continue;       /* x' = v */
+			size = fmax(size, i >= s->n && j < s->n && s->velocity[j] >= 0 ? sqrt(entry) : entry);
+		}
+	return size;
+}
+
+static void check_stability(const struct lint *lint)
+{
+	double worst = 0, largest = 0;
+	const struct model *model = lint->model;
+	for (int i = 0; i < lint->poles; i++) {
+		double size = hypot(lint->re[i], lint->im[i]);
+		worst = size < PERHAPS_ZERO * lint->size ? worst : fmax(worst, lint->re[i]);
+		largest = fmax(largest, size);
+	}
+	if (worst <= GROWS * largest)
+		return;
+	struct place at = lint->negative.source ? lint->negative : model->spec->name_at;
+	const char *why = NULL;
+	for (int i = 0; i < model->n && !why && model->spec->equations; i++) {
+		const char *term = pushing_term(lint, i);
+		if (!term)
+			continue;
+		const struct residual *residual = &model->residual[model->owner[i]];
+		const struct equation *equation = equation_at(model->spec, residual->at);
+		int left = MOST_NODES;
+		const struct symbol *param = equation ? negative_factor(equation->left, &left) : NULL;
+		param = equation && !param ? negative_factor(equation->right, &left) : param;
+		at = param ? param->at : residual->at;
+		why = format("the %s of %s has the sign that its mass has not%s", term, model->coord_name[i],
+			     param ? format(": param '%s' is negative", param->name) : "");
+	}
+	say_warning(at, why, "an unstable pole: the motion grows e-fold in %.3g s", 1 / worst);
+}
+
+/* ---- the step ---- */
+
+static void check_step(const struct lint *lint)
+{
+	const struct model *model = lint->model;
+	const struct linear *s = lint->system;
+	double h = nearest_double(model->h), fastest = 0;
+	const char *what = "";
+	for (int i = 0; i < lint->poles; i++)
+		if (lint->im[i] > fastest) {
+			fastest = lint->im[i];
+			what = "of the model";
+		}
+	for (int l = 0; l < s->loads; l++)
+		if (load_acts(s, &s->load[l]) && nearest_double(s->load[l].wave->w) > fastest) {
+			fastest = nearest_double(s->load[l].wave->w);
+			what = "of a load";
+		}
+	if (fastest * h > PI)
+		say_warning(model->asked.step_at, format("a step below %.3g s", PI / fastest),
+			    "the step is more than half the shortest period %s, %.3g s: its samples show a slower "
+			    "motion",
+			    what, 2 * PI / fastest);
+}
+
+/* ---- resonance ---- */
+
+struct phasor { double re, im; };
+
+/* Solves P x = f of n, f in the last column of n x (n + 1): the largest |x|; HUGE_VAL where P is singular */
+static double largest_solution(int n, struct phasor *P)
+{
+	int width = n + 1;
+	for (int k = 0; k < n; k++) {
+		int pivot = k;
+		for (int i = k; i < n; i++)
+			if (hypot(P[i * width + k].re, P[i * width + k].im) >
+			    hypot(P[pivot * width + k].re, P[pivot * width + k].im))
+				pivot = i;
+		struct phasor d = P[pivot * width + k];
+		double size = d.re * d.re + d.im * d.im;
+		if (!(size > 0))
+			return HUGE_VAL;
+		for (int j = k; j < width; j++) {
+			struct phasor a = P[pivot * width + j];
+			P[pivot * width + j] = P[k * width + j];
+			P[k * width + j] = (struct phasor){ (a.re * d.re + a.im * d.im) / size,
+							    (a.im * d.re - a.re * d.im) / size };
+		}
+		for (int i = 0; i < n; i++) {
+			struct phasor f = P[i * width + k];
+			for (int j = k; j < width && i != k && (f.re != 0 || f.im != 0); j++) {
+				struct phasor a = P[k * width + j];
+				P[i * width + j].re -= f.re * a.re - f.im * a.im;
+				P[i * width + j].im -= f.re * a.im + f.im * a.re;
+			}
+		}
+	}
+	double largest = 0;
+	for (int i = 0; i < n; i++)
+		largest = fmax(largest, hypot(P[i * width + n].re, P[i * width + n].im));
+	return largest;
+}
+
+/* The largest coordinate under the load's forces at frequency w, in its last segment of time that has some */
+static double amplitude(const struct linear *s, const struct load *load, double w)
+{
+	int n = s->n, width = n + 1, segment = s->segments - 1;
+	struct phasor *P = ARRAY(struct phasor, (size_t)n * (size_t)width);
+	bool acts = false;
+	for (; !acts && segment >= 0; segment--)
+		for (int i = 0; i < n; i++)
+			for (int c = 0; c < load->columns; c++) {
+				double force = nearest_double(load->force[c][segment * n + i]);
+				acts = acts || force != 0;
+				*(c % 2 ? &P[i * width + n].im : &P[i * width + n].re) += c % 2 ? -force : force;
+			}
+	for (int i = 0; i < n; i++)
+		for (int j = 0; j < n; j++)
+			P[i * width + j] = (struct phasor){ nearest_double(s->K[i * n + j]) -
+								    w * w * nearest_double(s->M[i * n + j]),
+							    w * nearest_double(s->C[i * n + j]) };
+	double largest = largest_solution(n, P);
+	discard(P);
+	return largest;
+}
+
+/* cos or sin in an expression, through lets; or NULL */
+static const struct node *oscillation(const struct node *node, int *left)
+{
+	const struct node *found = NULL;
+	if (--*left < 0)
+		return NULL;
+	if (node->kind == NODE_CALL && (node->function == FN_COS || node->function == FN_SIN))
+		return node;
+	if (node->kind == NODE_NAME && node->symbol->kind == SYMBOL_LET)
+		return oscillation(node->symbol->value, left);
+	for (int i = 0; i < node->children && !found; i++)
+		found = oscillation(node->child[i], left);
+	return found;
+}
+
+/* Of the only load that oscillates its cos or sin; else the equation that it acts on */
+static struct place place_of_load(const struct lint *lint, const struct load *load)
+{
+	const struct linear *s = lint->system;
+	int row = 0, oscillate = 0, left = MOST_NODES;
+	for (int l = 0; l < s->loads; l++)
+		oscillate += mpq_sgn(s->load[l].wave->w) != 0;
+	for (int i = s->n - 1; i >= 0; i--)
+		for (int c = 0; c < load->columns; c++)
+			for (int k = 0; k < s->segments; k++)
+				row = mpq_sgn(load->force[c][k * s->n + i]) != 0 ? i : row;
+	struct place at = lint->model->residual[row].at;
+	const struct equation *equation = equation_at(lint->model->spec, at);
+	const struct node *node = equation && oscillate == 1 ? oscillation(equation->right, &left) : NULL;
+	node = equation && oscillate == 1 && !node ? oscillation(equation->left, &left) : node;
+	for (int i = 0; i < lint->model->spec->elements && oscillate == 1 && !node; i++)
+		node = oscillation(lint->model->spec->element[i].value, &left);
+	return node ? node->start : at;
+}
+
+static void check_resonance(const struct lint *lint)
+{
+	const struct linear *s = lint->system;
+	for (int l = 0; l < s->loads; l++) {
+		const struct load *load = &s->load[l];
+		double w = nearest_double(load->wave->w);
+		if (w <= 0 || mpq_sgn(load->wave->a) != 0 || !load_acts(s, load))
+			continue;
+		for (int i = 0; i < lint->poles; i++) {
+			double own = hypot(lint->re[i], lint->im[i]);
+			if (lint->im[i] <= 0 || fabs(w - own) > NEAR * own || fabs(lint->re[i]) > LIGHT * own ||
+			    amplitude(s, load, own * (1 + 1e-4)) <
+				    STANDS_OUT * amplitude(s, load, own * (1 - BESIDE)))
+				continue;
+			say_warning(place_of_load(lint, load), NULL,
+				    "resonance: the load has %.4g rad/s, the model %.4g rad/s, %s", w, own,
+				    fabs(lint->re[i]) < GROWS * own ? "undamped"
+				    : format("with a damping ratio of %.2g", -lint->re[i] / own));
+			break;
+		}
+	}
+}
+
+/* ---- forces that belong to no energy ---- */
+
+/* By how much coordinate j acts on i, of the sign that the mass of i gives its equation */
+static double action(const struct lint *lint, const mpq_t *A, int i, int j)
+{
+	return sign_at(lint, (const mpq_t *)lint->system->M, i) *
+	       nearest_double(A[lint->model->owner[i] * lint->system->n + j]);
+}
+
+/* Where two coordinates act on each other, not one on the other alone, factors of the equations make both actions
+ * alike: false where that needs a factor below 0, or another than is known. */
+static bool is_balanced(const struct lint *lint, const mpq_t *A, int i, int j, double *factor)
+{
+	double there = action(lint, A, i, j), back = action(lint, A, j, i);
+	if (there == 0 || back == 0)
+		return true;
+	if (there * back < 0)
+		return false;
+	if (factor[i] != 0 && factor[j] == 0)
+		factor[j] = factor[i] * there / back;
+	else if (factor[j] != 0 && factor[i] == 0)
+		factor[i] = factor[j] * back / there;
+	return factor[i] == 0 || fabs(factor[i] * there - factor[j] * back) <= 1e-9 * fabs(factor[i] * there);
+}
+
+static void tell_circulation(const struct lint *lint, const mpq_t *A, const char *matrix, int i, int j)
+{
+	const struct model *model = lint->model;
+	say_warning(model->residual[model->owner[j]].at,
+		    "such are follower loads, flow, friction and control; else a sign or a term is wrong",
+		    "the %s matrix is not symmetric: %s acts on %s by %.4g, %s on %s by %.4g", matrix,
+		    model->coord_name[j], model->coord_name[i], action(lint, A, i, j), model->coord_name[i],
+		    model->coord_name[j], action(lint, A, j, i));
+}
+
+/* Each of second order, with a mass of its own, and none whose acceleration acts on another one-sidedly, as those of
+ * relative coordinates do: only then an energy would show in the entries. */
+static bool shows_energy(const struct lint *lint)
+{
+	const struct linear *s = lint->system;
+	for (int i = 0; i < s->n; i++) {
+		if (s->velocity[i] < 0 || sign_at(lint, (const mpq_t *)s->M, i) == 0)
+			return false;
+		for (int j = 0; j < i; j++)
+			if ((action(lint, (const mpq_t *)s->M, i, j) == 0) !=
+			    (action(lint, (const mpq_t *)s->M, j, i) == 0))
+				return false;
+	}
+	return true;
+}
+
+static void check_symmetry(const struct lint *lint)
+{
+	const struct linear *s = lint->system;
+	int n = s->n, reached = 0;
+	if (n > MOST_POLES || lint->model->spec->equations == 0 || !shows_energy(lint))
+		return;
+	double *factor = ARRAY(double, (size_t)n);
+	int *queue = ARRAY(int, (size_t)n);
+	for (int first = 0; first < n; first++) {
+		if (factor[first] != 0)
+			continue;
+		factor[first] = 1;
+		queue[reached++] = first;
+		for (int next = reached - 1; next < reached; next++) {
+			int i = queue[next];
+			for (int j = 0; j < n; j++) {
+				bool fresh = factor[j] == 0;
+				const mpq_t *M = (const mpq_t *)s->M, *K = (const mpq_t *)s->K;
+				if (j == i)
+					continue;
+				bool M_good = is_balanced(lint, M, i, j, factor), K_good;
+				K_good = is_balanced(lint, K, i, j, factor);
+				if (!M_good || !K_good) {
+					tell_circulation(lint, M_good ? K : M, M_good ? "stiffness" : "mass",
+							 i < j ? i : j, i < j ? j : i);
+					return;
+				}
+				if (fresh && factor[j] != 0)
+					queue[reached++] = j;
+			}
+		}
+	}
+}
+
+/* ---- drift ---- */
+
+/* Rows of n x width with the force in the last column: the row that is left with nothing but a force; -1: none */
+static int unopposed_row(int n, int width, mpq_t *A)
+{
+	int *row = ARRAY(int, (size_t)n), rank = 0, listed = 0;
+	mpq_t factor;
+	mpq_init(factor);
+	for (int with = 0; with < 2; with++)    /* what has a force comes last, so that it is what is left */
+		for (int i = 0; i < n; i++)
+			if ((mpq_sgn(A[i * width + width - 1]) != 0) == with)
+				row[listed++] = i;
+	for (int column = 0; column < width - 1 && rank < n; column++) {
+		int pivot = rank;
+		while (pivot < n && mpq_sgn(A[row[pivot] * width + column]) == 0)
+			pivot++;
+		if (pivot == n)
+			continue;
+		int found = row[pivot];
+		row[pivot] = row[rank];
+		row[rank] = found;
+		for (int i = rank + 1; i < n; i++) {
+			if (mpq_sgn(A[row[i] * width + column]) == 0)
+				continue;
+			mpq_div(factor, A[row[i] * width + column], A[found * width + column]);
+			rational_subtract_row(width, A + row[i] * width, (const mpq_t *)A + found * width, factor);
+		}
+		rank++;
+	}
+	mpq_clear(factor);
+	for (int i = rank; i < n; i++)
+		if (mpq_sgn(A[row[i] * width + width - 1]) != 0)
+			return row[i];
+	return -1;
+}
+
+/* Only then may something move as a whole. */
+static bool may_have_zero(const struct lint *lint)
+{
+	for (int i = 0; i < lint->poles; i++)
+		if (hypot(lint->re[i], lint->im[i]) <= PERHAPS_ZERO * lint->size)
+			return true;
+	return false;
+}
+
+/* A constant force that neither stiffness nor damping meets, in the last segment of time */
+static void check_drift(const struct lint *lint)
+{
+	const struct linear *s = lint->system;
+	const struct model *model = lint->model;
+	int n = s->n, width = 2 * n + 1;
+	if (n > MOST_RANK || !may_have_zero(lint))
+		return;
+	size_t cells = (size_t)n * (size_t)width;
+	mpq_t *A = rationals(cells);
+	for (int i = 0; i < n; i++) {
+		for (int j = 0; j < n; j++) {
+			mpq_set(A[i * width + j], s->K[i * n + j]);
+			mpq_set(A[i * width + n + j], s->C[i * n + j]);
+		}
+		for (int l = 0; l < s->loads; l++)
+			if (is_polynomial(s->load[l].wave))
+				mpq_add(A[i * width + 2 * n], A[i * width + 2 * n],
+					s->load[l].force[0][(s->segments - 1) * n + i]);
+	}
+	int row = unopposed_row(n, width, A);
+	rationals_free(A, cells);
+	if (row >= 0)
+		say_warning(model->residual[row].at, NULL,
+			    "a constant load drives %s off: neither stiffness nor damping holds what moves as a whole "
+			    "there",
+			    model->coord_name[coordinate_of_row(model, row)]);
+}
+
+/* ---- the whole ---- */
+
+void lint(struct building *b)
+{
+	const struct model *model = b->model;
+	struct lint lint = { .b = b, .model = model, .system = &model->system };
+	check_names(b->spec);
+	check_elements(&lint);
+	if (model->switching || model->operators || model->channels || model->scheme != SCHEME_EXACT)
+		return;
+	int states = model->system.states;
+	if (states <= MOST_POLES) {
+		lint.re = ARRAY(double, (size_t)states);
+		lint.im = ARRAY(double, (size_t)states);
+		const mpq_t *A = (const mpq_t *)state_matrix(&model->system, false);
+		lint.size = size_of(&model->system, A);
+		if (eigenvalues(states, A, lint.re, lint.im))
+			lint.poles = states;
+	}
+	check_stability(&lint);
+	check_step(&lint);
+	check_resonance(&lint);
+	check_symmetry(&lint);
+	check_drift(&lint);
+}
