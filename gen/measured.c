@@ -291,23 +291,6 @@ static void try_alternative(struct measuring *m, struct alternative *a)
 
 /* ---- steps and tolerances of a scheme ---- */
 
-/* 1, 2 or 5 times a power of 10: the largest that is not above h */
-static const char *round_step(double h)
-{
-	static const int digits[] = { 5, 2, 1 };
-	int power = (int)floor(log10(h * (1 + 1e-12)));
-	const double lead = h / pow(10, power) * (1 + 1e-12);
-	int digit = 1;
-	for (int i = 0; i < 3; i++)
-		if (digits[i] <= lead) {
-			digit = digits[i];
-			break;
-		}
-	return power < 0 && power >= -4	  ? format("%.*f", -power, digit * pow(10, power))
-	       : power >= 0 && power <= 6 ? format("%.0f", digit * pow(10, power))
-					  : format("%de%d", digit, power);
-}
-
 static struct alternative tried_step(struct measuring *m, struct alternative a, double h)
 {
 	a.step = round_step(h);

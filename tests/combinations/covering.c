@@ -370,6 +370,16 @@ static void print_options(FILE *to)
 		fputs("# retune: k=17.5 step=0.0125\n", to);
 }
 
+static bool has_scheme(void)
+{
+	static const char *const scheme[] = { "exact", "pl", "etd1", "etdrk2", "etdrk4", "nc2", "nc3", "dq4", "bm3",
+		"taylor", "taylor12", "radau", "auto", "etdam5", "etdcol" };
+	bool any = false;
+	for (size_t i = 0; i < sizeof scheme / sizeof *scheme; i++)
+		any = any || has(scheme[i]);
+	return any;
+}
+
 static void write_chain(FILE *to, int n)
 {
 	fprintf(to, "[");
@@ -377,6 +387,19 @@ static void write_chain(FILE *to, int n)
 		for (int j = 0; j < n; j++)
 			fprintf(to, "%s%d", j ? ", " : i ? "; " : "", i == j ? 16 : i == j + 1 || j == i + 1 ? -4 : 0);
 	fprintf(to, "]\n");
+}
+
+/* So fine that what is chosen is compared as what is asked for is; a scheme that is asked for does what it can. */
+static void write_need(FILE *to)
+{
+	const bool measured = has("smooth") || has("kinked") || has("piecewise") || has("loads") || expands() ||
+			      moves();
+	fprintf(to, "need %s within %s until 0.5", has("accel") ? "s" : "a",
+		measured ? has("taylor") || has("radau") || !has_scheme() ? "1e-6" : "5 %"
+			 : has("float") ? "1e-4" : "1e-9");
+	fputs(has("held") || has("ramp") ? " for " : "", to);
+	fprintf(to, "%s%s%s\n", has("held") ? "|u| <= 2" : "", has("held") && has("ramp") ? ", " : "",
+		has("ramp") ? "|v| <= 2" : "");
 }
 
 /* Two masses and what else is asked for; without dampers where the form asks for that.  Frequencies: below 6 rad/s. */
@@ -447,6 +470,8 @@ static void write_spec(FILE *to)
 	fputs(has("peaks") ? "output wave = a + 0.5*b, top = peak(a + 0.5*b)\n" : "", to);
 	fputs(has("nonlinear") ? "output r = a^2 + sin(b)*b'\n" : "", to);
 	fputs(has("taylor12") ? "scheme taylor 12\n" : "", to);
+	if (has("need"))
+		write_need(to);
 	fputs("step 0.01\n", to);
 }
 

@@ -116,8 +116,25 @@ says 'a step that is written' 'the need cannot be met' --step 0.5 --scheme etdrk
 says 'an end that is too far' 'would take too long' long.spec
 printf "model driven\ncoord x\ninput u\nx'' + x^3 = u\nneed x within 1e-3 until 5\n" >driven.spec
 says 'an input' 'a need is measured on known loads' driven.spec
-printf "model linear\ncoord x\ninit x = 1\nx'' + x = 0\nneed x within 1e-3 until 5\n" >linear.spec
-says 'a linear model without a step' 'missing step' linear.spec
+printf "model linear\ncoord x\ninput u\nx'' + x = u\nneed x within 1e-3 until 5 for |u| <= 1\n" >linear.spec
+says 'a linear model with an input and without a step' 'missing step' linear.spec
+
+# steps H MODEL: of a linear model without a step it is H: at most half of the shortest period, 1/100 of the end
+steps() {
+	what="without a step, a linear one: $1"
+	chosen "$what" || return 0
+	printf "$2" >open.spec
+	"$plgen" open.spec >open.c 2>log && grep -q "One step of h = $1 s" open.c && { cat open.spec; echo "step $1"; } \
+		>closed.spec && "$plgen" closed.spec >closed.c 2>>log &&
+		sed 's/closed.spec/open.spec/' closed.c | diff - open.c >>log
+	result $? "$what"
+}
+steps 0.5 "model osc\ncoord x\ninit x = 1\nx'' + x = 0\nneed x within 1e-3 until 50\n"
+steps 0.05 "model fast\ncoord x\ninit x = 1\nx'' + 3600*x = 0\nneed x within 1e-3 until 50\n"
+steps 0.02 "model load\ncoord x\ninit x = 1\nx'' + x = cos(140*t)\nneed x within 1e-3 until 50\n"
+steps 0.1 "model slow\ncoord x\ninit x = 1\nx' + x = 0\nneed x within 1e-3 until 20\nneed x within 1e-4 until 10\n"
+# the fast mode is seen too little to be kept, and to count: 0.1 s is above half of its period
+steps 0.1 "model far\ncoord x, y\ninit x = 1, y = 1\nx'' + x = 0\ny'' + 1e4*y = 0\noutput o = x + 1e-6*y\nneed o within 1e-3 until 10\n"
 
 # The word is `measured`: of a model that is not linear nothing is certified.
 { echo 'model pendulum'; cat pendulum.txt; echo 'need x within 1e-4 until 50'; } >word.spec
