@@ -107,7 +107,7 @@ static bool choose_sampling(struct work *w)
 {
 	struct request *request = &w->options.request;
 	const struct request asked = *request;
-	if (!find_requirements(w->stepped) || lacks_step(w))
+	if (!find_requirements(w->stepped))
 		return false;
 	for (const char *step = first_step(w->stepped); step; step = shorter_step(w->step)) {
 		*request = asked;
@@ -124,6 +124,8 @@ static bool choose(struct work *w)
 {
 	if (!w->step || (w->spec->needs == 0 && !w->spec->budget.instructions))
 		return true;
+	if (w->options.request.step_open && lacks_step(w))
+		return false;
 	if (w->options.request.step_open && !is_measured(w->stepped))
 		return choose_sampling(w);
 	w->step = choose_step(w->model, w->stepped, &w->options.request);

@@ -59,7 +59,7 @@ static bool is_written(const char *option, const void *spec)
 	return option || spec;
 }
 
-static void try_scheme(struct measuring *m, const char *scheme)
+static void try_scheme_in(struct measuring *m, const char *scheme, bool single)
 {
 	static const char *const tolerances[] = { "1e-3", "1e-4", "1e-5", "1e-6", "1e-7", "1e-8", "1e-9", "1e-10",
 						  "1e-11", "1e-12", "1e-13" };
@@ -68,7 +68,7 @@ static void try_scheme(struct measuring *m, const char *scheme)
 	if (scheme)
 		scheme_of(scheme, &row);
 	const bool step_open = m->request->step_open;
-	struct alternative a = { .scheme = scheme, .single = m->request->single, .form = FORM_DIRECT };
+	struct alternative a = { .scheme = scheme, .single = single, .form = FORM_DIRECT };
 	if (!scheme_row(row)->expands || is_written(m->request->tolerance, spec->tolerance)) {
 		if (step_open)
 			try_steps(m, a);
@@ -88,6 +88,14 @@ static void try_scheme(struct measuring *m, const char *scheme)
 	}
 }
 
+/* In float and in double, unless one is asked for */
+static void try_scheme(struct measuring *m, const char *scheme)
+{
+	for (int single = 1; single >= 0; single--)
+		if (!m->request->real_given || m->request->single == single)
+			try_scheme_in(m, scheme, single);
+}
+
 /* ---- the choice ---- */
 
 static void try_schemes(struct measuring *m)
@@ -97,8 +105,10 @@ static void try_schemes(struct measuring *m)
 		try_scheme(m, NULL);
 		return;
 	}
-	if (m->model->switching)
+	if (m->model->switching || m->model->channels == 0)
 		try_scheme(m, scheme_name(SCHEME_EXACT));
+	if (m->model->channels == 0 && !m->model->switching)
+		return;
 	/* What is likely to do comes first: what is dearer is not tried. */
 	for (int likely = 1; likely >= 0; likely--)
 		for (int i = 0; i < SCHEMES; i++) {
@@ -207,6 +217,7 @@ struct step *choose_measured(struct model *stepped, struct request *request)
 	if (is_over_budget(&m, taken))
 		return NULL;
 	*request = request_of(&m, taken);
+	m.single = request->single;
 	struct step *step = built(&m, request, &m.why);
 	if (step)
 		step->choice = m.choice;

@@ -10,7 +10,7 @@
 #define WITHIN 0.99
 enum { MOST_TRIED = 9, MOST_SAMPLES = 2000000, MOST_KEPT = 4000000 };
 
-struct kept_course { double h; struct course *course; };
+struct kept_course { double h; int drive; struct course *course; };
 
 struct measuring {
 	struct model *model;        /* as it was built at first: its requirements */
@@ -21,6 +21,8 @@ struct measuring {
 	double until;               /* [s] the last end of a need */
 	double *ends;               /* per output: the last of its needs; below 0: none */
 	double *largest;            /* per output: of the reference */
+	int drives;                 /* courses of the inputs that are tried; one where there are none */
+	struct drive *drive;        /* NULL: there are none */
 	struct roads roads;
 	double longest;             /* [s] a step is not above this where it is open */
 	struct choice *choice;
@@ -40,10 +42,10 @@ struct step *built(struct measuring *m, const struct request *as, const char **w
 struct running *running_of(struct measuring *m, const struct step *step, const char **why);
 struct request request_of(const struct measuring *m, const struct alternative *a);
 bool open_reference(struct measuring *m);      /* false: m->why */
-/* From this start, against a reference from there; the largest of error over need. `spec`: it is the spec's, and what is
- * found is kept in the alternative */
-double tried_from(struct measuring *m, struct alternative *a, struct running *r, struct roads *roads, const double *start,
-		  bool spec);
+/* From this start, with inputs number `drive`, against a reference from there; the largest of error over need. `spec`:
+ * it is the spec's, and what is found is kept in the alternative */
+double tried_from(struct measuring *m, struct alternative *a, struct running *r, struct roads *roads,
+		  const double *start, int drive, bool spec);
 bool meets(const struct alternative *a);
 void try_alternative(struct measuring *m, struct alternative *a);        /* and keeps it */
 

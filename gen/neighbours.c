@@ -76,7 +76,7 @@ static void try_starts(struct measuring *m, struct alternative *a, struct runnin
 			const double as_written = start[i];
 			start[i] *= up ? 1.1 : 0.9;
 			struct alternative copy = *a;
-			keep_worst(a, tried_from(m, &copy, r, roads, start, false),
+			keep_worst(a, tried_from(m, &copy, r, roads, start, a->worst_input, false),
 				   format("%s = %.3g at the start", written->state_name[i], start[i]));
 			start[i] = as_written;
 		}
@@ -101,8 +101,25 @@ static void try_amplitudes(struct measuring *m, struct alternative *a)
 			continue;
 		roads.h = mpq_get_d(step->model->h);
 		roads.most = LIMIT_MEASURED;
-		keep_worst(a, tried_from(m, &copy, r, &roads, NULL, false), format("%s times %s", s->name, by));
+		keep_worst(a, tried_from(m, &copy, r, &roads, NULL, a->worst_input, false), format("%s times %s", s->name, by));
 	}
+}
+
+/* With the inputs of the largest error, a tenth smaller; larger ones are beyond their bounds */
+static void try_smaller_inputs(struct measuring *m, struct alternative *a, struct running *r, struct roads *roads)
+{
+	if (!m->drive)
+		return;
+	struct drive *drive = &m->drive[a->worst_input], as_found = *drive;
+	const long numbers = (drive->samples + 2) * drive->inputs;
+	drive->sample = ARRAY(double, (size_t)numbers);
+	for (long i = 0; i < numbers; i++)
+		drive->sample[i] = 0.9 * as_found.sample[i];
+	struct alternative copy = *a;
+	name_neighbour(a, drive->inputs > 1 ? "the inputs (less only)" : "the input (less only)");
+	keep_worst(a, tried_from(m, &copy, r, roads, NULL, a->worst_input, false), "inputs are a tenth smaller");
+	discard(drive->sample);
+	*drive = as_found;
 }
 
 void try_neighbours(struct measuring *m, struct alternative *a)
@@ -116,6 +133,7 @@ void try_neighbours(struct measuring *m, struct alternative *a)
 	roads.h = mpq_get_d(step->model->h);
 	roads.most = LIMIT_MEASURED;
 	try_starts(m, a, r, &roads);
+	try_smaller_inputs(m, a, r, &roads);
 	find_amplitudes(m, a);
 	try_amplitudes(m, a);
 }

@@ -73,16 +73,17 @@ static double fastest_motion(const struct measuring *m)
 }
 
 /* A pair of roads, and how far they are apart over what is needed; infinite: one comes to no end */
-static double disagreement(struct measuring *m, const double *start)
+static double disagreement(struct measuring *m)
 {
 	struct course *course[ROADS] = { NULL };
 	double worst = 0;
 	for (int which = 0; which < ROADS; which++)
-		course[which] = which && !course[0] ? NULL : road_of(&m->roads, which, start, &m->why);
+		course[which] = which && !course[0] ? NULL : road_of(&m->roads, which, NULL, &m->why);
 	for (int i = 0; i < m->model->requirements && course[0] && course[1]; i++) {
 		const struct requirement *r = &m->model->requirement[i];
 		const long samples = (long)floor(mpq_get_d(r->until) / m->roads.h * (1 + 1e-14));
-		m->largest[r->output] = largest_of(course[0], r->output, samples);
+		m->largest[r->output] = fmax(m->drive ? m->largest[r->output] : 0,
+					     largest_of(course[0], r->output, samples));
 		const double needed = needed_error(r, m->largest[r->output]);
 		const double over = apart(course[0], course[1], r->output, samples) / needed;
 		worst = over <= worst ? worst : over;
@@ -94,12 +95,24 @@ static double disagreement(struct measuring *m, const double *start)
 	return both ? worst : HUGE_VAL;
 }
 
+/* With all inputs that are tried; where they are apart with one the others are not looked at. */
+static double disagreements(struct measuring *m)
+{
+	double worst = 0;
+	for (int i = 0; i < m->drives && worst <= known; i++) {
+		m->roads.drive = m->drive ? &m->drive[i] : NULL;
+		worst = fmax(worst, disagreement(m));
+	}
+	return worst;
+}
+
 /* Sizes of the states first, roughly; then tolerances down to where the roads agree */
 static bool find_tolerance(struct measuring *m)
 {
 	const size_t states = (size_t)m->model->written->system.states;
 	double apart_at_best = HUGE_VAL;
-	m->roads.h = m->until / 64;
+	m->roads.h = m->drive ? m->drive->h : m->until / 64;
+	m->roads.drive = m->drive;
 	for (int pair = 0; pair < 2; pair++) {
 		m->roads.stiff = pair > 0;
 		m->roads.size = ARRAY(double, states);
@@ -111,7 +124,7 @@ static bool find_tolerance(struct measuring *m)
 		}
 		for (double tolerance = 1e-8; tolerance > 1e-15; tolerance *= 0.01) {
 			m->roads.tolerance = tolerance;
-			const double found = disagreement(m, NULL);
+			const double found = disagreements(m);
 			if (found <= known)
 				return true;
 			apart_at_best = fmin(apart_at_best, found);
@@ -136,6 +149,40 @@ static void find_changes(struct measuring *m)
 	m->roads.change = change;
 }
 
+/* [rad/s] of the linear operator, in rising order, as many as tell apart; else by length of time and of a step */
+static int frequencies_of(const struct measuring *m, const struct step *step, double *w, int most)
+{
+	const double h = mpq_get_d(step->model->h);
+	struct pole_report *pole;
+	int count = 0;
+	const int poles = m->model->switching ? 0 : poles_of(step->model, step->written, &pole);
+	for (int i = 0; i < poles && count < most; i++) {
+		const double found = fabs(mpfr_get_d(pole[i].im, MPFR_RNDN));
+		if (found > 6 / m->until && found * h < 2 && (count == 0 || found > 1.01 * w[count - 1]))
+			w[count++] = found;
+	}
+	for (; count == 0 || (poles == 0 && count < most); count++)
+		w[count] = 12 / m->until * pow(m->until / h / 24, (count + 1.0) / (most + 1));
+	return count;
+}
+
+static void find_drives(struct measuring *m, const struct step *step)
+{
+	enum { FREQUENCIES = 3 };
+	const struct linear *system = &m->model->system;
+	const double h = mpq_get_d(step->model->h);
+	double w[FREQUENCIES];
+	m->drives = 1;
+	if (system->inputs == 0)
+		return;
+	const int count = frequencies_of(m, step, w, FREQUENCIES);
+	m->drives = drive_kinds(count);
+	m->drive = ARRAY(struct drive, (size_t)m->drives);
+	for (int i = 0; i < m->drives; i++)
+		m->drive[i] = drive_of(system, i, w, count, h, (long)ceil(m->until / h),
+				       (const mpq_t *)m->model->requirement[0].most);
+}
+
 bool open_reference(struct measuring *m)
 {
 	struct request as = *m->request;
@@ -146,6 +193,7 @@ bool open_reference(struct measuring *m)
 				   .most = LIMIT_MEASURED / 4 };
 	if (!m->roads.r)
 		return false;
+	find_drives(m, step);
 	find_changes(m);
 	if (!find_tolerance(m))
 		return false;
@@ -168,16 +216,16 @@ static double cost_of_trial(const struct trial *t, const struct target *target, 
 }
 
 /* From the spec's start; it is kept where it is not too long */
-static struct course *kept_reference(struct measuring *m, struct roads *roads, const char **why)
+static struct course *kept_reference(struct measuring *m, struct roads *roads, int drive, const char **why)
 {
 	for (int i = 0; i < m->kept; i++)
-		if (m->keeps[i].h == roads->h)
+		if (m->keeps[i].h == roads->h && m->keeps[i].drive == drive)
 			return m->keeps[i].course;
 	struct course *course = road_of(roads, 0, NULL, why);
 	if (!course || course->samples * course->outputs > MOST_KEPT)
 		return course;
 	ENLARGE(m->keeps, (size_t)m->kept + 1);
-	m->keeps[m->kept++] = (struct kept_course){ roads->h, course };
+	m->keeps[m->kept++] = (struct kept_course){ roads->h, drive, course };
 	return course;
 }
 
@@ -191,22 +239,24 @@ static void release(const struct measuring *m, struct course *course)
 
 /* From this start, against a reference from there; the largest of error over need */
 double tried_from(struct measuring *m, struct alternative *a, struct running *r, struct roads *roads,
-			 const double *start, bool spec)
+		  const double *start, int drive, bool spec)
 {
-	struct course *reference = spec ? kept_reference(m, roads, &a->why) : road_of(roads, 0, start, &a->why);
+	roads->drive = m->drive ? &m->drive[drive] : NULL;
+	struct course *reference = spec ? kept_reference(m, roads, drive, &a->why) : road_of(roads, 0, start, &a->why);
 	if (!reference)
 		return HUGE_VAL;
-	struct trial trial = trial_of(r, reference, start, m->ends);
+	struct trial trial = trial_of(r, reference, start, m->ends, roads->drive);
 	const struct model *model = running_step_of(r)->model;
 	double worst = 0;
 	for (int i = 0; i < model->requirements; i++) {
 		const struct requirement *q = &model->requirement[i];
 		const long samples = (long)floor(mpq_get_d(q->until) / roads->h * (1 + 1e-14));
+		const double largest = m->drive ? m->largest[q->output] : largest_of(reference, q->output, samples);
 		struct certificate found = { .known = true, .rounding = trial.error[q->output],
-					     .needed = needed_error(q, largest_of(reference, q->output, samples)) };
+					     .needed = needed_error(q, largest) };
 		const double over = found.rounding / found.needed;
 		worst = over <= worst ? worst : over;
-		if (spec)
+		if (spec && !(found.rounding <= a->certificate[i].rounding && a->certificate[i].known))
 			a->certificate[i] = found;
 	}
 	if (spec) {
@@ -233,6 +283,20 @@ bool meets(const struct alternative *a)
 	return !a->refused && !a->why && a->excess <= WITHIN && a->worst_neighbour <= WITHIN;
 }
 
+/* From the spec's start, with all inputs that are tried */
+static void try_inputs(struct measuring *m, struct alternative *a, struct running *r, struct roads *roads)
+{
+	a->excess = 0;
+	a->inputs_tried = m->drive ? m->drives : 0;
+	for (int i = 0; i < m->drives && isfinite(a->excess); i++) {
+		const double excess = tried_from(m, a, r, roads, NULL, i, true);
+		if (excess <= a->excess)
+			continue;
+		a->excess = excess;
+		a->worst_input = i;
+	}
+}
+
 void try_alternative(struct measuring *m, struct alternative *a)
 {
 	const struct request as = request_of(m, a);
@@ -250,7 +314,7 @@ void try_alternative(struct measuring *m, struct alternative *a)
 			a->why = format("%.0f steps are more than the %d that are measured", m->until / roads.h,
 					MOST_SAMPLES);
 		else
-			a->excess = tried_from(m, a, r, &roads, NULL, true);
+			try_inputs(m, a, r, &roads);
 	}
 	if (meets(a))
 		m->cheapest = fmin(m->cheapest, a->cost);

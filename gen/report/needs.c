@@ -37,7 +37,8 @@ const char *certified_text(const struct alternative *a, int i)
 {
 	const struct certificate *c = &a->certificate[i];
 	if (a->measured)
-		return format("measured %.2g (%s)", c->rounding, tried_text(a));
+		return format("measured %.2g (%s%s)", c->rounding, tried_text(a),
+			      a->inputs_tried ? format("; the worst of %d inputs tried", a->inputs_tried) : "");
 	const char *dropped = dropped_text(a);
 	if (!dropped)
 		return format("certified %.2g (rounding: %s)", c->rounding, arithmetic_text(a));
