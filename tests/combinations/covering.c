@@ -355,7 +355,7 @@ static void print_options(FILE *to)
 			scheme = scheme || strncmp(option[i][1], "--scheme", 8) == 0;
 		}
 	if (has("modes"))       /* all of them; what no output sees is left out */
-		fprintf(to, " --modes %d", 2 + has("first") + (has("many") ? 9 : has("file") ? 3 : 0));
+		fprintf(to, " --modes %d", 2 + has("first") + has("parts") + (has("many") ? 9 : has("file") ? 3 : 0));
 	scheme = scheme || has("taylor12");
 	if (has("loads") && !scheme)
 		fputs(" --scheme etdrk4", to);
@@ -395,8 +395,8 @@ static void write_need(FILE *to)
 	const bool measured = has("smooth") || has("kinked") || has("piecewise") || has("loads") || expands() ||
 			      moves();
 	fprintf(to, "need %s within %s until 0.5", has("accel") ? "s" : "a",
-		measured ? has("taylor") || has("radau") || !has_scheme() ? "1e-6" : "5 %"
-			 : has("float") ? "1e-4" : "1e-9");
+		measured && has_scheme() && !has("taylor") && !has("radau") ? "5 %"
+			: has("float") ? "1e-4" : measured ? "1e-6" : "1e-9");
 	fputs(has("held") || has("ramp") ? " for " : "", to);
 	fprintf(to, "%s%s%s\n", has("held") ? "|u| <= 2" : "", has("held") && has("ramp") ? ", " : "",
 		has("ramp") ? "|v| <= 2" : "");
@@ -407,7 +407,7 @@ static void write_spec(FILE *to)
 {
 	const bool vector = has("file") || has("many"), damped = !has("kdk");
 	const bool outputs = has("accel") || has("nonlinear") || has("reduce") || has("modes") || has("peaks") ||
-			     has("batch");
+			     has("batch") || has("need");
 	const int n = has("many") ? 9 : 3;
 	print_options(to);
 	fputs("model f\nparam k = 12\n", to);
