@@ -189,7 +189,10 @@ void json_needs(FILE *to, const struct step *step)
 			fprintf(to, ", \"why\": %s}", json_quoted(a->refused ? a->refused : a->why));
 			continue;
 		}
-		fprintf(to, ", \"cost\": %.17g, \"excess\": %.17g, \"errors\": [", a->cost, a->excess);
+		fprintf(to, ", \"cost\": %.17g, \"excess\": %.17g, ", a->cost, a->excess);
+		if (a->neighbours > 0)
+			fprintf(to, "\"neighbours\": %.17g, ", a->worst_neighbour);
+		fputs("\"errors\": [", to);
 		for (int k = 0; k < model->requirements; k++)
 			json_error(to, a, k);
 		fputs("]}", to);
