@@ -397,10 +397,6 @@ struct step *choose_step(struct model *written, struct model *stepped, struct re
 	struct choosing c = { .written = written, .stepped = stepped, .request = request };
 	if (stepped->spec->needs > 0 && is_measured(stepped))
 		return choose_measured(stepped, request);
-	if (request->step_open) {
-		say_error(stepped->spec->end, "step 0.01, or --step 0.01 on the command line", "missing step");
-		return NULL;
-	}
 	if (!find_requirements(stepped))
 		return NULL;
 	try_all(&c);

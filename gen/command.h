@@ -41,6 +41,13 @@ struct step *choose_measured(struct model *stepped, struct request *request);
 /* adds the shared object to an FMU; false: it was said why there is none */
 bool add_binary(struct fmu *fmu, const char *headers);
 
+/* ---- sampling.c: steps that nothing is said of ---- */
+
+const char *round_step(double h);  /* [s] 1, 2 or 5 times a power of 10: the largest that is not above h */
+/* Of a linear model with needs, the longest, to be tried first; NULL: what was taken may stay, else a shorter one */
+const char *first_step(const struct model *stepped);
+const char *shorter_step(const struct step *taken);
+
 /* ---- publish.c: texts in memory, then files ---- */
 
 struct file {

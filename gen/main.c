@@ -42,15 +42,6 @@ static bool make_step(struct work *w)
 	return w->step;
 }
 
-/* Where the spec says how exact it has to be */
-static bool choose(struct work *w)
-{
-	if (!w->step || (w->spec->needs == 0 && !w->spec->budget.instructions))
-		return true;
-	w->step = choose_step(w->model, w->stepped, &w->options.request);
-	return w->step;
-}
-
 static void try_all(void *context)
 {
 	struct work *w = context;
@@ -86,6 +77,59 @@ static bool make(struct work *w)
 		w->spec = parse_spec(source);
 	}
 	return make_model(w) && make_step(w);
+}
+
+/* ---- where the spec says how exact it has to be ---- */
+
+/* Of inputs a step is the time between samples. */
+static bool lacks_step(const struct work *w)
+{
+	if (w->stepped->system.inputs == 0)
+		return false;
+	say_error(w->spec->end, "the step is the time between samples of inputs", "missing step");
+	return true;
+}
+
+/* The same model with another step */
+static bool make_again(struct work *w, const char *step)
+{
+	w->options.request.step = step;
+	w->spec = parse_spec(w->spec->source);
+	const char *refused = unheard_refusal_of(try_all, w);
+	if (refused)
+		say_error(w->spec->end, "another step can be written: step 0.01", "with a step of %s s: %s", step,
+			  refused);
+	return !refused;
+}
+
+/* Of a linear model without a step the longest is tried first; it may show what is kept too seldom */
+static bool choose_sampling(struct work *w)
+{
+	struct request *request = &w->options.request;
+	const struct request asked = *request;
+	if (!find_requirements(w->stepped))
+		return false;
+	for (const char *step = first_step(w->stepped); step; step = shorter_step(w->step)) {
+		*request = asked;
+		if (!make_again(w, step))
+			return false;
+		w->step = choose_step(w->model, w->stepped, request);
+		if (!w->step)
+			return false;
+	}
+	return true;
+}
+
+static bool choose(struct work *w)
+{
+	if (!w->step || (w->spec->needs == 0 && !w->spec->budget.instructions))
+		return true;
+	if (w->options.request.step_open && lacks_step(w))
+		return false;
+	if (w->options.request.step_open && !is_measured(w->stepped))
+		return choose_sampling(w);
+	w->step = choose_step(w->model, w->stepped, &w->options.request);
+	return w->step;
 }
 
 /* ---- from a step to texts ---- */

@@ -9,7 +9,7 @@ folder=$1
 charts=bench/charts
 shown=$(mktemp)
 trap 'rm -f "$shown"' EXIT
-stories='headline_integrators headline_equal_step energy_double hard less'
+stories='headline_integrators headline_equal_step energy_double hard less needs'
 
 escaped() {
 	sed 's/&/\&amp;/g; s/</\&lt;/g; s/"/\&quot;/g'

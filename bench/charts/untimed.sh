@@ -54,6 +54,11 @@ less() {
 	"$programs/less" "$variants" "$folder"
 }
 
+# what was tried for needs
+needs() {
+	sh $charts/needs.sh "$plgen" "$variants" "$folder"
+}
+
 # what the papers found
 papers() {
 	sh $charts/papers.sh $quick "$plgen" "$variants"
@@ -82,6 +87,6 @@ if [ $# -eq 0 ]; then
 	# Words
 	# shellcheck disable=SC2046,SC2086
 	set -- $(printf 'errors_%s\n' $models | grep beam) headline energy papers stability \
-		$(printf 'errors_%s\n' $models | grep -v beam) hard less convergence plmap structural
+		$(printf 'errors_%s\n' $models | grep -v beam) hard less needs convergence plmap structural
 fi
 printf '%s\n' "$@" | xargs -P 2 -I '{}' sh $charts/untimed.sh "$build" "$folder" $quick --job '{}'

@@ -41,19 +41,36 @@ static int output_named(const struct model *model, const char *name)
 	return -1;
 }
 
+static bool has_linear_form(const struct output *output)
+{
+	return !output->left && output->state;
+}
+
 /* Of what is not linear, or piecewise linear, no bound is known: it is measured. */
 bool is_measured(const struct model *model)
 {
-	return model->switching || model->obstacle || model->channels > 0;
+	bool measured = model->switching || model->obstacle || model->channels > 0;
+	for (int i = 0; i < model->spec->needs && !measured; i++) {
+		const int o = output_named(model, model->spec->need[i].output);
+		measured = o >= 0 && !model->output[o].peak && !has_linear_form(&model->output[o]);
+	}
+	return measured;
 }
 
+/* Inputs of a family are tried, the same for all needs. */
 static void check_measured(const struct finding *f)
 {
-	const struct model *model = f->model;
-	if (f->need->inputs > 0 || model->system.inputs > 0)
-		error(f->need->at, "an input can be written as a load, or as table(t; ...)",
-		      "a need is measured on known loads: of a model that is not linear no run says what another input "
-		      "does");
+	const struct linear *system = &f->model->system;
+	for (int i = 0; i < system->inputs; i++) {
+		if (system->input[i].hold > 1)
+			error(f->need->at, "hold zero or hold first",
+			      "a need is measured with inputs that hold, or ramp from sample to sample: '%s' does "
+			      "neither", system->input[i].name);
+		if (f->found != f->model->requirement && f->model->requirement->most &&
+		    !mpq_equal(f->found->most[i], f->model->requirement->most[i]))
+			error(f->need->at, NULL, "needs that are measured have one bound for '%s'",
+			      system->input[i].name);
+	}
 }
 
 static void check_certified(const struct finding *f)
@@ -63,10 +80,8 @@ static void check_certified(const struct finding *f)
 	if (model->tuning)
 		error(at, "a need holds for one model: without tunable, or with -D for other values",
 		      "the model has tunable params: what their values do to the error is not bounded");
-	if (is_measured(model)) {
-		check_measured(f);
+	if (is_measured(model))
 		return;
-	}
 	if (model->scheme != SCHEME_EXACT)
 		error(at, "without it the step is exact, and its rounding is certified",
 		      "a need is certified for scheme exact, and scheme %s is asked for", scheme_name(model->scheme));
@@ -89,9 +104,6 @@ static void find_output(const struct finding *f)
 	if (output->peak)
 		error(need->output_at, "a need on what it is the peak of holds for every sample of it, the largest too",
 		      "'%s' is a peak: needs are of outputs that follow the state", need->output);
-	if (!is_measured(model) && (output->left || !output->state))
-		error(need->output_at, NULL, "'%s' is not linear in states, loads and inputs: its error is not bounded",
-		      need->output);
 }
 
 static void find_inputs(const struct finding *f)
@@ -142,6 +154,8 @@ static void find_requirement(void *context)
 	if (mpq_sgn(r->until) < 0)
 		error(f->need->until->start, NULL, "a need ends at 0 or later, found %s", readable_text(r->until));
 	find_inputs(f);
+	if (is_measured(f->model))
+		check_measured(f);
 }
 
 static void find_budget(void *context)

@@ -37,7 +37,8 @@ const char *certified_text(const struct alternative *a, int i)
 {
 	const struct certificate *c = &a->certificate[i];
 	if (a->measured)
-		return format("measured %.2g (%s)", c->rounding, tried_text(a));
+		return format("measured %.2g (%s%s)", c->rounding, tried_text(a),
+			      a->inputs_tried ? format("; the worst of %d inputs tried", a->inputs_tried) : "");
 	const char *dropped = dropped_text(a);
 	if (!dropped)
 		return format("certified %.2g (rounding: %s)", c->rounding, arithmetic_text(a));
@@ -188,7 +189,10 @@ void json_needs(FILE *to, const struct step *step)
 			fprintf(to, ", \"why\": %s}", json_quoted(a->refused ? a->refused : a->why));
 			continue;
 		}
-		fprintf(to, ", \"cost\": %.17g, \"excess\": %.17g, \"errors\": [", a->cost, a->excess);
+		fprintf(to, ", \"cost\": %.17g, \"excess\": %.17g, ", a->cost, a->excess);
+		if (a->neighbours > 0)
+			fprintf(to, "\"neighbours\": %.17g, ", a->worst_neighbour);
+		fputs("\"errors\": [", to);
 		for (int k = 0; k < model->requirements; k++)
 			json_error(to, a, k);
 		fputs("]}", to);

@@ -52,7 +52,7 @@ struct code *code_of_step(struct place at, const struct step *step)
 
 /* ---- an instance ---- */
 
-enum part { INIT, SET, STEP, GET, TIME, OUT, STATUS, RHS, PARTS };
+enum part { INIT, SET, STEP, GET, TIME, OUT, STATUS, RHS, HOLD, PARTS };
 struct running {
 	struct code *code;
 	const struct step *step;
@@ -75,7 +75,7 @@ static struct entity *compiled(struct running *r, const char *name)
 
 struct running *running_new(struct code *code, const struct step *step)
 {
-	static const char *const names[PARTS] = { "init", "set", "step", "get", "time", "out", "status", "rhs" };
+	static const char *const names[PARTS] = { "init", "set", "step", "get", "time", "out", "status", "rhs", "hold" };
 	const struct model *model = step->model;
 	struct running *r = NEW(struct running);
 	const struct entity *type = entity_find(code, model->name);
@@ -152,6 +152,21 @@ void running_step(struct running *r, const double *u)
 	call_part(r, STEP, r->inputs > 0 ? 2 : 1, (void *[]){ r->instance, r->u }, 0);
 }
 
+/* The samples of the step before k, and the last one */
+void running_drive(struct running *r, const struct drive *d, long k)
+{
+	double *u = ARRAY(double, 2 * (size_t)r->inputs + 1);
+	drive_at(d, k > 0 ? k - 1 : 0, d->h * (double)(k > 0 ? k - 1 : 0), u);
+	to_target(r, u, r->u, r->inputs);
+	if (r->part[HOLD])
+		call_part(r, HOLD, 2, (void *[]){ r->instance, r->u }, 0);
+	if (k > 0) {
+		drive_step(d, k - 1, u);
+		running_step(r, u);
+	}
+	discard(u);
+}
+
 void running_state(struct running *r, double *y)
 {
 	call_part(r, GET, 2, (void *[]){ r->instance, r->y }, 0);
@@ -185,7 +200,7 @@ void running_rhs(struct running *r, double t, const double *y, const double *u, 
 {
 	to_target(r, y, r->y, r->states);
 	if (r->inputs > 0) {
-		to_target(r, u, r->u, r->inputs);
+		to_target(r, u, r->u, 2 * r->inputs);
 		call_part(r, RHS, 4, (void *[]){ NULL, r->y, r->u, r->slope }, t);
 	} else {
 		call_part(r, RHS, 3, (void *[]){ NULL, r->y, r->slope }, t);

@@ -23,17 +23,24 @@ static bool compare_sample(struct trial *trial, struct running *r, const struct 
 	return finite;
 }
 
-struct trial trial_of(struct running *r, const struct course *reference, const double *start, const double *ends)
+struct trial trial_of(struct running *r, const struct course *reference, const double *start, const double *ends,
+		      const struct drive *drive)
 {
 	const struct model *model = running_step_of(r)->model;
 	struct trial trial = { .error = ARRAY(double, 2 * (size_t)reference->outputs + 1) };
-	double *none = ARRAY(double, 2 * (size_t)model->system.inputs + 1);
-	running_start(r, 0, start);
+	double *u = ARRAY(double, 2 * (size_t)model->system.inputs + 1);
+	running_start(r, 0, NULL);
+	if (drive)
+		running_drive(r, drive, 0);
+	if (start)
+		running_start(r, 0, start);
 	bool finite = compare_sample(&trial, r, reference, 0, ends);
 	const struct counted before = counted;
 	long k = 0;
 	for (; k < reference->samples && finite && !trial.why; k++) {
-		running_step(r, none);
+		if (drive)
+			drive_step(drive, k, u);
+		running_step(r, u);
 		finite = compare_sample(&trial, r, reference, k + 1, ends);
 		if (running_status(r) != 0)
 			trial.why = format("it ends with status %d at t = %.3g s", running_status(r), running_time(r));

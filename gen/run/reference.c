@@ -18,7 +18,8 @@ struct journey {                    /* one road from start to end */
 	double *y;
 	double t, step;             /* [s]; the step that the method would take */
 	double first, last;         /* of the interval in which time has one formula */
-	double *none;               /* inputs */
+	double *u;                  /* inputs, then their slopes */
+	long sample;                /* at which the step of the inputs began */
 	uint64_t before;            /* operations when it began */
 	double *work;
 	gsl_odeiv2_system system;
@@ -40,7 +41,9 @@ static int slopes(double t, const double *y, double *slope, void *context)
 {
 	const struct journey *j = context;
 	double inside = t >= j->last ? nextafter(j->last, -HUGE_VAL) : t <= j->first ? j->first : t;
-	running_rhs(j->roads->r, inside, y, j->none, slope);
+	if (j->roads->drive)
+		drive_at(j->roads->drive, j->sample, t, j->u);
+	running_rhs(j->roads->r, inside, y, j->u, slope);
 	for (int i = 0; i < j->states; i++)
 		if (!isfinite(slope[i]))
 			return GSL_FAILURE;             /* a shorter step may do */
@@ -211,8 +214,16 @@ static int travel_to(struct journey *j, int which, double end)
 	return status;
 }
 
+/* With inputs the step after this sample begins. */
 static void keep_sample(struct journey *j, struct course *course, long k)
 {
+	if (j->roads->drive) {
+		running_start(j->roads->r, 0, NULL);
+		running_drive(j->roads->r, j->roads->drive, k);
+		j->sample = k;
+		if (j->driver)
+			gsl_odeiv2_driver_reset(j->driver);
+	}
 	running_start(j->roads->r, j->t, j->y);
 	running_outputs(j->roads->r, course->value + k * course->outputs);
 	for (int i = 0; i < j->states && j->roads->size; i++)
@@ -236,7 +247,7 @@ struct course *road_of(struct roads *roads, int which, const double *start, cons
 				   .outputs = step->model->outputs };
 	course->value = ARRAY(double, (size_t)(course->samples + 1) * (size_t)course->outputs);
 	j.y = ARRAY(double, n);
-	j.none = ARRAY(double, 2 * (size_t)step->model->system.inputs + 1);
+	j.u = ARRAY(double, 2 * (size_t)step->model->system.inputs + 1);
 	j.work = ARRAY(double, n * (5 + COLUMNS));
 	running_start(roads->r, 0, start);
 	running_state(roads->r, j.y);

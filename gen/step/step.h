@@ -512,6 +512,7 @@ struct alternative {                /* one way to step a model with needs */
 	int neighbours;
 	double worst_neighbour;
 	const char *worst_name, *neighbour_names;
+	int inputs_tried, worst_input; /* how many courses of the inputs; with which the error was largest */
 	const char *refused;        /* why there is no such step; NULL: there is */
 	double cost;                /* of a step and its outputs, as cost_of_step counts */
 	const char *why;            /* its error is not known; NULL: it is */

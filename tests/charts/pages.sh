@@ -10,7 +10,7 @@ here=$root/tests/charts
 charts=$root/bench/charts
 kept=$root/doc/charts
 csv=$charts/csv.awk
-stories='headline_integrators headline_equal_step energy_double hard less'
+stories='headline_integrators headline_equal_step energy_double hard less needs'
 
 # entries PICTURE.svg: of its legend
 entries() {

@@ -355,7 +355,7 @@ static void print_options(FILE *to)
 			scheme = scheme || strncmp(option[i][1], "--scheme", 8) == 0;
 		}
 	if (has("modes"))       /* all of them; what no output sees is left out */
-		fprintf(to, " --modes %d", 2 + has("first") + (has("many") ? 9 : has("file") ? 3 : 0));
+		fprintf(to, " --modes %d", 2 + has("first") + has("parts") + (has("many") ? 9 : has("file") ? 3 : 0));
 	scheme = scheme || has("taylor12") || has("over3");
 	if (has("loads") && !scheme)
 		fputs(" --scheme etdrk4", to);
@@ -370,6 +370,16 @@ static void print_options(FILE *to)
 		fputs("# retune: k=17.5 step=0.0125\n", to);
 }
 
+static bool has_scheme(void)
+{
+	static const char *const scheme[] = { "exact", "pl", "etd1", "etdrk2", "etdrk4", "nc2", "nc3", "dq4", "bm3",
+		"taylor", "taylor12", "radau", "auto", "etdam5", "etdcol" };
+	bool any = false;
+	for (size_t i = 0; i < sizeof scheme / sizeof *scheme; i++)
+		any = any || has(scheme[i]);
+	return any;
+}
+
 static void write_chain(FILE *to, int n)
 {
 	fprintf(to, "[");
@@ -379,12 +389,25 @@ static void write_chain(FILE *to, int n)
 	fprintf(to, "]\n");
 }
 
+/* So fine that what is chosen is compared as what is asked for is; a scheme that is asked for does what it can. */
+static void write_need(FILE *to)
+{
+	const bool measured = has("smooth") || has("kinked") || has("piecewise") || has("loads") || expands() ||
+			      moves();
+	fprintf(to, "need %s within %s until 0.5", has("accel") ? "s" : "a",
+		measured && has_scheme() && !has("taylor") && !has("radau") ? "5 %"
+			: has("float") ? "1e-4" : measured ? "1e-6" : "1e-9");
+	fputs(has("held") || has("ramp") ? " for " : "", to);
+	fprintf(to, "%s%s%s\n", has("held") ? "|u| <= 2" : "", has("held") && has("ramp") ? ", " : "",
+		has("ramp") ? "|v| <= 2" : "");
+}
+
 /* Two masses and what else is asked for; without dampers where the form asks for that.  Frequencies: below 6 rad/s. */
 static void write_spec(FILE *to)
 {
 	const bool vector = has("file") || has("many"), damped = !has("kdk");
 	const bool outputs = has("accel") || has("nonlinear") || has("reduce") || has("modes") || has("peaks") ||
-			     has("batch");
+			     has("batch") || has("need");
 	const int n = has("many") ? 9 : 3;
 	print_options(to);
 	fputs("model f\nparam k = 12\n", to);
@@ -448,6 +471,8 @@ static void write_spec(FILE *to)
 	fputs(has("nonlinear") ? "output r = a^2 + sin(b)*b'\n" : "", to);
 	fputs(has("taylor12") ? "scheme taylor 12\n" : "", to);
 	fputs(has("over3") ? "scheme taylor 12 over 3\n" : "", to);
+	if (has("need"))
+		write_need(to);
 	fputs("step 0.01\n", to);
 }
 

@@ -83,10 +83,11 @@ batch_add() {
 		$i, $(i + 1) }')
 	whole=$id
 	code="$id.c"
-	case $given in
-		*--real*|*--reduce*|*--modes*)
+	grep -v '^need' "$spec" >"$id.free.spec"
+	case $given$(sed -n '/^need/{s/ .*/ --need/p;q;}' "$spec") in
+		*--real*|*--reduce*|*--modes*|*--need)
 			whole=w$id
-			if ! make_c "$whole" "$spec" "$plain"; then
+			if ! make_c "$whole" "$id.free.spec" "$plain"; then
 				echo "the plain model: $(grep -m 1 error "$whole.said")" >"$id.wrong"
 				return
 			fi

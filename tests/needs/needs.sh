@@ -3,9 +3,11 @@
 # Random models with needs (random.awk): what is emitted is compiled and run, and at every sample up to the end of the
 # need its output is within the bound of the exact one, which --solution gives from residues, correctly rounded.
 # needs.sh PLGEN HERE RUNTIME FIRST LAST: those of these seeds
+# needs.sh PLGEN HERE RUNTIME drivetrain: models/drivetrain.spec, a scene of parts, with a need
 # needs.sh PLGEN HERE RUNTIME beam: the beam of beam.awk, of which at most 6 modes are kept and a third of the cost
 plgen=$1 here=$2 runtime=$3 first=$4 last=${5:-}
 case $plgen in /*) ;; *) plgen=$PWD/$plgen ;; esac
+models=$(cd "$here/../../models" && pwd) || exit 1
 work=$(mktemp -d) || exit 1
 trap 'rm -rf "$work"' EXIT
 cd "$work" || exit 1
@@ -15,10 +17,17 @@ for source in "$runtime"/*.c; do
 	${CC:-cc} -O1 -ffp-contract=off -w -c "$source" -o "objects/$(basename "$source" .c).o" || exit 1
 done
 seeds=beam
-[ "$first" = beam ] || seeds=$(seq "$first" "$last")
+case $first in
+	beam) ;;
+	drivetrain) seeds=drivetrain; cp "$models"/*.spec . ;;
+	*) seeds=$(seq "$first" "$last") ;;
+esac
 for seed in $seeds; do
 	if [ "$seed" = beam ]; then
 		awk -f "$here/beam.awk" >drawn.spec
+	elif [ "$seed" = drivetrain ]; then
+		sed 's/^model .*/model drawn/; /^output [ec]/d' drivetrain.spec >drawn.spec
+		echo 'need drive within 0.1 % until 3' >>drawn.spec
 	else
 		awk -v seed="$seed" -f "$here/random.awk" >drawn.spec
 	fi

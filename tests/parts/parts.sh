@@ -68,6 +68,35 @@ result $? 'standard input: parts are relative to the working directory'
     "$plgen" chain_other.spec 2>>log | sed -e '1,/^ \*\/$/d' | diff - defined >>log
 result $? '-D gives a param of a part another value, and what is made of it'
 
+# is_needed NAME NEED: with this need the same choice is made as of one text, and the same C
+cp "$root"/models/*.spec . || exit 99
+is_needed() {
+    { cat "$1.spec" && echo "need $2"; } >needed.spec
+    { cat "$here/$1_flat.spec" && echo "need $2" | sed 's/\./_/g'; } >needed_flat.spec
+    {
+        "$plgen" needed.spec >scene.c && "$plgen" needed_flat.spec >flat.c && grep ' certified ' scene.c &&
+            names scene.c >scene && names flat.c >flat && [ "$(wc -l <flat)" -gt 60 ] && diff flat scene
+    } >log 2>&1
+    result $? "$1, need $2: as in one text"
+}
+is_needed drivetrain 'drive within 1 % until 1'
+is_needed street 'n1.roof within 1 % until 10 for |quake| <= 3'
+is_needed street 'n10.base within 1e4 until 10 for |quake| <= 3'
+
+# What is left of the street for one output: the modes of the one building that it sees
+{ sed '/^output/,$d' street.spec && printf 'output n3.roof\nstep 0.02\nneed n3.roof within 1 %% until 10 for |quake| <= 3\n'
+} >one.spec
+"$plgen" --explain=json one.spec >json 2>log && cat json >>log &&
+    grep -qF '{"name": "n4", "file": "building.spec", "modelled": false}' json &&
+    [ "$(grep -c '"modelled": true' json)" -eq 1 ] &&
+    ! "$plgen" one.spec 2>>log | sed -e '1,/^ \*\/$/d' | grep 'n[124-9][._]' >>log
+result $? 'a need: parts that no output sees are not modelled'
+
+{ echo 'need speed within 1e-3 until 1'; echo 'budget 100 instructions on cortex-m0'; } >>inertia.spec
+"$plgen" drivetrain.spec >needs_apart.c 2>log && head -n 60 needs_apart.c >>log &&
+    grep -q 'inertia.spec as .*not read here: its step, need, budget\.' needs_apart.c && ! grep -q certified needs_apart.c
+result $? 'needs and the budget of a part are of the part by itself'
+
 "$plgen" --explain=json chain.spec >json 2>log &&
     grep -qF '"dropped": ["spare.x", "spare.x'"'"'"],' json &&
     grep -qF '{"name": "spare", "file": "link.spec", "modelled": false}' json &&

@@ -43,6 +43,14 @@ coord x
 init x = 0.5
 x'' + 0.05*x' + (1 + 0.3*cos(2.1*t))*x = F*(t < 4 ? sin(3*t) : 0)
 END
+# driven NAME TERM: by an input, which drive.c gives samples that plgen has not tried
+driven() {
+	printf "coord x\ninput u\ninit x = 0.1\nx'' + 0.3*x' + 4*x%s = u\nstep 0.05\n" "$2" >"$1.txt"
+}
+driven driven ' + x^3'
+driven pushed ' + 9*max(x - 0.05, 0)'
+driven plain ''
+echo "output e = 0.5*x'^2 + 2*x^2" >>plain.txt
 
 # meets MODEL OUTPUT WITHIN UNTIL LOADS [OPTIONS]: LOADS: whether F is a load
 meets() {
@@ -54,21 +62,24 @@ meets() {
 	chosen "$what" || return 0
 	{ echo "model $name"; cat "$name.txt"; echo "need $output within $within until $until"; } >"$name.spec"
 	flags="-DMODEL=$name -DRHS=${name}_rhs"
-	case "$*" in *float*) flags="$flags -DFLOAT" ;; esac
+	grep -q '^input' "$name.txt" && flags="$flags -DINPUTS"
 	good=0
 	: >log
 	# the choice is that of the spec: other loads are put into what it has chosen
 	"$plgen" --explain=json "$@" "$name.spec" 2>>log | tr '\n' ' ' |
 		sed 's/.*"alternatives"//; s/.*{\([^{]*"taken": true\).*/\1/' >taken
 	scheme=$(sed -n 's/.*"scheme": "\([a-z0-9]*\)".*/\1/p' taken)
+	real=$(sed -n 's/.*"real": "\([a-z]*\)".*/\1/p' taken)
+	[ "$real" != float ] || flags="$flags -DFLOAT"
 	step=$(sed -n 's/.*"step": \([0-9.e-]*\),.*/\1/p' taken)
 	tolerance=$(sed -n 's/.*"tolerance": \([0-9.e-]*\),.*/\1/p' taken)
+	step=${step:-$(sed -n 's/^step //p' "$name.txt")}
 	for factors in '1 1' '1.1 1' '0.9 1' '1 1.1' '1 0.9'; do
 		start=${factors% *} load=${factors#* }
 		[ "$load" = 1 ] || [ "$loads" = yes ] || continue
 		grep -v '^need' "$name.spec" >free.spec
 		force=$(sed -n 's/^param F = //p' free.spec)
-		"$plgen" --rhs "$@" --scheme "$scheme" --step "$step" ${tolerance:+--tolerance "$tolerance"} \
+		"$plgen" --rhs "$@" --real "$real" --scheme "$scheme" ${step:+--step "$step"} ${tolerance:+--tolerance "$tolerance"} \
 			${force:+-D "F=$force*$load"} free.spec >model.c 2>>log &&
 			{ [ "$factors" != '1 1' ] || "$plgen" --rhs "$@" "$name.spec" >model.c 2>>log; } &&
 			${CC:-cc} -std=c99 -O1 -ffp-contract=off -w $flags -I"$root/runtime" "$root/tests/run/drive.c" \
@@ -94,6 +105,10 @@ meets clearance x 1e-3 40 yes
 meets clearance x 1e-6 10 yes --scheme exact
 meets lorenz x 1e-3 5 no
 meets mathieu x 1e-5 30 yes
+meets driven x 1e-4 '20 for |u| <= 0.7' no
+meets driven x 1e-9 '10 for |u| <= 0.7' no
+meets pushed x 1e-3 '20 for |u| <= 0.7' no
+meets plain e 1e-4 '20 for |u| <= 0.7' no
 
 # says NAME TEXT OPTIONS: an error with this text, and no C
 says() {
@@ -115,9 +130,28 @@ says 'a step that is written' 'the need cannot be met' --step 0.5 --scheme etdrk
 { echo 'model pendulum'; cat pendulum.txt; echo 'need x within 1e-4 until 1e7'; } >long.spec
 says 'an end that is too far' 'would take too long' long.spec
 printf "model driven\ncoord x\ninput u\nx'' + x^3 = u\nneed x within 1e-3 until 5\n" >driven.spec
-says 'an input' 'a need is measured on known loads' driven.spec
-printf "model linear\ncoord x\ninit x = 1\nx'' + x = 0\nneed x within 1e-3 until 5\n" >linear.spec
-says 'a linear model without a step' 'missing step' linear.spec
+says 'an input without a step' 'missing step' driven.spec
+says 'an input without a bound' "nothing says how large the input 'u' may be" --step 0.1 driven.spec
+printf "model linear\ncoord x\ninput u\nx'' + x = u\nneed x within 1e-3 until 5 for |u| <= 1\n" >linear.spec
+says 'a linear model with an input and without a step' 'missing step' linear.spec
+
+# steps H MODEL: of a linear model without a step it is H: at most half of the shortest period, 1/100 of the end
+steps() {
+	what="without a step, a linear one: $1"
+	chosen "$what" || return 0
+	printf "$2" >open.spec
+	"$plgen" open.spec >open.c 2>log && grep -q "One step of h = $1 s" open.c && { cat open.spec; echo "step $1"; } \
+		>closed.spec && "$plgen" closed.spec >closed.c 2>>log &&
+		sed 's/closed.spec/open.spec/' closed.c | diff - open.c >>log
+	result $? "$what"
+}
+steps 0.5 "model osc\ncoord x\ninit x = 1\nx'' + x = 0\nneed x within 1e-3 until 50\n"
+steps 0.05 "model fast\ncoord x\ninit x = 1\nx'' + 3600*x = 0\nneed x within 1e-3 until 50\n"
+steps 0.02 "model load\ncoord x\ninit x = 1\nx'' + x = cos(140*t)\nneed x within 1e-3 until 50\n"
+steps 0.1 "model slow\ncoord x\ninit x = 1\nx' + x = 0\nneed x within 1e-3 until 20\nneed x within 1e-4 until 10\n"
+# the fast mode is seen too little to be kept, and to count: 0.1 s is above half of its period
+steps 0.1 "model far\ncoord x, y\ninit x = 1, y = 1\nx'' + x = 0\ny'' + 1e4*y = 0\n"\
+'output o = x + 1e-6*y\nneed o within 1e-3 until 10\n'
 
 # The word is `measured`: of a model that is not linear nothing is certified.
 { echo 'model pendulum'; cat pendulum.txt; echo 'need x within 1e-4 until 50'; } >word.spec

@@ -1,0 +1,56 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What the files of measured needs share: one after the other tried, measured; its neighbours. */
+#ifndef PLGEN_MEASURING_H
+#define PLGEN_MEASURING_H
+
+#include "command.h"
+#include "run/run.h"
+
+/* Of a need: two references agree to a hundredth, so much is left for the step that is tried. */
+#define WITHIN 0.99
+enum { MOST_TRIED = 9, MOST_SAMPLES = 2000000, MOST_KEPT = 4000000 };
+
+struct kept_course { double h; int drive; struct course *course; };
+
+struct measuring {
+	struct model *model;        /* as it was built at first: its requirements */
+	const struct request *request;
+	struct request now;         /* of the candidate being built */
+	struct step *step;
+	bool single;                /* the target's type; a reference is in double */
+	double until;               /* [s] the last end of a need */
+	double *ends;               /* per output: the last of its needs; below 0: none */
+	double *largest;            /* per output: of the reference */
+	int drives;                 /* courses of the inputs that are tried; one where there are none */
+	struct drive *drive;        /* NULL: there are none */
+	struct roads roads;
+	double longest;             /* [s] a step is not above this where it is open */
+	struct choice *choice;
+	double cheapest;            /* of what has met the needs from the spec's start; infinite: nothing has */
+	int kept;                   /* references from the spec's start */
+	struct kept_course *keeps;
+	const char *why;            /* no reference; NULL: there is one */
+	bool amplitudes_known;
+	int amplitudes;             /* params that nothing but loads follows from */
+	const struct symbol **amplitude;
+};
+
+/* ---- trial.c ---- */
+
+/* A step as asked for, and its C, ready to run; NULL: *why says why there is none */
+struct step *built(struct measuring *m, const struct request *as, const char **why);
+struct running *running_of(struct measuring *m, const struct step *step, const char **why);
+struct request request_of(const struct measuring *m, const struct alternative *a);
+bool open_reference(struct measuring *m);      /* false: m->why */
+/* From this start, with inputs number `drive`, against a reference from there; the largest of error over need. `spec`:
+ * it is the spec's, and what is found is kept in the alternative */
+double tried_from(struct measuring *m, struct alternative *a, struct running *r, struct roads *roads,
+		  const double *start, int drive, bool spec);
+bool meets(const struct alternative *a);
+void try_alternative(struct measuring *m, struct alternative *a);        /* and keeps it */
+
+/* ---- neighbours.c ---- */
+
+void try_neighbours(struct measuring *m, struct alternative *a);
+
+#endif

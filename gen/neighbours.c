@@ -1,0 +1,139 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Starts and loads beside those of the spec: what is chosen is tried from there too. */
+#include "measuring.h"
+
+#include <math.h>
+#include <string.h>
+
+static const char *value_of_param(const struct measuring *m, const struct symbol *s)
+{
+	const size_t length = strlen(s->name);
+	for (int i = m->request->definitions; i-- > 0;) {
+		const char *text = m->request->definition[i];
+		if (strncmp(text, s->name, length) == 0 && text[length] == '=')
+			return text + length + 1;
+	}
+	return s->value ? text_between(s->value->start, s->value->end) : NULL;
+}
+
+static struct request with_param(const struct measuring *m, struct request as, const struct symbol *s, const char *by)
+{
+	const char **definition = ARRAY(const char *, (size_t)as.definitions + 1);
+	for (int i = 0; i < as.definitions; i++)
+		definition[i] = as.definition[i];
+	definition[as.definitions++] = format("%s=%s*(%s)", s->name, by, value_of_param(m, s));
+	as.definition = definition;
+	return as;
+}
+
+static void find_amplitudes(struct measuring *m, const struct alternative *a)
+{
+	const struct request as = request_of(m, a);
+	const struct step *here = built(m, &as, NULL);
+	if (m->amplitudes_known)
+		return;
+	m->amplitudes_known = true;
+	if (!here || here->model->switching)            /* of regions the loads stand in all systems: not looked at */
+		return;
+	for (const struct symbol *s = m->model->spec->first; s; s = s->next) {
+		if (s->kind != SYMBOL_PARAM || !value_of_param(m, s) || m->amplitudes == 16)
+			continue;
+		const struct request other = with_param(m, as, s, "1.1");
+		const struct step *there = built(m, &other, NULL);
+		if (!there || !differ_in_loads(here->model, there->model))
+			continue;
+		ENLARGE(m->amplitude, (size_t)m->amplitudes + 1);
+		m->amplitude[m->amplitudes++] = s;
+	}
+}
+
+static void name_neighbour(struct alternative *a, const char *name)
+{
+	a->neighbour_names = a->neighbour_names ? format("%s, %s", a->neighbour_names, name) : name;
+}
+
+/* From a neighbour: excess of the worst is kept, and what it was */
+static void keep_worst(struct alternative *a, double excess, const char *what)
+{
+	a->neighbours++;
+	if (excess <= a->worst_neighbour)
+		return;
+	a->worst_neighbour = excess;
+	a->worst_name = what;
+}
+
+static void try_starts(struct measuring *m, struct alternative *a, struct running *r, struct roads *roads)
+{
+	const struct model *written = m->model->written;
+	const int states = written->system.states;
+	double *start = ARRAY(double, (size_t)states);
+	running_start(m->roads.r, 0, NULL);
+	running_state(m->roads.r, start);
+	for (int i = 0; i < states; i++) {
+		if (start[i] != 0)
+			name_neighbour(a, written->state_name[i]);
+		for (int up = 0; up < 2 && start[i] != 0; up++) {
+			const double as_written = start[i];
+			start[i] *= up ? 1.1 : 0.9;
+			struct alternative copy = *a;
+			keep_worst(a, tried_from(m, &copy, r, roads, start, a->worst_input, false),
+				   format("%s = %.3g at the start", written->state_name[i], start[i]));
+			start[i] = as_written;
+		}
+	}
+}
+
+static void try_amplitudes(struct measuring *m, struct alternative *a)
+{
+	for (int k = 0; k < 2 * m->amplitudes; k++) {
+		const struct symbol *s = m->amplitude[k / 2];
+		const char *why = NULL, *by = k % 2 ? "1.1" : "0.9";
+		if (k % 2)
+			name_neighbour(a, s->name);
+		struct request as = with_param(m, request_of(m, a), s, by), wide = as;
+		struct alternative copy = *a;
+		wide.single = false;
+		struct step *step = built(m, &as, &why), *reference = built(m, &wide, &why);
+		struct running *r = step ? running_of(m, step, &why) : NULL;
+		struct roads roads = m->roads;
+		roads.r = reference ? running_of(m, reference, &why) : NULL;
+		if (!r || !roads.r)
+			continue;
+		roads.h = mpq_get_d(step->model->h);
+		roads.most = LIMIT_MEASURED;
+		keep_worst(a, tried_from(m, &copy, r, &roads, NULL, a->worst_input, false), format("%s times %s", s->name, by));
+	}
+}
+
+/* With the inputs of the largest error, a tenth smaller; larger ones are beyond their bounds */
+static void try_smaller_inputs(struct measuring *m, struct alternative *a, struct running *r, struct roads *roads)
+{
+	if (!m->drive)
+		return;
+	struct drive *drive = &m->drive[a->worst_input], as_found = *drive;
+	const long numbers = (drive->samples + 2) * drive->inputs;
+	drive->sample = ARRAY(double, (size_t)numbers);
+	for (long i = 0; i < numbers; i++)
+		drive->sample[i] = 0.9 * as_found.sample[i];
+	struct alternative copy = *a;
+	name_neighbour(a, drive->inputs > 1 ? "the inputs (less only)" : "the input (less only)");
+	keep_worst(a, tried_from(m, &copy, r, roads, NULL, a->worst_input, false), "inputs are a tenth smaller");
+	discard(drive->sample);
+	*drive = as_found;
+}
+
+void try_neighbours(struct measuring *m, struct alternative *a)
+{
+	const struct request as = request_of(m, a);
+	struct step *step = built(m, &as, &a->why);
+	struct running *r = step ? running_of(m, step, &a->why) : NULL;
+	struct roads roads = m->roads;
+	if (!r)
+		return;
+	roads.h = mpq_get_d(step->model->h);
+	roads.most = LIMIT_MEASURED;
+	try_starts(m, a, r, &roads);
+	try_smaller_inputs(m, a, r, &roads);
+	find_amplitudes(m, a);
+	try_amplitudes(m, a);
+}

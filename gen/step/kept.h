@@ -1,0 +1,59 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What certificates of outputs share: the step as a map over the state as it is kept, in double. */
+#ifndef PLGEN_KEPT_H
+#define PLGEN_KEPT_H
+
+#include "step/step.h"
+
+struct wave_of_column {             /* t^power e^{a t} cos or sin(w t + p); without waves cos(p) = 1 */
+	int power;
+	bool turns, sine;
+	double a, w, p;
+};
+struct kept {                       /* the step over the state as it is kept: y+ = Phi y + load z + input u */
+	int n, columns, inputs;
+	double *Phi, *load, *input, *start;
+	double *row, *direct, *feed[2]; /* of the output: y; z; u and u' */
+	double *scale;              /* the state is in these units, powers of 2: those in which it is balanced */
+	struct wave_of_column *wave; /* per load column */
+	double *amplitude;          /* per load column: its largest size, of cosine and sine together */
+	double *most;               /* per input column */
+	double *size;               /* per state: the largest that it may become */
+};
+struct extent {                     /* of an output, over all samples */
+	double most, last, slack;   /* by the loads and from the start, as walked through; how far that may be off */
+	double lower, upper;        /* of the largest, inputs counted */
+};
+struct errors {
+	const struct step *step;
+	const struct kept *kept;
+	const struct requirement *r;
+	long steps;
+	/* of rounding, relative; where numbers leave the range below, or what has decayed is set to rest */
+	double unit, tiny;
+	double *size, *err;         /* per state, while a step is reckoned */
+};
+
+/* ---- kept.c ---- */
+
+double kept_mass(const struct step *step, int state);       /* momenta: of the coordinate; else 1 */
+bool   is_load_forced(const struct step *step, int column);
+double load_value(const struct wave_of_column *p, double t); /* at t [s] */
+/* what the step of the errors keeps, by the numbers of `exact` */
+struct kept *kept_of(const struct errors *e, const struct step *exact);
+/* from the start, inputs 0; the output is added to `trace`, where there is one, at each sample */
+struct extent walk_loads(long steps, double h, const struct spread *spread, struct kept *k, double *trace);
+/* what samples of an input within its bound do to the output at most; it is attained */
+double sum_of_input(const struct linear *system, long steps, const struct kept *k, int input, int first,
+		    double *trace);
+/* what reads slopes of inputs is bounded, not attained */
+double slopes_of_inputs(const struct linear *system, const struct kept *k, double h);
+struct extent extent_of_kept(const struct step *step, long steps, const struct spread *spread, struct kept *k);
+
+/* ---- rounding.c ---- */
+
+const char *certificate_objection(const struct errors *e);   /* NULL: there is none */
+long samples_until(const struct requirement *r, mpq_srcptr h); /* below 0: too many */
+struct errors errors_of(const struct step *step, const struct requirement *r);
+
+#endif
