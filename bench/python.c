@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What a C program spends on a million steps with all outputs kept: ns per step, the least of 20 samples; by NAME_step
+/* What a C program spends on a million steps with all outputs kept: ns per step, the least of 10 samples; by NAME_step
  * and NAME_out, and by NAME_run.  MODEL is the model's name; its header is model_pl.h. */
 #include "model_pl.h"
 #include "timing.h"
@@ -9,7 +9,7 @@
 #define JOIN(a, b) a##b
 #define NAME(a, b) JOIN(a, b)
 
-enum { STEPS = 1000000, SAMPLES = 20 };
+enum { STEPS = 1000000, SAMPLES = 10 };
 
 static NAME(MODEL, ) state;
 

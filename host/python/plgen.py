@@ -404,7 +404,14 @@ class Model:
     h = property(lambda self: self._h, doc='the step [s]')
     notes = property(lambda self: self._code.notes)
     params = property(Params)
-    t = property(lambda self: self._t, doc='times of the rows of the last run [s]')
+
+    @property
+    def t(self):
+        """Times of the rows of the last run [s]."""
+        if isinstance(self._t, tuple):          # of blocks: made when they are asked for
+            start, h, first, end = self._t
+            self._t = (start + h * np.arange(first, end)).astype(self.dtype)
+        return self._t
 
     # ---- where it is ----
 
@@ -546,7 +553,7 @@ class Model:
             row = np.array(row, dtype=self.dtype)
             c.model.hold(self._state, row.ctypes.data)
 
-    def run(self, u, *, out=None, start=None):
+    def run(self, u, *, out=None, start=None, blocks=False):
         """Steps; returns rows x outputs, and t has their times.
 
         u      how many steps; of a model with inputs a record: rows x inputs, or a dict of columns by name. Row k is
@@ -555,6 +562,8 @@ class Model:
         start  True: the record starts now, and the first row of the result is now, so there are n + 1. False: it goes
                on from the run before, n rows; so pieces put together are one run. By default True for a new model and
                after reset and set, else False
+        blocks True: by NAME_run, which is faster where it takes many steps at once (spec.md); rounding is then its own,
+               and depends on where pieces begin
 
         RunError, with the rows so far, where a step leaves the finite numbers or its bounds."""
         first = self._fresh if start is None else start
@@ -574,14 +583,18 @@ class Model:
         rows = self._room(out, n + bool(first))
         if record is not None:
             self._keep(record)
-        times = np.empty(len(rows), dtype=self.dtype)
+        first = int(bool(first))
         if first:
             if self.inputs and self._code.most:
                 self._hold_first(record)
-            rows[0], times[0] = self.out(), self.time
+            rows[0] = self.out()
         self._fresh = False
-        self._go(n, u, rows, times, int(bool(first)))
-        self._t = times
+        if blocks:
+            self._t = self.time, self._h, 1 - first, n + 1
+        else:
+            self._t = np.empty(len(rows), dtype=self.dtype)
+            self._t[:first] = self.time
+        self._go(n, u, rows, first, blocks)
         return rows
 
     def _room(self, out, count):
@@ -599,22 +612,24 @@ class Model:
             whole = record if self._fresh else np.concatenate([self._tail, record])
             self._tail = whole[len(whole) - most:].copy()
 
-    def _go(self, n, u, rows, times, row):
+    def _go(self, n, u, rows, first, blocks):
         c, done = self._code, 0
         watched = bool(c.model.status)
         while done < n:
             count = min(BLOCK, n - done)
             before = self._memory.copy() if watched else None
-            where = (None if u is None else u[done:].ctypes.data, rows[row + done:].ctypes.data,
-                     times[row + done:].ctypes.data)
-            c.rows(self._state, count, *where, 0)
+            where = None if u is None else u[done:].ctypes.data, rows[first + done:].ctypes.data
+            if blocks:
+                c.model.run(self._state, count, *where)
+            else:
+                c.rows(self._state, count, *where, self._t[first + done:].ctypes.data, 0)
             if watched and self.status:         # which step was it?
                 self._memory[:] = before
-                good = c.rows(self._state, count, *where, 1)
+                good = c.rows(self._state, count, *where, self.t[first + done:].ctypes.data, 1)
                 if good < count:
-                    end = row + done + good
-                    self._t = times[:end]
-                    raise RunError(self._trouble(self.status), rows[:end], times[:end], self.status)
+                    end = first + done + good
+                    self._t = self._t[:end]
+                    raise RunError(self._trouble(self.status), rows[:end], self._t, self.status)
             done += count
 
     def _trouble(self, status):
