@@ -6,7 +6,8 @@ BUILD = build
 PACKAGES = gcc libc6-dev make meson ninja-build pkgconf libgmp-dev libmpfr-dev libmpfi-dev libmpc-dev libgsl-dev
 DEMO_PACKAGES = $(PACKAGES) libsundials-dev gnuplot-nox
 CHECK_PACKAGES = $(DEMO_PACKAGES) g++ clang libcmocka-dev valgrind \
-	gcc-arm-none-eabi libnewlib-arm-none-eabi qemu-system-arm python3-scipy octave octave-dev libopenmpi-dev openmpi-bin
+	gcc-arm-none-eabi libnewlib-arm-none-eabi qemu-system-arm python3-scipy octave octave-dev \
+	libopenmpi-dev openmpi-bin
 
 .PHONY: all setup deps demo-deps check-deps demo tests check check-long faults bench charts charts-quick \
 	charts-twice charts-page chart firmware-report install clean
