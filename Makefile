@@ -7,8 +7,8 @@ PACKAGES = gcc libc6-dev make meson ninja-build pkgconf libgmp-dev libmpfr-dev l
 	gnuplot-nox
 DEMO_PACKAGES = $(PACKAGES) libsundials-dev
 CHECK_PACKAGES = $(DEMO_PACKAGES) g++ clang libcmocka-dev valgrind \
-	gcc-arm-none-eabi libnewlib-arm-none-eabi qemu-system-arm libxml2-utils python3-scipy libopenmpi-dev openmpi-bin \
-	cmake cppcheck
+	gcc-arm-none-eabi libnewlib-arm-none-eabi qemu-system-arm libxml2-utils python3-scipy octave octave-dev \
+	libopenmpi-dev openmpi-bin cmake cppcheck
 
 .PHONY: all setup deps demo-deps check-deps demo tests check check-long faults bench charts charts-quick \
 	charts-twice charts-page chart gallery firmware-report install clean
@@ -83,6 +83,7 @@ bench: tests
 	sh bench/sweep.sh $(BUILD)
 	sh bench/large.sh $(BUILD)
 	sh bench/rows.sh $(BUILD)
+	sh bench/python.sh $(BUILD)
 	sh bench/limits/limits.sh $(BUILD)
 	sh bench/loads.sh $(BUILD)
 	sh bench/spectrum.sh $(BUILD)

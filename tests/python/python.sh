@@ -1,0 +1,28 @@
+#!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
+# plgen.py: runs, params, copies and messages beside plmain.c; its state space beside SciPy.
+#
+#     python.sh PLGEN SOURCE_ROOT
+here=$(cd "${0%/*}" && pwd) || exit 99
+python=
+for one in python3 /usr/bin/python3; do         # the distribution's may not be the first in PATH
+	[ -n "$python" ] || ! "$one" -c 'import numpy' 2>/dev/null || python=$one
+done
+. "$here/begin.sh"
+if [ -z "$python" ]; then
+	skip python 'no python3-numpy'
+	tap_end
+fi
+prepare
+PYTHONPATH=$root/host/python PYTHONDONTWRITEBYTECODE=1 "$python" -W error "$here/told.py" "$root" >told 2>&1 || cat told
+grep -v '^good\|^bad\|^skip' told >log
+while read -r how name; do
+	case $how in
+		good) result 0 "$name" ;;
+		bad) result 1 "$name" ;;
+		skip) skip "${name%%: *}" "${name#*: }" ;;
+	esac
+done <told
+[ "$(tail -n 1 told)" = 'end' ]
+result $? 'the script came to its end'
+tap_end

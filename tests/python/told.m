@@ -1,0 +1,138 @@
+% SPDX-License-Identifier: GPL-3.0-or-later
+% told.m SOURCE_ROOT, in the folder where octave.sh has left specs, records and rows: a line `good NAME`, `bad NAME` or
+% `skip NAME: why` for each case, `end` when all have been told.
+1;
+
+function tell(name, good, varargin)
+    if ! good
+        for i = 1:numel(varargin)
+            disp(varargin{i});
+        end
+    end
+    words = {"bad", "good"};
+    printf("%s %s\n", words{1 + logical(good)}, name);
+end
+
+function r = rows_of(name, m, type)
+    f = fopen([name, ".rows"], "rb");
+    r = reshape(fread(f, Inf, type), numel(m.outputs) + 1, []).';
+    fclose(f);
+end
+
+function beside(name, m, y, type)
+    r = rows_of(name, m, type);
+    good = rows(y) > 10 && isequal(y, r(:, 2:end)) && isequal(m.t, r(:, 1));
+    tell([name, ": the rows and times of plmain.c"], good, size(y), size(r));
+end
+
+function refuses(name, expected, call)
+    said = "nothing was raised";
+    try
+        call();
+    catch why
+        said = why.message;
+    end
+    tell(["refuses ", name], strcmp(said, expected), expected, said);
+end
+
+root = argv(){end};
+model = @(name, varargin) plgen_model([root, "/models/", name, ".spec"], varargin{:});
+record = dlmread("held.csv", ",", 1, 0);
+count = 256;
+
+m = model("sdcsf");
+beside("sdcsf", m, m.run(2000), "double");
+m = model("sdcsf", "k2", 80.5);
+beside("weaker", m, m.run(500), "double");
+m = model("stop");
+beside("stop", m, m.run(5000), "double");
+m = model("pendulum");
+beside("pendulum", m, m.run(100), "double");
+m = plgen_model("held.spec");
+beside("held", m, m.run(record(1:count + 1, :)), "double");
+m = plgen_model("smooth.spec");
+beside("smooth", m, m.run(record(1:count + 2, :)), "double");
+m = plgen_model("held.spec", "-real", "float");
+beside("single", m, m.run(record(1:count + 1, :)), "single");
+m = plgen_model(fileread("held.spec"), "k", 70.25, "c", 0.1);
+beside("tuned", m, m.run(record(1:count + 1, :)), "double");
+m = plgen_model("held.spec");
+m.retune("k", 70.25, "c", 0.1);
+beside("tuned", m, m.run(record(1:count + 1, :)), "double");
+tell("params read back", isequal(m.params, struct("k", 70.25, "c", 0.1)), m.params);
+m.reset();
+r = rows_of("tuned", m, "double");
+y = [m.run(record(1:50, :)); m.run(record(51:52, :)); m.run(record(53:count + 1, :))];
+tell("pieces put together are one run, after reset", isequal(y, r(:, 2:end)), size(y));
+m = plgen_model("smooth.spec");
+r = rows_of("smooth", m, "double");
+y = [m.run(record(1:50, :)); m.run(record(51:51, :)); m.run(record(52:count + 2, :))];
+tell("... with samples ahead", isequal(y, r(:, 2:end)), size(y));
+
+a = plgen_model("held.spec", "k", 60);
+a.run(record(1:30, :));
+b = a.copy();
+y = a.state;
+t = a.time;
+a.retune("m", 2.5);
+tell("another param: state, time and tuned ones stay", isequal(a.state, y) && a.time == t && a.params.k == 60 && ...
+     a.params.m == 2.5 && ! isfield(b.params, "m"), a.params, b.params);
+c = plgen_model("held.spec", "k", 60, "m", 2.5);
+c.put(y, t);
+tell("... and it goes on as the model of these params", isequal(a.run(record), c.run(record)));
+c = b.copy();
+b.retune("k", 10);
+p = c.run(record(31:60, :));
+q = b.run(record(31:60, :));
+a = plgen_model("held.spec", "k", 60);
+whole = a.run(record(1:60, :));
+tell("copies go their own ways", isequal(p, whole(31:60, :)) && ! isequal(q, p) && c.params.k == 60);
+a = plgen_model("held.spec");
+a.retune("-step", 1 / 128);
+tell("another step", a.h == 1 / 128 && rows(a.run(record)) == 301 && a.t(2) == 1 / 128);
+a = model("sdcsf");
+a.retune("-step", 0.02);
+a.run(3);
+tell("another step of a model without tunable params", a.h == 0.02 && isequal(a.t, [0; 0.02; 0.04; 0.06]), a.h, a.t);
+m = model("sdcsf");
+m.jump(1500);
+other = model("sdcsf");
+y = other.run(1500);
+tell("a jump is as many steps", m.time == 15 && max(abs(m.out() - y(end, :))) < 1e-14 && max(abs(y(end, :))) > 1e-3);
+m = model("sdcsf");
+y = m.at(0.01);
+z = m.step();
+tell("inside a step, and one", max(abs(y - m.state)) < 1e-15 && isequal(z, other.copy().out()) == false && ...
+     isequal(z, rows_of("sdcsf", m, "double")(2, 2:end)));
+m.state = [1, 2, 3, 4];
+tell("a state read back, time stays", isequal(m.state, [1, 2, 3, 4]) && m.time == 0.01);
+m = plgen_model("held.spec");
+tell("names", isequal(m.states, {"x", "y", "x'", "y'"}) && isequal(m.inputs, {"push", "base"}) && ...
+     isequal(m.outputs, {"x", "y", "pull", "speed"}) && isequal(m.tunable, {"k", "c"}) && strcmp(m.name, "held"));
+
+refuses("an unknown name as plgen does", ["<stdin>:3:13: error: unknown name 'foo'\nx'' + 4*x = foo\n" ...
+        "            ^\nnote: did you mean 'cos'?"], @() plgen_model("model a\ncoord x\nx'' + 4*x = foo\nstep 0.1\n"));
+refuses("a step of 0", "held: the step is not above 0", @() plgen_model("held.spec").retune("-step", 0));
+m = plgen_model("hard.spec");
+refuses("a run that leaves the finite numbers", "hard: t = 0.4: the step has left the finite numbers", @() m.run(100));
+tell("... tells when, and its status", m.status == 1 && numel(m.t) == 4, m.status, m.t);
+refuses("a record too narrow", "expected rows of 2 numbers, the inputs", @() plgen_model("held.spec").run(ones(5, 3)));
+refuses("a jump where there is none", "plgen_mex: the model has no jump", @() plgen_model("held.spec").jump(3));
+refuses("the state space of a stop", "stop: not linear, so it has no state space", @() model("stop").ss);
+
+m = plgen_model("held.spec", "k", 70.25);
+A = [0, 0, 1, 0; 0, 0, 0, 1; -70.25 / 2, 70.25 / 2, -0.3, 0.3; 70.25, -73.25, 0.6, -0.6];
+tell("Phi at the params of now", max(max(abs(m.Phi - expm(A / 64)))) < 1e-13, m.Phi - expm(A / 64));
+if ! isfield(m.explain, "ss")
+    disp("skip the state space: --explain=json tells none");
+else
+    B = [0, 0; 0, 0; 0.5, 0; 0, 3];
+    C = [1, 0, 0, 0; 0, 1, 0, 0; 0, 70.25, 0, 0; 0, 0, 1, 0];
+    D = [0, 0; 0, 0; 0, -70.25; 0, 0];
+    tell("the state space", max(max(abs([m.ss.A, m.ss.B; m.ss.C, m.ss.D] - [A, B; C, D]))) < 1e-13 && ...
+         max(max(abs(m.ss.discrete.A - expm(A / 64)))) < 1e-13 && isequal(m.ss.inputs(:), {"push"; "base"}), m.ss);
+    direct = C * ((2i * pi * 0.3 * eye(4) - A) \ B) + D;
+    r = m.response([0.3, 1]);
+    tell("the response", isequal(size(r), [4, 2, 2]) && max(max(abs(r(:, :, 1) - direct))) < 1e-9, r(:, :, 1) - direct);
+end
+disp("end");

@@ -1,0 +1,274 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# told.py SOURCE_ROOT, in the folder where python.sh has left specs, records and rows: a line `good NAME`, `bad NAME` or
+# `skip NAME: why` for each case, `end` when all have been told.
+import copy
+import os
+import pickle
+import re
+import sys
+import threading
+
+import numpy as np
+
+import plgen
+from plgen import Error, Model, RunError
+
+root = sys.argv[1]
+
+
+def case(name, good, *told):
+    if not good:
+        for one in told:
+            print('#', *str(one).split('\n')[:6])
+    print('good' if good else 'bad', name)
+
+
+def model(name, *more, **params):
+    return Model(os.path.join(root, 'models', name + '.spec'), *more, **params)
+
+
+def rows(name, m):
+    return np.fromfile(name + '.rows', dtype=m.dtype).reshape(-1, len(m.outputs) + 1)
+
+
+def same(a, b):
+    return a.shape == b.shape and a.dtype == b.dtype and a.tobytes() == b.tobytes()
+
+
+def beside(name, m, y, how=''):
+    other = rows(name, m)
+    good = len(y) > 10 and same(y, other[:, 1:].copy()) and same(m.t, other[:, 0].copy())
+    case('{}{}: the rows and times of plmain.c'.format(name, how), good, m, y[:2], other[:2], m.t[:3])
+
+
+def message(of, call):
+    try:
+        call()
+    except of as why:
+        return str(why)
+    return 'nothing was raised'
+
+
+def refuses(name, expected, call, of=Error):
+    said = message(of, call)
+    case('refuses ' + name, said == expected, 'expected', expected, 'said', said)
+
+
+record = np.loadtxt('held.csv', delimiter=',', skiprows=1)
+count = 256
+
+# ---- rows ----
+m = model('sdcsf')
+beside('sdcsf', m, m.run(2000))
+whole = rows('sdcsf', m)
+m.reset()
+pieces = [m.run(n) for n in (700, 1, 0, 1299)]
+case('pieces put together are one run', same(np.concatenate(pieces), whole[:, 1:].copy()), [len(p) for p in pieces])
+m.reset()
+stepped = np.array([m.out()] + [m.step() for k in range(50)])
+case('step by step', same(stepped, whole[:51, 1:].copy()))
+m.reset()
+given = np.full((2001, 4), np.nan)
+case("rows in an array of the caller's", m.run(2000, out=given) is given and same(given, whole[:, 1:].copy()))
+y = model('sdcsf').run(2000, blocks=True)
+off = np.abs(y - whole[:, 1:]).max()
+case('by NAME_run, with rounding of its own', 0 < off < 1e-12, off)
+m = Model('held.spec')
+y = m.run(record, blocks=True)
+other = Model('held.spec')
+case('... of a tunable model the same', same(y, other.run(record)) and np.allclose(m.t, other.t, rtol=1e-15, atol=0))
+m = Model('hard.spec')
+case('... and what goes wrong', message(RunError, lambda: m.run(100, blocks=True)) ==
+     'hard: t = 0.4: the step has left the finite numbers')
+case('start=False leaves out the row of now', same(model('sdcsf').run(30, start=False), whole[1:31, 1:].copy()))
+m = model('sdcsf', k2=80.5)
+beside('weaker', m, m.run(500))
+m = model('sdcsf', {'k2': '161/2'})
+beside('weaker', m, m.run(500), ', by an expression')
+m = model('stop')
+beside('stop', m, m.run(5000))
+m = model('pendulum')
+beside('pendulum', m, m.run(100))
+m = Model('held.spec')
+beside('held', m, m.run(record[:count + 1]))
+m = Model(open('held.spec').read())
+beside('held', m, m.run({'push': record[:count + 1, 0], 'base': list(record[:count + 1, 1])}),
+       ', a text and columns by name')
+for name in 'held', 'smooth', 'single':
+    m = Model('smooth.spec' if name == 'smooth' else 'held.spec', real='float' if name == 'single' else None)
+    most = 2 if name == 'smooth' else 1
+    y = [m.run(record[:40])]
+    t = [m.t]
+    for a, b in (40, 41), (41, 200), (200, count + most):
+        y.append(m.run(record[a:b]))
+        t.append(m.t)
+    m._t = np.concatenate(t)
+    beside(name, m, np.concatenate(y), ' in pieces')
+m = Model('plain.spec')
+u = np.ascontiguousarray(record[:count])
+y = m.run(u)
+case('held inputs: a row more than samples', len(y) == count + 1 and len(m.t) == count + 1)
+
+# ---- params ----
+m = Model('held.spec', k=70.25, c=0.1)
+beside('tuned', m, m.run(record[:count + 1]))
+code = m._code
+m.reset()
+beside('tuned', m, m.run(record[:count + 1]), ', after reset')
+m = Model('held.spec')
+m.params['k'] = 70.25
+m.retune(c=0.1)
+case('a tunable param compiles nothing', m.tunable == ('k', 'c') and m._code.library._name == code.library._name)
+beside('tuned', m, m.run(record[:count + 1]), ' later')
+case('params read back', dict(m.params) == {'k': 70.25, 'c': 0.1}, dict(m.params))
+a, b = Model('held.spec', k=60), Model('held.spec', k=60, m=2.5)
+a.run(record[:30])
+y, t = a.state, a.time
+a.params['m'] = 2.5
+case('another param: state, time and tuned ones stay', same(a.state, y) and a.time == t and a.params['k'] == 60 and
+     a.params['m'] == 2.5, a.params)
+b.set(y, t)
+case('... and it goes on as the model of these params',
+     same(a.run(record[:99]), b.run(record[:99])) and same(a.t, b.t))
+a = Model('held.spec', step=1 / 128)
+b = Model('held.spec')
+b.retune(step=1 / 128)
+y, other = a.run(record), b.run(record)
+case('another step: with and without compiling', a.h == b.h == 1 / 128 and same(a.t, b.t) and
+     np.allclose(y, other, rtol=0, atol=1e-12 * np.abs(y).max()), np.abs(y - other).max())
+a = model('sdcsf', step=0.01)
+a.retune(step=0.02)
+case('another step of a model without tunable params', a.h == 0.02 and a.run(5).shape == (6, 4) and a.t[1] == 0.02, a)
+
+# ---- instances ----
+a = Model('held.spec')
+a.run(record[:50])
+b, c = a.copy(), copy.deepcopy(a)
+b.params['k'] = 10
+y = c.run(record[50:90])
+case('copies go their own ways', same(a.run(record[50:90]), y) and a.params['k'] == 80 and c.params['k'] == 80 and
+     not same(b.run(record[50:90]), y))
+held = [Model('held.spec'), model('sdcsf')]
+alone = [held[0].copy().run(record), held[1].copy().run(20000)]
+results = [None] * 8
+
+
+def work(i):
+    one = held[i % 2].copy()
+    results[i] = one.run(record) if i % 2 == 0 else one.run(20000)
+
+
+threads = [threading.Thread(target=work, args=(i,)) for i in range(8)]
+for thread in threads:
+    thread.start()
+for thread in threads:
+    thread.join()
+case('eight threads', all(same(results[i], alone[i % 2]) for i in range(8)))
+m = model('sdcsf')
+m.jump(1500)
+other = model('sdcsf')
+other.run(1500)
+off = np.abs(m.state - other.state).max()
+case('a jump is as many steps', m.time == other.time == 15.0 and off < 1e-14 < np.abs(m.state).max(), off)
+m = model('sdcsf')
+half, y = m.at(0.005), m.at(0.01)
+m.step()
+twice = model('sdcsf', step=0.005)
+twice.step()
+off = np.abs(y - m.state).max(), np.abs(half - twice.state).max()
+case('inside a step', max(off) < 1e-15, off)
+m.state = [1, 2, 3, 4]
+case('a state read back, time stays', same(m.state, np.array([1.0, 2, 3, 4])) and m.time == 0.01)
+m.set([0, 0, 0, 0], 2)
+case('a state at another time', m.time == 2 and m.run(3).shape == (4, 4) and list(m.t) == [2, 2.01, 2.02, 2.03], m.t)
+m = Model('held.spec')
+case('names', m.states == ('x', 'y', "x'", "y'") and m.inputs == ('push', 'base') and
+     m.outputs == ('x', 'y', 'pull', 'speed') and m.name == 'held' and m.h == 1 / 64 and list(m.params) == ['k', 'c'])
+
+# ---- what goes wrong ----
+refuses('an unknown name as plgen does', "<stdin>:3:13: error: unknown name 'foo'\nx'' + 4*x = foo\n            ^\n"
+        "note: did you mean 'cos'?", lambda: Model("model a\ncoord x\nx'' + 4*x = foo\nstep 0.1\n"))
+refuses('a file that is not there', 'none.spec:1:1: error: cannot read the file: No such file or directory',
+        lambda: Model('none.spec'))
+said = message(Error, lambda: Model('held.spec', kk=3)), message(Error, lambda: Model('held.spec').retune(kk=3))
+case('refuses a param that is not there', "'kk'" in said[0] and said[1] == said[0], said)
+refuses('a step of 0', 'held: the step is not above 0', lambda: Model('held.spec').retune(step=0.0))
+m = Model('held.spec')
+message(Error, lambda: m.retune(m='-'))
+case('a refused param changes nothing', dict(m.params) == {'k': 80, 'c': 0.6} and
+     same(m.run(record), Model('held.spec').run(record)))
+m = Model('hard.spec')
+try:
+    m.run(100)
+    case('a run that leaves the finite numbers', False)
+except RunError as why:
+    y = Model('hard.spec').run(3)
+    case('a run that leaves the finite numbers', str(why) == 'hard: t = 0.4: the step has left the finite numbers' and
+         same(why.rows, y) and len(why.t) == 4 and why.status == m.status == 1, why, why.rows)
+refuses('a number of steps beside inputs', 'the model has inputs, run() takes their samples: push, base',
+        lambda: Model('held.spec').run(5), ValueError)
+refuses('a record too narrow', 'expected rows of 2 numbers, the inputs, found an array of shape (5, 3)',
+        lambda: Model('held.spec').run(np.zeros((5, 3))), ValueError)
+refuses('samples that are not finite', 'the samples are not all finite',
+        lambda: Model('held.spec').run(np.full((5, 2), np.inf)), ValueError)
+refuses('an array of another type', 'out: expected a contiguous array of float64 of shape (6, 4)',
+        lambda: model('sdcsf').run(5, out=np.zeros((6, 4), np.float32)), ValueError)
+refuses('no record at all before ramps', 'too few samples: the first 1 come before the first step',
+        lambda: Model('held.spec').run(np.zeros((0, 2))), ValueError)
+refuses('a jump where there is none', 'held: it has no jump', lambda: Model('held.spec').jump(3))
+refuses('tau beyond the step', 'tau is not in 0 .. h', lambda: model('sdcsf').at(0.02), ValueError)
+refuses('pickling', 'a Model is compiled code and cannot be pickled; copy() makes another',
+        lambda: pickle.dumps(m), TypeError)
+refuses('the state space of a stop', 'stop: not linear, so it has no state space', lambda: model('stop').ss)
+os.environ['CC'] = 'no-such-compiler'
+refuses('a compiler that is not there', "there is no compiler 'no-such-compiler'; CC names another",
+        lambda: model('sdcsf'))
+del os.environ['CC']
+header = open(os.path.join(root, 'runtime', 'plrt.h')).read()
+version = int(re.search(r'PL_MODEL_VERSION = (\d+)', header).group(1))
+case('its descriptor is that of plrt.h', version == plgen.VERSION, version)
+
+# ---- what plgen tells ----
+m = Model('held.spec', k=70.25)
+a = np.array([[0, 0, 1, 0], [0, 0, 0, 1], [-70.25 / 2, 70.25 / 2, -0.3, 0.3], [70.25, -73.25, 0.6, -0.6]])
+value, vector = np.linalg.eig(a / 64)
+phi = (vector @ np.diag(np.exp(value)) @ np.linalg.inv(vector)).real
+case('Phi at the params of now', np.abs(m.Phi - phi).max() < 1e-13 < np.abs(Model('held.spec').Phi - phi).max(),
+     m.Phi - phi)
+told = 'ss' in m.explain
+if not told:
+    print('skip the state space: --explain=json tells none')
+    print('skip the response: --explain=json tells none')
+else:
+    ss = m.ss
+    B = np.array([[0, 0], [0, 0], [0.5, 0], [0, 3]])
+    C = np.array([[1, 0, 0, 0], [0, 1, 0, 0], [0, 70.25, 0, 0], [0, 0, 1, 0]])
+    D = np.array([[0, 0], [0, 0], [0, -70.25], [0, 0]])
+    F = np.linalg.solve(a, phi - np.eye(4)) @ B
+    good = [np.abs(x - y).max() <= 1e-13 * np.abs(y).max() for x, y in ((ss.A, a), (ss.B, B), (ss.C, C), (ss.D, D))]
+    case('the state space', all(good) and ss.inputs == m.inputs and ss.outputs == m.outputs, good, ss.B)
+    case('... of a step', np.abs(ss.discrete.A - phi).max() < 1e-13 and np.abs(ss.discrete.B - F).max() < 1e-13 and
+         ss.discrete.h == 1 / 64, ss.discrete.B - F)
+    f = np.array([0.3, 1.0, 7.5])
+    direct = np.array([C @ np.linalg.inv(2j * np.pi * x * np.eye(4) - a) @ B + D for x in f])
+    case('the response', m.response(f).shape == (3, 4, 2) and np.allclose(m.response(f), direct, rtol=1e-10, atol=0) and
+         np.allclose(m.response(0.3), direct[0], rtol=1e-10, atol=0), m.response(f) - direct)
+try:
+    from scipy.signal import StateSpace, lsim
+except ImportError:
+    print('skip lsim: no python3-scipy')
+else:
+    B = np.array([[0, 0], [0, 0], [0.5, 0], [0, 3]])
+    C, D = np.array([[0, 70.25, 0, 0]]), np.array([[0, -70.25]])
+    m = Model('plain.spec', k=70.25)
+    y = m.run(record[:200])
+    t = np.arange(201) / 64
+    other = lsim(StateSpace(a, B, C, D), record[:201], t, X0=[0.1, 0, 0, 0], interp=False)
+    off = np.abs(y[1:, 0] - other[2][1:, 0]).max()
+    case('lsim, held', off < 1e-11 * np.abs(y[:, 0]).max() and len(y) == 201, off)
+    ramps = Model(open('held.spec').read().replace('input push', 'input push hold first'), k=70.25)
+    y = ramps.run(record[:201])
+    other = lsim(StateSpace(a, B, C, D), record[:201], t, X0=[0.1, 0, 0, 0], interp=True)
+    off = np.abs(y[:, 2] - other[1].reshape(-1)).max()
+    case('lsim, ramps, an output with its input', off < 1e-11 * np.abs(y[:, 2]).max(), off, y[:3, 2], other[1][:3])
+print('end')
