@@ -355,7 +355,7 @@ static void print_options(FILE *to)
 			scheme = scheme || strncmp(option[i][1], "--scheme", 8) == 0;
 		}
 	if (has("modes"))       /* all of them; what no output sees is left out */
-		fprintf(to, " --modes %d", 2 + has("first") + (has("many") ? 9 : has("file") ? 3 : 0));
+		fprintf(to, " --modes %d", 2 + has("first") + has("parts") + (has("many") ? 9 : has("file") ? 3 : 0));
 	scheme = scheme || has("taylor12") || has("over3");
 	if (has("loads") && !scheme)
 		fputs(" --scheme etdrk4", to);
