@@ -287,6 +287,15 @@ void emit_expand_function(const struct emitter *e);               /* NAME_expand
 const char *expand_call(const struct emitter *e, const char *tau, const char *when, const char *segment,
 			const char *y, const char *c);
 
+bool spans_steps(const struct emitter *e);                        /* one expansion of fixed order is over several */
+/* gain_term: a coefficient of a state, as C; NULL: it is 0 */
+typedef const char *gain_term(const struct emitter *e, int state, int k);
+const char *plus(const char *sum, const char *term);                     /* in brackets; either may be nothing */
+const char *whole_gain(const struct emitter *e, int state, gain_term *term); /* C: two arguments of pl_accumulate */
+const char *is_not_finite(const struct emitter *e, const char *before, const char *after);
+bool is_written_out(const struct emitter *e, int degree);                /* else loops go over its sum */
+void emit_series_scales(const struct emitter *e, const char *indent);           /* of state i */
+
 /* ---- emit_reach.c: how far a series holds ---- */
 
 bool looks_at_tolerance(const struct emitter *e);
@@ -306,18 +315,11 @@ void emit_series_ahead(const struct emitter *e);                         /* NAME
 void emit_series_remainder(const struct emitter *e);                     /* NAME_remainders: its last terms */
 void emit_expansion_step(const struct emitter *e);
 void emit_expansion_at(const struct emitter *e);
-/* What these have in common with emit_over.c. gain_term: a coefficient of a state, as C; NULL: it is 0 */
-typedef const char *gain_term(const struct emitter *e, int state, int k);
-const char *whole_gain(const struct emitter *e, int state, gain_term *term); /* C: two arguments of pl_accumulate */
-const char *is_not_finite(const struct emitter *e, const char *before, const char *after);
-bool is_written_out(const struct emitter *e, int degree);                /* else loops go over its sum */
-void emit_series_scales(const struct emitter *e, const char *indent);           /* of state i */
 /* Whether $n_inside is there, for the steps that a series serves before its last */
 bool serves_rows(const struct emitter *e);
 
 /* ---- emit_over.c: a series of fixed order over several steps ---- */
 
-bool spans_steps(const struct emitter *e);
 bool runs_in_blocks(const struct emitter *e);                     /* NAME_run takes all steps of an expansion at once */
 void emit_over_members(const struct emitter *e);
 void emit_over_step(const struct emitter *e);

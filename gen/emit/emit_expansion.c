@@ -19,13 +19,6 @@ static bool changes(const struct emitter *e)
 
 /* ---- its sum ---- */
 
-enum { WRITTEN_OUT = 400 };             /* terms; more are looped over */
-
-bool is_written_out(const struct emitter *e, int degree)
-{
-	return e->system->states * degree <= WRITTEN_OUT;
-}
-
 /* g0, g1, ...: c[1] + theta (c[2] + ...) of each state, by Horner's rule */
 static void emit_horner(const struct emitter *e, const char *c, int degree)
 {
@@ -139,14 +132,6 @@ static void emit_between(const struct emitter *e)
 
 /* ---- the step ---- */
 
-void emit_series_scales(const struct emitter *e, const char *indent)
-{
-	say(e, "%sif (pl_magnitude(s->y[i]) > s->scale[i]) {\n"
-	       "%s    s->scale[i] = pl_magnitude(s->y[i]);\n"
-	       "%s    s->unit[i] = 1.0 / s->scale[i];\n"
-	       "%s}\n", indent, indent, indent, indent);
-}
-
 bool expansion_places(const struct emitter *e)
 {
 	return looks_at_tolerance(e) || spans_steps(e);
@@ -194,33 +179,6 @@ static void emit_expansion_end(const struct emitter *e)
 static const char *term_of_gain(const struct emitter *e, int state, int k)
 {
 	return expands_in_step(e) && !watches(e) ? coefficient(e, state, k) : format("c[%d][%d]", k, state);
-}
-
-static const char *plus(const char *sum, const char *term)
-{
-	return !term ? sum : *sum ? format("(%s + %s)", sum, term) : term;
-}
-
-/* c_1 + ... + c_P as what is added and what is small beside it: the last three, which come late. Small ones first */
-const char *whole_gain(const struct emitter *e, int state, gain_term *term)
-{
-	enum { LATE = 3 };
-	int order = expansion(e)->order;
-	const char *text = "", *late = "";
-	for (int k = order; k > order - LATE; k--)
-		late = plus(late, term(e, state, k));
-	for (int k = order - LATE; k > 0; k--)
-		text = plus(text, term(e, state, k));
-	return format("%s, %s", *text ? text : "0.0", *late ? late : "0.0");
-}
-
-/* Whether one of what is called so, with the number of a state, is not finite: its difference from itself is not 0 */
-const char *is_not_finite(const struct emitter *e, const char *before, const char *after)
-{
-	const char *sum = "";
-	for (int i = 0; i < e->system->states; i++)
-		sum = format("%s%s(%s%d%s - %s%d%s)", sum, i ? " + " : "", before, i, after, before, i, after);
-	return format("%s != 0.0", sum);
 }
 
 /* What is not finite is not kept: the state stays as it was. */

@@ -13,11 +13,6 @@ static int order_of(const struct emitter *e)
 	return e->step->expansion->order;
 }
 
-bool spans_steps(const struct emitter *e)
-{
-	return e->step->expansion && !e->step->collocation && truncation(e)->over > 1;
-}
-
 /* A block of rows has all coefficients as locals: no watch, few enough that they stand twice, and not --rows 1, which
  * wants small code. */
 bool runs_in_blocks(const struct emitter *e)

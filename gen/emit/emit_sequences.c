@@ -19,6 +19,11 @@ bool has_offset(const struct emitter *e)
 	return e->model->truncation.adaptive || changes(e);
 }
 
+bool spans_steps(const struct emitter *e)
+{
+	return e->step->expansion && !e->step->collocation && e->model->truncation.over > 1;
+}
+
 static bool has_choices(const struct emitter *e)
 {
 	for (int i = 0; i < expansion(e)->count; i++)
@@ -163,4 +168,48 @@ const char *expand_call(const struct emitter *e, const char *tau, const char *wh
 	return format("%s_expand(s, %s%s%s%s%s, %s);", e->name, has_offset(e) ? format("%s, ", tau) : "",
 		      has_choices(e) ? format("%s, ", when) : "", changes(e) ? format("%s, ", segment) : "",
 		      input_parameters(e, false), y, c);
+}
+
+/* ---- its sum ---- */
+
+enum { WRITTEN_OUT = 400 };             /* terms; more are looped over */
+
+bool is_written_out(const struct emitter *e, int degree)
+{
+	return e->system->states * degree <= WRITTEN_OUT;
+}
+
+void emit_series_scales(const struct emitter *e, const char *indent)
+{
+	say(e, "%sif (pl_magnitude(s->y[i]) > s->scale[i]) {\n"
+	       "%s    s->scale[i] = pl_magnitude(s->y[i]);\n"
+	       "%s    s->unit[i] = 1.0 / s->scale[i];\n"
+	       "%s}\n", indent, indent, indent, indent);
+}
+
+const char *plus(const char *sum, const char *term)
+{
+	return !term ? sum : *sum ? format("(%s + %s)", sum, term) : term;
+}
+
+/* c_1 + ... + c_P as what is added and what is small beside it: the last three, which come late. Small ones first */
+const char *whole_gain(const struct emitter *e, int state, gain_term *term)
+{
+	enum { LATE = 3 };
+	int order = expansion(e)->order;
+	const char *text = "", *late = "";
+	for (int k = order; k > order - LATE; k--)
+		late = plus(late, term(e, state, k));
+	for (int k = order - LATE; k > 0; k--)
+		text = plus(text, term(e, state, k));
+	return format("%s, %s", *text ? text : "0.0", *late ? late : "0.0");
+}
+
+/* Whether one of what is called so, with the number of a state, is not finite: its difference from itself is not 0 */
+const char *is_not_finite(const struct emitter *e, const char *before, const char *after)
+{
+	const char *sum = "";
+	for (int i = 0; i < e->system->states; i++)
+		sum = format("%s%s(%s%d%s - %s%d%s)", sum, i ? " + " : "", before, i, after, before, i, after);
+	return format("%s != 0.0", sum);
 }

@@ -396,7 +396,7 @@ static void person_split(FILE *to, const struct step *step)
 		fprintf(to, ", its steps as long as a tolerance of %s lets them be",
 			readable_text(model->truncation.tolerance));
 	if (model->truncation.over > 1)
-		fprintf(to, ", which is that of %d h for one expansion", model->truncation.over);
+		fprintf(to, ", with the error of steps of %d h: one expansion is over them", model->truncation.over);
 	if (step->collocation)
 		person_collocation(to, step);
 	if (loses_order(model))

@@ -263,7 +263,7 @@ static void print_pairs_table(void)
 		fputs("-|", stdout);
 	putchar('\n');
 	for (int i = 0; i < count; i++) {
-		printf("| %c %s |", letter(i), capability[i].name);
+		printf("|%c %s|", letter(i), capability[i].name);
 		for (int j = 0; j < count; j++)
 			printf("%s|", j <= i ? cell(i, j) : "");
 		putchar('\n');
