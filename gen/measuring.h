@@ -22,7 +22,7 @@ struct measuring {
 	double *ends;               /* per output: the last of its needs; below 0: none */
 	double *largest;            /* per output: of the reference */
 	int drives;                 /* courses of the inputs that are tried; one where there are none */
-	struct drive *drive;        /* NULL: there are none */
+	struct sampled *drive;        /* NULL: there are none */
 	struct roads roads;
 	double longest;             /* [s] a step is not above this where it is open */
 	struct choice *choice;

@@ -110,7 +110,7 @@ static void try_smaller_inputs(struct measuring *m, struct alternative *a, struc
 {
 	if (!m->drive)
 		return;
-	struct drive *drive = &m->drive[a->worst_input], as_found = *drive;
+	struct sampled *drive = &m->drive[a->worst_input], as_found = *drive;
 	const long numbers = (drive->samples + 2) * drive->inputs;
 	drive->sample = ARRAY(double, (size_t)numbers);
 	for (long i = 0; i < numbers; i++)

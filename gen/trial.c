@@ -177,7 +177,7 @@ static void find_drives(struct measuring *m, const struct step *step)
 		return;
 	const int count = frequencies_of(m, step, w, FREQUENCIES);
 	m->drives = drive_kinds(count);
-	m->drive = ARRAY(struct drive, (size_t)m->drives);
+	m->drive = ARRAY(struct sampled, (size_t)m->drives);
 	for (int i = 0; i < m->drives; i++)
 		m->drive[i] = drive_of(system, i, w, count, h, (long)ceil(m->until / h),
 				       (const mpq_t *)m->model->requirement[0].most);

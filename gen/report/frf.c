@@ -109,7 +109,7 @@ struct responses responses_of(const struct step *step, struct band band)
 	r.size = ARRAY(double, (size_t)band.count * (size_t)r.count + 1);
 	r.angle = ARRAY(double, (size_t)band.count * (size_t)r.count + 1);
 	for (int k = 0; k < r.count; k++) {
-		struct winding course = winding_of(model, &r.transfer[k]);
+		struct angle_course course = angle_course_of(model, &r.transfer[k]);
 		progress("frequency response", k, r.count);
 		for (int row = 0; row < band.count; row++) {
 			double f = frequency_of(&band, row), angle;

@@ -71,14 +71,14 @@ int  zeros_of_transfer(const struct model *model, const struct transfer *t, stru
 /* |H(2 pi i f)| and its angle [deg], -180 <= angle < 180, each rounded once; of a pole: infinite */
 void transfer_at(const struct transfer *t, double hertz, double *size, double *angle);
 
-struct winding {                     /* of an angle: how the zeros and poles turn it */
+struct angle_course {               /* of an angle: how the zeros and poles turn it */
 	int zeros, poles;
 	struct zero *zero, *pole;
 	double start;               /* [deg], 0 or -180: what H is near 0, its powers of s left out */
 };
-struct winding winding_of(const struct model *model, const struct transfer *t);
+struct angle_course angle_course_of(const struct model *model, const struct transfer *t);
 /* The same angle, with the whole turns that lead to it from frequency 0 */
-double angle_on_course(const struct winding *c, double hertz, double angle);
+double angle_on_course(const struct angle_course *c, double hertz, double angle);
 
 /* ---- shapes.c: mode shapes ---- */
 

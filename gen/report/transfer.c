@@ -246,9 +246,9 @@ static int lowest(struct poly p)
 	return mpz_sgn(p.c[poly_valuation(p)]);
 }
 
-struct winding winding_of(const struct model *model, const struct transfer *t)
+struct angle_course angle_course_of(const struct model *model, const struct transfer *t)
 {
-	struct winding c = { 0 };
+	struct angle_course c = { 0 };
 	if (t->N.length == 0)
 		return c;
 	c.zeros = roots_of(model, t, t->N, &c.zero);
@@ -269,7 +269,7 @@ static double turn_of(int count, const struct zero *root, double w)
 	return turn * (180 / 3.141592653589793);
 }
 
-double angle_on_course(const struct winding *c, double hertz, double angle)
+double angle_on_course(const struct angle_course *c, double hertz, double angle)
 {
 	double w = 6.283185307179586 * hertz;
 	double about = c->start + turn_of(c->zeros, c->zero, w) - turn_of(c->poles, c->pole, w);

@@ -153,7 +153,7 @@ void running_step(struct running *r, const double *u)
 }
 
 /* The samples of the step before k, and the last one */
-void running_drive(struct running *r, const struct drive *d, long k)
+void running_drive(struct running *r, const struct sampled *d, long k)
 {
 	double *u = ARRAY(double, 2 * (size_t)r->inputs + 1);
 	drive_at(d, k > 0 ? k - 1 : 0, d->h * (double)(k > 0 ? k - 1 : 0), u);

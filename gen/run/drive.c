@@ -30,11 +30,11 @@ static double shape(int kind, double t, double until, const double *w, int count
 	return sin(w[kind - SQUARE] * t) >= 0 ? 1 : -1;
 }
 
-struct drive drive_of(const struct linear *system, int kind, const double *w, int count, double h, long samples,
+struct sampled drive_of(const struct linear *system, int kind, const double *w, int count, double h, long samples,
 		      const mpq_t *most)
 {
 	const int inputs = system->inputs;
-	struct drive d = { .inputs = inputs, .h = h, .samples = samples, .ramps = ARRAY(bool, (size_t)inputs),
+	struct sampled d = { .inputs = inputs, .h = h, .samples = samples, .ramps = ARRAY(bool, (size_t)inputs),
 			   .sample = ARRAY(double, (size_t)(samples + 2) * (size_t)inputs) };
 	/* it changes sign once in half of the shortest period, on average */
 	const double chance = fmin(0.5, h * w[count - 1] / 3.14159265358979);
@@ -60,13 +60,13 @@ int drive_kinds(int count)
 	return SQUARE + count;
 }
 
-void drive_step(const struct drive *d, long k, double *u)
+void drive_step(const struct sampled *d, long k, double *u)
 {
 	for (int i = 0; i < d->inputs; i++)
 		u[i] = d->sample[(d->ramps[i] ? k + 1 : k) * d->inputs + i];
 }
 
-void drive_at(const struct drive *d, long k, double t, double *u)
+void drive_at(const struct sampled *d, long k, double t, double *u)
 {
 	for (int i = 0; i < d->inputs; i++) {
 		const double *here = &d->sample[k * d->inputs + i], there = here[d->inputs];

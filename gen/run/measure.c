@@ -24,7 +24,7 @@ static bool compare_sample(struct trial *trial, struct running *r, const struct 
 }
 
 struct trial trial_of(struct running *r, const struct course *reference, const double *start, const double *ends,
-		      const struct drive *drive)
+		      const struct sampled *drive)
 {
 	const struct model *model = running_step_of(r)->model;
 	struct trial trial = { .error = ARRAY(double, 2 * (size_t)reference->outputs + 1) };

@@ -206,7 +206,7 @@ void   running_rhs(struct running *r, double t, const double *y, const double *u
 
 /* ---- drive.c: inputs that are tried ---- */
 
-struct drive {                      /* samples at t = 0, h, 2 h, ... */
+struct sampled {                      /* samples at t = 0, h, 2 h, ... */
 	int inputs;
 	double h;                   /* [s] */
 	long samples;               /* there are two more, for the ends of ramps */
@@ -214,12 +214,12 @@ struct drive {                      /* samples at t = 0, h, 2 h, ... */
 	double *sample;             /* [sample][input] */
 };
 /* One of drive_kinds(count): within `most`, by the frequencies w [rad/s], in rising order */
-struct drive drive_of(const struct linear *system, int kind, const double *w, int count, double h, long samples,
+struct sampled drive_of(const struct linear *system, int kind, const double *w, int count, double h, long samples,
 		      const mpq_t *most);
 int  drive_kinds(int count);
-void drive_step(const struct drive *d, long k, double *u);           /* what step k is given */
-void drive_at(const struct drive *d, long k, double t, double *u);   /* at t in step k: inputs, then their slopes */
-void running_drive(struct running *r, const struct drive *d, long k); /* as if k steps were done; a start follows */
+void drive_step(const struct sampled *d, long k, double *u);           /* what step k is given */
+void drive_at(const struct sampled *d, long k, double t, double *u);   /* at t in step k: inputs, then their slopes */
+void running_drive(struct running *r, const struct sampled *d, long k); /* as if k steps were done; a start follows */
 
 /* ---- reference.c: the equations as written, solved by two roads ---- */
 
@@ -238,7 +238,7 @@ struct roads {                      /* of NAME_rhs: two methods that have nothin
 	bool stiff;                 /* the implicit pair */
 	double tolerance;           /* of a step, relative to the largest of each state */
 	double *size;               /* that; NULL: not known yet */
-	const struct drive *drive;  /* with these inputs; NULL: there are none */
+	const struct sampled *drive;  /* with these inputs; NULL: there are none */
 };
 /* From these states (NULL: the spec's) by the first road or the second; NULL: *why */
 struct course *road_of(struct roads *roads, int which, const double *start, const char **why);
@@ -257,6 +257,6 @@ struct trial {                      /* of a step, against a reference */
 };
 /* ends: per output, [s]: later errors do not count */
 struct trial trial_of(struct running *r, const struct course *reference, const double *start, const double *ends,
-		      const struct drive *drive);
+		      const struct sampled *drive);
 
 #endif
