@@ -42,8 +42,8 @@ for generator in Ninja 'Unix Makefiles'; do
 	out="$work/out of $generator"
 	sed 's/^300/200/' "$project/the models/k and k.mtx" >original
 	cp original "$project/the models/k and k.mtx"
-	cmake -G "$generator" -S "$project" -B "$out" -DCMAKE_PREFIX_PATH="$prefix" -DCMAKE_BUILD_TYPE=Release >log 2>&1 &&
-		cmake --build "$out" >>log 2>&1
+	cmake -G "$generator" -S "$project" -B "$out" -DCMAKE_PREFIX_PATH="$prefix" \
+		-DCMAKE_BUILD_TYPE=Release >log 2>&1 && cmake --build "$out" >>log 2>&1
 	result $? "$generator: it builds"
 	runs "$generator: a model in double" 200 "$out/app"
 	runs "$generator: the same in float" 200 "$out/single/app_single"

@@ -21,7 +21,8 @@ for file in libplrt.a pkgconfig/plgen.pc cmake/plgen/plgenConfig.cmake cmake/plg
 done
 [ ! -s log ]
 result $? 'commands, pages, library, models and packages'
-diff -r "$source/models" "$prefix/share/plgen/models" >log && diff -r "$source/runtime" "$prefix/share/plgen/runtime" >>log
+diff -r "$source/models" "$prefix/share/plgen/models" >log &&
+	diff -r "$source/runtime" "$prefix/share/plgen/runtime" >>log
 result $? 'runtime and models are those of the sources, and all'
 
 grep -r -l -e "$source" -e "$work" "$prefix" >found

@@ -9,6 +9,8 @@ build=$(cd "$1" && pwd) || exit 99
 root=$(cd "$2" && pwd) || exit 99
 . "${0%/*}/../tap.sh"
 . "$root/tests/install/stage.sh"
+mkdir -p "$project/subprojects/plgen/tests"
+cp "$source/tests/to.sh" "$project/subprojects/plgen/tests"
 unset PKG_CONFIG_PATH
 PATH=$(echo "$PATH" | sed 's/^[^:]*://')
 

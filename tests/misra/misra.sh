@@ -34,7 +34,8 @@ make operators models/beam4.spec --scheme etdrk4
 # look FILES: places and rules, each once
 look() {
 	for file; do
-		cppcheck --quiet --addon=misra --std=c99 -I"$root/runtime" --template='{file}:{line}:{column} {id}' "$file" 2>&1
+		cppcheck --quiet --addon=misra --std=c99 -I"$root/runtime" \
+			--template='{file}:{line}:{column} {id}' "$file" 2>&1
 	done | sort -u
 }
 look ./*.c | grep -v '/plrt\.h:' >in_models
