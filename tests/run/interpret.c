@@ -21,7 +21,7 @@ static void run(void *context)
 {
     const struct asked *asked = context;
     const struct request request = { .scheme = asked->scheme, .form = FORM_AUTO, .single = asked->single };
-    const struct source *source = source_read(asked->file);
+    const struct source *source = source_read(asked->file, (struct place){ 0 });
     struct spec *spec = source ? parse_spec(source) : NULL;
     struct model *model = spec ? model_build(spec, &request) : NULL;
     model = model ? stepped_model(model, spec, &request) : NULL;
