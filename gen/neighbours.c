@@ -101,7 +101,8 @@ static void try_amplitudes(struct measuring *m, struct alternative *a)
 			continue;
 		roads.h = mpq_get_d(step->model->h);
 		roads.most = LIMIT_MEASURED;
-		keep_worst(a, tried_from(m, &copy, r, &roads, NULL, a->worst_input, false), format("%s times %s", s->name, by));
+		keep_worst(a, tried_from(m, &copy, r, &roads, NULL, a->worst_input, false),
+			   format("%s times %s", s->name, by));
 	}
 }
 

@@ -76,8 +76,8 @@ void table_end(FILE *table)
 
 void timing_row(const struct papers *papers, const struct timing *t)
 {
-	const char *const field[] = { t->source, t->model, t->method, t->quantity, t->reported ? t->reported : "not stated",
-	                              t->measured };
+	const char *const field[] = { t->source, t->model, t->method, t->quantity,
+	                              t->reported ? t->reported : "not stated", t->measured };
 	print_fields(papers->times, sizeof field / sizeof *field, field);
 	fprintf(papers->times, ",%.6g,%.6g,%.6g,", t->ns.min, t->ns.median, t->ns.max);
 	print_fields(papers->times, 1, &t->settings);
@@ -141,7 +141,8 @@ int main(int argc, char **argv)
 	struct papers papers = { .variants = argv[at], .folder = argv[at + 1], .quick = quick };
 	if (times) {
 		papers.times = file_begin(&papers, "papers_times.csv",
-		                          "source,model,method,quantity,reported,measured,ns_min,ns_median,ns_max,settings");
+		                          "source,model,method,quantity,reported,measured,"
+		                          "ns_min,ns_median,ns_max,settings");
 		coupled_times(&papers);
 		integration_times(&papers);
 		clearance_times(&papers);

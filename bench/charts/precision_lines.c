@@ -218,8 +218,8 @@ void put_line(FILE *out, const struct lines *lines, const struct line *line, con
 	const struct samples *ns = &line->samples;
 	fprintf(out, "%s,", p->name);
 	put_quoted(out, method->name);
-	fprintf(out, ",%s,%s,%.6g,%s", families[method->family], method->tolerance ? "tolerance" : "step", line->setting,
-	        line->found);
+	fprintf(out, ",%s,%s,%.6g,%s", families[method->family], method->tolerance ? "tolerance" : "step",
+	        line->setting, line->found);
 	if (ns->count > 0)
 		fprintf(out, "%.5g,%.5g,%.5g,%d,%d,", ns->min, ns->median, ns->max, ns->count, p->units);
 	else

@@ -75,7 +75,8 @@ if [ "${1:-}" = --job ]; then
 	job=$2
 	begin=$(date +%s)
 	case $job in
-		errors_*) sh $charts/precision.sh "$plgen" "$programs/precision" "$folder" $quick --errors "${job#*_}" ;;
+		errors_*) sh $charts/precision.sh "$plgen" "$programs/precision" "$folder" $quick \
+			--errors "${job#*_}" ;;
 		*) $job ;;
 	esac
 	echo "[$job: $(($(date +%s) - begin)) s]" >&2

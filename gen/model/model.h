@@ -86,7 +86,7 @@ struct splitting {                  /* the leftover, sorted: see split.c */
 	struct time_function *function; /* the first is 1 */
 	int rests;                  /* forces that are neither */
 	struct rest_force *rest;
-	int waves;                  /* known loads to which modes respond exactly; none where loads are to be left over */
+	int waves;                  /* known loads to which modes respond exactly; none where loads are left over */
 	struct wave_force *wave;
 	const struct node *mixed;   /* time and states in one function: none of this; NULL: there is none such */
 	bool settles;               /* there is a last segment of time, in which all functions are constant */

@@ -108,7 +108,8 @@ static void add_wave(struct split_work *w, const struct basis *basis, mpq_srcptr
 		k++;
 	if (k == s->waves) {
 		ENLARGE(s->wave, (size_t)s->waves + 1);
-		s->wave[s->waves++] = (struct wave_force){ basis->wave, { rationals((size_t)n), rationals((size_t)n) } };
+		s->wave[s->waves++] = (struct wave_force){ basis->wave,
+							       { rationals((size_t)n), rationals((size_t)n) } };
 	}
 	mpq_ptr entry = s->wave[k].force[basis->sine][w->coord];
 	mpq_add(entry, entry, by);

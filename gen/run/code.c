@@ -75,7 +75,8 @@ static struct entity *compiled(struct running *r, const char *name)
 
 struct running *running_new(struct code *code, const struct step *step)
 {
-	static const char *const names[PARTS] = { "init", "set", "step", "get", "time", "out", "status", "rhs", "hold" };
+	static const char *const names[PARTS] = { "init", "set", "step", "get", "time", "out", "status", "rhs",
+						  "hold" };
 	const struct model *model = step->model;
 	struct running *r = NEW(struct running);
 	const struct entity *type = entity_find(code, model->name);

@@ -26,7 +26,8 @@ static void keep_states(const struct step *step, const struct step *exact, const
 			k->Phi[i * n + j] = table->Phi[i * n + j].value * kept_mass(step, i) / kept_mass(step, j);
 		for (int c = 0; c < k->columns; c++)
 			k->load[i * k->columns + c] =
-				is_load_forced(step, c) ? 0 : table->load[i * k->columns + c].value * kept_mass(step, i);
+				is_load_forced(step, c) ? 0 :
+				table->load[i * k->columns + c].value * kept_mass(step, i);
 		for (int c = 0; c < k->inputs; c++)
 			k->input[i * k->inputs + c] = table->input[i * k->inputs + c].value * kept_mass(step, i);
 		k->start[i] = mpq_get_d(step->model->initial[i]) * kept_mass(step, i);

@@ -30,7 +30,8 @@ function judge(scene, least,    i, t, cheaper, miss, dearer) {
 		if (cost[scene, i] > cost[scene, t]) dearer++
 	}
 	result(cheaper == "", scene ": nothing below the line is cheaper", "at " cost[scene, t] "; cheaper:" cheaper)
-	result(n[scene] >= least && dearer > 0, scene ": there was a choice", n[scene] + 0 " alternatives, expected " least)
+	result(n[scene] >= least && dearer > 0, scene ": there was a choice",
+	       n[scene] + 0 " alternatives, expected " least)
 	if (scene != "quarter_car")
 		result(miss > 0, scene ": what is cheaper misses the need", "nothing is cheaper")
 }

@@ -84,7 +84,8 @@ is_needed street 'n1.roof within 1 % until 10 for |quake| <= 3'
 is_needed street 'n10.base within 1e4 until 10 for |quake| <= 3'
 
 # What is left of the street for one output: the modes of the one building that it sees
-{ sed '/^output/,$d' street.spec && printf 'output n3.roof\nstep 0.02\nneed n3.roof within 1 %% until 10 for |quake| <= 3\n'
+{ sed '/^output/,$d' street.spec && printf 'output n3.roof\nstep 0.02\n' &&
+    printf 'need n3.roof within 1 %% until 10 for |quake| <= 3\n'
 } >one.spec
 "$plgen" --explain=json one.spec >json 2>log && cat json >>log &&
     grep -qF '{"name": "n4", "file": "building.spec", "modelled": false}' json &&
@@ -94,7 +95,8 @@ result $? 'a need: parts that no output sees are not modelled'
 
 { echo 'need speed within 1e-3 until 1'; echo 'budget 100 instructions on cortex-m0'; } >>inertia.spec
 "$plgen" drivetrain.spec >needs_apart.c 2>log && head -n 60 needs_apart.c >>log &&
-    grep -q 'inertia.spec as .*not read here: its step, need, budget\.' needs_apart.c && ! grep -q certified needs_apart.c
+    grep -q 'inertia.spec as .*not read here: its step, need, budget\.' needs_apart.c &&
+    ! grep -q certified needs_apart.c
 result $? 'needs and the budget of a part are of the part by itself'
 
 "$plgen" --explain=json chain.spec >json 2>log &&

@@ -79,8 +79,8 @@ meets() {
 		[ "$load" = 1 ] || [ "$loads" = yes ] || continue
 		grep -v '^need' "$name.spec" >free.spec
 		force=$(sed -n 's/^param F = //p' free.spec)
-		"$plgen" --rhs "$@" --real "$real" --scheme "$scheme" ${step:+--step "$step"} ${tolerance:+--tolerance "$tolerance"} \
-			${force:+-D "F=$force*$load"} free.spec >model.c 2>>log &&
+		"$plgen" --rhs "$@" --real "$real" --scheme "$scheme" ${step:+--step "$step"} \
+			${tolerance:+--tolerance "$tolerance"} ${force:+-D "F=$force*$load"} free.spec >model.c 2>>log &&
 			{ [ "$factors" != '1 1' ] || "$plgen" --rhs "$@" "$name.spec" >model.c 2>>log; } &&
 			${CC:-cc} -std=c99 -O1 -ffp-contract=off -w $flags -I"$root/runtime" "$root/tests/run/drive.c" \
 				model.c "$archive" -lm -o drive >>log 2>&1 && ./drive "$until" "$start" >samples &&
@@ -140,8 +140,8 @@ steps() {
 	what="without a step, a linear one: $1"
 	chosen "$what" || return 0
 	printf "$2" >open.spec
-	"$plgen" open.spec >open.c 2>log && grep -q "One step of h = $1 s" open.c && { cat open.spec; echo "step $1"; } \
-		>closed.spec && "$plgen" closed.spec >closed.c 2>>log &&
+	"$plgen" open.spec >open.c 2>log && grep -q "One step of h = $1 s" open.c &&
+		{ cat open.spec; echo "step $1"; } >closed.spec && "$plgen" closed.spec >closed.c 2>>log &&
 		sed 's/closed.spec/open.spec/' closed.c | diff - open.c >>log
 	result $? "$what"
 }
