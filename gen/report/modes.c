@@ -15,7 +15,7 @@ const char *operators_of_modes(const struct step *step)
 
 const char *exact_in_modes(const struct step *step)
 {
-	return step->model->split->waves ? "what each mode does by itself, and under waves e^{a t} cos(w t + p) of loads"
+	return step->model->split->waves ? "what each mode does by itself, and under loads e^{a t} cos(w t + p)"
 					 : "what each mode does by itself";
 }
 

@@ -80,7 +80,8 @@ meets() {
 		grep -v '^need' "$name.spec" >free.spec
 		force=$(sed -n 's/^param F = //p' free.spec)
 		"$plgen" --rhs "$@" --real "$real" --scheme "$scheme" ${step:+--step "$step"} \
-			${tolerance:+--tolerance "$tolerance"} ${force:+-D "F=$force*$load"} free.spec >model.c 2>>log &&
+			${tolerance:+--tolerance "$tolerance"} ${force:+-D "F=$force*$load"} free.spec \
+			>model.c 2>>log &&
 			{ [ "$factors" != '1 1' ] || "$plgen" --rhs "$@" "$name.spec" >model.c 2>>log; } &&
 			${CC:-cc} -std=c99 -O1 -ffp-contract=off -w $flags -I"$root/runtime" "$root/tests/run/drive.c" \
 				model.c "$archive" -lm -o drive >>log 2>&1 && ./drive "$until" "$start" >samples &&
