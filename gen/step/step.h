@@ -626,8 +626,9 @@ struct within {                     /* a step: states inside it, by Taylor serie
 	double angle;               /* by which a mode or a wave turns or decays in a step at most: in as many parts */
 	int terms;
 	double *stiffness, *damping; /* [bank][place] lambda, 2 delta; no damping: NULL */
-	/* Of the force's polynomial, the factors of what forces exceed that at the step's start by, [power - 1][node - 1]:
-	 * through past forces and the new one (NULL: of a method of one step); through those at all nodes */
+	/* Of the force's polynomial, the factors of what forces exceed that at the step's start by,
+	 * [power - 1][node - 1]: through past forces and the new one (NULL: of a method of one step); through those
+	 * at all nodes */
 	double *past, *nodes;
 };
 struct normal {
