@@ -3,6 +3,7 @@
  * a step that shows them as slower ones, resonance, drift, forces that belong to no energy. */
 #include "model/model.h"
 
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -27,19 +28,36 @@ struct lint {
 
 /* ---- names that nothing reads ---- */
 
+static const char *told_as(const struct symbol *s)
+{
+	return s->kind == SYMBOL_PARAM  ? "param" :
+	       s->kind == SYMBOL_MATRIX ? "matrix" : s->connected || s->kind == SYMBOL_INPUT ? "input" : "let";
+}
+
+static bool is_unused(const struct symbol *s)
+{
+	return !s->used && !s->broken && (s->kind == SYMBOL_PARAM || s->kind == SYMBOL_LET ||
+					  s->kind == SYMBOL_INPUT || s->kind == SYMBOL_MATRIX);
+}
+
+/* The first of them by name; what is written by a program may have thousands. */
 static void check_names(const struct spec *spec)
 {
+	enum { MOST_TOLD = 20 };
+	const struct symbol *next = NULL;
+	int unused = 0;
 	for (const struct symbol *s = spec->first; s; s = s->next) {
-		bool told = s->kind == SYMBOL_PARAM || s->kind == SYMBOL_LET || s->kind == SYMBOL_INPUT ||
-			    s->kind == SYMBOL_MATRIX;
+		if (!is_unused(s) || unused++ > MOST_TOLD)
+			continue;
+		next = s;
+		if (unused > MOST_TOLD)
+			continue;
 		const char *point = strrchr(s->name, '.');
-		if (told && !s->used && !s->broken)
-			say_warning(s->at, NULL, "%s '%s' is not used",
-				    s->kind == SYMBOL_PARAM     ? "param"
-				    : s->kind == SYMBOL_MATRIX  ? "matrix"
-				    : s->connected || s->kind == SYMBOL_INPUT ? "input" : "let",
-				    s->part && point ? point + 1 : s->name);
+		say_warning(s->at, NULL, "%s '%s' is not used", told_as(s), s->part && point ? point + 1 : s->name);
 	}
+	if (unused > MOST_TOLD)
+		say_warning(next->at, NULL, "%s '%s' is not used, nor %d more", told_as(next), next->name,
+			    unused - MOST_TOLD - 1);
 }
 
 /* ---- what is negative ---- */
@@ -171,16 +189,38 @@ static double size_of(const struct linear *s, const mpq_t *A)
 	return size;
 }
 
+static double largest_pole(const struct lint *lint)
+{
+	double largest = 0;
+	for (int i = 0; i < lint->poles; i++)
+		largest = fmax(largest, hypot(lint->re[i], lint->im[i]));
+	return largest;
+}
+
+/* A pole that is there m times is known to the mth part of the digits, and is then found as m around it. */
+static bool may_be_rounding(const struct lint *lint, int pole, double largest)
+{
+	enum { UNITS = 100 };
+	for (int times = 2; times <= lint->poles; times++) {
+		const double near = largest * pow(UNITS * DBL_EPSILON, 1.0 / times);
+		int around = 0;
+		for (int i = 0; i < lint->poles; i++)
+			around += hypot(lint->re[i] - lint->re[pole], lint->im[i] - lint->im[pole]) <= near;
+		if (around >= times && lint->re[pole] <= near)
+			return true;
+	}
+	return lint->re[pole] <= largest * GROWS;
+}
+
 static void check_stability(const struct lint *lint)
 {
-	double worst = 0, largest = 0;
+	double worst = 0, largest = largest_pole(lint);
 	const struct model *model = lint->model;
-	for (int i = 0; i < lint->poles; i++) {
-		double size = hypot(lint->re[i], lint->im[i]);
-		worst = size < PERHAPS_ZERO * lint->size ? worst : fmax(worst, lint->re[i]);
-		largest = fmax(largest, size);
-	}
-	if (worst <= GROWS * largest)
+	for (int i = 0; i < lint->poles; i++)
+		if (lint->re[i] > worst && hypot(lint->re[i], lint->im[i]) >= PERHAPS_ZERO * lint->size &&
+		    !may_be_rounding(lint, i, largest))
+			worst = lint->re[i];
+	if (worst == 0)
 		return;
 	struct place at = lint->negative.source ? lint->negative : model->spec->name_at;
 	const char *why = NULL;
