@@ -5,8 +5,8 @@
 #
 #     lines.sh SOURCE_ROOT
 #
-# Not looked at: what programs write (doc/charts, doc/gallery, *.csv, *.expect) or read as data (*.list, *.mtx, *.txt of
-# tests), and specs of tests/errors and tests/fuzz, where a line may be what is tested.
+# Not looked at: what programs write (doc/charts, doc/gallery, the table doc/combinations.md, *.csv, *.expect) or read as
+# data (*.list, *.mtx, *.txt of tests), and specs of tests/errors and tests/fuzz, where a line may be what is tested.
 set -u
 root=$1
 case $root in /*) ;; *) root=$PWD/$root ;; esac
@@ -45,6 +45,6 @@ look bench bench ! -name '*.list' ! -name '*.csv'
 # shellcheck disable=SC2086
 look tests tests '(' $code ')'
 look specs tests -name '*.spec' ! -path '*/errors/*' ! -path '*/fuzz/*'
-look doc doc ! -path '*/charts/*' ! -path '*/gallery/*' ! -name '*.csv'
+look doc doc ! -path '*/charts/*' ! -path '*/gallery/*' ! -name '*.csv' ! -name combinations.md
 look top . -maxdepth 1 '(' -name '*.md' -o -name Makefile -o -name meson.build ')'
 tap_end

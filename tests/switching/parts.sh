@@ -16,8 +16,8 @@ here=$root/tests/switching
 runtime_archive "$root/runtime"
 
 size=$("$plgen" "$here/five.spec" | wc -c)
-[ "$size" -gt 10000 ] && [ "$size" -le 100000 ] ||
-    { echo "$size bytes, 100000 at most expected" >log; false; }
+[ "$size" -gt 10000 ] && [ "$size" -le 102400 ] ||
+    { echo "$size bytes, 102400 at most expected" >log; false; }
 result $? 'five stops: less than 100 KB of C'
 
 # The number of a region is the sum of its parts' shares, each in 0 .. 242 once.
