@@ -5,8 +5,8 @@
 #
 #     lines.sh SOURCE_ROOT
 #
-# Not looked at: what programs write (doc/charts, doc/gallery, the table doc/combinations.md, *.csv, *.expect) or read as
-# data (*.list, *.mtx, *.txt of tests), and specs of tests/errors and tests/fuzz, where a line may be what is tested.
+# Not looked at: what programs write (doc/charts, doc/gallery, doc/combinations.md, *.csv, *.expect) or read as data
+# (*.list, *.mtx, *.txt of tests), and specs of tests/errors and tests/fuzz, where a line may be what is tested.
 set -u
 root=$1
 case $root in /*) ;; *) root=$PWD/$root ;; esac
