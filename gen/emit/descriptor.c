@@ -88,19 +88,12 @@ static void emit_start_samples(const struct emitter *e)
 
 static void emit_names(const struct emitter *e)
 {
-	const struct model *model = e->model;
-	const char **output = ARRAY(const char *, (size_t)model->outputs);
-	const char **input = ARRAY(const char *, (size_t)e->system->inputs);
-	for (int i = 0; i < model->outputs; i++)
-		output[i] = model->output[i].name;
-	for (int i = 0; i < e->system->inputs; i++)
-		input[i] = e->system->input[i].name;
 	emit_name_list(e, "state_names", e->system->states, e->step->shown->model->state_name);
 	if (e->system->inputs) {
-		emit_name_list(e, "input_names", e->system->inputs, input);
+		emit_name_list(e, "input_names", e->system->inputs, names_of_inputs(e));
 		emit_start_samples(e);
 	}
-	emit_name_list(e, "output_names", model->outputs, output);
+	emit_name_list(e, "output_names", e->model->outputs, names_of_outputs(e));
 }
 
 static void emit_wrappers(const struct emitter *e)

@@ -427,7 +427,9 @@ void banner_parts(const struct emitter *e);
 void banner_expanded(const struct emitter *e);
 void banner_collocated(const struct emitter *e);
 void banner_normal(const struct emitter *e);
-void emit_index_names(const struct emitter *e);                    /* index_names.c: NAME_OUT_TIP and the like */
+const char **names_of_outputs(const struct emitter *e);             /* index_names.c: as the user knows them */
+const char **names_of_inputs(const struct emitter *e);
+void emit_index_names(const struct emitter *e);                    /* NAME_OUT_TIP and the like */
 void emit_declarations(const struct emitter *e, bool rhs);
 
 /* ---- kept.c: states as written, and as they are kept ---- */

@@ -86,20 +86,29 @@ static void emit_names_of(const struct emitter *e, const char *kind, const char 
 	say(e, "%s\n", line);
 }
 
+const char **names_of_outputs(const struct emitter *e)
+{
+	const char **name = ARRAY(const char *, (size_t)e->model->outputs);
+	for (int i = 0; i < e->model->outputs; i++)
+		name[i] = e->model->output[i].name;
+	return name;
+}
+
+const char **names_of_inputs(const struct emitter *e)
+{
+	const char **name = ARRAY(const char *, (size_t)e->system->inputs);
+	for (int i = 0; i < e->system->inputs; i++)
+		name[i] = e->system->input[i].name;
+	return name;
+}
+
 void emit_index_names(const struct emitter *e)
 {
-	const struct model *model = e->model;
-	const struct tuning *tuning = model->tuning;
-	const char **output = ARRAY(const char *, (size_t)model->outputs);
-	const char **input = ARRAY(const char *, (size_t)e->system->inputs);
-	for (int i = 0; i < model->outputs; i++)
-		output[i] = model->output[i].name;
-	for (int i = 0; i < e->system->inputs; i++)
-		input[i] = e->system->input[i].name;
+	const struct tuning *tuning = e->model->tuning;
 	say(e, "/* places in y, u and out%s */\n", tuning ? ", in params" : "");
 	emit_names_of(e, "X", e->step->shown->model->state_name, e->system->states);
-	emit_names_of(e, "IN", input, e->system->inputs);
-	emit_names_of(e, "OUT", output, model->outputs);
+	emit_names_of(e, "IN", names_of_inputs(e), e->system->inputs);
+	emit_names_of(e, "OUT", names_of_outputs(e), e->model->outputs);
 	if (!tuning)
 		return;
 	const char **param = ARRAY(const char *, (size_t)tuning->params);
