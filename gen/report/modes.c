@@ -77,7 +77,7 @@ void person_normal(FILE *to, const struct step *step)
 void json_normal(FILE *to, const struct step *step)
 {
 	const struct normal *m = step->normal;
-	fprintf(to, "  \"modes\": {\"count\": %d, \"operators\": [", m->modes);
+	fprintf(to, "  \"normal_modes\": {\"count\": %d, \"operators\": [", m->modes);
 	for (int b = 0; b < m->banks; b++) {
 		fprintf(to, "%s\n    {\"at\": \"%s\", \"hertz\": [", b ? "," : "", step->model->operator[b].text);
 		for (int j = 0; j < m->modes; j++)

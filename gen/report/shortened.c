@@ -111,7 +111,7 @@ static void json_number(FILE *to, double value)
 void json_shortening(FILE *to, const struct model *model)
 {
 	const struct shortening *s = model->shortened;
-	fputs("  \"modes\": [\n", to);
+	fputs("  \"mode_shares\": [\n", to);
 	for (int i = 0; i < s->modes->count; i++) {
 		const struct mode *mode = &s->modes->mode[i];
 		fprintf(to,
