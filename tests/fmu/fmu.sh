@@ -264,7 +264,8 @@ drive() {
 # one NAME SPEC VERSION OPTIONS; not where CASE asks for others
 one() {
     label="$1, FMI $3${4:+, $4}"
-    case $label in *"${CASE%%: *}"*) ;; *) return ;; esac
+    wanted=${CASE:-}
+    case $label in *"${wanted%%: *}"*) ;; *) return ;; esac
     make_both m "$2" "$3" "$4"
     status=$?
     result $status "$label: made and compiled"
