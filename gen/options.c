@@ -26,6 +26,17 @@ static void note_in_banner(struct options *options, const char *option)
 	options->banner = format("%s%s%s", options->banner, *options->banner ? " " : "", option);
 }
 
+/* The option that asks for another text than C */
+static const char *option_of_print(enum print print)
+{
+	static const char *const option[] = {
+		[PRINT_HEADER] = "--header", [PRINT_EXPLAIN] = "--explain", [PRINT_JSON] = "--explain",
+		[PRINT_PROGRAM] = "--explain", [PRINT_SOLUTION] = "--solution", [PRINT_RESPONSE] = "--response",
+		[PRINT_PLOT] = "--plot", [PRINT_REPORT] = "--report"
+	};
+	return option[print];
+}
+
 static void set_print(struct options *options, enum print print)
 {
 	if (options->print != PRINT_C)
@@ -430,10 +441,9 @@ static void check_fmu(const struct options *options)
 {
 	const size_t length = options->fmu ? strlen(options->fmu) : 0;
 	const struct { bool asked; const char *option; } against[] = {
-		{ options->output, "-o" }, { options->print == PRINT_HEADER, "--header" },
-		{ options->print == PRINT_SOLUTION, "--solution" }, { options->print != PRINT_C, "--explain" },
+		{ options->output, "-o" }, { options->print != PRINT_C, option_of_print(options->print) },
 		{ options->rhs, "--rhs" }, { options->request.selftest, "--selftest" },
-		{ options->request.batch, "--batch" }
+		{ options->request.batch, "--batch" }, { options->bundle, "--bundle" }
 	};
 	if (!options->fmu && (options->fmu_version || options->fmu_binary))
 		wrong_usage(format("%s goes with --fmu FILE.fmu",
@@ -463,7 +473,7 @@ void read_options(int argc, char **argv, struct options *options)
 	options->banner = "";
 	take_all(argc, argv, options);
 	if (options->bundle && options->print != PRINT_C)
-		wrong_usage("--bundle is of C: it does not go with --header, --explain or --solution");
+		wrong_usage(format("--bundle is of C: it does not go with %s", option_of_print(options->print)));
 	note_all(options);
 	check_fmu(options);
 	find_header(options);

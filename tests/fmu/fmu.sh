@@ -146,7 +146,8 @@ refused() {
 refused 'FILE.fmu, found' --fmu no.zip
 refused 'FILE.fmu, found' --fmu .fmu
 refused '-o does not go with --fmu' --fmu no.fmu -o no.c
-for option in --header --explain --rhs --selftest --batch '--solution 1'; do
+for option in --header --explain --rhs --selftest --batch --bundle --report '--solution 1' '--plot poles' \
+    '--response 1:2'; do
     # shellcheck disable=SC2086
     refused "${option% *} does not go with --fmu" --fmu no.fmu $option
 done
