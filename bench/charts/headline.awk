@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # awk -v palette=palette.list -f csv.awk -f headline.awk headline_integrators.csv: gnuplot for a chart with a row for
-# each method, the quickest first: its median time at each of the two errors, or the word that it does not get there;
-# `rows` and `clauses`.
+# each method that reaches one of the two errors, the quickest first: its median time at each, or the word that it does
+# not get there; `rows` and `clauses`. How many reach neither stands below.
 function place_of(k,    i, n) {
-	for (i = 1; i <= rows; i++)
+	for (i = 1; i <= methods; i++)
 		if (cost[i] < cost[k] || (cost[i] == cost[k] && i < k)) n++
 	return n + 1
 }
@@ -15,7 +15,7 @@ NR == 1 { read_head($0, column); next }
 {
 	split_row($0, f)
 	name = f[column["method"]]
-	if (!(name in place)) { place[name] = ++rows; method[rows] = name; cost[rows] = 1e300 }
+	if (!(name in place)) { place[name] = ++methods; method[methods] = name; cost[methods] = 1e300 }
 	k = place[name]
 	family[k] = f[column["family"]] == "ours" ? "ours" : f[column["family"]] == "propagator" ? "matrix" : "peer"
 	which = (f[column["target"]] + 0 < 1e-10 ? "fine" : "coarse")
@@ -32,9 +32,10 @@ NR == 1 { read_head($0, column); next }
 }
 END {
 	split("coarse fine", targets, " ")
-	for (k = 1; k <= rows; k++) {
+	for (k = 1; k <= methods; k++) {
+		if (cost[k] == 1e300) { neither++; continue }
 		at = place_of(k)
-		tics = tics (k > 1 ? ", " : "") "\"" method[k] "\" " at
+		tics = tics (rows++ ? ", " : "") "\"" method[k] "\" " at
 		for (i = 1; i <= 2; i++) {
 			which = targets[i]
 			y = at + (i == 2 ? 0.19 : -0.19)
@@ -45,6 +46,9 @@ END {
 					"' at first 1.3," y " left font ',9' textcolor rgb '#505050'\n"
 		}
 	}
+	if (neither)
+		words = words "set label " ++labels " '" neither " other" (neither > 1 ? "s reach" : " reaches") \
+			" neither error: in the table' at first 1.3," rows + 1.05 " left font ',9' textcolor rgb '#505050'\n"
 	n = split("coarse_ours fine_ours coarse_matrix fine_matrix coarse_peer fine_peer", name_of, " ")
 	of["ours"] = "exact"; of["matrix"] = "matrix"; of["peer"] = "adaptive"
 	who["ours"] = "plgen"; who["matrix"] = "matrix of a step"; who["peer"] = "integrator"

@@ -4,15 +4,15 @@ here = system("dirname '".ARG0."'"); folder = ARG1; out = ARG2; narrow = ARG3 eq
 
 # ---- each integrator at the setting that reaches an error ----
 csv = folder.'/headline_integrators.csv'
-count = int(system("awk -F'\"' 'NR > 1 && !seen[$2]++ { n++ } END { print n }' '".csv."'"))
-size = sprintf('%d,%d', narrow ? 400 : 900, 130 + (narrow ? 70 : 0) + 25*count)
+count = int(system("awk -F'\"' '$3 ~ /,reached,/ && !seen[$2]++ { n++ } END { print n }' '".csv."'"))
+size = sprintf('%d,%d', narrow ? 400 : 900, 150 + (narrow ? 70 : 0) + 25*count)
 load here.'/style.gp'
 load "< awk -v palette='".here."/palette.list' -f '".here."/csv.awk' -f '".here."/headline.awk' '".csv."'"
 name = 'headline_integrators'
 set xlabel 'CPU time per output [ns]'
 unset logscale y
 set format y '%s'
-set yrange [rows + 0.6:0.4]
+set yrange [rows + 1.4:0.4]
 set xrange [1:1e5]
 eval "set ytics (".tics.") font ',".(narrow ? 9 : 11)."' noenhanced"
 set grid noytics
