@@ -53,7 +53,6 @@ struct extent extent_of_kept(const struct step *step, long steps, const struct s
 /* ---- rounding.c ---- */
 
 const char *certificate_objection(const struct errors *e);   /* NULL: there is none */
-long samples_until(const struct requirement *r, mpq_srcptr h); /* below 0: too many */
 struct errors errors_of(const struct step *step, const struct requirement *r);
 
 #endif

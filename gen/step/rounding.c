@@ -251,6 +251,8 @@ const char *certificate_objection(const struct errors *e)
 	const struct linear *system = &e->step->branch->system;
 	if (system->states > LIMIT_NEED_STATES)
 		return format("it is built for up to %d states", LIMIT_NEED_STATES);
+	if (system->segments > 1)
+		return "loads change their formula in time, and until then the run is too long to be walked through";
 	const int each = system->states * system->states + 32 * load_columns(system) + 32;
 	if (e->steps < 0 || (double)e->steps * each > WORK)
 		return "there are too many samples until then";
@@ -269,6 +271,11 @@ long samples_until(const struct requirement *r, mpq_srcptr h)
 	mpq_clear(steps);
 	mpz_clear(last);
 	return count;
+}
+
+double error_told(const struct certificate *c)
+{
+	return c->walked ? c->error : c->rounding + c->dropped;
 }
 
 double needed_error(const struct requirement *r, double largest)
