@@ -10,7 +10,7 @@
 
 #include <math.h>
 
-#define WORK 4e9                    /* operations of a walk through all samples */
+#define WORK 4e8                    /* products of powers of a step */
 
 /* ---- what one step rounds ---- */
 
@@ -253,8 +253,8 @@ const char *certificate_objection(const struct errors *e)
 		return format("it is built for up to %d states", LIMIT_NEED_STATES);
 	if (system->segments > 1)
 		return "loads change their formula in time, and until then the run is too long to be walked through";
-	const int each = system->states * system->states + 32 * load_columns(system) + 32;
-	if (e->steps < 0 || (double)e->steps * each > WORK)
+	const double powers = 2 * sqrt((double)e->steps) * pow(system->states, 3);
+	if (e->steps < 0 || powers > WORK)
 		return "there are too many samples until then";
 	return NULL;
 }
