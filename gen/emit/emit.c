@@ -89,6 +89,25 @@ static bool forms_need_math(const struct emitter *e)
 	return math;
 }
 
+/* A certificate that counts on each product and each sum being rounded: it was found by running this C. */
+static void emit_as_written(const struct emitter *e)
+{
+	const struct choice *choice = e->step->choice;
+	if (!choice || !choice->alternative[choice->taken].as_written)
+		return;
+	say(e, "\n/* What is certified counts on sums and products that are each rounded, to the bits of their type. */\n"
+	       "#if PL_EXCESS_PRECISION%s\n"
+	       "#error \"what is certified needs sums that have the bits of their type: "
+	       "on x86 compile it with -msse2 -mfpmath=sse\"\n"
+	       "#endif\n"
+	       "#if !defined PL_NOT_CONTRACTED && (defined __FP_FAST_FMA || defined __FP_FAST_FMAF || \\\n"
+	       "    defined __FMA__ || defined __FMA4__ || defined __ARM_FEATURE_FMA || defined __aarch64__ || \\\n"
+	       "    defined _M_ARM64 || defined _M_FP_CONTRACT)\n"
+	       "#error \"what is certified needs products that are rounded before they are added: "
+	       "compile it and the runtime with -ffp-contract=off, and with -DPL_NOT_CONTRACTED\"\n"
+	       "#endif\n", e->model->asked.single ? "F" : "");
+}
+
 static void emit_includes(const struct emitter *e, bool rhs)
 {
 	if (forms_need_math(e) || (rhs && rhs_needs_math(e)))
@@ -100,6 +119,7 @@ static void emit_includes(const struct emitter *e, bool rhs)
 		       "#error \"two-word arithmetic needs sums that have the bits of their type: "
 		       "on x86 compile it with -msse2 -mfpmath=sse\"\n"
 		       "#endif\n", e->model->asked.single ? "F" : "");
+	emit_as_written(e);
 }
 
 static void emit_all_tables(const struct emitter *e)

@@ -88,9 +88,9 @@ static void check_certified(const struct finding *f)
 	if (model->relative && !model->declared_outputs)
 		error(at, format("output %s", model->output[0].name),
 		      "a need is of a declared output where coordinates may move as a whole");
-	if (model->system.segments > 1)
-		error(at, "loads that change their formula can be written as inputs",
-		      "a need is not certified where loads change their formula in time");
+	if (model->system.segments > 1 && model->system.inputs > 0)
+		error(at, "without inputs its run is known, and walked through",
+		      "a need is not certified where loads change their formula in time beside inputs");
 }
 
 static void find_output(const struct finding *f)

@@ -489,10 +489,16 @@ struct certificate {                /* of one requirement, in the output's unit 
 	 * whole error, and 0 */
 	double rounding, dropped;
 	double needed;
+	/* its C has run beside the exact outputs: the error itself, where each product and each sum is rounded as it is
+	 * written; the bounds above hold where a compiler contracts them too */
+	bool walked;
+	double error;
 };
+double error_told(const struct certificate *c);             /* as walked, or bounded */
 /* `exact`: the same step with the numbers of double */
 struct certificate certificate_of(const struct step *step, const struct step *exact, const struct requirement *r);
 double needed_error(const struct requirement *r, double largest);       /* of the output */
+long samples_until(const struct requirement *r, mpq_srcptr h); /* below 0: too many */
 /* what it surely reaches; `exact` in double; 0: it is not known */
 double largest_of_output(const struct step *exact, const struct requirement *r);
 /* [modes + 1]: what the output loses at most where the first so many of the order are kept. HUGE_VAL: not known.
@@ -517,7 +523,11 @@ struct alternative {                /* one way to step a model with needs */
 	double cost;                /* of a step and its outputs, as cost_of_step counts */
 	const char *why;            /* its error is not known; NULL: it is */
 	double excess;              /* the largest of error over need; at most 1: all needs are met */
+	/* so whatever a compiler contracts; else the C refuses one that does, where it has to: `as_written` */
+	double bound_excess;
+	bool as_written;
 	struct certificate *certificate; /* per requirement */
+	struct step *made;          /* as it was tried */
 };
 struct choice {
 	int alternatives, taken;
