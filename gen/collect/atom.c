@@ -90,13 +90,14 @@ bool depends_on_time_only(const struct basis *basis)
 }
 
 /* Highest derivatives are what the equations are solved for: they cannot stand inside. */
-static void check_highest(const struct collector *c, const struct node *node, const struct form *form)
+static void check_highest(const struct collector *c, const struct node *node, const struct form *form, bool params)
 {
 	for (int i = 0; i < form->terms; i++) {
 		const struct basis *basis = &form->term[i].basis;
 		if (!c->output && basis->kind == BASIS_COORD && basis->order > 0 &&
 		    basis->order >= c->frame->coord[basis->index]->highest)
-			not_linear(c, node, "is not linear");
+			not_linear(c, node, params ? "has a tunable factor, by which the equation can be divided"
+						   : "is not linear");
 	}
 }
 
@@ -129,10 +130,10 @@ static struct form *form_of_atom(struct collector *c, const struct node *node, s
 	while (*link && !same_atom(*link, &wanted))
 		link = &(*link)->next;
 	if (!*link) {
-		for (int i = 0; i < wanted.operands; i++) {
-			check_highest(c, node, wanted.operand[i]);
+		for (int i = 0; i < wanted.operands; i++)
 			add_dependence(c, &wanted, wanted.operand[i]);
-		}
+		for (int i = 0; i < wanted.operands; i++)
+			check_highest(c, node, wanted.operand[i], wanted.params);
 		wanted.node = node;
 		wanted.params = wanted.params || wanted.kind == ATOM_PARAM;
 		wanted.index = c->atoms->count++;

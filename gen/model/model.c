@@ -454,7 +454,7 @@ static void collect_with_params(struct building *b)
 	spread_tuned(b->spec);
 	b->nominal = b->snapshot;
 	b->nominals = c->changes + 1;
-	c->keep_params = true;
+	c->keep_params = b->model->keeps_params = true;
 	c->keep = KEEP_ALL;
 	c->changes = 0;
 	c->change = NULL;

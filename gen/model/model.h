@@ -190,6 +190,7 @@ struct model {
 	struct splitting *split;    /* of a scheme in normal modes; else NULL */
 	const struct form *selector; /* of a bank: what is compared with `at`; NULL: one operator */
 	const struct tuning *tuning; /* tunable params, and how the equations follow from them; NULL: there are none */
+	bool keeps_params;          /* params that are tunable stand in what is left over and in outputs */
 	const struct tuning *held;  /* those that the leftover and outputs read from the instance: no more than a list */
 	int outputs;
 	struct output *output;

@@ -79,33 +79,37 @@ static bool holds_atom(const struct form *form)
 	return form->terms > 0 && form->term[form->terms - 1].basis.kind == BASIS_ATOM;
 }
 
-/* Before equations belong to coordinates: does what was written take more than switching between linear equations? */
-static bool is_left_over(const struct building *b)
+/* Before equations belong to coordinates: what they take */
+struct demands { bool linear, piecewise; }; /* linear equations do; switching between such */
+
+static struct demands demands_of(const struct building *b)
 {
 	const struct snapshot *first = b->snapshot;
 	const int segments = b->model->system.segments;
-	bool any = false, atoms = false;
+	bool atoms = false, same = true, piecewise = true;
 	for (int s = 0; s < segments; s++) {
-		for (int i = 0; i < first[s].residuals; i++) {
-			const struct form *form = first[s].residual[i].form;
-			any = any || !is_piecewise_form(form) || first[s].residuals != first->residuals ||
-			      !same_in_states(form, first->residual[i].form);
+		same = same && first[s].residuals == first->residuals;
+		for (int i = 0; i < first[s].residuals + b->spec->elements && same; i++) {
+			const int e = i - first->residuals;
+			const struct form *form = e < 0 ? first[s].residual[i].form : first[s].element[e];
+			same = same_in_states(form, e < 0 ? first->residual[i].form : first->element[e]);
 			atoms = atoms || holds_atom(form);
-		}
-		for (int i = 0; i < b->spec->elements; i++) {
-			const struct form *form = first[s].element[i];
-			any = any || !is_piecewise_form(form) || !same_in_states(form, first->element[i]);
-			atoms = atoms || holds_atom(form);
+			piecewise = piecewise && is_piecewise_form(form);
 		}
 	}
-	return any || (atoms && segments > 1);
+	return (struct demands){ same && !atoms, same && piecewise && (!atoms || segments == 1) };
 }
 
 bool leaves_over(const struct building *b)
 {
-	if (b->model->asked.scheme_at.source)
-		return b->model->scheme != SCHEME_EXACT && !scheme_row(b->model->scheme)->holds_coupling;
-	return !b->request->solution && is_left_over(b);
+	const struct scheme_row *row = scheme_row(b->model->scheme);
+	const struct demands demands = demands_of(b);
+	if (b->request->solution)
+		return false;
+	if (!b->model->asked.scheme_at.source)
+		return !demands.piecewise;
+	return b->model->scheme != SCHEME_EXACT && !row->holds_coupling &&
+	       (!demands.linear || row->expands || row->modes || b->request->loads_left || b->spec->has_operator);
 }
 
 /* Only loads may change their formula in time. */

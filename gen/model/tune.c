@@ -146,11 +146,6 @@ static void warn_of_unread(const struct model *model)
 				    spec->tunable[k].symbol->name);
 }
 
-static bool holds_params(const struct model *model)
-{
-	return model->scheme != SCHEME_EXACT && !scheme_row(model->scheme)->holds_coupling;
-}
-
 /* Nothing is to be computed anew: the expressions read the instance's own. */
 static void list_held(struct model *model)
 {
@@ -604,7 +599,7 @@ bool find_tuning(struct model *model, const struct request *request)
 	const struct spec *spec = model->spec;
 	if (spec->tunables == 0)
 		return true;
-	if (holds_params(model)) {
+	if (model->keeps_params) {
 		list_held(model);
 		return true;
 	}
