@@ -418,6 +418,15 @@ static struct value *collect_coordinate(struct collector *c, struct node *node)
 	return value;
 }
 
+/* A tunable param, or one that is made of such, whose value the target has. In a let or output that is to be linear it
+ * gives up in silence, like what is not linear. */
+static struct value *collect_tuned(struct collector *c, struct node *node)
+{
+	if (!keeps(c))
+		not_linear(c, node, "has a tunable factor");
+	return node->symbol->tunable ? scalar(kept_param(c, node, node->symbol)) : collect_node(c, node->symbol->value);
+}
+
 static struct value *collect_name(struct collector *c, struct node *node)
 {
 	struct symbol *symbol = node->symbol;
@@ -435,6 +444,8 @@ static struct value *collect_name(struct collector *c, struct node *node)
 	for (int i = 0; i < c->fixings; i++)
 		if (c->fixing[i].symbol == symbol)
 			return scalar(form_constant(c->fixing[i].value));
+	if (c->keep_params && symbol->tuned && symbol->kind != SYMBOL_LET && !c->constant_only)
+		return collect_tuned(c, node);
 	if (symbol->progress == COLLECTING && symbol->kind == SYMBOL_PARAM)
 		error(node->at, NULL, "param '%s' is defined by itself", symbol->name);
 	if (symbol->progress == COLLECTING)     /* a let that failed before: that was told */
@@ -509,7 +520,7 @@ static bool is_timely(struct node *node)
 static unsigned mode_of(const struct collector *c)
 {
 	return (unsigned)c->keep | c->whole_time << 2 | c->tolerant << 3 | c->constant_only << 4 | c->closed << 5 |
-	       c->output << 6;
+	       c->output << 6 | c->keep_params << 7;
 }
 
 /* Cells of values are shared: nobody changes them. What has become a rational is told by those that are collected, so

@@ -395,6 +395,7 @@ void emit_to_modes(const struct emitter *e);                      /* NAME_modes_
 void emit_from_modes(const struct emitter *e);                    /* NAME_of_modes */
 void emit_function_values(const struct emitter *e);               /* NAME_functions */
 void emit_forces(const struct emitter *e);                        /* NAME_forces */
+const char *instance_of_rest(const struct emitter *e);            /* the argument s of NAME_forces, comma behind it; or "" */
 
 /* ---- emit_waves.c: known loads, to which modes respond exactly ---- */
 
@@ -580,6 +581,24 @@ void emit_coefficient_struct(const struct emitter *e);
 void emit_tuning_declarations(const struct emitter *e);
 void emit_tuning_wrapper(const struct emitter *e);                /* of the descriptor */
 void banner_tuning(const struct emitter *e);
+const char *param_list(const struct emitter *e);                  /* names, commas between */
+void emit_nominal_params(const struct emitter *e);                /* {1.0, 2.0}, */
+
+/* ---- emit_params.c: tunable params that expressions read; where there are none they print nothing ---- */
+
+const char *param_text(int param);                                /* in an instance s */
+const char *param_local(const struct emitter *e, int param);
+void emit_param_locals(const struct emitter *e, const bool *reads); /* of those that forms read: struct reads */
+void emit_nominal_params_read(const struct emitter *e, const bool *reads); /* the same, the spec's values */
+void emit_held_types(const struct emitter *e);
+void emit_held_member(const struct emitter *e);
+void emit_held_start(const struct emitter *e, const char *s);
+void emit_held_declarations(const struct emitter *e);
+void banner_held(const struct emitter *e);
+void emit_held_nominal(const struct emitter *e);
+void emit_held_retune(const struct emitter *e);
+void emit_held_wrapper(const struct emitter *e);
+void emit_params_line(const struct emitter *e);                   /* of the descriptor, of either kind */
 /* the generator's own coefficients, of the spec's values */
 void emit_nominal(const struct emitter *e);
 void emit_retune(const struct emitter *e);                        /* the equations, retune, use */

@@ -233,6 +233,7 @@ void emit_out(const struct emitter *e)
 			form[forms++] = model->output[i].left;
 	}
 	emit_locals(e, needs.reads);
+	emit_param_locals(e, reads_of(speaker(model), forms, form).param);
 	if (needs.left && e->step->normal && !any_of(needs.reads, e->system->states))
 		say(e, "    double now[$N_STATES];\n"
 		       "    $n_get(s, now);\n");

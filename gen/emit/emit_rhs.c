@@ -218,6 +218,7 @@ static void emit_whole_residuals(const struct emitter *e)
 	for (int i = 0; i < model->n; i++)
 		form[i] = without_highest(model, form[i]);
 	struct writer *writer = writer_new(e, basis_expression, model->n, form);
+	emit_nominal_params_read(e, reads_of(model, model->n, form).param);
 	declare_residuals(e, model->n);
 	for (int i = 0; i < model->n; i++) {
 		const char *text = write_form(writer, form[i], 18);

@@ -113,7 +113,7 @@ void emit_force_table(const struct emitter *e)
 static bool reads_instance(const struct emitter *e)
 {
 	const struct expansion *x = expansion(e);
-	bool instance = x->time;
+	bool instance = x->time || x->params;
 	for (int l = 0; l < e->system->loads; l++)
 		instance = instance || (x->load[l] && (e->phase[l] >= 0 || e->growth[l] >= 0 ||
 						       e->system->load[l].powers > 1));

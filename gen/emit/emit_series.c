@@ -220,9 +220,10 @@ static bool add_known(const struct emitter *e, struct list *sum, const struct se
 		add(sum, operand ? format("%s * %s", place, operand) : place);
 	} else if (factor != 0) {
 		bool input = t->kind == TERM_INPUT || t->kind == TERM_SLOPE;
-		add(sum, scaled(factor, t->kind == TERM_TIME ? power_of_time(t->a)
-					: input              ? input_name(e, t->a, t->kind == TERM_SLOPE)
-							     : column_operand(e, t->a)));
+		add(sum, scaled(factor, t->kind == TERM_TIME    ? power_of_time(t->a)
+					: t->kind == TERM_PARAM ? param_text(t->a)
+					: input                 ? input_name(e, t->a, t->kind == TERM_SLOPE)
+								: column_operand(e, t->a)));
 	}
 	return true;
 }

@@ -104,7 +104,7 @@ const char **names_of_inputs(const struct emitter *e)
 
 void emit_index_names(const struct emitter *e)
 {
-	const struct tuning *tuning = e->model->tuning;
+	const struct tuning *tuning = tunables_of(e->model);
 	say(e, "/* places in y, u and out%s */\n", tuning ? ", in params" : "");
 	emit_names_of(e, "X", e->step->shown->model->state_name, e->system->states);
 	emit_names_of(e, "IN", names_of_inputs(e), e->system->inputs);

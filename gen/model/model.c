@@ -447,6 +447,20 @@ static void collect_intervals(struct building *b)
 	b->model->system.change = c->change;
 }
 
+/* Where a scheme leaves something over, the instance's own params stand in it: collected anew, with them as atoms */
+static void collect_with_params(struct building *b)
+{
+	struct collector *c = &b->collector;
+	spread_tuned(b->spec);
+	b->nominal = b->snapshot;
+	b->nominals = c->changes + 1;
+	c->keep_params = b->model->keeps_params = true;
+	c->keep = KEEP_ALL;
+	c->changes = 0;
+	c->change = NULL;
+	collect_intervals(b);
+}
+
 /* What is known before anything is collected */
 static void begin_model(struct building *b)
 {
@@ -508,6 +522,8 @@ static void collect_model(struct building *b)
 		statement_guard(evaluate_modes, b);
 	b->collector.constant_only = false;     /* where what had to be constant was not */
 	collect_intervals(b);
+	if (b->spec->tunables > 0 && all && !diagnostics_errors() && leaves_over(b))
+		collect_with_params(b);
 	if (all)
 		evaluate_lets(b);
 	model->initial = rationals((size_t)model->system.states);

@@ -190,6 +190,8 @@ struct model {
 	struct splitting *split;    /* of a scheme in normal modes; else NULL */
 	const struct form *selector; /* of a bank: what is compared with `at`; NULL: one operator */
 	const struct tuning *tuning; /* tunable params, and how the equations follow from them; NULL: there are none */
+	bool keeps_params;          /* params that are tunable stand in what is left over and in outputs */
+	const struct tuning *held;  /* those that the leftover and outputs read from the instance: no more than a list */
 	int outputs;
 	struct output *output;
 	bool declared_outputs;
@@ -298,6 +300,9 @@ struct building {                   /* what the builders share */
 	const struct wave *polynomial; /* the wave of t^k alone */
 	struct snapshot *snapshot;  /* per interval between changes of formula in time */
 	struct snapshot *whole;     /* the same for all time, with atoms; NULL: there is no leftover */
+	struct snapshot *nominal;   /* with the spec's values, where `snapshot` has tunable params; else NULL */
+	int nominals;               /* its intervals */
+	struct point *values;       /* nothing fixed but tunable params; made on first use */
 	/* [segment][row]: the residual's part that depends on time alone, as the linear core carries it */
 	struct form **load;
 	struct form **time_left;    /* per row: what depends on time alone and it cannot carry */
@@ -374,8 +379,10 @@ void check_mass(const struct building *b);
 struct reads {                    /* what forms read */
 	bool *state, *input, *load; /* inputs, then their slopes */
 	bool *highest;              /* per coordinate: its highest derivative */
+	bool *param;                /* of the spec's tunables, where the instance has their values */
 	bool time, math;            /* t itself; <math.h> */
 };
+int tunable_number(const struct spec *spec, const struct symbol *param); /* its place among the spec's */
 bool reads_input_slope(const struct model *model, int input);      /* does an output? */
 /* not of the piecewise-linear functions: they are comparisons in C */
 bool calls_libm(const struct atom *a);
@@ -384,6 +391,11 @@ struct reads reads_of(const struct model *model, int count, const struct form *c
 /* ---- system.c: residuals to M, C, K, loads and inputs ---- */
 
 void fill_states(struct building *b, const struct snapshot *rows); /* M, C, K, inputs */
+/* Tunable params that the instance has, at the spec's values: what is linear there belongs to the linear core, and the
+ * difference is left over. Itself, where it reads none. */
+const struct form *nominal_form(struct building *b, const struct form *form);
+/* Whether what params multiply is parted so for inputs and loads too: a series puts both together again */
+bool parts_params(const struct building *b);
 void fill_loads(struct building *b, int segment, int row, const struct form *residual);
 void place_loads(struct building *b, const struct form *form); /* every load of the form gets load states */
 void spread_loads(struct building *b, const struct form *form,
@@ -472,6 +484,8 @@ double fastest_decay(const struct linear *system);          /* the largest -Re o
 /* ---- settle.c: which scheme the equations allow ---- */
 
 bool is_linear(const struct building *b);                   /* with constant coefficients, loads in time excepted */
+/* of equations that were collected, whichever coordinates they belong to: a scheme is for them that leaves something */
+bool leaves_over(const struct building *b);
 void build_system(struct building *b);                      /* M, C, K, loads, inputs */
 
 /* ---- needs.c: how exact outputs have to be ---- */
@@ -601,8 +615,10 @@ struct tuning {
 	/* the model at values that are related by nothing: what holds there holds for all */
 	const struct model *other;
 };
-/* model->tuning, where something is tunable; false: it was said why not */
+/* model->tuning, or model->held, where something is tunable; false: it was said why not */
 bool find_tuning(struct model *model, const struct request *request);
+const struct tuning *tunables_of(const struct model *model); /* either; NULL: nothing is */
+void spread_tuned(const struct spec *spec);     /* to params, matrices and lets that are made of tunable ones */
 
 /* ---- stepped.c: the model that a step is built of ---- */
 

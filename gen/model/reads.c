@@ -10,6 +10,15 @@ bool calls_libm(const struct atom *a)
 	return a->kind == ATOM_POWER || (a->kind == ATOM_CALL && !piecewise);
 }
 
+/* Its place among the tunable params */
+int tunable_number(const struct spec *spec, const struct symbol *param)
+{
+	int k = 0;
+	while (spec->tunable[k].symbol != param)
+		k++;
+	return k;
+}
+
 static void look_at_form(struct reads *reading, const struct model *model, bool *seen, const struct form *form)
 {
 	for (int i = 0; i < form->terms; i++) {
@@ -35,6 +44,8 @@ static void look_at_form(struct reads *reading, const struct model *model, bool 
 			continue;
 		seen[atom->index] = true;
 		reading->math = reading->math || calls_libm(atom);
+		if (atom->kind == ATOM_PARAM)
+			reading->param[tunable_number(model->spec, atom->param)] = true;
 		for (int k = 0; k < atom->operands; k++)
 			look_at_form(reading, model, seen, atom->operand[k]);
 	}
@@ -46,6 +57,7 @@ struct reads reads_of(const struct model *model, int count, const struct form *c
 				 ARRAY(bool, 2 * (size_t)model->system.inputs),
 				 ARRAY(bool, (size_t)model->system.loads),
 				 ARRAY(bool, (size_t)model->n),
+				 ARRAY(bool, (size_t)model->spec->tunables + 1),
 				 false,
 				 false };
 	bool *seen = ARRAY(bool, model->atoms ? (size_t)atoms_count(model->atoms) : 0);

@@ -74,6 +74,44 @@ static bool same_equations(const struct building *b, const struct snapshot *s)
 	return true;
 }
 
+static bool holds_atom(const struct form *form)
+{
+	return form->terms > 0 && form->term[form->terms - 1].basis.kind == BASIS_ATOM;
+}
+
+/* Before equations belong to coordinates: what they take */
+struct demands { bool linear, piecewise; }; /* linear equations do; switching between such */
+
+static struct demands demands_of(const struct building *b)
+{
+	const struct snapshot *first = b->snapshot;
+	const int segments = b->model->system.segments;
+	bool atoms = false, same = true, piecewise = true;
+	for (int s = 0; s < segments; s++) {
+		same = same && first[s].residuals == first->residuals;
+		for (int i = 0; i < first[s].residuals + b->spec->elements && same; i++) {
+			const int e = i - first->residuals;
+			const struct form *form = e < 0 ? first[s].residual[i].form : first[s].element[e];
+			same = same_in_states(form, e < 0 ? first->residual[i].form : first->element[e]);
+			atoms = atoms || holds_atom(form);
+			piecewise = piecewise && is_piecewise_form(form);
+		}
+	}
+	return (struct demands){ same && !atoms, same && piecewise && (!atoms || segments == 1) };
+}
+
+bool leaves_over(const struct building *b)
+{
+	const struct scheme_row *row = scheme_row(b->model->scheme);
+	const struct demands demands = demands_of(b);
+	if (b->request->solution)
+		return false;
+	if (!b->model->asked.scheme_at.source)
+		return !demands.piecewise;
+	return b->model->scheme != SCHEME_EXACT && !row->holds_coupling &&
+	       (!demands.linear || row->expands || row->modes || b->request->loads_left || b->spec->has_operator);
+}
+
 /* Only loads may change their formula in time. */
 static bool check_changes(struct building *b)
 {
@@ -99,11 +137,6 @@ static bool check_sizes(const struct building *b)
 	return true;
 }
 
-static bool holds_atom(const struct form *form)
-{
-	return form->terms > 0 && form->term[form->terms - 1].basis.kind == BASIS_ATOM;
-}
-
 bool is_linear(const struct building *b)
 {
 	for (int s = 0; s < b->model->system.segments; s++)
@@ -111,6 +144,14 @@ bool is_linear(const struct building *b)
 			if (holds_atom(b->snapshot[s].residual[i].form) || !same_equations(b, &b->snapshot[s]))
 				return false;
 	return true;
+}
+
+/* In one interval, loads with the spec's values of params; what is more by other values is left over. */
+static void part_nominal_loads(struct building *b, int row, const struct form *whole)
+{
+	const struct form *here = form_at(point_new(&b->collector, 0, NULL), whole), *known = nominal_form(b, here);
+	b->load[row] = form_sum(known, time_part(known, true), true);
+	b->time_left[row] = form_sum(here, b->load[row], true);
 }
 
 /* What depends on time alone, in each interval of time: t < 1 ? ... has one formula there. What is then still no load,
@@ -127,6 +168,10 @@ static void part_loads(void *context)
 	for (int i = 0; i < n; i++) {
 		const struct form *whole = time_part(b->whole->residual[i].form, false);
 		bool same = true;
+		if (parts_params(b)) {
+			part_nominal_loads(b, i, whole);
+			continue;
+		}
 		for (c->interval = 0; c->interval < segments; c->interval++) {
 			struct form *here = form_at(point, whole), *left = time_part(here, true);
 			b->load[c->interval * n + i] = form_sum(here, left, true);
@@ -150,10 +195,11 @@ static const struct form *load_form(const struct building *b, int segment, int r
 static const struct atom *first_atom(const struct building *b, bool all)
 {
 	const struct atom *first = NULL;
-	for (int s = 0; s < b->model->system.segments; s++)
-		for (int i = 0; i < b->model->n; i++)
-			for (int k = 0; k < b->snapshot[s].residual[i].form->terms; k++) {
-				const struct basis *basis = &b->snapshot[s].residual[i].form->term[k].basis;
+	const struct snapshot *snapshot = b->nominal ? b->nominal : b->snapshot;
+	for (int s = 0; s < (b->nominal ? b->nominals : b->model->system.segments); s++)
+		for (int i = 0; i < snapshot[s].residuals; i++)
+			for (int k = 0; k < snapshot[s].residual[i].form->terms; k++) {
+				const struct basis *basis = &snapshot[s].residual[i].form->term[k].basis;
 				const struct atom *a = basis->atom;
 				if (a && (!first || a->node->start.offset < first->node->start.offset) &&
 				    (all || !is_piecewise_form(form_unit(*basis))))
@@ -190,6 +236,8 @@ static void find_obstacle(void *context)
 {
 	struct building *b = context;
 	struct model *model = b->model;
+	for (int s = 0; b->nominal && s < b->nominals; s++)
+		add_elements(b, &b->nominal[s]);
 	const struct atom *atom = first_atom(b, false), *any = first_atom(b, true);
 	const char *why = "is not piecewise linear", *rewrite;
 	model->obstacle = atom ? atom->node : any ? any->node : NULL;

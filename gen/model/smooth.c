@@ -386,6 +386,7 @@ static struct form *atom_on_side(struct side *s, const struct atom *a)
 		for (int i = 0; i < a->operands; i++)
 			product = kept_product(c, a->node, product, kept_whole_power(c, a->node, x[i], a->exponent[i]));
 		return product;
+	case ATOM_PARAM:      return kept_param(c, a->node, a->param);
 	case ATOM_RECIPROCAL: return kept_reciprocal(c, a->node, x[0]);
 	case ATOM_POWER:      return kept_power(c, a->node, x[0], x[1]);
 	case ATOM_CALL:       return call_on_side(s, a, x);

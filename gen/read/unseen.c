@@ -173,7 +173,7 @@ static void drop_symbols(struct sight *sight, const bool *gone)
 		if (drop && s->kind == SYMBOL_COORD)
 			name_unseen(spec, s);
 		if (gone[s->number])
-			s->tuned = false;
+			s->tuned = s->tunable = false;
 		if (drop)
 			continue;
 		if (s->kind == SYMBOL_COORD) {

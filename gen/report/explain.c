@@ -83,13 +83,17 @@ static void person_held(FILE *to, const struct step *step)
 		growth_rate(step), readable_text(step->model->h));
 }
 
-static void person_tuning(FILE *to, const struct tuning *t)
+static void person_tuning(FILE *to, const struct model *model)
 {
+	const struct tuning *t = tunables_of(model);
 	fputs("Tunable on the target:", to);
 	for (int k = 0; k < t->params; k++)
 		fprintf(to, "%s %s = %s", k ? "," : "", t->param[k].symbol->name, readable_text(t->nominal[k]));
-	fprintf(to, "; the equations there have %d term%s%s.\n", t->terms, t->terms == 1 ? "" : "s",
-		t->solves ? ", and are solved for the highest derivatives" : "");
+	if (model->held)
+		fputs("; expressions read them there. Operators, orders and choices are those of these values.\n", to);
+	else
+		fprintf(to, "; the equations there have %d term%s%s.\n", t->terms, t->terms == 1 ? "" : "s",
+			t->solves ? ", and are solved for the highest derivatives" : "");
 }
 
 /* What the step keeps in the place of positions and velocities as written */
@@ -159,8 +163,8 @@ static void person_step(FILE *to, const struct step *step)
 				shortest(step->shown->branch->whole->Phi[i * model->system.states + j].value));
 		fputc('\n', to);
 	}
-	if (model->tuning)
-		person_tuning(to, model->tuning);
+	if (tunables_of(model))
+		person_tuning(to, model);
 	if (model->switching)
 		fprintf(to, "%s_at: like a step, with every crossing on the way.\n", model->name);
 	else if (model->tuning)
@@ -839,8 +843,8 @@ void explain_json(FILE *to, const struct step *step)
 		json_shortening(to, model);
 	if (model->spec->parts)
 		json_scene(to, model->spec);
-	if (model->tuning)
-		json_tuning(to, model->tuning);
+	if (tunables_of(model))
+		json_tuning(to, tunables_of(model));
 	json_rational_matrix(to, "M", model->written->n, (const mpq_t *)model->written->system.M);
 	json_rational_matrix(to, "C", model->written->n, (const mpq_t *)model->written->system.C);
 	json_rational_matrix(to, "K", model->written->n, (const mpq_t *)model->written->system.K);

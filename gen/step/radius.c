@@ -42,6 +42,8 @@ static long double sum_value(const struct values *v, const struct sequence *s, i
 		long double operand = 0;
 		if (t->kind == TERM_TIME)
 			operand = t->a == 0;
+		else if (t->kind == TERM_PARAM)
+			operand = mpq_get_d(v->step->model->held->nominal[t->a]);
 		else if (t->kind == TERM_LOAD)
 			operand = v->load[t->a];
 		else if (t->kind == TERM_SEQUENCE)

@@ -513,12 +513,20 @@ static int sequence_of_choice(struct sequencing *w, const struct atom *atom)
 	return choice(w, compare->operand[0], compare->comparison, compare->operand[1], a, b);
 }
 
+/* What the instance holds: the same at all times */
+static int sequence_of_param(struct sequencing *w, const struct atom *atom)
+{
+	struct sum sum = single_key(TERM_PARAM, tunable_number(w->step->model->spec, atom->param), 0);
+	return sum_sequence(w, &sum);
+}
+
 static int sequence_of_atom(struct sequencing *w, const struct atom *atom)
 {
 	if (w->atom[atom->index] != NONE)
 		return w->atom[atom->index];
 	int made;
 	switch (atom->kind) {
+	case ATOM_PARAM:      made = sequence_of_param(w, atom); break;
 	case ATOM_PRODUCT:    made = sequence_of_product(w, atom); break;
 	case ATOM_RECIPROCAL: made = quotient_sequence(w, NONE, sequence_of_form(w, atom->operand[0])); break;
 	case ATOM_POWER:      made = sequence_of_power(w, atom); break;

@@ -818,7 +818,7 @@ void check_holds(const struct step *step);                   /* leaves the state
 /* Of a quantity a(t) the k-th number is D^k a^(k)/k!, D = h. What stands in a sum at k is factor[k] times: the constant
  * 1, a power of t, an entry of a load's states, an input's value at the start or its slope, the k-th number of another
  * sequence, or sum over j = 0..k of a_j b_{k-j} (Moore; Griewank and Walther 2008, chapter 13). */
-enum term_kind { TERM_TIME, TERM_LOAD, TERM_INPUT, TERM_SLOPE, TERM_SEQUENCE, TERM_PRODUCT };
+enum term_kind { TERM_TIME, TERM_LOAD, TERM_INPUT, TERM_SLOPE, TERM_PARAM, TERM_SEQUENCE, TERM_PRODUCT };
 struct sequence_term {
 	enum term_kind kind;
 	int a, b;                   /* which; the power of t; the load's column; the two sequences */
@@ -864,7 +864,7 @@ struct expansion {
 	int *slot_load;             /* per slot: column of the loads */
 	bool *load;                 /* per load: read */
 	bool *input, *slope;        /* per input: read */
-	bool time;                  /* t is read */
+	bool time, params;          /* t is read; tunable params are */
 	int multiplications;        /* of one expansion, that of its end and of the loads with it */
 };
 /* ---- sums.c: what is added up exactly, and its factors as numbers ---- */
