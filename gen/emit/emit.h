@@ -565,6 +565,15 @@ void declare_region_room(const struct emitter *e);
 void emit_search(const struct emitter *e);
 void emit_region_search(const struct emitter *e);
 void emit_region_status(const struct emitter *e);
+void emit_region_start_call(const struct emitter *e);
+void emit_region_advance_call(const struct emitter *e);
+void emit_segment_end(const struct emitter *e);                   /* of a step: the segment of time that outputs are in */
+bool regions_change(const struct emitter *e);                     /* they are others in each segment of time */
+int  regions_at_once(const struct emitter *e);                    /* in one segment, possible or not */
+
+/* ---- emit_instants.c: regions beside loads that change their formula in time ---- */
+
+void emit_region_changes(const struct emitter *e);                /* functions that go from change to change */
 /* emit_parts.c: of independent parts, each as it would be alone */
 void emit_part_tables(const struct emitter *e);
 void emit_part_declarations(const struct emitter *e);

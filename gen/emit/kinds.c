@@ -135,7 +135,7 @@ static bool regions_read_load(const struct emitter *e, int load)
 	const struct switching *s = e->model->switching;
 	bool reads = false;
 	for (int x = 0; x < s->expressions; x++)
-		for (int k = 0; k < e->system->load[load].columns; k++)
+		for (int k = 0; k < e->system->load[load].columns * e->system->segments; k++)
 			reads = reads || mpq_sgn(s->expression[x].row->load[load][k]) != 0;
 	for (int x = 0; x < s->systems; x++)
 		reads = reads || load_acts(&s->system[x], &s->system[x].load[load]);
@@ -181,7 +181,7 @@ static const struct kind regions = {
 	.reads_load = regions_read_load,
 	.reads_phi = never,
 	.tables = emit_region_tables,
-	.pass = emit_pass_of_changes,
+	.pass = nothing,
 	.step = emit_regions_step,
 	.held = nothing,
 	.at = emit_region_at,
@@ -207,6 +207,7 @@ static void emit_event_limit_of_parts(const struct emitter *e)
 
 static void emit_tables_of_parts(const struct emitter *e)
 {
+	emit_times_of_changes(e);
 	emit_part_tables(e);
 	emit_part_start(e);
 }
@@ -238,7 +239,7 @@ static const struct kind parts = {
 	.reads_load = parts_read_load,
 	.reads_phi = never,
 	.tables = emit_tables_of_parts,
-	.pass = emit_pass_of_changes,
+	.pass = nothing,
 	.step = emit_step_of_parts,
 	.held = nothing,
 	.at = emit_parts_at,

@@ -250,6 +250,10 @@ int  relative_place(const struct model *model, int written); /* the kept state t
 
 struct expression {                 /* what is compared with breakpoints: linear in states, loads and inputs */
 	struct form *form;          /* without constant; sign and scale as first written */
+	/* in each segment of time it is in + shift: its loads may have other formulas */
+	struct form **in;
+	mpq_t *shift;
+	mpq_t first;                /* what it is compared with where it is met first */
 	struct output *row;         /* the same as a row */
 	int breaks;
 	mpq_t *at;                  /* rising */
@@ -257,7 +261,7 @@ struct expression {                 /* what is compared with breakpoints: linear
 	int stride;                 /* of its interval in the index of a region */
 	int met;                    /* rises in the order in which the equations show expressions */
 };
-struct region {                     /* one interval for each expression */
+struct region {                     /* one interval for each expression, in one segment of time */
 	bool possible;              /* its inequalities can hold together */
 	int system;                 /* index of its equations; equal ones are one */
 	struct form **residual;     /* per row: linear */
@@ -266,10 +270,13 @@ struct switching {
 	int rows, *row;             /* of the equations that it is of */
 	int expressions;
 	struct expression *expression;
-	int regions;                /* all, possible or not: products of the expressions' intervals */
+	int segments;               /* of time: those of the model, or 1 where nothing of it changes */
+	/* all, possible or not: products of the expressions' intervals, of each segment of time in order */
+	int regions;
 	struct region *region;      /* NULL where there are parts */
 	int systems;
-	struct linear *system;      /* where there are parts one: that of the first region of each */
+	struct linear *system;      /* where there are parts one: that of the first region of each; one segment of time */
+	int *system_segment;        /* per system: a segment in which it serves; there expressions are the same in all */
 	int parts;                  /* 0: its regions are those of all coordinates together */
 	struct region_part *part;
 	int sharing;                /* parts that have these regions together, since some move as a whole */
@@ -367,7 +374,7 @@ void collect_outputs(struct building *b, struct snapshot *snapshot);
 int  find_order(const struct spec *spec, int coord);
 void build_outputs(struct building *b);
 /* of states, loads and inputs; no highest derivatives */
-struct output *row_of_form(struct building *b, struct form *form);
+struct output *row_of_expression(struct building *b, const struct switching *of, const struct expression *e);
 int  coordinate_of_row(const struct model *model, int row);       /* whose equation it is */
 void collect_whole(struct building *b);                     /* the equations for all time, atoms kept: b->whole */
 bool assign_equations(struct building *b);                  /* false: it was said which is missing or too many */
@@ -438,7 +445,8 @@ bool share_expression(const struct switching *a, const struct switching *b);
 /* of these rows of the equations; leaves the statement where they are too many, or with dry friction */
 struct switching *regions_of_rows(struct building *b, int rows, int *row);
 void remove_idle_breaks(struct switching *s);
-int  add_system(struct switching *s, const struct linear *system);   /* its index */
+int  add_system(struct switching *s, const struct linear *system, int segment);   /* its index */
+int  segment_of_region(const struct switching *s, int region);      /* of time */
 int  possible_regions(const struct switching *s);
 
 /* ---- parts.c: regions of independent coordinates ---- */

@@ -9,14 +9,25 @@ enum { LIMIT_CANDIDATES = 6561 };   /* regions looked at, before those that cann
 
 /* ---- is it? ---- */
 
+static bool has_atoms(const struct form *form)
+{
+	return form->terms > 0 && form->term[form->terms - 1].basis.atom;
+}
+
+/* In every segment of time; where there are several, somewhere with a breakpoint: factors of what is linear may not
+ * change alone. */
 bool is_piecewise_linear(const struct building *b)
 {
-	if (b->model->system.segments > 1)
-		return false;
-	for (int i = 0; i < b->model->n; i++)
-		if (!is_piecewise_form(b->snapshot->residual[i].form))
-			return false;
-	return true;
+	int segments = b->model->system.segments;
+	bool divided = segments == 1;
+	for (int s = 0; s < segments; s++)
+		for (int i = 0; i < b->model->n; i++) {
+			const struct form *form = b->snapshot[s].residual[i].form;
+			if (!is_piecewise_form(form))
+				return false;
+			divided = divided || has_atoms(form);
+		}
+	return divided;
 }
 
 /* ---- a form in one region ---- */
@@ -29,6 +40,7 @@ struct looking {
 	int count;
 	bool grown;                 /* an expression or a breakpoint was met for the first time: look again */
 	int region, row;            /* where it looks */
+	int segment;                /* of time */
 	int lowest;                 /* of the regions, where there is one expression, that a new breakpoint divides */
 };
 
@@ -72,22 +84,111 @@ bool share_expression(const struct switching *a, const struct switching *b)
 	return shared;
 }
 
-/* The expression that form, which has no constant, is a multiple of; met for the first time it is one, with the sign
- * and scale in which it was written. The form goes to it, or is freed. */
-static int find_expression(struct looking *l, const struct node *node, struct form *form, mpq_ptr of)
+/* ... by segments of time: its loads may have another formula in each, and a constant that is a part of them moves no
+ * breakpoint */
+
+static struct form *moving_part(const struct form *form)
 {
-	struct switching *s = l->s;
+	struct form *part = NEW(struct form);
+	for (int i = 0; i < form->terms; i++)
+		if (form->term[i].basis.kind == BASIS_COORD || form->term[i].basis.kind == BASIS_INPUT)
+			form_add_basis(part, form->term[i].basis, form->term[i].factor);
+	return part;
+}
+
+/* Is form what this expression has become? */
+static bool has_become(const struct expression *e, const struct form *form, mpq_ptr of)
+{
+	const struct form *here = moving_part(form), *there = moving_part(e->form);
+	mpq_set_ui(of, 1, 1);
+	return here->terms == 0 ? there->terms == 0 : there->terms > 0 && is_multiple(here, there, of);
+}
+
+/* form + constant = of (e - at) */
+static void compared_at(mpq_srcptr constant, mpq_srcptr of, mpq_ptr at)
+{
+	mpq_div(at, constant, of);
+	mpq_neg(at, at);
+}
+
+/* In this segment for the first time: where it is compared first, it was so elsewhere. */
+static void follow_expression(const struct looking *l, struct expression *e, const struct form *form,
+			      mpq_srcptr constant, mpq_srcptr of)
+{
+	mpq_t at, scale;
+	mpq_inits(at, scale, NULL);
+	compared_at(constant, of, at);
+	mpq_inv(scale, of);
+	e->in[l->segment] = form_scale(form, scale);
+	mpq_sub(e->shift[l->segment], e->first, at);
+	mpq_clears(at, scale, NULL);
+}
+
+static int expression_of_term(const struct looking *l, const struct node *node, const struct form *form,
+			      mpq_srcptr constant, mpq_ptr of)
+{
+	const struct switching *s = l->s;
 	for (int i = 0; i < s->expressions; i++)
-		if (is_multiple(form, s->expression[i].form, of)) {
-			form_free(form);
+		if (s->expression[i].node == node && s->expression[i].in[l->segment] &&
+		    is_multiple(form, s->expression[i].in[l->segment], of))
+			return i;
+	for (int i = 0; i < s->expressions; i++)
+		if (s->expression[i].node == node && !s->expression[i].in[l->segment] &&
+		    has_become(&s->expression[i], form, of)) {
+			follow_expression(l, &s->expression[i], form, constant, of);
 			return i;
 		}
+	return -1;
+}
+
+static int expression_of_form(const struct looking *l, const struct form *form, mpq_ptr of)
+{
+	const struct switching *s = l->s;
+	for (int i = 0; i < s->expressions; i++)
+		if (s->expression[i].in[l->segment] && is_multiple(form, s->expression[i].in[l->segment], of))
+			return i;
+	for (int i = 0; i < s->expressions; i++)
+		if (!s->expression[i].in[l->segment] && is_multiple(form, s->expression[i].form, of)) {
+			s->expression[i].in[l->segment] = s->expression[i].form;
+			return i;
+		}
+	return -1;
+}
+
+static int new_expression(const struct looking *l, const struct node *node, struct form *form)
+{
+	struct switching *s = l->s;
 	ENLARGE(s->expression, (size_t)s->expressions + 1);
-	s->expression[s->expressions] = (struct expression){
-		.form = form, .node = node, .met = l->row + (l->region > 0 ? l->b->model->n : 0)
-	};
-	mpq_set_ui(of, 1, 1);
+	struct expression *e = &s->expression[s->expressions];
+	*e = (struct expression){ .form = form,
+				  .in = ARRAY(struct form *, (size_t)s->segments),
+				  .shift = rationals((size_t)s->segments),
+				  .node = node,
+				  .met = l->row + (l->region > 0 ? l->b->model->n : 0) };
+	e->in[l->segment] = form;
+	mpq_init(e->first);
 	return s->expressions++;
+}
+
+/* The expression that form, which has no constant, is a multiple of; met for the first time it is one, with the sign
+ * and scale in which it was written. form + constant = of (e - at) */
+static int find_expression(const struct looking *l, const struct node *node, struct form *form, mpq_srcptr constant,
+			   mpq_ptr of, mpq_ptr at)
+{
+	int found = expression_of_term(l, node, form, constant, of);
+	if (found < 0)
+		found = expression_of_form(l, form, of);
+	bool first = found < 0;
+	if (first) {
+		found = new_expression(l, node, form);
+		mpq_set_ui(of, 1, 1);
+	}
+	struct expression *e = &l->s->expression[found];
+	compared_at(constant, of, at);
+	if (first)
+		mpq_set(e->first, at);
+	mpq_add(at, at, e->shift[l->segment]);
+	return found;
 }
 
 static void add_break(struct looking *l, struct expression *e, mpq_srcptr at)
@@ -126,17 +227,15 @@ static int sign_here(struct looking *l, const struct node *node, const struct fo
 	struct form plain = { 0, form->term, 0 };
 	while (plain.terms < form->terms && form->term[plain.terms].basis.kind <= BASIS_PI)
 		plain.terms++;
-	mpq_t constant, factor;
-	mpq_inits(constant, factor, NULL);
+	mpq_t constant, factor, at;
+	mpq_inits(constant, factor, at, NULL);
 	constant_value(c, &plain, constant);
 	int sign = mpq_sgn(constant);
 	if (plain.terms < form->terms) {
-		int e = find_expression(l, node, form_sum(form, &plain, true), factor);
-		mpq_div(constant, constant, factor);
-		mpq_neg(constant, constant);    /* e = (form - constant)/factor against -constant/factor */
-		sign = is_above(l, e, constant) == (mpq_sgn(factor) > 0) ? 1 : -1;
+		int e = find_expression(l, node, form_sum(form, &plain, true), constant, factor, at);
+		sign = is_above(l, e, at) == (mpq_sgn(factor) > 0) ? 1 : -1;
 	}
-	mpq_clears(constant, factor, NULL);
+	mpq_clears(constant, factor, at, NULL);
 	form_free(form);
 	return turned ? -sign : sign;
 }
@@ -225,7 +324,12 @@ static struct form *form_here(struct looking *l, const struct form *form)
 	return total;
 }
 
-/* ---- all regions ---- */
+/* ---- all regions: in each segment of time those of all intervals ---- */
+
+int segment_of_region(const struct switching *s, int region)
+{
+	return region / (s->regions / s->segments);
+}
 
 static int *intervals_of(const struct switching *s, int region)
 {
@@ -263,8 +367,8 @@ static _Noreturn void too_many(const struct building *b, const struct switching 
 static bool look(struct building *b, struct switching *s, int *known)
 {
 	const struct region *before = s->region;
-	bool single = s->expressions == 1;
-	s->regions = count_candidates(s);
+	bool single = s->expressions == 1 && s->segments == 1;
+	s->regions = count_candidates(s) * s->segments;
 	if (s->regions > LIMIT_CANDIDATES)
 		too_many(b, s);
 	s->region = ARRAY(struct region, (size_t)s->regions);
@@ -278,11 +382,12 @@ static bool look(struct building *b, struct switching *s, int *known)
 				     .known = ARRAY(struct form *, (size_t)atoms),
 				     .count = atoms,
 				     .region = r,
+				     .segment = segment_of_region(s, r),
 				     .lowest = r };
 		s->region[r].residual = ARRAY(struct form *, (size_t)b->model->n);
 		for (int k = 0; k < s->rows; k++) {
 			l.row = s->row[k];
-			s->region[r].residual[l.row] = form_here(&l, b->snapshot->residual[l.row].form);
+			s->region[r].residual[l.row] = form_here(&l, b->snapshot[l.segment].residual[l.row].form);
 		}
 		*known = single && s->expressions == 1 ? l.lowest : 0;
 		if (l.grown)
@@ -342,13 +447,13 @@ static bool can_hold(struct inequalities set)
 }
 
 /* The bases that expressions are made of, as variables */
-static int find_bases(const struct switching *s, struct basis **basis)
+static int find_bases(const struct switching *s, int segment, struct basis **basis)
 {
 	int count = 0;
 	*basis = NULL;
 	for (int i = 0; i < s->expressions; i++)
-		for (int k = 0; k < s->expression[i].form->terms; k++) {
-			const struct basis *found = &s->expression[i].form->term[k].basis;
+		for (int k = 0; k < s->expression[i].in[segment]->terms; k++) {
+			const struct basis *found = &s->expression[i].in[segment]->term[k].basis;
 			bool known = false;
 			for (int j = 0; j < count; j++)
 				known = known || basis_order(&(*basis)[j], found) == 0;
@@ -360,14 +465,16 @@ static int find_bases(const struct switching *s, struct basis **basis)
 	return count;
 }
 
-static mpq_t *bound_row(const struct expression *e, int bases, const struct basis *basis, mpq_srcptr at, bool below)
+static mpq_t *bound_row(const struct expression *e, int segment, int bases, const struct basis *basis, mpq_srcptr at,
+			bool below)
 {
 	mpq_t *a = rationals((size_t)bases + 1);
-	for (int k = 0; k < e->form->terms; k++)
+	const struct form *form = e->in[segment];
+	for (int k = 0; k < form->terms; k++)
 		for (int j = 0; j < bases; j++)
-			if (basis_order(&basis[j], &e->form->term[k].basis) == 0)
-				mpq_set(a[j], e->form->term[k].factor);
-	mpq_set(a[bases], at);
+			if (basis_order(&basis[j], &form->term[k].basis) == 0)
+				mpq_set(a[j], form->term[k].factor);
+	mpq_sub(a[bases], at, e->shift[segment]);
 	for (int j = 0; j <= bases && !below; j++)
 		mpq_neg(a[j], a[j]);
 	return a;
@@ -378,27 +485,29 @@ static bool is_possible(const struct switching *s, int region, int bases, const 
 	struct inequalities set = { bases, 0, NULL };
 	for (int i = 0; i < s->expressions; i++) {
 		const struct expression *e = &s->expression[i];
-		int interval = interval_of(s, region, i);
+		int interval = interval_of(s, region, i), segment = segment_of_region(s, region);
 		if (interval < e->breaks)
-			add_inequality(&set, bound_row(e, bases, basis, e->at[interval], true));
+			add_inequality(&set, bound_row(e, segment, bases, basis, e->at[interval], true));
 		if (interval > 0)
-			add_inequality(&set, bound_row(e, bases, basis, e->at[interval - 1], false));
+			add_inequality(&set, bound_row(e, segment, bases, basis, e->at[interval - 1], false));
 	}
 	return can_hold(set);
 }
 
 /* Expressions of which each has a basis of its own are independent: then every region can be. */
-static bool independent(const struct switching *s)
+static bool independent(const struct switching *s, int segment)
 {
 	for (int i = 0; i < s->expressions; i++) {
 		bool own = false;
-		for (int k = 0; k < s->expression[i].form->terms && !own; k++) {
+		const struct form *form = s->expression[i].in[segment];
+		for (int k = 0; k < form->terms && !own; k++) {
 			own = true;
 			for (int j = 0; j < s->expressions; j++)
-				for (int m = 0; m < s->expression[j].form->terms; m++)
+				for (int m = 0; m < s->expression[j].in[segment]->terms; m++)
 					own = own &&
-					      (i == j || basis_order(&s->expression[i].form->term[k].basis,
-								     &s->expression[j].form->term[m].basis) != 0);
+					      (i == j ||
+					       basis_order(&form->term[k].basis,
+							   &s->expression[j].in[segment]->term[m].basis) != 0);
 		}
 		if (!own)
 			return false;
@@ -408,28 +517,35 @@ static bool independent(const struct switching *s)
 
 static void mark_possible(const struct building *b, struct switching *s)
 {
-	struct basis *basis;
-	int bases = find_bases(s, &basis), count = 0;
-	bool all = independent(s);
-	for (int r = 0; r < s->regions; r++) {
-		s->region[r].possible = all || is_possible(s, r, bases, basis);
-		count += s->region[r].possible;
+	int in_one = s->regions / s->segments;
+	for (int segment = 0; segment < s->segments; segment++) {
+		struct basis *basis;
+		int bases = find_bases(s, segment, &basis), count = 0;
+		bool all = independent(s, segment);
+		for (int r = segment * in_one; r < (segment + 1) * in_one; r++) {
+			s->region[r].possible = all || is_possible(s, r, bases, basis);
+			count += s->region[r].possible;
+		}
+		if (count > LIMIT_REGIONS)
+			too_many(b, s);
 	}
-	if (count > LIMIT_REGIONS)
-		too_many(b, s);
 }
 
 /* ---- what cannot be treated: forces that jump with a velocity ---- */
 
 /* Is the form a multiple of e - at, so that it vanishes on the breakpoint? */
-static bool vanishes_on(struct collector *c, const struct form *form, const struct expression *e, mpq_srcptr at)
+static bool vanishes_on(struct collector *c, const struct form *form, const struct expression *e, int segment,
+			mpq_srcptr at)
 {
+	const struct form *here = e->in[segment];
 	mpq_t factor, constant;
 	mpq_inits(factor, constant, NULL);
 	for (int i = 0; i < form->terms; i++)
-		if (basis_order(&form->term[i].basis, &e->form->term[0].basis) == 0)
-			mpq_div(factor, form->term[i].factor, e->form->term[0].factor);
-	const struct form *rest = form_sum(form, form_scale(form_sum(e->form, form_constant(at), true), factor), true);
+		if (basis_order(&form->term[i].basis, &here->term[0].basis) == 0)
+			mpq_div(factor, form->term[i].factor, here->term[0].factor);
+	mpq_sub(constant, at, e->shift[segment]);
+	const struct form *rest =
+		form_sum(form, form_scale(form_sum(here, form_constant(constant), true), factor), true);
 	bool gone = is_constant(rest);
 	if (gone)
 		constant_value(c, rest, constant);
@@ -446,7 +562,7 @@ static void check_face(struct building *b, const struct switching *s, int below,
 	for (int k = 0; k < s->rows; k++) {
 		int i = s->row[k];
 		const struct form *jump = form_sum(high->residual[i], low->residual[i], true);
-		if (vanishes_on(&b->collector, jump, e, at))
+		if (vanishes_on(&b->collector, jump, e, segment_of_region(s, below), at))
 			continue;
 		tell_friction(e->node, format("%s passes %s", form_text(b->model, e->form), readable_text(at)));
 	}
@@ -461,6 +577,31 @@ static void check_jumps(struct building *b, const struct switching *s)
 				check_face(b, s, r, e);
 }
 
+static bool changes_in_time(const struct building *b, int rows, const int *row)
+{
+	bool changes = false;
+	for (int s = 1; s < b->model->system.segments; s++)
+		for (int k = 0; k < rows; k++)
+			changes = changes || !same_form(b->snapshot[s].residual[row[k]].form,
+							b->snapshot->residual[row[k]].form);
+	return changes;
+}
+
+/* Segments in which an expression is not met, as nothing depends on it there: it is as in the one before, or after */
+static void complete_expression(const struct switching *s, struct expression *e)
+{
+	int first = 0;
+	while (!e->in[first])
+		first++;
+	for (int segment = 0; segment < s->segments; segment++) {
+		int as = segment < first ? first : segment - 1;
+		if (e->in[segment])
+			continue;
+		e->in[segment] = e->in[as];
+		mpq_set(e->shift[segment], e->shift[as]);
+	}
+}
+
 /* Highest derivatives cannot decide on their own equations; the collector has refused them. */
 struct switching *regions_of_rows(struct building *b, int rows, int *row)
 {
@@ -468,8 +609,11 @@ struct switching *regions_of_rows(struct building *b, int rows, int *row)
 	int known = 0;
 	s->rows = rows;
 	s->row = row;
+	s->segments = changes_in_time(b, rows, row) ? b->model->system.segments : 1;
 	while (!look(b, s, &known))
 		;
+	for (int e = 0; e < s->expressions; e++)
+		complete_expression(s, &s->expression[e]);
 	mark_possible(b, s);
 	if (!b->model->relative)                /* else it has been told */
 		check_jumps(b, s);
@@ -500,13 +644,24 @@ static bool same_system(const struct linear *a, const struct linear *b)
 	return same;
 }
 
-int add_system(struct switching *s, const struct linear *system)
+static bool same_rows(const struct switching *s, int a, int b)
+{
+	bool same = true;
+	for (int e = 0; e < s->expressions && a != b; e++)
+		same = same && mpq_equal(s->expression[e].shift[a], s->expression[e].shift[b]) &&
+		       same_form(s->expression[e].in[a], s->expression[e].in[b]);
+	return same;
+}
+
+int add_system(struct switching *s, const struct linear *system, int segment)
 {
 	for (int i = 0; i < s->systems; i++)
-		if (same_system(&s->system[i], system))
+		if (same_system(&s->system[i], system) && same_rows(s, s->system_segment[i], segment))
 			return i;
 	ENLARGE(s->system, (size_t)s->systems + 1);
+	ENLARGE(s->system_segment, (size_t)s->systems + 1);
 	s->system[s->systems] = *system;
+	s->system_segment[s->systems] = segment;
 	return s->systems++;
 }
 
@@ -538,10 +693,10 @@ static void remove_break(struct switching *s, int expression, int at)
 		if (i != at)
 			mpq_set(e->at[k++], old.expression[expression].at[i]);
 	e->breaks--;
-	s->regions = count_candidates(s);
+	s->regions = count_candidates(s) * s->segments;
 	s->region = ARRAY(struct region, (size_t)s->regions);
 	for (int r = 0; r < old.regions; r++) {
-		int merged = 0;
+		int merged = segment_of_region(&old, r) * (s->regions / s->segments);
 		for (int i = 0; i < s->expressions; i++) {
 			int interval = interval_of(&old, r, i);
 			merged += (interval - (i == expression && interval > at)) * s->expression[i].stride;

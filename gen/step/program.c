@@ -37,13 +37,13 @@ bool is_forced(const struct step *step, int column)
 	return false;
 }
 
-static void mark_loads_of(const struct switching *s, bool *needed)
+static void mark_loads_of(const struct switching *s, int segments, bool *needed)
 {
 	for (int l = 0; l < s->system->loads; l++) {
 		for (int k = 0; k < s->systems; k++)
 			needed[l] = needed[l] || load_acts(&s->system[k], &s->system[k].load[l]);
 		for (int e = 0; e < s->expressions; e++)
-			for (int k = 0; k < s->system->load[l].columns; k++)
+			for (int k = 0; k < s->system->load[l].columns * segments; k++)
 				needed[l] = needed[l] || mpq_sgn(s->expression[e].row->load[l][k]) != 0;
 	}
 }
@@ -52,10 +52,11 @@ bool *loads_of_regions(const struct step *step)
 {
 	const struct switching *s = step->model->switching;
 	bool *needed = ARRAY(bool, (size_t)step->branch->system.loads);
+	int segments = step->shown->model->system.segments;
 	for (int p = 0; p < s->parts; p++)
-		mark_loads_of(s->part[p].model->switching, needed);
+		mark_loads_of(s->part[p].model->switching, segments, needed);
 	if (s->parts == 0)
-		mark_loads_of(s, needed);
+		mark_loads_of(s, segments, needed);
 	return needed;
 }
 

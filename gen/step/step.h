@@ -414,6 +414,7 @@ bool is_cleared_by_tables(const struct step *step);         /* a swift step look
 /* ---- pieces.c: what a piecewise-linear model finds its crossings with ---- */
 
 struct region_piece {               /* of a branch, d = h 2^-halvings long; x as in struct layout */
+	double *row;                /* of each expression: row . x, expressions x size */
 	double *slopes;             /* A of x' = A x, size x size [x/s] */
 	double *Phi;                /* e^{A d}, size x size */
 	double *slope;              /* slope . x is d/3 times the slope of each expression; expressions x size */
@@ -428,7 +429,8 @@ struct region_piece {               /* of a branch, d = h 2^-halvings long; x as
 	double *turns;              /* h A */
 };
 struct pieces {
-	double *row;                /* of each expression: row . x, expressions x size */
+	double **rows;              /* of each expression: row . x, expressions x size; in each segment of time */
+	double *row;                /* in the first */
 	double *breakpoint;         /* those of the first expression, rising; of the second; ... */
 	struct region_piece *piece;        /* per branch */
 	/* Where a step is swift: */
@@ -441,7 +443,7 @@ struct pieces {
 #define OPEN_END 0x1p1000           /* of an interval that no breakpoint ends */
 struct pieces pieces_of(const struct step *step);
 double *whole_step_of(const struct step *step, int branch);  /* e^{A h}, size x size */
-void row_over_x(const struct step *step, const struct output *output, double *row);
+void row_over_x(const struct step *step, const struct output *output, int segment, double *row);
 /* Of |x|: how far row . x is at most off its chord over h, entry by entry */
 void bend_of_row(const struct step *step, const double *A, double h, const double *row, double *bend);
 
