@@ -48,8 +48,7 @@ int possible_regions(const struct switching *s)
 	return count;
 }
 
-/* Is form a multiple of e? of: the factor */
-static bool is_multiple(const struct form *form, const struct form *e, mpq_ptr of)
+bool is_form_multiple(const struct form *form, const struct form *e, mpq_ptr of)
 {
 	if (form->terms != e->terms || basis_order(&form->term[0].basis, &e->term[0].basis) != 0)
 		return false;
@@ -67,7 +66,7 @@ bool share_expression(const struct switching *a, const struct switching *b)
 	mpq_init(factor);
 	for (int i = 0; i < a->expressions; i++)
 		for (int k = 0; k < b->expressions && !shared; k++)
-			shared = is_multiple(a->expression[i].form, b->expression[k].form, factor);
+			shared = is_form_multiple(a->expression[i].form, b->expression[k].form, factor);
 	mpq_clear(factor);
 	return shared;
 }
@@ -78,7 +77,7 @@ static int find_expression(struct looking *l, const struct node *node, struct fo
 {
 	struct switching *s = l->s;
 	for (int i = 0; i < s->expressions; i++)
-		if (is_multiple(form, s->expression[i].form, of)) {
+		if (is_form_multiple(form, s->expression[i].form, of)) {
 			form_free(form);
 			return i;
 		}
