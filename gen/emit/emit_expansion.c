@@ -66,7 +66,7 @@ void emit_series_ahead(const struct emitter *e)
 /* At the end of a piece: what ended it */
 static const char *passed_text(const struct emitter *e)
 {
-	return spell(e, "        if (next < 0.0) {\n"
+	return spell(e, "        if (meets < 0.0) {\n"
 			"            contact->last.expression = -1;\n"
 			"            continue;\n"
 			"        }\n"
@@ -90,7 +90,7 @@ static void emit_between(const struct emitter *e)
 	if (adaptive)
 		say(e, "    double longest = 1.0;\n");
 	if (divided)
-		say(e, "    double terms[%d], work[PL_DIVIDED_WORK(%d)], next;\n"
+		say(e, "    double terms[%d], work[PL_DIVIDED_WORK(%d)], meets;\n"
 		       "    int splits = %d;\n", expansion(e)->expressions, order, MAX_SPLITS);
 	emit_input_samples(e);
 	say(e, "    while (done < end) {\n"
@@ -122,10 +122,10 @@ static void emit_between(const struct emitter *e)
 		       "        size = size < longest ? size : longest;\n"
 		       "        size = size < limit - done ? size : limit - done;\n"
 		       "        for (longest *= 2.0; fresh; longest = 2.0 * size) {\n"
-		       "            double d[%d][$c], ahead[$N_STATES]%s;\n"
+		       "            double d[%d][$c], next[$N_STATES]%s;\n"
 		       "            $n_ahead((const double (*)[$c])c, size, gain);\n"
 		       "            for (i = 0; i < $N_STATES; i++)\n"
-		       "                ahead[i] = y[i] + gain[i];\n"
+		       "                next[i] = y[i] + gain[i];\n"
 		       "            %s\n"
 		       "            fresh = !$n_agrees(s, (const double (*)[$c])c, "
 		       "(const double (*)[$c])d, size);\n"
@@ -135,16 +135,16 @@ static void emit_between(const struct emitter *e)
 		    order + 1, divided ? format(", spare[%d]", expansion(e)->expressions) : "",
 		    expand_call(e, spell(e, "(done + size) * $N_H"),
 					   spell(e, "$n_time(s) + 0.5 * (done + limit) * $N_H"), "segment",
-					   "contact->", "ahead", "d"));
+					   "contact->", "next", "d"));
 	else
 		say(e, "        size = limit - done;\n");
 	if (divided)
-		say(e, "        next = pl_divided_next(&$n_divided, c[0], terms, contact->interval, size, &splits,\n"
+		say(e, "        meets = pl_divided_next(&$n_divided, c[0], terms, contact->interval, size, &splits,\n"
 		       "            &contact->last, work);\n"
 		       "        if (splits < 0)\n"
 		       "            return PL_TOO_MANY_EVENTS;\n"
-		       "        if (next >= 0.0)\n"
-		       "            size = next;\n");
+		       "        if (meets >= 0.0)\n"
+		       "            size = meets;\n");
 	if (watches(e))
 		say(e, "        if (!$n_is_accurate(s, (const double (*)[$c])c, size))\n"
 		       "            status = PL_INACCURATE;\n");

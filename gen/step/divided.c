@@ -59,12 +59,18 @@ static void value_of_constants(const struct sequencing *w, const struct form *fo
 int choice_by_state(struct sequencing *w, const struct atom *atom, const struct form *a, const struct form *b,
 		    int above, int below)
 {
-	const struct form *d = form_difference(a, b);
+	bool turned = is_constant(a) && !is_constant(b);        /* what stands beside a constant is as it was written */
+	const struct form *d = turned ? form_difference(b, a) : form_difference(a, b);
 	int constants = constant_terms(d);
 	struct form plain = { constants, d->term, 0 };
 	mpq_t value, factor;
 	if (scheme_row(w->step->model->scheme)->collocates)
 		no_series(w, atom, "changes its formula where the state decides, which scheme taylor takes as an event");
+	if (turned) {
+		int other = above;
+		above = below;
+		below = other;
+	}
 	mpq_inits(value, factor, NULL);
 	value_of_constants(w, d, constants, value);
 	int side = mpq_sgn(value), sequence = side > 0 ? above : below;
