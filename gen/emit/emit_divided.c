@@ -46,7 +46,6 @@ static void emit_divided_tables(const struct emitter *e)
 {
 	const struct expansion *x = expansion(e);
 	const char *column = "", *breaks = "", *at = "";
-	say(e, "\n/* Expressions, and where each passes to other formulas:\n");
 	for (int i = 0; i < x->expressions; i++) {
 		const struct divided *d = &x->expression[i];
 		mpq_t *rising = rising_breakpoints(d);
@@ -56,9 +55,8 @@ static void emit_divided_tables(const struct emitter *e)
 		for (int k = 0; k < d->breaks; k++)
 			row = format("%s%s%s", row, k ? ", " : "", shortest(round_rational(rising[k])));
 		at = format("%s%s%s", at, i ? ",\n    " : "", row);
-		say(e, " *     %d: %s\n", i, form_text(e->model, d->form));
 	}
-	say(e, " */\n"
+	say(e, "\n/* Of the expressions that choose formulas: the column of each, its breakpoints */\n"
 	       "static const int $n_column[] = {%s}, $n_breaks[] = {%s};\n"
 	       "static const double $n_breakpoint[] = {\n    %s\n};\n"
 	       "static const pl_divided $n_divided = {\n"

@@ -134,6 +134,14 @@ mpq_t *rising_breakpoints(const struct divided *d)
 	return rising;
 }
 
+const char *divided_text(const struct step *step, int expression)
+{
+	const struct step *shown = step->shown;
+	bool same = shown->expansion && shown->expansion->expressions == step->expansion->expressions;
+	shown = same ? shown : step;
+	return form_text(shown->model, shown->expansion->expression[expression].form);
+}
+
 int regions_of_series(const struct expansion *x)
 {
 	int regions = 1;

@@ -923,6 +923,7 @@ int  choice_by_state(struct sequencing *w, const struct atom *atom, const struct
 void rank_breakpoints(struct expansion *x);                  /* once all are there */
 int  breakpoint_rank(const struct expansion *x, const struct sequence *choice);
 mpq_t *rising_breakpoints(const struct divided *d);
+const char *divided_text(const struct step *step, int expression); /* over the written coordinates */
 /* The number of a region is its expressions' intervals in mixed radix; 0: too many for an int */
 int  regions_of_series(const struct expansion *x);
 /* Leaves the statement where what is chosen by the state is not treated */
