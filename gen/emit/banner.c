@@ -158,6 +158,29 @@ static void tell_no_phi(const struct emitter *e)
 }
 
 /* What the series is of, how long a step is */
+/* What chooses formulas by the state */
+static void banner_divided(const struct emitter *e)
+{
+	const struct expansion *x = e->step->expansion;
+	if (!x || x->expressions == 0)
+		return;
+	banner_sentence(e, "The state chooses formulas: a series is of those between two crossings. Where an expression "
+			   "passes a breakpoint is the first root of its own series, found before it is stepped over; "
+			   "there the series ends, and the next one begins.");
+	for (int i = 0; i < x->expressions; i++) {
+		const struct divided *d = &x->expression[i];
+		mpq_t *rising = rising_breakpoints(d);
+		const char *at = "";
+		for (int k = 0; k < d->breaks; k++)
+			at = format("%s%s%s", at, k ? ", " : "", readable_text(rising[k]));
+		say(e, " *     expression %d: %s, at %s\n", i, printable(divided_text(e->step, i)), at);
+	}
+	if (regions_of_series(x))
+		banner_sentence(e, "A region's number is the sum of its intervals, each times the product of the numbers "
+				   "of intervals before it.");
+	banner_sentence(e, "Costs below are of one series, without the search on it; a crossing takes another one.");
+}
+
 void banner_expanded(const struct emitter *e)
 {
 	const struct truncation *truncation = &e->model->truncation;
@@ -181,6 +204,7 @@ void banner_expanded(const struct emitter *e)
 		       "last are values of\n"
 		       " * its series, by Horner's rule. Costs are those of a step, its share of the expansion and of "
 		       "such values.\n", truncation->over, truncation->over);
+	banner_divided(e);
 	say(e, " * What rounding takes from the state is kept in rest.\n");
 	tell_no_phi(e);
 }

@@ -71,6 +71,8 @@ static struct emitter emitter_new(FILE *to, const struct step *step, const char 
 		.upper = upper_case(step->model->name), .own = step->model->name, .place = "",
 		.degree = step->model->name
 	};
+	e.columns = format(step->expansion && step->expansion->columns ? "%s_STATES + %d" : "%s_STATES", e.upper,
+			   step->expansion ? step->expansion->columns : 0);
 	number_loads(&e);
 	for (int i = 0; i < e.system->inputs; i++)
 		e.ramps = e.ramps || e.system->input[i].hold;

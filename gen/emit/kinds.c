@@ -328,20 +328,32 @@ static void emit_expansion_tables(const struct emitter *e)
 	emit_expansion_place(e);
 }
 
+static void emit_expansion_constants(const struct emitter *e)
+{
+	if (is_divided(e))
+		emit_event_limit(e);
+}
+
+static void emit_expansion_types(const struct emitter *e)
+{
+	emit_divided_types(e);
+	emit_held_types(e);
+}
+
 static const struct kind expanded = {
 	.banner = banner_expanded,
 	.step_note = "",
 	.banner_more = banner_held,
 	.no_jump = "what is left over is not linear in the state",
 	.no_at = always,
-	.constants = nothing,
-	.types = emit_held_types,
+	.constants = emit_expansion_constants,
+	.types = emit_expansion_types,
 	.coefficients = emit_held_member,
 	.members = emit_expansion_members,
 	.keeps_status = true,
 	.init_note = "t = 0, the spec's initial values",
 	.status_note = "0, or PL_... bits (plrt.h)",
-	.declare_state = nothing,
+	.declare_state = emit_divided_declarations,
 	.declare_more = emit_held_declarations,
 	.start = emit_held_start,
 	.places = expansion_places,

@@ -100,6 +100,9 @@ struct smoothness {                 /* of what is left over, else of the equatio
 	const char *where;          /* x passes 0.5 */
 	bool piecewise;             /* exact could treat it alone */
 	bool timed;                 /* it lies at a time */
+	/* a formula that ends there, as abs(x)^1.5, whose derivatives are not finite, and where; NULL: none does */
+	const struct node *singular;
+	const char *singular_where;
 };
 struct request {                    /* what the user asks for on the command line; of most, a spec may say it too */
 	const char *step, *scheme, *prefix, *tolerance;
@@ -447,6 +450,7 @@ struct switching *regions_of_rows(struct building *b, int rows, int *row);
 void remove_idle_breaks(struct switching *s);
 int  add_system(struct switching *s, const struct linear *system, int segment);   /* its index */
 int  segment_of_region(const struct switching *s, int region);      /* of time */
+bool is_form_multiple(const struct form *form, const struct form *e, mpq_ptr of);   /* of: the factor */
 int  possible_regions(const struct switching *s);
 
 /* ---- parts.c: regions of independent coordinates ---- */

@@ -60,8 +60,7 @@ int possible_regions(const struct switching *s)
 	return count;
 }
 
-/* Is form a multiple of e? of: the factor */
-static bool is_multiple(const struct form *form, const struct form *e, mpq_ptr of)
+bool is_form_multiple(const struct form *form, const struct form *e, mpq_ptr of)
 {
 	if (form->terms != e->terms || basis_order(&form->term[0].basis, &e->term[0].basis) != 0)
 		return false;
@@ -79,7 +78,7 @@ bool share_expression(const struct switching *a, const struct switching *b)
 	mpq_init(factor);
 	for (int i = 0; i < a->expressions; i++)
 		for (int k = 0; k < b->expressions && !shared; k++)
-			shared = is_multiple(a->expression[i].form, b->expression[k].form, factor);
+			shared = is_form_multiple(a->expression[i].form, b->expression[k].form, factor);
 	mpq_clear(factor);
 	return shared;
 }
@@ -101,7 +100,7 @@ static bool has_become(const struct expression *e, const struct form *form, mpq_
 {
 	const struct form *here = moving_part(form), *there = moving_part(e->form);
 	mpq_set_ui(of, 1, 1);
-	return here->terms == 0 ? there->terms == 0 : there->terms > 0 && is_multiple(here, there, of);
+	return here->terms == 0 ? there->terms == 0 : there->terms > 0 && is_form_multiple(here, there, of);
 }
 
 /* form + constant = of (e - at) */
@@ -130,7 +129,7 @@ static int expression_of_term(const struct looking *l, const struct node *node, 
 	const struct switching *s = l->s;
 	for (int i = 0; i < s->expressions; i++)
 		if (s->expression[i].node == node && s->expression[i].in[l->segment] &&
-		    is_multiple(form, s->expression[i].in[l->segment], of))
+		    is_form_multiple(form, s->expression[i].in[l->segment], of))
 			return i;
 	for (int i = 0; i < s->expressions; i++)
 		if (s->expression[i].node == node && !s->expression[i].in[l->segment] &&
@@ -145,10 +144,10 @@ static int expression_of_form(const struct looking *l, const struct form *form, 
 {
 	const struct switching *s = l->s;
 	for (int i = 0; i < s->expressions; i++)
-		if (s->expression[i].in[l->segment] && is_multiple(form, s->expression[i].in[l->segment], of))
+		if (s->expression[i].in[l->segment] && is_form_multiple(form, s->expression[i].in[l->segment], of))
 			return i;
 	for (int i = 0; i < s->expressions; i++)
-		if (!s->expression[i].in[l->segment] && is_multiple(form, s->expression[i].form, of)) {
+		if (!s->expression[i].in[l->segment] && is_form_multiple(form, s->expression[i].form, of)) {
 			s->expression[i].in[l->segment] = s->expression[i].form;
 			return i;
 		}

@@ -258,6 +258,22 @@ static void person_expressions(FILE *to, const struct step *step)
 	}
 }
 
+/* What chooses formulas by the state, of a series */
+static void person_divided(FILE *to, const struct step *step)
+{
+	const struct expansion *x = step->expansion;
+	fprintf(to, "The state chooses formulas; a series ends where an expression passes a breakpoint, at most %d "
+		    "times in a step:\n", MAX_EVENTS);
+	for (int i = 0; i < x->expressions; i++) {
+		const struct divided *d = &x->expression[i];
+		mpq_t *rising = rising_breakpoints(d);
+		fprintf(to, "    expression %d: %s, breakpoints", i, divided_text(step, i));
+		for (int k = 0; k < d->breaks; k++)
+			fprintf(to, "%s %s", k ? "," : "", readable_text(rising[k]));
+		fputc('\n', to);
+	}
+}
+
 static void person_intervals(FILE *to, const struct switching *s, int region)
 {
 	fputs(" (intervals", to);
@@ -407,6 +423,8 @@ static void person_split(FILE *to, const struct step *step)
 		fprintf(to, " where all is smooth; here of order %s at most: %s", order_text(model),
 			smoothness_text(model));
 	fputs(".\n", to);
+	if (step->expansion && step->expansion->expressions > 0)
+		person_divided(to, step);
 	if (step->expansion)
 		person_reach(to, step);
 	fprintf(to, "r, left to scheme %s, is a force on each of these equations%s:\n", scheme_name(model->scheme),
@@ -795,6 +813,21 @@ static void json_scene(FILE *to, const struct spec *spec)
 	fputs("],\n", to);
 }
 
+static void json_divided(FILE *to, const struct step *step)
+{
+	const struct expansion *x = step->expansion;
+	fputs("  \"expressions\": [", to);
+	for (int i = 0; i < x->expressions; i++) {
+		mpq_t *rising = rising_breakpoints(&x->expression[i]);
+		fprintf(to, "%s\n    {\"expression\": \"%s\", \"breakpoints\": [", i ? "," : "",
+			json_text(divided_text(step, i)));
+		for (int k = 0; k < x->expression[i].breaks; k++)
+			fprintf(to, "%s%.17g", k ? ", " : "", nearest_double(rising[k]));
+		fputs("]}", to);
+	}
+	fputs("],\n", to);
+}
+
 /* Its order here, and what it goes by */
 static void json_scheme(FILE *to, const struct step *step)
 {
@@ -814,6 +847,8 @@ static void json_scheme(FILE *to, const struct step *step)
 		fprintf(to, "  \"substeps\": %d,\n", model->truncation.substeps);
 	if (step->expansion && model->truncation.over > 1)
 		fprintf(to, "  \"over\": %d,\n", model->truncation.over);
+	if (step->expansion && step->expansion->expressions > 0)
+		json_divided(to, step);
 	if (step->expansion)
 		json_reach(to, step);
 }

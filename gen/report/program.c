@@ -362,6 +362,18 @@ static const char *sequence_sum(const struct step *step, const struct sequence *
 	return *text ? text : "0";
 }
 
+/* By what it is chosen */
+static const char *chooser_text(const struct step *step, const struct sequence *s)
+{
+	const struct divided *d = &step->expansion->expression[s->expression];
+	switch (s->choice) {
+	case CHOICE_BY_STATE:    return format("%s above %s", sequence_text(step, d->sequence),
+					       readable_text(d->at[s->breakpoint]));
+	case CHOICE_BY_SEQUENCE: return format("%s not 0", sequence_text(step, s->test));
+	default:                 return "t";
+	}
+}
+
 static const char *sequence_definition(const struct step *step, const struct sequence *s)
 {
 	const char *a = s->a == NONE ? "1" : sequence_text(step, s->a);
@@ -372,7 +384,7 @@ static const char *sequence_definition(const struct step *step, const struct seq
 	case SEQUENCE_ROOT:	return format("sqrt(%s)", a);
 	case SEQUENCE_POWER:	return format("%s ^ %s", a, shortest(s->exponent));
 	case SEQUENCE_RATE:	return format("the derivative of %s", a);
-	case SEQUENCE_CHOICE:	return format("%s or %s, by t", a, b);
+	case SEQUENCE_CHOICE:	return format("%s or %s, by %s", a, b, chooser_text(step, s));
 	default:
 		if (s->state != NONE)
 			return format("integral of %s", sequence_sum(step, s));

@@ -835,16 +835,22 @@ enum sequence_kind {
 	SEQUENCE_ROOT,              /* c^2 = a */
 	SEQUENCE_POWER,             /* c = a^exponent, which is constant */
 	SEQUENCE_RATE,              /* c_k = (k+1) a_{k+1} */
-	SEQUENCE_CHOICE             /* a where the condition holds, else b: it depends on t alone */
+	SEQUENCE_CHOICE             /* a where the condition holds, else b */
 };
+/* By which a choice is made: two forms linear in t that are compared, an expression of the state above a breakpoint,
+ * or another sequence that is not 0 and changes with such choices alone */
+enum choice_kind { CHOICE_BY_TIME, CHOICE_BY_STATE, CHOICE_BY_SEQUENCE };
 struct sequence {
 	enum sequence_kind kind;
 	int state;                  /* of an integral that is one; NONE */
 	enum function function;     /* of another: its value from a (and b) */
 	int a, b;
 	double exponent;
+	enum choice_kind choice;
 	const struct form *left, *right; /* what the condition compares, linear in t */
 	enum comparison comparison;
+	int expression, breakpoint; /* or which it is above; of the expression's, in order of their first appearance */
+	int test;                   /* or the sequence */
 	int terms;
 	struct sequence_term *term;
 	int degree;                 /* all beyond are 0; order + 1: none need be */
@@ -857,6 +863,13 @@ struct sequence {
 	int *gain;
 	bool split;                 /* others read its early part and gains */
 };
+struct divided {                    /* an expression of the state that breakpoints divide, smooth between events */
+	const struct form *form;    /* without constant; sign and scale as first written */
+	int sequence, column;       /* its coefficients: the place behind those of the states, or of one that it is */
+	int breaks;
+	mpq_t *at;                  /* in order of their first appearance */
+	int *rank;                  /* of each of them, how many are below it */
+};
 struct expansion {
 	int order;                  /* of the series in its unit of time, h or several of them */
 	int count;                  /* sequences; the first are the states */
@@ -867,6 +880,9 @@ struct expansion {
 	bool *load;                 /* per load: read */
 	bool *input, *slope;        /* per input: read */
 	bool time, params;          /* t is read; tunable params are */
+	int expressions;            /* what chooses formulas by the state: an event where one passes a breakpoint */
+	struct divided *expression;
+	int columns, *column;       /* beside the states: sequences of which all coefficients are kept for them */
 	int multiplications;        /* of one expansion, that of its end and of the loads with it */
 };
 /* ---- sums.c: what is added up exactly, and its factors as numbers ---- */
@@ -905,9 +921,25 @@ int  column_of_load(const struct linear *system, int load); /* its first */
 /* ---- sequences.c: forms to sums, atoms to recurrences ---- */
 
 int  new_sequence(struct sequencing *w, struct sequence sequence);
+int  sequence_of_form(struct sequencing *w, const struct form *form);
+_Noreturn void no_series(const struct sequencing *w, const struct atom *atom, const char *why);
 void count_uses(struct sequencing *w, const struct form *form);
 /* sum += scale form; leaves the statement at what has no series */
 void sum_add_form(struct sequencing *w, struct sum *sum, const struct form *form, mpq_srcptr scale);
+
+/* ---- divided.c: formulas that the state chooses ---- */
+
+/* `above` where a - b > 0, else `below`; for the message of what has no series: the atom that compares them */
+int  choice_by_state(struct sequencing *w, const struct atom *atom, const struct form *a, const struct form *b,
+		     int above, int below);
+void rank_breakpoints(struct expansion *x);                  /* once all are there */
+int  breakpoint_rank(const struct expansion *x, const struct sequence *choice);
+mpq_t *rising_breakpoints(const struct divided *d);
+const char *divided_text(const struct step *step, int expression); /* over the written coordinates */
+/* The number of a region is its expressions' intervals in mixed radix; 0: too many for an int */
+int  regions_of_series(const struct expansion *x);
+/* Leaves the statement where what is chosen by the state is not treated */
+void check_divided(const struct step *step);
 
 /* ---- newest.c: how the newest coefficients enter the next ones ---- */
 
