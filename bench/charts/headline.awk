@@ -7,6 +7,8 @@ function place_of(k,    i, n) {
 		if (cost[i] < cost[k] || (cost[i] == cost[k] && i < k)) n++
 	return n + 1
 }
+# Where words stand beside a mark at so many ns: right of it, or left where that would leave the picture
+function beside(ns, y) { return ns < 200 ? ns * 1.5 "," y " left" : ns / 1.5 "," y " right" }
 BEGIN {
 	while ((getline line < palette) > 0)
 		if (split(line, part, " ") > 1) colour[part[1]] = part[2]
@@ -27,7 +29,7 @@ NR == 1 { read_head($0, column); next }
 		why[k, which] = f[column["error"]] == "failed" ? "failed" : \
 			sprintf("%.2g at best", f[column["error"]])
 		if (f[column["parts_estimated"]] != "none")
-			why[k, which] = sprintf("would take %d steps", f[column["parts_estimated"]])
+			why[k, which] = sprintf("%s would take %d steps", f[column["target"]], f[column["parts_estimated"]])
 	}
 }
 END {
@@ -42,13 +44,14 @@ END {
 			if ((k, which) in time)
 				block[which "_" family[k]] = block[which "_" family[k]] time[k, which] "," y "\n"
 			else if ((k, which) in why)
-				words = words "set label " ++labels " '" (i == 2 ? "1e-12: " : "1e-9: ") why[k, which] \
-					"' at first 1.3," y " left font ',9' textcolor rgb '#505050'\n"
+				words = words "set label " ++labels " '" why[k, which] \
+					"' at first " beside(time[k, targets[3 - i]], 2 * at - y) \
+					" font ',9' textcolor rgb '#505050'\n"
 		}
 	}
 	if (neither)
 		words = words "set label " ++labels " '" neither " other" (neither > 1 ? "s reach" : " reaches") \
-			" neither error: in the table' at first 1.3," rows + 1.05 " left font ',9' textcolor rgb '#505050'\n"
+			" neither error: in the table' at first 1.3," rows + 0.95 " left font ',9' textcolor rgb '#505050'\n"
 	n = split("coarse_ours fine_ours coarse_matrix fine_matrix coarse_peer fine_peer", name_of, " ")
 	of["ours"] = "exact"; of["matrix"] = "matrix"; of["peer"] = "adaptive"
 	who["ours"] = "plgen"; who["matrix"] = "matrix of a step"; who["peer"] = "integrator"

@@ -31,7 +31,7 @@ name = 'headline_equal_step'
 found = finding(name, size)
 top = 1 - (34.0 + 17*lines_of(found))/(150 + 26*rows)
 panels = narrow ? 2 : 3
-first = narrow ? 0.37 : 0.245
+first = narrow ? 0.43 : 0.265
 wide = (1 - first)/panels
 array axis = ['time of a step [ns]', 'largest error', 'drift of the energy']
 load here.'/style.gp'
@@ -79,6 +79,6 @@ set yrange [1e-17:10]
 set xtics ('10^{-4}' 1e-4, '10^{-6}' 1e-6, '10^{-8}' 1e-8, '10^{-10}' 1e-10, '0' 1e-12)
 name = 'headline_confluence'
 eval heading
-load series(csv, "-v where=case=one-way -v x=gap -v y=error -v xzero=1e-12 -v most=10 -v rank=last")
+load series(csv, "-v where=case=one-way -v x=gap -v y=error -v xzero=1e-12 -v most=10 -v rank=last -v keep=modal")
 eval "plot ".clauses
 eval write
