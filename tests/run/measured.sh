@@ -122,7 +122,7 @@ cat >pressed.txt <<END
 param b = 0.3, k = 5, p = 0.1, G = 0.2, F = 0.8
 coord x
 init x = 0.2
-x'' + 0.1*x' + k*deadzone(x, -b, b) + (x > 0.1 ? p : 0)*x' = F*cos(1.3*t) + G
+x'' + 0.1*x' + k*deadzone(x, -b, b) + (x > 0.1 ? p : 0) = F*cos(1.3*t) + G
 END
 varies clearance 'x, F'
 varies pressed 'x, G, F'
