@@ -508,8 +508,11 @@ struct target {                     /* a processor: what it takes of instruction
 };
 /* of the model that is stepped: its requirements, its target; false: it was said what stands in the way */
 bool find_requirements(struct model *model);
-bool differ_in_loads(const struct model *a, const struct model *b); /* in nothing but how large their loads are */
 bool is_measured(const struct model *model);                /* no bound is known: it is not linear, or in pieces */
+
+/* ---- amplitudes.c ---- */
+
+bool differ_in_loads(const struct model *a, const struct model *b); /* in nothing but how large their loads are */
 
 /* ---- reduce.c: the smallest model with the same outputs ---- */
 
