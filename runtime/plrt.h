@@ -12,6 +12,7 @@
  *     until.c     the time to a change of the loads
  *     apply.c     matrices times vectors, and whether all is finite: schemes with a leftover
  *     crossings.c steps of piecewise-linear models, with every crossing of a breakpoint found
+ *     guards.c    the same with dry friction and jumps: events that each region has its own of
  *     retune.c    coefficients of a step from other params: NAME_retune
  *     rate.c      the rate of a load's phase from another frequency
  *     root.c      rough roots: the length of a step by its error
@@ -550,6 +551,83 @@ int pl_dividedf_left(const pl_dividedf *m, const float *c, const float *terms, c
                      pl_crossingf *crossing);
 float pl_dividedf_next(const pl_dividedf *m, const float *c, const float *terms, const int *interval, float end,
                        int *splits, pl_crossingf *crossing, float *work);
+/* ---- guards.c: piecewise-linear models whose velocity is held at times, and that jump -------------------------- */
+
+/* As pl_switching, with events of their own in each region.  x' = A x; a guard is a row that must not become greater
+ * than its limit: where it does, x jumps, and goes on in another region.  An expression may have the same breakpoint
+ * twice: in the interval between it is held there, as by friction that sticks, and states that follow from others are
+ * set from them, exactly: x_i = row . x. */
+typedef struct pl_guard {
+    int row;                              /* among those of guards */
+    int expression, breakpoint, upward;   /* as a crossing of it is listed */
+    int leads;                            /* to the region of this number, less that where it stands */
+    int jump;                             /* the set of assignments before that; -1: none */
+} pl_guard;
+
+typedef struct pl_guards {
+    int size;          /* entries of x */
+    double h;          /* step [s] */
+    int switches;      /* expressions */
+    const double *row; /* switches x size: e = row . x */
+    const int *breaks; /* of each expression: how many breakpoints */
+    const double *at;  /* the breakpoints: those of the first, not falling; those of the second; ... */
+    const int *matrix; /* of each region: the number of its A; -1: it cannot be */
+    /* Of each matrix, as for pl_switching: */
+    const int *halvings;
+    const double *A, *Phi;
+    const double *tangent; /* switches x size */
+    /* Of each region: its guards are guard[first[region]] to guard[first[region + 1] - 1]; hold is the set of
+     * assignments that holds its states, or -1 */
+    const int *first;
+    const pl_guard *guard;
+    const double *limit; /* of each guard */
+    const int *hold;
+    /* Rows of guards, of each: d/3 times its slope; bounds as for pl_switching.  All rows x size */
+    const double *gate, *gate_tangent, *chord_error, *cubic_error;
+    /* Assignments: x[state] = value . x, those of a set from the same x: set[k] to set[k + 1] - 1 */
+    const int *set, *state;
+    const double *value;
+    int degree;
+    int max_events, max_splits;
+} pl_guards;
+
+/* what is to stick and what is to slip at an event has no answer that holds: some that was nearest was kept */
+enum { PL_UNDECIDED = 16 };
+
+#define PL_GUARDS_WORK(size, degree) (((degree) + 1) * ((size) + 2) + 8 * (size))
+
+/* The region of x.  What is on a breakpoint that stands twice sticks where that can be, else goes where it is heading;
+ * what is on another one goes as in pl_switching_start. */
+void pl_guards_start(const pl_guards *m, const double *x, pl_contact *c, double *work);
+
+/* x over h, and over tau, 0 <= tau <= h, as pl_switching_step and pl_switching_advance.  Where several stick or slip at
+ * one event, the combination is taken in which all of them agree: none is held by more than its guard lets it, and each
+ * that slips moves away in its direction; of several the one with the fewest changes, then with most that stick. */
+void pl_guards_step(const pl_guards *m, double *x, pl_contact *c, pl_crossing *crossing, double *work);
+void pl_guards_advance(const pl_guards *m, double tau, double *x, pl_contact *c, pl_crossing *crossing, double *work);
+
+typedef struct pl_guardsf {
+    int size;
+    float h;
+    int switches;
+    const float *row;
+    const int *breaks;
+    const float *at;
+    const int *matrix, *halvings;
+    const float *A, *Phi, *tangent;
+    const int *first;
+    const pl_guard *guard;
+    const float *limit;
+    const int *hold;
+    const float *gate, *gate_tangent, *chord_error, *cubic_error;
+    const int *set, *state;
+    const float *value;
+    int degree, max_events, max_splits;
+} pl_guardsf;
+
+void pl_guardsf_start(const pl_guardsf *m, const float *x, pl_contact *c, float *work);
+void pl_guardsf_step(const pl_guardsf *m, float *x, pl_contact *c, pl_crossingf *crossing, float *work);
+void pl_guardsf_advance(const pl_guardsf *m, float tau, float *x, pl_contact *c, pl_crossingf *crossing, float *work);
 
 /* ---- retune.c: coefficients from other params --------------------------------------------------------------- */
 

@@ -7,6 +7,17 @@ static const struct switching *regions_of(const struct emitter *e)
 	return e->model->switching;
 }
 
+/* Regions have events of their own: friction that sticks and slips */
+static bool has_guards(const struct emitter *e)
+{
+	return regions_of(e)->frictions > 0;
+}
+
+static const char *search_of(const struct emitter *e)
+{
+	return has_guards(e) ? "pl_guards" : "pl_switching";
+}
+
 /* ---- tables ---- */
 
 static const char **expression_names(const struct emitter *e)
@@ -147,9 +158,12 @@ void emit_regions(const struct emitter *e)
 	emit_rows(e, &pieces);
 	emit_breakpoints(e, &pieces);
 	emit_region_numbers(e);
-	for (size_t i = 0; i < sizeof all / sizeof *all; i++)
+	for (size_t i = 0; i < sizeof all / sizeof *all - (has_guards(e) ? 2 : 0); i++)
 		emit_matrices(e, &pieces, &all[i]);
-	emit_switching(e);
+	if (has_guards(e))
+		emit_guards(e, &pieces);
+	else
+		emit_switching(e);
 	if (regions_change(e))
 		emit_region_changes(e);
 	if (e->step->swift)
@@ -212,8 +226,12 @@ void declare_region_room(const struct emitter *e)
 {
 	const struct series *series = &e->step->series;
 	const struct layout *layout = &e->step->layout;
-	say(e, "    double x[%d], work[PL_SWITCHING_WORK(%d, %d, %d)];\n", layout->size, layout->size,
-	    regions_of(e)->expressions, series->degree);
+	if (has_guards(e))
+		say(e, "    double x[%d], work[PL_GUARDS_WORK(%d, %d)];\n", layout->size, layout->size,
+		    series->degree);
+	else
+		say(e, "    double x[%d], work[PL_SWITCHING_WORK(%d, %d, %d)];\n", layout->size, layout->size,
+		    regions_of(e)->expressions, series->degree);
 }
 
 void emit_region_start(const struct emitter *e)
@@ -232,8 +250,10 @@ void emit_region_start(const struct emitter *e)
 
 void emit_region_start_call(const struct emitter *e)
 {
-	say(e, regions_change(e) ? "    $o_start(s->segment, x, &s->contact$p, work);\n"
-				 : "    pl_switching_start(&$o_switching, x, &s->contact$p, work);\n");
+	if (regions_change(e))
+		say(e, "    $o_start(s->segment, x, &s->contact$p, work);\n");
+	else
+		say(e, "    %s_start(&$o_switching, x, &s->contact$p, work);\n", search_of(e));
 }
 
 static void emit_region_questions(const struct emitter *e)
@@ -265,7 +285,7 @@ void emit_search(const struct emitter *e)
 	if (regions_change(e))
 		say(e, "    $o_pass_changes(s, $N_H, x, &s->contact$p, s->crossing$p, work);\n");
 	else
-		say(e, "    pl_switching_step(&$o_switching, x, &s->contact$p, s->crossing$p, work);\n");
+		say(e, "    %s_step(&$o_switching, x, &s->contact$p, s->crossing$p, work);\n", search_of(e));
 	say(e, "    for (i = 0; i < %s; i++)\n"
 	       "        s->y[%s] = x[i];\n", own_states(e), place_in_loop(e));
 }

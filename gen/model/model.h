@@ -264,10 +264,32 @@ struct expression {                 /* what is compared with breakpoints: linear
 	int stride;                 /* of its interval in the index of a region */
 	int met;                    /* rises in the order in which the equations show expressions */
 };
+/* friction(v, F): v is an expression less a breakpoint that stands there twice, with the interval of sticking between */
+struct friction {
+	const struct atom *atom;
+	int expression;
+	mpq_t at;                   /* that breakpoint */
+	mpq_t factor;               /* v = factor (expression - at) */
+};
+struct hold {                       /* a state that a region gives: of what sticks a velocity follows from the others */
+	int state;
+	struct form *form;          /* of states, loads and inputs, none of them held */
+	struct output *row;
+};
+struct release {                    /* of what sticks: the interval is left where the form becomes greater than 0 */
+	int expression;
+	bool upward;
+	struct form *form;          /* it may have highest derivatives */
+	struct output *row;         /* over states, loads and inputs alone */
+};
 struct region {                     /* one interval for each expression, in one segment of time */
 	bool possible;              /* its inequalities can hold together */
 	int system;                 /* index of its equations; equal ones are one */
-	struct form **residual;     /* per row: linear */
+	struct form **residual;     /* per row: linear; friction stands in it as an atom until its force is put in */
+	struct form **force, **rest; /* per friction: F, and what it holds up to at rest; NULL: none acts here */
+	int holds, releases;
+	struct hold *hold;
+	struct release *release;
 };
 struct switching {
 	int rows, *row;             /* of the equations that it is of */
@@ -282,6 +304,8 @@ struct switching {
 	int *system_segment;        /* per system: a segment in which it serves; there expressions are the same in all */
 	int parts;                  /* 0: its regions are those of all coordinates together */
 	struct region_part *part;
+	int frictions;
+	struct friction *friction;
 	int sharing;                /* parts that have these regions together, since some move as a whole */
 };
 /* Coordinates that nothing outside of them acts on, in no region: they have regions of their own, and cross breakpoints
@@ -378,6 +402,9 @@ int  find_order(const struct spec *spec, int coord);
 void build_outputs(struct building *b);
 /* of states, loads and inputs; no highest derivatives */
 struct output *row_of_expression(struct building *b, const struct switching *of, const struct expression *e);
+struct output *row_of_form(struct building *b, struct form *form);
+/* the same with the highest derivatives that a system gives */
+struct output *row_in_system(struct building *b, const struct linear *system, struct form *form);
 int  coordinate_of_row(const struct model *model, int row);       /* whose equation it is */
 void collect_whole(struct building *b);                     /* the equations for all time, atoms kept: b->whole */
 bool assign_equations(struct building *b);                  /* false: it was said which is missing or too many */
@@ -452,6 +479,17 @@ int  add_system(struct switching *s, const struct linear *system, int segment); 
 int  segment_of_region(const struct switching *s, int region);      /* of time */
 bool is_form_multiple(const struct form *form, const struct form *e, mpq_ptr of);   /* of: the factor */
 int  possible_regions(const struct switching *s);
+
+/* ---- friction.c: dry friction in regions, where it slips and where it sticks ---- */
+
+bool holds_friction(const struct building *b);              /* somewhere in the equations */
+_Noreturn void tell_no_friction(const struct building *b);  /* why a scheme cannot treat it */
+bool is_stick(const struct expression *e, int interval);    /* between two equal breakpoints */
+int  stick_of(const struct switching *s, const struct friction *f); /* the interval in which it sticks */
+/* puts in the forces of what slips, and the constraints of what sticks */
+void resolve_friction(struct building *b, struct switching *s);
+void build_friction(struct building *b, struct switching *s); /* rows of holds and releases; after all systems */
+bool same_friction(const struct region *a, const struct region *b); /* what sticks is held and released alike */
 
 /* ---- parts.c: regions of independent coordinates ---- */
 

@@ -5,10 +5,9 @@
 #include <string.h>
 
 /* output += factor * (the highest derivative of a coordinate: its row over the states, and W^-1 force) */
-static void add_highest(const struct model *model, const mpq_t *inverse, const mpq_t *highest, int coord,
-			mpq_srcptr factor, struct output *output)
+static void add_highest(const struct model *model, const struct linear *system, const mpq_t *inverse,
+			const mpq_t *highest, int coord, mpq_srcptr factor, struct output *output)
 {
-	const struct linear *system = &model->system;
 	mpq_t weight, product;
 	mpq_inits(weight, product, NULL);
 	for (int j = 0; j < system->states; j++) {
@@ -73,7 +72,7 @@ static void spread_output(struct building *b, const mpq_t *inverse, const mpq_t 
 			mpq_add(output->input[basis->order][basis->index], output->input[basis->order][basis->index],
 				term->factor);
 		else if (basis->kind == BASIS_COORD && state_of(model, basis) < 0)
-			add_highest(model, inverse, highest, basis->index, term->factor, output);
+			add_highest(model, &model->system, inverse, highest, basis->index, term->factor, output);
 		else if (basis->kind == BASIS_COORD)
 			mpq_add(output->state[state_of(model, basis)], output->state[state_of(model, basis)],
 				term->factor);
@@ -243,6 +242,17 @@ static void make_rows(const struct linear *system, int channels, struct output *
 
 /* ---- an expression as a row ---- */
 
+static void add_states_and_inputs(const struct building *b, const struct form *form, struct output *row)
+{
+	for (int i = 0; i < form->terms; i++) {
+		const struct basis *basis = &form->term[i].basis;
+		if (basis->kind == BASIS_INPUT)
+			mpq_set(row->input[basis->order][basis->index], form->term[i].factor);
+		else if (basis->kind == BASIS_COORD)
+			mpq_set(row->state[state_of(b->model, basis)], form->term[i].factor);
+	}
+}
+
 struct output *row_of_expression(struct building *b, const struct switching *of, const struct expression *e)
 {
 	struct output *row = NEW(struct output);
@@ -253,13 +263,36 @@ struct output *row_of_expression(struct building *b, const struct switching *of,
 		spread_loads(b, form_sum(e->in[known], form_constant(e->shift[known]), false), add_direct,
 			     &(struct direct_row){ row, segments, s });
 	}
-	for (int i = 0; i < e->form->terms; i++) {
-		const struct basis *basis = &e->form->term[i].basis;
-		if (basis->kind == BASIS_INPUT)
-			mpq_set(row->input[basis->order][basis->index], e->form->term[i].factor);
-		else if (basis->kind == BASIS_COORD)
-			mpq_set(row->state[state_of(b->model, basis)], e->form->term[i].factor);
-	}
+	add_states_and_inputs(b, e->form, row);
+	return row;
+}
+
+struct output *row_of_form(struct building *b, struct form *form)
+{
+	struct output *row = NEW(struct output);
+	make_rows(&b->model->system, b->model->channels, row);
+	spread_loads(b, form, add_direct, &(struct direct_row){ row, 1, 0 });
+	add_states_and_inputs(b, form, row);
+	return row;
+}
+
+struct output *row_in_system(struct building *b, const struct linear *system, struct form *form)
+{
+	const struct model *model = b->model;
+	struct form *lower = NEW(struct form);
+	int column;
+	mpq_t *inverse = rationals((size_t)(model->n * model->n)),
+	      *highest = rationals((size_t)(model->n * system->states));
+	leading_inverse(system, inverse, &column);
+	highest_derivatives(system, (const mpq_t *)inverse, false, highest);
+	for (int i = 0; i < form->terms; i++)
+		if (form->term[i].basis.kind != BASIS_COORD || state_of(model, &form->term[i].basis) >= 0)
+			form_add_basis(lower, form->term[i].basis, form->term[i].factor);
+	struct output *row = row_of_form(b, lower);
+	for (int i = 0; i < form->terms; i++)
+		if (form->term[i].basis.kind == BASIS_COORD && state_of(model, &form->term[i].basis) < 0)
+			add_highest(model, system, (const mpq_t *)inverse, (const mpq_t *)highest,
+				    form->term[i].basis.index, form->term[i].factor, row);
 	return row;
 }
 
@@ -300,7 +333,7 @@ static void build_highest(struct building *b, const mpq_t *inverse, const mpq_t 
 			model->highest[k]->value = model->output[i].value;
 			model->highest[k]->name = model->output[i].name;
 			make_rows(&model->system, model->channels, model->highest[k]);
-			add_highest(model, inverse, highest, k, one, model->highest[k]);
+			add_highest(model, &model->system, inverse, highest, k, one, model->highest[k]);
 		}
 	}
 	mpq_clear(one);

@@ -55,7 +55,7 @@ static void tell_change(void *context)
 	struct building *b = work->b;
 	const struct spec *spec = b->spec;
 	for (int i = 0; i < spec->elements; i++)
-		if (spec->element[i].kind != ELEMENT_FORCE &&
+		if (spec->element[i].kind != ELEMENT_FORCE && spec->element[i].kind != ELEMENT_FRICTION &&
 		    !same_in_states(b->snapshot[0].element[i], work->snapshot->element[i]))
 			error(spec->element[i].value->start, "what moves belongs in an equation, or in a force",
 			      "a mass, spring or damper needs a constant");
@@ -266,11 +266,18 @@ static enum scheme scheme_of_choice(const struct building *b)
 	return !b->spec->has_operator ? SCHEME_TAYLOR : many ? SCHEME_ETDAM4 : default_scheme();
 }
 
+static void tell_friction_stands(void *context)
+{
+	tell_no_friction(context);
+}
+
 /* Exact where nothing is left over and no scheme was asked for; the equations for all time where something is. */
 static bool settle_scheme(struct building *b)
 {
 	struct model *model = b->model;
 	bool linear = is_linear(b);
+	if (!linear && holds_friction(b) && (model->scheme != SCHEME_EXACT || !is_piecewise_linear(b)))
+		return statement_guard(tell_friction_stands, b);
 	if (!linear && !model->asked.scheme_at.source && !b->request->solution && !is_piecewise_linear(b)) {
 		model->scheme = scheme_of_choice(b);
 		choose_order(model, b->request->single);
