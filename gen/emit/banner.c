@@ -260,7 +260,8 @@ static void banner_expressions(const struct emitter *e)
 		const char *at = "";
 		for (int k = 0; k < s->expression[i].breaks; k++)
 			at = format("%s%s%s", at, k ? ", " : "", readable_text(s->expression[i].at[k]));
-		say(e, " *     expression %d: %s, at %s\n", i, printable(form_text(model, s->expression[i].form)), at);
+		say(e, " *     expression %d: %s%s, at %s\n", i, printable(form_text(model, s->expression[i].form)),
+		    changes_in_time(&s->expression[i]) ? " at first, with other loads later" : "", at);
 	}
 }
 
@@ -279,6 +280,8 @@ void banner_regions(const struct emitter *e)
 	       "The equations are piecewise linear: %d regions, %d different, in each of which\n"
 	       " * every constant is its closed form, correctly rounded; "
 	       "crossings inside a step are found in order, to rounding.\n", possible_regions(s), s->systems);
+	if (s->segments > 1)
+		say(e, " * They are those of %d segments of time, each with its own.\n", s->segments);
 	banner_expressions(e);
 	if (s->sharing)
 		say(e, " * Coordinates move as a whole: %d independent parts have their regions together.\n",
@@ -491,8 +494,8 @@ static void banner_state(const struct emitter *e)
 		say(e, " * Input %s: %s.\n", e->system->input[i].name, input_text(e->system->input[i].hold));
 	if (changes > 0 && !e->step->normal)
 		say(e, " * The loads change their formula %d time%s; "
-		       "a step across a change is exact too, by a series that stops there.\n", changes,
-		    changes > 1 ? "s" : "");
+		       "a step across a change is exact too, by %s that stops there.\n", changes,
+		    changes > 1 ? "s" : "", e->model->switching ? "a search" : "a series");
 	if (e->model->reduction.dropped)
 		say(e, " * Reduced to what the outputs can see: %d of %d states.\n", e->system->states,
 		    e->model->written->system.states);

@@ -589,7 +589,6 @@ void emit_region_start_call(const struct emitter *e);
 void emit_region_advance_call(const struct emitter *e);
 void emit_segment_end(const struct emitter *e);                   /* of a step: the segment of time that outputs are in */
 bool regions_change(const struct emitter *e);                     /* they are others in each segment of time */
-int  regions_at_once(const struct emitter *e);                    /* in one segment, possible or not */
 
 /* ---- emit_instants.c: regions beside loads that change their formula in time ---- */
 

@@ -9,6 +9,11 @@ static int segments_of(const struct emitter *e)
 	return e->model->switching->segments;
 }
 
+static int regions_in_one(const struct emitter *e)
+{
+	return regions_at_once(e->model->switching);
+}
+
 /* The region of x in a segment of time */
 static void emit_start(const struct emitter *e)
 {
@@ -21,14 +26,14 @@ static void emit_start(const struct emitter *e)
 	       "    pl_switching_start(&here, x, contact, work);\n"
 	       "    contact->region += segment * %d;\n"
 	       "}\n",
-	    e->step->layout.size, regions_at_once(e), regions_at_once(e));
+	    e->step->layout.size, regions_in_one(e), regions_in_one(e));
 }
 
 /* Whether a region can occur before a change and, by its inequalities, not after it */
 static bool any_lost(const struct emitter *e)
 {
 	const struct switching *s = e->model->switching;
-	int in_one = regions_at_once(e);
+	int in_one = regions_in_one(e);
 	bool any = false;
 	for (int r = 0; r + in_one < s->regions; r++)
 		any = any || !s->region[r + in_one].possible;
@@ -45,14 +50,14 @@ static void emit_change(const struct emitter *e)
 	       "    contact->region += %d;\n",
 	    lost ? "; where they cannot be then, the equations of the region where x is" : "",
 	    lost ? format("const double x[%d], ", e->step->layout.size) : "", lost ? ", double *work" : "",
-	    regions_at_once(e));
+	    regions_in_one(e));
 	if (lost)
 		say(e, "    if ($o_matrix[contact->region] < 0) {\n"
 		       "        pl_contact now;\n"
 		       "        $o_start(contact->region / %d, x, &now, work);\n"
 		       "        contact->matrix = now.matrix;\n"
 		       "        return;\n"
-		       "    }\n", regions_at_once(e));
+		       "    }\n", regions_in_one(e));
 	say(e, "    contact->matrix = $o_matrix[contact->region];\n"
 	       "}\n");
 }
@@ -75,7 +80,7 @@ void emit_region_changes(const struct emitter *e)
 	       "        pl_switching here = $o_switching[segment];\n"
 	       "        here.max_events -= count;\n"
 	       "        pl_switching_advance(&here, to - done, x, contact, crossing + count, work);\n",
-	    e->step->layout.size, regions_at_once(e), segments_of(e) - 1);
+	    e->step->layout.size, regions_in_one(e), segments_of(e) - 1);
 	say(e, "        for (i = count; i < count + contact->crossings; i++)\n"
 	       "            crossing[i].time += done;\n"
 	       "        count += contact->crossings;\n"

@@ -63,11 +63,6 @@ bool regions_change(const struct emitter *e)
 	return regions_of(e)->segments > 1;
 }
 
-int regions_at_once(const struct emitter *e)
-{
-	return regions_of(e)->regions / regions_of(e)->segments;
-}
-
 static void emit_rows(const struct emitter *e, const struct pieces *pieces)
 {
 	const struct switching *s = regions_of(e);
@@ -276,7 +271,7 @@ static void emit_region_questions(const struct emitter *e)
 	       "    for (i = 0; i < count; i++)\n"
 	       "        crossing[i] = s->crossing[i];\n"
 	       "    return count;\n"
-	       "}\n", regions_change(e) ? format(" %% %d", regions_at_once(e)) : "");
+	       "}\n", regions_change(e) ? format(" %% %d", regions_at_once(e->model->switching)) : "");
 }
 
 /* By the search, from x; `i` is declared */

@@ -255,9 +255,11 @@ int  relative_place(const struct model *model, int written); /* the kept state t
 struct expression {                 /* what is compared with breakpoints: linear in states, loads and inputs */
 	struct form *form;          /* without constant; sign and scale as first written */
 	/* in each segment of time it is in + shift: its loads may have other formulas */
+	int segments;
 	struct form **in;
 	mpq_t *shift;
-	mpq_t first;                /* what it is compared with where it is met first */
+	int terms;
+	struct comparing *term;     /* that compare it: expressions.c */
 	struct output *row;         /* the same as a row */
 	int breaks;
 	mpq_t *at;                  /* rising */
@@ -302,6 +304,9 @@ struct switching {
 	struct region *region;      /* NULL where there are parts */
 	int systems;
 	struct linear *system;      /* where there are parts one: that of the first region of each; one segment of time */
+	int aparts;
+	const struct node **apart;  /* terms that share no expression with others */
+	bool torn;                  /* one has become such: the search begins anew */
 	int *system_segment;        /* per system: a segment in which it serves; there expressions are the same in all */
 	int parts;                  /* 0: its regions are those of all coordinates together */
 	struct region_part *part;
@@ -467,16 +472,33 @@ int  order_that_holds(const struct model *model);           /* rounded down; 0: 
 const char *order_text(const struct model *model);          /* that is left: 2, 2.5 */
 const char *smoothness_text(const struct model *model);     /* max(x - 0.5, 0) has a kink where x passes 0.5 */
 
+/* ---- expressions.c: what is compared with breakpoints ---- */
+
+struct compared {                   /* form + constant with 0 */
+	const struct node *node;    /* by this term */
+	struct form *form;          /* without constant */
+	mpq_srcptr constant;
+	int met;                    /* of struct expression, where it is one */
+};
+/* The expression that form is a multiple of in this segment of time; met for the first time it is one, with the sign and
+ * scale in which it was written, and form is its own. form + constant = of (e - at) */
+int  find_expression(struct switching *s, int segment, const struct compared *what, mpq_ptr of, mpq_ptr at);
+/* In segments where nothing depends on it, it is as in the one before, or after. */
+void complete_expressions(struct switching *s);
+bool share_expression(const struct switching *a, const struct switching *b);
+bool changes_in_time(const struct expression *e);
+const char *spoken_expression(const struct model *model, int index);  /* x - t; from t = 2 on x - 1 */
+
 /* ---- regions.c: piecewise-linear equations as regions with linear ones ---- */
 
 bool is_piecewise_linear(const struct building *b);
 int  interval_of(const struct switching *s, int region, int expression);
-bool share_expression(const struct switching *a, const struct switching *b);
 /* of these rows of the equations; leaves the statement where they are too many, or with dry friction */
 struct switching *regions_of_rows(struct building *b, int rows, int *row);
 void remove_idle_breaks(struct switching *s);
 int  add_system(struct switching *s, const struct linear *system, int segment);   /* its index */
 int  segment_of_region(const struct switching *s, int region);      /* of time */
+int  regions_at_once(const struct switching *s);                    /* in one segment of time, possible or not */
 bool is_form_multiple(const struct form *form, const struct form *e, mpq_ptr of);   /* of: the factor */
 int  possible_regions(const struct switching *s);
 

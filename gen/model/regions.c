@@ -56,136 +56,6 @@ int possible_regions(const struct switching *s)
 	return count;
 }
 
-bool is_form_multiple(const struct form *form, const struct form *e, mpq_ptr of)
-{
-	if (form->terms != e->terms || basis_order(&form->term[0].basis, &e->term[0].basis) != 0)
-		return false;
-	mpq_div(of, form->term[0].factor, e->term[0].factor);
-	struct form *same = form_scale(e, of);
-	bool multiple = same_form(form, same);
-	form_free(same);
-	return multiple;
-}
-
-bool share_expression(const struct switching *a, const struct switching *b)
-{
-	bool shared = false;
-	mpq_t factor;
-	mpq_init(factor);
-	for (int i = 0; i < a->expressions; i++)
-		for (int k = 0; k < b->expressions && !shared; k++)
-			shared = is_form_multiple(a->expression[i].form, b->expression[k].form, factor);
-	mpq_clear(factor);
-	return shared;
-}
-
-/* ... by segments of time: its loads may have another formula in each, and a constant that is a part of them moves no
- * breakpoint */
-
-static struct form *moving_part(const struct form *form)
-{
-	struct form *part = NEW(struct form);
-	for (int i = 0; i < form->terms; i++)
-		if (form->term[i].basis.kind == BASIS_COORD || form->term[i].basis.kind == BASIS_INPUT)
-			form_add_basis(part, form->term[i].basis, form->term[i].factor);
-	return part;
-}
-
-/* Is form what this expression has become? */
-static bool has_become(const struct expression *e, const struct form *form, mpq_ptr of)
-{
-	const struct form *here = moving_part(form), *there = moving_part(e->form);
-	mpq_set_ui(of, 1, 1);
-	return here->terms == 0 ? there->terms == 0 : there->terms > 0 && is_form_multiple(here, there, of);
-}
-
-/* form + constant = of (e - at) */
-static void compared_at(mpq_srcptr constant, mpq_srcptr of, mpq_ptr at)
-{
-	mpq_div(at, constant, of);
-	mpq_neg(at, at);
-}
-
-/* In this segment for the first time: where it is compared first, it was so elsewhere. */
-static void follow_expression(const struct looking *l, struct expression *e, const struct form *form,
-			      mpq_srcptr constant, mpq_srcptr of)
-{
-	mpq_t at, scale;
-	mpq_inits(at, scale, NULL);
-	compared_at(constant, of, at);
-	mpq_inv(scale, of);
-	e->in[l->segment] = form_scale(form, scale);
-	mpq_sub(e->shift[l->segment], e->first, at);
-	mpq_clears(at, scale, NULL);
-}
-
-static int expression_of_term(const struct looking *l, const struct node *node, const struct form *form,
-			      mpq_srcptr constant, mpq_ptr of)
-{
-	const struct switching *s = l->s;
-	for (int i = 0; i < s->expressions; i++)
-		if (s->expression[i].node == node && s->expression[i].in[l->segment] &&
-		    is_form_multiple(form, s->expression[i].in[l->segment], of))
-			return i;
-	for (int i = 0; i < s->expressions; i++)
-		if (s->expression[i].node == node && !s->expression[i].in[l->segment] &&
-		    has_become(&s->expression[i], form, of)) {
-			follow_expression(l, &s->expression[i], form, constant, of);
-			return i;
-		}
-	return -1;
-}
-
-static int expression_of_form(const struct looking *l, const struct form *form, mpq_ptr of)
-{
-	const struct switching *s = l->s;
-	for (int i = 0; i < s->expressions; i++)
-		if (s->expression[i].in[l->segment] && is_form_multiple(form, s->expression[i].in[l->segment], of))
-			return i;
-	for (int i = 0; i < s->expressions; i++)
-		if (!s->expression[i].in[l->segment] && is_form_multiple(form, s->expression[i].form, of)) {
-			s->expression[i].in[l->segment] = s->expression[i].form;
-			return i;
-		}
-	return -1;
-}
-
-static int new_expression(const struct looking *l, const struct node *node, struct form *form)
-{
-	struct switching *s = l->s;
-	ENLARGE(s->expression, (size_t)s->expressions + 1);
-	struct expression *e = &s->expression[s->expressions];
-	*e = (struct expression){ .form = form,
-				  .in = ARRAY(struct form *, (size_t)s->segments),
-				  .shift = rationals((size_t)s->segments),
-				  .node = node,
-				  .met = l->row + (l->region > 0 ? l->b->model->n : 0) };
-	e->in[l->segment] = form;
-	mpq_init(e->first);
-	return s->expressions++;
-}
-
-/* The expression that form, which has no constant, is a multiple of; met for the first time it is one, with the sign
- * and scale in which it was written. form + constant = of (e - at) */
-static int find_expression(const struct looking *l, const struct node *node, struct form *form, mpq_srcptr constant,
-			   mpq_ptr of, mpq_ptr at)
-{
-	int found = expression_of_term(l, node, form, constant, of);
-	if (found < 0)
-		found = expression_of_form(l, form, of);
-	bool first = found < 0;
-	if (first) {
-		found = new_expression(l, node, form);
-		mpq_set_ui(of, 1, 1);
-	}
-	struct expression *e = &l->s->expression[found];
-	compared_at(constant, of, at);
-	if (first)
-		mpq_set(e->first, at);
-	mpq_add(at, at, e->shift[l->segment]);
-	return found;
-}
-
 static void add_break(struct looking *l, struct expression *e, mpq_srcptr at)
 {
 	mpq_t *breaks = rationals((size_t)e->breaks + 1);
@@ -212,6 +82,12 @@ static bool is_above(struct looking *l, int index, mpq_srcptr at)
 	return false;
 }
 
+/* In the order in which the equations show expressions */
+static int order_met(const struct looking *l)
+{
+	return l->row + (l->region > 0 ? l->b->model->n : 0);
+}
+
 static void refuse_force(const struct node *node, const struct form *form)
 {
 	if (form->terms && form->term[form->terms - 1].basis.kind == BASIS_ATOM)
@@ -235,7 +111,8 @@ static int sign_here(struct looking *l, const struct node *node, const struct fo
 	constant_value(c, &plain, constant);
 	int sign = mpq_sgn(constant);
 	if (plain.terms < form->terms) {
-		int e = find_expression(l, node, form_sum(form, &plain, true), constant, factor, at);
+		struct compared what = { node, form_sum(form, &plain, true), constant, order_met(l) };
+		int e = find_expression(l->s, l->segment, &what, factor, at);
 		sign = is_above(l, e, at) == (mpq_sgn(factor) > 0) ? 1 : -1;
 	}
 	mpq_clears(constant, factor, at, NULL);
@@ -330,7 +207,8 @@ static struct form *friction_here(struct looking *l, const struct atom *a, struc
 	mpq_t constant;
 	mpq_init(constant);
 	constant_value(c, &plain, constant);
-	f->expression = find_expression(l, a->node, form_sum(x[0], &plain, true), constant, f->factor, f->at);
+	struct compared what = { a->node, form_sum(x[0], &plain, true), constant, order_met(l) };
+	f->expression = find_expression(l->s, l->segment, &what, f->factor, f->at);
 	mpq_clear(constant);
 	add_stick(l, &l->s->expression[f->expression], f->at);
 	for (int i = 1; i < a->operands; i++)
@@ -400,9 +278,14 @@ static struct form *form_here(struct looking *l, const struct form *form)
 
 /* ---- all regions: in each segment of time those of all intervals ---- */
 
+int regions_at_once(const struct switching *s)
+{
+	return s->regions / s->segments;
+}
+
 int segment_of_region(const struct switching *s, int region)
 {
-	return region / (s->regions / s->segments);
+	return region / regions_at_once(s);
 }
 
 static int *intervals_of(const struct switching *s, int region)
@@ -425,10 +308,22 @@ static int count_candidates(struct switching *s)
 	return count;
 }
 
+static const struct node *last_term(const struct switching *s)
+{
+	return s->expression[s->expressions - 1].node;
+}
+
+static _Noreturn void too_many_in_time(const struct switching *s)
+{
+	error(last_term(s)->at,
+	      "a load that is sampled can be an input; a scheme with a leftover, such as etdrk4, needs no regions",
+	      "more regions than the limit of %d, in %d segments of time together", LIMIT_REGIONS_IN_TIME, s->segments);
+}
+
 static _Noreturn void too_many(const struct building *b, const struct switching *s)
 {
 	bool together = b->model->relative || b->request->undivided;
-	error(s->expression[s->expressions - 1].node->at,
+	error(last_term(s)->at,
 	      together ? "some coordinates move as a whole, and then independent parts have their regions together; a "
 			 "scheme with a leftover, such as etdrk4, needs no regions"
 		       : "a scheme with a leftover, such as etdrk4, needs no regions",
@@ -442,9 +337,10 @@ static bool look(struct building *b, struct switching *s, int *known)
 {
 	const struct region *before = s->region;
 	bool single = s->expressions == 1 && s->segments == 1;
-	s->regions = count_candidates(s) * s->segments;
-	if (s->regions > LIMIT_CANDIDATES)
+	int in_one = count_candidates(s);
+	if (in_one > LIMIT_CANDIDATES)
 		too_many(b, s);
+	s->regions = in_one * s->segments;
 	s->region = ARRAY(struct region, (size_t)s->regions);
 	for (int r = 0; r < *known; r++)
 		s->region[r] = before[r];
@@ -466,6 +362,9 @@ static bool look(struct building *b, struct switching *s, int *known)
 			s->region[r].residual[l.row] = form_here(&l, b->snapshot[l.segment].residual[l.row].form);
 		}
 		*known = single && s->expressions == 1 ? l.lowest : 0;
+		if (s->torn)
+			s->expressions = *known = 0;
+		s->torn = false;
 		if (l.grown)
 			return false;
 	}
@@ -595,7 +494,7 @@ static bool independent(const struct switching *s, int segment)
 
 static void mark_possible(const struct building *b, struct switching *s)
 {
-	int in_one = s->regions / s->segments;
+	int in_one = regions_at_once(s), in_all = 0;
 	for (int segment = 0; segment < s->segments; segment++) {
 		struct basis *basis;
 		int bases = find_bases(s, segment, &basis), count = 0;
@@ -604,8 +503,11 @@ static void mark_possible(const struct building *b, struct switching *s)
 			s->region[r].possible = all || is_possible(s, r, bases, basis);
 			count += s->region[r].possible;
 		}
+		in_all += count;
 		if (count > LIMIT_REGIONS)
 			too_many(b, s);
+		if (s->segments > 1 && s->expressions > 0 && in_all > LIMIT_REGIONS_IN_TIME)
+			too_many_in_time(s);
 	}
 }
 
@@ -655,7 +557,7 @@ static void check_jumps(struct building *b, const struct switching *s)
 				check_face(b, s, r, e);
 }
 
-static bool changes_in_time(const struct building *b, int rows, const int *row)
+static bool rows_change(const struct building *b, int rows, const int *row)
 {
 	bool changes = false;
 	for (int s = 1; s < b->model->system.segments; s++)
@@ -665,21 +567,6 @@ static bool changes_in_time(const struct building *b, int rows, const int *row)
 	return changes;
 }
 
-/* Segments in which an expression is not met, as nothing depends on it there: it is as in the one before, or after */
-static void complete_expression(const struct switching *s, struct expression *e)
-{
-	int first = 0;
-	while (!e->in[first])
-		first++;
-	for (int segment = 0; segment < s->segments; segment++) {
-		int as = segment < first ? first : segment - 1;
-		if (e->in[segment])
-			continue;
-		e->in[segment] = e->in[as];
-		mpq_set(e->shift[segment], e->shift[as]);
-	}
-}
-
 /* Highest derivatives cannot decide on their own equations; the collector has refused them. */
 struct switching *regions_of_rows(struct building *b, int rows, int *row)
 {
@@ -687,11 +574,10 @@ struct switching *regions_of_rows(struct building *b, int rows, int *row)
 	int known = 0;
 	s->rows = rows;
 	s->row = row;
-	s->segments = changes_in_time(b, rows, row) ? b->model->system.segments : 1;
+	s->segments = rows_change(b, rows, row) ? b->model->system.segments : 1;
 	while (!look(b, s, &known))
 		;
-	for (int e = 0; e < s->expressions; e++)
-		complete_expression(s, &s->expression[e]);
+	complete_expressions(s);
 	mark_possible(b, s);
 	if (!b->model->relative)                /* else it has been told */
 		check_jumps(b, s);
@@ -777,7 +663,7 @@ static void remove_break(struct switching *s, int expression, int at)
 	s->regions = count_candidates(s) * s->segments;
 	s->region = ARRAY(struct region, (size_t)s->regions);
 	for (int r = 0; r < old.regions; r++) {
-		int merged = segment_of_region(&old, r) * (s->regions / s->segments);
+		int merged = segment_of_region(&old, r) * regions_at_once(s);
 		for (int i = 0; i < s->expressions; i++) {
 			int interval = interval_of(&old, r, i);
 			merged += (interval - (i == expression && interval > at)) * s->expression[i].stride;

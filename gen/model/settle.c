@@ -219,21 +219,15 @@ static bool keeps_atoms(const struct building *b)
 	return first_atom(b, true) != NULL;
 }
 
-static const char input_rewrite[] = "the load as an input is exact beside it";
-
 /* Scheme exact was asked for, and what it would have to switch on it cannot */
 static void tell_atom(void *context)
 {
 	const struct building *b = context;
 	const struct atom *atom = first_atom(b, false);
-	bool changes = !atom;
-	atom = atom ? atom : first_atom(b, true);
-	const char *rewrite = changes ? input_rewrite : rewrite_of(atom->node);
+	const char *rewrite = rewrite_of(atom->node);
 	error(atom->node->start, format("%s%s%s and %s are the schemes that could", rewrite, *rewrite ? "; " : "",
 					leaving_schemes(", "), holding_schemes()),
-	      changes ? "switching beside loads that change their formula in time is not built yet: scheme exact "
-			"cannot treat '%s'"
-		      : "'%s' is not piecewise linear: scheme exact cannot treat it",
+	      "'%s' is not piecewise linear: scheme exact cannot treat it",
 	      text_between(atom->node->start, atom->node->end));
 }
 
@@ -244,9 +238,9 @@ static void find_obstacle(void *context)
 	struct model *model = b->model;
 	for (int s = 0; b->nominal && s < b->nominals; s++)
 		add_elements(b, &b->nominal[s]);
-	const struct atom *atom = first_atom(b, false), *any = first_atom(b, true);
+	const struct atom *atom = first_atom(b, false);
 	const char *why = "is not piecewise linear", *rewrite;
-	model->obstacle = atom ? atom->node : any ? any->node : NULL;
+	model->obstacle = atom ? atom->node : NULL;
 	for (int s = 1; s < model->system.segments && !model->obstacle; s++) {
 		model->obstacle = same_equations(b, &b->snapshot[s]) ? NULL : first_changing_term(b, s);
 		why = format("has a factor that changes at t = %s", readable_text(model->system.change[s - 1]));
@@ -255,9 +249,7 @@ static void find_obstacle(void *context)
 	forget_lets(b->spec);
 	if (!model->obstacle)
 		return;
-	if (!atom && any)
-		why = "switches beside loads that change their formula in time";
-	rewrite = !atom && any ? input_rewrite : rewrite_of(model->obstacle);
+	rewrite = rewrite_of(model->obstacle);
 	model->obstacle_text = format("%s%s%s", why, *rewrite ? "; " : "", rewrite);
 }
 

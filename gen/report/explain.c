@@ -230,7 +230,7 @@ static long bytes_of_regions(const struct step *step)
 {
 	const struct switching *s = step->model->switching;
 	long size = step->layout.size, matrices = s->systems;
-	long bytes = 8 * (s->expressions * size + matrices * (2 * size * size + 3 * s->expressions * size)) +
+	long bytes = 8 * (s->segments * s->expressions * size + matrices * (2 * size * size + 3 * s->expressions * size)) +
 		     4 * (s->regions + s->expressions + matrices);
 	return bytes + (step->swift ? swift_bytes(step) : 0);
 }
@@ -252,8 +252,8 @@ static void person_expressions(FILE *to, const struct step *step)
 {
 	const struct switching *s = step->shown->model->switching;
 	for (int i = 0; i < s->expressions; i++) {
-		fprintf(to, "    expression %d: %s, breakpoints", i,
-			form_text(step->shown->model, s->expression[i].form));
+		fprintf(to, "    expression %d: %s%s breakpoints", i, spoken_expression(step->shown->model, i),
+			s->expression[i].segments > 1 ? ";" : ",");
 		for (int k = 0; k < s->expression[i].breaks; k++)
 			fprintf(to, "%s %s", k ? "," : "", readable_text(s->expression[i].at[k]));
 		fputc('\n', to);
@@ -281,7 +281,9 @@ static void person_intervals(FILE *to, const struct switching *s, int region)
 	fputs(" (intervals", to);
 	for (int i = 0; i < s->expressions; i++)
 		fprintf(to, " %d", interval_of(s, region, i));
-	fprintf(to, "): matrix %d\n", s->region[region].system);
+	fprintf(to, "%s): matrix %d\n",
+		s->segments > 1 ? format("; segment %d of time", segment_of_region(s, region) + 1) : "",
+		s->region[region].system);
 }
 
 static void person_way(FILE *to, const struct step *step, const char *of)
@@ -299,16 +301,16 @@ static void person_regions(FILE *to, const struct step *step)
 {
 	const struct switching *s = step->shown->model->switching;
 	fprintf(to,
-		"Piecewise linear: %d regions, %d of them different; in each nothing is approximated, every constant "
+		"Piecewise linear: %d regions%s, %d of them different; in each nothing is approximated, every constant "
 		"is correctly rounded.\n",
-		possible_regions(s), s->systems);
+		possible_regions(s), s->segments > 1 ? format(" in %d segments of time", s->segments) : "", s->systems);
 	person_expressions(to, step);
 	if (s->sharing)
 		fprintf(to, "Coordinates move as a whole: %d independent parts have their regions together.\n",
 			s->sharing);
 	for (int r = 0; r < s->regions; r++)
 		if (s->region[r].possible) {
-			fprintf(to, "    region %d", r);
+			fprintf(to, "    region %d", r % regions_at_once(s));
 			person_intervals(to, s, r);
 		}
 	person_way(to, step, "A step");
@@ -692,12 +694,18 @@ static void json_expressions(FILE *to, const struct step *step)
 	fputs("  \"expressions\": [", to);
 	for (int i = 0; i < s->expressions; i++) {
 		fprintf(to, "%s\n    {\"expression\": \"%s\", \"breakpoints\": [", i ? "," : "",
-			form_text(step->shown->model, s->expression[i].form));
+			spoken_expression(step->shown->model, i));
 		for (int k = 0; k < s->expression[i].breaks; k++)
 			fprintf(to, "%s%.17g", k ? ", " : "", nearest_double(s->expression[i].at[k]));
 		fputs("]}", to);
 	}
 	fputs("],\n", to);
+}
+
+/* Of time, where there are several */
+static const char *json_segment(const struct switching *s, int region)
+{
+	return s->segments > 1 ? format(", \"segment\": %d", segment_of_region(s, region)) : "";
 }
 
 static void json_region_list(FILE *to, const struct switching *s)
@@ -707,7 +715,8 @@ static void json_region_list(FILE *to, const struct switching *s)
 	for (int r = 0; r < s->regions; r++) {
 		if (!s->region[r].possible)
 			continue;
-		fprintf(to, "%s\n    {\"number\": %d, \"matrix\": %d}", first ? "" : ",", r, s->region[r].system);
+		fprintf(to, "%s\n    {\"number\": %d%s, \"matrix\": %d}", first ? "" : ",", r % regions_at_once(s),
+			json_segment(s, r), s->region[r].system);
 		first = false;
 	}
 	fputs("],\n", to);
@@ -729,8 +738,8 @@ static void json_part(FILE *to, const struct switching *all, int index)
 	for (int r = 0; r < s->regions && s->expressions > 0; r++) {
 		if (!s->region[r].possible)
 			continue;
-		fprintf(to, "%s{\"number\": %d, \"matrix\": %d}", first ? "" : ", ",
-			share_of_region(part, all, r), s->region[r].system);
+		fprintf(to, "%s{\"number\": %d%s, \"matrix\": %d}", first ? "" : ", ",
+			share_of_region(part, all, r), json_segment(s, r), s->region[r].system);
 		first = false;
 	}
 	fputs("]}", to);
