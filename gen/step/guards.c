@@ -127,5 +127,11 @@ struct guards guards_of(const struct step *step, const struct pieces *pieces)
 	}
 	g.first[s->regions] = g.guards;
 	bound_rows_of_guards(step, pieces, &g);
+	g.play = ARRAY(double, (size_t)s->expressions);
+	g.row_play = ARRAY(double, (size_t)g.rows);
+	for (int e = 0; e < s->expressions; e++)
+		g.play[e] = size_of_bounded(step, pieces->row + e * step->layout.size);
+	for (int i = 0; i < g.rows; i++)
+		g.row_play[i] = size_of_bounded(step, g.row + i * step->layout.size);
 	return g;
 }
