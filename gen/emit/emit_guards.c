@@ -128,3 +128,32 @@ void emit_guards(const struct emitter *e, const struct pieces *pieces)
 	       "};\n",
 	    e->step->layout.size, e->model->switching->expressions, e->step->series.degree, MAX_SPLITS);
 }
+
+void emit_grip(const struct emitter *e, const bool *needed)
+{
+	const struct switching *s = e->model->switching;
+	int size = e->step->layout.size;
+	const double *grip = grips_of(e->step);
+	const char **name = ARRAY(const char *, (size_t)s->frictions);
+	for (int i = 0; i < s->frictions; i++)
+		name[i] = text_between(s->friction[i].atom->node->start, s->friction[i].atom->node->end);
+	say(e, "\n"
+	       "static const double $n_grips[%d][%d][%d] = {  /* of each region: what friction carries */\n",
+	    s->regions, s->frictions, size);
+	for (int r = 0; r < s->regions; r++) {
+		say(e, "  {\n");
+		emit_number_rows(e, s->frictions, size, grip + r * s->frictions * size, name);
+		say(e, "  },\n");
+	}
+	say(e, "};\n"
+	       "\n"
+	       "static double $n_grip(const $n *s, int which)\n"
+	       "{\n"
+	       "    double x[%d], force;\n"
+	       "    int i;\n", size);
+	emit_load_states(e, needed, false);
+	emit_region_vector(e, false);
+	say(e, "    pl_multiply(1, %d, $n_grips[s->contact.region][which], x, &force);\n"
+	       "    return force;\n"
+	       "}\n", size);
+}

@@ -109,6 +109,18 @@ static void bound_rows_of_guards(const struct step *step, const struct pieces *p
 	}
 }
 
+double *grips_of(const struct step *step)
+{
+	const struct switching *s = step->model->switching;
+	size_t size = (size_t)step->layout.size, count = (size_t)s->frictions;
+	double *grip = ARRAY(double, (size_t)s->regions * count * size);
+	for (int r = 0; r < s->regions; r++)
+		for (int i = 0; i < s->frictions; i++)
+			if (s->region[r].grip[i])
+				row_over_x(step, s->region[r].grip[i], grip + ((size_t)r * count + (size_t)i) * size);
+	return grip;
+}
+
 struct guards guards_of(const struct step *step, const struct pieces *pieces)
 {
 	const struct switching *s = step->model->switching;

@@ -473,6 +473,7 @@ struct guards {
 	struct held_state *assignment;
 };
 struct guards guards_of(const struct step *step, const struct pieces *pieces);
+double *grips_of(const struct step *step); /* what friction carries: regions x frictions x size */
 
 /* ---- peaks.c: outputs of which the largest size is asked for ---- */
 

@@ -85,7 +85,7 @@ struct sliding sliding_system(unsigned seed)
 		s.k[i] = i == s.n && next(&state) % 2 ? 0 : between(&state, 1, 20, 19);
 		s.c[i] = next(&state) % 2 ? between(&state, 0, 0.5, 10) : 0;
 	}
-	s.rubs = 1 + (int)(next(&state) % (unsigned)(s.n < MOST_FRICTION ? s.n : MOST_FRICTION));
+	s.rubs = 1 + (int)(next(&state) % (s.n == 2 || s.n == 4 ? 2 : (unsigned)s.n)); /* 3 of 4 are long in the making */
 	do {
 		memset(s.rub, 0, sizeof s.rub);
 		for (int r = 0; r < s.rubs; r++)
