@@ -87,7 +87,7 @@ static real excess(const pl_guards *m, const pl_contact *c, const walk *w, int b
     const real b = w->at[breakpoint];
     real e;
     pl_multiply(1, m->size, row, x, &e);
-    *noise = noise_of(sizes(m->size, row, x) + 3 * sizes(m->size, tangent, x) + magnitude(b));
+    *noise = noise_of(sizes(m->size, row, x) + 3 * sizes(m->size, tangent, x) + magnitude(b) + m->play[w->i]);
     return e - b;
 }
 
@@ -158,7 +158,8 @@ static int is_held(const pl_guards *m, int region, int expression, const real *x
         if (g->expression != expression)
             continue;
         pl_multiply(1, n, row, x, &e);
-        noise = noise_of(sizes(n, row, x) + 3 * sizes(n, tangent, x) + magnitude(m->limit[k]));
+        noise = noise_of(sizes(n, row, x) + 3 * sizes(n, tangent, x) + magnitude(m->limit[k]) +
+                         m->gate_play[g->row]);
         if (e - m->limit[k] > noise)
             return 0;
         if (e - m->limit[k] >= -noise && heading(n, matrix_of(m->A, m, m->matrix[region]), row, x, work) > 0)

@@ -283,6 +283,10 @@ void banner_regions(const struct emitter *e)
 	if (s->segments > 1)
 		say(e, " * They are those of %d segments of time, each with its own.\n", s->segments);
 	banner_expressions(e);
+	for (int i = 0; i < s->frictions; i++)
+		say(e, " *     friction %d: %s; sticks in interval %d of expression %d\n", i,
+		    text_between(s->friction[i].atom->node->start, s->friction[i].atom->node->end),
+		    stick_of(s, &s->friction[i]), s->friction[i].expression);
 	if (s->sharing)
 		say(e, " * Coordinates move as a whole: %d independent parts have their regions together.\n",
 		    s->sharing);

@@ -241,6 +241,8 @@ void emit_region_start(const struct emitter *e)
 	emit_region_vector(e, false);
 	emit_region_start_call(e);
 	say(e, "}\n");
+	if (regions_of(e)->felt)
+		emit_grip(e, needed_loads(e));
 }
 
 void emit_region_start_call(const struct emitter *e)

@@ -109,6 +109,19 @@ static void bound_rows_of_guards(const struct step *step, const struct pieces *p
 	}
 }
 
+double *grips_of(const struct step *step)
+{
+	const struct switching *s = step->model->switching;
+	size_t size = (size_t)step->layout.size, count = (size_t)s->frictions;
+	double *grip = ARRAY(double, (size_t)s->regions * count * size);
+	for (int r = 0; r < s->regions; r++)
+		for (int i = 0; i < s->frictions; i++)
+			if (s->region[r].grip[i])
+				row_over_x(step, s->region[r].grip[i], 0,
+					   grip + ((size_t)r * count + (size_t)i) * size);
+	return grip;
+}
+
 struct guards guards_of(const struct step *step, const struct pieces *pieces)
 {
 	const struct switching *s = step->model->switching;
@@ -127,5 +140,11 @@ struct guards guards_of(const struct step *step, const struct pieces *pieces)
 	}
 	g.first[s->regions] = g.guards;
 	bound_rows_of_guards(step, pieces, &g);
+	g.play = ARRAY(double, (size_t)s->expressions);
+	g.row_play = ARRAY(double, (size_t)g.rows);
+	for (int e = 0; e < s->expressions; e++)
+		g.play[e] = size_of_bounded(step, pieces->row + e * step->layout.size);
+	for (int i = 0; i < g.rows; i++)
+		g.row_play[i] = size_of_bounded(step, g.row + i * step->layout.size);
 	return g;
 }
