@@ -45,7 +45,7 @@ static struct contact random_contact(const struct scene *s, enum contact_kind ki
 		c.on = (int)among(0, s->n - 1);
 		c.against = (int)among(-1, c.on - 1);
 	}
-	c.gap = among(100, 1200);
+	c.gap = among(190, 500);
 	c.stiffness = among(2000, 60000);
 	c.force = among(200, 3000);
 	c.belt = among(0, 2) ? 0 : among(-900, 900);
