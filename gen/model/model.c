@@ -508,6 +508,7 @@ static void collect_model(struct building *b)
 		statement_guard(evaluate_modes, b);
 	b->collector.constant_only = false;     /* where what had to be constant was not */
 	collect_intervals(b);
+	collect_impacts(b);
 	if (all)
 		evaluate_lets(b);
 	model->initial = rationals((size_t)model->system.states);

@@ -184,6 +184,8 @@ struct model {
 	struct form **left_slope;   /* of a scheme that collocates: [channel][state], the leftover's derivative */
 	const struct atoms *atoms;
 	struct switching *switching; /* exact: the regions of a piecewise-linear model; NULL: it has one */
+	int impacts;                /* in the order in which they act at one instant */
+	struct impact *impact;
 	struct smoothness smooth;
 	const struct node *obstacle; /* the first term that stood in the way of exact, where no scheme was asked for; */
 	const char *obstacle_text;  /* why it did, and the way out if there is one */
@@ -254,6 +256,24 @@ struct expression {                 /* what is compared with breakpoints: linear
 	const struct node *node;    /* where it comes from */
 	int stride;                 /* of its interval in the index of a region */
 	int met;                    /* rises in the order in which the equations show expressions */
+};
+struct jump {                       /* a state just behind an impact, over states, loads and inputs before it */
+	int state;
+	struct form *form;
+	struct output *row;
+};
+struct impact {                     /* of `when`, or of a stop */
+	const struct when *when;
+	struct form *guard, *speed; /* rises through 0 where it comes true; its derivative */
+	int jumps;
+	struct jump *jump;
+	/* v -> v - (1 + e) d s, s the speed: a bounce, which may come to rest; else the jump is any other */
+	bool bounces;
+	mpq_t restitution;          /* e */
+	mpq_t *direction;           /* d, per coordinate */
+	int expression;             /* its guard is a multiple of this one, less a breakpoint, */
+	mpq_t at;
+	bool upward;                /* which it passes this way */
 };
 struct region {                     /* one interval for each expression */
 	bool possible;              /* its inequalities can hold together */
@@ -428,6 +448,12 @@ struct switching *regions_of_rows(struct building *b, int rows, int *row);
 void remove_idle_breaks(struct switching *s);
 int  add_system(struct switching *s, const struct linear *system);   /* its index */
 int  possible_regions(const struct switching *s);
+
+/* ---- impacts.c: state jumps, and what bounces ---- */
+
+void collect_impacts(struct building *b);
+void build_impacts(struct building *b);                     /* once the masses are known */
+_Noreturn void tell_no_impacts(const struct building *b);   /* why a scheme cannot treat them */
 
 /* ---- parts.c: regions of independent coordinates ---- */
 

@@ -218,11 +218,22 @@ static enum scheme scheme_of_choice(const struct building *b)
 	return !b->spec->has_operator ? SCHEME_TAYLOR : many ? SCHEME_ETDAM4 : default_scheme();
 }
 
+/* Impacts go from event to event. */
+static void settle_impacts(void *context)
+{
+	struct building *b = context;
+	if (b->model->scheme != SCHEME_EXACT || b->request->loads_left || !is_piecewise_linear(b))
+		tell_no_impacts(b);
+	build_impacts(b);
+}
+
 /* Exact where nothing is left over and no scheme was asked for; the equations for all time where something is. */
 static bool settle_scheme(struct building *b)
 {
 	struct model *model = b->model;
-	bool linear = is_linear(b);
+	bool linear = is_linear(b) && model->impacts == 0;
+	if (model->impacts > 0 && !statement_guard(settle_impacts, b))
+		return false;
 	if (!linear && !model->asked.scheme_at.source && !b->request->solution && !is_piecewise_linear(b)) {
 		model->scheme = scheme_of_choice(b);
 		choose_order(model, b->request->single);
