@@ -2,50 +2,7 @@
 /* Steps of piecewise-linear models, in pieces in which the fastest pole does not turn far.  Most pieces stay clear of
  * every breakpoint, and a bound shows it; the others go by Taylor polynomials, on which the first crossing is isolated
  * before it is computed, so none is stepped over. */
-#include "real.h"
-
-/* SHORT: a length of s, which goes from 0 to 1 over a piece.  REST: what rounding may leave of a step, in parts of it.
- * SCALE: that of expressions near the end of the range. */
-#ifdef REAL_IS_FLOAT
-#define SHORT 0x1p-18f
-#define REST 5e-6f
-#define SCALE 0x1p-48f
-#else
-#define SHORT 0x1p-40
-#define REST 1e-14
-#define SCALE 0x1p-48
-#endif
-
-static real magnitude(real a)
-{
-    return a < 0 ? -a : a;
-}
-
-static real larger(real a, real b)
-{
-    return a > b ? a : b;
-}
-
-static real smaller(real a, real b)
-{
-    return a < b ? a : b;
-}
-
-/* sum |a_j b_j| */
-static real sizes(int n, const real *a, const real *b)
-{
-    real sum = 0;
-    int j;
-    for (j = 0; j < n; j++)
-        sum += magnitude(a[j] * b[j]);
-    return sum;
-}
-
-/* What rounding may have done to a sum of terms of this size */
-static real noise_of(real terms)
-{
-    return 8 * REAL_EPSILON * terms;
-}
+#include "roots.h"
 
 static const real *matrix_of(const real *all, const pl_switching *m, const pl_contact *c)
 {
@@ -141,31 +98,6 @@ static int outside(const pl_switching *m, const pl_contact *c, const walk *w, co
 
 /* ---- the start ---- */
 
-/* 1, -1 or 0: the sign of the first of e', e'', e''' that is not zero but for rounding.  work: 4 size */
-static int heading(const pl_switching *m, const pl_contact *c, const real *row, const real *x, real *work)
-{
-    const int n = m->size;
-    const real *A = matrix_of(m->A, m, c);
-    real *y = work, *next = work + n, *terms = work + 2 * n, *next_terms = work + 3 * n, e, noise;
-    int order, i;
-    for (i = 0; i < n; i++)
-        y[i] = terms[i] = x[i];
-    for (order = 1; order <= 3; order++) {
-        pl_multiply(n, n, A, y, next);
-        for (i = 0; i < n; i++)
-            next_terms[i] = sizes(n, A + i * n, terms);
-        for (i = 0; i < n; i++) {
-            y[i] = next[i];
-            terms[i] = next_terms[i];
-        }
-        pl_multiply(1, n, row, y, &e);
-        noise = noise_of(sizes(n, row, terms));
-        if (e > noise || e < -noise)
-            return e > 0 ? 1 : -1;
-    }
-    return 0;
-}
-
 /* Puts what is on its upper breakpoint in region `below` above or below that: where it is heading or, with `possible`,
  * so that the region can occur. */
 static void decide(const pl_switching *m, const real *x, pl_contact *c, int below, int possible, real *work)
@@ -178,7 +110,7 @@ static void decide(const pl_switching *m, const real *x, pl_contact *c, int belo
         if (w.interval == w.breaks || -excess(m, c, &w, w.interval, x, &noise) > noise)
             continue;
         if (!possible) {
-            sign = heading(m, c, m->row + w.i * m->size, x, work);
+            sign = heading(m->size, matrix_of(m->A, m, c), m->row + w.i * m->size, x, work);
             if (sign != 0)
                 enter(m, c, c->region + ((sign > 0) - above) * w.stride);
         } else if (m->matrix[c->region] < 0 && !above && m->matrix[c->region + w.stride] >= 0)
@@ -191,7 +123,7 @@ void pl_switching_start(const pl_switching *m, const real *x, pl_contact *c, rea
     int i, below;
     walk w;
     c->total = 0;
-    c->crossings = c->status = c->matrix = 0;
+    c->crossings = c->status = c->matrix = c->rested = 0;
     enter(m, c, 0);
     for (w = first_switch(m); arrive(m, c->region, &w); leave(&w))
         for (; outside(m, c, &w, x) > 0; w.interval++)
@@ -250,127 +182,6 @@ static int stays_clear(const pl_switching *m, const pl_contact *c, const real *x
 
 /* ---- the first crossing in a piece of a step ---- */
 
-/* How far an expression is beyond a breakpoint: g(s), 0 <= s <= 1 over the piece, negative inside the interval */
-typedef struct beyond {
-    int degree;
-    real *coefficient;
-    real noise;                /* of g */
-    real reach, fourth, fifth; /* bounds of |g - g(0)| and of the fourth and fifth derivative */
-} beyond;
-
-typedef struct point {
-    real s, g, slope, second, third; /* g and its derivatives */
-} point;
-
-static point point_of(const beyond *f, real s)
-{
-    point p;
-    int k;
-    p.s = s;
-    p.g = p.slope = p.second = p.third = 0;
-    for (k = f->degree; k >= 0; k--) { /* four chains side by side take no longer than one */
-        p.third = p.third * s + p.second;
-        p.second = p.second * s + p.slope;
-        p.slope = p.slope * s + p.g;
-        p.g = p.g * s + f->coefficient[k];
-    }
-    p.second *= 2;
-    p.third *= 6;
-    return p;
-}
-
-/* g = sign (e - b) from the coefficients of e, whose terms have this size at s = 0; both are scaled by a power of 2
- * where the derivatives of g could overflow and g does not */
-static void look_beyond(beyond *f, const real *e, real sign, real b, real terms)
-{
-    real largest = terms;
-    int k;
-    for (k = 1; k <= f->degree; k++)
-        largest = larger(largest, magnitude(e[k]));
-    if (largest > REAL_LARGE) {
-        sign *= SCALE;
-        terms *= SCALE;
-    }
-    f->coefficient[0] = sign * (e[0] - b);
-    f->reach = f->fourth = f->fifth = 0;
-    for (k = 1; k <= f->degree; k++) {
-        const real a = magnitude(sign * e[k]), fourths = (real)(k * (k - 1) * (k - 2) * (k - 3));
-        f->coefficient[k] = sign * e[k];
-        f->fourth += fourths * a;
-        f->fifth += fourths * (real)(k - 4) * a;
-        f->reach += a;
-    }
-    f->noise = noise_of(terms + magnitude(sign * b) + f->reach);
-}
-
-/* The root between a, where g < 0, and z, where g > 0; g rises all the way.  Newton's method, kept safe by halving. */
-static real root_between(const beyond *f, point a, point z)
-{
-    const real enough = SHORT; /* the step after that would be below rounding */
-    real s = a.s + (z.s - a.s) * (a.g / (a.g - z.g));
-    int i;
-    for (i = 0; i < 64; i++) {
-        const point p = point_of(f, s);
-        const real newton = s - p.g / p.slope;
-        if (p.g > 0)
-            z = p;
-        else
-            a = p;
-        if (magnitude(newton - s) <= enough && newton >= a.s && newton <= z.s)
-            return newton;
-        s = newton > a.s && newton < z.s ? newton : (a.s + z.s) / 2;
-    }
-    return s;
-}
-
-enum { NO_CROSSING, RISES, UNKNOWN }; /* what is known of g between two points */
-
-static int between(const beyond *f, point a, point z)
-{
-    const real w = (z.s - a.s) * (z.s - a.s) / 8; /* a chord is off by at most w times the second derivative */
-    const real second = larger(magnitude(a.second), magnitude(z.second)) + w * f->fourth;
-    const real third = larger(magnitude(a.third), magnitude(z.third)) + w * f->fifth;
-    if (larger(a.g, z.g) + w * second <= f->noise)
-        return NO_CROSSING;
-    if (larger(a.slope, z.slope) + w * third < 0)
-        return NO_CROSSING;
-    return smaller(a.slope, z.slope) - w * third > 0 ? RISES : UNKNOWN;
-}
-
-/* Where g first rises through 0 before `end`, or -1.  Walks from the left, by intervals that are halved until it is
- * known what g does in them, and doubled again after that. */
-static real first_root(const beyond *f, real end, int *splits)
-{
-    const real shortest = SHORT; /* what g does in less is below its noise */
-    real width = end;
-    point a, inside; /* inside: the last point where g < 0, so that what noise hides loses no time */
-    if (f->coefficient[0] + f->reach <= f->noise)
-        return -1;
-    a.s = 0;
-    a.g = f->coefficient[0];
-    a.slope = f->coefficient[1];
-    a.second = 2 * f->coefficient[2];
-    a.third = 6 * f->coefficient[3];
-    inside = a;
-    while (a.s < end) {
-        const point z = point_of(f, a.s + width < end ? a.s + width : end);
-        const int known = between(f, a, z);
-        if (known == UNKNOWN && width > shortest) {
-            if (--*splits < 0)
-                return -1;
-            width /= 2;
-            continue;
-        }
-        if (known != NO_CROSSING && z.g > f->noise)
-            return inside.g < 0 ? root_between(f, inside, z) : inside.s;
-        if (z.g < 0 || inside.g >= 0)
-            inside = z;
-        a = z;
-        width *= 2;
-    }
-    return -1;
-}
-
 typedef struct found {
     real s; /* 1 without a crossing */
     int expression, breakpoint, upward;
@@ -415,36 +226,6 @@ static found first_crossing(const pl_switching *m, int region, real *coefficient
 
 /* ---- a step, piece by piece ---- */
 
-/* The coefficients of x(s) = e^{A dt s} x */
-static void expand(const pl_switching *m, const pl_contact *c, real dt, const real *x, real *coefficients)
-{
-    const int n = m->size;
-    const real *A = matrix_of(m->A, m, c);
-    int i, k;
-    for (i = 0; i < n; i++)
-        coefficients[i] = x[i];
-    for (k = 1; k <= m->degree; k++, coefficients += n) {
-        const real factor = dt / (real)k;
-        pl_multiply(n, n, A, coefficients, coefficients + n);
-        for (i = 0; i < n; i++)
-            coefficients[n + i] *= factor;
-    }
-}
-
-static void sum_up(const pl_switching *m, const real *coefficients, real s, real *x)
-{
-    const int n = m->size;
-    const real *row = coefficients + m->degree * n;
-    int i, k;
-    for (i = 0; i < n; i++)
-        x[i] = row[i];
-    for (k = m->degree; k > 0; k--) {
-        row -= n;
-        for (i = 0; i < n; i++)
-            x[i] = x[i] * s + row[i];
-    }
-}
-
 /* An expression that has left its interval, other than by a crossing, goes into that where it is. */
 static void follow_jumps(const pl_switching *m, const real *x, pl_contact *c, pl_crossing *crossing)
 {
@@ -463,9 +244,9 @@ static found move(const pl_switching *m, pl_contact *c, real dt, const real *y, 
 {
     found first = nothing;
     int i;
-    expand(m, c, dt, x, work);
+    expand(m->size, m->degree, matrix_of(m->A, m, c), dt, x, work);
     if (pl_not_finite(work, (m->degree + 1) * m->size)) {
-        sum_up(m, work, 1, x);
+        sum_up(m->size, m->degree, work, 1, x);
         return nothing;
     }
     if (*splits >= 0)
@@ -478,7 +259,7 @@ static found move(const pl_switching *m, pl_contact *c, real dt, const real *y, 
         for (i = 0; i < m->size; i++)
             x[i] = y[i];
     else
-        sum_up(m, work, first.s, x);
+        sum_up(m->size, m->degree, work, first.s, x);
     return first;
 }
 

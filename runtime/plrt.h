@@ -12,6 +12,7 @@
  *     until.c     the time to a change of the loads
  *     apply.c     matrices times vectors, and whether all is finite: schemes with a leftover
  *     crossings.c steps of piecewise-linear models, with every crossing of a breakpoint found
+ *     guards.c    the same with dry friction and jumps: events that each region has its own of
  *     retune.c    coefficients of a step from other params: NAME_retune
  *     rate.c      the rate of a load's phase from another frequency
  *     root.c      rough roots: the length of a step by its error
@@ -461,6 +462,7 @@ typedef struct pl_contact {
     int region;
     int matrix;     /* in use: that of the region, or where it cannot occur that of the one before */
     int status;     /* 0 or PL_TOO_MANY_EVENTS, sticky until the next start */
+    int rested;     /* contacts that came to rest by infinitely many bounces since the start */
 } pl_contact;
 
 /* a step has met more crossings, or needed more splits, than its bound: chatter, as a rule */
@@ -510,6 +512,108 @@ void pl_switchingf_start(const pl_switchingf *m, const float *x, pl_contact *c, 
 void pl_switchingf_step(const pl_switchingf *m, float *x, pl_contact *c, pl_crossingf *crossing, float *work);
 void pl_switchingf_advance(const pl_switchingf *m, float tau, float *x, pl_contact *c, pl_crossingf *crossing,
                            float *work);
+
+/* ---- guards.c: piecewise-linear models whose velocity is held at times, and that jump -------------------------- */
+
+/* As pl_switching, with events of their own in each region.  x' = A x; a guard is a row that must not become greater
+ * than its limit: where it does, x jumps, and goes on in another region.  An expression may have the same breakpoint
+ * twice: in the interval between it is held there, as by friction that sticks, and states that follow from others are
+ * set from them, exactly: x_i = row . x. */
+typedef struct pl_guard {
+    int row;                              /* among those of guards */
+    int expression, breakpoint, upward;   /* as a crossing of it is listed */
+    int leads;                            /* to the region of this number, less that where it stands */
+    int impact;                           /* that begins there, by its number; -1: none */
+} pl_guard;
+
+/* The state jumps where the guard comes true.  One that turns the speed of its guard, s to -restitution s, is a bounce;
+ * its contact may rest, in the interval between two equal breakpoints. */
+typedef struct pl_impact {
+    int expression, breakpoint, upward; /* as a crossing of it is listed */
+    int rest;                           /* that interval; -1: it is no bounce */
+    int jump, still;                    /* sets of assignments: its jump; of a bounce that with restitution 0 */
+    double restitution;
+} pl_impact;
+
+typedef struct pl_guards {
+    int size;          /* entries of x */
+    double h;          /* step [s] */
+    int switches;      /* expressions */
+    const double *row; /* switches x size: e = row . x */
+    const int *breaks; /* of each expression: how many breakpoints */
+    const double *at;  /* the breakpoints: those of the first, not falling; those of the second; ... */
+    const int *matrix; /* of each region: the number of its A; -1: it cannot be */
+    /* Of each matrix, as for pl_switching: */
+    const int *halvings;
+    const double *A, *Phi;
+    const double *tangent; /* switches x size */
+    /* Of each region: its guards are guard[first[region]] to guard[first[region + 1] - 1]; hold is the set of
+     * assignments that holds its states, or -1 */
+    const int *first;
+    const pl_guard *guard;
+    const double *limit; /* of each guard */
+    const int *hold;
+    /* Rows of guards, of each: d/3 times its slope; bounds as for pl_switching.  All rows x size */
+    const double *gate, *gate_tangent, *chord_error, *cubic_error;
+    /* Assignments: x[state] = value . x, those of a set from the same x: set[k] to set[k + 1] - 1 */
+    const int *set, *state;
+    const double *value;
+    int impacts; /* at most 30, in the order in which they act at one instant */
+    const pl_impact *impact;
+    const double *speed; /* impacts x size: of the guard of each that bounces */
+    int degree;
+    int max_events, max_splits;
+} pl_guards;
+
+/* what is to stick and what is to slip at an event has no answer that holds: some that was nearest was kept */
+enum { PL_UNDECIDED = 16 };
+
+/* Bounces that would all be over within this part of h come to rest: their number is infinite, their time is not. */
+#define PL_BRIEF 0x1p-20
+#define PL_BRIEFF 0x1p-10f
+
+#define PL_GUARDS_WORK(size, degree) (((degree) + 1) * ((size) + 2) + 8 * (size))
+
+/* The region of x.  What is on a breakpoint that stands twice sticks where that can be, else goes where it is heading;
+ * what is on another one goes as in pl_switching_start. */
+void pl_guards_start(const pl_guards *m, const double *x, pl_contact *c, double *work);
+
+/* x over h, and over tau, 0 <= tau <= h, as pl_switching_step and pl_switching_advance.  Where several stick or slip at
+ * one event, the combination is taken in which all of them agree: none is held by more than its guard lets it, and each
+ * that slips moves away in its direction; of several the one with the fewest changes, then with most that stick.
+ *
+ * Impacts at one instant act in their order, each from the state that the one before has left, and again from the first,
+ * until none is on its guard and comes closer.  Behind a bounce that leaves with the velocity v and is pressed back by
+ * the acceleration a, all further ones take T = 2 v/(a (1 - e)): where T <= PL_BRIEF h, e < 1, it rests, listed T
+ * later.  What rests is held until it would have to be pulled. */
+void pl_guards_step(const pl_guards *m, double *x, pl_contact *c, pl_crossing *crossing, double *work);
+void pl_guards_advance(const pl_guards *m, double tau, double *x, pl_contact *c, pl_crossing *crossing, double *work);
+
+typedef struct pl_guardsf {
+    int size;
+    float h;
+    int switches;
+    const float *row;
+    const int *breaks;
+    const float *at;
+    const int *matrix, *halvings;
+    const float *A, *Phi, *tangent;
+    const int *first;
+    const pl_guard *guard;
+    const float *limit;
+    const int *hold;
+    const float *gate, *gate_tangent, *chord_error, *cubic_error;
+    const int *set, *state;
+    const float *value;
+    int impacts;
+    const pl_impact *impact;
+    const float *speed;
+    int degree, max_events, max_splits;
+} pl_guardsf;
+
+void pl_guardsf_start(const pl_guardsf *m, const float *x, pl_contact *c, float *work);
+void pl_guardsf_step(const pl_guardsf *m, float *x, pl_contact *c, pl_crossingf *crossing, float *work);
+void pl_guardsf_advance(const pl_guardsf *m, float tau, float *x, pl_contact *c, pl_crossingf *crossing, float *work);
 
 /* ---- retune.c: coefficients from other params --------------------------------------------------------------- */
 

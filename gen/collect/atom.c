@@ -457,7 +457,7 @@ struct form *kept_call(struct collector *c, const struct node *node, enum functi
 	if (all_constant(count, x) || (!single && function != FN_ATAN2 && is_decided(c, count, x)))
 		return single ? constant_call(c, node, function, x[0])
 			      : piecewise(c, call_at(node, function, count), x);
-	if (function >= FN_DEADZONE)
+	if (function >= FN_DEADZONE && function != FN_FRICTION)
 		check_breakpoints(c, node, x);
 	return new_atom(c, node, (struct atom){ .kind = ATOM_CALL, .function = function }, count,
 			(const struct form *const *)x);

@@ -112,9 +112,38 @@ static struct value *collect_argument(struct collector *c, const struct node *no
 	return x;
 }
 
+static bool has_coordinate(const struct form *form)
+{
+	return form->terms > 0 && form->term[form->terms - 1].basis.kind >= BASIS_COORD;
+}
+
+/* Dry friction: a force, which only scheme exact can treat, where it switches; elsewhere it says so */
+static struct form *friction_of(struct collector *c, const struct node *node, struct form *const *x)
+{
+	mpq_t force;
+	mpq_init(force);
+	if (!keeps_piecewise(c))
+		not_linear(c, node, "is dry friction, and stands in equations alone");
+	for (int i = 1; i < node->children; i++) {
+		if (is_constant(x[i]))
+			constant_value(c, x[i], force);
+		if (mpq_sgn(force) < 0)
+			error(node->child[i]->start, "it acts against the sliding: friction(v, F) is F sgn(v) on the left side",
+			      "the force of friction is below 0");
+	}
+	if (!has_coordinate(x[0]) || x[0]->term[x[0]->terms - 1].basis.kind == BASIS_ATOM)
+		error(node->child[0]->start, "x', x' - y', or x' - 0.2 against what moves",
+		      "the velocity of friction is linear in velocities");
+	bool none = node->children == 2 && x[1]->terms == 0;
+	mpq_clear(force);
+	return none ? NEW(struct form) : kept_call(c, node, FN_FRICTION, node->children, x);
+}
+
 /* A function that divides its arguments' range, of one cell of each */
 static struct form *piecewise_cell(struct collector *c, struct node *node, struct form *const *x)
 {
+	if (node->function == FN_FRICTION)
+		return friction_of(c, node, x);
 	/* an angle has a single formula: known when it is of time alone, and no load all the same */
 	bool kept = node->function == FN_ATAN2 ? keeps(c) : keeps_piecewise(c) && !is_decided_call(c, node, x);
 	return kept ? kept_call(c, node, node->function, node->children, x) : piecewise(c, node, x);
@@ -214,11 +243,6 @@ static struct form *collect_division(struct collector *c, const struct form *a, 
 	struct form *quotient = form_scale(a, value);
 	mpq_clear(value);
 	return quotient;
-}
-
-static bool has_coordinate(const struct form *form)
-{
-	return form->terms > 0 && form->term[form->terms - 1].basis.kind >= BASIS_COORD;
 }
 
 static bool has_input(const struct form *form)

@@ -7,6 +7,17 @@ static const struct switching *regions_of(const struct emitter *e)
 	return e->model->switching;
 }
 
+/* Regions have events of their own: friction, impacts */
+static bool has_guards(const struct emitter *e)
+{
+	return has_events(regions_of(e));
+}
+
+static const char *search_of(const struct emitter *e)
+{
+	return has_guards(e) ? "pl_guards" : "pl_switching";
+}
+
 /* ---- tables ---- */
 
 static const char **expression_names(const struct emitter *e)
@@ -117,9 +128,12 @@ void emit_regions(const struct emitter *e)
 	emit_rows(e, &pieces);
 	emit_breakpoints(e, &pieces);
 	emit_region_numbers(e);
-	for (size_t i = 0; i < sizeof all / sizeof *all; i++)
+	for (size_t i = 0; i < sizeof all / sizeof *all - (has_guards(e) ? 2 : 0); i++)
 		emit_matrices(e, &pieces, &all[i]);
-	emit_switching(e);
+	if (has_guards(e))
+		emit_guards(e, &pieces);
+	else
+		emit_switching(e);
 	if (e->step->swift)
 		emit_swift_tables(e, &pieces, expression);
 }
@@ -180,8 +194,12 @@ void declare_region_room(const struct emitter *e)
 {
 	const struct series *series = &e->step->series;
 	const struct layout *layout = &e->step->layout;
-	say(e, "    double x[%d], work[PL_SWITCHING_WORK(%d, %d, %d)];\n", layout->size, layout->size,
-	    regions_of(e)->expressions, series->degree);
+	if (has_guards(e))
+		say(e, "    double x[%d], work[PL_GUARDS_WORK(%d, %d)];\n", layout->size, layout->size,
+		    series->degree);
+	else
+		say(e, "    double x[%d], work[PL_SWITCHING_WORK(%d, %d, %d)];\n", layout->size, layout->size,
+		    regions_of(e)->expressions, series->degree);
 }
 
 void emit_region_start(const struct emitter *e)
@@ -194,8 +212,8 @@ void emit_region_start(const struct emitter *e)
 	declare_region_room(e);
 	emit_turned_loads(e, needed_loads(e), false);
 	emit_region_vector(e, false);
-	say(e, "    pl_switching_start(&$n_switching, x, &s->contact, work);\n"
-	       "}\n");
+	say(e, "    %s_start(&$n_switching, x, &s->contact, work);\n"
+	       "}\n", search_of(e));
 }
 
 static void emit_region_questions(const struct emitter *e)
@@ -224,9 +242,9 @@ static void emit_region_questions(const struct emitter *e)
 /* By the search, from x; `i` is declared */
 void emit_search(const struct emitter *e)
 {
-	say(e, "    pl_switching_step(&$o_switching, x, &s->contact$p, s->crossing$p, work);\n"
+	say(e, "    %s_step(&$o_switching, x, &s->contact$p, s->crossing$p, work);\n"
 	       "    for (i = 0; i < %s; i++)\n"
-	       "        s->y[%s] = x[i];\n", own_states(e), place_in_loop(e));
+	       "        s->y[%s] = x[i];\n", search_of(e), own_states(e), place_in_loop(e));
 }
 
 void emit_region_status(const struct emitter *e)
@@ -309,7 +327,7 @@ void emit_region_at(const struct emitter *e)
 	declare_region_room(e);
 	emit_load_states(e, needed_loads(e), false);
 	emit_region_vector(e, true);
-	say(e, "    pl_switching_advance(&$n_switching, tau, x, &contact, crossing, work);\n");
+	say(e, "    %s_advance(&$n_switching, tau, x, &contact, crossing, work);\n", search_of(e));
 	emit_hand_over(e);
 	say(e, "}\n");
 }

@@ -55,8 +55,8 @@ static void collect_element(void *context)
 		error(element->value->start, NULL, "expected a scalar, found a %d x %d matrix", value->rows,
 		      value->columns);
 	struct form *form;
-	if (element->kind == ELEMENT_FORCE) {
-		form = form_sum(NEW(struct form), value->cell[0], true);
+	if (element->kind == ELEMENT_FORCE || element->kind == ELEMENT_FRICTION) {
+		form = form_sum(NEW(struct form), value->cell[0], element->kind == ELEMENT_FORCE);
 	} else {
 		int order = element->kind == ELEMENT_MASS ? 2 : element->kind == ELEMENT_DAMPER ? 1 : 0;
 		if (!is_constant(value->cell[0]))

@@ -78,14 +78,15 @@ static void collect_impact(void *context)
 	const struct when *when = work->when;
 	struct impact *impact = work->impact;
 	struct node *const *side = when->guard->child;
-	mpq_init(impact->restitution);
+	mpq_inits(impact->restitution, impact->at, NULL);
 	impact->when = when;
 	if (when->restitution)
 		check_stop(b, when, impact->restitution);
 	struct form *left = scalar_form(b, side[0]), *right = scalar_form(b, side[1]);
 	check_linear(b, side[0], left, "a guard");
 	check_linear(b, side[1], right, "a guard");
-	impact->guard = is_rising(when) ? form_difference(left, right) : form_difference(right, left);
+	impact->rising = is_rising(when);
+	impact->guard = impact->rising ? form_difference(left, right) : form_difference(right, left);
 	if (is_constant(impact->guard))
 		error(when->guard->start, "a coordinate, a velocity, a load or an input against a constant",
 		      "this guard never changes");
@@ -121,24 +122,6 @@ void tell_no_impacts(const struct building *b)
 		      scheme_name(model->scheme));
 	error(at, "scheme exact goes from event to event, and takes what is piecewise linear",
 	      "impacts stand beside what is not piecewise linear: no scheme has both");
-}
-
-/* TEMPORARY */
-static struct form *rate_of_form(struct building *b, const struct form *form)
-{
-	struct form *rate = NEW(struct form);
-	mpq_t factor;
-	mpq_init(factor);
-	for (int i = 0; i < form->terms; i++) {
-		struct basis basis = form->term[i].basis;
-		if (basis.kind == BASIS_COORD) {
-			basis.order++;
-			form_add_basis(rate, basis, form->term[i].factor);
-		}
-	}
-	(void)b;
-	mpq_clear(factor);
-	return rate;
 }
 
 /* ---- what a jump does to a form ---- */
@@ -260,9 +243,10 @@ static void add_row(const struct building *b, const struct node *end, int sign, 
 	mpq_set_si(force[b->owner[coord]], sign, 1);
 }
 
-/* v -> v - (1 + e) d s */
-static void add_jumps(const struct building *b, struct impact *impact)
+/* v -> v - (1 + e) d s; returns how many */
+static int velocity_jumps(const struct building *b, const struct impact *impact, mpq_srcptr e, struct jump *jump)
 {
+	int jumps = 0;
 	mpq_t factor;
 	mpq_init(factor);
 	for (int j = 0; j < b->model->n; j++) {
@@ -270,14 +254,15 @@ static void add_jumps(const struct building *b, struct impact *impact)
 			continue;
 		struct basis basis = { .kind = BASIS_COORD, .index = j, .order = 1 };
 		mpq_set_si(factor, -1, 1);
-		mpq_sub(factor, factor, impact->restitution);
+		mpq_sub(factor, factor, e);
 		mpq_mul(factor, factor, impact->direction[j]);
-		impact->jump[impact->jumps++] = (struct jump){
+		jump[jumps++] = (struct jump){
 			.state = b->model->system.velocity[j],
 			.form = form_sum(form_unit(basis), form_scale(impact->speed, factor), false)
 		};
 	}
 	mpq_clear(factor);
+	return jumps;
 }
 
 /* Of highest derivatives, as the equations have them */
@@ -324,8 +309,40 @@ static void find_jumps(void *context)
 	for (int j = 0; j < n; j++)
 		mpq_div(d[j], d[j], speed);
 	impact->direction = d;
-	add_jumps(b, impact);
+	impact->jumps = velocity_jumps(b, impact, impact->restitution, impact->jump);
 	mpq_clears(speed, factor, NULL);
+}
+
+/* What is left where nothing comes back */
+static void still_jumps(struct building *b, struct impact *impact)
+{
+	mpq_t none;
+	mpq_init(none);
+	impact->still = ARRAY(struct jump, (size_t)b->model->n);
+	impact->jump = ARRAY(struct jump, (size_t)b->model->n);
+	velocity_jumps(b, impact, none, impact->still);
+	impact->jumps = velocity_jumps(b, impact, impact->restitution, impact->jump);
+	mpq_clear(none);
+}
+
+struct indexed {
+	struct building *b;
+	int index;
+};
+
+/* Two that one crossing starts would leave open which of them acts. */
+static void check_alike(void *context)
+{
+	struct indexed *work = context;
+	struct building *b = work->b;
+	const struct impact *all = b->model->impact, *impact = &all[work->index];
+	mpq_t ratio, rest;
+	mpq_inits(ratio, rest, NULL);
+	for (int i = 0; i < work->index; i++)
+		if (is_along(b, impact->guard, all[i].guard, ratio, rest) && mpq_sgn(rest) == 0)
+			error(impact->when->guard->start, "all that jumps there belongs into one 'when', with commas",
+			      "another 'when' or stop has this guard already");
+	mpq_clears(ratio, rest, NULL);
 }
 
 /* Once masses are known: which guards bounce, and how */
@@ -339,5 +356,65 @@ void build_impacts(struct building *b)
 		else
 			impact->bounces = statement_guard(find_jumps, &(struct collecting){ b, impact->when, impact });
 		statement_guard(check_jump, &(struct collecting){ b, impact->when, impact });
+		if (impact->bounces)
+			still_jumps(b, impact);
+	}
+	for (int i = 1; i < b->model->impacts; i++)
+		statement_guard(check_alike, &(struct indexed){ b, i });
+}
+
+/* ---- in regions ---- */
+
+int impact_at(const struct switching *s, int expression, mpq_srcptr at, bool upward)
+{
+	for (int i = 0; i < s->impacts; i++)
+		if (s->impact[i].expression == expression && s->impact[i].upward == upward &&
+		    mpq_equal(s->impact[i].at, at))
+			return i;
+	return -1;
+}
+
+int impact_resting(const struct switching *s, int expression, int interval)
+{
+	for (int i = 0; i < s->impacts; i++)
+		if (s->impact[i].bounces && s->impact[i].expression == expression &&
+		    rest_of(s, &s->impact[i]) == interval)
+			return i;
+	return -1;
+}
+
+int rest_of(const struct switching *s, const struct impact *impact)
+{
+	const struct expression *e = &s->expression[impact->expression];
+	for (int k = 1; k < e->breaks && impact->bounces; k++)
+		if (is_stick(e, k) && mpq_equal(e->at[k], impact->at))
+			return k;
+	return -1;
+}
+
+bool has_events(const struct switching *s)
+{
+	return s->frictions > 0 || s->impacts > 0;
+}
+
+void place_impact_loads(struct building *b, const struct switching *s)
+{
+	for (int i = 0; i < s->impacts; i++) {
+		place_loads(b, s->impact[i].speed);
+		for (int k = 0; k < s->impact[i].jumps; k++)
+			place_loads(b, s->impact[i].jump[k].form);
+	}
+}
+
+void build_impact_rows(struct building *b, struct switching *s)
+{
+	for (int i = 0; i < s->impacts; i++) {
+		struct impact *impact = &s->impact[i];
+		for (int k = 0; k < impact->jumps; k++)
+			impact->jump[k].row = row_of_form(b, impact->jump[k].form);
+		for (int k = 0; k < impact->jumps && impact->bounces; k++)
+			impact->still[k].row = row_of_form(b, impact->still[k].form);
+		if (impact->bounces)
+			impact->speed_row = row_of_form(b, impact->speed);
 	}
 }

@@ -264,21 +264,46 @@ struct jump {                       /* a state just behind an impact, over state
 };
 struct impact {                     /* of `when`, or of a stop */
 	const struct when *when;
-	struct form *guard, *speed; /* rises through 0 where it comes true; its derivative */
+	bool rising;                /* as written it rises where it comes true */
+	struct form *guard, *speed; /* turned so that it does, through 0; its derivative */
 	int jumps;
 	struct jump *jump;
 	/* v -> v - (1 + e) d s, s the speed: a bounce, which may come to rest; else the jump is any other */
 	bool bounces;
 	mpq_t restitution;          /* e */
 	mpq_t *direction;           /* d, per coordinate */
+	struct jump *still;         /* of a bounce: its jumps if e were 0 */
+	struct output *speed_row;
 	int expression;             /* its guard is a multiple of this one, less a breakpoint, */
 	mpq_t at;
 	bool upward;                /* which it passes this way */
 };
+/* friction(v, F): v is an expression less a breakpoint that stands there twice, with the interval of sticking between */
+struct friction {
+	const struct atom *atom;
+	int expression;
+	mpq_t at;                   /* that breakpoint */
+	mpq_t factor;               /* v = factor (expression - at) */
+};
+struct hold {                       /* a state that a region gives: of what sticks a velocity follows from the others */
+	int state;
+	struct form *form;          /* of states, loads and inputs, none of them held */
+	struct output *row;
+};
+struct release {                    /* of what sticks: the interval is left where the form becomes greater than 0 */
+	int expression;
+	bool upward;
+	struct form *form;          /* it may have highest derivatives */
+	struct output *row;         /* over states, loads and inputs alone */
+};
 struct region {                     /* one interval for each expression */
 	bool possible;              /* its inequalities can hold together */
 	int system;                 /* index of its equations; equal ones are one */
-	struct form **residual;     /* per row: linear */
+	struct form **residual;     /* per row: linear; friction stands in it as an atom until its force is put in */
+	struct form **force, **rest; /* per friction: F, and what it holds up to at rest; NULL: none acts here */
+	int holds, releases;
+	struct hold *hold;
+	struct release *release;
 };
 struct switching {
 	int rows, *row;             /* of the equations that it is of */
@@ -290,6 +315,10 @@ struct switching {
 	struct linear *system;      /* where there are parts one: that of the first region of each */
 	int parts;                  /* 0: its regions are those of all coordinates together */
 	struct region_part *part;
+	int frictions;
+	struct friction *friction;
+	int impacts;                /* the model's */
+	struct impact *impact;
 	int sharing;                /* parts that have these regions together, since some move as a whole */
 };
 /* Coordinates that nothing outside of them acts on, in no region: they have regions of their own, and cross breakpoints
@@ -383,6 +412,8 @@ int  find_order(const struct spec *spec, int coord);
 void build_outputs(struct building *b);
 /* of states, loads and inputs; no highest derivatives */
 struct output *row_of_form(struct building *b, struct form *form);
+/* the same with the highest derivatives that a system gives */
+struct output *row_in_system(struct building *b, const struct linear *system, struct form *form);
 int  coordinate_of_row(const struct model *model, int row);       /* whose equation it is */
 void collect_whole(struct building *b);                     /* the equations for all time, atoms kept: b->whole */
 bool assign_equations(struct building *b);                  /* false: it was said which is missing or too many */
@@ -453,7 +484,26 @@ int  possible_regions(const struct switching *s);
 
 void collect_impacts(struct building *b);
 void build_impacts(struct building *b);                     /* once the masses are known */
+/* which begins where an expression passes a breakpoint this way; -1: none does */
+int  impact_at(const struct switching *s, int expression, mpq_srcptr at, bool upward);
+int  impact_resting(const struct switching *s, int expression, int interval);  /* there; -1: none does */
+int  rest_of(const struct switching *s, const struct impact *impact); /* the interval in which it rests; -1: none */
+void place_impact_loads(struct building *b, const struct switching *s);
+void build_impact_rows(struct building *b, struct switching *s);
+bool has_events(const struct switching *s);                 /* each region has its own: friction, impacts */
 _Noreturn void tell_no_impacts(const struct building *b);   /* why a scheme cannot treat them */
+
+/* ---- friction.c: dry friction in regions, where it slips and where it sticks ---- */
+
+bool holds_friction(const struct building *b);              /* somewhere in the equations */
+_Noreturn void tell_no_friction(const struct building *b);  /* why a scheme cannot treat it */
+bool is_stick(const struct expression *e, int interval);    /* between two equal breakpoints */
+struct form *rate_of_form(struct building *b, const struct form *form); /* its derivative with respect to time */
+int  stick_of(const struct switching *s, const struct friction *f); /* the interval in which it sticks */
+/* puts in the forces of what slips, and the constraints of what sticks */
+void resolve_friction(struct building *b, struct switching *s);
+void build_friction(struct building *b, struct switching *s); /* rows of holds and releases; after all systems */
+bool same_friction(const struct region *a, const struct region *b); /* what sticks is held and released alike */
 
 /* ---- parts.c: regions of independent coordinates ---- */
 

@@ -5,10 +5,9 @@
 #include <string.h>
 
 /* output += factor * (the highest derivative of a coordinate: its row over the states, and W^-1 force) */
-static void add_highest(const struct model *model, const mpq_t *inverse, const mpq_t *highest, int coord,
-			mpq_srcptr factor, struct output *output)
+static void add_highest(const struct model *model, const struct linear *system, const mpq_t *inverse,
+			const mpq_t *highest, int coord, mpq_srcptr factor, struct output *output)
 {
-	const struct linear *system = &model->system;
 	mpq_t weight, product;
 	mpq_inits(weight, product, NULL);
 	for (int j = 0; j < system->states; j++) {
@@ -73,7 +72,7 @@ static void spread_output(struct building *b, const mpq_t *inverse, const mpq_t 
 			mpq_add(output->input[basis->order][basis->index], output->input[basis->order][basis->index],
 				term->factor);
 		else if (basis->kind == BASIS_COORD && state_of(model, basis) < 0)
-			add_highest(model, inverse, highest, basis->index, term->factor, output);
+			add_highest(model, &model->system, inverse, highest, basis->index, term->factor, output);
 		else if (basis->kind == BASIS_COORD)
 			mpq_add(output->state[state_of(model, basis)], output->state[state_of(model, basis)],
 				term->factor);
@@ -260,6 +259,26 @@ struct output *row_of_form(struct building *b, struct form *form)
 	return row;
 }
 
+struct output *row_in_system(struct building *b, const struct linear *system, struct form *form)
+{
+	const struct model *model = b->model;
+	struct form *lower = NEW(struct form);
+	int column;
+	mpq_t *inverse = rationals((size_t)(model->n * model->n)),
+	      *highest = rationals((size_t)(model->n * system->states));
+	leading_inverse(system, inverse, &column);
+	highest_derivatives(system, (const mpq_t *)inverse, false, highest);
+	for (int i = 0; i < form->terms; i++)
+		if (form->term[i].basis.kind != BASIS_COORD || state_of(model, &form->term[i].basis) >= 0)
+			form_add_basis(lower, form->term[i].basis, form->term[i].factor);
+	struct output *row = row_of_form(b, lower);
+	for (int i = 0; i < form->terms; i++)
+		if (form->term[i].basis.kind == BASIS_COORD && state_of(model, &form->term[i].basis) < 0)
+			add_highest(model, system, (const mpq_t *)inverse, (const mpq_t *)highest,
+				    form->term[i].basis.index, form->term[i].factor, row);
+	return row;
+}
+
 /* ---- outputs that are not linear ---- */
 
 static void place_output_waves(struct building *b, bool *seen, const struct form *form)
@@ -297,7 +316,7 @@ static void build_highest(struct building *b, const mpq_t *inverse, const mpq_t 
 			model->highest[k]->value = model->output[i].value;
 			model->highest[k]->name = model->output[i].name;
 			make_rows(&model->system, model->channels, model->highest[k]);
-			add_highest(model, inverse, highest, k, one, model->highest[k]);
+			add_highest(model, &model->system, inverse, highest, k, one, model->highest[k]);
 		}
 	}
 	mpq_clear(one);

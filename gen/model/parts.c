@@ -189,7 +189,7 @@ static void search(void *context)
 {
 	struct building *b = context;
 	int n = b->model->n, *all = ARRAY(int, (size_t)n);
-	struct switching *s = b->model->relative || b->request->undivided ? NULL : regions_of_parts(b);
+	struct switching *s = b->model->relative || b->request->undivided || holds_friction(b) || b->model->impacts > 0 ? NULL : regions_of_parts(b);
 	for (int i = 0; i < n; i++)
 		all[i] = i;
 	b->model->switching = s ? s : regions_of_rows(b, n, all);
@@ -205,8 +205,16 @@ static void place_loads_of(struct building *b, const struct switching *s)
 	for (int r = 0; r < s->regions; r++)
 		for (int k = 0; k < s->rows && s->region[r].possible; k++)
 			place_loads(b, s->region[r].residual[s->row[k]]);
+	for (int r = 0; r < s->regions; r++) {
+		const struct region *region = &s->region[r];
+		for (int k = 0; k < region->holds; k++)
+			place_loads(b, region->hold[k].form);
+		for (int k = 0; k < region->releases; k++)
+			place_loads(b, region->release[k].form);
+	}
 	for (int e = 0; e < s->expressions; e++)
 		place_loads(b, s->expression[e].form);
+	place_impact_loads(b, s);
 }
 
 void place_region_loads(struct building *b)
@@ -377,6 +385,9 @@ static void build_whole(struct building *b, struct switching *s)
 		s->region[r].system = add_system(s, &system);
 	}
 	remove_idle_breaks(s);
+	if (has_events(s))
+		build_friction(b, s);
+	build_impact_rows(b, s);
 }
 
 void build_regions(struct building *b)

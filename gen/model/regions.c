@@ -32,12 +32,6 @@ struct looking {
 	int lowest;                 /* of the regions, where there is one expression, that a new breakpoint divides */
 };
 
-int interval_of(const struct switching *s, int region, int expression)
-{
-	const struct expression *e = &s->expression[expression];
-	return region / e->stride % (e->breaks + 1);
-}
-
 int possible_regions(const struct switching *s)
 {
 	int count = s->parts > 0;
@@ -116,6 +110,13 @@ static bool is_above(struct looking *l, int index, mpq_srcptr at)
 	return false;
 }
 
+static void refuse_force(const struct node *node, const struct form *form)
+{
+	if (form->terms && form->term[form->terms - 1].basis.kind == BASIS_ATOM)
+		error(node->at, "a state, a load or an input can decide",
+		      "the force of friction cannot decide a function or a condition");
+}
+
 /* The sign of a - b, linear forms: of a constant its own, else by the interval of the expression that it is a multiple
  * of. What is compared with a constant is written as it is, on whichever side it stands. */
 static int sign_here(struct looking *l, const struct node *node, const struct form *a, const struct form *b)
@@ -126,6 +127,7 @@ static int sign_here(struct looking *l, const struct node *node, const struct fo
 	struct form plain = { 0, form->term, 0 };
 	while (plain.terms < form->terms && form->term[plain.terms].basis.kind <= BASIS_PI)
 		plain.terms++;
+	refuse_force(node, form);
 	mpq_t constant, factor;
 	mpq_inits(constant, factor, NULL);
 	constant_value(c, &plain, constant);
@@ -169,6 +171,75 @@ static struct form *extreme_here(struct looking *l, const struct atom *a, struct
 	return best;
 }
 
+/* ---- friction: a breakpoint that stands twice, with the interval of sticking between ---- */
+
+static void add_stick(struct looking *l, struct expression *e, mpq_srcptr at)
+{
+	int known = 0;
+	for (int i = 0; i < e->breaks; i++)
+		known += mpq_equal(e->at[i], at) != 0;
+	for (; known < 2; known++)
+		add_break(l, e, at);
+}
+
+/* Below 0 no force is left; what never is needs no breakpoint there */
+static struct form *force_here(struct looking *l, const struct node *node, struct form *force)
+{
+	mpq_t least, size;
+	mpq_inits(least, size, NULL);
+	bool bounded = true;
+	for (int i = 0; i < force->terms; i++) {
+		const struct basis *basis = &force->term[i].basis;
+		mpq_abs(size, force->term[i].factor);
+		if (basis->kind == BASIS_ONE)
+			mpq_add(least, least, force->term[i].factor);
+		else
+			mpq_sub(least, least, size);
+		bounded = bounded && (basis->kind == BASIS_ONE ||
+				      (basis->kind == BASIS_WAVE && !basis->power && mpq_sgn(basis->wave->a) == 0));
+	}
+	bool positive = bounded && mpq_sgn(least) >= 0;
+	mpq_clears(least, size, NULL);
+	return positive || sign_here(l, node, force, form_number(0)) >= 0 ? force : form_number(0);
+}
+
+static int friction_of_atom(struct looking *l, const struct atom *a)
+{
+	struct switching *s = l->s;
+	int i = 0;
+	while (i < s->frictions && s->friction[i].atom != a)
+		i++;
+	if (i < s->frictions)
+		return i;
+	ENLARGE(s->friction, (size_t)i + 1);
+	struct friction *f = &s->friction[s->frictions++];
+	*f = (struct friction){ .atom = a };
+	mpq_inits(f->at, f->factor, NULL);
+	return i;
+}
+
+/* It stands for itself: what it is depends on the whole region */
+static struct form *friction_here(struct looking *l, const struct atom *a, struct form *const *x)
+{
+	struct collector *c = &l->b->collector;
+	int index = friction_of_atom(l, a);
+	struct form plain = { 0, x[0]->term, 0 };
+	while (plain.terms < x[0]->terms && x[0]->term[plain.terms].basis.kind <= BASIS_PI)
+		plain.terms++;
+	struct friction *f = &l->s->friction[index];
+	constant_value(c, &plain, f->at);
+	f->expression = find_expression(l, a->node, form_sum(x[0], &plain, true), f->factor);
+	mpq_div(f->at, f->at, f->factor);
+	mpq_neg(f->at, f->at);
+	add_stick(l, &l->s->expression[f->expression], f->at);
+	for (int i = 1; i < a->operands; i++)
+		refuse_force(a->node, x[i]);
+	struct region *region = &l->s->region[l->region];
+	region->force[a->index] = force_here(l, a->node, x[1]);
+	region->rest[a->index] = a->operands > 2 ? force_here(l, a->node, x[2]) : region->force[a->index];
+	return form_unit((struct basis){ .kind = BASIS_ATOM, .index = a->index, .atom = a });
+}
+
 static struct form *call_here(struct looking *l, const struct atom *a, struct form *const *x)
 {
 	int side;
@@ -179,6 +250,7 @@ static struct form *call_here(struct looking *l, const struct atom *a, struct fo
 	case FN_MIN:
 	case FN_MAX:   return extreme_here(l, a, x);
 	case FN_TABLE: return table_here(l, a, x);
+	case FN_FRICTION: return friction_here(l, a, x);
 	default:
 		side = sign_here(l, a->node, x[0], x[1]) < 0 ? 1 : sign_here(l, a->node, x[0], x[2]) > 0 ? 2 : 0;
 		return a->function == FN_CLIP ? x[side] : side ? form_difference(x[0], x[side]) : form_number(0);
@@ -257,6 +329,32 @@ static _Noreturn void too_many(const struct building *b, const struct switching 
 	      "more regions than the limit of %d", LIMIT_REGIONS);
 }
 
+/* A guard is a breakpoint of its expression; of a bounce one that stands twice, with the interval of rest between. */
+static void meet_impacts(struct looking *l)
+{
+	struct building *b = l->b;
+	mpq_t factor;
+	mpq_init(factor);
+	for (int i = 0; i < b->model->impacts; i++) {
+		struct impact *impact = &b->model->impact[i];
+		const struct form *guard = impact->rising ? impact->guard
+							  : form_difference(NEW(struct form), impact->guard);
+		struct form plain = { 0, guard->term, 0 };
+		while (plain.terms < guard->terms && plain.term[plain.terms].basis.kind <= BASIS_PI)
+			plain.terms++;
+		constant_value(&b->collector, &plain, impact->at);
+		impact->expression = find_expression(l, impact->when->guard, form_sum(guard, &plain, true), factor);
+		mpq_div(impact->at, impact->at, factor);
+		mpq_neg(impact->at, impact->at);
+		impact->upward = (mpq_sgn(factor) > 0) == impact->rising;
+		if (impact->bounces)
+			add_stick(l, &l->s->expression[impact->expression], impact->at);
+		else
+			(void)is_above(l, impact->expression, impact->at);
+	}
+	mpq_clear(factor);
+}
+
 /* One look at every region but the first `known`; false: something new was met on the way, but of the first `known`
  * then. The regions of one expression are its intervals, in order, so that those below a new breakpoint stay what they
  * are. */
@@ -280,10 +378,13 @@ static bool look(struct building *b, struct switching *s, int *known)
 				     .region = r,
 				     .lowest = r };
 		s->region[r].residual = ARRAY(struct form *, (size_t)b->model->n);
+		s->region[r].force = ARRAY(struct form *, (size_t)atoms);
+		s->region[r].rest = ARRAY(struct form *, (size_t)atoms);
 		for (int k = 0; k < s->rows; k++) {
 			l.row = s->row[k];
 			s->region[r].residual[l.row] = form_here(&l, b->snapshot->residual[l.row].form);
 		}
+		meet_impacts(&l);
 		*known = single && s->expressions == 1 ? l.lowest : 0;
 		if (l.grown)
 			return false;
@@ -379,6 +480,8 @@ static bool is_possible(const struct switching *s, int region, int bases, const 
 	for (int i = 0; i < s->expressions; i++) {
 		const struct expression *e = &s->expression[i];
 		int interval = interval_of(s, region, i);
+		if (is_stick(e, interval))
+			continue;
 		if (interval < e->breaks)
 			add_inequality(&set, bound_row(e, bases, basis, e->at[interval], true));
 		if (interval > 0)
@@ -466,6 +569,8 @@ struct switching *regions_of_rows(struct building *b, int rows, int *row)
 {
 	struct switching *s = NEW(struct switching);
 	int known = 0;
+	s->impacts = b->model->impacts;
+	s->impact = b->model->impact;
 	s->rows = rows;
 	s->row = row;
 	while (!look(b, s, &known))
@@ -473,6 +578,8 @@ struct switching *regions_of_rows(struct building *b, int rows, int *row)
 	mark_possible(b, s);
 	if (!b->model->relative)                /* else it has been told */
 		check_jumps(b, s);
+	if (has_events(s))
+		resolve_friction(b, s);
 	return s;
 }
 
@@ -489,7 +596,8 @@ static bool same_matrix(const mpq_t *a, const mpq_t *b, size_t cells)
 static bool same_system(const struct linear *a, const struct linear *b)
 {
 	size_t n = (size_t)a->n, cells = n * n;
-	bool same = same_matrix((const mpq_t *)a->C, (const mpq_t *)b->C, cells) &&
+	bool same = same_matrix((const mpq_t *)a->M, (const mpq_t *)b->M, cells) &&
+		    same_matrix((const mpq_t *)a->C, (const mpq_t *)b->C, cells) &&
 		    same_matrix((const mpq_t *)a->K, (const mpq_t *)b->K, cells);
 	for (int l = 0; l < a->loads && same; l++)
 		for (int k = 0; k < a->load[l].columns && same; k++)
@@ -518,7 +626,7 @@ static bool changes_nothing(const struct switching *s, int expression, int at)
 	for (int r = 0; r < s->regions; r++) {
 		const struct region *low = &s->region[r], *high = low + s->expression[expression].stride;
 		if (interval_of(s, r, expression) == at && low->possible && high->possible &&
-		    low->system != high->system)
+		    (low->system != high->system || !same_friction(low, high)))
 			return false;
 	}
 	return true;
@@ -551,6 +659,12 @@ static void remove_break(struct switching *s, int expression, int at)
 	}
 }
 
+static bool is_struck(const struct switching *s, int expression, int at)
+{
+	mpq_srcptr value = s->expression[expression].at[at];
+	return impact_at(s, expression, value, true) >= 0 || impact_at(s, expression, value, false) >= 0;
+}
+
 static int breaks_of_all(const struct switching *s)
 {
 	int count = 0;
@@ -563,6 +677,13 @@ static void drop_expression(struct switching *s, int expression)
 {
 	for (int e = expression; e + 1 < s->expressions; e++)
 		s->expression[e] = s->expression[e + 1];
+	for (int i = 0; i < s->frictions; i++)
+		s->friction[i].expression -= s->friction[i].expression > expression;
+	for (int i = 0; i < s->impacts; i++)
+		s->impact[i].expression -= s->impact[i].expression > expression;
+	for (int r = 0; r < s->regions; r++)
+		for (int k = 0; k < s->region[r].releases; k++)
+			s->region[r].release[k].expression -= s->region[r].release[k].expression > expression;
 	s->expressions--;
 	count_candidates(s);
 }
@@ -571,7 +692,8 @@ void remove_idle_breaks(struct switching *s)
 {
 	for (int e = s->expressions - 1; e >= 0; e--) {
 		for (int at = s->expression[e].breaks - 1; at >= 0; at--)
-			if (breaks_of_all(s) > 1 && changes_nothing(s, e, at))
+			if (breaks_of_all(s) > 1 && !is_stick(&s->expression[e], at) &&
+			    !is_stick(&s->expression[e], at + 1) && !is_struck(s, e, at) && changes_nothing(s, e, at))
 				remove_break(s, e, at);
 		if (s->expression[e].breaks == 0)
 			drop_expression(s, e);

@@ -55,7 +55,7 @@ static void tell_change(void *context)
 	struct building *b = work->b;
 	const struct spec *spec = b->spec;
 	for (int i = 0; i < spec->elements; i++)
-		if (spec->element[i].kind != ELEMENT_FORCE &&
+		if (spec->element[i].kind != ELEMENT_FORCE && spec->element[i].kind != ELEMENT_FRICTION &&
 		    !same_in_states(b->snapshot[0].element[i], work->snapshot->element[i]))
 			error(spec->element[i].value->start, "what moves belongs in an equation, or in a force",
 			      "a mass, spring or damper needs a constant");
@@ -227,6 +227,11 @@ static void settle_impacts(void *context)
 	build_impacts(b);
 }
 
+static void tell_friction_stands(void *context)
+{
+	tell_no_friction(context);
+}
+
 /* Exact where nothing is left over and no scheme was asked for; the equations for all time where something is. */
 static bool settle_scheme(struct building *b)
 {
@@ -234,6 +239,8 @@ static bool settle_scheme(struct building *b)
 	bool linear = is_linear(b) && model->impacts == 0;
 	if (model->impacts > 0 && !statement_guard(settle_impacts, b))
 		return false;
+	if (!linear && holds_friction(b) && (model->scheme != SCHEME_EXACT || !is_piecewise_linear(b)))
+		return statement_guard(tell_friction_stands, b);
 	if (!linear && !model->asked.scheme_at.source && !b->request->solution && !is_piecewise_linear(b)) {
 		model->scheme = scheme_of_choice(b);
 		choose_order(model, b->request->single);

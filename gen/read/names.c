@@ -7,7 +7,7 @@
 
 static const char *const function_names[] = {
 	"", "sin", "cos", "tan", "exp", "log", "sqrt", "abs", "sgn", "sinh", "cosh", "tanh", "asin", "acos", "atan",
-	"atan2", "min", "max", "deadzone", "clip", "table"
+	"atan2", "min", "max", "deadzone", "clip", "table", "friction"
 };
 
 static const char *const words[] = {
@@ -181,7 +181,7 @@ const char *function_name(enum function function)
 
 enum function function_of(const char *name)
 {
-	for (int f = FN_SIN; f <= FN_TABLE; f++)
+	for (int f = FN_SIN; f <= FN_FRICTION; f++)
 		if (strcmp(name, function_names[f]) == 0)
 			return (enum function)f;
 	return FN_NONE;
@@ -189,7 +189,9 @@ enum function function_of(const char *name)
 
 bool is_reserved(const char *name)
 {
-	return LISTED(name, words) || LISTED(name, keywords) || function_of(name) != FN_NONE;
+	/* friction may be a name: the function has a bracket behind it */
+	enum function function = function_of(name);
+	return LISTED(name, words) || LISTED(name, keywords) || (function != FN_NONE && function != FN_FRICTION);
 }
 
 const char *prefix_objection(const char *name)
@@ -261,14 +263,14 @@ const char *nearest_name(const char *name, int count, const char *const *known)
 
 const char *spec_suggestion(const struct spec *spec, const char *name)
 {
-	int count = 0, room = (int)(sizeof words / sizeof *words) + FN_TABLE;
+	int count = 0, room = (int)(sizeof words / sizeof *words) + FN_FRICTION;
 	for (const struct symbol *s = spec->first; s; s = s->next)
 		room++;
 	const char **known = ARRAY(const char *, (size_t)room);
 	for (const struct symbol *s = spec->first; s; s = s->next)
 		if (s->kind != SYMBOL_OUTPUT)
 			known[count++] = s->name;
-	for (int f = FN_SIN; f <= FN_TABLE; f++)
+	for (int f = FN_SIN; f <= FN_FRICTION; f++)
 		known[count++] = function_names[f];
 	const char *best = nearest_name(name, count, known);
 	return best ? format("did you mean '%s'?", best) : NULL;

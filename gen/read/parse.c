@@ -357,10 +357,14 @@ static void check_arguments(const struct node *call)
 {
 	bool three = call->function == FN_DEADZONE || call->function == FN_CLIP;
 	int wanted = call->function == FN_ATAN2 ? 2 : three ? 3 : 1;
+	if (call->function == FN_FRICTION && (call->children < 2 || call->children > 3))
+		error(call->at, "friction(v, F), or friction(v, F, S) where S is what it holds up to",
+		      "friction takes a velocity and a force, found %d argument%s", call->children,
+		      call->children == 1 ? "" : "s");
 	bool open_ended = call->function == FN_MIN || call->function == FN_MAX || call->function == FN_TABLE;
 	if (call->function == FN_TABLE && call->children < 5)
 		error(call->at, "table(x; x0, y0; x1, y1; ...)", "a table needs at least two points");
-	if (open_ended ? call->children < 2 : call->children != wanted)
+	if (call->function != FN_FRICTION && (open_ended ? call->children < 2 : call->children != wanted))
 		error(call->at, NULL, "%s takes %s%d argument%s, found %d", function_name(call->function),
 		      open_ended ? "at least " : "", open_ended ? 2 : wanted, wanted == 1 && !open_ended ? "" : "s",
 		      call->children);
@@ -455,7 +459,7 @@ static struct node *read_operand(struct parser *p)
 		unexpected(p, "a number, a name or '('");
 	struct token name = take(p);
 	enum function function = function_of(name.name);
-	if (function != FN_NONE)
+	if (function != FN_NONE && (function != FN_FRICTION || (is_op(p, "(") && !find_symbol(p, name.name))))
 		return read_call(p, name, function);
 	bool time = strcmp(name.name, "t") == 0;
 	if (time || strcmp(name.name, "pi") == 0) {
@@ -1215,7 +1219,36 @@ struct node *read_coordinate(struct parser *p, bool ground)
 	return node;
 }
 
-/* mass: mass expression at coordinate;  spring, damper: ... expression between coordinate , coordinate;
+/* The velocity of a coordinate that has been read */
+static struct node *velocity_of(const struct node *coordinate)
+{
+	struct node *velocity = node_new(NODE_NAME, coordinate->at);
+	*velocity = *coordinate;
+	velocity->primes = 1;
+	return velocity;
+}
+
+/* friction F between x, y: friction(x' - y', F) */
+static struct node *friction_between(const struct element *element)
+{
+	struct node *call = node_new(NODE_CALL, element->value->at), *slide = velocity_of(element->from);
+	call->function = FN_FRICTION;
+	call->start = element->value->start;
+	call->end = element->value->end;
+	if (element->to) {
+		struct node *sum = node_new(NODE_SUM, element->from->at);
+		sum->start = element->from->start;
+		sum->end = element->to->end;
+		add_child(sum, slide, false, element->from->at);
+		add_child(sum, velocity_of(element->to), true, element->to->at);
+		slide = sum;
+	}
+	add_child(call, slide, false, element->value->at);
+	add_child(call, element->value, false, element->value->at);
+	return call;
+}
+
+/* mass: mass expression at coordinate;  spring, damper, friction: ... expression between coordinate , coordinate;
  * force: force expression on coordinate */
 static void read_element(struct parser *p, int kind)
 {
@@ -1224,7 +1257,7 @@ static void read_element(struct parser *p, int kind)
 	element.at = (struct place){ p->lexer.source, p->statement };
 	element.value = read_expression(p);
 	expect_word(p, kind == ELEMENT_MASS ? "at" : kind == ELEMENT_FORCE ? "on" : "between");
-	bool two = kind == ELEMENT_SPRING || kind == ELEMENT_DAMPER;
+	bool two = kind == ELEMENT_SPRING || kind == ELEMENT_DAMPER || kind == ELEMENT_FRICTION;
 	struct token first = p->token;
 	element.from = read_coordinate(p, two);
 	if (two) {
@@ -1240,6 +1273,8 @@ static void read_element(struct parser *p, int kind)
 		error(first.at, NULL, "it acts between a coordinate and itself");
 	expect_end(p);
 	element.end = p->end;
+	if (kind == ELEMENT_FRICTION)
+		element.value = friction_between(&element);
 	ENLARGE(spec->element, (size_t)spec->elements + 1);
 	spec->element[spec->elements++] = element;
 }
@@ -1248,6 +1283,7 @@ static void read_mass(struct parser *p) { read_element(p, ELEMENT_MASS); }
 static void read_spring(struct parser *p) { read_element(p, ELEMENT_SPRING); }
 static void read_damper(struct parser *p) { read_element(p, ELEMENT_DAMPER); }
 static void read_force(struct parser *p) { read_element(p, ELEMENT_FORCE); }
+static void read_friction(struct parser *p) { read_element(p, ELEMENT_FRICTION); }
 
 /* By a file that stands on this one */
 static void read_part(struct parser *p)
@@ -1265,11 +1301,12 @@ static const struct statement {
 	{ "input", read_input }, { "matrix", read_matrix_statement }, { "mass", read_mass }, { "spring", read_spring },
 	{ "damper", read_damper }, { "force", read_force }, { "operator", read_operator }, { "tunable", read_tunable },
 	{ "tolerance", read_tolerance }, { "substeps", read_substeps }, { "modes", read_modes }, { "use", read_part },
-	{ "need", read_need }, { "budget", read_budget }, { "when", read_when }, { "stop", read_stop }
+	{ "need", read_need }, { "budget", read_budget }, { "friction", read_friction },
+	{ "when", read_when }, { "stop", read_stop }
 };
 
-/* tolerance, substeps, modes, use, need, budget, when and stop may be names of a spec's own: in an equation an operator or a prime
- * follows; a sign is that of a number where the line has no =; an = is no equation where there is no such name. */
+/* tolerance, substeps, modes, use, need, budget, when and stop may be names of a spec's own: in an equation an operator
+ * or a prime follows; a sign is that of a number where the line has no =; an = is no equation where there is no such name. */
 static bool opens_statement(const struct parser *p, const struct statement *statement, struct token token)
 {
 	const char *next = token.at.source->text + token.at.offset + token.length;
@@ -1277,6 +1314,10 @@ static bool opens_statement(const struct parser *p, const struct statement *stat
 	bool sign = *next == '-' || *next == '+';
 	if (strcmp(statement->word, "when") == 0 && next[strcspn(next, ":\n")] == ':' && sign)
 		return true;                    /* when -x > 0: x' = 0 */
+	if (strcmp(statement->word, "friction") == 0 && *next == '(') {     /* friction(v, F) of an equation */
+		const char *between = strstr(next, " between ");
+		return between && between < next + strcspn(next, "\n#");
+	}
 	return is_reserved(statement->word) || strspn(next, WORD) > 0 || strchr(".\"", *next) || *next == '(' ||
 	       *next == '\n' || *next == '#' || (sign && next[strcspn(next, "=\n")] != '=') ||
 	       (*next == '=' && !find_symbol(p, statement->word));

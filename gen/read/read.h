@@ -38,7 +38,8 @@ const char *unit_note(const char *number, size_t digits, const char *unit, size_
 
 enum function {
 	FN_NONE, FN_SIN, FN_COS, FN_TAN, FN_EXP, FN_LOG, FN_SQRT, FN_ABS, FN_SGN, FN_SINH, FN_COSH, FN_TANH,
-	FN_ASIN, FN_ACOS, FN_ATAN, FN_ATAN2, FN_MIN, FN_MAX, FN_DEADZONE, FN_CLIP, FN_TABLE
+	FN_ASIN, FN_ACOS, FN_ATAN, FN_ATAN2, FN_MIN, FN_MAX, FN_DEADZONE, FN_CLIP, FN_TABLE,
+	FN_FRICTION
 };
 enum comparison { CMP_LT, CMP_LE, CMP_GT, CMP_GE, CMP_EQ, CMP_NE };
 enum node_kind {
@@ -110,7 +111,7 @@ struct equation {
 	struct node *left, *right;
 };
 struct element {                    /* of a sketch */
-	enum { ELEMENT_MASS, ELEMENT_SPRING, ELEMENT_DAMPER, ELEMENT_FORCE } kind;
+	enum { ELEMENT_MASS, ELEMENT_SPRING, ELEMENT_DAMPER, ELEMENT_FORCE, ELEMENT_FRICTION } kind;
 	const struct scene_part *part;    /* whose text has it; NULL: the scene's */
 	struct place at, end;
 	struct node *value, *from, *to; /* coordinates, or components; `to` NULL: the ground, or none */

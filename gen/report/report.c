@@ -54,7 +54,7 @@ const char *polynomial_text(int length, const mpq_t *c)
 const char *irrationals_text(const struct irrationals *used)
 {
 	const char *text = used->pi ? "pi" : "";
-	for (int f = FN_SIN; f <= FN_TABLE; f++)
+	for (int f = FN_SIN; f <= FN_FRICTION; f++)
 		if (used->used[f])
 			text = format("%s%s%s", text, *text ? ", " : "", function_name((enum function)f));
 	if (used->root)

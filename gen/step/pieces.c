@@ -247,6 +247,35 @@ void bend_of_row(const struct step *step, const double *A, double h, const doubl
 	discard(second);
 }
 
+void bounds_of_rows(const struct step *step, const struct pieces *pieces, int branch, int rows, const double *row,
+		    double *slope, double *second, double *fourth)
+{
+	int size = step->layout.size;
+	const double *A = pieces->piece[branch].slopes;
+	double d = ldexp(round_rational(step->model->h), -step->branch[branch].halvings);
+	double *gone = ARRAY(double, (size_t)size);
+	struct growth growth = growth_of(size, A, d);
+	for (int i = 0; i < rows; i++) {
+		memcpy(gone, row + i * size, (size_t)size * sizeof *gone);
+		for (int order = 1; order <= 4; order++) {
+			times_matrix(size, gone, A);
+			for (int j = 0; j < size && order == 1; j++)
+				slope[i * size + j] = d / 3 * gone[j];
+			if (order % 2)
+				continue;
+			double *bound = (order == 2 ? second : fourth) + i * size, *lost = ARRAY(double, (size_t)size);
+			memcpy(lost, gone, (size_t)size * sizeof *lost);
+			bound_row(size, &growth, lost, order == 2 ? d * d / 8 : d * d * d * d / 384, bound);
+			for (int j = 0; j < size && step->model->asked.single; j++)
+				bound[j] *= 1 + ldexp(1, -22);  /* still a bound when it is printed as a float */
+			discard(lost);
+		}
+	}
+	discard(gone);
+	discard(growth.E);
+	discard(growth.most);
+}
+
 static void fill_bounds(const struct step *step, const struct pieces *pieces, int branch)
 {
 	struct region_piece *piece = &pieces->piece[branch];

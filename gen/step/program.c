@@ -37,6 +37,23 @@ bool is_forced(const struct step *step, int column)
 	return false;
 }
 
+static bool reads_columns(const struct output *row, int load, int columns)
+{
+	bool reads = false;
+	for (int k = 0; k < columns; k++)
+		reads = reads || mpq_sgn(row->load[load][k]) != 0;
+	return reads;
+}
+
+/* What is held there, and what releases it */
+static void mark_loads_of_region(const struct region *region, int load, int columns, bool *needed)
+{
+	for (int k = 0; k < region->holds && region->possible; k++)
+		*needed = *needed || reads_columns(region->hold[k].row, load, columns);
+	for (int k = 0; k < region->releases && region->possible; k++)
+		*needed = *needed || reads_columns(region->release[k].row, load, columns);
+}
+
 static void mark_loads_of(const struct switching *s, bool *needed)
 {
 	for (int l = 0; l < s->system->loads; l++) {
@@ -45,6 +62,8 @@ static void mark_loads_of(const struct switching *s, bool *needed)
 		for (int e = 0; e < s->expressions; e++)
 			for (int k = 0; k < s->system->load[l].columns; k++)
 				needed[l] = needed[l] || mpq_sgn(s->expression[e].row->load[l][k]) != 0;
+		for (int k = 0; k < s->regions; k++)
+			mark_loads_of_region(&s->region[k], l, s->system->load[l].columns, &needed[l]);
 	}
 }
 

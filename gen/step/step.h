@@ -440,10 +440,46 @@ struct pieces {
 };
 #define OPEN_END 0x1p1000           /* of an interval that no breakpoint ends */
 struct pieces pieces_of(const struct step *step);
+/* Of rows over x in one branch's system: d/3 times the slope, and bounds as in struct region_piece; rows x size each */
+void bounds_of_rows(const struct step *step, const struct pieces *pieces, int branch, int rows, const double *row,
+		    double *slope, double *second, double *fourth);
 double *whole_step_of(const struct step *step, int branch);  /* e^{A h}, size x size */
 void row_over_x(const struct step *step, const struct output *output, double *row);
 /* Of |x|: how far row . x is at most off its chord over h, entry by entry */
 void bend_of_row(const struct step *step, const double *A, double h, const double *row, double *bend);
+
+/* ---- guards.c: events of regions with dry friction ---- */
+
+struct guard {                      /* row . x must not become greater than the limit */
+	int row, expression, breakpoint;
+	bool upward;
+	int leads;                  /* to the region of this number, less that where it stands */
+	double limit;
+	int impact;                 /* that begins there; -1: none */
+};
+struct struck {                     /* an impact */
+	int expression, breakpoint;
+	bool upward;
+	int rest;                   /* the interval in which it rests; -1: it is no bounce */
+	int jump, still;            /* sets of assignments: its jump; that of a bounce without restitution */
+	double *speed;              /* of its guard, as a row over x */
+	double restitution;
+};
+struct held_state { int state; double *value; };            /* x[state] = value . x */
+struct guards {
+	int *first;                 /* per region, and one more: its guards, of those of all */
+	int guards;
+	struct guard *guard;
+	int rows, *branch;          /* of each row: whose it is */
+	double *row, *slope, *second, *fourth; /* rows x size */
+	int sets, *set;             /* per set, and one more: the first of its assignments */
+	int *hold;                  /* per region: the set that holds its states; -1: none */
+	int assignments;
+	struct held_state *assignment;
+	int impacts;
+	struct struck *impact;
+};
+struct guards guards_of(const struct step *step, const struct pieces *pieces);
 
 /* ---- peaks.c: outputs of which the largest size is asked for ---- */
 

@@ -1,0 +1,147 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Regions with dry friction as C: their guards, what holds states in them, and the search that goes from event to
+ * event. */
+#include "emit/emit.h"
+
+static void emit_numbers(const struct emitter *e, int count, const int *number)
+{
+	for (int i = 0; i < count; i++)
+		say(e, "%s%d", i == 0 ? "" : i % 20 ? ", " : ",\n    ", number[i]);
+}
+
+static void emit_guard_list(const struct emitter *e, const struct guards *g)
+{
+	const struct switching *s = e->model->switching;
+	say(e, "\n"
+	       "static const int $o_first[%d] = {  /* guards of each region */\n"
+	       "    ", s->regions + 1);
+	emit_numbers(e, s->regions + 1, g->first);
+	say(e, "\n"
+	       "};\n"
+	       "\n"
+	       "static const pl_guard $o_guard[%d] = {  /* row, expression, breakpoint, upward, leads, impact */\n",
+	    g->guards);
+	for (int i = 0; i < g->guards; i++)
+		say(e, "    { %d, %d, %d, %d, %d, %d },\n", g->guard[i].row, g->guard[i].expression,
+		    g->guard[i].breakpoint, g->guard[i].upward, g->guard[i].leads, g->guard[i].impact);
+	say(e, "};\n"
+	       "\n"
+	       "static const double $o_limit[%d] = {  /* of each guard */\n"
+	       "    ", g->guards);
+	for (int i = 0; i < g->guards; i++)
+		say(e, "%s%s", i == 0 ? "" : i % 8 ? ", " : ",\n    ", shortest(g->guard[i].limit));
+	say(e, "\n};\n");
+}
+
+/* Of each row: an expression, or what it takes to hold one */
+static const char **gate_notes(const struct emitter *e, const struct guards *g)
+{
+	const struct switching *s = e->model->switching;
+	const char **note = ARRAY(const char *, (size_t)g->rows);
+	for (int r = 0; r < s->regions; r++)
+		for (int i = g->first[r]; i < g->first[r + 1]; i++) {
+			int expression = g->guard[i].expression;
+			const char *name = form_text(e->step->shown->model, s->expression[expression].form);
+			bool held = is_stick(&s->expression[expression], interval_of(s, r, expression));
+			note[g->guard[i].row] =
+				format("system %d: %s%s", g->branch[g->guard[i].row],
+				       held                   ? g->guard[i].upward ? "what holds, less what can, back: "
+										   : "what holds, less what can, on: "
+				       : g->guard[i].upward ? ""
+							    : "less ",
+				       name);
+		}
+	return note;
+}
+
+static void emit_gates(const struct emitter *e, const struct guards *g)
+{
+	const char **note = gate_notes(e, g);
+	const struct { const char *name, *note; const double *value; } all[] = {
+		{ "gate", "rows of guards", g->row },
+		{ "gate_lean", "d/3 times the slope of each", g->slope },
+		{ "gate_sag", "d^2/8 times its second derivative, at most", g->second },
+		{ "gate_sway", "d^4/384 times its fourth derivative, at most", g->fourth }
+	};
+	for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
+		say(e, "\n"
+		       "static const double $o_%s[%d][%d] = {  /* %s */\n",
+		    all[i].name, g->rows, e->step->layout.size, all[i].note);
+		emit_number_rows(e, g->rows, e->step->layout.size, all[i].value, note);
+		say(e, "};\n");
+	}
+}
+
+static void emit_assignments(const struct emitter *e, const struct guards *g)
+{
+	int count = g->assignments, size = e->step->layout.size;
+	const struct switching *s = e->model->switching;
+	double *value = ARRAY(double, (size_t)(count > 0 ? count : 1) * (size_t)size);
+	const char **note = ARRAY(const char *, (size_t)count + 1);
+	note[0] = "none";
+	say(e, "\n"
+	       "static const int $o_hold[%d] = {  /* of each region: the set of assignments that holds states; -1: none */\n"
+	       "    ", s->regions);
+	emit_numbers(e, s->regions, g->hold);
+	say(e, "\n"
+	       "};\n"
+	       "static const int $o_sets[%d] = {", g->sets + 1);
+	emit_numbers(e, g->sets + 1, g->set);
+	say(e, "};\n"
+	       "static const int $o_held[%d] = {", count > 0 ? count : 1);
+	for (int i = 0; i < count; i++) {
+		say(e, "%s%d", i ? ", " : "", g->assignment[i].state);
+		note[i] = e->model->state_name[g->assignment[i].state];
+		for (int j = 0; j < size; j++)
+			value[i * size + j] = g->assignment[i].value[j];
+	}
+	say(e, "%s};\n"
+	       "static const double $o_value[%d][%d] = {  /* x[held] = value . x */\n",
+	    count > 0 ? "" : "0", count > 0 ? count : 1, size);
+	emit_number_rows(e, count > 0 ? count : 1, size, value, note);
+	say(e, "};\n");
+}
+
+static void emit_impacts(const struct emitter *e, const struct guards *g)
+{
+	const struct switching *s = e->model->switching;
+	int size = e->step->layout.size, count = g->impacts > 0 ? g->impacts : 1;
+	double *speed = ARRAY(double, (size_t)count * (size_t)size);
+	const char **note = ARRAY(const char *, (size_t)count);
+	note[0] = "none";
+	say(e, "\n"
+	       "static const pl_impact $o_impact[%d] = {"
+	       "  /* expression, breakpoint, upward, rest, jump, still, restitution */\n", count);
+	for (int i = 0; i < g->impacts; i++) {
+		const struct struck *impact = &g->impact[i];
+		say(e, "    { %d, %d, %d, %d, %d, %d, %s },\n", impact->expression, impact->breakpoint, impact->upward,
+		    impact->rest, impact->jump, impact->still, shortest(impact->restitution));
+		note[i] = impact->rest < 0 ? "none"
+					   : form_text(e->step->shown->model, s->impact[i].speed);
+		for (int j = 0; j < size; j++)
+			speed[i * size + j] = impact->speed[j];
+	}
+	say(e, "%s};\n"
+	       "static const double $o_speed[%d][%d] = {  /* of what bounces */\n",
+	    g->impacts ? "" : "    { 0, 0, 0, -1, -1, -1, 0.0 }\n", count, size);
+	emit_number_rows(e, count, size, speed, note);
+	say(e, "};\n");
+}
+
+void emit_guards(const struct emitter *e, const struct pieces *pieces)
+{
+	struct guards g = guards_of(e->step, pieces);
+	emit_guard_list(e, &g);
+	emit_gates(e, &g);
+	emit_assignments(e, &g);
+	emit_impacts(e, &g);
+	say(e, "\n"
+	       "static const pl_guards $o_switching = {\n"
+	       "    %d, $N_H, %d, $o_row[0], $o_breaks, $o_breakpoint, $o_matrix, $o_halvings,\n"
+	       "    $o_slopes[0][0], $o_pieces[0][0], $o_lean[0][0],\n"
+	       "    $o_first, $o_guard, $o_limit, $o_hold,\n"
+	       "    $o_gate[0], $o_gate_lean[0], $o_gate_sag[0], $o_gate_sway[0],\n"
+	       "    $o_sets, $o_held, $o_value[0], %d, $o_impact, $o_speed[0], %d, $N_MAX_EVENTS, %d\n"
+	       "};\n",
+	    e->step->layout.size, e->model->switching->expressions, g.impacts, e->step->series.degree, MAX_SPLITS);
+}

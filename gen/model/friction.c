@@ -1,0 +1,573 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Dry friction in regions. The sliding velocity v of friction(v, F) is an expression with a breakpoint that stands
+ * twice: below it the force is -F, above it F, and between, where it sticks, what keeps v at 0. There an equation that
+ * the force acts on is solved for it and put into the others, and v' = 0 stands in its place; the state whose rate that
+ * is follows from the others. Sticking ends where the force would have to be above F, the convention of Filippov
+ * (Differential Equations with Discontinuous Righthand Sides, 1988). */
+#include "model/model.h"
+
+/* ---- is there any? ---- */
+
+static const struct atom *friction_in(const struct form *form, bool *seen)
+{
+	const struct atom *found = NULL;
+	for (int i = 0; i < form->terms && !found; i++) {
+		const struct atom *a = form->term[i].basis.atom;
+		if (!a || seen[a->index])
+			continue;
+		seen[a->index] = true;
+		if (a->kind == ATOM_CALL && a->function == FN_FRICTION)
+			return a;
+		for (int k = 0; k < a->operands && !found; k++)
+			found = friction_in(a->operand[k], seen);
+	}
+	return found;
+}
+
+static const struct atom *first_friction(const struct building *b)
+{
+	bool *seen = ARRAY(bool, (size_t)atoms_count(b->collector.atoms));
+	const struct atom *found = NULL;
+	for (int i = 0; i < b->model->n && !found; i++)
+		found = friction_in(b->snapshot->residual[i].form, seen);
+	return found;
+}
+
+bool holds_friction(const struct building *b)
+{
+	return first_friction(b) != NULL;
+}
+
+void tell_no_friction(const struct building *b)
+{
+	const struct model *model = b->model;
+	const struct node *node = first_friction(b)->node;
+	if (model->system.segments > 1)
+		error(node->at, "the load as an input is exact beside it",
+		      "friction beside loads that change their formula in time is not built yet");
+	if (model->scheme != SCHEME_EXACT)
+		error(node->at, "scheme exact goes from event to event",
+		      "scheme %s has no friction, which sticks and slips", scheme_name(model->scheme));
+	error(node->at, "scheme exact goes from event to event, and takes what is piecewise linear",
+	      "friction stands beside what is not piecewise linear: no scheme has both");
+}
+
+/* ---- where it sticks ---- */
+
+int interval_of(const struct switching *s, int region, int expression)
+{
+	const struct expression *e = &s->expression[expression];
+	return region / e->stride % (e->breaks + 1);
+}
+
+bool is_stick(const struct expression *e, int interval)
+{
+	return interval > 0 && interval < e->breaks && mpq_equal(e->at[interval - 1], e->at[interval]);
+}
+
+int stick_of(const struct switching *s, const struct friction *f)
+{
+	const struct expression *e = &s->expression[f->expression];
+	int interval = 1;
+	while (!is_stick(e, interval) || !mpq_equal(e->at[interval], f->at))
+		interval++;
+	return interval;
+}
+
+static mpq_srcptr factor_of_friction(const struct form *residual, const struct friction *f)
+{
+	struct basis basis = { .kind = BASIS_ATOM, .index = f->atom->index, .atom = f->atom };
+	const struct form_term *term = form_find(residual, &basis);
+	return term ? term->factor : NULL;
+}
+
+/* ---- forces of what slips ---- */
+
+static void put_in(const struct switching *s, struct region *region, const struct friction *f, mpq_srcptr factor)
+{
+	struct basis basis = { .kind = BASIS_ATOM, .index = f->atom->index, .atom = f->atom };
+	mpq_t size, minus;
+	mpq_inits(size, minus, NULL);
+	for (int k = 0; k < s->rows; k++) {
+		struct form *residual = region->residual[s->row[k]], *sum = NEW(struct form);
+		mpq_srcptr stands = factor_of_friction(residual, f);
+		if (!stands)
+			continue;
+		mpq_neg(minus, stands);
+		mpq_mul(size, stands, factor);
+		form_add_to(sum, residual, NULL);
+		form_add_basis(sum, basis, minus);
+		form_add_to(sum, region->force[f->atom->index], size);
+		region->residual[s->row[k]] = sum;
+	}
+	mpq_clears(size, minus, NULL);
+}
+
+static void slip(const struct switching *s, int index)
+{
+	struct region *region = &s->region[index];
+	mpq_t sign;
+	mpq_init(sign);
+	for (int i = 0; i < s->frictions; i++) {
+		const struct friction *f = &s->friction[i];
+		int side = interval_of(s, index, f->expression) - stick_of(s, f);
+		mpq_set_si(sign, side < 0 ? -mpq_sgn(f->factor) : mpq_sgn(f->factor), 1);
+		if (side != 0)
+			put_in(s, region, f, sign);
+	}
+	mpq_clear(sign);
+}
+
+/* ---- constraints of what sticks ---- */
+
+struct stuck {                      /* one expression that is held, in one region */
+	int expression;
+	const struct atom *atom;    /* the first that acts; NULL: none does */
+	const struct impact *impact; /* that rests there; NULL: it is friction */
+	struct form *place;         /* of that: 0 too */
+	mpq_t *direction;           /* per row: of its force */
+	struct form *velocity, *rate, *force;
+	int pivot;                  /* the row that is solved for the force */
+};
+
+/* a = ratio b */
+static bool is_ratio(const struct form *a, const struct form *b, mpq_ptr ratio)
+{
+	mpq_set_ui(ratio, 0, 1);
+	if (a->terms == 0)
+		return true;
+	if (b->terms != a->terms)
+		return false;
+	mpq_div(ratio, a->term[0].factor, b->term[0].factor);
+	return same_form(a, form_scale(b, ratio));
+}
+
+static void add_direction(const struct switching *s, const struct region *region, const struct friction *f,
+			  mpq_srcptr ratio, struct stuck *stuck)
+{
+	mpq_t part;
+	mpq_init(part);
+	for (int k = 0; k < s->rows; k++) {
+		mpq_srcptr factor = factor_of_friction(region->residual[s->row[k]], f);
+		if (!factor)
+			continue;
+		mpq_mul(part, factor, ratio);
+		(mpq_sgn(f->factor) > 0 ? mpq_add : mpq_sub)(stuck->direction[k], stuck->direction[k], part);
+	}
+	mpq_clear(part);
+}
+
+static bool acts(const struct switching *s, const struct region *region, const struct friction *f)
+{
+	bool any = false;
+	for (int k = 0; k < s->rows; k++)
+		any = any || factor_of_friction(region->residual[s->row[k]], f);
+	return any;
+}
+
+/* Several of one velocity are one: their forces are multiples of one another, and so their parts of it. */
+static void find_direction(const struct switching *s, int index, int expression, struct stuck *stuck)
+{
+	const struct region *region = &s->region[index];
+	mpq_t ratio;
+	mpq_init(ratio);
+	for (int i = 0; i < s->frictions; i++) {
+		const struct friction *f = &s->friction[i];
+		if (f->expression != expression || stick_of(s, f) != interval_of(s, index, expression) ||
+		    !acts(s, region, f))
+			continue;
+		int at = f->atom->index;
+		if (!stuck->atom || region->force[stuck->atom->index]->terms == 0)
+			stuck->atom = f->atom;
+		int base = stuck->atom->index;
+		if (at != base && (!is_ratio(region->force[at], region->force[base], ratio) ||
+				   !same_form(region->rest[at], form_scale(region->rest[base], ratio))))
+			error(f->atom->node->at, "several of one velocity need forces that are multiples of one another",
+			      "how friction of one velocity is shared out while it sticks is not determined");
+		if (at == base)
+			mpq_set_ui(ratio, 1, 1);
+		add_direction(s, region, f, ratio, stuck);
+	}
+	mpq_clear(ratio);
+}
+
+static int input_hold(const struct building *b, int index)
+{
+	for (const struct symbol *s = b->spec->first; s; s = s->next)
+		if (s->kind == SYMBOL_INPUT && s->index == index)
+			return s->hold;
+	return 0;
+}
+
+/* Its derivative with respect to time; of a ramp u', of what is held nothing */
+struct form *rate_of_form(struct building *b, const struct form *form)
+{
+	struct form *rate = NEW(struct form);
+	mpq_t factor;
+	mpq_init(factor);
+	for (int i = 0; i < form->terms; i++) {
+		struct basis basis = form->term[i].basis;
+		mpq_srcptr given = form->term[i].factor;
+		if (basis.kind == BASIS_COORD || (basis.kind == BASIS_INPUT && basis.order == 0 &&
+						  input_hold(b, basis.index))) {
+			basis.order++;
+			form_add_basis(rate, basis, given);
+		}
+		if (basis.kind != BASIS_WAVE)
+			continue;
+		mpq_mul(factor, given, basis.wave->a);
+		if (mpq_sgn(factor) != 0)
+			form_add_basis(rate, basis, factor);
+		mpq_mul(factor, given, basis.wave->w);
+		if (!basis.sine)
+			mpq_neg(factor, factor);
+		basis.sine = !basis.sine;
+		if (mpq_sgn(factor) != 0)
+			form_add_basis(rate, basis, factor);
+		basis.sine = !basis.sine;
+		if (basis.power == 0)
+			continue;
+		mpq_set_ui(factor, (unsigned long)basis.power, 1);
+		mpq_mul(factor, factor, given);
+		if (--basis.power == 0 && is_polynomial(basis.wave))
+			basis = (struct basis){ .kind = BASIS_ONE };
+		form_add_basis(rate, basis, factor);
+	}
+	mpq_clear(factor);
+	return rate;
+}
+
+/* What rests is held in place, along the direction of its impacts. */
+static void find_rest(struct building *b, const struct switching *s, int index, struct stuck *stuck)
+{
+	const struct region *region = &s->region[index];
+	const struct impact *impact = stuck->impact;
+	mpq_t part;
+	mpq_init(part);
+	stuck->place = stuck->velocity;
+	stuck->velocity = rate_of_form(b, stuck->place);
+	stuck->rate = rate_of_form(b, stuck->velocity);
+	for (int k = 0; k < s->rows; k++)
+		for (int j = 0; j < b->model->n; j++) {
+			struct basis basis = { .kind = BASIS_COORD, .index = j, .order = 2 };
+			const struct form_term *mass = form_find(region->residual[s->row[k]], &basis);
+			if (!mass)
+				continue;
+			mpq_mul(part, mass->factor, impact->direction[j]);
+			mpq_add(stuck->direction[k], stuck->direction[k], part);
+		}
+	mpq_clear(part);
+}
+
+static bool is_borne(const struct stuck *stuck)
+{
+	return stuck->atom || stuck->impact;
+}
+
+static struct place place_of_stuck(const struct stuck *stuck)
+{
+	return stuck->impact ? stuck->impact->when->at : stuck->atom->node->at;
+}
+
+static struct stuck *find_stuck(struct building *b, const struct switching *s, int index, int *count)
+{
+	struct stuck *stuck = ARRAY(struct stuck, (size_t)s->expressions);
+	*count = 0;
+	for (int e = 0; e < s->expressions; e++) {
+		const struct expression *expression = &s->expression[e];
+		int interval = interval_of(s, index, e);
+		if (!is_stick(expression, interval))
+			continue;
+		struct stuck *new = &stuck[(*count)++];
+		*new = (struct stuck){ .expression = e, .direction = rationals((size_t)s->rows), .pivot = -1 };
+		new->velocity = form_difference(expression->form, form_constant(expression->at[interval]));
+		new->rate = rate_of_form(b, new->velocity);
+		int impact = impact_resting(s, e, interval);
+		if (impact >= 0)
+			new->impact = &s->impact[impact];
+		if (impact >= 0)
+			find_rest(b, s, index, new);
+		else
+			find_direction(s, index, e, new);
+	}
+	return stuck;
+}
+
+/* The place among a form's terms of a state whose rate is a highest derivative; -1: there is none */
+static int velocity_term(const struct building *b, const struct form *form)
+{
+	for (int i = 0; i < form->terms; i++) {
+		const struct basis *basis = &form->term[i].basis;
+		if (basis->kind == BASIS_COORD &&
+		    basis->order + 1 == b->model->frame.coord[basis->index]->highest)
+			return i;
+	}
+	return -1;
+}
+
+static bool has_states(const struct form *form)
+{
+	return form->terms > 0 && form->term[form->terms - 1].basis.kind == BASIS_COORD;
+}
+
+/* The place of a coordinate; -1: there is none */
+static int place_term(const struct form *form)
+{
+	for (int i = 0; i < form->terms; i++)
+		if (form->term[i].basis.kind == BASIS_COORD && form->term[i].basis.order == 0)
+			return i;
+	return -1;
+}
+
+/* form without the term of a basis, which `by` gives */
+static struct form *replaced(const struct form *form, const struct basis *basis, const struct form *by)
+{
+	const struct form_term *term = form_find(form, basis);
+	struct form *sum = NEW(struct form);
+	if (!term)
+		return form_alias(form);
+	for (int i = 0; i < form->terms; i++)
+		if (&form->term[i] != term)
+			form_add_basis(sum, form->term[i].basis, form->term[i].factor);
+	form_add_to(sum, by, term->factor);
+	return sum;
+}
+
+struct holding {                    /* states of a region that follow from the others, as they are found */
+	const struct building *b;
+	struct region *region;
+	struct basis *of;
+};
+
+/* v = 0, solved for a state; false: it follows from what is held already, or contradicts it */
+static bool hold_form(struct holding *h, struct form *v, bool place)
+{
+	struct region *region = h->region;
+	mpq_t factor;
+	for (int i = 0; i < region->holds; i++)
+		v = replaced(v, &h->of[i], region->hold[i].form);
+	int at = has_states(v) ? place ? place_term(v) : velocity_term(h->b, v) : -1;
+	if (at < 0)
+		return false;
+	struct basis basis = v->term[at].basis;
+	mpq_init(factor);
+	mpq_inv(factor, v->term[at].factor);
+	mpq_neg(factor, factor);
+	struct form *held = form_scale(replaced(v, &basis, NEW(struct form)), factor);
+	for (int i = 0; i < region->holds; i++)
+		region->hold[i].form = replaced(region->hold[i].form, &basis, held);
+	h->of[region->holds] = basis;
+	region->hold[region->holds].state = basis.order ? h->b->model->system.velocity[basis.index] : basis.index;
+	region->hold[region->holds++].form = held;
+	mpq_clear(factor);
+	return true;
+}
+
+/* What friction cannot hold beside what is held */
+static void tell_held(const struct holding *h, const struct stuck *stuck)
+{
+	struct form *v = stuck->velocity;
+	const struct node *node = stuck->atom->node;
+	for (int i = 0; i < h->region->holds; i++)
+		v = replaced(v, &h->of[i], h->region->hold[i].form);
+	if (v->terms == 0)
+		error(node->at, "without one of them its part is known",
+		      "friction holds what other friction holds already: while all of it sticks its force is not "
+		      "determined");
+	if (has_states(v))
+		error(node->child[0]->start, "x', x' - y', or x' - 0.2 against what moves",
+		      "the velocity of friction is linear in velocities");
+}
+
+/* States that follow from the others; false: not all of these can stick together. */
+static bool find_holds(const struct building *b, struct region *region, const struct stuck *stuck, int count)
+{
+	struct holding h = { b, region, ARRAY(struct basis, 2 * (size_t)count) };
+	bool possible = true;
+	region->hold = ARRAY(struct hold, 2 * (size_t)count);
+	region->holds = 0;
+	for (int k = 0; k < count && possible; k++) {
+		if (!is_borne(&stuck[k]))
+			continue;
+		possible = hold_form(&h, stuck[k].velocity, false);
+		if (!possible && stuck[k].atom)
+			tell_held(&h, &stuck[k]);
+	}
+	for (int k = 0; k < count && possible; k++)
+		possible = !stuck[k].impact || hold_form(&h, stuck[k].place, true);
+	return possible;
+}
+
+/* Row `to` less `factor` times row `from` */
+static void subtract_row(const struct switching *s, struct region *region, struct stuck *stuck, int count, int from,
+			 int to, mpq_srcptr factor)
+{
+	mpq_t part;
+	mpq_init(part);
+	for (int k = 0; k < count; k++) {
+		mpq_mul(part, factor, stuck[k].direction[from]);
+		mpq_sub(stuck[k].direction[to], stuck[k].direction[to], part);
+	}
+	region->residual[s->row[to]] = form_difference(region->residual[s->row[to]],
+						       form_scale(region->residual[s->row[from]], factor));
+	mpq_clear(part);
+}
+
+/* The row with the force of stuck[k] alone; others without it. The force is then what the row leaves. */
+static void solve_for_force(const struct switching *s, struct region *region, struct stuck *stuck, int count, int k)
+{
+	bool taken = true;
+	int pivot = -1;
+	mpq_t factor, one;
+	mpq_inits(factor, one, NULL);
+	while (taken && ++pivot < s->rows) {
+		taken = mpq_sgn(stuck[k].direction[pivot]) == 0;
+		for (int i = 0; i < k; i++)
+			taken = taken || stuck[i].pivot == pivot;
+	}
+	if (pivot == s->rows)
+		error(place_of_stuck(&stuck[k]), NULL, "the forces of what sticks and rests are not determined");
+	mpq_inv(factor, stuck[k].direction[pivot]);     /* less 1 - 1/d times itself: divided by d */
+	mpq_neg(factor, factor);
+	mpq_set_ui(one, 1, 1);
+	mpq_add(factor, factor, one);
+	subtract_row(s, region, stuck, count, pivot, pivot, factor);
+	for (int i = 0; i < s->rows; i++) {
+		if (i == pivot || mpq_sgn(stuck[k].direction[i]) == 0)
+			continue;
+		mpq_set(factor, stuck[k].direction[i]);
+		subtract_row(s, region, stuck, count, pivot, i, factor);
+	}
+	stuck[k].pivot = pivot;
+	mpq_clears(factor, one, NULL);
+}
+
+static void add_release(struct region *region, int expression, bool upward, struct form *form)
+{
+	ENLARGE(region->release, (size_t)region->releases + 1);
+	region->release[region->releases++] = (struct release){ expression, upward, form, NULL };
+}
+
+/* The force may be as large as it is at rest, on either side where sliding would begin. */
+static void add_releases(const struct switching *s, int index, const struct stuck *stuck)
+{
+	struct region *region = &s->region[index];
+	int stride = s->expression[stuck->expression].stride;
+	const struct form *up = NEW(struct form), *down = up;
+	if (stuck->impact) {                    /* it presses, and does not pull */
+		add_release(region, stuck->expression, !stuck->impact->upward,
+			    stuck->impact->upward ? form_difference(NEW(struct form), stuck->force) : stuck->force);
+		return;
+	}
+	if (stuck->atom) {
+		up = s->region[index + stride].rest[stuck->atom->index];
+		down = s->region[index - stride].rest[stuck->atom->index];
+	}
+	const struct form *force = stuck->atom ? stuck->force : stuck->rate;
+	add_release(region, stuck->expression, true, form_difference(force, up ? up : NEW(struct form)));
+	add_release(region, stuck->expression, false,
+		    form_difference(form_difference(NEW(struct form), force), down ? down : NEW(struct form)));
+}
+
+static struct form *without_atoms(const struct form *form)
+{
+	struct form *rest = NEW(struct form);
+	for (int i = 0; i < form->terms; i++)
+		if (form->term[i].basis.kind != BASIS_ATOM)
+			form_add_basis(rest, form->term[i].basis, form->term[i].factor);
+	return rest;
+}
+
+static void stick(struct building *b, const struct switching *s, int index)
+{
+	struct region *region = &s->region[index];
+	int count;
+	struct stuck *stuck = find_stuck(b, s, index, &count);
+	region->possible = find_holds(b, region, stuck, count);
+	if (!region->possible)
+		return;
+	for (int k = 0; k < s->rows; k++)
+		region->residual[s->row[k]] = without_atoms(region->residual[s->row[k]]);
+	for (int k = 0; k < count; k++)
+		if (is_borne(&stuck[k]))
+			solve_for_force(s, region, stuck, count, k);
+	for (int k = 0; k < count; k++) {
+		if (!is_borne(&stuck[k]))
+			continue;
+		int row = s->row[stuck[k].pivot];
+		stuck[k].force = form_difference(NEW(struct form), region->residual[row]);
+		region->residual[row] = stuck[k].rate;
+	}
+	for (int k = 0; k < count; k++)
+		add_releases(s, index, &stuck[k]);
+}
+
+void resolve_friction(struct building *b, struct switching *s)
+{
+	for (int r = 0; r < s->regions; r++) {
+		s->region[r].possible = true;   /* but where what sticks contradicts itself */
+		slip(s, r);
+		stick(b, s, r);
+	}
+}
+
+/* ---- rows ---- */
+
+/* How v' answers to the force that is held against it, g W^-1 G: above 0, or the force drives what it should hold */
+static void check_answer(struct building *b, const struct switching *s, const struct friction *f)
+{
+	const struct model *model = b->model;
+	const struct linear *system = &model->system;
+	int n = model->n, column;
+	mpq_t *inverse = rationals((size_t)(n * n)), answer, part;
+	const struct form *rate = rate_of_form(b, s->expression[f->expression].form);
+	mpq_inits(answer, part, NULL);
+	leading_inverse(system, inverse, &column);
+	for (int i = 0; i < n; i++) {
+		mpq_srcptr acts = factor_of_friction(b->snapshot->residual[i].form, f);
+		for (int k = 0; k < rate->terms && acts; k++) {
+			const struct basis *basis = &rate->term[k].basis;
+			if (basis->kind != BASIS_COORD || basis->order != model->frame.coord[basis->index]->highest)
+				continue;
+			mpq_mul(part, inverse[basis->index * n + i], rate->term[k].factor);
+			mpq_mul(part, part, acts);
+			mpq_add(answer, answer, part);
+		}
+	}
+	int sign = mpq_sgn(answer) * mpq_sgn(f->factor);
+	mpq_clears(answer, part, NULL);
+	if (sign < 0)
+		error(f->atom->node->at, "on the left side it stands with the sign of a damper: + friction(x', F)",
+		      "this friction drives what slides instead of holding it");
+}
+
+void build_friction(struct building *b, struct switching *s)
+{
+	int column;
+	mpq_t *inverse = rationals((size_t)b->model->n * (size_t)b->model->n);
+	for (int i = 0; i < s->frictions; i++)
+		check_answer(b, s, &s->friction[i]);
+	for (int r = 0; r < s->regions; r++) {
+		struct region *region = &s->region[r];
+		if (!region->possible || (region->holds == 0 && region->releases == 0))
+			continue;
+		const struct linear *system = &s->system[region->system];
+		if (!leading_inverse(system, inverse, &column))
+			error(s->frictions ? s->friction->atom->node->at : s->impact->when->at, "its velocity has to answer to its force",
+			      "friction cannot hold what slides there");
+		for (int k = 0; k < region->holds; k++)
+			region->hold[k].row = row_of_form(b, region->hold[k].form);
+		for (int k = 0; k < region->releases; k++)
+			region->release[k].row = row_in_system(b, system, region->release[k].form);
+	}
+}
+
+bool same_friction(const struct region *a, const struct region *b)
+{
+	bool same = a->holds == b->holds && a->releases == b->releases;
+	for (int k = 0; k < a->holds && same; k++)
+		same = a->hold[k].state == b->hold[k].state && same_form(a->hold[k].form, b->hold[k].form);
+	for (int k = 0; k < a->releases && same; k++)
+		same = same_form(a->release[k].form, b->release[k].form);
+	return same;
+}

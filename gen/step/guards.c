@@ -1,0 +1,172 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Of regions with dry friction: what ends each of them, and what holds states there. A guard is a row over x: of an
+ * expression that comes to an end of its interval, or of a force that comes to what friction can hold. */
+#include "step/step.h"
+
+#include <string.h>
+
+/* The index of a row of a branch; equal ones are one */
+static int add_row(struct guards *g, int size, int branch, const double *row)
+{
+	size_t bytes = (size_t)size * sizeof *row;
+	for (int i = 0; i < g->rows; i++)
+		if (g->branch[i] == branch && memcmp(g->row + i * size, row, bytes) == 0)
+			return i;
+	ENLARGE(g->branch, (size_t)g->rows + 1);
+	ENLARGE(g->row, (size_t)(g->rows + 1) * (size_t)size);
+	memcpy(g->row + g->rows * size, row, bytes);
+	g->branch[g->rows] = branch;
+	return g->rows++;
+}
+
+static void add_guard(struct guards *g, int size, int branch, const double *row, struct guard guard)
+{
+	guard.row = add_row(g, size, branch, row);
+	ENLARGE(g->guard, (size_t)g->guards + 1);
+	g->guard[g->guards++] = guard;
+}
+
+static double *turned(int size, const double *row, bool upward)
+{
+	double *result = ARRAY(double, (size_t)size);
+	for (int j = 0; j < size; j++)
+		result[j] = upward || row[j] == 0 ? row[j] : -row[j];
+	return result;
+}
+
+/* The ends of an interval of an expression */
+static void guard_interval(const struct step *step, const struct pieces *pieces, struct guards *g, int region,
+			   int expression, int first)
+{
+	const struct switching *s = step->model->switching;
+	const struct expression *e = &s->expression[expression];
+	int size = step->layout.size, interval = interval_of(s, region, expression);
+	for (int upward = 0; upward < 2; upward++) {
+		int breakpoint = interval - !upward;
+		if (breakpoint < 0 || breakpoint == e->breaks)
+			continue;
+		double at = pieces->breakpoint[first + breakpoint];
+		struct guard guard = { .expression = expression,
+				       .breakpoint = breakpoint,
+				       .upward = upward,
+				       .leads = upward ? e->stride : -e->stride,
+				       .limit = upward || at == 0 ? at : -at,
+				       .impact = impact_at(s, expression, e->at[breakpoint], upward) };
+		if (guard.impact < 0 && impact_resting(s, expression, interval + (upward ? 1 : -1)) >= 0)
+			guard.leads *= 2;       /* past the interval of rest, which impacts alone lead to */
+		add_guard(g, size, s->region[region].system,
+			  turned(size, pieces->row + expression * size, upward), guard);
+	}
+}
+
+/* What releases an expression that is held */
+static void guard_releases(const struct step *step, struct guards *g, int region, int expression)
+{
+	const struct switching *s = step->model->switching;
+	int stride = s->expression[expression].stride, interval = interval_of(s, region, expression);
+	for (int k = 0; k < s->region[region].releases; k++) {
+		const struct release *release = &s->region[region].release[k];
+		double *row = ARRAY(double, (size_t)step->layout.size);
+		if (release->expression != expression)
+			continue;
+		row_over_x(step, release->row, row);
+		add_guard(g, step->layout.size, s->region[region].system, row,
+			  (struct guard){ .expression = expression,
+					  .breakpoint = interval - !release->upward,
+					  .upward = release->upward,
+					  .leads = release->upward ? stride : -stride,
+					  .impact = -1 });
+	}
+}
+
+static void add_assignment(const struct step *step, struct guards *g, int state, const struct output *row)
+{
+	struct held_state new = { state, ARRAY(double, (size_t)step->layout.size) };
+	row_over_x(step, row, new.value);
+	ENLARGE(g->assignment, (size_t)g->assignments + 1);
+	g->assignment[g->assignments++] = new;
+}
+
+static int end_set(struct guards *g)
+{
+	ENLARGE(g->set, (size_t)g->sets + 2);
+	g->set[++g->sets] = g->assignments;
+	return g->sets - 1;
+}
+
+static void hold_region(const struct step *step, struct guards *g, int region)
+{
+	const struct region *r = &step->model->switching->region[region];
+	g->hold[region] = -1;
+	if (!r->possible || r->holds == 0)
+		return;
+	g->hold[region] = g->sets;
+	for (int k = 0; k < r->holds; k++)
+		add_assignment(step, g, r->hold[k].state, r->hold[k].row);
+	end_set(g);
+}
+
+static int set_of_jumps(const struct step *step, struct guards *g, int jumps, const struct jump *jump)
+{
+	for (int k = 0; k < jumps; k++)
+		add_assignment(step, g, jump[k].state, jump[k].row);
+	return end_set(g);
+}
+
+static void strike(const struct step *step, struct guards *g, const struct impact *impact)
+{
+	const struct switching *s = step->model->switching;
+	const struct expression *e = &s->expression[impact->expression];
+	struct struck new = { .expression = impact->expression, .upward = impact->upward, .rest = rest_of(s, impact),
+			      .still = -1, .restitution = round_rational(impact->restitution) };
+	while (!mpq_equal(e->at[new.breakpoint], impact->at))
+		new.breakpoint++;
+	if (impact->bounces && !impact->upward)
+		new.breakpoint++;               /* the upper of two */
+	new.jump = set_of_jumps(step, g, impact->jumps, impact->jump);
+	new.speed = ARRAY(double, (size_t)step->layout.size);
+	if (impact->bounces) {
+		new.still = set_of_jumps(step, g, impact->jumps, impact->still);
+		row_over_x(step, impact->speed_row, new.speed);
+	}
+	g->impact[g->impacts++] = new;
+}
+
+static void bound_rows_of_guards(const struct step *step, const struct pieces *pieces, struct guards *g)
+{
+	size_t size = (size_t)step->layout.size, cells = (size_t)g->rows * size;
+	g->slope = ARRAY(double, cells);
+	g->second = ARRAY(double, cells);
+	g->fourth = ARRAY(double, cells);
+	for (int from = 0, to; from < g->rows; from = to) {
+		for (to = from; to < g->rows && g->branch[to] == g->branch[from]; to++)
+			;
+		size_t at = (size_t)from * size;
+		bounds_of_rows(step, pieces, g->branch[from], to - from, g->row + at, g->slope + at, g->second + at,
+			       g->fourth + at);
+	}
+}
+
+struct guards guards_of(const struct step *step, const struct pieces *pieces)
+{
+	const struct switching *s = step->model->switching;
+	struct guards g = { .first = ARRAY(int, (size_t)s->regions + 1), .hold = ARRAY(int, (size_t)s->regions),
+			    .set = ARRAY(int, 1) };
+	for (int r = 0; r < s->regions; r++) {
+		g.first[r] = g.guards;
+		hold_region(step, &g, r);
+		for (int e = 0, first = 0; e < s->expressions; first += s->expression[e++].breaks)
+			if (!s->region[r].possible)
+				continue;
+			else if (is_stick(&s->expression[e], interval_of(s, r, e)))
+				guard_releases(step, &g, r, e);
+			else
+				guard_interval(step, pieces, &g, r, e, first);
+	}
+	g.first[s->regions] = g.guards;
+	g.impact = ARRAY(struct struck, (size_t)s->impacts);
+	for (int i = 0; i < s->impacts; i++)
+		strike(step, &g, &s->impact[i]);
+	bound_rows_of_guards(step, pieces, &g);
+	return g;
+}

@@ -1,0 +1,571 @@
+/* SPDX-License-Identifier: MIT-0 */
+/* Steps of piecewise-linear models with dry friction and jumps, from event to event.  Pieces that stay clear of every
+ * guard of their region go by e^{A d}; the others by Taylor polynomials, on which the first event is isolated.  What is
+ * to stick and what is to slip after an event is found by looking at all combinations of those that are at rest. */
+#include "roots.h"
+
+/* How many at rest are looked at together: 3^MOST combinations; how many impacts there may be at one instant */
+enum { MOST = 6, MOST_AT_ONCE = 200 };
+
+#ifdef REAL_IS_FLOAT
+#define BRIEF PL_BRIEFF
+#else
+#define BRIEF PL_BRIEF
+#endif
+
+static const real *matrix_of(const real *all, const pl_guards *m, int matrix)
+{
+    return all + (ptrdiff_t)matrix * m->size * m->size;
+}
+
+/* ---- regions ---- */
+
+typedef struct walk {
+    int i, breaks, interval, stride;
+    const real *at;
+} walk;
+
+static walk first_switch(const pl_guards *m)
+{
+    walk w;
+    w.i = w.breaks = w.interval = 0;
+    w.stride = 1;
+    w.at = m->at;
+    return w;
+}
+
+static int arrive(const pl_guards *m, int region, walk *w)
+{
+    if (w->i == m->switches)
+        return 0;
+    w->breaks = m->breaks[w->i];
+    w->interval = region / w->stride % (w->breaks + 1);
+    return 1;
+}
+
+static void leave(walk *w)
+{
+    w->stride *= w->breaks + 1;
+    w->at += w->breaks;
+    w->i++;
+}
+
+static void enter(const pl_guards *m, pl_contact *c, int region)
+{
+    c->region = region;
+    if (m->matrix[region] >= 0)
+        c->matrix = m->matrix[region];
+}
+
+static int list(const pl_guards *m, pl_contact *c, pl_crossing *crossing, real time, int expression, int breakpoint,
+                int upward)
+{
+    if (c->crossings == m->max_events) {
+        c->status |= PL_TOO_MANY_EVENTS;
+        return 0;
+    }
+    crossing += c->crossings++;
+    crossing->time = time;
+    crossing->expression = expression;
+    crossing->breakpoint = breakpoint;
+    crossing->upward = upward;
+    c->total++;
+    return 1;
+}
+
+/* x[state] = value . x, all of a set from the same x */
+static void assign(const pl_guards *m, int set, real *x, real *work)
+{
+    const int n = m->size;
+    int k;
+    if (set < 0)
+        return;
+    for (k = m->set[set]; k < m->set[set + 1]; k++)
+        pl_multiply(1, n, m->value + (ptrdiff_t)k * n, x, work + (k - m->set[set]));
+    for (k = m->set[set]; k < m->set[set + 1]; k++)
+        x[m->state[k]] = work[k - m->set[set]];
+}
+
+static real excess(const pl_guards *m, const pl_contact *c, const walk *w, int breakpoint, const real *x, real *noise)
+{
+    const real *row = m->row + w->i * m->size;
+    const real *tangent = m->tangent + ((ptrdiff_t)c->matrix * m->switches + w->i) * m->size;
+    const real b = w->at[breakpoint];
+    real e;
+    pl_multiply(1, m->size, row, x, &e);
+    *noise = noise_of(sizes(m->size, row, x) + 3 * sizes(m->size, tangent, x) + magnitude(b));
+    return e - b;
+}
+
+/* 1 or -1 where e is above or below its interval by more than rounding, else 0 */
+static int outside(const pl_guards *m, const pl_contact *c, const walk *w, const real *x)
+{
+    real noise;
+    if (w->interval < w->breaks && excess(m, c, w, w->interval, x, &noise) > noise)
+        return 1;
+    if (w->interval > 0 && -excess(m, c, w, w->interval - 1, x, &noise) > noise)
+        return -1;
+    return 0;
+}
+
+/* An expression that has left its interval other than by an event: by an input, a load or a jump */
+static void follow(const pl_guards *m, const real *x, pl_contact *c, pl_crossing *crossing, real time)
+{
+    walk w;
+    int way;
+    for (w = first_switch(m); arrive(m, c->region, &w); leave(&w))
+        for (; (way = outside(m, c, &w, x)) != 0; w.interval += way) {
+            if (crossing)
+                (void)list(m, c, crossing, time, w.i, w.interval - (way < 0), way > 0);
+            enter(m, c, c->region + way * w.stride);
+        }
+}
+
+/* ---- impacts ---- */
+
+static walk switch_of(const pl_guards *m, int region, int expression)
+{
+    walk w;
+    for (w = first_switch(m); arrive(m, region, &w) && w.i < expression; leave(&w))
+        ;
+    return w;
+}
+
+static int free_of(const pl_impact *p)
+{
+    return p->rest + (p->upward ? -1 : 1);
+}
+
+/* The speed at which impact k comes closer, 0 where that is but rounding */
+static real speed_of(const pl_guards *m, int k, const real *x)
+{
+    const real *row = m->speed + (ptrdiff_t)k * m->size;
+    real speed;
+    pl_multiply(1, m->size, row, x, &speed);
+    return magnitude(speed) <= noise_of(sizes(m->size, row, x)) ? 0 : speed;
+}
+
+/* Whether a bounce is on its guard, flying or at rest */
+static int touches(const pl_guards *m, const pl_contact *c, const pl_impact *p, const real *x)
+{
+    const walk w = switch_of(m, c->region, p->expression);
+    real noise;
+    if (p->rest < 0 || (w.interval != p->rest && w.interval != free_of(p)))
+        return 0;
+    return magnitude(excess(m, c, &w, p->breakpoint, x, &noise)) <= noise;
+}
+
+static void go_to(const pl_guards *m, pl_contact *c, const pl_impact *p, int interval)
+{
+    const walk w = switch_of(m, c->region, p->expression);
+    enter(m, c, c->region + (interval - w.interval) * w.stride);
+}
+
+/* All impacts at this instant; begins: the one whose guard was met, or -1.  Returns those that acted, as bits. */
+static uint32_t collide(const pl_guards *m, int begins, real *x, pl_contact *c, pl_crossing *crossing, real time,
+                        real *work)
+{
+    uint32_t struck = 0;
+    int k, rounds = 0;
+    for (k = 0; k < m->impacts; k++) {
+        const pl_impact *p = &m->impact[k];
+        if (k != begins && !(touches(m, c, p, x) && speed_of(m, k, x) > 0))
+            continue;
+        if (++rounds > MOST_AT_ONCE || !list(m, c, crossing, time, p->expression, p->breakpoint, p->upward)) {
+            c->status |= PL_TOO_MANY_EVENTS;
+            break;
+        }
+        assign(m, p->jump, x, work);
+        if (p->rest >= 0)
+            go_to(m, c, p, free_of(p));
+        struck |= (uint32_t)1 << k;
+        begins = k == begins ? -1 : begins;
+        k = -1;
+    }
+    return struck;
+}
+
+/* How long bounces of k would still go on; -1: for good, or it leaves.  work: size */
+static real bounces_left(const pl_guards *m, const pl_contact *c, int k, const real *x, real *work)
+{
+    const real e = (real)m->impact[k].restitution, speed = speed_of(m, k, x);
+    real press;
+    if (m->impact[k].rest < 0 || !(e < 1) || speed > 0)
+        return -1;
+    pl_multiply(m->size, m->size, matrix_of(m->A, m, c->matrix), x, work);
+    pl_multiply(1, m->size, m->speed + (ptrdiff_t)k * m->size, work, &press);
+    return press > 0 ? -2 * speed / (press * (1 - e)) : -1;
+}
+
+/* ---- what sticks and what slips ---- */
+
+typedef struct resting { /* an expression on a breakpoint that stands twice */
+    int expression, stick, stride; /* stick: the interval between */
+    int impact;                    /* that rests there; -1: it is friction */
+} resting;
+
+static int impact_of(const pl_guards *m, int expression, int interval)
+{
+    int k;
+    for (k = m->impacts - 1; k >= 0; k--)
+        if (m->impact[k].rest == interval && m->impact[k].expression == expression)
+            break;
+    return k;
+}
+
+/* Those at rest in the region, or slipping next to it */
+static int find_resting(const pl_guards *m, const pl_contact *c, const real *x, resting *found)
+{
+    int count = 0, k;
+    real noise;
+    walk w;
+    for (w = first_switch(m); arrive(m, c->region, &w); leave(&w))
+        for (k = 1; k < w.breaks; k++) {
+            const real e = w.at[k] - w.at[k - 1] <= 0 ? excess(m, c, &w, k, x, &noise) : 1;
+            if (w.at[k] - w.at[k - 1] > 0 || w.interval < k - 1 || w.interval > k + 1 || count == MOST)
+                continue;
+            if (magnitude(e) > noise)
+                continue;
+            found[count].impact = impact_of(m, w.i, k);
+            if (found[count].impact >= 0 && speed_of(m, found[count].impact, x) < 0 && w.interval != k)
+                continue; /* it flies off */
+            found[count].expression = w.i;
+            found[count].stick = k;
+            found[count++].stride = w.stride;
+        }
+    return count;
+}
+
+static int interval_of(const pl_guards *m, const resting *r, int region)
+{
+    return region / r->stride % (m->breaks[r->expression] + 1);
+}
+
+/* Whether a guard of what sticks lets it */
+static int is_held(const pl_guards *m, int region, int expression, const real *x, real *work)
+{
+    const int n = m->size;
+    int k;
+    for (k = m->first[region]; k < m->first[region + 1]; k++) {
+        const pl_guard *g = &m->guard[k];
+        const real *row = m->gate + (ptrdiff_t)g->row * n, *tangent = m->gate_tangent + (ptrdiff_t)g->row * n;
+        real e, noise;
+        if (g->expression != expression)
+            continue;
+        pl_multiply(1, n, row, x, &e);
+        noise = noise_of(sizes(n, row, x) + 3 * sizes(n, tangent, x) + magnitude(m->limit[k]));
+        if (e - m->limit[k] > noise)
+            return 0;
+        if (e - m->limit[k] >= -noise && heading(n, matrix_of(m->A, m, m->matrix[region]), row, x, work) > 0)
+            return 0;
+    }
+    return 1;
+}
+
+/* Whether all of them agree with a region: what sticks is held, what slips moves away as it does there */
+static int agrees(const pl_guards *m, int region, const resting *r, int count, const real *x, real *work)
+{
+    const int n = m->size;
+    int i;
+    if (m->matrix[region] < 0)
+        return 0;
+    for (i = 0; i < count; i++) {
+        const int side = interval_of(m, &r[i], region) - r[i].stick;
+        const real *row = m->row + r[i].expression * n;
+        if (r[i].impact >= 0 && side == 0 && speed_of(m, r[i].impact, x) < 0)
+            return 0;
+        if (r[i].impact >= 0 && side == (m->impact[r[i].impact].upward ? 1 : -1))
+            return 0;
+        if (side == 0 && !is_held(m, region, r[i].expression, x, work))
+            return 0;
+        if (side != 0 && heading(n, matrix_of(m->A, m, m->matrix[region]), row, x, work) != side)
+            return 0;
+    }
+    return 1;
+}
+
+static int combinations(int count)
+{
+    int all = 1;
+    while (count-- > 0)
+        all *= 3;
+    return all;
+}
+
+/* The region in which all agree, with fewest changes, then most that stick; -1: there is none */
+static int best_region(const pl_guards *m, const pl_contact *c, const resting *r, int count, const real *x, real *work)
+{
+    int best = -1, least = 0, code;
+    for (code = 0; code < combinations(count); code++) {
+        int region = c->region, score = 0, rest = code, i;
+        for (i = 0; i < count; i++, rest /= 3) {
+            const int now = interval_of(m, &r[i], region), then = r[i].stick + rest % 3 - 1;
+            region += (then - now) * r[i].stride;
+            score += (then != now) * 2 * MOST + (rest % 3 != 1);
+        }
+        if ((best < 0 || score < least) && agrees(m, region, r, count, x, work)) {
+            best = region;
+            least = score;
+        }
+    }
+    return best;
+}
+
+/* Lists what changes from the region to another one, and goes there. */
+static void change(const pl_guards *m, pl_contact *c, pl_crossing *crossing, real time, const resting *r, int count,
+                   int region)
+{
+    int i, k;
+    for (i = 0; i < count && crossing; i++) {
+        const int now = interval_of(m, &r[i], c->region), then = interval_of(m, &r[i], region);
+        for (k = now; k < then; k++)
+            (void)list(m, c, crossing, time, r[i].expression, k, 1);
+        for (k = now; k > then; k--)
+            (void)list(m, c, crossing, time, r[i].expression, k - 1, 0);
+    }
+    enter(m, c, region);
+}
+
+/* What is at rest: whether it sticks, and where else it goes.  crossing NULL: nothing is listed. */
+static void settle(const pl_guards *m, const real *x, pl_contact *c, pl_crossing *crossing, real time, real *work)
+{
+    resting r[MOST];
+    const int count = find_resting(m, c, x, r);
+    int region;
+    if (count == 0 || agrees(m, c->region, r, count, x, work))
+        return;
+    region = best_region(m, c, r, count, x, work);
+    if (region < 0)
+        c->status |= PL_UNDECIDED;
+    else
+        change(m, c, crossing, time, r, count, region);
+}
+
+/* ---- the start ---- */
+
+/* Puts what is on a plain breakpoint above or below, where it is heading; what rests counts as below. */
+static void decide(const pl_guards *m, const real *x, pl_contact *c, real *work)
+{
+    real noise;
+    walk w;
+    for (w = first_switch(m); arrive(m, c->region, &w); leave(&w)) {
+        const int twice = w.interval + 1 < w.breaks && !(w.at[w.interval + 1] > w.at[w.interval]);
+        if (w.interval == w.breaks || twice || -excess(m, c, &w, w.interval, x, &noise) > noise)
+            continue;
+        if (w.interval > 0 && !(w.at[w.interval] > w.at[w.interval - 1]))
+            continue;
+        if (heading(m->size, matrix_of(m->A, m, c->matrix), m->row + w.i * m->size, x, work) > 0)
+            enter(m, c, c->region + w.stride);
+    }
+}
+
+void pl_guards_start(const pl_guards *m, const real *x, pl_contact *c, real *work)
+{
+    walk w;
+    c->total = 0;
+    c->crossings = c->status = c->matrix = c->rested = 0;
+    enter(m, c, 0);
+    follow(m, x, c, (pl_crossing *)0, 0);
+    for (w = first_switch(m); arrive(m, c->region, &w); leave(&w)) /* at rest: let it stick first */
+        if (w.interval + 1 < w.breaks && !(w.at[w.interval + 1] > w.at[w.interval])) {
+            const int impact = impact_of(m, w.i, w.interval + 1);
+            real noise;
+            if (magnitude(excess(m, c, &w, w.interval, x, &noise)) > noise)
+                continue;
+            enter(m, c, c->region + w.stride);
+            if (impact >= 0 && magnitude(speed_of(m, impact, x)) > 0)
+                go_to(m, c, &m->impact[impact], free_of(&m->impact[impact]));
+        }
+    settle(m, x, c, (pl_crossing *)0, 0, work);
+    decide(m, x, c, work);
+    settle(m, x, c, (pl_crossing *)0, 0, work);
+}
+
+/* ---- a piece ---- */
+
+/* Whether it is certain that no guard becomes greater than its limit between x and y, a piece on.  work: size */
+static int stays_clear(const pl_guards *m, const pl_contact *c, const real *x, const real *y, real *work)
+{
+    const int n = m->size;
+    int i, k;
+    for (i = 0; i < n; i++)
+        work[i] = magnitude(x[i]);
+    for (k = m->first[c->region]; k < m->first[c->region + 1]; k++) {
+        const ptrdiff_t at = (ptrdiff_t)m->guard[k].row * n;
+        real from, to, off, leaving, arriving;
+        pl_multiply(1, n, m->gate + at, x, &from);
+        pl_multiply(1, n, m->gate + at, y, &to);
+        pl_multiply(1, n, m->chord_error + at, work, &off);
+        if (larger(from, to) + off < m->limit[k])
+            continue;
+        pl_multiply(1, n, m->cubic_error + at, work, &off);
+        pl_multiply(1, n, m->gate_tangent + at, x, &leaving);
+        pl_multiply(1, n, m->gate_tangent + at, y, &arriving);
+        if (!(larger(larger(from, to), larger(from + leaving, to - arriving)) + off < m->limit[k]))
+            return 0;
+    }
+    return 1;
+}
+
+typedef struct event {
+    real s;    /* 1 without one */
+    int guard; /* -1: none */
+} event;
+
+/* What has left its guard at the start comes back where g(s)/s rises through 0: that is known to more digits. */
+static void look_behind(beyond *f, const real *e, real terms)
+{
+    f->degree--;
+    look_beyond(f, e + 1, 1, 0, terms);
+    f->coefficient[++f->degree] = 0;
+}
+
+/* coefficients: (degree + 1) x size, of x(s); after them 2 (degree + 1) for work */
+static event first_event(const pl_guards *m, int region, real *coefficients, int *splits)
+{
+    const int terms = m->degree + 1, n = m->size;
+    real *e = coefficients + terms * n;
+    event first = {1, -1};
+    beyond f;
+    int k;
+    f.degree = m->degree;
+    f.coefficient = e + terms;
+    for (k = m->first[region]; k < m->first[region + 1]; k++) {
+        const real *row = m->gate + (ptrdiff_t)m->guard[k].row * n;
+        real s;
+        pl_multiply(terms, n, coefficients, row, e);
+        look_beyond(&f, e, 1, m->limit[k], sizes(n, row, coefficients));
+        if (m->guard[k].impact >= 0 && e[1] < 0 && magnitude(f.coefficient[0]) <= noise_of(magnitude(m->limit[k]) +
+            sizes(n, row, coefficients) + sizes(n, row, coefficients + n)))
+            look_behind(&f, e, sizes(n, row, coefficients + n));
+        s = first_root(&f, first.s, splits);
+        if (s < 0)
+            continue;
+        first.s = s;
+        first.guard = k;
+    }
+    return first;
+}
+
+/* Moves x on over a piece of length dt, or to the first event in it; splits < 0: without looking for one. */
+static event move(const pl_guards *m, pl_contact *c, real dt, const real *y, int *splits, real *x, real *work)
+{
+    const event none = {1, -1};
+    event first = none;
+    int i;
+    expand(m->size, m->degree, matrix_of(m->A, m, c->matrix), dt, x, work);
+    if (pl_not_finite(work, (m->degree + 1) * m->size)) {
+        sum_up(m->size, m->degree, work, 1, x);
+        return none;
+    }
+    if (*splits >= 0 && m->matrix[c->region] >= 0)
+        first = first_event(m, c->region, work, splits);
+    if (*splits < 0) {
+        c->status |= PL_TOO_MANY_EVENTS;
+        first = none;
+    }
+    if (y && first.guard < 0)
+        for (i = 0; i < m->size; i++)
+            x[i] = y[i];
+    else
+        sum_up(m->size, m->degree, work, first.s, x);
+    return first;
+}
+
+/* ---- a step ---- */
+
+/* Behind impacts: which of them rest, after infinitely many more in no time to speak of */
+static void come_to_rest(const pl_guards *m, uint32_t struck, real *x, pl_contact *c, pl_crossing *crossing, real time,
+                 real *work)
+{
+    int k;
+    for (k = 0; k < m->impacts; k++) {
+        const pl_impact *p = &m->impact[k];
+        const real left = struck >> k & 1 ? bounces_left(m, c, k, x, work) : -1;
+        if (!(left >= 0 && left <= BRIEF * m->h) || !touches(m, c, p, x))
+            continue;
+        assign(m, p->still, x, work);
+        go_to(m, c, p, p->rest);
+        (void)list(m, c, crossing, time + left, p->expression, p->breakpoint, p->upward);
+        c->rested++;
+        settle(m, x, c, crossing, time, work);
+    }
+}
+
+/* Into the region to which a guard leads, or by the impact that begins there */
+static int pass(const pl_guards *m, pl_contact *c, const pl_guard *g, real *x, pl_crossing *crossing, real time,
+                real *work)
+{
+    const int full = c->crossings == m->max_events;
+    uint32_t struck = 0;
+    if (g->impact < 0)
+        (void)list(m, c, crossing, time, g->expression, g->breakpoint, g->upward);
+    if (g->impact < 0 || m->impact[g->impact].rest < 0)
+        enter(m, c, c->region + g->leads);
+    assign(m, m->hold[c->region], x, work);
+    if (g->impact >= 0)
+        struck = collide(m, g->impact, x, c, crossing, time, work);
+    if (g->impact >= 0)
+        follow(m, x, c, crossing, time);
+    settle(m, x, c, crossing, time, work);
+    come_to_rest(m, struck, x, c, crossing, time, work);
+    assign(m, m->hold[c->region], x, work);
+    return !full;
+}
+
+/* At the start: what holds may have moved, and what moves may have jumped. */
+static void take_up(const pl_guards *m, real *x, pl_contact *c, pl_crossing *crossing, real *work)
+{
+    follow(m, x, c, crossing, 0);
+    (void)collide(m, -1, x, c, crossing, 0, work);
+    settle(m, x, c, crossing, 0, work);
+    assign(m, m->hold[c->region], x, work);
+}
+
+void pl_guards_advance(const pl_guards *m, real tau, real *x, pl_contact *c, pl_crossing *crossing, real *work)
+{
+    const int n = m->size;
+    real left = tau, *y = work, *rest = work + n;
+    int splits = m->max_splits, fresh = 1, i;
+    c->crossings = 0;
+    if (m->hold[c->region] >= 0) {
+        take_up(m, x, c, crossing, rest);
+        fresh = 0;
+    }
+    while (left > REST * m->h) { /* nothing for what rounding leaves */
+        const real longest = m->h / (real)((uint32_t)1 << m->halvings[c->matrix]);
+        const int whole = left > longest * (1 - REST);
+        const real dt = whole ? longest : left;
+        event first;
+        if (whole) {
+            pl_multiply(n, n, matrix_of(m->Phi, m, c->matrix), x, y);
+            assign(m, m->hold[c->region], y, rest);
+            if (m->matrix[c->region] >= 0 && stays_clear(m, c, x, y, rest)) {
+                for (i = 0; i < n; i++)
+                    x[i] = y[i];
+                left -= dt;
+                fresh = 0;
+                continue;
+            }
+        }
+        if (fresh) { /* the region may be another one now */
+            fresh = 0;
+            take_up(m, x, c, crossing, rest);
+            continue;
+        }
+        first = move(m, c, dt, whole ? y : (real *)0, &splits, x, rest);
+        assign(m, m->hold[c->region], x, rest);
+        if (splits < 0)
+            break; /* x is held: this region may not be the one, and may be unstable */
+        left -= first.s * dt;
+        if (first.guard < 0)
+            continue;
+        if (!pass(m, c, &m->guard[first.guard], x, crossing, tau - left, rest))
+            splits = -1; /* no further search */
+    }
+}
+
+void pl_guards_step(const pl_guards *m, real *x, pl_contact *c, pl_crossing *crossing, real *work)
+{
+    pl_guards_advance(m, m->h, x, c, crossing, work);
+}
