@@ -161,6 +161,18 @@ static void go_to(const pl_guards *m, pl_contact *c, const pl_impact *p, int int
     enter(m, c, c->region + (interval - w.interval) * w.stride);
 }
 
+/* What rounding has left of the way to the guard goes. */
+static void put_on(const pl_guards *m, const pl_contact *c, int k, real *x)
+{
+    const walk w = switch_of(m, c->region, m->impact[k].expression);
+    const real *back = m->back + (ptrdiff_t)k * m->size;
+    real noise;
+    const real e = excess(m, c, &w, m->impact[k].breakpoint, x, &noise);
+    int i;
+    for (i = 0; i < m->size; i++)
+        x[i] -= back[i] * e;
+}
+
 /* All impacts at this instant; begins: the one whose guard was met, or -1.  Returns those that acted, as bits. */
 static uint32_t collide(const pl_guards *m, int begins, real *x, pl_contact *c, pl_crossing *crossing, real time,
                         real *work)
@@ -178,6 +190,8 @@ static uint32_t collide(const pl_guards *m, int begins, real *x, pl_contact *c, 
         assign(m, p->jump, x, work);
         if (p->rest >= 0)
             go_to(m, c, p, free_of(p));
+        if (p->rest >= 0)
+            put_on(m, c, k, x);
         struck |= (uint32_t)1 << k;
         begins = k == begins ? -1 : begins;
         k = -1;
@@ -185,16 +199,28 @@ static uint32_t collide(const pl_guards *m, int begins, real *x, pl_contact *c, 
     return struck;
 }
 
-/* How long bounces of k would still go on; -1: for good, or it leaves.  work: size */
-static real bounces_left(const pl_guards *m, const pl_contact *c, int k, const real *x, real *work)
+/* How long it flies that leaves the guard of k, from how it is pressed back there; -1: for good.  work: size */
+static real flight(const pl_guards *m, const pl_contact *c, int k, const real *x, real *work)
 {
-    const real e = (real)m->impact[k].restitution, speed = speed_of(m, k, x);
+    const real speed = speed_of(m, k, x);
     real press;
-    if (m->impact[k].rest < 0 || !(e < 1) || speed > 0)
+    if (m->impact[k].rest < 0 || speed > 0)
         return -1;
     pl_multiply(m->size, m->size, matrix_of(m->A, m, c->matrix), x, work);
     pl_multiply(1, m->size, m->speed + (ptrdiff_t)k * m->size, work, &press);
-    return press > 0 ? -2 * speed / (press * (1 - e)) : -1;
+    return press > 0 ? -2 * speed / press : -1;
+}
+
+/* A piece not much longer than the shortest flight that begins there */
+static real shortened(const pl_guards *m, const pl_contact *c, const real *x, real dt, real *work)
+{
+    int k;
+    for (k = 0; k < m->impacts; k++) {
+        const real along = touches(m, c, &m->impact[k], x) ? flight(m, c, k, x, work) : 0;
+        if (along > 0)
+            dt = smaller(dt, 2 * along);
+    }
+    return dt;
 }
 
 /* ---- what sticks and what slips ---- */
@@ -481,8 +507,10 @@ static void come_to_rest(const pl_guards *m, uint32_t struck, real *x, pl_contac
     int k;
     for (k = 0; k < m->impacts; k++) {
         const pl_impact *p = &m->impact[k];
-        const real left = struck >> k & 1 ? bounces_left(m, c, k, x, work) : -1;
-        if (!(left >= 0 && left <= BRIEF * m->h) || !touches(m, c, p, x))
+        const real e = (real)p->restitution, along = struck >> k & 1 && e < 1 ? flight(m, c, k, x, work) : -1;
+        const real left = along / (1 - e);
+        const int full = c->crossings > m->max_events - MOST;
+        if (!(left >= 0 && left <= (full ? 1 : BRIEF) * m->h) || !touches(m, c, p, x))
             continue;
         assign(m, p->still, x, work);
         go_to(m, c, p, p->rest);

@@ -560,7 +560,8 @@ typedef struct pl_guards {
     const double *value;
     int impacts; /* at most 30, in the order in which they act at one instant */
     const pl_impact *impact;
-    const double *speed; /* impacts x size: of the guard of each that bounces */
+    /* impacts x size, of those that bounce: the speed of the guard; what times e - b is taken from x to be on it */
+    const double *speed, *back;
     int degree;
     int max_events, max_splits;
 } pl_guards;
@@ -585,7 +586,7 @@ void pl_guards_start(const pl_guards *m, const double *x, pl_contact *c, double 
  * Impacts at one instant act in their order, each from the state that the one before has left, and again from the first,
  * until none is on its guard and comes closer.  Behind a bounce that leaves with the velocity v and is pressed back by
  * the acceleration a, all further ones take T = 2 v/(a (1 - e)): where T <= PL_BRIEF h, e < 1, it rests, listed T
- * later.  What rests is held until it would have to be pulled. */
+ * later; so too where T <= h and the list of crossings is full but for a few.  What rests is held until it would have to be pulled. */
 void pl_guards_step(const pl_guards *m, double *x, pl_contact *c, pl_crossing *crossing, double *work);
 void pl_guards_advance(const pl_guards *m, double tau, double *x, pl_contact *c, pl_crossing *crossing, double *work);
 
@@ -607,7 +608,7 @@ typedef struct pl_guardsf {
     const float *value;
     int impacts;
     const pl_impact *impact;
-    const float *speed;
+    const float *speed, *back;
     int degree, max_events, max_splits;
 } pl_guardsf;
 

@@ -106,7 +106,7 @@ static void emit_impacts(const struct emitter *e, const struct guards *g)
 {
 	const struct switching *s = e->model->switching;
 	int size = e->step->layout.size, count = g->impacts > 0 ? g->impacts : 1;
-	double *speed = ARRAY(double, (size_t)count * (size_t)size);
+	double *speed = ARRAY(double, (size_t)count * (size_t)size), *back = ARRAY(double, (size_t)count * (size_t)size);
 	const char **note = ARRAY(const char *, (size_t)count);
 	note[0] = "none";
 	say(e, "\n"
@@ -118,13 +118,19 @@ static void emit_impacts(const struct emitter *e, const struct guards *g)
 		    impact->rest, impact->jump, impact->still, shortest(impact->restitution));
 		note[i] = impact->rest < 0 ? "none"
 					   : form_text(e->step->shown->model, s->impact[i].speed);
-		for (int j = 0; j < size; j++)
+		for (int j = 0; j < size; j++) {
 			speed[i * size + j] = impact->speed[j];
+			back[i * size + j] = impact->back[j];
+		}
 	}
 	say(e, "%s};\n"
 	       "static const double $o_speed[%d][%d] = {  /* of what bounces */\n",
 	    g->impacts ? "" : "    { 0, 0, 0, -1, -1, -1, 0.0 }\n", count, size);
 	emit_number_rows(e, count, size, speed, note);
+	say(e, "};\n"
+	       "static const double $o_back[%d][%d] = {  /* times how far its expression is beyond: onto the guard */\n",
+	    count, size);
+	emit_number_rows(e, count, size, back, note);
 	say(e, "};\n");
 }
 
@@ -141,7 +147,8 @@ void emit_guards(const struct emitter *e, const struct pieces *pieces)
 	       "    $o_slopes[0][0], $o_pieces[0][0], $o_lean[0][0],\n"
 	       "    $o_first, $o_guard, $o_limit, $o_hold,\n"
 	       "    $o_gate[0], $o_gate_lean[0], $o_gate_sag[0], $o_gate_sway[0],\n"
-	       "    $o_sets, $o_held, $o_value[0], %d, $o_impact, $o_speed[0], %d, $N_MAX_EVENTS, %d\n"
+	       "    $o_sets, $o_held, $o_value[0], %d, $o_impact, $o_speed[0], $o_back[0], %d, $N_MAX_EVENTS, %d\n"
 	       "};\n",
-	    e->step->layout.size, e->model->switching->expressions, g.impacts, e->step->series.degree, MAX_SPLITS);
+	    e->step->layout.size, e->model->switching->expressions, g.impacts, e->step->series.degree,
+	    max_splits(e->model));
 }

@@ -456,7 +456,7 @@ static void add_releases(const struct switching *s, int index, const struct stuc
 	const struct form *up = NEW(struct form), *down = up;
 	if (stuck->impact) {                    /* it presses, and does not pull */
 		add_release(region, stuck->expression, !stuck->impact->upward,
-			    stuck->impact->upward ? form_difference(NEW(struct form), stuck->force) : stuck->force);
+			    form_difference(NEW(struct form), stuck->force));
 		return;
 	}
 	if (stuck->atom) {

@@ -78,7 +78,7 @@ static void collect_impact(void *context)
 	const struct when *when = work->when;
 	struct impact *impact = work->impact;
 	struct node *const *side = when->guard->child;
-	mpq_inits(impact->restitution, impact->at, NULL);
+	mpq_inits(impact->restitution, impact->at, impact->factor, NULL);
 	impact->when = when;
 	if (when->restitution)
 		check_stop(b, when, impact->restitution);
@@ -390,6 +390,14 @@ int rest_of(const struct switching *s, const struct impact *impact)
 		if (is_stick(e, k) && mpq_equal(e->at[k], impact->at))
 			return k;
 	return -1;
+}
+
+bool has_bounces(const struct model *model)
+{
+	bool any = false;
+	for (int i = 0; i < model->impacts; i++)
+		any = any || model->impact[i].bounces;
+	return any;
 }
 
 bool has_events(const struct switching *s)

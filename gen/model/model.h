@@ -275,7 +275,7 @@ struct impact {                     /* of `when`, or of a stop */
 	struct jump *still;         /* of a bounce: its jumps if e were 0 */
 	struct output *speed_row;
 	int expression;             /* its guard is a multiple of this one, less a breakpoint, */
-	mpq_t at;
+	mpq_t at, factor;           /* guard = factor (expression - at) */
 	bool upward;                /* which it passes this way */
 };
 /* friction(v, F): v is an expression less a breakpoint that stands there twice, with the interval of sticking between */
@@ -490,6 +490,7 @@ int  impact_resting(const struct switching *s, int expression, int interval);  /
 int  rest_of(const struct switching *s, const struct impact *impact); /* the interval in which it rests; -1: none */
 void place_impact_loads(struct building *b, const struct switching *s);
 void build_impact_rows(struct building *b, struct switching *s);
+bool has_bounces(const struct model *model);
 bool has_events(const struct switching *s);                 /* each region has its own: friction, impacts */
 _Noreturn void tell_no_impacts(const struct building *b);   /* why a scheme cannot treat them */
 

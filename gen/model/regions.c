@@ -347,6 +347,9 @@ static void meet_impacts(struct looking *l)
 		mpq_div(impact->at, impact->at, factor);
 		mpq_neg(impact->at, impact->at);
 		impact->upward = (mpq_sgn(factor) > 0) == impact->rising;
+		mpq_set(impact->factor, factor);
+		if (!impact->rising)
+			mpq_neg(impact->factor, factor);
 		if (impact->bounces)
 			add_stick(l, &l->s->expression[impact->expression], impact->at);
 		else

@@ -3,6 +3,7 @@
  * expression that comes to an end of its interval, or of a force that comes to what friction can hold. */
 #include "step/step.h"
 
+#include <math.h>
 #include <string.h>
 
 /* The index of a row of a branch; equal ones are one */
@@ -125,10 +126,18 @@ static void strike(const struct step *step, struct guards *g, const struct impac
 		new.breakpoint++;               /* the upper of two */
 	new.jump = set_of_jumps(step, g, impact->jumps, impact->jump);
 	new.speed = ARRAY(double, (size_t)step->layout.size);
+	new.back = ARRAY(double, (size_t)step->layout.size);
+	mpq_t part;
+	mpq_init(part);
 	if (impact->bounces) {
 		new.still = set_of_jumps(step, g, impact->jumps, impact->still);
 		row_over_x(step, impact->speed_row, new.speed);
+		for (int j = 0; j < step->model->n; j++) {
+			mpq_mul(part, impact->direction[j], impact->factor);
+			new.back[j] = round_rational(part);
+		}
 	}
+	mpq_clear(part);
 	g->impact[g->impacts++] = new;
 }
 
@@ -169,4 +178,29 @@ struct guards guards_of(const struct step *step, const struct pieces *pieces)
 		strike(step, &g, &s->impact[i]);
 	bound_rows_of_guards(step, pieces, &g);
 	return g;
+}
+
+/* From h down to 2^-20 h, where they rest, bounces become shorter by e each. */
+static int bounces_in_step(const struct model *model)
+{
+	enum { MOST = 480, SHORTER = 20 };
+	int most = 0;
+	for (int i = 0; i < model->impacts; i++) {
+		double e = mpq_get_d(model->impact[i].restitution);
+		if (!model->impact[i].bounces || e <= 0 || e >= 1)
+			continue;
+		double count = ceil(SHORTER * log(2) / -log(e));
+		most = count > most ? (int)fmin(count, MOST) : most;
+	}
+	return most;
+}
+
+int max_events(const struct model *model)
+{
+	return MAX_EVENTS + bounces_in_step(model);
+}
+
+int max_splits(const struct model *model)
+{
+	return MAX_SPLITS + 16 * bounces_in_step(model);
 }

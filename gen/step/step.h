@@ -463,6 +463,7 @@ struct struck {                     /* an impact */
 	int rest;                   /* the interval in which it rests; -1: it is no bounce */
 	int jump, still;            /* sets of assignments: its jump; that of a bounce without restitution */
 	double *speed;              /* of its guard, as a row over x */
+	double *back;               /* over x: so much times how far the expression is beyond, and it is on its guard */
 	double restitution;
 };
 struct held_state { int state; double *value; };            /* x[state] = value . x */
@@ -480,6 +481,9 @@ struct guards {
 	struct struck *impact;
 };
 struct guards guards_of(const struct step *step, const struct pieces *pieces);
+/* of one step: MAX_EVENTS and MAX_SPLITS, and room for the bounces before a contact rests */
+int max_events(const struct model *model);
+int max_splits(const struct model *model);
 
 /* ---- peaks.c: outputs of which the largest size is asked for ---- */
 

@@ -47,7 +47,7 @@ static void bounces(void)
 
 static void oscillator(void)
 {
-	const double w = 2.8, e = 0.7, T = 2 * 3.14159265358979323846 / w, C = 1 / (1 - w * w);
+	const double w = 2.2, e = 0.7, T = 2 * 3.14159265358979323846 / w, C = 1 / (1 - w * w);
 	double phase = atan(-tan(T / 2) / w * (1 - e) / (1 + e)), worst = 0, y[2];
 	double A = -C * cos(phase);
 	if (A * tan(T / 2) - C * w * sin(phase) > 0) { /* away from the stop */
@@ -155,7 +155,7 @@ static void energy(void)
 	}
 	struck = clatter_crossed(&s);
 	ok(grown <= 1e-15, "clatter: energy grows by %.3g at most", grown);
-	ok(struck > 100, "clatter: %d impacts", (int)struck);
+	ok(struck > 40, "clatter: %d impacts", (int)struck);
 	close_to(clatter_status(&s), 0, 0, "clatter: status");
 }
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* truth STOPS FRICTIONS IMPACTS SEED SECONDS SPEC FOUND: a random scene with at most so many contacts of each kind, as
  * a spec, and how it moves: lines `event TIME CONTACT FROM TO` in order, `end q1 ... q1' ...`. Status 2: this scene
- * decides nothing. Bounces that would be over within 2^-24 of a step are those of a contact that rests. */
+ * decides nothing. Bounces that would be over within 2^-20 of a step are those of a contact that rests. */
 #include "truth.h"
 
 #include <stdlib.h>
@@ -32,7 +32,7 @@ int main(int count, char **argument)
 	if (!spec || !to)
 		return 1;
 	scene_write(&s, spec);
-	truth_run(&s, atof(argument[5]), (double)s.step / 1000 / (1 << 24), &found);
+	truth_run(&s, atof(argument[5]), (double)s.step / 1000 / (1 << 20), &found);
 	if (found.doubtful)
 		fprintf(to, "doubtful: %s\n", found.doubt);
 	write_found(&s, to);
