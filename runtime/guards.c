@@ -93,7 +93,7 @@ static real excess(const pl_guards *m, const pl_contact *c, const walk *w, int b
     const real b = w->at[breakpoint];
     real e;
     pl_multiply(1, m->size, row, x, &e);
-    *noise = noise_of(sizes(m->size, row, x) + 3 * sizes(m->size, tangent, x) + magnitude(b));
+    *noise = noise_of(sizes(m->size, row, x) + 3 * sizes(m->size, tangent, x) + magnitude(b) + m->play[w->i]);
     return e - b;
 }
 
@@ -142,7 +142,7 @@ static real speed_of(const pl_guards *m, int k, const real *x)
     const real *row = m->speed + (ptrdiff_t)k * m->size;
     real speed;
     pl_multiply(1, m->size, row, x, &speed);
-    return magnitude(speed) <= noise_of(sizes(m->size, row, x)) ? 0 : speed;
+    return magnitude(speed) <= noise_of(sizes(m->size, row, x) + (real)m->impact[k].play) ? 0 : speed;
 }
 
 /* Whether a bounce is on its guard, flying or at rest */
@@ -279,7 +279,8 @@ static int is_held(const pl_guards *m, int region, int expression, const real *x
         if (g->expression != expression)
             continue;
         pl_multiply(1, n, row, x, &e);
-        noise = noise_of(sizes(n, row, x) + 3 * sizes(n, tangent, x) + magnitude(m->limit[k]));
+        noise = noise_of(sizes(n, row, x) + 3 * sizes(n, tangent, x) + magnitude(m->limit[k]) +
+                         m->gate_play[g->row]);
         if (e - m->limit[k] > noise)
             return 0;
         if (e - m->limit[k] >= -noise && heading(n, matrix_of(m->A, m, m->matrix[region]), row, x, work) > 0)
@@ -562,9 +563,10 @@ void pl_guards_advance(const pl_guards *m, real tau, real *x, pl_contact *c, pl_
     }
     while (left > REST * m->h) { /* nothing for what rounding leaves */
         const real longest = m->h / (real)((uint32_t)1 << m->halvings[c->matrix]);
-        const int whole = left > longest * (1 - REST);
-        const real dt = whole ? longest : left;
+        int whole = left > longest * (1 - REST);
+        const real dt = shortened(m, c, x, whole ? longest : left, rest);
         event first;
+        whole = whole && dt >= longest;
         if (whole) {
             pl_multiply(n, n, matrix_of(m->Phi, m, c->matrix), x, y);
             assign(m, m->hold[c->region], y, rest);

@@ -533,6 +533,7 @@ typedef struct pl_impact {
     int rest;                           /* that interval; -1: it is no bounce */
     int jump, still;                    /* sets of assignments: its jump; of a bounce that with restitution 0 */
     double restitution;
+    double play;                        /* the sizes of the factors of cos and sin in its speed */
 } pl_impact;
 
 typedef struct pl_guards {
@@ -555,6 +556,9 @@ typedef struct pl_guards {
     const int *hold;
     /* Rows of guards, of each: d/3 times its slope; bounds as for pl_switching.  All rows x size */
     const double *gate, *gate_tangent, *chord_error, *cubic_error;
+    /* Of each expression and each row of guards: the sizes of its factors of cos and sin, to tell rounding from what
+     * is more where these are evaluated anew */
+    const double *play, *gate_play;
     /* Assignments: x[state] = value . x, those of a set from the same x: set[k] to set[k + 1] - 1 */
     const int *set, *state;
     const double *value;
@@ -603,7 +607,7 @@ typedef struct pl_guardsf {
     const pl_guard *guard;
     const float *limit;
     const int *hold;
-    const float *gate, *gate_tangent, *chord_error, *cubic_error;
+    const float *gate, *gate_tangent, *chord_error, *cubic_error, *play, *gate_play;
     const int *set, *state;
     const float *value;
     int impacts;

@@ -271,6 +271,10 @@ void banner_regions(const struct emitter *e)
 	       " * every constant is its closed form, correctly rounded; "
 	       "crossings inside a step are found in order, to rounding.\n", possible_regions(s), s->systems);
 	banner_expressions(e);
+	for (int i = 0; i < s->frictions; i++)
+		say(e, " *     friction %d: %s; sticks in interval %d of expression %d\n", i,
+		    text_between(s->friction[i].atom->node->start, s->friction[i].atom->node->end),
+		    stick_of(s, &s->friction[i]), s->friction[i].expression);
 	banner_impacts(e);
 	if (s->sharing)
 		say(e, " * Coordinates move as a whole: %d independent parts have their regions together.\n",

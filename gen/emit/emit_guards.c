@@ -9,6 +9,16 @@ static void emit_numbers(const struct emitter *e, int count, const int *number)
 		say(e, "%s%d", i == 0 ? "" : i % 20 ? ", " : ",\n    ", number[i]);
 }
 
+static void emit_list(const struct emitter *e, const char *name, const char *note, int count, const double *number)
+{
+	say(e, "\n"
+	       "static const double $o_%s[%d] = {  /* %s */\n"
+	       "    ", name, count, note);
+	for (int i = 0; i < count; i++)
+		say(e, "%s%s", i == 0 ? "" : i % 8 ? ", " : ",\n    ", shortest(number[i]));
+	say(e, "\n};\n");
+}
+
 static void emit_guard_list(const struct emitter *e, const struct guards *g)
 {
 	const struct switching *s = e->model->switching;
@@ -24,13 +34,13 @@ static void emit_guard_list(const struct emitter *e, const struct guards *g)
 	for (int i = 0; i < g->guards; i++)
 		say(e, "    { %d, %d, %d, %d, %d, %d },\n", g->guard[i].row, g->guard[i].expression,
 		    g->guard[i].breakpoint, g->guard[i].upward, g->guard[i].leads, g->guard[i].impact);
-	say(e, "};\n"
-	       "\n"
-	       "static const double $o_limit[%d] = {  /* of each guard */\n"
-	       "    ", g->guards);
+	double *limit = ARRAY(double, (size_t)g->guards);
 	for (int i = 0; i < g->guards; i++)
-		say(e, "%s%s", i == 0 ? "" : i % 8 ? ", " : ",\n    ", shortest(g->guard[i].limit));
-	say(e, "\n};\n");
+		limit[i] = g->guard[i].limit;
+	say(e, "};\n");
+	emit_list(e, "limit", "of each guard", g->guards, limit);
+	emit_list(e, "play", "factors of cos and sin in each expression", s->expressions, g->play);
+	emit_list(e, "gate_play", "in each row of guards", g->rows, g->row_play);
 }
 
 /* Of each row: an expression, or what it takes to hold one */
@@ -111,11 +121,12 @@ static void emit_impacts(const struct emitter *e, const struct guards *g)
 	note[0] = "none";
 	say(e, "\n"
 	       "static const pl_impact $o_impact[%d] = {"
-	       "  /* expression, breakpoint, upward, rest, jump, still, restitution */\n", count);
+	       "  /* expression, breakpoint, upward, rest, jump, still, restitution, play */\n", count);
 	for (int i = 0; i < g->impacts; i++) {
 		const struct struck *impact = &g->impact[i];
-		say(e, "    { %d, %d, %d, %d, %d, %d, %s },\n", impact->expression, impact->breakpoint, impact->upward,
-		    impact->rest, impact->jump, impact->still, shortest(impact->restitution));
+		say(e, "    { %d, %d, %d, %d, %d, %d, %s, %s },\n", impact->expression, impact->breakpoint, impact->upward,
+		    impact->rest, impact->jump, impact->still, shortest(impact->restitution),
+		    shortest(impact->play));
 		note[i] = impact->rest < 0 ? "none"
 					   : form_text(e->step->shown->model, s->impact[i].speed);
 		for (int j = 0; j < size; j++) {
@@ -125,7 +136,7 @@ static void emit_impacts(const struct emitter *e, const struct guards *g)
 	}
 	say(e, "%s};\n"
 	       "static const double $o_speed[%d][%d] = {  /* of what bounces */\n",
-	    g->impacts ? "" : "    { 0, 0, 0, -1, -1, -1, 0.0 }\n", count, size);
+	    g->impacts ? "" : "    { 0, 0, 0, -1, -1, -1, 0.0, 0.0 }\n", count, size);
 	emit_number_rows(e, count, size, speed, note);
 	say(e, "};\n"
 	       "static const double $o_back[%d][%d] = {  /* times how far its expression is beyond: onto the guard */\n",
@@ -146,9 +157,38 @@ void emit_guards(const struct emitter *e, const struct pieces *pieces)
 	       "    %d, $N_H, %d, $o_row[0], $o_breaks, $o_breakpoint, $o_matrix, $o_halvings,\n"
 	       "    $o_slopes[0][0], $o_pieces[0][0], $o_lean[0][0],\n"
 	       "    $o_first, $o_guard, $o_limit, $o_hold,\n"
-	       "    $o_gate[0], $o_gate_lean[0], $o_gate_sag[0], $o_gate_sway[0],\n"
+	       "    $o_gate[0], $o_gate_lean[0], $o_gate_sag[0], $o_gate_sway[0], $o_play, $o_gate_play,\n"
 	       "    $o_sets, $o_held, $o_value[0], %d, $o_impact, $o_speed[0], $o_back[0], %d, $N_MAX_EVENTS, %d\n"
 	       "};\n",
 	    e->step->layout.size, e->model->switching->expressions, g.impacts, e->step->series.degree,
 	    max_splits(e->model));
+}
+
+void emit_grip(const struct emitter *e, const bool *needed)
+{
+	const struct switching *s = e->model->switching;
+	int size = e->step->layout.size;
+	const double *grip = grips_of(e->step);
+	const char **name = ARRAY(const char *, (size_t)s->frictions);
+	for (int i = 0; i < s->frictions; i++)
+		name[i] = text_between(s->friction[i].atom->node->start, s->friction[i].atom->node->end);
+	say(e, "\n"
+	       "static const double $n_grips[%d][%d][%d] = {  /* of each region: what friction carries */\n",
+	    s->regions, s->frictions, size);
+	for (int r = 0; r < s->regions; r++) {
+		say(e, "  {\n");
+		emit_number_rows(e, s->frictions, size, grip + r * s->frictions * size, name);
+		say(e, "  },\n");
+	}
+	say(e, "};\n"
+	       "\n"
+	       "static double $n_grip(const $n *s, int which)\n"
+	       "{\n"
+	       "    double x[%d], force;\n"
+	       "    int i;\n", size);
+	emit_load_states(e, needed, false);
+	emit_region_vector(e, false);
+	say(e, "    pl_multiply(1, %d, $n_grips[s->contact.region][which], x, &force);\n"
+	       "    return force;\n"
+	       "}\n", size);
 }

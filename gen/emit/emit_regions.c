@@ -217,6 +217,8 @@ void emit_region_start(const struct emitter *e)
 	emit_region_vector(e, false);
 	say(e, "    %s_start(&$n_switching, x, &s->contact, work);\n"
 	       "}\n", search_of(e));
+	if (regions_of(e)->felt)
+		emit_grip(e, needed_loads(e));
 }
 
 static void emit_region_questions(const struct emitter *e)

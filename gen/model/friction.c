@@ -65,6 +65,14 @@ bool is_stick(const struct expression *e, int interval)
 	return interval > 0 && interval < e->breaks && mpq_equal(e->at[interval - 1], e->at[interval]);
 }
 
+int friction_of(const struct switching *s, const struct atom *a)
+{
+	int index = s->frictions - 1;
+	while (index >= 0 && s->friction[index].atom != a)
+		index--;
+	return index;
+}
+
 int stick_of(const struct switching *s, const struct friction *f)
 {
 	const struct expression *e = &s->expression[f->expression];
@@ -112,8 +120,11 @@ static void slip(const struct switching *s, int index)
 		const struct friction *f = &s->friction[i];
 		int side = interval_of(s, index, f->expression) - stick_of(s, f);
 		mpq_set_si(sign, side < 0 ? -mpq_sgn(f->factor) : mpq_sgn(f->factor), 1);
-		if (side != 0)
+		if (side != 0) {
 			put_in(s, region, f, sign);
+			region->carried[f->atom->index] =
+				form_scale(region->force[f->atom->index] ? region->force[f->atom->index] : form_number(0), sign);
+		}
 	}
 	mpq_clear(sign);
 }
@@ -126,6 +137,7 @@ struct stuck {                      /* one expression that is held, in one regio
 	const struct impact *impact; /* that rests there; NULL: it is friction */
 	struct form *place;         /* of that: 0 too */
 	mpq_t *direction;           /* per row: of its force */
+	mpq_t *share;               /* per friction: what it carries of that force */
 	struct form *velocity, *rate, *force;
 	int pivot;                  /* the row that is solved for the force */
 };
@@ -187,6 +199,9 @@ static void find_direction(const struct switching *s, int index, int expression,
 		if (at == base)
 			mpq_set_ui(ratio, 1, 1);
 		add_direction(s, region, f, ratio, stuck);
+		mpq_set(stuck->share[i], ratio);
+		if (mpq_sgn(f->factor) < 0)
+			mpq_neg(stuck->share[i], ratio);
 	}
 	mpq_clear(ratio);
 }
@@ -279,7 +294,8 @@ static struct stuck *find_stuck(struct building *b, const struct switching *s, i
 		if (!is_stick(expression, interval))
 			continue;
 		struct stuck *new = &stuck[(*count)++];
-		*new = (struct stuck){ .expression = e, .direction = rationals((size_t)s->rows), .pivot = -1 };
+		*new = (struct stuck){ .expression = e, .direction = rationals((size_t)s->rows),
+				       .share = rationals((size_t)s->frictions), .pivot = -1 };
 		new->velocity = form_difference(expression->form, form_constant(expression->at[interval]));
 		new->rate = rate_of_form(b, new->velocity);
 		int impact = impact_resting(s, e, interval);
@@ -497,6 +513,10 @@ static void stick(struct building *b, const struct switching *s, int index)
 		int row = s->row[stuck[k].pivot];
 		stuck[k].force = form_difference(NEW(struct form), region->residual[row]);
 		region->residual[row] = stuck[k].rate;
+		for (int i = 0; i < s->frictions; i++)
+			if (mpq_sgn(stuck[k].share[i]) != 0)
+				region->carried[s->friction[i].atom->index] =
+					form_scale(stuck[k].force, stuck[k].share[i]);
 	}
 	for (int k = 0; k < count; k++)
 		add_releases(s, index, &stuck[k]);
@@ -541,6 +561,40 @@ static void check_answer(struct building *b, const struct switching *s, const st
 		      "this friction drives what slides instead of holding it");
 }
 
+/* What outputs read of it */
+static void feel(const struct building *b, struct switching *s, bool *seen, const struct form *form)
+{
+	for (int i = 0; i < form->terms; i++) {
+		const struct atom *a = form->term[i].basis.atom;
+		if (!a || seen[a->index])
+			continue;
+		seen[a->index] = true;
+		bool friction = a->kind == ATOM_CALL && a->function == FN_FRICTION;
+		if (friction && friction_of(s, a) < 0)
+			error(a->node->at, "an output repeats it as an equation has it", "no equation has this friction");
+		s->felt = s->felt || friction;
+		for (int k = 0; k < a->operands && !friction; k++)
+			feel(b, s, seen, a->operand[k]);
+	}
+}
+
+static void build_grips(struct building *b, struct switching *s)
+{
+	bool *seen = ARRAY(bool, (size_t)atoms_count(b->collector.atoms));
+	for (int i = 0; i < b->model->outputs; i++)
+		if (b->model->output[i].left)
+			feel(b, s, seen, b->model->output[i].left);
+	for (int r = 0; r < s->regions && s->felt; r++) {
+		struct region *region = &s->region[r];
+		region->grip = ARRAY(struct output *, (size_t)s->frictions);
+		for (int i = 0; i < s->frictions && region->possible; i++) {
+			struct form *carried = region->carried[s->friction[i].atom->index];
+			if (carried)
+				region->grip[i] = row_in_system(b, &s->system[region->system], carried);
+		}
+	}
+}
+
 void build_friction(struct building *b, struct switching *s)
 {
 	int column;
@@ -560,6 +614,7 @@ void build_friction(struct building *b, struct switching *s)
 		for (int k = 0; k < region->releases; k++)
 			region->release[k].row = row_in_system(b, system, region->release[k].form);
 	}
+	build_grips(b, s);
 }
 
 bool same_friction(const struct region *a, const struct region *b)

@@ -301,6 +301,8 @@ struct region {                     /* one interval for each expression */
 	int system;                 /* index of its equations; equal ones are one */
 	struct form **residual;     /* per row: linear; friction stands in it as an atom until its force is put in */
 	struct form **force, **rest; /* per friction: F, and what it holds up to at rest; NULL: none acts here */
+	struct form **carried;      /* per friction's atom: what it carries, as it stands on the left side */
+	struct output **grip;       /* per friction: the same as a row; NULL: nothing */
 	int holds, releases;
 	struct hold *hold;
 	struct release *release;
@@ -319,6 +321,7 @@ struct switching {
 	struct friction *friction;
 	int impacts;                /* the model's */
 	struct impact *impact;
+	bool felt;                  /* an output reads what it carries */
 	int sharing;                /* parts that have these regions together, since some move as a whole */
 };
 /* Coordinates that nothing outside of them acts on, in no region: they have regions of their own, and cross breakpoints
@@ -502,6 +505,7 @@ bool is_stick(const struct expression *e, int interval);    /* between two equal
 struct form *rate_of_form(struct building *b, const struct form *form); /* its derivative with respect to time */
 int  stick_of(const struct switching *s, const struct friction *f); /* the interval in which it sticks */
 /* puts in the forces of what slips, and the constraints of what sticks */
+int  friction_of(const struct switching *s, const struct atom *a); /* its index; -1: no equation has it */
 void resolve_friction(struct building *b, struct switching *s);
 void build_friction(struct building *b, struct switching *s); /* rows of holds and releases; after all systems */
 bool same_friction(const struct region *a, const struct region *b); /* what sticks is held and released alike */

@@ -203,26 +203,24 @@ static struct form *force_here(struct looking *l, const struct node *node, struc
 	return positive || sign_here(l, node, force, form_number(0)) >= 0 ? force : form_number(0);
 }
 
-static int friction_of_atom(struct looking *l, const struct atom *a)
+static int add_friction(struct looking *l, const struct atom *a)
 {
 	struct switching *s = l->s;
-	int i = 0;
-	while (i < s->frictions && s->friction[i].atom != a)
-		i++;
-	if (i < s->frictions)
-		return i;
-	ENLARGE(s->friction, (size_t)i + 1);
+	int known = friction_of(s, a);
+	if (known >= 0)
+		return known;
+	ENLARGE(s->friction, (size_t)s->frictions + 1);
 	struct friction *f = &s->friction[s->frictions++];
 	*f = (struct friction){ .atom = a };
 	mpq_inits(f->at, f->factor, NULL);
-	return i;
+	return s->frictions - 1;
 }
 
 /* It stands for itself: what it is depends on the whole region */
 static struct form *friction_here(struct looking *l, const struct atom *a, struct form *const *x)
 {
 	struct collector *c = &l->b->collector;
-	int index = friction_of_atom(l, a);
+	int index = add_friction(l, a);
 	struct form plain = { 0, x[0]->term, 0 };
 	while (plain.terms < x[0]->terms && x[0]->term[plain.terms].basis.kind <= BASIS_PI)
 		plain.terms++;
@@ -383,6 +381,7 @@ static bool look(struct building *b, struct switching *s, int *known)
 		s->region[r].residual = ARRAY(struct form *, (size_t)b->model->n);
 		s->region[r].force = ARRAY(struct form *, (size_t)atoms);
 		s->region[r].rest = ARRAY(struct form *, (size_t)atoms);
+		s->region[r].carried = ARRAY(struct form *, (size_t)atoms);
 		for (int k = 0; k < s->rows; k++) {
 			l.row = s->row[k];
 			s->region[r].residual[l.row] = form_here(&l, b->snapshot->residual[l.row].form);

@@ -1233,8 +1233,8 @@ static struct node *friction_between(const struct element *element)
 {
 	struct node *call = node_new(NODE_CALL, element->value->at), *slide = velocity_of(element->from);
 	call->function = FN_FRICTION;
-	call->start = element->value->start;
-	call->end = element->value->end;
+	call->start = element->at;
+	call->end = element->end;
 	if (element->to) {
 		struct node *sum = node_new(NODE_SUM, element->from->at);
 		sum->start = element->from->start;

@@ -219,6 +219,18 @@ static long swift_multiplications(const struct step *step)
 	return step->swift ? size * size + MOST_LOOKS * (bounds + moves) : 0;
 }
 
+/* Of what regions with friction have beside these, less two of them that they do not */
+static long guard_bytes(const struct step *step)
+{
+	const struct switching *s = step->model->switching;
+	struct pieces pieces = pieces_of(step);
+	struct guards g = guards_of(step, &pieces);
+	long size = step->layout.size, grips = s->felt ? 8 * size * s->regions * s->frictions : 0;
+	return 8 * (g.rows * (4 * size + 1) + g.guards + g.assignments * size + s->expressions -
+		    2 * s->systems * s->expressions * size) +
+	       4 * (6 * g.guards + 2 * s->regions + 1 + g.assignments + g.sets + 1) + grips;
+}
+
 /* Of the tables of a step, or of a part that is stepped alone */
 static long bytes_of_regions(const struct step *step)
 {
@@ -226,7 +238,7 @@ static long bytes_of_regions(const struct step *step)
 	long size = step->layout.size, matrices = s->systems;
 	long bytes = 8 * (s->expressions * size + matrices * (2 * size * size + 3 * s->expressions * size)) +
 		     4 * (s->regions + s->expressions + matrices);
-	return bytes + (step->swift ? swift_bytes(step) : 0);
+	return bytes + (step->swift ? swift_bytes(step) : 0) + (s->frictions > 0 ? guard_bytes(step) : 0);
 }
 
 /* The most multiplications of a step: every piece of it by a Taylor polynomial, all events and splits used */
@@ -251,6 +263,16 @@ static void person_expressions(FILE *to, const struct step *step)
 		for (int k = 0; k < s->expression[i].breaks; k++)
 			fprintf(to, "%s %s", k ? "," : "", readable_text(s->expression[i].at[k]));
 		fputc('\n', to);
+	}
+}
+
+/* What rubs, and where it sticks: its expression, and the interval of that */
+static void person_frictions(FILE *to, const struct switching *s)
+{
+	for (int i = 0; i < s->frictions; i++) {
+		const struct node *node = s->friction[i].atom->node;
+		fprintf(to, "    friction %d: %s; sticks in interval %d of expression %d\n", i,
+			text_between(node->start, node->end), stick_of(s, &s->friction[i]), s->friction[i].expression);
 	}
 }
 
@@ -281,6 +303,7 @@ static void person_regions(FILE *to, const struct step *step)
 		"is correctly rounded.\n",
 		possible_regions(s), s->systems);
 	person_expressions(to, step);
+	person_frictions(to, s);
 	if (s->sharing)
 		fprintf(to, "Coordinates move as a whole: %d independent parts have their regions together.\n",
 			s->sharing);
@@ -676,6 +699,15 @@ static void json_expressions(FILE *to, const struct step *step)
 	fputs("],\n", to);
 }
 
+static void json_frictions(FILE *to, const struct switching *s)
+{
+	fputs("  \"frictions\": [", to);
+	for (int i = 0; i < s->frictions; i++)
+		fprintf(to, "%s{\"expression\": %d, \"sticks\": %d}", i ? ", " : "", s->friction[i].expression,
+			stick_of(s, &s->friction[i]));
+	fputs("],\n", to);
+}
+
 static void json_region_list(FILE *to, const struct switching *s)
 {
 	bool first = true;
@@ -716,6 +748,8 @@ static void json_regions(FILE *to, const struct step *step)
 {
 	const struct switching *s = step->shown->model->switching;
 	json_expressions(to, step);
+	if (s->frictions > 0)
+		json_frictions(to, s);
 	if (!s->parts) {
 		json_region_list(to, s);
 		return;

@@ -137,6 +137,7 @@ static void strike(const struct step *step, struct guards *g, const struct impac
 			new.back[j] = round_rational(part);
 		}
 	}
+	new.play = size_of_bounded(step, new.speed);
 	mpq_clear(part);
 	g->impact[g->impacts++] = new;
 }
@@ -154,6 +155,18 @@ static void bound_rows_of_guards(const struct step *step, const struct pieces *p
 		bounds_of_rows(step, pieces, g->branch[from], to - from, g->row + at, g->slope + at, g->second + at,
 			       g->fourth + at);
 	}
+}
+
+double *grips_of(const struct step *step)
+{
+	const struct switching *s = step->model->switching;
+	size_t size = (size_t)step->layout.size, count = (size_t)s->frictions;
+	double *grip = ARRAY(double, (size_t)s->regions * count * size);
+	for (int r = 0; r < s->regions; r++)
+		for (int i = 0; i < s->frictions; i++)
+			if (s->region[r].grip[i])
+				row_over_x(step, s->region[r].grip[i], grip + ((size_t)r * count + (size_t)i) * size);
+	return grip;
 }
 
 struct guards guards_of(const struct step *step, const struct pieces *pieces)
@@ -177,6 +190,12 @@ struct guards guards_of(const struct step *step, const struct pieces *pieces)
 	for (int i = 0; i < s->impacts; i++)
 		strike(step, &g, &s->impact[i]);
 	bound_rows_of_guards(step, pieces, &g);
+	g.play = ARRAY(double, (size_t)s->expressions);
+	g.row_play = ARRAY(double, (size_t)g.rows);
+	for (int e = 0; e < s->expressions; e++)
+		g.play[e] = size_of_bounded(step, pieces->row + e * step->layout.size);
+	for (int i = 0; i < g.rows; i++)
+		g.row_play[i] = size_of_bounded(step, g.row + i * step->layout.size);
 	return g;
 }
 

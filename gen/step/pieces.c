@@ -322,6 +322,16 @@ static bool *bounded_entries(const struct step *step)
 	return bounded;
 }
 
+double size_of_bounded(const struct step *step, const double *row)
+{
+	bool *bounded = bounded_entries(step);
+	double size = 0;
+	for (int j = 0; j < step->layout.size; j++)
+		size += bounded[j] ? fabs(row[j]) : 0;
+	discard(bounded);
+	return size;
+}
+
 /* What such loads add to a bound is a number, which is added to `still`; their places become 0. */
 static void fold_loads(const struct step *step, double *bound, double *still)
 {

@@ -440,6 +440,8 @@ struct pieces {
 };
 #define OPEN_END 0x1p1000           /* of an interval that no breakpoint ends */
 struct pieces pieces_of(const struct step *step);
+/* Sum of the sizes of a row's factors of loads that are never above 1 */
+double size_of_bounded(const struct step *step, const double *row);
 /* Of rows over x in one branch's system: d/3 times the slope, and bounds as in struct region_piece; rows x size each */
 void bounds_of_rows(const struct step *step, const struct pieces *pieces, int branch, int rows, const double *row,
 		    double *slope, double *second, double *fourth);
@@ -464,7 +466,7 @@ struct struck {                     /* an impact */
 	int jump, still;            /* sets of assignments: its jump; that of a bounce without restitution */
 	double *speed;              /* of its guard, as a row over x */
 	double *back;               /* over x: so much times how far the expression is beyond, and it is on its guard */
-	double restitution;
+	double restitution, play;   /* play: the sizes of its speed's factors of cos and sin */
 };
 struct held_state { int state; double *value; };            /* x[state] = value . x */
 struct guards {
@@ -473,6 +475,7 @@ struct guards {
 	struct guard *guard;
 	int rows, *branch;          /* of each row: whose it is */
 	double *row, *slope, *second, *fourth; /* rows x size */
+	double *play, *row_play;    /* per expression, per row: the sizes of its factors of cos and sin */
 	int sets, *set;             /* per set, and one more: the first of its assignments */
 	int *hold;                  /* per region: the set that holds its states; -1: none */
 	int assignments;
@@ -484,6 +487,7 @@ struct guards guards_of(const struct step *step, const struct pieces *pieces);
 /* of one step: MAX_EVENTS and MAX_SPLITS, and room for the bounces before a contact rests */
 int max_events(const struct model *model);
 int max_splits(const struct model *model);
+double *grips_of(const struct step *step); /* what friction carries: regions x frictions x size */
 
 /* ---- peaks.c: outputs of which the largest size is asked for ---- */
 

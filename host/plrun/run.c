@@ -81,7 +81,9 @@ static char *status_text(int status, double t, bool single)
 		text = format("%s the step needed more substeps than its bound", text);
 	if (status & PL_INACCURATE)
 		text = format("%s the last terms of the step are above the tolerance", text);
-	if (status & ~(PL_TOO_MANY_EVENTS | PL_NOT_FINITE | PL_TOO_MANY_STEPS | PL_INACCURATE))
+	if (status & PL_UNDECIDED)
+		text = format("%s what is to stick and what is to slip at an event had no answer", text);
+	if (status & ~(PL_UNDECIDED | PL_TOO_MANY_EVENTS | PL_NOT_FINITE | PL_TOO_MANY_STEPS | PL_INACCURATE))
 		text = format("%s status %d", text, status);
 	return text;
 }

@@ -1,9 +1,9 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 #
-#     random.sh PLGEN RANDOM_SPECS KIND FIRST COUNT NAME_variants.c NAME_variants.h
+#     random.sh PLGEN RANDOM_SPECS KIND FIRST COUNT NAME_variants.c NAME_variants.h [STEPS]
 #
-# COUNT random systems, each at the steps 0.5, 1, 2 and 4 and at a hundredth of the shortest, as variants.sh makes them.
+# COUNT random systems, each at the STEPS, or 0.5, 1, 2 and 4 and a hundredth of the shortest, as variants.sh makes them.
 set -eu
 plgen=$1
 specs=$2
@@ -18,7 +18,7 @@ seed=$first
 : >"$folder/list"
 while [ "$seed" -lt $((first + count)) ]; do
     "$specs" "$kind" "$seed" >"$folder/$kind$seed.spec"
-    echo "$kind$seed 0.5,1,2,4,0.005" >>"$folder/list"
+    echo "$kind$seed ${8:-0.5,1,2,4,0.005}" >>"$folder/list"
     seed=$((seed + 1))
 done
 "$here/variants.sh" "$plgen" "$folder/list" "$6" "$7" "$folder"
