@@ -123,7 +123,7 @@ void pl_switching_start(const pl_switching *m, const real *x, pl_contact *c, rea
     int i, below;
     walk w;
     c->total = 0;
-    c->crossings = c->status = c->matrix = 0;
+    c->crossings = c->status = c->matrix = c->rested = 0;
     enter(m, c, 0);
     for (w = first_switch(m); arrive(m, c->region, &w); leave(&w))
         for (; outside(m, c, &w, x) > 0; w.interval++)

@@ -4,8 +4,14 @@
  * to stick and what is to slip after an event is found by looking at all combinations of those that are at rest. */
 #include "roots.h"
 
-/* How many at rest are looked at together: 3^MOST combinations */
-enum { MOST = 6 };
+/* How many at rest are looked at together: 3^MOST combinations; how many impacts there may be at one instant */
+enum { MOST = 6, MOST_AT_ONCE = 200 };
+
+#ifdef REAL_IS_FLOAT
+#define BRIEF PL_BRIEFF
+#else
+#define BRIEF PL_BRIEF
+#endif
 
 static const real *matrix_of(const real *all, const pl_guards *m, int matrix)
 {
@@ -115,11 +121,123 @@ static void follow(const pl_guards *m, const real *x, pl_contact *c, pl_crossing
         }
 }
 
+/* ---- impacts ---- */
+
+static walk switch_of(const pl_guards *m, int region, int expression)
+{
+    walk w;
+    for (w = first_switch(m); arrive(m, region, &w) && w.i < expression; leave(&w))
+        ;
+    return w;
+}
+
+static int free_of(const pl_impact *p)
+{
+    return p->rest + (p->upward ? -1 : 1);
+}
+
+/* The speed at which impact k comes closer, 0 where that is but rounding */
+static real speed_of(const pl_guards *m, int k, const real *x)
+{
+    const real *row = m->speed + (ptrdiff_t)k * m->size;
+    real speed;
+    pl_multiply(1, m->size, row, x, &speed);
+    return magnitude(speed) <= noise_of(sizes(m->size, row, x) + (real)m->impact[k].play) ? 0 : speed;
+}
+
+/* Whether a bounce is on its guard, flying or at rest */
+static int touches(const pl_guards *m, const pl_contact *c, const pl_impact *p, const real *x)
+{
+    const walk w = switch_of(m, c->region, p->expression);
+    real noise;
+    if (p->rest < 0 || (w.interval != p->rest && w.interval != free_of(p)))
+        return 0;
+    return magnitude(excess(m, c, &w, p->breakpoint, x, &noise)) <= noise;
+}
+
+static void go_to(const pl_guards *m, pl_contact *c, const pl_impact *p, int interval)
+{
+    const walk w = switch_of(m, c->region, p->expression);
+    enter(m, c, c->region + (interval - w.interval) * w.stride);
+}
+
+/* What rounding has left of the way to the guard goes. */
+static void put_on(const pl_guards *m, const pl_contact *c, int k, real *x)
+{
+    const walk w = switch_of(m, c->region, m->impact[k].expression);
+    const real *back = m->back + (ptrdiff_t)k * m->size;
+    real noise;
+    const real e = excess(m, c, &w, m->impact[k].breakpoint, x, &noise);
+    int i;
+    for (i = 0; i < m->size; i++)
+        x[i] -= back[i] * e;
+}
+
+/* All impacts at this instant; begins: the one whose guard was met, or -1.  Returns those that acted, as bits. */
+static uint32_t collide(const pl_guards *m, int begins, real *x, pl_contact *c, pl_crossing *crossing, real time,
+                        real *work)
+{
+    uint32_t struck = 0;
+    int k, rounds = 0;
+    for (k = 0; k < m->impacts; k++) {
+        const pl_impact *p = &m->impact[k];
+        if (k != begins && !(touches(m, c, p, x) && speed_of(m, k, x) > 0))
+            continue;
+        if (++rounds > MOST_AT_ONCE || !list(m, c, crossing, time, p->expression, p->breakpoint, p->upward)) {
+            c->status |= PL_TOO_MANY_EVENTS;
+            break;
+        }
+        assign(m, p->jump, x, work);
+        if (p->rest >= 0)
+            go_to(m, c, p, free_of(p));
+        if (p->rest >= 0)
+            put_on(m, c, k, x);
+        struck |= (uint32_t)1 << k;
+        begins = k == begins ? -1 : begins;
+        k = -1;
+    }
+    return struck;
+}
+
+/* How long it flies that leaves the guard of k, from how it is pressed back there; -1: for good.  work: size */
+static real flight(const pl_guards *m, const pl_contact *c, int k, const real *x, real *work)
+{
+    const real speed = speed_of(m, k, x);
+    real press;
+    if (m->impact[k].rest < 0 || speed > 0)
+        return -1;
+    pl_multiply(m->size, m->size, matrix_of(m->A, m, c->matrix), x, work);
+    pl_multiply(1, m->size, m->speed + (ptrdiff_t)k * m->size, work, &press);
+    return press > 0 ? -2 * speed / press : -1;
+}
+
+/* A piece not much longer than the shortest flight that begins there */
+static real shortened(const pl_guards *m, const pl_contact *c, const real *x, real dt, real *work)
+{
+    int k;
+    for (k = 0; k < m->impacts; k++) {
+        const real along = touches(m, c, &m->impact[k], x) ? flight(m, c, k, x, work) : 0;
+        if (along > 0)
+            dt = smaller(dt, 2 * along);
+    }
+    return dt;
+}
+
 /* ---- what sticks and what slips ---- */
 
 typedef struct resting { /* an expression on a breakpoint that stands twice */
     int expression, stick, stride; /* stick: the interval between */
+    int impact;                    /* that rests there; -1: it is friction */
 } resting;
+
+static int impact_of(const pl_guards *m, int expression, int interval)
+{
+    int k;
+    for (k = m->impacts - 1; k >= 0; k--)
+        if (m->impact[k].rest == interval && m->impact[k].expression == expression)
+            break;
+    return k;
+}
 
 /* Those at rest in the region, or slipping next to it */
 static int find_resting(const pl_guards *m, const pl_contact *c, const real *x, resting *found)
@@ -134,6 +252,9 @@ static int find_resting(const pl_guards *m, const pl_contact *c, const real *x, 
                 continue;
             if (magnitude(e) > noise)
                 continue;
+            found[count].impact = impact_of(m, w.i, k);
+            if (found[count].impact >= 0 && speed_of(m, found[count].impact, x) < 0 && w.interval != k)
+                continue; /* it flies off */
             found[count].expression = w.i;
             found[count].stick = k;
             found[count++].stride = w.stride;
@@ -178,6 +299,10 @@ static int agrees(const pl_guards *m, int region, const resting *r, int count, c
     for (i = 0; i < count; i++) {
         const int side = interval_of(m, &r[i], region) - r[i].stick;
         const real *row = m->row + r[i].expression * n;
+        if (r[i].impact >= 0 && side == 0 && speed_of(m, r[i].impact, x) < 0)
+            return 0;
+        if (r[i].impact >= 0 && side == (m->impact[r[i].impact].upward ? 1 : -1))
+            return 0;
         if (side == 0 && !is_held(m, region, r[i].expression, x, work))
             return 0;
         if (side != 0 && heading(n, matrix_of(m->A, m, m->matrix[region]), row, x, work) != side)
@@ -265,14 +390,18 @@ void pl_guards_start(const pl_guards *m, const real *x, pl_contact *c, real *wor
 {
     walk w;
     c->total = 0;
-    c->crossings = c->status = c->matrix = 0;
+    c->crossings = c->status = c->matrix = c->rested = 0;
     enter(m, c, 0);
     follow(m, x, c, (pl_crossing *)0, 0);
     for (w = first_switch(m); arrive(m, c->region, &w); leave(&w)) /* at rest: let it stick first */
         if (w.interval + 1 < w.breaks && !(w.at[w.interval + 1] > w.at[w.interval])) {
+            const int impact = impact_of(m, w.i, w.interval + 1);
             real noise;
-            if (magnitude(excess(m, c, &w, w.interval, x, &noise)) <= noise)
-                enter(m, c, c->region + w.stride);
+            if (magnitude(excess(m, c, &w, w.interval, x, &noise)) > noise)
+                continue;
+            enter(m, c, c->region + w.stride);
+            if (impact >= 0 && magnitude(speed_of(m, impact, x)) > 0)
+                go_to(m, c, &m->impact[impact], free_of(&m->impact[impact]));
         }
     settle(m, x, c, (pl_crossing *)0, 0, work);
     decide(m, x, c, work);
@@ -310,6 +439,14 @@ typedef struct event {
     int guard; /* -1: none */
 } event;
 
+/* What has left its guard at the start comes back where g(s)/s rises through 0: that is known to more digits. */
+static void look_behind(beyond *f, const real *e, real terms)
+{
+    f->degree--;
+    look_beyond(f, e + 1, 1, 0, terms);
+    f->coefficient[++f->degree] = 0;
+}
+
 /* coefficients: (degree + 1) x size, of x(s); after them 2 (degree + 1) for work */
 static event first_event(const pl_guards *m, int region, real *coefficients, int *splits)
 {
@@ -325,6 +462,9 @@ static event first_event(const pl_guards *m, int region, real *coefficients, int
         real s;
         pl_multiply(terms, n, coefficients, row, e);
         look_beyond(&f, e, 1, m->limit[k], sizes(n, row, coefficients));
+        if (m->guard[k].impact >= 0 && e[1] < 0 && magnitude(f.coefficient[0]) <= noise_of(magnitude(m->limit[k]) +
+            sizes(n, row, coefficients) + sizes(n, row, coefficients + n)))
+            look_behind(&f, e, sizes(n, row, coefficients + n));
         s = first_root(&f, first.s, splits);
         if (s < 0)
             continue;
@@ -361,25 +501,52 @@ static event move(const pl_guards *m, pl_contact *c, real dt, const real *y, int
 
 /* ---- a step ---- */
 
-/* Into the region to which a guard leads, its jump before that */
+/* Behind impacts: which of them rest, after infinitely many more in no time to speak of */
+static void come_to_rest(const pl_guards *m, uint32_t struck, real *x, pl_contact *c, pl_crossing *crossing, real time,
+                 real *work)
+{
+    int k;
+    for (k = 0; k < m->impacts; k++) {
+        const pl_impact *p = &m->impact[k];
+        const real e = (real)p->restitution, along = struck >> k & 1 && e < 1 ? flight(m, c, k, x, work) : -1;
+        const real left = along / (1 - e);
+        const int full = c->crossings > m->max_events - MOST;
+        if (!(left >= 0 && left <= (full ? 1 : BRIEF) * m->h) || !touches(m, c, p, x))
+            continue;
+        assign(m, p->still, x, work);
+        go_to(m, c, p, p->rest);
+        (void)list(m, c, crossing, time + left, p->expression, p->breakpoint, p->upward);
+        c->rested++;
+        settle(m, x, c, crossing, time, work);
+    }
+}
+
+/* Into the region to which a guard leads, or by the impact that begins there */
 static int pass(const pl_guards *m, pl_contact *c, const pl_guard *g, real *x, pl_crossing *crossing, real time,
                 real *work)
 {
-    const int listed = list(m, c, crossing, time, g->expression, g->breakpoint, g->upward);
-    assign(m, g->jump, x, work);
-    enter(m, c, c->region + g->leads);
+    const int full = c->crossings == m->max_events;
+    uint32_t struck = 0;
+    if (g->impact < 0)
+        (void)list(m, c, crossing, time, g->expression, g->breakpoint, g->upward);
+    if (g->impact < 0 || m->impact[g->impact].rest < 0)
+        enter(m, c, c->region + g->leads);
     assign(m, m->hold[c->region], x, work);
-    if (g->jump >= 0)
+    if (g->impact >= 0)
+        struck = collide(m, g->impact, x, c, crossing, time, work);
+    if (g->impact >= 0)
         follow(m, x, c, crossing, time);
     settle(m, x, c, crossing, time, work);
+    come_to_rest(m, struck, x, c, crossing, time, work);
     assign(m, m->hold[c->region], x, work);
-    return listed;
+    return !full;
 }
 
 /* At the start: what holds may have moved, and what moves may have jumped. */
 static void take_up(const pl_guards *m, real *x, pl_contact *c, pl_crossing *crossing, real *work)
 {
     follow(m, x, c, crossing, 0);
+    (void)collide(m, -1, x, c, crossing, 0, work);
     settle(m, x, c, crossing, 0, work);
     assign(m, m->hold[c->region], x, work);
 }
@@ -396,9 +563,10 @@ void pl_guards_advance(const pl_guards *m, real tau, real *x, pl_contact *c, pl_
     }
     while (left > REST * m->h) { /* nothing for what rounding leaves */
         const real longest = m->h / (real)((uint32_t)1 << m->halvings[c->matrix]);
-        const int whole = left > longest * (1 - REST);
-        const real dt = whole ? longest : left;
+        int whole = left > longest * (1 - REST);
+        const real dt = shortened(m, c, x, whole ? longest : left, rest);
         event first;
+        whole = whole && dt >= longest;
         if (whole) {
             pl_multiply(n, n, matrix_of(m->Phi, m, c->matrix), x, y);
             assign(m, m->hold[c->region], y, rest);

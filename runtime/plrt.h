@@ -462,6 +462,7 @@ typedef struct pl_contact {
     int region;
     int matrix;     /* in use: that of the region, or where it cannot occur that of the one before */
     int status;     /* 0 or PL_TOO_MANY_EVENTS, sticky until the next start */
+    int rested;     /* contacts that came to rest by infinitely many bounces since the start */
 } pl_contact;
 
 /* a step has met more crossings, or needed more splits, than its bound: chatter, as a rule */
@@ -561,8 +562,18 @@ typedef struct pl_guard {
     int row;                              /* among those of guards */
     int expression, breakpoint, upward;   /* as a crossing of it is listed */
     int leads;                            /* to the region of this number, less that where it stands */
-    int jump;                             /* the set of assignments before that; -1: none */
+    int impact;                           /* that begins there, by its number; -1: none */
 } pl_guard;
+
+/* The state jumps where the guard comes true.  One that turns the speed of its guard, s to -restitution s, is a bounce;
+ * its contact may rest, in the interval between two equal breakpoints. */
+typedef struct pl_impact {
+    int expression, breakpoint, upward; /* as a crossing of it is listed */
+    int rest;                           /* that interval; -1: it is no bounce */
+    int jump, still;                    /* sets of assignments: its jump; of a bounce that with restitution 0 */
+    double restitution;
+    double play;                        /* the sizes of the factors of cos and sin in its speed */
+} pl_impact;
 
 typedef struct pl_guards {
     int size;          /* entries of x */
@@ -590,12 +601,20 @@ typedef struct pl_guards {
     /* Assignments: x[state] = value . x, those of a set from the same x: set[k] to set[k + 1] - 1 */
     const int *set, *state;
     const double *value;
+    int impacts; /* at most 30, in the order in which they act at one instant */
+    const pl_impact *impact;
+    /* impacts x size, of those that bounce: the speed of the guard; what times e - b is taken from x to be on it */
+    const double *speed, *back;
     int degree;
     int max_events, max_splits;
 } pl_guards;
 
 /* what is to stick and what is to slip at an event has no answer that holds: some that was nearest was kept */
 enum { PL_UNDECIDED = 16 };
+
+/* Bounces that would all be over within this part of h come to rest: their number is infinite, their time is not. */
+#define PL_BRIEF 0x1p-20
+#define PL_BRIEFF 0x1p-10f
 
 #define PL_GUARDS_WORK(size, degree) (((degree) + 1) * ((size) + 2) + 8 * (size))
 
@@ -605,7 +624,12 @@ void pl_guards_start(const pl_guards *m, const double *x, pl_contact *c, double 
 
 /* x over h, and over tau, 0 <= tau <= h, as pl_switching_step and pl_switching_advance.  Where several stick or slip at
  * one event, the combination is taken in which all of them agree: none is held by more than its guard lets it, and each
- * that slips moves away in its direction; of several the one with the fewest changes, then with most that stick. */
+ * that slips moves away in its direction; of several the one with the fewest changes, then with most that stick.
+ *
+ * Impacts at one instant act in their order, each from the state that the one before has left, and again from the first,
+ * until none is on its guard and comes closer.  Behind a bounce that leaves with the velocity v and is pressed back by
+ * the acceleration a, all further ones take T = 2 v/(a (1 - e)): where T <= PL_BRIEF h, e < 1, it rests, listed T
+ * later; so too where T <= h and the list of crossings is full but for a few.  What rests is held until it would have to be pulled. */
 void pl_guards_step(const pl_guards *m, double *x, pl_contact *c, pl_crossing *crossing, double *work);
 void pl_guards_advance(const pl_guards *m, double tau, double *x, pl_contact *c, pl_crossing *crossing, double *work);
 
@@ -625,6 +649,9 @@ typedef struct pl_guardsf {
     const float *gate, *gate_tangent, *chord_error, *cubic_error, *play, *gate_play;
     const int *set, *state;
     const float *value;
+    int impacts;
+    const pl_impact *impact;
+    const float *speed, *back;
     int degree, max_events, max_splits;
 } pl_guardsf;
 

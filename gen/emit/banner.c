@@ -265,6 +265,21 @@ static void banner_expressions(const struct emitter *e)
 	}
 }
 
+static void banner_impacts(const struct emitter *e)
+{
+	const struct model *model = e->step->shown->model;
+	for (int i = 0; i < model->impacts; i++) {
+		const struct impact *impact = &model->impact[i];
+		const char *text = text_between(impact->when->at, impact->when->end);
+		say(e, " *     impact %d: %s%s\n", i, printable(text),
+		    impact->bounces ? format(", a bounce of restitution %s", readable_text(impact->restitution)) : "");
+	}
+	if (model->impacts > 1)
+		say(e, " * Those of one instant act in this order, each from the state that the one before has left.\n");
+	if (has_bounces(model))
+		say(e, " * Bounces that would all be over within 2^-20 h come to rest: $n_rested counts.\n");
+}
+
 static void banner_region_number(const struct emitter *e)
 {
 	say(e, " * The poles above are those of the terms that are linear everywhere.\n"
@@ -287,6 +302,7 @@ void banner_regions(const struct emitter *e)
 		say(e, " *     friction %d: %s; sticks in interval %d of expression %d\n", i,
 		    text_between(s->friction[i].atom->node->start, s->friction[i].atom->node->end),
 		    stick_of(s, &s->friction[i]), s->friction[i].expression);
+	banner_impacts(e);
 	if (s->sharing)
 		say(e, " * Coordinates move as a whole: %d independent parts have their regions together.\n",
 		    s->sharing);

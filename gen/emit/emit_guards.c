@@ -29,11 +29,11 @@ static void emit_guard_list(const struct emitter *e, const struct guards *g)
 	say(e, "\n"
 	       "};\n"
 	       "\n"
-	       "static const pl_guard $o_guard[%d] = {  /* row, expression, breakpoint, upward, leads, jump */\n",
+	       "static const pl_guard $o_guard[%d] = {  /* row, expression, breakpoint, upward, leads, impact */\n",
 	    g->guards);
 	for (int i = 0; i < g->guards; i++)
 		say(e, "    { %d, %d, %d, %d, %d, %d },\n", g->guard[i].row, g->guard[i].expression,
-		    g->guard[i].breakpoint, g->guard[i].upward, g->guard[i].leads, g->guard[i].jump);
+		    g->guard[i].breakpoint, g->guard[i].upward, g->guard[i].leads, g->guard[i].impact);
 	double *limit = ARRAY(double, (size_t)g->guards);
 	for (int i = 0; i < g->guards; i++)
 		limit[i] = g->guard[i].limit;
@@ -112,21 +112,56 @@ static void emit_assignments(const struct emitter *e, const struct guards *g)
 	say(e, "};\n");
 }
 
+static void emit_impacts(const struct emitter *e, const struct guards *g)
+{
+	const struct switching *s = e->model->switching;
+	int size = e->step->layout.size, count = g->impacts > 0 ? g->impacts : 1;
+	double *speed = ARRAY(double, (size_t)count * (size_t)size), *back = ARRAY(double, (size_t)count * (size_t)size);
+	const char **note = ARRAY(const char *, (size_t)count);
+	note[0] = "none";
+	say(e, "\n"
+	       "static const pl_impact $o_impact[%d] = {"
+	       "  /* expression, breakpoint, upward, rest, jump, still, restitution, play */\n", count);
+	for (int i = 0; i < g->impacts; i++) {
+		const struct struck *impact = &g->impact[i];
+		say(e, "    { %d, %d, %d, %d, %d, %d, %s, %s },\n", impact->expression, impact->breakpoint, impact->upward,
+		    impact->rest, impact->jump, impact->still, shortest(impact->restitution),
+		    shortest(impact->play));
+		note[i] = impact->rest < 0 ? "none"
+					   : form_text(e->step->shown->model, s->impact[i].speed);
+		for (int j = 0; j < size; j++) {
+			speed[i * size + j] = impact->speed[j];
+			back[i * size + j] = impact->back[j];
+		}
+	}
+	say(e, "%s};\n"
+	       "static const double $o_speed[%d][%d] = {  /* of what bounces */\n",
+	    g->impacts ? "" : "    { 0, 0, 0, -1, -1, -1, 0.0, 0.0 }\n", count, size);
+	emit_number_rows(e, count, size, speed, note);
+	say(e, "};\n"
+	       "static const double $o_back[%d][%d] = {  /* times how far its expression is beyond: onto the guard */\n",
+	    count, size);
+	emit_number_rows(e, count, size, back, note);
+	say(e, "};\n");
+}
+
 void emit_guards(const struct emitter *e, const struct pieces *pieces)
 {
 	struct guards g = guards_of(e->step, pieces);
 	emit_guard_list(e, &g);
 	emit_gates(e, &g);
 	emit_assignments(e, &g);
+	emit_impacts(e, &g);
 	say(e, "\n"
 	       "static const pl_guards $o_switching = {\n"
 	       "    %d, $N_H, %d, $o_row[0], $o_breaks, $o_breakpoint, $o_matrix, $o_halvings,\n"
 	       "    $o_slopes[0][0], $o_pieces[0][0], $o_lean[0][0],\n"
 	       "    $o_first, $o_guard, $o_limit, $o_hold,\n"
 	       "    $o_gate[0], $o_gate_lean[0], $o_gate_sag[0], $o_gate_sway[0], $o_play, $o_gate_play,\n"
-	       "    $o_sets, $o_held, $o_value[0], %d, $N_MAX_EVENTS, %d\n"
+	       "    $o_sets, $o_held, $o_value[0], %d, $o_impact, $o_speed[0], $o_back[0], %d, $N_MAX_EVENTS, %d\n"
 	       "};\n",
-	    e->step->layout.size, e->model->switching->expressions, e->step->series.degree, MAX_SPLITS);
+	    e->step->layout.size, e->model->switching->expressions, g.impacts, e->step->series.degree,
+	    max_splits(e->model));
 }
 
 void emit_grip(const struct emitter *e, const bool *needed)

@@ -7,10 +7,10 @@ static const struct switching *regions_of(const struct emitter *e)
 	return e->model->switching;
 }
 
-/* Regions have events of their own: friction that sticks and slips */
+/* Regions have events of their own: friction, impacts */
 static bool has_guards(const struct emitter *e)
 {
-	return regions_of(e)->frictions > 0;
+	return has_events(regions_of(e));
 }
 
 static const char *search_of(const struct emitter *e)
@@ -174,6 +174,9 @@ void emit_region_declarations(const struct emitter *e)
 	       "uint64_t $n_crossed(const $n *s);        /* breakpoints crossed since init or set */\n"
 	       "int    $n_crossings(const $n *s, pl_crossing crossing[$N_MAX_EVENTS]);  "
 	       "/* those of the last step; how many */\n");
+	if (has_bounces(e->model))
+		say(e, "int    $n_rested(const $n *s);           "
+		       "/* contacts that came to rest since then, after infinitely many bounces */\n");
 }
 
 void emit_region_members(const struct emitter *e)
@@ -274,6 +277,12 @@ static void emit_region_questions(const struct emitter *e)
 	       "        crossing[i] = s->crossing[i];\n"
 	       "    return count;\n"
 	       "}\n", regions_change(e) ? format(" %% %d", regions_at_once(e->model->switching)) : "");
+	if (has_bounces(e->model))
+		say(e, "\n"
+		       "int $n_rested(const $n *s)\n"
+		       "{\n"
+		       "    return s->contact.rested;\n"
+		       "}\n");
 }
 
 /* By the search, from x; `i` is declared */

@@ -150,7 +150,7 @@ static bool regions_read_load(const struct emitter *e, int load)
 
 static void emit_event_limit(const struct emitter *e)
 {
-	say(e, "enum { $N_MAX_EVENTS = %d };  /* crossings in a step */\n", MAX_EVENTS);
+	say(e, "enum { $N_MAX_EVENTS = %d };  /* crossings in a step */\n", max_events(e->model));
 }
 
 static void emit_region_tables(const struct emitter *e)

@@ -134,6 +134,8 @@ static void slip(const struct switching *s, int index)
 struct stuck {                      /* one expression that is held, in one region */
 	int expression;
 	const struct atom *atom;    /* the first that acts; NULL: none does */
+	const struct impact *impact; /* that rests there; NULL: it is friction */
+	struct form *place;         /* of that: 0 too */
 	mpq_t *direction;           /* per row: of its force */
 	mpq_t *share;               /* per friction: what it carries of that force */
 	struct form *velocity, *rate, *force;
@@ -213,7 +215,7 @@ static int input_hold(const struct building *b, int index)
 }
 
 /* Its derivative with respect to time; of a ramp u', of what is held nothing */
-static struct form *rate_of(struct building *b, const struct form *form)
+struct form *rate_of_form(struct building *b, const struct form *form)
 {
 	struct form *rate = NEW(struct form);
 	mpq_t factor;
@@ -250,6 +252,38 @@ static struct form *rate_of(struct building *b, const struct form *form)
 	return rate;
 }
 
+/* What rests is held in place, along the direction of its impacts. */
+static void find_rest(struct building *b, const struct switching *s, int index, struct stuck *stuck)
+{
+	const struct region *region = &s->region[index];
+	const struct impact *impact = stuck->impact;
+	mpq_t part;
+	mpq_init(part);
+	stuck->place = stuck->velocity;
+	stuck->velocity = rate_of_form(b, stuck->place);
+	stuck->rate = rate_of_form(b, stuck->velocity);
+	for (int k = 0; k < s->rows; k++)
+		for (int j = 0; j < b->model->n; j++) {
+			struct basis basis = { .kind = BASIS_COORD, .index = j, .order = 2 };
+			const struct form_term *mass = form_find(region->residual[s->row[k]], &basis);
+			if (!mass)
+				continue;
+			mpq_mul(part, mass->factor, impact->direction[j]);
+			mpq_add(stuck->direction[k], stuck->direction[k], part);
+		}
+	mpq_clear(part);
+}
+
+static bool is_borne(const struct stuck *stuck)
+{
+	return stuck->atom || stuck->impact;
+}
+
+static struct place place_of_stuck(const struct stuck *stuck)
+{
+	return stuck->impact ? stuck->impact->when->at : stuck->atom->node->at;
+}
+
 static struct stuck *find_stuck(struct building *b, const struct switching *s, int index, int *count)
 {
 	struct stuck *stuck = ARRAY(struct stuck, (size_t)s->expressions);
@@ -263,8 +297,14 @@ static struct stuck *find_stuck(struct building *b, const struct switching *s, i
 		*new = (struct stuck){ .expression = e, .direction = rationals((size_t)s->rows),
 				       .share = rationals((size_t)s->frictions), .pivot = -1 };
 		new->velocity = form_difference(expression->form, form_constant(expression->at[interval]));
-		new->rate = rate_of(b, new->velocity);
-		find_direction(s, index, e, new);
+		new->rate = rate_of_form(b, new->velocity);
+		int impact = impact_resting(s, e, interval);
+		if (impact >= 0)
+			new->impact = &s->impact[impact];
+		if (impact >= 0)
+			find_rest(b, s, index, new);
+		else
+			find_direction(s, index, e, new);
 	}
 	return stuck;
 }
@@ -286,6 +326,15 @@ static bool has_states(const struct form *form)
 	return form->terms > 0 && form->term[form->terms - 1].basis.kind == BASIS_COORD;
 }
 
+/* The place of a coordinate; -1: there is none */
+static int place_term(const struct form *form)
+{
+	for (int i = 0; i < form->terms; i++)
+		if (form->term[i].basis.kind == BASIS_COORD && form->term[i].basis.order == 0)
+			return i;
+	return -1;
+}
+
 /* form without the term of a basis, which `by` gives */
 static struct form *replaced(const struct form *form, const struct basis *basis, const struct form *by)
 {
@@ -300,46 +349,69 @@ static struct form *replaced(const struct form *form, const struct basis *basis,
 	return sum;
 }
 
+struct holding {                    /* states of a region that follow from the others, as they are found */
+	const struct building *b;
+	struct region *region;
+	struct basis *of;
+};
+
+/* v = 0, solved for a state; false: it follows from what is held already, or contradicts it */
+static bool hold_form(struct holding *h, struct form *v, bool place)
+{
+	struct region *region = h->region;
+	mpq_t factor;
+	for (int i = 0; i < region->holds; i++)
+		v = replaced(v, &h->of[i], region->hold[i].form);
+	int at = has_states(v) ? place ? place_term(v) : velocity_term(h->b, v) : -1;
+	if (at < 0)
+		return false;
+	struct basis basis = v->term[at].basis;
+	mpq_init(factor);
+	mpq_inv(factor, v->term[at].factor);
+	mpq_neg(factor, factor);
+	struct form *held = form_scale(replaced(v, &basis, NEW(struct form)), factor);
+	for (int i = 0; i < region->holds; i++)
+		region->hold[i].form = replaced(region->hold[i].form, &basis, held);
+	h->of[region->holds] = basis;
+	region->hold[region->holds].state = basis.order ? h->b->model->system.velocity[basis.index] : basis.index;
+	region->hold[region->holds++].form = held;
+	mpq_clear(factor);
+	return true;
+}
+
+/* What friction cannot hold beside what is held */
+static void tell_held(const struct holding *h, const struct stuck *stuck)
+{
+	struct form *v = stuck->velocity;
+	const struct node *node = stuck->atom->node;
+	for (int i = 0; i < h->region->holds; i++)
+		v = replaced(v, &h->of[i], h->region->hold[i].form);
+	if (v->terms == 0)
+		error(node->at, "without one of them its part is known",
+		      "friction holds what other friction holds already: while all of it sticks its force is not "
+		      "determined");
+	if (has_states(v))
+		error(node->child[0]->start, "x', x' - y', or x' - 0.2 against what moves",
+		      "the velocity of friction is linear in velocities");
+}
+
 /* States that follow from the others; false: not all of these can stick together. */
 static bool find_holds(const struct building *b, struct region *region, const struct stuck *stuck, int count)
 {
-	struct basis *of = ARRAY(struct basis, (size_t)count);
-	mpq_t factor;
-	mpq_init(factor);
-	region->hold = ARRAY(struct hold, (size_t)count);
+	struct holding h = { b, region, ARRAY(struct basis, 2 * (size_t)count) };
+	bool possible = true;
+	region->hold = ARRAY(struct hold, 2 * (size_t)count);
 	region->holds = 0;
-	for (int k = 0; k < count; k++) {
-		struct form *v = stuck[k].velocity;
-		const struct node *node = stuck[k].atom ? stuck[k].atom->node : NULL;
-		if (!node)
+	for (int k = 0; k < count && possible; k++) {
+		if (!is_borne(&stuck[k]))
 			continue;
-		for (int i = 0; i < region->holds; i++)
-			v = replaced(v, &of[i], region->hold[i].form);
-		if (!has_states(v) && v->terms > 0) {
-			mpq_clear(factor);
-			return false;
-		}
-		if (v->terms == 0)
-			error(node->at, "without one of them its part is known",
-			      "friction holds what other friction holds already: while all of it sticks its force is "
-			      "not determined");
-		int at = velocity_term(b, v);
-		if (at < 0)
-			error(node->child[0]->start, "x', x' - y', or x' - 0.2 against what moves",
-			      "the velocity of friction is linear in velocities");
-		struct basis basis = v->term[at].basis;
-		mpq_inv(factor, v->term[at].factor);
-		mpq_neg(factor, factor);
-		struct form *held = form_scale(replaced(v, &basis, NEW(struct form)), factor);
-		for (int i = 0; i < region->holds; i++)
-			region->hold[i].form = replaced(region->hold[i].form, &basis, held);
-		of[region->holds] = basis;
-		region->hold[region->holds++].form = held;
+		possible = hold_form(&h, stuck[k].velocity, false);
+		if (!possible && stuck[k].atom)
+			tell_held(&h, &stuck[k]);
 	}
-	for (int i = 0; i < region->holds; i++)
-		region->hold[i].state = of[i].order ? b->model->n + of[i].index : of[i].index;
-	mpq_clear(factor);
-	return true;
+	for (int k = 0; k < count && possible; k++)
+		possible = !stuck[k].impact || hold_form(&h, stuck[k].place, true);
+	return possible;
 }
 
 /* Row `to` less `factor` times row `from` */
@@ -370,7 +442,7 @@ static void solve_for_force(const struct switching *s, struct region *region, st
 			taken = taken || stuck[i].pivot == pivot;
 	}
 	if (pivot == s->rows)
-		error(stuck[k].atom->node->at, NULL, "the forces of friction that sticks are not determined");
+		error(place_of_stuck(&stuck[k]), NULL, "the forces of what sticks and rests are not determined");
 	mpq_inv(factor, stuck[k].direction[pivot]);     /* less 1 - 1/d times itself: divided by d */
 	mpq_neg(factor, factor);
 	mpq_set_ui(one, 1, 1);
@@ -398,6 +470,11 @@ static void add_releases(const struct switching *s, int index, const struct stuc
 	struct region *region = &s->region[index];
 	int stride = s->expression[stuck->expression].stride;
 	const struct form *up = NEW(struct form), *down = up;
+	if (stuck->impact) {                    /* it presses, and does not pull */
+		add_release(region, stuck->expression, !stuck->impact->upward,
+			    form_difference(NEW(struct form), stuck->force));
+		return;
+	}
 	if (stuck->atom) {
 		up = s->region[index + stride].rest[stuck->atom->index];
 		down = s->region[index - stride].rest[stuck->atom->index];
@@ -428,10 +505,10 @@ static void stick(struct building *b, const struct switching *s, int index)
 	for (int k = 0; k < s->rows; k++)
 		region->residual[s->row[k]] = without_atoms(region->residual[s->row[k]]);
 	for (int k = 0; k < count; k++)
-		if (stuck[k].atom)
+		if (is_borne(&stuck[k]))
 			solve_for_force(s, region, stuck, count, k);
 	for (int k = 0; k < count; k++) {
-		if (!stuck[k].atom)
+		if (!is_borne(&stuck[k]))
 			continue;
 		int row = s->row[stuck[k].pivot];
 		stuck[k].force = form_difference(NEW(struct form), region->residual[row]);
@@ -463,7 +540,7 @@ static void check_answer(struct building *b, const struct switching *s, const st
 	const struct linear *system = &model->system;
 	int n = model->n, column;
 	mpq_t *inverse = rationals((size_t)(n * n)), answer, part;
-	const struct form *rate = rate_of(b, s->expression[f->expression].form);
+	const struct form *rate = rate_of_form(b, s->expression[f->expression].form);
 	mpq_inits(answer, part, NULL);
 	leading_inverse(system, inverse, &column);
 	for (int i = 0; i < n; i++) {
@@ -530,7 +607,7 @@ void build_friction(struct building *b, struct switching *s)
 			continue;
 		const struct linear *system = &s->system[region->system];
 		if (!leading_inverse(system, inverse, &column))
-			error(s->friction->atom->node->at, "its velocity has to answer to its force",
+			error(s->frictions ? s->friction->atom->node->at : s->impact->when->at, "its velocity has to answer to its force",
 			      "friction cannot hold what slides there");
 		for (int k = 0; k < region->holds; k++)
 			region->hold[k].row = row_of_form(b, region->hold[k].form);

@@ -530,6 +530,7 @@ static void collect_model(struct building *b)
 	collect_intervals(b);
 	if (b->spec->tunables > 0 && all && !diagnostics_errors())
 		collect_with_params(b);
+	collect_impacts(b);
 	if (all)
 		evaluate_lets(b);
 	model->initial = rationals((size_t)model->system.states);

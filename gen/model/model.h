@@ -187,6 +187,8 @@ struct model {
 	struct form **left_slope;   /* of a scheme that collocates: [channel][state], the leftover's derivative */
 	const struct atoms *atoms;
 	struct switching *switching; /* exact: the regions of a piecewise-linear model; NULL: it has one */
+	int impacts;                /* in the order in which they act at one instant */
+	struct impact *impact;
 	struct smoothness smooth;
 	const struct node *obstacle; /* the first term that stood in the way of exact, where no scheme was asked for; */
 	const char *obstacle_text;  /* why it did, and the way out if there is one */
@@ -267,6 +269,27 @@ struct expression {                 /* what is compared with breakpoints: linear
 	int stride;                 /* of its interval in the index of a region */
 	int met;                    /* rises in the order in which the equations show expressions */
 };
+struct jump {                       /* a state just behind an impact, over states, loads and inputs before it */
+	int state;
+	struct form *form;
+	struct output *row;
+};
+struct impact {                     /* of `when`, or of a stop */
+	const struct when *when;
+	bool rising;                /* as written it rises where it comes true */
+	struct form *guard, *speed; /* turned so that it does, through 0; its derivative */
+	int jumps;
+	struct jump *jump;
+	/* v -> v - (1 + e) d s, s the speed: a bounce, which may come to rest; else the jump is any other */
+	bool bounces;
+	mpq_t restitution;          /* e */
+	mpq_t *direction;           /* d, per coordinate */
+	struct jump *still;         /* of a bounce: its jumps if e were 0 */
+	struct output *speed_row;
+	int expression;             /* its guard is a multiple of this one, less a breakpoint, */
+	mpq_t at, factor;           /* guard = factor (expression - at) */
+	bool upward;                /* which it passes this way */
+};
 /* friction(v, F): v is an expression less a breakpoint that stands there twice, with the interval of sticking between */
 struct friction {
 	const struct atom *atom;
@@ -314,6 +337,8 @@ struct switching {
 	struct region_part *part;
 	int frictions;
 	struct friction *friction;
+	int impacts;                /* the model's */
+	struct impact *impact;
 	bool felt;                  /* an output reads what it carries */
 	int sharing;                /* parts that have these regions together, since some move as a whole */
 };
@@ -505,11 +530,26 @@ int  regions_at_once(const struct switching *s);                    /* in one se
 bool is_form_multiple(const struct form *form, const struct form *e, mpq_ptr of);   /* of: the factor */
 int  possible_regions(const struct switching *s);
 
+/* ---- impacts.c: state jumps, and what bounces ---- */
+
+void collect_impacts(struct building *b);
+void build_impacts(struct building *b);                     /* once the masses are known */
+/* which begins where an expression passes a breakpoint this way; -1: none does */
+int  impact_at(const struct switching *s, int expression, mpq_srcptr at, bool upward);
+int  impact_resting(const struct switching *s, int expression, int interval);  /* there; -1: none does */
+int  rest_of(const struct switching *s, const struct impact *impact); /* the interval in which it rests; -1: none */
+void place_impact_loads(struct building *b, const struct switching *s);
+void build_impact_rows(struct building *b, struct switching *s);
+bool has_bounces(const struct model *model);
+bool has_events(const struct switching *s);                 /* each region has its own: friction, impacts */
+_Noreturn void tell_no_impacts(const struct building *b);   /* why a scheme cannot treat them */
+
 /* ---- friction.c: dry friction in regions, where it slips and where it sticks ---- */
 
 bool holds_friction(const struct building *b);              /* somewhere in the equations */
 _Noreturn void tell_no_friction(const struct building *b);  /* why a scheme cannot treat it */
 bool is_stick(const struct expression *e, int interval);    /* between two equal breakpoints */
+struct form *rate_of_form(struct building *b, const struct form *form); /* its derivative with respect to time */
 int  stick_of(const struct switching *s, const struct friction *f); /* the interval in which it sticks */
 /* puts in the forces of what slips, and the constraints of what sticks */
 int  friction_of(const struct switching *s, const struct atom *a); /* its index; -1: no equation has it */

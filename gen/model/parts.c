@@ -190,7 +190,8 @@ static void search(void *context)
 {
 	struct building *b = context;
 	int n = b->model->n, *all = ARRAY(int, (size_t)n);
-	struct switching *s = b->model->relative || b->request->undivided || holds_friction(b) ? NULL : regions_of_parts(b);
+	bool together = b->model->relative || b->request->undivided || holds_friction(b) || b->model->impacts > 0;
+	struct switching *s = together ? NULL : regions_of_parts(b);
 	for (int i = 0; i < n; i++)
 		all[i] = i;
 	b->model->switching = s ? s : regions_of_rows(b, n, all);
@@ -220,6 +221,7 @@ static void place_loads_of(struct building *b, const struct switching *s)
 		for (int segment = 0; segment < s->segments; segment++)
 			place_loads(b, form_sum(s->expression[e].in[segment],
 						form_constant(s->expression[e].shift[segment]), false));
+	place_impact_loads(b, s);
 }
 
 void place_region_loads(struct building *b)
@@ -392,8 +394,9 @@ static void build_whole(struct building *b, struct switching *s)
 		s->region[r].system = add_system(s, &system, segment_of_region(s, r));
 	}
 	remove_idle_breaks(s);
-	if (s->frictions > 0)
+	if (has_events(s))
 		build_friction(b, s);
+	build_impact_rows(b, s);
 }
 
 void build_regions(struct building *b)

@@ -20,7 +20,7 @@ bool is_piecewise_linear(const struct building *b)
 {
 	int segments = b->model->system.segments;
 	bool divided = segments == 1;
-	if (segments > 1 && holds_friction(b))
+	if (segments > 1 && (holds_friction(b) || b->model->impacts > 0))
 		return false;
 	for (int s = 0; s < segments; s++)
 		for (int i = 0; i < b->model->n; i++) {
@@ -328,6 +328,34 @@ static _Noreturn void too_many(const struct building *b, const struct switching 
 	      "more regions than the limit of %d", LIMIT_REGIONS);
 }
 
+/* A guard is a breakpoint of its expression; of a bounce one that stands twice, with the interval of rest between. */
+static void meet_impacts(struct looking *l)
+{
+	struct building *b = l->b;
+	mpq_t factor, constant;
+	mpq_inits(factor, constant, NULL);
+	for (int i = 0; i < b->model->impacts; i++) {
+		struct impact *impact = &b->model->impact[i];
+		const struct form *guard = impact->rising ? impact->guard
+							  : form_difference(NEW(struct form), impact->guard);
+		struct form plain = { 0, guard->term, 0 };
+		while (plain.terms < guard->terms && plain.term[plain.terms].basis.kind <= BASIS_PI)
+			plain.terms++;
+		constant_value(&b->collector, &plain, constant);
+		struct compared what = { impact->when->guard, form_sum(guard, &plain, true), constant, order_met(l) };
+		impact->expression = find_expression(l->s, l->segment, &what, factor, impact->at);
+		impact->upward = (mpq_sgn(factor) > 0) == impact->rising;
+		mpq_set(impact->factor, factor);
+		if (!impact->rising)
+			mpq_neg(impact->factor, factor);
+		if (impact->bounces)
+			add_stick(l, &l->s->expression[impact->expression], impact->at);
+		else
+			(void)is_above(l, impact->expression, impact->at);
+	}
+	mpq_clears(factor, constant, NULL);
+}
+
 /* One look at every region but the first `known`; false: something new was met on the way, but of the first `known`
  * then. The regions of one expression are its intervals, in order, so that those below a new breakpoint stay what they
  * are. */
@@ -360,6 +388,7 @@ static bool look(struct building *b, struct switching *s, int *known)
 			l.row = s->row[k];
 			s->region[r].residual[l.row] = form_here(&l, b->snapshot[l.segment].residual[l.row].form);
 		}
+		meet_impacts(&l);
 		*known = single && s->expressions == 1 ? l.lowest : 0;
 		if (s->torn)
 			s->expressions = *known = 0;
@@ -571,6 +600,8 @@ struct switching *regions_of_rows(struct building *b, int rows, int *row)
 {
 	struct switching *s = NEW(struct switching);
 	int known = 0;
+	s->impacts = b->model->impacts;
+	s->impact = b->model->impact;
 	s->rows = rows;
 	s->row = row;
 	s->segments = rows_change(b, rows, row) ? b->model->system.segments : 1;
@@ -580,7 +611,7 @@ struct switching *regions_of_rows(struct building *b, int rows, int *row)
 	mark_possible(b, s);
 	if (!b->model->relative)                /* else it has been told */
 		check_jumps(b, s);
-	if (s->frictions > 0)
+	if (has_events(s))
 		resolve_friction(b, s);
 	return s;
 }
@@ -672,6 +703,12 @@ static void remove_break(struct switching *s, int expression, int at)
 	}
 }
 
+static bool is_struck(const struct switching *s, int expression, int at)
+{
+	mpq_srcptr value = s->expression[expression].at[at];
+	return impact_at(s, expression, value, true) >= 0 || impact_at(s, expression, value, false) >= 0;
+}
+
 static int breaks_of_all(const struct switching *s)
 {
 	int count = 0;
@@ -686,6 +723,8 @@ static void drop_expression(struct switching *s, int expression)
 		s->expression[e] = s->expression[e + 1];
 	for (int i = 0; i < s->frictions; i++)
 		s->friction[i].expression -= s->friction[i].expression > expression;
+	for (int i = 0; i < s->impacts; i++)
+		s->impact[i].expression -= s->impact[i].expression > expression;
 	for (int r = 0; r < s->regions; r++)
 		for (int k = 0; k < s->region[r].releases; k++)
 			s->region[r].release[k].expression -= s->region[r].release[k].expression > expression;
@@ -698,7 +737,7 @@ void remove_idle_breaks(struct switching *s)
 	for (int e = s->expressions - 1; e >= 0; e--) {
 		for (int at = s->expression[e].breaks - 1; at >= 0; at--)
 			if (breaks_of_all(s) > 1 && !is_stick(&s->expression[e], at) &&
-			    !is_stick(&s->expression[e], at + 1) && changes_nothing(s, e, at))
+			    !is_stick(&s->expression[e], at + 1) && !is_struck(s, e, at) && changes_nothing(s, e, at))
 				remove_break(s, e, at);
 		if (s->expression[e].breaks == 0)
 			drop_expression(s, e);

@@ -689,7 +689,7 @@ struct form *combined_equation(const struct relative *r, int coord, struct form 
 
 struct relative *relative_of(const struct model *model)
 {
-	if (model->n < 2 || (model->switching && model->switching->frictions > 0))
+	if (model->n < 2 || (model->switching && has_events(model->switching)))
 		return NULL;                    /* what sticks is held in the coordinates as they are written */
 	struct look l = look_at_equations(model);
 	struct echelon both = l.place;

@@ -264,6 +264,15 @@ static enum scheme scheme_of_choice(const struct building *b)
 	return !b->spec->has_operator ? SCHEME_TAYLOR : many ? SCHEME_ETDAM4 : default_scheme();
 }
 
+/* Impacts go from event to event. */
+static void settle_impacts(void *context)
+{
+	struct building *b = context;
+	if (b->model->scheme != SCHEME_EXACT || b->request->loads_left || !is_piecewise_linear(b))
+		tell_no_impacts(b);
+	build_impacts(b);
+}
+
 static void tell_friction_stands(void *context)
 {
 	tell_no_friction(context);
@@ -273,7 +282,9 @@ static void tell_friction_stands(void *context)
 static bool settle_scheme(struct building *b)
 {
 	struct model *model = b->model;
-	bool linear = is_linear(b);
+	bool linear = is_linear(b) && model->impacts == 0;
+	if (model->impacts > 0 && !statement_guard(settle_impacts, b))
+		return false;
 	if (!linear && holds_friction(b) && (model->scheme != SCHEME_EXACT || !is_piecewise_linear(b)))
 		return statement_guard(tell_friction_stands, b);
 	if (!linear && !model->asked.scheme_at.source && !b->request->solution && !is_piecewise_linear(b)) {

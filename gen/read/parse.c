@@ -348,6 +348,11 @@ static struct node *resolve_name(struct parser *p, struct token token)
 	return node;
 }
 
+struct node *read_state(struct parser *p)
+{
+	return resolve_name(p, take(p));
+}
+
 static void check_arguments(const struct node *call)
 {
 	bool three = call->function == FN_DEADZONE || call->function == FN_CLIP;
@@ -554,7 +559,7 @@ static bool comparison_of(const struct parser *p, enum comparison *comparison)
 }
 
 /* comparison: sum [ ( < | <= | > | >= | == | != ) sum ] */
-static struct node *read_comparison(struct parser *p)
+struct node *read_condition(struct parser *p)
 {
 	struct node *left = read_sum(p);
 	enum comparison comparison;
@@ -574,7 +579,7 @@ static struct node *read_comparison(struct parser *p)
 /* expression: comparison [ ? expression : expression ] */
 struct node *read_expression(struct parser *p)
 {
-	struct node *condition = read_comparison(p);
+	struct node *condition = read_condition(p);
 	if (!is_op(p, "?"))
 		return condition;
 	struct node *node = node_new(NODE_CHOOSE, p->token.at);
@@ -1023,7 +1028,7 @@ static void read_modes(struct parser *p)
 	p->own->modes = take_modes(p);
 }
 
-static void expect_word(struct parser *p, const char *word)
+void expect_word(struct parser *p, const char *word)
 {
 	if (!take_word(p, word))
 		unexpected(p, format("'%s'", word));
@@ -1201,7 +1206,7 @@ static void read_budget(struct parser *p)
 
 /* ---- sketches ---- */
 
-static struct node *read_coordinate(struct parser *p, bool ground)
+struct node *read_coordinate(struct parser *p, bool ground)
 {
 	if (ground && take_word(p, "ground"))
 		return NULL;
@@ -1297,16 +1302,19 @@ static const struct statement {
 	{ "input", read_input }, { "matrix", read_matrix_statement }, { "mass", read_mass }, { "spring", read_spring },
 	{ "damper", read_damper }, { "force", read_force }, { "operator", read_operator }, { "tunable", read_tunable },
 	{ "tolerance", read_tolerance }, { "substeps", read_substeps }, { "modes", read_modes }, { "use", read_part },
-	{ "need", read_need }, { "budget", read_budget }, { "friction", read_friction }
+	{ "need", read_need }, { "budget", read_budget }, { "friction", read_friction },
+	{ "when", read_when }, { "stop", read_stop }
 };
 
-/* tolerance, substeps, modes, use, need and budget may be names of a spec's own: in an equation an operator or a prime
- * follows; a sign is that of a number where the line has no =; an = is no equation where there is no such name. */
+/* tolerance, substeps, modes, use, need, budget, when and stop may be names of a spec's own: in an equation an operator
+ * or a prime follows; a sign is that of a number where the line has no =; an = is no equation where there is no such name. */
 static bool opens_statement(const struct parser *p, const struct statement *statement, struct token token)
 {
 	const char *next = token.at.source->text + token.at.offset + token.length;
 	next += strspn(next, " \t");
 	bool sign = *next == '-' || *next == '+';
+	if (strcmp(statement->word, "when") == 0 && next[strcspn(next, ":\n")] == ':' && sign)
+		return true;                    /* when -x > 0: x' = 0 */
 	if (strcmp(statement->word, "friction") == 0 && *next == '(') {     /* friction(v, F) of an equation */
 		const char *between = strstr(next, " between ");
 		return between && between < next + strcspn(next, "\n#");

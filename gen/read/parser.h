@@ -46,11 +46,16 @@ struct token take(struct parser *p);
 bool is_op(const struct parser *p, const char *op);
 bool take_op(struct parser *p, const char *op);
 bool take_word(struct parser *p, const char *word);
+void expect_word(struct parser *p, const char *word);
 _Noreturn void unexpected(const struct parser *p, const char *expected);
 void expect_op(struct parser *p, const char *op, const char *expected);
 void expect_end(struct parser *p);
 struct token expect_new_name(struct parser *p, const char *what);
 struct node *read_expression(struct parser *p);
+struct node *read_condition(struct parser *p);              /* an expression, or a single comparison of two */
+struct node *read_state(struct parser *p);                  /* at a name: what it stands for */
+/* a scalar coordinate, or a component; `ground`: or NULL, the ground */
+struct node *read_coordinate(struct parser *p, bool ground);
 int  read_component(struct parser *p, int *primes, bool declared);
 void check_component(const struct symbol *symbol, int component, struct place at);
 const char *symbol_kind(const struct symbol *symbol);
@@ -64,6 +69,11 @@ void add_initial(struct parser *p, struct token name, struct symbol *coord, int 
 void declare_quietly(struct parser *p, struct token name, enum symbol_kind kind); /* broken, unless it is known */
 struct spec *parse_whole(const struct source *source, const struct part_reader *reader);
 void parse_statements(struct spec *spec, struct spec *own, struct scene_part *part, const struct source *source);
+
+/* ---- when.c ---- */
+
+void read_when(struct parser *p);
+void read_stop(struct parser *p);
 
 /* ---- habits.c: what is written from habit of paper and of other programs; notes, or NULL ---- */
 

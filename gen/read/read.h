@@ -117,6 +117,19 @@ struct element {                    /* of a sketch */
 	struct place at, end;
 	struct node *value, *from, *to; /* coordinates, or components; `to` NULL: the ground, or none */
 };
+struct state_jump {                 /* of `when`: state = value just behind it */
+	struct node *target, *value;
+};
+struct when {                       /* when guard: jump, jump;  or a stop that bounces */
+	struct place at, end;
+	const struct scene_part *part;    /* whose text has it; NULL: the scene's */
+	struct node *guard;         /* a comparison, < <= > or >= */
+	int jumps;
+	struct state_jump *jump;
+	/* of stop: between two coordinates, NULL: the ground; what comes up to `gap` is from - to. restitution NULL: it
+	 * is no stop */
+	struct node *from, *to, *gap, *restitution;
+};
 struct initial {
 	struct place at;
 	const struct scene_part *part;    /* whose text gives it; NULL: the scene's */
@@ -192,6 +205,8 @@ struct spec {                       /* what the text says, names resolved, nothi
 	struct equation *equation;
 	int elements;
 	struct element *element;
+	int whens;                      /* in the order in which they act at one instant */
+	struct when *when;
 	int files;                      /* data files, for the dependency file */
 	const char **file;
 	int initials;

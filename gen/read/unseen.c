@@ -46,6 +46,18 @@ static struct list read_by(struct sight *sight, const struct node *left, const s
 	return list;
 }
 
+static struct list read_by_when(struct sight *sight, const struct when *when)
+{
+	struct list list = { 0 };
+	sight->walk++;
+	add_coordinates(sight, when->guard, &list);
+	for (int i = 0; i < when->jumps; i++) {
+		add_coordinates(sight, when->jump[i].target, &list);
+		add_coordinates(sight, when->jump[i].value, &list);
+	}
+	return list;
+}
+
 /* ---- what is seen ---- */
 
 static void see(struct sight *sight, const struct list *list)
@@ -78,7 +90,7 @@ static bool is_seen(const struct sight *sight, const struct list *list)
 static struct tie *ties_of(struct sight *sight)
 {
 	const struct spec *spec = sight->spec;
-	struct tie *tie = ARRAY(struct tie, (size_t)(spec->equations + spec->elements));
+	struct tie *tie = ARRAY(struct tie, (size_t)(spec->equations + spec->elements + spec->whens));
 	for (int i = 0; i < spec->equations; i++)
 		tie[i].together = read_by(sight, spec->equation[i].left, spec->equation[i].right);
 	for (int i = 0; i < spec->elements; i++) {
@@ -87,6 +99,8 @@ static struct tie *ties_of(struct sight *sight)
 		own->together = read_by(sight, element->from, element->to);
 		own->read = read_by(sight, element->value, NULL);
 	}
+	for (int i = 0; i < spec->whens; i++)
+		tie[spec->equations + spec->elements + i].together = read_by_when(sight, &spec->when[i]);
 	return tie;
 }
 
@@ -94,7 +108,7 @@ static void follow(struct sight *sight, const struct tie *tie)
 {
 	do {
 		sight->grown = false;
-		for (int i = 0; i < sight->spec->equations + sight->spec->elements; i++) {
+		for (int i = 0; i < sight->spec->equations + sight->spec->elements + sight->spec->whens; i++) {
 			if (!is_seen(sight, &tie[i].together))
 				continue;
 			see(sight, &tie[i].together);
@@ -214,13 +228,17 @@ static void drop_others(struct spec *spec, const bool *gone, int tunables)
 static void drop_ties(struct sight *sight, const struct tie *tie)
 {
 	struct spec *spec = sight->spec;
-	int equations = 0, elements = 0;
+	int equations = 0, elements = 0, whens = 0, first = spec->equations + spec->elements;
 	for (int i = 0; i < spec->equations; i++)
 		if (is_seen(sight, &tie[i].together))
 			spec->equation[equations++] = spec->equation[i];
 	for (int i = 0; i < spec->elements; i++)
 		if (is_seen(sight, &tie[spec->equations + i].together))
 			spec->element[elements++] = spec->element[i];
+	for (int i = 0; i < spec->whens; i++)
+		if (is_seen(sight, &tie[first + i].together))
+			spec->when[whens++] = spec->when[i];
+	spec->whens = whens;
 	spec->equations = equations;
 	spec->elements = elements;
 }

@@ -3,6 +3,7 @@
  * expression that comes to an end of its interval, or of a force that comes to what friction can hold. */
 #include "step/step.h"
 
+#include <math.h>
 #include <string.h>
 
 /* The index of a row of a branch; equal ones are one */
@@ -51,7 +52,9 @@ static void guard_interval(const struct step *step, const struct pieces *pieces,
 				       .upward = upward,
 				       .leads = upward ? e->stride : -e->stride,
 				       .limit = upward || at == 0 ? at : -at,
-				       .jump = -1 };
+				       .impact = impact_at(s, expression, e->at[breakpoint], upward) };
+		if (guard.impact < 0 && impact_resting(s, expression, interval + (upward ? 1 : -1)) >= 0)
+			guard.leads *= 2;       /* past the interval of rest, which impacts alone lead to */
 		add_guard(g, size, s->region[region].system,
 			  turned(size, pieces->row + expression * size, upward), guard);
 	}
@@ -73,8 +76,23 @@ static void guard_releases(const struct step *step, struct guards *g, int region
 					  .breakpoint = interval - !release->upward,
 					  .upward = release->upward,
 					  .leads = release->upward ? stride : -stride,
-					  .jump = -1 });
+					  .impact = -1 });
 	}
+}
+
+static void add_assignment(const struct step *step, struct guards *g, int state, const struct output *row)
+{
+	struct held_state new = { state, ARRAY(double, (size_t)step->layout.size) };
+	row_over_x(step, row, 0, new.value);
+	ENLARGE(g->assignment, (size_t)g->assignments + 1);
+	g->assignment[g->assignments++] = new;
+}
+
+static int end_set(struct guards *g)
+{
+	ENLARGE(g->set, (size_t)g->sets + 2);
+	g->set[++g->sets] = g->assignments;
+	return g->sets - 1;
 }
 
 static void hold_region(const struct step *step, struct guards *g, int region)
@@ -83,15 +101,45 @@ static void hold_region(const struct step *step, struct guards *g, int region)
 	g->hold[region] = -1;
 	if (!r->possible || r->holds == 0)
 		return;
-	g->hold[region] = g->sets++;
-	for (int k = 0; k < r->holds; k++) {
-		struct held_state new = { r->hold[k].state, ARRAY(double, (size_t)step->layout.size) };
-		row_over_x(step, r->hold[k].row, 0, new.value);
-		ENLARGE(g->assignment, (size_t)g->assignments + 1);
-		g->assignment[g->assignments++] = new;
+	g->hold[region] = g->sets;
+	for (int k = 0; k < r->holds; k++)
+		add_assignment(step, g, r->hold[k].state, r->hold[k].row);
+	end_set(g);
+}
+
+static int set_of_jumps(const struct step *step, struct guards *g, int jumps, const struct jump *jump)
+{
+	for (int k = 0; k < jumps; k++)
+		add_assignment(step, g, jump[k].state, jump[k].row);
+	return end_set(g);
+}
+
+static void strike(const struct step *step, struct guards *g, const struct impact *impact)
+{
+	const struct switching *s = step->model->switching;
+	const struct expression *e = &s->expression[impact->expression];
+	struct struck new = { .expression = impact->expression, .upward = impact->upward, .rest = rest_of(s, impact),
+			      .still = -1, .restitution = round_rational(impact->restitution) };
+	while (!mpq_equal(e->at[new.breakpoint], impact->at))
+		new.breakpoint++;
+	if (impact->bounces && !impact->upward)
+		new.breakpoint++;               /* the upper of two */
+	new.jump = set_of_jumps(step, g, impact->jumps, impact->jump);
+	new.speed = ARRAY(double, (size_t)step->layout.size);
+	new.back = ARRAY(double, (size_t)step->layout.size);
+	mpq_t part;
+	mpq_init(part);
+	if (impact->bounces) {
+		new.still = set_of_jumps(step, g, impact->jumps, impact->still);
+		row_over_x(step, impact->speed_row, 0, new.speed);
+		for (int j = 0; j < step->model->n; j++) {
+			mpq_mul(part, impact->direction[j], impact->factor);
+			new.back[j] = round_rational(part);
+		}
 	}
-	ENLARGE(g->set, (size_t)g->sets + 1);
-	g->set[g->sets] = g->assignments;
+	new.play = size_of_bounded(step, new.speed);
+	mpq_clear(part);
+	g->impact[g->impacts++] = new;
 }
 
 static void bound_rows_of_guards(const struct step *step, const struct pieces *pieces, struct guards *g)
@@ -139,6 +187,9 @@ struct guards guards_of(const struct step *step, const struct pieces *pieces)
 				guard_interval(step, pieces, &g, r, e, first);
 	}
 	g.first[s->regions] = g.guards;
+	g.impact = ARRAY(struct struck, (size_t)s->impacts);
+	for (int i = 0; i < s->impacts; i++)
+		strike(step, &g, &s->impact[i]);
 	bound_rows_of_guards(step, pieces, &g);
 	g.play = ARRAY(double, (size_t)s->expressions);
 	g.row_play = ARRAY(double, (size_t)g.rows);
@@ -147,4 +198,29 @@ struct guards guards_of(const struct step *step, const struct pieces *pieces)
 	for (int i = 0; i < g.rows; i++)
 		g.row_play[i] = size_of_bounded(step, g.row + i * step->layout.size);
 	return g;
+}
+
+/* From h down to 2^-20 h, where they rest, bounces become shorter by e each. */
+static int bounces_in_step(const struct model *model)
+{
+	enum { MOST = 480, SHORTER = 20 };
+	int most = 0;
+	for (int i = 0; i < model->impacts; i++) {
+		double e = mpq_get_d(model->impact[i].restitution);
+		if (!model->impact[i].bounces || e <= 0 || e >= 1)
+			continue;
+		double count = ceil(SHORTER * log(2) / -log(e));
+		most = count > most ? (int)fmin(count, MOST) : most;
+	}
+	return most;
+}
+
+int max_events(const struct model *model)
+{
+	return MAX_EVENTS + bounces_in_step(model);
+}
+
+int max_splits(const struct model *model)
+{
+	return MAX_SPLITS + 16 * bounces_in_step(model);
 }

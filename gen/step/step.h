@@ -459,7 +459,16 @@ struct guard {                      /* row . x must not become greater than the 
 	bool upward;
 	int leads;                  /* to the region of this number, less that where it stands */
 	double limit;
-	int jump;                   /* the set of assignments before that; -1: none */
+	int impact;                 /* that begins there; -1: none */
+};
+struct struck {                     /* an impact */
+	int expression, breakpoint;
+	bool upward;
+	int rest;                   /* the interval in which it rests; -1: it is no bounce */
+	int jump, still;            /* sets of assignments: its jump; that of a bounce without restitution */
+	double *speed;              /* of its guard, as a row over x */
+	double *back;               /* over x: so much times how far the expression is beyond, and it is on its guard */
+	double restitution, play;   /* play: the sizes of its speed's factors of cos and sin */
 };
 struct held_state { int state; double *value; };            /* x[state] = value . x */
 struct guards {
@@ -473,8 +482,13 @@ struct guards {
 	int *hold;                  /* per region: the set that holds its states; -1: none */
 	int assignments;
 	struct held_state *assignment;
+	int impacts;
+	struct struck *impact;
 };
 struct guards guards_of(const struct step *step, const struct pieces *pieces);
+/* of one step: MAX_EVENTS and MAX_SPLITS, and room for the bounces before a contact rests */
+int max_events(const struct model *model);
+int max_splits(const struct model *model);
 double *grips_of(const struct step *step); /* what friction carries: regions x frictions x size */
 
 /* ---- peaks.c: outputs of which the largest size is asked for ---- */

@@ -1,0 +1,170 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Impacts against closed forms: a ball until it rests, an oscillator that strikes once a period, a ball on a shaken
+ * table, balls that touch; and that no impact adds energy. */
+#include "bouncing_ball.h"
+#include "clatter.h"
+#include "cradle.h"
+#include "impact_oscillator.h"
+#include "shaken_table.h"
+#include "tap.h"
+
+#include <math.h>
+
+/* ---- the ball: bounce n at t0 (1 + 2 (e + ... + e^n)), t0 = sqrt(2 drop/g), rest at t0 (1 + e)/(1 - e) ---- */
+
+static void bounces(void)
+{
+	const double e = 0.8, t0 = sqrt(2 / 9.81);
+	bouncing_ball s;
+	pl_crossing crossing[BOUNCING_BALL_MAX_EVENTS];
+	double due = t0, flight = 2 * t0, worst = 0, last = 0, y[2];
+	int count = 0;
+	bouncing_ball_init(&s);
+	for (int k = 0; k < 500; k++) {
+		bouncing_ball_step(&s);
+		const int here = bouncing_ball_crossings(&s, crossing);
+		for (int i = 0; i < here; i++) {
+			last = k * BOUNCING_BALL_H + crossing[i].time;
+			if (flight > 1e-7) {
+				worst = worse(worst, fabs(last - due));
+				flight *= e;
+				due += flight;
+				count++;
+			}
+		}
+	}
+	ok(worst <= 2e-13 && count > 60, "ball: %d bounces, times off by %.3g s at most", count, worst);
+	close_to(last, t0 * (1 + e) / (1 - e), 1e-12, "ball: rests [s]");
+	bouncing_ball_get(&s, y);
+	ok(y[0] == 0 && y[1] == 0, "ball: rests at 0, velocity 0 (%g, %g)", y[0], y[1]);
+	close_to(bouncing_ball_status(&s), 0, 0, "ball: status");
+	close_to((double)bouncing_ball_rested(&s), 1, 0, "ball: contacts that came to rest");
+}
+
+/* ---- x'' + x = cos(w t), stop at 0: one impact in each period T = 2 pi/w. With time from an impact, load
+ * cos(w t + p): x = A (cos t + tan(T/2) sin t) - A/cos p cos(w t + p), A = -cos p/(1 - w^2),
+ * tan p = -tan(T/2)/w (1 - e)/(1 + e). It is what the motion from rest goes to. ---- */
+
+static void oscillator(void)
+{
+	const double w = 2.2, e = 0.7, T = 2 * 3.14159265358979323846 / w, C = 1 / (1 - w * w);
+	double phase = atan(-tan(T / 2) / w * (1 - e) / (1 + e)), worst = 0, y[2];
+	double A = -C * cos(phase);
+	if (A * tan(T / 2) - C * w * sin(phase) > 0) { /* away from the stop */
+		phase += 3.14159265358979323846;
+		A = -A;
+	}
+	impact_oscillator s;
+	impact_oscillator_init(&s);
+	for (int k = 0; k < 100000; k++)
+		impact_oscillator_step(&s);
+	for (int k = 0; k < 1000; k++) {
+		impact_oscillator_step(&s);
+		impact_oscillator_get(&s, y);
+		const double t = fmod(impact_oscillator_time(&s) - phase / w + 4 * T, T);
+		if (t < 1e-9 || T - t < 1e-9)
+			continue;
+		worst = worse(worst, fabs(y[0] - A * (cos(t) + tan(T / 2) * sin(t)) - C * cos(w * t + phase)));
+		worst = worse(worst,
+			      fabs(y[1] - A * (tan(T / 2) * cos(t) - sin(t)) + C * w * sin(w * t + phase)));
+	}
+	ok(worst <= 1e-11, "oscillator: the orbit with one impact a period, off by %.3g at most", worst);
+}
+
+/* ---- the table b sin(w t): the ball leaves where b w^2 sin(w t) = g, and lands where its parabola meets it ---- */
+
+static long double above(long double leaves, long double t)
+{
+	const long double b = 0.005L, w = 60, d = t - leaves;
+	return b * sinl(w * leaves) + b * w * cosl(w * leaves) * d - 9.81L / 2 * d * d - b * sinl(w * t);
+}
+
+static long double lands(long double leaves)
+{
+	long double low = leaves + 1e-3L, high = low;
+	while (above(leaves, high) > 0)
+		high += 1e-4L;
+	for (int i = 0; i < 80; i++) {
+		const long double middle = (low + high) / 2;
+		*(above(leaves, middle) > 0 ? &low : &high) = middle;
+	}
+	return low;
+}
+
+static void table(void)
+{
+	const long double w = 60, turn = 2 * 3.14159265358979323846264338L / w, first = asinl(9.81L / 0.005L / w / w) / w;
+	shaken_table s;
+	pl_crossing crossing[SHAKEN_TABLE_MAX_EVENTS];
+	long double due = first;
+	double worst = 0, most = 0, out[SHAKEN_TABLE_OUTPUTS];
+	int count = 0, flies = 0;
+	shaken_table_init(&s);
+	for (int k = 0; k < 400; k++) {
+		shaken_table_step(&s);
+		const int here = shaken_table_crossings(&s, crossing);
+		for (int i = 0; i < here; i++) {
+			const double time = k * SHAKEN_TABLE_H + crossing[i].time;
+			if (flies && time - (double)due < -1e-6)
+				continue;
+			if (fabs(time - (double)due) > 1e-6)
+				continue;
+			worst = worse(worst, fabs(time - (double)due));
+			count++;
+			if (!flies) {
+				due = lands(due);
+			} else {
+				long double next = first;
+				while (next < due)
+					next += turn;
+				due = next;
+			}
+			flies = !flies;
+		}
+		shaken_table_out(&s, out);
+		most = worse(most, -out[1]);
+	}
+	ok(worst <= 1e-12 && count > 60, "table: leaves and lands, %d times, off by %.3g s at most", count, worst);
+	ok(most <= 1e-17, "table: never below it (%g)", most);
+}
+
+static void cradle_of_three(void)
+{
+	cradle s;
+	double y[6];
+	cradle_init(&s);
+	for (int k = 0; k < 10; k++)
+		cradle_step(&s);
+	cradle_get(&s, y);
+	const double expected[6] = { 0, 0, 2, 0, 0, 1 };
+	for (int i = 0; i < 6; i++)
+		close_to(y[i], expected[i], 1e-14, "cradle: state %d at 3 s", i);
+}
+
+static void energy(void)
+{
+	clatter s;
+	double out[1], before = 1e9, grown = 0;
+	uint64_t struck;
+	clatter_init(&s);
+	for (int k = 0; k < 20000; k++) {
+		clatter_step(&s);
+		clatter_out(&s, out);
+		grown = worse(grown, out[0] - before);
+		before = out[0];
+	}
+	struck = clatter_crossed(&s);
+	ok(grown <= 1e-15, "clatter: energy grows by %.3g at most", grown);
+	ok(struck > 40, "clatter: %d impacts", (int)struck);
+	close_to(clatter_status(&s), 0, 0, "clatter: status");
+}
+
+int main(void)
+{
+	bounces();
+	oscillator();
+	table();
+	cradle_of_three();
+	energy();
+	return tap_end();
+}

@@ -1,0 +1,655 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* x = q, v, 1, cos w t, sin w t. In each mode of the contacts x' = A x; A and forces of contact as rows over x. */
+#include "truth.h"
+
+#include "polynomial.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+enum { MOST = 2 * MOST_MASSES + 3 };
+typedef mpfr_t row[MOST];
+
+struct moving {
+	const struct scene *s;
+	int size, one;
+	enum mode mode[MOST_CONTACTS];
+	bool hidden[MOST_CONTACTS];     /* its bounces are listed no more */
+	mpfr_t A[MOST][MOST];
+	row force[MOST_CONTACTS];       /* what holds a contact that sticks or rests, along its direction */
+	row x;
+	mpfr_t series[DEGREE + 1][MOST];
+	mpfr_t time, tiny;
+	double brief;
+	struct truth *found;
+};
+
+static void row_start(mpfr_t *r, int count)
+{
+	for (int i = 0; i < count; i++) {
+		mpfr_init2(r[i], BITS);
+		mpfr_set_zero(r[i], 1);
+	}
+}
+
+static void row_stop(mpfr_t *r, int count)
+{
+	for (int i = 0; i < count; i++)
+		mpfr_clear(r[i]);
+}
+
+static void zero(mpfr_t *r, int count)
+{
+	for (int i = 0; i < count; i++)
+		mpfr_set_zero(r[i], 1);
+}
+
+static void thousandths(mpfr_ptr to, long value)
+{
+	mpfr_set_si(to, value, MPFR_RNDN);
+	mpfr_div_ui(to, to, 1000, MPFR_RNDN);
+}
+
+static void dot(int n, mpfr_t *a, mpfr_t *b, mpfr_ptr sum)
+{
+	mpfr_t total;
+	mpfr_init2(total, BITS);
+	mpfr_set_zero(total, 1);
+	for (int i = 0; i < n; i++)
+		mpfr_fma(total, a[i], b[i], total, MPFR_RNDN);
+	mpfr_set(sum, total, MPFR_RNDN);
+	mpfr_clear(total);
+}
+
+static void doubt(struct moving *m, const char *why)
+{
+	if (!m->found->doubtful)
+		m->found->doubt = why;
+	m->found->doubtful = true;
+}
+
+/* ---- laws ---- */
+
+/* +1 at `on`, -1 at `against`, times the side */
+static int share(const struct contact *c, int mass)
+{
+	int side = c->kind == FRICTION ? 1 : (int)c->side;
+	return mass == c->on ? side : mass == c->against ? -side : 0;
+}
+
+static bool is_bound(enum mode mode) { return mode == STICKING || mode == RESTING; }
+
+/* a += factor (thousandths) times row e_column */
+static void add(mpfr_t *a, int column, long factor)
+{
+	mpfr_t f;
+	mpfr_init2(f, BITS);
+	thousandths(f, factor);
+	mpfr_add(a[column], a[column], f, MPFR_RNDN);
+	mpfr_clear(f);
+}
+
+/* Forces on masses, without those that hold: row over x for each mass */
+static void fill_forces(const struct moving *m, mpfr_t (*f)[MOST])
+{
+	const struct scene *s = m->s;
+	for (int i = 0; i < s->n; i++) {
+		zero(f[i], MOST);
+		add(f[i], m->one, s->constant[i]);
+		add(f[i], m->one + 1, s->cosine[i]);
+		add(f[i], m->one + 2, s->sine[i]);
+	}
+	for (int k = 0; k < s->n; k++)          /* spring and damper from mass k to k - 1 */
+		for (int end = k; end >= 0 && end >= k - 1; end--)
+			for (int other = k; other >= 0 && other >= k - 1; other--) {
+				long sign = end == other ? -1 : 1;
+				add(f[end], other, sign * s->spring[k]);
+				add(f[end], s->n + other, sign * s->damper[k]);
+			}
+	for (int k = 0; k < s->contacts; k++) {
+		const struct contact *c = &s->contact[k];
+		for (int i = 0; i < s->n; i++) {
+			int here = share(c, i);
+			if (here == 0)
+				continue;
+			if (c->kind == FRICTION && m->mode[k] != STICKING)
+				add(f[i], m->one, m->mode[k] == FORWARD ? -here * c->force : here * c->force);
+			if (m->mode[k] != CLOSED)
+				continue;
+			for (int j = 0; j < s->n; j++)
+				add(f[i], j, -here * share(c, j) * c->stiffness);
+			mpfr_t push, gap;
+			mpfr_inits2(BITS, push, gap, (mpfr_ptr)0);
+			thousandths(push, here * c->stiffness);
+			thousandths(gap, c->gap);
+			mpfr_fma(f[i][m->one], push, gap, f[i][m->one], MPFR_RNDN);
+			mpfr_clears(push, gap, (mpfr_ptr)0);
+		}
+	}
+}
+
+/* W r = b, W k x k, b k rows over x, by elimination with pivots; false: singular */
+static bool solve(int k, mpfr_t (*W)[MOST_CONTACTS], mpfr_t (*b)[MOST])
+{
+	mpfr_t factor;
+	mpfr_init2(factor, BITS);
+	bool good = true;
+	for (int p = 0; p < k && good; p++) {
+		int best = p;
+		for (int i = p + 1; i < k; i++)
+			if (mpfr_cmpabs(W[i][p], W[best][p]) > 0)
+				best = i;
+		good = fabs(mpfr_get_d(W[best][p], MPFR_RNDN)) > 1e-30;
+		for (int j = 0; j < k; j++)
+			mpfr_swap(W[p][j], W[best][j]);
+		for (int j = 0; j < MOST; j++)
+			mpfr_swap(b[p][j], b[best][j]);
+		for (int i = 0; i < k && good; i++) {
+			if (i == p)
+				continue;
+			mpfr_div(factor, W[i][p], W[p][p], MPFR_RNDN);
+			mpfr_neg(factor, factor, MPFR_RNDN);
+			for (int j = 0; j < k; j++)
+				mpfr_fma(W[i][j], factor, W[p][j], W[i][j], MPFR_RNDN);
+			for (int j = 0; j < MOST; j++)
+				mpfr_fma(b[i][j], factor, b[p][j], b[i][j], MPFR_RNDN);
+		}
+	}
+	for (int p = 0; p < k && good; p++)
+		for (int j = 0; j < MOST; j++)
+			mpfr_div(b[p][j], b[p][j], W[p][p], MPFR_RNDN);
+	mpfr_clear(factor);
+	return good;
+}
+
+/* What holds: G M^-1 (f + G^T r) = 0, r as rows over x; f becomes f + G^T r */
+static void hold(struct moving *m, mpfr_t (*f)[MOST])
+{
+	const struct scene *s = m->s;
+	int bound[MOST_CONTACTS], k = 0;
+	mpfr_t W[MOST_CONTACTS][MOST_CONTACTS], b[MOST_CONTACTS][MOST], mass, part;
+	mpfr_inits2(BITS, mass, part, (mpfr_ptr)0);
+	for (int c = 0; c < s->contacts; c++)
+		if (is_bound(m->mode[c]))
+			bound[k++] = c;
+	for (int i = 0; i < k; i++) {
+		row_start(W[i], MOST_CONTACTS);
+		row_start(b[i], MOST);
+		for (int q = 0; q < s->n; q++) {
+			const int here = share(&s->contact[bound[i]], q);
+			thousandths(mass, s->mass[q]);
+			for (int j = 0; j < k; j++) {
+				mpfr_set_si(part, here * share(&s->contact[bound[j]], q), MPFR_RNDN);
+				mpfr_div(part, part, mass, MPFR_RNDN);
+				mpfr_add(W[i][j], W[i][j], part, MPFR_RNDN);
+			}
+			for (int j = 0; j < MOST; j++) {
+				mpfr_mul_si(part, f[q][j], -here, MPFR_RNDN);
+				mpfr_div(part, part, mass, MPFR_RNDN);
+				mpfr_add(b[i][j], b[i][j], part, MPFR_RNDN);
+			}
+		}
+	}
+	if (!solve(k, W, b))
+		doubt(m, "constraints that are not independent");
+	for (int i = 0; i < k; i++) {
+		for (int j = 0; j < MOST; j++) {
+			mpfr_set(m->force[bound[i]][j], b[i][j], MPFR_RNDN);
+			for (int q = 0; q < s->n; q++) {
+				mpfr_mul_si(part, b[i][j], share(&s->contact[bound[i]], q), MPFR_RNDN);
+				mpfr_add(f[q][j], f[q][j], part, MPFR_RNDN);
+			}
+		}
+		row_stop(W[i], MOST_CONTACTS);
+		row_stop(b[i], MOST);
+	}
+	mpfr_clears(mass, part, (mpfr_ptr)0);
+}
+
+static void fill_equations(struct moving *m)
+{
+	const struct scene *s = m->s;
+	mpfr_t f[MOST_MASSES][MOST], mass;
+	mpfr_init2(mass, BITS);
+	for (int i = 0; i < s->n; i++)
+		row_start(f[i], MOST);
+	fill_forces(m, f);
+	hold(m, f);
+	for (int i = 0; i < MOST; i++)
+		zero(m->A[i], MOST);
+	for (int i = 0; i < s->n; i++) {
+		mpfr_set_ui(m->A[i][s->n + i], 1, MPFR_RNDN);
+		thousandths(mass, s->mass[i]);
+		for (int j = 0; j < MOST; j++)
+			mpfr_div(m->A[s->n + i][j], f[i][j], mass, MPFR_RNDN);
+		row_stop(f[i], MOST);
+	}
+	add(m->A[m->one + 1], m->one + 2, -s->frequency);
+	add(m->A[m->one + 2], m->one + 1, s->frequency);
+	mpfr_clear(mass);
+}
+
+/* ---- quantities of contacts, as rows over x ---- */
+
+/* p - gap, or its derivative; of friction v - belt with derivative 1 */
+static void measure(const struct moving *m, int index, int derivative, mpfr_t *r)
+{
+	const struct contact *c = &m->s->contact[index];
+	zero(r, MOST);
+	for (int i = 0; i < m->s->n; i++)
+		mpfr_set_si(r[i + derivative * m->s->n], share(c, i), MPFR_RNDN);
+	if (c->kind == FRICTION)
+		add(r, m->one, -c->belt);
+	else if (derivative == 0)
+		add(r, m->one, -c->gap);
+}
+
+static void measure_now(struct moving *m, int index, int derivative, mpfr_ptr value)
+{
+	row r;
+	row_start(r, MOST);
+	measure(m, index, derivative, r);
+	dot(MOST, r, m->x, value);
+	row_stop(r, MOST);
+}
+
+/* The sign of what rises when the contact's mode ends: row number `which`; false: there is none of this number */
+static bool guard(const struct moving *m, int index, int which, mpfr_t *r)
+{
+	const struct contact *c = &m->s->contact[index];
+	enum mode mode = m->mode[index];
+	if (which > (mode == STICKING))
+		return false;
+	if (mode == OPEN || mode == CLOSED)
+		measure(m, index, 0, r);
+	else if (mode == FORWARD || mode == BACKWARD)
+		measure(m, index, 1, r);
+	else
+		for (int j = 0; j < MOST; j++)
+			mpfr_set(r[j], m->force[index][j], MPFR_RNDN);
+	bool turned = mode == CLOSED || mode == FORWARD || which == 1;
+	for (int j = 0; j < MOST && turned; j++)
+		mpfr_neg(r[j], r[j], MPFR_RNDN);
+	if (mode == STICKING)
+		add(r, m->one, -c->force);
+	return true;
+}
+
+/* The sign of the first of r x, r A x, r A^2 x, ... that is not 0, from derivative `from` on */
+static int first_sign(const struct moving *m, mpfr_t *r, int from)
+{
+	enum { FURTHEST = 5 };
+	row y, z;
+	mpfr_t value;
+	int sign = 0;
+	row_start(y, MOST);
+	row_start(z, MOST);
+	mpfr_init2(value, BITS);
+	for (int i = 0; i < MOST; i++)
+		mpfr_set(y[i], m->x[i], MPFR_RNDN);
+	for (int k = 0; k <= FURTHEST && sign == 0; k++) {
+		dot(MOST, r, y, value);
+		if (k >= from && mpfr_cmpabs(value, m->tiny) > 0)
+			sign = mpfr_sgn(value);
+		for (int i = 0; i < MOST; i++)
+			dot(MOST, (mpfr_t *)m->A[i], y, z[i]);
+		for (int i = 0; i < MOST; i++)
+			mpfr_swap(y[i], z[i]);
+	}
+	row_stop(y, MOST);
+	row_stop(z, MOST);
+	mpfr_clear(value);
+	return sign;
+}
+
+/* ---- which modes hold behind an event ---- */
+
+static void log_event(struct moving *m, double time, int contact, enum mode from, enum mode to)
+{
+	if (m->found->events == MOST_FOUND) {
+		doubt(m, "too many events");
+		return;
+	}
+	m->found->event[m->found->events++] = (struct event){ time, contact, from, to };
+}
+
+/* v -> v - (1 + e) M^-1 G^T (G v)/(G M^-1 G^T), e in thousandths */
+static void strike(struct moving *m, int index, long e)
+{
+	const struct scene *s = m->s;
+	mpfr_t speed, weight, mass, part;
+	mpfr_inits2(BITS, speed, weight, mass, part, (mpfr_ptr)0);
+	measure_now(m, index, 1, speed);
+	mpfr_set_zero(weight, 1);
+	for (int i = 0; i < s->n; i++) {
+		if (share(&s->contact[index], i) == 0)
+			continue;
+		thousandths(mass, s->mass[i]);
+		mpfr_ui_div(mass, 1, mass, MPFR_RNDN);
+		mpfr_add(weight, weight, mass, MPFR_RNDN);
+	}
+	mpfr_div(speed, speed, weight, MPFR_RNDN);
+	mpfr_mul_si(speed, speed, 1000 + e, MPFR_RNDN);
+	mpfr_div_ui(speed, speed, 1000, MPFR_RNDN);
+	for (int i = 0; i < s->n; i++) {
+		thousandths(mass, s->mass[i]);
+		mpfr_mul_si(part, speed, share(&s->contact[index], i), MPFR_RNDN);
+		mpfr_div(part, part, mass, MPFR_RNDN);
+		mpfr_sub(m->x[s->n + i], m->x[s->n + i], part, MPFR_RNDN);
+	}
+	mpfr_clears(speed, weight, mass, part, (mpfr_ptr)0);
+}
+
+/* In the order of contacts, each from the velocities that the one before has left, until none comes closer */
+static void strike_all(struct moving *m, bool *struck)
+{
+	mpfr_t off, speed;
+	mpfr_inits2(BITS, off, speed, (mpfr_ptr)0);
+	int rounds = 0;
+	for (int i = 0; i < m->s->contacts; i++) {
+		if (m->s->contact[i].kind != IMPACT)
+			continue;
+		measure_now(m, i, 0, off);
+		measure_now(m, i, 1, speed);
+		if (mpfr_cmpabs(off, m->tiny) > 0 || mpfr_cmp(speed, m->tiny) <= 0)
+			continue;
+		if (++rounds > 200) {
+			doubt(m, "impacts without an end at one instant");
+			break;
+		}
+		strike(m, i, m->s->contact[i].restitution);
+		struck[i] = true;
+		m->mode[i] = OPEN;
+		i = -1;
+	}
+	mpfr_clears(off, speed, (mpfr_ptr)0);
+}
+
+/* Whether this combination keeps to the laws of the contacts in `open` from here on */
+static bool lawful(struct moving *m, const bool *open)
+{
+	row r;
+	bool good = true;
+	row_start(r, MOST);
+	fill_equations(m);
+	for (int i = 0; i < m->s->contacts && good; i++) {
+		if (!open[i])
+			continue;
+		if (m->mode[i] == FORWARD || m->mode[i] == BACKWARD) {
+			measure(m, i, 1, r);
+			good = first_sign(m, r, 1) == (m->mode[i] == FORWARD ? 1 : -1);
+		} else if (m->mode[i] == OPEN) {
+			measure(m, i, 0, r);
+			good = first_sign(m, r, 2) < 0;
+		} else {
+			for (int which = 0; good && guard(m, i, which, r); which++)
+				good = first_sign(m, r, 0) < 0 + (m->mode[i] == RESTING);
+		}
+	}
+	row_stop(r, MOST);
+	return good;
+}
+
+static void try_all(struct moving *m, const bool *open, int index, enum mode *best, int *count)
+{
+	if (index == m->s->contacts) {
+		if (lawful(m, open))
+			for (int i = ((*count)++, 0); i < m->s->contacts; i++)
+				best[i] = m->mode[i];
+		return;
+	}
+	enum mode before = m->mode[index];
+	enum mode first = m->s->contact[index].kind == FRICTION ? BACKWARD : OPEN;
+	enum mode last = m->s->contact[index].kind == FRICTION ? FORWARD : RESTING;
+	if (!open[index])
+		try_all(m, open, index + 1, best, count);
+	else
+		for (enum mode mode = first; mode <= last; mode++) {
+			if (mode == CLOSED)
+				continue;
+			m->mode[index] = mode;
+			try_all(m, open, index + 1, best, count);
+		}
+	m->mode[index] = before;
+}
+
+/* Contacts whose law is open: friction without velocity, impacts that touch and neither come nor go */
+static void find_open(struct moving *m, bool *open)
+{
+	mpfr_t off, speed;
+	row r;
+	mpfr_inits2(BITS, off, speed, (mpfr_ptr)0);
+	row_start(r, MOST);
+	for (int i = 0; i < m->s->contacts; i++) {
+		measure_now(m, i, 0, off);
+		measure_now(m, i, 1, speed);
+		const bool touches = mpfr_cmpabs(off, m->tiny) <= 0, still = mpfr_cmpabs(speed, m->tiny) <= 0;
+		open[i] = false;
+		switch (m->s->contact[i].kind) {
+		case STOP:
+			if (touches && still)
+				doubt(m, "a stop touched without velocity");
+			m->mode[i] = touches ? (mpfr_sgn(speed) > 0 ? CLOSED : OPEN)
+					     : (mpfr_sgn(off) > 0 ? CLOSED : OPEN);
+			break;
+		case FRICTION:
+			open[i] = still;
+			if (!still)
+				m->mode[i] = mpfr_sgn(speed) > 0 ? FORWARD : BACKWARD;
+			break;
+		case IMPACT:
+			open[i] = touches && still;
+			if (!open[i])
+				m->mode[i] = OPEN;
+			break;
+		}
+	}
+	row_stop(r, MOST);
+	mpfr_clears(off, speed, (mpfr_ptr)0);
+}
+
+/* How long bounces of contact i will still go on, from the velocity that it leaves with; -1: for good */
+static double bounces_left(struct moving *m, int i)
+{
+	const long e = m->s->contact[i].restitution;
+	row r, slope;
+	mpfr_t speed, push;
+	double left = -1;
+	row_start(r, MOST);
+	row_start(slope, MOST);
+	mpfr_inits2(BITS, speed, push, (mpfr_ptr)0);
+	measure(m, i, 1, r);
+	dot(MOST, r, m->x, speed);
+	for (int k = 0; k < MOST; k++)
+		dot(MOST, (mpfr_t *)m->A[k], m->x, slope[k]);
+	dot(MOST, r, slope, push);
+	if (e < 1000 && mpfr_sgn(push) > 0) {
+		mpfr_div(speed, speed, push, MPFR_RNDN);
+		left = -2 * mpfr_get_d(speed, MPFR_RNDN) * 1000 / (double)(1000 - e);
+	}
+	row_stop(r, MOST);
+	row_stop(slope, MOST);
+	mpfr_clears(speed, push, (mpfr_ptr)0);
+	return left;
+}
+
+static void settle(struct moving *m)
+{
+	static const double nothing = 1e-21;    /* [s] */
+	const int n = m->s->contacts;
+	bool open[MOST_CONTACTS] = { false }, struck[MOST_CONTACTS] = { false };
+	enum mode before[MOST_CONTACTS], best[MOST_CONTACTS];
+	const double time = mpfr_get_d(m->time, MPFR_RNDN);
+	for (int i = 0; i < n; i++)
+		best[i] = before[i] = m->mode[i];
+	strike_all(m, struck);
+	for (int again = 1; again; ) {
+		int count = 0;
+		again = 0;
+		find_open(m, open);
+		for (int i = 0; i < n; i++)
+			best[i] = m->mode[i];
+		try_all(m, open, 0, best, &count);
+		if (count != 1)
+			doubt(m, count ? "more than one combination" : "no combination");
+		for (int i = 0; i < n; i++)
+			m->mode[i] = best[i];
+		fill_equations(m);
+		for (int i = 0; i < n && !again; i++) {
+			if (!struck[i] || m->mode[i] != OPEN)
+				continue;
+			const double left = bounces_left(m, i);
+			if (!m->hidden[i])
+				log_event(m, time, i, OPEN, OPEN);
+			if (left >= 0 && left < m->brief && !m->hidden[i]) {
+				m->hidden[i] = true;
+				log_event(m, time + left, i, OPEN, RESTING);
+			}
+			struck[i] = false;
+			if (left >= 0 && left < nothing) {
+				strike(m, i, 0);
+				again = 1;
+			}
+		}
+	}
+	for (int i = 0; i < n; i++) {
+		const bool impact = m->s->contact[i].kind == IMPACT;
+		if (m->mode[i] != before[i] && !(impact && m->hidden[i]))
+			log_event(m, time, i, before[i], m->mode[i]);
+		if (impact && m->mode[i] == RESTING)
+			m->hidden[i] = false;
+	}
+}
+
+/* ---- in time ---- */
+
+static void expand(struct moving *m)
+{
+	for (int i = 0; i < MOST; i++)
+		mpfr_set(m->series[0][i], m->x[i], MPFR_RNDN);
+	for (int k = 1; k <= DEGREE; k++)
+		for (int i = 0; i < MOST; i++) {
+			dot(MOST, (mpfr_t *)m->A[i], m->series[k - 1], m->series[k][i]);
+			mpfr_div_ui(m->series[k][i], m->series[k][i], (unsigned long)k, MPFR_RNDN);
+		}
+}
+
+static void go(struct moving *m, mpfr_srcptr by)
+{
+	for (int i = 0; i < MOST; i++) {
+		mpfr_set(m->x[i], m->series[DEGREE][i], MPFR_RNDN);
+		for (int k = DEGREE - 1; k >= 0; k--)
+			mpfr_fma(m->x[i], m->x[i], by, m->series[k][i], MPFR_RNDN);
+	}
+	mpfr_add(m->time, m->time, by, MPFR_RNDN);
+}
+
+/* A length over which 30 terms of the series are enough: |A| of it is below 1/2 (0.5^31/31! < 1e-43) */
+static double piece_of(const struct moving *m)
+{
+	double most = 1;
+	for (int i = 0; i < MOST; i++) {
+		double sum = 0;
+		for (int j = 0; j < MOST; j++)
+			sum += fabs(mpfr_get_d(m->A[i][j], MPFR_RNDN));
+		most = sum > most ? sum : most;
+	}
+	return ldexp(1, -2 - ilogb(most));
+}
+
+/* The first event within `width`: true, and where */
+static bool next_event(struct moving *m, mpfr_ptr width)
+{
+	mpfr_t p[DEGREE + 1], at;
+	row r;
+	bool any = false;
+	row_start(p, DEGREE + 1);
+	row_start(r, MOST);
+	mpfr_init2(at, BITS);
+	for (int i = 0; i < m->s->contacts; i++)
+		for (int which = 0; guard(m, i, which, r); which++) {
+			for (int k = 0; k <= DEGREE; k++)
+				dot(MOST, r, m->series[k], p[k]);
+			if (first_rise(p, width, m->tiny, at)) {
+				mpfr_set(width, at, MPFR_RNDN);
+				any = true;
+			}
+		}
+	row_stop(p, DEGREE + 1);
+	row_stop(r, MOST);
+	mpfr_clear(at);
+	return any;
+}
+
+static void start(struct moving *m)
+{
+	const struct scene *s = m->s;
+	m->one = 2 * s->n;
+	for (int i = 0; i < MOST; i++)
+		row_start(m->A[i], MOST);
+	for (int i = 0; i < MOST_CONTACTS; i++)
+		row_start(m->force[i], MOST);
+	for (int k = 0; k <= DEGREE; k++)
+		row_start(m->series[k], MOST);
+	row_start(m->x, MOST);
+	mpfr_inits2(BITS, m->time, m->tiny, (mpfr_ptr)0);
+	mpfr_set_zero(m->time, 1);
+	mpfr_set_d(m->tiny, 1e-40, MPFR_RNDN);
+	for (int i = 0; i < s->n; i++) {
+		thousandths(m->x[i], s->start[i]);
+		thousandths(m->x[s->n + i], s->speed[i]);
+	}
+	mpfr_set_ui(m->x[m->one], 1, MPFR_RNDN);
+	mpfr_set_ui(m->x[m->one + 1], 1, MPFR_RNDN);
+	for (int i = 0; i < s->contacts; i++)
+		m->mode[i] = s->contact[i].kind == FRICTION ? STICKING : OPEN;
+	settle(m);
+	m->found->events = 0;           /* where it starts is no event */
+}
+
+static void finish(struct moving *m)
+{
+	for (int i = 0; i < m->s->n; i++) {
+		m->found->q[i] = mpfr_get_d(m->x[i], MPFR_RNDN);
+		m->found->v[i] = mpfr_get_d(m->x[m->s->n + i], MPFR_RNDN);
+	}
+	for (int i = 0; i < MOST; i++)
+		row_stop(m->A[i], MOST);
+	for (int i = 0; i < MOST_CONTACTS; i++)
+		row_stop(m->force[i], MOST);
+	for (int k = 0; k <= DEGREE; k++)
+		row_stop(m->series[k], MOST);
+	row_stop(m->x, MOST);
+	mpfr_clears(m->time, m->tiny, (mpfr_ptr)0);
+}
+
+void truth_run(const struct scene *s, double until, double brief, struct truth *found)
+{
+	struct moving *m = calloc(1, sizeof *m);
+	mpfr_t width, left, end;
+	*found = (struct truth){ .events = 0 };
+	m->s = s;
+	m->found = found;
+	m->brief = brief;
+	start(m);
+	mpfr_inits2(BITS, width, left, end, (mpfr_ptr)0);
+	mpfr_set_d(end, until * 1000, MPFR_RNDN);       /* a whole number of thousandths */
+	mpfr_rint(end, end, MPFR_RNDN);
+	mpfr_div_ui(end, end, 1000, MPFR_RNDN);
+	while (!found->doubtful) {
+		mpfr_sub(left, end, m->time, MPFR_RNDN);
+		if (mpfr_cmp(left, m->tiny) <= 0)
+			break;
+		mpfr_set_d(width, piece_of(m), MPFR_RNDN);
+		if (mpfr_cmp(width, left) > 0)
+			mpfr_set(width, left, MPFR_RNDN);
+		expand(m);
+		const bool event = next_event(m, width);
+		go(m, width);
+		if (event)
+			settle(m);
+	}
+	mpfr_clears(width, left, end, (mpfr_ptr)0);
+	finish(m);
+	free(m);
+}

@@ -1,0 +1,40 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* truth STOPS FRICTIONS IMPACTS SEED SECONDS SPEC FOUND: a random scene with at most so many contacts of each kind, as
+ * a spec, and how it moves: lines `event TIME CONTACT FROM TO` in order, `end q1 ... q1' ...`. Status 2: this scene
+ * decides nothing. Bounces that would be over within 2^-20 of a step are those of a contact that rests. */
+#include "truth.h"
+
+#include <stdlib.h>
+
+static struct truth found;
+
+static void write_found(const struct scene *s, FILE *to)
+{
+	static const char *const kind[] = { "stop", "friction", "impact" };
+	static const char *const mode[] = { "open", "closed", "resting", "backward", "sticking", "forward" };
+	for (int i = 0; i < found.events; i++)
+		fprintf(to, "event %.17g %d_%s %s %s\n", found.event[i].time, found.event[i].contact,
+			kind[s->contact[found.event[i].contact].kind], mode[found.event[i].from],
+			mode[found.event[i].to]);
+	fprintf(to, "end");
+	for (int i = 0; i < 2 * s->n; i++)
+		fprintf(to, " %.17g", i < s->n ? found.q[i] : found.v[i - s->n]);
+	fprintf(to, "\n");
+}
+
+int main(int count, char **argument)
+{
+	if (count != 8)
+		return 1;
+	const int most[3] = { atoi(argument[1]), atoi(argument[2]), atoi(argument[3]) };
+	const struct scene s = scene_random((unsigned)atoi(argument[4]), most);
+	FILE *spec = fopen(argument[6], "w"), *to = fopen(argument[7], "w");
+	if (!spec || !to)
+		return 1;
+	scene_write(&s, spec);
+	truth_run(&s, atof(argument[5]), (double)s.step / 1000 / (1 << 20), &found);
+	if (found.doubtful)
+		fprintf(to, "doubtful: %s\n", found.doubt);
+	write_found(&s, to);
+	return fclose(spec) || fclose(to) ? 1 : found.doubtful ? 2 : 0;
+}
