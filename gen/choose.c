@@ -84,21 +84,32 @@ static void certify(struct choosing *c)
 	a->bound_excess = a->why ? HUGE_VAL : a->excess;
 }
 
-static void try_one(struct choosing *c, bool single, bool compensated, enum step_form form)
+/* Whether it is surely as exact as needed */
+static bool try_one(struct choosing *c, bool single, bool compensated, enum step_form form)
 {
 	struct alternative *a = c->now = NEW(struct alternative);
 	*a = (struct alternative){ .single = single, .compensated = compensated, .form = form,
 				   .model = c->variant->model };
 	if (!stands_alone(a))
-		return;
+		return false;
 	a->refused = refusal_of(build_now, c);
 	a->made = c->step;
 	if (!a->refused)
 		certify(c);
 	else if (a->model->shortened)
-		return;                 /* as of all modes */
+		return false;           /* as of all modes */
 	ENLARGE(c->choice->alternative, (size_t)c->choice->alternatives + 1);
 	c->choice->alternative[c->choice->alternatives++] = *a;
+	return !a->refused && a->bound_excess <= 1;
+}
+
+/* By modes alone: the plainest step shows it. */
+static bool loses_too_much(const struct choosing *c)
+{
+	bool loses = false;
+	for (int i = 0; i < c->stepped->requirements; i++)
+		loses = loses || c->variant->dropped[i] > needed_error(&c->stepped->requirement[i], c->largest[i]);
+	return loses;
 }
 
 /* ---- all of one model ---- */
@@ -119,9 +130,9 @@ static void try_form(struct choosing *c, enum step_form form)
 		const bool single = precision == 0;
 		if (asked->real_given && asked->single != single)
 			continue;
-		if (!asked->compensated)
-			try_one(c, single, false, form);
-		try_one(c, single, true, form);
+		const bool exact = !asked->compensated && try_one(c, single, false, form);
+		if (asked->compensated || !(exact || loses_too_much(c)))
+			try_one(c, single, true, form);         /* which is dearer */
 	}
 }
 
@@ -137,7 +148,8 @@ static void try_forms(struct choosing *c)
 	const struct variant *v = c->variant;
 	const bool asked = c->request->form != FORM_AUTO, modes = v->model->shortened;
 	for (size_t i = 0; i < sizeof forms / sizeof *forms; i++) {
-		const bool needless = forms[i] == FORM_MODAL ? modes : is_large(v->model) && v->modes;
+		const bool needless = (forms[i] == FORM_MODAL ? modes : is_large(v->model) && v->modes) ||
+				      (forms[i] != FORM_DIRECT && modes && !c->request->compensated && loses_too_much(c));
 		if (asked ? c->request->form == forms[i] : !needless)
 			try_form(c, forms[i]);
 	}
