@@ -90,7 +90,9 @@ struct collector {
 	bool output;                /* an output is being collected: highest derivatives may stand anywhere */
 	struct atoms *atoms;
 	const struct frame *frame;  /* NULL: there are no coordinates */
-	bool keep_params;           /* with KEEP_ALL: tunable params as atoms, else as the spec's values */
+	/* tunable params: the spec's values; with KEEP_ALL atoms; held inputs, behind the `inputs` of the spec */
+	enum { PARAMS_VALUES, PARAMS_ATOMS, PARAMS_INPUTS } params;
+	int inputs;
 	int fixings;                /* lets that an operator fixes */
 	const struct fixing *fixing;
 };

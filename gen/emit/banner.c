@@ -487,7 +487,7 @@ static void banner_state(const struct emitter *e)
 {
 	int changes = e->system->segments - 1;
 	say(e, " * State y = %s.\n", state_list(e->step->shown->model));
-	for (int i = 0; i < e->system->inputs; i++)
+	for (int i = 0; i < given_inputs(e); i++)
 		say(e, " * Input %s: %s.\n", e->system->input[i].name, input_text(e->system->input[i].hold));
 	if (changes > 0 && !e->step->normal)
 		say(e, " * The loads change their formula %d time%s; "

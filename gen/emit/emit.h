@@ -91,6 +91,9 @@ void emit_raw_locals(const struct emitter *e, const bool *reads, bool changing);
 void emit_locals_of(const struct emitter *e, const bool *reads, const char *vector);
 /* of a part, in the model: a state of it, an input; how many states it has; state i in a loop, as text */
 int place_of_state(const struct emitter *e, int state);
+int given_inputs(const struct emitter *e);                        /* samples of a step: without params that act so */
+const char *sample_now(const struct emitter *e, int input);       /* of the whole model: what a step is given, a param */
+const char *sample_kept(const struct emitter *e, int input);      /* the same between steps */
 int place_of_input(const struct emitter *e, int input);
 const char *own_states(const struct emitter *e);
 const char *place_in_loop(const struct emitter *e);
@@ -615,7 +618,7 @@ void emit_nominal_params(const struct emitter *e);                /* {1.0, 2.0},
 const char *param_text(int param);                                /* in an instance s */
 const char *param_local(const struct emitter *e, int param);
 void emit_param_locals(const struct emitter *e, const bool *reads); /* of those that forms read: struct reads */
-void emit_nominal_params_read(const struct emitter *e, const bool *reads); /* the same, the spec's values */
+void emit_nominal_params_read(const struct emitter *e, const struct reads *reads); /* the spec's values */
 void emit_held_types(const struct emitter *e);
 void emit_held_member(const struct emitter *e);
 void emit_held_start(const struct emitter *e, const char *s);

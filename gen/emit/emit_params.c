@@ -26,11 +26,12 @@ void emit_param_locals(const struct emitter *e, const bool *reads)
 			say(e, "    const double %s = %s;\n", param_local(e, k), param_text(k));
 }
 
-void emit_nominal_params_read(const struct emitter *e, const bool *reads)
+void emit_nominal_params_read(const struct emitter *e, const struct reads *reads)
 {
 	const struct tuning *t = tunables_of(e->model);
+	const int inputs = e->model->spec->inputs;
 	for (int k = 0; k < e->model->spec->tunables; k++)
-		if (reads[k])
+		if (reads->param[k] || (inputs + k < e->system->inputs && reads->input[inputs + k]))
 			say(e, "    const double %s = %s;\n", param_local(e, k),
 			    finite_text(t->param[k].at, t->nominal[k]));
 }

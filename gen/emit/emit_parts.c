@@ -207,7 +207,7 @@ static const char *loads_text(const struct emitter *part, bool as_parameters)
 
 static const char *given_text(const struct emitter *part, bool as_parameters)
 {
-	const char *u = part->system->inputs == 0 ? ""
+	const char *u = given_inputs(part) == 0   ? ""
 			: as_parameters           ? spell(part, ", const double u[$N_INPUTS]")
 						  : ", u";
 	return format("%s%s", u, loads_text(part, as_parameters));
@@ -364,7 +364,7 @@ static const char **linear_operands(const struct emitter *part)
 	for (int i = 0; i < part->system->inputs; i++) {
 		int of = place_of_input(part, i);
 		bool ramp = part->system->input[i].hold;
-		x[layout->input[i]] = format(ramp ? "s->u[%d]" : "u[%d]", of);
+		x[layout->input[i]] = ramp ? sample_kept(part, of) : sample_now(part, of);
 		if (ramp)
 			x[layout->input[i] + 1] = format("part%d", of);
 	}
@@ -542,7 +542,7 @@ static void emit_at_call(const struct emitter *part)
 
 void emit_parts_at(const struct emitter *e)
 {
-	const char *u = e->system->inputs ? format("const double u[%s_INPUTS], ", e->upper) : "";
+	const char *u = given_inputs(e) ? format("const double u[%s_INPUTS], ", e->upper) : "";
 	for_parts(e, e->step->parts, emit_at_of_part);
 	say(e, "\n"
 	       "void $n_at(const $n *s, %sdouble tau, double y[$N_STATES])\n"

@@ -201,7 +201,7 @@ static void emit_inputs_in_x(const struct emitter *e, bool step)
 	for (int i = 0; i < e->system->inputs; i++) {
 		bool ramp = e->system->input[i].hold;
 		int at = e->step->layout.input[i], of = place_of_input(e, i);
-		say(e, "    x[%d] = %s[%d];\n", at, step && !ramp ? "u" : "s->u", of);
+		say(e, "    x[%d] = %s;\n", at, step && !ramp ? sample_now(e, of) : sample_kept(e, of));
 		if (ramp && step)
 			say(e, "    x[%d] = %s;\n", at + 1, ramp_slope(e, of));
 		else if (ramp)
@@ -375,7 +375,7 @@ void emit_region_advance_call(const struct emitter *e)
 
 void emit_region_at(const struct emitter *e)
 {
-	const char *u = e->system->inputs ? format("const double u[%s_INPUTS], ", e->upper) : "";
+	const char *u = given_inputs(e) ? format("const double u[%s_INPUTS], ", e->upper) : "";
 	say(e, "\n"
 	       "void $n_at(const $n *s, %sdouble tau, double y[$N_STATES])\n"
 	       "{\n"

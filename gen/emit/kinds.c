@@ -122,6 +122,12 @@ static const struct kind tuned = {
 	.params = emit_params_line
 };
 
+static void emit_held_pass(const struct emitter *e)
+{
+	emit_held_retune(e);
+	emit_pass_of_changes(e);
+}
+
 /* ---- regions ---- */
 
 static bool any_place(const struct emitter *e)
@@ -149,6 +155,7 @@ static void emit_event_limit(const struct emitter *e)
 
 static void emit_region_tables(const struct emitter *e)
 {
+	emit_held_nominal(e);
 	emit_times_of_changes(e);
 	emit_regions(e);
 	emit_region_start(e);
@@ -164,28 +171,28 @@ static void emit_regions_step(const struct emitter *e)
 static const struct kind regions = {
 	.banner = banner_regions,
 	.step_note = " * A step that stays clear of every breakpoint, at most:\n",
-	.banner_more = nothing,
+	.banner_more = banner_held,
 	.no_jump = "crossings are found step by step",
 	.no_at = far_pole,
 	.constants = emit_event_limit,
-	.types = nothing,
-	.coefficients = nothing,
+	.types = emit_held_types,
+	.coefficients = emit_held_member,
 	.members = emit_region_members,
 	.keeps_status = true,
 	.init_note = "t = 0, the spec's initial values",
 	.status_note = "0, or bits: PL_NOT_FINITE, PL_TOO_MANY_EVENTS",
 	.declare_state = emit_region_declarations,
-	.declare_more = nothing,
-	.start = no_start,
+	.declare_more = emit_held_declarations,
+	.start = emit_held_start,
 	.places = any_place,
 	.reads_load = regions_read_load,
 	.reads_phi = never,
 	.tables = emit_region_tables,
-	.pass = nothing,
+	.pass = emit_held_retune,
 	.step = emit_regions_step,
 	.held = nothing,
 	.at = emit_region_at,
-	.wrappers = nothing,
+	.wrappers = emit_held_wrapper,
 	.params = emit_params_line
 };
 
@@ -207,6 +214,7 @@ static void emit_event_limit_of_parts(const struct emitter *e)
 
 static void emit_tables_of_parts(const struct emitter *e)
 {
+	emit_held_nominal(e);
 	emit_times_of_changes(e);
 	emit_part_tables(e);
 	emit_part_start(e);
@@ -222,28 +230,28 @@ static void emit_step_of_parts(const struct emitter *e)
 static const struct kind parts = {
 	.banner = banner_parts,
 	.step_note = " * A step that stays clear of every breakpoint, at most:\n",
-	.banner_more = nothing,
+	.banner_more = banner_held,
 	.no_jump = "crossings are found step by step",
 	.no_at = far_pole,
 	.constants = emit_event_limit_of_parts,
-	.types = nothing,
-	.coefficients = nothing,
+	.types = emit_held_types,
+	.coefficients = emit_held_member,
 	.members = emit_part_members,
 	.keeps_status = true,
 	.init_note = "t = 0, the spec's initial values",
 	.status_note = "0, or bits: PL_NOT_FINITE, PL_TOO_MANY_EVENTS",
 	.declare_state = emit_part_declarations,
-	.declare_more = nothing,
-	.start = no_start,
+	.declare_more = emit_held_declarations,
+	.start = emit_held_start,
 	.places = any_place,
 	.reads_load = parts_read_load,
 	.reads_phi = never,
 	.tables = emit_tables_of_parts,
-	.pass = nothing,
+	.pass = emit_held_retune,
 	.step = emit_step_of_parts,
 	.held = nothing,
 	.at = emit_parts_at,
-	.wrappers = nothing,
+	.wrappers = emit_held_wrapper,
 	.params = emit_params_line
 };
 
@@ -275,12 +283,6 @@ static void emit_leftover_tables(const struct emitter *e)
 	emit_times_of_changes(e);
 }
 
-static void emit_leftover_pass(const struct emitter *e)
-{
-	emit_held_retune(e);
-	emit_pass_of_changes(e);
-}
-
 static const struct kind leftover = {
 	.banner = banner_leftover,
 	.step_note = "",
@@ -300,7 +302,7 @@ static const struct kind leftover = {
 	.reads_load = no_further_load,
 	.reads_phi = flows_whole,
 	.tables = emit_leftover_tables,
-	.pass = emit_leftover_pass,
+	.pass = emit_held_pass,
 	.step = emit_actions_step,
 	.held = emit_held_leftover,
 	.at = emit_at,

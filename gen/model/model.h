@@ -193,7 +193,8 @@ struct model {
 	struct splitting *split;    /* of a scheme in normal modes; else NULL */
 	const struct form *selector; /* of a bank: what is compared with `at`; NULL: one operator */
 	const struct tuning *tuning; /* tunable params, and how the equations follow from them; NULL: there are none */
-	bool keeps_params;          /* params that are tunable stand in what is left over and in outputs */
+	/* the instance has tunable params: what is left over and outputs read them, or they act like held inputs */
+	bool keeps_params;
 	const struct tuning *held;  /* those that the leftover and outputs read from the instance: no more than a list */
 	int outputs;
 	struct output *output;
@@ -419,7 +420,6 @@ struct reads {                    /* what forms read */
 	bool *param;                /* of the spec's tunables, where the instance has their values */
 	bool time, math;            /* t itself; <math.h> */
 };
-int tunable_number(const struct spec *spec, const struct symbol *param); /* its place among the spec's */
 bool reads_input_slope(const struct model *model, int input);      /* does an output? */
 /* not of the piecewise-linear functions: they are comparisons in C */
 bool calls_libm(const struct atom *a);
@@ -536,6 +536,7 @@ double fastest_decay(const struct linear *system);          /* the largest -Re o
 bool is_linear(const struct building *b);                   /* with constant coefficients, loads in time excepted */
 /* of equations that were collected, whichever coordinates they belong to: a scheme is for them that leaves something */
 bool leaves_over(const struct building *b);
+bool needs_regions(const struct building *b);                    /* scheme exact has regions for them */
 void build_system(struct building *b);                      /* M, C, K, loads, inputs */
 
 /* ---- needs.c: how exact outputs have to be ---- */

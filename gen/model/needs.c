@@ -77,7 +77,7 @@ static void check_certified(const struct finding *f)
 {
 	const struct model *model = f->model;
 	struct place at = f->need->at;
-	if (model->tuning)
+	if (tunables_of(model))
 		error(at, "a need holds for one model: without tunable, or with -D for other values",
 		      "the model has tunable params: what their values do to the error is not bounded");
 	if (is_measured(model))

@@ -10,15 +10,6 @@ bool calls_libm(const struct atom *a)
 	return a->kind == ATOM_POWER || (a->kind == ATOM_CALL && !piecewise);
 }
 
-/* Its place among the tunable params */
-int tunable_number(const struct spec *spec, const struct symbol *param)
-{
-	int k = 0;
-	while (spec->tunable[k].symbol != param)
-		k++;
-	return k;
-}
-
 static void look_at_form(struct reads *reading, const struct model *model, bool *seen, const struct form *form)
 {
 	for (int i = 0; i < form->terms; i++) {
@@ -45,7 +36,7 @@ static void look_at_form(struct reads *reading, const struct model *model, bool 
 		seen[atom->index] = true;
 		reading->math = reading->math || calls_libm(atom);
 		if (atom->kind == ATOM_PARAM)
-			reading->param[tunable_number(model->spec, atom->param)] = true;
+			reading->param[atom->param->tunable - 1] = true;
 		for (int k = 0; k < atom->operands; k++)
 			look_at_form(reading, model, seen, atom->operand[k]);
 	}

@@ -112,6 +112,12 @@ bool leaves_over(const struct building *b)
 	       (!demands.linear || row->expands || row->modes || b->request->loads_left || b->spec->has_operator);
 }
 
+bool needs_regions(const struct building *b)
+{
+	const struct demands demands = demands_of(b);
+	return !b->request->solution && b->model->scheme == SCHEME_EXACT && demands.piecewise && !demands.linear;
+}
+
 /* Only loads may change their formula in time. */
 static bool check_changes(struct building *b)
 {

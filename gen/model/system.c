@@ -106,11 +106,14 @@ static void make_input_forces(struct linear *system)
 static void name_inputs(struct building *b)
 {
 	struct linear *system = &b->model->system;
-	system->inputs = b->spec->inputs;
+	const int params = b->collector.params == PARAMS_INPUTS ? b->spec->tunables : 0;
+	system->inputs = b->spec->inputs + params;
 	system->input = ARRAY(struct input, (size_t)system->inputs);
 	for (const struct symbol *s = b->spec->first; s; s = s->next)
 		if (s->kind == SYMBOL_INPUT)
 			system->input[s->index] = (struct input){ .name = s->name, .hold = s->hold };
+	for (int k = 0; k < params; k++)
+		system->input[b->spec->inputs + k].name = b->spec->tunable[k].symbol->name;
 	make_input_forces(system);
 }
 
@@ -154,7 +157,7 @@ const struct form *nominal_form(struct building *b, const struct form *form)
 
 bool parts_params(const struct building *b)
 {
-	return b->collector.keep_params && b->model->system.segments == 1 && !scheme_row(b->model->scheme)->expands;
+	return b->collector.params == PARAMS_ATOMS && b->model->system.segments == 1 && !scheme_row(b->model->scheme)->expands;
 }
 
 void fill_states(struct building *b, const struct snapshot *rows)

@@ -110,10 +110,9 @@ static void check_model(const struct model *model)
 static void check_kind(const struct model *model, const struct request *request)
 {
 	struct place at = model->spec->tunable[0].at;
-	if (model->switching || scheme_row(model->scheme)->holds_coupling)
-		error(at, "tunable params are for scheme exact and linear models, and for what a scheme leaves over",
-		      "%s cannot be retuned", model->switching ? "a piecewise-linear model"
-							       : format("scheme %s", scheme_name(model->scheme)));
+	if (scheme_row(model->scheme)->holds_coupling)
+		error(at, "tunable params are for scheme exact, and for what a scheme leaves over",
+		      "scheme %s cannot be retuned", scheme_name(model->scheme));
 	if (request->reduce)
 		error(at, NULL,
 		      "--reduce takes out what is not seen at the spec's values: it does not go with tunable params");
@@ -127,19 +126,26 @@ static void check_kind(const struct model *model, const struct request *request)
 static void read_by(struct reads *all, const struct model *model, int count, const struct form *const *form)
 {
 	const struct reads own = reads_of(model, count, form);
+	const int inputs = model->spec->inputs;
 	for (int k = 0; k < model->spec->tunables; k++)
-		all->param[k] = all->param[k] || own.param[k];
+		all->param[k] = all->param[k] || own.param[k] ||
+				(inputs + k < model->system.inputs && own.input[inputs + k]);
 }
 
 static void warn_of_unread(const struct model *model)
 {
 	const struct spec *spec = model->spec;
+	const bool atoms = model->system.inputs == spec->inputs;
 	struct reads all = reads_of(model, model->selector != NULL, &model->selector);
 	for (int k = 0; k < model->operators; k++)
 		read_by(&all, model, model->channels, (const struct form *const *)model->operator[k].left);
-	for (int i = 0; i < model->outputs; i++)
-		read_by(&all, model, model->output[i].left != NULL,
-			&(const struct form *){ model->output[i].left });
+	for (int i = 0; i < model->n && model->whole; i++)
+		read_by(&all, model, 1, &(const struct form *){ model->whole->residual[i].form });
+	for (int i = 0; i < model->outputs; i++) {
+		read_by(&all, model, model->output[i].left != NULL, &(const struct form *){ model->output[i].left });
+		for (int k = 0; k < spec->tunables && !atoms; k++)
+			all.param[k] = all.param[k] || mpq_sgn(model->output[i].input[0][spec->inputs + k]) != 0;
+	}
 	for (int k = 0; k < spec->tunables; k++)
 		if (!all.param[k])
 			say_warning(spec->tunable[k].at, NULL, "tunable '%s' changes nothing that the target computes",

@@ -1117,7 +1117,8 @@ static void read_tunable(struct parser *p)
 			error(token.at, NULL, "'%s' is tunable already", symbol->name);
 		if (spec->tunables == LIMIT_TUNABLES)
 			error(token.at, NULL, "more tunable params than the limit of %d", LIMIT_TUNABLES);
-		symbol->tuned = symbol->tunable = true;
+		symbol->tuned = true;
+		symbol->tunable = spec->tunables + 1;
 		ENLARGE(spec->tunable, (size_t)spec->tunables + 1);
 		spec->tunable[spec->tunables++] = (struct tunable){ token.at, symbol };
 	} while (take_op(p, ","));

@@ -872,7 +872,7 @@ void explain_json(FILE *to, const struct step *step)
 		step->model->asked.compensated ? "compensated" : "plain", target_name(), nearest_double(model->h));
 	json_names(to, "states", model->system.states, model->state_name);
 	json_names(to, "outputs", model->outputs, output);
-	json_names(to, "inputs", model->system.inputs, input);
+	json_names(to, "inputs", model->spec->inputs, input);
 	json_dropped(to, model);
 	if (model->shortened)
 		json_shortening(to, model);
