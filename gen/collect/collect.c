@@ -262,6 +262,17 @@ static bool has_param(const struct collector *c, const struct form *form)
 	return false;
 }
 
+static _Noreturn void tell_factor(const struct collector *c, const struct node *node)
+{
+	const struct node *term = c->term ? c->term : node;
+	if (c->tolerant)
+		abandon();
+	error(term->start,
+	      "in a piecewise-linear model gaps and forces may be tunable; etdrk4 and the schemes like it take others",
+	      "term '%s' has a tunable factor: scheme %s cannot treat it", text_between(term->start, term->end),
+	      c->scheme);
+}
+
 static struct form *times(struct collector *c, const struct node *node, const struct form *a, const struct form *b)
 {
 	if (is_constant(a) || is_constant(b))
@@ -272,7 +283,7 @@ static struct form *times(struct collector *c, const struct node *node, const st
 	if (keeps(c))
 		return kept_product(c, node, a, b);
 	if (has_param(c, a) || has_param(c, b))
-		not_linear(c, node, "has a tunable factor");
+		tell_factor(c, node);
 	if (has_coordinate(a) && has_coordinate(b))
 		not_linear(c, node, "is not linear");
 	if (has_coordinate(a) || has_coordinate(b))

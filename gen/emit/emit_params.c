@@ -86,9 +86,11 @@ void emit_held_declarations(const struct emitter *e)
 
 void banner_held(const struct emitter *e)
 {
+	const bool acts = e->system->inputs > e->model->spec->inputs;
 	if (held(e))
-		say(e, " * Tunable: %s. Expressions read the instance's own values; operators, orders and choices are those "
-		       "of the spec's.\n", param_list(e));
+		say(e, " * Tunable: %s. %s\n", param_list(e),
+		    acts ? "They act like held inputs, with the instance's own values."
+			 : "Expressions read the instance's own values; operators, orders and choices are those of the spec's.");
 }
 
 /* ---- the C ---- */

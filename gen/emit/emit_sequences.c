@@ -119,7 +119,7 @@ void emit_force_table(const struct emitter *e)
 static bool reads_instance(const struct emitter *e)
 {
 	const struct expansion *x = expansion(e);
-	bool instance = x->time || x->params;
+	bool instance = x->time;
 	for (int l = 0; l < e->system->loads; l++)
 		instance = instance || (x->load[l] && (e->phase[l] >= 0 || e->growth[l] >= 0 ||
 						       e->system->load[l].powers > 1));
@@ -163,7 +163,7 @@ void emit_expand_function(const struct emitter *e)
 	}
 	for (int i = 0; i < e->system->inputs; i++)
 		tau = tau || (x->input[i] && e->system->input[i].hold);
-	if (!reads_instance(e))
+	if (!reads_instance(e) && !x->params)
 		say(e, "    (void)s;\n");
 	if (has_offset(e) && !reads_instance(e) && !tau)
 		say(e, "    (void)tau;\n");

@@ -89,7 +89,9 @@ static void person_tuning(FILE *to, const struct model *model)
 	fputs("Tunable on the target:", to);
 	for (int k = 0; k < t->params; k++)
 		fprintf(to, "%s %s = %s", k ? "," : "", t->param[k].symbol->name, readable_text(t->nominal[k]));
-	if (model->held)
+	if (model->held && model->switching)
+		fputs("; they act like held inputs.\n", to);
+	else if (model->held)
 		fputs("; expressions read them there. Operators, orders and choices are those of these values.\n", to);
 	else
 		fprintf(to, "; the equations there have %d term%s%s.\n", t->terms, t->terms == 1 ? "" : "s",
