@@ -13,7 +13,7 @@
 enum { SECONDS = 6, PARTS = 2, SAMPLES = SECONDS * PARTS, ROOM = 400 };
 
 struct truth {
-    real y[SAMPLES + 1][4], crossed[ROOM];
+    real y[SAMPLES + 1][MOST_OF_STATES], crossed[ROOM];
     int count;
     double most;
 };

@@ -107,7 +107,7 @@ static void driven_by(real t, const real *y, real *e)
 }
 
 static const struct divided_system driven_system = {
-    "driven", 2, 2, {0.25L}, driven, driven_by, {1, 1}, {{0.3L}, {0.5L}}, 0
+    "driven", 2, 2, {0.25L}, driven, driven_by, {1, 1}, {{0.3L}, {0.5L}}, 0, 0
 };
 
 static double sample(int k, int which)

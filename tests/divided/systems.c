@@ -185,26 +185,26 @@ EXPRESSIONS(of_three)          { (void)t; e[0] = y[0] - y[1]; e[1] = y[0]; e[2] 
 EXPRESSIONS(of_time)           { (void)y; e[0] = sinl(3 * t); }
 
 const struct divided_system divided_systems[] = {
-    {"drag", 2, 1, {2}, drag, of_velocity, {1}, {{0}}, 0},
-    {"pushed_drag", 2, 1, {0.5L}, pushed_drag, of_velocity, {1}, {{0}}, 0},
-    {"odd_square", 2, 1, {1}, odd_square, of_position, {1}, {{0}}, 0},
-    {"half_square", 2, 1, {1}, half_square, of_position, {1}, {{0.3L}}, 0},
-    {"stop_cubic", 2, 1, {0.25L}, stop_cubic, of_position, {1}, {{0.5L}}, 0},
-    {"gap_cubic", 2, 1, {1.5L}, gap_cubic, of_position, {2}, {{-0.1L, 0.2L}}, 0},
-    {"two_gap", 4, 1, {1, -0.5L}, two_gap, of_distance, {1}, {{-0.1L}}, 0},
-    {"clipped", 2, 1, {1}, clipped, of_velocity, {2}, {{-1 / 3.0L, 1 / 3.0L}}, 0},
-    {"relaxing", 2, 1, {1}, relaxing, of_position, {1}, {{-1.5L}}, 0},
-    {"table_drag", 2, 2, {1.7L}, table_drag, of_both, {2, 1}, {{0, 1}, {0}}, 0},
-    {"jumping", 2, 1, {1}, jumping, of_position, {1}, {{0.2L}}, 0},
-    {"product", 4, 1, {1, 0.5L}, product, of_product, {1}, {{0}}, 0},
-    {"nested", 2, 2, {1}, nested, of_size, {1, 1}, {{0}, {0.5L}}, 0},
-    {"moving", 2, 1, {0}, moving, of_moving, {1}, {{0.5L}}, 0},
-    {"switched_load", 2, 1, {1}, switched_load, of_position, {1}, {{-0.4L}}, 1.7L},
-    {"circle", 4, 1, {1, 0.25L, 0.5L, 1}, circle, of_radius, {1}, {{1}}, 0},
-    {"lagging", 1, 1, {0.5L}, lagging, of_position, {1}, {{0}}, 0},
-    {"gated", 4, 2, {1, 0.5L}, gated, of_both, {1, 1}, {{0.2L}, {0.1L}}, 0},
-    {"largest", 4, 3, {1, 0.5L}, largest, of_three, {1, 1, 1}, {{0}, {0.2L}, {0.2L}}, 0},
-    {"parametric", 2, 1, {1}, parametric, of_time, {1}, {{0}}, 0},
+    {"drag", 2, 1, {2}, drag, of_velocity, {1}, {{0}}, 0, 0},
+    {"pushed_drag", 2, 1, {0.5L}, pushed_drag, of_velocity, {1}, {{0}}, 0, 0},
+    {"odd_square", 2, 1, {1}, odd_square, of_position, {1}, {{0}}, 0, 0},
+    {"half_square", 2, 1, {1}, half_square, of_position, {1}, {{0.3L}}, 0, 0},
+    {"stop_cubic", 2, 1, {0.25L}, stop_cubic, of_position, {1}, {{0.5L}}, 0, 0},
+    {"gap_cubic", 2, 1, {1.5L}, gap_cubic, of_position, {2}, {{-0.1L, 0.2L}}, 0, 0},
+    {"two_gap", 4, 1, {1, -0.5L}, two_gap, of_distance, {1}, {{-0.1L}}, 0, 0},
+    {"clipped", 2, 1, {1}, clipped, of_velocity, {2}, {{-1 / 3.0L, 1 / 3.0L}}, 0, 0},
+    {"relaxing", 2, 1, {1}, relaxing, of_position, {1}, {{-1.5L}}, 0, 0},
+    {"table_drag", 2, 2, {1.7L, 0}, table_drag, of_both, {2, 1}, {{0, 1}, {0}}, 0, 0},
+    {"jumping", 2, 1, {1}, jumping, of_position, {1}, {{0.2L}}, 0, 0},
+    {"product", 4, 1, {1, 0.5L}, product, of_product, {1}, {{0}}, 0, 0},
+    {"nested", 2, 2, {1}, nested, of_size, {1, 1}, {{0}, {0.5L}}, 0, 0},
+    {"moving", 2, 1, {0}, moving, of_moving, {1}, {{0.5L}}, 0, 0},
+    {"switched_load", 2, 1, {1}, switched_load, of_position, {1}, {{-0.4L}}, 1.7L, 0},
+    {"circle", 4, 1, {1, 0.25L, 0.5L, 1}, circle, of_radius, {1}, {{1}}, 0, 0},
+    {"lagging", 1, 1, {0.5L}, lagging, of_position, {1}, {{0}}, 0, 0},
+    {"gated", 4, 2, {1, 0.5L}, gated, of_both, {1, 1}, {{0.2L}, {0.1L}}, 0, 0},
+    {"largest", 4, 3, {1, 0.5L}, largest, of_three, {1, 1, 1}, {{0}, {0.2L}, {0.2L}}, 0, 0},
+    {"parametric", 2, 1, {1}, parametric, of_time, {1}, {{0}}, 0, 0},
 };
 const int divided_count = sizeof divided_systems / sizeof *divided_systems;
 
@@ -247,7 +247,7 @@ static real cut(const struct divided_system *s, real from, real to, int but, rea
     real low = 0, high = to - from, end[HAND_MOST];
     for (int k = 0; k < 70; k++) {
         const real middle = (low + high) / 2;
-        memcpy(end, y, sizeof(real) * 4);
+        memcpy(end, y, sizeof(real) * MOST_OF_STATES);
         gragg(s->f, s->states, from, from + middle, 1, 0, NULL, end);
         if (beyond(s, from + middle, end, but, which, way) > 0)
             high = middle;
@@ -261,7 +261,7 @@ static real cut(const struct divided_system *s, real from, real to, int but, rea
 
 int follow_divided(const struct divided_system *s, real from, real to, real *y, real *crossed, int room)
 {
-    const real piece = 1 / 64.0L;
+    const real piece = s->piece > 0 ? s->piece : 1 / 64.0L;
     static int last = -1;                   /* which breakpoint was passed at `from` */
     int count = 0, which, way;
     if (s->change > 0 && from < s->change && to > s->change) {
@@ -273,10 +273,10 @@ int follow_divided(const struct divided_system *s, real from, real to, real *y, 
     for (real t = from; t < to;) {
         const real end = to - t < piece * 1.01L ? to : t + piece;
         real next[HAND_MOST] = {0};
-        memcpy(next, y, sizeof(real) * 4);
+        memcpy(next, y, sizeof(real) * MOST_OF_STATES);
         gragg(s->f, s->states, t, end, 1, 0, NULL, next);
         if (beyond(s, end, next, last, &which, &way) <= 0) {
-            memcpy(y, next, sizeof(real) * 4);
+            memcpy(y, next, sizeof(real) * MOST_OF_STATES);
             t = end;
             last = -1;
             continue;
