@@ -60,7 +60,7 @@ static void declare_state_functions(const struct emitter *e)
 	declare(e, spell(e, "void   $n_set($n *s, double t, const double y[$N_STATES]);"), "any state at any time [s]");
 	declare(e, spell(e, "void   $n_get(const $n *s, double y[$N_STATES]);"), "");
 	declare(e, spell(e, "double $n_time(const $n *s);"), "[s]");
-	declare(e, spell(e, "int    $n_status(const $n *s);"), e->model->switching && e->model->switching->frictions > 0
+	declare(e, spell(e, "int    $n_status(const $n *s);"), e->model->switching && has_events(e->model->switching)
 			? "0, or bits: PL_NOT_FINITE, PL_TOO_MANY_EVENTS, PL_UNDECIDED" : e->kind->status_note);
 	e->kind->declare_state(e);
 	if (e->ramps)

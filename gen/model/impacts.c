@@ -71,6 +71,14 @@ static int state_at(const struct building *b, const struct node *target)
 	return target->primes ? b->model->system.velocity[coord] : coord;
 }
 
+static bool is_ramp(const struct building *b, int input)
+{
+	bool ramp = false;
+	for (const struct symbol *s = b->spec->first; s; s = s->next)
+		ramp = ramp || (s->kind == SYMBOL_INPUT && s->index == input && s->hold > 0);
+	return ramp;
+}
+
 static void collect_impact(void *context)
 {
 	struct collecting *work = context;
@@ -90,6 +98,10 @@ static void collect_impact(void *context)
 	if (is_constant(impact->guard))
 		error(when->guard->start, "a coordinate, a velocity, a load or an input against a constant",
 		      "this guard never changes");
+	for (int i = 0; i < impact->guard->terms; i++)
+		if (impact->guard->term[i].basis.kind == BASIS_INPUT && !is_ramp(b, impact->guard->term[i].basis.index))
+			error(when->guard->start, "as a ramp it moves: input ... hold first",
+			      "this guard jumps with an input that is held");
 	impact->jump = ARRAY(struct jump, (size_t)when->jumps + (size_t)b->model->n);
 	for (int i = 0; i < when->jumps; i++) {
 		struct jump *jump = &impact->jump[impact->jumps++];
@@ -114,6 +126,11 @@ void tell_no_impacts(const struct building *b)
 {
 	const struct model *model = b->model;
 	struct place at = b->spec->when->at;
+	if (b->request->solution)
+		error(at, "the C that is printed without it goes from event to event",
+		      "there is no closed form where the state jumps");
+	if (b->request->loads_left)
+		error(at, "without --loads leftover they are exact", "scheme exact, which impacts need, leaves no load over");
 	if (model->system.segments > 1)
 		error(at, "the load as an input is exact beside it",
 		      "impacts beside loads that change their formula in time are not built yet");

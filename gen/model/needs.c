@@ -138,8 +138,8 @@ static void find_requirement(void *context)
 	struct requirement *r = f->found;
 	mpq_inits(r->bound, r->until, NULL);
 	r->need = f->need;
-	if (f->model->switching && f->model->switching->frictions > 0)
-		error(f->need->at, "plrun tries steps", "a need is not measured beside friction yet");
+	if (f->model->switching && has_events(f->model->switching))
+		error(f->need->at, "plrun tries steps", "a need is not measured beside friction and impacts yet");
 	check_certified(f);
 	find_output(f);
 	constant(f->need->bound, r->bound);

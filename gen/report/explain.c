@@ -244,7 +244,7 @@ static long bytes_of_regions(const struct step *step)
 	long size = step->layout.size, matrices = s->systems;
 	long bytes = 8 * (s->segments * s->expressions * size + matrices * (2 * size * size + 3 * s->expressions * size)) +
 		     4 * (s->regions + s->expressions + matrices);
-	return bytes + (step->swift ? swift_bytes(step) : 0) + (s->frictions > 0 ? guard_bytes(step) : 0);
+	return bytes + (step->swift ? swift_bytes(step) : 0) + (has_events(s) ? guard_bytes(step) : 0);
 }
 
 /* The most multiplications of a step: every piece of it by a Taylor polynomial, all events and splits used */
@@ -254,9 +254,9 @@ static long most_of_regions(const struct step *step)
 	long size = step->layout.size, degree = step->series.degree, pieces = 1;
 	for (int k = 0; k < step->branches; k++)
 		pieces = 1l << step->branch[k].halvings > pieces ? 1l << step->branch[k].halvings : pieces;
-	pieces += MAX_EVENTS + 1;
+	pieces += max_events(step->model) + 1;
 	return pieces * (degree * (size * size + 2 * size) + (degree + 1) * s->expressions * (size + 6)) +
-	       4 * (degree + 1) * (2 * MAX_SPLITS + 4 * s->expressions * pieces + 64 * MAX_EVENTS) +
+	       4 * (degree + 1) * (2 * max_splits(step->model) + 4 * s->expressions * pieces + 64 * max_events(step->model)) +
 	       swift_multiplications(step);
 }
 
@@ -319,6 +319,18 @@ static void person_way(FILE *to, const struct step *step, const char *of)
 		fprintf(to, "%s goes by the search: %s.\n", *of == 'A' ? "Every step" : of, step->searches);
 }
 
+static void person_impacts(FILE *to, const struct model *model)
+{
+	for (int i = 0; i < model->impacts; i++) {
+		const struct impact *impact = &model->impact[i];
+		fprintf(to, "    impact %d: %s", i, text_between(impact->when->at, impact->when->end));
+		if (impact->bounces)
+			fprintf(to, "; a bounce of restitution %s, which rests in interval %d of expression %d",
+				readable_text(impact->restitution), rest_of(model->switching, impact), impact->expression);
+		fputs("\n", to);
+	}
+}
+
 static void person_regions(FILE *to, const struct step *step)
 {
 	const struct switching *s = step->shown->model->switching;
@@ -328,6 +340,7 @@ static void person_regions(FILE *to, const struct step *step)
 		possible_regions(s), s->segments > 1 ? format(" in %d segments of time", s->segments) : "", s->systems);
 	person_expressions(to, step);
 	person_frictions(to, s);
+	person_impacts(to, step->shown->model);
 	if (s->sharing)
 		fprintf(to, "Coordinates move as a whole: %d independent parts have their regions together.\n",
 			s->sharing);
@@ -338,7 +351,8 @@ static void person_regions(FILE *to, const struct step *step)
 		}
 	person_way(to, step, "A step");
 	fprintf(to, "Tables: %ld bytes. Per step at most %d crossings and %d splits; at most %ld multiplications.\n",
-		bytes_of_regions(step) + anchor_bytes(step), MAX_EVENTS, MAX_SPLITS, most_of_regions(step));
+		bytes_of_regions(step) + anchor_bytes(step), max_events(step->model), max_splits(step->model),
+		most_of_regions(step));
 }
 
 /* ---- independent parts ---- */
@@ -740,6 +754,22 @@ static void json_frictions(FILE *to, const struct switching *s)
 	fputs("],\n", to);
 }
 
+static void json_impacts(FILE *to, const struct model *model)
+{
+	fputs("  \"impacts\": [", to);
+	for (int i = 0; i < model->impacts; i++) {
+		const struct impact *impact = &model->impact[i];
+		fprintf(to, "%s{\"expression\": %d, \"upward\": %s, \"restitution\": ", i ? ", " : "",
+			impact->expression, impact->upward ? "true" : "false");
+		if (impact->bounces)
+			fprintf(to, "%.17g, \"rests\": %d}", nearest_double(impact->restitution),
+				rest_of(model->switching, impact));
+		else
+			fputs("null}", to);
+	}
+	fputs("],\n", to);
+}
+
 static void json_region_list(FILE *to, const struct switching *s)
 {
 	bool first = true;
@@ -783,6 +813,8 @@ static void json_regions(FILE *to, const struct step *step)
 	json_expressions(to, step);
 	if (s->frictions > 0)
 		json_frictions(to, s);
+	if (s->impacts > 0)
+		json_impacts(to, step->shown->model);
 	if (!s->parts) {
 		json_region_list(to, s);
 		return;

@@ -200,19 +200,18 @@ struct guards guards_of(const struct step *step, const struct pieces *pieces)
 	return g;
 }
 
-/* From h down to 2^-20 h, where they rest, bounces become shorter by e each. */
+/* From h down to 2^-20 h, where they rest, bounces become shorter by e each. Several contacts, which strike each other,
+ * take more. */
 static int bounces_in_step(const struct model *model)
 {
 	enum { MOST = 480, SHORTER = 20 };
-	int most = 0;
+	double sum = 0;
 	for (int i = 0; i < model->impacts; i++) {
 		double e = mpq_get_d(model->impact[i].restitution);
-		if (!model->impact[i].bounces || e <= 0 || e >= 1)
-			continue;
-		double count = ceil(SHORTER * log(2) / -log(e));
-		most = count > most ? (int)fmin(count, MOST) : most;
+		if (model->impact[i].bounces && e > 0 && e < 1)
+			sum += ceil(SHORTER * log(2) / -log(e));
 	}
-	return most;
+	return (int)fmin(model->impacts > 1 ? 2 * sum : sum, MOST);
 }
 
 int max_events(const struct model *model)

@@ -15,7 +15,8 @@
 #include <string.h>
 
 enum { MOST = 20000 };
-static const double together = 1e-8, late = 1e-9; /* [s]: one instant; how far a time may be off */
+static const double together = 0x1p-17 * SCENE_H; /* one instant [s]: what comes to rest is there within 2^-20 h */
+static const double late = 1e-9; /* how far a time may be off [s] */
 static double expected[MOST], found[MOST];
 static char what[MOST][80];
 

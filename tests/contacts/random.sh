@@ -33,7 +33,7 @@ while [ $seed -lt $last ]; do
 	$truth $kinds $seed "$(awk -v n="$steps" '$1 == "step" { printf "%.3f", n*$2 }' scene.spec)" scene.spec found.txt
 	decides=$((decides + 1))
 	"$plgen" scene.spec -o scene.c >log 2>&1 &&
-		$CC -O1 -I. -I"$source/runtime" -I"$source/tests/emitted" -o follow "$follow" scene.c $PLRT -lm >>log 2>&1 &&
+		${CC:-cc} -O1 -I. -I"$source/runtime" -I"$source/tests/emitted" -o follow "$follow" scene.c $PLRT -lm >>log 2>&1 &&
 		./follow found.txt "$steps" 1e-12 >>log 2>&1
 	status=$?
 	result $status "$name"
