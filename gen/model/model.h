@@ -161,6 +161,18 @@ struct reduction {                  /* what --reduce found */
 	int dropped;                /* written states that are no combination of the reduced ones */
 	const char **dropped_name;
 };
+struct delay {                      /* of an input */
+	const struct symbol *symbol; /* what it is then: an input of the model */
+	int back;                   /* in parts of the step */
+};
+struct delays {                     /* NULL in a model without */
+	const char *name;           /* the model's own; that of what has all inputs is NAME_core */
+	mpq_t h;                    /* the step; the model's is a part of it */
+	int parts;
+	int inputs;                 /* that the text declares: they come first */
+	int count, most;            /* most: of `back` */
+	struct delay *delay;        /* by index of the input */
+};
 struct model {
 	struct spec *spec;
 	struct request asked;
@@ -208,6 +220,7 @@ struct model {
 	struct requirement *requirement;
 	const struct target *target;
 	double budget;
+	const struct delays *delays;
 	const struct model *written; /* itself; of a reduced model: the one that it was made of */
 	struct reduction reduction;
 	struct wanted_modes modes;
@@ -447,6 +460,10 @@ bool assign_equations(struct building *b);                  /* false: it was sai
 void add_elements(const struct building *b, struct snapshot *s); /* the sketch's forces to the residuals */
 void check_mass(const struct building *b);
 
+/* ---- delays.c: inputs as they were some time ago ---- */
+
+void find_delays(struct building *b);                       /* model->delays; after the step is known */
+
 /* ---- reads.c: what forms read ---- */
 
 struct reads {                    /* what forms read */
@@ -510,8 +527,8 @@ struct compared {                   /* form + constant with 0 */
 	mpq_srcptr constant;
 	int met;                    /* of struct expression, where it is one */
 };
-/* The expression that form is a multiple of in this segment of time; met for the first time it is one, with the sign and
- * scale in which it was written, and form is its own. form + constant = of (e - at) */
+/* The expression that form is a multiple of in this segment of time; met for the first time it is one, with the sign
+ * and scale in which it was written, and form is its own. form + constant = of (e - at) */
 int  find_expression(struct switching *s, int segment, const struct compared *what, mpq_ptr of, mpq_ptr at);
 /* In segments where nothing depends on it, it is as in the one before, or after. */
 void complete_expressions(struct switching *s);
