@@ -111,7 +111,24 @@ struct responses {                  /* [row][transfer]; angles [deg] with the tu
 	double *size, *angle;
 };
 struct responses responses_of(const struct step *step, struct band band);
-void print_response(FILE *to, const struct step *step, const char *band);   /* as CSV */
+/* as CSV; with an amplitude of the excitation, as below */
+void print_response(FILE *to, const struct step *step, const char *band, const char *amplitude);
+
+/* ---- sweep.c: of models that are linear between breakpoints ---- */
+
+struct swept {                      /* an output over an excitation */
+	const char *output, *drive;
+	int drive_index;
+	double *over;               /* states, u, u'/u in time, 1 */
+};
+struct sweeps {                     /* up, then down; else as above */
+	struct band band;
+	int count, unsettled;       /* frequencies of both at which the motion does not repeat with the excitation */
+	struct swept *of;
+	double *size[2], *angle[2]; /* of the harmonic of the excitation's frequency, over its amplitude */
+};
+double amplitude_of(const char *text);                      /* of the command line; leaves the statement */
+struct sweeps sweeps_of(const struct step *step, struct band band, double amplitude);
 
 /* ---- gnuplot.c ---- */
 
@@ -124,7 +141,9 @@ void draw(FILE *to, FILE *script);                          /* what gnuplot make
 enum picture_format { PICTURE_NONE, PICTURE_SVG, PICTURE_PNG, PICTURE_PDF };
 const char *wrong_picture(const char *list);                /* of KIND,...: one that is none; NULL: all are */
 enum picture_format picture_of_file(const char *path);      /* by its ending; NULL: SVG */
-void print_picture(FILE *to, const struct step *step, const char *list, enum picture_format as);
+bool has_frf(const char *list);                             /* of kinds, none of them wrong */
+/* amplitude: of the excitation that frf sweeps with; NULL: it does not */
+void print_picture(FILE *to, const struct step *step, const char *list, const char *amplitude, enum picture_format as);
 void picture_in_page(FILE *to, const struct step *step, const char *kind);   /* inline SVG */
 
 /* ---- page.c ---- */
