@@ -11,7 +11,7 @@ CHECK_PACKAGES = $(DEMO_PACKAGES) g++ clang libcmocka-dev valgrind \
 	libopenmpi-dev openmpi-bin cmake cppcheck
 
 .PHONY: all setup deps demo-deps check-deps demo tests check check-long faults bench charts charts-quick \
-	charts-twice charts-page chart gallery firmware-report install clean
+	charts-twice charts-page chart gallery firmware-report bare install clean
 
 all: setup
 	ninja -C $(BUILD) plgen plrun libplrt.a
@@ -120,6 +120,11 @@ firmware-report: tests
 # Does the suite that should notice a fault notice it?  each is put into a copy: tests/faults
 faults: check-deps
 	sh tests/faults/faults.sh -j 2
+
+# README and tutorial, typed by one who has nothing but make, in a Debian of its own under $(BARE): doc/first_minute.md
+BARE = $(BUILD)-bare
+bare:
+	sh tests/bare/bare.sh $(BARE) .
 
 install: all
 	meson install -C $(BUILD) --no-rebuild

@@ -165,8 +165,10 @@ static void print_main_text(void *context)
 	case PRINT_JSON:     explain_json(to, w->step); break;
 	case PRINT_PROGRAM:  explain_program(to, w->step); break;
 	case PRINT_SOLUTION: print_closed_form(to, w); break;
-	case PRINT_RESPONSE: print_response(to, w->step, options->value); break;
-	case PRINT_PLOT:     print_picture(to, w->step, options->value, picture_of_file(options->output)); break;
+	case PRINT_RESPONSE: print_response(to, w->step, options->value, options->amplitude); break;
+	case PRINT_PLOT:
+		print_picture(to, w->step, options->value, options->amplitude, picture_of_file(options->output));
+		break;
 	case PRINT_REPORT:   print_page(to, w->step, options->banner); break;
 	}
 }

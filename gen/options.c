@@ -62,6 +62,7 @@ static void take_scheme(struct options *options, const char *value) { options->r
 static void take_tolerance(struct options *options, const char *value) { options->request.tolerance = value; }
 static void take_modes(struct options *options, const char *value) { options->request.modes = value; }
 static void take_prefix(struct options *options, const char *value) { options->request.prefix = value; }
+static void take_amplitude(struct options *options, const char *value) { options->amplitude = value; }
 static void take_depfile(struct options *options, const char *value) { options->depfile = value; }
 
 static void take_explain(struct options *options, const char *value)
@@ -230,6 +231,8 @@ static const struct row {
 	{ "solution", "T", "print the closed-form solution at every step up to T as CSV", take_solution, NULL },
 	{ "response", "F0:F1[:N]", "print the frequency response from F0 to F1 Hz as CSV, N frequencies (200)",
 	  take_response, NULL },
+	{ "amplitude", "A", "of an excitation: clearances are swept by it, up and down (--response, --plot frf)",
+	  take_amplitude, NULL },
 	{ "plot", "KIND,...", "draw response, poles, modes, frf by gnuplot; -o FILE.svg, .png or .pdf", take_plot,
 	  NULL },
 	{ "report", NULL, "print a page of HTML: equations, modes, pictures, what was chosen", take_report, NULL },
@@ -474,6 +477,9 @@ void read_options(int argc, char **argv, struct options *options)
 	take_all(argc, argv, options);
 	if (options->bundle && options->print != PRINT_C)
 		wrong_usage(format("--bundle is of C: it does not go with %s", option_of_print(options->print)));
+	if (options->amplitude && options->print != PRINT_RESPONSE &&
+	    !(options->print == PRINT_PLOT && has_frf(options->value)))
+		wrong_usage("--amplitude goes with --response and --plot frf");
 	note_all(options);
 	check_fmu(options);
 	find_header(options);

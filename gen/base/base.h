@@ -59,6 +59,8 @@ enum {
 	LIMIT_WITHIN = 1000,        /* radians of a mode in a step that has values inside: as many series */
 	LIMIT_SHAPES = 40,          /* coordinates of a model whose mode shapes are told */
 	LIMIT_TRANSFERS = 24,       /* states of one whose transfer functions are, */
+	LIMIT_SWEPT = 64,           /* states of one that is swept */
+	LIMIT_SAMPLES = 1000000,    /* in a period of a sweep */
 	LIMIT_HELD_STATES = 64,     /* and whose discrete state space is */
 	LIMIT_FREQUENCIES = 100000, /* rows of --response */
 	LIMIT_SERIES = 50000,       /* multiplications of a Taylor series, each of which is C */

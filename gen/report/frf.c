@@ -121,8 +121,42 @@ struct responses responses_of(const struct step *step, struct band band)
 	return r;
 }
 
-void print_response(FILE *to, const struct step *step, const char *band)
+double amplitude_of(const char *text)
 {
+	struct place at = { source_argument(text), 0 };
+	double amplitude;
+	if (!read_number(text, text + strlen(text), &amplitude) || !(amplitude > 0 && isfinite(amplitude)))
+		error(at, "--amplitude takes the size of the excitation, in the unit of the input; of a load 1 is as "
+			  "it is written", "expected an amplitude above 0");
+	return amplitude;
+}
+
+static void print_sweeps(FILE *to, const struct step *step, struct band band, double amplitude)
+{
+	static const char *const way[2] = { "up", "down" };
+	struct sweeps s = sweeps_of(step, band, amplitude);
+	fputs("f", to);
+	for (int k = 0; k < s.count; k++)
+		for (int w = 0; w < 2; w++)
+			fprintf(to, ",%s/%s mag %s,%s/%s phase %s", s.of[k].output, s.of[k].drive, way[w],
+				s.of[k].output, s.of[k].drive, way[w]);
+	fputc('\n', to);
+	for (int row = 0; row < band.count; row++) {
+		fprintf(to, "%.17g", frequency_of(&band, row));
+		for (int k = 0; k < s.count; k++)
+			for (int w = 0; w < 2; w++)
+				fprintf(to, ",%.12g,%.12g", s.size[w][row * s.count + k],
+					s.angle[w][row * s.count + k]);
+		fputc('\n', to);
+	}
+}
+
+void print_response(FILE *to, const struct step *step, const char *band, const char *amplitude)
+{
+	if (amplitude) {
+		print_sweeps(to, step, band_of(band), amplitude_of(amplitude));
+		return;
+	}
 	struct responses r = responses_of(step, band_of(band));
 	fputs("f", to);
 	for (int k = 0; k < r.count; k++)

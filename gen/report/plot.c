@@ -14,6 +14,7 @@ struct panel {
 };
 struct picture {
 	const struct step *step;
+	const char *amplitude;          /* of an excitation that sweeps; NULL: frequency responses are linear */
 	FILE *data;                     /* $name << END ... */
 	int panels, height;
 	struct panel *panel;
@@ -195,27 +196,116 @@ static const char *curves(const struct responses *r, const char *data, int first
 	return text;
 }
 
-static void add_bode(struct picture *p, const struct responses *r, int first, int last)
+static const char *frame_of(const struct band *band)
 {
-	int count, angles;
-	const char *size = curves(r, "$frf", first, last, 0, &count);
-	const char *angle = curves(r, "$frf", first, last, 1, &angles);
-	const char *frame = format("set logscale x\nset xrange [%.10g:%.10g]\nset lmargin 12\nset rmargin 20\nset key "
-				   "outside right top\nset format y '%%.3g'\n", r->band.from, r->band.to);
-	note_first(count < CURVES ? count : CURVES, count, "outputs");
-	if (count == 0)
-		return;
+	return format("set logscale x\nset xrange [%.10g:%.10g]\nset lmargin 12\nset rmargin 20\nset key "
+		      "outside right top\nset format y '%%.3g'\n", band->from, band->to);
+}
+
+static void add_size_and_angle(struct picture *p, const char *frame, const char *title, const char *size,
+			       const char *angle)
+{
 	add_panel(p, 0, WIDTH, 270, format("%sset title %s\nset logscale y\nset format x ''\nset ylabel 'magnitude'\n"
-					   "set bmargin 0.6\n%s\n", frame,
-					   quoted(format("outputs over %s", r->transfer[first].drive)), size));
+					   "set bmargin 0.6\n%s\n", frame, quoted(title), size));
 	p->height += 270;
 	add_panel(p, 0, WIDTH, 190, format("%sset key off\nset tmargin 0.6\nset ylabel 'phase [deg]'\nset ytics 90\n"
 					   "set xlabel 'f [Hz]'\n%s\n", frame, angle));
 	p->height += 190;
 }
 
+/* What is not in a frequency response */
+static const char *linear_part(const struct step *step)
+{
+	return has_leftover(step) ? ", of the linear terms alone"
+	       : step->shown->model->switching ? ", of the first region alone (--amplitude: of all)" : "";
+}
+
+static void add_bode(struct picture *p, const struct responses *r, int first, int last)
+{
+	int count, angles;
+	const char *size = curves(r, "$frf", first, last, 0, &count);
+	const char *angle = curves(r, "$frf", first, last, 1, &angles);
+	const char *frame = frame_of(&r->band);
+	note_first(count < CURVES ? count : CURVES, count, "outputs");
+	if (count == 0)
+		return;
+	add_size_and_angle(p, frame, format("outputs over %s%s", r->transfer[first].drive, linear_part(p->step)), size,
+			   angle);
+}
+
+/* ---- sweeps, up and down ---- */
+
+/* The poles of every region, those of independent parts one after the other */
+static int add_poles(const struct model *model, int count, struct pole_report **list)
+{
+	const struct switching *s = model->switching;
+	for (int k = 0; k < s->systems; k++) {
+		struct pole_report *pole;
+		int more = poles_of(model, resolvent_of(&s->system[k]), &pole);
+		ENLARGE(*list, (size_t)(count + more) + 1);
+		for (int i = 0; i < more; i++)
+			(*list)[count++] = pole[i];
+	}
+	return count;
+}
+
+static struct band band_of_regions(const struct model *model, int rows)
+{
+	const struct switching *s = model->switching;
+	struct pole_report *pole = NULL;
+	int count = s->parts ? 0 : add_poles(model, 0, &pole);
+	for (int p = 0; p < s->parts; p++)
+		count = add_poles(s->part[p].model, count, &pole);
+	return band_of_poles(count, pole, rows);
+}
+
+/* Up in full lines, down in broken ones; columns 2 to 5 are of the first: up, its angle, down, its angle */
+static const char *sweep_curves(const struct sweeps *s, int first, int last, int angle)
+{
+	const char *text = "plot ";
+	for (int k = first; k < last && k - first < CURVES; k++)
+		for (int down = 0; down < 2; down++)
+			text = format("%s%s using 1:%d with lines lw 1.6 %slc rgb '%s' title %s", text,
+				      k > first || down ? ", ''" : "$frf", 4 * k + 2 * down + 2 + angle,
+				      down ? "dt 2 " : "", colour[k - first],
+				      quoted(format("%s%s", s->of[k].output, down ? ", down" : "")));
+	return text;
+}
+
+static void plot_sweeps(struct picture *p)
+{
+	struct sweeps s = sweeps_of(p->step, p->step->shown->model->switching
+			? band_of_regions(p->step->shown->model, POINTS / 3 + 1) : (struct band){ 0 },
+			amplitude_of(p->amplitude));
+	int drives = 0;
+	fputs("$frf << END\n", p->data);
+	for (int row = 0; row < s.band.count; row++) {
+		fprintf(p->data, "%.17g", frequency_of(&s.band, row));
+		for (int k = 0; k < s.count; k++)
+			for (int down = 0; down < 2; down++)
+				fprintf(p->data, " %.12g %.12g", s.size[down][row * s.count + k],
+					s.angle[down][row * s.count + k]);
+		fputc('\n', p->data);
+	}
+	fputs("END\n", p->data);
+	for (int first = 0, last; first < s.count; first = last, drives++) {
+		for (last = first; last < s.count && s.of[last].drive_index == s.of[first].drive_index; last++)
+			;
+		note_first(last - first < CURVES ? last - first : CURVES, last - first, "outputs");
+		if (drives < DRIVES)
+			add_size_and_angle(p, frame_of(&s.band), format("outputs over %s, swept with amplitude %s",
+									s.of[first].drive, p->amplitude),
+					   sweep_curves(&s, first, last, 0), sweep_curves(&s, first, last, 1));
+	}
+	note_first(drives < DRIVES ? drives : DRIVES, drives, "inputs and loads");
+}
+
 static void plot_frf(struct picture *p)
 {
+	if (p->amplitude) {
+		plot_sweeps(p);
+		return;
+	}
 	struct pole_report *pole;
 	int count = poles_of(p->step->model, p->step->written, &pole), drives = 0;
 	struct responses r = responses_of(p->step, band_of_poles(count, pole, 2 * POINTS / 3 + 1));
@@ -424,9 +514,19 @@ static void copy(FILE *from, FILE *to)
 		putc(c, to);
 }
 
-void print_picture(FILE *to, const struct step *step, const char *list, enum picture_format as)
+bool has_frf(const char *list)
 {
-	struct picture p = { .step = step, .data = new_script() };
+	for (; *list; list += *list == ',') {
+		if (kind_of(list, strcspn(list, ","))->plot == plot_frf)
+			return true;
+		list += strcspn(list, ",");
+	}
+	return false;
+}
+
+void print_picture(FILE *to, const struct step *step, const char *list, const char *amplitude, enum picture_format as)
+{
+	struct picture p = { .step = step, .amplitude = amplitude, .data = new_script() };
 	FILE *script = new_script();
 	for (const char *name = list; *name; name += *name == ',') {
 		size_t length = strcspn(name, ",");
@@ -449,7 +549,7 @@ void picture_in_page(FILE *to, const struct step *step, const char *kind)
 {
 	FILE *picture = new_script();
 	bool inside = false;
-	print_picture(picture, step, kind, PICTURE_SVG);
+	print_picture(picture, step, kind, NULL, PICTURE_SVG);
 	rewind(picture);
 	fputs("<figure>\n", to);
 	for (char line[4096]; fgets(line, sizeof line, picture);) {

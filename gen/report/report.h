@@ -111,7 +111,54 @@ struct responses {                  /* [row][transfer]; angles [deg] with the tu
 	double *size, *angle;
 };
 struct responses responses_of(const struct step *step, struct band band);
-void print_response(FILE *to, const struct step *step, const char *band);   /* as CSV */
+/* as CSV; with an amplitude of the excitation, as below */
+void print_response(FILE *to, const struct step *step, const char *band, const char *amplitude);
+
+/* ---- period.c: what a sweep is made of: movers, the independent parts of a model with regions, or the whole ---- */
+
+enum { WORK = 7 };
+struct mover {
+	const struct switching *of;     /* its regions */
+	const int *place;               /* per state: of the model's; NULL: the same */
+	int states, size;               /* of z = [y, a cos(w t), a sin(w t), 1] */
+	int systems;
+	double **A, **at, **E;          /* per system, of z: all but w; at w; e^{A h} of it, where known */
+	bool *known;
+	double **row, **row_at, **limit; /* per expression: over z, likewise at w; its breakpoints */
+	double rate;                    /* largest modulus of a pole in any region [1/s] */
+	double amplitude, w, period;    /* a; [rad/s]; [s] */
+	int samples;                    /* in a period, between which crossings are looked for */
+	/* of the last period: crossings; per state the integral of y e^{-iwt}, real and imaginary */
+	int crossings;
+	double *integral[2];
+	double *work[WORK], *square[3], *piece;
+};
+/* of a model with `switching`; returns how many. The excitation is a cos(w t) in the place of what drives; other loads
+ * that are constant act, and nothing else does */
+void mover_multiply(int n, const double *a, const double *b, double *to); /* n x n */
+int  movers_of(const struct model *model, const struct drive *drive, struct mover **list);
+void mover_tune(struct mover *m, double w);
+/* y becomes that a period later. M, states x states, how it follows from y, and scale, per state the largest size on
+ * the way, where they are not NULL; scale is only enlarged; without it the integrals are left at 0 */
+void mover_period(struct mover *m, double *y, double *M, double *scale);
+/* of an output over [y, a cos(w t), u'/w of it, 1], as it is written: states and OVER */
+double *output_over(const struct model *model, int output, const struct drive *drive);
+
+/* ---- sweep.c: of models that are linear between breakpoints ---- */
+
+struct swept {                      /* an output over an excitation */
+	const char *output, *drive;
+	int drive_index;
+	double *over;               /* states, u, u'/u in time, 1 */
+};
+struct sweeps {                     /* up, then down; else as above */
+	struct band band;
+	int count, unsettled;       /* frequencies of both at which the motion does not repeat with the excitation */
+	struct swept *of;
+	double *size[2], *angle[2]; /* of the harmonic of the excitation's frequency, over its amplitude */
+};
+double amplitude_of(const char *text);                      /* of the command line; leaves the statement */
+struct sweeps sweeps_of(const struct step *step, struct band band, double amplitude);
 
 /* ---- gnuplot.c ---- */
 
@@ -124,7 +171,9 @@ void draw(FILE *to, FILE *script);                          /* what gnuplot make
 enum picture_format { PICTURE_NONE, PICTURE_SVG, PICTURE_PNG, PICTURE_PDF };
 const char *wrong_picture(const char *list);                /* of KIND,...: one that is none; NULL: all are */
 enum picture_format picture_of_file(const char *path);      /* by its ending; NULL: SVG */
-void print_picture(FILE *to, const struct step *step, const char *list, enum picture_format as);
+bool has_frf(const char *list);                             /* of kinds, none of them wrong */
+/* amplitude: of the excitation that frf sweeps with; NULL: it does not */
+void print_picture(FILE *to, const struct step *step, const char *list, const char *amplitude, enum picture_format as);
 void picture_in_page(FILE *to, const struct step *step, const char *kind);   /* inline SVG */
 
 /* ---- page.c ---- */

@@ -141,7 +141,7 @@ static int run_once(struct start *s)
 	if (!o->plot || o->output || !isatty(STDOUT_FILENO))
 		w.rows = rows_new(to, m, job.h, every);
 	if (o->plot)
-		w.picture = picture_new(m, job.h);
+		w.picture = picture_new(m, job.h, every);
 	error = run_steps(&job, watch_both, &w);
 	progress_end();
 	if (w.rows)

@@ -102,7 +102,7 @@ static const struct row {
 } rows[] = {
 	{ "until", "T", "time of the end [s], as T behind the spec (default with --input: where the record ends)",
 	  take_until },
-	{ "every", "DT", "rows every DT seconds, a multiple of the step (default: every step)", take_every },
+	{ "every", "DT", "rows and points every DT seconds, a multiple of the step (default: every step)", take_every },
 	{ "input", "FILE.csv", "samples of the inputs, one column each, in any order; - reads standard input",
 	  take_input },
 	{ "column", "NAME=HEADER", "the input NAME is the column HEADER; columns without use are then passed over",

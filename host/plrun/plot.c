@@ -12,16 +12,18 @@ enum { BUCKETS = 8192, PANELS = 12 };   /* BUCKETS: even */
 struct picture {
 	const struct machine *machine;
 	double h;
+	uint64_t every;                 /* steps from one sample to the next */
 	int panels;
-	uint64_t stride;                /* steps of a bucket */
+	uint64_t stride;                /* samples of a bucket */
 	size_t buckets;
 	double *least, *largest;        /* BUCKETS x panels */
 };
 
-struct picture *picture_new(const struct machine *m, double h)
+struct picture *picture_new(const struct machine *m, double h, uint64_t every)
 {
 	struct picture *p = need(calloc(1, sizeof *p));
-	*p = (struct picture){ .machine = m, .h = h, .panels = m->outputs < PANELS ? m->outputs : PANELS, .stride = 1 };
+	*p = (struct picture){ .machine = m, .h = h, .every = every, .stride = 1 };
+	p->panels = m->outputs < PANELS ? m->outputs : PANELS;
 	p->least = need(calloc((size_t)BUCKETS * (size_t)p->panels, sizeof(double)));
 	p->largest = need(calloc((size_t)BUCKETS * (size_t)p->panels, sizeof(double)));
 	return p;
@@ -60,6 +62,9 @@ static void halve(struct picture *p)
 void picture_add(void *who, uint64_t k, const double *out)
 {
 	struct picture *p = who;
+	if (k % p->every)
+		return;
+	k /= p->every;
 	if (k / p->stride >= BUCKETS)
 		halve(p);
 	size_t bucket = (size_t)(k / p->stride);
@@ -83,7 +88,7 @@ static void print_quoted(FILE *to, const char *text)
 static void print_row(FILE *to, const struct picture *p, size_t bucket, const double *value)
 {
 	char text[LONGEST];
-	*put_time(text, bucket * p->stride, p->h, p->machine->single) = 0;
+	*put_time(text, bucket * p->stride * p->every, p->h, p->machine->single) = 0;
 	fputs(text, to);
 	for (int i = 0; i < p->panels; i++) {
 		*put_shortest(text, value[bucket * (size_t)p->panels + (size_t)i], p->machine->single) = 0;
@@ -122,7 +127,7 @@ static void print_terminal(FILE *to, const struct picture *p, const char *file)
 
 static void print_panels(FILE *to, const struct picture *p)
 {
-	double end = (double)((p->buckets ? p->buckets - 1 : 0) * p->stride) * p->h;
+	double end = (double)((p->buckets ? p->buckets - 1 : 0) * p->stride * p->every) * p->h;
 	fprintf(to, "set multiplot layout %d,1 title ", p->panels);
 	print_quoted(to, p->machine->name);
 	fprintf(to, " noenhanced\nset grid lt 1 lc rgb '#dddddd'\nset lmargin 12\nset rmargin 3\nunset key\n"

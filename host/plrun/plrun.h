@@ -248,7 +248,7 @@ watch rows_add;
 void rows_end(struct rows *r);
 
 struct picture;
-struct picture *picture_new(const struct machine *m, double h);
+struct picture *picture_new(const struct machine *m, double h, uint64_t every); /* of every so many steps */
 watch picture_add;
 void picture_draw(struct picture *p, const char *file); /* NULL: a window */
 

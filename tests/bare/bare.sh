@@ -4,7 +4,7 @@
 # how long it takes. Root's work: debootstrap makes the system in FOLDER, in namespaces of its own, so that no mount and
 # no process is left.
 #
-#     bare.sh FOLDER REPOSITORY [check]           # with check: `make check` at the end, half an hour
+#     bare.sh FOLDER REPOSITORY [check]           # with check: `make check` at the end
 #
 # FOLDER/bare.md has the log, FOLDER/said what all commands said. SUITE (bookworm) and MIRROR
 # (http://deb.debian.org/debian) in the environment choose another Debian. FOLDER/base is kept for the next time.

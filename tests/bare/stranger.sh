@@ -12,27 +12,31 @@ failed=0
 
 now() { date +%s.%N; }
 
-# row STATUS SECONDS COMMAND
+# row STATUS SECONDS PROCESSOR_SECONDS COMMAND
 row() {
 	count=$((count + 1))
 	words='ok'
 	[ "$1" -eq 0 ] || { words="not ok" failed=$((failed + 1)); }
-	text=$(printf '%s' "$3" | head -n 1 | cut -c 1-90 | sed 's/|/\\|/g')
+	text=$(printf '%s' "$4" | head -n 1 | cut -c 1-80 | sed 's/|/\\|/g')
 	[ "$1" -eq 0 ] && note= || note=' **failed**'
-	printf '| `%s` | %.1f%s |\n' "$text" "$2" "$note" >>"$home/bare.md"
+	printf '| `%s` | %.1f%s | %.1f |\n' "$text" "$2" "$note" "$3" >>"$home/bare.md"
 	printf '%s %d - %s # %.1f s\n' "$words" $count "$text" "$2"
 	[ "$1" -eq 0 ] || tail -n 8 "$home/said" | cut -c 1-200 | sed 's/^/# /'
 }
 
-# typed COMMAND: what stands in a page, typed; its time goes to `took`
+# typed COMMAND: what stands in a page, typed; by the clock, and what its processes took of processors
 typed() {
 	began=$(now)
+	times >"$home/before"
 	printf '$ %s\n' "$1" >>"$home/said"
 	sh -euc "$1" >"$home/answer" 2>&1
 	status=$?
 	took=$(echo "$(now) $began" | awk '{ print $1 - $2 }')
+	times >"$home/after"
+	work=$(cat "$home/before" "$home/after" | tr 'ms' '  ' |
+		awk 'NR == 2 { a = 60 * $1 + $2 + 60 * $3 + $4 } NR == 4 { print 60 * $1 + $2 + 60 * $3 + $4 - a }')
 	cat "$home/answer" >>"$home/said"
-	row $status "$took" "$1"
+	row $status "$took" "$work" "$1"
 	return $status
 }
 
@@ -63,7 +67,7 @@ console() {
 		{ printf '$ %s\n' "$line"; cat "$home/answer"; } >>"$home/whole"
 	done <"$home/lines"
 	if ! diff "$1" "$home/whole" >>"$home/said"; then
-		row 1 0 "what $(basename "$1") of $page says"
+		row 1 0 0 "what $(basename "$1") of $page says"
 	fi
 }
 
@@ -89,7 +93,7 @@ packages() {
 # follow PAGE: all of it
 follow() {
 	page=$1
-	printf '\n| %s | s |\n| --- | --- |\n' "$page" >>"$home/bare.md"
+	printf '\n| %s | s | processor s |\n| --- | --- | --- |\n' "$page" >>"$home/bare.md"
 	packages
 	rm -rf "$home/blocks"
 	mkdir "$home/blocks"
@@ -107,7 +111,7 @@ follow() {
 
 version() { dpkg-query -W -f='${Version}' "$1" 2>/dev/null; }
 
-printf '| from `git clone` to a picture | s |\n| --- | --- |\n' >bare.md
+printf '| from `git clone` to a picture | s | processor s |\n| --- | --- | --- |\n' >bare.md
 start=$(now)
 typed 'git clone -q /srv/plgen.git plgen' && cd plgen || exit 1
 typed make || exit 1
@@ -118,14 +122,15 @@ mv "$home/1.spec" two.spec
 rm -f "$home"/[0-9].*
 typed 'plrun two.spec 30 --plot two.svg >two.csv' && grep -q '<path' two.svg || exit 1
 echo "$start $(now) $(fetched)" |
-	awk '{ printf "| **all** | **%.1f** |\n| of it apt'\''s downloads | %.0f |\n", $2 - $1, $3 }' >>"$home/bare.md"
+	awk '{ printf "| **all** | **%.1f** | |\n| of it downloads of apt | %.0f | |\n", $2 - $1, $3 }' \
+		>>"$home/bare.md"
 tail -n 2 "$home/bare.md"
 echo "Debian $(cat /etc/debian_version), $(nproc) cores; gcc $(version gcc), meson $(version meson)," \
 	"gnuplot $(version gnuplot-nox), MPFR $(version libmpfr-dev); $(git rev-list --count HEAD) commits" |
 	tee -a "$home/versions"
 follow README.md
 follow doc/tutorial.md
-printf '\n| the demo, and the tests | s |\n| --- | --- |\n' >>"$home/bare.md"
+printf '\n| the demo, and the tests | s | processor s |\n| --- | --- | --- |\n' >>"$home/bare.md"
 typed 'make demo'
 if [ "${1:-}" = check ]; then
 	typed 'make check'

@@ -39,7 +39,8 @@ run_spec() {
 	name=$(sed -n 's/^model \([A-Za-z0-9_]*\).*/\1/p' "$block")
 	made=.
 	case $page in README.md | doc/tutorial.md | doc/cookbook.md) made=../made ;; esac
-	cp "$block" "$name.spec" && plgen -o "$made/${name}_pl.c" "$name.spec" >>../log 2>&1 && [ -s "$made/${name}_pl.h" ]
+	cp "$block" "$name.spec" && plgen -o "$made/${name}_pl.c" "$name.spec" >>../log 2>&1 &&
+		[ -s "$made/${name}_pl.h" ]
 }
 
 run_sh() {

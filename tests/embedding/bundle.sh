@@ -119,7 +119,7 @@ bundles() {
         # shellcheck disable=SC2086
         "$plgen" --real $real --prefix scene "$@" -o model.c "$spec" >>log 2>&1 &&
             ${CC:-cc} -std=c99 -O1 -ffp-contract=off $own -DMODEL=scene_model -I"$root/runtime" show.c model.c \
-                "$root"/runtime/*.c -lm -o linked >>log 2>&1 && ./linked >linked.bits
+                "$archive" -lm -o linked >>log 2>&1 && ./linked >linked.bits
         cmp inside.bits linked.bits >>log 2>&1 && [ "$(wc -l <inside.bits)" -gt 40 ]
         result $? "$title, $real: the bits of a model that is linked with the runtime"
     done

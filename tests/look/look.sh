@@ -1,11 +1,13 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# look.sh PLGEN LOOK ROOT: the linear part as --explain=json, --response, --plot and --report tell it. Numbers are
-# LOOK's; pictures are scripts, which a gnuplot of the test's own hands on as they are.
+# look.sh PLGEN LOOK SWEEPS ROOT: the linear part as --explain=json, --response, --plot and --report tell it, and
+# sweeps of models with clearances. Numbers are LOOK's and SWEEPS'; pictures are scripts, which a gnuplot of the test's
+# own hands on as they are.
 set -u
 plgen=$(cd "$(dirname "$1")" && pwd)/$(basename "$1") || exit 99
 look=$(cd "$(dirname "$2")" && pwd)/$(basename "$2") || exit 99
-root=$(cd "$3" && pwd) || exit 99
+sweeps=$(cd "$(dirname "$3")" && pwd)/$(basename "$3") || exit 99
+root=$(cd "$4" && pwd) || exit 99
 here=$root/tests/look
 . "$root/tests/tap.sh"
 
@@ -34,6 +36,44 @@ result $? 'names of the columns'
 	"$root/models/sdcsf.spec" >two && [ "$(tail -n 1 many)" = "$(tail -n 1 two)" ] && [ "$(wc -l <two)" -eq 3 ]
 result $? 'a phase does not depend on the rows before it'
 
+# ---- sweeps up and down, of models with clearances ----
+
+# swept MODEL SPEC BAND AMPLITUDE APART TOLERANCE: of SWEEPS, as above
+swept() {
+	"$plgen" --response "$3" --amplitude "$4" "$2" >csv 2>log && [ ! -s log ] &&
+		"$sweeps" "$1" "$5" "$4" "$6" csv >log
+	status=$?
+	grep '^not ok' -B 2 log >wrong && mv wrong log
+	result $status "a sweep of $1: $(grep -o 'differ at .* frequencies' log)"
+}
+swept gear "$root/models/gear1.spec" 0.05:0.25:20 1 3 1e-6
+swept two "$here/stops.spec" 0.28:0.95:16 0.2 1 1e-6
+
+"$plgen" --response 1:2:3 --amplitude 0.2 "$here/stops.spec" 2>log | head -n 1 | tr ',' '\n' >head.csv
+for output in x apart mixed; do
+	for way in up down; do
+		printf '%s/floor mag %s\n%s/floor phase %s\n' $output $way $output $way
+	done
+done | sed '1i f' >expected
+diff expected head.csv >log
+result $? 'names of the columns of a sweep'
+
+# Within the clearance the response is that of the mass alone: x = 4 + 0.2 s over s^2 + 0.2 s + 4
+"$plgen" --response 0.05:5:50 --amplitude 1e-3 "$here/stops.spec" 2>log | awk -F, 'NR > 1 {
+	w = 8 * atan2(1, 1) * $1
+	size = sqrt((16 + 0.04 * w^2) / ((4 - w^2)^2 + 0.04 * w^2))
+	for (i = 2; i < 5; i += 2)
+		if (!($i / size - 1 < 1e-10 && $i / size - 1 > -1e-10)) {
+			print $1, $i, size
+			wrong = 1
+		}
+} END { exit wrong || NR != 51 }' >log
+result $? 'within clearances the response is linear'
+
+"$plgen" --response 1.1:1.2:3 --amplitude 0.2 "$here/stops.spec" >csv 2>log &&
+	grep -q '^plgen: note: at 5 of 5 frequencies the motion does not repeat with the excitation: means over 64' log
+result $? 'a motion of two periods is told'
+
 # A load on the first of two masses: over x1, s^2 + s + 200, whose roots are -0.5 +- i sqrt(199.75)
 "$plgen" --explain "$root/models/sdcsf.spec" >text 2>log
 grep -F 'x1 / cos(5*t)' text | grep -F ' 0.0066666667 ' | grep -qF -- '-0.5 +- 14.133294 i'
@@ -55,11 +95,23 @@ block() {
 }
 
 block frf >rows
-first=$(head -n 1 rows | cut -d ' ' -f 1)
-last=$(tail -n 1 rows | cut -d ' ' -f 1)
-"$plgen" --response "$first:$last:$(wc -l <rows | tr -d ' ')" "$root/models/sdcsf.spec" 2>log | sed 1d | tr ',' ' ' >csv
+# band_of_rows: F0:F1:N that --response takes
+band_of_rows() {
+	echo "$(head -n 1 rows | cut -d ' ' -f 1):$(tail -n 1 rows | cut -d ' ' -f 1):$(wc -l <rows | tr -d ' ')"
+}
+"$plgen" --response "$(band_of_rows)" "$root/models/sdcsf.spec" 2>log | sed 1d | tr ',' ' ' >csv
 [ -s csv ] && cmp rows csv >log 2>&1
 result $? 'frf is drawn from the numbers of --response'
+
+gear=$root/models/gear1.spec
+PATH=$PWD/own:$PATH "$plgen" --plot frf --amplitude 1 "$gear" >script 2>log && block frf >rows
+"$plgen" --response "$(band_of_rows)" --amplitude 1 "$gear" 2>log | sed 1d | tr ',' ' ' >csv
+[ -s csv ] && cmp rows csv >log 2>&1 && grep -q 'over cos(0.8\*t), swept with amplitude 1' script
+result $? 'a sweep is drawn from the numbers of --response'
+PATH=$PWD/own:$PATH "$plgen" --plot frf "$gear" 2>log | grep -q 'over cos(0.8\*t), of the first region alone' &&
+	PATH=$PWD/own:$PATH "$plgen" --plot frf "$root/models/duffing.spec" 2>log | grep -q 'of the linear terms alone'
+result $? 'what a frequency response leaves out stands over it'
+PATH=$PWD/own:$PATH "$plgen" --plot poles,modes,frf,response "$root/models/sdcsf.spec" >script 2>log
 
 block response >rows
 "$plgen" --solution "$(tail -n 1 rows | cut -d ' ' -f 1)" "$root/models/sdcsf.spec" | sed 1d | tr ',' ' ' >csv
@@ -108,6 +160,8 @@ refused 1 'no such terminal' 'gnuplot fails' --plot poles -o kept.svg "$spec"
 [ "$(cat kept.svg)" = kept ] && [ "$(ls kept.svg*)" = kept.svg ]
 result $? 'a file stays as it was where gnuplot fails'
 path=
+refused 2 '--amplitude goes with --response and --plot frf' 'an amplitude without a sweep' --plot poles --amplitude 1 \
+	"$spec"
 refused 2 "--plot takes response, poles, modes and frf, with commas between, found 'pole'" 'no such picture' \
 	--plot poles,pole "$spec"
 refused 2 "found ''" 'a picture without a name' --plot poles, "$spec"

@@ -24,6 +24,16 @@ run two.spec 30 --plot two.svg >two.csv && [ "$(wc -l <two.csv)" -eq 3002 ] && [
 result $? 'README: the spec, run and drawn'
 run "$models/scs.spec" 300 --plot long.svg >rows.csv && [ "$(wc -c <long.svg)" -lt 4000000 ]
 result $? 'a picture of many rows stays small'
+mkdir own
+printf '#!/bin/sh\ncat >script\n' >own/gnuplot
+chmod +x own/gnuplot
+(PATH=$PWD/own:$PATH; run "$models/sdcsf.spec" 30 --every 0.25 --plot thin.svg >rows.csv)
+sed -n '/^\$data/,/^END/{//d;p}' script >points
+sed '1d; s/,/ /g' rows.csv >expected
+[ "$(wc -l <points)" -eq 121 ] && cmp expected points >>log 2>&1
+result $? 'with --every a picture has the points of the rows'
+grep -q 'xrange \[0:30\]' script
+result $? 'with --every a picture ends where the rows end'
 (unset DISPLAY WAYLAND_DISPLAY; run "$models/scs.spec" 1 --plot >rows.csv; [ $? -eq 1 ] && grep -q 'no display' said)
 result $? 'a window without a display'
 run "$models/scs.spec" 1 --plot none/such/a.svg >rows.csv

@@ -1,16 +1,18 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 # measured.sh PLGEN JUDGE SOURCE_ROOT: needs of models that are not linear, or piecewise linear. What is chosen is
-# compiled and run; CVODE, on equations by hand, finds every sample within the need, from the spec's start and its
-# neighbours.
+# compiled and run; CVODE, on equations by hand, finds every sample within the need, from the spec's start and one of
+# its neighbours by turns, with LONG=1 from all of them.
 set -u
 plgen=$1
 judge=$2
 root=$3
 case $plgen in /*) ;; *) plgen=$PWD/$plgen ;; esac
 case $judge in /*) ;; *) judge=$PWD/$judge ;; esac
+. "${0%/*}/../compilers.sh"
 . "${0%/*}/../tap.sh"
 runtime_archive "$root/runtime"
+turn=0
 
 cat >pendulum.txt <<END
 coord x
@@ -74,9 +76,14 @@ meets() {
 	step=$(sed -n 's/.*"step": \([0-9.e-]*\),.*/\1/p' taken)
 	tolerance=$(sed -n 's/.*"tolerance": \([0-9.e-]*\),.*/\1/p' taken)
 	step=${step:-$(sed -n 's/^step //p' "$name.txt")}
+	neighbours=2
+	[ "$loads" = no ] || neighbours=4
+	turn=$((turn + 1)) place=0
 	for factors in '1 1' '1.1 1' '0.9 1' '1 1.1' '1 0.9'; do
 		start=${factors% *} load=${factors#* }
 		[ "$load" = 1 ] || [ "$loads" = yes ] || continue
+		place=$((place + 1))
+		long || [ $place -eq 1 ] || [ $place -eq $((turn % neighbours + 2)) ] || continue
 		grep -v '^need' "$name.spec" >free.spec
 		force=$(sed -n 's/^param F = //p' free.spec)
 		"$plgen" --rhs "$@" --real "$real" --scheme "$scheme" ${step:+--step "$step"} \
