@@ -117,25 +117,39 @@ static bool has_coordinate(const struct form *form)
 	return form->terms > 0 && form->term[form->terms - 1].basis.kind >= BASIS_COORD;
 }
 
-/* Dry friction: a force, which only scheme exact can treat, where it switches; elsewhere it says so */
-static struct form *friction_of(struct collector *c, const struct node *node, struct form *const *x)
+/* F is no less than 0, and no more than what is held, where they are constant */
+static void check_friction(struct collector *c, const struct node *node, struct form *const *x)
 {
-	mpq_t force;
-	mpq_init(force);
-	if (!keeps_piecewise(c))
-		not_linear(c, node, "is dry friction, and stands in equations alone");
+	mpq_t force, rest;
+	mpq_inits(force, rest, NULL);
 	for (int i = 1; i < node->children; i++) {
 		if (is_constant(x[i]))
-			constant_value(c, x[i], force);
-		if (mpq_sgn(force) < 0)
+			constant_value(c, x[i], rest);
+		if (is_constant(x[i]) && mpq_sgn(rest) < 0)
 			error(node->child[i]->start, "it acts against the sliding: friction(v, F) is F sgn(v) on the left side",
 			      "the force of friction is below 0");
 	}
+	if (node->children > 2 && is_constant(x[1]) && is_constant(x[2])) {
+		constant_value(c, x[1], force);
+		if (mpq_cmp(rest, force) < 0)
+			error(node->child[2]->start, "friction(v, F, S): F while it slides, S up to which it sticks",
+			      "friction that sticks holds no less than it brakes while it slides");
+	}
+	mpq_clears(force, rest, NULL);
+}
+
+/* Dry friction: a force, which only scheme exact can treat, where it switches; elsewhere it says so */
+static struct form *friction_form(struct collector *c, const struct node *node, struct form *const *x)
+{
+	if (c->tolerant)
+		not_linear(c, node, "is dry friction");
+	if (!keeps_piecewise(c))
+		error(node->at, "x' and what else moves has friction", "friction stands in equations and outputs");
+	check_friction(c, node, x);
 	if (!has_coordinate(x[0]) || x[0]->term[x[0]->terms - 1].basis.kind == BASIS_ATOM)
 		error(node->child[0]->start, "x', x' - y', or x' - 0.2 against what moves",
 		      "the velocity of friction is linear in velocities");
 	bool none = node->children == 2 && x[1]->terms == 0;
-	mpq_clear(force);
 	return none ? NEW(struct form) : kept_call(c, node, FN_FRICTION, node->children, x);
 }
 
@@ -143,7 +157,7 @@ static struct form *friction_of(struct collector *c, const struct node *node, st
 static struct form *piecewise_cell(struct collector *c, struct node *node, struct form *const *x)
 {
 	if (node->function == FN_FRICTION)
-		return friction_of(c, node, x);
+		return friction_form(c, node, x);
 	/* an angle has a single formula: known when it is of time alone, and no load all the same */
 	bool kept = node->function == FN_ATAN2 ? keeps(c) : keeps_piecewise(c) && !is_decided_call(c, node, x);
 	return kept ? kept_call(c, node, node->function, node->children, x) : piecewise(c, node, x);

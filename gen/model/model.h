@@ -296,6 +296,7 @@ struct friction {
 	int expression;
 	mpq_t at;                   /* that breakpoint */
 	mpq_t factor;               /* v = factor (expression - at) */
+	bool negative;              /* F may fall below 0, and counts as 0 there */
 };
 struct hold {                       /* a state that a region gives: of what sticks a velocity follows from the others */
 	int state;

@@ -159,8 +159,8 @@ static void add_stick(struct looking *l, struct expression *e, mpq_srcptr at)
 		add_break(l, e, at);
 }
 
-/* Below 0 no force is left; what never is needs no breakpoint there */
-static struct form *force_here(struct looking *l, const struct node *node, struct form *force)
+/* Below 0 no force is left; what never is, from t = 0 on, needs no breakpoint there */
+static struct form *force_here(struct looking *l, const struct node *node, struct form *force, bool *negative)
 {
 	mpq_t least, size;
 	mpq_inits(least, size, NULL);
@@ -173,11 +173,14 @@ static struct form *force_here(struct looking *l, const struct node *node, struc
 		else
 			mpq_sub(least, least, size);
 		bounded = bounded && (basis->kind == BASIS_ONE ||
-				      (basis->kind == BASIS_WAVE && !basis->power && mpq_sgn(basis->wave->a) == 0));
+				      (basis->kind == BASIS_WAVE && !basis->power && mpq_sgn(basis->wave->a) <= 0));
 	}
 	bool positive = bounded && mpq_sgn(least) >= 0;
 	mpq_clears(least, size, NULL);
-	return positive || sign_here(l, node, force, form_number(0)) >= 0 ? force : form_number(0);
+	if (positive || sign_here(l, node, force, form_number(0)) >= 0)
+		return force;
+	*negative = *negative || !l->grown;
+	return form_number(0);
 }
 
 static int add_friction(struct looking *l, const struct atom *a)
@@ -212,8 +215,10 @@ static struct form *friction_here(struct looking *l, const struct atom *a, struc
 	for (int i = 1; i < a->operands; i++)
 		refuse_force(a->node, x[i]);
 	struct region *region = &l->s->region[l->region];
-	region->force[a->index] = force_here(l, a->node, x[1]);
-	region->rest[a->index] = a->operands > 2 ? force_here(l, a->node, x[2]) : region->force[a->index];
+	bool negative = false;
+	region->force[a->index] = force_here(l, a->node, x[1], &negative);
+	region->rest[a->index] = a->operands > 2 ? force_here(l, a->node, x[2], &negative) : region->force[a->index];
+	l->s->friction[index].negative = l->s->friction[index].negative || negative;
 	return form_unit((struct basis){ .kind = BASIS_ATOM, .index = a->index, .atom = a });
 }
 

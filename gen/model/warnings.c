@@ -401,6 +401,16 @@ static const char *passed_over(const char *why)
 	return format("; %s%s", strncmp(why, "scheme ", 7) == 0 ? "" : "what would be best is refused: ", why);
 }
 
+/* The force of friction is never below 0. */
+static void check_friction(const struct model *model)
+{
+	const struct switching *s = model->switching;
+	for (int i = 0; s && i < s->frictions; i++)
+		if (s->friction[i].negative)
+			say_warning(s->friction[i].atom->node->start, "max(F, 0) in its place says so",
+				    "the force of friction may fall below 0: it counts as 0 there");
+}
+
 void warn(struct building *b)
 {
 	const struct model *model = b->model;
@@ -417,6 +427,7 @@ void warn(struct building *b)
 	check_need(b, left);
 	check_truncation(b);
 	check_smoothness(b);
+	check_friction(model);
 	const struct scheme_row *scheme = scheme_row(model->scheme);
 	/* in normal modes a step's spectral radius tells more */
 	if (!left || !scheme->leaves || scheme->expands || scheme->modes || is_linear(b) ||

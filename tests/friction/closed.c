@@ -70,7 +70,7 @@ static void compare_cycles(const char *what, int step, int count, wide release, 
 /* It starts at rest on the spring: slips first, so that the cycle begins at its first release. */
 static void belt(int step)
 {
-	struct run r = run_new(variant_of(closed_table, "belt_%d", step));
+	struct run r = run_new(variant_of(closed_table, "stick_slip_%d", step));
 	wide k = 60, w = sqrtl(k / 1.5L), v = 0.2L, above = (5.0L - 2) / k, turn;
 	double start[2] = { 5.0 / 60 - 0.1, 0.2 };      /* with the belt, half a second before its release */
 	run_set(&r, start);
@@ -100,6 +100,26 @@ static void stribeck(int step)
 	int count = run_for(&r, 20);
 	compare_cycles("friction that falls", step, count, (F / k - (wide)start[0]) / v, low, (F / k - end) / v);
 	run_free(&r);
+}
+
+/* ---- a brake ---- */
+
+/* The same history at two steps; in the end all stands, and the brakes carry what the slope pulls. */
+static void brake(void)
+{
+	double y[2][4], out[4], off = 0;
+	for (int step = 0; step < 2; step++) {
+		struct run r = run_new(variant_of(closed_table, "brake_%d", step));
+		run_until(&r, 20);
+		run_state(&r, y[step]);
+		r.of->model->out(r.state, out);
+		close_to(out[3], 1400 * 9.81 * 0.05, 1e-8, "brake %d: what the brakes carry", step);
+		ok(y[step][2] == 0 && y[step][3] == 0, "brake %d: all stands", step);
+		run_free(&r);
+	}
+	for (int i = 0; i < 4; i++)
+		off = worse(off, fabs(y[0][i] - y[1][i]));
+	close_to(off, 0, 1e-10, "brake: steps far apart");
 }
 
 /* ---- a shaken table ---- */
@@ -290,5 +310,6 @@ int main(void)
 		stopping(step);
 		energies(step);
 	}
+	brake();
 	return tap_end();
 }
