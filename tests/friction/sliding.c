@@ -78,13 +78,14 @@ struct sliding sliding_system(unsigned seed)
 		s.f[i] = next(&state) % 3 ? between(&state, 0.5, 3, 10) : 0;
 		s.w[i] = between(&state, 0.5, 4, 14);
 		s.p[i] = between(&state, 0, 3, 6);
-		s.start[i] = between(&state, -0.5, 0.5, 20);
+		s.start[i] = between(&state, -0.5, 0.5, 20) + 0.003;   /* on no end of an interval */
 		s.start[s.n + i] = next(&state) % 2 ? between(&state, -1, 1, 20) : 0;
 	}
 	for (int i = 0; i <= s.n; i++) {
 		s.k[i] = i == s.n && next(&state) % 2 ? 0 : between(&state, 1, 20, 19);
 		s.c[i] = next(&state) % 2 ? between(&state, 0, 0.5, 10) : 0;
 	}
+	s.c[0] += 0.05;         /* an undamped orbit that sticking leaves comes back to touch, no more, again and again */
 	s.rubs = 1 + (int)(next(&state) % (s.n == 2 || s.n == 4 ? 2 : (unsigned)s.n)); /* 3 of 4 are long in the making */
 	do {
 		memset(s.rub, 0, sizeof s.rub);
