@@ -36,14 +36,14 @@ static bool has_name(const struct piece *p, const char *word, size_t length)
 	return false;
 }
 
-/* Names of a header are seen in every file, those of a file in it. */
-static bool is_seen(const struct piece *p, const struct piece *from)
+/* Names of a file are seen in it, those of a header in every file that has none of its own. */
+static bool is_seen(const struct piece *p, const struct piece *from, bool header)
 {
-	static const char *const header[] = { "real", "words", "two" };
-	for (int i = 0; i < 3; i++)
-		if (strcmp(p->file, header[i]) == 0)
+	static const char *const headers[] = { "real", "words", "two", "roots" };
+	for (size_t i = 0; i < sizeof headers / sizeof *headers && header; i++)
+		if (strcmp(p->file, headers[i]) == 0)
 			return true;
-	return strcmp(p->file, from->file) == 0;
+	return !header && strcmp(p->file, from->file) == 0;
 }
 
 static const char *new_name(const struct runtime *r, const struct piece *from, const char *word, size_t length)
@@ -54,9 +54,11 @@ static const char *new_name(const struct runtime *r, const struct piece *from, c
 			return r->to[i];
 	if (is_runtime_name(name))
 		return name;
-	for (int i = 0; i < r->pieces; i++)
-		if (!r->piece[i].shared && is_seen(&r->piece[i], from) && has_name(&r->piece[i], word, length))
-			return own_name(&r->piece[i], name);
+	for (int header = 0; header < 2; header++)
+		for (int i = 0; i < r->pieces; i++)
+			if (!r->piece[i].shared && is_seen(&r->piece[i], from, header) &&
+			    has_name(&r->piece[i], word, length))
+				return own_name(&r->piece[i], name);
 	return name;
 }
 
