@@ -15,6 +15,7 @@ lengths='axle 2 0.005
 beam15 17 0.01
 beam4 17 0.01
 bilinear 40 0.1
+brake 8 0.02
 building 20 0.05
 drivetrain 2 0.005
 duffing 40 0.1 taylor
@@ -35,6 +36,7 @@ scs 5 0.0125
 scs_weak 1 0.0025
 sdcs 10 0.025
 sdcsf 10 0.025
+stick_slip 10 0.025
 stop 2 0.005
 street 20 0.05
 tuned_floor 10 0.02
