@@ -243,8 +243,8 @@ void bundle(struct file *code, struct file *header, bool single)
 	rename_all(r);
 	/* what a program asks of a model */
 	if (header) {
-		use_words(r, "PL_NOT_FINITE PL_TOO_MANY_STEPS PL_TOO_MANY_EVENTS PL_UNDECIDED PL_SINGULAR PL_MODEL_VERSION",
-			  IN_HEADER);
+		use_words(r, "PL_NOT_FINITE PL_TOO_MANY_STEPS PL_TOO_MANY_EVENTS PL_UNDECIDED", IN_HEADER);
+		use_words(r, "PL_SINGULAR PL_MODEL_VERSION", IN_HEADER);
 		use_words(r, header->text, IN_HEADER);
 	}
 	for (int i = 0; i < r->pieces; i++)

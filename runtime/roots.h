@@ -49,7 +49,7 @@ static real noise_of(real terms)
     return 8 * REAL_EPSILON * terms;
 }
 
-/* 1, -1 or 0: the sign of the first of e', e'', e''' that is not zero but for rounding.  row, x: n entries; work: 4 n */
+/* 1, -1 or 0: the sign of the first of e', e'', e''' that is not zero but for rounding.  work: 4 n */
 static int heading(int n, const real *A, const real *row, const real *x, real *work)
 {
     real *y = work, *next = work + n, *terms = work + 2 * n, *next_terms = work + 3 * n, e, noise;

@@ -126,7 +126,8 @@ static void check_friction(struct collector *c, const struct node *node, struct 
 		if (is_constant(x[i]))
 			constant_value(c, x[i], rest);
 		if (is_constant(x[i]) && mpq_sgn(rest) < 0)
-			error(node->child[i]->start, "it acts against the sliding: friction(v, F) is F sgn(v) on the left side",
+			error(node->child[i]->start,
+			      "it acts against the sliding: friction(v, F) is F sgn(v) on the left side",
 			      "the force of friction is below 0");
 	}
 	if (node->children > 2 && is_constant(x[1]) && is_constant(x[2])) {

@@ -66,7 +66,8 @@ struct form *coordinate_form(const struct frame *frame, int coord, int order);
 
 /* ---- collector.c: what collection goes by, and what it says ---- */
 
-struct irrationals { bool used[FN_FRICTION + 1], pi, root; };  /* which became rationals of 256 bits; `root`: of a power */
+/* which became rationals of 256 bits; `root`: of a power */
+struct irrationals { bool used[FN_FRICTION + 1], pi, root; };
 struct collector {
 	struct waves *waves;        /* made on first use; of the collectors inside it too */
 	struct irrationals irrationals;

@@ -573,7 +573,7 @@ void emit_rest(const struct emitter *e);                          /* NAME_rest: 
 void emit_step_end(const struct emitter *e);                      /* samples, phases and time move on */
 const char *step_parameters(const struct emitter *e);
 const char *input_operand(const struct emitter *e, int column);
-void emit_grip(const struct emitter *e, const bool *needed);      /* what friction carries, for outputs */
+void emit_grips(const struct emitter *e);                         /* what friction carries, for outputs */
 void emit_guards(const struct emitter *e, const struct pieces *pieces); /* tables of dry friction in regions */
 void emit_regions(const struct emitter *e);                       /* tables of a piecewise-linear model */
 void emit_region_declarations(const struct emitter *e);

@@ -90,7 +90,7 @@ static void emit_assignments(const struct emitter *e, const struct guards *g)
 	const char **note = ARRAY(const char *, (size_t)count + 1);
 	note[0] = "none";
 	say(e, "\n"
-	       "static const int $o_hold[%d] = {  /* of each region: the set of assignments that holds states; -1: none */\n"
+	       "static const int $o_hold[%d] = {  /* of each region: what holds its states, a set; -1: nothing */\n"
 	       "    ", s->regions);
 	emit_numbers(e, s->regions, g->hold);
 	say(e, "\n"
@@ -164,7 +164,7 @@ void emit_guards(const struct emitter *e, const struct pieces *pieces)
 	    max_splits(e->model));
 }
 
-void emit_grip(const struct emitter *e, const bool *needed)
+void emit_grips(const struct emitter *e)
 {
 	const struct switching *s = e->model->switching;
 	int size = e->step->layout.size;
@@ -180,15 +180,5 @@ void emit_grip(const struct emitter *e, const bool *needed)
 		emit_number_rows(e, s->frictions, size, grip + r * s->frictions * size, name);
 		say(e, "  },\n");
 	}
-	say(e, "};\n"
-	       "\n"
-	       "static double $n_grip(const $n *s, int which)\n"
-	       "{\n"
-	       "    double x[%d], force;\n"
-	       "    int i;\n", size);
-	emit_load_states(e, needed, false);
-	emit_region_vector(e, false);
-	say(e, "    pl_multiply(1, %d, $n_grips[s->contact.region][which], x, &force);\n"
-	       "    return force;\n"
-	       "}\n", size);
+	say(e, "};\n");
 }

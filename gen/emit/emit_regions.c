@@ -232,6 +232,22 @@ void declare_region_room(const struct emitter *e)
 		    regions_of(e)->expressions, series->degree);
 }
 
+/* What friction carries now */
+static void emit_grip(const struct emitter *e)
+{
+	emit_grips(e);
+	say(e, "\n"
+	       "static double $n_grip(const $n *s, int which)\n"
+	       "{\n"
+	       "    double x[%d], force;\n"
+	       "    int i;\n", e->step->layout.size);
+	emit_load_states(e, needed_loads(e), false);
+	emit_region_vector(e, false);
+	say(e, "    pl_multiply(1, %d, $n_grips[s->contact.region][which], x, &force);\n"
+	       "    return force;\n"
+	       "}\n", e->step->layout.size);
+}
+
 void emit_region_start(const struct emitter *e)
 {
 	say(e, "\n"
@@ -245,7 +261,7 @@ void emit_region_start(const struct emitter *e)
 	emit_region_start_call(e);
 	say(e, "}\n");
 	if (regions_of(e)->felt)
-		emit_grip(e, needed_loads(e));
+		emit_grip(e);
 }
 
 void emit_region_start_call(const struct emitter *e)

@@ -122,8 +122,8 @@ static void slip(const struct switching *s, int index)
 		mpq_set_si(sign, side < 0 ? -mpq_sgn(f->factor) : mpq_sgn(f->factor), 1);
 		if (side != 0) {
 			put_in(s, region, f, sign);
-			region->carried[f->atom->index] =
-				form_scale(region->force[f->atom->index] ? region->force[f->atom->index] : form_number(0), sign);
+			const struct form *force = region->force[f->atom->index];
+			region->carried[f->atom->index] = force ? form_scale(force, sign) : form_number(0);
 		}
 	}
 	mpq_clear(sign);
@@ -194,7 +194,8 @@ static void find_direction(const struct switching *s, int index, int expression,
 		int base = stuck->atom->index;
 		if (at != base && (!is_ratio(region->force[at], region->force[base], ratio) ||
 				   !same_form(region->rest[at], form_scale(region->rest[base], ratio))))
-			error(f->atom->node->at, "several of one velocity need forces that are multiples of one another",
+			error(f->atom->node->at,
+			      "several of one velocity need forces that are multiples of one another",
 			      "how friction of one velocity is shared out while it sticks is not determined");
 		if (at == base)
 			mpq_set_ui(ratio, 1, 1);
@@ -571,7 +572,8 @@ static void feel(const struct building *b, struct switching *s, bool *seen, cons
 		seen[a->index] = true;
 		bool friction = a->kind == ATOM_CALL && a->function == FN_FRICTION;
 		if (friction && friction_of(s, a) < 0)
-			error(a->node->at, "an output repeats it as an equation has it", "no equation has this friction");
+			error(a->node->at, "an output repeats it as an equation has it",
+			      "no equation has this friction");
 		s->felt = s->felt || friction;
 		for (int k = 0; k < a->operands && !friction; k++)
 			feel(b, s, seen, a->operand[k]);

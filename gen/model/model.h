@@ -304,7 +304,7 @@ struct impact {                     /* of `when`, or of a stop */
 	mpq_t at, factor;           /* guard = factor (expression - at) */
 	bool upward;                /* which it passes this way */
 };
-/* friction(v, F): v is an expression less a breakpoint that stands there twice, with the interval of sticking between */
+/* friction(v, F): v is an expression less a breakpoint that stands there twice, the interval of sticking between */
 struct friction {
 	const struct atom *atom;
 	int expression;

@@ -37,7 +37,8 @@ static void look_at_form(struct reads *reading, const struct model *model, bool 
 		reading->math = reading->math || calls_libm(atom);
 		if (atom->kind == ATOM_PARAM)
 			reading->param[atom->param->tunable - 1] = true;
-		bool friction = atom->kind == ATOM_CALL && atom->function == FN_FRICTION; /* it is a row of its region */
+		/* that is a row of its region */
+		bool friction = atom->kind == ATOM_CALL && atom->function == FN_FRICTION;
 		for (int k = 0; k < atom->operands && !friction; k++)
 			look_at_form(reading, model, seen, atom->operand[k]);
 	}

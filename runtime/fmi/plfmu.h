@@ -326,7 +326,7 @@ static enum fmu_result fmu_look(fmu_instance *i)
     if (fresh & PL_TOO_MANY_EVENTS)
         return fmu_say(i, FMU_WARNING, "up to %.9g s a step has met more crossings than its bound", fmu_time(d));
     if (fresh & PL_UNDECIDED)
-        return fmu_say(i, FMU_WARNING, "up to %.9g s what sticks and what slips had no answer at an event", fmu_time(d));
+        return fmu_say(i, FMU_WARNING, "up to %.9g s what sticks had no answer at an event", fmu_time(d));
     if (fresh & PL_TOO_MANY_STEPS)
         return fmu_say(i, FMU_ERROR, "up to %.9g s a step needed more substeps than its bound", fmu_time(d));
     if (fresh & PL_INACCURATE)

@@ -129,7 +129,8 @@ static void shaken(int step)
 	struct run r = run_new(variant_of(closed_table, "table_%d", step));
 	const pl_model *model = r.of->model;
 	wide a = 0.05L, w = 12, mg = 0.3L * 9.81L, worst = 0, fast = mg * pi / (2 * w);
-	wide phase = acosl(fast / (a * w));     /* w t where the table is as fast, slowing down: the slider then slides on */
+	/* w t where the table is as fast and slows down: the slider then slides on */
+	wide phase = acosl(fast / (a * w));
 	double begin = (double)(phase / w), start[2] = { 0, (double)fast };
 	model->set(r.state, begin, start);
 	int count = 0, half = 0;
@@ -274,7 +275,8 @@ static void stopping(int step)
 static wide energy(const double *y)
 {
 	wide x = y[0], z = y[1], deep = z > 0.3L ? z - 0.3L : 0;
-	return (2 * (wide)y[2] * y[2] + (wide)y[3] * y[3] + 80 * (x - z) * (x - z) + 10 * z * z + 200 * deep * deep) / 2;
+	wide moving = 2 * (wide)y[2] * y[2] + (wide)y[3] * y[3];
+	return (moving + 80 * (x - z) * (x - z) + 10 * z * z + 200 * deep * deep) / 2;
 }
 
 static void energies(int step)

@@ -60,8 +60,9 @@ int main(void)
 		sums.sticks += truth.sticks;
 		for (int step = 0; step < STEPS; step++)
 			good = at_step(&s, &truth, seed, step) && good;
-		ok(good && truth.undecided == 0, "system %u: %d coordinates, friction %d times, %d stops: %d events, %d of sticking",
-		   seed, s.n, s.rubs, s.stops, truth.events, truth.sticks);
+		ok(good && truth.undecided == 0,
+		   "system %u: %d coordinates, friction %d times, %d stops: %d events, %d of sticking", seed,
+		   s.n, s.rubs, s.stops, truth.events, truth.sticks);
 	}
 	note("%ld events, %ld of sticking; states off by %.3g, times by %.3g s at most", sums.events, sums.sticks,
 	     sums.state, sums.time);

@@ -85,8 +85,9 @@ struct sliding sliding_system(unsigned seed)
 		s.k[i] = i == s.n && next(&state) % 2 ? 0 : between(&state, 1, 20, 19);
 		s.c[i] = next(&state) % 2 ? between(&state, 0, 0.5, 10) : 0;
 	}
-	s.c[0] += 0.05;         /* an undamped orbit that sticking leaves comes back to touch, no more, again and again */
-	s.rubs = 1 + (int)(next(&state) % (s.n == 2 || s.n == 4 ? 2 : (unsigned)s.n)); /* 3 of 4 are long in the making */
+	s.c[0] += 0.05;         /* an undamped orbit that sticking leaves comes back to touch, again and again */
+	/* 3 of 4 are long in the making */
+	s.rubs = 1 + (int)(next(&state) % (s.n == 2 || s.n == 4 ? 2 : (unsigned)s.n));
 	do {
 		memset(s.rub, 0, sizeof s.rub);
 		for (int r = 0; r < s.rubs; r++)

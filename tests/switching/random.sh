@@ -3,7 +3,7 @@
 #
 #     random.sh PLGEN RANDOM_SPECS KIND FIRST COUNT NAME_variants.c NAME_variants.h [STEPS]
 #
-# COUNT random systems, each at the STEPS, or 0.5, 1, 2 and 4 and a hundredth of the shortest, as variants.sh makes them.
+# COUNT random systems, each at the STEPS, or 0.5, 1, 2, 4 and a hundredth of the shortest, as variants.sh makes them.
 set -eu
 plgen=$1
 specs=$2
