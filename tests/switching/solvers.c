@@ -110,9 +110,39 @@ static void gear3_distance(double t, const double *y, double u, double *g)
 	g[3] = y[2] - y[1] - 0.02;
 }
 
+/* It begins anew at every end of a step of 0.01: there loads change their formula. */
+static double moving_stop(double t)
+{
+	return t < 1.37 ? 0.1 : t < 1.41 ? 0.1 + 5 * (t - 1.37) : t < 2.2 ? 0.3 - 0.35 / 0.79 * (t - 1.41)
+								     : -0.05 + 0.1875 * (t - 2.2);
+}
+
+static double step_begun;                   /* behind it, what changes there has changed */
+
+static void shaken_slopes(double t, const double *y, double u, const bool *side, double *dydt)
+{
+	const double push = side[0] ? 200 * (y[0] - moving_stop(t)) : 0, q = y[0] - y[1];
+	const double shared = 4 * (side[1] ? q - 0.2 : side[2] ? q + 0.2 : 0);
+	const double now = step_begun + 1e-6;
+	for (int i = 0; i < 3; i++)
+		dydt[i] = y[3 + i];
+	dydt[3] = u + (now < 0.77 ? 2 * cos(3 * t) : -1) - 0.2 * y[3] - 9 * y[0] - push - shared;
+	dydt[4] = 0.5 * u + (now < 1.39 ? 0 : 3 * exp(-t)) - 0.3 * y[4] - 4 * y[1] + shared;
+	dydt[5] = u + (now < 1.5 ? 1 : now < 1.6 ? 50 : 0) - 0.1 * y[5] - 2 * y[2];
+}
+
+static void shaken_distance(double t, const double *y, double u, double *g)
+{
+	(void)u;
+	g[0] = y[0] - moving_stop(t);
+	g[1] = y[0] - y[1] - 0.2;
+	g[2] = y[1] - y[0] - 0.2;
+}
+
 static const struct equations gear1 = { 2, 2, gear1_slopes, gear1_distance },
     two_masses = { 4, 1, two_masses_slopes, two_masses_distance },
-	car = { 4, 3, car_slopes, car_distance }, gear3 = { 6, 4, gear3_slopes, gear3_distance };
+	car = { 4, 3, car_slopes, car_distance }, gear3 = { 6, 4, gear3_slopes, gear3_distance },
+	shaken = { 6, 3, shaken_slopes, shaken_distance };
 
 /* ---- the solver ---- */
 
@@ -178,7 +208,7 @@ static void set_input(struct solver *s, double t, double u, double slope)
 {
 	bool before[MOST_ROOTS];
 	memcpy(before, s->side, sizeof before);
-	s->begun = t;
+	s->begun = step_begun = t;
 	s->u0 = u;
 	s->slope = slope;
 	CVodeReInit(s->memory, t, s->y);
@@ -276,6 +306,7 @@ int main(void)
         { "held", &car, 0, 3, 1e-8, false },
         { "held", &car, 1, 3, 1e-8, false },
         { "held", &car, 2, 3, 1e-8, false },
+        { "shaken", &shaken, 0, 4, 1e-9, false },
     };
     for (size_t i = 0; i < sizeof all / sizeof *all; i++)
         compare(&all[i]);

@@ -1,0 +1,133 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Loads that change their formula beside clearances, where a random system seldom gets: a crossing and a change at one
+ * instant, by closed form; inputs that are held or ramps across changes, and NAME_at there, by steps of other lengths;
+ * what stands in NAME_set to a time behind a change. */
+#include "drive.h"
+#include "changes_variants.h"
+#include "tap.h"
+#include "worse.h"
+
+#include <math.h>
+
+/* A free mass that reaches x = 2 at t = 2, with speed 1; then the stop is at `at`, and has been there if that is below */
+static double meets(double t, double at)
+{
+	const double w = 3, met = fmax(2, at), depth = met - at, left = t - met;
+	const double size = hypot(depth, 1 / w), contact = (acos(-1) - atan2(depth * w, 1)) / w;
+	if (left < 0)
+		return t;
+	if (left < contact)
+		return at + depth * cos(w * left) + sin(w * left) / w;
+	return at - size * w * (left - contact);    /* it leaves with what it had in the stop */
+}
+
+static void closed_form(const char *name, double at, int step)
+{
+	const struct variant *of = variant_of(changes_table, "%s_%d", name, step);
+	struct run r = run_new(of);
+	double worst = 0, y[MOST_STATES];
+	bool good = true;
+	while (of->model->time(r.state) < 7.9) {
+		run_step(&r, NULL);
+		run_state(&r, y);
+		const double t = of->model->time(r.state), off = fabs(y[0] - meets(t, at));
+		worst = worse(worst, off);
+		good = close_to(y[0], meets(t, at), 2e-14 * 10, "%s, h = %g, t = %g", name, of->model->h, t) && good;
+	}
+	ok(good, "%s, h = %g: the closed form, to %.2g", name, of->model->h, worst);
+	run_free(&r);
+}
+
+/* ---- an input beside: steps of one length against those of another ---- */
+
+static double sample(double t)
+{
+	return sin(2 * t) + 0.5 * cos(5 * t + 1);
+}
+
+/* What a long step makes of it: held from its start, or a ramp to its end */
+static double within(double t, double h, bool ramp)
+{
+	const double from = h * floor(t / h + 1e-9), part = (t - from) / h;
+	if (!ramp)
+		return sample(from);
+	return (from > 0 ? sample(from) : 0) * (1 - part) + sample(from + h) * part;
+}
+
+static bool apart(const double *a, const double *b, double tolerance, double *worst, const char *name, double t)
+{
+	bool good = true;
+	for (int i = 0; i < 6; i++) {
+		*worst = worse(*worst, fabs(a[i] - b[i]));
+		good = close_to(a[i], b[i], tolerance, "%s, t = %g: state %d", name, t, i) && good;
+	}
+	return good;
+}
+
+static void long_and_short(const char *name, int step, bool ramp)
+{
+	const struct variant *of = variant_of(changes_table, "%s_%d", name, step),
+			     *fine = variant_of(changes_table, "%s_2", name);
+	struct run r = run_new(of), f = run_new(fine);
+	const double h = of->model->h;
+	const int parts = (int)lround(h / fine->model->h);
+	double worst = 0, y[MOST_STATES], z[MOST_STATES];
+	bool good = true;
+	for (int k = 0; k < 4 / h; k++) {
+		const double from = k * h, u = sample(ramp ? from + h : from);
+		for (int part = 1; part <= parts; part++) {
+			const double now = from + part * fine->model->h;
+			const double v = within(ramp ? now - (part == parts ? 1e-12 : 0) : now - fine->model->h, h, ramp);
+			run_step(&f, &v);
+			run_state(&f, z);
+			of->model->at(r.state, &u, part * fine->model->h, y);
+			good = apart(y, z, 1e-11, &worst, name, now) && good;
+		}
+		run_step(&r, &u);
+		run_state(&r, y);
+		good = apart(y, z, 1e-11, &worst, name, from + h) && good;
+	}
+	ok(good, "%s, h = %g: steps and times inside of them as steps of %g, to %.2g", name, h, fine->model->h, worst);
+	ok(close_to((double)of->crossed(r.state), (double)fine->crossed(f.state), 0, "%s: crossings", name) &&
+	   of->crossed(r.state) > 4, "%s, h = %g: %d crossings", name, h, (int)of->crossed(r.state));
+	run_free(&r);
+	run_free(&f);
+}
+
+/* Set behind changes it goes on as if it had come there. */
+static void set_later(void)
+{
+	const struct variant *of = variant_of(changes_table, "held_2");
+	struct run came = run_new(of), set = run_new(of);
+	double y[MOST_STATES], z[MOST_STATES], worst = 0;
+	const double u = 0.3;
+	bool good = true;
+	for (int k = 0; k < 145; k++)
+		run_step(&came, &u);
+	run_state(&came, y);
+	of->model->set(set.state, of->model->time(came.state), y);
+	for (int k = 0; k < 200; k++) {
+		run_step(&came, &u);
+		run_step(&set, &u);
+		run_state(&came, y);
+		run_state(&set, z);
+		good = apart(z, y, 1e-13, &worst, "set", of->model->time(came.state)) && good;
+	}
+	ok(good, "set to a time between changes: goes on, to %.2g", worst);
+	run_free(&came);
+	run_free(&set);
+}
+
+int main(void)
+{
+	for (int step = 0; step < 4; step++) {
+		closed_form("meets", 2.5, step);
+		closed_form("comes", 1, step);
+	}
+	for (int step = 0; step < 2; step++) {
+		long_and_short("held", step, false);
+		long_and_short("shaken", step, true);
+	}
+	set_later();
+	return tap_end();
+}
