@@ -588,7 +588,7 @@ void emit_region_search(const struct emitter *e);
 void emit_region_status(const struct emitter *e);
 void emit_region_start_call(const struct emitter *e);
 void emit_region_advance_call(const struct emitter *e);
-void emit_segment_end(const struct emitter *e);                   /* of a step: the segment of time that outputs are in */
+void emit_segment_end(const struct emitter *e);                   /* of a step: in which segment outputs are */
 bool regions_change(const struct emitter *e);                     /* they are others in each segment of time */
 
 /* ---- emit_instants.c: regions beside loads that change their formula in time ---- */

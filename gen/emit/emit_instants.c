@@ -68,8 +68,8 @@ void emit_region_changes(const struct emitter *e)
 	emit_change(e);
 	say(e, "\n"
 	       "/* x on by tau, from change to change of the loads */\n"
-	       "static void $o_pass_changes(const $n *s, double tau, double x[%d], pl_contact *contact, pl_crossing *crossing,\n"
-	       "                    double *work)\n"
+	       "static void $o_pass_changes(const $n *s, double tau, double x[%d], pl_contact *contact,\n"
+	       "                            pl_crossing *crossing, double *work)\n"
 	       "{\n"
 	       "    double done = 0.0;\n"
 	       "    int count = 0, i;\n"

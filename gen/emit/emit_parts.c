@@ -97,7 +97,8 @@ static void emit_matrices_of_linear(const struct emitter *part, const char *name
 	struct pieces pieces = pieces_of(part->step);
 	int size = part->step->layout.size;
 	say(part, "\n"
-		  "static const double $o_%s[%d][%d][%d] = {  /* %s */\n", name, part->step->branches, size, size, note);
+		  "static const double $o_%s[%d][%d][%d] = {  /* %s */\n",
+	    name, part->step->branches, size, size, note);
 	for (int k = 0; k < part->step->branches; k++) {
 		say(part, "  {\n");
 		emit_number_rows(part, size, size, of(&pieces.piece[k]),

@@ -508,8 +508,8 @@ struct compared {                   /* form + constant with 0 */
 	mpq_srcptr constant;
 	int met;                    /* of struct expression, where it is one */
 };
-/* The expression that form is a multiple of in this segment of time; met for the first time it is one, with the sign and
- * scale in which it was written, and form is its own. form + constant = of (e - at) */
+/* The expression that form is a multiple of in this segment of time; met for the first time it is one, with the sign
+ * and scale in which it was written, and form is its own. form + constant = of (e - at) */
 int  find_expression(struct switching *s, int segment, const struct compared *what, mpq_ptr of, mpq_ptr at);
 /* In segments where nothing depends on it, it is as in the one before, or after. */
 void complete_expressions(struct switching *s);

@@ -242,7 +242,8 @@ static long bytes_of_regions(const struct step *step)
 {
 	const struct switching *s = step->model->switching;
 	long size = step->layout.size, matrices = s->systems;
-	long bytes = 8 * (s->segments * s->expressions * size + matrices * (2 * size * size + 3 * s->expressions * size)) +
+	long rows = s->segments * s->expressions * size;
+	long bytes = 8 * (rows + matrices * (2 * size * size + 3 * s->expressions * size)) +
 		     4 * (s->regions + s->expressions + matrices);
 	return bytes + (step->swift ? swift_bytes(step) : 0) + (s->frictions > 0 ? guard_bytes(step) : 0);
 }

@@ -306,8 +306,9 @@ static void print_regions(FILE *to, const struct step *step)
 		s->expressions == 1 ? "the expression" : format("one of %d expressions", s->expressions),
 		step->series.degree);
 	if (s->segments > 1)
-		fprintf(to, "    at a change of the loads: as far as there, then the region with the same intervals in the "
-			    "next of %d segments of time\n", s->segments);
+		fprintf(to,
+			"    at a change of the loads: as far as there, then the region with the same intervals in the next "
+			"of %d segments of time\n", s->segments);
 	print_matrices(to, step);
 }
 

@@ -9,7 +9,7 @@
 
 #include <math.h>
 
-/* A free mass that reaches x = 2 at t = 2, with speed 1; then the stop is at `at`, and has been there if that is below */
+/* A free mass that reaches x = 2 at t = 2, with speed 1; then the stop is at `at` */
 static double meets(double t, double at)
 {
 	const double w = 3, met = fmax(2, at), depth = met - at, left = t - met;
