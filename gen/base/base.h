@@ -51,6 +51,8 @@ enum {
 	LIMIT_LOAD_POWER = 32,      /* exponent of a load, as in t^3 */
 	LIMIT_UNROLLED_STATES = 16, /* beyond, a step loops over its tables */
 	LIMIT_RESIDUE_STATES = 12,  /* beyond, a Taylor series gives the numbers: residues get slow */
+	LIMIT_DELAY = 100000,       /* steps */
+	LIMIT_DELAY_PARTS = 64,     /* of a step, of which all delays are multiples */
 	LIMIT_BLOCK_ROWS = 64,      /* in a block of NAME_run */
 	LIMIT_NEED_STATES = 128,    /* of a model with needs */
 	LIMIT_MODES = 128,          /* of a scheme in normal modes */

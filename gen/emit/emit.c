@@ -164,6 +164,8 @@ void emit_header(FILE *to, const struct step *step, const char *options, bool rh
 	struct emitter e = emitter_new(to, step, options);
 	emit_banner(&e);
 	emit_declarations(&e, rhs);
+	if (e.model->delays)
+		emit_delay_declarations(&e);
 }
 
 void emit_code(FILE *to, const struct step *step, const char *options, const char *header_name, bool rhs)
@@ -174,6 +176,8 @@ void emit_code(FILE *to, const struct step *step, const char *options, const cha
 		say(e, "#include \"%s\"\n", header_name);
 	else
 		emit_declarations(e, rhs);
+	if (!header_name && e->model->delays)
+		emit_delay_declarations(e);
 	emit_includes(e, rhs);
 	emit_all_tables(e);
 	emit_modes(e);
@@ -185,4 +189,6 @@ void emit_code(FILE *to, const struct step *step, const char *options, const cha
 	emit_run(e);
 	emit_further_functions(e, rhs);
 	emit_descriptor(e);
+	if (e->model->delays)
+		emit_delays(e);
 }

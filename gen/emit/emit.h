@@ -591,6 +591,11 @@ void emit_region_advance_call(const struct emitter *e);
 void emit_segment_end(const struct emitter *e);                   /* of a step: in which segment outputs are */
 bool regions_change(const struct emitter *e);                     /* they are others in each segment of time */
 
+/* ---- emit_delays.c: delayed inputs, around a model that has them as inputs ---- */
+
+void emit_delay_declarations(const struct emitter *core);
+void emit_delays(const struct emitter *core);
+
 /* ---- emit_instants.c: regions beside loads that change their formula in time ---- */
 
 void emit_region_changes(const struct emitter *e);                /* functions that go from change to change */

@@ -541,6 +541,7 @@ static void collect_model(struct building *b)
 	if (all && (b->spec->step || request->step))
 		statement_guard(evaluate_step, b);
 	b->collector.constant_only = false;
+	find_delays(b);
 }
 
 static void check_reduction(const struct building *b)

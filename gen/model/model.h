@@ -160,6 +160,18 @@ struct reduction {                  /* what --reduce found */
 	int dropped;                /* written states that are no combination of the reduced ones */
 	const char **dropped_name;
 };
+struct delay {                      /* of an input */
+	const struct symbol *symbol; /* what it is then: an input of the model */
+	int back;                   /* in parts of the step */
+};
+struct delays {                     /* NULL in a model without */
+	const char *name;           /* the model's own; that of what has all inputs is NAME_core */
+	mpq_t h;                    /* the step; the model's is a part of it */
+	int parts;
+	int inputs;                 /* that the text declares: they come first */
+	int count, most;            /* most: of `back` */
+	struct delay *delay;        /* by index of the input */
+};
 struct model {
 	struct spec *spec;
 	struct request asked;
@@ -207,6 +219,7 @@ struct model {
 	struct requirement *requirement;
 	const struct target *target;
 	double budget;
+	const struct delays *delays;
 	const struct model *written; /* itself; of a reduced model: the one that it was made of */
 	struct reduction reduction;
 	struct wanted_modes modes;
@@ -444,6 +457,10 @@ void collect_whole(struct building *b);                     /* the equations for
 bool assign_equations(struct building *b);                  /* false: it was said which is missing or too many */
 void add_elements(const struct building *b, struct snapshot *s); /* the sketch's forces to the residuals */
 void check_mass(const struct building *b);
+
+/* ---- delays.c: inputs as they were some time ago ---- */
+
+void find_delays(struct building *b);                       /* model->delays; after the step is known */
 
 /* ---- reads.c: what forms read ---- */
 

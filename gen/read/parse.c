@@ -310,6 +310,38 @@ static struct node *read_inlined(struct parser *p, const struct symbol *symbol, 
 	return inlined(symbol->value, token.at, p->end);
 }
 
+/* What has a value at other times; of others a bracket behind them is a missing operator */
+static bool is_delayable(const struct symbol *symbol)
+{
+	return symbol->kind == SYMBOL_COORD || symbol->kind == SYMBOL_INPUT;
+}
+
+/* delayed: NAME { ' } ( expression ), an input as it was: an input by itself, which the text does not declare */
+static struct symbol *read_delay(struct parser *p, const struct symbol *symbol, struct token token)
+{
+	struct spec *spec = p->spec;
+	if (symbol->kind == SYMBOL_COORD)
+		error(token.at, format("an input can take its place, to which the caller gives what %s was", token.name),
+		      "a delay of a coordinate is not built: '%s'", token.name);
+	nest(p, token.at);
+	take(p);
+	struct symbol *delayed = NEW(struct symbol);
+	*delayed = (struct symbol){ .kind = SYMBOL_INPUT,
+				    .at = token.at,
+				    .statement = p->statement,
+				    .part = p->part,
+				    .used = true,
+				    .hold = symbol->hold,
+				    .delayed = symbol,
+				    .when = read_expression(p) };
+	expect_op(p, ")", "')' or an operator");
+	p->nesting--;
+	delayed->index = spec->inputs++;
+	delayed->name = format("%s.delayed%d", symbol->name, ++spec->delays);
+	add_symbol(spec, delayed);
+	return delayed;
+}
+
 /* name: NAME { ' } | NAME [ NUMBER ] { ' } */
 static struct node *resolve_name(struct parser *p, struct token token)
 {
@@ -340,6 +372,8 @@ static struct node *resolve_name(struct parser *p, struct token token)
 	if (p->no_acceleration && symbol->kind == SYMBOL_COORD && token.primes > 1)
 		error(token.at, "a let may use coordinates and their first derivatives", "an acceleration in a let");
 	struct node *node = node_new(NODE_NAME, token.at);
+	if (is_op(p, "(") && is_delayable(symbol))
+		symbol = read_delay(p, symbol, token);
 	node->symbol = symbol;
 	node->depth = symbol->value ? symbol->value->depth + 1 : 0;
 	node->primes = token.primes;

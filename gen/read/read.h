@@ -97,6 +97,9 @@ struct symbol {
 	bool marked;                /* of a let: its states are marked */
 	bool peak;                  /* of an output: peak(value) */
 	bool connected;             /* of a let: an input of a part, to which the scene gives its value */
+	/* of an input that is another one as it was some time ago, declared by u(t - d): that one, and t - d; else NULL */
+	const struct symbol *delayed;
+	struct node *when;
 	struct node *value;         /* of param, let, output */
 	struct value *collected;    /* value, when COLLECTED */
 	const struct form *whole;   /* of a scalar let: its value for all time, where something is left over */
@@ -190,6 +193,7 @@ struct spec {                       /* what the text says, names resolved, nothi
 	const struct source *source;
 	const char *name;
 	struct place name_at;
+	int delays;                 /* of the inputs, those that are others some time ago */
 	struct symbol *first, **last;   /* all symbols in the order of declaration */
 	struct symbol **bucket;         /* the same by name */
 	int components;                 /* of all coordinates together */
