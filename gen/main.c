@@ -270,11 +270,26 @@ static void print_depfile(const struct work *w)
 
 /* ---- the whole ---- */
 
+/* What looks at a model without what is around it */
+static bool goes_with_delays(const struct work *w)
+{
+	const struct options *o = &w->options;
+	const char *what = o->fmu			? "--fmu"
+			   : o->print == PRINT_RESPONSE ? "--response"
+			   : o->print == PRINT_PLOT     ? "--plot"
+			   : o->print == PRINT_REPORT   ? "--report"
+							: NULL;
+	if (!what || !w->model->delays)
+		return true;
+	say_error(w->model->delays->delay->symbol->at, NULL, "%s does not go with delayed inputs", what);
+	return false;
+}
+
 static bool compile(struct work *w)
 {
 	if (w->options.request.single && !w->options.request.solution)
 		target_float();
-	if (!make(w) || !choose(w) || (w->options.strict && diagnostics_harden()) || !print_text(w))
+	if (!make(w) || !goes_with_delays(w) || !choose(w) || (w->options.strict && diagnostics_harden()) || !print_text(w))
 		return false;
 	print_header(w);
 	rewrite_code(w);

@@ -123,7 +123,8 @@ static void declare_tables(const struct emitter *e)
 		declare(e, spell(e, "extern const double $n_to_whole[%d][$N_STATES];", all),
 			"x = to_whole y, without what is dropped");
 	}
-	declare(e, spell(e, "extern const pl_model $n_model;"), "");
+	if (!e->model->delays)
+		declare(e, spell(e, "extern const pl_model $n_model;"), "");
 }
 
 static void emit_functions(const struct emitter *e, bool rhs)

@@ -127,6 +127,10 @@ static const char *name_if(const struct emitter *e, bool there, const char *name
 void emit_descriptor(const struct emitter *e)
 {
 	bool inputs = given_inputs(e) > 0;
+	if (e->model->delays) {
+		emit_delays(e);
+		return;
+	}
 	say(e, "\n/* The same functions for programs that drive any model. */\n\n");
 	emit_names(e);
 	say(e, "\n");

@@ -233,10 +233,12 @@ static void emit_model(const struct emitter *e)
 	const char **names = names_of_inputs(e);
 	bool at = e->step->series.emitted;
 	say(e, "\n");
+	emit_name_list(e, "state_names", e->system->states, e->step->shown->model->state_name);
 	emit_name_list(e, "input_names", d->inputs, names);
+	emit_name_list(e, "output_names", e->model->outputs, names_of_outputs(e));
 	say(e, "static const int $n_start_samples[] = {");
 	for (int i = 0; i < d->inputs; i++)
-		say(e, "%s0", i ? ", " : "");
+		say(e, "%s%d", i ? ", " : "", samples_ahead(e->system->input[i].hold));
 	say(e, "};\n"
 	       "\n"
 	       "static void $n_any_init(void *s) { $n_init((struct $n *)s); }\n"
@@ -261,7 +263,7 @@ static void emit_model(const struct emitter *e)
 	       "const pl_model $n_model = {\n"
 	       "    PL_MODEL_VERSION, sizeof(double), \"$n\", sizeof(struct $n),\n"
 	       "    $N_STATES, $N_INPUTS, $N_OUTPUTS, $N_H,\n"
-	       "    $n_core_state_names, $n_input_names, $n_core_output_names,\n"
+	       "    $n_state_names, $n_input_names, $n_output_names,\n"
 	       "    $n_any_init, $n_any_set, $n_any_get, $n_any_time, $n_any_step,\n"
 	       "    $n_any_out, $n_any_run, %s, NULL, $n_any_status,\n"
 	       "    0, NULL, NULL, NULL,\n"

@@ -15,7 +15,8 @@ add() {         # NAME SPEC EDIT OPTION ...
 	edit=$3
 	shift 3
 	sed -e "$edit" "$folder/$spec.spec" >"$work/$name.spec"
-	"$plgen" --prefix "$name" "$@" "$work/$name.spec" >>"$work/all" 2>"$work/said" || { cat "$work/said" >&2; exit 1; }
+	"$plgen" --prefix "$name" "$@" "$work/$name.spec" >>"$work/all" 2>"$work/said" ||
+		{ cat "$work/said" >&2; exit 1; }
 }
 ramp='s/input u/input u hold first/'
 for d in 0.25 0.3 0.04 0.1 1.7 0; do
