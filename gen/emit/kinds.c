@@ -214,6 +214,7 @@ static void emit_event_limit_of_parts(const struct emitter *e)
 
 static void emit_tables_of_parts(const struct emitter *e)
 {
+	emit_held_nominal(e);
 	emit_times_of_changes(e);
 	emit_held_nominal(e);
 	emit_part_tables(e);
