@@ -91,8 +91,10 @@ void emit_raw_locals(const struct emitter *e, const bool *reads, bool changing);
 void emit_locals_of(const struct emitter *e, const bool *reads, const char *vector);
 /* of a part, in the model: a state of it, an input; how many states it has; state i in a loop, as text */
 int place_of_state(const struct emitter *e, int state);
+const char *param_text(int param);                                /* a tunable param in an instance s; */
+const char *param_local(const struct emitter *e, int param);      /* its C name */
 int given_inputs(const struct emitter *e);                        /* samples of a step: without params that act so */
-const char *sample_now(const struct emitter *e, int input);       /* of the whole model: what a step is given, a param */
+const char *sample_now(const struct emitter *e, int input);       /* of the whole: what a step is given, or a param */
 const char *sample_kept(const struct emitter *e, int input);      /* the same between steps */
 int place_of_input(const struct emitter *e, int input);
 const char *own_states(const struct emitter *e);
@@ -414,7 +416,7 @@ void emit_to_modes(const struct emitter *e);                      /* NAME_modes_
 void emit_from_modes(const struct emitter *e);                    /* NAME_of_modes */
 void emit_function_values(const struct emitter *e);               /* NAME_functions */
 void emit_forces(const struct emitter *e);                        /* NAME_forces */
-const char *instance_of_rest(const struct emitter *e);            /* the argument s of NAME_forces, comma behind it; or "" */
+const char *instance_of_rest(const struct emitter *e);            /* "s, " where NAME_forces takes the instance; "" */
 
 /* ---- emit_waves.c: known loads, to which modes respond exactly ---- */
 
@@ -608,15 +610,13 @@ void emit_clear_step(const struct emitter *e);                    /* states and 
 /* Of models with tunable params: */
 void emit_coefficient_struct(const struct emitter *e);
 void emit_tuning_declarations(const struct emitter *e);
-void emit_tuning_wrapper(const struct emitter *e);                /* of the descriptor */
 void banner_tuning(const struct emitter *e);
+
+/* ---- emit_params.c: tunable params; those that an instance holds print nothing where there are none ---- */
+
+void emit_tuning_wrapper(const struct emitter *e);                /* of the descriptor */
 const char *param_list(const struct emitter *e);                  /* names, commas between */
 void emit_nominal_params(const struct emitter *e);                /* {1.0, 2.0}, */
-
-/* ---- emit_params.c: tunable params that expressions read; where there are none they print nothing ---- */
-
-const char *param_text(int param);                                /* in an instance s */
-const char *param_local(const struct emitter *e, int param);
 void emit_param_locals(const struct emitter *e, const bool *reads); /* of those that forms read: struct reads */
 void emit_nominal_params_read(const struct emitter *e, const struct reads *reads); /* the spec's values */
 void emit_held_types(const struct emitter *e);

@@ -482,8 +482,8 @@ void emit_forces(const struct emitter *e)
 	say(e, "\n/* Forces on the modes: what is left over, loads among it */\n"
 	       "static void $n_forces(%sint which, const double f[%d], const double eta[%d],\n"
 	       "    const double rate[%d], double force[%d])\n"
-	       "{\n", *instance_of_rest(e) ? spell(e, "const $n *s, ") : "", functions_of_time(e) ? functions_of_time(e) : 1,
-	    m->width, m->width, m->width);
+	       "{\n", *instance_of_rest(e) ? spell(e, "const $n *s, ") : "",
+	    functions_of_time(e) ? functions_of_time(e) : 1, m->width, m->width, m->width);
 	/* what a loop reads through a pointer might be what it writes, and compilers would leave it as it is */
 	for (int f = 1; f < e->model->split->functions; f++)
 		if (m->force[f])

@@ -73,8 +73,8 @@ static void emit_first_forces(const struct emitter *e)
 	say(e, "%s    $n_forces(%swhich, f[0], s->eta, s->rate, force[0]);\n"
 	       "%s    for (k = 1; k <= %d; k++)\n"
 	       "%s        for (i = 0; i < %d; i++)\n"
-	       "%s            force[k][i] = force[0][i];\n", indent, instance_of_rest(e), indent, m->stages, indent, width,
-	    indent);
+	       "%s            force[k][i] = force[0][i];\n", indent, instance_of_rest(e), indent, m->stages, indent,
+	    width, indent);
 	if (m->points == 0)
 		say(e, "    }\n");
 }

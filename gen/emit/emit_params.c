@@ -7,17 +7,46 @@ static const struct tuning *held(const struct emitter *e)
 	return e->model->held;
 }
 
+/* ---- of either kind ---- */
+
+const char *param_list(const struct emitter *e)
+{
+	const struct tuning *t = tunables_of(e->model);
+	const char *list = "";
+	for (int k = 0; k < t->params; k++)
+		list = format("%s%s%s", list, k ? ", " : "", t->param[k].symbol->name);
+	return list;
+}
+
+void emit_nominal_params(const struct emitter *e)
+{
+	const struct tuning *t = tunables_of(e->model);
+	say(e, "{");
+	for (int k = 0; k < t->params; k++)
+		say(e, "%s%s", k ? ", " : "", finite_text(t->param[k].at, t->nominal[k]));
+	say(e, "},\n");
+}
+
+void emit_tuning_wrapper(const struct emitter *e)
+{
+	const struct tuning *t = tunables_of(e->model);
+	const char **name = ARRAY(const char *, (size_t)t->params);
+	for (int k = 0; k < t->params; k++)
+		name[k] = t->param[k].symbol->name;
+	say(e, "\n");
+	emit_name_list(e, "param_names", t->params, name);
+	say(e, "\n"
+	       "static int $n_any_retune(void *s, const double *params, double h)\n"
+	       "{\n"
+	       "    $n_coeffs fresh = $n_nominal;\n"
+	       "    const int status = $n_retune(&fresh, params, h);\n"
+	       "    if (status == 0)\n"
+	       "        $n_use((struct $n *)s, &fresh);\n"
+	       "    return status;\n"
+	       "}\n");
+}
+
 /* ---- in functions ---- */
-
-const char *param_text(int param)
-{
-	return format("s->coeffs.params[%d]", param);
-}
-
-const char *param_local(const struct emitter *e, int param)
-{
-	return c_name(e->c, e->model->spec->tunable[param].symbol, 0);
-}
 
 void emit_param_locals(const struct emitter *e, const bool *reads)
 {
@@ -90,7 +119,8 @@ void banner_held(const struct emitter *e)
 	if (held(e))
 		say(e, " * Tunable: %s. %s\n", param_list(e),
 		    acts ? "They act like held inputs, with the instance's own values."
-			 : "Expressions read the instance's own values; operators, orders and choices are those of the spec's.");
+			 : "Expressions read the instance's own values; operators, orders and choices are those of the "
+			   "spec's.");
 }
 
 /* ---- the C ---- */

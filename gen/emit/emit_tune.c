@@ -16,15 +16,6 @@ static int tuned_outputs(const struct emitter *e)
 	return e->model->tuning->outputs;
 }
 
-const char *param_list(const struct emitter *e)
-{
-	const struct tuning *t = tunables_of(e->model);
-	const char *list = "";
-	for (int k = 0; k < t->params; k++)
-		list = format("%s%s%s", list, k ? ", " : "", t->param[k].symbol->name);
-	return list;
-}
-
 /* Names of the columns as a comment says them: the load states once, lines broken */
 static const char *column_list(const struct emitter *e)
 {
@@ -121,25 +112,6 @@ void emit_tuning_declarations(const struct emitter *e)
 	       "\n", e->phases ? "; phases of loads go on from where they are" : "");
 }
 
-void emit_tuning_wrapper(const struct emitter *e)
-{
-	const struct tuning *t = tunables_of(e->model);
-	const char **name = ARRAY(const char *, (size_t)t->params);
-	for (int k = 0; k < t->params; k++)
-		name[k] = t->param[k].symbol->name;
-	say(e, "\n");
-	emit_name_list(e, "param_names", t->params, name);
-	say(e, "\n"
-	       "static int $n_any_retune(void *s, const double *params, double h)\n"
-	       "{\n"
-	       "    $n_coeffs fresh = $n_nominal;\n"
-	       "    const int status = $n_retune(&fresh, params, h);\n"
-	       "    if (status == 0)\n"
-	       "        $n_use((struct $n *)s, &fresh);\n"
-	       "    return status;\n"
-	       "}\n");
-}
-
 /* ---- the generator's own coefficients ---- */
 
 static void emit_nominal_outputs(const struct emitter *e)
@@ -162,15 +134,6 @@ static void emit_nominal_loads(const struct emitter *e, const int *index,
 		if (index[l] >= 0)
 			say(e, "    %s,  /* %s */\n", step_text(e, l), column_text(&e->system->load[l], 0));
 	say(e, "    },\n");
-}
-
-void emit_nominal_params(const struct emitter *e)
-{
-	const struct tuning *t = tunables_of(e->model);
-	say(e, "{");
-	for (int k = 0; k < t->params; k++)
-		say(e, "%s%s", k ? ", " : "", finite_text(t->param[k].at, t->nominal[k]));
-	say(e, "},\n");
 }
 
 void emit_nominal(const struct emitter *e)

@@ -72,6 +72,16 @@ int most_taps_before(const struct emitter *e)
 	return most;
 }
 
+const char *param_text(int param)
+{
+	return format("s->coeffs.params[%d]", param);
+}
+
+const char *param_local(const struct emitter *e, int param)
+{
+	return c_name(e->c, e->model->spec->tunable[param].symbol, 0);
+}
+
 int given_inputs(const struct emitter *e)
 {
 	int given = 0;

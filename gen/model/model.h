@@ -197,7 +197,7 @@ struct model {
 	const struct tuning *tuning; /* tunable params, and how the equations follow from them; NULL: there are none */
 	/* the instance has tunable params: what is left over and outputs read them, or they act like held inputs */
 	bool keeps_params;
-	const struct tuning *held;  /* those that the leftover and outputs read from the instance: no more than a list */
+	const struct tuning *held;  /* those that the instance has in such a way: no more than a list */
 	int outputs;
 	struct output *output;
 	bool declared_outputs;
@@ -737,8 +737,12 @@ struct tuning {
 };
 /* model->tuning, or model->held, where something is tunable; false: it was said why not */
 bool find_tuning(struct model *model, const struct request *request);
-const struct tuning *tunables_of(const struct model *model); /* either; NULL: nothing is */
+
+/* ---- params.c: tunable params that the instance has ---- */
+
 void spread_tuned(const struct spec *spec);     /* to params, matrices and lets that are made of tunable ones */
+void list_held(struct model *model);            /* model->held; warns of what nothing reads */
+const struct tuning *tunables_of(const struct model *model); /* of either kind; NULL: nothing is */
 
 /* ---- stepped.c: the model that a step is built of ---- */
 

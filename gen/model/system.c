@@ -157,7 +157,8 @@ const struct form *nominal_form(struct building *b, const struct form *form)
 
 bool parts_params(const struct building *b)
 {
-	return b->collector.params == PARAMS_ATOMS && b->model->system.segments == 1 && !scheme_row(b->model->scheme)->expands;
+	return b->collector.params == PARAMS_ATOMS && b->model->system.segments == 1 &&
+	       !scheme_row(b->model->scheme)->expands;
 }
 
 void fill_states(struct building *b, const struct snapshot *rows)

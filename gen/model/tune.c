@@ -11,23 +11,6 @@ static const char *const refused_note = "sums, products and quotients of tunable
 					"what the function gives a tunable of its own";
 static const char *const decided_note = "which way it goes is decided when plgen runs: where formulas change is fixed";
 
-static bool depends(const struct node *node)
-{
-	if (node->kind == NODE_NAME)
-		return node->symbol->tuned;
-	for (int i = 0; i < node->children; i++)
-		if (depends(node->child[i]))
-			return true;
-	return false;
-}
-
-/* Each stands after what it is made of. */
-void spread_tuned(const struct spec *spec)
-{
-	for (struct symbol *s = spec->first; s; s = s->next)
-		s->tuned = s->tuned || (s->value && depends(s->value));
-}
-
 static const struct node *first_tuned(const struct node *node)
 {
 	if (node->kind == NODE_NAME && node->symbol->tuned)
@@ -119,56 +102,6 @@ static void check_kind(const struct model *model, const struct request *request)
 	if (model->system.states > LIMIT_UNROLLED_STATES)
 		error(at, NULL, "tunable params are built for up to %d states: the model has %d", LIMIT_UNROLLED_STATES,
 		      model->system.states);
-}
-
-/* ---- params that the leftover and outputs read ---- */
-
-static void read_by(struct reads *all, const struct model *model, int count, const struct form *const *form)
-{
-	const struct reads own = reads_of(model, count, form);
-	const int inputs = model->spec->inputs;
-	for (int k = 0; k < model->spec->tunables; k++)
-		all->param[k] = all->param[k] || own.param[k] ||
-				(inputs + k < model->system.inputs && own.input[inputs + k]);
-}
-
-static void warn_of_unread(const struct model *model)
-{
-	const struct spec *spec = model->spec;
-	const bool atoms = model->system.inputs == spec->inputs;
-	struct reads all = reads_of(model, model->selector != NULL, &model->selector);
-	for (int k = 0; k < model->operators; k++)
-		read_by(&all, model, model->channels, (const struct form *const *)model->operator[k].left);
-	for (int i = 0; i < model->n && model->whole; i++)
-		read_by(&all, model, 1, &(const struct form *){ model->whole->residual[i].form });
-	for (int i = 0; i < model->outputs; i++) {
-		read_by(&all, model, model->output[i].left != NULL, &(const struct form *){ model->output[i].left });
-		for (int k = 0; k < spec->tunables && !atoms; k++)
-			all.param[k] = all.param[k] || mpq_sgn(model->output[i].input[0][spec->inputs + k]) != 0;
-	}
-	for (int k = 0; k < spec->tunables; k++)
-		if (!all.param[k])
-			say_warning(spec->tunable[k].at, NULL, "tunable '%s' changes nothing that the target computes",
-				    spec->tunable[k].symbol->name);
-}
-
-/* Nothing is to be computed anew: the expressions read the instance's own. */
-static void list_held(struct model *model)
-{
-	struct tuning *t = NEW(struct tuning);
-	t->params = model->spec->tunables;
-	t->param = model->spec->tunable;
-	t->nominal = rationals((size_t)t->params);
-	for (int k = 0; k < t->params; k++)
-		param_value(t->param[k].symbol, t->nominal[k]);
-	model->held = t;
-	if (!model->relative)
-		warn_of_unread(model);
-}
-
-const struct tuning *tunables_of(const struct model *model)
-{
-	return model->tuning ? model->tuning : model->held;
 }
 
 /* ---- the model at other values ---- */
