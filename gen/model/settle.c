@@ -89,15 +89,15 @@ static struct demands demands_of(const struct building *b)
 	bool atoms = false, same = true, piecewise = true;
 	for (int s = 0; s < segments; s++) {
 		same = same && first[s].residuals == first->residuals;
-		for (int i = 0; i < first[s].residuals + b->spec->elements && same; i++) {
-			const int e = i - first->residuals;
+		for (int i = 0; i < first[s].residuals + b->spec->elements; i++) {
+			const int e = i - first[s].residuals;
 			const struct form *form = e < 0 ? first[s].residual[i].form : first[s].element[e];
-			same = same_in_states(form, e < 0 ? first->residual[i].form : first->element[e]);
+			same = same && same_in_states(form, e < 0 ? first->residual[i].form : first->element[e]);
 			atoms = atoms || holds_atom(form);
 			piecewise = piecewise && is_piecewise_form(form);
 		}
 	}
-	return (struct demands){ same && !atoms, same && piecewise && (!atoms || segments == 1) };
+	return (struct demands){ same && !atoms, piecewise && (same || atoms) };
 }
 
 bool leaves_over(const struct building *b)
