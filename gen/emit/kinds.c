@@ -216,7 +216,6 @@ static void emit_tables_of_parts(const struct emitter *e)
 {
 	emit_held_nominal(e);
 	emit_times_of_changes(e);
-	emit_held_nominal(e);
 	emit_part_tables(e);
 	emit_part_start(e);
 }
