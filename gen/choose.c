@@ -6,7 +6,7 @@
  * steps that are tried are those of the fewest modes that lose less than is needed, of one less, which shows what that
  * would miss, and of a few more, which leave more of the need to rounding. Of many states only steps of modes are
  * tried, where there are such. Where all modes are kept the states are those that were written. */
-#include "command.h"
+#include "walked.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -23,27 +23,36 @@ struct choosing {
 	const struct request *request;
 	struct choice *choice;
 	double *largest;            /* per requirement: what the exact output surely reaches */
+	struct exact_run *exact;    /* NULL: there is none to walk beside */
 	struct variant *variant;
 	struct alternative *now;
 	struct step *step;
+	bool trying;                /* without what no need asks for: blocks of rows */
 };
 
 /* ---- one alternative ---- */
 
-static void ask(struct model *model, const struct alternative *a)
+static void ask(const struct choosing *c, struct model *model)
 {
+	const struct alternative *a = c->now;
+	model->asked.rows = c->trying ? 1 : c->request->rows;
 	model->asked.single = a->single;
 	model->asked.compensated = a->compensated;
 	model->asked.form = a->form;
 	model->asked.form_at = (struct place){ source_argument(step_form_name(a->form)), 0 };
 }
 
+static void ask_now(const struct choosing *c)
+{
+	ask(c, c->written);
+	ask(c, c->now->model);
+	(c->now->single ? target_float : target_double)();
+}
+
 static void build_now(void *context)
 {
 	struct choosing *c = context;
-	ask(c->written, c->now);
-	ask(c->now->model, c->now);
-	(c->now->single ? target_float : target_double)();
+	ask_now(c);
 	c->step = step_build(c->now->model);
 	if (!c->step)
 		abandon();
@@ -70,24 +79,37 @@ static void certify(struct choosing *c)
 		found->needed = needed_error(r, c->largest[i]);
 		a->why = a->why ? a->why : found->why;
 		if (found->known)
-			a->excess = fmax(a->excess, (found->rounding + found->dropped) / found->needed);
+			a->excess = fmax(a->excess, error_told(found) / found->needed);
 	}
+	a->bound_excess = a->why ? HUGE_VAL : a->excess;
 }
 
-static void try_one(struct choosing *c, bool single, bool compensated, enum step_form form)
+/* Whether it is surely as exact as needed */
+static bool try_one(struct choosing *c, bool single, bool compensated, enum step_form form)
 {
 	struct alternative *a = c->now = NEW(struct alternative);
 	*a = (struct alternative){ .single = single, .compensated = compensated, .form = form,
 				   .model = c->variant->model };
 	if (!stands_alone(a))
-		return;
+		return false;
 	a->refused = refusal_of(build_now, c);
+	a->made = c->step;
 	if (!a->refused)
 		certify(c);
 	else if (a->model->shortened)
-		return;                 /* as of all modes */
+		return false;           /* as of all modes */
 	ENLARGE(c->choice->alternative, (size_t)c->choice->alternatives + 1);
 	c->choice->alternative[c->choice->alternatives++] = *a;
+	return !a->refused && a->bound_excess <= 1;
+}
+
+/* By modes alone: the plainest step shows it. */
+static bool loses_too_much(const struct choosing *c)
+{
+	bool loses = false;
+	for (int i = 0; i < c->stepped->requirements; i++)
+		loses = loses || c->variant->dropped[i] > needed_error(&c->stepped->requirement[i], c->largest[i]);
+	return loses;
 }
 
 /* ---- all of one model ---- */
@@ -108,9 +130,9 @@ static void try_form(struct choosing *c, enum step_form form)
 		const bool single = precision == 0;
 		if (asked->real_given && asked->single != single)
 			continue;
-		if (!asked->compensated)
-			try_one(c, single, false, form);
-		try_one(c, single, true, form);
+		const bool exact = !asked->compensated && try_one(c, single, false, form);
+		if (asked->compensated || !(exact || loses_too_much(c)))
+			try_one(c, single, true, form);         /* which is dearer */
 	}
 }
 
@@ -126,7 +148,8 @@ static void try_forms(struct choosing *c)
 	const struct variant *v = c->variant;
 	const bool asked = c->request->form != FORM_AUTO, modes = v->model->shortened;
 	for (size_t i = 0; i < sizeof forms / sizeof *forms; i++) {
-		const bool needless = forms[i] == FORM_MODAL ? modes : is_large(v->model) && v->modes;
+		const bool needless = (forms[i] == FORM_MODAL ? modes : is_large(v->model) && v->modes) ||
+				      (forms[i] != FORM_DIRECT && modes && !c->request->compensated && loses_too_much(c));
 		if (asked ? c->request->form == forms[i] : !needless)
 			try_form(c, forms[i]);
 	}
@@ -161,13 +184,19 @@ static bool loses_less(const struct choosing *c, const struct dropping *d, int c
 	return less;
 }
 
-static void try_modes(struct choosing *c, const struct dropping *d, int count)
+/* As many modes as are asked for first */
+static struct model *model_of_modes(const struct dropping *d, int count)
 {
 	bool *kept = ARRAY(bool, (size_t)d->modes->count);
 	for (int i = 0; i < count; i++)
 		kept[d->order[i]] = true;
 	target_double();
-	struct model *model = modes_kept(d->modes, kept, d->statics);
+	return modes_kept(d->modes, kept, d->statics);
+}
+
+static void try_modes(struct choosing *c, const struct dropping *d, int count)
+{
+	struct model *model = model_of_modes(d, count);
 	if (!model)
 		return;
 	c->variant = variant_of(c, model);
@@ -176,13 +205,32 @@ static void try_modes(struct choosing *c, const struct dropping *d, int count)
 	try_forms(c);
 }
 
+/* Where loads change their formula: as walked in double, from one mode on to a few more than are enough */
+static void walk_losses(struct choosing *c, struct dropping *d)
+{
+	const int requirements = c->stepped->requirements, all = d->modes->count;
+	struct certificate *found = ARRAY(struct certificate, (size_t)requirements);
+	for (int i = 0; i < requirements; i++)
+		d->lost[i] = ARRAY(double, (size_t)all + 1);
+	for (int count = 0, more = MORE_MODES; count < all && more >= 0; count++) {
+		struct model *model = count > 0 ? model_of_modes(d, count) : NULL;
+		const struct step *step = model && c->exact ? built(c, model, FORM_DIRECT) : NULL;
+		const bool walked = step && walk_beside(c->exact, step, found);
+		for (int i = 0; i < requirements; i++)
+			d->lost[i][count] = walked ? found[i].error : HUGE_VAL;
+		more -= loses_less(c, d, count);
+	}
+}
+
 static void drop_modes(struct choosing *c, struct dropping *d)
 {
 	const int requirements = c->stepped->requirements, all = d->modes->count;
 	target_double();
 	d->lost = ARRAY(double *, (size_t)requirements);
-	for (int i = 0; i < requirements; i++)
+	for (int i = 0; i < requirements && c->stepped->system.segments == 1; i++)
 		d->lost[i] = losses_of(d->modes, d->order, d->statics, &c->stepped->requirement[i]);
+	if (c->stepped->system.segments > 1)
+		walk_losses(c, d);
 	int fewest = all;
 	while (fewest > 1 && loses_less(c, d, fewest - 1))
 		fewest--;
@@ -206,7 +254,9 @@ static void try_fewer(struct choosing *c)
 	*whole = *c->written;           /* whose coordinates are the written ones */
 	if (c->written->written == c->written)
 		whole->written = whole;
-	ask(whole, &(struct alternative){ .form = FORM_AUTO });
+	c->now = NEW(struct alternative);
+	c->now->form = FORM_AUTO;
+	ask(c, whole);
 	whole->requirements = c->stepped->requirements;
 	whole->requirement = c->stepped->requirement;
 	whole->target = c->stepped->target;
@@ -239,6 +289,64 @@ static void count_written(struct choosing *c)
 			losses_of(modes, order, s->statics, &c->stepped->requirement[i])[kept];
 }
 
+/* ---- as walked ---- */
+
+/* A bound may be some thousand times what rounding comes to; what is lost with modes is exact. */
+static bool is_hopeful(const struct choosing *c, const struct alternative *a)
+{
+	static const double too_large = 1e5;
+	bool hopeful = !a->refused;
+	for (int i = 0; i < c->stepped->requirements && hopeful; i++) {
+		const struct certificate *found = &a->certificate[i];
+		hopeful = !found->known || (found->dropped <= found->needed &&
+					    found->rounding <= too_large * found->needed);
+	}
+	return hopeful;
+}
+
+static void walk(struct choosing *c, struct alternative *a)
+{
+	c->now = a;
+	ask_now(c);
+	if (!walk_beside(c->exact, a->made, a->certificate))
+		return;
+	a->why = NULL;
+	a->excess = 0;
+	for (int i = 0; i < c->stepped->requirements; i++)
+		a->excess = fmax(a->excess, error_told(&a->certificate[i]) / a->certificate[i].needed);
+	a->as_written = a->excess <= 1 && a->bound_excess > 1;
+}
+
+/* Of operations, roughly: those of its run, and what reading its C takes */
+static double work_of_walk(const struct choosing *c, const struct alternative *a)
+{
+	enum { READING = 200 };
+	return a->cost * (exact_samples(c->exact) + READING * (double)a->model->system.states);
+}
+
+static bool meets(const struct alternative *a)
+{
+	return !a->refused && !a->why && a->excess <= 1;
+}
+
+/* The cheapest first, up to the one that is taken; of the others as many as are no work */
+static void walk_all(struct choosing *c)
+{
+	static const double spare = 2e7;
+	double work = 0;
+	bool met = false;
+	for (int i = 0; i < c->choice->alternatives && c->exact; i++) {
+		struct alternative *a = &c->choice->alternative[i];
+		if (!is_hopeful(c, a))
+			continue;
+		work += work_of_walk(c, a);
+		if (met && work > spare)
+			return;
+		walk(c, a);
+		met = met || meets(a);
+	}
+}
+
 /* ---- all of them ---- */
 
 static int by_cost(const void *left, const void *right)
@@ -257,6 +365,11 @@ static int by_cost(const void *left, const void *right)
 	return (int)a->form - (int)b->form;
 }
 
+static void sort(struct choice *choice)
+{
+	qsort(choice->alternative, (size_t)choice->alternatives, sizeof *choice->alternative, by_cost);
+}
+
 static void try_all(struct choosing *c)
 {
 	c->choice = NEW(struct choice);
@@ -269,19 +382,19 @@ static void try_all(struct choosing *c)
 		exact = built(c, whole, FORM_DIRECT);
 	}
 	c->largest = ARRAY(double, (size_t)c->stepped->requirements);
-	for (int i = 0; i < c->stepped->requirements && exact; i++)
-		c->largest[i] = largest_of_output(exact, &c->stepped->requirement[i]);
+	c->exact = exact_run_of(full, c->stepped);
+	for (int i = 0; i < c->stepped->requirements; i++)
+		c->largest[i] = c->exact ? exact_largest(c->exact, i)
+				: exact	 ? largest_of_output(exact, &c->stepped->requirement[i])
+					 : 0;
 	if (c->written->shortened)
 		count_written(c);
 	try_forms(c);
 	if (!c->written->shortened)
 		try_fewer(c);
-	qsort(c->choice->alternative, (size_t)c->choice->alternatives, sizeof *c->choice->alternative, by_cost);
-}
-
-static bool meets(const struct alternative *a)
-{
-	return !a->refused && !a->why && a->excess <= 1;
+	sort(c->choice);
+	walk_all(c);
+	sort(c->choice);
 }
 
 /* ---- what cannot be met ---- */
@@ -293,7 +406,7 @@ static int worst_requirement(const struct choosing *c, const struct alternative 
 	double most = 0;
 	for (int i = 0; i < c->stepped->requirements; i++) {
 		const struct certificate *found = &a->certificate[i];
-		const double excess = (found->rounding + found->dropped) / found->needed;
+		const double excess = error_told(found) / found->needed;
 		worst = excess > most ? i : worst;
 		most = fmax(most, excess);
 	}
@@ -394,7 +507,7 @@ static bool find_taken(struct choosing *c)
 
 struct step *choose_step(struct model *written, struct model *stepped, struct request *request)
 {
-	struct choosing c = { .written = written, .stepped = stepped, .request = request };
+	struct choosing c = { .written = written, .stepped = stepped, .request = request, .trying = true };
 	if (stepped->spec->needs > 0 && is_measured(stepped))
 		return choose_measured(stepped, request);
 	if (!find_requirements(stepped))
@@ -406,6 +519,7 @@ struct step *choose_step(struct model *written, struct model *stepped, struct re
 	request->single = c.now->single;
 	request->compensated = c.now->compensated;
 	request->form = c.now->form;
+	c.trying = false;
 	if (!statement_guard(build_now, &c))
 		return NULL;
 	c.step->choice = c.choice;

@@ -33,7 +33,7 @@ static void find_amplitudes(struct measuring *m, const struct alternative *a)
 	if (m->amplitudes_known)
 		return;
 	m->amplitudes_known = true;
-	if (!here || here->model->switching)            /* of regions the loads stand in all systems: not looked at */
+	if (!here)
 		return;
 	for (const struct symbol *s = m->model->spec->first; s; s = s->next) {
 		if (s->kind != SYMBOL_PARAM || !value_of_param(m, s) || m->amplitudes == 16)

@@ -42,7 +42,7 @@ struct opening { struct place at; const struct step *step; struct running *runni
 static void open_running(void *context)
 {
 	struct opening *o = context;
-	o->running = running_new(code_of_step(o->at, o->step), o->step);
+	o->running = running_new(code_of_step(o->at, o->step, true), o->step);
 }
 
 /* Its C, ready to run */

@@ -305,3 +305,134 @@ void pl_switching_step(const pl_switching *m, real *x, pl_contact *c, pl_crossin
 {
     pl_switching_advance(m, m->h, x, c, crossing, work);
 }
+
+/* ---- events of a series ---- */
+
+typedef struct column { /* of the coefficients of a series: those of one expression */
+    const pl_divided *m;
+    const real *first;
+    real terms; /* the size of what its value at the start is summed from */
+} column;
+
+static real column_at(const column *e, int k)
+{
+    return e->first[(ptrdiff_t)k * e->m->columns];
+}
+
+/* e - b at the start, and what rounding may have done to it */
+static real off_start(const column *e, real b, real *noise)
+{
+    *noise = noise_of(e->terms + magnitude(b) + magnitude(column_at(e, 1)));
+    return column_at(e, 0) - b;
+}
+
+/* Whether e is above b, or there and about to be: the first derivative that is not 0 but for rounding */
+static int starts_above(const column *e, real b)
+{
+    real noise, largest = 0;
+    const real off = off_start(e, b, &noise);
+    int k;
+    if (off > noise || off < -noise)
+        return off > 0;
+    for (k = 1; k <= e->m->degree; k++)
+        largest = larger(largest, magnitude(column_at(e, k)));
+    for (k = 1; k <= e->m->degree; k++)
+        if (magnitude(column_at(e, k)) > noise_of(largest))
+            return column_at(e, k) > 0;
+    return 0;
+}
+
+static column column_of(const pl_divided *m, const real *c, const real *terms, int expression)
+{
+    column e;
+    e.m = m;
+    e.first = c + m->column[expression];
+    e.terms = terms[expression];
+    return e;
+}
+
+int pl_divided_place(const pl_divided *m, const real *c, const real *terms, int *interval)
+{
+    const real *at = m->at;
+    int i, k, changed = 0;
+    for (i = 0; i < m->expressions; at += m->breaks[i++]) {
+        const column e = column_of(m, c, terms, i);
+        int above = 0;
+        for (k = 0; k < m->breaks[i]; k++)
+            above += starts_above(&e, at[k]);
+        changed |= above != interval[i];
+        interval[i] = above;
+    }
+    return changed;
+}
+
+static void set_crossing(pl_crossing *crossing, int expression, int breakpoint, int upward)
+{
+    crossing->expression = expression;
+    crossing->breakpoint = breakpoint;
+    crossing->upward = upward;
+}
+
+int pl_divided_left(const pl_divided *m, const real *c, const real *terms, const int *interval, pl_crossing *crossing)
+{
+    const pl_crossing last = *crossing;
+    const real *at = m->at;
+    int i, upward;
+    for (i = 0; i < m->expressions; at += m->breaks[i++]) {
+        const column e = column_of(m, c, terms, i);
+        for (upward = 0; upward < 2; upward++) {
+            const int b = interval[i] - !upward;
+            real off, noise;
+            if (b < 0 || b == m->breaks[i] || (last.expression == i && last.breakpoint == b))
+                continue;
+            off = off_start(&e, at[b], &noise);
+            if ((upward ? off : -off) > noise) {
+                set_crossing(crossing, i, b, upward);
+                return 1;
+            }
+        }
+    }
+    return 0;
+}
+
+/* The coefficients of e in s, 0 <= s <= 1 up to `end`; at least to the third, which bounds read */
+static void rescale(const column *e, real end, real *coefficient)
+{
+    real power = 1;
+    int k;
+    for (k = 0; k <= e->m->degree; k++, power *= end)
+        coefficient[k] = column_at(e, k) * power;
+    for (; k < 4; k++)
+        coefficient[k] = 0;
+}
+
+real pl_divided_next(const pl_divided *m, const real *c, const real *terms, const int *interval, real end,
+                     int *splits, pl_crossing *crossing, real *work)
+{
+    const real *at = m->at;
+    real first = 1;
+    int i, upward, any = 0;
+    beyond f;
+    f.degree = m->degree < 3 ? 3 : m->degree;
+    f.coefficient = work + f.degree + 1;
+    for (i = 0; i < m->expressions && *splits >= 0; at += m->breaks[i++]) {
+        const column e = column_of(m, c, terms, i);
+        rescale(&e, end, work);
+        for (upward = 0; upward < 2; upward++) {
+            const int b = interval[i] - !upward;
+            real s;
+            if (b < 0 || b == m->breaks[i])
+                continue;
+            look_beyond(&f, work, upward ? 1 : -1, at[b], e.terms);
+            if (!(f.reach - f.reach == 0)) /* not finite: there is no step */
+                continue;
+            s = first_root(&f, first, splits);
+            if (s < 0)
+                continue;
+            any = 1;
+            first = s;
+            set_crossing(crossing, i, b, upward);
+        }
+    }
+    return any ? first * end : -1;
+}

@@ -513,6 +513,45 @@ void pl_switchingf_step(const pl_switchingf *m, float *x, pl_contact *c, pl_cros
 void pl_switchingf_advance(const pl_switchingf *m, float tau, float *x, pl_contact *c, pl_crossingf *crossing,
                            float *work);
 
+/* Formulas that the state chooses beside a Taylor series: expressions e_i, each with breakpoints as above, whose series
+ * stand in columns of its coefficients c, (degree + 1) x columns, in powers of time.  Between two crossings the formulas
+ * are those of the intervals; c is made with them.  terms: of each expression the sizes of what its value at the start
+ * is summed from, which bound what rounding may have done to it; as above what passes b by less is no crossing. */
+typedef struct pl_divided {
+    int expressions, columns, degree;
+    const int *column;  /* of each expression */
+    const int *breaks;  /* of each how many breakpoints, >= 1 */
+    const double *at;   /* those of expression 0, rising; of expression 1; ... */
+} pl_divided;
+
+/* How many doubles, or floats, of work pl_divided_next needs */
+#define PL_DIVIDED_WORK(degree) (2 * ((degree) < 3 ? 4 : (degree) + 1))
+
+/* The interval of each expression at the start, exactly on a breakpoint by the first derivative that is not 0; what
+ * rests there counts as below.  1: some are others than before, and c may be another one. */
+int pl_divided_place(const pl_divided *m, const double *c, const double *terms, int *interval);
+
+/* Whether an expression is outside of its interval by more than rounding: crossing receives which, and where; before
+ * that the last crossing, expression -1: none, which need not be left behind yet. */
+int pl_divided_left(const pl_divided *m, const double *c, const double *terms, const int *interval,
+                    pl_crossing *crossing);
+
+/* When, until `end`, in the unit of time of c, an expression first leaves its interval; -1: none does.  Searched as
+ * above: no root of a polynomial is stepped over; *splits < 0 afterwards: it took too many halvings. */
+double pl_divided_next(const pl_divided *m, const double *c, const double *terms, const int *interval, double end,
+                       int *splits, pl_crossing *crossing, double *work);
+
+typedef struct pl_dividedf {
+    int expressions, columns, degree;
+    const int *column, *breaks;
+    const float *at;
+} pl_dividedf;
+
+int pl_dividedf_place(const pl_dividedf *m, const float *c, const float *terms, int *interval);
+int pl_dividedf_left(const pl_dividedf *m, const float *c, const float *terms, const int *interval,
+                     pl_crossingf *crossing);
+float pl_dividedf_next(const pl_dividedf *m, const float *c, const float *terms, const int *interval, float end,
+                       int *splits, pl_crossingf *crossing, float *work);
 /* ---- guards.c: piecewise-linear models whose velocity is held at times, and that jump -------------------------- */
 
 /* As pl_switching, with events of their own in each region.  x' = A x; a guard is a row that must not become greater

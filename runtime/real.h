@@ -37,6 +37,10 @@ enum { REAL_DIGITS = FLT_MANT_DIG, REAL_EXPONENTS = FLT_MAX_EXP };
 #define pl_switching_start pl_switchingf_start
 #define pl_switching_step pl_switchingf_step
 #define pl_switching_advance pl_switchingf_advance
+#define pl_divided pl_dividedf
+#define pl_divided_place pl_dividedf_place
+#define pl_divided_left pl_dividedf_left
+#define pl_divided_next pl_dividedf_next
 #define pl_guards pl_guardsf
 #define pl_guards_start pl_guardsf_start
 #define pl_guards_step pl_guardsf_step

@@ -33,7 +33,8 @@ echo "$columns" >"$folder/generation.csv"
 awk -F, 'NR > 1 && !seen[$1]++ { print $1 }' "$folder/precision.csv" >"$work/models"
 while read -r model; do
 	echo "generation: $model" >&2
-	spec=models/$model.spec
+	spec=bench/charts/specs/$model.spec
+	[ -f "$spec" ] || spec=models/$model.spec
 	"$build/plgen" "$spec" 2>/dev/null >"$work/$model.c"
 	generate=$(measure "$build/plgen" "$spec")
 	compile=$(measure $compiler -O2 -Iruntime -c "$work/$model.c" -o "$work/$model.o")

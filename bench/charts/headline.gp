@@ -4,15 +4,15 @@ here = system("dirname '".ARG0."'"); folder = ARG1; out = ARG2; narrow = ARG3 eq
 
 # ---- each integrator at the setting that reaches an error ----
 csv = folder.'/headline_integrators.csv'
-count = int(system("awk -F'\"' 'NR > 1 && !seen[$2]++ { n++ } END { print n }' '".csv."'"))
-size = sprintf('%d,%d', narrow ? 400 : 900, 130 + (narrow ? 70 : 0) + 25*count)
+count = int(system("awk -F'\"' '$3 ~ /,reached,/ && !seen[$2]++ { n++ } END { print n }' '".csv."'"))
+size = sprintf('%d,%d', narrow ? 400 : 900, 150 + (narrow ? 70 : 0) + 25*count)
 load here.'/style.gp'
 load "< awk -v palette='".here."/palette.list' -f '".here."/csv.awk' -f '".here."/headline.awk' '".csv."'"
 name = 'headline_integrators'
 set xlabel 'CPU time per output [ns]'
 unset logscale y
 set format y '%s'
-set yrange [rows + 0.6:0.4]
+set yrange [rows + 1.4:0.4]
 set xrange [1:1e5]
 eval "set ytics (".tics.") font ',".(narrow ? 9 : 11)."' noenhanced"
 set grid noytics
@@ -31,7 +31,7 @@ name = 'headline_equal_step'
 found = finding(name, size)
 top = 1 - (34.0 + 17*lines_of(found))/(150 + 26*rows)
 panels = narrow ? 2 : 3
-first = narrow ? 0.37 : 0.245
+first = narrow ? 0.43 : 0.265
 wide = (1 - first)/panels
 array axis = ['time of a step [ns]', 'largest error', 'drift of the energy']
 load here.'/style.gp'
@@ -79,6 +79,6 @@ set yrange [1e-17:10]
 set xtics ('10^{-4}' 1e-4, '10^{-6}' 1e-6, '10^{-8}' 1e-8, '10^{-10}' 1e-10, '0' 1e-12)
 name = 'headline_confluence'
 eval heading
-load series(csv, "-v where=case=one-way -v x=gap -v y=error -v xzero=1e-12 -v most=10 -v rank=last")
+load series(csv, "-v where=case=one-way -v x=gap -v y=error -v xzero=1e-12 -v most=10 -v rank=last -v keep=modal")
 eval "plot ".clauses
 eval write

@@ -6,7 +6,7 @@ row() {
 	printf '%s,"%s"\n' "$1" "$2"
 }
 echo what,value
-row processor "$(sed -n 's/^model name[^:]*: *//p' /proc/cpuinfo | sed -n 1p), $(nproc) cores"
+row processor "$(sed -n 's/^model name[^:]*: *//p' /proc/cpuinfo | sed -n 1p), $(nproc --all) cores"
 row system "$(uname -s) $(uname -r | sed 's/-.*//') $(uname -m)$(
 	sed -n 's/^PRETTY_NAME="\(.*\)"/, \1/p' /etc/os-release 2>/dev/null)"
 row compiler "$(${CC:-cc} --version | sed -n 1p)"

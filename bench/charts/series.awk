@@ -1,13 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # awk -v palette=palette.list -v where='model=scs;quantity=largest' -v x=ns_median -v y=largest [-v by=method]
 #     [-v xfactor=1e-3] [-v yfactor=1] [-v skip=REGEX] [-v with=lines|points] [-v abs=1] [-v any=1] [-v xzero=1e-12]
-#     [-v most=10 [-v rank=last]] -f csv.awk -f series.awk FILE.csv
+#     [-v most=10 [-v rank=last] [-v keep=REGEX]] -f csv.awk -f series.awk FILE.csv
 # prints gnuplot: a data block for each method that has rows with numbers above 0 in both columns (above or below, with
 # -v any=1), and `clauses`, what to plot of them; abs: of absolute values of y; xzero: where 0 stands on a log axis.
 # A method has the colour of its group and, in one picture, a mark of its own: ours filled marks and unbroken lines,
 # peers open marks and thin lines, dashed by group, so they stay apart in black and white too.
 # most: no more entries in the legend than that. Of ours and of the peers those stay that come nearest to the cheapest
-# of their side at some error (rank=last: those with the least y at their last x); all others become one grey entry.
+# of their side at some error (rank=last: those with the least y at their last x), and peers whose name fits keep; all
+# others become one grey entry.
 
 function group(pattern, name) { groups++; pattern_of[groups] = pattern; group_name[groups] = name }
 function wanted(field,    i) {
@@ -76,6 +77,8 @@ function choose_all(    k, ours, of_ours, of_peers) {
 	of_ours = ours < int((most - 1) / 2) ? ours : int((most - 1) / 2)
 	of_peers = most - 1 - of_ours
 	if (names - ours < of_peers) { of_peers = names - ours; of_ours = most - 1 - of_peers }
+	for (k = 1; keep != "" && k <= names; k++)
+		if (family_of[k] == "peer" && name_of[k] ~ keep && of_peers > 0) { chosen[k] = 1; of_peers-- }
 	choose(1, of_ours)
 	choose(0, of_peers)
 }

@@ -42,7 +42,8 @@ enum {
 	LIMIT_CHANGES = 1000,       /* of formula in time */
 	LIMIT_TUNABLES = 16,        /* params that the target may change */
 	LIMIT_MONOMIALS = 64,       /* products of them in one factor of a state */
-	LIMIT_REGIONS = 243,        /* of a piecewise-linear model */
+	LIMIT_REGIONS = 243,        /* of a piecewise-linear model, in one segment of time */
+	LIMIT_REGIONS_IN_TIME = 1024, /* in all */
 	MAX_EVENTS = 32,            /* crossings in a step of generated code */
 	LIMIT_PIECES = 16,          /* halvings of a step in which crossings are looked for */
 	MAX_SPLITS = 500,           /* of intervals in search of them, in a step */

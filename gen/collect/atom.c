@@ -79,6 +79,7 @@ static void add_dependence(const struct collector *c, struct atom *atom, const s
 		atom->input = atom->input || basis->kind == BASIS_INPUT || (basis->atom && basis->atom->input);
 		atom->state = atom->state || basis->kind == BASIS_COORD || (basis->atom && basis->atom->state);
 		atom->velocity = atom->velocity || is_velocity(c->frame, basis);
+		atom->params = atom->params || (basis->atom && basis->atom->params);
 		atom->moves = moved_basis(atom->moves, basis);
 	}
 }
@@ -89,13 +90,14 @@ bool depends_on_time_only(const struct basis *basis)
 }
 
 /* Highest derivatives are what the equations are solved for: they cannot stand inside. */
-static void check_highest(const struct collector *c, const struct node *node, const struct form *form)
+static void check_highest(const struct collector *c, const struct node *node, const struct form *form, bool params)
 {
 	for (int i = 0; i < form->terms; i++) {
 		const struct basis *basis = &form->term[i].basis;
 		if (!c->output && basis->kind == BASIS_COORD && basis->order > 0 &&
 		    basis->order >= c->frame->coord[basis->index]->highest)
-			not_linear(c, node, "is not linear");
+			not_linear(c, node, params ? "has a tunable factor, by which the equation can be divided"
+						   : "is not linear");
 	}
 }
 
@@ -111,7 +113,7 @@ struct form *time_part(const struct form *form, bool atoms)
 static bool same_atom(const struct atom *a, const struct atom *b)
 {
 	if (a->kind != b->kind || a->function != b->function || a->comparison != b->comparison ||
-	    a->operands != b->operands)
+	    a->operands != b->operands || a->param != b->param)
 		return false;
 	for (int i = 0; i < a->operands; i++)
 		if (a->operand[i] != b->operand[i] || (a->exponent && a->exponent[i] != b->exponent[i]))
@@ -128,11 +130,12 @@ static struct form *form_of_atom(struct collector *c, const struct node *node, s
 	while (*link && !same_atom(*link, &wanted))
 		link = &(*link)->next;
 	if (!*link) {
-		for (int i = 0; i < wanted.operands; i++) {
-			check_highest(c, node, wanted.operand[i]);
+		for (int i = 0; i < wanted.operands; i++)
 			add_dependence(c, &wanted, wanted.operand[i]);
-		}
+		for (int i = 0; i < wanted.operands; i++)
+			check_highest(c, node, wanted.operand[i], wanted.params);
 		wanted.node = node;
+		wanted.params = wanted.params || wanted.kind == ATOM_PARAM;
 		wanted.index = c->atoms->count++;
 		wanted.judged = NEW(struct verdict);
 		*link = NEW(struct atom);
@@ -149,6 +152,19 @@ static struct form *new_atom(struct collector *c, const struct node *node, struc
 	for (int i = 0; i < count; i++)
 		wanted.operand[i] = share(c, operand[i])->form;
 	return form_of_atom(c, node, wanted);
+}
+
+struct form *kept_param(struct collector *c, const struct node *node, const struct symbol *param)
+{
+	return form_of_atom(c, node, (struct atom){ .kind = ATOM_PARAM, .param = param });
+}
+
+bool reads_params(const struct form *form)
+{
+	for (int i = 0; i < form->terms; i++)
+		if (form->term[i].basis.atom && form->term[i].basis.atom->params)
+			return true;
+	return false;
 }
 
 /* ---- products: a rational times powers of shared forms, sorted ---- */

@@ -168,6 +168,7 @@ static struct form *derive_atom(struct differentiation *d, const struct atom *a)
 	case ATOM_RECIPROCAL: return derive_reciprocal(d, a, itself);
 	case ATOM_POWER:      return derive_power(d, a, itself);
 	case ATOM_CALL:       return derive_call(d, a, itself);
+	case ATOM_PARAM:
 	case ATOM_COMPARE:    return NEW(struct form);
 	default: return kept_choice(d->c, a->node, a->operand[0], derive(d, a->operand[1]), derive(d, a->operand[2]));
 	}
@@ -213,6 +214,7 @@ struct point {
 	struct collector *c;
 	int fixings;
 	const struct fixing *fixing;
+	bool values;                /* tunable params have the spec's */
 	struct form **known;        /* per atom */
 	struct span *span;          /* when it holds */
 	int count;
@@ -274,9 +276,23 @@ static struct form *place_product(struct point *p, const struct atom *a, struct 
 	return product;
 }
 
+static struct form *place_param(const struct point *p, const struct atom *a)
+{
+	mpq_t value;
+	if (!p->values)
+		return form_unit((struct basis){ .kind = BASIS_ATOM, .index = a->index, .atom = a });
+	mpq_init(value);
+	param_value(a->param, value);
+	struct form *form = form_constant(value);
+	mpq_clear(value);
+	return form;
+}
+
 static struct form *place_atom(struct point *p, const struct atom *a)
 {
 	struct collector *c = p->c;
+	if (a->kind == ATOM_PARAM)
+		return place_param(p, a);
 	struct form **x = ARRAY(struct form *, (size_t)a->operands);
 	x[0] = place_form(p, a->operand[0]);
 	if (a->kind == ATOM_CHOOSE && is_constant(x[0])) {      /* the other branch need not be defined here */
@@ -341,6 +357,11 @@ struct point *point_new(struct collector *c, int fixings, const struct fixing *f
 	struct point *p = NEW(struct point);
 	*p = (struct point){ .c = c, .fixings = fixings, .fixing = fixing };
 	return p;
+}
+
+void point_at_values(struct point *p)
+{
+	p->values = true;
 }
 
 struct form *form_at(struct point *p, const struct form *form)

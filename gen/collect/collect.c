@@ -269,6 +269,26 @@ static bool has_input(const struct form *form)
 	return false;
 }
 
+/* One that acts like an input */
+static bool has_param(const struct collector *c, const struct form *form)
+{
+	for (int i = 0; i < form->terms; i++)
+		if (form->term[i].basis.kind == BASIS_INPUT && form->term[i].basis.index >= c->inputs)
+			return c->params == PARAMS_INPUTS;
+	return false;
+}
+
+static _Noreturn void tell_factor(const struct collector *c, const struct node *node)
+{
+	const struct node *term = c->term ? c->term : node;
+	if (c->tolerant)
+		abandon();
+	error(term->start,
+	      "in a piecewise-linear model gaps and forces may be tunable; etdrk4 and the schemes like it take others",
+	      "term '%s' has a tunable factor: scheme %s cannot treat it", text_between(term->start, term->end),
+	      c->scheme);
+}
+
 static struct form *times(struct collector *c, const struct node *node, const struct form *a, const struct form *b)
 {
 	if (is_constant(a) || is_constant(b))
@@ -278,6 +298,8 @@ static struct form *times(struct collector *c, const struct node *node, const st
 		return switched;
 	if (keeps(c))
 		return kept_product(c, node, a, b);
+	if (has_param(c, a) || has_param(c, b))
+		tell_factor(c, node);
 	if (has_coordinate(a) && has_coordinate(b))
 		not_linear(c, node, "is not linear");
 	if (has_coordinate(a) || has_coordinate(b))
@@ -458,6 +480,21 @@ static struct value *collect_coordinate(struct collector *c, struct node *node)
 	return value;
 }
 
+/* A tunable param, or one that is made of such, whose value the target has. In a let or output that is to be linear it
+ * gives up in silence, like what is not linear. */
+static struct value *collect_tuned(struct collector *c, struct node *node)
+{
+	const struct symbol *symbol = node->symbol;
+	if (!symbol->tunable)
+		return collect_node(c, symbol->value);
+	if (c->params == PARAMS_INPUTS)
+		return scalar(form_unit(
+			(struct basis){ .kind = BASIS_INPUT, .index = c->inputs + symbol->tunable - 1 }));
+	if (!keeps(c))
+		not_linear(c, node, "has a tunable factor");
+	return scalar(kept_param(c, node, symbol));
+}
+
 static struct value *collect_name(struct collector *c, struct node *node)
 {
 	struct symbol *symbol = node->symbol;
@@ -475,6 +512,8 @@ static struct value *collect_name(struct collector *c, struct node *node)
 	for (int i = 0; i < c->fixings; i++)
 		if (c->fixing[i].symbol == symbol)
 			return scalar(form_constant(c->fixing[i].value));
+	if (c->params != PARAMS_VALUES && symbol->tuned && symbol->kind != SYMBOL_LET && !c->constant_only)
+		return collect_tuned(c, node);
 	if (symbol->progress == COLLECTING && symbol->kind == SYMBOL_PARAM)
 		error(node->at, NULL, "param '%s' is defined by itself", symbol->name);
 	if (symbol->progress == COLLECTING)     /* a let that failed before: that was told */
@@ -549,7 +588,8 @@ static bool is_timely(struct node *node)
 static unsigned mode_of(const struct collector *c)
 {
 	return (unsigned)c->keep | c->whole_time << 2 | c->tolerant << 3 | c->constant_only << 4 | c->closed << 5 |
-	       c->output << 6;
+	       c->output << 6 |
+	       (unsigned)c->params << 7;
 }
 
 /* Cells of values are shared: nobody changes them. What has become a rational is told by those that are collected, so

@@ -90,6 +90,9 @@ struct collector {
 	bool output;                /* an output is being collected: highest derivatives may stand anywhere */
 	struct atoms *atoms;
 	const struct frame *frame;  /* NULL: there are no coordinates */
+	/* tunable params: the spec's values; with KEEP_ALL atoms; held inputs, behind the `inputs` of the spec */
+	enum { PARAMS_VALUES, PARAMS_ATOMS, PARAMS_INPUTS } params;
+	int inputs;
 	int fixings;                /* lets that an operator fixes */
 	const struct fixing *fixing;
 };
@@ -123,17 +126,19 @@ bool oscillates(const struct wave *wave);
 
 /* ---- atom.c: what is not linear, as expressions that are shared wherever they are the same ---- */
 
-enum atom_kind { ATOM_PRODUCT, ATOM_RECIPROCAL, ATOM_POWER, ATOM_CALL, ATOM_COMPARE, ATOM_CHOOSE };
+enum atom_kind { ATOM_PRODUCT, ATOM_RECIPROCAL, ATOM_POWER, ATOM_CALL, ATOM_COMPARE, ATOM_CHOOSE, ATOM_PARAM };
 struct verdict { signed char piecewise, stepwise; }; /* 1 and -1: is_piecewise_form, is_stepwise; 0: not asked yet */
 struct atom {
 	enum atom_kind kind;
 	enum function function;     /* of ATOM_CALL */
 	enum comparison comparison; /* of ATOM_COMPARE: two operands */
+	const struct symbol *param; /* of ATOM_PARAM: tunable; it has no operands, and counts as of time alone */
 	/* POWER: base, exponent; CHOOSE: condition, then, else; equal forms are one object */
 	int operands;
 	const struct form **operand;
 	unsigned *exponent;         /* of ATOM_PRODUCT, one per factor */
 	bool time, input, state, velocity; /* what it depends on; a coordinate of first order counts as a velocity */
+	bool params;                /* it is made of tunable params */
 	const struct basis *moves;  /* of that a coordinate, else an input; NULL: t alone */
 	struct verdict *judged;      /* what was found out about it */
 	const struct node *node;    /* where it comes from */
@@ -157,6 +162,8 @@ struct form *kept_comparison(struct collector *c, const struct node *node, enum 
 			     const struct form *a, const struct form *b);
 struct form *kept_choice(struct collector *c, const struct node *node, const struct form *condition,
 			 const struct form *a, const struct form *b);
+struct form *kept_param(struct collector *c, const struct node *node, const struct symbol *param);
+bool reads_params(const struct form *form);                 /* some ATOM_PARAM stands in it */
 /* A factor that is constant but for comparisons and sgn, times what is piecewise linear: (x' > 0 ? c1 : c2)*x' = (x' >
  * 0 ? c1*x' : c2*x'); NULL: they are no such factors. */
 struct form *kept_switched(struct collector *c, const struct node *node, const struct form *a, const struct form *b);
@@ -181,6 +188,7 @@ struct fixing {                     /* a name that `operator at` fixes */
 struct form **form_derivatives(struct collector *c, int count, const struct form *const *form, int coord, int order);
 struct point;                       /* t and coordinates fixed; lets are not looked at */
 struct point *point_new(struct collector *c, int fixings, const struct fixing *fixing);
+void point_at_values(struct point *point);                  /* tunable params have the spec's values there */
 /* leaves the statement where the form is not defined there */
 struct form *form_at(struct point *point, const struct form *form);
 

@@ -169,6 +169,16 @@ static void operands_value(struct sample *s, const struct atom *a, mpfr_ptr valu
 		mpfr_clear(x[i]);
 }
 
+static void nominal_value(struct sample *s, const struct atom *a, mpfr_ptr value)
+{
+	mpq_t nominal;
+	(void)s;
+	mpq_init(nominal);
+	param_value(a->param, nominal);
+	mpfr_set_q(value, nominal, MPFR_RNDN);
+	mpq_clear(nominal);
+}
+
 static mpfr_srcptr atom_value(struct sample *s, const struct atom *a)
 {
 	if (a->index >= s->atoms) {
@@ -184,7 +194,10 @@ static mpfr_srcptr atom_value(struct sample *s, const struct atom *a)
 		return s->value[a->index];
 	mpfr_t value;
 	mpfr_init2(value, s->precision);
-	(a->kind == ATOM_PRODUCT ? product_value : a->kind == ATOM_CHOOSE ? choice_value : operands_value)(s, a, value);
+	(a->kind == ATOM_PRODUCT  ? product_value
+	 : a->kind == ATOM_CHOOSE ? choice_value
+	 : a->kind == ATOM_PARAM  ? nominal_value
+				  : operands_value)(s, a, value);
 	mpfr_set(s->value[a->index], value, MPFR_RNDN);         /* the table may have moved on the way */
 	mpfr_clear(value);
 	s->age[a->index] = s->now;

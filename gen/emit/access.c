@@ -23,7 +23,7 @@ static void emit_init(const struct emitter *e)
 	}
 	say(e, "\n");
 	e->kind->start(e, "s->");
-	for (int i = 0; i < e->system->inputs; i++) {
+	for (int i = 0; i < given_inputs(e); i++) {
 		say(e, "    s->u[%d] = 0.0;\n", i);
 		if (e->ramps)
 			say(e, "    s->slope[%d] = 0.0;\n", i);
@@ -197,7 +197,7 @@ static void emit_hold_taps(const struct emitter *e)
 {
 	say(e, "\nvoid $n_hold($n *s, const double u[$N_INPUTS])\n"
 	       "{\n");
-	for (int i = 0; i < e->system->inputs; i++)
+	for (int i = 0; i < given_inputs(e); i++)
 		if (e->system->input[i].hold > 1)
 			emit_next_tap(e, i);
 		else

@@ -158,6 +158,29 @@ static void tell_no_phi(const struct emitter *e)
 }
 
 /* What the series is of, how long a step is */
+/* What chooses formulas by the state */
+static void banner_divided(const struct emitter *e)
+{
+	const struct expansion *x = e->step->expansion;
+	if (!x || x->expressions == 0)
+		return;
+	banner_sentence(e, "The state chooses formulas: a series is of those between two crossings. Where an expression "
+			   "passes a breakpoint is the first root of its own series, found before it is stepped over; "
+			   "there the series ends, and the next one begins.");
+	for (int i = 0; i < x->expressions; i++) {
+		const struct divided *d = &x->expression[i];
+		mpq_t *rising = rising_breakpoints(d);
+		const char *at = "";
+		for (int k = 0; k < d->breaks; k++)
+			at = format("%s%s%s", at, k ? ", " : "", readable_text(rising[k]));
+		say(e, " *     expression %d: %s, at %s\n", i, printable(divided_text(e->step, i)), at);
+	}
+	if (regions_of_series(x))
+		banner_sentence(e, "A region's number is the sum of its intervals, each times the product of the numbers "
+				   "of intervals before it.");
+	banner_sentence(e, "Costs below are of one series, without the search on it; a crossing takes another one.");
+}
+
 void banner_expanded(const struct emitter *e)
 {
 	const struct truncation *truncation = &e->model->truncation;
@@ -181,6 +204,7 @@ void banner_expanded(const struct emitter *e)
 		       "last are values of\n"
 		       " * its series, by Horner's rule. Costs are those of a step, its share of the expansion and of "
 		       "such values.\n", truncation->over, truncation->over);
+	banner_divided(e);
 	say(e, " * What rounding takes from the state is kept in rest.\n");
 	tell_no_phi(e);
 }
@@ -236,7 +260,8 @@ static void banner_expressions(const struct emitter *e)
 		const char *at = "";
 		for (int k = 0; k < s->expression[i].breaks; k++)
 			at = format("%s%s%s", at, k ? ", " : "", readable_text(s->expression[i].at[k]));
-		say(e, " *     expression %d: %s, at %s\n", i, printable(form_text(model, s->expression[i].form)), at);
+		say(e, " *     expression %d: %s%s, at %s\n", i, printable(form_text(model, s->expression[i].form)),
+		    changes_in_time(&s->expression[i]) ? " at first, with other loads later" : "", at);
 	}
 }
 
@@ -270,6 +295,8 @@ void banner_regions(const struct emitter *e)
 	       "The equations are piecewise linear: %d regions, %d different, in each of which\n"
 	       " * every constant is its closed form, correctly rounded; "
 	       "crossings inside a step are found in order, to rounding.\n", possible_regions(s), s->systems);
+	if (s->segments > 1)
+		say(e, " * They are those of %d segments of time, each with its own.\n", s->segments);
 	banner_expressions(e);
 	for (int i = 0; i < s->frictions; i++)
 		say(e, " *     friction %d: %s; sticks in interval %d of expression %d\n", i,
@@ -483,12 +510,12 @@ static void banner_state(const struct emitter *e)
 {
 	int changes = e->system->segments - 1;
 	say(e, " * State y = %s.\n", state_list(e->step->shown->model));
-	for (int i = 0; i < e->system->inputs; i++)
+	for (int i = 0; i < given_inputs(e); i++)
 		say(e, " * Input %s: %s.\n", e->system->input[i].name, input_text(e->system->input[i].hold));
 	if (changes > 0 && !e->step->normal)
 		say(e, " * The loads change their formula %d time%s; "
-		       "a step across a change is exact too, by a series that stops there.\n", changes,
-		    changes > 1 ? "s" : "");
+		       "a step across a change is exact too, by %s that stops there.\n", changes,
+		    changes > 1 ? "s" : "", e->model->switching ? "a search" : "a series");
 	if (e->model->reduction.dropped)
 		say(e, " * Reduced to what the outputs can see: %d of %d states.\n", e->system->states,
 		    e->model->written->system.states);

@@ -33,7 +33,7 @@ static void emit_state_struct(const struct emitter *e)
 		say(e, "    double set[$N_STATES], from[$N_STATES];  "
 		       "/* at the last set: the states as written, and as they are kept */\n");
 	e->kind->coefficients(e);
-	if (e->system->inputs)
+	if (given_inputs(e))
 		say(e, "    double u[$N_INPUTS];  /* the %s */\n",
 		    most_taps_before(e) ? "sample now" : "last sample");
 	if (most_taps_before(e))
@@ -102,7 +102,7 @@ static void declare_checks(const struct emitter *e, bool rhs)
 		      "--rhs has no formula for friction, whose force is a set where it sticks");
 	if (rhs)
 		declare(e, spell(e, "void   $n_rhs(double t, const double y[], %sdouble dydt[]);",
-				 e->system->inputs ? "const double u[], " : ""), note);
+				 given_inputs(e) ? "const double u[], " : ""), note);
 	if (e->model->asked.selftest)
 		declare(e, spell(e, "double $n_selftest(void);"),
 			"largest deviation from the closed form, in units in the last place");
@@ -112,7 +112,7 @@ static void declare_tables(const struct emitter *e)
 {
 	if (!e->step->shown->no_phi)
 		declare(e, spell(e, "extern const double $n_Phi[$N_STATES][$N_STATES];"), "y(t+h) = Phi y(t) + ...");
-	if (e->system->inputs && !e->step->shown->no_phi)
+	if (given_inputs(e) && !e->step->shown->no_phi)
 		declare(e, spell(e, "extern const double $n_Gamma[$N_STATES][%d];", input_columns(e->system)),
 			most_taps_before(e) ? "... + Gamma u; of an input: its samples around the step" :
 			e->ramps ? "... + Gamma u; of a ramp: before, after" : "... + Gamma u");
@@ -129,7 +129,7 @@ static void declare_tables(const struct emitter *e)
 static void emit_functions(const struct emitter *e, bool rhs)
 {
 	declare_state_functions(e);
-	(e->system->inputs ? declare_driven_step : declare_free_step)(e);
+	(given_inputs(e) ? declare_driven_step : declare_free_step)(e);
 	if (has_jump(e))
 		declare(e, spell(e, "void   $n_jump($n *s, uint64_t n);"), "as n steps would, in log n time");
 	e->kind->declare_more(e);
@@ -148,7 +148,7 @@ void emit_declarations(const struct emitter *e, bool rhs)
 	       "extern \"C\" {\n"
 	       "#endif\n"
 	       "\n", e->model->asked.single ? "#define PL_FLOAT_ONLY\n" : "");
-	say(e, "enum { $N_STATES = %d, $N_INPUTS = %d, $N_OUTPUTS = %d };\n", e->system->states, e->system->inputs,
+	say(e, "enum { $N_STATES = %d, $N_INPUTS = %d, $N_OUTPUTS = %d };\n", e->system->states, given_inputs(e),
 	       e->model->outputs);
 	e->kind->constants(e);
 	emit_index_names(e);

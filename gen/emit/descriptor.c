@@ -74,14 +74,14 @@ static void emit_wrapper(const struct emitter *e, const char *result, const char
 	const char *state = format(is_const ? "const struct %s" : "struct %s", e->name);
 	say(e, "static %s $n_any_%s(%svoid *s%s) { %s$n_%s((%s *)s%s); }\n", result, function,
 	       is_const ? "const " : "", parameters,
-	       *result != 'v' ? "return " : !e->system->inputs && strstr(parameters, "*u") ? "(void)u; " : "",
+	       *result != 'v' ? "return " : !given_inputs(e) && strstr(parameters, "*u") ? "(void)u; " : "",
 	       function, state, arguments);
 }
 
 static void emit_start_samples(const struct emitter *e)
 {
 	say(e, "static const int $n_start_samples[] = {");
-	for (int i = 0; i < e->system->inputs; i++)
+	for (int i = 0; i < given_inputs(e); i++)
 		say(e, "%s%d", i ? ", " : "", samples_ahead(e->system->input[i].hold));
 	say(e, "};\n");
 }
@@ -89,8 +89,8 @@ static void emit_start_samples(const struct emitter *e)
 static void emit_names(const struct emitter *e)
 {
 	emit_name_list(e, "state_names", e->system->states, e->step->shown->model->state_name);
-	if (e->system->inputs) {
-		emit_name_list(e, "input_names", e->system->inputs, names_of_inputs(e));
+	if (given_inputs(e)) {
+		emit_name_list(e, "input_names", given_inputs(e), names_of_inputs(e));
 		emit_start_samples(e);
 	}
 	emit_name_list(e, "output_names", e->model->outputs, names_of_outputs(e));
@@ -98,7 +98,7 @@ static void emit_names(const struct emitter *e)
 
 static void emit_wrappers(const struct emitter *e)
 {
-	bool inputs = e->system->inputs > 0;
+	bool inputs = given_inputs(e) > 0;
 	emit_wrapper(e, "void", "init", "", "", false);
 	emit_wrapper(e, "void", "set", ", double t, const double *y", ", t, y", false);
 	emit_wrapper(e, "void", "get", ", double *y", ", y", true);
@@ -126,7 +126,7 @@ static const char *name_if(const struct emitter *e, bool there, const char *name
 
 void emit_descriptor(const struct emitter *e)
 {
-	bool inputs = e->system->inputs > 0;
+	bool inputs = given_inputs(e) > 0;
 	say(e, "\n/* The same functions for programs that drive any model. */\n\n");
 	emit_names(e);
 	say(e, "\n");

@@ -56,14 +56,23 @@ static void number_loads(struct emitter *e)
 	}
 }
 
+/* Regions have a system for each segment of time. */
+static const struct linear *system_of(const struct step *step)
+{
+	bool several = step->model->switching && step->model->system.segments > 1;
+	return several ? &step->model->system : &step->branch->system;
+}
+
 static struct emitter emitter_new(FILE *to, const struct step *step, const char *options)
 {
 	struct emitter e = {
 		.to = to, .step = step, .kind = row_of_kind(step->kind), .model = step->model,
-		.system = &step->branch->system, .options = options, .name = step->model->name,
+		.system = system_of(step), .options = options, .name = step->model->name,
 		.upper = upper_case(step->model->name), .own = step->model->name, .place = "",
 		.degree = step->model->name
 	};
+	e.columns = format(step->expansion && step->expansion->columns ? "%s_STATES + %d" : "%s_STATES", e.upper,
+			   step->expansion ? step->expansion->columns : 0);
 	number_loads(&e);
 	for (int i = 0; i < e.system->inputs; i++)
 		e.ramps = e.ramps || e.system->input[i].hold;
@@ -89,6 +98,25 @@ static bool forms_need_math(const struct emitter *e)
 	return math;
 }
 
+/* A certificate that counts on each product and each sum being rounded: it was found by running this C. */
+static void emit_as_written(const struct emitter *e)
+{
+	const struct choice *choice = e->step->choice;
+	if (!choice || !choice->alternative[choice->taken].as_written)
+		return;
+	say(e, "\n/* What is certified counts on sums and products that are each rounded, to the bits of their type. */\n"
+	       "#if PL_EXCESS_PRECISION%s\n"
+	       "#error \"what is certified needs sums that have the bits of their type: "
+	       "on x86 compile it with -msse2 -mfpmath=sse\"\n"
+	       "#endif\n"
+	       "#if !defined PL_NOT_CONTRACTED && (defined __FP_FAST_FMA || defined __FP_FAST_FMAF || \\\n"
+	       "    defined __FMA__ || defined __FMA4__ || defined __ARM_FEATURE_FMA || defined __aarch64__ || \\\n"
+	       "    defined _M_ARM64 || defined _M_FP_CONTRACT)\n"
+	       "#error \"what is certified needs products that are rounded before they are added: "
+	       "compile it and the runtime with -ffp-contract=off, and with -DPL_NOT_CONTRACTED\"\n"
+	       "#endif\n", e->model->asked.single ? "F" : "");
+}
+
 static void emit_includes(const struct emitter *e, bool rhs)
 {
 	if (forms_need_math(e) || (rhs && rhs_needs_math(e)))
@@ -100,6 +128,7 @@ static void emit_includes(const struct emitter *e, bool rhs)
 		       "#error \"two-word arithmetic needs sums that have the bits of their type: "
 		       "on x86 compile it with -msse2 -mfpmath=sse\"\n"
 		       "#endif\n", e->model->asked.single ? "F" : "");
+	emit_as_written(e);
 }
 
 static void emit_all_tables(const struct emitter *e)

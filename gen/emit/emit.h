@@ -18,6 +18,7 @@ struct emitter {
 	const struct region_part *part;
 	const char *own, *place;    /* what its names begin with, scs_part1, its index, [1]; else the name, nothing */
 	const char *degree;         /* the first part's whose polynomials are of its degree */
+	const char *columns;        /* of a row of a series' coefficients: the states, and what breakpoints divide */
 	const char *options;
 	struct identifiers *c;      /* of every symbol */
 	const char **local;         /* per state: the C local that holds it */
@@ -33,7 +34,7 @@ struct emitter {
 	struct lines *series;       /* lines of coefficients that are being made, and which are read; else NULL */
 };
 /* The only writer: a printf format in which $n is the model's name and $N the same in capitals, $o and $p a part's own
- * name and place, $d that of the first part of its degree, $$ a dollar. */
+ * name and place, $d that of the first part of its degree, $c the columns of a series, $$ a dollar. */
 void say(const struct emitter *e, const char *layout, ...) __attribute__((format(printf, 2, 3)));
 /* the same as text */
 const char *spell(const struct emitter *e, const char *layout, ...) __attribute__((format(printf, 2, 3)));
@@ -90,6 +91,9 @@ void emit_raw_locals(const struct emitter *e, const bool *reads, bool changing);
 void emit_locals_of(const struct emitter *e, const bool *reads, const char *vector);
 /* of a part, in the model: a state of it, an input; how many states it has; state i in a loop, as text */
 int place_of_state(const struct emitter *e, int state);
+int given_inputs(const struct emitter *e);                        /* samples of a step: without params that act so */
+const char *sample_now(const struct emitter *e, int input);       /* of the whole model: what a step is given, a param */
+const char *sample_kept(const struct emitter *e, int input);      /* the same between steps */
 int place_of_input(const struct emitter *e, int input);
 const char *own_states(const struct emitter *e);
 const char *place_in_loop(const struct emitter *e);
@@ -274,6 +278,9 @@ const struct kind *row_of_kind(enum step_kind kind);
 /* ---- emit_sequences.c: the coefficients of a series ---- */
 
 bool has_offset(const struct emitter *e);                         /* an expansion may start inside a step */
+bool is_divided(const struct emitter *e);                         /* the state chooses formulas */
+const char *size_of_terms(const struct emitter *e, int sequence); /* C: of a sum at its start, each taken as it is large */
+void emit_column_scales(const struct emitter *e);                 /* of what stands beside the states in s->series */
 const char *driven_parameter(const struct emitter *e);            /* const double u[N_INPUTS], or "" */
 void say_wrapped(const struct emitter *e, const char *text);      /* broken between summands */
 void emit_input_samples(const struct emitter *e);                 /* start, slope: what the series reads of ramps */
@@ -284,8 +291,9 @@ void emit_coefficients(const struct emitter *e);                  /* locals: fro
 bool expands_in_step(const struct emitter *e);                    /* the step of fixed order does, without a call */
 void emit_expand_function(const struct emitter *e);               /* NAME_expand: all coefficients */
 /* tau, when, segment where it has them: the time after now; one in which conditions on t stand; that of the loads */
+/* contact: "s->contact." or the like, of which intervals, where there are any */
 const char *expand_call(const struct emitter *e, const char *tau, const char *when, const char *segment,
-			const char *y, const char *c);
+			const char *contact, const char *y, const char *c);
 
 bool spans_steps(const struct emitter *e);                        /* one expansion of fixed order is over several */
 /* gain_term: a coefficient of a state, as C; NULL: it is 0 */
@@ -317,6 +325,17 @@ void emit_expansion_step(const struct emitter *e);
 void emit_expansion_at(const struct emitter *e);
 /* Whether $n_inside is there, for the steps that a series serves before its last */
 bool serves_rows(const struct emitter *e);
+
+/* ---- emit_divided.c: formulas that the state chooses, from one crossing to the next ---- */
+
+void emit_divided_types(const struct emitter *e);                 /* NAME_contact; nothing where there are none */
+void emit_divided_members(const struct emitter *e);
+void emit_divided_declarations(const struct emitter *e);
+void emit_divided_functions(const struct emitter *e);             /* tables, NAME_cross, NAME_locate */
+void emit_divided_questions(const struct emitter *e);             /* NAME_crossed, NAME_crossings, NAME_region */
+/* C: NAME_locate of contact, "s->contact" or "here", unless it is placed; its crossings are those of what follows */
+void emit_divided_start(const struct emitter *e, const char *contact, const char *indent);
+void emit_divided_bound(const struct emitter *e);                 /* in NAME_renew: no crossing in the steps it serves */
 
 /* ---- emit_over.c: a series of fixed order over several steps ---- */
 
@@ -395,6 +414,7 @@ void emit_to_modes(const struct emitter *e);                      /* NAME_modes_
 void emit_from_modes(const struct emitter *e);                    /* NAME_of_modes */
 void emit_function_values(const struct emitter *e);               /* NAME_functions */
 void emit_forces(const struct emitter *e);                        /* NAME_forces */
+const char *instance_of_rest(const struct emitter *e);            /* the argument s of NAME_forces, comma behind it; or "" */
 
 /* ---- emit_waves.c: known loads, to which modes respond exactly ---- */
 
@@ -566,6 +586,14 @@ void declare_region_room(const struct emitter *e);
 void emit_search(const struct emitter *e);
 void emit_region_search(const struct emitter *e);
 void emit_region_status(const struct emitter *e);
+void emit_region_start_call(const struct emitter *e);
+void emit_region_advance_call(const struct emitter *e);
+void emit_segment_end(const struct emitter *e);                   /* of a step: the segment of time that outputs are in */
+bool regions_change(const struct emitter *e);                     /* they are others in each segment of time */
+
+/* ---- emit_instants.c: regions beside loads that change their formula in time ---- */
+
+void emit_region_changes(const struct emitter *e);                /* functions that go from change to change */
 /* emit_parts.c: of independent parts, each as it would be alone */
 void emit_part_tables(const struct emitter *e);
 void emit_part_declarations(const struct emitter *e);
@@ -582,6 +610,24 @@ void emit_coefficient_struct(const struct emitter *e);
 void emit_tuning_declarations(const struct emitter *e);
 void emit_tuning_wrapper(const struct emitter *e);                /* of the descriptor */
 void banner_tuning(const struct emitter *e);
+const char *param_list(const struct emitter *e);                  /* names, commas between */
+void emit_nominal_params(const struct emitter *e);                /* {1.0, 2.0}, */
+
+/* ---- emit_params.c: tunable params that expressions read; where there are none they print nothing ---- */
+
+const char *param_text(int param);                                /* in an instance s */
+const char *param_local(const struct emitter *e, int param);
+void emit_param_locals(const struct emitter *e, const bool *reads); /* of those that forms read: struct reads */
+void emit_nominal_params_read(const struct emitter *e, const struct reads *reads); /* the spec's values */
+void emit_held_types(const struct emitter *e);
+void emit_held_member(const struct emitter *e);
+void emit_held_start(const struct emitter *e, const char *s);
+void emit_held_declarations(const struct emitter *e);
+void banner_held(const struct emitter *e);
+void emit_held_nominal(const struct emitter *e);
+void emit_held_retune(const struct emitter *e);
+void emit_held_wrapper(const struct emitter *e);
+void emit_params_line(const struct emitter *e);                   /* of the descriptor, of either kind */
 /* the generator's own coefficients, of the spec's values */
 void emit_nominal(const struct emitter *e);
 void emit_retune(const struct emitter *e);                        /* the equations, retune, use */

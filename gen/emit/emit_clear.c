@@ -18,7 +18,7 @@ static const char **operands(const struct emitter *e)
 	for (int i = 0; i < e->system->inputs; i++) {
 		bool ramp = e->system->input[i].hold;
 		int of = place_of_input(e, i);
-		text[layout->input[i]] = format(ramp ? "s->u[%d]" : "u[%d]", of);
+		text[layout->input[i]] = ramp ? sample_kept(e, of) : sample_now(e, of);
 		if (ramp)
 			text[layout->input[i] + 1] = format("part%d", of);
 	}

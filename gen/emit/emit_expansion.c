@@ -34,7 +34,7 @@ static void emit_horner(const struct emitter *e, const char *c, int degree)
 void emit_polynomial(const struct emitter *e, const char *name, int rows, int degree)
 {
 	int states = e->system->states;
-	say(e, "static void $n_%s(const double c[%d][$N_STATES], double theta, double gain[$N_STATES])\n"
+	say(e, "static void $n_%s(const double c[%d][$c], double theta, double gain[$N_STATES])\n"
 	       "{\n", name, rows);
 	if (!is_written_out(e, degree)) {
 		say(e, "    int i, k;\n"
@@ -63,20 +63,35 @@ void emit_series_ahead(const struct emitter *e)
 
 /* ---- inside a step ---- */
 
+/* At the end of a piece: what ended it */
+static const char *passed_text(const struct emitter *e)
+{
+	return spell(e, "        if (meets < 0.0) {\n"
+			"            contact->last.expression = -1;\n"
+			"            continue;\n"
+			"        }\n"
+			"        if (!$n_cross(contact, done * $N_H))\n"
+			"            return PL_TOO_MANY_EVENTS;\n"
+			"%s", truncation(e)->adaptive ? "        fresh = 1;\n" : "");
+}
+
 /* From now over a part of the step: substeps, and changes of the loads on the way */
 static void emit_between(const struct emitter *e)
 {
 	int order = expansion(e)->order, last = e->system->segments - 1;
-	bool adaptive = truncation(e)->adaptive;
+	bool adaptive = truncation(e)->adaptive, divided = is_divided(e);
 	say(e, "\n/* y and what rounding took from it, end h later: 0; or what went wrong, and y as far as it went */\n"
-	       "static int $n_between(const $n *s, %s%sdouble end, double y[$N_STATES], double rest[$N_STATES])\n"
+	       "static int $n_between(const $n *s, %s%sdouble end, double y[$N_STATES], double rest[$N_STATES]%s)\n"
 	       "{\n"
-	       "    double c[%d][$N_STATES], gain[$N_STATES], done = 0.0;\n"
-	       "    int i%s%s;\n", driven_parameter(e), adaptive ? "int fresh, " : "", order + 1,
+	       "    double c[%d][$c], gain[$N_STATES], done = 0.0;\n"
+	       "    int i%s%s;\n", driven_parameter(e), adaptive ? "int fresh, " : "", divided ? spell(e, ",\n    $n_contact *contact") : "", order + 1,
 	    adaptive ? ", steps = 0" : watches(e) ? ", status = 0" : "",
 	    changes(e) ? ", segment = s->segment" : "");
 	if (adaptive)
 		say(e, "    double longest = 1.0;\n");
+	if (divided)
+		say(e, "    double terms[%d], work[PL_DIVIDED_WORK(%d)], meets;\n"
+		       "    int splits = %d;\n", expansion(e)->expressions, order, MAX_SPLITS);
 	emit_input_samples(e);
 	say(e, "    while (done < end) {\n"
 	       "        double limit = end, size;\n");
@@ -93,48 +108,64 @@ static void emit_between(const struct emitter *e)
 		say(e, "        if (steps++ == %d)\n"
 		       "            return PL_TOO_MANY_STEPS;\n", truncation(e)->substeps);
 	say(e, "        %s\n", expand_call(e, spell(e, "done * $N_H"),
-		spell(e, "$n_time(s) + 0.5 * (done + limit) * $N_H"), "segment", "y", "c"));
+		spell(e, "$n_time(s) + 0.5 * (done + limit) * $N_H"), "segment", "contact->", "y", "c"));
+	if (divided)
+		say(e, "        if (pl_divided_left(&$n_divided, c[0], terms, contact->interval, &contact->last)) {\n"
+		       "            if (!$n_cross(contact, done * $N_H))\n"
+		       "                return PL_TOO_MANY_EVENTS;\n"
+		       "            continue;\n"
+		       "        }\n");
 	if (adaptive)
-		say(e, "        size = $n_part(s, (const double (*)[$N_STATES])c);\n"
+		say(e, "        size = $n_part(s, (const double (*)[$c])c);\n"
 		       "        if (size == 0.0)\n"
 		       "            return PL_NOT_FINITE;\n"
 		       "        size = size < longest ? size : longest;\n"
 		       "        size = size < limit - done ? size : limit - done;\n"
 		       "        for (longest *= 2.0; fresh; longest = 2.0 * size) {\n"
-		       "            double d[%d][$N_STATES], next[$N_STATES];\n"
-		       "            $n_ahead((const double (*)[$N_STATES])c, size, gain);\n"
+		       "            double d[%d][$c], next[$N_STATES]%s;\n"
+		       "            $n_ahead((const double (*)[$c])c, size, gain);\n"
 		       "            for (i = 0; i < $N_STATES; i++)\n"
 		       "                next[i] = y[i] + gain[i];\n"
 		       "            %s\n"
-		       "            fresh = !$n_agrees(s, (const double (*)[$N_STATES])c, "
-		       "(const double (*)[$N_STATES])d, size);\n"
+		       "            fresh = !$n_agrees(s, (const double (*)[$c])c, "
+		       "(const double (*)[$c])d, size);\n"
 		       "            size *= fresh ? 0.5 : 1.0;\n"
 		       "            fresh = fresh && size > 1e-9;\n"
 		       "        }\n",
-		    order + 1, expand_call(e, spell(e, "(done + size) * $N_H"),
-					   spell(e, "$n_time(s) + 0.5 * (done + limit) * $N_H"), "segment", "next",
-					   "d"));
+		    order + 1, divided ? format(", spare[%d]", expansion(e)->expressions) : "",
+		    expand_call(e, spell(e, "(done + size) * $N_H"),
+					   spell(e, "$n_time(s) + 0.5 * (done + limit) * $N_H"), "segment",
+					   "contact->", "next", "d"));
 	else
 		say(e, "        size = limit - done;\n");
+	if (divided)
+		say(e, "        meets = pl_divided_next(&$n_divided, c[0], terms, contact->interval, size, &splits,\n"
+		       "            &contact->last, work);\n"
+		       "        if (splits < 0)\n"
+		       "            return PL_TOO_MANY_EVENTS;\n"
+		       "        if (meets >= 0.0)\n"
+		       "            size = meets;\n");
 	if (watches(e))
-		say(e, "        if (!$n_is_accurate(s, (const double (*)[$N_STATES])c, size))\n"
+		say(e, "        if (!$n_is_accurate(s, (const double (*)[$c])c, size))\n"
 		       "            status = PL_INACCURATE;\n");
-	say(e, "        $n_ahead((const double (*)[$N_STATES])c, size, gain);\n");
+	say(e, "        $n_ahead((const double (*)[$c])c, size, gain);\n");
 	say(e, "        if (pl_not_finite(gain, $N_STATES))\n"
 	       "            return PL_NOT_FINITE%s;\n"
 	       "        for (i = 0; i < $N_STATES; i++)\n"
 	       "            y[i] = pl_accumulate(y[i], gain[i], 0.0, &rest[i]);\n"
 	       "        done = size < limit - done ? done + size : limit;\n"
+	       "%s"
 	       "    }\n"
 	       "    return %s;\n"
-	       "}\n", watches(e) ? " | PL_INACCURATE" : "", watches(e) ? "status" : "0");
+	       "}\n", watches(e) ? " | PL_INACCURATE" : "", divided ? passed_text(e) : "",
+	    watches(e) ? "status" : "0");
 }
 
 /* ---- the step ---- */
 
 bool expansion_places(const struct emitter *e)
 {
-	return looks_at_tolerance(e) || spans_steps(e);
+	return looks_at_tolerance(e) || spans_steps(e) || is_divided(e);
 }
 
 void emit_expansion_place(const struct emitter *e)
@@ -155,7 +186,12 @@ void emit_expansion_place(const struct emitter *e)
 		       "        s->scale[i] = s->unit[i] = 0.0;\n");
 		emit_series_scales(e, "        ");
 		say(e, "    }\n");
+		for (int i = 0; i < expansion(e)->columns; i++)
+			say(e, "    s->scale[$N_STATES + %d] = s->unit[$N_STATES + %d] = 0.0;\n", i, i);
 	}
+	if (is_divided(e))
+		say(e, "    s->contact.placed = s->contact.crossings = 0;\n"
+		       "    s->contact.total = 0;\n");
 	say(e, "}\n");
 }
 
@@ -207,7 +243,7 @@ static void emit_straight_step(const struct emitter *e)
 		say(e, "    const double *const y = s->y;\n");
 		emit_coefficients(e);
 	} else {
-		say(e, "    double c[%d][$N_STATES];\n", expansion(e)->order + 1);
+		say(e, "    double c[%d][$c];\n", expansion(e)->order + 1);
 		emit_input_samples(e);
 		if (watched)
 			say(e, "    int i;\n");
@@ -215,7 +251,7 @@ static void emit_straight_step(const struct emitter *e)
 	for (int i = 0; i < e->system->states; i++)
 		say(e, "    double rest%d = s->rest[%d]%s;\n", i, i, here ? "" : format(", next%d", i));
 	if (!here)
-		say(e, "    %s\n", expand_call(e, "", "", "", "s->y", "c"));
+		say(e, "    %s\n", expand_call(e, "", "", "", "", "s->y", "c"));
 	for (int i = 0; i < e->system->states; i++) {
 		say(e, "    ");
 		const char *now = here ? coefficient(e, i, 0) : format("s->y[%d]", i);
@@ -223,21 +259,24 @@ static void emit_straight_step(const struct emitter *e)
 				      now, whole_gain(e, i, term_of_gain), i));
 	}
 	if (watched)
-		say(e, "    if (!$n_is_accurate(s, (const double (*)[$N_STATES])c))\n"
+		say(e, "    if (!$n_is_accurate(s, (const double (*)[$c])c))\n"
 		       "        s->status |= PL_INACCURATE;\n");
 	emit_keep(e, watched);
 }
 
 static void emit_fixed_step(const struct emitter *e)
 {
-	bool scales = changes(e) && watches(e);
+	bool scales = has_offset(e) && watches(e);
 	say(e, "\nvoid $n_step(%s)\n"
 	       "{\n", step_parameters(e));
-	if (!changes(e))
+	if (!has_offset(e)) {
 		emit_straight_step(e);
-	else
-		say(e, "%s    s->status |= $n_between(s, %s1.0, s->y, s->rest);\n", scales ? "    int i;\n" : "",
-		    u_argument(e));
+	} else {
+		say(e, "%s", scales ? "    int i;\n" : "");
+		emit_divided_start(e, "s->contact", "    ");
+		say(e, "    s->status |= $n_between(s, %s1.0, s->y, s->rest%s);\n", u_argument(e),
+		    is_divided(e) ? ", &s->contact" : "");
+	}
 	if (scales) {
 		say(e, "    for (i = 0; i < $N_STATES; i++)\n");
 		emit_series_scales(e, "        ");
@@ -264,7 +303,7 @@ static void emit_end(const struct emitter *e)
 	enum { LATE = 2 };              /* of at least 4 */
 	int order = expansion(e)->order, states = e->system->states;
 	say(e, "\n/* The state m steps after the start of the series, and what rounding takes from it */\n"
-	       "static void $n_end(const double c[%d][$N_STATES], double m, double end[$N_STATES], "
+	       "static void $n_end(const double c[%d][$c], double m, double end[$N_STATES], "
 	       "double rest[$N_STATES])\n"
 	       "{\n", order + 1);
 	if (!is_written_out(e, order)) {
@@ -305,21 +344,25 @@ static void emit_renew(const struct emitter *e)
 		when = spell(e, "$n_time(s) + 0.5 * (change < $N_H ? change : $N_H)");
 	}
 	say(e, "    int i;\n");
+	if (is_divided(e))
+		say(e, "    double terms[%d];\n", expansion(e)->expressions);
 	emit_input_samples(e);
 	say(e, "    for (i = 0; i < $N_STATES; i++)\n");
 	emit_series_scales(e, "        ");
-	say(e, "    %s\n", expand_call(e, "0.0", when, "s->segment", "s->y", "s->series"));
+	say(e, "    %s\n", expand_call(e, "0.0", when, "s->segment", "s->contact.", "s->y", "s->series"));
+	emit_column_scales(e);
 	say(e, "    i = s->most ? $n_reach(s) : 0;\n"
 	       "    s->valid = i < s->most ? i : s->most;\n"
 	       "    s->most = s->valid ? 2 * s->valid : s->most;\n");
 	if (changes(e))
 		say(e, "    if (change < (double)s->valid * $N_H)\n"
 		       "        s->valid = (int)(change / $N_H);\n");
+	emit_divided_bound(e);
 	say(e, "    s->served = 0;\n"
 	       "    for (i = 0; i < $N_STATES; i++)\n"
 	       "        s->base[i] = s->left[i] = s->rest[i];\n"
 	       "    if (s->valid) {\n"
-	       "        $n_end((const double (*)[$N_STATES])s->series, (double)s->valid, s->next, s->left);\n"
+	       "        $n_end((const double (*)[$c])s->series, (double)s->valid, s->next, s->left);\n"
 	       "        ");
 	say_wrapped(e, format("if (%s)\n", is_written_out(e, expansion(e)->order)
 						    ? is_not_finite(e, "s->next[", "]")
@@ -351,11 +394,13 @@ static void emit_inside(const struct emitter *e)
 	} else {
 		say(e, "    double gain[$N_STATES];\n"
 		       "    int i;\n"
-		       "    $n_ahead((const double (*)[$N_STATES])s->series, theta, gain);\n"
+		       "    $n_ahead((const double (*)[$c])s->series, theta, gain);\n"
 		       "    for (i = 0; i < $N_STATES; i++)\n"
 		       "        s->y[i] = s->series[0][i] + (gain[i] + s->base[i]);\n");
 	}
 	say(e, "    s->served++;\n");
+	if (is_divided(e))
+		say(e, "    s->contact.crossings = 0;\n");
 	emit_step_end(e);
 	say(e, "}\n");
 }
@@ -369,16 +414,24 @@ static void emit_adaptive_step(const struct emitter *e)
 		emit_inside(e);
 	say(e, "\nvoid $n_step(%s)\n"
 	       "{\n"
-	       "    int i;\n"
-	       "    if (s->served == s->valid)\n"
-	       "        $n_renew(s%s);\n", step_parameters(e), inputs ? ", u" : "");
+	       "    int i;\n", step_parameters(e));
+	if (is_divided(e)) {
+		say(e, "    if (s->served == s->valid) {\n");
+		emit_divided_start(e, "s->contact", "        ");
+		say(e, "        $n_renew(s%s);\n"
+		       "    }\n"
+		       "    s->contact.crossings = 0;\n", inputs ? ", u" : "");
+	} else {
+		say(e, "    if (s->served == s->valid)\n"
+		       "        $n_renew(s%s);\n", inputs ? ", u" : "");
+	}
 	if (serves_rows(e))
 		say(e, "    if (s->served + 1 < s->valid) {\n"
 		       "        $n_inside(s);\n"
 		       "        return;\n"
 		       "    }\n");
 	say(e, "    if (s->valid == 0) {\n"
-	       "        s->status |= $n_between(s, %s!s->most, 1.0, s->y, s->rest);\n"
+	       "        s->status |= $n_between(s, %s!s->most, 1.0, s->y, s->rest%s);\n"
 	       "        s->most = 1;\n"
 	       "    } else {\n"
 	       "        s->served = s->valid;\n"
@@ -386,14 +439,14 @@ static void emit_adaptive_step(const struct emitter *e)
 	       "            s->y[i] = s->next[i];\n"
 	       "            s->rest[i] = s->left[i];\n"
 	       "        }\n"
-	       "    }\n", u_argument(e));
+	       "    }\n", u_argument(e), is_divided(e) ? ", &s->contact" : "");
 	emit_expansion_end(e);
 }
 
 void emit_expansion_members(const struct emitter *e)
 {
 	if (truncation(e)->adaptive)
-		say(e, "    double series[%d][$N_STATES];  /* the last expansion, in powers of time over h */\n"
+		say(e, "    double series[%d][$c];  /* the last expansion, in powers of time over h */\n"
 		       "    double base[$N_STATES];  /* what rounding had taken there */\n"
 		       "    double next[$N_STATES], left[$N_STATES];  /* where it ends; what rounding took there */\n"
 		       "    int served, valid;    /* steps since then; steps that it serves */\n"
@@ -402,8 +455,10 @@ void emit_expansion_members(const struct emitter *e)
 	if (spans_steps(e))
 		emit_over_members(e);
 	if (looks_at_tolerance(e))
-		say(e, "    double scale[$N_STATES], unit[$N_STATES];  "
+		say(e, "    double scale[$c], unit[$c];  "
 		       "/* the largest size of each state so far; 1 over it */\n");
+	if (is_divided(e))
+		emit_divided_members(e);
 }
 
 void emit_expansion_step(const struct emitter *e)
@@ -414,9 +469,13 @@ void emit_expansion_step(const struct emitter *e)
 	emit_expand_function(e);
 	emit_series_ahead(e);
 	emit_validity(e);
+	if (is_divided(e))
+		emit_divided_functions(e);
 	if (has_offset(e))
 		emit_between(e);
 	(truncation(e)->adaptive ? emit_adaptive_step : spans_steps(e) ? emit_over_step : emit_fixed_step)(e);
+	if (is_divided(e))
+		emit_divided_questions(e);
 }
 
 /* ---- between steps ---- */
@@ -427,16 +486,16 @@ static void emit_at_over(const struct emitter *e, const char *y)
 	int over = truncation(e)->over;
 	say(e, "    if (s->served > 0) {\n"
 	       "        const double theta = ((double)s->served + tau / $N_H) / %d.0;\n"
-	       "        $n_ahead((const double (*)[$N_STATES])s->series, theta, gain);\n"
+	       "        $n_ahead((const double (*)[$c])s->series, theta, gain);\n"
 	       "        for (i = 0; i < $N_STATES; i++)\n"
 	       "            %s[i] = s->series[0][i] + (gain[i] + s->rest[i]);\n"
 	       "    } else {\n"
-	       "        double c[%d][$N_STATES];\n"
+	       "        double c[%d][$c];\n"
 	       "        %s\n"
-	       "        $n_ahead((const double (*)[$N_STATES])c, tau / (%d.0 * $N_H), gain);\n"
+	       "        $n_ahead((const double (*)[$c])c, tau / (%d.0 * $N_H), gain);\n"
 	       "        for (i = 0; i < $N_STATES; i++)\n"
 	       "            %s[i] = s->y[i] + (gain[i] + s->rest[i]);\n"
-	       "    }\n", over, y, expansion(e)->order + 1, expand_call(e, "", "", "", "s->y", "c"), over, y);
+	       "    }\n", over, y, expansion(e)->order + 1, expand_call(e, "", "", "", "", "s->y", "c"), over, y);
 }
 
 void emit_expansion_at(const struct emitter *e)
@@ -451,28 +510,32 @@ void emit_expansion_at(const struct emitter *e)
 	if (spans_steps(e)) {
 		emit_at_over(e, y);
 	} else if (!offset) {
-		say(e, "    double c[%d][$N_STATES];\n", expansion(e)->order + 1);
+		say(e, "    double c[%d][$c];\n", expansion(e)->order + 1);
 		emit_input_samples(e);
-		say(e, "    %s\n", expand_call(e, "", "", "", "s->y", "c"));
-		say(e, "    $n_ahead((const double (*)[$N_STATES])c, tau / $N_H, gain);\n"
+		say(e, "    %s\n", expand_call(e, "", "", "", "", "s->y", "c"));
+		say(e, "    $n_ahead((const double (*)[$c])c, tau / $N_H, gain);\n"
 		       "    for (i = 0; i < $N_STATES; i++)\n"
 		       "        %s[i] = s->y[i] + (gain[i] + s->rest[i]);\n", y);
 	}
 	if (adaptive)
 		say(e, "    if (s->served < s->valid) {\n"
 		       "        double gain[$N_STATES];\n"
-		       "        $n_ahead((const double (*)[$N_STATES])s->series, (double)s->served + tau / $N_H, "
+		       "        $n_ahead((const double (*)[$c])s->series, (double)s->served + tau / $N_H, "
 		       "gain);\n"
 		       "        for (i = 0; i < $N_STATES; i++)\n"
 		       "            %s[i] = s->series[0][i] + (gain[i] + s->base[i]);\n"
 		       "    } else {\n", y);
+	if (offset && is_divided(e)) {
+		say(e, "%s    $n_contact here = s->contact;\n", margin);
+		emit_divided_start(e, "here", format("%s    ", margin));
+	}
 	if (offset)
 		say(e, "%s    for (i = 0; i < $N_STATES; i++) {\n"
 		       "%s        %s[i] = s->y[i];\n"
 		       "%s        rest[i] = s->rest[i];\n"
 		       "%s    }\n"
-		       "%s    $n_between(s, %s%stau / $N_H, %s, rest);\n", margin, margin, y, margin, margin, margin,
-		    u_argument(e), adaptive ? "!s->most, " : "", y);
+		       "%s    $n_between(s, %s%stau / $N_H, %s, rest%s);\n", margin, margin, y, margin, margin,
+		    margin, u_argument(e), adaptive ? "!s->most, " : "", y, is_divided(e) ? ", &here" : "");
 	if (adaptive)
 		say(e, "    }\n");
 	if (relative)

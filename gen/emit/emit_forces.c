@@ -221,21 +221,22 @@ void emit_function_values(const struct emitter *e)
 	if (any_of(r.load, e->system->loads))
 		emit_node_phases(e, r.load);
 	say(e, "\n/* What forces and factors of forces are at a node of the step, as functions of time%s */\n"
-	       "static void $n_functions(const $n *s, int node, %sdouble f[%d])\n"
+	       "static void $n_functions(const $n *s, int node, %sdouble left[%d])\n"
 	       "{\n", has_changes(e) ? ", their\n * formulas those that hold at another time" : "",
-	    has_changes(e) ? "double when, " : "", count);
+	    has_changes(e) ? "double start, " : "", count);
+	emit_param_locals(e, r.param);
 	if (r.time)
 		say(e, "    const double t = $n_time(s) + $n_node[node];\n");
 	emit_load_states(&here, r.load, true);
 	struct writer *writer = writer_new(&here, basis_now, count, form);
-	write_conditions_at(writer, has_changes(e) ? "when" : NULL);
+	write_conditions_at(writer, has_changes(e) ? "start" : NULL);
 	for (int k = 0; k < count; k++)
-		say(e, "    f[%d] = %s;\n", k, write_form(writer, form[k], 11));
+		say(e, "    left[%d] = %s;\n", k, write_form(writer, form[k], 14));
 	if (r.time && has_changes(e))   /* conditions alone may read it */
 		say(e, "    (void)t;\n");
 	say(e, "    (void)s;\n"
 	       "    (void)node;\n"
-	       "%s}\n", has_changes(e) ? "    (void)when;\n" : "");
+	       "%s}\n", has_changes(e) ? "    (void)start;\n" : "");
 }
 
 /* At a node of the step, with the formulas that hold in it: after it, those of the step that has ended */
@@ -348,6 +349,12 @@ static struct reads reads_of_rest(const struct emitter *e)
 	return reads_of(e->model, split->rests, form);
 }
 
+/* "s, " of a function that reads the instance's own params, else "" */
+const char *instance_of_rest(const struct emitter *e)
+{
+	return any_of(reads_of_rest(e).param, e->model->spec->tunables) ? "s, " : "";
+}
+
 static void emit_rest_forces(const struct emitter *e)
 {
 	const struct splitting *split = e->model->split;
@@ -358,9 +365,10 @@ static void emit_rest_forces(const struct emitter *e)
 	for (int k = 0; k < split->rests; k++)
 		form[k] = split->rest[k].form;
 	say(e, "\n/* What is not linear in the states, before it is multiplied with a function of time */\n"
-	       "static void $n_rest(const double y[$N_STATES], double left[%d])\n"
-	       "{\n", split->rests);
+	       "static void $n_rest(%sconst double y[$N_STATES], double left[%d])\n"
+	       "{\n", *instance_of_rest(e) ? spell(e, "const $n *s, ") : "", split->rests);
 	emit_locals_of(e, r.state, "y");
+	emit_param_locals(e, r.param);
 	struct writer *writer = writer_new(e, basis_now, split->rests, form);
 	for (int k = 0; k < split->rests; k++)
 		say(e, "    left[%d] = %s;  /* %s */\n", k, write_form(writer, form[k], 15),
@@ -420,7 +428,7 @@ static void emit_rest_values(const struct emitter *e)
 					       own->place + j));
 		say(e, "    y[%d] = %s;\n", i, tree(s.terms, s.term, 11));
 	}
-	say(e, "    $n_rest(y, left);\n");
+	say(e, "    $n_rest(%sy, left);\n", instance_of_rest(e));
 	for (int k = 0; k < split->rests; k++)
 		say(e, "    const double rest%d = left[%d]%s%s;\n", k + 1, k, split->rest[k].function ? " * " : "",
 		    split->rest[k].function ? function_text(split->rest[k].function) : "");
@@ -472,9 +480,10 @@ void emit_forces(const struct emitter *e)
 	emit_rest_forces(e);
 	add_rest_forces(e, sum);
 	say(e, "\n/* Forces on the modes: what is left over, loads among it */\n"
-	       "static void $n_forces(int which, const double f[%d], const double eta[%d],\n"
+	       "static void $n_forces(%sint which, const double f[%d], const double eta[%d],\n"
 	       "    const double rate[%d], double force[%d])\n"
-	       "{\n", functions_of_time(e) ? functions_of_time(e) : 1, m->width, m->width, m->width);
+	       "{\n", *instance_of_rest(e) ? spell(e, "const $n *s, ") : "", functions_of_time(e) ? functions_of_time(e) : 1,
+	    m->width, m->width, m->width);
 	/* what a loop reads through a pointer might be what it writes, and compilers would leave it as it is */
 	for (int f = 1; f < e->model->split->functions; f++)
 		if (m->force[f])

@@ -120,7 +120,7 @@ void emit_state_table(const struct emitter *e)
 
 /* ---- what is known of a time before the state is ---- */
 
-struct place_of_known { int driven, time, when, load, value, slope, count; };
+struct place_of_known { int driven, time, when, load, value, slope, param, count; };
 
 static bool ramps(const struct emitter *e, int input)
 {
@@ -155,7 +155,7 @@ static bool decides(const struct emitter *e)
 }
 
 /* Where each kind begins: driven coordinates, t, the time at which conditions on it hold, the load states that are
- * read, inputs, their slopes */
+ * read, inputs, their slopes, tunable params */
 static struct place_of_known known_places(const struct emitter *e, const struct reads *r)
 {
 	struct place_of_known p = { 0 };
@@ -174,6 +174,9 @@ static struct place_of_known known_places(const struct emitter *e, const struct 
 	p.slope = p.count;
 	for (int i = 0; i < e->system->inputs; i++)
 		p.count += r->input[e->system->inputs + i];
+	p.param = p.count;
+	for (int k = 0; k < e->model->spec->tunables; k++)
+		p.count += r->param[k];
 	return p;
 }
 
@@ -276,6 +279,9 @@ static void emit_known_values(const struct emitter *e, const struct reads *r)
 	for (int i = 0; i < inputs; i++)
 		if (r->input[inputs + i])
 			say(e, "    node[%d] = slope[%d];\n", p.slope++, i);
+	for (int k = 0; k < e->model->spec->tunables; k++)
+		if (r->param[k])
+			say(e, "    node[%d] = %s;\n", p.param++, param_text(k));
 }
 
 const char *known_call(const struct emitter *e, const char *tau, const char *inside, const char *node)
@@ -329,6 +335,9 @@ static void emit_motion_locals(const struct emitter *e, const struct reads *r)
 	for (int i = 0; i < inputs; i++)
 		if (r->input[inputs + i])
 			say(e, "    const double %s = node[%d];\n", input_name(e, i, 1), p.slope++);
+	for (int k = 0; k < e->model->spec->tunables; k++)
+		if (r->param[k])
+			say(e, "    const double %s = node[%d];\n", param_local(e, k), p.param++);
 }
 
 const char *linearize_call(const struct emitter *e, const char *node, const char *y, const char *left,

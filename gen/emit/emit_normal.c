@@ -70,10 +70,11 @@ static void emit_first_forces(const struct emitter *e)
 		       "    } else {\n");
 	}
 	const char *indent = m->points ? "" : "    ";
-	say(e, "%s    $n_forces(which, f[0], s->eta, s->rate, force[0]);\n"
+	say(e, "%s    $n_forces(%swhich, f[0], s->eta, s->rate, force[0]);\n"
 	       "%s    for (k = 1; k <= %d; k++)\n"
 	       "%s        for (i = 0; i < %d; i++)\n"
-	       "%s            force[k][i] = force[0][i];\n", indent, indent, m->stages, indent, width, indent);
+	       "%s            force[k][i] = force[0][i];\n", indent, instance_of_rest(e), indent, m->stages, indent, width,
+	    indent);
 	if (m->points == 0)
 		say(e, "    }\n");
 }
@@ -88,9 +89,9 @@ static void emit_sweeps(const struct emitter *e, const struct stage_tables *tabl
 		       "            eta[%d][i] = %s;\n"
 		       "            rate[%d][i] = %s;\n"
 		       "        }\n"
-		       "        $n_forces(which, f[%d], eta[%d], rate[%d], force[%d]);\n", m->width, i + 1,
+		       "        $n_forces(%swhich, f[%d], eta[%d], rate[%d], force[%d]);\n", m->width, i + 1,
 		    stage_sum(e, &table[i], 0, nodes, "force[%d][i]"), i + 1,
-		    stage_sum(e, &table[i], 1, nodes, "force[%d][i]"), i + 1, i + 1, i + 1, i + 1);
+		    stage_sum(e, &table[i], 1, nodes, "force[%d][i]"), instance_of_rest(e), i + 1, i + 1, i + 1, i + 1);
 	say(e, "    }\n");
 }
 
@@ -204,7 +205,7 @@ static void emit_bank(const struct emitter *e)
 	       "}\n", m->banks - 1);
 	emit_turn(e);
 	say(e, "\n/* From the modes of one operator to those of another: what is kept of the last steps too */\n"
-	       "static void $n_use($n *s, int which)\n"
+	       "static void $n_serve($n *s, int which)\n"
 	       "{\n"
 	       "    int k, d;\n"
 	       "    $n_turn(s->which, which, s->eta);\n"
@@ -212,10 +213,10 @@ static void emit_bank(const struct emitter *e)
 	       "    for (k = 0; k < s->known; k++) {\n"
 	       "        for (d = 0; d < 2; d++)\n"
 	       "            $n_turn(s->which, which, s->past[k][d]);\n"
-	       "        $n_forces(which, s->f[k], s->past[k][0], s->past[k][1], s->force[k]);\n"
+	       "        $n_forces(%swhich, s->f[k], s->past[k][0], s->past[k][1], s->force[k]);\n"
 	       "    }\n"
 	       "    s->which = which;\n"
-	       "}\n");
+	       "}\n", instance_of_rest(e));
 }
 
 /* ---- the step ---- */
@@ -256,16 +257,16 @@ static void emit_multistep(const struct emitter *e)
 	emit_step_end(e);
 	if (functions_of_time(e))
 		say(e, "    %s\n", functions_call(e, "0", true, "f"));
-	say(e, "    $n_forces(which, f, eta, rate, force);\n"
+	say(e, "    $n_forces(%swhich, f, eta, rate, force);\n"
 	       "    for (i = 0; i < %d; i++) {\n"
 	       "        const double excess = force[i] - expected[i];\n"
 	       "        s->eta[i] = eta[i] + %s[0][i] * excess;\n"
 	       "        s->rate[i] = rate[i] + %s[1][i] * excess;\n"
-	       "    }\n", width, correct, correct);
+	       "    }\n", instance_of_rest(e), width, correct, correct);
 	if (m->twice)
 		say(e, "    for (i = 0; i < %d; i++)\n"
 		       "        first[i] = force[i];\n"
-		       "    $n_forces(which, f, s->eta, s->rate, force);\n", width);
+		       "    $n_forces(%swhich, f, s->eta, s->rate, force);\n", width, instance_of_rest(e));
 	emit_keep_point(e, "force", "f");
 	say(e, "}\n");
 }
@@ -326,7 +327,7 @@ static void emit_settled(const struct emitter *e)
 	emit_waves_now(e);
 	if (has_bank(e))
 		say(e, "    if (s->which != %d)\n"
-		       "        $n_use(s, %d);\n", m->settled_bank, m->settled_bank);
+		       "        $n_serve(s, %d);\n", m->settled_bank, m->settled_bank);
 	say(e, "    for (i = 0; i < %d; i++) {\n"
 	       "        x[i] = $n_omega[0][i] * s->eta[i];\n"
 	       "        x[%d + i] = s->rate[i];\n"
@@ -406,7 +407,7 @@ void emit_normal_step(const struct emitter *e)
 		const char *now = format("s->f[%s][%d]", points ? "s->newest" : format("%d", m->stages),
 					 e->model->split->selector - 1);
 		say(e, "    if ($n_operator(s->which, %s) != s->which)\n"
-		       "        $n_use(s, $n_operator(s->which, %s));\n", now, now);
+		       "        $n_serve(s, $n_operator(s->which, %s));\n", now, now);
 	}
 	if (has_changes(e))
 		emit_restart(e);

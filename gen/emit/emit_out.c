@@ -135,7 +135,7 @@ static const char *linear_output(const struct emitter *e, const struct output *o
 		for (int i = 0; i < system->inputs; i++)
 			if (mpq_sgn(output->input[k][i]) != 0)
 				term[terms++] = scaled(output_factor(output, output->input[k][i]),
-						       format(k ? "s->slope[%d]" : "s->u[%d]", i));
+						       k ? format("s->slope[%d]", i) : sample_kept(e, i));
 	for (int c = 0; c < e->model->channels; c++)
 		if (mpq_sgn(output->channel[c]) != 0)
 			term[terms++] = scaled(output_factor(output, output->channel[c]), format("left[%d]", c));
@@ -202,7 +202,7 @@ static void emit_input_locals(const struct emitter *e, const bool *wanted)
 {
 	for (int i = 0; i < e->system->inputs; i++) {
 		if (wanted[i])
-			say(e, "    const double %s = s->u[%d];\n", input_name(e, i, 0), i);
+			say(e, "    const double %s = %s;\n", input_name(e, i, 0), sample_kept(e, i));
 		if (wanted[i + e->system->inputs])
 			say(e, "    const double %s = s->slope[%d];\n", input_name(e, i, 1), i);
 	}
@@ -233,6 +233,7 @@ void emit_out(const struct emitter *e)
 			form[forms++] = model->output[i].left;
 	}
 	emit_locals(e, needs.reads);
+	emit_param_locals(e, reads_of(speaker(model), forms, form).param);
 	if (needs.left && e->step->normal && !any_of(needs.reads, e->system->states))
 		say(e, "    double now[$N_STATES];\n"
 		       "    $n_get(s, now);\n");

@@ -85,7 +85,7 @@ static void emit_renew(const struct emitter *e)
 	       "    int i, k;\n", truncation(e)->over);
 	for (int i = 0; i < states; i++)
 		say(e, "    double rest%d = s->rest[%d], next%d;\n", i, i, i);
-	say(e, "    %s\n", expand_call(e, "", "", "", "s->y", "s->series"));
+	say(e, "    %s\n", expand_call(e, "", "", "", "", "s->y", "s->series"));
 	for (int i = 0; i < states; i++) {
 		say(e, "    ");
 		say_wrapped(e, format("next%d = pl_accumulate(s->y[%d], %s, &rest%d);\n", i, i,

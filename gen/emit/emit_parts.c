@@ -91,9 +91,60 @@ static void emit_matrix(const struct emitter *part, const char *name, const char
 	say(part, "};\n");
 }
 
+static void emit_matrices_of_linear(const struct emitter *part, const char *name, const char *note,
+				    double *(*of)(const struct region_piece *piece))
+{
+	struct pieces pieces = pieces_of(part->step);
+	int size = part->step->layout.size;
+	say(part, "\n"
+		  "static const double $o_%s[%d][%d][%d] = {  /* %s */\n", name, part->step->branches, size, size, note);
+	for (int k = 0; k < part->step->branches; k++) {
+		say(part, "  {\n");
+		emit_number_rows(part, size, size, of(&pieces.piece[k]),
+				 layout_names(&part->step->layout, part->system, part->model));
+		say(part, "  },\n");
+	}
+	say(part, "};\n");
+}
+
+static double *slopes_of_piece(const struct region_piece *piece) { return piece->slopes; }
+static double *Phi_of_piece(const struct region_piece *piece)    { return piece->Phi; }
+
+/* The same in each segment of time */
+static void emit_changing_tables(const struct emitter *part)
+{
+	const struct switching *s = regions_of(part);
+	emit_matrices_of_linear(part, "slopes", "x' = A x; x = states, load states, inputs", slopes_of_piece);
+	emit_matrices_of_linear(part, "pieces", "e^{A d}, d = h 2^-halvings", Phi_of_piece);
+	say(part, "\n");
+	int *matrix = ARRAY(int, (size_t)s->segments), *halvings = ARRAY(int, (size_t)part->step->branches);
+	for (int k = 0; k < s->segments; k++)
+		matrix[k] = s->region[k].system;
+	for (int k = 0; k < part->step->branches; k++)
+		halvings[k] = part->step->branch[k].halvings;
+	emit_indices(part, "matrix", s->segments, matrix, "in each segment of time");
+	emit_indices(part, "halvings", part->step->branches, halvings, "log2 of the pieces of a step");
+	say(part, "\n"
+		  "static const pl_switching $o_switching[%d] = {  /* no expressions: what is theirs is not read */\n",
+	    s->segments);
+	for (int k = 0; k < s->segments; k++)
+		say(part, "  {\n"
+			  "    %d, $N_H, 0, $o_slopes[0][0], $o_matrix, $o_slopes[0][0], $o_matrix, $o_halvings,\n"
+			  "    $o_slopes[0][0], $o_pieces[0][0], $o_slopes[0][0], $o_slopes[0][0], $o_slopes[0][0], "
+			  "%d, 0, 0\n"
+			  "  },\n",
+		    part->step->layout.size, part->step->series.degree);
+	say(part, "};\n");
+	emit_region_changes(part);
+}
+
 /* Of the linear part, for NAME_at: a region without expressions, whose tables are never looked at */
 static void emit_linear_tables(const struct emitter *part)
 {
+	if (regions_change(part)) {
+		emit_changing_tables(part);
+		return;
+	}
 	struct pieces pieces = pieces_of(part->step);
 	emit_matrix(part, "slopes", "x' = A x; x = states, load states, inputs", pieces.piece->slopes);
 	emit_matrix(part, "pieces", "e^{A d}, d = h 2^-halvings", pieces.piece->Phi);
@@ -156,7 +207,7 @@ static const char *loads_text(const struct emitter *part, bool as_parameters)
 
 static const char *given_text(const struct emitter *part, bool as_parameters)
 {
-	const char *u = part->system->inputs == 0 ? ""
+	const char *u = given_inputs(part) == 0   ? ""
 			: as_parameters           ? spell(part, ", const double u[$N_INPUTS]")
 						  : ", u";
 	return format("%s%s", u, loads_text(part, as_parameters));
@@ -197,8 +248,8 @@ static void emit_place_of_part(const struct emitter *part)
 		  "    int i;\n", loads_text(part, true));
 	declare_region_room(part);
 	emit_region_vector(part, false);
-	say(part, "    pl_switching_start(&$o_switching, x, &s->contact$p, work);\n"
-		  "}\n");
+	emit_region_start_call(part);
+	say(part, "}\n");
 }
 
 static void emit_place_call(const struct emitter *part)
@@ -313,7 +364,7 @@ static const char **linear_operands(const struct emitter *part)
 	for (int i = 0; i < part->system->inputs; i++) {
 		int of = place_of_input(part, i);
 		bool ramp = part->system->input[i].hold;
-		x[layout->input[i]] = format(ramp ? "s->u[%d]" : "u[%d]", of);
+		x[layout->input[i]] = ramp ? sample_kept(part, of) : sample_now(part, of);
 		if (ramp)
 			x[layout->input[i] + 1] = format("part%d", of);
 	}
@@ -367,12 +418,35 @@ static void emit_linear_rows(const struct emitter *part, const double *whole)
 	emit_unread(part, whole);
 }
 
+static const char *linear_contact(const struct emitter *part)
+{
+	return regions_change(part) ? spell(part, "{0, 0, s->segment, $o_matrix[s->segment], 0}") : "{0, 0, 0, 0, 0}";
+}
+
+static void emit_changing_linear(const struct emitter *part, const double *whole)
+{
+	(void)whole;
+	say(part, "\n"
+		  "static void $o_step($n *s%s)\n"
+		  "{\n"
+		  "    pl_contact contact = %s;\n"
+		  "    pl_crossing crossing[1];\n"
+		  "    int i;\n", given_text(part, true), linear_contact(part));
+	declare_region_room(part);
+	emit_region_vector(part, true);
+	say(part, "    $o_pass_changes(s, $N_H, x, &contact, crossing, work);\n"
+		  "    for (i = 0; i < %d; i++)\n"
+		  "        s->y[$o_state[i]] = x[i];\n", part->system->states);
+}
+
 static void emit_linear_step(const struct emitter *part)
 {
 	enum { TERMS = 400 };
 	const double *whole = whole_step_of(part->step, 0);
 	const char **size = ARRAY(const char *, (size_t)part->system->states);
-	(acting_entries(part, whole) > TERMS ? emit_linear_loop : emit_linear_rows)(part, whole);
+	(regions_change(part)                   ? emit_changing_linear
+	 : acting_entries(part, whole) > TERMS ? emit_linear_loop
+					       : emit_linear_rows)(part, whole);
 	for (int i = 0; i < part->system->states; i++)
 		size[i] = format("pl_magnitude(s->y[%d])", place_of_state(part, i));
 	say(part, "    if (!(%s < %s))\n"
@@ -430,6 +504,7 @@ void emit_parts_step(const struct emitter *e)
 	for_parts(e, e->step->parts, emit_step_call);
 	emit_take_back(e);
 	emit_step_end(e);
+	emit_segment_end(e);
 	if (e->step->carries)           /* what was set aside is in no bound */
 		say(e, "    s->status |= pl_not_finite(s->y, $N_STATES);\n");
 	say(e, "}\n");
@@ -446,16 +521,16 @@ static void emit_at_of_part(const struct emitter *part)
 		  "static void $o_at(const $n *s%s, double tau, double y[$N_STATES])\n"
 		  "{\n", given_text(part, true));
 	if (linear)
-		say(part, "    pl_contact contact = {0, 0, 0, 0, 0};\n"
-			  "    pl_crossing crossing[1];\n");
+		say(part, "    pl_contact contact = %s;\n"
+			  "    pl_crossing crossing[1];\n", linear_contact(part));
 	else
 		say(part, "    pl_contact contact = s->contact$p;\n"
 			  "    pl_crossing crossing[%d];\n", MAX_EVENTS);
 	say(part, "    int i;\n");
 	declare_region_room(part);
 	emit_region_vector(part, true);
-	say(part, "    pl_switching_advance(&$o_switching, tau, x, &contact, crossing, work);\n"
-		  "    for (i = 0; i < %d; i++)\n"
+	emit_region_advance_call(part);
+	say(part, "    for (i = 0; i < %d; i++)\n"
 		  "        y[$o_state[i]] = x[i];\n"
 		  "}\n", part->system->states);
 }
@@ -467,7 +542,7 @@ static void emit_at_call(const struct emitter *part)
 
 void emit_parts_at(const struct emitter *e)
 {
-	const char *u = e->system->inputs ? format("const double u[%s_INPUTS], ", e->upper) : "";
+	const char *u = given_inputs(e) ? format("const double u[%s_INPUTS], ", e->upper) : "";
 	for_parts(e, e->step->parts, emit_at_of_part);
 	say(e, "\n"
 	       "void $n_at(const $n *s, %sdouble tau, double y[$N_STATES])\n"

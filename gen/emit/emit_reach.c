@@ -71,7 +71,7 @@ static void emit_remainder(const struct emitter *e, int kept)
 	static const char *const factor[] = { "", " * 0.00390625", " * 1.52587890625e-5" };
 	say(e, "\n/* The last two coefficients over the largest value of each state so far, or where that is 0 its gain"
 	       "%s */\n"
-	       "static void $n_remainder%s(const $n *s, const double c[%d][$N_STATES], double last[%d],\n"
+	       "static void $n_remainder%s(const $n *s, const double c[%d][$c], double last[%d],\n"
 	       "    double before[%d])\n"
 	       "{\n"
 	       "    int i;\n",
@@ -79,7 +79,7 @@ static void emit_remainder(const struct emitter *e, int kept)
 	    kept > 1 ? "s" : "", order + 1, kept, kept);
 	for (int j = 0; j < kept; j++)
 		say(e, "    last[%d] = before[%d] = 0.0;\n", j, j);
-	say(e, "    for (i = 0; i < $N_STATES; i++) {\n"
+	say(e, "    for (i = 0; i < $c; i++) {\n"
 	       "        double p = pl_magnitude(c[0][i]), unit = p > s->scale[i] ? 1.0 / p : s->unit[i];\n"
 	       "        if (unit == 0.0) {\n"
 	       "            const double one = pl_magnitude(c[1][i]), two = pl_magnitude(c[2][i]);\n"
@@ -107,7 +107,7 @@ static void emit_part(const struct emitter *e)
 	int order = order_of(e);
 	const char *tolerance = tolerance_text(e);
 	say(e, "\n/* The part of a step that the series serves, a power of 2 up to 1; 0: none */\n"
-	       "static double $n_part(const $n *s, const double c[%d][$N_STATES])\n"
+	       "static double $n_part(const $n *s, const double c[%d][$c])\n"
 	       "{\n"
 	       "    double last[%d], before[%d], part = 1.0;\n"
 	       "    int halvings = 0;\n"
@@ -127,7 +127,7 @@ static void emit_part(const struct emitter *e)
 /* The last two coefficients, state by state: what follows waits for it */
 static void emit_written_remainder(const struct emitter *e)
 {
-	int order = order_of(e), states = e->system->states;
+	int order = order_of(e), states = e->system->states + e->step->expansion->columns;
 	for (int i = 0; i < states; i++)
 		say(e, "    const double unit%d = s->unit[%d] != 0.0 ? s->unit[%d] : $n_unit(s, %d);\n", i, i, i, i);
 	for (int i = 0; i < states; i++)
@@ -166,12 +166,12 @@ static void emit_steps_served(const struct emitter *e)
 	       "\n/* Steps that the series serves, at most %d; 0: not even one */\n"
 	       "static int $n_reach(const $n *s)\n"
 	       "{\n", EXPANSION_SERVES);
-	if (e->system->states <= WRITTEN_STATES)
+	if (e->system->states + e->step->expansion->columns <= WRITTEN_STATES)
 		emit_written_remainder(e);
 	else
 		say(e, "    double last = 0.0, before = 0.0;\n"
 		       "    int i, m = s->valid;\n"
-		       "    for (i = 0; i < $N_STATES; i++) {\n"
+		       "    for (i = 0; i < $c; i++) {\n"
 		       "        const double unit = $n_unit(s, i), p = pl_magnitude(s->series[%d][i]) * unit,\n"
 		       "            q = pl_magnitude(s->series[%d][i]) * unit;\n"
 		       "        last = p > last ? p : last;\n"
@@ -197,7 +197,7 @@ static void emit_agrees(const struct emitter *e)
 	mpq_mul(bound, truncation(e)->tolerance, times);
 	say(e, "\n/* Whether the series c has at its end, size h later, the slope that the equations have there:\n"
 	       " * d is the series from there on */\n"
-	       "static int $n_agrees(const $n *s, const double c[%d][$N_STATES], const double d[%d][$N_STATES],\n"
+	       "static int $n_agrees(const $n *s, const double c[%d][$c], const double d[%d][$c],\n"
 	       "    double size)\n"
 	       "{\n"
 	       "    double most = 0.0;\n"
@@ -225,9 +225,9 @@ static void emit_is_accurate(const struct emitter *e)
 {
 	int order = order_of(e);
 	const char *tolerance = tolerance_text(e);
-	bool part = e->system->segments > 1;
+	bool part = has_offset(e);
 	say(e, "\n/* Whether the last two terms%s are within the tolerance */\n"
-	       "static int $n_is_accurate(const $n *s, const double c[%d][$N_STATES]%s)\n"
+	       "static int $n_is_accurate(const $n *s, const double c[%d][$c]%s)\n"
 	       "{\n"
 	       "    double last[1], before[1]%s;\n",
 	    part ? ", at this part of a step," : "", order + 1, part ? ", double size" : "",

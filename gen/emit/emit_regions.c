@@ -58,14 +58,25 @@ static void emit_matrices(const struct emitter *e, const struct pieces *pieces, 
 	say(e, "};\n");
 }
 
+bool regions_change(const struct emitter *e)
+{
+	return regions_of(e)->segments > 1;
+}
+
 static void emit_rows(const struct emitter *e, const struct pieces *pieces)
 {
 	const struct switching *s = regions_of(e);
 	int size = e->step->layout.size;
+	bool several = regions_change(e);
 	say(e, "\n"
-	       "static const double $o_row[%d][%d] = {  /* expressions that breakpoints divide */\n",
-	    s->expressions, size);
-	emit_number_rows(e, s->expressions, size, pieces->row, expression_names(e));
+	       "static const double $o_row%s[%d][%d] = {  /* expressions that breakpoints divide%s */\n",
+	    several ? format("[%d]", s->segments) : "", s->expressions, size,
+	    several ? ", in each segment of time" : "");
+	for (int k = 0; k < s->segments; k++) {
+		say(e, several ? "  {\n" : "");
+		emit_number_rows(e, s->expressions, size, pieces->rows[k], expression_names(e));
+		say(e, several ? "  },\n" : "");
+	}
 	say(e, "};\n");
 }
 
@@ -87,9 +98,9 @@ static void emit_region_numbers(const struct emitter *e)
 {
 	const struct switching *s = regions_of(e);
 	say(e, "\n"
-	       "static const int $o_matrix[%d] = {  /* of each region; -1: its inequalities cannot hold together */\n"
+	       "static const int $o_matrix[%d] = {  /* of each region%s; -1: its inequalities cannot hold together */\n"
 	       "    ",
-	    s->regions);
+	    s->regions, regions_change(e) ? ", segment of time by segment" : "");
 	for (int r = 0; r < s->regions; r++) {
 		int matrix = s->region[r].possible ? s->region[r].system : -1;
 		say(e, "%s%d", r == 0 ? "" : r % 20 ? ", " : ",\n    ", matrix);
@@ -103,14 +114,28 @@ static void emit_region_numbers(const struct emitter *e)
 	say(e, "};\n");
 }
 
+/* In a segment of time, or always */
+static void emit_switching_in(const struct emitter *e, const char *row, const char *indent)
+{
+	say(e, "%s    %d, $N_H, %d, %s, $o_breaks, $o_breakpoint, $o_matrix, $o_halvings,\n"
+	       "%s    $o_slopes[0][0], $o_pieces[0][0], $o_lean[0][0], $o_sag[0][0], $o_sway[0][0], "
+	       "%d, $N_MAX_EVENTS, %d\n",
+	    indent, e->step->layout.size, regions_of(e)->expressions, row, indent, e->step->series.degree, MAX_SPLITS);
+}
+
 static void emit_switching(const struct emitter *e)
 {
-	say(e, "\nstatic const pl_switching $o_switching = {\n"
-	       "    %d, $N_H, %d, $o_row[0], $o_breaks, $o_breakpoint, $o_matrix, $o_halvings,\n"
-	       "    $o_slopes[0][0], $o_pieces[0][0], $o_lean[0][0], $o_sag[0][0], $o_sway[0][0], "
-	       "%d, $N_MAX_EVENTS, %d\n"
-	       "};\n",
-	    e->step->layout.size, regions_of(e)->expressions, e->step->series.degree, MAX_SPLITS);
+	bool several = regions_change(e);
+	say(e, "\nstatic const pl_switching $o_switching%s = {\n",
+	    several ? format("[%d]", regions_of(e)->segments) : "");
+	if (!several)
+		emit_switching_in(e, spell(e, "$o_row[0]"), "");
+	for (int k = 0; k < regions_of(e)->segments && several; k++) {
+		say(e, "  {\n");
+		emit_switching_in(e, spell(e, "$o_row[%d][0]", k), "");
+		say(e, "  },\n");
+	}
+	say(e, "};\n");
 }
 
 void emit_regions(const struct emitter *e)
@@ -134,6 +159,8 @@ void emit_regions(const struct emitter *e)
 		emit_guards(e, &pieces);
 	else
 		emit_switching(e);
+	if (regions_change(e))
+		emit_region_changes(e);
 	if (e->step->swift)
 		emit_swift_tables(e, &pieces, expression);
 }
@@ -172,7 +199,7 @@ static void emit_inputs_in_x(const struct emitter *e, bool step)
 	for (int i = 0; i < e->system->inputs; i++) {
 		bool ramp = e->system->input[i].hold;
 		int at = e->step->layout.input[i], of = place_of_input(e, i);
-		say(e, "    x[%d] = %s[%d];\n", at, step && !ramp ? "u" : "s->u", of);
+		say(e, "    x[%d] = %s;\n", at, step && !ramp ? sample_now(e, of) : sample_kept(e, of));
 		if (ramp && step)
 			say(e, "    x[%d] = %s;\n", at + 1, ramp_slope(e, of));
 		else if (ramp)
@@ -215,10 +242,18 @@ void emit_region_start(const struct emitter *e)
 	declare_region_room(e);
 	emit_turned_loads(e, needed_loads(e), false);
 	emit_region_vector(e, false);
-	say(e, "    %s_start(&$n_switching, x, &s->contact, work);\n"
-	       "}\n", search_of(e));
+	emit_region_start_call(e);
+	say(e, "}\n");
 	if (regions_of(e)->felt)
 		emit_grip(e, needed_loads(e));
+}
+
+void emit_region_start_call(const struct emitter *e)
+{
+	if (regions_change(e))
+		say(e, "    $o_start(s->segment, x, &s->contact$p, work);\n");
+	else
+		say(e, "    %s_start(&$o_switching, x, &s->contact$p, work);\n", search_of(e));
 }
 
 static void emit_region_questions(const struct emitter *e)
@@ -226,7 +261,7 @@ static void emit_region_questions(const struct emitter *e)
 	say(e, "\n"
 	       "int $n_region(const $n *s)\n"
 	       "{\n"
-	       "    return s->contact.region;\n"
+	       "    return s->contact.region%s;\n"
 	       "}\n"
 	       "\n"
 	       "uint64_t $n_crossed(const $n *s)\n"
@@ -241,7 +276,7 @@ static void emit_region_questions(const struct emitter *e)
 	       "    for (i = 0; i < count; i++)\n"
 	       "        crossing[i] = s->crossing[i];\n"
 	       "    return count;\n"
-	       "}\n");
+	       "}\n", regions_change(e) ? format(" %% %d", regions_at_once(e->model->switching)) : "");
 	if (has_bounces(e->model))
 		say(e, "\n"
 		       "int $n_rested(const $n *s)\n"
@@ -253,14 +288,25 @@ static void emit_region_questions(const struct emitter *e)
 /* By the search, from x; `i` is declared */
 void emit_search(const struct emitter *e)
 {
-	say(e, "    %s_step(&$o_switching, x, &s->contact$p, s->crossing$p, work);\n"
-	       "    for (i = 0; i < %s; i++)\n"
-	       "        s->y[%s] = x[i];\n", search_of(e), own_states(e), place_in_loop(e));
+	if (regions_change(e))
+		say(e, "    $o_pass_changes(s, $N_H, x, &s->contact$p, s->crossing$p, work);\n");
+	else
+		say(e, "    %s_step(&$o_switching, x, &s->contact$p, s->crossing$p, work);\n", search_of(e));
+	say(e, "    for (i = 0; i < %s; i++)\n"
+	       "        s->y[%s] = x[i];\n", own_states(e), place_in_loop(e));
 }
 
 void emit_region_status(const struct emitter *e)
 {
 	say(e, "    s->status |= s->contact$p.status | pl_not_finite(s->y, $N_STATES);\n");
+}
+
+/* After a step's end: the segment of time that outputs are in */
+void emit_segment_end(const struct emitter *e)
+{
+	if (e->system->segments > 1)
+		say(e, "    while (s->segment < %d && $n_until(s, s->segment) <= 1e-18 * $N_H)\n"
+		       "        s->segment++;\n", e->system->segments - 1);
 }
 
 static void emit_searched_step(const struct emitter *e)
@@ -273,6 +319,7 @@ static void emit_searched_step(const struct emitter *e)
 	emit_search(e);
 	emit_take_back(e);
 	emit_step_end(e);
+	emit_segment_end(e);
 	emit_region_status(e);
 }
 
@@ -325,9 +372,16 @@ void emit_region_step(const struct emitter *e)
 	emit_region_questions(e);
 }
 
+/* x on by tau; `contact` and `crossing` are declared */
+void emit_region_advance_call(const struct emitter *e)
+{
+	say(e, regions_change(e) ? "    $o_pass_changes(s, tau, x, &contact, crossing, work);\n"
+				 : "    pl_switching_advance(&$o_switching, tau, x, &contact, crossing, work);\n");
+}
+
 void emit_region_at(const struct emitter *e)
 {
-	const char *u = e->system->inputs ? format("const double u[%s_INPUTS], ", e->upper) : "";
+	const char *u = given_inputs(e) ? format("const double u[%s_INPUTS], ", e->upper) : "";
 	say(e, "\n"
 	       "void $n_at(const $n *s, %sdouble tau, double y[$N_STATES])\n"
 	       "{\n"
@@ -338,7 +392,7 @@ void emit_region_at(const struct emitter *e)
 	declare_region_room(e);
 	emit_load_states(e, needed_loads(e), false);
 	emit_region_vector(e, true);
-	say(e, "    %s_advance(&$n_switching, tau, x, &contact, crossing, work);\n", search_of(e));
+	emit_region_advance_call(e);
 	emit_hand_over(e);
 	say(e, "}\n");
 }

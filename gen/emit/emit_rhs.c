@@ -102,7 +102,10 @@ static const char *basis_expression(const struct emitter *e, const struct basis 
 	case BASIS_ONE:   return NULL;
 	case BASIS_PI:    return "3.141592653589793";
 	case BASIS_WAVE:  return wave_expression(basis);
-	case BASIS_INPUT: return format("u[%d]", basis->index + basis->order * e->system->inputs);
+	case BASIS_INPUT:
+		if (basis->index >= e->model->spec->inputs)
+			return param_local(e, basis->index - e->model->spec->inputs);
+		return format("u[%d]", basis->index + basis->order * given_inputs(e));
 	default:          return format("y[%d]", basis->order ? velocity[basis->index] : basis->index);
 	}
 }
@@ -218,13 +221,14 @@ static void emit_whole_residuals(const struct emitter *e)
 	for (int i = 0; i < model->n; i++)
 		form[i] = without_highest(model, form[i]);
 	struct writer *writer = writer_new(e, basis_expression, model->n, form);
+	const struct reads reads = reads_of(model, model->n, form);
+	emit_nominal_params_read(e, &reads);
 	declare_residuals(e, model->n);
 	for (int i = 0; i < model->n; i++) {
 		const char *text = write_form(writer, form[i], 18);
 		say(e, "    residual[%d] = %s;\n", i, text);
 	}
-	const struct reads reads = reads_of(model, model->n, form);
-	emit_unread(e, reading_of_rhs(model).time, e->system->inputs > 0, any_of(reads.state, model->system.states));
+	emit_unread(e, reading_of_rhs(model).time, given_inputs(e) > 0, any_of(reads.state, model->system.states));
 }
 
 bool rhs_needs_math(const struct emitter *e)
@@ -271,7 +275,7 @@ static void emit_collected_residuals(const struct emitter *e)
 	}
 	if (several)
 		say(e, "    }\n");
-	emit_unread(e, any_wave(e->model->written, &math) || several, e->system->inputs > 0, read);
+	emit_unread(e, any_wave(e->model->written, &math) || several, given_inputs(e) > 0, read);
 }
 
 /* ---- scalar equations: their own text ---- */
@@ -285,7 +289,7 @@ static bool emit_rhs_inputs(const struct emitter *e)
 			continue;
 		say(e, "    const double %s = u[%d];\n", c_name(e->c, s, 0), s->index);
 		if (is_used(e->c, s, 1))
-			say(e, "    const double %s = u[%d];\n", c_name(e->c, s, 1), e->system->inputs + s->index);
+			say(e, "    const double %s = u[%d];\n", c_name(e->c, s, 1), given_inputs(e) + s->index);
 		say(e, "    (void)%s;\n", c_name(e->c, s, 0));
 		inputs = true;
 	}
@@ -298,7 +302,7 @@ static void emit_rhs_locals(const struct emitter *e, const bool *reads)
 	for (int i = 0; i < e->model->written->system.states; i++)
 		if (reads[i])
 			say(e, "    const double %s = y[%d];\n", written_local(e->c, e->model->written, i), i);
-	if (!emit_rhs_inputs(e) && e->system->inputs)
+	if (!emit_rhs_inputs(e) && given_inputs(e))
 		say(e, "    (void)u;\n");
 	for (const struct symbol *s = e->model->spec->first; s; s = s->next)
 		if (s->kind == SYMBOL_LET && is_used(e->c, s, 0))
@@ -354,7 +358,7 @@ void emit_rhs(const struct emitter *stepped)
 	}
 	say(e, "\n/* The equations as written, for checking against any ODE solver. */\n"
 	       "void $n_rhs(double t, const double y[], %sdouble dydt[])\n"
-	       "{\n", e->system->inputs ? "const double u[], " : "");
+	       "{\n", given_inputs(e) ? "const double u[], " : "");
 	if (is_scalar_text(e->model->written))
 		emit_written_residuals(e);
 	else if (e->model->whole)

@@ -14,7 +14,7 @@ static bool run_rests(const struct emitter *e)
 
 static void emit_steps(const struct emitter *e)
 {
-	bool inputs = e->system->inputs > 0;
+	bool inputs = given_inputs(e) > 0;
 	say(e, "    for (; n > 0; n--) {\n");
 	if (serves_rows(e))
 		say(e, "        if (s->served + 1 < s->valid)\n"
@@ -341,7 +341,7 @@ static void emit_block_step(const struct emitter *e)
 static void emit_block(const struct emitter *e)
 {
 	struct emitter block = *e;
-	bool inputs = e->system->inputs > 0;
+	bool inputs = given_inputs(e) > 0;
 	block.step = e->step->rows->block;
 	block.sample = sample_names(e);
 	emit_rows(e);
@@ -370,7 +370,7 @@ static void emit_block(const struct emitter *e)
 /* The state is a local over all blocks. */
 static void emit_blocks(const struct emitter *e)
 {
-	bool inputs = e->system->inputs > 0;
+	bool inputs = given_inputs(e) > 0;
 	say(e, "    if (n >= $N_ROWS) {\n"
 	       "        $n now = *s;\n");
 	if (e->step->anchors)
@@ -399,7 +399,7 @@ void emit_run(const struct emitter *e)
 	}
 	emit_over_block(e);
 	say(e, "\nvoid $n_run($n *s, size_t n, %sdouble *out)\n"
-	       "{\n", e->system->inputs ? "const double *u, " : "");
+	       "{\n", given_inputs(e) ? "const double *u, " : "");
 	if (e->step->rows)
 		emit_blocks(e);
 	emit_over_run(e);

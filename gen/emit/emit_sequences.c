@@ -14,9 +14,14 @@ static bool changes(const struct emitter *e)
 	return e->system->segments > 1;
 }
 
+bool is_divided(const struct emitter *e)
+{
+	return expansion(e)->expressions > 0;
+}
+
 bool has_offset(const struct emitter *e)
 {
-	return e->model->truncation.adaptive || changes(e);
+	return e->model->truncation.adaptive || changes(e) || is_divided(e);
 }
 
 bool spans_steps(const struct emitter *e)
@@ -27,7 +32,8 @@ bool spans_steps(const struct emitter *e)
 static bool has_choices(const struct emitter *e)
 {
 	for (int i = 0; i < expansion(e)->count; i++)
-		if (expansion(e)->sequence[i].kind == SEQUENCE_CHOICE && expansion(e)->sequence[i].top >= 0)
+		if (expansion(e)->sequence[i].kind == SEQUENCE_CHOICE &&
+		    expansion(e)->sequence[i].choice == CHOICE_BY_TIME && expansion(e)->sequence[i].top >= 0)
 			return true;
 	return false;
 }
@@ -137,21 +143,27 @@ void emit_expand_function(const struct emitter *e)
 	const struct expansion *x = expansion(e);
 	bool tau = false;
 	say(e, "\n/* The series of the solution from %s on: c[k] = %s^k/k! times the k-th derivative of y */\n"
-	       "static void $n_expand(const $n *s, %s%s%s%sconst double y[$N_STATES], double c[%d][$N_STATES])\n"
+	       "static void $n_expand(const $n *s, %s%s%s%s%sconst double y[$N_STATES], double c[%d][$c]%s)\n"
 	       "{\n",
 	    has_offset(e) ? "tau after now" : "now", spans_steps(e) ? format("(%d h)", e->model->truncation.over) : "h",
 	    has_offset(e) ? "double tau, " : "",
 	    has_choices(e) ? "double when, " : "", changes(e) ? "int segment, " : "", input_parameters(e, true),
-	    x->order + 1);
+	    is_divided(e) ? format("const int interval[%d], ", x->expressions) : "", x->order + 1,
+	    is_divided(e) ? format(",\n    double terms[%d]", x->expressions) : "");
 	emit_coefficients(e);
 	for (int k = 0; k <= x->order; k++)
-		for (int i = 0; i < e->system->states; i++) {
-			const char *name = coefficient(e, i, k);
+		for (int i = 0; i < e->system->states + x->columns; i++) {
+			int states = e->system->states;
+			const char *name = coefficient(e, i < states ? i : x->column[i - states], k);
 			say(e, "    c[%d][%d] = %s;\n", k, i, name ? name : "0.0");
 		}
+	for (int i = 0; i < x->expressions; i++) {
+		say(e, "    ");
+		say_wrapped(e, format("terms[%d] = %s;\n", i, size_of_terms(e, x->expression[i].sequence)));
+	}
 	for (int i = 0; i < e->system->inputs; i++)
 		tau = tau || (x->input[i] && e->system->input[i].hold);
-	if (!reads_instance(e))
+	if (!reads_instance(e) && !x->params)
 		say(e, "    (void)s;\n");
 	if (has_offset(e) && !reads_instance(e) && !tau)
 		say(e, "    (void)tau;\n");
@@ -163,11 +175,12 @@ void emit_expand_function(const struct emitter *e)
 }
 
 const char *expand_call(const struct emitter *e, const char *tau, const char *when, const char *segment,
-			       const char *y, const char *c)
+			const char *contact, const char *y, const char *c)
 {
-	return format("%s_expand(s, %s%s%s%s%s, %s);", e->name, has_offset(e) ? format("%s, ", tau) : "",
+	return format("%s_expand(s, %s%s%s%s%s%s, %s%s);", e->name, has_offset(e) ? format("%s, ", tau) : "",
 		      has_choices(e) ? format("%s, ", when) : "", changes(e) ? format("%s, ", segment) : "",
-		      input_parameters(e, false), y, c);
+		      input_parameters(e, false), is_divided(e) ? format("%sinterval, ", contact) : "", y, c,
+		      !is_divided(e) ? "" : strcmp(c, "d") == 0 ? ", spare" : ", terms");
 }
 
 /* ---- its sum ---- */
@@ -177,6 +190,17 @@ enum { WRITTEN_OUT = 400 };             /* terms; more are looped over */
 bool is_written_out(const struct emitter *e, int degree)
 {
 	return e->system->states * degree <= WRITTEN_OUT;
+}
+
+void emit_column_scales(const struct emitter *e)
+{
+	int columns = expansion(e)->columns;
+	if (columns)
+		say(e, "    for (i = $N_STATES; i < $N_STATES + %d; i++)\n"
+		       "        if (pl_magnitude(s->series[0][i]) > s->scale[i]) {\n"
+		       "            s->scale[i] = pl_magnitude(s->series[0][i]);\n"
+		       "            s->unit[i] = 1.0 / s->scale[i];\n"
+		       "        }\n", columns);
 }
 
 void emit_series_scales(const struct emitter *e, const char *indent)

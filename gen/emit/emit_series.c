@@ -220,9 +220,10 @@ static bool add_known(const struct emitter *e, struct list *sum, const struct se
 		add(sum, operand ? format("%s * %s", place, operand) : place);
 	} else if (factor != 0) {
 		bool input = t->kind == TERM_INPUT || t->kind == TERM_SLOPE;
-		add(sum, scaled(factor, t->kind == TERM_TIME ? power_of_time(t->a)
-					: input              ? input_name(e, t->a, t->kind == TERM_SLOPE)
-							     : column_operand(e, t->a)));
+		add(sum, scaled(factor, t->kind == TERM_TIME    ? power_of_time(t->a)
+					: t->kind == TERM_PARAM ? param_text(t->a)
+					: input                 ? input_name(e, t->a, t->kind == TERM_SLOPE)
+								: column_operand(e, t->a)));
 	}
 	return true;
 }
@@ -257,6 +258,21 @@ static const char *sum_at(const struct emitter *e, const struct sequence *s, int
 	for (int i = 0; i < s->terms; i++)
 		add_term(e, &sum, &last, &s->term[i], k);
 	return early_and_last(&sum, &last);
+}
+
+const char *size_of_terms(const struct emitter *e, int sequence)
+{
+	const struct sequence *s = sequence_of(e, sequence);
+	struct list sum = { 0 }, last = { 0 };
+	const char *text = "";
+	for (int i = 0; i < s->terms && s->kind == SEQUENCE_SUM; i++)
+		add_term(e, &sum, &last, &s->term[i], 0);
+	if (sum.terms + last.terms == 0)
+		return format("pl_magnitude(%s)", coefficient(e, sequence, 0));
+	for (int i = 0; i < sum.terms + last.terms; i++)
+		text = format("%s%spl_magnitude(%s)", text, i ? " + " : "",
+			      i < sum.terms ? sum.term[i] : last.term[i - sum.terms]);
+	return text;
 }
 
 /* ---- early parts, k >= 1 ---- */
@@ -589,8 +605,12 @@ static void define_helper(const struct emitter *e, int sequence, const struct se
 	static const char *const sign[] = { "<", "<=", ">", ">=", "==", "!=" };
 	if (s->kind == SEQUENCE_CHOICE)
 		define_as(e, "const int", helper_name(e, sequence, "holds"),
-			  format("%s %s %s", time_text(e, s->left, "when"), sign[s->comparison],
-				 time_text(e, s->right, "when")));
+			  s->choice == CHOICE_BY_STATE
+				  ? format("interval[%d] > %d", s->expression, breakpoint_rank(expansion(e), s))
+			  : s->choice == CHOICE_BY_SEQUENCE
+				  ? format("%s != 0.0", coefficient(e, s->test, 0))
+				  : format("%s %s %s", time_text(e, s->left, "when"), sign[s->comparison],
+					   time_text(e, s->right, "when")));
 	else if (s->kind == SEQUENCE_ROOT)
 		define(e, helper_name(e, sequence, "half"), format("0.5 / %s", coefficient(e, sequence, 0)));
 	else
@@ -656,9 +676,12 @@ void emit_series_lines(const struct emitter *e)
 	writer.series = &series;
 	for (int i = 0; i < x->count; i++)
 		series.gain[i] = ARRAY(bool, (size_t)x->sequence[i].gains);
-	for (int k = 0; k <= x->order; k++)
+	for (int k = 0; k <= x->order; k++) {
 		for (int i = 0; i < e->system->states; i++)
 			coefficient(&writer, i, k);
+		for (int i = 0; i < x->columns; i++)
+			coefficient(&writer, x->column[i], k);
+	}
 	for (int k = x->order; k > 0; k--)
 		for (int i = x->count - 1; i >= 0; i--)
 			define_coefficient(&writer, i, k);

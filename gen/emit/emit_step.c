@@ -6,7 +6,7 @@ static const char *tap_text(const struct emitter *e, int input, int tap)
 {
 	int hold = e->system->input[input].hold;
 	if (tap == hold)
-		return format("u[%d]", input);
+		return sample_now(e, input);
 	return hold == 1 ? format("s->u[%d]", input) : format("s->past[%d][%d]", input, tap);
 }
 
@@ -143,7 +143,7 @@ void emit_next_tap(const struct emitter *e, int input)
 /* `samples` steps at once: of inputs that are held or ramp */
 void emit_keep_inputs(const struct emitter *e, int samples)
 {
-	int inputs = e->system->inputs, last = (samples - 1) * inputs;
+	int inputs = given_inputs(e), last = (samples - 1) * inputs;
 	for (int i = 0; i < inputs; i++) {
 		const char *before = samples > 1 ? format("u[%d]", last - inputs + i) : format("s->u[%d]", i);
 		if (e->system->input[i].hold > 1) {
@@ -290,13 +290,13 @@ void emit_step_end(const struct emitter *e)
 
 const char *step_parameters(const struct emitter *e)
 {
-	return format("%s *s%s", e->name, e->system->inputs ? format(", const double u[%s_INPUTS]", e->upper) : "");
+	return format("%s *s%s", e->name, given_inputs(e) ? format(", const double u[%s_INPUTS]", e->upper) : "");
 }
 
 /* Into y: the state after a step in which the loads change their formula, from pass() */
 static void emit_interrupted_step(const struct emitter *e, const char *segment, const char *result, const char *whole)
 {
-	const char *h = step_length(e), *u = e->system->inputs ? "u, " : "";
+	const char *h = step_length(e), *u = given_inputs(e) ? "u, " : "";
 	say(e, "    if (%s < %d && $n_until(s, %s) < %s) {\n"
 	       "        double y[$N_STATES];\n"
 	       "        int i;\n"
@@ -306,7 +306,7 @@ static void emit_interrupted_step(const struct emitter *e, const char *segment, 
 	say(e, "    } else {\n"
 	       "        $n_plain_step(s%s);\n"
 	       "    }\n",
-	    e->system->inputs ? ", u" : "");
+	    given_inputs(e) ? ", u" : "");
 	emit_step_end(e);
 }
 
@@ -342,7 +342,7 @@ static void emit_changing_step(const struct emitter *e)
 	       "{\n",
 	    step_parameters(e));
 	emit_plain_step(e);
-	if (e->system->inputs)
+	if (given_inputs(e))
 		say(e, "    (void)u;\n");
 	say(e, "}\n"
 	       "\n"

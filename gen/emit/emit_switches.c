@@ -105,7 +105,7 @@ static void emit_series_step(const struct emitter *e)
 	       "%s"
 	       "    length = $n_length(s);\n"
 	       "    if (length == 0.0)\n"
-	       "        return 0;\n", samples_parameter(e), expand_call(&here, start, when, "s->leg", "s->start",
+	       "        return 0;\n", samples_parameter(e), expand_call(&here, start, when, "s->leg", "", "s->start",
 	    "s->poly"), e->system->inputs ? "    (void)u;\n    (void)slope;\n" : "");
 	say(e, "    if (length > 8.0 && length > 8.0 * s->want)\n"
 	       "        length = s->want > 1.0 ? 8.0 * s->want : 8.0;\n"

@@ -150,7 +150,7 @@ static void emit_load_slopes(const struct emitter *e, const struct load_slopes *
 
 static const char *input_parameter(const struct emitter *e)
 {
-	return e->system->inputs ? format("const double u[%s_INPUTS], ", e->upper) : "";
+	return given_inputs(e) ? format("const double u[%s_INPUTS], ", e->upper) : "";
 }
 
 static void emit_leftover_now(const struct emitter *e)
@@ -296,7 +296,7 @@ void emit_hand_over(const struct emitter *e)
 /* Where the loads change their formula on the way */
 static void emit_passing_at(const struct emitter *e)
 {
-	const char *which = e->step->branches > 1 ? "which, " : "", *u = e->system->inputs ? "u, " : "";
+	const char *which = e->step->branches > 1 ? "which, " : "", *u = given_inputs(e) ? "u, " : "";
 	const char *left = e->step->layout.powers ? "left, " : "", *whole = e->step->forced ? "1, " : "";
 	bool relative = e->model->relative != NULL;
 	emit_leftover_now(e);

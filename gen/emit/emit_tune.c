@@ -16,9 +16,9 @@ static int tuned_outputs(const struct emitter *e)
 	return e->model->tuning->outputs;
 }
 
-static const char *param_list(const struct emitter *e)
+const char *param_list(const struct emitter *e)
 {
-	const struct tuning *t = e->model->tuning;
+	const struct tuning *t = tunables_of(e->model);
 	const char *list = "";
 	for (int k = 0; k < t->params; k++)
 		list = format("%s%s%s", list, k ? ", " : "", t->param[k].symbol->name);
@@ -123,7 +123,7 @@ void emit_tuning_declarations(const struct emitter *e)
 
 void emit_tuning_wrapper(const struct emitter *e)
 {
-	const struct tuning *t = e->model->tuning;
+	const struct tuning *t = tunables_of(e->model);
 	const char **name = ARRAY(const char *, (size_t)t->params);
 	for (int k = 0; k < t->params; k++)
 		name[k] = t->param[k].symbol->name;
@@ -164,9 +164,9 @@ static void emit_nominal_loads(const struct emitter *e, const int *index,
 	say(e, "    },\n");
 }
 
-static void emit_nominal_params(const struct emitter *e)
+void emit_nominal_params(const struct emitter *e)
 {
-	const struct tuning *t = e->model->tuning;
+	const struct tuning *t = tunables_of(e->model);
 	say(e, "{");
 	for (int k = 0; k < t->params; k++)
 		say(e, "%s%s", k ? ", " : "", finite_text(t->param[k].at, t->nominal[k]));

@@ -44,10 +44,10 @@ static void emit_term_force(const struct emitter *e)
 	const char *indent = m->settled ? "    " : "";
 	if (m->settled)
 		say(e, "            if (f)\n"
-		       "                $n_forces(which, f, x, v, force);\n"
+		       "                $n_forces(%swhich, f, x, v, force);\n"
 		       "            for (i = 0; f && i < %d; i++)\n"
 		       "                force[i] -= k ? still[i] : 0.0;\n"
-		       "            if (!f)\n", m->width);
+		       "            if (!f)\n", instance_of_rest(e), m->width);
 	say(e, "%s            for (i = 0; i < %d; i++)\n"
 	       "%s                force[i] = k <= degree ? scale * power[k][i] : 0.0;\n", indent, m->width, indent);
 }
@@ -83,7 +83,7 @@ static void emit_inside(const struct emitter *e)
 		       "    for (i = 0; i < %d; i++)\n"
 		       "        x[i] = v[i] = 0.0;\n"
 		       "    if (f)\n"
-		       "        $n_forces(which, f, x, v, still);\n", width, width);
+		       "        $n_forces(%swhich, f, x, v, still);\n", width, width, instance_of_rest(e));
 	say(e, "    for (part = 0; part < parts; part++) {\n"
 	       "        double scale = 1.0;\n"
 	       "        for (i = 0; i < %d; i++) {\n"
@@ -149,7 +149,7 @@ static void emit_at_settled(const struct emitter *e)
 		say(e, "        f[0] = 0.0;\n");
 	if (has_bank(e))
 		say(e, "        if (s->which != %d)\n"
-		       "            $n_use(&next, %d);\n", m->settled_bank, m->settled_bank);
+		       "            $n_serve(&next, %d);\n", m->settled_bank, m->settled_bank);
 	say(e, "        $n_inside(next.which, tau, 0, force, f%s, next.eta, next.rate);\n"
 	       "        $n_of_modes(next.which, next.eta, y);\n"
 	       "        $n_of_modes(next.which, next.rate, y + %d);\n"

@@ -298,6 +298,7 @@ static const char *expression_of(struct writer *w, const struct atom *a)
 {
 	const char *base;
 	switch (a->kind) {
+	case ATOM_PARAM:      return c_name(w->e->c, a->param, 0);
 	case ATOM_PRODUCT:    return product_text(w, a);
 	case ATOM_RECIPROCAL: return format("(1.0 / %s)", operand_text(w, a->operand[0]));
 	case ATOM_POWER:
@@ -314,6 +315,7 @@ static const char *atom_text(struct writer *w, const struct atom *a)
 	if (w->name[a->index])
 		return w->name[a->index];
 	const char *text = expression_of(w, a);
-	bool shared = w->let[a->index] || (w->uses[a->index] > 1 && a->kind != ATOM_COMPARE);
+	bool plain = a->kind == ATOM_COMPARE || a->kind == ATOM_PARAM;
+	bool shared = w->let[a->index] || (w->uses[a->index] > 1 && !plain);
 	return shared ? (w->name[a->index] = declare(w, w->let[a->index], text)) : text;
 }

@@ -96,18 +96,18 @@ const char **names_of_outputs(const struct emitter *e)
 
 const char **names_of_inputs(const struct emitter *e)
 {
-	const char **name = ARRAY(const char *, (size_t)e->system->inputs);
-	for (int i = 0; i < e->system->inputs; i++)
+	const char **name = ARRAY(const char *, (size_t)given_inputs(e));
+	for (int i = 0; i < given_inputs(e); i++)
 		name[i] = e->system->input[i].name;
 	return name;
 }
 
 void emit_index_names(const struct emitter *e)
 {
-	const struct tuning *tuning = e->model->tuning;
+	const struct tuning *tuning = tunables_of(e->model);
 	say(e, "/* places in y, u and out%s */\n", tuning ? ", in params" : "");
 	emit_names_of(e, "X", e->step->shown->model->state_name, e->system->states);
-	emit_names_of(e, "IN", names_of_inputs(e), e->system->inputs);
+	emit_names_of(e, "IN", names_of_inputs(e), given_inputs(e));
 	emit_names_of(e, "OUT", names_of_outputs(e), e->model->outputs);
 	if (!tuning)
 		return;

@@ -45,11 +45,6 @@ static void emit_pass_of_changes(const struct emitter *e)
 		emit_passing(e);
 }
 
-static void emit_no_params(const struct emitter *e)
-{
-	say(e, "    0, NULL, NULL, NULL,\n");
-}
-
 static const struct kind linear = {
 	.banner = banner_linear,
 	.step_note = "",
@@ -72,7 +67,7 @@ static const struct kind linear = {
 	.held = nothing,
 	.at = emit_at,
 	.wrappers = nothing,
-	.params = emit_no_params
+	.params = emit_params_line
 };
 
 /* ---- tuned: a linear step whose factors the instance has ---- */
@@ -100,11 +95,6 @@ static void emit_tuned_tables(const struct emitter *e)
 	emit_times_of_changes(e);
 }
 
-static void emit_tuned_params(const struct emitter *e)
-{
-	say(e, "    $N_PARAMS, $n_param_names, $n_nominal.params, $n_any_retune,\n");
-}
-
 static const struct kind tuned = {
 	.banner = banner_linear,
 	.step_note = "",
@@ -129,8 +119,14 @@ static const struct kind tuned = {
 	.held = nothing,
 	.at = emit_tuned_at,
 	.wrappers = emit_tuning_wrapper,
-	.params = emit_tuned_params
+	.params = emit_params_line
 };
+
+static void emit_held_pass(const struct emitter *e)
+{
+	emit_held_retune(e);
+	emit_pass_of_changes(e);
+}
 
 /* ---- regions ---- */
 
@@ -145,7 +141,7 @@ static bool regions_read_load(const struct emitter *e, int load)
 	const struct switching *s = e->model->switching;
 	bool reads = false;
 	for (int x = 0; x < s->expressions; x++)
-		for (int k = 0; k < e->system->load[load].columns; k++)
+		for (int k = 0; k < e->system->load[load].columns * e->system->segments; k++)
 			reads = reads || mpq_sgn(s->expression[x].row->load[load][k]) != 0;
 	for (int x = 0; x < s->systems; x++)
 		reads = reads || load_acts(&s->system[x], &s->system[x].load[load]);
@@ -159,6 +155,7 @@ static void emit_event_limit(const struct emitter *e)
 
 static void emit_region_tables(const struct emitter *e)
 {
+	emit_held_nominal(e);
 	emit_times_of_changes(e);
 	emit_regions(e);
 	emit_region_start(e);
@@ -174,29 +171,29 @@ static void emit_regions_step(const struct emitter *e)
 static const struct kind regions = {
 	.banner = banner_regions,
 	.step_note = " * A step that stays clear of every breakpoint, at most:\n",
-	.banner_more = nothing,
+	.banner_more = banner_held,
 	.no_jump = "crossings are found step by step",
 	.no_at = far_pole,
 	.constants = emit_event_limit,
-	.types = nothing,
-	.coefficients = nothing,
+	.types = emit_held_types,
+	.coefficients = emit_held_member,
 	.members = emit_region_members,
 	.keeps_status = true,
 	.init_note = "t = 0, the spec's initial values",
 	.status_note = "0, or bits: PL_NOT_FINITE, PL_TOO_MANY_EVENTS",
 	.declare_state = emit_region_declarations,
-	.declare_more = nothing,
-	.start = no_start,
+	.declare_more = emit_held_declarations,
+	.start = emit_held_start,
 	.places = any_place,
 	.reads_load = regions_read_load,
 	.reads_phi = never,
 	.tables = emit_region_tables,
-	.pass = emit_pass_of_changes,
+	.pass = emit_held_retune,
 	.step = emit_regions_step,
 	.held = nothing,
 	.at = emit_region_at,
-	.wrappers = nothing,
-	.params = emit_no_params
+	.wrappers = emit_held_wrapper,
+	.params = emit_params_line
 };
 
 /* ---- regions of independent parts ---- */
@@ -217,6 +214,8 @@ static void emit_event_limit_of_parts(const struct emitter *e)
 
 static void emit_tables_of_parts(const struct emitter *e)
 {
+	emit_times_of_changes(e);
+	emit_held_nominal(e);
 	emit_part_tables(e);
 	emit_part_start(e);
 }
@@ -231,29 +230,29 @@ static void emit_step_of_parts(const struct emitter *e)
 static const struct kind parts = {
 	.banner = banner_parts,
 	.step_note = " * A step that stays clear of every breakpoint, at most:\n",
-	.banner_more = nothing,
+	.banner_more = banner_held,
 	.no_jump = "crossings are found step by step",
 	.no_at = far_pole,
 	.constants = emit_event_limit_of_parts,
-	.types = nothing,
-	.coefficients = nothing,
+	.types = emit_held_types,
+	.coefficients = emit_held_member,
 	.members = emit_part_members,
 	.keeps_status = true,
 	.init_note = "t = 0, the spec's initial values",
 	.status_note = "0, or bits: PL_NOT_FINITE, PL_TOO_MANY_EVENTS",
 	.declare_state = emit_part_declarations,
-	.declare_more = nothing,
-	.start = no_start,
+	.declare_more = emit_held_declarations,
+	.start = emit_held_start,
 	.places = any_place,
 	.reads_load = parts_read_load,
 	.reads_phi = never,
 	.tables = emit_tables_of_parts,
-	.pass = emit_pass_of_changes,
+	.pass = emit_held_retune,
 	.step = emit_step_of_parts,
 	.held = nothing,
 	.at = emit_parts_at,
-	.wrappers = nothing,
-	.params = emit_no_params
+	.wrappers = emit_held_wrapper,
+	.params = emit_params_line
 };
 
 /* ---- leftover: a list of actions ---- */
@@ -278,31 +277,37 @@ static void emit_actions_step(const struct emitter *e)
 	emit_leftover_step(e);
 }
 
+static void emit_leftover_tables(const struct emitter *e)
+{
+	emit_held_nominal(e);
+	emit_times_of_changes(e);
+}
+
 static const struct kind leftover = {
 	.banner = banner_leftover,
 	.step_note = "",
-	.banner_more = nothing,
+	.banner_more = banner_held,
 	.no_jump = "what is left over is not linear in the state",
 	.no_at = no_values_between,
 	.constants = nothing,
-	.types = nothing,
-	.coefficients = nothing,
+	.types = emit_held_types,
+	.coefficients = emit_held_member,
 	.members = nothing,
 	.keeps_status = true,
 	.init_note = "t = 0, the spec's initial values",
 	.status_note = "0, or PL_NOT_FINITE once a step has left the finite numbers",
 	.declare_state = nothing,
-	.declare_more = nothing,
-	.start = no_start,
+	.declare_more = emit_held_declarations,
+	.start = emit_held_start,
 	.reads_load = no_further_load,
 	.reads_phi = flows_whole,
-	.tables = emit_times_of_changes,
-	.pass = emit_pass_of_changes,
+	.tables = emit_leftover_tables,
+	.pass = emit_held_pass,
 	.step = emit_actions_step,
 	.held = emit_held_leftover,
 	.at = emit_at,
-	.wrappers = nothing,
-	.params = emit_no_params
+	.wrappers = emit_held_wrapper,
+	.params = emit_params_line
 };
 
 /* ---- expanded: the Taylor series of the solution ---- */
@@ -320,42 +325,56 @@ static bool expansion_reads_load(const struct emitter *e, int load)
 
 static void emit_expansion_tables(const struct emitter *e)
 {
+	emit_held_nominal(e);
 	emit_times_of_changes(e);
 	emit_expansion_place(e);
+}
+
+static void emit_expansion_constants(const struct emitter *e)
+{
+	if (is_divided(e))
+		emit_event_limit(e);
+}
+
+static void emit_expansion_types(const struct emitter *e)
+{
+	emit_divided_types(e);
+	emit_held_types(e);
 }
 
 static const struct kind expanded = {
 	.banner = banner_expanded,
 	.step_note = "",
-	.banner_more = nothing,
+	.banner_more = banner_held,
 	.no_jump = "what is left over is not linear in the state",
 	.no_at = always,
-	.constants = nothing,
-	.types = nothing,
-	.coefficients = nothing,
+	.constants = emit_expansion_constants,
+	.types = emit_expansion_types,
+	.coefficients = emit_held_member,
 	.members = emit_expansion_members,
 	.keeps_status = true,
 	.init_note = "t = 0, the spec's initial values",
 	.status_note = "0, or PL_... bits (plrt.h)",
-	.declare_state = nothing,
-	.declare_more = nothing,
-	.start = no_start,
+	.declare_state = emit_divided_declarations,
+	.declare_more = emit_held_declarations,
+	.start = emit_held_start,
 	.places = expansion_places,
 	.reads_load = expansion_reads_load,
 	.reads_phi = never,
 	.tables = emit_expansion_tables,
-	.pass = nothing,
+	.pass = emit_held_retune,
 	.step = emit_expansion_step,
 	.held = nothing,
 	.at = emit_expansion_at,
-	.wrappers = nothing,
-	.params = emit_no_params
+	.wrappers = emit_held_wrapper,
+	.params = emit_params_line
 };
 
 /* ---- collocated: polynomials that solve the equations at nodes ---- */
 
 static void emit_collocation_tables(const struct emitter *e)
 {
+	emit_held_nominal(e);
 	emit_times_of_changes(e);
 	emit_collocation_place(e);
 }
@@ -368,29 +387,29 @@ static bool collocation_reads_load(const struct emitter *e, int load)
 static const struct kind collocated = {
 	.banner = banner_collocated,
 	.step_note = "",
-	.banner_more = nothing,
+	.banner_more = banner_held,
 	.no_jump = "what is left over is not linear in the state",
 	.no_at = always,
 	.constants = nothing,
-	.types = nothing,
-	.coefficients = nothing,
+	.types = emit_held_types,
+	.coefficients = emit_held_member,
 	.members = emit_collocation_members,
 	.keeps_status = true,
 	.init_note = "t = 0, the spec's initial values",
 	.status_note = "0, or PL_... bits (plrt.h)",
 	.declare_state = nothing,
-	.declare_more = nothing,
-	.start = no_start,
+	.declare_more = emit_held_declarations,
+	.start = emit_held_start,
 	.places = collocation_places,
 	.reads_load = collocation_reads_load,
 	.reads_phi = never,
 	.tables = emit_collocation_tables,
-	.pass = nothing,
+	.pass = emit_held_retune,
 	.step = emit_collocation_step,
 	.held = nothing,
 	.at = emit_collocation_at,
-	.wrappers = nothing,
-	.params = emit_no_params
+	.wrappers = emit_held_wrapper,
+	.params = emit_params_line
 };
 
 /* ---- normal modes ---- */
@@ -411,6 +430,7 @@ static bool reads_wave(const struct emitter *e, int load)
 
 static void emit_normal_constants(const struct emitter *e)
 {
+	emit_held_nominal(e);
 	emit_times_of_changes(e);
 	emit_normal_tables(e);
 }
@@ -418,29 +438,29 @@ static void emit_normal_constants(const struct emitter *e)
 static const struct kind normal_modes = {
 	.banner = banner_normal,
 	.step_note = "",
-	.banner_more = nothing,
+	.banner_more = banner_held,
 	.no_jump = "what is left over changes in time",
 	.no_at = too_many_turns,
 	.constants = nothing,
-	.types = nothing,
-	.coefficients = nothing,
+	.types = emit_held_types,
+	.coefficients = emit_held_member,
 	.members = emit_normal_members,
 	.keeps_status = true,
 	.init_note = "t = 0, the spec's initial values",
 	.status_note = "0, or PL_NOT_FINITE once a step has left the finite numbers",
 	.declare_state = nothing,
-	.declare_more = nothing,
-	.start = no_start,
+	.declare_more = emit_held_declarations,
+	.start = emit_held_start,
 	.places = any_place,
 	.reads_load = reads_wave,
 	.reads_phi = never,
 	.tables = emit_normal_constants,
-	.pass = nothing,
+	.pass = emit_held_retune,
 	.step = emit_normal_step,
 	.held = nothing,
 	.at = emit_normal_at,
-	.wrappers = nothing,
-	.params = emit_no_params
+	.wrappers = emit_held_wrapper,
+	.params = emit_params_line
 };
 
 const struct kind *row_of_kind(enum step_kind kind)

@@ -203,6 +203,7 @@ static void emit_nodes(const struct emitter *e, const struct reads *r)
 static void emit_leftover_locals(const struct emitter *e, const struct reads *r, bool node)
 {
 	emit_locals_of(e, r->state, "y");
+	emit_param_locals(e, r->param);
 	if (r->time)
 		say(e, "    const double t = $n_time(s)%s;\n", node ? format(" + %s_node[node]", e->name) : "");
 	for (int i = 0; i < e->system->inputs; i++) {

@@ -5,6 +5,7 @@
 static void emit_selection_locals(const struct emitter *e, const struct reads *r)
 {
 	emit_locals_of(e, r->state, "s->y");
+	emit_param_locals(e, r->param);
 	if (r->time)
 		say(e, "    const double t = $n_time(s);\n");
 	for (int i = 0; i < e->system->inputs; i++) {

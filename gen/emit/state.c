@@ -72,8 +72,30 @@ int most_taps_before(const struct emitter *e)
 	return most;
 }
 
+int given_inputs(const struct emitter *e)
+{
+	int given = 0;
+	for (int i = 0; i < e->system->inputs; i++)
+		given += place_of_input(e, i) < e->model->spec->inputs;
+	return given;
+}
+
+const char *sample_now(const struct emitter *e, int input)
+{
+	const int param = input - e->model->spec->inputs;
+	return param < 0 ? format("u[%d]", input) : param_text(param);
+}
+
+const char *sample_kept(const struct emitter *e, int input)
+{
+	const int param = input - e->model->spec->inputs;
+	return param < 0 ? format("s->u[%d]", input) : param_text(param);
+}
+
 const char *input_name(const struct emitter *e, int input, int order)
 {
+	if (input >= e->model->spec->inputs)
+		return param_local(e, input - e->model->spec->inputs);
 	for (const struct symbol *s = e->model->spec->first; s; s = s->next)
 		if (s->kind == SYMBOL_INPUT && s->index == input)
 			return c_name(e->c, s, order);

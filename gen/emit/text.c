@@ -10,7 +10,7 @@
 static char *with_names(const struct emitter *e, const char *layout)
 {
 	size_t length = 1, longest = strlen(e->name) + strlen(e->upper) + strlen(e->own) + strlen(e->place) +
-			     strlen(e->degree);
+			     strlen(e->degree) + strlen(e->columns);
 	for (const char *c = layout; *c; c++)
 		length += *c == '$' ? longest : 1;
 	char *text = ARRAY(char, length), *end = text;
@@ -21,7 +21,7 @@ static char *with_names(const struct emitter *e, const char *layout)
 		}
 		c++;
 		const char *what = *c == 'n' ? e->name : *c == 'N' ? e->upper : *c == 'o' ? e->own
-				 : *c == 'p' ? e->place : *c == 'd' ? e->degree : "$";
+				 : *c == 'p' ? e->place : *c == 'd' ? e->degree : *c == 'c' ? e->columns : "$";
 		end = stpcpy(end, what);
 	}
 	return text;

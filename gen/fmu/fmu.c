@@ -63,7 +63,7 @@ static const char *model_header(const struct fmu *f, const struct step *step, ui
 		      "#endif\n",
 		      f->version, name, fmu_header_name(step->model), name, f->single ? "float" : "double",
 		      f->single ? "f" : "", name, shortest(f->h), f->token, (unsigned long long)mark, system->states,
-		      system->inputs, step->model->outputs, step->model->tuning ? step->model->tuning->params : 0);
+		      step->model->spec->inputs, step->model->outputs, tunables_of(step->model) ? tunables_of(step->model)->params : 0);
 }
 
 static void add_text(struct fmu *f, const char *name, const char *text)

@@ -25,12 +25,12 @@ struct fmu_variables variables_of(const struct step *step)
 {
 	const struct model *model = step->model, *shown = step->shown->model;
 	const struct linear *system = &step->branch->system;
-	const struct tuning *tuning = model->tuning;
+	const struct tuning *tuning = tunables_of(model);
 	const int params = tuning ? tuning->params : 0;
-	const int all = 1 + system->inputs + model->outputs + params + system->states;
+	const int all = 1 + model->spec->inputs + model->outputs + params + system->states;
 	struct fmu_variables v = { 0, ARRAY(struct fmu_variable, (size_t)all) };
 	add(&v, FMU_TIME, "time", "time", 0);
-	for (int i = 0; i < system->inputs; i++)
+	for (int i = 0; i < model->spec->inputs; i++)
 		add(&v, FMU_INPUT, system->input[i].name, format("input.%s", system->input[i].name), 0);
 	for (int i = 0; i < model->outputs; i++)
 		add(&v, FMU_OUTPUT, model->output[i].name, format("output.%s", model->output[i].name), 0);

@@ -184,21 +184,21 @@ static double largest_of(int n, const double *x)
 	return largest;
 }
 
-/* What all later powers add at most: |x| times the sums of all powers */
-static void add_tail(const struct spread *s, const double *x, bool columns, double *tail)
+/* What all later powers add at most, or how large they are: |x| times the sums of all powers, or the largest */
+static void find_tail(int n, const double *powers, const double *x, bool columns, double *tail)
 {
-	const int n = s->n;
 	for (int i = 0; i < n; i++) {
 		tail[i] = 0;
 		for (int k = 0; k < n; k++)
-			tail[i] += fabs(x[k]) * (columns ? s->sum[i * n + k] : s->sum[k * n + i]);
+			tail[i] += fabs(x[k]) * (columns ? powers[i * n + k] : powers[k * n + i]);
 	}
 }
 
 void reach_of_row(const struct spread *s, const double *A, const double *row, bool columns, double *sum, double *most)
 {
-	enum { LOOKS = 64 };
+	enum { LOOKS = 64, WALKED = 30000000, HEAD = 2000000 }; /* products: of all steps, else of the first */
 	const int n = s->n;
+	const long last = s->steps <= WALKED / (n * n) ? s->steps : HEAD / (n * n) + 1;
 	double *x = ARRAY(double, (size_t)n), *next = ARRAY(double, (size_t)n), *tail = ARRAY(double, (size_t)n);
 	const struct sparse matrix = sparse_of(n, n, A);
 	double largest = 0;
@@ -207,7 +207,7 @@ void reach_of_row(const struct spread *s, const double *A, const double *row, bo
 		x[i] = row[i];
 		sum[i] = most[i] = 0;
 	}
-	for (; m < s->steps; m++) {
+	for (; m < last; m++) {
 		largest = fmax(largest, largest_of(n, x));
 		for (int i = 0; i < n; i++) {
 			sum[i] += fabs(x[i]);
@@ -219,15 +219,17 @@ void reach_of_row(const struct spread *s, const double *A, const double *row, bo
 		next = swap;
 		if (m % LOOKS != LOOKS - 1)
 			continue;
-		add_tail(s, x, columns, tail);
+		find_tail(n, s->sum, x, columns, tail);
 		if (largest_of(n, tail) < 1e-9 * largest)
 			break;
 	}
-	for (int i = 0; i < n; i++) {
-		const double after = m < s->steps ? tail[i] : 0;
-		most[i] = WIDER * (most[i] + s->slack * largest + after);
-		sum[i] = WIDER * (sum[i] + s->slack * largest * (double)(m + 1) + after);
-	}
+	const bool ends = m == s->steps;
+	find_tail(n, s->sum, x, columns, tail);
+	for (int i = 0; i < n; i++)
+		sum[i] = WIDER * (sum[i] + s->slack * largest * (double)(m + 1) + (ends ? 0 : tail[i]));
+	find_tail(n, s->most, x, columns, tail);
+	for (int i = 0; i < n; i++)
+		most[i] = WIDER * (fmax(most[i], ends ? 0 : tail[i]) + s->slack * largest);
 	discard(x);
 	discard(next);
 	discard(tail);

@@ -44,6 +44,18 @@ static int component_of(const struct node *coordinate)
 	return coordinate->symbol->index + (coordinate->component ? coordinate->component - 1 : 0);
 }
 
+/* Constant, but for tunable params that the instance has */
+static bool is_of_params(const struct form *form)
+{
+	for (int i = 0; i < form->terms; i++) {
+		const struct basis *basis = &form->term[i].basis;
+		const struct atom *a = basis->atom;
+		if (basis->kind > BASIS_PI && !(a && a->params && !a->time && !a->input && !a->state))
+			return false;
+	}
+	return true;
+}
+
 /* The element's force on its first coordinate, as it stands on the left side. */
 static void collect_element(void *context)
 {
@@ -59,14 +71,17 @@ static void collect_element(void *context)
 		form = form_sum(NEW(struct form), value->cell[0], element->kind == ELEMENT_FORCE);
 	} else {
 		int order = element->kind == ELEMENT_MASS ? 2 : element->kind == ELEMENT_DAMPER ? 1 : 0;
-		if (!is_constant(value->cell[0]))
+		if (!is_constant(value->cell[0]) && !is_of_params(value->cell[0]))
 			error(element->value->start, "what moves belongs in an equation, or in a force",
-			      "a mass, spring or damper needs a constant");
+			      b->collector.params == PARAMS_INPUTS
+				      ? "a mass, spring or damper of a piecewise-linear model cannot be tunable"
+				      : "a mass, spring or damper needs a constant");
 		form = coordinate_form(&b->model->frame, component_of(element->from), order);
 		if (element->to)
 			form = form_sum(form, coordinate_form(&b->model->frame, component_of(element->to), order),
 					true);
-		form = form_product(&b->collector, value->cell[0], form);
+		form = is_constant(value->cell[0]) ? form_product(&b->collector, value->cell[0], form)
+						   : kept_product(&b->collector, element->value, value->cell[0], form);
 	}
 	work->snapshot->element[work->index] = form;
 }

@@ -59,6 +59,7 @@ void jacobian_evaluate(void *context)
 	int n = model->n;
 	struct fixing *fixing = ARRAY(struct fixing, (size_t)model->system.states + 1);
 	struct point *point = point_new(c, jacobian_point(j, fixing), fixing);
+	point_at_values(point);
 	for (int k = 0; k < n; k++)
 		for (int i = 0; i < n; i++) {
 			/* of first order: what multiplies the highest derivative */

@@ -447,6 +447,26 @@ static void collect_intervals(struct building *b)
 	b->model->system.change = c->change;
 }
 
+/* Where a scheme leaves something over, the instance's own params stand in it: collected anew, with them as atoms. Of
+ * regions they move breakpoints and add forces, as held inputs do. */
+static void collect_with_params(struct building *b)
+{
+	struct collector *c = &b->collector;
+	const bool left = leaves_over(b);
+	if (!left && !needs_regions(b))
+		return;
+	spread_tuned(b->spec);
+	b->nominal = b->snapshot;
+	b->nominals = c->changes + 1;
+	b->model->keeps_params = true;
+	c->params = left ? PARAMS_ATOMS : PARAMS_INPUTS;
+	c->inputs = b->spec->inputs;
+	c->keep = left ? KEEP_ALL : KEEP_PIECEWISE;
+	c->changes = 0;
+	c->change = NULL;
+	collect_intervals(b);
+}
+
 /* What is known before anything is collected */
 static void begin_model(struct building *b)
 {
@@ -508,6 +528,8 @@ static void collect_model(struct building *b)
 		statement_guard(evaluate_modes, b);
 	b->collector.constant_only = false;     /* where what had to be constant was not */
 	collect_intervals(b);
+	if (b->spec->tunables > 0 && all && !diagnostics_errors())
+		collect_with_params(b);
 	collect_impacts(b);
 	if (all)
 		evaluate_lets(b);

@@ -100,6 +100,9 @@ struct smoothness {                 /* of what is left over, else of the equatio
 	const char *where;          /* x passes 0.5 */
 	bool piecewise;             /* exact could treat it alone */
 	bool timed;                 /* it lies at a time */
+	/* a formula that ends there, as abs(x)^1.5, whose derivatives are not finite, and where; NULL: none does */
+	const struct node *singular;
+	const char *singular_where;
 };
 struct request {                    /* what the user asks for on the command line; of most, a spec may say it too */
 	const char *step, *scheme, *prefix, *tolerance;
@@ -192,6 +195,9 @@ struct model {
 	struct splitting *split;    /* of a scheme in normal modes; else NULL */
 	const struct form *selector; /* of a bank: what is compared with `at`; NULL: one operator */
 	const struct tuning *tuning; /* tunable params, and how the equations follow from them; NULL: there are none */
+	/* the instance has tunable params: what is left over and outputs read them, or they act like held inputs */
+	bool keeps_params;
+	const struct tuning *held;  /* those that the leftover and outputs read from the instance: no more than a list */
 	int outputs;
 	struct output *output;
 	bool declared_outputs;
@@ -250,6 +256,12 @@ int  relative_place(const struct model *model, int written); /* the kept state t
 
 struct expression {                 /* what is compared with breakpoints: linear in states, loads and inputs */
 	struct form *form;          /* without constant; sign and scale as first written */
+	/* in each segment of time it is in + shift: its loads may have other formulas */
+	int segments;
+	struct form **in;
+	mpq_t *shift;
+	int terms;
+	struct comparing *term;     /* that compare it: expressions.c */
 	struct output *row;         /* the same as a row */
 	int breaks;
 	mpq_t *at;                  /* rising */
@@ -297,7 +309,7 @@ struct release {                    /* of what sticks: the interval is left wher
 	struct form *form;          /* it may have highest derivatives */
 	struct output *row;         /* over states, loads and inputs alone */
 };
-struct region {                     /* one interval for each expression */
+struct region {                     /* one interval for each expression, in one segment of time */
 	bool possible;              /* its inequalities can hold together */
 	int system;                 /* index of its equations; equal ones are one */
 	struct form **residual;     /* per row: linear; friction stands in it as an atom until its force is put in */
@@ -312,10 +324,16 @@ struct switching {
 	int rows, *row;             /* of the equations that it is of */
 	int expressions;
 	struct expression *expression;
-	int regions;                /* all, possible or not: products of the expressions' intervals */
+	int segments;               /* of time: those of the model, or 1 where nothing of it changes */
+	/* all, possible or not: products of the expressions' intervals, of each segment of time in order */
+	int regions;
 	struct region *region;      /* NULL where there are parts */
 	int systems;
-	struct linear *system;      /* where there are parts one: that of the first region of each */
+	struct linear *system;      /* where there are parts one: that of the first region of each; one segment of time */
+	int aparts;
+	const struct node **apart;  /* terms that share no expression with others */
+	bool torn;                  /* one has become such: the search begins anew */
+	int *system_segment;        /* per system: a segment in which it serves; there expressions are the same in all */
 	int parts;                  /* 0: its regions are those of all coordinates together */
 	struct region_part *part;
 	int frictions;
@@ -351,6 +369,9 @@ struct building {                   /* what the builders share */
 	const struct wave *polynomial; /* the wave of t^k alone */
 	struct snapshot *snapshot;  /* per interval between changes of formula in time */
 	struct snapshot *whole;     /* the same for all time, with atoms; NULL: there is no leftover */
+	struct snapshot *nominal;   /* with the spec's values, where `snapshot` has tunable params; else NULL */
+	int nominals;               /* its intervals */
+	struct point *values;       /* nothing fixed but tunable params; made on first use */
 	/* [segment][row]: the residual's part that depends on time alone, as the linear core carries it */
 	struct form **load;
 	struct form **time_left;    /* per row: what depends on time alone and it cannot carry */
@@ -415,6 +436,7 @@ void collect_outputs(struct building *b, struct snapshot *snapshot);
 int  find_order(const struct spec *spec, int coord);
 void build_outputs(struct building *b);
 /* of states, loads and inputs; no highest derivatives */
+struct output *row_of_expression(struct building *b, const struct switching *of, const struct expression *e);
 struct output *row_of_form(struct building *b, struct form *form);
 /* the same with the highest derivatives that a system gives */
 struct output *row_in_system(struct building *b, const struct linear *system, struct form *form);
@@ -429,6 +451,7 @@ void check_mass(const struct building *b);
 struct reads {                    /* what forms read */
 	bool *state, *input, *load; /* inputs, then their slopes */
 	bool *highest;              /* per coordinate: its highest derivative */
+	bool *param;                /* of the spec's tunables, where the instance has their values */
 	bool time, math;            /* t itself; <math.h> */
 };
 bool reads_input_slope(const struct model *model, int input);      /* does an output? */
@@ -439,6 +462,11 @@ struct reads reads_of(const struct model *model, int count, const struct form *c
 /* ---- system.c: residuals to M, C, K, loads and inputs ---- */
 
 void fill_states(struct building *b, const struct snapshot *rows); /* M, C, K, inputs */
+/* Tunable params that the instance has, at the spec's values: what is linear there belongs to the linear core, and the
+ * difference is left over. Itself, where it reads none. */
+const struct form *nominal_form(struct building *b, const struct form *form);
+/* Whether what params multiply is parted so for inputs and loads too: a series puts both together again */
+bool parts_params(const struct building *b);
 void fill_loads(struct building *b, int segment, int row, const struct form *residual);
 void place_loads(struct building *b, const struct form *form); /* every load of the form gets load states */
 void spread_loads(struct building *b, const struct form *form,
@@ -473,15 +501,34 @@ int  order_that_holds(const struct model *model);           /* rounded down; 0: 
 const char *order_text(const struct model *model);          /* that is left: 2, 2.5 */
 const char *smoothness_text(const struct model *model);     /* max(x - 0.5, 0) has a kink where x passes 0.5 */
 
+/* ---- expressions.c: what is compared with breakpoints ---- */
+
+struct compared {                   /* form + constant with 0 */
+	const struct node *node;    /* by this term */
+	struct form *form;          /* without constant */
+	mpq_srcptr constant;
+	int met;                    /* of struct expression, where it is one */
+};
+/* The expression that form is a multiple of in this segment of time; met for the first time it is one, with the sign and
+ * scale in which it was written, and form is its own. form + constant = of (e - at) */
+int  find_expression(struct switching *s, int segment, const struct compared *what, mpq_ptr of, mpq_ptr at);
+/* In segments where nothing depends on it, it is as in the one before, or after. */
+void complete_expressions(struct switching *s);
+bool share_expression(const struct switching *a, const struct switching *b);
+bool changes_in_time(const struct expression *e);
+const char *spoken_expression(const struct model *model, int index);  /* x - t; from t = 2 on x - 1 */
+
 /* ---- regions.c: piecewise-linear equations as regions with linear ones ---- */
 
 bool is_piecewise_linear(const struct building *b);
 int  interval_of(const struct switching *s, int region, int expression);
-bool share_expression(const struct switching *a, const struct switching *b);
 /* of these rows of the equations; leaves the statement where they are too many, or with dry friction */
 struct switching *regions_of_rows(struct building *b, int rows, int *row);
 void remove_idle_breaks(struct switching *s);
-int  add_system(struct switching *s, const struct linear *system);   /* its index */
+int  add_system(struct switching *s, const struct linear *system, int segment);   /* its index */
+int  segment_of_region(const struct switching *s, int region);      /* of time */
+int  regions_at_once(const struct switching *s);                    /* in one segment of time, possible or not */
+bool is_form_multiple(const struct form *form, const struct form *e, mpq_ptr of);   /* of: the factor */
 int  possible_regions(const struct switching *s);
 
 /* ---- impacts.c: state jumps, and what bounces ---- */
@@ -557,6 +604,9 @@ double fastest_decay(const struct linear *system);          /* the largest -Re o
 /* ---- settle.c: which scheme the equations allow ---- */
 
 bool is_linear(const struct building *b);                   /* with constant coefficients, loads in time excepted */
+/* of equations that were collected, whichever coordinates they belong to: a scheme is for them that leaves something */
+bool leaves_over(const struct building *b);
+bool needs_regions(const struct building *b);                    /* scheme exact has regions for them */
 void build_system(struct building *b);                      /* M, C, K, loads, inputs */
 
 /* ---- needs.c: how exact outputs have to be ---- */
@@ -567,8 +617,11 @@ struct target {                     /* a processor: what it takes of instruction
 };
 /* of the model that is stepped: its requirements, its target; false: it was said what stands in the way */
 bool find_requirements(struct model *model);
-bool differ_in_loads(const struct model *a, const struct model *b); /* in nothing but how large their loads are */
 bool is_measured(const struct model *model);                /* no bound is known: it is not linear, or in pieces */
+
+/* ---- amplitudes.c ---- */
+
+bool differ_in_loads(const struct model *a, const struct model *b); /* in nothing but how large their loads are */
 
 /* ---- reduce.c: the smallest model with the same outputs ---- */
 
@@ -686,8 +739,10 @@ struct tuning {
 	/* the model at values that are related by nothing: what holds there holds for all */
 	const struct model *other;
 };
-/* model->tuning, where something is tunable; false: it was said why not */
+/* model->tuning, or model->held, where something is tunable; false: it was said why not */
 bool find_tuning(struct model *model, const struct request *request);
+const struct tuning *tunables_of(const struct model *model); /* either; NULL: nothing is */
+void spread_tuned(const struct spec *spec);     /* to params, matrices and lets that are made of tunable ones */
 
 /* ---- stepped.c: the model that a step is built of ---- */
 

@@ -77,7 +77,7 @@ static void check_certified(const struct finding *f)
 {
 	const struct model *model = f->model;
 	struct place at = f->need->at;
-	if (model->tuning)
+	if (tunables_of(model))
 		error(at, "a need holds for one model: without tunable, or with -D for other values",
 		      "the model has tunable params: what their values do to the error is not bounded");
 	if (is_measured(model))
@@ -88,9 +88,9 @@ static void check_certified(const struct finding *f)
 	if (model->relative && !model->declared_outputs)
 		error(at, format("output %s", model->output[0].name),
 		      "a need is of a declared output where coordinates may move as a whole");
-	if (model->system.segments > 1)
-		error(at, "loads that change their formula can be written as inputs",
-		      "a need is not certified where loads change their formula in time");
+	if (model->system.segments > 1 && model->system.inputs > 0)
+		error(at, "without inputs its run is known, and walked through",
+		      "a need is not certified where loads change their formula in time beside inputs");
 }
 
 static void find_output(const struct finding *f)
@@ -195,41 +195,4 @@ bool find_requirements(struct model *model)
 	if (spec->budget.instructions)
 		good = statement_guard(find_budget, model) && good;
 	return good;
-}
-
-/* ---- amplitudes ---- */
-
-static bool same_numbers(const mpq_t *a, const mpq_t *b, int count)
-{
-	for (int i = 0; i < count; i++)
-		if (!mpq_equal(a[i], b[i]))
-			return false;
-	return true;
-}
-
-/* Texts of leftovers that are cut short say nothing. */
-bool differ_in_loads(const struct model *a, const struct model *b)
-{
-	const struct linear *p = &a->system, *q = &b->system;
-	bool loads = false;
-	if (p->states != q->states || p->loads != q->loads || p->segments != q->segments ||
-	    a->operators != b->operators || a->channels != b->channels || !mpq_equal(a->h, b->h) ||
-	    !same_numbers(p->M, q->M, p->n * p->n) || !same_numbers(p->C, q->C, p->n * p->n) ||
-	    !same_numbers(p->K, q->K, p->n * p->n) || !same_numbers(a->initial, b->initial, p->states))
-		return false;
-	for (int k = 0; k < a->operators * a->channels; k++) {
-		const char *left = form_text(a, a->operator[k / a->channels].left[k % a->channels]);
-		const char *other = form_text(b, b->operator[k / a->channels].left[k % a->channels]);
-		if (strstr(left, "...") || strcmp(left, other) != 0)
-			return false;
-	}
-	for (int l = 0; l < p->loads; l++) {
-		const struct wave *u = p->load[l].wave, *v = q->load[l].wave;
-		if (!mpq_equal(u->a, v->a) || !mpq_equal(u->w, v->w) || !mpq_equal(u->p, v->p) ||
-		    p->load[l].columns != q->load[l].columns)
-			return false;
-		for (int c = 0; c < p->load[l].columns; c++)
-			loads = loads || !same_numbers(p->load[l].force[c], q->load[l].force[c], p->segments * p->n);
-	}
-	return loads;
 }

@@ -282,6 +282,7 @@ static void find_jacobian(void *context)
 	const struct snapshot *equations = fixed_equations(work->point);
 	const struct form **residual = ARRAY(const struct form *, (size_t)n);
 	struct point *point = point_new(c, work->point->fixings, work->point->fixing);
+	point_at_values(point);
 	for (int i = 0; i < n; i++)
 		residual[i] = equations->residual[i].form;
 	keep_highest(b->model, work->operator->C);
@@ -307,12 +308,25 @@ static bool is_carried(const struct building *b, const struct basis *basis)
 	return basis->kind == BASIS_COORD && basis->order >= model->frame.coord[basis->index]->highest;
 }
 
+/* What inputs are with the spec's values of params beside what they are with the instance's */
+static struct form *inputs_carried(struct building *b, const struct form *equation)
+{
+	struct form *more = NEW(struct form);
+	for (int k = 0; k < 2 && parts_params(b); k++) {
+		const struct form *from = k ? equation : nominal_form(b, equation);
+		for (int i = 0; i < from->terms; i++)
+			if (from->term[i].basis.kind == BASIS_INPUT)
+				more = form_sum(more, form_single(from->term[i].basis, from->term[i].factor), k);
+	}
+	return more;
+}
+
 /* The force that the leftover is on an equation: A's terms minus the equation's own, which stand on the left side */
-static struct form *leftover_of(const struct building *b, const struct operator *operator, int row)
+static struct form *leftover_of(struct building *b, const struct operator *operator, int row)
 {
 	const struct linear *system = &b->model->system;
 	const struct form *equation = b->whole->residual[row].form;
-	struct form *left = NEW(struct form);
+	struct form *left = inputs_carried(b, equation);
 	if (!b->model->loads_left)
 		left = form_sum(left, b->time_left[row], true);
 	for (int i = 0; i < equation->terms; i++)

@@ -242,13 +242,8 @@ static void make_rows(const struct linear *system, int channels, struct output *
 
 /* ---- an expression as a row ---- */
 
-struct output *row_of_form(struct building *b, struct form *form)
+static void add_states_and_inputs(const struct building *b, const struct form *form, struct output *row)
 {
-	struct output *row = NEW(struct output);
-	int segments = b->model->system.segments;
-	make_rows(&b->model->system, b->model->channels, row);
-	for (int s = 0; s < segments; s++)
-		spread_loads(b, form, add_direct, &(struct direct_row){ row, segments, s });
 	for (int i = 0; i < form->terms; i++) {
 		const struct basis *basis = &form->term[i].basis;
 		if (basis->kind == BASIS_INPUT)
@@ -256,6 +251,28 @@ struct output *row_of_form(struct building *b, struct form *form)
 		else if (basis->kind == BASIS_COORD)
 			mpq_set(row->state[state_of(b->model, basis)], form->term[i].factor);
 	}
+}
+
+struct output *row_of_expression(struct building *b, const struct switching *of, const struct expression *e)
+{
+	struct output *row = NEW(struct output);
+	int segments = b->model->system.segments;
+	make_rows(&b->model->system, b->model->channels, row);
+	for (int s = 0; s < segments; s++) {
+		int known = s < of->segments ? s : 0;
+		spread_loads(b, form_sum(e->in[known], form_constant(e->shift[known]), false), add_direct,
+			     &(struct direct_row){ row, segments, s });
+	}
+	add_states_and_inputs(b, e->form, row);
+	return row;
+}
+
+struct output *row_of_form(struct building *b, struct form *form)
+{
+	struct output *row = NEW(struct output);
+	make_rows(&b->model->system, b->model->channels, row);
+	spread_loads(b, form, add_direct, &(struct direct_row){ row, 1, 0 });
+	add_states_and_inputs(b, form, row);
 	return row;
 }
 

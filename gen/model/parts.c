@@ -35,7 +35,8 @@ static int *components_of_equations(const struct building *b)
 		parent[i] = i;
 	for (int row = 0; row < n; row++) {
 		bool *seen = ARRAY(bool, (size_t)atoms_count(b->collector.atoms));
-		join_form(b, parent, seen, row, b->snapshot->residual[row].form);
+		for (int s = 0; s < b->model->system.segments; s++)
+			join_form(b, parent, seen, row, b->snapshot[s].residual[row].form);
 		discard(seen);
 	}
 	return parent;
@@ -189,7 +190,8 @@ static void search(void *context)
 {
 	struct building *b = context;
 	int n = b->model->n, *all = ARRAY(int, (size_t)n);
-	struct switching *s = b->model->relative || b->request->undivided || holds_friction(b) || b->model->impacts > 0 ? NULL : regions_of_parts(b);
+	bool together = b->model->relative || b->request->undivided || holds_friction(b) || b->model->impacts > 0;
+	struct switching *s = together ? NULL : regions_of_parts(b);
 	for (int i = 0; i < n; i++)
 		all[i] = i;
 	b->model->switching = s ? s : regions_of_rows(b, n, all);
@@ -216,7 +218,9 @@ static void place_loads_of(struct building *b, const struct switching *s)
 				place_loads(b, region->carried[s->friction[k].atom->index]);
 	}
 	for (int e = 0; e < s->expressions; e++)
-		place_loads(b, s->expression[e].form);
+		for (int segment = 0; segment < s->segments; segment++)
+			place_loads(b, form_sum(s->expression[e].in[segment],
+						form_constant(s->expression[e].shift[segment]), false));
 	place_impact_loads(b, s);
 }
 
@@ -235,6 +239,7 @@ void place_region_loads(struct building *b)
 static struct linear system_in_region(struct building *b, const struct switching *s, int region)
 {
 	struct linear system = empty_system(b->model);
+	system.segments = 1;
 	for (int k = 0; k < s->rows; k++)
 		fill_system(b, &system, 0, s->row[k], s->region[region].residual[s->row[k]]);
 	return system;
@@ -332,11 +337,11 @@ static void build_part(struct building *b, int *parent, struct region_part *part
 			continue;
 		struct linear whole = system_in_region(b, s, r);
 		struct block own = block_at(&whole, parent, part->coord);
-		s->region[r].system = add_system(s, &own.system);
+		s->region[r].system = add_system(s, &own.system, segment_of_region(s, r));
 	}
 	remove_idle_breaks(s);
 	for (int e = 0; e < s->expressions; e++)
-		s->expression[e].row = row_of_form(b, s->expression[e].form);
+		s->expression[e].row = row_of_expression(b, s, &s->expression[e]);
 	find_inputs(part);
 	for (int e = 0; e < s->expressions; e++)
 		s->expression[e].row = own_row(part, s->expression[e].row);
@@ -350,6 +355,7 @@ static void fill_first_regions(struct building *b, struct switching *s)
 	s->systems = 1;
 	s->system = NEW(struct linear);
 	*s->system = empty_system(b->model);
+	s->system->segments = 1;
 	for (int p = 0; p < s->parts; p++) {
 		const struct switching *own = s->part[p].model->switching;
 		int first = first_region(own);
@@ -385,7 +391,7 @@ static void build_whole(struct building *b, struct switching *s)
 		if (!s->region[r].possible)
 			continue;
 		struct linear system = system_in_region(b, s, r);
-		s->region[r].system = add_system(s, &system);
+		s->region[r].system = add_system(s, &system, segment_of_region(s, r));
 	}
 	remove_idle_breaks(s);
 	if (has_events(s))
@@ -398,5 +404,5 @@ void build_regions(struct building *b)
 	struct switching *s = b->model->switching;
 	(s->parts ? build_all_parts : build_whole)(b, s);
 	for (int e = 0; e < s->expressions; e++)
-		s->expression[e].row = row_of_form(b, s->expression[e].form);
+		s->expression[e].row = row_of_expression(b, s, &s->expression[e]);
 }

@@ -36,6 +36,8 @@ static void look_at_form(struct reads *reading, const struct model *model, bool 
 		seen[atom->index] = true;
 		reading->math = reading->math || calls_libm(atom);
 		bool friction = atom->kind == ATOM_CALL && atom->function == FN_FRICTION; /* it is a row of its region */
+		if (atom->kind == ATOM_PARAM)
+			reading->param[atom->param->tunable - 1] = true;
 		for (int k = 0; k < atom->operands && !friction; k++)
 			look_at_form(reading, model, seen, atom->operand[k]);
 	}
@@ -47,6 +49,7 @@ struct reads reads_of(const struct model *model, int count, const struct form *c
 				 ARRAY(bool, 2 * (size_t)model->system.inputs),
 				 ARRAY(bool, (size_t)model->system.loads),
 				 ARRAY(bool, (size_t)model->n),
+				 ARRAY(bool, (size_t)model->spec->tunables + 1),
 				 false,
 				 false };
 	bool *seen = ARRAY(bool, model->atoms ? (size_t)atoms_count(model->atoms) : 0);

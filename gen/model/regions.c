@@ -9,14 +9,27 @@ enum { LIMIT_CANDIDATES = 6561 };   /* regions looked at, before those that cann
 
 /* ---- is it? ---- */
 
+static bool has_atoms(const struct form *form)
+{
+	return form->terms > 0 && form->term[form->terms - 1].basis.atom;
+}
+
+/* In every segment of time; where there are several, somewhere with a breakpoint: factors of what is linear may not
+ * change alone. */
 bool is_piecewise_linear(const struct building *b)
 {
-	if (b->model->system.segments > 1)
+	int segments = b->model->system.segments;
+	bool divided = segments == 1;
+	if (segments > 1 && (holds_friction(b) || b->model->impacts > 0))
 		return false;
-	for (int i = 0; i < b->model->n; i++)
-		if (!is_piecewise_form(b->snapshot->residual[i].form))
-			return false;
-	return true;
+	for (int s = 0; s < segments; s++)
+		for (int i = 0; i < b->model->n; i++) {
+			const struct form *form = b->snapshot[s].residual[i].form;
+			if (!is_piecewise_form(form))
+				return false;
+			divided = divided || has_atoms(form);
+		}
+	return divided;
 }
 
 /* ---- a form in one region ---- */
@@ -29,6 +42,7 @@ struct looking {
 	int count;
 	bool grown;                 /* an expression or a breakpoint was met for the first time: look again */
 	int region, row;            /* where it looks */
+	int segment;                /* of time */
 	int lowest;                 /* of the regions, where there is one expression, that a new breakpoint divides */
 };
 
@@ -40,48 +54,6 @@ int possible_regions(const struct switching *s)
 	for (int r = 0; r < s->regions && !s->parts; r++)
 		count += s->region[r].possible;
 	return count;
-}
-
-/* Is form a multiple of e? of: the factor */
-static bool is_multiple(const struct form *form, const struct form *e, mpq_ptr of)
-{
-	if (form->terms != e->terms || basis_order(&form->term[0].basis, &e->term[0].basis) != 0)
-		return false;
-	mpq_div(of, form->term[0].factor, e->term[0].factor);
-	struct form *same = form_scale(e, of);
-	bool multiple = same_form(form, same);
-	form_free(same);
-	return multiple;
-}
-
-bool share_expression(const struct switching *a, const struct switching *b)
-{
-	bool shared = false;
-	mpq_t factor;
-	mpq_init(factor);
-	for (int i = 0; i < a->expressions; i++)
-		for (int k = 0; k < b->expressions && !shared; k++)
-			shared = is_multiple(a->expression[i].form, b->expression[k].form, factor);
-	mpq_clear(factor);
-	return shared;
-}
-
-/* The expression that form, which has no constant, is a multiple of; met for the first time it is one, with the sign
- * and scale in which it was written. The form goes to it, or is freed. */
-static int find_expression(struct looking *l, const struct node *node, struct form *form, mpq_ptr of)
-{
-	struct switching *s = l->s;
-	for (int i = 0; i < s->expressions; i++)
-		if (is_multiple(form, s->expression[i].form, of)) {
-			form_free(form);
-			return i;
-		}
-	ENLARGE(s->expression, (size_t)s->expressions + 1);
-	s->expression[s->expressions] = (struct expression){
-		.form = form, .node = node, .met = l->row + (l->region > 0 ? l->b->model->n : 0)
-	};
-	mpq_set_ui(of, 1, 1);
-	return s->expressions++;
 }
 
 static void add_break(struct looking *l, struct expression *e, mpq_srcptr at)
@@ -110,6 +82,12 @@ static bool is_above(struct looking *l, int index, mpq_srcptr at)
 	return false;
 }
 
+/* In the order in which the equations show expressions */
+static int order_met(const struct looking *l)
+{
+	return l->row + (l->region > 0 ? l->b->model->n : 0);
+}
+
 static void refuse_force(const struct node *node, const struct form *form)
 {
 	if (form->terms && form->term[form->terms - 1].basis.kind == BASIS_ATOM)
@@ -128,17 +106,16 @@ static int sign_here(struct looking *l, const struct node *node, const struct fo
 	while (plain.terms < form->terms && form->term[plain.terms].basis.kind <= BASIS_PI)
 		plain.terms++;
 	refuse_force(node, form);
-	mpq_t constant, factor;
-	mpq_inits(constant, factor, NULL);
+	mpq_t constant, factor, at;
+	mpq_inits(constant, factor, at, NULL);
 	constant_value(c, &plain, constant);
 	int sign = mpq_sgn(constant);
 	if (plain.terms < form->terms) {
-		int e = find_expression(l, node, form_sum(form, &plain, true), factor);
-		mpq_div(constant, constant, factor);
-		mpq_neg(constant, constant);    /* e = (form - constant)/factor against -constant/factor */
-		sign = is_above(l, e, constant) == (mpq_sgn(factor) > 0) ? 1 : -1;
+		struct compared what = { node, form_sum(form, &plain, true), constant, order_met(l) };
+		int e = find_expression(l->s, l->segment, &what, factor, at);
+		sign = is_above(l, e, at) == (mpq_sgn(factor) > 0) ? 1 : -1;
 	}
-	mpq_clears(constant, factor, NULL);
+	mpq_clears(constant, factor, at, NULL);
 	form_free(form);
 	return turned ? -sign : sign;
 }
@@ -228,10 +205,12 @@ static struct form *friction_here(struct looking *l, const struct atom *a, struc
 	while (plain.terms < x[0]->terms && x[0]->term[plain.terms].basis.kind <= BASIS_PI)
 		plain.terms++;
 	struct friction *f = &l->s->friction[index];
-	constant_value(c, &plain, f->at);
-	f->expression = find_expression(l, a->node, form_sum(x[0], &plain, true), f->factor);
-	mpq_div(f->at, f->at, f->factor);
-	mpq_neg(f->at, f->at);
+	mpq_t constant;
+	mpq_init(constant);
+	constant_value(c, &plain, constant);
+	struct compared what = { a->node, form_sum(x[0], &plain, true), constant, order_met(l) };
+	f->expression = find_expression(l->s, l->segment, &what, f->factor, f->at);
+	mpq_clear(constant);
 	add_stick(l, &l->s->expression[f->expression], f->at);
 	for (int i = 1; i < a->operands; i++)
 		refuse_force(a->node, x[i]);
@@ -300,7 +279,17 @@ static struct form *form_here(struct looking *l, const struct form *form)
 	return total;
 }
 
-/* ---- all regions ---- */
+/* ---- all regions: in each segment of time those of all intervals ---- */
+
+int regions_at_once(const struct switching *s)
+{
+	return s->regions / s->segments;
+}
+
+int segment_of_region(const struct switching *s, int region)
+{
+	return region / regions_at_once(s);
+}
 
 static int *intervals_of(const struct switching *s, int region)
 {
@@ -322,10 +311,22 @@ static int count_candidates(struct switching *s)
 	return count;
 }
 
+static const struct node *last_term(const struct switching *s)
+{
+	return s->expression[s->expressions - 1].node;
+}
+
+static _Noreturn void too_many_in_time(const struct switching *s)
+{
+	error(last_term(s)->at,
+	      "a load that is sampled can be an input; a scheme with a leftover, such as etdrk4, needs no regions",
+	      "more regions than the limit of %d, in %d segments of time together", LIMIT_REGIONS_IN_TIME, s->segments);
+}
+
 static _Noreturn void too_many(const struct building *b, const struct switching *s)
 {
 	bool together = b->model->relative || b->request->undivided;
-	error(s->expression[s->expressions - 1].node->at,
+	error(last_term(s)->at,
 	      together ? "some coordinates move as a whole, and then independent parts have their regions together; a "
 			 "scheme with a leftover, such as etdrk4, needs no regions"
 		       : "a scheme with a leftover, such as etdrk4, needs no regions",
@@ -336,8 +337,8 @@ static _Noreturn void too_many(const struct building *b, const struct switching 
 static void meet_impacts(struct looking *l)
 {
 	struct building *b = l->b;
-	mpq_t factor;
-	mpq_init(factor);
+	mpq_t factor, constant;
+	mpq_inits(factor, constant, NULL);
 	for (int i = 0; i < b->model->impacts; i++) {
 		struct impact *impact = &b->model->impact[i];
 		const struct form *guard = impact->rising ? impact->guard
@@ -345,10 +346,9 @@ static void meet_impacts(struct looking *l)
 		struct form plain = { 0, guard->term, 0 };
 		while (plain.terms < guard->terms && plain.term[plain.terms].basis.kind <= BASIS_PI)
 			plain.terms++;
-		constant_value(&b->collector, &plain, impact->at);
-		impact->expression = find_expression(l, impact->when->guard, form_sum(guard, &plain, true), factor);
-		mpq_div(impact->at, impact->at, factor);
-		mpq_neg(impact->at, impact->at);
+		constant_value(&b->collector, &plain, constant);
+		struct compared what = { impact->when->guard, form_sum(guard, &plain, true), constant, order_met(l) };
+		impact->expression = find_expression(l->s, l->segment, &what, factor, impact->at);
 		impact->upward = (mpq_sgn(factor) > 0) == impact->rising;
 		mpq_set(impact->factor, factor);
 		if (!impact->rising)
@@ -358,7 +358,7 @@ static void meet_impacts(struct looking *l)
 		else
 			(void)is_above(l, impact->expression, impact->at);
 	}
-	mpq_clear(factor);
+	mpq_clears(factor, constant, NULL);
 }
 
 /* One look at every region but the first `known`; false: something new was met on the way, but of the first `known`
@@ -367,10 +367,11 @@ static void meet_impacts(struct looking *l)
 static bool look(struct building *b, struct switching *s, int *known)
 {
 	const struct region *before = s->region;
-	bool single = s->expressions == 1;
-	s->regions = count_candidates(s);
-	if (s->regions > LIMIT_CANDIDATES)
+	bool single = s->expressions == 1 && s->segments == 1;
+	int in_one = count_candidates(s);
+	if (in_one > LIMIT_CANDIDATES)
 		too_many(b, s);
+	s->regions = in_one * s->segments;
 	s->region = ARRAY(struct region, (size_t)s->regions);
 	for (int r = 0; r < *known; r++)
 		s->region[r] = before[r];
@@ -382,6 +383,7 @@ static bool look(struct building *b, struct switching *s, int *known)
 				     .known = ARRAY(struct form *, (size_t)atoms),
 				     .count = atoms,
 				     .region = r,
+				     .segment = segment_of_region(s, r),
 				     .lowest = r };
 		s->region[r].residual = ARRAY(struct form *, (size_t)b->model->n);
 		s->region[r].force = ARRAY(struct form *, (size_t)atoms);
@@ -389,10 +391,13 @@ static bool look(struct building *b, struct switching *s, int *known)
 		s->region[r].carried = ARRAY(struct form *, (size_t)atoms);
 		for (int k = 0; k < s->rows; k++) {
 			l.row = s->row[k];
-			s->region[r].residual[l.row] = form_here(&l, b->snapshot->residual[l.row].form);
+			s->region[r].residual[l.row] = form_here(&l, b->snapshot[l.segment].residual[l.row].form);
 		}
 		meet_impacts(&l);
 		*known = single && s->expressions == 1 ? l.lowest : 0;
+		if (s->torn)
+			s->expressions = *known = 0;
+		s->torn = false;
 		if (l.grown)
 			return false;
 	}
@@ -450,13 +455,13 @@ static bool can_hold(struct inequalities set)
 }
 
 /* The bases that expressions are made of, as variables */
-static int find_bases(const struct switching *s, struct basis **basis)
+static int find_bases(const struct switching *s, int segment, struct basis **basis)
 {
 	int count = 0;
 	*basis = NULL;
 	for (int i = 0; i < s->expressions; i++)
-		for (int k = 0; k < s->expression[i].form->terms; k++) {
-			const struct basis *found = &s->expression[i].form->term[k].basis;
+		for (int k = 0; k < s->expression[i].in[segment]->terms; k++) {
+			const struct basis *found = &s->expression[i].in[segment]->term[k].basis;
 			bool known = false;
 			for (int j = 0; j < count; j++)
 				known = known || basis_order(&(*basis)[j], found) == 0;
@@ -468,14 +473,16 @@ static int find_bases(const struct switching *s, struct basis **basis)
 	return count;
 }
 
-static mpq_t *bound_row(const struct expression *e, int bases, const struct basis *basis, mpq_srcptr at, bool below)
+static mpq_t *bound_row(const struct expression *e, int segment, int bases, const struct basis *basis, mpq_srcptr at,
+			bool below)
 {
 	mpq_t *a = rationals((size_t)bases + 1);
-	for (int k = 0; k < e->form->terms; k++)
+	const struct form *form = e->in[segment];
+	for (int k = 0; k < form->terms; k++)
 		for (int j = 0; j < bases; j++)
-			if (basis_order(&basis[j], &e->form->term[k].basis) == 0)
-				mpq_set(a[j], e->form->term[k].factor);
-	mpq_set(a[bases], at);
+			if (basis_order(&basis[j], &form->term[k].basis) == 0)
+				mpq_set(a[j], form->term[k].factor);
+	mpq_sub(a[bases], at, e->shift[segment]);
 	for (int j = 0; j <= bases && !below; j++)
 		mpq_neg(a[j], a[j]);
 	return a;
@@ -486,29 +493,31 @@ static bool is_possible(const struct switching *s, int region, int bases, const 
 	struct inequalities set = { bases, 0, NULL };
 	for (int i = 0; i < s->expressions; i++) {
 		const struct expression *e = &s->expression[i];
-		int interval = interval_of(s, region, i);
+		int interval = interval_of(s, region, i), segment = segment_of_region(s, region);
 		if (is_stick(e, interval))
 			continue;
 		if (interval < e->breaks)
-			add_inequality(&set, bound_row(e, bases, basis, e->at[interval], true));
+			add_inequality(&set, bound_row(e, segment, bases, basis, e->at[interval], true));
 		if (interval > 0)
-			add_inequality(&set, bound_row(e, bases, basis, e->at[interval - 1], false));
+			add_inequality(&set, bound_row(e, segment, bases, basis, e->at[interval - 1], false));
 	}
 	return can_hold(set);
 }
 
 /* Expressions of which each has a basis of its own are independent: then every region can be. */
-static bool independent(const struct switching *s)
+static bool independent(const struct switching *s, int segment)
 {
 	for (int i = 0; i < s->expressions; i++) {
 		bool own = false;
-		for (int k = 0; k < s->expression[i].form->terms && !own; k++) {
+		const struct form *form = s->expression[i].in[segment];
+		for (int k = 0; k < form->terms && !own; k++) {
 			own = true;
 			for (int j = 0; j < s->expressions; j++)
-				for (int m = 0; m < s->expression[j].form->terms; m++)
+				for (int m = 0; m < s->expression[j].in[segment]->terms; m++)
 					own = own &&
-					      (i == j || basis_order(&s->expression[i].form->term[k].basis,
-								     &s->expression[j].form->term[m].basis) != 0);
+					      (i == j ||
+					       basis_order(&form->term[k].basis,
+							   &s->expression[j].in[segment]->term[m].basis) != 0);
 		}
 		if (!own)
 			return false;
@@ -518,28 +527,38 @@ static bool independent(const struct switching *s)
 
 static void mark_possible(const struct building *b, struct switching *s)
 {
-	struct basis *basis;
-	int bases = find_bases(s, &basis), count = 0;
-	bool all = independent(s);
-	for (int r = 0; r < s->regions; r++) {
-		s->region[r].possible = all || is_possible(s, r, bases, basis);
-		count += s->region[r].possible;
+	int in_one = regions_at_once(s), in_all = 0;
+	for (int segment = 0; segment < s->segments; segment++) {
+		struct basis *basis;
+		int bases = find_bases(s, segment, &basis), count = 0;
+		bool all = independent(s, segment);
+		for (int r = segment * in_one; r < (segment + 1) * in_one; r++) {
+			s->region[r].possible = all || is_possible(s, r, bases, basis);
+			count += s->region[r].possible;
+		}
+		in_all += count;
+		if (count > LIMIT_REGIONS)
+			too_many(b, s);
+		if (s->segments > 1 && s->expressions > 0 && in_all > LIMIT_REGIONS_IN_TIME)
+			too_many_in_time(s);
 	}
-	if (count > LIMIT_REGIONS)
-		too_many(b, s);
 }
 
 /* ---- what cannot be treated: forces that jump with a velocity ---- */
 
 /* Is the form a multiple of e - at, so that it vanishes on the breakpoint? */
-static bool vanishes_on(struct collector *c, const struct form *form, const struct expression *e, mpq_srcptr at)
+static bool vanishes_on(struct collector *c, const struct form *form, const struct expression *e, int segment,
+			mpq_srcptr at)
 {
+	const struct form *here = e->in[segment];
 	mpq_t factor, constant;
 	mpq_inits(factor, constant, NULL);
 	for (int i = 0; i < form->terms; i++)
-		if (basis_order(&form->term[i].basis, &e->form->term[0].basis) == 0)
-			mpq_div(factor, form->term[i].factor, e->form->term[0].factor);
-	const struct form *rest = form_sum(form, form_scale(form_sum(e->form, form_constant(at), true), factor), true);
+		if (basis_order(&form->term[i].basis, &here->term[0].basis) == 0)
+			mpq_div(factor, form->term[i].factor, here->term[0].factor);
+	mpq_sub(constant, at, e->shift[segment]);
+	const struct form *rest =
+		form_sum(form, form_scale(form_sum(here, form_constant(constant), true), factor), true);
 	bool gone = is_constant(rest);
 	if (gone)
 		constant_value(c, rest, constant);
@@ -556,7 +575,7 @@ static void check_face(struct building *b, const struct switching *s, int below,
 	for (int k = 0; k < s->rows; k++) {
 		int i = s->row[k];
 		const struct form *jump = form_sum(high->residual[i], low->residual[i], true);
-		if (vanishes_on(&b->collector, jump, e, at))
+		if (vanishes_on(&b->collector, jump, e, segment_of_region(s, below), at))
 			continue;
 		tell_friction(e->node, format("%s passes %s", form_text(b->model, e->form), readable_text(at)));
 	}
@@ -571,6 +590,16 @@ static void check_jumps(struct building *b, const struct switching *s)
 				check_face(b, s, r, e);
 }
 
+static bool rows_change(const struct building *b, int rows, const int *row)
+{
+	bool changes = false;
+	for (int s = 1; s < b->model->system.segments; s++)
+		for (int k = 0; k < rows; k++)
+			changes = changes || !same_form(b->snapshot[s].residual[row[k]].form,
+							b->snapshot->residual[row[k]].form);
+	return changes;
+}
+
 /* Highest derivatives cannot decide on their own equations; the collector has refused them. */
 struct switching *regions_of_rows(struct building *b, int rows, int *row)
 {
@@ -580,8 +609,10 @@ struct switching *regions_of_rows(struct building *b, int rows, int *row)
 	s->impact = b->model->impact;
 	s->rows = rows;
 	s->row = row;
+	s->segments = rows_change(b, rows, row) ? b->model->system.segments : 1;
 	while (!look(b, s, &known))
 		;
+	complete_expressions(s);
 	mark_possible(b, s);
 	if (!b->model->relative)                /* else it has been told */
 		check_jumps(b, s);
@@ -615,13 +646,24 @@ static bool same_system(const struct linear *a, const struct linear *b)
 	return same;
 }
 
-int add_system(struct switching *s, const struct linear *system)
+static bool same_rows(const struct switching *s, int a, int b)
+{
+	bool same = true;
+	for (int e = 0; e < s->expressions && a != b; e++)
+		same = same && mpq_equal(s->expression[e].shift[a], s->expression[e].shift[b]) &&
+		       same_form(s->expression[e].in[a], s->expression[e].in[b]);
+	return same;
+}
+
+int add_system(struct switching *s, const struct linear *system, int segment)
 {
 	for (int i = 0; i < s->systems; i++)
-		if (same_system(&s->system[i], system))
+		if (same_system(&s->system[i], system) && same_rows(s, s->system_segment[i], segment))
 			return i;
 	ENLARGE(s->system, (size_t)s->systems + 1);
+	ENLARGE(s->system_segment, (size_t)s->systems + 1);
 	s->system[s->systems] = *system;
+	s->system_segment[s->systems] = segment;
 	return s->systems++;
 }
 
@@ -653,10 +695,10 @@ static void remove_break(struct switching *s, int expression, int at)
 		if (i != at)
 			mpq_set(e->at[k++], old.expression[expression].at[i]);
 	e->breaks--;
-	s->regions = count_candidates(s);
+	s->regions = count_candidates(s) * s->segments;
 	s->region = ARRAY(struct region, (size_t)s->regions);
 	for (int r = 0; r < old.regions; r++) {
-		int merged = 0;
+		int merged = segment_of_region(&old, r) * regions_at_once(s);
 		for (int i = 0; i < s->expressions; i++) {
 			int interval = interval_of(&old, r, i);
 			merged += (interval - (i == expression && interval > at)) * s->expression[i].stride;

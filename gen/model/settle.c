@@ -74,6 +74,50 @@ static bool same_equations(const struct building *b, const struct snapshot *s)
 	return true;
 }
 
+static bool holds_atom(const struct form *form)
+{
+	return form->terms > 0 && form->term[form->terms - 1].basis.kind == BASIS_ATOM;
+}
+
+/* Before equations belong to coordinates: what they take */
+struct demands { bool linear, piecewise; }; /* linear equations do; switching between such */
+
+static struct demands demands_of(const struct building *b)
+{
+	const struct snapshot *first = b->snapshot;
+	const int segments = b->model->system.segments;
+	bool atoms = false, same = true, piecewise = true;
+	for (int s = 0; s < segments; s++) {
+		same = same && first[s].residuals == first->residuals;
+		for (int i = 0; i < first[s].residuals + b->spec->elements && same; i++) {
+			const int e = i - first->residuals;
+			const struct form *form = e < 0 ? first[s].residual[i].form : first[s].element[e];
+			same = same_in_states(form, e < 0 ? first->residual[i].form : first->element[e]);
+			atoms = atoms || holds_atom(form);
+			piecewise = piecewise && is_piecewise_form(form);
+		}
+	}
+	return (struct demands){ same && !atoms, same && piecewise && (!atoms || segments == 1) };
+}
+
+bool leaves_over(const struct building *b)
+{
+	const struct scheme_row *row = scheme_row(b->model->scheme);
+	const struct demands demands = demands_of(b);
+	if (b->request->solution)
+		return false;
+	if (!b->model->asked.scheme_at.source)
+		return !demands.piecewise;
+	return b->model->scheme != SCHEME_EXACT && !row->holds_coupling &&
+	       (!demands.linear || row->expands || row->modes || b->request->loads_left || b->spec->has_operator);
+}
+
+bool needs_regions(const struct building *b)
+{
+	const struct demands demands = demands_of(b);
+	return !b->request->solution && b->model->scheme == SCHEME_EXACT && demands.piecewise && !demands.linear;
+}
+
 /* Only loads may change their formula in time. */
 static bool check_changes(struct building *b)
 {
@@ -99,11 +143,6 @@ static bool check_sizes(const struct building *b)
 	return true;
 }
 
-static bool holds_atom(const struct form *form)
-{
-	return form->terms > 0 && form->term[form->terms - 1].basis.kind == BASIS_ATOM;
-}
-
 bool is_linear(const struct building *b)
 {
 	for (int s = 0; s < b->model->system.segments; s++)
@@ -111,6 +150,14 @@ bool is_linear(const struct building *b)
 			if (holds_atom(b->snapshot[s].residual[i].form) || !same_equations(b, &b->snapshot[s]))
 				return false;
 	return true;
+}
+
+/* In one interval, loads with the spec's values of params; what is more by other values is left over. */
+static void part_nominal_loads(struct building *b, int row, const struct form *whole)
+{
+	const struct form *here = form_at(point_new(&b->collector, 0, NULL), whole), *known = nominal_form(b, here);
+	b->load[row] = form_sum(known, time_part(known, true), true);
+	b->time_left[row] = form_sum(here, b->load[row], true);
 }
 
 /* What depends on time alone, in each interval of time: t < 1 ? ... has one formula there. What is then still no load,
@@ -127,6 +174,10 @@ static void part_loads(void *context)
 	for (int i = 0; i < n; i++) {
 		const struct form *whole = time_part(b->whole->residual[i].form, false);
 		bool same = true;
+		if (parts_params(b)) {
+			part_nominal_loads(b, i, whole);
+			continue;
+		}
 		for (c->interval = 0; c->interval < segments; c->interval++) {
 			struct form *here = form_at(point, whole), *left = time_part(here, true);
 			b->load[c->interval * n + i] = form_sum(here, left, true);
@@ -150,10 +201,11 @@ static const struct form *load_form(const struct building *b, int segment, int r
 static const struct atom *first_atom(const struct building *b, bool all)
 {
 	const struct atom *first = NULL;
-	for (int s = 0; s < b->model->system.segments; s++)
-		for (int i = 0; i < b->model->n; i++)
-			for (int k = 0; k < b->snapshot[s].residual[i].form->terms; k++) {
-				const struct basis *basis = &b->snapshot[s].residual[i].form->term[k].basis;
+	const struct snapshot *snapshot = b->nominal ? b->nominal : b->snapshot;
+	for (int s = 0; s < (b->nominal ? b->nominals : b->model->system.segments); s++)
+		for (int i = 0; i < snapshot[s].residuals; i++)
+			for (int k = 0; k < snapshot[s].residual[i].form->terms; k++) {
+				const struct basis *basis = &snapshot[s].residual[i].form->term[k].basis;
 				const struct atom *a = basis->atom;
 				if (a && (!first || a->node->start.offset < first->node->start.offset) &&
 				    (all || !is_piecewise_form(form_unit(*basis))))
@@ -167,21 +219,15 @@ static bool keeps_atoms(const struct building *b)
 	return first_atom(b, true) != NULL;
 }
 
-static const char input_rewrite[] = "the load as an input is exact beside it";
-
 /* Scheme exact was asked for, and what it would have to switch on it cannot */
 static void tell_atom(void *context)
 {
 	const struct building *b = context;
 	const struct atom *atom = first_atom(b, false);
-	bool changes = !atom;
-	atom = atom ? atom : first_atom(b, true);
-	const char *rewrite = changes ? input_rewrite : rewrite_of(atom->node);
+	const char *rewrite = rewrite_of(atom->node);
 	error(atom->node->start, format("%s%s%s and %s are the schemes that could", rewrite, *rewrite ? "; " : "",
 					leaving_schemes(", "), holding_schemes()),
-	      changes ? "switching beside loads that change their formula in time is not built yet: scheme exact "
-			"cannot treat '%s'"
-		      : "'%s' is not piecewise linear: scheme exact cannot treat it",
+	      "'%s' is not piecewise linear: scheme exact cannot treat it",
 	      text_between(atom->node->start, atom->node->end));
 }
 
@@ -190,9 +236,11 @@ static void find_obstacle(void *context)
 {
 	struct building *b = context;
 	struct model *model = b->model;
-	const struct atom *atom = first_atom(b, false), *any = first_atom(b, true);
+	for (int s = 0; b->nominal && s < b->nominals; s++)
+		add_elements(b, &b->nominal[s]);
+	const struct atom *atom = first_atom(b, false);
 	const char *why = "is not piecewise linear", *rewrite;
-	model->obstacle = atom ? atom->node : any ? any->node : NULL;
+	model->obstacle = atom ? atom->node : NULL;
 	for (int s = 1; s < model->system.segments && !model->obstacle; s++) {
 		model->obstacle = same_equations(b, &b->snapshot[s]) ? NULL : first_changing_term(b, s);
 		why = format("has a factor that changes at t = %s", readable_text(model->system.change[s - 1]));
@@ -201,9 +249,7 @@ static void find_obstacle(void *context)
 	forget_lets(b->spec);
 	if (!model->obstacle)
 		return;
-	if (!atom && any)
-		why = "switches beside loads that change their formula in time";
-	rewrite = !atom && any ? input_rewrite : rewrite_of(model->obstacle);
+	rewrite = rewrite_of(model->obstacle);
 	model->obstacle_text = format("%s%s%s", why, *rewrite ? "; " : "", rewrite);
 }
 

@@ -386,6 +386,7 @@ static struct form *atom_on_side(struct side *s, const struct atom *a)
 		for (int i = 0; i < a->operands; i++)
 			product = kept_product(c, a->node, product, kept_whole_power(c, a->node, x[i], a->exponent[i]));
 		return product;
+	case ATOM_PARAM:      return kept_param(c, a->node, a->param);
 	case ATOM_RECIPROCAL: return kept_reciprocal(c, a->node, x[0]);
 	case ATOM_POWER:      return kept_power(c, a->node, x[0], x[1]);
 	case ATOM_CALL:       return call_on_side(s, a, x);
@@ -715,15 +716,19 @@ static void judge_surface(struct search *s, const struct surface *surface, const
 		return;
 	if (order == JUMP && sure && !model->switching && reads_velocity(model, surface->g))
 		tell_friction(surface->test, surface_text(model, surface->g));
+	bool timed = linear_in_time(surface->g, &factor, &phase), whole = order % 10 == 0 || order == SURE;
+	if (!whole && !timed && !smooth->singular) {
+		smooth->singular = surface->whole->node;
+		smooth->singular_where = surface_text(model, surface->g);
+	}
 	if (order >= HIGHEST || (smooth->tenths && smooth->tenths <= order))
 		return;
-	*smooth = (struct smoothness){ order,
-				       order == JUMP ? SMOOTH_JUMP : SMOOTH_KINK,
-				       surface->whole->node,
-				       surface_text(model, surface->g),
-				       is_piecewise_form(
-					       form_unit((struct basis){ .kind = BASIS_ATOM, .atom = surface->whole })),
-				       linear_in_time(surface->g, &factor, &phase) };
+	smooth->tenths = order;
+	smooth->kind = order == JUMP ? SMOOTH_JUMP : SMOOTH_KINK;
+	smooth->node = surface->whole->node;
+	smooth->where = surface_text(model, surface->g);
+	smooth->piecewise = is_piecewise_form(form_unit((struct basis){ .kind = BASIS_ATOM, .atom = surface->whole }));
+	smooth->timed = timed;
 }
 
 /* The part of an equation that is not carried exactly for all time */
@@ -784,6 +789,8 @@ bool loses_order(const struct model *model)
 	const struct scheme_row *row = scheme_row(model->scheme);
 	if ((row->expands || row->modes) && model->smooth.timed)
 		return false;                   /* a step ends where formulas change in time */
+	if (row->expands && !row->collocates)
+		return false;                   /* and where the state chooses others */
 	return model->channels > 0 && model->smooth.tenths > 0 && model->smooth.tenths < 10 * order_of_scheme(model);
 }
 

@@ -111,6 +111,7 @@ static const char *spell_atom(struct spelling *s, const struct atom *a)
 		first = spell_operand(s, a->operand[0]);
 		return format("%s^%s", first, spell_operand(s, a->operand[1]));
 	case ATOM_CALL:       return spell_call(s, a);
+	case ATOM_PARAM:      return a->param->name;
 	case ATOM_COMPARE:
 		first = spell_form(s, a->operand[0]);
 		return format("%s %s %s", first, sign[a->comparison], spell_form(s, a->operand[1]));

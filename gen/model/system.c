@@ -106,11 +106,14 @@ static void make_input_forces(struct linear *system)
 static void name_inputs(struct building *b)
 {
 	struct linear *system = &b->model->system;
-	system->inputs = b->spec->inputs;
+	const int params = b->collector.params == PARAMS_INPUTS ? b->spec->tunables : 0;
+	system->inputs = b->spec->inputs + params;
 	system->input = ARRAY(struct input, (size_t)system->inputs);
 	for (const struct symbol *s = b->spec->first; s; s = s->next)
 		if (s->kind == SYMBOL_INPUT)
 			system->input[s->index] = (struct input){ .name = s->name, .hold = s->hold };
+	for (int k = 0; k < params; k++)
+		system->input[b->spec->inputs + k].name = b->spec->tunable[k].symbol->name;
 	make_input_forces(system);
 }
 
@@ -141,6 +144,22 @@ void fill_system(struct building *b, struct linear *system, int segment, int row
 	spread_loads(b, residual, add_force, &(struct force_row){ system, segment, row });
 }
 
+const struct form *nominal_form(struct building *b, const struct form *form)
+{
+	if (!reads_params(form))
+		return form;
+	if (!b->values) {
+		b->values = point_new(&b->collector, 0, NULL);
+		point_at_values(b->values);
+	}
+	return form_at(b->values, form);
+}
+
+bool parts_params(const struct building *b)
+{
+	return b->collector.params == PARAMS_ATOMS && b->model->system.segments == 1 && !scheme_row(b->model->scheme)->expands;
+}
+
 void fill_states(struct building *b, const struct snapshot *rows)
 {
 	struct model *model = b->model;
@@ -150,11 +169,13 @@ void fill_states(struct building *b, const struct snapshot *rows)
 	system->C = rationals(cells);
 	system->K = rationals(cells);
 	for (int i = 0; i < model->n; i++)
-		fill_row(system, i, rows->residual[i].form);
+		fill_row(system, i, nominal_form(b, rows->residual[i].form));
 	check_mass(b);
 	name_inputs(b);
-	for (int i = 0; i < model->n; i++)
-		fill_inputs(system, i, rows->residual[i].form);
+	for (int i = 0; i < model->n; i++) {
+		const struct form *form = rows->residual[i].form;
+		fill_inputs(system, i, parts_params(b) ? nominal_form(b, form) : form);
+	}
 }
 
 void fill_loads(struct building *b, int segment, int row, const struct form *residual)

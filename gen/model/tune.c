@@ -21,8 +21,8 @@ static bool depends(const struct node *node)
 	return false;
 }
 
-/* Params, matrices and lets that are made of tunable ones: each stands after what it is made of. */
-static void spread_tuned(const struct spec *spec)
+/* Each stands after what it is made of. */
+void spread_tuned(const struct spec *spec)
 {
 	for (struct symbol *s = spec->first; s; s = s->next)
 		s->tuned = s->tuned || (s->value && depends(s->value));
@@ -110,17 +110,65 @@ static void check_model(const struct model *model)
 static void check_kind(const struct model *model, const struct request *request)
 {
 	struct place at = model->spec->tunable[0].at;
-	if (model->switching || model->channels > 0 || scheme_row(model->scheme)->holds_coupling)
-		error(at, "tunable params are for scheme exact and linear models", "%s cannot be retuned",
-		      model->switching      ? "a piecewise-linear model"
-		      : model->channels > 0 ? "a model with a leftover"
-					    : format("scheme %s", scheme_name(model->scheme)));
+	if (scheme_row(model->scheme)->holds_coupling)
+		error(at, "tunable params are for scheme exact, and for what a scheme leaves over",
+		      "scheme %s cannot be retuned", scheme_name(model->scheme));
 	if (request->reduce)
 		error(at, NULL,
 		      "--reduce takes out what is not seen at the spec's values: it does not go with tunable params");
 	if (model->system.states > LIMIT_UNROLLED_STATES)
 		error(at, NULL, "tunable params are built for up to %d states: the model has %d", LIMIT_UNROLLED_STATES,
 		      model->system.states);
+}
+
+/* ---- params that the leftover and outputs read ---- */
+
+static void read_by(struct reads *all, const struct model *model, int count, const struct form *const *form)
+{
+	const struct reads own = reads_of(model, count, form);
+	const int inputs = model->spec->inputs;
+	for (int k = 0; k < model->spec->tunables; k++)
+		all->param[k] = all->param[k] || own.param[k] ||
+				(inputs + k < model->system.inputs && own.input[inputs + k]);
+}
+
+static void warn_of_unread(const struct model *model)
+{
+	const struct spec *spec = model->spec;
+	const bool atoms = model->system.inputs == spec->inputs;
+	struct reads all = reads_of(model, model->selector != NULL, &model->selector);
+	for (int k = 0; k < model->operators; k++)
+		read_by(&all, model, model->channels, (const struct form *const *)model->operator[k].left);
+	for (int i = 0; i < model->n && model->whole; i++)
+		read_by(&all, model, 1, &(const struct form *){ model->whole->residual[i].form });
+	for (int i = 0; i < model->outputs; i++) {
+		read_by(&all, model, model->output[i].left != NULL, &(const struct form *){ model->output[i].left });
+		for (int k = 0; k < spec->tunables && !atoms; k++)
+			all.param[k] = all.param[k] || mpq_sgn(model->output[i].input[0][spec->inputs + k]) != 0;
+	}
+	for (int k = 0; k < spec->tunables; k++)
+		if (!all.param[k])
+			say_warning(spec->tunable[k].at, NULL, "tunable '%s' changes nothing that the target computes",
+				    spec->tunable[k].symbol->name);
+}
+
+/* Nothing is to be computed anew: the expressions read the instance's own. */
+static void list_held(struct model *model)
+{
+	struct tuning *t = NEW(struct tuning);
+	t->params = model->spec->tunables;
+	t->param = model->spec->tunable;
+	t->nominal = rationals((size_t)t->params);
+	for (int k = 0; k < t->params; k++)
+		param_value(t->param[k].symbol, t->nominal[k]);
+	model->held = t;
+	if (!model->relative)
+		warn_of_unread(model);
+}
+
+const struct tuning *tunables_of(const struct model *model)
+{
+	return model->tuning ? model->tuning : model->held;
 }
 
 /* ---- the model at other values ---- */
@@ -557,6 +605,10 @@ bool find_tuning(struct model *model, const struct request *request)
 	const struct spec *spec = model->spec;
 	if (spec->tunables == 0)
 		return true;
+	if (model->keeps_params) {
+		list_held(model);
+		return true;
+	}
 	struct tuning *t = NEW(struct tuning);
 	struct search s = { .tuning = t, .model = model, .request = request };
 	t->params = spec->tunables;

@@ -62,7 +62,9 @@ static void choose_operator(void *context)
 	const struct model *model = work->j->b->model;
 	struct collector *c = &work->j->b->collector;
 	struct fixing *fixing = ARRAY(struct fixing, (size_t)model->system.states + 1);
-	const struct form *now = form_at(point_new(c, jacobian_point(work->j, fixing), fixing), model->selector);
+	struct point *point = point_new(c, jacobian_point(work->j, fixing), fixing);
+	point_at_values(point);
+	const struct form *now = form_at(point, model->selector);
 	if (!is_constant(now))
 		abandon();
 	mpq_t value;

@@ -1123,6 +1123,7 @@ static void read_tunable(struct parser *p)
 		if (spec->tunables == LIMIT_TUNABLES)
 			error(token.at, NULL, "more tunable params than the limit of %d", LIMIT_TUNABLES);
 		symbol->tuned = true;
+		symbol->tunable = spec->tunables + 1;
 		ENLARGE(spec->tunable, (size_t)spec->tunables + 1);
 		spec->tunable[spec->tunables++] = (struct tunable){ token.at, symbol };
 	} while (take_op(p, ","));

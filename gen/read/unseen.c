@@ -186,8 +186,10 @@ static void drop_symbols(struct sight *sight, const bool *gone)
 		bool drop = gone[s->number] && s->kind != SYMBOL_PARAM;
 		if (drop && s->kind == SYMBOL_COORD)
 			name_unseen(spec, s);
-		if (gone[s->number])
+		if (gone[s->number]) {
 			s->tuned = false;
+			s->tunable = 0;
+		}
 		if (drop)
 			continue;
 		if (s->kind == SYMBOL_COORD) {
@@ -210,6 +212,8 @@ static void drop_others(struct spec *spec, const bool *gone, int tunables)
 	for (int i = 0; i < tunables; i++)
 		if (!gone[spec->tunable[i].symbol->number])
 			spec->tunable[spec->tunables++] = spec->tunable[i];
+	for (int i = 0; i < spec->tunables; i++)
+		spec->tunable[i].symbol->tunable = i + 1;
 	for (int i = 0; i < spec->initials; i++)
 		if (!gone[spec->initial[i].coord->number])
 			spec->initial[initials++] = spec->initial[i];

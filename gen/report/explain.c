@@ -83,13 +83,19 @@ static void person_held(FILE *to, const struct step *step)
 		growth_rate(step), readable_text(step->model->h));
 }
 
-static void person_tuning(FILE *to, const struct tuning *t)
+static void person_tuning(FILE *to, const struct model *model)
 {
+	const struct tuning *t = tunables_of(model);
 	fputs("Tunable on the target:", to);
 	for (int k = 0; k < t->params; k++)
 		fprintf(to, "%s %s = %s", k ? "," : "", t->param[k].symbol->name, readable_text(t->nominal[k]));
-	fprintf(to, "; the equations there have %d term%s%s.\n", t->terms, t->terms == 1 ? "" : "s",
-		t->solves ? ", and are solved for the highest derivatives" : "");
+	if (model->held && model->switching)
+		fputs("; they act like held inputs.\n", to);
+	else if (model->held)
+		fputs("; expressions read them there. Operators, orders and choices are those of these values.\n", to);
+	else
+		fprintf(to, "; the equations there have %d term%s%s.\n", t->terms, t->terms == 1 ? "" : "s",
+			t->solves ? ", and are solved for the highest derivatives" : "");
 }
 
 /* What the step keeps in the place of positions and velocities as written */
@@ -159,8 +165,8 @@ static void person_step(FILE *to, const struct step *step)
 				shortest(step->shown->branch->whole->Phi[i * model->system.states + j].value));
 		fputc('\n', to);
 	}
-	if (model->tuning)
-		person_tuning(to, model->tuning);
+	if (tunables_of(model))
+		person_tuning(to, model);
 	if (model->switching)
 		fprintf(to, "%s_at: like a step, with every crossing on the way.\n", model->name);
 	else if (model->tuning)
@@ -236,7 +242,7 @@ static long bytes_of_regions(const struct step *step)
 {
 	const struct switching *s = step->model->switching;
 	long size = step->layout.size, matrices = s->systems;
-	long bytes = 8 * (s->expressions * size + matrices * (2 * size * size + 3 * s->expressions * size)) +
+	long bytes = 8 * (s->segments * s->expressions * size + matrices * (2 * size * size + 3 * s->expressions * size)) +
 		     4 * (s->regions + s->expressions + matrices);
 	return bytes + (step->swift ? swift_bytes(step) : 0) + (has_events(s) ? guard_bytes(step) : 0);
 }
@@ -258,10 +264,26 @@ static void person_expressions(FILE *to, const struct step *step)
 {
 	const struct switching *s = step->shown->model->switching;
 	for (int i = 0; i < s->expressions; i++) {
-		fprintf(to, "    expression %d: %s, breakpoints", i,
-			form_text(step->shown->model, s->expression[i].form));
+		fprintf(to, "    expression %d: %s%s breakpoints", i, spoken_expression(step->shown->model, i),
+			s->expression[i].segments > 1 ? ";" : ",");
 		for (int k = 0; k < s->expression[i].breaks; k++)
 			fprintf(to, "%s %s", k ? "," : "", readable_text(s->expression[i].at[k]));
+		fputc('\n', to);
+	}
+}
+
+/* What chooses formulas by the state, of a series */
+static void person_divided(FILE *to, const struct step *step)
+{
+	const struct expansion *x = step->expansion;
+	fprintf(to, "The state chooses formulas; a series ends where an expression passes a breakpoint, at most %d "
+		    "times in a step:\n", MAX_EVENTS);
+	for (int i = 0; i < x->expressions; i++) {
+		const struct divided *d = &x->expression[i];
+		mpq_t *rising = rising_breakpoints(d);
+		fprintf(to, "    expression %d: %s, breakpoints", i, divided_text(step, i));
+		for (int k = 0; k < d->breaks; k++)
+			fprintf(to, "%s %s", k ? "," : "", readable_text(rising[k]));
 		fputc('\n', to);
 	}
 }
@@ -281,7 +303,9 @@ static void person_intervals(FILE *to, const struct switching *s, int region)
 	fputs(" (intervals", to);
 	for (int i = 0; i < s->expressions; i++)
 		fprintf(to, " %d", interval_of(s, region, i));
-	fprintf(to, "): matrix %d\n", s->region[region].system);
+	fprintf(to, "%s): matrix %d\n",
+		s->segments > 1 ? format("; segment %d of time", segment_of_region(s, region) + 1) : "",
+		s->region[region].system);
 }
 
 static void person_way(FILE *to, const struct step *step, const char *of)
@@ -311,9 +335,9 @@ static void person_regions(FILE *to, const struct step *step)
 {
 	const struct switching *s = step->shown->model->switching;
 	fprintf(to,
-		"Piecewise linear: %d regions, %d of them different; in each nothing is approximated, every constant "
+		"Piecewise linear: %d regions%s, %d of them different; in each nothing is approximated, every constant "
 		"is correctly rounded.\n",
-		possible_regions(s), s->systems);
+		possible_regions(s), s->segments > 1 ? format(" in %d segments of time", s->segments) : "", s->systems);
 	person_expressions(to, step);
 	person_frictions(to, s);
 	person_impacts(to, step->shown->model);
@@ -322,7 +346,7 @@ static void person_regions(FILE *to, const struct step *step)
 			s->sharing);
 	for (int r = 0; r < s->regions; r++)
 		if (s->region[r].possible) {
-			fprintf(to, "    region %d", r);
+			fprintf(to, "    region %d", r % regions_at_once(s));
 			person_intervals(to, s, r);
 		}
 	person_way(to, step, "A step");
@@ -440,6 +464,8 @@ static void person_split(FILE *to, const struct step *step)
 		fprintf(to, " where all is smooth; here of order %s at most: %s", order_text(model),
 			smoothness_text(model));
 	fputs(".\n", to);
+	if (step->expansion && step->expansion->expressions > 0)
+		person_divided(to, step);
 	if (step->expansion)
 		person_reach(to, step);
 	fprintf(to, "r, left to scheme %s, is a force on each of these equations%s:\n", scheme_name(model->scheme),
@@ -705,12 +731,18 @@ static void json_expressions(FILE *to, const struct step *step)
 	fputs("  \"expressions\": [", to);
 	for (int i = 0; i < s->expressions; i++) {
 		fprintf(to, "%s\n    {\"expression\": \"%s\", \"breakpoints\": [", i ? "," : "",
-			form_text(step->shown->model, s->expression[i].form));
+			spoken_expression(step->shown->model, i));
 		for (int k = 0; k < s->expression[i].breaks; k++)
 			fprintf(to, "%s%.17g", k ? ", " : "", nearest_double(s->expression[i].at[k]));
 		fputs("]}", to);
 	}
 	fputs("],\n", to);
+}
+
+/* Of time, where there are several */
+static const char *json_segment(const struct switching *s, int region)
+{
+	return s->segments > 1 ? format(", \"segment\": %d", segment_of_region(s, region)) : "";
 }
 
 static void json_frictions(FILE *to, const struct switching *s)
@@ -745,7 +777,8 @@ static void json_region_list(FILE *to, const struct switching *s)
 	for (int r = 0; r < s->regions; r++) {
 		if (!s->region[r].possible)
 			continue;
-		fprintf(to, "%s\n    {\"number\": %d, \"matrix\": %d}", first ? "" : ",", r, s->region[r].system);
+		fprintf(to, "%s\n    {\"number\": %d%s, \"matrix\": %d}", first ? "" : ",", r % regions_at_once(s),
+			json_segment(s, r), s->region[r].system);
 		first = false;
 	}
 	fputs("],\n", to);
@@ -767,8 +800,8 @@ static void json_part(FILE *to, const struct switching *all, int index)
 	for (int r = 0; r < s->regions && s->expressions > 0; r++) {
 		if (!s->region[r].possible)
 			continue;
-		fprintf(to, "%s{\"number\": %d, \"matrix\": %d}", first ? "" : ", ",
-			share_of_region(part, all, r), s->region[r].system);
+		fprintf(to, "%s{\"number\": %d%s, \"matrix\": %d}", first ? "" : ", ",
+			share_of_region(part, all, r), json_segment(s, r), s->region[r].system);
 		first = false;
 	}
 	fputs("]}", to);
@@ -857,6 +890,21 @@ static void json_scene(FILE *to, const struct spec *spec)
 	fputs("],\n", to);
 }
 
+static void json_divided(FILE *to, const struct step *step)
+{
+	const struct expansion *x = step->expansion;
+	fputs("  \"expressions\": [", to);
+	for (int i = 0; i < x->expressions; i++) {
+		mpq_t *rising = rising_breakpoints(&x->expression[i]);
+		fprintf(to, "%s\n    {\"expression\": \"%s\", \"breakpoints\": [", i ? "," : "",
+			json_text(divided_text(step, i)));
+		for (int k = 0; k < x->expression[i].breaks; k++)
+			fprintf(to, "%s%.17g", k ? ", " : "", nearest_double(rising[k]));
+		fputs("]}", to);
+	}
+	fputs("],\n", to);
+}
+
 /* Its order here, and what it goes by */
 static void json_scheme(FILE *to, const struct step *step)
 {
@@ -876,6 +924,8 @@ static void json_scheme(FILE *to, const struct step *step)
 		fprintf(to, "  \"substeps\": %d,\n", model->truncation.substeps);
 	if (step->expansion && model->truncation.over > 1)
 		fprintf(to, "  \"over\": %d,\n", model->truncation.over);
+	if (step->expansion && step->expansion->expressions > 0)
+		json_divided(to, step);
 	if (step->expansion)
 		json_reach(to, step);
 }
@@ -899,14 +949,14 @@ void explain_json(FILE *to, const struct step *step)
 		step->model->asked.compensated ? "compensated" : "plain", target_name(), nearest_double(model->h));
 	json_names(to, "states", model->system.states, model->state_name);
 	json_names(to, "outputs", model->outputs, output);
-	json_names(to, "inputs", model->system.inputs, input);
+	json_names(to, "inputs", model->spec->inputs, input);
 	json_dropped(to, model);
 	if (model->shortened)
 		json_shortening(to, model);
 	if (model->spec->parts)
 		json_scene(to, model->spec);
-	if (model->tuning)
-		json_tuning(to, model->tuning);
+	if (tunables_of(model))
+		json_tuning(to, tunables_of(model));
 	json_rational_matrix(to, "M", model->written->n, (const mpq_t *)model->written->system.M);
 	json_rational_matrix(to, "C", model->written->n, (const mpq_t *)model->written->system.C);
 	json_rational_matrix(to, "K", model->written->n, (const mpq_t *)model->written->system.K);

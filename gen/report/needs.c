@@ -2,6 +2,7 @@
 /* What was chosen for the needs of a spec, and from what: accuracy against cost. */
 #include "report/report.h"
 
+#include <math.h>
 #include <string.h>
 
 /* modes 7-12 dropped, static gain kept; NULL: all are there */
@@ -41,7 +42,9 @@ const char *certified_text(const struct alternative *a, int i)
 			      a->inputs_tried ? format("; the worst of %d inputs tried", a->inputs_tried) : "");
 	const char *dropped = dropped_text(a);
 	if (!dropped)
-		return format("certified %.2g (rounding: %s)", c->rounding, arithmetic_text(a));
+		return format("certified %.2g (rounding: %s)", error_told(c), arithmetic_text(a));
+	if (c->walked)
+		return format("certified %.2g (%.2g for %s; %s)", c->error, c->dropped, dropped, arithmetic_text(a));
 	return format("certified %.2g = %.2g (%s) + %.2g (%s)", c->rounding + c->dropped, c->dropped, dropped,
 		      c->rounding, arithmetic_text(a));
 }
@@ -72,12 +75,21 @@ static const char *neighbours_text(const struct alternative *a)
 		      a->neighbours > 2 ? "are each" : "is");
 }
 
+/* What was walked is true of products and sums that are each rounded. */
+static const char *contracted_text(const struct alternative *a, int i)
+{
+	const struct certificate *c = &a->certificate[i];
+	return !c->walked      ? ""
+	       : a->as_written ? "; a compiler that contracts products is refused"
+			       : format("; %.2g where a compiler contracts products", c->rounding + c->dropped);
+}
+
 const char *margin_text(const struct step *step, int i)
 {
 	const struct alternative *a = &step->choice->alternative[step->choice->taken];
 	const struct certificate *c = &a->certificate[i];
-	return format("%s at every sample, a margin of %.3g%s", certified_text(a, i),
-		      c->needed / (c->rounding + c->dropped), neighbours_text(a));
+	return format("%s at every sample, a margin of %.3g%s%s", certified_text(a, i), c->needed / error_told(c),
+		      neighbours_text(a), contracted_text(a, i));
 }
 
 static void person_alternative(FILE *to, const struct step *step, int i)
@@ -161,13 +173,18 @@ static void json_modes(FILE *to, const struct alternative *a)
 		s && s->statics ? "true" : "false");
 }
 
+static const char *json_number(double x)
+{
+	return isfinite(x) ? format("%.17g", x) : "null";
+}
+
 static void json_error(FILE *to, const struct alternative *a, int k)
 {
 	const struct certificate *c = &a->certificate[k];
-	fprintf(to, "%s{\"%s\": %.17g, ", k ? ", " : "", a->measured ? "measured" : "certified",
-		c->rounding + c->dropped);
+	fprintf(to, "%s{\"%s\": %.17g, ", k ? ", " : "", a->measured ? "measured" : "certified", error_told(c));
 	if (!a->measured)
-		fprintf(to, "\"dropped\": %.17g, \"rounding\": %.17g, ", c->dropped, c->rounding);
+		fprintf(to, "\"walked\": %s, \"dropped\": %s, \"rounding\": %s, ", c->walked ? "true" : "false",
+			json_number(c->dropped), json_number(c->known ? c->rounding : HUGE_VAL));
 	fprintf(to, "\"needed\": %.17g}", c->needed);
 }
 

@@ -305,6 +305,9 @@ static void print_regions(FILE *to, const struct step *step)
 		"region\n",
 		s->expressions == 1 ? "the expression" : format("one of %d expressions", s->expressions),
 		step->series.degree);
+	if (s->segments > 1)
+		fprintf(to, "    at a change of the loads: as far as there, then the region with the same intervals in the "
+			    "next of %d segments of time\n", s->segments);
 	print_matrices(to, step);
 }
 
@@ -343,6 +346,7 @@ static const char *term_text(const struct step *step, const struct sequence_term
 	case TERM_LOAD:     return load_column_text(system, t->a);
 	case TERM_INPUT:    return system->input[t->a].name;
 	case TERM_SLOPE:    return format("%s'", system->input[t->a].name);
+	case TERM_PARAM:    return step->model->spec->tunable[t->a].symbol->name;
 	case TERM_SEQUENCE: return sequence_text(step, t->a);
 	default:            return format("%s %s", sequence_text(step, t->a), sequence_text(step, t->b));
 	}
@@ -361,6 +365,18 @@ static const char *sequence_sum(const struct step *step, const struct sequence *
 	return *text ? text : "0";
 }
 
+/* By what it is chosen */
+static const char *chooser_text(const struct step *step, const struct sequence *s)
+{
+	const struct divided *d = &step->expansion->expression[s->expression];
+	switch (s->choice) {
+	case CHOICE_BY_STATE:    return format("%s above %s", sequence_text(step, d->sequence),
+					       readable_text(d->at[s->breakpoint]));
+	case CHOICE_BY_SEQUENCE: return format("%s not 0", sequence_text(step, s->test));
+	default:                 return "t";
+	}
+}
+
 static const char *sequence_definition(const struct step *step, const struct sequence *s)
 {
 	const char *a = s->a == NONE ? "1" : sequence_text(step, s->a);
@@ -371,7 +387,7 @@ static const char *sequence_definition(const struct step *step, const struct seq
 	case SEQUENCE_ROOT:	return format("sqrt(%s)", a);
 	case SEQUENCE_POWER:	return format("%s ^ %s", a, shortest(s->exponent));
 	case SEQUENCE_RATE:	return format("the derivative of %s", a);
-	case SEQUENCE_CHOICE:	return format("%s or %s, by t", a, b);
+	case SEQUENCE_CHOICE:	return format("%s or %s, by %s", a, b, chooser_text(step, s));
 	default:
 		if (s->state != NONE)
 			return format("integral of %s", sequence_sum(step, s));

@@ -24,13 +24,13 @@ struct code *code_of_text(struct place at, const char *text)
 
 struct printed { const struct step *step; char *text; size_t length; };
 
-static char *text_of_step(const struct step *step)
+static char *text_of_step(const struct step *step, bool rhs)
 {
 	char *text = NULL, *single = NULL;
 	size_t length = 0;
 	FILE *to = open_memstream(&text, &length);
 	need_memory(to);
-	emit_code(to, step, "", NULL, true);
+	emit_code(to, step, "", NULL, rhs);
 	fclose(to);
 	if (!step->model->asked.single)
 		return need_memory(text);
@@ -42,9 +42,9 @@ static char *text_of_step(const struct step *step)
 	return need_memory(single);
 }
 
-struct code *code_of_step(struct place at, const struct step *step)
+struct code *code_of_step(struct place at, const struct step *step, bool rhs)
 {
-	char *text = text_of_step(step);
+	char *text = text_of_step(step, rhs);
 	struct code *c = code_of_text(at, text);
 	free(text);
 	return c;
@@ -88,6 +88,8 @@ struct running *running_new(struct code *code, const struct step *step)
 	r->instance = allocate(1, type->type->size);
 	for (int i = 0; i < PARTS; i++)
 		r->part[i] = compiled(r, names[i]);
+	discard(code->lexemes.list);
+	code->lexemes = (struct lexemes){ 0 };
 	r->y = ARRAY(double, (size_t)r->states + 1);
 	r->u = ARRAY(double, 2 * (size_t)r->inputs + 1);
 	r->out = ARRAY(double, (size_t)r->outputs + 1);

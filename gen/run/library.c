@@ -5,7 +5,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { MOST_ARGUMENTS = 7 };
+enum { MOST_ARGUMENTS = 8 };
 
 /* Checked against the header's own by a test */
 const char library_types[] =
@@ -29,6 +29,10 @@ const char library_types[] =
 	"const float *at; const int *matrix, *halvings; const float *A, *Phi, *tangent, *chord_error, *cubic_error;\n"
 	"int degree, max_events, max_splits; } pl_switchingf;\n"
 	"typedef struct pl_crossingf { float time; int expression, breakpoint, upward; } pl_crossingf;\n"
+	"typedef struct pl_divided { int expressions, columns, degree; const int *column, *breaks; const double *at; }\n"
+	"pl_divided;\n"
+	"typedef struct pl_dividedf { int expressions, columns, degree; const int *column, *breaks; const float *at; }\n"
+	"pl_dividedf;\n"
 	"enum { PL_NOT_FINITE = 1, PL_TOO_MANY_EVENTS = 2, PL_TOO_MANY_STEPS = 4, PL_INACCURATE = 8 };\n";
 
 /* ---- calls ---- */
@@ -94,6 +98,12 @@ CALL(switching_advance, NOTHING, pl_switching_advance(P(0), R(1), P(2), P(3), P(
 CALL(switchingf_start, NOTHING, pl_switchingf_start(P(0), P(1), P(2), P(3)))
 CALL(switchingf_step, NOTHING, pl_switchingf_step(P(0), P(1), P(2), P(3), P(4)))
 CALL(switchingf_advance, NOTHING, pl_switchingf_advance(P(0), F(1), P(2), P(3), P(4), P(5)))
+CALL(divided_place, WHOLE, pl_divided_place(P(0), P(1), P(2), P(3)))
+CALL(divided_left, WHOLE, pl_divided_left(P(0), P(1), P(2), P(3), P(4)))
+CALL(divided_next, REAL, pl_divided_next(P(0), P(1), P(2), P(3), R(4), P(5), P(6), P(7)))
+CALL(dividedf_place, WHOLE, pl_dividedf_place(P(0), P(1), P(2), P(3)))
+CALL(dividedf_left, WHOLE, pl_dividedf_left(P(0), P(1), P(2), P(3), P(4)))
+CALL(dividedf_next, REAL, pl_dividedf_next(P(0), P(1), P(2), P(3), F(4), P(5), P(6), P(7)))
 CALL(atan2, REAL, atan2(R(0), R(1)))
 CALL(pow, REAL, pow(R(0), R(1)))
 CALL(fmin, REAL, fmin(R(0), R(1)))
@@ -103,6 +113,7 @@ CALL(powf, REAL, powf(F(0), F(1)))
 CALL(fminf, REAL, fminf(F(0), F(1)))
 CALL(fmaxf, REAL, fmaxf(F(0), F(1)))
 CALL(work, WHOLE, PL_SWITCHING_WORK(W(0), W(1), W(2)))
+CALL(divided_work, WHOLE, PL_DIVIDED_WORK(W(0)))
 
 #define SINGLE(name) static double single_##name(double x) { return (double)name##f((float)x); }
 SINGLE(sin)
@@ -157,6 +168,9 @@ static const struct library_function functions[] = {
 	RUNTIME_OF(switching_advance, "vpdpppp", 0, 0, TAKES_PIECES), RUNTIME(switchingf_start, "vpppp"),
 	RUNTIME_OF(switchingf_step, "vppppp", 0, 0, TAKES_PIECES),
 	RUNTIME_OF(switchingf_advance, "vpdpppp", 0, 0, TAKES_PIECES),
+	RUNTIME(divided_place, "ipppp"), RUNTIME(divided_left, "ippppp"), RUNTIME(divided_next, "dppppdppp"),
+	RUNTIME(dividedf_place, "ipppp"), RUNTIME(dividedf_left, "ippppp"), RUNTIME(dividedf_next, "fppppdppp"),
+	{ "PL_DIVIDED_WORK", "ii", NULL, call_divided_work, NULL, 0, 0, TAKES_NO_MORE },
 	{ "PL_SWITCHING_WORK", "iiii", NULL, call_work, NULL, 0, 0, TAKES_NO_MORE }, MATH(sin), MATH(cos), MATH(tan),
 	MATH(exp), MATH(log), MATH(sqrt), MATH(fabs), MATH(sinh), MATH(cosh), MATH(tanh), MATH(asin), MATH(acos),
 	MATH(atan), MATH_OF_TWO(atan2), MATH_OF_TWO(pow), MATH_OF_TWO(fmin), MATH_OF_TWO(fmax),

@@ -191,9 +191,9 @@ const struct operation *read_body(struct code *c, struct entity *function);
 
 /* The text has to be one that the emitters wrote. `at`: the place of whoever wants it run */
 struct code *code_of_text(struct place at, const char *text);
-struct code *code_of_step(struct place at, const struct step *step); /* with NAME_rhs */
+struct code *code_of_step(struct place at, const struct step *step, bool rhs); /* rhs: with NAME_rhs */
 struct running;                     /* an instance */
-/* one of a model; what its functions need is compiled now, and may leave the statement */
+/* one of a model; what its functions need is compiled now, and may leave the statement; then the text goes */
 struct running *running_new(struct code *code, const struct step *step);
 const struct step *running_step_of(const struct running *r);
 void   running_start(struct running *r, double t, const double *y);  /* any state; y NULL: the spec's, at 0 */

@@ -132,6 +132,8 @@ static bool raise_operands(struct expansion *x, int i)
 	int operand = integral ? 0 : s->kind == SEQUENCE_RATE ? top + 1 : top;
 	changed |= raise(x, s->a, operand);
 	changed |= raise(x, s->b, operand);
+	if (s->kind == SEQUENCE_CHOICE && s->choice == CHOICE_BY_SEQUENCE)
+		changed |= raise(x, s->test, 0);
 	return changed;
 }
 
@@ -141,6 +143,8 @@ static void find_tops(struct sequencing *w)
 	bool changed = true;
 	for (int i = 0; i < w->system->states; i++)
 		x->sequence[i].top = x->order;
+	for (int i = 0; i < x->columns; i++)
+		x->sequence[x->column[i]].top = x->order;
 	while (changed) {
 		changed = false;
 		for (int i = 0; i < x->count; i++)
@@ -166,6 +170,8 @@ static void find_late(struct sequencing *w)
 			}
 			late = late || (s->a != NONE && x->sequence[s->a].late);
 			late = late || (s->b != NONE && x->sequence[s->b].late);
+			if (s->kind == SEQUENCE_CHOICE && s->choice == CHOICE_BY_SEQUENCE)
+				late = late || x->sequence[s->test].late;
 			if (s->kind == SEQUENCE_INTEGRAL)
 				late = false;
 			changed = changed || late != s->late;
@@ -229,6 +235,7 @@ struct expansion *expansion_of(const struct step *step, int order)
 	start_states(w);
 	for (int i = 0; i < system->states; i++)
 		expand_state(w, i);
+	rank_breakpoints(w->x);
 	find_degrees(w);
 	find_tops(w);
 	find_late(w);

@@ -70,7 +70,7 @@ static void guard_releases(const struct step *step, struct guards *g, int region
 		double *row = ARRAY(double, (size_t)step->layout.size);
 		if (release->expression != expression)
 			continue;
-		row_over_x(step, release->row, row);
+		row_over_x(step, release->row, 0, row);
 		add_guard(g, step->layout.size, s->region[region].system, row,
 			  (struct guard){ .expression = expression,
 					  .breakpoint = interval - !release->upward,
@@ -83,7 +83,7 @@ static void guard_releases(const struct step *step, struct guards *g, int region
 static void add_assignment(const struct step *step, struct guards *g, int state, const struct output *row)
 {
 	struct held_state new = { state, ARRAY(double, (size_t)step->layout.size) };
-	row_over_x(step, row, new.value);
+	row_over_x(step, row, 0, new.value);
 	ENLARGE(g->assignment, (size_t)g->assignments + 1);
 	g->assignment[g->assignments++] = new;
 }
@@ -131,7 +131,7 @@ static void strike(const struct step *step, struct guards *g, const struct impac
 	mpq_init(part);
 	if (impact->bounces) {
 		new.still = set_of_jumps(step, g, impact->jumps, impact->still);
-		row_over_x(step, impact->speed_row, new.speed);
+		row_over_x(step, impact->speed_row, 0, new.speed);
 		for (int j = 0; j < step->model->n; j++) {
 			mpq_mul(part, impact->direction[j], impact->factor);
 			new.back[j] = round_rational(part);
@@ -165,7 +165,8 @@ double *grips_of(const struct step *step)
 	for (int r = 0; r < s->regions; r++)
 		for (int i = 0; i < s->frictions; i++)
 			if (s->region[r].grip[i])
-				row_over_x(step, s->region[r].grip[i], grip + ((size_t)r * count + (size_t)i) * size);
+				row_over_x(step, s->region[r].grip[i], 0,
+					   grip + ((size_t)r * count + (size_t)i) * size);
 	return grip;
 }
 

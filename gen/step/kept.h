@@ -50,10 +50,18 @@ double sum_of_input(const struct linear *system, long steps, const struct kept *
 double slopes_of_inputs(const struct linear *system, const struct kept *k, double h);
 struct extent extent_of_kept(const struct step *step, long steps, const struct spread *spread, struct kept *k);
 
+/* ---- lasting.c: bounds of the same, of so many samples that they are not walked through ---- */
+
+bool is_lasting(const struct kept *k, long steps);
+double lasting_output(const struct kept *k, const struct spread *spread, double h); /* inputs 0: its largest size */
+void lasting_sizes(const struct spread *spread, struct kept *k, double h);          /* of the states */
+/* what samples of an input in its bound do to the output at most; columns from `first` on are its taps */
+double lasting_input(const struct linear *system, const struct spread *spread, const struct kept *k, int input,
+		     int first);
+
 /* ---- rounding.c ---- */
 
 const char *certificate_objection(const struct errors *e);   /* NULL: there is none */
-long samples_until(const struct requirement *r, mpq_srcptr h); /* below 0: too many */
 struct errors errors_of(const struct step *step, const struct requirement *r);
 
 #endif

@@ -4,15 +4,24 @@
 
 #include <math.h>
 
-enum { MOST_TRACED = 4000000 };      /* samples at which what is lost is kept */
-
 /* ---- what is lost with modes ---- */
 
 struct loss {                       /* of one output, summed over modes */
 	long steps;
+	bool lasts;                 /* too long to be walked through: modes are not traced, their bounds are added */
 	double *trace, **input;     /* at each sample; m steps after a sample of an input */
-	double slack;               /* how far what is found may be off */
+	double slack;               /* how far what is found may be off; of long runs a bound of all that is lost */
 };
+
+static void add_lasting_loss(const struct step *step, const struct kept *k, const struct spread *spread,
+			     struct loss *loss)
+{
+	const struct linear *system = &step->branch->system;
+	const double h = mpq_get_d(step->model->h);
+	loss->slack += lasting_output(k, spread, h) + slopes_of_inputs(system, k, h);
+	for (int i = 0, c = 0; i < system->inputs; c += system->input[i++].hold + 1)
+		loss->slack += lasting_input(system, spread, k, i, c);
+}
 
 /* One more mode is dropped: `step` is that of what is lost with it. */
 static bool add_loss(const struct step *step, const struct requirement *r, struct loss *loss)
@@ -25,6 +34,10 @@ static bool add_loss(const struct step *step, const struct requirement *r, struc
 	const struct spread spread = spread_of(k->n, k->Phi, e.steps + 1);
 	if (!spread.known)
 		return false;
+	if (loss->lasts) {
+		add_lasting_loss(step, k, &spread, loss);
+		return true;
+	}
 	loss->slack += walk_loads(e.steps, mpq_get_d(step->model->h), &spread, k, loss->trace).slack;
 	for (int i = 0, c = 0; i < system->inputs; c += system->input[i++].hold + 1)
 		loss->slack += sum_of_input(system, e.steps, k, i, c, loss->input[i]) *
@@ -94,8 +107,11 @@ double *losses_of(struct modes *modes, const int *order, bool statics, const str
 	const struct linear *system = &modes->model->system;
 	const long steps = samples_until(r, modes->model->h);
 	double *lost = ARRAY(double, (size_t)modes->count + 1);
-	bool good = steps >= 0 && steps <= MOST_TRACED;
-	struct loss loss = no_loss(system, good ? steps : 0);
+	const struct kept shape = { .n = 2, .columns = load_columns(system) };
+	bool good = steps >= 0;
+	const bool lasts = good && is_lasting(&shape, steps);
+	struct loss loss = no_loss(system, good && !lasts ? steps : 0);
+	loss.lasts = lasts;
 	for (int c = modes->count - 1; c >= 0; c--) {
 		const struct step *step = good ? step_of_loss(modes, order[c], statics) : NULL;
 		good = step && add_loss(step, r, &loss);

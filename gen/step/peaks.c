@@ -59,7 +59,7 @@ struct peaks peaks_of(const struct step *step)
 	for (int i = 0; i < step->model->outputs; i++) {
 		if (!step->model->output[i].peak)
 			continue;
-		row_over_x(step, &step->model->output[i], peaks.row + place * size);
+		row_over_x(step, &step->model->output[i], 0, peaks.row + place * size);
 		bend_of_row(step, A, h, peaks.row + place * size, peaks.bend + place * size);
 		place++;
 	}

@@ -99,15 +99,17 @@ static double *finite_slopes(const struct step *step, int branch)
 
 /* ---- expressions as rows over x ---- */
 
-void row_over_x(const struct step *step, const struct output *expression, double *row)
+void row_over_x(const struct step *step, const struct output *expression, int segment, double *row)
 {
 	const struct layout *layout = &step->layout;
 	const struct linear *system = &step->branch->system;
+	int segments = step->shown->model->system.segments;
 	for (int i = 0; i < system->states; i++)
 		row[i] = equation_number(step->model, expression->state[i]).value;
 	for (int l = 0; l < system->loads; l++)
 		for (int k = 0; k < system->load[l].columns && layout->load[l] >= 0; k++)
-			row[layout->load[l] + k] = equation_number(step->model, expression->load[l][k]).value;
+			row[layout->load[l] + k] =
+				equation_number(step->model, expression->load[l][k * segments + segment]).value;
 	for (int i = 0; i < system->inputs; i++) {
 		row[layout->input[i]] = equation_number(step->model, expression->input[0][i]).value;
 		if (system->input[i].hold)
@@ -115,12 +117,15 @@ void row_over_x(const struct step *step, const struct output *expression, double
 	}
 }
 
-static double *rows_of(const struct step *step)
+static double **rows_of(const struct step *step)
 {
 	const struct switching *s = step->model->switching;
-	double *row = ARRAY(double, (size_t)s->expressions * (size_t)step->layout.size);
-	for (int i = 0; i < s->expressions; i++)
-		row_over_x(step, s->expression[i].row, row + i * step->layout.size);
+	double **row = ARRAY(double *, (size_t)s->segments);
+	for (int segment = 0; segment < s->segments; segment++) {
+		row[segment] = ARRAY(double, (size_t)s->expressions * (size_t)step->layout.size);
+		for (int i = 0; i < s->expressions; i++)
+			row_over_x(step, s->expression[i].row, segment, row[segment] + i * step->layout.size);
+	}
 	return row;
 }
 
@@ -201,11 +206,11 @@ static void bound_row(int n, const struct growth *growth, double *row, double fa
 }
 
 /* factor times the slope of each expression */
-static double *slope_rows(const struct step *step, const struct pieces *pieces, const double *A, double factor)
+static double *slope_rows(const struct step *step, const double *rows, const double *A, double factor)
 {
 	int size = step->layout.size, expressions = step->model->switching->expressions;
 	double *slope = ARRAY(double, (size_t)expressions * (size_t)size);
-	memcpy(slope, pieces->row, (size_t)expressions * (size_t)size * sizeof *slope);
+	memcpy(slope, rows, (size_t)expressions * (size_t)size * sizeof *slope);
 	for (int i = 0; i < expressions; i++)
 		times_matrix(size, slope + i * size, A);
 	for (int j = 0; j < expressions * size; j++)
@@ -214,13 +219,13 @@ static double *slope_rows(const struct step *step, const struct pieces *pieces, 
 }
 
 /* factor times a bound of each expression's derivative of this order */
-static double *bound_rows(const struct step *step, const struct pieces *pieces, const double *A,
+static double *bound_rows(const struct step *step, const double *rows, const double *A,
 			  const struct growth *growth, int order, double factor)
 {
 	int size = step->layout.size, expressions = step->model->switching->expressions;
 	double *bound = ARRAY(double, (size_t)expressions * (size_t)size), *row = ARRAY(double, (size_t)size);
 	for (int i = 0; i < expressions; i++) {
-		memcpy(row, pieces->row + i * size, (size_t)size * sizeof *row);
+		memcpy(row, rows + i * size, (size_t)size * sizeof *row);
 		for (int k = 0; k < order; k++)
 			times_matrix(size, row, A);
 		bound_row(size, growth, row, factor, bound + i * size);
@@ -281,9 +286,9 @@ static void fill_bounds(const struct step *step, const struct pieces *pieces, in
 	struct region_piece *piece = &pieces->piece[branch];
 	double d = ldexp(round_rational(step->model->h), -step->branch[branch].halvings);
 	struct growth growth = growth_of(step->layout.size, piece->slopes, d);
-	piece->slope = slope_rows(step, pieces, piece->slopes, d / 3);
-	piece->second = bound_rows(step, pieces, piece->slopes, &growth, 2, d * d / 8);
-	piece->fourth = bound_rows(step, pieces, piece->slopes, &growth, 4, d * d * d * d / 384);
+	piece->slope = slope_rows(step, piece->row, piece->slopes, d / 3);
+	piece->second = bound_rows(step, piece->row, piece->slopes, &growth, 2, d * d / 8);
+	piece->fourth = bound_rows(step, piece->row, piece->slopes, &growth, 4, d * d * d * d / 384);
 	discard(growth.E);
 	discard(growth.most);
 }
@@ -380,17 +385,17 @@ static void gather_loads(const struct step *step, const bool *bounded, double *b
 		bound[first] = still;
 }
 
-static double *slack_rows(const struct step *step, const struct pieces *pieces, const double *A)
+static double *slack_rows(const struct step *step, const double *rows, const double *A, int degree)
 {
 	int size = step->layout.size, expressions = step->model->switching->expressions;
 	double *slack = ARRAY(double, (size_t)(expressions * size)), *term = ARRAY(double, (size_t)size);
 	double epsilon = ldexp(1, step->model->asked.single ? -23 : -52);
 	for (int i = 0; i < expressions; i++) {
 		for (int j = 0; j < size; j++) {
-			term[j] = fabs(pieces->row[i * size + j]);
+			term[j] = fabs(rows[i * size + j]);
 			slack[i * size + j] = 8 * epsilon * term[j];    /* as in the search */
 		}
-		add_slack(size, A, round_rational(step->model->h), pieces->degree, epsilon, term, slack + i * size);
+		add_slack(size, A, round_rational(step->model->h), degree, epsilon, term, slack + i * size);
 	}
 	discard(term);
 	return slack;
@@ -417,13 +422,13 @@ static void fill_whole(const struct step *step, const struct pieces *pieces, int
 	double h = round_rational(step->model->h);
 	struct growth growth = growth_of(size, piece->slopes, h);
 	piece->whole = Phi_of(step, step->branch[branch].whole, 0);
-	piece->off = bound_rows(step, pieces, piece->slopes, &growth, 2, h * h / 8);
-	piece->turn = slope_rows(step, pieces, piece->slopes, h / 3);
-	piece->third = bound_rows(step, pieces, piece->slopes, &growth, 3, h * h * h / 24);
-	piece->bend = bound_rows(step, pieces, piece->slopes, &growth, 4, h * h * h * h / 384);
+	piece->off = bound_rows(step, piece->row, piece->slopes, &growth, 2, h * h / 8);
+	piece->turn = slope_rows(step, piece->row, piece->slopes, h / 3);
+	piece->third = bound_rows(step, piece->row, piece->slopes, &growth, 3, h * h * h / 24);
+	piece->bend = bound_rows(step, piece->row, piece->slopes, &growth, 4, h * h * h * h / 384);
 	piece->still = ARRAY(double, (size_t)expressions);
 	piece->turns = turns_of(step, branch);
-	piece->slack = slack_rows(step, pieces, piece->slopes);
+	piece->slack = slack_rows(step, piece->row, piece->slopes, pieces->degree);
 	for (int i = 0; i < expressions; i++) {
 		fold_loads(step, piece->off + i * size, &piece->still[i]);
 		gather_loads(step, pieces->bounded, piece->slack + i * size);
@@ -472,10 +477,13 @@ static void fill_swift(const struct step *step, struct pieces *pieces)
 
 struct pieces pieces_of(const struct step *step)
 {
-	struct pieces pieces = { .row = rows_of(step), .breakpoint = breakpoints_of(step),
+	struct pieces pieces = { .rows = rows_of(step), .breakpoint = breakpoints_of(step),
 				 .piece = ARRAY(struct region_piece, (size_t)step->branches) };
-	for (int k = 0; k < step->branches; k++)
+	pieces.row = pieces.rows[0];
+	for (int k = 0; k < step->branches; k++) {
 		pieces.piece[k].slopes = finite_slopes(step, k);
+		pieces.piece[k].row = pieces.rows[step->model->switching->system_segment[k]];
+	}
 	for (int k = 0; k < step->branches; k++)
 		pieces.piece[k].Phi = Phi_of(step, step->branch[k].table[0], step->branch[k].halvings);
 	for (int k = 0; k < step->branches && step->model->switching->expressions > 0; k++)

@@ -56,13 +56,13 @@ static void mark_loads_of_region(const struct region *region, int frictions, int
 		*needed = *needed || (region->grip[k] && reads_columns(region->grip[k], load, columns));
 }
 
-static void mark_loads_of(const struct switching *s, bool *needed)
+static void mark_loads_of(const struct switching *s, int segments, bool *needed)
 {
 	for (int l = 0; l < s->system->loads; l++) {
 		for (int k = 0; k < s->systems; k++)
 			needed[l] = needed[l] || load_acts(&s->system[k], &s->system[k].load[l]);
 		for (int e = 0; e < s->expressions; e++)
-			for (int k = 0; k < s->system->load[l].columns; k++)
+			for (int k = 0; k < s->system->load[l].columns * segments; k++)
 				needed[l] = needed[l] || mpq_sgn(s->expression[e].row->load[l][k]) != 0;
 		for (int k = 0; k < s->regions; k++)
 			mark_loads_of_region(&s->region[k], s->frictions, l, s->system->load[l].columns, &needed[l]);
@@ -73,10 +73,11 @@ bool *loads_of_regions(const struct step *step)
 {
 	const struct switching *s = step->model->switching;
 	bool *needed = ARRAY(bool, (size_t)step->branch->system.loads);
+	int segments = step->shown->model->system.segments;
 	for (int p = 0; p < s->parts; p++)
-		mark_loads_of(s->part[p].model->switching, needed);
+		mark_loads_of(s->part[p].model->switching, segments, needed);
 	if (s->parts == 0)
-		mark_loads_of(s, needed);
+		mark_loads_of(s, segments, needed);
 	return needed;
 }
 

@@ -42,6 +42,8 @@ static long double sum_value(const struct values *v, const struct sequence *s, i
 		long double operand = 0;
 		if (t->kind == TERM_TIME)
 			operand = t->a == 0;
+		else if (t->kind == TERM_PARAM)
+			operand = mpq_get_d(v->step->model->held->nominal[t->a]);
 		else if (t->kind == TERM_LOAD)
 			operand = v->load[t->a];
 		else if (t->kind == TERM_SEQUENCE)
@@ -88,6 +90,12 @@ static long double form_at_start(const struct values *v, const struct form *form
 
 static bool holds_at_start(const struct values *v, const struct sequence *s)
 {
+	if (s->choice == CHOICE_BY_SEQUENCE)
+		return v->c[s->test][0] != 0;
+	if (s->choice == CHOICE_BY_STATE) {
+		const struct divided *d = &v->x->expression[s->expression];
+		return v->c[d->sequence][0] > (long double)mpq_get_d(d->at[s->breakpoint]);
+	}
 	long double a = form_at_start(v, s->left), b = form_at_start(v, s->right);
 	switch (s->comparison) {
 	case CMP_LT: return a < b;

@@ -10,7 +10,7 @@
 
 #include <math.h>
 
-#define WORK 4e9                    /* operations of a walk through all samples */
+#define WORK 4e8                    /* products of powers of a step */
 
 /* ---- what one step rounds ---- */
 
@@ -251,8 +251,10 @@ const char *certificate_objection(const struct errors *e)
 	const struct linear *system = &e->step->branch->system;
 	if (system->states > LIMIT_NEED_STATES)
 		return format("it is built for up to %d states", LIMIT_NEED_STATES);
-	const int each = system->states * system->states + 32 * load_columns(system) + 32;
-	if (e->steps < 0 || (double)e->steps * each > WORK)
+	if (system->segments > 1)
+		return "loads change their formula in time, and until then the run is too long to be walked through";
+	const double powers = 2 * sqrt((double)e->steps) * pow(system->states, 3);
+	if (e->steps < 0 || powers > WORK)
 		return "there are too many samples until then";
 	return NULL;
 }
@@ -269,6 +271,11 @@ long samples_until(const struct requirement *r, mpq_srcptr h)
 	mpq_clear(steps);
 	mpz_clear(last);
 	return count;
+}
+
+double error_told(const struct certificate *c)
+{
+	return c->walked ? c->error : c->rounding + c->dropped;
 }
 
 double needed_error(const struct requirement *r, double largest)

@@ -231,6 +231,7 @@ static void build_expanded_step(struct step *step)
 	step->layout = layout_of(&step->branch->system, false);
 	read_table_if_there(step);
 	build_series(step);
+	check_divided(step);
 	count_series(step);
 }
 

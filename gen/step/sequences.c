@@ -87,7 +87,7 @@ static int only_sequence(const struct sum *sum)
 	return plain ? key->a : NONE;
 }
 
-static int sequence_of_form(struct sequencing *w, const struct form *form)
+int sequence_of_form(struct sequencing *w, const struct form *form)
 {
 	struct sum sum = { 0 };
 	mpq_t one;
@@ -360,7 +360,7 @@ static int angle_sequence(struct sequencing *w, int y, int x)
 	return c;
 }
 
-static _Noreturn void no_series(const struct sequencing *w, const struct atom *atom, const char *why)
+_Noreturn void no_series(const struct sequencing *w, const struct atom *atom, const char *why)
 {
 	error(atom->node->start, "etdrk4 and the schemes like it step across it, of lower order there",
 	      "scheme %s needs what is smooth between the changes of the loads: '%s' "
@@ -368,13 +368,18 @@ static _Noreturn void no_series(const struct sequencing *w, const struct atom *a
 	      text_between(atom->node->start, atom->node->end), why);
 }
 
-/* ---- what depends on t alone and has a formula in each interval ---- */
+/* ---- what has a formula in each interval, of time or of an expression of the state ---- */
 
-static int choice(struct sequencing *w, const struct form *left, enum comparison comparison, const struct form *right,
-		  int a, int b)
+static int choice(struct sequencing *w, const struct atom *atom, const struct form *left, enum comparison comparison,
+		  const struct form *right, int a, int b)
 {
-	return new_sequence(w, (struct sequence){ .kind = SEQUENCE_CHOICE, .state = NONE, .left = left, .right = right,
-						  .comparison = comparison, .a = a, .b = b });
+	if (is_linear_in_time(left) && is_linear_in_time(right))
+		return new_sequence(w, (struct sequence){ .kind = SEQUENCE_CHOICE, .state = NONE, .left = left,
+							  .right = right, .comparison = comparison, .a = a, .b = b });
+	if (comparison >= CMP_EQ)
+		no_series(w, atom, "asks whether things are equal that are so at single times");
+	return comparison <= CMP_LE ? choice_by_state(w, atom, left, right, b, a)
+				    : choice_by_state(w, atom, left, right, a, b);
 }
 
 static int sequence_of_constant(struct sequencing *w, long value)
@@ -387,7 +392,8 @@ static int best_from(struct sequencing *w, const struct atom *a, int next, int c
 	if (next == a->operands)
 		return sequence_of_form(w, a->operand[champion]);
 	int other = best_from(w, a, next + 1, next), same = best_from(w, a, next + 1, champion);
-	return choice(w, a->operand[next], a->function == FN_MIN ? CMP_LT : CMP_GT, a->operand[champion], other, same);
+	return choice(w, a, a->operand[next], a->function == FN_MIN ? CMP_LT : CMP_GT, a->operand[champion], other,
+		      same);
 }
 
 static int sequence_of_table(struct sequencing *w, const struct atom *a)
@@ -401,45 +407,47 @@ static int sequence_of_table(struct sequencing *w, const struct atom *a)
 		mpq_sub(shift, piece[i].y, shift);
 		struct form *line = form_sum(form_scale(a->operand[0], piece[i].slope), form_constant(shift), false);
 		int here = sequence_of_form(w, line);
-		made = made == NONE ? here : choice(w, a->operand[0], CMP_LT, form_constant(piece[i].end), here, made);
+		made = made == NONE ? here
+				    : choice(w, a, a->operand[0], CMP_LT, form_constant(piece[i].end), here, made);
 	}
 	mpq_clear(shift);
 	return made;
 }
 
 /* x outside low .. high: what it is below, between and above */
-static int sequence_in_three(struct sequencing *w, const struct form *const *x, int below, int between, int above)
+static int sequence_in_three(struct sequencing *w, const struct atom *atom, int below, int between, int above)
 {
-	int inner = choice(w, x[0], CMP_GT, x[2], above, between);
-	return choice(w, x[0], CMP_LT, x[1], below, inner);
+	const struct form *const *x = atom->operand;
+	int inner = choice(w, atom, x[0], CMP_GT, x[2], above, between);
+	return choice(w, atom, x[0], CMP_LT, x[1], below, inner);
 }
 
-/* Of functions with kinks, where their arguments are linear in t; NONE: of others */
-static int sequence_in_time(struct sequencing *w, const struct atom *a)
+/* Of functions with kinks; NONE: of others */
+static int sequence_in_pieces(struct sequencing *w, const struct atom *a)
 {
 	enum { ARGUMENTS = 6, PIECES = 100 };
 	const struct form *x = a->operand[0], *zero = form_number(0);
 	struct straight *piece;
 	mpq_t minus;
-	for (int i = 0; i < a->operands; i++)
-		if (!is_linear_in_time(a->operand[i]))
-			return NONE;
 	mpq_init(minus);
 	mpq_set_si(minus, -1, 1);
 	switch (a->function) {
 	case FN_ABS:
-		return choice(w, x, CMP_LT, zero, sequence_of_form(w, form_scale(x, minus)), sequence_of_form(w, x));
+		return choice(w, a, x, CMP_LT, zero, sequence_of_form(w, form_scale(x, minus)),
+			      sequence_of_form(w, x));
 	case FN_SGN:
-		return choice(w, x, CMP_GT, zero, sequence_of_constant(w, 1),
-			      choice(w, x, CMP_LT, zero, sequence_of_constant(w, -1), sequence_of_constant(w, 0)));
+		if (!is_linear_in_time(x))
+			return choice(w, a, x, CMP_LT, zero, sequence_of_constant(w, -1), sequence_of_constant(w, 1));
+		return choice(w, a, x, CMP_GT, zero, sequence_of_constant(w, 1),
+			      choice(w, a, x, CMP_LT, zero, sequence_of_constant(w, -1), sequence_of_constant(w, 0)));
 	case FN_MIN:
 	case FN_MAX:
 		return a->operands > ARGUMENTS ? NONE : best_from(w, a, 1, 0);
 	case FN_CLIP:
-		return sequence_in_three(w, a->operand, sequence_of_form(w, a->operand[1]), sequence_of_form(w, x),
+		return sequence_in_three(w, a, sequence_of_form(w, a->operand[1]), sequence_of_form(w, x),
 					 sequence_of_form(w, a->operand[2]));
 	case FN_DEADZONE:
-		return sequence_in_three(w, a->operand, sequence_of_form(w, form_difference(x, a->operand[1])),
+		return sequence_in_three(w, a, sequence_of_form(w, form_difference(x, a->operand[1])),
 					 sequence_of_constant(w, 0),
 					 sequence_of_form(w, form_difference(x, a->operand[2])));
 	case FN_TABLE:
@@ -451,9 +459,9 @@ static int sequence_in_time(struct sequencing *w, const struct atom *a)
 
 static int sequence_of_call(struct sequencing *w, const struct atom *atom)
 {
-	int timed = sequence_in_time(w, atom), b;
-	if (timed != NONE)
-		return timed;
+	int in_pieces = sequence_in_pieces(w, atom), b;
+	if (in_pieces != NONE)
+		return in_pieces;
 	int a = sequence_of_form(w, atom->operand[0]);
 	switch (atom->function) {
 	case FN_SIN:  return pair_sequence(w, a, FN_SIN, FN_COS, -1, false);
@@ -506,11 +514,22 @@ static int sequence_of_choice(struct sequencing *w, const struct atom *atom)
 {
 	const struct form *condition = atom->operand[0];
 	const struct atom *compare = condition->terms == 1 ? condition->term[0].basis.atom : NULL;
-	if (!compare || compare->kind != ATOM_COMPARE || mpq_cmp_ui(condition->term[0].factor, 1, 1) != 0 ||
-	    !is_linear_in_time(compare->operand[0]) || !is_linear_in_time(compare->operand[1]))
+	bool plain = compare && compare->kind == ATOM_COMPARE && mpq_cmp_ui(condition->term[0].factor, 1, 1) == 0;
+	if (!plain && !is_stepwise(condition))
 		no_series(w, atom, "changes where that is not known beforehand");
 	int a = sequence_of_form(w, atom->operand[1]), b = sequence_of_form(w, atom->operand[2]);
-	return choice(w, compare->operand[0], compare->comparison, compare->operand[1], a, b);
+	if (plain)
+		return choice(w, compare, compare->operand[0], compare->comparison, compare->operand[1], a, b);
+	int test = sequence_of_form(w, condition);
+	return new_sequence(w, (struct sequence){ .kind = SEQUENCE_CHOICE, .state = NONE, .test = test,
+						  .choice = CHOICE_BY_SEQUENCE, .a = a, .b = b });
+}
+
+/* What the instance holds: the same at all times */
+static int sequence_of_param(struct sequencing *w, const struct atom *atom)
+{
+	struct sum sum = single_key(TERM_PARAM, atom->param->tunable - 1, 0);
+	return sum_sequence(w, &sum);
 }
 
 static int sequence_of_atom(struct sequencing *w, const struct atom *atom)
@@ -519,16 +538,15 @@ static int sequence_of_atom(struct sequencing *w, const struct atom *atom)
 		return w->atom[atom->index];
 	int made;
 	switch (atom->kind) {
+	case ATOM_PARAM:      made = sequence_of_param(w, atom); break;
 	case ATOM_PRODUCT:    made = sequence_of_product(w, atom); break;
 	case ATOM_RECIPROCAL: made = quotient_sequence(w, NONE, sequence_of_form(w, atom->operand[0])); break;
 	case ATOM_POWER:      made = sequence_of_power(w, atom); break;
 	case ATOM_CALL:       made = sequence_of_call(w, atom); break;
 	case ATOM_CHOOSE:     made = sequence_of_choice(w, atom); break;
 	default:
-		if (!is_linear_in_time(atom->operand[0]) || !is_linear_in_time(atom->operand[1]))
-			no_series(w, atom, "jumps");
-		made = choice(w, atom->operand[0], atom->comparison, atom->operand[1], sequence_of_constant(w, 1),
-			      sequence_of_constant(w, 0));
+		made = choice(w, atom, atom->operand[0], atom->comparison, atom->operand[1],
+			      sequence_of_constant(w, 1), sequence_of_constant(w, 0));
 	}
 	return w->atom[atom->index] = made;
 }

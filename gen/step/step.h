@@ -414,6 +414,7 @@ bool is_cleared_by_tables(const struct step *step);         /* a swift step look
 /* ---- pieces.c: what a piecewise-linear model finds its crossings with ---- */
 
 struct region_piece {               /* of a branch, d = h 2^-halvings long; x as in struct layout */
+	double *row;                /* of each expression: row . x, expressions x size */
 	double *slopes;             /* A of x' = A x, size x size [x/s] */
 	double *Phi;                /* e^{A d}, size x size */
 	double *slope;              /* slope . x is d/3 times the slope of each expression; expressions x size */
@@ -428,7 +429,8 @@ struct region_piece {               /* of a branch, d = h 2^-halvings long; x as
 	double *turns;              /* h A */
 };
 struct pieces {
-	double *row;                /* of each expression: row . x, expressions x size */
+	double **rows;              /* of each expression: row . x, expressions x size; in each segment of time */
+	double *row;                /* in the first */
 	double *breakpoint;         /* those of the first expression, rising; of the second; ... */
 	struct region_piece *piece;        /* per branch */
 	/* Where a step is swift: */
@@ -446,7 +448,7 @@ double size_of_bounded(const struct step *step, const double *row);
 void bounds_of_rows(const struct step *step, const struct pieces *pieces, int branch, int rows, const double *row,
 		    double *slope, double *second, double *fourth);
 double *whole_step_of(const struct step *step, int branch);  /* e^{A h}, size x size */
-void row_over_x(const struct step *step, const struct output *output, double *row);
+void row_over_x(const struct step *step, const struct output *output, int segment, double *row);
 /* Of |x|: how far row . x is at most off its chord over h, entry by entry */
 void bend_of_row(const struct step *step, const double *A, double h, const double *row, double *bend);
 
@@ -533,10 +535,16 @@ struct certificate {                /* of one requirement, in the output's unit 
 	 * whole error, and 0 */
 	double rounding, dropped;
 	double needed;
+	/* its C has run beside the exact outputs: the error itself, where each product and each sum is rounded as it is
+	 * written; the bounds above hold where a compiler contracts them too */
+	bool walked;
+	double error;
 };
+double error_told(const struct certificate *c);             /* as walked, or bounded */
 /* `exact`: the same step with the numbers of double */
 struct certificate certificate_of(const struct step *step, const struct step *exact, const struct requirement *r);
 double needed_error(const struct requirement *r, double largest);       /* of the output */
+long samples_until(const struct requirement *r, mpq_srcptr h); /* below 0: too many */
 /* what it surely reaches; `exact` in double; 0: it is not known */
 double largest_of_output(const struct step *exact, const struct requirement *r);
 /* [modes + 1]: what the output loses at most where the first so many of the order are kept. HUGE_VAL: not known.
@@ -561,7 +569,11 @@ struct alternative {                /* one way to step a model with needs */
 	double cost;                /* of a step and its outputs, as cost_of_step counts */
 	const char *why;            /* its error is not known; NULL: it is */
 	double excess;              /* the largest of error over need; at most 1: all needs are met */
+	/* so whatever a compiler contracts; else the C refuses one that does, where it has to: `as_written` */
+	double bound_excess;
+	bool as_written;
 	struct certificate *certificate; /* per requirement */
+	struct step *made;          /* as it was tried */
 };
 struct choice {
 	int alternatives, taken;
@@ -852,7 +864,7 @@ void check_holds(const struct step *step);                   /* leaves the state
 /* Of a quantity a(t) the k-th number is D^k a^(k)/k!, D = h. What stands in a sum at k is factor[k] times: the constant
  * 1, a power of t, an entry of a load's states, an input's value at the start or its slope, the k-th number of another
  * sequence, or sum over j = 0..k of a_j b_{k-j} (Moore; Griewank and Walther 2008, chapter 13). */
-enum term_kind { TERM_TIME, TERM_LOAD, TERM_INPUT, TERM_SLOPE, TERM_SEQUENCE, TERM_PRODUCT };
+enum term_kind { TERM_TIME, TERM_LOAD, TERM_INPUT, TERM_SLOPE, TERM_PARAM, TERM_SEQUENCE, TERM_PRODUCT };
 struct sequence_term {
 	enum term_kind kind;
 	int a, b;                   /* which; the power of t; the load's column; the two sequences */
@@ -867,16 +879,22 @@ enum sequence_kind {
 	SEQUENCE_ROOT,              /* c^2 = a */
 	SEQUENCE_POWER,             /* c = a^exponent, which is constant */
 	SEQUENCE_RATE,              /* c_k = (k+1) a_{k+1} */
-	SEQUENCE_CHOICE             /* a where the condition holds, else b: it depends on t alone */
+	SEQUENCE_CHOICE             /* a where the condition holds, else b */
 };
+/* By which a choice is made: two forms linear in t that are compared, an expression of the state above a breakpoint,
+ * or another sequence that is not 0 and changes with such choices alone */
+enum choice_kind { CHOICE_BY_TIME, CHOICE_BY_STATE, CHOICE_BY_SEQUENCE };
 struct sequence {
 	enum sequence_kind kind;
 	int state;                  /* of an integral that is one; NONE */
 	enum function function;     /* of another: its value from a (and b) */
 	int a, b;
 	double exponent;
+	enum choice_kind choice;
 	const struct form *left, *right; /* what the condition compares, linear in t */
 	enum comparison comparison;
+	int expression, breakpoint; /* or which it is above; of the expression's, in order of their first appearance */
+	int test;                   /* or the sequence */
 	int terms;
 	struct sequence_term *term;
 	int degree;                 /* all beyond are 0; order + 1: none need be */
@@ -889,6 +907,13 @@ struct sequence {
 	int *gain;
 	bool split;                 /* others read its early part and gains */
 };
+struct divided {                    /* an expression of the state that breakpoints divide, smooth between events */
+	const struct form *form;    /* without constant; sign and scale as first written */
+	int sequence, column;       /* its coefficients: the place behind those of the states, or of one that it is */
+	int breaks;
+	mpq_t *at;                  /* in order of their first appearance */
+	int *rank;                  /* of each of them, how many are below it */
+};
 struct expansion {
 	int order;                  /* of the series in its unit of time, h or several of them */
 	int count;                  /* sequences; the first are the states */
@@ -898,7 +923,10 @@ struct expansion {
 	int *slot_load;             /* per slot: column of the loads */
 	bool *load;                 /* per load: read */
 	bool *input, *slope;        /* per input: read */
-	bool time;                  /* t is read */
+	bool time, params;          /* t is read; tunable params are */
+	int expressions;            /* what chooses formulas by the state: an event where one passes a breakpoint */
+	struct divided *expression;
+	int columns, *column;       /* beside the states: sequences of which all coefficients are kept for them */
 	int multiplications;        /* of one expansion, that of its end and of the loads with it */
 };
 /* ---- sums.c: what is added up exactly, and its factors as numbers ---- */
@@ -937,9 +965,25 @@ int  column_of_load(const struct linear *system, int load); /* its first */
 /* ---- sequences.c: forms to sums, atoms to recurrences ---- */
 
 int  new_sequence(struct sequencing *w, struct sequence sequence);
+int  sequence_of_form(struct sequencing *w, const struct form *form);
+_Noreturn void no_series(const struct sequencing *w, const struct atom *atom, const char *why);
 void count_uses(struct sequencing *w, const struct form *form);
 /* sum += scale form; leaves the statement at what has no series */
 void sum_add_form(struct sequencing *w, struct sum *sum, const struct form *form, mpq_srcptr scale);
+
+/* ---- divided.c: formulas that the state chooses ---- */
+
+/* `above` where a - b > 0, else `below`; for the message of what has no series: the atom that compares them */
+int  choice_by_state(struct sequencing *w, const struct atom *atom, const struct form *a, const struct form *b,
+		     int above, int below);
+void rank_breakpoints(struct expansion *x);                  /* once all are there */
+int  breakpoint_rank(const struct expansion *x, const struct sequence *choice);
+mpq_t *rising_breakpoints(const struct divided *d);
+const char *divided_text(const struct step *step, int expression); /* over the written coordinates */
+/* The number of a region is its expressions' intervals in mixed radix; 0: too many for an int */
+int  regions_of_series(const struct expansion *x);
+/* Leaves the statement where what is chosen by the state is not treated */
+void check_divided(const struct step *step);
 
 /* ---- newest.c: how the newest coefficients enter the next ones ---- */
 

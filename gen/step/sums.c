@@ -149,6 +149,20 @@ static void add_input(struct sequencing *w, struct sequence *s, const struct key
 	mpq_clear(number);
 }
 
+static void add_param(struct sequencing *w, struct sequence *s, const struct key *key, const mpq_t *scale)
+{
+	mpq_t number;
+	mpq_init(number);
+	ENLARGE(s->term, (size_t)s->terms + 1);
+	struct sequence_term *term = &s->term[s->terms++];
+	*term = (struct sequence_term){ .kind = key->kind, .a = key->a, .slot = -1 };
+	term->factor = ARRAY(double, (size_t)w->x->order + 1);
+	mpq_mul(number, key->factor, scale[0]);
+	term->factor[0] = rounded(w, number);
+	w->x->params = true;
+	mpq_clear(number);
+}
+
 static void add_plain(struct sequencing *w, struct sequence *s, const struct key *key, const mpq_t *scale)
 {
 	mpq_t number;
@@ -175,6 +189,8 @@ void sum_numbers(struct sequencing *w, struct sequence *s, const struct sum *sum
 			add_powers(w, s, key->a, key->factor, scale);
 		else if (key->kind == TERM_INPUT || key->kind == TERM_SLOPE)
 			add_input(w, s, key, scale);
+		else if (key->kind == TERM_PARAM)
+			add_param(w, s, key, scale);
 		else
 			add_plain(w, s, key, scale);
 	}

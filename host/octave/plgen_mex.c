@@ -52,6 +52,25 @@ static void field(mxArray *to, const char *name, mxArray *value)
     mxSetField(to, 0, name, value);
 }
 
+/* Whether an instance takes another step: what reads tunable params alone has one step, and refuses. */
+static int takes_steps(const struct loaded *m)
+{
+    void *s;
+    int status;
+    if (m->single ? FLOATS(m)->retune == NULL : m->model->retune == NULL)
+        return 0;
+    s = mxCalloc(1, OF(m, size));
+    if (m->single) {
+        FLOATS(m)->init(s);
+        status = FLOATS(m)->retune(s, FLOATS(m)->param_values, 0.5f * FLOATS(m)->h);
+    } else {
+        m->model->init(s);
+        status = m->model->retune(s, m->model->param_values, 0.5 * m->model->h);
+    }
+    mxFree(s);
+    return status == 0;
+}
+
 static mxArray *description(const struct loaded *m, int id)
 {
     mxArray *told = mxCreateStructMatrix(1, 1, 0, NULL), *list;
@@ -72,8 +91,7 @@ static mxArray *description(const struct loaded *m, int id)
     for (i = 0; i < inputs; i++)
         mxGetPr(list)[i] = OF(m, start_samples)[i];
     field(told, "ahead", list);
-    field(told, "can_retune", mxCreateDoubleScalar(m->single ? FLOATS(m)->retune != NULL
-                                                              : m->model->retune != NULL));
+    field(told, "can_retune", mxCreateDoubleScalar(takes_steps(m)));
     return told;
 }
 

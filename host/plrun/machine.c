@@ -44,7 +44,6 @@ static double *widened(const float *value, int count)
 	(m)->param_names = (d)->param_names; \
 	(m)->ahead = (d)->start_samples; \
 	(m)->has_status = (d)->status != NULL; \
-	(m)->can_retune = (d)->retune != NULL; \
 } while (0)
 
 static void fill(struct machine *m)
@@ -60,6 +59,17 @@ static void fill(struct machine *m)
 	for (int i = 0; i < m->inputs; i++)
 		if (m->ahead[i] > m->most_ahead)
 			m->most_ahead = m->ahead[i];
+}
+
+/* Whether an instance takes another step; what reads tunable params alone has one step, and refuses */
+static bool takes_steps(const struct machine *m)
+{
+	if (m->single ? m->modelf->retune == NULL : m->model->retune == NULL)
+		return false;
+	struct instance *i = instance_new(m);
+	const bool takes = instance_retune(i, m->param_values, 0.5 * m->h) == NULL;
+	instance_free(i);
+	return takes;
 }
 
 struct machine *machine_open(const char *path, const char *name, char **error)
@@ -82,6 +92,7 @@ struct machine *machine_open(const char *path, const char *name, char **error)
 	m->model = descriptor;
 	m->modelf = descriptor;
 	fill(m);
+	m->can_retune = takes_steps(m);
 	return m;
 }
 

@@ -153,7 +153,7 @@ struct machine {
 	void *object;                           /* of dlopen */
 	const pl_model *model;                  /* of a model in float its pl_modelf: `single` says which */
 	const pl_modelf *modelf;
-	bool single, has_status, can_retune;
+	bool single, has_status, can_retune; /* can_retune: to another step too */
 	const char *name;
 	int states, inputs, outputs, params;
 	size_t size;

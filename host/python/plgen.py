@@ -644,6 +644,13 @@ class Model:
             raise Error('{}: {}'.format(self.name, REFUSED.get(
                 status, 'with these values the numbers of the step are not finite')))
 
+    def _takes(self, step):
+        """Does an instance take this step? Where expressions read the params there is one; what is no step is told."""
+        c, h = self._code, float(self.dtype.type(step))
+        scratch = self._memory.copy()
+        values = np.ascontiguousarray(self._tuned)
+        return not h > 0 or c.model.retune(ctypes.c_void_p(scratch.ctypes.data), values.ctypes.data, h) != 8
+
     def _tune(self, params, step):
         values = self._tuned.copy()
         for name, value in params.items():
@@ -658,7 +665,7 @@ class Model:
         compiled; any other compiles a model, whose samples kept for ramps begin anew."""
         c = self._code
         numbers = all(n in c.tunable and not isinstance(v, str) for n, v in params.items())
-        if numbers and (step is None or (c.model.retune and not isinstance(step, str))):
+        if numbers and (step is None or (c.model.retune and not isinstance(step, str) and self._takes(step))):
             self._tune(params, step)
         else:
             now = {n: v for n, v in self.params.items() if n in self._given or v != self._nominal(n)}

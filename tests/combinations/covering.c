@@ -367,7 +367,8 @@ static void print_options(FILE *to)
 						     : "linear");
 	fprintf(to, "# changes:%s\n", has("change") ? " 0.053 0.1 0.21" : "");
 	if (has("tunable"))
-		fputs("# retune: k=17.5 step=0.0125\n", to);
+		fputs(has("smooth") || has("kinked") || has("loads") || expands() || moves()
+			? "# retune: k=17.5\n" : "# retune: k=17.5 step=0.0125\n", to);
 }
 
 static bool has_scheme(void)

@@ -5,7 +5,8 @@
 #
 #     commands.sh PLGEN SOURCE_ROOT PLRUN
 #
-# ```spec       a model: plgen makes NAME_pl.c and NAME_pl.h of it
+# ```spec       a model: plgen makes NAME_pl.c and NAME_pl.h of it; elsewhere, of pages that are typed from their first
+#               line on: what they need of it they have to make themselves
 # ```sh         commands: run one after the other; all succeed, nothing they write is empty
 # ```console    `$ command` and what it says, to the last letter
 # ```c          statements, with the headers that they name: compiled with the models of the page, linked and run;
@@ -36,7 +37,9 @@ PATH=$PWD/bin:$PATH
 
 run_spec() {
 	name=$(sed -n 's/^model \([A-Za-z0-9_]*\).*/\1/p' "$block")
-	cp "$block" "$name.spec" && plgen -o "${name}_pl.c" "$name.spec" >>../log 2>&1 && [ -s "${name}_pl.h" ]
+	made=.
+	case $page in README.md | doc/tutorial.md | doc/cookbook.md) made=../made ;; esac
+	cp "$block" "$name.spec" && plgen -o "$made/${name}_pl.c" "$name.spec" >>../log 2>&1 && [ -s "$made/${name}_pl.h" ]
 }
 
 run_sh() {
@@ -111,7 +114,7 @@ try() {
 	result $? "$title"
 }
 
-mkdir objects
+mkdir objects made
 for file in "$root"/runtime/*.c; do
 	${CC:-cc} -std=c99 -O1 -I"$root/runtime" -c "$file" -o "objects/$(basename "$file" .c).o" || exit 99
 done

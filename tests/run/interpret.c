@@ -28,7 +28,7 @@ static void run(void *context)
     struct step *step = model ? step_build(model) : NULL;
     if (!step)
         abandon();
-    struct running *r = running_new(code_of_step((struct place){ source, 0 }, step), step);
+    struct running *r = running_new(code_of_step((struct place){ source, 0 }, step, true), step);
     int states = model->written->system.states;
     double value[600], u[64];
     running_start(r, 0, NULL);

@@ -111,6 +111,22 @@ meets driven x 1e-9 '10 for |u| <= 0.7' no
 meets pushed x 1e-3 '20 for |u| <= 0.7' no
 meets plain e 1e-4 '20 for |u| <= 0.7' no
 
+# varies NAME NAMES: of this model neighbours in these
+varies() {
+	chosen "$1 varies $2" || return 0
+	{ echo "model $1"; cat "$1.txt"; echo 'need x within 1e-3 until 10'; } >"$1.spec"
+	"$plgen" "$1.spec" >model.c 2>log && grep -q "where $2 are each 10 %" model.c
+	result $? "$1 varies $2"
+}
+cat >pressed.txt <<END
+param b = 0.3, k = 5, p = 0.1, G = 0.2, F = 0.8
+coord x
+init x = 0.2
+x'' + 0.1*x' + k*deadzone(x, -b, b) + (x > 0.1 ? p : 0) = F*cos(1.3*t) + G
+END
+varies clearance 'x, F'
+varies pressed 'x, G, F'
+
 # says NAME TEXT OPTIONS: an error with this text, and no C
 says() {
 	name=$1 text=$2

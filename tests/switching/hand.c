@@ -9,10 +9,15 @@ enum { TERMS = 34 };
 real hand_distance(const struct hand_system *s, int stop, const real *y, real t)
 {
 	const struct hand_stop *p = &s->stop[stop];
-	real d = -p->gap - p->a * sinl(p->w * t);
+	real d = -p->gap - p->rate * t - p->a * sinl(p->w * t);
 	for (int i = 0; i < s->n; i++)
 		d += p->row[i] * y[i];
 	return d;
+}
+
+static real power(int k, real constant, real rate, real t)
+{
+	return k == 0 ? constant + rate * t : k == 1 ? rate : 0;
 }
 
 /* k-th derivative of cos(w t) or of sin(w t), over k! */
@@ -37,13 +42,13 @@ static void flow(const struct hand_system *s, const struct hand_state *now, real
 	for (int k = 0; k < TERMS; k++) {
 		real force[HAND_MASSES];
 		for (int i = 0; i < n; i++) {
-			force[i] = s->fa[i] * load[k] + (k == 0 ? s->f0[i] : 0);
+			force[i] = s->fa[i] * load[k] + power(k, s->f0[i], s->f1[i], now->t);
 			for (int m = 0; m < n; m++)
 				force[i] -= s->K[i][m] * y[k][m] + s->C[i][m] * y[k][n + m];
 		}
 		for (int j = 0; j < s->stops; j++) {
 			const struct hand_stop *p = &s->stop[j];
-			real against = -p->k * p->a * stop_load[j][k] - (k == 0 ? p->k * p->gap : 0);
+			real against = -p->k * (p->a * stop_load[j][k] + power(k, p->gap, p->rate, now->t));
 			for (int i = 0; i < n; i++)
 				against += p->row[i] * (p->k * y[k][i] + p->c * y[k][n + i]);
 			for (int i = 0; i < n && now->touches[j]; i++)
@@ -83,6 +88,22 @@ void hand_start(const struct hand_system *s, struct hand_state *now)
 		now->touches[j] = hand_distance(s, j, now->y, 0) > 0;
 }
 
+static void cross(const struct hand_system *s, struct hand_state *now, int stop)
+{
+	now->touches[stop] = !now->touches[stop];
+	now->crossings++;
+	now->last = now->t;
+	if (s->log && s->log->count < HAND_LOGGED)
+		s->log->time[s->log->count++] = now->t;
+}
+
+void hand_change(const struct hand_system *s, struct hand_state *now)
+{
+	for (int j = 0; j < s->stops; j++)
+		if ((hand_distance(s, j, now->y, now->t) > 0) != now->touches[j])
+			cross(s, now, j);
+}
+
 /* A stop that at the end of tau is on its other side, or -1 */
 static int changed(const struct hand_system *s, const struct hand_state *now, real tau, int but)
 {
@@ -110,9 +131,7 @@ void hand_step(const struct hand_system *s, struct hand_state *now, real h)
 		}
 		const int stop = changed(s, now, high, -1);
 		*now = ahead(s, now, high);
-		now->touches[stop] = !now->touches[stop];
-		now->crossings++;
-		now->last = now->t;
+		cross(s, now, stop);
 		but = stop;
 	}
 	*now = ahead(s, now, end - now->t);
@@ -122,7 +141,7 @@ void hand_step(const struct hand_system *s, struct hand_state *now, real h)
 static real approach(const struct hand_system *s, int stop, const struct hand_state *now)
 {
 	const struct hand_stop *p = &s->stop[stop];
-	real speed = -p->a * p->w * cosl(p->w * now->t);
+	real speed = -p->rate - p->a * p->w * cosl(p->w * now->t);
 	for (int i = 0; i < s->n; i++)
 		speed += p->row[i] * now->y[s->n + i];
 	return speed;

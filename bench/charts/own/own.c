@@ -37,6 +37,7 @@ struct line {
 	const pl_model *model;
 	const pl_modelf *single;
 	int steps;                      /* of ours in an output */
+	bool rows;                      /* NAME_run keeps the rows wanted: a step is an output, its outputs the states */
 	double error, evaluations, ns;
 	const char *word;               /* ok, failed, gave up, refused */
 	char refusal[300];
@@ -79,6 +80,14 @@ static bool read_refusal(struct line *line, const char *path)
 	return true;
 }
 
+static bool shows_states(int outputs, const char *const *output, const char *const *state)
+{
+	bool same = outputs == N;
+	for (int i = 0; same && i < N; i++)
+		same = strcmp(output[i], state[i]) == 0;
+	return same;
+}
+
 static void open_ours(struct line *line, const char *folder)
 {
 	char path[4096];
@@ -95,6 +104,9 @@ static void open_ours(struct line *line, const char *folder)
 		line->model = model;
 	line->steps = line->tolerance ? 1 : (int)line->setting;
 	line->state = need(calloc(1, line->single ? line->single->size : line->model->size));
+	line->rows = line->steps == 1 && (line->single ?
+		shows_states(line->single->outputs, line->single->output_names, line->single->state_names) :
+		shows_states(line->model->outputs, line->model->output_names, line->model->state_names));
 }
 
 /* Rows of inputs for the steps of output k: as plrt.h has it, row j + 1 where an input is a ramp */
@@ -113,7 +125,9 @@ static bool run_ours(struct line *line, double *rows)
 	line->model->init(line->state);
 	if (line->model->hold)
 		line->model->hold(line->state, history.sample);
-	for (int k = 0; k < history.units; k++, rows += N) {
+	if (line->rows)
+		line->model->run(line->state, (size_t)history.units, history.ends, rows);
+	for (int k = 0; !line->rows && k < history.units; k++, rows += N) {
 		if (INPUTS > 0)
 			samples_of(k, steps, u);
 		line->model->run(line->state, (size_t)steps, INPUTS > 0 ? u : NULL, NULL);
@@ -132,7 +146,12 @@ static bool run_single(struct line *line, double *rows)
 		narrow[i] = (float)history.sample[i];
 	if (line->single->hold)
 		line->single->hold(line->state, narrow);
-	for (int k = 0; k < history.units; k++, rows += N) {
+	if (line->rows) {
+		line->single->run(line->state, (size_t)history.units, history.single_ends, history.single);
+		for (int i = 0; i < history.units * N; i++)
+			rows[i] = history.single[i];
+	}
+	for (int k = 0; !line->rows && k < history.units; k++, rows += N) {
 		if (INPUTS > 0)
 			samples_of(k, steps, u);
 		for (int i = 0; i < steps * INPUTS; i++)
@@ -177,6 +196,16 @@ static void make_signal(void)
 	for (int k = 0; k <= history.units + 1; k++)
 		for (int i = 0; i < INPUTS; i++)
 			history.sample[k * INPUTS + i] = sin(2 * M_PI * k / 40 + i) + sin(2 * M_PI * k / 17 + i) / 2;
+	history.single = need(calloc((size_t)history.units * N, sizeof(float)));
+	if (INPUTS == 0)
+		return;
+	const size_t count = (size_t)history.units * INPUTS;
+	history.ends = need(calloc(count, sizeof(double)));
+	history.single_ends = need(calloc(count, sizeof(float)));
+	for (int k = 0; k < history.units; k++)
+		samples_of(k, 1, history.ends + (size_t)k * INPUTS);
+	for (size_t i = 0; i < count; i++)
+		history.single_ends[i] = (float)history.ends[i];
 }
 
 static void find_scales(const struct extrapolation *x, const double *rows)

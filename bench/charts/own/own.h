@@ -42,6 +42,8 @@ static struct {
 	double start[N];
 	double scale[N];                /* largest coordinate, or velocity, of the history */
 	double *sample;                 /* inputs: rows 0 to units, at the outputs */
+	double *ends;                   /* as NAME_run takes them where a step is an output; NULL: no inputs */
+	float *single_ends, *single;    /* the same in float; room for rows in float */
 	bool ramp[ROOM];                /* of each input; else held */
 	int unit;                       /* that inputs are asked in; peers set it */
 	long evaluations, most;         /* of the right-hand side; beyond `most` a peer has given up */

@@ -34,7 +34,7 @@ END {
 			say(peers[i] ": " rows[peers[i]] + 0 " rows, " good[peers[i]] + 0 " good")
 	if (!("exact" in good) && !("etdrk4" in good)) say("nothing of plgen's")
 	rival = "exp(A h), loop"
-	wanted = index(" scs sdcs scs_weak linear2dof quarter_car ", " " name " ")
+	wanted = index(" scs sdcs scs_weak linear2dof quarter_car inertia ", " " name " ")
 	if (wanted ? least[rival] > 1e-9 || !good[rival] : rows[rival])
 		say(rival ": " rows[rival] + 0 " rows, least error " least[rival])
 	# What each reaches with its least tolerance; forces that jump cost digits

@@ -1,0 +1,181 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Formulas that the state chooses: what a model keeps of them, and where a series ends that goes on with others. */
+#include "emit/emit.h"
+
+static const struct expansion *expansion(const struct emitter *e)
+{
+	return e->step->expansion;
+}
+
+/* ---- the header ---- */
+
+void emit_divided_types(const struct emitter *e)
+{
+	if (!is_divided(e))
+		return;
+	say(e, "typedef struct $n_contact {  /* by which formulas the model goes, and what it has crossed */\n"
+	       "    uint64_t total;       /* crossings since init or set */\n"
+	       "    int crossings;        /* in the last step */\n"
+	       "    int placed;           /* 0: a state was set, its intervals are not known */\n"
+	       "    int interval[%d];      /* of each expression */\n"
+	       "    pl_crossing last;     /* which the state may not have left behind; expression -1: none */\n"
+	       "    pl_crossing crossing[$N_MAX_EVENTS];  /* of the last step */\n"
+	       "} $n_contact;\n\n", expansion(e)->expressions);
+}
+
+void emit_divided_members(const struct emitter *e)
+{
+	say(e, "    $n_contact contact;   /* intervals, crossings */\n");
+}
+
+void emit_divided_declarations(const struct emitter *e)
+{
+	if (!is_divided(e))
+		return;
+	if (regions_of_series(expansion(e)))
+		say(e, "int    $n_region(const $n *s);           "
+		       "/* its number: an interval of each expression, see the source */\n");
+	say(e, "uint64_t $n_crossed(const $n *s);        /* breakpoints crossed since init or set */\n"
+	       "int    $n_crossings(const $n *s, pl_crossing crossing[$N_MAX_EVENTS]);  "
+	       "/* those of the last step; how many */\n");
+}
+
+/* ---- tables ---- */
+
+static void emit_divided_tables(const struct emitter *e)
+{
+	const struct expansion *x = expansion(e);
+	const char *column = "", *breaks = "", *at = "";
+	for (int i = 0; i < x->expressions; i++) {
+		const struct divided *d = &x->expression[i];
+		mpq_t *rising = rising_breakpoints(d);
+		column = format("%s%s%d", column, i ? ", " : "", d->column);
+		breaks = format("%s%s%d", breaks, i ? ", " : "", d->breaks);
+		const char *row = "";
+		for (int k = 0; k < d->breaks; k++)
+			row = format("%s%s%s", row, k ? ", " : "", shortest(round_rational(rising[k])));
+		at = format("%s%s%s", at, i ? ",\n    " : "", row);
+	}
+	say(e, "\n/* Of the expressions that choose formulas: the column of each, its breakpoints */\n"
+	       "static const int $n_column[] = {%s}, $n_breaks[] = {%s};\n"
+	       "static const double $n_breakpoint[] = {\n    %s\n};\n"
+	       "static const pl_divided $n_divided = {\n"
+	       "    %d, $c, %d, $n_column, $n_breaks, $n_breakpoint\n"
+	       "};\n", column, breaks, at, x->expressions, x->order);
+}
+
+/* ---- functions ---- */
+
+static void emit_pass_breakpoint(const struct emitter *e)
+{
+	say(e, "\n/* Passes the breakpoint of contact->last, so long after the start of the step; 0: there were too many */\n"
+	       "static int $n_cross($n_contact *contact, double time)\n"
+	       "{\n"
+	       "    pl_crossing *last = &contact->last;\n"
+	       "    if (contact->crossings == $N_MAX_EVENTS)\n"
+	       "        return 0;\n"
+	       "    last->time = time;\n"
+	       "    contact->crossing[contact->crossings++] = *last;\n"
+	       "    contact->total++;\n"
+	       "    contact->interval[last->expression] += last->upward ? 1 : -1;\n"
+	       "    return 1;\n"
+	       "}\n");
+}
+
+static int most_changes(const struct expansion *x)
+{
+	int most = 1;
+	for (int i = 0; i < x->expressions; i++)
+		most += x->expression[i].breaks + 1;
+	return most;
+}
+
+static void emit_locate(const struct emitter *e)
+{
+	const struct expansion *x = expansion(e);
+	bool changes = e->system->segments > 1;
+	const char *length = changes ? "(change < $N_H ? change : $N_H)" : "$N_H";
+	say(e, "\n/* The intervals of a state that was set. Those of one expression may choose what another one is. */\n"
+	       "static void $n_locate(const $n *s, %s$n_contact *contact)\n"
+	       "{\n"
+	       "    double c[%d][$c], terms[%d];\n"
+	       "    int i, again = %d;\n", driven_parameter(e), x->order + 1, x->expressions, most_changes(x));
+	if (changes)
+		say(e, "    const double change = s->segment < %d ? $n_until(s, s->segment) : $N_H;\n",
+		    e->system->segments - 1);
+	emit_input_samples(e);
+	say(e, "    for (i = 0; i < %d; i++)\n"
+	       "        contact->interval[i] = 0;\n"
+	       "    contact->last.expression = -1;\n"
+	       "    contact->placed = 1;\n"
+	       "    do {\n"
+	       "        %s\n"
+	       "    } while (pl_divided_place(&$n_divided, c[0], terms, contact->interval) && again-- > 0);\n"
+	       "%s"
+	       "}\n", x->expressions,
+	    expand_call(e, "0.0", spell(e, format("$n_time(s) + 0.5 * %s", length)), "s->segment", "contact->", "s->y",
+			"c"), changes ? "    (void)change;\n" : "");
+}
+
+void emit_divided_functions(const struct emitter *e)
+{
+	emit_divided_tables(e);
+	emit_pass_breakpoint(e);
+	emit_locate(e);
+}
+
+void emit_divided_start(const struct emitter *e, const char *contact, const char *indent)
+{
+	if (!is_divided(e))
+		return;
+	say(e, "%sif (!%s.placed)\n"
+	       "%s    $n_locate(s, %s&%s);\n", indent, contact, indent, e->system->inputs ? "u, " : "", contact);
+	if (!e->model->truncation.adaptive || contact[0] != 's')
+		say(e, "%s%s.crossings = 0;\n", indent, contact);
+}
+
+void emit_divided_bound(const struct emitter *e)
+{
+	if (!is_divided(e))
+		return;
+	say(e, "    if (s->valid) {  /* up to a crossing */\n"
+	       "        double work[PL_DIVIDED_WORK(%d)], next;\n"
+	       "        pl_crossing crossing = s->contact.last;\n"
+	       "        int splits = %d;\n"
+	       "        if (pl_divided_left(&$n_divided, s->series[0], terms, s->contact.interval, &crossing)) {\n"
+	       "            s->valid = 0;\n"
+	       "        } else {\n"
+	       "            next = pl_divided_next(&$n_divided, s->series[0], terms, s->contact.interval,\n"
+	       "                (double)s->valid, &splits, &crossing, work);\n"
+	       "            if (splits < 0 || (next >= 0.0 && next < (double)s->valid))\n"
+	       "                s->valid = splits < 0 ? 0 : (int)next;\n"
+	       "        }\n"
+	       "        if (s->valid)\n"
+	       "            s->contact.last.expression = -1;\n"
+	       "    }\n", expansion(e)->order, MAX_SPLITS);
+}
+
+void emit_divided_questions(const struct emitter *e)
+{
+	const struct expansion *x = expansion(e);
+	if (regions_of_series(x)) {
+		const char *number = format("s->contact.interval[%d]", x->expressions - 1);
+		for (int i = x->expressions - 2; i >= 0; i--)
+			number = format("s->contact.interval[%d] + %d * (%s)", i, x->expression[i].breaks + 1, number);
+		say(e, "\nint $n_region(const $n *s)\n"
+		       "{\n"
+		       "    return %s;\n"
+		       "}\n", number);
+	}
+	say(e, "\nuint64_t $n_crossed(const $n *s)\n"
+	       "{\n"
+	       "    return s->contact.total;\n"
+	       "}\n"
+	       "\nint $n_crossings(const $n *s, pl_crossing crossing[$N_MAX_EVENTS])\n"
+	       "{\n"
+	       "    int i;\n"
+	       "    for (i = 0; i < s->contact.crossings; i++)\n"
+	       "        crossing[i] = s->contact.crossing[i];\n"
+	       "    return s->contact.crossings;\n"
+	       "}\n");
+}

@@ -1,0 +1,95 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Regions beside loads that change their formula in time: from change to change within a step. The number of a region
+ * in pl_contact then has its segment of time as the last interval, so that a change goes to the region with the same
+ * intervals in the next segment; what has left its interval by that, the search finds at the start of the stretch. */
+#include "emit/emit.h"
+
+static int segments_of(const struct emitter *e)
+{
+	return e->model->switching->segments;
+}
+
+static int regions_in_one(const struct emitter *e)
+{
+	return regions_at_once(e->model->switching);
+}
+
+/* The region of x in a segment of time */
+static void emit_start(const struct emitter *e)
+{
+	say(e, "\n"
+	       "/* The region of x in a segment of time */\n"
+	       "static void $o_start(int segment, const double x[%d], pl_contact *contact, double *work)\n"
+	       "{\n"
+	       "    pl_switching here = $o_switching[segment];\n"
+	       "    here.matrix += segment * %d;\n"
+	       "    pl_switching_start(&here, x, contact, work);\n"
+	       "    contact->region += segment * %d;\n"
+	       "}\n",
+	    e->step->layout.size, regions_in_one(e), regions_in_one(e));
+}
+
+/* Whether a region can occur before a change and, by its inequalities, not after it */
+static bool any_lost(const struct emitter *e)
+{
+	const struct switching *s = e->model->switching;
+	int in_one = regions_in_one(e);
+	bool any = false;
+	for (int r = 0; r + in_one < s->regions; r++)
+		any = any || !s->region[r + in_one].possible;
+	return any;
+}
+
+static void emit_change(const struct emitter *e)
+{
+	bool lost = any_lost(e);
+	say(e, "\n"
+	       "/* The same intervals after the next change%s */\n"
+	       "static void $o_next_segment(%spl_contact *contact%s)\n"
+	       "{\n"
+	       "    contact->region += %d;\n",
+	    lost ? "; where they cannot be then, the equations of the region where x is" : "",
+	    lost ? format("const double x[%d], ", e->step->layout.size) : "", lost ? ", double *work" : "",
+	    regions_in_one(e));
+	if (lost)
+		say(e, "    if ($o_matrix[contact->region] < 0) {\n"
+		       "        pl_contact now;\n"
+		       "        $o_start(contact->region / %d, x, &now, work);\n"
+		       "        contact->matrix = now.matrix;\n"
+		       "        return;\n"
+		       "    }\n", regions_in_one(e));
+	say(e, "    contact->matrix = $o_matrix[contact->region];\n"
+	       "}\n");
+}
+
+void emit_region_changes(const struct emitter *e)
+{
+	emit_start(e);
+	emit_change(e);
+	say(e, "\n"
+	       "/* x on by tau, from change to change of the loads */\n"
+	       "static void $o_pass_changes(const $n *s, double tau, double x[%d], pl_contact *contact, pl_crossing *crossing,\n"
+	       "                    double *work)\n"
+	       "{\n"
+	       "    double done = 0.0;\n"
+	       "    int count = 0, i;\n"
+	       "    for (;;) {\n"
+	       "        const int segment = contact->region / %d;\n"
+	       "        const double change = segment < %d ? $n_until(s, segment) : tau;\n"
+	       "        const double to = change < tau ? change : tau;\n"
+	       "        pl_switching here = $o_switching[segment];\n"
+	       "        here.max_events -= count;\n"
+	       "        pl_switching_advance(&here, to - done, x, contact, crossing + count, work);\n",
+	    e->step->layout.size, regions_in_one(e), segments_of(e) - 1);
+	say(e, "        for (i = count; i < count + contact->crossings; i++)\n"
+	       "            crossing[i].time += done;\n"
+	       "        count += contact->crossings;\n"
+	       "        if (!(change < tau))\n"
+	       "            break;\n"
+	       "        if (to > done)\n"
+	       "            done = to;\n"
+	       "        $o_next_segment(%scontact%s);\n"
+	       "    }\n"
+	       "    contact->crossings = count;\n"
+	       "}\n", any_lost(e) ? "x, " : "", any_lost(e) ? ", work" : "");
+}

@@ -1,0 +1,108 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Whether two models differ in how large their loads are, and in nothing else: so a param is known as an amplitude. */
+#include "model/model.h"
+
+#include <string.h>
+
+static bool same_numbers(const mpq_t *a, const mpq_t *b, int count)
+{
+	for (int i = 0; i < count; i++)
+		if (!mpq_equal(a[i], b[i]))
+			return false;
+	return true;
+}
+
+/* Of all but what loads act with: *loads is set where that differs */
+static bool same_but_loads(const struct linear *p, const struct linear *q, bool *loads)
+{
+	if (p->states != q->states || p->loads != q->loads || p->segments != q->segments ||
+	    !same_numbers(p->M, q->M, p->n * p->n) || !same_numbers(p->C, q->C, p->n * p->n) ||
+	    !same_numbers(p->K, q->K, p->n * p->n))
+		return false;
+	for (int l = 0; l < p->loads; l++) {
+		const struct wave *u = p->load[l].wave, *v = q->load[l].wave;
+		if (!mpq_equal(u->a, v->a) || !mpq_equal(u->w, v->w) || !mpq_equal(u->p, v->p) ||
+		    p->load[l].columns != q->load[l].columns)
+			return false;
+		for (int c = 0; c < p->load[l].columns; c++)
+			*loads = *loads ||
+				 !same_numbers(p->load[l].force[c], q->load[l].force[c], p->segments * p->n);
+	}
+	return true;
+}
+
+/* ---- what is not linear ---- */
+
+/* Texts of leftovers that are cut short say nothing. */
+static bool same_leftovers(const struct model *a, const struct model *b)
+{
+	if (a->operators != b->operators || a->channels != b->channels)
+		return false;
+	for (int k = 0; k < a->operators * a->channels; k++) {
+		const char *left = form_text(a, a->operator[k / a->channels].left[k % a->channels]);
+		const char *other = form_text(b, b->operator[k / a->channels].left[k % a->channels]);
+		if (strstr(left, "...") || strcmp(left, other) != 0)
+			return false;
+	}
+	return true;
+}
+
+/* ---- regions ---- */
+
+/* What is compared with breakpoints may read loads. */
+static bool same_breakpoints(const struct switching *a, const struct switching *b, int states)
+{
+	bool same = a->expressions == b->expressions && a->regions == b->regions && a->systems == b->systems &&
+		    a->parts == b->parts;
+	for (int i = 0; i < a->expressions && same; i++) {
+		const struct expression *e = &a->expression[i], *f = &b->expression[i];
+		same = e->breaks == f->breaks && same_numbers(e->at, f->at, e->breaks) &&
+		       same_numbers(e->row->state, f->row->state, states);
+	}
+	return same;
+}
+
+/* A constant that is a load changes alike in all regions; one of the law of a spring or a friction does not. */
+static bool change_alike(const struct switching *a, const struct switching *b)
+{
+	bool alike = true;
+	mpq_t first, other;
+	mpq_inits(first, other, NULL);
+	for (int l = 0; a->systems > 0 && l < a->system->loads; l++) {
+		const struct wave *wave = a->system->load[l].wave;
+		const bool constant = mpq_sgn(wave->a) == 0 && !oscillates(wave);
+		const int numbers = a->system->segments * a->system->n;
+		for (int k = 1; k < a->systems && constant; k++)
+			for (int i = 0; i < numbers && alike; i++) {
+				mpq_sub(first, b->system->load[l].force[0][i], a->system->load[l].force[0][i]);
+				mpq_sub(other, b->system[k].load[l].force[0][i], a->system[k].load[l].force[0][i]);
+				alike = mpq_equal(first, other);
+			}
+	}
+	mpq_clears(first, other, NULL);
+	return alike;
+}
+
+static bool same_regions(const struct model *a, const struct model *b, bool *loads)
+{
+	const struct switching *p = a->switching, *q = b->switching;
+	if (!p != !q || (p && !same_breakpoints(p, q, a->system.states)))
+		return false;
+	if (!p)
+		return true;
+	bool same = true;
+	for (int k = 0; k < p->parts && same; k++)
+		same = same_but_loads(&p->part[k].model->system, &q->part[k].model->system, loads) &&
+		       same_regions(p->part[k].model, q->part[k].model, loads);
+	for (int k = 0; k < p->systems && same && p->parts == 0; k++)
+		same = same_but_loads(&p->system[k], &q->system[k], loads);
+	return same && (p->parts > 0 || change_alike(p, q));
+}
+
+bool differ_in_loads(const struct model *a, const struct model *b)
+{
+	bool loads = false;
+	return mpq_equal(a->h, b->h) && same_but_loads(&a->system, &b->system, &loads) &&
+	       same_numbers(a->initial, b->initial, a->system.states) && same_leftovers(a, b) &&
+	       same_regions(a, b, &loads) && loads;
+}

@@ -1,0 +1,255 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What is compared with breakpoints: terms that compare multiples of one form share an expression. Its loads may have
+ * another formula in each segment of time; it is known again there by the terms that compare it, and by what of it is
+ * not of time alone. */
+#include "model/model.h"
+
+bool is_form_multiple(const struct form *form, const struct form *e, mpq_ptr of)
+{
+	if (form->terms != e->terms || basis_order(&form->term[0].basis, &e->term[0].basis) != 0)
+		return false;
+	mpq_div(of, form->term[0].factor, e->term[0].factor);
+	struct form *same = form_scale(e, of);
+	bool multiple = same_form(form, same);
+	form_free(same);
+	return multiple;
+}
+
+bool share_expression(const struct switching *a, const struct switching *b)
+{
+	bool shared = false;
+	mpq_t factor;
+	mpq_init(factor);
+	for (int i = 0; i < a->expressions; i++)
+		for (int k = 0; k < b->expressions && !shared; k++)
+			shared = is_form_multiple(a->expression[i].form, b->expression[k].form, factor);
+	mpq_clear(factor);
+	return shared;
+}
+
+/* ---- the terms that compare it ---- */
+
+struct comparing {
+	const struct node *node;
+	mpq_t first;                /* where it is compared first, in the unit of the expression */
+	bool *seen;                 /* per segment of time: it is compared there */
+};
+
+static struct comparing *term_of(const struct expression *e, const struct node *node)
+{
+	for (int i = 0; i < e->terms; i++)
+		if (e->term[i].node == node)
+			return &e->term[i];
+	return NULL;
+}
+
+static void add_term(const struct switching *s, struct expression *e, int segment, const struct compared *what,
+		     mpq_srcptr at)
+{
+	ENLARGE(e->term, (size_t)e->terms + 1);
+	struct comparing *term = &e->term[e->terms++];
+	*term = (struct comparing){ .node = what->node, .seen = ARRAY(bool, (size_t)s->segments) };
+	term->seen[segment] = true;
+	mpq_init(term->first);
+	mpq_set(term->first, at);
+}
+
+static bool is_apart(const struct switching *s, const struct node *node)
+{
+	bool apart = false;
+	for (int i = 0; i < s->aparts; i++)
+		apart = apart || s->apart[i] == node;
+	return apart;
+}
+
+/* Terms that were taken to compare one expression do so in no longer: all begins anew, with this one by itself. */
+static void tear(struct switching *s, const struct node *node)
+{
+	ENLARGE(s->apart, (size_t)s->aparts + 1);
+	s->apart[s->aparts++] = node;
+	s->torn = true;
+}
+
+/* ---- from segment to segment ---- */
+
+static struct form *moving_part(const struct form *form)
+{
+	struct form *part = NEW(struct form);
+	for (int i = 0; i < form->terms; i++)
+		if (form->term[i].basis.kind == BASIS_COORD || form->term[i].basis.kind == BASIS_INPUT)
+			form_add_basis(part, form->term[i].basis, form->term[i].factor);
+	return part;
+}
+
+/* Is form what this expression has become? */
+static bool has_become(const struct expression *e, const struct form *form, mpq_ptr of)
+{
+	const struct form *here = moving_part(form), *there = moving_part(e->form);
+	mpq_set_ui(of, 1, 1);
+	return here->terms == 0 ? there->terms == 0 : there->terms > 0 && is_form_multiple(here, there, of);
+}
+
+/* form + constant = of (e - at) */
+static void find_at(const struct expression *e, int segment, const struct compared *what, mpq_srcptr of, mpq_ptr at)
+{
+	mpq_div(at, what->constant, of);
+	mpq_sub(at, e->shift[segment], at);
+}
+
+/* In this segment for the first time. A constant that is a part of the load now moves no breakpoint. */
+static void follow(struct expression *e, const struct comparing *term, int segment, const struct compared *what,
+		   mpq_srcptr of)
+{
+	mpq_t at, scale;
+	mpq_inits(at, scale, NULL);
+	find_at(e, segment, what, of, at);
+	mpq_sub(e->shift[segment], term->first, at);
+	mpq_inv(scale, of);
+	e->in[segment] = form_scale(what->form, scale);
+	mpq_clears(at, scale, NULL);
+}
+
+/* ---- which expression it is ---- */
+
+static int met_before(const struct switching *s, int segment, const struct compared *what, mpq_ptr of)
+{
+	for (int i = 0; i < s->expressions; i++) {
+		const struct comparing *term = term_of(&s->expression[i], what->node);
+		if (term && term->seen[segment] && is_form_multiple(what->form, s->expression[i].in[segment], of))
+			return i;
+	}
+	return -1;
+}
+
+/* By a term of another segment */
+static int met_elsewhere(struct switching *s, int segment, const struct compared *what, mpq_ptr of)
+{
+	mpq_t at;
+	mpq_init(at);
+	int found = -1;
+	bool torn = false;
+	for (int i = 0; i < s->expressions && found < 0; i++) {
+		struct expression *e = &s->expression[i];
+		struct comparing *term = term_of(e, what->node);
+		if (!term || term->seen[segment] || !has_become(e, what->form, of))
+			continue;
+		if (!e->in[segment])
+			follow(e, term, segment, what, of);
+		find_at(e, segment, what, of, at);
+		if (is_form_multiple(what->form, e->in[segment], of) && mpq_equal(at, term->first)) {
+			found = i;
+			term->seen[segment] = true;
+		} else {
+			torn = torn || !is_apart(s, what->node);
+		}
+	}
+	if (found < 0 && torn)
+		tear(s, what->node);
+	mpq_clear(at);
+	return found;
+}
+
+/* That of another term */
+static int met_by_others(struct switching *s, int segment, const struct compared *what, mpq_ptr of)
+{
+	mpq_t at;
+	mpq_init(at);
+	int found = -1;
+	for (int i = 0; i < s->expressions && found < 0 && !is_apart(s, what->node); i++) {
+		struct expression *e = &s->expression[i];
+		const struct form *here = e->in[segment] ? e->in[segment] : e->form;
+		if (is_apart(s, e->node) || term_of(e, what->node) || !is_form_multiple(what->form, here, of))
+			continue;
+		e->in[segment] = form_alias(here);
+		find_at(e, segment, what, of, at);
+		add_term(s, e, segment, what, at);
+		found = i;
+	}
+	mpq_clear(at);
+	return found;
+}
+
+static int new_expression(struct switching *s, int segment, const struct compared *what, mpq_ptr of)
+{
+	mpq_t at;
+	mpq_init(at);
+	mpq_set_ui(of, 1, 1);
+	ENLARGE(s->expression, (size_t)s->expressions + 1);
+	struct expression *e = &s->expression[s->expressions];
+	*e = (struct expression){ .form = what->form,
+				  .in = ARRAY(struct form *, (size_t)s->segments),
+				  .shift = rationals((size_t)s->segments),
+				  .segments = s->segments,
+				  .node = what->node,
+				  .met = what->met };
+	e->in[segment] = what->form;
+	find_at(e, segment, what, of, at);
+	add_term(s, e, segment, what, at);
+	mpq_clear(at);
+	return s->expressions++;
+}
+
+int find_expression(struct switching *s, int segment, const struct compared *what, mpq_ptr of, mpq_ptr at)
+{
+	int found = met_before(s, segment, what, of);
+	if (found < 0)
+		found = met_elsewhere(s, segment, what, of);
+	if (found < 0)
+		found = met_by_others(s, segment, what, of);
+	if (found < 0)
+		found = new_expression(s, segment, what, of);
+	find_at(&s->expression[found], segment, what, of, at);
+	return found;
+}
+
+void complete_expressions(struct switching *s)
+{
+	for (int i = 0; i < s->expressions; i++) {
+		struct expression *e = &s->expression[i];
+		int first = 0;
+		while (!e->in[first])
+			first++;
+		for (int segment = 0; segment < s->segments; segment++) {
+			int as = segment < first ? first : segment - 1;
+			if (e->in[segment])
+				continue;
+			e->in[segment] = e->in[as];
+			mpq_set(e->shift[segment], e->shift[as]);
+		}
+	}
+}
+
+/* ---- for a reader ---- */
+
+static const char *text_in(const struct model *model, const struct expression *e, int segment)
+{
+	return form_text(model, form_sum(e->in[segment], form_constant(e->shift[segment]), false));
+}
+
+static bool is_as_before(const struct expression *e, int segment)
+{
+	return mpq_equal(e->shift[segment], e->shift[segment - 1]) && same_form(e->in[segment], e->in[segment - 1]);
+}
+
+bool changes_in_time(const struct expression *e)
+{
+	bool changes = false;
+	for (int s = 1; s < e->segments; s++)
+		changes = changes || !is_as_before(e, s);
+	return changes;
+}
+
+const char *spoken_expression(const struct model *model, int index)
+{
+	enum { SHOWN = 3 };
+	const struct expression *e = &model->switching->expression[index];
+	const char *text = e->segments > 1 ? text_in(model, e, 0) : form_text(model, e->form);
+	int shown = 0;
+	for (int s = 1; s < e->segments && shown <= SHOWN; s++)
+		if (!is_as_before(e, s))
+			text = shown++ == SHOWN ? format("%s; ...", text)
+						: format("%s; from t = %s on %s", text,
+							 readable_text(model->system.change[s - 1]),
+							 text_in(model, e, s));
+	return text;
+}

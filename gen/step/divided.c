@@ -1,0 +1,171 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Formulas that the state chooses: each comparison is of an expression, smooth until the next event, with a breakpoint.
+ * The series is that of the formulas between two events; where an expression passes a breakpoint it ends. */
+#include "step/step.h"
+
+#include <limits.h>
+
+/* ---- expressions and breakpoints ---- */
+
+static int find_divided(struct sequencing *w, const struct form *form, mpq_ptr of)
+{
+	struct expansion *x = w->x;
+	for (int i = 0; i < x->expressions; i++)
+		if (is_form_multiple(form, x->expression[i].form, of))
+			return i;
+	int sequence = sequence_of_form(w, form);
+	ENLARGE(x->expression, (size_t)x->expressions + 1);
+	x->expression[x->expressions] = (struct divided){ .form = form, .sequence = sequence };
+	mpq_set_ui(of, 1, 1);
+	return x->expressions++;
+}
+
+static int find_breakpoint(struct divided *d, mpq_srcptr at)
+{
+	for (int i = 0; i < d->breaks; i++)
+		if (mpq_equal(d->at[i], at))
+			return i;
+	mpq_t *all = rationals((size_t)d->breaks + 1);
+	for (int i = 0; i < d->breaks; i++)
+		mpq_set(all[i], d->at[i]);
+	mpq_set(all[d->breaks], at);
+	d->at = all;
+	return d->breaks++;
+}
+
+/* The first terms: 1 and pi */
+static int constant_terms(const struct form *form)
+{
+	int count = 0;
+	while (count < form->terms && form->term[count].basis.kind <= BASIS_PI)
+		count++;
+	return count;
+}
+
+static void value_of_constants(const struct sequencing *w, const struct form *form, int count, mpq_ptr value)
+{
+	mpq_t part;
+	mpq_init(part);
+	mpq_set_ui(value, 0, 1);
+	for (int i = 0; i < count; i++) {
+		mpq_set(part, form->term[i].factor);
+		if (form->term[i].basis.kind == BASIS_PI)
+			mpq_mul(part, part, w->pi);
+		mpq_add(value, value, part);
+	}
+	mpq_clear(part);
+}
+
+int choice_by_state(struct sequencing *w, const struct atom *atom, const struct form *a, const struct form *b,
+		    int above, int below)
+{
+	bool turned = is_constant(a) && !is_constant(b);        /* what stands beside a constant is as it was written */
+	const struct form *d = turned ? form_difference(b, a) : form_difference(a, b);
+	int constants = constant_terms(d);
+	struct form plain = { constants, d->term, 0 };
+	mpq_t value, factor;
+	if (scheme_row(w->step->model->scheme)->collocates)
+		no_series(w, atom, "changes its formula where the state decides, which scheme taylor takes as an event");
+	if (turned) {
+		int other = above;
+		above = below;
+		below = other;
+	}
+	mpq_inits(value, factor, NULL);
+	value_of_constants(w, d, constants, value);
+	int side = mpq_sgn(value), sequence = side > 0 ? above : below;
+	if (constants < d->terms) {
+		int which = find_divided(w, form_sum(d, &plain, true), factor);
+		mpq_div(value, value, factor);
+		mpq_neg(value, value);          /* e = (d - constant)/factor against -constant/factor */
+		int breakpoint = find_breakpoint(&w->x->expression[which], value);
+		bool rises = mpq_sgn(factor) > 0;
+		sequence = new_sequence(w, (struct sequence){ .kind = SEQUENCE_CHOICE, .choice = CHOICE_BY_STATE,
+							      .state = NONE, .expression = which,
+							      .breakpoint = breakpoint, .a = rises ? above : below,
+							      .b = rises ? below : above });
+	}
+	mpq_clears(value, factor, NULL);
+	return sequence;
+}
+
+/* ---- once all are there ---- */
+
+static void find_column(struct expansion *x, int states, struct divided *d)
+{
+	d->column = d->sequence;
+	for (int i = 0; i < x->columns && d->column >= states; i++)
+		if (x->column[i] == d->sequence) {
+			d->column = states + i;
+			return;
+		}
+	if (d->column < states)
+		return;
+	ENLARGE(x->column, (size_t)x->columns + 1);
+	x->column[x->columns] = d->sequence;
+	d->column = states + x->columns++;
+}
+
+void rank_breakpoints(struct expansion *x)
+{
+	int states = 0;
+	while (states < x->count && x->sequence[states].state != NONE)
+		states++;
+	for (int i = 0; i < x->expressions; i++) {
+		struct divided *d = &x->expression[i];
+		d->rank = ARRAY(int, (size_t)d->breaks);
+		for (int k = 0; k < d->breaks; k++)
+			for (int j = 0; j < d->breaks; j++)
+				d->rank[k] += mpq_cmp(d->at[j], d->at[k]) < 0;
+		find_column(x, states, d);
+	}
+}
+
+int breakpoint_rank(const struct expansion *x, const struct sequence *choice)
+{
+	return x->expression[choice->expression].rank[choice->breakpoint];
+}
+
+mpq_t *rising_breakpoints(const struct divided *d)
+{
+	mpq_t *rising = rationals((size_t)d->breaks);
+	for (int k = 0; k < d->breaks; k++)
+		mpq_set(rising[d->rank[k]], d->at[k]);
+	return rising;
+}
+
+const char *divided_text(const struct step *step, int expression)
+{
+	const struct step *shown = step->shown;
+	bool same = shown->expansion && shown->expansion->expressions == step->expansion->expressions;
+	shown = same ? shown : step;
+	return form_text(shown->model, shown->expansion->expression[expression].form);
+}
+
+int regions_of_series(const struct expansion *x)
+{
+	int regions = 1;
+	for (int i = 0; i < x->expressions; i++) {
+		if (regions > INT_MAX / (x->expression[i].breaks + 1))
+			return 0;
+		regions *= x->expression[i].breaks + 1;
+	}
+	return regions;
+}
+
+void check_divided(const struct step *step)
+{
+	const struct expansion *x = step->expansion;
+	const struct model *model = step->model;
+	const struct smoothness *smooth = &model->smooth;
+	if (!x || x->expressions == 0)
+		return;
+	if (model->truncation.over > 1)
+		error(model->asked.scheme_over->start, "over 1",
+		      "one expansion is over several steps: it ends where %s passes a breakpoint",
+		      form_text(model, x->expression[0].form));
+	if (smooth->singular)
+		error(smooth->singular->start, "etdrk4 and the schemes like it step across it, of lower order there",
+		      "scheme %s: '%s' has no Taylor series where %s", scheme_name(model->scheme),
+		      text_between(smooth->singular->start, smooth->singular->end), smooth->singular_where);
+}
