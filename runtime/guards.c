@@ -515,6 +515,7 @@ static void come_to_rest(const pl_guards *m, uint32_t struck, real *x, pl_contac
             continue;
         assign(m, p->still, x, work);
         go_to(m, c, p, p->rest);
+        assign(m, m->hold[c->region], x, work); /* beside others that rest, and what they would leave it with */
         (void)list(m, c, crossing, time + left, p->expression, p->breakpoint, p->upward);
         c->rested++;
         settle(m, x, c, crossing, time, work);

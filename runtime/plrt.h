@@ -613,7 +613,7 @@ typedef struct pl_guards {
 enum { PL_UNDECIDED = 16 };
 
 /* Bounces that would all be over within this part of h come to rest: their number is infinite, their time is not. */
-#define PL_BRIEF 0x1p-20
+#define PL_BRIEF 0x1p-23
 #define PL_BRIEFF 0x1p-10f
 
 #define PL_GUARDS_WORK(size, degree) (((degree) + 1) * ((size) + 2) + 8 * (size))

@@ -277,7 +277,7 @@ static void banner_impacts(const struct emitter *e)
 	if (model->impacts > 1)
 		say(e, " * Those of one instant act in this order, each from the state that the one before has left.\n");
 	if (has_bounces(model))
-		say(e, " * Bounces that would all be over within 2^-20 h come to rest: $n_rested counts.\n");
+		say(e, " * Bounces that would all be over within 2^-23 h come to rest: $n_rested counts.\n");
 }
 
 static void banner_region_number(const struct emitter *e)

@@ -60,11 +60,6 @@ int interval_of(const struct switching *s, int region, int expression)
 	return region / e->stride % (e->breaks + 1);
 }
 
-bool is_stick(const struct expression *e, int interval)
-{
-	return interval > 0 && interval < e->breaks && mpq_equal(e->at[interval - 1], e->at[interval]);
-}
-
 int friction_of(const struct switching *s, const struct atom *a)
 {
 	int index = s->frictions - 1;

@@ -553,21 +553,24 @@ int  possible_regions(const struct switching *s);
 
 void collect_impacts(struct building *b);
 void build_impacts(struct building *b);                     /* once the masses are known */
+void place_impact_loads(struct building *b, const struct switching *s);
+void build_impact_rows(struct building *b, struct switching *s);
+_Noreturn void tell_no_impacts(const struct building *b);   /* why a scheme cannot treat them */
+
+/* ---- events.c: what is held in regions, and what begins there ---- */
+
+bool is_stick(const struct expression *e, int interval);    /* between two equal breakpoints */
 /* which begins where an expression passes a breakpoint this way; -1: none does */
 int  impact_at(const struct switching *s, int expression, mpq_srcptr at, bool upward);
 int  impact_resting(const struct switching *s, int expression, int interval);  /* there; -1: none does */
 int  rest_of(const struct switching *s, const struct impact *impact); /* the interval in which it rests; -1: none */
-void place_impact_loads(struct building *b, const struct switching *s);
-void build_impact_rows(struct building *b, struct switching *s);
 bool has_bounces(const struct model *model);
 bool has_events(const struct switching *s);                 /* each region has its own: friction, impacts */
-_Noreturn void tell_no_impacts(const struct building *b);   /* why a scheme cannot treat them */
 
 /* ---- friction.c: dry friction in regions, where it slips and where it sticks ---- */
 
 bool holds_friction(const struct building *b);              /* somewhere in the equations */
 _Noreturn void tell_no_friction(const struct building *b);  /* why a scheme cannot treat it */
-bool is_stick(const struct expression *e, int interval);    /* between two equal breakpoints */
 struct form *rate_of_form(struct building *b, const struct form *form); /* its derivative with respect to time */
 int  stick_of(const struct switching *s, const struct friction *f); /* the interval in which it sticks */
 /* puts in the forces of what slips, and the constraints of what sticks */

@@ -200,11 +200,11 @@ struct guards guards_of(const struct step *step, const struct pieces *pieces)
 	return g;
 }
 
-/* From h down to 2^-20 h, where they rest, bounces become shorter by e each. Several contacts, which strike each other,
+/* From h down to 2^-23 h, where they rest, bounces become shorter by e each. Several contacts, which strike each other,
  * take more. */
 static int bounces_in_step(const struct model *model)
 {
-	enum { MOST = 480, SHORTER = 20 };
+	enum { MOST = 480, SHORTER = 23 };
 	double sum = 0;
 	for (int i = 0; i < model->impacts; i++) {
 		double e = mpq_get_d(model->impact[i].restitution);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* follow FOUND STEPS TOLERANCE: whether the emitted model `scene` meets every event in FOUND, in order, and ends where
- * FOUND says, off by at most TOLERANCE of the largest value. Events of one instant count once: which intervals are
+ * FOUND says, off by at most TOLERANCE of the largest value, times 0.1 over the slowest speed at which something was
+ * met, where that is more. Events of one instant count once: which intervals are
  * passed on the way is the model's own affair. */
 #include "scene.h"
 #include "worse.h"
@@ -15,7 +16,7 @@
 #include <string.h>
 
 enum { MOST = 20000 };
-static const double together = 0x1p-17 * SCENE_H; /* one instant [s]: what comes to rest is there within 2^-20 h */
+static const double together = 0x1p-20 * SCENE_H; /* one instant [s]: what comes to rest is there within 2^-23 h */
 static const double late = 1e-9; /* how far a time may be off [s] */
 static double expected[MOST], found[MOST];
 static char what[MOST][80];
@@ -41,12 +42,15 @@ int main(int count, char **argument)
 	FILE *from = count == 4 ? fopen(argument[1], "r") : NULL;
 	char line[512];
 	int events = 0, faults = 0;
-	double end[SCENE_STATES] = { 0 }, y[SCENE_STATES], most = 0.1, worst = 0;
+	double end[SCENE_STATES] = { 0 }, y[SCENE_STATES], most = 0.1, worst = 0, slowest;
+	double tolerance = count == 4 ? atof(argument[3]) : 0;
 	while (from && fgets(line, sizeof line, from)) {
 		double time;
 		if (sscanf(line, "event %lf %79[^\n]", &time, what[events]) == 2) {
 			if (events == 0 || time > expected[events - 1] + together)
 				expected[events++] = time;
+		} else if (sscanf(line, "slowest %lf", &slowest) == 1) {
+			tolerance *= fmax(1, 0.1 / slowest);
 		} else if (strncmp(line, "end", 3) == 0) {
 			char *at = line + 3;
 			for (int i = 0; i < SCENE_STATES; i++)
@@ -70,12 +74,12 @@ int main(int count, char **argument)
 		most = fmax(most, fabs(end[i]));
 	for (int i = 0; i < SCENE_STATES; i++) {
 		const double off = fabs(y[i] - end[i]) / most;
-		if (!(off <= atof(argument[3])))
+		if (!(off <= tolerance))
 			printf("# state %d: %.17g found, %.17g expected\n", i, y[i], end[i]);
 		worst = worse(worst, off);
 	}
 	if (scene_status(&s) & ~SCENE_STATUS_ALLOWED)
 		printf("# status %d\n", scene_status(&s));
 	printf("# events %d, worst state %.3g\n", events, worst);
-	return faults > 0 || !(worst <= atof(argument[3])) || (scene_status(&s) & ~SCENE_STATUS_ALLOWED);
+	return faults > 0 || !(worst <= tolerance) || (scene_status(&s) & ~SCENE_STATUS_ALLOWED);
 }

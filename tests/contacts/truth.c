@@ -473,6 +473,36 @@ static double bounces_left(struct moving *m, int i)
 	return left;
 }
 
+static bool others_near(struct moving *m, int index)
+{
+	bool near = false;
+	mpfr_t off;
+	mpfr_init2(off, BITS);
+	for (int i = 0; i < m->s->contacts; i++) {
+		if (i == index || m->s->contact[i].kind != IMPACT)
+			continue;
+		measure_now(m, i, 0, off);
+		near = near || fabs(mpfr_get_d(off, MPFR_RNDN)) < 1e-18;
+	}
+	mpfr_clear(off);
+	return near;
+}
+
+static void note_speeds(struct moving *m)
+{
+	mpfr_t off, speed;
+	mpfr_inits2(BITS, off, speed, (mpfr_ptr)0);
+	for (int i = 0; i < m->s->contacts; i++) {
+		measure_now(m, i, 0, off);
+		measure_now(m, i, 1, speed);
+		const double size = fabs(mpfr_get_d(speed, MPFR_RNDN));
+		if (m->s->contact[i].kind != FRICTION && !m->hidden[i] && mpfr_cmpabs(off, m->tiny) <= 0 &&
+		    size > 1e-6 && size < m->found->slowest)
+			m->found->slowest = size;
+	}
+	mpfr_clears(off, speed, (mpfr_ptr)0);
+}
+
 static void settle(struct moving *m)
 {
 	static const double nothing = 1e-21;    /* [s] */
@@ -482,6 +512,7 @@ static void settle(struct moving *m)
 	const double time = mpfr_get_d(m->time, MPFR_RNDN);
 	for (int i = 0; i < n; i++)
 		best[i] = before[i] = m->mode[i];
+	note_speeds(m);
 	strike_all(m, struck);
 	for (int again = 1; again; ) {
 		int count = 0;
@@ -506,6 +537,8 @@ static void settle(struct moving *m)
 				log_event(m, time + left, i, OPEN, RESTING);
 			}
 			struck[i] = false;
+			if (left >= 0 && left < nothing && others_near(m, i))
+				doubt(m, "several come to rest together");
 			if (left >= 0 && left < nothing) {
 				strike(m, i, 0);
 				again = 1;
@@ -627,7 +660,7 @@ void truth_run(const struct scene *s, double until, double brief, struct truth *
 {
 	struct moving *m = calloc(1, sizeof *m);
 	mpfr_t width, left, end;
-	*found = (struct truth){ .events = 0 };
+	*found = (struct truth){ .slowest = 1 };
 	m->s = s;
 	m->found = found;
 	m->brief = brief;

@@ -20,6 +20,8 @@ struct truth {
 	int events;
 	struct event event[MOST_FOUND];
 	double q[MOST_MASSES], v[MOST_MASSES];
+	double slowest;         /* at which a stop or an impact was met, before it bounces in short; what is off there
+				 * grows by its inverse */
 	/* no combination keeps to the laws, or more than one; or an event that is near to none: this scene decides
 	 * nothing */
 	bool doubtful;

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* truth STOPS FRICTIONS IMPACTS SEED SECONDS SPEC FOUND: a random scene with at most so many contacts of each kind, as
- * a spec, and how it moves: lines `event TIME CONTACT FROM TO` in order, `end q1 ... q1' ...`. Status 2: this scene
- * decides nothing. Bounces that would be over within 2^-20 of a step are those of a contact that rests. */
+ * a spec, and how it moves: lines `event TIME CONTACT FROM TO` in order, `slowest SPEED`, `end q1 ... q1' ...`. Status
+ * 2: this scene
+ * decides nothing. Bounces that would be over within 2^-23 of a step are those of a contact that rests. */
 #include "truth.h"
 
 #include <stdlib.h>
@@ -16,7 +17,7 @@ static void write_found(const struct scene *s, FILE *to)
 		fprintf(to, "event %.17g %d_%s %s %s\n", found.event[i].time, found.event[i].contact,
 			kind[s->contact[found.event[i].contact].kind], mode[found.event[i].from],
 			mode[found.event[i].to]);
-	fprintf(to, "end");
+	fprintf(to, "slowest %.17g\nend", found.slowest);
 	for (int i = 0; i < 2 * s->n; i++)
 		fprintf(to, " %.17g", i < s->n ? found.q[i] : found.v[i - s->n]);
 	fprintf(to, "\n");
@@ -32,7 +33,7 @@ int main(int count, char **argument)
 	if (!spec || !to)
 		return 1;
 	scene_write(&s, spec);
-	truth_run(&s, atof(argument[5]), (double)s.step / 1000 / (1 << 20), &found);
+	truth_run(&s, atof(argument[5]), (double)s.step / 1000 / (1 << 23), &found);
 	if (found.doubtful)
 		fprintf(to, "doubtful: %s\n", found.doubt);
 	write_found(&s, to);

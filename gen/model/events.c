@@ -1,0 +1,48 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Intervals of regions in which something is held, and what begins at their ends. */
+#include "model/model.h"
+
+bool is_stick(const struct expression *e, int interval)
+{
+	return interval > 0 && interval < e->breaks && mpq_equal(e->at[interval - 1], e->at[interval]);
+}
+
+int impact_at(const struct switching *s, int expression, mpq_srcptr at, bool upward)
+{
+	for (int i = 0; i < s->impacts; i++)
+		if (s->impact[i].expression == expression && s->impact[i].upward == upward &&
+		    mpq_equal(s->impact[i].at, at))
+			return i;
+	return -1;
+}
+
+int impact_resting(const struct switching *s, int expression, int interval)
+{
+	for (int i = 0; i < s->impacts; i++)
+		if (s->impact[i].bounces && s->impact[i].expression == expression &&
+		    rest_of(s, &s->impact[i]) == interval)
+			return i;
+	return -1;
+}
+
+int rest_of(const struct switching *s, const struct impact *impact)
+{
+	const struct expression *e = &s->expression[impact->expression];
+	for (int k = 1; k < e->breaks && impact->bounces; k++)
+		if (is_stick(e, k) && mpq_equal(e->at[k], impact->at))
+			return k;
+	return -1;
+}
+
+bool has_bounces(const struct model *model)
+{
+	bool any = false;
+	for (int i = 0; i < model->impacts; i++)
+		any = any || model->impact[i].bounces;
+	return any;
+}
+
+bool has_events(const struct switching *s)
+{
+	return s->frictions > 0 || s->impacts > 0;
+}
