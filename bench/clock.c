@@ -26,7 +26,7 @@ static double run(char **command)
 	posix_spawn_file_actions_init(&quiet);
 	posix_spawn_file_actions_addopen(&quiet, 1, "/dev/null", O_WRONLY, 0);
 	double start = milliseconds();
-	if (posix_spawn(&child, command[0], &quiet, NULL, command, environ) != 0 ||
+	if (posix_spawnp(&child, command[0], &quiet, NULL, command, environ) != 0 ||
 	    waitpid(child, &status, 0) != child || status != 0) {
 		fprintf(stderr, "clock: %s failed\n", command[0]);
 		exit(1);

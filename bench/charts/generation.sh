@@ -38,5 +38,9 @@ while read -r model; do
 	"$build/plgen" "$spec" 2>/dev/null >"$work/$model.c"
 	generate=$(measure "$build/plgen" "$spec")
 	compile=$(measure $compiler -O2 -Iruntime -c "$work/$model.c" -o "$work/$model.o")
+	if [ -z "$generate" ] || [ -z "$compile" ]; then
+		echo "generation.sh: $model: no time" >&2
+		exit 1
+	fi
 	echo "$model,$(wc -c <"$work/$model.c"),${generate%,*},$compile,$runs" >>"$folder/generation.csv"
 done <"$work/models"
