@@ -4,11 +4,13 @@
 # error is at most 1e-6, in float 1e-3 (ns per unit of output, median), ours in the same type likewise, and after how
 # many steps of ours the time to generate and compile is won back:
 #     steps = (generate + compile - 2 empty) / (rival's ns per step of ours - ours)
+# ours by a tolerance have a step a unit.
 # never: the rival is faster or, within the 10 % that times hold, as fast, or only the rival comes to that error; none:
 # no setting of the rival comes to it, or none that was timed (dear), so there is nothing to win back against.
 # The cheapest of them so far
 function offer(key) {
 	if (!(key in cheapest) || ns < cheapest[key]) { cheapest[key] = ns; setting[key] = row[column["setting"]];
+		step[key] = row[column["setting_kind"]] == "tolerance" ? row[column["unit_s"]] : setting[key];
 		error_at[key] = error; method_at[key] = method }
 }
 BEGIN { target["double"] = "1e-6"; target["float"] = "1e-3" }
@@ -49,7 +51,7 @@ END {
 			if (rival in cheapest) printf "%s,%s,%.6g,", setting[rival], error_at[rival], cheapest[rival]
 			else printf rival in dear ? "dear,dear,dear," : "failed,failed,failed,"
 			if (ours in cheapest)
-				printf "\"%s\",%s,%s,%.6g,", method_at[ours], setting[ours], error_at[ours],
+				printf "\"%s\",%s,%s,%.6g,", method_at[ours], step[ours], error_at[ours],
 				cheapest[ours]
 			else printf "none,failed,failed,failed,"
 			printf "%.6g,", once[model]
@@ -59,7 +61,7 @@ END {
 			else if (cheapest[rival] <= cheapest[ours] * 1.1) print "never,never,as fast"
 			else {
 				units = 1e6 * once[model] / (cheapest[rival] - cheapest[ours])
-				printf "%.6g,%.6g,\n", units, units * unit[model] / setting[ours]
+				printf "%.6g,%.6g,\n", units, units * unit[model] / step[ours]
 			}
 		}
 	}
