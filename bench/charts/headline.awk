@@ -29,7 +29,8 @@ NR == 1 { read_head($0, column); next }
 		why[k, which] = f[column["error"]] == "failed" ? "failed" : \
 			sprintf("%.2g at best", f[column["error"]])
 		if (f[column["parts_estimated"]] != "none")
-			why[k, which] = sprintf("%s would take %d steps", f[column["target"]], f[column["parts_estimated"]])
+			why[k, which] = sprintf("%s would take %d steps", f[column["target"]],
+				f[column["parts_estimated"]])
 	}
 }
 END {
@@ -51,7 +52,8 @@ END {
 	}
 	if (neither)
 		words = words "set label " ++labels " '" neither " other" (neither > 1 ? "s reach" : " reaches") \
-			" neither error: in the table' at first 1.3," rows + 0.95 " left font ',9' textcolor rgb '#505050'\n"
+			" neither error: in the table' at first 1.3," rows + 0.95 \
+			" left font ',9' textcolor rgb '#505050'\n"
 	n = split("coarse_ours fine_ours coarse_matrix fine_matrix coarse_peer fine_peer", name_of, " ")
 	of["ours"] = "exact"; of["matrix"] = "matrix"; of["peer"] = "adaptive"
 	who["ours"] = "plgen"; who["matrix"] = "matrix of a step"; who["peer"] = "integrator"

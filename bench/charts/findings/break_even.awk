@@ -16,5 +16,6 @@ END {
 		if (steps[m] + 0 > high) high = steps[m] + 0
 	}
 	print "Generating and compiling is won back after " short(low) " to " short(high) " steps against the " \
-		"cheapest peer, and never on " never + 0 " of " models " models (error 1e-6)"
+		"cheapest peer" (never ? ", and never on " never " of " models " models" : ", on all " models \
+		" models") " (error 1e-6)"
 }

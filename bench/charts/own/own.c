@@ -37,7 +37,8 @@ struct line {
 	const pl_model *model;
 	const pl_modelf *single;
 	int steps;                      /* of ours in an output */
-	bool rows;                      /* NAME_run keeps the rows wanted: a step is an output, its outputs the states */
+	/* NAME_run keeps the rows wanted: a step is an output, and its outputs are the states */
+	bool rows;
 	double error, evaluations, ns;
 	const char *word;               /* ok, failed, gave up, refused */
 	char refusal[300];
