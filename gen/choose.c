@@ -27,7 +27,7 @@ struct choosing {
 	struct variant *variant;
 	struct alternative *now;
 	struct step *step;
-	bool trying;                /* without what no need asks for: blocks of rows */
+	bool trying;                /* without what no need asks for */
 };
 
 /* ---- one alternative ---- */
@@ -35,7 +35,7 @@ struct choosing {
 static void ask(const struct choosing *c, struct model *model)
 {
 	const struct alternative *a = c->now;
-	model->asked.rows = c->trying ? 1 : c->request->rows;
+	model->asked.trial = c->trying;
 	model->asked.single = a->single;
 	model->asked.compensated = a->compensated;
 	model->asked.form = a->form;

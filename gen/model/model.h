@@ -133,6 +133,7 @@ struct request {                    /* what the user asks for on the command lin
 	                            /* no step, no initial values */
 	const struct relative *relative; /* the coordinates to build the model over; NULL: the written ones */
 	bool undivided;             /* regions are those of all coordinates together */
+	bool trial;                 /* its step and its outputs alone: no NAME_at, no blocks of rows */
 };
 struct truncation {                 /* of a Taylor series */
 	int order;                  /* of its last term in h; of collocation in h */

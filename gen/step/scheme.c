@@ -119,7 +119,8 @@ static void build_linear_step(struct step *step)
 {
 	step->layout = layout_of(&step->branch->system, false);
 	build_exact(step);
-	series_plan(step);
+	if (!step->model->asked.trial || step->branch->system.segments > 1)
+		series_plan(step);
 }
 
 static void build_tuned_step(struct step *step)
@@ -313,7 +314,8 @@ static void build(void *context)
 	count_peaks(step);
 	program_check(step);
 	plan_phases(step);
-	plan_rows(step);
+	if (!model->asked.trial)
+		plan_rows(step);
 }
 
 struct step *step_build(const struct model *model)
