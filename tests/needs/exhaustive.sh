@@ -41,7 +41,10 @@ for seed in driven "$@"; do
 	if grep -q float chosen; then
 		most=$("$plgen" --explain=json spec 2>errors |
 			sed -n 's/.*"modes": "\([^"]*\)".*"taken": true.*/\1/p' | tr ',' '\n' |
-			awk -F- -v all="$count" '/all/ { n += all } !/all/ { n += NF > 1 ? $2 - $1 + 1 : 1 } END { print n }')
+			awk -F- -v all="$count" '
+				/all/ { n += all }
+				!/all/ { n += NF > 1 ? $2 - $1 + 1 : 1 }
+				END { print n }')
 	fi
 	set=1
 	while [ $set -lt $(((1 << count) - 1)) ]; do

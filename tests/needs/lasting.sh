@@ -14,8 +14,8 @@ for modes in 2 1; do
 	"$plgen" --real float --modes $modes --prefix single -o single_pl.c "$here/lasting.spec" &&
 		certified=$("$plgen" --real float --modes $modes --explain=json "$here/lasting.spec" |
 			sed -n '/"taken": true/s/.*"certified": \([^,]*\).*/\1/p') &&
-		${CC:-cc} -O1 -ffp-contract=off -w -I. -I"$runtime" "$here/lasting.c" single_pl.c whole_pl.c "$runtime"/*.c \
-			-lm -o run || exit 1
+		${CC:-cc} -O1 -ffp-contract=off -w -I. -I"$runtime" "$here/lasting.c" single_pl.c whole_pl.c \
+			"$runtime"/*.c -lm -o run || exit 1
 	./run 2000000 "$certified" || bad=1
 done
 exit $bad

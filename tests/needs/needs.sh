@@ -51,18 +51,25 @@ for seed in $seeds; do
 		${CC:-cc} -O0 -ffp-contract=off -I"$work" -I"$runtime" -w "$here/run.c" objects/*.o -o run &&
 		./run "$(wc -l <exact.csv)" >got || { echo "not ok - seed $seed: no program"; exit 1; }
 	sed -n '/"taken": true/{
-		s/.*"real": "\([^"]*\)".*"certified": \([^,]*\),.*"dropped": \([^,]*\), "rounding": \([^,]*\),/\2 \3 \4 \1/
-		s/ "needed": \([^}]*\)}.*/ \1/p
+		s/.*"real": "\([^"]*\)"\(.*\)/\2 \1/
+		s/.*"certified": \([^,]*\),.*"dropped": \([^,]*\), "rounding": \([^,]*\),/\1 \2 \3/
+		s/ "needed": \([^}]*\)}[^ ]*/ \1/p
 	}' drawn.json >bound
 	paste -d' ' got exact.csv | tr , ' ' | awk -v seed="$seed" '
-		NR == FNR { bound = $1; dropped = $2; contracted = $3 == "null" ? 1e99 : $2 + $3; real = $4; needed = $5; next }
-		{ e = $1 - $3; e = e < 0 ? -e : e; if (!(e <= worst)) worst = e; y = $3 < 0 ? -$3 : $3; size = y > size ? y : size }
+		NR == FNR {
+			bound = $1; dropped = $2; contracted = $3 == "null" ? 1e99 : $2 + $3; needed = $4; real = $5
+			next
+		}
+		{
+			e = $1 - $3; e = e < 0 ? -e : e; if (!(e <= worst)) worst = e
+			y = $3 < 0 ? -$3 : $3; size = y > size ? y : size
+		}
 		END {
 			spare = 2.3e-16 * size  # what reading both here rounds
 			good = worst <= bound + spare && bound <= needed && bound <= 3 * worst + 3 * spare &&
 			       bound <= contracted
-			printf "%s - seed %s: error %.3g, bound %.3g, need %.3g, dropped modes %.3g, contracted %.3g, %s\n",
-				good ? "ok" : "not ok", seed, worst, bound, needed, dropped, contracted, real
+			printf "%s - seed %s: error %.3g, bound %.3g, need %.3g, dropped modes %.3g, contracted " \
+				"%.3g, %s\n", good ? "ok" : "not ok", seed, worst, bound, needed, dropped, contracted, real
 		}' bound - >line
 	cat line
 	cat line >>lines
@@ -93,7 +100,8 @@ if [ "$first" = changes ]; then
 	fi
 fi
 if [ $met -gt 9 ]; then
-	sed 's/.*error \([^,]*\), bound \([^,]*\),.*/\1 \2/' lines | awk '{ print ($1 > 0 ? $2 / $1 : 1) }' | sort -g | awk '
+	sed 's/.*error \([^,]*\), bound \([^,]*\),.*/\1 \2/' lines |
+		awk '{ print ($1 > 0 ? $2 / $1 : 1) }' | sort -g | awk '
 		{ ratio[NR] = $1 }
 		END {
 			median = ratio[int((NR + 1) / 2)]
