@@ -288,6 +288,14 @@ static void need_sweeps(const struct step *step)
 	if (!model->switching)
 		error(model->asked.step_at, "leave --amplitude out",
 		      "the model is linear: its frequency response is the same at every amplitude");
+	bool rubs = model->switching->frictions > 0;
+	for (int p = 0; p < model->switching->parts; p++)
+		rubs = rubs || model->switching->part[p].model->switching->frictions > 0;
+	if (model->impacts > 0 || rubs)
+		error(model->asked.step_at, "plrun runs any model, with a record that sweeps",
+		      "--amplitude is of clearances, without impacts and dry friction");
+	if (model->system.segments > 1)
+		error(model->asked.step_at, NULL, "--amplitude is of equations that are the same at all times");
 	if (model->system.states > LIMIT_SWEPT)
 		error(model->asked.step_at, NULL, "the model has %d states: sweeps are limited to %d",
 		      model->system.states, LIMIT_SWEPT);
