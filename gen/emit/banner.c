@@ -164,8 +164,8 @@ static void banner_divided(const struct emitter *e)
 	const struct expansion *x = e->step->expansion;
 	if (!x || x->expressions == 0)
 		return;
-	banner_sentence(e, "The state chooses formulas: a series is of those between two crossings. Where an expression "
-			   "passes a breakpoint is the first root of its own series, found before it is stepped over; "
+	banner_sentence(e, "The state chooses formulas: a series is of those between two crossings. Where an "
+			   "expression passes a breakpoint is the first root of its own series, found before it is stepped over; "
 			   "there the series ends, and the next one begins.");
 	for (int i = 0; i < x->expressions; i++) {
 		const struct divided *d = &x->expression[i];
@@ -176,8 +176,8 @@ static void banner_divided(const struct emitter *e)
 		say(e, " *     expression %d: %s, at %s\n", i, printable(divided_text(e->step, i)), at);
 	}
 	if (regions_of_series(x))
-		banner_sentence(e, "A region's number is the sum of its intervals, each times the product of the numbers "
-				   "of intervals before it.");
+		banner_sentence(e, "A region's number is the sum of its intervals, each times the product of the "
+				   "numbers of intervals before it.");
 	banner_sentence(e, "Costs below are of one series, without the search on it; a crossing takes another one.");
 }
 

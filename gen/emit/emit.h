@@ -279,7 +279,7 @@ const struct kind *row_of_kind(enum step_kind kind);
 
 bool has_offset(const struct emitter *e);                         /* an expansion may start inside a step */
 bool is_divided(const struct emitter *e);                         /* the state chooses formulas */
-const char *size_of_terms(const struct emitter *e, int sequence); /* C: of a sum at its start, each taken as it is large */
+const char *size_of_terms(const struct emitter *e, int sequence); /* C: of a sum at its start, of each its size */
 void emit_column_scales(const struct emitter *e);                 /* of what stands beside the states in s->series */
 const char *driven_parameter(const struct emitter *e);            /* const double u[N_INPUTS], or "" */
 void say_wrapped(const struct emitter *e, const char *text);      /* broken between summands */
@@ -335,7 +335,7 @@ void emit_divided_functions(const struct emitter *e);             /* tables, NAM
 void emit_divided_questions(const struct emitter *e);             /* NAME_crossed, NAME_crossings, NAME_region */
 /* C: NAME_locate of contact, "s->contact" or "here", unless it is placed; its crossings are those of what follows */
 void emit_divided_start(const struct emitter *e, const char *contact, const char *indent);
-void emit_divided_bound(const struct emitter *e);                 /* in NAME_renew: no crossing in the steps it serves */
+void emit_divided_bound(const struct emitter *e);                 /* in NAME_renew: it serves up to a crossing */
 
 /* ---- emit_over.c: a series of fixed order over several steps ---- */
 

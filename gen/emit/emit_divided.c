@@ -68,7 +68,8 @@ static void emit_divided_tables(const struct emitter *e)
 
 static void emit_pass_breakpoint(const struct emitter *e)
 {
-	say(e, "\n/* Passes the breakpoint of contact->last, so long after the start of the step; 0: there were too many */\n"
+	say(e, "\n/* Passes the breakpoint of contact->last, so long after the start of the step; 0: there were too "
+	       "many */\n"
 	       "static int $n_cross($n_contact *contact, double time)\n"
 	       "{\n"
 	       "    pl_crossing *last = &contact->last;\n"
@@ -95,7 +96,7 @@ static void emit_locate(const struct emitter *e)
 	const struct expansion *x = expansion(e);
 	bool changes = e->system->segments > 1;
 	const char *length = changes ? "(change < $N_H ? change : $N_H)" : "$N_H";
-	say(e, "\n/* The intervals of a state that was set. Those of one expression may choose what another one is. */\n"
+	say(e, "\n/* The intervals of a state that was set. That of one expression may choose what another is. */\n"
 	       "static void $n_locate(const $n *s, %s$n_contact *contact)\n"
 	       "{\n"
 	       "    double c[%d][$c], terms[%d];\n"

@@ -75,16 +75,21 @@ static const char *passed_text(const struct emitter *e)
 			"%s", truncation(e)->adaptive ? "        fresh = 1;\n" : "");
 }
 
-/* From now over a part of the step: substeps, and changes of the loads on the way */
-static void emit_between(const struct emitter *e)
+static const char *series_between(const struct emitter *e, const char *tau, const char *y, const char *c)
 {
-	int order = expansion(e)->order, last = e->system->segments - 1;
+	return expand_call(e, tau, spell(e, "$n_time(s) + 0.5 * (done + limit) * $N_H"), "segment", "contact->", y, c);
+}
+
+static void emit_between_start(const struct emitter *e)
+{
+	int order = expansion(e)->order;
 	bool adaptive = truncation(e)->adaptive, divided = is_divided(e);
 	say(e, "\n/* y and what rounding took from it, end h later: 0; or what went wrong, and y as far as it went */\n"
 	       "static int $n_between(const $n *s, %s%sdouble end, double y[$N_STATES], double rest[$N_STATES]%s)\n"
 	       "{\n"
 	       "    double c[%d][$c], gain[$N_STATES], done = 0.0;\n"
-	       "    int i%s%s;\n", driven_parameter(e), adaptive ? "int fresh, " : "", divided ? spell(e, ",\n    $n_contact *contact") : "", order + 1,
+	       "    int i%s%s;\n", driven_parameter(e), adaptive ? "int fresh, " : "",
+	    divided ? spell(e, ",\n    $n_contact *contact") : "", order + 1,
 	    adaptive ? ", steps = 0" : watches(e) ? ", status = 0" : "",
 	    changes(e) ? ", segment = s->segment" : "");
 	if (adaptive)
@@ -93,8 +98,13 @@ static void emit_between(const struct emitter *e)
 		say(e, "    double terms[%d], work[PL_DIVIDED_WORK(%d)], meets;\n"
 		       "    int splits = %d;\n", expansion(e)->expressions, order, MAX_SPLITS);
 	emit_input_samples(e);
-	say(e, "    while (done < end) {\n"
-	       "        double limit = end, size;\n");
+}
+
+/* Up to which time the formulas hold that t chooses */
+static void emit_between_limit(const struct emitter *e)
+{
+	bool adaptive = truncation(e)->adaptive;
+	say(e, "        double limit = end, size;\n");
 	if (changes(e))
 		say(e, "        for (; segment < %d; segment++) {\n"
 		       "            const double change = $n_until(s, segment) / $N_H;\n"
@@ -103,41 +113,53 @@ static void emit_between(const struct emitter *e)
 		       "                break;\n"
 		       "            limit = end;\n"
 		       "%s"
-		       "        }\n", last, adaptive ? "            fresh = 1;\n" : "");
+		       "        }\n", e->system->segments - 1, adaptive ? "            fresh = 1;\n" : "");
 	if (adaptive)
 		say(e, "        if (steps++ == %d)\n"
 		       "            return PL_TOO_MANY_STEPS;\n", truncation(e)->substeps);
-	say(e, "        %s\n", expand_call(e, spell(e, "done * $N_H"),
-		spell(e, "$n_time(s) + 0.5 * (done + limit) * $N_H"), "segment", "contact->", "y", "c"));
+}
+
+static void emit_between_size(const struct emitter *e)
+{
+	if (!truncation(e)->adaptive) {
+		say(e, "        size = limit - done;\n");
+		return;
+	}
+	say(e, "        size = $n_part(s, (const double (*)[$c])c);\n"
+	       "        if (size == 0.0)\n"
+	       "            return PL_NOT_FINITE;\n"
+	       "        size = size < longest ? size : longest;\n"
+	       "        size = size < limit - done ? size : limit - done;\n"
+	       "        for (longest *= 2.0; fresh; longest = 2.0 * size) {\n"
+	       "            double d[%d][$c], next[$N_STATES]%s;\n"
+	       "            $n_ahead((const double (*)[$c])c, size, gain);\n"
+	       "            for (i = 0; i < $N_STATES; i++)\n"
+	       "                next[i] = y[i] + gain[i];\n"
+	       "            %s\n"
+	       "            fresh = !$n_agrees(s, (const double (*)[$c])c, "
+	       "(const double (*)[$c])d, size);\n"
+	       "            size *= fresh ? 0.5 : 1.0;\n"
+	       "            fresh = fresh && size > 1e-9;\n"
+	       "        }\n",
+	    expansion(e)->order + 1, is_divided(e) ? format(", spare[%d]", expansion(e)->expressions) : "",
+	    series_between(e, spell(e, "(done + size) * $N_H"), "next", "d"));
+}
+
+/* From now over a part of the step: substeps, crossings, and changes of the loads on the way */
+static void emit_between(const struct emitter *e)
+{
+	bool divided = is_divided(e);
+	emit_between_start(e);
+	say(e, "    while (done < end) {\n");
+	emit_between_limit(e);
+	say(e, "        %s\n", series_between(e, spell(e, "done * $N_H"), "y", "c"));
 	if (divided)
 		say(e, "        if (pl_divided_left(&$n_divided, c[0], terms, contact->interval, &contact->last)) {\n"
 		       "            if (!$n_cross(contact, done * $N_H))\n"
 		       "                return PL_TOO_MANY_EVENTS;\n"
 		       "            continue;\n"
 		       "        }\n");
-	if (adaptive)
-		say(e, "        size = $n_part(s, (const double (*)[$c])c);\n"
-		       "        if (size == 0.0)\n"
-		       "            return PL_NOT_FINITE;\n"
-		       "        size = size < longest ? size : longest;\n"
-		       "        size = size < limit - done ? size : limit - done;\n"
-		       "        for (longest *= 2.0; fresh; longest = 2.0 * size) {\n"
-		       "            double d[%d][$c], next[$N_STATES]%s;\n"
-		       "            $n_ahead((const double (*)[$c])c, size, gain);\n"
-		       "            for (i = 0; i < $N_STATES; i++)\n"
-		       "                next[i] = y[i] + gain[i];\n"
-		       "            %s\n"
-		       "            fresh = !$n_agrees(s, (const double (*)[$c])c, "
-		       "(const double (*)[$c])d, size);\n"
-		       "            size *= fresh ? 0.5 : 1.0;\n"
-		       "            fresh = fresh && size > 1e-9;\n"
-		       "        }\n",
-		    order + 1, divided ? format(", spare[%d]", expansion(e)->expressions) : "",
-		    expand_call(e, spell(e, "(done + size) * $N_H"),
-					   spell(e, "$n_time(s) + 0.5 * (done + limit) * $N_H"), "segment",
-					   "contact->", "next", "d"));
-	else
-		say(e, "        size = limit - done;\n");
+	emit_between_size(e);
 	if (divided)
 		say(e, "        meets = pl_divided_next(&$n_divided, c[0], terms, contact->interval, size, &splits,\n"
 		       "            &contact->last, work);\n"

@@ -29,10 +29,10 @@ const char library_types[] =
 	"const float *at; const int *matrix, *halvings; const float *A, *Phi, *tangent, *chord_error, *cubic_error;\n"
 	"int degree, max_events, max_splits; } pl_switchingf;\n"
 	"typedef struct pl_crossingf { float time; int expression, breakpoint, upward; } pl_crossingf;\n"
-	"typedef struct pl_divided { int expressions, columns, degree; const int *column, *breaks; const double *at; }\n"
-	"pl_divided;\n"
-	"typedef struct pl_dividedf { int expressions, columns, degree; const int *column, *breaks; const float *at; }\n"
-	"pl_dividedf;\n"
+	"typedef struct pl_divided { int expressions, columns, degree; const int *column, *breaks;\n"
+	"const double *at; } pl_divided;\n"
+	"typedef struct pl_dividedf { int expressions, columns, degree; const int *column, *breaks;\n"
+	"const float *at; } pl_dividedf;\n"
 	"enum { PL_NOT_FINITE = 1, PL_TOO_MANY_EVENTS = 2, PL_TOO_MANY_STEPS = 4, PL_INACCURATE = 8 };\n";
 
 /* ---- calls ---- */

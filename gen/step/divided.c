@@ -66,8 +66,8 @@ int choice_by_state(struct sequencing *w, const struct atom *atom, const struct 
 	mpq_t value, factor;
 	if (scheme_row(w->step->model->scheme)->collocates)
 		error(atom->node->start,
-		      "scheme taylor goes from one such place to the next; etdrk4 and the schemes like it step across, of "
-		      "lower order there",
+		      "scheme taylor goes from one such place to the next; etdrk4 and the schemes like it step "
+		      "across, of lower order there",
 		      "scheme %s needs what is smooth between the changes of the loads: '%s' changes its formula where "
 		      "the state decides",
 		      scheme_name(w->step->model->scheme), text_between(atom->node->start, atom->node->end));

@@ -29,7 +29,8 @@ static int draw(int low, int high)
 
 static void add_term(int mass, enum kind kind)
 {
-    static const int low[KINDS] = { 5000, 5000, 1000, 200, 5000, 50 }, high[KINDS] = { 90000, 60000, 9000, 900, 40000, 500 };
+    static const int low[KINDS] = { 5000, 5000, 1000, 200, 5000, 50 };
+    static const int high[KINDS] = { 90000, 60000, 9000, 900, 40000, 500 };
     struct term t = { kind, mass, draw(low[kind], high[kind]), 0, 0 };
     t.at = draw(100, 700) * (kind != CONTACT && draw(0, 1) ? -1 : 1);
     if (kind == GAP)
