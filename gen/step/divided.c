@@ -13,9 +13,8 @@ static int find_divided(struct sequencing *w, const struct form *form, mpq_ptr o
 	for (int i = 0; i < x->expressions; i++)
 		if (is_form_multiple(form, x->expression[i].form, of))
 			return i;
-	int sequence = sequence_of_form(w, form);
 	ENLARGE(x->expression, (size_t)x->expressions + 1);
-	x->expression[x->expressions] = (struct divided){ .form = form, .sequence = sequence };
+	x->expression[x->expressions] = (struct divided){ .form = form, .sequence = NONE };
 	mpq_set_ui(of, 1, 1);
 	return x->expressions++;
 }
@@ -56,13 +55,13 @@ static void value_of_constants(const struct sequencing *w, const struct form *fo
 	mpq_clear(part);
 }
 
-int choice_by_state(struct sequencing *w, const struct atom *atom, const struct form *a, const struct form *b,
-		    int above, int below)
+struct division divide_forms(struct sequencing *w, const struct atom *atom, const struct form *a, const struct form *b)
 {
 	bool turned = is_constant(a) && !is_constant(b);        /* what stands beside a constant is as it was written */
 	const struct form *d = turned ? form_difference(b, a) : form_difference(a, b);
 	int constants = constant_terms(d);
 	struct form plain = { constants, d->term, 0 };
+	struct division division = { .expression = NONE };
 	mpq_t value, factor;
 	if (scheme_row(w->step->model->scheme)->collocates)
 		error(atom->node->start,
@@ -71,27 +70,18 @@ int choice_by_state(struct sequencing *w, const struct atom *atom, const struct 
 		      "scheme %s needs what is smooth between the changes of the loads: '%s' changes its formula where "
 		      "the state decides",
 		      scheme_name(w->step->model->scheme), text_between(atom->node->start, atom->node->end));
-	if (turned) {
-		int other = above;
-		above = below;
-		below = other;
-	}
 	mpq_inits(value, factor, NULL);
 	value_of_constants(w, d, constants, value);
-	int side = mpq_sgn(value), sequence = side > 0 ? above : below;
+	division.above = (mpq_sgn(value) > 0) != turned;
 	if (constants < d->terms) {
-		int which = find_divided(w, form_sum(d, &plain, true), factor);
+		division.expression = find_divided(w, form_sum(d, &plain, true), factor);
 		mpq_div(value, value, factor);
 		mpq_neg(value, value);          /* e = (d - constant)/factor against -constant/factor */
-		int breakpoint = find_breakpoint(&w->x->expression[which], value);
-		bool rises = mpq_sgn(factor) > 0;
-		sequence = new_sequence(w, (struct sequence){ .kind = SEQUENCE_CHOICE, .choice = CHOICE_BY_STATE,
-							      .state = NONE, .expression = which,
-							      .breakpoint = breakpoint, .a = rises ? above : below,
-							      .b = rises ? below : above });
+		division.breakpoint = find_breakpoint(&w->x->expression[division.expression], value);
+		division.above = (mpq_sgn(factor) > 0) != turned;
 	}
 	mpq_clears(value, factor, NULL);
-	return sequence;
+	return division;
 }
 
 /* ---- once all are there ---- */

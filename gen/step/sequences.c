@@ -87,7 +87,7 @@ static int only_sequence(const struct sum *sum)
 	return plain ? key->a : NONE;
 }
 
-int sequence_of_form(struct sequencing *w, const struct form *form)
+static int sequence_of_form(struct sequencing *w, const struct form *form)
 {
 	struct sum sum = { 0 };
 	mpq_t one;
@@ -360,7 +360,7 @@ static int angle_sequence(struct sequencing *w, int y, int x)
 	return c;
 }
 
-_Noreturn void no_series(const struct sequencing *w, const struct atom *atom, const char *why)
+static _Noreturn void no_series(const struct sequencing *w, const struct atom *atom, const char *why)
 {
 	error(atom->node->start, "etdrk4 and the schemes like it step across it, of lower order there",
 	      "scheme %s needs what is smooth between the changes of the loads: '%s' "
@@ -369,6 +369,22 @@ _Noreturn void no_series(const struct sequencing *w, const struct atom *atom, co
 }
 
 /* ---- what has a formula in each interval, of time or of an expression of the state ---- */
+
+/* `above` where a - b > 0, else `below` */
+static int choice_by_state(struct sequencing *w, const struct atom *atom, const struct form *a, const struct form *b,
+			   int above, int below)
+{
+	struct division d = divide_forms(w, atom, a, b);
+	if (d.expression == NONE)
+		return d.above ? above : below;
+	if (w->x->expression[d.expression].sequence == NONE) {
+		int made = sequence_of_form(w, w->x->expression[d.expression].form);
+		w->x->expression[d.expression].sequence = made;
+	}
+	return new_sequence(w, (struct sequence){ .kind = SEQUENCE_CHOICE, .choice = CHOICE_BY_STATE, .state = NONE,
+						  .expression = d.expression, .breakpoint = d.breakpoint,
+						  .a = d.above ? above : below, .b = d.above ? below : above });
+}
 
 static int choice(struct sequencing *w, const struct atom *atom, const struct form *left, enum comparison comparison,
 		  const struct form *right, int a, int b)

@@ -965,17 +965,19 @@ int  column_of_load(const struct linear *system, int load); /* its first */
 /* ---- sequences.c: forms to sums, atoms to recurrences ---- */
 
 int  new_sequence(struct sequencing *w, struct sequence sequence);
-int  sequence_of_form(struct sequencing *w, const struct form *form);
-_Noreturn void no_series(const struct sequencing *w, const struct atom *atom, const char *why);
 void count_uses(struct sequencing *w, const struct form *form);
 /* sum += scale form; leaves the statement at what has no series */
 void sum_add_form(struct sequencing *w, struct sum *sum, const struct form *form, mpq_srcptr scale);
 
 /* ---- divided.c: formulas that the state chooses ---- */
 
-/* `above` where a - b > 0, else `below`; for the message of what has no series: the atom that compares them */
-int  choice_by_state(struct sequencing *w, const struct atom *atom, const struct form *a, const struct form *b,
-		     int above, int below);
+struct division {                   /* the sign of a difference */
+	int expression, breakpoint; /* it changes where that passes this; NONE: it is constant, */
+	bool above;                 /* and this its sign; else: is it positive above the breakpoint? */
+};
+/* Of a - b; `atom`: what compares them. Leaves the statement where the scheme is none of events. The sequence of an
+ * expression that is new is to be made. */
+struct division divide_forms(struct sequencing *w, const struct atom *atom, const struct form *a, const struct form *b);
 void rank_breakpoints(struct expansion *x);                  /* once all are there */
 int  breakpoint_rank(const struct expansion *x, const struct sequence *choice);
 mpq_t *rising_breakpoints(const struct divided *d);
