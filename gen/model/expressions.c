@@ -4,6 +4,67 @@
  * not of time alone. */
 #include "model/model.h"
 
+/* ---- intervals and rates ---- */
+
+int interval_of(const struct switching *s, int region, int expression)
+{
+	const struct expression *e = &s->expression[expression];
+	return region / e->stride % (e->breaks + 1);
+}
+
+bool is_stick(const struct expression *e, int interval)
+{
+	return interval > 0 && interval < e->breaks && mpq_equal(e->at[interval - 1], e->at[interval]);
+}
+
+static int input_hold(const struct building *b, int index)
+{
+	for (const struct symbol *s = b->spec->first; s; s = s->next)
+		if (s->kind == SYMBOL_INPUT && s->index == index)
+			return s->hold;
+	return 0;
+}
+
+/* Its derivative with respect to time; of a ramp u', of what is held nothing */
+struct form *rate_of_form(struct building *b, const struct form *form)
+{
+	struct form *rate = NEW(struct form);
+	mpq_t factor;
+	mpq_init(factor);
+	for (int i = 0; i < form->terms; i++) {
+		struct basis basis = form->term[i].basis;
+		mpq_srcptr given = form->term[i].factor;
+		if (basis.kind == BASIS_COORD || (basis.kind == BASIS_INPUT && basis.order == 0 &&
+						  input_hold(b, basis.index))) {
+			basis.order++;
+			form_add_basis(rate, basis, given);
+		}
+		if (basis.kind != BASIS_WAVE)
+			continue;
+		mpq_mul(factor, given, basis.wave->a);
+		if (mpq_sgn(factor) != 0)
+			form_add_basis(rate, basis, factor);
+		mpq_mul(factor, given, basis.wave->w);
+		if (!basis.sine)
+			mpq_neg(factor, factor);
+		basis.sine = !basis.sine;
+		if (mpq_sgn(factor) != 0)
+			form_add_basis(rate, basis, factor);
+		basis.sine = !basis.sine;
+		if (basis.power == 0)
+			continue;
+		mpq_set_ui(factor, (unsigned long)basis.power, 1);
+		mpq_mul(factor, factor, given);
+		if (--basis.power == 0 && is_polynomial(basis.wave))
+			basis = (struct basis){ .kind = BASIS_ONE };
+		form_add_basis(rate, basis, factor);
+	}
+	mpq_clear(factor);
+	return rate;
+}
+
+/* ---- multiples ---- */
+
 bool is_form_multiple(const struct form *form, const struct form *e, mpq_ptr of)
 {
 	if (form->terms != e->terms || basis_order(&form->term[0].basis, &e->term[0].basis) != 0)

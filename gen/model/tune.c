@@ -538,6 +538,11 @@ bool find_tuning(struct model *model, const struct request *request)
 	const struct spec *spec = model->spec;
 	if (spec->tunables == 0)
 		return true;
+	if (model->switching && model->switching->frictions > 0) {
+		say_error(spec->tunable[0].at, "an input may be the force of friction, or act on what slides",
+			  "tunable params are not built beside friction");
+		return false;
+	}
 	if (model->keeps_params) {
 		list_held(model);
 		return true;
