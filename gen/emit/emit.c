@@ -189,6 +189,4 @@ void emit_code(FILE *to, const struct step *step, const char *options, const cha
 	emit_run(e);
 	emit_further_functions(e, rhs);
 	emit_descriptor(e);
-	if (e->model->delays)
-		emit_delays(e);
 }

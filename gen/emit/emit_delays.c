@@ -66,7 +66,7 @@ void emit_delay_declarations(const struct emitter *core)
 	       "%s"
 	       "void   $n_step($n *s, const double u[$N_INPUTS]);  /* one step of h */\n"
 	       "void   $n_out(const $n *s, double out[$N_OUTPUTS]);\n"
-	       "void   $n_run($n *s, size_t n, const double *u, double *out);  /* n rows of u; out: n rows, or NULL */\n",
+	       "void   $n_run($n *s, size_t n, const double *u, double *out);  /* n rows of u, of out or NULL */\n",
 	    core->ramps ? spell(e, "void   $n_hold($n *s, const double u[$N_INPUTS]);  /* the sample now */\n") : "");
 	if (e->step->series.emitted)
 		say(e, "void   $n_at(const $n *s, const double u[$N_INPUTS], double tau, double y[$N_STATES]);\n");
@@ -137,12 +137,14 @@ static void emit_samples_of_core(const struct emitter *e)
 			       "            const double between = (double)(ago %% %d) / %d.0;\n"
 			       "            const double now = $n_past(s, $n_input_of[i], whole);\n"
 			       "            u[i] = between > 0.0\n"
-			       "                       ? now + between * ($n_past(s, $n_input_of[i], whole + 1) - now)\n"
-			       "                       : now;\n", parts - 1, parts, parts, parts);
+			       "                       ? now + between *\n"
+			       "                                   ($n_past(s, $n_input_of[i], whole + 1) - now)\n"
+			       "                       : now;\n",
+			    parts - 1, parts, parts, parts);
 		else
 			say(e, "            const int ago = $n_parts_ago[i] - part;\n"
-			       "            u[i] = $n_past(s, $n_input_of[i], ago > 0 ? (ago + %d) / %d : 0);\n", parts - 1,
-			    parts);
+			       "            u[i] = $n_past(s, $n_input_of[i], ago > 0 ? (ago + %d) / %d : 0);\n",
+			    parts - 1, parts);
 		say(e, count < all ? "        }\n" : "");
 	}
 	say(e, "    }\n"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Inputs as they were some time ago, u(t - d). Each is an input of the model, to which a ring of past samples gives what
- * it is. Where a delay is no multiple of the step, the model is stepped by parts of it of which all delays are
+/* Inputs as they were some time ago, u(t - d). Each is an input of the model, to which a ring of past samples gives
+ * what it is. Where a delay is no multiple of the step, the model is stepped by parts of it of which all delays are
  * multiples: in such a part a delayed input is held, or a ramp, like any other, and nothing is approximated. */
 #include "model/model.h"
 
@@ -37,8 +37,8 @@ static void evaluate_delay(struct building *b, const struct symbol *s, mpq_ptr d
 	if (mpq_sgn(d) < 0)
 		error(s->when->start, NULL, "the delay is below 0: what %s will be is not known", s->delayed->name);
 	if (s->hold > 1)
-		error(s->at, "held, or hold first", "the delay of an input that is a polynomial of degree %d is not built",
-		      s->hold);
+		error(s->at, "held, or hold first",
+		      "the delay of an input that is a polynomial of degree %d is not built", s->hold);
 }
 
 struct delaying {
@@ -65,7 +65,8 @@ static void find_parts(struct delays *delays, const mpq_t *d)
 		mpz_lcm(parts, parts, mpq_denref(ratio));
 		if (mpz_cmp_ui(parts, LIMIT_DELAY_PARTS) > 0)
 			error(delays->delay[i].symbol->when->start, "another step, or another delay, would do",
-			      "delays and step have no common part that is at least 1/%d of the step", LIMIT_DELAY_PARTS);
+			      "delays and step have no common part that is at least 1/%d of the step",
+			      LIMIT_DELAY_PARTS);
 	}
 	delays->parts = (int)mpz_get_ui(parts);
 	for (int i = 0; i < delays->count; i++) {
