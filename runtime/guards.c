@@ -142,7 +142,7 @@ static real speed_of(const pl_guards *m, int k, const real *x)
     const real *row = m->speed + (ptrdiff_t)k * m->size;
     real speed;
     pl_multiply(1, m->size, row, x, &speed);
-    return magnitude(speed) <= noise_of(sizes(m->size, row, x) + (real)m->impact[k].play) ? 0 : speed;
+    return magnitude(speed) <= noise_of(sizes(m->size, row, x) + m->impact[k].play) ? 0 : speed;
 }
 
 /* Whether a bounce is on its guard, flying or at rest */
@@ -508,7 +508,7 @@ static void come_to_rest(const pl_guards *m, uint32_t struck, real *x, pl_contac
     int k;
     for (k = 0; k < m->impacts; k++) {
         const pl_impact *p = &m->impact[k];
-        const real e = (real)p->restitution, along = struck >> k & 1 && e < 1 ? flight(m, c, k, x, work) : -1;
+        const real e = p->restitution, along = struck >> k & 1 && e < 1 ? flight(m, c, k, x, work) : -1;
         const real left = along / (1 - e);
         const int full = c->crossings > m->max_events - MOST;
         if (!(left >= 0 && left <= (full ? 1 : BRIEF) * m->h) || !touches(m, c, p, x))

@@ -626,12 +626,19 @@ void pl_guards_start(const pl_guards *m, const double *x, pl_contact *c, double 
  * one event, the combination is taken in which all of them agree: none is held by more than its guard lets it, and each
  * that slips moves away in its direction; of several the one with the fewest changes, then with most that stick.
  *
- * Impacts at one instant act in their order, each from the state that the one before has left, and again from the first,
- * until none is on its guard and comes closer.  Behind a bounce that leaves with the velocity v and is pressed back by
- * the acceleration a, all further ones take T = 2 v/(a (1 - e)): where T <= PL_BRIEF h, e < 1, it rests, listed T
- * later; so too where T <= h and the list of crossings is full but for a few.  What rests is held until it would have to be pulled. */
+ * Impacts at one instant act in their order, each from the state that the one before has left, and again from the
+ * first, until none is on its guard and comes closer.  Behind a bounce that leaves with the velocity v and is
+ * pressed back by the acceleration a, all further ones take T = 2 v/(a (1 - e)): where T <= PL_BRIEF h, e < 1, it
+ * rests, listed T later; so too where T <= h and the list of crossings is full but for a few.  What rests is held
+ * until it would have to be pulled. */
 void pl_guards_step(const pl_guards *m, double *x, pl_contact *c, pl_crossing *crossing, double *work);
 void pl_guards_advance(const pl_guards *m, double tau, double *x, pl_contact *c, pl_crossing *crossing, double *work);
+
+typedef struct pl_impactf {
+    int expression, breakpoint, upward;
+    int rest, jump, still;
+    float restitution, play;
+} pl_impactf;
 
 typedef struct pl_guardsf {
     int size;
@@ -650,7 +657,7 @@ typedef struct pl_guardsf {
     const int *set, *state;
     const float *value;
     int impacts;
-    const pl_impact *impact;
+    const pl_impactf *impact;
     const float *speed, *back;
     int degree, max_events, max_splits;
 } pl_guardsf;

@@ -41,6 +41,7 @@ enum { REAL_DIGITS = FLT_MANT_DIG, REAL_EXPONENTS = FLT_MAX_EXP };
 #define pl_divided_place pl_dividedf_place
 #define pl_divided_left pl_dividedf_left
 #define pl_divided_next pl_dividedf_next
+#define pl_impact pl_impactf
 #define pl_guards pl_guardsf
 #define pl_guards_start pl_guardsf_start
 #define pl_guards_step pl_guardsf_step
