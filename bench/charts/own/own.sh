@@ -29,6 +29,11 @@ if ! "$plgen" --rhs --prefix subject ${every:+--step "$every"} "$spec" >"$work/s
 	echo "own.sh: plgen refuses the spec, so there is nothing to chart" >&2
 	exit 1
 fi
+if grep -q 'const pl_guards' "$work/subject_pl.c"; then
+	echo "own.sh: $spec: what bounces or sticks is not charted: NAME_rhs has neither jumps of velocity nor forces that" \
+		"hold, so no peer follows it and nothing says what is true" >&2
+	exit 1
+fi
 name=$(sed -n 's/^model[ \t][ \t]*\([A-Za-z0-9_]*\).*/\1/p' "$spec" | sed -n 1p)
 [ -n "$every" ] || every=$(sed -n 's/^#define SUBJECT_H \([^ ]*\).*/\1/p' "$work/subject_pl.c")
 # of NAME, an enumerator at the head of the code
