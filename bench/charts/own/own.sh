@@ -30,8 +30,8 @@ if ! "$plgen" --rhs --prefix subject ${every:+--step "$every"} "$spec" >"$work/s
 	exit 1
 fi
 if grep -q 'const pl_guards' "$work/subject_pl.c"; then
-	echo "own.sh: $spec: what bounces or sticks is not charted: NAME_rhs has neither jumps of velocity nor" \
-		"forces that hold, so no peer follows it and nothing says what is true" >&2
+	echo "own.sh: $spec: what bounces is not charted: NAME_rhs has no jumps of velocity," \
+		"so no peer follows it and nothing says what is true" >&2
 	exit 1
 fi
 name=$(sed -n 's/^model[ \t][ \t]*\([A-Za-z0-9_]*\).*/\1/p' "$spec" | sed -n 1p)
