@@ -2,11 +2,6 @@
 /* Intervals of regions in which something is held, and what begins at their ends. */
 #include "model/model.h"
 
-bool is_stick(const struct expression *e, int interval)
-{
-	return interval > 0 && interval < e->breaks && mpq_equal(e->at[interval - 1], e->at[interval]);
-}
-
 int impact_at(const struct switching *s, int expression, mpq_srcptr at, bool upward)
 {
 	for (int i = 0; i < s->impacts; i++)
