@@ -149,7 +149,8 @@ static void try_forms(struct choosing *c)
 	const bool asked = c->request->form != FORM_AUTO, modes = v->model->shortened;
 	for (size_t i = 0; i < sizeof forms / sizeof *forms; i++) {
 		const bool needless = (forms[i] == FORM_MODAL ? modes : is_large(v->model) && v->modes) ||
-				      (forms[i] != FORM_DIRECT && modes && !c->request->compensated && loses_too_much(c));
+				      (forms[i] != FORM_DIRECT && modes && !c->request->compensated &&
+				       loses_too_much(c));
 		if (asked ? c->request->form == forms[i] : !needless)
 			try_form(c, forms[i]);
 	}

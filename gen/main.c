@@ -289,7 +289,8 @@ static bool compile(struct work *w)
 {
 	if (w->options.request.single && !w->options.request.solution)
 		target_float();
-	if (!make(w) || !goes_with_delays(w) || !choose(w) || (w->options.strict && diagnostics_harden()) || !print_text(w))
+	if (!make(w) || !goes_with_delays(w) || !choose(w) || (w->options.strict && diagnostics_harden()) ||
+	    !print_text(w))
 		return false;
 	print_header(w);
 	rewrite_code(w);

@@ -515,8 +515,9 @@ void pl_switchingf_advance(const pl_switchingf *m, float tau, float *x, pl_conta
 
 /* Formulas that the state chooses beside a Taylor series: expressions e_i, each with breakpoints as above, whose series
  * stand in columns of its coefficients c, (degree + 1) x columns, in powers of time.  Between two crossings the
- * formulas are those of the intervals; c is made with them.  terms: of each expression the sizes of what its value at the start
- * is summed from, which bound what rounding may have done to it; as above what passes b by less is no crossing. */
+ * formulas are those of the intervals; c is made with them.  terms: of each expression the sizes of what its value at
+ * the start is summed from, which bound what rounding may have done to it; as above what passes b by less is no
+ * crossing. */
 typedef struct pl_divided {
     int expressions, columns, degree;
     const int *column;  /* of each expression */

@@ -165,8 +165,8 @@ static void banner_divided(const struct emitter *e)
 	if (!x || x->expressions == 0)
 		return;
 	banner_sentence(e, "The state chooses formulas: a series is of those between two crossings. Where an "
-			   "expression passes a breakpoint is the first root of its own series, found before it is stepped over; "
-			   "there the series ends, and the next one begins.");
+			   "expression passes a breakpoint is the first root of its own series, found before it is "
+			   "stepped over; there the series ends, and the next one begins.");
 	for (int i = 0; i < x->expressions; i++) {
 		const struct divided *d = &x->expression[i];
 		mpq_t *rising = rising_breakpoints(d);
@@ -275,7 +275,8 @@ static void banner_impacts(const struct emitter *e)
 		    impact->bounces ? format(", a bounce of restitution %s", readable_text(impact->restitution)) : "");
 	}
 	if (model->impacts > 1)
-		say(e, " * Those of one instant act in this order, each from the state that the one before has left.\n");
+		say(e, " * Those of one instant act in this order, each from the state that the one before has "
+		       "left.\n");
 	if (has_bounces(model))
 		say(e, " * Bounces that would all be over within 2^-23 h come to rest: $n_rested counts.\n");
 }

@@ -104,7 +104,8 @@ static void emit_as_written(const struct emitter *e)
 	const struct choice *choice = e->step->choice;
 	if (!choice || !choice->alternative[choice->taken].as_written)
 		return;
-	say(e, "\n/* What is certified counts on sums and products that are each rounded, to the bits of their type. */\n"
+	say(e, "\n"
+	       "/* What is certified counts on sums and products that are each rounded, to the bits of their type. */\n"
 	       "#if PL_EXCESS_PRECISION%s\n"
 	       "#error \"what is certified needs sums that have the bits of their type: "
 	       "on x86 compile it with -msse2 -mfpmath=sse\"\n"

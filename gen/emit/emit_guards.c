@@ -116,7 +116,8 @@ static void emit_impacts(const struct emitter *e, const struct guards *g)
 {
 	const struct switching *s = e->model->switching;
 	int size = e->step->layout.size, count = g->impacts > 0 ? g->impacts : 1;
-	double *speed = ARRAY(double, (size_t)count * (size_t)size), *back = ARRAY(double, (size_t)count * (size_t)size);
+	double *speed = ARRAY(double, (size_t)count * (size_t)size);
+	double *back = ARRAY(double, (size_t)count * (size_t)size);
 	const char **note = ARRAY(const char *, (size_t)count);
 	note[0] = "none";
 	say(e, "\n"
@@ -124,8 +125,8 @@ static void emit_impacts(const struct emitter *e, const struct guards *g)
 	       "  /* expression, breakpoint, upward, rest, jump, still, restitution, play */\n", count);
 	for (int i = 0; i < g->impacts; i++) {
 		const struct struck *impact = &g->impact[i];
-		say(e, "    { %d, %d, %d, %d, %d, %d, %s, %s },\n", impact->expression, impact->breakpoint, impact->upward,
-		    impact->rest, impact->jump, impact->still, shortest(impact->restitution),
+		say(e, "    { %d, %d, %d, %d, %d, %d, %s, %s },\n", impact->expression, impact->breakpoint,
+		    impact->upward, impact->rest, impact->jump, impact->still, shortest(impact->restitution),
 		    shortest(impact->play));
 		note[i] = impact->rest < 0 ? "none"
 					   : form_text(e->step->shown->model, s->impact[i].speed);
@@ -139,7 +140,8 @@ static void emit_impacts(const struct emitter *e, const struct guards *g)
 	    g->impacts ? "" : "    { 0, 0, 0, -1, -1, -1, 0.0, 0.0 }\n", count, size);
 	emit_number_rows(e, count, size, speed, note);
 	say(e, "};\n"
-	       "static const double $o_back[%d][%d] = {  /* times how far its expression is beyond: onto the guard */\n",
+	       "static const double $o_back[%d][%d] = {"
+	       "  /* times how far its expression is beyond: onto the guard */\n",
 	    count, size);
 	emit_number_rows(e, count, size, back, note);
 	say(e, "};\n");

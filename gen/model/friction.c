@@ -552,8 +552,8 @@ void build_friction(struct building *b, struct switching *s)
 			continue;
 		const struct linear *system = &s->system[region->system];
 		if (!leading_inverse(system, inverse, &column))
-			error(s->frictions ? s->friction->atom->node->at : s->impact->when->at, "its velocity has to answer to its force",
-			      "friction cannot hold what slides there");
+			error(s->frictions ? s->friction->atom->node->at : s->impact->when->at,
+			      "its velocity has to answer to its force", "friction cannot hold what slides there");
 		for (int k = 0; k < region->holds; k++)
 			region->hold[k].row = row_of_form(b, region->hold[k].form);
 		for (int k = 0; k < region->releases; k++)

@@ -130,7 +130,8 @@ void tell_no_impacts(const struct building *b)
 		error(at, "the C that is printed without it goes from event to event",
 		      "there is no closed form where the state jumps");
 	if (b->request->loads_left)
-		error(at, "without --loads leftover they are exact", "scheme exact, which impacts need, leaves no load over");
+		error(at, "without --loads leftover they are exact",
+		      "scheme exact, which impacts need, leaves no load over");
 	if (model->system.segments > 1)
 		error(at, "the load as an input is exact beside it",
 		      "impacts beside loads that change their formula in time are not built yet");
@@ -227,8 +228,8 @@ static bool find_bounce(struct building *b, struct impact *impact)
 		int state = impact->jump[i].state, coord = system->coord[state];
 		struct basis basis = { .kind = BASIS_COORD, .index = coord, .order = 1 };
 		bounce = state >= b->model->n &&
-			 is_along(b, form_difference(form_unit(basis), impact->jump[i].form), impact->speed, part[coord],
-				  rest) &&
+			 is_along(b, form_difference(form_unit(basis), impact->jump[i].form), impact->speed,
+				  part[coord], rest) &&
 			 mpq_sgn(rest) == 0;
 		const struct form_term *term = bounce ? form_find(impact->speed, &basis) : NULL;
 		if (term)

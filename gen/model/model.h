@@ -343,7 +343,8 @@ struct switching {
 	int regions;
 	struct region *region;      /* NULL where there are parts */
 	int systems;
-	struct linear *system;      /* where there are parts one: that of the first region of each; one segment of time */
+	/* where there are parts one: that of the first region of each; one segment of time */
+	struct linear *system;
 	int aparts;
 	const struct node **apart;  /* terms that share no expression with others */
 	bool torn;                  /* one has become such: the search begins anew */

@@ -5,7 +5,7 @@
 #include <string.h>
 #include <strings.h>
 
-static const char WORD[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ_0123456789";
+const char WORD[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ_0123456789";
 static const char NUMBER[] = "0123456789.";
 
 /* ---- units ---- */

@@ -16,6 +16,8 @@ struct parser {
 	struct place end;           /* just after the last one taken */
 	size_t operand_end;         /* just after the last operand: there an operator may be missing */
 	size_t statement;           /* offset where it starts */
+	/* whether the statement, unfinished, goes on in the next line: parse.c knows statements */
+	bool (*goes_on)(const struct parser *p);
 	int nesting;
 	bool no_acceleration;       /* in a let */
 };
@@ -40,7 +42,7 @@ void add_child(struct node *node, struct node *child, bool inverse, struct place
 struct node *inlined(struct node *value, struct place at, struct place end);
 bool has_acceleration(const struct node *node);
 
-/* ---- parse.c ---- */
+/* ---- expression.c ---- */
 
 struct token take(struct parser *p);
 bool is_op(const struct parser *p, const char *op);
@@ -50,7 +52,11 @@ void expect_word(struct parser *p, const char *word);
 _Noreturn void unexpected(const struct parser *p, const char *expected);
 void expect_op(struct parser *p, const char *op, const char *expected);
 void expect_end(struct parser *p);
-struct token expect_new_name(struct parser *p, const char *what);
+enum { BUCKETS = 1 << 14 };         /* of symbols, by their names */
+void add_symbol(struct spec *spec, struct symbol *symbol);  /* behind all others: of equal names the first is found */
+_Noreturn void peak_inside(struct place at);
+_Noreturn void unknown_name(struct parser *p, struct token token);
+struct node *resolve_name(struct parser *p, struct token token); /* what it stands for; a component of it follows */
 struct node *read_expression(struct parser *p);
 struct node *read_condition(struct parser *p);              /* an expression, or a single comparison of two */
 struct node *read_state(struct parser *p);                  /* at a name: what it stands for */
@@ -60,6 +66,10 @@ int  read_component(struct parser *p, int *primes, bool declared);
 void check_component(const struct symbol *symbol, int component, struct place at);
 const char *symbol_kind(const struct symbol *symbol);
 struct symbol *find_symbol(const struct parser *p, const char *name); /* as the text has it; or NULL */
+
+/* ---- parse.c ---- */
+
+struct token expect_new_name(struct parser *p, const char *what);
 struct symbol *declare(struct parser *p, struct token name, enum symbol_kind kind, bool broken);
 void add_file(struct spec *spec, const char *path);
 const char *beside(const struct source *source, const char *name); /* the path of what a text names */
@@ -70,6 +80,14 @@ void declare_quietly(struct parser *p, struct token name, enum symbol_kind kind)
 struct spec *parse_whole(const struct source *source, const struct part_reader *reader);
 void parse_statements(struct spec *spec, struct spec *own, struct scene_part *part, const struct source *source);
 
+/* ---- sketch.c ---- */
+
+void read_mass(struct parser *p);
+void read_spring(struct parser *p);
+void read_damper(struct parser *p);
+void read_force(struct parser *p);
+void read_friction(struct parser *p);
+
 /* ---- when.c ---- */
 
 void read_when(struct parser *p);
@@ -77,6 +95,7 @@ void read_stop(struct parser *p);
 
 /* ---- habits.c: what is written from habit of paper and of other programs; notes, or NULL ---- */
 
+extern const char WORD[];           /* the characters of names */
 typedef bool is_coordinate(const struct parser *p, const char *name);
 const char *stray_unit_note(const struct parser *p);        /* at the N of 100 N/m, where that is no name */
 /* at an unknown name: x1dot, der(x1), Pi, csv(...) */

@@ -93,7 +93,8 @@ static long double lands(long double leaves)
 
 static void table(void)
 {
-	const long double w = 60, turn = 2 * 3.14159265358979323846264338L / w, first = asinl(9.81L / 0.005L / w / w) / w;
+	const long double w = 60, turn = 2 * 3.14159265358979323846264338L / w;
+	const long double first = asinl(9.81L / 0.005L / w / w) / w;
 	shaken_table s;
 	pl_crossing crossing[SHAKEN_TABLE_MAX_EVENTS];
 	long double due = first;

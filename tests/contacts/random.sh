@@ -30,10 +30,12 @@ while [ $seed -lt $last ]; do
 		continue
 	fi
 	steps=$(awk -v seconds=$seconds '$1 == "step" { printf "%d", seconds/$2 + 0.5 }' scene.spec)
-	$truth $kinds $seed "$(awk -v n="$steps" '$1 == "step" { printf "%.3f", n*$2 }' scene.spec)" scene.spec found.txt
+	until=$(awk -v n="$steps" '$1 == "step" { printf "%.3f", n*$2 }' scene.spec)
+	$truth $kinds $seed "$until" scene.spec found.txt
 	decides=$((decides + 1))
 	"$plgen" scene.spec -o scene.c >log 2>&1 &&
-		${CC:-cc} -O1 -I. -I"$source/runtime" -I"$source/tests/emitted" -o follow "$follow" scene.c $PLRT -lm >>log 2>&1 &&
+		${CC:-cc} -O1 -I. -I"$source/runtime" -I"$source/tests/emitted" -o follow "$follow" scene.c $PLRT -lm \
+			>>log 2>&1 &&
 		./follow found.txt "$steps" 1e-12 >>log 2>&1
 	status=$?
 	result $status "$name"

@@ -122,8 +122,8 @@ static void of_order(const char *scheme, double order)
             error[k] = worse(error[k], fabs(x[k][i] - y[i]));
     }
     const double found = log2(error[0] / error[1]);
-    ok(fabs(found - order) <= 0.15, "%s with other values is of order %.2f (errors %.2g, %.2g)", scheme, found, error[0],
-        error[1]);
+    ok(fabs(found - order) <= 0.15, "%s with other values is of order %.2f (errors %.2g, %.2g)", scheme, found,
+        error[0], error[1]);
 }
 
 static void refuses(const pl_model *m)

@@ -77,7 +77,8 @@ static void long_and_short(const char *name, int step, bool ramp)
 		const double from = k * h, u = sample(ramp ? from + h : from);
 		for (int part = 1; part <= parts; part++) {
 			const double now = from + part * fine->model->h;
-			const double v = within(ramp ? now - (part == parts ? 1e-12 : 0) : now - fine->model->h, h, ramp);
+			const double at = ramp ? now - (part == parts ? 1e-12 : 0) : now - fine->model->h;
+			const double v = within(at, h, ramp);
 			run_step(&f, &v);
 			run_state(&f, z);
 			of->model->at(r.state, &u, part * fine->model->h, y);

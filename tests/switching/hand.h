@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Masses, springs and stops by hand, in long double: x'' = -K x - C x' + f0 + f1 t + fa cos(w t) - stops, stepped by
- * Taylor series between crossings that are sought the way others do it, by signs at the ends of steps, which shows what that
- * test misses. With short steps, cut where a stop is nearest, nothing is missed: the reference. */
+ * Taylor series between crossings that are sought the way others do it, by signs at the ends of steps, which shows what
+ * that test misses. With short steps, cut where a stop is nearest, nothing is missed: the reference. */
 #ifndef HAND_H
 #define HAND_H
 

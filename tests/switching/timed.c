@@ -53,7 +53,8 @@ static bool compare_times(const char *name, const struct hand_log *log, int coun
 	for (int i = 0; i < count && i < log->count; i++) {
 		const double off = fabs(time[i] - (double)log->time[i]) / grown;
 		worst_time = worse(worst_time, off);
-		good = close_to(time[i], (double)log->time[i], tolerance * grown, "%s: time of crossing %d", name, i) && good;
+		good = close_to(time[i], (double)log->time[i], tolerance * grown, "%s: time of crossing %d", name, i) &&
+		       good;
 	}
 	return good;
 }
@@ -68,7 +69,8 @@ static bool compare(const struct hand_system *s, const struct hand_state *truth,
 	char name[60];
 	snprintf(name, sizeof name, "timed %u, h = %g", seed, steps[step]);
 	bool good = compare_times(name, s->log, count, time, grown);
-	good = close_to((double)of->crossed(r.state), (double)truth->crossings, 0, "%s: crossings in all", name) && good;
+	good = close_to((double)of->crossed(r.state), (double)truth->crossings, 0, "%s: crossings in all", name) &&
+	       good;
 	good = close_to(of->model->status(r.state), 0, 0, "%s: status", name) && good;
 	run_state(&r, y);
 	for (int i = 0; i < 2 * s->n; i++) {
@@ -138,7 +140,7 @@ int main(void)
 	setvbuf(stdout, NULL, _IOLBF, 0);
 	for (unsigned seed = FIRST; seed < FIRST + COUNT; seed++)
 		one(seed);
-	note("%d systems, %ld crossings, %ld of them by a load that jumps; end states off by at most %.2g, times by %.2g",
-	     (int)COUNT, crossings, jumps, worst_state, worst_time);
+	note("%d systems, %ld crossings, %ld of them by a load that jumps; end states off by at most %.2g, times by "
+	     "%.2g", (int)COUNT, crossings, jumps, worst_state, worst_time);
 	return tap_end();
 }

@@ -28,7 +28,9 @@ static void choose_changes(struct timed_system *s)
 	for (int i = 0; i + 1 < s->segments; i++) {
 		const real low = last + 0.001L;
 		const int kind = below(4);
-		last = kind == 0 ? low + number(0.005, 0.3) : kind == 1 ? 4 * (floorl(last / 4) + 1) : low + number(0.1, 5);
+		last = kind == 0   ? low + number(0.005, 0.3)
+		       : kind == 1 ? 4 * (floorl(last / 4) + 1)
+				   : low + number(0.1, 5);
 		s->change[i] = last;
 	}
 }

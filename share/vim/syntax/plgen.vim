@@ -7,7 +7,8 @@ syntax case match
 
 syntax match   plgenStatement "^\s*\(model\|param\|coord\|init\|let\|input\)\>"
 syntax match   plgenStatement "^\s*\(output\|matrix\|mass\|spring\|damper\|force\)\>"
-syntax match   plgenStatement "^\s*\(step\|scheme\|operator\|tunable\|tolerance\|substeps\|modes\|use\|need\|budget\|when\|stop\)\>"
+syntax match   plgenStatement "^\s*\(step\|scheme\|operator\|tunable\|tolerance\|substeps\|modes\|use\)\>"
+syntax match   plgenStatement "^\s*\(need\|budget\|when\|stop\)\>"
 syntax keyword plgenWord at hold first third fifth seventh between on ground as with
 syntax keyword plgenWord within until for instructions without static
 syntax keyword plgenConstant t pi

@@ -1,0 +1,651 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Tokens to nodes: names and expressions. The production stands above each function that reads it; names are resolved
+ * as they are read, since they are declared before use. */
+#include "read/parser.h"
+
+#include <string.h>
+
+/* ---- tokens ---- */
+
+struct token take(struct parser *p)
+{
+	struct token token = p->token;
+	p->end = token.at;
+	p->end.offset += token.length;
+	p->token = lex_next(&p->lexer);
+	return token;
+}
+
+bool is_op(const struct parser *p, const char *op)
+{
+	return p->token.kind == TOKEN_OPERATOR && strcmp(p->token.op, op) == 0;
+}
+
+bool take_op(struct parser *p, const char *op)
+{
+	if (!is_op(p, op))
+		return false;
+	take(p);
+	return true;
+}
+
+/* 1,5 */
+static bool decimal_comma(const struct parser *p)
+{
+	const char *text = p->lexer.source->text + p->token.at.offset;
+	size_t before = p->token.at.offset;
+	bool number =
+		p->token.kind == TOKEN_NUMBER && before > 1 && text[-1] == ',' && text[-2] >= '0' && text[-2] <= '9';
+	return number ||
+	       (is_op(p, ",") && before > 0 && text[-1] >= '0' && text[-1] <= '9' && text[1] >= '0' && text[1] <= '9');
+}
+
+/* A name before a single =: the next definition of a list, its comma forgotten. */
+static bool starts_definition(const struct parser *p)
+{
+	const char *text = p->lexer.source->text + p->token.at.offset + p->token.length;
+	text += strspn(text, " \t");
+	return p->token.kind == TOKEN_NAME && text[0] == '=' && text[1] != '=';
+}
+
+/* A word between the parts of an element of a sketch. */
+static bool is_place(struct token token)
+{
+	static const char *const word[] = { "at", "between", "on", "ground" };
+	for (int i = 0; i < 4; i++)
+		if (strcmp(token.name, word[i]) == 0)
+			return true;
+	return false;
+}
+
+/* What usually stands behind a token that fits nowhere. */
+static const char *stray_note(const struct parser *p)
+{
+	bool after_operand = p->operand_end > 0 && p->operand_end == p->end.offset;
+	bool word = after_operand && p->token.kind == TOKEN_NAME && !find_symbol(p, p->token.name);
+	const char *unit = word ? stray_unit_note(p) : NULL;
+	if (decimal_comma(p))
+		return "the decimal mark is the point: 1.5";
+	if (p->goes_on && p->goes_on(p))
+		return "a statement ends at the end of its line, unless a bracket is open there";
+	if (opens_comment(p))
+		return "a comment starts with #";
+	if (unit)
+		return unit;
+	if (is_op(p, ";") && p->nesting == 0)
+		return "each statement has its own line; the parts of one are separated by commas";
+	if (starts_definition(p))
+		return "definitions are separated by commas";
+	if (after_operand &&
+	    ((p->token.kind == TOKEN_NAME && !is_place(p->token)) || p->token.kind == TOKEN_NUMBER || is_op(p, "(")))
+		return "multiplication is written with *";
+	if (is_op(p, "=="))
+		return "an equation has a single =";
+	return NULL;
+}
+
+_Noreturn void unexpected(const struct parser *p, const char *expected)
+{
+	error(p->token.at, stray_note(p), "expected %s, found %s", expected, token_text(p->token));
+}
+
+void expect_op(struct parser *p, const char *op, const char *expected)
+{
+	if (!take_op(p, op))
+		unexpected(p, expected);
+}
+
+void expect_end(struct parser *p)
+{
+	if (p->token.kind != TOKEN_END)
+		unexpected(p, "the end of the statement");
+}
+
+static void nest(struct parser *p, struct place at)
+{
+	if (++p->nesting > LIMIT_NESTING)
+		error(at, NULL, "nesting over the limit of %d", LIMIT_NESTING);
+}
+
+/* ---- names ---- */
+
+struct symbol *spec_find(const struct spec *spec, const char *name)
+{
+	for (struct symbol *s = spec->bucket[name_hash(name) % BUCKETS]; s; s = s->next_alike)
+		if (strcmp(s->name, name) == 0)
+			return s;
+	return NULL;
+}
+
+struct symbol *find_symbol(const struct parser *p, const char *name)
+{
+	return spec_find(p->spec, p->part ? format("%s.%s", p->part->name, name) : name);
+}
+
+/* Behind all others: of equal names the first is found. */
+void add_symbol(struct spec *spec, struct symbol *symbol)
+{
+	symbol->number = ++spec->symbols;
+	*spec->last = symbol;
+	spec->last = &symbol->next;
+	struct symbol **link = &spec->bucket[name_hash(symbol->name) % BUCKETS];
+	while (*link)
+		link = &(*link)->next_alike;
+	*link = symbol;
+}
+
+static bool begins(const char *line, const char *word)
+{
+	size_t length = strlen(word);
+	return strncmp(line, word, length) == 0 && (line[length] == ' ' || line[length] == '\t');
+}
+
+const char *symbol_kind(const struct symbol *symbol)
+{
+	static const char *const text[] = { "param", "coordinate", "let", "output", "input", "matrix", "output",
+					    "part" };
+	return text[symbol->kind];
+}
+
+/* Whether the rest of this statement or a later one declares it: then the order is what is wrong. */
+static bool declared_later(const struct parser *p, const char *name)
+{
+	size_t length = strlen(name);
+	const char *rest = p->lexer.source->text + p->lexer.position;
+	for (const char *line = p->lexer.source->text + p->statement; line;
+	     line = strchr(line, '\n'), line = line ? line + 1 : NULL) {
+		line += strspn(line, " \t");
+		bool coord = begins(line, "coord") || begins(line, "input");
+		if (!coord && !begins(line, "param") && !begins(line, "let") && !begins(line, "matrix"))
+			continue;
+		for (const char *at = line + 3; *at && !strchr("\n#", *at); at++) {
+			size_t word = strspn(at, WORD);
+			const char *after = at + word + strspn(at + word, " \t");
+			if (word == length && at >= rest && strncmp(at, name, word) == 0 &&
+			    (coord || (after[0] == '=' && after[1] != '=')))
+				return true;
+			at += word > 0 ? word - 1 : 0;
+		}
+	}
+	return false;
+}
+
+_Noreturn void peak_inside(struct place at)
+{
+	error(at, "it is the largest |EXPR| so far, and no part of an expression",
+	      "peak stands alone: output NAME = peak(EXPR)");
+}
+
+/* Then it was told what is wrong. */
+static bool is_of_broken_part(const struct parser *p, const char *name)
+{
+	for (const char *point = name; (point = strchr(point, '.')); point++) {
+		const struct symbol *part = find_symbol(p, format("%.*s", (int)(point - name), name));
+		if (part && part->kind == SYMBOL_PART && part->broken)
+			return true;
+	}
+	return false;
+}
+
+/* A note on front.body where no part is named front; or NULL */
+static const char *part_note(const struct parser *p, const char *name)
+{
+	const char *point = strchr(name, '.');
+	if (!point)
+		return NULL;
+	const char *first = format("%.*s", (int)(point - name), name);
+	const struct symbol *symbol = find_symbol(p, first);
+	if (!symbol)
+		return format("no part is named '%s': use \"FILE.spec\" as %s", first, first);
+	return symbol->kind == SYMBOL_PART ? NULL : format("%s '%s' is no part", symbol_kind(symbol), first);
+}
+
+/* Whether no line declares a coordinate, and the name has a prime somewhere: it is meant for one */
+static bool lacks_coordinates(const struct parser *p, struct token name)
+{
+	const char *text = p->lexer.source->text;
+	if (p->spec->coords > 0 || p->part)
+		return false;
+	for (const char *line = text; line; line = strchr(line, '\n'), line = line ? line + 1 : NULL)
+		if (begins(line + strspn(line, " \t"), "coord"))
+			return false;
+	for (const char *at = text; (at = strstr(at, name.name)) != NULL; at++) {
+		size_t length = strspn(at, WORD);
+		if (length == strlen(name.name) && at[length] == '\'' && (at == text || !strchr(WORD, at[-1])))
+			return true;
+	}
+	return false;
+}
+
+/* Told once, at the first of them */
+static _Noreturn void missing_coordinates(struct parser *p, struct token name)
+{
+	if (p->spec->lacks_coords)
+		abandon();
+	p->spec->lacks_coords = true;
+	error(name.at, format("coord %s", name.name),
+	      "unknown name '%s', and there is no statement 'coord', which declares the coordinates", name.name);
+}
+
+static bool names_coordinate(const struct parser *p, const char *name)
+{
+	const struct symbol *symbol = find_symbol(p, name);
+	return symbol && symbol->kind == SYMBOL_COORD;
+}
+
+_Noreturn void unknown_name(struct parser *p, struct token token)
+{
+	if (declared_later(p, token.name))
+		error(token.at, "names are declared before use; this one is declared further down", "unknown name '%s'",
+		      token.name);
+	if (strcmp(token.name, "peak") == 0 && token.primes == 0 && is_op(p, "("))
+		peak_inside(token.at);
+	/* by itself a part was without error: this one follows from another */
+	if (is_of_broken_part(p, token.name) || (p->part && diagnostics_errors()))
+		abandon();
+	const char *note = part_note(p, token.name), *habit = habit_note(p, token, names_coordinate);
+	if (!note && !habit && lacks_coordinates(p, token))
+		missing_coordinates(p, token);
+	error(token.at, note ? note : habit ? habit : spec_suggestion(p->spec, token.name), "unknown name '%s'",
+	      token.name);
+}
+
+/* component: [ NUMBER ] { ' }; *primes grows by those behind the bracket */
+int read_component(struct parser *p, int *primes, bool declared)
+{
+	if (!is_op(p, "[") || p->token.at.offset != p->end.offset)
+		return 0;
+	struct place opening = take(p).at;
+	if (*primes > 0)
+		error(opening, "q[1]' is the velocity of a component", "a component stands before the primes");
+	if (p->token.kind != TOKEN_NUMBER)
+		unexpected(p, declared ? "the number of components" : "the number of a component");
+	mpq_t number;
+	mpq_init(number);
+	struct token token = take(p);
+	lex_number(token, number);
+	if (mpz_cmp_ui(mpq_denref(number), 1) != 0 || mpq_sgn(number) <= 0)
+		error(token.at, NULL,
+		      declared ? "a vector has a whole number of components, at least 1"
+			       : "components are numbered from 1");
+	if (declared && mpq_cmp_ui(number, LIMIT_STATES, 1) > 0)
+		error(token.at, NULL, "more states than the limit of %d", LIMIT_STATES);
+	int component =
+		mpq_cmp_ui(number, LIMIT_STATES, 1) > 0 ? LIMIT_STATES + 1 : (int)mpz_get_ui(mpq_numref(number));
+	mpq_clear(number);
+	expect_op(p, "]", "']'");
+	if (p->token.kind == TOKEN_OPERATOR && p->token.op[0] == '\'')
+		*primes = (int)take(p).length;
+	return component;
+}
+
+void check_component(const struct symbol *symbol, int component, struct place at)
+{
+	if (component == 0)
+		return;
+	if (symbol->kind != SYMBOL_COORD || symbol->length == 0)
+		error(at, "only vector coordinates have components", "'%s' is not a vector", symbol->name);
+	if (component > symbol->length)
+		error(at, NULL, "'%s' has %d components", symbol->name, symbol->length);
+}
+
+/* What a name stands for, where that is an expression: an output of a part, the slope of a connected input */
+static struct node *read_inlined(struct parser *p, const struct symbol *symbol, struct token token)
+{
+	if (symbol->kind == SYMBOL_LET)
+		return inlined(slope_of(symbol->value, symbol->value->start), token.at, p->end);
+	if (token.primes > 0)
+		error(token.at, "only coordinates have derivatives", "output '%s' has no derivative", token.name);
+	if (symbol->peak)
+		error(token.at, format("it is one by itself: output %s", token.name),
+		      "a peak is an output, and no part of an expression");
+	if (p->no_acceleration && has_acceleration(symbol->value))
+		error(token.at, "a let may use coordinates and their first derivatives", "an acceleration in a let");
+	return inlined(symbol->value, token.at, p->end);
+}
+
+/* What has a value at other times; of others a bracket behind them is a missing operator */
+static bool is_delayable(const struct symbol *symbol)
+{
+	return symbol->kind == SYMBOL_COORD || symbol->kind == SYMBOL_INPUT;
+}
+
+/* delayed: NAME { ' } ( expression ), an input as it was: an input by itself, which the text does not declare */
+static struct symbol *read_delay(struct parser *p, const struct symbol *symbol, struct token token)
+{
+	struct spec *spec = p->spec;
+	if (symbol->kind == SYMBOL_COORD)
+		error(token.at, format("an input can take its place, to which the caller gives what %s was", token.name),
+		      "a delay of a coordinate is not built: '%s'", token.name);
+	nest(p, token.at);
+	take(p);
+	struct symbol *delayed = NEW(struct symbol);
+	*delayed = (struct symbol){ .kind = SYMBOL_INPUT,
+				    .at = token.at,
+				    .statement = p->statement,
+				    .part = p->part,
+				    .used = true,
+				    .hold = symbol->hold,
+				    .delayed = symbol,
+				    .when = read_expression(p) };
+	expect_op(p, ")", "')' or an operator");
+	p->nesting--;
+	delayed->index = spec->inputs++;
+	delayed->name = format("%s.delayed%d", symbol->name, ++spec->delays);
+	add_symbol(spec, delayed);
+	return delayed;
+}
+
+/* name: NAME { ' } | NAME [ NUMBER ] { ' } */
+struct node *resolve_name(struct parser *p, struct token token)
+{
+	int component = read_component(p, &token.primes, false);
+	struct symbol *symbol = find_symbol(p, token.name);
+	if (!symbol)
+		unknown_name(p, token);
+	if (symbol->broken)
+		abandon();
+	symbol->used = true;
+	if (symbol->kind == SYMBOL_PART)
+		error(token.at, format("what belongs to it has its name: %s.NAME", token.name),
+		      "'%s' is a part, and stands for no value", token.name);
+	if (symbol->kind == SYMBOL_PART_OUTPUT || (symbol->connected && token.primes == 1 && symbol->hold))
+		return read_inlined(p, symbol, token);
+	if (symbol->kind == SYMBOL_OUTPUT)
+		error(token.at, "a shorthand for use in expressions is a let",
+		      "output '%s' cannot be used in an expression", token.name);
+	if (token.primes > 0 && symbol->kind != SYMBOL_COORD && symbol->kind != SYMBOL_INPUT)
+		error(token.at, "only coordinates have derivatives", "%s '%s' has no derivative", symbol_kind(symbol),
+		      token.name);
+	if (token.primes > 0 && symbol->kind == SYMBOL_INPUT && !symbol->hold)
+		error(token.at, format("input %s hold first ramps between samples and has one", token.name),
+		      "input '%s' is held over a step: it has no slope", token.name);
+	if (token.primes > 1 && symbol->kind == SYMBOL_INPUT)
+		error(token.at, NULL, "input '%s' has no second derivative", token.name);
+	check_component(symbol, component, token.at);
+	if (p->no_acceleration && symbol->kind == SYMBOL_COORD && token.primes > 1)
+		error(token.at, "a let may use coordinates and their first derivatives", "an acceleration in a let");
+	struct node *node = node_new(NODE_NAME, token.at);
+	if (is_op(p, "(") && is_delayable(symbol))
+		symbol = read_delay(p, symbol, token);
+	node->symbol = symbol;
+	node->depth = symbol->value ? symbol->value->depth + 1 : 0;
+	node->primes = token.primes;
+	node->component = component;
+	node->end = p->end;
+	return node;
+}
+
+struct node *read_state(struct parser *p)
+{
+	return resolve_name(p, take(p));
+}
+
+static void check_arguments(const struct node *call)
+{
+	bool three = call->function == FN_DEADZONE || call->function == FN_CLIP;
+	int wanted = call->function == FN_ATAN2 ? 2 : three ? 3 : 1;
+	if (call->function == FN_FRICTION && (call->children < 2 || call->children > 3))
+		error(call->at, "friction(v, F), or friction(v, F, S) where S is what it holds up to",
+		      "friction takes a velocity and a force, found %d argument%s", call->children,
+		      call->children == 1 ? "" : "s");
+	bool open_ended = call->function == FN_MIN || call->function == FN_MAX || call->function == FN_TABLE;
+	if (call->function == FN_TABLE && call->children < 5)
+		error(call->at, "table(x; x0, y0; x1, y1; ...)", "a table needs at least two points");
+	if (call->function != FN_FRICTION && (open_ended ? call->children < 2 : call->children != wanted))
+		error(call->at, NULL, "%s takes %s%d argument%s, found %d", function_name(call->function),
+		      open_ended ? "at least " : "", open_ended ? 2 : wanted, wanted == 1 && !open_ended ? "" : "s",
+		      call->children);
+}
+
+/* call: FUNCTION ( expression { , expression } )   |   table ( expression { ; expression , expression } ) */
+static struct node *read_call(struct parser *p, struct token name, enum function function)
+{
+	struct node *call = node_new(NODE_CALL, name.at);
+	call->function = function;
+	if (name.primes > 0)
+		error(name.at, NULL, "a function has no derivative here: '%s'", name.name);
+	if (!is_op(p, "("))
+		error(name.at, NULL, "'%s' is a function: expected '(' after it, found %s", name.name,
+		      token_text(p->token));
+	nest(p, name.at);
+	struct place separator = take(p).at;
+	add_child(call, read_expression(p), false, separator);
+	while (is_op(p, ",") || is_op(p, ";")) {
+		bool semicolon = is_op(p, ";");
+		if (semicolon != (function == FN_TABLE && call->children % 2 == 1))
+			unexpected(p,
+				   function == FN_TABLE ? "the points of a table as x; x0, y0; x1, y1" : "',' or ')'");
+		separator = take(p).at;
+		add_child(call, read_expression(p), false, separator);
+	}
+	expect_op(p, ")", "',' or ')'");
+	p->nesting--;
+	call->end = p->end;
+	if (function == FN_TABLE && call->children % 2 == 0)
+		error(call->at, "table(x; x0, y0; x1, y1; ...)", "the last point of the table has no y");
+	check_arguments(call);
+	return call;
+}
+
+static struct node *read_bracket(struct parser *p)
+{
+	struct place opening = take(p).at;
+	nest(p, opening);
+	struct node *inner = read_expression(p);
+	expect_op(p, ")", "')' or an operator");
+	p->nesting--;
+	if (p->token.kind == TOKEN_OPERATOR && p->token.op[0] == '\'')
+		unexpected(p, "an operator");
+	inner->start = opening;
+	inner->end = p->end;
+	return inner;
+}
+
+/* matrix: [ expression { , expression } { ; expression { , expression } } ] */
+static struct node *read_matrix(struct parser *p)
+{
+	struct place separator = p->token.at;
+	struct node *node = node_new(NODE_MATRIX, separator);
+	nest(p, separator);
+	for (int column = 0;;) {
+		take(p);
+		add_child(node, read_expression(p), false, separator);
+		column++;
+		separator = p->token.at;
+		if (is_op(p, ","))
+			continue;
+		if (node->columns == 0)
+			node->columns = column;
+		if (column != node->columns)
+			error(separator, NULL, "row of %d in a matrix with rows of %d", column, node->columns);
+		column = 0;
+		if (!is_op(p, ";"))
+			break;
+	}
+	expect_op(p, "]", "',', ';' or ']'");
+	p->nesting--;
+	node->end = p->end;
+	return node;
+}
+
+/* operand: NUMBER | pi | t | name | call | ( expression ) | matrix */
+static struct node *read_operand(struct parser *p)
+{
+	if (is_op(p, "("))
+		return read_bracket(p);
+	if (is_op(p, "["))
+		return read_matrix(p);
+	if (p->token.kind == TOKEN_NUMBER) {
+		struct token token = take(p);
+		struct node *node = node_new(NODE_NUMBER, token.at);
+		lex_number(token, node->number);
+		node->end = p->end;
+		return node;
+	}
+	if (p->token.kind != TOKEN_NAME)
+		unexpected(p, "a number, a name or '('");
+	struct token name = take(p);
+	enum function function = function_of(name.name);
+	if (function != FN_NONE && (function != FN_FRICTION || (is_op(p, "(") && !find_symbol(p, name.name))))
+		return read_call(p, name, function);
+	bool time = strcmp(name.name, "t") == 0;
+	if (time || strcmp(name.name, "pi") == 0) {
+		if (name.primes > 0)
+			error(name.at, NULL, "'%s' has no derivative", name.name);
+		struct node *node = node_new(time ? NODE_TIME : NODE_PI, name.at);
+		node->end = p->end;
+		return node;
+	}
+	if (is_reserved(name.name) && !find_symbol(p, name.name))   /* else broken: told where it is declared */
+		error(name.at, NULL, "'%s' is a reserved word", name.name);
+	return resolve_name(p, name);
+}
+
+/* primary: NUMBER | pi | t | name | call | ( expression ) */
+static struct node *read_primary(struct parser *p)
+{
+	struct node *operand = read_operand(p);
+	p->operand_end = p->end.offset;
+	return operand;
+}
+
+static struct node *read_unary(struct parser *p);
+
+/* power: primary [ ^ ( power | sign power ) ] */
+static struct node *read_power(struct parser *p)
+{
+	struct node *base = read_primary(p);
+	if (!is_op(p, "^")) {
+		if (is_op(p, "*") && p->lexer.source->text[p->token.at.offset + 1] == '*')
+			error(p->token.at, "a power is written with ^", "unexpected '**'");
+		return base;
+	}
+	struct node *power = node_new(NODE_POWER, p->token.at);
+	struct place caret = take(p).at;
+	nest(p, caret);
+	struct node *exponent = is_op(p, "+") || is_op(p, "-") ? read_unary(p) : read_power(p);
+	p->nesting--;
+	add_child(power, base, false, caret);
+	add_child(power, exponent, false, caret);
+	power->start = base->start;
+	return power;
+}
+
+/* unary: ( + | - ) unary | power */
+static struct node *read_unary(struct parser *p)
+{
+	if (!is_op(p, "+") && !is_op(p, "-"))
+		return read_power(p);
+	struct token sign = take(p);
+	nest(p, sign.at);
+	struct node *operand = read_unary(p);
+	p->nesting--;
+	struct node *node = node_new(NODE_SUM, sign.at);
+	add_child(node, operand, sign.op[0] == '-', sign.at);
+	return node;
+}
+
+/* One level of left-associative operators, as one node with many children: long sums stay flat. */
+static struct node *read_chain(struct parser *p, enum node_kind kind, const char *plain, const char *inverse,
+			       struct node *(*read)(struct parser *))
+{
+	struct node *first = read(p);
+	if (!is_op(p, plain) && !is_op(p, inverse))
+		return first;
+	struct node *chain = node_new(kind, p->token.at);
+	chain->start = first->start;
+	add_child(chain, first, false, first->start);
+	while (is_op(p, plain) || is_op(p, inverse)) {
+		struct token operator = take(p);
+		add_child(chain, read(p), strcmp(operator.op, inverse) == 0, operator.at);
+	}
+	return chain;
+}
+
+/* product: unary { ( * | / ) unary } */
+static struct node *read_product(struct parser *p)
+{
+	return read_chain(p, NODE_PRODUCT, "*", "/", read_unary);
+}
+
+/* sum: product { ( + | - ) product } */
+static struct node *read_sum(struct parser *p)
+{
+	return read_chain(p, NODE_SUM, "+", "-", read_product);
+}
+
+static bool comparison_of(const struct parser *p, enum comparison *comparison)
+{
+	static const char *const text[] = { "<", "<=", ">", ">=", "==", "!=" };
+	for (int i = 0; i < 6; i++)
+		if (is_op(p, text[i])) {
+			*comparison = (enum comparison)i;
+			return true;
+		}
+	return false;
+}
+
+/* comparison: sum [ ( < | <= | > | >= | == | != ) sum ] */
+struct node *read_condition(struct parser *p)
+{
+	struct node *left = read_sum(p);
+	enum comparison comparison;
+	if (!comparison_of(p, &comparison))
+		return left;
+	struct node *node = node_new(NODE_COMPARE, p->token.at);
+	struct place operator = take(p).at;
+	node->comparison = comparison;
+	node->start = left->start;
+	add_child(node, left, false, operator);
+	add_child(node, read_sum(p), false, operator);
+	if (comparison_of(p, &comparison))
+		unexpected(p, "a single comparison");
+	return node;
+}
+
+/* expression: comparison [ ? expression : expression ] */
+struct node *read_expression(struct parser *p)
+{
+	struct node *condition = read_condition(p);
+	if (!is_op(p, "?"))
+		return condition;
+	struct node *node = node_new(NODE_CHOOSE, p->token.at);
+	struct place mark = take(p).at;
+	nest(p, mark);
+	node->start = condition->start;
+	add_child(node, condition, false, mark);
+	add_child(node, read_expression(p), false, mark);
+	expect_op(p, ":", "':' of the condition");
+	add_child(node, read_expression(p), false, mark);
+	p->nesting--;
+	return node;
+}
+
+bool take_word(struct parser *p, const char *word)
+{
+	if (p->token.kind != TOKEN_NAME || p->token.primes > 0 || strcmp(p->token.name, word) != 0)
+		return false;
+	take(p);
+	return true;
+}
+
+void expect_word(struct parser *p, const char *word)
+{
+	if (!take_word(p, word))
+		unexpected(p, format("'%s'", word));
+}
+
+struct node *read_coordinate(struct parser *p, bool ground)
+{
+	if (ground && take_word(p, "ground"))
+		return NULL;
+	if (p->token.kind != TOKEN_NAME || is_reserved(p->token.name))
+		unexpected(p, ground ? "a coordinate or ground" : "a coordinate");
+	struct node *node = resolve_name(p, take(p));
+	const struct symbol *symbol = node->symbol;
+	if (!symbol || symbol->kind != SYMBOL_COORD || node->primes > 0 || (symbol->length && !node->component))
+		error(node->at, NULL, "expected a scalar coordinate or a component, found '%s'",
+		      text_between(node->start, node->end));
+	return node;
+}

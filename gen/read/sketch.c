@@ -1,0 +1,69 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Sketches: masses, springs, dampers and what else is drawn between coordinates. */
+#include "read/parser.h"
+
+/* The velocity of a coordinate that has been read */
+static struct node *velocity_of(const struct node *coordinate)
+{
+	struct node *velocity = node_new(NODE_NAME, coordinate->at);
+	*velocity = *coordinate;
+	velocity->primes = 1;
+	return velocity;
+}
+
+/* friction F between x, y: friction(x' - y', F) */
+static struct node *friction_between(const struct element *element)
+{
+	struct node *call = node_new(NODE_CALL, element->value->at), *slide = velocity_of(element->from);
+	call->function = FN_FRICTION;
+	call->start = element->at;
+	call->end = element->end;
+	if (element->to) {
+		struct node *sum = node_new(NODE_SUM, element->from->at);
+		sum->start = element->from->start;
+		sum->end = element->to->end;
+		add_child(sum, slide, false, element->from->at);
+		add_child(sum, velocity_of(element->to), true, element->to->at);
+		slide = sum;
+	}
+	add_child(call, slide, false, element->value->at);
+	add_child(call, element->value, false, element->value->at);
+	return call;
+}
+
+/* mass: mass expression at coordinate;  spring, damper, friction: ... expression between coordinate , coordinate;
+ * force: force expression on coordinate */
+static void read_element(struct parser *p, int kind)
+{
+	struct spec *spec = p->spec;
+	struct element element = { .kind = kind, .part = p->part };
+	element.at = (struct place){ p->lexer.source, p->statement };
+	element.value = read_expression(p);
+	expect_word(p, kind == ELEMENT_MASS ? "at" : kind == ELEMENT_FORCE ? "on" : "between");
+	bool two = kind == ELEMENT_SPRING || kind == ELEMENT_DAMPER || kind == ELEMENT_FRICTION;
+	struct token first = p->token;
+	element.from = read_coordinate(p, two);
+	if (two) {
+		expect_op(p, ",", "','");
+		element.to = read_coordinate(p, true);
+	}
+	if (two && !element.from) {
+		element.from = element.to;
+		element.to = NULL;
+	}
+	if (!element.from || (element.to && element.from->symbol == element.to->symbol &&
+			      element.from->component == element.to->component))
+		error(first.at, NULL, "it acts between a coordinate and itself");
+	expect_end(p);
+	element.end = p->end;
+	if (kind == ELEMENT_FRICTION)
+		element.value = friction_between(&element);
+	ENLARGE(spec->element, (size_t)spec->elements + 1);
+	spec->element[spec->elements++] = element;
+}
+
+void read_mass(struct parser *p) { read_element(p, ELEMENT_MASS); }
+void read_spring(struct parser *p) { read_element(p, ELEMENT_SPRING); }
+void read_damper(struct parser *p) { read_element(p, ELEMENT_DAMPER); }
+void read_force(struct parser *p) { read_element(p, ELEMENT_FORCE); }
+void read_friction(struct parser *p) { read_element(p, ELEMENT_FRICTION); }
