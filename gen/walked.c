@@ -71,7 +71,8 @@ struct exact_run *exact_run_of(const struct model *full, const struct model *ste
 		*place = *place >= 0 ? *place : run->outputs++;
 	}
 	const double each = (double)(system->states + 2 * load_columns(system)) * run->outputs;
-	if (system->inputs > 0 || system->states > MOST_STATES || run->samples < 0 || each * (double)run->samples > MOST_EXACT)
+	if (system->inputs > 0 || system->states > MOST_STATES || run->samples < 0 ||
+	    each * (double)run->samples > MOST_EXACT)
 		return NULL;
 	const size_t numbers = (size_t)run->outputs * (size_t)(run->samples + 1);
 	run->value = ARRAY(double, numbers);

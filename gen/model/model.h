@@ -348,7 +348,8 @@ struct switching {
 	int aparts;
 	const struct node **apart;  /* terms that share no expression with others */
 	bool torn;                  /* one has become such: the search begins anew */
-	int *system_segment;        /* per system: a segment in which it serves; there expressions are the same in all */
+	/* per system: a segment in which it serves; there expressions are the same in all */
+	int *system_segment;
 	int parts;                  /* 0: its regions are those of all coordinates together */
 	struct region_part *part;
 	int frictions;

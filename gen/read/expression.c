@@ -315,7 +315,8 @@ static struct symbol *read_delay(struct parser *p, const struct symbol *symbol, 
 {
 	struct spec *spec = p->spec;
 	if (symbol->kind == SYMBOL_COORD)
-		error(token.at, format("an input can take its place, to which the caller gives what %s was", token.name),
+		error(token.at,
+		      format("an input can take its place, to which the caller gives what %s was", token.name),
 		      "a delay of a coordinate is not built: '%s'", token.name);
 	nest(p, token.at);
 	take(p);

@@ -619,7 +619,8 @@ static const struct statement {
 };
 
 /* tolerance, substeps, modes, use, need, budget, when and stop may be names of a spec's own: in an equation an operator
- * or a prime follows; a sign is that of a number where the line has no =; an = is no equation where there is no such name. */
+ * or a prime follows; a sign is that of a number where the line has no =; an = is no equation where there is no such
+ * name. */
 static bool opens_statement(const struct parser *p, const struct statement *statement, struct token token)
 {
 	const char *next = token.at.source->text + token.at.offset + token.length;

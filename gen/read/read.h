@@ -97,7 +97,8 @@ struct symbol {
 	bool marked;                /* of a let: its states are marked */
 	bool peak;                  /* of an output: peak(value) */
 	bool connected;             /* of a let: an input of a part, to which the scene gives its value */
-	/* of an input that is another one as it was some time ago, declared by u(t - d): that one, and t - d; else NULL */
+	/* of an input that is another one as it was some time ago, declared by u(t - d): that one, and t - d; else
+	 * NULL */
 	const struct symbol *delayed;
 	struct node *when;
 	struct node *value;         /* of param, let, output */

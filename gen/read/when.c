@@ -23,8 +23,8 @@ static struct node *read_target(struct parser *p)
 	struct node *node = read_state(p);
 	const struct symbol *symbol = node->symbol;
 	if (symbol && symbol->kind == SYMBOL_INPUT)
-		error(node->at, "coordinates and their velocities jump", "input '%s' is what its samples say: it cannot jump",
-		      symbol->name);
+		error(node->at, "coordinates and their velocities jump",
+		      "input '%s' is what its samples say: it cannot jump", symbol->name);
 	if (!symbol || symbol->kind != SYMBOL_COORD)
 		error(node->at, "coordinates and their velocities jump", "'%s' is no state: it cannot jump",
 		      text_between(node->start, node->end));
@@ -60,8 +60,8 @@ void read_when(struct parser *p)
 		error(when.guard->start, "when x >= 0.1: x' = -0.8*x'", "expected a comparison, found '%s'",
 		      text_between(when.guard->start, when.guard->end));
 	if (when.guard->comparison >= CMP_EQ)
-		error(when.guard->at, "it comes true by crossing: >= <= > <", "a guard with %s comes true by no crossing",
-		      when.guard->comparison == CMP_EQ ? "==" : "!=");
+		error(when.guard->at, "it comes true by crossing: >= <= > <",
+		      "a guard with %s comes true by no crossing", when.guard->comparison == CMP_EQ ? "==" : "!=");
 	expect_op(p, ":", "':' before what jumps");
 	do
 		read_assignment(p, &when);

@@ -257,7 +257,8 @@ static long most_of_regions(const struct step *step)
 		pieces = 1l << step->branch[k].halvings > pieces ? 1l << step->branch[k].halvings : pieces;
 	pieces += max_events(step->model) + 1;
 	return pieces * (degree * (size * size + 2 * size) + (degree + 1) * s->expressions * (size + 6)) +
-	       4 * (degree + 1) * (2 * max_splits(step->model) + 4 * s->expressions * pieces + 64 * max_events(step->model)) +
+	       4 * (degree + 1) *
+		       (2 * max_splits(step->model) + 4 * s->expressions * pieces + 64 * max_events(step->model)) +
 	       swift_multiplications(step);
 }
 
@@ -327,7 +328,8 @@ static void person_impacts(FILE *to, const struct model *model)
 		fprintf(to, "    impact %d: %s", i, text_between(impact->when->at, impact->when->end));
 		if (impact->bounces)
 			fprintf(to, "; a bounce of restitution %s, which rests in interval %d of expression %d",
-				readable_text(impact->restitution), rest_of(model->switching, impact), impact->expression);
+				readable_text(impact->restitution), rest_of(model->switching, impact),
+				impact->expression);
 		fputs("\n", to);
 	}
 }

@@ -307,8 +307,8 @@ static void print_regions(FILE *to, const struct step *step)
 		step->series.degree);
 	if (s->segments > 1)
 		fprintf(to,
-			"    at a change of the loads: as far as there, then the region with the same intervals in the next "
-			"of %d segments of time\n", s->segments);
+			"    at a change of the loads: as far as there, then the region with the same intervals in the "
+			"next of %d segments of time\n", s->segments);
 	print_matrices(to, step);
 }
 

@@ -25,7 +25,7 @@ static const char *no_swift(const struct step *step)
 		turns = turns || step->branch[k].halvings > 1;
 	return step->model->asked.single                 ? "it is smaller, for the target float"
 	       : s->segments > 1                         ? "loads change their formula in time"
-	       : has_events(s)                           ? "what sticks, slips and bounces has events of its own in each region"
+	       : has_events(s)                           ? "what sticks, slips and bounces has events of its own"
 	       : turns                                   ? "the fastest pole turns by more than 2 in a step"
 	       : s->regions * s->expressions > BOUNDS     ? "there are too many regions"
 	       : step->layout.size * (step->layout.states + s->expressions) > TERMS ? "it would be more than a page"
