@@ -69,7 +69,8 @@ for seed in $seeds; do
 			good = worst <= bound + spare && bound <= needed && bound <= 3 * worst + 3 * spare &&
 			       bound <= contracted
 			printf "%s - seed %s: error %.3g, bound %.3g, need %.3g, dropped modes %.3g, contracted " \
-				"%.3g, %s\n", good ? "ok" : "not ok", seed, worst, bound, needed, dropped, contracted, real
+				"%.3g, %s\n", good ? "ok" : "not ok", seed, worst, bound, needed, dropped,
+				contracted, real
 		}' bound - >line
 	cat line
 	cat line >>lines
