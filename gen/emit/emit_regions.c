@@ -376,7 +376,8 @@ void emit_region_step(const struct emitter *e)
 void emit_region_advance_call(const struct emitter *e)
 {
 	say(e, regions_change(e) ? "    $o_pass_changes(s, tau, x, &contact, crossing, work);\n"
-				 : "    pl_switching_advance(&$o_switching, tau, x, &contact, crossing, work);\n");
+				 : format("    %s_advance(&$o_switching, tau, x, &contact, crossing, work);\n",
+					  search_of(e)));
 }
 
 void emit_region_at(const struct emitter *e)
