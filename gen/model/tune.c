@@ -96,6 +96,8 @@ static void check_kind(const struct model *model, const struct request *request)
 	if (scheme_row(model->scheme)->holds_coupling)
 		error(at, "tunable params are for scheme exact, and for what a scheme leaves over",
 		      "scheme %s cannot be retuned", scheme_name(model->scheme));
+	if (model->switching && has_events(model->switching))
+		error(at, NULL, "a model with friction or impacts cannot be retuned yet");
 	if (request->reduce)
 		error(at, NULL,
 		      "--reduce takes out what is not seen at the spec's values: it does not go with tunable params");
