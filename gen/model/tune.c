@@ -540,9 +540,8 @@ bool find_tuning(struct model *model, const struct request *request)
 	const struct spec *spec = model->spec;
 	if (spec->tunables == 0)
 		return true;
-	if (model->switching && model->switching->frictions > 0) {
-		say_error(spec->tunable[0].at, "an input may be the force of friction, or act on what slides",
-			  "tunable params are not built beside friction");
+	if (model->impacts > 0) {
+		say_error(spec->tunable[0].at, NULL, "a model with impacts cannot be retuned yet");
 		return false;
 	}
 	if (model->keeps_params) {
