@@ -84,11 +84,14 @@ struct piece {                  /* a declaration, a definition, or lines of the 
 	bool function, local;   /* declared or defined; static */
 	bool in_code, in_header;
 };
+struct include { const char *file, *header; };      /* both without the ending */
 struct runtime {
 	const char *folder;
 	bool single;            /* for models in float */
 	struct piece *piece;
 	int pieces;
+	struct include *include;
+	int includes;
 	const char **from, **to; /* names that stand for others in float */
 	int aliases;
 };

@@ -182,6 +182,11 @@ struct reader {
 
 static void read_file(struct runtime *r, const char *name);
 
+static const char *without_ending(const char *name)
+{
+	return format("%.*s", (int)(strlen(name) - 2), name);
+}
+
 /* Is a declaration or a group of lines complete? */
 static bool complete(const struct reader *f)
 {
@@ -271,6 +276,8 @@ static bool take_directive(struct reader *f, const char *line)
 	struct runtime *r = f->runtime;
 	char name[64], other[64], end;
 	if (sscanf(line, "#include \"%63[^\"]\"", name) == 1) {
+		ENLARGE(r->include, (size_t)r->includes + 1);
+		r->include[r->includes++] = (struct include){ f->file, without_ending(name) };
 		read_file(r, name);
 		return true;
 	}
@@ -290,8 +297,7 @@ static bool take_directive(struct reader *f, const char *line)
 
 static void read_file(struct runtime *r, const char *name)
 {
-	struct reader f = { .runtime = r, .file = format("%.*s", (int)(strlen(name) - 2), name), .comment = "",
-			    .text = "" };
+	struct reader f = { .runtime = r, .file = without_ending(name), .comment = "", .text = "" };
 	for (int i = 0; i < r->pieces; i++)
 		if (strcmp(r->piece[i].file, f.file) == 0)
 			return;
