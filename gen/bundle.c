@@ -227,7 +227,7 @@ static void print_with(FILE *to, const struct runtime *r, const char *text, bool
 		if (is_line(line, "#define PL_FLOAT_ONLY"))
 			continue;
 		if (is_line(line, "#include \"pllanes.h\""))
-			fputs(runtime_text(r, "pllanes.h"), to);
+			fputs(runtime_text("pllanes.h"), to);
 		else if (!is_line(line, "#include \"plrt.h\""))
 			fprintf(to, "%.*s", (int)(end - line), line);
 		else if (header)
@@ -243,7 +243,7 @@ static void print_bundled(FILE *to, const char *text, const void *context)
 	print_with(to, b->runtime, text, b->header);
 }
 
-void bundle(struct file *code, struct file *header, bool single)
+void bundle(struct file *code, struct file *header, const char *more, bool single)
 {
 	struct runtime *r = runtime_read(single);
 	rename_all(r);
@@ -252,6 +252,7 @@ void bundle(struct file *code, struct file *header, bool single)
 		use_words(r, "PL_NOT_FINITE PL_TOO_MANY_STEPS PL_TOO_MANY_EVENTS PL_UNDECIDED", IN_HEADER);
 		use_words(r, "PL_SINGULAR PL_MODEL_VERSION", IN_HEADER);
 		use_words(r, header->text, IN_HEADER);
+		use_words(r, more ? more : "", IN_HEADER);
 	}
 	for (int i = 0; i < r->pieces; i++)
 		if (r->piece[i].in_header)
