@@ -97,7 +97,7 @@ static struct words command_of(const struct fmu *fmu, const char *headers, const
 	add(&w, format("-DFMI%d_OVERRIDE_FUNCTION_PREFIX", fmu->version));
 	if (headers)
 		add(&w, format("-I%s", headers));
-	for (int i = 0; i < fmu->sources; i++)
+	for (int i = 0; i < FMU_SOURCES; i++)
 		add(&w, inside(folder, fmu->source[i]));
 	add(&w, "-o");
 	add(&w, object);

@@ -36,14 +36,20 @@ static bool has_name(const struct piece *p, const char *word, size_t length)
 	return false;
 }
 
-/* Names of a file are seen in it, those of a header in every file that has none of its own. */
-static bool is_seen(const struct piece *p, const struct piece *from, bool header)
+/* Does a file include another, itself or through one that it includes? */
+static bool includes(const struct runtime *r, const char *file, const char *header)
 {
-	static const char *const headers[] = { "real", "words", "two", "roots" };
-	for (size_t i = 0; i < sizeof headers / sizeof *headers && header; i++)
-		if (strcmp(p->file, headers[i]) == 0)
+	for (int i = 0; i < r->includes; i++)
+		if (strcmp(r->include[i].file, file) == 0 &&
+		    (strcmp(r->include[i].header, header) == 0 || includes(r, r->include[i].header, header)))
 			return true;
-	return !header && strcmp(p->file, from->file) == 0;
+	return false;
+}
+
+/* Names of a file are seen in it, those of a header in every file that includes it and has none of its own. */
+static bool is_seen(const struct runtime *r, const struct piece *p, const struct piece *from, bool header)
+{
+	return header ? includes(r, from->file, p->file) : strcmp(p->file, from->file) == 0;
 }
 
 static const char *new_name(const struct runtime *r, const struct piece *from, const char *word, size_t length)
@@ -56,7 +62,7 @@ static const char *new_name(const struct runtime *r, const struct piece *from, c
 		return name;
 	for (int header = 0; header < 2; header++)
 		for (int i = 0; i < r->pieces; i++)
-			if (!r->piece[i].shared && is_seen(&r->piece[i], from, header) &&
+			if (!r->piece[i].shared && is_seen(r, &r->piece[i], from, header) &&
 			    has_name(&r->piece[i], word, length))
 				return own_name(&r->piece[i], name);
 	return name;
@@ -221,7 +227,7 @@ static void print_with(FILE *to, const struct runtime *r, const char *text, bool
 		if (is_line(line, "#define PL_FLOAT_ONLY"))
 			continue;
 		if (is_line(line, "#include \"pllanes.h\""))
-			fputs(runtime_text(r, "pllanes.h"), to);
+			fputs(runtime_text("pllanes.h"), to);
 		else if (!is_line(line, "#include \"plrt.h\""))
 			fprintf(to, "%.*s", (int)(end - line), line);
 		else if (header)
@@ -237,7 +243,7 @@ static void print_bundled(FILE *to, const char *text, const void *context)
 	print_with(to, b->runtime, text, b->header);
 }
 
-void bundle(struct file *code, struct file *header, bool single)
+void bundle(struct file *code, struct file *header, const char *more, bool single)
 {
 	struct runtime *r = runtime_read(single);
 	rename_all(r);
@@ -246,6 +252,7 @@ void bundle(struct file *code, struct file *header, bool single)
 		use_words(r, "PL_NOT_FINITE PL_TOO_MANY_STEPS PL_TOO_MANY_EVENTS PL_UNDECIDED", IN_HEADER);
 		use_words(r, "PL_SINGULAR PL_MODEL_VERSION", IN_HEADER);
 		use_words(r, header->text, IN_HEADER);
+		use_words(r, more ? more : "", IN_HEADER);
 	}
 	for (int i = 0; i < r->pieces; i++)
 		if (r->piece[i].in_header)

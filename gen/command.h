@@ -73,7 +73,7 @@ void mark_pair(struct file *code, struct file *header);     /* of two runs they 
 bool spares(int count, const char *const *path);            /* is nothing written over them? Else it says so */
 void publish(void);
 
-/* ---- pieces.c: the runtime as it is installed ---- */
+/* ---- pieces.c: the runtime, cut ---- */
 
 struct piece {                  /* a declaration, a definition, or lines of the preprocessor */
 	const char *file;       /* where it stands, without the ending */
@@ -84,22 +84,23 @@ struct piece {                  /* a declaration, a definition, or lines of the 
 	bool function, local;   /* declared or defined; static */
 	bool in_code, in_header;
 };
+struct include { const char *file, *header; };      /* both without the ending */
 struct runtime {
-	const char *folder;
 	bool single;            /* for models in float */
 	struct piece *piece;
 	int pieces;
+	struct include *include;
+	int includes;
 	const char **from, **to; /* names that stand for others in float */
 	int aliases;
 };
-const char *runtime_folder(void);                           /* ends the program where it is not found */
 struct runtime *runtime_read(bool single);
-char *runtime_text(const struct runtime *r, const char *name); /* of a file there */
 const char *next_word(const char **at, size_t *length);     /* of C outside comments and strings; NULL: no more */
 bool is_word(const char *word, size_t length, const char *name);
 
 /* ---- bundle.c: a model with the runtime inside ---- */
 
-void bundle(struct file *code, struct file *header, bool single); /* header NULL: the C has all */
+/* Header NULL: the C has all. `more`: C that includes the header and finds there what it uses; NULL: none is known */
+void bundle(struct file *code, struct file *header, const char *more, bool single);
 
 #endif

@@ -212,8 +212,9 @@ static void rewrite_code(struct work *w)
 	rewrite(w, w->text);
 	if (w->header)
 		rewrite(w, w->header);
-	if (w->options.bundle)
-		bundle(w->text, w->header, w->options.request.single);
+	if (w->options.bundle || w->options.fmu)
+		bundle(w->text, w->header, w->options.fmu ? runtime_text("plfmu.h") : NULL,
+		       w->options.request.single);
 	if (w->options.print == PRINT_HEADER)
 		mark_pair(NULL, w->text);
 	else if (w->header)

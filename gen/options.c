@@ -6,6 +6,7 @@
 #include <getopt.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 static _Noreturn void wrong_usage(const char *message)
 {
@@ -198,6 +199,36 @@ static void take_strict(struct options *options, const char *value)
 }
 
 static void print_usage(struct options *options, const char *value);
+
+/* The folder of this program, so that what is installed together may be moved together; NULL: not known */
+static const char *own_folder(void)
+{
+	static char path[4096];
+	ssize_t length = readlink("/proc/self/exe", path, sizeof path - 1);
+	path[length > 0 ? length : 0] = 0;
+	char *slash = strrchr(path, '/');
+	if (!slash)
+		return NULL;
+	*slash = 0;
+	return path;
+}
+
+/* Ends the program where it is not found. */
+static const char *runtime_folder(void)
+{
+	const char *own = own_folder(), *named = getenv("PLGEN_RUNTIME");
+	const char *place[] = { named && *named ? named : NULL,
+				own ? format("%s/%s/plgen/runtime", own, PLGEN_DATA_FROM_BIN) : NULL,
+				own ? format("%s/../runtime", own) : NULL, PLGEN_RUNTIME };
+	for (size_t i = 0; i < sizeof place / sizeof *place; i++)
+		if (place[i] && access(format("%s/plrt.h", place[i]), R_OK) == 0) {
+			char *real = realpath(place[i], NULL);
+			return need_memory(real);
+		}
+	fputs("plgen: error: the runtime, plrt.h, is not there\n"
+	      "note: the environment's PLGEN_RUNTIME names its folder\n", stderr);
+	exit(1);
+}
 
 static void print_runtime_folder(struct options *options, const char *value)
 {

@@ -1,58 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The runtime as it is installed: where it is, and its text in pieces, each of which can be left out. */
-#define _GNU_SOURCE     /* asprintf, readlink */
+/* The runtime's text in pieces, each of which can be left out. */
 #include "command.h"
 
 #include <ctype.h>
-#include <dirent.h>
-#include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
-
-/* ---- where ---- */
-
-/* The folder of this program, so that what is installed together may be moved together; NULL: not known */
-static const char *own_folder(void)
-{
-	static char path[4096];
-	ssize_t length = readlink("/proc/self/exe", path, sizeof path - 1);
-	path[length > 0 ? length : 0] = 0;
-	char *slash = strrchr(path, '/');
-	if (!slash)
-		return NULL;
-	*slash = 0;
-	return path;
-}
-
-const char *runtime_folder(void)
-{
-	const char *own = own_folder(), *named = getenv("PLGEN_RUNTIME");
-	const char *place[] = { named && *named ? named : NULL,
-				own ? format("%s/%s/plgen/runtime", own, PLGEN_DATA_FROM_BIN) : NULL,
-				own ? format("%s/../runtime", own) : NULL, PLGEN_RUNTIME };
-	for (size_t i = 0; i < sizeof place / sizeof *place; i++)
-		if (place[i] && access(format("%s/plrt.h", place[i]), R_OK) == 0) {
-			char *real = realpath(place[i], NULL);
-			return need_memory(real);
-		}
-	fputs("plgen: error: the runtime, plrt.h, is not there\n"
-	      "note: the environment's PLGEN_RUNTIME names its folder\n", stderr);
-	exit(1);
-}
-
-char *runtime_text(const struct runtime *r, const char *name)
-{
-	const char *path = format("%s/%s", r->folder, name);
-	FILE *from = fopen(path, "r");
-	char *text = NULL;
-	size_t room = 0;
-	if (!from || getdelim(&text, &room, 0, from) < 0) {
-		fprintf(stderr, "%s: error: cannot read this file of the runtime\n", path);
-		exit(1);
-	}
-	fclose(from);
-	return text;
-}
 
 /* ---- words ---- */
 
@@ -182,6 +133,11 @@ struct reader {
 
 static void read_file(struct runtime *r, const char *name);
 
+static const char *without_ending(const char *name)
+{
+	return format("%.*s", (int)(strlen(name) - 2), name);
+}
+
 /* Is a declaration or a group of lines complete? */
 static bool complete(const struct reader *f)
 {
@@ -271,6 +227,8 @@ static bool take_directive(struct reader *f, const char *line)
 	struct runtime *r = f->runtime;
 	char name[64], other[64], end;
 	if (sscanf(line, "#include \"%63[^\"]\"", name) == 1) {
+		ENLARGE(r->include, (size_t)r->includes + 1);
+		r->include[r->includes++] = (struct include){ f->file, without_ending(name) };
 		read_file(r, name);
 		return true;
 	}
@@ -290,59 +248,41 @@ static bool take_directive(struct reader *f, const char *line)
 
 static void read_file(struct runtime *r, const char *name)
 {
-	struct reader f = { .runtime = r, .file = format("%.*s", (int)(strlen(name) - 2), name), .comment = "",
-			    .text = "" };
+	struct reader f = { .runtime = r, .file = without_ending(name), .comment = "", .text = "" };
 	for (int i = 0; i < r->pieces; i++)
 		if (strcmp(r->piece[i].file, f.file) == 0)
 			return;
-	char *text = runtime_text(r, name), *rest = text;
-	for (char *line; (line = strsep(&rest, "\n"));) {
+	const char *rest = runtime_text(name);
+	while (*rest) {
+		const char *line = format("%.*s", (int)strcspn(rest, "\n"), rest);
+		rest += strlen(line) + 1;
 		if (*line == '#' && !*f.text && take_condition(&f, line))
 			continue;
 		if (f.left_out || (*line == '#' && !*f.text && take_directive(&f, line)))
 			continue;
 		take_line(&f, line);
 	}
-	free(text);
 }
 
 /* ---- all of it ---- */
 
-static int by_name(const void *a, const void *b)
-{
-	return strcmp(*(const char *const *)a, *(const char *const *)b);
-}
-
-/* Files of one type: growthf.c beside growth.c is of floats. */
+/* Files of one type: growthf.c beside growth.c is of floats. Not those of FMUs: they have a model inside. */
 static bool serves(const struct runtime *r, const char *name)
 {
 	size_t length = strlen(name);
-	if (length < 3 || strcmp(name + length - 2, ".c") != 0)
+	if (length < 3 || strcmp(name + length - 2, ".c") != 0 || strncmp(name, "fmi", 3) == 0)
 		return false;
-	bool single = name[length - 3] == 'f' &&
-		      access(format("%s/%.*s.c", r->folder, (int)length - 3, name), R_OK) == 0;
+	bool single = name[length - 3] == 'f' && runtime_text(format("%.*s.c", (int)length - 3, name));
 	return single == r->single;
 }
 
 struct runtime *runtime_read(bool single)
 {
 	struct runtime *r = NEW(struct runtime);
-	const char **name = NULL;
-	size_t names = 0;
-	r->folder = runtime_folder();
 	r->single = single;
-	DIR *folder = opendir(r->folder);
-	for (struct dirent *entry; folder && (entry = readdir(folder));)
-		if (serves(r, entry->d_name)) {
-			ENLARGE(name, names + 1);
-			name[names++] = format("%s", entry->d_name);
-		}
-	if (folder)
-		closedir(folder);
 	read_file(r, "plrt.h");
-	if (names > 0)
-		qsort(name, names, sizeof *name, by_name);
-	for (size_t i = 0; i < names; i++)
-		read_file(r, name[i]);
+	for (int i = 0; runtime_name(i); i++)
+		if (serves(r, runtime_name(i)))
+			read_file(r, runtime_name(i));
 	return r;
 }

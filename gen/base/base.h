@@ -163,6 +163,11 @@ bool   round_bits(mpfi_srcptr x, int bits, mpz_ptr digits, long *exponent);
 /* fewest digits that read back; a C literal, of type double */
 const char *shortest(double d);
 
+/* ---- texts.c: the runtime, inside the program ---- */
+
+const char *runtime_text(const char *name);                 /* plrt.h, turns.c, ...; NULL: there is none of this name */
+const char *runtime_name(int file);                         /* of all of them, from 0; NULL: there are no more */
+
 /* ---- rational.c: exact numbers as text ---- */
 
 const char *exact_text(mpq_srcptr q);                       /* a decimal if there is one, else p/q */

@@ -136,7 +136,7 @@ static void print_head_2(FILE *to, const struct fmu *f)
 		    "canNotUseMemoryManagementFunctions=\"true\" canGetAndSetFMUstate=\"true\" "
 		    "canSerializeFMUstate=\"true\">\n"
 		    "    <SourceFiles>\n", f->name);
-	for (int i = 0; i < f->sources; i++)
+	for (int i = 0; i < FMU_SOURCES; i++)
 		fprintf(to, "      <File name=\"%s\"/>\n", f->source[i]);
 	fputs("    </SourceFiles>\n"
 	      "  </CoSimulation>\n", to);
@@ -172,7 +172,7 @@ const char *build_description(const struct fmu *f)
 	fprintf(t.to, "<fmiBuildDescription fmiVersion=\"3.0\">\n"
 		      "  <BuildConfiguration modelIdentifier=\"%s\">\n"
 		      "    <SourceFileSet language=\"C99\">\n", f->name);
-	for (int i = 0; i < f->sources; i++)
+	for (int i = 0; i < FMU_SOURCES; i++)
 		fprintf(t.to, "      <SourceFile name=\"%s\"/>\n", f->source[i]);
 	fputs("    </SourceFileSet>\n", t.to);
 	if (f->math)

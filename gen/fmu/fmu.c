@@ -35,7 +35,7 @@ static uint64_t hash_of(uint64_t hash, const char *text)
 static uint64_t mark_of(const struct fmu *f, const char *code, const char *header)
 {
 	uint64_t hash = hash_of(0xcbf29ce484222325, f->version == 3 ? "3" : "2");
-	const char *text[] = { code, header, runtime_file("plfmu.h"), runtime_file("plrt.h") };
+	const char *text[] = { code, header, runtime_text("plfmu.h") };
 	for (size_t i = 0; i < sizeof text / sizeof *text; i++)
 		hash = hash_of(hash, text[i]);
 	return hash;
@@ -72,12 +72,6 @@ static void add_text(struct fmu *f, const char *name, const char *text)
 	archive_add(&f->archive, name, text, strlen(text));
 }
 
-static void add_source(struct fmu *f, const char *name)
-{
-	ENLARGE(f->source, (size_t)f->sources + 1);
-	f->source[f->sources++] = name;
-}
-
 struct fmu *fmu_new(const struct step *step, int version, const char *code, const char *header)
 {
 	const struct model *model = step->model;
@@ -96,18 +90,16 @@ struct fmu *fmu_new(const struct step *step, int version, const char *code, cons
 	f->token = format("{%08x-%04x-%04x-%04x-%04x%08x}", (unsigned)(mark >> 32), (unsigned)(mark >> 16 & 0xffff),
 			  (unsigned)(mark & 0xffff), (unsigned)(more >> 48), (unsigned)(more >> 32 & 0xffff),
 			  (unsigned)(more & 0xffffffff));
-	add_source(f, version == 3 ? "fmi3.c" : "fmi2.c");
-	add_source(f, format("%s_pl.c", f->name));
-	struct archive runtime = { 0 };
-	add_runtime(f, &runtime, code);
+	f->source[0] = version == 3 ? "fmi3.c" : "fmi2.c";
+	f->source[1] = format("%s_pl.c", f->name);
 	add_text(f, "modelDescription.xml", model_description(f));
-	add_text(f, "documentation/licenses/license.txt", runtime_file("LICENSE"));
+	add_text(f, "documentation/licenses/license.txt", runtime_text("LICENSE"));
 	if (version == 3)
 		add_text(f, "sources/buildDescription.xml", build_description(f));
 	add_text(f, "sources/fmu_model.h", model_header(f, step, mark));
 	add_text(f, format("sources/%s", fmu_header_name(model)), header);
-	add_text(f, format("sources/%s_pl.c", f->name), code);
-	for (int i = 0; i < runtime.members; i++)
-		archive_add(&f->archive, runtime.member[i].name, runtime.member[i].bytes, runtime.member[i].length);
+	add_text(f, format("sources/%s", f->source[1]), code);
+	add_text(f, format("sources/%s", f->source[0]), runtime_text(f->source[0]));
+	add_text(f, "sources/plfmu.h", runtime_text("plfmu.h"));
 	return f;
 }

@@ -38,6 +38,7 @@ struct fmu_variables variables_of(const struct step *step);
 
 /* ---- description.c: modelDescription.xml, and of FMI 3.0 sources/buildDescription.xml ---- */
 
+enum { FMU_SOURCES = 2 };           /* the standard's functions, the model */
 struct fmu {
 	int version;                /* 2 or 3 */
 	const char *name;           /* of the model: its identifier */
@@ -47,25 +48,18 @@ struct fmu {
 	double h;
 	bool math;                  /* its C needs the library of <math.h> */
 	struct fmu_variables variables;
-	int sources;                /* of sources/: those that are compiled */
-	const char **source;
+	const char *source[FMU_SOURCES]; /* of sources/: those that are compiled */
 	struct archive archive;
 };
 const char *attribute_text(const char *text);              /* as the value of an XML attribute */
 const char *model_description(const struct fmu *f);
 const char *build_description(const struct fmu *f);
 
-/* ---- pieces.c: of the runtime, what C needs ---- */
-
-/* those files, as members of sources/, and of them those that are compiled as sources of f */
-void add_runtime(struct fmu *f, struct archive *to, const char *code);
-const char *runtime_file(const char *name);                /* its text */
-
 /* ---- fmu.c: the whole ---- */
 
 /* NAME_pl.h, which the C includes */
 const char *fmu_header_name(const struct model *model);
-/* of this C and its header; NULL: it was said why there is none */
+/* of this C and its header, which have what they need of the runtime inside; NULL: it was said why there is none */
 struct fmu *fmu_new(const struct step *step, int version, const char *code, const char *header);
 
 #endif

@@ -14,8 +14,6 @@ case $plgen in /*) ;; *) plgen=$PWD/$plgen ;; esac
 warnings='-Wall -Wextra -Wpedantic -Wconversion -Wdouble-promotion -Wshadow -Wcast-qual -Werror'
 . "${0%/*}/../tap.sh"
 . "$root/tests/compilers.sh"
-PLGEN_RUNTIME=$root/runtime
-export PLGEN_RUNTIME
 runtime_archive "$root/runtime"
 
 cat >compilers <<'EOT'
@@ -128,6 +126,10 @@ bundles 'loads' "$root/models/sdcsf.spec" --rhs
 bundles 'loads that change and grow' "$root/tests/emitted/linear/switched.spec"
 bundles 'two words' "$root/models/scs.spec" --accuracy compensated --selftest
 bundles 'regions' "$root/models/quarter_car_bumps.spec"
+bundles 'crossings and loads' "$root/models/gear1.spec"
+bundles 'friction' "$root/models/brake.spec"
+bundles 'impacts' "$root/models/bouncing_ball.spec"
+bundles 'delays' "$root/tests/delays/echo.spec"
 bundles 'tunable' "$root/tests/tunable/changes.spec"
 bundles 'many instances' "$root/models/quarter_car.spec" --batch
 bundles 'a leftover' "$root/models/beam4.spec" --scheme etdrk4
