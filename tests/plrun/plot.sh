@@ -24,6 +24,13 @@ run two.spec 30 --plot two.svg >two.csv && [ "$(wc -l <two.csv)" -eq 3002 ] && [
 result $? 'README: the spec, run and drawn'
 run "$models/scs.spec" 300 --plot long.svg >rows.csv && [ "$(wc -c <long.svg)" -lt 4000000 ]
 result $? 'a picture of many rows stays small'
+for spec in brake impact_oscillator; do
+	run "$models/$spec.spec" 2 >plain.csv
+	run "$models/$spec.spec" 2 --plot $spec.svg >rows.csv
+	same plain.csv rows.csv "$spec: the rows are written, too"
+	grep -q '<path' $spec.svg
+	result $? "$spec: a picture"
+done
 mkdir own
 printf '#!/bin/sh\ncat >script\n' >own/gnuplot
 chmod +x own/gnuplot

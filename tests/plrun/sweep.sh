@@ -101,6 +101,22 @@ run "$models/sdcsf.spec" 1 --real float -D w=4 | tail -n 1 | cut -d, -f 2- >last
 [ "$(sed -n 2p float_out.csv | cut -d, -f 4-7)" = "$(cat last)" ]
 result $? 'float'
 
+# events NAME SPEC VALUES PARAM=VALUE OPTION ...: its VALUES last values, as in a run with that param
+events() {
+	title=$1 spec=$2 values=$3 param=$4
+	shift 4
+	printf '%s\n%s\n' "${param%=*}" "${param#*=}" >events.csv
+	run "$spec" --sweep events.csv "$@" >swept.csv && run "$spec" -D "$param" "$@" >rows.csv &&
+		tail -n 1 rows.csv | cut -d, -f 2- >last
+	[ -s last ] && [ "$(sed -n 2p swept.csv | cut -d, -f "3-$((2 + values))")" = "$(cat last)" ]
+	result $? "$title"
+	rm -f last
+}
+events 'friction' "$models/stick_slip.spec" 3 F=3 --until 3
+events 'impacts' "$models/bouncing_ball.spec" 2 e=0.5 --until 3
+awk 'BEGIN { print "u"; for (i = 0; i < 40; i++) print i % 7 }' >held.csv
+events 'delays' "$root/tests/delays/echo.spec" 3 d=0.35 --input held.csv
+
 # two processes, where there is an mpirun and plrun takes part
 mpi='mpirun --allow-run-as-root --oversubscribe -n 2'
 if ! command -v mpirun >/dev/null; then
