@@ -699,7 +699,8 @@ static void judge_set(void)
                  (exact          ? 4 * rounding(STEPS)
                   : in_float     ? 2e-3
                   : *of->changes ? bound()
-                                 : 1e-7) *
+                  : is(of->scheme, "radau") ? 1e-6      /* the step that it had found goes with set */
+                                            : 1e-7) *
                      size,
                  "steps after set to where it is", STEPS * h, state_name(i));
         if (!whole() || (of->model ? of->model->params : of->modelf->params) > 8) {
