@@ -49,7 +49,7 @@ is_program() {
 		2>"$1.said" || head -n 3 "$1.said" >>"$1.wrong"
 	kind=$(sed -n "1s/^Program of a step of $1: \([a-z]*\).*/\1/p" program)
 	case $kind:$(head_of "$1.spec" class) in
-		linear:\ linear|regions:\ piecewise|with:*) ;;
+		linear:\ linear|regions:\ piecewise|regions:\ sticking|with:*) ;;
 		*) echo "the program is of kind '$kind'" >>"$1.wrong" ;;
 	esac
 	grep -q -F "$(sed -n 's/^Cost: \([0-9]* multiplications, [0-9]* additions\),.*/: \1/p' program)" "$1.c" ||
