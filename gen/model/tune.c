@@ -543,6 +543,10 @@ bool find_tuning(struct model *model, const struct request *request)
 			  "tunable params are not built beside friction");
 		return false;
 	}
+	if (model->impacts > 0) {
+		say_error(spec->tunable[0].at, NULL, "tunable params are not built beside impacts");
+		return false;
+	}
 	if (model->keeps_params) {
 		list_held(model);
 		return true;
