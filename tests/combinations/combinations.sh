@@ -48,7 +48,7 @@ is_program() {
 	# shellcheck disable=SC2046
 	timeout 1200 "$plgen" --explain=program --prefix "$1" $(head_of "$1.spec" options) "$1.spec" >program \
 		2>"$1.said" || head -n 3 "$1.said" >>"$1.wrong"
-	kind=$(sed -n "1s/^Program of a step of $1: \([a-z]*\).*/\1/p" program)
+	kind=$(sed -n "1s/^Program of a step of $1\(_core\)\{0,1\}: \([a-z]*\).*/\2/p" program)
 	case $kind:$(head_of "$1.spec" class) in
 		linear:\ linear|regions:\ piecewise|regions:\ sticking|with:*) ;;
 		*) echo "the program is of kind '$kind'" >>"$1.wrong" ;;

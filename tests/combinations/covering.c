@@ -395,12 +395,14 @@ static void write_chain(FILE *to, int n)
 	fprintf(to, "]\n");
 }
 
-/* So fine that what is chosen is compared as what is asked for is; a scheme that is asked for does what it can. */
+/* So fine that what is chosen is compared as what is asked for is; a scheme that is asked for does what it can.  Modes
+ * that only the part has would be left out. */
 static void write_need(FILE *to)
 {
 	const bool measured = has("smooth") || has("kinked") || has("piecewise") || has("loads") || expands() ||
 			      moves();
-	fprintf(to, "need %s within %s until 0.5", has("accel") ? "s" : "a",
+	fprintf(to, "need %s%s within %s until 0.5", has("accel") ? "s" : "a",
+		has("parts") && has("rigid") && !measured ? ", p.speed" : "",
 		measured && has_scheme() && !has("taylor") && !has("radau") ? "5 %"
 			: has("float") ? "1e-4" : measured ? "1e-6" : "1e-9");
 	fputs(has("held") || has("ramp") ? " for " : "", to);
