@@ -421,7 +421,7 @@ static void emit_linear_rows(const struct emitter *part, const double *whole)
 
 static const char *linear_contact(const struct emitter *part)
 {
-	return regions_change(part) ? spell(part, "{0, 0, s->segment, $o_matrix[s->segment], 0}") : "{0, 0, 0, 0, 0}";
+	return regions_change(part) ? spell(part, "{0, 0, s->segment, $o_matrix[s->segment], 0}") : "{0, 0, 0, 0, 0, 0}";
 }
 
 static void emit_changing_linear(const struct emitter *part, const double *whole)

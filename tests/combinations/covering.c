@@ -397,12 +397,11 @@ static void write_chain(FILE *to, int n)
 
 /* So fine that what is chosen is compared as what is asked for is; a scheme that is asked for does what it can.  Modes
  * that only the part has would be left out. */
-static void write_need(FILE *to)
+static void write_need(FILE *to, const char *output)
 {
 	const bool measured = has("smooth") || has("kinked") || has("piecewise") || has("loads") || expands() ||
 			      moves();
-	fprintf(to, "need %s%s within %s until 0.5", has("accel") ? "s" : "a",
-		has("parts") && has("rigid") && !measured ? ", p.speed" : "",
+	fprintf(to, "need %s within %s until 0.5", output,
 		measured && has_scheme() && !has("taylor") && !has("radau") ? "5 %"
 			: has("float") ? "1e-4" : measured ? "1e-6" : "1e-9");
 	fputs(has("held") || has("ramp") ? " for " : "", to);
@@ -484,7 +483,9 @@ static void write_spec(FILE *to)
 	fputs(has("taylor12") ? "scheme taylor 12\n" : "", to);
 	fputs(has("over3") ? "scheme taylor 12 over 3\n" : "", to);
 	if (has("need"))
-		write_need(to);
+		write_need(to, has("accel") ? "s" : "a");
+	if (has("need") && has("parts") && has("rigid"))
+		write_need(to, "p.speed");
 	fputs("step 0.01\n", to);
 }
 
