@@ -10,11 +10,6 @@
 
 #include <math.h>
 
-static void is_close(double found, double expected, double tolerance, const char *what)
-{
-	ok(close_to(found, expected, tolerance, "%s", what), "%s", what);
-}
-
 /* ---- the ball: bounce n at t0 (1 + 2 (e + ... + e^n)), t0 = sqrt(2 drop/g), rest at t0 (1 + e)/(1 - e) ---- */
 
 static void bounces(void)
