@@ -31,7 +31,8 @@ head_of() { # SPEC WHAT
 	sed -n "s/^# $2://p" "$1" | head -n 1
 }
 
-# make_c ID SPEC OPTIONS: with --rhs, where there is a formula for it; 0, or the status of plgen, in which case ID.said has its words
+# make_c ID SPEC OPTIONS: with --rhs, where there is a formula for it; 0, or the status of plgen, in which case
+# ID.said has its words
 make_c() {
 	rhs=--rhs
 	[ "$(head_of "$2" class)" != ' sticking' ] || rhs=
