@@ -90,7 +90,7 @@ static void emit_assignments(const struct emitter *e, const struct guards *g)
 	const char **note = ARRAY(const char *, (size_t)count + 1);
 	note[0] = "none";
 	say(e, "\n"
-	       "static const int $o_hold[%d] = {  /* of each region: what holds its states, a set; -1: nothing */\n"
+	       "static const int $o_holding[%d] = {  /* of each region: what holds its states, a set; -1: nothing */\n"
 	       "    ", s->regions);
 	emit_numbers(e, s->regions, g->hold);
 	say(e, "\n"
@@ -158,7 +158,7 @@ void emit_guards(const struct emitter *e, const struct pieces *pieces)
 	       "static const pl_guards $o_switching = {\n"
 	       "    %d, $N_H, %d, $o_row[0], $o_breaks, $o_breakpoint, $o_matrix, $o_halvings,\n"
 	       "    $o_slopes[0][0], $o_pieces[0][0], $o_lean[0][0],\n"
-	       "    $o_first, $o_guard, $o_limit, $o_hold,\n"
+	       "    $o_first, $o_guard, $o_limit, $o_holding,\n"
 	       "    $o_gate[0], $o_gate_lean[0], $o_gate_sag[0], $o_gate_sway[0], $o_play, $o_gate_play,\n"
 	       "    $o_sets, $o_held, $o_value[0], %d, $o_impact, $o_speed[0], $o_back[0], %d, $N_MAX_EVENTS, %d\n"
 	       "};\n",

@@ -526,9 +526,15 @@ static void feel(const struct building *b, struct switching *s, bool *seen, cons
 static void build_grips(struct building *b, struct switching *s)
 {
 	bool *seen = ARRAY(bool, (size_t)atoms_count(b->collector.atoms));
-	for (int i = 0; i < b->model->outputs; i++)
-		if (b->model->output[i].left)
-			feel(b, s, seen, b->model->output[i].left);
+	const struct model *model = b->model;
+	for (int i = 0; i < model->outputs; i++) {
+		const struct output *output = &model->output[i];
+		if (output->left)
+			feel(b, s, seen, output->left);
+		for (int c = 0; c < model->channels; c++)       /* an acceleration, by its equation */
+			if (mpq_sgn(output->channel[c]) != 0)
+				feel(b, s, seen, model->operator[0].left[c]);
+	}
 	for (int r = 0; r < s->regions && s->felt; r++) {
 		struct region *region = &s->region[r];
 		region->grip = ARRAY(struct output *, (size_t)s->frictions);

@@ -541,7 +541,7 @@ bool find_tuning(struct model *model, const struct request *request)
 	if (spec->tunables == 0)
 		return true;
 	if (model->impacts > 0) {
-		say_error(spec->tunable[0].at, NULL, "a model with impacts cannot be retuned yet");
+		say_error(spec->tunable[0].at, NULL, "tunable params are not built beside impacts");
 		return false;
 	}
 	if (model->keeps_params) {

@@ -119,7 +119,7 @@ static void build_linear_step(struct step *step)
 {
 	step->layout = layout_of(&step->branch->system, false);
 	build_exact(step);
-	if (!step->model->asked.trial || step->branch->system.segments > 1)
+	if (!step->model->asked.trial || step->branch->system.segments > 1 || peak_outputs(step->model) > 0)
 		series_plan(step);
 }
 

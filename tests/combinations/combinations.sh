@@ -36,7 +36,8 @@ words_of() {
 		case " $2 " in
 			*" $function "*)
 				grep -q "_$function(" "$1.h" && continue
-				reason=$(grep -m 1 "There is no $1_$function" "$1.c" | sed "s/^ \* //; s/$1_/NAME_/")
+				reason=$(grep -m 1 -e "There is no $1_$function" -e "There is no $1_core_$function" "$1.c" |
+					sed "s/^ \* //; s/$1_/NAME_/")
 				echo "${reason:-no NAME_$function, without a reason}" ;;
 		esac
 	done
@@ -47,9 +48,9 @@ is_program() {
 	# shellcheck disable=SC2046
 	timeout 1200 "$plgen" --explain=program --prefix "$1" $(head_of "$1.spec" options) "$1.spec" >program \
 		2>"$1.said" || head -n 3 "$1.said" >>"$1.wrong"
-	kind=$(sed -n "1s/^Program of a step of $1: \([a-z]*\).*/\1/p" program)
+	kind=$(sed -n "1s/^Program of a step of $1\(_core\)\{0,1\}: \([a-z]*\).*/\2/p" program)
 	case $kind:$(head_of "$1.spec" class) in
-		linear:\ linear|regions:\ piecewise|with:*) ;;
+		linear:\ linear|regions:\ piecewise|regions:\ sticking|with:*) ;;
 		*) echo "the program is of kind '$kind'" >>"$1.wrong" ;;
 	esac
 	grep -q -F "$(sed -n 's/^Cost: \([0-9]* multiplications, [0-9]* additions\),.*/: \1/p' program)" "$1.c" ||

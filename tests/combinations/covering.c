@@ -362,10 +362,15 @@ static void print_options(FILE *to)
 	const bool kinks = has("kinked") || (has("loads") && has("change"));
 	fprintf(to, "\n# class: %s\n",
 		kinks                                ? "kinked"
-			: has("piecewise")           ? "piecewise"
+			: has("friction")            ? "sticking"
+			: has("piecewise") || has("impact") ? "piecewise"
 			: has("smooth") || expands() || moves() ? "smooth"
 						     : "linear");
 	fprintf(to, "# changes:%s\n", has("change") ? " 0.053 0.1 0.21" : "");
+	if (has("friction") || has("delayed"))  /* what a second model has, of which CVODE solves the equations */
+		fputs("# instead: s/friction(b', 4)/max(-4, min(4, 40000*b'))/; s/^# class: sticking/# class: piecewise/; "
+		      "s/d(t - 0.02)/d_late/; s/^# whole: //\n", to);
+	fputs(has("impact") ? "# impact: 0.02 0.8\n" : "", to);
 	if (has("tunable"))
 		fputs(has("smooth") || has("kinked") || has("loads") || expands() || moves()
 			? "# retune: k=17.5\n" : "# retune: k=17.5 step=0.0125\n", to);
@@ -390,12 +395,13 @@ static void write_chain(FILE *to, int n)
 	fprintf(to, "]\n");
 }
 
-/* So fine that what is chosen is compared as what is asked for is; a scheme that is asked for does what it can. */
-static void write_need(FILE *to)
+/* So fine that what is chosen is compared as what is asked for is; a scheme that is asked for does what it can.  Modes
+ * that only the part has would be left out. */
+static void write_need(FILE *to, const char *output)
 {
 	const bool measured = has("smooth") || has("kinked") || has("piecewise") || has("loads") || expands() ||
 			      moves();
-	fprintf(to, "need %s within %s until 0.5", has("accel") ? "s" : "a",
+	fprintf(to, "need %s within %s until 0.5", output,
 		measured && has_scheme() && !has("taylor") && !has("radau") ? "5 %"
 			: has("float") ? "1e-4" : measured ? "1e-6" : "1e-9");
 	fputs(has("held") || has("ramp") ? " for " : "", to);
@@ -422,8 +428,10 @@ static void write_spec(FILE *to)
 	fputs(has("reduce") ? "coord unseen\n" : "", to);
 	if (vector)
 		fprintf(to, "coord q[%d]\n", n);
+	fputs(has("delayed") ? "input d\n" : "", to);
 	fputs(has("held") ? "input u\n" : "", to);
 	fputs(has("ramp") ? "input v hold first\n" : "", to);
+	fputs(has("delayed") ? "# whole: input d_late\n" : "", to);
 	fprintf(to, "init a = 0.2, b' = 0.5%s%s\n", has("first") ? ", z = 0.3" : "", vector ? ", q[2] = 0.1" : "");
 	if (vector) {
 		fputs("matrix K = ", to);
@@ -443,9 +451,10 @@ static void write_spec(FILE *to)
 	fputs(has("cos") || has("loads") ? "3*cos(7*t) + " : "", to);
 	fputs(has("change") ? "(t < 0.1 ? 4 : 1) + " : "", to);
 	fputs(has("held") ? "2*u + " : "", to);
+	fputs(has("delayed") ? "2*d(t - 0.02) + " : "", to);
 	fputs(has("ramp") ? "3*v + " : "", to);
 	fputs("0\n", to);
-	fprintf(to, "b''%s + k*(b - a) = ", damped ? " + 0.3*(b' - a')" : "");
+	fprintf(to, "b''%s%s + k*(b - a) = ", damped ? " + 0.3*(b' - a')" : "", has("friction") ? " + friction(b', 4)" : "");
 	fputs(has("power") ? "5*t^3 + " : "", to);
 	fputs(has("piecewise") ? "-9*max(b - 0.1, 0) + " : "", to);
 	fputs(has("smooth") || expands() ? "-2*b^3 + " : "", to);
@@ -470,10 +479,13 @@ static void write_spec(FILE *to)
 		fprintf(to, "output a'', s = 2*b'' - a%s\n", has("first") ? " + z'" : "");
 	fputs(has("peaks") ? "output wave = a + 0.5*b, top = peak(a + 0.5*b)\n" : "", to);
 	fputs(has("nonlinear") ? "output r = a^2 + sin(b)*b'\n" : "", to);
+	fputs(has("impact") ? "when b >= 0.02: b' = -0.8*b'\n" : "", to);
 	fputs(has("taylor12") ? "scheme taylor 12\n" : "", to);
 	fputs(has("over3") ? "scheme taylor 12 over 3\n" : "", to);
 	if (has("need"))
-		write_need(to);
+		write_need(to, has("accel") ? "s" : "a");
+	if (has("need") && has("parts") && has("rigid"))
+		write_need(to, "p.speed");
 	fputs("step 0.01\n", to);
 }
 

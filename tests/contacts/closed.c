@@ -34,11 +34,11 @@ static void bounces(void)
 		}
 	}
 	ok(worst <= 2e-13 && count > 60, "ball: %d bounces, times off by %.3g s at most", count, worst);
-	close_to(last, t0 * (1 + e) / (1 - e), 1e-12, "ball: rests [s]");
+	is_close(last, t0 * (1 + e) / (1 - e), 1e-12, "ball: rests [s]");
 	bouncing_ball_get(&s, y);
 	ok(y[0] == 0 && y[1] == 0, "ball: rests at 0, velocity 0 (%g, %g)", y[0], y[1]);
-	close_to(bouncing_ball_status(&s), 0, 0, "ball: status");
-	close_to((double)bouncing_ball_rested(&s), 1, 0, "ball: contacts that came to rest");
+	is_close(bouncing_ball_status(&s), 0, 0, "ball: status");
+	is_close((double)bouncing_ball_rested(&s), 1, 0, "ball: contacts that came to rest");
 }
 
 /* ---- x'' + x = cos(w t), stop at 0: one impact in each period T = 2 pi/w. With time from an impact, load
@@ -138,8 +138,10 @@ static void cradle_of_three(void)
 		cradle_step(&s);
 	cradle_get(&s, y);
 	const double expected[6] = { 0, 0, 2, 0, 0, 1 };
+	bool good = true;
 	for (int i = 0; i < 6; i++)
-		close_to(y[i], expected[i], 1e-14, "cradle: state %d at 3 s", i);
+		good = close_to(y[i], expected[i], 1e-14, "cradle: state %d at 3 s", i) && good;
+	ok(good, "cradle: at 3 s");
 }
 
 static void energy(void)
@@ -157,7 +159,7 @@ static void energy(void)
 	struck = clatter_crossed(&s);
 	ok(grown <= 1e-15, "clatter: energy grows by %.3g at most", grown);
 	ok(struck > 40, "clatter: %d impacts", (int)struck);
-	close_to(clatter_status(&s), 0, 0, "clatter: status");
+	is_close(clatter_status(&s), 0, 0, "clatter: status");
 }
 
 int main(void)

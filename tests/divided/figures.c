@@ -55,8 +55,8 @@ static void check_drag(const char *name)
             turns++;
         }
     }
-    close_to(worst, 0, 1e-13, "%s: 40 turning points", name);
-    close_to(slowest, 0, 1e-13, "%s: at rest there", name);
+    is_close(worst, 0, 1e-13, "%s: 40 turning points", name);
+    is_close(slowest, 0, 1e-13, "%s: at rest there", name);
     ok(v->crossed(state) == 40 && m->status(state) == 0, "%s: no other crossing", name);
     free(state);
     free(before);
@@ -81,8 +81,8 @@ static void check_odd_square(const char *name)
         m->get(state, y);
         energy = worse(energy, fabs(y[1] * y[1] / 2 + fabs(y[0] * y[0] * y[0]) / 3 - 1.0 / 3));
     }
-    close_to(worst, 0, 2e-12, "%s: 100 passages", name);
-    close_to(energy, 0, 1e-14, "%s: energy", name);
+    is_close(worst, 0, 2e-12, "%s: 100 passages", name);
+    is_close(energy, 0, 1e-14, "%s: energy", name);
     free(state);
 }
 
@@ -148,8 +148,8 @@ static void check_inputs(const char *name, bool ramps)
         for (int i = 0; i < 2; i++)
             worst = worse(worst, (double)fabsl(y[i] - truth[i]));
     }
-    close_to(worst, 0, 1e-11, "%s: 240 steps", name);
-    close_to(inside, 0, 1e-11, "%s: between them", name);
+    is_close(worst, 0, 1e-11, "%s: 240 steps", name);
+    is_close(inside, 0, 1e-11, "%s: between them", name);
     ok(m->status(state) == 0, "%s: status", name);
     free(state);
 }
@@ -178,7 +178,7 @@ static void check_float(const pl_modelf *m, const char *name, uint64_t (*crossed
             worst = worse(worst, (double)fabsl((real)y[i] - truth[i]));
         }
     }
-    close_to(worst / most, 0, 2e-5, "%s in float", name);
+    is_close(worst / most, 0, 2e-5, "%s in float", name);
     ok((int)crossed(state) == count && m->status(state) == 0, "%s in float: %d crossings", name, count);
     free(state);
 }

@@ -62,6 +62,16 @@ bool close_to(double found, double expected, double tolerance, const char *what,
     return good;
 }
 
+bool is_close(double found, double expected, double tolerance, const char *what, ...)
+{
+    char name[200];
+    va_list arguments;
+    va_start(arguments, what);
+    vsnprintf(name, sizeof name, what, arguments);
+    va_end(arguments);
+    return ok(close_to(found, expected, tolerance, "%s", name), "%s", name);
+}
+
 int tap_end(void)
 {
     if (results == 0) {

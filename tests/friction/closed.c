@@ -40,10 +40,10 @@ static void free_decay(int step)
 	}
 	run_state(&r, y);
 	r.of->model->out(r.state, out);
-	close_to(out[1], (double)(-100 * x), 1e-12, "free decay %d: an output reads what friction holds", step);
+	is_close(out[1], (double)(-100 * x), 1e-12, "free decay %d: an output reads what friction holds", step);
 	ok(count == 2 * halves - 1, "free decay %d: %d crossings, expected %d", step, count, 2 * halves - 1);
-	close_to((double)worst, 0, 1e-13, "free decay %d: times of half cycles", step);
-	close_to(y[0], (double)x, 1e-14, "free decay %d: where it stops", step);
+	is_close((double)worst, 0, 1e-13, "free decay %d: times of half cycles", step);
+	is_close(y[0], (double)x, 1e-14, "free decay %d: where it stops", step);
 	double before = y[0];
 	for (int i = 0; i < 1000; i++)
 		run_step(&r, NULL);
@@ -64,7 +64,7 @@ static void compare_cycles(const char *what, int step, int count, wide release, 
 		worst = fmaxl(worst, fmaxl(fabsl(time[i] - begin), fabsl(time[i + 1] - begin - slip)));
 	}
 	ok(cycles > 10, "%s %d: %d cycles", what, step, cycles);
-	close_to((double)worst, 0, 2e-12, "%s %d: times of release and of sticking", what, step);
+	is_close((double)worst, 0, 2e-12, "%s %d: times of release and of sticking", what, step);
 }
 
 /* It starts at rest on the spring: slips first, so that the cycle begins at its first release. */
@@ -113,13 +113,13 @@ static void brake(void)
 		run_until(&r, 20);
 		run_state(&r, y[step]);
 		r.of->model->out(r.state, out);
-		close_to(out[3], 1400 * 9.81 * 0.05, 1e-8, "brake %d: what the brakes carry", step);
+		is_close(out[3], 1400 * 9.81 * 0.05, 1e-8, "brake %d: what the brakes carry", step);
 		ok(y[step][2] == 0 && y[step][3] == 0, "brake %d: all stands", step);
 		run_free(&r);
 	}
 	for (int i = 0; i < 4; i++)
 		off = worse(off, fabs(y[0][i] - y[1][i]));
-	close_to(off, 0, 1e-10, "brake: steps far apart");
+	is_close(off, 0, 1e-10, "brake: steps far apart");
 }
 
 /* ---- a shaken table ---- */
@@ -147,7 +147,7 @@ static void shaken(int step)
 		}
 	}
 	ok(count >= 36 && order, "shaken table %d: two crossings in each of %d half cycles", step, half);
-	close_to((double)worst, 0, 2e-12, "shaken table %d: times", step);
+	is_close((double)worst, 0, 2e-12, "shaken table %d: times", step);
 	run_free(&r);
 }
 
@@ -161,13 +161,13 @@ static void carried(int step)
 	run_state(&still, y);
 	worst = fabsl(y[1] - 0.02L * 12 * cosl(120.0L));
 	ok(count == 0, "carried along %d: no crossing, found %d", step, count);
-	close_to((double)worst, 0, 1e-15, "carried along %d: its velocity is the table's", step);
-	close_to(y[0], (double)(0.02L * sinl(120.0L)), 1e-13, "carried along %d: its place", step);
+	is_close((double)worst, 0, 1e-15, "carried along %d: its velocity is the table's", step);
+	is_close(y[0], (double)(0.02L * sinl(120.0L)), 1e-13, "carried along %d: its place", step);
 	run_free(&still);
 	struct run just = run_new(variant_of(closed_table, "table_just_%d", step));
 	count = run_for(&just, 1);
 	ok(count > 0, "just not carried %d", step);
-	close_to(time[0], (double)(asinl(0.3L * 9.81L / (0.0205L * 144)) / 12), 1e-13, "just not carried %d: release",
+	is_close(time[0], (double)(asinl(0.3L * 9.81L / (0.0205L * 144)) / 12), 1e-13, "just not carried %d: release",
 		 step);
 	run_free(&just);
 }
@@ -185,7 +185,7 @@ static void sliding(int step)
 	wide sine = -F / k * tanl(pi / (2 * ratio)) / (X * ratio), phase = asinl(sine), size = X * cosl(phase);
 	wide U = sinl(pi / ratio) / (ratio * (1 + cosl(pi / ratio))), V = 1 / (1 - ratio * ratio);
 	double begin = (double)((phase + 2 * pi) / w), start[2] = { (double)size, 0 }, y[2];
-	close_to((double)(size * k / P), (double)sqrtl(V * V - F / P * (F / P) * U * U), 1e-15,
+	is_close((double)(size * k / P), (double)sqrtl(V * V - F / P * (F / P) * U * U), 1e-15,
 		 "Den Hartog's amplitude %d: the published formula", step);
 	model->set(r.state, begin, start);
 	int count = 0, half = 0;
@@ -201,14 +201,14 @@ static void sliding(int step)
 	}
 	ok(count > 80 && count % 2 == 0, "Den Hartog %d: two crossings in each of %d half cycles, found %d", step, half,
 	   count);
-	close_to((double)worst, 0, 2e-12, "Den Hartog %d: times", step);
+	is_close((double)worst, 0, 2e-12, "Den Hartog %d: times", step);
 	run_until(&r, 40);
 	run_state(&r, y);
 	wide t = model->time(r.state) - (wide)begin, into = fmodl(t, 2 * pi / w), sign = into < pi / w ? 1 : -1;
 	into = into < pi / w ? into : into - pi / w;
 	wide x = sign * (X * cosl(w * into + phase) + F / k * (1 - cosl(w0 * into)) +
 			 X * ratio * sinl(phase) * sinl(w0 * into));
-	close_to(y[0], (double)x, 1e-12, "Den Hartog %d: state", step);
+	is_close(y[0], (double)x, 1e-12, "Den Hartog %d: state", step);
 	run_free(&r);
 }
 
@@ -266,7 +266,7 @@ static void stopping(int step)
 	int cycles = (int)(40 * w / (2 * pi));
 	ok(count >= 4 * cycles && count <= 4 * cycles + 4 && s.end < s.begin + pi / w,
 	   "two stops a cycle %d: %d crossings in %d cycles", step, count, cycles);
-	close_to((double)worst, 0, 5e-12, "two stops a cycle %d: times", step);
+	is_close((double)worst, 0, 5e-12, "two stops a cycle %d: times", step);
 	run_free(&r);
 }
 
@@ -294,7 +294,7 @@ static void energies(int step)
 	}
 	ok(r.of->crossed(r.state) > 20 && last < first / 2, "pads %d: %u crossings, energy from %.3Lg to %.3Lg", step,
 	   (unsigned)r.of->crossed(r.state), first, last);
-	close_to((double)(most / first), 0, 1e-15, "pads %d: the energy never grows", step);
+	is_close((double)(most / first), 0, 1e-15, "pads %d: the energy never grows", step);
 	run_free(&r);
 }
 

@@ -31,10 +31,13 @@ head_of() { # SPEC WHAT
 	sed -n "s/^# $2://p" "$1" | head -n 1
 }
 
-# make_c ID SPEC OPTIONS: 0, or the status of plgen, in which case ID.said has its words
+# make_c ID SPEC OPTIONS: with --rhs, where there is a formula for it; 0, or the status of plgen, in which case
+# ID.said has its words
 make_c() {
+	rhs=--rhs
+	[ "$(head_of "$2" class)" != ' sticking' ] || rhs=
 	# shellcheck disable=SC2086
-	timeout 1200 "$plgen" --rhs --prefix "$1" $3 -o "$1.c" "$2" >"$1.out" 2>"$1.said" </dev/null
+	timeout 1200 "$plgen" $rhs --prefix "$1" $3 -o "$1.c" "$2" >"$1.out" 2>"$1.said" </dev/null
 }
 
 # what plgen said with this status: nothing if all is as it should be
@@ -83,9 +86,10 @@ batch_add() {
 		$i, $(i + 1) }')
 	whole=$id
 	code="$id.c"
-	grep -v '^need' "$spec" >"$id.free.spec"
-	case $given$(sed -n '/^need/{s/ .*/ --need/p;q;}' "$spec") in
-		*--real*|*--reduce*|*--modes*|*--need)
+	instead=$(head_of "$spec" instead)
+	grep -v '^need' "$spec" | sed "$instead" >"$id.free.spec"
+	case $given$(sed -n '/^need/{s/ .*/ --need/p;q;}' "$spec")${instead:+ --instead} in
+		*--real*|*--reduce*|*--modes*|*--need|*--instead)
 			whole=w$id
 			if ! make_c "$whole" "$id.free.spec" "$plain"; then
 				echo "the plain model: $(grep -m 1 error "$whole.said")" >"$id.wrong"
@@ -160,7 +164,8 @@ batch_add() {
 		echo "SUBJECT {\"$id\", $model, &${whole}_model, ${whole}_slopes, \"$scheme\", \"$class\"," \
 			"\"$changes\"," \
 			"$solution, $selftest," \
-			"$again, ${tuned:+&}${tuned:-NULL}${tuned:+_model}, \"$retune\", $lanes},"
+			"$again, ${tuned:+&}${tuned:-NULL}${tuned:+_model}, \"$retune\", $lanes," \
+			"\"$(head_of "$spec" impact)\"},"
 	} >"$id.subject"
 	printf '%s\n' "$id" >>"subjects_$cc.list"
 	printf '%s\n' "$code" | tr ' ' '\n' >>"code_$cc.list"

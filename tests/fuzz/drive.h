@@ -9,9 +9,10 @@ struct subject {
 	const char *name;
 	const pl_model *model;      /* or */
 	const pl_modelf *modelf;    /* of one in float */
-	const pl_model *whole;      /* the same spec in double, no state left out */
+	const pl_model *whole;      /* the same spec in double, no state left out; of inputs more, the first one delayed */
 	void (*slopes)(double t, const double *y, const double *u, double *dydt);   /* NAME_rhs of `whole` */
-	const char *scheme, *class; /* class: linear, piecewise, smooth, kinked; "": unknown */
+	const char *scheme, *class; /* class: linear, piecewise, sticking (dry friction, of which `whole` has a steep
+				     * damper up to the force), smooth, kinked; "": unknown */
 	const char *changes;        /* times at which a load changes its formula */
 	const char *solution;       /* file of --solution, or NULL */
 	double (*selftest)(void);   /* or NULL */
@@ -21,6 +22,7 @@ struct subject {
 	const pl_model *tuned;      /* the spec with other params and step; NULL: nothing is tunable */
 	const char *retune;         /* these values: NAME=VALUE ... */
 	double (*lanes)(void);      /* of NAME_batch, lanes.h; or NULL */
+	const char *impact;         /* GAP RESTITUTION: b' = -RESTITUTION b' where b comes up to GAP; "": none */
 };
 
 extern const struct subject subjects[];     /* up to one without a name */
