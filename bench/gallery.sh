@@ -15,6 +15,7 @@ lengths='axle 2 0.005
 beam15 17 0.01
 beam4 17 0.01
 bilinear 40 0.1
+bouncing_ball 5 0.01
 brake 8 0.02
 building 20 0.05
 drivetrain 2 0.005
@@ -24,6 +25,7 @@ gear1 60 0.2
 gear2 60 0.2
 gear3 10 0.025
 half_car 3 0.01
+impact_oscillator 40 0.05
 inertia 30 0.1
 linear2dof 20 0.05
 mathieu 60 0.2 taylor

@@ -267,26 +267,49 @@ static int interval_of(const pl_guards *m, const resting *r, int region)
     return region / r->stride % (m->breaks[r->expression] + 1);
 }
 
+/* The force of a guard of what sticks, less its limit: above 0 where it lets go, 0 where that is but rounding */
+static real pull_of(const pl_guards *m, int k, const real *x)
+{
+    const int n = m->size, gate = m->guard[k].row;
+    const real *row = m->gate + (ptrdiff_t)gate * n, *tangent = m->gate_tangent + (ptrdiff_t)gate * n;
+    real e, noise;
+    pl_multiply(1, n, row, x, &e);
+    e -= m->limit[k];
+    noise = noise_of(sizes(n, row, x) + 3 * sizes(n, tangent, x) + magnitude(m->limit[k]) + m->gate_play[gate]);
+    return e > noise || e < -noise ? e : 0;
+}
+
+static int rises(const pl_guards *m, int region, int k, const real *x, real *work)
+{
+    const int n = m->size;
+    return heading(n, matrix_of(m->A, m, m->matrix[region]), m->gate + (ptrdiff_t)m->guard[k].row * n, x, work) > 0;
+}
+
 /* Whether a guard of what sticks lets it */
 static int is_held(const pl_guards *m, int region, int expression, const real *x, real *work)
 {
-    const int n = m->size;
     int k;
     for (k = m->first[region]; k < m->first[region + 1]; k++) {
-        const pl_guard *g = &m->guard[k];
-        const real *row = m->gate + (ptrdiff_t)g->row * n, *tangent = m->gate_tangent + (ptrdiff_t)g->row * n;
-        real e, noise;
-        if (g->expression != expression)
-            continue;
-        pl_multiply(1, n, row, x, &e);
-        noise = noise_of(sizes(n, row, x) + 3 * sizes(n, tangent, x) + magnitude(m->limit[k]) +
-                         m->gate_play[g->row]);
-        if (e - m->limit[k] > noise)
-            return 0;
-        if (e - m->limit[k] >= -noise && heading(n, matrix_of(m->A, m, m->matrix[region]), row, x, work) > 0)
+        const real pull = m->guard[k].expression == expression ? pull_of(m, k, x) : -1;
+        if (pull > 0 || (pull >= 0 && rises(m, region, k, x, work)))
             return 0;
     }
     return 1;
+}
+
+/* Whether what would stick is let go to this side at this instant, by a force that is at its limit but for rounding:
+ * e'' is then rounding, too, and does not say where e is heading. */
+static int is_let_go(const pl_guards *m, int region, const resting *r, int side, const real *x, real *work)
+{
+    const int stuck = region - side * r->stride;
+    int k;
+    if (m->matrix[stuck] < 0)
+        return 0;
+    for (k = m->first[stuck]; k < m->first[stuck + 1]; k++)
+        if (m->guard[k].expression == r->expression && m->guard[k].leads * side > 0 && !(pull_of(m, k, x) > 0) &&
+            !(pull_of(m, k, x) < 0) && rises(m, stuck, k, x, work))
+            return 1;
+    return 0;
 }
 
 /* Whether all of them agree with a region: what sticks is held, what slips moves away as it does there */
@@ -305,7 +328,8 @@ static int agrees(const pl_guards *m, int region, const resting *r, int count, c
             return 0;
         if (side == 0 && !is_held(m, region, r[i].expression, x, work))
             return 0;
-        if (side != 0 && heading(n, matrix_of(m->A, m, m->matrix[region]), row, x, work) != side)
+        if (side != 0 && heading(n, matrix_of(m->A, m, m->matrix[region]), row, x, work) != side &&
+            !is_let_go(m, region, &r[i], side, x, work))
             return 0;
     }
     return 1;
