@@ -36,7 +36,8 @@ words_of() {
 		case " $2 " in
 			*" $function "*)
 				grep -q "_$function(" "$1.h" && continue
-				reason=$(grep -m 1 -e "There is no $1_$function" -e "There is no $1_core_$function" "$1.c" |
+				reason=$(grep -m 1 -e "There is no $1_$function" \
+					-e "There is no $1_core_$function" "$1.c" |
 					sed "s/^ \* //; s/$1_/NAME_/")
 				echo "${reason:-no NAME_$function, without a reason}" ;;
 		esac

@@ -368,7 +368,8 @@ static void print_options(FILE *to)
 						     : "linear");
 	fprintf(to, "# changes:%s\n", has("change") ? " 0.053 0.1 0.21" : "");
 	if (has("friction") || has("delayed"))  /* what a second model has, of which CVODE solves the equations */
-		fputs("# instead: s/friction(b', 4)/max(-4, min(4, 40000*b'))/; s/^# class: sticking/# class: piecewise/; "
+		fputs("# instead: s/friction(b', 4)/max(-4, min(4, 40000*b'))/; "
+		      "s/^# class: sticking/# class: piecewise/; "
 		      "s/d(t - 0.02)/d_late/; s/^# whole: //\n", to);
 	fputs(has("impact") ? "# impact: 0.02 0.8\n" : "", to);
 	if (has("tunable"))
@@ -454,7 +455,8 @@ static void write_spec(FILE *to)
 	fputs(has("delayed") ? "2*d(t - 0.02) + " : "", to);
 	fputs(has("ramp") ? "3*v + " : "", to);
 	fputs("0\n", to);
-	fprintf(to, "b''%s%s + k*(b - a) = ", damped ? " + 0.3*(b' - a')" : "", has("friction") ? " + friction(b', 4)" : "");
+	fprintf(to, "b''%s%s + k*(b - a) = ", damped ? " + 0.3*(b' - a')" : "",
+		has("friction") ? " + friction(b', 4)" : "");
 	fputs(has("power") ? "5*t^3 + " : "", to);
 	fputs(has("piecewise") ? "-9*max(b - 0.1, 0) + " : "", to);
 	fputs(has("smooth") || expands() ? "-2*b^3 + " : "", to);

@@ -4,6 +4,7 @@
 #include "bouncing_ball.h"
 #include "clatter.h"
 #include "cradle.h"
+#include "coarse.h"
 #include "impact_oscillator.h"
 #include "shaken_table.h"
 #include "tap.h"
@@ -69,6 +70,25 @@ static void oscillator(void)
 			      fabs(y[1] - A * (tan(T / 2) * cos(t) - sin(t)) + C * w * sin(w * t + phase)));
 	}
 	ok(worst <= 1e-11, "oscillator: the orbit with one impact a period, off by %.3g at most", worst);
+}
+
+/* Pressed onto the stop until t0 = pi/(2 w), in the middle of a step; then x = C (cos(w t) + w sin(t - t0)). What lets
+ * go has no acceleration yet. */
+static void pressed(void)
+{
+	const double w = 2.2, C = 1 / (1 - w * w), t0 = 3.14159265358979323846 / 2 / w;
+	double worst = 0, y[2];
+	coarse s;
+	coarse_init(&s);
+	for (int k = 1; k <= 30; k++) {
+		coarse_step(&s);
+		coarse_get(&s, y);
+		const double t = coarse_time(&s);
+		worst = worse(worst, fabs(y[0] - (t > t0 ? C * (cos(w * t) + w * sin(t - t0)) : 0)));
+		worst = worse(worst, fabs(y[1] - (t > t0 ? C * w * (cos(t - t0) - sin(w * t)) : 0)));
+	}
+	ok(worst <= 1e-13, "oscillator: pressed, then let go, off by %.3g at most", worst);
+	ok(coarse_status(&s) == 0, "oscillator: status 0, found %d", coarse_status(&s));
 }
 
 /* ---- the table b sin(w t): the ball leaves where b w^2 sin(w t) = g, and lands where its parabola meets it ---- */
@@ -166,6 +186,7 @@ int main(void)
 {
 	bounces();
 	oscillator();
+	pressed();
 	table();
 	cradle_of_three();
 	energy();

@@ -9,7 +9,8 @@ struct subject {
 	const char *name;
 	const pl_model *model;      /* or */
 	const pl_modelf *modelf;    /* of one in float */
-	const pl_model *whole;      /* the same spec in double, no state left out; of inputs more, the first one delayed */
+	/* the same spec in double, no state left out; of inputs more, the first one delayed */
+	const pl_model *whole;
 	void (*slopes)(double t, const double *y, const double *u, double *dydt);   /* NAME_rhs of `whole` */
 	const char *scheme, *class; /* class: linear, piecewise, sticking (dry friction, of which `whole` has a steep
 				     * damper up to the force), smooth, kinked; "": unknown */
