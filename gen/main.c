@@ -24,12 +24,11 @@ static bool make_model(struct work *w)
 {
 	const struct request *request = &w->options.request;
 	w->model = model_build(w->spec, request);
+	if (w->model && request->reduce)
+		w->model = model_reduce(w->model);
 	if (!w->model || (!request->solution && !find_tuning(w->model, request)))
 		return false;
-	if (request->reduce)
-		w->model = model_reduce(w->model);
-	if (w->model)
-		w->model = model_shorten(w->model);
+	w->model = model_shorten(w->model);
 	return w->model;
 }
 

@@ -160,6 +160,7 @@ struct reduction {                  /* what --reduce found */
 	bool irreducible;           /* it was asked for, and every state is seen */
 	int dropped;                /* written states that are no combination of the reduced ones */
 	const char **dropped_name;
+	mpq_t *row;                 /* of a reduced model, states x written states: each state over the written ones */
 };
 struct delay {                      /* of an input */
 	const struct symbol *symbol; /* what it is then: an input of the model */
@@ -646,6 +647,8 @@ bool differ_in_loads(const struct model *a, const struct model *b); /* in nothin
 /* ---- reduce.c: the smallest model with the same outputs ---- */
 
 struct model *model_reduce(struct model *model);             /* itself where nothing can go */
+/* Are the states of both the same combinations of the same written ones? */
+bool same_reduction(const struct model *a, const struct model *b);
 
 /* ---- modes.c: the modes of a linear model, and what each of them gives to the outputs ---- */
 

@@ -355,5 +355,21 @@ struct model *model_reduce(struct model *model)
 		reduced->output[i].state = coefficients_of(&o, (const mpq_t *)model->output[i].state);
 	}
 	place_states(&o, reduced);
+	reduced->reduction.row = rationals((size_t)o.rank * (size_t)o.states);
+	for (int r = 0; r < o.rank; r++)
+		for (int j = 0; j < o.states; j++)
+			mpq_set(reduced->reduction.row[r * o.states + j], o.basis[r].row[j]);
 	return reduced;
+}
+
+bool same_reduction(const struct model *a, const struct model *b)
+{
+	const mpq_t *p = (const mpq_t *)a->reduction.row, *q = (const mpq_t *)b->reduction.row;
+	int written = a->written->system.states;
+	if (!p || !q)
+		return p == q;
+	bool same = a->n == b->n && written == b->written->system.states;
+	for (int i = 0; same && i < a->n * written; i++)
+		same = mpq_equal(p[i], q[i]);
+	return same;
 }

@@ -90,7 +90,7 @@ static void check_model(const struct model *model)
 			      model->highest[k]->name);
 }
 
-static void check_kind(const struct model *model, const struct request *request)
+static void check_kind(const struct model *model)
 {
 	struct place at = model->spec->tunable[0].at;
 	if (scheme_row(model->scheme)->holds_coupling)
@@ -98,9 +98,6 @@ static void check_kind(const struct model *model, const struct request *request)
 		      "scheme %s cannot be retuned", scheme_name(model->scheme));
 	if (model->switching && has_events(model->switching))
 		error(at, NULL, "a model with friction or impacts cannot be retuned yet");
-	if (request->reduce)
-		error(at, NULL,
-		      "--reduce takes out what is not seen at the spec's values: it does not go with tunable params");
 	if (model->system.states > LIMIT_UNROLLED_STATES)
 		error(at, NULL, "tunable params are built for up to %d states: the model has %d", LIMIT_UNROLLED_STATES,
 		      model->system.states);
@@ -127,6 +124,8 @@ static void build_there(void *context)
 	request.tunable = (const mpq_t *)s->values;
 	struct spec *spec = parse_spec(s->model->spec->source);
 	s->found = model_build(spec, &request);
+	if (s->found && request.reduce)
+		s->found = model_reduce(s->found);
 	if (!s->found)
 		abandon();
 }
@@ -137,8 +136,9 @@ static bool same_load(const struct load *a, const struct load *b)
 	       (mpq_sgn(a->wave->w) != 0) == (mpq_sgn(b->wave->w) != 0);
 }
 
-static bool same_shape(const struct linear *a, const struct linear *b)
+static bool same_shape(const struct model *model, const struct model *other)
 {
+	const struct linear *a = &model->system, *b = &other->system;
 	if (a->states != b->states || a->loads != b->loads || a->inputs != b->inputs || a->segments != b->segments)
 		return false;
 	for (int i = 0; i < a->n; i++)
@@ -261,13 +261,15 @@ static void read_output_row(const struct reading *r, int row, const struct outpu
 static void part_output_row(const struct reading *r, int row, const struct output *output)
 {
 	const struct search *s = r->search;
+	/* a reduced model has no highest derivatives of what is written */
+	const struct form *form = r->model->reduction.row ? NULL : output->form;
 	mpq_t product;
 	mpq_init(product);
 	for (int j = 0; j < s->tuning->x.size; j++)
 		mpq_set(*raw_entry(s, r->entry, row, j), *solved_entry(s, r->entry, row, j));
 	mpq_set_ui(*raw_entry(s, r->entry, row, s->tuning->x.size + row), 1, 1);
-	for (int i = 0; output->form && i < output->form->terms; i++) {
-		const struct form_term *term = &output->form->term[i];
+	for (int i = 0; form && i < form->terms; i++) {
+		const struct form_term *term = &form->term[i];
 		int coord = term->basis.index;
 		if (term->basis.kind != BASIS_COORD || term->basis.order < r->model->frame.coord[coord]->highest)
 			continue;
@@ -293,8 +295,8 @@ static mpq_t *read_entries(const struct search *s, const struct model *model)
 	return r.entry;
 }
 
-/* The param that alone, with another value, gives the model another shape; else the first */
-static const struct tunable *suspect(struct search *s)
+/* The param that alone, with another value, gives another model in this sense; else the first */
+static const struct tunable *suspect(struct search *s, bool (*same)(const struct model *, const struct model *))
 {
 	const struct tuning *t = s->tuning;
 	for (int k = 0; k < t->params; k++) {
@@ -302,7 +304,7 @@ static const struct tunable *suspect(struct search *s)
 		for (int i = 0; i < t->params; i++)
 			mpq_set(s->values[i], t->nominal[i]);
 		mpq_set(s->values[k], scattered_values(t->params, 0)[k]);
-		if (silent_guard(build_there, s) && !same_shape(&s->found->system, &s->model->system))
+		if (silent_guard(build_there, s) && !same(s->found, s->model))
 			return &t->param[k];
 	}
 	return &t->param[0];
@@ -324,8 +326,15 @@ static const mpq_t *look(struct search *s, const mpq_t *values)
 		mpq_set(s->values[k], values[k]);
 	if (!silent_guard(build_there, s))
 		error(t->param[0].at, NULL, "with other values of the tunable params this is no model");
-	if (!same_shape(&s->found->system, &s->model->system)) {
-		const struct tunable *why = suspect(s);
+	if (!same_reduction(s->found, s->model)) {
+		const struct tunable *why = suspect(s, same_reduction);
+		error(why->at,
+		      "what is left out, and the outputs that become states, have to be the same for all values; "
+		      "without --reduce all states are kept",
+		      "with another value of '%s' --reduce would leave other states", why->symbol->name);
+	}
+	if (!same_shape(s->found, s->model)) {
+		const struct tunable *why = suspect(s, same_shape);
 		error(why->at,
 		      "a load is there only where its factor is not 0; its phase, growth and changes in time are fixed",
 		      "with another value of '%s' the model has other loads", why->symbol->name);
@@ -507,12 +516,24 @@ static void warn_of_idle(const struct tuning *t)
 	}
 }
 
+static void refuse_form(const struct search *s, int culprit)
+{
+	const struct tunable *why = &s->tuning->param[culprit < 0 ? 0 : culprit];
+	const char *way = s->model->reduction.row ? "without --reduce the target solves equations with such a mass"
+						  : "multiply an equation by what divides it";
+	error(why->at,
+	      format("sums and products, and quotients by single terms, up to the power %d of each and %d of them in an "
+		     "entry, are recomputed on the target; %s",
+		     FIT_DEGREE, LIMIT_MONOMIALS, way),
+	      "the equations depend on '%s' in a way that cannot be recomputed on the target", why->symbol->name);
+}
+
 static void find(void *context)
 {
 	struct search *s = context;
 	struct tuning *t = s->tuning;
 	int culprit = -1;
-	check_kind(s->model, s->request);
+	check_kind(s->model);
 	spread_tuned(s->model->spec);
 	check_model(s->model);
 	for (int k = 0; k < t->params; k++)
@@ -521,15 +542,8 @@ static void find(void *context)
 		look(s, (const mpq_t *)scattered_values(t->params, i));
 	t->other = s->found;
 	number_rows(s);
-	if (!fit_all(s, true, &culprit) && !fit_all(s, false, &culprit)) {
-		const struct tunable *why = &t->param[culprit < 0 ? 0 : culprit];
-		error(why->at,
-		      format("sums and products, and quotients by single terms, up to the power %d of each and %d of "
-			     "them in an entry, are recomputed on the target; multiply an equation by what divides it",
-			     FIT_DEGREE, LIMIT_MONOMIALS),
-		      "the equations depend on '%s' in a way that cannot be recomputed on the target",
-		      why->symbol->name);
-	}
+	if (!fit_all(s, true, &culprit) && !fit_all(s, false, &culprit))
+		refuse_form(s, culprit);
 	mark_acting(s);
 	warn_of_idle(t);
 }

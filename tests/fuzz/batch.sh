@@ -100,8 +100,12 @@ batch_add() {
 	tuned=
 	if [ -n "$retune" ]; then
 		tuned=t$id
+		case $given in
+			*--reduce*) less=--reduce ;;
+			*) less= ;;
+		esac
 		if ! make_c "$tuned" "$spec" \
-			"$(printf '%s\n' "$retune" | sed 's/ step=/ --step /; s/ \([A-Za-z_0-9]*=\)/ -D \1/g')"; then
+			"$less $(printf '%s\n' "$retune" | sed 's/ step=/ --step /; s/ \([A-Za-z_0-9]*=\)/ -D \1/g')"; then
 			echo "with other params: $(grep -m 1 error "$tuned.said")" >"$id.wrong"
 			return
 		fi

@@ -243,11 +243,18 @@ static const char *exact(real x)
 static char whole[1 << 14];
 static const struct relative *kept;
 
+/* Where the spec asks for that */
+static struct model *reduced(struct model *model)
+{
+    return model && strstr(whole, "#always --reduce") ? model_reduce(model) : model;
+}
+
 static void find_kept(void)
 {
     struct request *request = NEW(struct request);
-    struct model *model = model_build(spec_of("spec", format("%s", whole)), request);
-    kept = model && find_tuning(model, request) ? relative_of(model) : NULL;
+    request->reduce = strstr(whole, "#always --reduce");
+    struct model *model = reduced(model_build(spec_of("spec", format("%s", whole)), request));
+    kept = model && model->written == model && find_tuning(model, request) ? relative_of(model) : NULL;
 }
 
 /* p NULL: the spec's values and step */
@@ -262,7 +269,7 @@ static const struct step *generator(const struct tuned *m, const char *text, con
     for (int k = 0; k < m->model->params && p; k++)
         request->definition[request->definitions++] = format("%s=%s", m->model->param_names[k], exact(p[k]));
     struct spec *spec = spec_of("spec", text);
-    struct model *model = spec ? model_build(spec, request) : NULL;
+    struct model *model = spec ? reduced(model_build(spec, request)) : NULL;
     return model ? step_build(model) : NULL;
 }
 

@@ -6,7 +6,8 @@
 #
 # Each is there as NAME and, with --form direct, as direct_NAME; as plain_NAME and plain_direct_NAME: the same spec
 # without `tunable`; and where its line `#there OPTION ...`, or the file NAME.there beside this script, gives other
-# values, with these as there_NAME and there_direct_NAME, again without `tunable`.
+# values, with these as there_NAME and there_direct_NAME, again without `tunable`. A line `#always OPTION ...` gives
+# options of all of them.
 set -eu
 LC_ALL=C
 export LC_ALL
@@ -30,7 +31,8 @@ make() {
     from=$1
     prefix=$2
     shift 2
-    "$plgen" --real "$real" --prefix "$prefix" "$@" -o "$work/$prefix.c" "$from" 2>"$work/said" ||
+    # shellcheck disable=SC2086
+    "$plgen" --real "$real" --prefix "$prefix" $always "$@" -o "$work/$prefix.c" "$from" 2>"$work/said" ||
         { cat "$work/said" >&2; exit 1; }
     cat "$work/$prefix.h" >>"$work/headers"
     grep -v '^#include "'"$prefix"'.h"$' "$work/$prefix.c" >>"$work/bodies"
@@ -67,6 +69,7 @@ entry() {
 for spec; do
     name=$(basename "$spec" .spec)
     there=$(sed -n 's/^#there //p' "$spec")
+    always=$(sed -n 's/^#always //p' "$spec")
     beside=${0%/*}/$name.there
     [ ! -f "$beside" ] || there=$(cat "$beside")
     grep -v '^tunable' "$spec" >"$work/without.spec"
