@@ -5,6 +5,6 @@ set -e
 plgen=$1 variants=$2
 mkdir -p "$variants"
 for parts in 1 5; do
-	CHARTS_RHS= sh bench/charts/variant.sh "$plgen" "$variants/friction-$parts.so" bench/charts/specs/friction.spec \
-		--step 1/20/$parts
+	CHARTS_RHS= sh bench/charts/variant.sh "$plgen" "$variants/friction-$parts.so" \
+		bench/charts/specs/friction.spec --step 1/20/$parts
 done
