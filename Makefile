@@ -79,6 +79,7 @@ bench: tests
 	sh bench/beam.sh $(BUILD)
 	sh bench/switching.sh $(BUILD)
 	$(BUILD)/bench/crossings
+	sh bench/contacts.sh $(BUILD)
 	sh bench/retune.sh $(BUILD)
 	sh bench/sweep.sh $(BUILD)
 	sh bench/large.sh $(BUILD)

@@ -38,6 +38,12 @@ papers() {
 	"$programs/papers" $quick --times "$variants" "$folder"
 }
 
+friction() {
+	say 'times of a mass that sticks and slips'
+	sh $charts/friction.sh "$plgen" "$variants"
+	"$programs/friction" --times "$variants" "$folder"
+}
+
 generation() {
 	say 'what generating costs'
 	sh $charts/generation.sh $quick "$build" "$folder"
@@ -54,6 +60,7 @@ precision
 generation
 headline
 papers
+friction
 limits
 say 'pictures and pages'
 sh $charts/machine.sh "$build" "make charts${quick:+-quick}" >"$folder/machine.csv"

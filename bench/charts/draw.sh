@@ -34,6 +34,7 @@ fi
 tables_of() {
 	case $1 in
 		convergence) echo convergence.csv convergence_orders.csv ;;
+		friction) echo friction.csv friction_times.csv ;;
 		generation) echo break_even.csv ;;
 		headline) echo headline_integrators.csv headline_equal_step.csv headline_confluence.csv ;;
 		operator_map) echo operator_map.csv pl_map.csv operator_boundary.csv ;;

@@ -119,6 +119,9 @@ stability() {
 	picture hard
 	there hard.csv && caption hard_table && awk -f $charts/csv.awk -f $charts/hard_table.awk "$folder/hard.csv"
 	table hard.csv
+	picture friction
+	table friction_times.csv
+	table friction.csv
 	picture stability_map
 	table stability_map.csv
 	table stability_boundary.csv

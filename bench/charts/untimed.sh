@@ -54,6 +54,12 @@ less() {
 	"$programs/less" "$variants" "$folder"
 }
 
+# a mass that sticks and slips
+friction() {
+	sh $charts/friction.sh "$plgen" "$variants"
+	"$programs/friction" "$variants" "$folder"
+}
+
 # what was tried for needs
 needs() {
 	sh $charts/needs.sh "$plgen" "$variants" "$folder"
@@ -88,6 +94,6 @@ if [ $# -eq 0 ]; then
 	# Words
 	# shellcheck disable=SC2046,SC2086
 	set -- $(printf 'errors_%s\n' $models | grep beam) headline energy papers stability \
-		$(printf 'errors_%s\n' $models | grep -v beam) hard less needs convergence plmap structural
+		$(printf 'errors_%s\n' $models | grep -v beam) hard less needs convergence plmap structural friction
 fi
 printf '%s\n' "$@" | xargs -P 2 -I '{}' sh $charts/untimed.sh "$build" "$folder" $quick --job '{}'

@@ -4,7 +4,7 @@
 # compiled as its user would. Run at the top of the source tree. It keeps the options it was made with:
 # subject_options. What plgen refuses is a result too: its message goes to OUT.so.refused, no object is left, and the
 # exit status is 0.
-# CHARTS_OPTIMIZE: another level than -O2, where nothing is timed.
+# CHARTS_OPTIMIZE: another level than -O2, where nothing is timed. CHARTS_RHS: empty, for models that have no --rhs.
 #     -fno-semantic-interposition  gcc may inline subject_step into subject_run, as it does in a program
 #     no -march=native, no -ffast-math: for the peers neither
 set -e
@@ -27,7 +27,8 @@ if ! [ -f "$runtime" ]; then
 fi
 
 rm -f "$out" "$out.refused"
-if ! "$plgen" --prefix subject --rhs "$@" "$spec" >"$work/subject_pl.c" 2>"$work/messages"; then
+# shellcheck disable=SC2086
+if ! "$plgen" --prefix subject ${CHARTS_RHS---rhs} "$@" "$spec" >"$work/subject_pl.c" 2>"$work/messages"; then
 	sed -n '/error:/{p;q;}' "$work/messages" >"$out.refused"
 	[ -s "$out.refused" ] || sed -n '1p' "$work/messages" >"$out.refused"
 	exit 0
