@@ -522,8 +522,8 @@ static void refuse_form(const struct search *s, int culprit)
 	const char *way = s->model->reduction.row ? "without --reduce the target solves equations with such a mass"
 						  : "multiply an equation by what divides it";
 	error(why->at,
-	      format("sums and products, and quotients by single terms, up to the power %d of each and %d of them in an "
-		     "entry, are recomputed on the target; %s",
+	      format("sums and products, and quotients by single terms, up to the power %d of each and %d of them in "
+		     "an entry, are recomputed on the target; %s",
 		     FIT_DEGREE, LIMIT_MONOMIALS, way),
 	      "the equations depend on '%s' in a way that cannot be recomputed on the target", why->symbol->name);
 }

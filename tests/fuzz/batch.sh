@@ -105,7 +105,8 @@ batch_add() {
 			*) less= ;;
 		esac
 		if ! make_c "$tuned" "$spec" \
-			"$less $(printf '%s\n' "$retune" | sed 's/ step=/ --step /; s/ \([A-Za-z_0-9]*=\)/ -D \1/g')"; then
+			"$less $(printf '%s\n' "$retune" |
+				sed 's/ step=/ --step /; s/ \([A-Za-z_0-9]*=\)/ -D \1/g')"; then
 			echo "with other params: $(grep -m 1 error "$tuned.said")" >"$id.wrong"
 			return
 		fi
