@@ -64,7 +64,8 @@ static void emit_change(const struct emitter *e)
 
 void emit_region_changes(const struct emitter *e)
 {
-	emit_start(e);
+	if (e->model->switching->expressions > 0)
+		emit_start(e);          /* of a linear part there is one region */
 	emit_change(e);
 	say(e, "\n"
 	       "/* x on by tau, from change to change of the loads */\n"
