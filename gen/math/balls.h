@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Numbers with bounds for e^{A tau}: every entry is a ball, a middle of `limbs` 64-bit digits with an exponent of its
  * own and a radius of its own. Of math/ alone. */
-#pragma once
+#ifndef PLGEN_BALLS_H
+#define PLGEN_BALLS_H
+
 #include "math/math.h"
 
 enum { LIMB = 64 };
@@ -70,3 +72,5 @@ void row_add_part(struct row *row, const struct balls *x, size_t at, const struc
 void row_add_one(struct row *row, const struct balls *x, size_t at, const struct balls *y, size_t b, int j);
 /* Row i of z <- the sums, which are empty afterwards */
 void row_finish(struct row *row, struct balls *z, int i);
+
+#endif

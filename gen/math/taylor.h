@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* e^{A tau} as taylor.c encloses it and polynomial.c knows parts of it exactly. Of math/ alone. */
-#pragma once
+#ifndef PLGEN_TAYLOR_H
+#define PLGEN_TAYLOR_H
+
 #include "math/balls.h"
 
 enum { LARGEST_BLOCK = 32 };            /* powers of B kept */
@@ -26,3 +28,5 @@ struct taylor {
 	bool *survivor;             /* n x n: (A^k)_ij = 0 for n <= k < 2n modulo a prime; NULL: not yet found */
 	struct exact_row *row;      /* the last one proved, or NULL */
 };
+
+#endif

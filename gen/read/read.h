@@ -34,7 +34,7 @@ void lex_number(struct token token, mpq_ptr value);        /* the decimal, exact
 /* 1 and ms: numbers bear no units; in SI units: 1e-3. NULL: the second is no unit */
 const char *unit_note(const char *number, size_t digits, const char *unit, size_t length);
 
-/* ---- parse.c: tokens to nodes and declarations ---- */
+/* ---- parse.c, statements.c: tokens to nodes and declarations ---- */
 
 enum function {
 	FN_NONE, FN_SIN, FN_COS, FN_TAN, FN_EXP, FN_LOG, FN_SQRT, FN_ABS, FN_SGN, FN_SINH, FN_COSH, FN_TANH,
