@@ -303,6 +303,8 @@ void banner_regions(const struct emitter *e)
 		say(e, " *     friction %d: %s; sticks in interval %d of expression %d\n", i,
 		    text_between(s->friction[i].atom->node->start, s->friction[i].atom->node->end),
 		    stick_of(s, &s->friction[i]), s->friction[i].expression);
+	for (int i = 0; i < s->sliders; i++)
+		say(e, " *     slider %d: %s\n", i, slider_text(s, i));
 	banner_impacts(e);
 	if (s->sharing)
 		say(e, " * Coordinates move as a whole: %d independent parts have their regions together.\n",

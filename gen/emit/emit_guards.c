@@ -171,15 +171,19 @@ void emit_grips(const struct emitter *e)
 	const struct switching *s = e->model->switching;
 	int size = e->step->layout.size;
 	const double *grip = grips_of(e->step);
-	const char **name = ARRAY(const char *, (size_t)s->frictions);
-	for (int i = 0; i < s->frictions; i++)
-		name[i] = text_between(s->friction[i].atom->node->start, s->friction[i].atom->node->end);
+	int grips = grips_in(s);
+	const char **name = ARRAY(const char *, (size_t)grips);
+	for (int i = 0; i < grips; i++) {
+		const struct node *node = atom_of_grip(s, i)->node;
+		const char *text = text_between(node->start, node->end);
+		name[i] = i < s->frictions ? text : format("velocity of %s", text);
+	}
 	say(e, "\n"
 	       "static const double $n_grips[%d][%d][%d] = {  /* of each region: what friction carries */\n",
-	    s->regions, s->frictions, size);
+	    s->regions, grips, size);
 	for (int r = 0; r < s->regions; r++) {
 		say(e, "  {\n");
-		emit_number_rows(e, s->frictions, size, grip + r * s->frictions * size, name);
+		emit_number_rows(e, grips, size, grip + r * grips * size, name);
 		say(e, "  },\n");
 	}
 	say(e, "};\n");

@@ -184,7 +184,8 @@ static bool can_own(const struct building *b, int row, int coord, enum choice ch
 	if (choice == UNTOUCHED && is_sketched(b, coord))
 		return false;
 	int order = choice == ANY && find_mass(b->spec, coord) ? -1 : order_of(b->model, coord);
-	return has_coordinate_of_order(b->snapshot->residual[row].form, coord, order);
+	const struct form *form = b->snapshot->residual[row].form;
+	return has_coordinate_of_order(form, coord, order) || (order == 1 && has_slider(b, form, coord));
 }
 
 /* An augmenting path of the bipartite matching from equation `row`. */
@@ -284,7 +285,7 @@ static void combine_residuals(const struct building *b, struct snapshot *s)
 }
 
 /* Forces of elements: on the first coordinate as they are, on the second reversed. */
-void add_elements(const struct building *b, struct snapshot *s)
+void add_elements(struct building *b, struct snapshot *s)
 {
 	const struct relative *relative = b->model->relative;
 	int written = b->spec->components;
@@ -299,6 +300,7 @@ void add_elements(const struct building *b, struct snapshot *s)
 		struct residual *to = &s->residual[b->owner[component_of(element->to)]];
 		to->form = form_sum(to->form, s->element[i], true);
 	}
+	resolve_sliders(b, s);
 	if (relative)
 		combine_residuals(b, s);
 }

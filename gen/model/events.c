@@ -39,5 +39,28 @@ bool has_bounces(const struct model *model)
 
 bool has_events(const struct switching *s)
 {
-	return s->frictions > 0 || s->impacts > 0;
+	return rubs(s) || s->impacts > 0;
+}
+
+bool rubs(const struct switching *s)
+{
+	return s->frictions > 0 || s->sliders > 0;
+}
+
+int grips_in(const struct switching *s)
+{
+	return s->frictions + s->sliders;
+}
+
+const struct atom *atom_of_grip(const struct switching *s, int index)
+{
+	return index < s->frictions ? s->friction[index].atom : s->slider[index - s->frictions].atom;
+}
+
+int grip_of(const struct switching *s, const struct atom *a)
+{
+	int index = grips_in(s) - 1;
+	while (index >= 0 && atom_of_grip(s, index) != a)
+		index--;
+	return index;
 }

@@ -16,7 +16,7 @@ static const struct atom *friction_in(const struct form *form, bool *seen)
 		if (!a || seen[a->index])
 			continue;
 		seen[a->index] = true;
-		if (a->kind == ATOM_CALL && a->function == FN_FRICTION)
+		if (a->kind == ATOM_CALL && a->function >= FN_FRICTION)
 			return a;
 		for (int k = 0; k < a->operands && !found; k++)
 			found = friction_in(a->operand[k], seen);
@@ -293,22 +293,17 @@ static struct form *replaced(const struct form *form, const struct basis *basis,
 	return sum;
 }
 
-struct holding {                    /* states of a region that follow from the others, as they are found */
-	const struct building *b;
-	struct region *region;
-	struct basis *of;
-};
+const struct form *free_of_holds(const struct holding *h, const struct form *form)
+{
+	for (int i = 0; i < h->region->holds; i++)
+		form = replaced(form, &h->of[i], h->region->hold[i].form);
+	return form;
+}
 
-/* v = 0, solved for a state; false: it follows from what is held already, or contradicts it */
-static bool hold_form(struct holding *h, struct form *v, bool place)
+void hold_state(struct holding *h, const struct form *v, int at)
 {
 	struct region *region = h->region;
 	mpq_t factor;
-	for (int i = 0; i < region->holds; i++)
-		v = replaced(v, &h->of[i], region->hold[i].form);
-	int at = has_states(v) ? place ? place_term(v) : velocity_term(h->b, v) : -1;
-	if (at < 0)
-		return false;
 	struct basis basis = v->term[at].basis;
 	mpq_init(factor);
 	mpq_inv(factor, v->term[at].factor);
@@ -320,16 +315,23 @@ static bool hold_form(struct holding *h, struct form *v, bool place)
 	region->hold[region->holds].state = basis.order ? h->b->model->system.velocity[basis.index] : basis.index;
 	region->hold[region->holds++].form = held;
 	mpq_clear(factor);
-	return true;
+}
+
+/* v = 0, solved for a state; false: it follows from what is held already, or contradicts it */
+static bool hold_form(struct holding *h, const struct form *v, bool place)
+{
+	v = free_of_holds(h, v);
+	int at = has_states(v) ? place ? place_term(v) : velocity_term(h->b, v) : -1;
+	if (at >= 0)
+		hold_state(h, v, at);
+	return at >= 0;
 }
 
 /* What friction cannot hold beside what is held */
 static void tell_held(const struct holding *h, const struct stuck *stuck)
 {
-	struct form *v = stuck->velocity;
+	const struct form *v = free_of_holds(h, stuck->velocity);
 	const struct node *node = stuck->atom->node;
-	for (int i = 0; i < h->region->holds; i++)
-		v = replaced(v, &h->of[i], h->region->hold[i].form);
 	if (v->terms == 0)
 		error(node->at, "without one of them its part is known",
 		      "friction holds what other friction holds already: while all of it sticks its force is not "
@@ -340,11 +342,14 @@ static void tell_held(const struct holding *h, const struct stuck *stuck)
 }
 
 /* States that follow from the others; false: not all of these can stick together. */
-static bool find_holds(const struct building *b, struct region *region, const struct stuck *stuck, int count)
+static bool find_holds(const struct building *b, const struct switching *s, int index, const struct stuck *stuck,
+		       int count)
 {
-	struct holding h = { b, region, ARRAY(struct basis, 2 * (size_t)count) };
+	struct region *region = &s->region[index];
+	size_t most = 2 * (size_t)count + (size_t)s->sliders;
+	struct holding h = { b, region, ARRAY(struct basis, most) };
 	bool possible = true;
-	region->hold = ARRAY(struct hold, 2 * (size_t)count);
+	region->hold = ARRAY(struct hold, most);
 	region->holds = 0;
 	for (int k = 0; k < count && possible; k++) {
 		if (!is_borne(&stuck[k]))
@@ -355,6 +360,8 @@ static bool find_holds(const struct building *b, struct region *region, const st
 	}
 	for (int k = 0; k < count && possible; k++)
 		possible = !stuck[k].impact || hold_form(&h, stuck[k].place, true);
+	if (possible)
+		hold_sliders(&h, s);
 	return possible;
 }
 
@@ -402,7 +409,7 @@ static void solve_for_force(const struct switching *s, struct region *region, st
 	mpq_clears(factor, one, NULL);
 }
 
-static void add_release(struct region *region, int expression, bool upward, struct form *form)
+void add_release(struct region *region, int expression, bool upward, struct form *form)
 {
 	ENLARGE(region->release, (size_t)region->releases + 1);
 	region->release[region->releases++] = (struct release){ expression, upward, form, NULL };
@@ -443,7 +450,7 @@ static void stick(struct building *b, const struct switching *s, int index)
 	struct region *region = &s->region[index];
 	int count;
 	struct stuck *stuck = find_stuck(b, s, index, &count);
-	region->possible = find_holds(b, region, stuck, count);
+	region->possible = find_holds(b, s, index, stuck, count);
 	if (!region->possible)
 		return;
 	for (int k = 0; k < s->rows; k++)
@@ -471,6 +478,7 @@ void resolve_friction(struct building *b, struct switching *s)
 	for (int r = 0; r < s->regions; r++) {
 		s->region[r].possible = true;   /* but where what sticks contradicts itself */
 		slip(s, r);
+		slide_sliders(b, s, r);
 		stick(b, s, r);
 	}
 }
@@ -513,8 +521,8 @@ static void feel(const struct building *b, struct switching *s, bool *seen, cons
 		if (!a || seen[a->index])
 			continue;
 		seen[a->index] = true;
-		bool friction = a->kind == ATOM_CALL && a->function == FN_FRICTION;
-		if (friction && friction_of(s, a) < 0)
+		bool friction = a->kind == ATOM_CALL && a->function >= FN_FRICTION;
+		if (friction && grip_of(s, a) < 0)
 			error(a->node->at, "an output repeats it as an equation has it",
 			      "no equation has this friction");
 		s->felt = s->felt || friction;
@@ -537,9 +545,9 @@ static void build_grips(struct building *b, struct switching *s)
 	}
 	for (int r = 0; r < s->regions && s->felt; r++) {
 		struct region *region = &s->region[r];
-		region->grip = ARRAY(struct output *, (size_t)s->frictions);
-		for (int i = 0; i < s->frictions && region->possible; i++) {
-			struct form *carried = region->carried[s->friction[i].atom->index];
+		region->grip = ARRAY(struct output *, (size_t)grips_in(s));
+		for (int i = 0; i < grips_in(s) && region->possible; i++) {
+			struct form *carried = region->carried[atom_of_grip(s, i)->index];
 			if (carried)
 				region->grip[i] = row_in_system(b, &s->system[region->system], carried);
 		}

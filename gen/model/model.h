@@ -200,6 +200,8 @@ struct model {
 	int *channel_row;           /* its equation */
 	struct form **left_slope;   /* of a scheme that collocates: [channel][state], the leftover's derivative */
 	const struct atoms *atoms;
+	int bearings;
+	struct bearing *bearing;    /* friction without mass, by what it bears */
 	struct switching *switching; /* exact: the regions of a piecewise-linear model; NULL: it has one */
 	int impacts;                /* in the order in which they act at one instant */
 	struct impact *impact;
@@ -313,6 +315,14 @@ struct friction {
 	mpq_t factor;               /* v = factor (expression - at) */
 	bool negative;              /* F may fall below 0, and counts as 0 there */
 };
+struct bearing { const struct atom *atom; const struct form *borne; };
+/* Of FN_SLIDE: friction of what has no mass, by what it bears; it slides beyond a breakpoint of q - F or of -q - F */
+struct slider {
+	const struct atom *atom;
+	int expression[2];          /* that of either */
+	bool upward[2];             /* it is passed upward where the sliding begins */
+	bool negative;              /* F may fall below 0 */
+};
 struct hold {                       /* a state that a region gives: of what sticks a velocity follows from the others */
 	int state;
 	struct form *form;          /* of states, loads and inputs, none of them held */
@@ -330,7 +340,8 @@ struct region {                     /* one interval for each expression, in one 
 	struct form **residual;     /* per row: linear; friction stands in it as an atom until its force is put in */
 	struct form **force, **rest; /* per friction: F, and what it holds up to at rest; NULL: none acts here */
 	struct form **carried;      /* per friction's atom: what it carries, as it stands on the left side */
-	struct output **grip;       /* per friction: the same as a row; NULL: nothing */
+	struct output **grip;       /* per grip: what is carried, as a row; NULL: nothing */
+	int *slide;                 /* per slider's atom: 1 or -1 where it slides */
 	int holds, releases;
 	struct hold *hold;
 	struct release *release;
@@ -355,6 +366,8 @@ struct switching {
 	struct region_part *part;
 	int frictions;
 	struct friction *friction;
+	int sliders;
+	struct slider *slider;
 	int impacts;                /* the model's */
 	struct impact *impact;
 	bool felt;                  /* an output reads what it carries */
@@ -460,7 +473,7 @@ struct output *row_in_system(struct building *b, const struct linear *system, st
 int  coordinate_of_row(const struct model *model, int row);       /* whose equation it is */
 void collect_whole(struct building *b);                     /* the equations for all time, atoms kept: b->whole */
 bool assign_equations(struct building *b);                  /* false: it was said which is missing or too many */
-void add_elements(const struct building *b, struct snapshot *s); /* the sketch's forces to the residuals */
+void add_elements(struct building *b, struct snapshot *s); /* the sketch's forces to the residuals */
 void check_mass(const struct building *b);
 
 /* ---- delays.c: inputs as they were some time ago ---- */
@@ -568,6 +581,11 @@ int  impact_at(const struct switching *s, int expression, mpq_srcptr at, bool up
 int  impact_resting(const struct switching *s, int expression, int interval);  /* there; -1: none does */
 int  rest_of(const struct switching *s, const struct impact *impact); /* the interval in which it rests; -1: none */
 bool has_bounces(const struct model *model);
+bool rubs(const struct switching *s);                       /* there is friction, with mass or without */
+/* What outputs may read of a region: the forces of friction, and then the velocities of sliders without mass */
+int  grips_in(const struct switching *s);
+const struct atom *atom_of_grip(const struct switching *s, int index);
+int  grip_of(const struct switching *s, const struct atom *a);     /* its index; -1: no equation has it */
 bool has_events(const struct switching *s);                 /* each region has its own: friction, impacts */
 
 /* ---- friction.c: dry friction in regions, where it slips and where it sticks ---- */
@@ -580,7 +598,26 @@ int  stick_of(const struct switching *s, const struct friction *f); /* the inter
 int  friction_of(const struct switching *s, const struct atom *a); /* its index; -1: no equation has it */
 void resolve_friction(struct building *b, struct switching *s);
 void build_friction(struct building *b, struct switching *s); /* rows of holds and releases; after all systems */
+struct holding {                    /* states of a region that follow from the others, as they are found */
+	const struct building *b;
+	struct region *region;
+	struct basis *of;
+};
+const struct form *free_of_holds(const struct holding *h, const struct form *form);     /* without what is held */
+void hold_state(struct holding *h, const struct form *v, int at);   /* v = 0, solved for the state of its term `at` */
+void add_release(struct region *region, int expression, bool upward, struct form *form);
 bool same_friction(const struct region *a, const struct region *b); /* what sticks is held and released alike */
+
+/* ---- slider.c: friction of what has no mass ---- */
+
+/* Whether friction stands in the form whose velocity is of a coordinate of first order: this one; -1: any */
+bool has_slider(const struct building *b, const struct form *form, int coord);
+void resolve_sliders(struct building *b, struct snapshot *snapshot); /* its equation gives the force that it bears */
+/* in a region: the equations of what slides, where that ends, and the places that follow from what it bears */
+void slide_sliders(struct building *b, const struct switching *s, int region);
+void hold_sliders(struct holding *h, const struct switching *s);
+struct form *borne_form(const struct building *b, const struct form *form); /* of an output: friction by what it bears */
+const char *slider_text(const struct switching *s, int index);      /* for a reader: what slides, and where */
 
 /* ---- parts.c: regions of independent coordinates ---- */
 

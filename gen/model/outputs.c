@@ -174,6 +174,19 @@ static void collect_left(void *context)
 			s->whole = s->collected->cell[0];
 }
 
+/* The friction of what has no mass is what it bears: then it may be a row after all. */
+static bool becomes_row(struct building *b, int index, struct value *value)
+{
+	bool row = b->model->bearings > 0 && value;
+	for (int i = 0; row && i < value->rows * value->columns; i++) {
+		value->cell[i] = borne_form(b, value->cell[i]);
+		row = value->cell[i]->terms == 0 || !value->cell[i]->term[value->cell[i]->terms - 1].basis.atom;
+	}
+	for (int s = 0; row && s < b->model->system.segments; s++)
+		b->snapshot[s].output[index] = value;
+	return row;
+}
+
 static void name_outputs(struct building *b)
 {
 	struct model *model = b->model;
@@ -185,6 +198,7 @@ static void name_outputs(struct building *b)
 		struct output_work work = { b, s, row ? b->snapshot->output[index] : NULL };
 		if (!row)
 			statement_guard(collect_left, &work);
+		row = row || becomes_row(b, index, work.value);
 		int count = work.value ? work.value->rows * work.value->columns : 0;
 		for (int i = 0; i < count; i++) {
 			add_output(model, count == 1 ? s->name : component_name(s->name, i + 1), s->value,

@@ -213,9 +213,9 @@ static void place_loads_of(struct building *b, const struct switching *s)
 			place_loads(b, region->hold[k].form);
 		for (int k = 0; k < region->releases; k++)
 			place_loads(b, region->release[k].form);
-		for (int k = 0; k < s->frictions; k++)
-			if (region->carried[s->friction[k].atom->index])
-				place_loads(b, region->carried[s->friction[k].atom->index]);
+		for (int k = 0; k < grips_in(s); k++)
+			if (region->carried[atom_of_grip(s, k)->index])
+				place_loads(b, region->carried[atom_of_grip(s, k)->index]);
 	}
 	for (int e = 0; e < s->expressions; e++)
 		for (int segment = 0; segment < s->segments; segment++)

@@ -222,6 +222,53 @@ static struct form *friction_here(struct looking *l, const struct atom *a, struc
 	return form_unit((struct basis){ .kind = BASIS_ATOM, .index = a->index, .atom = a });
 }
 
+/* Whether a > b, by which expression and which way that is passed; false: it follows from no expression */
+static bool exceeds(struct looking *l, const struct node *node, const struct form *a, const struct form *b,
+		    struct slider *slider, int side)
+{
+	struct form *form = form_difference(a, b);
+	struct form plain = { 0, form->term, 0 };
+	while (plain.terms < form->terms && form->term[plain.terms].basis.kind <= BASIS_PI)
+		plain.terms++;
+	refuse_force(node, form);
+	mpq_t constant, factor, at;
+	mpq_inits(constant, factor, at, NULL);
+	constant_value(&l->b->collector, &plain, constant);
+	struct compared what = { node, form_sum(form, &plain, true), constant, order_met(l) };
+	int e = find_expression(l->s, l->segment, &what, factor, at);
+	slider->expression[side] = e;
+	slider->upward[side] = mpq_sgn(factor) > 0;
+	bool above = is_above(l, e, at) == slider->upward[side];
+	mpq_clears(constant, factor, at, NULL);
+	return above;
+}
+
+static struct slider *slider_of(struct switching *s, const struct atom *a)
+{
+	for (int i = 0; i < s->sliders; i++)
+		if (s->slider[i].atom == a)
+			return &s->slider[i];
+	ENLARGE(s->slider, (size_t)s->sliders + 1);
+	s->slider[s->sliders] = (struct slider){ .atom = a };
+	return &s->slider[s->sliders++];
+}
+
+/* 0 where it sticks; where it slides its equation is another one, which stands once all regions are known */
+static struct form *slider_here(struct looking *l, const struct atom *a, struct form *const *x)
+{
+	struct region *region = &l->s->region[l->region];
+	bool negative = false;
+	struct form *force = force_here(l, a->node, x[1], &negative);
+	struct slider *slider = slider_of(l->s, a);
+	bool above = exceeds(l, a->node, x[0], force, slider, 0),
+	     below = exceeds(l, a->node, form_difference(NEW(struct form), x[0]), force, slider, 1);
+	slider->negative = slider->negative || negative;
+	region->force[a->index] = force;
+	region->rest[a->index] = x[0];
+	region->slide[a->index] = above ? 1 : below ? -1 : 0;
+	return form_number(0);
+}
+
 static struct form *call_here(struct looking *l, const struct atom *a, struct form *const *x)
 {
 	int side;
@@ -233,6 +280,7 @@ static struct form *call_here(struct looking *l, const struct atom *a, struct fo
 	case FN_MAX:   return extreme_here(l, a, x);
 	case FN_TABLE: return table_here(l, a, x);
 	case FN_FRICTION: return friction_here(l, a, x);
+	case FN_SLIDE: return slider_here(l, a, x);
 	default:
 		side = sign_here(l, a->node, x[0], x[1]) < 0 ? 1 : sign_here(l, a->node, x[0], x[2]) > 0 ? 2 : 0;
 		return a->function == FN_CLIP ? x[side] : side ? form_difference(x[0], x[side]) : form_number(0);
@@ -389,6 +437,7 @@ static bool look(struct building *b, struct switching *s, int *known)
 		s->region[r].force = ARRAY(struct form *, (size_t)atoms);
 		s->region[r].rest = ARRAY(struct form *, (size_t)atoms);
 		s->region[r].carried = ARRAY(struct form *, (size_t)atoms);
+		s->region[r].slide = ARRAY(int, (size_t)atoms);
 		for (int k = 0; k < s->rows; k++) {
 			l.row = s->row[k];
 			s->region[r].residual[l.row] = form_here(&l, b->snapshot[l.segment].residual[l.row].form);
@@ -728,6 +777,8 @@ static void drop_expression(struct switching *s, int expression)
 		s->expression[e] = s->expression[e + 1];
 	for (int i = 0; i < s->frictions; i++)
 		s->friction[i].expression -= s->friction[i].expression > expression;
+	for (int i = 0; i < 2 * s->sliders; i++)
+		s->slider[i / 2].expression[i % 2] -= s->slider[i / 2].expression[i % 2] > expression;
 	for (int i = 0; i < s->impacts; i++)
 		s->impact[i].expression -= s->impact[i].expression > expression;
 	for (int r = 0; r < s->regions; r++)

@@ -405,9 +405,9 @@ static const char *passed_over(const char *why)
 static void check_friction(const struct model *model)
 {
 	const struct switching *s = model->switching;
-	for (int i = 0; s && i < s->frictions; i++)
-		if (s->friction[i].negative)
-			say_warning(s->friction[i].atom->node->start, "max(F, 0) in its place says so",
+	for (int i = 0; s && i < grips_in(s); i++)
+		if (i < s->frictions ? s->friction[i].negative : s->slider[i - s->frictions].negative)
+			say_warning(atom_of_grip(s, i)->node->start, "max(F, 0) in its place says so",
 				    "the force of friction may fall below 0: it counts as 0 there");
 }
 

@@ -39,7 +39,8 @@ const char *unit_note(const char *number, size_t digits, const char *unit, size_
 enum function {
 	FN_NONE, FN_SIN, FN_COS, FN_TAN, FN_EXP, FN_LOG, FN_SQRT, FN_ABS, FN_SGN, FN_SINH, FN_COSH, FN_TANH,
 	FN_ASIN, FN_ACOS, FN_ATAN, FN_ATAN2, FN_MIN, FN_MAX, FN_DEADZONE, FN_CLIP, FN_TABLE,
-	FN_FRICTION
+	FN_FRICTION,
+	FN_SLIDE                    /* of no text: the velocity of a slider without mass, by what it bears and holds */
 };
 enum comparison { CMP_LT, CMP_LE, CMP_GT, CMP_GE, CMP_EQ, CMP_NE };
 enum node_kind {

@@ -231,7 +231,7 @@ static long guard_bytes(const struct step *step)
 	const struct switching *s = step->model->switching;
 	struct pieces pieces = pieces_of(step);
 	struct guards g = guards_of(step, &pieces);
-	long size = step->layout.size, grips = s->felt ? 8 * size * s->regions * s->frictions : 0;
+	long size = step->layout.size, grips = s->felt ? 8 * size * s->regions * grips_in(s) : 0;
 	return 8 * (g.rows * (4 * size + 1) + g.guards + g.assignments * size + s->expressions -
 		    2 * s->systems * s->expressions * size) +
 	       4 * (6 * g.guards + 2 * s->regions + 1 + g.assignments + g.sets + 1) + grips;
@@ -298,6 +298,8 @@ static void person_frictions(FILE *to, const struct switching *s)
 		fprintf(to, "    friction %d: %s; sticks in interval %d of expression %d\n", i,
 			text_between(node->start, node->end), stick_of(s, &s->friction[i]), s->friction[i].expression);
 	}
+	for (int i = 0; i < s->sliders; i++)
+		fprintf(to, "    slider %d: %s\n", i, slider_text(s, i));
 }
 
 static void person_intervals(FILE *to, const struct switching *s, int region)
@@ -757,6 +759,16 @@ static void json_frictions(FILE *to, const struct switching *s)
 	fputs("],\n", to);
 }
 
+static void json_sliders(FILE *to, const struct switching *s)
+{
+	fputs("  \"sliders\": [", to);
+	for (int i = 0; i < s->sliders; i++)
+		fprintf(to, "%s{\"expressions\": [%d, %d], \"upward\": [%s, %s]}", i ? ", " : "",
+			s->slider[i].expression[0], s->slider[i].expression[1],
+			s->slider[i].upward[0] ? "true" : "false", s->slider[i].upward[1] ? "true" : "false");
+	fputs("],\n", to);
+}
+
 static void json_impacts(FILE *to, const struct model *model)
 {
 	fputs("  \"impacts\": [", to);
@@ -816,6 +828,8 @@ static void json_regions(FILE *to, const struct step *step)
 	json_expressions(to, step);
 	if (s->frictions > 0)
 		json_frictions(to, s);
+	if (s->sliders > 0)
+		json_sliders(to, s);
 	if (s->impacts > 0)
 		json_impacts(to, step->shown->model);
 	if (!s->parts) {

@@ -288,10 +288,10 @@ static void need_sweeps(const struct step *step)
 	if (!model->switching)
 		error(model->asked.step_at, "leave --amplitude out",
 		      "the model is linear: its frequency response is the same at every amplitude");
-	bool rubs = model->switching->frictions > 0;
+	bool rubbed = rubs(model->switching);
 	for (int p = 0; p < model->switching->parts; p++)
-		rubs = rubs || model->switching->part[p].model->switching->frictions > 0;
-	if (model->impacts > 0 || rubs)
+		rubbed = rubbed || rubs(model->switching->part[p].model->switching);
+	if (model->impacts > 0 || rubbed)
 		error(model->asked.step_at, "plrun runs any model, with a record that sweeps",
 		      "--amplitude is of clearances, without impacts and dry friction");
 	if (model->system.segments > 1)

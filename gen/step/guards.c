@@ -35,6 +35,15 @@ static double *turned(int size, const double *row, bool upward)
 	return result;
 }
 
+/* Whether a guard of its own stands where the interval of an expression ends */
+static bool is_released(const struct region *region, int expression, bool upward)
+{
+	bool any = false;
+	for (int k = 0; k < region->releases; k++)
+		any = any || (region->release[k].expression == expression && region->release[k].upward == upward);
+	return any;
+}
+
 /* The ends of an interval of an expression */
 static void guard_interval(const struct step *step, const struct pieces *pieces, struct guards *g, int region,
 			   int expression, int first)
@@ -44,7 +53,7 @@ static void guard_interval(const struct step *step, const struct pieces *pieces,
 	int size = step->layout.size, interval = interval_of(s, region, expression);
 	for (int upward = 0; upward < 2; upward++) {
 		int breakpoint = interval - !upward;
-		if (breakpoint < 0 || breakpoint == e->breaks)
+		if (breakpoint < 0 || breakpoint == e->breaks || is_released(&s->region[region], expression, upward))
 			continue;
 		double at = pieces->breakpoint[first + breakpoint];
 		struct guard guard = { .expression = expression,
@@ -160,10 +169,10 @@ static void bound_rows_of_guards(const struct step *step, const struct pieces *p
 double *grips_of(const struct step *step)
 {
 	const struct switching *s = step->model->switching;
-	size_t size = (size_t)step->layout.size, count = (size_t)s->frictions;
+	size_t size = (size_t)step->layout.size, count = (size_t)grips_in(s);
 	double *grip = ARRAY(double, (size_t)s->regions * count * size);
 	for (int r = 0; r < s->regions; r++)
-		for (int i = 0; i < s->frictions; i++)
+		for (int i = 0; i < grips_in(s); i++)
 			if (s->region[r].grip[i])
 				row_over_x(step, s->region[r].grip[i], 0,
 					   grip + ((size_t)r * count + (size_t)i) * size);
@@ -181,10 +190,11 @@ struct guards guards_of(const struct step *step, const struct pieces *pieces)
 		for (int e = 0, first = 0; e < s->expressions; first += s->expression[e++].breaks)
 			if (!s->region[r].possible)
 				continue;
-			else if (is_stick(&s->expression[e], interval_of(s, r, e)))
+			else {
 				guard_releases(step, &g, r, e);
-			else
-				guard_interval(step, pieces, &g, r, e, first);
+				if (!is_stick(&s->expression[e], interval_of(s, r, e)))
+					guard_interval(step, pieces, &g, r, e, first);
+			}
 	}
 	g.first[s->regions] = g.guards;
 	g.impact = ARRAY(struct struck, (size_t)s->impacts);

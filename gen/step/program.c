@@ -46,13 +46,13 @@ static bool reads_columns(const struct output *row, int load, int columns)
 }
 
 /* What is held there, and what releases it */
-static void mark_loads_of_region(const struct region *region, int frictions, int load, int columns, bool *needed)
+static void mark_loads_of_region(const struct region *region, int grips, int load, int columns, bool *needed)
 {
 	for (int k = 0; k < region->holds && region->possible; k++)
 		*needed = *needed || reads_columns(region->hold[k].row, load, columns);
 	for (int k = 0; k < region->releases && region->possible; k++)
 		*needed = *needed || reads_columns(region->release[k].row, load, columns);
-	for (int k = 0; k < frictions && region->grip; k++)
+	for (int k = 0; k < grips && region->grip; k++)
 		*needed = *needed || (region->grip[k] && reads_columns(region->grip[k], load, columns));
 }
 
@@ -65,7 +65,7 @@ static void mark_loads_of(const struct switching *s, int segments, bool *needed)
 			for (int k = 0; k < s->system->load[l].columns * segments; k++)
 				needed[l] = needed[l] || mpq_sgn(s->expression[e].row->load[l][k]) != 0;
 		for (int k = 0; k < s->regions; k++)
-			mark_loads_of_region(&s->region[k], s->frictions, l, s->system->load[l].columns, &needed[l]);
+			mark_loads_of_region(&s->region[k], grips_in(s), l, s->system->load[l].columns, &needed[l]);
 	}
 }
 
