@@ -320,7 +320,8 @@ struct bearing { const struct atom *atom; const struct form *borne; };
 struct slider {
 	const struct atom *atom;
 	int expression[2];          /* that of either */
-	bool upward[2];             /* it is passed upward where the sliding begins */
+	mpq_t at[2];                /* its breakpoint, */
+	bool upward[2];             /* which is passed upward where the sliding begins */
 	bool negative;              /* F may fall below 0 */
 };
 struct hold {                       /* a state that a region gives: of what sticks a velocity follows from the others */

@@ -238,6 +238,7 @@ static bool exceeds(struct looking *l, const struct node *node, const struct for
 	int e = find_expression(l->s, l->segment, &what, factor, at);
 	slider->expression[side] = e;
 	slider->upward[side] = mpq_sgn(factor) > 0;
+	mpq_set(slider->at[side], at);
 	bool above = is_above(l, e, at) == slider->upward[side];
 	mpq_clears(constant, factor, at, NULL);
 	return above;
@@ -249,8 +250,10 @@ static struct slider *slider_of(struct switching *s, const struct atom *a)
 		if (s->slider[i].atom == a)
 			return &s->slider[i];
 	ENLARGE(s->slider, (size_t)s->sliders + 1);
-	s->slider[s->sliders] = (struct slider){ .atom = a };
-	return &s->slider[s->sliders++];
+	struct slider *slider = &s->slider[s->sliders++];
+	*slider = (struct slider){ .atom = a };
+	mpq_inits(slider->at[0], slider->at[1], NULL);
+	return slider;
 }
 
 /* 0 where it sticks; where it slides its equation is another one, which stands once all regions are known */

@@ -351,7 +351,7 @@ void build_system(struct building *b)
 		return;
 	for (int s = 0; s < system->segments; s++)
 		add_elements(b, &b->snapshot[s]);
-	if (!settle_scheme(b))
+	if (diagnostics_errors() || !settle_scheme(b))
 		return;
 	const struct snapshot *rows = b->whole ? b->whole : b->snapshot;
 	fill_states(b, rows);

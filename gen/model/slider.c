@@ -106,10 +106,26 @@ static void put_in_others(const struct slider_row *r, const struct form *borne)
 	}
 }
 
+static _Noreturn void tell_drives(const struct node *node)
+{
+	error(node->at, "on the left side it stands with the sign of a damper: + friction(x', F)",
+	      "this friction drives what slides instead of holding it");
+}
+
+/* What it bears becomes less as it slides. */
+static void check_borne(const struct slider_row *r, const struct form *borne)
+{
+	struct basis place = { .kind = BASIS_COORD, .index = r->coord };
+	const struct form_term *term = form_find(borne, &place);
+	if (term && mpq_sgn(term->factor) * mpq_sgn(rate_factor(r->velocity, r->coord)) > 0)
+		tell_drives(r->atom->node);
+}
+
 /* c f + rest = 0: q = -rest/c */
 static void slide_alone(const struct slider_row *r, const struct form *rest)
 {
 	struct form *borne = scaled_form(rest, r->factor, true, true), *operand[] = { borne, NULL };
+	check_borne(r, borne);
 	operand[1] = form_alias(r->force);
 	struct form *slides = kept_call(&r->b->collector, r->atom->node, FN_SLIDE, 2, operand);
 	r->snapshot->residual[r->row].form = form_difference(r->velocity, slides);
@@ -128,8 +144,7 @@ static void slide_damped(const struct slider_row *r, const struct form *rest, mp
 	mpq_div(ratio, along, damping);
 	mpq_mul(k, ratio, r->factor);
 	if (mpq_sgn(k) < 0)
-		error(node->at, "on the left side it stands with the sign of a damper: + friction(x', F)",
-		      "this friction drives what slides instead of holding it");
+		tell_drives(node);
 	rest = form_difference(rest, form_single(rate, damping));
 	struct form *drive = form_difference(form_difference(r->velocity, form_single(rate, along)),
 					     form_scale(rest, ratio));
@@ -219,10 +234,11 @@ const char *slider_text(const struct switching *s, int index)
 {
 	const struct slider *slider = &s->slider[index];
 	const struct node *node = slider->atom->node;
-	const char *way[] = { slider->upward[0] ? "above" : "below", slider->upward[1] ? "above" : "below" };
-	return format("%s slides %s the last breakpoint of expression %d and %s the first of %d",
-		      text_between(node->start, node->end), way[0], slider->expression[0], way[1],
-		      slider->expression[1]);
+	const char *where[2];
+	for (int i = 0; i < 2; i++)
+		where[i] = format("expression %d is %s %s", slider->expression[i], slider->upward[i] ? "above" : "below",
+				  readable_text(slider->at[i]));
+	return format("%s; slides where %s, or %s", text_between(node->start, node->end), where[0], where[1]);
 }
 
 /* q - F or q + F, which is 0 while it slides */
