@@ -617,7 +617,7 @@ void resolve_sliders(struct building *b, struct snapshot *snapshot); /* its equa
 /* in a region: the equations of what slides, where that ends, and the places that follow from what it bears */
 void slide_sliders(struct building *b, const struct switching *s, int region);
 void hold_sliders(struct holding *h, const struct switching *s);
-struct form *borne_form(const struct building *b, const struct form *form); /* of an output: friction by what it bears */
+struct form *borne_form(const struct building *b, const struct form *form); /* of an output: what friction bears */
 const char *slider_text(const struct switching *s, int index);      /* for a reader: what slides, and where */
 
 /* ---- parts.c: regions of independent coordinates ---- */

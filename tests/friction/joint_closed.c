@@ -13,7 +13,7 @@ typedef long double wide;
 enum { MOST = 256, RAMPS = 2000 };
 static const wide pi = 3.141592653589793238462643383279502884L;
 
-/* x = 0.3 cos(3 t) on a spring of 50 and a slider of 2: it slides from 2 F/k behind each end of x on, to the next end */
+/* x = 0.3 cos(3 t) on a spring of 50 and a slider of 2: it slides from 2 F/k behind each end on, to the next */
 static void masing(int step)
 {
 	static double time[MOST];
@@ -40,6 +40,19 @@ static void masing(int step)
 		z = 0.3L * cosl(60) - 0.04L;
 	is_close(y, (double)z, 1e-14, "masing %d: where the slider is", step);
 	is_close(out[0], (double)(50 * (0.3L * cosl(60) - z)), 1e-12, "masing %d: what it bears", step);
+	run_free(&r);
+}
+
+/* A slider that is set where it cannot be goes at once to where it bears F. */
+static void placed(int step)
+{
+	struct run r = run_new(variant_of(joint_closed_table, "masing_%d", step));
+	double y = 0, h = r.of->model->h;
+	wide x = 0.3L * cosl(3 * (wide)h);
+	run_set(&r, &y);
+	run_step(&r, NULL);
+	run_state(&r, &y);
+	is_close(y, (double)(0.26L < x + 0.04L ? 0.26L : x + 0.04L), 1e-15, "masing %d: set too far away", step);
 	run_free(&r);
 }
 
@@ -115,6 +128,8 @@ int main(void)
 {
 	for (int step = 0; step < 3; step++)
 		masing(step);
+	for (int step = 0; step < 2; step++)
+		placed(step);
 	for (int step = 0; step < 2; step++) {
 		record(step);
 		series(step);
