@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Friction of what has no mass: friction(v, F) where v has the highest derivative of a coordinate of first order, as in
- * an element of Jenkins (a spring and a slider in series). The coordinate's equation gives the force that friction has
- * to bear, q. Up to F the slider sticks and v = 0; beyond, it slides so that q stays F, which gives its place; it
- * sticks again where v would turn round (W. D. Iwan, Journal of Applied Mechanics 33, 1966). With a damper beside it v is what
- * the damper makes of what q has above F, a function of straight pieces. */
+/* Friction of what has no mass: friction(v, F) where v has the highest derivative of a coordinate of first order, as
+ * in an element of Jenkins (a spring and a slider in series). The coordinate's equation gives the force that friction
+ * has to bear, q. Up to F the slider sticks and v = 0; beyond, it slides so that q stays F, which gives its place; it
+ * sticks again where v would turn round (W. D. Iwan, Journal of Applied Mechanics 33, 1966). With a damper beside it v
+ * is what the damper makes of what q has above F, a function of straight pieces. */
 #include "model/model.h"
 
 /* ---- which it is ---- */
