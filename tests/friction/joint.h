@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Random chains of masses with elements of Jenkins: springs in series with sliders that have no mass, some with a
- * damper beside them. As a spec, and as what is true of them by another road: Taylor series in long double, bisection. */
+ * damper beside them. As a spec, and as what is true of them by another road: Taylor series in long
+ * double, bisection. */
 #ifndef JOINT_H
 #define JOINT_H
 
