@@ -253,8 +253,8 @@ static int find_resting(const pl_guards *m, const pl_contact *c, const real *x, 
             if (magnitude(e) > noise)
                 continue;
             found[count].impact = impact_of(m, w.i, k);
-            if (found[count].impact >= 0 && speed_of(m, found[count].impact, x) < 0 && w.interval != k)
-                continue; /* it flies off */
+            if (found[count].impact >= 0 && magnitude(speed_of(m, found[count].impact, x)) > 0 && w.interval != k)
+                continue; /* it flies off, or there was no room for its impact */
             found[count].expression = w.i;
             found[count].stick = k;
             found[count++].stride = w.stride;
@@ -471,7 +471,26 @@ static void look_behind(beyond *f, const real *e, real terms)
     f->coefficient[++f->degree] = 0;
 }
 
-/* coefficients: (degree + 1) x size, of x(s); after them 2 (degree + 1) for work */
+/* What a force that is at its limit but for rounding has let go moves with a slope that is rounding, too: where that
+ * points back it is no event. */
+static void level(const pl_guards *m, int region, const pl_guard *g, const real *x, beyond *f, real *work)
+{
+    const int side = g->leads < 0 ? 1 : -1;
+    walk w;
+    resting r;
+    if (magnitude(f->coefficient[0]) > f->noise || !(f->coefficient[1] > 0))
+        return;
+    w = switch_of(m, region, g->expression);
+    r.expression = g->expression;
+    r.stick = w.interval - side;
+    r.stride = w.stride;
+    r.impact = -1;
+    if (r.stick > 0 && r.stick < w.breaks && !(w.at[r.stick] > w.at[r.stick - 1]) &&
+        is_let_go(m, region, &r, side, x, work))
+        f->coefficient[1] = 0;
+}
+
+/* coefficients: (degree + 1) x size, of x(s); after them 2 (degree + 1) + 4 size for work */
 static event first_event(const pl_guards *m, int region, real *coefficients, int *splits)
 {
     const int terms = m->degree + 1, n = m->size;
@@ -489,6 +508,8 @@ static event first_event(const pl_guards *m, int region, real *coefficients, int
         if (m->guard[k].impact >= 0 && e[1] < 0 && magnitude(f.coefficient[0]) <= noise_of(magnitude(m->limit[k]) +
             sizes(n, row, coefficients) + sizes(n, row, coefficients + n)))
             look_behind(&f, e, sizes(n, row, coefficients + n));
+        else if (m->guard[k].impact < 0)
+            level(m, region, &m->guard[k], coefficients, &f, e + 2 * terms);
         s = first_root(&f, first.s, splits);
         if (s < 0)
             continue;
@@ -615,8 +636,11 @@ void pl_guards_advance(const pl_guards *m, real tau, real *x, pl_contact *c, pl_
         left -= first.s * dt;
         if (first.guard < 0)
             continue;
-        if (!pass(m, c, &m->guard[first.guard], x, crossing, tau - left, rest))
+        if (!pass(m, c, &m->guard[first.guard], x, crossing, tau - left, rest)) {
+            if (m->guard[first.guard].impact >= 0)
+                break; /* x is held on the guard: beyond it the impact would not come any more */
             splits = -1; /* no further search */
+        }
     }
 }
 
