@@ -4,8 +4,16 @@
  * to stick and what is to slip after an event is found by looking at all combinations of those that are at rest. */
 #include "roots.h"
 
-/* How many at rest are looked at together: 3^MOST combinations; how many impacts there may be at one instant */
-enum { MOST = 6, MOST_AT_ONCE = 200 };
+/* How many at rest are looked at together: 3^MOST combinations; how many impacts there may be at one instant, and how
+ * many of them are listed */
+enum { MOST = 6, MOST_AT_ONCE = 1000, LISTED_AT_ONCE = 12 };
+
+/* Of the fastest impact at an instant: what is slower is over */
+#ifdef REAL_IS_FLOAT
+#define CALM 0x1p-20f
+#else
+#define CALM 0x1p-48
+#endif
 
 #ifdef REAL_IS_FLOAT
 #define BRIEF PL_BRIEFF
@@ -173,17 +181,49 @@ static void put_on(const pl_guards *m, const pl_contact *c, int k, real *x)
         x[i] -= back[i] * e;
 }
 
+/* Impacts at one instant without an end become slower and slower: what touches with less than `slow` comes to rest
+ * together. */
+static void calm(const pl_guards *m, real slow, real *x, pl_contact *c, pl_crossing *crossing, real time, real *work)
+{
+    const int before = c->region;
+    int k, any = 0;
+    for (k = 0; k < m->impacts; k++) {
+        const pl_impact *p = &m->impact[k];
+        if (!touches(m, c, p, x) || magnitude(speed_of(m, k, x)) >= slow ||
+            switch_of(m, c->region, p->expression).interval == p->rest)
+            continue;
+        go_to(m, c, p, p->rest);
+        (void)list(m, c, crossing, time, p->expression, p->breakpoint, p->upward);
+        any++;
+    }
+    if (m->matrix[c->region] < 0) {
+        c->status |= PL_UNDECIDED; /* they cannot all rest */
+        enter(m, c, before);
+        return;
+    }
+    c->rested += any;
+    assign(m, m->hold[c->region], x, work);
+}
+
 /* All impacts at this instant; begins: the one whose guard was met, or -1.  Returns those that acted, as bits. */
 static uint32_t collide(const pl_guards *m, int begins, real *x, pl_contact *c, pl_crossing *crossing, real time,
                         real *work)
 {
     uint32_t struck = 0;
-    int k, rounds = 0;
+    real most = 0;
+    int k, rounds = 0, calms = 0;
     for (k = 0; k < m->impacts; k++) {
         const pl_impact *p = &m->impact[k];
-        if (k != begins && !(touches(m, c, p, x) && speed_of(m, k, x) > 0))
+        const real speed = touches(m, c, p, x) ? speed_of(m, k, x) : 0;
+        if (k != begins && !(speed > 0))
             continue;
-        if (++rounds > MOST_AT_ONCE || !list(m, c, crossing, time, p->expression, p->breakpoint, p->upward)) {
+        if (k != begins && speed < CALM * most) {
+            calms = 1;
+            continue;
+        }
+        most = larger(most, speed);
+        if (++rounds > MOST_AT_ONCE || (rounds <= LISTED_AT_ONCE && !list(m, c, crossing, time, p->expression,
+            p->breakpoint, p->upward))) {
             c->status |= PL_TOO_MANY_EVENTS;
             break;
         }
@@ -194,8 +234,11 @@ static uint32_t collide(const pl_guards *m, int begins, real *x, pl_contact *c, 
             put_on(m, c, k, x);
         struck |= (uint32_t)1 << k;
         begins = k == begins ? -1 : begins;
+        calms = 0;
         k = -1;
     }
+    if (calms)
+        calm(m, CALM * most, x, c, crossing, time, work);
     return struck;
 }
 

@@ -7,6 +7,7 @@
 #include "four_balls.h"
 #include "slopes.h"
 #include "tight.h"
+#include "wall.h"
 #include "tap.h"
 #include "worse.h"
 
@@ -100,6 +101,23 @@ static void too_many(void)
 	ok(worst <= 1e-14 && most <= 1e-17, "tight: energy off by %.3g, outside by %.3g at most", worst, most);
 }
 
+/* ---- each impact on the ball leaves half of the speed, and the wall takes what the ball has ---- */
+
+static void dead_wall(void)
+{
+	wall s;
+	double y[4], worst = 0;
+	wall_init(&s);
+	for (int k = 0; k < 10; k++)
+		wall_step(&s);
+	wall_get(&s, y);
+	for (int i = 0; i < 4; i++)
+		worst = worse(worst, fabs(y[i]));
+	ok(worst <= 1e-15, "wall: all of it rests there (%g)", worst);
+	is_close(wall_status(&s), 0, 0, "wall: status");
+	is_close(wall_rested(&s), 2, 0, "wall: contacts that came to rest");
+}
+
 /* ---- forces at their limit ---- */
 
 static void limits(void)
@@ -146,6 +164,7 @@ int main(void)
 	counted_jumps();
 	balls();
 	too_many();
+	dead_wall();
 	limits();
 	on_slopes();
 	return tap_end();
