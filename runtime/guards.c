@@ -4,8 +4,16 @@
  * to stick and what is to slip after an event is found by looking at all combinations of those that are at rest. */
 #include "roots.h"
 
-/* How many at rest are looked at together: 3^MOST combinations; how many impacts there may be at one instant */
-enum { MOST = 6, MOST_AT_ONCE = 200 };
+/* How many at rest are looked at together: 3^MOST combinations; how many impacts there may be at one instant, and how
+ * many of them are listed */
+enum { MOST = 6, MOST_AT_ONCE = 1000, LISTED_AT_ONCE = 12 };
+
+/* Of the fastest impact at an instant: what is slower is over */
+#ifdef REAL_IS_FLOAT
+#define CALM 0x1p-20f
+#else
+#define CALM 0x1p-48
+#endif
 
 #ifdef REAL_IS_FLOAT
 #define BRIEF PL_BRIEFF
@@ -173,17 +181,49 @@ static void put_on(const pl_guards *m, const pl_contact *c, int k, real *x)
         x[i] -= back[i] * e;
 }
 
+/* Impacts at one instant without an end become slower and slower: what touches with less than `slow` comes to rest
+ * together. */
+static void calm(const pl_guards *m, real slow, real *x, pl_contact *c, pl_crossing *crossing, real time, real *work)
+{
+    const int before = c->region;
+    int k, any = 0;
+    for (k = 0; k < m->impacts; k++) {
+        const pl_impact *p = &m->impact[k];
+        if (!touches(m, c, p, x) || magnitude(speed_of(m, k, x)) >= slow ||
+            switch_of(m, c->region, p->expression).interval == p->rest)
+            continue;
+        go_to(m, c, p, p->rest);
+        (void)list(m, c, crossing, time, p->expression, p->breakpoint, p->upward);
+        any++;
+    }
+    if (m->matrix[c->region] < 0) {
+        c->status |= PL_UNDECIDED; /* they cannot all rest */
+        enter(m, c, before);
+        return;
+    }
+    c->rested += any;
+    assign(m, m->hold[c->region], x, work);
+}
+
 /* All impacts at this instant; begins: the one whose guard was met, or -1.  Returns those that acted, as bits. */
 static uint32_t collide(const pl_guards *m, int begins, real *x, pl_contact *c, pl_crossing *crossing, real time,
                         real *work)
 {
     uint32_t struck = 0;
-    int k, rounds = 0;
+    real most = 0;
+    int k, rounds = 0, calms = 0;
     for (k = 0; k < m->impacts; k++) {
         const pl_impact *p = &m->impact[k];
-        if (k != begins && !(touches(m, c, p, x) && speed_of(m, k, x) > 0))
+        const real speed = touches(m, c, p, x) ? speed_of(m, k, x) : 0;
+        if (k != begins && !(speed > 0))
             continue;
-        if (++rounds > MOST_AT_ONCE || !list(m, c, crossing, time, p->expression, p->breakpoint, p->upward)) {
+        if (k != begins && speed < CALM * most) {
+            calms = 1;
+            continue;
+        }
+        most = larger(most, speed);
+        if (++rounds > MOST_AT_ONCE || (rounds <= LISTED_AT_ONCE && !list(m, c, crossing, time, p->expression,
+            p->breakpoint, p->upward))) {
             c->status |= PL_TOO_MANY_EVENTS;
             break;
         }
@@ -194,8 +234,11 @@ static uint32_t collide(const pl_guards *m, int begins, real *x, pl_contact *c, 
             put_on(m, c, k, x);
         struck |= (uint32_t)1 << k;
         begins = k == begins ? -1 : begins;
+        calms = 0;
         k = -1;
     }
+    if (calms)
+        calm(m, CALM * most, x, c, crossing, time, work);
     return struck;
 }
 
@@ -253,8 +296,8 @@ static int find_resting(const pl_guards *m, const pl_contact *c, const real *x, 
             if (magnitude(e) > noise)
                 continue;
             found[count].impact = impact_of(m, w.i, k);
-            if (found[count].impact >= 0 && speed_of(m, found[count].impact, x) < 0 && w.interval != k)
-                continue; /* it flies off */
+            if (found[count].impact >= 0 && magnitude(speed_of(m, found[count].impact, x)) > 0 && w.interval != k)
+                continue; /* it flies off, or there was no room for its impact */
             found[count].expression = w.i;
             found[count].stick = k;
             found[count++].stride = w.stride;
@@ -471,7 +514,26 @@ static void look_behind(beyond *f, const real *e, real terms)
     f->coefficient[++f->degree] = 0;
 }
 
-/* coefficients: (degree + 1) x size, of x(s); after them 2 (degree + 1) for work */
+/* What a force that is at its limit but for rounding has let go moves with a slope that is rounding, too: where that
+ * points back it is no event. */
+static void level(const pl_guards *m, int region, const pl_guard *g, const real *x, beyond *f, real *work)
+{
+    const int side = g->leads < 0 ? 1 : -1;
+    walk w;
+    resting r;
+    if (magnitude(f->coefficient[0]) > f->noise || !(f->coefficient[1] > 0))
+        return;
+    w = switch_of(m, region, g->expression);
+    r.expression = g->expression;
+    r.stick = w.interval - side;
+    r.stride = w.stride;
+    r.impact = -1;
+    if (r.stick > 0 && r.stick < w.breaks && !(w.at[r.stick] > w.at[r.stick - 1]) &&
+        is_let_go(m, region, &r, side, x, work))
+        f->coefficient[1] = 0;
+}
+
+/* coefficients: (degree + 1) x size, of x(s); after them 2 (degree + 1) + 4 size for work */
 static event first_event(const pl_guards *m, int region, real *coefficients, int *splits)
 {
     const int terms = m->degree + 1, n = m->size;
@@ -489,6 +551,8 @@ static event first_event(const pl_guards *m, int region, real *coefficients, int
         if (m->guard[k].impact >= 0 && e[1] < 0 && magnitude(f.coefficient[0]) <= noise_of(magnitude(m->limit[k]) +
             sizes(n, row, coefficients) + sizes(n, row, coefficients + n)))
             look_behind(&f, e, sizes(n, row, coefficients + n));
+        else if (m->guard[k].impact < 0)
+            level(m, region, &m->guard[k], coefficients, &f, e + 2 * terms);
         s = first_root(&f, first.s, splits);
         if (s < 0)
             continue;
@@ -615,8 +679,11 @@ void pl_guards_advance(const pl_guards *m, real tau, real *x, pl_contact *c, pl_
         left -= first.s * dt;
         if (first.guard < 0)
             continue;
-        if (!pass(m, c, &m->guard[first.guard], x, crossing, tau - left, rest))
+        if (!pass(m, c, &m->guard[first.guard], x, crossing, tau - left, rest)) {
+            if (m->guard[first.guard].impact >= 0)
+                break; /* x is held on the guard: beyond it the impact would not come any more */
             splits = -1; /* no further search */
+        }
     }
 }
 

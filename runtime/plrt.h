@@ -628,7 +628,8 @@ void pl_guards_start(const pl_guards *m, const double *x, pl_contact *c, double 
  * that slips moves away in its direction; of several the one with the fewest changes, then with most that stick.
  *
  * Impacts at one instant act in their order, each from the state that the one before has left, and again from the
- * first, until none is on its guard and comes closer.  Behind a bounce that leaves with the velocity v and is
+ * first, until none is on its guard and comes closer; what is slower than 2^-48 of the fastest (float: 2^-20) is over,
+ * and rests; the first 12 are listed.  Behind a bounce that leaves with the velocity v and is
  * pressed back by the acceleration a, all further ones take T = 2 v/(a (1 - e)): where T <= PL_BRIEF h, e < 1, it
  * rests, listed T later; so too where T <= h and the list of crossings is full but for a few.  What rests is held
  * until it would have to be pulled. */

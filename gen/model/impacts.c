@@ -116,6 +116,8 @@ void collect_impacts(struct building *b)
 {
 	struct model *model = b->model;
 	const struct spec *spec = b->spec;
+	if (spec->whens > LIMIT_IMPACTS)
+		error(spec->when[LIMIT_IMPACTS].at, NULL, "more impacts than the limit of %d", LIMIT_IMPACTS);
 	model->impacts = spec->whens;
 	model->impact = ARRAY(struct impact, (size_t)spec->whens);
 	for (int i = 0; i < spec->whens; i++)

@@ -56,6 +56,14 @@ static void mark_loads_of_region(const struct region *region, int grips, int loa
 		*needed = *needed || (region->grip[k] && reads_columns(region->grip[k], load, columns));
 }
 
+/* What its jumps read, and its speed */
+static void mark_loads_of_impact(const struct impact *impact, int load, int columns, bool *needed)
+{
+	for (int k = 0; k < impact->jumps; k++)
+		*needed = *needed || reads_columns(impact->jump[k].row, load, columns);
+	*needed = *needed || (impact->bounces && reads_columns(impact->speed_row, load, columns));
+}
+
 static void mark_loads_of(const struct switching *s, int segments, bool *needed)
 {
 	for (int l = 0; l < s->system->loads; l++) {
@@ -66,6 +74,8 @@ static void mark_loads_of(const struct switching *s, int segments, bool *needed)
 				needed[l] = needed[l] || mpq_sgn(s->expression[e].row->load[l][k]) != 0;
 		for (int k = 0; k < s->regions; k++)
 			mark_loads_of_region(&s->region[k], grips_in(s), l, s->system->load[l].columns, &needed[l]);
+		for (int k = 0; k < s->impacts; k++)
+			mark_loads_of_impact(&s->impact[k], l, s->system->load[l].columns, &needed[l]);
 	}
 }
 

@@ -7,7 +7,7 @@
 #include <stdbool.h>
 #include <stdio.h>
 
-enum { MOST_MASSES = 3, MOST_CONTACTS = 4, GROUND = -1 };
+enum { MOST_MASSES = 4, MOST_CONTACTS = 5, GROUND = -1 };
 
 /* All numbers are whole thousandths, so that text and numbers are the same. Between mass `on` and mass `against`, or
  * the ground, p = side (q_on - q_against) and v = q_on' - q_against' */
@@ -17,7 +17,9 @@ struct contact {
 	long side;              /* of stop and impact: 1 or -1 */
 	long gap;               /* of stop and impact: met where p comes to it */
 	long stiffness;         /* of a stop: it pushes back with stiffness (p - gap) */
-	long force;             /* of friction: at most this */
+	long force, more;       /* of friction: at most force while it slides, force + more while it sticks; beyond that */
+	long swing, pad;        /* swing cos(w t), and pad times the position of mass pad_at */
+	int pad_at;
 	long belt;              /* of friction: it slides with v - belt */
 	long restitution;       /* of an impact */
 };
@@ -30,11 +32,14 @@ struct scene {
 	long start[MOST_MASSES], speed[MOST_MASSES];
 	struct contact contact[MOST_CONTACTS];
 	long step;              /* [1e-3 s] */
+	int scale;              /* the spec is written in units of time of 10^-scale s */
 };
 
 /* kinds: how many contacts of each kind at most, at least one in all. Contacts with friction and impacts are along
- * directions of which none follows from the others. */
-struct scene scene_random(unsigned seed, const int most[3]);
-void scene_write(const struct scene *s, FILE *to);      /* as a spec, whose model is called scene */
+ * directions of which none follows from the others. wild: more masses, forces of friction that change, that are higher
+ * at rest or zero, restitutions of 0 and 1, masses at rest, without springs, several that do the same at one instant,
+ * other units of time. */
+struct scene scene_random(unsigned seed, const int most[3], bool wild);
+void scene_write(const struct scene *s, const char *step, FILE *to);    /* as a spec, whose model is called scene */
 
 #endif

@@ -89,6 +89,14 @@ static void add(mpfr_t *a, int column, long factor)
 	mpfr_clear(f);
 }
 
+/* What friction can be at most: row over x, its factor */
+static void add_limit(const struct moving *m, const struct contact *c, bool sticks, long factor, mpfr_t *r)
+{
+	add(r, m->one, factor * (c->force + (sticks ? c->more : 0)));
+	add(r, m->one + 1, factor * c->swing);
+	add(r, c->pad_at, factor * c->pad);
+}
+
 /* Forces on masses, without those that hold: row over x for each mass */
 static void fill_forces(const struct moving *m, mpfr_t (*f)[MOST])
 {
@@ -113,7 +121,7 @@ static void fill_forces(const struct moving *m, mpfr_t (*f)[MOST])
 			if (here == 0)
 				continue;
 			if (c->kind == FRICTION && m->mode[k] != STICKING)
-				add(f[i], m->one, m->mode[k] == FORWARD ? -here * c->force : here * c->force);
+				add_limit(m, c, false, m->mode[k] == FORWARD ? -here : here, f[i]);
 			if (m->mode[k] != CLOSED)
 				continue;
 			for (int j = 0; j < s->n; j++)
@@ -271,7 +279,7 @@ static bool guard(const struct moving *m, int index, int which, mpfr_t *r)
 	for (int j = 0; j < MOST && turned; j++)
 		mpfr_neg(r[j], r[j], MPFR_RNDN);
 	if (mode == STICKING)
-		add(r, m->one, -c->force);
+		add_limit(m, c, true, -1, r);
 	return true;
 }
 
@@ -302,10 +310,34 @@ static int first_sign(const struct moving *m, mpfr_t *r, int from)
 	return sign;
 }
 
+/* F below 0 counts as 0, which no scene here goes into. */
+static void check_limits(struct moving *m)
+{
+	mpfr_t force;
+	row r;
+	mpfr_init2(force, BITS);
+	row_start(r, MOST);
+	for (int i = 0; i < m->s->contacts; i++) {
+		const struct contact *c = &m->s->contact[i];
+		if (c->kind != FRICTION || (c->force == 0 && c->swing == 0 && c->pad == 0))
+			continue;
+		zero(r, MOST);
+		add_limit(m, c, false, 1, r);
+		dot(MOST, r, m->x, force);
+		if (mpfr_get_d(force, MPFR_RNDN) < 1e-4)
+			doubt(m, "a force of friction below 0");
+	}
+	row_stop(r, MOST);
+	mpfr_clear(force);
+}
+
 /* ---- which modes hold behind an event ---- */
 
 static void log_event(struct moving *m, double time, int contact, enum mode from, enum mode to)
 {
+	const struct contact *c = &m->s->contact[contact];
+	if (c->kind == FRICTION && c->force + c->more == 0)
+		return;                         /* it is not there */
 	if (m->found->events == MOST_FOUND) {
 		doubt(m, "too many events");
 		return;
@@ -614,7 +646,7 @@ static bool next_event(struct moving *m, mpfr_ptr width)
 	return any;
 }
 
-static void start(struct moving *m)
+static void start(struct moving *m, double nudge)
 {
 	const struct scene *s = m->s;
 	m->one = 2 * s->n;
@@ -631,6 +663,9 @@ static void start(struct moving *m)
 	for (int i = 0; i < s->n; i++) {
 		thousandths(m->x[i], s->start[i]);
 		thousandths(m->x[s->n + i], s->speed[i]);
+		mpfr_add_d(m->x[i], m->x[i], nudge, MPFR_RNDN);
+		if (s->speed[i] != 0)
+			mpfr_add_d(m->x[s->n + i], m->x[s->n + i], nudge, MPFR_RNDN);
 	}
 	mpfr_set_ui(m->x[m->one], 1, MPFR_RNDN);
 	mpfr_set_ui(m->x[m->one + 1], 1, MPFR_RNDN);
@@ -656,7 +691,7 @@ static void finish(struct moving *m)
 	mpfr_clears(m->time, m->tiny, (mpfr_ptr)0);
 }
 
-void truth_run(const struct scene *s, double until, double brief, struct truth *found)
+void truth_run(const struct scene *s, double until, double brief, double nudge, struct truth *found)
 {
 	struct moving *m = calloc(1, sizeof *m);
 	mpfr_t width, left, end;
@@ -664,7 +699,12 @@ void truth_run(const struct scene *s, double until, double brief, struct truth *
 	m->s = s;
 	m->found = found;
 	m->brief = brief;
-	start(m);
+	start(m, nudge);
+	bool any = false;
+	for (int i = 0; i < s->contacts; i++)
+		any = any || s->contact[i].kind != FRICTION || s->contact[i].force + s->contact[i].more > 0;
+	if (!any)
+		doubt(m, "nothing touches");
 	mpfr_inits2(BITS, width, left, end, (mpfr_ptr)0);
 	mpfr_set_d(end, until * 1000, MPFR_RNDN);       /* a whole number of thousandths */
 	mpfr_rint(end, end, MPFR_RNDN);
@@ -677,6 +717,7 @@ void truth_run(const struct scene *s, double until, double brief, struct truth *
 		if (mpfr_cmp(width, left) > 0)
 			mpfr_set(width, left, MPFR_RNDN);
 		expand(m);
+		check_limits(m);
 		const bool event = next_event(m, width);
 		go(m, width);
 		if (event)
