@@ -29,8 +29,8 @@ awk 'BEGIN { for (k = 0; k <= 256; k++) print k % 40 < 20 ? 1 : -0.5 }' >u
 rows() {
 	name=$1
 	shift
-	${CC:-cc} -std=c99 -O1 -w -DMODEL=bare -I"$root/runtime" "$root/runtime/host/plmain.c" "$name.c" "$archive" -lm \
-		-o "run_$name" >>log 2>&1 && "./run_$name" 4 "$@" <u >"$name.csv" 2>>log
+	${CC:-cc} -std=c99 -O1 -w -DMODEL=bare -I"$root/runtime" "$root/runtime/host/plmain.c" "$name.c" "$archive" \
+		-lm -o "run_$name" >>log 2>&1 && "./run_$name" 4 "$@" <u >"$name.csv" 2>>log
 }
 
 # close A B: of each column the largest difference is within 1e-12 of its largest value; and it is not 0 everywhere
@@ -64,7 +64,8 @@ for values in 'm=2 k=50 c=0.5 g=3' 'm=3 k=70 c=0.25 g=4' 'm=2.5 k=-20 c=1 g=-0.5
 	done
 	: >log
 	# shellcheck disable=SC2086
-	"$plgen" $options bare.spec -o whole.c >>log 2>&1 && rows whole && rows tuned $values && close whole.csv tuned.csv
+	"$plgen" $options bare.spec -o whole.c >>log 2>&1 && rows whole && rows tuned $values &&
+		close whole.csv tuned.csv
 	result $? "with $values, as the whole model"
 done
 
