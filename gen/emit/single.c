@@ -46,17 +46,10 @@ static const struct name { const char *name, *stem; bool called; } names[] = {
 	{ "copysign", "copysign", true }
 };
 
-static bool in_name(char c)
-{
-	return isalnum((unsigned char)c) || c == '_';
-}
-
 static const char *print_name(FILE *to, const char *text)
 {
-	const char *end = text;
-	while (in_name(*end))
-		end++;
-	size_t length = (size_t)(end - text);
+	size_t length = name_length(text);
+	const char *end = text + length;
 	for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
 		const struct name *n = &names[i];
 		if (strlen(n->name) != length || memcmp(n->name, text, length) != 0 || (n->called && *end != '('))

@@ -802,6 +802,8 @@ struct tuning {
 };
 /* model->tuning, or model->held, where something is tunable; false: it was said why not */
 bool find_tuning(struct model *model, const struct request *request);
+/* the first name in it that is tunable, or made of what is; NULL: there is none */
+const struct node *first_tuned(const struct node *node);
 
 /* ---- params.c: tunable params that the instance has ---- */
 

@@ -480,14 +480,37 @@ static void person_split(FILE *to, const struct step *step)
 			form_text(model, model->operator[0].left[c]));
 }
 
+/* A row over the written states, a - 2*b */
+static const char *combination_text(const struct model *written, const mpq_t *row)
+{
+	const char *text = "";
+	mpq_t size;
+	mpq_init(size);
+	for (int j = 0; j < written->system.states; j++) {
+		int sign = mpq_sgn(row[j]);
+		if (sign == 0)
+			continue;
+		mpq_abs(size, row[j]);
+		text = format("%s%s%s%s", text, *text ? sign < 0 ? " - " : " + " : sign < 0 ? "-" : "",
+			      mpq_cmp_ui(size, 1, 1) == 0 ? "" : format("%s*", readable_text(size)),
+			      written->state_name[j]);
+	}
+	mpq_clear(size);
+	return text;
+}
+
 /* What went: states that no output sees, and with them the poles that cancel in every N/B. */
 static void person_reduction(FILE *to, const struct step *step)
 {
 	const struct model *model = step->model;
 	fprintf(to, "Reduced to what the outputs can see: %d of %d states.\n", model->system.states,
 		model->written->system.states);
-	for (int i = 0; i < model->system.states; i++)
-		fprintf(to, "    state %s\n", model->state_name[i]);
+	for (int i = 0; i < model->system.states; i++) {
+		const char *text = combination_text(model->written, (const mpq_t *)model->reduction.row +
+								    i * model->written->system.states);
+		bool same = strcmp(text, model->state_name[i]) == 0;
+		fprintf(to, "    state %s%s%s\n", model->state_name[i], same ? "" : " = ", same ? "" : text);
+	}
 	fputs("Gone:", to);
 	for (int i = 0; i < model->reduction.dropped; i++)
 		fprintf(to, "%s %s", i ? "," : "", model->reduction.dropped_name[i]);
