@@ -362,8 +362,12 @@ static void decide(const pl_guards *m, const real *x, pl_contact *c, real *work)
 void pl_guards_start(const pl_guards *m, const real *x, pl_contact *c, real *work)
 {
     walk w;
+    int first = 0;
+    while (m->matrix[first] < 0)
+        first++;
     c->total = 0;
-    c->crossings = c->status = c->matrix = c->rested = 0;
+    c->crossings = c->status = c->rested = 0;
+    c->matrix = m->matrix[first];
     enter(m->matrix, c, 0);
     follow(m, x, c, (pl_crossing *)0, 0);
     /* at rest: let it stick first */
@@ -517,13 +521,19 @@ static int pass(const pl_guards *m, pl_contact *c, const pl_guard *g, real *x, p
     return !full;
 }
 
-/* At the start: what holds may have moved, and what moves may have jumped. */
-static void take_up(const pl_guards *m, real *x, pl_contact *c, pl_crossing *crossing, real *work)
+/* At the start, or behind a change of the loads: what holds may have moved, and what moves may have jumped. */
+static void take_up(const pl_guards *m, real *x, pl_contact *c, pl_crossing *crossing, real time, real *work)
 {
-    follow(m, x, c, crossing, 0);
-    (void)collide(m, -1, x, c, crossing, 0, work);
-    settle(m, x, c, crossing, 0, work);
+    follow(m, x, c, crossing, time);
+    (void)collide(m, -1, x, c, crossing, time, work);
+    settle(m, x, c, crossing, time, work);
     assign(m, m->hold[c->region], x, work);
+}
+
+void pl_guards_change(const pl_guards *m, real time, real *x, pl_contact *c, pl_crossing *crossing, real *work)
+{
+    c->crossings = 0;
+    take_up(m, x, c, crossing, time, work);
 }
 
 void pl_guards_advance(const pl_guards *m, real tau, real *x, pl_contact *c, pl_crossing *crossing, real *work)
@@ -533,7 +543,7 @@ void pl_guards_advance(const pl_guards *m, real tau, real *x, pl_contact *c, pl_
     int splits = m->max_splits, fresh = 1, i;
     c->crossings = 0;
     if (m->hold[c->region] >= 0) {
-        take_up(m, x, c, crossing, rest);
+        take_up(m, x, c, crossing, 0, rest);
         fresh = 0;
     }
     while (left > REST * m->h) { /* nothing for what rounding leaves */
@@ -555,7 +565,7 @@ void pl_guards_advance(const pl_guards *m, real tau, real *x, pl_contact *c, pl_
         }
         if (fresh) { /* the region may be another one now */
             fresh = 0;
-            take_up(m, x, c, crossing, rest);
+            take_up(m, x, c, crossing, tau - left, rest);
             continue;
         }
         first = move(m, c, dt, whole ? y : (real *)0, &splits, x, rest);

@@ -219,8 +219,7 @@ static void place_loads_of(struct building *b, const struct switching *s)
 	}
 	for (int e = 0; e < s->expressions; e++)
 		for (int segment = 0; segment < s->segments; segment++)
-			place_loads(b, form_sum(s->expression[e].in[segment],
-						form_constant(s->expression[e].shift[segment]), false));
+			place_loads(b, form_in(&s->expression[e], segment));
 	place_impact_loads(b, s);
 }
 

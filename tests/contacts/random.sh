@@ -1,16 +1,17 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# random.sh PLGEN TRUTH FOLLOW.C SOURCE STOPS FRICTIONS IMPACTS FIRST COUNT
+# random.sh PLGEN TRUTH FOLLOW.C SOURCE STOPS FRICTIONS IMPACTS CHANGES FIRST COUNT
 #
-# COUNT random scenes from seed FIRST on with at most so many contacts of each kind: the emitted code against the same
+# COUNT random scenes from seed FIRST on with at most so many contacts of each kind and changes of the loads: the
+# emitted code against the same
 # scene in multiprecision. $CC compiles, $PLRT is the runtime. KEEP=FOLDER keeps what fails.
 plgen=$(realpath "$1")
 truth=$(realpath "$2")
 follow=$(realpath "$3")
 source=$(realpath "$4")
-kinds="$5 $6 $7"
-first=$8
-shift 8
+kinds="$5 $6 $7 $8"
+first=$9
+shift 9
 last=$((first + $1))
 seconds=10
 . "$source/tests/tap.sh"

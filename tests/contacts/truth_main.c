@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* truth STOPS FRICTIONS IMPACTS SEED SECONDS SPEC FOUND: a random scene with at most so many contacts of each kind, as
- * a spec, and how it moves: lines `event TIME CONTACT FROM TO` in order, `slowest SPEED`, `end q1 ... q1' ...`. Status
- * 2: this scene
- * decides nothing. Bounces that would be over within 2^-23 of a step are those of a contact that rests. */
+/* truth STOPS FRICTIONS IMPACTS CHANGES SEED SECONDS SPEC FOUND: a random scene with at most so many contacts of each
+ * kind and changes of the loads, as a spec, and how it moves: lines `event TIME CONTACT FROM TO` in order, `slowest
+ * SPEED`, `end q1 ... q1' ...`. Status 2: this scene decides nothing. Bounces that would be over within 2^-23 of a step are those of a contact that rests. */
 #include "truth.h"
 
 #include <stdlib.h>
@@ -25,15 +24,15 @@ static void write_found(const struct scene *s, FILE *to)
 
 int main(int count, char **argument)
 {
-	if (count != 8)
+	if (count != 9)
 		return 1;
-	const int most[3] = { atoi(argument[1]), atoi(argument[2]), atoi(argument[3]) };
-	const struct scene s = scene_random((unsigned)atoi(argument[4]), most);
-	FILE *spec = fopen(argument[6], "w"), *to = fopen(argument[7], "w");
+	const int most[4] = { atoi(argument[1]), atoi(argument[2]), atoi(argument[3]), atoi(argument[4]) };
+	const struct scene s = scene_random((unsigned)atoi(argument[5]), most);
+	FILE *spec = fopen(argument[7], "w"), *to = fopen(argument[8], "w");
 	if (!spec || !to)
 		return 1;
 	scene_write(&s, spec);
-	truth_run(&s, atof(argument[5]), (double)s.step / 1000 / (1 << 23), &found);
+	truth_run(&s, atof(argument[6]), (double)s.step / 1000 / (1 << 23), &found);
 	if (found.doubtful)
 		fprintf(to, "doubtful: %s\n", found.doubt);
 	write_found(&s, to);
