@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* follow FOUND STEPS TOLERANCE: whether the emitted model `scene` meets every event in FOUND, in order, and ends where
  * FOUND says, off by at most TOLERANCE of the largest value, times 0.1 over the slowest speed at which something was
- * met, where that is more. Events of one instant count once: which intervals are
+ * met, or 0.02 times what an error grows by, where that is more. Events of one instant count once: which intervals are
  * passed on the way is the model's own affair. */
 #include "scene.h"
 #include "worse.h"
@@ -42,15 +42,17 @@ int main(int count, char **argument)
 	FILE *from = count == 4 ? fopen(argument[1], "r") : NULL;
 	char line[512];
 	int events = 0, faults = 0;
-	double end[SCENE_STATES] = { 0 }, y[SCENE_STATES], most = 0.1, worst = 0, slowest;
+	double end[SCENE_STATES] = { 0 }, y[SCENE_STATES], most = 0.1, worst = 0, number, more = 1;
 	double tolerance = count == 4 ? atof(argument[3]) : 0;
 	while (from && fgets(line, sizeof line, from)) {
 		double time;
 		if (sscanf(line, "event %lf %79[^\n]", &time, what[events]) == 2) {
 			if (events == 0 || time > expected[events - 1] + together)
 				expected[events++] = time;
-		} else if (sscanf(line, "slowest %lf", &slowest) == 1) {
-			tolerance *= fmax(1, 0.1 / slowest);
+		} else if (sscanf(line, "slowest %lf", &number) == 1) {
+			more = fmax(more, 0.1 / number);
+		} else if (sscanf(line, "growth %lf", &number) == 1) {
+			more = fmax(more, 0.02 * number);
 		} else if (strncmp(line, "end", 3) == 0) {
 			char *at = line + 3;
 			for (int i = 0; i < SCENE_STATES; i++)
@@ -59,6 +61,7 @@ int main(int count, char **argument)
 	}
 	if (!from)
 		return 1;
+	tolerance *= more;
 	scene s;
 	scene_init(&s);
 	const int met = follow(&s, atol(argument[2]));

@@ -200,18 +200,16 @@ static const char *between(char *into, const struct contact *c, const char *prim
 	return into;
 }
 
-static void write_contact(const struct scene *s, const struct contact *c, int on, FILE *to)
+/* Its force on `on`, written once: what it is in each segment of time has one place in the text */
+static void write_force(const struct scene *s, int index, FILE *to)
 {
+	const struct contact *c = &s->contact[index];
 	char a[32], b[LONG], d[LONG], p[32];
-	const char *sign = on == c->on ? "+" : "-", *turned = on == c->on ? "-" : "+";
-	if (c->kind == STOP && c->side > 0)
-		fprintf(to, " %s %s*max(%s - %s, 0)", sign, text(a, c->stiffness), between(p, c, ""),
-			law_text(b, s, &c->gap, 1));
-	if (c->kind == STOP && c->side < 0)
-		fprintf(to, " %s %s*max(-%s - %s, 0)", turned, text(a, c->stiffness), between(p, c, ""),
-			law_text(b, s, &c->gap, 1));
+	if (c->kind == STOP)
+		fprintf(to, "let c%d = %s%s*max(%s%s - %s, 0)\n", index, c->side < 0 ? "-" : "", text(a, c->stiffness),
+			c->side < 0 ? "-" : "", between(p, c, ""), law_text(b, s, &c->gap, 1));
 	if (c->kind == FRICTION)
-		fprintf(to, " %s friction(%s - %s, %s)", sign, between(p, c, "'"), law_text(b, s, &c->belt, 1),
+		fprintf(to, "let c%d = friction(%s - %s, %s)\n", index, between(p, c, "'"), law_text(b, s, &c->belt, 1),
 			law_text(d, s, &c->force, 1));
 }
 
@@ -226,8 +224,8 @@ static void write_equation(const struct scene *s, int i, FILE *to)
 			k == i ? '+' : '-', text(b, s->damper[k]), between(v, &link, "'"));
 	}
 	for (int k = 0; k < s->contacts; k++)
-		if (s->contact[k].on == i || s->contact[k].against == i)
-			write_contact(s, &s->contact[k], i, to);
+		if (s->contact[k].kind != IMPACT && (s->contact[k].on == i || s->contact[k].against == i))
+			fprintf(to, " %c c%d", s->contact[k].on == i ? '+' : '-', k);
 	char w[32], e[LONG], c[LONG], d[LONG];
 	fprintf(to, " = %s + %s*cos(%s*t) + %s*sin(%s*t)\n", law_text(e, s, &s->constant[i], 1),
 		law_text(c, s, &s->cosine[i], 1), text(w, s->frequency), law_text(d, s, &s->sine[i], 1), w);
@@ -263,6 +261,8 @@ void scene_write(const struct scene *s, FILE *to)
 	for (int i = 0; i < s->n; i++)
 		fprintf(to, ", q%d' = %s", i + 1, text(a, s->speed[i]));
 	fprintf(to, "\n");
+	for (int k = 0; k < s->contacts; k++)
+		write_force(s, k, to);
 	for (int i = 0; i < s->n; i++)
 		write_equation(s, i, to);
 	for (int i = 0; i < s->contacts; i++)

@@ -627,7 +627,7 @@ static bool next_event(struct moving *m, mpfr_ptr width)
 	return any;
 }
 
-static void start(struct moving *m)
+static void start(struct moving *m, double nudge)
 {
 	const struct scene *s = m->s;
 	m->one = 2 * s->n;
@@ -644,6 +644,8 @@ static void start(struct moving *m)
 	for (int i = 0; i < s->n; i++) {
 		thousandths(m->x[i], s->start[i]);
 		thousandths(m->x[s->n + i], s->speed[i]);
+		mpfr_add_d(m->x[i], m->x[i], nudge, MPFR_RNDN);
+		mpfr_add_d(m->x[s->n + i], m->x[s->n + i], nudge, MPFR_RNDN);
 	}
 	mpfr_set_ui(m->x[m->one], 1, MPFR_RNDN);
 	mpfr_set_ui(m->x[m->one + 1], 1, MPFR_RNDN);
@@ -678,7 +680,7 @@ static void pass_change(struct moving *m, mpfr_srcptr change)
 	settle(m);
 }
 
-void truth_run(const struct scene *s, double until, double brief, struct truth *found)
+void truth_run(const struct scene *s, double nudge, double until, double brief, struct truth *found)
 {
 	struct moving *m = calloc(1, sizeof *m);
 	mpfr_t width, left, end, change;
@@ -686,7 +688,7 @@ void truth_run(const struct scene *s, double until, double brief, struct truth *
 	m->s = s;
 	m->found = found;
 	m->brief = brief;
-	start(m);
+	start(m, nudge);
 	mpfr_inits2(BITS, width, left, end, change, (mpfr_ptr)0);
 	mpfr_set_d(end, until * 1000, MPFR_RNDN);       /* a whole number of thousandths */
 	mpfr_rint(end, end, MPFR_RNDN);

@@ -28,8 +28,8 @@ struct truth {
 	const char *doubt;
 };
 
-/* brief: bounces that would all be over within this time [s] are not listed; their contact rests, at the time when the
+/* nudge: more of each state at the start; to see by how much an error grows. brief: bounces that would all be over within this time [s] are not listed; their contact rests, at the time when the
  * last of them would be over. The state does not know of it. */
-void truth_run(const struct scene *s, double until, double brief, struct truth *found);
+void truth_run(const struct scene *s, double nudge, double until, double brief, struct truth *found);
 
 #endif
