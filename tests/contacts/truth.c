@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* x = q, v, 1, cos w t, sin w t, t. In each segment of time and mode of the contacts x' = A x; A and forces of contact as rows over x. */
+/* x = q, v, 1, cos w t, sin w t, t. In each segment of time and mode of the contacts x' = A x; A and forces of contact
+ * as rows over x. */
 #include "truth.h"
 
 #include "polynomial.h"

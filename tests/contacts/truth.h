@@ -28,8 +28,9 @@ struct truth {
 	const char *doubt;
 };
 
-/* nudge: more of each state at the start; to see by how much an error grows. brief: bounces that would all be over within this time [s] are not listed; their contact rests, at the time when the
- * last of them would be over. The state does not know of it. */
+/* nudge: more of each state at the start; to see by how much an error grows. brief: bounces that would all be over
+ * within this time [s] are not listed; their contact rests, at the time when the last of them would be over. The state
+ * does not know of it. */
 void truth_run(const struct scene *s, double nudge, double until, double brief, struct truth *found);
 
 #endif

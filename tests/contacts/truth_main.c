@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* truth STOPS FRICTIONS IMPACTS CHANGES SEED SECONDS SPEC FOUND: a random scene with at most so many contacts of each
  * kind and changes of the loads, as a spec, and how it moves: lines `event TIME CONTACT FROM TO` in order, `slowest
- * SPEED`, `growth` of an error at the start, `end q1 ... q1' ...`. Status 2: this scene decides nothing. Bounces that would be over within 2^-23 of a step are those of a contact that rests. */
+ * SPEED`, `growth` of an error at the start, `end q1 ... q1' ...`. Status 2: this scene decides nothing. Bounces that
+ * would be over within 2^-23 of a step are those of a contact that rests. */
 #include "truth.h"
 
 #include <math.h>
