@@ -605,6 +605,7 @@ void emit_region_start_call(const struct emitter *e);
 void emit_region_advance_call(const struct emitter *e);
 void emit_segment_end(const struct emitter *e);                   /* of a step: in which segment outputs are */
 bool regions_change(const struct emitter *e);                     /* they are others in each segment of time */
+const char *search_of(const struct emitter *e);                    /* of the runtime: pl_switching, pl_guards */
 
 /* ---- emit_delays.c: delayed inputs, around a model that has them as inputs ---- */
 

@@ -39,7 +39,10 @@ static void emit_guard_list(const struct emitter *e, const struct guards *g)
 		limit[i] = g->guard[i].limit;
 	say(e, "};\n");
 	emit_list(e, "limit", "of each guard", g->guards, limit);
-	emit_list(e, "play", "factors of cos and sin in each expression", s->expressions, g->play);
+	emit_list(e, "play",
+		  regions_change(e) ? "factors of cos and sin in each expression, segment of time by segment"
+				    : "factors of cos and sin in each expression",
+		  s->segments * s->expressions, g->play);
 	emit_list(e, "gate_play", "in each row of guards", g->rows, g->row_play);
 }
 
@@ -115,21 +118,23 @@ static void emit_assignments(const struct emitter *e, const struct guards *g)
 static void emit_impacts(const struct emitter *e, const struct guards *g)
 {
 	const struct switching *s = e->model->switching;
-	int size = e->step->layout.size, count = g->impacts > 0 ? g->impacts : 1;
+	int size = e->step->layout.size, all = s->segments * g->impacts, count = all > 0 ? all : 1;
 	double *speed = ARRAY(double, (size_t)count * (size_t)size);
 	double *back = ARRAY(double, (size_t)count * (size_t)size);
 	const char **note = ARRAY(const char *, (size_t)count);
 	note[0] = "none";
 	say(e, "\n"
 	       "static const pl_impact $o_impact[%d] = {"
-	       "  /* expression, breakpoint, upward, rest, jump, still, restitution, play */\n", count);
-	for (int i = 0; i < g->impacts; i++) {
+	       "  /* expression, breakpoint, upward, rest, jump, still, restitution, play%s */\n", count,
+	    regions_change(e) ? "; segment of time by segment" : "");
+	for (int i = 0; i < all; i++) {
 		const struct struck *impact = &g->impact[i];
 		say(e, "    { %d, %d, %d, %d, %d, %d, %s, %s },\n", impact->expression, impact->breakpoint,
 		    impact->upward, impact->rest, impact->jump, impact->still, shortest(impact->restitution),
 		    shortest(impact->play));
 		note[i] = impact->rest < 0 ? "none"
-					   : form_text(e->step->shown->model, s->impact[i].speed);
+					   : form_text(e->step->shown->model,
+						       s->impact[i % s->impacts].in[i / s->impacts].speed);
 		for (int j = 0; j < size; j++) {
 			speed[i * size + j] = impact->speed[j];
 			back[i * size + j] = impact->back[j];
@@ -137,7 +142,7 @@ static void emit_impacts(const struct emitter *e, const struct guards *g)
 	}
 	say(e, "%s};\n"
 	       "static const double $o_speed[%d][%d] = {  /* of what bounces */\n",
-	    g->impacts ? "" : "    { 0, 0, 0, -1, -1, -1, 0.0, 0.0 }\n", count, size);
+	    all ? "" : "    { 0, 0, 0, -1, -1, -1, 0.0, 0.0 }\n", count, size);
 	emit_number_rows(e, count, size, speed, note);
 	say(e, "};\n"
 	       "static const double $o_back[%d][%d] = {"
@@ -147,23 +152,42 @@ static void emit_impacts(const struct emitter *e, const struct guards *g)
 	say(e, "};\n");
 }
 
+/* In a segment of time, or always */
+static void emit_search_in(const struct emitter *e, const struct guards *g, int segment, const char *indent)
+{
+	const struct switching *s = e->model->switching;
+	int impact = segment * g->impacts, expression = segment * s->expressions;
+	const char *row = regions_change(e) ? format("[%d][0]", segment) : "[0]";
+	const char *play = expression ? format(" + %d", expression) : "", *from = impact ? format(" + %d", impact) : "";
+	say(e, "%s    %d, $N_H, %d, $o_row%s, $o_breaks, $o_breakpoint, $o_matrix, $o_halvings,\n"
+	       "%s    $o_slopes[0][0], $o_pieces[0][0], $o_lean[0][0],\n"
+	       "%s    $o_first, $o_guard, $o_limit, $o_holding,\n",
+	    indent, e->step->layout.size, s->expressions, row, indent, indent);
+	say(e, "%s    $o_gate[0], $o_gate_lean[0], $o_gate_sag[0], $o_gate_sway[0], $o_play%s, $o_gate_play,\n"
+	       "%s    $o_sets, $o_held, $o_value[0], %d, $o_impact%s, $o_speed[%d], $o_back[%d], %d, $N_MAX_EVENTS, "
+	       "%d\n",
+	    indent, play, indent, g->impacts, from, impact, impact, e->step->series.degree, max_splits(e->model));
+}
+
 void emit_guards(const struct emitter *e, const struct pieces *pieces)
 {
 	struct guards g = guards_of(e->step, pieces);
+	bool several = regions_change(e);
 	emit_guard_list(e, &g);
 	emit_gates(e, &g);
 	emit_assignments(e, &g);
 	emit_impacts(e, &g);
 	say(e, "\n"
-	       "static const pl_guards $o_switching = {\n"
-	       "    %d, $N_H, %d, $o_row[0], $o_breaks, $o_breakpoint, $o_matrix, $o_halvings,\n"
-	       "    $o_slopes[0][0], $o_pieces[0][0], $o_lean[0][0],\n"
-	       "    $o_first, $o_guard, $o_limit, $o_holding,\n"
-	       "    $o_gate[0], $o_gate_lean[0], $o_gate_sag[0], $o_gate_sway[0], $o_play, $o_gate_play,\n"
-	       "    $o_sets, $o_held, $o_value[0], %d, $o_impact, $o_speed[0], $o_back[0], %d, $N_MAX_EVENTS, %d\n"
-	       "};\n",
-	    e->step->layout.size, e->model->switching->expressions, g.impacts, e->step->series.degree,
-	    max_splits(e->model));
+	       "static const pl_guards $o_switching%s = {\n",
+	    several ? format("[%d]", e->model->switching->segments) : "");
+	if (!several)
+		emit_search_in(e, &g, 0, "");
+	for (int k = 0; k < e->model->switching->segments && several; k++) {
+		say(e, "  {\n");
+		emit_search_in(e, &g, k, "  ");
+		say(e, "  },\n");
+	}
+	say(e, "};\n");
 }
 
 void emit_grips(const struct emitter *e)
@@ -171,19 +195,18 @@ void emit_grips(const struct emitter *e)
 	const struct switching *s = e->model->switching;
 	int size = e->step->layout.size;
 	const double *grip = grips_of(e->step);
-	int grips = grips_in(s);
-	const char **name = ARRAY(const char *, (size_t)grips);
-	for (int i = 0; i < grips; i++) {
-		const struct node *node = atom_of_grip(s, i)->node;
+	const char **name = ARRAY(const char *, (size_t)s->felts);
+	for (int i = 0; i < s->felts; i++) {
+		const struct node *node = s->felt[i]->node;
 		const char *text = text_between(node->start, node->end);
-		name[i] = i < s->frictions ? text : format("velocity of %s", text);
+		name[i] = s->felt[i]->function == FN_SLIDE ? format("velocity of %s", text) : text;
 	}
 	say(e, "\n"
 	       "static const double $n_grips[%d][%d][%d] = {  /* of each region: what friction carries */\n",
-	    s->regions, grips, size);
+	    s->regions, s->felts, size);
 	for (int r = 0; r < s->regions; r++) {
 		say(e, "  {\n");
-		emit_number_rows(e, grips, size, grip + r * grips * size, name);
+		emit_number_rows(e, s->felts, size, grip + r * s->felts * size, name);
 		say(e, "  },\n");
 	}
 	say(e, "};\n");

@@ -247,7 +247,7 @@ static const char *call_text(struct writer *w, const struct atom *a)
 	case FN_TABLE: return table_text(w, a);
 	case FN_FRICTION:
 	case FN_SLIDE:
-		return format("%s(s, %d)", spell(w->e, "$n_grip"), grip_of(w->e->model->switching, a));
+		return format("%s(s, %d)", spell(w->e, "$n_grip"), felt_of(w->e->model->switching, a));
 	case FN_MIN:
 	case FN_MAX:   return extreme_text(w, a);
 	case FN_ATAN2: return format("atan2(%s, %s)", argument_text(w, a->operand[0]), argument_text(w, a->operand[1]));

@@ -27,6 +27,7 @@ static const struct name { const char *name, *stem; bool called; } names[] = {
 	{ "pl_impact", "pl_impact", false },
 	{ "pl_guards", "pl_guards", false }, { "pl_guards_start", "pl_guards", false },
 	{ "pl_guards_step", "pl_guards", false }, { "pl_guards_advance", "pl_guards", false },
+	{ "pl_guards_change", "pl_guards", false },
 	{ "pl_switching", "pl_switching", false }, { "pl_switching_start", "pl_switching", false },
 	{ "pl_switching_step", "pl_switching", false }, { "pl_switching_advance", "pl_switching", false },
 	{ "pl_crossing", "pl_crossing", false }, { "pl_divided", "pl_divided", false },

@@ -86,14 +86,17 @@ static void collect_element(void *context)
 	work->snapshot->element[work->index] = form;
 }
 
+/* Up to the first statement that changes its formula where none did before: the interval is then collected again, and
+ * an atom that several equations have is met first where it is in the other intervals. */
 void collect_equations(struct building *b, struct snapshot *snapshot)
 {
-	for (int i = 0; i < b->spec->equations; i++)
+	const int *changes = &b->collector.changes, known = *changes;
+	for (int i = 0; i < b->spec->equations && *changes == known; i++)
 		if (b->spec->equation[i].right)
 			statement_guard(collect_equation, &(struct indexed){ b, snapshot, i });
 	snapshot->written = snapshot->residuals;
 	snapshot->element = ARRAY(struct form *, (size_t)b->spec->elements);
-	for (int i = 0; i < b->spec->elements; i++)
+	for (int i = 0; i < b->spec->elements && *changes == known; i++)
 		statement_guard(collect_element, &(struct indexed){ b, snapshot, i });
 }
 

@@ -291,26 +291,28 @@ struct jump {                       /* a state just behind an impact, over state
 	struct form *form;
 	struct output *row;
 };
-struct impact {                     /* of `when`, or of a stop */
-	const struct when *when;
-	bool rising;                /* as written it rises where it comes true */
-	struct form *guard, *speed; /* turned so that it does, through 0; its derivative */
+struct strike {                     /* what an impact is in one segment of time */
+	struct form *guard, *speed; /* turned so that it rises where it comes true, through 0; its derivative */
 	int jumps;
 	struct jump *jump;
-	/* v -> v - (1 + e) d s, s the speed: a bounce, which may come to rest; else the jump is any other */
-	bool bounces;
-	mpq_t restitution;          /* e */
+	mpq_t restitution;          /* of a bounce: e */
 	mpq_t *direction;           /* d, per coordinate */
-	struct jump *still;         /* of a bounce: its jumps if e were 0 */
+	struct jump *still;         /* its jumps if e were 0 */
 	struct output *speed_row;
 	int expression;             /* its guard is a multiple of this one, less a breakpoint, */
 	mpq_t at, factor;           /* guard = factor (expression - at) */
 	bool upward;                /* which it passes this way */
 };
+struct impact {                     /* of `when`, or of a stop */
+	const struct when *when;
+	/* v -> v - (1 + e) d s, s the speed: a bounce, which may come to rest; else the jump is any other */
+	bool bounces;
+	struct strike *in;          /* per segment of time of the model */
+};
 /* friction(v, F): v is an expression less a breakpoint that stands there twice, the interval of sticking between */
-struct friction {
+struct friction {                   /* in one segment of time */
 	const struct atom *atom;
-	int expression;
+	int segment, expression;
 	mpq_t at;                   /* that breakpoint */
 	mpq_t factor;               /* v = factor (expression - at) */
 	bool negative;              /* F may fall below 0, and counts as 0 there */
@@ -341,7 +343,7 @@ struct region {                     /* one interval for each expression, in one 
 	struct form **residual;     /* per row: linear; friction stands in it as an atom until its force is put in */
 	struct form **force, **rest; /* per friction: F, and what it holds up to at rest; NULL: none acts here */
 	struct form **carried;      /* per friction's atom: what it carries, as it stands on the left side */
-	struct output **grip;       /* per grip: what is carried, as a row; NULL: nothing */
+	struct output **grip;       /* per friction that outputs read: the same as a row; NULL: nothing */
 	int *slide;                 /* per slider's atom: 1 or -1 where it slides */
 	int holds, releases;
 	struct hold *hold;
@@ -371,7 +373,8 @@ struct switching {
 	struct slider *slider;
 	int impacts;                /* the model's */
 	struct impact *impact;
-	bool felt;                  /* an output reads what it carries */
+	int felts;                  /* friction of which outputs read what it carries: as they have it, for all time */
+	const struct atom **felt;
 	int sharing;                /* parts that have these regions together, since some move as a whole */
 };
 /* Coordinates that nothing outside of them acts on, in no region: they have regions of their own, and cross breakpoints
@@ -413,6 +416,7 @@ struct snapshot {                   /* the equations and outputs in one interval
 	struct residual *residual;
 	struct form **element;      /* per element of the sketch: its force */
 	struct value **output;      /* per output statement; NULL: not linear */
+	struct strike **strike;     /* per `when` and stop; NULL: it has been told */
 };
 
 /* ---- blocks.c: coordinates that do not influence each other ---- */
@@ -549,6 +553,7 @@ struct compared {                   /* form + constant with 0 */
 int  find_expression(struct switching *s, int segment, const struct compared *what, mpq_ptr of, mpq_ptr at);
 /* In segments where nothing depends on it, it is as in the one before, or after. */
 void complete_expressions(struct switching *s);
+struct form *form_in(const struct expression *e, int segment); /* what breakpoints divide, in a segment of time */
 bool share_expression(const struct switching *a, const struct switching *b);
 bool changes_in_time(const struct expression *e);
 const char *spoken_expression(const struct model *model, int index);  /* x - t; from t = 2 on x - 1 */
@@ -568,8 +573,12 @@ int  possible_regions(const struct switching *s);
 
 /* ---- impacts.c: state jumps, and what bounces ---- */
 
-void collect_impacts(struct building *b);
+void collect_impacts(struct building *b, struct snapshot *snapshot); /* in one interval of time */
+void gather_impacts(struct building *b);                    /* of all of them */
 void build_impacts(struct building *b);                     /* once the masses are known */
+bool strikes_change(const struct building *b);              /* from interval to interval */
+/* At the start of this segment of time a load takes the guard up, so that it may come true by no crossing. */
+bool closes_by_jump(struct building *b, const struct impact *impact, int segment);
 void place_impact_loads(struct building *b, const struct switching *s);
 void build_impact_rows(struct building *b, struct switching *s);
 _Noreturn void tell_no_impacts(const struct building *b);   /* why a scheme cannot treat them */
@@ -577,16 +586,13 @@ _Noreturn void tell_no_impacts(const struct building *b);   /* why a scheme cann
 /* ---- events.c: what is held in regions, and what begins there ---- */
 
 bool is_stick(const struct expression *e, int interval);    /* between two equal breakpoints */
-/* which begins where an expression passes a breakpoint this way; -1: none does */
-int  impact_at(const struct switching *s, int expression, mpq_srcptr at, bool upward);
-int  impact_resting(const struct switching *s, int expression, int interval);  /* there; -1: none does */
-int  rest_of(const struct switching *s, const struct impact *impact); /* the interval in which it rests; -1: none */
+/* In one segment of time: which begins where an expression passes a breakpoint this way; -1: none does */
+int  impact_at(const struct switching *s, int segment, int expression, mpq_srcptr at, bool upward);
+int  impact_resting(const struct switching *s, int segment, int expression, int interval); /* there; -1: none does */
+/* the interval in which it rests; -1: it is no bounce */
+int  rest_of(const struct switching *s, int segment, const struct impact *impact);
 bool has_bounces(const struct model *model);
 bool rubs(const struct switching *s);                       /* there is friction, with mass or without */
-/* What outputs may read of a region: the forces of friction, and then the velocities of sliders without mass */
-int  grips_in(const struct switching *s);
-const struct atom *atom_of_grip(const struct switching *s, int index);
-int  grip_of(const struct switching *s, const struct atom *a);     /* its index; -1: no equation has it */
 bool has_events(const struct switching *s);                 /* each region has its own: friction, impacts */
 
 /* ---- friction.c: dry friction in regions, where it slips and where it sticks ---- */
@@ -596,7 +602,10 @@ _Noreturn void tell_no_friction(const struct building *b);  /* why a scheme cann
 struct form *rate_of_form(struct building *b, const struct form *form); /* its derivative with respect to time */
 int  stick_of(const struct switching *s, const struct friction *f); /* the interval in which it sticks */
 /* puts in the forces of what slips, and the constraints of what sticks */
-int  friction_of(const struct switching *s, const struct atom *a); /* its index; -1: no equation has it */
+/* its index; -1: no equation has it in this segment of time */
+int  friction_of(const struct switching *s, int segment, const struct atom *a);
+int  felt_of(const struct switching *s, const struct atom *a); /* among those that outputs read */
+bool is_repeated(const struct switching *s, int friction);  /* as written it stands there for an earlier segment too */
 void resolve_friction(struct building *b, struct switching *s);
 void build_friction(struct building *b, struct switching *s); /* rows of holds and releases; after all systems */
 struct holding {                    /* states of a region that follow from the others, as they are found */
@@ -618,6 +627,9 @@ void resolve_sliders(struct building *b, struct snapshot *snapshot); /* its equa
 void slide_sliders(struct building *b, const struct switching *s, int region);
 void hold_sliders(struct holding *h, const struct switching *s);
 struct form *borne_form(const struct building *b, const struct form *form); /* of an output: what friction bears */
+/* where it slides, of the slider that is written there; NULL: it sticks */
+struct form *slide_velocity(const struct switching *s, const struct region *region, const struct node *node);
+bool is_repeated_slider(const struct switching *s, int index);      /* it stands there for an earlier segment too */
 const char *slider_text(const struct switching *s, int index);      /* for a reader: what slides, and where */
 
 /* ---- parts.c: regions of independent coordinates ---- */

@@ -21,9 +21,10 @@ static void add_highest(const struct model *model, const struct linear *system, 
 				mpq_add(output->channel[c], output->channel[c], weight);
 		for (int l = 0; l < system->loads; l++)
 			for (int k = 0; k < system->load[l].columns; k++)
-				for (int s = 0; s < system->segments; s++) {
-					mpq_ptr sum = output->load[l][k * system->segments + s];
-					mpq_mul(product, weight, system->load[l].force[k][s * model->n + i]);
+				for (int s = 0; s < model->system.segments; s++) {
+					mpq_ptr sum = output->load[l][k * model->system.segments + s];
+					int known = s < system->segments ? s : 0;
+					mpq_mul(product, weight, system->load[l].force[k][known * model->n + i]);
 					mpq_add(sum, sum, product);
 				}
 		for (int j = 0; j < system->inputs; j++)
@@ -274,19 +275,29 @@ struct output *row_of_expression(struct building *b, const struct switching *of,
 	make_rows(&b->model->system, b->model->channels, row);
 	for (int s = 0; s < segments; s++) {
 		int known = s < of->segments ? s : 0;
-		spread_loads(b, form_sum(e->in[known], form_constant(e->shift[known]), false), add_direct,
-			     &(struct direct_row){ row, segments, s });
+		spread_loads(b, form_in(e, known), add_direct, &(struct direct_row){ row, segments, s });
 	}
 	add_states_and_inputs(b, e->form, row);
 	return row;
 }
 
+/* What stands in the first segment of time, in all of them */
+static void repeat_loads(const struct linear *system, struct output *row)
+{
+	for (int l = 0; l < system->loads; l++)
+		for (int k = 0; k < system->load[l].columns; k++)
+			for (int s = 1; s < system->segments; s++)
+				mpq_set(row->load[l][k * system->segments + s], row->load[l][k * system->segments]);
+}
+
 struct output *row_of_form(struct building *b, struct form *form)
 {
+	const struct linear *system = &b->model->system;
 	struct output *row = NEW(struct output);
-	make_rows(&b->model->system, b->model->channels, row);
-	spread_loads(b, form, add_direct, &(struct direct_row){ row, 1, 0 });
+	make_rows(system, b->model->channels, row);
+	spread_loads(b, form, add_direct, &(struct direct_row){ row, system->segments, 0 });
 	add_states_and_inputs(b, form, row);
+	repeat_loads(system, row);
 	return row;
 }
 

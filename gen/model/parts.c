@@ -213,14 +213,16 @@ static void place_loads_of(struct building *b, const struct switching *s)
 			place_loads(b, region->hold[k].form);
 		for (int k = 0; k < region->releases; k++)
 			place_loads(b, region->release[k].form);
-		for (int k = 0; k < grips_in(s); k++)
-			if (region->carried[atom_of_grip(s, k)->index])
-				place_loads(b, region->carried[atom_of_grip(s, k)->index]);
+		for (int k = 0; k < s->frictions; k++)
+			if (region->carried[s->friction[k].atom->index])
+				place_loads(b, region->carried[s->friction[k].atom->index]);
+		for (int k = 0; k < s->sliders; k++)
+			if (region->carried[s->slider[k].atom->index])
+				place_loads(b, region->carried[s->slider[k].atom->index]);
 	}
 	for (int e = 0; e < s->expressions; e++)
 		for (int segment = 0; segment < s->segments; segment++)
-			place_loads(b, form_sum(s->expression[e].in[segment],
-						form_constant(s->expression[e].shift[segment]), false));
+			place_loads(b, form_in(&s->expression[e], segment));
 	place_impact_loads(b, s);
 }
 

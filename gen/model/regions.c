@@ -19,9 +19,7 @@ static bool has_atoms(const struct form *form)
 bool is_piecewise_linear(const struct building *b)
 {
 	int segments = b->model->system.segments;
-	bool divided = segments == 1;
-	if (segments > 1 && (holds_friction(b) || b->model->impacts > 0))
-		return false;
+	bool divided = segments == 1 || b->model->impacts > 0;
 	for (int s = 0; s < segments; s++)
 		for (int i = 0; i < b->model->n; i++) {
 			const struct form *form = b->snapshot[s].residual[i].form;
@@ -186,12 +184,12 @@ static struct form *force_here(struct looking *l, const struct node *node, struc
 static int add_friction(struct looking *l, const struct atom *a)
 {
 	struct switching *s = l->s;
-	int known = friction_of(s, a);
+	int known = friction_of(s, l->segment, a);
 	if (known >= 0)
 		return known;
 	ENLARGE(s->friction, (size_t)s->frictions + 1);
 	struct friction *f = &s->friction[s->frictions++];
-	*f = (struct friction){ .atom = a };
+	*f = (struct friction){ .atom = a, .segment = l->segment };
 	mpq_inits(f->at, f->factor, NULL);
 	return s->frictions - 1;
 }
@@ -385,31 +383,35 @@ static _Noreturn void too_many(const struct building *b, const struct switching 
 }
 
 /* A guard is a breakpoint of its expression; of a bounce one that stands twice, with the interval of rest between. */
+static void meet_impact(struct looking *l, const struct impact *impact, mpq_ptr constant)
+{
+	struct strike *strike = &impact->in[l->segment];
+	const struct node *node = impact->when->guard;
+	bool rising = node->comparison == CMP_GT || node->comparison == CMP_GE;
+	const struct form *guard = rising ? strike->guard : form_difference(NEW(struct form), strike->guard);
+	struct form plain = { 0, guard->term, 0 };
+	while (plain.terms < guard->terms && plain.term[plain.terms].basis.kind <= BASIS_PI)
+		plain.terms++;
+	constant_value(&l->b->collector, &plain, constant);
+	struct compared what = { node, form_sum(guard, &plain, true), constant, order_met(l) };
+	strike->expression = find_expression(l->s, l->segment, &what, strike->factor, strike->at);
+	strike->upward = (mpq_sgn(strike->factor) > 0) == rising;
+	if (!rising)
+		mpq_neg(strike->factor, strike->factor);
+	if (impact->bounces)
+		add_stick(l, &l->s->expression[strike->expression], strike->at);
+	else
+		(void)is_above(l, strike->expression, strike->at);
+}
+
 static void meet_impacts(struct looking *l)
 {
-	struct building *b = l->b;
-	mpq_t factor, constant;
-	mpq_inits(factor, constant, NULL);
-	for (int i = 0; i < b->model->impacts; i++) {
-		struct impact *impact = &b->model->impact[i];
-		const struct form *guard = impact->rising ? impact->guard
-							  : form_difference(NEW(struct form), impact->guard);
-		struct form plain = { 0, guard->term, 0 };
-		while (plain.terms < guard->terms && plain.term[plain.terms].basis.kind <= BASIS_PI)
-			plain.terms++;
-		constant_value(&b->collector, &plain, constant);
-		struct compared what = { impact->when->guard, form_sum(guard, &plain, true), constant, order_met(l) };
-		impact->expression = find_expression(l->s, l->segment, &what, factor, impact->at);
-		impact->upward = (mpq_sgn(factor) > 0) == impact->rising;
-		mpq_set(impact->factor, factor);
-		if (!impact->rising)
-			mpq_neg(impact->factor, factor);
-		if (impact->bounces)
-			add_stick(l, &l->s->expression[impact->expression], impact->at);
-		else
-			(void)is_above(l, impact->expression, impact->at);
-	}
-	mpq_clears(factor, constant, NULL);
+	const struct model *model = l->b->model;
+	mpq_t constant;
+	mpq_init(constant);
+	for (int i = 0; i < model->impacts; i++)
+		meet_impact(l, &model->impact[i], constant);
+	mpq_clear(constant);
 }
 
 /* One look at every region but the first `known`; false: something new was met on the way, but of the first `known`
@@ -649,7 +651,7 @@ static bool rows_change(const struct building *b, int rows, const int *row)
 		for (int k = 0; k < rows; k++)
 			changes = changes || !same_form(b->snapshot[s].residual[row[k]].form,
 							b->snapshot->residual[row[k]].form);
-	return changes;
+	return changes || strikes_change(b);
 }
 
 /* Highest derivatives cannot decide on their own equations; the collector has refused them. */
@@ -763,7 +765,11 @@ static void remove_break(struct switching *s, int expression, int at)
 static bool is_struck(const struct switching *s, int expression, int at)
 {
 	mpq_srcptr value = s->expression[expression].at[at];
-	return impact_at(s, expression, value, true) >= 0 || impact_at(s, expression, value, false) >= 0;
+	bool struck = false;
+	for (int k = 0; k < s->segments; k++)
+		struck = struck || impact_at(s, k, expression, value, true) >= 0 ||
+			 impact_at(s, k, expression, value, false) >= 0;
+	return struck;
 }
 
 static int breaks_of_all(const struct switching *s)
@@ -783,7 +789,8 @@ static void drop_expression(struct switching *s, int expression)
 	for (int i = 0; i < 2 * s->sliders; i++)
 		s->slider[i / 2].expression[i % 2] -= s->slider[i / 2].expression[i % 2] > expression;
 	for (int i = 0; i < s->impacts; i++)
-		s->impact[i].expression -= s->impact[i].expression > expression;
+		for (int k = 0; k < s->segments; k++)
+			s->impact[i].in[k].expression -= s->impact[i].in[k].expression > expression;
 	for (int r = 0; r < s->regions; r++)
 		for (int k = 0; k < s->region[r].releases; k++)
 			s->region[r].release[k].expression -= s->region[r].release[k].expression > expression;

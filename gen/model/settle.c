@@ -272,6 +272,8 @@ static void settle_impacts(void *context)
 	    !is_piecewise_linear(b))
 		tell_no_impacts(b);
 	build_impacts(b);
+	if (diagnostics_errors())
+		abandon();
 }
 
 static void tell_friction_stands(void *context)

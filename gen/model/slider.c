@@ -230,6 +230,22 @@ void resolve_sliders(struct building *b, struct snapshot *snapshot)
 
 /* ---- in regions ---- */
 
+bool is_repeated_slider(const struct switching *s, int index)
+{
+	bool repeated = false;
+	for (int i = 0; i < index; i++)
+		repeated = repeated || s->slider[i].atom->node == s->slider[index].atom->node;
+	return repeated;
+}
+
+struct form *slide_velocity(const struct switching *s, const struct region *region, const struct node *node)
+{
+	for (int i = 0; i < s->sliders; i++)
+		if (s->slider[i].atom->node == node && region->slide[s->slider[i].atom->index] != 0)
+			return region->carried[s->slider[i].atom->index];
+	return NULL;
+}
+
 const char *slider_text(const struct switching *s, int index)
 {
 	const struct slider *slider = &s->slider[index];

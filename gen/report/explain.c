@@ -231,9 +231,9 @@ static long guard_bytes(const struct step *step)
 	const struct switching *s = step->model->switching;
 	struct pieces pieces = pieces_of(step);
 	struct guards g = guards_of(step, &pieces);
-	long size = step->layout.size, grips = s->felt ? 8 * size * s->regions * grips_in(s) : 0;
+	long size = step->layout.size, grips = 8 * size * s->regions * s->felts;
 	return 8 * (g.rows * (4 * size + 1) + g.guards + g.assignments * size + s->expressions -
-		    2 * s->systems * s->expressions * size) +
+		    2 * s->systems * s->expressions * size + (s->segments - 1) * s->expressions) +
 	       4 * (6 * g.guards + 2 * s->regions + 1 + g.assignments + g.sets + 1) + grips;
 }
 
@@ -293,13 +293,16 @@ static void person_divided(FILE *to, const struct step *step)
 /* What rubs, and where it sticks: its expression, and the interval of that */
 static void person_frictions(FILE *to, const struct switching *s)
 {
-	for (int i = 0; i < s->frictions; i++) {
+	for (int i = 0, shown = 0; i < s->frictions; i++) {
 		const struct node *node = s->friction[i].atom->node;
-		fprintf(to, "    friction %d: %s; sticks in interval %d of expression %d\n", i,
+		if (is_repeated(s, i))
+			continue;
+		fprintf(to, "    friction %d: %s; sticks in interval %d of expression %d\n", shown++,
 			text_between(node->start, node->end), stick_of(s, &s->friction[i]), s->friction[i].expression);
 	}
 	for (int i = 0; i < s->sliders; i++)
-		fprintf(to, "    slider %d: %s\n", i, slider_text(s, i));
+		if (!is_repeated_slider(s, i))
+			fprintf(to, "    slider: %s\n", slider_text(s, i));
 }
 
 static void person_intervals(FILE *to, const struct switching *s, int region)
@@ -330,8 +333,8 @@ static void person_impacts(FILE *to, const struct model *model)
 		fprintf(to, "    impact %d: %s", i, text_between(impact->when->at, impact->when->end));
 		if (impact->bounces)
 			fprintf(to, "; a bounce of restitution %s, which rests in interval %d of expression %d",
-				readable_text(impact->restitution), rest_of(model->switching, impact),
-				impact->expression);
+				readable_text(impact->in->restitution), rest_of(model->switching, 0, impact),
+				impact->in->expression);
 		fputs("\n", to);
 	}
 }
@@ -777,8 +780,9 @@ static void json_frictions(FILE *to, const struct switching *s)
 {
 	fputs("  \"frictions\": [", to);
 	for (int i = 0; i < s->frictions; i++)
-		fprintf(to, "%s{\"expression\": %d, \"sticks\": %d}", i ? ", " : "", s->friction[i].expression,
-			stick_of(s, &s->friction[i]));
+		if (!is_repeated(s, i))
+			fprintf(to, "%s{\"expression\": %d, \"sticks\": %d}", i ? ", " : "",
+				s->friction[i].expression, stick_of(s, &s->friction[i]));
 	fputs("],\n", to);
 }
 
@@ -798,10 +802,10 @@ static void json_impacts(FILE *to, const struct model *model)
 	for (int i = 0; i < model->impacts; i++) {
 		const struct impact *impact = &model->impact[i];
 		fprintf(to, "%s{\"expression\": %d, \"upward\": %s, \"restitution\": ", i ? ", " : "",
-			impact->expression, impact->upward ? "true" : "false");
+			impact->in->expression, impact->in->upward ? "true" : "false");
 		if (impact->bounces)
-			fprintf(to, "%.17g, \"rests\": %d}", nearest_double(impact->restitution),
-				rest_of(model->switching, impact));
+			fprintf(to, "%.17g, \"rests\": %d}", nearest_double(impact->in->restitution),
+				rest_of(model->switching, 0, impact));
 		else
 			fputs("null}", to);
 	}

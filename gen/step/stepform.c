@@ -204,9 +204,9 @@ static bool *readings(const struct step *step)
 /* What jumps, and what jumps read */
 static void mark_jumps(const struct switching *s, int states, bool *reads)
 {
-	for (int k = 0; k < s->impacts; k++)
-		for (int j = 0; j < s->impact[k].jumps; j++) {
-			const struct jump *jump = &s->impact[k].jump[j];
+	for (int k = 0; k < s->impacts * s->segments; k++)
+		for (int j = 0; j < s->impact[k / s->segments].in[k % s->segments].jumps; j++) {
+			const struct jump *jump = &s->impact[k / s->segments].in[k % s->segments].jump[j];
 			reads[jump->state] = true;
 			for (int i = 0; i < states; i++)
 				reads[i] = reads[i] || mpq_sgn(jump->row->state[i]) != 0;

@@ -1,19 +1,21 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# random.sh PLGEN TRUTH FOLLOW.C SOURCE STOPS FRICTIONS IMPACTS WILD FIRST COUNT
+# random.sh PLGEN TRUTH FOLLOW.C SOURCE STOPS FRICTIONS IMPACTS CHANGES WILD FIRST COUNT
 #
-# COUNT random scenes from seed FIRST on with at most so many contacts of each kind: the emitted code against the same
-# scene in multiprecision. WILD 1: of the wilder ones (masses.h), each at steps from a ten thousandth of its shortest
-# period to ten of it, and in float. $CC compiles, $PLRT is the runtime. KEEP=FOLDER keeps what fails.
+# COUNT random scenes from seed FIRST on with at most so many contacts of each kind and changes of the loads: the emitted
+# code against the same scene in multiprecision. WILD 1: of the wilder ones (masses.h), each at steps from a ten
+# thousandth of its shortest period to ten of it, and in float. $CC compiles, $PLRT is the runtime. KEEP=FOLDER keeps
+# what fails.
 plgen=$(realpath "$1")
 truth=$(realpath "$2")
 follow=$(realpath "$3")
 source=$(realpath "$4")
-kinds="$5 $6 $7 $8"
-wild=$8
-first=$9
+kinds="$5 $6 $7 $8 $9"
+changes=$8
+wild=$9
 shift 9
-last=$((first + $1))
+first=$1
+last=$((first + $2))
 seconds=10
 . "$source/tests/tap.sh"
 decides=0
@@ -51,7 +53,11 @@ one() {
 seed=$first
 while [ $seed -lt $last ]; do
 	name="$(echo "$kinds" | tr ' ' '_')_$seed"
-	if [ $wild -eq 0 ]; then
+	if [ $changes -gt 0 ]; then             # of which some are at the end of a step
+		set -- 100 250 500 1000 2000
+		shift $((seed % 5))
+		one "$name" $1 23 1e-12 double
+	elif [ $wild -eq 0 ]; then
 		one "$name" $((50 + seed * 37 % 950)) 23 1e-12 double
 	else
 		for steps in 2 12 90 1200; do
