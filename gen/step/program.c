@@ -105,8 +105,6 @@ bool has_leftover(const struct step *step)
 void need_closed_form(const struct step *step)
 {
 	static const char *const of_kind[KINDS] = {
-		[KIND_REGIONS] = "where it crosses a breakpoint is found by a search",
-		[KIND_PARTS] = "where it crosses a breakpoint is found by a search",
 		[KIND_LEFTOVER] = "what is left over has no closed form",
 		[KIND_EXPANDED] = "what is left over has no closed form",
 		[KIND_COLLOCATED] = "what is left over has no closed form",
