@@ -6,6 +6,7 @@
 #include "counted.h"
 #include "four_balls.h"
 #include "slopes.h"
+#include "thrown.h"
 #include "tight.h"
 #include "wall.h"
 #include "tap.h"
@@ -44,6 +45,24 @@ static void counted_jumps(void)
 	counted_get(&s, found);
 	is_close(found[1], y, 1e-11 * fabs(y), "counted: y after %d jumps", jumps);
 	is_close(found[2], z, 1e-11 * fabs(z), "counted: z after %d jumps", jumps);
+}
+
+/* ---- what a jump or an input takes out of its interval moves by what acts where it then is ---- */
+
+static void out_of_intervals(void)
+{
+	thrown s;
+	double y[6], off;
+	thrown_init(&s);
+	for (int k = 0; k < 5; k++) {
+		thrown_step(&s, (double[]){ k < 4 ? 0 : 1 });
+		thrown_get(&s, y);
+		if (k == 1)
+			is_close(y[1], 1 + cos(0.6), 1e-14, "thrown: y in its stop, 0.2 s behind the jump");
+	}
+	off = 8 / 9.0 * (1 - cos(0.75));
+	is_close(y[2], off, 1e-14, "thrown: z, a step behind the input's jump");
+	is_close(thrown_status(&s), 0, 0, "thrown: status");
 }
 
 /* ---- balls: in the order of statements, again from the first after each impact ---- */
@@ -162,6 +181,7 @@ static void on_slopes(void)
 int main(void)
 {
 	counted_jumps();
+	out_of_intervals();
 	balls();
 	too_many();
 	dead_wall();
