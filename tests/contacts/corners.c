@@ -5,6 +5,8 @@
 #include "at_limit_float.h"
 #include "counted.h"
 #include "four_balls.h"
+#include "high_ball.h"
+#include "lively_ball.h"
 #include "slopes.h"
 #include "thrown.h"
 #include "tight.h"
@@ -103,6 +105,48 @@ static void balls(void)
 	is_close((double)four_balls_crossed(&s), impacts, 0, "four balls: impacts counted");
 }
 
+/* ---- a ball: bounce n at t0 (1 + 2 (e + ... + e^n)), t0 = sqrt(2 drop/g), rest at t0 (1 + e)/(1 - e). What rounding
+ * does to the place at a step's end, 1e-13, is more than that in time for what is slow. ---- */
+
+static void high(void)
+{
+	const double e = 0.8, t0 = sqrt(2 / 9.81);
+	double due = t0, flight = 2 * t0, worst = 0, last = 0, y[2];
+	pl_crossing crossing[HIGH_BALL_MAX_EVENTS];
+	int count = 0;
+	high_ball s;
+	high_ball_init(&s);
+	for (int k = 0; k < 500; k++) {
+		high_ball_step(&s);
+		const int here = high_ball_crossings(&s, crossing);
+		for (int i = 0; i < here; i++, count++) {
+			last = k * HIGH_BALL_H + crossing[i].time;
+			if (flight > 1e-8)
+				worst = worse(worst, fabs(last - due));
+			flight *= e;
+			due += flight;
+		}
+	}
+	ok(worst <= 1e-9 && flight < 1e-8, "high ball: %d bounces, times off by %.3g s at most", count, worst);
+	is_close(last, t0 * (1 + e) / (1 - e), 1e-9, "high ball: rests [s]");
+	high_ball_get(&s, y);
+	ok(y[0] == 1000 && y[1] == 0, "high ball: rests at 1000, velocity 0 (%.17g, %g)", y[0], y[1]);
+}
+
+/* ---- where the list is almost full and what is left is over within a step, it rests ---- */
+
+static void lively(void)
+{
+	double y[2];
+	lively_ball s;
+	lively_ball_init(&s);
+	lively_ball_step(&s);
+	lively_ball_get(&s, y);
+	ok(y[0] == 0 && y[1] == 0, "lively ball: rests at 0 (%g, %g)", y[0], y[1]);
+	is_close(lively_ball_rested(&s), 1, 0, "lively ball: contacts that came to rest");
+	is_close(lively_ball_status(&s), 0, 0, "lively ball: status");
+}
+
 /* ---- too many: time is lost, but neither speed nor place ---- */
 
 static void too_many(void)
@@ -185,6 +229,8 @@ int main(void)
 	balls();
 	too_many();
 	dead_wall();
+	high();
+	lively();
 	limits();
 	on_slopes();
 	return tap_end();
