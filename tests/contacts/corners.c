@@ -113,7 +113,7 @@ static void high(void)
 	const double e = 0.8, t0 = sqrt(2 / 9.81);
 	double due = t0, flight = 2 * t0, worst = 0, last = 0, y[2];
 	pl_crossing crossing[HIGH_BALL_MAX_EVENTS];
-	int count = 0;
+	int count = 0, down = 0;
 	high_ball s;
 	high_ball_init(&s);
 	for (int k = 0; k < 500; k++) {
@@ -121,6 +121,7 @@ static void high(void)
 		const int here = high_ball_crossings(&s, crossing);
 		for (int i = 0; i < here; i++, count++) {
 			last = k * HIGH_BALL_H + crossing[i].time;
+			down += crossing[i].breakpoint == 1 && !crossing[i].upward;
 			if (flight > 1e-8)
 				worst = worse(worst, fabs(last - due));
 			flight *= e;
@@ -128,6 +129,7 @@ static void high(void)
 		}
 	}
 	ok(worst <= 1e-9 && flight < 1e-8, "high ball: %d bounces, times off by %.3g s at most", count, worst);
+	ok(down == count, "high ball: all come down to the upper of its two breakpoints (%d of %d)", down, count);
 	is_close(last, t0 * (1 + e) / (1 - e), 1e-9, "high ball: rests [s]");
 	high_ball_get(&s, y);
 	ok(y[0] == 1000 && y[1] == 0, "high ball: rests at 1000, velocity 0 (%.17g, %g)", y[0], y[1]);
