@@ -138,6 +138,25 @@ static struct motion dropped(wide end)
 	return (struct motion){ z, v, 0, 0 };
 }
 
+/* ---- outputs on a step's end where the load changes, beside a clearance ---- */
+
+static void outputs_at_changes(int step)
+{
+	struct run r = run_new(variant_of(changes_table, "pushed_%d", step));
+	double out[2], worst = 0;
+	for (long k = 1; k * r.of->model->h < 5; k++) {
+		run_step(&r, NULL);
+		r.of->model->out(r.state, out);
+		const double t = round((double)k * r.of->model->h * 1e6) / 1e6;
+		const double load = t < 1 ? 1 : t < 2 ? 3 : t < 3.2 ? -2 : cos(t);
+		worst = worse(worst, fabs(out[0] - load));
+		worst = worse(worst, fabs(out[1] - load));
+	}
+	ok(worst <= 1e-14, "pushed, h = %g: load and x'' at the ends of steps, off by %.2g at most", r.of->model->h,
+	   worst);
+	run_free(&r);
+}
+
 /* ---- beside the model ---- */
 
 struct form {
@@ -290,6 +309,7 @@ int main(void)
 	for (int step = 0; step < 4; step++) {
 		for (size_t i = 0; i < sizeof forms / sizeof *forms; i++)
 			compare(&forms[i], forms[i].name, step, 0, 0, forms[i].tolerance);
+		outputs_at_changes(step);
 		compare(&forms[0], "ramped", step, 0, 0.123456789, 2e-14);
 		compare(&forms[0], "late", step, 1e6, 0, 1e-9);
 		compare(&forms[0], "late", step, 1e6, 0.123456789, 1e-9);
