@@ -95,6 +95,21 @@ static struct motion walled(wide t)
 	return (struct motion){ 1, 0, 0, 0 };
 }
 
+/* ---- halted: x'' + friction(x', 2) = L from t = 1 on, where it comes to rest ---- */
+
+static struct motion halted_by(wide t, wide L)
+{
+	const wide d = t - 1, a = L > 2 ? L - 2 : L < -2 ? L + 2 : 0;
+	if (t < 1)
+		return (struct motion){ 2 * t - t * t, 2 - 2 * t, 2, -2 };
+	return (struct motion){ 1 + a * d * d / 2, a * d, L > 2 ? 2 : L < -2 ? -2 : L, a };
+}
+
+static struct motion halted(wide t) { return halted_by(t, 1); }
+static struct motion onward(wide t) { return halted_by(t, 3); }
+static struct motion back(wide t)   { return halted_by(t, -3); }
+static struct motion just(wide t)   { return halted_by(t, 2); }
+
 /* ---- dropped: parabolas from bounce to bounce, of which infinitely many end in rest ---- */
 
 static wide gravity(wide t, wide *until)
@@ -305,6 +320,10 @@ int main(void)
 		{ "slow", slow, 8, 2e-14, true, { 2.5, 5.5 } },
 		{ "walled", walled, 5, 2e-14, false, { 0.5, 2.05 } },
 		{ "dropped", dropped, 25, 2e-13, false, { 0 } },
+		{ "halted", halted, 3, 2e-14, true, { 1 } },
+		{ "onward", onward, 3, 2e-14, true, { 1 } },
+		{ "back", back, 3, 2e-14, true, { 1 } },
+		{ "just", just, 3, 2e-14, true, { 1 } },
 	};
 	for (int step = 0; step < 4; step++) {
 		for (size_t i = 0; i < sizeof forms / sizeof *forms; i++)
