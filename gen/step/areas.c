@@ -121,11 +121,12 @@ static void add_ends(const struct through *t, struct area *area, int region, int
 	mpq_init(limit);
 	for (int upward = 0; upward < 2; upward++) {
 		int breakpoint = interval - !upward;
-		if (breakpoint < 0 || breakpoint == e->breaks)
+		if (breakpoint < 0 || breakpoint == e->breaks || is_released(&t->s->region[region], expression, upward))
 			continue;
 		mpq_t *row = rationals((size_t)t->n);
-		int leads = upward ? e->stride : -e->stride, impact = impact_at(t->s, expression, e->at[breakpoint], upward);
-		if (impact < 0 && impact_resting(t->s, expression, interval + (upward ? 1 : -1)) >= 0)
+		int leads = upward ? e->stride : -e->stride, segment = segment_of_region(t->s, region);
+		int impact = impact_at(t->s, segment, expression, e->at[breakpoint], upward);
+		if (impact < 0 && impact_resting(t->s, segment, expression, interval + (upward ? 1 : -1)) >= 0)
 			leads *= 2;             /* past the interval of rest, which impacts alone lead to */
 		through_row(t, e->row, row);
 		mpq_set(limit, e->at[breakpoint]);
@@ -211,7 +212,9 @@ struct area *through_area(struct through *t, int region)
 	area->growth = t->growth[system];
 	for (int e = 0; e < t->s->expressions; e++) {
 		bool held = r->possible && is_stick(&t->s->expression[e], interval_of(t->s, region, e));
-		(held ? add_releases : add_ends)(t, area, region, e);
+		add_releases(t, area, region, e);
+		if (!held)
+			add_ends(t, area, region, e);
 	}
 	return area;
 }

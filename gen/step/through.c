@@ -102,6 +102,10 @@ static bool next_segment(struct through *t)
 	t->gridded = false;
 	if (t->s->segments == 1)
 		return true;
+	if (has_events(t->s)) {
+		t->undecided = "what sticks and what rests where loads change their formula";
+		return false;
+	}
 	through_enter(t, t->region + regions_at_once(t->s));
 	t->speed = 0;
 	return through_follow(t);

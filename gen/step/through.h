@@ -64,6 +64,16 @@ struct through {
 	struct passed *list;
 	const char *undecided;
 };
+static inline const struct strike *strike_of(const struct through *t, const struct impact *p)
+{
+	return &p->in[t->segment];
+}
+
+/* Of its regions */
+static inline int through_segment(const struct through *t)
+{
+	return t->s->segments > 1 ? t->segment : 0;
+}
 
 
 /* ---- areas.c: regions as they are met, loads at a time ---- */
