@@ -132,7 +132,8 @@ int main(int count, char **argument)
 	for (int i = 0; i < SCENE_STATES; i++)
 		most = fmax(most, fabs(end[i]));
 	for (int i = 0; i < SCENE_STATES; i++) {
-		const double value = (double)y[i] * (i < SCENE_STATES / 2 ? 1 : scale), off = fabs(value - end[i]) / most;
+		const double value = (double)y[i] * (i < SCENE_STATES / 2 ? 1 : scale);
+		const double off = fabs(value - end[i]) / most;
 		if (!(off <= tolerance))
 			printf("# state %d: %.17g found, %.17g expected\n", i, value, end[i]);
 		worst = worse(worst, off);
