@@ -376,7 +376,9 @@ static _Noreturn void too_many(const struct building *b, const struct switching 
 {
 	bool together = b->model->relative || b->request->undivided;
 	error(last_term(s)->at,
-	      together ? "some coordinates move as a whole, and then independent parts have their regions together; a "
+	      has_events(s)
+		? "what sticks, slips or bounces has three intervals, and all of them have their regions together"
+	      : together ? "some coordinates move as a whole, and then independent parts have their regions together; a "
 			 "scheme with a leftover, such as etdrk4, needs no regions"
 		       : "a scheme with a leftover, such as etdrk4, needs no regions",
 	      "more regions than the limit of %d", LIMIT_REGIONS);

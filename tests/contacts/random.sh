@@ -69,6 +69,6 @@ while [ $seed -lt $last ]; do
 	seed=$((seed + 1))
 done
 touch all
-echo "# $decides of $((last - first)) scenes decide"
+echo "# $decides runs of $((last - first)) scenes decide"
 awk '{ n += $2; if ($5 + 0 > w) w = $5 + 0 } END { print "#", n + 0, "events, worst state", w + 0 }' all
 tap_end
