@@ -375,13 +375,13 @@ static _Noreturn void too_many_in_time(const struct switching *s)
 static _Noreturn void too_many(const struct building *b, const struct switching *s)
 {
 	bool together = b->model->relative || b->request->undivided;
-	error(last_term(s)->at,
-	      has_events(s)
-		? "what sticks, slips or bounces has three intervals, and all of them have their regions together"
-	      : together ? "some coordinates move as a whole, and then independent parts have their regions together; a "
-			 "scheme with a leftover, such as etdrk4, needs no regions"
-		       : "a scheme with a leftover, such as etdrk4, needs no regions",
-	      "more regions than the limit of %d", LIMIT_REGIONS);
+	const char *hint = "a scheme with a leftover, such as etdrk4, needs no regions";
+	if (has_events(s))
+		hint = "what sticks, slips or bounces has three intervals, and all of them have their regions together";
+	else if (together)
+		hint = "some coordinates move as a whole, and then independent parts have their regions together; a scheme "
+		       "with a leftover, such as etdrk4, needs no regions";
+	error(last_term(s)->at, hint, "more regions than the limit of %d", LIMIT_REGIONS);
 }
 
 /* A guard is a breakpoint of its expression; of a bounce one that stands twice, with the interval of rest between. */
