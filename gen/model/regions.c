@@ -379,8 +379,8 @@ static _Noreturn void too_many(const struct building *b, const struct switching 
 	if (has_events(s))
 		hint = "what sticks, slips or bounces has three intervals, and all of them have their regions together";
 	else if (together)
-		hint = "some coordinates move as a whole, and then independent parts have their regions together; a scheme "
-		       "with a leftover, such as etdrk4, needs no regions";
+		hint = "some coordinates move as a whole, and then independent parts have their regions together; a "
+		       "scheme with a leftover, such as etdrk4, needs no regions";
 	error(last_term(s)->at, hint, "more regions than the limit of %d", LIMIT_REGIONS);
 }
 
