@@ -93,7 +93,8 @@ meets() {
 			>model.c 2>>log &&
 			{ [ "$factors" != '1 1' ] || "$plgen" --rhs "$@" "$name.spec" >model.c 2>>log; } &&
 			${CC:-cc} -std=c99 $level -ffp-contract=off -w $flags -I"$root/runtime" \
-				"$root/tests/run/drive.c" model.c "$archive" -lm -o drive >>log 2>&1 && ./drive "$until" "$start" >samples &&
+				"$root/tests/run/drive.c" model.c "$archive" -lm -o drive >>log 2>&1 &&
+			./drive "$until" "$start" >samples &&
 			{ echo "$scheme step $step tolerance $tolerance, start $start, load $load:"
 			  "$judge" "$name" "$(echo "$within" | tr -d ' ')" "$until" "$start" "$load" <samples
 			} >>log || good=1
