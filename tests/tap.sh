@@ -48,7 +48,7 @@ runtime_archive() {
 	[ -z "$archive" ] || return 0
 	mkdir runtime_objects || exit 99
 	for file in "$1"/*.c; do
-		${CC:-cc} -std=c99 -O1 -I"$1" -c "$file" -o "runtime_objects/${file##*/}.o" || exit 99
+		${CC:-cc} -std=c99 -O1 -fPIC -I"$1" -c "$file" -o "runtime_objects/${file##*/}.o" || exit 99
 	done
 	archive=$PWD/runtime_objects/plrt.a
 	ar rcs "$archive" runtime_objects/*.o || exit 99

@@ -18,4 +18,4 @@ for system in scs sdcs sdcsf; do
 				"models/$system.spec --scheme $scheme --step 30/$n"
 		done
 	done
-done | xargs -P 2 -L 1 "$(dirname "$0")/variant.sh" "$plgen"
+done | xargs -P "${JOBS:-2}" -L 1 "$(dirname "$0")/variant.sh" "$plgen"

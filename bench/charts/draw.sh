@@ -53,8 +53,8 @@ for file in "$charts"/*.gp; do
 	! grep -q '^here.*narrow = ARG3' "$file" || echo "$file narrow"
 done >"$work/jobs"
 # shellcheck disable=SC2016
-FOLDER=$folder WORK=$work xargs -P 2 -L 1 sh -c 'exec gnuplot -c "$0" "$FOLDER" "$WORK/pictures" "$@" </dev/null' \
-	<"$work/jobs"
+FOLDER=$folder WORK=$work xargs -P "${JOBS:-2}" -L 1 \
+	sh -c 'exec gnuplot -c "$0" "$FOLDER" "$WORK/pictures" "$@" </dev/null' <"$work/jobs"
 
 # Text and axes turn light where the reader's style is dark; areas keep their colours
 for picture in "$work"/pictures/*.svg; do

@@ -46,4 +46,4 @@ forms undamped float 0.0001 models/scs.spec
 for real in double float; do
 	forms damped $real 0.0001 models/sdcs.spec -D c1=1e-6 -D c2=1e-6 -D c3=1e-6
 done
-xargs -P 2 -L 1 $charts/variant.sh "$plgen" <"$folder/energy.jobs"
+xargs -P "${JOBS:-2}" -L 1 $charts/variant.sh "$plgen" <"$folder/energy.jobs"

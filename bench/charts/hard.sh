@@ -59,4 +59,4 @@ ours linear 'long run' 1/1024 models/scs.spec
 ours other 'grazing contact' 1/128 $specs/graze.spec
 ours linear 'poles -1e8 and -1e-3' 1024 $specs/fast_slow.spec
 ours linear 'the same, long step' 1048576 $specs/fast_slow.spec
-xargs -P 2 -L 1 $charts/variant.sh "$plgen" <"$folder/hard.jobs"
+xargs -P "${JOBS:-2}" -L 1 $charts/variant.sh "$plgen" <"$folder/hard.jobs"

@@ -9,6 +9,6 @@ shift 3
 variants=$out/variants/headline
 mkdir -p "$variants"
 [ "${1:-}" != --find ] || "$program" --list |
-	xargs -P2 -L1 sh -c 'plgen=$1 folder=$2 file=$3; shift 3
+	xargs -P "${JOBS:-2}" -L1 sh -c 'plgen=$1 folder=$2 file=$3; shift 3
 		exec sh bench/charts/variant.sh "$plgen" "$folder/$file" "$@"' make "$plgen" "$variants"
 "$program" "$@" "$variants" "$out"

@@ -85,4 +85,4 @@ for scheme in etdrk2 etdrk4; do
 done
 make_later beam15_A15_etdrk4_10000 "$spec" --scheme etdrk4 --step 1/10000
 
-xargs -P 2 -L 1 "$charts/variant.sh" "$plgen" <"$jobs"
+xargs -P "${JOBS:-2}" -L 1 "$charts/variant.sh" "$plgen" <"$jobs"

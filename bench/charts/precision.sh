@@ -32,7 +32,7 @@ set -- $("$program" --names $quick "$@")
 [ -z "$errors" ] || rm -f $(printf "$variants/%s.errors\n" "$@")
 for model in $(missing "$@"); do
 	"$program" --list $quick "$model" |
-		xargs -P2 -L1 sh -c 'plgen=$1 folder=$2 file=$3; shift 3
+		xargs -P "${JOBS:-2}" -L1 sh -c 'plgen=$1 folder=$2 file=$3; shift 3
 			exec sh bench/charts/variant.sh "$plgen" "$folder/$file" "$@"' make "$plgen" "$variants"
 	"$program" --errors $quick "$variants" "$model"
 done

@@ -96,4 +96,4 @@ if [ $# -eq 0 ]; then
 	set -- $(printf 'errors_%s\n' $models | grep beam) headline energy papers stability \
 		$(printf 'errors_%s\n' $models | grep -v beam) hard less needs convergence plmap structural friction
 fi
-printf '%s\n' "$@" | xargs -P 2 -I '{}' sh $charts/untimed.sh "$build" "$folder" $quick --job '{}'
+printf '%s\n' "$@" | xargs -P "${JOBS:-2}" -I '{}' sh $charts/untimed.sh "$build" "$folder" $quick --job '{}'

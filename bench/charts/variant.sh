@@ -4,7 +4,8 @@
 # compiled as its user would. Run at the top of the source tree. It keeps the options it was made with:
 # subject_options. What plgen refuses is a result too: its message goes to OUT.so.refused, no object is left, and the
 # exit status is 0.
-# CHARTS_OPTIMIZE: another level than -O2, where nothing is timed. CHARTS_RHS: empty, for models that have no --rhs.
+# CHARTS_OPTIMIZE: another level than -O2, where nothing is timed. CHARTS_RUNTIME: the runtime as an archive that is
+# there already, for the same reason. CHARTS_RHS: empty, for models that have no --rhs.
 #     -fno-semantic-interposition  gcc may inline subject_step into subject_run, as it does in a program
 #     no -march=native, no -ffast-math: for the peers neither
 set -e
@@ -16,7 +17,7 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
 # The runtime once for all variants of a folder; where two make it at the same time, they make the same
-runtime=$(dirname "$out")/runtime.a
+runtime=${CHARTS_RUNTIME:-$(dirname "$out")/runtime.a}
 if ! [ -f "$runtime" ]; then
 	for part in runtime/*.c; do
 		$cc $flags -Iruntime -c "$part" -o "$work/$(basename "$part" .c).o"

@@ -36,5 +36,5 @@ cd "$root"
     done
     echo "$work/linear2dof-exact-1.so models/linear2dof.spec --scheme exact --step 1/5"
     echo "$work/quarter_car-exact-1.so models/quarter_car.spec --scheme exact --step 1/1000"
-} | xargs -P 2 -L 1 bench/charts/variant.sh "$plgen"
+} | xargs -P "${JOBS:-2}" -L 1 bench/charts/variant.sh "$plgen"
 "$program" "$work" 2>"$work/said" || { status=$?; sed 's/^/# /' "$work/said"; exit $status; }

@@ -18,7 +18,7 @@ cd "$root"
 mkdir "$work/hard"
 # Lines of two fields: the models themselves
 "$charts/precision" --list | awk -v to="$work/" 'NF == 2 { print to $1, $2 }' |
-    xargs -P 2 -L 1 bench/charts/variant.sh "$build/plgen"
+    xargs -P "${JOBS:-2}" -L 1 bench/charts/variant.sh "$build/plgen"
 sh bench/charts/hard.sh "$build/plgen" "$work/hard" problems
 {
     "$charts/precision" --scales $quick "$work" && "$charts/hard" --scales $quick "$work/hard"

@@ -22,5 +22,5 @@ cd "$root"
         spherical_pendulum; do
         echo "$work/$name.so bench/charts/specs/$name.spec"
     done
-} | xargs -P 2 -L 1 bench/charts/variant.sh "$plgen"
+} | xargs -P "${JOBS:-2}" -L 1 bench/charts/variant.sh "$plgen"
 "$program" "$work" 2>"$work/said" || { status=$?; sed 's/^/# /' "$work/said"; exit $status; }

@@ -115,11 +115,9 @@ try() {
 	result $? "$title"
 }
 
-mkdir objects made
-for file in "$root"/runtime/*.c; do
-	${CC:-cc} -std=c99 -O1 -I"$root/runtime" -c "$file" -o "objects/$(basename "$file" .c).o" || exit 99
-done
-ar -rcs runtime.a objects/*.o || exit 99
+mkdir made
+runtime_archive "$root/runtime"
+cp "$archive" runtime.a || exit 99
 
 for page in README.md doc/tutorial.md doc/cookbook.md doc/running.md doc/spec.md doc/accuracy.md \
 	doc/performance.md doc/firmware.md doc/packages.md doc/design.md; do

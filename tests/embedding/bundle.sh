@@ -14,6 +14,8 @@ case $plgen in /*) ;; *) plgen=$PWD/$plgen ;; esac
 warnings='-Wall -Wextra -Wpedantic -Wconversion -Wdouble-promotion -Wshadow -Wcast-qual -Werror'
 . "${0%/*}/../tap.sh"
 . "$root/tests/compilers.sh"
+level=-O0                       # its bits do not depend on it
+! long || level=-O1
 runtime_archive "$root/runtime"
 
 cat >compilers <<'EOT'
@@ -112,11 +114,11 @@ bundles() {
         [ ! -s log ]
         result $? "$title, $real: no warning, no name of the runtime outside"
         # shellcheck disable=SC2086
-        ${CC:-cc} -std=c99 -O1 -ffp-contract=off $own -DMODEL=scene_model show.c model.c -lm -o inside >log 2>&1 &&
+        ${CC:-cc} -std=c99 $level -ffp-contract=off $own -DMODEL=scene_model show.c model.c -lm -o inside >log 2>&1 &&
             ./inside >inside.bits
         # shellcheck disable=SC2086
         "$plgen" --real $real --prefix scene "$@" -o model.c "$spec" >>log 2>&1 &&
-            ${CC:-cc} -std=c99 -O1 -ffp-contract=off $own -DMODEL=scene_model -I"$root/runtime" show.c model.c \
+            ${CC:-cc} -std=c99 $level -ffp-contract=off $own -DMODEL=scene_model -I"$root/runtime" show.c model.c \
                 "$archive" -lm -o linked >>log 2>&1 && ./linked >linked.bits
         cmp inside.bits linked.bits >>log 2>&1 && [ "$(wc -l <inside.bits)" -gt 40 ]
         result $? "$title, $real: the bits of a model that is linked with the runtime"

@@ -2,13 +2,16 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # The same bits on an emulated board as on this host, from the same sources.
 #
-#     bits.sh BOARD VARIANTS_double.c VARIANTS_float.c HOST_PROGRAM SOURCE_ROOT STEPS
+#     bits.sh BOARD VARIANTS_double.c VARIANTS_float.c HOST_PROGRAM RUNTIME.a SOURCE_ROOT STEPS
+#
+# RUNTIME.a is that of the board: archive.sh.
 set -u
 name=$1
 double=$2
 float=$3
 host=$4
-root=$5
+runtime=$5
+root=$6
 firmware=$root/tests/firmware
 . "$firmware/boards.sh"
 if ! boards_installed; then
@@ -31,19 +34,18 @@ compile "$double" double
 compile "$float" float -DREAL_FLOAT
 compile "$firmware/steps.c" steps_double
 compile "$firmware/steps.c" steps_float -DREAL_FLOAT
-compile "$firmware/steps_main.c" main "-DSTEPS=$6"
+compile "$firmware/steps_main.c" main "-DSTEPS=$7"
 for f in start semihosting digits; do compile "$firmware/$f.c" $f; done
-for f in "$root"/runtime/*.c; do compile "$f" "runtime_$(basename "$f" .c)"; done
-link "$work/image.elf" "$work"/*.o || exit 99
+link "$work/image.elf" "$work"/*.o "$runtime" || exit 99
 
-"$host" "$6" >"$work/expected" || exit 99
+"$host" "$7" >"$work/expected" || exit 99
 # Many times what the slowest takes
 emulate "${FIRMWARE_TIMEOUT:-4800}" "$work/image.elf" >"$work/found"
 status=$?
 
 # A result for each variant, one for the stack, which on a small board must not reach the variables, and one for the
 # end.
-awk -v board="$name" -v steps="$6" -v status=$status '
+awk -v board="$name" -v steps="$7" -v status=$status '
     FNR == NR { if (!($1 in lines)) order[++n] = $1
                 expected[$1 " " $2] = $0; lines[$1] = lines[$1] "|" $1 " " $2; next }
     { found[$1 " " $2] = $0; last = $0 }

@@ -4,6 +4,8 @@
 #
 # Headers and schemas of FMI stand in FMI_DIR, by default ../shared/fmi beside the checkout, as 2.0/headers, 2.0/schema,
 # 3.0/headers and 3.0/schema; without them what needs them is skipped.
+# LONG=1 in the environment: FMUs are compiled as an importer would, and looked at by both compilers; without it not
+# optimised, and by gcc and clang by turns.
 set -u
 plgen=$1
 root=$(cd "$2" && pwd) || exit 99
@@ -14,6 +16,8 @@ standard=$(cd "$standard" 2>/dev/null && pwd)
 own=$root/tests/fmu
 models=$root/models
 warnings='-Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wcast-qual -Werror'
+level=-O0
+[ -z "${LONG:-}" ] || level=-O1
 
 # unpack FMU FOLDER: by a program that knows zip, which checks sums and lengths
 unpack() {
@@ -192,8 +196,11 @@ described() {
 }
 
 # warned VERSION FOLDER NAME: each source alone, as C99, with nothing but the standard's headers
+next=gcc
 warned() {
-    for compiler in gcc clang; do
+    case $next in gcc) now=gcc next=clang ;; *) now=clang next=gcc ;; esac
+    [ -z "${LONG:-}" ] || now='gcc clang'
+    for compiler in $now; do
         if ! command -v $compiler >/dev/null 2>&1; then
             skip "$3: no warning of $compiler" "$compiler is not installed"
             continue
@@ -213,7 +220,7 @@ warned() {
 build() {
     files=$(sources "$2" | sed "s,^,$2/sources/,")
     # shellcheck disable=SC2086
-    ${CC:-cc} -std=c99 -O1 -w -fPIC -shared -Wl,--no-undefined -fvisibility=hidden \
+    ${CC:-cc} -std=c99 $level -w -fPIC -shared -Wl,--no-undefined -fvisibility=hidden \
         -DFMI$1_OVERRIDE_FUNCTION_PREFIX -I"$standard/$1.0/headers" $files -o "$3" -lm >>log 2>&1
 }
 
@@ -238,8 +245,7 @@ make_both() {
     : >log
     "$plgen" --fmu "$1.fmu" --fmu-version "$3" $4 "$2" >>log 2>&1 && unpack "$1.fmu" "$1" &&
         build "$3" "$1" "./$1.so" && "$plgen" $4 "$2" >"$1.c" 2>>log &&
-        ${CC:-cc} -std=c99 -O1 -w -fPIC -shared -I"$root/runtime" "$1.c" "$root"/runtime/*.c -o "$1_own.so" -lm \
-            >>log 2>&1
+        ${CC:-cc} -std=c99 $level -w -fPIC -shared -I"$root/runtime" "$1.c" "$archive" -o "$1_own.so" -lm >>log 2>&1
 }
 
 # drive LABEL PROGRAM ARGUMENT ...: its results become ours

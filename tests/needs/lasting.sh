@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 # What is certified of a run that is not walked through: lasting.spec and the same with one mode, in float.
-# lasting.sh PLGEN HERE RUNTIME
+# lasting.sh PLGEN HERE RUNTIME; PLRT in the environment: the runtime as an archive
 plgen=$1 here=$2 runtime=$3
 case $plgen in /*) ;; *) plgen=$PWD/$plgen ;; esac
 work=$(mktemp -d) || exit 1
@@ -15,7 +15,7 @@ for modes in 2 1; do
 		certified=$("$plgen" --real float --modes $modes --explain=json "$here/lasting.spec" |
 			sed -n '/"taken": true/s/.*"certified": \([^,]*\).*/\1/p') &&
 		${CC:-cc} -O1 -ffp-contract=off -w -I. -I"$runtime" "$here/lasting.c" single_pl.c whole_pl.c \
-			"$runtime"/*.c -lm -o run || exit 1
+			"$PLRT" -lm -o run || exit 1
 	./run 2000000 "$certified" || bad=1
 done
 exit $bad

@@ -8,6 +8,7 @@
 # as it is written, refuses a compiler that may contract products
 # needs.sh PLGEN HERE RUNTIME drivetrain: models/drivetrain.spec, a scene of parts, with a need
 # needs.sh PLGEN HERE RUNTIME beam: the beam of beam.awk, of which at most 6 modes are kept and a third of the cost
+# PLRT in the environment: the runtime as an archive.
 plgen=$1 here=$2 runtime=$3 first=$4 last=${5:-}
 case $plgen in /*) ;; *) plgen=$PWD/$plgen ;; esac
 models=$(cd "$here/../../models" && pwd) || exit 1
@@ -15,10 +16,6 @@ work=$(mktemp -d) || exit 1
 trap 'rm -rf "$work"' EXIT
 cd "$work" || exit 1
 bad=0 met=0 unmet=0
-mkdir objects
-for source in "$runtime"/*.c; do
-	${CC:-cc} -O1 -ffp-contract=off -w -c "$source" -o "objects/$(basename "$source" .c).o" || exit 1
-done
 seeds=beam
 case $first in
 	beam) ;;
@@ -48,7 +45,7 @@ for seed in $seeds; do
 	fi
 	end=$(sed -n 's/^need.* until //p' drawn.spec)
 	"$plgen" drawn.spec >drawn_pl.c && "$plgen" --solution "$end" drawn.spec | sed 1d >exact.csv &&
-		${CC:-cc} -O0 -ffp-contract=off -I"$work" -I"$runtime" -w "$here/run.c" objects/*.o -o run &&
+		${CC:-cc} -O0 -ffp-contract=off -I"$work" -I"$runtime" -w "$here/run.c" "$PLRT" -o run &&
 		./run "$(wc -l <exact.csv)" >got || { echo "not ok - seed $seed: no program"; exit 1; }
 	sed -n '/"taken": true/{
 		s/.*"real": "\([^"]*\)"\(.*\)/\2 \1/

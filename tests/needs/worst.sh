@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # What is certified for any input within a bound is attained by one: driven.spec, held and as a ramp. Of one mode the
 # largest value is known in closed form: gain.spec.
-# worst.sh PLGEN HERE RUNTIME
+# worst.sh PLGEN HERE RUNTIME; PLRT in the environment: the runtime as an archive
 plgen=$1 here=$2 runtime=$3
 case $plgen in /*) ;; *) plgen=$PWD/$plgen ;; esac
 work=$(mktemp -d) || exit 1
@@ -18,7 +18,7 @@ for hold in held ramp; do
 	sed '/^need/d' driven.spec >whole.spec
 	"$plgen" --real double --prefix chosen -o chosen_pl.c driven.spec &&
 		"$plgen" --real double --prefix whole -o whole_pl.c whole.spec &&
-		${CC:-cc} -O1 -w -I. -I"$runtime" "$here/worst.c" chosen_pl.c whole_pl.c "$runtime"/*.c -lm -o $hold ||
+		${CC:-cc} -O1 -w -I. -I"$runtime" "$here/worst.c" chosen_pl.c whole_pl.c "$PLRT" -lm -o $hold ||
 		exit 1
 	certified=$("$plgen" --real double --explain=json driven.spec |
 		sed -n '/"taken": true/s/.*"certified": \([^,]*\).*/\1/p')

@@ -11,6 +11,9 @@ root=$(absolute "$2")
 XDG_CACHE_HOME="$work/a cache"
 PLGEN_RUNTIME=$root/runtime
 export PLGEN PLGEN_RUNTIME XDG_CACHE_HOME
+# What is compiled has the same bits without an optimiser; with LONG=1 in the environment as a user has it
+level=-O2
+[ -n "${LONG:-}" ] || { level=-O0 CFLAGS=-O0; export CFLAGS; }
 
 # rows NAME SPEC TIME [OPTION of plgen ...] -- [NAME=VALUE of plmain ...]: NAME.rows; held.csv is the record
 rows() {
@@ -27,8 +30,8 @@ rows() {
 	# shellcheck disable=SC2086
 	"$PLGEN" $options "$spec" >"$name.c" 2>said || cat said
 	model=$(sed -n 's/^const pl_modelf\{0,1\} \(.*\)_model = {$/\1/p' "$name.c")
-	${CC:-cc} -O2 -w -I"$root/runtime" $single -DMODEL="$model" "$root/runtime/host/plmain.c" "$name.c" "$archive" \
-		-lm -o "$name.program" || exit 99
+	${CC:-cc} $level -w -I"$root/runtime" $single -DMODEL="$model" "$root/runtime/host/plmain.c" "$name.c" \
+		"$archive" -lm -o "$name.program" || exit 99
 	"./$name.program" "$until" --raw "$@" <held.csv >"$name.rows"
 }
 

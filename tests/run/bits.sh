@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 # bits.sh PLGEN INTERPRET SOURCE_ROOT: the C of models, run inside the generator and compiled: the same bits, of each
-# scheme and both types.
+# scheme and both types. With LONG=1 in the environment it is optimised.
 set -u
 plgen=$1
 interpret=$2
@@ -10,6 +10,8 @@ case $plgen in /*) ;; *) plgen=$PWD/$plgen ;; esac
 case $interpret in /*) ;; *) interpret=$PWD/$interpret ;; esac
 . "${0%/*}/../tap.sh"
 runtime_archive "$root/runtime"
+level=-O0
+[ -z "${LONG:-}" ] || level=-O1
 here=${0%/*}
 case $here in /*) ;; *) here=$root/tests/run ;; esac
 
@@ -24,7 +26,7 @@ same() {
 	: >log
 	# shellcheck disable=SC2086
 	"$plgen" --rhs --real "$3" ${4:+--scheme "$4"} "$1" >model.c 2>>log &&
-		${CC:-cc} -std=c99 -O1 -ffp-contract=off -w $flags -I"$root/runtime" "$here/drive.c" model.c \
+		${CC:-cc} -std=c99 $level -ffp-contract=off -w $flags -I"$root/runtime" "$here/drive.c" model.c \
 			"$archive" -lm -o drive >>log 2>&1 && ./drive "$2" >compiled &&
 		"$interpret" "$1" "$2" "$3" ${4:+"$4"} >run 2>>log && cmp compiled run >>log 2>&1 && [ -s run ]
 	result $? "$what"

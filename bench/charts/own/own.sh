@@ -76,9 +76,10 @@ grep -v '^#' $own/variants | while IFS='|' read -r method options setting values
 		printf '%s\t%s\t%s\t%s\t%s\n' "$file" "$method" "$setting" "$value" "$options" >>"$work/list"
 	done
 done
-xargs -P2 -L1 sh bench/charts/variant.sh "$plgen" <"$work/make" &
+xargs -P "${JOBS:-2}" -L1 sh bench/charts/variant.sh "$plgen" <"$work/make" &
 variants=$!
-$cc -std=gnu11 -O2 -Iruntime -I$own -I"$work" -DSTATES="$states" -DINPUTS="$inputs" $own/own.c -o "$work/own" \
+$cc -std=gnu11 "${CHARTS_OPTIMIZE:--O2}" -Iruntime -I$own -I"$work" -DSTATES="$states" -DINPUTS="$inputs" \
+	$own/own.c -o "$work/own" \
 	-lsundials_cvode -lsundials_nvecserial -lsundials_sunmatrixdense -lsundials_sunlinsoldense \
 	-lsundials_sunnonlinsolfixedpoint -lgsl -lgslcblas -lm -ldl
 wait $variants

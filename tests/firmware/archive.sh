@@ -1,0 +1,21 @@
+#!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
+# archive.sh BOARD SOURCE_ROOT OUT.a: the runtime for a board, once for all tests that run there; empty where there is
+# no compiler for it, without which they are skipped.
+set -eu
+firmware=$(cd "${0%/*}" && pwd)
+. "$firmware/boards.sh"
+board "$1"
+root=$2
+case $3 in /*) out=$3 ;; *) out=$PWD/$3 ;; esac
+rm -f "$out"
+if ! boards_installed; then
+    ar rcD "$out"
+    exit 0
+fi
+work=$(mktemp -d "${TMPDIR:-/tmp}/firmware.XXXXXX")
+trap 'rm -rf "$work"' EXIT
+cd "$work"
+# shellcheck disable=SC2086
+$arm-gcc $optimize $cpu -I"$root/runtime" -c "$root"/runtime/*.c
+$arm-ar rcD "$out" ./*.o
