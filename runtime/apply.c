@@ -15,27 +15,32 @@ static inline real row_times(int columns, const real *row, const real *x)
         s2 += row[j + 2] * x[j + 2];
         s3 += row[j + 3] * x[j + 3];
     }
-    if (j < columns)
+    if (j < columns) {
         s0 += row[j] * x[j];
-    if (j + 1 < columns)
+    }
+    if (j + 1 < columns) {
         s1 += row[j + 1] * x[j + 1];
-    if (j + 2 < columns)
+    }
+    if (j + 2 < columns) {
         s2 += row[j + 2] * x[j + 2];
+    }
     return (s0 + s2) + (s1 + s3);
 }
 
 void pl_multiply(int rows, int columns, const real *table, const real *x, real *y)
 {
     int i;
-    for (i = 0; i < rows; i++, table += columns)
+    for (i = 0; i < rows; i++, table += columns) {
         y[i] = row_times(columns, table, x);
+    }
 }
 
 void pl_multiply_add(int rows, int columns, const real *table, const real *x, real *y)
 {
     int i;
-    for (i = 0; i < rows; i++, table += columns)
+    for (i = 0; i < rows; i++, table += columns) {
         y[i] += row_times(columns, table, x);
+    }
 }
 
 int pl_not_finite(const real *y, int n)

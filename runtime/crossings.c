@@ -33,10 +33,12 @@ static real excess(const pl_switching *m, const pl_contact *c, const walk *w, in
 static int outside(const pl_switching *m, const pl_contact *c, const walk *w, const real *x)
 {
     real noise;
-    if (w->interval < w->breaks && excess(m, c, w, w->interval, x, &noise) > noise)
+    if (w->interval < w->breaks && excess(m, c, w, w->interval, x, &noise) > noise) {
         return 1;
-    if (w->interval > 0 && -excess(m, c, w, w->interval - 1, x, &noise) > noise)
+    }
+    if (w->interval > 0 && -excess(m, c, w, w->interval - 1, x, &noise) > noise) {
         return -1;
+    }
     return 0;
 }
 
@@ -51,14 +53,17 @@ static void decide(const pl_switching *m, const real *x, pl_contact *c, int belo
     for (w = first_switch(m->at); arrive(m->switches, m->breaks, below, &w); leave(&w)) {
         const int above = c->region / w.stride % (w.breaks + 1) - w.interval;
         int sign;
-        if (w.interval == w.breaks || -excess(m, c, &w, w.interval, x, &noise) > noise)
+        if (w.interval == w.breaks || -excess(m, c, &w, w.interval, x, &noise) > noise) {
             continue;
+        }
         if (!possible) {
             sign = heading(m->size, matrix_of(m->A, m, c), m->row + w.i * m->size, x, work);
-            if (sign != 0)
+            if (sign != 0) {
                 enter(m->matrix, c, c->region + ((sign > 0) - above) * w.stride);
-        } else if (m->matrix[c->region] < 0 && !above && m->matrix[c->region + w.stride] >= 0)
+            }
+        } else if (m->matrix[c->region] < 0 && !above && m->matrix[c->region + w.stride] >= 0) {
             enter(m->matrix, c, c->region + w.stride);
+        }
     }
 }
 
@@ -69,12 +74,15 @@ void pl_switching_start(const pl_switching *m, const real *x, pl_contact *c, rea
     c->total = 0;
     c->crossings = c->status = c->matrix = c->rested = 0;
     enter(m->matrix, c, 0);
-    for (w = first_switch(m->at); arrive(m->switches, m->breaks, c->region, &w); leave(&w))
-        for (; outside(m, c, &w, x) > 0; w.interval++)
+    for (w = first_switch(m->at); arrive(m->switches, m->breaks, c->region, &w); leave(&w)) {
+        for (; outside(m, c, &w, x) > 0; w.interval++) {
             enter(m->matrix, c, c->region + w.stride);
+        }
+    }
     below = c->region;
-    for (i = 0; i < m->switches; i++) /* again: where one goes may change where another one is heading */
+    for (i = 0; i < m->switches; i++) { /* again: where one goes may change where another one is heading */
         decide(m, x, c, below, 0, work);
+    }
     decide(m, x, c, below, 1, work);
 }
 
@@ -85,10 +93,12 @@ static int clear(const pl_switching *m, int region, const real *low, const real 
 {
     walk w;
     for (w = first_switch(m->at); arrive(m->switches, m->breaks, region, &w); leave(&w)) {
-        if (w.interval > 0 && !(low[w.i] > w.at[w.interval - 1]))
+        if (w.interval > 0 && !(low[w.i] > w.at[w.interval - 1])) {
             return 0;
-        if (w.interval < w.breaks && !(high[w.i] < w.at[w.interval]))
+        }
+        if (w.interval < w.breaks && !(high[w.i] < w.at[w.interval])) {
             return 0;
+        }
     }
     return 1;
 }
@@ -100,8 +110,9 @@ static int stays_clear(const pl_switching *m, const pl_contact *c, const real *x
     real *size = work, *from = size + n, *to = from + s, *off = to + s, *low = off + s, *high = low + s;
     const real *tangent = rows_of(m->tangent, m, c);
     int i;
-    for (i = 0; i < n; i++)
+    for (i = 0; i < n; i++) {
         size[i] = magnitude(x[i]);
+    }
     pl_multiply(s, n, m->row, x, from);
     pl_multiply(s, n, m->row, y, to);
     pl_multiply(s, n, rows_of(m->chord_error, m, c), size, off);
@@ -109,8 +120,9 @@ static int stays_clear(const pl_switching *m, const pl_contact *c, const real *x
         low[i] = smaller(from[i], to[i]) - off[i];
         high[i] = larger(from[i], to[i]) + off[i];
     }
-    if (clear(m, c->region, low, high))
+    if (clear(m, c->region, low, high)) {
         return 1;
+    }
     pl_multiply(s, n, rows_of(m->cubic_error, m, c), size, off);
     for (i = 0; i < s; i++, tangent += n) { /* a cubic lies within its Bezier points */
         real leaving, arriving;
@@ -152,12 +164,14 @@ static found first_crossing(const pl_switching *m, int region, real *coefficient
         for (upward = 0; upward < 2; upward++) {
             const int breakpoint = w.interval - !upward;
             real s;
-            if (breakpoint < 0 || breakpoint == w.breaks)
+            if (breakpoint < 0 || breakpoint == w.breaks) {
                 continue;
+            }
             look_beyond(&f, e, upward ? 1 : -1, w.at[breakpoint], size);
             s = first_root(&f, first.s, splits);
-            if (s < 0)
+            if (s < 0) {
                 continue;
+            }
             first.s = s;
             first.expression = w.i;
             first.breakpoint = breakpoint;
@@ -175,11 +189,12 @@ static void follow_jumps(const pl_switching *m, const real *x, pl_contact *c, pl
 {
     walk w;
     int way;
-    for (w = first_switch(m->at); arrive(m->switches, m->breaks, c->region, &w); leave(&w))
+    for (w = first_switch(m->at); arrive(m->switches, m->breaks, c->region, &w); leave(&w)) {
         for (; (way = outside(m, c, &w, x)) != 0; w.interval += way) {
             (void)list(m->max_events, c, crossing, 0, w.i, w.interval - (way < 0), way > 0);
             enter(m->matrix, c, c->region + way * w.stride);
         }
+    }
 }
 
 /* Moves x on over a piece of length dt, or to the first crossing in it; splits < 0: without looking for one.  y: x at
@@ -193,17 +208,20 @@ static found move(const pl_switching *m, pl_contact *c, real dt, const real *y, 
         sum_up(m->size, m->degree, work, 1, x);
         return nothing;
     }
-    if (*splits >= 0)
+    if (*splits >= 0) {
         first = first_crossing(m, c->region, work, splits);
+    }
     if (*splits < 0) {
         c->status = PL_TOO_MANY_EVENTS;
         first = nothing;
     }
-    if (y && first.expression < 0)
-        for (i = 0; i < m->size; i++)
+    if (y && first.expression < 0) {
+        for (i = 0; i < m->size; i++) {
             x[i] = y[i];
-    else
+        }
+    } else {
         sum_up(m->size, m->degree, work, first.s, x);
+    }
     return first;
 }
 
@@ -221,8 +239,9 @@ void pl_switching_advance(const pl_switching *m, real tau, real *x, pl_contact *
         if (whole) {
             pl_multiply(n, n, matrix_of(m->Phi, m, c), x, y);
             if (stays_clear(m, c, x, y, rest)) {
-                for (i = 0; i < n; i++)
+                for (i = 0; i < n; i++) {
                     x[i] = y[i];
+                }
                 left -= dt;
                 fresh = 0;
                 continue;
@@ -234,13 +253,16 @@ void pl_switching_advance(const pl_switching *m, real tau, real *x, pl_contact *
             continue;
         }
         first = move(m, c, dt, whole ? y : NULL, &splits, x, rest);
-        if (splits < 0)
+        if (splits < 0) {
             break; /* x is held: this region may not be the one, and may be unstable */
+        }
         left -= first.s * dt;
-        if (first.expression < 0)
+        if (first.expression < 0) {
             continue;
-        if (!list(m->max_events, c, crossing, tau - left, first.expression, first.breakpoint, first.upward))
+        }
+        if (!list(m->max_events, c, crossing, tau - left, first.expression, first.breakpoint, first.upward)) {
             splits = -1; /* no further search */
+        }
         enter(m->matrix, c, c->region + (first.upward ? first.stride : -first.stride));
     }
 }
@@ -276,13 +298,17 @@ static int starts_above(const column *e, real b)
     real noise, largest = 0;
     const real off = off_start(e, b, &noise);
     int k;
-    if (off > noise || off < -noise)
+    if (off > noise || off < -noise) {
         return off > 0;
-    for (k = 1; k <= e->m->degree; k++)
+    }
+    for (k = 1; k <= e->m->degree; k++) {
         largest = larger(largest, magnitude(column_at(e, k)));
-    for (k = 1; k <= e->m->degree; k++)
-        if (magnitude(column_at(e, k)) > noise_of(largest))
+    }
+    for (k = 1; k <= e->m->degree; k++) {
+        if (magnitude(column_at(e, k)) > noise_of(largest)) {
             return column_at(e, k) > 0;
+        }
+    }
     return 0;
 }
 
@@ -302,8 +328,9 @@ int pl_divided_place(const pl_divided *m, const real *c, const real *terms, int 
     for (i = 0; i < m->expressions; at += m->breaks[i++]) {
         const column e = column_of(m, c, terms, i);
         int above = 0;
-        for (k = 0; k < m->breaks[i]; k++)
+        for (k = 0; k < m->breaks[i]; k++) {
             above += starts_above(&e, at[k]);
+        }
         changed |= above != interval[i];
         interval[i] = above;
     }
@@ -327,8 +354,9 @@ int pl_divided_left(const pl_divided *m, const real *c, const real *terms, const
         for (upward = 0; upward < 2; upward++) {
             const int b = interval[i] - !upward;
             real off, noise;
-            if (b < 0 || b == m->breaks[i] || (last.expression == i && last.breakpoint == b))
+            if (b < 0 || b == m->breaks[i] || (last.expression == i && last.breakpoint == b)) {
                 continue;
+            }
             off = off_start(&e, at[b], &noise);
             if ((upward ? off : -off) > noise) {
                 set_crossing(crossing, i, b, upward);
@@ -344,10 +372,12 @@ static void rescale(const column *e, real end, real *coefficient)
 {
     real power = 1;
     int k;
-    for (k = 0; k <= e->m->degree; k++, power *= end)
+    for (k = 0; k <= e->m->degree; k++, power *= end) {
         coefficient[k] = column_at(e, k) * power;
-    for (; k < 4; k++)
+    }
+    for (; k < 4; k++) {
         coefficient[k] = 0;
+    }
 }
 
 real pl_divided_next(const pl_divided *m, const real *c, const real *terms, const int *interval, real end,
@@ -365,14 +395,17 @@ real pl_divided_next(const pl_divided *m, const real *c, const real *terms, cons
         for (upward = 0; upward < 2; upward++) {
             const int b = interval[i] - !upward;
             real s;
-            if (b < 0 || b == m->breaks[i])
+            if (b < 0 || b == m->breaks[i]) {
                 continue;
+            }
             look_beyond(&f, work, upward ? 1 : -1, at[b], e.terms);
-            if (!(f.reach - f.reach == 0)) /* not finite: there is no step */
+            if (!(f.reach - f.reach == 0)) { /* not finite: there is no step */
                 continue;
+            }
             s = first_root(&f, first, splits);
-            if (s < 0)
+            if (s < 0) {
                 continue;
+            }
             any = 1;
             first = s;
             set_crossing(crossing, i, b, upward);

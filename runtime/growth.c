@@ -26,14 +26,16 @@ pl_growth pl_growth_times(pl_growth a, uint64_t n)
 
     m.hi = (uint64_t)a.hi;
     m.lo = a.lo;
-    if (negative)
+    if (negative) {
         m = words_negative(m);
+    }
     low = words_product(m.lo, n);
     high = words_product(m.hi, n);
     low.hi += high.lo;
     high.hi += low.hi < high.lo;
-    if (high.hi != 0)
+    if (high.hi != 0) {
         low.hi = UINT64_MAX;
+    }
     return growth(low, negative);
 }
 
@@ -48,8 +50,9 @@ pl_growth pl_growth_at(const pl_rate *rate, int negative, double t)
     m = words_rounded(&w, point - 112);
     for (i = 0; i < 4; i++) { /* bits worth 2^15 and more */
         const int above = point + 15 - 64 * i; /* where they begin in word i */
-        if (above < 64 && w.word[i] >> (above > 0 ? above : 0) != 0)
+        if (above < 64 && w.word[i] >> (above > 0 ? above : 0) != 0) {
             m.hi = UINT64_MAX;
+        }
     }
     return growth(m, (negative != 0) != (t < 0.0));
 }
@@ -83,8 +86,9 @@ static double assembled(uint64_t significand, int power)
     /* less 1: a half goes down, for 2^-1075 is 0 in IEEE arithmetic */
     const uint64_t above = (significand - 1) >> (drop - 1);
     u.bits = (above >> 1) + (above & 1);
-    if (biased > 1)
+    if (biased > 1) {
         u.bits += (uint64_t)(biased - 1) << 52; /* a carry goes on into the exponent, as it should, to infinity even */
+    }
     return u.value;
 }
 
@@ -101,12 +105,15 @@ double pl_growth_value(pl_growth a)
     const int below = (int)(fraction >> 63); /* of k */
     double x;
 
-    if (a.hi < -1075 * one)
+    if (a.hi < -1075 * one) {
         return 0.0;
-    if (a.hi >= 1024 * one)
+    }
+    if (a.hi >= 1024 * one) {
         return assembled((uint64_t)1 << 63, 1024);
-    if (below)
+    }
+    if (below) {
         fraction = 0u - fraction;
+    }
     r = words_times(fraction, ln_2); /* |r| in units of 2^-64 */
     rr = words_times(r, r);
     x = (double)(int64_t)r * (below ? -0x1p-64 : 0x1p-64);

@@ -7,8 +7,9 @@
 /* +-magnitude 2^-48, saturated */
 static pl_growthf growth(uint64_t magnitude, int negative)
 {
-    if (magnitude >> 63) /* 2^15 or more; -2^15 itself is what saturation gives */
+    if (magnitude >> 63) { /* 2^15 or more; -2^15 itself is what saturation gives */
         return negative ? INT64_MIN : INT64_MAX;
+    }
     return negative ? -(int64_t)magnitude : (int64_t)magnitude;
 }
 
@@ -56,8 +57,9 @@ static float assembled(uint32_t significand, int power)
     const uint32_t above = (significand - 1) >> (drop - 1);
     real_parts u;
     u.bits = (above >> 1) + (above & 1);
-    if (biased > 1)
+    if (biased > 1) {
         u.bits += (uint32_t)(biased - 1) << 23; /* a carry goes on into the exponent, as it should, to infinity even */
+    }
     return u.value;
 }
 
@@ -67,10 +69,12 @@ float pl_growthf_value(pl_growthf a)
     const int k = (int)(((uint64_t)a ^ (uint64_t)1 << 63) >> 48) - 32768; /* rounded down */
     uint32_t rest;
 
-    if (a < -150 * one)
+    if (a < -150 * one) {
         return 0;
-    if (a >= 128 * one)
+    }
+    if (a >= 128 * one) {
         return assembled((uint32_t)1 << 31, 128);
+    }
     rest = power_of_2((uint32_t)((uint64_t)a >> 16));
     return assembled((uint32_t)1 << 31 | rest >> 1 | (rest & 1), k);
 }

@@ -34,12 +34,15 @@ static void assign(const pl_guards *m, int set, real *x, real *work)
 {
     const int n = m->size;
     int k;
-    if (set < 0)
+    if (set < 0) {
         return;
-    for (k = m->set[set]; k < m->set[set + 1]; k++)
+    }
+    for (k = m->set[set]; k < m->set[set + 1]; k++) {
         pl_multiply(1, n, m->value + (ptrdiff_t)k * n, x, work + (k - m->set[set]));
-    for (k = m->set[set]; k < m->set[set + 1]; k++)
+    }
+    for (k = m->set[set]; k < m->set[set + 1]; k++) {
         x[m->state[k]] = work[k - m->set[set]];
+    }
 }
 
 static real excess(const pl_guards *m, const pl_contact *c, const walk *w, int breakpoint, const real *x, real *noise)
@@ -57,10 +60,12 @@ static real excess(const pl_guards *m, const pl_contact *c, const walk *w, int b
 static int outside(const pl_guards *m, const pl_contact *c, const walk *w, const real *x)
 {
     real noise;
-    if (w->interval < w->breaks && excess(m, c, w, w->interval, x, &noise) > noise)
+    if (w->interval < w->breaks && excess(m, c, w, w->interval, x, &noise) > noise) {
         return 1;
-    if (w->interval > 0 && -excess(m, c, w, w->interval - 1, x, &noise) > noise)
+    }
+    if (w->interval > 0 && -excess(m, c, w, w->interval - 1, x, &noise) > noise) {
         return -1;
+    }
     return 0;
 }
 
@@ -69,12 +74,14 @@ static void follow(const pl_guards *m, const real *x, pl_contact *c, pl_crossing
 {
     walk w;
     int way;
-    for (w = first_switch(m->at); arrive(m->switches, m->breaks, c->region, &w); leave(&w))
+    for (w = first_switch(m->at); arrive(m->switches, m->breaks, c->region, &w); leave(&w)) {
         for (; (way = outside(m, c, &w, x)) != 0; w.interval += way) {
-            if (crossing)
+            if (crossing) {
                 (void)list(m->max_events, c, crossing, time, w.i, w.interval - (way < 0), way > 0);
+            }
             enter(m->matrix, c, c->region + way * w.stride);
         }
+    }
 }
 
 /* ---- impacts ---- */
@@ -82,8 +89,9 @@ static void follow(const pl_guards *m, const real *x, pl_contact *c, pl_crossing
 static walk switch_of(const pl_guards *m, int region, int expression)
 {
     walk w;
-    for (w = first_switch(m->at); arrive(m->switches, m->breaks, region, &w) && w.i < expression; leave(&w))
+    for (w = first_switch(m->at); arrive(m->switches, m->breaks, region, &w) && w.i < expression; leave(&w)) {
         ;
+    }
     return w;
 }
 
@@ -106,8 +114,9 @@ static int touches(const pl_guards *m, const pl_contact *c, const pl_impact *p, 
 {
     const walk w = switch_of(m, c->region, p->expression);
     real noise;
-    if (p->rest < 0 || (w.interval != p->rest && w.interval != free_of(p)))
+    if (p->rest < 0 || (w.interval != p->rest && w.interval != free_of(p))) {
         return 0;
+    }
     return magnitude(excess(m, c, &w, p->breakpoint, x, &noise)) <= noise;
 }
 
@@ -125,8 +134,9 @@ static void put_on(const pl_guards *m, const pl_contact *c, int k, real *x)
     real noise;
     const real e = excess(m, c, &w, m->impact[k].breakpoint, x, &noise);
     int i;
-    for (i = 0; i < m->size; i++)
+    for (i = 0; i < m->size; i++) {
         x[i] -= back[i] * e;
+    }
 }
 
 /* Impacts at one instant without an end become slower and slower: what touches with less than `slow` comes to rest
@@ -138,8 +148,9 @@ static void calm(const pl_guards *m, real slow, real *x, pl_contact *c, pl_cross
     for (k = 0; k < m->impacts; k++) {
         const pl_impact *p = &m->impact[k];
         if (!touches(m, c, p, x) || magnitude(speed_of(m, k, x)) >= slow ||
-            switch_of(m, c->region, p->expression).interval == p->rest)
+            switch_of(m, c->region, p->expression).interval == p->rest) {
             continue;
+        }
         go_to(m, c, p, p->rest);
         (void)list(m->max_events, c, crossing, time, p->expression, p->breakpoint, p->upward);
         any++;
@@ -163,8 +174,9 @@ static uint32_t collide(const pl_guards *m, int begins, real *x, pl_contact *c, 
     for (k = 0; k < m->impacts; k++) {
         const pl_impact *p = &m->impact[k];
         const real speed = touches(m, c, p, x) ? speed_of(m, k, x) : 0;
-        if (k != begins && !(speed > 0))
+        if (k != begins && !(speed > 0)) {
             continue;
+        }
         if (k != begins && speed < CALM * most) {
             calms = 1;
             continue;
@@ -176,17 +188,20 @@ static uint32_t collide(const pl_guards *m, int begins, real *x, pl_contact *c, 
             break;
         }
         assign(m, p->jump, x, work);
-        if (p->rest >= 0)
+        if (p->rest >= 0) {
             go_to(m, c, p, free_of(p));
-        if (p->rest >= 0)
+        }
+        if (p->rest >= 0) {
             put_on(m, c, k, x);
+        }
         struck |= (uint32_t)1 << k;
         begins = k == begins ? -1 : begins;
         calms = 0;
         k = -1;
     }
-    if (calms)
+    if (calms) {
         calm(m, CALM * most, x, c, crossing, time, work);
+    }
     return struck;
 }
 
@@ -195,8 +210,9 @@ static real flight(const pl_guards *m, const pl_contact *c, int k, const real *x
 {
     const real speed = speed_of(m, k, x);
     real press;
-    if (m->impact[k].rest < 0 || speed > 0)
+    if (m->impact[k].rest < 0 || speed > 0) {
         return -1;
+    }
     pl_multiply(m->size, m->size, matrix_of(m->A, m, c->matrix), x, work);
     pl_multiply(1, m->size, m->speed + (ptrdiff_t)k * m->size, work, &press);
     return press > 0 ? -2 * speed / press : -1;
@@ -208,8 +224,9 @@ static real shortened(const pl_guards *m, const pl_contact *c, const real *x, re
     int k;
     for (k = 0; k < m->impacts; k++) {
         const real along = touches(m, c, &m->impact[k], x) ? flight(m, c, k, x, work) : 0;
-        if (along > 0)
+        if (along > 0) {
             dt = smaller(dt, 2 * along);
+        }
     }
     return dt;
 }
@@ -224,9 +241,11 @@ typedef struct resting { /* an expression on a breakpoint that stands twice */
 static int impact_of(const pl_guards *m, int expression, int interval)
 {
     int k;
-    for (k = m->impacts - 1; k >= 0; k--)
-        if (m->impact[k].rest == interval && m->impact[k].expression == expression)
+    for (k = m->impacts - 1; k >= 0; k--) {
+        if (m->impact[k].rest == interval && m->impact[k].expression == expression) {
             break;
+        }
+    }
     return k;
 }
 
@@ -236,20 +255,24 @@ static int find_resting(const pl_guards *m, const pl_contact *c, const real *x, 
     int count = 0, k;
     real noise = 0;
     walk w;
-    for (w = first_switch(m->at); arrive(m->switches, m->breaks, c->region, &w); leave(&w))
+    for (w = first_switch(m->at); arrive(m->switches, m->breaks, c->region, &w); leave(&w)) {
         for (k = 1; k < w.breaks; k++) {
             const real e = w.at[k] - w.at[k - 1] <= 0 ? excess(m, c, &w, k, x, &noise) : 1;
-            if (w.at[k] - w.at[k - 1] > 0 || w.interval < k - 1 || w.interval > k + 1 || count == MOST)
+            if (w.at[k] - w.at[k - 1] > 0 || w.interval < k - 1 || w.interval > k + 1 || count == MOST) {
                 continue;
-            if (magnitude(e) > noise)
+            }
+            if (magnitude(e) > noise) {
                 continue;
+            }
             found[count].impact = impact_of(m, w.i, k);
-            if (found[count].impact >= 0 && magnitude(speed_of(m, found[count].impact, x)) > 0 && w.interval != k)
+            if (found[count].impact >= 0 && magnitude(speed_of(m, found[count].impact, x)) > 0 && w.interval != k) {
                 continue; /* it flies off, or there was no room for its impact */
+            }
             found[count].expression = w.i;
             found[count].stick = k;
             found[count++].stride = w.stride;
         }
+    }
     return count;
 }
 
@@ -282,8 +305,9 @@ static int is_held(const pl_guards *m, int region, int expression, const real *x
     int k;
     for (k = m->first[region]; k < m->first[region + 1]; k++) {
         const real pull = m->guard[k].expression == expression ? pull_of(m, k, x) : -1;
-        if (pull > 0 || (pull >= 0 && rises(m, region, k, x, work)))
+        if (pull > 0 || (pull >= 0 && rises(m, region, k, x, work))) {
             return 0;
+        }
     }
     return 1;
 }
@@ -294,12 +318,15 @@ static int is_let_go(const pl_guards *m, int region, const resting *r, int side,
 {
     const int stuck = region - side * r->stride;
     int k;
-    if (m->matrix[stuck] < 0)
+    if (m->matrix[stuck] < 0) {
         return 0;
-    for (k = m->first[stuck]; k < m->first[stuck + 1]; k++)
+    }
+    for (k = m->first[stuck]; k < m->first[stuck + 1]; k++) {
         if (m->guard[k].expression == r->expression && m->guard[k].leads * side > 0 && !(pull_of(m, k, x) > 0) &&
-            !(pull_of(m, k, x) < 0) && rises(m, stuck, k, x, work))
+            !(pull_of(m, k, x) < 0) && rises(m, stuck, k, x, work)) {
             return 1;
+        }
+    }
     return 0;
 }
 
@@ -308,20 +335,25 @@ static int agrees(const pl_guards *m, int region, const resting *r, int count, c
 {
     const int n = m->size;
     int i;
-    if (m->matrix[region] < 0)
+    if (m->matrix[region] < 0) {
         return 0;
+    }
     for (i = 0; i < count; i++) {
         const int side = interval_of(m, &r[i], region) - r[i].stick;
         const real *row = m->row + r[i].expression * n;
-        if (r[i].impact >= 0 && side == 0 && speed_of(m, r[i].impact, x) < 0)
+        if (r[i].impact >= 0 && side == 0 && speed_of(m, r[i].impact, x) < 0) {
             return 0;
-        if (r[i].impact >= 0 && side == (m->impact[r[i].impact].upward ? 1 : -1))
+        }
+        if (r[i].impact >= 0 && side == (m->impact[r[i].impact].upward ? 1 : -1)) {
             return 0;
-        if (side == 0 && !is_held(m, region, r[i].expression, x, work))
+        }
+        if (side == 0 && !is_held(m, region, r[i].expression, x, work)) {
             return 0;
+        }
         if (side != 0 && heading(n, matrix_of(m->A, m, m->matrix[region]), row, x, work) != side &&
-            !is_let_go(m, region, &r[i], side, x, work))
+            !is_let_go(m, region, &r[i], side, x, work)) {
             return 0;
+        }
     }
     return 1;
 }
@@ -329,8 +361,9 @@ static int agrees(const pl_guards *m, int region, const resting *r, int count, c
 static int combinations(int count)
 {
     int all = 1;
-    while (count-- > 0)
+    while (count-- > 0) {
         all *= 3;
+    }
     return all;
 }
 
@@ -360,10 +393,12 @@ static void change(const pl_guards *m, pl_contact *c, pl_crossing *crossing, rea
     int i, k;
     for (i = 0; i < count && crossing; i++) {
         const int now = interval_of(m, &r[i], c->region), then = interval_of(m, &r[i], region);
-        for (k = now; k < then; k++)
+        for (k = now; k < then; k++) {
             (void)list(m->max_events, c, crossing, time, r[i].expression, k, 1);
-        for (k = now; k > then; k--)
+        }
+        for (k = now; k > then; k--) {
             (void)list(m->max_events, c, crossing, time, r[i].expression, k - 1, 0);
+        }
     }
     enter(m->matrix, c, region);
 }
@@ -374,13 +409,15 @@ static void settle(const pl_guards *m, const real *x, pl_contact *c, pl_crossing
     resting r[MOST];
     const int count = find_resting(m, c, x, r);
     int region;
-    if (count == 0 || agrees(m, c->region, r, count, x, work))
+    if (count == 0 || agrees(m, c->region, r, count, x, work)) {
         return;
+    }
     region = best_region(m, c, r, count, x, work);
-    if (region < 0)
+    if (region < 0) {
         c->status |= PL_UNDECIDED;
-    else
+    } else {
         change(m, c, crossing, time, r, count, region);
+    }
 }
 
 /* ---- the start ---- */
@@ -392,12 +429,15 @@ static void decide(const pl_guards *m, const real *x, pl_contact *c, real *work)
     walk w;
     for (w = first_switch(m->at); arrive(m->switches, m->breaks, c->region, &w); leave(&w)) {
         const int twice = w.interval + 1 < w.breaks && !(w.at[w.interval + 1] > w.at[w.interval]);
-        if (w.interval == w.breaks || twice || -excess(m, c, &w, w.interval, x, &noise) > noise)
+        if (w.interval == w.breaks || twice || -excess(m, c, &w, w.interval, x, &noise) > noise) {
             continue;
-        if (w.interval > 0 && !(w.at[w.interval] > w.at[w.interval - 1]))
+        }
+        if (w.interval > 0 && !(w.at[w.interval] > w.at[w.interval - 1])) {
             continue;
-        if (heading(m->size, matrix_of(m->A, m, c->matrix), m->row + w.i * m->size, x, work) > 0)
+        }
+        if (heading(m->size, matrix_of(m->A, m, c->matrix), m->row + w.i * m->size, x, work) > 0) {
             enter(m->matrix, c, c->region + w.stride);
+        }
     }
 }
 
@@ -405,24 +445,28 @@ void pl_guards_start(const pl_guards *m, const real *x, pl_contact *c, real *wor
 {
     walk w;
     int first = 0;
-    while (m->matrix[first] < 0)
+    while (m->matrix[first] < 0) {
         first++;
+    }
     c->total = 0;
     c->crossings = c->status = c->rested = 0;
     c->matrix = m->matrix[first];
     enter(m->matrix, c, 0);
     follow(m, x, c, (pl_crossing *)0, 0);
     /* at rest: let it stick first */
-    for (w = first_switch(m->at); arrive(m->switches, m->breaks, c->region, &w); leave(&w))
+    for (w = first_switch(m->at); arrive(m->switches, m->breaks, c->region, &w); leave(&w)) {
         if (w.interval + 1 < w.breaks && !(w.at[w.interval + 1] > w.at[w.interval])) {
             const int impact = impact_of(m, w.i, w.interval + 1);
             real noise;
-            if (magnitude(excess(m, c, &w, w.interval, x, &noise)) > noise)
+            if (magnitude(excess(m, c, &w, w.interval, x, &noise)) > noise) {
                 continue;
+            }
             enter(m->matrix, c, c->region + w.stride);
-            if (impact >= 0 && magnitude(speed_of(m, impact, x)) > 0)
+            if (impact >= 0 && magnitude(speed_of(m, impact, x)) > 0) {
                 go_to(m, c, &m->impact[impact], free_of(&m->impact[impact]));
+            }
         }
+    }
     settle(m, x, c, (pl_crossing *)0, 0, work);
     decide(m, x, c, work);
     settle(m, x, c, (pl_crossing *)0, 0, work);
@@ -435,21 +479,24 @@ static int stays_clear(const pl_guards *m, const pl_contact *c, const real *x, c
 {
     const int n = m->size;
     int i, k;
-    for (i = 0; i < n; i++)
+    for (i = 0; i < n; i++) {
         work[i] = magnitude(x[i]);
+    }
     for (k = m->first[c->region]; k < m->first[c->region + 1]; k++) {
         const ptrdiff_t at = (ptrdiff_t)m->guard[k].row * n;
         real from, to, off, leaving, arriving;
         pl_multiply(1, n, m->gate + at, x, &from);
         pl_multiply(1, n, m->gate + at, y, &to);
         pl_multiply(1, n, m->chord_error + at, work, &off);
-        if (larger(from, to) + off < m->limit[k])
+        if (larger(from, to) + off < m->limit[k]) {
             continue;
+        }
         pl_multiply(1, n, m->cubic_error + at, work, &off);
         pl_multiply(1, n, m->gate_tangent + at, x, &leaving);
         pl_multiply(1, n, m->gate_tangent + at, y, &arriving);
-        if (!(larger(larger(from, to), larger(from + leaving, to - arriving)) + off < m->limit[k]))
+        if (!(larger(larger(from, to), larger(from + leaving, to - arriving)) + off < m->limit[k])) {
             return 0;
+        }
     }
     return 1;
 }
@@ -474,16 +521,18 @@ static void level(const pl_guards *m, int region, const pl_guard *g, const real 
     const int side = g->leads < 0 ? 1 : -1;
     walk w;
     resting r;
-    if (magnitude(f->coefficient[0]) > f->noise || !(f->coefficient[1] > 0))
+    if (magnitude(f->coefficient[0]) > f->noise || !(f->coefficient[1] > 0)) {
         return;
+    }
     w = switch_of(m, region, g->expression);
     r.expression = g->expression;
     r.stick = w.interval - side;
     r.stride = w.stride;
     r.impact = -1;
     if (r.stick > 0 && r.stick < w.breaks && !(w.at[r.stick] > w.at[r.stick - 1]) &&
-        is_let_go(m, region, &r, side, x, work))
+        is_let_go(m, region, &r, side, x, work)) {
         f->coefficient[1] = 0;
+    }
 }
 
 /* coefficients: (degree + 1) x size, of x(s); after them 2 (degree + 1) + 4 size for work */
@@ -502,13 +551,15 @@ static event first_event(const pl_guards *m, int region, real *coefficients, int
         pl_multiply(terms, n, coefficients, row, e);
         look_beyond(&f, e, 1, m->limit[k], sizes(n, row, coefficients));
         if (m->guard[k].impact >= 0 && e[1] < 0 && magnitude(f.coefficient[0]) <= noise_of(magnitude(m->limit[k]) +
-            sizes(n, row, coefficients) + sizes(n, row, coefficients + n)))
+            sizes(n, row, coefficients) + sizes(n, row, coefficients + n))) {
             look_behind(&f, e, sizes(n, row, coefficients + n));
-        else if (m->guard[k].impact < 0)
+        } else if (m->guard[k].impact < 0) {
             level(m, region, &m->guard[k], coefficients, &f, e + 2 * terms);
+        }
         s = first_root(&f, first.s, splits);
-        if (s < 0)
+        if (s < 0) {
             continue;
+        }
         first.s = s;
         first.guard = k;
     }
@@ -526,17 +577,20 @@ static event move(const pl_guards *m, pl_contact *c, real dt, const real *y, int
         sum_up(m->size, m->degree, work, 1, x);
         return none;
     }
-    if (*splits >= 0 && m->matrix[c->region] >= 0)
+    if (*splits >= 0 && m->matrix[c->region] >= 0) {
         first = first_event(m, c->region, work, splits);
+    }
     if (*splits < 0) {
         c->status |= PL_TOO_MANY_EVENTS;
         first = none;
     }
-    if (y && first.guard < 0)
-        for (i = 0; i < m->size; i++)
+    if (y && first.guard < 0) {
+        for (i = 0; i < m->size; i++) {
             x[i] = y[i];
-    else
+        }
+    } else {
         sum_up(m->size, m->degree, work, first.s, x);
+    }
     return first;
 }
 
@@ -552,8 +606,9 @@ static void come_to_rest(const pl_guards *m, uint32_t struck, real *x, pl_contac
         const real e = p->restitution, along = struck >> k & 1 && e < 1 ? flight(m, c, k, x, work) : -1;
         const real left = along / (1 - e);
         const int full = c->crossings > m->max_events - MOST;
-        if (!(left >= 0 && left <= (full ? 1 : BRIEF) * m->h) || !touches(m, c, p, x))
+        if (!(left >= 0 && left <= (full ? 1 : BRIEF) * m->h) || !touches(m, c, p, x)) {
             continue;
+        }
         assign(m, p->still, x, work);
         go_to(m, c, p, p->rest);
         assign(m, m->hold[c->region], x, work); /* beside others that rest, and what they would leave it with */
@@ -569,15 +624,19 @@ static int pass(const pl_guards *m, pl_contact *c, const pl_guard *g, real *x, p
 {
     const int full = c->crossings == m->max_events;
     uint32_t struck = 0;
-    if (g->impact < 0)
+    if (g->impact < 0) {
         (void)list(m->max_events, c, crossing, time, g->expression, g->breakpoint, g->upward);
-    if (g->impact < 0 || m->impact[g->impact].rest < 0)
+    }
+    if (g->impact < 0 || m->impact[g->impact].rest < 0) {
         enter(m->matrix, c, c->region + g->leads);
+    }
     assign(m, m->hold[c->region], x, work);
-    if (g->impact >= 0)
+    if (g->impact >= 0) {
         struck = collide(m, g->impact, x, c, crossing, time, work);
-    if (g->impact >= 0)
+    }
+    if (g->impact >= 0) {
         follow(m, x, c, crossing, time);
+    }
     settle(m, x, c, crossing, time, work);
     come_to_rest(m, struck, x, c, crossing, time, work);
     assign(m, m->hold[c->region], x, work);
@@ -619,8 +678,9 @@ void pl_guards_advance(const pl_guards *m, real tau, real *x, pl_contact *c, pl_
             pl_multiply(n, n, matrix_of(m->Phi, m, c->matrix), x, y);
             assign(m, m->hold[c->region], y, rest);
             if (m->matrix[c->region] >= 0 && stays_clear(m, c, x, y, rest)) {
-                for (i = 0; i < n; i++)
+                for (i = 0; i < n; i++) {
                     x[i] = y[i];
+                }
                 left -= dt;
                 fresh = 0;
                 continue;
@@ -633,14 +693,17 @@ void pl_guards_advance(const pl_guards *m, real tau, real *x, pl_contact *c, pl_
         }
         first = move(m, c, dt, whole ? y : (real *)0, &splits, x, rest);
         assign(m, m->hold[c->region], x, rest);
-        if (splits < 0)
+        if (splits < 0) {
             break; /* x is held: this region may not be the one, and may be unstable */
+        }
         left -= first.s * dt;
-        if (first.guard < 0)
+        if (first.guard < 0) {
             continue;
+        }
         if (!pass(m, c, &m->guard[first.guard], x, crossing, tau - left, rest)) {
-            if (m->guard[first.guard].impact >= 0)
+            if (m->guard[first.guard].impact >= 0) {
                 break; /* x is held on the guard: beyond it the impact would not come any more */
+            }
             splits = -1; /* no further search */
         }
     }

@@ -19,8 +19,9 @@ static real product(int n, const real *a, const real *b)
 {
     real sum = 0;
     int i;
-    for (i = 0; i < n; i++)
+    for (i = 0; i < n; i++) {
         sum += a[i] * b[i];
+    }
     return sum;
 }
 
@@ -83,8 +84,9 @@ static real extreme(const taylor *p, real a, real b, real slope_a, real slope_b)
         next = s - value[1] / value[2];
         next = next > a ? (next < b ? next : b) : a;
         off = size_of(next - s);
-        if (off * off * size_of(value[2]) <= REAL_EPSILON / 4 * size_of(value[0]))
+        if (off * off * size_of(value[2]) <= REAL_EPSILON / 4 * size_of(value[0])) {
             break;
+        }
         s = next;
     }
     return size_of(value[0]);
@@ -106,8 +108,9 @@ static real largest(const taylor *p, real peak)
                 width /= 2;
                 continue;
             }
-            if ((at_a[1] < 0) != (at_b[1] < 0))
+            if ((at_a[1] < 0) != (at_b[1] < 0)) {
                 peak = larger(peak, extreme(p, a, b, at_a[1], at_b[1]));
+            }
         }
         a = b;
         width = 2 * width < 1 - a ? 2 * width : 1 - a;
@@ -131,12 +134,14 @@ typedef struct slopes {
 static int list_places(int size, const real *output, int *place)
 {
     int i, places = 0;
-    for (i = 0; i < size; i++)
+    for (i = 0; i < size; i++) {
         if (output[i] < 0 || output[i] > 0) {
-            if (places == MOST_ENTRIES)
+            if (places == MOST_ENTRIES) {
                 return -1;
+            }
             place[places++] = i;
         }
+    }
     return places;
 }
 
@@ -146,8 +151,8 @@ static void list_entries(int size, const real *A, slopes *s)
     s->size = size;
     s->A = A;
     s->entries = s->chain = 0;
-    for (i = 0; i < size; i++)
-        for (j = 0; j < size; j++)
+    for (i = 0; i < size; i++) {
+        for (j = 0; j < size; j++) {
             if (A[i * size + j] < 0 || A[i * size + j] > 0) {
                 if (s->entries == MOST_ENTRIES) {
                     s->entries = -1;
@@ -159,6 +164,8 @@ static void list_entries(int size, const real *A, slopes *s)
                 s->value[s->entries++] = A[i * size + j];
                 s->chain = j <= i ? i + 1 : s->chain;
             }
+        }
+    }
     s->row[s->entries] = size;
 }
 
@@ -166,10 +173,12 @@ static real output_of(const slopes *s, const real *x)
 {
     real sum = 0;
     int i;
-    if (s->places < 0)
+    if (s->places < 0) {
         return product(s->size, s->output, x);
-    for (i = 0; i < s->places; i++)
+    }
+    for (i = 0; i < s->places; i++) {
         sum += s->output[s->place[i]] * x[s->place[i]];
+    }
     return sum;
 }
 
@@ -178,10 +187,12 @@ static real slope_of(const slopes *s, const real *x, int i, int *from)
 {
     real sum = 0;
     int k;
-    if (s->entries < 0)
+    if (s->entries < 0) {
         return product(s->size, s->A + i * s->size, x);
-    for (k = *from; s->row[k] == i; k++)
+    }
+    for (k = *from; s->row[k] == i; k++) {
         sum += s->value[k] * x[s->column[k]];
+    }
     *from = k;
     return sum;
 }
@@ -212,8 +223,9 @@ static int expand(const slopes *A, real d, real *x, taylor *p, real *work)
         p->c[k] = output_of(A, term);
         p->degree = k;
         small = all ? small + 1 : 0;
-        while (size > A->chain && !(term[size - 1] < 0) && !(term[size - 1] > 0))
+        while (size > A->chain && !(term[size - 1] < 0) && !(term[size - 1] > 0)) {
             next[--size] = 0;           /* from now on, in both */
+        }
     }
     return small == 2;
 }
@@ -227,16 +239,20 @@ static real search(const slopes *A, real h, int halvings, const real *start, rea
     int32_t part;
     int i;
     taylor p;
-    for (i = 0; i < size; i++)
+    for (i = 0; i < size; i++) {
         x[i] = start[i];
+    }
     for (part = 0; part < parts; part++) {
-        if (!expand(A, h / (real)parts, x, &p, work))
+        if (!expand(A, h / (real)parts, x, &p, work)) {
             return -1;
+        }
         bound_derivatives(&p);
-        if (part + 1 < parts)
+        if (part + 1 < parts) {
             peak = larger(peak, size_of(p.end));
-        if (size_of(p.c[1]) < p.second && !(bound_of(&p) <= peak))      /* else it only rises, or stays below */
+        }
+        if (size_of(p.c[1]) < p.second && !(bound_of(&p) <= peak)) {      /* else it only rises, or stays below */
             peak = largest(&p, peak);
+        }
     }
     return peak;
 }
@@ -248,18 +264,22 @@ real pl_peak(int size, const real *A, const real *row, const real *bend, real h,
     real off = 0, found = -1;
     slopes listed;
     int i;
-    for (i = 0; i < size; i++)
+    for (i = 0; i < size; i++) {
         off += bend[i] * size_of(x[i]);
-    if (most + off <= peak)
+    }
+    if (most + off <= peak) {
         return peak;
-    if (!(most - most <= 0) || !(peak - peak <= 0))     /* not finite */
+    }
+    if (!(most - most <= 0) || !(peak - peak <= 0)) {     /* not finite */
         return peak - peak <= 0 ? most : peak;
+    }
     peak = larger(peak, most);
     list_entries(size, A, &listed);
     listed.output = row;
     listed.places = list_places(size, row, listed.place);
-    for (i = 0; i <= MOST_HALVINGS && found < 0; i++)
+    for (i = 0; i <= MOST_HALVINGS && found < 0; i++) {
         found = search(&listed, h, i, x, peak, work);
+    }
     return found < 0 ? peak : found;
 }
 
@@ -270,8 +290,9 @@ static void row_times(const slopes *s, const real *row, real *product, const rea
 {
     const int all = s->entries < 0, entries = all ? s->size * s->size : s->entries;
     int k;
-    for (k = 0; k < s->size; k++)
+    for (k = 0; k < s->size; k++) {
         product[k] = bound[k] = 0;
+    }
     for (k = 0; k < entries; k++) {
         const int i = all ? k / s->size : s->row[k], j = all ? k % s->size : s->column[k];
         const real value = all ? s->A[k] : s->value[k];
@@ -315,13 +336,16 @@ void pl_peak_bend(int size, const real *A, const real *row, real h, real *bend, 
     list_entries(size, A, &listed);
     row_times(&listed, row, first, row, sum);
     row_times(&listed, first, r, row, sum);
-    for (j = 0; j < size; j++)
+    for (j = 0; j < size; j++) {
         bend[j] = 0;
+    }
     for (k = 0; k < BEND_PARTS; k++) {
         const int known = grow(&listed, h / (real)BEND_PARTS, r, sum, work + 2 * size);
-        for (j = 0; j < size; j++)
+        for (j = 0; j < size; j++) {
             bend[j] = known ? larger(bend[j], slack * (h * h / 8) * sum[j]) : REAL_LARGE;
-        if (!known)
+        }
+        if (!known) {
             return;
+        }
     }
 }

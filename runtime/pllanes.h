@@ -62,17 +62,19 @@ PL_LANES_INLINE pl_lanesf pl_lanesf_load(const float *from, size_t count)
 /* The first `count` lanes; without any nothing is written */
 PL_LANES_INLINE void pl_lanes_store(double *to, pl_lanes all, size_t count)
 {
-    if (count >= sizeof(pl_lanes) / sizeof(double))
+    if (count >= sizeof(pl_lanes) / sizeof(double)) {
         memcpy(to, &all, sizeof all);
-    else
+    } else {
         memcpy(to, &all, count * sizeof(double));
+    }
 }
 PL_LANES_INLINE void pl_lanesf_store(float *to, pl_lanesf all, size_t count)
 {
-    if (count >= sizeof(pl_lanesf) / sizeof(float))
+    if (count >= sizeof(pl_lanesf) / sizeof(float)) {
         memcpy(to, &all, sizeof all);
-    else
+    } else {
         memcpy(to, &all, count * sizeof(float));
+    }
 }
 
 /* The same number in every lane */
@@ -180,8 +182,9 @@ PL_LANES_INLINE int pl_lanes_above(pl_lanes a, pl_lanes b)
     int above = 0;
     memcpy(x, &a, sizeof a);
     memcpy(y, &b, sizeof b);
-    for (i = 0; i < sizeof(pl_lanes) / sizeof(double); i++)
+    for (i = 0; i < sizeof(pl_lanes) / sizeof(double); i++) {
         above |= !(x[i] <= y[i]);
+    }
     return above;
 }
 PL_LANES_INLINE int pl_lanesf_above(pl_lanesf a, pl_lanesf b)
@@ -191,8 +194,9 @@ PL_LANES_INLINE int pl_lanesf_above(pl_lanesf a, pl_lanesf b)
     int above = 0;
     memcpy(x, &a, sizeof a);
     memcpy(y, &b, sizeof b);
-    for (i = 0; i < sizeof(pl_lanesf) / sizeof(float); i++)
+    for (i = 0; i < sizeof(pl_lanesf) / sizeof(float); i++) {
         above |= !(x[i] <= y[i]);
+    }
     return above;
 }
 #endif

@@ -73,8 +73,9 @@ void pl_refused_flag(void) __attribute__((error("sums have to stay as they are w
                                                 "-funsafe-math-optimizations, -fassociative-math")));
 __attribute__((used)) static void pl_look_at_flags(float a)
 {
-    if (__builtin_constant_p((a + 1.0f) - a))
+    if (__builtin_constant_p((a + 1.0f) - a)) {
         pl_refused_flag();
+    }
 }
 #endif
 #elif defined __GNUC__ && !defined __clang__ && __GNUC__ < 12
@@ -231,10 +232,12 @@ typedef int64_t pl_growthf;
 /* a + b. */
 static inline pl_growthf pl_growthf_add(pl_growthf a, pl_growthf b)
 {
-    if (b > 0 && a > INT64_MAX - b)
+    if (b > 0 && a > INT64_MAX - b) {
         return INT64_MAX;
-    if (b < 0 && a < INT64_MIN - b)
+    }
+    if (b < 0 && a < INT64_MIN - b) {
         return INT64_MIN;
+    }
     return a + b;
 }
 

@@ -30,8 +30,9 @@ static void in_integers(pl_two w, uint64_t m[2], int *e)
     up = lower - *e + 64;
     low = up >= 64 || up <= -64 ? 0 : up >= 0 ? low << up : low >> -up;
     m[0] = w.lo < 0 ? 0u - low : low;
-    if (w.lo < 0 && low != 0)
+    if (w.lo < 0 && low != 0) {
         m[1]--;
+    }
 }
 
 /* product[from] ... += p */
@@ -44,8 +45,9 @@ static void add_pair(uint64_t *product, int from, words_pair p)
     p.hi += carry;
     product[from + 1] += p.hi;
     carry = product[from + 1] < p.hi;
-    for (i = from + 2; carry != 0 && i < WIDE; i++)
+    for (i = from + 2; carry != 0 && i < WIDE; i++) {
         carry = ++product[i] == 0;
+    }
 }
 
 pl_rate pl_rate_of(pl_two w)
@@ -55,14 +57,19 @@ pl_rate pl_rate_of(pl_two w)
     int i, j, e, shift = 0, top = WIDE - 1;
 
     in_integers(w, m, &e);
-    for (i = 0; i < 2; i++)
-        for (j = 0; j < INVERSE; j++)
+    for (i = 0; i < 2; i++) {
+        for (j = 0; j < INVERSE; j++) {
             add_pair(product, i + j, words_product(m[i], inverse_of_turn[j]));
-    while (top > 0 && product[top] == 0)
+        }
+    }
+    while (top > 0 && product[top] == 0) {
         top--;
-    if (product[top] != 0)
-        while (product[top] << shift >> 63 == 0)
+    }
+    if (product[top] != 0) {
+        while (product[top] << shift >> 63 == 0) {
             shift++;
+        }
+    }
     for (i = 0; i < RATE; i++) {
         const uint64_t here = top - i >= 0 ? product[top - i] : 0, below = top - i > 0 ? product[top - i - 1] : 0;
         rate.word[i] = shift == 0 ? here : here << shift | below >> (64 - shift);

@@ -25,8 +25,9 @@ static walk first_switch(const real *at)
 
 static int arrive(int switches, const int *breaks, int region, walk *w)
 {
-    if (w->i == switches)
+    if (w->i == switches) {
         return 0;
+    }
     w->breaks = breaks[w->i];
     w->interval = region / w->stride % (w->breaks + 1);
     return 1;
@@ -43,8 +44,9 @@ static void leave(walk *w)
 static void enter(const int *matrix, pl_contact *c, int region)
 {
     c->region = region;
-    if (matrix[region] >= 0)
+    if (matrix[region] >= 0) {
         c->matrix = matrix[region];
+    }
 }
 
 /* Lists a crossing, or says that there is no more room. */

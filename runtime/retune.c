@@ -46,10 +46,13 @@ static pl_two reduced(pl_two sum, pl_two a, pl_two b)
 static int finite_entries(int rows, int columns, int width, const pl_two *value)
 {
     int i, j;
-    for (i = 0; i < rows; i++)
-        for (j = 0; j < columns; j++)
-            if (!is_finite(value[i * width + j].hi))
+    for (i = 0; i < rows; i++) {
+        for (j = 0; j < columns; j++) {
+            if (!is_finite(value[i * width + j].hi)) {
                 return 0;
+            }
+        }
+    }
     return 1;
 }
 
@@ -60,19 +63,21 @@ static int pivot(int rows, int width, pl_two *value, const pl_two *W, int k)
     int i, j, best = k;
     for (i = k; i < rows; i++) {
         const real a = magnitude(W[i * width + k].hi);
-        if (!is_finite(a))
+        if (!is_finite(a)) {
             return PL_NOT_FINITE;
+        }
         if (a > most) {
             most = a;
             best = i;
         }
     }
-    if (best != k)
+    if (best != k) {
         for (j = 0; j < width; j++) {
             const pl_two swapped = value[k * width + j];
             value[k * width + j] = value[best * width + j];
             value[best * width + j] = swapped;
         }
+    }
     return most > 0 ? 0 : PL_SINGULAR;
 }
 
@@ -86,28 +91,33 @@ static int solve(int rows, int columns, pl_two *value)
     for (k = 0; k < rows; k++) {
         const pl_two *const from = value + k * width;
         const int status = pivot(rows, width, value, W, k);
-        if (status != 0)
+        if (status != 0) {
             return status;
+        }
         for (i = k + 1; i < rows; i++) {
             pl_two *const row = value + i * width;
             if (row[columns + k].hi != 0) {
                 const pl_two q = quotient(row[columns + k], from[columns + k]), factor = two(-q.hi, -q.lo);
-                for (j = 0; j < width; j++)
-                    if (from[j].hi != 0 && (j < columns || j > columns + k))
+                for (j = 0; j < width; j++) {
+                    if (from[j].hi != 0 && (j < columns || j > columns + k)) {
                         row[j] = reduced(row[j], factor, from[j]);
+                    }
+                }
             }
         }
     }
-    for (i = rows - 1; i >= 0; i--)
+    for (i = rows - 1; i >= 0; i--) {
         for (j = 0; j < columns; j++) {
             pl_two sum = value[i * width + j];
             for (k = i + 1; k < rows; k++) {
                 const pl_two w = W[i * width + k];
-                if (w.hi != 0)
+                if (w.hi != 0) {
                     sum = plus_product(sum, two(-w.hi, -w.lo), value[k * width + j]);
+                }
             }
             value[i * width + j] = quotient(normal(sum), W[i * width + i]);
         }
+    }
     return 0;
 }
 
@@ -116,19 +126,23 @@ int pl_equations_at(const pl_equations *e, const real *params, pl_two *value, pl
     const int width = e->columns + (e->solves ? e->rows : 0), entries = e->rows * width;
     int i;
 
-    for (i = 0; i < e->params; i++)
-        if (!is_finite(params[i]))
+    for (i = 0; i < e->params; i++) {
+        if (!is_finite(params[i])) {
             return PL_NOT_FINITE;
+        }
+    }
     work[0] = two(1, 0);
     for (i = 0; i < e->monomials; i++) {
         const pl_monomial *const m = e->monomial + i;
         const pl_two from = work[m->from], param = two(params[m->param], 0);
-        if (m->divides && param.hi == 0)
+        if (m->divides && param.hi == 0) {
             return PL_SINGULAR;
+        }
         work[i + 1] = m->divides ? quotient(from, param) : normal(plus_product(two(0, 0), from, param));
     }
-    for (i = 0; i < entries; i++)
+    for (i = 0; i < entries; i++) {
         value[i] = two(0, 0);
+    }
     for (i = 0; i < e->terms; i++) {
         const pl_term *const t = e->term + i;
         pl_two *const entry = value + t->row * width + t->column;
@@ -136,8 +150,9 @@ int pl_equations_at(const pl_equations *e, const real *params, pl_two *value, pl
     }
     if (e->solves) {
         const int status = solve(e->rows, e->columns, value);
-        if (status != 0)
+        if (status != 0) {
             return status;
+        }
     }
     return finite_entries(e->rows, e->columns, width, value) ? 0 : PL_NOT_FINITE;
 }
@@ -174,28 +189,32 @@ static int balance(int n, pl_two *B, int i, int *isolated)
 {
     real row = 0, column = 0, up, down;
     int j, e;
-    for (j = 0; j < n; j++)
+    for (j = 0; j < n; j++) {
         if (j != i) {
             row += B[i * n + j].hi;
             column += B[j * n + i].hi;
         }
-    if (row == 0 && column == 0)
+    }
+    if (row == 0 && column == 0) {
         return 0;
+    }
     if (row == 0 || column == 0) {
         up = down = 0;
         ++*isolated;
     } else {
         e = (exponent(row) - exponent(column)) / 2;
-        if (e == 0)
+        if (e == 0) {
             return 0;
+        }
         up = power_of_2(e);
         down = power_of_2(-e);
     }
-    for (j = 0; j < n; j++)
+    for (j = 0; j < n; j++) {
         if (j != i) {
             B[i * n + j].hi *= down;
             B[j * n + i].hi *= up;
         }
+    }
     return 1;
 }
 
@@ -208,24 +227,31 @@ static real norm_squared(int n, const pl_two *A, int stride, real tau, pl_two *B
     real most = 0, all = 0;
     int i, j, sweep, changed = 1;
 
-    for (i = 0; i < n; i++)
-        for (j = 0; j < n; j++)
+    for (i = 0; i < n; i++) {
+        for (j = 0; j < n; j++) {
             B[i * n + j].hi = magnitude(A[i * stride + j].hi * tau);
-    for (sweep = 0; sweep < SWEEPS && changed; sweep++)
-        for (i = changed = 0; i < n; i++)
+        }
+    }
+    for (sweep = 0; sweep < SWEEPS && changed; sweep++) {
+        for (i = changed = 0; i < n; i++) {
             changed |= balance(n, B, i, isolated);
+        }
+    }
     for (i = 0; i < n; i++) {
         real sum = 0;
-        for (j = 0; j < n; j++)
+        for (j = 0; j < n; j++) {
             sum += B[i * n + j].hi;
+        }
         B[i].lo = sum;
     }
     for (i = 0; i < n; i++) {
         real sum = 0;
-        for (j = 0; j < n; j++)
+        for (j = 0; j < n; j++) {
             sum += B[i * n + j].hi * B[j].lo;
-        if (sum > most)
+        }
+        if (sum > most) {
             most = sum;
+        }
         all += sum;
     }
     return is_finite(all) ? most : all;
@@ -236,21 +262,27 @@ static real norm_squared(int n, const pl_two *A, int stride, real tau, pl_two *B
 static int load_depth(int size, int states, const pl_two *A, pl_two *mark)
 {
     int i, j, found, depth = 0;
-    for (j = 0; j < size; j++)
+    for (j = 0; j < size; j++) {
         mark[j].hi = j < states;
+    }
     do {
         found = 0;
-        for (j = states; j < size; j++)
-            if (mark[j].hi == 0)
-                for (i = depth == 0 ? 0 : states; i < (depth == 0 ? states : size); i++)
+        for (j = states; j < size; j++) {
+            if (mark[j].hi == 0) {
+                for (i = depth == 0 ? 0 : states; i < (depth == 0 ? states : size); i++) {
                     if (mark[i].hi == 1 && A[i * size + j].hi != 0) {
                         mark[j].hi = 2;
                         found = 1;
                         break;
                     }
-        for (j = states; j < size; j++)
-            if (mark[j].hi != 0)
+                }
+            }
+        }
+        for (j = states; j < size; j++) {
+            if (mark[j].hi != 0) {
                 mark[j].hi = 1;
+            }
+        }
         depth += found;
     } while (found);
     return depth;
@@ -272,14 +304,16 @@ static void product_one(const layout *m, int rows, real factor, const pl_two *d,
 {
     const int size = m->size;
     int i, j, k;
-    for (i = 0; i < rows; i++, a += size, c += size, d += size)
+    for (i = 0; i < rows; i++, a += size, c += size, d += size) {
         for (j = first_column(m, i); j < size; j++) {
             const int to = j < m->states ? m->states : size;
             real sum = 0;
-            for (k = first_column(m, i); k < to; k++)
+            for (k = first_column(m, i); k < to; k++) {
                 sum += a[k].hi * b[k * size + j].hi;
+            }
             c[j].hi = factor * d[j].hi + sum;
         }
+    }
 }
 
 static void product_two(const layout *m, int rows, real factor, const pl_two *d, const pl_two *a, const pl_two *b,
@@ -287,24 +321,27 @@ static void product_two(const layout *m, int rows, real factor, const pl_two *d,
 {
     const int size = m->size;
     int i, j, k;
-    for (i = 0; i < rows; i++, a += size, c += size, d += size)
+    for (i = 0; i < rows; i++, a += size, c += size, d += size) {
         for (j = first_column(m, i); j < size; j++) {
             const int to = j < m->states ? m->states : size;
             pl_two sum = two(factor * d[j].hi, factor * d[j].lo);
-            for (k = first_column(m, i); k < to; k++)
+            for (k = first_column(m, i); k < to; k++) {
                 sum = plus_product(sum, a[k], b[k * size + j]);
+            }
             c[j] = normal(sum);
         }
+    }
 }
 
 /* c <- factor d + a b, its first `rows` rows; the factor is 0 or a power of 2, and c may be d */
 static void product(const layout *m, int rows, real factor, const pl_two *d, const pl_two *a, const pl_two *b,
                     pl_two *c)
 {
-    if (m->words == 1)
+    if (m->words == 1) {
         product_one(m, rows, factor, d, a, b, c);
-    else
+    } else {
         product_two(m, rows, factor, d, a, b, c);
+    }
 }
 
 /* c <- sum_l coefficient_l X^{l + 1}, its first `rows` rows */
@@ -312,18 +349,22 @@ static void combine(const layout *m, int rows, const real *coefficient, const pl
 {
     const int entries = m->size * m->size;
     int i, j, l;
-    for (i = 0; i < rows; i++, X += m->size, c += m->size)
+    for (i = 0; i < rows; i++, X += m->size, c += m->size) {
         for (j = first_column(m, i); j < m->size; j++) {
             const pl_two *x = X + j;
             pl_two sum = two(0, 0);
-            if (m->words == 1)
-                for (l = 0; l < BLOCK; l++, x += entries)
+            if (m->words == 1) {
+                for (l = 0; l < BLOCK; l++, x += entries) {
                     sum.hi += coefficient[l] * x->hi;
-            else
-                for (l = 0; l < BLOCK; l++, x += entries)
+                }
+            } else {
+                for (l = 0; l < BLOCK; l++, x += entries) {
                     sum = plus_product(sum, two(coefficient[l], 0), *x);
+                }
+            }
             c[j] = sum;
         }
+    }
 }
 
 /* e^X - I, its first `rows` rows; X is followed by room for its powers up to the BLOCKth.  The result is *sum; *sum and
@@ -334,8 +375,9 @@ static void taylor(const layout *m, int rows, pl_two *X, pl_two **sum, pl_two **
     real coefficient[BLOCK], factor = 1; /* degree! / l! */
     int l, i, j, block, degree = BLOCK * BLOCK;
 
-    for (l = 2; l <= BLOCK; l++)
+    for (l = 2; l <= BLOCK; l++) {
         product(m, m->size, 0, X, X + (l / 2 - 1) * entries, X + (l - l / 2 - 1) * entries, X + (l - 1) * entries);
+    }
     for (block = BLOCK - 1; block >= 0; block--) {
         pl_two *const from = *sum, *const to = *other;
         for (l = BLOCK - 1; l >= 0; l--, degree--) {
@@ -343,24 +385,27 @@ static void taylor(const layout *m, int rows, pl_two *X, pl_two **sum, pl_two **
             factor *= (real)degree;
         }
         combine(m, rows, coefficient, X, to);
-        if (block != BLOCK - 1)
+        if (block != BLOCK - 1) {
             product(m, rows, 1, to, from, X + (BLOCK - 1) * entries, to);
+        }
         *sum = to;
         *other = from;
     }
-    for (i = 0; i < rows; i++)
+    for (i = 0; i < rows; i++) {
         for (j = first_column(m, i); j < m->size; j++) {
             pl_two *const s = *sum + i * m->size + j;
             *s = m->words == 1 ? two(s->hi / factor, 0) : quotient(*s, two(factor, 0));
         }
+    }
 }
 
 /* Adds `one` to the diagonal, or takes it off: in two words */
 static void shift(int size, int rows, pl_two *a, real one)
 {
     int i;
-    for (i = 0; i < rows; i++)
+    for (i = 0; i < rows; i++) {
         a[i * size + i] = add(a[i * size + i], two(one, 0));
+    }
 }
 
 /* Do terms of the series meet that leave less than half of the largest?  In the states' block, or in a load's column.
@@ -374,26 +419,31 @@ static int cancelled(const layout *m, int halvings, const pl_two *X, const pl_tw
     for (from = 0; from < size; from = to) {
         real left = 0, first = 0, second = 0, most, factor = whole * whole / 2;
         to = from < states ? states : from + 1;
-        for (i = 0; i < states * size; i += size)
+        for (i = 0; i < states * size; i += size) {
             for (j = from; j < to; j++) {
                 real sum = 0;
-                for (k = 0; k < (from < states ? states : size); k++)
+                for (k = 0; k < (from < states ? states : size); k++) {
                     sum += magnitude(X[i + k].hi * X[k * size + j].hi);
+                }
                 left = larger(left, magnitude(D[i + j].hi));
                 first = larger(first, magnitude(X[i + j].hi));
                 second = larger(second, sum);
             }
+        }
         most = larger(whole * first, factor * second);
         for (l = 2; l < BLOCK; l++) {
             real term = 0;
-            for (i = l * entries; i < l * entries + states * size; i += size)
-                for (j = from; j < to; j++)
+            for (i = l * entries; i < l * entries + states * size; i += size) {
+                for (j = from; j < to; j++) {
                     term = larger(term, magnitude(X[i + j].hi));
+                }
+            }
             factor *= whole / (real)(l + 1);
             most = larger(most, factor * term);
         }
-        if (most > 2 * left)
+        if (most > 2 * left) {
             return 1;
+        }
     }
     return 0;
 }
@@ -407,11 +457,12 @@ static const pl_two *increment(const layout *m, const pl_two *A, real tau, int h
     pl_two *const X = work, *sum = work + BLOCK * entries, *other = sum + entries;
     int less = 1, i, j;
 
-    for (i = 0; i < size; i++)
+    for (i = 0; i < size; i++) {
         for (j = first_column(m, i); j < size; j++) {
             const pl_two a = A[i * size + j];
             X[i * size + j] = m->words == 1 ? two(a.hi * part, 0) : normal(plus_product(two(0, 0), a, two(part, 0)));
         }
+    }
     taylor(m, halvings == 0 ? m->states : size, X, &sum, &other);
     for (; halvings > 0; halvings--) {
         pl_two *const from = sum;
@@ -423,11 +474,13 @@ static const pl_two *increment(const layout *m, const pl_two *A, real tau, int h
         product(m, halvings == 1 ? m->states : size, less ? 2 : 0, from, from, from, other);
         sum = other;
         other = from;
-        if (!finite_entries(m->states, size, size, sum))
+        if (!finite_entries(m->states, size, size, sum)) {
             return NULL;
+        }
     }
-    if (!less)
+    if (!less) {
         shift(size, m->states, sum, -1);
+    }
     return finite_entries(m->states, size, size, sum) ? sum : NULL;
 }
 
@@ -438,13 +491,16 @@ int pl_increment(int size, int states, const pl_two *A, real tau, int words, pl_
     real norm = norm_squared(states, A, size, tau, work, &depth), loads = 0;
     layout m;
 
-    if (states < size)
+    if (states < size) {
         loads = norm_squared(size - states, A + states * size + states, size, tau, work, &ignored);
-    if (!is_finite(norm) || !is_finite(loads))
+    }
+    if (!is_finite(norm) || !is_finite(loads)) {
         return PL_NOT_FINITE;
+    }
     norm = larger(norm, loads);
-    if (norm > MOST)
+    if (norm > MOST) {
         return PL_NOT_FINITE;
+    }
     m.words = norm <= 4 ? words : 2;
     m.size = size;
     m.states = states;
@@ -453,15 +509,19 @@ int pl_increment(int size, int states, const pl_two *A, real tau, int words, pl_
     extra = depth < BLOCK * BLOCK ? (depth + 1) / BLOCK : BLOCK;
     if (m.words == 1) {
         result = increment(&m, A, tau, far + extra, far, work);
-        if (result != NULL && cancelled(&m, far + extra, work, result))
+        if (result != NULL && cancelled(&m, far + extra, work, result)) {
             m.words = 2;
+        }
     }
-    if (m.words == 2)
+    if (m.words == 2) {
         result = increment(&m, A, tau, far + 2 + extra, far, work);
-    if (result == NULL)
+    }
+    if (result == NULL) {
         return PL_NOT_FINITE;
-    for (i = 0; i < states * size; i++)
+    }
+    for (i = 0; i < states * size; i++) {
         D[i] = result[i];
+    }
     return 0;
 }
 

@@ -8,9 +8,10 @@ real pl_root(real a, int n)
     real_parts parts, one;
     one.value = 1;
     parts.value = a;
-    if (parts.bits >= one.bits)
+    if (parts.bits >= one.bits) {
         parts.bits = one.bits + (parts.bits - one.bits) / (real_bits)n;
-    else
+    } else {
         parts.bits = one.bits - (one.bits - parts.bits) / (real_bits)n;
+    }
     return parts.value;
 }

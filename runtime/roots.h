@@ -38,8 +38,9 @@ static real sizes(int n, const real *a, const real *b)
 {
     real sum = 0;
     int j;
-    for (j = 0; j < n; j++)
+    for (j = 0; j < n; j++) {
         sum += magnitude(a[j] * b[j]);
+    }
     return sum;
 }
 
@@ -54,20 +55,23 @@ static int heading(int n, const real *A, const real *row, const real *x, real *w
 {
     real *y = work, *next = work + n, *terms = work + 2 * n, *next_terms = work + 3 * n, e, noise;
     int order, i;
-    for (i = 0; i < n; i++)
+    for (i = 0; i < n; i++) {
         y[i] = terms[i] = x[i];
+    }
     for (order = 1; order <= 3; order++) {
         pl_multiply(n, n, A, y, next);
-        for (i = 0; i < n; i++)
+        for (i = 0; i < n; i++) {
             next_terms[i] = sizes(n, A + i * n, terms);
+        }
         for (i = 0; i < n; i++) {
             y[i] = next[i];
             terms[i] = next_terms[i];
         }
         pl_multiply(1, n, row, y, &e);
         noise = noise_of(sizes(n, row, terms));
-        if (e > noise || e < -noise)
+        if (e > noise || e < -noise) {
             return e > 0 ? 1 : -1;
+        }
     }
     return 0;
 }
@@ -76,13 +80,15 @@ static int heading(int n, const real *A, const real *row, const real *x, real *w
 static void expand(int n, int degree, const real *A, real dt, const real *x, real *coefficients)
 {
     int i, k;
-    for (i = 0; i < n; i++)
+    for (i = 0; i < n; i++) {
         coefficients[i] = x[i];
+    }
     for (k = 1; k <= degree; k++, coefficients += n) {
         const real factor = dt / (real)k;
         pl_multiply(n, n, A, coefficients, coefficients + n);
-        for (i = 0; i < n; i++)
+        for (i = 0; i < n; i++) {
             coefficients[n + i] *= factor;
+        }
     }
 }
 
@@ -90,12 +96,14 @@ static void sum_up(int n, int degree, const real *coefficients, real s, real *x)
 {
     const real *row = coefficients + degree * n;
     int i, k;
-    for (i = 0; i < n; i++)
+    for (i = 0; i < n; i++) {
         x[i] = row[i];
+    }
     for (k = degree; k > 0; k--) {
         row -= n;
-        for (i = 0; i < n; i++)
+        for (i = 0; i < n; i++) {
             x[i] = x[i] * s + row[i];
+        }
     }
 }
 
@@ -134,8 +142,9 @@ static void look_beyond(beyond *f, const real *e, real sign, real b, real terms)
 {
     real largest = terms;
     int k;
-    for (k = 1; k <= f->degree; k++)
+    for (k = 1; k <= f->degree; k++) {
         largest = larger(largest, magnitude(e[k]));
+    }
     if (largest > REAL_LARGE) {
         sign *= SCALE;
         terms *= SCALE;
@@ -161,12 +170,14 @@ static real root_between(const beyond *f, point a, point z)
     for (i = 0; i < 64; i++) {
         const point p = point_of(f, s);
         const real newton = s - p.g / p.slope;
-        if (p.g > 0)
+        if (p.g > 0) {
             z = p;
-        else
+        } else {
             a = p;
-        if (magnitude(newton - s) <= enough && newton >= a.s && newton <= z.s)
+        }
+        if (magnitude(newton - s) <= enough && newton >= a.s && newton <= z.s) {
             return newton;
+        }
         s = newton > a.s && newton < z.s ? newton : (a.s + z.s) / 2;
     }
     return s;
@@ -179,10 +190,12 @@ static int between(const beyond *f, point a, point z)
     const real w = (z.s - a.s) * (z.s - a.s) / 8; /* a chord is off by at most w times the second derivative */
     const real second = larger(magnitude(a.second), magnitude(z.second)) + w * f->fourth;
     const real third = larger(magnitude(a.third), magnitude(z.third)) + w * f->fifth;
-    if (larger(a.g, z.g) + w * second <= f->noise)
+    if (larger(a.g, z.g) + w * second <= f->noise) {
         return NO_CROSSING;
-    if (larger(a.slope, z.slope) + w * third < 0)
+    }
+    if (larger(a.slope, z.slope) + w * third < 0) {
         return NO_CROSSING;
+    }
     return smaller(a.slope, z.slope) - w * third > 0 ? RISES : UNKNOWN;
 }
 
@@ -193,8 +206,9 @@ static real first_root(const beyond *f, real end, int *splits)
     const real shortest = SHORT; /* what g does in less is below its noise */
     real width = end;
     point a, inside; /* inside: the last point where g < 0, so that what noise hides loses no time */
-    if (f->coefficient[0] + f->reach <= f->noise)
+    if (f->coefficient[0] + f->reach <= f->noise) {
         return -1;
+    }
     a.s = 0;
     a.g = f->coefficient[0];
     a.slope = f->coefficient[1];
@@ -205,15 +219,18 @@ static real first_root(const beyond *f, real end, int *splits)
         const point z = point_of(f, a.s + width < end ? a.s + width : end);
         const int known = between(f, a, z);
         if (known == UNKNOWN && width > shortest) {
-            if (--*splits < 0)
+            if (--*splits < 0) {
                 return -1;
+            }
             width /= 2;
             continue;
         }
-        if (known != NO_CROSSING && z.g > f->noise)
+        if (known != NO_CROSSING && z.g > f->noise) {
             return inside.g < 0 ? root_between(f, inside, z) : inside.s;
-        if (z.g < 0 || inside.g >= 0)
+        }
+        if (z.g < 0 || inside.g >= 0) {
             inside = z;
+        }
         a = z;
         width *= 2;
     }

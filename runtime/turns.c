@@ -18,8 +18,9 @@ pl_turn pl_turn_at(const pl_rate *rate, double t)
     const words_wide turns = words_rate_times(rate, t, &point);
     words_pair p = words_rounded(&turns, point - 128); /* bit `point` is worth a turn */
     pl_turn a;
-    if (t < 0.0)
+    if (t < 0.0) {
         p = words_negative(p);
+    }
     a.hi = p.hi;
     a.lo = p.lo;
     return a;
@@ -108,8 +109,10 @@ void pl_cossin(pl_turn a, double z[2])
     odd = quarter & 1;
     z[0] = odd ? s : c;
     z[1] = odd ? c : s;
-    if (quarter == 1 || quarter == 2)
+    if (quarter == 1 || quarter == 2) {
         z[0] = 0.0 - z[0]; /* not -z[0]: no negative zero */
-    if (quarter == 2 || quarter == 3)
+    }
+    if (quarter == 2 || quarter == 3) {
         z[1] = 0.0 - z[1];
+    }
 }

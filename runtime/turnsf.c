@@ -55,24 +55,29 @@ void pl_cossinf(pl_turnf a, float z[2])
 
     a -= (uint64_t)quarter << 62; /* now -1/8 <= a < 1/8 turn */
     below = (int)(a >> 63);
-    if (below)
+    if (below) {
         a = 0u - a; /* at most 2^61 */
+    }
     r = (uint32_t)((a >> 29) * half_pi >> 32); /* radians, in units of 2^-32 */
     rr = words_times32(r, r);
     c = scaled(((uint32_t)1 << 31) - (less_cosine(rr) >> 1), 31);
 
-    for (; a >> 56 == 0 && power < 85; power += 8) /* so that small angles keep their relative accuracy */
+    for (; a >> 56 == 0 && power < 85; power += 8) { /* so that small angles keep their relative accuracy */
         a <<= 8;
-    for (; a >> 63 == 0 && power < 92; power++)
+    }
+    for (; a >> 63 == 0 && power < 92; power++) {
         a <<= 1;
+    }
     r = words_times32((uint32_t)(a >> 32), half_pi); /* radians again, in units of 2^-power */
     s = scaled(r - words_times32(r, less_sine(rr)), power);
     s = below ? -s : s;
 
     z[0] = odd ? s : c;
     z[1] = odd ? c : s;
-    if (quarter == 1 || quarter == 2)
+    if (quarter == 1 || quarter == 2) {
         z[0] = 0 - z[0]; /* not -z[0]: no negative zero */
-    if (quarter == 2 || quarter == 3)
+    }
+    if (quarter == 2 || quarter == 3) {
         z[1] = 0 - z[1];
+    }
 }

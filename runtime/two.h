@@ -72,11 +72,13 @@ static inline pl_two two_product(real a, real b)
 static inline pl_two add(pl_two a, pl_two b)
 {
     pl_two s, t;
-    if (!is_finite(a.hi))
+    if (!is_finite(a.hi)) {
         return a;
+    }
     s = two_sum(a.hi, b.hi);
-    if (!is_finite(s.hi))
+    if (!is_finite(s.hi)) {
         return s;
+    }
     t = two_sum(a.lo, b.lo);
     s = two_sum(s.hi, s.lo + t.hi);
     return two_sum(s.hi, s.lo + t.lo);
@@ -87,11 +89,13 @@ static inline pl_two add(pl_two a, pl_two b)
 static inline pl_two multiply(pl_two a, pl_two b)
 {
     pl_two p;
-    if (a.hi == 0 || b.hi == 0)
+    if (a.hi == 0 || b.hi == 0) {
         return two(0, 0);
+    }
     p = two_product(a.hi, b.hi);
-    if (!is_finite(p.hi))
+    if (!is_finite(p.hi)) {
         return two(p.hi, 0);
+    }
     return two_sum(p.hi, p.lo + (a.hi * b.lo + a.lo * b.hi));
 }
 

@@ -11,8 +11,9 @@ real pl_until(real t0, uint64_t k, pl_two h, pl_two change)
     int from;
     for (from = 63 / REAL_DIGITS * REAL_DIGITS; from >= 0; from -= REAL_DIGITS) {
         const uint64_t steps = k & part << from;
-        if (steps != 0)
+        if (steps != 0) {
             left = add(left, multiply(two(-(real)steps, 0), h));
+        }
     }
     return left.hi + left.lo;
 }

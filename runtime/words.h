@@ -62,12 +62,13 @@ static inline words_wide words_rate_times(const pl_rate *rate, real t, int *poin
     time.value = t;
     significand = time.bits & REAL_FRACTION;
     exponent = (int)(time.bits >> (REAL_DIGITS - 1)) & OF_NO_NUMBER;
-    if (exponent == OF_NO_NUMBER)
+    if (exponent == OF_NO_NUMBER) {
         significand = 0;
-    else if (exponent != 0)
+    } else if (exponent != 0) {
         significand |= REAL_FRACTION + 1;
-    else
+    } else {
         exponent = 1; /* subnormal: the same unit, no leading bit */
+    }
     for (i = 0; i < WORDS; i++) {
         words_pair p = words_product(rate->word[WORDS - 1 - i], significand);
         p.lo += carry;
@@ -87,10 +88,11 @@ static inline uint64_t words_from(const words_wide *w, int from)
     int i;
     for (i = 0; i < 4; i++) {
         const int shift = 64 * i - from; /* where word i comes to lie */
-        if (shift >= 0 && shift < 64)
+        if (shift >= 0 && shift < 64) {
             bits |= w->word[i] << shift;
-        else if (shift < 0 && shift > -64)
+        } else if (shift < 0 && shift > -64) {
             bits |= w->word[i] >> -shift;
+        }
     }
     return bits;
 }

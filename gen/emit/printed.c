@@ -24,6 +24,15 @@ bool is_named(const char *text, size_t length, const char *name)
 	return strlen(name) == length && memcmp(text, name, length) == 0;
 }
 
+/* Behind a line of the preprocessor, and those that continue it */
+static const char *behind_directive(const char *text)
+{
+	const char *end = text + strcspn(text, "\n");
+	while (*end && end[-1] == '\\')
+		end += 1 + strcspn(end + 1, "\n");
+	return end;
+}
+
 const char *behind_quoted(const char *text, bool line_start)
 {
 	const char *end = NULL;
@@ -35,7 +44,7 @@ const char *behind_quoted(const char *text, bool line_start)
 		end = strchr(text + 1, '"');            /* names of states, outputs, files: no escapes */
 		return end ? end + 1 : text + strlen(text);
 	}
-	return line_start && *text == '#' ? text + strcspn(text, "\n") : NULL;
+	return line_start && *text == '#' ? behind_directive(text) : NULL;
 }
 
 const char *behind(const char *text, char last)

@@ -815,12 +815,12 @@ struct tuning {
 };
 /* model->tuning, or model->held, where something is tunable; false: it was said why not */
 bool find_tuning(struct model *model, const struct request *request);
-/* the first name in it that is tunable, or made of what is; NULL: there is none */
-const struct node *first_tuned(const struct node *node);
 
 /* ---- params.c: tunable params that the instance has ---- */
 
 void spread_tuned(const struct spec *spec);     /* to params, matrices and lets that are made of tunable ones */
+/* the first name in it that is tunable, or made of what is; NULL: there is none */
+const struct node *first_tuned(const struct node *node);
 void list_held(struct model *model);            /* model->held; warns of what nothing reads */
 const struct tuning *tunables_of(const struct model *model); /* of either kind; NULL: nothing is */
 

@@ -2,21 +2,23 @@
 /* Tunable params that the instance has: expressions read them, or they act like inputs. */
 #include "model/model.h"
 
-static bool depends(const struct node *node)
+const struct node *first_tuned(const struct node *node)
 {
-	if (node->kind == NODE_NAME)
-		return node->symbol->tuned;
-	for (int i = 0; i < node->children; i++)
-		if (depends(node->child[i]))
-			return true;
-	return false;
+	if (node->kind == NODE_NAME && node->symbol->tuned)
+		return node;
+	for (int i = 0; i < node->children; i++) {
+		const struct node *found = first_tuned(node->child[i]);
+		if (found)
+			return found;
+	}
+	return NULL;
 }
 
 /* Each stands after what it is made of. */
 void spread_tuned(const struct spec *spec)
 {
 	for (struct symbol *s = spec->first; s; s = s->next)
-		s->tuned = s->tuned || (s->value && depends(s->value));
+		s->tuned = s->tuned || (s->value && first_tuned(s->value));
 }
 
 static void read_by(struct reads *all, const struct model *model, int count, const struct form *const *form)

@@ -11,18 +11,6 @@ static const char *const refused_note = "sums, products and quotients of tunable
 					"what the function gives a tunable of its own";
 static const char *const decided_note = "which way it goes is decided when plgen runs: where formulas change is fixed";
 
-const struct node *first_tuned(const struct node *node)
-{
-	if (node->kind == NODE_NAME && node->symbol->tuned)
-		return node;
-	for (int i = 0; i < node->children; i++) {
-		const struct node *found = first_tuned(node->child[i]);
-		if (found)
-			return found;
-	}
-	return NULL;
-}
-
 static void refuse_within(const struct node *node, const char *inside, const char *note)
 {
 	const struct node *name = first_tuned(node);

@@ -14,9 +14,10 @@ static fmi2Status status_of(enum fmu_result result)
 static void log_message(fmu_instance *i, enum fmu_result result, const char *text)
 {
     const fmi2CallbackLogger callback = (fmi2CallbackLogger)i->callback;
-    if (callback)
+    if (callback) {
         callback(i->environment, i->name, status_of(result),
                  result == FMU_WARNING ? fmu_category_warning : fmu_category_error, "%s", text);
+    }
 }
 
 static fmi2Status absent(fmi2Component c, const char *function)
@@ -45,8 +46,9 @@ fmi2Status fmi2SetDebugLogging(fmi2Component c, fmi2Boolean loggingOn, size_t nC
 /* Before there is an instance: so an error is told as if it had been */
 static fmi2Component refused(const fmi2CallbackFunctions *functions, fmi2String name, const char *why)
 {
-    if (functions && functions->logger)
+    if (functions && functions->logger) {
         functions->logger(functions->componentEnvironment, name, fmi2Error, fmu_category_error, "%s", why);
+    }
     return NULL;
 }
 
@@ -57,11 +59,13 @@ fmi2Component fmi2Instantiate(fmi2String instanceName, fmi2Type fmuType, fmi2Str
     fmu_instance *i;
     (void)fmuResourceLocation;
     (void)visible;
-    if (fmuType != fmi2CoSimulation)
+    if (fmuType != fmi2CoSimulation) {
         return refused(functions, instanceName, "this FMU is for co-simulation only");
+    }
     i = fmu_new(instanceName, fmuGUID);
-    if (!i)
+    if (!i) {
         return refused(functions, instanceName, "the GUID is another, or out of memory");
+    }
     if (functions) {
         i->environment = functions->componentEnvironment;
         i->callback = (void (*)(void))functions->logger;
@@ -86,8 +90,9 @@ fmi2Status fmi2SetupExperiment(fmi2Component c, fmi2Boolean toleranceDefined, fm
     (void)tolerance;
     (void)stopTimeDefined;
     (void)stopTime;
-    if (!i)
+    if (!i) {
         return fmi2Error;
+    }
     return status_of(i->data.mode == FMU_INSTANTIATED ? fmu_initialize(i, startTime)
                                                       : fmu_out_of_place(i, "fmi2SetupExperiment"));
 }
@@ -109,8 +114,9 @@ fmi2Status fmi2Terminate(fmi2Component c)
 
 fmi2Status fmi2Reset(fmi2Component c)
 {
-    if (!c)
+    if (!c) {
         return fmi2Error;
+    }
     fmu_begin(&((fmu_instance *)c)->data);
     return fmi2OK;
 }
@@ -134,24 +140,27 @@ fmi2Status fmi2DoStep(fmi2Component c, fmi2Real currentCommunicationPoint, fmi2R
 {
     bool early;
     (void)noSetFMUStatePriorToCurrentPoint;
-    if (!c)
+    if (!c) {
         return fmi2Error;
+    }
     return status_of(fmu_step((fmu_instance *)c, currentCommunicationPoint, communicationStepSize, "fmi2DoStep",
                               &early));
 }
 
 fmi2Status fmi2GetRealStatus(fmi2Component c, const fmi2StatusKind s, fmi2Real *value)
 {
-    if (!c || s != fmi2LastSuccessfulTime)
+    if (!c || s != fmi2LastSuccessfulTime) {
         return fmi2Discard;
+    }
     *value = fmu_time(&((fmu_instance *)c)->data);
     return fmi2OK;
 }
 
 fmi2Status fmi2GetBooleanStatus(fmi2Component c, const fmi2StatusKind s, fmi2Boolean *value)
 {
-    if (!c || s != fmi2Terminated)
+    if (!c || s != fmi2Terminated) {
         return fmi2Discard;
+    }
     *value = fmi2False;
     return fmi2OK;
 }
@@ -205,8 +214,9 @@ fmi2Status fmi2FreeFMUstate(fmi2Component c, fmi2FMUstate *FMUstate)
 fmi2Status fmi2SerializedFMUstateSize(fmi2Component c, fmi2FMUstate FMUstate, size_t *size)
 {
     (void)FMUstate;
-    if (!c || !size)
+    if (!c || !size) {
         return fmi2Error;
+    }
     *size = sizeof(fmu_saved);
     return fmi2OK;
 }
@@ -219,8 +229,9 @@ fmi2Status fmi2SerializeFMUstate(fmi2Component c, fmi2FMUstate FMUstate, fmi2Byt
 fmi2Status fmi2DeSerializeFMUstate(fmi2Component c, const fmi2Byte serializedState[], size_t size,
                                    fmi2FMUstate *FMUstate)
 {
-    if (!c || !FMUstate)
+    if (!c || !FMUstate) {
         return fmi2Error;
+    }
     return status_of(fmu_deserialize((fmu_instance *)c, serializedState, size, FMUstate));
 }
 

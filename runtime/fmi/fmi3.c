@@ -13,9 +13,10 @@ static fmi3Status status_of(enum fmu_result result)
 static void log_message(fmu_instance *i, enum fmu_result result, const char *text)
 {
     const fmi3LogMessageCallback callback = (fmi3LogMessageCallback)i->callback;
-    if (callback)
+    if (callback) {
         callback(i->environment, status_of(result),
                  result == FMU_WARNING ? fmu_category_warning : fmu_category_error, text);
+    }
 }
 
 static fmi3Status absent(fmi3Instance instance, const char *function)
@@ -39,8 +40,9 @@ fmi3Status fmi3SetDebugLogging(fmi3Instance instance, fmi3Boolean loggingOn, siz
 /* Before there is an instance: so an error is told as if it had been */
 static fmi3Instance refused(fmi3LogMessageCallback logMessage, fmi3InstanceEnvironment environment, const char *why)
 {
-    if (logMessage)
+    if (logMessage) {
         logMessage(environment, fmi3Error, fmu_category_error, why);
+    }
     return NULL;
 }
 
@@ -57,13 +59,16 @@ fmi3Instance fmi3InstantiateCoSimulation(fmi3String instanceName, fmi3String ins
     (void)visible;
     (void)requiredIntermediateVariables;
     (void)intermediateUpdate;
-    if (eventModeUsed)
+    if (eventModeUsed) {
         return refused(logMessage, instanceEnvironment, "this FMU has no event mode");
-    if (nRequiredIntermediateVariables > 0)
+    }
+    if (nRequiredIntermediateVariables > 0) {
         return refused(logMessage, instanceEnvironment, "this FMU offers no intermediate update");
+    }
     i = fmu_new(instanceName, instantiationToken);
-    if (!i)
+    if (!i) {
         return refused(logMessage, instanceEnvironment, "the instantiation token is another, or out of memory");
+    }
     i->environment = instanceEnvironment;
     i->may_return_early = earlyReturnAllowed;
     i->callback = (void (*)(void))logMessage;
@@ -119,8 +124,9 @@ fmi3Status fmi3EnterInitializationMode(fmi3Instance instance, fmi3Boolean tolera
     (void)tolerance;
     (void)stopTimeDefined;
     (void)stopTime;
-    if (!i)
+    if (!i) {
         return fmi3Error;
+    }
     result = fmu_enter(i, "fmi3EnterInitializationMode");
     return status_of(result == FMU_OK ? fmu_initialize(i, startTime) : result);
 }
@@ -137,8 +143,9 @@ fmi3Status fmi3Terminate(fmi3Instance instance)
 
 fmi3Status fmi3Reset(fmi3Instance instance)
 {
-    if (!instance)
+    if (!instance) {
         return fmi3Error;
+    }
     fmu_begin(&((fmu_instance *)instance)->data);
     return fmi3OK;
 }
@@ -148,16 +155,18 @@ fmi3Status fmi3Reset(fmi3Instance instance)
 fmi3Status fmi3GetFloat64(fmi3Instance instance, const fmi3ValueReference valueReferences[], size_t nValueReferences,
                           fmi3Float64 values[], size_t nValues)
 {
-    if (!instance || nValues != nValueReferences)
+    if (!instance || nValues != nValueReferences) {
         return fmi3Error;
+    }
     return status_of(fmu_get((fmu_instance *)instance, valueReferences, nValueReferences, values));
 }
 
 fmi3Status fmi3SetFloat64(fmi3Instance instance, const fmi3ValueReference valueReferences[], size_t nValueReferences,
                           const fmi3Float64 values[], size_t nValues)
 {
-    if (!instance || nValues != nValueReferences)
+    if (!instance || nValues != nValueReferences) {
         return fmi3Error;
+    }
     return status_of(fmu_set((fmu_instance *)instance, valueReferences, nValueReferences, values));
 }
 
@@ -171,17 +180,22 @@ fmi3Status fmi3DoStep(fmi3Instance instance, fmi3Float64 currentCommunicationPoi
     fmi3Status status;
     bool early;
     (void)noSetFMUStatePriorToCurrentPoint;
-    if (!i)
+    if (!i) {
         return fmi3Error;
+    }
     status = status_of(fmu_step(i, currentCommunicationPoint, communicationStepSize, "fmi3DoStep", &early));
-    if (eventHandlingNeeded)
+    if (eventHandlingNeeded) {
         *eventHandlingNeeded = fmi3False;
-    if (terminateSimulation)
+    }
+    if (terminateSimulation) {
         *terminateSimulation = fmi3False;
-    if (earlyReturn)
+    }
+    if (earlyReturn) {
         *earlyReturn = early;
-    if (lastSuccessfulTime)
+    }
+    if (lastSuccessfulTime) {
         *lastSuccessfulTime = fmu_time(&i->data);
+    }
     return status;
 }
 
@@ -210,8 +224,9 @@ fmi3Status fmi3FreeFMUState(fmi3Instance instance, fmi3FMUState *FMUState)
 fmi3Status fmi3SerializedFMUStateSize(fmi3Instance instance, fmi3FMUState FMUState, size_t *size)
 {
     (void)FMUState;
-    if (!instance || !size)
+    if (!instance || !size) {
         return fmi3Error;
+    }
     *size = sizeof(fmu_saved);
     return fmi3OK;
 }
@@ -224,8 +239,9 @@ fmi3Status fmi3SerializeFMUState(fmi3Instance instance, fmi3FMUState FMUState, f
 fmi3Status fmi3DeserializeFMUState(fmi3Instance instance, const fmi3Byte serializedState[], size_t size,
                                    fmi3FMUState *FMUState)
 {
-    if (!instance || !FMUState)
+    if (!instance || !FMUState) {
         return fmi3Error;
+    }
     return status_of(fmu_deserialize((fmu_instance *)instance, serializedState, size, FMUState));
 }
 

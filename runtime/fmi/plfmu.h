@@ -72,8 +72,9 @@ static enum fmu_result fmu_say(fmu_instance *i, enum fmu_result result, const ch
 {
     char text[256];
     va_list values;
-    if (result == FMU_WARNING ? !i->logs_warnings : !i->logs_errors)
+    if (result == FMU_WARNING ? !i->logs_warnings : !i->logs_errors) {
         return result;
+    }
     va_start(values, format);
     vsnprintf(text, sizeof text, format, values);
     va_end(values);
@@ -85,13 +86,15 @@ static enum fmu_result fmu_logging(fmu_instance *i, bool on, size_t count, const
 {
     bool warnings = on && count == 0, errors = warnings;
     size_t k;
-    for (k = 0; k < count; k++)
-        if (strcmp(category[k], fmu_category_warning) == 0)
+    for (k = 0; k < count; k++) {
+        if (strcmp(category[k], fmu_category_warning) == 0) {
             warnings = on;
-        else if (strcmp(category[k], fmu_category_error) == 0)
+        } else if (strcmp(category[k], fmu_category_error) == 0) {
             errors = on;
-        else
+        } else {
             return fmu_say(i, FMU_ERROR, "there is no log category '%s'", category[k]);
+        }
+    }
     i->logs_warnings = warnings;
     i->logs_errors = errors;
     return FMU_OK;
@@ -121,16 +124,18 @@ static void fmu_begin(fmu_data *d)
     memset(d, 0, sizeof *d);
     FMU_MODEL.init(&d->state);
     FMU_MODEL.get(&d->state, d->start);
-    for (k = 0; k < FMU_PARAMS; k++)
+    for (k = 0; k < FMU_PARAMS; k++) {
         d->params[k] = FMU_MODEL.param_values[k];
+    }
 }
 
 static fmu_instance *fmu_new(const char *name, const char *token)
 {
     const size_t length = name ? strlen(name) : 0;
     fmu_instance *i;
-    if (!token || strcmp(token, FMU_TOKEN) != 0)
+    if (!token || strcmp(token, FMU_TOKEN) != 0) {
         return NULL;
+    }
     i = (fmu_instance *)calloc(1, sizeof *i + length);
     if (i) {
         memcpy(i->name, name ? name : "", length + 1);
@@ -148,15 +153,19 @@ static enum fmu_result fmu_retune(fmu_instance *i)
 {
     fmu_data *d = &i->data;
     int status;
-    if (!d->retunes || FMU_PARAMS == 0)
+    if (!d->retunes || FMU_PARAMS == 0) {
         return FMU_OK;
+    }
     status = FMU_MODEL.retune(&d->state, d->params, (fmu_real)FMU_H);
-    if (status & PL_SINGULAR)
+    if (status & PL_SINGULAR) {
         return fmu_say(i, FMU_ERROR, "with these params the mass matrix has no inverse, or something is divided by 0");
-    if (status & PL_NO_RATE)
+    }
+    if (status & PL_NO_RATE) {
         return fmu_say(i, FMU_ERROR, "with these params the frequency of a load is below 0");
-    if (status)
+    }
+    if (status) {
         return fmu_say(i, FMU_ERROR, "with these params a coefficient is infinite, or not a number");
+    }
     d->retunes = 0;
     return FMU_OK;
 }
@@ -169,16 +178,20 @@ static enum fmu_result fmu_settle(fmu_instance *i)
     int k;
     if (d->starts) {
         FMU_MODEL.init(&d->state);
-        for (k = 0; k < FMU_PARAMS; k++)
+        for (k = 0; k < FMU_PARAMS; k++) {
             d->retunes = d->retunes || d->params[k] != FMU_MODEL.param_values[k];
+        }
     }
     result = fmu_retune(i);
-    if (result != FMU_OK || !d->starts)
+    if (result != FMU_OK || !d->starts) {
         return result;
-    if (d->moved)
+    }
+    if (d->moved) {
         FMU_MODEL.set(&d->state, (fmu_real)d->t0, d->start);
-    if (FMU_MODEL.hold)
+    }
+    if (FMU_MODEL.hold) {
         FMU_MODEL.hold(&d->state, d->u);
+    }
     memcpy(d->last, d->u, sizeof d->last);
     d->starts = 0;
     return FMU_OK;
@@ -187,8 +200,9 @@ static enum fmu_result fmu_settle(fmu_instance *i)
 /* Before the first step the start is made anew. */
 static void fmu_restart(fmu_data *d, bool moved)
 {
-    if (d->mode == FMU_STEPPING)
+    if (d->mode == FMU_STEPPING) {
         return;
+    }
     d->starts = 1;
     d->moved = d->moved || moved;
 }
@@ -196,8 +210,9 @@ static void fmu_restart(fmu_data *d, bool moved)
 static enum fmu_result fmu_initialize(fmu_instance *i, double t0)
 {
     fmu_data *d = &i->data;
-    if (!(t0 - t0 >= 0.0))
+    if (!(t0 - t0 >= 0.0)) {
         return fmu_say(i, FMU_ERROR, "the start time is not a finite number");
+    }
     d->t0 = t0;
     fmu_restart(d, t0 != 0.0);
     return FMU_OK;
@@ -205,8 +220,9 @@ static enum fmu_result fmu_initialize(fmu_instance *i, double t0)
 
 static enum fmu_result fmu_enter(fmu_instance *i, const char *function)
 {
-    if (i->data.mode != FMU_INSTANTIATED)
+    if (i->data.mode != FMU_INSTANTIATED) {
         return fmu_out_of_place(i, function);
+    }
     i->data.mode = FMU_INITIALIZING;
     fmu_restart(&i->data, false);
     return FMU_OK;
@@ -215,18 +231,21 @@ static enum fmu_result fmu_enter(fmu_instance *i, const char *function)
 static enum fmu_result fmu_leave(fmu_instance *i, const char *function)
 {
     enum fmu_result result;
-    if (i->data.mode != FMU_INITIALIZING)
+    if (i->data.mode != FMU_INITIALIZING) {
         return fmu_out_of_place(i, function);
+    }
     result = fmu_settle(i);
-    if (result == FMU_OK)
+    if (result == FMU_OK) {
         i->data.mode = FMU_STEPPING;
+    }
     return result;
 }
 
 static enum fmu_result fmu_end(fmu_instance *i, const char *function)
 {
-    if (i->data.mode != FMU_STEPPING)
+    if (i->data.mode != FMU_STEPPING) {
         return fmu_out_of_place(i, function);
+    }
     i->data.mode = FMU_TERMINATED;
     return FMU_OK;
 }
@@ -241,8 +260,9 @@ static enum fmu_kind fmu_find(uint32_t reference, uint32_t *index)
     static const uint32_t count[] = {1, FMU_INPUTS, FMU_OUTPUTS, FMU_PARAMS, FMU_STATES};
     int kind;
     for (kind = FMU_KIND_TIME; kind < FMU_KIND_NONE; kind++) {
-        if (reference < count[kind])
+        if (reference < count[kind]) {
             break;
+        }
         reference -= count[kind];
     }
     *index = reference;
@@ -260,11 +280,12 @@ static enum fmu_result fmu_get(fmu_instance *i, const uint32_t *reference, size_
     enum fmu_result result = fmu_settle(i);
     uint32_t at;
     size_t k;
-    if (result != FMU_OK)
+    if (result != FMU_OK) {
         return result;
+    }
     FMU_MODEL.out(&i->data.state, out);
     FMU_MODEL.get(&i->data.state, y);
-    for (k = 0; k < count; k++)
+    for (k = 0; k < count; k++) {
         switch (fmu_find(reference[k], &at)) {
         case FMU_KIND_TIME: value[k] = fmu_time(&i->data); break;
         case FMU_KIND_INPUT: value[k] = (double)i->data.u[at]; break;
@@ -273,6 +294,7 @@ static enum fmu_result fmu_get(fmu_instance *i, const uint32_t *reference, size_
         case FMU_KIND_STATE: value[k] = (double)y[at]; break;
         case FMU_KIND_NONE: return fmu_no_such(i, reference[k]);
         }
+    }
     return FMU_OK;
 }
 
@@ -291,8 +313,9 @@ static enum fmu_result fmu_set_one(fmu_instance *i, uint32_t reference, double v
         fmu_restart(d, false);
         return FMU_OK;
     case FMU_KIND_STATE:
-        if (d->mode == FMU_STEPPING)
+        if (d->mode == FMU_STEPPING) {
             return fmu_say(i, FMU_ERROR, "a state can be set before the first step only");
+        }
         d->start[at] = (fmu_real)value;
         fmu_restart(d, true);
         return FMU_OK;
@@ -308,10 +331,12 @@ static enum fmu_result fmu_set(fmu_instance *i, const uint32_t *reference, size_
 {
     enum fmu_result result = FMU_OK;
     size_t k;
-    if (i->data.mode == FMU_TERMINATED)
+    if (i->data.mode == FMU_TERMINATED) {
         return fmu_say(i, FMU_ERROR, "values must not be set after the end");
-    for (k = 0; k < count && result == FMU_OK; k++)
+    }
+    for (k = 0; k < count && result == FMU_OK; k++) {
         result = fmu_set_one(i, reference[k], value[k]);
+    }
     return result;
 }
 
@@ -323,16 +348,21 @@ static enum fmu_result fmu_look(fmu_instance *i)
     fmu_data *d = &i->data;
     const int status = FMU_MODEL.status(&d->state), fresh = status & ~d->told;
     d->told |= status;
-    if (status & PL_NOT_FINITE)
+    if (status & PL_NOT_FINITE) {
         return fmu_say(i, FMU_ERROR, "at %.9g s a state is infinite, or not a number", fmu_time(d));
-    if (fresh & PL_TOO_MANY_EVENTS)
+    }
+    if (fresh & PL_TOO_MANY_EVENTS) {
         return fmu_say(i, FMU_WARNING, "up to %.9g s a step has met more crossings than its bound", fmu_time(d));
-    if (fresh & PL_UNDECIDED)
+    }
+    if (fresh & PL_UNDECIDED) {
         return fmu_say(i, FMU_WARNING, "up to %.9g s what sticks had no answer at an event", fmu_time(d));
-    if (fresh & PL_TOO_MANY_STEPS)
+    }
+    if (fresh & PL_TOO_MANY_STEPS) {
         return fmu_say(i, FMU_ERROR, "up to %.9g s a step needed more substeps than its bound", fmu_time(d));
-    if (fresh & PL_INACCURATE)
+    }
+    if (fresh & PL_INACCURATE) {
         return fmu_say(i, FMU_WARNING, "up to %.9g s a step was less exact than its tolerance", fmu_time(d));
+    }
     return FMU_OK;
 }
 
@@ -342,8 +372,9 @@ static uint64_t fmu_steps_in(double time, double length)
     const double steps = length / FMU_H, size = time < 0.0 ? -time : time;
     const double room = 1e-6 * steps + 1e-15 * (size / FMU_H);
     double whole;
-    if (!(steps >= 0.5 && steps < 1e15))
+    if (!(steps >= 0.5 && steps < 1e15)) {
         return 0;
+    }
     whole = (double)(uint64_t)(steps + 0.5);
     return steps - whole <= room && whole - steps <= room ? (uint64_t)whole : 0;
 }
@@ -369,11 +400,14 @@ static uint64_t fmu_advance(fmu_data *d, uint64_t steps, bool early)
     memcpy(u, d->u, sizeof u);
     while (k < steps && !(early && fmu_crossed(d) != crossed)) {
         k++;
-        for (j = 0; j < FMU_INPUTS && k < steps; j++)
-            if (fmu_is_ramp(j))
+        for (j = 0; j < FMU_INPUTS && k < steps; j++) {
+            if (fmu_is_ramp(j)) {
                 u[j] = d->last[j] + (d->u[j] - d->last[j]) * ((fmu_real)k / (fmu_real)steps);
-        if (k == steps)
+            }
+        }
+        if (k == steps) {
             memcpy(u, d->u, sizeof u);
+        }
         FMU_MODEL.step(&d->state, u);
     }
     memcpy(d->last, u, sizeof d->last);
@@ -389,16 +423,20 @@ static enum fmu_result fmu_step(fmu_instance *i, double time, double length, con
     enum fmu_result result;
     uint64_t steps;
     *early = false;
-    if (d->mode != FMU_STEPPING)
+    if (d->mode != FMU_STEPPING) {
         return fmu_out_of_place(i, function);
-    if (!(late > -0.5 * FMU_H && late < 0.5 * FMU_H))
+    }
+    if (!(late > -0.5 * FMU_H && late < 0.5 * FMU_H)) {
         return fmu_say(i, FMU_ERROR, "a step from %.9g s is asked for, and the model is at %.9g s", time, fmu_time(d));
+    }
     steps = fmu_steps_in(time, length);
-    if (steps == 0)
+    if (steps == 0) {
         return fmu_say(i, FMU_ERROR, "%.9g s is no multiple of the step, %.9g s", length, FMU_H);
+    }
     result = fmu_settle(i);
-    if (result != FMU_OK)
+    if (result != FMU_OK) {
         return result;
+    }
     *early = fmu_advance(d, steps, i->may_return_early) < steps;
     return fmu_look(i);
 }
@@ -408,8 +446,9 @@ static enum fmu_result fmu_step(fmu_instance *i, double time, double length, con
 static enum fmu_result fmu_save(fmu_instance *i, void **saved)
 {
     fmu_saved *to = (fmu_saved *)(*saved ? *saved : calloc(1, sizeof *to));
-    if (!to)
+    if (!to) {
         return fmu_say(i, FMU_ERROR, "out of memory");
+    }
     to->mark = FMU_MARK;
     memcpy(&to->data, &i->data, sizeof to->data);
     *saved = to;
@@ -419,16 +458,18 @@ static enum fmu_result fmu_save(fmu_instance *i, void **saved)
 static enum fmu_result fmu_restore(fmu_instance *i, const void *saved)
 {
     const fmu_saved *from = (const fmu_saved *)saved;
-    if (!from || from->mark != FMU_MARK)
+    if (!from || from->mark != FMU_MARK) {
         return fmu_say(i, FMU_ERROR, "this is no state of this FMU");
+    }
     memcpy(&i->data, &from->data, sizeof i->data);
     return FMU_OK;
 }
 
 static enum fmu_result fmu_serialize(fmu_instance *i, const void *saved, void *bytes, size_t size)
 {
-    if (!saved || size < sizeof(fmu_saved))
+    if (!saved || size < sizeof(fmu_saved)) {
         return fmu_say(i, FMU_ERROR, "a serialized state takes %lu bytes", (unsigned long)sizeof(fmu_saved));
+    }
     memcpy(bytes, saved, sizeof(fmu_saved));
     return FMU_OK;
 }
@@ -436,14 +477,18 @@ static enum fmu_result fmu_serialize(fmu_instance *i, const void *saved, void *b
 static enum fmu_result fmu_deserialize(fmu_instance *i, const void *bytes, size_t size, void **saved)
 {
     uint64_t mark = 0;
-    if (size >= sizeof mark)
+    if (size >= sizeof mark) {
         memcpy(&mark, bytes, sizeof mark);
-    if (size < sizeof(fmu_saved) || mark != FMU_MARK)
+    }
+    if (size < sizeof(fmu_saved) || mark != FMU_MARK) {
         return fmu_say(i, FMU_ERROR, "these bytes are no state of this FMU");
-    if (!*saved)
+    }
+    if (!*saved) {
         *saved = calloc(1, sizeof(fmu_saved));
-    if (!*saved)
+    }
+    if (!*saved) {
         return fmu_say(i, FMU_ERROR, "out of memory");
+    }
     memcpy(*saved, bytes, sizeof(fmu_saved));
     return FMU_OK;
 }

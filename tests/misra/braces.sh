@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# braces.sh PLGEN SOURCE_ROOT: in generated code every body of an if, an else or a loop has braces.
+# braces.sh PLGEN SOURCE_ROOT: in generated code and in the runtime every body of an if, an else or a loop has braces.
 set -u
 plgen=$1
 root=$(cd "$2" && pwd) || exit 99
@@ -46,4 +46,6 @@ result $? "generated code: $(tail -n 1 log)"
 bodies=$(sed -n '$s/ bodies.*//p' log)
 [ "${bodies:-0}" -gt 1000 ]
 result $? 'and there are many'
+python3 "$look" "$root"/runtime/*.[ch] "$root"/runtime/fmi/*.[ch] >log 2>&1
+result $? "the runtime: $(tail -n 1 log)"
 tap_end

@@ -69,6 +69,7 @@ static void nothing_else_changes(void **state)
 		"struct s {\n    int (*f)(int a);\n};\nvoid f(void)\n{\n    const struct s t = {1, {2}};\n"
 		"    for (i = 0; i < 3; i++) {\n        x = y;\n    }\n    iffy(else_what);\n}\n",
 		"void f(void)\n{\n#if A\n    x = 1;\n#endif\n}",
+		"#error \"not {\\\nif this\"\nint x;\n",
 		""
 	};
 	(void)state;
