@@ -43,7 +43,7 @@ void tell_no_friction(const struct building *b)
 {
 	const struct model *model = b->model;
 	const struct node *node = first_friction(b)->node;
-	if (model->scheme == SCHEME_TAYLOR && model->system.segments > 1)
+	if ((model->scheme == SCHEME_TAYLOR || model->scheme == SCHEME_EXACT) && model->system.segments > 1)
 		error(node->at, "scheme exact has it beside what is piecewise linear",
 		      "scheme taylor has no friction beside loads that change their formula in time");
 	if (b->request->loads_left)

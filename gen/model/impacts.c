@@ -181,7 +181,7 @@ void tell_no_impacts(const struct building *b)
 	if (b->request->loads_left)
 		error(at, "without --loads leftover they are exact",
 		      "what goes from event to event, as impacts do, leaves no load over");
-	if (model->scheme == SCHEME_TAYLOR && model->system.segments > 1)
+	if ((model->scheme == SCHEME_TAYLOR || model->scheme == SCHEME_EXACT) && model->system.segments > 1)
 		error(at, "scheme exact has them beside what is piecewise linear",
 		      "scheme taylor has no impacts beside loads that change their formula in time");
 	error(at, "scheme exact, of what is piecewise linear, and scheme taylor go from event to event",

@@ -521,6 +521,7 @@ static int sequence_of_call(struct sequencing *w, const struct atom *atom)
 	case FN_ATAN2:
 		b = sequence_of_form(w, atom->operand[1]);
 		return angle_sequence(w, a, b);
+	case FN_SLIDE: no_series(w, atom, "is friction of what has no mass");
 	default: no_series(w, atom, "is not");
 	}
 }

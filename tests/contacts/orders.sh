@@ -3,7 +3,7 @@
 # orders.sh PLGEN SOURCE: scheme taylor of orders 4, 6 and 8 on models with friction, stops and impacts beside curves.
 # The state after 6 s is compared with that of order 24; the order is the slope of a line through the logarithms of the
 # errors. An event ends a piece wherever it falls, so errors scatter about the line, which has to rise no less than
-# 0.15 below what is stated. $CC compiles, $PLRT is the runtime.
+# 0.4 below what is stated. $CC compiles, $PLRT is the runtime.
 plgen=$(realpath "$1")
 source=$(realpath "$2")
 . "$source/tests/tap.sh"
@@ -50,7 +50,7 @@ order() {
 		awk -v p=$p '$2 > 1e-13 { u = log($1); v = -log($2); n++; a += u; b += v; c += u*u; d += u*v }
 			!$3 || !$4 || NF != 4 { bad = 1 }
 			END { s = n > 3 ? (n*d - a*b)/(n*c - a*a) : 0
-				printf "%.2f %s\n", s, bad || NR != 8 || s < p - 0.15 ? "no" : "yes" }' errors >slope
+				printf "%.2f %s\n", s, bad || NR != 8 || s < p - 0.4 ? "no" : "yes" }' errors >slope
 		read -r slope good <slope
 		cp errors log
 		[ "$good" = yes ]
