@@ -506,14 +506,6 @@ typedef struct event {
     int guard; /* -1: none */
 } event;
 
-/* What has left its guard at the start comes back where g(s)/s rises through 0: that is known to more digits. */
-static void look_behind(beyond *f, const real *e, real terms)
-{
-    f->degree--;
-    look_beyond(f, e + 1, 1, 0, terms);
-    f->coefficient[++f->degree] = 0;
-}
-
 /* What a force that is at its limit but for rounding has let go moves with a slope that is rounding, too: where that
  * points back it is no event. */
 static void level(const pl_guards *m, int region, const pl_guard *g, const real *x, beyond *f, real *work)

@@ -557,6 +557,132 @@ int pl_dividedf_left(const pl_dividedf *m, const float *c, const float *terms, c
                      pl_crossingf *crossing);
 float pl_dividedf_next(const pl_dividedf *m, const float *c, const float *terms, const int *interval, float end,
                        int *splits, pl_crossingf *crossing, float *work);
+
+/* ---- events.c: impacts, contacts at rest and dry friction beside a Taylor series ------------------------------- */
+
+/* As pl_divided; an expression may have the same breakpoint twice, and in the interval between it is held: by friction
+ * that sticks, by a contact at rest.  Beside the expressions stand watches, columns of c too, of which each has its
+ * entry of terms behind those of the expressions: velocities, what would let go, what a state is after a jump. */
+typedef struct pl_hold {
+    int expression, interval; /* held there */
+    int velocity;             /* a watch: kept at 0 */
+    int down, up;             /* watches: beyond 0 it is let go to the interval below, above; -1: it is not */
+    int strike;               /* the impact whose contact rests; -1: friction sticks */
+} pl_hold;
+
+/* An impact, where an expression passes a breakpoint.  One with a hold is a bounce: it turns the speed of its guard, s
+ * to -restitution s. */
+typedef struct pl_strike {
+    int expression, breakpoint, upward;
+    int hold;               /* in which its contact rests; -1: it is no bounce */
+    int place, speed;       /* watches: how far the guard is beyond 0, its rate */
+    int jump, still, jumps; /* assignments, so many from there on: its own; those with restitution 0 */
+    double restitution;
+    double per; /* of the expression for a guard of 1 */
+} pl_strike;
+
+/* Holds that cannot be all at once, as bits.  Of friction of what a contact at rest holds: it brakes what presses there,
+ * and while it does not stick slips to that side, 1 or -1 interval on, whatever its velocity is. */
+typedef struct pl_conflict {
+    uint32_t set;
+    int hold, side; /* that friction; -1: it is others */
+} pl_conflict;
+
+typedef struct pl_events {
+    const pl_divided *divided;
+    int states;
+    const int *watch; /* the column of each */
+    int holds;        /* at most 32 */
+    const pl_hold *hold;
+    const double *back; /* holds x states: what is taken from a state for a velocity of 1 */
+    int strikes;        /* at most 32, in the order in which they act at one instant */
+    const pl_strike *strike;
+    const double *place_back; /* strikes x states: likewise for a guard of 1 */
+    const int *state, *value; /* assignments: a state is set to a watch */
+    int conflicts;
+    const pl_conflict *conflict;
+    double h;                 /* step [s], the unit of time of c */
+    int max_events;
+} pl_events;
+
+/* Where a series begins, and how it is made anew. */
+typedef struct pl_instant {
+    void (*expand)(const void *from, const int *interval, const double *y, double *c, double *terms);
+    const void *from;
+    double *y, *rest;   /* the states, what rounding took from them; one that is set has no rest */
+    double *c, *terms;
+    double *work;       /* PL_DIVIDED_WORK */
+    int *interval;      /* of each expression */
+    uint64_t *total;    /* crossings */
+    int *crossings;     /* in this step */
+    int *rested;        /* contacts that came to rest by infinitely many bounces */
+    pl_crossing *crossing, *last;
+    double time;        /* after the start of the step [s] */
+    pl_crossing next;   /* the event that pl_events_next has found, */
+    int strike, freed;  /* the impact that begins there, the hold that lets go; -1: none */
+    int status;         /* 0, PL_UNDECIDED */
+} pl_instant;
+
+/* The intervals of a state that was set.  What is on a breakpoint that stands twice is held where that can be, else goes
+ * where it is heading. */
+void pl_events_place(const pl_events *m, pl_instant *at);
+
+/* The series from here.  1: an expression or what is held has left its interval, and that has been passed; -1: there
+ * were too many; 0: neither.  What is held and has moved by rounding is put back. */
+int pl_events_begin(const pl_events *m, pl_instant *at);
+
+/* When, until `end`, the first event comes, as pl_divided_next; size, in and out: how far the series goes without one,
+ * shorter behind a bounce that comes back soon. */
+double pl_events_next(const pl_events *m, pl_instant *at, double *size, int *splits);
+
+/* That event: at->y is the state there.  0: there were too many.  Several at one instant as pl_guards_step says. */
+int pl_events_pass(const pl_events *m, pl_instant *at);
+
+/* How far the series at->c, which is made, serves without an event, at most until `end`; 0: not even from here */
+double pl_events_end(const pl_events *m, pl_instant *at, double end, int *splits);
+
+typedef struct pl_strikef {
+    int expression, breakpoint, upward;
+    int hold, place, speed, jump, still, jumps;
+    float restitution, per;
+} pl_strikef;
+
+typedef struct pl_eventsf {
+    const pl_dividedf *divided;
+    int states;
+    const int *watch;
+    int holds;
+    const pl_hold *hold;
+    const float *back;
+    int strikes;
+    const pl_strikef *strike;
+    const float *place_back;
+    const int *state, *value;
+    int conflicts;
+    const pl_conflict *conflict;
+    float h;
+    int max_events;
+} pl_eventsf;
+
+typedef struct pl_instantf {
+    void (*expand)(const void *from, const int *interval, const float *y, float *c, float *terms);
+    const void *from;
+    float *y, *rest, *c, *terms, *work;
+    int *interval;
+    uint64_t *total;
+    int *crossings, *rested;
+    pl_crossingf *crossing, *last;
+    float time;
+    pl_crossingf next;
+    int strike, freed, status;
+} pl_instantf;
+
+void pl_eventsf_place(const pl_eventsf *m, pl_instantf *at);
+int pl_eventsf_begin(const pl_eventsf *m, pl_instantf *at);
+float pl_eventsf_next(const pl_eventsf *m, pl_instantf *at, float *size, int *splits);
+int pl_eventsf_pass(const pl_eventsf *m, pl_instantf *at);
+float pl_eventsf_end(const pl_eventsf *m, pl_instantf *at, float end, int *splits);
+
 /* ---- guards.c: piecewise-linear models whose velocity is held at times, and that jump -------------------------- */
 
 /* As pl_switching, with events of their own in each region.  x' = A x; a guard is a row that must not become greater

@@ -47,6 +47,14 @@ enum { REAL_DIGITS = FLT_MANT_DIG, REAL_EXPONENTS = FLT_MAX_EXP };
 #define pl_guards_step pl_guardsf_step
 #define pl_guards_advance pl_guardsf_advance
 #define pl_guards_change pl_guardsf_change
+#define pl_strike pl_strikef
+#define pl_instant pl_instantf
+#define pl_events pl_eventsf
+#define pl_events_place pl_eventsf_place
+#define pl_events_begin pl_eventsf_begin
+#define pl_events_next pl_eventsf_next
+#define pl_events_pass pl_eventsf_pass
+#define pl_events_end pl_eventsf_end
 #define pl_term pl_termf
 #define pl_equations pl_equationsf
 #define pl_equations_at pl_equationsf_at

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT-0 */
-/* roots.h: where a polynomial first rises through 0, for the runtime's own use: by crossings.c and guards.c.  A root is
- * isolated by bounds on derivatives before it is computed, so none is stepped over. */
+/* roots.h: where a polynomial first rises through 0, for the runtime's own use: by crossings.c, guards.c and
+ * events.c.  A root is isolated by bounds on derivatives before it is computed, so none is stepped over. */
 #ifndef PLRT_ROOTS_H
 #define PLRT_ROOTS_H
 
@@ -51,7 +51,7 @@ static real noise_of(real terms)
 }
 
 /* 1, -1 or 0: the sign of the first of e', e'', e''' that is not zero but for rounding.  work: 4 n */
-static int heading(int n, const real *A, const real *row, const real *x, real *work)
+static inline int heading(int n, const real *A, const real *row, const real *x, real *work)
 {
     real *y = work, *next = work + n, *terms = work + 2 * n, *next_terms = work + 3 * n, e, noise;
     int order, i;
@@ -77,7 +77,7 @@ static int heading(int n, const real *A, const real *row, const real *x, real *w
 }
 
 /* The coefficients of x(s) = e^{A dt s} x */
-static void expand(int n, int degree, const real *A, real dt, const real *x, real *coefficients)
+static inline void expand(int n, int degree, const real *A, real dt, const real *x, real *coefficients)
 {
     int i, k;
     for (i = 0; i < n; i++) {
@@ -92,7 +92,7 @@ static void expand(int n, int degree, const real *A, real dt, const real *x, rea
     }
 }
 
-static void sum_up(int n, int degree, const real *coefficients, real s, real *x)
+static inline void sum_up(int n, int degree, const real *coefficients, real s, real *x)
 {
     const real *row = coefficients + degree * n;
     int i, k;
@@ -159,6 +159,14 @@ static void look_beyond(beyond *f, const real *e, real sign, real b, real terms)
         f->reach += a;
     }
     f->noise = noise_of(terms + magnitude(sign * b) + f->reach);
+}
+
+/* What has left its guard at the start comes back where g(s)/s rises through 0: that is known to more digits. */
+static inline void look_behind(beyond *f, const real *e, real terms)
+{
+    f->degree--;
+    look_beyond(f, e + 1, 1, 0, terms);
+    f->coefficient[++f->degree] = 0;
 }
 
 /* The root between a, where g < 0, and z, where g > 0; g rises all the way.  Newton's method, kept safe by halving. */

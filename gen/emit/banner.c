@@ -157,6 +157,33 @@ static void tell_no_phi(const struct emitter *e)
 		say(e, " * There is no Phi: %s.\n", e->step->shown->no_phi);
 }
 
+static void banner_impacts(const struct emitter *e)
+{
+	const struct model *model = e->step->shown->model;
+	for (int i = 0; i < model->impacts; i++) {
+		const struct impact *impact = &model->impact[i];
+		const char *text = text_between(impact->when->at, impact->when->end);
+		say(e, " *     impact %d: %s%s\n", i, printable(text),
+		    impact->bounces ? format(", a bounce of restitution %s", restitution_text(model, impact)) : "");
+	}
+	if (model->impacts > 1)
+		say(e, " * Those of one instant act in this order, each from the state that the one before has "
+		       "left.\n");
+	if (has_bounces(model))
+		say(e, " * Bounces that would all be over within 2^-23 h come to rest: $n_rested counts.\n");
+}
+
+/* What is held beside a series, and what strikes */
+static void banner_contacts(const struct emitter *e)
+{
+	const struct contacts *c = e->step->expansion->contacts;
+	for (int i = 0, friction = 0; c && i < c->holds; i++)
+		if (c->hold[i].impact == NONE)
+			say(e, " *     friction %d: %s\n", friction++, printable(contact_text(e->step, i)));
+	if (c)
+		banner_impacts(e);
+}
+
 /* What the series is of, how long a step is */
 /* What chooses formulas by the state */
 static void banner_divided(const struct emitter *e)
@@ -175,6 +202,7 @@ static void banner_divided(const struct emitter *e)
 			at = format("%s%s%s", at, k ? ", " : "", readable_text(rising[k]));
 		say(e, " *     expression %d: %s, at %s\n", i, printable(divided_text(e->step, i)), at);
 	}
+	banner_contacts(e);
 	if (regions_of_series(x))
 		banner_sentence(e, "A region's number is the sum of its intervals, each times the product of the "
 				   "numbers of intervals before it.");
@@ -263,22 +291,6 @@ static void banner_expressions(const struct emitter *e)
 		say(e, " *     expression %d: %s%s, at %s\n", i, printable(form_text(model, s->expression[i].form)),
 		    changes_in_time(&s->expression[i]) ? " at first, with other loads later" : "", at);
 	}
-}
-
-static void banner_impacts(const struct emitter *e)
-{
-	const struct model *model = e->step->shown->model;
-	for (int i = 0; i < model->impacts; i++) {
-		const struct impact *impact = &model->impact[i];
-		const char *text = text_between(impact->when->at, impact->when->end);
-		say(e, " *     impact %d: %s%s\n", i, printable(text),
-		    impact->bounces ? format(", a bounce of restitution %s", restitution_text(model, impact)) : "");
-	}
-	if (model->impacts > 1)
-		say(e, " * Those of one instant act in this order, each from the state that the one before has "
-		       "left.\n");
-	if (has_bounces(model))
-		say(e, " * Bounces that would all be over within 2^-23 h come to rest: $n_rested counts.\n");
 }
 
 static void banner_region_number(const struct emitter *e)

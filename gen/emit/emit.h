@@ -294,6 +294,7 @@ const struct kind *row_of_kind(enum step_kind kind);
 
 bool has_offset(const struct emitter *e);                         /* an expansion may start inside a step */
 bool is_divided(const struct emitter *e);                         /* the state chooses formulas */
+const char *emit_whole_size(const struct emitter *e, bool *made, int sequence);
 const char *size_of_terms(const struct emitter *e, int sequence); /* C: of a sum at its start, of each its size */
 void emit_column_scales(const struct emitter *e);                 /* of what stands beside the states in s->series */
 const char *driven_parameter(const struct emitter *e);            /* const double u[N_INPUTS], or "" */
@@ -350,6 +351,16 @@ void emit_divided_functions(const struct emitter *e);             /* tables, NAM
 void emit_divided_questions(const struct emitter *e);             /* NAME_crossed, NAME_crossings, NAME_region */
 /* C: NAME_locate of contact, "s->contact" or "here", unless it is placed; its crossings are those of what follows */
 void emit_divided_start(const struct emitter *e, const char *contact, const char *indent);
+/* ---- emit_events.c: impacts and friction beside a series ---- */
+
+bool meets_contacts(const struct emitter *e);
+int  terms_of_events(const struct emitter *e);                   /* expressions and watches */
+void emit_event_tables(const struct emitter *e);
+void emit_event_functions(const struct emitter *e);              /* NAME_from, NAME_again, NAME_instant */
+void emit_event_locate(const struct emitter *e);
+/* locals of a search: work, splits, from, at */
+void emit_event_room(const struct emitter *e, const char *indent, const char *y, const char *rest, const char *c,
+		     const char *contact);
 void emit_divided_bound(const struct emitter *e);                 /* in NAME_renew: it serves up to a crossing */
 
 /* ---- emit_over.c: a series of fixed order over several steps ---- */

@@ -17,10 +17,13 @@ void emit_divided_types(const struct emitter *e)
 	       "    uint64_t total;       /* crossings since init or set */\n"
 	       "    int crossings;        /* in the last step */\n"
 	       "    int placed;           /* 0: a state was set, its intervals are not known */\n"
+	       "%s"
 	       "    int interval[%d];      /* of each expression */\n"
 	       "    pl_crossing last;     /* which the state may not have left behind; expression -1: none */\n"
 	       "    pl_crossing crossing[$N_MAX_EVENTS];  /* of the last step */\n"
-	       "} $n_contact;\n\n", expansion(e)->expressions);
+	       "} $n_contact;\n\n",
+	    meets_contacts(e) ? "    int rested;           /* contacts by infinitely many bounces, since then */\n" : "",
+	    expansion(e)->expressions);
 }
 
 void emit_divided_members(const struct emitter *e)
@@ -38,6 +41,9 @@ void emit_divided_declarations(const struct emitter *e)
 	say(e, "uint64_t $n_crossed(const $n *s);        /* breakpoints crossed since init or set */\n"
 	       "int    $n_crossings(const $n *s, pl_crossing crossing[$N_MAX_EVENTS]);  "
 	       "/* those of the last step; how many */\n");
+	if (has_bounces(e->model))
+		say(e, "int    $n_rested(const $n *s);           "
+		       "/* contacts that came to rest by bouncing, since init or set */\n");
 }
 
 /* ---- tables ---- */
@@ -121,6 +127,12 @@ static void emit_locate(const struct emitter *e)
 void emit_divided_functions(const struct emitter *e)
 {
 	emit_divided_tables(e);
+	if (meets_contacts(e)) {
+		emit_event_tables(e);
+		emit_event_functions(e);
+		emit_event_locate(e);
+		return;
+	}
 	emit_pass_breakpoint(e);
 	emit_locate(e);
 }
@@ -135,10 +147,24 @@ void emit_divided_start(const struct emitter *e, const char *contact, const char
 		say(e, "%s%s.crossings = 0;\n", indent, contact);
 }
 
+static void emit_event_bound(const struct emitter *e)
+{
+	say(e, "    if (s->valid) {  /* up to an event */\n");
+	emit_event_room(e, "        ", "s->y", "s->rest", "s->series[0]", "&s->contact");
+	say(e, "        s->valid = (int)pl_events_end(&$n_events, &at, (double)s->valid, &splits);\n"
+	       "        if (s->valid)\n"
+	       "            s->contact.last.expression = -1;\n"
+	       "    }\n");
+}
+
 void emit_divided_bound(const struct emitter *e)
 {
 	if (!is_divided(e))
 		return;
+	if (meets_contacts(e)) {
+		emit_event_bound(e);
+		return;
+	}
 	say(e, "    if (s->valid) {  /* up to a crossing */\n"
 	       "        double work[PL_DIVIDED_WORK(%d)], next;\n"
 	       "        pl_crossing crossing = s->contact.last;\n"
@@ -179,4 +205,9 @@ void emit_divided_questions(const struct emitter *e)
 	       "        crossing[i] = s->contact.crossing[i];\n"
 	       "    return s->contact.crossings;\n"
 	       "}\n");
+	if (has_bounces(e->model))
+		say(e, "\nint $n_rested(const $n *s)\n"
+		       "{\n"
+		       "    return s->contact.rested;\n"
+		       "}\n");
 }

@@ -70,9 +70,13 @@ static const char *passed_text(const struct emitter *e)
 			"            contact->last.expression = -1;\n"
 			"            continue;\n"
 			"        }\n"
-			"        if (!$n_cross(contact, done * $N_H))\n"
-			"            return PL_TOO_MANY_EVENTS;\n"
-			"%s", truncation(e)->adaptive ? "        fresh = 1;\n" : "");
+			"%s"
+			"%s", meets_contacts(e) ? spell(e, "        from.tau = at.time = done * $N_H;\n"
+							 "        if (!pl_events_pass(&$n_events, &at))\n"
+							 "            return PL_TOO_MANY_EVENTS | at.status;\n")
+						: spell(e, "        if (!$n_cross(contact, done * $N_H))\n"
+							   "            return PL_TOO_MANY_EVENTS;\n"),
+		     truncation(e)->adaptive ? "        fresh = 1;\n" : "");
 }
 
 static const char *series_between(const struct emitter *e, const char *tau, const char *y, const char *c)
@@ -94,10 +98,15 @@ static void emit_between_start(const struct emitter *e)
 	    changes(e) ? ", segment = s->segment" : "");
 	if (adaptive)
 		say(e, "    double longest = 1.0;\n");
-	if (divided)
+	if (meets_contacts(e)) {
+		say(e, "    double terms[%d], meets;\n", terms_of_events(e));
+		emit_event_room(e, "    ", "y", "rest", "c[0]", "contact");
+	} else if (divided) {
 		say(e, "    double terms[%d], work[PL_DIVIDED_WORK(%d)], meets;\n"
 		       "    int splits = %d;\n", expansion(e)->expressions, order, MAX_SPLITS);
-	emit_input_samples(e);
+	}
+	if (adaptive || !meets_contacts(e))
+		emit_input_samples(e);
 }
 
 /* Up to which time the formulas hold that t chooses */
@@ -141,8 +150,22 @@ static void emit_between_size(const struct emitter *e)
 	       "            size *= fresh ? 0.5 : 1.0;\n"
 	       "            fresh = fresh && size > 1e-9;\n"
 	       "        }\n",
-	    expansion(e)->order + 1, is_divided(e) ? format(", spare[%d]", expansion(e)->expressions) : "",
+	    expansion(e)->order + 1, is_divided(e) ? format(", spare[%d]", terms_of_events(e)) : "",
 	    series_between(e, spell(e, "(done + size) * $N_H"), "next", "d"));
+}
+
+/* The series, behind what happens where it begins */
+static void emit_begin_series(const struct emitter *e)
+{
+	say(e, "        from.tau = at.time = done * $N_H;\n"
+	       "        from.when = $n_time(s) + 0.5 * (done + limit) * $N_H;\n"
+	       "        i = pl_events_begin(&$n_events, &at);\n"
+	       "        if (i < 0)\n"
+	       "            return PL_TOO_MANY_EVENTS | at.status;\n"
+	       "        if (i > 0)%s\n"
+	       "            continue;\n"
+	       "%s", truncation(e)->adaptive ? " {\n            fresh = 1;" : "",
+	    truncation(e)->adaptive ? "        }\n" : "");
 }
 
 /* From now over a part of the step: substeps, crossings, and changes of the loads on the way */
@@ -152,15 +175,24 @@ static void emit_between(const struct emitter *e)
 	emit_between_start(e);
 	say(e, "    while (done < end) {\n");
 	emit_between_limit(e);
-	say(e, "        %s\n", series_between(e, spell(e, "done * $N_H"), "y", "c"));
-	if (divided)
+	if (meets_contacts(e))
+		emit_begin_series(e);
+	else
+		say(e, "        %s\n", series_between(e, spell(e, "done * $N_H"), "y", "c"));
+	if (divided && !meets_contacts(e))
 		say(e, "        if (pl_divided_left(&$n_divided, c[0], terms, contact->interval, &contact->last)) {\n"
 		       "            if (!$n_cross(contact, done * $N_H))\n"
 		       "                return PL_TOO_MANY_EVENTS;\n"
 		       "            continue;\n"
 		       "        }\n");
 	emit_between_size(e);
-	if (divided)
+	if (meets_contacts(e))
+		say(e, "        meets = pl_events_next(&$n_events, &at, &size, &splits);\n"
+		       "        if (splits < 0)\n"
+		       "            return PL_TOO_MANY_EVENTS | at.status;\n"
+		       "        if (meets >= 0.0)\n"
+		       "            size = meets;\n");
+	else if (divided)
 		say(e, "        meets = pl_divided_next(&$n_divided, c[0], terms, contact->interval, size, &splits,\n"
 		       "            &contact->last, work);\n"
 		       "        if (splits < 0)\n"
@@ -178,9 +210,10 @@ static void emit_between(const struct emitter *e)
 	       "        done = size < limit - done ? done + size : limit;\n"
 	       "%s"
 	       "    }\n"
-	       "    return %s;\n"
+	       "    return %s%s;\n"
 	       "}\n", watches(e) ? " | PL_INACCURATE" : "", divided ? passed_text(e) : "",
-	    watches(e) ? "status" : "0");
+	    watches(e) ? "status" : meets_contacts(e) ? "" : "0",
+	    !meets_contacts(e) ? "" : watches(e) ? " | at.status" : "at.status");
 }
 
 /* ---- the step ---- */
@@ -212,8 +245,8 @@ void emit_expansion_place(const struct emitter *e)
 			say(e, "    s->scale[$N_STATES + %d] = s->unit[$N_STATES + %d] = 0.0;\n", i, i);
 	}
 	if (is_divided(e))
-		say(e, "    s->contact.placed = s->contact.crossings = 0;\n"
-		       "    s->contact.total = 0;\n");
+		say(e, "    s->contact.placed = s->contact.crossings = %s0;\n"
+		       "    s->contact.total = 0;\n", meets_contacts(e) ? "s->contact.rested = " : "");
 	say(e, "}\n");
 }
 
@@ -367,7 +400,7 @@ static void emit_renew(const struct emitter *e)
 	}
 	say(e, "    int i;\n");
 	if (is_divided(e))
-		say(e, "    double terms[%d];\n", expansion(e)->expressions);
+		say(e, "    double terms[%d];\n", terms_of_events(e));
 	emit_input_samples(e);
 	say(e, "    for (i = 0; i < $N_STATES; i++)\n");
 	emit_series_scales(e, "        ");

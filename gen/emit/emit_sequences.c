@@ -149,17 +149,24 @@ void emit_expand_function(const struct emitter *e)
 	    has_offset(e) ? "double tau, " : "",
 	    has_choices(e) ? "double when, " : "", changes(e) ? "int segment, " : "", input_parameters(e, true),
 	    is_divided(e) ? format("const int interval[%d], ", x->expressions) : "", x->order + 1,
-	    is_divided(e) ? format(",\n    double terms[%d]", x->expressions) : "");
+	    is_divided(e) ? format(",\n    double terms[%d]", terms_of_events(e)) : "");
 	emit_coefficients(e);
 	for (int k = 0; k <= x->order; k++)
 		for (int i = 0; i < e->system->states + x->columns; i++) {
 			int states = e->system->states;
-			const char *name = coefficient(e, i < states ? i : x->column[i - states], k);
+			bool kept = i < states || k <= x->column_top[i - states];
+			const char *name = kept ? coefficient(e, i < states ? i : x->column[i - states], k) : NULL;
 			say(e, "    c[%d][%d] = %s;\n", k, i, name ? name : "0.0");
 		}
 	for (int i = 0; i < x->expressions; i++) {
 		say(e, "    ");
 		say_wrapped(e, format("terms[%d] = %s;\n", i, size_of_terms(e, x->expression[i].sequence)));
+	}
+	bool *made = ARRAY(bool, (size_t)x->count);
+	for (int i = 0; x->contacts && i < x->contacts->watches; i++) {
+		const char *size = emit_whole_size(e, made, x->contacts->watch[i].sequence);
+		say(e, "    ");
+		say_wrapped(e, format("terms[%d] = %s;\n", x->expressions + i, size));
 	}
 	for (int i = 0; i < e->system->inputs; i++)
 		tau = tau || (x->input[i] && e->system->input[i].hold);

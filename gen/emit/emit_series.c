@@ -4,6 +4,7 @@
  * after it reads is left out. */
 #include "emit/emit.h"
 
+#include <math.h>
 #include <string.h>
 
 static const struct expansion *expansion(const struct emitter *e)
@@ -273,6 +274,43 @@ const char *size_of_terms(const struct emitter *e, int sequence)
 		text = format("%s%spl_magnitude(%s)", text, i ? " + " : "",
 			      i < sum.terms ? sum.term[i] : last.term[i - sum.terms]);
 	return text;
+}
+
+static bool has_parts(const struct emitter *e, int sequence)
+{
+	const struct sequence *s = sequence_of(e, sequence);
+	return s->state == NONE && (s->kind == SEQUENCE_CHOICE || (s->kind == SEQUENCE_SUM && s->terms > 0));
+}
+
+/* What a sum of sums is summed from, each part of it once, as a local; `made`: per sequence, whether it is there */
+const char *emit_whole_size(const struct emitter *e, bool *made, int sequence)
+{
+	const struct sequence *s = sequence_of(e, sequence);
+	const char *name = format("%s_size", base_name(e, sequence)), *text = "";
+	if (!has_parts(e, sequence))
+		return format("pl_magnitude(%s)", coefficient(e, sequence, 0));
+	if (made[sequence])
+		return name;
+	made[sequence] = true;
+	struct list sum = { 0 }, last = { 0 };
+	for (int i = 0; i < s->terms; i++) {
+		const struct sequence_term *t = &s->term[i];
+		if (t->kind == TERM_SEQUENCE && has_parts(e, t->a))
+			text = format("%s%s%s * %s", text, *text ? " + " : "", shortest(fabs(t->factor[0])),
+				      emit_whole_size(e, made, t->a));
+		else
+			add_term(e, &sum, &last, t, 0);
+	}
+	for (int i = 0; i < sum.terms + last.terms; i++)
+		text = format("%s%spl_magnitude(%s)", text, *text ? " + " : "",
+			      i < sum.terms ? sum.term[i] : last.term[i - sum.terms]);
+	if (s->kind == SEQUENCE_CHOICE) {
+		const char *a = emit_whole_size(e, made, s->a), *b = emit_whole_size(e, made, s->b);
+		text = format("%s ? %s : %s", helper_name(e, sequence, "holds"), a, b);
+	}
+	say(e, "    ");
+	say_wrapped(e, format("const double %s = %s;\n", name, *text ? text : "0.0"));
+	return name;
 }
 
 /* ---- early parts, k >= 1 ---- */
@@ -607,6 +645,8 @@ static void define_helper(const struct emitter *e, int sequence, const struct se
 		define_as(e, "const int", helper_name(e, sequence, "holds"),
 			  s->choice == CHOICE_BY_STATE
 				  ? format("interval[%d] > %d", s->expression, breakpoint_rank(expansion(e), s))
+			  : s->choice == CHOICE_BY_HOLD
+				  ? format("interval[%d] == %d", s->expression, breakpoint_rank(expansion(e), s) + 1)
 			  : s->choice == CHOICE_BY_SEQUENCE
 				  ? format("%s != 0.0", coefficient(e, s->test, 0))
 				  : format("%s %s %s", time_text(e, s->left, "when"), sign[s->comparison],
@@ -680,7 +720,8 @@ void emit_series_lines(const struct emitter *e)
 		for (int i = 0; i < e->system->states; i++)
 			coefficient(&writer, i, k);
 		for (int i = 0; i < x->columns; i++)
-			coefficient(&writer, x->column[i], k);
+			if (k <= x->column_top[i])
+				coefficient(&writer, x->column[i], k);
 	}
 	for (int k = x->order; k > 0; k--)
 		for (int i = x->count - 1; i >= 0; i--)

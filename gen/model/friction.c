@@ -43,11 +43,47 @@ void tell_no_friction(const struct building *b)
 {
 	const struct model *model = b->model;
 	const struct node *node = first_friction(b)->node;
-	if (model->scheme != SCHEME_EXACT)
-		error(node->at, "scheme exact goes from event to event",
-		      "scheme %s has no friction, which sticks and slips", scheme_name(model->scheme));
-	error(node->at, "scheme exact goes from event to event, and takes what is piecewise linear",
-	      "friction stands beside what is not piecewise linear: no scheme has both");
+	if ((model->scheme == SCHEME_TAYLOR || model->scheme == SCHEME_EXACT) && model->system.segments > 1)
+		error(node->at, "scheme exact has it beside what is piecewise linear",
+		      "scheme taylor has no friction beside loads that change their formula in time");
+	if (b->request->loads_left)
+		error(node->at, "without --loads leftover they are exact",
+		      "what goes from event to event, as friction does, leaves no load over");
+	error(node->at, "scheme exact, of what is piecewise linear, and scheme taylor go from event to event",
+	      "scheme %s has no friction, which sticks and slips", scheme_name(model->scheme));
+}
+
+/* ---- what it is ---- */
+
+/* max(5*y + 1, 0), abs(x) */
+static bool is_never_negative(const struct atom *a)
+{
+	bool never = a->kind == ATOM_CALL && (a->function == FN_ABS || a->function == FN_EXP || a->function == FN_SQRT);
+	for (int i = 0; i < a->operands && a->kind == ATOM_CALL && a->function == FN_MAX; i++)
+		never = never || (is_constant(a->operand[i]) && never_falls_below(a->operand[i]));
+	return never;
+}
+
+bool never_falls_below(const struct form *force)
+{
+	mpq_t least, size;
+	mpq_inits(least, size, NULL);
+	bool bounded = true;
+	for (int i = 0; i < force->terms; i++) {
+		const struct basis *basis = &force->term[i].basis;
+		mpq_abs(size, force->term[i].factor);
+		if (basis->kind == BASIS_ATOM && mpq_sgn(force->term[i].factor) > 0 && is_never_negative(basis->atom))
+			continue;
+		if (basis->kind == BASIS_ONE)
+			mpq_add(least, least, force->term[i].factor);
+		else
+			mpq_sub(least, least, size);
+		bounded = bounded && (basis->kind == BASIS_ONE ||
+				      (basis->kind == BASIS_WAVE && !basis->power && mpq_sgn(basis->wave->a) <= 0));
+	}
+	bool positive = bounded && mpq_sgn(least) >= 0;
+	mpq_clears(least, size, NULL);
+	return positive;
 }
 
 /* ---- where it sticks ---- */

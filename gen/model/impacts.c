@@ -180,12 +180,12 @@ void tell_no_impacts(const struct building *b)
 	struct place at = b->spec->when->at;
 	if (b->request->loads_left)
 		error(at, "without --loads leftover they are exact",
-		      "scheme exact, which impacts need, leaves no load over");
-	if (model->scheme != SCHEME_EXACT)
-		error(at, "scheme exact goes from event to event", "scheme %s has no impacts",
-		      scheme_name(model->scheme));
-	error(at, "scheme exact goes from event to event, and takes what is piecewise linear",
-	      "impacts stand beside what is not piecewise linear: no scheme has both");
+		      "what goes from event to event, as impacts do, leaves no load over");
+	if ((model->scheme == SCHEME_TAYLOR || model->scheme == SCHEME_EXACT) && model->system.segments > 1)
+		error(at, "scheme exact has them beside what is piecewise linear",
+		      "scheme taylor has no impacts beside loads that change their formula in time");
+	error(at, "scheme exact, of what is piecewise linear, and scheme taylor go from event to event",
+	      "scheme %s has no impacts", scheme_name(model->scheme));
 }
 
 /* ---- what a jump does to a form ---- */

@@ -568,6 +568,8 @@ static void build_parts(struct building *b)
 		build_operators(b);
 	if (!diagnostics_errors())
 		build_outputs(b);
+	if (!diagnostics_errors() && has_contacts(model))
+		check_contact_outputs(b);
 	if (!diagnostics_errors() && model->switching)
 		build_regions(b);
 	if (b->request->reduce)

@@ -205,6 +205,8 @@ struct model {
 	struct switching *switching; /* exact: the regions of a piecewise-linear model; NULL: it has one */
 	int impacts;                /* in the order in which they act at one instant */
 	struct impact *impact;
+	int drags;                  /* friction that a Taylor series goes beside */
+	struct drag *drag;
 	struct smoothness smooth;
 	const struct node *obstacle; /* the first term that stood in the way of exact, where no scheme was asked for; */
 	const char *obstacle_text;  /* why it did, and the way out if there is one */
@@ -293,6 +295,7 @@ struct jump {                       /* a state just behind an impact, over state
 };
 struct strike {                     /* what an impact is in one segment of time */
 	struct form *guard, *speed; /* turned so that it rises where it comes true, through 0; its derivative */
+	struct form *press;         /* of a bounce: that of the speed; it may have highest derivatives */
 	int jumps;
 	struct jump *jump;
 	mpq_t restitution;          /* of a bounce: e */
@@ -325,6 +328,12 @@ struct slider {
 	mpq_t at[2];                /* its breakpoint, */
 	bool upward[2];             /* which is passed upward where the sliding begins */
 	bool negative;              /* F may fall below 0 */
+};
+/* Friction beside what is not piecewise linear, where there are no regions */
+struct drag {
+	const struct atom *atom;
+	const struct form *velocity, *rate; /* v, and its derivative; that has highest derivatives */
+	const struct form *force, *rest;    /* F, and up to what it sticks */
 };
 struct hold {                       /* a state that a region gives: of what sticks a velocity follows from the others */
 	int state;
@@ -600,6 +609,7 @@ bool has_events(const struct switching *s);                 /* each region has i
 
 bool holds_friction(const struct building *b);              /* somewhere in the equations */
 _Noreturn void tell_no_friction(const struct building *b);  /* why a scheme cannot treat it */
+bool never_falls_below(const struct form *force);           /* below 0, from t = 0 on, as far as it is seen easily */
 struct form *rate_of_form(struct building *b, const struct form *form); /* its derivative with respect to time */
 int  stick_of(const struct switching *s, const struct friction *f); /* the interval in which it sticks */
 /* puts in the forces of what slips, and the constraints of what sticks */
@@ -632,6 +642,13 @@ struct form *borne_form(const struct building *b, const struct form *form); /* o
 struct form *slide_velocity(const struct switching *s, const struct region *region, const struct node *node);
 bool is_repeated_slider(const struct switching *s, int index);      /* it stands there for an earlier segment too */
 const char *slider_text(const struct switching *s, int index);      /* for a reader: what slides, and where */
+/* ---- contacts.c: impacts and friction beside what is not piecewise linear ---- */
+
+void find_contacts(struct building *b);                     /* of the equations for all time */
+void place_contact_loads(struct building *b);
+int  drag_of(const struct model *model, const struct atom *atom);  /* its index; -1: it is none */
+void check_contact_outputs(struct building *b);             /* says what they cannot read */
+bool has_contacts(const struct model *model);               /* without regions */
 
 /* ---- parts.c: regions of independent coordinates ---- */
 

@@ -138,7 +138,7 @@ static void find_requirement(void *context)
 	struct requirement *r = f->found;
 	mpq_inits(r->bound, r->until, NULL);
 	r->need = f->need;
-	if (f->model->switching && has_events(f->model->switching))
+	if (has_contacts(f->model) || (f->model->switching && has_events(f->model->switching)))
 		error(f->need->at, "plrun tries steps", "a need is not measured beside friction and impacts yet");
 	check_certified(f);
 	find_output(f);

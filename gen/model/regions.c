@@ -160,22 +160,7 @@ static void add_stick(struct looking *l, struct expression *e, mpq_srcptr at)
 /* Below 0 no force is left; what never is, from t = 0 on, needs no breakpoint there */
 static struct form *force_here(struct looking *l, const struct node *node, struct form *force, bool *negative)
 {
-	mpq_t least, size;
-	mpq_inits(least, size, NULL);
-	bool bounded = true;
-	for (int i = 0; i < force->terms; i++) {
-		const struct basis *basis = &force->term[i].basis;
-		mpq_abs(size, force->term[i].factor);
-		if (basis->kind == BASIS_ONE)
-			mpq_add(least, least, force->term[i].factor);
-		else
-			mpq_sub(least, least, size);
-		bounded = bounded && (basis->kind == BASIS_ONE ||
-				      (basis->kind == BASIS_WAVE && !basis->power && mpq_sgn(basis->wave->a) <= 0));
-	}
-	bool positive = bounded && mpq_sgn(least) >= 0;
-	mpq_clears(least, size, NULL);
-	if (positive || sign_here(l, node, force, form_number(0)) >= 0)
+	if (never_falls_below(force) || sign_here(l, node, force, form_number(0)) >= 0)
 		return force;
 	*negative = *negative || !l->grown;
 	return form_number(0);

@@ -259,16 +259,33 @@ static void find_obstacle(void *context)
 static enum scheme scheme_of_choice(const struct building *b)
 {
 	bool many = b->model->system.states > LIMIT_UNROLLED_STATES;
+	if (b->model->impacts > 0 || holds_friction(b))
+		return SCHEME_TAYLOR;           /* no other goes from event to event */
 	if (b->request->passed_over || b->request->loads_left)
 		return default_scheme();
 	return !b->spec->has_operator ? SCHEME_TAYLOR : many ? SCHEME_ETDAM4 : default_scheme();
+}
+
+/* By a Taylor series, from event to event: where it was asked for, or scheme exact cannot */
+static bool goes_by_series(const struct building *b)
+{
+	const struct model *model = b->model;
+	bool chosen = !model->asked.scheme_at.source && !is_piecewise_linear(b);
+	return (model->scheme == SCHEME_TAYLOR || chosen) && model->system.segments == 1 && !b->request->solution &&
+	       !b->request->loads_left;
+}
+
+static bool goes_by_regions(const struct building *b)
+{
+	return b->model->scheme == SCHEME_EXACT && is_piecewise_linear(b);
 }
 
 /* Impacts go from event to event. */
 static void settle_impacts(void *context)
 {
 	struct building *b = context;
-	if (b->model->scheme != SCHEME_EXACT || b->request->loads_left || !is_piecewise_linear(b))
+	bool exact = goes_by_regions(b) && !b->request->loads_left;
+	if (!exact && !goes_by_series(b))
 		tell_no_impacts(b);
 	build_impacts(b);
 	if (diagnostics_errors())
@@ -280,6 +297,11 @@ static void tell_friction_stands(void *context)
 	tell_no_friction(context);
 }
 
+static void settle_contacts(void *context)
+{
+	find_contacts(context);
+}
+
 /* Exact where nothing is left over and no scheme was asked for; the equations for all time where something is. */
 static bool settle_scheme(struct building *b)
 {
@@ -287,7 +309,7 @@ static bool settle_scheme(struct building *b)
 	bool linear = is_linear(b) && model->impacts == 0;
 	if (model->impacts > 0 && !statement_guard(settle_impacts, b))
 		return false;
-	if (!linear && holds_friction(b) && (model->scheme != SCHEME_EXACT || !is_piecewise_linear(b)))
+	if (!linear && holds_friction(b) && !goes_by_regions(b) && !goes_by_series(b))
 		return statement_guard(tell_friction_stands, b);
 	if (!linear && !model->asked.scheme_at.source && !b->request->solution && !is_piecewise_linear(b)) {
 		model->scheme = scheme_of_choice(b);
@@ -318,6 +340,8 @@ static bool settle_scheme(struct building *b)
 	model->loads_left = b->whole && (b->request->loads_left || scheme_row(model->scheme)->modes);
 	if (b->whole && !diagnostics_errors())
 		statement_guard(part_loads, b);
+	if (b->whole && !diagnostics_errors() && (model->impacts > 0 || holds_friction(b)))
+		statement_guard(settle_contacts, b);
 	return !diagnostics_errors();
 }
 
@@ -336,7 +360,7 @@ static bool is_stiff(struct building *b)
 static void prefer_stiff(struct building *b)
 {
 	struct model *model = b->model;
-	if (!model->obstacle || model->scheme != SCHEME_TAYLOR || !is_stiff(b))
+	if (!model->obstacle || model->scheme != SCHEME_TAYLOR || has_contacts(model) || !is_stiff(b))
 		return;
 	model->scheme = SCHEME_AUTO;
 	model->truncation.order = 0;
@@ -361,6 +385,8 @@ void build_system(struct building *b)
 			place_loads(b, load_form(b, s, i));
 	if (model->switching)
 		place_region_loads(b);
+	else if (has_contacts(model))
+		place_contact_loads(b);
 	for (int s = 0; s < system->segments && !model->loads_left; s++)
 		for (int i = 0; i < model->n; i++)
 			fill_loads(b, s, i, load_form(b, s, i));

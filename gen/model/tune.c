@@ -618,6 +618,10 @@ bool find_tuning(struct model *model, const struct request *request)
 		say_error(spec->tunable[0].at, NULL, "tunable params are not built beside impacts");
 		return false;
 	}
+	if (model->drags > 0) {
+		say_error(spec->tunable[0].at, NULL, "a model with friction or impacts cannot be retuned yet");
+		return false;
+	}
 	if (model->keeps_params) {
 		list_held(model);
 		return true;

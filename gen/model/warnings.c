@@ -445,7 +445,7 @@ void warn(struct building *b)
 				 ? format(", tolerance %s", shortest(round_rational(model->truncation.tolerance)))
 				 : "",
 			 text_between(model->obstacle->start, model->obstacle->end), model->obstacle_text,
-			 passed_over(b->request->passed_over));
+			 passed_over(has_contacts(model) ? NULL : b->request->passed_over));
 	check_need(b, left);
 	check_truncation(b);
 	check_smoothness(b);

@@ -279,7 +279,7 @@ static void person_divided(FILE *to, const struct step *step)
 {
 	const struct expansion *x = step->expansion;
 	fprintf(to, "The state chooses formulas; a series ends where an expression passes a breakpoint, at most %d "
-		    "times in a step:\n", MAX_EVENTS);
+		    "times in a step:\n", max_events(step->model));
 	for (int i = 0; i < x->expressions; i++) {
 		const struct divided *d = &x->expression[i];
 		mpq_t *rising = rising_breakpoints(d);
@@ -288,6 +288,7 @@ static void person_divided(FILE *to, const struct step *step)
 			fprintf(to, "%s %s", k ? "," : "", readable_text(rising[k]));
 		fputc('\n', to);
 	}
+	person_contacts(to, step);
 }
 
 /* What rubs, and where it sticks: its expression, and the interval of that */
@@ -947,6 +948,7 @@ static void json_divided(FILE *to, const struct step *step)
 		fputs("]}", to);
 	}
 	fputs("],\n", to);
+	json_contacts(to, step);
 }
 
 /* Its order here, and what it goes by */

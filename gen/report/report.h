@@ -19,6 +19,12 @@ const char *irrationals_text(const struct irrationals *used);
 void person_reach(FILE *to, const struct step *step);
 void json_reach(FILE *to, const struct step *step);
 
+/* ---- contacts.c: what is held beside a series, and what strikes ---- */
+
+const char *contact_text(const struct step *step, int hold);  /* friction, and where it sticks */
+void person_contacts(FILE *to, const struct step *step);
+void json_contacts(FILE *to, const struct step *step);
+
 /* ---- modes.c: steps in normal modes ---- */
 
 const char *operators_of_modes(const struct step *step);    /* whose modes they are */

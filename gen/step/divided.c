@@ -19,6 +19,15 @@ static int find_divided(struct sequencing *w, const struct form *form, mpq_ptr o
 	return x->expressions++;
 }
 
+void add_twin(struct divided *d, int breakpoint)
+{
+	mpq_t *all = rationals((size_t)d->breaks + 1);
+	for (int i = 0; i < d->breaks; i++)
+		mpq_set(all[i], d->at[i]);
+	mpq_set(all[d->breaks++], d->at[breakpoint]);
+	d->at = all;
+}
+
 static int find_breakpoint(struct divided *d, mpq_srcptr at)
 {
 	for (int i = 0; i < d->breaks; i++)
@@ -84,21 +93,44 @@ struct division divide_forms(struct sequencing *w, const struct atom *atom, cons
 	return division;
 }
 
+struct division divide_form(struct sequencing *w, const struct form *form, mpq_ptr factor)
+{
+	int constants = constant_terms(form);
+	struct form plain = { constants, form->term, 0 };
+	struct division division = { .expression = NONE };
+	mpq_t value;
+	mpq_init(value);
+	value_of_constants(w, form, constants, value);
+	division.expression = find_divided(w, form_sum(form, &plain, true), factor);
+	mpq_div(value, value, factor);
+	mpq_neg(value, value);
+	division.breakpoint = find_breakpoint(&w->x->expression[division.expression], value);
+	division.above = mpq_sgn(factor) > 0;
+	mpq_clear(value);
+	if (w->x->expression[division.expression].sequence == NONE) {
+		int made = sequence_of_form(w, w->x->expression[division.expression].form);
+		w->x->expression[division.expression].sequence = made;
+	}
+	return division;
+}
+
 /* ---- once all are there ---- */
 
-static void find_column(struct expansion *x, int states, struct divided *d)
+static int find_column(struct expansion *x, int states, int sequence, int top)
 {
-	d->column = d->sequence;
-	for (int i = 0; i < x->columns && d->column >= states; i++)
-		if (x->column[i] == d->sequence) {
-			d->column = states + i;
-			return;
-		}
-	if (d->column < states)
-		return;
-	ENLARGE(x->column, (size_t)x->columns + 1);
-	x->column[x->columns] = d->sequence;
-	d->column = states + x->columns++;
+	int i = 0;
+	if (sequence < states)
+		return sequence;
+	while (i < x->columns && x->column[i] != sequence)
+		i++;
+	if (i == x->columns) {
+		ENLARGE(x->column, (size_t)x->columns + 1);
+		ENLARGE(x->column_top, (size_t)x->columns + 1);
+		x->column_top[x->columns] = 0;
+		x->column[x->columns++] = sequence;
+	}
+	x->column_top[i] = top > x->column_top[i] ? top : x->column_top[i];
+	return states + i;
 }
 
 void rank_breakpoints(struct expansion *x)
@@ -111,8 +143,12 @@ void rank_breakpoints(struct expansion *x)
 		d->rank = ARRAY(int, (size_t)d->breaks);
 		for (int k = 0; k < d->breaks; k++)
 			for (int j = 0; j < d->breaks; j++)
-				d->rank[k] += mpq_cmp(d->at[j], d->at[k]) < 0;
-		find_column(x, states, d);
+				d->rank[k] += mpq_cmp(d->at[j], d->at[k]) < (j < k);
+		d->column = find_column(x, states, d->sequence, x->order);
+	}
+	for (int i = 0; x->contacts && i < x->contacts->watches; i++) {
+		struct watch *watch = &x->contacts->watch[i];
+		watch->column = find_column(x, states, watch->sequence, watch->whole ? x->order : 1);
 	}
 }
 

@@ -6,7 +6,7 @@
 /* ---- the states ---- */
 
 /* y' of a state: its row of A, loads, inputs, and what is left over, whose linear terms may cancel */
-static struct sum slope_of_state(struct sequencing *w, int state)
+struct sum slope_of_state(struct sequencing *w, int state)
 {
 	const struct model *model = w->step->model;
 	const struct layout *layout = &w->layout;
@@ -38,7 +38,7 @@ static struct sum slope_of_state(struct sequencing *w, int state)
 static void expand_state(struct sequencing *w, int state)
 {
 	mpq_t *scale = integral_scale(w, true);
-	struct sum sum = slope_of_state(w, state);      /* makes sequences: the array may move */
+	struct sum sum = held_slope(w, state);  /* makes sequences: the array may move */
 	struct sequence made = w->x->sequence[state];
 	sum_numbers(w, &made, &sum, (const mpq_t *)scale);
 	if (w->system->segments > 1)
@@ -144,7 +144,7 @@ static void find_tops(struct sequencing *w)
 	for (int i = 0; i < w->system->states; i++)
 		x->sequence[i].top = x->order;
 	for (int i = 0; i < x->columns; i++)
-		x->sequence[x->column[i]].top = x->order;
+		raise(x, x->column[i], x->column_top[i]);
 	while (changed) {
 		changed = false;
 		for (int i = 0; i < x->count; i++)
@@ -198,7 +198,7 @@ static struct layout place_all(struct sequencing *w)
 	reads = reads_of(model, model->channels, (const struct form *const *)model->operator[0].left);
 	bool *needed = ARRAY(bool, (size_t)w->system->loads);
 	for (int l = 0; l < w->system->loads; l++)
-		needed[l] = reads.load[l] || load_acts(w->system, &w->system->load[l]);
+		needed[l] = has_contacts(model) || reads.load[l] || load_acts(w->system, &w->system->load[l]);
 	return layout_with(w->system, 1, needed);
 }
 
@@ -233,6 +233,7 @@ struct expansion *expansion_of(const struct step *step, int order)
 	for (int e = 0; e < model->channels; e++)
 		count_uses(w, model->operator[0].left[e]);
 	start_states(w);
+	hold_contacts(w);
 	for (int i = 0; i < system->states; i++)
 		expand_state(w, i);
 	rank_breakpoints(w->x);

@@ -8,7 +8,7 @@ enum step_kind kind_of_step(const struct model *model)
 		return model->switching->parts ? KIND_PARTS : KIND_REGIONS;
 	if (model->tuning)
 		return KIND_TUNED;
-	if (model->channels == 0)
+	if (model->channels == 0 && !has_contacts(model))
 		return KIND_LINEAR;
 	const struct scheme_row *row = scheme_row(model->scheme);
 	return row->modes ? KIND_NORMAL : row->collocates ? KIND_COLLOCATED

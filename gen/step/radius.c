@@ -92,6 +92,10 @@ static bool holds_at_start(const struct values *v, const struct sequence *s)
 {
 	if (s->choice == CHOICE_BY_SEQUENCE)
 		return v->c[s->test][0] != 0;
+	if (s->choice == CHOICE_BY_HOLD) {
+		const struct divided *d = &v->x->expression[s->expression];
+		return v->c[d->sequence][0] == (long double)mpq_get_d(d->at[s->breakpoint]);
+	}
 	if (s->choice == CHOICE_BY_STATE) {
 		const struct divided *d = &v->x->expression[s->expression];
 		return v->c[d->sequence][0] > (long double)mpq_get_d(d->at[s->breakpoint]);

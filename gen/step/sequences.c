@@ -35,6 +35,11 @@ static int state_of(const struct sequencing *w, const struct basis *basis)
 static int sequence_of_atom(struct sequencing *w, const struct atom *atom);
 static bool add_product(struct sequencing *w, struct sum *sum, const struct atom *atom, mpq_srcptr factor);
 
+static bool is_friction(const struct atom *atom)
+{
+	return atom->kind == ATOM_CALL && atom->function == FN_FRICTION;
+}
+
 void sum_add_form(struct sequencing *w, struct sum *sum, const struct form *form, mpq_srcptr scale)
 {
 	mpq_t factor;
@@ -60,6 +65,8 @@ void sum_add_form(struct sequencing *w, struct sum *sum, const struct form *form
 			sum_add(sum, TERM_SEQUENCE, state_of(w, basis), 0, factor);
 			break;
 		case BASIS_ATOM:
+			if (is_friction(basis->atom))   /* added by what holds */
+				break;
 			if (!add_product(w, sum, basis->atom, factor))
 				sum_add(sum, TERM_SEQUENCE, sequence_of_atom(w, basis->atom), 0, factor);
 			break;
@@ -68,7 +75,7 @@ void sum_add_form(struct sequencing *w, struct sum *sum, const struct form *form
 	mpq_clear(factor);
 }
 
-static int sum_sequence(struct sequencing *w, const struct sum *sum)
+int sum_sequence(struct sequencing *w, const struct sum *sum)
 {
 	struct sequence s = { .kind = SEQUENCE_SUM, .state = NONE, .a = NONE, .b = NONE };
 	mpq_t *scale = plain_scale(w);
@@ -87,7 +94,7 @@ static int only_sequence(const struct sum *sum)
 	return plain ? key->a : NONE;
 }
 
-static int sequence_of_form(struct sequencing *w, const struct form *form)
+int sequence_of_form(struct sequencing *w, const struct form *form)
 {
 	struct sum sum = { 0 };
 	mpq_t one;
@@ -105,6 +112,12 @@ static int sequence_of_form(struct sequencing *w, const struct form *form)
 	return made;
 }
 
+int sequence_of_sum(struct sequencing *w, const struct sum *sum)
+{
+	int only = only_sequence(sum);
+	return only != NONE ? only : sum_sequence(w, sum);
+}
+
 static struct sum single_key(enum term_kind kind, int a, int b)
 {
 	struct sum sum = { 0 };
@@ -114,6 +127,13 @@ static struct sum single_key(enum term_kind kind, int a, int b)
 	sum_add(&sum, kind, a, b, one);
 	mpq_clear(one);
 	return sum;
+}
+
+int minus_sequence(struct sequencing *w, int a)
+{
+	struct sum sum = single_key(TERM_SEQUENCE, a, 0);
+	mpq_neg(sum.key->factor, sum.key->factor);
+	return sum_sequence(w, &sum);
 }
 
 static int product_sequence(struct sequencing *w, int a, int b)
@@ -398,6 +418,12 @@ static int choice(struct sequencing *w, const struct atom *atom, const struct fo
 				    : choice_by_state(w, atom, left, right, a, b);
 }
 
+int positive_sequence(struct sequencing *w, const struct atom *atom, const struct form *form, int a)
+{
+	const struct form *zero = form_number(0);
+	return choice(w, atom, form, CMP_GT, zero, a, sequence_of_form(w, zero));
+}
+
 static int sequence_of_constant(struct sequencing *w, long value)
 {
 	return sequence_of_form(w, form_number(value));
@@ -495,6 +521,7 @@ static int sequence_of_call(struct sequencing *w, const struct atom *atom)
 	case FN_ATAN2:
 		b = sequence_of_form(w, atom->operand[1]);
 		return angle_sequence(w, a, b);
+	case FN_SLIDE: no_series(w, atom, "is friction of what has no mass");
 	default: no_series(w, atom, "is not");
 	}
 }

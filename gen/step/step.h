@@ -964,7 +964,8 @@ enum sequence_kind {
 };
 /* By which a choice is made: two forms linear in t that are compared, an expression of the state above a breakpoint,
  * or another sequence that is not 0 and changes with such choices alone */
-enum choice_kind { CHOICE_BY_TIME, CHOICE_BY_STATE, CHOICE_BY_SEQUENCE };
+/* or whether an expression is held between two breakpoints, this and its twin */
+enum choice_kind { CHOICE_BY_TIME, CHOICE_BY_STATE, CHOICE_BY_HOLD, CHOICE_BY_SEQUENCE };
 struct sequence {
 	enum sequence_kind kind;
 	int state;                  /* of an integral that is one; NONE */
@@ -993,7 +994,50 @@ struct divided {                    /* an expression of the state that breakpoin
 	int sequence, column;       /* its coefficients: the place behind those of the states, or of one that it is */
 	int breaks;
 	mpq_t *at;                  /* in order of their first appearance */
-	int *rank;                  /* of each of them, how many are below it */
+	int *rank;                  /* of each of them, how many are below it; the twin of one is above it */
+};
+
+/* Impacts and what is held beside a series. Beside dividing expressions the search watches other sequences. */
+struct watch {
+	int sequence, column;
+	bool whole;                 /* all coefficients are read, else the first two */
+};
+struct series_hold {                /* a velocity that is kept at 0: by friction that sticks, by a contact at rest */
+	int expression, breakpoint; /* held between this and its twin */
+	bool above;                 /* the velocity of friction, or the guard, rises with the expression */
+	int impact;                 /* whose contact rests; NONE: it is friction */
+	int velocity, pull[2];      /* watches; beyond 0 it is let go to the interval below, above; NONE: it is not */
+	double *back;               /* per state: what is taken from it for a velocity of 1 */
+	int force, only;            /* a sequence; the only state of the velocity, or NONE */
+	mpq_t *push;                /* per state: what that force, 1, adds to its slope */
+};
+struct series_strike {                     /* an impact */
+	int expression, breakpoint;
+	bool upward;
+	int hold;                   /* in which its contact rests; NONE: it is no bounce */
+	int place, speed;           /* watches: how far its guard is beyond 0; its rate */
+	int jump, still, jumps;     /* assignments, so many from each on */
+	double *back;               /* per state: what is taken from it for a guard of 1 */
+	double restitution;
+	double per;                 /* the expression's for a guard of 1 */
+};
+struct conflict {                   /* holds that cannot be all at once */
+	unsigned long set;          /* as bits */
+	int hold, side;             /* friction of what a contact holds: 1 or -1, where it slips then; NONE: others */
+};
+struct series_jump { int state, watch; }; /* a state takes the value of what is watched */
+struct contacts {
+	int none, *bare;            /* sequences: 0; per state its slope without what holds, NONE: not made */
+	int holds;
+	struct series_hold *hold;
+	int strikes;
+	struct series_strike *strike;
+	int assignments;
+	struct series_jump *assignment;
+	int conflicts;
+	struct conflict *conflict;
+	int watches;
+	struct watch *watch;
 };
 struct expansion {
 	int order;                  /* of the series in its unit of time, h or several of them */
@@ -1007,7 +1051,9 @@ struct expansion {
 	bool time, params;          /* t is read; tunable params are */
 	int expressions;            /* what chooses formulas by the state: an event where one passes a breakpoint */
 	struct divided *expression;
-	int columns, *column;       /* beside the states: sequences of which all coefficients are kept for them */
+	int columns, *column;       /* beside the states: sequences whose coefficients are kept for them, */
+	int *column_top;            /* up to these */
+	struct contacts *contacts;  /* NULL: there are none */
 	int multiplications;        /* of one expansion, that of its end and of the loads with it */
 };
 /* ---- sums.c: what is added up exactly, and its factors as numbers ---- */
@@ -1046,6 +1092,11 @@ int  column_of_load(const struct linear *system, int load); /* its first */
 /* ---- sequences.c: forms to sums, atoms to recurrences ---- */
 
 int  new_sequence(struct sequencing *w, struct sequence sequence);
+int  sum_sequence(struct sequencing *w, const struct sum *sum);
+int  sequence_of_sum(struct sequencing *w, const struct sum *sum);  /* of a single one itself */
+int  sequence_of_form(struct sequencing *w, const struct form *form);
+int  minus_sequence(struct sequencing *w, int a);
+int  positive_sequence(struct sequencing *w, const struct atom *atom, const struct form *form, int a); /* or else 0 */
 void count_uses(struct sequencing *w, const struct form *form);
 /* sum += scale form; leaves the statement at what has no series */
 void sum_add_form(struct sequencing *w, struct sum *sum, const struct form *form, mpq_srcptr scale);
@@ -1059,6 +1110,9 @@ struct division {                   /* the sign of a difference */
 /* Of a - b; `atom`: what compares them. Leaves the statement where the scheme is none of events. The sequence of an
  * expression that is new is to be made. */
 struct division divide_forms(struct sequencing *w, const struct atom *atom, const struct form *a, const struct form *b);
+/* Of the state, by 0: factor times its expression less the breakpoint; with its sequence */
+struct division divide_form(struct sequencing *w, const struct form *form, mpq_ptr factor);
+void add_twin(struct divided *d, int breakpoint);            /* a second breakpoint there */
 void rank_breakpoints(struct expansion *x);                  /* once all are there */
 int  breakpoint_rank(const struct expansion *x, const struct sequence *choice);
 mpq_t *rising_breakpoints(const struct divided *d);
@@ -1068,6 +1122,12 @@ int  regions_of_series(const struct expansion *x);
 /* Leaves the statement where what is chosen by the state is not treated */
 void check_divided(const struct step *step);
 
+/* ---- contacts.c: impacts and friction beside a series ---- */
+
+void hold_contacts(struct sequencing *w);                    /* before the states have their slopes */
+/* y' with what holds; where its velocity alone is held that is 0, exactly */
+struct sum held_slope(struct sequencing *w, int state);
+
 /* ---- newest.c: how the newest coefficients enter the next ones ---- */
 
 void find_newest(struct expansion *x);
@@ -1075,6 +1135,7 @@ void find_newest(struct expansion *x);
 /* ---- expansion.c: the solution as a Taylor series ---- */
 
 struct expansion *expansion_of(const struct step *step, int order);
+struct sum slope_of_state(struct sequencing *w, int state);  /* without friction and contacts */
 
 /* ---- order.c: the order of a series ---- */
 

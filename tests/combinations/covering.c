@@ -360,17 +360,18 @@ static void print_options(FILE *to)
 	if (has("loads") && !scheme)
 		fputs(" --scheme etdrk4", to);
 	const bool kinks = has("kinked") || (has("loads") && has("change"));
+	const bool curves = kinks || has("smooth") || expands() || moves();
 	fprintf(to, "\n# class: %s\n",
-		kinks                                ? "kinked"
-			: has("friction")            ? "sticking"
+		has("friction")                      ? "sticking"
+			: kinks                      ? "kinked"
 			: has("piecewise") || has("impact") ? "piecewise"
-			: has("smooth") || expands() || moves() ? "smooth"
+			: curves                     ? "smooth"
 						     : "linear");
 	fprintf(to, "# changes:%s\n", has("change") ? " 0.053 0.1 0.21" : "");
 	if (has("friction") || has("delayed"))  /* what a second model has, of which CVODE solves the equations */
-		fputs("# instead: s/friction(b', 4)/max(-4, min(4, 40000*b'))/; "
-		      "s/^# class: sticking/# class: piecewise/; "
-		      "s/d(t - 0.02)/d_late/; s/^# whole: //\n", to);
+		fprintf(to, "# instead: s/friction(b', 4)/max(-4, min(4, 40000*b'))/; "
+			    "s/^# class: sticking/# class: %s/; "
+			    "s/d(t - 0.02)/d_late/; s/^# whole: //\n", curves ? "kinked" : "piecewise");
 	fputs(has("impact") ? "# impact: 0.02 0.8\n" : "", to);
 	if (has("tunable"))
 		fputs(has("smooth") || has("kinked") || has("loads") || expands() || moves()

@@ -220,6 +220,16 @@ struct scene scene_random(unsigned seed, const int most[4], bool wild)
 	return s;
 }
 
+void scene_leave(struct scene *s)
+{
+	s->left = true;
+	for (int i = 0; i < s->n; i++) {
+		s->cubic[i] = i == 0 ? among(1000, 20000) : among(0, 1) * among(1000, 20000);
+		s->excited[i] = among(0, 1) * among(100, 900);
+		s->swing[i] = among(0, 1) * among(-5000, 5000);
+	}
+}
+
 /* ---- the text ---- */
 
 enum { LONG = 512 };
@@ -315,6 +325,12 @@ static void write_equation(const struct scene *s, int i, FILE *to)
 		if (s->contact[k].kind != IMPACT && (s->contact[k].on == i || s->contact[k].against == i))
 			fprintf(to, " %c c%d", s->contact[k].on == i ? '+' : '-', k);
 	char e[LONG], c[LONG], d[LONG];
+	if (s->cubic[i])
+		fprintf(to, " + %s*q%d^3", text(c, s->cubic[i]), i + 1);
+	if (s->excited[i])
+		fprintf(to, " + %s*(q%d^2 - 1)*q%d'", text(c, s->excited[i]), i + 1, i + 1);
+	if (s->swing[i])
+		fprintf(to, " + %s*sin(q%d)", text(c, s->swing[i]), i + 1);
 	fprintf(to, " = %s + %s*cos(w*t/T) + %s*sin(w*t/T)\n", law_text(e, s, &s->constant[i], 1),
 		law_text(c, s, &s->cosine[i], 1), law_text(d, s, &s->sine[i], 1));
 }

@@ -32,6 +32,8 @@ struct scene {
 	long frequency;
 	int segments;           /* of time, */
 	long change[MOST_SEGMENTS - 1]; /* and where they end [1e-3 s] */
+	bool left;              /* forces that are not piecewise linear: */
+	long cubic[MOST_MASSES], excited[MOST_MASSES], swing[MOST_MASSES];      /* q^3, (q^2 - 1) q', sin q */
 	long start[MOST_MASSES], speed[MOST_MASSES];
 	struct contact contact[MOST_CONTACTS];
 	long step;              /* [1e-3 s] */
@@ -43,6 +45,7 @@ struct scene {
  * are higher at rest or zero, restitutions of 0 and 1, masses at rest, without springs, several that do the same at one
  * instant, other units of time; without changes of the loads. */
 struct scene scene_random(unsigned seed, const int most[4], bool wild);
+void scene_leave(struct scene *s);      /* to one that is neither wild nor changes: forces that are not piecewise linear */
 void scene_write(const struct scene *s, const char *step, FILE *to);    /* as a spec, whose model is called scene */
 
 #endif

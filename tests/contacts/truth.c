@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* x = q, v, 1, cos w t, sin w t, t. In each segment of time and mode of the contacts x' = A x; A and forces of contact
- * as rows over x. */
+/* x = q, v, 1, cos w t, sin w t, t, and where forces are left q^3, q^2 v, sin q. In each segment of time and mode of the
+ * contacts x' = A x for all but these, whose series follow from those of q and v; A and forces of contact as rows over
+ * x. */
 #include "truth.h"
 
 #include "polynomial.h"
@@ -8,18 +9,19 @@
 #include <math.h>
 #include <stdlib.h>
 
-enum { MOST = 2 * MOST_MASSES + 4 };
+enum { MOST = 5 * MOST_MASSES + 4 };
 typedef mpfr_t row[MOST];
 
 struct moving {
 	const struct scene *s;
-	int size, one, segment;
+	int size, one, left, segment;   /* entries of x; where 1 is, and what is left */
 	enum mode mode[MOST_CONTACTS];
 	bool hidden[MOST_CONTACTS];     /* its bounces are listed no more */
 	mpfr_t A[MOST][MOST];
 	row force[MOST_CONTACTS];       /* what holds a contact that sticks or rests, along its direction */
 	row x;
 	mpfr_t series[DEGREE + 1][MOST];
+	mpfr_t square[MOST_MASSES][DEGREE + 1], cosine[MOST_MASSES][DEGREE + 1];        /* of q */
 	mpfr_t time, tiny;
 	double brief;
 	struct truth *found;
@@ -121,6 +123,12 @@ static void fill_forces(const struct moving *m, mpfr_t (*f)[MOST])
 		add_law(m, f[i], &s->constant[i], 1000);
 		add(f[i], m->one + 1, s->cosine[i].at[m->segment]);
 		add(f[i], m->one + 2, s->sine[i].at[m->segment]);
+	}
+	for (int i = 0; i < s->n && s->left; i++) {
+		add(f[i], m->left + i, -s->cubic[i]);
+		add(f[i], s->n + i, s->excited[i]);
+		add(f[i], m->left + s->n + i, -s->excited[i]);
+		add(f[i], m->left + 2 * s->n + i, -s->swing[i]);
 	}
 	for (int k = 0; k < s->n; k++)          /* spring and damper from mass k to k - 1 */
 		for (int end = k; end >= 0 && end >= k - 1; end--)
@@ -272,7 +280,7 @@ static void measure_now(struct moving *m, int index, int derivative, mpfr_ptr va
 	row r;
 	row_start(r, MOST);
 	measure(m, index, derivative, r);
-	dot(MOST, r, m->x, value);
+	dot(m->size, r, m->x, value);
 	row_stop(r, MOST);
 }
 
@@ -298,29 +306,74 @@ static bool guard(const struct moving *m, int index, int which, mpfr_t *r)
 	return true;
 }
 
-/* The sign of the first of r x, r A x, r A^2 x, ... that is not 0, from derivative `from` on */
-static int first_sign(const struct moving *m, mpfr_t *r, int from)
+/* ---- series ---- */
+
+/* sum over j <= k of a_j b_{k-j}; of columns of the series, or other numbers: `stride` apart */
+static void convolve(mpfr_ptr sum, int k, mpfr_t *a, int a_stride, mpfr_t *b, int b_stride, bool weighted)
+{
+	mpfr_t part;
+	mpfr_init2(part, BITS);
+	mpfr_set_zero(sum, 1);
+	for (int j = weighted; j <= k; j++) {
+		mpfr_mul(part, a[j * a_stride], b[(k - j) * b_stride], MPFR_RNDN);
+		if (weighted)
+			mpfr_mul_si(part, part, j, MPFR_RNDN);
+		mpfr_add(sum, sum, part, MPFR_RNDN);
+	}
+	if (weighted)
+		mpfr_div_si(sum, sum, k, MPFR_RNDN);
+	mpfr_clear(part);
+}
+
+/* The k-th of what is left, from those of q and v up to there */
+static void expand_left(struct moving *m, int k)
+{
+	const int n = m->s->n;
+	for (int i = 0; i < n && m->s->left; i++) {
+		mpfr_t *q = &m->series[0][i], *v = q + n, *cube = &m->series[0][m->left + i];
+		mpfr_t *sine = cube + 2 * n, *square = m->square[i], *cosine = m->cosine[i];
+		convolve(square[k], k, q, MOST, q, MOST, false);
+		convolve(cube[k * MOST], k, square, 1, q, MOST, false);
+		convolve(cube[n + k * MOST], k, square, 1, v, MOST, false);
+		if (k == 0) {
+			mpfr_sin_cos(sine[0], cosine[0], q[0], MPFR_RNDN);
+			continue;
+		}
+		convolve(sine[k * MOST], k, q, MOST, cosine, 1, true);
+		convolve(cosine[k], k, q, MOST, sine, MOST, true);
+		mpfr_neg(cosine[k], cosine[k], MPFR_RNDN);
+	}
+}
+
+static void expand(struct moving *m, int degree)
+{
+	for (int i = 0; i < m->size; i++)
+		mpfr_set(m->series[0][i], m->x[i], MPFR_RNDN);
+	expand_left(m, 0);
+	for (int i = m->left; i < m->size; i++)
+		mpfr_set(m->x[i], m->series[0][i], MPFR_RNDN);
+	for (int k = 1; k <= degree; k++) {
+		for (int i = 0; i < m->left; i++) {
+			dot(m->size, (mpfr_t *)m->A[i], m->series[k - 1], m->series[k][i]);
+			mpfr_div_ui(m->series[k][i], m->series[k][i], (unsigned long)k, MPFR_RNDN);
+		}
+		expand_left(m, k);
+	}
+}
+
+/* The sign of the first coefficient of r x that is not 0, from number `from` on */
+static int first_sign(struct moving *m, mpfr_t *r, int from)
 {
 	enum { FURTHEST = 5 };
-	row y, z;
 	mpfr_t value;
 	int sign = 0;
-	row_start(y, MOST);
-	row_start(z, MOST);
 	mpfr_init2(value, BITS);
-	for (int i = 0; i < MOST; i++)
-		mpfr_set(y[i], m->x[i], MPFR_RNDN);
-	for (int k = 0; k <= FURTHEST && sign == 0; k++) {
-		dot(MOST, r, y, value);
-		if (k >= from && mpfr_cmpabs(value, m->tiny) > 0)
+	expand(m, FURTHEST);
+	for (int k = from; k <= FURTHEST && sign == 0; k++) {
+		dot(m->size, r, m->series[k], value);
+		if (mpfr_cmpabs(value, m->tiny) > 0)
 			sign = mpfr_sgn(value);
-		for (int i = 0; i < MOST; i++)
-			dot(MOST, (mpfr_t *)m->A[i], y, z[i]);
-		for (int i = 0; i < MOST; i++)
-			mpfr_swap(y[i], z[i]);
 	}
-	row_stop(y, MOST);
-	row_stop(z, MOST);
 	mpfr_clear(value);
 	return sign;
 }
@@ -506,10 +559,11 @@ static double bounces_left(struct moving *m, int i)
 	row_start(slope, MOST);
 	mpfr_inits2(BITS, speed, push, (mpfr_ptr)0);
 	measure(m, i, 1, r);
-	dot(MOST, r, m->x, speed);
-	for (int k = 0; k < MOST; k++)
-		dot(MOST, (mpfr_t *)m->A[k], m->x, slope[k]);
-	dot(MOST, r, slope, push);
+	expand(m, 0);
+	dot(m->size, r, m->x, speed);
+	for (int k = 0; k < m->left; k++)
+		dot(m->size, (mpfr_t *)m->A[k], m->x, slope[k]);
+	dot(m->size, r, slope, push);
 	if (e < 1000 && mpfr_sgn(push) > 0) {
 		mpfr_div(speed, speed, push, MPFR_RNDN);
 		left = -2 * mpfr_get_d(speed, MPFR_RNDN) * 1000 / (double)(1000 - e);
@@ -603,20 +657,9 @@ static void settle(struct moving *m)
 
 /* ---- in time ---- */
 
-static void expand(struct moving *m)
-{
-	for (int i = 0; i < MOST; i++)
-		mpfr_set(m->series[0][i], m->x[i], MPFR_RNDN);
-	for (int k = 1; k <= DEGREE; k++)
-		for (int i = 0; i < MOST; i++) {
-			dot(MOST, (mpfr_t *)m->A[i], m->series[k - 1], m->series[k][i]);
-			mpfr_div_ui(m->series[k][i], m->series[k][i], (unsigned long)k, MPFR_RNDN);
-		}
-}
-
 static void go(struct moving *m, mpfr_srcptr by)
 {
-	for (int i = 0; i < MOST; i++) {
+	for (int i = 0; i < m->size; i++) {
 		mpfr_set(m->x[i], m->series[DEGREE][i], MPFR_RNDN);
 		for (int k = DEGREE - 1; k >= 0; k--)
 			mpfr_fma(m->x[i], m->x[i], by, m->series[k][i], MPFR_RNDN);
@@ -624,7 +667,8 @@ static void go(struct moving *m, mpfr_srcptr by)
 	mpfr_add(m->time, m->time, by, MPFR_RNDN);
 }
 
-/* A length over which 30 terms of the series are enough: |A| of it is below 1/2 (0.5^31/31! < 1e-43) */
+/* A length over which 30 terms of the series are enough: |A| of it is below 1/2 (0.5^31/31! < 1e-43); forces that are
+ * left turn no faster than their linear parts, of a size of q and v of about 1 */
 static double piece_of(const struct moving *m)
 {
 	double most = 1;
@@ -649,7 +693,7 @@ static bool next_event(struct moving *m, mpfr_ptr width)
 	for (int i = 0; i < m->s->contacts; i++)
 		for (int which = 0; guard(m, i, which, r); which++) {
 			for (int k = 0; k <= DEGREE; k++)
-				dot(MOST, r, m->series[k], p[k]);
+				dot(m->size, r, m->series[k], p[k]);
 			if (first_rise(p, width, m->tiny, at)) {
 				mpfr_set(width, at, MPFR_RNDN);
 				any = true;
@@ -665,6 +709,12 @@ static void start(struct moving *m, double nudge)
 {
 	const struct scene *s = m->s;
 	m->one = 2 * s->n;
+	m->left = 2 * s->n + 3;
+	m->size = m->left + (s->left ? 3 * s->n : 0);
+	for (int i = 0; i < MOST_MASSES; i++) {
+		row_start(m->square[i], DEGREE + 1);
+		row_start(m->cosine[i], DEGREE + 1);
+	}
 	for (int i = 0; i < MOST; i++)
 		row_start(m->A[i], MOST);
 	for (int i = 0; i < MOST_CONTACTS; i++)
@@ -702,6 +752,10 @@ static void finish(struct moving *m)
 		row_stop(m->force[i], MOST);
 	for (int k = 0; k <= DEGREE; k++)
 		row_stop(m->series[k], MOST);
+	for (int i = 0; i < MOST_MASSES; i++) {
+		row_stop(m->square[i], DEGREE + 1);
+		row_stop(m->cosine[i], DEGREE + 1);
+	}
 	row_stop(m->x, MOST);
 	mpfr_clears(m->time, m->tiny, (mpfr_ptr)0);
 }
@@ -748,7 +802,7 @@ void truth_run(const struct scene *s, double until, double brief, double nudge, 
 		mpfr_set_d(width, piece_of(m), MPFR_RNDN);
 		if (mpfr_cmp(width, left) > 0)
 			mpfr_set(width, left, MPFR_RNDN);
-		expand(m);
+		expand(m, DEGREE);
 		check_limits(m);
 		const bool event = next_event(m, width);
 		go(m, width);

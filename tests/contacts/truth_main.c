@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* truth STOPS FRICTIONS IMPACTS CHANGES WILD SEED SECONDS STEPS BITS SPEC FOUND: a random scene with at most so many
- * contacts of each kind and changes of the loads, WILD 1: of the wilder ones, as a spec of that many steps in that time
- * (a whole number), and how it moves: lines `scale T`, `event TIME CONTACT FROM TO` in order, `slowest SPEED`, `growth
- * FACTOR` (by which what is off at the start may be off in the end, at least 1), `end q1 ... q1' ...`. Status 2: this
- * scene decides nothing. Bounces that would be over within 2^-BITS of a step are those of a contact that rests. */
+ * contacts of each kind and changes of the loads, WILD 1: of the wilder ones, 2: with forces that are not piecewise
+ * linear, as a spec of that many steps in that time (a whole number), and how it moves: lines `scale T`, `event TIME
+ * CONTACT FROM TO` in order, `slowest SPEED`, `growth FACTOR` (by which what is off at the start may be off in the end,
+ * at least 1), `end q1 ... q1' ...`. Status 2: this scene decides nothing. Bounces that would be over within 2^-BITS of
+ * a step are those of a contact that rests. */
 #include "truth.h"
 
 #include <math.h>
@@ -32,8 +33,10 @@ int main(int count, char **argument)
 	if (count != 12)
 		return 1;
 	const int most[4] = { atoi(argument[1]), atoi(argument[2]), atoi(argument[3]), atoi(argument[4]) };
-	const bool wild = atoi(argument[5]);
-	const struct scene s = scene_random((unsigned)atoi(argument[6]), most, wild);
+	const bool wild = atoi(argument[5]) == 1;
+	struct scene s = scene_random((unsigned)atoi(argument[6]), most, wild);
+	if (atoi(argument[5]) == 2)
+		scene_leave(&s);
 	const double seconds = atof(argument[7]), brief = ldexp(seconds / atof(argument[8]), -atoi(argument[9]));
 	FILE *spec = fopen(argument[10], "w"), *to = fopen(argument[11], "w");
 	char step[64];

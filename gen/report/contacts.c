@@ -1,0 +1,75 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What is held beside a series, and what strikes: in words and as JSON. */
+#include "report/report.h"
+
+static int rank_of(const struct step *step, int expression, int breakpoint)
+{
+	return step->expansion->expression[expression].rank[breakpoint];
+}
+
+/* The interval of its expression in which it is held */
+static int held_in(const struct step *step, const struct series_hold *hold)
+{
+	return rank_of(step, hold->expression, hold->breakpoint) + 1;
+}
+
+const char *contact_text(const struct step *step, int hold)
+{
+	const struct contacts *c = step->expansion->contacts;
+	const struct model *model = step->model;
+	const struct node *node = NULL;
+	for (int i = 0, drag = 0; i <= hold; i++)
+		if (c->hold[i].impact == NONE)
+			node = model->drag[drag++].atom->node;
+	return format("%s; sticks in interval %d of expression %d", text_between(node->start, node->end),
+		      held_in(step, &c->hold[hold]), c->hold[hold].expression);
+}
+
+static const char *rest_text(const struct step *step, const struct series_strike *strike)
+{
+	const struct contacts *c = step->expansion->contacts;
+	return strike->hold == NONE ? "" : format("; a bounce of restitution %s, which rests in interval %d of "
+						  "expression %d",
+						  shortest(strike->restitution),
+						  held_in(step, &c->hold[strike->hold]), strike->expression);
+}
+
+void person_contacts(FILE *to, const struct step *step)
+{
+	const struct contacts *c = step->expansion->contacts;
+	for (int i = 0, friction = 0; c && i < c->holds; i++)
+		if (c->hold[i].impact == NONE)
+			fprintf(to, "    friction %d: %s\n", friction++, contact_text(step, i));
+	for (int i = 0; c && i < c->strikes; i++) {
+		const struct when *when = step->model->impact[i].when;
+		fprintf(to, "    impact %d: %s%s\n", i, text_between(when->at, when->end), rest_text(step, &c->strike[i]));
+	}
+}
+
+void json_contacts(FILE *to, const struct step *step)
+{
+	const struct contacts *c = step->expansion->contacts;
+	bool first = true;
+	if (c && step->model->drags > 0)
+		fputs("  \"frictions\": [", to);
+	for (int i = 0; c && i < c->holds; i++) {
+		if (c->hold[i].impact != NONE)
+			continue;
+		fprintf(to, "%s{\"expression\": %d, \"sticks\": %d}", first ? "" : ", ", c->hold[i].expression,
+			held_in(step, &c->hold[i]));
+		first = false;
+	}
+	if (c && step->model->drags > 0)
+		fputs("],\n", to);
+	for (int i = 0; c && i < c->strikes; i++) {
+		const struct series_strike *s = &c->strike[i];
+		fprintf(to, "%s{\"expression\": %d, \"upward\": %s, \"restitution\": ", i ? ", " : "  \"impacts\": [",
+			s->expression, s->upward ? "true" : "false");
+		if (s->hold == NONE)
+			fputs("null}", to);
+		else
+			fprintf(to, "%.17g, \"rests\": %d}", s->restitution, held_in(step, &c->hold[s->hold]));
+		if (i == c->strikes - 1)
+			fputs("],\n", to);
+	}
+}

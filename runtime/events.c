@@ -1,0 +1,648 @@
+/* SPDX-License-Identifier: MIT-0 */
+/* Impacts, contacts at rest and dry friction beside a Taylor series: from event to event, each found on the series of
+ * the region before it.  What holds, what slips and what flies behind an event is found by looking at all combinations
+ * of those that are at rest; the series of a combination says whether it can be. */
+#include "columns.h"
+#include "roots.h"
+
+/* How many at rest are looked at together: 3^MOST combinations; how many impacts there may be at one instant */
+enum { MOST = 4, MOST_AT_ONCE = 200 };
+
+#ifdef REAL_IS_FLOAT
+#define BRIEF PL_BRIEFF
+#define NEAR 0x1p-10f
+#else
+#define BRIEF PL_BRIEF
+#define NEAR 0x1p-20
+#endif
+
+/* ---- watches ---- */
+
+static column watched(const pl_events *m, const pl_instant *at, int watch)
+{
+    column w;
+    w.m = m->divided;
+    w.first = at->c + m->watch[watch];
+    w.terms = at->terms[m->divided->expressions + watch];
+    return w;
+}
+
+static real value_of(const pl_events *m, const pl_instant *at, int watch)
+{
+    return at->c[m->watch[watch]];
+}
+
+/* Its value, 0 where that is but rounding */
+static real certain(const column *w)
+{
+    const real value = column_at(w, 0);
+    return magnitude(value) <= noise_of(w->terms) ? 0 : value;
+}
+
+static int is_near(const pl_events *m, const pl_instant *at, int watch)
+{
+    const column w = watched(m, at, watch);
+    real noise;
+    return magnitude(off_start(&w, 0, &noise)) <= noise;
+}
+
+static void refresh(const pl_instant *at)
+{
+    at->expand(at->from, at->interval, at->y, at->c, at->terms);
+}
+
+/* ---- intervals ---- */
+
+/* The hold of an interval, or -1 */
+static int hold_of(const pl_events *m, int expression, int interval)
+{
+    int i;
+    for (i = m->holds - 1; i >= 0; i--)
+        if (m->hold[i].expression == expression && m->hold[i].interval == interval)
+            break;
+    return i;
+}
+
+static int holds_now(const pl_events *m, const pl_instant *at, int hold)
+{
+    return at->interval[m->hold[hold].expression] == m->hold[hold].interval;
+}
+
+static int free_of(const pl_events *m, const pl_strike *p)
+{
+    return m->hold[p->hold].interval + (p->upward ? -1 : 1);
+}
+
+static int strike_at(const pl_events *m, int expression, int breakpoint, int upward)
+{
+    int i;
+    for (i = m->strikes - 1; i >= 0; i--)
+        if (m->strike[i].expression == expression && m->strike[i].breakpoint == breakpoint &&
+            m->strike[i].upward == upward)
+            break;
+    return i;
+}
+
+static int list(const pl_events *m, pl_instant *at, real time, int expression, int breakpoint, int upward)
+{
+    pl_crossing *crossing = at->crossing + *at->crossings;
+    if (*at->crossings == m->max_events)
+        return 0;
+    crossing->time = time;
+    crossing->expression = expression;
+    crossing->breakpoint = breakpoint;
+    crossing->upward = upward;
+    (*at->crossings)++;
+    (*at->total)++;
+    return 1;
+}
+
+/* ---- what is held ---- */
+
+static void take(const pl_instant *at, int states, const real *back, real times)
+{
+    int i;
+    for (i = 0; i < states; i++)
+        if (back[i] < 0 || back[i] > 0) {
+            at->y[i] -= back[i] * times;
+            at->rest[i] = 0;
+        }
+}
+
+/* Puts what is held where it is held, but for rounding. */
+static void put_back(const pl_events *m, pl_instant *at, int hold)
+{
+    const pl_hold *h = &m->hold[hold];
+    take(at, m->states, m->back + (ptrdiff_t)hold * m->states, value_of(m, at, h->velocity));
+    if (h->strike >= 0)
+        take(at, m->states, m->place_back + (ptrdiff_t)h->strike * m->states,
+             value_of(m, at, m->strike[h->strike].place));
+    refresh(at);
+}
+
+/* Whether what is held has moved by more than rounding */
+static int is_slack(const pl_events *m, const pl_instant *at, int hold)
+{
+    const pl_hold *h = &m->hold[hold];
+    const column velocity = watched(m, at, h->velocity);
+    column place;
+    if (h->strike < 0)
+        return !(certain(&velocity) >= 0 && certain(&velocity) <= 0);
+    place = watched(m, at, m->strike[h->strike].place);
+    return !(certain(&velocity) >= 0 && certain(&velocity) <= 0 && certain(&place) >= 0 && certain(&place) <= 0);
+}
+
+static void keep(const pl_events *m, pl_instant *at)
+{
+    int again, i;
+    for (again = 0; again < 3; again++)
+        for (i = 0; i < m->holds; i++)
+            if (holds_now(m, at, i) && is_slack(m, at, i))
+                put_back(m, at, i);
+}
+
+/* 1 or -1: its first derivative that is not 0 but for rounding */
+static int way_of(const column *w)
+{
+    int k;
+    for (k = 1; k <= 3 && k <= w->m->degree; k++)
+        if (magnitude(column_at(w, k)) > noise_of(w->terms))
+            return column_at(w, k) > 0 ? 1 : -1;
+    return 0;
+}
+
+/* Whether what is held would be let go to this side: 1; -1: it is held; 0: it hangs in the balance */
+static int lets_go(const pl_events *m, const pl_instant *at, int hold, int up)
+{
+    const int watch = up ? m->hold[hold].up : m->hold[hold].down;
+    column w;
+    real pull;
+    if (watch < 0)
+        return -1;
+    w = watched(m, at, watch);
+    pull = certain(&w);
+    if (at->freed == hold && at->next.upward == up && magnitude(pull) <= NEAR * w.terms)
+        return 1;
+    return pull > 0 ? 1 : pull < 0 ? -1 : way_of(&w);
+}
+
+/* ---- events at the start, and in a piece ---- */
+
+static void set_event(const pl_events *m, pl_instant *at, int expression, int breakpoint, int upward)
+{
+    at->next.expression = expression;
+    at->next.breakpoint = breakpoint;
+    at->next.upward = upward;
+    at->strike = strike_at(m, expression, breakpoint, upward);
+    at->freed = -1;
+}
+
+static void set_freed(const pl_events *m, pl_instant *at, int hold, int up)
+{
+    at->next.expression = m->hold[hold].expression;
+    at->next.breakpoint = m->hold[hold].interval - !up;
+    at->next.upward = up;
+    at->strike = -1;
+    at->freed = hold;
+}
+
+/* An expression outside of its interval, or what is held beyond what can */
+static int has_left(const pl_events *m, pl_instant *at)
+{
+    const pl_divided *d = m->divided;
+    const real *b = d->at;
+    int i, up;
+    for (i = 0; i < d->expressions; b += d->breaks[i++]) {
+        const column e = column_of(d, at->c, at->terms, i);
+        const int hold = hold_of(m, i, at->interval[i]);
+        for (up = 0; up < 2; up++) {
+            const int k = at->interval[i] - !up;
+            real off, noise;
+            if (hold >= 0 && (up ? m->hold[hold].up : m->hold[hold].down) >= 0) {
+                const column w = watched(m, at, up ? m->hold[hold].up : m->hold[hold].down);
+                if (certain(&w) > 0) {
+                    set_freed(m, at, hold, up);
+                    return 1;
+                }
+            }
+            if (hold >= 0 || k < 0 || k == d->breaks[i] || (at->last->expression == i && at->last->breakpoint == k))
+                continue;
+            off = off_start(&e, b[k], &noise);
+            if ((up ? off : -off) > noise) {
+                set_event(m, at, i, k, up);
+                return 1;
+            }
+        }
+    }
+    return 0;
+}
+
+/* The sizes of what the first two derivatives of a guard are summed from, in its expression, over a piece */
+static real terms_behind(const pl_events *m, const pl_instant *at, const pl_strike *p, real end)
+{
+    const pl_hold *h = &m->hold[p->hold];
+    const column speed = watched(m, at, p->speed), pull = watched(m, at, p->upward ? h->down : h->up);
+    const real unit = m->h * end * p->per;
+    return unit * (speed.terms + m->h * end * pull.terms);
+}
+
+/* Where a column first rises beyond b, or with sign -1 falls below it, before *first; behind: where it has just left it
+ * the sizes of what its first two derivatives are summed from; else below 0 */
+static int look(const column *e, real b, int sign, real behind, real end, real *first, int *splits, real *work)
+{
+    beyond f;
+    real s;
+    f.degree = e->m->degree < 3 ? 3 : e->m->degree;
+    f.coefficient = work + f.degree + 1;
+    rescale(e, end, work);
+    look_beyond(&f, work, (real)sign, b, e->terms);
+    if (!(f.reach - f.reach == 0)) /* not finite: there is no step */
+        return 0;
+    if (behind >= 0 && f.coefficient[1] < 0 &&
+        magnitude(f.coefficient[0]) <= noise_of(e->terms + magnitude(b) + behind)) {
+        int k;
+        for (k = 0; k <= f.degree; k++)
+            work[k] *= (real)sign;
+        look_behind(&f, work, behind);
+    }
+    s = first_root(&f, *first, splits);
+    if (s < 0)
+        return 0;
+    *first = s;
+    return 1;
+}
+
+/* How long it flies that leaves the guard of this impact, in the unit of time of c; -1: for good */
+static real flight(const pl_events *m, const pl_instant *at, const pl_strike *p)
+{
+    column w;
+    real speed, press;
+    if (p->hold < 0)
+        return -1;
+    w = watched(m, at, p->speed);
+    speed = certain(&w);
+    press = column_at(&w, 1);
+    return speed <= 0 && press > 0 ? -2 * speed / press : -1;
+}
+
+static real first_event(const pl_events *m, pl_instant *at, real end, int *splits)
+{
+    const pl_divided *d = m->divided;
+    const real *b = d->at;
+    real first = 1;
+    int i, up, any = 0;
+    for (i = 0; i < d->expressions && *splits >= 0; b += d->breaks[i++]) {
+        const column e = column_of(d, at->c, at->terms, i);
+        const int hold = hold_of(m, i, at->interval[i]);
+        for (up = 0; up < 2; up++) {
+            const int k = at->interval[i] - !up;
+            const int watch = hold < 0 ? -1 : up ? m->hold[hold].up : m->hold[hold].down;
+            int strike;
+            real behind;
+            if (watch >= 0) {
+                const column w = watched(m, at, watch);
+                if (look(&w, 0, 1, -1, end, &first, splits, at->work)) {
+                    any = 1;
+                    set_freed(m, at, hold, up);
+                }
+            }
+            if (hold >= 0 || k < 0 || k == d->breaks[i])
+                continue;
+            strike = strike_at(m, i, k, up);
+            behind = strike >= 0 && m->strike[strike].hold >= 0 ? terms_behind(m, at, &m->strike[strike], end) : -1;
+            if (look(&e, b[k], up ? 1 : -1, behind, end, &first, splits, at->work)) {
+                any = 1;
+                set_event(m, at, i, k, up);
+            }
+        }
+    }
+    return any ? first * end : -1;
+}
+
+real pl_events_next(const pl_events *m, pl_instant *at, real *size, int *splits)
+{
+    int k;
+    for (k = 0; k < m->strikes; k++) {
+        const pl_strike *p = &m->strike[k];
+        const real along = is_near(m, at, p->place) ? flight(m, at, p) : -1;
+        if (along > 0 && at->interval[p->expression] == free_of(m, p))
+            *size = smaller(*size, 2 * along);
+    }
+    return first_event(m, at, *size, splits);
+}
+
+/* ---- impacts ---- */
+
+static int touches(const pl_events *m, const pl_instant *at, const pl_strike *p)
+{
+    const int interval = at->interval[p->expression];
+    return p->hold >= 0 && (interval == m->hold[p->hold].interval || interval == free_of(m, p)) &&
+           is_near(m, at, p->place);
+}
+
+static real speed_of(const pl_events *m, const pl_instant *at, const pl_strike *p)
+{
+    const column w = watched(m, at, p->speed);
+    return certain(&w);
+}
+
+/* The states of these assignments, all from the same state */
+static void assign(const pl_events *m, pl_instant *at, int first, int count)
+{
+    int k;
+    for (k = first; k < first + count; k++) {
+        at->y[m->state[k]] = value_of(m, at, m->value[k]);
+        at->rest[m->state[k]] = 0;
+    }
+    refresh(at);
+}
+
+/* All impacts at this instant; begins: the one whose guard was met.  Returns those that acted, as bits. */
+static uint32_t collide(const pl_events *m, int begins, pl_instant *at)
+{
+    uint32_t struck = 0;
+    int k, rounds = 0;
+    for (k = 0; k < m->strikes; k++) {
+        const pl_strike *p = &m->strike[k];
+        if (k != begins && !(touches(m, at, p) && speed_of(m, at, p) > 0))
+            continue;
+        if (++rounds > MOST_AT_ONCE || !list(m, at, at->time, p->expression, p->breakpoint, p->upward))
+            break;
+        assign(m, at, p->jump, p->jumps);
+        if (p->hold >= 0) {
+            at->interval[p->expression] = free_of(m, p);
+            take(at, m->states, m->place_back + (ptrdiff_t)k * m->states, value_of(m, at, p->place));
+            refresh(at);
+        }
+        struck |= (uint32_t)1 << k;
+        begins = k == begins ? -1 : begins;
+        k = -1;
+    }
+    return struck;
+}
+
+/* Into the intervals where a jump has put expressions */
+static void follow(const pl_events *m, pl_instant *at)
+{
+    const pl_divided *d = m->divided;
+    const real *b = d->at;
+    int i;
+    for (i = 0; i < d->expressions; b += d->breaks[i++]) {
+        const column e = column_of(d, at->c, at->terms, i);
+        int *interval = &at->interval[i], way = 1;
+        while (way != 0) {
+            real off, noise;
+            way = 0;
+            if (*interval < d->breaks[i]) {
+                off = off_start(&e, b[*interval], &noise);
+                way = off > noise;
+            }
+            if (way == 0 && *interval > 0) {
+                off = off_start(&e, b[*interval - 1], &noise);
+                way = -off > noise ? -1 : 0;
+            }
+            if (way != 0)
+                (void)list(m, at, at->time, i, *interval - (way < 0), way > 0);
+            *interval += way;
+        }
+    }
+    refresh(at);
+}
+
+/* ---- what is held, and what is not ---- */
+
+/* Those at rest: held, or next to where they would be and with no velocity */
+static int find_resting(const pl_events *m, const pl_instant *at, int *resting)
+{
+    int count = 0, i;
+    for (i = 0; i < m->holds && count < MOST; i++) {
+        const pl_hold *h = &m->hold[i];
+        const int side = at->interval[h->expression] - h->interval;
+        if (side < -1 || side > 1)
+            continue;
+        if (side != 0 && i != at->freed && !is_near(m, at, h->velocity))
+            continue;
+        if (side != 0 && i != at->freed && h->strike >= 0 && !touches(m, at, &m->strike[h->strike]))
+            continue;
+        resting[count++] = i;
+    }
+    return count;
+}
+
+/* Where friction slips of what a contact holds, by bits of all that is held: 1 or -1; 0: it is free to move */
+static int side_beside(const pl_events *m, uint32_t held, int hold)
+{
+    int i;
+    for (i = 0; i < m->conflicts; i++)
+        if (m->conflict[i].hold == hold && ((held | (uint32_t)1 << hold) & m->conflict[i].set) == m->conflict[i].set)
+            return m->conflict[i].side;
+    return 0;
+}
+
+/* Whether the intervals agree with what they make of the motion: what is held is not let go, what is not is: 2; 1: it
+ * hangs in the balance.  Leaves the series of them. */
+static int agrees(const pl_events *m, pl_instant *at, const int *resting, int count)
+{
+    uint32_t held = 0;
+    int i, agreed = 2;
+    for (i = 0; i < m->holds; i++)
+        held |= (uint32_t)holds_now(m, at, i) << i;
+    for (i = 0; i < m->conflicts; i++)
+        if ((held & m->conflict[i].set) == m->conflict[i].set)
+            return 0;
+    refresh(at);
+    for (i = 0; i < count; i++) {
+        const pl_hold *h = &m->hold[resting[i]];
+        const int side = at->interval[h->expression] - h->interval;
+        const int beside = side_beside(m, held, resting[i]);
+        if (beside != 0) {
+            if (side != beside)
+                return 0;
+            continue;
+        }
+        if (h->strike >= 0 && speed_of(m, at, &m->strike[h->strike]) < 0) { /* another impact has parted it */
+            if (side == 0)
+                return 0;
+            continue;
+        }
+        if (side == 0 && (lets_go(m, at, resting[i], 0) > 0 || lets_go(m, at, resting[i], 1) > 0))
+            return 0;
+        if (side != 0 && (side > 0 ? h->up : h->down) < 0)
+            return 0;
+        if (side != 0 && lets_go(m, at, resting[i], side > 0) < 0)
+            return 0;
+        if (side != 0 && lets_go(m, at, resting[i], side > 0) == 0)
+            agreed = 1;
+    }
+    return agreed;
+}
+
+/* Those at rest in the combination of this number, three ways each; returns how many are elsewhere than now */
+static int set_combination(const pl_events *m, const pl_instant *at, const int *resting, const int *now, int count,
+                           int number)
+{
+    int i, moved = 0;
+    for (i = 0; i < count; i++, number /= 3) {
+        const pl_hold *h = &m->hold[resting[i]];
+        at->interval[h->expression] = h->interval + number % 3 - 1;
+        moved += at->interval[h->expression] != now[i];
+    }
+    return moved;
+}
+
+static int slipping(const pl_events *m, const pl_instant *at, const int *resting, int count)
+{
+    int i, slips = 0;
+    for (i = 0; i < count; i++)
+        slips += !holds_now(m, at, resting[i]);
+    return slips;
+}
+
+/* Lists what changes from these intervals to those that it has now. */
+static void list_changes(const pl_events *m, pl_instant *at, const int *resting, const int *now, int count)
+{
+    int i, k;
+    for (i = 0; i < count; i++) {
+        const int expression = m->hold[resting[i]].expression, then = at->interval[expression];
+        for (k = now[i]; k < then; k++)
+            (void)list(m, at, at->time, expression, k, 1);
+        for (k = now[i]; k > then; k--)
+            (void)list(m, at, at->time, expression, k - 1, 0);
+    }
+}
+
+/* What is at rest: the combination in which all agree, with fewest changes, then most that is held */
+static void settle(const pl_events *m, pl_instant *at, int listed)
+{
+    int resting[MOST], now[MOST], best = -1, least = 0, all = 1, number, i;
+    const int count = find_resting(m, at, resting);
+    for (i = 0; i < count; i++) {
+        now[i] = at->interval[m->hold[resting[i]].expression];
+        all *= 3;
+    }
+    if (count == 0 || agrees(m, at, resting, count) == 2)
+        return;
+    for (number = 0; number < all; number++) {
+        const int moved = set_combination(m, at, resting, now, count, number);
+        const int score = moved * 2 * MOST + slipping(m, at, resting, count);
+        const int agreed = agrees(m, at, resting, count), worth = score + (agreed == 1 ? 8 * MOST * MOST : 0);
+        if (agreed == 0 || (best >= 0 && worth >= least))
+            continue;
+        best = number;
+        least = worth;
+    }
+    if (best < 0) {
+        for (i = 0; i < count; i++)
+            at->interval[m->hold[resting[i]].expression] = now[i];
+        at->status |= PL_UNDECIDED;
+    } else {
+        (void)set_combination(m, at, resting, now, count, best);
+        if (listed)
+            list_changes(m, at, resting, now, count);
+    }
+    refresh(at);
+}
+
+/* Behind impacts: which of them rest, after infinitely many more in no time to speak of */
+static void come_to_rest(const pl_events *m, uint32_t struck, pl_instant *at)
+{
+    int k;
+    for (k = 0; k < m->strikes; k++) {
+        const pl_strike *p = &m->strike[k];
+        const real e = p->restitution, along = struck >> k & 1 && e < 1 ? flight(m, at, p) : -1;
+        const real left = along / (1 - e);
+        const int full = *at->crossings > m->max_events - 2 * MOST;
+        if (!(left >= 0 && left <= (full ? 1 : BRIEF)) || !touches(m, at, p) || holds_now(m, at, p->hold))
+            continue;
+        assign(m, at, p->still, p->jumps);
+        at->interval[p->expression] = m->hold[p->hold].interval;
+        refresh(at);
+        put_back(m, at, p->hold);
+        (void)list(m, at, at->time + left * m->h, p->expression, p->breakpoint, p->upward);
+        (*at->rested)++;
+        settle(m, at, 1);
+    }
+}
+
+/* ---- one event ---- */
+
+int pl_events_pass(const pl_events *m, pl_instant *at)
+{
+    const pl_crossing e = at->next;
+    const int full = *at->crossings == m->max_events, begins = at->strike;
+    int *interval = &at->interval[e.expression];
+    uint32_t struck = 0;
+    if (full)
+        return 0;
+    if (begins < 0)
+        (void)list(m, at, at->time, e.expression, e.breakpoint, e.upward);
+    if (begins < 0 || m->strike[begins].hold < 0) {
+        const int hold = hold_of(m, e.expression, *interval + (e.upward ? 1 : -1));
+        const int past = hold >= 0 && m->hold[hold].strike >= 0 && begins < 0 ? 2 : 1;
+        *interval += e.upward ? past : -past; /* past a contact at rest, which impacts alone lead to */
+    }
+    *at->last = e;
+    refresh(at);
+    if (hold_of(m, e.expression, *interval) >= 0)
+        put_back(m, at, hold_of(m, e.expression, *interval));
+    if (begins >= 0) {
+        struck = collide(m, begins, at);
+        follow(m, at);
+    }
+    settle(m, at, 1);
+    at->freed = -1;
+    come_to_rest(m, struck, at);
+    keep(m, at);
+    return 1;
+}
+
+int pl_events_begin(const pl_events *m, pl_instant *at)
+{
+    refresh(at);
+    at->freed = -1;
+    keep(m, at);
+    if (!has_left(m, at))
+        return 0;
+    return pl_events_pass(m, at) ? 1 : -1;
+}
+
+real pl_events_end(const pl_events *m, pl_instant *at, real end, int *splits)
+{
+    real next;
+    int i;
+    at->freed = -1;
+    for (i = 0; i < m->holds; i++)
+        if (holds_now(m, at, i) && is_slack(m, at, i))
+            return 0;
+    if (has_left(m, at))
+        return 0;
+    next = first_event(m, at, end, splits);
+    return *splits < 0 ? 0 : next >= 0 ? next : end;
+}
+
+/* ---- the start ---- */
+
+static int starting_interval(const pl_events *m, const pl_instant *at, int expression, const real *b)
+{
+    const pl_divided *d = m->divided;
+    const column e = column_of(d, at->c, at->terms, expression);
+    int above = 0, k;
+    for (k = 0; k < d->breaks[expression]; k++) {
+        const int hold = hold_of(m, expression, k + 1);
+        real noise;
+        above += starts_above(&e, b[k]);
+        if (hold < 0 || magnitude(off_start(&e, b[k], &noise)) > noise)
+            continue;
+        if (m->hold[hold].strike < 0 || !(speed_of(m, at, &m->strike[m->hold[hold].strike]) < 0 ||
+                                          speed_of(m, at, &m->strike[m->hold[hold].strike]) > 0))
+            return k + 1;
+        return free_of(m, &m->strike[m->hold[hold].strike]);
+    }
+    return above;
+}
+
+void pl_events_place(const pl_events *m, pl_instant *at)
+{
+    const pl_divided *d = m->divided;
+    int again = 1, rounds, i;
+    for (i = 0; i < d->expressions; i++) {
+        at->interval[i] = 0;
+        again += d->breaks[i] + 1;
+    }
+    at->last->expression = -1;
+    at->freed = -1;
+    for (rounds = 0; rounds < again; rounds++) {
+        const real *b = d->at;
+        int changed = 0;
+        refresh(at);
+        for (i = 0; i < d->expressions; b += d->breaks[i++]) {
+            const int interval = starting_interval(m, at, i, b);
+            changed |= interval != at->interval[i];
+            at->interval[i] = interval;
+        }
+        if (!changed)
+            break;
+    }
+    refresh(at);
+    settle(m, at, 0);
+}
