@@ -738,7 +738,10 @@ double pl_ramp_before(pl_two whole, pl_two slope, double h);
 enum {
     PL_SINGULAR = 4,
     /* the mass matrix has no inverse, or a param that something is divided by is 0 */ PL_NO_STEP = 8,
-    PL_NO_RATE = 16 /* a load's frequency is below 0 */
+    PL_NO_RATE = 16, /* a load's frequency is below 0 */
+    /* of regions: what they were divided by has another sign or order, a restitution is not within 0 and 1, or a pole
+     * times h is beyond 2^PIECES */
+    PL_OUT_OF_RANGE = 32
 };
 
 /* The same in floats. */
@@ -758,6 +761,29 @@ int pl_equationsf_at(const pl_equationsf *e, const float *params, pl_twof *value
 int pl_incrementf(int size, int states, const pl_twof *A, float tau, int words, pl_twof *D, pl_twof *work);
 int pl_rampf_cancels(int size, int states, const pl_twof *D, int column, float h);
 float pl_rampf_before(pl_twof whole, pl_twof slope, float h);
+
+/* ---- region.c: a region of a piecewise-linear model from other params ------------------------------------------ */
+
+/* Of x' = A x, A size x size in two words: *halvings, so that no pole times d = h 2^-halvings is above 1; slopes and Phi
+ * = e^{A d} as pl_switching has them, each entry of Phi within 16 units in the last place of the largest of all.
+ *     most  halvings that are allowed
+ *     work  PL_REGION_WORK(size) entries, contents of no meaning
+ * 0; PL_NOT_FINITE, PL_OUT_OF_RANGE: more halvings */
+int pl_region_of(int size, const pl_two *A, double h, int most, int *halvings, double *slopes, double *Phi,
+                 pl_two *work);
+#define PL_REGION_WORK(size) (7 * (size) * (size))
+
+/* Of rows over x, rows x size, in such a region: slope, second and fourth as tangent, chord_error and cubic_error of
+ * pl_switching, with room for what rounding did to them.
+ *     work  PL_BOUNDS_WORK(size) entries, contents of no meaning */
+void pl_region_bounds(int size, double d, const double *A, int rows, const double *row, double *slope, double *second,
+                      double *fourth, double *work);
+#define PL_BOUNDS_WORK(size) ((4 * (size) + 5) * (size))
+
+int pl_regionf_of(int size, const pl_twof *A, float h, int most, int *halvings, float *slopes, float *Phi,
+                  pl_twof *work);
+void pl_regionf_bounds(int size, float d, const float *A, int rows, const float *row, float *slope, float *second,
+                       float *fourth, float *work);
 
 /* ---- rate.c: frequencies from other params -------------------------------------------------------------------- */
 

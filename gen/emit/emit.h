@@ -574,7 +574,14 @@ void emit_step_end(const struct emitter *e);                      /* samples, ph
 const char *step_parameters(const struct emitter *e);
 const char *input_operand(const struct emitter *e, int column);
 void emit_grips(const struct emitter *e);                         /* what friction carries, for outputs */
-void emit_guards(const struct emitter *e, const struct pieces *pieces); /* tables of dry friction in regions */
+/* of dry friction and impacts in regions: their lists, numbers, descriptor */
+void emit_guards(const struct emitter *e, const struct guards *guards);
+void emit_numbers_of_guards(const struct emitter *e, const struct guards *guards);
+void emit_guards_descriptor(const struct emitter *e, const struct guards *guards);
+/* numbers of regions: a table of the file, or where params are tunable a member of NAME_coeffs */
+void open_table(const struct emitter *e, const char *name, const char *shape, const char *note);
+void close_table(const struct emitter *e);
+const char *prefix_of_tables(const struct emitter *e);
 void emit_regions(const struct emitter *e);                       /* tables of a piecewise-linear model */
 void emit_region_declarations(const struct emitter *e);
 void emit_region_members(const struct emitter *e);
@@ -616,6 +623,16 @@ void emit_clear_step(const struct emitter *e);                    /* states and 
 void emit_coefficient_struct(const struct emitter *e);
 void emit_tuning_declarations(const struct emitter *e);
 void banner_tuning(const struct emitter *e);
+
+const char *tuned_product(const struct tuning *t, const struct tuned_term *term);
+const char *two_words(struct coefficient number);
+void emit_monomials(const struct emitter *e, const struct tuning *t, const char *suffix); /* of its name */
+void emit_fixed_slopes(const struct emitter *e, int count, const struct fixed_slope *fixed);
+
+/* ---- emit_retuned.c: regions whose matrices tunable params change ---- */
+
+void emit_retuned_members(const struct emitter *e);               /* of NAME_coeffs */
+void emit_retuned(const struct emitter *e);                       /* the equations, NAME_retune */
 
 /* ---- emit_params.c: tunable params; those that an instance holds print nothing where there are none ---- */
 

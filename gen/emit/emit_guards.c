@@ -11,12 +11,12 @@ static void emit_numbers(const struct emitter *e, int count, const int *number)
 
 static void emit_list(const struct emitter *e, const char *name, const char *note, int count, const double *number)
 {
-	say(e, "\n"
-	       "static const double $o_%s[%d] = {  /* %s */\n"
-	       "    ", name, count, note);
+	open_table(e, name, format("[%d]", count), note);
+	say(e, "    ");
 	for (int i = 0; i < count; i++)
 		say(e, "%s%s", i == 0 ? "" : i % 8 ? ", " : ",\n    ", shortest(number[i]));
-	say(e, "\n};\n");
+	say(e, "\n");
+	close_table(e);
 }
 
 static void emit_guard_list(const struct emitter *e, const struct guards *g)
@@ -34,10 +34,15 @@ static void emit_guard_list(const struct emitter *e, const struct guards *g)
 	for (int i = 0; i < g->guards; i++)
 		say(e, "    { %d, %d, %d, %d, %d, %d },\n", g->guard[i].row, g->guard[i].expression,
 		    g->guard[i].breakpoint, g->guard[i].upward, g->guard[i].leads, g->guard[i].impact);
+	say(e, "};\n");
+}
+
+static void emit_limits(const struct emitter *e, const struct guards *g)
+{
+	const struct switching *s = e->model->switching;
 	double *limit = ARRAY(double, (size_t)g->guards);
 	for (int i = 0; i < g->guards; i++)
 		limit[i] = g->guard[i].limit;
-	say(e, "};\n");
 	emit_list(e, "limit", "of each guard", g->guards, limit);
 	emit_list(e, "play", "factors of cos and sin in each expression", s->expressions, g->play);
 	emit_list(e, "gate_play", "in each row of guards", g->rows, g->row_play);
@@ -74,21 +79,16 @@ static void emit_gates(const struct emitter *e, const struct guards *g)
 		{ "gate_sway", "d^4/384 times its fourth derivative, at most", g->fourth }
 	};
 	for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
-		say(e, "\n"
-		       "static const double $o_%s[%d][%d] = {  /* %s */\n",
-		    all[i].name, g->rows, e->step->layout.size, all[i].note);
+		open_table(e, all[i].name, format("[%d][%d]", g->rows, e->step->layout.size), all[i].note);
 		emit_number_rows(e, g->rows, e->step->layout.size, all[i].value, note);
-		say(e, "};\n");
+		close_table(e);
 	}
 }
 
 static void emit_assignments(const struct emitter *e, const struct guards *g)
 {
-	int count = g->assignments, size = e->step->layout.size;
+	int count = g->assignments;
 	const struct switching *s = e->model->switching;
-	double *value = ARRAY(double, (size_t)(count > 0 ? count : 1) * (size_t)size);
-	const char **note = ARRAY(const char *, (size_t)count + 1);
-	note[0] = "none";
 	say(e, "\n"
 	       "static const int $o_holding[%d] = {  /* of each region: what holds its states, a set; -1: nothing */\n"
 	       "    ", s->regions);
@@ -99,17 +99,25 @@ static void emit_assignments(const struct emitter *e, const struct guards *g)
 	emit_numbers(e, g->sets + 1, g->set);
 	say(e, "};\n"
 	       "static const int $o_held[%d] = {", count > 0 ? count : 1);
-	for (int i = 0; i < count; i++) {
+	for (int i = 0; i < count; i++)
 		say(e, "%s%d", i ? ", " : "", g->assignment[i].state);
+	say(e, "%s};\n", count > 0 ? "" : "0");
+}
+
+static void emit_values(const struct emitter *e, const struct guards *g)
+{
+	int count = g->assignments > 0 ? g->assignments : 1, size = e->step->layout.size;
+	double *value = ARRAY(double, (size_t)count * (size_t)size);
+	const char **note = ARRAY(const char *, (size_t)count);
+	note[0] = "none";
+	for (int i = 0; i < g->assignments; i++) {
 		note[i] = e->model->state_name[g->assignment[i].state];
 		for (int j = 0; j < size; j++)
 			value[i * size + j] = g->assignment[i].value[j];
 	}
-	say(e, "%s};\n"
-	       "static const double $o_value[%d][%d] = {  /* x[held] = value . x */\n",
-	    count > 0 ? "" : "0", count > 0 ? count : 1, size);
-	emit_number_rows(e, count > 0 ? count : 1, size, value, note);
-	say(e, "};\n");
+	open_table(e, "value", format("[%d][%d]", count, size), "x[held] = value . x");
+	emit_number_rows(e, count, size, value, note);
+	close_table(e);
 }
 
 static void emit_impacts(const struct emitter *e, const struct guards *g)
@@ -120,9 +128,11 @@ static void emit_impacts(const struct emitter *e, const struct guards *g)
 	double *back = ARRAY(double, (size_t)count * (size_t)size);
 	const char **note = ARRAY(const char *, (size_t)count);
 	note[0] = "none";
-	say(e, "\n"
-	       "static const pl_impact $o_impact[%d] = {"
-	       "  /* expression, breakpoint, upward, rest, jump, still, restitution, play */\n", count);
+	if (e->model->retuned)
+		say(e, "    {");
+	else
+		say(e, "\nstatic const pl_impact $o_impact[%d] = {", count);
+	say(e, "  /* expression, breakpoint, upward, rest, jump, still, restitution, play */\n");
 	for (int i = 0; i < g->impacts; i++) {
 		const struct struck *impact = &g->impact[i];
 		say(e, "    { %d, %d, %d, %d, %d, %d, %s, %s },\n", impact->expression, impact->breakpoint,
@@ -135,35 +145,54 @@ static void emit_impacts(const struct emitter *e, const struct guards *g)
 			back[i * size + j] = impact->back[j];
 		}
 	}
-	say(e, "%s};\n"
-	       "static const double $o_speed[%d][%d] = {  /* of what bounces */\n",
-	    g->impacts ? "" : "    { 0, 0, 0, -1, -1, -1, 0.0, 0.0 }\n", count, size);
+	if (!g->impacts)
+		say(e, "    { 0, 0, 0, -1, -1, -1, 0.0, 0.0 }\n");
+	close_table(e);
+	open_table(e, "speed", format("[%d][%d]", count, size), "of what bounces");
 	emit_number_rows(e, count, size, speed, note);
-	say(e, "};\n"
-	       "static const double $o_back[%d][%d] = {"
-	       "  /* times how far its expression is beyond: onto the guard */\n",
-	    count, size);
+	close_table(e);
+	open_table(e, "back", format("[%d][%d]", count, size),
+		   "times how far its expression is beyond: onto the guard");
 	emit_number_rows(e, count, size, back, note);
-	say(e, "};\n");
+	close_table(e);
 }
 
-void emit_guards(const struct emitter *e, const struct pieces *pieces)
+void emit_guards(const struct emitter *e, const struct guards *g)
 {
-	struct guards g = guards_of(e->step, pieces);
-	emit_guard_list(e, &g);
-	emit_gates(e, &g);
-	emit_assignments(e, &g);
-	emit_impacts(e, &g);
-	say(e, "\n"
-	       "static const pl_guards $o_switching = {\n"
-	       "    %d, $N_H, %d, $o_row[0], $o_breaks, $o_breakpoint, $o_matrix, $o_halvings,\n"
-	       "    $o_slopes[0][0], $o_pieces[0][0], $o_lean[0][0],\n"
-	       "    $o_first, $o_guard, $o_limit, $o_holding,\n"
-	       "    $o_gate[0], $o_gate_lean[0], $o_gate_sag[0], $o_gate_sway[0], $o_play, $o_gate_play,\n"
-	       "    $o_sets, $o_held, $o_value[0], %d, $o_impact, $o_speed[0], $o_back[0], %d, $N_MAX_EVENTS, %d\n"
-	       "};\n",
-	    e->step->layout.size, e->model->switching->expressions, g.impacts, e->step->series.degree,
-	    max_splits(e->model));
+	emit_guard_list(e, g);
+	emit_assignments(e, g);
+}
+
+void emit_numbers_of_guards(const struct emitter *e, const struct guards *g)
+{
+	emit_limits(e, g);
+	emit_gates(e, g);
+	emit_values(e, g);
+	emit_impacts(e, g);
+	if (e->model->retuned && e->model->switching->felt)
+		emit_grips(e);
+}
+
+void emit_guards_descriptor(const struct emitter *e, const struct guards *g)
+{
+	bool own = e->model->retuned;
+	const char *of = prefix_of_tables(e);
+	say(e, own ? "\n/* What the search goes by */\n"
+		     "static pl_guards $o_switching(const $n_coeffs *c)\n"
+		     "{\n"
+		     "    const pl_guards tables = {\n"
+		   : "\nstatic const pl_guards $o_switching = {\n");
+	say(e, "    %d, $N_H, %d, %srow[0], $o_breaks, %sbreakpoint, $o_matrix, %shalvings,\n"
+	       "    %sslopes[0][0], %spieces[0][0], %slean[0][0],\n"
+	       "    $o_first, $o_guard, %slimit, $o_holding,\n", e->step->layout.size,
+	    e->model->switching->expressions, of, of, of, of, of, of, of);
+	say(e, "    %sgate[0], %sgate_lean[0], %sgate_sag[0], %sgate_sway[0], %splay, %sgate_play,\n"
+	       "    $o_sets, $o_held, %svalue[0], %d, %simpact, %sspeed[0], %sback[0], %d, $N_MAX_EVENTS, %d\n", of, of,
+	    of, of, of, of, of, g->impacts, of, of, of, e->step->series.degree, max_splits(e->model));
+	say(e, own ? "    };\n"
+		     "    return tables;\n"
+		     "}\n"
+		   : "};\n");
 }
 
 void emit_grips(const struct emitter *e)
@@ -174,13 +203,16 @@ void emit_grips(const struct emitter *e)
 	const char **name = ARRAY(const char *, (size_t)s->frictions);
 	for (int i = 0; i < s->frictions; i++)
 		name[i] = text_between(s->friction[i].atom->node->start, s->friction[i].atom->node->end);
-	say(e, "\n"
-	       "static const double $n_grips[%d][%d][%d] = {  /* of each region: what friction carries */\n",
-	    s->regions, s->frictions, size);
+	if (e->model->retuned)
+		say(e, "    {  /* grips: of each region: what friction carries */\n");
+	else
+		say(e, "\n"
+		       "static const double $n_grips[%d][%d][%d] = {  /* of each region: what friction carries */\n",
+		    s->regions, s->frictions, size);
 	for (int r = 0; r < s->regions; r++) {
 		say(e, "  {\n");
 		emit_number_rows(e, s->frictions, size, grip + r * s->frictions * size, name);
 		say(e, "  },\n");
 	}
-	say(e, "};\n");
+	close_table(e);
 }

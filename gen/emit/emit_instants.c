@@ -17,16 +17,18 @@ static int regions_in_one(const struct emitter *e)
 /* The region of x in a segment of time */
 static void emit_start(const struct emitter *e)
 {
+	bool own = e->model->retuned;
 	say(e, "\n"
 	       "/* The region of x in a segment of time */\n"
-	       "static void $o_start(int segment, const double x[%d], pl_contact *contact, double *work)\n"
+	       "static void $o_start(%sint segment, const double x[%d], pl_contact *contact, double *work)\n"
 	       "{\n"
-	       "    pl_switching here = $o_switching[segment];\n"
+	       "    pl_switching here = $o_switching%s;\n"
 	       "    here.matrix += segment * %d;\n"
 	       "    pl_switching_start(&here, x, contact, work);\n"
 	       "    contact->region += segment * %d;\n"
 	       "}\n",
-	    e->step->layout.size, regions_in_one(e), regions_in_one(e));
+	    own ? spell(e, "const $n_coeffs *c, ") : "", e->step->layout.size, own ? "(c, segment)" : "[segment]",
+	    regions_in_one(e), regions_in_one(e));
 }
 
 /* Whether a region can occur before a change and, by its inequalities, not after it */
@@ -78,10 +80,11 @@ void emit_region_changes(const struct emitter *e)
 	       "        const int segment = contact->region / %d;\n"
 	       "        const double change = segment < %d ? $n_until(s, segment) : tau;\n"
 	       "        const double to = change < tau ? change : tau;\n"
-	       "        pl_switching here = $o_switching[segment];\n"
+	       "        pl_switching here = $o_switching%s;\n"
 	       "        here.max_events -= count;\n"
 	       "        pl_switching_advance(&here, to - done, x, contact, crossing + count, work);\n",
-	    e->step->layout.size, regions_in_one(e), segments_of(e) - 1);
+	    e->step->layout.size, regions_in_one(e), segments_of(e) - 1,
+	    e->model->retuned ? "(&s->coeffs, segment)" : "[segment]");
 	say(e, "        for (i = count; i < count + contact->crossings; i++)\n"
 	       "            crossing[i].time += done;\n"
 	       "        count += contact->crossings;\n"

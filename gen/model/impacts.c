@@ -38,10 +38,8 @@ static bool is_rising(const struct when *when)
 }
 
 /* The gap of a stop is a length, and what comes back of the speed a part of it. */
-static void check_stop(struct building *b, const struct when *when, mpq_ptr restitution)
+static void check_stop(struct building *b, const struct when *when, mpq_ptr restitution, mpq_ptr gap)
 {
-	mpq_t gap;
-	mpq_init(gap);
 	collect_constant(&b->collector, when->restitution, restitution);
 	if (mpq_sgn(restitution) < 0 || mpq_cmp_ui(restitution, 1, 1) > 0)
 		error(when->restitution->start, "the part of the speed that comes back, 0 to 1",
@@ -52,7 +50,6 @@ static void check_stop(struct building *b, const struct when *when, mpq_ptr rest
 	if (mpq_sgn(gap) < 0)
 		error(when->gap->start, "a gap is 0 or more: what stands first comes up to the second",
 		      "a gap of %s is below 0", readable_text(gap));
-	mpq_clear(gap);
 }
 
 struct collecting {
@@ -86,10 +83,10 @@ static void collect_impact(void *context)
 	const struct when *when = work->when;
 	struct impact *impact = work->impact;
 	struct node *const *side = when->guard->child;
-	mpq_inits(impact->restitution, impact->at, impact->factor, NULL);
+	mpq_inits(impact->restitution, impact->gap, impact->answer, impact->at, impact->factor, NULL);
 	impact->when = when;
 	if (when->restitution)
-		check_stop(b, when, impact->restitution);
+		check_stop(b, when, impact->restitution, impact->gap);
 	struct form *left = scalar_form(b, side[0]), *right = scalar_form(b, side[1]);
 	check_linear(b, side[0], left, "a guard");
 	check_linear(b, side[1], right, "a guard");
@@ -326,6 +323,7 @@ static void find_jumps(void *context)
 		error(impact->when->at, NULL, "the masses at this stop do not make a force part them");
 	for (int j = 0; j < n; j++)
 		mpq_div(d[j], d[j], speed);
+	mpq_set(impact->answer, speed);
 	impact->direction = d;
 	impact->jumps = velocity_jumps(b, impact, impact->restitution, impact->jump);
 	mpq_clears(speed, factor, NULL);

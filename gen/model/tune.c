@@ -96,8 +96,6 @@ static void check_kind(const struct model *model)
 	if (scheme_row(model->scheme)->holds_coupling)
 		error(at, "tunable params are for scheme exact, and for what a scheme leaves over",
 		      "scheme %s cannot be retuned", scheme_name(model->scheme));
-	if (model->switching && has_events(model->switching))
-		error(at, NULL, "a model with friction or impacts cannot be retuned yet");
 	if (model->system.states > LIMIT_UNROLLED_STATES)
 		error(at, NULL, "tunable params are built for up to %d states: the model has %d", LIMIT_UNROLLED_STATES,
 		      model->system.states);
@@ -376,12 +374,12 @@ static struct tuned_term *add_term(struct tuning *t, int row, int column, int mo
 	return term;
 }
 
-static void add_unit(struct tuning *t, int row, int column)
+void add_tuned_unit(struct tuning *t, int row, int column)
 {
 	mpq_set_ui(add_term(t, row, column, 0)->factor, 1, 1);
 }
 
-static void add_terms(struct tuning *t, const struct fit *f, int row, int column)
+void add_tuned_terms(struct tuning *t, const struct fit *f, int row, int column)
 {
 	for (int i = 0; i < f->products; i++) {
 		signed char power[LIMIT_TUNABLES];
@@ -457,7 +455,7 @@ static bool fit_into(struct search *s, const mpq_t *entry, int row, int column, 
 		*culprit = f->culprit;
 		return false;
 	}
-	add_terms(s->tuning, f, row, column);
+	add_tuned_terms(s->tuning, f, row, column);
 	return true;
 }
 
@@ -470,7 +468,7 @@ static bool fit_frequencies(struct search *s, int *culprit)
 		if (row >= 0 && !fit_into(s, (const mpq_t *)frequency_entry(s, s->seen[0], l), row, 0, culprit))
 			return false;
 		if (row >= 0 && t->solves)
-			add_unit(t, row, t->x.size + row);
+			add_tuned_unit(t, row, t->x.size + row);
 	}
 	return true;
 }
@@ -554,13 +552,9 @@ bool find_tuning(struct model *model, const struct request *request)
 	const struct spec *spec = model->spec;
 	if (spec->tunables == 0)
 		return true;
-	if (model->impacts > 0) {
-		say_error(spec->tunable[0].at, NULL, "tunable params are not built beside impacts");
-		return false;
-	}
 	if (model->keeps_params) {
 		list_held(model);
-		return true;
+		return !model->factor || find_retuning(model, request);
 	}
 	struct tuning *t = NEW(struct tuning);
 	struct search s = { .tuning = t, .model = model, .request = request };
