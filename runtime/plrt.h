@@ -739,8 +739,8 @@ enum {
     PL_SINGULAR = 4,
     /* the mass matrix has no inverse, or a param that something is divided by is 0 */ PL_NO_STEP = 8,
     PL_NO_RATE = 16, /* a load's frequency is below 0 */
-    /* of regions: what they were divided by has another sign or order, a restitution is not within 0 and 1, or a pole
-     * times h is beyond 2^PIECES */
+    /* of regions: breakpoints come in another order, or what decided about regions has another sign; a restitution is
+     * not within 0 and 1; a gap or a force of friction is below 0; a pole times h is above 2^16 */
     PL_OUT_OF_RANGE = 32
 };
 
@@ -764,8 +764,8 @@ float pl_rampf_before(pl_twof whole, pl_twof slope, float h);
 
 /* ---- region.c: a region of a piecewise-linear model from other params ------------------------------------------ */
 
-/* Of x' = A x, A size x size in two words: *halvings, so that no pole times d = h 2^-halvings is above 1; slopes and Phi
- * = e^{A d} as pl_switching has them, each entry of Phi within 16 units in the last place of the largest of all.
+/* Of x' = A x, A size x size in two words: *halvings, so that no pole times d = h 2^-halvings is above 1; slopes and
+ * Phi = e^{A d} as pl_switching has them, each entry of Phi within 16 units in the last place of the largest of all.
  *     most  halvings that are allowed
  *     work  PL_REGION_WORK(size) entries, contents of no meaning
  * 0; PL_NOT_FINITE, PL_OUT_OF_RANGE: more halvings */

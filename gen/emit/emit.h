@@ -633,6 +633,8 @@ void emit_fixed_slopes(const struct emitter *e, int count, const struct fixed_sl
 
 void emit_retuned_members(const struct emitter *e);               /* of NAME_coeffs */
 void emit_retuned(const struct emitter *e);                       /* the equations, NAME_retune */
+int  retuned_numbers(const struct emitter *e);                    /* of matrices, in NAME_coeffs */
+int  retuned_kilobytes(const struct emitter *e);                  /* of stack, beside a NAME_coeffs */
 
 /* ---- emit_params.c: tunable params; those that an instance holds print nothing where there are none ---- */
 

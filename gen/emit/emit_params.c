@@ -112,8 +112,8 @@ void emit_held_declarations(const struct emitter *e)
 	       " *     PL_NO_STEP     h is not $N_H\n", param_list(e));
 	if (e->model->retuned)
 		say(e, " *     PL_SINGULAR    a divisor is 0, as a mass is\n"
-		       " *     PL_OUT_OF_RANGE  a restitution is not within 0 and 1, a gap is below 0, breakpoints change\n"
-		       " *                    their order, or a pole times h is above 2^%d\n"
+		       " *     PL_OUT_OF_RANGE  a restitution is not within 0 and 1; a gap or a force of friction is below 0;\n"
+		       " *                    breakpoints change their order; or a pole times h is above 2^%d\n"
 		       " *     PL_NOT_FINITE  a param or a number of it is infinite, or not a number */\n", LIMIT_PIECES);
 	else
 		say(e, " *     PL_NOT_FINITE  a param is infinite, or not a number */\n");
@@ -130,6 +130,14 @@ void emit_held_declarations(const struct emitter *e)
 void banner_held(const struct emitter *e)
 {
 	const bool acts = e->system->inputs > e->model->spec->inputs;
+	if (e->model->retuned) {
+		say(e, " * Tunable: %s. An instance has the tables of its regions, %d numbers of matrices, which\n"
+		       " * $n_retune computes from other values on the target; of the spec's values they are these, "
+		       "correctly rounded. It\n"
+		       " * needs as much stack as they take, and some %d KB.\n", param_list(e), retuned_numbers(e),
+		    retuned_kilobytes(e));
+		return;
+	}
 	if (held(e))
 		say(e, " * Tunable: %s. %s\n", param_list(e),
 		    acts ? "They act like held inputs, with the instance's own values."

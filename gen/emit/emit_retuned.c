@@ -465,6 +465,19 @@ static void emit_retuning(const struct emitter *e)
 	       "}\n");
 }
 
+int retuned_numbers(const struct emitter *e)
+{
+	int size = e->step->layout.size;
+	return 2 * e->step->branches * size * size;
+}
+
+int retuned_kilobytes(const struct emitter *e)
+{
+	int size = e->step->layout.size, cells = size * size, real = e->model->asked.single ? 4 : 8;
+	int twos = retuned_of(e)->tuning->rows * size + 8 * cells + widest_block(e);
+	return 1 + real * (2 * twos + 4 * cells + 5 * size) / 1024;
+}
+
 void emit_retuned(const struct emitter *e)
 {
 	emit_equations(e);

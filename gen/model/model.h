@@ -812,8 +812,18 @@ struct retuned {
 	int rows;
 	struct retuned_row *row;
 };
+struct listing {                    /* retuned_rows.c: the numbers of one model's regions, in columns of x */
+	const struct model *model;
+	const struct layout *x;
+	int rows;
+	struct retuned_row *row;
+	mpq_t *entry;               /* rows x columns */
+};
+struct listing list_rows(const struct model *model, const struct layout *x, bool signs);
+/* factors.c */
 const bool *find_factors(struct building *b);   /* per tunable param, of regions: it cannot go as a held input */
-bool find_retuning(struct model *model, const struct request *request); /* model->retuned; false: it was said why not */
+/* model->retuned; false: it was said why not */
+bool find_retuning(struct model *model, const struct request *request);
 int  retuned_place(const struct retuned *r, enum retuned_kind kind, int of, int index);
 
 /* ---- params.c: tunable params that the instance has ---- */

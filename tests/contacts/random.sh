@@ -3,7 +3,8 @@
 # random.sh PLGEN TRUTH FOLLOW.C SOURCE STOPS FRICTIONS IMPACTS FIRST COUNT [tuned]
 #
 # COUNT random scenes from seed FIRST on with at most so many contacts of each kind: the emitted code against the same
-# scene in multiprecision; `tuned`: from a model with other values of up to 16 params, retuned to those. $CC compiles, $PLRT is the runtime. KEEP=FOLDER keeps what fails.
+# scene in multiprecision; `tuned`: from a model with other values of up to 16 params, retuned to those. $CC compiles,
+# $PLRT is the runtime. KEEP=FOLDER keeps what fails.
 plgen=$(realpath "$1")
 truth=$(realpath "$2")
 follow=$(realpath "$3")
@@ -40,8 +41,8 @@ while [ $seed -lt $last ]; do
 		awk -v VALUES=values.h -f "$source/tests/contacts/tuned.awk" plain.spec >scene.spec
 	fi
 	"$plgen" scene.spec -o scene.c >log 2>&1 &&
-		${CC:-cc} -O1 -include ./values.h -I. -I"$source/runtime" -I"$source/tests/emitted" -o follow "$follow" scene.c $PLRT -lm \
-			>>log 2>&1 &&
+		${CC:-cc} -O1 -include ./values.h -I. -I"$source/runtime" -I"$source/tests/emitted" -o follow "$follow" \
+			scene.c $PLRT -lm >>log 2>&1 &&
 		./follow found.txt "$steps" 1e-12 >>log 2>&1
 	status=$?
 	result $status "$name"
