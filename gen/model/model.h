@@ -832,7 +832,8 @@ void spread_tuned(const struct spec *spec);     /* to params, matrices and lets 
 int  param_of_input(const struct spec *spec, int input);   /* -1: it is an input of the spec */
 void list_held(struct model *model);            /* model->held; warns of what nothing reads */
 const struct tuning *tunables_of(const struct model *model); /* of either kind; NULL: nothing is */
-const struct model *model_elsewhere(const struct model *model); /* at values related by nothing; NULL: none are tunable */
+/* at values related by nothing; NULL: no param is tunable in this way */
+const struct model *model_elsewhere(const struct model *model);
 
 /* ---- stepped.c: the model that a step is built of ---- */
 
