@@ -197,8 +197,15 @@ static void print_as_float(FILE *to, const char *text, const char *name)
 	print_single(to, text);
 }
 
+static void print_with_braces(FILE *to, const char *text, const char *name)
+{
+	(void)name;
+	print_braces(to, text);
+}
+
 static void rewrite(struct work *w, struct file *f)
 {
+	file_rewrite(f, w->model->name, print_with_braces);
 	if (w->options.request.single)
 		file_rewrite(f, w->model->name, print_as_float);
 	file_rewrite(f, w->model->name, print_apart);

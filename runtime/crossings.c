@@ -2,6 +2,7 @@
 /* Steps of piecewise-linear models, in pieces in which the fastest pole does not turn far.  Most pieces stay clear of
  * every breakpoint, and a bound shows it; the others go by Taylor polynomials, on which the first crossing is isolated
  * before it is computed, so none is stepped over. */
+#include "regions.h"
 #include "roots.h"
 
 static const real *matrix_of(const real *all, const pl_switching *m, const pl_contact *c)
@@ -15,63 +16,6 @@ static const real *rows_of(const real *all, const pl_switching *m, const pl_cont
 }
 
 /* ---- regions ---- */
-
-/* One switch after the other, and where a region has it:
- *     for (w = first_switch(m); arrive(m, region, &w); leave(&w)) */
-typedef struct walk {
-    int i, breaks, interval;
-    int stride;       /* between the numbers of regions one interval of this switch apart */
-    const real *at; /* its breakpoints */
-} walk;
-
-static walk first_switch(const pl_switching *m)
-{
-    walk w;
-    w.i = w.breaks = w.interval = 0;
-    w.stride = 1;
-    w.at = m->at;
-    return w;
-}
-
-static int arrive(const pl_switching *m, int region, walk *w)
-{
-    if (w->i == m->switches)
-        return 0;
-    w->breaks = m->breaks[w->i];
-    w->interval = region / w->stride % (w->breaks + 1);
-    return 1;
-}
-
-static void leave(walk *w)
-{
-    w->stride *= w->breaks + 1;
-    w->at += w->breaks;
-    w->i++;
-}
-
-static void enter(const pl_switching *m, pl_contact *c, int region)
-{
-    c->region = region;
-    if (m->matrix[region] >= 0)
-        c->matrix = m->matrix[region];
-}
-
-/* Lists a crossing, or says that there is no more room. */
-static int list(const pl_switching *m, pl_contact *c, pl_crossing *crossing, real time, int expression, int breakpoint,
-                int upward)
-{
-    if (c->crossings == m->max_events) {
-        c->status = PL_TOO_MANY_EVENTS;
-        return 0;
-    }
-    crossing += c->crossings++;
-    crossing->time = time;
-    crossing->expression = expression;
-    crossing->breakpoint = breakpoint;
-    crossing->upward = upward;
-    c->total++;
-    return 1;
-}
 
 /* e - b, and what rounding may have done to it.  A tangent is a third of a piece's e'. */
 static real excess(const pl_switching *m, const pl_contact *c, const walk *w, int breakpoint, const real *x,
@@ -104,7 +48,7 @@ static void decide(const pl_switching *m, const real *x, pl_contact *c, int belo
 {
     real noise;
     walk w;
-    for (w = first_switch(m); arrive(m, below, &w); leave(&w)) {
+    for (w = first_switch(m->at); arrive(m->switches, m->breaks, below, &w); leave(&w)) {
         const int above = c->region / w.stride % (w.breaks + 1) - w.interval;
         int sign;
         if (w.interval == w.breaks || -excess(m, c, &w, w.interval, x, &noise) > noise)
@@ -112,9 +56,9 @@ static void decide(const pl_switching *m, const real *x, pl_contact *c, int belo
         if (!possible) {
             sign = heading(m->size, matrix_of(m->A, m, c), m->row + w.i * m->size, x, work);
             if (sign != 0)
-                enter(m, c, c->region + ((sign > 0) - above) * w.stride);
+                enter(m->matrix, c, c->region + ((sign > 0) - above) * w.stride);
         } else if (m->matrix[c->region] < 0 && !above && m->matrix[c->region + w.stride] >= 0)
-            enter(m, c, c->region + w.stride);
+            enter(m->matrix, c, c->region + w.stride);
     }
 }
 
@@ -124,10 +68,10 @@ void pl_switching_start(const pl_switching *m, const real *x, pl_contact *c, rea
     walk w;
     c->total = 0;
     c->crossings = c->status = c->matrix = c->rested = 0;
-    enter(m, c, 0);
-    for (w = first_switch(m); arrive(m, c->region, &w); leave(&w))
+    enter(m->matrix, c, 0);
+    for (w = first_switch(m->at); arrive(m->switches, m->breaks, c->region, &w); leave(&w))
         for (; outside(m, c, &w, x) > 0; w.interval++)
-            enter(m, c, c->region + w.stride);
+            enter(m->matrix, c, c->region + w.stride);
     below = c->region;
     for (i = 0; i < m->switches; i++) /* again: where one goes may change where another one is heading */
         decide(m, x, c, below, 0, work);
@@ -140,7 +84,7 @@ void pl_switching_start(const pl_switching *m, const real *x, pl_contact *c, rea
 static int clear(const pl_switching *m, int region, const real *low, const real *high)
 {
     walk w;
-    for (w = first_switch(m); arrive(m, region, &w); leave(&w)) {
+    for (w = first_switch(m->at); arrive(m->switches, m->breaks, region, &w); leave(&w)) {
         if (w.interval > 0 && !(low[w.i] > w.at[w.interval - 1]))
             return 0;
         if (w.interval < w.breaks && !(high[w.i] < w.at[w.interval]))
@@ -200,7 +144,7 @@ static found first_crossing(const pl_switching *m, int region, real *coefficient
     walk w;
     f.degree = m->degree;
     f.coefficient = e + terms;
-    for (w = first_switch(m); arrive(m, region, &w); leave(&w)) {
+    for (w = first_switch(m->at); arrive(m->switches, m->breaks, region, &w); leave(&w)) {
         const real *row = m->row + w.i * m->size;
         const real size = sizes(m->size, row, coefficients);
         int upward;
@@ -231,10 +175,10 @@ static void follow_jumps(const pl_switching *m, const real *x, pl_contact *c, pl
 {
     walk w;
     int way;
-    for (w = first_switch(m); arrive(m, c->region, &w); leave(&w))
+    for (w = first_switch(m->at); arrive(m->switches, m->breaks, c->region, &w); leave(&w))
         for (; (way = outside(m, c, &w, x)) != 0; w.interval += way) {
-            (void)list(m, c, crossing, 0, w.i, w.interval - (way < 0), way > 0);
-            enter(m, c, c->region + way * w.stride);
+            (void)list(m->max_events, c, crossing, 0, w.i, w.interval - (way < 0), way > 0);
+            enter(m->matrix, c, c->region + way * w.stride);
         }
 }
 
@@ -295,9 +239,9 @@ void pl_switching_advance(const pl_switching *m, real tau, real *x, pl_contact *
         left -= first.s * dt;
         if (first.expression < 0)
             continue;
-        if (!list(m, c, crossing, tau - left, first.expression, first.breakpoint, first.upward))
+        if (!list(m->max_events, c, crossing, tau - left, first.expression, first.breakpoint, first.upward))
             splits = -1; /* no further search */
-        enter(m, c, c->region + (first.upward ? first.stride : -first.stride));
+        enter(m->matrix, c, c->region + (first.upward ? first.stride : -first.stride));
     }
 }
 

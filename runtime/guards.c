@@ -2,10 +2,19 @@
 /* Steps of piecewise-linear models with dry friction and jumps, from event to event.  Pieces that stay clear of every
  * guard of their region go by e^{A d}; the others by Taylor polynomials, on which the first event is isolated.  What is
  * to stick and what is to slip after an event is found by looking at all combinations of those that are at rest. */
+#include "regions.h"
 #include "roots.h"
 
-/* How many at rest are looked at together: 3^MOST combinations; how many impacts there may be at one instant */
-enum { MOST = 6, MOST_AT_ONCE = 200 };
+/* How many at rest are looked at together: 3^MOST combinations; how many impacts there may be at one instant, and how
+ * many of them are listed */
+enum { MOST = 6, MOST_AT_ONCE = 1000, LISTED_AT_ONCE = 12 };
+
+/* Of the fastest impact at an instant: what is slower is over */
+#ifdef REAL_IS_FLOAT
+#define CALM 0x1p-20f
+#else
+#define CALM 0x1p-48
+#endif
 
 #ifdef REAL_IS_FLOAT
 #define BRIEF PL_BRIEFF
@@ -19,59 +28,6 @@ static const real *matrix_of(const real *all, const pl_guards *m, int matrix)
 }
 
 /* ---- regions ---- */
-
-typedef struct walk {
-    int i, breaks, interval, stride;
-    const real *at;
-} walk;
-
-static walk first_switch(const pl_guards *m)
-{
-    walk w;
-    w.i = w.breaks = w.interval = 0;
-    w.stride = 1;
-    w.at = m->at;
-    return w;
-}
-
-static int arrive(const pl_guards *m, int region, walk *w)
-{
-    if (w->i == m->switches)
-        return 0;
-    w->breaks = m->breaks[w->i];
-    w->interval = region / w->stride % (w->breaks + 1);
-    return 1;
-}
-
-static void leave(walk *w)
-{
-    w->stride *= w->breaks + 1;
-    w->at += w->breaks;
-    w->i++;
-}
-
-static void enter(const pl_guards *m, pl_contact *c, int region)
-{
-    c->region = region;
-    if (m->matrix[region] >= 0)
-        c->matrix = m->matrix[region];
-}
-
-static int list(const pl_guards *m, pl_contact *c, pl_crossing *crossing, real time, int expression, int breakpoint,
-                int upward)
-{
-    if (c->crossings == m->max_events) {
-        c->status |= PL_TOO_MANY_EVENTS;
-        return 0;
-    }
-    crossing += c->crossings++;
-    crossing->time = time;
-    crossing->expression = expression;
-    crossing->breakpoint = breakpoint;
-    crossing->upward = upward;
-    c->total++;
-    return 1;
-}
 
 /* x[state] = value . x, all of a set from the same x */
 static void assign(const pl_guards *m, int set, real *x, real *work)
@@ -113,11 +69,11 @@ static void follow(const pl_guards *m, const real *x, pl_contact *c, pl_crossing
 {
     walk w;
     int way;
-    for (w = first_switch(m); arrive(m, c->region, &w); leave(&w))
+    for (w = first_switch(m->at); arrive(m->switches, m->breaks, c->region, &w); leave(&w))
         for (; (way = outside(m, c, &w, x)) != 0; w.interval += way) {
             if (crossing)
-                (void)list(m, c, crossing, time, w.i, w.interval - (way < 0), way > 0);
-            enter(m, c, c->region + way * w.stride);
+                (void)list(m->max_events, c, crossing, time, w.i, w.interval - (way < 0), way > 0);
+            enter(m->matrix, c, c->region + way * w.stride);
         }
 }
 
@@ -126,7 +82,7 @@ static void follow(const pl_guards *m, const real *x, pl_contact *c, pl_crossing
 static walk switch_of(const pl_guards *m, int region, int expression)
 {
     walk w;
-    for (w = first_switch(m); arrive(m, region, &w) && w.i < expression; leave(&w))
+    for (w = first_switch(m->at); arrive(m->switches, m->breaks, region, &w) && w.i < expression; leave(&w))
         ;
     return w;
 }
@@ -158,7 +114,7 @@ static int touches(const pl_guards *m, const pl_contact *c, const pl_impact *p, 
 static void go_to(const pl_guards *m, pl_contact *c, const pl_impact *p, int interval)
 {
     const walk w = switch_of(m, c->region, p->expression);
-    enter(m, c, c->region + (interval - w.interval) * w.stride);
+    enter(m->matrix, c, c->region + (interval - w.interval) * w.stride);
 }
 
 /* What rounding has left of the way to the guard goes. */
@@ -173,17 +129,49 @@ static void put_on(const pl_guards *m, const pl_contact *c, int k, real *x)
         x[i] -= back[i] * e;
 }
 
+/* Impacts at one instant without an end become slower and slower: what touches with less than `slow` comes to rest
+ * together. */
+static void calm(const pl_guards *m, real slow, real *x, pl_contact *c, pl_crossing *crossing, real time, real *work)
+{
+    const int before = c->region;
+    int k, any = 0;
+    for (k = 0; k < m->impacts; k++) {
+        const pl_impact *p = &m->impact[k];
+        if (!touches(m, c, p, x) || magnitude(speed_of(m, k, x)) >= slow ||
+            switch_of(m, c->region, p->expression).interval == p->rest)
+            continue;
+        go_to(m, c, p, p->rest);
+        (void)list(m->max_events, c, crossing, time, p->expression, p->breakpoint, p->upward);
+        any++;
+    }
+    if (m->matrix[c->region] < 0) {
+        c->status |= PL_UNDECIDED; /* they cannot all rest */
+        enter(m->matrix, c, before);
+        return;
+    }
+    c->rested += any;
+    assign(m, m->hold[c->region], x, work);
+}
+
 /* All impacts at this instant; begins: the one whose guard was met, or -1.  Returns those that acted, as bits. */
 static uint32_t collide(const pl_guards *m, int begins, real *x, pl_contact *c, pl_crossing *crossing, real time,
                         real *work)
 {
     uint32_t struck = 0;
-    int k, rounds = 0;
+    real most = 0;
+    int k, rounds = 0, calms = 0;
     for (k = 0; k < m->impacts; k++) {
         const pl_impact *p = &m->impact[k];
-        if (k != begins && !(touches(m, c, p, x) && speed_of(m, k, x) > 0))
+        const real speed = touches(m, c, p, x) ? speed_of(m, k, x) : 0;
+        if (k != begins && !(speed > 0))
             continue;
-        if (++rounds > MOST_AT_ONCE || !list(m, c, crossing, time, p->expression, p->breakpoint, p->upward)) {
+        if (k != begins && speed < CALM * most) {
+            calms = 1;
+            continue;
+        }
+        most = larger(most, speed);
+        if (++rounds > MOST_AT_ONCE || (rounds <= LISTED_AT_ONCE && !list(m->max_events, c, crossing, time,
+            p->expression, p->breakpoint, p->upward))) {
             c->status |= PL_TOO_MANY_EVENTS;
             break;
         }
@@ -194,8 +182,11 @@ static uint32_t collide(const pl_guards *m, int begins, real *x, pl_contact *c, 
             put_on(m, c, k, x);
         struck |= (uint32_t)1 << k;
         begins = k == begins ? -1 : begins;
+        calms = 0;
         k = -1;
     }
+    if (calms)
+        calm(m, CALM * most, x, c, crossing, time, work);
     return struck;
 }
 
@@ -245,7 +236,7 @@ static int find_resting(const pl_guards *m, const pl_contact *c, const real *x, 
     int count = 0, k;
     real noise;
     walk w;
-    for (w = first_switch(m); arrive(m, c->region, &w); leave(&w))
+    for (w = first_switch(m->at); arrive(m->switches, m->breaks, c->region, &w); leave(&w))
         for (k = 1; k < w.breaks; k++) {
             const real e = w.at[k] - w.at[k - 1] <= 0 ? excess(m, c, &w, k, x, &noise) : 1;
             if (w.at[k] - w.at[k - 1] > 0 || w.interval < k - 1 || w.interval > k + 1 || count == MOST)
@@ -253,8 +244,8 @@ static int find_resting(const pl_guards *m, const pl_contact *c, const real *x, 
             if (magnitude(e) > noise)
                 continue;
             found[count].impact = impact_of(m, w.i, k);
-            if (found[count].impact >= 0 && speed_of(m, found[count].impact, x) < 0 && w.interval != k)
-                continue; /* it flies off */
+            if (found[count].impact >= 0 && magnitude(speed_of(m, found[count].impact, x)) > 0 && w.interval != k)
+                continue; /* it flies off, or there was no room for its impact */
             found[count].expression = w.i;
             found[count].stick = k;
             found[count++].stride = w.stride;
@@ -370,11 +361,11 @@ static void change(const pl_guards *m, pl_contact *c, pl_crossing *crossing, rea
     for (i = 0; i < count && crossing; i++) {
         const int now = interval_of(m, &r[i], c->region), then = interval_of(m, &r[i], region);
         for (k = now; k < then; k++)
-            (void)list(m, c, crossing, time, r[i].expression, k, 1);
+            (void)list(m->max_events, c, crossing, time, r[i].expression, k, 1);
         for (k = now; k > then; k--)
-            (void)list(m, c, crossing, time, r[i].expression, k - 1, 0);
+            (void)list(m->max_events, c, crossing, time, r[i].expression, k - 1, 0);
     }
-    enter(m, c, region);
+    enter(m->matrix, c, region);
 }
 
 /* What is at rest: whether it sticks, and where else it goes.  crossing NULL: nothing is listed. */
@@ -399,31 +390,36 @@ static void decide(const pl_guards *m, const real *x, pl_contact *c, real *work)
 {
     real noise;
     walk w;
-    for (w = first_switch(m); arrive(m, c->region, &w); leave(&w)) {
+    for (w = first_switch(m->at); arrive(m->switches, m->breaks, c->region, &w); leave(&w)) {
         const int twice = w.interval + 1 < w.breaks && !(w.at[w.interval + 1] > w.at[w.interval]);
         if (w.interval == w.breaks || twice || -excess(m, c, &w, w.interval, x, &noise) > noise)
             continue;
         if (w.interval > 0 && !(w.at[w.interval] > w.at[w.interval - 1]))
             continue;
         if (heading(m->size, matrix_of(m->A, m, c->matrix), m->row + w.i * m->size, x, work) > 0)
-            enter(m, c, c->region + w.stride);
+            enter(m->matrix, c, c->region + w.stride);
     }
 }
 
 void pl_guards_start(const pl_guards *m, const real *x, pl_contact *c, real *work)
 {
     walk w;
+    int first = 0;
+    while (m->matrix[first] < 0)
+        first++;
     c->total = 0;
-    c->crossings = c->status = c->matrix = c->rested = 0;
-    enter(m, c, 0);
+    c->crossings = c->status = c->rested = 0;
+    c->matrix = m->matrix[first];
+    enter(m->matrix, c, 0);
     follow(m, x, c, (pl_crossing *)0, 0);
-    for (w = first_switch(m); arrive(m, c->region, &w); leave(&w)) /* at rest: let it stick first */
+    /* at rest: let it stick first */
+    for (w = first_switch(m->at); arrive(m->switches, m->breaks, c->region, &w); leave(&w))
         if (w.interval + 1 < w.breaks && !(w.at[w.interval + 1] > w.at[w.interval])) {
             const int impact = impact_of(m, w.i, w.interval + 1);
             real noise;
             if (magnitude(excess(m, c, &w, w.interval, x, &noise)) > noise)
                 continue;
-            enter(m, c, c->region + w.stride);
+            enter(m->matrix, c, c->region + w.stride);
             if (impact >= 0 && magnitude(speed_of(m, impact, x)) > 0)
                 go_to(m, c, &m->impact[impact], free_of(&m->impact[impact]));
         }
@@ -471,7 +467,26 @@ static void look_behind(beyond *f, const real *e, real terms)
     f->coefficient[++f->degree] = 0;
 }
 
-/* coefficients: (degree + 1) x size, of x(s); after them 2 (degree + 1) for work */
+/* What a force that is at its limit but for rounding has let go moves with a slope that is rounding, too: where that
+ * points back it is no event. */
+static void level(const pl_guards *m, int region, const pl_guard *g, const real *x, beyond *f, real *work)
+{
+    const int side = g->leads < 0 ? 1 : -1;
+    walk w;
+    resting r;
+    if (magnitude(f->coefficient[0]) > f->noise || !(f->coefficient[1] > 0))
+        return;
+    w = switch_of(m, region, g->expression);
+    r.expression = g->expression;
+    r.stick = w.interval - side;
+    r.stride = w.stride;
+    r.impact = -1;
+    if (r.stick > 0 && r.stick < w.breaks && !(w.at[r.stick] > w.at[r.stick - 1]) &&
+        is_let_go(m, region, &r, side, x, work))
+        f->coefficient[1] = 0;
+}
+
+/* coefficients: (degree + 1) x size, of x(s); after them 2 (degree + 1) + 4 size for work */
 static event first_event(const pl_guards *m, int region, real *coefficients, int *splits)
 {
     const int terms = m->degree + 1, n = m->size;
@@ -489,6 +504,8 @@ static event first_event(const pl_guards *m, int region, real *coefficients, int
         if (m->guard[k].impact >= 0 && e[1] < 0 && magnitude(f.coefficient[0]) <= noise_of(magnitude(m->limit[k]) +
             sizes(n, row, coefficients) + sizes(n, row, coefficients + n)))
             look_behind(&f, e, sizes(n, row, coefficients + n));
+        else if (m->guard[k].impact < 0)
+            level(m, region, &m->guard[k], coefficients, &f, e + 2 * terms);
         s = first_root(&f, first.s, splits);
         if (s < 0)
             continue;
@@ -540,7 +557,7 @@ static void come_to_rest(const pl_guards *m, uint32_t struck, real *x, pl_contac
         assign(m, p->still, x, work);
         go_to(m, c, p, p->rest);
         assign(m, m->hold[c->region], x, work); /* beside others that rest, and what they would leave it with */
-        (void)list(m, c, crossing, time + left, p->expression, p->breakpoint, p->upward);
+        (void)list(m->max_events, c, crossing, time + left, p->expression, p->breakpoint, p->upward);
         c->rested++;
         settle(m, x, c, crossing, time, work);
     }
@@ -553,9 +570,9 @@ static int pass(const pl_guards *m, pl_contact *c, const pl_guard *g, real *x, p
     const int full = c->crossings == m->max_events;
     uint32_t struck = 0;
     if (g->impact < 0)
-        (void)list(m, c, crossing, time, g->expression, g->breakpoint, g->upward);
+        (void)list(m->max_events, c, crossing, time, g->expression, g->breakpoint, g->upward);
     if (g->impact < 0 || m->impact[g->impact].rest < 0)
-        enter(m, c, c->region + g->leads);
+        enter(m->matrix, c, c->region + g->leads);
     assign(m, m->hold[c->region], x, work);
     if (g->impact >= 0)
         struck = collide(m, g->impact, x, c, crossing, time, work);
@@ -567,13 +584,19 @@ static int pass(const pl_guards *m, pl_contact *c, const pl_guard *g, real *x, p
     return !full;
 }
 
-/* At the start: what holds may have moved, and what moves may have jumped. */
-static void take_up(const pl_guards *m, real *x, pl_contact *c, pl_crossing *crossing, real *work)
+/* At the start, or behind a change of the loads: what holds may have moved, and what moves may have jumped. */
+static void take_up(const pl_guards *m, real *x, pl_contact *c, pl_crossing *crossing, real time, real *work)
 {
-    follow(m, x, c, crossing, 0);
-    (void)collide(m, -1, x, c, crossing, 0, work);
-    settle(m, x, c, crossing, 0, work);
+    follow(m, x, c, crossing, time);
+    (void)collide(m, -1, x, c, crossing, time, work);
+    settle(m, x, c, crossing, time, work);
     assign(m, m->hold[c->region], x, work);
+}
+
+void pl_guards_change(const pl_guards *m, real time, real *x, pl_contact *c, pl_crossing *crossing, real *work)
+{
+    c->crossings = 0;
+    take_up(m, x, c, crossing, time, work);
 }
 
 void pl_guards_advance(const pl_guards *m, real tau, real *x, pl_contact *c, pl_crossing *crossing, real *work)
@@ -583,7 +606,7 @@ void pl_guards_advance(const pl_guards *m, real tau, real *x, pl_contact *c, pl_
     int splits = m->max_splits, fresh = 1, i;
     c->crossings = 0;
     if (m->hold[c->region] >= 0) {
-        take_up(m, x, c, crossing, rest);
+        take_up(m, x, c, crossing, 0, rest);
         fresh = 0;
     }
     while (left > REST * m->h) { /* nothing for what rounding leaves */
@@ -605,7 +628,7 @@ void pl_guards_advance(const pl_guards *m, real tau, real *x, pl_contact *c, pl_
         }
         if (fresh) { /* the region may be another one now */
             fresh = 0;
-            take_up(m, x, c, crossing, rest);
+            take_up(m, x, c, crossing, tau - left, rest);
             continue;
         }
         first = move(m, c, dt, whole ? y : (real *)0, &splits, x, rest);
@@ -615,8 +638,11 @@ void pl_guards_advance(const pl_guards *m, real tau, real *x, pl_contact *c, pl_
         left -= first.s * dt;
         if (first.guard < 0)
             continue;
-        if (!pass(m, c, &m->guard[first.guard], x, crossing, tau - left, rest))
+        if (!pass(m, c, &m->guard[first.guard], x, crossing, tau - left, rest)) {
+            if (m->guard[first.guard].impact >= 0)
+                break; /* x is held on the guard: beyond it the impact would not come any more */
             splits = -1; /* no further search */
+        }
     }
 }
 

@@ -628,12 +628,18 @@ void pl_guards_start(const pl_guards *m, const double *x, pl_contact *c, double 
  * that slips moves away in its direction; of several the one with the fewest changes, then with most that stick.
  *
  * Impacts at one instant act in their order, each from the state that the one before has left, and again from the
- * first, until none is on its guard and comes closer.  Behind a bounce that leaves with the velocity v and is
+ * first, until none is on its guard and comes closer; what is slower than 2^-48 of the fastest (float: 2^-20) is over,
+ * and rests; the first 12 are listed.  Behind a bounce that leaves with the velocity v and is
  * pressed back by the acceleration a, all further ones take T = 2 v/(a (1 - e)): where T <= PL_BRIEF h, e < 1, it
  * rests, listed T later; so too where T <= h and the list of crossings is full but for a few.  What rests is held
  * until it would have to be pulled. */
 void pl_guards_step(const pl_guards *m, double *x, pl_contact *c, pl_crossing *crossing, double *work);
 void pl_guards_advance(const pl_guards *m, double tau, double *x, pl_contact *c, pl_crossing *crossing, double *work);
+
+/* At this time [s] of a step: behind loads that have changed their formula, in the region of the same intervals, which
+ * m is of now.  What has left its interval by a jump of a load passes its breakpoints, in the order of expressions, and
+ * no impact begins there; then what touches and comes closer bounces, and what is at rest is decided anew. */
+void pl_guards_change(const pl_guards *m, double time, double *x, pl_contact *c, pl_crossing *crossing, double *work);
 
 typedef struct pl_impactf {
     int expression, breakpoint, upward;
@@ -666,6 +672,7 @@ typedef struct pl_guardsf {
 void pl_guardsf_start(const pl_guardsf *m, const float *x, pl_contact *c, float *work);
 void pl_guardsf_step(const pl_guardsf *m, float *x, pl_contact *c, pl_crossingf *crossing, float *work);
 void pl_guardsf_advance(const pl_guardsf *m, float tau, float *x, pl_contact *c, pl_crossingf *crossing, float *work);
+void pl_guardsf_change(const pl_guardsf *m, float time, float *x, pl_contact *c, pl_crossingf *crossing, float *work);
 
 /* ---- retune.c: coefficients from other params --------------------------------------------------------------- */
 

@@ -46,6 +46,7 @@ enum { REAL_DIGITS = FLT_MANT_DIG, REAL_EXPONENTS = FLT_MAX_EXP };
 #define pl_guards_start pl_guardsf_start
 #define pl_guards_step pl_guardsf_step
 #define pl_guards_advance pl_guardsf_advance
+#define pl_guards_change pl_guardsf_change
 #define pl_term pl_termf
 #define pl_equations pl_equationsf
 #define pl_equations_at pl_equationsf_at

@@ -44,6 +44,7 @@ enum {
 	LIMIT_MONOMIALS = 64,       /* products of them in one factor of a state */
 	LIMIT_REGIONS = 243,        /* of a piecewise-linear model, in one segment of time */
 	LIMIT_REGIONS_IN_TIME = 1024, /* in all */
+	LIMIT_IMPACTS = 30,         /* 'when' and stops that bounce: bits of a word in pl_guards */
 	MAX_EVENTS = 32,            /* crossings in a step of generated code */
 	LIMIT_PIECES = 16,          /* halvings of a step in which crossings are looked for */
 	MAX_SPLITS = 500,           /* of intervals in search of them, in a step */

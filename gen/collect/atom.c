@@ -89,12 +89,14 @@ bool depends_on_time_only(const struct basis *basis)
 	return basis->atom ? !basis->atom->input && !basis->atom->state : basis->kind <= BASIS_WAVE;
 }
 
-/* Highest derivatives are what the equations are solved for: they cannot stand inside. */
-static void check_highest(const struct collector *c, const struct node *node, const struct form *form, bool params)
+/* Highest derivatives are what the equations are solved for: they cannot stand inside, but as the velocity of friction
+ * where there is no mass. */
+static void check_highest(const struct collector *c, const struct node *node, const struct form *form, bool params,
+			  bool slides)
 {
 	for (int i = 0; i < form->terms; i++) {
 		const struct basis *basis = &form->term[i].basis;
-		if (!c->output && basis->kind == BASIS_COORD && basis->order > 0 &&
+		if (!c->output && basis->kind == BASIS_COORD && basis->order > 0 && !(slides && basis->order == 1) &&
 		    basis->order >= c->frame->coord[basis->index]->highest)
 			not_linear(c, node, params ? "has a tunable factor, by which the equation can be divided"
 						   : "is not linear");
@@ -133,7 +135,8 @@ static struct form *form_of_atom(struct collector *c, const struct node *node, s
 		for (int i = 0; i < wanted.operands; i++)
 			add_dependence(c, &wanted, wanted.operand[i]);
 		for (int i = 0; i < wanted.operands; i++)
-			check_highest(c, node, wanted.operand[i], wanted.params);
+			check_highest(c, node, wanted.operand[i], wanted.params,
+				      i == 0 && wanted.kind == ATOM_CALL && wanted.function == FN_FRICTION);
 		wanted.node = node;
 		wanted.params = wanted.params || wanted.kind == ATOM_PARAM;
 		wanted.index = c->atoms->count++;
@@ -473,7 +476,7 @@ struct form *kept_call(struct collector *c, const struct node *node, enum functi
 	if (all_constant(count, x) || (!single && function != FN_ATAN2 && is_decided(c, count, x)))
 		return single ? constant_call(c, node, function, x[0])
 			      : piecewise(c, call_at(node, function, count), x);
-	if (function >= FN_DEADZONE && function != FN_FRICTION)
+	if (function >= FN_DEADZONE && function < FN_FRICTION)
 		check_breakpoints(c, node, x);
 	return new_atom(c, node, (struct atom){ .kind = ATOM_CALL, .function = function }, count,
 			(const struct form *const *)x);

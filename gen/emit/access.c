@@ -217,7 +217,7 @@ static void emit_hold(const struct emitter *e)
 	       "    for (i = 0; i < $N_INPUTS; i++)\n"
 	       "        s->u[i] = u[i];\n");
 	if (e->kind->places && e->kind->places(e))
-		say(e, "    if (s->k == 0)\n"
+		say(e, "    if (s->k == 0u)\n"
 		       "        $n_place(s);\n");
 	say(e, "}\n");
 }

@@ -272,7 +272,8 @@ static void banner_impacts(const struct emitter *e)
 		const struct impact *impact = &model->impact[i];
 		const char *text = text_between(impact->when->at, impact->when->end);
 		say(e, " *     impact %d: %s%s\n", i, printable(text),
-		    impact->bounces ? format(", a bounce of restitution %s", readable_text(impact->restitution)) : "");
+		    impact->bounces ? format(", a bounce of restitution %s", readable_text(impact->in->restitution))
+				    : "");
 	}
 	if (model->impacts > 1)
 		say(e, " * Those of one instant act in this order, each from the state that the one before has "
@@ -299,10 +300,14 @@ void banner_regions(const struct emitter *e)
 	if (s->segments > 1)
 		say(e, " * They are those of %d segments of time, each with its own.\n", s->segments);
 	banner_expressions(e);
-	for (int i = 0; i < s->frictions; i++)
-		say(e, " *     friction %d: %s; sticks in interval %d of expression %d\n", i,
-		    text_between(s->friction[i].atom->node->start, s->friction[i].atom->node->end),
-		    stick_of(s, &s->friction[i]), s->friction[i].expression);
+	for (int i = 0, shown = 0; i < s->frictions; i++)
+		if (!is_repeated(s, i))
+			say(e, " *     friction %d: %s; sticks in interval %d of expression %d\n", shown++,
+			    text_between(s->friction[i].atom->node->start, s->friction[i].atom->node->end),
+			    stick_of(s, &s->friction[i]), s->friction[i].expression);
+	for (int i = 0; i < s->sliders; i++)
+		if (!is_repeated_slider(s, i))
+			say(e, " *     slider: %s\n", slider_text(s, i));
 	banner_impacts(e);
 	if (s->sharing)
 		say(e, " * Coordinates move as a whole: %d independent parts have their regions together.\n",

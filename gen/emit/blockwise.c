@@ -135,8 +135,10 @@ void emit_blockwise_leap(const struct emitter *e, const struct leap *leap, int e
 	const char *Phi = stepped_table(e, "Phi");
 	say(e, "    int block, i, j;\n");
 	emit_block_loop(e, further);
-	say(e, "        for (i = 0; i < size * size; i++)\n"
-	       "            power[i].hi = power[i].lo = 0.0;\n"
+	say(e, "        for (i = 0; i < size * size; i++) {\n"
+	       "            power[i].hi = 0.0;\n"
+	       "            power[i].lo = 0.0;\n"
+	       "        }\n"
 	       "        for (i = 0; i < states; i++) {\n"
 	       "            for (j = 0; j < states; j++) {\n"
 	       "                power[size * i + j].hi = %s[at[i]][at[j]];\n"

@@ -97,7 +97,7 @@ static void declare_checks(const struct emitter *e, bool rhs)
 	const char *note = e->ramps ? "as written; u: inputs, then their slopes" : "the equations as written";
 	if (e->model->reduction.place)
 		note = format("as written; y: all %d written states", e->model->written->system.states);
-	if (rhs && e->model->switching && e->model->switching->frictions > 0)
+	if (rhs && (e->model->bearings > 0 || (e->model->switching && rubs(e->model->switching))))
 		error((struct place){ source_argument("--rhs"), 0 }, "a solver has to go from event to event itself",
 		      "--rhs has no formula for friction, whose force is a set where it sticks");
 	if (rhs)

@@ -58,6 +58,19 @@ void print_single(FILE *to, const char *text);               /* C for double as 
 /* the C of a model of this name, none of whose locals are called so */
 void print_apart(FILE *to, const char *text, const char *name);
 
+/* ---- braces.c: around what an if, an else or a loop governs ---- */
+
+void print_braces(FILE *to, const char *text);
+
+/* ---- printed.c: C that was printed, read again ---- */
+
+bool in_name(char c);
+size_t name_length(const char *text);
+bool is_named(const char *text, size_t length, const char *name); /* is a word of that length this one? */
+/* Behind a comment, a string, or a line of the preprocessor that starts here; NULL: none does */
+const char *behind_quoted(const char *text, bool line_start);
+const char *behind(const char *text, char last);                  /* the first `last` that is in no braces */
+
 /* ---- cprint.c: expressions as C ---- */
 
 /* What every symbol is called in C; `local` receives the same of every state. */
@@ -599,6 +612,7 @@ void emit_region_start_call(const struct emitter *e);
 void emit_region_advance_call(const struct emitter *e);
 void emit_segment_end(const struct emitter *e);                   /* of a step: in which segment outputs are */
 bool regions_change(const struct emitter *e);                     /* they are others in each segment of time */
+const char *search_of(const struct emitter *e);                    /* of the runtime: pl_switching, pl_guards */
 
 /* ---- emit_delays.c: delayed inputs, around a model that has them as inputs ---- */
 

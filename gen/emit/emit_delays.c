@@ -203,7 +203,7 @@ static void emit_steps(const struct emitter *e)
 	       "\n"
 	       "void $n_run($n *s, size_t n, const double *u, double *out)\n"
 	       "{\n"
-	       "    for (; n > 0; n--, u += $N_INPUTS) {\n"
+	       "    for (; n > 0u; n--, u += $N_INPUTS) {\n"
 	       "        $n_step(s, u);\n"
 	       "        if (out != NULL) {\n"
 	       "            $n_out(s, out);\n"

@@ -44,7 +44,10 @@ static void emit_limits(const struct emitter *e, const struct guards *g)
 	for (int i = 0; i < g->guards; i++)
 		limit[i] = g->guard[i].limit;
 	emit_list(e, "limit", "of each guard", g->guards, limit);
-	emit_list(e, "play", "factors of cos and sin in each expression", s->expressions, g->play);
+	emit_list(e, "play",
+		  regions_change(e) ? "factors of cos and sin in each expression, segment of time by segment"
+				    : "factors of cos and sin in each expression",
+		  s->segments * s->expressions, g->play);
 	emit_list(e, "gate_play", "in each row of guards", g->rows, g->row_play);
 }
 
@@ -123,7 +126,7 @@ static void emit_values(const struct emitter *e, const struct guards *g)
 static void emit_impacts(const struct emitter *e, const struct guards *g)
 {
 	const struct switching *s = e->model->switching;
-	int size = e->step->layout.size, count = g->impacts > 0 ? g->impacts : 1;
+	int size = e->step->layout.size, all = s->segments * g->impacts, count = all > 0 ? all : 1;
 	double *speed = ARRAY(double, (size_t)count * (size_t)size);
 	double *back = ARRAY(double, (size_t)count * (size_t)size);
 	const char **note = ARRAY(const char *, (size_t)count);
@@ -132,20 +135,22 @@ static void emit_impacts(const struct emitter *e, const struct guards *g)
 		say(e, "    {");
 	else
 		say(e, "\nstatic const pl_impact $o_impact[%d] = {", count);
-	say(e, "  /* expression, breakpoint, upward, rest, jump, still, restitution, play */\n");
-	for (int i = 0; i < g->impacts; i++) {
+	say(e, "  /* expression, breakpoint, upward, rest, jump, still, restitution, play%s */\n",
+	    regions_change(e) ? "; segment of time by segment" : "");
+	for (int i = 0; i < all; i++) {
 		const struct struck *impact = &g->impact[i];
 		say(e, "    { %d, %d, %d, %d, %d, %d, %s, %s },\n", impact->expression, impact->breakpoint,
 		    impact->upward, impact->rest, impact->jump, impact->still, shortest(impact->restitution),
 		    shortest(impact->play));
 		note[i] = impact->rest < 0 ? "none"
-					   : form_text(e->step->shown->model, s->impact[i].speed);
+					   : form_text(e->step->shown->model,
+						       s->impact[i % s->impacts].in[i / s->impacts].speed);
 		for (int j = 0; j < size; j++) {
 			speed[i * size + j] = impact->speed[j];
 			back[i * size + j] = impact->back[j];
 		}
 	}
-	if (!g->impacts)
+	if (!all)
 		say(e, "    { 0, 0, 0, -1, -1, -1, 0.0, 0.0 }\n");
 	close_table(e);
 	open_table(e, "speed", format("[%d][%d]", count, size), "of what bounces");
@@ -155,6 +160,24 @@ static void emit_impacts(const struct emitter *e, const struct guards *g)
 		   "times how far its expression is beyond: onto the guard");
 	emit_number_rows(e, count, size, back, note);
 	close_table(e);
+}
+
+/* In a segment of time, or always */
+static void emit_search_in(const struct emitter *e, const struct guards *g, int segment, const char *indent)
+{
+	const struct switching *s = e->model->switching;
+	int impact = segment * g->impacts, expression = segment * s->expressions;
+	const char *row = regions_change(e) ? format("[%d][0]", segment) : "[0]", *of = prefix_of_tables(e);
+	const char *play = expression ? format(" + %d", expression) : "", *from = impact ? format(" + %d", impact) : "";
+	say(e, "%s    %d, $N_H, %d, %srow%s, $o_breaks, %sbreakpoint, $o_matrix, %shalvings,\n"
+	       "%s    %sslopes[0][0], %spieces[0][0], %slean[0][0],\n"
+	       "%s    $o_first, $o_guard, %slimit, $o_holding,\n",
+	    indent, e->step->layout.size, s->expressions, of, row, of, of, indent, of, of, of, indent, of);
+	say(e, "%s    %sgate[0], %sgate_lean[0], %sgate_sag[0], %sgate_sway[0], %splay%s, %sgate_play,\n"
+	       "%s    $o_sets, $o_held, %svalue[0], %d, %simpact%s, %sspeed[%d], %sback[%d], %d, $N_MAX_EVENTS, "
+	       "%d\n",
+	    indent, of, of, of, of, of, play, of, indent, of, g->impacts, of, from, of, impact, of, impact,
+	    e->step->series.degree, max_splits(e->model));
 }
 
 void emit_guards(const struct emitter *e, const struct guards *g)
@@ -169,26 +192,28 @@ void emit_numbers_of_guards(const struct emitter *e, const struct guards *g)
 	emit_gates(e, g);
 	emit_values(e, g);
 	emit_impacts(e, g);
-	if (e->model->retuned && e->model->switching->felt)
+	if (e->model->retuned && e->model->switching->felts > 0)
 		emit_grips(e);
 }
 
 void emit_guards_descriptor(const struct emitter *e, const struct guards *g)
 {
-	bool own = e->model->retuned;
-	const char *of = prefix_of_tables(e);
-	say(e, own ? "\n/* What the search goes by */\n"
-		     "static pl_guards $o_switching(const $n_coeffs *c)\n"
-		     "{\n"
-		     "    const pl_guards tables = {\n"
-		   : "\nstatic const pl_guards $o_switching = {\n");
-	say(e, "    %d, $N_H, %d, %srow[0], $o_breaks, %sbreakpoint, $o_matrix, %shalvings,\n"
-	       "    %sslopes[0][0], %spieces[0][0], %slean[0][0],\n"
-	       "    $o_first, $o_guard, %slimit, $o_holding,\n", e->step->layout.size,
-	    e->model->switching->expressions, of, of, of, of, of, of, of);
-	say(e, "    %sgate[0], %sgate_lean[0], %sgate_sag[0], %sgate_sway[0], %splay, %sgate_play,\n"
-	       "    $o_sets, $o_held, %svalue[0], %d, %simpact, %sspeed[0], %sback[0], %d, $N_MAX_EVENTS, %d\n", of, of,
-	    of, of, of, of, of, g->impacts, of, of, of, e->step->series.degree, max_splits(e->model));
+	bool several = regions_change(e), own = e->model->retuned;
+	if (own)
+		say(e, "\n/* What the search goes by */\n"
+		       "static pl_guards $o_switching(const $n_coeffs *c)\n"
+		       "{\n"
+		       "    const pl_guards tables = {\n");
+	else
+		say(e, "\nstatic const pl_guards $o_switching%s = {\n",
+		    several ? format("[%d]", e->model->switching->segments) : "");
+	if (!several)
+		emit_search_in(e, g, 0, own ? "    " : "");
+	for (int k = 0; k < e->model->switching->segments && several; k++) {
+		say(e, "  {\n");
+		emit_search_in(e, g, k, "  ");
+		say(e, "  },\n");
+	}
 	say(e, own ? "    };\n"
 		     "    return tables;\n"
 		     "}\n"
@@ -200,18 +225,21 @@ void emit_grips(const struct emitter *e)
 	const struct switching *s = e->model->switching;
 	int size = e->step->layout.size;
 	const double *grip = grips_of(e->step);
-	const char **name = ARRAY(const char *, (size_t)s->frictions);
-	for (int i = 0; i < s->frictions; i++)
-		name[i] = text_between(s->friction[i].atom->node->start, s->friction[i].atom->node->end);
+	const char **name = ARRAY(const char *, (size_t)s->felts);
+	for (int i = 0; i < s->felts; i++) {
+		const struct node *node = s->felt[i]->node;
+		const char *text = text_between(node->start, node->end);
+		name[i] = s->felt[i]->function == FN_SLIDE ? format("velocity of %s", text) : text;
+	}
 	if (e->model->retuned)
 		say(e, "    {  /* grips: of each region: what friction carries */\n");
 	else
 		say(e, "\n"
 		       "static const double $n_grips[%d][%d][%d] = {  /* of each region: what friction carries */\n",
-		    s->regions, s->frictions, size);
+		    s->regions, s->felts, size);
 	for (int r = 0; r < s->regions; r++) {
 		say(e, "  {\n");
-		emit_number_rows(e, s->frictions, size, grip + r * s->frictions * size, name);
+		emit_number_rows(e, s->felts, size, grip + r * s->felts * size, name);
 		say(e, "  },\n");
 	}
 	close_table(e);

@@ -14,21 +14,30 @@ static int regions_in_one(const struct emitter *e)
 	return regions_at_once(e->model->switching);
 }
 
+static bool has_guards(const struct emitter *e)
+{
+	return has_events(e->model->switching);
+}
+
 /* The region of x in a segment of time */
 static void emit_start(const struct emitter *e)
 {
+	const char *search = search_of(e);
 	bool own = e->model->retuned;
 	say(e, "\n"
 	       "/* The region of x in a segment of time */\n"
 	       "static void $o_start(%sint segment, const double x[%d], pl_contact *contact, double *work)\n"
 	       "{\n"
-	       "    pl_switching here = $o_switching%s;\n"
-	       "    here.matrix += segment * %d;\n"
-	       "    pl_switching_start(&here, x, contact, work);\n"
+	       "    %s here = $o_switching%s;\n"
+	       "    here.matrix += segment * %d;\n",
+	    own ? spell(e, "const $n_coeffs *c, ") : "", e->step->layout.size, search, own ? "(c, segment)" : "[segment]",
+	    regions_in_one(e));
+	if (has_guards(e))
+		say(e, "    here.first += segment * %d;\n"
+		       "    here.hold += segment * %d;\n", regions_in_one(e), regions_in_one(e));
+	say(e, "    %s_start(&here, x, contact, work);\n"
 	       "    contact->region += segment * %d;\n"
-	       "}\n",
-	    own ? spell(e, "const $n_coeffs *c, ") : "", e->step->layout.size, own ? "(c, segment)" : "[segment]",
-	    regions_in_one(e), regions_in_one(e));
+	       "}\n", search, regions_in_one(e));
 }
 
 /* Whether a region can occur before a change and, by its inequalities, not after it */
@@ -64,13 +73,23 @@ static void emit_change(const struct emitter *e)
 	       "}\n");
 }
 
+/* Of what sticks and bounces the change is decided at once, also at a step's end, where outputs read it. */
+static void emit_decided_change(const struct emitter *e)
+{
+	say(e, "        here = $o_switching[segment + 1];\n"
+	       "        here.max_events -= count;\n"
+	       "        pl_guards_change(&here, done, x, contact, crossing + count, work);\n"
+	       "        count += contact->crossings;\n");
+}
+
 void emit_region_changes(const struct emitter *e)
 {
+	bool guards = has_guards(e);
 	if (e->model->switching->expressions > 0)
 		emit_start(e);          /* of a linear part there is one region */
 	emit_change(e);
 	say(e, "\n"
-	       "/* x on by tau, from change to change of the loads */\n"
+	       "/* x on by tau, from change to change of the loads%s */\n"
 	       "static void $o_pass_changes(const $n *s, double tau, double x[%d], pl_contact *contact,\n"
 	       "                            pl_crossing *crossing, double *work)\n"
 	       "{\n"
@@ -78,22 +97,26 @@ void emit_region_changes(const struct emitter *e)
 	       "    int count = 0, i;\n"
 	       "    for (;;) {\n"
 	       "        const int segment = contact->region / %d;\n"
-	       "        const double change = segment < %d ? $n_until(s, segment) : tau;\n"
+	       "        const double change = segment < %d ? $n_until(s, segment) : %s;\n"
 	       "        const double to = change < tau ? change : tau;\n"
-	       "        pl_switching here = $o_switching%s;\n"
+	       "        %s here = $o_switching%s;\n"
 	       "        here.max_events -= count;\n"
-	       "        pl_switching_advance(&here, to - done, x, contact, crossing + count, work);\n",
-	    e->step->layout.size, regions_in_one(e), segments_of(e) - 1,
-	    e->model->retuned ? "(&s->coeffs, segment)" : "[segment]");
+	       "        %s_advance(&here, to - done, x, contact, crossing + count, work);\n",
+	    guards ? "; one at its end too" : "", e->step->layout.size, regions_in_one(e), segments_of(e) - 1,
+	    guards ? spell(e, "2.0 * $N_H") : "tau", search_of(e),
+	    e->model->retuned ? "(&s->coeffs, segment)" : "[segment]", search_of(e));
 	say(e, "        for (i = count; i < count + contact->crossings; i++)\n"
 	       "            crossing[i].time += done;\n"
 	       "        count += contact->crossings;\n"
-	       "        if (!(change < tau))\n"
+	       "        if (!(change %s tau))\n"
 	       "            break;\n"
 	       "        if (to > done)\n"
 	       "            done = to;\n"
-	       "        $o_next_segment(%scontact%s);\n"
-	       "    }\n"
+	       "        $o_next_segment(%scontact%s);\n", guards ? "<=" : "<", any_lost(e) ? "x, " : "",
+	    any_lost(e) ? ", work" : "");
+	if (guards)
+		emit_decided_change(e);
+	say(e, "    }\n"
 	       "    contact->crossings = count;\n"
-	       "}\n", any_lost(e) ? "x, " : "", any_lost(e) ? ", work" : "");
+	       "}\n");
 }

@@ -210,7 +210,7 @@ void emit_over_run(const struct emitter *e)
 {
 	if (!runs_in_blocks(e))
 		return;
-	say(e, "    for (; n > 0 && s->served > 0; n--) {\n"
+	say(e, "    for (; n > 0u && s->served > 0; n--) {\n"
 	       "        $n_step(s);\n"
 	       "        if (out) {\n"
 	       "            $n_out(s, out);\n"

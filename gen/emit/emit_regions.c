@@ -13,7 +13,7 @@ static bool has_guards(const struct emitter *e)
 	return has_events(regions_of(e));
 }
 
-static const char *search_of(const struct emitter *e)
+const char *search_of(const struct emitter *e)
 {
 	return has_guards(e) ? "pl_guards" : "pl_switching";
 }
@@ -342,7 +342,7 @@ void emit_region_start(const struct emitter *e)
 	emit_region_vector(e, false);
 	emit_region_start_call(e);
 	say(e, "}\n");
-	if (regions_of(e)->felt)
+	if (regions_of(e)->felts > 0)
 		emit_grip(e);
 }
 
@@ -400,10 +400,12 @@ void emit_region_status(const struct emitter *e)
 	say(e, "    s->status |= s->contact$p.status | pl_not_finite(s->y, $N_STATES);\n");
 }
 
-/* After a step's end: the segment of time that outputs are in */
+/* After a step's end: the segment of time that outputs are in. What sticks and bounces is decided in it already. */
 void emit_segment_end(const struct emitter *e)
 {
-	if (e->system->segments > 1)
+	if (!e->step->parts && has_guards(e) && regions_change(e))
+		say(e, "    s->segment = s->contact.region / %d;\n", regions_at_once(regions_of(e)));
+	else if (e->system->segments > 1)
 		say(e, "    while (s->segment < %d && $n_until(s, s->segment) <= 1e-18 * $N_H)\n"
 		       "        s->segment++;\n", e->system->segments - 1);
 }

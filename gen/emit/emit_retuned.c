@@ -47,8 +47,8 @@ static void guard_members(const struct emitter *e)
 	member(e, "pl_impact", "impact", format("[%d]", all), "what each does");
 	member(e, "double", "speed", table_shape(all, size), "of what bounces");
 	member(e, "double", "back", table_shape(all, size), "from beyond a guard onto it");
-	if (s->felt)
-		member(e, "double", "grips", format("[%d][%d][%d]", s->regions, s->frictions, size),
+	if (s->felts > 0)
+		member(e, "double", "grips", format("[%d][%d][%d]", s->regions, s->felts, size),
 		       "what friction carries");
 }
 
@@ -94,7 +94,7 @@ static const char *name_of_row(const struct emitter *e, const struct retuned_row
 	case RETUNED_GRIP:        return format("region %d: friction %d", row->of, row->index);
 	case RETUNED_JUMP:
 	case RETUNED_STILL:       return format("impact %d: %s", row->of,
-						model->state_name[s->impact[row->of].jump[row->index].state]);
+						model->state_name[s->impact[row->of].in[0].jump[row->index].state]);
 	case RETUNED_SPEED:       return format("impact %d: speed", row->of);
 	case RETUNED_BACK:        return format("impact %d: back", row->of);
 	case RETUNED_RESTITUTION: return format("impact %d: restitution", row->of);
@@ -309,8 +309,8 @@ static void emit_taken_jumps(const struct emitter *e, const struct guards *g)
 		take(e, retuned_place(r, RETUNED_SPEED, i, 0), format("made.speed[%d]", i), false);
 		take(e, retuned_place(r, RETUNED_BACK, i, 0), format("made.back[%d]", i), false);
 	}
-	for (int k = 0; k < s->regions && s->felt; k++)
-		for (int i = 0; i < s->frictions; i++)
+	for (int k = 0; k < s->regions; k++)
+		for (int i = 0; i < s->felts; i++)
 			take(e, retuned_place(r, RETUNED_GRIP, k, i), format("made.grips[%d][%d]", k, i), false);
 }
 

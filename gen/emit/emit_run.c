@@ -15,7 +15,7 @@ static bool run_rests(const struct emitter *e)
 static void emit_steps(const struct emitter *e)
 {
 	bool inputs = given_inputs(e) > 0;
-	say(e, "    for (; n > 0; n--) {\n");
+	say(e, "    for (; n > 0u; n--) {\n");
 	if (serves_rows(e))
 		say(e, "        if (s->served + 1 < s->valid)\n"
 		       "            $n_inside(s);\n"

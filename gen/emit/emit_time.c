@@ -381,8 +381,10 @@ static void emit_power_entries(const struct emitter *e, int entries, const struc
 
 static void emit_fill_power(const struct emitter *e, int size, int entries)
 {
-	say(e, "    for (i = 0; i < %d; i++)\n"
-	       "        power[i].hi = power[i].lo = 0.0;\n"
+	say(e, "    for (i = 0; i < %d; i++) {\n"
+	       "        power[i].hi = 0.0;\n"
+	       "        power[i].lo = 0.0;\n"
+	       "    }\n"
 	       "    for (i = 0; i < $N_STATES; i++)\n"
 	       "        for (j = 0; j < $N_STATES; j++) {\n"
 	       "            power[%d * i + j].hi = %s[i][j];\n"

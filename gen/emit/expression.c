@@ -246,7 +246,8 @@ static const char *call_text(struct writer *w, const struct atom *a)
 	switch (a->function) {
 	case FN_TABLE: return table_text(w, a);
 	case FN_FRICTION:
-		return format("%s(s, %d)", spell(w->e, "$n_grip"), friction_of(w->e->model->switching, a));
+	case FN_SLIDE:
+		return format("%s(s, %d)", spell(w->e, "$n_grip"), felt_of(w->e->model->switching, a));
 	case FN_MIN:
 	case FN_MAX:   return extreme_text(w, a);
 	case FN_ATAN2: return format("atan2(%s, %s)", argument_text(w, a->operand[0]), argument_text(w, a->operand[1]));

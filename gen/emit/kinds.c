@@ -138,14 +138,7 @@ static bool any_place(const struct emitter *e)
 
 static bool regions_read_load(const struct emitter *e, int load)
 {
-	const struct switching *s = e->model->switching;
-	bool reads = e->model->retuned;
-	for (int x = 0; x < s->expressions; x++)
-		for (int k = 0; k < e->system->load[load].columns * e->system->segments; k++)
-			reads = reads || mpq_sgn(s->expression[x].row->load[load][k]) != 0;
-	for (int x = 0; x < s->systems; x++)
-		reads = reads || load_acts(&s->system[x], &s->system[x].load[load]);
-	return reads;
+	return loads_of_regions(e->step)[load];
 }
 
 static void emit_event_limit(const struct emitter *e)

@@ -75,8 +75,10 @@ void emit_predictor(const struct emitter *e)
 	say(e, "    static const double ahead[3] = {0.5, 0.5, 1.0}, weight[3] = {2.0, 2.0, 1.0};\n"
 	       "    double z[$N_STATES], dz[$N_STATES], sum[$N_STATES], left[%d];\n"
 	       "    int i, k;\n"
-	       "    for (i = 0; i < $N_STATES; i++)\n"
-	       "        sum[i] = dz[i] = first[i];\n", e->model->channels);
+	       "    for (i = 0; i < $N_STATES; i++) {\n"
+	       "        dz[i] = first[i];\n"
+	       "        sum[i] = first[i];\n"
+	       "    }\n", e->model->channels);
 	say(e, "    for (k = 0; k < 3; k++) {\n"
 	       "        for (i = 0; i < $N_STATES; i++) {\n"
 	       "            z[i] = s->y[i] + ahead[k] * tau * dz[i];\n"

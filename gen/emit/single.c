@@ -28,6 +28,7 @@ static const struct name { const char *name, *stem; bool called; } names[] = {
 	{ "pl_impact", "pl_impact", false },
 	{ "pl_guards", "pl_guards", false }, { "pl_guards_start", "pl_guards", false },
 	{ "pl_guards_step", "pl_guards", false }, { "pl_guards_advance", "pl_guards", false },
+	{ "pl_guards_change", "pl_guards", false },
 	{ "pl_switching", "pl_switching", false }, { "pl_switching_start", "pl_switching", false },
 	{ "pl_switching_step", "pl_switching", false }, { "pl_switching_advance", "pl_switching", false },
 	{ "pl_crossing", "pl_crossing", false }, { "pl_divided", "pl_divided", false },
@@ -47,17 +48,10 @@ static const struct name { const char *name, *stem; bool called; } names[] = {
 	{ "copysign", "copysign", true }
 };
 
-static bool in_name(char c)
-{
-	return isalnum((unsigned char)c) || c == '_';
-}
-
 static const char *print_name(FILE *to, const char *text)
 {
-	const char *end = text;
-	while (in_name(*end))
-		end++;
-	size_t length = (size_t)(end - text);
+	size_t length = name_length(text);
+	const char *end = text + length;
 	for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
 		const struct name *n = &names[i];
 		if (strlen(n->name) != length || memcmp(n->name, text, length) != 0 || (n->called && *end != '('))

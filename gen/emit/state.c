@@ -283,14 +283,14 @@ void emit_get_state(const struct emitter *e, const char *vector)
 	       "        const double z = %s[i], sum = z + now[i], back = sum - z;\n"
 	       "        %s[i] = sum + (((z - (sum - back)) + (now[i] - back)) + %s);\n"
 	       "    }\n", vector, vector,
-	       e->step->program->compensated ? "s->rest[i]" : "(s->k == 0 ? s->rest[i] : 0.0)");
+	       e->step->program->compensated ? "s->rest[i]" : "(s->k == 0u ? s->rest[i] : 0.0)");
 }
 
 void emit_get_kept_state(const struct emitter *e, const char *vector)
 {
 	if (e->step->modal) {
 		say(e, "    for (i = 0; i < $N_STATES; i++)\n"
-		       "        %s[i] = s->k == 0 ? s->set[i] : $n_dot($n_from_modes[i], s->y);\n", vector);
+		       "        %s[i] = s->k == 0u ? s->set[i] : $n_dot($n_from_modes[i], s->y);\n", vector);
 		return;
 	}
 	if (e->step->normal) {

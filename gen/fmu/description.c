@@ -149,7 +149,8 @@ static void print_head_3(FILE *to, const struct fmu *f)
 		    "variableNamingConvention=\"flat\">\n", attribute_text(f->title), f->token);
 	fprintf(to, "  <CoSimulation modelIdentifier=\"%s\" canGetAndSetFMUState=\"true\" "
 		    "canSerializeFMUState=\"true\" canHandleVariableCommunicationStepSize=\"false\" "
-		    "fixedInternalStepSize=\"%s\"/>\n", f->name, shortest(f->h));
+		    "fixedInternalStepSize=\"%s\"%s/>\n", f->name, shortest(f->h),
+		f->crosses ? " mightReturnEarlyFromDoStep=\"true\"" : "");
 }
 
 const char *model_description(const struct fmu *f)

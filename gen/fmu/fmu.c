@@ -59,10 +59,12 @@ static const char *model_header(const struct fmu *f, const struct step *step, ui
 		      "#define FMU_H %s\n"
 		      "#define FMU_TOKEN \"%s\"\n"
 		      "#define FMU_MARK 0x%016llx\n"
+		      "%s"
 		      "enum { FMU_STATES = %d, FMU_INPUTS = %d, FMU_OUTPUTS = %d, FMU_PARAMS = %d };\n\n"
 		      "#endif\n",
 		      f->version, name, fmu_header_name(step->model), name, f->single ? "float" : "double",
-		      f->single ? "f" : "", name, shortest(f->h), f->token, (unsigned long long)mark, system->states,
+		      f->single ? "f" : "", name, shortest(f->h), f->token, (unsigned long long)mark,
+		      f->crosses ? format("#define FMU_CROSSED(s) %s_crossed(s)\n", name) : "", system->states,
 		      step->model->spec->inputs, step->model->outputs,
 		      tunables_of(step->model) ? tunables_of(step->model)->params : 0);
 }
@@ -84,6 +86,7 @@ struct fmu *fmu_new(const struct step *step, int version, const char *code, cons
 	f->title = model->spec->name;
 	f->h = nearest_double(model->h);
 	f->math = strstr(code, "\n#include <math.h>\n") != NULL;
+	f->crosses = strstr(header, format("\nuint64_t %s_crossed(", f->name)) != NULL;
 	f->variables = variables_of(step);
 	const uint64_t mark = mark_of(f, code, header);
 	const uint64_t more = hash_of(mark, "token");

@@ -47,6 +47,7 @@ struct fmu {
 	bool single;                /* it is in float */
 	double h;
 	bool math;                  /* its C needs the library of <math.h> */
+	bool crosses;               /* it has breakpoints, and counts how often they are crossed */
 	struct fmu_variables variables;
 	const char *source[FMU_SOURCES]; /* of sources/: those that are compiled */
 	struct archive archive;

@@ -166,7 +166,7 @@ bool response_exact(struct response *response, mpq_srcptr tau, mpq_ptr exact);
 /* false: poles not isolated */
 bool response_enclose(struct response *response, mpq_srcptr tau, int precision, mpfi_ptr value);
 
-/* ---- taylor.c: e^{A tau} as a whole, enclosed by a Taylor series and squarings ---- */
+/* ---- taylor.c, polynomial.c: e^{A tau} as a whole, enclosed or exact ---- */
 
 struct taylor;                      /* one rational A (n x n, row-major) and one tau */
 struct taylor *taylor_of(int n, const mpq_t *A, mpq_srcptr tau);

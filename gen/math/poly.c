@@ -149,6 +149,12 @@ bool poly_equal(struct poly a, struct poly b)
 	return true;
 }
 
+/* Its room was for so many coefficients, of which some may be trimmed. */
+static void release(struct poly p, int room)
+{
+	integers_free(p.c, (size_t)room);
+}
+
 /* Pseudo-remainder of a by b (Knuth, algorithm R): lead(b)^(deg a - deg b + 1) a = q b + r */
 static struct poly pseudo_remainder(struct poly a, struct poly b)
 {
@@ -180,13 +186,18 @@ struct poly poly_divide(struct poly a, struct poly b)
 		for (int i = 0; i < b.length; i++)
 			mpz_submul(r.c[k + i], q.c[k], b.c[i]);
 	}
+	release(r, a.length);
 	poly_trim(&q);
 	return q;
 }
 
 bool poly_divides(struct poly d, struct poly a)
 {
-	return a.length == 0 || (d.length <= a.length && pseudo_remainder(a, d).length == 0);
+	if (a.length == 0 || d.length > a.length)
+		return a.length == 0;
+	struct poly r = pseudo_remainder(a, d);
+	release(r, a.length);
+	return r.length == 0;
 }
 
 /* ---- a quick proof that two polynomials are coprime: so they are modulo a prime that keeps their degrees ---- */
@@ -254,11 +265,18 @@ struct poly poly_gcd(struct poly a, struct poly b)
 	a = primitive_part(a);
 	b = primitive_part(b);
 	while (b.length > 0) {
-		struct poly r = a.length >= b.length ? primitive_part(pseudo_remainder(a, b)) : a;
+		if (a.length < b.length) {
+			struct poly swap = a;
+			a = b;
+			b = swap;
+		}
+		struct poly r = pseudo_remainder(a, b), part = primitive_part(r);
+		release(r, a.length);
+		release(a, a.length);
 		a = b;
-		b = r;
+		b = part;
 	}
-	return primitive_part(a);
+	return a;
 }
 
 /* ---- square-free factors ---- */

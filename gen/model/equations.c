@@ -84,14 +84,17 @@ static void collect_element(void *context)
 	work->snapshot->element[work->index] = form;
 }
 
+/* Up to the first statement that changes its formula where none did before: the interval is then collected again, and
+ * an atom that several equations have is met first where it is in the other intervals. */
 void collect_equations(struct building *b, struct snapshot *snapshot)
 {
-	for (int i = 0; i < b->spec->equations; i++)
+	const int *changes = &b->collector.changes, known = *changes;
+	for (int i = 0; i < b->spec->equations && *changes == known; i++)
 		if (b->spec->equation[i].right)
 			statement_guard(collect_equation, &(struct indexed){ b, snapshot, i });
 	snapshot->written = snapshot->residuals;
 	snapshot->element = ARRAY(struct form *, (size_t)b->spec->elements);
-	for (int i = 0; i < b->spec->elements; i++)
+	for (int i = 0; i < b->spec->elements && *changes == known; i++)
 		statement_guard(collect_element, &(struct indexed){ b, snapshot, i });
 }
 
@@ -182,7 +185,8 @@ static bool can_own(const struct building *b, int row, int coord, enum choice ch
 	if (choice == UNTOUCHED && is_sketched(b, coord))
 		return false;
 	int order = choice == ANY && find_mass(b->spec, coord) ? -1 : order_of(b->model, coord);
-	return has_coordinate_of_order(b->snapshot->residual[row].form, coord, order);
+	const struct form *form = b->snapshot->residual[row].form;
+	return has_coordinate_of_order(form, coord, order) || (order == 1 && has_slider(b, form, coord));
 }
 
 /* An augmenting path of the bipartite matching from equation `row`. */
@@ -282,7 +286,7 @@ static void combine_residuals(const struct building *b, struct snapshot *s)
 }
 
 /* Forces of elements: on the first coordinate as they are, on the second reversed. */
-void add_elements(const struct building *b, struct snapshot *s)
+void add_elements(struct building *b, struct snapshot *s)
 {
 	const struct relative *relative = b->model->relative;
 	int written = b->spec->components;
@@ -297,6 +301,7 @@ void add_elements(const struct building *b, struct snapshot *s)
 		struct residual *to = &s->residual[b->owner[component_of(element->to)]];
 		to->form = form_sum(to->form, s->element[i], true);
 	}
+	resolve_sliders(b, s);
 	if (relative)
 		combine_residuals(b, s);
 }

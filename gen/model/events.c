@@ -2,29 +2,31 @@
 /* Intervals of regions in which something is held, and what begins at their ends. */
 #include "model/model.h"
 
-int impact_at(const struct switching *s, int expression, mpq_srcptr at, bool upward)
+int impact_at(const struct switching *s, int segment, int expression, mpq_srcptr at, bool upward)
+{
+	for (int i = 0; i < s->impacts; i++) {
+		const struct strike *strike = &s->impact[i].in[segment];
+		if (strike->expression == expression && strike->upward == upward && mpq_equal(strike->at, at))
+			return i;
+	}
+	return -1;
+}
+
+int impact_resting(const struct switching *s, int segment, int expression, int interval)
 {
 	for (int i = 0; i < s->impacts; i++)
-		if (s->impact[i].expression == expression && s->impact[i].upward == upward &&
-		    mpq_equal(s->impact[i].at, at))
+		if (s->impact[i].bounces && s->impact[i].in[segment].expression == expression &&
+		    rest_of(s, segment, &s->impact[i]) == interval)
 			return i;
 	return -1;
 }
 
-int impact_resting(const struct switching *s, int expression, int interval)
+int rest_of(const struct switching *s, int segment, const struct impact *impact)
 {
-	for (int i = 0; i < s->impacts; i++)
-		if (s->impact[i].bounces && s->impact[i].expression == expression &&
-		    rest_of(s, &s->impact[i]) == interval)
-			return i;
-	return -1;
-}
-
-int rest_of(const struct switching *s, const struct impact *impact)
-{
-	const struct expression *e = &s->expression[impact->expression];
+	const struct strike *strike = &impact->in[segment];
+	const struct expression *e = &s->expression[strike->expression];
 	for (int k = 1; k < e->breaks && impact->bounces; k++)
-		if (is_stick(e, k) && mpq_equal(e->at[k], impact->at))
+		if (is_stick(e, k) && mpq_equal(e->at[k], strike->at))
 			return k;
 	return -1;
 }
@@ -39,5 +41,10 @@ bool has_bounces(const struct model *model)
 
 bool has_events(const struct switching *s)
 {
-	return s->frictions > 0 || s->impacts > 0;
+	return rubs(s) || s->impacts > 0;
+}
+
+bool rubs(const struct switching *s)
+{
+	return s->frictions > 0 || s->sliders > 0;
 }

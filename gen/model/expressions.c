@@ -263,6 +263,11 @@ int find_expression(struct switching *s, int segment, const struct compared *wha
 	return found;
 }
 
+struct form *form_in(const struct expression *e, int segment)
+{
+	return form_sum(e->in[segment], form_constant(e->shift[segment]), false);
+}
+
 void complete_expressions(struct switching *s)
 {
 	for (int i = 0; i < s->expressions; i++) {
@@ -284,7 +289,7 @@ void complete_expressions(struct switching *s)
 
 static const char *text_in(const struct model *model, const struct expression *e, int segment)
 {
-	return form_text(model, form_sum(e->in[segment], form_constant(e->shift[segment]), false));
+	return form_text(model, form_in(e, segment));
 }
 
 static bool is_as_before(const struct expression *e, int segment)

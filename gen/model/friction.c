@@ -16,7 +16,7 @@ static const struct atom *friction_in(const struct form *form, bool *seen)
 		if (!a || seen[a->index])
 			continue;
 		seen[a->index] = true;
-		if (a->kind == ATOM_CALL && a->function == FN_FRICTION)
+		if (a->kind == ATOM_CALL && a->function >= FN_FRICTION)
 			return a;
 		for (int k = 0; k < a->operands && !found; k++)
 			found = friction_in(a->operand[k], seen);
@@ -28,8 +28,9 @@ static const struct atom *first_friction(const struct building *b)
 {
 	bool *seen = ARRAY(bool, (size_t)atoms_count(b->collector.atoms));
 	const struct atom *found = NULL;
-	for (int i = 0; i < b->model->n && !found; i++)
-		found = friction_in(b->snapshot->residual[i].form, seen);
+	for (int s = 0; s < b->model->system.segments; s++)
+		for (int i = 0; i < b->model->n && !found; i++)
+			found = friction_in(b->snapshot[s].residual[i].form, seen);
 	return found;
 }
 
@@ -42,9 +43,6 @@ void tell_no_friction(const struct building *b)
 {
 	const struct model *model = b->model;
 	const struct node *node = first_friction(b)->node;
-	if (model->system.segments > 1)
-		error(node->at, "the load as an input is exact beside it",
-		      "friction beside loads that change their formula in time is not built yet");
 	if (model->scheme != SCHEME_EXACT)
 		error(node->at, "scheme exact goes from event to event",
 		      "scheme %s has no friction, which sticks and slips", scheme_name(model->scheme));
@@ -54,12 +52,21 @@ void tell_no_friction(const struct building *b)
 
 /* ---- where it sticks ---- */
 
-int friction_of(const struct switching *s, const struct atom *a)
+int friction_of(const struct switching *s, int segment, const struct atom *a)
 {
 	int index = s->frictions - 1;
-	while (index >= 0 && s->friction[index].atom != a)
+	while (index >= 0 && (s->friction[index].atom != a || s->friction[index].segment != segment))
 		index--;
 	return index;
+}
+
+bool is_repeated(const struct switching *s, int friction)
+{
+	bool repeated = false;
+	for (int i = 0; i < friction; i++)
+		repeated = repeated || (s->friction[i].atom->node == s->friction[friction].atom->node &&
+					s->friction[i].segment != s->friction[friction].segment);
+	return repeated;
 }
 
 int stick_of(const struct switching *s, const struct friction *f)
@@ -107,6 +114,8 @@ static void slip(const struct switching *s, int index)
 	mpq_init(sign);
 	for (int i = 0; i < s->frictions; i++) {
 		const struct friction *f = &s->friction[i];
+		if (f->segment != segment_of_region(s, index))
+			continue;
 		int side = interval_of(s, index, f->expression) - stick_of(s, f);
 		mpq_set_si(sign, side < 0 ? -mpq_sgn(f->factor) : mpq_sgn(f->factor), 1);
 		if (side != 0) {
@@ -124,6 +133,7 @@ struct stuck {                      /* one expression that is held, in one regio
 	int expression;
 	const struct atom *atom;    /* the first that acts; NULL: none does */
 	const struct impact *impact; /* that rests there; NULL: it is friction */
+	const struct strike *strike; /* the same in this segment of time */
 	struct form *place;         /* of that: 0 too */
 	mpq_t *direction;           /* per row: of its force */
 	mpq_t *share;               /* per friction: what it carries of that force */
@@ -174,8 +184,8 @@ static void find_direction(const struct switching *s, int index, int expression,
 	mpq_init(ratio);
 	for (int i = 0; i < s->frictions; i++) {
 		const struct friction *f = &s->friction[i];
-		if (f->expression != expression || stick_of(s, f) != interval_of(s, index, expression) ||
-		    !acts(s, region, f))
+		if (f->segment != segment_of_region(s, index) || f->expression != expression ||
+		    stick_of(s, f) != interval_of(s, index, expression) || !acts(s, region, f))
 			continue;
 		int at = f->atom->index;
 		if (!stuck->atom || region->force[stuck->atom->index]->terms == 0)
@@ -200,7 +210,6 @@ static void find_direction(const struct switching *s, int index, int expression,
 static void find_rest(struct building *b, const struct switching *s, int index, struct stuck *stuck)
 {
 	const struct region *region = &s->region[index];
-	const struct impact *impact = stuck->impact;
 	mpq_t part;
 	mpq_init(part);
 	stuck->place = stuck->velocity;
@@ -212,7 +221,7 @@ static void find_rest(struct building *b, const struct switching *s, int index, 
 			const struct form_term *mass = form_find(region->residual[s->row[k]], &basis);
 			if (!mass)
 				continue;
-			mpq_mul(part, mass->factor, impact->direction[j]);
+			mpq_mul(part, mass->factor, stuck->strike->direction[j]);
 			mpq_add(stuck->direction[k], stuck->direction[k], part);
 		}
 	mpq_clear(part);
@@ -231,6 +240,7 @@ static struct place place_of_stuck(const struct stuck *stuck)
 static struct stuck *find_stuck(struct building *b, const struct switching *s, int index, int *count)
 {
 	struct stuck *stuck = ARRAY(struct stuck, (size_t)s->expressions);
+	int segment = segment_of_region(s, index);
 	*count = 0;
 	for (int e = 0; e < s->expressions; e++) {
 		const struct expression *expression = &s->expression[e];
@@ -240,11 +250,13 @@ static struct stuck *find_stuck(struct building *b, const struct switching *s, i
 		struct stuck *new = &stuck[(*count)++];
 		*new = (struct stuck){ .expression = e, .direction = rationals((size_t)s->rows),
 				       .share = rationals((size_t)s->frictions), .pivot = -1 };
-		new->velocity = form_difference(expression->form, form_constant(expression->at[interval]));
+		new->velocity = form_difference(form_in(expression, segment), form_constant(expression->at[interval]));
 		new->rate = rate_of_form(b, new->velocity);
-		int impact = impact_resting(s, e, interval);
-		if (impact >= 0)
+		int impact = impact_resting(s, segment, e, interval);
+		if (impact >= 0) {
 			new->impact = &s->impact[impact];
+			new->strike = &new->impact->in[segment];
+		}
 		if (impact >= 0)
 			find_rest(b, s, index, new);
 		else
@@ -293,22 +305,17 @@ static struct form *replaced(const struct form *form, const struct basis *basis,
 	return sum;
 }
 
-struct holding {                    /* states of a region that follow from the others, as they are found */
-	const struct building *b;
-	struct region *region;
-	struct basis *of;
-};
+const struct form *free_of_holds(const struct holding *h, const struct form *form)
+{
+	for (int i = 0; i < h->region->holds; i++)
+		form = replaced(form, &h->of[i], h->region->hold[i].form);
+	return form;
+}
 
-/* v = 0, solved for a state; false: it follows from what is held already, or contradicts it */
-static bool hold_form(struct holding *h, struct form *v, bool place)
+void hold_state(struct holding *h, const struct form *v, int at)
 {
 	struct region *region = h->region;
 	mpq_t factor;
-	for (int i = 0; i < region->holds; i++)
-		v = replaced(v, &h->of[i], region->hold[i].form);
-	int at = has_states(v) ? place ? place_term(v) : velocity_term(h->b, v) : -1;
-	if (at < 0)
-		return false;
 	struct basis basis = v->term[at].basis;
 	mpq_init(factor);
 	mpq_inv(factor, v->term[at].factor);
@@ -320,16 +327,23 @@ static bool hold_form(struct holding *h, struct form *v, bool place)
 	region->hold[region->holds].state = basis.order ? h->b->model->system.velocity[basis.index] : basis.index;
 	region->hold[region->holds++].form = held;
 	mpq_clear(factor);
-	return true;
+}
+
+/* v = 0, solved for a state; false: it follows from what is held already, or contradicts it */
+static bool hold_form(struct holding *h, const struct form *v, bool place)
+{
+	v = free_of_holds(h, v);
+	int at = has_states(v) ? place ? place_term(v) : velocity_term(h->b, v) : -1;
+	if (at >= 0)
+		hold_state(h, v, at);
+	return at >= 0;
 }
 
 /* What friction cannot hold beside what is held */
 static void tell_held(const struct holding *h, const struct stuck *stuck)
 {
-	struct form *v = stuck->velocity;
+	const struct form *v = free_of_holds(h, stuck->velocity);
 	const struct node *node = stuck->atom->node;
-	for (int i = 0; i < h->region->holds; i++)
-		v = replaced(v, &h->of[i], h->region->hold[i].form);
 	if (v->terms == 0)
 		error(node->at, "without one of them its part is known",
 		      "friction holds what other friction holds already: while all of it sticks its force is not "
@@ -340,11 +354,14 @@ static void tell_held(const struct holding *h, const struct stuck *stuck)
 }
 
 /* States that follow from the others; false: not all of these can stick together. */
-static bool find_holds(const struct building *b, struct region *region, const struct stuck *stuck, int count)
+static bool find_holds(const struct building *b, const struct switching *s, int index, const struct stuck *stuck,
+		       int count)
 {
-	struct holding h = { b, region, ARRAY(struct basis, 2 * (size_t)count) };
+	struct region *region = &s->region[index];
+	size_t most = 2 * (size_t)count + (size_t)s->sliders;
+	struct holding h = { b, region, ARRAY(struct basis, most) };
 	bool possible = true;
-	region->hold = ARRAY(struct hold, 2 * (size_t)count);
+	region->hold = ARRAY(struct hold, most);
 	region->holds = 0;
 	for (int k = 0; k < count && possible; k++) {
 		if (!is_borne(&stuck[k]))
@@ -355,6 +372,8 @@ static bool find_holds(const struct building *b, struct region *region, const st
 	}
 	for (int k = 0; k < count && possible; k++)
 		possible = !stuck[k].impact || hold_form(&h, stuck[k].place, true);
+	if (possible)
+		hold_sliders(&h, s);
 	return possible;
 }
 
@@ -402,7 +421,7 @@ static void solve_for_force(const struct switching *s, struct region *region, st
 	mpq_clears(factor, one, NULL);
 }
 
-static void add_release(struct region *region, int expression, bool upward, struct form *form)
+void add_release(struct region *region, int expression, bool upward, struct form *form)
 {
 	ENLARGE(region->release, (size_t)region->releases + 1);
 	region->release[region->releases++] = (struct release){ expression, upward, form, NULL };
@@ -415,7 +434,7 @@ static void add_releases(const struct switching *s, int index, const struct stuc
 	int stride = s->expression[stuck->expression].stride;
 	const struct form *up = NEW(struct form), *down = up;
 	if (stuck->impact) {                    /* it presses, and does not pull */
-		add_release(region, stuck->expression, !stuck->impact->upward,
+		add_release(region, stuck->expression, !stuck->strike->upward,
 			    form_difference(NEW(struct form), stuck->force));
 		return;
 	}
@@ -443,7 +462,7 @@ static void stick(struct building *b, const struct switching *s, int index)
 	struct region *region = &s->region[index];
 	int count;
 	struct stuck *stuck = find_stuck(b, s, index, &count);
-	region->possible = find_holds(b, region, stuck, count);
+	region->possible = find_holds(b, s, index, stuck, count);
 	if (!region->possible)
 		return;
 	for (int k = 0; k < s->rows; k++)
@@ -471,6 +490,7 @@ void resolve_friction(struct building *b, struct switching *s)
 	for (int r = 0; r < s->regions; r++) {
 		s->region[r].possible = true;   /* but where what sticks contradicts itself */
 		slip(s, r);
+		slide_sliders(b, s, r);
 		stick(b, s, r);
 	}
 }
@@ -488,7 +508,7 @@ static void check_answer(struct building *b, const struct switching *s, const st
 	mpq_inits(answer, part, NULL);
 	leading_inverse(system, inverse, &column);
 	for (int i = 0; i < n; i++) {
-		mpq_srcptr acts = factor_of_friction(b->snapshot->residual[i].form, f);
+		mpq_srcptr acts = factor_of_friction(b->snapshot[f->segment].residual[i].form, f);
 		for (int k = 0; k < rate->terms && acts; k++) {
 			const struct basis *basis = &rate->term[k].basis;
 			if (basis->kind != BASIS_COORD || basis->order != model->frame.coord[basis->index]->highest)
@@ -506,21 +526,71 @@ static void check_answer(struct building *b, const struct switching *s, const st
 }
 
 /* What outputs read of it */
-static void feel(const struct building *b, struct switching *s, bool *seen, const struct form *form)
+static void feel(struct switching *s, bool *seen, const struct form *form)
 {
 	for (int i = 0; i < form->terms; i++) {
 		const struct atom *a = form->term[i].basis.atom;
 		if (!a || seen[a->index])
 			continue;
 		seen[a->index] = true;
-		bool friction = a->kind == ATOM_CALL && a->function == FN_FRICTION;
-		if (friction && friction_of(s, a) < 0)
-			error(a->node->at, "an output repeats it as an equation has it",
-			      "no equation has this friction");
-		s->felt = s->felt || friction;
+		bool friction = a->kind == ATOM_CALL && a->function >= FN_FRICTION;
+		if (friction) {
+			ENLARGE(s->felt, (size_t)s->felts + 1);
+			s->felt[s->felts++] = a;
+		}
 		for (int k = 0; k < a->operands && !friction; k++)
-			feel(b, s, seen, a->operand[k]);
+			feel(s, seen, a->operand[k]);
 	}
+}
+
+int felt_of(const struct switching *s, const struct atom *a)
+{
+	int index = s->felts - 1;
+	while (index >= 0 && s->felt[index] != a)
+		index--;
+	return index;
+}
+
+struct feeling {
+	struct building *b;
+	const struct switching *s;
+	const struct atom *a;
+	int segment, found;
+};
+
+/* Which of a segment of time it is: that which its text is there */
+static void find_felt(void *context)
+{
+	struct feeling *work = context;
+	struct collector *c = &work->b->collector;
+	c->interval = work->segment;
+	forget_lets(work->b->spec);
+	struct node *node = NEW(struct node);
+	*node = *work->a->node;                 /* collecting notes what it finds */
+	const struct value *value = collect(c, node);
+	for (int i = 0; i < value->cell[0]->terms && work->found < 0; i++)
+		if (value->cell[0]->term[i].basis.atom)
+			work->found = friction_of(work->s, work->segment, value->cell[0]->term[i].basis.atom);
+}
+
+static int *felt_in_segments(struct building *b, const struct switching *s, const struct atom *a)
+{
+	int *index = ARRAY(int, (size_t)s->segments);
+	bool any = false;
+	for (int k = 0; k < s->segments; k++) {
+		index[k] = friction_of(s, k, a);
+		if (index[k] < 0 && s->segments > 1) {
+			struct feeling work = { b, s, a, k, -1 };
+			statement_guard(find_felt, &work);
+			index[k] = work.found;
+		}
+		any = any || index[k] >= 0;
+	}
+	b->collector.interval = 0;
+	forget_lets(b->spec);
+	if (!any)
+		error(a->node->at, "an output repeats it as an equation has it", "no equation has this friction");
+	return index;
 }
 
 static void build_grips(struct building *b, struct switching *s)
@@ -530,18 +600,26 @@ static void build_grips(struct building *b, struct switching *s)
 	for (int i = 0; i < model->outputs; i++) {
 		const struct output *output = &model->output[i];
 		if (output->left)
-			feel(b, s, seen, output->left);
+			feel(s, seen, output->left);
 		for (int c = 0; c < model->channels; c++)       /* an acceleration, by its equation */
 			if (mpq_sgn(output->channel[c]) != 0)
-				feel(b, s, seen, model->operator[0].left[c]);
+				feel(s, seen, model->operator[0].left[c]);
 	}
-	for (int r = 0; r < s->regions && s->felt; r++) {
-		struct region *region = &s->region[r];
-		region->grip = ARRAY(struct output *, (size_t)s->frictions);
-		for (int i = 0; i < s->frictions && region->possible; i++) {
-			struct form *carried = region->carried[s->friction[i].atom->index];
-			if (carried)
+	for (int r = 0; r < s->regions; r++)
+		s->region[r].grip = ARRAY(struct output *, (size_t)s->felts);
+	for (int i = 0; i < s->felts; i++) {
+		bool slides = s->felt[i]->function == FN_SLIDE;
+		const int *index = slides ? NULL : felt_in_segments(b, s, s->felt[i]);
+		for (int r = 0; r < s->regions; r++) {
+			struct region *region = &s->region[r];
+			int here = slides ? -1 : index[segment_of_region(s, r)];
+			struct form *carried = slides     ? slide_velocity(s, region, s->felt[i]->node)
+					       : here < 0 ? NULL
+							  : region->carried[s->friction[here].atom->index];
+			if (carried && region->possible)
 				region->grip[i] = row_in_system(b, &s->system[region->system], carried);
+			if (region->grip[i])
+				region->grip[i]->form = carried;
 		}
 	}
 }

@@ -55,7 +55,7 @@ static void check_stop(struct building *b, const struct when *when, mpq_ptr rest
 struct collecting {
 	struct building *b;
 	const struct when *when;
-	struct impact *impact;
+	struct strike *strike;
 };
 
 static int state_at(const struct building *b, const struct node *target)
@@ -76,47 +76,101 @@ static bool is_ramp(const struct building *b, int input)
 	return ramp;
 }
 
-static void collect_impact(void *context)
+static void collect_jumps(struct building *b, const struct when *when, struct strike *strike)
 {
-	struct collecting *work = context;
-	struct building *b = work->b;
-	const struct when *when = work->when;
-	struct impact *impact = work->impact;
-	struct node *const *side = when->guard->child;
-	mpq_inits(impact->restitution, impact->gap, impact->answer, impact->at, impact->factor, NULL);
-	impact->when = when;
-	if (when->restitution)
-		check_stop(b, when, impact->restitution, impact->gap);
-	struct form *left = scalar_form(b, side[0]), *right = scalar_form(b, side[1]);
-	check_linear(b, side[0], left, "a guard");
-	check_linear(b, side[1], right, "a guard");
-	impact->rising = is_rising(when);
-	impact->guard = impact->rising ? form_difference(left, right) : form_difference(right, left);
-	if (is_constant(impact->guard))
-		error(when->guard->start, "a coordinate, a velocity, a load or an input against a constant",
-		      "this guard never changes");
-	for (int i = 0; i < impact->guard->terms; i++)
-		if (impact->guard->term[i].basis.kind == BASIS_INPUT && !is_ramp(b, impact->guard->term[i].basis.index))
-			error(when->guard->start, "as a ramp it moves: input ... hold first",
-			      "this guard jumps with an input that is held");
-	impact->jump = ARRAY(struct jump, (size_t)when->jumps + (size_t)b->model->n);
+	strike->jump = ARRAY(struct jump, (size_t)when->jumps + (size_t)b->model->n);
 	for (int i = 0; i < when->jumps; i++) {
-		struct jump *jump = &impact->jump[impact->jumps++];
+		struct jump *jump = &strike->jump[strike->jumps++];
 		jump->state = state_at(b, when->jump[i].target);
 		jump->form = scalar_form(b, when->jump[i].value);
 		check_linear(b, when->jump[i].value, jump->form, "a jump");
 	}
 }
 
-/* In the first interval of time: beside loads that change their formula there are none. */
-void collect_impacts(struct building *b)
+static void collect_impact(void *context)
+{
+	struct collecting *work = context;
+	struct building *b = work->b;
+	const struct when *when = work->when;
+	struct strike *strike = work->strike;
+	struct node *const *side = when->guard->child;
+	mpq_inits(strike->restitution, strike->gap, strike->answer, strike->at, strike->factor, NULL);
+	if (when->restitution)
+		check_stop(b, when, strike->restitution, strike->gap);
+	struct form *left = scalar_form(b, side[0]), *right = scalar_form(b, side[1]);
+	check_linear(b, side[0], left, "a guard");
+	check_linear(b, side[1], right, "a guard");
+	strike->guard = is_rising(when) ? form_difference(left, right) : form_difference(right, left);
+	if (is_constant(strike->guard))
+		error(when->guard->start, "a coordinate, a velocity, a load or an input against a constant",
+		      "this guard never changes");
+	for (int i = 0; i < strike->guard->terms; i++) {
+		const struct basis *basis = &strike->guard->term[i].basis;
+		if (basis->kind == BASIS_INPUT && !is_ramp(b, basis->index))
+			error(when->guard->start, "as a ramp it moves: input ... hold first",
+			      "this guard jumps with an input that is held");
+	}
+	collect_jumps(b, when, strike);
+}
+
+void collect_impacts(struct building *b, struct snapshot *snapshot)
+{
+	const struct spec *spec = b->spec;
+	snapshot->strike = ARRAY(struct strike *, (size_t)spec->whens);
+	for (int i = 0; i < spec->whens; i++) {
+		struct strike *strike = NEW(struct strike);
+		if (statement_guard(collect_impact, &(struct collecting){ b, &spec->when[i], strike }))
+			snapshot->strike[i] = strike;
+	}
+}
+
+static struct strike copied(const struct building *b, const struct when *when, const struct strike *from)
+{
+	struct strike copy = *from;
+	mpq_inits(copy.restitution, copy.gap, copy.answer, copy.at, copy.factor, NULL);
+	mpq_set(copy.gap, from->gap);
+	mpq_set(copy.answer, from->answer);
+	mpq_set(copy.restitution, from->restitution);
+	copy.jump = ARRAY(struct jump, (size_t)when->jumps + (size_t)b->model->n);
+	for (int k = 0; k < copy.jumps; k++)
+		copy.jump[k] = from->jump[k];
+	return copy;
+}
+
+void gather_impacts(struct building *b)
 {
 	struct model *model = b->model;
 	const struct spec *spec = b->spec;
-	model->impacts = spec->whens;
+	const int segments = model->system.segments;
+	if (spec->whens > LIMIT_IMPACTS)
+		error(spec->when[LIMIT_IMPACTS].at, NULL, "more impacts than the limit of %d", LIMIT_IMPACTS);
 	model->impact = ARRAY(struct impact, (size_t)spec->whens);
-	for (int i = 0; i < spec->whens; i++)
-		statement_guard(collect_impact, &(struct collecting){ b, &spec->when[i], &model->impact[i] });
+	if (diagnostics_errors())
+		return;
+	model->impacts = spec->whens;
+	for (int i = 0; i < spec->whens; i++) {
+		struct impact *impact = &model->impact[i];
+		*impact = (struct impact){ .when = &spec->when[i], .in = ARRAY(struct strike, (size_t)segments) };
+		for (int s = 0; s < segments; s++)
+			impact->in[s] = copied(b, impact->when, b->snapshot[s].strike[i]);
+	}
+}
+
+static bool same_strike(const struct strike *a, const struct strike *b)
+{
+	bool same = a->jumps == b->jumps && same_form(a->guard, b->guard);
+	for (int k = 0; k < a->jumps && same; k++)
+		same = same_form(a->jump[k].form, b->jump[k].form);
+	return same;
+}
+
+bool strikes_change(const struct building *b)
+{
+	bool changes = false;
+	for (int i = 0; i < b->model->impacts; i++)
+		for (int s = 1; s < b->model->system.segments; s++)
+			changes = changes || !same_strike(b->model->impact[i].in, &b->model->impact[i].in[s]);
+	return changes;
 }
 
 void tell_no_impacts(const struct building *b)
@@ -129,9 +183,6 @@ void tell_no_impacts(const struct building *b)
 	if (b->request->loads_left)
 		error(at, "without --loads leftover they are exact",
 		      "scheme exact, which impacts need, leaves no load over");
-	if (model->system.segments > 1)
-		error(at, "the load as an input is exact beside it",
-		      "impacts beside loads that change their formula in time are not built yet");
 	if (model->scheme != SCHEME_EXACT)
 		error(at, "scheme exact goes from event to event", "scheme %s has no impacts",
 		      scheme_name(model->scheme));
@@ -141,22 +192,22 @@ void tell_no_impacts(const struct building *b)
 
 /* ---- what a jump does to a form ---- */
 
-static const struct jump *jump_of(const struct building *b, const struct impact *impact, const struct basis *basis)
+static const struct jump *jump_of(const struct building *b, const struct strike *strike, const struct basis *basis)
 {
-	for (int i = 0; i < impact->jumps && basis->kind == BASIS_COORD; i++) {
+	for (int i = 0; i < strike->jumps && basis->kind == BASIS_COORD; i++) {
 		int state = basis->order ? b->model->system.velocity[basis->index] : basis->index;
-		if (impact->jump[i].state == state)
-			return &impact->jump[i];
+		if (strike->jump[i].state == state)
+			return &strike->jump[i];
 	}
 	return NULL;
 }
 
 /* The form of the state behind the jump, over the state before it */
-static struct form *behind(const struct building *b, const struct impact *impact, const struct form *form)
+static struct form *behind(const struct building *b, const struct strike *strike, const struct form *form)
 {
 	struct form *sum = NEW(struct form);
 	for (int i = 0; i < form->terms; i++) {
-		const struct jump *jump = jump_of(b, impact, &form->term[i].basis);
+		const struct jump *jump = jump_of(b, strike, &form->term[i].basis);
 		if (jump)
 			form_add_to(sum, jump->form, form->term[i].factor);
 		else
@@ -194,41 +245,38 @@ static _Noreturn void tell_again(const struct when *when, const char *why)
 }
 
 /* Behind its own jump a guard may not stand where it is true, nor go on to there. */
-static void check_jump(void *context)
+static void check_jump(struct building *b, const struct when *when, const struct strike *strike)
 {
-	struct collecting *work = context;
-	struct building *b = work->b;
-	const struct impact *impact = work->impact;
 	mpq_t ratio, rest;
 	mpq_inits(ratio, rest, NULL);
-	bool known = is_along(b, behind(b, impact, impact->guard), impact->guard, ratio, rest);
+	bool known = is_along(b, behind(b, strike, strike->guard), strike->guard, ratio, rest);
 	if (known && mpq_sgn(rest) > 0)
-		tell_again(impact->when, "behind it the guard is true, by a constant");
+		tell_again(when, "behind it the guard is true, by a constant");
 	bool stays = known && mpq_sgn(rest) == 0;
-	if (stays && !reads_highest(b, impact->speed) && !is_constant(impact->speed) &&
-	    is_along(b, behind(b, impact, impact->speed), impact->speed, ratio, rest) && mpq_sgn(rest) == 0 &&
+	if (stays && !reads_highest(b, strike->speed) && !is_constant(strike->speed) &&
+	    is_along(b, behind(b, strike, strike->speed), strike->speed, ratio, rest) && mpq_sgn(rest) == 0 &&
 	    mpq_sgn(ratio) > 0)
-		tell_again(impact->when, "behind it the guard goes on as it came");
+		tell_again(when, "behind it the guard goes on as it came");
 	mpq_clears(ratio, rest, NULL);
 }
 
 /* ---- bounces ---- */
 
 /* Whether each jump is v -> v - (1 + e) d s of velocities v, s the speed of the guard; then e and d */
-static bool find_bounce(struct building *b, struct impact *impact)
+static bool find_bounce(struct building *b, struct strike *strike)
 {
 	const struct linear *system = &b->model->system;
 	mpq_t *part = rationals((size_t)b->model->n), turned, product, rest;
-	bool bounce = !reads_highest(b, impact->speed) && !is_constant(impact->speed);
+	bool bounce = !reads_highest(b, strike->speed) && !is_constant(strike->speed);
 	mpq_inits(turned, product, rest, NULL);
-	for (int i = 0; i < impact->jumps && bounce; i++) {
-		int state = impact->jump[i].state, coord = system->coord[state];
+	for (int i = 0; i < strike->jumps && bounce; i++) {
+		int state = strike->jump[i].state, coord = system->coord[state];
 		struct basis basis = { .kind = BASIS_COORD, .index = coord, .order = 1 };
 		bounce = state >= b->model->n &&
-			 is_along(b, form_difference(form_unit(basis), impact->jump[i].form), impact->speed,
+			 is_along(b, form_difference(form_unit(basis), strike->jump[i].form), strike->speed,
 				  part[coord], rest) &&
 			 mpq_sgn(rest) == 0;
-		const struct form_term *term = bounce ? form_find(impact->speed, &basis) : NULL;
+		const struct form_term *term = bounce ? form_find(strike->speed, &basis) : NULL;
 		if (term)
 			mpq_mul(product, term->factor, part[coord]);
 		if (term)
@@ -239,8 +287,8 @@ static bool find_bounce(struct building *b, struct impact *impact)
 	for (int j = 0; j < b->model->n && bounce; j++)
 		mpq_div(part[j], part[j], turned);
 	if (bounce)
-		mpq_sub(impact->restitution, turned, rest);
-	impact->direction = bounce ? part : NULL;
+		mpq_sub(strike->restitution, turned, rest);
+	strike->direction = bounce ? part : NULL;
 	mpq_clears(turned, product, rest, NULL);
 	return bounce;
 }
@@ -259,21 +307,21 @@ static void add_row(const struct building *b, const struct node *end, int sign, 
 }
 
 /* v -> v - (1 + e) d s; returns how many */
-static int velocity_jumps(const struct building *b, const struct impact *impact, mpq_srcptr e, struct jump *jump)
+static int velocity_jumps(const struct building *b, const struct strike *strike, mpq_srcptr e, struct jump *jump)
 {
 	int jumps = 0;
 	mpq_t factor;
 	mpq_init(factor);
 	for (int j = 0; j < b->model->n; j++) {
-		if (mpq_sgn(impact->direction[j]) == 0)
+		if (mpq_sgn(strike->direction[j]) == 0)
 			continue;
 		struct basis basis = { .kind = BASIS_COORD, .index = j, .order = 1 };
 		mpq_set_si(factor, -1, 1);
 		mpq_sub(factor, factor, e);
-		mpq_mul(factor, factor, impact->direction[j]);
+		mpq_mul(factor, factor, strike->direction[j]);
 		jump[jumps++] = (struct jump){
 			.state = b->model->system.velocity[j],
-			.form = form_sum(form_unit(basis), form_scale(impact->speed, factor), false)
+			.form = form_sum(form_unit(basis), form_scale(strike->speed, factor), false)
 		};
 	}
 	mpq_clear(factor);
@@ -301,43 +349,40 @@ static mpq_t *inverse_masses(const struct building *b)
 }
 
 /* d = M^-1 f/(s M^-1 f), f the force of contact on the equations of the two */
-static void find_jumps(void *context)
+static void find_jumps(struct building *b, const struct when *when, struct strike *strike)
 {
-	struct collecting *work = context;
-	struct building *b = work->b;
-	struct impact *impact = work->impact;
 	int n = b->model->n;
 	mpq_t *inverse = inverse_masses(b), *force = rationals((size_t)n), *d = rationals((size_t)n), speed, factor;
 	mpq_inits(speed, factor, NULL);
-	add_row(b, work->when->from, 1, force);
-	add_row(b, work->when->to, -1, force);
+	add_row(b, when->from, 1, force);
+	add_row(b, when->to, -1, force);
 	rational_product(n, n, 1, (const mpq_t *)inverse, (const mpq_t *)force, d);
-	for (int i = 0; i < impact->speed->terms; i++) {
-		const struct basis *basis = &impact->speed->term[i].basis;
+	for (int i = 0; i < strike->speed->terms; i++) {
+		const struct basis *basis = &strike->speed->term[i].basis;
 		if (basis->kind != BASIS_COORD)
 			continue;
-		mpq_mul(factor, impact->speed->term[i].factor, d[basis->index]);
+		mpq_mul(factor, strike->speed->term[i].factor, d[basis->index]);
 		mpq_add(speed, speed, factor);
 	}
 	if (mpq_sgn(speed) <= 0)
-		error(impact->when->at, NULL, "the masses at this stop do not make a force part them");
+		error(when->at, NULL, "the masses at this stop do not make a force part them");
 	for (int j = 0; j < n; j++)
 		mpq_div(d[j], d[j], speed);
-	mpq_set(impact->answer, speed);
-	impact->direction = d;
-	impact->jumps = velocity_jumps(b, impact, impact->restitution, impact->jump);
+	mpq_set(strike->answer, speed);
+	strike->direction = d;
+	strike->jumps = velocity_jumps(b, strike, strike->restitution, strike->jump);
 	mpq_clears(speed, factor, NULL);
 }
 
 /* What is left where nothing comes back */
-static void still_jumps(struct building *b, struct impact *impact)
+static void still_jumps(struct building *b, struct strike *strike)
 {
 	mpq_t none;
 	mpq_init(none);
-	impact->still = ARRAY(struct jump, (size_t)b->model->n);
-	impact->jump = ARRAY(struct jump, (size_t)b->model->n);
-	velocity_jumps(b, impact, none, impact->still);
-	impact->jumps = velocity_jumps(b, impact, impact->restitution, impact->jump);
+	strike->still = ARRAY(struct jump, (size_t)b->model->n);
+	strike->jump = ARRAY(struct jump, (size_t)b->model->n);
+	velocity_jumps(b, strike, none, strike->still);
+	strike->jumps = velocity_jumps(b, strike, strike->restitution, strike->jump);
 	mpq_clear(none);
 }
 
@@ -355,50 +400,112 @@ static void check_alike(void *context)
 	mpq_t ratio, rest;
 	mpq_inits(ratio, rest, NULL);
 	for (int i = 0; i < work->index; i++)
-		if (is_along(b, impact->guard, all[i].guard, ratio, rest) && mpq_sgn(rest) == 0)
-			error(impact->when->guard->start, "all that jumps there belongs into one 'when', with commas",
-			      "another 'when' or stop has this guard already");
+		for (int s = 0; s < b->model->system.segments; s++)
+			if (is_along(b, impact->in[s].guard, all[i].in[s].guard, ratio, rest) && mpq_sgn(rest) == 0)
+				error(impact->when->guard->start,
+				      "all that jumps there belongs into one 'when', with commas",
+				      "another 'when' or stop has this guard already");
 	mpq_clears(ratio, rest, NULL);
+}
+
+/* A contact that rests stays what it is when a load changes its formula. */
+static void tell_bounce_changes(const struct building *b, const struct when *when, int segment, bool bounces)
+{
+	error(when->at, "one that turns the speed of its guard does so at all times, or at none",
+	      "what jumps here is a bounce %s t = %s and none %s it", bounces ? "from" : "before",
+	      readable_text(b->model->system.change[segment - 1]), bounces ? "before" : "from");
+}
+
+static void build_impact(void *context)
+{
+	struct indexed *work = context;
+	struct building *b = work->b;
+	struct impact *impact = &b->model->impact[work->index];
+	const struct when *when = impact->when;
+	for (int s = 0; s < b->model->system.segments; s++) {
+		struct strike *strike = &impact->in[s];
+		bool bounces = when->restitution != NULL;
+		strike->speed = rate_of_form(b, strike->guard);
+		if (when->restitution)
+			find_jumps(b, when, strike);
+		else
+			bounces = find_bounce(b, strike);
+		if (s > 0 && bounces != impact->bounces)
+			tell_bounce_changes(b, when, s, bounces);
+		impact->bounces = bounces;
+		check_jump(b, when, strike);
+		if (bounces)
+			still_jumps(b, strike);
+	}
 }
 
 /* Once masses are known: which guards bounce, and how */
 void build_impacts(struct building *b)
 {
-	for (int i = 0; i < b->model->impacts; i++) {
-		struct impact *impact = &b->model->impact[i];
-		impact->speed = rate_of_form(b, impact->guard);
-		if (!impact->when->restitution)
-			impact->bounces = find_bounce(b, impact);
-		else
-			impact->bounces = statement_guard(find_jumps, &(struct collecting){ b, impact->when, impact });
-		statement_guard(check_jump, &(struct collecting){ b, impact->when, impact });
-		if (impact->bounces)
-			still_jumps(b, impact);
-	}
+	for (int i = 0; i < b->model->impacts; i++)
+		statement_guard(build_impact, &(struct indexed){ b, i });
 	for (int i = 1; i < b->model->impacts; i++)
 		statement_guard(check_alike, &(struct indexed){ b, i });
+}
+
+/* ---- guards that jump with a load ---- */
+
+struct jumping {
+	struct building *b;
+	const struct form *by;
+	int segment;                /* behind the change */
+	mpq_t value;
+};
+
+static void find_value(void *context)
+{
+	struct jumping *work = context;
+	struct collector *c = &work->b->collector;
+	mpq_srcptr change = work->b->model->system.change[work->segment - 1];
+	struct fixing t = { .form = form_constant(change) };
+	mpq_init(t.value);
+	mpq_set(t.value, change);
+	constant_value(c, form_at(point_new(c, 1, &t), work->by), work->value);
+}
+
+bool closes_by_jump(struct building *b, const struct impact *impact, int segment)
+{
+	struct jumping work = { .b = b, .segment = segment };
+	work.by = form_difference(impact->in[segment].guard, impact->in[segment - 1].guard);
+	mpq_init(work.value);
+	for (int i = 0; i < work.by->terms; i++)
+		if (work.by->term[i].basis.kind >= BASIS_INPUT)
+			return false;
+	bool known = silent_guard(find_value, &work);
+	bool closes = known && nearest_double(work.value) > 1e-30;      /* but for irrationals of 256 bits */
+	mpq_clear(work.value);
+	return closes;
 }
 
 /* ---- in regions ---- */
 
 void place_impact_loads(struct building *b, const struct switching *s)
 {
-	for (int i = 0; i < s->impacts; i++) {
-		place_loads(b, s->impact[i].speed);
-		for (int k = 0; k < s->impact[i].jumps; k++)
-			place_loads(b, s->impact[i].jump[k].form);
-	}
+	for (int i = 0; i < s->impacts; i++)
+		for (int segment = 0; segment < s->segments; segment++) {
+			const struct strike *strike = &s->impact[i].in[segment];
+			place_loads(b, strike->speed);
+			for (int k = 0; k < strike->jumps; k++)
+				place_loads(b, strike->jump[k].form);
+		}
 }
 
 void build_impact_rows(struct building *b, struct switching *s)
 {
-	for (int i = 0; i < s->impacts; i++) {
-		struct impact *impact = &s->impact[i];
-		for (int k = 0; k < impact->jumps; k++)
-			impact->jump[k].row = row_of_form(b, impact->jump[k].form);
-		for (int k = 0; k < impact->jumps && impact->bounces; k++)
-			impact->still[k].row = row_of_form(b, impact->still[k].form);
-		if (impact->bounces)
-			impact->speed_row = row_of_form(b, impact->speed);
-	}
+	for (int i = 0; i < s->impacts; i++)
+		for (int segment = 0; segment < s->segments; segment++) {
+			struct strike *strike = &s->impact[i].in[segment];
+			bool bounces = s->impact[i].bounces;
+			for (int k = 0; k < strike->jumps; k++)
+				strike->jump[k].row = row_of_form(b, strike->jump[k].form);
+			for (int k = 0; k < strike->jumps && bounces; k++)
+				strike->still[k].row = row_of_form(b, strike->still[k].form);
+			if (bounces)
+				strike->speed_row = row_of_form(b, strike->speed);
+		}
 }

@@ -394,6 +394,7 @@ static void collect_interval(struct building *b, struct snapshot *snapshot)
 {
 	forget_lets(b->spec);
 	collect_equations(b, snapshot);
+	collect_impacts(b, snapshot);
 	forget_lets(b->spec);                   /* collected anew: in an output no atom is kept */
 	collect_outputs(b, snapshot);
 }
@@ -412,7 +413,7 @@ static void part_snapshots(struct snapshot *snapshot, int count)
 	}
 }
 
-/* Equations and outputs in each interval of time. When a change of formula is met for the first time, the intervals
+/* Equations, impacts and outputs in each interval of time. When a change of formula is met for the first time, the intervals
  * before that are known, even where it divides them: what they read does not change there. */
 static void collect_intervals(struct building *b)
 {
@@ -544,7 +545,7 @@ static void collect_model(struct building *b)
 	collect_intervals(b);
 	if (b->spec->tunables > 0 && (all || request->factor) && !diagnostics_errors())
 		collect_with_params(b);
-	collect_impacts(b);
+	gather_impacts(b);
 	if (all)
 		evaluate_lets(b);
 	model->initial = rationals((size_t)model->system.states);

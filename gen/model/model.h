@@ -202,6 +202,8 @@ struct model {
 	int *channel_row;           /* its equation */
 	struct form **left_slope;   /* of a scheme that collocates: [channel][state], the leftover's derivative */
 	const struct atoms *atoms;
+	int bearings;
+	struct bearing *bearing;    /* friction without mass, by what it bears */
 	struct switching *switching; /* exact: the regions of a piecewise-linear model; NULL: it has one */
 	int impacts;                /* in the order in which they act at one instant */
 	struct impact *impact;
@@ -293,30 +295,41 @@ struct jump {                       /* a state just behind an impact, over state
 	struct form *form;
 	struct output *row;
 };
-struct impact {                     /* of `when`, or of a stop */
-	const struct when *when;
-	bool rising;                /* as written it rises where it comes true */
-	struct form *guard, *speed; /* turned so that it does, through 0; its derivative */
+struct strike {                     /* what an impact is in one segment of time */
+	struct form *guard, *speed; /* turned so that it rises where it comes true, through 0; its derivative */
 	int jumps;
 	struct jump *jump;
-	/* v -> v - (1 + e) d s, s the speed: a bounce, which may come to rest; else the jump is any other */
-	bool bounces;
-	mpq_t restitution;          /* e */
+	mpq_t restitution;          /* of a bounce: e */
 	mpq_t gap, answer;          /* of a stop, as numbers; answer: of its speed to a force of contact */
 	mpq_t *direction;           /* d, per coordinate */
-	struct jump *still;         /* of a bounce: its jumps if e were 0 */
+	struct jump *still;         /* its jumps if e were 0 */
 	struct output *speed_row;
 	int expression;             /* its guard is a multiple of this one, less a breakpoint, */
 	mpq_t at, factor;           /* guard = factor (expression - at) */
 	bool upward;                /* which it passes this way */
 };
+struct impact {                     /* of `when`, or of a stop */
+	const struct when *when;
+	/* v -> v - (1 + e) d s, s the speed: a bounce, which may come to rest; else the jump is any other */
+	bool bounces;
+	struct strike *in;          /* per segment of time of the model */
+};
 /* friction(v, F): v is an expression less a breakpoint that stands there twice, the interval of sticking between */
-struct friction {
+struct friction {                   /* in one segment of time */
 	const struct atom *atom;
-	int expression;
+	int segment, expression;
 	mpq_t at;                   /* that breakpoint */
 	mpq_t factor;               /* v = factor (expression - at) */
 	bool negative;              /* F may fall below 0, and counts as 0 there */
+};
+struct bearing { const struct atom *atom; const struct form *borne; };
+/* Of FN_SLIDE: friction of what has no mass, by what it bears; it slides beyond a breakpoint of q - F or of -q - F */
+struct slider {
+	const struct atom *atom;
+	int expression[2];          /* that of either */
+	mpq_t at[2];                /* its breakpoint, */
+	bool upward[2];             /* which is passed upward where the sliding begins */
+	bool negative;              /* F may fall below 0 */
 };
 struct hold {                       /* a state that a region gives: of what sticks a velocity follows from the others */
 	int state;
@@ -335,7 +348,8 @@ struct region {                     /* one interval for each expression, in one 
 	struct form **residual;     /* per row: linear; friction stands in it as an atom until its force is put in */
 	struct form **force, **rest; /* per friction: F, and what it holds up to at rest; NULL: none acts here */
 	struct form **carried;      /* per friction's atom: what it carries, as it stands on the left side */
-	struct output **grip;       /* per friction: the same as a row; NULL: nothing */
+	struct output **grip;       /* per friction that outputs read: the same as a row; NULL: nothing */
+	int *slide;                 /* per slider's atom: 1 or -1 where it slides */
 	int holds, releases;
 	struct hold *hold;
 	struct release *release;
@@ -361,9 +375,12 @@ struct switching {
 	struct region_part *part;
 	int frictions;
 	struct friction *friction;
+	int sliders;
+	struct slider *slider;
 	int impacts;                /* the model's */
 	struct impact *impact;
-	bool felt;                  /* an output reads what it carries */
+	int felts;                  /* friction of which outputs read what it carries: as they have it, for all time */
+	const struct atom **felt;
 	int signs;                  /* where there are factors */
 	struct sign *sign;
 	int sharing;                /* parts that have these regions together, since some move as a whole */
@@ -408,6 +425,7 @@ struct snapshot {                   /* the equations and outputs in one interval
 	struct residual *residual;
 	struct form **element;      /* per element of the sketch: its force */
 	struct value **output;      /* per output statement; NULL: not linear */
+	struct strike **strike;     /* per `when` and stop; NULL: it has been told */
 };
 
 /* ---- blocks.c: coordinates that do not influence each other ---- */
@@ -469,7 +487,7 @@ struct output *row_in_system(struct building *b, const struct linear *system, st
 int  coordinate_of_row(const struct model *model, int row);       /* whose equation it is */
 void collect_whole(struct building *b);                     /* the equations for all time, atoms kept: b->whole */
 bool assign_equations(struct building *b);                  /* false: it was said which is missing or too many */
-void add_elements(const struct building *b, struct snapshot *s); /* the sketch's forces to the residuals */
+void add_elements(struct building *b, struct snapshot *s); /* the sketch's forces to the residuals */
 void check_mass(const struct building *b);
 
 /* ---- delays.c: inputs as they were some time ago ---- */
@@ -544,6 +562,7 @@ struct compared {                   /* form + constant with 0 */
 int  find_expression(struct switching *s, int segment, const struct compared *what, mpq_ptr of, mpq_ptr at);
 /* In segments where nothing depends on it, it is as in the one before, or after. */
 void complete_expressions(struct switching *s);
+struct form *form_in(const struct expression *e, int segment); /* what breakpoints divide, in a segment of time */
 bool share_expression(const struct switching *a, const struct switching *b);
 bool changes_in_time(const struct expression *e);
 const char *spoken_expression(const struct model *model, int index);  /* x - t; from t = 2 on x - 1 */
@@ -564,8 +583,12 @@ int  possible_regions(const struct switching *s);
 
 /* ---- impacts.c: state jumps, and what bounces ---- */
 
-void collect_impacts(struct building *b);
+void collect_impacts(struct building *b, struct snapshot *snapshot); /* in one interval of time */
+void gather_impacts(struct building *b);                    /* of all of them */
 void build_impacts(struct building *b);                     /* once the masses are known */
+bool strikes_change(const struct building *b);              /* from interval to interval */
+/* At the start of this segment of time a load takes the guard up, so that it may come true by no crossing. */
+bool closes_by_jump(struct building *b, const struct impact *impact, int segment);
 void place_impact_loads(struct building *b, const struct switching *s);
 void build_impact_rows(struct building *b, struct switching *s);
 _Noreturn void tell_no_impacts(const struct building *b);   /* why a scheme cannot treat them */
@@ -573,11 +596,13 @@ _Noreturn void tell_no_impacts(const struct building *b);   /* why a scheme cann
 /* ---- events.c: what is held in regions, and what begins there ---- */
 
 bool is_stick(const struct expression *e, int interval);    /* between two equal breakpoints */
-/* which begins where an expression passes a breakpoint this way; -1: none does */
-int  impact_at(const struct switching *s, int expression, mpq_srcptr at, bool upward);
-int  impact_resting(const struct switching *s, int expression, int interval);  /* there; -1: none does */
-int  rest_of(const struct switching *s, const struct impact *impact); /* the interval in which it rests; -1: none */
+/* In one segment of time: which begins where an expression passes a breakpoint this way; -1: none does */
+int  impact_at(const struct switching *s, int segment, int expression, mpq_srcptr at, bool upward);
+int  impact_resting(const struct switching *s, int segment, int expression, int interval); /* there; -1: none does */
+/* the interval in which it rests; -1: it is no bounce */
+int  rest_of(const struct switching *s, int segment, const struct impact *impact);
 bool has_bounces(const struct model *model);
+bool rubs(const struct switching *s);                       /* there is friction, with mass or without */
 bool has_events(const struct switching *s);                 /* each region has its own: friction, impacts */
 
 /* ---- friction.c: dry friction in regions, where it slips and where it sticks ---- */
@@ -587,10 +612,35 @@ _Noreturn void tell_no_friction(const struct building *b);  /* why a scheme cann
 struct form *rate_of_form(struct building *b, const struct form *form); /* its derivative with respect to time */
 int  stick_of(const struct switching *s, const struct friction *f); /* the interval in which it sticks */
 /* puts in the forces of what slips, and the constraints of what sticks */
-int  friction_of(const struct switching *s, const struct atom *a); /* its index; -1: no equation has it */
+/* its index; -1: no equation has it in this segment of time */
+int  friction_of(const struct switching *s, int segment, const struct atom *a);
+int  felt_of(const struct switching *s, const struct atom *a); /* among those that outputs read */
+bool is_repeated(const struct switching *s, int friction);  /* as written it stands there for an earlier segment too */
 void resolve_friction(struct building *b, struct switching *s);
 void build_friction(struct building *b, struct switching *s); /* rows of holds and releases; after all systems */
+struct holding {                    /* states of a region that follow from the others, as they are found */
+	const struct building *b;
+	struct region *region;
+	struct basis *of;
+};
+const struct form *free_of_holds(const struct holding *h, const struct form *form);     /* without what is held */
+void hold_state(struct holding *h, const struct form *v, int at);   /* v = 0, solved for the state of its term `at` */
+void add_release(struct region *region, int expression, bool upward, struct form *form);
 bool same_friction(const struct region *a, const struct region *b); /* what sticks is held and released alike */
+
+/* ---- slider.c: friction of what has no mass ---- */
+
+/* Whether friction stands in the form whose velocity is of a coordinate of first order: this one; -1: any */
+bool has_slider(const struct building *b, const struct form *form, int coord);
+void resolve_sliders(struct building *b, struct snapshot *snapshot); /* its equation gives the force that it bears */
+/* in a region: the equations of what slides, where that ends, and the places that follow from what it bears */
+void slide_sliders(struct building *b, const struct switching *s, int region);
+void hold_sliders(struct holding *h, const struct switching *s);
+struct form *borne_form(const struct building *b, const struct form *form); /* of an output: what friction bears */
+/* where it slides, of the slider that is written there; NULL: it sticks */
+struct form *slide_velocity(const struct switching *s, const struct region *region, const struct node *node);
+bool is_repeated_slider(const struct switching *s, int index);      /* it stands there for an earlier segment too */
+const char *slider_text(const struct switching *s, int index);      /* for a reader: what slides, and where */
 
 /* ---- parts.c: regions of independent coordinates ---- */
 
@@ -774,6 +824,8 @@ struct tuning {
 };
 /* model->tuning, or model->held, where something is tunable; false: it was said why not */
 bool find_tuning(struct model *model, const struct request *request);
+/* the first name in it that is tunable, or made of what is; NULL: there is none */
+const struct node *first_tuned(const struct node *node);
 
 void add_tuned_terms(struct tuning *t, const struct fit *f, int row, int column);
 void add_tuned_unit(struct tuning *t, int row, int column);

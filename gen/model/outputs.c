@@ -21,9 +21,10 @@ static void add_highest(const struct model *model, const struct linear *system, 
 				mpq_add(output->channel[c], output->channel[c], weight);
 		for (int l = 0; l < system->loads; l++)
 			for (int k = 0; k < system->load[l].columns; k++)
-				for (int s = 0; s < system->segments; s++) {
-					mpq_ptr sum = output->load[l][k * system->segments + s];
-					mpq_mul(product, weight, system->load[l].force[k][s * model->n + i]);
+				for (int s = 0; s < model->system.segments; s++) {
+					mpq_ptr sum = output->load[l][k * model->system.segments + s];
+					int known = s < system->segments ? s : 0;
+					mpq_mul(product, weight, system->load[l].force[k][known * model->n + i]);
 					mpq_add(sum, sum, product);
 				}
 		for (int j = 0; j < system->inputs; j++)
@@ -174,6 +175,19 @@ static void collect_left(void *context)
 			s->whole = s->collected->cell[0];
 }
 
+/* The friction of what has no mass is what it bears: then it may be a row after all. */
+static bool becomes_row(struct building *b, int index, struct value *value)
+{
+	bool row = b->model->bearings > 0 && value;
+	for (int i = 0; row && i < value->rows * value->columns; i++) {
+		value->cell[i] = borne_form(b, value->cell[i]);
+		row = value->cell[i]->terms == 0 || !value->cell[i]->term[value->cell[i]->terms - 1].basis.atom;
+	}
+	for (int s = 0; row && s < b->model->system.segments; s++)
+		b->snapshot[s].output[index] = value;
+	return row;
+}
+
 static void name_outputs(struct building *b)
 {
 	struct model *model = b->model;
@@ -185,6 +199,7 @@ static void name_outputs(struct building *b)
 		struct output_work work = { b, s, row ? b->snapshot->output[index] : NULL };
 		if (!row)
 			statement_guard(collect_left, &work);
+		row = row || becomes_row(b, index, work.value);
 		int count = work.value ? work.value->rows * work.value->columns : 0;
 		for (int i = 0; i < count; i++) {
 			add_output(model, count == 1 ? s->name : component_name(s->name, i + 1), s->value,
@@ -260,19 +275,29 @@ struct output *row_of_expression(struct building *b, const struct switching *of,
 	make_rows(&b->model->system, b->model->channels, row);
 	for (int s = 0; s < segments; s++) {
 		int known = s < of->segments ? s : 0;
-		spread_loads(b, form_sum(e->in[known], form_constant(e->shift[known]), false), add_direct,
-			     &(struct direct_row){ row, segments, s });
+		spread_loads(b, form_in(e, known), add_direct, &(struct direct_row){ row, segments, s });
 	}
 	add_states_and_inputs(b, e->form, row);
 	return row;
 }
 
+/* What stands in the first segment of time, in all of them */
+static void repeat_loads(const struct linear *system, struct output *row)
+{
+	for (int l = 0; l < system->loads; l++)
+		for (int k = 0; k < system->load[l].columns; k++)
+			for (int s = 1; s < system->segments; s++)
+				mpq_set(row->load[l][k * system->segments + s], row->load[l][k * system->segments]);
+}
+
 struct output *row_of_form(struct building *b, struct form *form)
 {
+	const struct linear *system = &b->model->system;
 	struct output *row = NEW(struct output);
-	make_rows(&b->model->system, b->model->channels, row);
-	spread_loads(b, form, add_direct, &(struct direct_row){ row, 1, 0 });
+	make_rows(system, b->model->channels, row);
+	spread_loads(b, form, add_direct, &(struct direct_row){ row, system->segments, 0 });
 	add_states_and_inputs(b, form, row);
+	repeat_loads(system, row);
 	return row;
 }
 

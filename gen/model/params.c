@@ -39,7 +39,7 @@ static void read_by(struct reads *all, const struct model *model, int count, con
 
 static void warn_of_unread(const struct model *model)
 {
-	if (model->switching && model->switching->frictions > 0)
+	if (model->switching && rubs(model->switching))
 		return;         /* rows of regions may read them, too */
 	const struct spec *spec = model->spec;
 	struct reads all = reads_of(model, model->selector != NULL, &model->selector);

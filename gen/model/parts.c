@@ -216,11 +216,13 @@ static void place_loads_of(struct building *b, const struct switching *s)
 		for (int k = 0; k < s->frictions; k++)
 			if (region->carried[s->friction[k].atom->index])
 				place_loads(b, region->carried[s->friction[k].atom->index]);
+		for (int k = 0; k < s->sliders; k++)
+			if (region->carried[s->slider[k].atom->index])
+				place_loads(b, region->carried[s->slider[k].atom->index]);
 	}
 	for (int e = 0; e < s->expressions; e++)
 		for (int segment = 0; segment < s->segments; segment++)
-			place_loads(b, form_sum(s->expression[e].in[segment],
-						form_constant(s->expression[e].shift[segment]), false));
+			place_loads(b, form_in(&s->expression[e], segment));
 	place_impact_loads(b, s);
 }
 

@@ -177,17 +177,31 @@ static bool is_position(const struct model *model, const struct output *output)
 	return true;
 }
 
+/* A row in the unit of its first entry: of an output k*(a - b) whose k is tunable, a - b, which stays what it is. */
+static const mpq_t *bare_row(const mpq_t *row, int states)
+{
+	mpq_t *bare = rationals((size_t)states);
+	int first = 0;
+	while (first < states && mpq_sgn(row[first]) == 0)
+		first++;
+	for (int j = first; j < states; j++)
+		mpq_div(bare[j], row[j], row[first]);
+	return (const mpq_t *)bare;
+}
+
 static void see_outputs(struct observable *o, const struct model *model, const mpq_t *inverse, bool positions)
 {
 	for (int i = 0; i < model->outputs; i++) {
 		const struct output *output = &model->output[i];
-		const mpq_t *row = (const mpq_t *)output->state;
+		bool tuned = output->value && first_tuned(output->value);
+		const mpq_t *row = tuned ? bare_row((const mpq_t *)output->state, o->states)
+					 : (const mpq_t *)output->state;
 		const char *unit = unit_name(model, row);
 		if ((output->form || !output->value) && is_position(model, output) == positions)
 			see_row(o, model, inverse, row,
-				unit        ? unit
-				: positions ? output->name
-					    : format("state%d", o->rank + 1));
+				unit                  ? unit
+				: positions && !tuned ? output->name
+						      : format("state%d", o->rank + 1));
 	}
 }
 

@@ -19,9 +19,7 @@ static bool has_atoms(const struct form *form)
 bool is_piecewise_linear(const struct building *b)
 {
 	int segments = b->model->system.segments;
-	bool divided = segments == 1;
-	if (segments > 1 && (holds_friction(b) || b->model->impacts > 0))
-		return false;
+	bool divided = segments == 1 || b->model->impacts > 0;
 	for (int s = 0; s < segments; s++)
 		for (int i = 0; i < b->model->n; i++) {
 			const struct form *form = b->snapshot[s].residual[i].form;
@@ -206,12 +204,12 @@ static struct form *force_here(struct looking *l, const struct node *node, struc
 static int add_friction(struct looking *l, const struct atom *a)
 {
 	struct switching *s = l->s;
-	int known = friction_of(s, a);
+	int known = friction_of(s, l->segment, a);
 	if (known >= 0)
 		return known;
 	ENLARGE(s->friction, (size_t)s->frictions + 1);
 	struct friction *f = &s->friction[s->frictions++];
-	*f = (struct friction){ .atom = a };
+	*f = (struct friction){ .atom = a, .segment = l->segment };
 	mpq_inits(f->at, f->factor, NULL);
 	return s->frictions - 1;
 }
@@ -243,6 +241,56 @@ static struct form *friction_here(struct looking *l, const struct atom *a, struc
 	return form_unit((struct basis){ .kind = BASIS_ATOM, .index = a->index, .atom = a });
 }
 
+/* Whether a > b, by which expression and which way that is passed; false: it follows from no expression */
+static bool exceeds(struct looking *l, const struct node *node, const struct form *a, const struct form *b,
+		    struct slider *slider, int side)
+{
+	struct form *form = form_difference(a, b);
+	struct form plain = { 0, form->term, 0 };
+	while (plain.terms < form->terms && form->term[plain.terms].basis.kind <= BASIS_PI)
+		plain.terms++;
+	refuse_force(node, form);
+	mpq_t constant, factor, at;
+	mpq_inits(constant, factor, at, NULL);
+	constant_value(&l->b->collector, &plain, constant);
+	struct compared what = { node, form_sum(form, &plain, true), constant, order_met(l) };
+	int e = find_expression(l->s, l->segment, &what, factor, at);
+	slider->expression[side] = e;
+	slider->upward[side] = mpq_sgn(factor) > 0;
+	mpq_set(slider->at[side], at);
+	bool above = is_above(l, e, at) == slider->upward[side];
+	mpq_clears(constant, factor, at, NULL);
+	return above;
+}
+
+static struct slider *slider_of(struct switching *s, const struct atom *a)
+{
+	for (int i = 0; i < s->sliders; i++)
+		if (s->slider[i].atom == a)
+			return &s->slider[i];
+	ENLARGE(s->slider, (size_t)s->sliders + 1);
+	struct slider *slider = &s->slider[s->sliders++];
+	*slider = (struct slider){ .atom = a };
+	mpq_inits(slider->at[0], slider->at[1], NULL);
+	return slider;
+}
+
+/* 0 where it sticks; where it slides its equation is another one, which stands once all regions are known */
+static struct form *slider_here(struct looking *l, const struct atom *a, struct form *const *x)
+{
+	struct region *region = &l->s->region[l->region];
+	bool negative = false;
+	struct form *force = force_here(l, a->node, x[1], &negative);
+	struct slider *slider = slider_of(l->s, a);
+	bool above = exceeds(l, a->node, x[0], force, slider, 0),
+	     below = exceeds(l, a->node, form_difference(NEW(struct form), x[0]), force, slider, 1);
+	slider->negative = slider->negative || negative;
+	region->force[a->index] = force;
+	region->rest[a->index] = x[0];
+	region->slide[a->index] = above ? 1 : below ? -1 : 0;
+	return form_number(0);
+}
+
 static struct form *call_here(struct looking *l, const struct atom *a, struct form *const *x)
 {
 	int side;
@@ -254,6 +302,7 @@ static struct form *call_here(struct looking *l, const struct atom *a, struct fo
 	case FN_MAX:   return extreme_here(l, a, x);
 	case FN_TABLE: return table_here(l, a, x);
 	case FN_FRICTION: return friction_here(l, a, x);
+	case FN_SLIDE: return slider_here(l, a, x);
 	default:
 		side = sign_here(l, a->node, x[0], x[1]) < 0 ? 1 : sign_here(l, a->node, x[0], x[2]) > 0 ? 2 : 0;
 		return a->function == FN_CLIP ? x[side] : side ? form_difference(x[0], x[side]) : form_number(0);
@@ -355,32 +404,36 @@ static _Noreturn void too_many(const struct building *b, const struct switching 
 }
 
 /* A guard is a breakpoint of its expression; of a bounce one that stands twice, with the interval of rest between. */
+static void meet_impact(struct looking *l, const struct impact *impact, mpq_ptr constant)
+{
+	struct strike *strike = &impact->in[l->segment];
+	const struct node *node = impact->when->guard;
+	bool rising = node->comparison == CMP_GT || node->comparison == CMP_GE;
+	const struct form *guard = rising ? strike->guard : form_difference(NEW(struct form), strike->guard);
+	struct form plain = { 0, guard->term, 0 };
+	while (plain.terms < guard->terms && plain.term[plain.terms].basis.kind <= BASIS_PI)
+		plain.terms++;
+	constant_value(&l->b->collector, &plain, constant);
+	struct compared what = { node, form_sum(guard, &plain, true), constant, order_met(l) };
+	strike->expression = find_expression(l->s, l->segment, &what, strike->factor, strike->at);
+	note_sign(l->b, l->s, strike->factor, false);
+	strike->upward = (mpq_sgn(strike->factor) > 0) == rising;
+	if (!rising)
+		mpq_neg(strike->factor, strike->factor);
+	if (impact->bounces)
+		add_stick(l, &l->s->expression[strike->expression], strike->at);
+	else
+		(void)is_above(l, strike->expression, strike->at);
+}
+
 static void meet_impacts(struct looking *l)
 {
-	struct building *b = l->b;
-	mpq_t factor, constant;
-	mpq_inits(factor, constant, NULL);
-	for (int i = 0; i < b->model->impacts; i++) {
-		struct impact *impact = &b->model->impact[i];
-		const struct form *guard = impact->rising ? impact->guard
-							  : form_difference(NEW(struct form), impact->guard);
-		struct form plain = { 0, guard->term, 0 };
-		while (plain.terms < guard->terms && plain.term[plain.terms].basis.kind <= BASIS_PI)
-			plain.terms++;
-		constant_value(&b->collector, &plain, constant);
-		struct compared what = { impact->when->guard, form_sum(guard, &plain, true), constant, order_met(l) };
-		impact->expression = find_expression(l->s, l->segment, &what, factor, impact->at);
-		impact->upward = (mpq_sgn(factor) > 0) == impact->rising;
-		note_sign(b, l->s, factor, false);
-		mpq_set(impact->factor, factor);
-		if (!impact->rising)
-			mpq_neg(impact->factor, factor);
-		if (impact->bounces)
-			add_stick(l, &l->s->expression[impact->expression], impact->at);
-		else
-			(void)is_above(l, impact->expression, impact->at);
-	}
-	mpq_clears(factor, constant, NULL);
+	const struct model *model = l->b->model;
+	mpq_t constant;
+	mpq_init(constant);
+	for (int i = 0; i < model->impacts; i++)
+		meet_impact(l, &model->impact[i], constant);
+	mpq_clear(constant);
 }
 
 /* What a look has left that was not the last */
@@ -422,6 +475,7 @@ static bool look(struct building *b, struct switching *s, int *known)
 		s->region[r].force = ARRAY(struct form *, (size_t)atoms);
 		s->region[r].rest = ARRAY(struct form *, (size_t)atoms);
 		s->region[r].carried = ARRAY(struct form *, (size_t)atoms);
+		s->region[r].slide = ARRAY(int, (size_t)atoms);
 		for (int k = 0; k < s->rows; k++) {
 			l.row = s->row[k];
 			s->region[r].residual[l.row] = form_here(&l, b->snapshot[l.segment].residual[l.row].form);
@@ -632,7 +686,7 @@ static bool rows_change(const struct building *b, int rows, const int *row)
 		for (int k = 0; k < rows; k++)
 			changes = changes || !same_form(b->snapshot[s].residual[row[k]].form,
 							b->snapshot->residual[row[k]].form);
-	return changes;
+	return changes || strikes_change(b);
 }
 
 /* Highest derivatives cannot decide on their own equations; the collector has refused them. */
@@ -746,7 +800,11 @@ static void remove_break(struct switching *s, int expression, int at)
 static bool is_struck(const struct switching *s, int expression, int at)
 {
 	mpq_srcptr value = s->expression[expression].at[at];
-	return impact_at(s, expression, value, true) >= 0 || impact_at(s, expression, value, false) >= 0;
+	bool struck = false;
+	for (int k = 0; k < s->segments; k++)
+		struck = struck || impact_at(s, k, expression, value, true) >= 0 ||
+			 impact_at(s, k, expression, value, false) >= 0;
+	return struck;
 }
 
 static int breaks_of_all(const struct switching *s)
@@ -763,8 +821,11 @@ static void drop_expression(struct switching *s, int expression)
 		s->expression[e] = s->expression[e + 1];
 	for (int i = 0; i < s->frictions; i++)
 		s->friction[i].expression -= s->friction[i].expression > expression;
+	for (int i = 0; i < 2 * s->sliders; i++)
+		s->slider[i / 2].expression[i % 2] -= s->slider[i / 2].expression[i % 2] > expression;
 	for (int i = 0; i < s->impacts; i++)
-		s->impact[i].expression -= s->impact[i].expression > expression;
+		for (int k = 0; k < s->segments; k++)
+			s->impact[i].in[k].expression -= s->impact[i].in[k].expression > expression;
 	for (int r = 0; r < s->regions; r++)
 		for (int k = 0; k < s->region[r].releases; k++)
 			s->region[r].release[k].expression -= s->region[r].release[k].expression > expression;

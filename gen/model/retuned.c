@@ -59,9 +59,10 @@ static bool same_region(const struct region *a, const struct region *b)
 	return same;
 }
 
-static bool same_impact(const struct impact *a, const struct impact *b)
+static bool same_impact(const struct impact *whole, const struct impact *other)
 {
-	bool same = a->bounces == b->bounces && a->jumps == b->jumps && a->upward == b->upward &&
+	const struct strike *a = &whole->in[0], *b = &other->in[0];
+	bool same = whole->bounces == other->bounces && a->jumps == b->jumps && a->upward == b->upward &&
 		    a->expression == b->expression;
 	for (int k = 0; k < a->jumps && same; k++)
 		same = a->jump[k].state == b->jump[k].state;
@@ -459,6 +460,12 @@ static void check_model(const struct model *model)
 	for (int i = 0; i < spec->elements; i++)
 		check_node(spec->element[i].value);
 	check_outputs(model);
+	if (has_events(model->switching) && model->switching->segments > 1)
+		error(spec->tunable[0].at, "the load as an input is exact beside them",
+		      "tunable params beside friction or impacts and loads that change their formula are not built yet");
+	if (model->switching->sliders > 0)
+		error(spec->tunable[0].at, "a small mass slides with its own inertia",
+		      "tunable params beside what slides without mass are not built yet");
 	if (model->system.states > LIMIT_UNROLLED_STATES)
 		error(spec->tunable[0].at, "gaps and forces alone may be tunable with any number of states",
 		      "tunable params of regions are built for up to %d states: the model has %d",

@@ -125,12 +125,11 @@ static void list_region(struct listing *l, int index)
 		list_output(l, RETUNED_RELEASE, index, k, region->release[k].row, 0);
 		part_row(l, region->system, region->release[k].form, RETUNED_RELEASE_R, RETUNED_RELEASE_W);
 	}
-	for (int k = 0; k < s->frictions && region->grip; k++) {
+	for (int k = 0; k < s->felts && region->grip; k++) {
 		if (!region->grip[k])
 			continue;
 		list_output(l, RETUNED_GRIP, index, k, region->grip[k], 0);
-		part_row(l, region->system, region->carried[s->friction[k].atom->index], RETUNED_GRIP_R,
-			 RETUNED_GRIP_W);
+		part_row(l, region->system, region->grip[k]->form, RETUNED_GRIP_R, RETUNED_GRIP_W);
 	}
 }
 
@@ -145,26 +144,28 @@ static void list_times(struct listing *l, mpq_srcptr answer)
 static void list_jumps(struct listing *l, int index, enum retuned_kind kind, const struct jump *jump)
 {
 	const struct impact *impact = &l->model->switching->impact[index];
-	for (int k = 0; k < impact->jumps; k++) {
+	const struct strike *strike = &impact->in[0];
+	for (int k = 0; k < strike->jumps; k++) {
 		list_output(l, kind, index, k, jump[k].row, 0);
-		list_times(l, impact->answer);
+		list_times(l, strike->answer);
 	}
 }
 
 static void list_impact(struct listing *l, int index)
 {
 	const struct impact *impact = &l->model->switching->impact[index];
-	add_number(l, RETUNED_ANSWER, index, 0, impact->answer);
-	list_jumps(l, index, RETUNED_JUMP, impact->jump);
+	const struct strike *strike = &impact->in[0];
+	add_number(l, RETUNED_ANSWER, index, 0, strike->answer);
+	list_jumps(l, index, RETUNED_JUMP, strike->jump);
 	if (impact->bounces) {
-		list_jumps(l, index, RETUNED_STILL, impact->still);
-		list_output(l, RETUNED_SPEED, index, 0, impact->speed_row, 0);
+		list_jumps(l, index, RETUNED_STILL, strike->still);
+		list_output(l, RETUNED_SPEED, index, 0, strike->speed_row, 0);
 		mpq_t *back = add_row(l, RETUNED_BACK, index, 0);
 		for (int j = 0; j < l->model->n; j++)
-			mpq_mul(back[j], impact->direction[j], impact->factor);
-		list_times(l, impact->answer);
-		add_number(l, RETUNED_RESTITUTION, index, 0, impact->restitution);
-		add_number(l, RETUNED_LEAST, index, 0, impact->gap);
+			mpq_mul(back[j], strike->direction[j], strike->factor);
+		list_times(l, strike->answer);
+		add_number(l, RETUNED_RESTITUTION, index, 0, strike->restitution);
+		add_number(l, RETUNED_LEAST, index, 0, strike->gap);
 	}
 }
 

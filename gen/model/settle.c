@@ -273,6 +273,8 @@ static void settle_impacts(void *context)
 	    !is_piecewise_linear(b))
 		tell_no_impacts(b);
 	build_impacts(b);
+	if (diagnostics_errors())
+		abandon();
 }
 
 static void tell_friction_stands(void *context)
@@ -352,7 +354,7 @@ void build_system(struct building *b)
 		return;
 	for (int s = 0; s < system->segments; s++)
 		add_elements(b, &b->snapshot[s]);
-	if (!settle_scheme(b))
+	if (diagnostics_errors() || !settle_scheme(b))
 		return;
 	const struct snapshot *rows = b->whole ? b->whole : b->snapshot;
 	fill_states(b, rows);

@@ -11,7 +11,7 @@ static const char *const refused_note = "sums, products and quotients of tunable
 					"what the function gives a tunable of its own";
 static const char *const decided_note = "which way it goes is decided when plgen runs: where formulas change is fixed";
 
-static const struct node *first_tuned(const struct node *node)
+const struct node *first_tuned(const struct node *node)
 {
 	if (node->kind == NODE_NAME && node->symbol->tuned)
 		return node;

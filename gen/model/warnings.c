@@ -405,10 +405,32 @@ static const char *passed_over(const char *why)
 static void check_friction(const struct model *model)
 {
 	const struct switching *s = model->switching;
+	const struct node *told = NULL;         /* in an earlier segment of time */
 	for (int i = 0; s && i < s->frictions; i++)
-		if (s->friction[i].negative)
+		if (s->friction[i].negative && s->friction[i].atom->node != told) {
+			told = s->friction[i].atom->node;
 			say_warning(s->friction[i].atom->node->start, "max(F, 0) in its place says so",
 				    "the force of friction may fall below 0: it counts as 0 there");
+		}
+	for (int i = 0; s && i < s->sliders; i++)
+		if (s->slider[i].negative && !is_repeated_slider(s, i))
+			say_warning(s->slider[i].atom->node->start, "max(F, 0) in its place says so",
+				    "the force of friction may fall below 0: it counts as 0 there");
+}
+
+/* A guard comes true by crossing. */
+static void check_guards(struct building *b)
+{
+	const struct model *model = b->model;
+	for (int i = 0; i < model->impacts; i++)
+		for (int s = 1; s < model->system.segments; s++)
+			if (closes_by_jump(b, &model->impact[i], s)) {
+				say_warning(model->impact[i].when->guard->start,
+					    "a load that goes there steeply takes along what it meets",
+					    "this guard jumps at t = %s: where it comes true by that, nothing is met",
+					    readable_text(model->system.change[s - 1]));
+				break;
+			}
 }
 
 void warn(struct building *b)
@@ -428,6 +450,7 @@ void warn(struct building *b)
 	check_truncation(b);
 	check_smoothness(b);
 	check_friction(model);
+	check_guards(b);
 	const struct scheme_row *scheme = scheme_row(model->scheme);
 	/* in normal modes a step's spectral radius tells more */
 	if (!left || !scheme->leaves || scheme->expands || scheme->modes || is_linear(b) ||

@@ -633,8 +633,12 @@ bool take_word(struct parser *p, const char *word)
 
 void expect_word(struct parser *p, const char *word)
 {
-	if (!take_word(p, word))
-		unexpected(p, format("'%s'", word));
+	if (take_word(p, word))
+		return;
+	if (p->token.kind == TOKEN_NAME && p->token.primes == 0 && nearest_name(p->token.name, 1, &word))
+		error(p->token.at, format("did you mean '%s'?", word), "expected '%s', found '%s'", word,
+		      p->token.name);
+	unexpected(p, format("'%s'", word));
 }
 
 struct node *read_coordinate(struct parser *p, bool ground)

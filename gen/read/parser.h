@@ -67,7 +67,7 @@ void check_component(const struct symbol *symbol, int component, struct place at
 const char *symbol_kind(const struct symbol *symbol);
 struct symbol *find_symbol(const struct parser *p, const char *name); /* as the text has it; or NULL */
 
-/* ---- parse.c ---- */
+/* ---- statements.c ---- */
 
 struct token expect_new_name(struct parser *p, const char *what);
 struct symbol *declare(struct parser *p, struct token name, enum symbol_kind kind, bool broken);
@@ -76,6 +76,28 @@ const char *beside(const struct source *source, const char *name); /* the path o
 struct node *read_file_name(struct parser *p);
 /* of a coordinate; what a part's own text gives, the scene gives again */
 void add_initial(struct parser *p, struct token name, struct symbol *coord, int component, struct node *value);
+void read_param(struct parser *p);
+void read_let(struct parser *p);
+void read_matrix_statement(struct parser *p);
+void read_model(struct parser *p);
+void read_coord(struct parser *p);
+void read_input(struct parser *p);
+void read_init(struct parser *p);
+void read_output(struct parser *p);
+void read_step(struct parser *p);
+struct node *take_order(struct parser *p, struct node **over);
+void read_scheme(struct parser *p);
+void read_tolerance(struct parser *p);
+void read_substeps(struct parser *p);
+struct mode_list take_modes(struct parser *p);
+void read_modes(struct parser *p);
+void read_operator(struct parser *p);
+void read_tunable(struct parser *p);
+void read_need(struct parser *p);
+void read_budget(struct parser *p);
+
+/* ---- parse.c ---- */
+
 void declare_quietly(struct parser *p, struct token name, enum symbol_kind kind); /* broken, unless it is known */
 struct spec *parse_whole(const struct source *source, const struct part_reader *reader);
 void parse_statements(struct spec *spec, struct spec *own, struct scene_part *part, const struct source *source);

@@ -34,12 +34,13 @@ void lex_number(struct token token, mpq_ptr value);        /* the decimal, exact
 /* 1 and ms: numbers bear no units; in SI units: 1e-3. NULL: the second is no unit */
 const char *unit_note(const char *number, size_t digits, const char *unit, size_t length);
 
-/* ---- parse.c: tokens to nodes and declarations ---- */
+/* ---- parse.c, statements.c: tokens to nodes and declarations ---- */
 
 enum function {
 	FN_NONE, FN_SIN, FN_COS, FN_TAN, FN_EXP, FN_LOG, FN_SQRT, FN_ABS, FN_SGN, FN_SINH, FN_COSH, FN_TANH,
 	FN_ASIN, FN_ACOS, FN_ATAN, FN_ATAN2, FN_MIN, FN_MAX, FN_DEADZONE, FN_CLIP, FN_TABLE,
-	FN_FRICTION
+	FN_FRICTION,
+	FN_SLIDE                    /* of no text: the velocity of a slider without mass, by what it bears and holds */
 };
 enum comparison { CMP_LT, CMP_LE, CMP_GT, CMP_GE, CMP_EQ, CMP_NE };
 enum node_kind {

@@ -236,9 +236,9 @@ static long guard_bytes(const struct step *step)
 	const struct switching *s = step->model->switching;
 	struct pieces pieces = pieces_of(step);
 	struct guards g = guards_of(step, &pieces);
-	long size = step->layout.size, grips = s->felt ? 8 * size * s->regions * s->frictions : 0;
+	long size = step->layout.size, grips = 8 * size * s->regions * s->felts;
 	return 8 * (g.rows * (4 * size + 1) + g.guards + g.assignments * size + s->expressions -
-		    2 * s->systems * s->expressions * size) +
+		    2 * s->systems * s->expressions * size + (s->segments - 1) * s->expressions) +
 	       4 * (6 * g.guards + 2 * s->regions + 1 + g.assignments + g.sets + 1) + grips;
 }
 
@@ -298,11 +298,16 @@ static void person_divided(FILE *to, const struct step *step)
 /* What rubs, and where it sticks: its expression, and the interval of that */
 static void person_frictions(FILE *to, const struct switching *s)
 {
-	for (int i = 0; i < s->frictions; i++) {
+	for (int i = 0, shown = 0; i < s->frictions; i++) {
 		const struct node *node = s->friction[i].atom->node;
-		fprintf(to, "    friction %d: %s; sticks in interval %d of expression %d\n", i,
+		if (is_repeated(s, i))
+			continue;
+		fprintf(to, "    friction %d: %s; sticks in interval %d of expression %d\n", shown++,
 			text_between(node->start, node->end), stick_of(s, &s->friction[i]), s->friction[i].expression);
 	}
+	for (int i = 0; i < s->sliders; i++)
+		if (!is_repeated_slider(s, i))
+			fprintf(to, "    slider: %s\n", slider_text(s, i));
 }
 
 static void person_intervals(FILE *to, const struct switching *s, int region)
@@ -333,8 +338,8 @@ static void person_impacts(FILE *to, const struct model *model)
 		fprintf(to, "    impact %d: %s", i, text_between(impact->when->at, impact->when->end));
 		if (impact->bounces)
 			fprintf(to, "; a bounce of restitution %s, which rests in interval %d of expression %d",
-				readable_text(impact->restitution), rest_of(model->switching, impact),
-				impact->expression);
+				readable_text(impact->in->restitution), rest_of(model->switching, 0, impact),
+				impact->in->expression);
 		fputs("\n", to);
 	}
 }
@@ -483,14 +488,37 @@ static void person_split(FILE *to, const struct step *step)
 			form_text(model, model->operator[0].left[c]));
 }
 
+/* A row over the written states, a - 2*b */
+static const char *combination_text(const struct model *written, const mpq_t *row)
+{
+	const char *text = "";
+	mpq_t size;
+	mpq_init(size);
+	for (int j = 0; j < written->system.states; j++) {
+		int sign = mpq_sgn(row[j]);
+		if (sign == 0)
+			continue;
+		mpq_abs(size, row[j]);
+		text = format("%s%s%s%s", text, *text ? sign < 0 ? " - " : " + " : sign < 0 ? "-" : "",
+			      mpq_cmp_ui(size, 1, 1) == 0 ? "" : format("%s*", readable_text(size)),
+			      written->state_name[j]);
+	}
+	mpq_clear(size);
+	return text;
+}
+
 /* What went: states that no output sees, and with them the poles that cancel in every N/B. */
 static void person_reduction(FILE *to, const struct step *step)
 {
 	const struct model *model = step->model;
 	fprintf(to, "Reduced to what the outputs can see: %d of %d states.\n", model->system.states,
 		model->written->system.states);
-	for (int i = 0; i < model->system.states; i++)
-		fprintf(to, "    state %s\n", model->state_name[i]);
+	for (int i = 0; i < model->system.states; i++) {
+		const char *text = combination_text(model->written, (const mpq_t *)model->reduction.row +
+								    i * model->written->system.states);
+		bool same = strcmp(text, model->state_name[i]) == 0;
+		fprintf(to, "    state %s%s%s\n", model->state_name[i], same ? "" : " = ", same ? "" : text);
+	}
 	fputs("Gone:", to);
 	for (int i = 0; i < model->reduction.dropped; i++)
 		fprintf(to, "%s %s", i ? "," : "", model->reduction.dropped_name[i]);
@@ -757,8 +785,19 @@ static void json_frictions(FILE *to, const struct switching *s)
 {
 	fputs("  \"frictions\": [", to);
 	for (int i = 0; i < s->frictions; i++)
-		fprintf(to, "%s{\"expression\": %d, \"sticks\": %d}", i ? ", " : "", s->friction[i].expression,
-			stick_of(s, &s->friction[i]));
+		if (!is_repeated(s, i))
+			fprintf(to, "%s{\"expression\": %d, \"sticks\": %d}", i ? ", " : "",
+				s->friction[i].expression, stick_of(s, &s->friction[i]));
+	fputs("],\n", to);
+}
+
+static void json_sliders(FILE *to, const struct switching *s)
+{
+	fputs("  \"sliders\": [", to);
+	for (int i = 0; i < s->sliders; i++)
+		fprintf(to, "%s{\"expressions\": [%d, %d], \"upward\": [%s, %s]}", i ? ", " : "",
+			s->slider[i].expression[0], s->slider[i].expression[1],
+			s->slider[i].upward[0] ? "true" : "false", s->slider[i].upward[1] ? "true" : "false");
 	fputs("],\n", to);
 }
 
@@ -768,10 +807,10 @@ static void json_impacts(FILE *to, const struct model *model)
 	for (int i = 0; i < model->impacts; i++) {
 		const struct impact *impact = &model->impact[i];
 		fprintf(to, "%s{\"expression\": %d, \"upward\": %s, \"restitution\": ", i ? ", " : "",
-			impact->expression, impact->upward ? "true" : "false");
+			impact->in->expression, impact->in->upward ? "true" : "false");
 		if (impact->bounces)
-			fprintf(to, "%.17g, \"rests\": %d}", nearest_double(impact->restitution),
-				rest_of(model->switching, impact));
+			fprintf(to, "%.17g, \"rests\": %d}", nearest_double(impact->in->restitution),
+				rest_of(model->switching, 0, impact));
 		else
 			fputs("null}", to);
 	}
@@ -821,6 +860,8 @@ static void json_regions(FILE *to, const struct step *step)
 	json_expressions(to, step);
 	if (s->frictions > 0)
 		json_frictions(to, s);
+	if (s->sliders > 0)
+		json_sliders(to, s);
 	if (s->impacts > 0)
 		json_impacts(to, step->shown->model);
 	if (!s->parts) {

@@ -279,19 +279,30 @@ static bool is_steady(const struct model *model, const struct drive *drive)
 	return drive->input < 0 && is_constant_column(&model->system, column);
 }
 
+/* At the first term that is not linear, or at the scheme that was asked for all the same */
+static _Noreturn void tell_left_over(const struct model *model)
+{
+	static const char *const way = "plrun runs any model, with a record that sweeps";
+	const struct node *other = model->obstacle;
+	if (other)
+		error(other->start, way, "--amplitude is of models that are linear between breakpoints: '%s' is not",
+		      text_between(other->start, other->end));
+	error(model->asked.scheme_at.source ? model->asked.scheme_at : model->asked.step_at, way,
+	      "--amplitude is of models that are linear between breakpoints, and this has other terms");
+}
+
 static void need_sweeps(const struct step *step)
 {
 	const struct model *model = step->shown->model;
 	if (has_leftover(step))
-		error(model->asked.step_at, "plrun runs any model, with a record that sweeps",
-		      "--amplitude is of models that are linear between breakpoints, and this has other terms");
+		tell_left_over(model);
 	if (!model->switching)
 		error(model->asked.step_at, "leave --amplitude out",
 		      "the model is linear: its frequency response is the same at every amplitude");
-	bool rubs = model->switching->frictions > 0;
+	bool rubbed = rubs(model->switching);
 	for (int p = 0; p < model->switching->parts; p++)
-		rubs = rubs || model->switching->part[p].model->switching->frictions > 0;
-	if (model->impacts > 0 || rubs)
+		rubbed = rubbed || rubs(model->switching->part[p].model->switching);
+	if (model->impacts > 0 || rubbed)
 		error(model->asked.step_at, "plrun runs any model, with a record that sweeps",
 		      "--amplitude is of clearances, without impacts and dry friction");
 	if (model->system.segments > 1)

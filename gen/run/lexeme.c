@@ -41,11 +41,6 @@ static const struct macro *macro_of(const struct lexing *l, const char *name)
 	return NULL;
 }
 
-static bool in_name(char c)
-{
-	return isalnum((unsigned char)c) || c == '_';
-}
-
 static char *slice(const char *text, size_t length)
 {
 	char *copy = ARRAY(char, length + 1);
@@ -55,9 +50,7 @@ static char *slice(const char *text, size_t length)
 
 static void lex_name(struct lexing *l)
 {
-	size_t length = 0;
-	while (in_name(l->text[length]))
-		length++;
+	size_t length = name_length(l->text);
 	const char *name = slice(l->text, length);
 	const struct macro *macro = macro_of(l, name);
 	l->text += length;

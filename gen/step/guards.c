@@ -45,6 +45,15 @@ static double *turned(int size, const double *row, bool upward)
 	return result;
 }
 
+/* Whether a guard of its own stands where the interval of an expression ends */
+static bool is_released(const struct region *region, int expression, bool upward)
+{
+	bool any = false;
+	for (int k = 0; k < region->releases; k++)
+		any = any || (region->release[k].expression == expression && region->release[k].upward == upward);
+	return any;
+}
+
 /* The ends of an interval of an expression */
 static void guard_interval(const struct step *step, const struct pieces *pieces, struct guards *g, int region,
 			   int expression, int first)
@@ -52,9 +61,10 @@ static void guard_interval(const struct step *step, const struct pieces *pieces,
 	const struct switching *s = step->model->switching;
 	const struct expression *e = &s->expression[expression];
 	int size = step->layout.size, interval = interval_of(s, region, expression);
+	int segment = segment_of_region(s, region);
 	for (int upward = 0; upward < 2; upward++) {
 		int breakpoint = interval - !upward;
-		if (breakpoint < 0 || breakpoint == e->breaks)
+		if (breakpoint < 0 || breakpoint == e->breaks || is_released(&s->region[region], expression, upward))
 			continue;
 		double at = pieces->breakpoint[first + breakpoint];
 		struct guard guard = { .expression = expression,
@@ -62,11 +72,11 @@ static void guard_interval(const struct step *step, const struct pieces *pieces,
 				       .upward = upward,
 				       .leads = upward ? e->stride : -e->stride,
 				       .limit = upward || at == 0 ? at : -at,
-				       .impact = impact_at(s, expression, e->at[breakpoint], upward) };
-		if (guard.impact < 0 && impact_resting(s, expression, interval + (upward ? 1 : -1)) >= 0)
+				       .impact = impact_at(s, segment, expression, e->at[breakpoint], upward) };
+		if (guard.impact < 0 && impact_resting(s, segment, expression, interval + (upward ? 1 : -1)) >= 0)
 			guard.leads *= 2;       /* past the interval of rest, which impacts alone lead to */
 		add_guard(g, size, s->region[region].system,
-			  turned(size, pieces->row + expression * size, upward),
+			  turned(size, pieces->rows[segment] + expression * size, upward),
 			  (struct gate){ .expression = expression, .upward = upward }, guard);
 	}
 }
@@ -129,32 +139,35 @@ static int set_of_jumps(const struct step *step, struct guards *g, int jumps, co
 	return end_set(g);
 }
 
-static void strike(const struct step *step, struct guards *g, const struct impact *impact)
+static struct struck struck_in(const struct step *step, struct guards *g, int number, int segment)
 {
 	const struct switching *s = step->model->switching;
-	const struct expression *e = &s->expression[impact->expression];
-	struct struck new = { .expression = impact->expression, .upward = impact->upward, .rest = rest_of(s, impact),
-			      .still = -1, .restitution = round_rational(impact->restitution) };
-	while (!mpq_equal(e->at[new.breakpoint], impact->at))
+	const struct impact *impact = &s->impact[number];
+	const struct strike *strike = &impact->in[segment];
+	const struct expression *e = &s->expression[strike->expression];
+	struct struck new = { .expression = strike->expression, .upward = strike->upward,
+			      .rest = rest_of(s, segment, impact),
+			      .still = -1, .restitution = round_rational(strike->restitution) };
+	while (!mpq_equal(e->at[new.breakpoint], strike->at))
 		new.breakpoint++;
-	if (impact->bounces && !impact->upward)
+	if (impact->bounces && !strike->upward)
 		new.breakpoint++;               /* the upper of two */
-	new.jump = set_of_jumps(step, g, impact->jumps, impact->jump, RETUNED_JUMP, g->impacts);
+	new.jump = set_of_jumps(step, g, strike->jumps, strike->jump, RETUNED_JUMP, number);
 	new.speed = ARRAY(double, (size_t)step->layout.size);
 	new.back = ARRAY(double, (size_t)step->layout.size);
 	mpq_t part;
 	mpq_init(part);
 	if (impact->bounces) {
-		new.still = set_of_jumps(step, g, impact->jumps, impact->still, RETUNED_STILL, g->impacts);
-		row_over_x(step, impact->speed_row, 0, new.speed);
+		new.still = set_of_jumps(step, g, strike->jumps, strike->still, RETUNED_STILL, number);
+		row_over_x(step, strike->speed_row, 0, new.speed);
 		for (int j = 0; j < step->model->n; j++) {
-			mpq_mul(part, impact->direction[j], impact->factor);
+			mpq_mul(part, strike->direction[j], strike->factor);
 			new.back[j] = round_rational(part);
 		}
 	}
 	new.play = size_of_bounded(step, new.speed);
 	mpq_clear(part);
-	g->impact[g->impacts++] = new;
+	return new;
 }
 
 static void bound_rows_of_guards(const struct step *step, const struct pieces *pieces, struct guards *g)
@@ -175,10 +188,10 @@ static void bound_rows_of_guards(const struct step *step, const struct pieces *p
 double *grips_of(const struct step *step)
 {
 	const struct switching *s = step->model->switching;
-	size_t size = (size_t)step->layout.size, count = (size_t)s->frictions;
+	size_t size = (size_t)step->layout.size, count = (size_t)s->felts;
 	double *grip = ARRAY(double, (size_t)s->regions * count * size);
 	for (int r = 0; r < s->regions; r++)
-		for (int i = 0; i < s->frictions; i++)
+		for (int i = 0; i < s->felts; i++)
 			if (s->region[r].grip[i])
 				row_over_x(step, s->region[r].grip[i], 0,
 					   grip + ((size_t)r * count + (size_t)i) * size);
@@ -196,20 +209,25 @@ struct guards guards_of(const struct step *step, const struct pieces *pieces)
 		for (int e = 0, first = 0; e < s->expressions; first += s->expression[e++].breaks)
 			if (!s->region[r].possible)
 				continue;
-			else if (is_stick(&s->expression[e], interval_of(s, r, e)))
+			else {
 				guard_releases(step, &g, r, e);
-			else
-				guard_interval(step, pieces, &g, r, e, first);
+				if (!is_stick(&s->expression[e], interval_of(s, r, e)))
+					guard_interval(step, pieces, &g, r, e, first);
+			}
 	}
 	g.first[s->regions] = g.guards;
-	g.impact = ARRAY(struct struck, (size_t)s->impacts);
-	for (int i = 0; i < s->impacts; i++)
-		strike(step, &g, &s->impact[i]);
+	g.impacts = s->impacts;
+	g.impact = ARRAY(struct struck, (size_t)(s->segments * s->impacts));
+	for (int k = 0; k < s->segments; k++)
+		for (int i = 0; i < s->impacts; i++)
+			g.impact[k * s->impacts + i] = struck_in(step, &g, i, k);
 	bound_rows_of_guards(step, pieces, &g);
-	g.play = ARRAY(double, (size_t)s->expressions);
+	g.play = ARRAY(double, (size_t)(s->segments * s->expressions));
 	g.row_play = ARRAY(double, (size_t)g.rows);
-	for (int e = 0; e < s->expressions; e++)
-		g.play[e] = size_of_bounded(step, pieces->row + e * step->layout.size);
+	for (int k = 0; k < s->segments; k++)
+		for (int e = 0; e < s->expressions; e++)
+			g.play[k * s->expressions + e] =
+				size_of_bounded(step, pieces->rows[k] + e * step->layout.size);
 	for (int i = 0; i < g.rows; i++)
 		g.row_play[i] = size_of_bounded(step, g.row + i * step->layout.size);
 	return g;
@@ -222,11 +240,15 @@ static int bounces_in_step(const struct model *model)
 	enum { MOST = 480, SHORTER = 23 };
 	double sum = 0;
 	for (int i = 0; i < model->impacts; i++) {
-		double e = mpq_get_d(model->impact[i].restitution);
+		double most = 0;
 		if (model->retuned && retuned_place(model->retuned, RETUNED_RESTITUTION, i, 0) >= 0)
 			return MOST;            /* it may be anything */
-		if (model->impact[i].bounces && e > 0 && e < 1)
-			sum += ceil(SHORTER * log(2) / -log(e));
+		for (int s = 0; s < model->system.segments; s++) {
+			double e = mpq_get_d(model->impact[i].in[s].restitution);
+			if (model->impact[i].bounces && e > 0 && e < 1)
+				most = fmax(most, ceil(SHORTER * log(2) / -log(e)));
+		}
+		sum += most;
 	}
 	return (int)fmin(model->impacts > 1 ? 2 * sum : sum, MOST);
 }

@@ -46,14 +46,27 @@ static bool reads_columns(const struct output *row, int load, int columns)
 }
 
 /* What is held there, and what releases it */
-static void mark_loads_of_region(const struct region *region, int frictions, int load, int columns, bool *needed)
+static void mark_loads_of_region(const struct region *region, int felts, int load, int columns, bool *needed)
 {
 	for (int k = 0; k < region->holds && region->possible; k++)
 		*needed = *needed || reads_columns(region->hold[k].row, load, columns);
 	for (int k = 0; k < region->releases && region->possible; k++)
 		*needed = *needed || reads_columns(region->release[k].row, load, columns);
-	for (int k = 0; k < frictions && region->grip; k++)
+	for (int k = 0; k < felts && region->grip; k++)
 		*needed = *needed || (region->grip[k] && reads_columns(region->grip[k], load, columns));
+}
+
+/* Where states jump to, and the speed of what bounces */
+static void mark_loads_of_impacts(const struct switching *s, int load, int columns, bool *needed)
+{
+	for (int i = 0; i < s->impacts; i++)
+		for (int segment = 0; segment < s->segments; segment++) {
+			const struct strike *strike = &s->impact[i].in[segment];
+			for (int k = 0; k < strike->jumps; k++)
+				*needed = *needed || reads_columns(strike->jump[k].row, load, columns);
+			if (s->impact[i].bounces)
+				*needed = *needed || reads_columns(strike->speed_row, load, columns);
+		}
 }
 
 static void mark_loads_of(const struct switching *s, int segments, bool *needed)
@@ -64,8 +77,10 @@ static void mark_loads_of(const struct switching *s, int segments, bool *needed)
 		for (int e = 0; e < s->expressions; e++)
 			for (int k = 0; k < s->system->load[l].columns * segments; k++)
 				needed[l] = needed[l] || mpq_sgn(s->expression[e].row->load[l][k]) != 0;
+		int columns = s->system->load[l].columns * segments;
 		for (int k = 0; k < s->regions; k++)
-			mark_loads_of_region(&s->region[k], s->frictions, l, s->system->load[l].columns, &needed[l]);
+			mark_loads_of_region(&s->region[k], s->felts, l, columns, &needed[l]);
+		mark_loads_of_impacts(s, l, columns, &needed[l]);
 	}
 }
 

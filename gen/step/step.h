@@ -486,19 +486,20 @@ struct guards {
 	int rows, *branch;          /* of each row: whose it is, */
 	struct gate *gate;          /* and what */
 	double *row, *slope, *second, *fourth; /* rows x size */
-	double *play, *row_play;    /* per expression, per row: the sizes of its factors of cos and sin */
+	/* per segment of time and expression, per row: the sizes of its factors of cos and sin */
+	double *play, *row_play;
 	int sets, *set;             /* per set, and one more: the first of its assignments */
 	int *hold;                  /* per region: the set that holds its states; -1: none */
 	int assignments;
 	struct held_state *assignment;
 	int impacts;
-	struct struck *impact;
+	struct struck *impact;      /* per segment of time and impact */
 };
 struct guards guards_of(const struct step *step, const struct pieces *pieces);
 /* of one step: MAX_EVENTS and MAX_SPLITS, and room for the bounces before a contact rests */
 int max_events(const struct model *model);
 int max_splits(const struct model *model);
-double *grips_of(const struct step *step); /* what friction carries: regions x frictions x size */
+double *grips_of(const struct step *step); /* what friction carries that outputs read: regions x felts x size */
 
 /* ---- peaks.c: outputs of which the largest size is asked for ---- */
 

@@ -203,7 +203,19 @@ static bool *readings(const struct step *step)
 	return reads;
 }
 
-/* Read by what is left over, by what breakpoints divide, by the choice of an operator */
+/* What jumps, and what jumps read */
+static void mark_jumps(const struct switching *s, int states, bool *reads)
+{
+	for (int k = 0; k < s->impacts * s->segments; k++)
+		for (int j = 0; j < s->impact[k / s->segments].in[k % s->segments].jumps; j++) {
+			const struct jump *jump = &s->impact[k / s->segments].in[k % s->segments].jump[j];
+			reads[jump->state] = true;
+			for (int i = 0; i < states; i++)
+				reads[i] = reads[i] || mpq_sgn(jump->row->state[i]) != 0;
+		}
+}
+
+/* Read by what is left over, by what breakpoints divide, by the choice of an operator, by jumps */
 static bool *read_elsewhere(const struct step *step)
 {
 	const struct model *model = step->model;
@@ -223,6 +235,8 @@ static bool *read_elsewhere(const struct step *step)
 	for (int x = 0; model->switching && x < model->switching->expressions; x++)
 		for (int i = 0; i < n; i++)
 			reads[i] = reads[i] || mpq_sgn(model->switching->expression[x].row->state[i]) != 0;
+	if (model->switching)
+		mark_jumps(model->switching, n, reads);
 	return reads;
 }
 

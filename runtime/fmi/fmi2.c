@@ -132,10 +132,12 @@ fmi2Status fmi2SetReal(fmi2Component c, const fmi2ValueReference vr[], size_t nv
 fmi2Status fmi2DoStep(fmi2Component c, fmi2Real currentCommunicationPoint, fmi2Real communicationStepSize,
                       fmi2Boolean noSetFMUStatePriorToCurrentPoint)
 {
+    bool early;
     (void)noSetFMUStatePriorToCurrentPoint;
     if (!c)
         return fmi2Error;
-    return status_of(fmu_step((fmu_instance *)c, currentCommunicationPoint, communicationStepSize, "fmi2DoStep"));
+    return status_of(fmu_step((fmu_instance *)c, currentCommunicationPoint, communicationStepSize, "fmi2DoStep",
+                              &early));
 }
 
 fmi2Status fmi2GetRealStatus(fmi2Component c, const fmi2StatusKind s, fmi2Real *value)

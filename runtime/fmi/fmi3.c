@@ -55,7 +55,6 @@ fmi3Instance fmi3InstantiateCoSimulation(fmi3String instanceName, fmi3String ins
     fmu_instance *i;
     (void)resourcePath;
     (void)visible;
-    (void)earlyReturnAllowed;
     (void)requiredIntermediateVariables;
     (void)intermediateUpdate;
     if (eventModeUsed)
@@ -66,6 +65,7 @@ fmi3Instance fmi3InstantiateCoSimulation(fmi3String instanceName, fmi3String ins
     if (!i)
         return refused(logMessage, instanceEnvironment, "the instantiation token is another, or out of memory");
     i->environment = instanceEnvironment;
+    i->may_return_early = earlyReturnAllowed;
     i->callback = (void (*)(void))logMessage;
     i->log = log_message;
     fmu_logging(i, loggingOn, 0, NULL);
@@ -169,16 +169,17 @@ fmi3Status fmi3DoStep(fmi3Instance instance, fmi3Float64 currentCommunicationPoi
 {
     fmu_instance *i = (fmu_instance *)instance;
     fmi3Status status;
+    bool early;
     (void)noSetFMUStatePriorToCurrentPoint;
     if (!i)
         return fmi3Error;
-    status = status_of(fmu_step(i, currentCommunicationPoint, communicationStepSize, "fmi3DoStep"));
+    status = status_of(fmu_step(i, currentCommunicationPoint, communicationStepSize, "fmi3DoStep", &early));
     if (eventHandlingNeeded)
         *eventHandlingNeeded = fmi3False;
     if (terminateSimulation)
         *terminateSimulation = fmi3False;
     if (earlyReturn)
-        *earlyReturn = fmi3False;
+        *earlyReturn = early;
     if (lastSuccessfulTime)
         *lastSuccessfulTime = fmu_time(&i->data);
     return status;

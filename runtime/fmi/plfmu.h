@@ -7,6 +7,7 @@
  *     FMU_STATES, FMU_INPUTS, ...           how many there are
  *     FMU_H                                 step [s], as a double whatever the model's type
  *     FMU_TOKEN, FMU_MARK                   what the importer has to name; the same as a number
+ *     FMU_CROSSED(s)                        crossings of its breakpoints since the start; not there: it has none
  *
  * Value references: 0 time, then the inputs, the outputs, the tunable params and the states, in the model's order.
  *
@@ -56,7 +57,8 @@ typedef struct fmu_instance {
     void *environment;
     void (*callback)(void); /* the importer's, of whatever type it is */
     bool logs_warnings, logs_errors;
-    char name[1]; /* longer */
+    bool may_return_early; /* the importer lets a call end before its length */
+    char name[1];          /* longer */
 } fmu_instance;
 
 /* ---- what is logged ---- */
@@ -349,14 +351,27 @@ static uint64_t fmu_steps_in(double time, double length)
     return steps - whole <= room && whole - steps <= room ? (uint64_t)whole : 0;
 }
 
-/* Held inputs act as they were set, ramps reach what was set at the end, over all steps of the call. */
-static void fmu_advance(fmu_data *d, uint64_t steps)
+static uint64_t fmu_crossed(const fmu_data *d)
 {
+#ifdef FMU_CROSSED
+    return FMU_CROSSED(&d->state);
+#else
+    (void)d;
+    return 0;
+#endif
+}
+
+/* Held inputs act as they were set, ramps reach what was set at the end, over all steps of the call.  early: the call
+ * ends with the step in which a breakpoint was crossed, and a ramp is where it was on its way.  How many were done. */
+static uint64_t fmu_advance(fmu_data *d, uint64_t steps, bool early)
+{
+    const uint64_t crossed = fmu_crossed(d);
     fmu_real u[FMU_INPUTS + 1];
-    uint64_t k;
+    uint64_t k = 0;
     int j;
     memcpy(u, d->u, sizeof u);
-    for (k = 1; k <= steps; k++) {
+    while (k < steps && !(early && fmu_crossed(d) != crossed)) {
+        k++;
         for (j = 0; j < FMU_INPUTS && k < steps; j++)
             if (fmu_is_ramp(j))
                 u[j] = d->last[j] + (d->u[j] - d->last[j]) * ((fmu_real)k / (fmu_real)steps);
@@ -364,16 +379,19 @@ static void fmu_advance(fmu_data *d, uint64_t steps)
             memcpy(u, d->u, sizeof u);
         FMU_MODEL.step(&d->state, u);
     }
-    memcpy(d->last, d->u, sizeof d->last);
-    d->steps += steps;
+    memcpy(d->last, u, sizeof d->last);
+    d->steps += k;
+    return k;
 }
 
-static enum fmu_result fmu_step(fmu_instance *i, double time, double length, const char *function)
+/* *early: whether the call ended before its length */
+static enum fmu_result fmu_step(fmu_instance *i, double time, double length, const char *function, bool *early)
 {
     fmu_data *d = &i->data;
     const double late = time - fmu_time(d);
     enum fmu_result result;
     uint64_t steps;
+    *early = false;
     if (d->mode != FMU_STEPPING)
         return fmu_out_of_place(i, function);
     if (!(late > -0.5 * FMU_H && late < 0.5 * FMU_H))
@@ -384,7 +402,7 @@ static enum fmu_result fmu_step(fmu_instance *i, double time, double length, con
     result = fmu_settle(i);
     if (result != FMU_OK)
         return result;
-    fmu_advance(d, steps);
+    *early = fmu_advance(d, steps, i->may_return_early) < steps;
     return fmu_look(i);
 }
 

@@ -1,55 +1,76 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# random.sh PLGEN TRUTH FOLLOW.C SOURCE STOPS FRICTIONS IMPACTS FIRST COUNT [tuned]
+# random.sh PLGEN TRUTH FOLLOW.C SOURCE STOPS FRICTIONS IMPACTS CHANGES WILD FIRST COUNT [tuned]
 #
-# COUNT random scenes from seed FIRST on with at most so many contacts of each kind: the emitted code against the same
-# scene in multiprecision; `tuned`: from a model with other values of up to 16 params, retuned to those. $CC compiles,
-# $PLRT is the runtime. KEEP=FOLDER keeps what fails.
+# COUNT random scenes from seed FIRST on with at most so many contacts of each kind and changes of the loads: the emitted
+# code against the same scene in multiprecision. WILD 1: of the wilder ones (masses.h), each at steps from a ten
+# thousandth of its shortest period to ten of it, and in float. tuned: from a model with other values of up to 16 params,
+# retuned to those of the scene. $CC compiles, $PLRT is the runtime. KEEP=FOLDER keeps what fails.
 plgen=$(realpath "$1")
 truth=$(realpath "$2")
 follow=$(realpath "$3")
 source=$(realpath "$4")
-kinds="$5 $6 $7"
-first=$8
-shift 8
-last=$((first + $1))
-tuned=${2:-}
+kinds="$5 $6 $7 $8 $9"
+changes=$8
+wild=$9
+shift 9
+first=$1
+last=$((first + $2))
+tuned=${3:-}
 seconds=10
 . "$source/tests/tap.sh"
 decides=0
-seed=$first
-while [ $seed -lt $last ]; do
-	name="$(echo "$kinds" | tr ' ' '_')_$seed"
-	if ! chosen "$name"; then
-		seed=$((seed + 1))
-		continue
-	fi
-	$truth $kinds $seed $seconds scene.spec found.txt
-	status=$?
-	if [ $status -eq 2 ]; then
-		echo "# $name: $(head -n 1 found.txt)"
-		seed=$((seed + 1))
-		continue
-	fi
-	steps=$(awk -v seconds=$seconds '$1 == "step" { printf "%d", seconds/$2 + 0.5 }' scene.spec)
-	until=$(awk -v n="$steps" '$1 == "step" { printf "%.3f", n*$2 }' scene.spec)
-	$truth $kinds $seed "$until" scene.spec found.txt
-	decides=$((decides + 1))
+
+# follows STEPS BITS TOLERANCE REAL: status 0, or 2 where the scene decides nothing, or 3 where a step is too long
+follows() {
+	$truth $kinds $seed $seconds $1 $2 scene.spec found.txt || return $?
 	echo >values.h
 	if [ "$tuned" ]; then
 		mv scene.spec plain.spec
 		awk -v VALUES=values.h -f "$source/tests/contacts/tuned.awk" plain.spec >scene.spec
 	fi
-	"$plgen" scene.spec -o scene.c >log 2>&1 &&
-		${CC:-cc} -O1 -include ./values.h -I. -I"$source/runtime" -I"$source/tests/emitted" -o follow "$follow" \
-			scene.c $PLRT -lm >>log 2>&1 &&
-		./follow found.txt "$steps" 1e-12 >>log 2>&1
+	if ! "$plgen" --real $4 scene.spec -o scene.c >log 2>&1; then
+		grep 'more regions than the limit' log >found.txt && return 2
+		return 1
+	fi
+	${CC:-cc} -O1 -include ./values.h $([ $4 = float ] && echo -DFLOAT) -I. -I"$source/runtime" -I"$source/tests/emitted" -o follow \
+		"$follow" scene.c $PLRT -lm >>log 2>&1 || return 1
+	./follow found.txt $1 $3 >>log 2>&1
+}
+
+# one NAME STEPS BITS TOLERANCE REAL
+one() {
+	chosen "$1" || return 0
+	follows $2 $3 $4 $5
 	status=$?
-	result $status "$name"
-	grep '^# events' log | sed 's/^# //' >>all
+	if [ $status -ge 2 ]; then
+		[ $status -eq 3 ] || echo "# $1: $(head -n 1 found.txt)"
+		return 0
+	fi
+	result $status "$1"
+	[ $5 = float ] || grep '^# events' log | sed 's/^# //' >>all
+	decides=$((decides + 1))
 	if [ $status -ne 0 ] && [ "${KEEP:-}" ]; then
-		mkdir -p "$KEEP/$name"
-		cp scene.* found.txt log "$KEEP/$name/"
+		mkdir -p "$KEEP/$1"
+		cp scene.* found.txt log "$KEEP/$1/"
+	fi
+}
+
+seed=$first
+while [ $seed -lt $last ]; do
+	name="$(echo "$kinds" | tr ' ' '_')_$seed"
+	if [ $changes -gt 0 ]; then             # of which some are at the end of a step
+		set -- 100 250 500 1000 2000
+		shift $((seed % 5))
+		one "$name" $1 23 1e-12 double
+	elif [ $wild -eq 0 ]; then
+		one "$name" $((50 + seed * 37 % 950)) 23 1e-12 double
+	else
+		for steps in 2 12 90 1200; do
+			one "${name}_$steps" $steps 23 1e-12 double
+		done
+		one "${name}_100000" 100000 23 2e-11 double     # each rounds
+		one "${name}_float" 400 10 1e-4 float
 	fi
 	seed=$((seed + 1))
 done

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* x = q, v, 1, cos w t, sin w t. In each mode of the contacts x' = A x; A and forces of contact as rows over x. */
+/* x = q, v, 1, cos w t, sin w t, t. In each segment of time and mode of the contacts x' = A x; A and forces of contact
+ * as rows over x. */
 #include "truth.h"
 
 #include "polynomial.h"
@@ -7,12 +8,12 @@
 #include <math.h>
 #include <stdlib.h>
 
-enum { MOST = 2 * MOST_MASSES + 3 };
+enum { MOST = 2 * MOST_MASSES + 4 };
 typedef mpfr_t row[MOST];
 
 struct moving {
 	const struct scene *s;
-	int size, one;
+	int size, one, segment;
 	enum mode mode[MOST_CONTACTS];
 	bool hidden[MOST_CONTACTS];     /* its bounces are listed no more */
 	mpfr_t A[MOST][MOST];
@@ -89,15 +90,37 @@ static void add(mpfr_t *a, int column, long factor)
 	mpfr_clear(f);
 }
 
+/* a += factor (thousandths) times a law */
+static void add_law(const struct moving *m, mpfr_t *a, const struct law *law, long factor)
+{
+	mpfr_t f, part;
+	mpfr_inits2(BITS, f, part, (mpfr_ptr)0);
+	thousandths(f, factor);
+	thousandths(part, law->at[m->segment]);
+	mpfr_fma(a[m->one], f, part, a[m->one], MPFR_RNDN);
+	thousandths(part, law->slope[m->segment]);
+	mpfr_fma(a[m->one + 3], f, part, a[m->one + 3], MPFR_RNDN);
+	mpfr_clears(f, part, (mpfr_ptr)0);
+}
+
+/* What friction can be at most: row over x, its factor */
+static void add_limit(const struct moving *m, const struct contact *c, bool sticks, long factor, mpfr_t *r)
+{
+	add_law(m, r, &c->force, 1000 * factor);
+	add(r, m->one, sticks ? factor * c->more : 0);
+	add(r, m->one + 1, factor * c->swing);
+	add(r, c->pad_at, factor * c->pad);
+}
+
 /* Forces on masses, without those that hold: row over x for each mass */
 static void fill_forces(const struct moving *m, mpfr_t (*f)[MOST])
 {
 	const struct scene *s = m->s;
 	for (int i = 0; i < s->n; i++) {
 		zero(f[i], MOST);
-		add(f[i], m->one, s->constant[i]);
-		add(f[i], m->one + 1, s->cosine[i]);
-		add(f[i], m->one + 2, s->sine[i]);
+		add_law(m, f[i], &s->constant[i], 1000);
+		add(f[i], m->one + 1, s->cosine[i].at[m->segment]);
+		add(f[i], m->one + 2, s->sine[i].at[m->segment]);
 	}
 	for (int k = 0; k < s->n; k++)          /* spring and damper from mass k to k - 1 */
 		for (int end = k; end >= 0 && end >= k - 1; end--)
@@ -113,17 +136,12 @@ static void fill_forces(const struct moving *m, mpfr_t (*f)[MOST])
 			if (here == 0)
 				continue;
 			if (c->kind == FRICTION && m->mode[k] != STICKING)
-				add(f[i], m->one, m->mode[k] == FORWARD ? -here * c->force : here * c->force);
+				add_limit(m, c, false, m->mode[k] == FORWARD ? -here : here, f[i]);
 			if (m->mode[k] != CLOSED)
 				continue;
 			for (int j = 0; j < s->n; j++)
 				add(f[i], j, -here * share(c, j) * c->stiffness);
-			mpfr_t push, gap;
-			mpfr_inits2(BITS, push, gap, (mpfr_ptr)0);
-			thousandths(push, here * c->stiffness);
-			thousandths(gap, c->gap);
-			mpfr_fma(f[i][m->one], push, gap, f[i][m->one], MPFR_RNDN);
-			mpfr_clears(push, gap, (mpfr_ptr)0);
+			add_law(m, f[i], &c->gap, here * c->stiffness);
 		}
 	}
 }
@@ -162,7 +180,7 @@ static bool solve(int k, mpfr_t (*W)[MOST_CONTACTS], mpfr_t (*b)[MOST])
 	return good;
 }
 
-/* What holds: G M^-1 (f + G^T r) = 0, r as rows over x; f becomes f + G^T r */
+/* What holds: G M^-1 (f + G^T r) = the slope of its belt, r as rows over x; f becomes f + G^T r */
 static void hold(struct moving *m, mpfr_t (*f)[MOST])
 {
 	const struct scene *s = m->s;
@@ -175,6 +193,8 @@ static void hold(struct moving *m, mpfr_t (*f)[MOST])
 	for (int i = 0; i < k; i++) {
 		row_start(W[i], MOST_CONTACTS);
 		row_start(b[i], MOST);
+		if (s->contact[bound[i]].kind == FRICTION)
+			add(b[i], m->one, s->contact[bound[i]].belt.slope[m->segment]);
 		for (int q = 0; q < s->n; q++) {
 			const int here = share(&s->contact[bound[i]], q);
 			thousandths(mass, s->mass[q]);
@@ -226,6 +246,7 @@ static void fill_equations(struct moving *m)
 	}
 	add(m->A[m->one + 1], m->one + 2, -s->frequency);
 	add(m->A[m->one + 2], m->one + 1, s->frequency);
+	mpfr_set_ui(m->A[m->one + 3][m->one], 1, MPFR_RNDN);
 	mpfr_clear(mass);
 }
 
@@ -239,9 +260,11 @@ static void measure(const struct moving *m, int index, int derivative, mpfr_t *r
 	for (int i = 0; i < m->s->n; i++)
 		mpfr_set_si(r[i + derivative * m->s->n], share(c, i), MPFR_RNDN);
 	if (c->kind == FRICTION)
-		add(r, m->one, -c->belt);
+		add_law(m, r, &c->belt, -1000);
 	else if (derivative == 0)
-		add(r, m->one, -c->gap);
+		add_law(m, r, &c->gap, -1000);
+	else
+		add(r, m->one, -c->gap.slope[m->segment]);
 }
 
 static void measure_now(struct moving *m, int index, int derivative, mpfr_ptr value)
@@ -271,7 +294,7 @@ static bool guard(const struct moving *m, int index, int which, mpfr_t *r)
 	for (int j = 0; j < MOST && turned; j++)
 		mpfr_neg(r[j], r[j], MPFR_RNDN);
 	if (mode == STICKING)
-		add(r, m->one, -c->force);
+		add_limit(m, c, true, -1, r);
 	return true;
 }
 
@@ -302,10 +325,34 @@ static int first_sign(const struct moving *m, mpfr_t *r, int from)
 	return sign;
 }
 
+/* F below 0 counts as 0, which no scene here goes into. */
+static void check_limits(struct moving *m)
+{
+	mpfr_t force;
+	row r;
+	mpfr_init2(force, BITS);
+	row_start(r, MOST);
+	for (int i = 0; i < m->s->contacts; i++) {
+		const struct contact *c = &m->s->contact[i];
+		if (c->kind != FRICTION || (c->force.at[m->segment] == 0 && c->force.slope[m->segment] == 0 && c->swing == 0 && c->pad == 0))
+			continue;
+		zero(r, MOST);
+		add_limit(m, c, false, 1, r);
+		dot(MOST, r, m->x, force);
+		if (mpfr_get_d(force, MPFR_RNDN) < 1e-4)
+			doubt(m, "a force of friction below 0");
+	}
+	row_stop(r, MOST);
+	mpfr_clear(force);
+}
+
 /* ---- which modes hold behind an event ---- */
 
 static void log_event(struct moving *m, double time, int contact, enum mode from, enum mode to)
 {
+	const struct contact *c = &m->s->contact[contact];
+	if (c->kind == FRICTION && c->force.at[m->segment] == 0 && c->force.slope[m->segment] == 0 && c->more == 0)
+		return;                         /* it is not there */
 	if (m->found->events == MOST_FOUND) {
 		doubt(m, "too many events");
 		return;
@@ -614,7 +661,7 @@ static bool next_event(struct moving *m, mpfr_ptr width)
 	return any;
 }
 
-static void start(struct moving *m)
+static void start(struct moving *m, double nudge)
 {
 	const struct scene *s = m->s;
 	m->one = 2 * s->n;
@@ -631,6 +678,9 @@ static void start(struct moving *m)
 	for (int i = 0; i < s->n; i++) {
 		thousandths(m->x[i], s->start[i]);
 		thousandths(m->x[s->n + i], s->speed[i]);
+		mpfr_add_d(m->x[i], m->x[i], nudge, MPFR_RNDN);
+		if (s->speed[i] != 0)
+			mpfr_add_d(m->x[s->n + i], m->x[s->n + i], nudge, MPFR_RNDN);
 	}
 	mpfr_set_ui(m->x[m->one], 1, MPFR_RNDN);
 	mpfr_set_ui(m->x[m->one + 1], 1, MPFR_RNDN);
@@ -656,33 +706,56 @@ static void finish(struct moving *m)
 	mpfr_clears(m->time, m->tiny, (mpfr_ptr)0);
 }
 
-void truth_run(const struct scene *s, double until, double brief, struct truth *found)
+/* At the end of a segment of time, if it is one: the laws behind it, and what they make of the contacts */
+static void pass_change(struct moving *m, mpfr_srcptr change)
+{
+	mpfr_set(m->time, change, MPFR_RNDN);
+	mpfr_set(m->x[m->one + 3], change, MPFR_RNDN);
+	m->segment++;
+	settle(m);
+}
+
+void truth_run(const struct scene *s, double until, double brief, double nudge, struct truth *found)
 {
 	struct moving *m = calloc(1, sizeof *m);
-	mpfr_t width, left, end;
+	mpfr_t width, left, end, change;
 	*found = (struct truth){ .slowest = 1 };
 	m->s = s;
 	m->found = found;
 	m->brief = brief;
-	start(m);
-	mpfr_inits2(BITS, width, left, end, (mpfr_ptr)0);
+	start(m, nudge);
+	bool any = false;
+	for (int i = 0; i < s->contacts; i++)
+		any = any || s->contact[i].kind != FRICTION || s->segments > 1 || s->contact[i].force.at[0] + s->contact[i].more > 0;
+	if (!any)
+		doubt(m, "nothing touches");
+	mpfr_inits2(BITS, width, left, end, change, (mpfr_ptr)0);
 	mpfr_set_d(end, until * 1000, MPFR_RNDN);       /* a whole number of thousandths */
 	mpfr_rint(end, end, MPFR_RNDN);
 	mpfr_div_ui(end, end, 1000, MPFR_RNDN);
 	while (!found->doubtful) {
+		const bool last = m->segment + 1 == s->segments;
+		thousandths(change, last ? 0 : s->change[m->segment]);
 		mpfr_sub(left, end, m->time, MPFR_RNDN);
 		if (mpfr_cmp(left, m->tiny) <= 0)
 			break;
+		if (!last && mpfr_cmp(change, end) < 0)
+			mpfr_sub(left, change, m->time, MPFR_RNDN);
+		if (mpfr_cmp(left, m->tiny) <= 0) {
+			pass_change(m, change);
+			continue;
+		}
 		mpfr_set_d(width, piece_of(m), MPFR_RNDN);
 		if (mpfr_cmp(width, left) > 0)
 			mpfr_set(width, left, MPFR_RNDN);
 		expand(m);
+		check_limits(m);
 		const bool event = next_event(m, width);
 		go(m, width);
 		if (event)
 			settle(m);
 	}
-	mpfr_clears(width, left, end, (mpfr_ptr)0);
+	mpfr_clears(width, left, end, change, (mpfr_ptr)0);
 	finish(m);
 	free(m);
 }

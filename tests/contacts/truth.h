@@ -28,8 +28,9 @@ struct truth {
 	const char *doubt;
 };
 
-/* brief: bounces that would all be over within this time [s] are not listed; their contact rests, at the time when the
- * last of them would be over. The state does not know of it. */
-void truth_run(const struct scene *s, double until, double brief, struct truth *found);
+/* until: a whole number of thousandths [s]. brief: bounces that would all be over within this time [s] are not listed;
+ * their contact rests, at the time when the last of them would be over. The state does not know of it. nudge: what is
+ * added to all positions at the start, and to velocities that are not 0. */
+void truth_run(const struct scene *s, double until, double brief, double nudge, struct truth *found);
 
 #endif

@@ -190,6 +190,79 @@ static void try_rollback(const struct fmu *f, const model *m)
 	end(f, i);
 }
 
+#if FMI == 3
+/* The model's own count of crossings; NULL: it has no breakpoints */
+typedef uint64_t crossed(const void *s);
+
+static crossed *crossed_of(void *object, const char *name)
+{
+	char symbol[256];
+	snprintf(symbol, sizeof symbol, "%s_crossed", name);
+	return *(crossed **)(void *[]){ dlsym(object, symbol) };
+}
+
+/* As reference_step, up to the end of the first step with a crossing; steps that were done */
+static int reference_steps_early(struct reference *r, const double *u, int n, crossed *count)
+{
+	real now[MOST] = { 0 };
+	uint64_t before = count ? count(r->s) : 0;
+	int k = 0;
+	do {
+		k++;
+		for (int j = 0; j < r->m->inputs; j++)
+			now[j] = k == n || r->m->start_samples[j] == 0 ? (real)u[j] :
+				 r->last[j] + ((real)u[j] - r->last[j]) * ((real)k / (real)n);
+		r->m->step(r->s, now);
+	} while (k < n && (!count || count(r->s) == before));
+	memcpy(r->last, now, sizeof r->last);
+	return k;
+}
+
+/* A call of n steps from step k on: where it ends, in which state */
+static bool step_as_reference(const struct fmu *f, void *i, struct reference *r, int k, int n, crossed *count,
+			      const double *u, int *done)
+{
+	double h = r->m->h, at = -1;
+	bool early = false, good = set_inputs(f, i, r->m, u) && step_early(f, i, k * h, n * h, &early, &at);
+	*done = reference_steps_early(r, u, n, count);
+	if (good && early == (*done < n) && at > (k + *done - 0.01) * h && at < (k + *done + 0.01) * h)
+		return same(f, i, r, "early return");
+	printf("# from step %d it came to %.9g, %searly, and a crossing is in the step that ends at %.9g\n", k, at,
+	       early ? "" : "not ", (k + *done) * h);
+	return false;
+}
+
+/* Calls of up to eight steps that end with the step in which a breakpoint was crossed, each taken twice, the second
+ * time from a saved state; what is left of a call's length comes next, towards the same inputs. */
+static void try_early(const struct fmu *f, const model *m, crossed *count)
+{
+	enum { MANY = 8 };
+	struct reference r = reference_new(m), kept = reference_new(m);
+	double u[MOST];
+	int returns = 0;
+	void *i = make_early(f);
+	bool good = i && enter(f, i, 0);
+	fill(u, m->inputs, 5);
+	reference_start(&r, u);
+	good = good && set_inputs(f, i, m, u) && leave(f, i);
+	for (int k = 0, done = 0; k < STEPS && good; k += done) {
+		int n = MANY - k % MANY;
+		void *state = save(f, i);
+		copy_reference(&kept, &r);
+		fill(u, m->inputs, k / MANY);
+		good = step_as_reference(f, i, &r, k, n, count, u, &done);
+		copy_reference(&r, &kept);
+		good = good && restore(f, i, state) && step_as_reference(f, i, &r, k, n, count, u, &done);
+		returns += done < n;
+		forget(f, i, state);
+	}
+	judge(good, "a call ends with the step in which a breakpoint is crossed, after a rollback too");
+	printf("# %d early returns\n", returns);
+	judge((returns > 0) == (count != NULL), count ? "and some do" : "and none does without breakpoints");
+	end(f, i);
+}
+#endif
+
 static void try_reset(const struct fmu *f, const model *m)
 {
 	struct reference r = reference_new(m);
@@ -373,6 +446,9 @@ int main(int argc, char **argv)
 	try_steps(&f[0], m[0], 1, "step by step");
 	try_steps(&f[0], m[0], 4, "four steps a call");
 	try_rollback(&f[0], m[0]);
+#if FMI == 3
+	try_early(&f[0], m[0], crossed_of(dlopen(argv[3], RTLD_NOW | RTLD_LOCAL), argv[4]));
+#endif
 	try_reset(&f[0], m[0]);
 	try_start(&f[0], m[0]);
 	try_params(&f[0], m[0]);

@@ -274,6 +274,12 @@ one() {
     : >log
     exported "$3" ./m.so
     result $? "$label: the standard's functions, and no others"
+    : >log
+    early=no
+    grep -q '^uint64_t [a-z0-9_]*_crossed(' m.c && [ "$3" -eq 3 ] && early=yes
+    grep -o 'mightReturnEarlyFromDoStep="[a-z]*"' m/modelDescription.xml >names
+    [ "$early$(cat names)" = no ] || [ "$early$(cat names)" = 'yesmightReturnEarlyFromDoStep="true"' ]
+    result $? "$label: early returns are announced where there are any"
     single=
     case $4 in *float*) single=-DSINGLE ;; esac
     drive "$label" "./drive$3$single" ./m.so "$(token m)" ./m_own.so "$1"
@@ -290,6 +296,9 @@ one drivetrain "$models/drivetrain.spec" 3 ''
 one vanderpol_stiff "$models/vanderpol_stiff.spec" 3 ''
 one beam4 "$models/beam4.spec" 3 ''
 one brake "$models/brake.spec" 2 ''
+one brake "$models/brake.spec" 3 ''
+one gap_cubic "$root/tests/divided/gap_cubic.spec" 3 ''
+one ramped "$own/ramped.spec" 3 ''
 one bouncing_ball "$models/bouncing_ball.spec" 3 ''
 one tuned "$root/tests/leftover/tuned.spec" 3 ''
 one gaps "$root/tests/leftover/tuned_gaps.spec" 3 ''

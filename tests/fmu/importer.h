@@ -107,7 +107,14 @@ static void log_message(fmi3InstanceEnvironment e, fmi3Status status, fmi3String
 
 static void *make(const struct fmu *f, const char *token)
 {
-	return CALL(f, fmi3InstantiateCoSimulation)("one", token, NULL, false, true, false, true, NULL, 0, NULL,
+	return CALL(f, fmi3InstantiateCoSimulation)("one", token, NULL, false, true, false, false, NULL, 0, NULL,
+						    log_message, NULL);
+}
+
+/* One whose calls may end before their length */
+static void *make_early(const struct fmu *f)
+{
+	return CALL(f, fmi3InstantiateCoSimulation)("one", f->token, NULL, false, true, false, true, NULL, 0, NULL,
 						    log_message, NULL);
 }
 
@@ -132,6 +139,13 @@ static bool step(const struct fmu *f, void *i, double t, double h)
 	double last = -1;
 	bool done = CALL(f, fmi3DoStep)(i, t, h, false, &event, &end, &early, &last) == OK;
 	return done && !event && !end && !early && last > t + 0.5 * h && last < t + 1.5 * h;
+}
+
+/* *end: where it ended, before its length or there */
+static bool step_early(const struct fmu *f, void *i, double t, double length, bool *early, double *end)
+{
+	bool event = true, last = true;
+	return CALL(f, fmi3DoStep)(i, t, length, false, &event, &last, early, end) == OK && !event && !last;
 }
 
 static bool stub_fails(const struct fmu *f, void *i)

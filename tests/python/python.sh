@@ -25,4 +25,16 @@ while read -r how name; do
 done <told
 [ "$(tail -n 1 told)" = 'end' ]
 result $? 'the script came to its end'
+
+# What a status means is said in the same words everywhere.
+sed -n 's/.*fprintf(stderr, " \(\(the\|what\) [^%"]*\).*/\1/p' "$root/runtime/host/plmain.c" >words
+: >log
+[ "$(wc -l <words)" -eq "$(grep -c 'if (status & PL_' "$root/runtime/host/plmain.c")" ] || cp words log
+while read -r words; do
+	for file in python/plgen.py octave/plgen_model.m; do
+		grep -q "$words" "$root/host/$file" || echo "$file: no '$words'" >>log
+	done
+done <words
+[ -s words ] && [ ! -s log ]
+result $? "a status of $(wc -l <words) kinds is told as plmain.c does"
 tap_end

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Loads that change their formula beside clearances, where a random system seldom gets: a crossing and a change at one
  * instant, by closed form; inputs that are held or ramps across changes, and NAME_at there, by steps of other lengths;
- * what stands in NAME_set to a time behind a change. */
+ * what stands in NAME_set to a time behind a change; outputs at a change. */
 #include "drive.h"
 #include "changes_variants.h"
 #include "tap.h"
@@ -119,6 +119,30 @@ static void set_later(void)
 	run_free(&set);
 }
 
+/* The region of a state that is set is that of its time, and nothing is crossed to come there; what is told after a
+ * step that ends at a change is what acts from there on. */
+static void region_of_time(void)
+{
+	const struct variant *of = variant_of(changes_table, "gap_leaves_0");
+	struct run r = run_new(of);
+	const double y[2] = { 0.15, 0 };
+	double out[2], worst = 0;
+	run_set(&r, y);
+	is_close(of->region(r.state), 1, 0, "set before the change: in the stop");
+	for (int k = 1; k <= 8; k++) {
+		run_step(&r, NULL);
+		of->model->out(r.state, out);
+		worst = worse(worst, fabs(out[1] - (0.5 * k < 2 ? 0.1 : 0.2)));
+	}
+	is_close(worst, 0, 0, "outputs at steps' ends: where the stop is from there on");
+	of->model->set(r.state, 3, y);
+	is_close(of->region(r.state), 0, 0, "set behind the change: clear of the stop");
+	for (int k = 0; k < 20; k++)
+		run_step(&r, NULL);
+	is_close((double)of->crossed(r.state), 0, 0, "set behind the change: nothing is crossed");
+	run_free(&r);
+}
+
 int main(void)
 {
 	for (int step = 0; step < 4; step++) {
@@ -130,5 +154,6 @@ int main(void)
 		long_and_short("shaken", step, true);
 	}
 	set_later();
+	region_of_time();
 	return tap_end();
 }

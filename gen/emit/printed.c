@@ -1,0 +1,55 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* C that was printed, read again: what the rewriters (float, locals apart, braces) have in common. They know how
+ * emitters write: strings have no escapes, and a line of the preprocessor begins in its first column. */
+#include "emit/emit.h"
+
+#include <ctype.h>
+#include <string.h>
+
+bool in_name(char c)
+{
+	return isalnum((unsigned char)c) || c == '_';
+}
+
+size_t name_length(const char *text)
+{
+	size_t length = 0;
+	while (in_name(text[length]))
+		length++;
+	return length;
+}
+
+bool is_named(const char *text, size_t length, const char *name)
+{
+	return strlen(name) == length && memcmp(text, name, length) == 0;
+}
+
+const char *behind_quoted(const char *text, bool line_start)
+{
+	const char *end = NULL;
+	if (strncmp(text, "/*", 2) == 0) {
+		end = strstr(text + 2, "*/");
+		return end ? end + 2 : text + strlen(text);
+	}
+	if (*text == '"') {
+		end = strchr(text + 1, '"');            /* names of states, outputs, files: no escapes */
+		return end ? end + 1 : text + strlen(text);
+	}
+	return line_start && *text == '#' ? text + strcspn(text, "\n") : NULL;
+}
+
+const char *behind(const char *text, char last)
+{
+	for (int depth = 0; *text; text++) {
+		const char *quoted = behind_quoted(text, false);
+		if (quoted)
+			text = quoted - 1;
+		else if (*text == '{')
+			depth++;
+		else if (*text == '}')
+			depth--;
+		if (!quoted && depth == 0 && *text == last)
+			return text + 1;
+	}
+	return text;
+}

@@ -1,0 +1,318 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Friction of what has no mass: friction(v, F) where v has the highest derivative of a coordinate of first order, as
+ * in an element of Jenkins (a spring and a slider in series). The coordinate's equation gives the force that friction
+ * has to bear, q. Up to F the slider sticks and v = 0; beyond, it slides so that q stays F, which gives its place; it
+ * sticks again where v would turn round (W. D. Iwan, Journal of Applied Mechanics 33, 1966). With a damper beside it v
+ * is what the damper makes of what q has above F, a function of straight pieces. */
+#include "model/model.h"
+
+/* ---- which it is ---- */
+
+static bool is_friction(const struct atom *a)
+{
+	return a && a->kind == ATOM_CALL && a->function == FN_FRICTION;
+}
+
+static bool is_rate(const struct building *b, const struct basis *basis)
+{
+	return basis->kind == BASIS_COORD && basis->order == 1 && b->model->frame.coord[basis->index]->highest == 1;
+}
+
+static bool has_rate(const struct building *b, const struct form *form, int coord)
+{
+	for (int i = 0; i < form->terms; i++)
+		if (is_rate(b, &form->term[i].basis) && (coord < 0 || form->term[i].basis.index == coord))
+			return true;
+	return false;
+}
+
+bool has_slider(const struct building *b, const struct form *form, int coord)
+{
+	for (int i = 0; i < form->terms; i++) {
+		const struct atom *a = form->term[i].basis.atom;
+		if (is_friction(a) && has_rate(b, a->operand[0], coord))
+			return true;
+	}
+	return false;
+}
+
+static int coord_of_row(const struct building *b, int row)
+{
+	int coord = 0;
+	while (b->owner[coord] != row)
+		coord++;
+	return coord;
+}
+
+/* The only slider of a row, in the velocity of which is the row's coordinate; NULL: there is none, or several */
+static const struct form_term *only_slider(const struct building *b, const struct form *form, int coord)
+{
+	const struct form_term *found = NULL;
+	for (int i = 0; i < form->terms; i++) {
+		const struct atom *a = form->term[i].basis.atom;
+		if (!is_friction(a) || !has_rate(b, a->operand[0], -1))
+			continue;
+		if (found || !has_rate(b, a->operand[0], coord))
+			return NULL;
+		found = &form->term[i];
+	}
+	return found;
+}
+
+/* ---- its equation ---- */
+
+struct slider_row {
+	struct building *b;
+	struct snapshot *snapshot;
+	const struct atom *atom;
+	const struct form *velocity, *force;
+	int row, coord;
+	mpq_t factor;               /* of friction in the row */
+};
+
+static mpq_srcptr rate_factor(const struct form *form, int coord)
+{
+	struct basis basis = { .kind = BASIS_COORD, .index = coord, .order = 1 };
+	const struct form_term *term = form_find(form, &basis);
+	return term ? term->factor : NULL;
+}
+
+static struct form *scaled_form(const struct form *form, mpq_srcptr by, bool inverse, bool minus)
+{
+	mpq_t factor;
+	mpq_init(factor);
+	inverse ? mpq_inv(factor, by) : mpq_set(factor, by);
+	if (minus)
+		mpq_neg(factor, factor);
+	struct form *scaled = form_scale(form, factor);
+	mpq_clear(factor);
+	return scaled;
+}
+
+/* In other equations the friction is what it bears, and in outputs. */
+static void put_in_others(const struct slider_row *r, const struct form *borne)
+{
+	struct basis basis = { .kind = BASIS_ATOM, .index = r->atom->index, .atom = r->atom };
+	struct model *model = r->b->model;
+	ENLARGE(model->bearing, (size_t)model->bearings + 1);
+	model->bearing[model->bearings++] = (struct bearing){ r->atom, borne };
+	for (int i = 0; i < r->snapshot->residuals; i++) {
+		struct residual *residual = &r->snapshot->residual[i];
+		const struct form_term *term = form_find(residual->form, &basis);
+		if (i == r->row || !term)
+			continue;
+		struct form *rest = form_difference(residual->form, form_single(basis, term->factor));
+		residual->form = form_sum(rest, form_scale(borne, term->factor), false);
+	}
+}
+
+static _Noreturn void tell_drives(const struct node *node)
+{
+	error(node->at, "on the left side it stands with the sign of a damper: + friction(x', F)",
+	      "this friction drives what slides instead of holding it");
+}
+
+/* What it bears becomes less as it slides. */
+static void check_borne(const struct slider_row *r, const struct form *borne)
+{
+	struct basis place = { .kind = BASIS_COORD, .index = r->coord };
+	const struct form_term *term = form_find(borne, &place);
+	if (term && mpq_sgn(term->factor) * mpq_sgn(rate_factor(r->velocity, r->coord)) > 0)
+		tell_drives(r->atom->node);
+}
+
+/* c f + rest = 0: q = -rest/c */
+static void slide_alone(const struct slider_row *r, const struct form *rest)
+{
+	struct form *borne = scaled_form(rest, r->factor, true, true), *operand[] = { borne, NULL };
+	check_borne(r, borne);
+	operand[1] = form_alias(r->force);
+	struct form *slides = kept_call(&r->b->collector, r->atom->node, FN_SLIDE, 2, operand);
+	r->snapshot->residual[r->row].form = form_difference(r->velocity, slides);
+	put_in_others(r, borne);
+}
+
+/* c f + a z' + rest = 0 and v = d z' + w: v + k f = p, where k = c d/a and p = w - (d/a) rest */
+static void slide_damped(const struct slider_row *r, const struct form *rest, mpq_srcptr damping)
+{
+	struct collector *c = &r->b->collector;
+	const struct node *node = r->atom->node;
+	mpq_srcptr along = rate_factor(r->velocity, r->coord);
+	struct basis rate = { .kind = BASIS_COORD, .index = r->coord, .order = 1 };
+	mpq_t ratio, k;
+	mpq_inits(ratio, k, NULL);
+	mpq_div(ratio, along, damping);
+	mpq_mul(k, ratio, r->factor);
+	if (mpq_sgn(k) < 0)
+		tell_drives(node);
+	rest = form_difference(rest, form_single(rate, damping));
+	struct form *drive = form_difference(form_difference(r->velocity, form_single(rate, along)),
+					     form_scale(rest, ratio));
+	struct form *x[] = { drive, scaled_form(r->force, k, false, true), form_scale(r->force, k) };
+	r->snapshot->residual[r->row].form = form_difference(r->velocity, kept_call(c, node, FN_DEADZONE, 3, x));
+	put_in_others(r, scaled_form(kept_call(c, node, FN_CLIP, 3, x), k, true, false));
+	mpq_clears(ratio, k, NULL);
+}
+
+static void slide(struct building *b, struct snapshot *snapshot, int row, const struct form_term *term)
+{
+	struct slider_row r = { .b = b, .snapshot = snapshot, .row = row, .coord = coord_of_row(b, row),
+				.atom = term->basis.atom, .velocity = term->basis.atom->operand[0],
+				.force = term->basis.atom->operand[1] };
+	const struct node *node = r.atom->node;
+	const struct form *residual = snapshot->residual[row].form;
+	if (r.atom->operands > 2)
+		error(node->child[2]->start, "friction(v, F)",
+		      "what has no mass holds as much as it brakes: it would leave its place at once");
+	mpq_init(r.factor);
+	mpq_set(r.factor, term->factor);
+	struct form *rest = form_difference(residual, form_single(term->basis, term->factor));
+	mpq_srcptr damping = rate_factor(rest, r.coord);
+	if (damping)
+		slide_damped(&r, rest, damping);
+	else
+		slide_alone(&r, rest);
+	mpq_clear(r.factor);
+}
+
+struct form *borne_form(const struct building *b, const struct form *form)
+{
+	struct form *sum = NEW(struct form);
+	for (int i = 0; i < form->terms; i++) {
+		const struct form_term *term = &form->term[i];
+		const struct form *borne = NULL;
+		for (int k = 0; k < b->model->bearings && term->basis.atom; k++)
+			if (b->model->bearing[k].atom == term->basis.atom)
+				borne = b->model->bearing[k].borne;
+		if (borne)
+			form_add_to(sum, borne, term->factor);
+		else
+			form_add_basis(sum, term->basis, term->factor);
+	}
+	return sum;
+}
+
+struct sliding { struct building *b; struct snapshot *snapshot; };
+
+static void resolve_all(void *context)
+{
+	struct sliding *w = context;
+	struct building *b = w->b;
+	struct snapshot *s = w->snapshot;
+	bool any = true;
+	while (any) {
+		any = false;
+		for (int i = 0; i < s->residuals; i++) {
+			int coord = coord_of_row(b, i);
+			const struct form_term *term = only_slider(b, s->residual[i].form, coord);
+			any = any || term;
+			if (term)
+				slide(b, s, i, term);
+		}
+	}
+	for (int i = 0; i < s->residuals; i++)
+		for (int k = 0; k < s->residual[i].form->terms; k++) {
+			const struct atom *a = s->residual[i].form->term[k].basis.atom;
+			if (is_friction(a) && has_rate(b, a->operand[0], -1))
+				error(a->node->at, "the equation of what has no mass says what its friction bears",
+				      "no equation gives the force of this friction");
+		}
+}
+
+void resolve_sliders(struct building *b, struct snapshot *snapshot)
+{
+	bool any = false;
+	for (int i = 0; i < snapshot->residuals; i++)
+		any = any || has_slider(b, snapshot->residual[i].form, -1);
+	if (any)
+		statement_guard(resolve_all, &(struct sliding){ b, snapshot });
+}
+
+/* ---- in regions ---- */
+
+bool is_repeated_slider(const struct switching *s, int index)
+{
+	bool repeated = false;
+	for (int i = 0; i < index; i++)
+		repeated = repeated || s->slider[i].atom->node == s->slider[index].atom->node;
+	return repeated;
+}
+
+struct form *slide_velocity(const struct switching *s, const struct region *region, const struct node *node)
+{
+	for (int i = 0; i < s->sliders; i++)
+		if (s->slider[i].atom->node == node && region->slide[s->slider[i].atom->index] != 0)
+			return region->carried[s->slider[i].atom->index];
+	return NULL;
+}
+
+const char *slider_text(const struct switching *s, int index)
+{
+	const struct slider *slider = &s->slider[index];
+	const struct node *node = slider->atom->node;
+	const char *where[2];
+	for (int i = 0; i < 2; i++)
+		where[i] = format("expression %d is %s %s", slider->expression[i],
+				  slider->upward[i] ? "above" : "below", readable_text(slider->at[i]));
+	return format("%s; slides where %s, or %s", text_between(node->start, node->end), where[0], where[1]);
+}
+
+/* q - F or q + F, which is 0 while it slides */
+static struct form *place_of(const struct region *region, const struct slider *slider)
+{
+	int at = slider->atom->index;
+	return form_sum(region->rest[at], region->force[at], region->slide[at] > 0);
+}
+
+static int row_of_slider(const struct building *b, const struct switching *s, int segment, const struct slider *slider)
+{
+	struct basis basis = { .kind = BASIS_ATOM, .index = slider->atom->index, .atom = slider->atom };
+	for (int k = 0; k < s->rows; k++)
+		if (form_find(b->snapshot[segment].residual[s->row[k]].form, &basis))
+			return s->row[k];
+	return -1;
+}
+
+void slide_sliders(struct building *b, const struct switching *s, int index)
+{
+	struct region *region = &s->region[index];
+	for (int i = 0; i < s->sliders; i++) {
+		const struct slider *slider = &s->slider[i];
+		int way = region->slide[slider->atom->index], side = way < 0;
+		int row = row_of_slider(b, s, segment_of_region(s, index), slider);
+		if (way == 0 || row < 0)
+			continue;
+		struct form *velocity = region->residual[row];
+		region->carried[slider->atom->index] = velocity;
+		add_release(region, slider->expression[side], !slider->upward[side],
+			    way > 0 ? form_difference(NEW(struct form), velocity) : velocity);
+		region->residual[row] = rate_of_form(b, place_of(region, slider));
+	}
+}
+
+/* The place of a coordinate of first order; -1: there is none */
+static int slider_term(const struct building *b, const struct form *form)
+{
+	for (int i = 0; i < form->terms; i++) {
+		const struct basis *basis = &form->term[i].basis;
+		if (basis->kind == BASIS_COORD && basis->order == 0 &&
+		    b->model->frame.coord[basis->index]->highest == 1)
+			return i;
+	}
+	return -1;
+}
+
+void hold_sliders(struct holding *h, const struct switching *s)
+{
+	for (int i = 0; i < s->sliders; i++) {
+		const struct slider *slider = &s->slider[i];
+		if (h->region->slide[slider->atom->index] == 0)
+			continue;
+		const struct form *place = free_of_holds(h, place_of(h->region, slider));
+		int at = slider_term(h->b, place);
+		if (at < 0)
+			error(slider->atom->node->at, "a spring between it and what moves, k*(x - z)",
+			      "what this friction bears does not depend on where it is");
+		hold_state(h, place, at);
+	}
+}

@@ -1,0 +1,599 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Statements to declarations. The production stands above each function that reads it. */
+#include "read/parser.h"
+
+#include <string.h>
+
+struct token expect_new_name(struct parser *p, const char *what)
+{
+	if (p->token.kind != TOKEN_NAME)
+		unexpected(p, what);
+	if (p->token.primes > 0)
+		error(p->token.at, NULL, "a name is declared without primes: '%s'", p->token.name);
+	if (is_reserved(p->token.name))
+		error(p->token.at, NULL, "'%s' is a reserved word", p->token.name);
+	return take(p);
+}
+
+/* Names that differ in a point for a _ are one in C. Told where the scene makes them meet. */
+static void check_name_in_c(const struct parser *p, const char *name, struct place at)
+{
+	for (const struct symbol *s = p->spec->bucket[name_hash(name) % BUCKETS]; s; s = s->next_alike) {
+		size_t same = 0;
+		while (s->name[same] && (s->name[same] == name[same] || (strchr("._", s->name[same]) && name[same] &&
+									 strchr("._", name[same]))))
+			same++;
+		if (!s->name[same] && !name[same] && strcmp(s->name, name) != 0 && s->kind != SYMBOL_PART)
+			error(p->part ? p->part->at : at, "names of parts have a _ for the point there",
+			      "'%s' and '%s' are one name in C", s->name, name);
+	}
+}
+
+static struct place last_token(const struct parser *p, size_t length)
+{
+	return (struct place){ p->end.source, p->end.offset - length };
+}
+
+struct symbol *declare(struct parser *p, struct token name, enum symbol_kind kind, bool broken)
+{
+	struct spec *spec = p->spec;
+	struct symbol *known = find_symbol(p, name.name);
+	if (strchr(name.name, '.'))
+		error(name.at, "names with a point are those of parts", "'%s' is no name to declare", name.name);
+	if (known && known->broken)
+		abandon();
+	if (known)
+		error(name.at, NULL, "'%s' is declared already, as %s %s", name.name,
+		      known->kind == SYMBOL_OUTPUT || known->kind == SYMBOL_INPUT ? "an" : "a", symbol_kind(known));
+	int *counts[] = { &spec->params, &spec->coords, &spec->lets, &spec->outputs, &spec->inputs, &spec->matrices,
+			  &spec->part_outputs, &spec->part_names };
+	const char *whole = p->part ? format("%s.%s", p->part->name, name.name) : name.name;
+	if (kind != SYMBOL_PART && !broken)
+		check_name_in_c(p, whole, name.at);
+	struct symbol *symbol = NEW(struct symbol);
+	*symbol = (struct symbol){
+		.kind = kind, .name = whole, .at = name.at, .statement = p->statement, .broken = broken, .part = p->part
+	};
+	symbol->index = broken ? -1 : (*counts[kind])++;
+	add_symbol(spec, symbol);
+	return symbol;
+}
+
+/* What the scene gives to the part that is read; or NULL */
+static const struct binding *binding_of(const struct parser *p, const char *name)
+{
+	const struct binding *found = NULL;
+	for (const struct scene_part *part = p->part; part; part = part->inside) {
+		for (int i = 0; i < part->bindings; i++) {
+			struct binding *binding = &part->binding[i];
+			if (strcmp(binding->name.name, name) != 0 || binding->name.primes || binding->component)
+				continue;
+			binding->taken = true;
+			found = binding;        /* that of the outermost */
+		}
+		const char *point = strrchr(part->name, '.');
+		name = format("%s.%s", point ? point + 1 : part->name, name);
+	}
+	return found;
+}
+
+/* In a part: what the scene gives instead */
+static struct node *given_value(struct parser *p, const char *name, struct node *value)
+{
+	const struct binding *binding = binding_of(p, name);
+	return binding ? binding->value : value;
+}
+
+/* param: param NAME = expression { , NAME = expression };   let: let NAME = expression */
+static void read_definitions(struct parser *p, enum symbol_kind kind)
+{
+	do {
+		struct token name = expect_new_name(p, "a name");
+		expect_op(p, "=", "'='");
+		struct node *value = read_expression(p);
+		value = kind == SYMBOL_PARAM ? given_value(p, name.name, value) : value;
+		declare(p, name, kind, false)->value = value;
+	} while (take_op(p, ","));
+	expect_end(p);
+}
+
+void read_param(struct parser *p)
+{
+	read_definitions(p, SYMBOL_PARAM);
+}
+
+void read_let(struct parser *p)
+{
+	p->no_acceleration = true;
+	read_definitions(p, SYMBOL_LET);
+}
+
+void add_file(struct spec *spec, const char *path)
+{
+	for (int i = 0; i < spec->files; i++)
+		if (strcmp(spec->file[i], path) == 0)
+			return;
+	ENLARGE(spec->file, (size_t)spec->files + 1);
+	spec->file[spec->files++] = path;
+}
+
+/* A file that a text names stands beside it unless its path is absolute. */
+const char *beside(const struct source *source, const char *name)
+{
+	const char *slash = strrchr(source->name, '/');
+	return name[0] == '/' || !slash ? name : format("%.*s/%s", (int)(slash - source->name), source->name, name);
+}
+
+struct node *read_file_name(struct parser *p)
+{
+	struct token token = take(p);
+	const char *name = format("%.*s", (int)token.length - 2, token.at.source->text + token.at.offset + 1);
+	struct node *node = node_new(NODE_FILE, token.at);
+	node->end = p->end;
+	node->path = beside(token.at.source, name);
+	add_file(p->spec, node->path);
+	return node;
+}
+
+/* matrix: matrix NAME = ( STRING | expression ) { , ... } */
+void read_matrix_statement(struct parser *p)
+{
+	do {
+		struct token name = expect_new_name(p, "the name of a matrix");
+		expect_op(p, "=", "'='");
+		struct node *value = p->token.kind == TOKEN_STRING ? read_file_name(p) : read_expression(p);
+		value = given_value(p, name.name, value);
+		declare(p, name, SYMBOL_MATRIX, false)->value = value;
+	} while (take_op(p, ","));
+	expect_end(p);
+}
+
+/* two-mass as two_mass */
+static const char *joined_name(struct token name)
+{
+	const char *text = name.at.source->text + name.at.offset;
+	char *joined = format("%.*s", (int)strcspn(text, " \t\r\n#"), text);
+	for (char *c = joined; *c; c++)
+		*c = strchr(WORD, *c) ? *c : '_';
+	return joined;
+}
+
+/* model: model NAME */
+void read_model(struct parser *p)
+{
+	if (p->own->name && *p->own->name)
+		error(last_token(p, 5), NULL, "the model is named already: '%s'", p->own->name);
+	if (p->token.kind != TOKEN_NAME || p->token.primes > 0 || strchr(p->token.name, '.'))
+		unexpected(p, "the model's name");
+	struct token name = take(p);
+	if (is_op(p, "-") || is_op(p, "+") || is_op(p, "/"))
+		error(p->token.at, format("names are made of the letters a to z, digits and _: %s", joined_name(name)),
+		      "a model's name has no '%s'", p->token.op);
+	expect_end(p);
+	p->own->name = name.name;
+	p->own->name_at = name.at;
+}
+
+/* coord: coord NAME [ '[' NUMBER ']' ] { , ... } */
+void read_coord(struct parser *p)
+{
+	do {
+		struct token name = expect_new_name(p, "the name of a coordinate");
+		int primes = 0, length = read_component(p, &primes, true);
+		if (primes)
+			error(name.at, NULL, "a coordinate is declared without primes");
+		struct symbol *symbol = declare(p, name, SYMBOL_COORD, false);
+		symbol->length = length;
+		symbol->index = p->spec->components;
+		p->spec->components += length ? length : 1;
+	} while (take_op(p, ","));
+	expect_end(p);
+}
+
+/* `hold first` at the end of a list, and nowhere else in it, holds for the whole list. Else it holds for the name
+ * before it, and whoever has none is held: after the ramps only, where that cannot be taken for the other. `last`: of
+ * the list */
+static void apply_hold(struct parser *p, const struct symbol *last, int phrases)
+{
+	const struct symbol *held = NULL;
+	bool whole = phrases == 1 && last->hold;
+	for (struct symbol *s = p->spec->first; s && phrases > 0; s = s->next) {
+		if (s->statement != p->statement || s->part != p->part)
+			continue;
+		if (s->hold && held && !whole)
+			error(held->at,
+			      format("what is held goes last, or has a statement of its own: input %s", held->name),
+			      "is '%s' held, or a ramp as '%s' is?", held->name, s->name);
+		held = s->hold || held ? held : s;
+		s->hold = whole ? last->hold : s->hold;
+	}
+}
+
+/* The degree that follows `hold` */
+static int take_hold(struct parser *p)
+{
+	static const struct { const char *word; int degree; } known[] = {
+		{ "first", 1 }, { "third", 3 }, { "fifth", 5 }, { "seventh", 7 }
+	};
+	for (size_t i = 0; i < sizeof known / sizeof *known; i++)
+		if (take_word(p, known[i].word))
+			return known[i].degree;
+	error(p->token.at, "without 'hold first' an input is held from sample to sample",
+	      "expected 'first', 'third', 'fifth' or 'seventh', found %s", token_text(p->token));
+}
+
+/* input: input NAME [ hold DEGREE ] { , NAME [ hold DEGREE ] } */
+void read_input(struct parser *p)
+{
+	struct symbol *input;
+	int phrases = 0;
+	do {
+		struct token name = expect_new_name(p, "the name of an input");
+		struct node *connected = given_value(p, name.name, NULL);
+		input = declare(p, name, connected ? SYMBOL_LET : SYMBOL_INPUT, false);
+		input->value = connected;
+		input->connected = connected;
+		if (!take_word(p, "hold"))
+			continue;
+		input->hold = take_hold(p);
+		phrases++;
+	} while (take_op(p, ","));
+	expect_end(p);
+	apply_hold(p, input, phrases);
+}
+
+/* What a part has of its own the scene may give again: the later one counts. */
+void add_initial(struct parser *p, struct token name, struct symbol *coord, int component, struct node *value)
+{
+	struct spec *spec = p->spec;
+	for (int i = 0; i < spec->initials; i++)
+		if (spec->initial[i].coord == coord && spec->initial[i].primes == name.primes &&
+		    spec->initial[i].part == p->part &&
+		    (!component || !spec->initial[i].component || spec->initial[i].component == component))
+			error(name.at, NULL, "the initial value of %s is given already", token_text(name));
+	ENLARGE(spec->initial, (size_t)spec->initials + 1);
+	spec->initial[spec->initials++] =
+		(struct initial){ name.at, p->part, p->statement, coord, name.primes, component, value };
+}
+
+/* init: init NAME [ ' ] = expression { , ... } */
+void read_init(struct parser *p)
+{
+	do {
+		if (p->token.kind != TOKEN_NAME)
+			unexpected(p, "a coordinate");
+		struct token name = take(p);
+		int component = read_component(p, &name.primes, false);
+		name.length = p->end.offset - name.at.offset;
+		struct symbol *coord = find_symbol(p, name.name);
+		if (coord && coord->broken)
+			abandon();
+		if (!coord && !is_reserved(name.name))
+			unknown_name(p, name);
+		if (!coord || coord->kind != SYMBOL_COORD)
+			error(name.at, "initial values are for coordinates and their velocities",
+			      "'%s' is not a coordinate", name.name);
+		check_component(coord, component, name.at);
+		if (name.primes > 1)
+			error(name.at, NULL, "an acceleration has no initial value: it follows from the equations");
+		expect_op(p, "=", "'='");
+		add_initial(p, name, coord, component, read_expression(p));
+	} while (take_op(p, ","));
+	expect_end(p);
+}
+
+/* An output that only names something: x1, x2', x1'', a let. */
+static void read_plain_output(struct parser *p, struct token name)
+{
+	const struct symbol *known = find_symbol(p, name.name);
+	const bool peak = known && known->kind == SYMBOL_PART_OUTPUT && known->peak;
+	struct node *value = strcmp(name.name, "t") == 0 ? node_new(NODE_TIME, name.at)
+			     : peak                      ? inlined(known->value, name.at, p->end)
+							 : resolve_name(p, name);
+	const char *shown = value->component ? format("%s[%d]%.*s", name.name, value->component, value->primes, "''")
+					     : format("%s%.*s", name.name, value->primes, "''");
+	if (p->token.kind != TOKEN_END && !is_op(p, ","))
+		unexpected(p, "'=' or ','");
+	if (p->part)                            /* the scene names it as it is */
+		return;
+	for (struct symbol *s = p->spec->first; s; s = s->next)
+		if (s->kind == SYMBOL_OUTPUT && strcmp(s->name, shown) == 0)
+			error(name.at, NULL, "output '%s' is declared already", shown);
+	struct symbol *symbol = NEW(struct symbol);
+	*symbol = (struct symbol){
+		.kind = SYMBOL_OUTPUT, .name = shown, .at = name.at, .statement = p->statement, .value = value
+	};
+	symbol->index = p->spec->outputs++;
+	symbol->peak = peak;
+	value->end = p->end;
+	add_symbol(p->spec, symbol);
+}
+
+/* `peak(`, unless that is a name of the spec's own */
+static bool take_peak(struct parser *p)
+{
+	if (find_symbol(p, "peak") || !take_word(p, "peak"))
+		return false;
+	expect_op(p, "(", "'(': peak(x) is the largest |x| so far");
+	return true;
+}
+
+/* output: output ( NAME = expression | NAME = peak ( expression ) | name ) { , ... } */
+void read_output(struct parser *p)
+{
+	do {
+		if (p->token.kind != TOKEN_NAME)
+			unexpected(p, "the name of an output");
+		struct token name = take(p);
+		if (!is_op(p, "=")) {
+			read_plain_output(p, name);
+			continue;
+		}
+		if (name.primes > 0 || is_reserved(name.name))
+			error(name.at, NULL, "'%s' cannot be the name of an output", name.name);
+		take(p);
+		struct place at = p->token.at;
+		bool peak = take_peak(p);
+		struct node *value = read_expression(p);
+		if (peak)
+			expect_op(p, ")", "')' or an operator");
+		if (peak && p->token.kind == TOKEN_OPERATOR && strchr("+-*/^<>=!?", p->token.op[0]))
+			peak_inside(at);
+		struct symbol *output = declare(p, name, p->part ? SYMBOL_PART_OUTPUT : SYMBOL_OUTPUT, false);
+		output->value = value;
+		output->peak = peak;
+	} while (take_op(p, ","));
+	expect_end(p);
+}
+
+/* step: step expression */
+void read_step(struct parser *p)
+{
+	struct place at = last_token(p, 4);
+	if (p->own->step)
+		error(at, NULL, "the step is given already");
+	p->own->step_at = p->token.at;
+	p->own->step = read_expression(p);
+	expect_end(p);
+}
+
+/* order or stages [ over steps ] */
+struct node *take_order(struct parser *p, struct node **over)
+{
+	struct place at = p->token.at;
+	if (!find_symbol(p, "over") && take_word(p, "over"))
+		error(at, "scheme taylor N over K", "an expansion over several steps is of fixed order");
+	struct node *order = read_expression(p);
+	*over = take_word(p, "over") ? read_expression(p) : NULL;
+	return order;
+}
+
+/* scheme: scheme NAME [ order or stages [ over steps ] ] */
+void read_scheme(struct parser *p)
+{
+	struct place at = last_token(p, 6);
+	if (p->own->scheme)
+		error(at, NULL, "the scheme is given already");
+	if (p->token.kind != TOKEN_NAME || p->token.primes > 0)
+		unexpected(p, "the name of a scheme");
+	struct token name = take(p);
+	p->own->scheme_at = name.at;
+	enum scheme scheme;
+	bool counts = scheme_of(name.name, &scheme) && (scheme_row(scheme)->expands || scheme_row(scheme)->stages);
+	if (p->token.kind == TOKEN_NUMBER || (counts && p->token.kind != TOKEN_END))
+		/* a number behind another scheme is told later */
+		p->own->scheme_order = take_order(p, &p->own->scheme_over);
+	expect_end(p);
+	p->own->scheme = name.name;
+}
+
+/* tolerance: tolerance expression; substeps: substeps expression */
+static void read_bound(struct parser *p, const char *word, struct node **bound)
+{
+	struct place at = last_token(p, strlen(word));
+	if (*bound)
+		error(at, NULL, "the %s given already",
+		      strcmp(word, "substeps") == 0 ? "substeps are" : "tolerance is");
+	*bound = read_expression(p);
+	expect_end(p);
+}
+
+void read_tolerance(struct parser *p) { read_bound(p, "tolerance", &p->own->tolerance); }
+void read_substeps(struct parser *p) { read_bound(p, "substeps", &p->own->substeps); }
+
+/* expression { , expression } [ , ] [ without static ] */
+struct mode_list take_modes(struct parser *p)
+{
+	struct mode_list list = { .at = p->token.at };
+	do {
+		if (list.count > 0 && (p->token.kind == TOKEN_END || p->token.kind == TOKEN_NAME))
+			break;                  /* a comma at the end makes a list of one */
+		ENLARGE(list.number, (size_t)list.count + 1);
+		list.number[list.count++] = read_expression(p);
+		list.each = list.each || is_op(p, ",");
+	} while (take_op(p, ","));
+	list.without_static = take_word(p, "without");
+	if (list.without_static && !take_word(p, "static"))
+		unexpected(p, "'static'");
+	expect_end(p);
+	return list;
+}
+
+/* modes: modes expression { , expression } [ without static ] */
+void read_modes(struct parser *p)
+{
+	struct place at = last_token(p, 5);
+	if (p->own->modes.at.source)
+		error(at, NULL, "the modes are given already");
+	p->own->modes = take_modes(p);
+}
+
+/* NAME = or q[3]' =: the next name of a list of definitions */
+static bool names_definition(const struct parser *p)
+{
+	const char *text = p->lexer.source->text + p->token.at.offset + p->token.length;
+	if (p->token.kind == TOKEN_NAME && *text == '[')
+		text += strcspn(text, "]\n") + (text[strcspn(text, "]\n")] == ']');
+	text += strspn(text, "' \t");
+	return p->token.kind == TOKEN_NAME && text[0] == '=' && text[1] != '=';
+}
+
+/* What an operator can fix: t, a coordinate, its first derivative, a let */
+static struct fixed *read_fixed_name(struct parser *p)
+{
+	struct spec *spec = p->own;
+	if (p->token.kind != TOKEN_NAME)
+		unexpected(p, "a name to fix");
+	struct token token = take(p);
+	bool time = strcmp(token.name, "t") == 0 && token.primes == 0;
+	struct node *name = time ? NULL : resolve_name(p, token);
+	struct symbol *symbol = time ? NULL : name->symbol;
+	if (!time && !symbol)
+		error(token.at, "an operator fixes t, coordinates, their first derivatives and lets",
+		      "'%s' cannot be fixed", token.name);
+	if (symbol && symbol->kind != SYMBOL_COORD && symbol->kind != SYMBOL_LET)
+		error(token.at, "an operator fixes t, coordinates, their first derivatives and lets",
+		      "%s '%s' cannot be fixed", symbol_kind(symbol), symbol->name);
+	if (token.primes > 1 || (name && name->primes > 1))
+		error(token.at, "an operator fixes t, coordinates, their first derivatives and lets",
+		      "an acceleration cannot be fixed");
+	for (int i = 0; i < spec->fixeds; i++) {
+		const struct fixed *other = &spec->fixed[i];
+		bool same = other->symbol == symbol && (!name || (other->primes == name->primes &&
+			    (!other->component || !name->component || other->component == name->component)));
+		if (same)
+			error(token.at, NULL, "%s is fixed already", text_between(token.at, p->end));
+	}
+	ENLARGE(spec->fixed, (size_t)spec->fixeds + 1);
+	struct fixed *fixed = &spec->fixed[spec->fixeds++];
+	*fixed = (struct fixed){ .at = token.at, .end = p->end, .symbol = symbol };
+	fixed->primes = name ? name->primes : 0;
+	fixed->component = name ? name->component : 0;
+	return fixed;
+}
+
+/* operator: operator [ number ] at NAME = expression { , ( NAME = expression | expression ) } */
+void read_operator(struct parser *p)
+{
+	struct spec *spec = p->own;
+	struct place at = last_token(p, 8);
+	struct fixed *fixed = NULL;
+	if (spec->has_operator)
+		error(at, NULL, "the operator is given already");
+	spec->has_operator = true;
+	spec->operator_at = at;
+	if (p->token.kind == TOKEN_NUMBER)
+		spec->operator_count = read_expression(p);
+	expect_word(p, "at");
+	do {
+		if (!fixed || names_definition(p)) {
+			fixed = read_fixed_name(p);
+			expect_op(p, "=", "'='");
+		}
+		ENLARGE(fixed->value, (size_t)fixed->values + 1);
+		fixed->value[fixed->values++] = read_expression(p);
+	} while (take_op(p, ","));
+	expect_end(p);
+}
+
+/* ---- params that the target may change ---- */
+
+/* tunable: tunable NAME { , NAME } */
+void read_tunable(struct parser *p)
+{
+	struct spec *spec = p->spec;
+	do {
+		if (p->token.kind != TOKEN_NAME || is_reserved(p->token.name))
+			unexpected(p, "a param");
+		struct token token = take(p);
+		struct symbol *symbol = find_symbol(p, token.name);
+		if (!symbol || symbol->broken || symbol->kind == SYMBOL_PARAM || symbol->kind == SYMBOL_PART)
+			symbol = resolve_name(p, token)->symbol;
+		if (symbol->kind != SYMBOL_PARAM)
+			error(token.at, "a param is tunable, and nothing else", "%s '%s' is not a param",
+			      symbol_kind(symbol), symbol->name);
+		if (symbol->tuned)
+			error(token.at, NULL, "'%s' is tunable already", symbol->name);
+		if (spec->tunables == LIMIT_TUNABLES)
+			error(token.at, NULL, "more tunable params than the limit of %d", LIMIT_TUNABLES);
+		symbol->tuned = true;
+		symbol->tunable = spec->tunables + 1;
+		ENLARGE(spec->tunable, (size_t)spec->tunables + 1);
+		spec->tunable[spec->tunables++] = (struct tunable){ token.at, symbol };
+	} while (take_op(p, ","));
+	expect_end(p);
+}
+
+/* ---- how exact outputs have to be, and what a step may cost ---- */
+
+/* An output as it is named, primes and component included */
+static const char *read_output_name(struct parser *p)
+{
+	if (p->token.kind != TOKEN_NAME || is_reserved(p->token.name))
+		unexpected(p, "the name of an output");
+	struct token name = take(p);
+	int component = read_component(p, &name.primes, false);
+	return component ? format("%s[%d]%.*s", name.name, component, name.primes, "''")
+			 : format("%s%.*s", name.name, name.primes, "''");
+}
+
+/* | NAME | <= expression */
+static struct need_input read_need_input(struct parser *p)
+{
+	expect_op(p, "|", "'|': the bound of an input, as in for |u| <= 3");
+	if (p->token.kind != TOKEN_NAME || p->token.primes > 0)
+		unexpected(p, "the name of an input");
+	struct token name = take(p);
+	struct need_input input = { .at = name.at, .name = name.name };
+	expect_op(p, "|", "'|'");
+	expect_op(p, "<=", "'<='");
+	input.most = read_expression(p);
+	return input;
+}
+
+/* need: need output within expression [ % ] until expression [ for |NAME| <= expression { , ... } ] */
+void read_need(struct parser *p)
+{
+	struct need need = { .at = last_token(p, 4), .output_at = p->token.at };
+	p->lexer.needs = true;
+	need.output = read_output_name(p);
+	expect_word(p, "within");
+	need.bound = read_expression(p);
+	need.percent = take_op(p, "%");
+	expect_word(p, "until");
+	need.until = read_expression(p);
+	if (p->token.kind != TOKEN_END) {
+		expect_word(p, "for");
+		do {
+			struct need_input input = read_need_input(p);
+			for (int i = 0; i < need.inputs; i++)
+				if (strcmp(need.input[i].name, input.name) == 0)
+					error(input.at, NULL, "'%s' is bounded already", input.name);
+			ENLARGE(need.input, (size_t)need.inputs + 1);
+			need.input[need.inputs++] = input;
+		} while (take_op(p, ","));
+	}
+	expect_end(p);
+	ENLARGE(p->own->need, (size_t)p->own->needs + 1);
+	p->own->need[p->own->needs++] = need;
+}
+
+/* budget: budget expression instructions on TARGET; a target has hyphens in its name */
+void read_budget(struct parser *p)
+{
+	struct budget *budget = &p->own->budget;
+	struct place at = last_token(p, 6);
+	if (budget->instructions)
+		error(at, NULL, "the budget is given already");
+	struct node *instructions = read_expression(p);
+	expect_word(p, "instructions");
+	expect_word(p, "on");
+	if (p->token.kind != TOKEN_NAME || p->token.primes > 0)
+		unexpected(p, "a target: cortex-m4 or cortex-m0");
+	*budget = (struct budget){ at, instructions, p->token };
+	size_t from = p->token.at.offset;
+	while (p->token.kind != TOKEN_END)
+		take(p);
+	budget->target.name = text_between(budget->target.at, p->end);
+	budget->target.length = p->end.offset - from;
+}

@@ -1,0 +1,171 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Where random scenes seldom get: jumps that read what nothing else reads, several impacts at one instant, more
+ * impacts in a step than there is room for, forces that are just what friction can hold. */
+#include "at_limit.h"
+#include "at_limit_float.h"
+#include "counted.h"
+#include "four_balls.h"
+#include "slopes.h"
+#include "tight.h"
+#include "wall.h"
+#include "tap.h"
+#include "worse.h"
+
+#include <math.h>
+
+/* ---- y and z are what the jumps make of them; x' goes up by 1 each second, from 0.7 back to 0.2 ---- */
+
+static double sample(int step)
+{
+	return 1 + step % 7;
+}
+
+static void counted_jumps(void)
+{
+	const double h = COUNTED_H, end = 5;
+	double y = 0, z = 0, found[COUNTED_STATES], next = 0.3;
+	counted s;
+	bool low = true;
+	int jumps = 0;
+	for (; next < end; jumps++, low = !low)
+		if (low) {
+			y = 2 * y + 1 + 3 * cos(5 * next);
+			z += sample((int)(next / h + 1e-9));
+			next += 0.4;
+		} else {
+			const double before = y;
+			y = z;
+			z = before + next;
+			next += 0.1;
+		}
+	counted_init(&s);
+	for (int k = 0; k * h < end; k++)
+		counted_step(&s, (double[]){ sample(k) });
+	counted_get(&s, found);
+	is_close(found[1], y, 1e-11 * fabs(y), "counted: y after %d jumps", jumps);
+	is_close(found[2], z, 1e-11 * fabs(z), "counted: z after %d jumps", jumps);
+}
+
+/* ---- balls: in the order of statements, again from the first after each impact ---- */
+
+struct pair {
+	int a, b;
+	double e;
+};
+
+static void balls(void)
+{
+	static const struct pair pair[3] = { { 1, 2, 0.6 }, { 0, 1, 0.5 }, { 2, 3, 0.7 } };
+	static const double mass[4] = { 1, 2, 1.5, 3 };
+	double v[4] = { 1, 0, 0, -1 }, y[FOUR_BALLS_STATES];
+	bool good = true;
+	int impacts = 0;
+	for (int k = 0; k < 3; k++) {
+		const struct pair *p = &pair[k];
+		const double closing = v[p->a] - v[p->b];
+		if (closing < 1e-14)
+			continue;
+		const double push = (1 + p->e) * closing / (1 / mass[p->a] + 1 / mass[p->b]);
+		v[p->a] -= push / mass[p->a];
+		v[p->b] += push / mass[p->b];
+		impacts++;
+		k = -1;
+	}
+	four_balls s;
+	four_balls_init(&s);
+	for (int k = 0; k < 5; k++)
+		four_balls_step(&s);
+	four_balls_get(&s, y);
+	for (int i = 0; i < 4; i++) {
+		good = close_to(y[4 + i], v[i], 1e-13, "four balls: velocity %d", i) && good;
+		good = close_to(y[i], v[i], 1e-13, "four balls: place %d, a second after", i) && good;
+	}
+	ok(good && impacts > 4, "four balls: struck from both sides, %d impacts", impacts);
+	is_close((double)four_balls_crossed(&s), impacts, 0, "four balls: impacts counted");
+}
+
+/* ---- too many: time is lost, but neither speed nor place ---- */
+
+static void too_many(void)
+{
+	tight s;
+	double y[2], worst = 0, most = 0;
+	tight_init(&s);
+	for (int k = 0; k < 50; k++) {
+		tight_step(&s);
+		tight_get(&s, y);
+		worst = worse(worst, fabs(fabs(y[1]) - 1));
+		most = worse(most, fabs(y[0]) - 0.001);
+	}
+	is_close(tight_status(&s), PL_TOO_MANY_EVENTS, 0, "tight: status");
+	ok(worst <= 1e-14 && most <= 1e-17, "tight: energy off by %.3g, outside by %.3g at most", worst, most);
+}
+
+/* ---- each impact on the ball leaves half of the speed, and the wall takes what the ball has ---- */
+
+static void dead_wall(void)
+{
+	wall s;
+	double y[4], worst = 0;
+	wall_init(&s);
+	for (int k = 0; k < 10; k++)
+		wall_step(&s);
+	wall_get(&s, y);
+	for (int i = 0; i < 4; i++)
+		worst = worse(worst, fabs(y[i]));
+	ok(worst <= 1e-15, "wall: all of it rests there (%g)", worst);
+	is_close(wall_status(&s), 0, 0, "wall: status");
+	is_close(wall_rested(&s), 2, 0, "wall: contacts that came to rest");
+}
+
+/* ---- forces at their limit ---- */
+
+static void limits(void)
+{
+	at_limit s;
+	at_limit_float f;
+	double y[6], worst = 0;
+	float z[6];
+	at_limit_init(&s);
+	at_limit_float_init(&f);
+	for (int k = 0; k < 20000; k++) {
+		at_limit_step(&s);
+		at_limit_float_step(&f);
+	}
+	at_limit_get(&s, y);
+	at_limit_float_get(&f, z);
+	for (int i = 0; i < 6; i++)
+		worst = worse(worst, fabs(y[i]));
+	ok(worst <= 1e-15, "at the limit: nothing moves (%g)", worst);
+	is_close(at_limit_status(&s), 0, 0, "at the limit: status");
+	worst = 0;
+	for (int i = 0; i < 6; i++)
+		worst = worse(worst, (double)fabsf(z[i]));
+	ok(worst <= 2e-8, "at the limit, in float: what rounding lets go comes no further than %.3g", worst);
+	is_close(at_limit_float_status(&f), 0, 0, "at the limit, in float: status");
+}
+
+static void on_slopes(void)
+{
+	slopes s;
+	double y[6];
+	slopes_init(&s);
+	for (int k = 0; k < 200; k++)
+		slopes_step(&s);
+	slopes_get(&s, y);
+	is_close(y[0], 10, 1e-12, "slopes: slides on");
+	ok(y[1] == 0 && y[4] == 0, "slopes: stays (%g, %g)", y[1], y[4]);
+	is_close(y[2], -0.0625, 1e-15, "slopes: comes to rest");
+	is_close(slopes_status(&s), 0, 0, "slopes: status");
+}
+
+int main(void)
+{
+	counted_jumps();
+	balls();
+	too_many();
+	dead_wall();
+	limits();
+	on_slopes();
+	return tap_end();
+}

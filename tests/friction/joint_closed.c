@@ -1,0 +1,138 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Sliders without mass beside closed forms: the loop of Masing, an Iwan joint and two sliders in series on a record of
+ * ramps, where what each bears after a ramp follows from what it bore before (the play operator). */
+#include "drive.h"
+#include "joint_closed_variants.h"
+#include "tap.h"
+#include "worse.h"
+
+#include <math.h>
+
+typedef long double wide;
+
+enum { MOST = 256, RAMPS = 2000 };
+static const wide pi = 3.141592653589793238462643383279502884L;
+
+/* x = 0.3 cos(3 t) on a spring of 50 and a slider of 2: it slides from 2 F/k behind each end on, to the next */
+static void masing(int step)
+{
+	static double time[MOST];
+	static pl_crossing crossing[MOST];
+	struct run r = run_new(variant_of(joint_closed_table, "masing_%d", step));
+	int count = run_crossings(&r, 20, MOST, time, crossing), expected = 0;
+	double out[2], off = 0, y;
+	wide begins = acosl(0.26L / 0.3L), z;
+	for (int end = 0; end * pi / 3 < 20; end++) {
+		wide slide = (end * pi + (end ? acosl(0.22L / 0.3L) : begins)) / 3, stick = (end + 1) * pi / 3;
+		for (int k = 0; k < 2; k++) {
+			wide t = k ? stick : slide;
+			if (t < 20 && expected < count)
+				off = worse(off, (double)fabsl(time[expected] - t));
+			expected += t < 20;
+		}
+	}
+	ok(count == expected, "masing %d: %d changes, expected %d", step, count, expected);
+	is_close(off, 0, 1e-13, "masing %d: their times", step);
+	run_state(&r, &y);
+	r.of->model->out(r.state, out);
+	z = -0.26L;                             /* the last end before t = 20 is at 19 pi/3: x = -0.3 */
+	if (0.3L * cosl(60) - z > 0.04L)
+		z = 0.3L * cosl(60) - 0.04L;
+	is_close(y, (double)z, 1e-14, "masing %d: where the slider is", step);
+	is_close(out[0], (double)(50 * (0.3L * cosl(60) - z)), 1e-12, "masing %d: what it bears", step);
+	run_free(&r);
+}
+
+/* A slider that is set where it cannot be goes at once to where it bears F. */
+static void placed(int step)
+{
+	struct run r = run_new(variant_of(joint_closed_table, "masing_%d", step));
+	double y = 0, h = r.of->model->h;
+	wide x = 0.3L * cosl(3 * (wide)h);
+	run_set(&r, &y);
+	run_step(&r, NULL);
+	run_state(&r, &y);
+	is_close(y, (double)(0.26L < x + 0.04L ? 0.26L : x + 0.04L), 1e-15, "masing %d: set too far away", step);
+	run_free(&r);
+}
+
+static double next_sample(unsigned *state, double u)
+{
+	*state = *state * 1664525u + 1013904223u;
+	double to = ((double)(*state >> 8) / 16777216.0 - 0.5) * 0.8;
+	return *state >> 28 < 3 ? u : to;       /* now and then it rests */
+}
+
+static wide held_to(wide force, wide limit)
+{
+	return force > limit ? limit : force < -limit ? -limit : force;
+}
+
+static void record(int step)
+{
+	static const double k[] = { 20, 30, 40, 50 }, F[] = { 0.5, 1, 2, 4 };
+	struct run r = run_new(variant_of(joint_closed_table, "record_%d", step));
+	wide f[4] = { 0 };
+	double u = 0, off = 0, first = 0, out[2];
+	unsigned state = 7;
+	for (int n = 0; n < RAMPS; n++) {
+		double to = next_sample(&state, u);
+		wide sum = 0;
+		for (int i = 0; i < 4; i++)
+			sum += f[i] = held_to(f[i] + k[i] * ((wide)to - u), F[i]);
+		run_step(&r, &to);
+		r.of->model->out(r.state, out);
+		off = worse(off, fabs(out[0] - (double)sum));
+		first = worse(first, fabs(out[1] - (double)f[0]));
+		u = to;
+	}
+	is_close(off, 0, 1e-12, "record %d: the joint's force after each of %d ramps", step, RAMPS);
+	is_close(first, 0, 1e-12, "record %d: that of its first slider", step);
+	is_close(r.of->model->status(r.state), 0, 0, "record %d: status", step);
+	run_free(&r);
+}
+
+/* The second slider bears what is above its spring's 10 z2; s = z1 - z2 stays while the first sticks. */
+static void series(int step)
+{
+	struct run r = run_new(variant_of(joint_closed_table, "series_%d", step));
+	wide s = 0, z = 0;
+	double u = 0, off = 0, bears = 0, y[2], out[1];
+	unsigned state = 11;
+	for (int n = 0; n < RAMPS; n++) {
+		double to = next_sample(&state, u);
+		wide f = 40 * (to - s - z), over = f - 10 * z;
+		if (fabsl(over) > 1.5L) {
+			z = (40 * (to - s) - (over > 0 ? 1.5L : -1.5L)) / 50;
+			f = 10 * z + (over > 0 ? 1.5L : -1.5L);
+		}
+		if (fabsl(f) > 2) {
+			f = f > 0 ? 2 : -2;
+			z = f / 40;
+			s = to - f / 40 - z;
+		}
+		run_step(&r, &to);
+		run_state(&r, y);
+		r.of->model->out(r.state, out);
+		off = worse(off, worse(fabs(y[0] - (double)(s + z)), fabs(y[1] - (double)z)));
+		bears = worse(bears, fabs(out[0] - (double)f));
+		u = to;
+	}
+	is_close(off, 0, 1e-13, "series %d: where both are after each of %d ramps", step, RAMPS);
+	is_close(bears, 0, 1e-12, "series %d: what the first bears", step);
+	is_close(r.of->model->status(r.state), 0, 0, "series %d: status", step);
+	run_free(&r);
+}
+
+int main(void)
+{
+	for (int step = 0; step < 3; step++)
+		masing(step);
+	for (int step = 0; step < 2; step++)
+		placed(step);
+	for (int step = 0; step < 2; step++) {
+		record(step);
+		series(step);
+	}
+	return tap_end();
+}

@@ -1,0 +1,49 @@
+#!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
+# braces.sh PLGEN SOURCE_ROOT: in generated code every body of an if, an else or a loop has braces.
+set -u
+plgen=$1
+root=$(cd "$2" && pwd) || exit 99
+case $plgen in /*) ;; *) plgen=$PWD/$plgen ;; esac
+. "$root/tests/tap.sh"
+look="$root/tests/misra/braces.py"
+if ! command -v python3 >/dev/null 2>&1; then
+	skip 'braces' 'python3 is not installed'
+	tap_end
+fi
+
+printf 'void f(int a)\n{\n    if (a > (1)) {  /* for */\n        a = 0;\n    } else\n        a = 1;\n}\n' >bare.c
+python3 "$look" bare.c >log 2>&1
+[ $? -eq 1 ] && grep -q '^bare.c: else a = 1;' log && grep -q '^1 bodies' log
+result $? 'a body without is noticed'
+
+# make NAME SPEC OPTIONS
+make() {
+	name=$1
+	spec=$2
+	shift 2
+	"$plgen" --prefix "$name" "$@" -o "$name.c" "$root/$spec" 2>said ||
+		{ cat said && echo "$name is not made"; } >>log
+}
+: >log
+for spec in "$root"/models/*.spec; do
+	name=${spec##*/}
+	make "${name%.spec}_x" "models/$name"
+done
+for spec in sdcsf quarter_car_bumps pendulum; do
+	make ${spec}_rhs models/$spec.spec --rhs
+done
+for spec in sdcsf beam4 oscillator quarter_car_bumps gear1 pendulum; do
+	make ${spec}_float models/$spec.spec --real float
+done
+for spec in sdcsf oscillator; do
+	make ${spec}_batch models/$spec.spec --batch
+done
+make tuned_x tests/tunable/changes.spec
+make selftest_x models/sdcsf.spec --selftest
+[ ! -s log ] && python3 "$look" ./*_x.c ./*_rhs.c ./*_float.c ./*_batch.c >log 2>&1
+result $? "generated code: $(tail -n 1 log)"
+bodies=$(sed -n '$s/ bodies.*//p' log)
+[ "${bodies:-0}" -gt 1000 ]
+result $? 'and there are many'
+tap_end

@@ -1,0 +1,72 @@
+#!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
+# factor.sh PLGEN SOURCE_ROOT: outputs with a tunable factor, with --reduce: what is kept is a state without the factor.
+# Against the whole model with the same values written down, output by output, to 1e-12 of the largest.
+set -u
+plgen=$1
+root=$(cd "$2" && pwd) || exit 99
+case $plgen in /*) ;; *) plgen=$PWD/$plgen ;; esac
+. "$root/tests/tap.sh"
+runtime_archive "$root/runtime"
+
+cat >bare.spec <<'EOS'
+model bare
+param m = 2, k = 50, c = 0.5, g = 3
+coord a, b
+input u hold first
+init a = 0.125, b' = 0.5
+output pull = k*(a - b)
+output rub = 2*c/g*(a' - b')
+output both = k*(a - b) + c*(a' - b') + g*u
+m*a'' + c*(a' - b') + k*(a - b) = cos(3*t) + u
+m*b'' + c*(b' - a') + k*(b - a) = 0
+step 1/64
+EOS
+{ sed 2q bare.spec; echo 'tunable m, k, c, g'; sed 1,2d bare.spec; } >tuned.spec
+
+# rows NAME VALUE ...: 4 s of it, with a ramp that turns
+awk 'BEGIN { for (k = 0; k <= 256; k++) print k % 40 < 20 ? 1 : -0.5 }' >u
+rows() {
+	name=$1
+	shift
+	${CC:-cc} -std=c99 -O1 -w -DMODEL=bare -I"$root/runtime" "$root/runtime/host/plmain.c" "$name.c" "$archive" \
+		-lm -o "run_$name" >>log 2>&1 && "./run_$name" 4 "$@" <u >"$name.csv" 2>>log
+}
+
+# close A B: of each column the largest difference is within 1e-12 of its largest value; and it is not 0 everywhere
+close() {
+	awk -F, 'FNR == 1 { next }
+		NR == FNR { for (i = 2; i <= NF; i++) one[FNR, i] = $i; rows = FNR; next }
+		{ for (i = 2; i <= NF; i++) {
+			d = $i - one[FNR, i]; d = d < 0 ? -d : d; v = $i < 0 ? -$i : $i
+			worst[i] = d <= worst[i] ? worst[i] : d
+			largest[i] = v > largest[i] ? v : largest[i]
+		} columns = NF }
+		END {
+			for (i = 2; i <= columns; i++) {
+				printf "column %d: off by %g of %g\n", i, worst[i], largest[i]
+				bad = bad || !(largest[i] > 0.01) || !(worst[i] <= 1e-12 * largest[i])
+			}
+			exit bad || columns != 4 || rows != 258 || FNR != rows
+		}' "$1" "$2" >log
+}
+
+"$plgen" --reduce tuned.spec -o tuned.c >log 2>&1 && "$plgen" --reduce --explain tuned.spec >explained 2>>log
+result $? 'outputs with tunable factors are no obstacle'
+sed -n '/^Reduced to/,/^Gone/p' explained >log
+grep -q ' 2 of 4 states' log && grep -q 'state state1 = a - b$' log && grep -q "state state1' = a' - b'\$" log
+result $? 'what is kept has no factor'
+
+for values in 'm=2 k=50 c=0.5 g=3' 'm=3 k=70 c=0.25 g=4' 'm=2.5 k=-20 c=1 g=-0.5'; do
+	options=
+	for value in $values; do
+		options="$options -D $value"
+	done
+	: >log
+	# shellcheck disable=SC2086
+	"$plgen" $options bare.spec -o whole.c >>log 2>&1 && rows whole && rows tuned $values &&
+		close whole.csv tuned.csv
+	result $? "with $values, as the whole model"
+done
+
+tap_end
