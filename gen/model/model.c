@@ -413,8 +413,8 @@ static void part_snapshots(struct snapshot *snapshot, int count)
 	}
 }
 
-/* Equations, impacts and outputs in each interval of time. When a change of formula is met for the first time, the intervals
- * before that are known, even where it divides them: what they read does not change there. */
+/* Equations, impacts and outputs in each interval of time. When a change of formula is met for the first time, the
+ * intervals before that are known, even where it divides them: what they read does not change there. */
 static void collect_intervals(struct building *b)
 {
 	struct collector *c = &b->collector;

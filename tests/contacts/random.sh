@@ -2,10 +2,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # random.sh PLGEN TRUTH FOLLOW.C SOURCE STOPS FRICTIONS IMPACTS CHANGES WILD FIRST COUNT [tuned]
 #
-# COUNT random scenes from seed FIRST on with at most so many contacts of each kind and changes of the loads: the emitted
-# code against the same scene in multiprecision. WILD 1: of the wilder ones (masses.h), each at steps from a ten
-# thousandth of its shortest period to ten of it, and in float. tuned: from a model with other values of up to 16 params,
-# retuned to those of the scene. $CC compiles, $PLRT is the runtime. KEEP=FOLDER keeps what fails.
+# COUNT random scenes from seed FIRST on with at most so many contacts of each kind and changes of the loads: the
+# emitted code against the same scene in multiprecision. WILD 1: of the wilder ones (masses.h), each at steps from a ten
+# thousandth of its shortest period to ten of it, and in float. tuned: from a model with other values of up to 16
+# params, retuned to those of the scene. $CC compiles, $PLRT is the runtime. KEEP=FOLDER keeps what fails.
 plgen=$(realpath "$1")
 truth=$(realpath "$2")
 follow=$(realpath "$3")
@@ -33,8 +33,8 @@ follows() {
 		grep 'more regions than the limit' log >found.txt && return 2
 		return 1
 	fi
-	${CC:-cc} -O1 -include ./values.h $([ $4 = float ] && echo -DFLOAT) -I. -I"$source/runtime" -I"$source/tests/emitted" -o follow \
-		"$follow" scene.c $PLRT -lm >>log 2>&1 || return 1
+	${CC:-cc} -O1 -include ./values.h $([ $4 = float ] && echo -DFLOAT) -I. -I"$source/runtime" \
+		-I"$source/tests/emitted" -o follow "$follow" scene.c $PLRT -lm >>log 2>&1 || return 1
 	./follow found.txt $1 $3 >>log 2>&1
 }
 
