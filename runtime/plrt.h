@@ -875,7 +875,10 @@ double pl_ramp_before(pl_two whole, pl_two slope, double h);
 enum {
     PL_SINGULAR = 4,
     /* the mass matrix has no inverse, or a param that something is divided by is 0 */ PL_NO_STEP = 8,
-    PL_NO_RATE = 16 /* a load's frequency is below 0 */
+    PL_NO_RATE = 16, /* a load's frequency is below 0 */
+    /* of regions: breakpoints come in another order, or what decided about regions has another sign; a restitution is
+     * not within 0 and 1; a gap or a force of friction is below 0; a pole times h is above 2^16 */
+    PL_OUT_OF_RANGE = 32
 };
 
 /* The same in floats. */
@@ -954,6 +957,28 @@ typedef struct pl_blockf {
 
 int  pl_blockf_increment(const pl_blockf *b, const float *params, float tau, pl_twof *D, pl_twof *work);
 void pl_blockf_advance(const pl_blockf *b, const float *params, int segment, float tau, float *x, pl_twof *work);
+/* ---- region.c: a region of a piecewise-linear model from other params ------------------------------------------ */
+
+/* Of x' = A x, A size x size in two words: *halvings, so that no pole times d = h 2^-halvings is above 1; slopes and
+ * Phi = e^{A d} as pl_switching has them, each entry of Phi within 16 units in the last place of the largest of all.
+ *     most  halvings that are allowed
+ *     work  PL_REGION_WORK(size) entries, contents of no meaning
+ * 0; PL_NOT_FINITE, PL_OUT_OF_RANGE: more halvings */
+int pl_region_of(int size, const pl_two *A, double h, int most, int *halvings, double *slopes, double *Phi,
+                 pl_two *work);
+#define PL_REGION_WORK(size) (7 * (size) * (size))
+
+/* Of rows over x, rows x size, in such a region: slope, second and fourth as tangent, chord_error and cubic_error of
+ * pl_switching, with room for what rounding did to them.
+ *     work  PL_BOUNDS_WORK(size) entries, contents of no meaning */
+void pl_region_bounds(int size, double d, const double *A, int rows, const double *row, double *slope, double *second,
+                      double *fourth, double *work);
+#define PL_BOUNDS_WORK(size) ((4 * (size) + 5) * (size))
+
+int pl_regionf_of(int size, const pl_twof *A, float h, int most, int *halvings, float *slopes, float *Phi,
+                  pl_twof *work);
+void pl_regionf_bounds(int size, float d, const float *A, int rows, const float *row, float *slope, float *second,
+                       float *fourth, float *work);
 
 /* ---- rate.c: frequencies from other params -------------------------------------------------------------------- */
 

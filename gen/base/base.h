@@ -51,6 +51,7 @@ enum {
 	MAX_SPLITS = 500,           /* of intervals in search of them, in a step */
 	LIMIT_WAVES = 500,          /* frequencies, phases and growths of loads */
 	LIMIT_LOAD_POWER = 32,      /* exponent of a load, as in t^3 */
+	LIMIT_TUNED_NUMBERS = 8192, /* of matrices of regions that an instance has, where params change them */
 	LIMIT_UNROLLED_STATES = 16, /* beyond, a step loops over its tables */
 	LIMIT_RESIDUE_STATES = 12,  /* beyond, a Taylor series gives the numbers: residues get slow */
 	LIMIT_DELAY = 100000,       /* steps */

@@ -169,8 +169,12 @@ static struct form *piecewise_cell(struct collector *c, struct node *node, struc
 static struct value *collect_piecewise(struct collector *c, struct node *node)
 {
 	struct value **argument = ARRAY(struct value *, (size_t)node->children), *shape = NULL;
+	const bool reading = c->reading;
 	for (int i = 0; i < node->children; i++) {
+		/* in an output it is known again by what it reads in the equations */
+		c->reading = reading && node->function != FN_FRICTION;
 		argument[i] = collect_node(c, node->child[i]);
+		c->reading = reading;
 		bool single = is_scalar(argument[i]);
 		if (!single && shape && (shape->rows != argument[i]->rows || shape->columns != argument[i]->columns))
 			error(node->child[i]->start, NULL, "sizes do not fit: %s and %s", shape_text(shape),
@@ -269,26 +273,6 @@ static bool has_input(const struct form *form)
 	return false;
 }
 
-/* One that acts like an input */
-static bool has_param(const struct collector *c, const struct form *form)
-{
-	for (int i = 0; i < form->terms; i++)
-		if (form->term[i].basis.kind == BASIS_INPUT && form->term[i].basis.index >= c->inputs)
-			return c->params == PARAMS_INPUTS;
-	return false;
-}
-
-static _Noreturn void tell_factor(const struct collector *c, const struct node *node)
-{
-	const struct node *term = c->term ? c->term : node;
-	if (c->tolerant)
-		abandon();
-	error(term->start,
-	      "in a piecewise-linear model gaps and forces may be tunable; etdrk4 and the schemes like it take others",
-	      "term '%s' has a tunable factor: scheme %s cannot treat it", text_between(term->start, term->end),
-	      c->scheme);
-}
-
 static struct form *times(struct collector *c, const struct node *node, const struct form *a, const struct form *b)
 {
 	if (is_constant(a) || is_constant(b))
@@ -298,8 +282,6 @@ static struct form *times(struct collector *c, const struct node *node, const st
 		return switched;
 	if (keeps(c))
 		return kept_product(c, node, a, b);
-	if (has_param(c, a) || has_param(c, b))
-		tell_factor(c, node);
 	if (has_coordinate(a) && has_coordinate(b))
 		not_linear(c, node, "is not linear");
 	if (has_coordinate(a) || has_coordinate(b))
@@ -487,9 +469,9 @@ static struct value *collect_tuned(struct collector *c, struct node *node)
 	const struct symbol *symbol = node->symbol;
 	if (!symbol->tunable)
 		return collect_node(c, symbol->value);
-	if (c->params == PARAMS_INPUTS)
+	if (c->params == PARAMS_INPUTS && !symbol->factor)
 		return scalar(form_unit(
-			(struct basis){ .kind = BASIS_INPUT, .index = c->inputs + symbol->tunable - 1 }));
+			(struct basis){ .kind = BASIS_INPUT, .index = c->inputs + symbol->acting }));
 	if (!keeps(c))
 		not_linear(c, node, "has a tunable factor");
 	return scalar(kept_param(c, node, symbol));
@@ -512,7 +494,8 @@ static struct value *collect_name(struct collector *c, struct node *node)
 	for (int i = 0; i < c->fixings; i++)
 		if (c->fixing[i].symbol == symbol)
 			return scalar(form_constant(c->fixing[i].value));
-	if (c->params != PARAMS_VALUES && symbol->tuned && symbol->kind != SYMBOL_LET && !c->constant_only)
+	const bool number = c->constant_only || (symbol->factor && c->params == PARAMS_INPUTS && !c->reading);
+	if (c->params != PARAMS_VALUES && symbol->tuned && symbol->kind != SYMBOL_LET && !number)
 		return collect_tuned(c, node);
 	if (symbol->progress == COLLECTING && symbol->kind == SYMBOL_PARAM)
 		error(node->at, NULL, "param '%s' is defined by itself", symbol->name);
@@ -588,7 +571,7 @@ static bool is_timely(struct node *node)
 static unsigned mode_of(const struct collector *c)
 {
 	return (unsigned)c->keep | c->whole_time << 2 | c->tolerant << 3 | c->constant_only << 4 | c->closed << 5 |
-	       c->output << 6 |
+	       c->output << 6 | c->reading << 9 |
 	       (unsigned)c->params << 7;
 }
 

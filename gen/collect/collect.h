@@ -91,8 +91,10 @@ struct collector {
 	bool output;                /* an output is being collected: highest derivatives may stand anywhere */
 	struct atoms *atoms;
 	const struct frame *frame;  /* NULL: there are no coordinates */
-	/* tunable params: the spec's values; with KEEP_ALL atoms; held inputs, behind the `inputs` of the spec */
+	/* tunable params: the spec's values; with KEEP_ALL atoms; held inputs, behind the `inputs` of the spec, but for
+	 * factors, which are numbers, and in outputs atoms */
 	enum { PARAMS_VALUES, PARAMS_ATOMS, PARAMS_INPUTS } params;
+	bool reading;               /* an output is being collected */
 	int inputs;
 	int fixings;                /* lets that an operator fixes */
 	const struct fixing *fixing;

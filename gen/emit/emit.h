@@ -608,7 +608,14 @@ void emit_step_end(const struct emitter *e);                      /* samples, ph
 const char *step_parameters(const struct emitter *e);
 const char *input_operand(const struct emitter *e, int column);
 void emit_grips(const struct emitter *e);                         /* what friction carries, for outputs */
-void emit_guards(const struct emitter *e, const struct pieces *pieces); /* tables of dry friction in regions */
+/* of dry friction and impacts in regions: their lists, numbers, descriptor */
+void emit_guards(const struct emitter *e, const struct guards *guards);
+void emit_numbers_of_guards(const struct emitter *e, const struct guards *guards);
+void emit_guards_descriptor(const struct emitter *e, const struct guards *guards);
+/* numbers of regions: a table of the file, or where params are tunable a member of NAME_coeffs */
+void open_table(const struct emitter *e, const char *name, const char *shape, const char *note);
+void close_table(const struct emitter *e);
+const char *prefix_of_tables(const struct emitter *e);
 void emit_regions(const struct emitter *e);                       /* tables of a piecewise-linear model */
 void emit_region_declarations(const struct emitter *e);
 void emit_region_members(const struct emitter *e);
@@ -652,7 +659,6 @@ void emit_coefficient_struct(const struct emitter *e);
 void emit_tuning_declarations(const struct emitter *e);
 void banner_tuning(const struct emitter *e);
 void coefficient_member(const struct emitter *e, const char *text, const char *comment); /* of struct NAME_coeffs */
-void emit_monomials(const struct emitter *e);
 const char *two_words(struct coefficient number);                 /* {1.0, 0.0} */
 const char *tuned_term_note(const struct emitter *e, const struct tuned_term *term); /* what it is, for a comment */
 const char *tap_factor(const struct emitter *e, int input, int tap, const char *row, int at); /* row: of D, a local */
@@ -669,6 +675,18 @@ void emit_blocks_retune(const struct emitter *e);
 void emit_blocks_pass(const struct emitter *e);
 bool has_own_factors(const struct emitter *e, int state);         /* its row's are the instance's */
 const char *block_factor(const struct emitter *e, int row, const struct operand *operand);
+
+const char *tuned_product(const struct tuning *t, const struct tuned_term *term);
+const char *two_words(struct coefficient number);
+void emit_monomials(const struct emitter *e, const struct tuning *t, const char *suffix); /* of its name */
+void emit_fixed_slopes(const struct emitter *e, int count, const struct fixed_slope *fixed);
+
+/* ---- emit_retuned.c: regions whose matrices tunable params change ---- */
+
+void emit_retuned_members(const struct emitter *e);               /* of NAME_coeffs */
+void emit_retuned(const struct emitter *e);                       /* the equations, NAME_retune */
+int  retuned_numbers(const struct emitter *e);                    /* of matrices, in NAME_coeffs */
+int  retuned_kilobytes(const struct emitter *e);                  /* of stack, beside a NAME_coeffs */
 
 /* ---- emit_params.c: tunable params; those that an instance holds print nothing where there are none ---- */
 

@@ -11,12 +11,12 @@ static void emit_numbers(const struct emitter *e, int count, const int *number)
 
 static void emit_list(const struct emitter *e, const char *name, const char *note, int count, const double *number)
 {
-	say(e, "\n"
-	       "static const double $o_%s[%d] = {  /* %s */\n"
-	       "    ", name, count, note);
+	open_table(e, name, format("[%d]", count), note);
+	say(e, "    ");
 	for (int i = 0; i < count; i++)
 		say(e, "%s%s", i == 0 ? "" : i % 8 ? ", " : ",\n    ", shortest(number[i]));
-	say(e, "\n};\n");
+	say(e, "\n");
+	close_table(e);
 }
 
 static void emit_guard_list(const struct emitter *e, const struct guards *g)
@@ -34,10 +34,15 @@ static void emit_guard_list(const struct emitter *e, const struct guards *g)
 	for (int i = 0; i < g->guards; i++)
 		say(e, "    { %d, %d, %d, %d, %d, %d },\n", g->guard[i].row, g->guard[i].expression,
 		    g->guard[i].breakpoint, g->guard[i].upward, g->guard[i].leads, g->guard[i].impact);
+	say(e, "};\n");
+}
+
+static void emit_limits(const struct emitter *e, const struct guards *g)
+{
+	const struct switching *s = e->model->switching;
 	double *limit = ARRAY(double, (size_t)g->guards);
 	for (int i = 0; i < g->guards; i++)
 		limit[i] = g->guard[i].limit;
-	say(e, "};\n");
 	emit_list(e, "limit", "of each guard", g->guards, limit);
 	emit_list(e, "play",
 		  regions_change(e) ? "factors of cos and sin in each expression, segment of time by segment"
@@ -77,21 +82,16 @@ static void emit_gates(const struct emitter *e, const struct guards *g)
 		{ "gate_sway", "d^4/384 times its fourth derivative, at most", g->fourth }
 	};
 	for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
-		say(e, "\n"
-		       "static const double $o_%s[%d][%d] = {  /* %s */\n",
-		    all[i].name, g->rows, e->step->layout.size, all[i].note);
+		open_table(e, all[i].name, format("[%d][%d]", g->rows, e->step->layout.size), all[i].note);
 		emit_number_rows(e, g->rows, e->step->layout.size, all[i].value, note);
-		say(e, "};\n");
+		close_table(e);
 	}
 }
 
 static void emit_assignments(const struct emitter *e, const struct guards *g)
 {
-	int count = g->assignments, size = e->step->layout.size;
+	int count = g->assignments;
 	const struct switching *s = e->model->switching;
-	double *value = ARRAY(double, (size_t)(count > 0 ? count : 1) * (size_t)size);
-	const char **note = ARRAY(const char *, (size_t)count + 1);
-	note[0] = "none";
 	say(e, "\n"
 	       "static const int $o_holding[%d] = {  /* of each region: what holds its states, a set; -1: nothing */\n"
 	       "    ", s->regions);
@@ -102,17 +102,25 @@ static void emit_assignments(const struct emitter *e, const struct guards *g)
 	emit_numbers(e, g->sets + 1, g->set);
 	say(e, "};\n"
 	       "static const int $o_held[%d] = {", count > 0 ? count : 1);
-	for (int i = 0; i < count; i++) {
+	for (int i = 0; i < count; i++)
 		say(e, "%s%d", i ? ", " : "", g->assignment[i].state);
+	say(e, "%s};\n", count > 0 ? "" : "0");
+}
+
+static void emit_values(const struct emitter *e, const struct guards *g)
+{
+	int count = g->assignments > 0 ? g->assignments : 1, size = e->step->layout.size;
+	double *value = ARRAY(double, (size_t)count * (size_t)size);
+	const char **note = ARRAY(const char *, (size_t)count);
+	note[0] = "none";
+	for (int i = 0; i < g->assignments; i++) {
 		note[i] = e->model->state_name[g->assignment[i].state];
 		for (int j = 0; j < size; j++)
 			value[i * size + j] = g->assignment[i].value[j];
 	}
-	say(e, "%s};\n"
-	       "static const double $o_value[%d][%d] = {  /* x[held] = value . x */\n",
-	    count > 0 ? "" : "0", count > 0 ? count : 1, size);
-	emit_number_rows(e, count > 0 ? count : 1, size, value, note);
-	say(e, "};\n");
+	open_table(e, "value", format("[%d][%d]", count, size), "x[held] = value . x");
+	emit_number_rows(e, count, size, value, note);
+	close_table(e);
 }
 
 static void emit_impacts(const struct emitter *e, const struct guards *g)
@@ -123,9 +131,11 @@ static void emit_impacts(const struct emitter *e, const struct guards *g)
 	double *back = ARRAY(double, (size_t)count * (size_t)size);
 	const char **note = ARRAY(const char *, (size_t)count);
 	note[0] = "none";
-	say(e, "\n"
-	       "static const pl_impact $o_impact[%d] = {"
-	       "  /* expression, breakpoint, upward, rest, jump, still, restitution, play%s */\n", count,
+	if (e->model->retuned)
+		say(e, "    {");
+	else
+		say(e, "\nstatic const pl_impact $o_impact[%d] = {", count);
+	say(e, "  /* expression, breakpoint, upward, rest, jump, still, restitution, play%s */\n",
 	    regions_change(e) ? "; segment of time by segment" : "");
 	for (int i = 0; i < all; i++) {
 		const struct struck *impact = &g->impact[i];
@@ -140,16 +150,16 @@ static void emit_impacts(const struct emitter *e, const struct guards *g)
 			back[i * size + j] = impact->back[j];
 		}
 	}
-	say(e, "%s};\n"
-	       "static const double $o_speed[%d][%d] = {  /* of what bounces */\n",
-	    all ? "" : "    { 0, 0, 0, -1, -1, -1, 0.0, 0.0 }\n", count, size);
+	if (!all)
+		say(e, "    { 0, 0, 0, -1, -1, -1, 0.0, 0.0 }\n");
+	close_table(e);
+	open_table(e, "speed", format("[%d][%d]", count, size), "of what bounces");
 	emit_number_rows(e, count, size, speed, note);
-	say(e, "};\n"
-	       "static const double $o_back[%d][%d] = {"
-	       "  /* times how far its expression is beyond: onto the guard */\n",
-	    count, size);
+	close_table(e);
+	open_table(e, "back", format("[%d][%d]", count, size),
+		   "times how far its expression is beyond: onto the guard");
 	emit_number_rows(e, count, size, back, note);
-	say(e, "};\n");
+	close_table(e);
 }
 
 /* In a segment of time, or always */
@@ -157,37 +167,57 @@ static void emit_search_in(const struct emitter *e, const struct guards *g, int 
 {
 	const struct switching *s = e->model->switching;
 	int impact = segment * g->impacts, expression = segment * s->expressions;
-	const char *row = regions_change(e) ? format("[%d][0]", segment) : "[0]";
+	const char *row = regions_change(e) ? format("[%d][0]", segment) : "[0]", *of = prefix_of_tables(e);
 	const char *play = expression ? format(" + %d", expression) : "", *from = impact ? format(" + %d", impact) : "";
-	say(e, "%s    %d, $N_H, %d, $o_row%s, $o_breaks, $o_breakpoint, $o_matrix, $o_halvings,\n"
-	       "%s    $o_slopes[0][0], $o_pieces[0][0], $o_lean[0][0],\n"
-	       "%s    $o_first, $o_guard, $o_limit, $o_holding,\n",
-	    indent, e->step->layout.size, s->expressions, row, indent, indent);
-	say(e, "%s    $o_gate[0], $o_gate_lean[0], $o_gate_sag[0], $o_gate_sway[0], $o_play%s, $o_gate_play,\n"
-	       "%s    $o_sets, $o_held, $o_value[0], %d, $o_impact%s, $o_speed[%d], $o_back[%d], %d, $N_MAX_EVENTS, "
+	say(e, "%s    %d, $N_H, %d, %srow%s, $o_breaks, %sbreakpoint, $o_matrix, %shalvings,\n"
+	       "%s    %sslopes[0][0], %spieces[0][0], %slean[0][0],\n"
+	       "%s    $o_first, $o_guard, %slimit, $o_holding,\n",
+	    indent, e->step->layout.size, s->expressions, of, row, of, of, indent, of, of, of, indent, of);
+	say(e, "%s    %sgate[0], %sgate_lean[0], %sgate_sag[0], %sgate_sway[0], %splay%s, %sgate_play,\n"
+	       "%s    $o_sets, $o_held, %svalue[0], %d, %simpact%s, %sspeed[%d], %sback[%d], %d, $N_MAX_EVENTS, "
 	       "%d\n",
-	    indent, play, indent, g->impacts, from, impact, impact, e->step->series.degree, max_splits(e->model));
+	    indent, of, of, of, of, of, play, of, indent, of, g->impacts, of, from, of, impact, of, impact,
+	    e->step->series.degree, max_splits(e->model));
 }
 
-void emit_guards(const struct emitter *e, const struct pieces *pieces)
+void emit_guards(const struct emitter *e, const struct guards *g)
 {
-	struct guards g = guards_of(e->step, pieces);
-	bool several = regions_change(e);
-	emit_guard_list(e, &g);
-	emit_gates(e, &g);
-	emit_assignments(e, &g);
-	emit_impacts(e, &g);
-	say(e, "\n"
-	       "static const pl_guards $o_switching%s = {\n",
-	    several ? format("[%d]", e->model->switching->segments) : "");
+	emit_guard_list(e, g);
+	emit_assignments(e, g);
+}
+
+void emit_numbers_of_guards(const struct emitter *e, const struct guards *g)
+{
+	emit_limits(e, g);
+	emit_gates(e, g);
+	emit_values(e, g);
+	emit_impacts(e, g);
+	if (e->model->retuned && e->model->switching->felts > 0)
+		emit_grips(e);
+}
+
+void emit_guards_descriptor(const struct emitter *e, const struct guards *g)
+{
+	bool several = regions_change(e), own = e->model->retuned;
+	if (own)
+		say(e, "\n/* What the search goes by */\n"
+		       "static pl_guards $o_switching(const $n_coeffs *c)\n"
+		       "{\n"
+		       "    const pl_guards tables = {\n");
+	else
+		say(e, "\nstatic const pl_guards $o_switching%s = {\n",
+		    several ? format("[%d]", e->model->switching->segments) : "");
 	if (!several)
-		emit_search_in(e, &g, 0, "");
+		emit_search_in(e, g, 0, own ? "    " : "");
 	for (int k = 0; k < e->model->switching->segments && several; k++) {
 		say(e, "  {\n");
-		emit_search_in(e, &g, k, "  ");
+		emit_search_in(e, g, k, "  ");
 		say(e, "  },\n");
 	}
-	say(e, "};\n");
+	say(e, own ? "    };\n"
+		     "    return tables;\n"
+		     "}\n"
+		   : "};\n");
 }
 
 void emit_grips(const struct emitter *e)
@@ -201,13 +231,16 @@ void emit_grips(const struct emitter *e)
 		const char *text = text_between(node->start, node->end);
 		name[i] = s->felt[i]->function == FN_SLIDE ? format("velocity of %s", text) : text;
 	}
-	say(e, "\n"
-	       "static const double $n_grips[%d][%d][%d] = {  /* of each region: what friction carries */\n",
-	    s->regions, s->felts, size);
+	if (e->model->retuned)
+		say(e, "    {  /* grips: of each region: what friction carries */\n");
+	else
+		say(e, "\n"
+		       "static const double $n_grips[%d][%d][%d] = {  /* of each region: what friction carries */\n",
+		    s->regions, s->felts, size);
 	for (int r = 0; r < s->regions; r++) {
 		say(e, "  {\n");
 		emit_number_rows(e, s->felts, size, grip + r * s->felts * size, name);
 		say(e, "  },\n");
 	}
-	say(e, "};\n");
+	close_table(e);
 }

@@ -23,13 +23,15 @@ static bool has_guards(const struct emitter *e)
 static void emit_start(const struct emitter *e)
 {
 	const char *search = search_of(e);
+	bool own = e->model->retuned;
 	say(e, "\n"
 	       "/* The region of x in a segment of time */\n"
-	       "static void $o_start(int segment, const double x[%d], pl_contact *contact, double *work)\n"
+	       "static void $o_start(%sint segment, const double x[%d], pl_contact *contact, double *work)\n"
 	       "{\n"
-	       "    %s here = $o_switching[segment];\n"
+	       "    %s here = $o_switching%s;\n"
 	       "    here.matrix += segment * %d;\n",
-	    e->step->layout.size, search, regions_in_one(e));
+	    own ? spell(e, "const $n_coeffs *c, ") : "", e->step->layout.size, search, own ? "(c, segment)" : "[segment]",
+	    regions_in_one(e));
 	if (has_guards(e))
 		say(e, "    here.first += segment * %d;\n"
 		       "    here.hold += segment * %d;\n", regions_in_one(e), regions_in_one(e));
@@ -97,11 +99,12 @@ void emit_region_changes(const struct emitter *e)
 	       "        const int segment = contact->region / %d;\n"
 	       "        const double change = segment < %d ? $n_until(s, segment) : %s;\n"
 	       "        const double to = change < tau ? change : tau;\n"
-	       "        %s here = $o_switching[segment];\n"
+	       "        %s here = $o_switching%s;\n"
 	       "        here.max_events -= count;\n"
 	       "        %s_advance(&here, to - done, x, contact, crossing + count, work);\n",
 	    guards ? "; one at its end too" : "", e->step->layout.size, regions_in_one(e), segments_of(e) - 1,
-	    guards ? spell(e, "2.0 * $N_H") : "tau", search_of(e), search_of(e));
+	    guards ? spell(e, "2.0 * $N_H") : "tau", search_of(e),
+	    e->model->retuned ? "(&s->coeffs, segment)" : "[segment]", search_of(e));
 	say(e, "        for (i = count; i < count + contact->crossings; i++)\n"
 	       "            crossing[i].time += done;\n"
 	       "        count += contact->crossings;\n"

@@ -58,9 +58,14 @@ void emit_param_locals(const struct emitter *e, const bool *reads)
 void emit_nominal_params_read(const struct emitter *e, const struct reads *reads)
 {
 	const struct tuning *t = tunables_of(e->model);
-	const int inputs = e->model->spec->inputs;
-	for (int k = 0; k < e->model->spec->tunables; k++)
-		if (reads->param[k] || (inputs + k < e->system->inputs && reads->input[inputs + k]))
+	bool *read = ARRAY(bool, (size_t)t->params);
+	for (int k = 0; k < t->params; k++)
+		read[k] = reads->param[k];
+	for (int i = e->model->spec->inputs; i < e->system->inputs; i++)
+		if (reads->input[i])
+			read[param_of_input(e->model->spec, i)] = true;
+	for (int k = 0; k < t->params; k++)
+		if (read[k])
 			say(e, "    const double %s = %s;\n", param_local(e, k),
 			    finite_text(t->param[k].at, t->nominal[k]));
 }
@@ -72,11 +77,14 @@ void emit_held_types(const struct emitter *e)
 	if (!held(e))
 		return;
 	say(e, "enum { $N_PARAMS = %d };  /* tunable: %s */\n"
-	       "typedef struct $n_coeffs $n_coeffs;  /* what the equations and outputs read */\n"
+	       "typedef struct $n_coeffs $n_coeffs;  /* what %s read */\n"
 	       "struct $n_coeffs {\n"
-	       "    double params[$N_PARAMS];  /* %s */\n"
-	       "};\n"
-	       "\n", held(e)->params, param_list(e), param_list(e));
+	       "    double params[$N_PARAMS];  /* %s */\n", held(e)->params, param_list(e),
+	    e->model->retuned ? "a step and outputs" : "the equations and outputs", param_list(e));
+	if (e->model->retuned)
+		emit_retuned_members(e);
+	say(e, "};\n"
+	       "\n");
 }
 
 void emit_held_member(const struct emitter *e)
@@ -101,21 +109,35 @@ void emit_held_declarations(const struct emitter *e)
 	if (!held(e))
 		return;
 	say(e, "\n/* Sets c to params (%s), for steps of the spec's h alone [s]. 0, or c is as it was and\n"
-	       " *     PL_NO_STEP     h is not $N_H\n"
-	       " *     PL_NOT_FINITE  a param is infinite, or not a number */\n"
-	       "int    $n_retune($n_coeffs *c, const double params[$N_PARAMS], double h);\n"
+	       " *     PL_NO_STEP     h is not $N_H\n", param_list(e));
+	if (e->model->retuned)
+		say(e, " *     PL_SINGULAR    a divisor is 0, as a mass is\n"
+		       " *     PL_OUT_OF_RANGE  a restitution is not within 0 and 1; a gap or a force of friction is below 0;\n"
+		       " *                    breakpoints change their order; or a pole times h is above 2^%d\n"
+		       " *     PL_NOT_FINITE  a param or a number of it is infinite, or not a number */\n", LIMIT_PIECES);
+	else
+		say(e, " *     PL_NOT_FINITE  a param is infinite, or not a number */\n");
+	say(e, "int    $n_retune($n_coeffs *c, const double params[$N_PARAMS], double h);\n"
 	       "\n"
 	       "/* From now on with c. State and time stay%s. */\n"
 	       "void   $n_use($n *s, const $n_coeffs *c);\n"
 	       "\n"
 	       "/* Of the spec's values: what $n_init starts with */\n"
 	       "extern const $n_coeffs $n_nominal;\n"
-	       "\n", param_list(e), starts_anew(e) ? spell(e, "; the scheme starts anew, as after $n_set") : "");
+	       "\n", starts_anew(e) ? spell(e, "; the scheme starts anew, as after $n_set") : "");
 }
 
 void banner_held(const struct emitter *e)
 {
 	const bool acts = e->system->inputs > e->model->spec->inputs;
+	if (e->model->retuned) {
+		say(e, " * Tunable: %s. An instance has the tables of its regions, %d numbers of matrices, which\n"
+		       " * $n_retune computes from other values on the target; of the spec's values they are these, "
+		       "correctly rounded. It\n"
+		       " * needs as much stack as they take, and some %d KB.\n", param_list(e), retuned_numbers(e),
+		    retuned_kilobytes(e));
+		return;
+	}
 	if (held(e))
 		say(e, " * Tunable: %s. %s\n", param_list(e),
 		    acts ? "They act like held inputs, with the instance's own values."
@@ -127,18 +149,16 @@ void banner_held(const struct emitter *e)
 
 void emit_held_nominal(const struct emitter *e)
 {
-	if (!held(e))
-		return;
+	if (!held(e) || e->model->retuned)
+		return;                         /* with the tables of regions */
 	say(e, "\nconst $n_coeffs $n_nominal = {\n"
 	       "    ");
 	emit_nominal_params(e);
 	say(e, "};\n");
 }
 
-void emit_held_retune(const struct emitter *e)
+static void emit_plain_retune(const struct emitter *e)
 {
-	if (!held(e))
-		return;
 	say(e, "\nint $n_retune($n_coeffs *c, const double params[$N_PARAMS], double h)\n"
 	       "{\n"
 	       "    int i;\n"
@@ -150,9 +170,18 @@ void emit_held_retune(const struct emitter *e)
 	       "    for (i = 0; i < $N_PARAMS; i++)\n"
 	       "        c->params[i] = params[i];\n"
 	       "    return 0;\n"
-	       "}\n"
-	       "\n"
-	       "void $n_use($n *s, const $n_coeffs *c)\n"
+	       "}\n");
+}
+
+void emit_held_retune(const struct emitter *e)
+{
+	if (!held(e))
+		return;
+	if (e->model->retuned)
+		emit_retuned(e);
+	else
+		emit_plain_retune(e);
+	say(e, "\nvoid $n_use($n *s, const $n_coeffs *c)\n"
 	       "{\n"
 	       "    s->coeffs = *c;\n"
 	       "%s}\n", starts_anew(e) ? spell(e, "    $n_place(s);\n") : "");

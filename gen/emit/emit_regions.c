@@ -18,7 +18,38 @@ const char *search_of(const struct emitter *e)
 	return has_guards(e) ? "pl_guards" : "pl_switching";
 }
 
-/* ---- tables ---- */
+/* ---- tables: of the file, or where params are tunable of an instance ---- */
+
+void open_table(const struct emitter *e, const char *name, const char *shape, const char *note)
+{
+	if (e->model->retuned)
+		say(e, "    {  /* %s: %s */\n", name, note);
+	else
+		say(e, "\n"
+		       "static const double $o_%s%s = {  /* %s */\n", name, shape, note);
+}
+
+void close_table(const struct emitter *e)
+{
+	say(e, e->model->retuned ? "    },\n" : "};\n");
+}
+
+const char *prefix_of_tables(const struct emitter *e)
+{
+	return e->model->retuned ? "c->" : spell(e, "$o_");
+}
+
+/* The descriptor of the search: static, or `tables` */
+static const char *descriptor_of(const struct emitter *e)
+{
+	return e->model->retuned ? "&tables" : spell(e, "&$o_switching");
+}
+
+static void declare_descriptor(const struct emitter *e)
+{
+	if (e->model->retuned && !regions_change(e))
+		say(e, "    const %s tables = $o_switching(&s->coeffs);\n", search_of(e));
+}
 
 static const char **expression_names(const struct emitter *e)
 {
@@ -47,15 +78,13 @@ static double *fourth_of_piece(const struct region_piece *piece) { return piece-
 static void emit_matrices(const struct emitter *e, const struct pieces *pieces, const struct matrices *m)
 {
 	int size = e->step->layout.size;
-	say(e, "\n"
-	       "static const double $o_%s[%d][%d][%d] = {  /* %s */\n",
-	    m->name, e->step->branches, m->rows, size, m->note);
+	open_table(e, m->name, format("[%d][%d][%d]", e->step->branches, m->rows, size), m->note);
 	for (int k = 0; k < e->step->branches; k++) {
 		say(e, "  {\n");
 		emit_number_rows(e, m->rows, size, m->of(&pieces->piece[k]), m->row_name);
 		say(e, "  },\n");
 	}
-	say(e, "};\n");
+	close_table(e);
 }
 
 bool regions_change(const struct emitter *e)
@@ -68,15 +97,23 @@ static void emit_rows(const struct emitter *e, const struct pieces *pieces)
 	const struct switching *s = regions_of(e);
 	int size = e->step->layout.size;
 	bool several = regions_change(e);
-	say(e, "\n"
-	       "static const double $o_row%s[%d][%d] = {  /* expressions that breakpoints divide%s */\n",
-	    several ? format("[%d]", s->segments) : "", s->expressions, size,
-	    several ? ", in each segment of time" : "");
+	const char *shape = format("%s[%d][%d]", several ? format("[%d]", s->segments) : "", s->expressions, size);
+	open_table(e, "row", shape, format("expressions that breakpoints divide%s",
+					   several ? ", in each segment of time" : ""));
 	for (int k = 0; k < s->segments; k++) {
 		say(e, several ? "  {\n" : "");
 		emit_number_rows(e, s->expressions, size, pieces->rows[k], expression_names(e));
 		say(e, several ? "  },\n" : "");
 	}
+	close_table(e);
+}
+
+static void emit_break_counts(const struct emitter *e)
+{
+	const struct switching *s = regions_of(e);
+	say(e, "\nstatic const int $o_breaks[] = {");
+	for (int i = 0; i < s->expressions; i++)
+		say(e, "%s%d", i ? ", " : "", s->expression[i].breaks);
 	say(e, "};\n");
 }
 
@@ -84,14 +121,19 @@ static void emit_breakpoints(const struct emitter *e, const struct pieces *piece
 {
 	const struct switching *s = regions_of(e);
 	int shown = 0;
-	say(e, "\nstatic const int $o_breaks[] = {");
-	for (int i = 0; i < s->expressions; i++)
-		say(e, "%s%d", i ? ", " : "", s->expression[i].breaks);
-	say(e, "};\nstatic const double $o_breakpoint[] = {");
+	say(e, e->model->retuned ? "    {" : "static const double $o_breakpoint[] = {");
 	for (int i = 0; i < s->expressions; i++)
 		for (int k = 0; k < s->expression[i].breaks; k++, shown++)
 			say(e, "%s%s", shown ? ", " : "", shortest(pieces->breakpoint[shown]));
-	say(e, "};\n");
+	say(e, e->model->retuned ? "},  /* breakpoint */\n" : "};\n");
+}
+
+static void emit_halvings(const struct emitter *e)
+{
+	say(e, e->model->retuned ? "    {" : "\nstatic const int $o_halvings[] = {");
+	for (int k = 0; k < e->step->branches; k++)
+		say(e, "%s%d", k ? ", " : "", e->step->branch[k].halvings);
+	say(e, e->model->retuned ? "},  /* halvings */\n" : "};\n");
 }
 
 static void emit_region_numbers(const struct emitter *e)
@@ -106,41 +148,50 @@ static void emit_region_numbers(const struct emitter *e)
 		say(e, "%s%d", r == 0 ? "" : r % 20 ? ", " : ",\n    ", matrix);
 	}
 	say(e, "\n"
-	       "};\n"
-	       "\n"
-	       "static const int $o_halvings[] = {");
-	for (int k = 0; k < e->step->branches; k++)
-		say(e, "%s%d", k ? ", " : "", e->step->branch[k].halvings);
-	say(e, "};\n");
+	       "};\n");
 }
 
 /* In a segment of time, or always */
 static void emit_switching_in(const struct emitter *e, const char *row, const char *indent)
 {
-	say(e, "%s    %d, $N_H, %d, %s, $o_breaks, $o_breakpoint, $o_matrix, $o_halvings,\n"
-	       "%s    $o_slopes[0][0], $o_pieces[0][0], $o_lean[0][0], $o_sag[0][0], $o_sway[0][0], "
+	const char *of = prefix_of_tables(e);
+	say(e, "%s    %d, $N_H, %d, %s, $o_breaks, %sbreakpoint, $o_matrix, %shalvings,\n"
+	       "%s    %sslopes[0][0], %spieces[0][0], %slean[0][0], %ssag[0][0], %ssway[0][0], "
 	       "%d, $N_MAX_EVENTS, %d\n",
-	    indent, e->step->layout.size, regions_of(e)->expressions, row, indent, e->step->series.degree, MAX_SPLITS);
+	    indent, e->step->layout.size, regions_of(e)->expressions, row, of, of, indent, of, of, of, of, of,
+	    e->step->series.degree, MAX_SPLITS);
 }
 
+/* Of tunable tables it is made anew for each call: an instance that is copied would have to point into itself. */
 static void emit_switching(const struct emitter *e)
 {
-	bool several = regions_change(e);
-	say(e, "\nstatic const pl_switching $o_switching%s = {\n",
-	    several ? format("[%d]", regions_of(e)->segments) : "");
-	if (!several)
-		emit_switching_in(e, spell(e, "$o_row[0]"), "");
-	for (int k = 0; k < regions_of(e)->segments && several; k++) {
+	bool several = regions_change(e), own = e->model->retuned;
+	const char *of = prefix_of_tables(e);
+	if (own)
+		say(e, "\n/* What the search goes by%s */\n"
+		       "static pl_switching $o_switching(const $n_coeffs *c%s)\n"
+		       "{\n"
+		       "    const pl_switching tables = {\n",
+		    several ? ", in a segment of time" : "", several ? ", int segment" : "");
+	else
+		say(e, "\nstatic const pl_switching $o_switching%s = {\n",
+		    several ? format("[%d]", regions_of(e)->segments) : "");
+	if (own || !several)
+		emit_switching_in(e, format("%srow%s[0]", of, several ? "[segment]" : ""), own ? "    " : "");
+	for (int k = 0; k < regions_of(e)->segments && several && !own; k++) {
 		say(e, "  {\n");
 		emit_switching_in(e, spell(e, "$o_row[%d][0]", k), "");
 		say(e, "  },\n");
 	}
-	say(e, "};\n");
+	say(e, own ? "    };\n"
+		     "    return tables;\n"
+		     "}\n"
+		   : "};\n");
 }
 
-void emit_regions(const struct emitter *e)
+/* All that an instance has where params are tunable, in the order of its struct; else each a table */
+static void emit_numbers_of_regions(const struct emitter *e, const struct pieces *pieces, const struct guards *g)
 {
-	struct pieces pieces = pieces_of(e->step);
 	int size = e->step->layout.size, expressions = regions_of(e)->expressions;
 	const char **entry = layout_names(&e->step->layout, e->system, e->model), **expression = expression_names(e);
 	const struct matrices all[] = {
@@ -150,19 +201,48 @@ void emit_regions(const struct emitter *e)
 		{ "sag", "d^2/8 times its second derivative, at most", expressions, expression, second_of_piece },
 		{ "sway", "d^4/384 times its fourth derivative, at most", expressions, expression, fourth_of_piece }
 	};
-	emit_rows(e, &pieces);
-	emit_breakpoints(e, &pieces);
+	emit_halvings(e);
+	if (e->model->retuned) {
+		emit_rows(e, pieces);
+		emit_breakpoints(e, pieces);
+	}
+	for (size_t i = 0; i < sizeof all / sizeof *all - (g ? 2 : 0); i++)
+		emit_matrices(e, pieces, &all[i]);
+	if (g)
+		emit_numbers_of_guards(e, g);
+}
+
+void emit_regions(const struct emitter *e)
+{
+	struct pieces pieces = pieces_of(e->step);
+	struct guards *g = has_guards(e) ? NEW(struct guards) : NULL;
+	if (g)
+		*g = guards_of(e->step, &pieces);
+	if (!e->model->retuned)
+		emit_rows(e, &pieces);
+	emit_break_counts(e);
+	if (!e->model->retuned)
+		emit_breakpoints(e, &pieces);
 	emit_region_numbers(e);
-	for (size_t i = 0; i < sizeof all / sizeof *all - (has_guards(e) ? 2 : 0); i++)
-		emit_matrices(e, &pieces, &all[i]);
-	if (has_guards(e))
-		emit_guards(e, &pieces);
+	if (g && e->model->retuned)
+		emit_guards(e, g);
+	if (e->model->retuned)
+		say(e, "\nconst $n_coeffs $n_nominal = {\n    ");
+	if (e->model->retuned)
+		emit_nominal_params(e);
+	emit_numbers_of_regions(e, &pieces, g);
+	if (e->model->retuned)
+		say(e, "};\n");
+	else if (g)
+		emit_guards(e, g);
+	if (g)
+		emit_guards_descriptor(e, g);
 	else
 		emit_switching(e);
 	if (regions_change(e))
 		emit_region_changes(e);
 	if (e->step->swift)
-		emit_swift_tables(e, &pieces, expression);
+		emit_swift_tables(e, &pieces, expression_names(e));
 }
 
 /* ---- in the model's own functions ---- */
@@ -235,7 +315,8 @@ void declare_region_room(const struct emitter *e)
 /* What friction carries now */
 static void emit_grip(const struct emitter *e)
 {
-	emit_grips(e);
+	if (!e->model->retuned)
+		emit_grips(e);
 	say(e, "\n"
 	       "static double $n_grip(const $n *s, int which)\n"
 	       "{\n"
@@ -243,9 +324,9 @@ static void emit_grip(const struct emitter *e)
 	       "    int i;\n", e->step->layout.size);
 	emit_load_states(e, needed_loads(e), false);
 	emit_region_vector(e, false);
-	say(e, "    pl_multiply(1, %d, $n_grips[s->contact.region][which], x, &force);\n"
+	say(e, "    pl_multiply(1, %d, %s[s->contact.region][which], x, &force);\n"
 	       "    return force;\n"
-	       "}\n", e->step->layout.size);
+	       "}\n", e->step->layout.size, e->model->retuned ? "s->coeffs.grips" : spell(e, "$n_grips"));
 }
 
 void emit_region_start(const struct emitter *e)
@@ -256,6 +337,7 @@ void emit_region_start(const struct emitter *e)
 	       "{\n"
 	       "    int i;\n");
 	declare_region_room(e);
+	declare_descriptor(e);
 	emit_turned_loads(e, needed_loads(e), false);
 	emit_region_vector(e, false);
 	emit_region_start_call(e);
@@ -267,9 +349,10 @@ void emit_region_start(const struct emitter *e)
 void emit_region_start_call(const struct emitter *e)
 {
 	if (regions_change(e))
-		say(e, "    $o_start(s->segment, x, &s->contact$p, work);\n");
+		say(e, "    $o_start(%ss->segment, x, &s->contact$p, work);\n",
+		    e->model->retuned ? "&s->coeffs, " : "");
 	else
-		say(e, "    %s_start(&$o_switching, x, &s->contact$p, work);\n", search_of(e));
+		say(e, "    %s_start(%s, x, &s->contact$p, work);\n", search_of(e), descriptor_of(e));
 }
 
 static void emit_region_questions(const struct emitter *e)
@@ -307,7 +390,7 @@ void emit_search(const struct emitter *e)
 	if (regions_change(e))
 		say(e, "    $o_pass_changes(s, $N_H, x, &s->contact$p, s->crossing$p, work);\n");
 	else
-		say(e, "    %s_step(&$o_switching, x, &s->contact$p, s->crossing$p, work);\n", search_of(e));
+		say(e, "    %s_step(%s, x, &s->contact$p, s->crossing$p, work);\n", search_of(e), descriptor_of(e));
 	say(e, "    for (i = 0; i < %s; i++)\n"
 	       "        s->y[%s] = x[i];\n", own_states(e), place_in_loop(e));
 }
@@ -331,6 +414,7 @@ static void emit_searched_step(const struct emitter *e)
 {
 	say(e, "    int i;\n");
 	declare_region_room(e);
+	declare_descriptor(e);
 	emit_set_aside(e);
 	emit_turned_loads(e, needed_loads(e), false);
 	emit_region_vector(e, true);
@@ -396,7 +480,7 @@ void emit_region_advance_call(const struct emitter *e)
 	if (regions_change(e))
 		say(e, "    $o_pass_changes(s, tau, x, &contact, crossing, work);\n");
 	else
-		say(e, "    %s_advance(&$o_switching, tau, x, &contact, crossing, work);\n", search_of(e));
+		say(e, "    %s_advance(%s, tau, x, &contact, crossing, work);\n", search_of(e), descriptor_of(e));
 }
 
 void emit_region_at(const struct emitter *e)
@@ -410,6 +494,7 @@ void emit_region_at(const struct emitter *e)
 	       "    int i;\n",
 	    u);
 	declare_region_room(e);
+	declare_descriptor(e);
 	emit_load_states(e, needed_loads(e), false);
 	emit_region_vector(e, true);
 	emit_region_advance_call(e);

@@ -104,7 +104,7 @@ static const char *basis_expression(const struct emitter *e, const struct basis 
 	case BASIS_WAVE:  return wave_expression(basis);
 	case BASIS_INPUT:
 		if (basis->index >= e->model->spec->inputs)
-			return param_local(e, basis->index - e->model->spec->inputs);
+			return param_local(e, param_of_input(e->model->spec, basis->index));
 		return format("u[%d]", basis->index + basis->order * given_inputs(e));
 	default:          return format("y[%d]", basis->order ? velocity[basis->index] : basis->index);
 	}

@@ -187,12 +187,11 @@ static const char *monomial_text(const struct tuning *t, int number)
 	return m->from == 0 && !m->divides ? param : format("%s%s%s", from, m->divides ? "/" : "*", param);
 }
 
-void emit_monomials(const struct emitter *e)
+void emit_monomials(const struct emitter *e, const struct tuning *t, const char *suffix)
 {
-	const struct tuning *t = e->model->tuning;
 	if (t->monomials == 0)
 		return;
-	say(e, "\nstatic const pl_monomial $n_monomial[%d] = {\n", t->monomials);
+	say(e, "\nstatic const pl_monomial $n_monomial%s[%d] = {\n", suffix, t->monomials);
 	for (int m = 0; m < t->monomials; m++) {
 		const struct tuned_monomial *made = &t->monomial[m];
 		const char *text = monomial_text(t, m + 1);
@@ -213,7 +212,7 @@ static const char *row_name(const struct emitter *e, int row)
 	return format("%s%.*s", e->model->coord_name[row], e->system->velocity[row] >= 0 ? 2 : 1, "''");
 }
 
-static const char *product_text(const struct tuning *t, const struct tuned_term *term)
+const char *tuned_product(const struct tuning *t, const struct tuned_term *term)
 {
 	const char *product = monomial_text(t, term->monomial), *factor = readable_text(term->factor);
 	if (term->monomial == 0)
@@ -229,12 +228,12 @@ const char *tuned_term_note(const struct emitter *e, const struct tuned_term *te
 	const struct tuning *t = e->model->tuning;
 	bool left = term->column >= t->x.size;
 	if (term->row >= t->rows - t->frequencies)
-		return format("%s: %s", row_name(e, term->row), product_text(t, term));
+		return format("%s: %s", row_name(e, term->row), tuned_product(t, term));
 	const char *of = left ? row_name(e, term->column - t->x.size)
 			      : layout_names(&e->model->tuning->x, e->system, e->model)[term->column];
 	const char *equation = format("equation %d, %s", term->row + 1, left ? "left" : "right");
 	const char *where = t->solves ? equation : row_name(e, term->row);
-	return format("%s: %s %s", where, product_text(t, term), of);
+	return format("%s: %s %s", where, tuned_product(t, term), of);
 }
 
 const char *two_words(struct coefficient number)
@@ -245,7 +244,7 @@ const char *two_words(struct coefficient number)
 static void emit_equations(const struct emitter *e)
 {
 	const struct tuning *t = e->model->tuning;
-	emit_monomials(e);
+	emit_monomials(e, t, "");
 	say(e, "\nstatic const pl_term $n_term[%d] = {  /* row, column, product of params, factor */\n", t->terms);
 	for (const struct tuned_term *term = t->term; term < t->term + t->terms; term++)
 		say(e, "    {%d, %d, %d, %s},  /* %s */\n", term->row, term->column, term->monomial,
@@ -271,7 +270,7 @@ static void emit_tuned_frequencies(const struct emitter *e)
 	}
 }
 
-static void emit_fixed_slopes(const struct emitter *e, int count, const struct fixed_slope *fixed)
+void emit_fixed_slopes(const struct emitter *e, int count, const struct fixed_slope *fixed)
 {
 	if (count == 0)
 		return;

@@ -156,7 +156,7 @@ static int count_terms(const struct emitter *e)
 static void emit_terms(const struct emitter *e)
 {
 	const struct tuned_blocks *p = blocks_of_step(e);
-	emit_monomials(e);
+	emit_monomials(e, e->model->tuning, "");
 	if (count_terms(e) == 0)
 		return;
 	say(e, "\nstatic const pl_term $n_term[%d] = {  /* row, column, product of params, factor */\n",

@@ -92,20 +92,20 @@ int given_inputs(const struct emitter *e)
 
 const char *sample_now(const struct emitter *e, int input)
 {
-	const int param = input - e->model->spec->inputs;
+	const int param = param_of_input(e->model->spec, input);
 	return param < 0 ? format("u[%d]", input) : param_text(param);
 }
 
 const char *sample_kept(const struct emitter *e, int input)
 {
-	const int param = input - e->model->spec->inputs;
+	const int param = param_of_input(e->model->spec, input);
 	return param < 0 ? format("s->u[%d]", input) : param_text(param);
 }
 
 const char *input_name(const struct emitter *e, int input, int order)
 {
 	if (input >= e->model->spec->inputs)
-		return param_local(e, input - e->model->spec->inputs);
+		return param_local(e, param_of_input(e->model->spec, input));
 	for (const struct symbol *s = e->model->spec->first; s; s = s->next)
 		if (s->kind == SYMBOL_INPUT && s->index == input)
 			return c_name(e->c, s, order);

@@ -5,8 +5,7 @@
  * more have to agree. */
 #include "math/math.h"
 
-/* exponents; points on a line to find and to check them */
-enum { EXPONENTS = 2 * FIT_DEGREE + 1, LINE = EXPONENTS + 1 };
+enum { EXPONENTS = 2 * FIT_DEGREE + 1 };
 
 /* A value like no other */
 static void set_value(mpq_ptr value, int index)
@@ -28,6 +27,34 @@ mpq_t *scattered_values(int params, int number)
 	return values;
 }
 
+/* near + 2^-40 |near| v in the place of v: what has a sign there, or an order, keeps it */
+static void draw_near(int params, const mpq_t *near, mpq_t *values)
+{
+	mpq_t unit;
+	mpq_init(unit);
+	for (int k = 0; k < params && near; k++) {
+		mpq_abs(unit, near[k]);
+		if (mpq_sgn(unit) == 0)
+			mpq_set_ui(unit, 1, 1);
+		mpq_div_2exp(unit, unit, 40);
+		mpq_mul(values[k], values[k], unit);
+		mpq_add(values[k], values[k], near[k]);
+	}
+	mpq_clear(unit);
+}
+
+mpq_t *scattered_near(int params, int number, const mpq_t *near)
+{
+	mpq_t *values = scattered_values(params, number);
+	draw_near(params, near, values);
+	return values;
+}
+
+static mpq_t *scattered(const struct fit *f, int number)
+{
+	return scattered_near(f->params, number, f->near);
+}
+
 /* The base with `up` added to param k and `other` to param j */
 static mpq_t *near_base(const struct fit *f, int k, int up, int j, int other)
 {
@@ -38,6 +65,7 @@ static mpq_t *near_base(const struct fit *f, int k, int up, int j, int other)
 	mpq_set_si(shift, other, 1);
 	mpq_add(values[j], values[j], shift);
 	mpq_clear(shift);
+	draw_near(f->params, f->near, values);
 	return values;
 }
 
@@ -55,34 +83,41 @@ static void power_of(mpq_srcptr x, int exponent, mpq_ptr result)
 		mpq_inv(result, result);
 }
 
-/* f(x) x^3 through seven points as a polynomial of degree 6: which of its coefficients are not 0. The eighth point
- * checks. */
-static bool find_exponents(struct fit *f, int k)
+/* Along the line of param k, up from the base by 0, 1, ...: f(x) x^most through 2 most + 1 points as a polynomial, and
+ * which of its coefficients are not 0. One more point checks. */
+static bool try_exponents(struct fit *f, int k, int most)
 {
+	const int count = 2 * most + 1;
 	int unused;
-	mpq_t *V = rationals(EXPONENTS * EXPONENTS), *inverse = rationals(EXPONENTS * EXPONENTS), *y = rationals(LINE),
-	      *c = rationals(EXPONENTS);
-	mpq_t *sum = rationals(2);
-	for (int i = 0; i < LINE; i++) {
+	mpq_t *V = rationals((size_t)(count * count)), *inverse = rationals((size_t)(count * count)),
+	      *y = rationals((size_t)count), *c = rationals((size_t)count), *sum = rationals(2);
+	for (int i = 0; i < count; i++) {
 		mpq_t *at = near_base(f, k, i, k, 0);
 		mpq_set(y[i], value_at(f, (const mpq_t *)at));
-		for (int j = 0; j < EXPONENTS && i < EXPONENTS; j++)
-			power_of(at[k], j - FIT_DEGREE, V[i * EXPONENTS + j]);
-	}
-	for (int i = 1; i < LINE; i++)
+		for (int j = 0; j < count; j++)
+			power_of(at[k], j - most, V[i * count + j]);
 		f->depends[k] = f->depends[k] || !mpq_equal(y[i], y[0]);
+	}
+	mpq_t *at = near_base(f, k, count, k, 0);
+	mpq_srcptr last = value_at(f, (const mpq_t *)at);
+	f->depends[k] = f->depends[k] || !mpq_equal(last, y[0]);
 	if (!f->depends[k])
 		return true;
-	rational_inverse(EXPONENTS, (const mpq_t *)V, inverse, &unused);
-	rational_product(EXPONENTS, EXPONENTS, 1, (const mpq_t *)inverse, (const mpq_t *)y, c);
-	mpq_t *at = near_base(f, k, EXPONENTS, k, 0);
-	for (int j = 0; j < EXPONENTS; j++) {
-		f->exponent[k][j] = mpq_sgn(c[j]) != 0;
-		power_of(at[k], j - FIT_DEGREE, sum[0]);
+	rational_inverse(count, (const mpq_t *)V, inverse, &unused);
+	rational_product(count, count, 1, (const mpq_t *)inverse, (const mpq_t *)y, c);
+	for (int j = 0; j < count; j++) {
+		f->exponent[k][j + FIT_DEGREE - most] = mpq_sgn(c[j]) != 0;
+		power_of(at[k], j - most, sum[0]);
 		mpq_mul(sum[0], sum[0], c[j]);
 		mpq_add(sum[1], sum[1], sum[0]);
 	}
-	return mpq_equal(sum[1], y[EXPONENTS]) != 0;
+	return mpq_equal(sum[1], last) != 0;
+}
+
+/* Most are of the powers -1, 0 and 1, which fewer points tell. */
+static bool find_exponents(struct fit *f, int k)
+{
+	return try_exponents(f, k, 1) || try_exponents(f, k, FIT_DEGREE);
 }
 
 /* f(a, b) - f(a', b) - f(a, b') + f(a', b') is 0 where no product holds both */
@@ -143,7 +178,7 @@ static bool fit_products(struct fit *f)
 	      *y = rationals((size_t)count), *sum = rationals(2);
 	f->factor = rationals((size_t)count);
 	for (int i = 0; i < count; i++) {
-		const mpq_t *at = (const mpq_t *)scattered_values(f->params, i + 1);
+		const mpq_t *at = (const mpq_t *)scattered(f, i + 1);
 		mpq_set(y[i], value_at(f, at));
 		for (int j = 0; j < count; j++)
 			product_at(f, j, at, V[i * count + j]);
@@ -152,7 +187,7 @@ static bool fit_products(struct fit *f)
 		return false;
 	rational_product(count, count, 1, (const mpq_t *)inverse, (const mpq_t *)y, f->factor);
 	for (int i = count + 1; i <= count + 2; i++) {
-		const mpq_t *at = (const mpq_t *)scattered_values(f->params, i);
+		const mpq_t *at = (const mpq_t *)scattered(f, i);
 		mpq_set_ui(sum[0], 0, 1);
 		for (int j = 0; j < count; j++) {
 			product_at(f, j, at, sum[1]);
@@ -169,10 +204,10 @@ bool fit_value(struct fit *f)
 {
 	signed char power[LIMIT_TUNABLES] = { 0 };
 	bool constant = true;
-	mpq_srcptr first = value_at(f, (const mpq_t *)scattered_values(f->params, 0));
+	mpq_srcptr first = value_at(f, (const mpq_t *)scattered(f, 0));
 	f->culprit = -1;
 	for (int i = 1; i < FIT_POINTS; i++)
-		constant = constant && mpq_equal(value_at(f, (const mpq_t *)scattered_values(f->params, i)), first);
+		constant = constant && mpq_equal(value_at(f, (const mpq_t *)scattered(f, i)), first);
 	for (int k = 0; k < f->params && !constant; k++)
 		if (!find_exponents(f, k)) {
 			f->culprit = k;

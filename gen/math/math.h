@@ -247,6 +247,8 @@ void reach_of_row(const struct spread *spread, const double *A, const double *ro
 enum { FIT_DEGREE = 3, FIT_POINTS = 3 };
 struct fit {
 	int params;
+	/* points lie about these values, within 1e-7 of their size; NULL: anywhere above 0 */
+	const mpq_t *near;
 	mpq_srcptr (*value)(void *context, const mpq_t *params);    /* of the function */
 	void *context;
 	int products;               /* found: factors, some 0, times powers of params */
@@ -261,5 +263,6 @@ struct fit {
 /* params, value and context given; false: it is no such sum */
 bool fit_value(struct fit *fit);
 mpq_t *scattered_values(int params, int number);            /* values that are related by nothing */
+mpq_t *scattered_near(int params, int number, const mpq_t *near); /* the same, near NULL or as above */
 
 #endif

@@ -73,9 +73,7 @@ static void collect_element(void *context)
 		int order = element->kind == ELEMENT_MASS ? 2 : element->kind == ELEMENT_DAMPER ? 1 : 0;
 		if (!is_constant(value->cell[0]) && !is_of_params(value->cell[0]))
 			error(element->value->start, "what moves belongs in an equation, or in a force",
-			      b->collector.params == PARAMS_INPUTS
-				      ? "a mass, spring or damper of a piecewise-linear model cannot be tunable"
-				      : "a mass, spring or damper needs a constant");
+			      "a mass, spring or damper needs a constant");
 		form = coordinate_form(&b->model->frame, component_of(element->from), order);
 		if (element->to)
 			form = form_sum(form, coordinate_form(&b->model->frame, component_of(element->to), order),

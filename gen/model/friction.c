@@ -654,6 +654,8 @@ static void build_grips(struct building *b, struct switching *s)
 							  : region->carried[s->friction[here].atom->index];
 			if (carried && region->possible)
 				region->grip[i] = row_in_system(b, &s->system[region->system], carried);
+			if (region->grip[i])
+				region->grip[i]->form = carried;
 		}
 	}
 }

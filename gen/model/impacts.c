@@ -38,10 +38,8 @@ static bool is_rising(const struct when *when)
 }
 
 /* The gap of a stop is a length, and what comes back of the speed a part of it. */
-static void check_stop(struct building *b, const struct when *when, mpq_ptr restitution)
+static void check_stop(struct building *b, const struct when *when, mpq_ptr restitution, mpq_ptr gap)
 {
-	mpq_t gap;
-	mpq_init(gap);
 	collect_constant(&b->collector, when->restitution, restitution);
 	if (mpq_sgn(restitution) < 0 || mpq_cmp_ui(restitution, 1, 1) > 0)
 		error(when->restitution->start, "the part of the speed that comes back, 0 to 1",
@@ -52,7 +50,6 @@ static void check_stop(struct building *b, const struct when *when, mpq_ptr rest
 	if (mpq_sgn(gap) < 0)
 		error(when->gap->start, "a gap is 0 or more: what stands first comes up to the second",
 		      "a gap of %s is below 0", readable_text(gap));
-	mpq_clear(gap);
 }
 
 struct collecting {
@@ -97,9 +94,9 @@ static void collect_impact(void *context)
 	const struct when *when = work->when;
 	struct strike *strike = work->strike;
 	struct node *const *side = when->guard->child;
-	mpq_inits(strike->restitution, strike->at, strike->factor, NULL);
+	mpq_inits(strike->restitution, strike->gap, strike->answer, strike->at, strike->factor, NULL);
 	if (when->restitution)
-		check_stop(b, when, strike->restitution);
+		check_stop(b, when, strike->restitution, strike->gap);
 	struct form *left = scalar_form(b, side[0]), *right = scalar_form(b, side[1]);
 	check_linear(b, side[0], left, "a guard");
 	check_linear(b, side[1], right, "a guard");
@@ -130,7 +127,9 @@ void collect_impacts(struct building *b, struct snapshot *snapshot)
 static struct strike copied(const struct building *b, const struct when *when, const struct strike *from)
 {
 	struct strike copy = *from;
-	mpq_inits(copy.restitution, copy.at, copy.factor, NULL);
+	mpq_inits(copy.restitution, copy.gap, copy.answer, copy.at, copy.factor, NULL);
+	mpq_set(copy.gap, from->gap);
+	mpq_set(copy.answer, from->answer);
 	mpq_set(copy.restitution, from->restitution);
 	copy.jump = ARRAY(struct jump, (size_t)when->jumps + (size_t)b->model->n);
 	for (int k = 0; k < copy.jumps; k++)
@@ -366,6 +365,7 @@ static void find_jumps(struct building *b, const struct when *when, struct strik
 		error(when->at, NULL, "the masses at this stop do not make a force part them");
 	for (int j = 0; j < n; j++)
 		mpq_div(d[j], d[j], speed);
+	mpq_set(strike->answer, speed);
 	strike->direction = d;
 	strike->jumps = velocity_jumps(b, strike, strike->restitution, strike->jump);
 	mpq_clears(speed, factor, NULL);

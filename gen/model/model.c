@@ -411,8 +411,8 @@ static void part_snapshots(struct snapshot *snapshot, int count)
 	}
 }
 
-/* Equations, impacts and outputs in each interval of time. When a change of formula is met for the first time, the intervals
- * before that are known, even where it divides them: what they read does not change there. */
+/* Equations, impacts and outputs in each interval of time. When a change of formula is met for the first time, the
+ * intervals before that are known, even where it divides them: what they read does not change there. */
 static void collect_intervals(struct building *b)
 {
 	struct collector *c = &b->collector;
@@ -446,15 +446,29 @@ static void collect_intervals(struct building *b)
 	b->model->system.change = c->change;
 }
 
+/* Params that regions have as numbers, not as inputs */
+static void part_factors(struct building *b)
+{
+	const bool *factor = b->request->factor ? b->request->factor : find_factors(b);
+	for (int i = 0, acting = 0; i < b->spec->tunables; i++) {
+		b->spec->tunable[i].symbol->factor = factor[i];
+		b->spec->tunable[i].symbol->acting = factor[i] ? acting : acting++;
+		if (factor[i])
+			b->factor = b->model->factor = factor;
+	}
+}
+
 /* Where a scheme leaves something over, the instance's own params stand in it: collected anew, with them as atoms. Of
  * regions they move breakpoints and add forces, as held inputs do. */
 static void collect_with_params(struct building *b)
 {
 	struct collector *c = &b->collector;
-	const bool left = leaves_over(b);
-	if (!left && (b->request->solution || !needs_regions(b)))
+	const bool left = !b->request->factor && leaves_over(b);
+	if (!left && !b->request->factor && (b->request->solution || !needs_regions(b)))
 		return;
 	spread_tuned(b->spec);
+	if (!left)
+		part_factors(b);
 	b->nominal = b->snapshot;
 	b->nominals = c->changes + 1;
 	b->model->keeps_params = true;
@@ -527,7 +541,7 @@ static void collect_model(struct building *b)
 		statement_guard(evaluate_modes, b);
 	b->collector.constant_only = false;     /* where what had to be constant was not */
 	collect_intervals(b);
-	if (b->spec->tunables > 0 && all && !diagnostics_errors())
+	if (b->spec->tunables > 0 && (all || request->factor) && !diagnostics_errors())
 		collect_with_params(b);
 	gather_impacts(b);
 	if (all)

@@ -131,6 +131,8 @@ struct request {                    /* what the user asks for on the command lin
 	/* values of the tunable params in place of the spec's, to see what the equations become: */
 	const mpq_t *tunable;
 	                            /* no step, no initial values */
+	/* with them: those of the tunable params that regions have as numbers, the others as inputs; else NULL */
+	const bool *factor;
 	const struct relative *relative; /* the coordinates to build the model over; NULL: the written ones */
 	bool undivided;             /* regions are those of all coordinates together */
 	bool trial;                 /* its step and its outputs alone: no NAME_at, no blocks of rows */
@@ -216,6 +218,8 @@ struct model {
 	/* the instance has tunable params: what is left over and outputs read them, or they act like held inputs */
 	bool keeps_params;
 	const struct tuning *held;  /* those that the instance has in such a way: no more than a list */
+	const bool *factor;         /* per param: regions have it as a number, in their matrices; NULL: none */
+	const struct retuned *retuned; /* how these follow from them; NULL: no param is such */
 	int outputs;
 	struct output *output;
 	bool declared_outputs;
@@ -299,6 +303,7 @@ struct strike {                     /* what an impact is in one segment of time 
 	int jumps;
 	struct jump *jump;
 	mpq_t restitution;          /* of a bounce: e */
+	mpq_t gap, answer;          /* of a stop, as numbers; answer: of its speed to a force of contact */
 	mpq_t *direction;           /* d, per coordinate */
 	struct jump *still;         /* its jumps if e were 0 */
 	struct output *speed_row;
@@ -358,6 +363,7 @@ struct region {                     /* one interval for each expression, in one 
 	struct hold *hold;
 	struct release *release;
 };
+struct sign { mpq_t number; bool least; };  /* by which something was decided; least: by its being at least 0 */
 struct switching {
 	int rows, *row;             /* of the equations that it is of */
 	int expressions;
@@ -384,6 +390,8 @@ struct switching {
 	struct impact *impact;
 	int felts;                  /* friction of which outputs read what it carries: as they have it, for all time */
 	const struct atom **felt;
+	int signs;                  /* where there are factors */
+	struct sign *sign;
 	int sharing;                /* parts that have these regions together, since some move as a whole */
 };
 /* Coordinates that nothing outside of them acts on, in no region: they have regions of their own, and cross breakpoints
@@ -414,6 +422,7 @@ struct building {                   /* what the builders share */
 	struct snapshot *whole;     /* the same for all time, with atoms; NULL: there is no leftover */
 	struct snapshot *nominal;   /* with the spec's values, where `snapshot` has tunable params; else NULL */
 	int nominals;               /* its intervals */
+	const bool *factor;         /* per tunable param: a number of regions, and no input; NULL: none is */
 	struct point *values;       /* nothing fixed but tunable params; made on first use */
 	/* [segment][row]: the residual's part that depends on time alone, as the linear core carries it */
 	struct form **load;
@@ -574,7 +583,8 @@ int  interval_of(const struct switching *s, int region, int expression);
 /* of these rows of the equations; leaves the statement where they are too many, or with dry friction */
 struct switching *regions_of_rows(struct building *b, int rows, int *row);
 void remove_idle_breaks(struct switching *s);
-int  add_system(struct switching *s, const struct linear *system, int segment);   /* its index */
+/* its index; apart: with no other's, though they are equal */
+int  add_system(struct switching *s, const struct linear *system, int segment, bool apart);
 int  segment_of_region(const struct switching *s, int region);      /* of time */
 int  regions_at_once(const struct switching *s);                    /* in one segment of time, possible or not */
 bool is_form_multiple(const struct form *form, const struct form *e, mpq_ptr of);   /* of: the factor */
@@ -833,13 +843,67 @@ struct tuning {
 /* model->tuning, or model->held, where something is tunable; false: it was said why not */
 bool find_tuning(struct model *model, const struct request *request);
 
+void add_tuned_terms(struct tuning *t, const struct fit *f, int row, int column);
+void add_tuned_unit(struct tuning *t, int row, int column);
+
+/* ---- retuned.c: how the regions follow from tunable params that are no inputs of them ---- */
+
+enum retuned_kind {                 /* of rows: */
+	RETUNED_SLOPE,              /* of system: coordinate's highest derivative over x, */
+	/* which is that of W a = R x: of R, and of W over highest derivatives; likewise of what reads these */
+	RETUNED_R, RETUNED_W,
+	RETUNED_EXPRESSION,         /* of segment of time: expression */
+	RETUNED_BREAK,              /* of expression: breakpoint; a number, in column 0, as those below are */
+	RETUNED_HOLD, RETUNED_RELEASE, RETUNED_GRIP, /* of region: one of its holds, releases; friction */
+	RETUNED_RELEASE_R, RETUNED_RELEASE_W, RETUNED_GRIP_R, RETUNED_GRIP_W,
+	RETUNED_JUMP, RETUNED_STILL, /* of impact: one of its jumps, of those without restitution */
+	RETUNED_TIMES, RETUNED_ANSWER, /* answer times the row before; that number */
+	RETUNED_SPEED, RETUNED_BACK, RETUNED_RESTITUTION, /* of impact; restitution is a number */
+	RETUNED_LEAST,              /* a number that is at least 0: a force of friction, the gap of a stop */
+	RETUNED_SIGN                /* a number that stays above, or below, 0 */
+};
+struct retuned_row {
+	enum retuned_kind kind;
+	int of, index, place;       /* place: row of what the target evaluates; -1: no param changes it */
+	bool positive;
+};
+struct retuned_block {              /* a system that the target solves, and what reads its highest derivatives */
+	const struct tuning *tuning;
+	int place;                  /* of its first row */
+};
+struct retuned {
+	int blocks;
+	struct retuned_block *block;
+	const struct tuning *tuning; /* its terms; x: states, load states of all loads in one segment of time, inputs */
+	const bool *factor;
+	const struct model *other;  /* at values that are related by nothing */
+	int rows;
+	struct retuned_row *row;
+};
+struct listing {                    /* retuned_rows.c: the numbers of one model's regions, in columns of x */
+	const struct model *model;
+	const struct layout *x;
+	int rows;
+	struct retuned_row *row;
+	mpq_t *entry;               /* rows x columns */
+};
+struct listing list_rows(const struct model *model, const struct layout *x, bool signs);
+/* factors.c */
+const bool *find_factors(struct building *b);   /* per tunable param, of regions: it cannot go as a held input */
+/* model->retuned; false: it was said why not */
+bool find_retuning(struct model *model, const struct request *request);
+int  retuned_place(const struct retuned *r, enum retuned_kind kind, int of, int index);
+
 /* ---- params.c: tunable params that the instance has ---- */
 
 void spread_tuned(const struct spec *spec);     /* to params, matrices and lets that are made of tunable ones */
 /* the first name in it that is tunable, or made of what is; NULL: there is none */
 const struct node *first_tuned(const struct node *node);
+int  param_of_input(const struct spec *spec, int input);   /* -1: it is an input of the spec */
 void list_held(struct model *model);            /* model->held; warns of what nothing reads */
 const struct tuning *tunables_of(const struct model *model); /* of either kind; NULL: nothing is */
+/* at values related by nothing; NULL: no param is tunable in this way */
+const struct model *model_elsewhere(const struct model *model);
 
 /* ---- stepped.c: the model that a step is built of ---- */
 

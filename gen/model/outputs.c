@@ -132,7 +132,7 @@ void collect_outputs(struct building *b, struct snapshot *snapshot)
 {
 	int index = 0;
 	snapshot->output = ARRAY(struct value *, (size_t)b->spec->outputs);
-	b->collector.tolerant = true;
+	b->collector.tolerant = b->collector.reading = true;
 	for (const struct symbol *s = b->spec->first; s; s = s->next) {
 		struct output_work work = { b, s, NULL };
 		if (s->kind != SYMBOL_OUTPUT)
@@ -140,7 +140,7 @@ void collect_outputs(struct building *b, struct snapshot *snapshot)
 		statement_guard(collect_output, &work);
 		snapshot->output[index++] = work.value;
 	}
-	b->collector.tolerant = false;
+	b->collector.tolerant = b->collector.reading = false;
 }
 
 /* An output is a row over states and loads if it is so in all segments of time, with the same states. */
@@ -164,11 +164,11 @@ static void collect_left(void *context)
 	struct collector *c = &work->b->collector;
 	int keep = (int)c->keep;
 	c->keep = KEEP_ALL;
-	c->whole_time = c->output = true;
+	c->whole_time = c->output = c->reading = true;
 	forget_lets(work->b->spec);
 	collect_output(work);
 	c->keep = (unsigned)keep;
-	c->whole_time = c->output = false;
+	c->whole_time = c->output = c->reading = false;
 	for (struct symbol *s = work->b->spec->first; s; s = s->next)
 		if (s->kind == SYMBOL_LET && !s->whole && s->progress == COLLECTED &&
 		    s->collected->rows * s->collected->columns == 1)

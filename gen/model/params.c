@@ -21,13 +21,22 @@ void spread_tuned(const struct spec *spec)
 		s->tuned = s->tuned || (s->value && first_tuned(s->value));
 }
 
+int param_of_input(const struct spec *spec, int input)
+{
+	int k = input < spec->inputs ? -1 : 0;
+	while (k >= 0 && (spec->tunable[k].symbol->factor || spec->tunable[k].symbol->acting != input - spec->inputs))
+		k++;
+	return k;
+}
+
 static void read_by(struct reads *all, const struct model *model, int count, const struct form *const *form)
 {
 	const struct reads own = reads_of(model, count, form);
-	const int inputs = model->spec->inputs;
 	for (int k = 0; k < model->spec->tunables; k++)
-		all->param[k] = all->param[k] || own.param[k] ||
-				(inputs + k < model->system.inputs && own.input[inputs + k]);
+		all->param[k] = all->param[k] || own.param[k];
+	for (int i = model->spec->inputs; i < model->system.inputs; i++)
+		if (own.input[i])
+			all->param[param_of_input(model->spec, i)] = true;
 }
 
 static void warn_of_unread(const struct model *model)
@@ -35,7 +44,6 @@ static void warn_of_unread(const struct model *model)
 	if (model->switching && rubs(model->switching))
 		return;         /* rows of regions may read them, too */
 	const struct spec *spec = model->spec;
-	const bool atoms = model->system.inputs == spec->inputs;
 	struct reads all = reads_of(model, model->selector != NULL, &model->selector);
 	for (int k = 0; k < model->operators; k++)
 		read_by(&all, model, model->channels, (const struct form *const *)model->operator[k].left);
@@ -43,11 +51,12 @@ static void warn_of_unread(const struct model *model)
 		read_by(&all, model, 1, &(const struct form *){ model->whole->residual[i].form });
 	for (int i = 0; i < model->outputs; i++) {
 		read_by(&all, model, model->output[i].left != NULL, &(const struct form *){ model->output[i].left });
-		for (int k = 0; k < spec->tunables && !atoms; k++)
-			all.param[k] = all.param[k] || mpq_sgn(model->output[i].input[0][spec->inputs + k]) != 0;
+		for (int k = spec->inputs; k < model->system.inputs; k++)
+			if (mpq_sgn(model->output[i].input[0][k]) != 0)
+				all.param[param_of_input(spec, k)] = true;
 	}
 	for (int k = 0; k < spec->tunables; k++)
-		if (!all.param[k])
+		if (!all.param[k] && !(model->factor && model->factor[k]))
 			say_warning(spec->tunable[k].at, NULL, "tunable '%s' changes nothing that the target computes",
 				    spec->tunable[k].symbol->name);
 }
@@ -64,6 +73,11 @@ void list_held(struct model *model)
 	model->held = t;
 	if (!model->relative)
 		warn_of_unread(model);
+}
+
+const struct model *model_elsewhere(const struct model *model)
+{
+	return model->tuning ? model->tuning->other : model->retuned ? model->retuned->other : NULL;
 }
 
 const struct tuning *tunables_of(const struct model *model)

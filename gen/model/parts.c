@@ -190,7 +190,8 @@ static void search(void *context)
 {
 	struct building *b = context;
 	int n = b->model->n, *all = ARRAY(int, (size_t)n);
-	bool together = b->model->relative || (b->request->undivided || b->request->solution) || holds_friction(b) || b->model->impacts > 0;
+	bool together = b->factor || b->model->relative || b->request->undivided || b->request->solution ||
+			holds_friction(b) || b->model->impacts > 0;
 	struct switching *s = together ? NULL : regions_of_parts(b);
 	for (int i = 0; i < n; i++)
 		all[i] = i;
@@ -339,7 +340,7 @@ static void build_part(struct building *b, int *parent, struct region_part *part
 			continue;
 		struct linear whole = system_in_region(b, s, r);
 		struct block own = block_at(&whole, parent, part->coord);
-		s->region[r].system = add_system(s, &own.system, segment_of_region(s, r));
+		s->region[r].system = add_system(s, &own.system, segment_of_region(s, r), false);
 	}
 	remove_idle_breaks(s);
 	for (int e = 0; e < s->expressions; e++)
@@ -393,9 +394,10 @@ static void build_whole(struct building *b, struct switching *s)
 		if (!s->region[r].possible)
 			continue;
 		struct linear system = system_in_region(b, s, r);
-		s->region[r].system = add_system(s, &system, segment_of_region(s, r));
+		s->region[r].system = add_system(s, &system, segment_of_region(s, r), b->factor != NULL);
 	}
-	remove_idle_breaks(s);
+	if (!b->factor)                         /* what is idle at these values may act at others */
+		remove_idle_breaks(s);
 	if (has_events(s))
 		build_friction(b, s);
 	build_impact_rows(b, s);

@@ -80,6 +80,21 @@ static bool is_above(struct looking *l, int index, mpq_srcptr at)
 	return false;
 }
 
+/* What is decided by the sign of a number that params may change, or by its being at least 0; equal ones are one. */
+static void note_sign(const struct building *b, struct switching *s, mpq_srcptr number, bool least)
+{
+	if (!b->factor)
+		return;
+	for (int i = 0; i < s->signs; i++)
+		if (mpq_equal(s->sign[i].number, number) && s->sign[i].least == least)
+			return;
+	ENLARGE(s->sign, (size_t)s->signs + 1);
+	struct sign *sign = &s->sign[s->signs++];
+	sign->least = least;
+	mpq_init(sign->number);
+	mpq_set(sign->number, number);
+}
+
 /* In the order in which the equations show expressions */
 static int order_met(const struct looking *l)
 {
@@ -108,9 +123,12 @@ static int sign_here(struct looking *l, const struct node *node, const struct fo
 	mpq_inits(constant, factor, at, NULL);
 	constant_value(c, &plain, constant);
 	int sign = mpq_sgn(constant);
+	if (plain.terms == form->terms)
+		note_sign(l->b, l->s, constant, false);
 	if (plain.terms < form->terms) {
 		struct compared what = { node, form_sum(form, &plain, true), constant, order_met(l) };
 		int e = find_expression(l->s, l->segment, &what, factor, at);
+		note_sign(l->b, l->s, factor, false);
 		sign = is_above(l, e, at) == (mpq_sgn(factor) > 0) ? 1 : -1;
 	}
 	mpq_clears(constant, factor, at, NULL);
@@ -160,7 +178,24 @@ static void add_stick(struct looking *l, struct expression *e, mpq_srcptr at)
 /* Below 0 no force is left; what never is, from t = 0 on, needs no breakpoint there */
 static struct form *force_here(struct looking *l, const struct node *node, struct form *force, bool *negative)
 {
-	if (never_falls_below(force) || sign_here(l, node, force, form_number(0)) >= 0)
+	mpq_t least, size;
+	mpq_inits(least, size, NULL);
+	bool bounded = true;
+	for (int i = 0; i < force->terms; i++) {
+		const struct basis *basis = &force->term[i].basis;
+		mpq_abs(size, force->term[i].factor);
+		if (basis->kind == BASIS_ONE)
+			mpq_add(least, least, force->term[i].factor);
+		else
+			mpq_sub(least, least, size);
+		bounded = bounded && (basis->kind == BASIS_ONE ||
+				      (basis->kind == BASIS_WAVE && !basis->power && mpq_sgn(basis->wave->a) <= 0));
+	}
+	bool positive = bounded && mpq_sgn(least) >= 0;
+	if (bounded)
+		note_sign(l->b, l->s, least, positive);
+	mpq_clears(least, size, NULL);
+	if (positive || sign_here(l, node, force, form_number(0)) >= 0)
 		return force;
 	*negative = *negative || !l->grown;
 	return form_number(0);
@@ -193,6 +228,7 @@ static struct form *friction_here(struct looking *l, const struct atom *a, struc
 	constant_value(c, &plain, constant);
 	struct compared what = { a->node, form_sum(x[0], &plain, true), constant, order_met(l) };
 	f->expression = find_expression(l->s, l->segment, &what, f->factor, f->at);
+	note_sign(l->b, l->s, f->factor, false);
 	mpq_clear(constant);
 	add_stick(l, &l->s->expression[f->expression], f->at);
 	for (int i = 1; i < a->operands; i++)
@@ -382,6 +418,7 @@ static void meet_impact(struct looking *l, const struct impact *impact, mpq_ptr 
 	constant_value(&l->b->collector, &plain, constant);
 	struct compared what = { node, form_sum(guard, &plain, true), constant, order_met(l) };
 	strike->expression = find_expression(l->s, l->segment, &what, strike->factor, strike->at);
+	note_sign(l->b, l->s, strike->factor, false);
 	strike->upward = (mpq_sgn(strike->factor) > 0) == rising;
 	if (!rising)
 		mpq_neg(strike->factor, strike->factor);
@@ -401,12 +438,23 @@ static void meet_impacts(struct looking *l)
 	mpq_clear(constant);
 }
 
+/* What a look has left that was not the last */
+static void forget_region(const struct region *region)
+{
+	discard(region->residual);
+	discard(region->force);
+	discard(region->rest);
+	discard(region->carried);
+}
+
 /* One look at every region but the first `known`; false: something new was met on the way, but of the first `known`
  * then. The regions of one expression are its intervals, in order, so that those below a new breakpoint stay what they
  * are. */
 static bool look(struct building *b, struct switching *s, int *known)
 {
-	const struct region *before = s->region;
+	struct region *before = s->region;
+	for (int r = *known; r < s->regions; r++)
+		forget_region(&before[r]);
 	bool single = s->expressions == 1 && s->segments == 1;
 	int in_one = count_candidates(s);
 	if (in_one > LIMIT_CANDIDATES)
@@ -416,10 +464,10 @@ static bool look(struct building *b, struct switching *s, int *known)
 	for (int r = 0; r < *known; r++)
 		s->region[r] = before[r];
 	for (int r = *known; r < s->regions; r++) {
-		int atoms = atoms_count(b->collector.atoms);
+		int atoms = atoms_count(b->collector.atoms), *interval = intervals_of(s, r);
 		struct looking l = { .b = b,
 				     .s = s,
-				     .interval = intervals_of(s, r),
+				     .interval = interval,
 				     .known = ARRAY(struct form *, (size_t)atoms),
 				     .count = atoms,
 				     .region = r,
@@ -435,6 +483,8 @@ static bool look(struct building *b, struct switching *s, int *known)
 			s->region[r].residual[l.row] = form_here(&l, b->snapshot[l.segment].residual[l.row].form);
 		}
 		meet_impacts(&l);
+		discard(l.known);
+		discard(interval);
 		*known = single && s->expressions == 1 ? l.lowest : 0;
 		if (s->torn)
 			s->expressions = *known = 0;
@@ -572,7 +622,7 @@ static void mark_possible(const struct building *b, struct switching *s)
 	for (int segment = 0; segment < s->segments; segment++) {
 		struct basis *basis;
 		int bases = find_bases(s, segment, &basis), count = 0;
-		bool all = independent(s, segment);
+		bool all = b->factor || independent(s, segment); /* by other values others are */
 		for (int r = segment * in_one; r < (segment + 1) * in_one; r++) {
 			s->region[r].possible = all || is_possible(s, r, bases, basis);
 			count += s->region[r].possible;
@@ -696,9 +746,9 @@ static bool same_rows(const struct switching *s, int a, int b)
 	return same;
 }
 
-int add_system(struct switching *s, const struct linear *system, int segment)
+int add_system(struct switching *s, const struct linear *system, int segment, bool apart)
 {
-	for (int i = 0; i < s->systems; i++)
+	for (int i = 0; i < s->systems && !apart; i++)
 		if (same_system(&s->system[i], system) && same_rows(s, s->system_segment[i], segment))
 			return i;
 	ENLARGE(s->system, (size_t)s->systems + 1);

@@ -183,8 +183,8 @@ static struct look look_at_equations(const struct model *model)
 		join_atoms(&l, model->residual[i].form, own_coordinate(model, i));
 	}
 	memset(l.seen, 0, (size_t)atoms_count(model->atoms));
-	for (int i = 0; i < model->n && model->tuning; i++)
-		look_at(&l, model->tuning->other->residual[i].form, own_coordinate(model, i));
+	for (int i = 0; i < model->n && model_elsewhere(model); i++)
+		look_at(&l, model_elsewhere(model)->residual[i].form, own_coordinate(model, i));
 	return l;
 }
 
@@ -217,10 +217,10 @@ static int free_sums(const struct model *model, mpq_t ***sum)
 {
 	struct balance b = { 0 };
 	struct echelon e = echelon_new(model->n);
-	for (int row = 0; row < model->n * (model->tuning ? 2 : 1); row++) {
+	for (int row = 0; row < model->n * (model_elsewhere(model) ? 2 : 1); row++) {
 		int i = row % model->n;
 		b.first = row < model->n ? 0 : row == model->n ? b.bases : b.first;
-		const struct form *form = (row == i ? model : model->tuning->other)->residual[i].form;
+		const struct form *form = (row == i ? model : model_elsewhere(model))->residual[i].form;
 		for (int k = 0; k < form->terms; k++) {
 			const struct basis *basis = &form->term[k].basis;
 			bool state = basis->kind == BASIS_ATOM ? basis->atom->state
@@ -653,7 +653,7 @@ static mpq_t *leading_factors(const struct model *model)
 	for (int j = 0; j < n; j++)
 		if (mpq_sgn(factor[j]) == 0)
 			return NULL;
-	return model->tuning ? NULL : factor;
+	return model_elsewhere(model) ? NULL : factor;
 }
 
 static struct form *divided(const struct relative *r, int coord, struct form *const *equation, mpq_srcptr times)
@@ -713,8 +713,8 @@ struct relative *relative_of(const struct model *model)
 	for (int s = 0, all = sums; s < all; s++) {
 		const mpq_t *u = (const mpq_t *)sum[s];
 		sum[s] = weights_of(model, u);
-		if (model->tuning &&
-		    retunes(model, (const mpq_t *)sum[s], (const mpq_t *)weights_of(model->tuning->other, u)))
+		if (model_elsewhere(model) &&
+		    retunes(model, (const mpq_t *)sum[s], (const mpq_t *)weights_of(model_elsewhere(model), u)))
 			sum[s] = rationals((size_t)n);
 	}
 	struct relative *r = relative_new(model);

@@ -106,14 +106,16 @@ static void make_input_forces(struct linear *system)
 static void name_inputs(struct building *b)
 {
 	struct linear *system = &b->model->system;
-	const int params = b->collector.params == PARAMS_INPUTS ? b->spec->tunables : 0;
-	system->inputs = b->spec->inputs + params;
+	const bool acting = b->collector.params == PARAMS_INPUTS;
+	system->inputs = b->spec->inputs;
+	for (int k = 0; k < b->spec->tunables && acting; k++)
+		system->inputs += !b->spec->tunable[k].symbol->factor;
 	system->input = ARRAY(struct input, (size_t)system->inputs);
 	for (const struct symbol *s = b->spec->first; s; s = s->next)
 		if (s->kind == SYMBOL_INPUT)
 			system->input[s->index] = (struct input){ .name = s->name, .hold = s->hold };
-	for (int k = 0; k < params; k++)
-		system->input[b->spec->inputs + k].name = b->spec->tunable[k].symbol->name;
+	for (int i = b->spec->inputs; i < system->inputs; i++)
+		system->input[i].name = b->spec->tunable[param_of_input(b->spec, i)].symbol->name;
 	make_input_forces(system);
 }
 

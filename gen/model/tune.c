@@ -84,8 +84,6 @@ static void check_kind(const struct model *model)
 	if (scheme_row(model->scheme)->holds_coupling)
 		error(at, "tunable params are for scheme exact, and for what a scheme leaves over",
 		      "scheme %s cannot be retuned", scheme_name(model->scheme));
-	if (model->switching && has_events(model->switching))
-		error(at, NULL, "a model with friction or impacts cannot be retuned yet");
 }
 
 /* ---- the model at other values ---- */
@@ -435,12 +433,12 @@ static struct tuned_term *add_term(struct tuning *t, int row, int column, int mo
 	return term;
 }
 
-static void add_unit(struct tuning *t, int row, int column)
+void add_tuned_unit(struct tuning *t, int row, int column)
 {
 	mpq_set_ui(add_term(t, row, column, 0)->factor, 1, 1);
 }
 
-static void add_terms(struct tuning *t, const struct fit *f, int row, int column)
+void add_tuned_terms(struct tuning *t, const struct fit *f, int row, int column)
 {
 	for (int i = 0; i < f->products; i++) {
 		signed char power[LIMIT_TUNABLES];
@@ -516,7 +514,7 @@ static bool fit_into(struct search *s, ptrdiff_t index, int row, int column, int
 		*culprit = f->culprit;
 		return false;
 	}
-	add_terms(s->tuning, f, row, column);
+	add_tuned_terms(s->tuning, f, row, column);
 	return true;
 }
 
@@ -529,7 +527,7 @@ static bool fit_frequencies(struct search *s, int *culprit)
 		if (row >= 0 && !fit_into(s, frequency_index(s, l), row, 0, culprit))
 			return false;
 		if (row >= 0 && t->solves)
-			add_unit(t, row, t->x.size + row);
+			add_tuned_unit(t, row, t->x.size + row);
 	}
 	return true;
 }
@@ -614,17 +612,17 @@ bool find_tuning(struct model *model, const struct request *request)
 	const struct spec *spec = model->spec;
 	if (spec->tunables == 0)
 		return true;
-	if (model->impacts > 0) {
-		say_error(spec->tunable[0].at, NULL, "tunable params are not built beside impacts");
+	if (model->impacts > 0 && model->scheme != SCHEME_EXACT) {
+		say_error(spec->tunable[0].at, NULL, "tunable params are not built beside impacts of scheme taylor");
 		return false;
 	}
 	if (model->drags > 0) {
-		say_error(spec->tunable[0].at, NULL, "a model with friction or impacts cannot be retuned yet");
+		say_error(spec->tunable[0].at, NULL, "tunable params are not built beside friction of scheme taylor");
 		return false;
 	}
 	if (model->keeps_params) {
 		list_held(model);
-		return true;
+		return !model->factor || find_retuning(model, request);
 	}
 	struct tuning *t = NEW(struct tuning);
 	struct search s = { .tuning = t, .model = model, .request = request };

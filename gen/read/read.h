@@ -91,6 +91,8 @@ struct symbol {
 	/* it is tunable, or made of something that is; of that: tune.c has looked through its value */
 	bool tuned, tuning_checked;
 	int tunable;                /* its number in the statements `tunable`, from 1; 0: it stands in none */
+	bool factor;                /* tunable, and in regions no input: it changes their matrices; */
+	int acting;                 /* else its number among those that act as inputs */
 	int hold;                   /* of an input: degree of what goes through its samples; 0: held */
 	/* of a coordinate: its order, 1 or 2; of a let: 1 if it reads a highest derivative, else -1, 0 unknown */
 	int highest;

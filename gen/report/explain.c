@@ -89,7 +89,12 @@ static void person_tuning(FILE *to, const struct model *model)
 	fputs("Tunable on the target:", to);
 	for (int k = 0; k < t->params; k++)
 		fprintf(to, "%s %s = %s", k ? "," : "", t->param[k].symbol->name, readable_text(t->nominal[k]));
-	if (model->held && model->switching)
+	if (model->retuned)
+		fprintf(to, "; rows of regions that change with them have %d terms there%s.\n",
+			model->retuned->tuning->terms,
+			model->retuned->blocks ? format(", and %d sets of them are solved", model->retuned->blocks)
+					       : "");
+	else if (model->held && model->switching)
 		fputs("; they act like held inputs.\n", to);
 	else if (model->held)
 		fputs("; expressions read them there. Operators, orders and choices are those of these values.\n", to);

@@ -6,23 +6,33 @@
 #include <math.h>
 #include <string.h>
 
-/* The index of a row of a branch; equal ones are one */
-static int add_row(struct guards *g, int size, int branch, const double *row)
+static bool same_gate(const struct gate_key *a, const struct gate_key *b)
+{
+	return a->expression == b->expression && a->region == b->region && a->release == b->release &&
+	       a->upward == b->upward;
+}
+
+/* The index of a row of a branch; equal ones are one, of tunable params those that are the same */
+static int add_row(struct guards *g, int size, int branch, const double *row, struct gate_key gate)
 {
 	size_t bytes = (size_t)size * sizeof *row;
 	for (int i = 0; i < g->rows; i++)
-		if (g->branch[i] == branch && memcmp(g->row + i * size, row, bytes) == 0)
+		if (g->branch[i] == branch && memcmp(g->row + i * size, row, bytes) == 0 &&
+		    (!g->apart || same_gate(&g->gate[i], &gate)))
 			return i;
 	ENLARGE(g->branch, (size_t)g->rows + 1);
+	ENLARGE(g->gate, (size_t)g->rows + 1);
+	g->gate[g->rows] = gate;
 	ENLARGE(g->row, (size_t)(g->rows + 1) * (size_t)size);
 	memcpy(g->row + g->rows * size, row, bytes);
 	g->branch[g->rows] = branch;
 	return g->rows++;
 }
 
-static void add_guard(struct guards *g, int size, int branch, const double *row, struct guard guard)
+static void add_guard(struct guards *g, int size, int branch, const double *row, struct gate_key gate,
+		      struct guard guard)
 {
-	guard.row = add_row(g, size, branch, row);
+	guard.row = add_row(g, size, branch, row, gate);
 	ENLARGE(g->guard, (size_t)g->guards + 1);
 	g->guard[g->guards++] = guard;
 }
@@ -65,7 +75,8 @@ static void guard_interval(const struct step *step, const struct pieces *pieces,
 		if (guard.impact < 0 && impact_resting(s, segment, expression, interval + (upward ? 1 : -1)) >= 0)
 			guard.leads *= 2;       /* past the interval of rest, which impacts alone lead to */
 		add_guard(g, size, s->region[region].system,
-			  turned(size, pieces->rows[segment] + expression * size, upward), guard);
+			  turned(size, pieces->rows[segment] + expression * size, upward),
+			  (struct gate_key){ .expression = expression, .upward = upward }, guard);
 	}
 }
 
@@ -81,6 +92,7 @@ static void guard_releases(const struct step *step, struct guards *g, int region
 			continue;
 		row_over_x(step, release->row, 0, row);
 		add_guard(g, step->layout.size, s->region[region].system, row,
+			  (struct gate_key){ .expression = -1, .region = region, .release = k },
 			  (struct guard){ .expression = expression,
 					  .breakpoint = interval - !release->upward,
 					  .upward = release->upward,
@@ -89,9 +101,11 @@ static void guard_releases(const struct step *step, struct guards *g, int region
 	}
 }
 
-static void add_assignment(const struct step *step, struct guards *g, int state, const struct output *row)
+static void add_assignment(const struct step *step, struct guards *g, int state, const struct output *row,
+			   enum retuned_kind kind, int of)
 {
-	struct held_state new = { state, ARRAY(double, (size_t)step->layout.size) };
+	struct held_state new = { state, ARRAY(double, (size_t)step->layout.size), kind, of,
+				  g->assignments - g->set[g->sets] };
 	row_over_x(step, row, 0, new.value);
 	ENLARGE(g->assignment, (size_t)g->assignments + 1);
 	g->assignment[g->assignments++] = new;
@@ -112,20 +126,22 @@ static void hold_region(const struct step *step, struct guards *g, int region)
 		return;
 	g->hold[region] = g->sets;
 	for (int k = 0; k < r->holds; k++)
-		add_assignment(step, g, r->hold[k].state, r->hold[k].row);
+		add_assignment(step, g, r->hold[k].state, r->hold[k].row, RETUNED_HOLD, region);
 	end_set(g);
 }
 
-static int set_of_jumps(const struct step *step, struct guards *g, int jumps, const struct jump *jump)
+static int set_of_jumps(const struct step *step, struct guards *g, int jumps, const struct jump *jump,
+			enum retuned_kind kind, int impact)
 {
 	for (int k = 0; k < jumps; k++)
-		add_assignment(step, g, jump[k].state, jump[k].row);
+		add_assignment(step, g, jump[k].state, jump[k].row, kind, impact);
 	return end_set(g);
 }
 
-static struct struck struck_in(const struct step *step, struct guards *g, const struct impact *impact, int segment)
+static struct struck struck_in(const struct step *step, struct guards *g, int number, int segment)
 {
 	const struct switching *s = step->model->switching;
+	const struct impact *impact = &s->impact[number];
 	const struct strike *strike = &impact->in[segment];
 	const struct expression *e = &s->expression[strike->expression];
 	struct struck new = { .expression = strike->expression, .upward = strike->upward,
@@ -135,13 +151,13 @@ static struct struck struck_in(const struct step *step, struct guards *g, const 
 		new.breakpoint++;
 	if (impact->bounces && !strike->upward)
 		new.breakpoint++;               /* the upper of two */
-	new.jump = set_of_jumps(step, g, strike->jumps, strike->jump);
+	new.jump = set_of_jumps(step, g, strike->jumps, strike->jump, RETUNED_JUMP, number);
 	new.speed = ARRAY(double, (size_t)step->layout.size);
 	new.back = ARRAY(double, (size_t)step->layout.size);
 	mpq_t part;
 	mpq_init(part);
 	if (impact->bounces) {
-		new.still = set_of_jumps(step, g, strike->jumps, strike->still);
+		new.still = set_of_jumps(step, g, strike->jumps, strike->still, RETUNED_STILL, number);
 		row_over_x(step, strike->speed_row, 0, new.speed);
 		for (int j = 0; j < step->model->n; j++) {
 			mpq_mul(part, strike->direction[j], strike->factor);
@@ -185,7 +201,7 @@ struct guards guards_of(const struct step *step, const struct pieces *pieces)
 {
 	const struct switching *s = step->model->switching;
 	struct guards g = { .first = ARRAY(int, (size_t)s->regions + 1), .hold = ARRAY(int, (size_t)s->regions),
-			    .set = ARRAY(int, 1) };
+			    .set = ARRAY(int, 1), .apart = step->model->retuned };
 	for (int r = 0; r < s->regions; r++) {
 		g.first[r] = g.guards;
 		hold_region(step, &g, r);
@@ -203,7 +219,7 @@ struct guards guards_of(const struct step *step, const struct pieces *pieces)
 	g.impact = ARRAY(struct struck, (size_t)(s->segments * s->impacts));
 	for (int k = 0; k < s->segments; k++)
 		for (int i = 0; i < s->impacts; i++)
-			g.impact[k * s->impacts + i] = struck_in(step, &g, &s->impact[i], k);
+			g.impact[k * s->impacts + i] = struck_in(step, &g, i, k);
 	bound_rows_of_guards(step, pieces, &g);
 	g.play = ARRAY(double, (size_t)(s->segments * s->expressions));
 	g.row_play = ARRAY(double, (size_t)g.rows);
@@ -224,6 +240,8 @@ static int bounces_in_step(const struct model *model)
 	double sum = 0;
 	for (int i = 0; i < model->impacts; i++) {
 		double most = 0;
+		if (model->retuned && retuned_place(model->retuned, RETUNED_RESTITUTION, i, 0) >= 0)
+			return MOST;            /* it may be anything */
 		for (int s = 0; s < model->system.segments; s++) {
 			double e = mpq_get_d(model->impact[i].in[s].restitution);
 			if (model->impact[i].bounces && e > 0 && e < 1)

@@ -312,7 +312,7 @@ static void fill_intervals(const struct step *step, struct pieces *pieces)
 }
 
 /* 1, or cos and sin of one angle: never above 1 */
-static bool is_bounded(const struct step *step, int load)
+bool is_bounded_load(const struct step *step, int load)
 {
 	const struct load *l = &step->branch->system.load[load];
 	return step->layout.load[load] >= 0 && l->powers == 1 && mpq_sgn(l->wave->a) == 0;
@@ -322,7 +322,7 @@ static bool *bounded_entries(const struct step *step)
 {
 	bool *bounded = ARRAY(bool, (size_t)step->layout.size);
 	for (int l = 0; l < step->branch->system.loads; l++)
-		for (int k = 0; k < step->branch->system.load[l].columns && is_bounded(step, l); k++)
+		for (int k = 0; k < step->branch->system.load[l].columns && is_bounded_load(step, l); k++)
 			bounded[step->layout.load[l] + k] = true;
 	return bounded;
 }
@@ -343,7 +343,7 @@ static void fold_loads(const struct step *step, double *bound, double *still)
 	for (int l = 0; l < step->branch->system.loads; l++) {
 		const struct load *load = &step->branch->system.load[l];
 		double *at = bound + step->layout.load[l];
-		if (!is_bounded(step, l))
+		if (!is_bounded_load(step, l))
 			continue;
 		*still += load->columns == 2 ? hypot(at[0], at[1]) : at[0];
 		for (int k = 0; k < load->columns; k++)

@@ -89,6 +89,8 @@ bool *loads_of_regions(const struct step *step)
 	const struct switching *s = step->model->switching;
 	bool *needed = ARRAY(bool, (size_t)step->branch->system.loads);
 	int segments = step->shown->model->system.segments;
+	for (int l = 0; l < step->branch->system.loads && step->model->retuned; l++)
+		needed[l] = true;               /* at other values others act */
 	for (int p = 0; p < s->parts; p++)
 		mark_loads_of(s->part[p].model->switching, segments, needed);
 	if (s->parts == 0)

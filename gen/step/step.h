@@ -411,6 +411,7 @@ void take_operators(struct step *step);
 
 void build_regions_step(struct step *step);
 void build_parts_step(struct step *step);
+bool is_bounded_load(const struct step *step, int load);    /* it has load states that are never above 1 */
 bool is_cleared_by_tables(const struct step *step);         /* a swift step looks by tables, not region by region */
 
 /* ---- pieces.c: what a piecewise-linear model finds its crossings with ---- */
@@ -472,12 +473,20 @@ struct struck {                     /* an impact */
 	double *back;               /* over x: so much times how far the expression is beyond, and it is on its guard */
 	double restitution, play;   /* play: the sizes of its speed's factors of cos and sin */
 };
-struct held_state { int state; double *value; };            /* x[state] = value . x */
+struct held_state {                 /* x[state] = value . x */
+	int state;
+	double *value;
+	enum retuned_kind kind;     /* where it comes from: a row of the regions */
+	int of, index;
+};
+struct gate_key { int expression, region, release; bool upward; };  /* an expression, up or down; -1: a release */
 struct guards {
+	bool apart;                 /* rows that are equal may become others: params are tunable */
 	int *first;                 /* per region, and one more: its guards, of those of all */
 	int guards;
 	struct guard *guard;
-	int rows, *branch;          /* of each row: whose it is */
+	int rows, *branch;          /* of each row: whose it is, */
+	struct gate_key *gate;          /* and what */
 	double *row, *slope, *second, *fourth; /* rows x size */
 	/* per segment of time and expression, per row: the sizes of its factors of cos and sin */
 	double *play, *row_play;

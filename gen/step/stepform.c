@@ -191,9 +191,11 @@ static bool *readings(const struct step *step)
 	const struct model *model = step->model;
 	int n = step->branch->system.states;
 	bool *reads = ARRAY(bool, (size_t)(n * n));
-	for (int k = 0; k < step->branches; k++) {
-		const mpq_t *A = (const mpq_t *)state_matrix(model->tuning ? &model->tuning->other->system
-									   : &step->branch[k].system,
+	const struct switching *there = model->retuned ? model->retuned->other->switching : NULL;
+	for (int k = 0; k < (there ? there->systems : step->branches); k++) {
+		const mpq_t *A = (const mpq_t *)state_matrix(there           ? &there->system[k]
+							     : model->tuning ? &model->tuning->other->system
+									     : &step->branch[k].system,
 							     false);
 		for (int i = 0; i < n * n; i++)
 			reads[i] = reads[i] || mpq_sgn(A[i]) != 0;

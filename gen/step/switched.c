@@ -23,7 +23,8 @@ static const char *no_swift(const struct step *step)
 	bool turns = false;
 	for (int k = 0; k < step->branches; k++)
 		turns = turns || step->branch[k].halvings > 1;
-	return step->model->asked.single                 ? "it is smaller, for the target float"
+	return step->model->retuned                      ? "an instance has its own tables, for tunable params"
+	       : step->model->asked.single               ? "it is smaller, for the target float"
 	       : s->segments > 1                         ? "loads change their formula in time"
 	       : has_events(s)                           ? "what sticks, slips and bounces has events of its own"
 	       : turns                                   ? "the fastest pole turns by more than 2 in a step"
@@ -79,6 +80,14 @@ static void plan_region(struct step *step, int k)
 	step->series.degree = degree > step->series.degree ? degree : step->series.degree;
 }
 
+/* At other values the same |pole| d of 1 at most, but no more is known of the terms. */
+static void plan_retuned(struct step *step)
+{
+	int least = step->model->asked.single ? 10 : 18, size = step->layout.size;
+	least += (size < 16 ? size : 16) / 2;
+	step->series.degree = least > step->series.degree ? least : step->series.degree;
+}
+
 /* e^{A d} of each region for pieces d of the step, and the series that finds crossings. What is counted is without the
  * load states. */
 static void build_divided(struct step *step)
@@ -102,6 +111,8 @@ static void build_divided(struct step *step)
 	step->series.emitted = true;
 	for (int k = 0; k < step->branches; k++)
 		plan_region(step, k);
+	if (step->model->retuned)
+		plan_retuned(step);
 	plan_swift(step);
 }
 

@@ -56,7 +56,7 @@ double *nominal_outputs(const struct step *step)
 static bool is_tuned_frequency(const struct step *step, int row, int column)
 {
 	const struct linear *system = &step->branch->system;
-	for (int l = 0; l < system->loads; l++) {
+	for (int l = 0; l < system->loads && step->model->tuning; l++) {
 		int from = step->layout.load[l];
 		bool inside = row >= from && row < from + system->load[l].columns;
 		bool pair = row != column && (row - from) / 2 == (column - from) / 2;

@@ -33,7 +33,9 @@ STATUS = ((2, 'the step has met more crossings, or needed a longer search for th
           (8, 'the last terms of the step are above the tolerance'),
           (16, 'what is to stick and what is to slip at an event had no answer'))
 REFUSED = {8: 'the step is not above 0', 16: "with these values a load's frequency is below 0",
-           4: 'with these values the mass matrix has no inverse'}
+           4: 'with these values the mass matrix has no inverse',
+           32: 'with these values the regions are others: a restitution not within 0 and 1, a gap or a force of '
+               'friction below 0, breakpoints in another order'}
 BLOCK = 1 << 20         # steps between two looks at Ctrl-C
 
 

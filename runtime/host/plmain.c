@@ -405,6 +405,9 @@ static void retune(void *state, const real *params, real h)
         fail("the step is not above 0");
     if (status == PL_NO_RATE)
         fail("with these values a load's frequency is below 0");
+    if (status == PL_OUT_OF_RANGE)
+        fail("with these values the regions are others: a restitution not within 0 and 1, a gap or a force of friction "
+             "below 0, breakpoints in another order");
     if (status == PL_SINGULAR)
         fail("with these values the mass matrix has no inverse");
     if (status != 0)

@@ -2,7 +2,8 @@
 /* follow FOUND STEPS TOLERANCE: whether the emitted model `scene` meets every event in FOUND, in order, and ends where
  * FOUND says, off by at most TOLERANCE of the largest value, times 0.1 over the slowest speed at which something was
  * met, where that is more, and times what an error of the start grows by. Events of one instant count once: which
- * intervals are passed on the way is the model's own affair. Status 3: its steps are too long for all their events. */
+ * intervals are passed on the way is the model's own affair. Status 3: its steps are too long for all their events.
+ * With SCENE_VALUES the model has tunable params, which take these values first. */
 #include "scene.h"
 #include "worse.h"
 
@@ -119,6 +120,14 @@ int main(int count, char **argument)
 		return 3;
 	scene s;
 	scene_init(&s);
+#ifdef SCENE_VALUES
+	static scene_coeffs fresh;
+	const double values[] = { SCENE_VALUES };
+	const int refused = scene_retune(&fresh, values, SCENE_H);
+	if (refused)
+		printf("# retune: %d\n", refused);
+	scene_use(&s, &fresh);
+#endif
 	const int met = follow(&s, atol(argument[2]));
 	for (int i = 0; i < events || i < met; i++)
 		if (!FEW_DIGITS && (i >= events || i >= met || !(fabs(expected[i] - found[i]) <= late))) {

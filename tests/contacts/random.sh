@@ -1,12 +1,12 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# random.sh PLGEN TRUTH FOLLOW.C SOURCE STOPS FRICTIONS IMPACTS CHANGES WILD FIRST COUNT
+# random.sh PLGEN TRUTH FOLLOW.C SOURCE STOPS FRICTIONS IMPACTS CHANGES WILD FIRST COUNT [tuned]
 #
-# COUNT random scenes from seed FIRST on with at most so many contacts of each kind and changes of the loads: the emitted
-# code against the same scene in multiprecision. WILD 1: of the wilder ones (masses.h), each at steps from a ten
+# COUNT random scenes from seed FIRST on with at most so many contacts of each kind and changes of the loads: the
+# emitted code against the same scene in multiprecision. WILD 1: of the wilder ones (masses.h), each at steps from a ten
 # thousandth of its shortest period to ten of it, and in float; 2: with forces that are not piecewise linear, 3: as they
-# are, by a Taylor series. $CC compiles, $PLRT is the runtime. KEEP=FOLDER keeps
-# what fails.
+# are, by a Taylor series. tuned: from a model with other values of up to 16 params, retuned to those of the scene. $CC
+# compiles, $PLRT is the runtime. KEEP=FOLDER keeps what fails.
 plgen=$(realpath "$1")
 truth=$(realpath "$2")
 follow=$(realpath "$3")
@@ -17,6 +17,7 @@ changes=$8
 shift 9
 first=$1
 last=$((first + $2))
+tuned=${3:-}
 seconds=10
 [ $wild -ne 2 ] || seconds=4
 options=
@@ -27,12 +28,17 @@ decides=0
 # follows STEPS BITS TOLERANCE REAL: status 0, or 2 where the scene decides nothing, or 3 where a step is too long
 follows() {
 	$truth $kinds $seed $seconds $1 $2 scene.spec found.txt || return $?
+	echo >values.h
+	if [ "$tuned" ]; then
+		mv scene.spec plain.spec
+		awk -v VALUES=values.h -f "$source/tests/contacts/tuned.awk" plain.spec >scene.spec
+	fi
 	if ! "$plgen" $options --real $4 scene.spec -o scene.c >log 2>&1; then
 		grep 'more regions than the limit' log >found.txt && return 2
 		return 1
 	fi
-	${CC:-cc} -O1 $([ $4 = float ] && echo -DFLOAT) -I. -I"$source/runtime" -I"$source/tests/emitted" -o follow \
-		"$follow" scene.c $PLRT -lm >>log 2>&1 || return 1
+	${CC:-cc} -O1 -include ./values.h $([ $4 = float ] && echo -DFLOAT) -I. -I"$source/runtime" \
+		-I"$source/tests/emitted" -o follow "$follow" scene.c $PLRT -lm >>log 2>&1 || return 1
 	./follow found.txt $1 $3 >>log 2>&1
 }
 

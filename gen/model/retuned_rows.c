@@ -1,0 +1,207 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* All numbers of the regions, row by row over x, in one order for all values of params: what of them changes with
+ * params is found by comparing such lists. */
+#include "model/model.h"
+
+static mpq_t *add_row(struct listing *l, enum retuned_kind kind, int of, int index)
+{
+	size_t size = (size_t)l->x->size, cells = (size_t)l->rows * size;
+	ENLARGE(l->row, (size_t)l->rows + 1);
+	ENLARGE(l->entry, cells + size);
+	for (size_t j = 0; j < size; j++)
+		mpq_init(l->entry[cells + j]);
+	l->row[l->rows++] = (struct retuned_row){ .kind = kind, .of = of, .index = index, .place = -1 };
+	return l->entry + cells;
+}
+
+static void add_number(struct listing *l, enum retuned_kind kind, int of, int index, mpq_srcptr value)
+{
+	mpq_set(add_row(l, kind, of, index)[0], value);
+}
+
+static void list_output(struct listing *l, enum retuned_kind kind, int of, int index, const struct output *row,
+			int segment)
+{
+	const struct linear *system = &l->model->system;
+	mpq_t *entry = add_row(l, kind, of, index);
+	for (int i = 0; i < system->states; i++)
+		mpq_set(entry[i], row->state[i]);
+	for (int m = 0; m < system->loads; m++)
+		for (int k = 0; k < system->load[m].columns; k++)
+			mpq_set(entry[l->x->load[m] + k], row->load[m][k * system->segments + segment]);
+	for (int i = 0; i < system->inputs; i++)
+		for (int k = 0; k <= system->input[i].hold; k++)
+			mpq_set(entry[l->x->input[i] + k], row->input[k][i]);
+}
+
+static void list_system(struct listing *l, int index)
+{
+	const struct linear *system = &l->model->switching->system[index];
+	int size = l->x->size, cells = size * size;
+	mpq_t *A = augmented_matrix(l->x, system, 0);
+	for (int i = 0; i < system->n; i++) {
+		mpq_t *entry = add_row(l, RETUNED_SLOPE, index, i);
+		const mpq_t *from = A + (system->velocity[i] >= 0 ? system->velocity[i] : i) * size;
+		for (int j = 0; j < size; j++)
+			mpq_set(entry[j], from[j]);
+	}
+	rationals_free(A, (size_t)cells);
+}
+
+static const mpq_t *slope_of(const struct listing *l, int system, int coord)
+{
+	return (const mpq_t *)l->entry + (system * l->model->n + coord) * l->x->size;
+}
+
+/* row <- row + factor times a highest derivative */
+static void add_highest(const struct listing *l, int system, int coord, mpq_srcptr factor, mpq_t *row)
+{
+	mpq_t part;
+	mpq_init(part);
+	const mpq_t *from = slope_of(l, system, coord);
+	for (int j = 0; j < l->x->size && mpq_sgn(factor) != 0; j++) {
+		mpq_mul(part, factor, from[j]);
+		mpq_add(row[j], row[j], part);
+	}
+	mpq_clear(part);
+}
+
+/* W, and R = W times what it was solved to */
+static void list_equations(struct listing *l, int index)
+{
+	const struct linear *system = &l->model->switching->system[index];
+	int n = system->n;
+	for (int i = 0; i < n; i++) {
+		mpq_t *W = add_row(l, RETUNED_W, index, i);
+		for (int k = 0; k < n; k++)
+			mpq_set(W[k], (system->velocity[k] >= 0 ? system->M : system->C)[i * n + k]);
+		int from = l->rows - 1;
+		mpq_t *R = add_row(l, RETUNED_R, index, i);
+		for (int k = 0; k < n; k++)
+			add_highest(l, index, k, l->entry[from * l->x->size + k], R);
+	}
+}
+
+/* The last row apart: what is left of it without highest derivatives, and their factors */
+static void part_row(struct listing *l, int system, const struct form *form, enum retuned_kind R, enum retuned_kind W)
+{
+	struct retuned_row whole = l->row[l->rows - 1];
+	int at = l->rows - 1, size = l->x->size;
+	mpq_t *factor = add_row(l, W, whole.of, whole.index), minus;
+	for (int i = 0; i < form->terms; i++) {
+		const struct basis *basis = &form->term[i].basis;
+		if (basis->kind == BASIS_COORD && basis->order == l->model->frame.coord[basis->index]->highest)
+			mpq_set(factor[basis->index], form->term[i].factor);
+	}
+	mpq_t *rest = add_row(l, R, whole.of, whole.index);
+	mpq_init(minus);
+	for (int j = 0; j < size; j++)
+		mpq_set(rest[j], l->entry[at * size + j]);
+	for (int k = 0; k < l->model->n; k++) {
+		mpq_neg(minus, l->entry[(at + 1) * size + k]);
+		add_highest(l, system, k, minus, rest);
+	}
+	mpq_clear(minus);
+}
+
+static void list_expressions(struct listing *l)
+{
+	const struct switching *s = l->model->switching;
+	for (int segment = 0; segment < s->segments; segment++)
+		for (int e = 0; e < s->expressions; e++)
+			list_output(l, RETUNED_EXPRESSION, segment, e, s->expression[e].row, segment);
+	for (int e = 0; e < s->expressions; e++)
+		for (int k = 0; k < s->expression[e].breaks; k++)
+			add_number(l, RETUNED_BREAK, e, k, s->expression[e].at[k]);
+}
+
+static void list_region(struct listing *l, int index)
+{
+	const struct switching *s = l->model->switching;
+	const struct region *region = &s->region[index];
+	for (int k = 0; k < region->holds; k++)
+		list_output(l, RETUNED_HOLD, index, k, region->hold[k].row, 0);
+	for (int k = 0; k < region->releases; k++) {
+		list_output(l, RETUNED_RELEASE, index, k, region->release[k].row, 0);
+		part_row(l, region->system, region->release[k].form, RETUNED_RELEASE_R, RETUNED_RELEASE_W);
+	}
+	for (int k = 0; k < s->felts && region->grip; k++) {
+		if (!region->grip[k])
+			continue;
+		list_output(l, RETUNED_GRIP, index, k, region->grip[k], 0);
+		part_row(l, region->system, region->grip[k]->form, RETUNED_GRIP_R, RETUNED_GRIP_W);
+	}
+}
+
+static void list_times(struct listing *l, mpq_srcptr answer)
+{
+	int size = l->x->size, from = (l->rows - 1) * size;
+	mpq_t *times = add_row(l, RETUNED_TIMES, 0, 0);
+	for (int j = 0; j < size; j++)
+		mpq_mul(times[j], l->entry[from + j], answer);
+}
+
+static void list_jumps(struct listing *l, int index, enum retuned_kind kind, const struct jump *jump)
+{
+	const struct impact *impact = &l->model->switching->impact[index];
+	const struct strike *strike = &impact->in[0];
+	for (int k = 0; k < strike->jumps; k++) {
+		list_output(l, kind, index, k, jump[k].row, 0);
+		list_times(l, strike->answer);
+	}
+}
+
+static void list_impact(struct listing *l, int index)
+{
+	const struct impact *impact = &l->model->switching->impact[index];
+	const struct strike *strike = &impact->in[0];
+	add_number(l, RETUNED_ANSWER, index, 0, strike->answer);
+	list_jumps(l, index, RETUNED_JUMP, strike->jump);
+	if (impact->bounces) {
+		list_jumps(l, index, RETUNED_STILL, strike->still);
+		list_output(l, RETUNED_SPEED, index, 0, strike->speed_row, 0);
+		mpq_t *back = add_row(l, RETUNED_BACK, index, 0);
+		for (int j = 0; j < l->model->n; j++)
+			mpq_mul(back[j], strike->direction[j], strike->factor);
+		list_times(l, strike->answer);
+		add_number(l, RETUNED_RESTITUTION, index, 0, strike->restitution);
+		add_number(l, RETUNED_LEAST, index, 0, strike->gap);
+	}
+}
+
+/* What has to stay above or below 0; breakpoints their order */
+static void list_signs(struct listing *l)
+{
+	const struct switching *s = l->model->switching;
+	int count = 0;
+	mpq_t difference;
+	mpq_init(difference);
+	for (int e = 0; e < s->expressions; e++)
+		for (int k = 1; k < s->expression[e].breaks; k++) {
+			mpq_sub(difference, s->expression[e].at[k], s->expression[e].at[k - 1]);
+			if (mpq_sgn(difference) != 0)
+				add_number(l, RETUNED_SIGN, count++, 0, difference);
+		}
+	for (int i = 0; i < s->signs; i++)
+		add_number(l, s->sign[i].least ? RETUNED_LEAST : RETUNED_SIGN, count++, 1, s->sign[i].number);
+	mpq_clear(difference);
+}
+
+struct listing list_rows(const struct model *model, const struct layout *x, bool signs)
+{
+	const struct switching *s = model->switching;
+	struct listing l = { .model = model, .x = x };
+	for (int k = 0; k < s->systems; k++)
+		list_system(&l, k);
+	for (int k = 0; k < s->systems; k++)
+		list_equations(&l, k);
+	list_expressions(&l);
+	for (int r = 0; r < s->regions; r++)
+		if (s->region[r].possible)
+			list_region(&l, r);
+	for (int i = 0; i < s->impacts; i++)
+		list_impact(&l, i);
+	if (signs)
+		list_signs(&l);
+	return l;
+}

@@ -1,0 +1,47 @@
+#!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
+# regions.sh PLGEN SOURCE REAL SPEC...: models with regions whose matrices tunable params change, each as it is written
+# (retuned), and without `tunable` at the values of its line `#there` (plain): regions.c drives both, compiled with
+# sanitizers. Lines `#bad NAME=VALUE ... STATUS`: values that NAME_retune refuses.
+plgen=$(realpath "$1")
+source=$(realpath "$2")
+real=$3
+shift 3
+. "$source/tests/tap.sh"
+for spec in "$@"; do
+	name=$(basename "$spec" .spec)_$real
+	chosen "$name" || continue
+	there=$(sed -n 's/^#there //p' "$spec")
+	defines=''
+	for pair in $there; do
+		defines="$defines -D $pair"
+	done
+	grep -v '^tunable' "$spec" >plain.spec
+	awk '/^tunable/ { gsub(/,/, " "); for (i = 2; i <= NF; i++) order[i - 1] = $i; n = NF - 1 }
+		/^#there/ { for (i = 2; i <= NF; i++) { split($i, pair, "="); value[pair[1]] = pair[2] } }
+		END { printf "#define VALUES "; for (i = 1; i <= n; i++) printf "%s%s", value[order[i]], i < n ? ", " : "\n" }
+		' "$spec" >refused.h
+	{
+		echo 'static const struct { int count; const char *name[4]; double value[4]; int status; const char *text; }'
+		echo '    refused[] = {'
+		awk '/^#bad/ { names = values = ""; for (i = 2; i < NF; i++) { split($i, pair, "=");
+			names = names (i > 2 ? ", " : "") "\"" pair[1] "\""; values = values (i > 2 ? ", " : "") pair[2] }
+			printf "    {%d, {%s}, {%s}, %s, \"%s\"},\n", NF - 2, names, values, $NF, $2 }' "$spec"
+		echo '};'
+	} >>refused.h
+	float=''
+	if [ "$real" = float ]; then
+		float='-DREAL_FLOAT'
+	fi
+	# shellcheck disable=SC2086
+	"$plgen" --real "$real" --prefix retuned "$spec" -o retuned.c >log 2>&1 &&
+		"$plgen" --real "$real" --prefix plain $defines plain.spec -o plain.c >>log 2>&1 &&
+		${CC:-cc} -std=c11 -O1 -g -fsanitize=undefined -fno-sanitize-recover -I. -I"$source/runtime" \
+			-I"$source/tests/emitted" $float -o regions "$source/tests/tunable/regions.c" retuned.c plain.c \
+			"$source/tests/emitted/tap.c" $PLRT -lm >>log 2>&1 &&
+		./regions >>log 2>&1
+	status=$?
+	grep '^not ok' log | sed 's/^/# /'
+	result $status "$name"
+done
+tap_end
