@@ -72,10 +72,10 @@ void banner_tuned_blocks(const struct emitter *e)
 {
 	const int blocks = blocks_of_step(e)->blocks, touched = count_touched(e);
 	const char *of = touched == blocks ? format("all %d", touched) : format("%d of %d", touched, blocks);
-	say(e, " * Tunable: %s. They touch %s independent blocks; $n_retune computes the factors of these from other\n"
-	       " * values%s on the target, of a block whose params are the spec's these, correctly rounded.\n"
-	       " * It needs some %d KB of stack.\n",
-	    param_list(e), of, blocks_of_step(e)->whole ? " and another h" : ", for the spec's h,",
+	say(e, " * Tunable: %s.\n"
+	       " * They touch %s independent blocks; $n_retune computes the factors of these from other values%s,\n"
+	       " * of a block whose params are the spec's these, correctly rounded. It needs some %d KB of stack.\n",
+	    param_list(e), of, blocks_of_step(e)->whole ? " and another h" : "",
 	    blocks_of_step(e)->kilobytes);
 }
 
@@ -84,7 +84,7 @@ static const char *first_state(const struct emitter *e, const struct group *g)
 	return format("%s%s", e->model->state_name[g->state[0]], g->states * g->blocks > 1 ? ", ..." : "");
 }
 
-void emit_block_members(const struct emitter *e)
+static void emit_block_members(const struct emitter *e)
 {
 	for (int k = 0; k < e->step->program->groups; k++) {
 		const struct group *g = group_at(e, k);
@@ -101,7 +101,7 @@ void emit_block_members(const struct emitter *e)
 	}
 }
 
-void emit_nominal_blocks(const struct emitter *e)
+static void emit_nominal_blocks(const struct emitter *e)
 {
 	for (int k = 0; k < e->step->program->groups; k++) {
 		const struct group *g = group_at(e, k);
@@ -119,6 +119,21 @@ void emit_nominal_blocks(const struct emitter *e)
 			say(e, "    },\n");
 		}
 	}
+}
+
+void emit_block_coefficients(const struct emitter *e)
+{
+	emit_coefficients_with(e, emit_block_members);
+}
+
+void emit_block_declarations(const struct emitter *e)
+{
+	emit_tuning_functions(e, !blocks_of_step(e)->whole);
+}
+
+void emit_block_nominal(const struct emitter *e)
+{
+	emit_nominal_with(e, emit_nominal_blocks);
 }
 
 /* ---- the equations on the target ---- */
@@ -497,7 +512,7 @@ static void emit_tuned_loads(const struct emitter *e)
 {
 	const struct tuned_blocks *p = blocks_of_step(e);
 	if (p->whole) {
-		emit_take_loads(e);
+		emit_take_loads(e, p->frequency);
 		return;
 	}
 	for (int l = 0; l < e->system->loads; l++)
@@ -518,7 +533,7 @@ static void emit_value_of_others(const struct emitter *e)
 	say(e, "    pl_two value[%d][%d], work[%d];\n"
 	       "    int status = pl_equations_at(&$n_equations, params, value[0], work);\n",
 	    part->rows, part->width, e->model->tuning->monomials + 1);
-	emit_frequency_check(e);
+	emit_frequency_check(e, blocks_of_step(e)->frequency);
 	say(e, "    if (status != 0)\n"
 	       "        return status;\n");
 }
@@ -588,7 +603,7 @@ static void emit_retune_all(const struct emitter *e)
 	       "}\n");
 }
 
-void emit_blocks_retune(const struct emitter *e)
+static void emit_blocks_retune(const struct emitter *e)
 {
 	const struct tuned_blocks *p = blocks_of_step(e);
 	emit_terms(e);
@@ -615,7 +630,7 @@ static void emit_block_changes(const struct emitter *e, int changes)
 	       "        }\n", changes);
 }
 
-void emit_blocks_pass(const struct emitter *e)
+static void emit_blocks_pass(const struct emitter *e)
 {
 	const struct tuned_blocks *p = blocks_of_step(e);
 	const int changes = e->system->segments - 1;
@@ -642,4 +657,12 @@ void emit_blocks_pass(const struct emitter *e)
 	       "            y[at[i]] = part[i];\n"
 	       "    }\n"
 	       "}\n", changes ? "segment, tau - done" : "0, tau");
+}
+
+void emit_blocks_tuning(const struct emitter *e)
+{
+	emit_blocks_retune(e);
+	emit_use_function(e);
+	if (e->step->series.emitted)
+		emit_blocks_pass(e);
 }
