@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* retune_blocks COUNT: one retune of ten independent blocks of four states with COUNT params changed, one of each block;
- * COUNT below 0: e^{A h} - I of all 40 states at once, as it would be without blocks. For counts of instructions. */
+/* retune_blocks COUNT: one retune of ten independent blocks of four states with COUNT params changed, one of each
+ * block; COUNT below 0: e^{A h} - I of all 40 states at once, as it would be without blocks. For counts of
+ * instructions. */
 #include "ten_pl.h"
 
 #include <stdlib.h>

@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# retune_blocks.sh BUILD: instructions of NAME_retune where 0, 1, 2, 5 or all of ten independent blocks have other params,
-# beside e^{A h} of the whole at once, and the work space of either; counted by callgrind, so on any machine alike.
+# retune_blocks.sh BUILD: instructions of NAME_retune where 0, 1, 2, 5 or all of ten independent blocks have other
+# params, beside e^{A h} of the whole at once, and its work space; counted by callgrind, so on any machine alike.
 set -e
 build=$1
 work=$(mktemp -d)

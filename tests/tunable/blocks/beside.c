@@ -2,8 +2,8 @@
 /* beside: a model that was retuned beside one of the same equations with the values written into its spec.
  * -DTUNED=NAME_model -DPLAIN=NAME_model, and -DREAL_FLOAT for models in float.
  *
- *     beside STATUS TOLERANCE H VALUE ...    retunes to these values of its params, in their order, and to H [s], 0: its
- *                                            own step
+ *     beside STATUS TOLERANCE H VALUE ...    retunes to these values of its params, in their order, and to H [s], 0:
+ *                                            its own step
  *
  * From random states at random times, under random samples, both step and are compared after each of a few steps:
  * states, outputs, states between steps; to TOLERANCE units of rounding of the largest state or output. Where STATUS is

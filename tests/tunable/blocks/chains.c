@@ -3,10 +3,11 @@
  *
  *     chains SEED SPEC TRUTH
  *
- * Chains of masses, some with a coordinate of first order at their end, their coordinates in any order; params stand in
- * the masses, springs, dampers, loads, inputs of some chains and not of others. The truth knows the equations alone: the
- * Taylor series of their solution in long double, over 32 parts of a step. TRUTH has the new values, h, and cases: time,
- * states, samples before and of the step, states and outputs after it; all that plgen is given has few bits. */
+ * Chains of masses, some with a coordinate of first order at their end, their coordinates in any order; params stand
+ * in the masses, springs, dampers, loads, inputs of some chains and not of others. The truth knows the equations alone:
+ * the Taylor series of their solution in long double, over 32 parts of a step. TRUTH has the new values and cases:
+ * time, states, samples before and of the step, states and outputs after it; all that plgen is given has few bits.
+ */
 #include "drawn.h"
 
 #include <math.h>
