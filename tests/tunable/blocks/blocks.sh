@@ -82,7 +82,7 @@ refused 8 -1 'a step below 0: PL_NO_STEP' 2 0.5 100 3
 beside 30 taps "k=30 c=0.5 g=1 d=2" 0
 beside 30 taps "k=30 c=0.5 g=1 d=2" 0.015625 --form direct
 for real in double float; do
-	beside 10 ends "g=2 F=5" 0 --real $real
+	beside 10 ends "g=2 F=5 w=4" 0 --real $real
 	beside 60 train "m=3 k=1500 F=4" 0 --real $real
 	beside 20 gusts "k=80 F=2 w=4" 0 --real $real
 	beside 10 red "k=90 g=1" 0 --reduce --real $real
