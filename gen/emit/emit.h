@@ -188,6 +188,8 @@ void emit_samples(const struct emitter *e);                       /* start, slop
 
 bool is_tuned_output(const struct emitter *e, const struct output *output); /* params change it */
 const char *tuned_factor(const struct emitter *e, int row, const struct operand *operand);
+bool has_own_factors(const struct emitter *e, int state);         /* its row's are the instance's */
+int  place_in(int count, const int *list, int what);              /* count: it is not there */
 const char *tuned_output(const struct emitter *e, const struct output *output); /* its sum; NULL: no param changes it */
 /* columns of x as in struct tuning */
 bool tuned_output_reads(const struct emitter *e, const struct output *output, int column);
@@ -663,8 +665,6 @@ void emit_block_coefficients(const struct emitter *e);            /* struct NAME
 void emit_block_declarations(const struct emitter *e);
 void emit_block_nominal(const struct emitter *e);
 void emit_blocks_tuning(const struct emitter *e);                 /* the equations, retune, use, pass */
-bool has_own_factors(const struct emitter *e, int state);         /* its row's are the instance's */
-const char *block_factor(const struct emitter *e, int row, const struct operand *operand);
 
 /* ---- emit_params.c: tunable params; those that an instance holds print nothing where there are none ---- */
 

@@ -13,51 +13,6 @@ static const struct group *group_at(const struct emitter *e, int index)
 	return &e->step->program->group[index];
 }
 
-/* ---- factors in steps ---- */
-
-static const struct group *group_of_state(const struct emitter *e, int state, int *index, int *row)
-{
-	for (int k = 0; k < e->step->program->groups; k++) {
-		const struct group *g = group_at(e, k);
-		for (int i = 0; i < g->states * g->blocks; i++)
-			if (g->state[i] == state) {
-				*index = k;
-				*row = i / g->blocks;
-				return g;
-			}
-	}
-	internal_error(e->step, "a state stands in no group");
-}
-
-bool has_own_factors(const struct emitter *e, int state)
-{
-	int index, row;
-	return e->step->program->tuned && (!blocks_of_step(e) || group_of_state(e, state, &index, &row)->tuned);
-}
-
-static int place_in(int count, const int *list, int what)
-{
-	int place = 0;
-	while (place < count && list[place] != what)
-		place++;
-	return place;
-}
-
-const char *block_factor(const struct emitter *e, int state, const struct operand *operand)
-{
-	int index, row;
-	const struct group *g = group_of_state(e, state, &index, &row);
-	const int segments = e->system->segments;
-	if (operand->kind == OPERAND_STATE)
-		return format("s->coeffs.rows%d[%d][%d]", index, row, place_in(g->states, g->state, operand->index));
-	if (operand->kind == OPERAND_INPUT)
-		return format("s->coeffs.rows%d[%d][%d]", index, row,
-			      g->states + segments * g->loads + place_in(g->inputs, g->input, operand->index));
-	const int place = g->states + place_in(g->loads, g->load, operand->index);
-	return segments > 1 ? format("s->coeffs.rows%d[%d][%d + s->segment * %d]", index, row, place, g->loads)
-			    : format("s->coeffs.rows%d[%d][%d]", index, row, place);
-}
-
 /* ---- the header ---- */
 
 static int count_touched(const struct emitter *e)
